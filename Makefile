@@ -1,0 +1,158 @@
+# noh: characters in fixed memory. `make help` lists the targets.
+
+MAKEFLAGS += --no-builtin-rules
+
+BUILD   ?= build
+CC      ?= gcc
+CXX     ?= g++
+AR      ?= ar
+PKG     ?= pkg-config
+DEPS    ?= 1
+JOBS    ?= $(shell nproc 2>/dev/null || echo 2)
+SAN     ?=
+ASSETS  ?= $(if $(NOH_ASSETS),$(NOH_ASSETS),../shared/assets)
+
+ifeq ($(origin CC),default)
+CC := gcc
+endif
+ifeq ($(origin CXX),default)
+CXX := g++
+endif
+
+# Contraction off: the CPU gives the same bits everywhere. No math errno: a square root is an instruction.
+WARN     := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wvla -Werror
+FP       := -ffp-contract=off -fno-math-errno
+SANFLAGS := $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
+OPT      ?= -O2 -g
+CFLAGS   += -std=c99 $(OPT) $(WARN) $(FP) $(SANFLAGS)
+CXXFLAGS += -std=c++17 $(OPT) -Wall -Wextra $(FP) $(SANFLAGS)
+LDFLAGS  += $(SANFLAGS)
+INCLUDES := -Iruntime -Iplatform -Itools -I$(BUILD)/gen
+TOOL_LIBS := -ltinygltf -lmeshoptimizer -lstb -ldl -lm
+MACHINE  := $(shell $(CC) -dumpmachine)
+
+# ---- what there is ----
+
+RUNTIME_C  := $(sort $(wildcard runtime/*/*.c))
+PLATFORM_C := $(sort $(wildcard platform/*.c))
+CONVERT_C  := $(sort $(wildcard tools/convert/*.c))
+CONVERT_CC := $(sort $(wildcard tools/convert/*.cpp))
+TOOL_C     := $(sort $(wildcard tools/noh/*.c))
+MASK_C     := $(sort $(wildcard tools/make_mask/*.c))
+SHADERS    := $(sort $(filter-out %.glsl,$(wildcard shaders_es/*)))
+BENCH_SHADERS := $(sort $(wildcard tools/noh/shaders/*.vert tools/noh/shaders/*.frag tools/noh/shaders/*.geom))
+TEST_C     := $(sort $(wildcard tests/unit/test_*.c tests/memory/test_*.c tests/gl/test_*.c))
+
+RUNTIME_O  := $(RUNTIME_C:%.c=$(BUILD)/%.o) $(BUILD)/gen/shaders.gen.o
+PLATFORM_O := $(PLATFORM_C:%.c=$(BUILD)/%.o)
+CONVERT_O  := $(CONVERT_C:%.c=$(BUILD)/%.o) $(CONVERT_CC:%.cpp=$(BUILD)/%.o)
+TOOL_O     := $(TOOL_C:%.c=$(BUILD)/%.o) $(BUILD)/gen/tool_shaders.gen.o
+MASK_O     := $(MASK_C:%.c=$(BUILD)/%.o)
+TESTS      := $(TEST_C:tests/%.c=$(BUILD)/tests/%)
+
+# The accumulation kernel built for other instruction sets, for `noh bench` and the tests.
+KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(BUILD)/kernel/morph_sse2.o $(BUILD)/kernel/morph_avx2.o)
+
+.PHONY: all demo check bench help clean deps-build deps-check lib tests demo-run check-run fuzz sizes
+.SECONDARY:
+.DELETE_ON_ERROR:
+
+all: $(BUILD)/noh $(BUILD)/libnoh.a
+
+help:
+	@echo 'make            build/noh and build/libnoh.a'
+	@echo 'make demo       install what is missing, build, make the mask, convert it, render it'
+	@echo 'make check      install what is missing, build and run the tests'
+	@echo 'make bench      ratios against the named baselines (the mask, and hero/head.glb where it is)'
+	@echo 'make fuzz       fuzz the pack reader (FUZZ_SECONDS=60), needs clang'
+	@echo 'make sizes      code and data of the library, by file'
+	@echo 'make clean      remove $(BUILD)'
+	@echo ''
+	@echo 'DEPS=0 installs nothing. SAN=address,undefined builds with sanitizers (use another BUILD).'
+	@echo 'ASSETS=DIR is where the tests look for models that are not ours to ship.'
+
+# ---- the library ----
+
+lib: $(BUILD)/libnoh.a
+
+$(BUILD)/libnoh.a: $(RUNTIME_O)
+	@rm -f $@
+	$(AR) rcsD $@ $^
+
+$(BUILD)/%.o: %.c | $(BUILD)/gen/shaders.gen.h $(BUILD)/gen/tool_shaders.gen.h
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(INCLUDES) -MMD -MP -c $< -o $@
+
+$(BUILD)/gen/%.o: $(BUILD)/gen/%.c
+	$(CC) $(CFLAGS) $(INCLUDES) -MMD -MP -c $< -o $@
+
+$(BUILD)/gen/shaders.gen.c: $(SHADERS) $(BUILD)/embed
+	@mkdir -p $(@D)
+	$(BUILD)/embed -o $@ -d $(BUILD)/gen/shaders.gen.d $(SHADERS)
+$(BUILD)/gen/shaders.gen.h: $(BUILD)/gen/shaders.gen.c ;
+
+$(BUILD)/gen/tool_shaders.gen.c: $(BENCH_SHADERS) $(BUILD)/embed
+	@mkdir -p $(@D)
+	$(BUILD)/embed -o $@ -d $(BUILD)/gen/tool_shaders.gen.d $(BENCH_SHADERS)
+$(BUILD)/gen/tool_shaders.gen.h: $(BUILD)/gen/tool_shaders.gen.c ;
+
+$(BUILD)/embed: tools/embed/embed.c
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $< -o $@ $(LDFLAGS)
+
+# ---- the tools ----
+
+# The C++ side is tinygltf's; its headers are not held to our warnings.
+$(BUILD)/tools/convert/%.o: tools/convert/%.cpp
+	@mkdir -p $(@D)
+	$(CXX) $(CXXFLAGS) -Iruntime -Itools -isystem /usr/include/stb -MMD -MP -c $< -o $@
+
+$(BUILD)/kernel/morph_%.o: runtime/deform/morph.c
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(INCLUDES) -m$* -DNOH_MORPH_ACCUMULATE=noh_morph_accumulate_$* -MMD -MP -c $< -o $@
+
+$(BUILD)/noh: $(TOOL_O) $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(BUILD)/libnoh.a
+	$(CXX) $(LDFLAGS) $^ -o $@ $(TOOL_LIBS)
+
+$(BUILD)/make_mask: $(MASK_O)
+	$(CC) $(LDFLAGS) $^ -o $@ -lm
+
+$(BUILD)/mask.glb: $(BUILD)/make_mask
+	$(BUILD)/make_mask $@
+
+$(BUILD)/mask.noh: $(BUILD)/mask.glb $(BUILD)/noh
+	$(BUILD)/noh build $< -o $@ --quiet
+
+# ---- demo, tests, benchmarks ----
+
+deps-build:
+	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build
+deps-check:
+	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build check
+
+demo: deps-build
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/mask.glb
+	@sh tools/demo.sh $(BUILD)
+
+check: deps-check
+	@$(MAKE) --no-print-directory -j$(JOBS) all tests $(BUILD)/mask.noh
+	@CC="$(CC)" NOH_BUILD="$(BUILD)" NOH_ASSETS="$(ASSETS)" NOH_SAN="$(SAN)" sh tests/run.sh
+
+bench: deps-build
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/mask.noh
+	@NOH_ASSETS="$(ASSETS)" sh tools/bench.sh $(BUILD)
+
+tests: $(TESTS)
+
+TEST_LIBS := $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(BUILD)/libnoh.a
+$(BUILD)/tests/%: $(BUILD)/tests/%.o $(BUILD)/tests/support.o $(TEST_LIBS)
+	@mkdir -p $(@D)
+	$(CXX) $(LDFLAGS) $^ -o $@ -lcmocka $(TOOL_LIBS)
+
+sizes: $(BUILD)/libnoh.a
+	@size -t $(BUILD)/libnoh.a
+
+clean:
+	rm -rf $(BUILD)
+
+-include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

@@ -1,0 +1,31 @@
+/* half.h: 16-bit floats, as render targets store them.
+ *
+ *   noh_half_from_float   one float to half, in a named rounding mode
+ *   noh_half_to_float     one half to float, always exact
+ *
+ * Drivers differ in how they round a colour into an RGBA16F target. Both ways
+ * seen in the field are here, so that a CPU reference can give a driver's bits.
+ * Only integers are used: the result does not depend on the processor. */
+#ifndef NOH_BASE_HALF_H
+#define NOH_BASE_HALF_H
+
+#include <stdint.h>
+
+typedef enum noh_half_mode {
+    NOH_HALF_UNKNOWN = 0, /* neither of the two below: compare within a bound only */
+    NOH_HALF_RTZ,         /* round toward zero */
+    NOH_HALF_RNE          /* round to nearest, ties to even */
+} noh_half_mode;
+
+/* Round a float to half.
+ * ranges  any float. RTZ never reaches infinity from a finite value: it stops at
+ *         65504. RNE overflows to infinity from 65520. Infinities stay, NaN stays
+ *         NaN (quiet, upper payload bits kept), denormals are kept, not flushed.
+ *         NOH_HALF_UNKNOWN rounds as RNE does.
+ * source  IEEE 754-2008, 4.3.1 and 4.3.2 */
+uint16_t noh_half_from_float(float value, noh_half_mode mode);
+
+/* The float that a half stands for; exact. NaN stays NaN with its payload. */
+float noh_half_to_float(uint16_t half);
+
+#endif

@@ -1,0 +1,25 @@
+/* limits.h: the numbers that bound everything. A pack over a limit is refused
+ * when it is built, with the limit in the message, and again when it is opened. */
+#ifndef NOH_BASE_LIMITS_H
+#define NOH_BASE_LIMITS_H
+
+#define NOH_PACK_ALIGN 64u               /* chunks start at multiples of this, and so must a pack in memory (16 is enough) */
+#define NOH_PACK_CHUNKS_MAX 4096u
+#define NOH_PACK_BYTES_MAX 0x7fffffffu
+#define NOH_VERTICES_MAX (1u << 22)      /* per mesh: a 2048 x 2048 texture, which every ES 3.0 has */
+#define NOH_INDICES_MAX (1u << 26)
+#define NOH_SUBMESHES_MAX 256u
+#define NOH_TARGETS_MAX 1024u            /* per mesh: the gather list keeps 10 bits for a target */
+#define NOH_TEXELS_MAX (1u << 22)        /* delta texels of one mesh: the gather list keeps 22 bits */
+#define NOH_MORPH_WIDTH_LOG2_MIN 2u
+#define NOH_MORPH_WIDTH_LOG2_MAX 11u     /* ES 3.0 guarantees textures of 2048 */
+#define NOH_MORPH_HEIGHT_MAX 2048u
+#define NOH_NODES_MAX 65535u
+#define NOH_MATERIALS_MAX 4096u
+#define NOH_TEXTURE_SIZE_MAX 2048u       /* wider or taller images are shrunk by the converter */
+#define NOH_CLIP_CHANNELS_MAX 1024u
+#define NOH_CLIP_KEYS_MAX (1u << 20)
+#define NOH_NAME_BYTES_MAX 256u          /* with the final zero */
+#define NOH_MORPH_INSTANCES_MAX 65536u
+
+#endif

@@ -1,0 +1,49 @@
+/* result.h: how the library says that something went wrong.
+ *
+ * Bad data, too little memory, a missing capability or a driver's refusal give
+ * a noh_result; outputs are then untouched. A caller's bug (a null pointer where
+ * none is allowed, an index past a count) is an assert, see NOH_ASSERT. */
+#ifndef NOH_BASE_RESULT_H
+#define NOH_BASE_RESULT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+typedef enum noh_result {
+    NOH_OK = 0,
+    NOH_ERR_ARG,         /* a desc field is out of its range: `what` names it */
+    NOH_ERR_MEMORY,      /* the block is too small: `need` says how many bytes are */
+    NOH_ERR_DATA,        /* the pack is broken: `where` is the byte offset in it */
+    NOH_ERR_VERSION,     /* the pack is of another format version: `need` is ours */
+    NOH_ERR_LIMIT,       /* more than the format or this GPU holds: `need` is what was asked */
+    NOH_ERR_NOT_FOUND,   /* no object of that name or index */
+    NOH_ERR_UNSUPPORTED, /* the GPU or driver cannot do it: `what` says what is missing */
+    NOH_ERR_GL           /* the driver refused: `where` is the GL error */
+} noh_result;
+
+/* What happened, without formatting: the library has no stdio. `what` is a
+ * string constant (or lies in the caller's memory) and is never NULL on error. */
+typedef struct noh_error {
+    noh_result result;
+    const char *what;
+    uint64_t where;
+    uint64_t need;
+} noh_error;
+
+/* The result's name in words: "too little memory". Never NULL. */
+const char *noh_result_text(noh_result result);
+
+/* Fill `error` (which may be NULL) and return its result. */
+noh_result noh_fail(noh_error *error, noh_result result, const char *what, uint64_t where, uint64_t need);
+
+/* Caller bugs only, never file bytes. Define NOH_ASSERT before building to
+ * route it into your own handler; the default does nothing, because the
+ * library links no libc that could report. */
+#ifndef NOH_ASSERT
+#define NOH_ASSERT(condition) ((void)0)
+#endif
+
+/* A compile-time check that works in C99. */
+#define NOH_STATIC_ASSERT(condition, name) typedef char noh_static_assert_##name[(condition) ? 1 : -1]
+
+#endif

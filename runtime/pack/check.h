@@ -1,0 +1,47 @@
+/* check.h (private to pack/): the checkers of the chunks, one per type.
+ *
+ * Each sees only its own chunk's bytes and the pack as far as it has been
+ * opened: chunks come in an order in which nothing refers forward. */
+#ifndef NOH_PACK_CHECK_H
+#define NOH_PACK_CHECK_H
+
+#include "pack/pack.h"
+
+typedef struct noh_check {
+    const noh_pack *pack;  /* what the chunks before this one told */
+    const uint8_t *bytes;  /* of this chunk */
+    uint32_t count;
+    uint32_t file_offset;
+    uint32_t cursor;       /* where the next array has to begin */
+    noh_error *error;
+} noh_check;
+
+/* Fail at a byte of the chunk. */
+noh_result noh_check_fail(const noh_check *check, const char *what, uint64_t offset);
+
+/* The fixed head of a chunk. */
+noh_result noh_check_head(noh_check *check, uint32_t bytes);
+
+/* The next array: it has to begin at the next multiple of 16, and fit; the
+ * padding before it has to be zero. */
+noh_result noh_check_array(noh_check *check, uint32_t offset, uint64_t count, uint32_t stride);
+
+/* The chunk has to end where its last array did. */
+noh_result noh_check_end(const noh_check *check);
+
+noh_result noh_check_floats(const noh_check *check, const float *values, uint32_t count, const char *what);
+noh_result noh_check_name(const noh_check *check, uint32_t name, uint32_t hash, uint64_t offset);
+
+noh_result noh_check_texture(noh_check *check);
+noh_result noh_check_materials(noh_check *check);
+noh_result noh_check_mesh(noh_check *check);
+noh_result noh_check_nodes(noh_check *check);
+noh_result noh_check_clip(noh_check *check);
+
+/* Not NaN, not infinite. */
+static inline int noh_float_finite(float value)
+{
+    return value - value == 0.0f;
+}
+
+#endif

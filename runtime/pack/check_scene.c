@@ -1,0 +1,152 @@
+/* check_scene.c: the checkers of textures, materials, nodes and clips. */
+#include "pack/check.h"
+
+noh_result noh_check_texture(noh_check *check)
+{
+    const noh_texture_header *h = (const noh_texture_header *)(const void *)check->bytes;
+    noh_result result = noh_check_head(check, sizeof *h);
+    if (result) {
+        return result;
+    }
+    if (!h->width || !h->height || h->width > NOH_TEXTURE_SIZE_MAX || h->height > NOH_TEXTURE_SIZE_MAX) {
+        return noh_check_fail(check, "texture size is zero or over the limit", 0);
+    }
+    if (h->wrap_s > NOH_WRAP_MIRROR || h->wrap_t > NOH_WRAP_MIRROR || h->nearest > 1 || h->reserved[0] || h->reserved[1]) {
+        return noh_check_fail(check, "unknown texture sampling", 8);
+    }
+    result = noh_check_array(check, h->pixels_offset, (uint64_t)h->width * h->height, 4);
+    return result ? result : noh_check_end(check);
+}
+
+noh_result noh_check_materials(noh_check *check)
+{
+    const noh_material *m = (const noh_material *)(const void *)check->bytes;
+    uint32_t count = check->count / (uint32_t)sizeof *m;
+    if (check->count % sizeof *m || count > NOH_MATERIALS_MAX) {
+        return noh_check_fail(check, "material chunk is not a whole number of materials, or over the limit", 0);
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        uint64_t at = (uint64_t)i * sizeof *m;
+        noh_result result = noh_check_name(check, m[i].name, m[i].name_hash, at);
+        if (!result) {
+            result = noh_check_floats(check, m[i].base_color, 7, "material value is not finite");
+        }
+        if (result) {
+            return result;
+        }
+        if (m[i].base_color_texture != NOH_NONE && m[i].base_color_texture >= check->pack->texture_count) {
+            return noh_check_fail(check, "material names a texture that is not there", at + 12);
+        }
+        if (m[i].flags & ~15u || m[i].reserved) {
+            return noh_check_fail(check, "unknown material flags", at + 8);
+        }
+    }
+    return NOH_OK;
+}
+
+static uint32_t mesh_target_count(const noh_pack *pack, uint32_t mesh)
+{
+    const noh_pack_chunk *chunk = &pack->chunks[pack->first_mesh + mesh];
+    return ((const noh_mesh_header *)(const void *)(pack->bytes + chunk->offset))->target_count;
+}
+
+static noh_result check_node(const noh_check *check, const noh_nodes_header *h, const noh_node *node, uint32_t index)
+{
+    uint64_t at = h->nodes_offset + (uint64_t)index * sizeof *node;
+    noh_result result = noh_check_name(check, node->name, node->name_hash, at);
+    if (!result) {
+        result = noh_check_floats(check, node->translation, 22, "node transform is not finite");
+    }
+    if (result) {
+        return result;
+    }
+    if (node->parent != NOH_NONE && node->parent >= index) {
+        return noh_check_fail(check, "node comes before its parent", at + 8);
+    }
+    if (node->mesh != NOH_NONE && node->mesh >= check->pack->mesh_count) {
+        return noh_check_fail(check, "node names a mesh that is not there", at + 12);
+    }
+    if (node->first_weight != NOH_NONE &&
+        (node->mesh == NOH_NONE || node->first_weight > h->weight_count ||
+         mesh_target_count(check->pack, node->mesh) > h->weight_count - node->first_weight)) {
+        return noh_check_fail(check, "node's weights lie outside the weights", at + 104);
+    }
+    return node->flags ? noh_check_fail(check, "unknown node flags", at + 108) : NOH_OK;
+}
+
+noh_result noh_check_nodes(noh_check *check)
+{
+    const noh_nodes_header *h = (const noh_nodes_header *)(const void *)check->bytes;
+    noh_result result = noh_check_head(check, sizeof *h);
+    if (result) {
+        return result;
+    }
+    if (h->node_count > NOH_NODES_MAX) {
+        return noh_check_fail(check, "node count is over the limit", 0);
+    }
+    result = noh_check_array(check, h->nodes_offset, h->node_count, sizeof(noh_node));
+    if (!result) result = noh_check_array(check, h->weights_offset, h->weight_count, 4);
+    if (!result) result = noh_check_end(check);
+    for (uint32_t i = 0; !result && i < h->node_count; i++) {
+        result = check_node(check, h, (const noh_node *)(const void *)(check->bytes + h->nodes_offset) + i, i);
+    }
+    if (!result) {
+        result = noh_check_floats(check, (const float *)(const void *)(check->bytes + h->weights_offset), h->weight_count,
+                                  "node weight is not finite");
+    }
+    return result;
+}
+
+static noh_result check_times(const noh_check *check, const noh_clip_header *h, const noh_clip_channel *c)
+{
+    const float *times = (const float *)(const void *)(check->bytes + c->times_offset);
+    for (uint32_t k = 0; k < c->key_count; k++) {
+        /* written so that a NaN fails every branch */
+        if (!(times[k] >= 0.0f && times[k] <= h->duration_s) || (k > 0 && !(times[k] > times[k - 1]))) {
+            return noh_check_fail(check, "key times do not increase from 0 to the clip's duration", c->times_offset + 4ull * k);
+        }
+    }
+    return NOH_OK;
+}
+
+static noh_result check_channel(noh_check *check, const noh_clip_header *h, const noh_clip_channel *c, uint64_t at)
+{
+    const noh_pack *pack = check->pack;
+    uint32_t values = c->width * (c->interpolation == NOH_CLIP_CUBIC ? 3u : 1u);
+    noh_result result;
+    if (c->node >= pack->node_count || pack->nodes[c->node].mesh == NOH_NONE ||
+        mesh_target_count(pack, pack->nodes[c->node].mesh) != c->width || !c->width) {
+        return noh_check_fail(check, "channel does not fit the mesh of its node", at);
+    }
+    if (c->interpolation > NOH_CLIP_CUBIC || !c->key_count || c->key_count > NOH_CLIP_KEYS_MAX || c->reserved[0] ||
+        c->reserved[1]) {
+        return noh_check_fail(check, "channel has no keys, too many, or an unknown interpolation", at + 4);
+    }
+    result = noh_check_array(check, c->times_offset, c->key_count, 4);
+    if (!result) result = check_times(check, h, c);
+    if (!result) result = noh_check_array(check, c->values_offset, (uint64_t)c->key_count * values, 4);
+    if (!result) {
+        result = noh_check_floats(check, (const float *)(const void *)(check->bytes + c->values_offset),
+                                  c->key_count * values, "key value is not finite");
+    }
+    return result;
+}
+
+noh_result noh_check_clip(noh_check *check)
+{
+    const noh_clip_header *h = (const noh_clip_header *)(const void *)check->bytes;
+    noh_result result = noh_check_head(check, sizeof *h);
+    if (result) {
+        return result;
+    }
+    if (h->channel_count > NOH_CLIP_CHANNELS_MAX || !(h->duration_s >= 0.0f) || !noh_float_finite(h->duration_s) ||
+        h->reserved) {
+        return noh_check_fail(check, "clip has too many channels or no finite duration", 0);
+    }
+    result = noh_check_array(check, h->channels_offset, h->channel_count, sizeof(noh_clip_channel));
+    for (uint32_t i = 0; !result && i < h->channel_count; i++) {
+        uint64_t at = h->channels_offset + (uint64_t)i * sizeof(noh_clip_channel);
+        result = check_channel(check, h, (const noh_clip_channel *)(const void *)(check->bytes + at), at);
+    }
+    return result ? result : noh_check_end(check);
+}

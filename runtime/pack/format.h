@@ -1,0 +1,204 @@
+/* format.h: the bytes of a .noh pack, little-endian, read where they lie.
+ *
+ * A pack is a header, a chunk table and the chunks. Every chunk starts at the
+ * next multiple of 64 after the one before it, and every array inside a chunk
+ * at the next multiple of 16 after the array before it: offsets are therefore
+ * known from counts, the file still carries them so that readers are simple,
+ * and the checker demands that both agree. Padding is zero. Names are offsets
+ * into the string chunk. No pointers, nothing to patch. */
+#ifndef NOH_PACK_FORMAT_H
+#define NOH_PACK_FORMAT_H
+
+#include "base/limits.h"
+#include "base/result.h"
+
+#define NOH_PACK_MAGIC 0x50484f4eu /* "NOHP" */
+#define NOH_PACK_VERSION 1u
+#define NOH_NONE 0xffffffffu
+
+#define NOH_FOURCC(a, b, c, d) ((uint32_t)(a) | ((uint32_t)(b) << 8) | ((uint32_t)(c) << 16) | ((uint32_t)(d) << 24))
+#define NOH_CHUNK_STRINGS NOH_FOURCC('S', 'T', 'R', 'S')
+#define NOH_CHUNK_MESH NOH_FOURCC('M', 'E', 'S', 'H')
+#define NOH_CHUNK_NODES NOH_FOURCC('N', 'O', 'D', 'E')
+#define NOH_CHUNK_MATERIALS NOH_FOURCC('M', 'A', 'T', 'L')
+#define NOH_CHUNK_TEXTURE NOH_FOURCC('T', 'X', 'T', 'R')
+#define NOH_CHUNK_CLIP NOH_FOURCC('C', 'L', 'I', 'P')
+
+typedef struct noh_pack_header {
+    uint32_t magic;
+    uint32_t version;
+    uint32_t byte_count;  /* of the whole file, a multiple of 64 */
+    uint32_t chunk_count;
+    uint32_t crc;         /* CRC-32C of the header (this field as 0) and the chunk table */
+    uint32_t reserved[11];
+} noh_pack_header;
+
+typedef struct noh_pack_chunk {
+    uint32_t type;
+    uint32_t name;      /* string offset */
+    uint32_t name_hash; /* FNV-1a of the name */
+    uint32_t offset;    /* from the start of the file, a multiple of 64 */
+    uint32_t bytes;     /* without padding */
+    uint32_t crc;       /* CRC-32C of those bytes */
+    uint32_t reserved[2];
+} noh_pack_chunk;
+
+/* ---- CHUNK_STRINGS: bytes of zero-terminated UTF-8 strings; the first is "". ---- */
+
+/* ---- CHUNK_MESH ---- */
+
+#define NOH_MESH_TANGENTS 1u
+#define NOH_MESH_UVS 2u
+#define NOH_MESH_COLORS 4u
+
+/* Attribute record, interleaved, 4 bytes each and in this order; those whose
+ * flag is not set are absent:
+ *   normal   int16 x 2, octahedral: n.xy / 32767 unfolds to a unit vector; always there
+ *   tangent  int16 x 2, octahedral; y has 15 bits above bit 0, which is 1 for handedness -1 (TANGENTS)
+ *   uv       unorm 16:16, uv = uv_offset + uv_scale * value (UVS)
+ *   color    unorm 8:8:8:8, linear rgb with a square-root curve, alpha straight (COLORS) */
+typedef struct noh_mesh_header {
+    uint32_t flags;            /* NOH_MESH_* */
+    uint32_t vertex_count;
+    uint32_t index_count;
+    uint32_t index_bytes;      /* 2 or 4 */
+    uint32_t submesh_count;
+    uint32_t target_count;
+    uint32_t rect_count;
+    uint32_t texel_count;
+    uint32_t pair_count;       /* delta texels that are not zero */
+    uint32_t source_pair_count;/* what the asset had, for reports */
+    uint32_t touched_count;    /* vertices 0..touched_count-1 have an accumulation texel */
+    uint32_t morph_width_log2; /* texel of vertex v: x = v & (width - 1), y = v >> width_log2 */
+    uint32_t morph_height;
+    uint32_t attribute_stride;
+    uint32_t positions_offset;  /* float[vertex_count][3] */
+    uint32_t attributes_offset; /* uint8_t[vertex_count][attribute_stride] */
+    uint32_t indices_offset;    /* uint16_t or uint32_t [index_count], triangles */
+    uint32_t submeshes_offset;  /* noh_submesh[submesh_count] */
+    uint32_t targets_offset;    /* noh_target[target_count] */
+    uint32_t weights_offset;    /* float[target_count], the asset's default weights */
+    uint32_t rects_offset;      /* noh_rect[rect_count], in target order */
+    uint32_t texels_offset;     /* uint32_t[texel_count][3], in rectangle order, row by row */
+    float bounds_min[3], bounds_max[3]; /* of the rest positions */
+    float uv_offset[2], uv_scale[2];
+    float f16_position_bound;   /* largest error of a half-float accumulator, model units, all |weights| <= 2 */
+    float f16_direction_bound;  /* the same for normals and tangents, per component */
+    uint32_t texels_one_rect;   /* for reports: one rectangle per target, the asset's vertex order */
+    uint32_t reserved;
+} noh_mesh_header;
+
+/* A run of triangles with one material, and the vertices that it uses (row D9). */
+typedef struct noh_submesh {
+    uint32_t first_index, index_count;
+    uint32_t material; /* into the material chunk, or NOH_NONE */
+    uint32_t first_vertex, vertex_count;
+} noh_submesh;
+
+/* One morph target. A delta texel is three words, word i for axis i: from the
+ * top bit down `position_bits`, `normal_bits`, `tangent_bits` of two's
+ * complement; value = integer * scale. */
+typedef struct noh_target {
+    uint32_t name, name_hash;
+    uint32_t first_rect, rect_count;
+    uint32_t first_texel, texel_count;
+    uint32_t pair_count;
+    uint8_t position_bits, normal_bits, tangent_bits, reserved0;
+    float position_scale, normal_scale, tangent_scale;
+    float max_displacement;  /* model units, at weight 1 */
+    float position_error;    /* largest error at weight 1, model units: certified by the converter */
+    float normal_error, tangent_error; /* per component */
+    uint32_t reserved1;
+} noh_target;
+
+/* A rectangle of accumulation texels; its delta texels follow those of the
+ * rectangle before it. */
+typedef struct noh_rect {
+    uint16_t x, y, w, h;
+} noh_rect;
+
+/* ---- CHUNK_NODES: header, then noh_node[node_count] at 16, then float[weight_count]. ---- */
+
+typedef struct noh_nodes_header {
+    uint32_t node_count;
+    uint32_t weight_count;
+    uint32_t nodes_offset;
+    uint32_t weights_offset;
+} noh_nodes_header;
+
+typedef struct noh_node {
+    uint32_t name, name_hash;
+    uint32_t parent;        /* a lower index or NOH_NONE */
+    uint32_t mesh;          /* the n-th mesh chunk, or NOH_NONE */
+    float translation[3], rotation[4], scale[3]; /* local */
+    float world[12];        /* 3 rows of 4: world position = rows * (x, y, z, 1) */
+    uint32_t first_weight;  /* this node's default weights, or NOH_NONE: the mesh's hold */
+    uint32_t flags;
+} noh_node;
+
+/* ---- CHUNK_MATERIALS: noh_material[]. ---- */
+
+#define NOH_MATERIAL_BLEND 1u
+#define NOH_MATERIAL_MASK 2u
+#define NOH_MATERIAL_DOUBLE_SIDED 4u
+#define NOH_MATERIAL_UNLIT 8u
+
+typedef struct noh_material {
+    uint32_t name, name_hash;
+    uint32_t flags;
+    uint32_t base_color_texture; /* the n-th texture chunk, or NOH_NONE */
+    float base_color[4];         /* linear */
+    float metallic, roughness, alpha_cutoff;
+    uint32_t reserved;
+} noh_material;
+
+/* ---- CHUNK_TEXTURE: header, then uint8_t[height][width][4] sRGB at 32. ---- */
+
+#define NOH_WRAP_REPEAT 0u
+#define NOH_WRAP_CLAMP 1u
+#define NOH_WRAP_MIRROR 2u
+
+typedef struct noh_texture_header {
+    uint32_t width, height;
+    uint32_t wrap_s, wrap_t; /* NOH_WRAP_* */
+    uint32_t nearest;        /* 1: no filtering */
+    uint32_t pixels_offset;
+    uint32_t reserved[2];
+} noh_texture_header;
+
+/* ---- CHUNK_CLIP: weight tracks; header, noh_clip_channel[], then keys. ---- */
+
+#define NOH_CLIP_LINEAR 0u
+#define NOH_CLIP_STEP 1u
+#define NOH_CLIP_CUBIC 2u
+
+typedef struct noh_clip_header {
+    uint32_t channel_count;
+    float duration_s;
+    uint32_t channels_offset;
+    uint32_t reserved;
+} noh_clip_header;
+
+typedef struct noh_clip_channel {
+    uint32_t node;
+    uint32_t interpolation; /* NOH_CLIP_* */
+    uint32_t key_count;
+    uint32_t width;         /* weights per key: the target count of the node's mesh */
+    uint32_t times_offset;  /* float[key_count], seconds, increasing */
+    uint32_t values_offset; /* float[key_count][width], CUBIC: [key_count][3][width] */
+    uint32_t reserved[2];
+} noh_clip_channel;
+
+NOH_STATIC_ASSERT(sizeof(noh_pack_header) == 64, pack_header);
+NOH_STATIC_ASSERT(sizeof(noh_pack_chunk) == 32, pack_chunk);
+NOH_STATIC_ASSERT(sizeof(noh_mesh_header) == 144, mesh_header);
+NOH_STATIC_ASSERT(sizeof(noh_submesh) == 20, submesh);
+NOH_STATIC_ASSERT(sizeof(noh_target) == 64, target);
+NOH_STATIC_ASSERT(sizeof(noh_rect) == 8, rect);
+NOH_STATIC_ASSERT(sizeof(noh_node) == 112, node);
+NOH_STATIC_ASSERT(sizeof(noh_material) == 48, material);
+NOH_STATIC_ASSERT(sizeof(noh_texture_header) == 32, texture_header);
+NOH_STATIC_ASSERT(sizeof(noh_clip_header) == 16, clip_header);
+NOH_STATIC_ASSERT(sizeof(noh_clip_channel) == 32, clip_channel);
+
+#endif

@@ -1,0 +1,50 @@
+/* pack.h: open a .noh pack where it lies (a mapped file, flash, an array).
+ *
+ * noh_pack_open checks every byte once, in one pass; afterwards no field is
+ * checked again, and nothing is copied. The bytes must stay readable and
+ * unchanged for as long as the pack, or anything made from it, is used. */
+#ifndef NOH_PACK_PACK_H
+#define NOH_PACK_PACK_H
+
+#include "pack/format.h"
+
+typedef struct noh_pack {
+    const uint8_t *bytes;
+    uint32_t byte_count;
+    uint32_t chunk_count;
+    const noh_pack_chunk *chunks;
+    const char *strings;
+    uint32_t string_bytes;
+    uint32_t texture_count, first_texture; /* chunk index of the first one */
+    uint32_t mesh_count, first_mesh;
+    uint32_t clip_count, first_clip;
+    uint32_t material_count;
+    const noh_material *materials;
+    uint32_t node_count;
+    const noh_node *nodes;
+    const float *node_weights;
+    uint32_t node_weight_count;
+} noh_pack;
+
+typedef struct noh_texture {
+    const char *name;
+    const noh_texture_header *header;
+    const uint8_t *pixels; /* [height][width][4], sRGB with straight alpha, top row first */
+} noh_texture;
+
+/* Open a pack.
+ * memory  none; *pack is filled only on success; bytes 16-byte aligned
+ * errors  ARG misaligned; VERSION another format; DATA with the byte offset in
+ *         error->where; LIMIT over a number of limits.h */
+noh_result noh_pack_open(const void *bytes, size_t byte_count, noh_pack *pack, noh_error *error);
+
+/* The string at an offset that the pack holds. Never NULL. */
+const char *noh_pack_string(const noh_pack *pack, uint32_t offset);
+
+/* The name of the n-th mesh, texture or clip chunk. */
+const char *noh_pack_chunk_name(const noh_pack *pack, uint32_t chunk);
+
+/* The n-th texture. NOT_FOUND past texture_count. */
+noh_result noh_pack_texture(const noh_pack *pack, uint32_t index, noh_texture *texture);
+
+#endif
