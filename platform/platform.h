@@ -1,0 +1,75 @@
+/* platform.h: who makes a GL context, maps a file and reads a clock.
+ *
+ *   noh_platform_find      a context maker by name: "egl", "angle", "osmesa"
+ *   noh_platform_names     all names, for messages
+ *   noh_file_map / noh_file_unmap / noh_file_write
+ *   noh_clock_ns / noh_cpu_clock_ns
+ *
+ * This is the part that a game replaces with its own. It may use libc; the
+ * library in runtime/ never calls it. GL libraries are opened when a context is
+ * asked for, so a program that never draws needs none of them installed. They
+ * stay open until the process ends, because drivers do not survive being closed. */
+#ifndef NOH_PLATFORM_PLATFORM_H
+#define NOH_PLATFORM_PLATFORM_H
+
+#include "base/result.h"
+#include "gl/gl_api.h"
+
+typedef struct noh_platform_context noh_platform_context;
+
+/* Zero means the default. */
+typedef struct noh_platform_desc {
+    int es_version;  /* highest OpenGL ES version wanted, 300, 310 or 320; 0: 320. Lower
+                      * ones are tried in turn. osmesa makes desktop GL 4.5 down to 3.3 */
+    uint32_t width;  /* of the default framebuffer, pixels; 0: 1. Draw into framebuffer objects */
+    uint32_t height; /* all the same: an EGL without pbuffers gives no default framebuffer at all */
+    int samples;     /* of the default framebuffer; 0: none. osmesa has none */
+} noh_platform_desc;
+
+typedef struct noh_platform {
+    const char *name; /* "egl" */
+    const char *what; /* one line for a person */
+
+    /* Make a context and make it current on this thread.
+     * memory  one malloc, given back by destroy
+     * errors  NOH_ERR_UNSUPPORTED no way worked: `message` (message_bytes, at least 1)
+     *         lists what was tried and what to install; NOH_ERR_MEMORY */
+    noh_result (*create)(const noh_platform_desc *desc, noh_platform_context **out, char *message,
+                         size_t message_bytes);
+    /* Make it current on this thread. NOH_ERR_GL where the system refuses. */
+    noh_result (*make_current)(noh_platform_context *context);
+    /* A noh_gl_get_proc; user is the noh_platform_context. */
+    noh_gl_proc (*get_proc)(void *user, const char *name);
+    /* Objects that were made in it die with it. NULL is left alone. */
+    void (*destroy)(noh_platform_context *context);
+} noh_platform;
+
+/* NULL where there is no such platform. */
+const noh_platform *noh_platform_find(const char *name);
+
+/* "egl, angle, osmesa" */
+const char *noh_platform_names(void);
+
+/* A file in memory, read only. */
+typedef struct noh_file {
+    const void *data; /* page aligned; NULL for an empty file */
+    size_t bytes;
+} noh_file;
+
+/* errors  NOH_ERR_NOT_FOUND, NOH_ERR_ARG (a folder, a pipe), NOH_ERR_MEMORY; `what` is
+ *         the system's own words, `where` its errno */
+noh_result noh_file_map(const char *path, noh_file *out, noh_error *error);
+void noh_file_unmap(noh_file *file);
+
+/* Write a whole file or change nothing: the bytes go to a new file in the same
+ * folder, which then takes the name. A reader sees the old file or the new one.
+ * errors  NOH_ERR_DATA the system refuses; `what` its own words, `where` its errno */
+noh_result noh_file_write(const char *path, const void *data, size_t bytes, noh_error *error);
+
+/* Nanoseconds of a steady clock, from any start. */
+uint64_t noh_clock_ns(void);
+
+/* Nanoseconds of processor time that this process has used, all threads summed. */
+uint64_t noh_cpu_clock_ns(void);
+
+#endif

@@ -1,0 +1,21 @@
+/* platforms.h: the context makers, and what they share. Included by platform/ only. */
+#ifndef NOH_PLATFORM_PLATFORMS_H
+#define NOH_PLATFORM_PLATFORMS_H
+
+#include "platform.h"
+
+extern const noh_platform noh_platform_egl;
+extern const noh_platform noh_platform_angle;
+extern const noh_platform noh_platform_osmesa;
+
+/* Open a shared library, with its symbols for itself. NULL on failure, and the
+ * reason is appended to message. */
+void *noh_library_open(const char *path, char *message, size_t message_bytes);
+
+/* A function of an open library; NULL: not there. */
+noh_gl_proc noh_library_proc(void *library, const char *name);
+
+/* Append a formatted text to a string; what does not fit is cut. */
+void noh_message_add(char *message, size_t message_bytes, const char *format, ...);
+
+#endif

@@ -1,0 +1,197 @@
+#include "deform/morph.h"
+
+#include <string.h>
+
+#include "base/math.h"
+#include "deform/morph_kernel.h"
+
+static noh_field make_field(unsigned before, unsigned bits, float weight)
+{
+    noh_field f = { before, 32u - bits, weight };
+    return f;
+}
+
+/* Where the fields of a target's words lie; scales and weight make one factor, as on the GPU. */
+static void target_fields(const noh_target *t, float weight, noh_field f[3])
+{
+    f[0] = make_field(0, t->position_bits, t->position_scale * weight);
+    f[1] = make_field(t->position_bits, t->normal_bits, t->normal_scale * weight);
+    f[2] = make_field((unsigned)t->position_bits + t->normal_bits, t->tangent_bits, t->tangent_scale * weight);
+}
+
+typedef void (*run_function)(const uint32_t *words, size_t count, const noh_field f[3], float *const layers[3]);
+
+static void run_simd(const uint32_t *words, size_t count, const noh_field f[3], float *const layers[3])
+{
+    noh_add_run(words, count, f, layers);
+}
+
+/* Every row of every rectangle of one target. */
+static void accumulate_target(const noh_mesh *mesh, const noh_target *t, const noh_field f[3], const noh_morph_layers *layers,
+                              run_function run)
+{
+    const noh_rect *rect = mesh->rects + t->first_rect;
+    const uint32_t *words = mesh->texels + 3u * (size_t)t->first_texel;
+    for (uint32_t i = 0; i < t->rect_count; i++, rect++) {
+        size_t row = 3u * (((size_t)rect->y << mesh->header->morph_width_log2) + rect->x);
+        size_t count = 3u * (size_t)rect->w;
+        for (unsigned y = 0; y < rect->h; y++) {
+            float *at[3] = { layers->position + row, layers->normal + row, layers->tangent + row };
+            run(words, count, f, at);
+            words += count;
+            row += (size_t)3u << mesh->header->morph_width_log2;
+        }
+    }
+}
+
+static void accumulate(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers, run_function run)
+{
+    for (uint32_t i = 0; i < mesh->header->target_count; i++) {
+        noh_field f[3];
+        if (weights[i] != 0.0f) {
+            target_fields(&mesh->targets[i], weights[i], f);
+            accumulate_target(mesh, &mesh->targets[i], f, layers, run);
+        }
+    }
+}
+
+/* The benches and tests build this file again for other instruction sets, under other names. */
+#ifndef NOH_MORPH_ACCUMULATE
+#define NOH_MORPH_ACCUMULATE noh_morph_accumulate
+#define NOH_MORPH_ALL 1
+#endif
+
+void NOH_MORPH_ACCUMULATE(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers);
+void NOH_MORPH_ACCUMULATE(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers)
+{
+    accumulate(mesh, weights, layers, run_simd);
+}
+
+#ifdef NOH_MORPH_ALL
+
+static size_t layer_texels(const noh_mesh *mesh)
+{
+    return (size_t)mesh->header->morph_height << mesh->header->morph_width_log2;
+}
+
+size_t noh_morph_layers_size(const noh_mesh *mesh)
+{
+    return layer_texels(mesh) * 9u * sizeof(float);
+}
+
+noh_result noh_morph_layers_init(void *memory, size_t bytes, const noh_mesh *mesh, noh_morph_layers *layers, noh_error *error)
+{
+    size_t floats = layer_texels(mesh) * 3u;
+    size_t need = noh_morph_layers_size(mesh);
+    if (((uintptr_t)memory & 3u) != 0 || (!memory && need)) {
+        return noh_fail(error, NOH_ERR_ARG, "memory for morph layers is NULL or not 4-byte aligned", 0, need);
+    }
+    if (bytes < need) {
+        return noh_fail(error, NOH_ERR_MEMORY, "memory for morph layers is too small", bytes, need);
+    }
+    layers->position = (float *)memory;
+    layers->normal = need ? layers->position + floats : NULL;
+    layers->tangent = need ? layers->normal + floats : NULL;
+    if (need) {
+        memset(memory, 0, need);
+    }
+    return NOH_OK;
+}
+
+const char *noh_morph_simd(void)
+{
+    return NOH_MORPH_SIMD;
+}
+
+static void run_scalar(const uint32_t *words, size_t count, const noh_field f[3], float *const layers[3])
+{
+    for (int l = 0; l < 3; l++) {
+        noh_add_run_scalar(words, count, f[l], layers[l]);
+    }
+}
+
+void noh_morph_accumulate_scalar(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers)
+{
+    accumulate(mesh, weights, layers, run_scalar);
+}
+
+static float round_half(float value, noh_half_mode mode)
+{
+    return noh_half_to_float(noh_half_from_float(value, mode));
+}
+
+static void run_f16_rne(const uint32_t *words, size_t count, const noh_field f[3], float *const layers[3])
+{
+    for (int l = 0; l < 3; l++) {
+        for (size_t i = 0; i < count; i++) {
+            layers[l][i] = round_half(layers[l][i] + noh_field_value(words[i], f[l]), NOH_HALF_RNE);
+        }
+    }
+}
+
+static void run_f16_rtz(const uint32_t *words, size_t count, const noh_field f[3], float *const layers[3])
+{
+    for (int l = 0; l < 3; l++) {
+        for (size_t i = 0; i < count; i++) {
+            layers[l][i] = round_half(layers[l][i] + noh_field_value(words[i], f[l]), NOH_HALF_RTZ);
+        }
+    }
+}
+
+void noh_morph_accumulate_f16(const noh_mesh *mesh, const float *weights, noh_half_mode mode, const noh_morph_layers *layers)
+{
+    accumulate(mesh, weights, layers, mode == NOH_HALF_RTZ ? run_f16_rtz : run_f16_rne);
+}
+
+void noh_morph_round_f16(const noh_mesh *mesh, noh_half_mode mode, const noh_morph_layers *layers)
+{
+    size_t floats = layer_texels(mesh) * 9u;
+    for (size_t i = 0; i < floats; i++) {
+        layers->position[i] = round_half(layers->position[i], mode); /* the three layers lie one behind another */
+    }
+}
+
+void noh_morph_vertex(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t index, noh_vertex *out)
+{
+    float rest_normal[3], rest_tangent[3];
+    const float *p, *n, *t;
+    noh_mesh_vertex(mesh, index, out);
+    if (index >= mesh->header->touched_count) {
+        return;
+    }
+    p = layers->position + 3u * (size_t)index;
+    n = layers->normal + 3u * (size_t)index;
+    t = layers->tangent + 3u * (size_t)index;
+    memcpy(rest_normal, out->normal, sizeof rest_normal);
+    memcpy(rest_tangent, out->tangent, sizeof rest_tangent);
+    for (int i = 0; i < 3; i++) {
+        out->position[i] += p[i];
+        out->normal[i] += n[i];
+        out->tangent[i] += t[i];
+    }
+    noh_normalize3(out->normal, rest_normal);
+    if (mesh->header->flags & NOH_MESH_TANGENTS) {
+        float along = noh_dot3(out->tangent, out->normal);
+        for (int i = 0; i < 3; i++) {
+            out->tangent[i] -= along * out->normal[i];
+        }
+        noh_normalize3(out->tangent, rest_tangent);
+    }
+}
+
+noh_morph_cost noh_morph_cost_of(const noh_mesh *mesh, const float *weights)
+{
+    noh_morph_cost cost = { 0, 0, 0, 0 };
+    for (uint32_t i = 0; i < mesh->header->target_count; i++) {
+        const noh_target *t = &mesh->targets[i];
+        if (weights[i] != 0.0f && t->rect_count) {
+            cost.targets += 1;
+            cost.rects += t->rect_count;
+            cost.texels += t->texel_count;
+            cost.pairs += t->pair_count;
+        }
+    }
+    return cost;
+}
+
+#endif

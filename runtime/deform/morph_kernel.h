@@ -1,0 +1,88 @@
+/* morph_kernel.h (private to deform/): add one run of delta words to the layers.
+ *
+ * Words and layers both run x, y, z, x, y, z..., so that a run of texels is a run
+ * of words, whatever the vector width: no shuffles. Each kernel does, per word,
+ *   layer[i] = layer[i] + (float)field(word[i]) * weight
+ * with one rounding per operation; that is what makes all of them equal. */
+#ifndef NOH_DEFORM_MORPH_KERNEL_H
+#define NOH_DEFORM_MORPH_KERNEL_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(__AVX2__)
+#include <immintrin.h>
+#define NOH_MORPH_SIMD "avx2"
+#elif defined(__SSE2__)
+#include <emmintrin.h>
+#define NOH_MORPH_SIMD "sse2"
+#elif defined(__ARM_NEON) && defined(__aarch64__) /* 32-bit NEON flushes subnormals: not the same bits */
+#include <arm_neon.h>
+#define NOH_MORPH_SIMD "neon"
+#else
+#define NOH_MORPH_SIMD "scalar"
+#endif
+
+/* Where a field lies in a word (shift left, then arithmetic shift right), and what
+ * one unit of it weighs. */
+typedef struct noh_field {
+    uint32_t left, right;
+    float weight;
+} noh_field;
+
+static inline float noh_field_value(uint32_t word, noh_field f)
+{
+    /* the shift of a negative value is arithmetic in every compiler that we know of; a test says so */
+    return (float)((int32_t)(word << f.left) >> f.right) * f.weight;
+}
+
+static inline void noh_add_run_scalar(const uint32_t *words, size_t count, noh_field f, float *layer)
+{
+    for (size_t i = 0; i < count; i++) {
+        layer[i] = layer[i] + noh_field_value(words[i], f);
+    }
+}
+
+#if defined(__AVX2__)
+#define NOH_MORPH_STEP 8u
+static inline void noh_add_step(const uint32_t *words, noh_field f, float *layer)
+{
+    __m256i q = _mm256_loadu_si256((const __m256i *)(const void *)words);
+    q = _mm256_sra_epi32(_mm256_sll_epi32(q, _mm_cvtsi32_si128((int)f.left)), _mm_cvtsi32_si128((int)f.right));
+    _mm256_storeu_ps(layer, _mm256_add_ps(_mm256_loadu_ps(layer), _mm256_mul_ps(_mm256_cvtepi32_ps(q), _mm256_set1_ps(f.weight))));
+}
+#elif defined(__SSE2__)
+#define NOH_MORPH_STEP 4u
+static inline void noh_add_step(const uint32_t *words, noh_field f, float *layer)
+{
+    __m128i q = _mm_loadu_si128((const __m128i *)(const void *)words);
+    q = _mm_sra_epi32(_mm_sll_epi32(q, _mm_cvtsi32_si128((int)f.left)), _mm_cvtsi32_si128((int)f.right));
+    _mm_storeu_ps(layer, _mm_add_ps(_mm_loadu_ps(layer), _mm_mul_ps(_mm_cvtepi32_ps(q), _mm_set1_ps(f.weight))));
+}
+#elif defined(__ARM_NEON) && defined(__aarch64__) /* 32-bit NEON flushes subnormals: not the same bits */
+#define NOH_MORPH_STEP 4u
+static inline void noh_add_step(const uint32_t *words, noh_field f, float *layer)
+{
+    int32x4_t q = vreinterpretq_s32_u32(vld1q_u32(words));
+    q = vshlq_s32(vshlq_s32(q, vdupq_n_s32((int32_t)f.left)), vdupq_n_s32(-(int32_t)f.right));
+    vst1q_f32(layer, vaddq_f32(vld1q_f32(layer), vmulq_f32(vcvtq_f32_s32(q), vdupq_n_f32(f.weight))));
+}
+#endif
+
+/* A run into all three layers; a layer whose weight is zero is left alone. */
+static inline void noh_add_run(const uint32_t *words, size_t count, const noh_field f[3], float *const layers[3])
+{
+    size_t i = 0;
+#ifdef NOH_MORPH_STEP
+    for (; i + NOH_MORPH_STEP <= count; i += NOH_MORPH_STEP) {
+        noh_add_step(words + i, f[0], layers[0] + i);
+        noh_add_step(words + i, f[1], layers[1] + i);
+        noh_add_step(words + i, f[2], layers[2] + i);
+    }
+#endif
+    for (int l = 0; l < 3; l++) {
+        noh_add_run_scalar(words + i, count - i, f[l], layers[l] + i);
+    }
+}
+
+#endif

@@ -1,0 +1,134 @@
+#include "gl/gl_api.h"
+
+#include <string.h>
+
+enum { NOH_GL_GROUP_GEOMETRY, NOH_GL_GROUP_DEBUG, NOH_GL_GROUP_TIMER, NOH_GL_GROUP_COUNT };
+
+#define PROC_NAME_BYTES 48
+
+static int text_equal(const char *a, const char *b)
+{
+    while (*a && *a == *b) {
+        a++;
+        b++;
+    }
+    return *a == *b;
+}
+
+static int text_starts(const char *text, const char *start)
+{
+    while (*start && *text == *start) {
+        text++;
+        start++;
+    }
+    return *start == 0;
+}
+
+GLenum noh_gl_error_take(const noh_gl_api *api)
+{
+    GLenum first = api->GetError();
+    GLenum next = first;
+    for (int i = 1; i < 16 && next != GL_NO_ERROR; i++) next = api->GetError();
+    return first;
+}
+
+int noh_gl_has_extension(const noh_gl_api *api, const char *name)
+{
+    GLint count = 0;
+    api->GetIntegerv(GL_NUM_EXTENSIONS, &count);
+    for (GLint i = 0; i < count; i++) {
+        const GLubyte *extension = api->GetStringi(GL_EXTENSIONS, (GLuint)i);
+        if (extension && text_equal((const char *)extension, name)) return 1;
+    }
+    return 0;
+}
+
+/* Returns the name of the first ES 3.0 function that is not there, or NULL. */
+static const char *load_required(noh_gl_api *api, noh_gl_get_proc get, void *user)
+{
+    const char *missing = NULL;
+#define NOH_GL_TAKE(field, TYPE)                            \
+    api->field = (PFNGL##TYPE##PROC)get(user, "gl" #field); \
+    if (!missing && !api->field) missing = "gl" #field;
+    NOH_GL_REQUIRED(NOH_GL_TAKE)
+#undef NOH_GL_TAKE
+    return missing;
+}
+
+static noh_result read_version(noh_gl_api *api, noh_error *error)
+{
+    const char *text = (const char *)api->GetString(GL_VERSION);
+    if (!text) return noh_fail(error, NOH_ERR_GL, "no current GL context", noh_gl_error_take(api), 0);
+    GLint major = 0, minor = 0;
+    api->GetIntegerv(GL_MAJOR_VERSION, &major);
+    api->GetIntegerv(GL_MINOR_VERSION, &minor);
+    api->is_es = text_starts(text, "OpenGL ES");
+    api->version = major * 100 + minor * 10;
+    /* ES 2.0 does not know GL_MAJOR_VERSION and leaves zeros. */
+    if (noh_gl_error_take(api) != GL_NO_ERROR || api->version < 300) {
+        return noh_fail(error, NOH_ERR_UNSUPPORTED, "OpenGL ES 3.0 or later", (uint64_t)api->version, 300);
+    }
+    return NOH_OK;
+}
+
+/* The suffix under which each group's functions go in this context; NULL: absent. */
+static void choose_suffixes(noh_gl_api *api, const char *suffix[NOH_GL_GROUP_COUNT])
+{
+    memset(suffix, 0, sizeof(*suffix) * NOH_GL_GROUP_COUNT);
+    api->geometry_ext = 0;
+    if (api->version >= 320) {
+        suffix[NOH_GL_GROUP_GEOMETRY] = "";
+    } else if (api->is_es && noh_gl_has_extension(api, "GL_EXT_geometry_shader")) {
+        suffix[NOH_GL_GROUP_GEOMETRY] = "EXT";
+        api->geometry_ext = 1;
+    } else if (api->is_es && noh_gl_has_extension(api, "GL_OES_geometry_shader")) {
+        suffix[NOH_GL_GROUP_GEOMETRY] = "OES";
+        api->geometry_ext = 2;
+    }
+    if (api->version >= (api->is_es ? 320 : 430)) {
+        suffix[NOH_GL_GROUP_DEBUG] = "";
+    } else if (noh_gl_has_extension(api, "GL_KHR_debug")) {
+        suffix[NOH_GL_GROUP_DEBUG] = api->is_es ? "KHR" : "";
+    }
+    if (!api->is_es && api->version >= 330) {
+        suffix[NOH_GL_GROUP_TIMER] = "";
+    } else if (noh_gl_has_extension(api, "GL_EXT_disjoint_timer_query")) {
+        suffix[NOH_GL_GROUP_TIMER] = "EXT";
+    }
+}
+
+static noh_gl_proc get_suffixed(noh_gl_get_proc get, void *user, const char *name, const char *suffix)
+{
+    char full[PROC_NAME_BYTES];
+    size_t length = 0;
+    if (!suffix) return NULL;
+    while (*name && length < sizeof full - 4) full[length++] = *name++;
+    while (*suffix && length < sizeof full - 1) full[length++] = *suffix++;
+    full[length] = 0;
+    return get(user, full);
+}
+
+static void load_optional(noh_gl_api *api, noh_gl_get_proc get, void *user)
+{
+    const char *suffix[NOH_GL_GROUP_COUNT];
+    choose_suffixes(api, suffix);
+#define NOH_GL_TAKE(field, TYPE, name, group) \
+    api->field = (PFNGL##TYPE##PROC)get_suffixed(get, user, name, suffix[group]);
+    NOH_GL_OPTIONAL(NOH_GL_TAKE)
+#undef NOH_GL_TAKE
+}
+
+noh_result noh_gl_api_load(noh_gl_api *api, noh_gl_get_proc get, void *user, noh_error *error)
+{
+    if (!api) return noh_fail(error, NOH_ERR_ARG, "api", 0, 0);
+    if (!get) return noh_fail(error, NOH_ERR_ARG, "get", 0, 0);
+    noh_gl_api table;
+    memset(&table, 0, sizeof table);
+    const char *missing = load_required(&table, get, user);
+    if (missing) return noh_fail(error, NOH_ERR_UNSUPPORTED, missing, 0, 0);
+    noh_result result = read_version(&table, error);
+    if (result != NOH_OK) return result;
+    load_optional(&table, get, user);
+    *api = table;
+    return NOH_OK;
+}

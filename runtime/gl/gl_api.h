@@ -1,0 +1,230 @@
+/* gl_api.h: the table of OpenGL ES functions that noh uses.
+ *
+ *   noh_gl_api_load    fills the table through the caller's lookup function
+ *   noh_gl_error_take  returns the oldest GL error and clears them all
+ *
+ * The library links no GL: the application makes a context with whatever it
+ * likes, makes it current, and hands over a lookup function. The table is a
+ * plain struct in the caller's memory and belongs to that context.
+ *
+ * Call through it: `gl->DrawArrays(GL_TRIANGLES, 0, 3)`. */
+#ifndef NOH_GL_GL_API_H
+#define NOH_GL_GL_API_H
+
+#ifndef GL_GLES_PROTOTYPES
+#define GL_GLES_PROTOTYPES 0 /* types only: calls go through the table */
+#endif
+#include <GLES3/gl32.h>
+#include <GLES2/gl2ext.h>
+
+#include "base/result.h"
+
+/* OpenGL ES 3.0 core: a table without one of these is refused.
+ * X(field, the name as Khronos spells it in its PFNGL...PROC type) */
+#define NOH_GL_REQUIRED(X)                                    \
+    /* state */                                               \
+    X(Enable, ENABLE)                                         \
+    X(Disable, DISABLE)                                       \
+    X(IsEnabled, ISENABLED)                                   \
+    X(BlendFunc, BLENDFUNC)                                   \
+    X(BlendFuncSeparate, BLENDFUNCSEPARATE)                   \
+    X(BlendEquation, BLENDEQUATION)                           \
+    X(Viewport, VIEWPORT)                                     \
+    X(Scissor, SCISSOR)                                       \
+    X(DepthFunc, DEPTHFUNC)                                   \
+    X(DepthMask, DEPTHMASK)                                   \
+    X(PolygonOffset, POLYGONOFFSET)                           \
+    X(CullFace, CULLFACE)                                     \
+    X(FrontFace, FRONTFACE)                                   \
+    X(ColorMask, COLORMASK)                                   \
+    X(ClearColor, CLEARCOLOR)                                 \
+    X(ClearDepthf, CLEARDEPTHF)                               \
+    X(Clear, CLEAR)                                           \
+    X(ClearBufferfv, CLEARBUFFERFV)                           \
+    X(ClearBufferuiv, CLEARBUFFERUIV)                         \
+    X(ClearBufferiv, CLEARBUFFERIV)                           \
+    X(ClearBufferfi, CLEARBUFFERFI)                           \
+    X(Flush, FLUSH)                                           \
+    X(Finish, FINISH)                                         \
+    /* questions */                                           \
+    X(GetError, GETERROR)                                     \
+    X(GetString, GETSTRING)                                   \
+    X(GetStringi, GETSTRINGI)                                 \
+    X(GetIntegerv, GETINTEGERV)                               \
+    X(GetInteger64v, GETINTEGER64V)                           \
+    X(GetFloatv, GETFLOATV)                                   \
+    /* shaders and programs */                                \
+    X(CreateShader, CREATESHADER)                             \
+    X(ShaderSource, SHADERSOURCE)                             \
+    X(CompileShader, COMPILESHADER)                           \
+    X(GetShaderiv, GETSHADERIV)                               \
+    X(GetShaderInfoLog, GETSHADERINFOLOG)                     \
+    X(DeleteShader, DELETESHADER)                             \
+    X(CreateProgram, CREATEPROGRAM)                           \
+    X(AttachShader, ATTACHSHADER)                             \
+    X(DetachShader, DETACHSHADER)                             \
+    X(BindAttribLocation, BINDATTRIBLOCATION)                 \
+    X(LinkProgram, LINKPROGRAM)                               \
+    X(GetProgramiv, GETPROGRAMIV)                             \
+    X(GetProgramInfoLog, GETPROGRAMINFOLOG)                   \
+    X(UseProgram, USEPROGRAM)                                 \
+    X(DeleteProgram, DELETEPROGRAM)                           \
+    X(GetAttribLocation, GETATTRIBLOCATION)                   \
+    X(GetUniformLocation, GETUNIFORMLOCATION)                 \
+    X(GetUniformBlockIndex, GETUNIFORMBLOCKINDEX)             \
+    X(GetActiveUniformBlockiv, GETACTIVEUNIFORMBLOCKIV)       \
+    X(UniformBlockBinding, UNIFORMBLOCKBINDING)               \
+    X(Uniform1i, UNIFORM1I)                                   \
+    X(Uniform2i, UNIFORM2I)                                   \
+    X(Uniform3i, UNIFORM3I)                                   \
+    X(Uniform4i, UNIFORM4I)                                   \
+    X(Uniform1iv, UNIFORM1IV)                                 \
+    X(Uniform4iv, UNIFORM4IV)                                 \
+    X(Uniform1ui, UNIFORM1UI)                                 \
+    X(Uniform2ui, UNIFORM2UI)                                 \
+    X(Uniform4ui, UNIFORM4UI)                                 \
+    X(Uniform1uiv, UNIFORM1UIV)                               \
+    X(Uniform4uiv, UNIFORM4UIV)                               \
+    X(Uniform1f, UNIFORM1F)                                   \
+    X(Uniform2f, UNIFORM2F)                                   \
+    X(Uniform3f, UNIFORM3F)                                   \
+    X(Uniform4f, UNIFORM4F)                                   \
+    X(Uniform1fv, UNIFORM1FV)                                 \
+    X(Uniform3fv, UNIFORM3FV)                                 \
+    X(Uniform4fv, UNIFORM4FV)                                 \
+    X(UniformMatrix3fv, UNIFORMMATRIX3FV)                     \
+    X(UniformMatrix4fv, UNIFORMMATRIX4FV)                     \
+    /* buffers */                                             \
+    X(GenBuffers, GENBUFFERS)                                 \
+    X(DeleteBuffers, DELETEBUFFERS)                           \
+    X(BindBuffer, BINDBUFFER)                                 \
+    X(BindBufferBase, BINDBUFFERBASE)                         \
+    X(BindBufferRange, BINDBUFFERRANGE)                       \
+    X(BufferData, BUFFERDATA)                                 \
+    X(BufferSubData, BUFFERSUBDATA)                           \
+    X(CopyBufferSubData, COPYBUFFERSUBDATA)                   \
+    X(MapBufferRange, MAPBUFFERRANGE)                         \
+    X(FlushMappedBufferRange, FLUSHMAPPEDBUFFERRANGE)         \
+    X(UnmapBuffer, UNMAPBUFFER)                               \
+    /* vertices */                                            \
+    X(GenVertexArrays, GENVERTEXARRAYS)                       \
+    X(DeleteVertexArrays, DELETEVERTEXARRAYS)                 \
+    X(BindVertexArray, BINDVERTEXARRAY)                       \
+    X(EnableVertexAttribArray, ENABLEVERTEXATTRIBARRAY)       \
+    X(DisableVertexAttribArray, DISABLEVERTEXATTRIBARRAY)     \
+    X(VertexAttribPointer, VERTEXATTRIBPOINTER)               \
+    X(VertexAttribIPointer, VERTEXATTRIBIPOINTER)             \
+    X(VertexAttribDivisor, VERTEXATTRIBDIVISOR)               \
+    X(VertexAttrib4f, VERTEXATTRIB4F)                         \
+    X(VertexAttrib4fv, VERTEXATTRIB4FV)                       \
+    X(VertexAttribI4i, VERTEXATTRIBI4I)                       \
+    /* textures */                                            \
+    X(GenTextures, GENTEXTURES)                               \
+    X(DeleteTextures, DELETETEXTURES)                         \
+    X(ActiveTexture, ACTIVETEXTURE)                           \
+    X(BindTexture, BINDTEXTURE)                               \
+    X(TexStorage2D, TEXSTORAGE2D)                             \
+    X(TexStorage3D, TEXSTORAGE3D)                             \
+    X(TexSubImage2D, TEXSUBIMAGE2D)                           \
+    X(TexSubImage3D, TEXSUBIMAGE3D)                           \
+    X(CopyTexSubImage3D, COPYTEXSUBIMAGE3D)                   \
+    X(TexParameteri, TEXPARAMETERI)                           \
+    X(GenerateMipmap, GENERATEMIPMAP)                         \
+    X(PixelStorei, PIXELSTOREI)                               \
+    X(GenSamplers, GENSAMPLERS)                               \
+    X(DeleteSamplers, DELETESAMPLERS)                         \
+    X(BindSampler, BINDSAMPLER)                               \
+    X(SamplerParameteri, SAMPLERPARAMETERI)                   \
+    /* framebuffers */                                        \
+    X(GenFramebuffers, GENFRAMEBUFFERS)                       \
+    X(DeleteFramebuffers, DELETEFRAMEBUFFERS)                 \
+    X(BindFramebuffer, BINDFRAMEBUFFER)                       \
+    X(FramebufferTexture2D, FRAMEBUFFERTEXTURE2D)             \
+    X(FramebufferTextureLayer, FRAMEBUFFERTEXTURELAYER)       \
+    X(FramebufferRenderbuffer, FRAMEBUFFERRENDERBUFFER)       \
+    X(CheckFramebufferStatus, CHECKFRAMEBUFFERSTATUS)         \
+    X(DrawBuffers, DRAWBUFFERS)                               \
+    X(ReadBuffer, READBUFFER)                                 \
+    X(ReadPixels, READPIXELS)                                 \
+    X(BlitFramebuffer, BLITFRAMEBUFFER)                       \
+    X(InvalidateFramebuffer, INVALIDATEFRAMEBUFFER)           \
+    X(GenRenderbuffers, GENRENDERBUFFERS)                     \
+    X(DeleteRenderbuffers, DELETERENDERBUFFERS)               \
+    X(BindRenderbuffer, BINDRENDERBUFFER)                     \
+    X(RenderbufferStorage, RENDERBUFFERSTORAGE)               \
+    X(RenderbufferStorageMultisample, RENDERBUFFERSTORAGEMULTISAMPLE) \
+    X(GetInternalformativ, GETINTERNALFORMATIV)               \
+    /* draws */                                               \
+    X(DrawArrays, DRAWARRAYS)                                 \
+    X(DrawElements, DRAWELEMENTS)                             \
+    X(DrawRangeElements, DRAWRANGEELEMENTS)                   \
+    X(DrawArraysInstanced, DRAWARRAYSINSTANCED)               \
+    X(DrawElementsInstanced, DRAWELEMENTSINSTANCED)           \
+    /* transform feedback */                                  \
+    X(TransformFeedbackVaryings, TRANSFORMFEEDBACKVARYINGS)   \
+    X(BeginTransformFeedback, BEGINTRANSFORMFEEDBACK)         \
+    X(EndTransformFeedback, ENDTRANSFORMFEEDBACK)             \
+    /* fences and queries */                                  \
+    X(FenceSync, FENCESYNC)                                   \
+    X(ClientWaitSync, CLIENTWAITSYNC)                         \
+    X(DeleteSync, DELETESYNC)                                 \
+    X(GenQueries, GENQUERIES)                                 \
+    X(DeleteQueries, DELETEQUERIES)                           \
+    X(BeginQuery, BEGINQUERY)                                 \
+    X(EndQuery, ENDQUERY)                                     \
+    X(GetQueryObjectuiv, GETQUERYOBJECTUIV)
+
+/* Functions that a context may lack. One that is not NULL may be called: the
+ * loader asked the version and the extension strings, because most lookups
+ * answer with a stub for any name at all. Each field hides whether the function
+ * is core, KHR, EXT or OES here.
+ * X(field, type, name without suffix, group) */
+#define NOH_GL_OPTIONAL(X)                                                                        \
+    X(FramebufferTexture, FRAMEBUFFERTEXTURE, "glFramebufferTexture", NOH_GL_GROUP_GEOMETRY)      \
+    X(ObjectLabel, OBJECTLABEL, "glObjectLabel", NOH_GL_GROUP_DEBUG)                              \
+    X(PushDebugGroup, PUSHDEBUGGROUP, "glPushDebugGroup", NOH_GL_GROUP_DEBUG)                     \
+    X(PopDebugGroup, POPDEBUGGROUP, "glPopDebugGroup", NOH_GL_GROUP_DEBUG)                        \
+    X(DebugMessageCallback, DEBUGMESSAGECALLBACK, "glDebugMessageCallback", NOH_GL_GROUP_DEBUG)   \
+    X(DebugMessageControl, DEBUGMESSAGECONTROL, "glDebugMessageControl", NOH_GL_GROUP_DEBUG)      \
+    X(TimeGenQueries, GENQUERIESEXT, "glGenQueries", NOH_GL_GROUP_TIMER)                          \
+    X(TimeDeleteQueries, DELETEQUERIESEXT, "glDeleteQueries", NOH_GL_GROUP_TIMER)                 \
+    X(TimeBeginQuery, BEGINQUERYEXT, "glBeginQuery", NOH_GL_GROUP_TIMER)                          \
+    X(TimeEndQuery, ENDQUERYEXT, "glEndQuery", NOH_GL_GROUP_TIMER)                                \
+    X(TimeGetQueryiv, GETQUERYIVEXT, "glGetQueryiv", NOH_GL_GROUP_TIMER)                          \
+    X(TimeGetQueryObjectuiv, GETQUERYOBJECTUIVEXT, "glGetQueryObjectuiv", NOH_GL_GROUP_TIMER)     \
+    X(TimeGetQueryObjectui64v, GETQUERYOBJECTUI64VEXT, "glGetQueryObjectui64v", NOH_GL_GROUP_TIMER)
+
+typedef struct noh_gl_api {
+#define NOH_GL_FIELD(field, TYPE) PFNGL##TYPE##PROC field;
+    NOH_GL_REQUIRED(NOH_GL_FIELD)
+#undef NOH_GL_FIELD
+#define NOH_GL_FIELD(field, TYPE, name, group) PFNGL##TYPE##PROC field;
+    NOH_GL_OPTIONAL(NOH_GL_FIELD)
+#undef NOH_GL_FIELD
+
+    int version;      /* major * 100 + minor * 10: ES 3.2 is 320, desktop 4.5 is 450 */
+    int is_es;        /* 0 on a desktop GL that also compiles ES shaders (OSMesa) */
+    int geometry_ext; /* geometry shaders need "#extension GL_EXT_geometry_shader" (1) or
+                       * "GL_OES_geometry_shader" (2); 0 where core or where absent */
+} noh_gl_api;
+
+/* Any function; cast to its own type before the call. */
+typedef void (*noh_gl_proc)(void);
+
+/* The caller's lookup, for instance around eglGetProcAddress. NULL: no such function. */
+typedef noh_gl_proc (*noh_gl_get_proc)(void *user, const char *name);
+
+/* Fill the table for the context that is current on this thread.
+ * memory  none; `api` is untouched on error
+ * errors  NOH_ERR_ARG api or get is NULL; NOH_ERR_UNSUPPORTED below ES 3.0, or a
+ *         function of ES 3.0 is missing: `what` is its name; NOH_ERR_GL no current context */
+noh_result noh_gl_api_load(noh_gl_api *api, noh_gl_get_proc get, void *user, noh_error *error);
+
+/* 1 where the context lists the extension, 0 elsewhere. `name` in full, "GL_EXT_...". */
+int noh_gl_has_extension(const noh_gl_api *api, const char *name);
+
+/* The oldest pending GL error, GL_NO_ERROR where there is none. All are cleared,
+ * but never more than 16 asked: a lost context answers for ever. */
+GLenum noh_gl_error_take(const noh_gl_api *api);
+
+#endif

@@ -1,0 +1,148 @@
+/* gl_mesh.c: a pack's meshes and textures as GL objects. */
+#include "gl/gl_draw.h"
+
+static uint64_t position_bytes(const noh_mesh *mesh)
+{
+    return (uint64_t)mesh->header->vertex_count * 12u;
+}
+
+static uint64_t attribute_bytes(const noh_mesh *mesh)
+{
+    return (uint64_t)mesh->header->vertex_count * mesh->header->attribute_stride;
+}
+
+/* A mesh without triangles still gets a buffer: GL has none of zero bytes. */
+static uint64_t index_bytes(const noh_mesh *mesh)
+{
+    uint64_t bytes = (uint64_t)mesh->header->index_count * mesh->header->index_bytes;
+    return bytes ? bytes : 4u;
+}
+
+uint64_t noh_gl_mesh_bytes(const noh_mesh *mesh)
+{
+    return position_bytes(mesh) + attribute_bytes(mesh) + index_bytes(mesh);
+}
+
+static void set_attribute(const noh_gl_api *gl, GLuint location, GLint size, GLenum type, GLboolean normalized, uint32_t stride,
+                          int offset)
+{
+    if (offset >= 0) {
+        gl->EnableVertexAttribArray(location);
+        gl->VertexAttribPointer(location, size, type, normalized, (GLsizei)stride, (const void *)(uintptr_t)offset);
+    }
+}
+
+/* Directions go in as integers: drivers differ in how they normalise them. */
+static void set_pair(const noh_gl_api *gl, GLuint location, uint32_t stride, int offset)
+{
+    if (offset >= 0) {
+        gl->EnableVertexAttribArray(location);
+        gl->VertexAttribIPointer(location, 2, GL_SHORT, (GLsizei)stride, (const void *)(uintptr_t)offset);
+    }
+}
+
+static void create_vertex_array(const noh_gl_api *gl, noh_gl_mesh *m)
+{
+    uint32_t stride = m->mesh.header->attribute_stride;
+    gl->GenVertexArrays(1, &m->vertex_array);
+    gl->BindVertexArray(m->vertex_array);
+    gl->BindBuffer(GL_ARRAY_BUFFER, m->positions.name);
+    set_attribute(gl, NOH_ATTRIBUTE_POSITION, 3, GL_FLOAT, GL_FALSE, 12, 0);
+    gl->BindBuffer(GL_ARRAY_BUFFER, m->attributes.name);
+    set_pair(gl, NOH_ATTRIBUTE_NORMAL, stride, 0);
+    set_pair(gl, NOH_ATTRIBUTE_TANGENT, stride, noh_mesh_tangent_offset(&m->mesh));
+    set_attribute(gl, NOH_ATTRIBUTE_UV, 2, GL_UNSIGNED_SHORT, GL_TRUE, stride, noh_mesh_uv_offset(&m->mesh));
+    set_attribute(gl, NOH_ATTRIBUTE_COLOR, 4, GL_UNSIGNED_BYTE, GL_TRUE, stride, noh_mesh_color_offset(&m->mesh));
+    gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, m->indices.name);
+    gl->BindVertexArray(0);
+    gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+    gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, 0);
+}
+
+noh_result noh_gl_mesh_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_mesh *mesh, noh_gl_mesh *out,
+                              noh_error *error)
+{
+    noh_gl_mesh m = { *mesh, 0, { 0, 0 }, { 0, 0 }, { 0, 0 }, 0 };
+    static const uint32_t no_indices = 0;
+    const void *indices = mesh->header->index_count ? mesh->indices : &no_indices;
+    noh_result result;
+    m.index_type = mesh->header->index_bytes == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
+    api->BindVertexArray(0);
+    result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, position_bytes(mesh), mesh->positions, GL_STATIC_DRAW,
+                                  &m.positions, error);
+    if (!result) {
+        result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, attribute_bytes(mesh), mesh->attributes, GL_STATIC_DRAW,
+                                      &m.attributes, error);
+    }
+    if (!result) {
+        result = noh_gl_buffer_create(api, ledger, GL_ELEMENT_ARRAY_BUFFER, index_bytes(mesh), indices, GL_STATIC_DRAW, &m.indices,
+                                      error);
+    }
+    if (result) {
+        noh_gl_mesh_delete(api, ledger, &m);
+        return result;
+    }
+    create_vertex_array(api, &m);
+    *out = m;
+    return NOH_OK;
+}
+
+void noh_gl_mesh_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mesh *mesh)
+{
+    if (mesh->vertex_array) {
+        api->DeleteVertexArrays(1, &mesh->vertex_array);
+        mesh->vertex_array = 0;
+    }
+    noh_gl_buffer_delete(api, ledger, &mesh->positions);
+    noh_gl_buffer_delete(api, ledger, &mesh->attributes);
+    noh_gl_buffer_delete(api, ledger, &mesh->indices);
+}
+
+static noh_gl_texture_desc picture_desc(const noh_texture *texture)
+{
+    noh_gl_texture_desc desc = { GL_SRGB8_ALPHA8, 0, 0, 0, 1, GL_LINEAR, 0 };
+    uint32_t longer = texture->header->width > texture->header->height ? texture->header->width : texture->header->height;
+    desc.width = texture->header->width;
+    desc.height = texture->header->height;
+    while (longer >>= 1) {
+        desc.levels++;
+    }
+    if (texture->header->nearest) {
+        desc.filter = GL_NEAREST;
+        desc.levels = 1;
+    }
+    return desc;
+}
+
+uint64_t noh_gl_picture_bytes(const noh_texture *texture)
+{
+    noh_gl_texture_desc desc = picture_desc(texture);
+    return noh_gl_texture_bytes(&desc);
+}
+
+static GLint wrap_of(uint32_t wrap)
+{
+    return wrap == NOH_WRAP_CLAMP ? GL_CLAMP_TO_EDGE : wrap == NOH_WRAP_MIRROR ? GL_MIRRORED_REPEAT : GL_REPEAT;
+}
+
+noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
+                                 noh_gl_texture *out, noh_error *error)
+{
+    noh_gl_texture_desc desc = picture_desc(texture);
+    noh_result result;
+    api->ActiveTexture(GL_TEXTURE0);
+    result = noh_gl_texture_create(api, ledger, &desc, out, error);
+    if (result) {
+        return result;
+    }
+    api->BindTexture(GL_TEXTURE_2D, out->name);
+    api->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    api->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, (GLsizei)desc.width, (GLsizei)desc.height, GL_RGBA, GL_UNSIGNED_BYTE, texture->pixels);
+    if (desc.levels > 1) {
+        api->GenerateMipmap(GL_TEXTURE_2D);
+    }
+    api->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap_of(texture->header->wrap_s));
+    api->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap_of(texture->header->wrap_t));
+    api->BindTexture(GL_TEXTURE_2D, 0);
+    return NOH_OK;
+}

@@ -1,0 +1,215 @@
+#include "gl/gl_morph.h"
+
+#include <string.h>
+
+#include "gl/gl_morph_internal.h"
+#include "gl/gl_program.h"
+
+/* ---- making ---- */
+
+static noh_result create_layers(noh_gl_morph *m, noh_error *error)
+{
+    noh_gl_texture_desc desc = { 0, 0, 0, 0, 0, 0, 0 };
+    desc.format = m->plan.layer_format;
+    desc.width = m->plan.atlas_width;
+    desc.height = m->plan.atlas_height;
+    desc.layers = 3;
+    m->gl->ActiveTexture(GL_TEXTURE0);
+    return noh_gl_texture_create(m->gl, m->ledger, &desc, &m->layers, error);
+}
+
+noh_result noh_gl_morph_framebuffer(noh_gl_morph *m, int which, GLuint *framebuffer, noh_error *error)
+{
+    static const GLenum attachments[3] = { GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2 };
+    noh_result result = noh_gl_framebuffer_create(m->gl, m->ledger, framebuffer, error);
+    GLenum status;
+    if (result) {
+        return result;
+    }
+    m->gl->BindFramebuffer(GL_FRAMEBUFFER, *framebuffer);
+    if (which == NOH_LAYERS_LAYERED) {
+        m->gl->FramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, m->layers.name, 0);
+    } else if (which == NOH_LAYERS_ALL) {
+        for (GLint layer = 0; layer < 3; layer++) {
+            m->gl->FramebufferTextureLayer(GL_FRAMEBUFFER, attachments[layer], m->layers.name, 0, layer);
+        }
+        m->gl->DrawBuffers(3, attachments);
+    } else {
+        m->gl->FramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, m->layers.name, 0, which);
+    }
+    status = m->gl->CheckFramebufferStatus(GL_FRAMEBUFFER);
+    m->gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
+    if (status != GL_FRAMEBUFFER_COMPLETE) {
+        return noh_fail(error, NOH_ERR_GL, "the driver refuses the accumulation framebuffer", status, 0);
+    }
+    return NOH_OK;
+}
+
+static noh_result make_gl_objects(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
+{
+    noh_result result = create_layers(m, error);
+    if (result || m->plan.path == NOH_MORPH_CPU) {
+        return result;
+    }
+    result = noh_gl_table_create(m->gl, m->ledger, GL_RGBA32UI, m->plan.weight_count, &m->slot_table, error);
+    if (result) {
+        return result;
+    }
+    return m->plan.path == NOH_MORPH_GATHER ? noh_gl_morph_init_gather(m, log, log_bytes, error)
+                                            : noh_gl_morph_init_blend(m, log, log_bytes, error);
+}
+
+static void mark_all_dirty(noh_gl_morph *m)
+{
+    /* a new texture holds nothing yet: the first update clears every tile */
+    memset(m->dirty, 1, m->plan.instance_count);
+    m->dirty_count = m->plan.instance_count;
+}
+
+noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_api *api, const noh_gl_caps *caps,
+                             noh_gl_ledger *ledger, const noh_gl_morph_desc *desc, noh_gl_morph **morph, char *log,
+                             size_t log_bytes, noh_error *error)
+{
+    noh_gl_morph_plan plan;
+    noh_gl_morph *m;
+    noh_arena arena = noh_arena_over(memory, bytes);
+    noh_result result = noh_gl_morph_plan_make(desc, caps, &plan, error);
+    if (result) {
+        return result;
+    }
+    if (!memory || ((uintptr_t)memory & 15u) != 0) {
+        return noh_fail(error, NOH_ERR_ARG, "memory for the accumulator is NULL or not 16-byte aligned", 0, plan.cpu_bytes);
+    }
+    if (bytes < plan.cpu_bytes) {
+        return noh_fail(error, NOH_ERR_MEMORY, "memory for the accumulator is too small", bytes, plan.cpu_bytes);
+    }
+    m = (noh_gl_morph *)noh_arena_carve(&arena, sizeof *m, 16);
+    memset(m, 0, sizeof *m);
+    m->gl = api;
+    m->ledger = ledger;
+    m->plan = plan;
+    m->mesh_count = desc->mesh_count;
+    m->wide = noh_gl_morph_wide(&plan);
+    noh_gl_morph_carve(&arena, desc, &plan, m);
+    memset(m->meshes, 0, sizeof *m->meshes * m->mesh_count);
+    memset(m->weights, 0, sizeof *m->weights * plan.weight_count);
+    noh_gl_morph_layout(desc, caps->texture_size_max, m->meshes, &plan, NULL);
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        for (uint32_t k = 0; k < m->meshes[i].instance_count; k++) {
+            m->instance_mesh[m->meshes[i].first_instance + k] = i;
+        }
+    }
+    mark_all_dirty(m);
+    result = make_gl_objects(m, log, log_bytes, error);
+    if (result) {
+        noh_gl_morph_delete(m);
+        return result;
+    }
+    *morph = m;
+    return NOH_OK;
+}
+
+void noh_gl_morph_delete(noh_gl_morph *m)
+{
+    for (int i = 0; i < 3; i++) {
+        noh_gl_framebuffer_delete(m->gl, m->ledger, &m->framebuffers[i]);
+    }
+    noh_gl_program_delete(m->gl, m->ledger, &m->program);
+    if (m->vertex_array) {
+        m->gl->DeleteVertexArrays(1, &m->vertex_array);
+        m->vertex_array = 0;
+    }
+    noh_gl_buffer_delete(m->gl, m->ledger, &m->stream);
+    noh_gl_texture_delete(m->gl, m->ledger, &m->slot_table.texture);
+    noh_gl_texture_delete(m->gl, m->ledger, &m->rects.texture);
+    noh_gl_texture_delete(m->gl, m->ledger, &m->deltas.texture);
+    noh_gl_texture_delete(m->gl, m->ledger, &m->layers);
+}
+
+/* ---- asking ---- */
+
+const noh_gl_morph_plan *noh_gl_morph_plan_of(const noh_gl_morph *morph)
+{
+    return &morph->plan;
+}
+
+uint32_t noh_gl_morph_instance(const noh_gl_morph *morph, uint32_t mesh, uint32_t i)
+{
+    return morph->meshes[mesh].first_instance + i;
+}
+
+void noh_gl_morph_tile(const noh_gl_morph *m, uint32_t instance, uint32_t *x, uint32_t *y)
+{
+    const noh_gl_morph_mesh *mesh = &m->meshes[m->instance_mesh[instance]];
+    uint32_t i = instance - mesh->first_instance;
+    *x = i % mesh->columns << mesh->mesh.header->morph_width_log2;
+    *y = mesh->band_y + i / mesh->columns * mesh->mesh.header->morph_height;
+}
+
+uint32_t noh_gl_morph_first_weight(const noh_gl_morph *m, uint32_t instance)
+{
+    const noh_gl_morph_mesh *mesh = &m->meshes[m->instance_mesh[instance]];
+    return mesh->first_weight + (instance - mesh->first_instance) * mesh->mesh.header->target_count;
+}
+
+noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t instance)
+{
+    const noh_mesh_header *h = morph->meshes[morph->instance_mesh[instance]].mesh.header;
+    noh_gl_morph_binding binding;
+    uint32_t x, y;
+    noh_gl_morph_tile(morph, instance, &x, &y);
+    binding.texture = morph->layers.name;
+    binding.is_uint = morph->plan.layer_format == GL_RGBA32UI;
+    binding.tile_x = (int32_t)x;
+    binding.tile_y = (int32_t)y;
+    binding.width_log2 = (int32_t)h->morph_width_log2;
+    binding.touched = (int32_t)h->touched_count;
+    return binding;
+}
+
+/* ---- setting and accumulating ---- */
+
+noh_result noh_gl_morph_weights(noh_gl_morph *morph, uint32_t instance, const float *weights, noh_error *error)
+{
+    uint32_t count = morph->meshes[morph->instance_mesh[instance]].mesh.header->target_count;
+    float *own = morph->weights + noh_gl_morph_first_weight(morph, instance);
+    for (uint32_t i = 0; i < count; i++) {
+        if (weights[i] - weights[i] != 0.0f) {
+            return noh_fail(error, NOH_ERR_ARG, "weight is not finite", i, 0);
+        }
+    }
+    if (memcmp(own, weights, sizeof *own * count) != 0) {
+        memcpy(own, weights, sizeof *own * count);
+        morph->dirty_count += !morph->dirty[instance];
+        morph->dirty[instance] = 1;
+    }
+    return NOH_OK;
+}
+
+void noh_gl_morph_put_slot(uint32_t slot[4], const noh_target *target, float weight, uint32_t last)
+{
+    /* the same products as the CPU reference makes, so that both round alike */
+    const float scaled[3] = { target->position_scale * weight, target->normal_scale * weight, target->tangent_scale * weight };
+    memcpy(slot, scaled, sizeof scaled);
+    slot[3] = last;
+}
+
+void noh_gl_morph_update(noh_gl_morph *morph, noh_gl_morph_stats *stats)
+{
+    noh_gl_morph_stats local;
+    noh_gl_morph_stats *s = stats ? stats : &local;
+    memset(s, 0, sizeof *s);
+    if (!morph->dirty_count) {
+        return;
+    }
+    s->instances = morph->dirty_count;
+    if (morph->plan.path == NOH_MORPH_CPU) {
+        noh_gl_morph_update_cpu(morph, s);
+    } else if (morph->plan.path == NOH_MORPH_GATHER) {
+        noh_gl_morph_update_gather(morph, s);
+    } else {
+        noh_gl_morph_update_blend(morph, s);
+    }
+    memset(morph->dirty, 0, morph->plan.instance_count);
+    morph->dirty_count = 0;
+}

@@ -1,0 +1,128 @@
+/* gl_morph.h: morph targets accumulated on the GPU, for many instances at once.
+ *
+ *   noh_gl_morph_plan     which path, why, and every byte it will take: before any load
+ *   noh_gl_morph_init     place it in your memory and make its GL objects
+ *   noh_gl_morph_weights  set one instance's weights (cheap when they did not change)
+ *   noh_gl_morph_update   accumulate the instances whose weights changed
+ *   noh_gl_morph_binding  where a vertex shader finds an instance's deltas
+ *
+ * Deltas of position, normal and tangent are accumulated in three layers of one
+ * texture array; each instance owns a tile of it, one texel per touched vertex.
+ * The base pose stays in the vertex buffers and is added when the vertex shader
+ * fetches (shaders_es/common_layers.glsl), so a half-float accumulator only ever
+ * rounds deltas (rows A5-A8, A10).
+ *
+ *   path       needs                                how
+ *   layered    geometry shader, blending            one additive pass to three layers
+ *   mrt        ES 3.0, blending                     one additive pass, three outputs
+ *   per-layer  ES 3.0, blending                     three additive passes
+ *   gather     ES 3.0                               no blending: each fragment sums its vertex's list
+ *   cpu        nothing                              SIMD on the CPU, the texture takes the result
+ * "Blending" is into the accumulation format, which an extension grants: float32
+ * (EXT_float_blend) is missing on most phones, float16 is not. */
+#ifndef NOH_GL_GL_MORPH_H
+#define NOH_GL_GL_MORPH_H
+
+#include "gl/gl_caps.h"
+#include "gl/gl_memory.h"
+#include "mesh/mesh.h"
+
+typedef enum noh_morph_path {
+    NOH_MORPH_AUTO = 0,
+    NOH_MORPH_LAYERED,
+    NOH_MORPH_MRT,
+    NOH_MORPH_PER_LAYER,
+    NOH_MORPH_GATHER,
+    NOH_MORPH_CPU
+} noh_morph_path;
+#define NOH_MORPH_PATH_COUNT 6
+
+typedef enum noh_accumulate {
+    NOH_ACCUMULATE_AUTO = 0, /* f32 */
+    NOH_ACCUMULATE_F32,
+    NOH_ACCUMULATE_F16       /* half the memory; error within the mesh's f16_position_bound */
+} noh_accumulate;
+
+/* "auto", "layered", "mrt", "per-layer", "gather", "cpu"; "auto", "f32", "f16". */
+const char *noh_morph_path_name(noh_morph_path path);
+const char *noh_accumulate_name(noh_accumulate accumulate);
+
+typedef struct noh_gl_morph_desc {
+    const noh_mesh *meshes;          /* [mesh_count]; copied, the packs must stay */
+    uint32_t mesh_count;
+    const uint32_t *instance_counts; /* [mesh_count]; NULL: one of each. 1..NOH_MORPH_INSTANCES_MAX in all */
+    noh_morph_path path;             /* 0: the cheapest that the capabilities allow */
+    noh_accumulate accumulate;       /* 0: f32 */
+    float expected_active;           /* for auto: share of the targets that is active at once, 0..1; 0: 0.5 */
+} noh_gl_morph_desc;
+
+/* What a desc comes to on a GPU with these capabilities. All bytes are exact. */
+typedef struct noh_gl_morph_plan {
+    noh_morph_path path;         /* never AUTO */
+    noh_accumulate accumulate;   /* never AUTO */
+    const char *reason;          /* why this path, in words; a string constant */
+    GLenum layer_format;         /* RGBA32F, RGBA16F, RGBA32UI (float bits), RGB32F or RGB16F */
+    uint32_t atlas_width, atlas_height;
+    uint32_t instance_count, rect_count, texel_count, pair_count, weight_count;
+    uint64_t cpu_bytes;          /* the block that noh_gl_morph_init wants */
+    uint64_t delta_bytes;        /* GPU: delta texels, or the gather entries */
+    uint64_t table_bytes;        /* GPU: rectangles, or the gather list starts */
+    uint64_t stream_bytes;       /* GPU: what is sent at each update */
+    uint64_t layer_bytes;        /* GPU: the accumulators */
+    uint64_t gpu_bytes;          /* the sum of these four */
+} noh_gl_morph_plan;
+
+typedef struct noh_gl_morph noh_gl_morph;
+
+/* What one update did. */
+typedef struct noh_gl_morph_stats {
+    uint32_t instances;   /* accumulated again */
+    uint32_t draws;       /* accumulation draws; clears are not draws */
+    uint32_t targets;     /* active (instance, target) pairs */
+    uint32_t rects, texels, pairs;
+} noh_gl_morph_stats;
+
+/* Where an instance's deltas are. The same numbers go into u_morph of
+ * common_layers.glsl: tile x, tile y, width log2, touched vertices. */
+typedef struct noh_gl_morph_binding {
+    GLuint texture;      /* GL_TEXTURE_2D_ARRAY of three layers */
+    int is_uint;         /* 1: the float's bits in RGBA32UI: build your shader with LAYERS_UINT */
+    int32_t tile_x, tile_y, width_log2, touched;
+} noh_gl_morph_binding;
+
+/* Decide and measure, without touching GL.
+ * errors  ARG a desc field is out of range; UNSUPPORTED the forced path cannot run here,
+ *         `what` says what is missing; LIMIT the atlas or a table is larger than textures can be */
+noh_result noh_gl_morph_plan_make(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan,
+                                  noh_error *error);
+
+/* Build in memory[bytes], 16-byte aligned, plan.cpu_bytes long; make the GL objects,
+ * counted in the ledger, which like the api must stay. `log` as in noh_gl_program_create.
+ * All instances start at weight 0.
+ * errors  as plan; MEMORY with the bytes needed, nothing is then touched; GL, DATA (a shader) */
+noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_api *api, const noh_gl_caps *caps,
+                             noh_gl_ledger *ledger, const noh_gl_morph_desc *desc, noh_gl_morph **morph, char *log,
+                             size_t log_bytes, noh_error *error);
+
+/* Delete the GL objects. The memory is yours again. */
+void noh_gl_morph_delete(noh_gl_morph *morph);
+
+const noh_gl_morph_plan *noh_gl_morph_plan_of(const noh_gl_morph *morph);
+
+/* The number of the i-th instance of the m-th mesh. */
+uint32_t noh_gl_morph_instance(const noh_gl_morph *morph, uint32_t mesh, uint32_t i);
+
+/* Set weights[target_count of its mesh]; any finite values.
+ * errors  ARG a weight is not finite, `where` is its index; nothing is then changed */
+noh_result noh_gl_morph_weights(noh_gl_morph *morph, uint32_t instance, const float *weights, noh_error *error);
+
+/* Accumulate what changed. stats may be NULL.
+ * state   Afterwards: framebuffer 0, vertex array 0, program 0, array buffer 0 and textures of
+ *         units 0..2 unbound; blending, scissor, depth and cull test off; viewport that of the
+ *         atlas. Set your own before you draw. Nothing is touched when nothing changed.
+ * errors  none: everything was checked at init */
+void noh_gl_morph_update(noh_gl_morph *morph, noh_gl_morph_stats *stats);
+
+noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t instance);
+
+#endif

@@ -1,0 +1,265 @@
+/* gl_morph_blend.c: layered, mrt and per-layer: additive blending (rows A6-A9). */
+#include <string.h>
+
+#include "gl/gl_morph_internal.h"
+#include "gl/gl_program.h"
+#include "shaders.gen.h"
+
+/* ---- making ---- */
+
+static noh_result create_program(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
+{
+    static const char *const samplers[] = { "u_deltas", "u_rects", "u_slots" };
+    noh_gl_program_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.name = noh_morph_path_name(m->plan.path);
+    desc.vertex = &noh_shader_morph_rect_vert;
+    desc.fragment = &noh_shader_morph_one_frag;
+    desc.samplers = samplers;
+    desc.sampler_count = 3;
+    desc.ledger = m->ledger;
+    if (m->plan.path == NOH_MORPH_MRT) {
+        desc.fragment = &noh_shader_morph_mrt_frag;
+        desc.defines = "#define MORPH_MRT\n";
+    } else if (m->plan.path == NOH_MORPH_LAYERED) {
+        desc.geometry = &noh_shader_morph_layered_geom;
+        desc.version = noh_gl_geometry_version(m->gl);
+        desc.geometry_defines = noh_gl_geometry_defines(m->gl);
+        desc.defines = "#define MORPH_LAYERED\n";
+    }
+    return noh_gl_program_create(m->gl, &desc, &m->program, log, log_bytes, error);
+}
+
+static noh_result create_framebuffers(noh_gl_morph *m, noh_error *error)
+{
+    noh_result result = NOH_OK;
+    if (m->plan.path == NOH_MORPH_MRT) {
+        return noh_gl_morph_framebuffer(m, NOH_LAYERS_ALL, &m->framebuffers[0], error);
+    }
+    if (m->plan.path == NOH_MORPH_LAYERED) {
+        return noh_gl_morph_framebuffer(m, NOH_LAYERS_LAYERED, &m->framebuffers[0], error);
+    }
+    for (int layer = 0; layer < 3 && !result; layer++) {
+        result = noh_gl_morph_framebuffer(m, layer, &m->framebuffers[layer], error);
+    }
+    return result;
+}
+
+static uint32_t target_bits(const noh_target *t)
+{
+    return t->position_bits | (uint32_t)t->normal_bits << 8 | (uint32_t)t->tangent_bits << 16;
+}
+
+/* The rect table: place, size, first texel and bit widths; sent in chunks. */
+static void upload_rects(noh_gl_morph *m, const noh_gl_morph_mesh *mesh)
+{
+    uint32_t(*chunk)[4] = (uint32_t(*)[4])m->staging;
+    uint32_t count = 0, sent = mesh->first_rect, texel = mesh->first_texel;
+    for (uint32_t t = 0; t < mesh->mesh.header->target_count; t++) {
+        const noh_target *target = &mesh->mesh.targets[t];
+        for (uint32_t r = 0; r < target->rect_count; r++) {
+            const noh_rect *rect = &mesh->mesh.rects[target->first_rect + r];
+            uint32_t *to = chunk[count++];
+            to[0] = rect->x | (uint32_t)rect->y << 16;
+            to[1] = rect->w | (uint32_t)rect->h << 16;
+            to[2] = texel;
+            to[3] = target_bits(target);
+            texel += (uint32_t)rect->w * rect->h;
+            if (count == NOH_RECT_CHUNK) {
+                noh_gl_table_upload(m->gl, &m->rects, sent, count, m->staging);
+                sent += count;
+                count = 0;
+            }
+        }
+    }
+    if (count) {
+        noh_gl_table_upload(m->gl, &m->rects, sent, count, m->staging);
+    }
+}
+
+static noh_result create_tables(noh_gl_morph *m, noh_error *error)
+{
+    noh_result result = noh_gl_table_create(m->gl, m->ledger, GL_RGB32UI, m->plan.texel_count, &m->deltas, error);
+    if (!result) {
+        result = noh_gl_table_create(m->gl, m->ledger, GL_RGBA32UI, m->plan.rect_count, &m->rects, error);
+    }
+    for (uint32_t i = 0; !result && i < m->mesh_count; i++) {
+        const noh_gl_morph_mesh *mesh = &m->meshes[i];
+        if (mesh->mesh.header->texel_count) {
+            noh_gl_table_upload(m->gl, &m->deltas, mesh->first_texel, mesh->mesh.header->texel_count, mesh->mesh.texels);
+            upload_rects(m, mesh);
+        }
+    }
+    return result;
+}
+
+static noh_result create_stream(noh_gl_morph *m, noh_error *error)
+{
+    uint64_t bytes = m->plan.stream_bytes - m->slot_table.texture.bytes;
+    GLint attribute;
+    noh_result result = noh_gl_buffer_create(m->gl, m->ledger, GL_ARRAY_BUFFER, bytes, NULL, GL_STREAM_DRAW, &m->stream, error);
+    if (result) {
+        return result;
+    }
+    attribute = m->gl->GetAttribLocation(m->program, "a_rect_slot");
+    m->gl->GenVertexArrays(1, &m->vertex_array);
+    m->gl->BindVertexArray(m->vertex_array);
+    m->gl->BindBuffer(GL_ARRAY_BUFFER, m->stream.name);
+    m->gl->EnableVertexAttribArray((GLuint)attribute);
+    m->gl->VertexAttribIPointer((GLuint)attribute, 2, m->wide ? GL_UNSIGNED_INT : GL_UNSIGNED_SHORT, 0, NULL);
+    m->gl->VertexAttribDivisor((GLuint)attribute, 1);
+    m->gl->BindVertexArray(0);
+    m->gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+    return NOH_OK;
+}
+
+static void set_constants(noh_gl_morph *m)
+{
+    m->gl->UseProgram(m->program);
+    m->gl->Uniform3i(m->gl->GetUniformLocation(m->program, "u_tables"), (GLint)m->rects.width_log2,
+                     (GLint)m->slot_table.width_log2, (GLint)m->deltas.width_log2);
+    m->gl->Uniform2f(m->gl->GetUniformLocation(m->program, "u_atlas"), 2.0f / (float)m->plan.atlas_width,
+                     2.0f / (float)m->plan.atlas_height);
+    m->u_layer = m->gl->GetUniformLocation(m->program, "u_layer");
+    m->gl->UseProgram(0);
+}
+
+noh_result noh_gl_morph_init_blend(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
+{
+    noh_result result = create_program(m, log, log_bytes, error);
+    if (!result) result = create_framebuffers(m, error);
+    if (!result) result = create_tables(m, error);
+    if (!result) result = create_stream(m, error);
+    if (!result) set_constants(m);
+    return result;
+}
+
+/* ---- updating ---- */
+
+static void put_rect_slots(noh_gl_morph *m, uint32_t first_rect, uint32_t rect_count, uint32_t slot, uint32_t *count)
+{
+    if (m->wide) {
+        uint32_t *to = (uint32_t *)m->staging + 2u * (size_t)*count;
+        for (uint32_t r = 0; r < rect_count; r++) {
+            *to++ = first_rect + r;
+            *to++ = slot;
+        }
+    } else {
+        uint16_t *to = (uint16_t *)m->staging + 2u * (size_t)*count;
+        for (uint32_t r = 0; r < rect_count; r++) {
+            *to++ = (uint16_t)(first_rect + r);
+            *to++ = (uint16_t)slot;
+        }
+    }
+    *count += rect_count;
+}
+
+/* The active targets of one instance, in index order: the order of the sums is part of the result. */
+static void list_instance(noh_gl_morph *m, uint32_t instance, uint32_t *slot_count, uint32_t *rect_slots, noh_gl_morph_stats *stats)
+{
+    const noh_gl_morph_mesh *mesh = &m->meshes[m->instance_mesh[instance]];
+    const float *weights = m->weights + noh_gl_morph_first_weight(m, instance);
+    uint32_t x, y;
+    noh_gl_morph_tile(m, instance, &x, &y);
+    for (uint32_t t = 0; t < mesh->mesh.header->target_count; t++) {
+        const noh_target *target = &mesh->mesh.targets[t];
+        if (weights[t] != 0.0f && target->rect_count) {
+            noh_gl_morph_put_slot(m->slots + 4u * (size_t)*slot_count, target, weights[t], x | y << 16);
+            put_rect_slots(m, mesh->first_rect + target->first_rect, target->rect_count, *slot_count, rect_slots);
+            *slot_count += 1;
+            stats->targets += 1;
+            stats->rects += target->rect_count;
+            stats->texels += target->texel_count;
+            stats->pairs += target->pair_count;
+        }
+    }
+}
+
+static void clear_bound(noh_gl_morph *m)
+{
+    static const float zero[4] = { 0.0f, 0.0f, 0.0f, 0.0f };
+    GLint buffers = m->plan.path == NOH_MORPH_MRT ? 3 : 1; /* clearing a layered framebuffer clears all layers */
+    for (GLint i = 0; i < buffers; i++) {
+        m->gl->ClearBufferfv(GL_COLOR, i, zero);
+    }
+}
+
+/* Clear the dirty tiles only: the others keep their sums. */
+static void clear_tiles(noh_gl_morph *m)
+{
+    if (m->dirty_count == m->plan.instance_count) {
+        clear_bound(m);
+        return;
+    }
+    m->gl->Enable(GL_SCISSOR_TEST);
+    for (uint32_t i = 0; i < m->plan.instance_count; i++) {
+        const noh_mesh_header *h = m->meshes[m->instance_mesh[i]].mesh.header;
+        if (m->dirty[i] && h->morph_height) {
+            uint32_t x, y;
+            noh_gl_morph_tile(m, i, &x, &y);
+            m->gl->Scissor((GLint)x, (GLint)y, (GLsizei)(1u << h->morph_width_log2), (GLsizei)h->morph_height);
+            clear_bound(m);
+        }
+    }
+    m->gl->Disable(GL_SCISSOR_TEST);
+}
+
+static void bind_tables(noh_gl_morph *m)
+{
+    const GLuint names[3] = { m->deltas.texture.name, m->rects.texture.name, m->slot_table.texture.name };
+    for (unsigned i = 0; i < 3; i++) {
+        m->gl->ActiveTexture(GL_TEXTURE0 + i);
+        m->gl->BindTexture(GL_TEXTURE_2D, names[i]);
+    }
+}
+
+static void unbind_all(noh_gl_morph *m)
+{
+    for (unsigned i = 3; i-- > 0;) {
+        m->gl->ActiveTexture(GL_TEXTURE0 + i);
+        m->gl->BindTexture(GL_TEXTURE_2D, 0);
+    }
+    m->gl->BindVertexArray(0);
+    m->gl->UseProgram(0);
+    m->gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
+    m->gl->Disable(GL_BLEND);
+}
+
+void noh_gl_morph_update_blend(noh_gl_morph *m, noh_gl_morph_stats *stats)
+{
+    uint32_t slots = 0, rect_slots = 0;
+    int passes = m->plan.path == NOH_MORPH_PER_LAYER ? 3 : 1;
+    for (uint32_t i = 0; i < m->plan.instance_count; i++) {
+        if (m->dirty[i]) {
+            list_instance(m, i, &slots, &rect_slots, stats);
+        }
+    }
+    if (rect_slots) {
+        noh_gl_table_upload(m->gl, &m->slot_table, 0, slots, m->slots);
+        m->gl->BindBuffer(GL_ARRAY_BUFFER, m->stream.name);
+        m->gl->BufferSubData(GL_ARRAY_BUFFER, 0, (GLsizeiptr)((size_t)rect_slots * (m->wide ? 8u : 4u)), m->staging);
+        m->gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+    }
+    m->gl->Viewport(0, 0, (GLsizei)m->plan.atlas_width, (GLsizei)m->plan.atlas_height);
+    m->gl->Disable(GL_DEPTH_TEST);
+    m->gl->Disable(GL_CULL_FACE);
+    m->gl->Disable(GL_SCISSOR_TEST);
+    m->gl->Disable(GL_BLEND);
+    m->gl->BlendEquation(GL_FUNC_ADD);
+    m->gl->BlendFunc(GL_ONE, GL_ONE);
+    m->gl->UseProgram(m->program);
+    m->gl->BindVertexArray(m->vertex_array);
+    bind_tables(m);
+    for (int pass = 0; pass < passes; pass++) {
+        m->gl->BindFramebuffer(GL_FRAMEBUFFER, m->framebuffers[pass]);
+        clear_tiles(m);
+        if (rect_slots) {
+            m->gl->Uniform1i(m->u_layer, pass);
+            m->gl->Enable(GL_BLEND);
+            m->gl->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)rect_slots);
+            m->gl->Disable(GL_BLEND);
+            stats->draws += 1;
+        }
+    }
+    unbind_all(m);
+}

@@ -1,0 +1,54 @@
+/* gl_morph_cpu.c: the CPU accumulates, the texture takes the result. */
+#include <string.h>
+
+#include "gl/gl_morph_internal.h"
+
+/* Floats to halves where they lie: a half is never written past the float it came from. */
+static void narrow_to_half(void *floats, size_t count)
+{
+    uint8_t *bytes = (uint8_t *)floats;
+    for (size_t i = 0; i < count; i++) {
+        float value;
+        uint16_t half;
+        memcpy(&value, bytes + 4 * i, sizeof value);
+        half = noh_half_from_float(value, NOH_HALF_RNE);
+        memcpy(bytes + 2 * i, &half, sizeof half);
+    }
+}
+
+static void update_instance(noh_gl_morph *m, uint32_t instance, noh_gl_morph_stats *stats)
+{
+    const noh_gl_morph_mesh *mesh = &m->meshes[m->instance_mesh[instance]];
+    const noh_mesh_header *h = mesh->mesh.header;
+    const float *weights = m->weights + noh_gl_morph_first_weight(m, instance);
+    noh_morph_cost cost = noh_morph_cost_of(&mesh->mesh, weights);
+    int half = m->plan.accumulate == NOH_ACCUMULATE_F16;
+    noh_morph_layers layers;
+    uint32_t x, y;
+    noh_morph_layers_init(m->staging, m->staging_bytes, &mesh->mesh, &layers, NULL);
+    noh_morph_accumulate(&mesh->mesh, weights, &layers);
+    if (half) {
+        narrow_to_half(m->staging, noh_morph_layers_size(&mesh->mesh) / 4u);
+    }
+    noh_gl_morph_tile(m, instance, &x, &y);
+    m->gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, (GLint)x, (GLint)y, 0, (GLsizei)(1u << h->morph_width_log2),
+                         (GLsizei)h->morph_height, 3, GL_RGB, half ? GL_HALF_FLOAT : GL_FLOAT, m->staging);
+    stats->targets += cost.targets;
+    stats->rects += cost.rects;
+    stats->texels += cost.texels;
+    stats->pairs += cost.pairs;
+}
+
+void noh_gl_morph_update_cpu(noh_gl_morph *m, noh_gl_morph_stats *stats)
+{
+    m->gl->ActiveTexture(GL_TEXTURE0);
+    m->gl->BindTexture(GL_TEXTURE_2D_ARRAY, m->layers.name);
+    m->gl->PixelStorei(GL_UNPACK_ALIGNMENT, 2);
+    for (uint32_t i = 0; i < m->plan.instance_count; i++) {
+        if (m->dirty[i] && m->meshes[m->instance_mesh[i]].mesh.header->morph_height) {
+            update_instance(m, i, stats);
+        }
+    }
+    m->gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    m->gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
+}

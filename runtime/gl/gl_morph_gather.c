@@ -1,0 +1,226 @@
+/* gl_morph_gather.c: no blending. Each touched vertex has the list of its deltas, in
+ * target order; one fragment walks it and writes three layers once. */
+#include <string.h>
+
+#include "gl/gl_morph_internal.h"
+#include "gl/gl_program.h"
+#include "shaders.gen.h"
+
+/* ---- making ---- */
+
+static noh_result create_program(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
+{
+    static const char *const samplers[] = { "u_entries", "u_starts", "u_slots" };
+    noh_gl_program_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.name = "gather";
+    desc.vertex = &noh_shader_morph_gather_vert;
+    desc.fragment = &noh_shader_morph_gather_frag;
+    desc.samplers = samplers;
+    desc.sampler_count = 3;
+    desc.defines = m->plan.layer_format == GL_RGBA32UI ? "#define LAYERS_UINT\n" : NULL;
+    desc.ledger = m->ledger;
+    return noh_gl_program_create(m->gl, &desc, &m->program, log, log_bytes, error);
+}
+
+typedef void (*visit_pair)(void *context, uint32_t vertex, uint32_t target, const uint32_t words[3]);
+
+/* Every delta that is not zero, targets in index order. */
+static void visit_pairs(const noh_mesh *mesh, visit_pair visit, void *context)
+{
+    const uint32_t *words = mesh->texels;
+    for (uint32_t t = 0; t < mesh->header->target_count; t++) {
+        const noh_rect *rect = mesh->rects + mesh->targets[t].first_rect;
+        for (uint32_t r = 0; r < mesh->targets[t].rect_count; r++, rect++) {
+            for (uint32_t y = rect->y; y < (uint32_t)rect->y + rect->h; y++) {
+                uint32_t vertex = (y << mesh->header->morph_width_log2) + rect->x;
+                for (uint32_t x = 0; x < rect->w; x++, words += 3) {
+                    if (words[0] | words[1] | words[2]) {
+                        visit(context, vertex + x, t, words);
+                    }
+                }
+            }
+        }
+    }
+}
+
+static void count_pair(void *context, uint32_t vertex, uint32_t target, const uint32_t words[3])
+{
+    (void)target;
+    (void)words;
+    ((uint32_t *)context)[vertex + 1u] += 1u;
+}
+
+typedef struct chunk_filler {
+    uint32_t *cursors;        /* [touched] next entry of each vertex */
+    uint32_t first;           /* entry that the chunk begins with */
+    uint32_t (*entries)[4];   /* [NOH_GATHER_CHUNK] */
+} chunk_filler;
+
+static void fill_pair(void *context, uint32_t vertex, uint32_t target, const uint32_t words[3])
+{
+    chunk_filler *f = (chunk_filler *)context;
+    uint32_t at = f->cursors[vertex]++ - f->first; /* wraps to a large number for entries before the chunk */
+    if (at < NOH_GATHER_CHUNK) {
+        memcpy(f->entries[at], words, 12);
+        f->entries[at][3] = target;
+    }
+}
+
+/* Lists by vertex out of rectangles by target, without memory for the whole: the starts
+ * are counted, then each chunk of entries takes one walk over the mesh. */
+static void upload_lists(noh_gl_morph *m, const noh_gl_morph_mesh *mesh)
+{
+    uint32_t touched = mesh->mesh.header->touched_count, pairs = mesh->mesh.header->pair_count;
+    uint32_t *starts = (uint32_t *)m->staging;
+    chunk_filler f;
+    f.cursors = starts + touched + 1u;
+    f.entries = (uint32_t(*)[4])(void *)(f.cursors + touched + 1u);
+    memset(starts, 0, sizeof *starts * (touched + 1u));
+    visit_pairs(&mesh->mesh, count_pair, starts);
+    starts[0] = mesh->first_pair;
+    for (uint32_t v = 1; v <= touched; v++) {
+        starts[v] += starts[v - 1];
+    }
+    noh_gl_table_upload(m->gl, &m->rects, mesh->first_start, touched + 1u, starts);
+    for (uint32_t first = 0; first < pairs; first += NOH_GATHER_CHUNK) {
+        uint32_t count = pairs - first < NOH_GATHER_CHUNK ? pairs - first : NOH_GATHER_CHUNK;
+        memcpy(f.cursors, starts, sizeof *starts * (touched + 1u));
+        f.first = mesh->first_pair + first;
+        visit_pairs(&mesh->mesh, fill_pair, &f);
+        noh_gl_table_upload(m->gl, &m->deltas, f.first, count, f.entries);
+    }
+}
+
+static noh_result create_tables(noh_gl_morph *m, noh_error *error)
+{
+    uint32_t starts = 0;
+    noh_result result;
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        starts += m->meshes[i].mesh.header->touched_count + 1u;
+    }
+    result = noh_gl_table_create(m->gl, m->ledger, GL_RGBA32UI, m->plan.pair_count, &m->deltas, error);
+    if (!result) {
+        result = noh_gl_table_create(m->gl, m->ledger, GL_R32UI, starts, &m->rects, error);
+    }
+    for (uint32_t i = 0; !result && i < m->mesh_count; i++) {
+        upload_lists(m, &m->meshes[i]);
+    }
+    return result;
+}
+
+static noh_result create_stream(noh_gl_morph *m, noh_error *error)
+{
+    noh_result result = noh_gl_buffer_create(m->gl, m->ledger, GL_ARRAY_BUFFER, 16u * (uint64_t)m->plan.instance_count, NULL,
+                                             GL_STREAM_DRAW, &m->stream, error);
+    GLint attribute;
+    if (result) {
+        return result;
+    }
+    attribute = m->gl->GetAttribLocation(m->program, "a_tile");
+    m->gl->GenVertexArrays(1, &m->vertex_array);
+    m->gl->BindVertexArray(m->vertex_array);
+    m->gl->BindBuffer(GL_ARRAY_BUFFER, m->stream.name);
+    m->gl->EnableVertexAttribArray((GLuint)attribute);
+    m->gl->VertexAttribIPointer((GLuint)attribute, 4, GL_UNSIGNED_INT, 0, NULL);
+    m->gl->VertexAttribDivisor((GLuint)attribute, 1);
+    m->gl->BindVertexArray(0);
+    m->gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+    return NOH_OK;
+}
+
+noh_result noh_gl_morph_init_gather(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
+{
+    noh_result result = create_program(m, log, log_bytes, error);
+    if (!result) result = noh_gl_morph_framebuffer(m, NOH_LAYERS_ALL, &m->framebuffers[0], error);
+    if (!result) result = create_tables(m, error);
+    if (!result) result = create_stream(m, error);
+    if (result) {
+        return result;
+    }
+    m->gl->UseProgram(m->program);
+    m->gl->Uniform3i(m->gl->GetUniformLocation(m->program, "u_tables"), (GLint)m->rects.width_log2,
+                     (GLint)m->slot_table.width_log2, (GLint)m->deltas.width_log2);
+    m->gl->Uniform2f(m->gl->GetUniformLocation(m->program, "u_atlas"), 2.0f / (float)m->plan.atlas_width,
+                     2.0f / (float)m->plan.atlas_height);
+    m->gl->UseProgram(0);
+    return NOH_OK;
+}
+
+/* ---- updating ---- */
+
+static uint32_t target_bits(const noh_target *t)
+{
+    return t->position_bits | (uint32_t)t->normal_bits << 8 | (uint32_t)t->tangent_bits << 16;
+}
+
+/* The instance's row of slots, all targets, and its tile. */
+static void list_instance(noh_gl_morph *m, uint32_t instance, uint32_t *tile, noh_gl_morph_stats *stats)
+{
+    const noh_gl_morph_mesh *mesh = &m->meshes[m->instance_mesh[instance]];
+    const noh_mesh_header *h = mesh->mesh.header;
+    uint32_t first = noh_gl_morph_first_weight(m, instance), x, y;
+    for (uint32_t t = 0; t < h->target_count; t++) {
+        noh_gl_morph_put_slot(m->slots + 4u * (size_t)(first + t), &mesh->mesh.targets[t], m->weights[first + t],
+                              target_bits(&mesh->mesh.targets[t]));
+        stats->targets += m->weights[first + t] != 0.0f;
+    }
+    noh_gl_morph_tile(m, instance, &x, &y);
+    tile[0] = x | y << 16;
+    tile[1] = first;
+    tile[2] = mesh->first_start;
+    tile[3] = h->touched_count | h->morph_width_log2 << 24;
+    stats->pairs += h->pair_count;
+    stats->texels += h->touched_count;
+    stats->rects += 1;
+    noh_gl_table_upload(m->gl, &m->slot_table, first, h->target_count, m->slots + 4u * (size_t)first);
+}
+
+static void bind_for_draw(noh_gl_morph *m)
+{
+    const GLuint names[3] = { m->deltas.texture.name, m->rects.texture.name, m->slot_table.texture.name };
+    for (unsigned i = 3; i-- > 0;) {
+        m->gl->ActiveTexture(GL_TEXTURE0 + i);
+        m->gl->BindTexture(GL_TEXTURE_2D, names[i]);
+    }
+    m->gl->Viewport(0, 0, (GLsizei)m->plan.atlas_width, (GLsizei)m->plan.atlas_height);
+    m->gl->Disable(GL_DEPTH_TEST);
+    m->gl->Disable(GL_CULL_FACE);
+    m->gl->Disable(GL_SCISSOR_TEST);
+    m->gl->Disable(GL_BLEND);
+    m->gl->UseProgram(m->program);
+    m->gl->BindVertexArray(m->vertex_array);
+    m->gl->BindFramebuffer(GL_FRAMEBUFFER, m->framebuffers[0]);
+}
+
+static void unbind_all(noh_gl_morph *m)
+{
+    m->gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
+    m->gl->BindVertexArray(0);
+    m->gl->UseProgram(0);
+    for (unsigned i = 3; i-- > 0;) {
+        m->gl->ActiveTexture(GL_TEXTURE0 + i);
+        m->gl->BindTexture(GL_TEXTURE_2D, 0);
+    }
+}
+
+void noh_gl_morph_update_gather(noh_gl_morph *m, noh_gl_morph_stats *stats)
+{
+    uint32_t tiles = 0;
+    for (uint32_t i = 0; i < m->plan.instance_count; i++) {
+        if (m->dirty[i] && m->meshes[m->instance_mesh[i]].mesh.header->touched_count) {
+            list_instance(m, i, (uint32_t *)m->staging + 4u * (size_t)tiles, stats);
+            tiles += 1;
+        }
+    }
+    if (!tiles) {
+        return;
+    }
+    m->gl->BindBuffer(GL_ARRAY_BUFFER, m->stream.name);
+    m->gl->BufferSubData(GL_ARRAY_BUFFER, 0, (GLsizeiptr)(16u * (size_t)tiles), m->staging);
+    m->gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+    bind_for_draw(m);
+    m->gl->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)tiles);
+    stats->draws += 1;
+    unbind_all(m);
+}

@@ -1,0 +1,81 @@
+/* gl_morph_internal.h (private to gl_morph*.c): how an accumulator is laid out. */
+#ifndef NOH_GL_GL_MORPH_INTERNAL_H
+#define NOH_GL_GL_MORPH_INTERNAL_H
+
+#include "base/arena.h"
+#include "deform/morph.h"
+#include "gl/gl_morph.h"
+#include "gl/gl_table.h"
+
+#define NOH_GATHER_CHUNK 2048u /* gather entries that are built at once at load: 32 KiB */
+
+#define NOH_RECT_CHUNK 256u    /* rectangles that are sent at once at load */
+
+/* One mesh of the set. Its instances' tiles fill a band of the atlas, row by row. */
+typedef struct noh_gl_morph_mesh {
+    noh_mesh mesh;
+    uint32_t instance_count, first_instance;
+    uint32_t first_weight;  /* into weights */
+    uint32_t columns, band_y;
+    uint32_t first_rect;    /* into the rect table (blended paths) */
+    uint32_t first_texel;   /* into the delta table */
+    uint32_t first_start;   /* into the starts table (gather) */
+    uint32_t first_pair;    /* into the entry table (gather) */
+} noh_gl_morph_mesh;
+
+struct noh_gl_morph {
+    const noh_gl_api *gl;
+    noh_gl_ledger *ledger;
+    noh_gl_morph_plan plan;
+    uint32_t mesh_count;
+    noh_gl_morph_mesh *meshes;  /* [mesh_count] */
+    uint32_t *instance_mesh;    /* [instance_count] */
+    uint8_t *dirty;             /* [instance_count] */
+    uint32_t dirty_count;
+    float *weights;             /* [weight_count], instance after instance */
+    uint32_t *slots;            /* [weight_count][4] staging of the slot table */
+    void *staging;              /* rect slots, gather tiles, or the CPU's layers; at load, gather's chunk */
+    size_t staging_bytes;
+    int wide;                   /* a rect slot (rectangle, slot) is 2 x 32 bits, not 2 x 16 */
+
+    noh_gl_texture layers;
+    noh_gl_table deltas;        /* delta texels, or gather entries */
+    noh_gl_table rects;         /* rectangles, or gather starts */
+    noh_gl_table slot_table;
+    noh_gl_buffer stream;       /* rect slots or gather tiles */
+    GLuint vertex_array, program;
+    GLuint framebuffers[3];
+    GLint u_layer;
+};
+
+/* Walk the set as init will: tiles, bases and counts. `meshes` may be NULL. */
+noh_result noh_gl_morph_layout(const noh_gl_morph_desc *desc, uint32_t texture_size_max, noh_gl_morph_mesh *meshes,
+                               noh_gl_morph_plan *plan, noh_error *error);
+
+/* Carve everything from an arena (or measure it). `m` NULL only measures. */
+void noh_gl_morph_carve(noh_arena *arena, const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan, noh_gl_morph *m);
+
+/* 1 when rect slots need 32 bits. */
+int noh_gl_morph_wide(const noh_gl_morph_plan *plan);
+
+void noh_gl_morph_tile(const noh_gl_morph *m, uint32_t instance, uint32_t *x, uint32_t *y);
+/* Where an instance's weights begin, and so its row of slots in the gather path. */
+uint32_t noh_gl_morph_first_weight(const noh_gl_morph *m, uint32_t instance);
+
+/* Write the slot of an active target: weight * scale per layer, and a last word. */
+void noh_gl_morph_put_slot(uint32_t slot[4], const noh_target *target, float weight, uint32_t last);
+
+/* The paths: make their GL objects, and do one update. */
+noh_result noh_gl_morph_init_blend(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error);
+noh_result noh_gl_morph_init_gather(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error);
+void noh_gl_morph_update_blend(noh_gl_morph *m, noh_gl_morph_stats *stats);
+void noh_gl_morph_update_gather(noh_gl_morph *m, noh_gl_morph_stats *stats);
+void noh_gl_morph_update_cpu(noh_gl_morph *m, noh_gl_morph_stats *stats);
+
+/* Shared by the GPU paths: a framebuffer over the layers; 0..2 one layer, 3 all three as
+ * draw buffers, 4 layered. */
+#define NOH_LAYERS_ALL 3
+#define NOH_LAYERS_LAYERED 4
+noh_result noh_gl_morph_framebuffer(noh_gl_morph *m, int which, GLuint *framebuffer, noh_error *error);
+
+#endif

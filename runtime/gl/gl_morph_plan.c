@@ -1,0 +1,354 @@
+/* gl_morph_plan.c: which path, and every byte of it, before anything is made. */
+#include <string.h>
+
+#include "gl/gl_morph_internal.h"
+
+static const char *const path_names[NOH_MORPH_PATH_COUNT] = { "auto", "layered", "mrt", "per-layer", "gather", "cpu" };
+
+const char *noh_morph_path_name(noh_morph_path path)
+{
+    return path_names[(unsigned)path < NOH_MORPH_PATH_COUNT ? path : 0];
+}
+
+const char *noh_accumulate_name(noh_accumulate accumulate)
+{
+    return accumulate == NOH_ACCUMULATE_F32 ? "f32" : accumulate == NOH_ACCUMULATE_F16 ? "f16" : "auto";
+}
+
+/* ---- which path ---- */
+
+static int contains(const char *text, const char *word)
+{
+    for (; *text; text++) {
+        const char *a = text, *b = word;
+        while (*b && *a == *b) {
+            a++;
+            b++;
+        }
+        if (!*b) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* A rasteriser that runs on the CPU: there the CPU path does the least work. */
+static int is_software(const noh_gl_caps *caps)
+{
+    static const char *const names[] = { "llvmpipe", "softpipe", "SwiftShader", "swrast" };
+    for (unsigned i = 0; i < sizeof names / sizeof names[0]; i++) {
+        if (contains(caps->renderer, names[i])) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* NULL when the path runs here, else what is missing. */
+static const char *missing(noh_morph_path path, noh_accumulate accumulate, const noh_gl_caps *caps)
+{
+    int half = accumulate == NOH_ACCUMULATE_F16;
+    if (path == NOH_MORPH_CPU) {
+        return NULL;
+    }
+    if (path == NOH_MORPH_GATHER) {
+        if (!caps->mrt3) {
+            return "gather needs three draw buffers into one texture array";
+        }
+        if (half) {
+            return caps->render_f16 ? NULL : "gather in f16 needs renderable RGBA16F (EXT_color_buffer_half_float or EXT_color_buffer_float)";
+        }
+        return caps->render_f32 || caps->render_u32 ? NULL : "gather needs renderable RGBA32F or RGBA32UI";
+    }
+    if (!(half ? caps->blend_f16 : caps->blend_f32)) {
+        return half ? "no blending into RGBA16F here (EXT_color_buffer_half_float or EXT_color_buffer_float)"
+                    : "no blending into RGBA32F here (EXT_color_buffer_float and EXT_float_blend)";
+    }
+    if (path == NOH_MORPH_LAYERED && !caps->layered) {
+        return "no layered drawing here (geometry shader with gl_Layer: ES 3.2 or EXT_geometry_shader)";
+    }
+    if (path == NOH_MORPH_MRT && !caps->mrt3) {
+        return "mrt needs three draw buffers into one texture array";
+    }
+    return NULL;
+}
+
+/* What accumulating costs on a GPU, in blended texels: a rectangle is worth 4 texels of
+ * vertex work; a gather entry is two dependent fetches, and all entries are read whatever
+ * is active. Ratios measured by `noh bench` (runtime/README.md). */
+static noh_morph_path cheapest_on_gpu(const noh_gl_morph_plan *plan, float active, noh_accumulate accumulate, const noh_gl_caps *caps,
+                                      const char **reason)
+{
+    float mrt = active * ((float)plan->texel_count + 4.0f * (float)plan->rect_count);
+    float gather = 1.25f * (float)plan->pair_count;
+    int can_mrt = !missing(NOH_MORPH_MRT, accumulate, caps), can_gather = !missing(NOH_MORPH_GATHER, accumulate, caps);
+    if (can_mrt && (mrt <= gather || !can_gather)) {
+        *reason = "mrt: float blending works here, and blending the expected targets is the least work";
+        return NOH_MORPH_MRT;
+    }
+    if (can_gather) {
+        *reason = can_mrt ? "gather: so many targets are expected that summing lists is less work than blending"
+                          : "gather: no blending into this format here; sums in registers need none";
+        return NOH_MORPH_GATHER;
+    }
+    if (!missing(NOH_MORPH_PER_LAYER, accumulate, caps)) {
+        *reason = "per-layer: blending works here, three draw buffers do not";
+        return NOH_MORPH_PER_LAYER;
+    }
+    *reason = "cpu: this format cannot be rendered here";
+    return NOH_MORPH_CPU;
+}
+
+static noh_result choose_path(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan, noh_error *error)
+{
+    const char *lacking;
+    plan->accumulate = desc->accumulate == NOH_ACCUMULATE_F16 ? NOH_ACCUMULATE_F16 : NOH_ACCUMULATE_F32;
+    plan->path = desc->path;
+    plan->reason = "forced by the caller";
+    if (desc->path == NOH_MORPH_AUTO) {
+        float active = desc->expected_active > 0.0f ? desc->expected_active : 0.5f;
+        if (plan->pair_count == 0) {
+            plan->path = NOH_MORPH_CPU;
+            plan->reason = "cpu: no target moves anything, there is nothing to accumulate";
+        } else if (is_software(caps)) {
+            plan->path = NOH_MORPH_CPU;
+            plan->reason = "cpu: this GL is rasterised in software, so SIMD on the CPU is the least work";
+        } else {
+            plan->path = cheapest_on_gpu(plan, active, plan->accumulate, caps, &plan->reason);
+        }
+    }
+    lacking = missing(plan->path, plan->accumulate, caps);
+    if (lacking) {
+        return noh_fail(error, NOH_ERR_UNSUPPORTED, lacking, 0, 0);
+    }
+    return NOH_OK;
+}
+
+static GLenum layer_format(const noh_gl_morph_plan *plan, const noh_gl_caps *caps)
+{
+    int half = plan->accumulate == NOH_ACCUMULATE_F16;
+    if (plan->path == NOH_MORPH_CPU) {
+        return half ? GL_RGB16F : GL_RGB32F; /* only sampled, so three components do */
+    }
+    if (half) {
+        return GL_RGBA16F;
+    }
+    return caps->render_f32 ? GL_RGBA32F : GL_RGBA32UI;
+}
+
+/* ---- sizes ---- */
+
+static noh_result check_desc(const noh_gl_morph_desc *desc, noh_error *error)
+{
+    uint64_t instances = 0;
+    if (!desc->meshes || !desc->mesh_count) {
+        return noh_fail(error, NOH_ERR_ARG, "morph desc has no meshes", 0, 0);
+    }
+    if ((unsigned)desc->path >= NOH_MORPH_PATH_COUNT || (unsigned)desc->accumulate > NOH_ACCUMULATE_F16 ||
+        !(desc->expected_active >= 0.0f && desc->expected_active <= 1.0f)) {
+        return noh_fail(error, NOH_ERR_ARG, "morph desc has an unknown path or accumulate, or expected_active outside 0..1", 0, 0);
+    }
+    for (uint32_t i = 0; i < desc->mesh_count; i++) {
+        instances += desc->instance_counts ? desc->instance_counts[i] : 1u;
+    }
+    if (!instances || instances > NOH_MORPH_INSTANCES_MAX) {
+        return noh_fail(error, NOH_ERR_LIMIT, "morph desc asks for no instances, or more than the limit", 0, instances);
+    }
+    return NOH_OK;
+}
+
+/* Stack the meshes' bands in an atlas of this width; the height may be too much. */
+static uint64_t stack_bands(const noh_gl_morph_desc *desc, uint32_t atlas_width, noh_gl_morph_mesh *meshes)
+{
+    uint64_t y = 0;
+    for (uint32_t i = 0; i < desc->mesh_count; i++) {
+        const noh_mesh_header *h = desc->meshes[i].header;
+        uint32_t count = desc->instance_counts ? desc->instance_counts[i] : 1u;
+        uint32_t columns = atlas_width >> h->morph_width_log2;
+        columns = columns ? columns : 1u; /* a mesh that nothing touches may be wider than the others: it has no rows */
+        if (meshes) {
+            meshes[i].columns = columns;
+            meshes[i].band_y = (uint32_t)y;
+        }
+        y += ((uint64_t)count + columns - 1) / columns * h->morph_height;
+    }
+    return y;
+}
+
+/* The narrowest power of two that is at most as high as wide textures may be, first
+ * within what every ES 3.0 has, then within what this one has. */
+static noh_result place_tiles(const noh_gl_morph_desc *desc, uint32_t texture_size_max, noh_gl_morph_mesh *meshes,
+                              noh_gl_morph_plan *plan, noh_error *error)
+{
+    uint32_t least = 1, width;
+    uint64_t height = 0;
+    for (uint32_t i = 0; i < desc->mesh_count; i++) {
+        uint32_t w = 1u << desc->meshes[i].header->morph_width_log2;
+        if (desc->meshes[i].header->touched_count && w > least) {
+            least = w;
+        }
+    }
+    if (least == 1) { /* no target anywhere: one texel, so that the shaders have something bound */
+        plan->atlas_width = plan->atlas_height = 1;
+        for (uint32_t i = 0; meshes && i < desc->mesh_count; i++) {
+            meshes[i].columns = 1;
+        }
+        return NOH_OK;
+    }
+    for (width = least; width <= texture_size_max; width *= 2) {
+        uint32_t limit = width <= 2048u && texture_size_max > 2048u ? 2048u : texture_size_max;
+        height = stack_bands(desc, width, NULL);
+        if (height <= limit) {
+            break;
+        }
+    }
+    if (width > texture_size_max || height > 0xffffu) {
+        return noh_fail(error, NOH_ERR_LIMIT, "the instances' tiles do not fit a texture of this GPU", texture_size_max, height);
+    }
+    stack_bands(desc, width, meshes);
+    plan->atlas_width = width;
+    plan->atlas_height = (uint32_t)height;
+    return NOH_OK;
+}
+
+noh_result noh_gl_morph_layout(const noh_gl_morph_desc *desc, uint32_t texture_size_max, noh_gl_morph_mesh *meshes,
+                               noh_gl_morph_plan *plan, noh_error *error)
+{
+    uint64_t weights = 0, rects = 0, texels = 0, pairs = 0, starts = 0;
+    plan->instance_count = 0;
+    for (uint32_t i = 0; i < desc->mesh_count; i++) {
+        const noh_mesh_header *h = desc->meshes[i].header;
+        uint32_t count = desc->instance_counts ? desc->instance_counts[i] : 1u;
+        if (meshes) {
+            noh_gl_morph_mesh *m = &meshes[i];
+            m->mesh = desc->meshes[i];
+            m->instance_count = count;
+            m->first_instance = plan->instance_count;
+            m->first_weight = (uint32_t)weights;
+            m->first_rect = (uint32_t)rects;
+            m->first_texel = (uint32_t)texels;
+            m->first_start = (uint32_t)starts;
+            m->first_pair = (uint32_t)pairs;
+        }
+        plan->instance_count += count;
+        weights += (uint64_t)count * h->target_count;
+        rects += h->rect_count;
+        texels += h->texel_count;
+        pairs += h->pair_count;
+        starts += (uint64_t)h->touched_count + 1u;
+    }
+    if (weights > NOH_GL_TABLE_TEXELS_MAX || rects > NOH_GL_TABLE_TEXELS_MAX || texels > NOH_GL_TABLE_TEXELS_MAX ||
+        starts > NOH_GL_TABLE_TEXELS_MAX) {
+        return noh_fail(error, NOH_ERR_LIMIT, "more weights, rectangles or delta texels than a table texture holds",
+                        NOH_GL_TABLE_TEXELS_MAX, weights > texels ? weights : texels);
+    }
+    plan->weight_count = (uint32_t)weights;
+    plan->rect_count = (uint32_t)rects;
+    plan->texel_count = (uint32_t)texels;
+    plan->pair_count = (uint32_t)pairs;
+    return place_tiles(desc, texture_size_max, meshes, plan, error);
+}
+
+int noh_gl_morph_wide(const noh_gl_morph_plan *plan)
+{
+    return plan->rect_count > 65536u || plan->weight_count > 65536u;
+}
+
+/* Every rectangle of every instance at once is the most that one update can draw. */
+static uint64_t rect_slot_bytes(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan)
+{
+    uint64_t count = 0;
+    for (uint32_t i = 0; i < desc->mesh_count; i++) {
+        count += (uint64_t)(desc->instance_counts ? desc->instance_counts[i] : 1u) * desc->meshes[i].header->rect_count;
+    }
+    return (count ? count : 1u) * (noh_gl_morph_wide(plan) ? 8u : 4u);
+}
+
+static size_t largest_touched(const noh_gl_morph_desc *desc)
+{
+    size_t most = 0;
+    for (uint32_t i = 0; i < desc->mesh_count; i++) {
+        size_t touched = desc->meshes[i].header->touched_count;
+        most = touched > most ? touched : most;
+    }
+    return most;
+}
+
+static size_t staging_size(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan)
+{
+    size_t bytes = 0;
+    if (plan->path == NOH_MORPH_CPU) {
+        for (uint32_t i = 0; i < desc->mesh_count; i++) {
+            size_t layers = noh_morph_layers_size(&desc->meshes[i]);
+            bytes = layers > bytes ? layers : bytes;
+        }
+    } else if (plan->path == NOH_MORPH_GATHER) {
+        size_t load = 2u * 4u * (largest_touched(desc) + 1u) + 16u * (size_t)NOH_GATHER_CHUNK;
+        bytes = 16u * (size_t)plan->instance_count;
+        bytes = load > bytes ? load : bytes;
+    } else {
+        size_t load = 16u * (size_t)NOH_RECT_CHUNK;
+        bytes = (size_t)rect_slot_bytes(desc, plan);
+        bytes = bytes > load ? bytes : load;
+    }
+    return bytes;
+}
+
+void noh_gl_morph_carve(noh_arena *arena, const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan, noh_gl_morph *m)
+{
+    noh_gl_morph dummy;
+    noh_gl_morph *to = m ? m : &dummy;
+    memset(&dummy, 0, sizeof dummy);
+    to->meshes = (noh_gl_morph_mesh *)noh_arena_carve(arena, sizeof *to->meshes * desc->mesh_count, 16);
+    to->slots = plan->path == NOH_MORPH_CPU ? NULL : (uint32_t *)noh_arena_carve(arena, 16u * (size_t)plan->weight_count, 16);
+    to->staging_bytes = staging_size(desc, plan);
+    to->staging = noh_arena_carve(arena, to->staging_bytes, 16);
+    to->weights = (float *)noh_arena_carve(arena, 4u * (size_t)plan->weight_count, 4);
+    to->instance_mesh = (uint32_t *)noh_arena_carve(arena, 4u * (size_t)plan->instance_count, 4);
+    to->dirty = (uint8_t *)noh_arena_carve(arena, plan->instance_count, 1);
+}
+
+static void set_gpu_bytes(const noh_gl_morph_desc *desc, noh_gl_morph_plan *plan)
+{
+    noh_gl_texture_desc layers = { 0, 0, 0, 0, 0, 0, 0 };
+    uint32_t starts = 0;
+    for (uint32_t i = 0; i < desc->mesh_count; i++) {
+        starts += desc->meshes[i].header->touched_count + 1u;
+    }
+    layers.format = plan->layer_format;
+    layers.width = plan->atlas_width;
+    layers.height = plan->atlas_height;
+    layers.layers = 3;
+    plan->layer_bytes = noh_gl_texture_bytes(&layers);
+    if (plan->path == NOH_MORPH_GATHER) {
+        plan->delta_bytes = noh_gl_table_bytes(GL_RGBA32UI, plan->pair_count);
+        plan->table_bytes = noh_gl_table_bytes(GL_R32UI, starts);
+        plan->stream_bytes = 16u * (uint64_t)plan->instance_count + noh_gl_table_bytes(GL_RGBA32UI, plan->weight_count);
+    } else if (plan->path != NOH_MORPH_CPU) {
+        plan->delta_bytes = noh_gl_table_bytes(GL_RGB32UI, plan->texel_count);
+        plan->table_bytes = noh_gl_table_bytes(GL_RGBA32UI, plan->rect_count);
+        plan->stream_bytes = rect_slot_bytes(desc, plan) + noh_gl_table_bytes(GL_RGBA32UI, plan->weight_count);
+    }
+    plan->gpu_bytes = plan->delta_bytes + plan->table_bytes + plan->stream_bytes + plan->layer_bytes;
+}
+
+noh_result noh_gl_morph_plan_make(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan,
+                                  noh_error *error)
+{
+    noh_gl_morph_plan p;
+    noh_arena arena = noh_arena_measure();
+    noh_result result = check_desc(desc, error);
+    memset(&p, 0, sizeof p);
+    if (!result) result = noh_gl_morph_layout(desc, caps->texture_size_max, NULL, &p, error);
+    if (!result) result = choose_path(desc, caps, &p, error);
+    if (result) {
+        return result;
+    }
+    p.layer_format = layer_format(&p, caps);
+    set_gpu_bytes(desc, &p);
+    noh_arena_carve(&arena, sizeof(noh_gl_morph), 16);
+    noh_gl_morph_carve(&arena, desc, &p, NULL);
+    p.cpu_bytes = arena.used;
+    *plan = p;
+    return NOH_OK;
+}

@@ -1,0 +1,160 @@
+#include "gl/gl_program.h"
+
+#include <string.h>
+
+enum { STAGE_VERTEX, STAGE_GEOMETRY, STAGE_FRAGMENT, STAGE_COUNT };
+
+/* A log that is filled from the left and stays a string. */
+typedef struct log_text {
+    char *text;
+    size_t room, length;
+} log_text;
+
+static void log_append(log_text *log, const char *text)
+{
+    if (!log->room) return;
+    while (*text && log->length + 1 < log->room) log->text[log->length++] = *text++;
+    log->text[log->length] = 0;
+}
+
+static void log_head(log_text *log, const char *name, const char *stage)
+{
+    if (name) {
+        log_append(log, name);
+        log_append(log, ": ");
+    }
+    log_append(log, stage);
+    log_append(log, ": ");
+}
+
+/* How many bytes the driver may write, its zero included. */
+static GLsizei log_rest(const log_text *log)
+{
+    size_t rest = log->room - log->length;
+    return rest > 1u << 20 ? 1 << 20 : (GLsizei)rest;
+}
+
+static const char *check_source(const noh_gl_source *source)
+{
+    if (!source->version || !source->pieces) return "a stage has no text";
+    if (source->piece_count == 0 || source->piece_count > NOH_GL_PIECES_MAX) return "a stage's piece_count";
+    return NULL;
+}
+
+static const char *check_desc(const noh_gl_program_desc *desc)
+{
+    if (!desc->vertex) return "vertex";
+    if (!desc->fragment) return "fragment";
+    const char *what = check_source(desc->vertex);
+    if (!what) what = check_source(desc->fragment);
+    if (!what && desc->geometry) what = check_source(desc->geometry);
+    return what;
+}
+
+static noh_result compile(const noh_gl_api *api, const noh_gl_program_desc *desc, int stage, GLuint *out,
+                          log_text *log, noh_error *error)
+{
+    static const char *const failed[] = {"the vertex shader does not compile", "the geometry shader does not compile",
+                                         "the fragment shader does not compile"};
+    static const char *const names[] = {"vertex", "geometry", "fragment"};
+    static const GLenum types[] = {GL_VERTEX_SHADER, GL_GEOMETRY_SHADER, GL_FRAGMENT_SHADER};
+    const noh_gl_source *const sources[] = {desc->vertex, desc->geometry, desc->fragment};
+    const noh_gl_source *source = sources[stage];
+    const GLchar *strings[NOH_GL_PIECES_MAX + 3];
+    GLsizei count = 0;
+    strings[count++] = desc->version ? desc->version : source->version;
+    if (desc->defines) strings[count++] = desc->defines;
+    if (desc->geometry_defines && stage == STAGE_GEOMETRY) strings[count++] = desc->geometry_defines;
+    for (uint32_t i = 0; i < source->piece_count; i++) strings[count++] = source->pieces[i];
+
+    GLuint shader = api->CreateShader(types[stage]);
+    if (!shader) return noh_fail(error, NOH_ERR_GL, failed[stage], noh_gl_error_take(api), 0);
+    api->ShaderSource(shader, count, strings, NULL);
+    api->CompileShader(shader);
+    GLint compiled = GL_FALSE;
+    api->GetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+    if (!compiled) {
+        log_head(log, desc->name, names[stage]);
+        if (log->room) api->GetShaderInfoLog(shader, log_rest(log), NULL, log->text + log->length);
+        api->DeleteShader(shader);
+        return noh_fail(error, NOH_ERR_DATA, failed[stage], types[stage], 0);
+    }
+    *out = shader;
+    return NOH_OK;
+}
+
+static noh_result link_program(const noh_gl_api *api, const noh_gl_program_desc *desc, GLuint program, log_text *log,
+                       noh_error *error)
+{
+    if (desc->varying_count) {
+        GLenum mode = desc->varying_mode ? desc->varying_mode : GL_INTERLEAVED_ATTRIBS;
+        api->TransformFeedbackVaryings(program, (GLsizei)desc->varying_count, desc->varyings, mode);
+    }
+    api->LinkProgram(program);
+    GLint linked = GL_FALSE;
+    api->GetProgramiv(program, GL_LINK_STATUS, &linked);
+    if (linked) return NOH_OK;
+    log_head(log, desc->name, "link");
+    if (log->room) api->GetProgramInfoLog(program, log_rest(log), NULL, log->text + log->length);
+    return noh_fail(error, NOH_ERR_DATA, "the program does not link", 0, 0);
+}
+
+/* Compile every stage and attach it. The shaders are marked for deletion at once:
+ * they then live exactly as long as the program. */
+static noh_result attach_stages(const noh_gl_api *api, const noh_gl_program_desc *desc, GLuint program, log_text *log,
+                                noh_error *error)
+{
+    for (int stage = 0; stage < STAGE_COUNT; stage++) {
+        if (stage == STAGE_GEOMETRY && !desc->geometry) continue;
+        GLuint shader = 0;
+        noh_result result = compile(api, desc, stage, &shader, log, error);
+        if (result != NOH_OK) return result;
+        api->AttachShader(program, shader);
+        api->DeleteShader(shader);
+    }
+    return NOH_OK;
+}
+
+static void bind_names(const noh_gl_api *api, const noh_gl_program_desc *desc, GLuint program)
+{
+    api->UseProgram(program);
+    for (uint32_t i = 0; i < desc->sampler_count; i++) {
+        GLint location = api->GetUniformLocation(program, desc->samplers[i]);
+        if (location >= 0) api->Uniform1i(location, (GLint)i);
+    }
+    for (uint32_t i = 0; i < desc->block_count; i++) {
+        GLuint block = api->GetUniformBlockIndex(program, desc->blocks[i]);
+        if (block != GL_INVALID_INDEX) api->UniformBlockBinding(program, block, i);
+    }
+    api->UseProgram(0);
+    if (desc->name && api->ObjectLabel) api->ObjectLabel(GL_PROGRAM_KHR, program, -1, desc->name);
+}
+
+noh_result noh_gl_program_create(const noh_gl_api *api, const noh_gl_program_desc *desc, GLuint *program, char *log,
+                                 size_t log_bytes, noh_error *error)
+{
+    log_text words = {log, log ? log_bytes : 0, 0};
+    if (words.room) log[0] = 0;
+    const char *wrong = check_desc(desc);
+    if (wrong) return noh_fail(error, NOH_ERR_ARG, wrong, 0, 0);
+    GLuint name = api->CreateProgram();
+    if (!name) return noh_fail(error, NOH_ERR_GL, "GL program", noh_gl_error_take(api), 0);
+    noh_result result = attach_stages(api, desc, name, &words, error);
+    if (result == NOH_OK) result = link_program(api, desc, name, &words, error);
+    if (result != NOH_OK) {
+        api->DeleteProgram(name);
+        return result;
+    }
+    bind_names(api, desc, name);
+    if (desc->ledger) desc->ledger->programs++;
+    *program = name;
+    return NOH_OK;
+}
+
+void noh_gl_program_delete(const noh_gl_api *api, noh_gl_ledger *ledger, GLuint *program)
+{
+    if (!*program) return;
+    api->DeleteProgram(*program);
+    if (ledger) ledger->programs--;
+    *program = 0;
+}

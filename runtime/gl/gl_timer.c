@@ -1,0 +1,60 @@
+#include "gl/gl_timer.h"
+
+#include <string.h>
+
+void noh_gl_timer_init(noh_gl_timer *timer, const noh_gl_api *api, const noh_gl_caps *caps)
+{
+    memset(timer, 0, sizeof *timer);
+    timer->available = caps->timer_query;
+    if (!timer->available) return;
+    api->TimeGenQueries(NOH_GL_TIMER_FLIGHT, timer->queries);
+    /* Reading the flag clears it: what happened before is not ours. */
+    GLint disjoint = 0;
+    if (api->is_es) api->GetIntegerv(GL_GPU_DISJOINT_EXT, &disjoint);
+}
+
+void noh_gl_timer_delete(noh_gl_timer *timer, const noh_gl_api *api)
+{
+    noh_gl_timer_end(timer, api);
+    if (timer->available) api->TimeDeleteQueries(NOH_GL_TIMER_FLIGHT, timer->queries);
+    memset(timer, 0, sizeof *timer);
+}
+
+void noh_gl_timer_begin(noh_gl_timer *timer, const noh_gl_api *api)
+{
+    if (!timer->available || timer->open || timer->flying == NOH_GL_TIMER_FLIGHT) return;
+    uint32_t slot = (timer->oldest + timer->flying) % NOH_GL_TIMER_FLIGHT;
+    api->TimeBeginQuery(GL_TIME_ELAPSED_EXT, timer->queries[slot]);
+    timer->open = 1;
+}
+
+void noh_gl_timer_end(noh_gl_timer *timer, const noh_gl_api *api)
+{
+    if (!timer->open) return;
+    api->TimeEndQuery(GL_TIME_ELAPSED_EXT);
+    timer->open = 0;
+    timer->flying++;
+}
+
+noh_result noh_gl_timer_poll(noh_gl_timer *timer, const noh_gl_api *api, uint64_t *elapsed_ns)
+{
+    if (!timer->available) return NOH_ERR_UNSUPPORTED;
+    if (timer->flying == 0) return NOH_ERR_NOT_FOUND;
+    GLuint query = timer->queries[timer->oldest];
+    GLuint ready = 0;
+    api->TimeGetQueryObjectuiv(query, GL_QUERY_RESULT_AVAILABLE_EXT, &ready);
+    if (!ready) return NOH_ERR_NOT_FOUND;
+    GLint disjoint = 0;
+    if (api->is_es) api->GetIntegerv(GL_GPU_DISJOINT_EXT, &disjoint);
+    if (disjoint) {
+        timer->oldest = (timer->oldest + timer->flying) % NOH_GL_TIMER_FLIGHT;
+        timer->flying = 0;
+        return NOH_ERR_GL;
+    }
+    GLuint64 elapsed = 0;
+    api->TimeGetQueryObjectui64v(query, GL_QUERY_RESULT_EXT, &elapsed);
+    timer->oldest = (timer->oldest + 1) % NOH_GL_TIMER_FLIGHT;
+    timer->flying--;
+    *elapsed_ns = elapsed;
+    return NOH_OK;
+}

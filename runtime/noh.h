@@ -1,0 +1,40 @@
+/* noh.h: one header for all of noh, a character runtime in fixed memory.
+ *
+ * A game hands noh one block of memory and one .noh pack (made by `noh build`).
+ * Every object tells its exact size, is placed in memory that you bring, and is
+ * never freed: drop the block and it is gone. Nothing is asked for after init.
+ *
+ *   memory in, object out     noh_x_size(...) -> bytes
+ *                             noh_x_init(memory, bytes, ..., &x, &error)
+ *
+ * What is where, in the order in which you need it:
+ *   base/result.h        result codes and what went wrong
+ *   base/limits.h        every limit, in one place
+ *   pack/pack.h          open a pack where it lies; format.h has its bytes
+ *   mesh/mesh.h          vertices, triangles, morph targets of a pack
+ *   anim/weight_clip.h   animations of morph weights
+ *   deform/morph.h       morph targets on the CPU: reference and fallback
+ *   gl/gl_api.h          the GL ES functions that noh calls: you bring the lookup
+ *   gl/gl_caps.h         what this GPU can really do, found by trying
+ *   gl/gl_morph.h        morph targets accumulated on the GPU, five ways
+ *   gl/gl_draw.h         meshes on the GPU and a plain renderer
+ *
+ * The library needs memcpy, memset and memcmp, and nothing else. */
+#ifndef NOH_H
+#define NOH_H
+
+#include "base/arena.h"
+#include "base/hash.h"
+#include "base/limits.h"
+#include "base/result.h"
+#include "pack/pack.h"
+#include "mesh/mesh.h"
+#include "anim/weight_clip.h"
+#include "deform/morph.h"
+#include "gl/gl_api.h"
+#include "gl/gl_caps.h"
+#include "gl/gl_memory.h"
+#include "gl/gl_morph.h"
+#include "gl/gl_draw.h"
+
+#endif

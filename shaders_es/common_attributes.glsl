@@ -1,0 +1,20 @@
+/* common_attributes.glsl: directions as the pack stores them, octahedral pairs of 16-bit
+ * integers. They come as integers because drivers differ in how they normalise. */
+vec3 unfold(vec2 p)
+{
+    vec3 v = vec3(p, 1.0 - abs(p.x) - abs(p.y));
+    float fold = max(-v.z, 0.0);
+    v.xy += vec2(v.x >= 0.0 ? -fold : fold, v.y >= 0.0 ? -fold : fold);
+    return normalize(v);
+}
+
+vec3 direction_of_pair(ivec2 pair)
+{
+    return unfold(vec2(pair) / 32767.0);
+}
+
+/* w is the handedness; meshes without tangents give some unit vector. */
+vec4 tangent_of_pair(ivec2 pair)
+{
+    return vec4(unfold(vec2(pair.x, pair.y >> 1) / vec2(32767.0, 16383.0)), (pair.y & 1) != 0 ? -1.0 : 1.0);
+}

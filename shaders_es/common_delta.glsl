@@ -1,0 +1,25 @@
+/* common_delta.glsl: how a delta texel is read (runtime/pack/format.h).
+ * Three words, one per axis; a field is shifted to the top, then down with its sign. */
+precision highp float;
+precision highp int;
+precision highp usampler2D;
+
+/* Bit widths come packed: position | normal << 8 | tangent << 16. Result: left and right shift. */
+uvec2 delta_shifts(uint bits, int layer)
+{
+    uint position = bits & 255u, normal = (bits >> 8) & 255u, tangent = (bits >> 16) & 255u;
+    uint left = layer == 0 ? 0u : layer == 1 ? position : position + normal;
+    uint width = layer == 0 ? position : layer == 1 ? normal : tangent;
+    return uvec2(left, 32u - width);
+}
+
+vec3 delta_field(uvec3 words, uvec2 shifts, float weight)
+{
+    return vec3(ivec3(words << shifts.x) >> shifts.y) * weight;
+}
+
+/* The i-th texel of a table that is folded into rows of 1 << width_log2. */
+ivec2 table_texel(uint i, int width_log2)
+{
+    return ivec2(int(i & ((1u << width_log2) - 1u)), int(i >> width_log2));
+}

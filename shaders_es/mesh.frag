@@ -1,0 +1,71 @@
+#version 300 es
+/* mesh.frag: enough light to judge a face by. One key light with a wrapped edge,
+ * a sky and ground fill, a soft rim; GGX highlight. Linear in and out: the target
+ * is sRGB and encodes. DEBUG_VIEW shows a quantity instead. */
+precision highp float;
+
+uniform vec3 u_camera;
+uniform vec3 u_key;              /* unit, towards the light */
+uniform vec4 u_base_color;
+uniform vec4 u_material;         /* roughness, metallic, alpha cutoff, unlit */
+uniform sampler2D u_base_color_texture;
+uniform vec3 u_bounds_min;
+uniform vec3 u_bounds_size;
+
+in vec3 v_world;
+in vec3 v_normal;
+in vec4 v_tangent;
+in vec2 v_uv;
+in vec4 v_color;
+in vec3 v_model;
+
+layout(location = 0) out vec4 o_color;
+
+/* GGX distribution with Smith's visibility, isotropic. */
+float highlight(float nh, float nl, float nv, float roughness)
+{
+    float a = roughness * roughness, a2 = a * a;
+    float d = nh * nh * (a2 - 1.0) + 1.0;
+    float k = a * 0.5;
+    float visibility = 0.25 / ((nl * (1.0 - k) + k) * (nv * (1.0 - k) + k));
+    return a2 / (3.14159265 * d * d) * visibility;
+}
+
+vec3 shade(vec3 albedo, vec3 n, vec3 v)
+{
+    float roughness = max(u_material.x, 0.08);
+    vec3 f0 = mix(vec3(0.04), albedo, u_material.y);
+    vec3 diffuse = albedo * (1.0 - u_material.y);
+    vec3 h = normalize(u_key + v);
+    float nl = dot(n, u_key), nv = max(dot(n, v), 1e-3), nh = max(dot(n, h), 0.0);
+    float lit = max(nl, 0.0), wrapped = max((nl + 0.18) / 1.18, 0.0);
+    vec3 fresnel = f0 + (1.0 - f0) * pow(1.0 - max(dot(h, v), 0.0), 5.0);
+    vec3 sky = mix(vec3(0.23, 0.20, 0.18), vec3(0.50, 0.54, 0.60), n.y * 0.5 + 0.5);
+    vec3 color = diffuse * (vec3(1.02, 0.98, 0.92) * wrapped * wrapped + 0.62 * sky);
+    color += fresnel * highlight(nh, lit, nv, roughness) * lit * 2.6;
+    color += 0.10 * sky * pow(1.0 - nv, 3.0) * (1.0 - 0.6 * roughness);
+    return color;
+}
+
+void main()
+{
+    vec4 base = u_base_color * v_color * texture(u_base_color_texture, v_uv);
+    vec3 n = normalize(v_normal);
+    if (!gl_FrontFacing) {
+        n = -n;
+    }
+#if DEBUG_VIEW == 1
+    o_color = vec4(pow((v_model - u_bounds_min) / max(u_bounds_size, vec3(1e-9)), vec3(2.2)), 1.0);
+#elif DEBUG_VIEW == 2
+    o_color = vec4(pow(n * 0.5 + 0.5, vec3(2.2)), 1.0);
+#elif DEBUG_VIEW == 3
+    vec3 t = dot(v_tangent.xyz, v_tangent.xyz) > 0.0 ? normalize(v_tangent.xyz) : vec3(-1.0);
+    o_color = vec4(pow(t * 0.5 + 0.5, vec3(2.2)), 1.0);
+#else
+    if (base.a < u_material.z) {
+        discard;
+    }
+    vec3 color = u_material.w > 0.5 ? base.rgb : shade(base.rgb, n, normalize(u_camera - v_world));
+    o_color = vec4(color, base.a);
+#endif
+}

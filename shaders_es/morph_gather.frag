@@ -1,0 +1,43 @@
+#version 300 es
+/* morph_gather.frag: each fragment sums the deltas of its own vertex in registers
+ * and writes three layers once. No blending, so any format that can be rendered
+ * will do: with LAYERS_UINT the float's bits. */
+#include "common_delta.glsl"
+
+uniform usampler2D u_entries;  /* delta words, target */
+uniform usampler2D u_starts;   /* where each touched vertex's entries begin; one more at the end */
+uniform usampler2D u_slots;    /* weight * scale of position, normal, tangent; bits */
+uniform ivec3 u_tables;        /* width log2 of starts, slots, entries */
+
+flat in uvec4 f_tile;
+
+#ifdef LAYERS_UINT
+#define LAYER uvec4
+#define LAYER_VALUE(v) floatBitsToUint(vec4(v, 0.0))
+#else
+#define LAYER vec4
+#define LAYER_VALUE(v) vec4(v, 0.0)
+#endif
+layout(location = 0) out LAYER o_position;
+layout(location = 1) out LAYER o_normal;
+layout(location = 2) out LAYER o_tangent;
+
+void main()
+{
+    uint touched = f_tile.w & 0xffffffu;
+    uvec2 local = uvec2(gl_FragCoord.xy) - uvec2(f_tile.x & 0xffffu, f_tile.x >> 16);
+    uint vertex = min((local.y << (f_tile.w >> 24)) + local.x, touched); /* the last row may be longer: empty lists */
+    uint from = texelFetch(u_starts, table_texel(f_tile.z + vertex, u_tables.x), 0).x;
+    uint to = vertex < touched ? texelFetch(u_starts, table_texel(f_tile.z + vertex + 1u, u_tables.x), 0).x : from;
+    vec3 position = vec3(0.0), normal = vec3(0.0), tangent = vec3(0.0);
+    for (uint i = from; i < to; i++) {
+        uvec4 entry = texelFetch(u_entries, table_texel(i, u_tables.z), 0);
+        uvec4 slot = texelFetch(u_slots, table_texel(f_tile.y + entry.w, u_tables.y), 0);
+        position += delta_field(entry.xyz, delta_shifts(slot.w, 0), uintBitsToFloat(slot.x));
+        normal += delta_field(entry.xyz, delta_shifts(slot.w, 1), uintBitsToFloat(slot.y));
+        tangent += delta_field(entry.xyz, delta_shifts(slot.w, 2), uintBitsToFloat(slot.z));
+    }
+    o_position = LAYER_VALUE(position);
+    o_normal = LAYER_VALUE(normal);
+    o_tangent = LAYER_VALUE(tangent);
+}

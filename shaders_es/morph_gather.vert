@@ -1,0 +1,19 @@
+#version 300 es
+/* morph_gather.vert: one quad over the touched texels of one instance. */
+precision highp float;
+precision highp int;
+
+uniform vec2 u_atlas;     /* 2 / size of the accumulation texture */
+
+in uvec4 a_tile;          /* tile x | y << 16, first weight, first of the mesh's list starts, touched | width log2 << 24 */
+
+flat out uvec4 f_tile;
+
+void main()
+{
+    uint touched = a_tile.w & 0xffffffu, width = 1u << (a_tile.w >> 24);
+    uvec2 size = uvec2(width, (touched + width - 1u) / width);
+    uvec2 at = uvec2(a_tile.x & 0xffffu, a_tile.x >> 16) + uvec2(gl_VertexID & 1, gl_VertexID >> 1) * size;
+    f_tile = a_tile;
+    gl_Position = vec4(vec2(at) * u_atlas - 1.0, 0.0, 1.0);
+}

@@ -1,0 +1,55 @@
+#version 300 es
+/* morph_rect.vert: one rectangle of one active target of one instance is one
+ * instance of a quad. MORPH_MRT writes three layers at once; otherwise LAYER (or,
+ * with MORPH_LAYERED, the geometry shader) says which. */
+#include "common_delta.glsl"
+
+uniform usampler2D u_rects;   /* x | y << 16, w | h << 16, first texel, bits */
+uniform usampler2D u_slots;   /* weight * scale of position, normal, tangent; tile x | y << 16 */
+uniform ivec3 u_tables;       /* width log2 of rects, slots, deltas */
+uniform vec2 u_atlas;         /* 2 / size of the accumulation texture */
+uniform int u_layer;
+
+in uvec2 a_rect_slot;
+
+#if defined(MORPH_LAYERED)
+flat out uvec4 v_place;
+flat out vec3 v_weights;
+flat out uint v_bits;
+#elif defined(MORPH_MRT)
+flat out uvec4 f_place;       /* x, y, width, first texel */
+flat out vec3 f_weights;
+flat out uvec2 f_shifts0;
+flat out uvec2 f_shifts1;
+flat out uvec2 f_shifts2;
+#else
+flat out uvec4 f_place;
+flat out float f_weight;
+flat out uvec2 f_shifts;
+#endif
+
+void main()
+{
+    uvec4 rect = texelFetch(u_rects, table_texel(a_rect_slot.x, u_tables.x), 0);
+    uvec4 slot = texelFetch(u_slots, table_texel(a_rect_slot.y, u_tables.y), 0);
+    uvec2 size = uvec2(rect.y & 0xffffu, rect.y >> 16);
+    uvec2 at = uvec2(rect.x & 0xffffu, rect.x >> 16) + uvec2(slot.w & 0xffffu, slot.w >> 16);
+    uvec2 corner = uvec2(gl_VertexID & 1, gl_VertexID >> 1);
+    vec3 weights = uintBitsToFloat(slot.xyz);
+    gl_Position = vec4(vec2(at + corner * size) * u_atlas - 1.0, 0.0, 1.0);
+#if defined(MORPH_LAYERED)
+    v_place = uvec4(at, size.x, rect.z);
+    v_weights = weights;
+    v_bits = rect.w;
+#elif defined(MORPH_MRT)
+    f_place = uvec4(at, size.x, rect.z);
+    f_weights = weights;
+    f_shifts0 = delta_shifts(rect.w, 0);
+    f_shifts1 = delta_shifts(rect.w, 1);
+    f_shifts2 = delta_shifts(rect.w, 2);
+#else
+    f_place = uvec4(at, size.x, rect.z);
+    f_weight = u_layer == 0 ? weights.x : u_layer == 1 ? weights.y : weights.z;
+    f_shifts = delta_shifts(rect.w, u_layer);
+#endif
+}
