@@ -1,0 +1,60 @@
+#include "convert.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void free_encodings(morph_encoding **encodings, uint32_t count)
+{
+    for (uint32_t i = 0; encodings && i < count; i++) {
+        if (encodings[i]) {
+            morph_encoding_free(encodings[i]);
+        }
+    }
+    free(encodings);
+}
+
+static int encode_meshes(const model *m, const convert_options *options, morph_encoding **encodings, model_error *error)
+{
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        if (morph_encode(&m->meshes[i], &options->morph, &encodings[i], error)) {
+            return 1;
+        }
+        if (options->report) {
+            convert_report_mesh(options->report, &m->meshes[i], encodings[i], options->morph.error_um);
+        }
+    }
+    return 0;
+}
+
+static int convert_model(const model *m, const convert_options *options, byte_buffer *out, model_error *error)
+{
+    morph_encoding **encodings = calloc(m->mesh_count + 1u, sizeof *encodings);
+    int failed;
+    if (!encodings) {
+        snprintf(error->what, sizeof error->what, "out of memory");
+        return 1;
+    }
+    for (uint32_t i = 0; options->report && i < m->warning_count; i++) {
+        fprintf(options->report, "warning: %s\n", m->warnings[i]);
+    }
+    failed = encode_meshes(m, options, encodings, error) || pack_write(m, encodings, out, error);
+    free_encodings(encodings, m->mesh_count);
+    return failed;
+}
+
+int convert_files(const char *const *inputs, int input_count, const convert_options *options, byte_buffer *out,
+                  convert_failure *failure)
+{
+    model *m = NULL;
+    int failed;
+    memset(failure, 0, sizeof *failure);
+    failure->file = inputs[0];
+    if (input_count != 1) {
+        failure->file = inputs[1];
+        snprintf(failure->error.what, sizeof failure->error.what, "a pack is built from one file: build the others apart");
+        return 1;
+    }
+    failed = model_read_gltf(inputs[0], &m, &failure->error) || convert_model(m, options, out, &failure->error);
+    model_free(m);
+    return failed;
+}

@@ -1,0 +1,27 @@
+/* convert.h: files in, the bytes of one pack out, and a report of what was done. */
+#ifndef NOH_CONVERT_CONVERT_H
+#define NOH_CONVERT_CONVERT_H
+
+#include <stdio.h>
+
+#include "pack_write.h"
+
+typedef struct convert_options {
+    morph_options morph;
+    FILE *report; /* NULL: quiet */
+} convert_options;
+
+typedef struct convert_failure {
+    const char *file; /* which input */
+    model_error error;
+} convert_failure;
+
+/* Read, encode and write. 0 on success; *out is then the whole pack, to be freed
+ * with buffer_free. The same inputs and options give the same bytes everywhere. */
+int convert_files(const char *const *inputs, int input_count, const convert_options *options, byte_buffer *out,
+                  convert_failure *failure);
+
+/* The report of one encoded mesh: counts, bits, and bytes beside the peers' layouts. */
+void convert_report_mesh(FILE *out, const model_mesh *mesh, const morph_encoding *e, float error_um);
+
+#endif

@@ -1,0 +1,280 @@
+/* gltf_accessor.cpp: accessors, dense and sparse, to floats and indices. */
+#include "gltf_internal.h"
+
+#include <cmath>
+#include <cstring>
+
+namespace gltf {
+
+/* An accessor without a buffer view needs no bytes in the file, so its count is limited here. */
+static const uint64_t zeros_count_max = 16u << 20;
+
+/* An accessor that was checked: what to read, and how. */
+struct layout {
+    const tinygltf::Accessor *accessor;
+    uint32_t component;      /* one bit */
+    uint32_t components;
+    uint64_t element_size;   /* bytes */
+    std::string where;       /* with "(accessor N)" */
+};
+
+static std::string element_of(const std::string &where, uint64_t element)
+{
+    return where + text(", element %llu", static_cast<unsigned long long>(element));
+}
+
+const tinygltf::Accessor &accessor_at(const file &f, int accessor, const std::string &where)
+{
+    if (accessor < 0 || static_cast<size_t>(accessor) >= f.json.accessors.size())
+        fail(where, text("accessor %d does not exist: the file has %zu", accessor, f.json.accessors.size()));
+    return f.json.accessors[static_cast<size_t>(accessor)];
+}
+
+static uint32_t component_bit(int component_type, bool normalized)
+{
+    const component none = static_cast<component>(0);
+    switch (component_type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE: return normalized ? c_i8n : c_i8;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return normalized ? c_u8n : c_u8;
+    case TINYGLTF_COMPONENT_TYPE_SHORT: return normalized ? c_i16n : c_i16;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return normalized ? c_u16n : c_u16;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return normalized ? none : c_u32;
+    case TINYGLTF_COMPONENT_TYPE_FLOAT: return normalized ? none : c_f32;
+    default: return none;
+    }
+}
+
+static uint64_t component_size(uint32_t component)
+{
+    if (component & (c_i8 | c_i8n | c_u8 | c_u8n))
+        return 1;
+    return component & (c_u32 | c_f32) ? 4 : 2;
+}
+
+static const char *component_name(int component_type)
+{
+    switch (component_type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE: return "BYTE";
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return "UNSIGNED_BYTE";
+    case TINYGLTF_COMPONENT_TYPE_SHORT: return "SHORT";
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return "UNSIGNED_SHORT";
+    case TINYGLTF_COMPONENT_TYPE_INT: return "INT";
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return "UNSIGNED_INT";
+    case TINYGLTF_COMPONENT_TYPE_FLOAT: return "FLOAT";
+    default: return "an unknown type";
+    }
+}
+
+static const char *type_name(int type)
+{
+    switch (type) {
+    case TINYGLTF_TYPE_SCALAR: return "SCALAR";
+    case TINYGLTF_TYPE_VEC2: return "VEC2";
+    case TINYGLTF_TYPE_VEC3: return "VEC3";
+    case TINYGLTF_TYPE_VEC4: return "VEC4";
+    default: return "a matrix";
+    }
+}
+
+/* tinygltf numbers the vectors by their width. */
+static int type_of_width(uint32_t components)
+{
+    return components == 1 ? TINYGLTF_TYPE_SCALAR : static_cast<int>(components);
+}
+
+static layout check_type(const file &f, int index, uint32_t components, uint32_t accepted, const std::string &where)
+{
+    layout l;
+    l.accessor = &accessor_at(f, index, where);
+    l.where = where + text(" (accessor %d)", index);
+    l.components = components;
+    l.component = component_bit(l.accessor->componentType, l.accessor->normalized);
+    if (l.accessor->type != type_of_width(components))
+        fail(l.where, text("the accessor's type is %s, but this needs %s", type_name(l.accessor->type),
+                           type_name(type_of_width(components))));
+    if (!(l.component & accepted)) {
+        const char *hint = uses_extension(f, "KHR_mesh_quantization")
+                               ? "" : " (is KHR_mesh_quantization missing from extensionsRequired?)";
+        fail(l.where, text("the component type %s%s is not allowed here%s",
+                           l.accessor->normalized ? "normalised " : "", component_name(l.accessor->componentType), hint));
+    }
+    l.element_size = component_size(l.component) * components;
+    return l;
+}
+
+static void check_fits(const span &view, uint64_t offset, uint64_t stride, uint64_t count, uint64_t element_size,
+                       const std::string &where)
+{
+    if (stride < element_size)
+        fail(where, text("'byteStride' is %llu, less than an element's %llu bytes",
+                         static_cast<unsigned long long>(stride), static_cast<unsigned long long>(element_size)));
+    /* counts and offsets are below 2^32 and strides below 2^31, so nothing here overflows */
+    uint64_t needed = offset + (count - 1) * stride + element_size;
+    if (needed > view.size)
+        fail(where, text("it needs %llu bytes of its buffer view, which has %llu",
+                         static_cast<unsigned long long>(needed), static_cast<unsigned long long>(view.size)));
+}
+
+/* The dense part: where element 0 lies and how far it is to the next. data is null
+ * where the accessor has no buffer view and all is zero. */
+static span dense_part(file &f, const layout &l)
+{
+    const tinygltf::Accessor &a = *l.accessor;
+    if (a.count == 0)
+        fail(l.where, "the accessor has no elements");
+    if (a.bufferView < 0) {
+        if (a.count > zeros_count_max)
+            fail(l.where, text("%zu elements without a buffer view; the limit is %llu", a.count,
+                               static_cast<unsigned long long>(zeros_count_max)));
+        return {nullptr, 0, 0};
+    }
+    span view = view_bytes(f, a.bufferView, l.where);
+    uint64_t stride = view.stride ? view.stride : l.element_size;
+    check_fits(view, a.byteOffset, stride, a.count, l.element_size, l.where);
+    return {view.data + a.byteOffset, view.size - a.byteOffset, stride};
+}
+
+template <class T> static T load(const uint8_t *bytes_at)
+{
+    T value;
+    memcpy(&value, bytes_at, sizeof value); /* nothing promises alignment */
+    return value;
+}
+
+/* Integers, as the specification decodes them (3.11 "Animations", KHR_mesh_quantization). */
+static float load_component(uint32_t component, const uint8_t *at)
+{
+    switch (component) {
+    case c_i8: return load<int8_t>(at);
+    case c_i8n: return std::fmax(static_cast<float>(load<int8_t>(at)) / 127.0f, -1.0f);
+    case c_u8: return load<uint8_t>(at);
+    case c_u8n: return static_cast<float>(load<uint8_t>(at)) / 255.0f;
+    case c_i16: return load<int16_t>(at);
+    case c_i16n: return std::fmax(static_cast<float>(load<int16_t>(at)) / 32767.0f, -1.0f);
+    case c_u16: return load<uint16_t>(at);
+    case c_u16n: return static_cast<float>(load<uint16_t>(at)) / 65535.0f;
+    default: return load<float>(at);
+    }
+}
+
+static uint32_t load_index(uint32_t component, const uint8_t *at)
+{
+    switch (component) {
+    case c_u8: return load<uint8_t>(at);
+    case c_u16: return load<uint16_t>(at);
+    default: return load<uint32_t>(at);
+    }
+}
+
+static void load_element(const layout &l, const uint8_t *at, uint64_t element, float *out)
+{
+    for (uint32_t i = 0; i < l.components; ++i) {
+        out[i] = load_component(l.component, at + i * component_size(l.component));
+        if (!std::isfinite(out[i]))
+            fail(element_of(l.where, element), text("the value is %s: every number must be finite",
+                                                    std::isnan(out[i]) ? "NaN" : "infinite"));
+    }
+}
+
+/* Where the sparse part replaces elements, and by what. */
+struct sparse_part {
+    uint64_t count;
+    uint32_t index_component;
+    span indices, values;
+};
+
+static sparse_part read_sparse(file &f, const layout &l)
+{
+    const tinygltf::Accessor &a = *l.accessor;
+    sparse_part s;
+    if (a.sparse.count < 0 || static_cast<uint64_t>(a.sparse.count) > a.count)
+        fail(l.where, text("the sparse count %d is more than the accessor's %zu elements", a.sparse.count, a.count));
+    s.count = static_cast<uint64_t>(a.sparse.count);
+    s.index_component = component_bit(a.sparse.indices.componentType, false);
+    if (!(s.index_component & (c_u8 | c_u16 | c_u32)))
+        fail(l.where + " sparse indices", text("the component type %s is not allowed here",
+                                               component_name(a.sparse.indices.componentType)));
+    if (s.count == 0)
+        return s;
+    uint64_t index_size = component_size(s.index_component);
+    /* offsets came through int: above 2^31 they are negative, and fail below as huge */
+    uint64_t index_offset = static_cast<uint32_t>(a.sparse.indices.byteOffset);
+    uint64_t value_offset = static_cast<uint32_t>(a.sparse.values.byteOffset);
+    s.indices = view_bytes(f, a.sparse.indices.bufferView, l.where + " sparse indices");
+    s.values = view_bytes(f, a.sparse.values.bufferView, l.where + " sparse values");
+    check_fits(s.indices, index_offset, index_size, s.count, index_size, l.where + " sparse indices");
+    check_fits(s.values, value_offset, l.element_size, s.count, l.element_size, l.where + " sparse values");
+    s.indices.data += index_offset;
+    s.values.data += value_offset;
+    return s;
+}
+
+static uint32_t sparse_index(const layout &l, const sparse_part &s, uint64_t i)
+{
+    uint64_t size = component_size(s.index_component);
+    uint32_t index = load_index(s.index_component, s.indices.data + i * size);
+    if (index >= l.accessor->count)
+        fail(element_of(l.where + " sparse indices", i),
+             text("the index %u is out of range: the accessor has %zu elements", index, l.accessor->count));
+    if (i > 0 && index <= load_index(s.index_component, s.indices.data + (i - 1) * size))
+        fail(element_of(l.where + " sparse indices", i), text("the index %u does not increase", index));
+    return index;
+}
+
+static void apply_sparse(file &f, const layout &l, float *out)
+{
+    sparse_part s = read_sparse(f, l);
+    for (uint64_t i = 0; i < s.count; ++i) {
+        uint32_t element = sparse_index(l, s, i);
+        load_element(l, s.values.data + i * l.element_size, element, out + uint64_t{element} * l.components);
+    }
+}
+
+void read_floats(file &f, int accessor, uint32_t components, uint32_t accepted, uint64_t count,
+                 const std::string &where, float *out)
+{
+    layout l = check_type(f, accessor, components, accepted, where);
+    if (l.accessor->count != count)
+        fail(l.where, text("the accessor has %zu elements, but %llu are needed here", l.accessor->count,
+                           static_cast<unsigned long long>(count)));
+    span dense = dense_part(f, l);
+    for (uint64_t i = 0; i < count; ++i) {
+        if (dense.data)
+            load_element(l, dense.data + i * dense.stride, i, out + i * components);
+        else
+            memset(out + i * components, 0, components * sizeof(float));
+    }
+    if (l.accessor->sparse.isSparse)
+        apply_sparse(f, l, out);
+}
+
+static void check_index(uint32_t index, uint32_t limit, const std::string &where, uint64_t element)
+{
+    if (index >= limit)
+        fail(element_of(where, element),
+             text("the index %u is out of range: the primitive has %u vertices", index, limit));
+}
+
+static void apply_sparse_indices(file &f, const layout &l, std::vector<uint32_t> &out)
+{
+    sparse_part s = read_sparse(f, l);
+    for (uint64_t i = 0; i < s.count; ++i)
+        out[sparse_index(l, s, i)] = load_index(l.component, s.values.data + i * l.element_size);
+}
+
+std::vector<uint32_t> read_indices(file &f, int accessor, uint32_t limit, const std::string &where)
+{
+    layout l = check_type(f, accessor, 1, c_u8 | c_u16 | c_u32, where);
+    span dense = dense_part(f, l);
+    charge(f, l.accessor->count, sizeof(uint32_t), l.where);
+    std::vector<uint32_t> out(l.accessor->count, 0);
+    for (size_t i = 0; dense.data && i < out.size(); ++i)
+        out[i] = load_index(l.component, dense.data + i * dense.stride);
+    if (l.accessor->sparse.isSparse)
+        apply_sparse_indices(f, l, out);
+    for (size_t i = 0; i < out.size(); ++i)
+        check_index(out[i], limit, l.where, i);
+    return out;
+}
+
+} // namespace gltf

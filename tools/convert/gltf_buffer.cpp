@@ -1,0 +1,157 @@
+/* gltf_buffer.cpp: files, URIs, buffers and buffer views. */
+#include "gltf_internal.h"
+
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+namespace tinygltf {
+/* tinygltf defines this one, but its header only declares it for its own use. */
+std::string base64_decode(std::string const &s);
+}
+
+namespace gltf {
+
+/* tinygltf counts in int in many places. */
+static const uint64_t file_bytes_max = 0x7fffffff;
+/* All that a glTF refers to, together. */
+static const uint64_t input_bytes_max = uint64_t{4} << 30;
+
+struct file_closer {
+    void operator()(FILE *stream) const { fclose(stream); }
+};
+
+bytes read_whole_file(const std::string &path, const std::string &where)
+{
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored))
+        fail(where, "the file does not exist: " + path);
+    if (!std::filesystem::is_regular_file(path, ignored)) /* a device may never end */
+        fail(where, "this is not a file: " + path);
+    std::unique_ptr<FILE, file_closer> stream(fopen(path.c_str(), "rb"));
+    uint64_t size = std::filesystem::file_size(path, ignored);
+    if (!stream || ignored)
+        fail(where, "the file cannot be opened: " + path);
+    if (size > file_bytes_max)
+        fail(where, "the file is larger than 2 GiB, which is the limit: " + path);
+    bytes data(static_cast<size_t>(size));
+    if (fread(data.data(), 1, data.size(), stream.get()) != data.size())
+        fail(where, "the file cannot be read: " + path);
+    return data;
+}
+
+static int hex_digit(char c)
+{
+    if (c >= '0' && c <= '9')
+        return c - '0';
+    if (c >= 'a' && c <= 'f')
+        return c - 'a' + 10;
+    return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+}
+
+static std::string percent_decode(const std::string &uri)
+{
+    std::string out;
+    for (size_t i = 0; i < uri.size(); ++i) {
+        int high = uri[i] == '%' && i + 2 < uri.size() ? hex_digit(uri[i + 1]) : -1;
+        int low = high >= 0 ? hex_digit(uri[i + 2]) : -1;
+        out += low >= 0 ? static_cast<char>(high * 16 + low) : uri[i];
+        i += low >= 0 ? 2 : 0;
+    }
+    return out;
+}
+
+static bytes decode_data_uri(const std::string &uri, const std::string &where)
+{
+    size_t comma = uri.find(',');
+    if (comma == std::string::npos || comma < 7 || uri.compare(comma - 7, 7, ";base64") != 0)
+        fail(where, "the data URI is not base64");
+    std::string decoded = tinygltf::base64_decode(uri.substr(comma + 1));
+    return bytes(decoded.begin(), decoded.end());
+}
+
+/* Only files beside the glTF (or above it) are opened: a converter that is handed
+ * a stranger's file should not read the user's own. */
+static std::string path_of(const file &f, const std::string &uri, const std::string &where)
+{
+    std::string path = percent_decode(uri);
+    if (path.empty() || path[0] == '/' || path.find(':') != std::string::npos || path.find('\0') != std::string::npos)
+        fail(where, "the URI '" + printable(uri) + "' is not a relative path: put the file beside the glTF");
+    return f.directory + path;
+}
+
+bytes read_uri(file &f, const std::string &uri, const std::string &where)
+{
+    bytes data = uri.compare(0, 5, "data:") == 0 ? decode_data_uri(uri, where)
+                                                 : read_whole_file(path_of(f, uri, where), where);
+    f.input_bytes += data.size();
+    if (f.input_bytes > input_bytes_max)
+        fail(where, "the glTF and its files are larger than 4 GiB together, which is the limit");
+    return data;
+}
+
+static void load_buffer(file &f, buffer &b, bool first, const std::string &where)
+{
+    if (b.has_uri)
+        b.data = read_uri(f, b.uri, where);
+    else if (first && f.has_bin)
+        b.data.swap(f.bin);
+    else
+        return; /* an error only where it is used */
+    b.uri = std::string();
+    if (b.data.size() < b.byte_length)
+        fail(where, text("the buffer has %zu bytes, but 'byteLength' says %llu: the data is truncated", b.data.size(),
+                         static_cast<unsigned long long>(b.byte_length)));
+    b.has_data = true;
+}
+
+void load_buffers(file &f)
+{
+    for (size_t i = 0; i < f.buffers.size(); ++i)
+        if (!f.buffers[i].fallback)
+            load_buffer(f, f.buffers[i], i == 0, text("buffer %zu", i));
+}
+
+span buffer_bytes(file &f, int index, uint64_t offset, uint64_t size, const std::string &where)
+{
+    if (index < 0 || static_cast<size_t>(index) >= f.buffers.size())
+        fail(where, text("buffer %d does not exist: the file has %zu", index, f.buffers.size()));
+    const buffer &b = f.buffers[static_cast<size_t>(index)];
+    if (!b.has_data)
+        fail(where, text("buffer %d has no data: it has no 'uri', and is not the first of a .glb with a BIN chunk", index));
+    if (size > b.byte_length || offset > b.byte_length - size)
+        fail(where, text("bytes %llu to %llu are out of range: buffer %d has %llu",
+                         static_cast<unsigned long long>(offset), static_cast<unsigned long long>(offset + size), index,
+                         static_cast<unsigned long long>(b.byte_length)));
+    return {b.data.data() + offset, size, 0};
+}
+
+/* Decoded once, then kept. */
+static span compressed_view(file &f, size_t index, const tinygltf::Value &extension, const std::string &where)
+{
+    const tinygltf::BufferView &view = f.json.bufferViews[index];
+    bytes &decoded = f.decoded_views[index];
+    if (decoded.empty())
+        decoded = decode_meshopt(f, extension, where);
+    if (decoded.size() < view.byteLength)
+        fail(where, text("EXT_meshopt_compression decodes to %zu bytes, but 'byteLength' says %zu", decoded.size(),
+                         view.byteLength));
+    return {decoded.data(), view.byteLength, view.byteStride};
+}
+
+span view_bytes(file &f, int index, const std::string &where)
+{
+    if (index < 0 || static_cast<size_t>(index) >= f.json.bufferViews.size())
+        fail(where, text("buffer view %d does not exist: the file has %zu", index, f.json.bufferViews.size()));
+    const tinygltf::BufferView &view = f.json.bufferViews[static_cast<size_t>(index)];
+    std::string inner = where + text(", buffer view %d", index);
+    auto extension = view.extensions.find("EXT_meshopt_compression");
+    if (extension != view.extensions.end())
+        return compressed_view(f, static_cast<size_t>(index), extension->second, inner);
+    span s = buffer_bytes(f, view.buffer, view.byteOffset, view.byteLength, inner);
+    s.stride = view.byteStride;
+    return s;
+}
+
+} // namespace gltf

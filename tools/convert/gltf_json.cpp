@@ -1,0 +1,331 @@
+/* gltf_json.cpp: the JSON of a glTF file, checked before tinygltf sees it.
+ *
+ * tinygltf skips optional properties of the wrong type in silence, cuts integers
+ * to 32 bits, and recurses through `extras`; so types, ranges and depth are
+ * checked here first. */
+#include "gltf_internal.h"
+
+#include <cmath>
+#include <cstring>
+
+#include <nlohmann/json.hpp>
+
+using nlohmann::json;
+
+namespace gltf {
+
+static const size_t depth_max = 64;
+static const uint64_t array_max = 1u << 20; /* elements of a top-level array */
+
+/* Properties that hold whole numbers, and what they may hold. An optional index may
+ * be -1, which some exporters write for "none". */
+struct integer_rule {
+    const char *key;
+    int64_t minimum, maximum;
+};
+static const int64_t int_max = 0x7fffffff, offset_max = 0xffffffff;
+static const integer_rule integer_rules[] = {
+    {"buffer", 0, int_max},        {"bufferView", -1, int_max},   {"byteLength", 0, offset_max},
+    {"byteOffset", 0, offset_max}, {"byteStride", 0, int_max},    {"children", 0, int_max},
+    {"componentType", 0, int_max}, {"count", 0, offset_max},      {"index", 0, int_max},
+    {"indices", -1, int_max},      {"input", 0, int_max},         {"magFilter", 0, int_max},
+    {"material", -1, int_max},     {"mesh", -1, int_max},         {"minFilter", 0, int_max},
+    {"mode", 0, int_max},          {"node", -1, int_max},         {"output", 0, int_max},
+    {"sampler", -1, int_max},      {"scene", -1, int_max},        {"skin", -1, int_max},
+    {"source", -1, int_max},       {"texCoord", 0, int_max},      {"wrapS", 0, int_max},
+    {"wrapT", 0, int_max}};
+
+/* Extensions that are understood, or that may be ignored where they are not required. */
+static const char *const supported[] = {"KHR_mesh_quantization", "EXT_meshopt_compression", "KHR_texture_transform",
+                                        "KHR_materials_unlit"};
+
+static bool is_supported(const std::string &name)
+{
+    for (const char *known : supported)
+        if (name == known)
+            return true;
+    return false;
+}
+
+bool uses_extension(const file &f, const char *name)
+{
+    for (const std::string &used : f.json.extensionsUsed)
+        if (used == name)
+            return true;
+    for (const std::string &required : f.json.extensionsRequired)
+        if (required == name)
+            return true;
+    return false;
+}
+
+/* Brackets outside strings, so that no recursive code below can exhaust the stack. */
+static void check_depth(const char *text_begin, size_t size)
+{
+    size_t depth = 0;
+    bool in_string = false;
+    for (size_t i = 0; i < size; ++i) {
+        char c = text_begin[i];
+        if (in_string) {
+            if (c == '\\')
+                ++i;
+            in_string = c != '"';
+        } else if (c == '"') {
+            in_string = true;
+        } else if (c == '{' || c == '[') {
+            if (++depth > depth_max)
+                fail(text("JSON byte %zu", i), text("arrays and objects are nested deeper than %zu", depth_max));
+        } else if ((c == '}' || c == ']') && depth > 0) {
+            --depth;
+        }
+    }
+}
+
+static json parse_text(const char *text_begin, size_t size)
+{
+    check_depth(text_begin, size);
+    try {
+        json document = json::parse(text_begin, text_begin + size);
+        if (document.is_object())
+            return document;
+    } catch (const json::exception &error) {
+        /* "[json.exception.parse_error.101] parse error at ...": the part in brackets says nothing to a user */
+        const char *message = strstr(error.what(), "] ");
+        fail("glTF JSON", text("the JSON is broken: %.180s", message ? message + 2 : error.what()));
+    }
+    fail("glTF JSON", "the JSON's outermost value must be an object");
+}
+
+static const integer_rule *rule_of(const std::string &key)
+{
+    for (const integer_rule &rule : integer_rules)
+        if (key == rule.key)
+            return &rule;
+    return nullptr;
+}
+
+static void check_integer(json &value, const integer_rule &rule, const std::string &path)
+{
+    if (value.is_number_float()) { /* 3.0 is a whole number to JSON, but not to tinygltf */
+        double number = value.get<double>();
+        if (number == std::floor(number) && std::fabs(number) <= 4294967295.0)
+            value = static_cast<int64_t>(number);
+    }
+    if (!value.is_number_integer())
+        fail("glTF JSON" + path, text("'%s' must be a whole number", rule.key));
+    bool huge = value.is_number_unsigned() && value.get<uint64_t>() > static_cast<uint64_t>(rule.maximum);
+    int64_t number = huge ? 0 : value.get<int64_t>();
+    if (huge || number < rule.minimum || number > rule.maximum)
+        fail("glTF JSON" + path, text("'%s' is out of range (%lld to %lld)", rule.key,
+                                      static_cast<long long>(rule.minimum), static_cast<long long>(rule.maximum)));
+    if (!value.is_number_unsigned() && number >= 0)
+        value = static_cast<uint64_t>(number);
+}
+
+static void check_value(json &value, const std::string &key, const std::string &path);
+
+static bool holds_accessors(const std::string &key)
+{
+    return key == "attributes" || key == "targets";
+}
+
+/* In "attributes" and "targets" every number is an accessor's index, whatever its key. */
+static void check_member(json &value, const std::string &key, const std::string &parent, const std::string &path)
+{
+    static const integer_rule accessor_rule = {"attribute", 0, int_max};
+    if (key == "extras" || (parent == "extensions" && key != "EXT_meshopt_compression"))
+        return; /* not ours to judge */
+    if (parent == "EXT_meshopt_compression" && key == "mode")
+        return; /* a string there */
+    const integer_rule *rule = holds_accessors(parent) ? &accessor_rule : rule_of(key);
+    if (rule && !value.is_structured())
+        check_integer(value, *rule, path + "/" + printable(key));
+    else
+        check_value(value, key, path + "/" + printable(key));
+}
+
+static void check_value(json &value, const std::string &key, const std::string &path)
+{
+    if (value.is_object()) {
+        for (auto member = value.begin(); member != value.end(); ++member)
+            check_member(member.value(), member.key(), key, path);
+    } else if (value.is_array()) {
+        static const integer_rule node_rule = {"nodes", 0, int_max};
+        const integer_rule *rule = key == "nodes" || key == "joints" ? &node_rule : rule_of(key);
+        for (size_t i = 0; i < value.size(); ++i) {
+            std::string element = path + "/" + std::to_string(i);
+            if (rule && !value[i].is_structured())
+                check_integer(value[i], *rule, element);
+            else
+                check_value(value[i], key, element);
+        }
+    }
+}
+
+/* Every top-level array must be one, hold objects, and stay small enough for tinygltf's structs. */
+static void check_top_level(const json &document)
+{
+    static const char *const arrays[] = {"accessors", "animations", "bufferViews", "buffers", "cameras", "images",
+                                         "materials", "meshes", "nodes", "samplers", "scenes", "skins", "textures"};
+    for (const char *name : arrays) {
+        auto found = document.find(name);
+        if (found == document.end())
+            continue;
+        if (!found->is_array())
+            fail("glTF JSON", text("'%s' must be an array", name));
+        if (found->size() > array_max)
+            fail("glTF JSON", text("'%s' has %zu elements; the limit is %llu", name, found->size(),
+                                   static_cast<unsigned long long>(array_max)));
+        for (size_t i = 0; i < found->size(); ++i)
+            if (!(*found)[i].is_object())
+                fail(text("glTF JSON/%s/%zu", name, i), "this must be an object");
+    }
+}
+
+static std::string string_member(const json &object, const char *key)
+{
+    auto found = object.find(key);
+    return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+static void check_asset(const json &document)
+{
+    auto asset = document.find("asset");
+    if (asset == document.end() || !asset->is_object())
+        fail("glTF JSON", "there is no 'asset' object: this is not a glTF file");
+    std::string version = string_member(*asset, "version"), minimum = string_member(*asset, "minVersion");
+    if (version.compare(0, 2, "2.") != 0)
+        fail("glTF JSON/asset", "this is glTF version '" + printable(version) + "'; only version 2 is read");
+    if (!minimum.empty() && minimum != "2.0")
+        fail("glTF JSON/asset", "this file needs a reader of glTF version '" + printable(minimum) + "'; this one reads 2.0");
+}
+
+static void check_required(const json &document)
+{
+    auto required = document.find("extensionsRequired");
+    if (required == document.end())
+        return;
+    if (!required->is_array())
+        fail("glTF JSON", "'extensionsRequired' must be an array");
+    for (const json &name : *required) {
+        std::string extension = name.is_string() ? name.get<std::string>() : "?";
+        if (is_supported(extension))
+            continue;
+        fail("extensionsRequired", "the file needs the extension " + printable(extension) +
+             ", which is not supported: export it without" +
+             (extension == "KHR_draco_mesh_compression" ? " Draco compression (EXT_meshopt_compression is read)" : ""));
+    }
+}
+
+/* Take an array out of the document, so that tinygltf does not see it. */
+static json take(json &document, const char *key)
+{
+    json taken = json::array();
+    auto found = document.find(key);
+    if (found != document.end()) {
+        taken = std::move(*found);
+        document.erase(found);
+    }
+    return taken;
+}
+
+static bool is_fallback(const json &object)
+{
+    auto extensions = object.find("extensions");
+    if (extensions == object.end() || !extensions->is_object())
+        return false;
+    auto meshopt = extensions->find("EXT_meshopt_compression");
+    if (meshopt == extensions->end() || !meshopt->is_object())
+        return false;
+    auto fallback = meshopt->find("fallback");
+    return fallback != meshopt->end() && fallback->is_boolean() && fallback->get<bool>();
+}
+
+static void take_buffers(file &f, json &document)
+{
+    json array = take(document, "buffers");
+    for (size_t i = 0; i < array.size(); ++i) {
+        const json &object = array[i];
+        auto length = object.find("byteLength");
+        if (length == object.end())
+            fail(text("buffer %zu", i), "'byteLength' is missing");
+        buffer b;
+        b.byte_length = length->get<uint64_t>();
+        b.has_uri = object.contains("uri");
+        b.uri = string_member(object, "uri");
+        b.fallback = is_fallback(object);
+        f.buffers.push_back(std::move(b));
+    }
+}
+
+static void take_images(file &f, json &document)
+{
+    json array = take(document, "images");
+    for (const json &object : array) {
+        image i;
+        i.name = string_member(object, "name");
+        i.uri = string_member(object, "uri");
+        auto view = object.find("bufferView");
+        i.view = view != object.end() ? view->get<int>() : -1;
+        f.images.push_back(std::move(i));
+    }
+}
+
+/* A channel without a target node is legal, but tinygltf calls it an error: -1 says "none". */
+static void mark_untargeted_channels(json &document)
+{
+    auto animations = document.find("animations");
+    if (animations == document.end())
+        return;
+    for (json &animation : *animations) {
+        auto channels = animation.find("channels");
+        if (channels == animation.end() || !channels->is_array())
+            continue;
+        for (json &channel : *channels) {
+            if (!channel.is_object() || !channel.contains("target") || !channel["target"].is_object())
+                continue;
+            if (!channel["target"].contains("node"))
+                channel["target"]["node"] = -1;
+        }
+    }
+}
+
+static void warn_extensions(file &f)
+{
+    for (const std::string &name : f.json.extensionsUsed)
+        if (!is_supported(name))
+            warn(f, "the extension %s is not supported and was ignored", printable(name).c_str());
+}
+
+/* tinygltf's message, without its line ends. */
+static std::string first_line(const std::string &message)
+{
+    return message.substr(0, message.find('\n'));
+}
+
+static void run_tinygltf(file &f, const json &document)
+{
+    std::string text_form = document.dump(), error, warning;
+    tinygltf::TinyGLTF loader;
+    bool loaded = loader.LoadASCIIFromString(&f.json, &error, &warning, text_form.data(),
+                                             static_cast<unsigned int>(text_form.size()), "");
+    /* It also reports, but survives, primitives and channels that it could not read. */
+    if (!loaded || !error.empty())
+        fail("glTF JSON", error.empty() ? "the JSON is not that of a glTF file" : first_line(error));
+}
+
+void parse_json(file &f, const char *text_begin, size_t size)
+{
+    json document = parse_text(text_begin, size);
+    check_asset(document);
+    check_required(document);
+    check_top_level(document);
+    check_value(document, "", "");
+    take_buffers(f, document);
+    take_images(f, document);
+    mark_untargeted_channels(document);
+    run_tinygltf(f, document);
+    f.decoded_views.resize(f.json.bufferViews.size());
+    warn_extensions(f);
+}
+
+} // namespace gltf

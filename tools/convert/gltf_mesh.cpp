@@ -1,0 +1,543 @@
+/* gltf_mesh.cpp: meshes, their primitives and their morph targets. */
+#include "gltf_internal.h"
+
+#include <cstring>
+#include <set>
+
+namespace gltf {
+
+using attributes = std::map<std::string, int>;
+
+/* A primitive that is kept, and its place in the mesh. */
+struct part {
+    const tinygltf::Primitive *source;
+    size_t number;                 /* in the file, for messages */
+    std::vector<uint32_t> indices; /* of triangles, within the primitive */
+    uint32_t first_vertex, vertex_count;
+};
+
+struct mesh_job {
+    const tinygltf::Mesh *source;
+    std::string where; /* "mesh 'head'" */
+    std::vector<part> parts;
+    model_mesh *out;
+};
+
+static int find(const attributes &map, const std::string &name)
+{
+    auto found = map.find(name);
+    return found == map.end() ? -1 : found->second;
+}
+
+static bool has(const attributes &map, const std::string &name)
+{
+    return map.find(name) != map.end();
+}
+
+static std::string where_of(const mesh_job &job, const part &p)
+{
+    return job.where + text(" primitive %zu", p.number);
+}
+
+/* --- what components each attribute may have --- */
+
+static uint32_t with_quantization(const file &f, uint32_t core, uint32_t quantized)
+{
+    return uses_extension(f, "KHR_mesh_quantization") ? core | quantized : core;
+}
+
+static const uint32_t signed_bits = c_i8 | c_i8n | c_i16 | c_i16n, unsigned_bits = c_u8 | c_u8n | c_u16 | c_u16n;
+
+static uint32_t accepted_position(const file &f)
+{
+    return with_quantization(f, c_f32, signed_bits | unsigned_bits);
+}
+
+static uint32_t accepted_normal(const file &f) /* and tangents, and their deltas */
+{
+    return with_quantization(f, c_f32, c_i8n | c_i16n);
+}
+
+static uint32_t accepted_uv(const file &f)
+{
+    return with_quantization(f, c_f32 | c_u8n | c_u16n, signed_bits | unsigned_bits);
+}
+
+static uint32_t accepted_position_delta(const file &f)
+{
+    return with_quantization(f, c_f32, signed_bits);
+}
+
+/* --- triangles --- */
+
+static std::vector<uint32_t> listed_vertices(file &f, const mesh_job &job, const part &p)
+{
+    if (p.source->indices >= 0)
+        return read_indices(f, p.source->indices, p.vertex_count, where_of(job, p) + " indices");
+    charge(f, p.vertex_count, sizeof(uint32_t), where_of(job, p));
+    std::vector<uint32_t> list(p.vertex_count);
+    for (uint32_t i = 0; i < p.vertex_count; ++i)
+        list[i] = i;
+    return list;
+}
+
+static void push_triangle(std::vector<uint32_t> &out, uint32_t a, uint32_t b, uint32_t c)
+{
+    out.push_back(a);
+    out.push_back(b);
+    out.push_back(c);
+}
+
+/* Strips and fans as triangles, wound as the specification says (3.7.2.1). */
+static std::vector<uint32_t> unroll(file &f, const std::vector<uint32_t> &list, int mode, const std::string &where)
+{
+    std::vector<uint32_t> out;
+    size_t count = list.size() < 3 ? 0 : list.size() - 2;
+    charge(f, count, 3 * sizeof(uint32_t), where);
+    out.reserve(count * 3);
+    for (size_t i = 0; i < count; ++i) {
+        if (mode == TINYGLTF_MODE_TRIANGLE_FAN)
+            push_triangle(out, list[i + 1], list[i + 2], list[0]);
+        else
+            push_triangle(out, list[i], list[i + 1 + i % 2], list[i + 2 - i % 2]);
+    }
+    return out;
+}
+
+static void read_triangles(file &f, const mesh_job &job, part &p)
+{
+    std::vector<uint32_t> list = listed_vertices(f, job, p);
+    if (p.source->mode != TINYGLTF_MODE_TRIANGLES)
+        list = unroll(f, list, p.source->mode, where_of(job, p));
+    else if (list.size() % 3 != 0)
+        fail(where_of(job, p), text("%zu corners are not whole triangles: the number must be a multiple of 3",
+                                    list.size()));
+    p.indices.swap(list);
+}
+
+/* --- which primitives are kept --- */
+
+static const char *reason_to_skip(const tinygltf::Primitive &p)
+{
+    if (p.mode >= TINYGLTF_MODE_POINTS && p.mode <= TINYGLTF_MODE_LINE_STRIP)
+        return "it holds points or lines, not triangles";
+    return has(p.attributes, "POSITION") ? nullptr : "it has no POSITION";
+}
+
+static void check_mode(const tinygltf::Primitive &p, const std::string &where)
+{
+    if (p.mode < TINYGLTF_MODE_POINTS || p.mode > TINYGLTF_MODE_TRIANGLE_FAN)
+        fail(where, text("the mode %d is unknown", p.mode));
+}
+
+static void check_vertex_total(const mesh_job &job, uint64_t vertices, uint64_t indices)
+{
+    if (vertices >= MODEL_NONE || indices >= MODEL_NONE)
+        fail(job.where, "the mesh has more than 4294967294 vertices or indices");
+}
+
+static void find_parts(file &f, mesh_job &job)
+{
+    uint64_t vertices = 0, indices = 0;
+    for (size_t i = 0; i < job.source->primitives.size(); ++i) {
+        const tinygltf::Primitive &source = job.source->primitives[i];
+        part p = {&source, i, {}, static_cast<uint32_t>(vertices), 0};
+        std::string where = where_of(job, p);
+        check_mode(source, where);
+        if (const char *reason = reason_to_skip(source)) {
+            warn(f, "%s was skipped: %s", where.c_str(), reason);
+            continue;
+        }
+        int position = find(source.attributes, "POSITION");
+        uint64_t count = accessor_at(f, position, where + " POSITION").count;
+        if (count == 0)
+            fail(where + text(" POSITION (accessor %d)", position), "the primitive has no vertices");
+        vertices += count;
+        check_vertex_total(job, vertices, indices);
+        charge(f, count, 12 * sizeof(float), where); /* about what its vertices will need */
+        p.vertex_count = static_cast<uint32_t>(count);
+        read_triangles(f, job, p);
+        indices += p.indices.size();
+        check_vertex_total(job, vertices, indices);
+        job.parts.push_back(std::move(p));
+    }
+}
+
+static void check_target_counts(const mesh_job &job)
+{
+    const part &first = job.parts[0];
+    for (const part &p : job.parts)
+        if (p.source->targets.size() != first.source->targets.size())
+            fail(job.where + text(" primitives %zu and %zu", first.number, p.number),
+                 text("primitive %zu has %zu morph targets and primitive %zu has %zu: all primitives of a mesh need "
+                      "the same targets", first.number, first.source->targets.size(), p.number,
+                      p.source->targets.size()));
+}
+
+/* --- base attributes --- */
+
+static const tinygltf::Material *material_of(const file &f, const tinygltf::Primitive &p)
+{
+    return p.material >= 0 ? &f.json.materials[static_cast<size_t>(p.material)] : nullptr;
+}
+
+/* The base colour texture's place in a material, and KHR_texture_transform on it. */
+struct uv_use {
+    int set = 0;
+    double offset[2] = {0.0, 0.0}, scale[2] = {1.0, 1.0};
+    bool rotated = false;
+};
+
+static void read_pair(const tinygltf::Value &object, const char *key, double *out)
+{
+    const tinygltf::Value &pair = object.Get(key);
+    for (int i = 0; pair.IsArray() && pair.ArrayLen() == 2 && i < 2; ++i)
+        if (pair.Get(i).IsNumber())
+            out[i] = pair.Get(i).GetNumberAsDouble();
+}
+
+static uv_use uv_use_of(const file &f, const tinygltf::Primitive &p)
+{
+    uv_use use;
+    const tinygltf::Material *material = material_of(f, p);
+    if (!material || material->pbrMetallicRoughness.baseColorTexture.index < 0)
+        return use;
+    const tinygltf::TextureInfo &texture = material->pbrMetallicRoughness.baseColorTexture;
+    use.set = texture.texCoord;
+    auto found = texture.extensions.find("KHR_texture_transform");
+    if (found == texture.extensions.end() || !found->second.IsObject())
+        return use;
+    const tinygltf::Value &transform = found->second;
+    read_pair(transform, "offset", use.offset);
+    read_pair(transform, "scale", use.scale);
+    use.rotated = transform.Get("rotation").IsNumber() && transform.Get("rotation").GetNumberAsDouble() != 0.0;
+    if (transform.Get("texCoord").IsInt())
+        use.set = transform.Get("texCoord").Get<int>();
+    return use;
+}
+
+static std::string uv_name(const file &f, const tinygltf::Primitive &p)
+{
+    std::string wanted = text("TEXCOORD_%d", uv_use_of(f, p).set);
+    return has(p.attributes, wanted) ? wanted : "TEXCOORD_0";
+}
+
+/* The transform is baked into the UVs: a model has no other place for it. */
+static void transform_uvs(file &f, const mesh_job &job, const part &p, float *uv)
+{
+    uv_use use = uv_use_of(f, *p.source);
+    if (use.rotated)
+        warn(f, "%s: the rotation of KHR_texture_transform is not supported and was ignored", where_of(job, p).c_str());
+    if (use.offset[0] == 0.0 && use.offset[1] == 0.0 && use.scale[0] == 1.0 && use.scale[1] == 1.0)
+        return;
+    for (uint64_t i = 0; i < uint64_t{p.vertex_count} * 2; ++i)
+        uv[i] = to_float(static_cast<double>(uv[i]) * use.scale[i % 2] + use.offset[i % 2],
+                         where_of(job, p) + " KHR_texture_transform");
+}
+
+static bool any_part_has(const mesh_job &job, const char *name)
+{
+    for (const part &p : job.parts)
+        if (has(p.source->attributes, name))
+            return true;
+    return false;
+}
+
+static bool any_part_has_uvs(const file &f, const mesh_job &job)
+{
+    for (const part &p : job.parts)
+        if (has(p.source->attributes, uv_name(f, *p.source)))
+            return true;
+    return false;
+}
+
+static void allocate_base(file &f, mesh_job &job)
+{
+    model_mesh &m = *job.out;
+    bool uvs = any_part_has_uvs(f, job);
+    m.position = allocate<float>(f, uint64_t{m.vertex_count} * 3, job.where);
+    m.normal = allocate<float>(f, uint64_t{m.vertex_count} * 3, job.where);
+    if (uvs || any_part_has(job, "TANGENT"))
+        m.tangent = allocate<float>(f, uint64_t{m.vertex_count} * 4, job.where);
+    if (uvs)
+        m.uv = allocate<float>(f, uint64_t{m.vertex_count} * 2, job.where);
+    if (any_part_has(job, "COLOR_0"))
+        m.color = allocate<float>(f, uint64_t{m.vertex_count} * 4, job.where);
+    m.indices = allocate<uint32_t>(f, m.index_count, job.where);
+    m.submeshes = allocate<model_submesh>(f, m.submesh_count, job.where);
+}
+
+static void read_color(file &f, const mesh_job &job, const part &p, float *out)
+{
+    int index = find(p.source->attributes, "COLOR_0");
+    std::string where = where_of(job, p) + " COLOR_0";
+    const uint32_t accepted = c_f32 | c_u8n | c_u16n;
+    for (uint64_t i = 0; i < uint64_t{p.vertex_count} * 4; ++i)
+        out[i] = 1.0f;
+    if (index < 0)
+        return;
+    if (accessor_at(f, index, where).type == TINYGLTF_TYPE_VEC4) {
+        read_floats(f, index, 4, accepted, p.vertex_count, where, out);
+        return;
+    }
+    std::vector<float> rgb(size_t{p.vertex_count} * 3);
+    read_floats(f, index, 3, accepted, p.vertex_count, where, rgb.data());
+    for (size_t v = 0; v < p.vertex_count; ++v)
+        memcpy(out + v * 4, &rgb[v * 3], 3 * sizeof(float));
+}
+
+static void read_tangent(file &f, const mesh_job &job, const part &p, float *out)
+{
+    read_floats(f, find(p.source->attributes, "TANGENT"), 4, accepted_normal(f), p.vertex_count,
+                where_of(job, p) + " TANGENT", out);
+    for (size_t v = 0; v < p.vertex_count; ++v)
+        out[v * 4 + 3] = out[v * 4 + 3] < 0.0f ? -1.0f : 1.0f;
+}
+
+static void read_base(file &f, mesh_job &job, const part &p, model_submesh &submesh)
+{
+    model_mesh &m = *job.out;
+    const attributes &a = p.source->attributes;
+    const std::string where = where_of(job, p);
+    const size_t first = p.first_vertex;
+    read_floats(f, find(a, "POSITION"), 3, accepted_position(f), p.vertex_count, where + " POSITION",
+                m.position + first * 3);
+    if (has(a, "NORMAL"))
+        read_floats(f, find(a, "NORMAL"), 3, accepted_normal(f), p.vertex_count, where + " NORMAL",
+                    m.normal + first * 3);
+    else
+        submesh.missing |= MODEL_MISSING_NORMAL;
+    if (has(a, "TANGENT"))
+        read_tangent(f, job, p, m.tangent + first * 4);
+    else if (m.tangent)
+        submesh.missing |= MODEL_MISSING_TANGENT;
+    std::string uv = uv_name(f, *p.source);
+    if (has(a, uv)) {
+        read_floats(f, find(a, uv), 2, accepted_uv(f), p.vertex_count, where + " " + uv, m.uv + first * 2);
+        transform_uvs(f, job, p, m.uv + first * 2);
+    }
+    if (m.color)
+        read_color(f, job, p, m.color + first * 4);
+}
+
+static void read_submesh(mesh_job &job, const part &p, uint32_t first_index, model_submesh &out)
+{
+    out.first_index = first_index;
+    out.index_count = static_cast<uint32_t>(p.indices.size());
+    out.first_vertex = p.first_vertex;
+    out.vertex_count = p.vertex_count;
+    out.material = p.source->material >= 0 ? static_cast<uint32_t>(p.source->material) : MODEL_NONE;
+    for (size_t i = 0; i < p.indices.size(); ++i)
+        job.out->indices[first_index + i] = p.indices[i] + p.first_vertex;
+}
+
+static void check_materials(const file &f, const mesh_job &job)
+{
+    for (const part &p : job.parts)
+        if (p.source->material >= 0 && static_cast<size_t>(p.source->material) >= f.json.materials.size())
+            fail(where_of(job, p), text("material %d does not exist: the file has %zu", p.source->material,
+                                        f.json.materials.size()));
+}
+
+/* --- targets --- */
+
+/* Deltas count only beside a base: without one they belong to a surface that the file does not show. */
+static bool gives(const part &p, size_t target, const char *name)
+{
+    return has(p.source->targets[target], name) && has(p.source->attributes, name);
+}
+
+static bool any_part_gives(const mesh_job &job, size_t target, const char *name)
+{
+    for (const part &p : job.parts)
+        if (gives(p, target, name))
+            return true;
+    return false;
+}
+
+static void allocate_target(file &f, mesh_job &job, size_t t)
+{
+    const model_mesh &m = *job.out;
+    model_target &target = job.out->targets[t];
+    uint64_t floats = uint64_t{m.vertex_count} * 3;
+    target.has_position = any_part_gives(job, t, "POSITION");
+    target.has_normal = any_part_gives(job, t, "NORMAL");
+    target.has_tangent = any_part_gives(job, t, "TANGENT");
+    target.position = allocate<float>(f, floats, job.where);
+    target.normal = allocate<float>(f, floats, job.where);
+    if (m.tangent)
+        target.tangent = allocate<float>(f, floats, job.where);
+    target.missing = allocate<uint8_t>(f, m.submesh_count, job.where);
+}
+
+static void read_delta(file &f, const part &p, size_t t, const char *name, uint32_t accepted,
+                       const std::string &where, float *deltas)
+{
+    float *out = deltas + size_t{p.first_vertex} * 3;
+    read_floats(f, find(p.source->targets[t], name), 3, accepted, p.vertex_count, where + " " + name, out);
+    for (size_t i = 0; i < size_t{p.vertex_count} * 3; ++i)
+        out[i] += 0.0f; /* -0 becomes 0: a dense and a sparse file give the same model */
+}
+
+static void warn_unused_deltas(file &f, const part &p, size_t t, const std::string &where)
+{
+    for (const auto &delta : p.source->targets[t]) {
+        bool known = delta.first == "POSITION" || delta.first == "NORMAL" || delta.first == "TANGENT";
+        if (known && gives(p, t, delta.first.c_str()))
+            continue;
+        warn(f, "%s: the deltas of %s were ignored %s", where.c_str(), printable(delta.first).c_str(),
+             known ? "because the primitive has no such attribute" : "which cannot be morphed");
+    }
+}
+
+static void read_target_part(file &f, mesh_job &job, const part &p, size_t part_index, size_t t)
+{
+    model_target &target = job.out->targets[t];
+    std::string where = where_of(job, p) + text(" target %zu", t);
+    warn_unused_deltas(f, p, t, where);
+    if (gives(p, t, "POSITION"))
+        read_delta(f, p, t, "POSITION", accepted_position_delta(f), where, target.position);
+    if (gives(p, t, "NORMAL"))
+        read_delta(f, p, t, "NORMAL", accepted_normal(f), where, target.normal);
+    else
+        target.missing[part_index] |= MODEL_MISSING_NORMAL;
+    if (gives(p, t, "TANGENT"))
+        read_delta(f, p, t, "TANGENT", accepted_normal(f), where, target.tangent);
+    else if (target.tangent)
+        target.missing[part_index] |= MODEL_MISSING_TANGENT;
+}
+
+static const tinygltf::Value *names_in(const tinygltf::Value &extras)
+{
+    if (!extras.IsObject() || !extras.Get("targetNames").IsArray())
+        return nullptr;
+    return &extras.Get("targetNames");
+}
+
+/* By convention mesh.extras.targetNames; some exporters put it on the primitives. */
+static const tinygltf::Value *target_names(const mesh_job &job)
+{
+    const tinygltf::Value *names = names_in(job.source->extras);
+    for (const part &p : job.parts)
+        if (!names)
+            names = names_in(p.source->extras);
+    return names;
+}
+
+static std::string given_name(const tinygltf::Value *names, size_t t)
+{
+    if (!names || t >= names->ArrayLen() || !names->Get(static_cast<int>(t)).IsString())
+        return "";
+    std::string name = names->Get(static_cast<int>(t)).Get<std::string>();
+    return name.c_str(); /* up to a NUL: names are C strings from here on */
+}
+
+static std::string unique_name(const std::set<std::string> &taken, const std::string &name)
+{
+    std::string candidate = name;
+    for (size_t n = 2; taken.count(candidate); ++n)
+        candidate = name + "_" + std::to_string(n);
+    return candidate;
+}
+
+static void name_targets(file &f, mesh_job &job)
+{
+    const tinygltf::Value *names = target_names(job);
+    std::set<std::string> taken;
+    if (names && names->ArrayLen() != job.out->target_count)
+        warn(f, "%s has %zu target names for %u targets", job.where.c_str(), names->ArrayLen(), job.out->target_count);
+    for (uint32_t t = 0; t < job.out->target_count; ++t) {
+        std::string wanted = name_or(given_name(names, t), "target", t), name = unique_name(taken, wanted);
+        if (name != wanted)
+            warn(f, "%s: two targets are named '%s'; the second is called '%s'", job.where.c_str(),
+                 printable(wanted).c_str(), printable(name).c_str());
+        taken.insert(name);
+        job.out->targets[t].name = copy_string(name);
+    }
+}
+
+static void read_default_weights(file &f, mesh_job &job)
+{
+    const std::vector<double> &weights = job.source->weights;
+    if (!weights.empty() && weights.size() != job.out->target_count)
+        fail(job.where, text("the mesh has %zu weights for %u morph targets: there must be one for each", weights.size(),
+                             job.out->target_count));
+    job.out->weights = allocate<float>(f, job.out->target_count, job.where);
+    for (size_t i = 0; i < weights.size(); ++i)
+        job.out->weights[i] = to_float(weights[i], job.where + " weights");
+}
+
+static void read_targets(file &f, mesh_job &job)
+{
+    uint32_t count = static_cast<uint32_t>(job.parts[0].source->targets.size());
+    job.out->targets = allocate<model_target>(f, count, job.where);
+    job.out->target_count = count;
+    for (size_t t = 0; t < count; ++t) {
+        allocate_target(f, job, t);
+        for (size_t i = 0; i < job.parts.size(); ++i)
+            read_target_part(f, job, job.parts[i], i, t);
+    }
+    name_targets(f, job);
+    read_default_weights(f, job);
+}
+
+/* --- a mesh --- */
+
+static void count_mesh(mesh_job &job)
+{
+    model_mesh &m = *job.out;
+    for (const part &p : job.parts) {
+        m.vertex_count += p.vertex_count;
+        m.index_count += static_cast<uint32_t>(p.indices.size());
+        ++m.submesh_count;
+    }
+}
+
+static void fill_mesh(file &f, mesh_job &job)
+{
+    uint32_t first_index = 0;
+    check_materials(f, job);
+    check_target_counts(job);
+    count_mesh(job);
+    allocate_base(f, job);
+    for (size_t i = 0; i < job.parts.size(); ++i) {
+        model_submesh &submesh = job.out->submeshes[i];
+        read_submesh(job, job.parts[i], first_index, submesh);
+        read_base(f, job, job.parts[i], submesh);
+        first_index += submesh.index_count;
+    }
+    read_targets(f, job);
+}
+
+/* Returns false when the mesh has no triangles at all. */
+static bool read_mesh(file &f, size_t index, model_mesh *out)
+{
+    mesh_job job;
+    std::string name = name_or(f.json.meshes[index].name, "mesh", index);
+    job.source = &f.json.meshes[index];
+    job.where = "mesh '" + printable(name) + "'";
+    job.out = out;
+    find_parts(f, job);
+    if (job.parts.empty()) {
+        warn(f, "%s was skipped: it has no triangles", job.where.c_str());
+        return false;
+    }
+    out->name = copy_string(name);
+    fill_mesh(f, job);
+    return true;
+}
+
+void read_meshes(file &f)
+{
+    f.mesh_of.assign(f.json.meshes.size(), MODEL_NONE);
+    f.out->meshes = allocate<model_mesh>(f, f.json.meshes.size(), "meshes");
+    for (size_t i = 0; i < f.json.meshes.size(); ++i) {
+        uint32_t slot = f.out->mesh_count++; /* counted first: a half-read mesh is freed with the model */
+        if (read_mesh(f, i, &f.out->meshes[slot]))
+            f.mesh_of[i] = slot;
+        else
+            --f.out->mesh_count;
+    }
+}
+
+} // namespace gltf

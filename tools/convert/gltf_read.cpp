@@ -1,0 +1,200 @@
+/* gltf_read.cpp: from a .gltf or .glb file to a model. */
+#include "gltf_internal.h"
+
+#include <cfloat>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <memory>
+
+namespace gltf {
+
+/* A model may be this much larger than its file: sparse targets become dense ones. */
+static const uint64_t expansion_base = 256u << 20, expansion_factor = 256;
+
+void fail(const std::string &where, const std::string &what)
+{
+    throw failure{what, where};
+}
+
+std::string text(const char *format, ...)
+{
+    char line[512];
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    return line;
+}
+
+void charge(file &f, uint64_t count, uint64_t element_size, const std::string &where)
+{
+    uint64_t limit = expansion_base + expansion_factor * f.input_bytes;
+    if (count > limit / element_size || f.output_bytes + count * element_size > limit)
+        fail(where, text("the decoded model would need more than %llu MiB, which a file of this size cannot honestly "
+                         "hold", static_cast<unsigned long long>(limit >> 20)));
+    f.output_bytes += count * element_size;
+}
+
+char *copy_string(const std::string &string)
+{
+    char *copy = model_string(string.c_str());
+    if (!copy)
+        throw std::bad_alloc();
+    return copy;
+}
+
+std::string printable(const std::string &name)
+{
+    const size_t limit = 40;
+    std::string out = name.substr(0, limit);
+    /* do not cut a UTF-8 sequence in two */
+    while (name.size() > out.size() && !out.empty() && (static_cast<unsigned char>(name[out.size()]) & 0xc0) == 0x80)
+        out.pop_back();
+    for (char &c : out)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+            c = '?';
+    return out;
+}
+
+std::string name_or(const std::string &name, const char *kind, size_t index)
+{
+    return name.empty() || name[0] == '\0' ? kind + ("_" + std::to_string(index)) : name;
+}
+
+float to_float(double value, const std::string &where)
+{
+    if (!(std::fabs(value) <= static_cast<double>(FLT_MAX)))
+        fail(where, text("the number %g is too large for a float", value));
+    return static_cast<float>(value);
+}
+
+static uint32_t read_u32(const bytes &data, size_t offset)
+{
+    return static_cast<uint32_t>(data[offset]) | static_cast<uint32_t>(data[offset + 1]) << 8 |
+           static_cast<uint32_t>(data[offset + 2]) << 16 | static_cast<uint32_t>(data[offset + 3]) << 24;
+}
+
+struct chunk {
+    size_t offset, size;
+};
+
+/* The chunk at `offset`, which must have this type. */
+static chunk read_chunk(const bytes &data, size_t length, size_t offset, const char *name)
+{
+    std::string where = text("GLB chunk at byte %zu", offset);
+    if (length - offset < 8)
+        fail(where, "the file ends inside a chunk header: it is truncated, export or copy it again");
+    chunk c = {offset + 8, read_u32(data, offset)};
+    if (c.size > length - c.offset)
+        fail(where, text("the chunk says %zu bytes, but only %zu follow: the file is truncated, export or copy it again",
+                         c.size, length - c.offset));
+    if (memcmp(&data[offset + 4], name, 4) != 0)
+        fail(where, text("this chunk must be %.4s", name));
+    return c;
+}
+
+static size_t glb_length(const bytes &data)
+{
+    if (data.size() < 12)
+        fail("GLB header", "the file ends inside its header: it is truncated, export or copy it again");
+    uint32_t version = read_u32(data, 4), length = read_u32(data, 8);
+    if (version != 2)
+        fail("GLB header", text("this is glTF version %u; only version 2 is read", version));
+    if (length > data.size())
+        fail("GLB header", text("the header says %u bytes, but the file has %zu: it is truncated, export or copy it "
+                                "again", length, data.size()));
+    if (length < 12)
+        fail("GLB header", text("the header says %u bytes, which is shorter than the header itself", length));
+    return length;
+}
+
+/* A .glb: a header, a JSON chunk, and at most one BIN chunk that counts. */
+static void read_glb(file &f, const bytes &data)
+{
+    size_t length = glb_length(data);
+    chunk json = read_chunk(data, length, 12, "JSON");
+    size_t next = json.offset + json.size;
+    if (next < length) {
+        chunk bin = read_chunk(data, length, next, "BIN\0");
+        f.bin.assign(data.begin() + static_cast<std::ptrdiff_t>(bin.offset),
+                     data.begin() + static_cast<std::ptrdiff_t>(bin.offset + bin.size));
+        f.has_bin = true;
+    }
+    parse_json(f, reinterpret_cast<const char *>(&data[0]) + json.offset, json.size);
+}
+
+static bool looks_like_json(const bytes &data)
+{
+    size_t i = 0;
+    if (data.size() >= 3 && data[0] == 0xef && data[1] == 0xbb && data[2] == 0xbf)
+        i = 3; /* a byte order mark */
+    while (i < data.size() && strchr(" \t\r\n", data[i]) && data[i])
+        ++i;
+    return i < data.size() && data[i] == '{';
+}
+
+static void read_container(file &f)
+{
+    bytes data = read_whole_file(f.path, "");
+    f.input_bytes = data.size();
+    if (data.size() >= 4 && memcmp(&data[0], "glTF", 4) == 0)
+        read_glb(f, data);
+    else if (looks_like_json(data))
+        parse_json(f, reinterpret_cast<const char *>(data.data()), data.size());
+    else
+        fail("byte 0", "this is not a glTF file: it starts neither with 'glTF' (.glb) nor with a JSON object (.gltf)");
+}
+
+static void read_model(file &f)
+{
+    size_t slash = f.path.find_last_of('/');
+    f.directory = slash == std::string::npos ? "" : f.path.substr(0, slash + 1);
+    read_container(f);
+    load_buffers(f);
+    read_materials(f);
+    read_meshes(f);
+    read_nodes(f);
+    read_animations(f);
+    if (f.out->mesh_count == 0 && f.out->clip_count == 0)
+        fail("glTF JSON", "the file has no triangle meshes and no animations: there is nothing to convert");
+}
+
+struct model_deleter {
+    void operator()(::model *m) const { model_free(m); }
+};
+
+static int refuse(model_error *error, const std::string &where, const std::string &what)
+{
+    return model_fail(error, where.c_str(), "%s", what.c_str());
+}
+
+} // namespace gltf
+
+extern "C" int model_read_gltf(const char *path, model **out, model_error *error)
+{
+    *out = nullptr;
+    try {
+        std::unique_ptr<model, gltf::model_deleter> building(model_new());
+        if (!building)
+            throw std::bad_alloc();
+        {
+            gltf::file f;
+            f.path = path;
+            f.out = building.get();
+            gltf::read_model(f);
+        }
+        if (model_complete(building.get(), error))
+            return 1;
+        *out = building.release();
+        return 0;
+    } catch (const gltf::failure &reason) {
+        return gltf::refuse(error, reason.where, reason.what);
+    } catch (const std::bad_alloc &) {
+        return gltf::refuse(error, "", "there is not enough memory to read this file");
+    } catch (const std::exception &reason) {
+        return gltf::refuse(error, "glTF JSON", gltf::text("the file could not be read: %s", reason.what()));
+    }
+}

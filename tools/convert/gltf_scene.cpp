@@ -1,0 +1,311 @@
+/* gltf_scene.cpp: the node hierarchy. */
+#include "gltf_internal.h"
+
+#include <cmath>
+#include <cstring>
+
+namespace gltf {
+
+/* A node that is to be read, and the model's index of its parent. */
+struct visit {
+    size_t node;
+    uint32_t parent;
+};
+
+static std::string where_of(const file &f, size_t node)
+{
+    return "node '" + printable(name_or(f.json.nodes[node].name, "node", node)) + "'";
+}
+
+/* --- which nodes, in which order --- */
+
+static void check_node_index(const file &f, int node, const std::string &where)
+{
+    if (node < 0 || static_cast<size_t>(node) >= f.json.nodes.size())
+        fail(where, text("node %d does not exist: the file has %zu", node, f.json.nodes.size()));
+}
+
+static std::vector<bool> nodes_with_parent(const file &f)
+{
+    std::vector<bool> has_parent(f.json.nodes.size(), false);
+    for (size_t i = 0; i < f.json.nodes.size(); ++i)
+        for (int child : f.json.nodes[i].children) {
+            check_node_index(f, child, where_of(f, i) + " children");
+            if (has_parent[static_cast<size_t>(child)])
+                fail(where_of(f, static_cast<size_t>(child)), "the node has two parents: a node may have one");
+            has_parent[static_cast<size_t>(child)] = true;
+        }
+    return has_parent;
+}
+
+/* The roots of the default scene, or all roots where the file has no scene. */
+static std::vector<size_t> root_nodes(const file &f)
+{
+    std::vector<bool> has_parent = nodes_with_parent(f);
+    std::vector<size_t> roots;
+    if (f.json.scenes.empty()) {
+        for (size_t i = 0; i < f.json.nodes.size(); ++i)
+            if (!has_parent[i])
+                roots.push_back(i);
+        return roots;
+    }
+    size_t scene = f.json.defaultScene < 0 ? 0 : static_cast<size_t>(f.json.defaultScene);
+    if (scene >= f.json.scenes.size())
+        fail("scene", text("scene %zu does not exist: the file has %zu", scene, f.json.scenes.size()));
+    for (int node : f.json.scenes[scene].nodes) {
+        check_node_index(f, node, text("scene %zu", scene));
+        if (has_parent[static_cast<size_t>(node)])
+            fail(where_of(f, static_cast<size_t>(node)), "the scene lists this node as a root, but it has a parent");
+        roots.push_back(static_cast<size_t>(node));
+    }
+    return roots;
+}
+
+/* Depth first, parents first, children in the file's order. */
+static std::vector<visit> visit_order(file &f)
+{
+    std::vector<size_t> roots = root_nodes(f);
+    std::vector<visit> order, open;
+    for (size_t i = roots.size(); i-- > 0;)
+        open.push_back({roots[i], MODEL_NONE});
+    while (!open.empty()) {
+        visit v = open.back();
+        open.pop_back();
+        if (f.node_of[v.node] != MODEL_NONE)
+            fail(where_of(f, v.node), "the node is in the scene twice");
+        uint32_t index = static_cast<uint32_t>(order.size());
+        f.node_of[v.node] = index;
+        order.push_back(v);
+        const std::vector<int> &children = f.json.nodes[v.node].children;
+        for (size_t i = children.size(); i-- > 0;)
+            open.push_back({static_cast<size_t>(children[i]), index});
+    }
+    /* every node has at most one parent, so what no root leads to is a cycle */
+    if (f.json.scenes.empty() && order.size() != f.json.nodes.size())
+        fail("nodes", text("%zu nodes are their own ancestors", f.json.nodes.size() - order.size()));
+    return order;
+}
+
+/* --- transforms --- */
+
+struct transform {
+    double translation[3], rotation[4], scale[3];
+    double matrix[16];
+};
+
+static void read_numbers(const std::vector<double> &from, size_t count, const char *name, const std::string &where,
+                         double *out)
+{
+    if (from.empty())
+        return;
+    if (from.size() != count)
+        fail(where, text("'%s' has %zu numbers; it needs %zu", name, from.size(), count));
+    for (size_t i = 0; i < count; ++i)
+        out[i] = static_cast<double>(to_float(from[i], where + " " + name));
+}
+
+static void normalize_rotation(file &f, double *q, const std::string &where)
+{
+    double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    if (!(length > 1e-6)) {
+        warn(f, "%s: the rotation has no length and was taken as none", where.c_str());
+        q[0] = q[1] = q[2] = 0.0;
+        q[3] = length = 1.0;
+    }
+    for (int i = 0; i < 4; ++i)
+        q[i] /= length;
+}
+
+static void matrix_of_rotation(const double *q, double *m) /* [3][3], columns */
+{
+    double x = q[0], y = q[1], z = q[2], w = q[3];
+    m[0] = 1.0 - 2.0 * (y * y + z * z);
+    m[1] = 2.0 * (x * y + z * w);
+    m[2] = 2.0 * (x * z - y * w);
+    m[3] = 2.0 * (x * y - z * w);
+    m[4] = 1.0 - 2.0 * (x * x + z * z);
+    m[5] = 2.0 * (y * z + x * w);
+    m[6] = 2.0 * (x * z + y * w);
+    m[7] = 2.0 * (y * z - x * w);
+    m[8] = 1.0 - 2.0 * (x * x + y * y);
+}
+
+static void compose(transform &t)
+{
+    double r[9];
+    matrix_of_rotation(t.rotation, r);
+    for (int column = 0; column < 3; ++column) {
+        for (int row = 0; row < 3; ++row)
+            t.matrix[column * 4 + row] = r[column * 3 + row] * t.scale[column];
+        t.matrix[column * 4 + 3] = 0.0;
+        t.matrix[12 + column] = t.translation[column];
+    }
+    t.matrix[15] = 1.0;
+}
+
+/* The largest of w, x, y, z is found first, so that no division is by a small number. */
+static void rotation_of_matrix(const double *m, double *q)
+{
+    double squares[4] = {1.0 + m[0] - m[4] - m[8], 1.0 - m[0] + m[4] - m[8], 1.0 - m[0] - m[4] + m[8],
+                         1.0 + m[0] + m[4] + m[8]}; /* 4 x^2, 4 y^2, 4 z^2, 4 w^2 */
+    int largest = 3;
+    for (int i = 0; i < 3; ++i)
+        if (squares[i] > squares[largest])
+            largest = i;
+    double twice = std::sqrt(squares[largest]), s = 0.5 / twice;
+    double xy = (m[1] + m[3]) * s, xz = (m[2] + m[6]) * s, yz = (m[5] + m[7]) * s;
+    double xw = (m[5] - m[7]) * s, yw = (m[6] - m[2]) * s, zw = (m[1] - m[3]) * s;
+    const double rows[4][4] = {{0.0, xy, xz, xw}, {xy, 0.0, yz, yw}, {xz, yz, 0.0, zw}, {xw, yw, zw, 0.0}};
+    for (int i = 0; i < 4; ++i)
+        q[i] = i == largest ? 0.5 * twice : rows[largest][i];
+}
+
+static double column_length(const double *column)
+{
+    return std::sqrt(vec_dot(column, column));
+}
+
+/* The unit columns of a matrix without shear; a mirrored one gets a negative x scale. */
+static void split_scale(transform &t, double *unit)
+{
+    double cross[3];
+    for (int c = 0; c < 3; ++c) {
+        t.scale[c] = column_length(t.matrix + c * 4);
+        for (int r = 0; r < 3; ++r)
+            unit[c * 3 + r] = t.scale[c] > 0.0 ? t.matrix[c * 4 + r] / t.scale[c] : (r == c ? 1.0 : 0.0);
+    }
+    vec_cross(unit, unit + 3, cross);
+    if (vec_dot(cross, unit + 6) >= 0.0)
+        return;
+    t.scale[0] = -t.scale[0];
+    for (int r = 0; r < 3; ++r)
+        unit[r] = -unit[r];
+}
+
+static bool differs(const double *a, const double *b, double tolerance)
+{
+    double size = 0.0, difference = 0.0;
+    for (int i = 0; i < 12; ++i) {
+        size = std::fmax(size, i % 4 == 3 ? 0.0 : std::fabs(a[i]));
+        difference = std::fmax(difference, i % 4 == 3 ? 0.0 : std::fabs(a[i] - b[i]));
+    }
+    return difference > tolerance * size;
+}
+
+static void decompose(file &f, transform &t, const std::string &where)
+{
+    double unit[9];
+    for (int i = 0; i < 3; ++i)
+        t.translation[i] = t.matrix[12 + i];
+    split_scale(t, unit);
+    rotation_of_matrix(unit, t.rotation);
+    normalize_rotation(f, t.rotation, where);
+    transform again = t;
+    compose(again);
+    if (differs(t.matrix, again.matrix, 1e-4))
+        warn(f, "%s: the matrix is skewed; as translation, rotation and scale it is only approximate", where.c_str());
+}
+
+static void check_affine(const double *m, const std::string &where)
+{
+    if (m[3] != 0.0 || m[7] != 0.0 || m[11] != 0.0 || m[15] != 1.0)
+        fail(where, "the matrix is not affine: its last row must be 0 0 0 1");
+}
+
+static transform read_transform(file &f, const tinygltf::Node &node, const std::string &where)
+{
+    transform t = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 1.0}, {1.0, 1.0, 1.0}, {0.0}};
+    if (!node.matrix.empty()) {
+        read_numbers(node.matrix, 16, "matrix", where, t.matrix);
+        check_affine(t.matrix, where);
+        decompose(f, t, where);
+        return t;
+    }
+    read_numbers(node.translation, 3, "translation", where, t.translation);
+    read_numbers(node.rotation, 4, "rotation", where, t.rotation);
+    read_numbers(node.scale, 3, "scale", where, t.scale);
+    normalize_rotation(f, t.rotation, where);
+    compose(t);
+    return t;
+}
+
+static void multiply(const double *a, const double *b, double *out)
+{
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row) {
+            double sum = 0.0;
+            for (int k = 0; k < 4; ++k)
+                sum += a[k * 4 + row] * b[column * 4 + k];
+            out[column * 4 + row] = sum;
+        }
+}
+
+static void store_transform(file &f, const transform &t, model_node &out, const std::string &where)
+{
+    for (int i = 0; i < 4; ++i)
+        out.rotation[i] = static_cast<float>(t.rotation[i]);
+    for (int i = 0; i < 3; ++i) {
+        out.translation[i] = static_cast<float>(t.translation[i]);
+        out.scale[i] = to_float(t.scale[i], where + " scale");
+    }
+    if (out.parent == MODEL_NONE)
+        memcpy(out.world, t.matrix, sizeof out.world);
+    else
+        multiply(f.out->nodes[out.parent].world, t.matrix, out.world);
+    for (double number : out.world)
+        if (!std::isfinite(number))
+            fail(where, "the world matrix is not finite: the scales of its ancestors are too large");
+}
+
+/* --- what a node carries --- */
+
+static void read_mesh_of_node(const file &f, const tinygltf::Node &node, model_node &out, const std::string &where)
+{
+    out.mesh = MODEL_NONE;
+    if (node.mesh < 0)
+        return;
+    if (static_cast<size_t>(node.mesh) >= f.mesh_of.size())
+        fail(where, text("mesh %d does not exist: the file has %zu", node.mesh, f.mesh_of.size()));
+    out.mesh = f.mesh_of[static_cast<size_t>(node.mesh)];
+}
+
+static void read_weights(file &f, const tinygltf::Node &node, model_node &out, const std::string &where)
+{
+    if (node.weights.empty())
+        return;
+    if (out.mesh == MODEL_NONE) {
+        warn(f, "%s has weights but no mesh; they were ignored", where.c_str());
+        return;
+    }
+    const model_mesh &mesh = f.out->meshes[out.mesh];
+    if (node.weights.size() != mesh.target_count)
+        fail(where, text("the node has %zu weights, but its mesh '%s' has %u morph targets: there must be one for each",
+                         node.weights.size(), printable(mesh.name).c_str(), mesh.target_count));
+    out.weights = allocate<float>(f, mesh.target_count, where);
+    for (size_t i = 0; i < node.weights.size(); ++i)
+        out.weights[i] = to_float(node.weights[i], where + " weights");
+}
+
+static void read_node(file &f, const visit &v, model_node &out)
+{
+    const tinygltf::Node &node = f.json.nodes[v.node];
+    std::string where = where_of(f, v.node);
+    out.name = copy_string(name_or(node.name, "node", v.node));
+    out.parent = v.parent;
+    out.skinned = node.skin >= 0;
+    read_mesh_of_node(f, node, out, where);
+    read_weights(f, node, out, where);
+    store_transform(f, read_transform(f, node, where), out, where);
+}
+
+void read_nodes(file &f)
+{
+    f.node_of.assign(f.json.nodes.size(), MODEL_NONE);
+    std::vector<visit> order = visit_order(f);
+    f.out->nodes = allocate<model_node>(f, order.size(), "nodes");
+    f.out->node_count = static_cast<uint32_t>(order.size());
+    for (size_t i = 0; i < order.size(); ++i)
+        read_node(f, order[i], f.out->nodes[i]);
+}
+
+} // namespace gltf

@@ -1,0 +1,140 @@
+/* model.c: making, warning about, and freeing a model. */
+#include "model_build.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void *model_zeros(size_t count, size_t element_size)
+{
+    if (element_size == 0 || count > SIZE_MAX / element_size)
+        return NULL;
+    return calloc(count ? count : 1, element_size);
+}
+
+model *model_new(void)
+{
+    return model_zeros(1, sizeof(model));
+}
+
+char *model_string(const char *text)
+{
+    size_t bytes = strlen(text) + 1;
+    char *copy = malloc(bytes);
+    if (copy)
+        memcpy(copy, text, bytes);
+    return copy;
+}
+
+/* The array is grown to powers of two, so its capacity need not be stored. */
+static int warnings_grow(model *m)
+{
+    uint32_t count = m->warning_count;
+    if (count != 0 && (count & (count - 1)) != 0)
+        return 0;
+    size_t capacity = count ? (size_t)count * 2 : 1;
+    char **grown = realloc(m->warnings, capacity * sizeof *grown);
+    if (!grown)
+        return 1;
+    m->warnings = grown;
+    return 0;
+}
+
+int model_warn(model *m, const char *format, ...)
+{
+    if (m->warning_count > MODEL_WARNINGS_MAX)
+        return 0;
+    char text[512];
+    if (m->warning_count == MODEL_WARNINGS_MAX) {
+        (void)snprintf(text, sizeof text, "further warnings are not shown");
+    } else {
+        va_list arguments;
+        va_start(arguments, format);
+        (void)vsnprintf(text, sizeof text, format, arguments);
+        va_end(arguments);
+    }
+    char *copy = model_string(text);
+    if (!copy || warnings_grow(m)) {
+        free(copy);
+        return 1;
+    }
+    m->warnings[m->warning_count++] = copy;
+    return 0;
+}
+
+int model_fail(model_error *error, const char *where, const char *format, ...)
+{
+    if (!error)
+        return 1;
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(error->what, sizeof error->what, format, arguments);
+    va_end(arguments);
+    (void)snprintf(error->where, sizeof error->where, "%s", where);
+    return 1;
+}
+
+static void target_free(model_target *target)
+{
+    free(target->name);
+    free(target->position);
+    free(target->normal);
+    free(target->tangent);
+    free(target->missing);
+}
+
+static void mesh_free(model_mesh *mesh)
+{
+    for (uint32_t i = 0; mesh->targets && i < mesh->target_count; ++i)
+        target_free(&mesh->targets[i]);
+    free(mesh->targets);
+    free(mesh->name);
+    free(mesh->position);
+    free(mesh->normal);
+    free(mesh->tangent);
+    free(mesh->uv);
+    free(mesh->color);
+    free(mesh->indices);
+    free(mesh->submeshes);
+    free(mesh->weights);
+}
+
+static void clip_free(model_clip *clip)
+{
+    for (uint32_t i = 0; clip->channels && i < clip->channel_count; ++i) {
+        free(clip->channels[i].times);
+        free(clip->channels[i].values);
+    }
+    free(clip->channels);
+    free(clip->name);
+}
+
+void model_free(model *m)
+{
+    if (!m)
+        return;
+    for (uint32_t i = 0; m->meshes && i < m->mesh_count; ++i)
+        mesh_free(&m->meshes[i]);
+    for (uint32_t i = 0; m->nodes && i < m->node_count; ++i) {
+        free(m->nodes[i].name);
+        free(m->nodes[i].weights);
+    }
+    for (uint32_t i = 0; m->clips && i < m->clip_count; ++i)
+        clip_free(&m->clips[i]);
+    for (uint32_t i = 0; m->materials && i < m->material_count; ++i)
+        free(m->materials[i].name);
+    for (uint32_t i = 0; m->textures && i < m->texture_count; ++i) {
+        free(m->textures[i].name);
+        free(m->textures[i].rgba);
+    }
+    for (uint32_t i = 0; i < m->warning_count; ++i)
+        free(m->warnings[i]);
+    free(m->meshes);
+    free(m->nodes);
+    free(m->clips);
+    free(m->materials);
+    free(m->textures);
+    free(m->warnings);
+    free(m);
+}

@@ -1,0 +1,135 @@
+/* model.h: what the converter keeps of an asset, decoded and in model units.
+ *
+ * Every reader (glTF now) fills a `model`; the encoders and the pack writer
+ * read nothing else. All arrays are owned by the model and freed by
+ * model_free. Units: metres, seconds; right-handed, Y up; quaternions xyzw;
+ * matrices column-major. */
+#ifndef NOH_CONVERT_MODEL_H
+#define NOH_CONVERT_MODEL_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define MODEL_NONE 0xffffffffu
+
+typedef struct model_texture {
+    char *name;
+    uint32_t width, height;
+    uint8_t *rgba;             /* [height][width][4], rows top to bottom, as the image file has them */
+    uint32_t wrap_s, wrap_t;   /* glTF enum values: 10497 repeat, 33071 clamp, 33648 mirror */
+    uint32_t mag_filter, min_filter; /* glTF enum values, 0 = not given */
+} model_texture;
+
+typedef enum model_alpha { MODEL_ALPHA_OPAQUE, MODEL_ALPHA_MASK, MODEL_ALPHA_BLEND } model_alpha;
+
+typedef struct model_material {
+    char *name;
+    float base_color[4];            /* linear */
+    uint32_t base_color_texture;    /* index into textures or MODEL_NONE */
+    float metallic, roughness;
+    model_alpha alpha;
+    float alpha_cutoff;
+    uint8_t double_sided, unlit;
+} model_material;
+
+/* What model_complete has yet to fill, for the vertices of one submesh. */
+#define MODEL_MISSING_NORMAL 1u
+#define MODEL_MISSING_TANGENT 2u
+
+/* One morph target: dense deltas, zero where the target does not move. */
+typedef struct model_target {
+    char *name;
+    float *position; /* [vertex_count][3] */
+    float *normal;   /* [vertex_count][3]; never NULL after model_complete */
+    float *tangent;  /* [vertex_count][3]; NULL where the mesh has no tangents */
+    uint8_t has_position, has_normal, has_tangent; /* what the file itself gave (any primitive) */
+    uint8_t *missing; /* [submesh_count] MODEL_MISSING_* bits: deltas that model_complete has yet to compute; NULL = none */
+} model_target;
+
+typedef struct model_submesh {
+    uint32_t first_index, index_count; /* into model_mesh.indices; triangles */
+    uint32_t material;                 /* index or MODEL_NONE */
+    uint32_t first_vertex, vertex_count; /* the vertices of this primitive */
+    uint8_t missing;                     /* MODEL_MISSING_* bits; zero once model_complete has run */
+} model_submesh;
+
+/* One glTF mesh: its primitives' vertices one after another, indices rebased. */
+typedef struct model_mesh {
+    char *name;
+    uint32_t vertex_count, index_count, submesh_count, target_count;
+    float *position;  /* [vertex_count][3] */
+    float *normal;    /* [vertex_count][3], unit; computed where the file has none */
+    float *tangent;   /* [vertex_count][4], unit + handedness +1/-1; NULL where no primitive has UVs or tangents */
+    float *uv;        /* [vertex_count][2] (TEXCOORD_0, or the set that the base colour texture uses); NULL where no primitive has them */
+    float *color;     /* [vertex_count][4] linear (COLOR_0); NULL where no primitive has them */
+    uint32_t *indices;
+    model_submesh *submeshes;
+    model_target *targets;
+    float *weights;   /* [target_count] the mesh's default weights */
+} model_mesh;
+
+typedef struct model_node {
+    char *name;
+    uint32_t parent;      /* index or MODEL_NONE; parents come first */
+    uint32_t mesh;        /* index or MODEL_NONE */
+    float translation[3], rotation[4], scale[3]; /* local; a matrix is decomposed */
+    double world[16];     /* column-major, from the local matrices in double precision */
+    float *weights;       /* [targets of the mesh] or NULL: the mesh's defaults hold */
+    uint8_t skinned;      /* glTF: the node's own transform is ignored for a skinned mesh */
+} model_node;
+
+typedef enum model_path { MODEL_PATH_WEIGHTS, MODEL_PATH_TRANSLATION, MODEL_PATH_ROTATION, MODEL_PATH_SCALE } model_path;
+typedef enum model_interpolation { MODEL_LINEAR, MODEL_STEP, MODEL_CUBICSPLINE } model_interpolation;
+
+typedef struct model_channel {
+    uint32_t node;
+    model_path path;
+    model_interpolation interpolation;
+    uint32_t key_count, width;  /* width: floats per key value (target count for weights, 3 or 4) */
+    float *times;               /* [key_count] seconds, strictly increasing, >= 0 */
+    float *values;              /* [key_count][width], CUBICSPLINE [key_count][3][width]: in-tangent, value, out-tangent */
+} model_channel;
+
+typedef struct model_clip {
+    char *name;
+    uint32_t channel_count;
+    model_channel *channels;
+    float duration_s;           /* the largest key time */
+} model_clip;
+
+typedef struct model {
+    uint32_t mesh_count, node_count, clip_count, material_count, texture_count;
+    model_mesh *meshes;
+    model_node *nodes;
+    model_clip *clips;
+    model_material *materials;
+    model_texture *textures;
+    uint32_t warning_count;
+    char **warnings;            /* sentences for the user, e.g. what was skipped and why */
+} model;
+
+/* Why a file was refused: what is wrong, and where (e.g. "accessor 7, element 12"). */
+typedef struct model_error {
+    char what[256];
+    char where[128];
+} model_error;
+
+/* Read a .gltf or .glb file. Returns 0 and *out on success, else 1 and a filled error (*out = NULL).
+ * Calls model_complete. */
+int model_read_gltf(const char *path, model **out, model_error *error);
+
+/* Fill in what the file left out (NULL arrays and MODEL_MISSING_* bits): normals
+ * (crease-aware), tangents where there are UVs, normal and tangent deltas of
+ * targets that lack them (from the morphed mesh). Returns 0, or 1 and *error. */
+int model_complete(model *m, model_error *error);
+
+void model_free(model *m);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

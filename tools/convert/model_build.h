@@ -1,0 +1,103 @@
+/* model_build.h: what readers and model_complete share while they build a model.
+ *
+ *   model_new      an empty model
+ *   model_zeros    a zeroed array, or NULL (also for a size that overflows)
+ *   model_string   a copy of a string
+ *   model_warn     add a sentence to the model's warnings
+ *   model_fail     fill an error
+ *   weld_vertices  which vertices are one point of the surface
+ *   normals_*      fans of smooth corners, and their normals in any pose
+ *   tangents_*     groups of corners that share a tangent, likewise */
+#ifndef NOH_CONVERT_MODEL_BUILD_H
+#define NOH_CONVERT_MODEL_BUILD_H
+
+#include "model.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Deltas shorter than this came out of rounding and are stored as exact zeros. */
+#define MODEL_DELTA_NOISE 1e-7
+
+model *model_new(void);
+void *model_zeros(size_t count, size_t element_size);
+char *model_string(const char *text);
+
+/* Add a warning (printf form). After MODEL_WARNINGS_MAX the rest is dropped with
+ * a note, so that a hostile file cannot fill the memory. Returns 1 when out of memory. */
+#define MODEL_WARNINGS_MAX 256u
+#if defined(__GNUC__)
+__attribute__((format(printf, 2, 3)))
+#endif
+int model_warn(model *m, const char *format, ...);
+
+/* Fill *error (printf form for `what`) and return 1. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 3, 4)))
+#endif
+int model_fail(model_error *error, const char *where, const char *format, ...);
+
+/* For each vertex the first one that is the same point of the surface: at the same
+ * position, and moved alike by every target (two lips that touch are two points).
+ * out [vertex_count]. Returns 1 when out of memory. */
+int weld_vertices(const model_mesh *mesh, uint32_t *out);
+
+/* A fan: the corners around one point that share one normal. A vertex is in one
+ * fan only, because vertices are never split. */
+typedef struct normal_fans {
+    uint32_t corner_count, fan_count;
+    uint32_t *corner_fan; /* [corner_count]; a corner is an entry of mesh->indices */
+    uint32_t *vertex_fan; /* [vertex_count], MODEL_NONE for a vertex of no triangle */
+    double *normal;       /* [fan_count][3] of the last normals_evaluate, unit or zero */
+} normal_fans;
+
+/* Find the fans of a mesh's base pose: corners of one vertex, and corners of welded
+ * vertices whose triangles meet at an edge below the crease angle (60 degrees).
+ * Returns 1 when out of memory. */
+int normals_build(const model_mesh *mesh, const uint32_t *weld, normal_fans *out);
+
+/* Angle-weighted normals of the fans in one pose: base plus delta.
+ * delta    [vertex_count][3] or NULL for the base pose
+ * touched  [fan_count] only these are evaluated (the others are left as they are); NULL = all
+ * A fan without area gets a zero normal. */
+void normals_evaluate(normal_fans *fans, const model_mesh *mesh, const float *delta, const uint8_t *touched);
+void normals_free(normal_fans *fans);
+
+/* A tangent group: welded vertices with equal normals and UVs. */
+typedef struct tangent_groups {
+    uint32_t group_count;
+    uint32_t *vertex_group; /* [vertex_count] */
+    double *sum;            /* [group_count][3] of the last tangents_evaluate; zero where there are no usable UVs */
+    signed char *hand;      /* [group_count] +1 or -1: the side with the larger weight in the base pose */
+} tangent_groups;
+
+/* Group the vertices and choose each group's handedness from the base pose.
+ * Needs mesh->normal; without mesh->uv every sum is zero. Returns 1 when out of memory. */
+int tangents_build(const model_mesh *mesh, const uint32_t *weld, tangent_groups *out);
+
+/* Angle-weighted tangents in one pose: base plus deltas.
+ * position_delta, normal_delta  [vertex_count][3] or NULL
+ * touched  [group_count] only these are evaluated; NULL = all */
+void tangents_evaluate(tangent_groups *groups, const model_mesh *mesh, const float *position_delta,
+                       const float *normal_delta, const uint8_t *touched);
+void tangents_free(tangent_groups *groups);
+
+/* Small vector helpers in double precision; a, b and out are [3]. */
+double vec_dot(const double *a, const double *b);
+void vec_cross(const double *a, const double *b, double *out);
+/* Scale to length 1. Returns 0 and leaves v alone when it has no length. */
+int vec_normalize(double *v);
+/* The part of v at a right angle to the unit vector n. */
+void vec_reject(double *v, const double *n);
+/* Any unit vector at a right angle to the unit vector n. */
+void vec_any_perpendicular(const double *n, double *out);
+/* The angle between two vectors, 0..pi, to 1e-7. Not libm's: its last bits differ between machines. */
+double vec_angle(const double *a, const double *b);
+/* A vertex's position or normal in a pose. delta may be NULL. */
+void vec_posed(const float *base, const float *delta, uint32_t vertex, double *out);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,287 @@
+/* morph_encode.c: drives the encoder: which pairs stay, in which order the
+ * vertices lie, which rectangles cover each target, and the texels in them. */
+#include "morph_internal.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define WIDTH_LOG2_MAX 10u
+#define RECT_LIMIT 65535u    /* morph_rect is 16-bit */
+#define DELTA_LIMIT 1e30f    /* larger ones are a broken file, and their squares would overflow */
+
+typedef struct encoder {
+    const model_mesh *mesh;
+    morph_options options;
+    morph_encoding *e;
+    morph_bits vertices;     /* all vertices x targets: kept pairs */
+    morph_bits touched;      /* rows of touched vertices, source order */
+    uint32_t *touched_index; /* [touched] vertex in the source's order */
+    model_error *error;
+} encoder;
+
+static int fail(encoder *c, const char *what, const char *where)
+{
+    snprintf(c->error->what, sizeof c->error->what, "%s", what);
+    snprintf(c->error->where, sizeof c->error->where, "%s", where);
+    return 1;
+}
+
+static int no_memory(encoder *c) { return fail(c, "out of memory", "encoding morph targets"); }
+
+/* ---- what comes in ---- */
+
+static int check_deltas(encoder *c, const float *delta, uint32_t t, const char *part)
+{
+    char where[128];
+    if (!delta) return 0;
+    for (size_t i = 0; i < (size_t)c->mesh->vertex_count * MORPH_AXES; i++) {
+        if (fabsf(delta[i]) <= DELTA_LIMIT) continue; /* false for a NaN */
+        snprintf(where, sizeof where, "target %u, %s delta of vertex %u", (unsigned)t, part, (unsigned)(i / MORPH_AXES));
+        return fail(c, "morph delta is not finite or larger than 1e30", where);
+    }
+    return 0;
+}
+
+static int check_input(encoder *c)
+{
+    const uint64_t most = (uint64_t)RECT_LIMIT << WIDTH_LOG2_MAX;
+    if (c->mesh->vertex_count > most) return fail(c, "too many vertices for the morph texture (limit 67107840)", "mesh");
+    if (!(c->options.error_um > 0.0f) || !(c->options.error_um <= DELTA_LIMIT))
+        return fail(c, "the position error must be above zero", "options");
+    if (!(c->options.rect_cost_texels > 0.0f) || !(c->options.rect_cost_texels <= DELTA_LIMIT))
+        return fail(c, "the cost of a rectangle must be above zero", "options");
+    for (uint32_t t = 0; t < c->mesh->target_count; t++) {
+        const model_target *s = &c->mesh->targets[t];
+        if (check_deltas(c, s->position, t, "position") || check_deltas(c, s->normal, t, "normal")
+            || check_deltas(c, s->tangent, t, "tangent"))
+            return 1;
+    }
+    return 0;
+}
+
+/* ---- which pairs stay ---- */
+
+static int find_pairs(encoder *c)
+{
+    morph_encoding *e = c->e;
+    const uint32_t targets = c->mesh->target_count;
+    uint32_t words[3];
+    c->vertices.rows = c->mesh->vertex_count;
+    c->vertices.words = (targets + 63u) / 64u;
+    c->vertices.bits = morph_alloc((size_t)c->vertices.rows * c->vertices.words, sizeof *c->vertices.bits);
+    if (!c->vertices.bits) return no_memory(c);
+    for (uint32_t t = 0; t < targets; t++) {
+        morph_target *q = &e->targets[t];
+        morph_quantise_choose(c->mesh, t, c->options.error_um, q);
+        for (uint32_t v = 0; v < c->mesh->vertex_count; v++)
+            if (morph_quantise_pack(q, &c->mesh->targets[t], v, words)) morph_set_bit(&c->vertices, v, t);
+        e->pair_count += q->pair_count;
+        e->source_pairs += q->source_pairs;
+    }
+    return 0;
+}
+
+static int is_touched(const morph_bits *b, uint32_t row)
+{
+    for (uint32_t w = 0; w < b->words; w++)
+        if (morph_row(b, row)[w]) return 1;
+    return 0;
+}
+
+/* Touched vertices first, both parts in the source's order. */
+static int compact(encoder *c)
+{
+    morph_encoding *e = c->e;
+    uint32_t rest;
+    for (uint32_t v = 0; v < e->vertex_count; v++) e->touched_count += (uint32_t)is_touched(&c->vertices, v);
+    c->touched.words = c->vertices.words;
+    c->touched.bits = morph_alloc((size_t)e->touched_count * c->touched.words, sizeof *c->touched.bits);
+    c->touched_index = morph_alloc(e->touched_count, sizeof *c->touched_index);
+    if (!c->touched.bits || !c->touched_index) return no_memory(c);
+    rest = e->touched_count;
+    for (uint32_t v = 0; v < e->vertex_count; v++) {
+        if (!is_touched(&c->vertices, v)) {
+            e->order[rest++] = v;
+            continue;
+        }
+        c->touched_index[c->touched.rows] = v;
+        memcpy(c->touched.bits + (size_t)c->touched.rows * c->touched.words, morph_row(&c->vertices, v),
+               c->touched.words * sizeof(uint64_t));
+        c->touched.rows++;
+    }
+    return 0;
+}
+
+/* ---- where they lie ---- */
+
+/* The patterns' members, one pattern after another. */
+static int make_line(encoder *c, uint32_t *line)
+{
+    morph_patterns patterns;
+    uint32_t *path, place = 0;
+    int failed;
+    if (morph_patterns_init(&patterns, &c->touched)) return 1;
+    path = morph_alloc(patterns.count, sizeof *path);
+    failed = !path || morph_order_path(&patterns, c->options.rect_cost_texels, path);
+    for (uint32_t i = 0; !failed && i < patterns.count; i++)
+        for (uint32_t m = patterns.first[path[i]]; m < patterns.first[path[i] + 1u]; m++)
+            line[place++] = patterns.members[m];
+    free(path);
+    morph_patterns_free(&patterns);
+    return failed;
+}
+
+static int order_vertices(encoder *c)
+{
+    morph_encoding *e = c->e;
+    uint32_t *line = morph_alloc(e->touched_count, sizeof *line);
+    int failed = !line || make_line(c, line);
+    morph_fold_size(e->touched_count, &e->width_log2, &e->height);
+    failed = failed || morph_fold_settle(&c->touched, e->width_log2, e->height, c->options.rect_cost_texels, line);
+    if (!failed) {
+        morph_fold_order(line, e->touched_count, e->width_log2, e->height, e->order);
+        for (uint32_t i = 0; i < e->touched_count; i++) e->order[i] = c->touched_index[e->order[i]];
+    }
+    free(line);
+    return failed ? no_memory(c) : 0;
+}
+
+/* ---- rectangles and texels ---- */
+
+/* Indices, ascending, of what target t moves; order == NULL: the source's order. */
+static uint32_t list_texels(const encoder *c, uint32_t t, const uint32_t *order, uint32_t count, uint32_t *texels)
+{
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < count; i++)
+        if (morph_bit(&c->vertices, order ? order[i] : i, t)) texels[n++] = i;
+    return n;
+}
+
+static int cover_target(encoder *c, uint32_t t, uint32_t *texels, morph_rect_list *rects, uint64_t *area)
+{
+    morph_encoding *e = c->e;
+    morph_target *q = &e->targets[t];
+    const uint32_t count = list_texels(c, t, e->order, e->touched_count, texels);
+    const morph_cover_options options = { e->width_log2, c->options.rect_cost_texels, c->options.rects };
+    uint64_t texel_count = 0;
+    q->first_rect = rects->count;
+    q->first_texel = (uint32_t)*area;
+    if (morph_cover(texels, count, &options, rects)) return no_memory(c);
+    q->rect_count = rects->count - q->first_rect;
+    for (uint32_t r = q->first_rect; r < rects->count; r++)
+        texel_count += (uint64_t)rects->items[r].w * rects->items[r].h;
+    *area += texel_count;
+    if (*area > UINT32_MAX / MORPH_AXES) return fail(c, "too many morph texels (limit 1431655765)", "mesh");
+    q->texel_count = (uint32_t)texel_count;
+    return 0;
+}
+
+static int cover_all(encoder *c, uint32_t *texels)
+{
+    morph_encoding *e = c->e;
+    morph_rect_list rects = { NULL, 0, 0 };
+    uint64_t area = 0;
+    int failed = 0;
+    for (uint32_t t = 0; !failed && t < e->target_count; t++) failed = cover_target(c, t, texels, &rects, &area);
+    e->rects = rects.items;
+    e->rect_count = rects.count;
+    e->texel_count = (uint32_t)area;
+    return failed;
+}
+
+static int fill_texels(encoder *c)
+{
+    morph_encoding *e = c->e;
+    uint32_t *out;
+    e->texels = morph_alloc((size_t)e->texel_count * MORPH_AXES, sizeof *e->texels);
+    if (!e->texels) return no_memory(c);
+    out = e->texels;
+    for (uint32_t t = 0; t < e->target_count; t++) {
+        const morph_target *q = &e->targets[t];
+        for (uint32_t r = q->first_rect; r < q->first_rect + q->rect_count; r++)
+            for (uint32_t i = 0; i < (uint32_t)e->rects[r].w * e->rects[r].h; i++, out += MORPH_AXES) {
+                const uint32_t x = e->rects[r].x + i % e->rects[r].w, y = e->rects[r].y + i / e->rects[r].w;
+                const uint32_t v = (y << e->width_log2) + x;
+                if (v < e->touched_count) morph_quantise_pack(q, &c->mesh->targets[t], e->order[v], out);
+            }
+    }
+    return 0;
+}
+
+/* For the report: one bounding rectangle per target, all vertices in the source's order, square texture. */
+static void count_one_rect(encoder *c, uint32_t *texels)
+{
+    morph_encoding *e = c->e;
+    uint64_t sum = 0, width = 1;
+    while (width * width < e->vertex_count) width++;
+    for (uint32_t t = 0; t < e->target_count; t++) {
+        const uint32_t count = list_texels(c, t, NULL, e->vertex_count, texels);
+        uint64_t low = width, high = 0;
+        if (count == 0u) continue;
+        for (uint32_t i = 0; i < count; i++) {
+            const uint64_t x = texels[i] % width;
+            if (x < low) low = x;
+            if (x > high) high = x;
+        }
+        sum += (high - low + 1u) * (texels[count - 1u] / width - texels[0] / width + 1u);
+    }
+    e->texels_one_rect = sum > UINT32_MAX ? UINT32_MAX : (uint32_t)sum;
+}
+
+static int encode(encoder *c)
+{
+    uint32_t *texels;
+    int failed;
+    if (check_input(c) || find_pairs(c) || compact(c) || order_vertices(c)) return 1;
+    texels = morph_alloc(c->e->vertex_count, sizeof *texels);
+    if (!texels) return no_memory(c);
+    count_one_rect(c, texels);
+    failed = cover_all(c, texels);
+    free(texels);
+    return failed || fill_texels(c);
+}
+
+static int start(encoder *c)
+{
+    morph_encoding *e = c->e = morph_alloc(1, sizeof *c->e);
+    if (!e) return no_memory(c);
+    e->vertex_count = c->mesh->vertex_count;
+    e->target_count = c->mesh->target_count;
+    e->order = morph_alloc(e->vertex_count, sizeof *e->order);
+    e->targets = morph_alloc(e->target_count, sizeof *e->targets);
+    return e->order && e->targets ? 0 : no_memory(c);
+}
+
+int morph_encode(const model_mesh *mesh, const morph_options *options, morph_encoding **out, model_error *error)
+{
+    encoder c;
+    int failed;
+    memset(&c, 0, sizeof c);
+    c.mesh = mesh;
+    c.error = error;
+    if (options) c.options = *options;
+    if (c.options.error_um == 0.0f) c.options.error_um = MORPH_DEFAULT_ERROR_UM;
+    if (c.options.rect_cost_texels == 0.0f) c.options.rect_cost_texels = MORPH_DEFAULT_RECT_COST;
+    failed = start(&c) || encode(&c);
+    free(c.vertices.bits);
+    free(c.touched.bits);
+    free(c.touched_index);
+    if (failed) {
+        morph_encoding_free(c.e);
+        c.e = NULL;
+    }
+    *out = c.e;
+    return failed;
+}
+
+void morph_encoding_free(morph_encoding *e)
+{
+    if (!e) return;
+    free(e->order);
+    free(e->targets);
+    free(e->rects);
+    free(e->texels);
+    free(e);
+}

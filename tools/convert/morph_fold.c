@@ -1,0 +1,214 @@
+/* morph_fold.c: lays the line of vertices into the texture, and settles it there.
+ *
+ * The texture is cut into strips of MORPH_STRIP_ROWS rows, and the line fills a strip
+ * column by column. Rectangles then are a few texels high, which rasterisers
+ * want: they shade 2x2 quads on GPUs and 4x4 blocks in software, so that runs
+ * one texel high would pay for two to four. A target needs every column that
+ * one of its vertices lies in, so runs should start and stop where columns do:
+ * short stretches of the line are turned and exchanged until they mostly do. */
+#include "morph_internal.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define WIDTH_LOG2_MIN 4u
+#define WIDTH_LOG2_MAX 10u
+#define STEPS_PER_VERTEX 200u
+#define STEPS_MOST 1200000u /* divided by the words of a row */
+#define STAGES 48u
+#define STAGES_WARM 40u
+#define STRETCH_MOST 96u    /* vertices of the longest stretch that a step moves */
+#define COST_MOST 1000u
+
+typedef struct fold {
+    const morph_bits *vertices;
+    uint32_t *line;       /* place -> row of vertices */
+    uint32_t count, words, rect_cost;
+    uint32_t columns;
+    uint32_t *first;      /* [columns + 1] column -> place */
+    uint32_t *column;     /* place -> column */
+    uint8_t *starts;      /* column is the first of its strip */
+    uint64_t *used;       /* two rows of words: this column and the one before */
+    morph_random random;
+} fold;
+
+/* Nearly square: software and tiled GPUs both work in square tiles, and empty rows of a tile cost too. */
+void morph_fold_size(uint32_t touched, uint32_t *width_log2, uint32_t *height)
+{
+    uint32_t log2 = WIDTH_LOG2_MIN;
+    while (log2 < WIDTH_LOG2_MAX && (uint64_t)1 << 2u * log2 < touched) log2++;
+    *width_log2 = log2;
+    *height = (uint32_t)(((uint64_t)touched + ((uint64_t)1 << log2) - 1u) >> log2);
+}
+
+/* ---- places ---- */
+
+static uint32_t rows_of_strip(uint32_t height, uint32_t y0)
+{
+    return height - y0 < MORPH_STRIP_ROWS ? height - y0 : MORPH_STRIP_ROWS;
+}
+
+/* The last row may be partly filled: its strip's last columns are shorter by one, or not there. */
+static void find_columns(fold *f, uint32_t width, uint32_t height)
+{
+    uint32_t place = 0;
+    for (uint32_t y0 = 0; y0 < height; y0 += MORPH_STRIP_ROWS)
+        for (uint32_t x = 0; x < width; x++) {
+            uint32_t rows = rows_of_strip(height, y0);
+            if ((uint64_t)(y0 + rows - 1u) * width + x >= f->count) rows--;
+            if (rows == 0u) return;
+            f->starts[f->columns] = x == 0u;
+            f->first[f->columns] = place;
+            for (uint32_t i = 0; i < rows; i++) f->column[place++] = f->columns;
+            f->first[++f->columns] = place;
+        }
+}
+
+void morph_fold_order(const uint32_t *line, uint32_t count, uint32_t width_log2, uint32_t height, uint32_t *order)
+{
+    const uint32_t width = (uint32_t)1 << width_log2;
+    uint32_t place = 0;
+    for (uint32_t y0 = 0; y0 < height; y0 += MORPH_STRIP_ROWS)
+        for (uint32_t x = 0; x < width; x++)
+            for (uint32_t i = 0; i < rows_of_strip(height, y0); i++) {
+                const uint32_t v = (y0 + i) * width + x;
+                if (v < count) order[v] = line[place++];
+            }
+}
+
+/* ---- the cost of some columns ---- */
+
+static void use_column(const fold *f, uint32_t c, uint64_t *used)
+{
+    memset(used, 0, f->words * sizeof *used);
+    for (uint32_t i = f->first[c]; i < f->first[c + 1u]; i++)
+        for (uint32_t w = 0; w < f->words; w++) used[w] |= morph_row(f->vertices, f->line[i])[w];
+}
+
+/* Texels of columns low..high, and rectangles that start in low..high + 1, summed over targets. */
+static int64_t column_cost(fold *f, uint32_t low, uint32_t high)
+{
+    uint64_t *before = f->used, *here = f->used + f->words, *swap;
+    uint64_t texels = 0, rects = 0;
+    if (low > 0u) use_column(f, low - 1u, before);
+    for (uint32_t c = low; c <= high + 1u && c < f->columns; c++) {
+        const uint32_t rows = c <= high ? f->first[c + 1u] - f->first[c] : 0u;
+        use_column(f, c, here);
+        for (uint32_t w = 0; w < f->words; w++) {
+            texels += (uint64_t)rows * morph_popcount(here[w]);
+            rects += morph_popcount(f->starts[c] ? here[w] : here[w] & ~before[w]);
+        }
+        swap = before;
+        before = here;
+        here = swap;
+    }
+    return (int64_t)(texels + rects * f->rect_cost);
+}
+
+/* ---- settling ---- */
+
+static void turn(uint32_t *line, uint32_t low, uint32_t high)
+{
+    for (; low + 1u < high; low++, high--) {
+        const uint32_t a = line[low];
+        line[low] = line[high - 1u];
+        line[high - 1u] = a;
+    }
+}
+
+static int same_pattern(const fold *f, uint32_t a, uint32_t b)
+{
+    return memcmp(morph_row(f->vertices, f->line[a]), morph_row(f->vertices, f->line[b]), f->words * sizeof(uint64_t)) == 0;
+}
+
+/* The next place at or after `at`, at most `limit`, where the pattern changes. */
+static uint32_t next_change(const fold *f, uint32_t at, uint32_t limit)
+{
+    while (at < limit && at > 0u && same_pattern(f, at - 1u, at)) at++;
+    return at;
+}
+
+/* Turns [a, c), or exchanges [a, b) and [b, c): both are turns, and undone by turns. */
+static void step(fold *f, uint32_t odds)
+{
+    uint32_t a = morph_random_below(&f->random, f->count), b, c, limit;
+    const uint32_t kind = morph_random_below(&f->random, 4u);
+    int64_t old, cost;
+    limit = a + STRETCH_MOST < f->count ? a + STRETCH_MOST : f->count;
+    if (kind & 1u) a = next_change(f, a, limit);
+    b = a + 1u + morph_random_below(&f->random, STRETCH_MOST / 2u);
+    if (b >= limit) return;
+    if (kind & 1u) b = next_change(f, b, limit);
+    c = b + 1u + morph_random_below(&f->random, STRETCH_MOST / 2u);
+    if (c > limit) c = limit;
+    if (kind & 1u && c < limit) c = next_change(f, c, limit);
+    if (b >= c) return;
+    if (kind & 2u) b = c;
+    old = column_cost(f, f->column[a], f->column[c - 1u]);
+    turn(f->line, a, b);
+    turn(f->line, b, c);
+    if (b < c) turn(f->line, a, c);
+    cost = column_cost(f, f->column[a], f->column[c - 1u]);
+    if (morph_accepts(&f->random, cost - old, odds)) return;
+    if (b < c) turn(f->line, a, c);
+    turn(f->line, b, c);
+    turn(f->line, a, b);
+}
+
+/* The temperature falls from a third of a texel to about nothing, then is nothing: these are
+ * repairs, and a warmer start only tears the line up. */
+static void settle(fold *f)
+{
+    uint64_t steps = (uint64_t)STEPS_PER_VERTEX * f->count;
+    uint32_t heat = ((uint32_t)1 << MORPH_HEAT_BITS) / 3u;
+    if (steps > STEPS_MOST / f->words) steps = STEPS_MOST / f->words;
+    for (uint32_t stage = 0; stage < STAGES; stage++) {
+        const uint32_t odds = stage < STAGES_WARM ? morph_odds(heat) : 0u;
+        for (uint64_t s = 0; s < steps / STAGES; s++) step(f, odds);
+        heat -= heat / 12u;
+    }
+}
+
+/* Big meshes get too few steps to freeze again: the line that came in may be the better one. */
+static int settle_or_leave(fold *f)
+{
+    const size_t bytes = f->count * sizeof *f->line;
+    const int64_t before = column_cost(f, 0, f->columns - 1u);
+    uint32_t *old = morph_alloc(f->count, sizeof *old);
+    if (!old) return 1;
+    memcpy(old, f->line, bytes);
+    settle(f);
+    if (column_cost(f, 0, f->columns - 1u) > before) memcpy(f->line, old, bytes);
+    free(old);
+    return 0;
+}
+
+int morph_fold_settle(const morph_bits *vertices, uint32_t width_log2, uint32_t height, float rect_cost, uint32_t *line)
+{
+    const uint32_t width = (uint32_t)1 << width_log2;
+    const size_t columns = (size_t)width * ((height + MORPH_STRIP_ROWS - 1u) / MORPH_STRIP_ROWS);
+    fold f;
+    int failed;
+    if (vertices->rows == 0u) return 0;
+    memset(&f, 0, sizeof f);
+    f.vertices = vertices;
+    f.line = line;
+    f.count = vertices->rows;
+    f.words = vertices->words;
+    f.rect_cost = rect_cost < 1.0f ? 1u : rect_cost > (float)COST_MOST ? COST_MOST : (uint32_t)(rect_cost + 0.5f);
+    f.random = MORPH_RANDOM_SEED;
+    f.first = morph_alloc(columns + 1u, sizeof *f.first);
+    f.column = morph_alloc(f.count, sizeof *f.column);
+    f.starts = morph_alloc(columns, sizeof *f.starts);
+    f.used = morph_alloc(2u * (size_t)f.words, sizeof *f.used);
+    failed = !f.first || !f.column || !f.starts || !f.used;
+    if (!failed) {
+        find_columns(&f, width, height);
+        failed = settle_or_leave(&f);
+    }
+    free(f.first);
+    free(f.column);
+    free(f.starts);
+    free(f.used);
+    return failed;
+}

@@ -1,0 +1,261 @@
+/* pack_mesh.c: vertices in the encoder's order, compact attributes, indices, targets. */
+#include "pack_mesh.h"
+
+#include <math.h>
+#include <meshoptimizer.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/hash.h"
+#include "f16_bound.h"
+
+/* A unit vector as an octahedral pair in -1..1. */
+static void fold(const float v[3], float pair[2])
+{
+    float sum = fabsf(v[0]) + fabsf(v[1]) + fabsf(v[2]);
+    float x = sum > 0.0f ? v[0] / sum : 0.0f, y = sum > 0.0f ? v[1] / sum : 0.0f;
+    pair[0] = v[2] >= 0.0f ? x : (1.0f - fabsf(y)) * (x >= 0.0f ? 1.0f : -1.0f);
+    pair[1] = v[2] >= 0.0f ? y : (1.0f - fabsf(x)) * (y >= 0.0f ? 1.0f : -1.0f);
+}
+
+static uint32_t round_to(float value, float top)
+{
+    return (uint32_t)(int32_t)floorf(value * top + 0.5f);
+}
+
+static uint32_t pack_normal(const float v[3])
+{
+    float pair[2];
+    fold(v, pair);
+    return (round_to(pair[0], 32767.0f) & 0xffffu) | round_to(pair[1], 32767.0f) << 16;
+}
+
+static uint32_t pack_tangent(const float v[4])
+{
+    float pair[2];
+    fold(v, pair);
+    return (round_to(pair[0], 32767.0f) & 0xffffu) | round_to(pair[1], 16383.0f) << 17 | (v[3] < 0.0f ? 0x10000u : 0u);
+}
+
+static uint32_t unorm(float value, float top)
+{
+    float clamped = value < 0.0f ? 0.0f : value > 1.0f ? 1.0f : value;
+    return (uint32_t)floorf(clamped * top + 0.5f);
+}
+
+static uint32_t pack_color(const float c[4])
+{
+    uint32_t word = unorm(c[3], 255.0f) << 24;
+    for (unsigned i = 0; i < 3; i++) {
+        word |= unorm(sqrtf(c[i] > 0.0f ? c[i] : 0.0f), 255.0f) << (8u * i);
+    }
+    return word;
+}
+
+static uint32_t mesh_flags(const model_mesh *m)
+{
+    return (m->tangent ? NOH_MESH_TANGENTS : 0u) | (m->uv ? NOH_MESH_UVS : 0u) | (m->color ? NOH_MESH_COLORS : 0u);
+}
+
+static void set_bounds(const model_mesh *m, noh_mesh_header *h)
+{
+    for (int c = 0; c < 3; c++) {
+        h->bounds_min[c] = h->bounds_max[c] = m->position[c];
+    }
+    for (uint32_t v = 0; v < m->vertex_count; v++) {
+        for (int c = 0; c < 3; c++) {
+            float p = m->position[3 * (size_t)v + (size_t)c];
+            h->bounds_min[c] = p < h->bounds_min[c] ? p : h->bounds_min[c];
+            h->bounds_max[c] = p > h->bounds_max[c] ? p : h->bounds_max[c];
+        }
+    }
+}
+
+/* UVs are 16-bit fractions of their own range, so that tiling ones keep their precision. */
+static void set_uv_range(const model_mesh *m, noh_mesh_header *h)
+{
+    float low[2] = { 0.0f, 0.0f }, high[2] = { 0.0f, 0.0f };
+    for (uint32_t v = 0; m->uv && v < m->vertex_count; v++) {
+        for (int c = 0; c < 2; c++) {
+            float value = m->uv[2 * (size_t)v + (size_t)c];
+            low[c] = v == 0 || value < low[c] ? value : low[c];
+            high[c] = v == 0 || value > high[c] ? value : high[c];
+        }
+    }
+    for (int c = 0; c < 2; c++) {
+        h->uv_offset[c] = low[c];
+        h->uv_scale[c] = high[c] - low[c];
+    }
+}
+
+static uint32_t pack_uv(const float uv[2], const noh_mesh_header *h)
+{
+    uint32_t word = 0;
+    for (unsigned c = 0; c < 2; c++) {
+        float fraction = h->uv_scale[c] > 0.0f ? (uv[c] - h->uv_offset[c]) / h->uv_scale[c] : 0.0f;
+        word |= unorm(fraction, 65535.0f) << (16u * c);
+    }
+    return word;
+}
+
+static void append_vertices(const model_mesh *m, const morph_encoding *e, noh_mesh_header *h, size_t base, byte_buffer *out)
+{
+    buffer_align(out, 16);
+    h->positions_offset = (uint32_t)(out->count - base);
+    for (uint32_t v = 0; v < m->vertex_count; v++) {
+        buffer_append(out, m->position + 3 * (size_t)e->order[v], 12);
+    }
+    buffer_align(out, 16);
+    h->attributes_offset = (uint32_t)(out->count - base);
+    for (uint32_t v = 0; v < m->vertex_count; v++) {
+        size_t old = e->order[v];
+        uint32_t record[4], words = 0;
+        record[words++] = pack_normal(m->normal + 3 * old);
+        if (m->tangent) {
+            record[words++] = pack_tangent(m->tangent + 4 * old);
+        }
+        if (m->uv) {
+            record[words++] = pack_uv(m->uv + 2 * old, h);
+        }
+        if (m->color) {
+            record[words++] = pack_color(m->color + 4 * old);
+        }
+        h->attribute_stride = words * 4;
+        buffer_append(out, record, words * 4);
+    }
+}
+
+/* Indices in the new order, each submesh's triangles reordered for the vertex
+ * cache. Those of blended materials keep the artist's order: it is the order in
+ * which they are drawn over each other. */
+static uint32_t *make_indices(const model_mesh *m, const morph_encoding *e, const uint8_t *submesh_blends)
+{
+    uint32_t *inverse = malloc(sizeof *inverse * m->vertex_count);
+    uint32_t *indices = malloc(sizeof *indices * (m->index_count + 1u));
+    if (inverse && indices) {
+        for (uint32_t v = 0; v < m->vertex_count; v++) {
+            inverse[e->order[v]] = v;
+        }
+        for (uint32_t i = 0; i < m->index_count; i++) {
+            indices[i] = inverse[m->indices[i]];
+        }
+        for (uint32_t s = 0; s < m->submesh_count; s++) {
+            uint32_t *first = indices + m->submeshes[s].first_index;
+            if (!submesh_blends[s] && m->submeshes[s].index_count) {
+                meshopt_optimizeVertexCache(first, first, m->submeshes[s].index_count, m->vertex_count);
+            }
+        }
+    }
+    free(inverse);
+    return indices;
+}
+
+static void append_indices(const uint32_t *indices, noh_mesh_header *h, size_t base, byte_buffer *out)
+{
+    buffer_align(out, 16);
+    h->indices_offset = (uint32_t)(out->count - base);
+    h->index_bytes = h->vertex_count <= 65536u ? 2u : 4u;
+    for (uint32_t i = 0; i < h->index_count; i++) {
+        uint16_t narrow = (uint16_t)indices[i];
+        buffer_append(out, h->index_bytes == 2 ? (const void *)&narrow : (const void *)&indices[i], h->index_bytes);
+    }
+}
+
+static void append_submeshes(const model_mesh *m, const uint32_t *indices, noh_mesh_header *h, size_t base, byte_buffer *out)
+{
+    buffer_align(out, 16);
+    h->submeshes_offset = (uint32_t)(out->count - base);
+    for (uint32_t s = 0; s < m->submesh_count; s++) {
+        noh_submesh sub = { m->submeshes[s].first_index, m->submeshes[s].index_count, m->submeshes[s].material, 0, 0 };
+        uint32_t low = h->vertex_count, high = 0;
+        for (uint32_t i = 0; i < sub.index_count; i++) {
+            uint32_t v = indices[sub.first_index + i];
+            low = v < low ? v : low;
+            high = v > high ? v : high;
+        }
+        sub.first_vertex = sub.index_count ? low : 0;
+        sub.vertex_count = sub.index_count ? high - low + 1 : 0;
+        buffer_append(out, &sub, sizeof sub);
+    }
+}
+
+static void append_targets(const model_mesh *m, const morph_encoding *e, string_table *strings, noh_mesh_header *h, size_t base,
+                           byte_buffer *out)
+{
+    buffer_align(out, 16);
+    h->targets_offset = (uint32_t)(out->count - base);
+    for (uint32_t t = 0; t < e->target_count; t++) {
+        const morph_target *from = &e->targets[t];
+        noh_target to;
+        memset(&to, 0, sizeof to);
+        to.name = string_offset(strings, m->targets[t].name);
+        to.name_hash = noh_hash_name((const char *)strings->bytes.bytes + to.name);
+        to.first_rect = from->first_rect;
+        to.rect_count = from->rect_count;
+        to.first_texel = from->first_texel;
+        to.texel_count = from->texel_count;
+        to.pair_count = from->pair_count;
+        to.position_bits = from->position_bits;
+        to.normal_bits = from->normal_bits;
+        to.tangent_bits = from->tangent_bits;
+        to.position_scale = from->position_scale;
+        to.normal_scale = from->normal_scale;
+        to.tangent_scale = from->tangent_scale;
+        to.max_displacement = from->max_displacement;
+        to.position_error = from->position_error;
+        to.normal_error = from->normal_error;
+        to.tangent_error = from->tangent_error;
+        buffer_append(out, &to, sizeof to);
+    }
+    buffer_align(out, 16);
+    h->weights_offset = (uint32_t)(out->count - base);
+    buffer_append(out, m->weights, 4u * (size_t)m->target_count);
+    buffer_align(out, 16);
+    h->rects_offset = (uint32_t)(out->count - base);
+    buffer_append(out, e->rects, sizeof(noh_rect) * (size_t)e->rect_count);
+    buffer_align(out, 16);
+    h->texels_offset = (uint32_t)(out->count - base);
+    buffer_append(out, e->texels, 12u * (size_t)e->texel_count);
+}
+
+static void set_counts(const model_mesh *m, const morph_encoding *e, noh_mesh_header *h)
+{
+    memset(h, 0, sizeof *h);
+    h->flags = mesh_flags(m);
+    h->vertex_count = m->vertex_count;
+    h->index_count = m->index_count;
+    h->submesh_count = m->submesh_count;
+    h->target_count = e->target_count;
+    h->rect_count = e->rect_count;
+    h->texel_count = e->texel_count;
+    h->pair_count = e->pair_count;
+    h->source_pair_count = e->source_pairs;
+    h->touched_count = e->touched_count;
+    h->morph_width_log2 = e->width_log2;
+    h->morph_height = e->height;
+    h->texels_one_rect = e->texels_one_rect;
+    set_bounds(m, h);
+    set_uv_range(m, h);
+    f16_bound(e, &h->f16_position_bound, &h->f16_direction_bound);
+}
+
+void pack_mesh(const model_mesh *m, const morph_encoding *e, const uint8_t *submesh_blends, string_table *strings, byte_buffer *out)
+{
+    size_t base = out->count;
+    uint32_t *indices = make_indices(m, e, submesh_blends);
+    noh_mesh_header h;
+    if (!indices) {
+        out->failed = 1;
+        return;
+    }
+    set_counts(m, e, &h);
+    buffer_append(out, &h, sizeof h);
+    append_vertices(m, e, &h, base, out);
+    append_indices(indices, &h, base, out);
+    append_submeshes(m, indices, &h, base, out);
+    append_targets(m, e, strings, &h, base, out);
+    if (!out->failed) {
+        memcpy(out->bytes + base, &h, sizeof h);
+    }
+    free(indices);
+}

@@ -1,0 +1,354 @@
+#include "pack_write.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/hash.h"
+#include "pack_mesh.h"
+
+typedef struct writer {
+    const model *m;
+    byte_buffer out;      /* header and table first, then the chunks */
+    string_table strings;
+    noh_pack_chunk *chunks;
+    uint32_t chunk_count;
+} writer;
+
+uint32_t string_offset(string_table *strings, const char *name)
+{
+    char cut[NOH_NAME_BYTES_MAX];
+    size_t length = strlen(name);
+    if (length >= sizeof cut) {
+        length = sizeof cut - 1;
+        while (length && ((unsigned char)name[length] & 0xc0u) == 0x80u) {
+            length--; /* not in the middle of a UTF-8 character */
+        }
+    }
+    memcpy(cut, name, length);
+    cut[length] = 0;
+    for (size_t at = 0; at < strings->bytes.count; at += strlen((char *)strings->bytes.bytes + at) + 1) {
+        if (strcmp((char *)strings->bytes.bytes + at, cut) == 0) {
+            return (uint32_t)at;
+        }
+    }
+    buffer_append(&strings->bytes, cut, length + 1);
+    return (uint32_t)(strings->bytes.count - length - 1);
+}
+
+static void name_of(string_table *strings, const char *text, uint32_t *name, uint32_t *hash)
+{
+    *name = string_offset(strings, text ? text : "");
+    *hash = noh_hash_name((const char *)strings->bytes.bytes + *name);
+}
+
+static void begin_chunk(writer *w, uint32_t type, const char *name)
+{
+    noh_pack_chunk *c = &w->chunks[w->chunk_count];
+    buffer_align(&w->out, NOH_PACK_ALIGN);
+    memset(c, 0, sizeof *c);
+    c->type = type;
+    name_of(&w->strings, name, &c->name, &c->name_hash);
+    c->offset = (uint32_t)w->out.count;
+}
+
+static void end_chunk(writer *w)
+{
+    noh_pack_chunk *c = &w->chunks[w->chunk_count++];
+    c->bytes = (uint32_t)(w->out.count - c->offset);
+    c->crc = w->out.failed ? 0 : noh_crc32c(0, w->out.bytes + c->offset, c->bytes);
+}
+
+static uint32_t wrap_mode(uint32_t gltf)
+{
+    return gltf == 33071 ? NOH_WRAP_CLAMP : gltf == 33648 ? NOH_WRAP_MIRROR : NOH_WRAP_REPEAT;
+}
+
+/* Halve an image until it is within the limit; a 2 x 2 box is right for powers of two. */
+static uint8_t *shrink(const model_texture *t, uint32_t *width, uint32_t *height)
+{
+    uint8_t *pixels = malloc((size_t)t->width * t->height * 4);
+    *width = t->width;
+    *height = t->height;
+    if (!pixels) {
+        return NULL;
+    }
+    memcpy(pixels, t->rgba, (size_t)t->width * t->height * 4);
+    while (*width > NOH_TEXTURE_SIZE_MAX || *height > NOH_TEXTURE_SIZE_MAX) {
+        uint32_t w = *width > 1 ? *width / 2 : 1, h = *height > 1 ? *height / 2 : 1;
+        uint32_t dx = *width > 1 ? 1 : 0, dy = *height > 1 ? 1 : 0;
+        for (uint32_t y = 0; y < h; y++) {
+            for (uint32_t i = 0; i < w * 4; i++) {
+                size_t x = (size_t)(i / 4) * (1u + dx), c = i % 4;
+                const uint8_t *a = pixels + ((size_t)y * (1u + dy) * *width + x) * 4 + c;
+                const uint8_t *b = a + (size_t)dy * *width * 4;
+                pixels[(size_t)y * w * 4 + i] = (uint8_t)((a[0] + a[dx * 4] + b[0] + b[dx * 4] + 2) / 4);
+            }
+        }
+        *width = w;
+        *height = h;
+    }
+    return pixels;
+}
+
+static void write_texture(writer *w, const model_texture *t)
+{
+    noh_texture_header h;
+    uint8_t *pixels;
+    begin_chunk(w, NOH_CHUNK_TEXTURE, t->name);
+    memset(&h, 0, sizeof h);
+    h.wrap_s = wrap_mode(t->wrap_s);
+    h.wrap_t = wrap_mode(t->wrap_t);
+    h.nearest = t->mag_filter == 9728;
+    h.pixels_offset = sizeof h;
+    pixels = shrink(t, &h.width, &h.height);
+    if (pixels) {
+        buffer_append(&w->out, &h, sizeof h);
+        buffer_append(&w->out, pixels, (size_t)h.width * h.height * 4);
+    } else {
+        w->out.failed = 1;
+    }
+    free(pixels);
+    end_chunk(w);
+}
+
+static uint32_t material_flags(const model_material *m)
+{
+    return (m->alpha == MODEL_ALPHA_BLEND ? NOH_MATERIAL_BLEND : 0u) | (m->alpha == MODEL_ALPHA_MASK ? NOH_MATERIAL_MASK : 0u) |
+           (m->double_sided ? NOH_MATERIAL_DOUBLE_SIDED : 0u) | (m->unlit ? NOH_MATERIAL_UNLIT : 0u);
+}
+
+static void write_materials(writer *w)
+{
+    begin_chunk(w, NOH_CHUNK_MATERIALS, "");
+    for (uint32_t i = 0; i < w->m->material_count; i++) {
+        const model_material *from = &w->m->materials[i];
+        noh_material to;
+        memset(&to, 0, sizeof to);
+        name_of(&w->strings, from->name, &to.name, &to.name_hash);
+        to.flags = material_flags(from);
+        to.base_color_texture = from->base_color_texture;
+        memcpy(to.base_color, from->base_color, sizeof to.base_color);
+        to.metallic = from->metallic;
+        to.roughness = from->roughness;
+        to.alpha_cutoff = from->alpha_cutoff;
+        buffer_append(&w->out, &to, sizeof to);
+    }
+    end_chunk(w);
+}
+
+static void write_mesh(writer *w, const model_mesh *mesh, const morph_encoding *e)
+{
+    uint8_t blends[NOH_SUBMESHES_MAX];
+    for (uint32_t s = 0; s < mesh->submesh_count; s++) {
+        uint32_t material = mesh->submeshes[s].material;
+        blends[s] = material != MODEL_NONE && w->m->materials[material].alpha == MODEL_ALPHA_BLEND;
+    }
+    begin_chunk(w, NOH_CHUNK_MESH, mesh->name);
+    pack_mesh(mesh, e, blends, &w->strings, &w->out);
+    end_chunk(w);
+}
+
+static void write_node(writer *w, const model_node *from, uint32_t *weight_count)
+{
+    noh_node to;
+    memset(&to, 0, sizeof to);
+    name_of(&w->strings, from->name, &to.name, &to.name_hash);
+    to.parent = from->parent;
+    to.mesh = from->mesh;
+    memcpy(to.translation, from->translation, sizeof to.translation);
+    memcpy(to.rotation, from->rotation, sizeof to.rotation);
+    memcpy(to.scale, from->scale, sizeof to.scale);
+    for (int row = 0; row < 3; row++) {
+        for (int column = 0; column < 4; column++) {
+            /* a skinned mesh is placed by its joints, not by its node (glTF 2.0, 3.7.3) */
+            to.world[4 * row + column] = from->skinned ? (row == column ? 1.0f : 0.0f) : (float)from->world[4 * column + row];
+        }
+    }
+    to.first_weight = NOH_NONE;
+    if (from->mesh != MODEL_NONE && from->weights) {
+        to.first_weight = *weight_count;
+        *weight_count += w->m->meshes[from->mesh].target_count;
+    }
+    buffer_append(&w->out, &to, sizeof to);
+}
+
+static void write_nodes(writer *w)
+{
+    noh_nodes_header h = { w->m->node_count, 0, sizeof h, 0 };
+    size_t base;
+    begin_chunk(w, NOH_CHUNK_NODES, "");
+    base = w->out.count;
+    buffer_append(&w->out, &h, sizeof h);
+    for (uint32_t i = 0; i < w->m->node_count; i++) {
+        write_node(w, &w->m->nodes[i], &h.weight_count);
+    }
+    buffer_align(&w->out, 16);
+    h.weights_offset = (uint32_t)(w->out.count - base);
+    for (uint32_t i = 0; i < w->m->node_count; i++) {
+        const model_node *n = &w->m->nodes[i];
+        if (n->mesh != MODEL_NONE && n->weights) {
+            buffer_append(&w->out, n->weights, 4u * (size_t)w->m->meshes[n->mesh].target_count);
+        }
+    }
+    if (!w->out.failed) {
+        memcpy(w->out.bytes + base, &h, sizeof h);
+    }
+    end_chunk(w);
+}
+
+static uint32_t weight_channels(const model_clip *clip)
+{
+    uint32_t count = 0;
+    for (uint32_t c = 0; c < clip->channel_count; c++) {
+        count += clip->channels[c].path == MODEL_PATH_WEIGHTS;
+    }
+    return count;
+}
+
+static void write_channel_keys(writer *w, const model_channel *from, noh_clip_channel *to, size_t base)
+{
+    size_t values = from->interpolation == MODEL_CUBICSPLINE ? 3 : 1;
+    to->node = from->node;
+    to->interpolation = (uint32_t)from->interpolation;
+    to->key_count = from->key_count;
+    to->width = from->width;
+    buffer_align(&w->out, 16);
+    to->times_offset = (uint32_t)(w->out.count - base);
+    buffer_append(&w->out, from->times, 4u * (size_t)from->key_count);
+    buffer_align(&w->out, 16);
+    to->values_offset = (uint32_t)(w->out.count - base);
+    buffer_append(&w->out, from->values, 4u * values * from->width * from->key_count);
+}
+
+static void write_clip(writer *w, const model_clip *clip)
+{
+    noh_clip_header h = { weight_channels(clip), clip->duration_s, sizeof h, 0 };
+    size_t base, at;
+    begin_chunk(w, NOH_CHUNK_CLIP, clip->name);
+    base = w->out.count;
+    buffer_append(&w->out, &h, sizeof h);
+    at = w->out.count;
+    buffer_append(&w->out, NULL, sizeof(noh_clip_channel) * h.channel_count);
+    for (uint32_t c = 0; c < clip->channel_count; c++) {
+        noh_clip_channel channel;
+        if (clip->channels[c].path != MODEL_PATH_WEIGHTS) {
+            continue;
+        }
+        memset(&channel, 0, sizeof channel);
+        write_channel_keys(w, &clip->channels[c], &channel, base);
+        if (!w->out.failed) {
+            memcpy(w->out.bytes + at, &channel, sizeof channel);
+            at += sizeof channel;
+        }
+    }
+    end_chunk(w);
+}
+
+static void write_content(writer *w, morph_encoding *const *encodings)
+{
+    for (uint32_t i = 0; i < w->m->texture_count; i++) {
+        write_texture(w, &w->m->textures[i]);
+    }
+    if (w->m->material_count) {
+        write_materials(w);
+    }
+    for (uint32_t i = 0; i < w->m->mesh_count; i++) {
+        write_mesh(w, &w->m->meshes[i], encodings[i]);
+    }
+    if (w->m->node_count) {
+        write_nodes(w);
+    }
+    for (uint32_t i = 0; i < w->m->clip_count; i++) {
+        if (weight_channels(&w->m->clips[i])) {
+            write_clip(w, &w->m->clips[i]);
+        }
+    }
+}
+
+/* The strings are known last but lie first: put them between the table and the content. */
+static int assemble(writer *w, byte_buffer *out)
+{
+    noh_pack_header h;
+    size_t table = sizeof h + sizeof *w->chunks * w->chunk_count, content;
+    noh_pack_chunk *s = &w->chunks[0];
+    memset(&h, 0, sizeof h);
+    buffer_append(out, &h, sizeof h);
+    buffer_append(out, w->chunks, sizeof *w->chunks * w->chunk_count);
+    buffer_align(out, NOH_PACK_ALIGN);
+    s->offset = (uint32_t)out->count;
+    s->bytes = (uint32_t)w->strings.bytes.count;
+    s->crc = noh_crc32c(0, w->strings.bytes.bytes, w->strings.bytes.count);
+    buffer_append(out, w->strings.bytes.bytes, w->strings.bytes.count);
+    buffer_align(out, NOH_PACK_ALIGN);
+    content = out->count;
+    for (uint32_t i = 1; i < w->chunk_count; i++) {
+        w->chunks[i].offset += (uint32_t)content;
+    }
+    buffer_append(out, w->out.bytes ? w->out.bytes : (const uint8_t *)"", w->out.count);
+    buffer_align(out, NOH_PACK_ALIGN);
+    if (out->failed || out->count > NOH_PACK_BYTES_MAX) {
+        return 1;
+    }
+    h.magic = NOH_PACK_MAGIC;
+    h.version = NOH_PACK_VERSION;
+    h.byte_count = (uint32_t)out->count;
+    h.chunk_count = w->chunk_count;
+    memcpy(out->bytes + sizeof h, w->chunks, table - sizeof h);
+    h.crc = noh_crc32c(noh_crc32c(0, &h, sizeof h), w->chunks, table - sizeof h);
+    memcpy(out->bytes, &h, sizeof h);
+    return 0;
+}
+
+static int check_limits(const model *m, model_error *error)
+{
+    const struct { const char *what; uint32_t count, limit; } limits[] = {
+        { "materials", m->material_count, NOH_MATERIALS_MAX },
+        { "nodes", m->node_count, NOH_NODES_MAX },
+        { "chunks (meshes, textures and clips)", m->mesh_count + m->texture_count + m->clip_count + 3, NOH_PACK_CHUNKS_MAX }
+    };
+    for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++) {
+        if (limits[i].count > limits[i].limit) {
+            snprintf(error->what, sizeof error->what, "%u %s, the format holds %u", limits[i].count, limits[i].what, limits[i].limit);
+            error->where[0] = 0;
+            return 1;
+        }
+    }
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        if (m->meshes[i].submesh_count > NOH_SUBMESHES_MAX) {
+            snprintf(error->what, sizeof error->what, "%u primitives in one mesh, the format holds %u", m->meshes[i].submesh_count,
+                     NOH_SUBMESHES_MAX);
+            snprintf(error->where, sizeof error->where, "mesh '%.80s'", m->meshes[i].name);
+            return 1;
+        }
+    }
+    return 0;
+}
+
+int pack_write(const model *m, morph_encoding *const *encodings, byte_buffer *out, model_error *error)
+{
+    writer w;
+    int failed;
+    if (check_limits(m, error)) {
+        return 1;
+    }
+    memset(&w, 0, sizeof w);
+    w.m = m;
+    w.chunks = calloc((size_t)m->mesh_count + m->texture_count + m->clip_count + 3, sizeof *w.chunks);
+    string_offset(&w.strings, "");
+    if (w.chunks) {
+        begin_chunk(&w, NOH_CHUNK_STRINGS, "");
+        w.chunk_count = 1; /* filled by assemble */
+        write_content(&w, encodings);
+    }
+    failed = !w.chunks || w.out.failed || w.strings.bytes.failed || assemble(&w, out);
+    if (failed) {
+        snprintf(error->what, sizeof error->what, "out of memory, or the pack would be over %u bytes", NOH_PACK_BYTES_MAX);
+        error->where[0] = 0;
+        buffer_free(out);
+    }
+    buffer_free(&w.out);
+    buffer_free(&w.strings.bytes);
+    free(w.chunks);
+    return failed;
+}

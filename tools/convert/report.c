@@ -1,0 +1,58 @@
+/* report.c: what `noh build` did, beside what others would store (anchors: the
+ * peers' layouts, bytes per vertex and target, or per non-zero pair). */
+#include "convert.h"
+#include "pack/format.h"
+
+static double ratio(double a, double b)
+{
+    return b > 0.0 ? a / b : 0.0;
+}
+
+static void report_peers(FILE *out, const model_mesh *m, const morph_encoding *e, double ours)
+{
+    double dense = (double)m->vertex_count * m->target_count, pairs = e->source_pairs;
+    const struct { const char *name; double bytes; } peers[] = {
+        { "three.js, RGBA32F position and normal of every vertex", dense * 32.0 },
+        { "Filament, RGBA32F position and RGBA16I frame of every vertex", dense * 24.0 },
+        { "PlayCanvas, RGBA16F of every touched vertex", (double)e->touched_count * m->target_count * 16.0 },
+        { "Unity, index and nine floats per pair", pairs * 40.0 },
+        { "one rectangle per target in the asset's order, 24 bytes", (double)e->texels_one_rect * 24.0 }
+    };
+    for (size_t i = 0; i < sizeof peers / sizeof peers[0]; i++) {
+        fprintf(out, "    %10.0f bytes, %5.1f x  %s\n", peers[i].bytes, ratio(peers[i].bytes, ours), peers[i].name);
+    }
+}
+
+/* The target whose certified error is the largest: where --error-um was hardest to keep. */
+static const morph_target *worst_target(const morph_encoding *e, uint32_t *index)
+{
+    const morph_target *worst = &e->targets[0];
+    *index = 0;
+    for (uint32_t t = 1; t < e->target_count; t++) {
+        if (e->targets[t].position_error > worst->position_error) {
+            worst = &e->targets[t];
+            *index = t;
+        }
+    }
+    return worst;
+}
+
+void convert_report_mesh(FILE *out, const model_mesh *m, const morph_encoding *e, float error_um)
+{
+    double bytes = 12.0 * e->texel_count + sizeof(noh_rect) * (double)e->rect_count + sizeof(noh_target) * (double)e->target_count;
+    uint32_t index = 0;
+    const morph_target *worst;
+    fprintf(out, "mesh '%s': %u vertices, %u triangles, %u submeshes, %u targets\n", m->name, m->vertex_count, m->index_count / 3,
+            m->submesh_count, m->target_count);
+    if (!m->target_count) {
+        return;
+    }
+    worst = worst_target(e, &index);
+    fprintf(out, "  %u of %u vertices touched, in %u x %u texels\n", e->touched_count, m->vertex_count, 1u << e->width_log2, e->height);
+    fprintf(out, "  %u pairs (%u in the source) in %u rectangles of %u texels: %.3f texels blended per vertex touched\n",
+            e->pair_count, e->source_pairs, e->rect_count, e->texel_count, ratio(e->texel_count, e->pair_count));
+    fprintf(out, "  %.0f bytes, %.2f per pair; largest position error %.2f um in '%s' (%u bits, %.1f um asked)\n", bytes,
+            ratio(bytes, e->pair_count), 1e6 * (double)worst->position_error, m->targets[index].name, worst->position_bits,
+            error_um > 0.0f ? (double)error_um : 10.0);
+    report_peers(out, m, e, bytes);
+}
