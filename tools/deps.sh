@@ -1,0 +1,64 @@
+#!/bin/sh
+# deps.sh SET...: install the Debian packages that are missing.
+#   build  compiler, converter libraries, headless GL        check  test tools
+# With apt it installs them (through sudo where not root) and says what and why;
+# elsewhere it prints the list and stops.
+set -eu
+
+packages_build='make:the build
+gcc:the C compiler
+libc6-dev:the C library
+g++:tinygltf is C++
+pkg-config:finding libraries
+libegl-dev:GL ES headers
+libgles-dev:GL ES headers
+libegl1:a GL context
+libgles2:a GL context
+libegl-mesa0:a GL context without a display
+libgl1-mesa-dri:the software rasteriser
+libtinygltf-dev:reading glTF
+nlohmann-json3-dev:reading glTF
+libstb-dev:reading and writing pictures
+libmeshoptimizer-dev:reading compressed glTF'
+packages_check='libcmocka-dev:unit tests
+libosmesa6:a second GL
+binutils:the check of the archive'"'"'s symbols'
+
+installed() {
+    dpkg-query -W -f '${Status}' "$1" 2>/dev/null | grep -q 'install ok installed'
+}
+
+all=
+for set in "$@"; do
+    case $set in
+    build) all="$all
+$packages_build" ;;
+    check) all="$all
+$packages_check" ;;
+    *) echo "deps.sh: no set '$set'" >&2; exit 2 ;;
+    esac
+done
+
+if ! command -v dpkg-query >/dev/null 2>&1 || ! command -v apt-get >/dev/null 2>&1; then
+    echo 'This is not a Debian system. noh needs what these Debian packages hold (DEPS=0 skips this check):'
+    echo "$all" | sed -n 's/\(.*\):\(.*\)/  \1 (\2)/p'
+    exit 1
+fi
+
+missing=$(echo "$all" | while IFS=: read -r name why; do
+    [ -z "$name" ] || installed "$name" || echo "$name:$why"
+done)
+[ -n "$missing" ] || exit 0
+
+echo 'Installing what is missing:'
+echo "$missing" | sed 's/\(.*\):\(.*\)/  \1 (\2)/'
+names=$(echo "$missing" | cut -d: -f1)
+sudo=
+if [ "$(id -u)" != 0 ]; then
+    command -v sudo >/dev/null 2>&1 || { echo 'deps.sh: not root and no sudo; install them yourself' >&2; exit 1; }
+    sudo=sudo
+fi
+# shellcheck disable=SC2086
+export DEBIAN_FRONTEND=noninteractive
+$sudo apt-get update -qq
+$sudo apt-get install -y -qq --no-install-recommends $names >/dev/null

@@ -1,0 +1,91 @@
+#include "gpu.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+int gpu_open(gpu *g, const char *driver)
+{
+    char message[2048] = "";
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_platform_desc desc = { 0, 0, 0, 0 };
+    const char *name = driver ? driver : "egl";
+    memset(g, 0, sizeof *g);
+    g->platform = noh_platform_find(name);
+    if (!g->platform) {
+        return tool_usage("no driver '%s' (there are: %s)", name, noh_platform_names());
+    }
+    if (g->platform->create(&desc, &g->context, message, sizeof message)) {
+        return tool_fail(name, "no GL context\n%s", message);
+    }
+    if (noh_gl_api_load(&g->gl, g->platform->get_proc, g->context, &error) || noh_gl_caps_probe(&g->gl, &g->caps, &error)) {
+        g->platform->destroy(g->context);
+        return tool_fail_error(name, &error);
+    }
+    return 0;
+}
+
+void gpu_close(gpu *g)
+{
+    if (g->platform) {
+        g->platform->destroy(g->context);
+    }
+    memset(g, 0, sizeof *g);
+}
+
+int parse_path(const char *text, noh_morph_path *path)
+{
+    *path = NOH_MORPH_AUTO;
+    for (unsigned i = 0; text && i < NOH_MORPH_PATH_COUNT; i++) {
+        if (strcmp(text, noh_morph_path_name((noh_morph_path)i)) == 0) {
+            *path = (noh_morph_path)i;
+            return 0;
+        }
+    }
+    return text ? tool_usage("--path wants auto, layered, mrt, per-layer, gather or cpu, not '%s'", text) : 0;
+}
+
+int parse_accumulate(const char *text, noh_accumulate *accumulate)
+{
+    *accumulate = NOH_ACCUMULATE_AUTO;
+    for (unsigned i = 0; text && i < 3; i++) {
+        if (strcmp(text, noh_accumulate_name((noh_accumulate)i)) == 0) {
+            *accumulate = (noh_accumulate)i;
+            return 0;
+        }
+    }
+    return text ? tool_usage("--accumulate wants auto, f32 or f16, not '%s'", text) : 0;
+}
+
+int gpu_morph_open(gpu_morph *m, gpu *g, const noh_gl_morph_desc *desc, const char *subject)
+{
+    noh_gl_morph_plan plan;
+    noh_error error = { NOH_OK, "", 0, 0 };
+    char log[4096] = "";
+    memset(m, 0, sizeof *m);
+    if (noh_gl_morph_plan_make(desc, &g->caps, &plan, &error)) {
+        return tool_fail_error(subject, &error);
+    }
+    m->bytes = (size_t)plan.cpu_bytes;
+    m->memory = malloc(m->bytes);
+    if (!m->memory) {
+        return tool_fail(subject, "out of memory");
+    }
+    if (noh_gl_morph_init(m->memory, m->bytes, &g->gl, &g->caps, &g->ledger, desc, &m->morph, log, sizeof log, &error)) {
+        free(m->memory);
+        memset(m, 0, sizeof *m);
+        if (log[0]) {
+            fputs(log, stderr);
+        }
+        return tool_fail_error(subject, &error);
+    }
+    return 0;
+}
+
+void gpu_morph_close(gpu_morph *m)
+{
+    if (m->morph) {
+        noh_gl_morph_delete(m->morph);
+    }
+    free(m->memory);
+    memset(m, 0, sizeof *m);
+}

@@ -1,0 +1,53 @@
+/* noh: the one command line program. Each verb has its own file, cmd_VERB.c. */
+#include <string.h>
+
+#include "noh_tool.h"
+
+static const struct verb {
+    const char *name;
+    int (*run)(int argc, char **argv);
+    const char *usage, *what;
+} verbs[] = {
+    { "build", verb_build, "IN... -o OUT.noh [--error-um 10] [--rects auto|N] [--quiet]", "convert glTF to a pack" },
+    { "info", verb_info, "PACK [--json]", "chunks, counts, names, errors certified at build" },
+    { "budget", verb_budget, "PACK [--instances N] [--path P] [--accumulate A] [--json]",
+      "bytes before a load: CPU and GPU, by part" },
+    { "render", verb_render,
+      "PACK -o OUT.png [--size 512x512] [--weight NAME=V]... [--clip NAME] [--time S]\n"
+      "                 [--path P] [--accumulate auto|f32|f16] [--driver egl|osmesa|angle]\n"
+      "                 [--camera face|body|AZ,EL,DIST] [--debug none|position|normal|tangent]",
+      "a picture" },
+    { "sheet", verb_sheet, "PACK -o OUT.png [--clip NAME]", "a contact sheet: every target at full weight, or a clip in time" },
+    { "dump", verb_dump, "PACK -o OUT.obj [--weight NAME=V]... [--clip NAME] [--time S] [--path P]",
+      "the deformed mesh, as drawn, baked to a plain one" },
+    { "verify", verb_verify, "PACK [--seed N] [--driver D] [--json]", "every path and format against the CPU reference" },
+    { "bench", verb_bench, "PACK [--driver D] [--rounds N] [--json]", "ratios against the named baselines, in one run" },
+};
+
+static int help(void)
+{
+    puts("noh: characters in fixed memory\n");
+    for (size_t i = 0; i < sizeof verbs / sizeof verbs[0]; i++) {
+        printf("  noh %-7s %s\n                 %s\n", verbs[i].name, verbs[i].usage, verbs[i].what);
+    }
+    puts("\npaths (P): auto layered mrt per-layer gather cpu\n"
+         "exit code: 0, 1 (the input or the check failed), 2 (usage)");
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    if (argc < 2) {
+        help();
+        return EXIT_USAGE;
+    }
+    if (strcmp(argv[1], "help") == 0 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
+        return help();
+    }
+    for (size_t i = 0; i < sizeof verbs / sizeof verbs[0]; i++) {
+        if (strcmp(argv[1], verbs[i].name) == 0) {
+            return verbs[i].run(argc - 2, argv + 2);
+        }
+    }
+    return tool_usage("there is no verb '%s'", argv[1]);
+}

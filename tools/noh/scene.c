@@ -1,0 +1,161 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "noh_tool.h"
+
+static int add_item(scene *s, const pack_file *file, uint32_t node, uint32_t mesh)
+{
+    const noh_mesh *m = &s->meshes[mesh];
+    scene_item *item = &s->items[s->item_count];
+    const float *defaults = m->weights;
+    if (node != NOH_NONE && file->pack.nodes[node].first_weight != NOH_NONE) {
+        defaults = file->pack.node_weights + file->pack.nodes[node].first_weight;
+    }
+    item->node = node;
+    item->mesh = mesh;
+    item->weights = calloc(m->header->target_count + 1u, sizeof *item->weights);
+    if (!item->weights) {
+        return 1;
+    }
+    memcpy(item->weights, defaults, sizeof *defaults * m->header->target_count);
+    s->item_count += 1;
+    return 0;
+}
+
+int scene_init(scene *s, const pack_file *file)
+{
+    const noh_pack *pack = &file->pack;
+    int failed;
+    memset(s, 0, sizeof *s);
+    s->meshes = calloc(pack->mesh_count + 1u, sizeof *s->meshes);
+    s->items = calloc((size_t)pack->node_count + pack->mesh_count + 1u, sizeof *s->items);
+    failed = !s->meshes || !s->items;
+    for (uint32_t i = 0; !failed && i < pack->mesh_count; i++) {
+        noh_pack_mesh(pack, i, &s->meshes[i]);
+    }
+    for (uint32_t n = 0; !failed && n < pack->node_count; n++) {
+        if (pack->nodes[n].mesh != NOH_NONE) {
+            failed = add_item(s, file, n, pack->nodes[n].mesh);
+        }
+    }
+    for (uint32_t m = 0; !failed && !pack->node_count && m < pack->mesh_count; m++) {
+        failed = add_item(s, file, NOH_NONE, m);
+    }
+    if (failed) {
+        scene_free(s);
+        return tool_fail(file->path, "out of memory");
+    }
+    return 0;
+}
+
+void scene_free(scene *s)
+{
+    for (uint32_t i = 0; i < s->item_count; i++) {
+        free(s->items[i].weights);
+    }
+    free(s->items);
+    free(s->meshes);
+    memset(s, 0, sizeof *s);
+}
+
+/* "no clip 'simle' (did you mean 'smile'?)", or the list's size when nothing is near. */
+static int fail_unknown(const pack_file *file, const char *kind, const char *name, const char *const *names, size_t count)
+{
+    const char *near = nearest_name(name, names, count);
+    if (near) {
+        return tool_fail(file->path, "no %s named '%s' (did you mean '%s'?)", kind, name, near);
+    }
+    return tool_fail(file->path, "no %s named '%s' (it has %zu; `noh info` lists them)", kind, name, count);
+}
+
+int scene_find_clip(const pack_file *file, const char *clip_name, noh_clip *clip)
+{
+    const char **names;
+    int status;
+    for (uint32_t i = 0; i < file->pack.clip_count; i++) {
+        noh_pack_clip(&file->pack, i, clip);
+        if (strcmp(clip->name, clip_name) == 0) {
+            return 0;
+        }
+    }
+    names = calloc(file->pack.clip_count + 1u, sizeof *names);
+    if (!names) {
+        return tool_fail(file->path, "out of memory");
+    }
+    for (uint32_t i = 0; i < file->pack.clip_count; i++) {
+        noh_pack_clip(&file->pack, i, clip);
+        names[i] = clip->name;
+    }
+    status = fail_unknown(file, "clip", clip_name, names, file->pack.clip_count);
+    free(names);
+    return status;
+}
+
+int scene_set_clip(scene *s, const pack_file *file, const char *clip_name, double time_s)
+{
+    noh_clip clip;
+    int status = scene_find_clip(file, clip_name, &clip);
+    for (uint32_t c = 0; !status && c < clip.header->channel_count; c++) {
+        for (uint32_t i = 0; i < s->item_count; i++) {
+            if (s->items[i].node == clip.channels[c].node) {
+                noh_clip_sample_weights(&clip, c, (float)time_s, s->items[i].weights);
+            }
+        }
+    }
+    return status;
+}
+
+static int fail_unknown_target(const scene *s, const pack_file *file, const char *name)
+{
+    size_t total = 0, count = 0;
+    const char **names;
+    int status;
+    for (uint32_t m = 0; m < file->pack.mesh_count; m++) {
+        total += s->meshes[m].header->target_count;
+    }
+    names = calloc(total + 1, sizeof *names);
+    if (!names) {
+        return tool_fail(file->path, "out of memory");
+    }
+    for (uint32_t m = 0; m < file->pack.mesh_count; m++) {
+        for (uint32_t t = 0; t < s->meshes[m].header->target_count; t++) {
+            names[count++] = noh_pack_string(&file->pack, s->meshes[m].targets[t].name);
+        }
+    }
+    status = fail_unknown(file, "target", name, names, count);
+    free(names);
+    return status;
+}
+
+static int set_weight(scene *s, const pack_file *file, const char *assignment)
+{
+    const char *equals = strrchr(assignment, '=');
+    char name[NOH_NAME_BYTES_MAX];
+    double value;
+    int found = 0;
+    if (!equals || equals == assignment || (size_t)(equals - assignment) >= sizeof name || tool_number(equals + 1, &value)) {
+        return tool_usage("--weight wants NAME=NUMBER, not '%s'", assignment);
+    }
+    memcpy(name, assignment, (size_t)(equals - assignment));
+    name[equals - assignment] = 0;
+    for (uint32_t i = 0; i < s->item_count; i++) {
+        const noh_mesh *m = &s->meshes[s->items[i].mesh];
+        uint32_t target = noh_mesh_find_target(m, name);
+        if (target < m->header->target_count) {
+            s->items[i].weights[target] = (float)value;
+            found = 1;
+        }
+    }
+    return found ? 0 : fail_unknown_target(s, file, name);
+}
+
+int scene_set_weights(scene *s, const pack_file *file, const option_list *assignments)
+{
+    for (int i = 0; i < assignments->count; i++) {
+        int status = set_weight(s, file, assignments->items[i]);
+        if (status) {
+            return status;
+        }
+    }
+    return 0;
+}
