@@ -1,0 +1,1698 @@
+/* test_gltf_read.c: the converter's glTF reader.
+ *
+ * Every file is written by the test itself: a `scene` collects bytes, buffer
+ * views and accessors, and is saved as .gltf (data URI) or .glb. */
+#define _POSIX_C_SOURCE 200809L
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+#include <meshoptimizer.h>
+
+#include "model.h"
+
+enum { I8 = 5120, U8 = 5121, I16 = 5122, U16 = 5123, U32 = 5125, F32 = 5126 };
+
+typedef struct scene {
+    unsigned char bytes[16384];
+    size_t size;
+    char views[8192], accessors[8192], primitives[8192], mesh_rest[2048], rest[8192];
+    char buffer_rest[1024]; /* more buffers */
+    int view_count, accessor_count, quantized;
+} scene;
+
+static char folder[64];
+static char file_path[128];
+
+/* --- writing files --- */
+
+#if defined(__GNUC__)
+__attribute__((format(printf, 3, 4)))
+#endif
+static void append(char *text, size_t capacity, const char *format, ...)
+{
+    size_t used = strlen(text);
+    va_list arguments;
+    va_start(arguments, format);
+    int written = vsnprintf(text + used, capacity - used, format, arguments);
+    va_end(arguments);
+    assert_true(written >= 0 && (size_t)written < capacity - used);
+}
+#define APPEND(text, ...) append(text, sizeof(text), __VA_ARGS__)
+
+static scene *scene_new(void)
+{
+    scene *s = calloc(1, sizeof *s);
+    assert_non_null(s);
+    return s;
+}
+
+static size_t add_bytes(scene *s, const void *data, size_t bytes)
+{
+    size_t offset = (s->size + 3) / 4 * 4;
+    assert_true(offset + bytes <= sizeof s->bytes);
+    if (bytes)
+        memcpy(s->bytes + offset, data, bytes);
+    s->size = offset + bytes;
+    return offset;
+}
+
+/* stride 0 = tightly packed */
+static int add_view(scene *s, const void *data, size_t bytes, int stride)
+{
+    size_t offset = add_bytes(s, data, bytes);
+    APPEND(s->views, "%s{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu", s->view_count ? "," : "", offset, bytes);
+    if (stride)
+        APPEND(s->views, ",\"byteStride\":%d", stride);
+    APPEND(s->views, "}");
+    return s->view_count++;
+}
+
+/* rest: more JSON members, from their comma on */
+static int add_accessor(scene *s, int component, int count, const char *type, const char *rest)
+{
+    APPEND(s->accessors, "%s{\"componentType\":%d,\"count\":%d,\"type\":\"%s\"%s}", s->accessor_count ? "," : "",
+           component, count, type, rest);
+    return s->accessor_count++;
+}
+
+static int add_array(scene *s, const void *data, size_t bytes, int component, int count, const char *type)
+{
+    char rest[64];
+    snprintf(rest, sizeof rest, ",\"bufferView\":%d", add_view(s, data, bytes, 0));
+    return add_accessor(s, component, count, type, rest);
+}
+
+static const char base64_digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+static void write_base64(FILE *out, const unsigned char *bytes, size_t count)
+{
+    for (size_t i = 0; i < count; i += 3) {
+        unsigned long word = (unsigned long)bytes[i] << 16;
+        word |= i + 1 < count ? (unsigned long)bytes[i + 1] << 8 : 0;
+        word |= i + 2 < count ? (unsigned long)bytes[i + 2] : 0;
+        for (size_t k = 0; k < 4; ++k)
+            fputc(i + k > count ? '=' : base64_digits[(word >> (18 - 6 * k)) & 63], out);
+    }
+}
+
+static void write_json(const scene *s, FILE *out, int embed)
+{
+    fprintf(out, "{\"asset\":{\"version\":\"2.0\"}");
+    if (s->quantized)
+        fprintf(out, ",\"extensionsUsed\":[\"KHR_mesh_quantization\"]");
+    if (s->size) {
+        fprintf(out, ",\"buffers\":[{\"byteLength\":%zu", s->size);
+        if (embed) {
+            fprintf(out, ",\"uri\":\"data:application/octet-stream;base64,");
+            write_base64(out, s->bytes, s->size);
+            fprintf(out, "\"");
+        }
+        fprintf(out, "}%s]", s->buffer_rest);
+    }
+    if (s->view_count)
+        fprintf(out, ",\"bufferViews\":[%s]", s->views);
+    if (s->accessor_count)
+        fprintf(out, ",\"accessors\":[%s]", s->accessors);
+    if (s->primitives[0])
+        fprintf(out, ",\"meshes\":[{\"name\":\"m\",\"primitives\":[%s]%s}]", s->primitives, s->mesh_rest);
+    fprintf(out, "%s}", s->rest);
+}
+
+static void write_text(const char *name, const char *text)
+{
+    snprintf(file_path, sizeof file_path, "%s/%s", folder, name);
+    FILE *out = fopen(file_path, "wb");
+    assert_non_null(out);
+    fputs(text, out);
+    fclose(out);
+}
+
+static void save_gltf(const scene *s)
+{
+    snprintf(file_path, sizeof file_path, "%s/test.gltf", folder);
+    FILE *out = fopen(file_path, "wb");
+    assert_non_null(out);
+    write_json(s, out, 1);
+    fclose(out);
+}
+
+static void write_u32(FILE *out, size_t value)
+{
+    for (int i = 0; i < 4; ++i)
+        fputc((int)(value >> (8 * i) & 255), out);
+}
+
+static void pad(FILE *out, size_t bytes, int with)
+{
+    for (size_t i = bytes; i % 4; ++i)
+        fputc(with, out);
+}
+
+/* The JSON is written to a file of its own first, to know its length. */
+static void save_glb(const scene *s)
+{
+    char json_path[128];
+    static char json[32768];
+    snprintf(json_path, sizeof json_path, "%s/json", folder);
+    FILE *text = fopen(json_path, "wb+");
+    assert_non_null(text);
+    write_json(s, text, 0);
+    rewind(text);
+    size_t bytes = fread(json, 1, sizeof json, text), padded = (bytes + 3) / 4 * 4, bin = (s->size + 3) / 4 * 4;
+    fclose(text);
+    snprintf(file_path, sizeof file_path, "%s/test.glb", folder);
+    FILE *out = fopen(file_path, "wb");
+    assert_non_null(out);
+    fputs("glTF", out);
+    write_u32(out, 2);
+    write_u32(out, 12 + 8 + padded + 8 + bin);
+    write_u32(out, padded);
+    fputs("JSON", out);
+    fwrite(json, 1, bytes, out);
+    pad(out, bytes, ' ');
+    write_u32(out, bin);
+    fwrite("BIN", 1, 4, out);
+    fwrite(s->bytes, 1, s->size, out);
+    pad(out, s->size, 0);
+    fclose(out);
+}
+
+/* --- loading, and what to expect --- */
+
+static model *load_file(void)
+{
+    model *m = NULL;
+    model_error error = {"", ""};
+    if (model_read_gltf(file_path, &m, &error))
+        fail_msg("refused: %s (%s)", error.what, error.where);
+    assert_non_null(m);
+    return m;
+}
+
+/* Saves, frees the scene, and loads. */
+static model *load(scene *s)
+{
+    save_gltf(s);
+    free(s);
+    return load_file();
+}
+
+static void file_refused(const char *what, const char *where)
+{
+    model *m = (model *)(void *)file_path;
+    model_error error = {"", ""};
+    assert_int_equal(model_read_gltf(file_path, &m, &error), 1);
+    assert_null(m);
+    if (!strstr(error.what, what) || !strstr(error.where, where))
+        fail_msg("expected '%s' at '%s', got '%s' at '%s'", what, where, error.what, error.where);
+}
+
+static void refused(scene *s, const char *what, const char *where)
+{
+    save_gltf(s);
+    free(s);
+    file_refused(what, where);
+}
+
+static void assert_floats(const float *actual, const float *expected, size_t count)
+{
+    for (size_t i = 0; i < count; ++i)
+        if (!(fabs((double)actual[i] - (double)expected[i]) <= 1e-6))
+            fail_msg("element %zu is %g, not %g", i, (double)actual[i], (double)expected[i]);
+}
+
+static int has_warning(const model *m, const char *text)
+{
+    for (uint32_t i = 0; i < m->warning_count; ++i)
+        if (strstr(m->warnings[i], text))
+            return 1;
+    return 0;
+}
+
+/* --- scenes to start from --- */
+
+static const float triangle_positions[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+
+/* A triangle in the xy plane: accessor 0. `more` goes into the primitive, from its comma on. */
+static scene *triangle(const char *more_attributes, const char *more)
+{
+    scene *s = scene_new();
+    add_array(s, triangle_positions, sizeof triangle_positions, F32, 3, "VEC3");
+    APPEND(s->primitives, "{\"attributes\":{\"POSITION\":0%s}%s}", more_attributes, more);
+    return s;
+}
+
+/* A triangle with one target whose deltas are accessor 1. */
+static scene *morphing(const float *deltas, const char *more)
+{
+    scene *s = triangle("", more);
+    add_array(s, deltas, 9 * sizeof *deltas, F32, 3, "VEC3");
+    return s;
+}
+
+static const float up_deltas[9] = {0, 0, 0, 0, 0, 1, 0, 0, 0};
+#define ONE_TARGET ",\"targets\":[{\"POSITION\":1}]"
+
+/* --- encodings --- */
+
+static void triangle_without_indices(void **state)
+{
+    (void)state;
+    model *m = load(triangle("", ""));
+    assert_int_equal(m->mesh_count, 1);
+    assert_int_equal(m->meshes[0].vertex_count, 3);
+    assert_int_equal(m->meshes[0].index_count, 3);
+    assert_floats(m->meshes[0].position, triangle_positions, 9);
+    for (uint32_t i = 0; i < 3; ++i)
+        assert_int_equal(m->meshes[0].indices[i], i);
+    assert_string_equal(m->meshes[0].name, "m");
+    model_free(m);
+}
+
+static void check_indices(const void *data, size_t bytes, int component)
+{
+    scene *s = triangle("", ",\"indices\":1");
+    add_array(s, data, bytes, component, 3, "SCALAR");
+    model *m = load(s);
+    const uint32_t expected[3] = {2, 0, 1};
+    assert_memory_equal(m->meshes[0].indices, expected, sizeof expected);
+    model_free(m);
+}
+
+static void indices_of_every_size(void **state)
+{
+    (void)state;
+    const uint8_t u8[3] = {2, 0, 1};
+    const uint16_t u16[3] = {2, 0, 1};
+    const uint32_t u32[3] = {2, 0, 1};
+    check_indices(u8, sizeof u8, U8);
+    check_indices(u16, sizeof u16, U16);
+    check_indices(u32, sizeof u32, U32);
+}
+
+static void binary_container(void **state)
+{
+    (void)state;
+    scene *s = triangle("", "");
+    save_glb(s);
+    free(s);
+    model *m = load_file();
+    assert_floats(m->meshes[0].position, triangle_positions, 9);
+    model_free(m);
+}
+
+static void buffer_in_a_file_beside(void **state)
+{
+    (void)state;
+    snprintf(file_path, sizeof file_path, "%s/a b.bin", folder);
+    FILE *out = fopen(file_path, "wb");
+    assert_non_null(out);
+    fwrite(triangle_positions, 1, sizeof triangle_positions, out);
+    fclose(out);
+    write_text("test.gltf", "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,\"uri\":\"a%20b.bin\"}],"
+               "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
+               "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
+               "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}");
+    model *m = load_file();
+    assert_floats(m->meshes[0].position, triangle_positions, 9);
+    assert_string_equal(m->meshes[0].name, "mesh_0");
+    model_free(m);
+}
+
+static void interleaved_attributes(void **state)
+{
+    (void)state;
+    const float data[15] = {0, 0, 0, 0.5f, 0.25f, 1, 0, 0, 1, 0.25f, 0, 1, 0, 0, 1};
+    scene *s = scene_new();
+    add_view(s, data, sizeof data, 20);
+    add_accessor(s, F32, 3, "VEC3", ",\"bufferView\":0");
+    add_accessor(s, F32, 3, "VEC2", ",\"bufferView\":0,\"byteOffset\":12");
+    APPEND(s->primitives, "{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":1}}");
+    model *m = load(s);
+    const float uv[6] = {0.5f, 0.25f, 1, 0.25f, 0, 1};
+    assert_floats(m->meshes[0].position, triangle_positions, 9);
+    assert_floats(m->meshes[0].uv, uv, 6);
+    model_free(m);
+}
+
+/* Accessor 1 is sparse: element 1 becomes (0 0 1). base: JSON from its comma on, or empty */
+static model *load_sparse(const char *base_of_target, const float *base)
+{
+    const uint16_t index[1] = {1};
+    const float value[3] = {0, 0, 1};
+    char rest[256];
+    scene *s = triangle("", ONE_TARGET);
+    int indices = add_view(s, index, sizeof index, 0), values = add_view(s, value, sizeof value, 0);
+    if (base)
+        add_view(s, base, 9 * sizeof *base, 0);
+    snprintf(rest, sizeof rest, "%s,\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":%d,\"componentType\":5123},"
+             "\"values\":{\"bufferView\":%d}}", base_of_target, indices, values);
+    add_accessor(s, F32, 3, "VEC3", rest);
+    return load(s);
+}
+
+static void sparse_with_a_base(void **state)
+{
+    (void)state;
+    const float base[9] = {1, 2, 3, 4, 5, 6, 7, 8, 9}, expected[9] = {1, 2, 3, 0, 0, 1, 7, 8, 9};
+    model *m = load_sparse(",\"bufferView\":3", base);
+    assert_floats(m->meshes[0].targets[0].position, expected, 9);
+    model_free(m);
+}
+
+static void sparse_without_a_base(void **state)
+{
+    (void)state;
+    model *m = load_sparse("", NULL);
+    assert_memory_equal(m->meshes[0].targets[0].position, up_deltas, sizeof up_deltas);
+    model_free(m);
+}
+
+static void accessor_without_bytes_is_zero(void **state)
+{
+    (void)state;
+    const float zeros[9] = {0};
+    scene *s = triangle("", ONE_TARGET);
+    add_accessor(s, F32, 3, "VEC3", "");
+    model *m = load(s);
+    assert_int_equal(m->meshes[0].target_count, 1);
+    assert_memory_equal(m->meshes[0].targets[0].position, zeros, sizeof zeros);
+    assert_memory_equal(m->meshes[0].targets[0].normal, zeros, sizeof zeros);
+    model_free(m);
+}
+
+/* Three vertices (a b c) of one component type, four components apart. */
+static void check_quantized(int component, int normalized, const void *data, size_t bytes, int stride,
+                            const float *expected)
+{
+    scene *s = scene_new();
+    s->quantized = 1;
+    add_view(s, data, bytes, stride);
+    add_accessor(s, component, 3, "VEC3", normalized ? ",\"normalized\":true,\"bufferView\":0" : ",\"bufferView\":0");
+    APPEND(s->primitives, "{\"attributes\":{\"POSITION\":0}}");
+    model *m = load(s);
+    assert_floats(m->meshes[0].position, expected, 9);
+    model_free(m);
+}
+
+static void quantized_positions(void **state)
+{
+    (void)state;
+    const int8_t i8[12] = {-128, 0, 127, 0, 1, 0, 0, 0, 0, 2, 0, 0};
+    const uint8_t u8[12] = {0, 51, 255, 0, 1, 0, 0, 0, 0, 2, 0, 0};
+    const int16_t i16[12] = {-32768, 0, 32767, 0, 1, 0, 0, 0, 0, 2, 0, 0};
+    const uint16_t u16[12] = {0, 13107, 65535, 0, 1, 0, 0, 0, 0, 2, 0, 0};
+    const float plain_i8[9] = {-128, 0, 127, 1, 0, 0, 0, 2, 0}, plain_u8[9] = {0, 51, 255, 1, 0, 0, 0, 2, 0};
+    const float plain_i16[9] = {-32768, 0, 32767, 1, 0, 0, 0, 2, 0}, plain_u16[9] = {0, 13107, 65535, 1, 0, 0, 0, 2, 0};
+    const float n_i8[9] = {-1, 0, 1, 1 / 127.0f, 0, 0, 0, 2 / 127.0f, 0};
+    const float n_u8[9] = {0, 0.2f, 1, 1 / 255.0f, 0, 0, 0, 2 / 255.0f, 0};
+    const float n_i16[9] = {-1, 0, 1, 1 / 32767.0f, 0, 0, 0, 2 / 32767.0f, 0};
+    const float n_u16[9] = {0, 0.2f, 1, 1 / 65535.0f, 0, 0, 0, 2 / 65535.0f, 0};
+    check_quantized(I8, 0, i8, sizeof i8, 4, plain_i8);
+    check_quantized(I8, 1, i8, sizeof i8, 4, n_i8);
+    check_quantized(U8, 0, u8, sizeof u8, 4, plain_u8);
+    check_quantized(U8, 1, u8, sizeof u8, 4, n_u8);
+    check_quantized(I16, 0, i16, sizeof i16, 8, plain_i16);
+    check_quantized(I16, 1, i16, sizeof i16, 8, n_i16);
+    check_quantized(U16, 0, u16, sizeof u16, 8, plain_u16);
+    check_quantized(U16, 1, u16, sizeof u16, 8, n_u16);
+}
+
+static void quantized_attributes_and_deltas(void **state)
+{
+    (void)state;
+    const int8_t normal[12] = {0, 0, 127, 0, 0, 0, 127, 0, 0, 0, 127, 0}, tangent[12] = {127, 0, 0, -127, 127, 0, 0, -127, 127, 0, 0, -127};
+    const int16_t delta[12] = {0, 0, 0, 0, 0, 0, 32767, 0, 0, 0, 0, 0};
+    const uint16_t uv[6] = {0, 0, 65535, 0, 0, 65535};
+    scene *s = triangle(",\"NORMAL\":1,\"TANGENT\":2,\"TEXCOORD_0\":3", ",\"targets\":[{\"POSITION\":4,\"NORMAL\":5}]");
+    s->quantized = 1;
+    char rest[64];
+    snprintf(rest, sizeof rest, ",\"normalized\":true,\"bufferView\":%d", add_view(s, normal, sizeof normal, 4));
+    add_accessor(s, I8, 3, "VEC3", rest);
+    snprintf(rest, sizeof rest, ",\"normalized\":true,\"bufferView\":%d", add_view(s, tangent, sizeof tangent, 4));
+    add_accessor(s, I8, 3, "VEC4", rest);
+    snprintf(rest, sizeof rest, ",\"normalized\":true,\"bufferView\":%d", add_view(s, uv, sizeof uv, 0));
+    add_accessor(s, U16, 3, "VEC2", rest);
+    int view = add_view(s, delta, sizeof delta, 8);
+    snprintf(rest, sizeof rest, ",\"normalized\":true,\"bufferView\":%d", view);
+    add_accessor(s, I16, 3, "VEC3", rest);
+    add_accessor(s, I16, 3, "VEC3", rest);
+    model *m = load(s);
+    const float normals[9] = {0, 0, 1, 0, 0, 1, 0, 0, 1}, tangents[12] = {1, 0, 0, -1, 1, 0, 0, -1, 1, 0, 0, -1};
+    const float uvs[6] = {0, 0, 1, 0, 0, 1};
+    assert_floats(m->meshes[0].normal, normals, 9);
+    assert_floats(m->meshes[0].tangent, tangents, 12);
+    assert_floats(m->meshes[0].uv, uvs, 6);
+    assert_floats(m->meshes[0].targets[0].position, up_deltas, 9);
+    assert_floats(m->meshes[0].targets[0].normal, up_deltas, 9);
+    model_free(m);
+}
+
+/* --- EXT_meshopt_compression --- */
+
+/* A view whose bytes are compressed, over a fallback buffer that has no data. */
+static int add_compressed_view(scene *s, const unsigned char *data, size_t bytes, size_t count, size_t stride,
+                               const char *mode, const char *filter)
+{
+    size_t offset = add_bytes(s, data, bytes);
+    snprintf(s->buffer_rest, sizeof s->buffer_rest,
+             ",{\"byteLength\":4096,\"extensions\":{\"EXT_meshopt_compression\":{\"fallback\":true}}}");
+    APPEND(s->views, "%s{\"buffer\":1,\"byteLength\":%zu,", s->view_count ? "," : "", count * stride);
+    if (strcmp(mode, "ATTRIBUTES") == 0)
+        APPEND(s->views, "\"byteStride\":%zu,", stride);
+    APPEND(s->views, "\"extensions\":{\"EXT_meshopt_compression\":{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu,"
+           "\"byteStride\":%zu,\"count\":%zu,\"mode\":\"%s\",\"filter\":\"%s\"}}}", offset, bytes, stride, count, mode,
+           filter);
+    return s->view_count++;
+}
+
+static int add_compressed(scene *s, const void *vertices, size_t count, size_t stride, const char *filter)
+{
+    unsigned char packed[1024];
+    size_t bytes = meshopt_encodeVertexBuffer(packed, sizeof packed, vertices, count, stride);
+    assert_true(bytes > 0);
+    return add_compressed_view(s, packed, bytes, count, stride, "ATTRIBUTES", filter);
+}
+
+static scene *compressed_triangle(const char *more_attributes, const char *more)
+{
+    scene *s = scene_new();
+    add_compressed(s, triangle_positions, 3, 12, "NONE");
+    add_accessor(s, F32, 3, "VEC3", ",\"bufferView\":0");
+    APPEND(s->primitives, "{\"attributes\":{\"POSITION\":0%s}%s}", more_attributes, more);
+    APPEND(s->rest, ",\"extensionsRequired\":[\"EXT_meshopt_compression\"]");
+    return s;
+}
+
+static void meshopt_attributes_and_triangles(void **state)
+{
+    (void)state;
+    const unsigned int index[3] = {0, 1, 2};
+    unsigned char packed[256];
+    scene *s = compressed_triangle("", ",\"indices\":1");
+    size_t bytes = meshopt_encodeIndexBuffer(packed, sizeof packed, index, 3);
+    add_compressed_view(s, packed, bytes, 3, 2, "TRIANGLES", "NONE");
+    add_accessor(s, U16, 3, "SCALAR", ",\"bufferView\":1");
+    model *m = load(s);
+    assert_floats(m->meshes[0].position, triangle_positions, 9);
+    assert_int_equal(m->meshes[0].indices[0] + m->meshes[0].indices[1] + m->meshes[0].indices[2], 3);
+    model_free(m);
+}
+
+static void meshopt_index_sequence(void **state)
+{
+    (void)state;
+    const unsigned int index[3] = {2, 0, 1};
+    unsigned char packed[256];
+    scene *s = compressed_triangle("", ",\"indices\":1");
+    size_t bytes = meshopt_encodeIndexSequence(packed, sizeof packed, index, 3);
+    add_compressed_view(s, packed, bytes, 3, 4, "INDICES", "NONE");
+    add_accessor(s, U32, 3, "SCALAR", ",\"bufferView\":1");
+    model *m = load(s);
+    assert_int_equal(m->meshes[0].indices[0], 2);
+    model_free(m);
+}
+
+static void meshopt_octahedral_and_exponential(void **state)
+{
+    (void)state;
+    const float normal[12] = {0, 0, 1, 0, 0, 0.6f, 0.8f, 0, 1, 0, 0, 0}, uv[6] = {0.5f, 0.25f, 1, 0.25f, 0, 1};
+    const float expected[9] = {0, 0, 1, 0, 0.6f, 0.8f, 1, 0, 0};
+    int16_t oct[12];
+    uint32_t exponential[6];
+    scene *s = compressed_triangle(",\"NORMAL\":1,\"TEXCOORD_0\":2", "");
+    s->quantized = 1;
+    meshopt_encodeFilterOct(oct, 3, 8, 16, normal);
+    add_compressed(s, oct, 3, 8, "OCTAHEDRAL");
+    add_accessor(s, I16, 3, "VEC3", ",\"normalized\":true,\"bufferView\":1");
+    meshopt_encodeFilterExp(exponential, 3, 8, 15, uv);
+    add_compressed(s, exponential, 3, 8, "EXPONENTIAL");
+    add_accessor(s, F32, 3, "VEC2", ",\"bufferView\":2");
+    model *m = load(s);
+    for (size_t i = 0; i < 9; ++i)
+        assert_true(fabs((double)m->meshes[0].normal[i] - (double)expected[i]) < 1e-4);
+    assert_floats(m->meshes[0].uv, uv, 6);
+    model_free(m);
+}
+
+static void meshopt_quaternion(void **state)
+{
+    (void)state;
+    const float rotation[8] = {0, 0, 0, 1, 0.6f, 0, 0, 0.8f}, times[2] = {0, 1};
+    int16_t quat[8];
+    scene *s = compressed_triangle("", "");
+    add_array(s, times, sizeof times, F32, 2, "SCALAR");
+    meshopt_encodeFilterQuat(quat, 2, 8, 16, rotation);
+    add_compressed(s, quat, 2, 8, "QUATERNION");
+    add_accessor(s, I16, 2, "VEC4", ",\"normalized\":true,\"bufferView\":2");
+    APPEND(s->rest, ",\"nodes\":[{\"mesh\":0}],\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":"
+           "{\"node\":0,\"path\":\"rotation\"}}],\"samplers\":[{\"input\":1,\"output\":2}]}]");
+    model *m = load(s);
+    for (size_t i = 0; i < 8; ++i)
+        assert_true(fabs((double)m->clips[0].channels[0].values[i] - (double)rotation[i]) < 1e-3);
+    model_free(m);
+}
+
+static void meshopt_damage_is_refused(void **state)
+{
+    (void)state;
+    const unsigned char junk[40] = {0x55};
+    scene *s = triangle("", ",\"indices\":1");
+    add_compressed_view(s, junk, sizeof junk, 3, 2, "TRIANGLES", "NONE");
+    add_accessor(s, U16, 3, "SCALAR", ",\"bufferView\":1");
+    refused(s, "compressed data is damaged", "mesh 'm' primitive 0 indices (accessor 1), buffer view 1");
+}
+
+static void meshopt_impossible_sizes_are_refused(void **state)
+{
+    (void)state;
+    const unsigned char junk[40] = {0xa0};
+    scene *s = triangle("", ",\"indices\":1");
+    add_compressed_view(s, junk, sizeof junk, 30000, 2, "TRIANGLES", "NONE");
+    add_accessor(s, U16, 3, "SCALAR", ",\"bufferView\":1");
+    refused(s, "cannot hold 30000 elements", "buffer view 1");
+    s = triangle("", ",\"indices\":1");
+    add_compressed_view(s, junk, sizeof junk, 4, 2, "TRIANGLES", "NONE");
+    add_accessor(s, U16, 3, "SCALAR", ",\"bufferView\":1");
+    refused(s, "multiple of 3", "buffer view 1");
+    s = triangle(",\"NORMAL\":1", "");
+    add_compressed_view(s, junk, sizeof junk, 3, 12, "ATTRIBUTES", "OCTAHEDRAL");
+    add_accessor(s, F32, 3, "VEC3", ",\"bufferView\":1");
+    refused(s, "does not fit 'byteStride'", "buffer view 1");
+}
+
+/* --- primitives --- */
+
+static void check_unrolled(int mode, const uint32_t *expected)
+{
+    const float square[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+    scene *s = scene_new();
+    add_array(s, square, sizeof square, F32, 4, "VEC3");
+    APPEND(s->primitives, "{\"attributes\":{\"POSITION\":0},\"mode\":%d}", mode);
+    model *m = load(s);
+    assert_int_equal(m->meshes[0].index_count, 6);
+    assert_memory_equal(m->meshes[0].indices, expected, 6 * sizeof *expected);
+    model_free(m);
+}
+
+static void strips_and_fans(void **state)
+{
+    (void)state;
+    const uint32_t strip[6] = {0, 1, 2, 1, 3, 2}, fan[6] = {1, 2, 0, 2, 3, 0};
+    check_unrolled(5, strip);
+    check_unrolled(6, fan);
+}
+
+static void points_and_lines_are_skipped(void **state)
+{
+    (void)state;
+    scene *s = triangle("", ",\"mode\":0");
+    APPEND(s->primitives, ",{\"attributes\":{\"POSITION\":0},\"mode\":1},{\"attributes\":{\"POSITION\":0}}");
+    model *m = load(s);
+    assert_int_equal(m->meshes[0].submesh_count, 1);
+    assert_true(has_warning(m, "mesh 'm' primitive 0 was skipped: it holds points or lines"));
+    assert_true(has_warning(m, "mesh 'm' primitive 1 was skipped"));
+    model_free(m);
+}
+
+static void primitives_are_concatenated(void **state)
+{
+    (void)state;
+    const float uv[6] = {0, 0, 1, 0, 0, 1};
+    const uint8_t color[12] = {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 51};
+    scene *s = triangle("", ",\"material\":1");
+    add_array(s, uv, sizeof uv, F32, 3, "VEC2");
+    char rest[64];
+    snprintf(rest, sizeof rest, ",\"normalized\":true,\"bufferView\":%d", add_view(s, color, sizeof color, 0));
+    add_accessor(s, U8, 3, "VEC4", rest);
+    APPEND(s->primitives, ",{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":1,\"COLOR_0\":2},\"material\":0}");
+    APPEND(s->rest, ",\"materials\":[{\"name\":\"a\"},{\"name\":\"b\"}]");
+    model *m = load(s);
+    const model_mesh *mesh = &m->meshes[0];
+    const float white[4] = {1, 1, 1, 1}, zero[2] = {0, 0}, blue[4] = {0, 0, 1, 0.2f};
+    assert_int_equal(mesh->vertex_count, 6);
+    assert_int_equal(mesh->submeshes[0].material, 1);
+    assert_int_equal(mesh->submeshes[1].material, 0);
+    assert_int_equal(mesh->submeshes[1].first_index, 3);
+    assert_int_equal(mesh->submeshes[1].first_vertex, 3);
+    assert_int_equal(mesh->indices[3], 3);
+    assert_floats(mesh->color, white, 4);
+    assert_floats(mesh->color + 20, blue, 4);
+    assert_floats(mesh->uv + 2, zero, 2);
+    assert_floats(mesh->uv + 8, uv + 2, 2);
+    model_free(m);
+}
+
+static void target_names_are_made_unique(void **state)
+{
+    (void)state;
+    scene *s = morphing(up_deltas, ",\"targets\":[{\"POSITION\":1},{\"POSITION\":1},{\"POSITION\":1},{\"POSITION\":1}]");
+    APPEND(s->mesh_rest, ",\"extras\":{\"targetNames\":[\"smile\",\"\",\"smile\"]},\"weights\":[0,0.5,0,1]");
+    model *m = load(s);
+    const float weights[4] = {0, 0.5f, 0, 1};
+    assert_string_equal(m->meshes[0].targets[0].name, "smile");
+    assert_string_equal(m->meshes[0].targets[1].name, "target_1");
+    assert_string_equal(m->meshes[0].targets[2].name, "smile_2");
+    assert_string_equal(m->meshes[0].targets[3].name, "target_3");
+    assert_true(has_warning(m, "two targets are named 'smile'"));
+    assert_true(has_warning(m, "3 target names for 4 targets"));
+    assert_floats(m->meshes[0].weights, weights, 4);
+    model_free(m);
+}
+
+static void target_names_of_a_primitive(void **state)
+{
+    (void)state;
+    model *m = load(morphing(up_deltas, ONE_TARGET ",\"extras\":{\"targetNames\":[\"blink\"]}"));
+    assert_string_equal(m->meshes[0].targets[0].name, "blink");
+    model_free(m);
+}
+
+/* --- normals --- */
+
+static void check_unit(const float *v)
+{
+    double length = sqrt((double)v[0] * (double)v[0] + (double)v[1] * (double)v[1] + (double)v[2] * (double)v[2]);
+    assert_true(fabs(length - 1.0) < 1e-6);
+}
+
+static void normals_of_a_triangle(void **state)
+{
+    (void)state;
+    const float up[9] = {0, 0, 1, 0, 0, 1, 0, 0, 1};
+    model *m = load(triangle("", ""));
+    assert_floats(m->meshes[0].normal, up, 9);
+    model_free(m);
+}
+
+/* Two triangles with no common vertex that meet at the y axis, the second bent by (x z). */
+static model *load_fold(float x, float z)
+{
+    const float positions[18] = {0, 0, 0, 0, 1, 0, -1, 0, 0, 0, 1, 0, 0, 0, 0, x, 0, z};
+    scene *s = scene_new();
+    add_array(s, positions, sizeof positions, F32, 6, "VEC3");
+    APPEND(s->primitives, "{\"attributes\":{\"POSITION\":0}}");
+    return load(s);
+}
+
+static void normals_below_the_crease_angle_are_smooth(void **state)
+{
+    (void)state;
+    model *m = load_fold(0.8f, -0.6f);
+    const float *n = m->meshes[0].normal;
+    assert_floats(n, n + 12, 3);     /* both ends of the edge are shared */
+    assert_floats(n + 3, n + 9, 3);
+    assert_true(n[0] > 0.1f && n[2] > 0.5f);
+    assert_true(n[6] == 0.0f && n[8] == 1.0f); /* the far corners keep their own */
+    for (size_t v = 0; v < 6; ++v)
+        check_unit(n + v * 3);
+    model_free(m);
+}
+
+static void normals_above_the_crease_angle_are_hard(void **state)
+{
+    (void)state;
+    model *m = load_fold(0.0f, -1.0f);
+    const float first[3] = {0, 0, 1}, second[3] = {1, 0, 0};
+    assert_floats(m->meshes[0].normal, first, 3);
+    assert_floats(m->meshes[0].normal + 9, second, 3);
+    model_free(m);
+}
+
+static void normals_of_an_indexed_edge_are_shared(void **state)
+{
+    (void)state;
+    const float positions[12] = {0, 0, 0, 0, 1, 0, -1, 0, 0, 0, 0, -1};
+    const uint16_t index[6] = {0, 1, 2, 1, 0, 3};
+    scene *s = scene_new();
+    add_array(s, positions, sizeof positions, F32, 4, "VEC3");
+    add_array(s, index, sizeof index, U16, 6, "SCALAR");
+    APPEND(s->primitives, "{\"attributes\":{\"POSITION\":0},\"indices\":1}");
+    model *m = load(s);
+    assert_int_equal(m->meshes[0].vertex_count, 4); /* never split */
+    assert_true(fabs((double)m->meshes[0].normal[0] - sqrt(0.5)) < 1e-6);
+    model_free(m);
+}
+
+static void degenerate_triangles_are_kept(void **state)
+{
+    (void)state;
+    const uint16_t index[6] = {0, 1, 2, 1, 1, 2};
+    const float up[3] = {0, 0, 1};
+    scene *s = triangle("", ",\"indices\":1");
+    add_array(s, index, sizeof index, U16, 6, "SCALAR");
+    model *m = load(s);
+    assert_int_equal(m->meshes[0].index_count, 6);
+    assert_floats(m->meshes[0].normal + 3, up, 3);
+    model_free(m);
+}
+
+static void normals_of_all_degenerate_triangles_are_unit(void **state)
+{
+    (void)state;
+    const uint16_t index[3] = {1, 1, 2};
+    scene *s = triangle("", ",\"indices\":1");
+    add_array(s, index, sizeof index, U16, 3, "SCALAR");
+    model *m = load(s);
+    for (size_t v = 0; v < 3; ++v)
+        check_unit(m->meshes[0].normal + v * 3);
+    model_free(m);
+}
+
+static void file_normals_of_other_length(void **state)
+{
+    (void)state;
+    const float normals[9] = {0, 0, 4, 0, 0, 0, 0, 0.001f, 0.9999f}, delta[9] = {2, 0, 0, 0, 0, 0, 0, 0, 0};
+    const float scaled[3] = {0, 0, 1}, scaled_delta[3] = {0.5f, 0, 0};
+    scene *s = triangle(",\"NORMAL\":1", ",\"targets\":[{\"NORMAL\":2}]");
+    add_array(s, normals, sizeof normals, F32, 3, "VEC3");
+    add_array(s, delta, sizeof delta, F32, 3, "VEC3");
+    model *m = load(s);
+    const model_mesh *mesh = &m->meshes[0];
+    assert_floats(mesh->normal, scaled, 3);
+    assert_floats(mesh->targets[0].normal, scaled_delta, 3); /* the blend keeps its direction */
+    assert_floats(mesh->normal + 3, scaled, 3);              /* no length: computed */
+    assert_true(has_warning(m, "1 normals have no length"));
+    assert_memory_equal(mesh->normal + 6, normals + 6, 3 * sizeof(float)); /* near enough: the file's bits */
+    model_free(m);
+}
+
+/* --- targets --- */
+
+static void target_normals_from_the_morphed_mesh(void **state)
+{
+    (void)state;
+    /* the triangle becomes (0 0 0) (1 0 1) (0 1 0): its normal (-1 0 1) / sqrt 2 */
+    const double half = sqrt(0.5);
+    model *m = load(morphing(up_deltas, ONE_TARGET));
+    const model_target *t = &m->meshes[0].targets[0];
+    for (size_t v = 0; v < 3; ++v) {
+        assert_true(fabs((double)t->normal[v * 3] + half) < 1e-6);
+        assert_true(t->normal[v * 3 + 1] == 0.0f);
+        assert_true(fabs((double)t->normal[v * 3 + 2] - (half - 1.0)) < 1e-6);
+    }
+    assert_true(t->has_position && !t->has_normal && !t->has_tangent);
+    model_free(m);
+}
+
+static void target_normals_are_zero_where_nothing_changes(void **state)
+{
+    (void)state;
+    const float positions[18] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 0, 0.3f, 6, 0.1f, 0, 5, 1, 0};
+    const float deltas[18] = {0, 0, 0, 0, 0, 1};
+    const float zeros[9] = {0};
+    scene *s = scene_new();
+    add_array(s, positions, sizeof positions, F32, 6, "VEC3");
+    add_array(s, deltas, sizeof deltas, F32, 6, "VEC3");
+    APPEND(s->primitives, "{\"attributes\":{\"POSITION\":0},\"targets\":[{\"POSITION\":1}]}");
+    model *m = load(s);
+    assert_memory_equal(m->meshes[0].targets[0].normal + 9, zeros, sizeof zeros);
+    assert_true(m->meshes[0].targets[0].normal[0] != 0.0f);
+    model_free(m);
+}
+
+static void target_normals_of_a_moved_triangle_are_snapped_to_zero(void **state)
+{
+    (void)state;
+    const float deltas[9] = {0.1f, 0.2f, 0.3f, 0.1f, 0.2f, 0.3f, 0.1f, 0.2f, 0.3f}, zeros[9] = {0};
+    model *m = load(morphing(deltas, ONE_TARGET));
+    assert_memory_equal(m->meshes[0].targets[0].normal, zeros, sizeof zeros);
+    model_free(m);
+}
+
+static void target_normals_of_the_file_are_kept(void **state)
+{
+    (void)state;
+    const float normals[9] = {0, 0, 1, 0, 0, 1, 0, 0, 1}, delta[9] = {0.125f, 0, 0, 0, 0, 0, 0, 0, -0.5f};
+    scene *s = triangle(",\"NORMAL\":1", ",\"targets\":[{\"POSITION\":0,\"NORMAL\":2}]");
+    add_array(s, normals, sizeof normals, F32, 3, "VEC3");
+    add_array(s, delta, sizeof delta, F32, 3, "VEC3");
+    model *m = load(s);
+    assert_memory_equal(m->meshes[0].targets[0].normal, delta, sizeof delta);
+    assert_true(m->meshes[0].targets[0].has_normal);
+    model_free(m);
+}
+
+static void target_normals_without_a_base_are_ignored(void **state)
+{
+    (void)state;
+    const float zeros[9] = {0};
+    model *m = load(morphing(up_deltas, ",\"targets\":[{\"NORMAL\":1}]"));
+    assert_memory_equal(m->meshes[0].targets[0].normal, zeros, sizeof zeros);
+    assert_false(m->meshes[0].targets[0].has_normal);
+    assert_true(has_warning(m, "mesh 'm' primitive 0 target 0: the deltas of NORMAL were ignored"));
+    model_free(m);
+}
+
+static void targets_of_each_primitive(void **state)
+{
+    (void)state;
+    /* the first primitive gives POSITION, the second NORMAL only */
+    const float normals[9] = {0, 0, 1, 0, 0, 1, 0, 0, 1};
+    scene *s = triangle("", ",\"targets\":[{\"POSITION\":2}]");
+    add_array(s, normals, sizeof normals, F32, 3, "VEC3");
+    add_array(s, up_deltas, sizeof up_deltas, F32, 3, "VEC3");
+    APPEND(s->primitives, ",{\"attributes\":{\"POSITION\":0,\"NORMAL\":1},\"targets\":[{\"NORMAL\":2}]}");
+    model *m = load(s);
+    const model_target *t = &m->meshes[0].targets[0];
+    const float zeros[9] = {0};
+    assert_memory_equal(t->position, up_deltas, sizeof up_deltas);
+    assert_memory_equal(t->position + 9, zeros, sizeof zeros);
+    assert_true(t->normal[0] < -0.1f);
+    assert_memory_equal(t->normal + 9, up_deltas, sizeof up_deltas);
+    assert_true(t->has_position && t->has_normal);
+    model_free(m);
+}
+
+static void negative_zero_deltas_become_zero(void **state)
+{
+    (void)state;
+    const float deltas[9] = {-0.0f, 0, 0, 0, -0.0f, 1, 0, 0, 0};
+    model *m = load(morphing(deltas, ONE_TARGET));
+    assert_memory_equal(m->meshes[0].targets[0].position, up_deltas, sizeof up_deltas);
+    model_free(m);
+}
+
+/* --- tangents --- */
+
+static model *load_with_uvs(const float *uv, const char *more)
+{
+    scene *s = triangle(",\"TEXCOORD_0\":1", more);
+    add_array(s, uv, 6 * sizeof *uv, F32, 3, "VEC2");
+    add_array(s, up_deltas, sizeof up_deltas, F32, 3, "VEC3");
+    return load(s);
+}
+
+static void tangents_follow_u(void **state)
+{
+    (void)state;
+    /* in glTF v runs down: with v along y the bitangent is -y, so w is -1 */
+    const float along[6] = {0, 0, 1, 0, 0, 1}, mirrored[6] = {1, 0, 0, 0, 1, 1};
+    const float expected[4] = {1, 0, 0, -1}, expected_mirrored[4] = {-1, 0, 0, 1};
+    model *m = load_with_uvs(along, "");
+    for (size_t v = 0; v < 3; ++v)
+        assert_floats(m->meshes[0].tangent + v * 4, expected, 4);
+    model_free(m);
+    m = load_with_uvs(mirrored, "");
+    for (size_t v = 0; v < 3; ++v)
+        assert_floats(m->meshes[0].tangent + v * 4, expected_mirrored, 4);
+    model_free(m);
+}
+
+static void check_right_angles(const model_mesh *mesh)
+{
+    for (size_t v = 0; v < mesh->vertex_count; ++v) {
+        const float *t = mesh->tangent + v * 4, *n = mesh->normal + v * 3;
+        check_unit(t);
+        assert_true(fabs((double)t[0] * (double)n[0] + (double)t[1] * (double)n[1] + (double)t[2] * (double)n[2]) < 1e-6);
+        assert_true(t[3] == 1.0f || t[3] == -1.0f);
+    }
+}
+
+static void tangents_without_usable_uvs(void **state)
+{
+    (void)state;
+    const float flat[6] = {0.5f, 0.5f, 0.5f, 0.5f, 0.5f, 0.5f};
+    model *m = load_with_uvs(flat, ",\"targets\":[{\"POSITION\":2}]");
+    check_right_angles(&m->meshes[0]);
+    for (size_t i = 0; i < 9; ++i)
+        assert_true(isfinite(m->meshes[0].targets[0].tangent[i]));
+    model_free(m);
+}
+
+static void tangents_where_uvs_are_mirrored(void **state)
+{
+    (void)state;
+    /* two triangles share vertices 0 and 1; v is mirrored at the shared edge, and the second corner is narrower */
+    const float positions[12] = {0, 0, 0, 0, 1, 0, -2, 0, 0, 0.2f, 0, 0}, uv[8] = {0, 0, 0, 1, -2, 0, -0.2f, 0};
+    const uint16_t index[6] = {0, 1, 2, 1, 0, 3};
+    scene *s = scene_new();
+    add_array(s, positions, sizeof positions, F32, 4, "VEC3");
+    add_array(s, index, sizeof index, U16, 6, "SCALAR");
+    add_array(s, uv, sizeof uv, F32, 4, "VEC2");
+    APPEND(s->primitives, "{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":2},\"indices\":1}");
+    model *m = load(s);
+    const float wide[4] = {1, 0, 0, -1}, narrow[4] = {-1, 0, 0, 1};
+    check_right_angles(&m->meshes[0]);
+    assert_floats(m->meshes[0].tangent + 4, wide, 4);   /* vertex 1: the wider corner wins */
+    assert_floats(m->meshes[0].tangent + 12, narrow, 4);
+    model_free(m);
+}
+
+static void target_tangents_from_the_morphed_mesh(void **state)
+{
+    (void)state;
+    const float along[6] = {0, 0, 1, 0, 0, 1};
+    const double half = sqrt(0.5);
+    model *m = load_with_uvs(along, ",\"targets\":[{\"POSITION\":2}]");
+    const model_target *t = &m->meshes[0].targets[0];
+    for (size_t v = 0; v < 3; ++v) { /* u now grows along (1 0 1) */
+        assert_true(fabs((double)t->tangent[v * 3] - (half - 1.0)) < 1e-6);
+        assert_true(fabs((double)t->tangent[v * 3 + 2] - half) < 1e-6);
+    }
+    model_free(m);
+}
+
+static void no_uvs_no_tangents(void **state)
+{
+    (void)state;
+    model *m = load(morphing(up_deltas, ONE_TARGET));
+    assert_null(m->meshes[0].tangent);
+    assert_null(m->meshes[0].uv);
+    assert_null(m->meshes[0].targets[0].tangent);
+    model_free(m);
+}
+
+/* --- nodes --- */
+
+static void nodes_parents_first(void **state)
+{
+    (void)state;
+    scene *s = triangle("", "");
+    APPEND(s->rest, ",\"scene\":0,\"scenes\":[{\"nodes\":[2]}],\"nodes\":["
+           "{\"name\":\"child\",\"mesh\":0,\"skin\":0,\"translation\":[1,0,0]},{\"name\":\"elsewhere\"},"
+           "{\"name\":\"root\",\"children\":[0],\"scale\":[2,2,2],\"rotation\":[0,0,0.7071067811865476,0.7071067811865476]}]");
+    model *m = load(s);
+    assert_int_equal(m->node_count, 2);
+    assert_string_equal(m->nodes[0].name, "root");
+    assert_int_equal(m->nodes[0].parent, MODEL_NONE);
+    assert_int_equal(m->nodes[0].mesh, MODEL_NONE);
+    assert_string_equal(m->nodes[1].name, "child");
+    assert_int_equal(m->nodes[1].parent, 0);
+    assert_int_equal(m->nodes[1].mesh, 0);
+    assert_true(m->nodes[1].skinned && !m->nodes[0].skinned);
+    assert_true(fabs(m->nodes[1].world[12]) < 1e-7 && fabs(m->nodes[1].world[13] - 2.0) < 1e-7);
+    model_free(m);
+}
+
+static void matrices_are_decomposed(void **state)
+{
+    (void)state;
+    /* 120 degrees about (1 1 1), scale 2 3 -4 */
+    const float translation[3] = {5, 6, 7}, rotation[4] = {0.5f, 0.5f, 0.5f, 0.5f};
+    scene *s = triangle("", "");
+    APPEND(s->rest, ",\"nodes\":[{\"matrix\":[0,2,0,0,0,0,3,0,4,0,0,0,5,6,7,1]}]");
+    model *m = load(s);
+    const float scale[3] = {2, 3, 4};
+    assert_floats(m->nodes[0].translation, translation, 3);
+    assert_floats(m->nodes[0].rotation, rotation, 4);
+    assert_floats(m->nodes[0].scale, scale, 3);
+    assert_true(m->nodes[0].world[1] == 2.0 && m->nodes[0].world[12] == 5.0);
+    assert_int_equal(m->warning_count, 0);
+    model_free(m);
+}
+
+static void skewed_and_mirrored_matrices(void **state)
+{
+    (void)state;
+    scene *s = triangle("", "");
+    APPEND(s->rest, ",\"nodes\":[{\"name\":\"mirror\",\"matrix\":[-2,0,0,0,0,2,0,0,0,0,2,0,0,0,0,1]},"
+           "{\"name\":\"skew\",\"matrix\":[1,0,0,0,1,1,0,0,0,0,1,0,0,0,0,1]}]");
+    model *m = load(s);
+    const float scale[3] = {-2, 2, 2};
+    assert_floats(m->nodes[0].scale, scale, 3);
+    assert_false(has_warning(m, "node 'mirror'"));
+    assert_true(has_warning(m, "node 'skew': the matrix is skewed"));
+    model_free(m);
+}
+
+static void node_weights(void **state)
+{
+    (void)state;
+    scene *s = morphing(up_deltas, ONE_TARGET);
+    APPEND(s->rest, ",\"nodes\":[{\"mesh\":0,\"weights\":[0.25]},{\"mesh\":0}]");
+    model *m = load(s);
+    assert_true(m->nodes[0].weights[0] == 0.25f);
+    assert_null(m->nodes[1].weights);
+    model_free(m);
+}
+
+/* --- animations --- */
+
+/* A morphing triangle with two keys of weights: accessors 2 (times) and 3 (values). */
+static scene *animated(const float *times, const void *values, size_t value_bytes, const char *value_accessor,
+                       int value_component, int value_count, const char *sampler_rest, const char *target)
+{
+    char rest[128];
+    scene *s = morphing(up_deltas, ONE_TARGET);
+    add_array(s, times, 2 * sizeof *times, F32, 2, "SCALAR");
+    snprintf(rest, sizeof rest, ",\"bufferView\":%d%s", add_view(s, values, value_bytes, 0), value_accessor);
+    add_accessor(s, value_component, value_count, "SCALAR", rest);
+    APPEND(s->rest, ",\"nodes\":[{\"name\":\"n\",\"mesh\":0},{\"name\":\"bare\"}],\"animations\":[{\"name\":\"a\",\"channels\":"
+           "[{\"sampler\":0,\"target\":{%s}}],\"samplers\":[{\"input\":2,\"output\":3%s}]}]", target, sampler_rest);
+    return s;
+}
+
+static const float two_times[2] = {0.5f, 2.0f}, two_values[2] = {0, 1};
+#define WEIGHTS_OF_N "\"node\":0,\"path\":\"weights\""
+
+static void animation_linear(void **state)
+{
+    (void)state;
+    model *m = load(animated(two_times, two_values, sizeof two_values, "", F32, 2, "", WEIGHTS_OF_N));
+    const model_channel *c = &m->clips[0].channels[0];
+    assert_int_equal(m->clip_count, 1);
+    assert_string_equal(m->clips[0].name, "a");
+    assert_true(m->clips[0].duration_s == 2.0f);
+    assert_int_equal(c->path, MODEL_PATH_WEIGHTS);
+    assert_int_equal(c->interpolation, MODEL_LINEAR);
+    assert_int_equal(c->key_count, 2);
+    assert_int_equal(c->width, 1);
+    assert_floats(c->times, two_times, 2);
+    assert_floats(c->values, two_values, 2);
+    model_free(m);
+}
+
+static void animation_of_normalised_bytes(void **state)
+{
+    (void)state;
+    const uint8_t bytes[2] = {0, 255};
+    model *m = load(animated(two_times, bytes, sizeof bytes, ",\"normalized\":true", U8, 2,
+                             ",\"interpolation\":\"STEP\"", WEIGHTS_OF_N));
+    assert_int_equal(m->clips[0].channels[0].interpolation, MODEL_STEP);
+    assert_floats(m->clips[0].channels[0].values, two_values, 2);
+    model_free(m);
+}
+
+static void animation_cubic(void **state)
+{
+    (void)state;
+    const float values[6] = {0, 0.5f, 1, -1, 2, 0};
+    model *m = load(animated(two_times, values, sizeof values, "", F32, 6, ",\"interpolation\":\"CUBICSPLINE\"",
+                             WEIGHTS_OF_N));
+    assert_int_equal(m->clips[0].channels[0].interpolation, MODEL_CUBICSPLINE);
+    assert_floats(m->clips[0].channels[0].values, values, 6);
+    model_free(m);
+}
+
+static void animation_without_a_target_is_skipped(void **state)
+{
+    (void)state;
+    model *m = load(animated(two_times, two_values, sizeof two_values, "", F32, 2, "", "\"path\":\"weights\""));
+    assert_int_equal(m->clip_count, 0);
+    assert_true(has_warning(m, "animation 'a' channel 0 was skipped: it has no target node"));
+    model_free(m);
+}
+
+static void animation_without_meshes(void **state)
+{
+    (void)state;
+    const float times[2] = {0, 1}, moves[6] = {0, 0, 0, 1, 2, 3};
+    scene *s = scene_new();
+    add_array(s, times, sizeof times, F32, 2, "SCALAR");
+    add_array(s, moves, sizeof moves, F32, 2, "VEC3");
+    APPEND(s->rest, ",\"nodes\":[{}],\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,\"path\":"
+           "\"translation\"}}],\"samplers\":[{\"input\":0,\"output\":1}]}]");
+    model *m = load(s);
+    assert_int_equal(m->mesh_count, 0);
+    assert_int_equal(m->clips[0].channels[0].width, 3);
+    assert_floats(m->clips[0].channels[0].values, moves, 6);
+    model_free(m);
+}
+
+static void bad_animations_are_refused(void **state)
+{
+    (void)state;
+    const float backwards[2] = {2, 0.5f}, before_zero[2] = {-1, 0}, endless[2] = {0, INFINITY};
+    const char *target = WEIGHTS_OF_N;
+    size_t bytes = sizeof two_values;
+    refused(animated(backwards, two_values, bytes, "", F32, 2, "", target), "does not increase",
+            "animation 'a' channel 0 input (accessor 2), element 1");
+    refused(animated(before_zero, two_values, bytes, "", F32, 2, "", target), "is negative", "element 0");
+    refused(animated(endless, two_values, bytes, "", F32, 2, "", target), "infinite", "element 1");
+    refused(animated(two_times, two_values, bytes, "", F32, 1, "", target), "2 keys of width 1 need 2 elements",
+            "animation 'a' channel 0 output (accessor 3)");
+    refused(animated(two_times, two_values, bytes, "", F32, 2, ",\"interpolation\":\"CUBICSPLINE\"", target),
+            "with tangents need 6", "output");
+    refused(animated(two_times, two_values, bytes, "", F32, 2, ",\"interpolation\":\"BEZIER\"", target),
+            "'BEZIER' is unknown", "animation 'a' channel 0");
+    refused(animated(two_times, two_values, bytes, "", F32, 2, "", "\"node\":1,\"path\":\"weights\""),
+            "node 'bare' has no mesh", "animation 'a' channel 0");
+    refused(animated(two_times, two_values, bytes, "", F32, 2, "", "\"node\":9,\"path\":\"weights\""),
+            "node 9 does not exist", "animation 'a' channel 0");
+}
+
+static void weights_of_a_mesh_without_targets_are_refused(void **state)
+{
+    (void)state;
+    scene *s = triangle("", "");
+    add_array(s, two_times, sizeof two_times, F32, 2, "SCALAR");
+    add_array(s, two_values, sizeof two_values, F32, 2, "SCALAR");
+    APPEND(s->rest, ",\"nodes\":[{\"mesh\":0}],\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{"
+           WEIGHTS_OF_N "}}],\"samplers\":[{\"input\":1,\"output\":2}]}]");
+    refused(s, "mesh 'm' has no morph targets", "animation 'animation_0' channel 0");
+}
+
+/* --- materials --- */
+
+static const char png_2x1[] = 
+    "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAYAAAD0In+KAAAAEUlEQVR42mP4z8Dwn6HhvwMAELoDvjp5v74AAAAA"
+    "SUVORK5CYII="; /* red, and a blue of alpha 64 */
+
+static void materials_and_textures(void **state)
+{
+    (void)state;
+    scene *s = triangle("", ",\"material\":0");
+    APPEND(s->rest, ",\"materials\":[{\"name\":\"skin\",\"alphaMode\":\"MASK\",\"alphaCutoff\":0.25,\"doubleSided\":true,"
+           "\"extensions\":{\"KHR_materials_unlit\":{}},\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,0.5,0.25,1],"
+           "\"metallicFactor\":0,\"baseColorTexture\":{\"index\":0}}},{}],\"textures\":[{\"source\":0,\"sampler\":0}],"
+           "\"samplers\":[{\"wrapS\":33071,\"minFilter\":9987}],\"images\":[{\"name\":\"i\",\"uri\":"
+           "\"data:image/png;base64,%s\"}]", png_2x1);
+    model *m = load(s);
+    const uint8_t pixels[8] = {255, 0, 0, 255, 0, 128, 255, 64};
+    const float factor[4] = {1, 0.5f, 0.25f, 1};
+    const model_material *a = &m->materials[0], *b = &m->materials[1];
+    assert_string_equal(a->name, "skin");
+    assert_floats(a->base_color, factor, 4);
+    assert_true(a->alpha == MODEL_ALPHA_MASK && a->alpha_cutoff == 0.25f && a->double_sided && a->unlit);
+    assert_true(a->metallic == 0.0f && a->roughness == 1.0f && a->base_color_texture == 0);
+    assert_true(b->alpha == MODEL_ALPHA_OPAQUE && !b->unlit && b->base_color_texture == MODEL_NONE);
+    assert_int_equal(m->texture_count, 1);
+    assert_true(m->textures[0].width == 2 && m->textures[0].height == 1);
+    assert_memory_equal(m->textures[0].rgba, pixels, sizeof pixels);
+    assert_int_equal(m->textures[0].wrap_s, 33071);
+    assert_int_equal(m->textures[0].wrap_t, 10497);
+    assert_int_equal(m->textures[0].min_filter, 9987);
+    assert_int_equal(m->textures[0].mag_filter, 0);
+    model_free(m);
+}
+
+static void check_left_out_texture(const char *image, const char *reason)
+{
+    scene *s = triangle("", ",\"material\":0");
+    APPEND(s->rest, ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}],"
+           "\"textures\":[{\"source\":0}],\"images\":[%s]", image);
+    model *m = load(s);
+    assert_int_equal(m->materials[0].base_color_texture, MODEL_NONE);
+    assert_int_equal(m->texture_count, 0);
+    if (!has_warning(m, reason))
+        fail_msg("no warning about '%s'", reason);
+    model_free(m);
+}
+
+static void bad_images_are_warnings(void **state)
+{
+    (void)state;
+    check_left_out_texture("{\"uri\":\"nowhere.png\"}", "does not exist");
+    check_left_out_texture("{\"uri\":\"data:image/png;base64,AAAA\"}", "neither PNG nor JPEG");
+    check_left_out_texture("{\"uri\":\"data:image/png;base64,iVBORw0KGgoAAAAAAAAA\"}", "damaged");
+    check_left_out_texture("{\"bufferView\":99}", "buffer view 99 does not exist");
+    check_left_out_texture("{\"uri\":\"/etc/hostname\"}", "not a relative path");
+    check_left_out_texture("{}", "neither a 'uri' nor a 'bufferView'");
+}
+
+static void texture_transform_is_baked(void **state)
+{
+    (void)state;
+    const float uv[6] = {0, 0, 1, 0, 0, 1}, expected[6] = {0.5f, 0.25f, 2.5f, 0.25f, 0.5f, 3.25f};
+    scene *s = triangle(",\"TEXCOORD_0\":1", ",\"material\":0");
+    add_array(s, uv, sizeof uv, F32, 3, "VEC2");
+    APPEND(s->rest, ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"extensions\":{"
+           "\"KHR_texture_transform\":{\"offset\":[0.5,0.25],\"scale\":[2,3],\"rotation\":1}}}}}],"
+           "\"textures\":[{}]");
+    model *m = load(s);
+    assert_floats(m->meshes[0].uv, expected, 6);
+    assert_true(has_warning(m, "rotation of KHR_texture_transform is not supported"));
+    model_free(m);
+}
+
+/* --- bad input --- */
+
+static void not_gltf_is_refused(void **state)
+{
+    (void)state;
+    write_text("test.gltf", "solid cube\nfacet normal 0 0 1\n");
+    file_refused("not a glTF file", "byte 0");
+    write_text("test.gltf", "");
+    file_refused("not a glTF file", "");
+    write_text("test.gltf", "{\"asset\":{\"version\":\"2.0\"},\"meshes\":[}");
+    file_refused("the JSON is broken", "glTF JSON");
+    write_text("test.gltf", "{\"hello\":1}");
+    file_refused("no 'asset' object", "glTF JSON");
+    write_text("test.gltf", "{\"asset\":{\"version\":\"1.0\"}}");
+    file_refused("glTF version '1.0'", "asset");
+    snprintf(file_path, sizeof file_path, "%s/nothing.glb", folder);
+    file_refused("does not exist", "");
+    snprintf(file_path, sizeof file_path, "%s", folder);
+    file_refused("not a file", "");
+}
+
+static void nothing_to_convert_is_refused(void **state)
+{
+    (void)state;
+    write_text("test.gltf", "{\"asset\":{\"version\":\"2.0\"}}");
+    file_refused("no triangle meshes and no animations", "");
+}
+
+static void deep_json_is_refused(void **state)
+{
+    (void)state;
+    char json[3000] = "{\"asset\":{\"version\":\"2.0\"},\"extras\":";
+    for (int i = 0; i < 1000; ++i)
+        APPEND(json, "[");
+    write_text("test.gltf", json);
+    file_refused("nested deeper", "JSON byte");
+}
+
+static void required_extensions_are_refused_by_name(void **state)
+{
+    (void)state;
+    scene *s = triangle("", "");
+    APPEND(s->rest, ",\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]");
+    refused(s, "KHR_draco_mesh_compression, which is not supported", "extensionsRequired");
+}
+
+static void unknown_extensions_are_warnings(void **state)
+{
+    (void)state;
+    scene *s = triangle("", "");
+    APPEND(s->rest, ",\"extensionsUsed\":[\"KHR_lights_punctual\"]");
+    model *m = load(s);
+    assert_true(has_warning(m, "KHR_lights_punctual is not supported and was ignored"));
+    model_free(m);
+}
+
+static void every_truncation_of_a_glb_is_refused(void **state)
+{
+    (void)state;
+    static unsigned char bytes[8192];
+    scene *s = morphing(up_deltas, ONE_TARGET);
+    save_glb(s);
+    free(s);
+    FILE *in = fopen(file_path, "rb");
+    assert_non_null(in);
+    size_t size = fread(bytes, 1, sizeof bytes, in);
+    fclose(in);
+    for (size_t cut = 0; cut < size; ++cut) {
+        FILE *out = fopen(file_path, "wb");
+        assert_non_null(out);
+        fwrite(bytes, 1, cut, out);
+        fclose(out);
+        file_refused(cut < 4 ? "not a glTF" : "truncated", "");
+    }
+}
+
+static void indices_out_of_range_are_refused(void **state)
+{
+    (void)state;
+    const uint16_t index[3] = {0, 1, 3};
+    scene *s = triangle("", ",\"indices\":1");
+    add_array(s, index, sizeof index, U16, 3, "SCALAR");
+    refused(s, "the index 3 is out of range: the primitive has 3 vertices",
+            "mesh 'm' primitive 0 indices (accessor 1), element 2");
+}
+
+static void half_a_triangle_is_refused(void **state)
+{
+    (void)state;
+    const uint16_t index[4] = {0, 1, 2, 0};
+    scene *s = triangle("", ",\"indices\":1");
+    add_array(s, index, sizeof index, U16, 4, "SCALAR");
+    refused(s, "4 corners are not whole triangles", "mesh 'm' primitive 0");
+}
+
+static void wrong_types_are_refused(void **state)
+{
+    (void)state;
+    const float values[12] = {0};
+    scene *s = triangle(",\"NORMAL\":1", "");
+    add_array(s, values, 24, F32, 3, "VEC2");
+    refused(s, "type is VEC2, but this needs VEC3", "mesh 'm' primitive 0 NORMAL (accessor 1)");
+    s = triangle(",\"NORMAL\":1", "");
+    add_array(s, values, 36, U32, 3, "VEC3");
+    refused(s, "component type UNSIGNED_INT is not allowed", "mesh 'm' primitive 0 NORMAL (accessor 1)");
+    s = triangle("", ",\"indices\":1");
+    add_array(s, values, 12, F32, 3, "SCALAR");
+    refused(s, "component type FLOAT is not allowed", "mesh 'm' primitive 0 indices (accessor 1)");
+    s = triangle(",\"TEXCOORD_0\":1", "");
+    add_array(s, values, 12, U16, 3, "VEC2");
+    refused(s, "KHR_mesh_quantization missing", "mesh 'm' primitive 0 TEXCOORD_0 (accessor 1)");
+    s = triangle("", ",\"targets\":[{\"POSITION\":1}]");
+    add_array(s, values, 48, F32, 3, "VEC4");
+    refused(s, "type is VEC4, but this needs VEC3", "mesh 'm' primitive 0 target 0 POSITION (accessor 1)");
+}
+
+static void accessors_outside_their_bytes_are_refused(void **state)
+{
+    (void)state;
+    const float values[9] = {0};
+    scene *s = triangle(",\"NORMAL\":1", "");
+    add_array(s, values, 35, F32, 3, "VEC3");
+    refused(s, "it needs 36 bytes of its buffer view, which has 35", "NORMAL (accessor 1)");
+    s = triangle(",\"NORMAL\":1", "");
+    APPEND(s->views, ",{\"buffer\":0,\"byteOffset\":4,\"byteLength\":36}");
+    ++s->view_count;
+    add_accessor(s, F32, 3, "VEC3", ",\"bufferView\":1");
+    refused(s, "bytes 4 to 40 are out of range: buffer 0 has 36", "NORMAL (accessor 1), buffer view 1");
+    s = triangle(",\"NORMAL\":1", "");
+    add_accessor(s, F32, 3, "VEC3", ",\"bufferView\":7");
+    refused(s, "buffer view 7 does not exist", "NORMAL (accessor 1)");
+    s = triangle(",\"NORMAL\":7", "");
+    refused(s, "accessor 7 does not exist", "mesh 'm' primitive 0 NORMAL");
+    s = triangle(",\"NORMAL\":1", "");
+    add_array(s, values, 24, F32, 2, "VEC3");
+    refused(s, "has 2 elements, but 3 are needed", "NORMAL (accessor 1)");
+}
+
+static void giant_counts_are_refused(void **state)
+{
+    (void)state;
+    scene *s = scene_new();
+    add_accessor(s, F32, 2000000000, "VEC3", "");
+    APPEND(s->primitives, "{\"attributes\":{\"POSITION\":0}}");
+    refused(s, "would need more than 256 MiB", "mesh 'm' primitive 0");
+    s = triangle("", "");
+    APPEND(s->accessors, ",{\"componentType\":5126,\"count\":18446744073709551615,\"type\":\"VEC3\",\"bufferView\":0}");
+    refused(s, "'count' is out of range", "/accessors/1/count");
+    s = triangle("", ",\"indices\":1");
+    add_view(s, triangle_positions, 4, 0);
+    add_accessor(s, U8, 2000000000, "SCALAR", ",\"bufferView\":1");
+    refused(s, "it needs 2000000000 bytes", "indices (accessor 1)");
+    s = triangle("", ",\"indices\":1");
+    add_accessor(s, U8, 20000000, "SCALAR", ",\"bufferView\":-1,\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":0,"
+                 "\"componentType\":5121},\"values\":{\"bufferView\":0}}");
+    refused(s, "", "");
+}
+
+static void missing_buffers_are_refused(void **state)
+{
+    (void)state;
+    static const char format[] = "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":%s}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,"
+        "\"count\":3,\"type\":\"VEC3\"}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}";
+    char json[1024];
+    snprintf(json, sizeof json, format, "36,\"uri\":\"gone.bin\"");
+    write_text("test.gltf", json);
+    file_refused("does not exist", "buffer 0");
+    snprintf(json, sizeof json, format, "36");
+    write_text("test.gltf", json);
+    file_refused("buffer 0 has no data", "mesh 'mesh_0' primitive 0 POSITION (accessor 0), buffer view 0");
+    snprintf(json, sizeof json, format, "36,\"uri\":\"data:application/octet-stream;base64,AAAA\"");
+    write_text("test.gltf", json);
+    file_refused("3 bytes, but 'byteLength' says 36", "buffer 0");
+    snprintf(json, sizeof json, format, "36,\"uri\":\"/etc/hostname\"");
+    write_text("test.gltf", json);
+    file_refused("not a relative path", "buffer 0");
+}
+
+static void numbers_that_are_not_finite_are_refused(void **state)
+{
+    (void)state;
+    float values[9] = {0, 0, 0, 0, NAN, 0, 0, 0, 0};
+    scene *s = scene_new();
+    add_array(s, values, sizeof values, F32, 3, "VEC3");
+    APPEND(s->primitives, "{\"attributes\":{\"POSITION\":0}}");
+    refused(s, "the value is NaN", "mesh 'm' primitive 0 POSITION (accessor 0), element 1");
+    refused(morphing(values, ONE_TARGET), "the value is NaN",
+            "mesh 'm' primitive 0 target 0 POSITION (accessor 1), element 1");
+    values[4] = INFINITY;
+    s = triangle(",\"NORMAL\":1", "");
+    add_array(s, values, sizeof values, F32, 3, "VEC3");
+    refused(s, "the value is infinite", "mesh 'm' primitive 0 NORMAL (accessor 1), element 1");
+    s = triangle(",\"TEXCOORD_0\":1", "");
+    add_array(s, values, 24, F32, 3, "VEC2");
+    refused(s, "the value is infinite", "mesh 'm' primitive 0 TEXCOORD_0 (accessor 1), element 2");
+}
+
+static void differing_target_counts_are_refused(void **state)
+{
+    (void)state;
+    scene *s = morphing(up_deltas, ONE_TARGET);
+    APPEND(s->primitives, ",{\"attributes\":{\"POSITION\":0},\"targets\":[{\"POSITION\":1},{\"POSITION\":1}]}");
+    refused(s, "primitive 0 has 1 morph targets and primitive 1 has 2", "mesh 'm' primitives 0 and 1");
+}
+
+static void weights_of_the_wrong_length_are_refused(void **state)
+{
+    (void)state;
+    scene *s = morphing(up_deltas, ONE_TARGET);
+    APPEND(s->mesh_rest, ",\"weights\":[0,1]");
+    refused(s, "2 weights for 1 morph targets", "mesh 'm'");
+    s = morphing(up_deltas, ONE_TARGET);
+    APPEND(s->rest, ",\"nodes\":[{\"name\":\"n\",\"mesh\":0,\"weights\":[0,1]}]");
+    refused(s, "2 weights, but its mesh 'm' has 1", "node 'n'");
+}
+
+static void zero_vertices_are_refused(void **state)
+{
+    (void)state;
+    scene *s = scene_new();
+    add_accessor(s, F32, 0, "VEC3", "");
+    APPEND(s->primitives, "{\"attributes\":{\"POSITION\":0}}");
+    refused(s, "no vertices", "mesh 'm' primitive 0 POSITION (accessor 0)");
+}
+
+static void check_sparse_indices(uint16_t first, uint16_t second, const char *what, const char *where)
+{
+    const uint16_t index[2] = {first, second};
+    const float value[6] = {0};
+    char rest[256];
+    scene *s = triangle("", ONE_TARGET);
+    int indices = add_view(s, index, sizeof index, 0), values = add_view(s, value, sizeof value, 0);
+    snprintf(rest, sizeof rest, ",\"sparse\":{\"count\":2,\"indices\":{\"bufferView\":%d,\"componentType\":5123},"
+             "\"values\":{\"bufferView\":%d}}", indices, values);
+    add_accessor(s, F32, 3, "VEC3", rest);
+    refused(s, what, where);
+}
+
+static void bad_sparse_indices_are_refused(void **state)
+{
+    (void)state;
+    check_sparse_indices(1, 3, "the index 3 is out of range: the accessor has 3 elements",
+                         "target 0 POSITION (accessor 1) sparse indices, element 1");
+    check_sparse_indices(1, 1, "the index 1 does not increase", "sparse indices, element 1");
+}
+
+static void bad_nodes_are_refused(void **state)
+{
+    (void)state;
+    static const char *const cases[][3] = {
+        {"{\"children\":[1]},{\"children\":[0]}", "own ancestors", "nodes"},
+        {"{\"children\":[2]},{\"children\":[2]},{\"name\":\"c\"}", "two parents", "node 'c'"},
+        {"{\"name\":\"p\",\"children\":[5]}", "node 5 does not exist", "node 'p' children"},
+        {"{\"name\":\"p\",\"mesh\":4}", "mesh 4 does not exist", "node 'p'"},
+        {"{\"name\":\"p\",\"rotation\":[0,1]}", "'rotation' has 2 numbers; it needs 4", "node 'p'"},
+        {"{\"name\":\"p\",\"matrix\":[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1]}", "not affine", "node 'p'"},
+        {"{\"name\":\"p\",\"translation\":[1e300,0,0]}", "too large for a float", "node 'p' translation"},
+        {"{\"name\":\"p\",\"mesh\":\"x\"}", "'mesh' must be a whole number", "/nodes/0/mesh"}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        scene *s = triangle("", "");
+        APPEND(s->rest, ",\"nodes\":[%s]", cases[i][0]);
+        refused(s, cases[i][1], cases[i][2]);
+    }
+}
+
+static void bad_references_are_refused(void **state)
+{
+    (void)state;
+    refused(triangle("", ",\"material\":3"), "material 3 does not exist", "mesh 'm' primitive 0");
+    refused(triangle("", ",\"mode\":9"), "mode 9 is unknown", "mesh 'm' primitive 0");
+    scene *s = triangle("", "");
+    APPEND(s->rest, ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":2}}}]");
+    refused(s, "texture 2 does not exist", "material 'material_0'");
+    s = triangle("", "");
+    APPEND(s->rest, ",\"scenes\":[{\"nodes\":[0]}]");
+    refused(s, "node 0 does not exist", "scene 0");
+}
+
+/* --- real files --- */
+
+/* Where the example assets lie, or a skipped test. */
+static void use_asset(const char *name)
+{
+    const char *base = getenv("NOH_ASSETS");
+    snprintf(file_path, sizeof file_path, "%s/%s", base ? base : "../shared/assets", name);
+    if (access(file_path, R_OK) != 0) {
+        print_message("skipped: %s is not there (set NOH_ASSETS to the assets' folder)\n", file_path);
+        skip();
+    }
+}
+
+static void assert_same_mesh(const model_mesh *a, const model_mesh *b)
+{
+    size_t floats = (size_t)a->vertex_count * 3 * sizeof(float);
+    assert_int_equal(a->vertex_count, b->vertex_count);
+    assert_int_equal(a->target_count, b->target_count);
+    assert_memory_equal(a->position, b->position, floats);
+    assert_memory_equal(a->normal, b->normal, floats);
+    assert_memory_equal(a->tangent, b->tangent, floats / 3 * 4);
+    assert_memory_equal(a->indices, b->indices, a->index_count * sizeof *a->indices);
+    for (uint32_t t = 0; t < a->target_count; ++t) {
+        assert_string_equal(a->targets[t].name, b->targets[t].name);
+        assert_memory_equal(a->targets[t].position, b->targets[t].position, floats);
+        assert_memory_equal(a->targets[t].normal, b->targets[t].normal, floats);
+        assert_memory_equal(a->targets[t].tangent, b->targets[t].tangent, floats);
+    }
+}
+
+static void dense_and_sparse_heads_are_the_same(void **state)
+{
+    (void)state;
+    use_asset("hero/head_sparse.glb");
+    model *sparse = load_file();
+    use_asset("hero/head.glb");
+    model *dense = load_file();
+    assert_same_mesh(&dense->meshes[0], &sparse->meshes[0]);
+    assert_int_equal(dense->meshes[0].vertex_count, 5465);
+    assert_int_equal(dense->meshes[0].target_count, 34);
+    assert_int_equal(dense->clip_count, 5);
+    model_free(sparse);
+    model_free(dense);
+}
+
+static void compressed_head_has_the_same_shape(void **state)
+{
+    (void)state;
+    use_asset("hero/head_meshopt.glb");
+    model *m = load_file();
+    assert_int_equal(m->meshes[0].vertex_count, 5465);
+    assert_int_equal(m->meshes[0].index_count, 3 * 10120);
+    double low = 1e9, high = -1e9;
+    for (uint32_t v = 0; v < m->meshes[0].vertex_count; ++v) { /* the node's matrix undoes the quantisation */
+        double y = m->nodes[0].world[5] * (double)m->meshes[0].position[v * 3 + 1] + m->nodes[0].world[13];
+        low = y < low ? y : low;
+        high = y > high ? y : high;
+    }
+    model_free(m);
+    use_asset("hero/head.glb");
+    m = load_file();
+    for (uint32_t v = 0; v < m->meshes[0].vertex_count; ++v) {
+        double y = (double)m->meshes[0].position[v * 3 + 1];
+        assert_true(y > low - 2e-4 && y < high + 2e-4);
+    }
+    model_free(m);
+}
+
+static void all_assets_load(void **state)
+{
+    (void)state;
+    static const char *const names[] = {
+        "hero/body.glb", "hero/body_8inf.glb", "hero/body_quantized.glb", "hero/identity.glb", "khronos/Fox.glb",
+        "khronos/MorphStressTest.glb", "khronos/RobotExpressive.glb", "khronos/SimpleSkin.gltf",
+        "khronos/SimpleSparseAccessor.gltf", "khronos/AnimatedMorphCube/glTF/AnimatedMorphCube.gltf",
+        "khronos/AnimatedMorphSphere/glTF/AnimatedMorphSphere.gltf",
+        "khronos/MorphPrimitivesTest/glTF/MorphPrimitivesTest.gltf", "khronos/SimpleMorph/glTF/SimpleMorph.gltf",
+        "khronos/three-vrm-cube/cube.gltf"};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
+        use_asset(names[i]);
+        model *m = load_file();
+        assert_true(m->mesh_count > 0);
+        for (uint32_t k = 0; k < m->mesh_count; ++k)
+            for (uint32_t v = 0; v < m->meshes[k].vertex_count; ++v)
+                assert_true(isfinite(m->meshes[k].normal[v * 3]));
+        model_free(m);
+    }
+}
+
+/* --- the run --- */
+
+static int make_folder(void **state)
+{
+    (void)state;
+    snprintf(folder, sizeof folder, "/tmp/noh_gltf_XXXXXX");
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **state)
+{
+    static const char *const names[] = {"test.gltf", "test.glb", "json", "a b.bin"};
+    char path[128];
+    (void)state;
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
+        snprintf(path, sizeof path, "%s/%s", folder, names[i]);
+        (void)unlink(path);
+    }
+    return rmdir(folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(triangle_without_indices),
+        cmocka_unit_test(indices_of_every_size),
+        cmocka_unit_test(binary_container),
+        cmocka_unit_test(buffer_in_a_file_beside),
+        cmocka_unit_test(interleaved_attributes),
+        cmocka_unit_test(sparse_with_a_base),
+        cmocka_unit_test(sparse_without_a_base),
+        cmocka_unit_test(accessor_without_bytes_is_zero),
+        cmocka_unit_test(quantized_positions),
+        cmocka_unit_test(quantized_attributes_and_deltas),
+        cmocka_unit_test(meshopt_attributes_and_triangles),
+        cmocka_unit_test(meshopt_index_sequence),
+        cmocka_unit_test(meshopt_octahedral_and_exponential),
+        cmocka_unit_test(meshopt_quaternion),
+        cmocka_unit_test(meshopt_damage_is_refused),
+        cmocka_unit_test(meshopt_impossible_sizes_are_refused),
+        cmocka_unit_test(strips_and_fans),
+        cmocka_unit_test(points_and_lines_are_skipped),
+        cmocka_unit_test(primitives_are_concatenated),
+        cmocka_unit_test(target_names_are_made_unique),
+        cmocka_unit_test(target_names_of_a_primitive),
+        cmocka_unit_test(normals_of_a_triangle),
+        cmocka_unit_test(normals_below_the_crease_angle_are_smooth),
+        cmocka_unit_test(normals_above_the_crease_angle_are_hard),
+        cmocka_unit_test(normals_of_an_indexed_edge_are_shared),
+        cmocka_unit_test(degenerate_triangles_are_kept),
+        cmocka_unit_test(normals_of_all_degenerate_triangles_are_unit),
+        cmocka_unit_test(file_normals_of_other_length),
+        cmocka_unit_test(target_normals_from_the_morphed_mesh),
+        cmocka_unit_test(target_normals_are_zero_where_nothing_changes),
+        cmocka_unit_test(target_normals_of_a_moved_triangle_are_snapped_to_zero),
+        cmocka_unit_test(target_normals_of_the_file_are_kept),
+        cmocka_unit_test(target_normals_without_a_base_are_ignored),
+        cmocka_unit_test(targets_of_each_primitive),
+        cmocka_unit_test(negative_zero_deltas_become_zero),
+        cmocka_unit_test(tangents_follow_u),
+        cmocka_unit_test(tangents_without_usable_uvs),
+        cmocka_unit_test(tangents_where_uvs_are_mirrored),
+        cmocka_unit_test(target_tangents_from_the_morphed_mesh),
+        cmocka_unit_test(no_uvs_no_tangents),
+        cmocka_unit_test(nodes_parents_first),
+        cmocka_unit_test(matrices_are_decomposed),
+        cmocka_unit_test(skewed_and_mirrored_matrices),
+        cmocka_unit_test(node_weights),
+        cmocka_unit_test(animation_linear),
+        cmocka_unit_test(animation_of_normalised_bytes),
+        cmocka_unit_test(animation_cubic),
+        cmocka_unit_test(animation_without_a_target_is_skipped),
+        cmocka_unit_test(animation_without_meshes),
+        cmocka_unit_test(bad_animations_are_refused),
+        cmocka_unit_test(weights_of_a_mesh_without_targets_are_refused),
+        cmocka_unit_test(materials_and_textures),
+        cmocka_unit_test(bad_images_are_warnings),
+        cmocka_unit_test(texture_transform_is_baked),
+        cmocka_unit_test(not_gltf_is_refused),
+        cmocka_unit_test(nothing_to_convert_is_refused),
+        cmocka_unit_test(deep_json_is_refused),
+        cmocka_unit_test(required_extensions_are_refused_by_name),
+        cmocka_unit_test(unknown_extensions_are_warnings),
+        cmocka_unit_test(every_truncation_of_a_glb_is_refused),
+        cmocka_unit_test(indices_out_of_range_are_refused),
+        cmocka_unit_test(half_a_triangle_is_refused),
+        cmocka_unit_test(wrong_types_are_refused),
+        cmocka_unit_test(accessors_outside_their_bytes_are_refused),
+        cmocka_unit_test(giant_counts_are_refused),
+        cmocka_unit_test(missing_buffers_are_refused),
+        cmocka_unit_test(numbers_that_are_not_finite_are_refused),
+        cmocka_unit_test(differing_target_counts_are_refused),
+        cmocka_unit_test(weights_of_the_wrong_length_are_refused),
+        cmocka_unit_test(zero_vertices_are_refused),
+        cmocka_unit_test(bad_sparse_indices_are_refused),
+        cmocka_unit_test(bad_nodes_are_refused),
+        cmocka_unit_test(bad_references_are_refused),
+        cmocka_unit_test(dense_and_sparse_heads_are_the_same),
+        cmocka_unit_test(compressed_head_has_the_same_shape),
+        cmocka_unit_test(all_assets_load),
+    };
+    return cmocka_run_group_tests_name("gltf_read", tests, make_folder, remove_folder);
+}

@@ -1,0 +1,12 @@
+/* Inside the mouth: teeth, tongue and the dark. */
+#ifndef MASK_MOUTH_H
+#define MASK_MOUTH_H
+
+#include "model.h"
+
+void mouth_build(Model *model);
+V3 teeth_place(const Seed *seed, const Pose *pose);
+V3 tongue_place(const Seed *seed, const Pose *pose);
+V3 bag_place(const Seed *seed, const Pose *pose);
+
+#endif

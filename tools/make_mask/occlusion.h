@@ -1,0 +1,10 @@
+/* How open each vertex lies to the light from in front, at rest. */
+#ifndef MASK_OCCLUSION_H
+#define MASK_OCCLUSION_H
+
+#include "mesh.h"
+
+/* One value per vertex of each part: 1 in the open, towards 0 in a crease. */
+void occlusion_bake(const Model *model, const Frame *frames, double *open[PART_COUNT]);
+
+#endif
