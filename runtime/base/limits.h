@@ -22,4 +22,7 @@
 #define NOH_NAME_BYTES_MAX 256u          /* with the final zero */
 #define NOH_MORPH_INSTANCES_MAX 65536u
 
+/* No call of the library uses more stack than this; a check on the compiler's own figures says so. */
+#define NOH_STACK_BYTES 8192u
+
 #endif

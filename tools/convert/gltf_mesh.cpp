@@ -152,13 +152,17 @@ static void find_parts(file &f, mesh_job &job)
         uint64_t count = accessor_at(f, position, where + " POSITION").count;
         if (count == 0)
             fail(where + text(" POSITION (accessor %d)", position), "the primitive has no vertices");
-        vertices += count;
-        check_vertex_total(job, vertices, indices);
+        check_vertex_total(job, vertices + count, indices);
         charge(f, count, 12 * sizeof(float), where); /* about what its vertices will need */
         p.vertex_count = static_cast<uint32_t>(count);
         read_triangles(f, job, p);
+        check_vertex_total(job, vertices + count, indices + p.indices.size());
+        if (p.indices.empty()) {
+            warn(f, "%s was skipped: a strip or fan needs three vertices", where.c_str());
+            continue;
+        }
+        vertices += count;
         indices += p.indices.size();
-        check_vertex_total(job, vertices, indices);
         job.parts.push_back(std::move(p));
     }
 }

@@ -9,7 +9,6 @@
 #include "morph_internal.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #define PIECES_MOST 4096u /* joining takes the square of their number; noise that needs more stays as its bands */
 #define NOBODY UINT32_MAX

@@ -56,6 +56,15 @@ int parse_accumulate(const char *text, noh_accumulate *accumulate)
     return text ? tool_usage("--accumulate wants auto, f32 or f16, not '%s'", text) : 0;
 }
 
+int parse_instances(double value, uint32_t *instances)
+{
+    if (value < 1.0 || value > NOH_MORPH_INSTANCES_MAX || value != (double)(uint32_t)value) {
+        return tool_usage("--instances wants a whole number from 1 to %u", NOH_MORPH_INSTANCES_MAX);
+    }
+    *instances = (uint32_t)value;
+    return 0;
+}
+
 int gpu_morph_open(gpu_morph *m, gpu *g, const noh_gl_morph_desc *desc, const char *subject)
 {
     noh_gl_morph_plan plan;

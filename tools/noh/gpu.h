@@ -19,6 +19,8 @@ void gpu_close(gpu *g);
 /* The values of --path and --accumulate. Return 0, or EXIT_USAGE after printing. */
 int parse_path(const char *text, noh_morph_path *path);
 int parse_accumulate(const char *text, noh_accumulate *accumulate);
+/* The value of --instances. */
+int parse_instances(double value, uint32_t *instances);
 
 /* One noh_gl_morph with its memory. */
 typedef struct gpu_morph {

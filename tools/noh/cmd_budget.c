@@ -1,0 +1,124 @@
+/* cmd_budget.c: bytes before a load. The same sums that the load will make; `noh verify`
+ * holds one against the other. */
+#include <string.h>
+
+#include "load.h"
+
+typedef struct budget_args {
+    const char *pack, *path, *accumulate, *driver;
+    double instances;
+    int as_json, nominal;
+    load_options load;
+} budget_args;
+
+static void print_budget(const pack_file *file, const load_budget *b, const char *device)
+{
+    printf("%-32s %12s %12s\n", file->path, "CPU bytes", "GPU bytes");
+    for (uint32_t i = 0; i < b->part_count; i++) {
+        printf("  %-30s %12llu %12llu\n", b->parts[i].name, (unsigned long long)b->parts[i].cpu_bytes,
+               (unsigned long long)b->parts[i].gpu_bytes);
+    }
+    printf("  %-30s %12llu %12llu\n", "sum", (unsigned long long)b->cpu_bytes, (unsigned long long)b->gpu_bytes);
+    printf("  %-30s %12llu %12s  read where it lies\n", "the pack itself", (unsigned long long)b->pack_bytes, "");
+    printf("  %-30s %12u %12s  at most, for any call\n", "stack", NOH_STACK_BYTES, "");
+    printf("%s-%s on %s (%s); accumulators %u x %u x 3\n", noh_morph_path_name(b->plan.path), noh_accumulate_name(b->plan.accumulate),
+           device, b->plan.reason, b->plan.atlas_width, b->plan.atlas_height);
+}
+
+static void json_budget(const load_budget *b, const char *device)
+{
+    json j = json_begin(stdout);
+    json_integer(&j, "cpu_bytes", b->cpu_bytes);
+    json_integer(&j, "gpu_bytes", b->gpu_bytes);
+    json_integer(&j, "pack_bytes", b->pack_bytes);
+    json_integer(&j, "stack_bytes", NOH_STACK_BYTES);
+    json_text(&j, "path", noh_morph_path_name(b->plan.path));
+    json_text(&j, "accumulate", noh_accumulate_name(b->plan.accumulate));
+    json_text(&j, "reason", b->plan.reason);
+    json_text(&j, "device", device);
+    json_open(&j, "parts", '[');
+    for (uint32_t i = 0; i < b->part_count; i++) {
+        json_open(&j, NULL, '{');
+        json_text(&j, "name", b->parts[i].name);
+        json_integer(&j, "cpu_bytes", b->parts[i].cpu_bytes);
+        json_integer(&j, "gpu_bytes", b->parts[i].gpu_bytes);
+        json_close(&j, '}');
+    }
+    json_close(&j, ']');
+    json_end(&j);
+}
+
+/* The capabilities of the driver that a load would meet, or of a nominal device. */
+static int find_caps(const budget_args *a, noh_gl_caps *caps)
+{
+    gpu g;
+    int status;
+    if (a->nominal) {
+        *caps = nominal_caps();
+        return 0;
+    }
+    status = gpu_open(&g, a->driver);
+    if (!status) {
+        *caps = g.caps;
+        gpu_close(&g);
+    }
+    return status;
+}
+
+static int budget_of(const budget_args *a, const pack_file *file)
+{
+    noh_gl_caps caps;
+    load_budget b;
+    scene s;
+    int status = find_caps(a, &caps);
+    if (!status) status = scene_init(&s, file);
+    if (status) {
+        return status;
+    }
+    status = load_budget_make(&b, file, &s, &caps, &a->load);
+    if (!status) {
+        if (a->as_json) {
+            json_budget(&b, caps.renderer);
+        } else {
+            print_budget(file, &b, caps.renderer);
+        }
+    }
+    load_budget_free(&b);
+    scene_free(&s);
+    return status;
+}
+
+static int read_args(int argc, char **argv, budget_args *a)
+{
+    const option options[] = {
+        { "--instances", OPTION_NUMBER, &a->instances }, { "--path", OPTION_TEXT, &a->path },
+        { "--accumulate", OPTION_TEXT, &a->accumulate }, { "--driver", OPTION_TEXT, &a->driver },
+        { "--nominal", OPTION_FLAG, &a->nominal },       { "--json", OPTION_FLAG, &a->as_json }
+    };
+    int count, status = tool_options(argc, argv, options, sizeof options / sizeof options[0], &a->pack, 1, &count);
+    if (!status) status = parse_path(a->path, &a->load.path);
+    if (!status) status = parse_accumulate(a->accumulate, &a->load.accumulate);
+    if (!status && !a->pack) {
+        status = tool_usage("budget wants a pack");
+    }
+    if (!status) status = parse_instances(a->instances, &a->load.instances);
+    return status;
+}
+
+int verb_budget(int argc, char **argv)
+{
+    budget_args a;
+    pack_file file;
+    int status;
+    memset(&a, 0, sizeof a);
+    a.instances = 1.0;
+    status = read_args(argc, argv, &a);
+    if (!status) {
+        status = pack_file_open(&file, a.pack);
+        if (!status) {
+            status = budget_of(&a, &file);
+            pack_file_close(&file);
+        }
+    }
+    return status;
+}

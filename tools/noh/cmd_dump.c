@@ -1,0 +1,214 @@
+/* cmd_dump.c: the deformed mesh, baked to a plain OBJ. By default the CPU reference,
+ * which needs no GL at all; with --path what the GPU's vertex shader fetches. */
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "convert/pack_write.h"
+#include "load.h"
+
+typedef struct dump_args {
+    const char *pack, *output, *clip, *path, *accumulate, *driver;
+    double time_s;
+    option_list weights;
+    load_options load;
+} dump_args;
+
+static void print_to(byte_buffer *out, const char *format, ...)
+{
+    char line[512];
+    va_list args;
+    int count;
+    va_start(args, format);
+    count = vsnprintf(line, sizeof line, format, args);
+    va_end(args);
+    buffer_append(out, line, count < (int)sizeof line ? (size_t)count : sizeof line - 1);
+}
+
+/* The cofactors: normals by the inverse transpose (row E4). */
+static void transform_normal(const float w[12], const float n[3], double out[3])
+{
+    double length = 0.0;
+    for (int i = 0; i < 3; i++) {
+        const float *a = w + 4 * ((i + 1) % 3), *b = w + 4 * ((i + 2) % 3);
+        out[i] = ((double)a[1] * b[2] - (double)a[2] * b[1]) * n[0] + ((double)a[2] * b[0] - (double)a[0] * b[2]) * n[1] +
+                 ((double)a[0] * b[1] - (double)a[1] * b[0]) * n[2];
+        length += out[i] * out[i];
+    }
+    length = length > 0.0 ? sqrt(length) : 1.0;
+    for (int i = 0; i < 3; i++) {
+        out[i] /= length;
+    }
+}
+
+typedef struct fetched {
+    float *positions, *normals, *tangents; /* [vertex_count][3]; NULL: use the CPU's layers */
+} fetched;
+
+static void dump_vertex(byte_buffer *out, const noh_vertex *v, const float world[12])
+{
+    double n[3];
+    print_to(out, "v");
+    for (int r = 0; r < 3; r++) {
+        const float *row = world + 4 * r;
+        print_to(out, " %.9g", (double)row[0] * v->position[0] + (double)row[1] * v->position[1] + (double)row[2] * v->position[2] + (double)row[3]);
+    }
+    print_to(out, " %.4f %.4f %.4f\n", (double)v->color[0], (double)v->color[1], (double)v->color[2]);
+    transform_normal(world, v->normal, n);
+    print_to(out, "vn %.6f %.6f %.6f\nvt %.7g %.7g\n", n[0], n[1], n[2], (double)v->uv[0], 1.0 - (double)v->uv[1]);
+}
+
+static void dump_faces(byte_buffer *out, const noh_mesh *mesh, uint32_t first)
+{
+    for (uint32_t s = 0; s < mesh->header->submesh_count; s++) {
+        const noh_submesh *sub = &mesh->submeshes[s];
+        if (sub->material != NOH_NONE) {
+            print_to(out, "usemtl %s\n", noh_pack_string(mesh->pack, mesh->pack->materials[sub->material].name));
+        }
+        for (uint32_t i = 0; i < sub->index_count; i += 3) {
+            print_to(out, "f");
+            for (uint32_t k = 0; k < 3; k++) {
+                uint32_t v = first + noh_mesh_index(mesh, sub->first_index + i + k);
+                print_to(out, " %u/%u/%u", v, v, v);
+            }
+            print_to(out, "\n");
+        }
+    }
+}
+
+static int dump_item(byte_buffer *out, const pack_file *file, const scene *s, uint32_t item, const fetched *from, uint32_t *first)
+{
+    const noh_mesh *mesh = &s->meshes[s->items[item].mesh];
+    size_t bytes = noh_morph_layers_size(mesh);
+    void *memory = malloc(bytes + 16);
+    noh_morph_layers layers;
+    if (!memory) {
+        return tool_fail(file->path, "out of memory");
+    }
+    noh_morph_layers_init(memory, bytes + 16, mesh, &layers, NULL);
+    noh_morph_accumulate(mesh, s->items[item].weights, &layers);
+    print_to(out, "o %s\n", mesh->name);
+    for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
+        noh_vertex vertex;
+        noh_morph_vertex(mesh, &layers, v, &vertex);
+        if (from->positions) {
+            memcpy(vertex.position, from->positions + 3 * (size_t)v, sizeof vertex.position);
+            memcpy(vertex.normal, from->normals + 3 * (size_t)v, sizeof vertex.normal);
+        }
+        dump_vertex(out, &vertex, scene_world(s, file, item));
+    }
+    dump_faces(out, mesh, *first);
+    *first += mesh->header->vertex_count;
+    free(memory);
+    return 0;
+}
+
+static int fetch_item(load *l, readback *r, uint32_t item, fetched *to)
+{
+    const noh_gl_mesh *mesh = &l->meshes[l->scene->items[item].mesh];
+    noh_gl_morph_binding binding = noh_gl_morph_binding_of(l->morph.morph, l->item_instances[item]);
+    size_t bytes = (size_t)mesh->mesh.header->vertex_count * 12;
+    to->positions = malloc(bytes);
+    to->normals = malloc(bytes);
+    to->tangents = malloc(bytes);
+    if (!to->positions || !to->normals || !to->tangents) {
+        return tool_fail(l->file->path, "out of memory");
+    }
+    return readback_vertices(r, mesh, &binding, to->positions, to->normals, to->tangents);
+}
+
+static int dump_gpu(byte_buffer *out, const pack_file *file, const scene *s, const dump_args *a)
+{
+    gpu g;
+    load l;
+    readback r;
+    uint32_t first = 1;
+    int status = gpu_open(&g, a->driver);
+    if (status) {
+        return status;
+    }
+    status = load_open(&l, &g, file, s, &a->load);
+    if (!status) {
+        status = load_update(&l, NULL);
+        if (!status) status = readback_open(&r, &g, noh_gl_morph_plan_of(l.morph.morph)->layer_format == GL_RGBA32UI);
+        for (uint32_t i = 0; i < s->item_count && !status; i++) {
+            fetched f = { NULL, NULL, NULL };
+            status = fetch_item(&l, &r, i, &f);
+            if (!status) status = dump_item(out, file, s, i, &f, &first);
+            free(f.positions);
+            free(f.normals);
+            free(f.tangents);
+        }
+        readback_close(&r);
+        load_close(&l);
+    }
+    gpu_close(&g);
+    return status;
+}
+
+static int dump_cpu(byte_buffer *out, const pack_file *file, const scene *s)
+{
+    const fetched none = { NULL, NULL, NULL };
+    uint32_t first = 1;
+    int status = 0;
+    for (uint32_t i = 0; i < s->item_count && !status; i++) {
+        status = dump_item(out, file, s, i, &none, &first);
+    }
+    return status;
+}
+
+static int dump_scene(const pack_file *file, scene *s, const dump_args *a)
+{
+    byte_buffer out = { NULL, 0, 0, 0 };
+    noh_error error = { NOH_OK, "", 0, 0 };
+    int status = a->clip ? scene_set_clip(s, file, a->clip, a->time_s) : 0;
+    if (!status) status = scene_set_weights(s, file, &a->weights);
+    if (!status) {
+        print_to(&out, "# baked by noh: positions in world space, vertex colours linear\n");
+        status = a->path && a->load.path != NOH_MORPH_CPU ? dump_gpu(&out, file, s, a) : dump_cpu(&out, file, s);
+    }
+    if (!status && (out.failed || noh_file_write(a->output, out.bytes, out.count, &error))) {
+        status = tool_fail(a->output, "cannot write: %s", out.failed ? "out of memory" : error.what);
+    }
+    buffer_free(&out);
+    return status;
+}
+
+static int read_args(int argc, char **argv, dump_args *a)
+{
+    const option options[] = {
+        { "-o", OPTION_TEXT, &a->output },        { "--weight", OPTION_LIST, &a->weights },
+        { "--clip", OPTION_TEXT, &a->clip },      { "--time", OPTION_NUMBER, &a->time_s },
+        { "--path", OPTION_TEXT, &a->path },      { "--accumulate", OPTION_TEXT, &a->accumulate },
+        { "--driver", OPTION_TEXT, &a->driver }
+    };
+    int count, status = tool_options(argc, argv, options, sizeof options / sizeof options[0], &a->pack, 1, &count);
+    if (!status) status = parse_path(a->path, &a->load.path);
+    if (!status) status = parse_accumulate(a->accumulate, &a->load.accumulate);
+    if (!status && (!a->pack || !a->output)) {
+        status = tool_usage("dump wants a pack and -o OUT.obj");
+    }
+    return status;
+}
+
+int verb_dump(int argc, char **argv)
+{
+    static dump_args a;
+    pack_file file;
+    scene s;
+    int status;
+    memset(&a, 0, sizeof a);
+    status = read_args(argc, argv, &a);
+    if (!status) status = pack_file_open(&file, a.pack);
+    if (status) {
+        return status;
+    }
+    status = scene_init(&s, &file);
+    if (!status) {
+        status = dump_scene(&file, &s, &a);
+        scene_free(&s);
+    }
+    pack_file_close(&file);
+    return status;
+}

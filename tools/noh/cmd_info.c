@@ -1,0 +1,168 @@
+/* cmd_info.c: what is in a pack. */
+#include <string.h>
+
+#include "noh_tool.h"
+
+static uint64_t target_bytes(const noh_mesh_header *h)
+{
+    return 12ull * h->texel_count + sizeof(noh_rect) * (uint64_t)h->rect_count + sizeof(noh_target) * (uint64_t)h->target_count;
+}
+
+static void print_target(const noh_pack *pack, const noh_target *t)
+{
+    printf("    %-24s %6u pairs %4u rects %6u texels  %2u/%2u/%2u bits  moves %.3f mm, error %.2f um\n", noh_pack_string(pack, t->name),
+           t->pair_count, t->rect_count, t->texel_count, t->position_bits, t->normal_bits, t->tangent_bits,
+           1e3 * (double)t->max_displacement, 1e6 * (double)t->position_error);
+}
+
+static void print_mesh(const noh_pack *pack, const noh_mesh *m)
+{
+    const noh_mesh_header *h = m->header;
+    printf("mesh '%s': %u vertices, %u indices, %u submeshes%s%s%s\n", m->name, h->vertex_count, h->index_count, h->submesh_count,
+           (h->flags & NOH_MESH_TANGENTS) ? ", tangents" : "", (h->flags & NOH_MESH_UVS) ? ", uvs" : "",
+           (h->flags & NOH_MESH_COLORS) ? ", colours" : "");
+    if (h->target_count) {
+        printf("  %u targets, %u pairs in %u rectangles of %u texels (%.3f per pair), %llu bytes (%.2f per pair)\n", h->target_count,
+               h->pair_count, h->rect_count, h->texel_count, h->pair_count ? (double)h->texel_count / h->pair_count : 0.0,
+               (unsigned long long)target_bytes(h), h->pair_count ? (double)target_bytes(h) / h->pair_count : 0.0);
+        printf("  %u vertices touched, in %u x %u texels; f16 accumulation within %.0f um (weights -2..2)\n", h->touched_count,
+               1u << h->morph_width_log2, h->morph_height, 1e6 * (double)h->f16_position_bound);
+    }
+    for (uint32_t t = 0; t < h->target_count; t++) {
+        print_target(pack, &m->targets[t]);
+    }
+}
+
+static void print_clip(const noh_clip *clip)
+{
+    static const char *const names[] = { "linear", "step", "cubic" };
+    printf("clip '%s': %.3f s", clip->name, (double)clip->header->duration_s);
+    for (uint32_t c = 0; c < clip->header->channel_count; c++) {
+        const noh_clip_channel *channel = &clip->channels[c];
+        printf("%s weights of node '%s', %u %s keys", c ? "," : ":",
+               noh_pack_string(clip->pack, clip->pack->nodes[channel->node].name), channel->key_count, names[channel->interpolation]);
+    }
+    putchar('\n');
+}
+
+static void print_info(const pack_file *file)
+{
+    const noh_pack *p = &file->pack;
+    printf("%s: format %u, %u bytes, %u chunks; %u meshes, %u nodes, %u clips, %u materials, %u textures\n", file->path,
+           NOH_PACK_VERSION, p->byte_count, p->chunk_count, p->mesh_count, p->node_count, p->clip_count, p->material_count,
+           p->texture_count);
+    for (uint32_t i = 0; i < p->mesh_count; i++) {
+        noh_mesh mesh;
+        noh_pack_mesh(p, i, &mesh);
+        print_mesh(p, &mesh);
+    }
+    for (uint32_t i = 0; i < p->clip_count; i++) {
+        noh_clip clip;
+        noh_pack_clip(p, i, &clip);
+        print_clip(&clip);
+    }
+}
+
+static void json_target(json *j, const noh_pack *pack, const noh_target *t)
+{
+    json_open(j, NULL, '{');
+    json_text(j, "name", noh_pack_string(pack, t->name));
+    json_integer(j, "pairs", t->pair_count);
+    json_integer(j, "rects", t->rect_count);
+    json_integer(j, "texels", t->texel_count);
+    json_integer(j, "position_bits", t->position_bits);
+    json_integer(j, "normal_bits", t->normal_bits);
+    json_integer(j, "tangent_bits", t->tangent_bits);
+    json_number(j, "max_displacement_um", 1e6 * (double)t->max_displacement);
+    json_number(j, "position_error_um", 1e6 * (double)t->position_error);
+    json_number(j, "normal_error", (double)t->normal_error);
+    json_number(j, "tangent_error", (double)t->tangent_error);
+    json_close(j, '}');
+}
+
+static void json_mesh(json *j, const noh_pack *pack, const noh_mesh *m)
+{
+    const noh_mesh_header *h = m->header;
+    json_open(j, NULL, '{');
+    json_text(j, "name", m->name);
+    json_integer(j, "vertices", h->vertex_count);
+    json_integer(j, "indices", h->index_count);
+    json_integer(j, "submeshes", h->submesh_count);
+    json_integer(j, "targets", h->target_count);
+    json_integer(j, "touched", h->touched_count);
+    json_integer(j, "pairs", h->pair_count);
+    json_integer(j, "source_pairs", h->source_pair_count);
+    json_integer(j, "rects", h->rect_count);
+    json_integer(j, "texels", h->texel_count);
+    json_integer(j, "target_bytes", target_bytes(h));
+    json_number(j, "f16_bound_um", 1e6 * (double)h->f16_position_bound);
+    json_open(j, "lods", '[');
+    json_close(j, ']');
+    json_open(j, "target_list", '[');
+    for (uint32_t t = 0; t < h->target_count; t++) {
+        json_target(j, pack, &m->targets[t]);
+    }
+    json_close(j, ']');
+    json_close(j, '}');
+}
+
+static void json_clip(json *j, const noh_clip *clip)
+{
+    json_open(j, NULL, '{');
+    json_text(j, "name", clip->name);
+    json_number(j, "seconds", (double)clip->header->duration_s);
+    json_integer(j, "channels", clip->header->channel_count);
+    json_close(j, '}');
+}
+
+static void json_info(const pack_file *file)
+{
+    const noh_pack *p = &file->pack;
+    json j = json_begin(stdout);
+    json_integer(&j, "version", NOH_PACK_VERSION);
+    json_integer(&j, "bytes", p->byte_count);
+    json_open(&j, "meshes", '[');
+    for (uint32_t i = 0; i < p->mesh_count; i++) {
+        noh_mesh mesh;
+        noh_pack_mesh(p, i, &mesh);
+        json_mesh(&j, p, &mesh);
+    }
+    json_close(&j, ']');
+    json_open(&j, "skeletons", '[');
+    json_close(&j, ']');
+    json_open(&j, "clips", '[');
+    for (uint32_t i = 0; i < p->clip_count; i++) {
+        noh_clip clip;
+        noh_pack_clip(p, i, &clip);
+        json_clip(&j, &clip);
+    }
+    json_close(&j, ']');
+    json_integer(&j, "events", 0);
+    json_integer(&j, "nodes", p->node_count);
+    json_integer(&j, "materials", p->material_count);
+    json_integer(&j, "textures", p->texture_count);
+    json_end(&j);
+}
+
+int verb_info(int argc, char **argv)
+{
+    const char *path = NULL;
+    int as_json = 0, count, status;
+    pack_file file;
+    const option options[] = { { "--json", OPTION_FLAG, &as_json } };
+    status = tool_options(argc, argv, options, 1, &path, 1, &count);
+    if (!status && !path) {
+        status = tool_usage("info wants a pack");
+    }
+    if (!status) status = pack_file_open(&file, path);
+    if (status) {
+        return status;
+    }
+    if (as_json) {
+        json_info(&file);
+    } else {
+        print_info(&file);
+    }
+    pack_file_close(&file);
+    return 0;
+}

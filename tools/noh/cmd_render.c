@@ -1,0 +1,119 @@
+/* cmd_render.c: one picture. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "view.h"
+
+typedef struct render_args {
+    const char *pack, *output, *clip, *path, *accumulate, *driver, *debug;
+    uint32_t size[2];
+    double time_s;
+    option_list weights;
+    view_options view;
+    load_options load;
+} render_args;
+
+static int parse_debug(const char *text, noh_debug_view *view)
+{
+    static const char *const names[] = { "none", "position", "normal", "tangent" };
+    *view = NOH_VIEW_LIT;
+    for (int i = 0; text && i < 4; i++) {
+        if (strcmp(text, names[i]) == 0) {
+            *view = (noh_debug_view)i;
+            return 0;
+        }
+    }
+    return text ? tool_usage("--debug wants none, position, normal or tangent, not '%s'", text) : 0;
+}
+
+static int read_args(int argc, char **argv, render_args *a)
+{
+    const option options[] = {
+        { "-o", OPTION_TEXT, &a->output },          { "--size", OPTION_SIZE, a->size },
+        { "--weight", OPTION_LIST, &a->weights },   { "--clip", OPTION_TEXT, &a->clip },
+        { "--time", OPTION_NUMBER, &a->time_s },    { "--path", OPTION_TEXT, &a->path },
+        { "--accumulate", OPTION_TEXT, &a->accumulate }, { "--driver", OPTION_TEXT, &a->driver },
+        { "--camera", OPTION_TEXT, &a->view.camera }, { "--debug", OPTION_TEXT, &a->debug }
+    };
+    int count, status = tool_options(argc, argv, options, sizeof options / sizeof options[0], &a->pack, 1, &count);
+    if (!status) status = parse_path(a->path, &a->load.path);
+    if (!status) status = parse_accumulate(a->accumulate, &a->load.accumulate);
+    if (!status) status = parse_debug(a->debug, &a->load.view);
+    if (!status && (!a->pack || !a->output)) {
+        status = tool_usage("render wants a pack and -o OUT.png");
+    }
+    a->view.width = a->size[0];
+    a->view.height = a->size[1];
+    return status;
+}
+
+static int draw(gpu *g, const pack_file *file, const scene *s, const render_args *a, uint8_t *rgba)
+{
+    load l;
+    canvas c;
+    noh_gl_camera camera;
+    bounds box = scene_bounds(s, file, view_wants_face(&a->view));
+    int status = view_camera(&a->view, &box, &camera);
+    if (status) {
+        return status;
+    }
+    status = load_open(&l, g, file, s, &a->load);
+    if (status) {
+        return status;
+    }
+    status = load_update(&l, NULL);
+    if (!status) {
+        status = canvas_open(&c, g, a->size[0], a->size[1]);
+    }
+    if (!status) {
+        canvas_begin(&c);
+        load_draw(&l, &camera);
+        status = canvas_read(&c, rgba);
+        canvas_close(&c);
+    }
+    load_close(&l);
+    return status;
+}
+
+static int pose_and_draw(const pack_file *file, const render_args *a)
+{
+    uint8_t *rgba = malloc((size_t)a->size[0] * a->size[1] * 4);
+    scene s;
+    gpu g;
+    int status = rgba ? scene_init(&s, file) : tool_fail(file->path, "out of memory");
+    if (!status) {
+        if (a->clip) {
+            status = scene_set_clip(&s, file, a->clip, a->time_s);
+        }
+        if (!status) status = scene_set_weights(&s, file, &a->weights);
+        if (!status) status = gpu_open(&g, a->driver);
+        if (!status) {
+            status = draw(&g, file, &s, a, rgba);
+            gpu_close(&g);
+        }
+        scene_free(&s);
+    }
+    if (!status) {
+        status = tool_write_png(a->output, a->size[0], a->size[1], rgba);
+    }
+    free(rgba);
+    return status;
+}
+
+int verb_render(int argc, char **argv)
+{
+    static render_args a;
+    pack_file file;
+    int status;
+    memset(&a, 0, sizeof a);
+    a.size[0] = a.size[1] = 512;
+    status = read_args(argc, argv, &a);
+    if (!status) {
+        status = pack_file_open(&file, a.pack);
+        if (!status) {
+            status = pose_and_draw(&file, &a);
+            pack_file_close(&file);
+        }
+    }
+    return status;
+}

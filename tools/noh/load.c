@@ -1,0 +1,230 @@
+#include "load.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- what it will take ---- */
+
+static void add_part(load_budget *b, uint64_t cpu_bytes, uint64_t gpu_bytes, const char *kind, const char *name)
+{
+    load_part *p = &b->parts[b->part_count++];
+    snprintf(p->name, sizeof p->name, "%s%s%s", kind, name[0] ? " " : "", name);
+    p->cpu_bytes = cpu_bytes;
+    p->gpu_bytes = gpu_bytes;
+    b->cpu_bytes += cpu_bytes;
+    b->gpu_bytes += gpu_bytes;
+}
+
+/* Instances per mesh: each drawn item of each copy of the scene has weights of its own. */
+static uint32_t *count_instances(const pack_file *file, const scene *s, uint32_t copies)
+{
+    uint32_t *counts = calloc(file->pack.mesh_count + 1u, sizeof *counts);
+    for (uint32_t i = 0; counts && i < s->item_count; i++) {
+        counts[s->items[i].mesh] += copies ? copies : 1u;
+    }
+    return counts;
+}
+
+static noh_gl_morph_desc morph_desc(const pack_file *file, const scene *s, const load_options *o, const uint32_t *counts)
+{
+    noh_gl_morph_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.meshes = s->meshes;
+    desc.mesh_count = file->pack.mesh_count;
+    desc.instance_counts = counts;
+    desc.path = o->path;
+    desc.accumulate = o->accumulate;
+    return desc;
+}
+
+static void add_parts(load_budget *b, const pack_file *file, const scene *s)
+{
+    for (uint32_t i = 0; i < file->pack.mesh_count; i++) {
+        add_part(b, 0, noh_gl_mesh_bytes(&s->meshes[i]), "mesh", s->meshes[i].name);
+    }
+    for (uint32_t i = 0; i < file->pack.texture_count; i++) {
+        noh_texture texture;
+        noh_pack_texture(&file->pack, i, &texture);
+        add_part(b, 0, noh_gl_picture_bytes(&texture), "texture", texture.name);
+    }
+    add_part(b, b->plan.cpu_bytes, 0, "morph state", "");
+    add_part(b, 0, b->plan.delta_bytes, "morph deltas", "");
+    add_part(b, 0, b->plan.table_bytes, "morph tables", "");
+    add_part(b, 0, b->plan.stream_bytes, "morph stream", "");
+    add_part(b, 0, b->plan.layer_bytes, "morph accumulators", "");
+    add_part(b, 0, NOH_GL_RENDERER_BYTES, "renderer", "");
+}
+
+int load_budget_make(load_budget *b, const pack_file *file, const scene *s, const noh_gl_caps *caps, const load_options *o)
+{
+    uint32_t *counts = count_instances(file, s, o->instances);
+    noh_gl_morph_desc desc = morph_desc(file, s, o, counts);
+    noh_error error = { NOH_OK, "", 0, 0 };
+    int status = 0;
+    memset(b, 0, sizeof *b);
+    b->parts = calloc((size_t)file->pack.mesh_count + file->pack.texture_count + 8, sizeof *b->parts);
+    b->pack_bytes = file->pack.byte_count;
+    if (!counts || !b->parts) {
+        status = tool_fail(file->path, "out of memory");
+    } else if (s->item_count == 0) {
+        status = tool_fail(file->path, "the pack has nothing to draw");
+    } else if (noh_gl_morph_plan_make(&desc, caps, &b->plan, &error)) {
+        status = tool_fail_error(file->path, &error);
+    } else {
+        add_parts(b, file, s);
+    }
+    free(counts);
+    return status;
+}
+
+void load_budget_free(load_budget *b)
+{
+    free(b->parts);
+    memset(b, 0, sizeof *b);
+}
+
+noh_gl_caps nominal_caps(void)
+{
+    noh_gl_caps caps;
+    memset(&caps, 0, sizeof caps);
+    caps.version = 320;
+    caps.is_es = 1;
+    snprintf(caps.renderer, sizeof caps.renderer, "a nominal GLES 3.2 device");
+    caps.texture_size_max = 2048;
+    caps.array_layers_max = 256;
+    caps.draw_buffers_max = caps.color_attachments_max = 4;
+    caps.uniform_block_bytes_max = 16384;
+    caps.vertex_textures_max = 16;
+    caps.vertex_attributes_max = 16;
+    caps.mrt3 = caps.render_f32 = caps.render_f16 = caps.render_u32 = 1;
+    caps.blend_f32 = caps.blend_f16 = caps.blend_f32_exact = caps.layered = 1;
+    return caps;
+}
+
+/* ---- making it ---- */
+
+static int create_pictures(load *l)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    for (uint32_t i = 0; i < l->file->pack.texture_count; i++) {
+        noh_texture texture;
+        noh_pack_texture(&l->file->pack, i, &texture);
+        if (noh_gl_picture_create(&l->g->gl, &l->g->ledger, &texture, &l->pictures[i], &error)) {
+            return tool_fail_error(l->file->path, &error);
+        }
+    }
+    return 0;
+}
+
+static int create_meshes(load *l)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    for (uint32_t i = 0; i < l->file->pack.mesh_count; i++) {
+        if (noh_gl_mesh_create(&l->g->gl, &l->g->ledger, &l->scene->meshes[i], &l->meshes[i], &error)) {
+            return tool_fail_error(l->file->path, &error);
+        }
+    }
+    return 0;
+}
+
+static int create_renderer(load *l, noh_debug_view view)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    char log[4096] = "";
+    int is_uint = noh_gl_morph_plan_of(l->morph.morph)->layer_format == GL_RGBA32UI;
+    if (noh_gl_renderer_create(&l->g->gl, &l->g->ledger, view, is_uint, &l->renderer, log, sizeof log, &error)) {
+        fputs(log, stderr);
+        return tool_fail_error("renderer", &error);
+    }
+    return 0;
+}
+
+/* The k-th item that draws a mesh is that mesh's k-th instance. */
+static void number_items(load *l, uint32_t *next)
+{
+    memset(next, 0, sizeof *next * l->file->pack.mesh_count);
+    for (uint32_t i = 0; i < l->scene->item_count; i++) {
+        uint32_t mesh = l->scene->items[i].mesh;
+        l->item_instances[i] = noh_gl_morph_instance(l->morph.morph, mesh, next[mesh]++);
+    }
+}
+
+int load_open(load *l, gpu *g, const pack_file *file, const scene *s, const load_options *o)
+{
+    uint32_t *counts = count_instances(file, s, o->instances);
+    noh_gl_morph_desc desc = morph_desc(file, s, o, counts);
+    int status = 0;
+    memset(l, 0, sizeof *l);
+    l->g = g;
+    l->file = file;
+    l->scene = s;
+    l->meshes = calloc(file->pack.mesh_count + 1u, sizeof *l->meshes);
+    l->pictures = calloc(file->pack.texture_count + 1u, sizeof *l->pictures);
+    l->item_instances = calloc(s->item_count + 1u, sizeof *l->item_instances);
+    if (!counts || !l->meshes || !l->pictures || !l->item_instances) {
+        status = tool_fail(file->path, "out of memory");
+    } else if (s->item_count == 0) {
+        status = tool_fail(file->path, "the pack has nothing to draw");
+    }
+    if (!status) status = create_meshes(l);
+    if (!status) status = create_pictures(l);
+    if (!status) status = gpu_morph_open(&l->morph, g, &desc, file->path);
+    if (!status) status = create_renderer(l, o->view);
+    if (!status) number_items(l, counts);
+    free(counts);
+    if (status) {
+        load_close(l);
+    }
+    return status;
+}
+
+void load_close(load *l)
+{
+    for (uint32_t i = 0; l->meshes && i < l->file->pack.mesh_count; i++) {
+        noh_gl_mesh_delete(&l->g->gl, &l->g->ledger, &l->meshes[i]);
+    }
+    for (uint32_t i = 0; l->pictures && i < l->file->pack.texture_count; i++) {
+        noh_gl_texture_delete(&l->g->gl, &l->g->ledger, &l->pictures[i]);
+    }
+    if (l->renderer.gl) {
+        noh_gl_renderer_delete(&l->renderer);
+    }
+    gpu_morph_close(&l->morph);
+    free(l->meshes);
+    free(l->pictures);
+    free(l->item_instances);
+    memset(l, 0, sizeof *l);
+}
+
+/* ---- using it ---- */
+
+int load_update(load *l, noh_gl_morph_stats *stats)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    for (uint32_t i = 0; i < l->scene->item_count; i++) {
+        if (noh_gl_morph_weights(l->morph.morph, l->item_instances[i], l->scene->items[i].weights, &error)) {
+            return tool_fail_error(l->file->path, &error);
+        }
+    }
+    noh_gl_morph_update(l->morph.morph, stats);
+    return 0;
+}
+
+const float *scene_world(const scene *s, const pack_file *file, uint32_t item)
+{
+    static const float identity[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
+    return s->items[item].node == NOH_NONE ? identity : file->pack.nodes[s->items[item].node].world;
+}
+
+void load_draw(load *l, const noh_gl_camera *camera)
+{
+    noh_gl_draw_begin(&l->renderer, camera);
+    for (int pass = NOH_DRAW_OPAQUE; pass <= NOH_DRAW_BLENDED; pass++) {
+        for (uint32_t i = 0; i < l->scene->item_count; i++) {
+            noh_gl_morph_binding binding = noh_gl_morph_binding_of(l->morph.morph, l->item_instances[i]);
+            noh_gl_draw_mesh(&l->renderer, &l->meshes[l->scene->items[i].mesh], scene_world(l->scene, l->file, i), &binding,
+                             l->pictures, pass);
+        }
+    }
+    noh_gl_draw_end(&l->renderer);
+}

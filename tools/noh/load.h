@@ -1,0 +1,58 @@
+/* load.h: a pack made ready to draw: its meshes, textures, accumulators and renderer.
+ * What load_budget says before is what load_open takes, to the byte. */
+#ifndef NOH_TOOL_LOAD_H
+#define NOH_TOOL_LOAD_H
+
+#include "gpu.h"
+
+typedef struct load_part {
+    char name[96];
+    uint64_t cpu_bytes, gpu_bytes;
+} load_part;
+
+typedef struct load_budget {
+    noh_gl_morph_plan plan;
+    load_part *parts;
+    uint32_t part_count;
+    uint64_t cpu_bytes, gpu_bytes, pack_bytes;
+} load_budget;
+
+typedef struct load_options {
+    noh_morph_path path;
+    noh_accumulate accumulate;
+    uint32_t instances; /* of the whole scene; 0: 1 */
+    noh_debug_view view;
+} load_options;
+
+/* Prints an error and returns an exit code; 0 on success. */
+int load_budget_make(load_budget *b, const pack_file *file, const scene *s, const noh_gl_caps *caps, const load_options *o);
+void load_budget_free(load_budget *b);
+
+typedef struct load {
+    gpu *g;
+    const pack_file *file;
+    const scene *scene;
+    noh_gl_mesh *meshes;       /* [mesh_count] */
+    noh_gl_texture *pictures;  /* [texture_count] */
+    noh_gl_renderer renderer;
+    gpu_morph morph;
+    uint32_t *item_instances;  /* [item_count]: the morph instance of each item of the first copy of the scene */
+} load;
+
+int load_open(load *l, gpu *g, const pack_file *file, const scene *s, const load_options *o);
+void load_close(load *l);
+
+/* Hand the scene's weights to the accumulator and accumulate. */
+int load_update(load *l, noh_gl_morph_stats *stats);
+
+/* Draw every item: opaque, then blended. The framebuffer and viewport are the caller's. */
+void load_draw(load *l, const noh_gl_camera *camera);
+
+/* The item's world matrix, 3 rows of 4. */
+const float *scene_world(const scene *s, const pack_file *file, uint32_t item);
+
+/* Capabilities to assume where there is no driver: a GLES 3.2 device on which everything
+ * works and textures are as large as every ES 3.0 has them. */
+noh_gl_caps nominal_caps(void);
+
+#endif
