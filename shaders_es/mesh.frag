@@ -43,6 +43,7 @@ vec3 shade(vec3 albedo, vec3 n, vec3 v)
     vec3 sky = mix(vec3(0.23, 0.20, 0.18), vec3(0.50, 0.54, 0.60), n.y * 0.5 + 0.5);
     vec3 color = diffuse * (vec3(1.02, 0.98, 0.92) * wrapped * wrapped + 0.62 * sky);
     color += fresnel * highlight(nh, lit, nv, roughness) * lit * 2.6;
+    color += f0 * sky * (0.7 - 0.4 * roughness) * (0.15 + 0.85 * u_material.y);
     color += 0.10 * sky * pow(1.0 - nv, 3.0) * (1.0 - 0.6 * roughness);
     return color;
 }

@@ -18,7 +18,7 @@ static noh_result check_limits(const noh_check *check, const noh_mesh_header *h)
     if (h->target_count > NOH_TARGETS_MAX || h->texel_count > NOH_TEXELS_MAX || h->rect_count > h->texel_count) {
         return noh_check_fail(check, "target, texel or rectangle count is over its limit", 20);
     }
-    if (h->flags & ~(NOH_MESH_TANGENTS | NOH_MESH_UVS | NOH_MESH_COLORS) || h->reserved) {
+    if (h->flags & ~(NOH_MESH_TANGENTS | NOH_MESH_UVS | NOH_MESH_COLORS)) {
         return noh_check_fail(check, "unknown mesh flags", 0);
     }
     return NOH_OK;
@@ -198,7 +198,7 @@ noh_result noh_check_mesh(noh_check *check)
     if (!result) result = check_limits(check, h);
     if (!result) result = check_texture_shape(check, h);
     if (!result) result = check_arrays(check, h);
-    if (!result) result = noh_check_floats(check, h->bounds_min, 12, "bounds or error bound are not finite");
+    if (!result) result = noh_check_floats(check, h->bounds_min, 13, "bounds, error bound or scale are not finite");
     if (!result) {
         result = noh_check_floats(check, (const float *)(const void *)(check->bytes + h->positions_offset),
                                   h->vertex_count * 3u, "position is not finite");

@@ -84,8 +84,8 @@ typedef struct noh_mesh_header {
     float uv_offset[2], uv_scale[2];
     float f16_position_bound;   /* largest error of a half-float accumulator, model units, all |weights| <= 2 */
     float f16_direction_bound;  /* the same for normals and tangents, per component */
+    float world_scale;          /* world units (metres) per model unit: the largest scale of the nodes that draw it */
     uint32_t texels_one_rect;   /* for reports: one rectangle per target, the asset's vertex order */
-    uint32_t reserved;
 } noh_mesh_header;
 
 /* A run of triangles with one material, and the vertices that it uses (row D9). */

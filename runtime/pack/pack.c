@@ -183,8 +183,7 @@ static noh_result open_chunks(noh_pack *pack, noh_error *error)
             return result;
         }
     }
-    cursor = (cursor + NOH_PACK_ALIGN - 1) & ~(uint64_t)(NOH_PACK_ALIGN - 1);
-    if (cursor != pack->byte_count) {
+    if (((cursor + NOH_PACK_ALIGN - 1) & ~(uint64_t)(NOH_PACK_ALIGN - 1)) != pack->byte_count) {
         return noh_fail(error, NOH_ERR_DATA, "file does not end with its last chunk", cursor, 0);
     }
     return NOH_OK;

@@ -16,11 +16,14 @@ static void free_encodings(morph_encoding **encodings, uint32_t count)
 static int encode_meshes(const model *m, const convert_options *options, morph_encoding **encodings, model_error *error)
 {
     for (uint32_t i = 0; i < m->mesh_count; i++) {
-        if (morph_encode(&m->meshes[i], &options->morph, &encodings[i], error)) {
+        float scale = model_mesh_scale(m, i);
+        morph_options morph = options->morph;
+        morph.error_um = (morph.error_um > 0.0f ? morph.error_um : 10.0f) / scale; /* asked for in the world, kept in the mesh */
+        if (morph_encode(&m->meshes[i], &morph, &encodings[i], error)) {
             return 1;
         }
         if (options->report) {
-            convert_report_mesh(options->report, &m->meshes[i], encodings[i], options->morph.error_um);
+            convert_report_mesh(options->report, &m->meshes[i], encodings[i], scale, morph.error_um * scale);
         }
     }
     return 0;

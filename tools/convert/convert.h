@@ -21,7 +21,8 @@ typedef struct convert_failure {
 int convert_files(const char *const *inputs, int input_count, const convert_options *options, byte_buffer *out,
                   convert_failure *failure);
 
-/* The report of one encoded mesh: counts, bits, and bytes beside the peers' layouts. */
-void convert_report_mesh(FILE *out, const model_mesh *mesh, const morph_encoding *e, float error_um);
+/* The report of one encoded mesh: counts, bits, and bytes beside the peers' layouts.
+ * scale: model_mesh_scale, so that errors are printed as they show in the world. */
+void convert_report_mesh(FILE *out, const model_mesh *mesh, const morph_encoding *e, float scale, float error_um);
 
 #endif

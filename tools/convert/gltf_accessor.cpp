@@ -79,7 +79,7 @@ static const char *type_name(int type)
 /* tinygltf numbers the vectors by their width. */
 static int type_of_width(uint32_t components)
 {
-    return components == 1 ? TINYGLTF_TYPE_SCALAR : static_cast<int>(components);
+    return components == 1 ? TINYGLTF_TYPE_SCALAR : components == 16 ? TINYGLTF_TYPE_MAT4 : static_cast<int>(components);
 }
 
 static layout check_type(const file &f, int index, uint32_t components, uint32_t accepted, const std::string &where)

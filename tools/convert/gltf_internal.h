@@ -13,6 +13,7 @@
  *   gltf_accessor.cpp  accessors to floats and indices
  *   gltf_mesh.cpp      meshes, primitives, targets
  *   gltf_scene.cpp     nodes
+ *   gltf_skin.cpp      where skinned meshes stand in the rest pose
  *   gltf_animation.cpp animations
  *   gltf_material.cpp  materials, textures, images */
 #ifndef NOH_CONVERT_GLTF_INTERNAL_H
@@ -126,7 +127,7 @@ enum component : uint32_t {
 };
 const tinygltf::Accessor &accessor_at(const file &f, int accessor, const std::string &where);
 /* Read an accessor as floats, all checked to be finite.
- * components  1 to 4 per element
+ * components  1 to 4 per element, or 16: a 4 x 4 matrix
  * accepted    a set of component bits
  * count       the elements that out has room for; any other count in the file is an error */
 void read_floats(file &f, int accessor, uint32_t components, uint32_t accepted, uint64_t count,
@@ -138,6 +139,7 @@ std::vector<uint32_t> read_indices(file &f, int accessor, uint32_t limit, const 
 void read_materials(file &f);
 void read_meshes(file &f);
 void read_nodes(file &f);
+void place_skinned_nodes(file &f); /* gltf_skin.cpp */
 void read_animations(file &f);
 
 } // namespace gltf

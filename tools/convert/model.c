@@ -1,4 +1,5 @@
 /* model.c: making, warning about, and freeing a model. */
+#include <math.h>
 #include "model_build.h"
 
 #include <stdarg.h>
@@ -137,4 +138,17 @@ void model_free(model *m)
     free(m->textures);
     free(m->warnings);
     free(m);
+}
+
+float model_mesh_scale(const model *m, uint32_t mesh)
+{
+    double largest = 0.0;
+    for (uint32_t i = 0; i < m->node_count; i++) {
+        const double *w = m->nodes[i].world;
+        for (int c = 0; m->nodes[i].mesh == mesh && c < 3; c++) {
+            double square = w[4 * c] * w[4 * c] + w[4 * c + 1] * w[4 * c + 1] + w[4 * c + 2] * w[4 * c + 2];
+            largest = square > largest ? square : largest;
+        }
+    }
+    return largest > 1e-24 && largest < 1e24 ? (float)sqrt(largest) : 1.0f;
 }

@@ -77,9 +77,10 @@ typedef struct model_node {
     uint32_t parent;      /* index or MODEL_NONE; parents come first */
     uint32_t mesh;        /* index or MODEL_NONE */
     float translation[3], rotation[4], scale[3]; /* local; a matrix is decomposed */
-    double world[16];     /* column-major, from the local matrices in double precision */
+    double world[16];     /* column-major, from the local matrices in double precision; of a skinned mesh's
+                           * node: where the first joint puts it in the rest pose */
     float *weights;       /* [targets of the mesh] or NULL: the mesh's defaults hold */
-    uint8_t skinned;      /* glTF: the node's own transform is ignored for a skinned mesh */
+    uint8_t skinned;
 } model_node;
 
 typedef enum model_path { MODEL_PATH_WEIGHTS, MODEL_PATH_TRANSLATION, MODEL_PATH_ROTATION, MODEL_PATH_SCALE } model_path;
@@ -121,6 +122,9 @@ typedef struct model_error {
 /* Read a .gltf or .glb file. Returns 0 and *out on success, else 1 and a filled error (*out = NULL).
  * Calls model_complete. */
 int model_read_gltf(const char *path, model **out, model_error *error);
+
+/* World units per unit of a mesh: the largest scale of the nodes that draw it; 1 where none does. */
+float model_mesh_scale(const model *m, uint32_t mesh);
 
 /* Fill in what the file left out (NULL arrays and MODEL_MISSING_* bits): normals
  * (crease-aware), tangents where there are UVs, normal and tangent deltas of

@@ -239,7 +239,8 @@ static void set_counts(const model_mesh *m, const morph_encoding *e, noh_mesh_he
     f16_bound(e, &h->f16_position_bound, &h->f16_direction_bound);
 }
 
-void pack_mesh(const model_mesh *m, const morph_encoding *e, const uint8_t *submesh_blends, string_table *strings, byte_buffer *out)
+void pack_mesh(const model_mesh *m, const morph_encoding *e, const uint8_t *submesh_blends, float world_scale, string_table *strings,
+               byte_buffer *out)
 {
     size_t base = out->count;
     uint32_t *indices = make_indices(m, e, submesh_blends);
@@ -249,6 +250,7 @@ void pack_mesh(const model_mesh *m, const morph_encoding *e, const uint8_t *subm
         return;
     }
     set_counts(m, e, &h);
+    h.world_scale = world_scale;
     buffer_append(out, &h, sizeof h);
     append_vertices(m, e, &h, base, out);
     append_indices(indices, &h, base, out);

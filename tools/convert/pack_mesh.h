@@ -13,7 +13,7 @@ typedef struct string_table {
 /* The offset of a name, added if it is new; cut to the format's limit at a character's end. */
 uint32_t string_offset(string_table *strings, const char *name);
 
-/* Append a mesh chunk. submesh_blends[submesh_count]: 1 where the material blends. */
-void pack_mesh(const model_mesh *mesh, const morph_encoding *e, const uint8_t *submesh_blends, string_table *strings, byte_buffer *out);
+/* Append a mesh chunk. world_scale: model_mesh_scale; submesh_blends[submesh_count]: 1 where the material blends. */
+void pack_mesh(const model_mesh *mesh, const morph_encoding *e, const uint8_t *submesh_blends, float world_scale, string_table *strings, byte_buffer *out);
 
 #endif

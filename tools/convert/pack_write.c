@@ -137,15 +137,16 @@ static void write_materials(writer *w)
     end_chunk(w);
 }
 
-static void write_mesh(writer *w, const model_mesh *mesh, const morph_encoding *e)
+static void write_mesh(writer *w, uint32_t index, const morph_encoding *e)
 {
+    const model_mesh *mesh = &w->m->meshes[index];
     uint8_t blends[NOH_SUBMESHES_MAX];
     for (uint32_t s = 0; s < mesh->submesh_count; s++) {
         uint32_t material = mesh->submeshes[s].material;
         blends[s] = material != MODEL_NONE && w->m->materials[material].alpha == MODEL_ALPHA_BLEND;
     }
     begin_chunk(w, NOH_CHUNK_MESH, mesh->name);
-    pack_mesh(mesh, e, blends, &w->strings, &w->out);
+    pack_mesh(mesh, e, blends, model_mesh_scale(w->m, index), &w->strings, &w->out);
     end_chunk(w);
 }
 
@@ -161,8 +162,7 @@ static void write_node(writer *w, const model_node *from, uint32_t *weight_count
     memcpy(to.scale, from->scale, sizeof to.scale);
     for (int row = 0; row < 3; row++) {
         for (int column = 0; column < 4; column++) {
-            /* a skinned mesh is placed by its joints, not by its node (glTF 2.0, 3.7.3) */
-            to.world[4 * row + column] = from->skinned ? (row == column ? 1.0f : 0.0f) : (float)from->world[4 * column + row];
+            to.world[4 * row + column] = (float)from->world[4 * column + row];
         }
     }
     to.first_weight = NOH_NONE;
@@ -254,7 +254,7 @@ static void write_content(writer *w, morph_encoding *const *encodings)
         write_materials(w);
     }
     for (uint32_t i = 0; i < w->m->mesh_count; i++) {
-        write_mesh(w, &w->m->meshes[i], encodings[i]);
+        write_mesh(w, i, encodings[i]);
     }
     if (w->m->node_count) {
         write_nodes(w);

@@ -37,7 +37,7 @@ static const morph_target *worst_target(const morph_encoding *e, uint32_t *index
     return worst;
 }
 
-void convert_report_mesh(FILE *out, const model_mesh *m, const morph_encoding *e, float error_um)
+void convert_report_mesh(FILE *out, const model_mesh *m, const morph_encoding *e, float scale, float error_um)
 {
     double bytes = 12.0 * e->texel_count + sizeof(noh_rect) * (double)e->rect_count + sizeof(noh_target) * (double)e->target_count;
     uint32_t index = 0;
@@ -52,7 +52,7 @@ void convert_report_mesh(FILE *out, const model_mesh *m, const morph_encoding *e
     fprintf(out, "  %u pairs (%u in the source) in %u rectangles of %u texels: %.3f texels blended per vertex touched\n",
             e->pair_count, e->source_pairs, e->rect_count, e->texel_count, ratio(e->texel_count, e->pair_count));
     fprintf(out, "  %.0f bytes, %.2f per pair; largest position error %.2f um in '%s' (%u bits, %.1f um asked)\n", bytes,
-            ratio(bytes, e->pair_count), 1e6 * (double)worst->position_error, m->targets[index].name, worst->position_bits,
-            error_um > 0.0f ? (double)error_um : 10.0);
+            ratio(bytes, e->pair_count), 1e6 * (double)(scale * worst->position_error), m->targets[index].name, worst->position_bits,
+            (double)error_um);
     report_peers(out, m, e, bytes);
 }

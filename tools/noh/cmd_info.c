@@ -8,11 +8,11 @@ static uint64_t target_bytes(const noh_mesh_header *h)
     return 12ull * h->texel_count + sizeof(noh_rect) * (uint64_t)h->rect_count + sizeof(noh_target) * (uint64_t)h->target_count;
 }
 
-static void print_target(const noh_pack *pack, const noh_target *t)
+static void print_target(const noh_pack *pack, const noh_target *t, double scale)
 {
     printf("    %-24s %6u pairs %4u rects %6u texels  %2u/%2u/%2u bits  moves %.3f mm, error %.2f um\n", noh_pack_string(pack, t->name),
            t->pair_count, t->rect_count, t->texel_count, t->position_bits, t->normal_bits, t->tangent_bits,
-           1e3 * (double)t->max_displacement, 1e6 * (double)t->position_error);
+           1e3 * scale * (double)t->max_displacement, 1e6 * scale * (double)t->position_error);
 }
 
 static void print_mesh(const noh_pack *pack, const noh_mesh *m)
@@ -26,10 +26,10 @@ static void print_mesh(const noh_pack *pack, const noh_mesh *m)
                h->pair_count, h->rect_count, h->texel_count, h->pair_count ? (double)h->texel_count / h->pair_count : 0.0,
                (unsigned long long)target_bytes(h), h->pair_count ? (double)target_bytes(h) / h->pair_count : 0.0);
         printf("  %u vertices touched, in %u x %u texels; f16 accumulation within %.0f um (weights -2..2)\n", h->touched_count,
-               1u << h->morph_width_log2, h->morph_height, 1e6 * (double)h->f16_position_bound);
+               1u << h->morph_width_log2, h->morph_height, 1e6 * (double)h->world_scale * (double)h->f16_position_bound);
     }
     for (uint32_t t = 0; t < h->target_count; t++) {
-        print_target(pack, &m->targets[t]);
+        print_target(pack, &m->targets[t], (double)h->world_scale);
     }
 }
 
@@ -63,7 +63,7 @@ static void print_info(const pack_file *file)
     }
 }
 
-static void json_target(json *j, const noh_pack *pack, const noh_target *t)
+static void json_target(json *j, const noh_pack *pack, const noh_target *t, double scale)
 {
     json_open(j, NULL, '{');
     json_text(j, "name", noh_pack_string(pack, t->name));
@@ -73,8 +73,8 @@ static void json_target(json *j, const noh_pack *pack, const noh_target *t)
     json_integer(j, "position_bits", t->position_bits);
     json_integer(j, "normal_bits", t->normal_bits);
     json_integer(j, "tangent_bits", t->tangent_bits);
-    json_number(j, "max_displacement_um", 1e6 * (double)t->max_displacement);
-    json_number(j, "position_error_um", 1e6 * (double)t->position_error);
+    json_number(j, "max_displacement_um", 1e6 * scale * (double)t->max_displacement);
+    json_number(j, "position_error_um", 1e6 * scale * (double)t->position_error);
     json_number(j, "normal_error", (double)t->normal_error);
     json_number(j, "tangent_error", (double)t->tangent_error);
     json_close(j, '}');
@@ -95,12 +95,12 @@ static void json_mesh(json *j, const noh_pack *pack, const noh_mesh *m)
     json_integer(j, "rects", h->rect_count);
     json_integer(j, "texels", h->texel_count);
     json_integer(j, "target_bytes", target_bytes(h));
-    json_number(j, "f16_bound_um", 1e6 * (double)h->f16_position_bound);
+    json_number(j, "f16_bound_um", 1e6 * (double)h->world_scale * (double)h->f16_position_bound);
     json_open(j, "lods", '[');
     json_close(j, ']');
     json_open(j, "target_list", '[');
     for (uint32_t t = 0; t < h->target_count; t++) {
-        json_target(j, pack, &m->targets[t]);
+        json_target(j, pack, &m->targets[t], (double)h->world_scale);
     }
     json_close(j, ']');
     json_close(j, '}');

@@ -5,14 +5,12 @@
 
 #include "view.h"
 
-#define CLIP_TILES 24
-
 typedef struct sheet {
     const pack_file *file;
     const char *clip_name;
     noh_clip clip;
     const char **names; /* targets, each name once */
-    uint32_t name_count, tile_count, columns, tile;
+    uint32_t name_count, clip_tiles, tile_count, columns, tile;
     uint8_t *rgba;      /* the whole sheet */
     scene rest, posed;
 } sheet;
@@ -167,8 +165,8 @@ static int prepare(sheet *s)
     if (status) {
         return status;
     }
-    s->tile_count = s->clip_name ? CLIP_TILES : s->name_count + 1;
-    s->columns = (uint32_t)ceil(sqrt((double)s->tile_count * 1.4));
+    s->tile_count = s->clip_name ? s->clip_tiles : s->name_count + 1;
+    s->columns = s->columns ? s->columns : (uint32_t)ceil(sqrt((double)s->tile_count * 1.4));
     s->columns = s->columns > s->tile_count ? s->tile_count : s->columns;
     if ((uint64_t)s->tile * ((s->tile_count + s->columns - 1) / s->columns) > 16384) {
         s->tile = 96; /* hundreds of targets */
@@ -184,7 +182,7 @@ static int prepare(sheet *s)
 int verb_sheet(int argc, char **argv)
 {
     const char *pack = NULL, *output = NULL, *driver = NULL, *camera = "face", *path = NULL, *accumulate = NULL;
-    double tile = 192.0;
+    double tile = 192.0, tiles = 24.0, columns = 0.0;
     load_options o;
     pack_file file;
     sheet s;
@@ -194,13 +192,16 @@ int verb_sheet(int argc, char **argv)
     const option options[] = {
         { "-o", OPTION_TEXT, &output },       { "--clip", OPTION_TEXT, &s.clip_name }, { "--driver", OPTION_TEXT, &driver },
         { "--camera", OPTION_TEXT, &camera }, { "--path", OPTION_TEXT, &path },        { "--accumulate", OPTION_TEXT, &accumulate },
-        { "--tile", OPTION_NUMBER, &tile }
+        { "--tile", OPTION_NUMBER, &tile },   { "--tiles", OPTION_NUMBER, &tiles },     { "--columns", OPTION_NUMBER, &columns }
     };
     status = tool_options(argc, argv, options, sizeof options / sizeof options[0], &pack, 1, &count);
     if (!status) status = parse_path(path, &o.path);
     if (!status) status = parse_accumulate(accumulate, &o.accumulate);
-    if (!status && (!pack || !output || tile < 16.0 || tile > 1024.0)) {
-        status = tool_usage("sheet wants a pack, -o OUT.png and a --tile of 16 to 1024 pixels");
+    if (!status && (!pack || !output)) {
+        status = tool_usage("sheet wants a pack and -o OUT.png");
+    }
+    if (!status && !(tile >= 16.0 && tile <= 1024.0 && tiles >= 1.0 && tiles <= 1024.0 && columns >= 0.0 && columns <= 64.0)) {
+        status = tool_usage("sheet wants a --tile of 16 to 1024 pixels, 1 to 1024 --tiles and up to 64 --columns");
     }
     if (!status) status = pack_file_open(&file, pack);
     if (status) {
@@ -208,6 +209,8 @@ int verb_sheet(int argc, char **argv)
     }
     s.file = &file;
     s.tile = (uint32_t)tile;
+    s.clip_tiles = (uint32_t)tiles;
+    s.columns = (uint32_t)columns;
     status = prepare(&s);
     if (!status) status = draw_sheet(&s, driver, camera, &o);
     if (!status) {

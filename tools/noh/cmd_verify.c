@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "gpu.h"
+#include "load.h"
 
 #define ROUNDS 4 /* sets of random weights per path */
 
@@ -24,7 +24,8 @@ typedef struct verify_job {
     uint64_t state; /* of the random weights */
     verify_row rows[16];
     int row_count, failed;
-    uint64_t gpu_predicted, gpu_used, cpu_predicted, cpu_used; /* sums over all rows and the meshes */
+    load_options load;  /* of the load whose memory is compared with its budget */
+    uint64_t gpu_predicted, gpu_used, cpu_predicted, cpu_used;
 } verify_job;
 
 /* xorshift64*: the same weights on every machine. */
@@ -84,7 +85,7 @@ static void measure_f16(verify_row *row, const noh_mesh *mesh, const float *got,
             double d = (double)got[3 * v + c] - (double)exact[3 * v + c];
             square += d * d;
         }
-        row->max_error_um = fmax(row->max_error_um, 1e6 * sqrt(square));
+        row->max_error_um = fmax(row->max_error_um, 1e6 * (double)mesh->header->world_scale * sqrt(square));
     }
 }
 
@@ -169,7 +170,8 @@ static int verify_mesh(verify_job *job, gpu_morph *m, readback *r, uint32_t mesh
 static void set_bound(verify_job *job, verify_row *row, int half)
 {
     for (uint32_t i = 0; half && i < job->file.pack.mesh_count; i++) {
-        row->bound_um = fmax(row->bound_um, 1e6 * (double)job->scene.meshes[i].header->f16_position_bound);
+        const noh_mesh_header *h = job->scene.meshes[i].header;
+        row->bound_um = fmax(row->bound_um, 1e6 * (double)h->world_scale * (double)h->f16_position_bound);
     }
 }
 
@@ -187,28 +189,24 @@ static int row_failed(const verify_row *row)
     return (half && row->max_error_um > row->bound_um) || row->max_normal_error > 1e-5;
 }
 
-/* Bytes past what init was given must not change; what it was given is what it needs. */
-static int check_memory(verify_job *job, const noh_gl_morph_desc *desc, verify_row *row)
+/* The block that init takes: one byte less is refused and leaves it untouched. Returns the
+ * bytes that suffice, or 0 when a smaller block was accepted or written to. */
+static uint64_t least_block(verify_job *job, const noh_gl_morph_desc *desc, uint64_t predicted)
 {
-    noh_gl_morph_plan plan;
     noh_gl_morph *morph = NULL;
     noh_error error = { NOH_OK, "", 0, 0 };
-    uint8_t *memory;
-    int ok;
-    noh_gl_morph_plan_make(desc, &job->g.caps, &plan, &error);
-    memory = malloc((size_t)plan.cpu_bytes + 64);
-    if (!memory) {
-        return tool_fail(job->file.path, "out of memory");
+    uint8_t *memory = malloc((size_t)predicted + 64);
+    int ok = memory != NULL;
+    if (ok) {
+        memset(memory, 0xa5, (size_t)predicted + 64);
+        ok = noh_gl_morph_init(memory, (size_t)predicted - 1, &job->g.gl, &job->g.caps, &job->g.ledger, desc, &morph, NULL, 0,
+                               &error) == NOH_ERR_MEMORY && error.need == predicted;
+        for (size_t i = 0; i < (size_t)predicted + 64; i++) {
+            ok &= memory[i] == 0xa5;
+        }
     }
-    memset(memory, 0xa5, (size_t)plan.cpu_bytes + 64);
-    ok = noh_gl_morph_init(memory, (size_t)plan.cpu_bytes - 1, &job->g.gl, &job->g.caps, &job->g.ledger, desc, &morph, NULL, 0,
-                           &error) == NOH_ERR_MEMORY && error.need == plan.cpu_bytes;
-    for (size_t i = 0; i < (size_t)plan.cpu_bytes + 64; i++) {
-        ok &= memory[i] == 0xa5;
-    }
-    row->cpu_used = ok ? plan.cpu_bytes : 0;
     free(memory);
-    return 0;
+    return ok ? predicted : 0;
 }
 
 static int verify_path(verify_job *job, noh_morph_path path, noh_accumulate accumulate, const noh_gl_mesh *gl_meshes)
@@ -238,11 +236,9 @@ static int verify_path(verify_job *job, noh_morph_path path, noh_accumulate accu
     row->cpu_predicted = plan.cpu_bytes;
     row->gpu_predicted = plan.gpu_bytes;
     set_bound(job, row, accumulate == NOH_ACCUMULATE_F16);
-    status = check_memory(job, &desc, row);
+    row->cpu_used = least_block(job, &desc, plan.cpu_bytes);
     before = noh_gl_ledger_bytes(&job->g.ledger);
-    if (!status) {
-        status = gpu_morph_open(&m, &job->g, &desc, job->file.path);
-    }
+    status = gpu_morph_open(&m, &job->g, &desc, job->file.path);
     if (status) {
         return status;
     }
@@ -295,12 +291,10 @@ static int verify_all(verify_job *job)
     noh_error error = { NOH_OK, "", 0, 0 };
     int status = gl_meshes ? 0 : tool_fail(job->file.path, "out of memory");
     for (uint32_t i = 0; i < count && !status; i++) {
-        job->gpu_predicted += noh_gl_mesh_bytes(&job->scene.meshes[i]);
         if (noh_gl_mesh_create(&job->g.gl, &job->g.ledger, &job->scene.meshes[i], &gl_meshes[i], &error)) {
             status = tool_fail_error(job->file.path, &error);
         }
     }
-    job->gpu_used = noh_gl_ledger_bytes(&job->g.ledger);
     if (!status) {
         status = verify_simd(job);
     }
@@ -317,15 +311,28 @@ static int verify_all(verify_job *job)
     return status;
 }
 
-static void sum_memory(verify_job *job)
+/* A whole load, as `noh render` makes it, against its budget, as `noh budget` prints it. */
+static int verify_load(verify_job *job)
 {
-    for (int i = 0; i < job->row_count; i++) {
-        job->gpu_predicted += job->rows[i].gpu_predicted;
-        job->gpu_used += job->rows[i].gpu_used;
-        job->cpu_predicted += job->rows[i].cpu_predicted;
-        job->cpu_used += job->rows[i].cpu_used;
+    load_budget b;
+    load l;
+    int status = load_budget_make(&b, &job->file, &job->scene, &job->g.caps, &job->load);
+    if (!status) {
+        status = load_open(&l, &job->g, &job->file, &job->scene, &job->load);
     }
-    job->failed |= job->gpu_predicted != job->gpu_used || job->cpu_predicted != job->cpu_used;
+    if (!status) {
+        job->cpu_predicted = b.cpu_bytes;
+        job->gpu_predicted = b.gpu_bytes;
+        job->gpu_used = noh_gl_ledger_bytes(&job->g.ledger);
+        job->cpu_used = l.morph.bytes;
+        status = load_update(&l, NULL);
+        job->failed |= noh_gl_ledger_bytes(&job->g.ledger) != job->gpu_used; /* nothing is asked for after init */
+        load_close(&l);
+    }
+    load_budget_free(&b);
+    job->failed |= status || job->gpu_predicted != job->gpu_used || job->cpu_predicted != job->cpu_used ||
+                   noh_gl_ledger_bytes(&job->g.ledger) != 0;
+    return status;
 }
 
 static void print_rows(const verify_job *job)
@@ -391,17 +398,22 @@ int verb_verify(int argc, char **argv)
 {
     static verify_job job;
     const char *path = NULL, *driver = NULL;
-    double seed = 1.0;
+    double seed = 1.0, instances = 1.0;
     int count, as_json = 0, status;
     const option options[] = {
-        { "--seed", OPTION_NUMBER, &seed }, { "--driver", OPTION_TEXT, &driver }, { "--json", OPTION_FLAG, &as_json }
+        { "--seed", OPTION_NUMBER, &seed }, { "--driver", OPTION_TEXT, &driver }, { "--json", OPTION_FLAG, &as_json },
+        { "--instances", OPTION_NUMBER, &instances }
     };
-    status = tool_options(argc, argv, options, 3, &path, 1, &count);
+    status = tool_options(argc, argv, options, 4, &path, 1, &count);
     if (status) {
         return status;
     }
     if (!path) {
         return tool_usage("verify wants a pack");
+    }
+    status = parse_instances(instances, &job.load.instances);
+    if (status) {
+        return status;
     }
     job.state = 0x9e3779b97f4a7c15ull ^ (uint64_t)fabs(seed) << 20;
     status = pack_file_open(&job.file, path);
@@ -411,7 +423,7 @@ int verb_verify(int argc, char **argv)
             status = gpu_open(&job.g, driver);
             if (!status) {
                 status = verify_all(&job);
-                sum_memory(&job);
+                if (!status) status = verify_load(&job);
                 if (!status) {
                     print_result(&job, as_json);
                 }

@@ -10,17 +10,18 @@ static const struct verb {
 } verbs[] = {
     { "build", verb_build, "IN... -o OUT.noh [--error-um 10] [--rects auto|N] [--quiet]", "convert glTF to a pack" },
     { "info", verb_info, "PACK [--json]", "chunks, counts, names, errors certified at build" },
-    { "budget", verb_budget, "PACK [--instances N] [--path P] [--accumulate A] [--json]",
+    { "budget", verb_budget, "PACK [--instances N] [--path P] [--accumulate A] [--driver D | --nominal] [--json]",
       "bytes before a load: CPU and GPU, by part" },
     { "render", verb_render,
       "PACK -o OUT.png [--size 512x512] [--weight NAME=V]... [--clip NAME] [--time S]\n"
       "                 [--path P] [--accumulate auto|f32|f16] [--driver egl|osmesa|angle]\n"
       "                 [--camera face|body|AZ,EL,DIST] [--debug none|position|normal|tangent]",
       "a picture" },
-    { "sheet", verb_sheet, "PACK -o OUT.png [--clip NAME]", "a contact sheet: every target at full weight, or a clip in time" },
+    { "sheet", verb_sheet, "PACK -o OUT.png [--clip NAME [--tiles 24]] [--tile 192] [--columns N] [--camera face]\n"
+      "                 [--path P] [--accumulate A] [--driver D]", "a contact sheet: every target at full weight, or a clip in time" },
     { "dump", verb_dump, "PACK -o OUT.obj [--weight NAME=V]... [--clip NAME] [--time S] [--path P]",
       "the deformed mesh, as drawn, baked to a plain one" },
-    { "verify", verb_verify, "PACK [--seed N] [--driver D] [--json]", "every path and format against the CPU reference" },
+    { "verify", verb_verify, "PACK [--seed N] [--instances N] [--driver D] [--json]", "every path and format against the CPU reference" },
     { "bench", verb_bench, "PACK [--driver D] [--rounds N] [--json]", "ratios against the named baselines, in one run" },
 };
 

@@ -1,0 +1,20 @@
+#!/bin/sh
+# demo.sh BUILD: convert the mask, draw it, and say what it cost.
+set -eu
+build=$1
+noh=$build/noh
+
+echo
+"$noh" build "$build/mask.glb" -o "$build/mask.noh"
+echo
+"$noh" render "$build/mask.noh" -o "$build/mask.png" --size 640x720
+"$noh" render "$build/mask.noh" -o "$build/mask_smile.png" --size 640x720 --weight smile=1 --camera 18,4
+"$noh" sheet "$build/mask.noh" -o "$build/mask_targets.png"
+"$noh" sheet "$build/mask.noh" -o "$build/mask_faces.png" --clip wonder --tiles 10 --tile 256 --columns 5
+"$noh" budget "$build/mask.noh"
+echo
+echo 'Pictures:'
+echo "  $build/mask.png           at rest"
+echo "  $build/mask_smile.png     --weight smile=1"
+echo "  $build/mask_targets.png   every target"
+echo "  $build/mask_faces.png     the clip 'wonder'"

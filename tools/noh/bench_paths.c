@@ -1,0 +1,92 @@
+/* bench_paths.c: our five ways, and the mesh that is not morphed at all. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench_job.h"
+
+typedef struct path_method {
+    bench_stage *stage;
+    gpu_morph morph;
+    noh_gl_morph_binding binding;
+    GLint u_morph[BENCH_PASS_COUNT];
+} path_method;
+
+static void prepare(void *self, const float *weights)
+{
+    path_method *p = (path_method *)self;
+    noh_gl_morph_weights(p->morph.morph, 0, weights, NULL);
+    noh_gl_morph_update(p->morph.morph, NULL);
+}
+
+static void bind(void *self, bench_pass pass)
+{
+    const path_method *p = (const path_method *)self;
+    const noh_gl_api *gl = &p->stage->g->gl;
+    const noh_gl_morph_binding *b = &p->binding;
+    gl->ActiveTexture(GL_TEXTURE0);
+    gl->BindTexture(GL_TEXTURE_2D_ARRAY, b->texture);
+    gl->Uniform4i(p->u_morph[pass], b->tile_x, b->tile_y, b->width_log2, b->touched);
+}
+
+static void close_path(void *self)
+{
+    path_method *p = (path_method *)self;
+    gpu_morph_close(&p->morph);
+    free(p);
+}
+
+/* Half floats may be off by what the pack says. */
+static void set_slack(bench_method *m, const noh_mesh_header *h, noh_accumulate accumulate)
+{
+    if (accumulate == NOH_ACCUMULATE_F16) {
+        m->slack = (double)h->f16_position_bound;
+        m->normal_slack = 2.0 * (double)h->f16_direction_bound;
+    }
+}
+
+int bench_open_path(bench_method *m, bench_stage *s, noh_morph_path path, noh_accumulate accumulate)
+{
+    noh_gl_morph_desc desc;
+    noh_gl_morph_plan plan;
+    path_method *p;
+    int status;
+    memset(m, 0, sizeof *m);
+    memset(&desc, 0, sizeof desc);
+    desc.meshes = s->mesh;
+    desc.mesh_count = 1;
+    desc.path = path;
+    desc.accumulate = accumulate;
+    if (noh_gl_morph_plan_make(&desc, &s->g->caps, &plan, NULL)) {
+        return -1;
+    }
+    p = calloc(1, sizeof *p);
+    if (!p) {
+        return tool_fail("bench", "out of memory");
+    }
+    snprintf(m->name, sizeof m->name, "%s-%s", noh_morph_path_name(path), noh_accumulate_name(accumulate));
+    p->stage = s;
+    m->self = p;
+    m->mesh = &s->gl_mesh;
+    m->prepare = prepare;
+    m->bind = bind;
+    m->close = close_path;
+    set_slack(m, s->mesh->header, accumulate);
+    status = gpu_morph_open(&p->morph, s->g, &desc, "bench");
+    if (!status) {
+        p->binding = noh_gl_morph_binding_of(p->morph.morph, 0);
+        status = bench_programs(s, m, p->binding.is_uint ? "#define BENCH_LAYERS\n#define LAYERS_UINT\n" : "#define BENCH_LAYERS\n");
+    }
+    for (int pass = 0; pass < BENCH_PASS_COUNT; pass++) {
+        p->u_morph[pass] = s->g->gl.GetUniformLocation(m->programs[pass], "u_morph");
+    }
+    return status;
+}
+
+int bench_open_unmorphed(bench_method *m, bench_stage *s)
+{
+    memset(m, 0, sizeof *m);
+    snprintf(m->name, sizeof m->name, "unmorphed");
+    m->mesh = &s->gl_mesh;
+    m->is_baseline = 1;
+    return bench_programs(s, m, "");
+}
