@@ -979,7 +979,7 @@ static void nodes_parents_first(void **state)
     (void)state;
     scene *s = triangle("", "");
     APPEND(s->rest, ",\"scene\":0,\"scenes\":[{\"nodes\":[2]}],\"nodes\":["
-           "{\"name\":\"child\",\"mesh\":0,\"skin\":0,\"translation\":[1,0,0]},{\"name\":\"elsewhere\"},"
+           "{\"name\":\"child\",\"mesh\":0,\"translation\":[1,0,0]},{\"name\":\"elsewhere\"},"
            "{\"name\":\"root\",\"children\":[0],\"scale\":[2,2,2],\"rotation\":[0,0,0.7071067811865476,0.7071067811865476]}]");
     model *m = load(s);
     assert_int_equal(m->node_count, 2);
@@ -989,9 +989,37 @@ static void nodes_parents_first(void **state)
     assert_string_equal(m->nodes[1].name, "child");
     assert_int_equal(m->nodes[1].parent, 0);
     assert_int_equal(m->nodes[1].mesh, 0);
-    assert_true(m->nodes[1].skinned && !m->nodes[0].skinned);
     assert_true(fabs(m->nodes[1].world[12]) < 1e-7 && fabs(m->nodes[1].world[13] - 2.0) < 1e-7);
     model_free(m);
+}
+
+/* glTF 2.0, 3.7.3: the node of a skinned mesh does not place it. */
+static void skinned_mesh_stands_where_its_joint_is(void **state)
+{
+    (void)state;
+    scene *s = triangle("", "");
+    APPEND(s->rest, ",\"nodes\":[{\"mesh\":0,\"skin\":0,\"translation\":[9,9,9]},{\"translation\":[0,2,0],\"scale\":[3,3,3]}],"
+           "\"skins\":[{\"joints\":[1]}]");
+    model *m = load(s);
+    assert_true(m->nodes[0].skinned && !m->nodes[1].skinned);
+    assert_true(fabs(m->nodes[0].world[0] - 3.0) < 1e-7 && fabs(m->nodes[0].world[12]) < 1e-7);
+    assert_true(fabs(m->nodes[0].world[13] - 2.0) < 1e-7 && fabs(m->nodes[0].world[14]) < 1e-7);
+    assert_true(fabsf(model_mesh_scale(m, 0) - 3.0f) < 1e-6f);
+    model_free(m);
+}
+
+static void bad_skins_are_refused(void **state)
+{
+    (void)state;
+    static const char *const rests[][2] = {
+        {",\"nodes\":[{\"mesh\":0,\"skin\":0}]", "skin 0 does not exist"},
+        {",\"nodes\":[{\"mesh\":0,\"skin\":0}],\"skins\":[{\"joints\":[7]}]", "joint node 7 does not exist"},
+        {",\"nodes\":[{\"mesh\":0,\"skin\":0}],\"skins\":[{\"joints\":[0],\"inverseBindMatrices\":0}]", "needs a matrix"}};
+    for (size_t i = 0; i < sizeof rests / sizeof rests[0]; i++) {
+        scene *s = triangle("", "");
+        APPEND(s->rest, "%s", rests[i][0]);
+        refused(s, rests[i][1], "");
+    }
 }
 
 static void matrices_are_decomposed(void **state)
@@ -1658,6 +1686,8 @@ int main(void)
         cmocka_unit_test(target_tangents_from_the_morphed_mesh),
         cmocka_unit_test(no_uvs_no_tangents),
         cmocka_unit_test(nodes_parents_first),
+        cmocka_unit_test(skinned_mesh_stands_where_its_joint_is),
+        cmocka_unit_test(bad_skins_are_refused),
         cmocka_unit_test(matrices_are_decomposed),
         cmocka_unit_test(skewed_and_mirrored_matrices),
         cmocka_unit_test(node_weights),

@@ -19,6 +19,10 @@ static int encode_meshes(const model *m, const convert_options *options, morph_e
         float scale = model_mesh_scale(m, i);
         morph_options morph = options->morph;
         morph.error_um = (morph.error_um > 0.0f ? morph.error_um : 10.0f) / scale; /* asked for in the world, kept in the mesh */
+        if (options->progress && m->meshes[i].target_count) {
+            fprintf(options->progress, "\rencoding %u targets of mesh %u of %u ", m->meshes[i].target_count, i + 1, m->mesh_count);
+            fflush(options->progress);
+        }
         if (morph_encode(&m->meshes[i], &morph, &encodings[i], error)) {
             return 1;
         }
@@ -40,7 +44,11 @@ static int convert_model(const model *m, const convert_options *options, byte_bu
     for (uint32_t i = 0; options->report && i < m->warning_count; i++) {
         fprintf(options->report, "warning: %s\n", m->warnings[i]);
     }
-    failed = encode_meshes(m, options, encodings, error) || pack_write(m, encodings, out, error);
+    failed = encode_meshes(m, options, encodings, error);
+    if (options->progress) {
+        fputs("\r\033[K", options->progress); /* leave the terminal's line as it was */
+    }
+    failed = failed || pack_write(m, encodings, out, error);
     free_encodings(encodings, m->mesh_count);
     return failed;
 }

@@ -8,7 +8,8 @@
 
 typedef struct convert_options {
     morph_options morph;
-    FILE *report; /* NULL: quiet */
+    FILE *report;   /* NULL: quiet */
+    FILE *progress; /* a terminal, to say what takes its time; NULL: none */
 } convert_options;
 
 typedef struct convert_failure {

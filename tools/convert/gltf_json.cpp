@@ -257,6 +257,17 @@ static void take_buffers(file &f, json &document)
     }
 }
 
+/* tinygltf 2.7 insists on inverseBindMatrices, which glTF lets a skin leave out. */
+static void repair_skins(json &document)
+{
+    auto skins = document.find("skins");
+    if (skins == document.end() || !skins->is_array())
+        return;
+    for (json &skin : *skins)
+        if (skin.is_object() && !skin.contains("inverseBindMatrices"))
+            skin["inverseBindMatrices"] = -1;
+}
+
 static void take_images(file &f, json &document)
 {
     json array = take(document, "images");
@@ -322,6 +333,7 @@ void parse_json(file &f, const char *text_begin, size_t size)
     check_value(document, "", "");
     take_buffers(f, document);
     take_images(f, document);
+    repair_skins(document);
     mark_untargeted_channels(document);
     run_tinygltf(f, document);
     f.decoded_views.resize(f.json.bufferViews.size());
