@@ -10,6 +10,7 @@ PKG     ?= pkg-config
 DEPS    ?= 1
 JOBS    ?= $(shell nproc 2>/dev/null || echo 2)
 SAN     ?=
+FUZZ_SECONDS ?= 60
 ASSETS  ?= $(if $(NOH_ASSETS),$(NOH_ASSETS),../shared/assets)
 
 ifeq ($(origin CC),default)
@@ -29,6 +30,9 @@ CXXFLAGS += -std=c++17 $(OPT) -Wall -Wextra $(FP) $(SANFLAGS)
 LDFLAGS  += $(SANFLAGS)
 INCLUDES := -Iruntime -Iplatform -Itools -I$(BUILD)/gen
 TOOL_LIBS := -ltinygltf -lmeshoptimizer -lstb -ldl -lm
+# What runs is printed as a word and a file; V=1 prints the commands.
+Q        := $(if $(V),,@)
+say       = $(if $(V),,@printf '  %-6s %s\n' $(1) $(2))
 MACHINE  := $(shell $(CC) -dumpmachine)
 
 # ---- what there is ----
@@ -53,7 +57,7 @@ TESTS      := $(TEST_C:tests/%.c=$(BUILD)/tests/%)
 # The accumulation kernel built for other instruction sets, for `noh bench` and the tests.
 KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(BUILD)/kernel/morph_sse2.o $(BUILD)/kernel/morph_avx2.o)
 
-.PHONY: all demo check bench help clean deps-build deps-check lib tests demo-run check-run fuzz sizes
+.PHONY: install all demo check bench help clean deps-build deps-check deps-fuzz lib tests demo-run check-run fuzz sizes
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -66,10 +70,11 @@ help:
 	@echo 'make bench      ratios against the named baselines (the mask, and hero/head.glb where it is)'
 	@echo 'make fuzz       fuzz the pack reader (FUZZ_SECONDS=60), needs clang'
 	@echo 'make sizes      code and data of the library, by file'
+	@echo 'make install    PREFIX=/usr/local: noh, libnoh.a and the headers (compile with -IPREFIX/include/noh)'
 	@echo 'make clean      remove $(BUILD)'
 	@echo ''
-	@echo 'DEPS=0 installs nothing. SAN=address,undefined builds with sanitizers (use another BUILD).'
-	@echo 'ASSETS=DIR is where the tests look for models that are not ours to ship.'
+	@echo 'V=1 prints the commands. DEPS=0 installs nothing. SAN=address,undefined builds with sanitizers (use another BUILD).'
+	@echo 'ASSETS=DIR is where the tests look for models that are not ours to ship. NOH_TEST=NAME runs only those tests.'
 
 # ---- the library ----
 
@@ -77,45 +82,55 @@ lib: $(BUILD)/libnoh.a
 
 $(BUILD)/libnoh.a: $(RUNTIME_O)
 	@rm -f $@
-	$(AR) rcsD $@ $^
+	$(call say,AR,$@)
+	$(Q)$(AR) rcsD $@ $^
 
 $(BUILD)/%.o: %.c | $(BUILD)/gen/shaders.gen.h $(BUILD)/gen/tool_shaders.gen.h
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $(INCLUDES) -MMD -MP -c $< -o $@
+	$(call say,CC,$@)
+	$(Q)$(CC) $(CFLAGS) $(INCLUDES) -MMD -MP -c $< -o $@
 
 $(BUILD)/gen/%.o: $(BUILD)/gen/%.c
-	$(CC) $(CFLAGS) $(INCLUDES) -MMD -MP -c $< -o $@
+	$(call say,CC,$@)
+	$(Q)$(CC) $(CFLAGS) $(INCLUDES) -MMD -MP -c $< -o $@
 
 $(BUILD)/gen/shaders.gen.c: $(SHADERS) $(BUILD)/embed
 	@mkdir -p $(@D)
-	$(BUILD)/embed -o $@ -d $(BUILD)/gen/shaders.gen.d $(SHADERS)
+	$(call say,EMBED,$@)
+	$(Q)$(BUILD)/embed -o $@ -d $(BUILD)/gen/shaders.gen.d $(SHADERS)
 $(BUILD)/gen/shaders.gen.h: $(BUILD)/gen/shaders.gen.c ;
 
 $(BUILD)/gen/tool_shaders.gen.c: $(BENCH_SHADERS) $(BUILD)/embed
 	@mkdir -p $(@D)
-	$(BUILD)/embed -o $@ -d $(BUILD)/gen/tool_shaders.gen.d $(BENCH_SHADERS)
+	$(call say,EMBED,$@)
+	$(Q)$(BUILD)/embed -o $@ -d $(BUILD)/gen/tool_shaders.gen.d $(BENCH_SHADERS)
 $(BUILD)/gen/tool_shaders.gen.h: $(BUILD)/gen/tool_shaders.gen.c ;
 
 $(BUILD)/embed: tools/embed/embed.c
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $< -o $@ $(LDFLAGS)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(CFLAGS) $< -o $@ $(LDFLAGS)
 
 # ---- the tools ----
 
 # The C++ side is tinygltf's; its headers are not held to our warnings.
 $(BUILD)/tools/convert/%.o: tools/convert/%.cpp
 	@mkdir -p $(@D)
-	$(CXX) $(CXXFLAGS) -Iruntime -Itools -isystem /usr/include/stb -MMD -MP -c $< -o $@
+	$(call say,CXX,$@)
+	$(Q)$(CXX) $(CXXFLAGS) -Iruntime -Itools -isystem /usr/include/stb -MMD -MP -c $< -o $@
 
 $(BUILD)/kernel/morph_%.o: runtime/deform/morph.c
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $(INCLUDES) -m$* -DNOH_MORPH_ACCUMULATE=noh_morph_accumulate_$* -MMD -MP -c $< -o $@
+	$(call say,CC,$@)
+	$(Q)$(CC) $(CFLAGS) $(INCLUDES) -m$* -DNOH_MORPH_ACCUMULATE=noh_morph_accumulate_$* -MMD -MP -c $< -o $@
 
 $(BUILD)/noh: $(TOOL_O) $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(BUILD)/libnoh.a
-	$(CXX) $(LDFLAGS) $^ -o $@ $(TOOL_LIBS)
+	$(call say,CXX,$@)
+	$(Q)$(CXX) $(LDFLAGS) $^ -o $@ $(TOOL_LIBS)
 
 $(BUILD)/make_mask: $(MASK_O)
-	$(CC) $(LDFLAGS) $^ -o $@ -lm
+	$(call say,CC,$@)
+	$(Q)$(CC) $(LDFLAGS) $^ -o $@ -lm
 
 $(BUILD)/mask.glb: $(BUILD)/make_mask
 	$(BUILD)/make_mask $@
@@ -129,6 +144,8 @@ deps-build:
 	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build
 deps-check:
 	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build check
+deps-fuzz:
+	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build check fuzz
 
 demo: deps-build
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/mask.glb
@@ -142,12 +159,36 @@ bench: deps-build
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/mask.noh
 	@NOH_ASSETS="$(ASSETS)" sh tools/bench.sh $(BUILD)
 
-tests: $(TESTS)
+# FUZZ_SECONDS=60: how long. Skips where clang or its runtime is not.
+fuzz: deps-fuzz
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/tests/fuzz/corpus/.made $(BUILD)/gen/shaders.gen.c
+	@NOH_BUILD="$(BUILD)" FUZZ_SECONDS="$(FUZZ_SECONDS)" sh tests/fuzz.sh
 
-TEST_LIBS := $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(BUILD)/libnoh.a
-$(BUILD)/tests/%: $(BUILD)/tests/%.o $(BUILD)/tests/support.o $(TEST_LIBS)
+tests: $(TESTS) $(BUILD)/tests/fuzz/fuzz_pack $(BUILD)/tests/fuzz/corpus/.made
+
+# The tests read results back from the GPU as the tool does, and share what lies in tests/ itself.
+TEST_TOOL_O := $(addprefix $(BUILD)/tools/noh/,gpu.o readback.o message.o) $(BUILD)/gen/tool_shaders.gen.o
+TEST_SHARED_O := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/*.c))
+TEST_LIBS := $(TEST_SHARED_O) $(TEST_TOOL_O) $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(BUILD)/libnoh.a
+
+$(BUILD)/tests/%.o: INCLUDES += -Itests -Itools/noh -Itools/convert
+$(BUILD)/tests/%: $(BUILD)/tests/%.o $(TEST_LIBS)
 	@mkdir -p $(@D)
-	$(CXX) $(LDFLAGS) $^ -o $@ -lcmocka $(TOOL_LIBS)
+	$(call say,CXX,$@)
+	$(Q)$(CXX) $(LDFLAGS) $^ -o $@ -lcmocka $(TOOL_LIBS)
+
+$(BUILD)/tests/fuzz/corpus/.made: $(BUILD)/tests/fuzz/make_corpus
+	@mkdir -p $(@D)
+	@$< $(@D) >$(BUILD)/tests/fuzz/make_corpus.txt 2>&1 || { cat $(BUILD)/tests/fuzz/make_corpus.txt; exit 1; }
+	@touch $@
+
+PREFIX  ?= /usr/local
+install: all
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib
+	install -m 755 $(BUILD)/noh $(DESTDIR)$(PREFIX)/bin
+	install -m 644 $(BUILD)/libnoh.a $(DESTDIR)$(PREFIX)/lib
+	cd runtime && for h in noh.h $$(find . -name '*.h' ! -name '*_internal.h' ! -name '*_kernel.h' ! -name check.h); do \
+	    install -D -m 644 $$h $(DESTDIR)$(PREFIX)/include/noh/$$h; done
 
 sizes: $(BUILD)/libnoh.a
 	@size -t $(BUILD)/libnoh.a

@@ -1,6 +1,7 @@
 #!/bin/sh
 # deps.sh SET...: install the Debian packages that are missing.
 #   build  compiler, converter libraries, headless GL        check  test tools
+#   fuzz   clang and its fuzzer
 # With apt it installs them (through sudo where not root) and says what and why;
 # elsewhere it prints the list and stops.
 set -eu
@@ -23,6 +24,8 @@ libmeshoptimizer-dev:reading compressed glTF'
 packages_check='libcmocka-dev:unit tests
 libosmesa6:a second GL
 binutils:the check of the archive'"'"'s symbols'
+packages_fuzz='clang:libFuzzer
+libclang-rt-dev:libFuzzer and the sanitizers'
 
 installed() {
     dpkg-query -W -f '${Status}' "$1" 2>/dev/null | grep -q 'install ok installed'
@@ -35,6 +38,8 @@ for set in "$@"; do
 $packages_build" ;;
     check) all="$all
 $packages_check" ;;
+    fuzz) all="$all
+$packages_fuzz" ;;
     *) echo "deps.sh: no set '$set'" >&2; exit 2 ;;
     esac
 done

@@ -1,0 +1,116 @@
+#!/bin/sh
+# Files that are missing, cut, flipped or something else: exit code 1, what is wrong and where
+# in one line, and no output file, whole or half.
+. "$(dirname "$0")/lib.sh"
+
+pack=$build/mask.noh
+bytes=$(wc -c <"$pack")
+
+# Overwrite one byte of a copy: flip OFFSET OCTAL
+flip() {
+    cp "$pack" "$work/bad.noh"
+    printf "\\$2" | dd of="$work/bad.noh" bs=1 seek="$1" conv=notrunc 2>/dev/null
+}
+
+for verb in info budget verify; do
+    noh $verb "$work/missing.noh"
+    expect 1 "$verb of a missing file"
+    says "noh: $work/missing.noh: "
+done
+noh info "$work"
+expect 1 'a folder as a pack'
+: >"$work/empty.noh"
+noh info "$work/empty.noh"
+expect 1 'an empty file'
+says 'the file is empty'
+echo 'This is not a pack, but a line of text that is long enough to hold a header, and more.' >"$work/text.noh"
+noh info "$work/text.noh"
+expect 1 'a text file as a pack'
+says 'not a .noh pack'
+noh info "$build/mask.glb"
+expect 1 'a .glb as a pack'
+says 'not a .noh pack'
+
+for cut in 1 63 64 65 1000 $((bytes / 2)) $((bytes - 1)); do
+    head -c "$cut" "$pack" >"$work/cut.noh"
+    noh info "$work/cut.noh"
+    expect 1 "a pack cut to $cut bytes"
+    says "noh: $work/cut.noh: "
+    says '(byte '
+done
+flip 0 130
+noh info "$work/bad.noh"
+expect 1 'a wrong magic'
+says 'NOHP'
+flip 4 143
+noh info "$work/bad.noh"
+expect 1 'another version'
+says 'another format version'
+flip $((bytes / 2)) 125
+cmp -s "$pack" "$work/bad.noh" && flip $((bytes / 2)) 126
+for verb in info budget verify; do
+    noh $verb "$work/bad.noh"
+    expect 1 "$verb of a pack with one byte changed"
+    says 'checksum differs'
+done
+
+# ---- outputs ----
+
+none_left() {
+    check "and leaves no file, whole or half" sh -c 'test -z "$(ls -A "$1")"' - "$work/folder"
+}
+mkdir "$work/folder"
+noh build "$build/mask.glb" -o "$work/nowhere/out.noh" --quiet
+expect 1 'build into a folder that is not there'
+says "noh: $work/nowhere/out.noh: "
+check 'the folder was not made' test ! -e "$work/nowhere"
+noh build "$work/missing.glb" -o "$work/folder/out.noh" --quiet
+expect 1 'build of a missing file'
+says "noh: $work/missing.glb: "
+none_left
+head -c 5000 "$build/mask.glb" >"$work/cut.glb"
+noh build "$work/cut.glb" -o "$work/folder/out.noh" --quiet
+expect 1 'build of a cut .glb'
+says "noh: $work/cut.glb: "
+none_left
+noh build "$pack" -o "$work/folder/out.noh" --quiet
+expect 1 'build of a pack'
+none_left
+echo '{"asset":{"version":"2.0"}}' >"$work/nothing.gltf"
+noh build "$work/nothing.gltf" -o "$work/folder/out.noh" --quiet
+expect 1 'build of a glTF without meshes'
+none_left
+echo '{"asset":{"version":"2.0"},"extensionsRequired":["KHR_draco_mesh_compression"]}' >"$work/draco.gltf"
+noh build "$work/draco.gltf" -o "$work/folder/out.noh" --quiet
+expect 1 'build of a file that needs Draco'
+says 'KHR_draco_mesh_compression'
+none_left
+noh render "$work/bad.noh" -o "$work/folder/out.png"
+expect 1 'render of a broken pack'
+none_left
+noh render "$pack" -o "$work/nowhere/out.png" --size 16x16
+expect 1 'render into a folder that is not there'
+says "noh: $work/nowhere/out.png: "
+noh dump "$pack" -o "$work/nowhere/out.obj"
+expect 1 'dump into a folder that is not there'
+
+# A failed build leaves the older pack as it was.
+echo old >"$work/folder/out.noh"
+noh build "$work/cut.glb" -o "$work/folder/out.noh" --quiet
+expect 1 'a failed build over an older file'
+check 'the older file is untouched' sh -c 'test "$(cat "$1/out.noh")" = old && test "$(ls -A "$1")" = out.noh' - "$work/folder"
+
+# ---- names ----
+
+for verb in render dump; do
+    noh $verb "$pack" -o "$work/folder/x" --weight simle=1
+    expect 1 "$verb with a misspelt target"
+    says "did you mean 'smile'?"
+done
+noh render "$pack" -o "$work/folder/x.png" --weight 'zzzzzzzzzzzzzzzzzzzz=1'
+expect 1 'a name that is near nothing'
+check 'suggests nothing' sh -c '! grep -q "did you mean" "$1"' - "$work/err"
+noh render "$pack" -o "$work/folder/x.png" --clip no_such_clip_at_all
+expect 1 'an unknown clip'
+says 'no clip named'
+finish

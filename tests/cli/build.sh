@@ -1,0 +1,56 @@
+#!/bin/sh
+# noh build: the same bytes every time, whatever form the same targets come in; the error that
+# was asked for; what info says about it.
+. "$(dirname "$0")/lib.sh"
+
+mask=$build/mask.glb
+
+noh build "$mask" -o "$work/a.noh" --quiet
+expect 0 'build'
+check '--quiet prints nothing' test ! -s "$work/out"
+noh build "$mask" -o "$work/b.noh"
+expect 0 'build again'
+check 'and reports' test -s "$work/out"
+check 'the same bytes' cmp "$work/a.noh" "$work/b.noh"
+cp "$mask" "$work/renamed.glb"
+(cd "$work" && "$build/noh" build renamed.glb -o c.noh --quiet)
+check 'the same bytes from another folder and under another name' cmp "$work/a.noh" "$work/c.noh"
+noh build "$mask" -o "$work/a.noh" --quiet
+expect 0 'build over an older pack'
+check 'which is replaced' cmp "$work/a.noh" "$work/b.noh"
+check 'nothing else is left beside it' sh -c 'test "$(ls "$1" | grep -c noh)" = 3' - "$work"
+
+# ---- the error asked for ----
+
+# The largest position_error_um that info tells, rounded up.
+worst() {
+    noh info "$1" --json
+    sed -n 's/.*"position_error_um": \([0-9.e+-]*\).*/\1/p' "$work/out" | awk '$1 > m { m = $1 } END { print m + 0 }'
+}
+last_bytes=0
+for um in 100 10 1; do
+    noh build "$mask" -o "$work/e.noh" --error-um $um --quiet
+    expect 0 "build --error-um $um"
+    error=$(worst "$work/e.noh")
+    check "its certified errors are at most $um um ($error)" awk "BEGIN { exit !($error > 0 && $error <= $um) }"
+done
+for rects in 1 4; do
+    noh build "$mask" -o "$work/r.noh" --rects $rects --quiet
+    expect 0 "build --rects $rects"
+    noh info "$work/r.noh" --json
+    most=$(awk '/"position_bits"/ { inside = 1 } /"rects":/ { gsub(/[^0-9]/, ""); v = $0 } inside { if (v > m) m = v; inside = 0 } END { print m + 0 }' "$work/out")
+    check "no target has more than $rects rectangles ($most)" test "$most" -ge 1 -a "$most" -le $rects
+done
+
+# ---- one head in three containers ----
+
+if [ -f "$assets/hero/head.glb" ] && [ -f "$assets/hero/head_sparse.glb" ]; then
+    noh build "$assets/hero/head.glb" -o "$work/dense.noh" --quiet
+    expect 0 'build of head.glb'
+    noh build "$assets/hero/head_sparse.glb" -o "$work/sparse.noh" --quiet
+    expect 0 'build of head_sparse.glb'
+    check 'dense and sparse targets give the same pack' cmp "$work/dense.noh" "$work/sparse.noh"
+else
+    skip 'dense and sparse targets give the same pack' 'no hero/head.glb in NOH_ASSETS'
+fi
+finish

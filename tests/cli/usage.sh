@@ -1,0 +1,77 @@
+#!/bin/sh
+# What the command line says to wrong arguments: exit code 2, one line on stderr, nothing on stdout.
+. "$(dirname "$0")/lib.sh"
+
+pack=$build/mask.noh
+
+quiet_stdout() {
+    check "and prints nothing else" test ! -s "$work/out"
+}
+
+noh
+expect 2 'no verb is a usage error'
+noh help
+expect 0 'help is not an error'
+check 'help names every verb' sh -c 'for v in build info budget render sheet dump verify bench; do grep -q "noh $v " "$1" || exit 1; done' - "$work/out"
+noh biuld "$pack"
+expect 2 'an unknown verb'
+says "there is no verb 'biuld'"
+quiet_stdout
+
+for verb in build info budget render sheet dump verify bench; do
+    noh $verb
+    expect 2 "$verb without a file"
+    noh $verb "$pack" --no-such-option
+    expect 2 "$verb with an unknown option"
+    says '--no-such-option'
+    quiet_stdout
+done
+
+for verb in info budget verify; do
+    noh $verb "$pack" "$pack"
+    expect 2 "$verb with one file too many"
+    says 'one file too many'
+done
+
+noh build in.glb
+expect 2 'build without -o'
+says '-o'
+noh build in.glb -o
+expect 2 'an option without its value'
+says '-o wants a value'
+noh build in.glb -o "$work/out.noh" --error-um ten
+expect 2 'a number that is none'
+says "--error-um wants a number, not 'ten'"
+for value in 0 -1 1e9 nan inf; do
+    noh build in.glb -o "$work/out.noh" --error-um $value
+    expect 2 "--error-um $value"
+done
+for value in 0 -3 2.5 65536 many; do
+    noh build in.glb -o "$work/out.noh" --rects $value
+    expect 2 "--rects $value"
+    says '--rects wants'
+done
+for value in 0x512 512 512x 512x0 9000x10 -1x5 axb; do
+    noh render "$pack" -o "$work/out.png" --size $value
+    expect 2 "--size $value"
+    says '--size wants'
+done
+noh render "$pack" -o "$work/out.png" --path fastest
+expect 2 'an unknown path'
+says "--path wants auto, layered, mrt, per-layer, gather or cpu, not 'fastest'"
+noh render "$pack" -o "$work/out.png" --accumulate f64
+expect 2 'an unknown accumulator'
+says '--accumulate wants'
+noh render "$pack" -o "$work/out.png" --driver vulkan
+expect 2 'an unknown driver'
+says "no driver 'vulkan'"
+noh render "$pack" -o "$work/out.png" --debug bones
+expect 2 'an unknown debug view'
+noh render "$pack" -o "$work/out.png" --camera sideways
+expect 2 'an unknown camera'
+for value in smile smile= =1 smile=much smile=nan; do
+    noh render "$pack" -o "$work/out.png" --weight "$value"
+    expect 2 "--weight $value"
+done
+check 'no picture was written by any of these' test ! -e "$work/out.png"
+finish

@@ -1,0 +1,734 @@
+/* Accumulation on the GPU: every path and format against the CPU reference, value for value;
+ * what is not accumulated again; and what happens where capabilities are missing. */
+#include "gl_fixture.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static fixture_meshes set;
+
+static int set_up(void **state)
+{
+    (void)state;
+    fixture_meshes_open(&set);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    fixture_meshes_close(&set);
+    return fixture_tear_down(state);
+}
+
+static const uint32_t few[FIXTURE_MESHES] = { 3, 2, 4 };
+
+static noh_gl_morph_desc desc_of(fixture_way way)
+{
+    noh_gl_morph_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.meshes = set.meshes;
+    desc.mesh_count = FIXTURE_MESHES;
+    desc.instance_counts = few;
+    desc.path = way.path;
+    desc.accumulate = way.accumulate;
+    return desc;
+}
+
+/* Open the way's accumulator, or tell that it is not here. */
+static int open_way(fixture_morph *m, noh_gl_morph_desc *desc, fixture_way way)
+{
+    noh_gl_morph_plan plan;
+    noh_error error = { NOH_OK, "", 0, 0 };
+    gpu *g = fixture_gpu();
+    *desc = desc_of(way);
+    if (noh_gl_morph_plan_make(desc, &g->caps, &plan, &error) == NOH_ERR_UNSUPPORTED) {
+        print_message("# %s is not here: %s\n", fixture_way_name(way), error.what);
+        return 0;
+    }
+    fixture_morph_open(m, desc, NULL);
+    return 1;
+}
+
+typedef void (*way_test)(fixture_morph *m);
+
+static void for_every_way(way_test test)
+{
+    int ran = 0;
+    for (int i = 0; i < FIXTURE_WAYS; i++) {
+        noh_gl_morph_desc desc;
+        fixture_morph m;
+        if (open_way(&m, &desc, fixture_ways[i])) {
+            test(&m);
+            fixture_morph_close(&m);
+            fixture_expect_no_errors();
+            ran++;
+        }
+    }
+    assert_in_range(ran, 2, FIXTURE_WAYS); /* the CPU's two run everywhere */
+}
+
+static noh_gl_morph_stats update(fixture_morph *m)
+{
+    noh_gl_morph_stats stats;
+    noh_gl_morph_update(m->morph, &stats);
+    return stats;
+}
+
+static uint32_t passes_of(const fixture_morph *m)
+{
+    return m->plan.path == NOH_MORPH_CPU ? 0 : m->plan.path == NOH_MORPH_PER_LAYER ? 3 : 1;
+}
+
+static void set_all_random(fixture_morph *m, test_random *r)
+{
+    for (uint32_t i = 0; i < m->plan.instance_count; i++) {
+        fixture_set_random(m, i, r);
+    }
+}
+
+/* ---- equal to the CPU ---- */
+
+static void check_random_weights(fixture_morph *m)
+{
+    test_random r = { 61 };
+    for (int round = 0; round < 4; round++) {
+        set_all_random(m, &r);
+        update(m);
+        fixture_expect_all(m);
+    }
+}
+
+static void every_way_equals_the_cpu(void **state)
+{
+    (void)state;
+    for_every_way(check_random_weights);
+}
+
+static void check_weights_back_and_forth(fixture_morph *m)
+{
+    test_random r = { 62 };
+    int exact;
+    float *first, *again;
+    set_all_random(m, &r);
+    update(m);
+    first = fixture_reference(m, 0, &exact);
+    for (int round = 0; round < 20; round++) { /* sums are made anew, so nothing drifts */
+        float saved[7];
+        memcpy(saved, m->weights[0], sizeof saved);
+        fixture_set_random(m, 0, &r);
+        update(m);
+        fixture_set(m, 0, saved);
+        update(m);
+    }
+    again = fixture_reference(m, 0, &exact);
+    test_same_floats(again, first, noh_morph_layers_size(fixture_mesh_of(m, 0)) / 4, "the reference");
+    fixture_expect_all(m);
+    free(first);
+    free(again);
+}
+
+static void sums_do_not_drift(void **state)
+{
+    (void)state;
+    for_every_way(check_weights_back_and_forth);
+}
+
+static void check_first_update(fixture_morph *m)
+{
+    noh_gl_morph_stats stats = update(m); /* a new texture holds anything: it has to be cleared */
+    assert_int_equal(stats.instances, m->plan.instance_count);
+    fixture_expect_all(m);
+}
+
+static void instances_start_at_rest(void **state)
+{
+    (void)state;
+    for_every_way(check_first_update);
+}
+
+/* Vertices as the vertex shader fetches them. */
+static void check_fetched(fixture_morph *m)
+{
+    gpu *g = fixture_gpu();
+    test_random r = { 63 };
+    uint32_t instance = noh_gl_morph_instance(m->morph, 2, 1);
+    const noh_mesh *mesh = &set.meshes[2];
+    size_t floats = 3u * (size_t)mesh->header->vertex_count;
+    float *positions = test_zeros(4 * floats), *normals = test_zeros(4 * floats), *tangents = test_zeros(4 * floats);
+    noh_gl_morph_binding binding = noh_gl_morph_binding_of(m->morph, instance);
+    noh_gl_ledger ledger;
+    noh_gl_mesh gl_mesh;
+    noh_morph_layers layers;
+    readback back;
+    int exact;
+    memset(&ledger, 0, sizeof ledger);
+    fixture_set_random(m, instance, &r);
+    update(m);
+    layers.position = fixture_reference(m, instance, &exact);
+    layers.normal = layers.position + noh_morph_layers_size(mesh) / 12;
+    layers.tangent = layers.normal + noh_morph_layers_size(mesh) / 12;
+    assert_int_equal(noh_gl_mesh_create(&g->gl, &ledger, mesh, &gl_mesh, NULL), NOH_OK);
+    assert_int_equal(readback_open(&back, g, binding.is_uint), 0);
+    assert_int_equal(readback_vertices(&back, &gl_mesh, &binding, positions, normals, tangents), 0);
+    for (uint32_t v = 0; v < mesh->header->vertex_count && exact; v++) {
+        noh_vertex expected;
+        noh_morph_vertex(mesh, &layers, v, &expected);
+        for (uint32_t c = 0; c < 3; c++) {
+            assert_true(positions[3 * v + c] == expected.position[c]);
+            assert_true(fabsf(normals[3 * v + c] - expected.normal[c]) <= 1e-5f);
+            assert_true(fabsf(tangents[3 * v + c] - expected.tangent[c]) <= 1e-5f);
+        }
+    }
+    readback_close(&back);
+    noh_gl_mesh_delete(&g->gl, &ledger, &gl_mesh);
+    free(layers.position);
+    free(positions);
+    free(normals);
+    free(tangents);
+}
+
+static void vertices_are_fetched_as_the_cpu_makes_them(void **state)
+{
+    (void)state;
+    for_every_way(check_fetched);
+}
+
+/* ---- only what changed ---- */
+
+static void check_one_dirty(fixture_morph *m)
+{
+    test_random r = { 64 };
+    set_all_random(m, &r);
+    update(m);
+    for (uint32_t i = 0; i < m->plan.instance_count; i++) {
+        noh_gl_morph_stats stats;
+        if (!fixture_mesh_of(m, i)->header->target_count) {
+            continue;
+        }
+        fixture_set_random(m, i, &r);
+        stats = update(m);
+        assert_int_equal(stats.instances, 1);
+        fixture_expect_all(m); /* the others kept their sums */
+    }
+}
+
+static void only_the_changed_instance_is_accumulated(void **state)
+{
+    (void)state;
+    for_every_way(check_one_dirty);
+}
+
+static void check_unchanged(fixture_morph *m)
+{
+    test_random r = { 65 };
+    noh_gl_morph_stats stats, zero;
+    memset(&zero, 0, sizeof zero);
+    set_all_random(m, &r);
+    update(m);
+    stats = update(m);
+    assert_memory_equal(&stats, &zero, sizeof zero);
+    for (uint32_t i = 0; i < m->plan.instance_count; i++) {
+        fixture_set(m, i, m->weights[i]); /* the same again */
+    }
+    stats = update(m);
+    assert_memory_equal(&stats, &zero, sizeof zero);
+    fixture_expect_all(m);
+}
+
+static void unchanged_weights_draw_nothing(void **state)
+{
+    (void)state;
+    for_every_way(check_unchanged);
+}
+
+static void check_zero(fixture_morph *m)
+{
+    const float zeros[7] = { 0 };
+    test_random r = { 66 };
+    noh_gl_morph_stats stats;
+    set_all_random(m, &r);
+    update(m);
+    for (uint32_t i = 0; i < m->plan.instance_count; i++) {
+        fixture_set(m, i, zeros);
+    }
+    stats = update(m);
+    assert_int_equal(stats.targets, 0);
+    if (m->plan.path != NOH_MORPH_GATHER) { /* which writes zeros by drawing */
+        assert_int_equal(stats.draws + stats.rects + stats.texels + stats.pairs, 0);
+    }
+    fixture_expect_all(m);
+}
+
+static void zero_weights_are_not_drawn_but_cleared(void **state)
+{
+    (void)state;
+    for_every_way(check_zero);
+}
+
+static void check_draws(fixture_morph *m)
+{
+    test_random r = { 67 };
+    noh_gl_morph_stats stats;
+    noh_morph_cost sum = { 0, 0, 0, 0 };
+    set_all_random(m, &r);
+    stats = update(m);
+    for (uint32_t i = 0; i < m->plan.instance_count; i++) {
+        noh_morph_cost cost = noh_morph_cost_of(fixture_mesh_of(m, i), m->weights[i]);
+        sum.targets += cost.targets;
+        sum.rects += cost.rects;
+        sum.texels += cost.texels;
+        sum.pairs += cost.pairs;
+    }
+    assert_int_equal(stats.draws, passes_of(m)); /* one draw per pass for all instances of all meshes */
+    assert_int_equal(stats.targets, sum.targets);
+    if (m->plan.path != NOH_MORPH_GATHER) {
+        assert_int_equal(stats.rects, sum.rects);
+        assert_int_equal(stats.texels, sum.texels);
+        assert_int_equal(stats.pairs, sum.pairs);
+    }
+}
+
+static void everything_is_one_draw_per_pass(void **state)
+{
+    (void)state;
+    for_every_way(check_draws);
+}
+
+/* ---- sizes that need more than the small set ---- */
+
+/* More rectangles and pairs than are sent at once at load (gl_morph_internal.h). */
+static void large_meshes_are_sent_in_chunks(void **state)
+{
+    const test_model_desc made = { 1, 70, 40, 0, 68 };
+    size_t count;
+    uint8_t *bytes = test_pack(&made, &count);
+    noh_pack pack = test_open(bytes, count);
+    noh_mesh mesh = test_mesh(&pack, 0);
+    gpu *g = fixture_gpu();
+    test_random r = test_random_from(68);
+    (void)state;
+    assert_true(mesh.header->rect_count > 256 && mesh.header->pair_count > 2 * 2048);
+    for (int i = 0; i < FIXTURE_WAYS; i++) {
+        noh_gl_morph_desc desc = desc_of(fixture_ways[i]);
+        noh_gl_morph_plan plan;
+        fixture_morph m;
+        desc.meshes = &mesh;
+        desc.mesh_count = 1;
+        desc.instance_counts = NULL;
+        if (noh_gl_morph_plan_make(&desc, &g->caps, &plan, NULL) == NOH_OK) {
+            fixture_morph_open(&m, &desc, NULL);
+            fixture_set_random(&m, 0, &r);
+            update(&m);
+            fixture_expect_all(&m);
+            fixture_morph_close(&m);
+        }
+    }
+    fixture_expect_no_errors();
+    free(bytes);
+}
+
+static void set_all_active(fixture_morph *m, test_random *r)
+{
+    for (uint32_t i = 0; i < m->plan.instance_count; i++) {
+        float weights[7];
+        for (int t = 0; t < 7; t++) {
+            weights[t] = test_random_float(r, 0.5f, 1.0f); /* none is 0: all staging is used */
+        }
+        fixture_set(m, i, weights);
+    }
+}
+
+/* The weights that are kept are still those that were set: nothing ran over them. */
+static void expect_weights_kept(fixture_morph *m)
+{
+    for (uint32_t i = 0; i < m->plan.instance_count; i++) {
+        fixture_set(m, i, m->weights[i]);
+    }
+    assert_int_equal(update(m).instances, 0);
+}
+
+/* Every target of every instance at once: the most that an update can have to send. */
+static void a_crowd_with_every_target_active_works(void **state)
+{
+    const uint32_t crowd[FIXTURE_MESHES] = { 60, 1, 60 };
+    gpu *g = fixture_gpu();
+    test_random r = test_random_from(74);
+    (void)state;
+    for (int i = 0; i < FIXTURE_WAYS; i++) {
+        noh_gl_morph_desc desc = desc_of(fixture_ways[i]);
+        noh_gl_morph_plan plan;
+        fixture_morph m;
+        desc.instance_counts = crowd;
+        if (noh_gl_morph_plan_make(&desc, &g->caps, &plan, NULL) == NOH_OK) {
+            fixture_morph_open(&m, &desc, NULL);
+            set_all_active(&m, &r);
+            update(&m);
+            expect_weights_kept(&m);
+            fixture_expect_all(&m);
+            fixture_morph_close(&m);
+        }
+    }
+    fixture_expect_no_errors();
+}
+
+/* More weights than 16 bits can count. */
+static void very_many_instances_work(void **state)
+{
+    const uint32_t many[FIXTURE_MESHES] = { 9400, 1, 1 };
+    static const noh_morph_path paths[] = { NOH_MORPH_MRT, NOH_MORPH_GATHER };
+    gpu *g = fixture_gpu();
+    test_random r = test_random_from(69);
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(paths); i++) {
+        const fixture_way way = { paths[i], NOH_ACCUMULATE_F32 };
+        noh_gl_morph_desc desc = desc_of(way);
+        noh_gl_morph_plan plan;
+        fixture_morph m;
+        desc.instance_counts = many;
+        if (noh_gl_morph_plan_make(&desc, &g->caps, &plan, NULL) != NOH_OK) {
+            continue;
+        }
+        assert_true(plan.weight_count > 65536);
+        fixture_morph_open(&m, &desc, NULL);
+        set_all_active(&m, &r);
+        update(&m);
+        expect_weights_kept(&m);
+        for (uint32_t k = 0; k < plan.instance_count; k += 571) {
+            fixture_set_random(&m, k, &r);
+        }
+        update(&m);
+        for (uint32_t k = 0; k < plan.instance_count; k += 571) {
+            fixture_expect_instance(&m, k);
+            fixture_expect_instance(&m, k + 1);
+        }
+        fixture_expect_instance(&m, plan.instance_count - 1);
+        fixture_morph_close(&m);
+    }
+    fixture_expect_no_errors();
+}
+
+static void a_set_without_any_target_works(void **state)
+{
+    (void)state;
+    for (int i = 0; i < FIXTURE_WAYS; i++) {
+        noh_gl_morph_desc desc = desc_of(fixture_ways[i]);
+        noh_gl_morph_plan plan;
+        noh_gl_morph_stats stats;
+        fixture_morph m;
+        desc.meshes = &set.meshes[FIXTURE_BARE];
+        desc.mesh_count = 1;
+        if (noh_gl_morph_plan_make(&desc, &fixture_gpu()->caps, &plan, NULL) != NOH_OK) {
+            continue;
+        }
+        fixture_morph_open(&m, &desc, NULL);
+        stats = update(&m);
+        assert_int_equal(stats.draws, 0);
+        fixture_morph_close(&m);
+        fixture_expect_no_errors();
+    }
+}
+
+static void check_tiles(fixture_morph *m)
+{
+    uint8_t *owner = test_zeros((size_t)m->plan.atlas_width * m->plan.atlas_height);
+    for (uint32_t i = 0; i < m->plan.instance_count; i++) {
+        const noh_mesh_header *h = fixture_mesh_of(m, i)->header;
+        noh_gl_morph_binding b = noh_gl_morph_binding_of(m->morph, i);
+        assert_int_equal(b.width_log2, h->morph_width_log2);
+        assert_int_equal(b.touched, h->touched_count);
+        for (uint32_t v = 0; v < h->touched_count; v++) {
+            uint32_t x = (uint32_t)b.tile_x + (v & ((1u << h->morph_width_log2) - 1u));
+            uint32_t y = (uint32_t)b.tile_y + (v >> h->morph_width_log2);
+            assert_true(x < m->plan.atlas_width && y < m->plan.atlas_height);
+            assert_int_equal(owner[(size_t)y * m->plan.atlas_width + x], 0);
+            owner[(size_t)y * m->plan.atlas_width + x] = 1;
+        }
+    }
+    free(owner);
+}
+
+static void tiles_do_not_overlap(void **state)
+{
+    (void)state;
+    for_every_way(check_tiles);
+}
+
+/* ---- the state that is promised after an update ---- */
+
+static void check_state(fixture_morph *m)
+{
+    static const GLenum bindings[] = { GL_DRAW_FRAMEBUFFER_BINDING, GL_VERTEX_ARRAY_BINDING, GL_CURRENT_PROGRAM,
+                                       GL_ARRAY_BUFFER_BINDING };
+    static const GLenum switches[] = { GL_BLEND, GL_SCISSOR_TEST, GL_DEPTH_TEST, GL_CULL_FACE };
+    gpu *g = fixture_gpu();
+    test_random r = { 70 };
+    set_all_random(m, &r);
+    for (size_t i = 0; i < TEST_COUNT(switches); i++) {
+        g->gl.Enable(switches[i]);
+    }
+    update(m);
+    for (size_t i = 0; i < TEST_COUNT(bindings); i++) {
+        GLint name = -1;
+        g->gl.GetIntegerv(bindings[i], &name);
+        assert_int_equal(name, 0);
+    }
+    for (size_t i = 0; i < TEST_COUNT(switches); i++) {
+        GLint on = 1;
+        g->gl.GetIntegerv(switches[i], &on);
+        assert_false(on);
+    }
+    for (GLenum unit = 0; unit < 3; unit++) {
+        GLint flat = -1, array = -1;
+        g->gl.ActiveTexture(GL_TEXTURE0 + unit);
+        g->gl.GetIntegerv(GL_TEXTURE_BINDING_2D, &flat);
+        g->gl.GetIntegerv(GL_TEXTURE_BINDING_2D_ARRAY, &array);
+        assert_int_equal(flat, 0);
+        assert_int_equal(array, 0);
+    }
+    g->gl.ActiveTexture(GL_TEXTURE0);
+}
+
+static void an_update_leaves_the_state_that_it_says(void **state)
+{
+    (void)state;
+    for_every_way(check_state);
+}
+
+/* A game's own state must not leak into the sums. */
+static void check_foreign_state(fixture_morph *m)
+{
+    gpu *g = fixture_gpu();
+    test_random r = { 71 };
+    set_all_random(m, &r);
+    g->gl.Enable(GL_SCISSOR_TEST);
+    g->gl.Scissor(0, 0, 1, 1);
+    g->gl.Enable(GL_DEPTH_TEST);
+    g->gl.Enable(GL_CULL_FACE);
+    g->gl.CullFace(GL_FRONT_AND_BACK);
+    g->gl.Enable(GL_BLEND);
+    g->gl.BlendFunc(GL_ZERO, GL_ZERO);
+    g->gl.BlendEquation(GL_FUNC_REVERSE_SUBTRACT);
+    g->gl.Viewport(3, 3, 2, 2);
+    update(m);
+    g->gl.CullFace(GL_BACK);
+    g->gl.BlendEquation(GL_FUNC_ADD);
+    fixture_expect_all(m);
+}
+
+static void foreign_state_does_not_matter(void **state)
+{
+    (void)state;
+    for_every_way(check_foreign_state);
+}
+
+/* ---- capabilities that are missing ---- */
+
+typedef struct lacking {
+    noh_morph_path path;
+    noh_accumulate accumulate;
+    const char *field; /* what is cleared */
+    const char *word;  /* what the error names */
+} lacking;
+
+static void clear_cap(noh_gl_caps *caps, const char *field)
+{
+    const struct { const char *name; int *flag; } flags[] = {
+        { "mrt3", &caps->mrt3 }, { "layered", &caps->layered }, { "blend_f32", &caps->blend_f32 },
+        { "blend_f16", &caps->blend_f16 }, { "render_f16", &caps->render_f16 }, { "render_f32", &caps->render_f32 },
+        { "render_u32", &caps->render_u32 }
+    };
+    for (size_t i = 0; i < TEST_COUNT(flags); i++) {
+        if (strstr(field, flags[i].name)) {
+            *flags[i].flag = 0;
+        }
+    }
+}
+
+static void forced_paths_name_what_is_missing(void **state)
+{
+    static const lacking cases[] = {
+        { NOH_MORPH_LAYERED, NOH_ACCUMULATE_F32, "layered", "EXT_geometry_shader" },
+        { NOH_MORPH_LAYERED, NOH_ACCUMULATE_F32, "blend_f32", "EXT_float_blend" },
+        { NOH_MORPH_LAYERED, NOH_ACCUMULATE_F16, "blend_f16", "EXT_color_buffer_half_float" },
+        { NOH_MORPH_MRT, NOH_ACCUMULATE_F32, "blend_f32", "EXT_float_blend" },
+        { NOH_MORPH_MRT, NOH_ACCUMULATE_F16, "blend_f16", "RGBA16F" },
+        { NOH_MORPH_MRT, NOH_ACCUMULATE_F32, "mrt3", "three draw buffers" },
+        { NOH_MORPH_PER_LAYER, NOH_ACCUMULATE_F32, "blend_f32", "RGBA32F" },
+        { NOH_MORPH_PER_LAYER, NOH_ACCUMULATE_F16, "blend_f16", "RGBA16F" },
+        { NOH_MORPH_GATHER, NOH_ACCUMULATE_F32, "mrt3", "three draw buffers" },
+        { NOH_MORPH_GATHER, NOH_ACCUMULATE_F16, "render_f16", "RGBA16F" },
+        { NOH_MORPH_GATHER, NOH_ACCUMULATE_F32, "render_f32 render_u32", "RGBA32UI" }
+    };
+    gpu *g = fixture_gpu();
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(cases); i++) {
+        const fixture_way way = { cases[i].path, cases[i].accumulate };
+        noh_gl_morph_desc desc = desc_of(way);
+        noh_gl_caps caps = g->caps;
+        noh_gl_morph_plan plan;
+        noh_error error = { NOH_OK, "", 0, 0 };
+        noh_gl_morph *morph = NULL;
+        uint8_t memory[16];
+        caps.mrt3 = caps.layered = caps.blend_f32 = caps.blend_f16 = caps.render_f16 = caps.render_f32 = caps.render_u32 = 1;
+        assert_int_equal(noh_gl_morph_plan_make(&desc, &caps, &plan, NULL), NOH_OK);
+        clear_cap(&caps, cases[i].field);
+        assert_int_equal(noh_gl_morph_plan_make(&desc, &caps, &plan, &error), NOH_ERR_UNSUPPORTED);
+        if (!strstr(error.what, cases[i].word)) {
+            fail_msg("%s without %s: '%s' does not name %s", fixture_way_name(way), cases[i].field, error.what, cases[i].word);
+        }
+        assert_int_equal(noh_gl_morph_init(memory, sizeof memory, &g->gl, &caps, &g->ledger, &desc, &morph, NULL, 0, &error),
+                         NOH_ERR_UNSUPPORTED);
+        assert_null(morph);
+    }
+}
+
+typedef struct falling {
+    const char *cleared;
+    noh_accumulate accumulate;
+    float active;
+    noh_morph_path path;
+    GLenum format;
+} falling;
+
+/* What AUTO takes on a GPU as capabilities vanish; each time the sums are right. */
+static void automatic_falls_to_the_next_path(void **state)
+{
+    static const falling cases[] = {
+        { "", NOH_ACCUMULATE_F32, 0.05f, NOH_MORPH_MRT, GL_RGBA32F },
+        { "layered", NOH_ACCUMULATE_F32, 0.05f, NOH_MORPH_MRT, GL_RGBA32F },
+        { "blend_f32", NOH_ACCUMULATE_F32, 0.05f, NOH_MORPH_GATHER, GL_RGBA32F },
+        { "blend_f32 render_f32", NOH_ACCUMULATE_F32, 0.05f, NOH_MORPH_GATHER, GL_RGBA32UI },
+        { "mrt3", NOH_ACCUMULATE_F32, 0.05f, NOH_MORPH_PER_LAYER, GL_RGBA32F },
+        { "mrt3 blend_f32", NOH_ACCUMULATE_F32, 0.05f, NOH_MORPH_CPU, GL_RGB32F },
+        { "blend_f32 render_f32 render_u32", NOH_ACCUMULATE_F32, 0.05f, NOH_MORPH_CPU, GL_RGB32F },
+        { "", NOH_ACCUMULATE_F16, 0.05f, NOH_MORPH_MRT, GL_RGBA16F },
+        { "blend_f16", NOH_ACCUMULATE_F16, 0.05f, NOH_MORPH_GATHER, GL_RGBA16F },
+        { "blend_f16 render_f16", NOH_ACCUMULATE_F16, 0.05f, NOH_MORPH_CPU, GL_RGB16F }
+    };
+    gpu *g = fixture_gpu();
+    test_random r = test_random_from(72);
+    (void)state;
+    if (!g->caps.blend_f32 || !g->caps.mrt3 || !g->caps.render_f16) {
+        test_skip("this driver lacks more than the test takes away");
+    }
+    for (size_t i = 0; i < TEST_COUNT(cases); i++) {
+        const fixture_way way = { NOH_MORPH_AUTO, cases[i].accumulate };
+        noh_gl_morph_desc desc = desc_of(way);
+        noh_gl_caps caps = g->caps;
+        fixture_morph m;
+        strcpy(caps.renderer, "a GPU"); /* not a software rasteriser */
+        clear_cap(&caps, cases[i].cleared);
+        desc.expected_active = cases[i].active;
+        fixture_morph_open(&m, &desc, &caps);
+        if (m.plan.path != cases[i].path || m.plan.layer_format != cases[i].format) {
+            fail_msg("without '%s', %g active: %s (%s)", cases[i].cleared, (double)cases[i].active,
+                     noh_morph_path_name(m.plan.path), m.plan.reason);
+        }
+        assert_non_null(strstr(m.plan.reason, noh_morph_path_name(cases[i].path)));
+        set_all_random(&m, &r);
+        update(&m);
+        fixture_expect_all(&m);
+        fixture_morph_close(&m);
+        fixture_expect_no_errors();
+    }
+}
+
+/* The other way to gather: rectangles of one texel each, all active, cost more than lists. */
+static void automatic_weighs_blending_against_lists(void **state)
+{
+    const fixture_way way = { NOH_MORPH_AUTO, NOH_ACCUMULATE_AUTO };
+    noh_gl_morph_desc desc = desc_of(way);
+    noh_gl_caps caps = fixture_gpu()->caps;
+    noh_mesh_header header = *set.meshes[0].header;
+    noh_mesh scattered = set.meshes[0];
+    noh_gl_morph_plan plan;
+    (void)state;
+    strcpy(caps.renderer, "a GPU");
+    caps.mrt3 = caps.blend_f32 = caps.render_f32 = 1;
+    header.rect_count = header.texel_count = header.pair_count = 5000;
+    scattered.header = &header;
+    desc.meshes = &scattered;
+    desc.mesh_count = 1;
+    desc.expected_active = 1.0f;
+    assert_int_equal(noh_gl_morph_plan_make(&desc, &caps, &plan, NULL), NOH_OK);
+    assert_int_equal(plan.path, NOH_MORPH_GATHER);
+    desc.expected_active = 0.01f;
+    assert_int_equal(noh_gl_morph_plan_make(&desc, &caps, &plan, NULL), NOH_OK);
+    assert_int_equal(plan.path, NOH_MORPH_MRT);
+}
+
+static void automatic_takes_the_cpu_on_a_software_rasteriser(void **state)
+{
+    static const char *const names[] = { "llvmpipe (LLVM 15.0.6, 256 bits)", "softpipe", "ANGLE (Google, Vulkan 1.3.0 (SwiftShader Device))" };
+    const fixture_way way = { NOH_MORPH_AUTO, NOH_ACCUMULATE_AUTO };
+    noh_gl_morph_desc desc = desc_of(way);
+    noh_gl_caps caps = fixture_gpu()->caps;
+    noh_gl_morph_plan plan;
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(names); i++) {
+        strcpy(caps.renderer, names[i]);
+        assert_int_equal(noh_gl_morph_plan_make(&desc, &caps, &plan, NULL), NOH_OK);
+        assert_int_equal(plan.path, NOH_MORPH_CPU);
+        assert_int_equal(plan.accumulate, NOH_ACCUMULATE_F32);
+        assert_non_null(strstr(plan.reason, "software"));
+    }
+}
+
+static void a_forced_path_says_so(void **state)
+{
+    const fixture_way way = { NOH_MORPH_CPU, NOH_ACCUMULATE_F16 };
+    noh_gl_morph_desc desc = desc_of(way);
+    noh_gl_morph_plan plan;
+    (void)state;
+    assert_int_equal(noh_gl_morph_plan_make(&desc, &fixture_gpu()->caps, &plan, NULL), NOH_OK);
+    assert_non_null(strstr(plan.reason, "forced"));
+}
+
+/* The gather path needs no extension at all: the floats' bits in RGBA32UI. */
+static void gather_works_on_core_es3(void **state)
+{
+    const fixture_way way = { NOH_MORPH_GATHER, NOH_ACCUMULATE_F32 };
+    noh_gl_morph_desc desc = desc_of(way);
+    noh_gl_caps caps = fixture_gpu()->caps;
+    test_random r = test_random_from(73);
+    fixture_morph m;
+    (void)state;
+    clear_cap(&caps, "layered blend_f32 blend_f16 render_f32 render_f16");
+    fixture_morph_open(&m, &desc, &caps);
+    assert_int_equal(m.plan.layer_format, GL_RGBA32UI);
+    assert_true(noh_gl_morph_binding_of(m.morph, 0).is_uint);
+    for (int round = 0; round < 3; round++) {
+        set_all_random(&m, &r);
+        update(&m);
+        fixture_expect_all(&m);
+    }
+    fixture_morph_close(&m);
+    fixture_expect_no_errors();
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(every_way_equals_the_cpu),
+    cmocka_unit_test(sums_do_not_drift),
+    cmocka_unit_test(instances_start_at_rest),
+    cmocka_unit_test(vertices_are_fetched_as_the_cpu_makes_them),
+    cmocka_unit_test(only_the_changed_instance_is_accumulated),
+    cmocka_unit_test(unchanged_weights_draw_nothing),
+    cmocka_unit_test(zero_weights_are_not_drawn_but_cleared),
+    cmocka_unit_test(everything_is_one_draw_per_pass),
+    cmocka_unit_test(large_meshes_are_sent_in_chunks),
+    cmocka_unit_test(a_crowd_with_every_target_active_works),
+    cmocka_unit_test(very_many_instances_work),
+    cmocka_unit_test(a_set_without_any_target_works),
+    cmocka_unit_test(tiles_do_not_overlap),
+    cmocka_unit_test(an_update_leaves_the_state_that_it_says),
+    cmocka_unit_test(foreign_state_does_not_matter),
+    cmocka_unit_test(forced_paths_name_what_is_missing),
+    cmocka_unit_test(automatic_falls_to_the_next_path),
+    cmocka_unit_test(automatic_weighs_blending_against_lists),
+    cmocka_unit_test(automatic_takes_the_cpu_on_a_software_rasteriser),
+    cmocka_unit_test(a_forced_path_says_so),
+    cmocka_unit_test(gather_works_on_core_es3),
+};
+
+TEST_MAIN(tests, set_up, tear_down)

@@ -1,0 +1,83 @@
+#!/bin/sh
+# `noh verify`: every path and format against the CPU, on every model and driver at hand, and
+# with capabilities taken away: it has to find no differing value where it can run at all.
+. tests/cli/lib.sh
+
+# Runs under `env VARIABLE=VALUE... noh verify PACK`; tells the result.
+verify() { # NAME PACK ENVIRONMENT...
+    name=$1 pack=$2
+    shift 2
+    env "$@" "$build/noh" verify "$pack" --json $options >"$work/out" 2>"$work/err"
+    code=$?
+    expect 0 "$name"
+    check "$name: it says ok" grep -q '"ok": true' "$work/out"
+    check "$name: nothing differs" sh -c 'grep -q "\"differing\": 0" "$1" && ! grep "\"differing\"" "$1" | grep -qv ": 0,"' - "$work/out"
+}
+options=
+
+"$build/noh" verify "$build/mask.noh" >"$work/out" 2>"$work/err"
+if [ $? != 0 ] && grep -q 'no GL context' "$work/err"; then
+    skip 'verify' 'no GL context here'
+    finish
+fi
+
+# ---- models ----
+
+verify 'the mask' "$build/mask.noh"
+for seed in 2 3; do
+    options="--seed $seed"
+    verify "the mask, seed $seed" "$build/mask.noh"
+done
+options=
+for model in hero/head.glb hero/head_sparse.glb hero/head_meshopt.glb hero/identity.glb hero/body.glb \
+             khronos/AnimatedMorphCube/glTF/AnimatedMorphCube.gltf khronos/AnimatedMorphSphere/glTF/AnimatedMorphSphere.gltf \
+             khronos/MorphPrimitivesTest/glTF/MorphPrimitivesTest.gltf khronos/SimpleMorph/glTF/SimpleMorph.gltf \
+             khronos/three-vrm-cube/cube.gltf khronos/MorphStressTest.glb khronos/RobotExpressive.glb khronos/Fox.glb \
+             khronos/SimpleSkin.gltf khronos/SimpleSparseAccessor.gltf; do
+    if [ ! -f "$assets/$model" ]; then
+        skip "$model" 'not in NOH_ASSETS'
+        continue
+    fi
+    noh build "$assets/$model" -o "$work/model.noh" --quiet
+    expect 0 "build of $model"
+    verify "$model" "$work/model.noh"
+done
+
+# ---- capabilities taken away ----
+
+missing() { # the last run's JSON tells of a path that is not here, for this reason
+    check "and tells that $1 is missing" sh -c 'grep -A1 "\"available\": false" "$1" | grep -F -q "$2"' - "$work/out" "$1"
+}
+full() { # all ten are here
+    check 'and all paths are here' sh -c 'test "$(grep -c "\"available\": true" "$1")" -ge 10' - "$work/out"
+}
+noh verify "$build/mask.noh" --json
+if grep -q '"driver": "llvmpipe' "$work/out"; then
+    full
+    verify 'ES 3.0' "$build/mask.noh" MESA_GLES_VERSION_OVERRIDE=3.0
+    verify 'ES 3.1' "$build/mask.noh" MESA_GLES_VERSION_OVERRIDE=3.1
+    verify 'no float blending' "$build/mask.noh" MESA_EXTENSION_OVERRIDE=-GL_EXT_float_blend
+    missing EXT_float_blend
+    verify 'no geometry shaders' "$build/mask.noh" MESA_EXTENSION_OVERRIDE='-GL_EXT_geometry_shader -GL_OES_geometry_shader'
+    missing geometry
+    verify 'no float targets' "$build/mask.noh" MESA_EXTENSION_OVERRIDE=-GL_EXT_color_buffer_float
+    missing RGBA32F
+    verify 'bare ES 3.0' "$build/mask.noh" MESA_GLES_VERSION_OVERRIDE=3.0 \
+        MESA_EXTENSION_OVERRIDE='-GL_EXT_color_buffer_float -GL_EXT_color_buffer_half_float -GL_EXT_float_blend -GL_EXT_geometry_shader -GL_OES_geometry_shader'
+    missing RGBA32F
+else
+    skip 'capabilities taken away' 'this GL is not llvmpipe, whose switches the test knows'
+fi
+
+# ---- other drivers ----
+
+for driver in osmesa angle; do
+    "$build/noh" verify "$build/mask.noh" --driver $driver >"$work/out" 2>"$work/err"
+    if [ $? != 0 ] && grep -q 'no GL context' "$work/err"; then
+        skip "on $driver" 'this driver is not here'
+    else
+        options="--driver $driver"
+        verify "on $driver" "$build/mask.noh"
+    fi
+done
+finish

@@ -1,0 +1,253 @@
+#include "pack_walk.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "noh.h"
+
+#define NAMES_LOOKED_UP 64u /* names cost targets squared: enough to see every kind */
+
+void pack_repair(uint8_t *bytes, size_t count)
+{
+    noh_pack_header header;
+    if (count < sizeof header) {
+        return;
+    }
+    memcpy(&header, bytes, sizeof header);
+    if (header.chunk_count > (count - sizeof header) / sizeof(noh_pack_chunk)) {
+        return;
+    }
+    for (uint32_t i = 0; i < header.chunk_count; i++) {
+        uint8_t *at = bytes + sizeof header + i * sizeof(noh_pack_chunk);
+        noh_pack_chunk chunk;
+        memcpy(&chunk, at, sizeof chunk);
+        if (chunk.offset <= count && chunk.bytes <= count - chunk.offset) {
+            chunk.crc = noh_crc32c(0, bytes + chunk.offset, chunk.bytes);
+            memcpy(at, &chunk, sizeof chunk);
+        }
+    }
+    header.crc = 0;
+    header.crc = noh_crc32c(noh_crc32c(0, &header, sizeof header), bytes + sizeof header,
+                            header.chunk_count * sizeof(noh_pack_chunk));
+    memcpy(bytes, &header, sizeof header);
+}
+
+typedef struct walk {
+    const noh_pack *pack;
+    uint32_t random, hash;
+} walk;
+
+static void eat(walk *w, const void *bytes, size_t count)
+{
+    w->hash = noh_crc32c(w->hash, bytes, count);
+}
+
+static void eat_name(walk *w, const char *name)
+{
+    eat(w, name, strlen(name));
+}
+
+static float weight(walk *w)
+{
+    w->random = w->random * 1664525u + 1013904223u;
+    return (w->random >> 30) == 0u ? 0.0f : (float)(w->random >> 8) / 4194304.0f - 1.5f;
+}
+
+static void *memory(size_t bytes)
+{
+    void *p = malloc(bytes ? bytes : 1);
+    if (!p) {
+        abort();
+    }
+    return p;
+}
+
+static void walk_names(walk *w)
+{
+    for (uint32_t i = 0; i < w->pack->chunk_count; i++) {
+        eat_name(w, noh_pack_chunk_name(w->pack, i));
+    }
+    for (uint32_t i = 0; i < w->pack->string_bytes; i++) {
+        eat_name(w, noh_pack_string(w->pack, i));
+    }
+    eat_name(w, noh_pack_string(w->pack, w->pack->string_bytes));
+    eat_name(w, noh_pack_string(w->pack, 0xffffffffu));
+}
+
+static void walk_textures(walk *w)
+{
+    noh_texture t;
+    for (uint32_t i = 0; noh_pack_texture(w->pack, i, &t) == NOH_OK; i++) {
+        eat_name(w, t.name);
+        eat(w, t.pixels, (size_t)t.header->width * t.header->height * 4u);
+    }
+    for (uint32_t i = 0; i < w->pack->material_count; i++) {
+        const noh_material *m = &w->pack->materials[i];
+        eat_name(w, noh_pack_string(w->pack, m->name));
+        if (m->base_color_texture != NOH_NONE && noh_pack_texture(w->pack, m->base_color_texture, &t) != NOH_OK) {
+            abort(); /* the checker promised that it is there */
+        }
+    }
+}
+
+static void walk_nodes(walk *w)
+{
+    for (uint32_t i = 0; i < w->pack->node_count; i++) {
+        const noh_node *n = &w->pack->nodes[i];
+        noh_mesh mesh;
+        uint32_t steps = 0;
+        eat_name(w, noh_pack_string(w->pack, n->name));
+        for (uint32_t p = n->parent; p != NOH_NONE && steps <= i; steps++) {
+            p = w->pack->nodes[p].parent;
+        }
+        if (steps > i || (n->mesh != NOH_NONE && noh_pack_mesh(w->pack, n->mesh, &mesh) != NOH_OK)) {
+            abort();
+        }
+        if (n->first_weight != NOH_NONE) {
+            eat(w, w->pack->node_weights + n->first_weight, 4u * (size_t)mesh.header->target_count);
+        }
+    }
+}
+
+static void walk_vertices(walk *w, const noh_mesh *mesh)
+{
+    for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
+        noh_vertex vertex;
+        noh_mesh_vertex(mesh, v, &vertex);
+        eat(w, &vertex, sizeof vertex);
+    }
+    for (uint32_t s = 0; s < mesh->header->submesh_count; s++) {
+        const noh_submesh *sub = &mesh->submeshes[s];
+        for (uint32_t i = 0; i < sub->index_count; i++) {
+            uint32_t index = noh_mesh_index(mesh, sub->first_index + i);
+            eat(w, mesh->positions + 3u * (size_t)index, 12);
+        }
+        if (sub->vertex_count) {
+            eat(w, mesh->positions + 3u * ((size_t)sub->first_vertex + sub->vertex_count - 1u), 12);
+        }
+    }
+    for (uint32_t i = 0; i < mesh->header->index_count; i++) {
+        eat(w, mesh->positions + 3u * (size_t)noh_mesh_index(mesh, i), 12);
+    }
+}
+
+static void walk_targets(walk *w, const noh_mesh *mesh)
+{
+    eat(w, mesh->texels, 12u * (size_t)mesh->header->texel_count);
+    for (uint32_t t = 0; t < mesh->header->target_count; t++) {
+        const char *name = noh_pack_string(mesh->pack, mesh->targets[t].name);
+        eat(w, mesh->rects + mesh->targets[t].first_rect, sizeof(noh_rect) * mesh->targets[t].rect_count);
+        if (t < NAMES_LOOKED_UP && noh_mesh_find_target(mesh, name) > t) {
+            abort(); /* a target that has a name is found by it, or an earlier one of the same name */
+        }
+    }
+}
+
+typedef void (*accumulate_function)(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers);
+
+static void accumulate_rne(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers)
+{
+    noh_morph_accumulate_f16(mesh, weights, NOH_HALF_RNE, layers);
+}
+
+static void accumulate_rtz(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers)
+{
+    noh_morph_accumulate_f16(mesh, weights, NOH_HALF_RTZ, layers);
+    noh_morph_round_f16(mesh, NOH_HALF_RTZ, layers);
+}
+
+static void walk_morph(walk *w, const noh_mesh *mesh, accumulate_function accumulate)
+{
+    size_t bytes = noh_morph_layers_size(mesh);
+    float *weights = memory(4u * (size_t)mesh->header->target_count);
+    void *block = memory(bytes);
+    noh_morph_layers layers;
+    noh_morph_cost cost;
+    for (uint32_t t = 0; t < mesh->header->target_count; t++) {
+        weights[t] = weight(w);
+    }
+    if (noh_morph_layers_init(block, bytes, mesh, &layers, NULL) != NOH_OK) {
+        abort();
+    }
+    accumulate(mesh, weights, &layers);
+    eat(w, block, bytes);
+    for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
+        noh_vertex vertex;
+        noh_morph_vertex(mesh, &layers, v, &vertex);
+        eat(w, &vertex, sizeof vertex);
+    }
+    cost = noh_morph_cost_of(mesh, weights);
+    eat(w, &cost, sizeof cost);
+    free(block);
+    free(weights);
+}
+
+/* A GPU that can do everything: the plan of every path and format. */
+static void walk_plans(walk *w, const noh_mesh *meshes, uint32_t count)
+{
+    noh_gl_caps caps;
+    noh_gl_morph_desc desc;
+    memset(&caps, 0, sizeof caps);
+    memset(&desc, 0, sizeof desc);
+    caps.texture_size_max = 4096;
+    caps.mrt3 = caps.render_f32 = caps.render_f16 = caps.render_u32 = caps.blend_f32 = caps.blend_f16 = caps.layered = 1;
+    desc.meshes = meshes;
+    desc.mesh_count = count;
+    for (int i = 0; i < NOH_MORPH_PATH_COUNT * 2; i++) {
+        noh_gl_morph_plan plan;
+        desc.path = (noh_morph_path)(i / 2);
+        desc.accumulate = i % 2 ? NOH_ACCUMULATE_F16 : NOH_ACCUMULATE_F32;
+        if (noh_gl_morph_plan_make(&desc, &caps, &plan, NULL) == NOH_OK) {
+            eat(w, &plan.gpu_bytes, sizeof plan.gpu_bytes);
+        }
+    }
+}
+
+static void walk_meshes(walk *w)
+{
+    static const accumulate_function ways[] = { noh_morph_accumulate, noh_morph_accumulate_scalar, accumulate_rne, accumulate_rtz };
+    noh_mesh *meshes = memory(sizeof *meshes * w->pack->mesh_count);
+    for (uint32_t i = 0; i < w->pack->mesh_count; i++) {
+        if (noh_pack_mesh(w->pack, i, &meshes[i]) != NOH_OK) {
+            abort();
+        }
+        eat_name(w, meshes[i].name);
+        walk_vertices(w, &meshes[i]);
+        walk_targets(w, &meshes[i]);
+        for (size_t k = 0; k < sizeof ways / sizeof ways[0]; k++) {
+            walk_morph(w, &meshes[i], ways[k]);
+        }
+    }
+    if (w->pack->mesh_count) {
+        walk_plans(w, meshes, w->pack->mesh_count);
+    }
+    free(meshes);
+}
+
+static void walk_clip(walk *w, const noh_clip *clip)
+{
+    const float at[] = { -1.0f, 0.0f, 0.37f, 0.5f, 1.0f, 2.0f };
+    eat_name(w, clip->name);
+    for (uint32_t c = 0; c < clip->header->channel_count; c++) {
+        float *weights = memory(4u * (size_t)clip->channels[c].width);
+        for (size_t i = 0; i < sizeof at / sizeof at[0]; i++) {
+            noh_clip_sample_weights(clip, c, at[i] * clip->header->duration_s, weights);
+            eat(w, weights, 4u * (size_t)clip->channels[c].width);
+        }
+        free(weights);
+    }
+}
+
+uint32_t pack_walk(const noh_pack *pack, uint32_t seed)
+{
+    walk w = { pack, seed, 0 };
+    noh_clip clip;
+    walk_names(&w);
+    walk_textures(&w);
+    walk_nodes(&w);
+    walk_meshes(&w);
+    for (uint32_t i = 0; noh_pack_clip(pack, i, &clip) == NOH_OK; i++) {
+        walk_clip(&w, &clip);
+    }
+    return w.hash;
+}

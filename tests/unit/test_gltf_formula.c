@@ -1,0 +1,352 @@
+/* Real morph assets against the formula of glTF 2.0 (3.7.2.2), evaluated in double precision
+ * by a reader that shares nothing with the converter's (gltf_oracle.c): base + sum of
+ * weight * delta, for static weights and for every weight animation over time, first on the
+ * model as read, then on the pack, within the error that it certifies. */
+#include "support.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "gltf_oracle.h"
+
+#define TIMES 24
+
+typedef struct asset {
+    oracle *o;
+    model *m;
+    uint8_t *bytes;
+    uint32_t **orders; /* per mesh of the pack */
+    noh_pack pack;
+    uint64_t compared; /* vertices */
+} asset;
+
+static void open_asset(asset *a, const char *name)
+{
+    const char *path = test_asset(name);
+    model_error error;
+    size_t count;
+    memset(a, 0, sizeof *a);
+    a->o = oracle_read(path);
+    if (model_read_gltf(path, &a->m, &error)) {
+        fail_msg("%s: %s (%s)", name, error.what, error.where);
+    }
+    a->orders = test_zeros(sizeof *a->orders * a->m->mesh_count);
+    a->bytes = test_pack_of(a->m, &count, a->orders);
+    a->pack = test_open(a->bytes, count);
+}
+
+static void close_asset(asset *a)
+{
+    for (uint32_t i = 0; i < a->m->mesh_count; i++) {
+        free(a->orders[i]);
+    }
+    free(a->orders);
+    free(a->bytes);
+    model_free(a->m);
+    oracle_free(a->o);
+}
+
+/* The model's node for a node of the file, by name; MODEL_NONE where the scene leaves it out. */
+static uint32_t model_node_of(const asset *a, uint32_t node)
+{
+    const char *name = oracle_node_name(a->o, node);
+    char made[32];
+    if (!name) {
+        snprintf(made, sizeof made, "node_%u", (unsigned)node);
+        name = made;
+    }
+    for (uint32_t i = 0; i < a->m->node_count; i++) {
+        if (strcmp(a->m->nodes[i].name, name) == 0) {
+            return i;
+        }
+    }
+    return MODEL_NONE;
+}
+
+/* All primitives one after another, as the model has them. */
+static double *expected_positions(const asset *a, uint32_t mesh, const double *weights, uint32_t *count)
+{
+    double *out;
+    uint32_t total = 0;
+    for (uint32_t p = 0; p < oracle_primitive_count(a->o, mesh); p++) {
+        total += oracle_vertex_count(a->o, mesh, p);
+    }
+    out = test_zeros(sizeof *out * 3u * total);
+    *count = total;
+    total = 0;
+    for (uint32_t p = 0; p < oracle_primitive_count(a->o, mesh); p++) {
+        oracle_positions(a->o, mesh, p, weights, out + 3u * total);
+        total += oracle_vertex_count(a->o, mesh, p);
+    }
+    return out;
+}
+
+static double diagonal(const double *positions, uint32_t count)
+{
+    double square = 0.0;
+    for (int c = 0; c < 3; c++) {
+        double low = positions[c], high = positions[c];
+        for (uint32_t v = 0; v < count; v++) {
+            low = fmin(low, positions[3 * v + (uint32_t)c]);
+            high = fmax(high, positions[3 * v + (uint32_t)c]);
+        }
+        square += (high - low) * (high - low);
+    }
+    return sqrt(square);
+}
+
+static double distance(const double *a, const double *b)
+{
+    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
+}
+
+/* The model before quantisation: within 1e-5 of the bounding box. */
+static void check_model(asset *a, const model_mesh *mesh, const double *weights, const double *expected, double size)
+{
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        double p[3];
+        for (uint32_t c = 0; c < 3; c++) {
+            p[c] = (double)mesh->position[3 * v + c];
+            for (uint32_t t = 0; t < mesh->target_count; t++) {
+                p[c] += weights[t] * (double)mesh->targets[t].position[3 * v + c];
+            }
+        }
+        if (!(distance(p, expected + 3 * v) <= 1e-5 * size)) {
+            fail_msg("model: vertex %u is off by %g of the box", v, distance(p, expected + 3 * v) / size);
+        }
+    }
+    a->compared += mesh->vertex_count;
+}
+
+/* The pack: within the certified errors, and what adding floats of this size may round. */
+static void check_pack(const asset *a, uint32_t index, const float *weights, const double *expected, double slack)
+{
+    noh_mesh mesh = test_mesh(&a->pack, index);
+    noh_morph_layers layers = test_layers(&mesh);
+    double bound = slack;
+    noh_morph_accumulate(&mesh, weights, &layers);
+    for (uint32_t t = 0; t < mesh.header->target_count; t++) {
+        bound += fabs((double)weights[t]) * (double)mesh.targets[t].position_error;
+    }
+    for (uint32_t v = 0; v < mesh.header->vertex_count; v++) {
+        noh_vertex vertex;
+        double p[3];
+        noh_morph_vertex(&mesh, &layers, v, &vertex);
+        for (uint32_t c = 0; c < 3; c++) {
+            p[c] = (double)vertex.position[c];
+        }
+        if (!(distance(p, expected + 3u * (size_t)a->orders[index][v]) <= bound)) {
+            fail_msg("pack: vertex %u is off by %g, bound %g", v, distance(p, expected + 3u * (size_t)a->orders[index][v]), bound);
+        }
+    }
+    free(layers.position);
+}
+
+/* What the float sums may round: the sizes of all summands, 2^-23 of them for each operation. */
+static double float_slack(const noh_mesh *mesh, const double *expected, uint32_t count, const float *weights)
+{
+    double most = 0.0, sum = 0.0;
+    for (uint32_t i = 0; i < 3u * count; i++) {
+        most = fmax(most, fabs(expected[i]));
+    }
+    for (uint32_t t = 0; t < mesh->header->target_count; t++) {
+        sum += fabs((double)weights[t]) * (double)mesh->targets[t].max_displacement;
+    }
+    return 0x1p-23 * (most + (double)(mesh->header->target_count + 2) * sum);
+}
+
+static void check_node(asset *a, uint32_t node, const double *weights, const float *pack_weights)
+{
+    uint32_t mesh = (uint32_t)oracle_node_mesh(a->o, node), made = model_node_of(a, node), count, index;
+    double *expected = expected_positions(a, mesh, weights, &count);
+    noh_mesh packed;
+    assert_int_not_equal(made, MODEL_NONE);
+    index = a->m->nodes[made].mesh;
+    assert_int_equal(a->m->meshes[index].vertex_count, count);
+    assert_int_equal(a->m->meshes[index].target_count, oracle_target_count(a->o, mesh));
+    packed = test_mesh(&a->pack, index);
+    check_model(a, &a->m->meshes[index], weights, expected, diagonal(expected, count));
+    check_pack(a, index, pack_weights, expected, float_slack(&packed, expected, count, pack_weights));
+    free(expected);
+}
+
+static void narrow(const double *from, float *to, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        to[i] = (float)from[i];
+    }
+}
+
+/* ---- static weights ---- */
+
+static const float *pack_defaults(const asset *a, uint32_t node)
+{
+    const noh_node *n = &a->pack.nodes[model_node_of(a, node)];
+    return n->first_weight != NOH_NONE ? a->pack.node_weights + n->first_weight : test_mesh(&a->pack, n->mesh).weights;
+}
+
+static void check_static(asset *a)
+{
+    test_random r = test_random_from(41);
+    for (uint32_t node = 0; node < oracle_node_count(a->o); node++) {
+        int mesh = oracle_node_mesh(a->o, node);
+        uint32_t count = mesh < 0 ? 0 : oracle_target_count(a->o, (uint32_t)mesh);
+        double *weights = test_zeros(sizeof *weights * count);
+        float *narrowed = test_zeros(sizeof *narrowed * count);
+        if (mesh >= 0) {
+            oracle_default_weights(a->o, node, weights);
+            narrow(weights, narrowed, count);
+            test_same_floats(pack_defaults(a, node), narrowed, count, "default weight");
+            check_node(a, node, weights, narrowed);
+            for (uint32_t round = 0; round < 4 && count; round++) {
+                test_random_weights(&r, narrowed, count);
+                for (uint32_t t = 0; t < count; t++) {
+                    weights[t] = (double)narrowed[t];
+                }
+                check_node(a, node, weights, narrowed);
+            }
+        }
+        free(weights);
+        free(narrowed);
+    }
+}
+
+/* ---- animations ---- */
+
+/* The source's channel, sampled in double: keys are floats in both, so only the formula counts. */
+static const model_channel *model_channel_of(const asset *a, const char *clip, uint32_t node)
+{
+    for (uint32_t i = 0; i < a->m->clip_count; i++) {
+        for (uint32_t c = 0; c < a->m->clips[i].channel_count; c++) {
+            const model_channel *channel = &a->m->clips[i].channels[c];
+            if (strcmp(a->m->clips[i].name, clip) == 0 && channel->path == MODEL_PATH_WEIGHTS && channel->node == node) {
+                return channel;
+            }
+        }
+    }
+    fail_msg("the model has no weights for node %u in '%s'", node, clip);
+    return NULL;
+}
+
+static double hermite(const float *a, const float *b, uint32_t width, double s, double span)
+{
+    double s2 = s * s, s3 = s2 * s;
+    return (2 * s3 - 3 * s2 + 1) * (double)a[width] + span * (s3 - 2 * s2 + s) * (double)a[2 * width] +
+           (3 * s2 - 2 * s3) * (double)b[width] + span * (s3 - s2) * (double)b[0];
+}
+
+static void sample_model(const model_channel *c, double time, double *weights)
+{
+    uint32_t k = 0, cubic = c->interpolation == MODEL_CUBICSPLINE, stride = c->width * (cubic ? 3u : 1u);
+    double s = 0.0, span = 1.0;
+    while (k + 1 < c->key_count && (double)c->times[k + 1] <= time) {
+        k++;
+    }
+    if (k + 1 < c->key_count && time > (double)c->times[k] && c->interpolation != MODEL_STEP) {
+        span = (double)c->times[k + 1] - (double)c->times[k];
+        s = (time - (double)c->times[k]) / span;
+    }
+    for (uint32_t i = 0; i < c->width; i++) {
+        const float *a = c->values + k * stride + i, *b = s > 0.0 ? a + stride : a;
+        weights[i] = cubic ? hermite(a, b, c->width, s, span) : (1.0 - s) * (double)a[0] + s * (double)b[0];
+    }
+}
+
+static void sample_pack(const asset *a, const char *clip, uint32_t node, float time, float *weights)
+{
+    noh_clip found;
+    for (uint32_t i = 0; noh_pack_clip(&a->pack, i, &found) == NOH_OK; i++) {
+        for (uint32_t c = 0; strcmp(found.name, clip) == 0 && c < found.header->channel_count; c++) {
+            if (found.channels[c].node == node) {
+                noh_clip_sample_weights(&found, c, time, weights);
+                return;
+            }
+        }
+    }
+    fail_msg("the pack has no weights for node %u in '%s'", node, clip);
+}
+
+static void check_time(asset *a, uint32_t animation, uint32_t channel, const char *clip, double time)
+{
+    uint32_t node = (uint32_t)oracle_channel_node(a->o, animation, channel), made = model_node_of(a, node);
+    uint32_t count = oracle_target_count(a->o, (uint32_t)oracle_node_mesh(a->o, node));
+    double *expected = test_zeros(sizeof *expected * count), *got = test_zeros(sizeof *got * count);
+    float *packed = test_zeros(sizeof *packed * count);
+    oracle_sample(a->o, animation, channel, time, expected);
+    sample_model(model_channel_of(a, clip, made), time, got);
+    sample_pack(a, clip, made, (float)time, packed);
+    for (uint32_t t = 0; t < count; t++) {
+        assert_true(fabs(got[t] - expected[t]) <= 1e-12);
+        /* a float of a time near 10 s is 1e-6 s off, keys change by a few per second */
+        assert_true(fabs((double)packed[t] - expected[t]) <= 2e-5);
+        expected[t] = (double)packed[t]; /* from here on only the deltas count */
+    }
+    check_node(a, node, expected, packed);
+    free(expected);
+    free(got);
+    free(packed);
+}
+
+static uint32_t check_animations(asset *a)
+{
+    uint32_t channels = 0;
+    for (uint32_t i = 0; i < oracle_animation_count(a->o); i++) {
+        for (uint32_t c = 0; c < oracle_channel_count(a->o, i); c++) {
+            const char *name;
+            char made[32];
+            if (oracle_channel_node(a->o, i, c) < 0) {
+                continue;
+            }
+            snprintf(made, sizeof made, "animation_%u", (unsigned)i);
+            name = oracle_animation_name(a->o, i);
+            for (int step = -1; step <= TIMES; step++) {
+                check_time(a, i, c, name ? name : made, oracle_channel_end(a->o, i, c) * 1.03 * (double)step / TIMES);
+            }
+            channels++;
+        }
+    }
+    return channels;
+}
+
+/* ---- the assets ---- */
+
+static void check_asset(const char *name, uint32_t weight_channels)
+{
+    asset a;
+    open_asset(&a, name);
+    check_static(&a);
+    assert_int_equal(check_animations(&a), weight_channels);
+    print_message("# %s: %llu vertices compared\n", name, (unsigned long long)a.compared);
+    assert_true(a.compared > 0);
+    close_asset(&a);
+}
+
+#define ASSETS(X) \
+    X(animated_morph_cube, "khronos/AnimatedMorphCube/glTF/AnimatedMorphCube.gltf", 1) \
+    X(animated_morph_sphere, "khronos/AnimatedMorphSphere/glTF/AnimatedMorphSphere.gltf", 1) \
+    X(morph_primitives_test, "khronos/MorphPrimitivesTest/glTF/MorphPrimitivesTest.gltf", 0) \
+    X(morph_stress_test, "khronos/MorphStressTest.glb", 3) \
+    X(simple_morph, "khronos/SimpleMorph/glTF/SimpleMorph.gltf", 1) \
+    X(simple_sparse_accessor, "khronos/SimpleSparseAccessor.gltf", 0) \
+    X(three_vrm_cube, "khronos/three-vrm-cube/cube.gltf", 0) \
+    X(robot_expressive, "khronos/RobotExpressive.glb", 42) \
+    X(head_with_sparse_targets, "hero/head_sparse.glb", 5)
+
+#define X(name, path, channels)     \
+    static void name(void **state)  \
+    {                               \
+        (void)state;                \
+        check_asset(path, channels); \
+    }
+ASSETS(X)
+#undef X
+
+static const struct CMUnitTest tests[] = {
+#define X(name, path, channels) cmocka_unit_test(name),
+    ASSETS(X)
+#undef X
+};
+
+TEST_MAIN(tests, NULL, NULL)
