@@ -18,6 +18,14 @@ vec3 delta_field(uvec3 words, uvec2 shifts, float weight)
     return vec3(ivec3(words << shifts.x) >> shifts.y) * weight;
 }
 
+/* What a fragment that writes one layer needs, in one varying: place, that layer's shifts and
+ * weight. Rectangles are many and small, so what a triangle carries costs as much as its pixels. */
+uvec4 place_of_layer(uvec3 place, vec3 weights, int layer)
+{
+    uvec2 shifts = delta_shifts(place.z, layer);
+    return uvec4(place.xy, shifts.x | shifts.y << 8, floatBitsToUint(layer == 0 ? weights.x : layer == 1 ? weights.y : weights.z));
+}
+
 /* The i-th texel of a table that is folded into rows of 1 << width_log2. */
 ivec2 table_texel(uint i, int width_log2)
 {

@@ -8,7 +8,7 @@ uniform vec3 u_camera;
 uniform vec3 u_key;              /* unit, towards the light */
 uniform vec4 u_base_color;
 uniform vec4 u_material;         /* roughness, metallic, alpha cutoff, unlit */
-uniform sampler2D u_base_color_texture;
+uniform mediump sampler2D u_base_color_texture;
 uniform vec3 u_bounds_min;
 uniform vec3 u_bounds_size;
 

@@ -3,11 +3,8 @@
 #include "common_delta.glsl"
 #include "common_place.glsl"
 
-flat in uvec4 f_place;
+flat in uvec3 f_place;     /* place, bits */
 flat in vec3 f_weights;
-flat in uvec2 f_shifts0;
-flat in uvec2 f_shifts1;
-flat in uvec2 f_shifts2;
 
 layout(location = 0) out vec4 o_position;
 layout(location = 1) out vec4 o_normal;
@@ -15,8 +12,8 @@ layout(location = 2) out vec4 o_tangent;
 
 void main()
 {
-    uvec3 words = delta_words(f_place);
-    o_position = vec4(delta_field(words, f_shifts0, f_weights.x), 0.0);
-    o_normal = vec4(delta_field(words, f_shifts1, f_weights.y), 0.0);
-    o_tangent = vec4(delta_field(words, f_shifts2, f_weights.z), 0.0);
+    uvec3 words = delta_words(f_place.xy);
+    o_position = vec4(delta_field(words, delta_shifts(f_place.z, 0), f_weights.x), 0.0);
+    o_normal = vec4(delta_field(words, delta_shifts(f_place.z, 1), f_weights.y), 0.0);
+    o_tangent = vec4(delta_field(words, delta_shifts(f_place.z, 2), f_weights.z), 0.0);
 }

@@ -3,13 +3,12 @@
 #include "common_delta.glsl"
 #include "common_place.glsl"
 
-flat in uvec4 f_place;
-flat in float f_weight;
-flat in uvec2 f_shifts;
+flat in uvec4 f_place;     /* place, left and right shift, weight */
 
 layout(location = 0) out vec4 o_delta;
 
 void main()
 {
-    o_delta = vec4(delta_field(delta_words(f_place), f_shifts, f_weight), 0.0);
+    uvec2 shifts = uvec2(f_place.z & 255u, f_place.z >> 8);
+    o_delta = vec4(delta_field(delta_words(f_place.xy), shifts, uintBitsToFloat(f_place.w)), 0.0);
 }

@@ -13,19 +13,13 @@ uniform int u_layer;
 in uvec2 a_rect_slot;
 
 #if defined(MORPH_LAYERED)
-flat out uvec4 v_place;
+flat out uvec3 v_place;       /* place (common_place.glsl), bits */
 flat out vec3 v_weights;
-flat out uint v_bits;
 #elif defined(MORPH_MRT)
-flat out uvec4 f_place;       /* x, y, width, first texel */
+flat out uvec3 f_place;
 flat out vec3 f_weights;
-flat out uvec2 f_shifts0;
-flat out uvec2 f_shifts1;
-flat out uvec2 f_shifts2;
 #else
-flat out uvec4 f_place;
-flat out float f_weight;
-flat out uvec2 f_shifts;
+flat out uvec4 f_place;       /* place_of_layer */
 #endif
 
 void main()
@@ -35,21 +29,16 @@ void main()
     uvec2 size = uvec2(rect.y & 0xffffu, rect.y >> 16);
     uvec2 at = uvec2(rect.x & 0xffffu, rect.x >> 16) + uvec2(slot.w & 0xffffu, slot.w >> 16);
     uvec2 corner = uvec2(gl_VertexID & 1, gl_VertexID >> 1);
+    uvec3 place = uvec3(rect.z - at.y * size.x - at.x, size.x, rect.w);
     vec3 weights = uintBitsToFloat(slot.xyz);
     gl_Position = vec4(vec2(at + corner * size) * u_atlas - 1.0, 0.0, 1.0);
 #if defined(MORPH_LAYERED)
-    v_place = uvec4(at, size.x, rect.z);
+    v_place = place;
     v_weights = weights;
-    v_bits = rect.w;
 #elif defined(MORPH_MRT)
-    f_place = uvec4(at, size.x, rect.z);
+    f_place = place;
     f_weights = weights;
-    f_shifts0 = delta_shifts(rect.w, 0);
-    f_shifts1 = delta_shifts(rect.w, 1);
-    f_shifts2 = delta_shifts(rect.w, 2);
 #else
-    f_place = uvec4(at, size.x, rect.z);
-    f_weight = u_layer == 0 ? weights.x : u_layer == 1 ? weights.y : weights.z;
-    f_shifts = delta_shifts(rect.w, u_layer);
+    f_place = place_of_layer(place, weights, u_layer);
 #endif
 }

@@ -9,6 +9,7 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #if defined(__AVX2__)
 #include <immintrin.h>
@@ -43,6 +44,47 @@ static inline void noh_add_run_scalar(const uint32_t *words, size_t count, noh_f
     }
 }
 
+#if defined(__SSE2__) /* AVX2 has it too */
+static inline __m128 noh_add_four(__m128i q, noh_field f, __m128 layer)
+{
+    q = _mm_sra_epi32(_mm_sll_epi32(q, _mm_cvtsi32_si128((int)f.left)), _mm_cvtsi32_si128((int)f.right));
+    return _mm_add_ps(layer, _mm_mul_ps(_mm_cvtepi32_ps(q), _mm_set1_ps(f.weight)));
+}
+
+static inline void noh_add_step4(const uint32_t *words, noh_field f, float *layer)
+{
+    __m128i q = _mm_loadu_si128((const __m128i *)(const void *)words);
+    _mm_storeu_ps(layer, noh_add_four(q, f, _mm_loadu_ps(layer)));
+}
+
+/* The last one to three words of a run. Runs are short (a row of a rectangle), so ends are
+ * a third of the work. Nothing past them is read or written. */
+#define NOH_MORPH_TAIL 1
+static inline __m128i noh_load_tail(const void *from, size_t count)
+{
+    __m128i low = count >= 2 ? _mm_loadl_epi64((const __m128i *)from) : _mm_setzero_si128();
+    int32_t last;
+    if (count == 2) {
+        return low;
+    }
+    memcpy(&last, (const uint8_t *)from + 4 * (count - 1), 4);
+    return count == 3 ? _mm_unpacklo_epi64(low, _mm_cvtsi32_si128(last)) : _mm_cvtsi32_si128(last);
+}
+
+static inline void noh_add_tail(const uint32_t *words, size_t count, noh_field f, float *layer)
+{
+    __m128 sum = noh_add_four(noh_load_tail(words, count), f, _mm_castsi128_ps(noh_load_tail(layer, count)));
+    if (count == 1) {
+        _mm_store_ss(layer, sum);
+    } else {
+        _mm_storel_epi64((__m128i *)(void *)layer, _mm_castps_si128(sum));
+        if (count == 3) {
+            _mm_store_ss(layer + 2, _mm_movehl_ps(sum, sum));
+        }
+    }
+}
+#endif
+
 #if defined(__AVX2__)
 #define NOH_MORPH_STEP 8u
 static inline void noh_add_step(const uint32_t *words, noh_field f, float *layer)
@@ -55,9 +97,7 @@ static inline void noh_add_step(const uint32_t *words, noh_field f, float *layer
 #define NOH_MORPH_STEP 4u
 static inline void noh_add_step(const uint32_t *words, noh_field f, float *layer)
 {
-    __m128i q = _mm_loadu_si128((const __m128i *)(const void *)words);
-    q = _mm_sra_epi32(_mm_sll_epi32(q, _mm_cvtsi32_si128((int)f.left)), _mm_cvtsi32_si128((int)f.right));
-    _mm_storeu_ps(layer, _mm_add_ps(_mm_loadu_ps(layer), _mm_mul_ps(_mm_cvtepi32_ps(q), _mm_set1_ps(f.weight))));
+    noh_add_step4(words, f, layer);
 }
 #elif defined(__ARM_NEON) && defined(__aarch64__) /* 32-bit NEON flushes subnormals: not the same bits */
 #define NOH_MORPH_STEP 4u
@@ -80,9 +120,21 @@ static inline void noh_add_run(const uint32_t *words, size_t count, const noh_fi
         noh_add_step(words + i, f[2], layers[2] + i);
     }
 #endif
+#ifdef NOH_MORPH_TAIL
+    if (NOH_MORPH_STEP > 4u && i + 4u <= count) {
+        noh_add_step4(words + i, f[0], layers[0] + i);
+        noh_add_step4(words + i, f[1], layers[1] + i);
+        noh_add_step4(words + i, f[2], layers[2] + i);
+        i += 4u;
+    }
+    for (int l = 0; l < 3 && i < count; l++) {
+        noh_add_tail(words + i, count - i, f[l], layers[l] + i);
+    }
+#else
     for (int l = 0; l < 3; l++) {
         noh_add_run_scalar(words + i, count - i, f[l], layers[l] + i);
     }
+#endif
 }
 
 #endif

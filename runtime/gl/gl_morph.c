@@ -143,7 +143,7 @@ void noh_gl_morph_tile(const noh_gl_morph *m, uint32_t instance, uint32_t *x, ui
     const noh_gl_morph_mesh *mesh = &m->meshes[m->instance_mesh[instance]];
     uint32_t i = instance - mesh->first_instance;
     *x = i % mesh->columns << mesh->mesh.header->morph_width_log2;
-    *y = mesh->band_y + i / mesh->columns * mesh->mesh.header->morph_height;
+    *y = mesh->band_y + i / mesh->columns * noh_gl_morph_pitch(mesh->mesh.header);
 }
 
 uint32_t noh_gl_morph_first_weight(const noh_gl_morph *m, uint32_t instance)

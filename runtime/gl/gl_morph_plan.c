@@ -157,6 +157,11 @@ static noh_result check_desc(const noh_gl_morph_desc *desc, noh_error *error)
     return NOH_OK;
 }
 
+uint32_t noh_gl_morph_pitch(const noh_mesh_header *header)
+{
+    return (header->morph_height + 3u) & ~3u;
+}
+
 /* Stack the meshes' bands in an atlas of this width; the height may be too much. */
 static uint64_t stack_bands(const noh_gl_morph_desc *desc, uint32_t atlas_width, noh_gl_morph_mesh *meshes)
 {
@@ -170,7 +175,7 @@ static uint64_t stack_bands(const noh_gl_morph_desc *desc, uint32_t atlas_width,
             meshes[i].columns = columns;
             meshes[i].band_y = (uint32_t)y;
         }
-        y += ((uint64_t)count + columns - 1) / columns * h->morph_height;
+        y += ((uint64_t)count + columns - 1) / columns * noh_gl_morph_pitch(h);
     }
     return y;
 }
