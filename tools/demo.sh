@@ -10,11 +10,12 @@ echo
 "$noh" render "$build/mask.noh" -o "$build/mask.png" --size 640x720
 "$noh" render "$build/mask.noh" -o "$build/mask_smile.png" --size 640x720 --weight smile=1 --camera 18,4
 "$noh" sheet "$build/mask.noh" -o "$build/mask_targets.png"
-"$noh" sheet "$build/mask.noh" -o "$build/mask_faces.png" --clip wonder --tiles 10 --tile 256 --columns 5
+"$noh" sheet "$build/mask.noh" -o "$build/mask_faces.png" --target smile --target surprise --target anger --target blink \
+    --columns 5 --tile 288 --camera 14,4
 "$noh" budget "$build/mask.noh"
 echo
 echo 'Pictures:'
 echo "  $build/mask.png           at rest"
 echo "  $build/mask_smile.png     --weight smile=1"
 echo "  $build/mask_targets.png   every target"
-echo "  $build/mask_faces.png     the clip 'wonder'"
+echo "  $build/mask_faces.png     the picture in the README"

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "pack/pack.h"
+
 static void free_encodings(morph_encoding **encodings, uint32_t count)
 {
     for (uint32_t i = 0; encodings && i < count; i++) {
@@ -33,6 +35,21 @@ static int encode_meshes(const model *m, const convert_options *options, morph_e
     return 0;
 }
 
+/* A pack that its own reader refuses must not leave the converter. */
+static int check_own_pack(byte_buffer *out, model_error *error)
+{
+    noh_pack pack;
+    noh_error refusal = { NOH_OK, "", 0, 0 };
+    if (noh_pack_open(out->bytes, out->count, &pack, &refusal)) {
+        snprintf(error->what, sizeof error->what, "the pack that was built does not open: %s (byte %llu); this is a bug of noh",
+                 refusal.what, (unsigned long long)refusal.where);
+        error->where[0] = 0;
+        buffer_free(out);
+        return 1;
+    }
+    return 0;
+}
+
 static int convert_model(const model *m, const convert_options *options, byte_buffer *out, model_error *error)
 {
     morph_encoding **encodings = calloc(m->mesh_count + 1u, sizeof *encodings);
@@ -44,11 +61,11 @@ static int convert_model(const model *m, const convert_options *options, byte_bu
     for (uint32_t i = 0; options->report && i < m->warning_count; i++) {
         fprintf(options->report, "warning: %s\n", m->warnings[i]);
     }
-    failed = encode_meshes(m, options, encodings, error);
+    failed = pack_check_model(m, error) || encode_meshes(m, options, encodings, error);
     if (options->progress) {
         fputs("\r\033[K", options->progress); /* leave the terminal's line as it was */
     }
-    failed = failed || pack_write(m, encodings, out, error);
+    failed = failed || pack_write(m, encodings, out, error) || check_own_pack(out, error);
     free_encodings(encodings, m->mesh_count);
     return failed;
 }

@@ -300,37 +300,14 @@ static int assemble(writer *w, byte_buffer *out)
     return 0;
 }
 
-static int check_limits(const model *m, model_error *error)
-{
-    const struct { const char *what; uint32_t count, limit; } limits[] = {
-        { "materials", m->material_count, NOH_MATERIALS_MAX },
-        { "nodes", m->node_count, NOH_NODES_MAX },
-        { "chunks (meshes, textures and clips)", m->mesh_count + m->texture_count + m->clip_count + 3, NOH_PACK_CHUNKS_MAX }
-    };
-    for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++) {
-        if (limits[i].count > limits[i].limit) {
-            snprintf(error->what, sizeof error->what, "%u %s, the format holds %u", limits[i].count, limits[i].what, limits[i].limit);
-            error->where[0] = 0;
-            return 1;
-        }
-    }
-    for (uint32_t i = 0; i < m->mesh_count; i++) {
-        if (m->meshes[i].submesh_count > NOH_SUBMESHES_MAX) {
-            snprintf(error->what, sizeof error->what, "%u primitives in one mesh, the format holds %u", m->meshes[i].submesh_count,
-                     NOH_SUBMESHES_MAX);
-            snprintf(error->where, sizeof error->where, "mesh '%.80s'", m->meshes[i].name);
-            return 1;
-        }
-    }
-    return 0;
-}
-
 int pack_write(const model *m, morph_encoding *const *encodings, byte_buffer *out, model_error *error)
 {
     writer w;
     int failed;
-    if (check_limits(m, error)) {
-        return 1;
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        if (pack_check_encoding(&m->meshes[i], encodings[i], error)) {
+            return 1;
+        }
     }
     memset(&w, 0, sizeof w);
     w.m = m;

@@ -89,7 +89,8 @@ typedef struct bench_cells {
 
 /* Add a cell; its index, to ask for its samples later. */
 uint32_t bench_add_cell(bench_cells *cells, void (*work)(void *self, uint32_t frame), void *self);
-/* Calibrate each cell to at least sample_ns, then time all of them, round after round. `what` for progress. */
+/* Calibrate each cell to at least sample_ns, then time all of them, round after round: as many as asked,
+ * or fewer where that would take long; cells->rounds says. `what` for progress. */
 int bench_run_cells(bench_cells *cells, bench_clock *clock, uint32_t rounds, double sample_ns, const char *what);
 void bench_free_cells(bench_cells *cells);
 double bench_median(const bench_cells *cells, uint32_t cell);
@@ -147,7 +148,7 @@ int bench_check(bench_stage *s, const bench_method *m, const char *subject);
 /* Each fills *m; 0 on success, an exit code after a message otherwise, -1 where this GL cannot (no message). */
 int bench_open_unmorphed(bench_method *m, bench_stage *s);
 int bench_open_path(bench_method *m, bench_stage *s, noh_morph_path path, noh_accumulate accumulate);
-int bench_open_dense(bench_method *m, bench_stage *s);
+int bench_open_dense(bench_method *m, bench_stage *s, int hoisted);
 int bench_open_filament(bench_method *m, bench_stage *s);
 /* artist[vertex_count]: pack vertex -> vertex of the asset; NULL: in the pack's order. */
 int bench_open_quads(bench_method *m, bench_stage *s, const uint32_t *artist);

@@ -10,6 +10,8 @@
 
 #define REPEATS_MAX 100000u
 #define PROGRESS_NS 1000000000u
+#define GROUP_NS 6000000000u /* a group of cells that takes longer than this gets fewer rounds, */
+#define ROUNDS_MIN 5u        /* but not fewer than these */
 
 /* ---- clocks ---- */
 
@@ -160,6 +162,10 @@ int bench_run_cells(bench_cells *cells, bench_clock *clock, uint32_t rounds, dou
             bench_cell *cell = &cells->cells[(i + r) % cells->count]; /* no cell always follows the same one */
             cell->samples[r] = time_cell(cell, clock) / cell->repeats;
             show_progress(what, r + 1, rounds, start, &shown);
+        }
+        if (r + 1 >= ROUNDS_MIN && noh_clock_ns() - start > GROUP_NS) {
+            cells->rounds = r + 1;
+            break;
         }
     }
     if (shown) {

@@ -1,6 +1,9 @@
 /* cmd_build.c: glTF in, one pack out. */
+#define _POSIX_C_SOURCE 200809L /* isatty */
+
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "convert/convert.h"
 #include "noh_tool.h"
@@ -54,6 +57,7 @@ int verb_build(int argc, char **argv)
         return status;
     }
     o.report = a.quiet ? NULL : stdout;
+    o.progress = !a.quiet && isatty(STDERR_FILENO) ? stderr : NULL;
     if (convert_files(a.inputs, a.input_count, &o, &pack, &failure)) {
         return failure.error.where[0] ? tool_fail(failure.file, "%s (%s)", failure.error.what, failure.error.where)
                                       : tool_fail(failure.file, "%s", failure.error.what);

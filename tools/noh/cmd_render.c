@@ -71,6 +71,11 @@ static int draw(gpu *g, const pack_file *file, const scene *s, const render_args
         status = canvas_read(&c, rgba);
         canvas_close(&c);
     }
+    if (!status) {
+        const noh_gl_morph_plan *plan = noh_gl_morph_plan_of(l.morph.morph);
+        printf("%s: %ux%u, %s-%s (%s)\n", a->output, a->size[0], a->size[1], noh_morph_path_name(plan->path),
+               noh_accumulate_name(plan->accumulate), plan->reason);
+    }
     load_close(&l);
     return status;
 }

@@ -13,12 +13,31 @@ typedef struct sheet {
     uint32_t name_count, clip_tiles, tile_count, columns, tile;
     uint8_t *rgba;      /* the whole sheet */
     scene rest, posed;
+    option_list only; /* --target: these instead of all */
 } sheet;
+
+/* The targets that were asked for; each has to be there. */
+static int list_only(sheet *s)
+{
+    int status = 0;
+    s->names = calloc((size_t)s->only.count, sizeof *s->names);
+    if (!s->names) {
+        return tool_fail(s->file->path, "out of memory");
+    }
+    for (int i = 0; i < s->only.count && !status; i++) {
+        status = scene_check_target(&s->rest, s->file, s->only.items[i]);
+        s->names[s->name_count++] = s->only.items[i];
+    }
+    return status;
+}
 
 /* Every target name of every mesh, once. */
 static int list_names(sheet *s)
 {
     size_t total = 0;
+    if (s->only.count) {
+        return list_only(s);
+    }
     for (uint32_t m = 0; m < s->file->pack.mesh_count; m++) {
         total += s->rest.meshes[m].header->target_count;
     }
@@ -185,14 +204,15 @@ int verb_sheet(int argc, char **argv)
     double tile = 192.0, tiles = 24.0, columns = 0.0;
     load_options o;
     pack_file file;
-    sheet s;
+    static sheet s;
     int count, status;
     memset(&s, 0, sizeof s);
     memset(&o, 0, sizeof o);
     const option options[] = {
         { "-o", OPTION_TEXT, &output },       { "--clip", OPTION_TEXT, &s.clip_name }, { "--driver", OPTION_TEXT, &driver },
         { "--camera", OPTION_TEXT, &camera }, { "--path", OPTION_TEXT, &path },        { "--accumulate", OPTION_TEXT, &accumulate },
-        { "--tile", OPTION_NUMBER, &tile },   { "--tiles", OPTION_NUMBER, &tiles },     { "--columns", OPTION_NUMBER, &columns }
+        { "--tile", OPTION_NUMBER, &tile },   { "--tiles", OPTION_NUMBER, &tiles },     { "--columns", OPTION_NUMBER, &columns },
+        { "--target", OPTION_LIST, &s.only }
     };
     status = tool_options(argc, argv, options, sizeof options / sizeof options[0], &pack, 1, &count);
     if (!status) status = parse_path(path, &o.path);

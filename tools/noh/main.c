@@ -17,7 +17,7 @@ static const struct verb {
       "                 [--path P] [--accumulate auto|f32|f16] [--driver egl|osmesa|angle]\n"
       "                 [--camera face|body|AZ,EL,DIST] [--debug none|position|normal|tangent]",
       "a picture" },
-    { "sheet", verb_sheet, "PACK -o OUT.png [--clip NAME [--tiles 24]] [--tile 192] [--columns N] [--camera face]\n"
+    { "sheet", verb_sheet, "PACK -o OUT.png [--clip NAME [--tiles 24] | --target NAME...] [--tile 192] [--columns N] [--camera face]\n"
       "                 [--path P] [--accumulate A] [--driver D]", "a contact sheet: every target at full weight, or a clip in time" },
     { "dump", verb_dump, "PACK -o OUT.obj [--weight NAME=V]... [--clip NAME] [--time S] [--path P]",
       "the deformed mesh, as drawn, baked to a plain one" },

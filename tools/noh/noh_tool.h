@@ -117,6 +117,8 @@ void scene_free(scene *s);
 int scene_set_clip(scene *s, const pack_file *file, const char *clip_name, double time_s);
 /* NAME=VALUE for every mesh that has such a target; suggests the nearest name otherwise. */
 int scene_set_weights(scene *s, const pack_file *file, const option_list *assignments);
+/* 0 when some mesh has the target; prints an error with the nearest name otherwise. */
+int scene_check_target(const scene *s, const pack_file *file, const char *name);
 /* The clip of that name; prints an error with the nearest name and returns an exit code otherwise. */
 int scene_find_clip(const pack_file *file, const char *clip_name, noh_clip *clip);
 

@@ -3,7 +3,8 @@
  * BENCH_* define, not at all: the floor. All give the same outputs.
  *
  *   BENCH_LAYERS    ours: three accumulated layers, fetched by texel
- *   BENCH_DENSE     every target's position and normal for every vertex, summed here
+ *   BENCH_DENSE     every target's position and normal for every vertex, summed here;
+ *                   with BENCH_HOISTED the texels' place is found once, not for every target
  *   BENCH_FILAMENT  the same with the normal as a packed frame
  *   BENCH_QUADS     layers of all vertices, by vertex index
  *
@@ -39,23 +40,32 @@ uniform sampler2DArray u_targets; /* layer: target; two texels for each vertex, 
 uniform int u_targets_width;
 uniform float u_weights[TARGETS];
 
-vec3 target_texel(int target, int offset)
+ivec2 place_of(int offset)
 {
     int i = gl_VertexID * 2 + offset;
     int y = i / u_targets_width;
-    return texelFetch(u_targets, ivec3(i - y * u_targets_width, y, target), 0).xyz;
+    return ivec2(i - y * u_targets_width, y);
 }
+
+#if defined(BENCH_HOISTED)
+#define PLACE(offset) (offset == 0 ? place0 : place1)
+#else
+#define PLACE(offset) place_of(offset)
+#endif
 
 void morph(inout vec3 position, inout vec3 normal)
 {
+#if defined(BENCH_HOISTED)
+    ivec2 place0 = place_of(0), place1 = place_of(1);
+#endif
     for (int i = 0; i < TARGETS; i++) {
         if (u_weights[i] != 0.0) {
-            position += target_texel(i, 0) * u_weights[i];
+            position += texelFetch(u_targets, ivec3(PLACE(0), i), 0).xyz * u_weights[i];
         }
     }
     for (int i = 0; i < TARGETS; i++) {
         if (u_weights[i] != 0.0) {
-            normal += target_texel(i, 1) * u_weights[i];
+            normal += texelFetch(u_targets, ivec3(PLACE(1), i), 0).xyz * u_weights[i];
         }
     }
     normal = normalize(normal);

@@ -1,0 +1,69 @@
+/* pack_limits.c: more than the format holds is refused by the converter, with the limit. */
+#include <stdio.h>
+
+#include "pack/format.h"
+#include "pack_write.h"
+
+static int over(uint64_t count, uint64_t limit, const char *what, const char *kind, const char *name, model_error *error)
+{
+    if (count <= limit) {
+        return 0;
+    }
+    snprintf(error->what, sizeof error->what, "%llu %s: a pack holds up to %llu", (unsigned long long)count, what,
+             (unsigned long long)limit);
+    error->where[0] = 0;
+    if (name) {
+        snprintf(error->where, sizeof error->where, "%s '%.80s'", kind, name);
+    }
+    return 1;
+}
+
+static int check_mesh(const model_mesh *m, model_error *error)
+{
+    return over(m->vertex_count, NOH_VERTICES_MAX, "vertices", "mesh", m->name, error) ||
+           over(m->index_count, NOH_INDICES_MAX, "indices", "mesh", m->name, error) ||
+           over(m->submesh_count, NOH_SUBMESHES_MAX, "primitives", "mesh", m->name, error) ||
+           over(m->target_count, NOH_TARGETS_MAX, "morph targets", "mesh", m->name, error);
+}
+
+static int check_clip(const model_clip *c, model_error *error)
+{
+    uint32_t channels = 0;
+    for (uint32_t i = 0; i < c->channel_count; i++) {
+        if (c->channels[i].path == MODEL_PATH_WEIGHTS) {
+            channels += 1;
+            if (over(c->channels[i].key_count, NOH_CLIP_KEYS_MAX, "keys", "animation", c->name, error)) {
+                return 1;
+            }
+        }
+    }
+    return over(channels, NOH_CLIP_CHANNELS_MAX, "weight channels", "animation", c->name, error);
+}
+
+int pack_check_model(const model *m, model_error *error)
+{
+    uint64_t chunks = (uint64_t)m->mesh_count + m->texture_count + m->clip_count + 3;
+    if (over(m->material_count, NOH_MATERIALS_MAX, "materials", NULL, NULL, error) ||
+        over(m->node_count, NOH_NODES_MAX, "nodes", NULL, NULL, error) ||
+        over(chunks, NOH_PACK_CHUNKS_MAX, "meshes, textures and animations", NULL, NULL, error)) {
+        return 1;
+    }
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        if (check_mesh(&m->meshes[i], error)) {
+            return 1;
+        }
+    }
+    for (uint32_t i = 0; i < m->clip_count; i++) {
+        if (check_clip(&m->clips[i], error)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+int pack_check_encoding(const model_mesh *m, const morph_encoding *e, model_error *error)
+{
+    uint64_t touched_max = (uint64_t)NOH_MORPH_HEIGHT_MAX << e->width_log2;
+    return over(e->touched_count, touched_max, "vertices that targets move", "mesh", m->name, error) ||
+           over(e->texel_count, NOH_TEXELS_MAX, "delta texels", "mesh", m->name, error);
+}

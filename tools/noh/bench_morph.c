@@ -1,0 +1,170 @@
+/* bench_morph.c: the rows about one mesh: above the unmorphed mesh with rasterisation
+ * discarded, and whole frames. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench_job.h"
+
+#define SAMPLE_NS 1e7
+#define METHODS_MAX 16 /* one floor, four baselines, ten paths and formats */
+#define FLOOR 0 /* methods[FLOOR] is the mesh that is not morphed */
+
+typedef enum work_kind { WORK_ONE_PASS, WORK_THREE_PASS, WORK_FRAME } work_kind;
+
+typedef struct work {
+    bench_stage *stage;
+    const bench_method *method;
+    const bench_weights *weights;
+    work_kind kind;
+} work;
+
+typedef struct morph_job {
+    bench_job *job;
+    bench_stage stage;
+    bench_method methods[METHODS_MAX];
+    int method_count;
+} morph_job;
+
+static void run_frame(void *self, uint32_t frame)
+{
+    const work *w = (const work *)self;
+    if (w->method->prepare) {
+        w->method->prepare(w->method->self, bench_weights_of(w->weights, frame));
+    }
+    if (w->kind == WORK_FRAME) {
+        bench_draw_frame(w->stage, w->method);
+    } else {
+        bench_draw_discarded(w->stage, w->method, w->kind == WORK_THREE_PASS);
+    }
+}
+
+/* ---- methods ---- */
+
+/* Take a method whose open said `status`, check it; one that this GL lacks is left out. */
+static int take(morph_job *j, int status)
+{
+    bench_method *m = &j->methods[j->method_count];
+    if (status < 0) {
+        return 0;
+    }
+    j->method_count += 1;
+    if (status || m == &j->methods[FLOOR]) {
+        return status;
+    }
+    return bench_check(&j->stage, m, j->job->file.path);
+}
+
+static int open_methods(morph_job *j)
+{
+    static const noh_morph_path paths[] = { NOH_MORPH_LAYERED, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER, NOH_MORPH_GATHER, NOH_MORPH_CPU };
+    int status = take(j, bench_open_unmorphed(&j->methods[FLOOR], &j->stage));
+    if (!status) status = take(j, bench_open_dense(&j->methods[j->method_count], &j->stage, 0));
+    if (!status) status = take(j, bench_open_dense(&j->methods[j->method_count], &j->stage, 1));
+    if (!status) status = take(j, bench_open_filament(&j->methods[j->method_count], &j->stage));
+    if (!status) status = take(j, bench_open_quads(&j->methods[j->method_count], &j->stage, j->job->artist));
+    for (int a = NOH_ACCUMULATE_F32; a <= NOH_ACCUMULATE_F16; a++) {
+        for (size_t p = 0; p < sizeof paths / sizeof paths[0] && !status; p++) {
+            status = take(j, bench_open_path(&j->methods[j->method_count], &j->stage, paths[p], (noh_accumulate)a));
+        }
+    }
+    return status;
+}
+
+/* ---- rows ---- */
+
+typedef struct measured {
+    bench_cells cells;
+    work works[METHODS_MAX];
+    double cost[METHODS_MAX]; /* microseconds: above the floor, or of whole frames */
+    uint32_t runs;
+} measured;
+
+static int measure(morph_job *j, const bench_weights *weights, work_kind kind, const char *what, measured *m)
+{
+    int status;
+    memset(m, 0, sizeof *m);
+    for (int i = 0; i < j->method_count; i++) {
+        work w = { &j->stage, &j->methods[i], weights, kind };
+        m->works[i] = w;
+        bench_add_cell(&m->cells, run_frame, &m->works[i]);
+    }
+    status = bench_run_cells(&m->cells, &j->job->gl_clock, j->job->rounds, SAMPLE_NS, what);
+    for (int i = 0; i < j->method_count && !status; i++) {
+        uint32_t cell = (uint32_t)i;
+        m->cost[i] = 1e-3 * (kind == WORK_FRAME ? bench_median(&m->cells, cell) : bench_median_above(&m->cells, cell, FLOOR));
+    }
+    m->runs = m->cells.rounds;
+    bench_free_cells(&m->cells);
+    return status;
+}
+
+/* Every method against every baseline but itself; the floor is a baseline of whole frames only. */
+static void add_rows(morph_job *j, const measured *m, const char *prefix, int with_floor)
+{
+    for (int i = 1; i < j->method_count; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "%s/%s", prefix, j->methods[i].name);
+        for (int b = with_floor ? FLOOR : FLOOR + 1; b < j->method_count; b++) {
+            if (b != i && j->methods[b].is_baseline) {
+                bench_add_row(&j->job->rows, name, b == FLOOR ? "unmorphed" : j->methods[b].name, m->cost[b], m->cost[i], "us",
+                              m->runs);
+            }
+        }
+    }
+}
+
+static int measure_rows(morph_job *j, const bench_weights *weights, work_kind kind, const char *prefix)
+{
+    measured *m = malloc(sizeof *m);
+    int status = m ? measure(j, weights, kind, prefix, m) : tool_fail("bench", "out of memory");
+    if (!status) {
+        add_rows(j, m, prefix, kind == WORK_FRAME);
+    }
+    free(m);
+    return status;
+}
+
+/* All targets, then four of them; the latter under names of their own. */
+static int measure_all(morph_job *j)
+{
+    static const char *const names[2][3] = { { "morph/one-pass", "morph/three-pass", "frame" },
+                                             { "morph/4-active/one-pass", "morph/4-active/three-pass", "frame/4-active" } };
+    int status = 0;
+    for (int few = 0; few < 2 && !status; few++) {
+        uint32_t targets = j->stage.mesh->header->target_count;
+        bench_weights weights;
+        if (few && targets <= 4) {
+            break;
+        }
+        status = bench_weights_open(&weights, j->stage.mesh, few ? 4u : targets);
+        for (int kind = WORK_ONE_PASS; kind <= WORK_FRAME && !status; kind++) {
+            status = measure_rows(j, &weights, (work_kind)kind, names[few][kind]);
+        }
+        bench_weights_close(&weights);
+    }
+    return status;
+}
+
+int bench_morph(bench_job *job)
+{
+    morph_job j;
+    int status;
+    memset(&j, 0, sizeof j);
+    j.job = job;
+    status = bench_stage_open(&j.stage, &job->g, &job->mesh);
+    if (status) {
+        return status;
+    }
+    status = open_methods(&j);
+    if (!status) {
+        status = measure_all(&j);
+    }
+    for (int i = 0; i < j.method_count; i++) {
+        bench_method_close(&j.stage, &j.methods[i]);
+    }
+    bench_stage_close(&j.stage);
+    if (!status && job->g.gl.GetError() != GL_NO_ERROR) {
+        return tool_fail(job->file.path, "a GL error while measuring");
+    }
+    return status;
+}

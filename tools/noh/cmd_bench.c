@@ -1,0 +1,95 @@
+/* cmd_bench.c: what noh costs, as ratios to named baselines measured in the same run. */
+#define _POSIX_C_SOURCE 200809L
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench_job.h"
+
+typedef struct bench_args {
+    const char *pack, *driver, *source;
+    double rounds;
+    int as_json;
+} bench_args;
+
+static int read_args(int argc, char **argv, bench_args *a)
+{
+    const option options[] = { { "--driver", OPTION_TEXT, &a->driver }, { "--rounds", OPTION_NUMBER, &a->rounds },
+                               { "--source", OPTION_TEXT, &a->source }, { "--json", OPTION_FLAG, &a->as_json } };
+    int count, status = tool_options(argc, argv, options, 4, &a->pack, 1, &count);
+    if (status) {
+        return status;
+    }
+    if (!a->pack) {
+        return tool_usage("bench wants a pack");
+    }
+    if (a->rounds < 1.0 || a->rounds > 1000.0 || a->rounds != (double)(uint32_t)a->rounds) {
+        return tool_usage("--rounds wants a whole number from 1 to 1000");
+    }
+    return 0;
+}
+
+/* The mesh with the most pairs is what is benched. */
+static int choose_mesh(bench_job *job)
+{
+    uint32_t most = 0;
+    for (uint32_t i = 0; i < job->file.pack.mesh_count; i++) {
+        noh_mesh mesh;
+        noh_pack_mesh(&job->file.pack, i, &mesh);
+        if (mesh.header->pair_count > most) {
+            most = mesh.header->pair_count;
+            job->mesh = mesh;
+            job->mesh_index = i;
+        }
+    }
+    return most ? 0 : tool_fail(job->file.path, "no target of any mesh moves anything: there is nothing to measure");
+}
+
+static int bench_all(bench_job *job, const bench_args *a)
+{
+    uint32_t *artist = NULL;
+    int status = choose_mesh(job);
+    if (!status && a->source) {
+        status = bench_artist_order(a->source, job->mesh_index, &job->mesh, &artist);
+        job->artist = artist;
+    }
+    if (!status) status = bench_morph(job);
+    if (!status) status = bench_cpu(job);
+    if (!status) status = bench_crowd(job);
+    if (!status && job->rows.failed) {
+        status = tool_fail(a->pack, "out of memory");
+    }
+    if (!status) {
+        (a->as_json ? bench_print_json : bench_print)(job);
+    }
+    free(artist);
+    return status;
+}
+
+int verb_bench(int argc, char **argv)
+{
+    bench_args a = { NULL, NULL, NULL, 15.0, 0 };
+    bench_job job;
+    int status = read_args(argc, argv, &a);
+    if (status) {
+        return status;
+    }
+    memset(&job, 0, sizeof job);
+    job.rounds = (uint32_t)a.rounds;
+    status = pack_file_open(&job.file, a.pack);
+    if (status) {
+        return status;
+    }
+    setenv("LP_NUM_THREADS", "0", 0); /* llvmpipe draws on this thread: what is counted is work, not waking others for it */
+    status = gpu_open(&job.g, a.driver);
+    if (!status) {
+        bench_clock_open(&job.gl_clock, &job.g);
+        bench_clock_open(&job.cpu_clock, NULL);
+        status = bench_all(&job, &a);
+        bench_clock_close(&job.gl_clock);
+        gpu_close(&job.g);
+    }
+    free(job.rows.rows);
+    pack_file_close(&job.file);
+    return status;
+}
