@@ -1,7 +1,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pack_write.h"
+#include "byte_buffer.h"
+#include "pack/format.h"
 
 void *buffer_append(byte_buffer *b, const void *bytes, size_t count)
 {
@@ -39,4 +40,25 @@ void buffer_free(byte_buffer *b)
 {
     free(b->bytes);
     memset(b, 0, sizeof *b);
+}
+
+uint32_t string_offset(string_table *strings, const char *name)
+{
+    char cut[NOH_NAME_BYTES_MAX];
+    size_t length = strlen(name);
+    if (length >= sizeof cut) {
+        length = sizeof cut - 1;
+        while (length && ((unsigned char)name[length] & 0xc0u) == 0x80u) {
+            length--; /* not in the middle of a UTF-8 character */
+        }
+    }
+    memcpy(cut, name, length);
+    cut[length] = 0;
+    for (size_t at = 0; at < strings->bytes.count; at += strlen((char *)strings->bytes.bytes + at) + 1) {
+        if (strcmp((char *)strings->bytes.bytes + at, cut) == 0) {
+            return (uint32_t)at;
+        }
+    }
+    buffer_append(&strings->bytes, cut, length + 1);
+    return (uint32_t)(strings->bytes.count - length - 1);
 }

@@ -8,6 +8,7 @@
 
 #include "base/hash.h"
 #include "f16_bound.h"
+#include "pack/format.h"
 
 /* A unit vector as an octahedral pair in -1..1. */
 static void fold(const float v[3], float pair[2])

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/hash.h"
+#include "pack/format.h"
 #include "pack_mesh.h"
 
 typedef struct writer {
@@ -14,27 +15,6 @@ typedef struct writer {
     noh_pack_chunk *chunks;
     uint32_t chunk_count;
 } writer;
-
-uint32_t string_offset(string_table *strings, const char *name)
-{
-    char cut[NOH_NAME_BYTES_MAX];
-    size_t length = strlen(name);
-    if (length >= sizeof cut) {
-        length = sizeof cut - 1;
-        while (length && ((unsigned char)name[length] & 0xc0u) == 0x80u) {
-            length--; /* not in the middle of a UTF-8 character */
-        }
-    }
-    memcpy(cut, name, length);
-    cut[length] = 0;
-    for (size_t at = 0; at < strings->bytes.count; at += strlen((char *)strings->bytes.bytes + at) + 1) {
-        if (strcmp((char *)strings->bytes.bytes + at, cut) == 0) {
-            return (uint32_t)at;
-        }
-    }
-    buffer_append(&strings->bytes, cut, length + 1);
-    return (uint32_t)(strings->bytes.count - length - 1);
-}
 
 static void name_of(string_table *strings, const char *text, uint32_t *name, uint32_t *hash)
 {

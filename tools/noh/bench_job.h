@@ -78,6 +78,7 @@ typedef struct bench_cell {
     void (*work)(void *self, uint32_t frame);
     void *self;
     uint32_t repeats;
+    uint32_t frame;  /* counts on from sample to sample: weights never stand still */
     double *samples; /* [rounds] nanoseconds per repeat */
 } bench_cell;
 

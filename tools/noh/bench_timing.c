@@ -61,7 +61,7 @@ static void finish(const bench_clock *clock)
 static void repeat(bench_cell *cell, const bench_clock *clock)
 {
     for (uint32_t i = 0; i < cell->repeats; i++) {
-        cell->work(cell->self, i);
+        cell->work(cell->self, cell->frame++);
         finish(clock);
     }
 }
@@ -72,7 +72,7 @@ static double time_on_gpu(bench_cell *cell, bench_clock *clock)
     uint64_t elapsed = 0;
     noh_gl_timer_begin(&clock->gpu, clock->gl);
     for (uint32_t i = 0; i < cell->repeats; i++) {
-        cell->work(cell->self, i);
+        cell->work(cell->self, cell->frame++);
         clock->gl->Flush();
     }
     noh_gl_timer_end(&clock->gpu, clock->gl);

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/pack_write.h"
+#include "convert/byte_buffer.h"
 #include "load.h"
 
 typedef struct dump_args {
