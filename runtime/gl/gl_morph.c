@@ -18,33 +18,6 @@ static noh_result create_layers(noh_gl_morph *m, noh_error *error)
     return noh_gl_texture_create(m->gl, m->ledger, &desc, &m->layers, error);
 }
 
-noh_result noh_gl_morph_framebuffer(noh_gl_morph *m, int which, GLuint *framebuffer, noh_error *error)
-{
-    static const GLenum attachments[3] = { GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2 };
-    noh_result result = noh_gl_framebuffer_create(m->gl, m->ledger, framebuffer, error);
-    GLenum status;
-    if (result) {
-        return result;
-    }
-    m->gl->BindFramebuffer(GL_FRAMEBUFFER, *framebuffer);
-    if (which == NOH_LAYERS_LAYERED) {
-        m->gl->FramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, m->layers.name, 0);
-    } else if (which == NOH_LAYERS_ALL) {
-        for (GLint layer = 0; layer < 3; layer++) {
-            m->gl->FramebufferTextureLayer(GL_FRAMEBUFFER, attachments[layer], m->layers.name, 0, layer);
-        }
-        m->gl->DrawBuffers(3, attachments);
-    } else {
-        m->gl->FramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, m->layers.name, 0, which);
-    }
-    status = m->gl->CheckFramebufferStatus(GL_FRAMEBUFFER);
-    m->gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
-    if (status != GL_FRAMEBUFFER_COMPLETE) {
-        return noh_fail(error, NOH_ERR_GL, "the driver refuses the accumulation framebuffer", status, 0);
-    }
-    return NOH_OK;
-}
-
 static noh_result make_gl_objects(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
 {
     noh_result result = create_layers(m, error);
@@ -138,20 +111,6 @@ uint32_t noh_gl_morph_instance(const noh_gl_morph *morph, uint32_t mesh, uint32_
     return morph->meshes[mesh].first_instance + i;
 }
 
-void noh_gl_morph_tile(const noh_gl_morph *m, uint32_t instance, uint32_t *x, uint32_t *y)
-{
-    const noh_gl_morph_mesh *mesh = &m->meshes[m->instance_mesh[instance]];
-    uint32_t i = instance - mesh->first_instance;
-    *x = i % mesh->columns << mesh->mesh.header->morph_width_log2;
-    *y = mesh->band_y + i / mesh->columns * noh_gl_morph_pitch(mesh->mesh.header);
-}
-
-uint32_t noh_gl_morph_first_weight(const noh_gl_morph *m, uint32_t instance)
-{
-    const noh_gl_morph_mesh *mesh = &m->meshes[m->instance_mesh[instance]];
-    return mesh->first_weight + (instance - mesh->first_instance) * mesh->mesh.header->target_count;
-}
-
 noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t instance)
 {
     const noh_mesh_header *h = morph->meshes[morph->instance_mesh[instance]].mesh.header;
@@ -184,14 +143,6 @@ noh_result noh_gl_morph_weights(noh_gl_morph *morph, uint32_t instance, const fl
         morph->dirty[instance] = 1;
     }
     return NOH_OK;
-}
-
-void noh_gl_morph_put_slot(uint32_t slot[4], const noh_target *target, float weight, uint32_t last)
-{
-    /* the same products as the CPU reference makes, so that both round alike */
-    const float scaled[3] = { target->position_scale * weight, target->normal_scale * weight, target->tangent_scale * weight };
-    memcpy(slot, scaled, sizeof scaled);
-    slot[3] = last;
 }
 
 void noh_gl_morph_update(noh_gl_morph *morph, noh_gl_morph_stats *stats)

@@ -45,11 +45,6 @@ static noh_result create_framebuffers(noh_gl_morph *m, noh_error *error)
     return result;
 }
 
-static uint32_t target_bits(const noh_target *t)
-{
-    return t->position_bits | (uint32_t)t->normal_bits << 8 | (uint32_t)t->tangent_bits << 16;
-}
-
 /* The rect table: place, size, first texel and bit widths; sent in chunks. */
 static void upload_rects(noh_gl_morph *m, const noh_gl_morph_mesh *mesh)
 {
@@ -63,7 +58,7 @@ static void upload_rects(noh_gl_morph *m, const noh_gl_morph_mesh *mesh)
             to[0] = rect->x | (uint32_t)rect->y << 16;
             to[1] = rect->w | (uint32_t)rect->h << 16;
             to[2] = texel;
-            to[3] = target_bits(target);
+            to[3] = noh_gl_morph_target_bits(target);
             texel += (uint32_t)rect->w * rect->h;
             if (count == NOH_RECT_CHUNK) {
                 noh_gl_table_upload(m->gl, &m->rects, sent, count, m->staging);
@@ -93,44 +88,18 @@ static noh_result create_tables(noh_gl_morph *m, noh_error *error)
     return result;
 }
 
-static noh_result create_stream(noh_gl_morph *m, noh_error *error)
-{
-    uint64_t bytes = m->plan.stream_bytes - m->slot_table.texture.bytes;
-    GLint attribute;
-    noh_result result = noh_gl_buffer_create(m->gl, m->ledger, GL_ARRAY_BUFFER, bytes, NULL, GL_STREAM_DRAW, &m->stream, error);
-    if (result) {
-        return result;
-    }
-    attribute = m->gl->GetAttribLocation(m->program, "a_rect_slot");
-    m->gl->GenVertexArrays(1, &m->vertex_array);
-    m->gl->BindVertexArray(m->vertex_array);
-    m->gl->BindBuffer(GL_ARRAY_BUFFER, m->stream.name);
-    m->gl->EnableVertexAttribArray((GLuint)attribute);
-    m->gl->VertexAttribIPointer((GLuint)attribute, 2, m->wide ? GL_UNSIGNED_INT : GL_UNSIGNED_SHORT, 0, NULL);
-    m->gl->VertexAttribDivisor((GLuint)attribute, 1);
-    m->gl->BindVertexArray(0);
-    m->gl->BindBuffer(GL_ARRAY_BUFFER, 0);
-    return NOH_OK;
-}
-
-static void set_constants(noh_gl_morph *m)
-{
-    m->gl->UseProgram(m->program);
-    m->gl->Uniform3i(m->gl->GetUniformLocation(m->program, "u_tables"), (GLint)m->rects.width_log2,
-                     (GLint)m->slot_table.width_log2, (GLint)m->deltas.width_log2);
-    m->gl->Uniform2f(m->gl->GetUniformLocation(m->program, "u_atlas"), 2.0f / (float)m->plan.atlas_width,
-                     2.0f / (float)m->plan.atlas_height);
-    m->u_layer = m->gl->GetUniformLocation(m->program, "u_layer");
-    m->gl->UseProgram(0);
-}
-
 noh_result noh_gl_morph_init_blend(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
 {
     noh_result result = create_program(m, log, log_bytes, error);
     if (!result) result = create_framebuffers(m, error);
     if (!result) result = create_tables(m, error);
-    if (!result) result = create_stream(m, error);
-    if (!result) set_constants(m);
+    if (!result) {
+        result = noh_gl_morph_stream(m, "a_rect_slot", 2, m->wide ? GL_UNSIGNED_INT : GL_UNSIGNED_SHORT, error);
+    }
+    if (!result) {
+        noh_gl_morph_constants(m);
+        m->u_layer = m->gl->GetUniformLocation(m->program, "u_layer");
+    }
     return result;
 }
 
@@ -204,27 +173,6 @@ static void clear_tiles(noh_gl_morph *m)
     m->gl->Disable(GL_SCISSOR_TEST);
 }
 
-static void bind_tables(noh_gl_morph *m)
-{
-    const GLuint names[3] = { m->deltas.texture.name, m->rects.texture.name, m->slot_table.texture.name };
-    for (unsigned i = 0; i < 3; i++) {
-        m->gl->ActiveTexture(GL_TEXTURE0 + i);
-        m->gl->BindTexture(GL_TEXTURE_2D, names[i]);
-    }
-}
-
-static void unbind_all(noh_gl_morph *m)
-{
-    for (unsigned i = 3; i-- > 0;) {
-        m->gl->ActiveTexture(GL_TEXTURE0 + i);
-        m->gl->BindTexture(GL_TEXTURE_2D, 0);
-    }
-    m->gl->BindVertexArray(0);
-    m->gl->UseProgram(0);
-    m->gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
-    m->gl->Disable(GL_BLEND);
-}
-
 void noh_gl_morph_update_blend(noh_gl_morph *m, noh_gl_morph_stats *stats)
 {
     uint32_t slots = 0, rect_slots = 0;
@@ -240,16 +188,9 @@ void noh_gl_morph_update_blend(noh_gl_morph *m, noh_gl_morph_stats *stats)
         m->gl->BufferSubData(GL_ARRAY_BUFFER, 0, (GLsizeiptr)((size_t)rect_slots * (m->wide ? 8u : 4u)), m->staging);
         m->gl->BindBuffer(GL_ARRAY_BUFFER, 0);
     }
-    m->gl->Viewport(0, 0, (GLsizei)m->plan.atlas_width, (GLsizei)m->plan.atlas_height);
-    m->gl->Disable(GL_DEPTH_TEST);
-    m->gl->Disable(GL_CULL_FACE);
-    m->gl->Disable(GL_SCISSOR_TEST);
-    m->gl->Disable(GL_BLEND);
+    noh_gl_morph_begin(m);
     m->gl->BlendEquation(GL_FUNC_ADD);
     m->gl->BlendFunc(GL_ONE, GL_ONE);
-    m->gl->UseProgram(m->program);
-    m->gl->BindVertexArray(m->vertex_array);
-    bind_tables(m);
     for (int pass = 0; pass < passes; pass++) {
         m->gl->BindFramebuffer(GL_FRAMEBUFFER, m->framebuffers[pass]);
         clear_tiles(m);
@@ -261,5 +202,5 @@ void noh_gl_morph_update_blend(noh_gl_morph *m, noh_gl_morph_stats *stats)
             stats->draws += 1;
         }
     }
-    unbind_all(m);
+    noh_gl_morph_end(m);
 }

@@ -39,20 +39,6 @@ static void update_instance(noh_gl_morph *m, uint32_t instance, noh_gl_morph_sta
     stats->pairs += cost.pairs;
 }
 
-/* The state that noh_gl_morph_update promises; the other paths come by it while they draw. */
-static void leave_state(const noh_gl_morph *m)
-{
-    static const GLenum off[] = { GL_BLEND, GL_SCISSOR_TEST, GL_DEPTH_TEST, GL_CULL_FACE };
-    for (unsigned i = 0; i < sizeof off / sizeof off[0]; i++) {
-        m->gl->Disable(off[i]);
-    }
-    m->gl->Viewport(0, 0, (GLsizei)m->plan.atlas_width, (GLsizei)m->plan.atlas_height);
-    m->gl->UseProgram(0);
-    m->gl->BindVertexArray(0);
-    m->gl->BindBuffer(GL_ARRAY_BUFFER, 0);
-    m->gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
-}
-
 void noh_gl_morph_update_cpu(noh_gl_morph *m, noh_gl_morph_stats *stats)
 {
     m->gl->ActiveTexture(GL_TEXTURE0);
@@ -65,5 +51,5 @@ void noh_gl_morph_update_cpu(noh_gl_morph *m, noh_gl_morph_stats *stats)
     }
     m->gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
     m->gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
-    leave_state(m);
+    noh_gl_morph_end(m);
 }

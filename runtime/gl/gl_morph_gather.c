@@ -109,50 +109,17 @@ static noh_result create_tables(noh_gl_morph *m, noh_error *error)
     return result;
 }
 
-static noh_result create_stream(noh_gl_morph *m, noh_error *error)
-{
-    noh_result result = noh_gl_buffer_create(m->gl, m->ledger, GL_ARRAY_BUFFER, 16u * (uint64_t)m->plan.instance_count, NULL,
-                                             GL_STREAM_DRAW, &m->stream, error);
-    GLint attribute;
-    if (result) {
-        return result;
-    }
-    attribute = m->gl->GetAttribLocation(m->program, "a_tile");
-    m->gl->GenVertexArrays(1, &m->vertex_array);
-    m->gl->BindVertexArray(m->vertex_array);
-    m->gl->BindBuffer(GL_ARRAY_BUFFER, m->stream.name);
-    m->gl->EnableVertexAttribArray((GLuint)attribute);
-    m->gl->VertexAttribIPointer((GLuint)attribute, 4, GL_UNSIGNED_INT, 0, NULL);
-    m->gl->VertexAttribDivisor((GLuint)attribute, 1);
-    m->gl->BindVertexArray(0);
-    m->gl->BindBuffer(GL_ARRAY_BUFFER, 0);
-    return NOH_OK;
-}
-
 noh_result noh_gl_morph_init_gather(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
 {
     noh_result result = create_program(m, log, log_bytes, error);
     if (!result) result = noh_gl_morph_framebuffer(m, NOH_LAYERS_ALL, &m->framebuffers[0], error);
     if (!result) result = create_tables(m, error);
-    if (!result) result = create_stream(m, error);
-    if (result) {
-        return result;
-    }
-    m->gl->UseProgram(m->program);
-    m->gl->Uniform3i(m->gl->GetUniformLocation(m->program, "u_tables"), (GLint)m->rects.width_log2,
-                     (GLint)m->slot_table.width_log2, (GLint)m->deltas.width_log2);
-    m->gl->Uniform2f(m->gl->GetUniformLocation(m->program, "u_atlas"), 2.0f / (float)m->plan.atlas_width,
-                     2.0f / (float)m->plan.atlas_height);
-    m->gl->UseProgram(0);
-    return NOH_OK;
+    if (!result) result = noh_gl_morph_stream(m, "a_tile", 4, GL_UNSIGNED_INT, error);
+    if (!result) noh_gl_morph_constants(m);
+    return result;
 }
 
 /* ---- updating ---- */
-
-static uint32_t target_bits(const noh_target *t)
-{
-    return t->position_bits | (uint32_t)t->normal_bits << 8 | (uint32_t)t->tangent_bits << 16;
-}
 
 /* The instance's row of slots, all targets, and its tile. */
 static void list_instance(noh_gl_morph *m, uint32_t instance, uint32_t *tile, noh_gl_morph_stats *stats)
@@ -162,7 +129,7 @@ static void list_instance(noh_gl_morph *m, uint32_t instance, uint32_t *tile, no
     uint32_t first = noh_gl_morph_first_weight(m, instance), x, y;
     for (uint32_t t = 0; t < h->target_count; t++) {
         noh_gl_morph_put_slot(m->slots + 4u * (size_t)(first + t), &mesh->mesh.targets[t], m->weights[first + t],
-                              target_bits(&mesh->mesh.targets[t]));
+                              noh_gl_morph_target_bits(&mesh->mesh.targets[t]));
         stats->targets += m->weights[first + t] != 0.0f;
     }
     noh_gl_morph_tile(m, instance, &x, &y);
@@ -174,34 +141,6 @@ static void list_instance(noh_gl_morph *m, uint32_t instance, uint32_t *tile, no
     stats->texels += h->touched_count;
     stats->rects += 1;
     noh_gl_table_upload(m->gl, &m->slot_table, first, h->target_count, m->slots + 4u * (size_t)first);
-}
-
-static void bind_for_draw(noh_gl_morph *m)
-{
-    const GLuint names[3] = { m->deltas.texture.name, m->rects.texture.name, m->slot_table.texture.name };
-    for (unsigned i = 3; i-- > 0;) {
-        m->gl->ActiveTexture(GL_TEXTURE0 + i);
-        m->gl->BindTexture(GL_TEXTURE_2D, names[i]);
-    }
-    m->gl->Viewport(0, 0, (GLsizei)m->plan.atlas_width, (GLsizei)m->plan.atlas_height);
-    m->gl->Disable(GL_DEPTH_TEST);
-    m->gl->Disable(GL_CULL_FACE);
-    m->gl->Disable(GL_SCISSOR_TEST);
-    m->gl->Disable(GL_BLEND);
-    m->gl->UseProgram(m->program);
-    m->gl->BindVertexArray(m->vertex_array);
-    m->gl->BindFramebuffer(GL_FRAMEBUFFER, m->framebuffers[0]);
-}
-
-static void unbind_all(noh_gl_morph *m)
-{
-    m->gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
-    m->gl->BindVertexArray(0);
-    m->gl->UseProgram(0);
-    for (unsigned i = 3; i-- > 0;) {
-        m->gl->ActiveTexture(GL_TEXTURE0 + i);
-        m->gl->BindTexture(GL_TEXTURE_2D, 0);
-    }
 }
 
 void noh_gl_morph_update_gather(noh_gl_morph *m, noh_gl_morph_stats *stats)
@@ -219,8 +158,9 @@ void noh_gl_morph_update_gather(noh_gl_morph *m, noh_gl_morph_stats *stats)
     m->gl->BindBuffer(GL_ARRAY_BUFFER, m->stream.name);
     m->gl->BufferSubData(GL_ARRAY_BUFFER, 0, (GLsizeiptr)(16u * (size_t)tiles), m->staging);
     m->gl->BindBuffer(GL_ARRAY_BUFFER, 0);
-    bind_for_draw(m);
+    noh_gl_morph_begin(m);
+    m->gl->BindFramebuffer(GL_FRAMEBUFFER, m->framebuffers[0]);
     m->gl->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)tiles);
     stats->draws += 1;
-    unbind_all(m);
+    noh_gl_morph_end(m);
 }

@@ -60,7 +60,7 @@ int noh_gl_morph_wide(const noh_gl_morph_plan *plan);
 
 /* Rows from one tile to the one above it: a multiple of four. Rasterisers work in blocks of 2 x 2 to
  * 4 x 4, and the converter cut the rectangles to those blocks: every tile must lie on them as the
- * first one does (mrt, 100 heads on llvmpipe: a fifth less work). */
+ * first one does (mrt, 100 heads on llvmpipe: an eighth less work). */
 uint32_t noh_gl_morph_pitch(const noh_mesh_header *header);
 
 void noh_gl_morph_tile(const noh_gl_morph *m, uint32_t instance, uint32_t *x, uint32_t *y);
@@ -69,6 +69,18 @@ uint32_t noh_gl_morph_first_weight(const noh_gl_morph *m, uint32_t instance);
 
 /* Write the slot of an active target: weight * scale per layer, and a last word. */
 void noh_gl_morph_put_slot(uint32_t slot[4], const noh_target *target, float weight, uint32_t last);
+
+uint32_t noh_gl_morph_target_bits(const noh_target *target);
+
+/* Set u_tables and u_atlas of the path's program. */
+void noh_gl_morph_constants(noh_gl_morph *m);
+
+/* Make the buffer and vertex array of the instances: one integer attribute, one record an instance. */
+noh_result noh_gl_morph_stream(noh_gl_morph *m, const char *attribute, GLint components, GLenum type, noh_error *error);
+
+/* Bind what a draw reads; afterwards leave the state that noh_gl_morph_update promises. */
+void noh_gl_morph_begin(const noh_gl_morph *m);
+void noh_gl_morph_end(const noh_gl_morph *m);
 
 /* The paths: make their GL objects, and do one update. */
 noh_result noh_gl_morph_init_blend(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error);

@@ -1,0 +1,130 @@
+/* gl_morph_shared.c: what the paths have in common: tiles, slots, framebuffers, the stream
+ * of instances, and the GL state around a draw. */
+#include <string.h>
+
+#include "gl/gl_morph_internal.h"
+
+/* ---- where things are ---- */
+
+void noh_gl_morph_tile(const noh_gl_morph *m, uint32_t instance, uint32_t *x, uint32_t *y)
+{
+    const noh_gl_morph_mesh *mesh = &m->meshes[m->instance_mesh[instance]];
+    uint32_t i = instance - mesh->first_instance;
+    *x = i % mesh->columns << mesh->mesh.header->morph_width_log2;
+    *y = mesh->band_y + i / mesh->columns * noh_gl_morph_pitch(mesh->mesh.header);
+}
+
+uint32_t noh_gl_morph_first_weight(const noh_gl_morph *m, uint32_t instance)
+{
+    const noh_gl_morph_mesh *mesh = &m->meshes[m->instance_mesh[instance]];
+    return mesh->first_weight + (instance - mesh->first_instance) * mesh->mesh.header->target_count;
+}
+
+/* ---- what the shaders are given ---- */
+
+void noh_gl_morph_put_slot(uint32_t slot[4], const noh_target *target, float weight, uint32_t last)
+{
+    /* the same products as the CPU reference makes, so that both round alike */
+    const float scaled[3] = { target->position_scale * weight, target->normal_scale * weight, target->tangent_scale * weight };
+    memcpy(slot, scaled, sizeof scaled);
+    slot[3] = last;
+}
+
+uint32_t noh_gl_morph_target_bits(const noh_target *t)
+{
+    return t->position_bits | (uint32_t)t->normal_bits << 8 | (uint32_t)t->tangent_bits << 16;
+}
+
+void noh_gl_morph_constants(noh_gl_morph *m)
+{
+    m->gl->UseProgram(m->program);
+    m->gl->Uniform3i(m->gl->GetUniformLocation(m->program, "u_tables"), (GLint)m->rects.width_log2,
+                     (GLint)m->slot_table.width_log2, (GLint)m->deltas.width_log2);
+    m->gl->Uniform2f(m->gl->GetUniformLocation(m->program, "u_atlas"), 2.0f / (float)m->plan.atlas_width,
+                     2.0f / (float)m->plan.atlas_height);
+    m->gl->UseProgram(0);
+}
+
+/* ---- GL objects ---- */
+
+noh_result noh_gl_morph_framebuffer(noh_gl_morph *m, int which, GLuint *framebuffer, noh_error *error)
+{
+    static const GLenum attachments[3] = { GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2 };
+    noh_result result = noh_gl_framebuffer_create(m->gl, m->ledger, framebuffer, error);
+    GLenum status;
+    if (result) {
+        return result;
+    }
+    m->gl->BindFramebuffer(GL_FRAMEBUFFER, *framebuffer);
+    if (which == NOH_LAYERS_LAYERED) {
+        m->gl->FramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, m->layers.name, 0);
+    } else if (which == NOH_LAYERS_ALL) {
+        for (GLint layer = 0; layer < 3; layer++) {
+            m->gl->FramebufferTextureLayer(GL_FRAMEBUFFER, attachments[layer], m->layers.name, 0, layer);
+        }
+        m->gl->DrawBuffers(3, attachments);
+    } else {
+        m->gl->FramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, m->layers.name, 0, which);
+    }
+    status = m->gl->CheckFramebufferStatus(GL_FRAMEBUFFER);
+    m->gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
+    if (status != GL_FRAMEBUFFER_COMPLETE) {
+        return noh_fail(error, NOH_ERR_GL, "the driver refuses the accumulation framebuffer", status, 0);
+    }
+    return NOH_OK;
+}
+
+noh_result noh_gl_morph_stream(noh_gl_morph *m, const char *attribute, GLint components, GLenum type, noh_error *error)
+{
+    uint64_t bytes = m->plan.stream_bytes - m->slot_table.texture.bytes;
+    GLuint location = (GLuint)m->gl->GetAttribLocation(m->program, attribute);
+    noh_result result = noh_gl_buffer_create(m->gl, m->ledger, GL_ARRAY_BUFFER, bytes, NULL, GL_STREAM_DRAW, &m->stream, error);
+    if (result) {
+        return result;
+    }
+    m->gl->GenVertexArrays(1, &m->vertex_array);
+    m->gl->BindVertexArray(m->vertex_array);
+    m->gl->BindBuffer(GL_ARRAY_BUFFER, m->stream.name);
+    m->gl->EnableVertexAttribArray(location);
+    m->gl->VertexAttribIPointer(location, components, type, 0, NULL);
+    m->gl->VertexAttribDivisor(location, 1);
+    m->gl->BindVertexArray(0);
+    m->gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+    return NOH_OK;
+}
+
+/* ---- the state around a draw ---- */
+
+static void plain_state(const noh_gl_morph *m)
+{
+    static const GLenum off[] = { GL_BLEND, GL_SCISSOR_TEST, GL_DEPTH_TEST, GL_CULL_FACE };
+    for (unsigned i = 0; i < sizeof off / sizeof off[0]; i++) {
+        m->gl->Disable(off[i]);
+    }
+    m->gl->Viewport(0, 0, (GLsizei)m->plan.atlas_width, (GLsizei)m->plan.atlas_height);
+}
+
+void noh_gl_morph_begin(const noh_gl_morph *m)
+{
+    const GLuint names[3] = { m->deltas.texture.name, m->rects.texture.name, m->slot_table.texture.name };
+    for (unsigned i = 3; i-- > 0;) {
+        m->gl->ActiveTexture(GL_TEXTURE0 + i);
+        m->gl->BindTexture(GL_TEXTURE_2D, names[i]);
+    }
+    plain_state(m);
+    m->gl->UseProgram(m->program);
+    m->gl->BindVertexArray(m->vertex_array);
+}
+
+void noh_gl_morph_end(const noh_gl_morph *m)
+{
+    for (unsigned i = 3; i-- > 0;) {
+        m->gl->ActiveTexture(GL_TEXTURE0 + i);
+        m->gl->BindTexture(GL_TEXTURE_2D, 0);
+    }
+    plain_state(m);
+    m->gl->UseProgram(0);
+    m->gl->BindVertexArray(0);
+    m->gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+    m->gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
+}
