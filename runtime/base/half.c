@@ -39,7 +39,12 @@ uint16_t noh_half_from_float(float value, noh_half_mode mode)
     uint32_t sign = (bits >> 16) & 0x8000u;
     uint32_t magnitude = bits & 0x7fffffffu;
     uint32_t half;
-    if (magnitude > FLOAT_INFINITY) {
+    if (mode != NOH_HALF_RTZ && magnitude - FLOAT_HALF_MIN < FLOAT_RNE_INFINITY - FLOAT_HALF_MIN) {
+        /* nearly every value: a normal half, to nearest; ties go to even by the last bit that stays */
+        half = (magnitude - FLOAT_HALF_REBIAS + 0xfffu + ((magnitude >> 13) & 1u)) >> 13;
+    } else if (magnitude == 0) {
+        half = 0;
+    } else if (magnitude > FLOAT_INFINITY) {
         half = HALF_INFINITY | 0x200u | ((magnitude >> 13) & 0x3ffu);
     } else if (magnitude == FLOAT_INFINITY) {
         half = HALF_INFINITY;
