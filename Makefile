@@ -43,8 +43,9 @@ CONVERT_C  := $(sort $(wildcard tools/convert/*.c))
 CONVERT_CC := $(sort $(wildcard tools/convert/*.cpp))
 TOOL_C     := $(sort $(wildcard tools/noh/*.c tools/noh/bench/*.c))
 MASK_C     := $(sort $(wildcard tools/make_mask/*.c))
-SHADERS    := $(sort $(filter-out %.glsl,$(wildcard shaders_es/*)))
-TOOL_SHADERS := $(sort $(foreach stage,vert geom frag,$(wildcard tools/noh/shaders/*.$(stage) tools/noh/bench/*.$(stage))))
+STAGES     := vert geom frag
+SHADERS    := $(sort $(foreach stage,$(STAGES),$(wildcard shaders_es/*.$(stage))))
+TOOL_SHADERS := $(sort $(foreach stage,$(STAGES),$(wildcard tools/noh/shaders/*.$(stage) tools/noh/bench/*.$(stage))))
 TEST_C     := $(sort $(wildcard tests/unit/test_*.c tests/memory/test_*.c tests/gl/test_*.c))
 
 RUNTIME_O  := $(RUNTIME_C:%.c=$(BUILD)/%.o) $(BUILD)/gen/shaders.gen.o
