@@ -224,14 +224,14 @@ static void walk_meshes(walk *w)
     free(meshes);
 }
 
-static void walk_clip(walk *w, const noh_clip *clip)
+static void walk_clip(walk *w, const noh_weight_clip *clip)
 {
     const float at[] = { -1.0f, 0.0f, 0.37f, 0.5f, 1.0f, 2.0f };
     eat_name(w, clip->name);
     for (uint32_t c = 0; c < clip->header->channel_count; c++) {
         float *weights = memory(4u * (size_t)clip->channels[c].width);
         for (size_t i = 0; i < sizeof at / sizeof at[0]; i++) {
-            noh_clip_sample_weights(clip, c, at[i] * clip->header->duration_s, weights);
+            noh_weight_clip_sample(clip, c, at[i] * clip->header->duration_s, weights);
             eat(w, weights, 4u * (size_t)clip->channels[c].width);
         }
         free(weights);
@@ -241,12 +241,12 @@ static void walk_clip(walk *w, const noh_clip *clip)
 uint32_t pack_walk(const noh_pack *pack, uint32_t seed)
 {
     walk w = { pack, seed, 0 };
-    noh_clip clip;
+    noh_weight_clip clip;
     walk_names(&w);
     walk_textures(&w);
     walk_nodes(&w);
     walk_meshes(&w);
-    for (uint32_t i = 0; noh_pack_clip(pack, i, &clip) == NOH_OK; i++) {
+    for (uint32_t i = 0; noh_pack_weight_clip(pack, i, &clip) == NOH_OK; i++) {
         walk_clip(&w, &clip);
     }
     return w.hash;

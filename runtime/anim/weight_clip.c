@@ -1,6 +1,6 @@
 #include "anim/weight_clip.h"
 
-noh_result noh_pack_clip(const noh_pack *pack, uint32_t index, noh_clip *clip)
+noh_result noh_pack_weight_clip(const noh_pack *pack, uint32_t index, noh_weight_clip *clip)
 {
     if (index >= pack->clip_count) {
         return NOH_ERR_NOT_FOUND;
@@ -8,8 +8,8 @@ noh_result noh_pack_clip(const noh_pack *pack, uint32_t index, noh_clip *clip)
     clip->pack = pack;
     clip->name = noh_pack_chunk_name(pack, pack->first_clip + index);
     clip->bytes = pack->bytes + pack->chunks[pack->first_clip + index].offset;
-    clip->header = (const noh_clip_header *)(const void *)clip->bytes;
-    clip->channels = (const noh_clip_channel *)(const void *)(clip->bytes + clip->header->channels_offset);
+    clip->header = (const noh_weight_clip_header *)(const void *)clip->bytes;
+    clip->channels = (const noh_weight_channel *)(const void *)(clip->bytes + clip->header->channels_offset);
     return NOH_OK;
 }
 
@@ -53,16 +53,16 @@ static void sample_cubic(const float *a, const float *b, float s, float interval
     }
 }
 
-void noh_clip_sample_weights(const noh_clip *clip, uint32_t channel, float time_s, float *weights)
+void noh_weight_clip_sample(const noh_weight_clip *clip, uint32_t channel, float time_s, float *weights)
 {
-    const noh_clip_channel *c = &clip->channels[channel];
+    const noh_weight_channel *c = &clip->channels[channel];
     const float *times = (const float *)(const void *)(clip->bytes + c->times_offset);
     const float *values = (const float *)(const void *)(clip->bytes + c->values_offset);
-    uint32_t cubic = c->interpolation == NOH_CLIP_CUBIC, key = find_key(times, c->key_count, time_s);
+    uint32_t cubic = c->interpolation == NOH_WEIGHTS_CUBIC, key = find_key(times, c->key_count, time_s);
     size_t stride = (size_t)c->width * (cubic ? 3u : 1u);
     const float *a = values + key * stride;
     float interval, s;
-    if (time_s <= times[0] || key + 1 >= c->key_count || c->interpolation == NOH_CLIP_STEP) {
+    if (time_s <= times[0] || key + 1 >= c->key_count || c->interpolation == NOH_WEIGHTS_STEP) {
         copy_weights(a + (cubic ? c->width : 0u), c->width, weights);
         return;
     }

@@ -166,20 +166,20 @@ typedef struct noh_texture_header {
     uint32_t reserved[2];
 } noh_texture_header;
 
-/* ---- CHUNK_CLIP: weight tracks; header, noh_clip_channel[], then keys. ---- */
+/* ---- CHUNK_CLIP: weight tracks; header, noh_weight_channel[], then keys. ---- */
 
-#define NOH_CLIP_LINEAR 0u
-#define NOH_CLIP_STEP 1u
-#define NOH_CLIP_CUBIC 2u
+#define NOH_WEIGHTS_LINEAR 0u
+#define NOH_WEIGHTS_STEP 1u
+#define NOH_WEIGHTS_CUBIC 2u
 
-typedef struct noh_clip_header {
+typedef struct noh_weight_clip_header {
     uint32_t channel_count;
     float duration_s;
     uint32_t channels_offset;
     uint32_t reserved;
-} noh_clip_header;
+} noh_weight_clip_header;
 
-typedef struct noh_clip_channel {
+typedef struct noh_weight_channel {
     uint32_t node;
     uint32_t interpolation; /* NOH_CLIP_* */
     uint32_t key_count;
@@ -187,7 +187,7 @@ typedef struct noh_clip_channel {
     uint32_t times_offset;  /* float[key_count], seconds, increasing */
     uint32_t values_offset; /* float[key_count][width], CUBIC: [key_count][3][width] */
     uint32_t reserved[2];
-} noh_clip_channel;
+} noh_weight_channel;
 
 NOH_STATIC_ASSERT(sizeof(noh_pack_header) == 64, pack_header);
 NOH_STATIC_ASSERT(sizeof(noh_pack_chunk) == 32, pack_chunk);
@@ -198,7 +198,7 @@ NOH_STATIC_ASSERT(sizeof(noh_rect) == 8, rect);
 NOH_STATIC_ASSERT(sizeof(noh_node) == 112, node);
 NOH_STATIC_ASSERT(sizeof(noh_material) == 48, material);
 NOH_STATIC_ASSERT(sizeof(noh_texture_header) == 32, texture_header);
-NOH_STATIC_ASSERT(sizeof(noh_clip_header) == 16, clip_header);
-NOH_STATIC_ASSERT(sizeof(noh_clip_channel) == 32, clip_channel);
+NOH_STATIC_ASSERT(sizeof(noh_weight_clip_header) == 16, clip_header);
+NOH_STATIC_ASSERT(sizeof(noh_weight_channel) == 32, clip_channel);
 
 #endif

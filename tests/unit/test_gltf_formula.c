@@ -256,11 +256,11 @@ static void sample_model(const model_channel *c, double time, double *weights)
 
 static void sample_pack(const asset *a, const char *clip, uint32_t node, float time, float *weights)
 {
-    noh_clip found;
-    for (uint32_t i = 0; noh_pack_clip(&a->pack, i, &found) == NOH_OK; i++) {
+    noh_weight_clip found;
+    for (uint32_t i = 0; noh_pack_weight_clip(&a->pack, i, &found) == NOH_OK; i++) {
         for (uint32_t c = 0; strcmp(found.name, clip) == 0 && c < found.header->channel_count; c++) {
             if (found.channels[c].node == node) {
-                noh_clip_sample_weights(&found, c, time, weights);
+                noh_weight_clip_sample(&found, c, time, weights);
                 return;
             }
         }

@@ -47,11 +47,11 @@ static void past_the_last_is_not_found(void **state)
 {
     noh_pack pack = test_open(good, good_count);
     noh_mesh mesh;
-    noh_clip clip;
+    noh_weight_clip clip;
     noh_texture texture;
     (void)state;
     assert_int_equal(noh_pack_mesh(&pack, 1, &mesh), NOH_ERR_NOT_FOUND);
-    assert_int_equal(noh_pack_clip(&pack, 3, &clip), NOH_ERR_NOT_FOUND);
+    assert_int_equal(noh_pack_weight_clip(&pack, 3, &clip), NOH_ERR_NOT_FOUND);
     assert_int_equal(noh_pack_texture(&pack, 1, &texture), NOH_ERR_NOT_FOUND);
     assert_string_equal(noh_pack_string(&pack, pack.string_bytes), "");
     assert_string_equal(noh_pack_chunk_name(&pack, pack.chunk_count), "");
@@ -246,8 +246,8 @@ typedef struct forged {
     noh_nodes_header *nodes_header;
     noh_node *nodes;
     float *node_weights;
-    noh_clip_header *clip;
-    noh_clip_channel *channel;
+    noh_weight_clip_header *clip;
+    noh_weight_channel *channel;
     float *times, *values;
 } forged;
 
@@ -277,8 +277,8 @@ static void name_scene(forged *f)
     f->nodes_header = (noh_nodes_header *)(void *)nodes;
     f->nodes = (noh_node *)(void *)(nodes + f->nodes_header->nodes_offset);
     f->node_weights = (float *)(void *)(nodes + f->nodes_header->weights_offset);
-    f->clip = (noh_clip_header *)(void *)clip;
-    f->channel = (noh_clip_channel *)(void *)(clip + f->clip->channels_offset);
+    f->clip = (noh_weight_clip_header *)(void *)clip;
+    f->channel = (noh_weight_channel *)(void *)(clip + f->clip->channels_offset);
     f->times = (float *)(void *)(clip + f->channel->times_offset);
     f->values = (float *)(void *)(clip + f->channel->values_offset);
 }
@@ -468,10 +468,10 @@ static float nan_value(void)
     X(channel_node_without_mesh, DATA, "channel does not fit", f->channel->node = 0) \
     X(channel_width, DATA, "channel does not fit", f->channel->width -= 1) \
     X(channel_interpolation, DATA, "interpolation", f->channel->interpolation = 3) \
-    X(channel_values_cubic_lie, DATA, "past the end", f->channel->interpolation = NOH_CLIP_CUBIC) \
+    X(channel_values_cubic_lie, DATA, "past the end", f->channel->interpolation = NOH_WEIGHTS_CUBIC) \
     X(channel_no_keys, DATA, "no keys", f->channel->key_count = 0) \
     X(channel_key_count_overflows, DATA, "no keys, too many", f->channel->key_count = 0xffffffffu) \
-    X(channel_key_count_large, DATA, "past the end", f->channel->key_count = NOH_CLIP_KEYS_MAX) \
+    X(channel_key_count_large, DATA, "past the end", f->channel->key_count = NOH_WEIGHT_KEYS_MAX) \
     X(channel_reserved, DATA, "interpolation", f->channel->reserved[1] = 1) \
     X(channel_times_elsewhere, DATA, "begin", f->channel->times_offset = 0) \
     X(channel_values_elsewhere, DATA, "begin", f->channel->values_offset += 16) \

@@ -32,12 +32,12 @@ static int check_clip(const model_clip *c, model_error *error)
     for (uint32_t i = 0; i < c->channel_count; i++) {
         if (c->channels[i].path == MODEL_PATH_WEIGHTS) {
             channels += 1;
-            if (over(c->channels[i].key_count, NOH_CLIP_KEYS_MAX, "keys", "animation", c->name, error)) {
+            if (over(c->channels[i].key_count, NOH_WEIGHT_KEYS_MAX, "keys", "animation", c->name, error)) {
                 return 1;
             }
         }
     }
-    return over(channels, NOH_CLIP_CHANNELS_MAX, "weight channels", "animation", c->name, error);
+    return over(channels, NOH_WEIGHT_CHANNELS_MAX, "weight channels", "animation", c->name, error);
 }
 
 int pack_check_model(const model *m, model_error *error)

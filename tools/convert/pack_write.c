@@ -186,7 +186,7 @@ static uint32_t weight_channels(const model_clip *clip)
     return count;
 }
 
-static void write_channel_keys(writer *w, const model_channel *from, noh_clip_channel *to, size_t base)
+static void write_channel_keys(writer *w, const model_channel *from, noh_weight_channel *to, size_t base)
 {
     size_t values = from->interpolation == MODEL_CUBICSPLINE ? 3 : 1;
     to->node = from->node;
@@ -203,15 +203,15 @@ static void write_channel_keys(writer *w, const model_channel *from, noh_clip_ch
 
 static void write_clip(writer *w, const model_clip *clip)
 {
-    noh_clip_header h = { weight_channels(clip), clip->duration_s, sizeof h, 0 };
+    noh_weight_clip_header h = { weight_channels(clip), clip->duration_s, sizeof h, 0 };
     size_t base, at;
     begin_chunk(w, NOH_CHUNK_CLIP, clip->name);
     base = w->out.count;
     buffer_append(&w->out, &h, sizeof h);
     at = w->out.count;
-    buffer_append(&w->out, NULL, sizeof(noh_clip_channel) * h.channel_count);
+    buffer_append(&w->out, NULL, sizeof(noh_weight_channel) * h.channel_count);
     for (uint32_t c = 0; c < clip->channel_count; c++) {
-        noh_clip_channel channel;
+        noh_weight_channel channel;
         if (clip->channels[c].path != MODEL_PATH_WEIGHTS) {
             continue;
         }

@@ -33,12 +33,12 @@ static void print_mesh(const noh_pack *pack, const noh_mesh *m)
     }
 }
 
-static void print_clip(const noh_clip *clip)
+static void print_clip(const noh_weight_clip *clip)
 {
     static const char *const names[] = { "linear", "step", "cubic" };
     printf("clip '%s': %.3f s", clip->name, (double)clip->header->duration_s);
     for (uint32_t c = 0; c < clip->header->channel_count; c++) {
-        const noh_clip_channel *channel = &clip->channels[c];
+        const noh_weight_channel *channel = &clip->channels[c];
         printf("%s weights of node '%s', %u %s keys", c ? "," : ":",
                noh_pack_string(clip->pack, clip->pack->nodes[channel->node].name), channel->key_count, names[channel->interpolation]);
     }
@@ -57,8 +57,8 @@ static void print_info(const pack_file *file)
         print_mesh(p, &mesh);
     }
     for (uint32_t i = 0; i < p->clip_count; i++) {
-        noh_clip clip;
-        noh_pack_clip(p, i, &clip);
+        noh_weight_clip clip;
+        noh_pack_weight_clip(p, i, &clip);
         print_clip(&clip);
     }
 }
@@ -106,7 +106,7 @@ static void json_mesh(json *j, const noh_pack *pack, const noh_mesh *m)
     json_close(j, '}');
 }
 
-static void json_clip(json *j, const noh_clip *clip)
+static void json_clip(json *j, const noh_weight_clip *clip)
 {
     json_open(j, NULL, '{');
     json_text(j, "name", clip->name);
@@ -132,8 +132,8 @@ static void json_info(const pack_file *file)
     json_close(&j, ']');
     json_open(&j, "clips", '[');
     for (uint32_t i = 0; i < p->clip_count; i++) {
-        noh_clip clip;
-        noh_pack_clip(p, i, &clip);
+        noh_weight_clip clip;
+        noh_pack_weight_clip(p, i, &clip);
         json_clip(&j, &clip);
     }
     json_close(&j, ']');

@@ -8,7 +8,7 @@
 typedef struct sheet {
     const pack_file *file;
     const char *clip_name;
-    noh_clip clip;
+    noh_weight_clip clip;
     const char **names; /* targets, each name once */
     uint32_t name_count, clip_tiles, tile_count, columns, tile;
     uint8_t *rgba;      /* the whole sheet */

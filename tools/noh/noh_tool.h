@@ -120,7 +120,7 @@ int scene_set_weights(scene *s, const pack_file *file, const option_list *assign
 /* 0 when some mesh has the target; prints an error with the nearest name otherwise. */
 int scene_check_target(const scene *s, const pack_file *file, const char *name);
 /* The clip of that name; prints an error with the nearest name and returns an exit code otherwise. */
-int scene_find_clip(const pack_file *file, const char *clip_name, noh_clip *clip);
+int scene_find_clip(const pack_file *file, const char *clip_name, noh_weight_clip *clip);
 
 /* ---- verbs ---- */
 

@@ -68,12 +68,12 @@ static int fail_unknown(const pack_file *file, const char *kind, const char *nam
     return tool_fail(file->path, "no %s named '%s' (it has %zu; `noh info` lists them)", kind, name, count);
 }
 
-int scene_find_clip(const pack_file *file, const char *clip_name, noh_clip *clip)
+int scene_find_clip(const pack_file *file, const char *clip_name, noh_weight_clip *clip)
 {
     const char **names;
     int status;
     for (uint32_t i = 0; i < file->pack.clip_count; i++) {
-        noh_pack_clip(&file->pack, i, clip);
+        noh_pack_weight_clip(&file->pack, i, clip);
         if (strcmp(clip->name, clip_name) == 0) {
             return 0;
         }
@@ -83,7 +83,7 @@ int scene_find_clip(const pack_file *file, const char *clip_name, noh_clip *clip
         return tool_fail(file->path, "out of memory");
     }
     for (uint32_t i = 0; i < file->pack.clip_count; i++) {
-        noh_pack_clip(&file->pack, i, clip);
+        noh_pack_weight_clip(&file->pack, i, clip);
         names[i] = clip->name;
     }
     status = fail_unknown(file, "clip", clip_name, names, file->pack.clip_count);
@@ -93,12 +93,12 @@ int scene_find_clip(const pack_file *file, const char *clip_name, noh_clip *clip
 
 int scene_set_clip(scene *s, const pack_file *file, const char *clip_name, double time_s)
 {
-    noh_clip clip;
+    noh_weight_clip clip;
     int status = scene_find_clip(file, clip_name, &clip);
     for (uint32_t c = 0; !status && c < clip.header->channel_count; c++) {
         for (uint32_t i = 0; i < s->item_count; i++) {
             if (s->items[i].node == clip.channels[c].node) {
-                noh_clip_sample_weights(&clip, c, (float)time_s, s->items[i].weights);
+                noh_weight_clip_sample(&clip, c, (float)time_s, s->items[i].weights);
             }
         }
     }

@@ -34,10 +34,10 @@ static int tear_down(void **state)
     return 0;
 }
 
-static noh_clip clip_at(uint32_t index)
+static noh_weight_clip clip_at(uint32_t index)
 {
-    noh_clip clip;
-    assert_int_equal(noh_pack_clip(&pack, index, &clip), NOH_OK);
+    noh_weight_clip clip;
+    assert_int_equal(noh_pack_weight_clip(&pack, index, &clip), NOH_OK);
     return clip;
 }
 
@@ -67,11 +67,11 @@ static double oracle(const model_channel *c, double time, uint32_t i)
 static void compare_over_time(uint32_t index)
 {
     const model_channel *c = &source->clips[index].channels[0];
-    noh_clip clip = clip_at(index);
+    noh_weight_clip clip = clip_at(index);
     float duration = clip.header->duration_s;
     for (int step = -50; step <= 1050; step++) {
         float time = duration * (float)step / 1000.0f, weights[WIDTH];
-        noh_clip_sample_weights(&clip, 0, time, weights);
+        noh_weight_clip_sample(&clip, 0, time, weights);
         for (uint32_t i = 0; i < WIDTH; i++) {
             double expected = oracle(c, (double)time, i);
             if (!(fabs((double)weights[i] - expected) <= 4e-6)) { /* values up to 2, tangents up to 2 per second */
@@ -111,10 +111,10 @@ static void keys_are_met_exactly(void **state)
     (void)state;
     for (uint32_t index = 0; index < 3; index++) {
         const model_channel *c = &source->clips[index].channels[0];
-        noh_clip clip = clip_at(index);
+        noh_weight_clip clip = clip_at(index);
         for (uint32_t k = 0; k < KEYS; k++) {
             float weights[WIDTH];
-            noh_clip_sample_weights(&clip, 0, c->times[k], weights);
+            noh_weight_clip_sample(&clip, 0, c->times[k], weights);
             test_same_floats(weights, key_values(c, k), WIDTH, source->clips[index].name);
         }
     }
@@ -125,16 +125,16 @@ static void ends_hold(void **state)
     (void)state;
     for (uint32_t index = 0; index < 3; index++) {
         const model_channel *c = &source->clips[index].channels[0];
-        noh_clip clip = clip_at(index);
+        noh_weight_clip clip = clip_at(index);
         const float before[] = { -1e30f, -1.0f, 0.0f, c->times[0] * 0.5f };
         const float after[] = { c->times[KEYS - 1], c->times[KEYS - 1] + 1.0f, 1e30f };
         float weights[WIDTH];
         for (size_t i = 0; i < TEST_COUNT(before); i++) {
-            noh_clip_sample_weights(&clip, 0, before[i], weights);
+            noh_weight_clip_sample(&clip, 0, before[i], weights);
             test_same_floats(weights, key_values(c, 0), WIDTH, "before the first key");
         }
         for (size_t i = 0; i < TEST_COUNT(after); i++) {
-            noh_clip_sample_weights(&clip, 0, after[i], weights);
+            noh_weight_clip_sample(&clip, 0, after[i], weights);
             test_same_floats(weights, key_values(c, KEYS - 1), WIDTH, "after the last key");
         }
     }
@@ -143,10 +143,10 @@ static void ends_hold(void **state)
 static void step_holds_until_just_before_the_next_key(void **state)
 {
     const model_channel *c = &source->clips[1].channels[0];
-    noh_clip clip = clip_at(1);
+    noh_weight_clip clip = clip_at(1);
     float weights[WIDTH];
     (void)state;
-    noh_clip_sample_weights(&clip, 0, nextafterf(c->times[2], 0.0f), weights);
+    noh_weight_clip_sample(&clip, 0, nextafterf(c->times[2], 0.0f), weights);
     test_same_floats(weights, key_values(c, 1), WIDTH, "just before a key");
 }
 
@@ -157,7 +157,7 @@ static void one_key_holds_always(void **state)
     size_t count;
     uint8_t *one;
     noh_pack p;
-    noh_clip clip;
+    noh_weight_clip clip;
     (void)state;
     for (uint32_t i = 0; i < 3; i++) {
         m->clips[i].channels[0].key_count = 1;
@@ -166,10 +166,10 @@ static void one_key_holds_always(void **state)
     one = test_pack_of(m, &count, NULL);
     p = test_open(one, count);
     for (uint32_t i = 0; i < 3; i++) {
-        assert_int_equal(noh_pack_clip(&p, i, &clip), NOH_OK);
+        assert_int_equal(noh_pack_weight_clip(&p, i, &clip), NOH_OK);
         for (float time = -1.0f; time < 3.0f; time += 0.25f) {
             float weights[2];
-            noh_clip_sample_weights(&clip, 0, time, weights);
+            noh_weight_clip_sample(&clip, 0, time, weights);
             test_same_floats(weights, key_values(&m->clips[i].channels[0], 0), 2, m->clips[i].name);
         }
     }
@@ -181,7 +181,7 @@ static void names_and_durations_are_kept(void **state)
 {
     (void)state;
     for (uint32_t i = 0; i < 3; i++) {
-        noh_clip clip = clip_at(i);
+        noh_weight_clip clip = clip_at(i);
         assert_string_equal(clip.name, source->clips[i].name);
         assert_true(clip.header->duration_s == source->clips[i].duration_s);
         assert_int_equal(clip.channels[0].width, WIDTH);
