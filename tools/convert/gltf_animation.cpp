@@ -92,6 +92,20 @@ static void read_times(file &f, int accessor, model_channel &c, const std::strin
     check_times(c, input + text(" (accessor %d)", accessor));
 }
 
+/* Also CUBICSPLINE: the values between the tangents are rotations. */
+static void check_rotations(const model_channel &c, const std::string &where)
+{
+    const size_t per_key = c.interpolation == MODEL_CUBICSPLINE ? 3 : 1;
+    for (size_t i = 0; i < c.key_count; ++i) {
+        const float *q = c.values + (i * per_key + per_key / 2) * 4;
+        double square = 0.0;
+        for (int k = 0; k < 4; ++k)
+            square += static_cast<double>(q[k]) * static_cast<double>(q[k]);
+        if (!(square > 1e-6))
+            fail(where + text(", element %zu", i * per_key + per_key / 2), "the rotation is a quaternion without length");
+    }
+}
+
 static void read_values(file &f, int accessor, model_channel &c, const std::string &where)
 {
     std::string output = where + " output";
@@ -109,6 +123,8 @@ static void read_values(file &f, int accessor, model_channel &c, const std::stri
                   static_cast<unsigned long long>(elements), static_cast<unsigned long long>(given)));
     c.values = allocate<float>(f, elements * components, output);
     read_floats(f, accessor, components, accepted, elements, output, c.values);
+    if (c.path == MODEL_PATH_ROTATION)
+        check_rotations(c, output + text(" (accessor %d)", accessor));
 }
 
 static void read_channel(file &f, const tinygltf::Animation &a, const tinygltf::AnimationChannel &source,
@@ -152,8 +168,10 @@ static void read_clip(file &f, size_t index)
     model_clip &clip = f.out->clips[f.out->clip_count++]; /* counted first, so that it is freed when reading fails */
     clip.name = copy_string(name);
     read_channels(f, a, where, clip);
-    if (clip.channel_count > 0)
+    if (clip.channel_count > 0) {
+        read_events(f, a, where, clip);
         return;
+    }
     warn(f, "%s was skipped: no channel of it is left", where.c_str());
     free(clip.channels);
     free(clip.name);

@@ -13,8 +13,10 @@
  *   gltf_accessor.cpp  accessors to floats and indices
  *   gltf_mesh.cpp      meshes, primitives, targets
  *   gltf_scene.cpp     nodes
- *   gltf_skin.cpp      where skinned meshes stand in the rest pose
+ *   gltf_influences.cpp which joints move which vertices
+ *   gltf_skin.cpp      skins, and where skinned meshes stand in the rest pose
  *   gltf_animation.cpp animations
+ *   gltf_events.cpp    callback keys in an animation's extras
  *   gltf_material.cpp  materials, textures, images */
 #ifndef NOH_CONVERT_GLTF_INTERNAL_H
 #define NOH_CONVERT_GLTF_INTERNAL_H
@@ -74,6 +76,7 @@ struct file {
     ::model *out = nullptr;
     std::vector<uint32_t> mesh_of;     /* [json.meshes] index into out->meshes or MODEL_NONE */
     std::vector<uint32_t> node_of;     /* [json.nodes] likewise */
+    std::vector<uint32_t> skin_of;     /* [json.skins] likewise */
     std::vector<uint32_t> texture_of;  /* [json.textures] likewise */
 };
 
@@ -138,9 +141,14 @@ std::vector<uint32_t> read_indices(file &f, int accessor, uint32_t limit, const 
 /* --- the parts of the model --- */
 void read_materials(file &f);
 void read_meshes(file &f);
+bool has_influences(const tinygltf::Primitive &p);
+void allocate_influences(file &f, const std::string &where, model_mesh &out);
+void read_influences(file &f, const tinygltf::Primitive &p, const model_submesh &part, const std::string &where, model_mesh &out);
+void check_influences(const model_mesh &mesh, uint32_t joint_count);
 void read_nodes(file &f);
-void place_skinned_nodes(file &f); /* gltf_skin.cpp */
+void read_skins(file &f);          /* after read_nodes: places the nodes of skinned meshes */
 void read_animations(file &f);
+void read_events(file &f, const tinygltf::Animation &a, const std::string &where, model_clip &out);
 
 } // namespace gltf
 

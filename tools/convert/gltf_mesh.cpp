@@ -497,6 +497,18 @@ static void count_mesh(mesh_job &job)
     }
 }
 
+static void read_skinning(file &f, mesh_job &job)
+{
+    bool any = false;
+    for (const part &p : job.parts)
+        any = any || has_influences(*p.source);
+    if (!any)
+        return;
+    allocate_influences(f, job.where, *job.out);
+    for (size_t i = 0; i < job.parts.size(); ++i)
+        read_influences(f, *job.parts[i].source, job.out->submeshes[i], where_of(job, job.parts[i]), *job.out);
+}
+
 static void fill_mesh(file &f, mesh_job &job)
 {
     uint32_t first_index = 0;
@@ -511,6 +523,7 @@ static void fill_mesh(file &f, mesh_job &job)
         first_index += submesh.index_count;
     }
     read_targets(f, job);
+    read_skinning(f, job);
 }
 
 /* Returns false when the mesh has no triangles at all. */

@@ -157,7 +157,7 @@ static void read_model(file &f)
     read_materials(f);
     read_meshes(f);
     read_nodes(f);
-    place_skinned_nodes(f);
+    read_skins(f);
     read_animations(f);
     if (f.out->mesh_count == 0 && f.out->clip_count == 0)
         fail("glTF JSON", "the file has no triangle meshes and no animations: there is nothing to convert");

@@ -99,6 +99,8 @@ static void mesh_free(model_mesh *mesh)
     free(mesh->indices);
     free(mesh->submeshes);
     free(mesh->weights);
+    free(mesh->joints);
+    free(mesh->joint_weights);
 }
 
 static void clip_free(model_clip *clip)
@@ -107,8 +109,18 @@ static void clip_free(model_clip *clip)
         free(clip->channels[i].times);
         free(clip->channels[i].values);
     }
+    for (uint32_t i = 0; clip->events && i < clip->event_count; ++i)
+        free(clip->events[i].name);
     free(clip->channels);
+    free(clip->events);
     free(clip->name);
+}
+
+static void skin_free(model_skin *skin)
+{
+    free(skin->name);
+    free(skin->joints);
+    free(skin->inverse_bind);
 }
 
 void model_free(model *m)
@@ -121,6 +133,8 @@ void model_free(model *m)
         free(m->nodes[i].name);
         free(m->nodes[i].weights);
     }
+    for (uint32_t i = 0; m->skins && i < m->skin_count; ++i)
+        skin_free(&m->skins[i]);
     for (uint32_t i = 0; m->clips && i < m->clip_count; ++i)
         clip_free(&m->clips[i]);
     for (uint32_t i = 0; m->materials && i < m->material_count; ++i)
@@ -133,6 +147,7 @@ void model_free(model *m)
         free(m->warnings[i]);
     free(m->meshes);
     free(m->nodes);
+    free(m->skins);
     free(m->clips);
     free(m->materials);
     free(m->textures);

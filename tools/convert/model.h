@@ -57,6 +57,8 @@ typedef struct model_submesh {
     uint8_t missing;                     /* MODEL_MISSING_* bits; zero once model_complete has run */
 } model_submesh;
 
+#define MODEL_INFLUENCES_MAX 8u
+
 /* One glTF mesh: its primitives' vertices one after another, indices rebased. */
 typedef struct model_mesh {
     char *name;
@@ -70,6 +72,10 @@ typedef struct model_mesh {
     model_submesh *submeshes;
     model_target *targets;
     float *weights;   /* [target_count] the mesh's default weights */
+    uint32_t influence_max; /* the most joints that move one vertex; 0: the mesh is not skinned */
+    uint32_t joint_limit;   /* above every place in `joints` that is used */
+    uint16_t *joints;       /* [vertex_count][MODEL_INFLUENCES_MAX] places in the skin's joints; NULL where not skinned */
+    float *joint_weights;   /* [vertex_count][MODEL_INFLUENCES_MAX] sum 1, the largest first, zeros last; likewise */
 } model_mesh;
 
 typedef struct model_node {
@@ -81,7 +87,16 @@ typedef struct model_node {
                            * node: where the first joint puts it in the rest pose */
     float *weights;       /* [targets of the mesh] or NULL: the mesh's defaults hold */
     uint8_t skinned;
+    uint32_t skin;        /* index or MODEL_NONE: also where its skin was left out with a warning */
 } model_node;
+
+/* The joints that move a mesh. Vertices in the bind pose become joint-local by inverse_bind. */
+typedef struct model_skin {
+    char *name;
+    uint32_t joint_count;
+    uint32_t *joints;     /* [joint_count] nodes, in the order that the vertices count in */
+    float *inverse_bind;  /* [joint_count][16] affine and invertible; identities where the file has none */
+} model_skin;
 
 typedef enum model_path { MODEL_PATH_WEIGHTS, MODEL_PATH_TRANSLATION, MODEL_PATH_ROTATION, MODEL_PATH_SCALE } model_path;
 typedef enum model_interpolation { MODEL_LINEAR, MODEL_STEP, MODEL_CUBICSPLINE } model_interpolation;
@@ -95,17 +110,28 @@ typedef struct model_channel {
     float *values;              /* [key_count][width], CUBICSPLINE [key_count][3][width]: in-tangent, value, out-tangent */
 } model_channel;
 
+/* A callback key. */
+typedef struct model_event {
+    char *name;
+    double time_s;
+    uint8_t payload[8];
+    float weight_min;
+} model_event;
+
 typedef struct model_clip {
     char *name;
     uint32_t channel_count;
     model_channel *channels;
     float duration_s;           /* the largest key time */
+    uint32_t event_count;
+    model_event *events;        /* in the file's order, times within 0 and duration_s */
 } model_clip;
 
 typedef struct model {
-    uint32_t mesh_count, node_count, clip_count, material_count, texture_count;
+    uint32_t mesh_count, node_count, skin_count, clip_count, material_count, texture_count;
     model_mesh *meshes;
     model_node *nodes;
+    model_skin *skins;
     model_clip *clips;
     model_material *materials;
     model_texture *textures;

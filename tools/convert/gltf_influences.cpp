@@ -1,0 +1,136 @@
+/* gltf_influences.cpp: which joints move which vertices (JOINTS_n, WEIGHTS_n). */
+#include "gltf_internal.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gltf {
+
+static const size_t sets_max = 16;
+static const double sum_tolerance = 1e-2;
+
+struct influence {
+    uint32_t joint;
+    float weight;
+};
+
+/* The sets of four that a primitive has. */
+static size_t count_sets(const tinygltf::Primitive &p, const std::string &where)
+{
+    size_t count = 0;
+    for (;; ++count) {
+        bool joints = p.attributes.count(text("JOINTS_%zu", count)) > 0, weights = p.attributes.count(text("WEIGHTS_%zu", count)) > 0;
+        if (joints != weights)
+            fail(where, text("it has %s_%zu without %s_%zu", joints ? "JOINTS" : "WEIGHTS", count, joints ? "WEIGHTS" : "JOINTS", count));
+        if (!joints)
+            return count;
+        if (count == sets_max)
+            fail(where, text("it has more than %zu sets of joints and weights", sets_max));
+    }
+}
+
+bool has_influences(const tinygltf::Primitive &p)
+{
+    return p.attributes.count("JOINTS_0") > 0;
+}
+
+/* [vertex][set][4]; joints below 65536 are exact as floats */
+static std::vector<float> read_sets(file &f, const tinygltf::Primitive &p, const char *name, uint32_t accepted, size_t sets,
+                                    size_t vertex_count, const std::string &where)
+{
+    std::vector<float> all(vertex_count * sets * 4), one(vertex_count * 4);
+    for (size_t s = 0; s < sets; ++s) {
+        std::string attribute = text("%s_%zu", name, s);
+        read_floats(f, p.attributes.at(attribute), 4, accepted, vertex_count, where + " " + attribute, one.data());
+        for (size_t v = 0; v < vertex_count; ++v)
+            std::copy_n(&one[v * 4], 4, &all[(v * sets + s) * 4]);
+    }
+    return all;
+}
+
+/* Used influences of one vertex, the strongest first; as many as their weights make, whatever their number. */
+static std::vector<influence> sort_influences(const float *joints, const float *weights, size_t count, const std::string &where,
+                                              size_t vertex)
+{
+    std::vector<influence> used;
+    double sum = 0.0;
+    for (size_t i = 0; i < count; ++i) {
+        if (weights[i] < 0.0f)
+            fail(where + text(" vertex %zu", vertex), text("the weight %g is negative", static_cast<double>(weights[i])));
+        sum += static_cast<double>(weights[i]);
+        if (weights[i] > 0.0f)
+            used.push_back({static_cast<uint32_t>(joints[i]), weights[i]});
+    }
+    /* each weight of normalised bytes may be rounded by half a step */
+    if (!(std::fabs(sum - 1.0) <= sum_tolerance + static_cast<double>(used.size()) * 0.5 / 255.0))
+        fail(where + text(" vertex %zu", vertex), text("the weights sum to %g: they must sum to 1", sum));
+    std::stable_sort(used.begin(), used.end(), [](const influence &a, const influence &b) { return a.weight > b.weight; });
+    return used;
+}
+
+/* Keeps the strongest. Returns the weight that is left out. */
+static double store_influences(const std::vector<influence> &used, size_t vertex, model_mesh &out)
+{
+    size_t count = std::min<size_t>(used.size(), MODEL_INFLUENCES_MAX);
+    double kept = 0.0, all = 0.0;
+    for (size_t i = 0; i < used.size(); ++i) {
+        all += static_cast<double>(used[i].weight);
+        kept += i < count ? static_cast<double>(used[i].weight) : 0.0;
+    }
+    for (size_t i = 0; i < count; ++i) {
+        out.joint_limit = std::max(out.joint_limit, used[i].joint + 1);
+        out.joints[vertex * MODEL_INFLUENCES_MAX + i] = static_cast<uint16_t>(used[i].joint);
+        out.joint_weights[vertex * MODEL_INFLUENCES_MAX + i] = static_cast<float>(static_cast<double>(used[i].weight) / kept);
+    }
+    out.influence_max = std::max(out.influence_max, static_cast<uint32_t>(count));
+    return 1.0 - kept / all;
+}
+
+void allocate_influences(file &f, const std::string &where, model_mesh &out)
+{
+    out.joints = allocate<uint16_t>(f, uint64_t{out.vertex_count} * MODEL_INFLUENCES_MAX, where);
+    out.joint_weights = allocate<float>(f, uint64_t{out.vertex_count} * MODEL_INFLUENCES_MAX, where);
+}
+
+/* Beside primitives with joints one without follows the first joint: as if it were drawn with the others. */
+static void fill_rigid(const model_submesh &part, model_mesh &out)
+{
+    for (size_t v = 0; v < part.vertex_count; ++v)
+        out.joint_weights[(part.first_vertex + v) * MODEL_INFLUENCES_MAX] = 1.0f;
+    out.influence_max = std::max(out.influence_max, 1u);
+    out.joint_limit = std::max(out.joint_limit, 1u);
+}
+
+void read_influences(file &f, const tinygltf::Primitive &p, const model_submesh &part, const std::string &where, model_mesh &out)
+{
+    size_t sets = count_sets(p, where), count = part.vertex_count, dropped = 0;
+    double most = 0.0;
+    if (sets == 0) {
+        warn(f, "%s has no joints, but others of its mesh have: it was bound to the first joint", where.c_str());
+        fill_rigid(part, out);
+        return;
+    }
+    charge(f, uint64_t{count} * sets, 8 * sizeof(float), where);
+    std::vector<float> joints = read_sets(f, p, "JOINTS", c_u8 | c_u16, sets, count, where);
+    std::vector<float> weights = read_sets(f, p, "WEIGHTS", c_f32 | c_u8n | c_u16n, sets, count, where);
+    for (size_t v = 0; v < count; ++v) {
+        const std::vector<influence> used = sort_influences(&joints[v * sets * 4], &weights[v * sets * 4], sets * 4, where, v);
+        double lost = store_influences(used, part.first_vertex + v, out);
+        dropped += used.size() > MODEL_INFLUENCES_MAX;
+        most = std::fmax(most, lost);
+    }
+    if (dropped > 0)
+        warn(f, "%s: %zu vertices have more than %u joints; the strongest were kept, up to %.2g of the weight was dropped",
+             where.c_str(), dropped, MODEL_INFLUENCES_MAX, most);
+}
+
+/* A mesh names joints by their place in the skin of the node that draws it. */
+void check_influences(const model_mesh &mesh, uint32_t joint_count)
+{
+    for (size_t i = 0; mesh.joint_limit > joint_count && i < size_t{mesh.vertex_count} * MODEL_INFLUENCES_MAX; ++i)
+        if (mesh.joints[i] >= joint_count)
+            fail("mesh '" + printable(mesh.name) + "'", text("vertex %zu follows joint %u, but its skin has %u joints",
+                                                             i / MODEL_INFLUENCES_MAX, mesh.joints[i], joint_count));
+}
+
+} // namespace gltf
