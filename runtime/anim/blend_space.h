@@ -1,0 +1,38 @@
+/* blend_space.h: weights of motions that are spread over one or two parameters.
+ *
+ * 1-D: between two neighbours, linear. 2-D: a Delaunay triangulation, made once when
+ * the space is built, and barycentric weights in the triangle that holds the point:
+ * at most three motions are sampled, the weights are continuous, and a motion's own
+ * point gives it alone. Outside, the nearest point of the hull counts.
+ * (Inverse distances would need no triangles, but sample every motion and give each
+ * a share everywhere.) */
+#ifndef NOH_ANIM_BLEND_SPACE_H
+#define NOH_ANIM_BLEND_SPACE_H
+
+#include "base/result.h"
+
+#define NOH_SPACE_POINTS_MAX 32u
+#define NOH_SPACE_TRIANGLES_MAX (2u * NOH_SPACE_POINTS_MAX)
+
+typedef struct noh_space_2d {
+    uint32_t point_count;           /* 1..NOH_SPACE_POINTS_MAX */
+    uint32_t triangle_count;        /* 0: one point, or all on a line */
+    const float *points;            /* [point_count][2] */
+    const uint8_t *triangles;       /* [triangle_count][3], counter-clockwise */
+} noh_space_2d;
+
+/* shapes  thresholds[count] increasing, weights[count]
+ * ranges  x is held between the first and the last; NaN counts as the first */
+void noh_space_1d_weights(uint32_t count, const float *thresholds, float x, float *weights);
+
+/* Triangulate. Points are rounded to 1/4096 of their extent first, so that all tests
+ * are exact and the result is the same everywhere.
+ * shapes  points[count][2], triangles[NOH_SPACE_TRIANGLES_MAX][3]
+ * errors  ARG count; DATA (where: the point) not finite, or two points in one place */
+noh_result noh_space_2d_triangulate(uint32_t count, const float *points, uint8_t *triangles, uint32_t *triangle_count, noh_error *error);
+
+/* shapes  weights[point_count], of sum 1, at most three not zero
+ * ranges  NaN counts as 0 */
+void noh_space_2d_weights(const noh_space_2d *space, float x, float y, float *weights);
+
+#endif

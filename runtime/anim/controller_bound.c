@@ -1,0 +1,123 @@
+/* The bound on what one step can deliver: controller.h, noh_controller_events_max. */
+#include "anim/controller.h"
+#include "anim/sync.h"
+
+typedef struct reach {
+    uint64_t travel; /* the most it can move, 1/65,536 ticks */
+    uint64_t runs;   /* the most stretches of one direction */
+} reach;
+
+static uint64_t plus(uint64_t a, uint64_t b)
+{
+    return a > UINT64_MAX - b ? UINT64_MAX : a + b;
+}
+
+static uint64_t magnitude(int64_t a)
+{
+    return a < 0 ? (uint64_t)0 - (uint64_t)a : (uint64_t)a;
+}
+
+static const noh_change *changes_of(const noh_controller *c)
+{
+    return (const noh_change *)(const void *)((const uint8_t *)c + c->changes_offset);
+}
+
+static int concerns(const noh_change *change, uint32_t track, noh_change_kind kind)
+{
+    return change->state != NOH_CHANGE_FREE && change->kind == kind && change->track == track;
+}
+
+/* The fastest that a track goes now or by a change that waits or runs. */
+static uint64_t speed_reached(const noh_controller *c, uint32_t track)
+{
+    const noh_change *changes = changes_of(c);
+    uint64_t most = magnitude(noh_controller_track(c, track)->speed);
+    for (uint32_t i = 0; i < c->change_count; i++) {
+        if (concerns(&changes[i], track, NOH_CHANGE_SPEED)) {
+            uint64_t to = magnitude(changes[i].to), from = magnitude(changes[i].from);
+            most = to > most ? to : most;
+            most = changes[i].state == NOH_CHANGE_RUNNING && from > most ? from : most;
+        }
+    }
+    return most;
+}
+
+/* The shortest and the longest marker interval, in ticks. */
+static void interval_range(const noh_anim_set *set, const noh_motion *m, uint32_t *shortest, uint32_t *longest)
+{
+    const noh_marker *markers = set->markers + m->first_marker;
+    *shortest = *longest = m->duration_ticks;
+    for (uint32_t i = 0; i < m->marker_count; i++) {
+        uint32_t next = i + 1 < m->marker_count ? markers[i + 1].tick : markers[0].tick + m->duration_ticks;
+        uint32_t length = next - markers[i].tick;
+        *shortest = length < *shortest ? length : *shortest;
+        *longest = i == 0 || length > *longest ? length : *longest;
+    }
+}
+
+/* A synchronised track can be as fast as its group's fastest phase makes it, and its
+ * group may turn at every new rate. */
+static reach sync_reach(const noh_controller *c, const noh_anim_set *set, uint32_t track, uint32_t ticks)
+{
+    const noh_track *t = noh_controller_track(c, track);
+    uint32_t shortest, longest;
+    uint64_t fastest = 0;
+    reach r;
+    for (uint32_t i = 0; i < c->track_count; i++) {
+        const noh_track *other = noh_controller_track(c, i);
+        if (other->sync_group == t->sync_group) {
+            uint64_t speed;
+            interval_range(set, &set->motions[other->motion], &shortest, &longest);
+            speed = speed_reached(c, i) / shortest + 1u; /* intervals per 65,536 ticks */
+            fastest = speed > fastest ? speed : fastest;
+        }
+    }
+    interval_range(set, &set->motions[t->motion], &shortest, &longest);
+    r.runs = (uint64_t)ticks / NOH_SYNC_TICKS + c->change_count + 2u;
+    r.travel = plus(fastest * longest > UINT64_MAX / (ticks + 1u) ? UINT64_MAX : fastest * longest * ticks, 2u * 65536u);
+    return r;
+}
+
+static reach free_reach(const noh_controller *c, uint32_t track, uint32_t ticks)
+{
+    const noh_change *changes = changes_of(c);
+    reach r = { 0, 1 };
+    uint64_t way = speed_reached(c, track) * ticks;
+    r.travel = way;
+    for (uint32_t i = 0; i < c->change_count; i++) {
+        if (concerns(&changes[i], track, NOH_CHANGE_SPEED)) {
+            r.runs += 2;
+        } else if (concerns(&changes[i], track, NOH_CHANGE_POSITION)) {
+            uint64_t there = plus(magnitude(changes[i].to - noh_controller_track(c, track)->position), way);
+            r.runs += 3;
+            r.travel = plus(r.travel, plus(there, there)); /* there, and perhaps from there to the next */
+        }
+    }
+    return r;
+}
+
+/* Off, and nothing that waits will switch it on. */
+static int stays_off(const noh_controller *c, uint32_t track)
+{
+    const noh_change *changes = changes_of(c);
+    int off = noh_controller_track(c, track)->mode == NOH_TRACK_OFF;
+    for (uint32_t i = 0; i < c->change_count; i++) {
+        off = off && !concerns(&changes[i], track, NOH_CHANGE_MODE);
+    }
+    return off;
+}
+
+uint32_t noh_controller_events_max(const noh_controller *c, const noh_anim_set *set, uint32_t ticks)
+{
+    uint64_t most = 0;
+    for (uint32_t i = 0; ticks && i < c->track_count; i++) {
+        const noh_track *t = noh_controller_track(c, i);
+        const noh_motion *m = &set->motions[t->motion];
+        if (m->event_count && !stays_off(c, i)) {
+            reach r = t->sync_group ? sync_reach(c, set, i, ticks) : free_reach(c, i, ticks);
+            uint32_t runs = r.runs > UINT32_MAX ? UINT32_MAX : (uint32_t)r.runs;
+            most += noh_events_max(m->event_count, m->duration_ticks, (noh_loop)t->loop, r.travel, runs);
+        }
+    }
+    return most > UINT32_MAX ? UINT32_MAX : (uint32_t)most;
+}

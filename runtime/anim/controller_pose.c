@@ -1,0 +1,343 @@
+#include "anim/controller_pose.h"
+
+#include <string.h>
+
+#include "anim/inertial.h"
+#include "anim/mask.h"
+#include "base/arena.h"
+
+/* ---- scratch ---- */
+
+static float *carve_floats(noh_arena *arena, uint32_t count)
+{
+    return (float *)noh_arena_carve(arena, count * sizeof(float), 4);
+}
+
+static noh_transform *carve_pose(noh_arena *arena, uint32_t count)
+{
+    return (noh_transform *)noh_arena_carve(arena, count * sizeof(noh_transform), 4);
+}
+
+static void carve(noh_arena *arena, const noh_anim_set *set, int inertial, noh_pose_scratch *s)
+{
+    memset(s, 0, sizeof *s);
+    s->blend.sum = carve_pose(arena, set->joint_count);
+    s->sample = carve_pose(arena, set->joint_count);
+    s->blend.weights = carve_floats(arena, set->joint_count);
+    s->below = carve_floats(arena, set->joint_count);
+    s->blend.float_sum = carve_floats(arena, set->float_count);
+    s->blend.float_weights = carve_floats(arena, set->float_count);
+    s->float_sample = carve_floats(arena, set->float_count);
+    s->float_below = carve_floats(arena, set->float_count);
+    for (int i = 0; inertial && i < 4; i++) {
+        s->captured[i] = carve_pose(arena, set->joint_count);
+        s->float_captured[i] = carve_floats(arena, set->float_count);
+    }
+}
+
+size_t noh_pose_scratch_size(const noh_anim_set *set, int inertial)
+{
+    noh_arena arena = noh_arena_measure();
+    noh_pose_scratch s;
+    carve(&arena, set, inertial, &s);
+    return arena.used;
+}
+
+noh_result noh_pose_scratch_init(void *memory, size_t bytes, const noh_anim_set *set, int inertial, noh_pose_scratch *scratch, noh_error *error)
+{
+    size_t need = noh_pose_scratch_size(set, inertial);
+    noh_arena arena = noh_arena_over(memory, bytes);
+    if (!memory || ((uintptr_t)memory & 15u) != 0) {
+        return noh_fail(error, NOH_ERR_ARG, "memory for a pose scratch is NULL or not 16-byte aligned", 0, need);
+    }
+    if (bytes < need) {
+        return noh_fail(error, NOH_ERR_MEMORY, "memory for a pose scratch is too small", bytes, need);
+    }
+    carve(&arena, set, inertial, scratch);
+    return NOH_OK;
+}
+
+/* ---- the pose ---- */
+
+/* What is posed: a controller, some ticks ago. */
+typedef struct view {
+    const noh_controller *c;
+    const noh_anim_set *set;
+    noh_pose_scratch *scratch;
+    int64_t ago; /* ticks: tracks are taken where they would have been, at their present rates */
+} view;
+
+static int is_sampled(const noh_controller *c, const noh_track *t)
+{
+    int near_enough = t->lod_levels == 0 || c->lod < t->lod_levels;
+    return t->mode == NOH_TRACK_ON && t->weight > 0.0f && near_enough;
+}
+
+static uint32_t clip_tick(const view *v, const noh_track *t)
+{
+    return noh_track_clip_tick(t, &v->set->motions[t->motion], v->ago);
+}
+
+/* One track's pose into the scratch, without its root motion. */
+static void sample_at(const view *v, uint32_t motion, uint32_t tick, noh_transform *pose, float *floats)
+{
+    noh_root_sample_rest(v->set, motion, tick, v->c->lod_joint_count, pose, floats);
+}
+
+static void sum_group(const view *v, noh_track_group group)
+{
+    noh_pose_scratch *s = v->scratch;
+    noh_blend_begin(&s->blend);
+    for (uint32_t i = 0; i < v->c->track_count; i++) {
+        const noh_track *t = noh_controller_track(v->c, i);
+        if (t->group == group && !(t->flags & NOH_TRACK_ADDITIVE) && is_sampled(v->c, t)) {
+            sample_at(v, t->motion, clip_tick(v, t), s->sample, s->float_sample);
+            noh_blend_add(&s->blend, s->sample, s->float_sample, t->weight, noh_mask_of(v->set, t->mask));
+        }
+    }
+}
+
+/* Row C5.2: low tracks among themselves, high tracks among themselves, then one over the other. */
+static void blend_groups(const view *v, noh_transform *pose, float *floats)
+{
+    noh_pose_scratch *s = v->scratch;
+    sum_group(v, NOH_GROUP_LOW);
+    noh_blend_finish(&s->blend, v->set->bind_pose, v->set->float_defaults, pose, floats);
+    memcpy(s->below, s->blend.weights, s->blend.joint_count * sizeof(float));
+    if (s->blend.float_count) {
+        memcpy(s->float_below, s->blend.float_weights, s->blend.float_count * sizeof(float));
+    }
+    sum_group(v, NOH_GROUP_HIGH);
+    if (s->blend.total > 0.0f) {
+        noh_blend_cover(&s->blend, v->c->priority_blend, s->below, s->float_below, pose, floats);
+    }
+}
+
+/* The track whose motion is the whole blend, if there is just one: it need not be summed. */
+static const noh_track *only_track(const view *v)
+{
+    const noh_track *only = NULL;
+    for (uint32_t i = 0; i < v->c->track_count; i++) {
+        const noh_track *t = noh_controller_track(v->c, i);
+        if (!(t->flags & NOH_TRACK_ADDITIVE) && is_sampled(v->c, t)) {
+            if (only || t->mask) {
+                return NULL;
+            }
+            only = t;
+        }
+    }
+    return only;
+}
+
+/* The reference of an additive track, into the blend's sums, which are free by now. */
+static void reference_pose(const view *v, const noh_track *t, noh_transform *pose, float *floats)
+{
+    const noh_anim_set *set = v->set;
+    if (t->flags & NOH_TRACK_REFERENCE_START) {
+        sample_at(v, t->motion, 0, pose, floats);
+        return;
+    }
+    memcpy(pose, set->bind_pose, v->c->lod_joint_count * sizeof *pose);
+    for (uint32_t i = 0; i < set->float_count; i++) {
+        floats[i] = set->float_defaults ? set->float_defaults[i] : 0.0f;
+    }
+}
+
+static void add_track(const view *v, const noh_track *t, noh_transform *pose, float *floats)
+{
+    noh_pose_scratch *s = v->scratch;
+    noh_mask_view mask = noh_mask_of(v->set, t->mask);
+    uint32_t joints = v->c->lod_joint_count, count = v->set->float_count;
+    sample_at(v, t->motion, clip_tick(v, t), s->sample, s->float_sample);
+    if (!(v->set->motions[t->motion].flags & NOH_MOTION_ADDITIVE)) {
+        reference_pose(v, t, s->blend.sum, s->blend.float_sum);
+        noh_pose_difference(joints, s->blend.sum, s->sample, s->sample);
+        for (uint32_t i = 0; i < count; i++) {
+            s->float_sample[i] -= s->blend.float_sum[i];
+        }
+    }
+    noh_pose_add(joints, s->sample, t->weight, mask.joints, pose);
+    noh_floats_add(count, s->float_sample, t->weight, mask.floats, floats);
+}
+
+static void add_layers(const view *v, noh_transform *pose, float *floats)
+{
+    for (uint32_t i = 0; i < v->c->track_count; i++) {
+        const noh_track *t = noh_controller_track(v->c, i);
+        if ((t->flags & NOH_TRACK_ADDITIVE) && is_sampled(v->c, t)) {
+            add_track(v, t, pose, floats);
+        }
+    }
+}
+
+static const void *at(const noh_controller *c, uint32_t offset)
+{
+    return (const uint8_t *)c + offset;
+}
+
+void noh_controller_inertia_add(const noh_controller *c, int64_t ago, noh_transform *pose, float *floats)
+{
+    int64_t elapsed = c->clock - ago - c->inertia_start;
+    float elapsed_s = (float)(elapsed < 0 ? 0 : elapsed) / (float)NOH_TICKS_PER_SECOND;
+    float duration_s = (float)c->inertia_ticks / (float)NOH_TICKS_PER_SECOND;
+    if (c->inertia_ticks && elapsed < (int64_t)c->inertia_ticks) {
+        noh_inertia_apply(c->lod_joint_count, (const noh_inertia_joint *)at(c, c->inertia_offset), elapsed_s, duration_s, pose);
+        noh_inertia_apply_floats(c->float_count, (const noh_inertia_float *)at(c, c->inertia_floats_offset), elapsed_s, duration_s, floats);
+    }
+}
+
+/* The pose some ticks ago, with or without what is left of a transition. */
+static void evaluate(const noh_controller *c, const noh_anim_set *set, noh_pose_scratch *scratch, int64_t ago, int inertia,
+                     noh_transform *pose, float *floats)
+{
+    view v = { NULL, NULL, NULL, 0 };
+    const noh_track *only;
+    NOH_ASSERT(set->joint_count == c->joint_count && set->float_count == c->float_count);
+    v.c = c;
+    v.set = set;
+    v.scratch = scratch;
+    v.ago = ago;
+    scratch->blend.joint_count = c->lod_joint_count;
+    scratch->blend.float_count = c->float_count;
+    only = only_track(&v);
+    if (only) {
+        sample_at(&v, only->motion, clip_tick(&v, only), pose, floats);
+    } else {
+        blend_groups(&v, pose, floats);
+    }
+    add_layers(&v, pose, floats);
+    if (inertia) {
+        noh_controller_inertia_add(c, ago, pose, floats);
+    }
+    for (uint32_t i = c->lod_joint_count; i < c->joint_count; i++) {
+        pose[i] = set->bind_pose[i];
+    }
+}
+
+void noh_controller_pose(const noh_controller *c, const noh_anim_set *set, noh_pose_scratch *scratch, noh_transform *pose, float *floats)
+{
+    evaluate(c, set, scratch, 0, 1, pose, floats);
+}
+
+/* ---- transitions ---- */
+
+static const char *bad_transition(const noh_controller *c, const noh_pose_scratch *scratch)
+{
+    if (!(c->flags & NOH_CONTROLLER_INERTIAL)) return "the controller has no room for inertia";
+    if (!scratch->captured[0]) return "the scratch has no room for inertia";
+    return NULL;
+}
+
+noh_result noh_controller_inertia_capture(const noh_controller *c, const noh_anim_set *set, noh_pose_scratch *scratch, noh_error *error)
+{
+    const char *what = bad_transition(c, scratch);
+    if (what) {
+        return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
+    }
+    evaluate(c, set, scratch, 0, 1, scratch->captured[0], scratch->float_captured[0]);
+    evaluate(c, set, scratch, NOH_INERTIA_BEFORE_TICKS, 1, scratch->captured[1], scratch->float_captured[1]);
+    return NOH_OK;
+}
+
+void noh_controller_inertia_store(noh_controller *c, const noh_pose_scratch *scratch, uint32_t duration_ticks)
+{
+    uint8_t *base = (uint8_t *)c;
+    float before_s = (float)NOH_INERTIA_BEFORE_TICKS / (float)NOH_TICKS_PER_SECOND;
+    noh_inertia_begin(c->joint_count, scratch->captured[0], scratch->captured[1], scratch->captured[2], scratch->captured[3], before_s,
+                      (noh_inertia_joint *)(void *)(base + c->inertia_offset));
+    noh_inertia_begin_floats(c->float_count, scratch->float_captured[0], scratch->float_captured[1], scratch->float_captured[2],
+                             scratch->float_captured[3], before_s, (noh_inertia_float *)(void *)(base + c->inertia_floats_offset));
+    c->inertia_start = c->clock;
+    c->inertia_ticks = duration_ticks;
+}
+
+noh_result noh_controller_inertia_begin(noh_controller *c, const noh_anim_set *set, noh_pose_scratch *scratch, uint32_t duration_ticks,
+                                        noh_error *error)
+{
+    const char *what = bad_transition(c, scratch);
+    what = what ? what : duration_ticks == 0 ? "duration_ticks" : NULL;
+    if (what) {
+        return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
+    }
+    evaluate(c, set, scratch, 0, 0, scratch->captured[2], scratch->float_captured[2]);
+    evaluate(c, set, scratch, NOH_INERTIA_BEFORE_TICKS, 0, scratch->captured[3], scratch->float_captured[3]);
+    noh_controller_inertia_store(c, scratch, duration_ticks);
+    return NOH_OK;
+}
+
+/* ---- root motion ---- */
+
+/* A weighted sum of moves. Turns are taken as angles of -half..half a turn. */
+typedef struct root_sum {
+    double translation[3], turn, weight, total;
+} root_sum;
+
+static void add_root(root_sum *sum, const noh_root_pose *move, double weight, double part)
+{
+    double w = weight * part;
+    for (int i = 0; i < 3; i++) {
+        sum->translation[i] += w * move->translation[i];
+    }
+    sum->turn += w * (double)(int32_t)move->turn;
+    sum->weight += w;
+    sum->total += weight;
+}
+
+static double root_part(const noh_anim_set *set, const noh_track *t)
+{
+    noh_mask_view mask = noh_mask_of(set, t->mask);
+    return mask.joints ? (double)mask.joints[0] / 255.0 : 1.0;
+}
+
+static root_sum group_root(noh_controller *c, const noh_anim_set *set, noh_track_group group)
+{
+    root_sum sum;
+    memset(&sum, 0, sizeof sum);
+    for (uint32_t i = 0; i < c->track_count; i++) {
+        noh_track *t = &noh_controller_tracks(c)[i];
+        const noh_root_track *root = &set->roots[t->motion];
+        if (t->group != group || t->mode == NOH_TRACK_OFF) {
+            continue;
+        }
+        if (is_sampled(c, t) && !(t->flags & NOH_TRACK_ADDITIVE)) {
+            noh_root_pose move = { { 0.0, 0.0, 0.0 }, 0, 0 };
+            if (root->axes) {
+                move = noh_root_between(set, root, t->motion, (noh_loop)t->loop, t->root_position, t->position);
+            }
+            add_root(&sum, &move, (double)t->weight, root_part(set, t));
+        }
+        t->root_position = t->position;
+    }
+    return sum;
+}
+
+static noh_root_pose mean_root(const root_sum *sum)
+{
+    noh_root_pose out = { { 0.0, 0.0, 0.0 }, 0, 0 };
+    double turn = sum->weight > 0.0 ? sum->turn / sum->weight : 0.0;
+    for (int i = 0; sum->weight > 0.0 && i < 3; i++) {
+        out.translation[i] = sum->translation[i] / sum->weight;
+    }
+    out.turn = (uint32_t)(uint64_t)(int64_t)(turn < 0.0 ? turn - 0.5 : turn + 0.5);
+    return out;
+}
+
+noh_root_pose noh_controller_root_motion(noh_controller *c, const noh_anim_set *set)
+{
+    noh_root_pose out = { { 0.0, 0.0, 0.0 }, 0, 0 }, low, high;
+    root_sum low_sum, high_sum, both;
+    double cover;
+    if (!set->roots) {
+        return out;
+    }
+    low_sum = group_root(c, set, NOH_GROUP_LOW);
+    high_sum = group_root(c, set, NOH_GROUP_HIGH);
+    low = mean_root(&low_sum);
+    high = mean_root(&high_sum);
+    cover = high_sum.weight > 0.0 ? (double)c->priority_blend * high_sum.weight / high_sum.total : 0.0;
+    cover = low_sum.weight > 0.0 ? cover : 1.0;
+    memset(&both, 0, sizeof both);
+    add_root(&both, &low, 1.0 - cover, 1.0);
+    add_root(&both, &high, cover, 1.0);
+    return cover >= 1.0 ? high : cover <= 0.0 ? low : mean_root(&both);
+}

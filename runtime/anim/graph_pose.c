@@ -1,0 +1,248 @@
+/* The pose of a graph: graph.h, noh_graph_scratch_* and noh_graph_pose. */
+#include <string.h>
+
+#include "anim/graph.h"
+#include "anim/graph_weights.h"
+#include "anim/mask.h"
+#include "base/arena.h"
+
+#define NO_SLOT 255u
+
+/* ---- scratch ---- */
+
+static int is_inertial(const noh_graph *g)
+{
+    int any = 0;
+    for (uint32_t i = 0; i < g->transition_count; i++) {
+        any |= (g->transitions[i].flags & NOH_TRANSITION_INERTIAL) != 0;
+    }
+    return any;
+}
+
+static size_t pose_bytes(const noh_anim_set *set)
+{
+    return set->joint_count * sizeof(noh_transform);
+}
+
+size_t noh_graph_scratch_size(const noh_graph *graph, const noh_anim_set *set)
+{
+    noh_arena arena = noh_arena_measure();
+    (void)noh_arena_carve(&arena, noh_pose_scratch_size(set, is_inertial(graph)), 16);
+    for (uint32_t i = 0; i < noh_graph_slots(graph); i++) {
+        (void)noh_arena_carve(&arena, pose_bytes(set), 4);
+        (void)noh_arena_carve(&arena, set->float_count * sizeof(float), 4);
+    }
+    return arena.used;
+}
+
+noh_result noh_graph_scratch_init(void *memory, size_t bytes, const noh_graph *graph, const noh_anim_set *set, noh_graph_scratch *scratch, noh_error *error)
+{
+    size_t need = noh_graph_scratch_size(graph, set), pose_need = noh_pose_scratch_size(set, is_inertial(graph));
+    noh_arena arena = noh_arena_over(memory, bytes);
+    noh_result result;
+    if (!memory || ((uintptr_t)memory & 15u) != 0) {
+        return noh_fail(error, NOH_ERR_ARG, "memory for a graph scratch is NULL or not 16-byte aligned", 0, need);
+    }
+    if (bytes < need) {
+        return noh_fail(error, NOH_ERR_MEMORY, "memory for a graph scratch is too small", bytes, need);
+    }
+    memset(scratch, 0, sizeof *scratch);
+    result = noh_pose_scratch_init(noh_arena_carve(&arena, pose_need, 16), pose_need, set, is_inertial(graph), &scratch->pose, error);
+    for (uint32_t i = 0; i < noh_graph_slots(graph); i++) {
+        scratch->slots[i] = (noh_transform *)noh_arena_carve(&arena, pose_bytes(set), 4);
+        scratch->float_slots[i] = (float *)noh_arena_carve(&arena, set->float_count * sizeof(float), 4);
+    }
+    return result;
+}
+
+/* ---- evaluation ---- */
+
+typedef struct evaluation {
+    noh_graph_view view;
+    const noh_anim_set *set;
+    const noh_controller *c;
+    noh_graph_scratch *scratch;
+    int64_t ago;
+    uint32_t taken;                       /* a bit per slot */
+    float weights[NOH_GRAPH_NODES_MAX];
+    uint8_t slot[NOH_GRAPH_NODES_MAX];    /* where a node's pose lies, or NO_SLOT */
+} evaluation;
+
+static uint8_t take_slot(evaluation *e)
+{
+    uint8_t i = 0;
+    while (e->taken >> i & 1u) {
+        i++; /* noh_graph_slots says how far this can go */
+    }
+    e->taken |= 1u << i;
+    return i;
+}
+
+static void free_slot(evaluation *e, uint8_t slot)
+{
+    e->taken &= ~(1u << slot);
+}
+
+static void evaluate_clip(evaluation *e, uint32_t i)
+{
+    const noh_track *t = noh_controller_track(e->c, e->view.graph->nodes[i].slot);
+    uint8_t slot = take_slot(e);
+    noh_root_sample_rest(e->set, t->motion, noh_track_clip_tick(t, &e->set->motions[t->motion], e->ago), e->c->lod_joint_count,
+                         e->scratch->slots[slot], e->scratch->float_slots[slot]);
+    e->slot[i] = slot;
+}
+
+/* The children that have a pose, and what each counts. */
+typedef struct parts {
+    uint32_t count;
+    uint8_t slots[3];
+    float weights[3];
+} parts;
+
+static parts parts_of(evaluation *e, const noh_graph_node *node)
+{
+    float local[NOH_GRAPH_CHILDREN_MAX];
+    parts p = { 0, { 0, 0, 0 }, { 0.0f, 0.0f, 0.0f } };
+    noh_graph_child_weights(&e->view, node, local);
+    for (uint32_t k = 0; k < node->child_count && p.count < 3; k++) {
+        uint8_t slot = e->slot[e->view.graph->children[node->first_child + k]];
+        if (slot != NO_SLOT) {
+            p.slots[p.count] = slot;
+            p.weights[p.count++] = local[k];
+        }
+    }
+    return p;
+}
+
+/* Sum by weight, as tracks are summed (row C5.4). */
+static void sum_parts(evaluation *e, const parts *p)
+{
+    static const noh_mask_view everywhere = { NULL, NULL };
+    noh_blend *b = &e->scratch->pose.blend;
+    if (p->count < 2) {
+        return;
+    }
+    noh_blend_begin(b);
+    for (uint32_t k = 0; k < p->count; k++) {
+        noh_blend_add(b, e->scratch->slots[p->slots[k]], e->scratch->float_slots[p->slots[k]], p->weights[k], everywhere);
+    }
+    noh_blend_finish(b, e->set->bind_pose, e->set->float_defaults, e->scratch->slots[p->slots[0]], e->scratch->float_slots[p->slots[0]]);
+}
+
+/* Whether a subtree's motions are differences already: its first clip speaks for all. */
+static int is_difference(const evaluation *e, uint32_t node)
+{
+    const noh_graph *g = e->view.graph;
+    const noh_graph_node *clip = &g->nodes[noh_graph_first_of(g, node)];
+    return (e->set->motions[noh_controller_track(e->c, clip->slot)->motion].flags & NOH_MOTION_ADDITIVE) != 0;
+}
+
+static void add_part(evaluation *e, const noh_graph_node *node, const parts *p)
+{
+    uint32_t joints = e->c->lod_joint_count, floats = e->set->float_count;
+    noh_transform *over = e->scratch->slots[p->slots[1]];
+    float *float_over = e->scratch->float_slots[p->slots[1]];
+    if (!is_difference(e, e->view.graph->children[node->first_child + 1u])) {
+        noh_pose_difference(joints, e->set->bind_pose, over, over);
+        for (uint32_t i = 0; i < floats && e->set->float_defaults; i++) {
+            float_over[i] -= e->set->float_defaults[i];
+        }
+    }
+    noh_pose_add(joints, over, p->weights[1], NULL, e->scratch->slots[p->slots[0]]);
+    noh_floats_add(floats, float_over, p->weights[1], NULL, e->scratch->float_slots[p->slots[0]]);
+}
+
+static void mask_part(evaluation *e, const noh_graph_node *node, const parts *p)
+{
+    noh_mask_view mask = noh_mask_of(e->set, node->mask);
+    noh_transform *base = e->scratch->slots[p->slots[0]];
+    float *float_base = e->scratch->float_slots[p->slots[0]];
+    noh_pose_mix(e->c->lod_joint_count, base, e->scratch->slots[p->slots[1]], p->weights[1], mask.joints, base);
+    noh_floats_mix(e->set->float_count, float_base, e->scratch->float_slots[p->slots[1]], p->weights[1], mask.floats, float_base);
+}
+
+static void evaluate_node(evaluation *e, uint32_t i)
+{
+    const noh_graph_node *node = &e->view.graph->nodes[i];
+    parts p = parts_of(e, node);
+    if (node->kind == NOH_NODE_ADD && p.count == 2) {
+        add_part(e, node, &p);
+    } else if (node->kind == NOH_NODE_MASK && p.count == 2) {
+        mask_part(e, node, &p);
+    } else if (node->kind != NOH_NODE_ADD && node->kind != NOH_NODE_MASK) {
+        sum_parts(e, &p);
+    }
+    for (uint32_t k = 1; k < p.count; k++) {
+        free_slot(e, p.slots[k]);
+    }
+    e->slot[i] = p.count ? p.slots[0] : (uint8_t)NO_SLOT;
+}
+
+static void evaluate(noh_graph_state *state, const noh_graph *graph, const noh_anim_set *set, noh_graph_scratch *scratch, int before, int64_t ago,
+                     noh_transform *pose, float *floats)
+{
+    evaluation e;
+    uint8_t active[NOH_GRAPH_NODES_MAX], slot;
+    memset(&e, 0, sizeof e);
+    e.view.graph = graph;
+    e.view.params = noh_graph_params_of(state);
+    e.view.machines = noh_graph_machines_of(state);
+    e.view.before = before;
+    e.set = set;
+    e.c = noh_graph_controller(state);
+    e.scratch = scratch;
+    e.ago = ago;
+    scratch->pose.blend.joint_count = e.c->lod_joint_count;
+    scratch->pose.blend.float_count = set->float_count;
+    noh_graph_weights(&e.view, e.weights, active);
+    for (uint32_t i = 0; i < graph->node_count; i++) {
+        e.slot[i] = NO_SLOT;
+        if (e.weights[i] > 0.0f && graph->nodes[i].kind == NOH_NODE_CLIP) {
+            evaluate_clip(&e, i);
+        } else if (e.weights[i] > 0.0f) {
+            evaluate_node(&e, i);
+        }
+    }
+    slot = e.slot[graph->node_count - 1];
+    memcpy(pose, scratch->slots[slot], e.c->lod_joint_count * sizeof *pose);
+    for (uint32_t i = e.c->lod_joint_count; i < set->joint_count; i++) {
+        pose[i] = set->bind_pose[i];
+    }
+    if (set->float_count) {
+        memcpy(floats, scratch->float_slots[slot], set->float_count * sizeof *floats);
+    }
+}
+
+/* ---- transitions by inertia ---- */
+
+static void begin_inertia(noh_graph_state *state, const noh_graph *graph, const noh_anim_set *set, noh_graph_scratch *scratch)
+{
+    noh_controller *c = noh_graph_controller(state);
+    noh_pose_scratch *p = &scratch->pose;
+    noh_machine *machines = (noh_machine *)(void *)((uint8_t *)state + state->machines_offset);
+    for (int k = 0; k < 4; k++) { /* source, source before, target, target before */
+        int64_t ago = k & 1 ? NOH_INERTIA_BEFORE_TICKS : 0;
+        evaluate(state, graph, set, scratch, k < 2, ago, p->captured[k], p->float_captured[k]);
+        if (k < 2) {
+            noh_controller_inertia_add(c, ago, p->captured[k], p->float_captured[k]);
+        }
+    }
+    noh_controller_inertia_store(c, p, state->inertia_ticks);
+    for (uint32_t i = 0; i < state->machine_count; i++) {
+        if (machines[i].switched) {
+            machines[i].switched = 0;
+            machines[i].previous = NOH_GRAPH_NONE;
+        }
+    }
+    state->inertia_ticks = 0;
+}
+
+void noh_graph_pose(noh_graph_state *state, const noh_graph *graph, const noh_anim_set *set, noh_graph_scratch *scratch, noh_transform *pose, float *floats)
+{
+    NOH_ASSERT(state->node_count == graph->node_count);
+    if (state->inertia_ticks) {
+        begin_inertia(state, graph, set, scratch);
+    }
+    evaluate(state, graph, set, scratch, 0, 0, pose, floats);
+    noh_controller_inertia_add(noh_graph_controller(state), 0, pose, floats);
+}

@@ -1,0 +1,12 @@
+/* pose.h: what sampling gives and blending takes: joint transforms, local to the parent. */
+#ifndef NOH_ANIM_POSE_H
+#define NOH_ANIM_POSE_H
+
+/* One joint, local to its parent: model = parent * translation * rotation * scale. */
+typedef struct noh_transform {
+    float rotation[4];    /* unit quaternion, xyzw */
+    float translation[3]; /* model units */
+    float scale[3];
+} noh_transform;
+
+#endif

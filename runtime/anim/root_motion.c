@@ -1,0 +1,198 @@
+#include "anim/root_motion.h"
+
+#include <string.h>
+
+#include "base/quat.h"
+#include "base/trig.h"
+
+/* The axes across the up axis, in the order that makes turns counter-clockwise. */
+static void ground_axes(uint32_t up, uint32_t *a, uint32_t *b)
+{
+    *a = (up + 1u) % 3u;
+    *b = (up + 2u) % 3u;
+}
+
+/* Sine and cosine in double: a way of a million passes needs more than 24 bits.
+ * Taylor series to x^17; |x| <= pi/4, error under 1e-16. */
+static void sin_cos_double(double x, double *sine, double *cosine)
+{
+    double y = x * x;
+    *sine = x * (1.0 - y / 6.0 * (1.0 - y / 20.0 * (1.0 - y / 42.0 * (1.0 - y / 72.0 * (1.0 - y / 110.0
+        * (1.0 - y / 156.0 * (1.0 - y / 210.0 * (1.0 - y / 272.0))))))));
+    *cosine = 1.0 - y / 2.0 * (1.0 - y / 12.0 * (1.0 - y / 30.0 * (1.0 - y / 56.0 * (1.0 - y / 90.0
+        * (1.0 - y / 132.0 * (1.0 - y / 182.0 * (1.0 - y / 240.0 * (1.0 - y / 306.0))))))));
+}
+
+/* Of half a turn's fraction: `half_turns` counts 2^-33 turns and wraps at 2^33. */
+static void sin_cos_half(uint64_t half_turns, double *sine, double *cosine)
+{
+    uint64_t wrapped = half_turns & (((uint64_t)1 << 33) - 1u);
+    uint64_t quarters = (wrapped + ((uint64_t)1 << 30)) >> 31;
+    double rest = ((double)wrapped - (double)(quarters << 31)) * 7.31459039633579841e-10; /* 2 pi / 2^33 */
+    double s, c;
+    sin_cos_double(rest, &s, &c);
+    switch (quarters & 3u) {
+    case 0: *sine = s; *cosine = c; break;
+    case 1: *sine = c; *cosine = -s; break;
+    case 2: *sine = -s; *cosine = -c; break;
+    default: *sine = -c; *cosine = s; break;
+    }
+}
+
+static void turn_vector(uint32_t up, uint64_t half_turns, double v[3])
+{
+    uint32_t a, b;
+    double s, c, va, vb;
+    ground_axes(up, &a, &b);
+    sin_cos_half(half_turns, &s, &c);
+    va = v[a];
+    vb = v[b];
+    v[a] = c * va - s * vb;
+    v[b] = s * va + c * vb;
+}
+
+/* The twist's angle as a turn: twice the half angle that the quaternion holds. */
+static uint32_t heading(uint32_t up, const noh_transform *root)
+{
+    float twist[4];
+    noh_quat_twist(root->rotation, up, twist);
+    return noh_turn_from_radians(2.0f * noh_atan2(twist[up], twist[3]));
+}
+
+noh_root_pose noh_root_extract(uint32_t axes, uint32_t up, const noh_transform *root)
+{
+    noh_root_pose e;
+    memset(&e, 0, sizeof e);
+    for (uint32_t i = 0; i < 3; i++) {
+        e.translation[i] = axes & (1u << i) ? (double)root->translation[i] : 0.0;
+    }
+    e.turn = axes & NOH_ROOT_HEADING ? heading(up, root) : 0u;
+    return e;
+}
+
+void noh_root_remove(uint32_t axes, uint32_t up, noh_transform *root)
+{
+    noh_root_pose e = noh_root_extract(axes, up, root);
+    float back[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
+    double rest[3];
+    /* half of minus the turn, as a signed angle: the quaternion of the inverse heading */
+    noh_sin_cos(-0.5f * noh_radians_from_turn(e.turn), &back[up], &back[3]);
+    for (int i = 0; i < 3; i++) {
+        rest[i] = (double)root->translation[i] - e.translation[i];
+    }
+    turn_vector(up, 0u - 2u * (uint64_t)e.turn, rest);
+    for (int i = 0; i < 3; i++) {
+        root->translation[i] = (float)rest[i];
+    }
+    noh_quat_mul(back, root->rotation, root->rotation);
+}
+
+void noh_root_sample_rest(const noh_anim_set *set, uint32_t motion, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose, float *floats)
+{
+    set->sample(set->user, motion, clip_tick, joint_count, pose, set->float_count, floats);
+    if (set->roots && set->roots[motion].axes) {
+        noh_root_remove(set->roots[motion].axes, set->roots[motion].up, &pose[0]);
+    }
+}
+
+noh_root_pose noh_root_compose(uint32_t up, const noh_root_pose *a, const noh_root_pose *b)
+{
+    noh_root_pose out = *b;
+    turn_vector(up, 2u * (uint64_t)a->turn, out.translation);
+    for (int i = 0; i < 3; i++) {
+        out.translation[i] += a->translation[i];
+    }
+    out.turn = a->turn + b->turn;
+    return out;
+}
+
+noh_root_pose noh_root_inverse(uint32_t up, const noh_root_pose *a)
+{
+    noh_root_pose out = *a;
+    for (int i = 0; i < 3; i++) {
+        out.translation[i] = -a->translation[i];
+    }
+    turn_vector(up, 0u - 2u * (uint64_t)a->turn, out.translation);
+    out.turn = 0u - a->turn;
+    return out;
+}
+
+/* The sum over k = 0..n-1 of d turned by k * turn is d turned by (n-1)/2 * turn, times
+ * sin(n turn / 2) / sin(turn / 2). Along the up axis, and without a turn, it is n d. */
+noh_root_pose noh_root_power(uint32_t up, const noh_root_pose *a, int64_t n)
+{
+    noh_root_pose base = n < 0 ? noh_root_inverse(up, a) : *a, out;
+    uint64_t count = n < 0 ? (uint64_t)0 - (uint64_t)n : (uint64_t)n;
+    double s_one, s_all, unused, ratio = (double)count;
+    memset(&out, 0, sizeof out);
+    if (count == 0) {
+        return out;
+    }
+    for (uint32_t i = 0; i < 3; i++) {
+        out.translation[i] = base.translation[i];
+    }
+    if (base.turn) {
+        sin_cos_half(base.turn, &s_one, &unused);
+        sin_cos_half((uint64_t)base.turn * count, &s_all, &unused);
+        ratio = s_all / s_one;
+        turn_vector(up, (uint64_t)base.turn * (count - 1u), out.translation);
+    }
+    for (uint32_t i = 0; i < 3; i++) {
+        out.translation[i] = i == up ? base.translation[i] * (double)count : out.translation[i] * ratio;
+    }
+    out.turn = (uint32_t)(base.turn * count);
+    return out;
+}
+
+/* E at a position inside the clip. */
+static noh_root_pose sample_root(const noh_anim_set *set, uint32_t motion, uint32_t axes, uint32_t up, uint32_t clip_tick)
+{
+    noh_transform root;
+    set->sample(set->user, motion, clip_tick, 1, &root, 0, NULL);
+    return noh_root_extract(axes, up, &root);
+}
+
+noh_result noh_root_track_measure(const noh_anim_set *set, uint32_t motion, uint32_t axes, uint32_t up, noh_root_track *track, noh_error *error)
+{
+    noh_root_track t;
+    noh_root_pose back;
+    if (motion >= set->motion_count) return noh_fail(error, NOH_ERR_ARG, "motion", motion, set->motion_count);
+    if (axes > 15u) return noh_fail(error, NOH_ERR_ARG, "axes", motion, 0);
+    if (up > 2u) return noh_fail(error, NOH_ERR_ARG, "up", motion, 0);
+    memset(&t, 0, sizeof t);
+    t.axes = axes;
+    t.up = up;
+    if (axes) {
+        t.start = sample_root(set, motion, axes, up, 0);
+        t.end = sample_root(set, motion, axes, up, set->motions[motion].duration_ticks);
+        back = noh_root_inverse(up, &t.start);
+        t.loop = noh_root_compose(up, &back, &t.end);
+    }
+    *track = t;
+    return NOH_OK;
+}
+
+noh_root_pose noh_root_between(const noh_anim_set *set, const noh_root_track *track, uint32_t motion, noh_loop loop, int64_t from, int64_t to)
+{
+    uint32_t duration = set->motions[motion].duration_ticks, up = track->up;
+    /* legs count only where they do not lead back */
+    int64_t passes = loop == NOH_LOOP_REPEAT ? noh_time_legs(to, duration, loop) - noh_time_legs(from, duration, loop) : 0;
+    noh_root_pose a = sample_root(set, motion, track->axes, up, (uint32_t)(noh_time_clip(from, duration, loop) / 65536));
+    noh_root_pose b = sample_root(set, motion, track->axes, up, (uint32_t)(noh_time_clip(to, duration, loop) / 65536));
+    noh_root_pose back = noh_root_inverse(up, &a), step, start_back;
+    if (passes == 0) {
+        return noh_root_compose(up, &back, &b);
+    }
+    /* inverse(E(a)) E(0) L^n inverse(E(0)) E(b); for n = 1 the E(0) cancel into E(end) */
+    step = noh_root_power(up, &track->loop, passes);
+    start_back = noh_root_inverse(up, &track->start);
+    back = noh_root_compose(up, &back, &track->start);
+    back = noh_root_compose(up, &back, &step);
+    back = noh_root_compose(up, &back, &start_back);
+    return noh_root_compose(up, &back, &b);
+}
+
+noh_root_pose noh_root_at(const noh_anim_set *set, const noh_root_track *track, uint32_t motion, noh_loop loop, int64_t position)
+{
+    return noh_root_between(set, track, motion, loop, 0, position);
+}

@@ -1,0 +1,166 @@
+#include "anim/sync.h"
+
+/* ---- phases ---- */
+
+static uint32_t interval_count(const noh_motion *m)
+{
+    return m->marker_count ? m->marker_count : 1u;
+}
+
+/* The marker at which phase 0 lies: the smallest id, the first of it. */
+static uint32_t canonical(const noh_anim_set *set, const noh_motion *m)
+{
+    const noh_marker *markers = set->markers + m->first_marker;
+    uint32_t best = 0;
+    for (uint32_t i = 1; i < m->marker_count; i++) {
+        if (markers[i].id < markers[best].id) {
+            best = i;
+        }
+    }
+    return best;
+}
+
+/* Where the n-th marker lies, n from 0; past the last one they go on in the next pass. */
+static int64_t marker_position(const noh_anim_set *set, const noh_motion *m, uint32_t n)
+{
+    uint32_t count = interval_count(m);
+    int64_t pass = noh_position_of(m->duration_ticks) * (int64_t)(n / count);
+    return m->marker_count ? pass + noh_position_of(set->markers[m->first_marker + n % count].tick) : pass;
+}
+
+noh_phase noh_sync_phase(const noh_anim_set *set, const noh_motion *motion, int64_t position)
+{
+    uint32_t count = interval_count(motion), first = canonical(set, motion), n = 0;
+    int64_t rest = noh_time_clip(position, motion->duration_ticks, NOH_LOOP_REPEAT), begin, end;
+    noh_phase p;
+    if (rest < marker_position(set, motion, 0)) {
+        rest += noh_position_of(motion->duration_ticks); /* the last interval goes over the seam */
+    }
+    while (n + 1 < count && marker_position(set, motion, n + 1) <= rest) {
+        n++;
+    }
+    begin = marker_position(set, motion, n);
+    end = marker_position(set, motion, n + 1);
+    p.interval = (n + count - first) % count;
+    p.fraction = (double)(rest - begin) / (double)(end - begin);
+    return p;
+}
+
+int64_t noh_sync_position(const noh_anim_set *set, const noh_motion *motion, noh_phase phase)
+{
+    uint32_t count = interval_count(motion), n = ((uint32_t)phase.interval + canonical(set, motion)) % count;
+    int64_t begin = marker_position(set, motion, n), end = marker_position(set, motion, n + 1);
+    int64_t position = begin + (int64_t)((double)(end - begin) * phase.fraction + 0.5);
+    return noh_time_clip(position, motion->duration_ticks, NOH_LOOP_REPEAT);
+}
+
+int noh_sync_fits(const noh_anim_set *set, const noh_motion *a, const noh_motion *b)
+{
+    uint32_t first_a = canonical(set, a), first_b = canonical(set, b);
+    if (a->marker_count != b->marker_count) {
+        return 0;
+    }
+    for (uint32_t i = 0; i < a->marker_count; i++) {
+        uint32_t ia = (first_a + i) % a->marker_count, ib = (first_b + i) % b->marker_count;
+        if (set->markers[a->first_marker + ia].id != set->markers[b->first_marker + ib].id) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* ---- groups ---- */
+
+static int is_member(const noh_track *track, uint32_t group)
+{
+    return track->sync_group == group && track->mode != NOH_TRACK_OFF;
+}
+
+uint32_t noh_sync_leader(const noh_track *tracks, uint32_t track_count, uint32_t group)
+{
+    uint32_t best = track_count;
+    for (uint32_t i = 0; i < track_count; i++) {
+        if (is_member(&tracks[i], group) && (best == track_count || tracks[i].weight > tracks[best].weight)) {
+            best = i;
+        }
+    }
+    return best;
+}
+
+static const noh_motion *motion_of(const noh_anim_set *set, const noh_track *track)
+{
+    return &set->motions[track->motion];
+}
+
+/* The position of a phase that is nearest to another position. */
+static int64_t nearest(const noh_anim_set *set, const noh_motion *m, noh_phase phase, int64_t to)
+{
+    int64_t duration = noh_position_of(m->duration_ticks);
+    int64_t apart = to - noh_sync_position(set, m, phase);
+    return to - apart + noh_floor_div(apart + duration / 2, duration) * duration;
+}
+
+void noh_sync_join(const noh_anim_set *set, noh_track *track, const noh_track *leader)
+{
+    noh_phase phase = noh_sync_phase(set, motion_of(set, leader), leader->position);
+    noh_track_place(track, motion_of(set, track), nearest(set, motion_of(set, track), phase, track->position));
+}
+
+/* Length of the marker interval of a phase, in 1/65,536 ticks. */
+static double interval_length(const noh_anim_set *set, const noh_motion *m, noh_phase phase)
+{
+    uint32_t n = ((uint32_t)phase.interval + canonical(set, m)) % interval_count(m);
+    return (double)(marker_position(set, m, n + 1) - marker_position(set, m, n));
+}
+
+/* Weighted mean of the group's speeds, in intervals per tick; the leader's own where nobody weighs anything. */
+static double mean_speed(const noh_anim_set *set, const noh_track *tracks, uint32_t track_count, uint32_t leader, noh_phase phase)
+{
+    double sum = 0.0, weights = 0.0;
+    for (uint32_t i = 0; i < track_count; i++) {
+        if (is_member(&tracks[i], tracks[leader].sync_group)) {
+            sum += (double)tracks[i].weight * (double)tracks[i].speed / interval_length(set, motion_of(set, &tracks[i]), phase);
+            weights += (double)tracks[i].weight;
+        }
+    }
+    return weights > 0.0 ? sum / weights : (double)tracks[leader].speed / interval_length(set, motion_of(set, &tracks[leader]), phase);
+}
+
+static int64_t rounded(double x)
+{
+    return (int64_t)(x < 0.0 ? x - 0.5 : x + 0.5);
+}
+
+/* The rate that brings a follower to the phase; never against the leader's direction. */
+static void steer(const noh_anim_set *set, noh_track *track, noh_phase goal, double travelled, int64_t leader_rate, int64_t ticks)
+{
+    const noh_motion *m = motion_of(set, track);
+    int64_t expected = track->position + rounded(travelled * (double)m->duration_ticks * 65536.0);
+    int64_t way = nearest(set, m, goal, expected) - track->position;
+    int64_t rate = noh_floor_div(way + ticks / 2, ticks);
+    track->rate = (leader_rate > 0 && rate < 0) || (leader_rate < 0 && rate > 0) || leader_rate == 0 ? 0 : rate;
+}
+
+static void group_rates(const noh_anim_set *set, noh_track *tracks, uint32_t track_count, uint32_t leader, int64_t ticks)
+{
+    noh_track *lead = &tracks[leader];
+    const noh_motion *m = motion_of(set, lead);
+    noh_phase now = noh_sync_phase(set, m, lead->position), goal;
+    lead->rate = rounded(mean_speed(set, tracks, track_count, leader, now) * interval_length(set, m, now));
+    goal = noh_sync_phase(set, m, lead->position + lead->rate * ticks);
+    for (uint32_t i = 0; i < track_count; i++) {
+        if (i != leader && is_member(&tracks[i], lead->sync_group)) {
+            steer(set, &tracks[i], goal, (double)(lead->rate * ticks) / ((double)m->duration_ticks * 65536.0), lead->rate, ticks);
+        }
+    }
+}
+
+void noh_sync_rates(const noh_anim_set *set, noh_track *tracks, uint32_t track_count, int64_t ticks)
+{
+    for (uint32_t group = 1; group <= NOH_SYNC_GROUPS_MAX; group++) {
+        uint32_t leader = noh_sync_leader(tracks, track_count, group);
+        if (leader < track_count) {
+            group_rates(set, tracks, track_count, leader, ticks);
+        }
+    }
+}

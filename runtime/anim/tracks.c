@@ -1,0 +1,100 @@
+#include "anim/tracks.h"
+
+static const char *bad_desc(const noh_anim_set *set, const noh_track_desc *d)
+{
+    if (d->motion >= set->motion_count) return "motion";
+    if (d->position_ticks > ((int64_t)1 << 44) || d->position_ticks < -((int64_t)1 << 44)) return "position_ticks";
+    if (d->speed > NOH_SPEED_MAX || d->speed < -NOH_SPEED_MAX) return "speed";
+    if (!(d->weight >= 0.0f && d->weight <= NOH_WEIGHT_MAX)) return "weight";
+    if ((unsigned)d->loop > NOH_LOOP_PING_PONG) return "loop";
+    if ((unsigned)d->mode > NOH_TRACK_ON) return "mode";
+    if ((unsigned)d->group > NOH_GROUP_HIGH) return "group";
+    if (d->mask > set->mask_count) return "mask";
+    if (d->lod_levels > 255u) return "lod_levels";
+    if (d->sync_group > NOH_SYNC_GROUPS_MAX) return "sync_group";
+    if (d->flags & ~NOH_TRACK_FLAGS) return "flags";
+    return NULL;
+}
+
+/* A track can be synchronised only where its motion goes round. */
+static const char *bad_sync(const noh_anim_set *set, const noh_track_desc *d)
+{
+    const noh_motion *m = &set->motions[d->motion];
+    uint32_t loop = d->loop ? (uint32_t)d->loop : m->loop;
+    int fits = m->duration_ticks >= NOH_SYNC_DURATION_MIN && m->duration_ticks <= NOH_SYNC_DURATION_MAX;
+    return d->sync_group && (loop != NOH_LOOP_REPEAT || !fits) ? "sync_group" : NULL;
+}
+
+noh_result noh_track_start(noh_track *track, const noh_anim_set *set, const noh_track_desc *desc, noh_error *error)
+{
+    const char *what = bad_desc(set, desc);
+    const noh_motion *m;
+    what = what ? what : bad_sync(set, desc);
+    if (what) {
+        return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
+    }
+    m = &set->motions[desc->motion];
+    track->motion = (uint16_t)desc->motion;
+    track->speed = desc->flags & NOH_TRACK_PAUSED ? 0 : desc->speed ? desc->speed : NOH_SPEED_ONE;
+    track->rate = track->speed;
+    track->weight = desc->flags & NOH_TRACK_SILENT ? 0.0f : desc->weight > 0.0f ? desc->weight : 1.0f;
+    track->loop = (uint8_t)(desc->loop ? (uint32_t)desc->loop : m->loop);
+    track->mode = (uint8_t)(desc->mode ? desc->mode : NOH_TRACK_ON);
+    track->group = (uint8_t)desc->group;
+    track->mask = (uint8_t)desc->mask;
+    track->lod_levels = (uint8_t)desc->lod_levels;
+    track->sync_group = (uint8_t)desc->sync_group;
+    track->flags = (uint8_t)(desc->flags & (NOH_TRACK_ADDITIVE | NOH_TRACK_REFERENCE_START));
+    noh_track_place(track, m, noh_position_of(desc->position_ticks));
+    return NOH_OK;
+}
+
+void noh_track_place(noh_track *track, const noh_motion *motion, int64_t position)
+{
+    track->position = noh_time_advance(position, 0, 0, motion->duration_ticks, (noh_loop)track->loop);
+    track->root_position = track->position;
+    track->placed = 1;
+}
+
+noh_passage noh_track_passage(const noh_track *track, const noh_motion *motion, int64_t ticks)
+{
+    noh_passage p;
+    p.from = track->position;
+    p.to = noh_time_advance(track->position, track->rate, ticks, motion->duration_ticks, (noh_loop)track->loop);
+    p.duration_ticks = motion->duration_ticks;
+    p.loop = track->loop;
+    p.backward = track->rate < 0;
+    p.placed = track->placed;
+    return p;
+}
+
+int64_t noh_track_next_event(const noh_track *track, const noh_anim_set *set, int64_t ticks)
+{
+    const noh_motion *m = &set->motions[track->motion];
+    noh_passage p;
+    int64_t at, way, rate = track->rate < 0 ? -track->rate : track->rate;
+    if (track->mode == NOH_TRACK_OFF || rate == 0 || m->event_count == 0 || ticks == 0) {
+        return 0;
+    }
+    p = noh_track_passage(track, m, ticks);
+    if (!noh_events_first(set->events + m->first_event, m->event_count, &p, &at)) {
+        return 0;
+    }
+    way = noh_position_of(at) - track->position;
+    way = way < 0 ? -way : way;
+    /* rounded up: the first tick by which it has been passed. What lies under a placed track is passed by its first move. */
+    return way == 0 ? 1 : noh_ceil_div(way, rate);
+}
+
+int noh_track_ended(const noh_track *track, const noh_motion *motion)
+{
+    int64_t end = track->rate < 0 ? 0 : noh_position_of(motion->duration_ticks);
+    return track->loop == NOH_LOOP_ONCE && track->position == end && !track->placed;
+}
+
+uint32_t noh_track_clip_tick(const noh_track *track, const noh_motion *motion, int64_t ago)
+{
+    noh_loop loop = (noh_loop)track->loop;
+    int64_t position = noh_time_advance(track->position, -track->rate, ago, motion->duration_ticks, loop);
+    return (uint32_t)(noh_time_clip(position, motion->duration_ticks, loop) / 65536);
+}

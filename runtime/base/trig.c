@@ -1,0 +1,116 @@
+#include "base/trig.h"
+
+#include <string.h>
+
+#include "base/math.h"
+
+#define HALF_PI 1.57079632679489662
+#define TURN_PER_RADIAN 683565275.576431634 /* 2^32 / (2 pi) */
+#define RADIAN_PER_TURN 1.46291807926715968e-9
+#define ANGLE_MAX 1e6f
+
+/* |x| <= pi/4, all three: the smallest range that quarter turns leave. */
+static float sin_poly(float x)
+{
+    float y = x * x;
+    return x + x * y * (-0.166666646623f + y * (0.00833274827063f + y * -0.000195878908804f));
+}
+
+static float cos_poly(float x)
+{
+    float y = x * x;
+    return (1.0f - 0.5f * y) + y * y * (0.0416666646595f + y * (-0.00138883030359f + y * 2.45479420851e-5f));
+}
+
+static void rotate_quarters(uint32_t quarters, float x, float *sine, float *cosine)
+{
+    float s = sin_poly(x), c = cos_poly(x);
+    switch (quarters & 3u) {
+    case 0: *sine = s; *cosine = c; break;
+    case 1: *sine = c; *cosine = -s; break;
+    case 2: *sine = -s; *cosine = -c; break;
+    default: *sine = -c; *cosine = s; break;
+    }
+}
+
+static int in_range(float radians)
+{
+    return radians >= -ANGLE_MAX && radians <= ANGLE_MAX;
+}
+
+void noh_sin_cos(float radians, float *sine, float *cosine)
+{
+    double quarters = in_range(radians) ? (double)radians / HALF_PI : 0.0;
+    /* rounded to the nearest; double keeps the rest exact enough over the whole range */
+    int32_t k = (int32_t)(quarters < 0.0 ? quarters - 0.5 : quarters + 0.5);
+    rotate_quarters((uint32_t)k, in_range(radians) ? (float)((double)radians - (double)k * HALF_PI) : 0.0f, sine, cosine);
+}
+
+void noh_sin_cos_turn(uint32_t turn, float *sine, float *cosine)
+{
+    uint32_t quarters = (turn + 0x20000000u) >> 30;
+    int32_t rest = (int32_t)(turn + 0x20000000u - (quarters << 30)) - 0x20000000;
+    rotate_quarters(quarters, (float)((double)rest * RADIAN_PER_TURN), sine, cosine);
+}
+
+/* 0 <= x <= 1. Above tan(pi/8) the angle is counted from pi/4. */
+static float atan_unit(float x)
+{
+    float z = x > 0.414213562f ? (x - 1.0f) / (x + 1.0f) : x;
+    float y = z * z;
+    float a = z + z * y * (-0.333333317612f + y * (0.199995404837f + y * (-0.142639555980f + y * (0.107437314910f + y * -0.0645192820812f))));
+    return x > 0.414213562f ? a + 0.785398163f : a;
+}
+
+float noh_atan2(float y, float x)
+{
+    float ax = x < 0.0f ? -x : x, ay = y < 0.0f ? -y : y;
+    float angle;
+    if (ax == 0.0f && ay == 0.0f) {
+        return 0.0f;
+    }
+    angle = ay > ax ? 1.57079633f - atan_unit(ax / ay) : atan_unit(ay / ax);
+    if (x < 0.0f) {
+        angle = NOH_PI - angle;
+    }
+    return y < 0.0f ? -angle : angle;
+}
+
+float noh_acos(float x)
+{
+    float c = x < -1.0f ? -1.0f : x > 1.0f ? 1.0f : x;
+    return noh_atan2(noh_sqrt((1.0f - c) * (1.0f + c)), c);
+}
+
+float noh_exp2(float x)
+{
+    float clamped = x > 127.999f ? 127.999f : x;
+    int32_t whole;
+    uint32_t bits;
+    float f, power, part;
+    if (!(clamped >= -126.0f)) {
+        return 0.0f;
+    }
+    whole = (int32_t)(clamped < 0.0f ? clamped - 0.5f : clamped + 0.5f);
+    f = clamped - (float)whole;
+    part = 1.0f + f * (0.69314718056f + f * (0.240226509223f + f * (0.0555041088391f
+        + f * (0.00961805667852f + f * (0.00133335023862f + f * (0.000154614446986f + f * 1.52973237607e-5f))))));
+    if (whole > 127) { /* 2^128 is no float, 2^128 * part is */
+        part *= 2.0f;
+        whole = 127;
+    }
+    bits = (uint32_t)(whole + 127) << 23;
+    memcpy(&power, &bits, sizeof power);
+    return power * part;
+}
+
+uint32_t noh_turn_from_radians(float radians)
+{
+    double turn = in_range(radians) ? (double)radians * TURN_PER_RADIAN : 0.0;
+    return (uint32_t)(uint64_t)(int64_t)(turn < 0.0 ? turn - 0.5 : turn + 0.5);
+}
+
+float noh_radians_from_turn(uint32_t turn)
+{
+    return (float)((double)(int32_t)turn * RADIAN_PER_TURN);
+}
