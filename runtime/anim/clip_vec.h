@@ -1,0 +1,153 @@
+/* clip_vec.h (private to anim/ and the encoder): four floats at a time.
+ *
+ * Every operation here rounds once, like the scalar twin's, so that all give the same
+ * bits. Define NOH_CLIP_SCALAR to force the twin. */
+#ifndef NOH_ANIM_CLIP_VEC_H
+#define NOH_ANIM_CLIP_VEC_H
+
+#include <stdint.h>
+#include <string.h>
+
+#include "base/math.h"
+
+#if defined(NOH_CLIP_SCALAR)
+#define NOH_CLIP_SIMD "scalar"
+#elif defined(__SSE2__)
+#include <emmintrin.h>
+#define NOH_CLIP_SIMD "sse2"
+#define NOH_VEC_SSE 1
+#elif defined(__ARM_NEON) && defined(__aarch64__) /* 32-bit NEON flushes subnormals: not the same bits */
+#include <arm_neon.h>
+#define NOH_CLIP_SIMD "neon"
+#define NOH_VEC_NEON 1
+#else
+#define NOH_CLIP_SIMD "scalar"
+#endif
+
+#if defined(NOH_VEC_SSE)
+typedef __m128 noh_v4;
+static inline noh_v4 noh_v4_load(const float *p) { return _mm_loadu_ps(p); }
+static inline void noh_v4_store(float *p, noh_v4 v) { _mm_storeu_ps(p, v); }
+static inline noh_v4 noh_v4_set(float x) { return _mm_set1_ps(x); }
+static inline noh_v4 noh_v4_add(noh_v4 a, noh_v4 b) { return _mm_add_ps(a, b); }
+static inline noh_v4 noh_v4_sub(noh_v4 a, noh_v4 b) { return _mm_sub_ps(a, b); }
+static inline noh_v4 noh_v4_mul(noh_v4 a, noh_v4 b) { return _mm_mul_ps(a, b); }
+static inline noh_v4 noh_v4_div(noh_v4 a, noh_v4 b) { return _mm_div_ps(a, b); }
+static inline noh_v4 noh_v4_sqrt(noh_v4 a) { return _mm_sqrt_ps(a); }
+static inline noh_v4 noh_v4_max(noh_v4 a, noh_v4 b) { return _mm_max_ps(a, b); } /* a > b ? a : b */
+/* Four int16, times a power of two that may differ between paths (here 2^16: one shift less). */
+static inline noh_v4 noh_v4_load_i16(const int16_t *p)
+{
+    return _mm_cvtepi32_ps(_mm_unpacklo_epi16(_mm_setzero_si128(), _mm_loadl_epi64((const __m128i *)(const void *)p)));
+}
+static inline void noh_v4_transpose(noh_v4 v[4])
+{
+    _MM_TRANSPOSE4_PS(v[0], v[1], v[2], v[3]);
+}
+/* Lane i: (x + z) + (y + w) of the i-th vector. */
+static inline noh_v4 noh_v4_sums(noh_v4 a, noh_v4 b, noh_v4 c, noh_v4 d)
+{
+    const noh_v4 ab = _mm_add_ps(_mm_unpacklo_ps(a, b), _mm_unpackhi_ps(a, b));
+    const noh_v4 cd = _mm_add_ps(_mm_unpacklo_ps(c, d), _mm_unpackhi_ps(c, d));
+    return _mm_add_ps(_mm_movelh_ps(ab, cd), _mm_movehl_ps(cd, ab));
+}
+/* Round halves up and store as int16; |v| must be below 32768. */
+static inline void noh_v4_store_i16(int16_t *p, noh_v4 v)
+{
+    __m128i i = _mm_sub_epi32(_mm_cvttps_epi32(_mm_add_ps(v, _mm_set1_ps(32768.5f))), _mm_set1_epi32(32768));
+    _mm_storel_epi64((__m128i *)(void *)p, _mm_packs_epi32(i, i));
+}
+static inline noh_v4 noh_v4_lane(noh_v4 v, int lane)
+{
+    switch (lane) { /* constant after inlining */
+    case 0: return _mm_shuffle_ps(v, v, 0x00);
+    case 1: return _mm_shuffle_ps(v, v, 0x55);
+    case 2: return _mm_shuffle_ps(v, v, 0xaa);
+    default: return _mm_shuffle_ps(v, v, 0xff);
+    }
+}
+#elif defined(NOH_VEC_NEON)
+typedef float32x4_t noh_v4;
+static inline noh_v4 noh_v4_load(const float *p) { return vld1q_f32(p); }
+static inline void noh_v4_store(float *p, noh_v4 v) { vst1q_f32(p, v); }
+static inline noh_v4 noh_v4_set(float x) { return vdupq_n_f32(x); }
+static inline noh_v4 noh_v4_add(noh_v4 a, noh_v4 b) { return vaddq_f32(a, b); }
+static inline noh_v4 noh_v4_sub(noh_v4 a, noh_v4 b) { return vsubq_f32(a, b); }
+static inline noh_v4 noh_v4_mul(noh_v4 a, noh_v4 b) { return vmulq_f32(a, b); }
+static inline noh_v4 noh_v4_div(noh_v4 a, noh_v4 b) { return vdivq_f32(a, b); }
+static inline noh_v4 noh_v4_sqrt(noh_v4 a) { return vsqrtq_f32(a); }
+static inline noh_v4 noh_v4_max(noh_v4 a, noh_v4 b) { return vbslq_f32(vcgtq_f32(a, b), a, b); }
+static inline noh_v4 noh_v4_load_i16(const int16_t *p) { return vcvtq_f32_s32(vmovl_s16(vld1_s16(p))); }
+static inline void noh_v4_transpose(noh_v4 v[4])
+{
+    float32x4x2_t a = vzipq_f32(v[0], v[2]), b = vzipq_f32(v[1], v[3]);
+    float32x4x2_t low = vzipq_f32(a.val[0], b.val[0]), high = vzipq_f32(a.val[1], b.val[1]);
+    v[0] = low.val[0];
+    v[1] = low.val[1];
+    v[2] = high.val[0];
+    v[3] = high.val[1];
+}
+static inline noh_v4 noh_v4_sums(noh_v4 a, noh_v4 b, noh_v4 c, noh_v4 d)
+{
+    const noh_v4 ab = vaddq_f32(vzip1q_f32(a, b), vzip2q_f32(a, b)), cd = vaddq_f32(vzip1q_f32(c, d), vzip2q_f32(c, d));
+    return vaddq_f32(vcombine_f32(vget_low_f32(ab), vget_low_f32(cd)), vcombine_f32(vget_high_f32(ab), vget_high_f32(cd)));
+}
+static inline void noh_v4_store_i16(int16_t *p, noh_v4 v)
+{
+    int32x4_t i = vsubq_s32(vcvtq_s32_f32(vaddq_f32(v, vdupq_n_f32(32768.5f))), vdupq_n_s32(32768));
+    vst1_s16(p, vqmovn_s32(i));
+}
+static inline noh_v4 noh_v4_lane(noh_v4 v, int lane)
+{
+    switch (lane) {
+    case 0: return vdupq_laneq_f32(v, 0);
+    case 1: return vdupq_laneq_f32(v, 1);
+    case 2: return vdupq_laneq_f32(v, 2);
+    default: return vdupq_laneq_f32(v, 3);
+    }
+}
+#else
+typedef struct noh_v4 { float f[4]; } noh_v4;
+/* Written out: at -O2 compilers keep loops of four. */
+static inline noh_v4 noh_v4_load(const float *p) { noh_v4 r; memcpy(r.f, p, sizeof r.f); return r; }
+static inline void noh_v4_store(float *p, noh_v4 v) { memcpy(p, v.f, sizeof v.f); }
+static inline noh_v4 noh_v4_set(float x) { const noh_v4 r = { { x, x, x, x } }; return r; }
+static inline noh_v4 noh_v4_add(noh_v4 a, noh_v4 b) { const noh_v4 r = { { a.f[0] + b.f[0], a.f[1] + b.f[1], a.f[2] + b.f[2], a.f[3] + b.f[3] } }; return r; }
+static inline noh_v4 noh_v4_sub(noh_v4 a, noh_v4 b) { const noh_v4 r = { { a.f[0] - b.f[0], a.f[1] - b.f[1], a.f[2] - b.f[2], a.f[3] - b.f[3] } }; return r; }
+static inline noh_v4 noh_v4_mul(noh_v4 a, noh_v4 b) { const noh_v4 r = { { a.f[0] * b.f[0], a.f[1] * b.f[1], a.f[2] * b.f[2], a.f[3] * b.f[3] } }; return r; }
+static inline noh_v4 noh_v4_div(noh_v4 a, noh_v4 b) { const noh_v4 r = { { a.f[0] / b.f[0], a.f[1] / b.f[1], a.f[2] / b.f[2], a.f[3] / b.f[3] } }; return r; }
+static inline noh_v4 noh_v4_sqrt(noh_v4 a) { const noh_v4 r = { { noh_sqrt(a.f[0]), noh_sqrt(a.f[1]), noh_sqrt(a.f[2]), noh_sqrt(a.f[3]) } }; return r; }
+static inline float noh_v4_larger(float a, float b) { return a > b ? a : b; }
+static inline noh_v4 noh_v4_max(noh_v4 a, noh_v4 b) { const noh_v4 r = { { noh_v4_larger(a.f[0], b.f[0]), noh_v4_larger(a.f[1], b.f[1]), noh_v4_larger(a.f[2], b.f[2]), noh_v4_larger(a.f[3], b.f[3]) } }; return r; }
+static inline noh_v4 noh_v4_load_i16(const int16_t *p) { const noh_v4 r = { { (float)p[0], (float)p[1], (float)p[2], (float)p[3] } }; return r; }
+static inline void noh_v4_transpose(noh_v4 v[4])
+{
+    for (int i = 0; i < 4; i++) {
+        for (int k = i + 1; k < 4; k++) {
+            const float t = v[i].f[k];
+            v[i].f[k] = v[k].f[i];
+            v[k].f[i] = t;
+        }
+    }
+}
+static inline float noh_v4_sum(noh_v4 v) { return (v.f[0] + v.f[2]) + (v.f[1] + v.f[3]); }
+static inline noh_v4 noh_v4_sums(noh_v4 a, noh_v4 b, noh_v4 c, noh_v4 d)
+{
+    noh_v4 r;
+    r.f[0] = noh_v4_sum(a);
+    r.f[1] = noh_v4_sum(b);
+    r.f[2] = noh_v4_sum(c);
+    r.f[3] = noh_v4_sum(d);
+    return r;
+}
+static inline void noh_v4_store_i16(int16_t *p, noh_v4 v)
+{
+    for (int i = 0; i < 4; i++) {
+        const int32_t r = (int32_t)(v.f[i] + 32768.5f) - 32768;
+        p[i] = (int16_t)(r > 32767 ? 32767 : r);
+    }
+}
+static inline noh_v4 noh_v4_lane(noh_v4 v, int lane) { return noh_v4_set(v.f[lane]); }
+#endif
+
+#endif

@@ -1,0 +1,138 @@
+/* clip_certify.c: decode what was written and measure it against the raw motion. */
+#include <stdlib.h>
+
+#include "anim/clip_decode.h"
+#include "anim/clip_sample.h"
+#include "clip_encoder.h"
+
+typedef struct certifier {
+    encoder *e;
+    noh_clip *clip;
+    uint8_t *memory, *frames[2];  /* two segments: this and the last */
+    noh_transform *pose;
+    float *floats;
+    space_global *raw, *lossy;
+    double max_error, worst_part, square, max_float;
+    uint64_t samples;
+    uint32_t joint, time_parts;
+} certifier;
+
+static int open_blob(certifier *c, const byte_buffer *blob, size_t begin)
+{
+    encoder *e = c->e;
+    noh_clip_desc desc;
+    size_t size;
+    desc.bytes = blob->bytes + begin;
+    desc.byte_count = blob->count - begin;
+    desc.bind = e->bind;
+    desc.joint_count = e->joint_count;
+    size = noh_clip_size(&desc, NULL);
+    c->memory = size ? enc_alloc(e, size, 1) : NULL;
+    c->pose = enc_alloc(e, e->joint_count, sizeof *c->pose);
+    c->floats = enc_alloc(e, e->float_count, sizeof *c->floats);
+    c->raw = enc_alloc(e, e->joint_count, sizeof *c->raw);
+    c->lossy = enc_alloc(e, e->joint_count, sizeof *c->lossy);
+    if (!c->memory || !c->pose || !c->floats || !c->raw || !c->lossy) return 1;
+    if (noh_clip_init(c->memory, size, &desc, &c->clip, NULL) != NOH_OK) return enc_fail(e, "the decoder refuses what was written");
+    for (int i = 0; i < 2; i++) {
+        c->frames[i] = enc_alloc(e, c->clip->info.segment_bytes_max, 1);
+        if (!c->frames[i]) return 1;
+    }
+    return 0;
+}
+
+static void measure_joints(certifier *c, uint32_t frame, double fraction, uint32_t time_parts)
+{
+    const encoder *e = c->e;
+    for (uint32_t j = 0; j < e->joint_count; j++) {
+        const uint32_t parent = e->joints[j].parent;
+        const noh_transform *t = &c->pose[j];
+        space_local raw, l;
+        double d;
+        space_between(enc_local(e, frame, j), enc_local(e, fraction > 0.0 ? frame + 1u : frame, j), fraction, &raw);
+        for (int i = 0; i < 4; i++) l.q[i] = (double)t->rotation[i];
+        for (int i = 0; i < 3; i++) l.t[i] = (double)t->translation[i];
+        for (int i = 0; i < 3; i++) l.s[i] = (double)t->scale[i];
+        space_unit(l.q);
+        space_compose(enc_parent(c->raw, parent), &raw, &c->raw[j]);
+        space_compose(enc_parent(c->lossy, parent), &l, &c->lossy[j]);
+        d = space_error(&c->raw[j], &c->lossy[j], e->shell);
+        c->square += d * d;
+        c->samples++;
+        if (!(d / e->joints[j].bound <= c->worst_part)) c->worst_part = d / e->joints[j].bound;
+        if (!(d <= c->max_error)) {
+            c->max_error = d;
+            c->joint = j;
+            c->time_parts = time_parts;
+        }
+    }
+}
+
+static void measure_floats(certifier *c, uint32_t frame, double fraction)
+{
+    const encoder *e = c->e;
+    for (uint32_t i = 0; i < e->float_count; i++) {
+        const double a = (double)e->floats[(size_t)frame * e->float_count + i];
+        const double b = fraction > 0.0 ? (double)e->floats[(size_t)(frame + 1u) * e->float_count + i] : a;
+        const double d = fabs(a + (b - a) * fraction - (double)c->floats[i]) / e->float_bounds[i];
+        if (!(d <= c->max_float)) c->max_float = d;
+    }
+}
+
+static void measure(certifier *c, const uint8_t *a, const uint8_t *b, uint32_t frame, uint32_t part)
+{
+    const double fraction = (double)part / ENC_PARTS;
+    noh_clip_blend_frames(c->clip, a, b, (float)fraction, c->e->joint_count, c->pose, c->floats);
+    measure_joints(c, frame, fraction, frame * ENC_PARTS + part);
+    measure_floats(c, frame, fraction);
+}
+
+static void measure_segment(certifier *c, uint32_t s)
+{
+    const encoder *e = c->e;
+    const enc_segment *segment = &e->segments[s];
+    const size_t stride = c->clip->frame_bytes;
+    uint8_t *frames = c->frames[s % 2u];
+    const uint8_t *before = s ? c->frames[(s + 1u) % 2u] + (e->segments[s - 1u].count - 1u) * stride : NULL;
+    noh_clip_cursor cursor = noh_clip_cursor_at(c->clip, s);
+    noh_clip_decode(c->clip, &e->bases[segment->count], &cursor, c->clip->info.track_count, frames);
+    for (uint32_t f = 0; f < segment->count; f++) {
+        const uint8_t *here = frames + f * stride;
+        for (uint32_t part = 1; before && part < ENC_PARTS; part++) measure(c, before, here, segment->first + f - 1u, part);
+        measure(c, here, here, segment->first + f, 0);
+        before = here;
+    }
+}
+
+static void free_certifier(certifier *c)
+{
+    free(c->memory);
+    free(c->frames[0]);
+    free(c->frames[1]);
+    free(c->pose);
+    free(c->floats);
+    free(c->raw);
+    free(c->lossy);
+}
+
+int enc_certify(encoder *e, const byte_buffer *blob, size_t begin, double *worst_part, double *max_error, double *rms_error, uint32_t *joint,
+                uint32_t *time_parts)
+{
+    certifier c;
+    memset(&c, 0, sizeof c);
+    c.e = e;
+    if (open_blob(&c, blob, begin)) {
+        free_certifier(&c);
+        return 1;
+    }
+    for (uint32_t s = 0; s < e->segment_count; s++) measure_segment(&c, s);
+    *worst_part = c.worst_part > c.max_float ? c.worst_part : c.max_float;
+    *max_error = c.max_error * e->unit_cm;
+    *rms_error = c.samples ? sqrt(c.square / (double)c.samples) * e->unit_cm : 0.0;
+    *joint = c.joint;
+    *time_parts = c.time_parts;
+    e->report.max_float_error = c.max_float;
+    e->report.track_count = c.clip->info.track_count;
+    free_certifier(&c);
+    return 0;
+}

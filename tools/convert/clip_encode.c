@@ -1,0 +1,179 @@
+/* clip_encode.c: the order of things. What is tried when the bound does not hold:
+ *   level 0  everything that saves bytes
+ *   level 1  rotations cached as floats, and hardly anything taken for constant
+ *   level 2  constants to single precision, animated tracks raw */
+#include "clip_encode.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "clip_encoder.h"
+
+#define LEVELS 3
+#define DEFAULT_ERROR_CM 0.01
+#define DEFAULT_SHELL_CM 3.0
+#define DEFAULT_FLOAT_ERROR 0.001
+#define DEFAULT_SEGMENT_FRAMES 24u
+#define SEGMENT_FRAMES_MIN 8u
+#define SEGMENT_FRAMES_MAX 40u  /* a single segment may be half as long again */
+#define RAW_JOINT_BYTES 40u
+#define RAW_FLOAT_BYTES 4u
+
+/* rho at the root and at the tips, margin, part of the bound for translations, strength of the
+ * correction, weight of the shell in it, dead zone, nudges. The first is the best for most. */
+static const enc_tuning tunings[] = {
+    { 0.82, 0.86, 0.05, 0.65, 0.2, 0.5, 0.06, 8 },
+    { 0.7, 0.9, 0.05, 0.65, 0.2, 0.5, 0.06, 8 },
+    { 0.9, 0.9, 0.05, 0.75, 0.1, 0.5, 0.06, 8 },
+    { 0.82, 0.82, 0.1, 0.5, 0.35, 0.5, 0.1, 8 },
+};
+
+static int set_options(encoder *e, const clip_options *given)
+{
+    clip_options *o = &e->options;
+    if (given) *o = *given;
+    if (o->error_cm == 0.0) o->error_cm = DEFAULT_ERROR_CM;
+    if (o->shell_cm == 0.0) o->shell_cm = DEFAULT_SHELL_CM;
+    if (o->float_error == 0.0) o->float_error = DEFAULT_FLOAT_ERROR;
+    if (o->segment_frames == 0u) o->segment_frames = DEFAULT_SEGMENT_FRAMES;
+    if (!(o->error_cm >= 1e-6 && o->error_cm <= 400.0)) return enc_fail(e, "error_cm: 0.000001 to 400");
+    if (!(o->shell_cm >= 1e-3 && o->shell_cm <= 1e5)) return enc_fail(e, "shell_cm: 0.001 to 100000");
+    if (!(o->float_error > 0.0)) return enc_fail(e, "float_error: above 0");
+    if (o->segment_frames < SEGMENT_FRAMES_MIN || o->segment_frames > SEGMENT_FRAMES_MAX) return enc_fail(e, "segment_frames: 8 to 40");
+    if (!(e->skeleton->unit_cm > 0.0)) return enc_fail(e, "unit_cm: above 0");
+    e->unit_cm = e->skeleton->unit_cm;
+    e->bound = o->error_cm / e->unit_cm;
+    e->shell = o->shell_cm / e->unit_cm;
+    e->tunings = tunings;
+    e->tuning_count = sizeof tunings / sizeof *tunings;
+    return 0;
+}
+
+static int new_loop(encoder *e)
+{
+    enc_loop *l = enc_alloc(e, 1, sizeof *l);
+    e->loop = l;
+    if (!l) return 1;
+    l->local = enc_alloc(e, (size_t)e->joint_count * ENC_FRAMES_MAX, sizeof *l->local);
+    l->global = enc_alloc(e, (size_t)e->joint_count * ENC_FRAMES_MAX, sizeof *l->global);
+    l->raw_between = enc_alloc(e, (size_t)e->joint_count * ENC_FRAMES_MAX * (ENC_PARTS - 1), sizeof *l->raw_between);
+    l->before = enc_alloc(e, e->joint_count, sizeof *l->before);
+    l->scratch = enc_alloc(e, e->joint_count, sizeof *l->scratch);
+    l->end = enc_alloc(e, e->joint_count, sizeof *l->end);
+    l->errors = enc_alloc(e, (size_t)e->joint_count * (ENC_PARTS + 1), sizeof *l->errors);
+    l->errors_before = enc_alloc(e, e->joint_count, sizeof *l->errors);
+    l->errors_end = enc_alloc(e, e->joint_count, sizeof *l->errors);
+    return !l->errors || !l->errors_before || !l->errors_end || !l->end || !l->local || !l->global || !l->raw_between || !l->before || !l->scratch;
+}
+
+static void free_segments(encoder *e)
+{
+    for (uint32_t s = 0; e->segments && s < e->segment_count; s++) {
+        enc_free_pieces(e, e->segments[s].pieces);
+    }
+    free(e->segments);
+}
+
+static void free_encoder(encoder *e)
+{
+    free_segments(e);
+    for (uint32_t j = 0; e->joints && j < e->joint_count; j++) free(e->joints[j].points);
+    for (uint32_t n = 0; n <= ENC_FRAMES_MAX; n++) {
+        free((void *)(uintptr_t)e->bases[n].rows);
+        free(e->transforms[n]);
+    }
+    if (e->loop) {
+        free(e->loop->local);
+        free(e->loop->global);
+        free(e->loop->raw_between);
+        free(e->loop->before);
+        free(e->loop->scratch);
+        free(e->loop->end);
+        free(e->loop->errors);
+        free(e->loop->errors_before);
+        free(e->loop->errors_end);
+        free(e->loop);
+    }
+    free(e->joints);
+    free(e->bind);
+    free(e->local);
+    free(e->global);
+    free(e->floats);
+    free(e->float_bounds);
+    free(e->tracks);
+}
+
+/* The certificate is in the header, so the header is written twice. */
+static int write_certified(encoder *e, byte_buffer *out, double *worst_part)
+{
+    clip_report *r = &e->report;
+    clip_histogram *histogram = e->options.histogram;
+    const size_t begin = out->count;
+    uint32_t time_parts;
+    e->options.histogram = NULL;
+    if (enc_write(e, 0.0, 0.0, 0, 0, out)) return 1;
+    if (enc_certify(e, out, begin, worst_part, &r->max_error_cm, &r->rms_error_cm, &r->max_error_joint, &time_parts)) return 1;
+    if (!(*worst_part <= 1.0)) return 0;
+    out->count = begin;
+    e->options.histogram = histogram;
+    if (enc_write(e, r->max_error_cm, r->rms_error_cm, r->max_error_joint, time_parts, out)) return 1;
+    r->bytes = out->count - begin;
+    r->max_error_time_s = (double)time_parts / ENC_PARTS / e->clip->rate_hz;
+    r->segment_count = e->segment_count;
+    r->wide = e->wide;
+    r->raw_bytes = (size_t)e->frame_count * (e->joint_count * RAW_JOINT_BYTES + e->float_count * RAW_FLOAT_BYTES);
+    return 0;
+}
+
+/* One level. *worst_part is above 1 where the bound did not hold; nothing is then left in `out`. */
+static int encode_level(encoder *e, byte_buffer *out, double *worst_part)
+{
+    static const double drops[LEVELS] = { ENC_DROP, 0.01, 0.0 };
+    const size_t begin = out->count;
+    int failed;
+    e->drop = drops[e->level];
+    *worst_part = 0.0;
+    if (enc_prepare(e) || enc_analyse(e) || new_loop(e)) return 1;
+    for (uint32_t s = 0; s < e->segment_count; s++) {
+        double worst;
+        if (enc_segment_fit(e, s, &worst)) return 1;
+        if (!(worst <= 1.0)) {
+            *worst_part = worst;
+            return 0;
+        }
+        if (e->options.progress) e->options.progress(e->options.user, s + 1u, e->segment_count);
+    }
+    failed = write_certified(e, out, worst_part);
+    if (failed || !(*worst_part <= 1.0)) out->count = begin;
+    return failed;
+}
+
+int clip_encode(const raw_skeleton *skeleton, const raw_clip *clip, const clip_options *options, byte_buffer *out, clip_report *report,
+                model_error *error)
+{
+    double worst_part = 2.0;
+    int failed = 0;
+    encoder *e = malloc(sizeof *e); /* 64 bases: too much for some stacks */
+    if (!e) {
+        if (error) snprintf(error->what, sizeof error->what, "out of memory");
+        return 1;
+    }
+    for (int level = 0; level < LEVELS && !failed && !(worst_part <= 1.0); level++) {
+        memset(e, 0, sizeof *e);
+        e->skeleton = skeleton;
+        e->clip = clip;
+        e->error = error;
+        e->level = level;
+        failed = set_options(e, options) || encode_level(e, out, &worst_part);
+        if (!failed && worst_part <= 1.0 && report) {
+            *report = e->report;
+            report->level = level;
+        }
+        if (!failed && level == LEVELS - 1 && !(worst_part <= 1.0)) {
+            failed = enc_fail(e, "the bound is finer than single precision holds so far from the origin");
+        }
+        free_encoder(e);
+    }
+    free(e);
+    return failed;
+}

@@ -1,0 +1,191 @@
+/* clip_fit.c: one track of one segment, with the largest step that its check allows.
+ *
+ * Steps are tried from large to small. A step that just fails gets a few chances: the targets
+ * of the frames that are out are pushed against their error, which lets the quantiser fall
+ * another way. */
+#include <stdlib.h>
+
+#include "clip_encoder.h"
+
+#define IDS_ABOVE 8          /* larger steps than the guess that are tried: two octaves */
+#define IDS_RAISE 4
+#define HOPELESS 1.8         /* a violation that nudging does not mend */
+#define NEARLY 0.97
+#define PUSH 0.5
+#define WORTH_AN_OCTAVE 0.9  /* a finer step that fails too must at least come this much nearer */
+#define FRAME_BYTES 16u      /* of the frames that a check sees */
+
+int enc_quat_codes(const double q[4], uint32_t width, uint32_t codes[4])
+{
+    const double mid = (double)((1u << (width - 1u)) - 1u);
+    uint32_t largest = 0, k = 0;
+    double sign;
+    for (uint32_t i = 1; i < 4u; i++) {
+        if (fabs(q[i]) > fabs(q[largest])) largest = i;
+    }
+    sign = q[largest] < 0.0 ? -1.0 : 1.0;
+    for (uint32_t i = 0; i < 4u; i++) {
+        double v;
+        if (i == largest) continue;
+        v = floor(sign * q[i] * mid * 1.41421356237309504880 + 0.5);
+        codes[k++] = (uint32_t)(int32_t)((v > mid ? mid : v < -mid ? -mid : v) + mid);
+    }
+    codes[3] = largest;
+    return sign < 0.0;
+}
+
+void enc_quat_value(const uint32_t codes[4], uint32_t width, float q[4])
+{
+    noh_clip_quat_expand(codes, codes[3], width, q);
+}
+
+/* The orthonormal DCT of three components, then into the track's mixed axes. */
+static void forward(const encoder *e, const enc_track *t, uint32_t n, double (*x)[3], double (*out)[3])
+{
+    const double *b = e->transforms[n];
+    const float *m = t->track.mix;
+    for (uint32_t k = 0; k < n; k++, b += n) {
+        double a[3] = { 0.0, 0.0, 0.0 };
+        for (uint32_t f = 0; f < n; f++) {
+            for (int c = 0; c < 3; c++) a[c] += b[f] * x[f][c];
+        }
+        for (int c = 0; c < 3; c++) {
+            if (t->track.kind == NOH_CLIP_FLOATS) {
+                out[k][c] = a[c] / (double)m[4 * c];
+            } else if (t->track.flags & NOH_CLIP_TRACK_MIX) {
+                out[k][c] = (double)m[c] * a[0] + (double)m[3 + c] * a[1] + (double)m[6 + c] * a[2];
+            } else {
+                out[k][c] = a[c];
+            }
+        }
+    }
+}
+
+/* Returns 0 when a coefficient passes what the format holds. */
+static int quantise(const encoder *e, double (*spectrum)[3], uint32_t n, double step, enc_piece *piece)
+{
+    uint32_t last = 0;
+    for (uint32_t k = 0; k < n; k++) {
+        for (int c = 0; c < 3; c++) {
+            const double v = floor(fabs(spectrum[k][c]) / step + 0.5 - (k ? e->tuning.dead_zone : 0.0));
+            if (!(v < (double)(1u << (NOH_CLIP_MAGNITUDE_BITS - 1u)))) return 0;
+            piece->coefs[k][c] = spectrum[k][c] < 0.0 ? -(int32_t)v : (int32_t)v;
+            if (v > 0.0) last = k + 1u;
+        }
+    }
+    piece->last = (uint8_t)last;
+    return 1;
+}
+
+typedef struct attempt {
+    encoder *e;
+    enc_track *track;
+    enc_piece *piece;
+    uint32_t count;
+    const float *reference;
+    float components[ENC_FRAMES_MAX][4];
+    uint8_t frames[ENC_FRAMES_MAX * FRAME_BYTES];
+} attempt;
+
+/* Quantise and decode as the runtime does. */
+static int try_step(attempt *a, double (*targets)[3], int id)
+{
+    double spectrum[ENC_FRAMES_MAX][3];
+    const noh_clip_basis *basis = &a->e->bases[a->count];
+    const float step = noh_clip_step((uint32_t)id);
+    const int32_t(*coefs)[4] = (const int32_t(*)[4])a->piece->coefs;
+    const float(*components)[4] = (const float(*)[4])a->components;
+    forward(a->e, a->track, a->count, targets, spectrum);
+    if (!quantise(a->e, spectrum, a->count, (double)step, a->piece)) return 0;
+    noh_clip_dequantise(coefs, a->piece->last, step, a->track->track.flags & NOH_CLIP_TRACK_MIX ? a->track->track.mix : NULL, a->components);
+    if (a->track->track.kind == NOH_CLIP_ROTATION) {
+        noh_clip_synth_rotation(basis, components, a->piece->last, a->reference, a->e->wide, a->frames, FRAME_BYTES);
+    } else {
+        noh_clip_synth_linear(basis, components, a->piece->last, a->reference, a->frames, FRAME_BYTES);
+    }
+    a->piece->step = (uint8_t)id;
+    return 1;
+}
+
+/* Push the targets of frames that are out against their error. */
+static void nudge(attempt *a, double (*targets)[3], double (*work)[3], const double *violations)
+{
+    const float zero[3] = { 0.0f, 0.0f, 0.0f };
+    uint8_t decoded[ENC_FRAMES_MAX * FRAME_BYTES];
+    noh_clip_synth_linear(&a->e->bases[a->count], (const float(*)[4])a->components, a->piece->last, zero, decoded, FRAME_BYTES);
+    for (uint32_t f = 0; f < a->count; f++) {
+        float u[3];
+        if (violations[f] <= NEARLY) continue;
+        memcpy(u, decoded + f * FRAME_BYTES, sizeof u);
+        for (int c = 0; c < 3; c++) work[f][c] += PUSH * (targets[f][c] - (double)u[c]);
+    }
+}
+
+/* Returns whether the step holds; *first is the violation before any nudge. */
+static int try_nudged(attempt *a, double (*targets)[3], int id, enc_check check, void *user, double *first)
+{
+    double work[ENC_FRAMES_MAX][3], violations[ENC_FRAMES_MAX];
+    memcpy(work, targets, a->count * sizeof *work);
+    *first = INFINITY;
+    for (int i = 0; i <= a->e->tuning.nudges; i++) {
+        double v;
+        if (!try_step(a, work, id)) return 0;
+        v = check(a->e, user, a->frames, violations);
+        if (i == 0) *first = v;
+        if (v <= 1.0) return 1;
+        if (!(v <= HOPELESS) || i == a->e->tuning.nudges) return 0;
+        nudge(a, targets, work, violations);
+    }
+    return 0;
+}
+
+static int clamp_id(int id)
+{
+    return id < 0 ? 0 : id >= (int)NOH_CLIP_STEP_IDS ? (int)NOH_CLIP_STEP_IDS - 1 : id;
+}
+
+/* Ids to skip after a violation: errors grow with steps, so the next that may hold is far when it is large. */
+static int stride_after(double violation)
+{
+    const double octaves = violation > HOPELESS && violation < 1e30 ? log2(violation / HOPELESS) : 0.0;
+    return 1 + (int)(4.0 * octaves);
+}
+
+/* The largest step that holds, into the piece. Returns 0, and the id of the least violation, when there is none. */
+static int search(attempt *a, double (*targets)[3], enc_check check, void *user, int *best)
+{
+    const int guess = a->track->step_guess;
+    int start = clamp_id(guess - IDS_ABOVE), id = start;
+    double least = INFINITY;
+    *best = clamp_id(guess);
+    while (id < (int)NOH_CLIP_STEP_IDS) {
+        double v;
+        if (try_nudged(a, targets, id, check, user, &v)) {
+            if (id != start || start == 0 || a->piece->last == 0u) return 1; /* no larger step did, or none is needed */
+            start = id = clamp_id(start - IDS_RAISE);
+            continue;
+        }
+        if (v < least * WORTH_AN_OCTAVE) {
+            least = v;
+            *best = id;
+        }
+        id += stride_after(v);
+    }
+    return 0;
+}
+
+int enc_fit(encoder *e, enc_track *track, enc_piece *piece, uint32_t count, const float reference[4], double (*targets)[3], enc_check check,
+            void *user)
+{
+    double violations[ENC_FRAMES_MAX];
+    attempt a;
+    int best;
+    a.e = e;
+    a.track = track;
+    a.piece = piece;
+    a.count = count;
+    a.reference = reference;
+    if (!search(&a, targets, check, user, &best) && !try_step(&a, targets, best)) return 1;
+    check(e, user, a.frames, violations);
+    return 0;
+}

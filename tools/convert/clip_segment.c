@@ -1,0 +1,527 @@
+/* clip_segment.c: one segment in a closed loop.
+ *
+ * Joints are coded parents first, each against what the decoder will have made of its parents:
+ * the target of a rotation is the raw object-space rotation seen from the lossy parent, turned
+ * a little so that what it carries makes up for the error of its own position; the target of a
+ * translation is the raw position seen from there. Errors of parents so do not add up. */
+#include <stdlib.h>
+
+#include "clip_encoder.h"
+
+#define TRIES 16
+#define SLACK_MIN 0.1
+#define SAFETY 0.9995        /* of the bound, for what single precision does after us */
+#define BETWEEN (ENC_PARTS - 1)
+#define SPIN_W (-0.7)        /* beyond this the components of a rotation run away: kept raw */
+#define TRANSLATION_SCALE_MIN 1e-9
+
+enum { ROTATION, TRANSLATION, SCALE };
+
+static space_local *lossy(const encoder *e, uint32_t joint, uint32_t f) { return &e->loop->local[(size_t)joint * ENC_FRAMES_MAX + f]; }
+static space_global *placed(const encoder *e, uint32_t joint, uint32_t f) { return &e->loop->global[(size_t)joint * ENC_FRAMES_MAX + f]; }
+
+static const space_global *lossy_parent(const encoder *e, uint32_t joint, uint32_t f)
+{
+    const uint32_t p = e->joints[joint].parent;
+    return p == ENC_NONE ? NULL : placed(e, p, f);
+}
+
+/* What a check is told. */
+typedef struct judged {
+    const enc_segment *segment;
+    const enc_track *track;
+    uint32_t joint;
+    double limit;                      /* linear tracks: units */
+    double limits[ENC_FRAMES_MAX];     /* rotations: of each frame, parts of the bound */
+    double (*targets)[3];              /* linear: absolute values */
+} judged;
+
+/* ---- rotations ---- */
+
+/* How far a joint's shell and what it carries are from the raw motion, in parts of what is allowed. */
+static double rotation_violation(const encoder *e, uint32_t joint, uint32_t frame, const space_global *g)
+{
+    const enc_joint *t = &e->joints[joint];
+    const space_global *raw = enc_global(e, frame, joint);
+    /* the part of the bound that a joint may spend on what it carries: less at the root of long chains */
+    const double rho = (e->tuning.rho_root + (e->tuning.rho_tip - e->tuning.rho_root) * (t->depth < 1.0 ? t->depth : 1.0)) * e->loop->rho_scale;
+    double v = space_error(raw, g, e->shell) / t->bound;
+    for (uint32_t i = 0; i < t->point_count; i++) {
+        const enc_point *point = &t->points[i];
+        double p[3], d;
+        space_apply(g->m, point->offset, p);
+        for (int k = 0; k < 3; k++) p[k] += g->p[k];
+        d = space_distance(p, enc_global(e, frame, point->joint)->p) / (e->joints[point->joint].bound * rho);
+        if (!(d <= v)) v = d;
+    }
+    return v;
+}
+
+static void read_rotation(const encoder *e, const uint8_t *frame, double q[4])
+{
+    if (e->wide) {
+        float v[4];
+        memcpy(v, frame, sizeof v);
+        for (int i = 0; i < 4; i++) q[i] = (double)v[i];
+    } else {
+        int16_t v[4];
+        memcpy(v, frame, sizeof v);
+        for (int i = 0; i < 4; i++) q[i] = (double)v[i];
+    }
+    space_unit(q);
+}
+
+static double check_rotation(encoder *e, void *user, const uint8_t *frames, double *violations)
+{
+    judged *j = user;
+    double worst = 0.0;
+    for (uint32_t f = 0; f < j->segment->count; f++) {
+        space_local *l = lossy(e, j->joint, f);
+        space_global *g = placed(e, j->joint, f);
+        read_rotation(e, frames + f * 16u, l->q);
+        space_turn(lossy_parent(e, j->joint, f), l->q, l->s, g);
+        violations[f] = rotation_violation(e, j->joint, j->segment->first + f, g) / j->limits[f];
+        if (!(violations[f] <= worst)) worst = violations[f];
+    }
+    return worst;
+}
+
+/* One point's pull: it lies at u from the joint and should move by -off. */
+static void add_pull(double a[6], double b[3], const double u[3], const double off[3], double weight)
+{
+    const double uu = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
+    a[0] += weight * (uu - u[0] * u[0]);
+    a[1] += weight * (uu - u[1] * u[1]);
+    a[2] += weight * (uu - u[2] * u[2]);
+    a[3] -= weight * u[0] * u[1];
+    a[4] -= weight * u[0] * u[2];
+    a[5] -= weight * u[1] * u[2];
+    b[0] -= weight * (u[1] * off[2] - u[2] * off[1]);
+    b[1] -= weight * (u[2] * off[0] - u[0] * off[2]);
+    b[2] -= weight * (u[0] * off[1] - u[1] * off[0]);
+}
+
+/* The small turn that best moves a joint's shell and what it carries back by its position's error. */
+static void correct(const encoder *e, uint32_t joint, uint32_t frame, const double position[3], double q[4])
+{
+    const enc_joint *t = &e->joints[joint];
+    const space_global *raw = enc_global(e, frame, joint);
+    double a[6] = { 0 }, b[3] = { 0 }, off[3], x[3], det, turn[4], turned[4];
+    for (int i = 0; i < 3; i++) off[i] = position[i] - raw->p[i];
+    for (int k = 0; k < 3; k++) {
+        const double u[3] = { e->shell * raw->m[k], e->shell * raw->m[3 + k], e->shell * raw->m[6 + k] };
+        add_pull(a, b, u, off, e->tuning.shell_weight);
+    }
+    for (uint32_t i = 0; i < t->point_count; i++) {
+        const double *p = enc_global(e, frame, t->points[i].joint)->p;
+        const double u[3] = { p[0] - raw->p[0], p[1] - raw->p[1], p[2] - raw->p[2] };
+        add_pull(a, b, u, off, 1.0);
+    }
+    det = a[0] * (a[1] * a[2] - a[5] * a[5]) - a[3] * (a[3] * a[2] - a[5] * a[4]) + a[4] * (a[3] * a[5] - a[1] * a[4]);
+    if (!(det > 1e-9 * e->shell * e->shell * e->shell * e->shell * e->shell * e->shell)) return;
+    x[0] = ((a[1] * a[2] - a[5] * a[5]) * b[0] + (a[4] * a[5] - a[3] * a[2]) * b[1] + (a[3] * a[5] - a[4] * a[1]) * b[2]) / det;
+    x[1] = ((a[5] * a[4] - a[3] * a[2]) * b[0] + (a[0] * a[2] - a[4] * a[4]) * b[1] + (a[3] * a[4] - a[0] * a[5]) * b[2]) / det;
+    x[2] = ((a[3] * a[5] - a[1] * a[4]) * b[0] + (a[3] * a[4] - a[0] * a[5]) * b[1] + (a[0] * a[1] - a[3] * a[3]) * b[2]) / det;
+    for (int i = 0; i < 3; i++) turn[i] = x[i] / 2.0 * e->tuning.correction;
+    turn[3] = 1.0;
+    space_unit(turn);
+    space_mul(turn, q, turned);
+    memcpy(q, turned, sizeof turned);
+}
+
+/* The local rotation that frame f should have, in the raw motion's hemisphere. */
+static void rotation_target(const encoder *e, uint32_t joint, uint32_t frame, uint32_t f, double q[4])
+{
+    const space_global *parent = lossy_parent(e, joint, f), *raw = enc_global(e, frame, joint);
+    const space_local *local = enc_local(e, frame, joint);
+    double inverse[4], turned[4];
+    if (e->options.open_loop || (e->loop->all_raw && e->level >= 2)) {
+        memcpy(q, local->q, sizeof local->q);
+        return;
+    }
+    memcpy(turned, raw->q, sizeof turned);
+    correct(e, joint, frame, placed(e, joint, f)->p, turned);
+    if (parent) {
+        space_conj(parent->q, inverse);
+        space_mul(inverse, turned, q);
+    } else {
+        memcpy(q, turned, sizeof turned);
+    }
+    space_unit(q);
+    if (space_dot(q, local->q) < 0.0) {
+        for (int i = 0; i < 4; i++) q[i] = -q[i];
+    }
+}
+
+static int keep_raw(encoder *e, enc_piece *piece, uint32_t count, uint32_t components, const double *values, uint32_t stride)
+{
+    piece->raw = 1;
+    free(piece->values);
+    piece->values = enc_alloc(e, (size_t)count * components, sizeof *piece->values);
+    if (!piece->values) return 1;
+    for (uint32_t f = 0; f < count; f++) {
+        for (uint32_t c = 0; c < components; c++) piece->values[f * components + c] = (float)values[f * stride + c];
+    }
+    return 0;
+}
+
+static void wild_reference(const encoder *e, uint32_t joint, const enc_segment *s, enc_piece *piece, float reference[4])
+{
+    piece->negative = (uint8_t)enc_quat_codes(enc_local(e, s->first + s->count / 2u, joint)->q, NOH_CLIP_WILD_BITS, piece->wild_codes);
+    enc_quat_value(piece->wild_codes, NOH_CLIP_WILD_BITS, reference);
+    for (int i = 0; i < 4 && piece->negative; i++) reference[i] = -reference[i];
+}
+
+/* What a frame may be out by: its parents' doing, and a margin, or the slack. */
+static void rotation_limits(const encoder *e, judged *j, double (*q)[4])
+{
+    for (uint32_t f = 0; f < j->segment->count; f++) {
+        space_global g = *placed(e, j->joint, f);
+        double v;
+        space_turn(lossy_parent(e, j->joint, f), q[f], lossy(e, j->joint, f)->s, &g);
+        v = rotation_violation(e, j->joint, j->segment->first + f, &g) + e->tuning.margin * e->loop->slack;
+        j->limits[f] = v > e->loop->slack ? v : e->loop->slack;
+    }
+}
+
+static int raw_rotation(encoder *e, judged *j, enc_piece *piece, double (*q)[4])
+{
+    uint8_t frames[ENC_FRAMES_MAX * 16u];
+    double violations[ENC_FRAMES_MAX];
+    if (keep_raw(e, piece, j->segment->count, 4, q[0], 4)) return 1;
+    for (uint32_t f = 0; f < j->segment->count; f++) noh_clip_store_rotation(piece->values + 4u * f, e->wide, frames + 16u * f);
+    check_rotation(e, j, frames, violations);
+    return 0;
+}
+
+static int fit_rotation(encoder *e, uint32_t joint, const enc_segment *s, enc_track *track, enc_piece *piece)
+{
+    double q[ENC_FRAMES_MAX][4], u[ENC_FRAMES_MAX][3], reference[4], inverse[4];
+    float single[4];
+    judged j;
+    int spins = 0;
+    j.segment = s;
+    j.track = track;
+    j.joint = joint;
+    memcpy(single, track->track.reference, sizeof single);
+    if (track->track.flags & NOH_CLIP_TRACK_WILD) wild_reference(e, joint, s, piece, single);
+    for (int i = 0; i < 4; i++) reference[i] = (double)single[i];
+    space_unit(reference);
+    space_conj(reference, inverse);
+    for (uint32_t f = 0; f < s->count; f++) {
+        double r[4];
+        rotation_target(e, joint, s->first + f, f, q[f]);
+        space_mul(inverse, q[f], r);
+        if (r[3] < SPIN_W) spins = 1;
+        for (int i = 0; i < 3; i++) u[f][i] = 4.0 * r[i] / (1.0 + (r[3] > SPIN_W ? r[3] : SPIN_W));
+    }
+    rotation_limits(e, &j, q);
+    piece->raw = 0;
+    if (spins || e->loop->all_raw || enc_fit(e, track, piece, s->count, single, u, check_rotation, &j)) return raw_rotation(e, &j, piece, q);
+    return 0;
+}
+
+/* ---- translations, scales, floats ---- */
+
+static double check_linear(encoder *e, void *user, const uint8_t *frames, double *violations)
+{
+    judged *j = user;
+    double worst = 0.0;
+    (void)e;
+    for (uint32_t f = 0; f < j->segment->count; f++) {
+        float v[3];
+        double square = 0.0;
+        memcpy(v, frames + f * 16u, sizeof v);
+        for (int c = 0; c < 3; c++) {
+            const double d = (double)v[c] - j->targets[f][c];
+            square += d * d;
+        }
+        violations[f] = sqrt(square) / j->limit;
+        if (!(violations[f] <= worst)) worst = violations[f];
+    }
+    return worst;
+}
+
+static double check_floats(encoder *e, void *user, const uint8_t *frames, double *violations)
+{
+    judged *j = user;
+    double worst = 0.0;
+    (void)e;
+    for (uint32_t f = 0; f < j->segment->count; f++) {
+        float v[3];
+        memcpy(v, frames + f * 16u, sizeof v);
+        violations[f] = 0.0;
+        for (int c = 0; c < 3; c++) {
+            const double d = fabs((double)v[c] - j->targets[f][c]) / (j->track->bounds[c] * SAFETY);
+            if (!(d <= violations[f])) violations[f] = d;
+        }
+        if (!(violations[f] <= worst)) worst = violations[f];
+    }
+    return worst;
+}
+
+/* Code a linear track towards absolute targets; the decoded values come back in `values`. */
+static int fit_linear(encoder *e, judged *j, enc_track *track, enc_piece *piece, double (*targets)[3], double (*values)[3])
+{
+    const uint32_t count = j->segment->count;
+    const enc_check check = track->track.kind == NOH_CLIP_FLOATS ? check_floats : check_linear;
+    double relative[ENC_FRAMES_MAX][3], violations[ENC_FRAMES_MAX];
+    j->targets = targets;
+    j->track = track;
+    piece->raw = 0;
+    for (uint32_t f = 0; f < count; f++) {
+        for (int c = 0; c < 3; c++) relative[f][c] = targets[f][c] - (double)track->track.reference[c];
+    }
+    if (!e->loop->all_raw && !enc_fit(e, track, piece, count, track->track.reference, relative, check, j)) {
+        const noh_clip_basis *basis = &e->bases[count];
+        float components[ENC_FRAMES_MAX][4];
+        uint8_t frames[ENC_FRAMES_MAX * 16u];
+        noh_clip_dequantise((const int32_t(*)[4])piece->coefs, piece->last, noh_clip_step(piece->step),
+                            track->track.flags & NOH_CLIP_TRACK_MIX ? track->track.mix : NULL, components);
+        noh_clip_synth_linear(basis, (const float(*)[4])components, piece->last, track->track.reference, frames, 16);
+        for (uint32_t f = 0; f < count; f++) {
+            float v[3];
+            memcpy(v, frames + f * 16u, sizeof v);
+            for (int c = 0; c < 3; c++) values[f][c] = (double)v[c];
+        }
+        if (track->track.kind != NOH_CLIP_FLOATS || check(e, j, frames, violations) <= 1.0) return 0;
+    }
+    if (keep_raw(e, piece, count, 3, targets[0], 3)) return 1;
+    for (uint32_t f = 0; f < count; f++) {
+        for (int c = 0; c < 3; c++) values[f][c] = (double)piece->values[3u * f + (uint32_t)c];
+    }
+    return 0;
+}
+
+static double largest_column(const double m[9])
+{
+    double worst = 0.0;
+    for (int k = 0; k < 3; k++) {
+        const double n = sqrt(m[k] * m[k] + m[3 + k] * m[3 + k] + m[6 + k] * m[6 + k]);
+        if (n > worst) worst = n;
+    }
+    return worst;
+}
+
+static int fit_translation(encoder *e, uint32_t joint, const enc_segment *s, enc_track *track, enc_piece *piece)
+{
+    double targets[ENC_FRAMES_MAX][3], values[ENC_FRAMES_MAX][3], scale = 0.0;
+    judged j;
+    j.segment = s;
+    j.joint = joint;
+    for (uint32_t f = 0; f < s->count; f++) {
+        const space_global *parent = lossy_parent(e, joint, f), *raw = enc_global(e, s->first + f, joint);
+        double inverse[9], d[3];
+        memcpy(targets[f], enc_local(e, s->first + f, joint)->t, sizeof targets[f]);
+        if (!parent) continue;
+        if (largest_column(parent->m) > scale) scale = largest_column(parent->m);
+        if (e->options.open_loop || (e->loop->all_raw && e->level >= 2) || !space_inverse(parent->m, inverse)) continue;
+        for (int i = 0; i < 3; i++) d[i] = raw->p[i] - parent->p[i];
+        space_apply(inverse, d, targets[f]);
+    }
+    if (e->joints[joint].parent == ENC_NONE) scale = 1.0;
+    j.limit = e->tuning.linear_part * e->joints[joint].bound * e->loop->slack / (scale > TRANSLATION_SCALE_MIN ? scale : TRANSLATION_SCALE_MIN);
+    if (fit_linear(e, &j, track, piece, targets, values)) return 1;
+    for (uint32_t f = 0; f < s->count; f++) memcpy(lossy(e, joint, f)->t, values[f], sizeof values[f]);
+    return 0;
+}
+
+static int fit_scale(encoder *e, uint32_t joint, const enc_segment *s, enc_track *track, enc_piece *piece)
+{
+    double targets[ENC_FRAMES_MAX][3], values[ENC_FRAMES_MAX][3], scale = 0.0;
+    judged j;
+    j.segment = s;
+    j.joint = joint;
+    for (uint32_t f = 0; f < s->count; f++) {
+        const space_global *parent = lossy_parent(e, joint, f);
+        const double n = parent ? largest_column(parent->m) : 1.0;
+        if (n > scale) scale = n;
+        memcpy(targets[f], enc_local(e, s->first + f, joint)->s, sizeof targets[f]);
+    }
+    j.limit = e->tuning.linear_part * e->joints[joint].bound * e->loop->slack /
+              (e->joints[joint].scale_lever * (scale > TRANSLATION_SCALE_MIN ? scale : TRANSLATION_SCALE_MIN));
+    if (fit_linear(e, &j, track, piece, targets, values)) return 1;
+    for (uint32_t f = 0; f < s->count; f++) memcpy(lossy(e, joint, f)->s, values[f], sizeof values[f]);
+    return 0;
+}
+
+static int fit_floats(encoder *e, const enc_segment *s, enc_track *track, enc_piece *piece)
+{
+    double targets[ENC_FRAMES_MAX][3], values[ENC_FRAMES_MAX][3];
+    judged j;
+    j.segment = s;
+    j.joint = 0;
+    j.limit = 1.0;
+    for (uint32_t f = 0; f < s->count; f++) {
+        for (uint32_t c = 0; c < 3u; c++) {
+            const uint32_t i = track->track.target + c;
+            targets[f][c] = i < e->float_count ? (double)e->floats[(size_t)(s->first + f) * e->float_count + i] : 0.0;
+        }
+    }
+    return fit_linear(e, &j, track, piece, targets, values);
+}
+
+/* ---- the whole segment ---- */
+
+static int fit_joint(encoder *e, uint32_t joint, const enc_segment *s)
+{
+    const enc_joint *t = &e->joints[joint];
+    for (uint32_t f = 0; f < s->count; f++) *lossy(e, joint, f) = t->rest;
+    if (t->tracks[TRANSLATION] != ENC_NONE &&
+        fit_translation(e, joint, s, &e->tracks[t->tracks[TRANSLATION]], &s->pieces[t->tracks[TRANSLATION]])) return 1;
+    for (uint32_t f = 0; f < s->count; f++) space_place(lossy_parent(e, joint, f), lossy(e, joint, f)->t, placed(e, joint, f)->p);
+    if (t->tracks[SCALE] != ENC_NONE && fit_scale(e, joint, s, &e->tracks[t->tracks[SCALE]], &s->pieces[t->tracks[SCALE]])) return 1;
+    if (t->tracks[ROTATION] != ENC_NONE) return fit_rotation(e, joint, s, &e->tracks[t->tracks[ROTATION]], &s->pieces[t->tracks[ROTATION]]);
+    for (uint32_t f = 0; f < s->count; f++) {
+        space_turn(lossy_parent(e, joint, f), lossy(e, joint, f)->q, lossy(e, joint, f)->s, placed(e, joint, f));
+    }
+    return 0;
+}
+
+/* Raw motion at the quarters before each frame of the segment. */
+static void raw_between(encoder *e, const enc_segment *s)
+{
+    for (uint32_t f = s->first ? 0u : 1u; f < s->count; f++) {
+        for (uint32_t part = 0; part < BETWEEN; part++) {
+            space_global *pose = e->loop->raw_between + (size_t)(f * BETWEEN + part) * e->joint_count;
+            for (uint32_t j = 0; j < e->joint_count; j++) {
+                space_local l;
+                space_between(enc_local(e, s->first + f - 1u, j), enc_local(e, s->first + f, j), (double)(part + 1u) / ENC_PARTS, &l);
+                space_compose(enc_parent(pose, e->joints[j].parent), &l, &pose[j]);
+            }
+        }
+    }
+}
+
+/* The peak of the parabola through three errors at equal distances, where it lies among them. */
+static double peak(double before, double here, double after)
+{
+    const double bend = 2.0 * here - before - after, slope = after - before;
+    return bend > 0.0 && fabs(slope) < 2.0 * bend ? here + slope * slope / (8.0 * bend) : here;
+}
+
+/* Errors of all joints at the quarters before frame f, in parts of their bounds. */
+static void errors_between(const encoder *e, uint32_t f, uint32_t part, double *errors)
+{
+    const space_global *raw = e->loop->raw_between + (size_t)(f * BETWEEN + part) * e->joint_count;
+    for (uint32_t j = 0; j < e->joint_count; j++) {
+        const space_local *before = f ? lossy(e, j, f - 1u) : &e->loop->before[j];
+        space_local l;
+        space_between(before, lossy(e, j, f), (double)(part + 1u) / ENC_PARTS, &l);
+        space_compose(enc_parent(e->loop->scratch, e->joints[j].parent), &l, &e->loop->scratch[j]);
+        errors[j] = space_error(&raw[j], &e->loop->scratch[j], e->shell) / e->joints[j].bound;
+    }
+}
+
+/* The largest error at frames and between, in parts of the joints' bounds. Between the quarters it is
+ * taken to run along parabolas. */
+static double segment_error(const encoder *e, const enc_segment *s)
+{
+    double worst = 0.0, *rows[ENC_PARTS + 1];
+    for (uint32_t i = 0; i <= ENC_PARTS; i++) rows[i] = e->loop->errors + (size_t)i * e->joint_count;
+    if (s->first) memcpy(rows[0], e->loop->errors_before, e->joint_count * sizeof *rows[0]);
+    for (uint32_t f = 0; f < s->count; f++) {
+        for (uint32_t part = 0; part < BETWEEN && s->first + f > 0u; part++) errors_between(e, f, part, rows[part + 1u]);
+        for (uint32_t j = 0; j < e->joint_count; j++) {
+            rows[ENC_PARTS][j] = space_error(enc_global(e, s->first + f, j), placed(e, j, f), e->shell) / e->joints[j].bound;
+            if (!(rows[ENC_PARTS][j] <= worst)) worst = rows[ENC_PARTS][j];
+            for (uint32_t i = 1; i < ENC_PARTS && s->first + f > 0u; i++) {
+                const double v = peak(rows[i - 1u][j], rows[i][j], rows[i + 1u][j]);
+                if (!(v <= worst)) worst = v;
+            }
+            rows[0][j] = rows[ENC_PARTS][j];
+        }
+    }
+    return worst;
+}
+
+static int fit_all(encoder *e, const enc_segment *s)
+{
+    for (uint32_t i = 0; i < e->track_count && e->tracks[i].track.kind == NOH_CLIP_FLOATS; i++) {
+        if (fit_floats(e, s, &e->tracks[i], &s->pieces[i])) return 1;
+    }
+    for (uint32_t j = 0; j < e->joint_count; j++) {
+        if (fit_joint(e, j, s)) return 1;
+    }
+    return 0;
+}
+
+static enc_piece *new_pieces(encoder *e, uint32_t count)
+{
+    enc_piece *pieces = enc_alloc(e, e->track_count, sizeof *pieces);
+    for (uint32_t i = 0; pieces && i < e->track_count; i++) {
+        pieces[i].coefs = enc_alloc(e, count, sizeof *pieces[i].coefs);
+        if (!pieces[i].coefs) {
+            enc_free_pieces(e, pieces);
+            return NULL;
+        }
+    }
+    return pieces;
+}
+
+void enc_free_pieces(const encoder *e, enc_piece *pieces)
+{
+    for (uint32_t i = 0; pieces && i < e->track_count; i++) {
+        free(pieces[i].coefs);
+        free(pieces[i].values);
+    }
+    free(pieces);
+}
+
+/* With the tuning as it is: shrink what may be out until the whole segment holds. */
+static int fit_tuned(encoder *e, const enc_segment *s, double *worst)
+{
+    e->loop->slack = 1.0;
+    e->loop->rho_scale = 1.0;
+    for (int i = 0; i <= TRIES; i++) {
+        e->loop->all_raw = (i == TRIES && e->level == 1) || e->level >= 2;
+        if (fit_all(e, s)) return 1;
+        *worst = segment_error(e, s);
+        if (*worst <= SAFETY || e->loop->all_raw || i == TRIES) break;
+        e->loop->slack *= *worst > 2.0 ? 0.5 : *worst > 1.02 ? 0.995 / *worst : 0.97;
+        if (e->loop->slack < SLACK_MIN) e->loop->slack = SLACK_MIN;
+        if (i > 3) e->loop->rho_scale *= 0.85;
+    }
+    return 0;
+}
+
+/* What the next segment needs to know of this one. */
+static void keep_end(encoder *e, const enc_segment *s, space_local *end)
+{
+    for (uint32_t j = 0; j < e->joint_count; j++) end[j] = *lossy(e, j, s->count - 1u);
+    memcpy(e->loop->errors_end, e->loop->errors, e->joint_count * sizeof *e->loop->errors); /* of the last frame */
+}
+
+int enc_segment_fit(encoder *e, uint32_t index, double *worst)
+{
+    enc_segment *s = &e->segments[index];
+    enc_piece *best = new_pieces(e, s->count);
+    size_t least = SIZE_MAX;
+    int failed;
+    s->pieces = new_pieces(e, s->count);
+    failed = !best || !s->pieces;
+    *worst = 2.0;
+    if (!failed) raw_between(e, s);
+    for (uint32_t t = 0; t < e->tuning_count && !failed && (t == 0u || e->level < 2); t++) {
+        double w;
+        size_t bytes = 0;
+        e->tuning = e->tunings[t];
+        failed = fit_tuned(e, s, &w) || enc_segment_cost(e, s, &bytes);
+        if (!failed && (t == 0u || (w <= 1.0 && (bytes < least || *worst > 1.0)))) {
+            enc_piece *swap = s->pieces;
+            s->pieces = best;
+            best = swap;
+            least = bytes;
+            *worst = w;
+            keep_end(e, s, e->loop->end);
+        }
+    }
+    enc_free_pieces(e, s->pieces);
+    s->pieces = best;
+    memcpy(e->loop->before, e->loop->end, e->joint_count * sizeof *e->loop->end);
+    memcpy(e->loop->errors_before, e->loop->errors_end, e->joint_count * sizeof *e->loop->errors);
+    for (uint32_t i = 0; i < e->track_count && !failed; i++) {
+        if (!s->pieces[i].raw && s->pieces[i].last) e->tracks[i].step_guess = s->pieces[i].step;
+    }
+    return failed;
+}
