@@ -238,6 +238,68 @@ static void walk_clip(walk *w, const noh_weight_clip *clip)
     }
 }
 
+/* Poses of a clip at random times, through a cache of the smallest size. */
+static void walk_samples(walk *w, const noh_clip *clip, const noh_clip_info *info)
+{
+    noh_clip_cache_desc desc = { &clip, 1, 0 };
+    size_t bytes = noh_clip_cache_size(&desc, NULL);
+    void *block = memory(bytes);
+    noh_transform *pose = memory(sizeof *pose * info->joint_count);
+    float *floats = memory(sizeof *floats * info->float_count);
+    noh_clip_cache *cache = NULL;
+    if (bytes && noh_clip_cache_init(block, bytes, &desc, &cache, NULL) == NOH_OK) {
+        for (uint32_t i = 0; i < 8; i++) {
+            w->random = w->random * 1664525u + 1013904223u;
+            noh_clip_sample(cache, 0, (int64_t)(info->duration_ticks / 65536u * (w->random >> 16)), info->joint_count, pose, floats);
+            eat(w, pose, sizeof *pose * info->joint_count);
+        }
+    }
+    free(floats);
+    free(pose);
+    free(block);
+}
+
+/* A motion whose skeleton is here and whose clip the decoder accepts. */
+static void walk_motion(walk *w, const noh_pack_motion *motion)
+{
+    noh_skeleton skeleton;
+    noh_clip_desc desc;
+    noh_clip *clip = NULL;
+    size_t bytes;
+    void *block;
+    if (noh_pack_bind_motion(w->pack, motion, &skeleton, NULL, NULL)) {
+        return;
+    }
+    desc.bytes = motion->bytes;
+    desc.byte_count = motion->header->clip_bytes;
+    desc.bind = skeleton.bind_pose;
+    desc.joint_count = skeleton.joint_count;
+    bytes = noh_clip_size(&desc, NULL);
+    block = memory(bytes);
+    if (bytes && noh_clip_init(block, bytes, &desc, &clip, NULL) == NOH_OK) {
+        noh_clip_info info;
+        noh_clip_info_of(clip, &info);
+        walk_samples(w, clip, &info);
+    }
+    free(block);
+}
+
+static void walk_motions(walk *w)
+{
+    noh_pack_motion motion;
+    for (uint32_t i = 0; i < w->pack->skeleton_count; i++) {
+        noh_skeleton skeleton;
+        noh_pack_skeleton_at(w->pack, i, &skeleton, NULL);
+        for (uint32_t j = 0; j < skeleton.joint_count; j++) {
+            eat_name(w, noh_pack_joint_name(w->pack, i, j));
+            eat(w, &skeleton.parents[j], sizeof skeleton.parents[j]);
+        }
+    }
+    for (uint32_t i = 0; noh_pack_motion_at(w->pack, i, &motion) == NOH_OK; i++) {
+        walk_motion(w, &motion);
+    }
+}
+
 uint32_t pack_walk(const noh_pack *pack, uint32_t seed)
 {
     walk w = { pack, seed, 0 };
@@ -249,5 +311,6 @@ uint32_t pack_walk(const noh_pack *pack, uint32_t seed)
     for (uint32_t i = 0; noh_pack_weight_clip(pack, i, &clip) == NOH_OK; i++) {
         walk_clip(&w, &clip);
     }
+    walk_motions(&w);
     return w.hash;
 }

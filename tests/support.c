@@ -365,7 +365,7 @@ uint8_t *test_pack_of(const model *m, size_t *count, uint32_t **orders)
             memcpy(orders[i], encodings[i]->order, 4u * (size_t)m->meshes[i].vertex_count);
         }
     }
-    if (pack_write(m, encodings, &out, &error)) {
+    if (pack_write(m, encodings, NULL, &out, &error)) {
         fail_msg("pack_write: %s", error.what);
     }
     for (uint32_t i = 0; i < m->mesh_count; i++) {

@@ -37,6 +37,8 @@ noh_result noh_check_materials(noh_check *check);
 noh_result noh_check_mesh(noh_check *check);
 noh_result noh_check_nodes(noh_check *check);
 noh_result noh_check_clip(noh_check *check);
+noh_result noh_check_skeleton(noh_check *check);
+noh_result noh_check_motion(noh_check *check);
 
 /* Not NaN, not infinite. */
 static inline int noh_float_finite(float value)

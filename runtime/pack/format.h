@@ -23,6 +23,8 @@
 #define NOH_CHUNK_MATERIALS NOH_FOURCC('M', 'A', 'T', 'L')
 #define NOH_CHUNK_TEXTURE NOH_FOURCC('T', 'X', 'T', 'R')
 #define NOH_CHUNK_CLIP NOH_FOURCC('C', 'L', 'I', 'P')
+#define NOH_CHUNK_SKELETON NOH_FOURCC('S', 'K', 'E', 'L')
+#define NOH_CHUNK_MOTION NOH_FOURCC('M', 'O', 'T', 'N')
 
 typedef struct noh_pack_header {
     uint32_t magic;
@@ -189,6 +191,43 @@ typedef struct noh_weight_channel {
     uint32_t reserved[2];
 } noh_weight_channel;
 
+/* ---- CHUNK_SKELETON: header, then three arrays. ---- */
+
+#define NOH_PACK_JOINT_ROOT 0xffffu /* parent of a joint that has none */
+
+typedef struct noh_skeleton_header {
+    uint32_t joint_count;
+    uint32_t hash;           /* of names and parents: binds motion packs to mesh packs */
+    float unit_cm;           /* centimetres per unit of the translations */
+    uint32_t parents_offset; /* uint16_t[joint_count], parents first, or NOH_PACK_JOINT_ROOT */
+    uint32_t bind_offset;    /* float[joint_count][10]: rotation xyzw, translation, scale; local */
+    uint32_t names_offset;   /* uint32_t[joint_count] */
+    uint32_t reserved[2];
+} noh_skeleton_header;
+
+/* ---- CHUNK_MOTION: header, callback keys in time order, then the compressed clip (anim/clip_format.h). ---- */
+
+typedef struct noh_motion_header {
+    uint32_t skeleton_hash;
+    uint32_t joint_count;
+    uint32_t raw_bytes;      /* 40 per joint and frame: what it would be uncompressed */
+    uint32_t event_count;
+    uint32_t events_offset;  /* noh_motion_event[event_count] */
+    uint32_t clip_bytes;
+    uint32_t clip_offset;
+    uint32_t reserved;
+} noh_motion_header;
+
+typedef struct noh_motion_event {
+    uint32_t tick;           /* 1/48,000 s */
+    uint32_t name, name_hash;
+    uint8_t payload[8];
+    float weight_min;        /* below it the key does not fire */
+} noh_motion_event;
+
+NOH_STATIC_ASSERT(sizeof(noh_skeleton_header) == 32, skeleton_header);
+NOH_STATIC_ASSERT(sizeof(noh_motion_header) == 32, motion_header);
+NOH_STATIC_ASSERT(sizeof(noh_motion_event) == 24, motion_event);
 NOH_STATIC_ASSERT(sizeof(noh_pack_header) == 64, pack_header);
 NOH_STATIC_ASSERT(sizeof(noh_pack_chunk) == 32, pack_chunk);
 NOH_STATIC_ASSERT(sizeof(noh_mesh_header) == 144, mesh_header);

@@ -15,6 +15,8 @@ static int chunk_rank(uint32_t type)
     case NOH_CHUNK_MESH: return 3;
     case NOH_CHUNK_NODES: return 4;
     case NOH_CHUNK_CLIP: return 5;
+    case NOH_CHUNK_SKELETON: return 6;
+    case NOH_CHUNK_MOTION: return 7;
     default: return -1;
     }
 }
@@ -151,9 +153,17 @@ static noh_result open_chunk(noh_pack *pack, uint32_t index, noh_error *error)
             pack->node_weights = (const float *)(const void *)(check.bytes + h->weights_offset);
         }
         break;
-    default:
+    case NOH_CHUNK_CLIP:
         result = noh_check_clip(&check);
         count_chunk(&pack->clip_count, &pack->first_clip, index);
+        break;
+    case NOH_CHUNK_SKELETON:
+        result = noh_check_skeleton(&check);
+        count_chunk(&pack->skeleton_count, &pack->first_skeleton, index);
+        break;
+    default:
+        result = noh_check_motion(&check);
+        count_chunk(&pack->motion_count, &pack->first_motion, index);
         break;
     }
     return result ? result : noh_check_name(&check, c->name, c->name_hash, 0);

@@ -3,6 +3,9 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+#include "convert/convert.h"
 
 static void write_pack(const char *folder, const char *name, const test_model_desc *desc)
 {
@@ -12,6 +15,26 @@ static void write_pack(const char *folder, const char *name, const test_model_de
     snprintf(path, sizeof path, "%s/%s.noh", folder, name);
     test_write_file(path, bytes, count);
     free(bytes);
+}
+
+/* A skeleton and a clip, out of a .bvh. */
+static void write_motion(const char *folder)
+{
+    static const char bvh[] =
+        "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n"
+        "JOINT b\n{\nOFFSET 0 -9 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 -9 0\n}\n}\n}\nMOTION\n"
+        "Frames: 4\nFrame Time: 0.05\n0 20 0 0 0 0 0 0 0\n1 20 0 5 0 0 10 0 0\n2 21 0 10 0 0 25 0 0\n3 20 0 5 0 0 10 3 0\n";
+    const char *input = test_path("motion.bvh");
+    char path[4096];
+    convert_options options;
+    convert_failure failure;
+    byte_buffer out = { NULL, 0, 0, 0 };
+    memset(&options, 0, sizeof options);
+    test_write_file(input, bvh, sizeof bvh - 1);
+    assert_int_equal(convert_files(&input, 1, &options, &out, &failure), 0);
+    snprintf(path, sizeof path, "%s/motion.noh", folder);
+    test_write_file(path, out.bytes, out.count);
+    buffer_free(&out);
 }
 
 static const char *folder;
@@ -31,6 +54,7 @@ static void corpus(void **state)
     for (size_t i = 0; i < TEST_COUNT(seeds); i++) {
         write_pack(folder, seeds[i].name, &seeds[i].desc);
     }
+    write_motion(folder);
 }
 
 int main(int argument_count, char **arguments)

@@ -4,10 +4,16 @@
 
 #include <stdio.h>
 
+#include "motions.h"
 #include "pack_write.h"
+
+typedef enum convert_only { CONVERT_ALL, CONVERT_MESH, CONVERT_MOTION } convert_only;
 
 typedef struct convert_options {
     morph_options morph;
+    motion_settings motion;
+    convert_only only;
+    const char *events; /* a text file of callback keys; NULL: none */
     FILE *report;   /* NULL: quiet */
     FILE *progress; /* a terminal, to say what takes its time; NULL: none */
 } convert_options;

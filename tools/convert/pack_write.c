@@ -6,10 +6,12 @@
 
 #include "base/hash.h"
 #include "pack/format.h"
+#include "motions.h"
 #include "pack_mesh.h"
 
 typedef struct writer {
     const model *m;
+    const motions *motions; /* or NULL */
     byte_buffer out;      /* header and table first, then the chunks */
     string_table strings;
     noh_pack_chunk *chunks;
@@ -246,6 +248,23 @@ static void write_content(writer *w, morph_encoding *const *encodings)
     }
 }
 
+static void write_motions(writer *w)
+{
+    for (uint32_t i = 0; i < w->motions->set_count; i++) {
+        if (!w->motions->sets[i]->skeleton.joint_count) {
+            continue; /* clips of weights alone */
+        }
+        begin_chunk(w, NOH_CHUNK_SKELETON, w->motions->sets[i]->skeleton.name);
+        pack_skeleton(&w->motions->sets[i]->skeleton, &w->strings, &w->out);
+        end_chunk(w);
+    }
+    for (uint32_t i = 0; i < w->motions->clip_count; i++) {
+        begin_chunk(w, NOH_CHUNK_MOTION, w->motions->clips[i].raw->name);
+        pack_motion(w->motions, &w->motions->clips[i], &w->strings, &w->out);
+        end_chunk(w);
+    }
+}
+
 /* The strings are known last but lie first: put them between the table and the content. */
 static int assemble(writer *w, byte_buffer *out)
 {
@@ -280,7 +299,13 @@ static int assemble(writer *w, byte_buffer *out)
     return 0;
 }
 
-int pack_write(const model *m, morph_encoding *const *encodings, byte_buffer *out, model_error *error)
+static size_t chunk_capacity(const model *m, const motions *made)
+{
+    return (size_t)m->mesh_count + m->texture_count + m->clip_count + 3 +
+           (made ? (size_t)made->set_count + made->clip_count : 0);
+}
+
+int pack_write(const model *m, morph_encoding *const *encodings, const motions *made, byte_buffer *out, model_error *error)
 {
     writer w;
     int failed;
@@ -291,12 +316,16 @@ int pack_write(const model *m, morph_encoding *const *encodings, byte_buffer *ou
     }
     memset(&w, 0, sizeof w);
     w.m = m;
-    w.chunks = calloc((size_t)m->mesh_count + m->texture_count + m->clip_count + 3, sizeof *w.chunks);
+    w.motions = made;
+    w.chunks = calloc(chunk_capacity(m, made), sizeof *w.chunks);
     string_offset(&w.strings, "");
     if (w.chunks) {
         begin_chunk(&w, NOH_CHUNK_STRINGS, "");
         w.chunk_count = 1; /* filled by assemble */
         write_content(&w, encodings);
+        if (made) {
+            write_motions(&w);
+        }
     }
     failed = !w.chunks || w.out.failed || w.strings.bytes.failed || assemble(&w, out);
     if (failed) {

@@ -9,7 +9,10 @@
 int pack_check_model(const model *m, model_error *error);
 int pack_check_encoding(const model_mesh *m, const morph_encoding *e, model_error *error);
 
-/* Build a pack. encodings[mesh_count], none NULL. 0 on success, else 1 and a filled error. */
-int pack_write(const model *m, morph_encoding *const *encodings, byte_buffer *out, model_error *error);
+struct motions;
+
+/* Build a pack. encodings[mesh_count], none NULL; made NULL: no motion. 0 on success, else 1 and a filled error. */
+int pack_write(const model *m, morph_encoding *const *encodings, const struct motions *made, byte_buffer *out,
+               model_error *error);
 
 #endif

@@ -1,4 +1,4 @@
-/* cmd_build.c: glTF in, one pack out. */
+/* cmd_build.c: glTF, .bvh or .rcl in, one pack out. */
 #define _POSIX_C_SOURCE 200809L /* isatty */
 
 #include <stdlib.h>
@@ -9,19 +9,42 @@
 #include "noh_tool.h"
 
 typedef struct build_args {
-    const char *inputs[64], *output, *rects;
-    int input_count, quiet, json;
-    double error_um;
+    const char *inputs[64], *output, *rects, *only, *events;
+    int input_count, quiet, loop, mask;
+    double error_um, rate, error_cm, shell_cm, unit_cm;
 } build_args;
+
+static int set_motion(const build_args *a, convert_options *o)
+{
+    if (a->rate < 0.0 || a->rate > 1000.0 || a->error_cm <= 0.0 || a->shell_cm <= 0.0 || a->unit_cm <= 0.0) {
+        return tool_usage("--rate wants up to 1000 Hz; --error-cm, --shell-cm and --unit-cm want numbers over 0");
+    }
+    if (a->only && strcmp(a->only, "mesh") != 0 && strcmp(a->only, "anim") != 0) {
+        return tool_usage("--only wants mesh or anim, not '%s'", a->only);
+    }
+    o->motion.rate_hz = a->rate;
+    o->motion.unit_cm = a->unit_cm;
+    o->motion.check_loops = a->loop;
+    o->motion.clip.error_cm = a->error_cm;
+    o->motion.clip.shell_cm = a->shell_cm;
+    o->motion.clip.open_loop = a->mask;
+    o->only = !a->only ? CONVERT_ALL : a->only[0] == 'm' ? CONVERT_MESH : CONVERT_MOTION;
+    o->events = a->events;
+    return 0;
+}
 
 static int read_args(int argc, char **argv, build_args *a, convert_options *o)
 {
     double rects;
     const option options[] = {
         { "-o", OPTION_TEXT, &a->output }, { "--error-um", OPTION_NUMBER, &a->error_um },
-        { "--rects", OPTION_TEXT, &a->rects }, { "--quiet", OPTION_FLAG, &a->quiet }
+        { "--rects", OPTION_TEXT, &a->rects }, { "--quiet", OPTION_FLAG, &a->quiet },
+        { "--rate", OPTION_NUMBER, &a->rate }, { "--error-cm", OPTION_NUMBER, &a->error_cm },
+        { "--shell-cm", OPTION_NUMBER, &a->shell_cm }, { "--unit-cm", OPTION_NUMBER, &a->unit_cm },
+        { "--loop", OPTION_FLAG, &a->loop }, { "--for-masks", OPTION_FLAG, &a->mask },
+        { "--only", OPTION_TEXT, &a->only }, { "--events", OPTION_TEXT, &a->events }
     };
-    int status = tool_options(argc, argv, options, 4, a->inputs, 64, &a->input_count);
+    int status = tool_options(argc, argv, options, sizeof options / sizeof options[0], a->inputs, 64, &a->input_count);
     if (status) {
         return status;
     }
@@ -32,6 +55,10 @@ static int read_args(int argc, char **argv, build_args *a, convert_options *o)
         return tool_usage("--error-um wants a number over 0 and up to 1000000");
     }
     o->morph.error_um = (float)a->error_um;
+    status = set_motion(a, o);
+    if (status) {
+        return status;
+    }
     if (a->rects && strcmp(a->rects, "auto") != 0) {
         if (tool_number(a->rects, &rects) || rects < 1 || rects > 65535 || rects != (double)(uint32_t)rects) {
             return tool_usage("--rects wants auto or a whole number from 1 to 65535, not '%s'", a->rects);
@@ -52,6 +79,9 @@ int verb_build(int argc, char **argv)
     memset(&a, 0, sizeof a);
     memset(&o, 0, sizeof o);
     a.error_um = 10.0;
+    a.error_cm = 0.01;
+    a.shell_cm = 3.0;
+    a.unit_cm = 1.0;
     status = read_args(argc, argv, &a, &o);
     if (status) {
         return status;

@@ -61,6 +61,17 @@ static void print_info(const pack_file *file)
         noh_pack_weight_clip(p, i, &clip);
         print_clip(&clip);
     }
+    for (uint32_t i = 0; i < p->skeleton_count; i++) {
+        noh_skeleton skeleton;
+        noh_pack_skeleton_at(p, i, &skeleton, NULL);
+        printf("skeleton '%s': %u joints\n", noh_pack_chunk_name(p, p->first_skeleton + i), skeleton.joint_count);
+    }
+    for (uint32_t i = 0; i < p->motion_count; i++) {
+        noh_pack_motion motion;
+        noh_pack_motion_at(p, i, &motion);
+        printf("motion '%s': %u joints, %u bytes, %u callback keys (`noh clip` says more)\n", motion.name, motion.header->joint_count,
+               motion.header->clip_bytes, motion.header->event_count);
+    }
 }
 
 static void json_target(json *j, const noh_pack *pack, const noh_target *t, double scale)
@@ -115,6 +126,42 @@ static void json_clip(json *j, const noh_weight_clip *clip)
     json_close(j, '}');
 }
 
+static void json_skeleton(json *j, const noh_pack *pack, uint32_t index)
+{
+    noh_skeleton skeleton;
+    const noh_skeleton_header *h;
+    noh_pack_skeleton_at(pack, index, &skeleton, &h);
+    json_open(j, NULL, '{');
+    json_text(j, "name", noh_pack_chunk_name(pack, pack->first_skeleton + index));
+    json_integer(j, "joints", h->joint_count);
+    json_integer(j, "hash", h->hash);
+    json_number(j, "unit_cm", (double)h->unit_cm);
+    json_close(j, '}');
+}
+
+static void json_motion(json *j, const noh_pack *pack, uint32_t index)
+{
+    noh_pack_motion motion;
+    noh_pack_motion_at(pack, index, &motion);
+    json_open(j, NULL, '{');
+    json_text(j, "name", motion.name);
+    json_integer(j, "joints", motion.header->joint_count);
+    json_integer(j, "bytes", motion.header->clip_bytes);
+    json_integer(j, "events", motion.header->event_count);
+    json_close(j, '}');
+}
+
+static uint64_t count_events(const noh_pack *pack)
+{
+    uint64_t count = 0;
+    for (uint32_t i = 0; i < pack->motion_count; i++) {
+        noh_pack_motion motion;
+        noh_pack_motion_at(pack, i, &motion);
+        count += motion.header->event_count;
+    }
+    return count;
+}
+
 static void json_info(const pack_file *file)
 {
     const noh_pack *p = &file->pack;
@@ -129,6 +176,9 @@ static void json_info(const pack_file *file)
     }
     json_close(&j, ']');
     json_open(&j, "skeletons", '[');
+    for (uint32_t i = 0; i < p->skeleton_count; i++) {
+        json_skeleton(&j, p, i);
+    }
     json_close(&j, ']');
     json_open(&j, "clips", '[');
     for (uint32_t i = 0; i < p->clip_count; i++) {
@@ -136,8 +186,11 @@ static void json_info(const pack_file *file)
         noh_pack_weight_clip(p, i, &clip);
         json_clip(&j, &clip);
     }
+    for (uint32_t i = 0; i < p->motion_count; i++) {
+        json_motion(&j, p, i);
+    }
     json_close(&j, ']');
-    json_integer(&j, "events", 0);
+    json_integer(&j, "events", count_events(p));
     json_integer(&j, "nodes", p->node_count);
     json_integer(&j, "materials", p->material_count);
     json_integer(&j, "textures", p->texture_count);

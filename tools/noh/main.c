@@ -8,8 +8,13 @@ static const struct verb {
     int (*run)(int argc, char **argv);
     const char *usage, *what;
 } verbs[] = {
-    { "build", verb_build, "IN... -o OUT.noh [--error-um 10] [--rects auto|N] [--quiet]", "convert glTF to a pack" },
+    { "build", verb_build,
+      "IN -o OUT.noh [--error-um 10] [--rects auto|N] [--rate HZ] [--error-cm 0.01] [--shell-cm 3]\n"
+      "                 [--loop] [--for-masks] [--events FILE] [--unit-cm 1] [--only mesh|anim] [--quiet]",
+      "convert .gltf, .glb, .bvh or .rcl to a pack" },
     { "info", verb_info, "PACK [--json]", "chunks, counts, names, errors certified at build" },
+    { "clip", verb_clip, "PACK [--json] [--dump OUT.rcl [--clip NAME]]",
+      "compressed motion: bytes, certified errors; a clip decoded" },
     { "budget", verb_budget, "PACK [--instances N] [--path P] [--accumulate A] [--driver D | --nominal] [--json]",
       "bytes before a load: CPU and GPU, by part" },
     { "render", verb_render,

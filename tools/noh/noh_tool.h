@@ -125,6 +125,7 @@ int scene_find_clip(const pack_file *file, const char *clip_name, noh_weight_cli
 /* ---- verbs ---- */
 
 int verb_build(int argc, char **argv);
+int verb_clip(int argc, char **argv);
 int verb_info(int argc, char **argv);
 int verb_budget(int argc, char **argv);
 int verb_render(int argc, char **argv);

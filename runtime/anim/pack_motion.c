@@ -1,0 +1,66 @@
+#include "anim/pack_motion.h"
+
+#include <string.h>
+
+NOH_STATIC_ASSERT(sizeof(noh_transform) == 40, transform_is_packed);
+NOH_STATIC_ASSERT(NOH_PACK_JOINT_ROOT == NOH_JOINT_ROOT, joint_roots_agree);
+
+noh_result noh_pack_skeleton_at(const noh_pack *pack, uint32_t index, noh_skeleton *skeleton, const noh_skeleton_header **header)
+{
+    const uint8_t *chunk;
+    const noh_skeleton_header *h;
+    if (index >= pack->skeleton_count) {
+        return NOH_ERR_NOT_FOUND;
+    }
+    chunk = pack->bytes + pack->chunks[pack->first_skeleton + index].offset;
+    h = (const noh_skeleton_header *)(const void *)chunk;
+    memset(skeleton, 0, sizeof *skeleton);
+    skeleton->joint_count = h->joint_count;
+    skeleton->parents = (const uint16_t *)(const void *)(chunk + h->parents_offset);
+    skeleton->bind_pose = (const noh_transform *)(const void *)(chunk + h->bind_offset);
+    if (header) {
+        *header = h;
+    }
+    return NOH_OK;
+}
+
+const char *noh_pack_joint_name(const noh_pack *pack, uint32_t skeleton, uint32_t joint)
+{
+    noh_skeleton s;
+    const noh_skeleton_header *h;
+    if (noh_pack_skeleton_at(pack, skeleton, &s, &h) || joint >= h->joint_count) {
+        return "";
+    }
+    return noh_pack_string(pack, ((const uint32_t *)(const void *)((const uint8_t *)h + h->names_offset))[joint]);
+}
+
+noh_result noh_pack_motion_at(const noh_pack *pack, uint32_t index, noh_pack_motion *motion)
+{
+    const uint8_t *chunk;
+    if (index >= pack->motion_count) {
+        return NOH_ERR_NOT_FOUND;
+    }
+    chunk = pack->bytes + pack->chunks[pack->first_motion + index].offset;
+    motion->name = noh_pack_chunk_name(pack, pack->first_motion + index);
+    motion->header = (const noh_motion_header *)(const void *)chunk;
+    motion->events = (const noh_motion_event *)(const void *)(chunk + motion->header->events_offset);
+    motion->bytes = chunk + motion->header->clip_offset;
+    return NOH_OK;
+}
+
+noh_result noh_pack_bind_motion(const noh_pack *pack, const noh_pack_motion *motion, noh_skeleton *skeleton, uint32_t *index,
+                                noh_error *error)
+{
+    for (uint32_t i = 0; i < pack->skeleton_count; i++) {
+        const noh_skeleton_header *h;
+        noh_pack_skeleton_at(pack, i, skeleton, &h);
+        if (h->hash == motion->header->skeleton_hash && h->joint_count == motion->header->joint_count) {
+            if (index) {
+                *index = i;
+            }
+            return NOH_OK;
+        }
+    }
+    return noh_fail(error, NOH_ERR_NOT_FOUND, "the clip was built for another skeleton: names or parents of its joints differ",
+                    motion->header->skeleton_hash, 0);
+}

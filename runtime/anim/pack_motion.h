@@ -1,0 +1,30 @@
+/* pack_motion.h: skeletons and compressed motion of a pack, as pointers into its bytes. */
+#ifndef NOH_ANIM_PACK_MOTION_H
+#define NOH_ANIM_PACK_MOTION_H
+
+#include "anim/skeleton.h"
+#include "pack/pack.h"
+
+/* One clip: give `bytes` to noh_clip_init (anim/clip_codec.h). */
+typedef struct noh_pack_motion {
+    const char *name;
+    const noh_motion_header *header;
+    const noh_motion_event *events; /* [header->event_count], in time order */
+    const uint8_t *bytes;           /* [header->clip_bytes] */
+} noh_pack_motion;
+
+/* The n-th skeleton; its hash and unit come with it where they are wanted. NOT_FOUND past skeleton_count. */
+noh_result noh_pack_skeleton_at(const noh_pack *pack, uint32_t index, noh_skeleton *skeleton, const noh_skeleton_header **header);
+
+/* The name of a joint. */
+const char *noh_pack_joint_name(const noh_pack *pack, uint32_t skeleton, uint32_t joint);
+
+/* The n-th clip. NOT_FOUND past motion_count. */
+noh_result noh_pack_motion_at(const noh_pack *pack, uint32_t index, noh_pack_motion *motion);
+
+/* The skeleton of that hash in a pack, and its index (NULL: not wanted), for a clip of this or of another pack.
+ * errors  NOT_FOUND, `what` says that the clip was built for another skeleton */
+noh_result noh_pack_bind_motion(const noh_pack *pack, const noh_pack_motion *motion, noh_skeleton *skeleton, uint32_t *index,
+                                noh_error *error);
+
+#endif

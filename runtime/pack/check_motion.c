@@ -1,0 +1,74 @@
+/* check_motion.c: the checkers of skeletons and motion. The compressed clip inside a motion
+ * chunk is checked by its decoder when it is opened, against its own bytes alone. */
+#include "pack/check.h"
+
+static noh_result check_joints(const noh_check *check, const noh_skeleton_header *h)
+{
+    const uint16_t *parents = (const uint16_t *)(const void *)(check->bytes + h->parents_offset);
+    const float *bind = (const float *)(const void *)(check->bytes + h->bind_offset);
+    const uint32_t *names = (const uint32_t *)(const void *)(check->bytes + h->names_offset);
+    for (uint32_t j = 0; j < h->joint_count; j++) {
+        const float *q = bind + 10u * (size_t)j;
+        float square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+        if (parents[j] != NOH_PACK_JOINT_ROOT && parents[j] >= j) {
+            return noh_check_fail(check, "joint comes before its parent", h->parents_offset + 2ull * j);
+        }
+        if (!(square > 0.99f && square < 1.01f)) {
+            return noh_check_fail(check, "bind rotation is not a unit quaternion", h->bind_offset + 40ull * j);
+        }
+        if (names[j] >= check->pack->string_bytes) {
+            return noh_check_fail(check, "joint's name lies outside the strings", h->names_offset + 4ull * j);
+        }
+    }
+    return noh_check_floats(check, bind, h->joint_count * 10u, "bind pose is not finite");
+}
+
+noh_result noh_check_skeleton(noh_check *check)
+{
+    const noh_skeleton_header *h = (const noh_skeleton_header *)(const void *)check->bytes;
+    noh_result result = noh_check_head(check, sizeof *h);
+    if (result) {
+        return result;
+    }
+    if (!h->joint_count || h->joint_count > NOH_JOINTS_MAX || !(h->unit_cm > 0.0f) || !noh_float_finite(h->unit_cm) ||
+        h->reserved[0] || h->reserved[1]) {
+        return noh_check_fail(check, "joint count is zero or over the limit, or the unit is not a length", 0);
+    }
+    result = noh_check_array(check, h->parents_offset, h->joint_count, 2);
+    if (!result) result = noh_check_array(check, h->bind_offset, h->joint_count, 40);
+    if (!result) result = noh_check_array(check, h->names_offset, h->joint_count, 4);
+    if (!result) result = noh_check_end(check);
+    return result ? result : check_joints(check, h);
+}
+
+static noh_result check_events(const noh_check *check, const noh_motion_header *h)
+{
+    const noh_motion_event *events = (const noh_motion_event *)(const void *)(check->bytes + h->events_offset);
+    for (uint32_t i = 0; i < h->event_count; i++) {
+        uint64_t at = h->events_offset + (uint64_t)i * sizeof *events;
+        noh_result result = noh_check_name(check, events[i].name, events[i].name_hash, at);
+        if (result) {
+            return result;
+        }
+        if ((i && events[i].tick < events[i - 1].tick) || !noh_float_finite(events[i].weight_min)) {
+            return noh_check_fail(check, "callback keys are not in time order, or a weight is not finite", at);
+        }
+    }
+    return NOH_OK;
+}
+
+noh_result noh_check_motion(noh_check *check)
+{
+    const noh_motion_header *h = (const noh_motion_header *)(const void *)check->bytes;
+    noh_result result = noh_check_head(check, sizeof *h);
+    if (result) {
+        return result;
+    }
+    if (!h->joint_count || h->joint_count > NOH_JOINTS_MAX || h->event_count > NOH_MOTION_EVENTS_MAX || h->reserved) {
+        return noh_check_fail(check, "joint or callback key count is over the limit", 4);
+    }
+    result = noh_check_array(check, h->events_offset, h->event_count, sizeof(noh_motion_event));
+    if (!result) result = noh_check_array(check, h->clip_offset, h->clip_bytes, 1);
+    if (!result) result = noh_check_end(check);
+    return result ? result : check_events(check, h);
+}

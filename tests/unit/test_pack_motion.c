@@ -1,0 +1,204 @@
+/* test_pack_motion.c: skeletons and compressed motion inside a pack: built from a .bvh that the
+ * test writes, bound by the skeleton's hash, and damaged in every bit. */
+#include "support.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "convert/convert.h"
+#include "pack_walk.h"
+
+static const char bvh[] =
+    "HIERARCHY\nROOT hips\n{\n  OFFSET 0 0 0\n  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n"
+    "  JOINT knee\n  {\n    OFFSET 0 -10 0\n    CHANNELS 3 Zrotation Xrotation Yrotation\n"
+    "    End Site\n    {\n      OFFSET 0 -10 0\n    }\n  }\n}\n"
+    "MOTION\nFrames: 5\nFrame Time: 0.0333333\n"
+    "0 20 0 0 0 0 0 0 0\n1 20 0 5 0 0 10 0 0\n2 21 0 10 0 0 25 0 0\n3 20 0 5 0 0 10 0 0\n4 20 0 0 0 0 0 0 0\n";
+
+static byte_buffer good;
+
+static int build(const char *text, const char *events, byte_buffer *out, convert_failure *failure)
+{
+    convert_options options;
+    const char *input = test_path("walk.bvh");
+    memset(&options, 0, sizeof options);
+    test_write_file(input, text, strlen(text));
+    if (events) {
+        options.events = test_path("keys.txt");
+        test_write_file(options.events, events, strlen(events));
+    }
+    memset(out, 0, sizeof *out);
+    return convert_files(&input, 1, &options, out, failure);
+}
+
+static int set_up(void **state)
+{
+    convert_failure failure;
+    (void)state;
+    return build(bvh, "walk 0.05 step_left 7 min=0.5\nwalk 0.1 step_right\n", &good, &failure);
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    buffer_free(&good);
+    return 0;
+}
+
+static void pack_holds_skeleton_clip_and_keys(void **state)
+{
+    noh_pack pack = test_open(good.bytes, good.count);
+    noh_pack_motion motion;
+    noh_skeleton skeleton;
+    uint32_t index = 9;
+    (void)state;
+    assert_int_equal(pack.skeleton_count, 1);
+    assert_int_equal(pack.motion_count, 1);
+    assert_int_equal(noh_pack_motion_at(&pack, 0, &motion), NOH_OK);
+    assert_int_equal(noh_pack_motion_at(&pack, 1, &motion), NOH_ERR_NOT_FOUND);
+    assert_int_equal(noh_pack_bind_motion(&pack, &motion, &skeleton, &index, NULL), NOH_OK);
+    assert_int_equal(index, 0);
+    assert_int_equal(skeleton.joint_count, 2);
+    assert_int_equal(skeleton.parents[0], NOH_JOINT_ROOT);
+    assert_int_equal(skeleton.parents[1], 0);
+    assert_string_equal(noh_pack_joint_name(&pack, 0, 1), "knee");
+    assert_true(skeleton.bind_pose[1].translation[1] == -10.0f);
+    assert_int_equal(motion.header->event_count, 2);
+    assert_int_equal(motion.events[0].tick, 2400); /* 0.05 s of 48,000 ticks */
+    assert_string_equal(noh_pack_string(&pack, motion.events[0].name), "step_left");
+    assert_int_equal(motion.events[0].payload[0], 7);
+    assert_true(motion.events[0].weight_min == 0.5f);
+}
+
+static void another_skeleton_is_refused_by_name(void **state)
+{
+    byte_buffer other;
+    convert_failure failure;
+    char renamed[sizeof bvh];
+    noh_pack pack = test_open(good.bytes, good.count), other_pack;
+    noh_pack_motion motion;
+    noh_skeleton skeleton;
+    noh_error error = { NOH_OK, "", 0, 0 };
+    (void)state;
+    memcpy(renamed, bvh, sizeof bvh);
+    memcpy(strstr(renamed, "knee"), "shin", 4);
+    assert_int_equal(build(renamed, NULL, &other, &failure), 0);
+    other_pack = test_open(other.bytes, other.count);
+    noh_pack_motion_at(&pack, 0, &motion);
+    assert_int_equal(noh_pack_bind_motion(&other_pack, &motion, &skeleton, NULL, &error), NOH_ERR_NOT_FOUND);
+    assert_non_null(strstr(error.what, "another skeleton"));
+    buffer_free(&other);
+}
+
+static void every_truncation_and_flip_is_refused(void **state)
+{
+    uint8_t *bytes = test_aligned(good.bytes, good.count);
+    noh_pack pack;
+    noh_error error;
+    (void)state;
+    for (size_t count = 0; count < good.count; count++) {
+        assert_int_not_equal(noh_pack_open(bytes, count, &pack, &error), NOH_OK);
+    }
+    for (size_t bit = 0; bit < good.count * 8; bit++) {
+        bytes[bit / 8] ^= (uint8_t)(1u << bit % 8);
+        assert_int_not_equal(noh_pack_open(bytes, good.count, &pack, &error), NOH_OK);
+        bytes[bit / 8] ^= (uint8_t)(1u << bit % 8);
+    }
+    free(bytes);
+}
+
+/* With the checksums made right again the checkers and the decoder stand alone. */
+static void repaired_flips_stay_in_bounds(void **state)
+{
+    uint32_t opened = 0;
+    (void)state;
+    for (size_t bit = 0; bit < good.count * 8; bit++) {
+        uint8_t *bytes = test_aligned(good.bytes, good.count);
+        noh_pack pack;
+        bytes[bit / 8] ^= (uint8_t)(1u << bit % 8);
+        pack_repair(bytes, good.count);
+        if (noh_pack_open(bytes, good.count, &pack, NULL) == NOH_OK) {
+            opened += 1;
+            pack_walk(&pack, (uint32_t)bit);
+        }
+        free(bytes);
+    }
+    assert_true(opened > 100); /* else nothing was walked */
+}
+
+typedef struct forged {
+    uint8_t *bytes;
+    noh_skeleton_header *skeleton;
+    noh_motion_header *motion;
+    uint8_t *skeleton_chunk, *motion_chunk;
+} forged;
+
+static forged forge(void)
+{
+    forged f;
+    noh_pack pack = test_open(good.bytes, good.count);
+    f.bytes = test_aligned(good.bytes, good.count);
+    f.skeleton_chunk = f.bytes + pack.chunks[pack.first_skeleton].offset;
+    f.motion_chunk = f.bytes + pack.chunks[pack.first_motion].offset;
+    f.skeleton = (noh_skeleton_header *)(void *)f.skeleton_chunk;
+    f.motion = (noh_motion_header *)(void *)f.motion_chunk;
+    return f;
+}
+
+static void expect_refused(forged *f, const char *what)
+{
+    noh_pack pack;
+    noh_error error = { NOH_OK, "", 0, 0 };
+    pack_repair(f->bytes, good.count);
+    assert_int_equal(noh_pack_open(f->bytes, good.count, &pack, &error), NOH_ERR_DATA);
+    if (!strstr(error.what, what)) {
+        fail_msg("expected '%s', got '%s'", what, error.what);
+    }
+    assert_true(error.where < good.count);
+    free(f->bytes);
+}
+
+static void lies_are_named(void **state)
+{
+    forged f = forge();
+    (void)state;
+    f.skeleton->joint_count = 0;
+    expect_refused(&f, "joint count");
+    f = forge();
+    f.skeleton->joint_count = 0xffffffffu;
+    expect_refused(&f, "joint count");
+    f = forge();
+    f.skeleton->unit_cm = 0.0f;
+    expect_refused(&f, "unit");
+    f = forge();
+    ((uint16_t *)(void *)(f.skeleton_chunk + f.skeleton->parents_offset))[1] = 1;
+    expect_refused(&f, "before its parent");
+    f = forge();
+    ((float *)(void *)(f.skeleton_chunk + f.skeleton->bind_offset))[3] = 2.0f;
+    expect_refused(&f, "unit quaternion");
+    f = forge();
+    ((uint32_t *)(void *)(f.skeleton_chunk + f.skeleton->names_offset))[1] = 0x7fffffffu;
+    expect_refused(&f, "outside the strings");
+    f = forge();
+    f.motion->event_count = NOH_MOTION_EVENTS_MAX + 1u;
+    expect_refused(&f, "over the limit");
+    f = forge();
+    f.motion->clip_bytes += 1;
+    expect_refused(&f, "past the end");
+    f = forge();
+    ((noh_motion_event *)(void *)(f.motion_chunk + f.motion->events_offset))[0].tick = 0xffffffu;
+    expect_refused(&f, "time order");
+}
+
+int main(int argument_count, char **arguments)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pack_holds_skeleton_clip_and_keys), cmocka_unit_test(another_skeleton_is_refused_by_name),
+        cmocka_unit_test(every_truncation_and_flip_is_refused), cmocka_unit_test(repaired_flips_stay_in_bounds),
+        cmocka_unit_test(lies_are_named)
+    };
+    if (argument_count > 1) {
+        cmocka_set_test_filter(arguments[1]);
+    }
+    return cmocka_run_group_tests_name("pack_motion", tests, set_up, tear_down);
+}

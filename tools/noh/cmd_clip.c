@@ -1,0 +1,255 @@
+/* cmd_clip.c: the compressed motion of a pack: its bytes, its certificate, its frames. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "convert/raw_set.h"
+#include "convert/rcl.h"
+#include "noh_tool.h"
+
+/* A clip that is open, with a cache of its own. */
+typedef struct opened {
+    noh_pack_motion motion;
+    noh_skeleton skeleton;
+    uint32_t skeleton_index;
+    void *memory, *cache_memory;
+    noh_clip *clip;
+    noh_clip_cache *cache;
+    noh_clip_info info;
+    size_t cache_bytes;
+} opened;
+
+static void close_clip(opened *o)
+{
+    free(o->memory);
+    free(o->cache_memory);
+    memset(o, 0, sizeof *o);
+}
+
+static int open_cache(opened *o, const char *path, noh_error *error)
+{
+    const noh_clip *clips[1];
+    noh_clip_cache_desc desc = { clips, 1, 0 };
+    clips[0] = o->clip;
+    o->cache_bytes = noh_clip_cache_size(&desc, error);
+    o->cache_memory = o->cache_bytes ? malloc(o->cache_bytes) : NULL;
+    if (!o->cache_memory) {
+        return tool_fail(path, "%s", o->cache_bytes ? "out of memory" : error->what);
+    }
+    return noh_clip_cache_init(o->cache_memory, o->cache_bytes, &desc, &o->cache, error) ? tool_fail_error(path, error) : 0;
+}
+
+static int open_clip(opened *o, const pack_file *file, uint32_t index)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_clip_desc desc;
+    size_t bytes;
+    memset(o, 0, sizeof *o);
+    noh_pack_motion_at(&file->pack, index, &o->motion);
+    if (noh_pack_bind_motion(&file->pack, &o->motion, &o->skeleton, &o->skeleton_index, &error)) {
+        return tool_fail(file->path, "clip '%s': %s", o->motion.name, error.what);
+    }
+    desc.bytes = o->motion.bytes;
+    desc.byte_count = o->motion.header->clip_bytes;
+    desc.bind = o->skeleton.bind_pose;
+    desc.joint_count = o->skeleton.joint_count;
+    bytes = noh_clip_size(&desc, &error);
+    o->memory = bytes ? malloc(bytes) : NULL;
+    if (!o->memory) {
+        return bytes ? tool_fail(file->path, "out of memory") : tool_fail_error(file->path, &error);
+    }
+    if (noh_clip_init(o->memory, bytes, &desc, &o->clip, &error)) {
+        close_clip(o);
+        return tool_fail_error(file->path, &error);
+    }
+    noh_clip_info_of(o->clip, &o->info);
+    return open_cache(o, file->path, &error);
+}
+
+static double seconds_of(const opened *o)
+{
+    return (double)o->info.duration_ticks / 48000.0;
+}
+
+static void print_clip(const pack_file *file, const opened *o)
+{
+    printf("clip '%s': %u joints, %.3f s at %.4g Hz, %u of %u bytes (%.1f:1)\n", o->motion.name, o->info.joint_count, seconds_of(o),
+           o->info.rate_uhz / 1e6, o->motion.header->clip_bytes, o->motion.header->raw_bytes,
+           (double)o->motion.header->raw_bytes / (double)o->motion.header->clip_bytes);
+    printf("  certified at a %.3g cm shell: largest error %.5f cm (joint %u, %.3f s), rms %.5f cm\n", o->info.shell_cm,
+           o->info.max_error_cm, o->info.max_error_joint, o->info.max_error_time_s, o->info.rms_error_cm);
+    printf("  %u segments, cache of %zu bytes; %u callback keys\n", o->info.segment_count, o->cache_bytes, o->motion.header->event_count);
+    for (uint32_t i = 0; i < o->motion.header->event_count; i++) {
+        const noh_motion_event *e = &o->motion.events[i];
+        printf("    %.4f s '%s'\n", e->tick / 48000.0, noh_pack_string(&file->pack, e->name));
+    }
+}
+
+static void json_one(json *j, const opened *o)
+{
+    json_open(j, NULL, '{');
+    json_text(j, "name", o->motion.name);
+    json_integer(j, "joints", o->info.joint_count);
+    json_number(j, "seconds", seconds_of(o));
+    json_number(j, "rate_hz", o->info.rate_uhz / 1e6);
+    json_integer(j, "raw_bytes", o->motion.header->raw_bytes);
+    json_integer(j, "bytes", o->motion.header->clip_bytes);
+    json_number(j, "max_error_cm", o->info.max_error_cm);
+    json_number(j, "rms_error_cm", o->info.rms_error_cm);
+    json_number(j, "shell_cm", o->info.shell_cm);
+    json_integer(j, "events", o->motion.header->event_count);
+    json_integer(j, "cache_bytes", o->cache_bytes);
+    json_close(j, '}');
+}
+
+/* ---- the decoded samples ---- */
+
+static char *copy_text(const char *text)
+{
+    char *copy = malloc(strlen(text) + 1);
+    return copy ? strcpy(copy, text) : NULL;
+}
+
+static void fill_skeleton(raw_skeleton *to, const pack_file *file, const opened *o)
+{
+    const noh_skeleton_header *h;
+    noh_skeleton s;
+    noh_pack_skeleton_at(&file->pack, o->skeleton_index, &s, &h);
+    to->unit_cm = (double)h->unit_cm;
+    for (uint32_t j = 0; j < s.joint_count; j++) {
+        raw_joint *joint = &to->joints[j];
+        free(joint->name);
+        joint->name = copy_text(noh_pack_joint_name(&file->pack, o->skeleton_index, j));
+        joint->parent = s.parents[j] == NOH_JOINT_ROOT ? MODEL_NONE : s.parents[j];
+        memcpy(joint->rotation, s.bind_pose[j].rotation, sizeof joint->rotation);
+        memcpy(joint->translation, s.bind_pose[j].translation, sizeof joint->translation);
+        memcpy(joint->scale, s.bind_pose[j].scale, sizeof joint->scale);
+    }
+}
+
+static int fill_frames(raw_clip *to, const opened *o)
+{
+    uint32_t joints = o->info.joint_count;
+    noh_transform *pose = malloc(sizeof *pose * joints);
+    if (!pose) {
+        return 1;
+    }
+    for (uint32_t f = 0; f < to->frame_count; f++) {
+        int64_t ticks = to->frame_count > 1 ? (int64_t)(o->info.duration_ticks * f / (to->frame_count - 1)) : 0;
+        noh_clip_sample(o->cache, 0, ticks, joints, pose, NULL);
+        for (uint32_t j = 0; j < joints; j++) {
+            size_t at = (size_t)f * joints + j;
+            memcpy(to->rotations + 4 * at, pose[j].rotation, 16);
+            memcpy(to->translations + 3 * at, pose[j].translation, 12);
+            memcpy(to->scales + 3 * at, pose[j].scale, 12);
+        }
+    }
+    free(pose);
+    return 0;
+}
+
+static int dump_clip(const pack_file *file, const opened *o, const char *path)
+{
+    raw_set *set = raw_set_new(o->info.joint_count, 1);
+    model_error error = { "", "" };
+    int failed = !set || raw_clip_alloc(&set->clips[0], o->info.frame_count, o->info.joint_count);
+    if (!failed) {
+        set->clips[0].name = copy_text(o->motion.name);
+        set->clips[0].rate_hz = o->info.rate_uhz / 1e6;
+        fill_skeleton(&set->skeleton, file, o);
+        failed = !set->clips[0].name || fill_frames(&set->clips[0], o);
+    }
+    if (failed) {
+        snprintf(error.what, sizeof error.what, "out of memory");
+    } else {
+        failed = rcl_write(path, &set->skeleton, &set->clips[0], &error);
+    }
+    raw_set_free(set);
+    return failed ? tool_fail(path, "%s", error.what) : 0;
+}
+
+/* ---- the verb ---- */
+
+static int find_motion(const pack_file *file, const char *name, uint32_t *index)
+{
+    const char **names = calloc(file->pack.motion_count + 1u, sizeof *names);
+    const char *near;
+    for (uint32_t i = 0; names && i < file->pack.motion_count; i++) {
+        noh_pack_motion motion;
+        noh_pack_motion_at(&file->pack, i, &motion);
+        names[i] = motion.name;
+        if (strcmp(motion.name, name) == 0) {
+            *index = i;
+            free(names);
+            return 0;
+        }
+    }
+    near = names ? nearest_name(name, names, file->pack.motion_count) : NULL;
+    free(names);
+    return near ? tool_fail(file->path, "no motion named '%s' (did you mean '%s'?)", name, near)
+                : tool_fail(file->path, "no motion named '%s' (`noh clip` lists them)", name);
+}
+
+static int dump_named(const pack_file *file, const char *name, const char *path)
+{
+    opened o;
+    uint32_t index = 0;
+    int status;
+    if (file->pack.motion_count == 0 || (!name && file->pack.motion_count > 1)) {
+        return tool_fail(file->path, "--dump wants one clip; this pack has %u: name it with --clip", file->pack.motion_count);
+    }
+    status = name ? find_motion(file, name, &index) : 0;
+    if (!status) status = open_clip(&o, file, index);
+    if (!status) {
+        status = dump_clip(file, &o, path);
+        close_clip(&o);
+    }
+    return status;
+}
+
+static int list_clips(const pack_file *file, int as_json)
+{
+    json j = { stdout, 0, 1 };
+    int status = 0;
+    if (as_json) {
+        j = json_begin(stdout);
+        json_open(&j, "clips", '[');
+    }
+    for (uint32_t i = 0; i < file->pack.motion_count && !status; i++) {
+        opened o;
+        status = open_clip(&o, file, i);
+        if (!status) {
+            if (as_json) {
+                json_one(&j, &o);
+            } else {
+                print_clip(file, &o);
+            }
+            close_clip(&o);
+        }
+    }
+    if (as_json) {
+        json_close(&j, ']');
+        json_end(&j);
+    }
+    return status;
+}
+
+int verb_clip(int argc, char **argv)
+{
+    const char *path = NULL, *dump = NULL, *name = NULL;
+    int as_json = 0, count, status;
+    pack_file file;
+    const option options[] = {
+        { "--json", OPTION_FLAG, &as_json }, { "--dump", OPTION_TEXT, &dump }, { "--clip", OPTION_TEXT, &name }
+    };
+    status = tool_options(argc, argv, options, 3, &path, 1, &count);
+    if (!status && !path) {
+        status = tool_usage("clip wants a pack");
+    }
+    if (!status) status = pack_file_open(&file, path);
+    if (status) {
+        return status;
+    }
+    status = dump ? dump_named(&file, name, dump) : list_clips(&file, as_json);
+    pack_file_close(&file);
+    return status;
+}
