@@ -76,29 +76,47 @@ static inline noh_v4 load_quat(const uint8_t *frame, uint32_t index, int wide)
                 : noh_v4_load_i16((const int16_t *)(const void *)frame + 4u * index);
 }
 
-NOH_CLIP_INLINE noh_v4 blend_quat(const uint8_t *a, const uint8_t *b, uint32_t index, int wide, noh_v4 to_a, noh_v4 to_b)
+static inline void load_two(const uint8_t *frame, uint32_t index, int wide, noh_v4 *first, noh_v4 *second)
 {
-    return noh_v4_add(noh_v4_mul(load_quat(a, index, wide), to_a), noh_v4_mul(load_quat(b, index, wide), to_b));
+    if (wide) {
+        *first = load_quat(frame, index, wide);
+        *second = load_quat(frame, index + 1u, wide);
+    } else {
+        noh_v4_load_i16_pair((const int16_t *)(const void *)frame + 4u * index, first, second);
+    }
 }
 
-/* Lerp and normalise rotations r0..r3; they share the square root. Written out: at -O2 compilers
- * keep loops of four, and their arrays in memory. */
-NOH_CLIP_INLINE void blend_group(const uint8_t *a, const uint8_t *b, float fraction, uint32_t r0, uint32_t r1, uint32_t r2, uint32_t r3, int wide,
-                               noh_v4 q[GROUP])
+/* Normalise four; they share the square root. Written out, here and below: at -O2 compilers keep
+ * loops of four, and their arrays in memory. */
+NOH_CLIP_INLINE void normalise_group(noh_v4 q[GROUP])
 {
-    const noh_v4 to_b = noh_v4_set(fraction), to_a = noh_v4_set(1.0f - fraction);
-    noh_v4 scale;
-    q[0] = blend_quat(a, b, r0, wide, to_a, to_b);
-    q[1] = blend_quat(a, b, r1, wide, to_a, to_b);
-    q[2] = blend_quat(a, b, r2, wide, to_a, to_b);
-    q[3] = blend_quat(a, b, r3, wide, to_a, to_b);
-    scale = noh_v4_sums(noh_v4_mul(q[0], q[0]), noh_v4_mul(q[1], q[1]), noh_v4_mul(q[2], q[2]), noh_v4_mul(q[3], q[3]));
+    noh_v4 scale = noh_v4_sums(noh_v4_mul(q[0], q[0]), noh_v4_mul(q[1], q[1]), noh_v4_mul(q[2], q[2]), noh_v4_mul(q[3], q[3]));
     scale = noh_v4_max(scale, noh_v4_set(TINY));
     scale = noh_v4_div(noh_v4_set(1.0f), noh_v4_sqrt(scale));
     q[0] = noh_v4_mul(q[0], noh_v4_lane(scale, 0));
     q[1] = noh_v4_mul(q[1], noh_v4_lane(scale, 1));
     q[2] = noh_v4_mul(q[2], noh_v4_lane(scale, 2));
     q[3] = noh_v4_mul(q[3], noh_v4_lane(scale, 3));
+}
+
+NOH_CLIP_INLINE noh_v4 lerp(noh_v4 a, noh_v4 b, noh_v4 to_a, noh_v4 to_b)
+{
+    return noh_v4_add(noh_v4_mul(a, to_a), noh_v4_mul(b, to_b));
+}
+
+/* Four neighbours. */
+NOH_CLIP_INLINE void blend_group(const uint8_t *a, const uint8_t *b, uint32_t r, int wide, noh_v4 to_a, noh_v4 to_b, noh_v4 q[GROUP])
+{
+    noh_v4 a0, a1, a2, a3, b0, b1, b2, b3;
+    load_two(a, r, wide, &a0, &a1);
+    load_two(a, r + 2u, wide, &a2, &a3);
+    load_two(b, r, wide, &b0, &b1);
+    load_two(b, r + 2u, wide, &b2, &b3);
+    q[0] = lerp(a0, b0, to_a, to_b);
+    q[1] = lerp(a1, b1, to_a, to_b);
+    q[2] = lerp(a2, b2, to_a, to_b);
+    q[3] = lerp(a3, b3, to_a, to_b);
+    normalise_group(q);
 }
 
 /* Rotations: neighbouring frames lie in one hemisphere (the encoder sees to it), so there is
@@ -108,19 +126,21 @@ NOH_CLIP_INLINE void blend_rotations(const noh_clip *clip, const uint8_t *a, con
 {
     const uint16_t *joints = clip->rotation_joints;
     uint32_t r = blend_many(clip, a, b, fraction, count, wide, out);
+    const noh_v4 to_b = noh_v4_set(fraction), to_a = noh_v4_set(1.0f - fraction);
     noh_v4 q[GROUP];
     for (; r + GROUP <= count; r += GROUP) {
-        blend_group(a, b, fraction, r, r + 1u, r + 2u, r + 3u, wide, q);
+        blend_group(a, b, r, wide, to_a, to_b, q);
         noh_v4_store(out[joints[r]].rotation, q[0]);
         noh_v4_store(out[joints[r + 1u]].rotation, q[1]);
         noh_v4_store(out[joints[r + 2u]].rotation, q[2]);
         noh_v4_store(out[joints[r + 3u]].rotation, q[3]);
     }
     if (r < count) {
-        const uint32_t last = count - 1u;
-        blend_group(a, b, fraction, r, r + 1u < last ? r + 1u : last, r + 2u < last ? r + 2u : last, last, wide, q);
-        if (last == r + 1u) q[1] = q[3];
-        if (last == r + 2u) q[2] = q[3];
+        for (uint32_t i = 0; i < GROUP; i++) {
+            const uint32_t index = r + i < count ? r + i : count - 1u;
+            q[i] = lerp(load_quat(a, index, wide), load_quat(b, index, wide), to_a, to_b);
+        }
+        normalise_group(q);
         for (uint32_t i = 0; r + i < count; i++) {
             noh_v4_store(out[joints[r + i]].rotation, q[i]);
         }

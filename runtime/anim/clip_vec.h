@@ -40,6 +40,13 @@ static inline noh_v4 noh_v4_load_i16(const int16_t *p)
 {
     return _mm_cvtepi32_ps(_mm_unpacklo_epi16(_mm_setzero_si128(), _mm_loadl_epi64((const __m128i *)(const void *)p)));
 }
+/* Eight int16 likewise, as two vectors. */
+static inline void noh_v4_load_i16_pair(const int16_t *p, noh_v4 *first, noh_v4 *second)
+{
+    const __m128i v = _mm_loadu_si128((const __m128i *)(const void *)p), zero = _mm_setzero_si128();
+    *first = _mm_cvtepi32_ps(_mm_unpacklo_epi16(zero, v));
+    *second = _mm_cvtepi32_ps(_mm_unpackhi_epi16(zero, v));
+}
 static inline void noh_v4_transpose(noh_v4 v[4])
 {
     _MM_TRANSPOSE4_PS(v[0], v[1], v[2], v[3]);
@@ -78,6 +85,12 @@ static inline noh_v4 noh_v4_div(noh_v4 a, noh_v4 b) { return vdivq_f32(a, b); }
 static inline noh_v4 noh_v4_sqrt(noh_v4 a) { return vsqrtq_f32(a); }
 static inline noh_v4 noh_v4_max(noh_v4 a, noh_v4 b) { return vbslq_f32(vcgtq_f32(a, b), a, b); }
 static inline noh_v4 noh_v4_load_i16(const int16_t *p) { return vcvtq_f32_s32(vmovl_s16(vld1_s16(p))); }
+static inline void noh_v4_load_i16_pair(const int16_t *p, noh_v4 *first, noh_v4 *second)
+{
+    const int16x8_t v = vld1q_s16(p);
+    *first = vcvtq_f32_s32(vmovl_s16(vget_low_s16(v)));
+    *second = vcvtq_f32_s32(vmovl_s16(vget_high_s16(v)));
+}
 static inline void noh_v4_transpose(noh_v4 v[4])
 {
     float32x4x2_t a = vzipq_f32(v[0], v[2]), b = vzipq_f32(v[1], v[3]);
@@ -120,6 +133,11 @@ static inline noh_v4 noh_v4_sqrt(noh_v4 a) { const noh_v4 r = { { noh_sqrt(a.f[0
 static inline float noh_v4_larger(float a, float b) { return a > b ? a : b; }
 static inline noh_v4 noh_v4_max(noh_v4 a, noh_v4 b) { const noh_v4 r = { { noh_v4_larger(a.f[0], b.f[0]), noh_v4_larger(a.f[1], b.f[1]), noh_v4_larger(a.f[2], b.f[2]), noh_v4_larger(a.f[3], b.f[3]) } }; return r; }
 static inline noh_v4 noh_v4_load_i16(const int16_t *p) { const noh_v4 r = { { (float)p[0], (float)p[1], (float)p[2], (float)p[3] } }; return r; }
+static inline void noh_v4_load_i16_pair(const int16_t *p, noh_v4 *first, noh_v4 *second)
+{
+    *first = noh_v4_load_i16(p);
+    *second = noh_v4_load_i16(p + 4);
+}
 static inline void noh_v4_transpose(noh_v4 v[4])
 {
     for (int i = 0; i < 4; i++) {

@@ -84,7 +84,7 @@ static void find_modes(encoder *e)
         const double scale = parent_scale(e, j);
         double reach;
         t->bound = e->bound;
-        if (e->options.joint_error_cm && e->options.joint_error_cm[j] > 0.0) t->bound = e->options.joint_error_cm[j] / e->unit_cm;
+        if (e->options.joint_error_cm && e->options.joint_error_cm[j] > 0.0) t->bound = e->options.joint_error_cm[j] * e->tight / e->unit_cm;
         reach = lever[j] > e->shell ? lever[j] : e->shell;
         t->lever = reach;
         t->modes[TRANSLATION] = linear_range(e, j, TRANSLATION, value) * scale > e->drop * t->bound ? NOH_CLIP_MODE_ANIMATED : NOH_CLIP_MODE_CONSTANT;

@@ -59,7 +59,7 @@ static void measure_joints(certifier *c, uint32_t frame, double fraction, uint32
         d = space_error(&c->raw[j], &c->lossy[j], e->shell);
         c->square += d * d;
         c->samples++;
-        if (!(d / e->joints[j].bound <= c->worst_part)) c->worst_part = d / e->joints[j].bound;
+        if (!(d * e->tight / e->joints[j].bound <= c->worst_part)) c->worst_part = d * e->tight / e->joints[j].bound;
         if (!(d <= c->max_error)) {
             c->max_error = d;
             c->joint = j;

@@ -10,6 +10,9 @@
 #include "clip_encoder.h"
 
 #define LEVELS 3
+#define TIGHTEN 0.98
+#define TIGHTEN_MAX 1.5
+#define TIGHT_MIN 0.5
 #define DEFAULT_ERROR_CM 0.01
 #define DEFAULT_SHELL_CM 3.0
 #define DEFAULT_FLOAT_ERROR 0.001
@@ -42,7 +45,7 @@ static int set_options(encoder *e, const clip_options *given)
     if (o->segment_frames < SEGMENT_FRAMES_MIN || o->segment_frames > SEGMENT_FRAMES_MAX) return enc_fail(e, "segment_frames: 8 to 40");
     if (!(e->skeleton->unit_cm > 0.0)) return enc_fail(e, "unit_cm: above 0");
     e->unit_cm = e->skeleton->unit_cm;
-    e->bound = o->error_cm / e->unit_cm;
+    e->bound = o->error_cm * e->tight / e->unit_cm;
     e->shell = o->shell_cm / e->unit_cm;
     e->tunings = tunings;
     e->tuning_count = sizeof tunings / sizeof *tunings;
@@ -125,14 +128,16 @@ static int write_certified(encoder *e, byte_buffer *out, double *worst_part)
     return 0;
 }
 
-/* One level. *worst_part is above 1 where the bound did not hold; nothing is then left in `out`. */
-static int encode_level(encoder *e, byte_buffer *out, double *worst_part)
+/* One attempt. *worst_part is above 1 where the bound did not hold; nothing is then left in `out`.
+ * *decoded says whether that was seen only after decoding. */
+static int encode_once(encoder *e, byte_buffer *out, double *worst_part, int *decoded)
 {
     static const double drops[LEVELS] = { ENC_DROP, 0.01, 0.0 };
     const size_t begin = out->count;
     int failed;
     e->drop = drops[e->level];
     *worst_part = 0.0;
+    *decoded = 0;
     if (enc_prepare(e) || enc_analyse(e) || new_loop(e)) return 1;
     for (uint32_t s = 0; s < e->segment_count; s++) {
         double worst;
@@ -143,6 +148,7 @@ static int encode_level(encoder *e, byte_buffer *out, double *worst_part)
         }
         if (e->options.progress) e->options.progress(e->options.user, s + 1u, e->segment_count);
     }
+    *decoded = 1;
     failed = write_certified(e, out, worst_part);
     if (failed || !(*worst_part <= 1.0)) out->count = begin;
     return failed;
@@ -151,25 +157,33 @@ static int encode_level(encoder *e, byte_buffer *out, double *worst_part)
 int clip_encode(const raw_skeleton *skeleton, const raw_clip *clip, const clip_options *options, byte_buffer *out, clip_report *report,
                 model_error *error)
 {
-    double worst_part = 2.0;
-    int failed = 0;
+    double worst_part = 2.0, tight = 1.0;
+    int failed = 0, level = 0;
     encoder *e = malloc(sizeof *e); /* 64 bases: too much for some stacks */
     if (!e) {
         if (error) snprintf(error->what, sizeof error->what, "out of memory");
         return 1;
     }
-    for (int level = 0; level < LEVELS && !failed && !(worst_part <= 1.0); level++) {
+    while (level < LEVELS && !failed && !(worst_part <= 1.0)) {
+        int decoded = 0;
         memset(e, 0, sizeof *e);
         e->skeleton = skeleton;
         e->clip = clip;
         e->error = error;
         e->level = level;
-        failed = set_options(e, options) || encode_level(e, out, &worst_part);
+        e->tight = tight;
+        failed = set_options(e, options) || encode_once(e, out, &worst_part, &decoded);
         if (!failed && worst_part <= 1.0 && report) {
             *report = e->report;
             report->level = level;
         }
-        if (!failed && level == LEVELS - 1 && !(worst_part <= 1.0)) {
+        if (decoded && level < LEVELS - 1 && worst_part < TIGHTEN_MAX && tight > TIGHT_MIN) {
+            tight *= TIGHTEN / worst_part; /* what single precision adds is not in the loop: leave it room */
+        } else {
+            level++;
+            tight = 1.0;
+        }
+        if (!failed && level == LEVELS && !(worst_part <= 1.0)) {
             failed = enc_fail(e, "the bound is finer than single precision holds so far from the origin");
         }
         free_encoder(e);

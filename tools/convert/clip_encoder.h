@@ -82,6 +82,7 @@ typedef struct encoder {
     uint32_t tuning_count;
     model_error *error;
     double unit_cm, bound, shell;  /* bound and shell in units */
+    double tight;                  /* part of the bound that is aimed at: below 1 where single precision takes the rest */
     int level, wide, single;
     double drop;
     uint32_t joint_count, frame_count, float_count, group_count;
