@@ -133,6 +133,11 @@ $(BUILD)/make_mask: $(MASK_O)
 	$(call say,CC,$@)
 	$(Q)$(CC) $(LDFLAGS) $^ -o $@ -lm
 
+# Makes runtime/anim/clip_tables.c out of raw clips; after a change of the clip format only.
+$(BUILD)/clip_tables: $(BUILD)/tools/clip_tables/main.o $(CONVERT_O) $(PLATFORM_O) $(BUILD)/libnoh.a
+	$(call say,CXX,$@)
+	$(Q)$(CXX) $(LDFLAGS) $^ -o $@ $(TOOL_LIBS)
+
 $(BUILD)/mask.glb: $(BUILD)/make_mask
 	$(BUILD)/make_mask $@
 

@@ -177,7 +177,7 @@ int main(int argc, char **argv)
     static totals t;
     int failed = 0;
     for (int i = 1; i < argc; i++) failed |= count_file(argv[i], &t);
-    printf("/* Made by tools/clip_tables; do not edit.%s */\n#include \"clip_coefs.h\"\n\n", argc > 1 ? " From:" : " Flat codes.");
+    printf("/* Made by tools/clip_tables; do not edit.%s */\n#include \"anim/clip_coefs.h\"\n\n", argc > 1 ? " From:" : " Flat codes.");
     for (int i = 1; i < argc; i++) {
         const char *name = strrchr(argv[i], '/');
         printf("/* %s */\n", name ? name + 1 : argv[i]);
