@@ -12,11 +12,11 @@
  *   base/limits.h        every limit, in one place
  *   pack/pack.h          open a pack where it lies; format.h has its bytes
  *   mesh/mesh.h          vertices, triangles, morph targets of a pack
- *   anim/weight_clip.h   animations of morph weights
  *   anim/pack_motion.h   skeletons and compressed motion of a pack
  *   anim/clip_codec.h    a compressed clip, ready to be played
  *   anim/clip_cache.h    its frames in a fixed block, and poses from them
  *   anim/controller.h    tracks, changes over time, callback keys; controller_pose.h: poses of them
+ *   anim/motion_set.h    a pack's clips joined to the controller: start here
  *   anim/graph.h         a small animation graph over a controller
  *   anim/local_to_model.h  joint matrices and palettes
  *   deform/morph.h       morph targets on the CPU: reference and fallback
@@ -35,13 +35,13 @@
 #include "base/result.h"
 #include "pack/pack.h"
 #include "mesh/mesh.h"
-#include "anim/weight_clip.h"
 #include "anim/pack_motion.h"
 #include "anim/clip_codec.h"
 #include "anim/clip_cache.h"
 #include "anim/controller.h"
 #include "anim/controller_pose.h"
 #include "anim/event_queue.h"
+#include "anim/motion_set.h"
 #include "anim/graph.h"
 #include "anim/local_to_model.h"
 #include "deform/morph.h"

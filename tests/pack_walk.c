@@ -224,62 +224,73 @@ static void walk_meshes(walk *w)
     free(meshes);
 }
 
-static void walk_clip(walk *w, const noh_weight_clip *clip)
+/* Play every motion for a while, in every loop mode, forwards and backwards, at random times. */
+static void walk_motion(walk *w, noh_motion_set *set, noh_controller *c, noh_pose_scratch *scratch, uint32_t motion)
 {
-    const float at[] = { -1.0f, 0.0f, 0.37f, 0.5f, 1.0f, 2.0f };
-    eat_name(w, clip->name);
-    for (uint32_t c = 0; c < clip->header->channel_count; c++) {
-        float *weights = memory(4u * (size_t)clip->channels[c].width);
-        for (size_t i = 0; i < sizeof at / sizeof at[0]; i++) {
-            noh_weight_clip_sample(clip, c, at[i] * clip->header->duration_s, weights);
-            eat(w, weights, 4u * (size_t)clip->channels[c].width);
+    noh_transform *pose = memory(sizeof *pose * set->anim.joint_count);
+    float *floats = memory(sizeof *floats * set->anim.float_count);
+    for (uint32_t i = 0; i < 6; i++) {
+        noh_track_desc track;
+        memset(&track, 0, sizeof track);
+        w->random = w->random * 1664525u + 1013904223u;
+        track.motion = motion;
+        track.loop = (noh_loop)(i % 3u + 1u);
+        track.speed = i < 3 ? 3 * NOH_SPEED_ONE : -3 * NOH_SPEED_ONE;
+        track.position_ticks = (int64_t)(w->random >> 4) % ((int64_t)set->anim.motions[motion].duration_ticks + 1);
+        if (noh_controller_start(c, &set->anim, 0, &track, NULL) != NOH_OK) {
+            abort();
         }
-        free(weights);
-    }
-}
-
-/* Poses of a clip at random times, through a cache of the smallest size. */
-static void walk_samples(walk *w, const noh_clip *clip, const noh_clip_info *info)
-{
-    noh_clip_cache_desc desc = { &clip, 1, 0 };
-    size_t bytes = noh_clip_cache_size(&desc, NULL);
-    void *block = memory(bytes);
-    noh_transform *pose = memory(sizeof *pose * info->joint_count);
-    float *floats = memory(sizeof *floats * info->float_count);
-    noh_clip_cache *cache = NULL;
-    if (bytes && noh_clip_cache_init(block, bytes, &desc, &cache, NULL) == NOH_OK) {
-        for (uint32_t i = 0; i < 8; i++) {
-            w->random = w->random * 1664525u + 1013904223u;
-            noh_clip_sample(cache, 0, (int64_t)(info->duration_ticks / 65536u * (w->random >> 16)), info->joint_count, pose, floats);
-            eat(w, pose, sizeof *pose * info->joint_count);
-        }
+        noh_clip_cache_tick(set->cache);
+        noh_controller_step(c, &set->anim, 700, NULL, NULL);
+        noh_motion_set_ahead(set, c, 4000);
+        noh_clip_cache_work(set->cache, 100);
+        noh_controller_pose(c, &set->anim, scratch, pose, floats);
+        eat(w, pose, sizeof *pose * set->anim.joint_count);
+        eat(w, floats, sizeof *floats * set->anim.float_count);
     }
     free(floats);
     free(pose);
-    free(block);
 }
 
-/* A motion whose skeleton is here and whose clip the decoder accepts. */
-static void walk_motion(walk *w, const noh_pack_motion *motion)
+static void walk_playing(walk *w, noh_motion_set *set)
 {
-    noh_skeleton skeleton;
-    noh_clip_desc desc;
-    noh_clip *clip = NULL;
+    noh_controller_desc desc;
+    noh_controller *c = NULL;
+    noh_pose_scratch scratch;
+    size_t bytes, scratch_bytes = noh_pose_scratch_size(&set->anim, 0);
+    void *block, *scratch_block = memory(scratch_bytes);
+    memset(&desc, 0, sizeof desc);
+    desc.set = &set->anim;
+    desc.track_count = 1;
+    bytes = noh_controller_size(&desc);
+    block = memory(bytes);
+    if (noh_controller_init(block, bytes, &desc, &c, NULL) != NOH_OK ||
+        noh_pose_scratch_init(scratch_block, scratch_bytes, &set->anim, 0, &scratch, NULL) != NOH_OK) {
+        abort();
+    }
+    for (uint32_t m = 0; m < set->anim.motion_count; m++) {
+        walk_motion(w, set, c, &scratch, m);
+    }
+    free(block);
+    free(scratch_block);
+}
+
+/* All clips of one skeleton, where the decoder accepts them. */
+static void walk_set(walk *w, uint32_t skeleton)
+{
+    noh_motion_set_desc desc;
+    noh_motion_set *set = NULL;
     size_t bytes;
     void *block;
-    if (noh_pack_bind_motion(w->pack, motion, &skeleton, NULL, NULL)) {
-        return;
-    }
-    desc.bytes = motion->bytes;
-    desc.byte_count = motion->header->clip_bytes;
-    desc.bind = skeleton.bind_pose;
-    desc.joint_count = skeleton.joint_count;
-    bytes = noh_clip_size(&desc, NULL);
+    memset(&desc, 0, sizeof desc);
+    desc.clips = w->pack;
+    desc.skeleton = skeleton;
+    desc.root_axes = NOH_ROOT_GROUND;
+    desc.root_up = 1;
+    bytes = noh_motion_set_size(&desc, NULL);
     block = memory(bytes);
-    if (bytes && noh_clip_init(block, bytes, &desc, &clip, NULL) == NOH_OK) {
-        noh_clip_info info;
-        noh_clip_info_of(clip, &info);
-        walk_samples(w, clip, &info);
+    if (bytes && noh_motion_set_init(block, bytes, &desc, &set, NULL) == NOH_OK) {
+        walk_playing(w, set);
     }
     free(block);
 }
@@ -287,6 +298,15 @@ static void walk_motion(walk *w, const noh_pack_motion *motion)
 static void walk_motions(walk *w)
 {
     noh_pack_motion motion;
+    for (uint32_t i = 0; noh_pack_motion_at(w->pack, i, &motion) == NOH_OK; i++) {
+        eat_name(w, motion.name);
+        for (uint32_t k = 0; k < motion.header->event_count; k++) {
+            eat_name(w, noh_pack_string(w->pack, motion.events[k].name));
+        }
+        for (uint32_t k = 0; k < motion.header->marker_count; k++) {
+            eat_name(w, noh_pack_string(w->pack, motion.markers[k].name));
+        }
+    }
     for (uint32_t i = 0; i < w->pack->skeleton_count; i++) {
         noh_skeleton skeleton;
         noh_pack_skeleton_at(w->pack, i, &skeleton, NULL);
@@ -294,23 +314,18 @@ static void walk_motions(walk *w)
             eat_name(w, noh_pack_joint_name(w->pack, i, j));
             eat(w, &skeleton.parents[j], sizeof skeleton.parents[j]);
         }
+        walk_set(w, i);
     }
-    for (uint32_t i = 0; noh_pack_motion_at(w->pack, i, &motion) == NOH_OK; i++) {
-        walk_motion(w, &motion);
-    }
+    walk_set(w, NOH_NONE);
 }
 
 uint32_t pack_walk(const noh_pack *pack, uint32_t seed)
 {
     walk w = { pack, seed, 0 };
-    noh_weight_clip clip;
     walk_names(&w);
     walk_textures(&w);
     walk_nodes(&w);
     walk_meshes(&w);
-    for (uint32_t i = 0; noh_pack_weight_clip(pack, i, &clip) == NOH_OK; i++) {
-        walk_clip(&w, &clip);
-    }
     walk_motions(&w);
     return w.hash;
 }

@@ -10,7 +10,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "convert/gltf_motion.h"
 #include "convert/model_build.h"
+#include "convert/motions.h"
 
 /* ---- memory, files ---- */
 
@@ -351,11 +353,23 @@ model *test_model(const test_model_desc *desc)
 
 /* ---- packs ---- */
 
-uint8_t *test_pack_of(const model *m, size_t *count, uint32_t **orders)
+static void encode_motion(model *m, motion **made, motions *encoded)
+{
+    model_error error;
+    motion_settings settings;
+    memset(&settings, 0, sizeof settings);
+    if (motion_from_model(m, NULL, made, &error) || motions_encode((*made)->sets, (*made)->set_count, &settings, encoded, &error)) {
+        fail_msg("%s (%s)", error.what, error.where);
+    }
+}
+
+uint8_t *test_pack_of(model *m, size_t *count, uint32_t **orders)
 {
     morph_encoding **encodings = test_zeros(sizeof *encodings * m->mesh_count);
     morph_options options = { 0.0f, 0, 0.0f };
     byte_buffer out = { NULL, 0, 0, 0 };
+    motion *made = NULL;
+    motions encoded;
     model_error error;
     uint8_t *bytes;
     for (uint32_t i = 0; i < m->mesh_count; i++) {
@@ -365,9 +379,12 @@ uint8_t *test_pack_of(const model *m, size_t *count, uint32_t **orders)
             memcpy(orders[i], encodings[i]->order, 4u * (size_t)m->meshes[i].vertex_count);
         }
     }
-    if (pack_write(m, encodings, NULL, &out, &error)) {
+    encode_motion(m, &made, &encoded);
+    if (pack_write(m, encodings, &encoded, &out, &error)) {
         fail_msg("pack_write: %s", error.what);
     }
+    motions_free(&encoded);
+    motion_free(made);
     for (uint32_t i = 0; i < m->mesh_count; i++) {
         morph_encoding_free(encodings[i]);
     }
@@ -394,6 +411,19 @@ noh_pack test_open(const uint8_t *bytes, size_t count)
         fail_msg("the pack does not open: %s (byte %llu)", error.what, (unsigned long long)error.where);
     }
     return pack;
+}
+
+noh_motion_set *test_motion_set(const noh_motion_set_desc *desc)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_motion_set *set = NULL;
+    size_t bytes = noh_motion_set_size(desc, &error);
+    void *memory = test_aligned(NULL, bytes);
+    if (!bytes || noh_motion_set_init(memory, bytes, desc, &set, &error)) {
+        fail_msg("no motion set: %s (%llu)", error.what, (unsigned long long)error.where);
+    }
+    assert_ptr_equal(set, memory); /* so that it can be freed by this name */
+    return set;
 }
 
 noh_mesh test_mesh(const noh_pack *pack, uint32_t index)

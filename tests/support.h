@@ -90,15 +90,18 @@ typedef struct test_model_desc {
 /* To be freed with model_free. Vertex v of a grid lies at x = v % side, y = v / side. */
 model *test_model(const test_model_desc *desc);
 
-/* Encode and write it; the bytes are aligned. orders: NULL, or [mesh_count] to receive each
- * mesh's new-to-old vertex order (to be freed). */
-uint8_t *test_pack_of(const model *m, size_t *count, uint32_t **orders);
+/* Encode and write it, its clips too; the bytes are aligned. Warnings go to the model. orders: NULL, or
+ * [mesh_count] to receive each mesh's new-to-old vertex order (to be freed). */
+uint8_t *test_pack_of(model *m, size_t *count, uint32_t **orders);
 
 /* Both in one. */
 uint8_t *test_pack(const test_model_desc *desc, size_t *count);
 
 /* Open; fails the test where it does not open. */
 noh_pack test_open(const uint8_t *bytes, size_t count);
+
+/* A motion set in memory of the exact size; free() it. Fails the test where it cannot be made. */
+noh_motion_set *test_motion_set(const noh_motion_set_desc *desc);
 
 /* The index-th mesh of an opened pack. */
 noh_mesh test_mesh(const noh_pack *pack, uint32_t index);

@@ -37,97 +37,111 @@ struct noh_clip_cache {
 
 /* ---- memory ---- */
 
-static uint32_t slots_of_desc(const noh_clip_cache_desc *desc)
+static uint32_t slots_of(uint32_t slot_count, uint32_t clip_count)
 {
-    const uint32_t count = desc->slot_count ? desc->slot_count : 2u * desc->clip_count;
+    const uint32_t count = slot_count ? slot_count : 2u * clip_count;
     return count < NOH_CLIP_CACHE_SLOTS_MIN ? NOH_CLIP_CACHE_SLOTS_MIN : count;
 }
 
-static noh_result check_desc(const noh_clip_cache_desc *desc, noh_error *error)
+static noh_result check_counts(uint32_t clip_count, uint32_t slot_count, noh_error *error)
 {
-    if (!desc->clips || desc->clip_count == 0u || desc->clip_count > NOH_CLIP_CACHE_CLIPS_MAX) {
-        return noh_fail(error, NOH_ERR_ARG, "clips of a clip cache", 0, desc->clip_count);
+    if (clip_count == 0u || clip_count > NOH_CLIP_CACHE_CLIPS_MAX) {
+        return noh_fail(error, NOH_ERR_ARG, "clips of a clip cache", 0, clip_count);
     }
-    if (desc->slot_count == 1u || slots_of_desc(desc) > NOH_CLIP_CACHE_SLOTS_MAX) {
+    if (slot_count == 1u || slots_of(slot_count, clip_count) > NOH_CLIP_CACHE_SLOTS_MAX) {
         return noh_fail(error, NOH_ERR_ARG, "slots of a clip cache", 0, NOH_CLIP_CACHE_SLOTS_MIN);
-    }
-    for (uint32_t i = 0; i < desc->clip_count; i++) {
-        if (!desc->clips[i]) return noh_fail(error, NOH_ERR_ARG, "clips of a clip cache", i, 0);
     }
     return NOH_OK;
 }
 
-/* Both lengths that a clip's segments have. */
-static void clip_lengths(const noh_clip *clip, uint32_t lengths[2])
+static noh_result check_desc(const noh_clip_cache_desc *desc, noh_error *error)
 {
-    lengths[0] = clip->info.segment_frames_max;
-    lengths[1] = clip->info.frame_count / clip->info.segment_count;
+    const noh_result r = check_counts(desc->clips ? desc->clip_count : 0u, desc->slot_count, error);
+    for (uint32_t i = 0; r == NOH_OK && i < desc->clip_count; i++) {
+        if (!desc->clips[i]) return noh_fail(error, NOH_ERR_ARG, "clips of a clip cache", i, 0);
+    }
+    return r;
 }
 
-static void carve_bases(noh_arena *arena, const noh_clip_cache_desc *desc, noh_clip_basis *bases)
+void noh_clip_cache_needs_add(noh_clip_cache_needs *needs, const noh_clip_info *info)
 {
-    uint8_t seen[NOH_CLIP_SEGMENT_FRAMES_MAX + 1u] = { 0 };
+    needs->clip_count++;
+    needs->segment_count += info->segment_count;
+    if (info->segment_bytes_max > needs->segment_bytes) needs->segment_bytes = info->segment_bytes_max;
+    needs->lengths[info->segment_frames_max] = 1; /* segments of a clip have one or two lengths */
+    needs->lengths[info->frame_count / info->segment_count] = 1;
+}
+
+static noh_clip_cache_needs needs_of(const noh_clip_cache_desc *desc)
+{
+    noh_clip_cache_needs needs;
+    memset(&needs, 0, sizeof needs);
     for (uint32_t i = 0; i < desc->clip_count; i++) {
-        uint32_t lengths[2];
-        clip_lengths(desc->clips[i], lengths);
-        for (uint32_t k = 0; k < 2u; k++) {
-            const uint32_t n = lengths[k];
-            float *rows;
-            if (seen[n]) continue;
-            seen[n] = 1;
-            rows = noh_arena_carve(arena, noh_clip_basis_count(n) * sizeof *rows, 16u);
-            if (rows && bases) {
-                noh_clip_basis_build(n, rows);
-                bases[n].frames = n;
-                bases[n].half = noh_clip_basis_half(n);
-                bases[n].rows = rows;
-            }
+        noh_clip_cache_needs_add(&needs, &desc->clips[i]->info);
+    }
+    return needs;
+}
+
+static void carve_bases(noh_arena *arena, const noh_clip_cache_needs *needs, noh_clip_basis *bases)
+{
+    for (uint32_t n = 1; n <= NOH_CLIP_SEGMENT_FRAMES_MAX; n++) {
+        float *rows;
+        if (!needs->lengths[n]) continue;
+        rows = noh_arena_carve(arena, noh_clip_basis_count(n) * sizeof *rows, 16u);
+        if (rows && bases) {
+            noh_clip_basis_build(n, rows);
+            bases[n].frames = n;
+            bases[n].half = noh_clip_basis_half(n);
+            bases[n].rows = rows;
         }
     }
 }
 
-static void carve(noh_arena *arena, const noh_clip_cache_desc *desc, noh_clip_cache *cache, int build)
+static void carve(noh_arena *arena, const noh_clip_cache_needs *needs, uint32_t slot_count, noh_clip_cache *cache, int build)
 {
-    uint32_t segments = 0;
-    size_t bytes = 16u;
-    for (uint32_t i = 0; i < desc->clip_count; i++) {
-        const noh_clip_info *info = &desc->clips[i]->info;
-        segments += info->segment_count;
-        if (info->segment_bytes_max > bytes) bytes = info->segment_bytes_max;
-    }
-    cache->clip_count = desc->clip_count;
-    cache->slot_count = slots_of_desc(desc);
-    cache->slot_bytes = bytes;
+    cache->clip_count = needs->clip_count;
+    cache->slot_count = slots_of(slot_count, needs->clip_count);
+    cache->slot_bytes = needs->segment_bytes > 16u ? needs->segment_bytes : 16u;
     cache->frames = noh_arena_carve(arena, cache->slot_bytes * cache->slot_count, 16u);
-    carve_bases(arena, desc, build ? cache->bases : NULL);
+    carve_bases(arena, needs, build ? cache->bases : NULL);
     cache->entries = noh_arena_carve(arena, cache->clip_count * sizeof *cache->entries, 8u);
     cache->slots = noh_arena_carve(arena, cache->slot_count * sizeof *cache->slots, 8u);
-    cache->slot_of = noh_arena_carve(arena, segments * sizeof *cache->slot_of, 2u);
+    cache->slot_of = noh_arena_carve(arena, needs->segment_count * sizeof *cache->slot_of, 2u);
+}
+
+size_t noh_clip_cache_needs_size(const noh_clip_cache_needs *needs, uint32_t slot_count, noh_error *error)
+{
+    noh_clip_cache measured;
+    noh_arena arena = noh_arena_measure();
+    if (check_counts(needs->clip_count, slot_count, error) != NOH_OK) return 0;
+    (void)noh_arena_carve(&arena, sizeof measured, 16u);
+    carve(&arena, needs, slot_count, &measured, 0);
+    return arena.used;
 }
 
 size_t noh_clip_cache_size(const noh_clip_cache_desc *desc, noh_error *error)
 {
-    noh_clip_cache measured;
-    noh_arena arena = noh_arena_measure();
+    noh_clip_cache_needs needs;
     if (check_desc(desc, error) != NOH_OK) return 0;
-    (void)noh_arena_carve(&arena, sizeof measured, 16u);
-    carve(&arena, desc, &measured, 0);
-    return arena.used;
+    needs = needs_of(desc);
+    return noh_clip_cache_needs_size(&needs, desc->slot_count, error);
 }
 
 noh_result noh_clip_cache_init(void *memory, size_t bytes, const noh_clip_cache_desc *desc, noh_clip_cache **out, noh_error *error)
 {
     noh_arena arena = noh_arena_over(memory, bytes);
+    noh_clip_cache_needs needs;
     noh_clip_cache *cache;
     uint32_t segments = 0;
     size_t need;
     const noh_result r = check_desc(desc, error);
     if (r != NOH_OK) return r;
-    need = noh_clip_cache_size(desc, error);
+    needs = needs_of(desc);
+    need = noh_clip_cache_needs_size(&needs, desc->slot_count, error);
     if (bytes < need || !memory) return noh_fail(error, NOH_ERR_MEMORY, "memory of a clip cache", 0, need);
     cache = noh_arena_carve(&arena, sizeof *cache, 16u);
     memset(cache, 0, sizeof *cache);
-    carve(&arena, desc, cache, 1);
+    carve(&arena, &needs, desc->slot_count, cache, 1);
     memset(cache->slots, 0, cache->slot_count * sizeof *cache->slots);
     for (uint32_t i = 0; i < desc->clip_count; i++) {
         cache->entries[i].clip = desc->clips[i];
@@ -216,12 +230,8 @@ void noh_clip_cache_tick(noh_clip_cache *cache)
     cache->stamp++;
 }
 
-int noh_clip_cache_want(noh_clip_cache *cache, uint32_t clip, int64_t ticks, uint32_t joint_count)
+static int want_segment(noh_clip_cache *cache, uint32_t clip, uint32_t segment, uint32_t tracks)
 {
-    const noh_clip *c = cache->entries[clip].clip;
-    float fraction;
-    const uint32_t segment = noh_clip_segment_of(c, noh_clip_frame_at(c, ticks, &fraction));
-    const uint32_t tracks = c->prefixes[joint_count < c->info.joint_count ? joint_count : c->info.joint_count].tracks;
     uint32_t s = cache->slot_of[cache->entries[clip].first + segment];
     if (s == NO_SLOT) {
         s = oldest_slot(cache, NO_SLOT);
@@ -234,6 +244,31 @@ int noh_clip_cache_want(noh_clip_cache *cache, uint32_t clip, int64_t ticks, uin
         cache->pending = 1;
     }
     return 1;
+}
+
+static uint32_t tracks_of(const noh_clip *c, uint32_t joint_count)
+{
+    return c->prefixes[joint_count < c->info.joint_count ? joint_count : c->info.joint_count].tracks;
+}
+
+int noh_clip_cache_want(noh_clip_cache *cache, uint32_t clip, int64_t ticks, uint32_t joint_count)
+{
+    const noh_clip *c = cache->entries[clip].clip;
+    float fraction;
+    const uint32_t segment = noh_clip_segment_of(c, noh_clip_frame_at(c, ticks, &fraction));
+    return want_segment(cache, clip, segment, tracks_of(c, joint_count));
+}
+
+uint32_t noh_clip_cache_want_frames(noh_clip_cache *cache, uint32_t clip, uint32_t first, uint32_t last, uint32_t joint_count)
+{
+    const noh_clip *c = cache->entries[clip].clip;
+    const uint32_t tracks = tracks_of(c, joint_count), end = noh_clip_segment_of(c, last);
+    uint32_t segment = noh_clip_segment_of(c, first), missing = 0;
+    for (;;) {
+        missing += !want_segment(cache, clip, segment, tracks);
+        if (segment == end) return missing;
+        segment = segment < end ? segment + 1u : segment - 1u;
+    }
 }
 
 /* The oldest want that is not met; NO_SLOT when there is none. */

@@ -42,12 +42,27 @@ size_t noh_clip_cache_size(const noh_clip_cache_desc *desc, noh_error *error);
  * errors  NOH_ERR_ARG; NOH_ERR_MEMORY with the bytes that are needed */
 noh_result noh_clip_cache_init(void *memory, size_t bytes, const noh_clip_cache_desc *desc, noh_clip_cache **out, noh_error *error);
 
+/* What the size follows from, clip after clip, for who has measured clips and not opened them yet.
+ * Zero it, add each clip, ask. */
+typedef struct noh_clip_cache_needs {
+    uint32_t clip_count, segment_count;
+    size_t segment_bytes;                             /* of the largest segment */
+    uint8_t lengths[NOH_CLIP_SEGMENT_FRAMES_MAX + 1u]; /* 1: some segment has so many frames */
+} noh_clip_cache_needs;
+
+void noh_clip_cache_needs_add(noh_clip_cache_needs *needs, const noh_clip_info *info);
+size_t noh_clip_cache_needs_size(const noh_clip_cache_needs *needs, uint32_t slot_count, noh_error *error);
+
 /* A new frame of the game: what was touched in it will not be evicted by a want. */
 void noh_clip_cache_tick(noh_clip_cache *cache);
 
 /* Ask for the segment of a time (1/48,000 s; clamped to the clip), its first `joint_count` joints.
  * Costs no decoding. Returns 1 when a slot holds or awaits it, 0 when all slots are in use in this frame. */
 int noh_clip_cache_want(noh_clip_cache *cache, uint32_t clip, int64_t ticks, uint32_t joint_count);
+
+/* Ask for all segments from one frame to another, in that order: backwards where last < first.
+ * Returns how many of them no slot is left for. */
+uint32_t noh_clip_cache_want_frames(noh_clip_cache *cache, uint32_t clip, uint32_t first, uint32_t last, uint32_t joint_count);
 
 /* Decode what was wanted, oldest first, until `budget` track-frames are spent (the last track may
  * pass it). Returns what was spent. */

@@ -2,6 +2,7 @@
  *
  * The clip's bytes are used where they lie; its header, a few bits per joint, is expanded
  * once into the caller's memory. Frames are decoded through a cache, see clip_cache.h.
+ *   noh_clip_measure  what a clip says of itself, and its bytes, before it is opened
  *   noh_clip_size     bytes that noh_clip_init will use
  *   noh_clip_init     check a clip and expand its header
  *   noh_clip_info_of  what the clip says of itself
@@ -17,7 +18,7 @@ typedef struct noh_clip_desc {
     const void *bytes;          /* the clip, any alignment; must outlive the noh_clip */
     size_t byte_count;
     const noh_transform *bind;  /* [joint_count] the skeleton's bind pose, the one that the clip was built with; needed by init only */
-    uint32_t joint_count;       /* of the skeleton; must be the clip's */
+    uint32_t joint_count;       /* of the skeleton; must be the clip's; 0 for a clip of floats alone */
 } noh_clip_desc;
 
 typedef struct noh_clip noh_clip;
@@ -43,6 +44,10 @@ typedef struct noh_clip_group {
     uint32_t node;              /* 0xffffffff: none */
     uint32_t first, width;      /* floats of a sample */
 } noh_clip_group;
+
+/* Check a clip completely; what it says of itself and the bytes of its noh_clip.
+ * errors  as noh_clip_init, but for MEMORY */
+noh_result noh_clip_measure(const noh_clip_desc *desc, noh_clip_info *info, size_t *bytes, noh_error *error);
 
 /* Bytes of a noh_clip; 0 for a clip that noh_clip_init would refuse for its header. */
 size_t noh_clip_size(const noh_clip_desc *desc, noh_error *error);

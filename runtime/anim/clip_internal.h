@@ -46,6 +46,16 @@ struct noh_clip {
     const noh_clip_group *groups;        /* [group_count] */
 };
 
+/* The float groups of a clip that noh_clip_measure has taken, out of its bytes, before it is opened. */
+typedef struct noh_clip_group_reader {
+    noh_bits bits;
+    uint32_t left, first;
+} noh_clip_group_reader;
+
+noh_clip_group_reader noh_clip_groups_of(const noh_clip_desc *desc);
+/* 0 after the last one. */
+int noh_clip_next_group(noh_clip_group_reader *reader, noh_clip_group *group);
+
 static inline uint32_t noh_clip_segment_first(const noh_clip *clip, uint32_t segment)
 {
     return clip->segment_firsts[segment];

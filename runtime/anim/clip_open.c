@@ -83,19 +83,24 @@ static void read_certificate(parser *p)
     info->duration_ticks = (uint64_t)(info->frame_count - 1u) * NOH_CLIP_TICKS_PER_SECOND * NOH_CLIP_MICRO / info->rate_uhz;
 }
 
+static noh_clip_group read_group(noh_bits *b, uint32_t first)
+{
+    noh_clip_group group;
+    group.name_hash = noh_bits_get(b, 32u);
+    group.node = noh_bits_varint(b) - 1u;
+    group.first = first;
+    group.width = noh_bits_varint(b);
+    return group;
+}
+
 static noh_result read_groups(parser *p)
 {
-    noh_bits *b = &p->bits;
     noh_clip_info *info = &p->clip->info;
-    info->group_count = noh_bits_varint(b);
+    info->group_count = noh_bits_varint(&p->bits);
     info->float_count = 0;
     if (info->group_count > NOH_CLIP_GROUPS_MAX) return fail(p, NOH_ERR_LIMIT, "float groups of a clip", info->group_count);
     for (uint32_t g = 0; g < info->group_count; g++) {
-        noh_clip_group group;
-        group.name_hash = noh_bits_get(b, 32u);
-        group.node = noh_bits_varint(b) - 1u;
-        group.first = info->float_count;
-        group.width = noh_bits_varint(b);
+        const noh_clip_group group = read_group(&p->bits, info->float_count);
         if (group.width > NOH_CLIP_FLOATS_MAX - info->float_count) return fail(p, NOH_ERR_LIMIT, "floats of a clip", group.width);
         info->float_count += group.width;
         if (p->groups) p->groups[g] = group;
@@ -327,12 +332,47 @@ static noh_result measure(const noh_clip_desc *desc, noh_clip *clip, parser *p, 
     return NOH_OK;
 }
 
-size_t noh_clip_size(const noh_clip_desc *desc, noh_error *error)
+noh_result noh_clip_measure(const noh_clip_desc *desc, noh_clip_info *info, size_t *bytes, noh_error *error)
 {
     noh_clip clip;
     parser p;
+    const noh_result r = measure(desc, &clip, &p, bytes, error);
+    if (r == NOH_OK) *info = clip.info;
+    return r;
+}
+
+size_t noh_clip_size(const noh_clip_desc *desc, noh_error *error)
+{
+    noh_clip_info info;
     size_t size = 0;
-    return measure(desc, &clip, &p, &size, error) == NOH_OK ? size : 0u;
+    return noh_clip_measure(desc, &info, &size, error) == NOH_OK ? size : 0u;
+}
+
+noh_clip_group_reader noh_clip_groups_of(const noh_clip_desc *desc)
+{
+    noh_clip_group_reader reader;
+    noh_clip clip;
+    parser p;
+    memset(&clip, 0, sizeof clip);
+    memset(&p, 0, sizeof p);
+    p.desc = desc;
+    p.clip = &clip;
+    p.bits = noh_bits_over(desc->bytes, 0, desc->byte_count);
+    (void)read_counts(&p); /* it was measured: this succeeds */
+    read_certificate(&p);
+    reader.left = noh_bits_varint(&p.bits);
+    reader.first = 0;
+    reader.bits = p.bits;
+    return reader;
+}
+
+int noh_clip_next_group(noh_clip_group_reader *reader, noh_clip_group *group)
+{
+    if (reader->left == 0u) return 0;
+    *group = read_group(&reader->bits, reader->first);
+    reader->first += group->width;
+    reader->left--;
+    return 1;
 }
 
 noh_result noh_clip_init(void *memory, size_t bytes, const noh_clip_desc *desc, noh_clip **out, noh_error *error)

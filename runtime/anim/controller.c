@@ -28,7 +28,8 @@ static uint32_t change_count_of(const noh_controller_desc *d)
 
 static const char *bad_desc(const noh_controller_desc *d)
 {
-    if (!d->set || d->set->joint_count == 0 || d->set->joint_count > NOH_JOINTS_MAX || d->set->float_count > NOH_FLOATS_MAX) return "set";
+    if (!d->set || d->set->joint_count > NOH_JOINTS_MAX || d->set->float_count > NOH_FLOATS_MAX) return "set";
+    if (d->set->joint_count == 0 && d->set->float_count == 0) return "set";
     if (d->track_count > NOH_TRACKS_MAX) return "track_count";
     if (d->change_count > NOH_CHANGES_MAX) return "change_count";
     if (d->flags & ~NOH_CONTROLLER_INERTIAL) return "flags";

@@ -3,7 +3,7 @@
 static const char *bad_count(const noh_anim_set *set)
 {
     if (set->motion_count == 0 || set->motion_count > NOH_MOTIONS_MAX) return "motion_count";
-    if (set->joint_count == 0 || set->joint_count > NOH_JOINTS_MAX) return "joint_count";
+    if (set->joint_count > NOH_JOINTS_MAX || (set->joint_count == 0 && set->float_count == 0)) return "joint_count";
     if (set->float_count > NOH_FLOATS_MAX) return "float_count";
     if (set->mask_count > NOH_MASKS_MAX) return "mask_count";
     return NULL;
@@ -17,6 +17,7 @@ static const char *bad_pointer(const noh_anim_set *set)
     if (!set->bind_pose) return "bind_pose";
     if (!set->masks && set->mask_count) return "masks";
     if (!set->sample) return "sample";
+    if (set->roots && set->joint_count == 0) return "roots";
     return NULL;
 }
 

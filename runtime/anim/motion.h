@@ -52,14 +52,14 @@ typedef void (*noh_motion_sample)(void *user, uint32_t motion, uint32_t clip_tic
 /* A set of motions of one skeleton, and what they are blended with. Borrowed; constant while instances use it. */
 typedef struct noh_anim_set {
     uint32_t motion_count; /* 1..NOH_MOTIONS_MAX */
-    uint32_t joint_count;  /* 1..NOH_JOINTS_MAX */
+    uint32_t joint_count;  /* 0..NOH_JOINTS_MAX; 0 needs floats, and takes no roots */
     uint32_t float_count;  /* 0..NOH_FLOATS_MAX: morph weights and named floats */
     uint32_t mask_count;   /* 0..NOH_MASKS_MAX */
     uint32_t event_count, marker_count;
     const noh_motion *motions;              /* [motion_count] */
     const noh_event_key *events;            /* [event_count] */
     const noh_marker *markers;              /* [marker_count] */
-    const noh_transform *bind_pose;         /* [joint_count] */
+    const noh_transform *bind_pose;         /* [joint_count]; never NULL */
     const float *float_defaults;            /* [float_count]; NULL: all 0 */
     const uint8_t *masks;                   /* [mask_count][joint_count + float_count], 255 = full weight */
     const struct noh_root_track *roots;     /* [motion_count]; NULL: the root joint moves in its pose */

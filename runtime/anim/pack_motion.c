@@ -44,6 +44,7 @@ noh_result noh_pack_motion_at(const noh_pack *pack, uint32_t index, noh_pack_mot
     motion->name = noh_pack_chunk_name(pack, pack->first_motion + index);
     motion->header = (const noh_motion_header *)(const void *)chunk;
     motion->events = (const noh_motion_event *)(const void *)(chunk + motion->header->events_offset);
+    motion->markers = (const noh_motion_marker *)(const void *)(chunk + motion->header->markers_offset);
     motion->bytes = chunk + motion->header->clip_offset;
     return NOH_OK;
 }

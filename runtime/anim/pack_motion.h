@@ -5,12 +5,13 @@
 #include "anim/skeleton.h"
 #include "pack/pack.h"
 
-/* One clip: give `bytes` to noh_clip_init (anim/clip_codec.h). */
+/* One clip: give `bytes` to noh_clip_init (anim/clip_codec.h), with the bind pose of header->skeleton. */
 typedef struct noh_pack_motion {
     const char *name;
     const noh_motion_header *header;
-    const noh_motion_event *events; /* [header->event_count], in time order */
-    const uint8_t *bytes;           /* [header->clip_bytes] */
+    const noh_motion_event *events;   /* [header->event_count], in time order */
+    const noh_motion_marker *markers; /* [header->marker_count], in time order */
+    const uint8_t *bytes;             /* [header->clip_bytes] */
 } noh_pack_motion;
 
 /* The n-th skeleton; its hash and unit come with it where they are wanted. NOT_FOUND past skeleton_count. */
@@ -22,8 +23,8 @@ const char *noh_pack_joint_name(const noh_pack *pack, uint32_t skeleton, uint32_
 /* The n-th clip. NOT_FOUND past motion_count. */
 noh_result noh_pack_motion_at(const noh_pack *pack, uint32_t index, noh_pack_motion *motion);
 
-/* The skeleton of that hash in a pack, and its index (NULL: not wanted), for a clip of this or of another pack.
- * errors  NOT_FOUND, `what` says that the clip was built for another skeleton */
+/* The skeleton of a clip in another pack, by hash: that pack's index (NULL: not wanted).
+ * errors  NOT_FOUND: no skeleton there has these names and parents of joints */
 noh_result noh_pack_bind_motion(const noh_pack *pack, const noh_pack_motion *motion, noh_skeleton *skeleton, uint32_t *index,
                                 noh_error *error);
 

@@ -17,10 +17,9 @@
 #define NOH_NODES_MAX 65535u
 #define NOH_MATERIALS_MAX 4096u
 #define NOH_TEXTURE_SIZE_MAX 2048u       /* wider or taller images are shrunk by the converter */
-#define NOH_WEIGHT_CHANNELS_MAX 1024u
-#define NOH_WEIGHT_KEYS_MAX (1u << 20)
 #define NOH_JOINTS_MAX 4096u
 #define NOH_MOTION_EVENTS_MAX 65536u
+#define NOH_MOTION_MARKERS_MAX 4096u
 #define NOH_NAME_BYTES_MAX 256u          /* with the final zero */
 #define NOH_MORPH_INSTANCES_MAX 65536u
 

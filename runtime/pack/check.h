@@ -36,7 +36,6 @@ noh_result noh_check_texture(noh_check *check);
 noh_result noh_check_materials(noh_check *check);
 noh_result noh_check_mesh(noh_check *check);
 noh_result noh_check_nodes(noh_check *check);
-noh_result noh_check_clip(noh_check *check);
 noh_result noh_check_skeleton(noh_check *check);
 noh_result noh_check_motion(noh_check *check);
 

@@ -50,9 +50,42 @@ static noh_result check_events(const noh_check *check, const noh_motion_header *
         if (result) {
             return result;
         }
-        if ((i && events[i].tick < events[i - 1].tick) || !noh_float_finite(events[i].weight_min)) {
-            return noh_check_fail(check, "callback keys are not in time order, or a weight is not finite", at);
+        if ((i && events[i].tick < events[i - 1].tick) || !noh_float_finite(events[i].weight_min) || events[i].weight_min < 0.0f) {
+            return noh_check_fail(check, "callback keys are not in time order, or a weight is not 0 or more", at);
         }
+    }
+    return NOH_OK;
+}
+
+static noh_result check_markers(const noh_check *check, const noh_motion_header *h)
+{
+    const noh_motion_marker *markers = (const noh_motion_marker *)(const void *)(check->bytes + h->markers_offset);
+    for (uint32_t i = 0; i < h->marker_count; i++) {
+        uint64_t at = h->markers_offset + (uint64_t)i * sizeof *markers;
+        noh_result result = noh_check_name(check, markers[i].name, markers[i].name_hash, at);
+        if (result) {
+            return result;
+        }
+        if (i && markers[i].tick <= markers[i - 1].tick) {
+            return noh_check_fail(check, "sync markers are not in time order", at);
+        }
+    }
+    return NOH_OK;
+}
+
+static noh_result check_binding(const noh_check *check, const noh_motion_header *h)
+{
+    const noh_pack *pack = check->pack;
+    const noh_skeleton_header *skeleton;
+    if (h->joint_count == 0) {
+        return h->skeleton_hash == 0 && h->skeleton == NOH_NONE ? NOH_OK : noh_check_fail(check, "motion without joints names a skeleton", 0);
+    }
+    if (h->skeleton >= pack->skeleton_count) {
+        return noh_check_fail(check, "motion names a skeleton that is not there", 4);
+    }
+    skeleton = (const noh_skeleton_header *)(const void *)(pack->bytes + pack->chunks[pack->first_skeleton + h->skeleton].offset);
+    if (skeleton->joint_count != h->joint_count || skeleton->hash != h->skeleton_hash) {
+        return noh_check_fail(check, "motion's joint count or hash is not its skeleton's", 0);
     }
     return NOH_OK;
 }
@@ -61,14 +94,17 @@ noh_result noh_check_motion(noh_check *check)
 {
     const noh_motion_header *h = (const noh_motion_header *)(const void *)check->bytes;
     noh_result result = noh_check_head(check, sizeof *h);
+    if (!result) result = check_binding(check, h);
     if (result) {
         return result;
     }
-    if (!h->joint_count || h->joint_count > NOH_JOINTS_MAX || h->event_count > NOH_MOTION_EVENTS_MAX || h->reserved) {
-        return noh_check_fail(check, "joint or callback key count is over the limit", 4);
+    if (h->event_count > NOH_MOTION_EVENTS_MAX || h->marker_count > NOH_MOTION_MARKERS_MAX) {
+        return noh_check_fail(check, "callback key or sync marker count is over the limit", 16);
     }
     result = noh_check_array(check, h->events_offset, h->event_count, sizeof(noh_motion_event));
+    if (!result) result = noh_check_array(check, h->markers_offset, h->marker_count, sizeof(noh_motion_marker));
     if (!result) result = noh_check_array(check, h->clip_offset, h->clip_bytes, 1);
     if (!result) result = noh_check_end(check);
-    return result ? result : check_events(check, h);
+    if (!result) result = check_events(check, h);
+    return result ? result : check_markers(check, h);
 }

@@ -1,4 +1,4 @@
-/* check_scene.c: the checkers of textures, materials, nodes and clips. */
+/* check_scene.c: the checkers of textures, materials and nodes. */
 #include "pack/check.h"
 
 noh_result noh_check_texture(noh_check *check)
@@ -95,58 +95,4 @@ noh_result noh_check_nodes(noh_check *check)
                                   "node weight is not finite");
     }
     return result;
-}
-
-static noh_result check_times(const noh_check *check, const noh_weight_clip_header *h, const noh_weight_channel *c)
-{
-    const float *times = (const float *)(const void *)(check->bytes + c->times_offset);
-    for (uint32_t k = 0; k < c->key_count; k++) {
-        /* written so that a NaN fails every branch */
-        if (!(times[k] >= 0.0f && times[k] <= h->duration_s) || (k > 0 && !(times[k] > times[k - 1]))) {
-            return noh_check_fail(check, "key times do not increase from 0 to the clip's duration", c->times_offset + 4ull * k);
-        }
-    }
-    return NOH_OK;
-}
-
-static noh_result check_channel(noh_check *check, const noh_weight_clip_header *h, const noh_weight_channel *c, uint64_t at)
-{
-    const noh_pack *pack = check->pack;
-    uint32_t values = c->width * (c->interpolation == NOH_WEIGHTS_CUBIC ? 3u : 1u);
-    noh_result result;
-    if (c->node >= pack->node_count || pack->nodes[c->node].mesh == NOH_NONE ||
-        mesh_target_count(pack, pack->nodes[c->node].mesh) != c->width || !c->width) {
-        return noh_check_fail(check, "channel does not fit the mesh of its node", at);
-    }
-    if (c->interpolation > NOH_WEIGHTS_CUBIC || !c->key_count || c->key_count > NOH_WEIGHT_KEYS_MAX || c->reserved[0] ||
-        c->reserved[1]) {
-        return noh_check_fail(check, "channel has no keys, too many, or an unknown interpolation", at + 4);
-    }
-    result = noh_check_array(check, c->times_offset, c->key_count, 4);
-    if (!result) result = check_times(check, h, c);
-    if (!result) result = noh_check_array(check, c->values_offset, (uint64_t)c->key_count * values, 4);
-    if (!result) {
-        result = noh_check_floats(check, (const float *)(const void *)(check->bytes + c->values_offset),
-                                  c->key_count * values, "key value is not finite");
-    }
-    return result;
-}
-
-noh_result noh_check_clip(noh_check *check)
-{
-    const noh_weight_clip_header *h = (const noh_weight_clip_header *)(const void *)check->bytes;
-    noh_result result = noh_check_head(check, sizeof *h);
-    if (result) {
-        return result;
-    }
-    if (h->channel_count > NOH_WEIGHT_CHANNELS_MAX || !(h->duration_s >= 0.0f) || !noh_float_finite(h->duration_s) ||
-        h->reserved) {
-        return noh_check_fail(check, "clip has too many channels or no finite duration", 0);
-    }
-    result = noh_check_array(check, h->channels_offset, h->channel_count, sizeof(noh_weight_channel));
-    for (uint32_t i = 0; !result && i < h->channel_count; i++) {
-        uint64_t at = h->channels_offset + (uint64_t)i * sizeof(noh_weight_channel);
-        result = check_channel(check, h, (const noh_weight_channel *)(const void *)(check->bytes + at), at);
-    }
-    return result ? result : noh_check_end(check);
 }

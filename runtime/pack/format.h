@@ -13,7 +13,7 @@
 #include "base/result.h"
 
 #define NOH_PACK_MAGIC 0x50484f4eu /* "NOHP" */
-#define NOH_PACK_VERSION 1u
+#define NOH_PACK_VERSION 2u
 #define NOH_NONE 0xffffffffu
 
 #define NOH_FOURCC(a, b, c, d) ((uint32_t)(a) | ((uint32_t)(b) << 8) | ((uint32_t)(c) << 16) | ((uint32_t)(d) << 24))
@@ -22,7 +22,6 @@
 #define NOH_CHUNK_NODES NOH_FOURCC('N', 'O', 'D', 'E')
 #define NOH_CHUNK_MATERIALS NOH_FOURCC('M', 'A', 'T', 'L')
 #define NOH_CHUNK_TEXTURE NOH_FOURCC('T', 'X', 'T', 'R')
-#define NOH_CHUNK_CLIP NOH_FOURCC('C', 'L', 'I', 'P')
 #define NOH_CHUNK_SKELETON NOH_FOURCC('S', 'K', 'E', 'L')
 #define NOH_CHUNK_MOTION NOH_FOURCC('M', 'O', 'T', 'N')
 
@@ -168,29 +167,6 @@ typedef struct noh_texture_header {
     uint32_t reserved[2];
 } noh_texture_header;
 
-/* ---- CHUNK_CLIP: weight tracks; header, noh_weight_channel[], then keys. ---- */
-
-#define NOH_WEIGHTS_LINEAR 0u
-#define NOH_WEIGHTS_STEP 1u
-#define NOH_WEIGHTS_CUBIC 2u
-
-typedef struct noh_weight_clip_header {
-    uint32_t channel_count;
-    float duration_s;
-    uint32_t channels_offset;
-    uint32_t reserved;
-} noh_weight_clip_header;
-
-typedef struct noh_weight_channel {
-    uint32_t node;
-    uint32_t interpolation; /* NOH_CLIP_* */
-    uint32_t key_count;
-    uint32_t width;         /* weights per key: the target count of the node's mesh */
-    uint32_t times_offset;  /* float[key_count], seconds, increasing */
-    uint32_t values_offset; /* float[key_count][width], CUBIC: [key_count][3][width] */
-    uint32_t reserved[2];
-} noh_weight_channel;
-
 /* ---- CHUNK_SKELETON: header, then three arrays. ---- */
 
 #define NOH_PACK_JOINT_ROOT 0xffffu /* parent of a joint that has none */
@@ -205,17 +181,20 @@ typedef struct noh_skeleton_header {
     uint32_t reserved[2];
 } noh_skeleton_header;
 
-/* ---- CHUNK_MOTION: header, callback keys in time order, then the compressed clip (anim/clip_format.h). ---- */
+/* ---- CHUNK_MOTION: header, callback keys and sync markers in time order, then the compressed clip
+ * (anim/clip_format.h): joints of a skeleton, morph weights of nodes, named floats. ---- */
 
 typedef struct noh_motion_header {
-    uint32_t skeleton_hash;
-    uint32_t joint_count;
-    uint32_t raw_bytes;      /* 40 per joint and frame: what it would be uncompressed */
+    uint32_t skeleton_hash;  /* 0 without joints */
+    uint32_t skeleton;       /* of this pack: the one that the clip was built with; NOH_NONE without joints */
+    uint32_t joint_count;    /* 0: moves floats alone */
+    uint32_t raw_bytes;      /* 40 per joint and frame, 4 per float: what it would be uncompressed */
     uint32_t event_count;
     uint32_t events_offset;  /* noh_motion_event[event_count] */
+    uint32_t marker_count;
+    uint32_t markers_offset; /* noh_motion_marker[marker_count] */
     uint32_t clip_bytes;
     uint32_t clip_offset;
-    uint32_t reserved;
 } noh_motion_header;
 
 typedef struct noh_motion_event {
@@ -225,9 +204,16 @@ typedef struct noh_motion_event {
     float weight_min;        /* below it the key does not fire */
 } noh_motion_event;
 
+/* A place that motions share which keep step: a foot on the ground (anim/sync.h). */
+typedef struct noh_motion_marker {
+    uint32_t tick;            /* increasing */
+    uint32_t name, name_hash; /* the hash is its id */
+} noh_motion_marker;
+
 NOH_STATIC_ASSERT(sizeof(noh_skeleton_header) == 32, skeleton_header);
-NOH_STATIC_ASSERT(sizeof(noh_motion_header) == 32, motion_header);
+NOH_STATIC_ASSERT(sizeof(noh_motion_header) == 40, motion_header);
 NOH_STATIC_ASSERT(sizeof(noh_motion_event) == 24, motion_event);
+NOH_STATIC_ASSERT(sizeof(noh_motion_marker) == 12, motion_marker);
 NOH_STATIC_ASSERT(sizeof(noh_pack_header) == 64, pack_header);
 NOH_STATIC_ASSERT(sizeof(noh_pack_chunk) == 32, pack_chunk);
 NOH_STATIC_ASSERT(sizeof(noh_mesh_header) == 144, mesh_header);
@@ -237,7 +223,5 @@ NOH_STATIC_ASSERT(sizeof(noh_rect) == 8, rect);
 NOH_STATIC_ASSERT(sizeof(noh_node) == 112, node);
 NOH_STATIC_ASSERT(sizeof(noh_material) == 48, material);
 NOH_STATIC_ASSERT(sizeof(noh_texture_header) == 32, texture_header);
-NOH_STATIC_ASSERT(sizeof(noh_weight_clip_header) == 16, clip_header);
-NOH_STATIC_ASSERT(sizeof(noh_weight_channel) == 32, clip_channel);
 
 #endif

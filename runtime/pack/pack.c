@@ -14,9 +14,8 @@ static int chunk_rank(uint32_t type)
     case NOH_CHUNK_MATERIALS: return 2;
     case NOH_CHUNK_MESH: return 3;
     case NOH_CHUNK_NODES: return 4;
-    case NOH_CHUNK_CLIP: return 5;
-    case NOH_CHUNK_SKELETON: return 6;
-    case NOH_CHUNK_MOTION: return 7;
+    case NOH_CHUNK_SKELETON: return 5;
+    case NOH_CHUNK_MOTION: return 6;
     default: return -1;
     }
 }
@@ -152,10 +151,6 @@ static noh_result open_chunk(noh_pack *pack, uint32_t index, noh_error *error)
             pack->node_weight_count = h->weight_count;
             pack->node_weights = (const float *)(const void *)(check.bytes + h->weights_offset);
         }
-        break;
-    case NOH_CHUNK_CLIP:
-        result = noh_check_clip(&check);
-        count_chunk(&pack->clip_count, &pack->first_clip, index);
         break;
     case NOH_CHUNK_SKELETON:
         result = noh_check_skeleton(&check);

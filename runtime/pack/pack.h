@@ -17,7 +17,6 @@ typedef struct noh_pack {
     uint32_t string_bytes;
     uint32_t texture_count, first_texture; /* chunk index of the first one */
     uint32_t mesh_count, first_mesh;
-    uint32_t clip_count, first_clip;
     uint32_t skeleton_count, first_skeleton;
     uint32_t motion_count, first_motion;
     uint32_t material_count;
@@ -43,7 +42,7 @@ noh_result noh_pack_open(const void *bytes, size_t byte_count, noh_pack *pack, n
 /* The string at an offset that the pack holds. Never NULL. */
 const char *noh_pack_string(const noh_pack *pack, uint32_t offset);
 
-/* The name of the n-th mesh, texture or clip chunk. */
+/* The name of the n-th chunk. */
 const char *noh_pack_chunk_name(const noh_pack *pack, uint32_t chunk);
 
 /* The n-th texture. NOT_FOUND past texture_count. */

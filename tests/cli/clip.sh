@@ -62,6 +62,83 @@ expect 1 'a callback key without a time'
 says 'line 2'
 check 'no pack was left' test ! -e "$work/x.noh"
 
+# ---- sync markers ----
+
+printf 'walk 0 left marker\nwalk 0.05 right marker\nwalk 0.1 step 7\n' >"$work/keys.txt"
+noh build "$work/walk.bvh" -o "$work/keys.noh" --events "$work/keys.txt" --quiet
+expect 0 'keys and markers'
+noh clip "$work/keys.noh"
+check 'clip lists both' grep -q "0.0500 s marker 'right'" "$work/out"
+printf 'walk 0.1 left marker\n' >"$work/keys.txt"
+noh build "$work/walk.bvh" -o "$work/x.noh" --events "$work/keys.txt"
+expect 1 'a marker at the end of its clip'
+says 'where a loop has begun again'
+printf 'walk 0.05 left marker\nwalk 0.050001 right marker\n' >"$work/keys.txt"
+noh build "$work/walk.bvh" -o "$work/x.noh" --events "$work/keys.txt"
+expect 1 'two markers at one time'
+says 'lies where another marker does'
+
+# ---- several files ----
+
+cp "$work/walk.bvh" "$work/run.bvh"
+noh build "$work/walk.bvh" "$work/run.bvh" -o "$work/both.noh" --quiet
+expect 0 'two clips of one skeleton'
+noh info "$work/both.noh" --json
+check 'are in one pack' sh -c 'test "$(grep -c "\"seconds\"" "$1")" = 2 && grep -q "\"name\": \"run\"" "$1"' - "$work/out"
+sed 's/knee/shin/' "$work/walk.bvh" >"$work/shin.bvh"
+noh build "$work/walk.bvh" "$work/shin.bvh" -o "$work/x.noh"
+expect 1 'a clip of another skeleton'
+says "walk.bvh: joint 1 is 'shin' here and 'knee' there"
+check 'and names the file' grep -q '^noh: .*shin.bvh: ' "$work/err"
+
+mask=$build/mask.glb
+noh build "$work/walk.bvh" "$mask" -o "$work/x.noh"
+expect 1 'a walk for a mask: the model is the first with meshes, wherever it stands'
+says 'mask.glb has none'
+check 'and names the walk' grep -q '^noh: .*walk.bvh: ' "$work/err"
+
+# ---- mesh and clips apart ----
+
+noh build "$mask" -o "$work/mesh.noh" --only mesh --quiet
+expect 0 'a mesh pack'
+noh build "$mask" -o "$work/anim.noh" --only anim --quiet
+expect 0 'an animation pack'
+noh dump "$build/mask.noh" -o "$work/whole.obj" --clip speak --time 1.2
+expect 0 'dump of a clip'
+noh dump "$work/mesh.noh" -o "$work/apart.obj" --anim "$work/anim.noh" --clip speak --time 1.2
+expect 0 'dump of a clip of another pack'
+check 'is the same' cmp "$work/whole.obj" "$work/apart.obj"
+noh dump "$work/mesh.noh" -o "$work/rest.obj"
+check 'and is not the rest pose' sh -c '! cmp -s "$1/rest.obj" "$1/apart.obj"' - "$work"
+noh dump "$work/mesh.noh" -o "$work/x.obj" --clip speak
+expect 1 'a clip of a pack without clips'
+says 'no clip named'
+noh dump "$work/mesh.noh" -o "$work/x.obj" --anim "$work/anim.noh" --clip spaek
+expect 1 'a clip that is not there'
+says "did you mean 'speak'"
+noh dump "$work/mesh.noh" -o "$work/x.obj" --anim "$work/walk.noh" --clip walk
+expect 1 'an animation pack for another skeleton'
+says 'another skeleton'
+noh dump "$work/mesh.noh" -o "$work/x.obj" --anim "$work/mesh.noh"
+expect 1 'an animation pack without clips'
+says 'no clips for'
+noh clip "$build/mask.noh" --clip speak --dump "$work/x.rcl"
+expect 1 'a clip of weights as .rcl'
+says 'weights alone'
+
+# ---- memory ----
+
+noh verify "$work/mesh.noh" --anim "$work/anim.noh" --instances 7 --json
+if [ $code != 0 ] && grep -q 'no GL context' "$work/err"; then
+    skip 'budget and verify agree' 'no GL context here'
+else
+    expect 0 'verify with an animation pack'
+    used=$(sed -n 's/.*"cpu_used": \([0-9]*\).*/\1/p' "$work/out")
+    noh budget "$work/mesh.noh" --anim "$work/anim.noh" --instances 7 --json
+    check "budget predicts what it used ($used)" grep -q "\"cpu_bytes\": $used," "$work/out"
+    check 'clips, controllers and poses are parts of it' sh -c 'for p in clips controllers "pose scratch"; do grep -q "\"name\": \"$p\"" "$1" || exit 1; done' - "$work/out"
+fi
+
 clip=$assets/clips/Knight__Walking_A.rcl
 if [ -f "$clip" ]; then
     noh build "$clip" -o "$work/a.noh" --quiet

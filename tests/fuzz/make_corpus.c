@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "convert/convert.h"
+#include "convert/model_build.h"
+#include "motion_fixture.h"
 
 static void write_pack(const char *folder, const char *name, const test_model_desc *desc)
 {
@@ -37,6 +39,19 @@ static void write_motion(const char *folder)
     buffer_free(&out);
 }
 
+/* Weights, a joint, callback keys and sync markers. */
+static void write_weights(const char *folder)
+{
+    model *m = motion_model(2);
+    char path[4096];
+    size_t count;
+    uint8_t *bytes = test_pack_of(m, &count, NULL);
+    snprintf(path, sizeof path, "%s/weights.noh", folder);
+    test_write_file(path, bytes, count);
+    free(bytes);
+    model_free(m);
+}
+
 static const char *folder;
 
 static void corpus(void **state)
@@ -55,6 +70,7 @@ static void corpus(void **state)
         write_pack(folder, seeds[i].name, &seeds[i].desc);
     }
     write_motion(folder);
+    write_weights(folder);
 }
 
 int main(int argument_count, char **arguments)

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/arena.h"
+#include "motion_fixture.h"
 
 #define CANARY 256u
 #define FILL 0xa5
@@ -476,6 +477,74 @@ static void weights_have_to_be_finite(void **state)
     fixture_meshes_close(&f);
 }
 
+/* ---- motion sets: the set with its clips and cache, controllers, poses ---- */
+
+static void play_a_while(noh_motion_set *set)
+{
+    motion_player p;
+    motion_player_open(&p, set);
+    for (uint32_t m = 0; m < set->anim.motion_count; m++) {
+        motion_start(&p, m, NOH_LOOP_PING_PONG, 2 * NOH_SPEED_ONE, 100);
+        for (int i = 0; i < 150; i++) {
+            motion_frame(&p, 800, i % 2 ? 4800 : 0, 50);
+        }
+    }
+    motion_player_close(&p);
+}
+
+static void expect_exact_set(const noh_pack *pack, uint32_t skeleton, uint32_t slots, uint32_t root_axes)
+{
+    noh_motion_set_desc desc;
+    noh_motion_set_needs needs;
+    noh_error error = { NOH_OK, NULL, 0, 0 };
+    noh_motion_set *set = NULL;
+    guarded g;
+    memset(&desc, 0, sizeof desc);
+    desc.clips = pack;
+    desc.skeleton = skeleton;
+    desc.slot_count = slots;
+    desc.root_axes = root_axes;
+    assert_int_equal(noh_motion_set_measure(&desc, &needs, &error), NOH_OK);
+    assert_int_equal(needs.bytes, noh_motion_set_size(&desc, NULL));
+    g = guarded_new(needs.bytes);
+    assert_int_equal(noh_motion_set_init(g.block, needs.bytes - 1, &desc, &set, &error), NOH_ERR_MEMORY);
+    assert_int_equal(error.need, needs.bytes);
+    assert_int_equal(noh_motion_set_init(g.block + 4, needs.bytes, &desc, &set, &error), NOH_ERR_MEMORY);
+    assert_null(set);
+    expect_untouched(&g);
+    assert_int_equal(noh_motion_set_init(g.block, needs.bytes, &desc, &set, &error), NOH_OK);
+    assert_int_equal(set->anim.motion_count, needs.shape.motion_count);
+    assert_int_equal(set->anim.joint_count, needs.shape.joint_count);
+    assert_int_equal(set->anim.float_count, needs.shape.float_count);
+    play_a_while(set);
+    expect_canaries(&g);
+    guarded_free(&g);
+}
+
+static void motion_sets_want_their_exact_size(void **state)
+{
+    const char *inputs[2];
+    model *m = motion_model(7);
+    size_t counts[2];
+    uint8_t *made[2];
+    noh_pack packs[2];
+    (void)state;
+    inputs[0] = motion_bvh("walk", "abcde", 100);
+    inputs[1] = motion_bvh("long", "abcde", 211);
+    made[0] = motion_pack(inputs, 2, NULL, &counts[0]);
+    made[1] = test_pack_of(m, &counts[1], NULL);
+    for (int i = 0; i < 2; i++) {
+        packs[i] = test_open(made[i], counts[i]);
+        for (uint32_t slots = 0; slots <= 40; slots += slots ? 13 : 2) {
+            expect_exact_set(&packs[i], 0, slots, slots % 2 ? NOH_ROOT_GROUND : 0);
+        }
+    }
+    expect_exact_set(&packs[1], NOH_NONE, 0, 0);
+    free(made[0]);
+    free(made[1]);
+    model_free(m);
+}
+
 /* ---- meshes, pictures, the renderer ---- */
 
 static void meshes_take_what_they_say(void **state)
@@ -540,6 +609,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(instance_counts_have_a_limit),
     cmocka_unit_test(tiles_have_to_fit_a_texture),
     cmocka_unit_test(weights_have_to_be_finite),
+    cmocka_unit_test(motion_sets_want_their_exact_size),
     cmocka_unit_test(meshes_take_what_they_say),
     cmocka_unit_test(pictures_and_the_renderer_take_what_they_say),
 };

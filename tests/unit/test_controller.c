@@ -57,7 +57,8 @@ static void test_set_fields_broken_in_turn(void **state)
     (void)state;
     scene_open(&s);
     s.set.motion_count = 0; bad_set(&s, NOH_ERR_ARG, "motion_count");
-    s.set.joint_count = 0; bad_set(&s, NOH_ERR_ARG, "joint_count");
+    s.set.joint_count = s.set.float_count = 0; bad_set(&s, NOH_ERR_ARG, "joint_count");
+    s.set.joint_count = 0, s.set.roots = s.roots; bad_set(&s, NOH_ERR_ARG, "roots");
     s.set.joint_count = NOH_JOINTS_MAX + 1u; bad_set(&s, NOH_ERR_ARG, "joint_count");
     s.set.float_count = NOH_FLOATS_MAX + 1u; bad_set(&s, NOH_ERR_ARG, "float_count");
     s.set.mask_count = NOH_MASKS_MAX + 1u; bad_set(&s, NOH_ERR_ARG, "mask_count");
@@ -107,7 +108,7 @@ static void test_controller_desc_fields_broken_in_turn(void **state)
     d = fine, d.track_count = NOH_TRACKS_MAX + 1u; bad_controller(d, "track_count");
     d = fine, d.change_count = NOH_CHANGES_MAX + 1u; bad_controller(d, "change_count");
     d = fine, d.flags = 2; bad_controller(d, "flags");
-    s.set.joint_count = 0; bad_controller(fine, "set");
+    s.set.joint_count = s.set.float_count = 0; bad_controller(fine, "set");
 }
 
 static void test_memory_is_exact(void **state)

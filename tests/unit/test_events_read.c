@@ -75,9 +75,26 @@ static void all_forms(void **state)
     events_free(list);
 }
 
+static void markers_are_told_from_keys(void **state)
+{
+    (void)state;
+    event_list *list = load("walk 0.5 left marker # a foot\nmarker 0.5 marker\nwalk 1 \"marker\" 3\n");
+    assert_int_equal(list->count, 3);
+    assert_int_equal(list->entries[0].event.is_marker, 1);
+    assert_string_equal(list->entries[0].event.name, "left");
+    assert_int_equal(list->entries[1].event.is_marker, 0); /* a clip and a key may be called so */
+    assert_string_equal(list->entries[1].event.name, "marker");
+    assert_int_equal(list->entries[2].event.is_marker, 0);
+    events_free(list);
+}
+
 static void bad_lines_are_refused(void **state)
 {
     (void)state;
+    refused("walk 1 left marker 7\n", "'7' follows marker", "line 1");
+    refused("walk 1 left marker min=1\n", "follows marker", "line 1");
+    refused("walk 1 left marker marker\n", "follows marker", "line 1");
+    refused("walk 1 left 7 marker\n", "'marker' is neither", "line 1");
     refused("walk\n", "the time is missing", "line 1");
     refused("# c\nwalk 1 # x\n", "the name is missing", "line 2");
     refused("walk x step\n", "'x' is not a number", "line 1");
@@ -171,6 +188,7 @@ static void mutations_never_crash(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(all_forms),
+    cmocka_unit_test(markers_are_told_from_keys),
     cmocka_unit_test(bad_lines_are_refused),
     cmocka_unit_test(keys_go_to_their_clips_in_order),
     cmocka_unit_test(keys_without_a_place_are_refused),

@@ -823,6 +823,24 @@ static void keys_in_extras(void **state)
     loaded_free(&l);
 }
 
+static void markers_in_extras(void **state)
+{
+    (void)state;
+    scene *s = scene_new(TREE);
+    s->animation_rest = ",\"extras\":{\"events\":[{\"time\":0.75,\"name\":\"left\",\"marker\":true},{\"time\":0.25,\"name\":\"step\",\"marker\":false},"
+                        "{\"time\":0,\"name\":\"x\",\"marker\":1},{\"time\":0,\"name\":\"y\",\"marker\":true,\"payload\":1}]}";
+    add_move(s, 2, "LINEAR", two_times, 2, two_moves, 6);
+    loaded l = load(s, 0.0);
+    const raw_clip *clip = only_clip(&l);
+    assert_int_equal(clip->event_count, 2);
+    assert_int_equal(clip->events[0].is_marker, 0);
+    assert_string_equal(clip->events[1].name, "left");
+    assert_int_equal(clip->events[1].is_marker, 1);
+    assert_true(has_warning(l.m, "event 2 was skipped: its marker"));
+    assert_true(has_warning(l.m, "event 3 was skipped: a sync marker has no payload"));
+    loaded_free(&l);
+}
+
 static void keys_of_several_sets_come_once(void **state)
 {
     (void)state;
@@ -992,6 +1010,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(weights_of_a_skinned_mesh),
     cmocka_unit_test(what_moves_nothing_is_a_warning),
     cmocka_unit_test(keys_in_extras),
+    cmocka_unit_test(markers_in_extras),
     cmocka_unit_test(keys_of_several_sets_come_once),
     cmocka_unit_test(real_fox),
     cmocka_unit_test(real_robot),

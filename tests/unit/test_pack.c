@@ -37,7 +37,7 @@ static void opens_and_walks(void **state)
     assert_int_equal(pack.texture_count, 1);
     assert_int_equal(pack.material_count, 2);
     assert_int_equal(pack.node_count, 2);
-    assert_int_equal(pack.clip_count, 3);
+    assert_int_equal(pack.motion_count, 3);
     assert_true(test_mesh(&pack, 0).header->pair_count > 0);
     assert_int_equal(pack_walk(&pack, 1), pack_walk(&pack, 1));
     assert_int_not_equal(pack_walk(&pack, 1), pack_walk(&pack, 2));
@@ -47,11 +47,11 @@ static void past_the_last_is_not_found(void **state)
 {
     noh_pack pack = test_open(good, good_count);
     noh_mesh mesh;
-    noh_weight_clip clip;
+    noh_pack_motion motion;
     noh_texture texture;
     (void)state;
     assert_int_equal(noh_pack_mesh(&pack, 1, &mesh), NOH_ERR_NOT_FOUND);
-    assert_int_equal(noh_pack_weight_clip(&pack, 3, &clip), NOH_ERR_NOT_FOUND);
+    assert_int_equal(noh_pack_motion_at(&pack, 3, &motion), NOH_ERR_NOT_FOUND);
     assert_int_equal(noh_pack_texture(&pack, 1, &texture), NOH_ERR_NOT_FOUND);
     assert_string_equal(noh_pack_string(&pack, pack.string_bytes), "");
     assert_string_equal(noh_pack_chunk_name(&pack, pack.chunk_count), "");
@@ -246,9 +246,7 @@ typedef struct forged {
     noh_nodes_header *nodes_header;
     noh_node *nodes;
     float *node_weights;
-    noh_weight_clip_header *clip;
-    noh_weight_channel *channel;
-    float *times, *values;
+    noh_motion_header *motion;
 } forged;
 
 static void *chunk_of(const forged *f, const noh_pack_chunk *c)
@@ -271,16 +269,13 @@ static void name_mesh(forged *f)
 
 static void name_scene(forged *f)
 {
-    uint8_t *nodes = chunk_of(f, f->nodes_at), *clip = chunk_of(f, f->clip_at);
+    uint8_t *nodes = chunk_of(f, f->nodes_at);
     f->texture = chunk_of(f, f->texture_at);
     f->materials = chunk_of(f, f->materials_at);
     f->nodes_header = (noh_nodes_header *)(void *)nodes;
     f->nodes = (noh_node *)(void *)(nodes + f->nodes_header->nodes_offset);
     f->node_weights = (float *)(void *)(nodes + f->nodes_header->weights_offset);
-    f->clip = (noh_weight_clip_header *)(void *)clip;
-    f->channel = (noh_weight_channel *)(void *)(clip + f->clip->channels_offset);
-    f->times = (float *)(void *)(clip + f->channel->times_offset);
-    f->values = (float *)(void *)(clip + f->channel->values_offset);
+    f->motion = chunk_of(f, f->clip_at);
 }
 
 static void forge(forged *f)
@@ -457,31 +452,11 @@ static float nan_value(void)
     X(node_flags, DATA, "flags", f->nodes[0].flags = 1) \
     X(node_name, DATA, "outside the strings", f->nodes[0].name = 0xffffffffu) \
     X(node_weight_nan, DATA, "weight is not finite", f->node_weights[0] = nan_value()) \
-    X(clip_channel_count_overflows, DATA, "channels", f->clip->channel_count = 0xffffffffu) \
-    X(clip_channel_count_one_more, DATA, "", f->clip->channel_count += 1) \
-    X(clip_duration_nan, DATA, "duration", f->clip->duration_s = nan_value()) \
-    X(clip_duration_infinite, DATA, "duration", f->clip->duration_s = INFINITE) \
-    X(clip_duration_negative, DATA, "duration", f->clip->duration_s = -1.0f) \
-    X(clip_duration_short, DATA, "key times", f->clip->duration_s = 0.0f) \
-    X(clip_reserved, DATA, "duration", f->clip->reserved = 1) \
-    X(channel_node_missing, DATA, "channel does not fit", f->channel->node = 0xffffffffu) \
-    X(channel_node_without_mesh, DATA, "channel does not fit", f->channel->node = 0) \
-    X(channel_width, DATA, "channel does not fit", f->channel->width -= 1) \
-    X(channel_interpolation, DATA, "interpolation", f->channel->interpolation = 3) \
-    X(channel_values_cubic_lie, DATA, "past the end", f->channel->interpolation = NOH_WEIGHTS_CUBIC) \
-    X(channel_no_keys, DATA, "no keys", f->channel->key_count = 0) \
-    X(channel_key_count_overflows, DATA, "no keys, too many", f->channel->key_count = 0xffffffffu) \
-    X(channel_key_count_large, DATA, "past the end", f->channel->key_count = NOH_WEIGHT_KEYS_MAX) \
-    X(channel_reserved, DATA, "interpolation", f->channel->reserved[1] = 1) \
-    X(channel_times_elsewhere, DATA, "begin", f->channel->times_offset = 0) \
-    X(channel_values_elsewhere, DATA, "begin", f->channel->values_offset += 16) \
-    X(key_time_nan, DATA, "key times", f->times[1] = nan_value()) \
-    X(key_time_negative, DATA, "key times", f->times[0] = -0.5f) \
-    X(key_times_equal, DATA, "key times", f->times[2] = f->times[1]) \
-    X(key_times_fall, DATA, "key times", f->times[1] = 0.0f) \
-    X(key_time_past_duration, DATA, "key times", f->times[3] = f->clip->duration_s + 1.0f) \
-    X(key_value_infinite, DATA, "key value is not finite", f->values[2] = INFINITE) \
-    X(key_value_nan, DATA, "key value is not finite", f->values[0] = nan_value())
+    X(motion_joints_without_skeleton, DATA, "skeleton that is not there", f->motion->joint_count = 1) \
+    X(motion_skeleton_without_joints, DATA, "names a skeleton", f->motion->skeleton = 0) \
+    X(motion_hash_without_joints, DATA, "names a skeleton", f->motion->skeleton_hash = 1) \
+    X(motion_clip_one_more, DATA, "", f->motion->clip_bytes += 1) \
+    X(motion_clip_elsewhere, DATA, "begin", f->motion->clip_offset += 16)
 
 typedef struct forgery {
     void (*lie)(forged *f);

@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "convert/convert.h"
+#include "convert/model_build.h"
+#include "motion_fixture.h"
 #include "pack_walk.h"
 
 static const char bvh[] =
@@ -16,6 +18,8 @@ static const char bvh[] =
     "0 20 0 0 0 0 0 0 0\n1 20 0 5 0 0 10 0 0\n2 21 0 10 0 0 25 0 0\n3 20 0 5 0 0 10 0 0\n4 20 0 0 0 0 0 0 0\n";
 
 static byte_buffer good;
+static uint8_t *weights; /* a pack of a mesh with weights, a joint, keys and markers */
+static size_t weights_count;
 
 static int build(const char *text, const char *events, byte_buffer *out, convert_failure *failure)
 {
@@ -34,14 +38,18 @@ static int build(const char *text, const char *events, byte_buffer *out, convert
 static int set_up(void **state)
 {
     convert_failure failure;
+    model *m = motion_model(2);
     (void)state;
-    return build(bvh, "walk 0.05 step_left 7 min=0.5\nwalk 0.1 step_right\n", &good, &failure);
+    weights = test_pack_of(m, &weights_count, NULL);
+    model_free(m);
+    return build(bvh, "walk 0.05 step_left 7 min=0.5\nwalk 0.1 step_right\nwalk 0 left marker\nwalk 0.09 right marker\n", &good, &failure);
 }
 
 static int tear_down(void **state)
 {
     (void)state;
     buffer_free(&good);
+    free(weights);
     return 0;
 }
 
@@ -68,6 +76,9 @@ static void pack_holds_skeleton_clip_and_keys(void **state)
     assert_string_equal(noh_pack_string(&pack, motion.events[0].name), "step_left");
     assert_int_equal(motion.events[0].payload[0], 7);
     assert_true(motion.events[0].weight_min == 0.5f);
+    assert_int_equal(motion.header->marker_count, 2);
+    assert_int_equal(motion.markers[1].tick, 4320);
+    assert_string_equal(noh_pack_string(&pack, motion.markers[1].name), "right");
 }
 
 static void another_skeleton_is_refused_by_name(void **state)
@@ -90,40 +101,53 @@ static void another_skeleton_is_refused_by_name(void **state)
     buffer_free(&other);
 }
 
-static void every_truncation_and_flip_is_refused(void **state)
+static void expect_damage_refused(const uint8_t *from, size_t whole)
 {
-    uint8_t *bytes = test_aligned(good.bytes, good.count);
+    uint8_t *bytes = test_aligned(from, whole);
     noh_pack pack;
     noh_error error;
-    (void)state;
-    for (size_t count = 0; count < good.count; count++) {
+    for (size_t count = 0; count < whole; count++) {
         assert_int_not_equal(noh_pack_open(bytes, count, &pack, &error), NOH_OK);
     }
-    for (size_t bit = 0; bit < good.count * 8; bit++) {
+    for (size_t bit = 0; bit < whole * 8; bit++) {
         bytes[bit / 8] ^= (uint8_t)(1u << bit % 8);
-        assert_int_not_equal(noh_pack_open(bytes, good.count, &pack, &error), NOH_OK);
+        assert_int_not_equal(noh_pack_open(bytes, whole, &pack, &error), NOH_OK);
         bytes[bit / 8] ^= (uint8_t)(1u << bit % 8);
     }
     free(bytes);
 }
 
-/* With the checksums made right again the checkers and the decoder stand alone. */
-static void repaired_flips_stay_in_bounds(void **state)
+static void every_truncation_and_flip_is_refused(void **state)
+{
+    (void)state;
+    expect_damage_refused(good.bytes, good.count);
+    expect_damage_refused(weights, weights_count);
+}
+
+/* Returns how many opened. */
+static uint32_t walk_flips(const uint8_t *from, size_t count)
 {
     uint32_t opened = 0;
-    (void)state;
-    for (size_t bit = 0; bit < good.count * 8; bit++) {
-        uint8_t *bytes = test_aligned(good.bytes, good.count);
+    for (size_t bit = 0; bit < count * 8; bit++) {
+        uint8_t *bytes = test_aligned(from, count);
         noh_pack pack;
         bytes[bit / 8] ^= (uint8_t)(1u << bit % 8);
-        pack_repair(bytes, good.count);
-        if (noh_pack_open(bytes, good.count, &pack, NULL) == NOH_OK) {
+        pack_repair(bytes, count);
+        if (noh_pack_open(bytes, count, &pack, NULL) == NOH_OK) {
             opened += 1;
             pack_walk(&pack, (uint32_t)bit);
         }
         free(bytes);
     }
-    assert_true(opened > 100); /* else nothing was walked */
+    return opened;
+}
+
+/* With the checksums made right again the checkers and the decoder stand alone. */
+static void repaired_flips_stay_in_bounds(void **state)
+{
+    (void)state;
+    assert_true(walk_flips(good.bytes, good.count) > 100); /* else nothing was walked */
+    assert_true(walk_flips(weights, weights_count) > 100);
 }
 
 typedef struct forged {
@@ -182,6 +206,27 @@ static void lies_are_named(void **state)
     f = forge();
     f.motion->event_count = NOH_MOTION_EVENTS_MAX + 1u;
     expect_refused(&f, "over the limit");
+    f = forge();
+    f.motion->marker_count = NOH_MOTION_MARKERS_MAX + 1u;
+    expect_refused(&f, "over the limit");
+    f = forge();
+    ((noh_motion_marker *)(void *)(f.motion_chunk + f.motion->markers_offset))[1].tick = 0;
+    expect_refused(&f, "markers are not in time order");
+    f = forge();
+    ((noh_motion_marker *)(void *)(f.motion_chunk + f.motion->markers_offset))[1].name_hash += 1;
+    expect_refused(&f, "hash");
+    f = forge();
+    ((noh_motion_event *)(void *)(f.motion_chunk + f.motion->events_offset))[0].weight_min = -1.0f;
+    expect_refused(&f, "weight");
+    f = forge();
+    f.motion->skeleton = 1;
+    expect_refused(&f, "skeleton that is not there");
+    f = forge();
+    f.motion->skeleton_hash += 1;
+    expect_refused(&f, "not its skeleton's");
+    f = forge();
+    f.motion->joint_count = 3;
+    expect_refused(&f, "not its skeleton's");
     f = forge();
     f.motion->clip_bytes += 1;
     expect_refused(&f, "past the end");

@@ -102,7 +102,7 @@ static void keys_are_copied(void **state)
 {
     (void)state;
     raw_set *set = moving(11, 10.0);
-    raw_event event = {(char *)(void *)"step", 0.95, {7}, 0.5f};
+    raw_event event = {(char *)(void *)"step", 0.95, {7}, 0.5f, 0};
     assert_int_equal(raw_clip_add_event(&set->clips[0], &event), 0);
     set->clips[0].loop = 1;
     raw_clip out = resampled(&set->clips[0], 5.0), cut;

@@ -42,23 +42,28 @@ void buffer_free(byte_buffer *b)
     memset(b, 0, sizeof *b);
 }
 
-uint32_t string_offset(string_table *strings, const char *name)
+void string_cut(const char *name, char cut[NOH_NAME_BYTES_MAX])
 {
-    char cut[NOH_NAME_BYTES_MAX];
     size_t length = strlen(name);
-    if (length >= sizeof cut) {
-        length = sizeof cut - 1;
+    if (length >= NOH_NAME_BYTES_MAX) {
+        length = NOH_NAME_BYTES_MAX - 1;
         while (length && ((unsigned char)name[length] & 0xc0u) == 0x80u) {
             length--; /* not in the middle of a UTF-8 character */
         }
     }
     memcpy(cut, name, length);
     cut[length] = 0;
+}
+
+uint32_t string_offset(string_table *strings, const char *name)
+{
+    char cut[NOH_NAME_BYTES_MAX];
+    string_cut(name, cut);
     for (size_t at = 0; at < strings->bytes.count; at += strlen((char *)strings->bytes.bytes + at) + 1) {
         if (strcmp((char *)strings->bytes.bytes + at, cut) == 0) {
             return (uint32_t)at;
         }
     }
-    buffer_append(&strings->bytes, cut, length + 1);
-    return (uint32_t)(strings->bytes.count - length - 1);
+    buffer_append(&strings->bytes, cut, strlen(cut) + 1);
+    return (uint32_t)(strings->bytes.count - strlen(cut) - 1);
 }

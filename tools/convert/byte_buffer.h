@@ -5,6 +5,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/limits.h"
+
 /* A growing block of bytes. */
 typedef struct byte_buffer {
     uint8_t *bytes;
@@ -21,7 +23,10 @@ typedef struct string_table {
     byte_buffer bytes;
 } string_table;
 
-/* The offset of a name, added if it is new; cut to the format's limit at a character's end. */
+/* A name as a pack keeps it: cut to the format's limit, with the final zero, at a character's end. */
+void string_cut(const char *name, char cut[NOH_NAME_BYTES_MAX]);
+
+/* The offset of a name, cut likewise; added if it is new. */
 uint32_t string_offset(string_table *strings, const char *name);
 
 #endif

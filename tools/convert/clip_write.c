@@ -112,7 +112,9 @@ static void put_groups(bit_writer *w, const encoder *e)
     put_varint(w, e->group_count);
     for (uint32_t g = 0; g < e->group_count; g++) {
         const raw_floats *group = &e->clip->floats[g];
-        put(w, noh_hash_name(group->name ? group->name : ""), 32);
+        char name[NOH_NAME_BYTES_MAX]; /* as the node's in the pack */
+        string_cut(group->name ? group->name : "", name);
+        put(w, noh_hash_name(name), 32);
         put_varint(w, group->node + 1u);
         put_varint(w, group->width);
     }

@@ -3,97 +3,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bvh_read.h"
 #include "events_read.h"
-#include "gltf_motion.h"
 #include "pack/pack.h"
-#include "raw_set.h"
-#include "rcl.h"
-#include "resample.h"
-
-/* What one input gives: a model, and the motion of its skeletons. */
-typedef struct source {
-    model *m;          /* of a glTF file; an empty one otherwise */
-    motion *made;      /* of a glTF file */
-    raw_set *single;   /* of a .bvh or .rcl */
-    raw_set **sets;
-    uint32_t set_count;
-} source;
+#include "sources.h"
 
 static int out_of_memory(model_error *error)
 {
     snprintf(error->what, sizeof error->what, "out of memory");
     error->where[0] = 0;
     return 1;
-}
-
-/* ---- reading ---- */
-
-static int has_ending(const char *path, const char *ending)
-{
-    size_t length = strlen(path), tail = strlen(ending);
-    if (length < tail) {
-        return 0;
-    }
-    for (size_t i = 0; i < tail; i++) {
-        char c = path[length - tail + i];
-        if ((c >= 'A' && c <= 'Z' ? c + 32 : c) != ending[i]) {
-            return 0;
-        }
-    }
-    return 1;
-}
-
-static int resample_set(raw_set *set, double rate_hz, model_error *error)
-{
-    for (uint32_t i = 0; i < set->clip_count; i++) {
-        raw_clip resampled;
-        if (raw_clip_resample(&set->clips[i], rate_hz, &resampled, error)) {
-            return 1;
-        }
-        raw_clip_clear(&set->clips[i]);
-        set->clips[i] = resampled;
-    }
-    return 0;
-}
-
-static int read_motion_file(const char *path, const convert_options *options, source *s, model_error *error)
-{
-    bvh_options bvh = { options->motion.unit_cm, 0 };
-    int failed = has_ending(path, ".rcl") ? rcl_read(path, &s->single, error) : bvh_read(path, &bvh, &s->single, error);
-    if (failed) {
-        return 1;
-    }
-    s->m = calloc(1, sizeof *s->m);
-    s->sets = &s->single;
-    s->set_count = 1;
-    return s->m ? (options->motion.rate_hz > 0.0 ? resample_set(s->single, options->motion.rate_hz, error) : 0)
-                : out_of_memory(error);
-}
-
-static int read_gltf_file(const char *path, const convert_options *options, source *s, model_error *error)
-{
-    motion_options rate = { options->motion.rate_hz };
-    if (model_read_gltf(path, &s->m, error)) {
-        return 1;
-    }
-    if (options->only == CONVERT_MESH) {
-        return 0;
-    }
-    if (motion_from_model(s->m, &rate, &s->made, error)) {
-        return 1;
-    }
-    s->sets = s->made->sets;
-    s->set_count = s->made->set_count;
-    return 0;
-}
-
-static int read_source(const char *path, const convert_options *options, source *s, model_error *error)
-{
-    if (has_ending(path, ".rcl") || has_ending(path, ".bvh")) {
-        return read_motion_file(path, options, s, error);
-    }
-    return read_gltf_file(path, options, s, error);
 }
 
 static int apply_events(const convert_options *options, source *s, model_error *error)
@@ -106,13 +24,6 @@ static int apply_events(const convert_options *options, source *s, model_error *
     failed = events_read(options->events, &list, error) || events_apply(list, s->sets, s->set_count, error);
     events_free(list);
     return failed;
-}
-
-static void free_source(source *s)
-{
-    motion_free(s->made);
-    raw_set_free(s->single);
-    model_free(s->m);
 }
 
 /* ---- encoding ---- */
@@ -210,21 +121,60 @@ static int convert_source(const source *s, const convert_options *options, byte_
     return failed;
 }
 
+/* The model: the first input that has meshes, else the first. */
+static int base_of(const source *all, int count)
+{
+    for (int i = 0; i < count; i++) {
+        if (all[i].m->mesh_count) {
+            return i;
+        }
+    }
+    return 0;
+}
+
+static int read_all(const char *const *inputs, int count, const convert_options *options, source *all, convert_failure *failure)
+{
+    for (int i = 0; i < count; i++) {
+        failure->file = inputs[i];
+        if (source_read(inputs[i], options->motion.rate_hz, options->motion.unit_cm, &all[i], &failure->error)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static int join_all(const char *const *inputs, int count, int base, source *all, convert_failure *failure)
+{
+    for (int i = 0; i < count; i++) {
+        failure->file = inputs[i];
+        if (i != base && source_join(&all[base], inputs[base], &all[i], inputs[i], &failure->error)) {
+            return 1;
+        }
+    }
+    failure->file = inputs[base];
+    return 0;
+}
+
 int convert_files(const char *const *inputs, int input_count, const convert_options *options, byte_buffer *out,
                   convert_failure *failure)
 {
-    source s;
-    int failed;
-    memset(&s, 0, sizeof s);
+    source *all = calloc((size_t)input_count + 1u, sizeof *all);
+    int failed, base;
     memset(failure, 0, sizeof *failure);
     failure->file = inputs[0];
-    if (input_count != 1) {
-        failure->file = inputs[1];
-        snprintf(failure->error.what, sizeof failure->error.what, "a pack is built from one file: build the others apart");
-        return 1;
+    if (!all) {
+        return out_of_memory(&failure->error);
     }
-    failed = read_source(inputs[0], options, &s, &failure->error) || apply_events(options, &s, &failure->error) ||
-             convert_source(&s, options, out, &failure->error);
-    free_source(&s);
+    failed = read_all(inputs, input_count, options, all, failure);
+    if (!failed) {
+        base = base_of(all, input_count);
+        failed = join_all(inputs, input_count, base, all, failure) || apply_events(options, &all[base], &failure->error);
+        if (!failed && options->only == CONVERT_MESH) source_drop_clips(&all[base]);
+        failed = failed || convert_source(&all[base], options, out, &failure->error);
+    }
+    for (int i = 0; i < input_count; i++) {
+        source_free(&all[i]);
+    }
+    free(all);
     return failed;
 }

@@ -23,8 +23,9 @@ typedef struct convert_failure {
     model_error error;
 } convert_failure;
 
-/* Read, encode and write. 0 on success; *out is then the whole pack, to be freed
- * with buffer_free. The same inputs and options give the same bytes everywhere. */
+/* Read, join (sources.h; the model is that of the first input with meshes), encode and write. 0 on
+ * success; *out is then the whole pack, to be freed with buffer_free. The same inputs and options
+ * give the same bytes everywhere. */
 int convert_files(const char *const *inputs, int input_count, const convert_options *options, byte_buffer *out,
                   convert_failure *failure);
 

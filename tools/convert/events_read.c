@@ -50,10 +50,10 @@ static int take_needed(text_scan *s, const char *what, text_word *out)
 {
     if (take_word(s, out))
         return 1;
-    return out->size > 0 ? 0 : text_fail(s, out->line, "%s is missing: a key is CLIP TIME_S NAME [PAYLOAD] [min=WEIGHT]", what);
+    return out->size > 0 ? 0 : text_fail(s, out->line, "%s is missing: a key is CLIP TIME_S NAME [PAYLOAD] [min=WEIGHT] or CLIP TIME_S NAME marker", what);
 }
 
-/* payload or min=WEIGHT, in any order, each once */
+/* payload or min=WEIGHT, in any order, each once; or marker, alone */
 static int take_options(text_scan *s, raw_event *event)
 {
     text_word word;
@@ -63,6 +63,12 @@ static int take_options(text_scan *s, raw_event *event)
         double minimum = 0.0;
         if (word.size == 0)
             return 0;
+        if (event->is_marker)
+            return text_fail(s, word.line, "'%s' follows marker: a marker has no payload and no weight", text_show(word, shown));
+        if (!has_minimum && !has_payload && word.size == 6 && memcmp(word.text, "marker", 6) == 0) {
+            event->is_marker = 1;
+            continue;
+        }
         if (!has_minimum && word.size > 4 && memcmp(word.text, "min=", 4) == 0) {
             const text_word number = {word.text + 4, word.size - 4, word.line};
             if (text_number(s, number, &minimum))
@@ -74,7 +80,7 @@ static int take_options(text_scan *s, raw_event *event)
         } else if (!has_payload && event_payload(word.text, word.size, event->payload)) {
             has_payload = 1;
         } else {
-            return text_fail(s, word.line, "'%s' is neither a payload (a number) nor min=WEIGHT, or one too many",
+            return text_fail(s, word.line, "'%s' is neither a payload (a number), min=WEIGHT nor marker, or one too many",
                              text_show(word, shown));
         }
     }

@@ -1,10 +1,13 @@
-/* events_read.h: callback keys from a text file (noh build --events FILE).
+/* events_read.h: callback keys and sync markers from a text file (noh build --events FILE).
  *
- * One key per line, words apart by blanks, names with blanks in double quotes:
- *     CLIP TIME_S NAME [PAYLOAD] [min=WEIGHT]
+ * One per line, words apart by blanks, names with blanks in double quotes:
+ *     CLIP TIME_S NAME [PAYLOAD] [min=WEIGHT]     a callback key
+ *     CLIP TIME_S NAME marker                     a sync marker
  * PAYLOAD is a number: 8 bytes that the callback gets, little endian. Whole numbers (also
  * 0x and up to 16 hexadecimal digits) are 64-bit integers, those with a point or an
  * exponent 64-bit floats. WEIGHT is the least weight at which the key is delivered.
+ * A marker lies before its clip's end, no two of a clip at one time; clips that are to keep step
+ * have the same markers in the same order.
  * What follows a # that begins a word is a comment. */
 #ifndef NOH_CONVERT_EVENTS_READ_H
 #define NOH_CONVERT_EVENTS_READ_H

@@ -2,7 +2,9 @@
  *
  *     "extras": {"events": [{"time": 0.5, "name": "step", "payload": 7, "weightMin": 0.1}]}
  *
- * payload: a number, or for what a 32-bit integer and a double cannot hold, a text as in
+ *     "extras": {"events": [{"time": 0.25, "name": "left", "marker": true}]}
+ *
+ * The second is a sync marker. payload: a number, or for what a 32-bit integer and a double cannot hold, a text as in
  * events_read.h. glTF says nothing about extras: a key that cannot be understood is left
  * out with a warning. */
 #include "gltf_internal.h"
@@ -53,6 +55,11 @@ static const char *read_key(const tinygltf::Value &key, double duration_s, model
         return "its weightMin is not a number of 0 or more";
     if (key.Has("payload") && !read_payload(key.Get("payload"), out.payload))
         return "its payload is not a number that fits 8 bytes";
+    if (key.Has("marker") && !key.Get("marker").IsBool())
+        return "its marker is neither true nor false";
+    out.is_marker = key.Has("marker") && key.Get("marker").Get<bool>();
+    if (out.is_marker && (key.Has("payload") || key.Has("weightMin")))
+        return "a sync marker has no payload and no weight";
     out.time_s = std::fmin(out.time_s, duration_s);
     out.weight_min = static_cast<float>(weight_min);
     return nullptr;

@@ -220,7 +220,7 @@ static void copy_events(const model_clip &from, raw_clip &clip)
 {
     for (uint32_t i = 0; i < from.event_count; ++i) {
         raw_event event = {from.events[i].name, std::fmin(from.events[i].time_s, raw_clip_duration_s(&clip)), {0},
-                           from.events[i].weight_min};
+                           from.events[i].weight_min, from.events[i].is_marker};
         memcpy(event.payload, from.events[i].payload, sizeof event.payload);
         check_memory(raw_clip_add_event(&clip, &event));
     }

@@ -116,6 +116,7 @@ typedef struct model_event {
     double time_s;
     uint8_t payload[8];
     float weight_min;
+    uint8_t is_marker; /* a sync marker */
 } model_event;
 
 typedef struct model_clip {

@@ -4,12 +4,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "anim/time.h"
 #include "base/hash.h"
 #include "loop_check.h"
 #include "pack/format.h"
 #include "raw_set.h"
 
-#define TICKS_PER_SECOND 48000.0
+
+static uint32_t float_count(const raw_clip *clip)
+{
+    uint32_t count = 0;
+    for (uint32_t g = 0; g < clip->float_count; g++) {
+        count += clip->floats[g].width;
+    }
+    return count;
+}
 
 static int report_loop(const raw_set *set, const raw_clip *clip, const motion_settings *s, model_error *error)
 {
@@ -27,30 +36,84 @@ static int report_loop(const raw_set *set, const raw_clip *clip, const motion_se
 static void report_clip(const motion_settings *s, const raw_set *set, const motion_clip *c)
 {
     const clip_report *r = &c->report;
-    fprintf(s->report, "clip '%s': %u frames at %.4g Hz, %u joints: %zu bytes of %zu (%.1f:1), error %.4f cm at '%s', %.2f s\n",
-            c->raw->name, c->raw->frame_count, c->raw->rate_hz, c->raw->joint_count, r->bytes, r->raw_bytes,
-            (double)r->raw_bytes / (double)(r->bytes ? r->bytes : 1), r->max_error_cm,
-            set->skeleton.joints[r->max_error_joint < set->skeleton.joint_count ? r->max_error_joint : 0].name, r->max_error_time_s);
+    fprintf(s->report, "clip '%s': %u frames at %.4g Hz, %u joints, %u floats: %zu bytes of %zu (%.1f:1), ", c->raw->name, c->raw->frame_count,
+            c->raw->rate_hz, c->raw->joint_count, float_count(c->raw), r->bytes, r->raw_bytes,
+            (double)r->raw_bytes / (double)(r->bytes ? r->bytes : 1));
+    if (c->raw->joint_count) {
+        fprintf(s->report, "error %.4f cm at '%s', %.2f s\n", r->max_error_cm, set->skeleton.joints[r->max_error_joint].name, r->max_error_time_s);
+    } else {
+        fprintf(s->report, "error at most %.4f of the bound\n", r->max_float_error);
+    }
 }
 
-/* Weights are in the weight clips: only what moves joints is encoded here. */
+/* ---- time ---- */
+
+/* The clip's length as its decoder has it. */
+static uint64_t duration_ticks(const raw_clip *clip)
+{
+    uint64_t rate_uhz = (uint64_t)floor(clip->rate_hz * 1e6 + 0.5);
+    return (uint64_t)(clip->frame_count - 1u) * NOH_TICKS_PER_SECOND * 1000000u / (rate_uhz ? rate_uhz : 1u);
+}
+
+static uint32_t event_tick(const raw_clip *clip, const raw_event *event)
+{
+    uint64_t tick = (uint64_t)floor(event->time_s * NOH_TICKS_PER_SECOND + 0.5), end = duration_ticks(clip);
+    return (uint32_t)(tick < end ? tick : end);
+}
+
+static int check_length(const raw_clip *clip, model_error *error)
+{
+    if (duration_ticks(clip) <= NOH_DURATION_MAX) {
+        return 0;
+    }
+    snprintf(error->what, sizeof error->what, "it lasts %.0f s: a clip holds up to %u s", raw_clip_duration_s(clip),
+             NOH_DURATION_MAX / NOH_TICKS_PER_SECOND);
+    snprintf(error->where, sizeof error->where, "clip '%.100s'", clip->name);
+    return 1;
+}
+
+static int fail_marker(const raw_clip *clip, const raw_event *event, const char *why, model_error *error)
+{
+    snprintf(error->what, sizeof error->what, "sync marker '%.60s' at %g s %s", event->name, event->time_s, why);
+    snprintf(error->where, sizeof error->where, "clip '%.100s'", clip->name);
+    return 1;
+}
+
+static int check_markers(const raw_clip *clip, model_error *error)
+{
+    const raw_event *before = NULL;
+    for (uint32_t i = 0; i < clip->event_count; i++) {
+        const raw_event *event = &clip->events[i];
+        if (!event->is_marker) {
+            continue;
+        }
+        if (event_tick(clip, event) >= duration_ticks(clip)) {
+            return fail_marker(clip, event, "lies at the end of its clip, where a loop has begun again: put it at 0, or before the end", error);
+        }
+        if (before && event_tick(clip, before) == event_tick(clip, event)) {
+            return fail_marker(clip, event, "lies where another marker does", error);
+        }
+        before = event;
+    }
+    return 0;
+}
+
+/* ---- encoding ---- */
+
 static int encode_clip(const raw_set *set, raw_clip *clip, const motion_settings *s, motion_clip *out, model_error *error)
 {
-    raw_clip joints = *clip;
-    joints.float_count = 0;
-    joints.floats = NULL;
-    joints.loop = (uint8_t)(clip->loop || s->check_loops);
+    clip->loop = (uint8_t)(clip->loop || s->check_loops);
     if (s->progress) {
         fprintf(s->progress, "\rencoding clip %s \033[K", clip->name);
         fflush(s->progress);
     }
-    if (clip_encode(&set->skeleton, &joints, &s->clip, &out->bytes, &out->report, error)) {
+    if (check_length(clip, error) || check_markers(clip, error) || clip_encode(&set->skeleton, clip, &s->clip, &out->bytes, &out->report, error)) {
         return 1;
     }
     if (s->report) {
         report_clip(s, set, out);
     }
-    return s->check_loops ? report_loop(set, clip, s, error) : 0;
+    return s->check_loops && clip->joint_count ? report_loop(set, clip, s, error) : 0;
 }
 
 int motions_encode(raw_set **sets, uint32_t set_count, const motion_settings *s, motions *out, model_error *error)
@@ -70,12 +133,10 @@ int motions_encode(raw_set **sets, uint32_t set_count, const motion_settings *s,
     }
     for (uint32_t i = 0; i < set_count && !failed; i++) {
         for (uint32_t c = 0; c < sets[i]->clip_count && !failed; c++) {
-            if (sets[i]->clips[c].joint_count) {
-                motion_clip *to = &out->clips[out->clip_count++];
-                to->set = i;
-                to->raw = &sets[i]->clips[c];
-                failed = encode_clip(sets[i], &sets[i]->clips[c], s, to, error);
-            }
+            motion_clip *to = &out->clips[out->clip_count++];
+            to->set = i;
+            to->raw = &sets[i]->clips[c];
+            failed = encode_clip(sets[i], &sets[i]->clips[c], s, to, error);
         }
     }
     if (s->progress && total) {
@@ -132,11 +193,11 @@ void pack_skeleton(const raw_skeleton *skeleton, string_table *strings, byte_buf
     }
 }
 
-static void append_event(const raw_event *from, string_table *strings, byte_buffer *out)
+static void append_event(const raw_clip *clip, const raw_event *from, string_table *strings, byte_buffer *out)
 {
     noh_motion_event to;
     memset(&to, 0, sizeof to);
-    to.tick = (uint32_t)floor(from->time_s * TICKS_PER_SECOND + 0.5);
+    to.tick = event_tick(clip, from);
     to.name = string_offset(strings, from->name);
     to.name_hash = noh_hash_name((const char *)strings->bytes.bytes + to.name);
     memcpy(to.payload, from->payload, sizeof to.payload);
@@ -144,20 +205,53 @@ static void append_event(const raw_event *from, string_table *strings, byte_buff
     buffer_append(out, &to, sizeof to);
 }
 
-void pack_motion(const motions *m, const motion_clip *clip, string_table *strings, byte_buffer *out)
+static void append_marker(const raw_clip *clip, const raw_event *from, string_table *strings, byte_buffer *out)
 {
-    size_t base = out->count;
+    noh_motion_marker to;
+    to.tick = event_tick(clip, from);
+    to.name = string_offset(strings, from->name);
+    to.name_hash = noh_hash_name((const char *)strings->bytes.bytes + to.name);
+    buffer_append(out, &to, sizeof to);
+}
+
+/* The place of a set's skeleton among the pack's: sets without joints have none. */
+static uint32_t skeleton_index(const motions *m, uint32_t set)
+{
+    uint32_t index = 0;
+    for (uint32_t i = 0; i < set; i++) {
+        index += m->sets[i]->skeleton.joint_count != 0;
+    }
+    return index;
+}
+
+static noh_motion_header motion_header(const motions *m, const motion_clip *clip)
+{
     noh_motion_header h;
     memset(&h, 0, sizeof h);
-    h.skeleton_hash = raw_skeleton_hash(&m->sets[clip->set]->skeleton);
     h.joint_count = clip->raw->joint_count;
-    h.raw_bytes = (uint32_t)clip->report.raw_bytes;
-    h.event_count = clip->raw->event_count;
+    h.skeleton = h.joint_count ? skeleton_index(m, clip->set) : NOH_NONE;
+    h.skeleton_hash = h.joint_count ? raw_skeleton_hash(&m->sets[clip->set]->skeleton) : 0;
+    h.raw_bytes = clip->report.raw_bytes < NOH_NONE ? (uint32_t)clip->report.raw_bytes : NOH_NONE;
     h.clip_bytes = (uint32_t)clip->bytes.count;
+    for (uint32_t i = 0; i < clip->raw->event_count; i++) {
+        *(clip->raw->events[i].is_marker ? &h.marker_count : &h.event_count) += 1;
+    }
+    return h;
+}
+
+void pack_motion(const motions *m, const motion_clip *clip, string_table *strings, byte_buffer *out)
+{
+    const raw_clip *raw = clip->raw;
+    size_t base = out->count;
+    noh_motion_header h = motion_header(m, clip);
     buffer_append(out, &h, sizeof h);
     begin_array(out, base, &h.events_offset);
-    for (uint32_t i = 0; i < h.event_count; i++) {
-        append_event(&clip->raw->events[i], strings, out);
+    for (uint32_t i = 0; i < raw->event_count; i++) {
+        if (!raw->events[i].is_marker) append_event(raw, &raw->events[i], strings, out);
+    }
+    begin_array(out, base, &h.markers_offset);
+    for (uint32_t i = 0; i < raw->event_count; i++) {
+        if (raw->events[i].is_marker) append_marker(raw, &raw->events[i], strings, out);
     }
     begin_array(out, base, &h.clip_offset);
     buffer_append(out, clip->bytes.bytes, clip->bytes.count);

@@ -28,7 +28,7 @@ typedef struct motion_settings {
     FILE *report, *progress; /* or NULL */
 } motion_settings;
 
-/* Encode every clip that moves joints. 0, or 1 and a filled error; free in both cases. */
+/* Encode every clip. 0, or 1 and a filled error; free in both cases. */
 int motions_encode(raw_set **sets, uint32_t set_count, const motion_settings *settings, motions *out, model_error *error);
 void motions_free(motions *m);
 

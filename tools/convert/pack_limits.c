@@ -26,35 +26,16 @@ static int check_mesh(const model_mesh *m, model_error *error)
            over(m->target_count, NOH_TARGETS_MAX, "morph targets", "mesh", m->name, error);
 }
 
-static int check_clip(const model_clip *c, model_error *error)
-{
-    uint32_t channels = 0;
-    for (uint32_t i = 0; i < c->channel_count; i++) {
-        if (c->channels[i].path == MODEL_PATH_WEIGHTS) {
-            channels += 1;
-            if (over(c->channels[i].key_count, NOH_WEIGHT_KEYS_MAX, "keys", "animation", c->name, error)) {
-                return 1;
-            }
-        }
-    }
-    return over(channels, NOH_WEIGHT_CHANNELS_MAX, "weight channels", "animation", c->name, error);
-}
-
 int pack_check_model(const model *m, model_error *error)
 {
-    uint64_t chunks = (uint64_t)m->mesh_count + m->texture_count + m->clip_count + 3;
+    uint64_t chunks = (uint64_t)m->mesh_count + m->texture_count + 3;
     if (over(m->material_count, NOH_MATERIALS_MAX, "materials", NULL, NULL, error) ||
         over(m->node_count, NOH_NODES_MAX, "nodes", NULL, NULL, error) ||
-        over(chunks, NOH_PACK_CHUNKS_MAX, "meshes, textures and animations", NULL, NULL, error)) {
+        over(chunks, NOH_PACK_CHUNKS_MAX, "meshes and textures", NULL, NULL, error)) {
         return 1;
     }
     for (uint32_t i = 0; i < m->mesh_count; i++) {
         if (check_mesh(&m->meshes[i], error)) {
-            return 1;
-        }
-    }
-    for (uint32_t i = 0; i < m->clip_count; i++) {
-        if (check_clip(&m->clips[i], error)) {
             return 1;
         }
     }

@@ -179,54 +179,6 @@ static void write_nodes(writer *w)
     end_chunk(w);
 }
 
-static uint32_t weight_channels(const model_clip *clip)
-{
-    uint32_t count = 0;
-    for (uint32_t c = 0; c < clip->channel_count; c++) {
-        count += clip->channels[c].path == MODEL_PATH_WEIGHTS;
-    }
-    return count;
-}
-
-static void write_channel_keys(writer *w, const model_channel *from, noh_weight_channel *to, size_t base)
-{
-    size_t values = from->interpolation == MODEL_CUBICSPLINE ? 3 : 1;
-    to->node = from->node;
-    to->interpolation = (uint32_t)from->interpolation;
-    to->key_count = from->key_count;
-    to->width = from->width;
-    buffer_align(&w->out, 16);
-    to->times_offset = (uint32_t)(w->out.count - base);
-    buffer_append(&w->out, from->times, 4u * (size_t)from->key_count);
-    buffer_align(&w->out, 16);
-    to->values_offset = (uint32_t)(w->out.count - base);
-    buffer_append(&w->out, from->values, 4u * values * from->width * from->key_count);
-}
-
-static void write_clip(writer *w, const model_clip *clip)
-{
-    noh_weight_clip_header h = { weight_channels(clip), clip->duration_s, sizeof h, 0 };
-    size_t base, at;
-    begin_chunk(w, NOH_CHUNK_CLIP, clip->name);
-    base = w->out.count;
-    buffer_append(&w->out, &h, sizeof h);
-    at = w->out.count;
-    buffer_append(&w->out, NULL, sizeof(noh_weight_channel) * h.channel_count);
-    for (uint32_t c = 0; c < clip->channel_count; c++) {
-        noh_weight_channel channel;
-        if (clip->channels[c].path != MODEL_PATH_WEIGHTS) {
-            continue;
-        }
-        memset(&channel, 0, sizeof channel);
-        write_channel_keys(w, &clip->channels[c], &channel, base);
-        if (!w->out.failed) {
-            memcpy(w->out.bytes + at, &channel, sizeof channel);
-            at += sizeof channel;
-        }
-    }
-    end_chunk(w);
-}
-
 static void write_content(writer *w, morph_encoding *const *encodings)
 {
     for (uint32_t i = 0; i < w->m->texture_count; i++) {
@@ -240,11 +192,6 @@ static void write_content(writer *w, morph_encoding *const *encodings)
     }
     if (w->m->node_count) {
         write_nodes(w);
-    }
-    for (uint32_t i = 0; i < w->m->clip_count; i++) {
-        if (weight_channels(&w->m->clips[i])) {
-            write_clip(w, &w->m->clips[i]);
-        }
     }
 }
 
@@ -301,7 +248,7 @@ static int assemble(writer *w, byte_buffer *out)
 
 static size_t chunk_capacity(const model *m, const motions *made)
 {
-    return (size_t)m->mesh_count + m->texture_count + m->clip_count + 3 +
+    return (size_t)m->mesh_count + m->texture_count + 3 +
            (made ? (size_t)made->set_count + made->clip_count : 0);
 }
 
@@ -313,6 +260,12 @@ int pack_write(const model *m, morph_encoding *const *encodings, const motions *
         if (pack_check_encoding(&m->meshes[i], encodings[i], error)) {
             return 1;
         }
+    }
+    if (chunk_capacity(m, made) > NOH_PACK_CHUNKS_MAX) {
+        snprintf(error->what, sizeof error->what, "more than %u meshes, textures, skeletons and clips: build them into several packs",
+                 NOH_PACK_CHUNKS_MAX);
+        error->where[0] = 0;
+        return 1;
     }
     memset(&w, 0, sizeof w);
     w.m = m;

@@ -40,6 +40,7 @@ typedef struct raw_event {
     double time_s;
     uint8_t payload[8];
     float weight_min;
+    uint8_t is_marker;      /* a sync marker: it has a name and a time, and fires nothing */
 } raw_event;
 
 typedef struct raw_clip {
@@ -54,7 +55,7 @@ typedef struct raw_clip {
     uint32_t float_count;
     raw_floats *floats;
     uint32_t event_count;
-    raw_event *events;      /* in time order */
+    raw_event *events;      /* keys and markers, in time order */
     double source_error_cm; /* how far playing these frames (lerp, normalise) strays between them from the source's
                              * own curves: the largest of all joints and floats, each judged alone; 0: not at all */
 } raw_clip;

@@ -5,7 +5,7 @@
 #include "load.h"
 
 typedef struct budget_args {
-    const char *pack, *path, *accumulate, *driver;
+    const char *pack, *anim, *path, *accumulate, *driver;
     double instances;
     int as_json, nominal;
     load_options load;
@@ -75,7 +75,9 @@ static int budget_of(const budget_args *a, const pack_file *file)
     if (status) {
         return status;
     }
-    status = load_budget_make(&b, file, &s, &caps, &a->load);
+    memset(&b, 0, sizeof b);
+    status = scene_open_anim(&s, file, a->anim);
+    if (!status) status = load_budget_make(&b, file, &s, &caps, &a->load);
     if (!status) {
         if (a->as_json) {
             json_budget(&b, caps.renderer);
@@ -93,7 +95,8 @@ static int read_args(int argc, char **argv, budget_args *a)
     const option options[] = {
         { "--instances", OPTION_NUMBER, &a->instances }, { "--path", OPTION_TEXT, &a->path },
         { "--accumulate", OPTION_TEXT, &a->accumulate }, { "--driver", OPTION_TEXT, &a->driver },
-        { "--nominal", OPTION_FLAG, &a->nominal },       { "--json", OPTION_FLAG, &a->as_json }
+        { "--nominal", OPTION_FLAG, &a->nominal },       { "--json", OPTION_FLAG, &a->as_json },
+        { "--anim", OPTION_TEXT, &a->anim }
     };
     int count, status = tool_options(argc, argv, options, sizeof options / sizeof options[0], &a->pack, 1, &count);
     if (!status) status = parse_path(a->path, &a->load.path);

@@ -1,4 +1,4 @@
-/* cmd_build.c: glTF, .bvh or .rcl in, one pack out. */
+/* cmd_build.c: glTF, .bvh and .rcl in, one pack out: the model of the first file that has meshes, the clips of all. */
 #define _POSIX_C_SOURCE 200809L /* isatty */
 
 #include <stdlib.h>
@@ -49,7 +49,7 @@ static int read_args(int argc, char **argv, build_args *a, convert_options *o)
         return status;
     }
     if (a->input_count == 0 || !a->output) {
-        return tool_usage("build wants one input and -o OUT.noh");
+        return tool_usage("build wants an input and -o OUT.noh");
     }
     if (a->error_um <= 0.0 || a->error_um > 1e6) {
         return tool_usage("--error-um wants a number over 0 and up to 1000000");

@@ -9,8 +9,7 @@
 /* A clip that is open, with a cache of its own. */
 typedef struct opened {
     noh_pack_motion motion;
-    noh_skeleton skeleton;
-    uint32_t skeleton_index;
+    noh_skeleton skeleton; /* joint_count 0: a clip of floats alone */
     void *memory, *cache_memory;
     noh_clip *clip;
     noh_clip_cache *cache;
@@ -45,9 +44,7 @@ static int open_clip(opened *o, const pack_file *file, uint32_t index)
     size_t bytes;
     memset(o, 0, sizeof *o);
     noh_pack_motion_at(&file->pack, index, &o->motion);
-    if (noh_pack_bind_motion(&file->pack, &o->motion, &o->skeleton, &o->skeleton_index, &error)) {
-        return tool_fail(file->path, "clip '%s': %s", o->motion.name, error.what);
-    }
+    (void)noh_pack_skeleton_at(&file->pack, o->motion.header->skeleton, &o->skeleton, NULL);
     desc.bytes = o->motion.bytes;
     desc.byte_count = o->motion.header->clip_bytes;
     desc.bind = o->skeleton.bind_pose;
@@ -65,23 +62,32 @@ static int open_clip(opened *o, const pack_file *file, uint32_t index)
     return open_cache(o, file->path, &error);
 }
 
-static double seconds_of(const opened *o)
+static void print_keys(const pack_file *file, const noh_pack_motion *motion)
 {
-    return (double)o->info.duration_ticks / 48000.0;
+    for (uint32_t i = 0; i < motion->header->event_count; i++) {
+        printf("    %.4f s '%s'\n", motion->events[i].tick / (double)NOH_TICKS_PER_SECOND, noh_pack_string(&file->pack, motion->events[i].name));
+    }
+    for (uint32_t i = 0; i < motion->header->marker_count; i++) {
+        printf("    %.4f s marker '%s'\n", motion->markers[i].tick / (double)NOH_TICKS_PER_SECOND,
+               noh_pack_string(&file->pack, motion->markers[i].name));
+    }
 }
 
 static void print_clip(const pack_file *file, const opened *o)
 {
-    printf("clip '%s': %u joints, %.3f s at %.4g Hz, %u of %u bytes (%.1f:1)\n", o->motion.name, o->info.joint_count, seconds_of(o),
-           o->info.rate_uhz / 1e6, o->motion.header->clip_bytes, o->motion.header->raw_bytes,
+    printf("clip '%s': %u joints, %u floats, %.3f s at %.4g Hz, %u of %u bytes (%.1f:1)\n", o->motion.name, o->info.joint_count,
+           o->info.float_count, tool_clip_seconds(&o->info), o->info.rate_uhz / 1e6, o->motion.header->clip_bytes, o->motion.header->raw_bytes,
            (double)o->motion.header->raw_bytes / (double)o->motion.header->clip_bytes);
-    printf("  certified at a %.3g cm shell: largest error %.5f cm (joint %u, %.3f s), rms %.5f cm\n", o->info.shell_cm,
-           o->info.max_error_cm, o->info.max_error_joint, o->info.max_error_time_s, o->info.rms_error_cm);
-    printf("  %u segments, cache of %zu bytes; %u callback keys\n", o->info.segment_count, o->cache_bytes, o->motion.header->event_count);
-    for (uint32_t i = 0; i < o->motion.header->event_count; i++) {
-        const noh_motion_event *e = &o->motion.events[i];
-        printf("    %.4f s '%s'\n", e->tick / 48000.0, noh_pack_string(&file->pack, e->name));
+    if (o->info.joint_count) {
+        printf("  certified at a %.3g cm shell: largest error %.5f cm (joint %u, %.3f s), rms %.5f cm\n", o->info.shell_cm,
+               o->info.max_error_cm, o->info.max_error_joint, o->info.max_error_time_s, o->info.rms_error_cm);
     }
+    if (o->info.float_count) {
+        printf("  weights within %.4g cm of what each moves\n", o->info.error_cm);
+    }
+    printf("  %u segments, cache of %zu bytes; %u callback keys, %u sync markers\n", o->info.segment_count, o->cache_bytes,
+           o->motion.header->event_count, o->motion.header->marker_count);
+    print_keys(file, &o->motion);
 }
 
 static void json_one(json *j, const opened *o)
@@ -89,7 +95,8 @@ static void json_one(json *j, const opened *o)
     json_open(j, NULL, '{');
     json_text(j, "name", o->motion.name);
     json_integer(j, "joints", o->info.joint_count);
-    json_number(j, "seconds", seconds_of(o));
+    json_integer(j, "floats", o->info.float_count);
+    json_number(j, "seconds", tool_clip_seconds(&o->info));
     json_number(j, "rate_hz", o->info.rate_uhz / 1e6);
     json_integer(j, "raw_bytes", o->motion.header->raw_bytes);
     json_integer(j, "bytes", o->motion.header->clip_bytes);
@@ -97,6 +104,7 @@ static void json_one(json *j, const opened *o)
     json_number(j, "rms_error_cm", o->info.rms_error_cm);
     json_number(j, "shell_cm", o->info.shell_cm);
     json_integer(j, "events", o->motion.header->event_count);
+    json_integer(j, "markers", o->motion.header->marker_count);
     json_integer(j, "cache_bytes", o->cache_bytes);
     json_close(j, '}');
 }
@@ -113,12 +121,12 @@ static void fill_skeleton(raw_skeleton *to, const pack_file *file, const opened 
 {
     const noh_skeleton_header *h;
     noh_skeleton s;
-    noh_pack_skeleton_at(&file->pack, o->skeleton_index, &s, &h);
+    noh_pack_skeleton_at(&file->pack, o->motion.header->skeleton, &s, &h);
     to->unit_cm = (double)h->unit_cm;
     for (uint32_t j = 0; j < s.joint_count; j++) {
         raw_joint *joint = &to->joints[j];
         free(joint->name);
-        joint->name = copy_text(noh_pack_joint_name(&file->pack, o->skeleton_index, j));
+        joint->name = copy_text(noh_pack_joint_name(&file->pack, o->motion.header->skeleton, j));
         joint->parent = s.parents[j] == NOH_JOINT_ROOT ? MODEL_NONE : s.parents[j];
         memcpy(joint->rotation, s.bind_pose[j].rotation, sizeof joint->rotation);
         memcpy(joint->translation, s.bind_pose[j].translation, sizeof joint->translation);
@@ -185,8 +193,8 @@ static int find_motion(const pack_file *file, const char *name, uint32_t *index)
     }
     near = names ? nearest_name(name, names, file->pack.motion_count) : NULL;
     free(names);
-    return near ? tool_fail(file->path, "no motion named '%s' (did you mean '%s'?)", name, near)
-                : tool_fail(file->path, "no motion named '%s' (`noh clip` lists them)", name);
+    return near ? tool_fail(file->path, "no clip named '%s' (did you mean '%s'?)", name, near)
+                : tool_fail(file->path, "no clip named '%s' (`noh clip` lists them)", name);
 }
 
 static int dump_named(const pack_file *file, const char *name, const char *path)
@@ -200,7 +208,8 @@ static int dump_named(const pack_file *file, const char *name, const char *path)
     status = name ? find_motion(file, name, &index) : 0;
     if (!status) status = open_clip(&o, file, index);
     if (!status) {
-        status = dump_clip(file, &o, path);
+        status = o.info.joint_count ? dump_clip(file, &o, path)
+                                    : tool_fail(file->path, "clip '%s' moves weights alone, and a .rcl file holds joints", o.motion.name);
         close_clip(&o);
     }
     return status;

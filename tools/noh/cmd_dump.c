@@ -9,7 +9,7 @@
 #include "load.h"
 
 typedef struct dump_args {
-    const char *pack, *output, *clip, *path, *accumulate, *driver;
+    const char *pack, *output, *clip, *anim, *path, *accumulate, *driver;
     double time_s;
     option_list weights;
     load_options load;
@@ -162,7 +162,8 @@ static int dump_scene(const pack_file *file, scene *s, const dump_args *a)
 {
     byte_buffer out = { NULL, 0, 0, 0 };
     noh_error error = { NOH_OK, "", 0, 0 };
-    int status = a->clip ? scene_set_clip(s, file, a->clip, a->time_s) : 0;
+    int status = scene_open_anim(s, file, a->anim);
+    if (!status && a->clip) status = scene_set_clip(s, file, a->clip, a->time_s);
     if (!status) status = scene_set_weights(s, file, &a->weights);
     if (!status) {
         print_to(&out, "# baked by noh: positions in world space, vertex colours linear\n");
@@ -181,7 +182,7 @@ static int read_args(int argc, char **argv, dump_args *a)
         { "-o", OPTION_TEXT, &a->output },        { "--weight", OPTION_LIST, &a->weights },
         { "--clip", OPTION_TEXT, &a->clip },      { "--time", OPTION_NUMBER, &a->time_s },
         { "--path", OPTION_TEXT, &a->path },      { "--accumulate", OPTION_TEXT, &a->accumulate },
-        { "--driver", OPTION_TEXT, &a->driver }
+        { "--driver", OPTION_TEXT, &a->driver },    { "--anim", OPTION_TEXT, &a->anim }
     };
     int count, status = tool_options(argc, argv, options, sizeof options / sizeof options[0], &a->pack, 1, &count);
     if (!status) status = parse_path(a->path, &a->load.path);

@@ -33,45 +33,40 @@ static void print_mesh(const noh_pack *pack, const noh_mesh *m)
     }
 }
 
-static void print_clip(const noh_weight_clip *clip)
+static int print_clip(const pack_file *file, uint32_t index)
 {
-    static const char *const names[] = { "linear", "step", "cubic" };
-    printf("clip '%s': %.3f s", clip->name, (double)clip->header->duration_s);
-    for (uint32_t c = 0; c < clip->header->channel_count; c++) {
-        const noh_weight_channel *channel = &clip->channels[c];
-        printf("%s weights of node '%s', %u %s keys", c ? "," : ":",
-               noh_pack_string(clip->pack, clip->pack->nodes[channel->node].name), channel->key_count, names[channel->interpolation]);
+    noh_pack_motion motion;
+    noh_clip_info info;
+    int status = tool_clip_info(file, index, &motion, &info);
+    if (!status) {
+        printf("clip '%s': %.3f s, %u joints, %u floats, %u bytes, %u callback keys, %u sync markers%s\n", motion.name, tool_clip_seconds(&info),
+               info.joint_count, info.float_count, motion.header->clip_bytes, motion.header->event_count, motion.header->marker_count,
+               info.flags & NOH_CLIP_FLAG_LOOP ? ", a loop" : "");
     }
-    putchar('\n');
+    return status;
 }
 
-static void print_info(const pack_file *file)
+static int print_info(const pack_file *file)
 {
     const noh_pack *p = &file->pack;
-    printf("%s: format %u, %u bytes, %u chunks; %u meshes, %u nodes, %u clips, %u materials, %u textures\n", file->path,
-           NOH_PACK_VERSION, p->byte_count, p->chunk_count, p->mesh_count, p->node_count, p->clip_count, p->material_count,
-           p->texture_count);
+    int status = 0;
+    printf("%s: format %u, %u bytes, %u chunks; %u meshes, %u nodes, %u skeletons, %u clips, %u materials, %u textures\n", file->path,
+           NOH_PACK_VERSION, p->byte_count, p->chunk_count, p->mesh_count, p->node_count, p->skeleton_count, p->motion_count,
+           p->material_count, p->texture_count);
     for (uint32_t i = 0; i < p->mesh_count; i++) {
         noh_mesh mesh;
         noh_pack_mesh(p, i, &mesh);
         print_mesh(p, &mesh);
-    }
-    for (uint32_t i = 0; i < p->clip_count; i++) {
-        noh_weight_clip clip;
-        noh_pack_weight_clip(p, i, &clip);
-        print_clip(&clip);
     }
     for (uint32_t i = 0; i < p->skeleton_count; i++) {
         noh_skeleton skeleton;
         noh_pack_skeleton_at(p, i, &skeleton, NULL);
         printf("skeleton '%s': %u joints\n", noh_pack_chunk_name(p, p->first_skeleton + i), skeleton.joint_count);
     }
-    for (uint32_t i = 0; i < p->motion_count; i++) {
-        noh_pack_motion motion;
-        noh_pack_motion_at(p, i, &motion);
-        printf("motion '%s': %u joints, %u bytes, %u callback keys (`noh clip` says more)\n", motion.name, motion.header->joint_count,
-               motion.header->clip_bytes, motion.header->event_count);
+    for (uint32_t i = 0; i < p->motion_count && !status; i++) {
+        status = print_clip(file, i);
     }
+    return status;
 }
 
 static void json_target(json *j, const noh_pack *pack, const noh_target *t, double scale)
@@ -117,15 +112,6 @@ static void json_mesh(json *j, const noh_pack *pack, const noh_mesh *m)
     json_close(j, '}');
 }
 
-static void json_clip(json *j, const noh_weight_clip *clip)
-{
-    json_open(j, NULL, '{');
-    json_text(j, "name", clip->name);
-    json_number(j, "seconds", (double)clip->header->duration_s);
-    json_integer(j, "channels", clip->header->channel_count);
-    json_close(j, '}');
-}
-
 static void json_skeleton(json *j, const noh_pack *pack, uint32_t index)
 {
     noh_skeleton skeleton;
@@ -139,16 +125,24 @@ static void json_skeleton(json *j, const noh_pack *pack, uint32_t index)
     json_close(j, '}');
 }
 
-static void json_motion(json *j, const noh_pack *pack, uint32_t index)
+static int json_clip(json *j, const pack_file *file, uint32_t index)
 {
     noh_pack_motion motion;
-    noh_pack_motion_at(pack, index, &motion);
-    json_open(j, NULL, '{');
-    json_text(j, "name", motion.name);
-    json_integer(j, "joints", motion.header->joint_count);
-    json_integer(j, "bytes", motion.header->clip_bytes);
-    json_integer(j, "events", motion.header->event_count);
-    json_close(j, '}');
+    noh_clip_info info;
+    int status = tool_clip_info(file, index, &motion, &info);
+    if (!status) {
+        json_open(j, NULL, '{');
+        json_text(j, "name", motion.name);
+        json_number(j, "seconds", tool_clip_seconds(&info));
+        json_integer(j, "joints", info.joint_count);
+        json_integer(j, "floats", info.float_count);
+        json_bool(j, "loop", (info.flags & NOH_CLIP_FLAG_LOOP) != 0);
+        json_integer(j, "bytes", motion.header->clip_bytes);
+        json_integer(j, "events", motion.header->event_count);
+        json_integer(j, "markers", motion.header->marker_count);
+        json_close(j, '}');
+    }
+    return status;
 }
 
 static uint64_t count_events(const noh_pack *pack)
@@ -162,9 +156,10 @@ static uint64_t count_events(const noh_pack *pack)
     return count;
 }
 
-static void json_info(const pack_file *file)
+static int json_info(const pack_file *file)
 {
     const noh_pack *p = &file->pack;
+    int status = 0;
     json j = json_begin(stdout);
     json_integer(&j, "version", NOH_PACK_VERSION);
     json_integer(&j, "bytes", p->byte_count);
@@ -181,13 +176,8 @@ static void json_info(const pack_file *file)
     }
     json_close(&j, ']');
     json_open(&j, "clips", '[');
-    for (uint32_t i = 0; i < p->clip_count; i++) {
-        noh_weight_clip clip;
-        noh_pack_weight_clip(p, i, &clip);
-        json_clip(&j, &clip);
-    }
-    for (uint32_t i = 0; i < p->motion_count; i++) {
-        json_motion(&j, p, i);
+    for (uint32_t i = 0; i < p->motion_count && !status; i++) {
+        status = json_clip(&j, file, i);
     }
     json_close(&j, ']');
     json_integer(&j, "events", count_events(p));
@@ -195,6 +185,7 @@ static void json_info(const pack_file *file)
     json_integer(&j, "materials", p->material_count);
     json_integer(&j, "textures", p->texture_count);
     json_end(&j);
+    return status;
 }
 
 int verb_info(int argc, char **argv)
@@ -211,11 +202,7 @@ int verb_info(int argc, char **argv)
     if (status) {
         return status;
     }
-    if (as_json) {
-        json_info(&file);
-    } else {
-        print_info(&file);
-    }
+    status = as_json ? json_info(&file) : print_info(&file);
     pack_file_close(&file);
-    return 0;
+    return status;
 }

@@ -5,7 +5,7 @@
 #include "view.h"
 
 typedef struct render_args {
-    const char *pack, *output, *clip, *path, *accumulate, *driver, *debug;
+    const char *pack, *output, *clip, *anim, *path, *accumulate, *driver, *debug;
     uint32_t size[2];
     double time_s;
     option_list weights;
@@ -33,7 +33,8 @@ static int read_args(int argc, char **argv, render_args *a)
         { "--weight", OPTION_LIST, &a->weights },   { "--clip", OPTION_TEXT, &a->clip },
         { "--time", OPTION_NUMBER, &a->time_s },    { "--path", OPTION_TEXT, &a->path },
         { "--accumulate", OPTION_TEXT, &a->accumulate }, { "--driver", OPTION_TEXT, &a->driver },
-        { "--camera", OPTION_TEXT, &a->view.camera }, { "--debug", OPTION_TEXT, &a->debug }
+        { "--camera", OPTION_TEXT, &a->view.camera }, { "--debug", OPTION_TEXT, &a->debug },
+        { "--anim", OPTION_TEXT, &a->anim }
     };
     int count, status = tool_options(argc, argv, options, sizeof options / sizeof options[0], &a->pack, 1, &count);
     if (!status) status = parse_path(a->path, &a->load.path);
@@ -87,9 +88,8 @@ static int pose_and_draw(const pack_file *file, const render_args *a)
     gpu g;
     int status = rgba ? scene_init(&s, file) : tool_fail(file->path, "out of memory");
     if (!status) {
-        if (a->clip) {
-            status = scene_set_clip(&s, file, a->clip, a->time_s);
-        }
+        status = scene_open_anim(&s, file, a->anim);
+        if (!status && a->clip) status = scene_set_clip(&s, file, a->clip, a->time_s);
         if (!status) status = scene_set_weights(&s, file, &a->weights);
         if (!status) status = gpu_open(&g, a->driver);
         if (!status) {

@@ -7,8 +7,8 @@
 
 typedef struct sheet {
     const pack_file *file;
-    const char *clip_name;
-    noh_weight_clip clip;
+    const char *clip_name, *anim;
+    double clip_seconds;
     const char **names; /* targets, each name once */
     uint32_t name_count, clip_tiles, tile_count, columns, tile;
     uint8_t *rgba;      /* the whole sheet */
@@ -70,7 +70,7 @@ static void copy_weights(const scene *from, scene *to)
 
 static double tile_time(const sheet *s, uint32_t tile)
 {
-    return (double)s->clip.header->duration_s * tile / (s->tile_count > 1 ? s->tile_count - 1 : 1);
+    return s->clip_seconds * tile / (s->tile_count > 1 ? s->tile_count - 1 : 1);
 }
 
 /* Tile 0 of a target sheet is the rest pose. */
@@ -180,7 +180,8 @@ static int prepare(sheet *s)
     int status = scene_init(&s->rest, s->file);
     if (!status) status = scene_init(&s->posed, s->file);
     if (!status) status = list_names(s);
-    if (!status && s->clip_name) status = scene_find_clip(s->file, s->clip_name, &s->clip);
+    if (!status) status = scene_open_anim(&s->posed, s->file, s->anim);
+    if (!status && s->clip_name) status = scene_clip_seconds(&s->posed, s->file, s->clip_name, &s->clip_seconds);
     if (status) {
         return status;
     }
@@ -212,7 +213,7 @@ int verb_sheet(int argc, char **argv)
         { "-o", OPTION_TEXT, &output },       { "--clip", OPTION_TEXT, &s.clip_name }, { "--driver", OPTION_TEXT, &driver },
         { "--camera", OPTION_TEXT, &camera }, { "--path", OPTION_TEXT, &path },        { "--accumulate", OPTION_TEXT, &accumulate },
         { "--tile", OPTION_NUMBER, &tile },   { "--tiles", OPTION_NUMBER, &tiles },     { "--columns", OPTION_NUMBER, &columns },
-        { "--target", OPTION_LIST, &s.only }
+        { "--target", OPTION_LIST, &s.only },   { "--anim", OPTION_TEXT, &s.anim }
     };
     status = tool_options(argc, argv, options, sizeof options / sizeof options[0], &pack, 1, &count);
     if (!status) status = parse_path(path, &o.path);

@@ -317,6 +317,7 @@ static int verify_load(verify_job *job)
     load_budget b;
     load l;
     int status = load_budget_make(&b, &job->file, &job->scene, &job->g.caps, &job->load);
+    if (!status) status = scene_open_players(&job->scene, &job->file, job->load.instances ? job->load.instances : 1u);
     if (!status) {
         status = load_open(&l, &job->g, &job->file, &job->scene, &job->load);
     }
@@ -325,6 +326,10 @@ static int verify_load(verify_job *job)
         job->gpu_predicted = b.gpu_bytes;
         job->gpu_used = noh_gl_ledger_bytes(&job->g.ledger);
         job->cpu_used = l.morph.bytes;
+        for (uint32_t i = 0; i < job->scene.player_count; i++) {
+            const scene_player *p = &job->scene.players[i];
+            job->cpu_used += p->set_bytes + p->controller_bytes + p->pose_bytes;
+        }
         status = load_update(&l, NULL);
         job->failed |= noh_gl_ledger_bytes(&job->g.ledger) != job->gpu_used; /* nothing is asked for after init */
         load_close(&l);
@@ -397,14 +402,14 @@ static void print_result(const verify_job *job, int as_json)
 int verb_verify(int argc, char **argv)
 {
     static verify_job job;
-    const char *path = NULL, *driver = NULL;
+    const char *path = NULL, *anim = NULL, *driver = NULL;
     double seed = 1.0, instances = 1.0;
     int count, as_json = 0, status;
     const option options[] = {
         { "--seed", OPTION_NUMBER, &seed }, { "--driver", OPTION_TEXT, &driver }, { "--json", OPTION_FLAG, &as_json },
-        { "--instances", OPTION_NUMBER, &instances }
+        { "--instances", OPTION_NUMBER, &instances }, { "--anim", OPTION_TEXT, &anim }
     };
-    status = tool_options(argc, argv, options, 4, &path, 1, &count);
+    status = tool_options(argc, argv, options, 5, &path, 1, &count);
     if (status) {
         return status;
     }
@@ -420,7 +425,8 @@ int verb_verify(int argc, char **argv)
     if (!status) {
         status = scene_init(&job.scene, &job.file);
         if (!status) {
-            status = gpu_open(&job.g, driver);
+            status = scene_open_anim(&job.scene, &job.file, anim);
+            if (!status) status = gpu_open(&job.g, driver);
             if (!status) {
                 status = verify_all(&job);
                 if (!status) status = verify_load(&job);

@@ -37,6 +37,19 @@ static noh_gl_morph_desc morph_desc(const pack_file *file, const scene *s, const
     return desc;
 }
 
+/* What moves the scene: nothing in a pack without clips. */
+static int add_motion(load_budget *b, const pack_file *file, const scene *s, uint32_t instances)
+{
+    uint64_t clips = 0, controllers = 0, poses = 0;
+    int status = scene_measure_players(s, file, instances ? instances : 1u, &clips, &controllers, &poses);
+    if (!status && clips) {
+        add_part(b, clips, 0, "clips", "");
+        add_part(b, controllers, 0, "controllers", "");
+        add_part(b, poses, 0, "pose scratch", "");
+    }
+    return status;
+}
+
 static void add_parts(load_budget *b, const pack_file *file, const scene *s)
 {
     for (uint32_t i = 0; i < file->pack.mesh_count; i++) {
@@ -62,8 +75,8 @@ int load_budget_make(load_budget *b, const pack_file *file, const scene *s, cons
     noh_error error = { NOH_OK, "", 0, 0 };
     int status = 0;
     memset(b, 0, sizeof *b);
-    b->parts = calloc((size_t)file->pack.mesh_count + file->pack.texture_count + 8, sizeof *b->parts);
-    b->pack_bytes = file->pack.byte_count;
+    b->parts = calloc((size_t)file->pack.mesh_count + file->pack.texture_count + 11, sizeof *b->parts);
+    b->pack_bytes = (uint64_t)file->pack.byte_count + (s->anim != file ? s->anim->pack.byte_count : 0u);
     if (!counts || !b->parts) {
         status = tool_fail(file->path, "out of memory");
     } else if (s->item_count == 0) {
@@ -72,6 +85,7 @@ int load_budget_make(load_budget *b, const pack_file *file, const scene *s, cons
         status = tool_fail_error(file->path, &error);
     } else {
         add_parts(b, file, s);
+        status = add_motion(b, file, s, o->instances);
     }
     free(counts);
     return status;

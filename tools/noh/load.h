@@ -14,7 +14,7 @@ typedef struct load_budget {
     noh_gl_morph_plan plan;
     load_part *parts;
     uint32_t part_count;
-    uint64_t cpu_bytes, gpu_bytes, pack_bytes;
+    uint64_t cpu_bytes, gpu_bytes, pack_bytes; /* pack_bytes: with that of --anim */
 } load_budget;
 
 typedef struct load_options {

@@ -9,24 +9,24 @@ static const struct verb {
     const char *usage, *what;
 } verbs[] = {
     { "build", verb_build,
-      "IN -o OUT.noh [--error-um 10] [--rects auto|N] [--rate HZ] [--error-cm 0.01] [--shell-cm 3]\n"
+      "IN... -o OUT.noh [--error-um 10] [--rects auto|N] [--rate HZ] [--error-cm 0.01] [--shell-cm 3]\n"
       "                 [--loop] [--for-masks] [--events FILE] [--unit-cm 1] [--only mesh|anim] [--quiet]",
-      "convert .gltf, .glb, .bvh or .rcl to a pack" },
+      "convert .gltf, .glb, .bvh and .rcl to a pack: the first model, the clips of all" },
     { "info", verb_info, "PACK [--json]", "chunks, counts, names, errors certified at build" },
     { "clip", verb_clip, "PACK [--json] [--dump OUT.rcl [--clip NAME]]",
       "compressed motion: bytes, certified errors; a clip decoded" },
-    { "budget", verb_budget, "PACK [--instances N] [--path P] [--accumulate A] [--driver D | --nominal] [--json]",
+    { "budget", verb_budget, "PACK [--anim PACK] [--instances N] [--path P] [--accumulate A] [--driver D | --nominal] [--json]",
       "bytes before a load: CPU and GPU, by part" },
     { "render", verb_render,
-      "PACK -o OUT.png [--size 512x512] [--weight NAME=V]... [--clip NAME] [--time S]\n"
+      "PACK -o OUT.png [--size 512x512] [--weight NAME=V]... [--clip NAME] [--time S] [--anim PACK]\n"
       "                 [--path P] [--accumulate auto|f32|f16] [--driver egl|osmesa|angle]\n"
       "                 [--camera face|body|AZ,EL,DIST] [--debug none|position|normal|tangent]",
       "a picture" },
-    { "sheet", verb_sheet, "PACK -o OUT.png [--clip NAME [--tiles 24] | --target NAME...] [--tile 192] [--columns N] [--camera face]\n"
+    { "sheet", verb_sheet, "PACK -o OUT.png [--clip NAME [--anim PACK] [--tiles 24] | --target NAME...] [--tile 192] [--columns N] [--camera face]\n"
       "                 [--path P] [--accumulate A] [--driver D]", "a contact sheet: every target at full weight, or a clip in time" },
-    { "dump", verb_dump, "PACK -o OUT.obj [--weight NAME=V]... [--clip NAME] [--time S] [--path P]",
+    { "dump", verb_dump, "PACK -o OUT.obj [--weight NAME=V]... [--clip NAME] [--time S] [--anim PACK] [--path P]",
       "the deformed mesh, as drawn, baked to a plain one" },
-    { "verify", verb_verify, "PACK [--seed N] [--instances N] [--driver D] [--json]", "every path and format against the CPU reference" },
+    { "verify", verb_verify, "PACK [--anim PACK] [--seed N] [--instances N] [--driver D] [--json]", "every path and format against the CPU reference" },
     { "bench", verb_bench, "PACK [--source ASSET] [--driver D] [--rounds N] [--json]", "ratios against the named baselines, in one run" },
 };
 

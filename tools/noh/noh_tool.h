@@ -95,7 +95,26 @@ void json_end(json *j);
 /* The candidate nearest to `name` by edit distance, or NULL when none is near. */
 const char *nearest_name(const char *name, const char *const *candidates, size_t count);
 
-/* ---- the weights that the options ask for ---- */
+/* What the n-th clip of a pack says of itself; prints an error about a broken one and returns an exit code. */
+int tool_clip_info(const pack_file *file, uint32_t index, noh_pack_motion *motion, noh_clip_info *info);
+double tool_clip_seconds(const noh_clip_info *info);
+
+/* ---- the pose that the options ask for ---- */
+
+/* What moves one skeleton of the pack (without any: its weights alone): a motion set, a controller for each copy of the
+ * scene, and room for one pose at a time. */
+typedef struct scene_player {
+    noh_skeleton skeleton;       /* joint_count 0: none */
+    float *joint_matrices;       /* [joint_count][12] in model space, see local_to_model.h; the bind pose until a clip is set */
+    noh_motion_set *set;         /* NULL: not opened yet, or no clip fits */
+    noh_controller **controllers; /* [controller_count] */
+    uint32_t controller_count;
+    noh_pose_scratch scratch;
+    void *set_memory, *scratch_memory;
+    noh_transform *pose;         /* [joint_count] */
+    float *floats;               /* [set->anim.float_count] */
+    uint64_t set_bytes, controller_bytes, pose_bytes; /* taken */
+} scene_player;
 
 /* One drawn mesh: a node that has one, with its weights. */
 typedef struct scene_item {
@@ -108,19 +127,37 @@ typedef struct scene {
     noh_mesh *meshes;   /* [pack->mesh_count] */
     scene_item *items;
     uint32_t item_count;
+    const pack_file *anim;    /* whose clips are played: the pack's own, or that of --anim */
+    pack_file anim_file;      /* --anim */
+    scene_player *players;    /* [player_count] one for each skeleton of the pack, at least one */
+    uint32_t player_count;
+    noh_skeleton skeleton;    /* of the first one */
+    const float *joint_matrices;
 } scene;
 
-/* Every node with a mesh (or every mesh, in a pack without nodes) at its default weights. */
+/* Every node with a mesh (or every mesh, in a pack without nodes) at its default weights, every skeleton in its bind pose.
+ * The pack must stay where it is while the scene is used. */
 int scene_init(scene *s, const pack_file *file);
 void scene_free(scene *s);
-/* The clip's weights at a time; unknown names are an error that suggests the nearest. */
+/* What a player opened; its skeleton stays. */
+void scene_close_player(scene_player *p);
+/* Take the clips from another pack (NULL: do not); before any of them is played. */
+int scene_open_anim(scene *s, const pack_file *file, const char *path);
+/* Open the clips, and so many controllers. scene_set_clip does it for one. */
+int scene_open_players(scene *s, const pack_file *file, uint32_t controllers);
+/* What that will take, before; add to *clips, *controllers, *poses. */
+int scene_measure_players(const scene *s, const pack_file *file, uint32_t controllers, uint64_t *clips, uint64_t *controller_bytes,
+                          uint64_t *poses);
+/* Weights and joint matrices of a clip at a time; unknown names are an error that suggests the nearest. */
 int scene_set_clip(scene *s, const pack_file *file, const char *clip_name, double time_s);
+/* A clip's length; an error likewise. */
+int scene_clip_seconds(scene *s, const pack_file *file, const char *clip_name, double *seconds);
 /* NAME=VALUE for every mesh that has such a target; suggests the nearest name otherwise. */
 int scene_set_weights(scene *s, const pack_file *file, const option_list *assignments);
 /* 0 when some mesh has the target; prints an error with the nearest name otherwise. */
 int scene_check_target(const scene *s, const pack_file *file, const char *name);
-/* The clip of that name; prints an error with the nearest name and returns an exit code otherwise. */
-int scene_find_clip(const pack_file *file, const char *clip_name, noh_weight_clip *clip);
+/* "no clip named 'wlak' (did you mean 'walk'?)"; returns an exit code. */
+int scene_fail_unknown(const pack_file *file, const char *kind, const char *name, const char *const *names, size_t count);
 
 /* ---- verbs ---- */
 

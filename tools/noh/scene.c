@@ -22,6 +22,35 @@ static int add_item(scene *s, const pack_file *file, uint32_t node, uint32_t mes
     return 0;
 }
 
+static int init_player(scene_player *p, const noh_pack *pack, uint32_t skeleton)
+{
+    if (noh_pack_skeleton_at(pack, skeleton, &p->skeleton, NULL)) {
+        return 0;
+    }
+    p->joint_matrices = calloc(p->skeleton.joint_count, 12 * sizeof(float));
+    if (!p->joint_matrices) {
+        return 1;
+    }
+    noh_local_to_model(&p->skeleton, p->skeleton.bind_pose, p->skeleton.joint_count, p->joint_matrices);
+    return 0;
+}
+
+static int init_players(scene *s, const noh_pack *pack)
+{
+    int failed = 0;
+    s->player_count = pack->skeleton_count ? pack->skeleton_count : 1u;
+    s->players = calloc(s->player_count, sizeof *s->players);
+    for (uint32_t i = 0; s->players && !failed && i < s->player_count; i++) {
+        failed = init_player(&s->players[i], pack, i);
+    }
+    if (!s->players || failed) {
+        return 1;
+    }
+    s->skeleton = s->players[0].skeleton;
+    s->joint_matrices = s->players[0].joint_matrices;
+    return 0;
+}
+
 int scene_init(scene *s, const pack_file *file)
 {
     const noh_pack *pack = &file->pack;
@@ -29,7 +58,8 @@ int scene_init(scene *s, const pack_file *file)
     memset(s, 0, sizeof *s);
     s->meshes = calloc(pack->mesh_count + 1u, sizeof *s->meshes);
     s->items = calloc((size_t)pack->node_count + pack->mesh_count + 1u, sizeof *s->items);
-    failed = !s->meshes || !s->items;
+    s->anim = file;
+    failed = !s->meshes || !s->items || init_players(s, pack);
     for (uint32_t i = 0; !failed && i < pack->mesh_count; i++) {
         noh_pack_mesh(pack, i, &s->meshes[i]);
     }
@@ -53,56 +83,27 @@ void scene_free(scene *s)
     for (uint32_t i = 0; i < s->item_count; i++) {
         free(s->items[i].weights);
     }
+    for (uint32_t i = 0; s->players && i < s->player_count; i++) {
+        scene_close_player(&s->players[i]);
+        free(s->players[i].joint_matrices);
+    }
+    if (s->anim_file.path) {
+        pack_file_close(&s->anim_file);
+    }
+    free(s->players);
     free(s->items);
     free(s->meshes);
     memset(s, 0, sizeof *s);
 }
 
 /* "no clip 'simle' (did you mean 'smile'?)", or the list's size when nothing is near. */
-static int fail_unknown(const pack_file *file, const char *kind, const char *name, const char *const *names, size_t count)
+int scene_fail_unknown(const pack_file *file, const char *kind, const char *name, const char *const *names, size_t count)
 {
     const char *near = nearest_name(name, names, count);
     if (near) {
         return tool_fail(file->path, "no %s named '%s' (did you mean '%s'?)", kind, name, near);
     }
     return tool_fail(file->path, "no %s named '%s' (it has %zu; `noh info` lists them)", kind, name, count);
-}
-
-int scene_find_clip(const pack_file *file, const char *clip_name, noh_weight_clip *clip)
-{
-    const char **names;
-    int status;
-    for (uint32_t i = 0; i < file->pack.clip_count; i++) {
-        noh_pack_weight_clip(&file->pack, i, clip);
-        if (strcmp(clip->name, clip_name) == 0) {
-            return 0;
-        }
-    }
-    names = calloc(file->pack.clip_count + 1u, sizeof *names);
-    if (!names) {
-        return tool_fail(file->path, "out of memory");
-    }
-    for (uint32_t i = 0; i < file->pack.clip_count; i++) {
-        noh_pack_weight_clip(&file->pack, i, clip);
-        names[i] = clip->name;
-    }
-    status = fail_unknown(file, "clip", clip_name, names, file->pack.clip_count);
-    free(names);
-    return status;
-}
-
-int scene_set_clip(scene *s, const pack_file *file, const char *clip_name, double time_s)
-{
-    noh_weight_clip clip;
-    int status = scene_find_clip(file, clip_name, &clip);
-    for (uint32_t c = 0; !status && c < clip.header->channel_count; c++) {
-        for (uint32_t i = 0; i < s->item_count; i++) {
-            if (s->items[i].node == clip.channels[c].node) {
-                noh_weight_clip_sample(&clip, c, (float)time_s, s->items[i].weights);
-            }
-        }
-    }
-    return status;
 }
 
 static int fail_unknown_target(const scene *s, const pack_file *file, const char *name)
@@ -122,7 +123,7 @@ static int fail_unknown_target(const scene *s, const pack_file *file, const char
             names[count++] = noh_pack_string(&file->pack, s->meshes[m].targets[t].name);
         }
     }
-    status = fail_unknown(file, "target", name, names, count);
+    status = scene_fail_unknown(file, "target", name, names, count);
     free(names);
     return status;
 }

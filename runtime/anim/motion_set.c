@@ -1,0 +1,390 @@
+#include "anim/motion_set.h"
+
+#include <string.h>
+
+#include "anim/motion_set_internal.h"
+#include "base/arena.h"
+#include "base/hash.h"
+#include "mesh/mesh.h"
+
+typedef struct noh_motion_set_clip set_clip;
+
+/* Everything that has to be known before there is memory. */
+typedef struct counts {
+    noh_anim_set shape;
+    uint32_t groups, runs, sampled, foreign, unknown;
+    size_t clip_bytes;
+    noh_clip_cache_needs cache;
+    size_t cache_bytes;
+    int roots;
+} counts;
+
+/* Where it all lies. NULL while measuring. */
+typedef struct parts {
+    noh_motion_set *set;
+    noh_motion *motions;
+    noh_event_key *events;
+    noh_marker *markers;
+    set_clip *clips;
+    noh_motion_floats *runs;
+    noh_clip_group *groups;
+    float *defaults, *sampled;
+    noh_root_track *roots;
+    uint32_t *pack_motions;
+    const noh_clip **opened;
+    uint8_t *clip_memory, *cache_memory;
+} parts;
+
+/* ---- counting ---- */
+
+static size_t align_up(size_t bytes)
+{
+    return (bytes + 15u) & ~(size_t)15u;
+}
+
+static void count_nodes(const noh_motion_binding *b, counts *c)
+{
+    noh_clip_group group;
+    uint32_t node = 0;
+    while (noh_motion_next_node(b, &node, &c->shape.float_count, &group)) {
+        c->groups++;
+    }
+}
+
+static void count_groups(const noh_motion_binding *b, uint32_t index, const noh_clip_desc *clip, counts *c)
+{
+    noh_clip_group_reader reader = noh_clip_groups_of(clip);
+    noh_clip_group group, found;
+    while (noh_clip_next_group(&reader, &group)) {
+        if (noh_motion_is_new(b, index, clip, &group)) {
+            c->groups++;
+            c->shape.float_count += group.width;
+        }
+        if (noh_motion_is_named(&group) || noh_motion_find_node(b, &group, &found)) {
+            c->runs++;
+        } else {
+            c->unknown++;
+        }
+    }
+}
+
+static noh_result count_motion(const noh_motion_binding *b, uint32_t index, counts *c, noh_error *error)
+{
+    noh_pack_motion motion;
+    noh_clip_desc clip;
+    noh_clip_info info;
+    size_t bytes;
+    noh_error why = { NOH_OK, "", 0, 0 };
+    if (!noh_motion_fits(b, index, &motion, &clip)) {
+        c->foreign++;
+        return NOH_OK;
+    }
+    if (noh_clip_measure(&clip, &info, &bytes, &why)) {
+        return noh_fail(error, why.result == NOH_ERR_ARG ? NOH_ERR_DATA : why.result, why.what, index, why.need);
+    }
+    if (info.duration_ticks > NOH_DURATION_MAX) {
+        return noh_fail(error, NOH_ERR_LIMIT, "ticks of a clip in a motion set", index, info.duration_ticks);
+    }
+    c->shape.motion_count++;
+    c->shape.event_count += motion.header->event_count;
+    c->shape.marker_count += motion.header->marker_count;
+    c->sampled = info.float_count > c->sampled ? info.float_count : c->sampled;
+    c->clip_bytes += align_up(bytes);
+    noh_clip_cache_needs_add(&c->cache, &info);
+    count_groups(b, index, &clip, c);
+    return NOH_OK;
+}
+
+static noh_result count(const noh_motion_set_desc *desc, const noh_motion_binding *b, counts *c, noh_error *error)
+{
+    memset(c, 0, sizeof *c);
+    c->shape.joint_count = b->skeleton.joint_count;
+    c->roots = desc->root_axes != 0 && c->shape.joint_count != 0;
+    count_nodes(b, c);
+    for (uint32_t i = 0; i < b->clips->motion_count; i++) {
+        const noh_result r = count_motion(b, i, c, error);
+        if (r) return r;
+    }
+    if (c->shape.motion_count == 0) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND,
+                        c->foreign ? "no clip fits: they move another skeleton (names or parents of joints differ); build mesh and clips from one "
+                                     "skeleton"
+                                   : "the pack has no clips",
+                        0, c->foreign);
+    }
+    if (c->shape.float_count > NOH_FLOATS_MAX) {
+        return noh_fail(error, NOH_ERR_LIMIT, "floats of a motion set: morph weights of all nodes, and named ones", 0, c->shape.float_count);
+    }
+    c->cache_bytes = noh_clip_cache_needs_size(&c->cache, desc->slot_count, error);
+    return c->cache_bytes ? NOH_OK : NOH_ERR_ARG;
+}
+
+static size_t carve(noh_arena *arena, const counts *c, parts *p)
+{
+    const noh_anim_set *n = &c->shape;
+    p->set = noh_arena_carve(arena, sizeof *p->set, 16u);
+    p->opened = noh_arena_carve(arena, n->motion_count * sizeof *p->opened, 8u);
+    p->clips = noh_arena_carve(arena, n->motion_count * sizeof *p->clips, 8u);
+    p->roots = noh_arena_carve(arena, c->roots ? n->motion_count * sizeof *p->roots : 0u, 8u);
+    p->motions = noh_arena_carve(arena, n->motion_count * sizeof *p->motions, 4u);
+    p->events = noh_arena_carve(arena, n->event_count * sizeof *p->events, 4u);
+    p->markers = noh_arena_carve(arena, n->marker_count * sizeof *p->markers, 4u);
+    p->groups = noh_arena_carve(arena, c->groups * sizeof *p->groups, 4u);
+    p->defaults = noh_arena_carve(arena, n->float_count * sizeof *p->defaults, 4u);
+    p->sampled = noh_arena_carve(arena, c->sampled * sizeof *p->sampled, 4u);
+    p->pack_motions = noh_arena_carve(arena, n->motion_count * sizeof *p->pack_motions, 4u);
+    p->runs = noh_arena_carve(arena, c->runs * sizeof *p->runs, 2u);
+    p->clip_memory = noh_arena_carve(arena, c->clip_bytes, 16u);
+    p->cache_memory = noh_arena_carve(arena, c->cache_bytes, 16u);
+    return arena->used;
+}
+
+static noh_result measure(const noh_motion_set_desc *desc, noh_motion_binding *b, counts *c, size_t *bytes, noh_error *error)
+{
+    noh_arena arena = noh_arena_measure();
+    parts p;
+    noh_result r = noh_motion_bind(desc, b, error);
+    if (!r) r = count(desc, b, c, error);
+    if (!r) *bytes = carve(&arena, c, &p);
+    return r;
+}
+
+noh_result noh_motion_set_measure(const noh_motion_set_desc *desc, noh_motion_set_needs *needs, noh_error *error)
+{
+    noh_motion_binding b;
+    counts c;
+    size_t bytes = 0;
+    const noh_result r = measure(desc, &b, &c, &bytes, error);
+    if (!r) {
+        needs->bytes = bytes;
+        needs->shape = c.shape;
+        needs->foreign_count = c.foreign;
+    }
+    return r;
+}
+
+size_t noh_motion_set_size(const noh_motion_set_desc *desc, noh_error *error)
+{
+    noh_motion_set_needs needs;
+    return noh_motion_set_measure(desc, &needs, error) ? 0u : needs.bytes;
+}
+
+/* ---- filling ---- */
+
+static void fill_nodes(const noh_motion_binding *b, parts *p)
+{
+    noh_motion_set *set = p->set;
+    uint32_t node = 0, first = 0;
+    while (noh_motion_next_node(b, &node, &first, &p->groups[set->group_count])) {
+        const noh_clip_group *group = &p->groups[set->group_count++];
+        const noh_node *n = &b->mesh->nodes[group->node];
+        noh_mesh mesh;
+        (void)noh_pack_mesh(b->mesh, n->mesh, &mesh);
+        memcpy(p->defaults + group->first, n->first_weight == NOH_NONE ? mesh.weights : b->mesh->node_weights + n->first_weight,
+               group->width * sizeof *p->defaults);
+        set->anim.float_count = first;
+    }
+}
+
+/* The set's group of a named float; one that is new goes behind the others. */
+static const noh_clip_group *name_group(parts *p, const noh_clip_group *wanted)
+{
+    noh_motion_set *set = p->set;
+    noh_clip_group *group;
+    for (uint32_t i = 0; i < set->group_count; i++) {
+        if (noh_motion_is_named(&p->groups[i]) && noh_motion_same_group(&p->groups[i], wanted)) {
+            return &p->groups[i];
+        }
+    }
+    group = &p->groups[set->group_count++];
+    *group = *wanted;
+    group->first = set->anim.float_count;
+    set->anim.float_count += group->width;
+    memset(p->defaults + group->first, 0, group->width * sizeof *p->defaults);
+    return group;
+}
+
+static void fill_runs(const noh_motion_binding *b, const noh_clip *opened, parts *p, set_clip *clip)
+{
+    noh_motion_floats *run = p->runs;
+    clip->floats = run;
+    for (uint32_t g = 0; g < opened->info.group_count; g++) {
+        const noh_clip_group group = noh_clip_group_at(opened, g);
+        noh_clip_group found;
+        if (group.width == 0) {
+            continue;
+        }
+        if (noh_motion_is_named(&group)) {
+            found = *name_group(p, &group);
+        } else if (!noh_motion_find_node(b, &group, &found)) {
+            continue;
+        }
+        run->from = (uint16_t)group.first;
+        run->to = (uint16_t)found.first;
+        run->width = (uint16_t)group.width;
+        run++;
+    }
+    clip->float_runs = (uint32_t)(run - p->runs);
+    p->runs = run;
+}
+
+static void fill_keys(const noh_pack_motion *from, parts *p, noh_motion *to)
+{
+    noh_motion_set *set = p->set;
+    to->first_event = set->anim.event_count;
+    to->event_count = from->header->event_count;
+    to->first_marker = set->anim.marker_count;
+    to->marker_count = from->header->marker_count;
+    for (uint32_t i = 0; i < to->event_count; i++) {
+        noh_event_key *key = &p->events[set->anim.event_count++];
+        key->tick = from->events[i].tick;
+        key->name_hash = from->events[i].name_hash;
+        memcpy(key->payload, from->events[i].payload, sizeof key->payload);
+        key->weight_min = from->events[i].weight_min;
+    }
+    for (uint32_t i = 0; i < to->marker_count; i++) {
+        noh_marker *marker = &p->markers[set->anim.marker_count++];
+        marker->tick = from->markers[i].tick;
+        marker->id = from->markers[i].name_hash;
+    }
+}
+
+/* Everything was measured: opening succeeds. */
+static void fill_motion(const noh_motion_binding *b, uint32_t index, const noh_pack_motion *from, const noh_clip_desc *desc, parts *p)
+{
+    const uint32_t m = p->set->anim.motion_count++;
+    const size_t bytes = align_up(noh_clip_size(desc, NULL));
+    noh_motion *to = &p->motions[m];
+    noh_clip *clip = NULL;
+    (void)noh_clip_init(p->clip_memory, bytes, desc, &clip, NULL);
+    p->clip_memory += bytes;
+    p->opened[m] = clip;
+    p->pack_motions[m] = index;
+    p->clips[m].joint_count = clip->info.joint_count;
+    memset(to, 0, sizeof *to);
+    to->name_hash = noh_hash_name(from->name);
+    to->duration_ticks = (uint32_t)clip->info.duration_ticks;
+    to->loop = clip->info.flags & NOH_CLIP_FLAG_LOOP ? NOH_LOOP_REPEAT : NOH_LOOP_ONCE;
+    fill_keys(from, p, to);
+    fill_runs(b, clip, p, &p->clips[m]);
+}
+
+static void fill(const noh_motion_binding *b, parts *p)
+{
+    fill_nodes(b, p);
+    for (uint32_t i = 0; i < b->clips->motion_count; i++) {
+        noh_pack_motion motion;
+        noh_clip_desc desc;
+        if (noh_motion_fits(b, i, &motion, &desc)) {
+            fill_motion(b, i, &motion, &desc, p);
+        }
+    }
+}
+
+/* ---- sampling ---- */
+
+/* A noh_motion_sample. Joints that the clip does not have, and floats that it does not move, are at rest. */
+static void sample(void *user, uint32_t motion, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose, uint32_t float_count, float *floats)
+{
+    const noh_motion_set *set = user;
+    const set_clip *clip = &set->clips[motion];
+    const int moves_floats = float_count && clip->float_runs;
+    if (clip->joint_count || moves_floats) {
+        noh_clip_sample(set->cache, motion, clip_tick, clip->joint_count ? joint_count : 0u, pose, moves_floats ? set->sampled : NULL);
+    }
+    if (!clip->joint_count && joint_count) {
+        memcpy(pose, set->skeleton.bind_pose, joint_count * sizeof *pose);
+    }
+    if (float_count) {
+        memcpy(floats, set->anim.float_defaults, float_count * sizeof *floats);
+    }
+    for (uint32_t i = 0; moves_floats && i < clip->float_runs; i++) {
+        const noh_motion_floats *run = &clip->floats[i];
+        memcpy(floats + run->to, set->sampled + run->from, run->width * sizeof *floats);
+    }
+}
+
+static void join(const noh_motion_binding *b, const counts *c, parts *p)
+{
+    noh_motion_set *set = p->set;
+    set->skeleton = b->skeleton;
+    set->groups = p->groups;
+    set->pack_motions = p->pack_motions;
+    set->foreign_count = c->foreign;
+    set->unknown_count = c->unknown;
+    set->clips = p->clips;
+    set->sampled = p->sampled;
+    set->anim.joint_count = b->skeleton.joint_count;
+    set->anim.motions = p->motions;
+    set->anim.events = p->events;
+    set->anim.markers = p->markers;
+    set->anim.bind_pose = b->header ? b->skeleton.bind_pose : (const noh_transform *)(const void *)p->motions; /* of no joints */
+    set->anim.float_defaults = p->defaults;
+    set->anim.sample = sample;
+    set->anim.user = set;
+}
+
+static noh_result open_cache(const noh_motion_set_desc *desc, const counts *c, parts *p, noh_error *error)
+{
+    noh_clip_cache_desc cache;
+    cache.clips = p->opened;
+    cache.clip_count = c->shape.motion_count;
+    cache.slot_count = desc->slot_count;
+    return noh_clip_cache_init(p->cache_memory, c->cache_bytes, &cache, &p->set->cache, error);
+}
+
+static noh_result measure_roots(const noh_motion_set_desc *desc, parts *p, noh_error *error)
+{
+    noh_motion_set *set = p->set;
+    for (uint32_t m = 0; m < set->anim.motion_count; m++) {
+        const noh_result r = noh_root_track_measure(&set->anim, m, desc->root_axes, desc->root_up, &p->roots[m], error);
+        if (r) return r;
+    }
+    set->anim.roots = p->roots;
+    return NOH_OK;
+}
+
+noh_result noh_motion_set_init(void *memory, size_t bytes, const noh_motion_set_desc *desc, noh_motion_set **set, noh_error *error)
+{
+    noh_arena arena = noh_arena_over(memory, bytes);
+    noh_error why = { NOH_OK, "", 0, 0 };
+    noh_motion_binding b;
+    counts c;
+    parts p;
+    size_t need = 0;
+    noh_result r = measure(desc, &b, &c, &need, error);
+    if (r) return r;
+    if (!memory || ((uintptr_t)memory & 15u) != 0 || bytes < need) {
+        return noh_fail(error, NOH_ERR_MEMORY, "memory of a motion set: too little, or not 16-byte aligned", bytes, need);
+    }
+    (void)carve(&arena, &c, &p);
+    memset(p.set, 0, sizeof *p.set);
+    fill(&b, &p);
+    join(&b, &c, &p);
+    r = open_cache(desc, &c, &p, error);
+    if (r) return r;
+    if (noh_anim_set_check(&p.set->anim, &why)) {
+        return noh_fail(error, why.result, why.what, p.pack_motions[why.where], 0);
+    }
+    if (c.roots) r = measure_roots(desc, &p, error);
+    if (!r) *set = p.set;
+    return r;
+}
+
+/* ---- looking ---- */
+
+uint32_t noh_motion_set_find(const noh_motion_set *set, const char *name)
+{
+    return noh_anim_set_find(&set->anim, noh_hash_name(name));
+}
+
+int noh_motion_set_moves(const noh_motion_set *set, uint32_t motion, uint32_t group)
+{
+    const set_clip *clip = &set->clips[motion];
+    for (uint32_t i = 0; i < clip->float_runs; i++) {
+        if (clip->floats[i].to == set->groups[group].first && clip->floats[i].width == set->groups[group].width) {
+            return 1;
+        }
+    }
+    return 0;
+}

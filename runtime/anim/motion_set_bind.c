@@ -1,0 +1,131 @@
+/* motion_set_bind.c: what a pack's clips can move of a mesh pack. Reads only the packs' bytes, so that
+ * sizes are known before there is memory. */
+#include <string.h>
+
+#include "anim/motion_set_internal.h"
+#include "mesh/mesh.h"
+
+static noh_result bind_skeleton(const noh_motion_set_desc *desc, noh_motion_binding *b, noh_error *error)
+{
+    if (desc->skeleton == NOH_NONE || b->mesh->skeleton_count == 0) {
+        b->skeleton_index = NOH_NONE;
+        return NOH_OK;
+    }
+    b->skeleton_index = desc->skeleton;
+    if (noh_pack_skeleton_at(b->mesh, desc->skeleton, &b->skeleton, &b->header) != NOH_OK) {
+        return noh_fail(error, NOH_ERR_ARG, "skeleton of a motion set: the mesh pack has fewer", desc->skeleton, b->mesh->skeleton_count);
+    }
+    return NOH_OK;
+}
+
+/* Clips of this skeleton that were built in other units would be posed in the wrong size. */
+static noh_result check_units(const noh_motion_binding *b, noh_error *error)
+{
+    for (uint32_t i = 0; b->header && i < b->clips->skeleton_count; i++) {
+        noh_skeleton skeleton;
+        const noh_skeleton_header *h;
+        noh_pack_skeleton_at(b->clips, i, &skeleton, &h);
+        if (h->hash == b->header->hash && (h->unit_cm > b->header->unit_cm || h->unit_cm < b->header->unit_cm)) {
+            return noh_fail(error, NOH_ERR_NOT_FOUND, "the clips' skeleton has another unit than the mesh's: build both in one unit, or in one pack",
+                            i, 0);
+        }
+    }
+    return NOH_OK;
+}
+
+noh_result noh_motion_bind(const noh_motion_set_desc *desc, noh_motion_binding *b, noh_error *error)
+{
+    noh_result r;
+    memset(b, 0, sizeof *b);
+    if (!desc->clips) return noh_fail(error, NOH_ERR_ARG, "clips of a motion set", 0, 0);
+    if (desc->root_axes > (NOH_ROOT_GROUND | NOH_ROOT_Y)) return noh_fail(error, NOH_ERR_ARG, "root_axes of a motion set", 0, 0);
+    if (desc->root_axes && desc->root_up > 2u) return noh_fail(error, NOH_ERR_ARG, "root_up of a motion set", 0, 0);
+    b->clips = desc->clips;
+    b->mesh = desc->mesh ? desc->mesh : desc->clips;
+    r = bind_skeleton(desc, b, error);
+    return r ? r : check_units(b, error);
+}
+
+int noh_motion_fits(const noh_motion_binding *b, uint32_t index, noh_pack_motion *motion, noh_clip_desc *clip)
+{
+    noh_skeleton built_with;
+    const noh_motion_header *h;
+    (void)noh_pack_motion_at(b->clips, index, motion);
+    h = motion->header;
+    clip->bytes = motion->bytes;
+    clip->byte_count = h->clip_bytes;
+    clip->joint_count = h->joint_count;
+    clip->bind = NULL;
+    if (h->joint_count == 0) {
+        return 1;
+    }
+    if (!b->header || h->skeleton_hash != b->header->hash || h->joint_count != b->header->joint_count ||
+        (b->mesh == b->clips && h->skeleton != b->skeleton_index)) {
+        return 0;
+    }
+    (void)noh_pack_skeleton_at(b->clips, h->skeleton, &built_with, NULL);
+    clip->bind = built_with.bind_pose;
+    return 1;
+}
+
+int noh_motion_next_node(const noh_motion_binding *b, uint32_t *node, uint32_t *first, noh_clip_group *group)
+{
+    for (; *node < b->mesh->node_count; ++*node) {
+        const noh_node *n = &b->mesh->nodes[*node];
+        noh_mesh mesh;
+        if (n->mesh == NOH_NONE) {
+            continue;
+        }
+        (void)noh_pack_mesh(b->mesh, n->mesh, &mesh);
+        if (mesh.header->target_count) {
+            group->name_hash = n->name_hash;
+            group->node = (*node)++;
+            group->first = *first;
+            group->width = mesh.header->target_count;
+            *first += group->width;
+            return 1;
+        }
+    }
+    return 0;
+}
+
+int noh_motion_find_node(const noh_motion_binding *b, const noh_clip_group *wanted, noh_clip_group *found)
+{
+    noh_clip_group group;
+    uint32_t node = 0, first = 0;
+    int any = 0;
+    while (noh_motion_next_node(b, &node, &first, &group)) {
+        if (noh_motion_same_group(&group, wanted) && (!any || group.node == wanted->node)) {
+            *found = group;
+            any = 1;
+        }
+    }
+    return any;
+}
+
+static int clip_has(const noh_clip_desc *clip, const noh_clip_group *wanted, uint32_t before)
+{
+    noh_clip_group_reader reader = noh_clip_groups_of(clip);
+    noh_clip_group group;
+    while (noh_clip_next_group(&reader, &group) && group.first < before) {
+        if (noh_motion_is_named(&group) && noh_motion_same_group(&group, wanted)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+int noh_motion_is_new(const noh_motion_binding *b, uint32_t index, const noh_clip_desc *clip, const noh_clip_group *group)
+{
+    if (!noh_motion_is_named(group) || group->width == 0 || clip_has(clip, group, group->first)) {
+        return 0;
+    }
+    for (uint32_t i = 0; i < index; i++) {
+        noh_pack_motion motion;
+        noh_clip_desc other;
+        if (noh_motion_fits(b, i, &motion, &other) && clip_has(&other, group, NOH_NONE)) {
+            return 0;
+        }
+    }
+    return 1;
+}

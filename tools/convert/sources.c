@@ -1,0 +1,285 @@
+#include "sources.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bvh_read.h"
+#include "model_build.h"
+#include "raw_set.h"
+#include "rcl.h"
+#include "resample.h"
+
+static int out_of_memory(model_error *error)
+{
+    return model_fail(error, "", "out of memory");
+}
+
+/* ---- reading ---- */
+
+static int has_ending(const char *path, const char *ending)
+{
+    size_t length = strlen(path), tail = strlen(ending);
+    if (length < tail) {
+        return 0;
+    }
+    for (size_t i = 0; i < tail; i++) {
+        char c = path[length - tail + i];
+        if ((c >= 'A' && c <= 'Z' ? c + 32 : c) != ending[i]) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static int resample_set(raw_set *set, double rate_hz, model_error *error)
+{
+    for (uint32_t i = 0; i < set->clip_count; i++) {
+        raw_clip resampled;
+        if (raw_clip_resample(&set->clips[i], rate_hz, &resampled, error)) {
+            return 1;
+        }
+        raw_clip_clear(&set->clips[i]);
+        set->clips[i] = resampled;
+    }
+    return 0;
+}
+
+static int read_motion_file(const char *path, double rate_hz, double unit_cm, source *s, model_error *error)
+{
+    bvh_options bvh = { unit_cm, 0 };
+    int failed = has_ending(path, ".rcl") ? rcl_read(path, &s->single, error) : bvh_read(path, &bvh, &s->single, error);
+    if (failed) {
+        return 1;
+    }
+    s->m = model_new();
+    s->sets = malloc(sizeof *s->sets);
+    if (!s->m || !s->sets) {
+        return out_of_memory(error);
+    }
+    s->sets[0] = s->single;
+    s->set_count = 1;
+    return rate_hz > 0.0 ? resample_set(s->single, rate_hz, error) : 0;
+}
+
+static int read_gltf_file(const char *path, double rate_hz, source *s, model_error *error)
+{
+    motion_options rate = { rate_hz };
+    if (model_read_gltf(path, &s->m, error) || motion_from_model(s->m, &rate, &s->made, error)) {
+        return 1;
+    }
+    s->sets = malloc(((size_t)s->made->set_count + 1u) * sizeof *s->sets); /* with room for `single` */
+    if (!s->sets) {
+        return out_of_memory(error);
+    }
+    s->set_count = s->made->set_count;
+    if (s->set_count) memcpy(s->sets, s->made->sets, s->set_count * sizeof *s->sets);
+    return 0;
+}
+
+int source_read(const char *path, double rate_hz, double unit_cm, source *s, model_error *error)
+{
+    memset(s, 0, sizeof *s);
+    if (has_ending(path, ".rcl") || has_ending(path, ".bvh")) {
+        return read_motion_file(path, rate_hz, unit_cm, s, error);
+    }
+    return read_gltf_file(path, rate_hz, s, error);
+}
+
+void source_free(source *s)
+{
+    motion_free(s->made);
+    raw_set_free(s->single);
+    model_free(s->m);
+    free(s->sets);
+    memset(s, 0, sizeof *s);
+}
+
+void source_drop_clips(source *s)
+{
+    for (uint32_t i = 0; i < s->set_count; i++) {
+        for (uint32_t c = 0; c < s->sets[i]->clip_count; c++) {
+            raw_clip_clear(&s->sets[i]->clips[c]);
+        }
+        s->sets[i]->clip_count = 0;
+    }
+}
+
+/* ---- which skeleton ---- */
+
+static const char *joint_name(const raw_skeleton *s, uint32_t joint)
+{
+    return joint == MODEL_NONE ? "none" : s->joints[joint].name ? s->joints[joint].name : "";
+}
+
+static int fail_skeletons(const raw_skeleton *base, const char *base_path, const raw_skeleton *other, model_error *error)
+{
+    uint32_t least = base->joint_count < other->joint_count ? base->joint_count : other->joint_count;
+    for (uint32_t j = 0; j < least; j++) {
+        const char *here = joint_name(other, j), *there = joint_name(base, j);
+        if (strcmp(here, there) != 0) {
+            return model_fail(error, "", "its skeleton is not that of %.80s: joint %u is '%.40s' here and '%.40s' there", base_path, j, here, there);
+        }
+        if (other->joints[j].parent != base->joints[j].parent) {
+            return model_fail(error, "", "its skeleton is not that of %.80s: the parent of joint '%.30s' is '%.30s' here and '%.30s' there", base_path,
+                              here, joint_name(other, other->joints[j].parent), joint_name(base, base->joints[j].parent));
+        }
+    }
+    return model_fail(error, "", "its skeleton is not that of %.80s: it has %u joints here and %u there", base_path, other->joint_count,
+                      base->joint_count);
+}
+
+/* The base's set that clips of joints go to. */
+static int find_set(const source *base, const char *base_path, const raw_set *from, raw_set **to, model_error *error)
+{
+    const raw_skeleton *first = NULL;
+    for (uint32_t i = 0; i < base->set_count; i++) {
+        const raw_skeleton *s = &base->sets[i]->skeleton;
+        if (s->joint_count && raw_skeleton_hash(s) == raw_skeleton_hash(&from->skeleton)) {
+            *to = base->sets[i];
+            return 0;
+        }
+        first = !first && s->joint_count ? s : first;
+    }
+    return first ? fail_skeletons(first, base_path, &from->skeleton, error)
+                 : model_fail(error, "", "it moves a skeleton, and %.150s has none", base_path);
+}
+
+/* A set for clips without joints: any will do. */
+static int any_set(source *base, raw_set **to, model_error *error)
+{
+    if (base->set_count == 0) {
+        base->single = raw_set_new(0, 0);
+        if (!base->single) {
+            return out_of_memory(error);
+        }
+        base->single->skeleton.unit_cm = 100.0;
+        base->sets[0] = base->single;
+        base->set_count = 1;
+    }
+    *to = base->sets[0];
+    return 0;
+}
+
+/* ---- moving clips ---- */
+
+static uint32_t find_node(const model *m, const raw_floats *floats)
+{
+    for (uint32_t n = 0; n < m->node_count; n++) {
+        const model_node *node = &m->nodes[n];
+        if (node->mesh != MODEL_NONE && m->meshes[node->mesh].target_count == floats->width && strcmp(node->name, floats->name) == 0) {
+            return n;
+        }
+    }
+    return MODEL_NONE;
+}
+
+/* Weights are of the base's nodes now; those of nodes that it does not have are left out. */
+static int bind_weights(source *base, const char *base_path, raw_clip *clip, model_error *error)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < clip->float_count; i++) {
+        raw_floats floats = clip->floats[i];
+        uint32_t node = floats.node == MODEL_NONE ? MODEL_NONE : find_node(base->m, &floats);
+        if (floats.node != MODEL_NONE && node == MODEL_NONE) {
+            int failed = model_warn(base->m, "clip '%s': %s has no node '%s' with %u targets: its weights were left out", clip->name, base_path,
+                                    floats.name, floats.width);
+            free(floats.name);
+            free(floats.values);
+            free(floats.reach);
+            memset(&clip->floats[i], 0, sizeof floats);
+            if (failed) return out_of_memory(error);
+            continue;
+        }
+        floats.node = node;
+        memset(&clip->floats[i], 0, sizeof floats);
+        clip->floats[kept++] = floats;
+    }
+    clip->float_count = kept;
+    return 0;
+}
+
+static int has_clip(const raw_set *set, const char *name)
+{
+    for (uint32_t c = 0; c < set->clip_count; c++) {
+        if (strcmp(set->clips[c].name, name) == 0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* FILE/NAME. */
+static int rename_clip(raw_clip *clip, const char *path, model_error *error)
+{
+    const char *slash = strrchr(path, '/'), *stem = slash ? slash + 1 : path, *dot = strrchr(stem, '.');
+    size_t length = dot ? (size_t)(dot - stem) : strlen(stem), bytes = length + strlen(clip->name) + 2;
+    char *name = malloc(bytes);
+    if (!name) {
+        return out_of_memory(error);
+    }
+    snprintf(name, bytes, "%.*s/%s", (int)length, stem, clip->name);
+    free(clip->name);
+    clip->name = name;
+    return 0;
+}
+
+static void scale_translations(raw_clip *clip, double scale)
+{
+    for (size_t i = 0; i < (size_t)clip->frame_count * clip->joint_count * 3u; i++) {
+        clip->translations[i] = (float)((double)clip->translations[i] * scale);
+    }
+}
+
+/* The clip is then empty where it was. */
+static int move_clip(raw_clip *clip, raw_set *to, model_error *error)
+{
+    raw_clip *grown = realloc(to->clips, ((size_t)to->clip_count + 1u) * sizeof *grown);
+    if (!grown) {
+        return out_of_memory(error);
+    }
+    to->clips = grown;
+    to->clips[to->clip_count++] = *clip;
+    memset(clip, 0, sizeof *clip);
+    return 0;
+}
+
+static int join_clip(source *base, const char *base_path, const raw_set *from, raw_clip *clip, const char *path, uint32_t *joined,
+                     model_error *error)
+{
+    raw_set *to = NULL;
+    if (clip->joint_count ? find_set(base, base_path, from, &to, error) : any_set(base, &to, error)) {
+        return 1;
+    }
+    if (bind_weights(base, base_path, clip, error) || (has_clip(to, clip->name) && rename_clip(clip, path, error))) {
+        return 1;
+    }
+    if (has_clip(to, clip->name)) {
+        return model_fail(error, "", "two clips would be called '%.150s': build them from files of different names", clip->name);
+    }
+    if (clip->joint_count == 0 && clip->float_count == 0) {
+        return 0; /* nothing of it was kept */
+    }
+    *joined += 1;
+    scale_translations(clip, from->skeleton.unit_cm / to->skeleton.unit_cm);
+    return move_clip(clip, to, error);
+}
+
+int source_join(source *base, const char *base_path, source *other, const char *other_path, model_error *error)
+{
+    uint32_t joined = 0;
+    for (uint32_t i = 0; i < other->set_count; i++) {
+        for (uint32_t c = 0; c < other->sets[i]->clip_count; c++) {
+            if (join_clip(base, base_path, other->sets[i], &other->sets[i]->clips[c], other_path, &joined, error)) {
+                return 1;
+            }
+        }
+    }
+    if (joined == 0) {
+        return model_fail(error, "", "it has no clips to add to %.150s", base_path);
+    }
+    if (other->m->mesh_count && model_warn(base->m, "%s: of this file only the clips were taken: the meshes are those of %s", other_path, base_path)) {
+        return out_of_memory(error);
+    }
+    return 0;
+}

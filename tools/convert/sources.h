@@ -1,0 +1,30 @@
+/* sources.h: the files that one pack is built from.
+ *
+ * One of them is the base: its model and its skeletons are the pack's. Of the others the clips
+ * are added: joints where their skeleton has the same joints (names and parents) as one of the
+ * base, morph weights where the base has a node of the same name with as many targets. */
+#ifndef NOH_CONVERT_SOURCES_H
+#define NOH_CONVERT_SOURCES_H
+
+#include "gltf_motion.h"
+
+typedef struct source {
+    model *m;        /* of a glTF file; an empty one otherwise */
+    motion *made;    /* of a glTF file */
+    raw_set *single; /* of a .bvh or .rcl; or clips that were added to a glTF file without any motion */
+    raw_set **sets;  /* [set_count] those of `made`, or `single` */
+    uint32_t set_count;
+} source;
+
+/* rate_hz 0: as the file has it. unit_cm: of .bvh. 0, or 1 and *error; free in both cases. */
+int source_read(const char *path, double rate_hz, double unit_cm, source *s, model_error *error);
+void source_free(source *s);
+
+/* Move the clips of `other` to `base`. Translations are brought to the base's unit. A clip whose name the
+ * base has is called FILE/NAME, by the file's name without its ending. What is left out is a warning of base.
+ * errors  1: no skeleton of base has these joints (what differs first is said), or `other` has no clips */
+int source_join(source *base, const char *base_path, source *other, const char *other_path, model_error *error);
+
+void source_drop_clips(source *s);
+
+#endif

@@ -1,0 +1,274 @@
+/* scene_play.c: a scene posed by clips: motion sets, controllers, and where their poses go. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "noh_tool.h"
+
+/* ---- clips ---- */
+
+int tool_clip_info(const pack_file *file, uint32_t index, noh_pack_motion *motion, noh_clip_info *info)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_skeleton skeleton;
+    noh_clip_desc desc;
+    size_t bytes;
+    memset(&skeleton, 0, sizeof skeleton);
+    noh_pack_motion_at(&file->pack, index, motion);
+    (void)noh_pack_skeleton_at(&file->pack, motion->header->skeleton, &skeleton, NULL);
+    desc.bytes = motion->bytes;
+    desc.byte_count = motion->header->clip_bytes;
+    desc.bind = skeleton.bind_pose;
+    desc.joint_count = motion->header->joint_count;
+    return noh_clip_measure(&desc, info, &bytes, &error) ? tool_fail(file->path, "clip '%s': %s", motion->name, error.what) : 0;
+}
+
+double tool_clip_seconds(const noh_clip_info *info)
+{
+    return (double)info->duration_ticks / (double)NOH_TICKS_PER_SECOND;
+}
+
+/* ---- opening ---- */
+
+int scene_open_anim(scene *s, const pack_file *file, const char *path)
+{
+    int status = path ? pack_file_open(&s->anim_file, path) : 0;
+    if (!path || status) {
+        s->anim_file.path = NULL; /* nothing to close */
+        return status;
+    }
+    s->anim = &s->anim_file;
+    return s->anim->pack.motion_count ? 0 : tool_fail(path, "the pack has no clips for %s", file->path);
+}
+
+static noh_motion_set_desc set_desc(const scene *s, const pack_file *file, uint32_t player)
+{
+    noh_motion_set_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.clips = &s->anim->pack;
+    desc.mesh = &file->pack;
+    desc.skeleton = player;
+    return desc;
+}
+
+static noh_controller_desc controller_desc(const noh_anim_set *set)
+{
+    noh_controller_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.set = set;
+    desc.track_count = 1;
+    return desc;
+}
+
+/* A pose that is made, beside the scratch. */
+static uint64_t pose_bytes(const noh_anim_set *set)
+{
+    return (uint64_t)set->joint_count * (sizeof(noh_transform) + 12 * sizeof(float)) + (uint64_t)set->float_count * sizeof(float);
+}
+
+/* NOT_FOUND is no failure of one player: another one's skeleton may be moved. */
+static int failed_for_good(const scene *s, const pack_file *file, uint32_t fitting, const noh_error *error)
+{
+    if (error->result != NOH_OK && error->result != NOH_ERR_NOT_FOUND) {
+        return tool_fail_error(s->anim->path, error);
+    }
+    return fitting == 0 && s->anim->pack.motion_count ? tool_fail(s->anim->path, "for %s: %s", file->path, error->what) : 0;
+}
+
+int scene_measure_players(const scene *s, const pack_file *file, uint32_t controllers, uint64_t *clips, uint64_t *controller_bytes,
+                          uint64_t *poses)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    uint32_t fitting = 0;
+    for (uint32_t i = 0; i < s->player_count && s->anim->pack.motion_count; i++) {
+        noh_motion_set_desc desc = set_desc(s, file, i);
+        noh_motion_set_needs needs;
+        noh_controller_desc controller;
+        if (noh_motion_set_measure(&desc, &needs, &error) == NOH_OK) {
+            controller = controller_desc(&needs.shape);
+            *clips += needs.bytes;
+            *controller_bytes += (uint64_t)controllers * noh_controller_size(&controller);
+            *poses += noh_pose_scratch_size(&needs.shape, 0) + pose_bytes(&needs.shape);
+            fitting++;
+        } else if (error.result != NOH_ERR_NOT_FOUND) {
+            break;
+        }
+    }
+    return failed_for_good(s, file, fitting, &error);
+}
+
+static int open_controllers(scene_player *p, uint32_t count)
+{
+    const noh_controller_desc desc = controller_desc(&p->set->anim);
+    const size_t bytes = noh_controller_size(&desc);
+    p->controllers = calloc(count, sizeof *p->controllers);
+    for (uint32_t i = 0; p->controllers && i < count; i++) {
+        void *memory = malloc(bytes);
+        if (!memory || noh_controller_init(memory, bytes, &desc, &p->controllers[i], NULL)) {
+            free(memory);
+            return 1;
+        }
+        p->controller_count++;
+        p->controller_bytes += bytes;
+    }
+    return !p->controllers;
+}
+
+static int open_poses(scene_player *p)
+{
+    const noh_anim_set *set = &p->set->anim;
+    const size_t bytes = noh_pose_scratch_size(set, 0);
+    p->scratch_memory = malloc(bytes + 1);
+    p->pose = calloc(set->joint_count + 1u, sizeof *p->pose);
+    p->floats = calloc(set->float_count + 1u, sizeof *p->floats);
+    p->pose_bytes = bytes + pose_bytes(set);
+    return !p->scratch_memory || !p->pose || !p->floats || noh_pose_scratch_init(p->scratch_memory, bytes, set, 0, &p->scratch, NULL);
+}
+
+/* 0 also where no clip fits: the player then has no set, and the error says why. */
+static int open_player(scene *s, const pack_file *file, uint32_t index, uint32_t controllers, noh_error *error)
+{
+    const noh_motion_set_desc desc = set_desc(s, file, index);
+    scene_player *p = &s->players[index];
+    const size_t bytes = noh_motion_set_size(&desc, error);
+    if (!bytes) {
+        return error->result == NOH_ERR_NOT_FOUND ? 0 : tool_fail_error(s->anim->path, error);
+    }
+    p->set_memory = malloc(bytes);
+    p->set_bytes = bytes;
+    if (!p->set_memory) {
+        return tool_fail(s->anim->path, "out of memory");
+    }
+    if (noh_motion_set_init(p->set_memory, bytes, &desc, &p->set, error)) {
+        p->set = NULL;
+        return tool_fail_error(s->anim->path, error);
+    }
+    return open_controllers(p, controllers) || open_poses(p) ? tool_fail(s->anim->path, "out of memory") : 0;
+}
+
+void scene_close_player(scene_player *p)
+{
+    for (uint32_t i = 0; i < p->controller_count; i++) {
+        free(p->controllers[i]);
+    }
+    free(p->controllers);
+    free(p->set_memory);
+    free(p->scratch_memory);
+    free(p->pose);
+    free(p->floats);
+    p->controllers = NULL;
+    p->set_memory = p->scratch_memory = NULL;
+    p->pose = NULL;
+    p->floats = NULL;
+    p->set = NULL;
+    p->controller_count = 0;
+    p->set_bytes = p->controller_bytes = p->pose_bytes = 0;
+}
+
+static int is_open(const scene *s)
+{
+    for (uint32_t i = 0; i < s->player_count; i++) {
+        if (s->players[i].set) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+int scene_open_players(scene *s, const pack_file *file, uint32_t controllers)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    int status = 0;
+    if (is_open(s) || s->anim->pack.motion_count == 0) {
+        return 0;
+    }
+    for (uint32_t i = 0; i < s->player_count && !status; i++) {
+        status = open_player(s, file, i, controllers, &error);
+    }
+    return status ? status : failed_for_good(s, file, (uint32_t)is_open(s), &error);
+}
+
+/* ---- posing ---- */
+
+static int fail_clip(const scene *s, const pack_file *file, const char *name)
+{
+    const uint32_t count = s->anim->pack.motion_count;
+    const char **names = calloc(count + 1u, sizeof *names);
+    int status = 0;
+    for (uint32_t i = 0; names && i < count && !status; i++) {
+        noh_pack_motion motion;
+        noh_pack_motion_at(&s->anim->pack, i, &motion);
+        names[i] = motion.name;
+        if (strcmp(motion.name, name) == 0) {
+            status = tool_fail(s->anim->path, "clip '%s' moves another skeleton than %s has: names or parents of joints differ", name, file->path);
+        }
+    }
+    if (!status) {
+        status = names ? scene_fail_unknown(s->anim, "clip", name, names, count) : tool_fail(file->path, "out of memory");
+    }
+    free(names);
+    return status;
+}
+
+static int has_motion(const scene_player *p, const char *name, uint32_t *motion)
+{
+    *motion = p->set ? noh_motion_set_find(p->set, name) : 0;
+    return p->set && *motion < p->set->anim.motion_count;
+}
+
+/* The weights that this motion moves, to all items of its nodes. */
+static void take_weights(scene *s, const scene_player *p, uint32_t motion)
+{
+    for (uint32_t g = 0; g < p->set->group_count; g++) {
+        const noh_clip_group *group = &p->set->groups[g];
+        for (uint32_t i = 0; noh_motion_set_moves(p->set, motion, g) && i < s->item_count; i++) {
+            if (s->items[i].node == group->node && group->node != NOH_NONE) {
+                memcpy(s->items[i].weights, p->floats + group->first, group->width * sizeof(float));
+            }
+        }
+    }
+}
+
+static int pose_player(scene *s, scene_player *p, uint32_t motion, double time_s)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    const double limit_s = 1e8; /* within what a track's position can be */
+    noh_track_desc track;
+    memset(&track, 0, sizeof track);
+    track.motion = motion;
+    track.position_ticks = noh_ticks_from_seconds(time_s > limit_s ? limit_s : time_s < -limit_s ? -limit_s : time_s);
+    if (noh_controller_start(p->controllers[0], &p->set->anim, 0, &track, &error)) {
+        return tool_fail_error(s->anim->path, &error);
+    }
+    noh_controller_pose(p->controllers[0], &p->set->anim, &p->scratch, p->pose, p->floats);
+    take_weights(s, p, motion);
+    if (p->skeleton.joint_count) {
+        noh_local_to_model(&p->skeleton, p->pose, p->skeleton.joint_count, p->joint_matrices);
+    }
+    return 0;
+}
+
+int scene_set_clip(scene *s, const pack_file *file, const char *clip_name, double time_s)
+{
+    int status = scene_open_players(s, file, 1), found = 0;
+    for (uint32_t i = 0; i < s->player_count && !status; i++) {
+        uint32_t motion;
+        if (has_motion(&s->players[i], clip_name, &motion)) {
+            status = pose_player(s, &s->players[i], motion, time_s);
+            found = 1;
+        }
+    }
+    return status || found ? status : fail_clip(s, file, clip_name);
+}
+
+int scene_clip_seconds(scene *s, const pack_file *file, const char *clip_name, double *seconds)
+{
+    int status = scene_open_players(s, file, 1);
+    for (uint32_t i = 0; i < s->player_count && !status; i++) {
+        uint32_t motion;
+        if (has_motion(&s->players[i], clip_name, &motion)) {
+            *seconds = (double)s->players[i].set->anim.motions[motion].duration_ticks / (double)NOH_TICKS_PER_SECOND;
+            return 0;
+        }
+    }
+    return status ? status : fail_clip(s, file, clip_name);
+}
