@@ -2,12 +2,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "view.h"
+#include "stage.h"
 
 typedef struct render_args {
     const char *pack, *output, *clip, *anim, *path, *accumulate, *driver, *debug;
     uint32_t size[2];
     double time_s;
+    int show_bones;
     option_list weights;
     view_options view;
     load_options load;
@@ -34,7 +35,7 @@ static int read_args(int argc, char **argv, render_args *a)
         { "--time", OPTION_NUMBER, &a->time_s },    { "--path", OPTION_TEXT, &a->path },
         { "--accumulate", OPTION_TEXT, &a->accumulate }, { "--driver", OPTION_TEXT, &a->driver },
         { "--camera", OPTION_TEXT, &a->view.camera }, { "--debug", OPTION_TEXT, &a->debug },
-        { "--anim", OPTION_TEXT, &a->anim }
+        { "--anim", OPTION_TEXT, &a->anim },        { "--bones", OPTION_FLAG, &a->show_bones }
     };
     int count, status = tool_options(argc, argv, options, sizeof options / sizeof options[0], &a->pack, 1, &count);
     if (!status) status = parse_path(a->path, &a->load.path);
@@ -48,36 +49,35 @@ static int read_args(int argc, char **argv, render_args *a)
     return status;
 }
 
-static int draw(gpu *g, const pack_file *file, const scene *s, const render_args *a, uint8_t *rgba)
+static void print_done(const render_args *a, const stage *st)
 {
-    load l;
-    canvas c;
+    const noh_gl_morph_plan *plan;
+    if (st->bones) {
+        printf("%s: %ux%u, bones\n", a->output, a->size[0], a->size[1]);
+        return;
+    }
+    plan = noh_gl_morph_plan_of(st->load.morph.morph);
+    printf("%s: %ux%u, %s-%s (%s)\n", a->output, a->size[0], a->size[1], noh_morph_path_name(plan->path),
+           noh_accumulate_name(plan->accumulate), plan->reason);
+}
+
+static int draw(gpu *g, const pack_file *file, const scene *s, const render_args *a, int show_bones, uint8_t *rgba)
+{
+    stage st;
     noh_gl_camera camera;
-    bounds box = scene_bounds(s, file, view_wants_face(&a->view));
+    bounds box = stage_bounds(s, file, view_wants_face(&a->view), show_bones);
     int status = view_camera(&a->view, &box, &camera);
+    if (!status) {
+        status = stage_open(&st, g, file, s, &a->load, show_bones, a->size[0], a->size[1]);
+    }
     if (status) {
         return status;
     }
-    status = load_open(&l, g, file, s, &a->load);
-    if (status) {
-        return status;
-    }
-    status = load_update(&l, NULL);
+    status = stage_draw(&st, &camera, rgba);
     if (!status) {
-        status = canvas_open(&c, g, a->size[0], a->size[1]);
+        print_done(a, &st);
     }
-    if (!status) {
-        canvas_begin(&c);
-        load_draw(&l, &camera);
-        status = canvas_read(&c, rgba);
-        canvas_close(&c);
-    }
-    if (!status) {
-        const noh_gl_morph_plan *plan = noh_gl_morph_plan_of(l.morph.morph);
-        printf("%s: %ux%u, %s-%s (%s)\n", a->output, a->size[0], a->size[1], noh_morph_path_name(plan->path),
-               noh_accumulate_name(plan->accumulate), plan->reason);
-    }
-    load_close(&l);
+    stage_close(&st);
     return status;
 }
 
@@ -86,14 +86,15 @@ static int pose_and_draw(const pack_file *file, const render_args *a)
     uint8_t *rgba = malloc((size_t)a->size[0] * a->size[1] * 4);
     scene s;
     gpu g;
-    int status = rgba ? scene_init(&s, file) : tool_fail(file->path, "out of memory");
+    int show_bones, status = rgba ? scene_init(&s, file) : tool_fail(file->path, "out of memory");
     if (!status) {
-        status = scene_open_anim(&s, file, a->anim);
+        show_bones = stage_shows_bones(&s, file, a->show_bones);
+        status = show_bones < 0 ? EXIT_FAILED : scene_open_anim(&s, file, a->anim);
         if (!status && a->clip) status = scene_set_clip(&s, file, a->clip, a->time_s);
         if (!status) status = scene_set_weights(&s, file, &a->weights);
         if (!status) status = gpu_open(&g, a->driver);
         if (!status) {
-            status = draw(&g, file, &s, a, rgba);
+            status = draw(&g, file, &s, a, show_bones, rgba);
             gpu_close(&g);
         }
         scene_free(&s);

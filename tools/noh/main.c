@@ -20,9 +20,10 @@ static const struct verb {
     { "render", verb_render,
       "PACK -o OUT.png [--size 512x512] [--weight NAME=V]... [--clip NAME] [--time S] [--anim PACK]\n"
       "                 [--path P] [--accumulate auto|f32|f16] [--driver egl|osmesa|angle]\n"
-      "                 [--camera face|body|AZ,EL,DIST] [--debug none|position|normal|tangent]",
+      "                 [--camera face|body|AZ,EL,DIST] [--debug none|position|normal|tangent] [--bones]",
       "a picture" },
     { "sheet", verb_sheet, "PACK -o OUT.png [--clip NAME [--anim PACK] [--tiles 24] | --target NAME...] [--tile 192] [--columns N] [--camera face]\n"
+      "                 [--blend CLIP | --to CLIP [--transition fade|inertia] [--over 0.3]] [--bones]\n"
       "                 [--path P] [--accumulate A] [--driver D]", "a contact sheet: every target at full weight, or a clip in time" },
     { "dump", verb_dump, "PACK -o OUT.obj [--weight NAME=V]... [--clip NAME] [--time S] [--anim PACK] [--path P]",
       "the deformed mesh, as drawn, baked to a plain one" },

@@ -150,6 +150,23 @@ int scene_measure_players(const scene *s, const pack_file *file, uint32_t contro
                           uint64_t *poses);
 /* Weights and joint matrices of a clip at a time; unknown names are an error that suggests the nearest. */
 int scene_set_clip(scene *s, const pack_file *file, const char *clip_name, double time_s);
+/* A player's first controller as it was made; its pose, to its matrices and the scene's weights. */
+int scene_reset_player(scene_player *p);
+void scene_pose_player(scene *s, scene_player *p);
+
+typedef enum scene_mix { SCENE_MIX_BLEND, SCENE_MIX_FADE, SCENE_MIX_INERTIA } scene_mix;
+
+/* Two clips of one skeleton at once. */
+typedef struct scene_pair {
+    const char *from, *to;
+    scene_mix mix;
+    double weight; /* BLEND: of `to`, 0..1 */
+    double lead_s; /* FADE, INERTIA: how long `from` plays alone */
+    double over_s; /* and how long the transition takes */
+} scene_pair;
+
+/* time: the phase of both, 0..1, of a blend; else seconds from the start of `from`. */
+int scene_set_pair(scene *s, const pack_file *file, const scene_pair *pair, double time);
 /* A clip's length; an error likewise. */
 int scene_clip_seconds(scene *s, const pack_file *file, const char *clip_name, double *seconds);
 /* NAME=VALUE for every mesh that has such a target; suggests the nearest name otherwise. */

@@ -55,7 +55,7 @@ static noh_controller_desc controller_desc(const noh_anim_set *set)
     noh_controller_desc desc;
     memset(&desc, 0, sizeof desc);
     desc.set = set;
-    desc.track_count = 1;
+    desc.flags = NOH_CONTROLLER_INERTIAL;
     return desc;
 }
 
@@ -87,7 +87,7 @@ int scene_measure_players(const scene *s, const pack_file *file, uint32_t contro
             controller = controller_desc(&needs.shape);
             *clips += needs.bytes;
             *controller_bytes += (uint64_t)controllers * noh_controller_size(&controller);
-            *poses += noh_pose_scratch_size(&needs.shape, 0) + pose_bytes(&needs.shape);
+            *poses += noh_pose_scratch_size(&needs.shape, 1) + pose_bytes(&needs.shape);
             fitting++;
         } else if (error.result != NOH_ERR_NOT_FOUND) {
             break;
@@ -116,12 +116,12 @@ static int open_controllers(scene_player *p, uint32_t count)
 static int open_poses(scene_player *p)
 {
     const noh_anim_set *set = &p->set->anim;
-    const size_t bytes = noh_pose_scratch_size(set, 0);
+    const size_t bytes = noh_pose_scratch_size(set, 1);
     p->scratch_memory = malloc(bytes + 1);
     p->pose = calloc(set->joint_count + 1u, sizeof *p->pose);
     p->floats = calloc(set->float_count + 1u, sizeof *p->floats);
     p->pose_bytes = bytes + pose_bytes(set);
-    return !p->scratch_memory || !p->pose || !p->floats || noh_pose_scratch_init(p->scratch_memory, bytes, set, 0, &p->scratch, NULL);
+    return !p->scratch_memory || !p->pose || !p->floats || noh_pose_scratch_init(p->scratch_memory, bytes, set, 1, &p->scratch, NULL);
 }
 
 /* 0 also where no clip fits: the player then has no set, and the error says why. */
@@ -215,12 +215,25 @@ static int has_motion(const scene_player *p, const char *name, uint32_t *motion)
     return p->set && *motion < p->set->anim.motion_count;
 }
 
-/* The weights that this motion moves, to all items of its nodes. */
-static void take_weights(scene *s, const scene_player *p, uint32_t motion)
+/* Whether one of the motions that play moves the floats of a group. */
+static int is_moved(const scene_player *p, uint32_t group)
+{
+    const noh_controller *c = p->controllers[0];
+    for (uint32_t t = 0; t < c->track_count; t++) {
+        const noh_track *track = noh_controller_track(c, t);
+        if (track->mode == NOH_TRACK_ON && noh_motion_set_moves(p->set, track->motion, group)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* The weights that are moved, to all items of their nodes. */
+static void take_weights(scene *s, const scene_player *p)
 {
     for (uint32_t g = 0; g < p->set->group_count; g++) {
         const noh_clip_group *group = &p->set->groups[g];
-        for (uint32_t i = 0; noh_motion_set_moves(p->set, motion, g) && i < s->item_count; i++) {
+        for (uint32_t i = 0; is_moved(p, g) && i < s->item_count; i++) {
             if (s->items[i].node == group->node && group->node != NOH_NONE) {
                 memcpy(s->items[i].weights, p->floats + group->first, group->width * sizeof(float));
             }
@@ -228,23 +241,39 @@ static void take_weights(scene *s, const scene_player *p, uint32_t motion)
     }
 }
 
-static int pose_player(scene *s, scene_player *p, uint32_t motion, double time_s)
+int scene_reset_player(scene_player *p)
+{
+    const noh_controller_desc desc = controller_desc(&p->set->anim);
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_controller *c = p->controllers[0];
+    return noh_controller_init(c, noh_controller_bytes(c), &desc, &p->controllers[0], &error) ? tool_fail_error("controller", &error) : 0;
+}
+
+void scene_pose_player(scene *s, scene_player *p)
+{
+    noh_controller_pose(p->controllers[0], &p->set->anim, &p->scratch, p->pose, p->floats);
+    take_weights(s, p);
+    if (p->skeleton.joint_count) {
+        noh_local_to_model(&p->skeleton, p->pose, p->skeleton.joint_count, p->joint_matrices);
+    }
+}
+
+static int play_clip(scene *s, scene_player *p, uint32_t motion, double time_s)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
     const double limit_s = 1e8; /* within what a track's position can be */
     noh_track_desc track;
+    int status = scene_reset_player(p);
     memset(&track, 0, sizeof track);
     track.motion = motion;
     track.position_ticks = noh_ticks_from_seconds(time_s > limit_s ? limit_s : time_s < -limit_s ? -limit_s : time_s);
-    if (noh_controller_start(p->controllers[0], &p->set->anim, 0, &track, &error)) {
+    if (!status && noh_controller_start(p->controllers[0], &p->set->anim, 0, &track, &error)) {
         return tool_fail_error(s->anim->path, &error);
     }
-    noh_controller_pose(p->controllers[0], &p->set->anim, &p->scratch, p->pose, p->floats);
-    take_weights(s, p, motion);
-    if (p->skeleton.joint_count) {
-        noh_local_to_model(&p->skeleton, p->pose, p->skeleton.joint_count, p->joint_matrices);
+    if (!status) {
+        scene_pose_player(s, p);
     }
-    return 0;
+    return status;
 }
 
 int scene_set_clip(scene *s, const pack_file *file, const char *clip_name, double time_s)
@@ -253,7 +282,7 @@ int scene_set_clip(scene *s, const pack_file *file, const char *clip_name, doubl
     for (uint32_t i = 0; i < s->player_count && !status; i++) {
         uint32_t motion;
         if (has_motion(&s->players[i], clip_name, &motion)) {
-            status = pose_player(s, &s->players[i], motion, time_s);
+            status = play_clip(s, &s->players[i], motion, time_s);
             found = 1;
         }
     }

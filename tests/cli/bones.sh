@@ -1,0 +1,73 @@
+#!/bin/sh
+# Skeletons as pictures: render and sheet of a pack that has nothing but motion; two clips at once.
+. "$(dirname "$0")/lib.sh"
+
+bvh() { # NAME SECOND-FRAME-OF-THE-KNEE
+    cat >"$work/$1.bvh" <<BVH
+HIERARCHY
+ROOT hips
+{
+  OFFSET 0 0 0
+  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
+  JOINT knee
+  {
+    OFFSET 0 -10 0
+    CHANNELS 3 Zrotation Xrotation Yrotation
+    JOINT foot
+    {
+      OFFSET 0 -10 0
+      CHANNELS 3 Zrotation Xrotation Yrotation
+      End Site
+      {
+        OFFSET 0 0 4
+      }
+    }
+  }
+}
+MOTION
+Frames: 3
+Frame Time: 0.0333333
+0 20 0 0 0 0 0 0 0 0 0 0
+1 20 0 5 0 0 $2 0 0 0 0 0
+0 20 0 0 0 0 0 0 0 0 0 0
+BVH
+}
+bvh walk 25
+bvh kick 80
+noh build "$work/walk.bvh" "$work/kick.bvh" -o "$work/leg.noh" --quiet
+expect 0 'two clips of one skeleton'
+
+noh render "$work/leg.noh" -o "$work/rest.png" --size 96x64
+if [ $code != 0 ] && grep -q 'no GL context' "$work/err"; then
+    skip 'bones' 'no GL context here'
+    finish
+fi
+expect 0 'a pack without meshes shows its bones'
+noh render "$work/leg.noh" -o "$work/walk.png" --size 96x64 --clip walk --time 0.033
+expect 0 'in a clip'
+check 'they move' sh -c '! cmp -s "$1" "$2"' - "$work/rest.png" "$work/walk.png"
+noh render "$work/leg.noh" -o "$work/x.png" --clip kcik
+expect 1 'a clip that is not there'
+says "did you mean 'kick'"
+noh render "$build/mask.noh" -o "$work/x.png" --bones
+expect 1 'bones of a pack without a skeleton'
+says 'no skeleton to draw'
+check 'leave no file' test ! -e "$work/x.png"
+
+noh sheet "$work/leg.noh" -o "$work/sheet.png" --clip walk --tiles 4 --tile 64
+expect 0 'sheet of a clip'
+noh sheet "$work/leg.noh" -o "$work/blend.png" --clip walk --blend kick --tiles 2 --tile 64
+expect 0 'sheet of a blend'
+check 'with a row for each weight' test "$(od -An -tu1 -j20 -N4 "$work/blend.png" | awk '{ print $3 * 256 + $4 }')" = 320
+for how in fade inertia; do
+    noh sheet "$work/leg.noh" -o "$work/$how.png" --clip walk --to kick --transition $how --over 0.02 --tiles 8 --tile 64
+    expect 0 "sheet of a transition by $how"
+done
+check 'fade and inertia differ' sh -c '! cmp -s "$1" "$2"' - "$work/fade.png" "$work/inertia.png"
+noh sheet "$work/leg.noh" -o "$work/x.png" --blend kick
+expect 2 'a blend without a clip is a usage error'
+noh sheet "$work/leg.noh" -o "$work/x.png" --clip walk --to kick --blend kick
+expect 2 'a blend and a transition is one'
+noh sheet "$work/leg.noh" -o "$work/x.png" --clip walk --to kick --transition jump
+expect 2 'so is a transition that is none'
+finish

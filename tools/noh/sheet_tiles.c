@@ -1,0 +1,182 @@
+#include "sheet_tiles.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define AROUND_S 0.3 /* what a transition's sheet shows of the time before and after it */
+
+/* ---- targets ---- */
+
+/* The targets that were asked for; each has to be there. */
+static int list_only(sheet_tiles *t)
+{
+    int status = 0;
+    t->names = calloc((size_t)t->only.count, sizeof *t->names);
+    if (!t->names) {
+        return tool_fail(t->file->path, "out of memory");
+    }
+    for (int i = 0; i < t->only.count && !status; i++) {
+        status = scene_check_target(&t->rest, t->file, t->only.items[i]);
+        t->names[t->name_count++] = t->only.items[i];
+    }
+    return status;
+}
+
+static void add_name(sheet_tiles *t, const char *name)
+{
+    for (uint32_t i = 0; i < t->name_count; i++) {
+        if (strcmp(t->names[i], name) == 0) {
+            return;
+        }
+    }
+    t->names[t->name_count++] = name;
+}
+
+/* Every target name of every mesh, once. */
+static int list_names(sheet_tiles *t)
+{
+    size_t total = 0;
+    if (t->only.count) {
+        return list_only(t);
+    }
+    for (uint32_t m = 0; m < t->file->pack.mesh_count; m++) {
+        total += t->rest.meshes[m].header->target_count;
+    }
+    t->names = calloc(total + 1, sizeof *t->names);
+    if (!t->names) {
+        return tool_fail(t->file->path, "out of memory");
+    }
+    for (uint32_t m = 0; m < t->file->pack.mesh_count; m++) {
+        for (uint32_t i = 0; i < t->rest.meshes[m].header->target_count; i++) {
+            add_name(t, noh_pack_string(&t->file->pack, t->rest.meshes[m].targets[i].name));
+        }
+    }
+    return 0;
+}
+
+static void pose_target(sheet_tiles *t, const char *name)
+{
+    for (uint32_t i = 0; i < t->posed.item_count; i++) {
+        const noh_mesh *mesh = &t->posed.meshes[t->posed.items[i].mesh];
+        uint32_t target = noh_mesh_find_target(mesh, name);
+        if (target < mesh->header->target_count) {
+            t->posed.items[i].weights[target] = 1.0f;
+        }
+    }
+}
+
+/* ---- clips ---- */
+
+static double fraction(uint32_t i, uint32_t count)
+{
+    return count > 1 ? (double)i / (double)(count - 1) : 0.0;
+}
+
+static double blend_weight(const sheet_tiles *t, uint32_t tile)
+{
+    return fraction(tile / t->clip_tiles, SHEET_BLEND_ROWS);
+}
+
+/* A repeating clip ends where it starts: its last column is left out. */
+static double blend_phase(const sheet_tiles *t, uint32_t tile)
+{
+    return (double)(tile % t->clip_tiles) / (double)t->clip_tiles;
+}
+
+static double lead_s(const sheet_tiles *t)
+{
+    return t->clip_seconds / 2.0;
+}
+
+static double tile_time(const sheet_tiles *t, uint32_t tile)
+{
+    double from, to;
+    if (!t->to) {
+        return t->clip_seconds * fraction(tile, t->clip_tiles);
+    }
+    from = lead_s(t) > AROUND_S ? lead_s(t) - AROUND_S : 0.0;
+    to = lead_s(t) + t->over_s + AROUND_S;
+    return from + (to - from) * fraction(tile, t->clip_tiles);
+}
+
+static int pose_pair(sheet_tiles *t, uint32_t tile)
+{
+    scene_pair pair;
+    memset(&pair, 0, sizeof pair);
+    pair.from = t->clip;
+    pair.to = t->blend ? t->blend : t->to;
+    pair.mix = t->blend ? SCENE_MIX_BLEND : t->inertia ? SCENE_MIX_INERTIA : SCENE_MIX_FADE;
+    pair.weight = t->blend ? blend_weight(t, tile) : 0.0;
+    pair.lead_s = lead_s(t);
+    pair.over_s = t->over_s;
+    return scene_set_pair(&t->posed, t->file, &pair, t->blend ? blend_phase(t, tile) : tile_time(t, tile));
+}
+
+/* ---- all ---- */
+
+int sheet_tiles_open(sheet_tiles *t, const pack_file *file)
+{
+    int status;
+    t->file = file;
+    status = scene_init(&t->rest, file);
+    if (!status) status = scene_init(&t->posed, file);
+    if (!status) status = list_names(t);
+    if (!status) status = scene_open_anim(&t->posed, file, t->anim);
+    if (!status && t->clip) status = scene_clip_seconds(&t->posed, file, t->clip, &t->clip_seconds);
+    return status;
+}
+
+void sheet_tiles_close(sheet_tiles *t)
+{
+    free(t->names);
+    scene_free(&t->rest);
+    scene_free(&t->posed);
+}
+
+uint32_t sheet_tiles_count(const sheet_tiles *t)
+{
+    if (!t->clip) {
+        return t->name_count + 1;
+    }
+    return t->blend ? t->clip_tiles * SHEET_BLEND_ROWS : t->clip_tiles;
+}
+
+uint32_t sheet_tiles_columns(const sheet_tiles *t)
+{
+    return t->clip && t->blend ? t->clip_tiles : 0;
+}
+
+/* Tile 0 of a sheet of targets is the rest pose. */
+int sheet_tiles_pose(sheet_tiles *t, uint32_t tile)
+{
+    for (uint32_t i = 0; i < t->rest.item_count; i++) {
+        memcpy(t->posed.items[i].weights, t->rest.items[i].weights,
+               sizeof(float) * t->rest.meshes[t->rest.items[i].mesh].header->target_count);
+    }
+    if (t->clip) {
+        return t->blend || t->to ? pose_pair(t, tile) : scene_set_clip(&t->posed, t->file, t->clip, tile_time(t, tile));
+    }
+    if (tile) {
+        pose_target(t, t->names[tile - 1]);
+    }
+    return 0;
+}
+
+void sheet_tiles_label(const sheet_tiles *t, uint32_t tile, char *text, size_t bytes)
+{
+    double time_s;
+    if (!t->clip) {
+        snprintf(text, bytes, "%s", tile ? t->names[tile - 1] : "(rest)");
+        return;
+    }
+    time_s = tile_time(t, tile);
+    if (t->blend) {
+        snprintf(text, bytes, "%.0f%% %s", 100.0 * blend_weight(t, tile), t->blend);
+    } else if (t->to && time_s < lead_s(t)) {
+        snprintf(text, bytes, "%s %+.2f s", t->clip, time_s - lead_s(t));
+    } else if (t->to) {
+        snprintf(text, bytes, "%s %+.2f s", time_s < lead_s(t) + t->over_s ? (t->inertia ? "inertia" : "fade") : t->to, time_s - lead_s(t));
+    } else {
+        snprintf(text, bytes, "%s %.2f s", t->clip, time_s);
+    }
+}

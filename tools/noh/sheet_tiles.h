@@ -1,0 +1,35 @@
+/* sheet_tiles.h: what the tiles of a contact sheet show: targets, a clip in time, two clips blended,
+ * a transition from one to another. */
+#ifndef NOH_TOOL_SHEET_TILES_H
+#define NOH_TOOL_SHEET_TILES_H
+
+#include "noh_tool.h"
+
+#define SHEET_BLEND_ROWS 5u /* weights 0, 1/4, 1/2, 3/4, 1 */
+
+typedef struct sheet_tiles {
+    const pack_file *file;
+    scene rest, posed;
+    const char *clip, *blend, *to, *anim; /* clip names; NULL: none */
+    int inertia;         /* how it goes to `to`: by inertia, else by a cross-fade */
+    double over_s;       /* in this time */
+    double clip_seconds;
+    uint32_t clip_tiles; /* in time */
+    option_list only;    /* targets to show instead of all */
+    const char **names;  /* [name_count] */
+    uint32_t name_count;
+} sheet_tiles;
+
+/* Open the scene and find what was asked for. Prints an error and returns an exit code; 0 on success. */
+int sheet_tiles_open(sheet_tiles *t, const pack_file *file);
+void sheet_tiles_close(sheet_tiles *t);
+
+/* How many there are, and in how many columns where that is given by what they show; 0: any. */
+uint32_t sheet_tiles_count(const sheet_tiles *t);
+uint32_t sheet_tiles_columns(const sheet_tiles *t);
+
+/* Put t->posed into a tile's pose. */
+int sheet_tiles_pose(sheet_tiles *t, uint32_t tile);
+void sheet_tiles_label(const sheet_tiles *t, uint32_t tile, char *text, size_t bytes);
+
+#endif

@@ -1,0 +1,31 @@
+/* stage.h: pictures of a scene: its meshes, or its skeletons as bones. */
+#ifndef NOH_TOOL_STAGE_H
+#define NOH_TOOL_STAGE_H
+
+#include "bones.h"
+
+typedef struct stage {
+    const scene *scene;
+    load load;   /* with meshes */
+    bones *bones; /* [player_count], with bones */
+    uint32_t bones_count;
+    canvas canvas;
+    int has_canvas;
+} stage;
+
+/* Whether bones are to be drawn: where they are asked for, or where there is nothing else.
+ * Prints an error and returns -1 where there are none. */
+int stage_shows_bones(const scene *s, const pack_file *file, int asked_for);
+
+/* The world bounds of what is drawn. */
+bounds stage_bounds(const scene *s, const pack_file *file, int face, int show_bones);
+
+/* Make all that the pictures need. Prints an error and returns an exit code; 0 on success. */
+int stage_open(stage *st, gpu *g, const pack_file *file, const scene *s, const load_options *o, int show_bones, uint32_t width,
+               uint32_t height);
+void stage_close(stage *st);
+
+/* One picture of the scene as it stands: rgba[height][width][4], top row first. */
+int stage_draw(stage *st, const noh_gl_camera *camera, uint8_t *rgba);
+
+#endif
