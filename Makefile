@@ -42,7 +42,7 @@ PLATFORM_C := $(sort $(wildcard platform/*.c))
 CONVERT_C  := $(sort $(wildcard tools/convert/*.c))
 CONVERT_CC := $(sort $(wildcard tools/convert/*.cpp))
 TOOL_C     := $(sort $(wildcard tools/noh/*.c tools/noh/bench/*.c))
-MASK_C     := $(sort $(wildcard tools/make_mask/*.c))
+MASK_C     := $(sort $(wildcard tools/make_mask/*.c tools/make_puppet/*.c))
 STAGES     := vert geom frag
 SHADERS    := $(sort $(foreach stage,$(STAGES),$(wildcard shaders_es/*.$(stage))))
 TOOL_SHADERS := $(sort $(foreach stage,$(STAGES),$(wildcard tools/noh/shaders/*.$(stage) tools/noh/bench/*.$(stage))))
@@ -141,6 +141,10 @@ $(BUILD)/clip_tables: $(BUILD)/tools/clip_tables/main.o $(CONVERT_O) $(PLATFORM_
 $(BUILD)/mask.glb: $(BUILD)/make_mask
 	$(BUILD)/make_mask $@
 
+$(BUILD)/demo/puppet.glb: $(BUILD)/make_mask
+	@mkdir -p $(@D)
+	$(BUILD)/make_mask --puppet $@
+
 $(BUILD)/mask.noh: $(BUILD)/mask.glb $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --quiet
 
@@ -158,7 +162,7 @@ demo: deps-build
 	@sh tools/demo.sh $(BUILD)
 
 check: deps-check
-	@$(MAKE) --no-print-directory -j$(JOBS) all tests $(BUILD)/mask.noh
+	@$(MAKE) --no-print-directory -j$(JOBS) all tests $(BUILD)/mask.noh $(BUILD)/demo/puppet.glb
 	@CC="$(CC)" NOH_BUILD="$(BUILD)" NOH_ASSETS="$(ASSETS)" NOH_SAN="$(SAN)" sh tests/run.sh
 
 bench: deps-build

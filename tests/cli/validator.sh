@@ -1,8 +1,8 @@
 #!/bin/sh
-# The mask is valid glTF: npm's gltf-validator has no error to tell.
+# The mask and the puppet are valid glTF: npm's gltf-validator has no error and no warning to tell.
 . "$(dirname "$0")/lib.sh"
 
-name='the mask is valid glTF'
+name='what make_mask writes is valid glTF'
 if ! command -v npm >/dev/null 2>&1 || ! command -v node >/dev/null 2>&1; then
     skip "$name" 'no npm here'
     finish
@@ -14,15 +14,20 @@ if [ ! -d "$build/npm/node_modules/gltf-validator" ]; then
         finish
     fi
 fi
-NODE_PATH=$build/npm/node_modules node -e '
+validate() {
+    NODE_PATH=$build/npm/node_modules node -e '
     const fs = require("fs"), validator = require("gltf-validator");
     validator.validateBytes(new Uint8Array(fs.readFileSync(process.argv[1]))).then(report => {
         const { numErrors, numWarnings, messages } = report.issues;
         console.log(`${numErrors} errors, ${numWarnings} warnings`);
         for (const m of messages.slice(0, 20)) console.log(`${m.severity} ${m.code} ${m.pointer}: ${m.message}`);
-        process.exit(numErrors === 0 ? 0 : 1);
-    });' "$build/mask.glb" >"$work/report" 2>&1
-result=$?
-sed 's/^/# /' "$work/report"
-check "$name" test $result = 0
+        process.exit(numErrors + numWarnings === 0 ? 0 : 1);
+    });' "$1" >"$work/report" 2>&1
+    result=$?
+    sed 's/^/# /' "$work/report"
+    check "$2" test $result = 0
+}
+
+validate "$build/mask.glb" 'the mask is valid glTF'
+validate "$build/demo/puppet.glb" 'the puppet is valid glTF'
 finish

@@ -51,6 +51,10 @@ static void put(Buffer *buffer, uint32_t value, int bytes)
     buffer->count += bytes;
 }
 
+void buffer_u8(Buffer *buffer, uint32_t value)
+{
+    put(buffer, value, 1);
+}
 void buffer_u16(Buffer *buffer, uint32_t value)
 {
     put(buffer, value, 2);

@@ -1,7 +1,7 @@
-/* make_mask OUT.glb: models a Noh mask and writes it as a glTF binary. */
-#include "colour.h"
+/* make_mask OUT.glb: models a Noh mask and writes it as a glTF binary.
+ * make_mask --puppet OUT.glb: the same mask, worn by a puppet that moves. */
 #include "gltf_write.h"
-#include "occlusion.h"
+#include "make_puppet/puppet_write.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -29,37 +29,44 @@ static int save(const char *path, const Buffer *file)
     return good;
 }
 
-int main(int argc, char **argv)
+static int make_mask(const char *path)
 {
-    static const Pose rest;
-    if (argc != 2) {
-        fprintf(stderr, "usage: make_mask OUT.glb\n");
-        return 2;
-    }
-    Model model = { 0 };
-    Frame frames[PART_COUNT];
-    int *weld[PART_COUNT];
-    double *open[PART_COUNT];
-    model_build(&model);
-    for (int i = 0; i < PART_COUNT; i++) {
-        weld[i] = mesh_weld(&model.parts[i]);
-        frames[i] = mesh_frame(&model.parts[i], weld[i], &rest);
-    }
-    occlusion_bake(&model, frames, open);
-    colour_bake(&model, frames, open);
+    Mask mask;
     Buffer file = { 0 };
-    Census census = gltf_write(&file, &model, frames, weld);
-    int good = save(argv[1], &file);
+    mask_build(&mask);
+    Census census = gltf_write(&file, &mask);
+    int good = save(path, &file);
     if (good) {
-        printf("%s: %d vertices, %d triangles, %d targets, %d animations, %d bytes\n", argv[1],
-               census.vertices, census.triangles, census.targets, census.animations, file.count);
-    }
-    for (int i = 0; i < PART_COUNT; i++) {
-        mesh_free(&frames[i]);
-        free(weld[i]);
-        free(open[i]);
+        printf("%s: %d vertices, %d triangles, %d targets, %d animations, %d bytes\n", path, census.vertices,
+               census.triangles, census.targets, census.animations, file.count);
     }
     buffer_free(&file);
-    model_free(&model);
-    return good ? 0 : 1;
+    mask_free(&mask);
+    return good;
+}
+
+static int make_puppet(const char *path)
+{
+    Buffer file = { 0 };
+    PuppetCensus census = puppet_write(&file);
+    int good = save(path, &file);
+    if (good) {
+        printf("%s: %d and %d vertices (body and mask), %d triangles, %d joints, %d animations, %d bytes\n", path,
+               census.body_vertices, census.mask_vertices, census.triangles, census.joints, census.animations,
+               file.count);
+    }
+    buffer_free(&file);
+    return good;
+}
+
+int main(int argc, char **argv)
+{
+    if (argc == 2 && argv[1][0] != '-') {
+        return make_mask(argv[1]) ? 0 : 1;
+    }
+    if (argc == 3 && !strcmp(argv[1], "--puppet")) {
+        return make_puppet(argv[2]) ? 0 : 1;
+    }
+    fprintf(stderr, "usage: make_mask OUT.glb\n       make_mask --puppet OUT.glb\n");
+    return 2;
 }

@@ -114,19 +114,34 @@ static void tongue_build(Model *model)
     }
 }
 
+/* The place of the cup's vertices in the mouth's own plane. */
+static FacePoint bag_point(const Seed *seed)
+{
+    double x = 0.0265 * cos(seed->s) * cos(seed->t), y = 0.0165 * cos(seed->s) * sin(seed->t);
+    FacePoint point = { x, MOUTH_Y + y, -1, y > 0 ? 1 : -1 };
+    return point;
+}
+
+static double bag_weight(const Seed *seed)
+{
+    return smooth(-0.004, 0.020, -(0.0165 * cos(seed->s) * sin(seed->t)));
+}
+
+double bag_jaw_weight(const Seed *seed)
+{
+    return seed->s > 0 ? bag_weight(seed) : jaw_weight(bag_point(seed));
+}
+
 /* A cup behind the lips, open to the front and wider than the mouth. */
 V3 bag_place(const Seed *seed, const Pose *pose)
 {
-    double ring = seed->s, around = seed->t;
-    double x = 0.0265 * cos(ring) * cos(around), y = 0.0165 * cos(ring) * sin(around);
-    V3 at = v3(x, MOUTH_Y + y, lips_z - 0.0080 - 8 * x * x - 0.0220 * sin(ring));
-    at = jaw_move(at, smooth(-0.004, 0.020, -y), pose);
+    FacePoint point = bag_point(seed);
     if (seed->s > 0) {
-        return at;
+        V3 at = v3(point.s, point.t, lips_z - 0.0080 - 8 * point.s * point.s - 0.0220 * sin(seed->s));
+        return jaw_move(at, bag_weight(seed), pose);
     }
     /* The cup's edge is fixed to the inside of the face. */
-    FacePoint point = { x, MOUTH_Y + y, -1, y > 0 ? 1 : -1 };
-    at = face_place(point, pose);
+    V3 at = face_place(point, pose);
     at.z -= 0.0050;
     return at;
 }

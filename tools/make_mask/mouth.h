@@ -9,4 +9,7 @@ V3 teeth_place(const Seed *seed, const Pose *pose);
 V3 tongue_place(const Seed *seed, const Pose *pose);
 V3 bag_place(const Seed *seed, const Pose *pose);
 
+/* How far a vertex of the dark follows the jaw. */
+double bag_jaw_weight(const Seed *seed);
+
 #endif

@@ -35,13 +35,18 @@ static double gouge(double x, double y)
     return 0.0005 * cos(x * 700 + 2 * sin(y * 210)) * cos(y * 330 + 1.5 * sin(x * 160));
 }
 
+double back_share(const Seed *seed)
+{
+    return 1 - seed->k / BACK_RINGS;
+}
+
 V3 back_place(const Seed *seed, const Pose *pose)
 {
     static const Pose rest;
     Seed border = *seed;
     border.k = RIM_ROWS - 1;
     V3 still = rim_place(&border, &rest), moved = rim_place(&border, pose);
-    double part = 1 - seed->k / BACK_RINGS, hollow = 1 - part * part;
+    double part = back_share(seed), hollow = 1 - part * part;
     V3 at = v3(still.x * part, still.y * part, still.z);
     at.z = mix(still.z, -0.0125, hollow * (2 - hollow)) + gouge(at.x, at.y) * smooth(1, 0.8, part);
     return v3_add(at, v3_scale(v3_sub(moved, still), part * part));

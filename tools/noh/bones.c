@@ -58,7 +58,7 @@ static float *octahedron(float *out, const float tips[2][3], const float ring[4]
 }
 
 /* Thickest a sixth of the way, as modelling programs draw them. */
-static float *draw_bone(float *out, const float from[3], const float to[3], const float color[3])
+static float *draw_bone(float *out, const float from[3], const float to[3], float width_max, const float color[3])
 {
     float along[3], side[3], up[3], tips[2][3], ring[4][3];
     const float x[3] = { 1.0f, 0.0f, 0.0f }, y[3] = { 0.0f, 1.0f, 0.0f };
@@ -72,7 +72,7 @@ static float *draw_bone(float *out, const float from[3], const float to[3], cons
     cross(along, side, up);
     normalize(up);
     for (int c = 0; c < 3; c++) {
-        float middle = from[c] + along[c] / 6.0f, width = length * 0.12f;
+        float middle = from[c] + along[c] / 6.0f, width = fminf(length * 0.12f, width_max);
         tips[0][c] = to[c];
         tips[1][c] = from[c];
         ring[0][c] = middle + side[c] * width;
@@ -143,7 +143,7 @@ static size_t build(bones *b, const noh_skeleton *s, const float *matrices)
         out = draw_joint(out, at, 0.009f * size, color);
         if (s->parents[j] != NOH_JOINT_ROOT) {
             joint_place(matrices, s->parents[j], from);
-            out = draw_bone(out, from, at, color);
+            out = draw_bone(out, from, at, 0.03f * size, color);
         }
     }
     return (size_t)(out - b->vertices) / FLOATS;

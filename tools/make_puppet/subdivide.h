@@ -1,0 +1,12 @@
+/* Catmull-Clark subdivision of a closed cage. */
+#ifndef PUPPET_SUBDIVIDE_H
+#define PUPPET_SUBDIVIDE_H
+
+#include "cage.h"
+
+/* Every face becomes four. Places and holds follow the rules of Catmull and Clark ("Recursively
+ * generated B-spline surfaces on arbitrary topological meshes", 1978); texture places are halved
+ * within each face, so that seams stay where they are; paints are handed down. */
+Cage subdivide(const Cage *cage);
+
+#endif
