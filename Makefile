@@ -68,8 +68,8 @@ help:
 	@echo 'make            build/noh and build/libnoh.a'
 	@echo 'make demo       install what is missing, build, make the mask, convert it, render it'
 	@echo 'make check      install what is missing, build and run the tests'
-	@echo 'make bench      ratios against the named baselines (the mask, and hero/head.glb where it is)'
-	@echo 'make fuzz       fuzz the pack reader (FUZZ_SECONDS=60), needs clang'
+	@echo 'make bench      ratios against the named baselines (the mask, and hero/head.glb and clips where they are)'
+	@echo 'make fuzz       fuzz the pack reader and the clip decoder (FUZZ_SECONDS=60 each), needs clang'
 	@echo 'make sizes      code and data of the library, by file'
 	@echo 'make install    PREFIX=/usr/local: noh, libnoh.a and the headers (compile with -IPREFIX/include/noh)'
 	@echo 'make clean      remove $(BUILD)'
@@ -125,6 +125,11 @@ $(BUILD)/kernel/morph_%.o: runtime/deform/morph.c
 	$(call say,CC,$@)
 	$(Q)$(CC) $(CFLAGS) $(INCLUDES) -m$* -DNOH_MORPH_ACCUMULATE=noh_morph_accumulate_$* -MMD -MP -c $< -o $@
 
+$(BUILD)/kernel/clip_sample_%.o: runtime/anim/clip_sample.c
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(CFLAGS) $(INCLUDES) -m$* -Dnoh_clip_blend_frames=noh_clip_blend_frames_$* -MMD -MP -c $< -o $@
+
 $(BUILD)/noh: $(TOOL_O) $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(BUILD)/libnoh.a
 	$(call say,CXX,$@)
 	$(Q)$(CXX) $(LDFLAGS) $^ -o $@ $(TOOL_LIBS)
@@ -169,17 +174,18 @@ bench: deps-build
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/mask.noh
 	@NOH_ASSETS="$(ASSETS)" sh tools/bench.sh $(BUILD)
 
-# FUZZ_SECONDS=60: how long. Skips where clang or its runtime is not.
+# FUZZ_SECONDS=60: how long, both at once. Skips where clang or its runtime is not.
 fuzz: deps-fuzz
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/tests/fuzz/corpus/.made $(BUILD)/gen/shaders.gen.c
 	@NOH_BUILD="$(BUILD)" FUZZ_SECONDS="$(FUZZ_SECONDS)" sh tests/fuzz.sh
 
-tests: $(TESTS) $(BUILD)/tests/fuzz/fuzz_pack $(BUILD)/tests/fuzz/corpus/.made
+tests: $(TESTS) $(BUILD)/tests/fuzz/fuzz_pack $(BUILD)/tests/fuzz/fuzz_clip $(BUILD)/tests/fuzz/corpus/.made
 
 # The tests read results back from the GPU as the tool does, and share what lies in tests/ itself.
 TEST_TOOL_O := $(addprefix $(BUILD)/tools/noh/,gpu.o readback.o message.o) $(BUILD)/gen/tool_shaders.gen.o
 TEST_SHARED_O := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/*.c))
-TEST_LIBS := $(TEST_SHARED_O) $(TEST_TOOL_O) $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(BUILD)/libnoh.a
+TEST_KERNELS := $(if $(filter x86_64%,$(MACHINE)),$(BUILD)/kernel/clip_sample_avx2.o)
+TEST_LIBS := $(TEST_SHARED_O) $(TEST_TOOL_O) $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(TEST_KERNELS) $(BUILD)/libnoh.a
 
 $(BUILD)/tests/%.o: INCLUDES += -Itests -Itools/convert
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TEST_LIBS)
@@ -188,8 +194,8 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TEST_LIBS)
 	$(Q)$(CXX) $(LDFLAGS) $^ -o $@ -lcmocka $(TOOL_LIBS)
 
 $(BUILD)/tests/fuzz/corpus/.made: $(BUILD)/tests/fuzz/make_corpus
-	@mkdir -p $(@D)
-	@$< $(@D) >$(BUILD)/tests/fuzz/make_corpus.txt 2>&1 || { cat $(BUILD)/tests/fuzz/make_corpus.txt; exit 1; }
+	@mkdir -p $(@D) $(BUILD)/tests/fuzz/clips
+	@$< $(@D) $(BUILD)/tests/fuzz/clips >$(BUILD)/tests/fuzz/make_corpus.txt 2>&1 || { cat $(BUILD)/tests/fuzz/make_corpus.txt; exit 1; }
 	@touch $@
 
 PREFIX  ?= /usr/local

@@ -1,14 +1,15 @@
 #!/bin/sh
-# fuzz.sh: libFuzzer on the pack reader, with AddressSanitizer and UBSan, for FUZZ_SECONDS
-# (60), from the seeds in build/tests/fuzz/corpus. Closes like run.sh. What it finds lies in
-# build/fuzz/crash-*: copy it to tests/fuzz/found/, where `make check` replays it.
+# fuzz.sh: libFuzzer on the pack reader and on the clip decoder, with AddressSanitizer and UBSan, both
+# at once for FUZZ_SECONDS (60) each, from the seeds in build/tests/fuzz/corpus and clips. Closes like
+# run.sh. What is found lies in build/fuzz/TARGET-crash-*: copy it to tests/fuzz/found/ (packs) or
+# found_clips/, where `make check` replays it.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
 seconds=${FUZZ_SECONDS:-60}
 clang=${CLANG:-clang}
 work=$build/fuzz
-mkdir -p "$work/corpus" "$work/objects"
+mkdir -p "$work"
 
 skip() {
     echo "fuzz skipped: $1"
@@ -20,24 +21,41 @@ echo 'int LLVMFuzzerTestOneInput(const unsigned char *d, unsigned long n); int L
 "$clang" -fsanitize=fuzzer,address,undefined "$work/probe.c" -o "$work/probe" 2>"$work/probe.txt" ||
     skip "$clang has no libFuzzer or sanitizer runtime (libclang-rt-dev)"
 
-failed() {
-    echo '0 passed, 1 failed, 0 skipped'
-    exit 1
-}
 flags="-std=c99 -O1 -g -ffp-contract=off -fno-math-errno -DNOH_LIBFUZZER -fsanitize=fuzzer,address,undefined
     -fno-sanitize-recover=all -fno-omit-frame-pointer -Iruntime -Itests -I$build/gen"
-# shellcheck disable=SC2086
-"$clang" $flags tests/fuzz/fuzz_pack.c tests/pack_walk.c runtime/*/*.c "$build/gen/shaders.gen.c" -o "$work/fuzz_pack" || failed
 
-set -- "$work/corpus" "$build/tests/fuzz/corpus"
-[ ! -d tests/fuzz/found ] || set -- "$@" tests/fuzz/found
-"$work/fuzz_pack" -seed=1 -max_total_time="$seconds" -max_len=8192 -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
-    -artifact_prefix="$work/" "$@" >"$work/log.txt" 2>&1
-result=$?
-grep 'DONE\|stat::number_of_executed_units\|stat::peak_rss_mb' "$work/log.txt" | sed 's/^/  /'
-if [ $result != 0 ]; then
-    tail -n 60 "$work/log.txt"
-    failed
-fi
-echo "fuzzed for $seconds s: nothing found"
-echo '1 passed, 0 failed, 0 skipped'
+# fuzz TARGET MAX_LEN FOUND SEEDS: 0 when nothing was found
+fuzz() {
+    target=$1 max_len=$2 found=$3
+    mkdir -p "$work/$target.corpus"
+    # shellcheck disable=SC2086
+    "$clang" $flags "tests/fuzz/$target.c" tests/pack_walk.c runtime/*/*.c "$build/gen/shaders.gen.c" -o "$work/$target" || return 1
+    set -- "$work/$target.corpus" "$4"
+    [ ! -d "$found" ] || set -- "$@" "$found"
+    "$work/$target" -seed=1 -max_total_time="$seconds" -max_len="$max_len" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
+        -artifact_prefix="$work/$target-" "$@" >"$work/$target.txt" 2>&1
+}
+fuzz fuzz_pack 8192 tests/fuzz/found "$build/tests/fuzz/corpus" &
+packs=$!
+fuzz fuzz_clip 4096 tests/fuzz/found_clips "$build/tests/fuzz/clips" &
+clips=$!
+
+# told TARGET RESULT: what its log says
+passed=0 failed=0
+told() {
+    echo "$1"
+    if [ "$2" = 0 ]; then
+        grep 'DONE\|stat::number_of_executed_units\|stat::peak_rss_mb' "$work/$1.txt" | sed 's/^/  /'
+        echo "  fuzzed for $seconds s: nothing found"
+        passed=$((passed + 1))
+    else
+        tail -n 60 "$work/$1.txt"
+        failed=$((failed + 1))
+    fi
+}
+wait "$packs"
+told fuzz_pack $?
+wait "$clips"
+told fuzz_clip $?
+echo "$passed passed, $failed failed, 0 skipped"
+[ $failed = 0 ]

@@ -1,5 +1,6 @@
 #!/bin/sh
-# bench.sh BUILD: `noh bench` on the mask, and on hero/head.glb where $NOH_ASSETS has it.
+# bench.sh BUILD: `noh bench` on the mask, and, where $NOH_ASSETS has them, on hero/head.glb and on five
+# captured clips at 30 Hz.
 # Everything after BUILD goes to `noh bench`: --json, --rounds N, --driver D.
 set -eu
 
@@ -16,4 +17,18 @@ if [ -f "$head" ]; then
     "$build/noh" bench "$build/head.noh" --source "$head" "$@"
 else
     echo "no hero/head.glb in NOH_ASSETS: the mask only" >&2
+fi
+
+clips=${NOH_ASSETS:-}/clips
+if [ -f "$clips/cmu_01_01.rcl" ]; then
+    echo "== $clips" >&2
+    packs=
+    for name in cmu_01_01 cmu_01_03 cmu_indian_04 cmu_martial_03 cmu_salsa_01; do
+        "$build/noh" build "$clips/$name.rcl" --rate 30 -o "$build/$name.noh" --quiet
+        packs="$packs $build/$name.noh"
+    done
+    # shellcheck disable=SC2086
+    "$build/noh" bench $packs "$@"
+else
+    echo "no clips/cmu_01_01.rcl in NOH_ASSETS: no clip rows" >&2
 fi

@@ -71,7 +71,8 @@ uint32_t noh_clip_cache_work(noh_clip_cache *cache, uint32_t budget);
 /* Sample a pose.
  * shapes  out[joint_count], floats[float_count of the clip] (NULL: not wanted)
  * ranges  clip below clip_count; joint_count up to the clip's: a prefix is decoded and sampled alone
- * between frames: translations, scales and floats are lerped, rotations lerped and normalised */
+ * between frames: translations, scales and floats are lerped, rotations lerped and normalised. At
+ *         rates whose ticks are no whole parts of a frame, rotations are taken up to 1/65,000 of a frame beside the time */
 void noh_clip_sample(noh_clip_cache *cache, uint32_t clip, int64_t ticks, uint32_t joint_count, noh_transform *out, float *floats);
 
 noh_clip_cache_stats noh_clip_cache_stats_of(const noh_clip_cache *cache);

@@ -21,7 +21,7 @@
  *   5        only when segments > 1: width of a segment's byte count
  *   varint   the bound in nanometres;  varint the shell in micrometres
  *   20       largest error;  20 rms error (4 bits e, 16 bits m: bound * m * 2^e / 65536)
- *   varint   joint of the largest error;  varint its time in quarters of a frame
+ *   varint   joint of the largest error;  varint its time in eighths of a frame
  *   varint   float groups; each: 32 bits name hash, varint node + 1 (0: none), varint width
  *   floats   per triple of floats (last padded): track fields, see below
  *   joints   per joint: 0 = rotation animated, rest as in the bind pose; 10 = all as bind;
@@ -57,7 +57,7 @@
 #ifndef NOH_ANIM_CLIP_FORMAT_H
 #define NOH_ANIM_CLIP_FORMAT_H
 
-#define NOH_CLIP_VERSION 1u
+#define NOH_CLIP_VERSION 2u /* also counts new tables: clip_tables.c is part of the format */
 
 #define NOH_CLIP_FLAG_WIDE 1u   /* cache rotations as floats: some joint's lever is too long for 16 bits */
 #define NOH_CLIP_FLAG_SCALE 2u  /* some joint's scale is not its bind pose's */
@@ -87,7 +87,7 @@
 #define NOH_CLIP_WILD_BITS 10u
 #define NOH_CLIP_MIX_BITS 8u
 #define NOH_CLIP_ERROR_ONE 65536u
-#define NOH_CLIP_TIME_PARTS 4u       /* a certificate's time is in quarters of a frame */
+#define NOH_CLIP_TIME_PARTS 8u       /* a certificate's time is in eighths of a frame */
 
 #define NOH_CLIP_MAGNITUDE_BITS 23u  /* of a coefficient */
 

@@ -7,6 +7,10 @@
 
 typedef enum noh_clip_kind { NOH_CLIP_FLOATS, NOH_CLIP_TRANSLATION, NOH_CLIP_SCALE, NOH_CLIP_ROTATION } noh_clip_kind;
 
+#define NOH_CLIP_GROUP 4u /* rotations that are sampled together; a frame has room for whole groups */
+#define NOH_CLIP_WEIGHT_MAX 32767u
+#define NOH_CLIP_WEIGHT_PARTS 8u
+
 #define NOH_CLIP_TRACK_MIX 1u
 #define NOH_CLIP_TRACK_WILD 2u
 
@@ -35,11 +39,13 @@ struct noh_clip {
     noh_clip_info info;
     uint32_t rotation_count, linear_count;
     uint64_t segments_per_frame;         /* times 2^32, rounded down */
-    uint32_t frame_bytes, linear_offset; /* of one frame in the cache: rotations, then linear floats */
+    uint32_t frame_bytes, linear_offset; /* of one frame in the cache: rotations, in whole groups, then linear floats */
+    uint32_t weight_one;                 /* what the whole weights of two frames add up to: a tick and an eighth of a
+                                          * frame are whole where the rate allows it */
     const noh_transform *pose;           /* [joint_count] what is not animated */
     const noh_clip_track *tracks;        /* [track_count] */
     const noh_clip_prefix *prefixes;     /* [joint_count + 1]; the last counts everything */
-    const uint16_t *rotation_joints;     /* [rotation_count] */
+    const uint32_t *rotation_offsets;    /* [rotation_count] where in a pose, bytes */
     const noh_clip_linear *linears;      /* [linear_count]; those of float triples come first and are not used */
     const uint32_t *segment_offsets;     /* [segment_count + 1] bytes */
     const uint32_t *segment_firsts;      /* [segment_count + 1] frames */

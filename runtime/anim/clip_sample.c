@@ -7,26 +7,43 @@
 /* Kernels in which a flag is a constant, or whose vectors must stay in registers. */
 #define NOH_CLIP_INLINE static inline __attribute__((always_inline))
 
-#define GROUP 4u
 #define TINY 1e-30f /* so that frames of zeros, which only a broken clip has, divide */
+
+/* What two frames are weighed by: whole numbers where they are kept in 16 bits, else floats. */
+typedef struct weights {
+    int32_t whole_a, whole_b;
+    float to_a, to_b;
+} weights;
+
+/* `offset`: of a joint in a pose, bytes. */
+static inline float *rotation_at(noh_transform *out, uint32_t offset)
+{
+    return (float *)(void *)((uint8_t *)out + offset);
+}
 
 #if defined(__AVX2__) && !defined(NOH_CLIP_SCALAR)
 #include <immintrin.h>
 
 /* Two joints to a register, eight at a time; sums in the order of the scalar twin. */
-static inline __m256 load_pair(const uint8_t *frame, uint32_t index, int wide)
+NOH_CLIP_INLINE void blend_four(const uint8_t *a, const uint8_t *b, uint32_t r, int wide, const weights *w, __m256 *first, __m256 *second)
 {
-    if (wide) return _mm256_loadu_ps((const float *)(const void *)frame + 4u * index);
-    return _mm256_cvtepi32_ps(_mm256_cvtepi16_epi32(_mm_loadu_si128((const __m128i *)(const void *)(frame + 8u * index))));
+    if (wide) { /* joints 0 1, then 2 3 */
+        const float *p = (const float *)(const void *)a + 4u * r, *q = (const float *)(const void *)b + 4u * r;
+        const __m256 to_a = _mm256_set1_ps(w->to_a), to_b = _mm256_set1_ps(w->to_b);
+        const __m256 x = _mm256_add_ps(_mm256_mul_ps(_mm256_loadu_ps(p), to_a), _mm256_mul_ps(_mm256_loadu_ps(q), to_b));
+        const __m256 y = _mm256_add_ps(_mm256_mul_ps(_mm256_loadu_ps(p + 8), to_a), _mm256_mul_ps(_mm256_loadu_ps(q + 8), to_b));
+        *first = _mm256_permute2f128_ps(x, y, 0x20);
+        *second = _mm256_permute2f128_ps(x, y, 0x31);
+    } else {
+        const __m256i both = _mm256_set1_epi32((int32_t)((uint32_t)w->whole_b << 16 | (uint32_t)w->whole_a));
+        const __m256i p = _mm256_loadu_si256((const __m256i *)(const void *)(a + 8u * r));
+        const __m256i q = _mm256_loadu_si256((const __m256i *)(const void *)(b + 8u * r));
+        *first = _mm256_cvtepi32_ps(_mm256_madd_epi16(_mm256_unpacklo_epi16(p, q), both));
+        *second = _mm256_cvtepi32_ps(_mm256_madd_epi16(_mm256_unpackhi_epi16(p, q), both));
+    }
 }
 
-static inline void store_pair(const noh_clip *clip, uint32_t index, __m256 q, noh_transform *out)
-{
-    _mm_storeu_ps(out[clip->rotation_joints[index]].rotation, _mm256_castps256_ps128(q));
-    _mm_storeu_ps(out[clip->rotation_joints[index + 1u]].rotation, _mm256_extractf128_ps(q, 1));
-}
-
-/* noh_v4_sums of both halves: joints 0 2 4 6, then 1 3 5 7. */
+/* noh_v4_sums of both halves. */
 static inline __m256 sums8(__m256 a, __m256 b, __m256 c, __m256 d)
 {
     const __m256 ab = _mm256_add_ps(_mm256_unpacklo_ps(a, b), _mm256_unpackhi_ps(a, b));
@@ -34,35 +51,38 @@ static inline __m256 sums8(__m256 a, __m256 b, __m256 c, __m256 d)
     return _mm256_add_ps(_mm256_shuffle_ps(ab, cd, 0x44), _mm256_shuffle_ps(ab, cd, 0xee));
 }
 
-/* Returns how many rotations are done. */
-NOH_CLIP_INLINE uint32_t blend_many(const noh_clip *clip, const uint8_t *a, const uint8_t *b, float fraction, uint32_t count, int wide,
-                                  noh_transform *out)
+static inline void store_two(__m256 q, noh_transform *out, uint32_t first, uint32_t second)
 {
-    const __m256 to_b = _mm256_set1_ps(fraction), to_a = _mm256_set1_ps(1.0f - fraction);
+    _mm_storeu_ps(rotation_at(out, first), _mm256_castps256_ps128(q));
+    _mm_storeu_ps(rotation_at(out, second), _mm256_extractf128_ps(q, 1));
+}
+
+/* Registers hold joints 0 2, 1 3, 4 6, 5 7. Returns how many rotations are done. */
+NOH_CLIP_INLINE uint32_t blend_many(const uint32_t *offsets, const uint8_t *a, const uint8_t *b, const weights *w, uint32_t count, int wide,
+                                    noh_transform *out)
+{
     uint32_t r = 0;
     for (; r + 8u <= count; r += 8u) {
         __m256 q[4], scale;
-        q[0] = _mm256_add_ps(_mm256_mul_ps(load_pair(a, r, wide), to_a), _mm256_mul_ps(load_pair(b, r, wide), to_b));
-        q[1] = _mm256_add_ps(_mm256_mul_ps(load_pair(a, r + 2u, wide), to_a), _mm256_mul_ps(load_pair(b, r + 2u, wide), to_b));
-        q[2] = _mm256_add_ps(_mm256_mul_ps(load_pair(a, r + 4u, wide), to_a), _mm256_mul_ps(load_pair(b, r + 4u, wide), to_b));
-        q[3] = _mm256_add_ps(_mm256_mul_ps(load_pair(a, r + 6u, wide), to_a), _mm256_mul_ps(load_pair(b, r + 6u, wide), to_b));
+        blend_four(a, b, r, wide, w, &q[0], &q[1]);
+        blend_four(a, b, r + 4u, wide, w, &q[2], &q[3]);
         scale = sums8(_mm256_mul_ps(q[0], q[0]), _mm256_mul_ps(q[1], q[1]), _mm256_mul_ps(q[2], q[2]), _mm256_mul_ps(q[3], q[3]));
         scale = _mm256_div_ps(_mm256_set1_ps(1.0f), _mm256_sqrt_ps(_mm256_max_ps(scale, _mm256_set1_ps(TINY))));
-        store_pair(clip, r, _mm256_mul_ps(q[0], _mm256_permute_ps(scale, 0x00)), out);
-        store_pair(clip, r + 2u, _mm256_mul_ps(q[1], _mm256_permute_ps(scale, 0x55)), out);
-        store_pair(clip, r + 4u, _mm256_mul_ps(q[2], _mm256_permute_ps(scale, 0xaa)), out);
-        store_pair(clip, r + 6u, _mm256_mul_ps(q[3], _mm256_permute_ps(scale, 0xff)), out);
+        store_two(_mm256_mul_ps(q[0], _mm256_permute_ps(scale, 0x00)), out, offsets[r], offsets[r + 2u]);
+        store_two(_mm256_mul_ps(q[1], _mm256_permute_ps(scale, 0x55)), out, offsets[r + 1u], offsets[r + 3u]);
+        store_two(_mm256_mul_ps(q[2], _mm256_permute_ps(scale, 0xaa)), out, offsets[r + 4u], offsets[r + 6u]);
+        store_two(_mm256_mul_ps(q[3], _mm256_permute_ps(scale, 0xff)), out, offsets[r + 5u], offsets[r + 7u]);
     }
     return r;
 }
 #else
-NOH_CLIP_INLINE uint32_t blend_many(const noh_clip *clip, const uint8_t *a, const uint8_t *b, float fraction, uint32_t count, int wide,
-                                  noh_transform *out)
+NOH_CLIP_INLINE uint32_t blend_many(const uint32_t *offsets, const uint8_t *a, const uint8_t *b, const weights *w, uint32_t count, int wide,
+                                    noh_transform *out)
 {
-    (void)clip;
+    (void)offsets;
     (void)a;
     (void)b;
-    (void)fraction;
+    (void)w;
     (void)count;
     (void)wide;
     (void)out;
@@ -70,25 +90,9 @@ NOH_CLIP_INLINE uint32_t blend_many(const noh_clip *clip, const uint8_t *a, cons
 }
 #endif
 
-static inline noh_v4 load_quat(const uint8_t *frame, uint32_t index, int wide)
-{
-    return wide ? noh_v4_load((const float *)(const void *)frame + 4u * index)
-                : noh_v4_load_i16((const int16_t *)(const void *)frame + 4u * index);
-}
-
-static inline void load_two(const uint8_t *frame, uint32_t index, int wide, noh_v4 *first, noh_v4 *second)
-{
-    if (wide) {
-        *first = load_quat(frame, index, wide);
-        *second = load_quat(frame, index + 1u, wide);
-    } else {
-        noh_v4_load_i16_pair((const int16_t *)(const void *)frame + 4u * index, first, second);
-    }
-}
-
 /* Normalise four; they share the square root. Written out, here and below: at -O2 compilers keep
  * loops of four, and their arrays in memory. */
-NOH_CLIP_INLINE void normalise_group(noh_v4 q[GROUP])
+NOH_CLIP_INLINE void normalise_group(noh_v4 q[NOH_CLIP_GROUP])
 {
     noh_v4 scale = noh_v4_sums(noh_v4_mul(q[0], q[0]), noh_v4_mul(q[1], q[1]), noh_v4_mul(q[2], q[2]), noh_v4_mul(q[3], q[3]));
     scale = noh_v4_max(scale, noh_v4_set(TINY));
@@ -99,51 +103,50 @@ NOH_CLIP_INLINE void normalise_group(noh_v4 q[GROUP])
     q[3] = noh_v4_mul(q[3], noh_v4_lane(scale, 3));
 }
 
-NOH_CLIP_INLINE noh_v4 lerp(noh_v4 a, noh_v4 b, noh_v4 to_a, noh_v4 to_b)
+NOH_CLIP_INLINE noh_v4 lerp(const float *a, const float *b, noh_v4 to_a, noh_v4 to_b)
 {
-    return noh_v4_add(noh_v4_mul(a, to_a), noh_v4_mul(b, to_b));
+    return noh_v4_add(noh_v4_mul(noh_v4_load(a), to_a), noh_v4_mul(noh_v4_load(b), to_b));
 }
 
-/* Four neighbours. */
-NOH_CLIP_INLINE void blend_group(const uint8_t *a, const uint8_t *b, uint32_t r, int wide, noh_v4 to_a, noh_v4 to_b, noh_v4 q[GROUP])
+/* Four neighbours; past the last rotation a frame has room, and whatever lies there is not used. */
+NOH_CLIP_INLINE void blend_group(const uint8_t *a, const uint8_t *b, uint32_t r, int wide, const weights *w, noh_v4 q[NOH_CLIP_GROUP])
 {
-    noh_v4 a0, a1, a2, a3, b0, b1, b2, b3;
-    load_two(a, r, wide, &a0, &a1);
-    load_two(a, r + 2u, wide, &a2, &a3);
-    load_two(b, r, wide, &b0, &b1);
-    load_two(b, r + 2u, wide, &b2, &b3);
-    q[0] = lerp(a0, b0, to_a, to_b);
-    q[1] = lerp(a1, b1, to_a, to_b);
-    q[2] = lerp(a2, b2, to_a, to_b);
-    q[3] = lerp(a3, b3, to_a, to_b);
+    if (wide) {
+        const float *p = (const float *)(const void *)a + 4u * r, *o = (const float *)(const void *)b + 4u * r;
+        const noh_v4 to_a = noh_v4_set(w->to_a), to_b = noh_v4_set(w->to_b);
+        q[0] = lerp(p, o, to_a, to_b);
+        q[1] = lerp(p + 4, o + 4, to_a, to_b);
+        q[2] = lerp(p + 8, o + 8, to_a, to_b);
+        q[3] = lerp(p + 12, o + 12, to_a, to_b);
+    } else {
+        const int16_t *p = (const int16_t *)(const void *)a + 4u * r, *o = (const int16_t *)(const void *)b + 4u * r;
+        const noh_weights both = noh_weights_set(w->whole_a, w->whole_b);
+        noh_v4_blend_i16(p, o, both, &q[0], &q[1]);
+        noh_v4_blend_i16(p + 8, o + 8, both, &q[2], &q[3]);
+    }
     normalise_group(q);
 }
 
 /* Rotations: neighbouring frames lie in one hemisphere (the encoder sees to it), so there is
  * no sign to look at. */
-NOH_CLIP_INLINE void blend_rotations(const noh_clip *clip, const uint8_t *a, const uint8_t *b, float fraction, uint32_t count, int wide,
-                                   noh_transform *out)
+NOH_CLIP_INLINE void blend_rotations(const noh_clip *clip, const uint8_t *a, const uint8_t *b, const weights *w, uint32_t count, int wide,
+                                     noh_transform *out)
 {
-    const uint16_t *joints = clip->rotation_joints;
-    uint32_t r = blend_many(clip, a, b, fraction, count, wide, out);
-    const noh_v4 to_b = noh_v4_set(fraction), to_a = noh_v4_set(1.0f - fraction);
-    noh_v4 q[GROUP];
-    for (; r + GROUP <= count; r += GROUP) {
-        blend_group(a, b, r, wide, to_a, to_b, q);
-        noh_v4_store(out[joints[r]].rotation, q[0]);
-        noh_v4_store(out[joints[r + 1u]].rotation, q[1]);
-        noh_v4_store(out[joints[r + 2u]].rotation, q[2]);
-        noh_v4_store(out[joints[r + 3u]].rotation, q[3]);
+    const uint32_t *offsets = clip->rotation_offsets;
+    uint32_t r = blend_many(offsets, a, b, w, count, wide, out);
+    noh_v4 q[NOH_CLIP_GROUP];
+    for (; r + NOH_CLIP_GROUP <= count; r += NOH_CLIP_GROUP) {
+        blend_group(a, b, r, wide, w, q);
+        noh_v4_store(rotation_at(out, offsets[r]), q[0]);
+        noh_v4_store(rotation_at(out, offsets[r + 1u]), q[1]);
+        noh_v4_store(rotation_at(out, offsets[r + 2u]), q[2]);
+        noh_v4_store(rotation_at(out, offsets[r + 3u]), q[3]);
     }
     if (r < count) {
-        for (uint32_t i = 0; i < GROUP; i++) {
-            const uint32_t index = r + i < count ? r + i : count - 1u;
-            q[i] = lerp(load_quat(a, index, wide), load_quat(b, index, wide), to_a, to_b);
-        }
-        normalise_group(q);
-        for (uint32_t i = 0; r + i < count; i++) {
-            noh_v4_store(out[joints[r + i]].rotation, q[i]);
-        }
+        blend_group(a, b, r, wide, w, q);
+        noh_v4_store(rotation_at(out, offsets[r]), q[0]);
+        if (r + 1u < count) noh_v4_store(rotation_at(out, offsets[r + 1u]), q[1]);
+        if (r + 2u < count) noh_v4_store(rotation_at(out, offsets[r + 2u]), q[2]);
     }
 }
 
@@ -159,11 +162,13 @@ void noh_clip_blend_frames(const noh_clip *clip, const uint8_t *a, const uint8_t
 {
     const float *la = (const float *)(const void *)(a + clip->linear_offset), *lb = (const float *)(const void *)(b + clip->linear_offset);
     const noh_clip_prefix *prefix = &clip->prefixes[joints];
+    const int32_t whole_b = (int32_t)(fraction * (float)clip->weight_one + 0.5f);
+    const weights w = { (int32_t)clip->weight_one - whole_b, whole_b, 1.0f - fraction, fraction };
     memcpy(out, clip->pose, joints * sizeof *out);
     if (clip->info.flags & NOH_CLIP_FLAG_WIDE) {
-        blend_rotations(clip, a, b, fraction, prefix->rotations, 1, out);
+        blend_rotations(clip, a, b, &w, prefix->rotations, 1, out);
     } else {
-        blend_rotations(clip, a, b, fraction, prefix->rotations, 0, out);
+        blend_rotations(clip, a, b, &w, prefix->rotations, 0, out);
     }
     for (uint32_t i = clip->prefixes[0].linears; i < prefix->linears; i++) {
         noh_transform *t = &out[clip->linears[i].joint];

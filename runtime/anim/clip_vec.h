@@ -1,7 +1,10 @@
 /* clip_vec.h (private to anim/ and the encoder): four floats at a time.
  *
  * Every operation here rounds once, like the scalar twin's, so that all give the same
- * bits. Define NOH_CLIP_SCALAR to force the twin. */
+ * bits. Define NOH_CLIP_SCALAR to force the twin.
+ *
+ * noh_v4_blend_i16: eight int16 each of a and b (16-byte aligned), summed with whole weights, 0..32767,
+ * that add up to 32767 at most: exact in 32 bits, then rounded once to floats. */
 #ifndef NOH_ANIM_CLIP_VEC_H
 #define NOH_ANIM_CLIP_VEC_H
 
@@ -35,17 +38,13 @@ static inline noh_v4 noh_v4_mul(noh_v4 a, noh_v4 b) { return _mm_mul_ps(a, b); }
 static inline noh_v4 noh_v4_div(noh_v4 a, noh_v4 b) { return _mm_div_ps(a, b); }
 static inline noh_v4 noh_v4_sqrt(noh_v4 a) { return _mm_sqrt_ps(a); }
 static inline noh_v4 noh_v4_max(noh_v4 a, noh_v4 b) { return _mm_max_ps(a, b); } /* a > b ? a : b */
-/* Four int16, times a power of two that may differ between paths (here 2^16: one shift less). */
-static inline noh_v4 noh_v4_load_i16(const int16_t *p)
+typedef __m128i noh_weights;
+static inline noh_weights noh_weights_set(int32_t to_a, int32_t to_b) { return _mm_set1_epi32((int32_t)((uint32_t)to_b << 16 | (uint32_t)to_a)); }
+static inline void noh_v4_blend_i16(const int16_t *a, const int16_t *b, noh_weights w, noh_v4 *first, noh_v4 *second)
 {
-    return _mm_cvtepi32_ps(_mm_unpacklo_epi16(_mm_setzero_si128(), _mm_loadl_epi64((const __m128i *)(const void *)p)));
-}
-/* Eight int16 likewise, as two vectors. */
-static inline void noh_v4_load_i16_pair(const int16_t *p, noh_v4 *first, noh_v4 *second)
-{
-    const __m128i v = _mm_loadu_si128((const __m128i *)(const void *)p), zero = _mm_setzero_si128();
-    *first = _mm_cvtepi32_ps(_mm_unpacklo_epi16(zero, v));
-    *second = _mm_cvtepi32_ps(_mm_unpackhi_epi16(zero, v));
+    const __m128i p = _mm_load_si128((const __m128i *)(const void *)a), q = _mm_load_si128((const __m128i *)(const void *)b);
+    *first = _mm_cvtepi32_ps(_mm_madd_epi16(_mm_unpacklo_epi16(p, q), w));
+    *second = _mm_cvtepi32_ps(_mm_madd_epi16(_mm_unpackhi_epi16(p, q), w));
 }
 static inline void noh_v4_transpose(noh_v4 v[4])
 {
@@ -84,12 +83,13 @@ static inline noh_v4 noh_v4_mul(noh_v4 a, noh_v4 b) { return vmulq_f32(a, b); }
 static inline noh_v4 noh_v4_div(noh_v4 a, noh_v4 b) { return vdivq_f32(a, b); }
 static inline noh_v4 noh_v4_sqrt(noh_v4 a) { return vsqrtq_f32(a); }
 static inline noh_v4 noh_v4_max(noh_v4 a, noh_v4 b) { return vbslq_f32(vcgtq_f32(a, b), a, b); }
-static inline noh_v4 noh_v4_load_i16(const int16_t *p) { return vcvtq_f32_s32(vmovl_s16(vld1_s16(p))); }
-static inline void noh_v4_load_i16_pair(const int16_t *p, noh_v4 *first, noh_v4 *second)
+typedef struct noh_weights { int16_t to_a, to_b; } noh_weights;
+static inline noh_weights noh_weights_set(int32_t to_a, int32_t to_b) { const noh_weights w = { (int16_t)to_a, (int16_t)to_b }; return w; }
+static inline void noh_v4_blend_i16(const int16_t *a, const int16_t *b, noh_weights w, noh_v4 *first, noh_v4 *second)
 {
-    const int16x8_t v = vld1q_s16(p);
-    *first = vcvtq_f32_s32(vmovl_s16(vget_low_s16(v)));
-    *second = vcvtq_f32_s32(vmovl_s16(vget_high_s16(v)));
+    const int16x8_t p = vld1q_s16(a), q = vld1q_s16(b);
+    *first = vcvtq_f32_s32(vmlal_n_s16(vmull_n_s16(vget_low_s16(p), w.to_a), vget_low_s16(q), w.to_b));
+    *second = vcvtq_f32_s32(vmlal_n_s16(vmull_n_s16(vget_high_s16(p), w.to_a), vget_high_s16(q), w.to_b));
 }
 static inline void noh_v4_transpose(noh_v4 v[4])
 {
@@ -132,11 +132,18 @@ static inline noh_v4 noh_v4_div(noh_v4 a, noh_v4 b) { const noh_v4 r = { { a.f[0
 static inline noh_v4 noh_v4_sqrt(noh_v4 a) { const noh_v4 r = { { noh_sqrt(a.f[0]), noh_sqrt(a.f[1]), noh_sqrt(a.f[2]), noh_sqrt(a.f[3]) } }; return r; }
 static inline float noh_v4_larger(float a, float b) { return a > b ? a : b; }
 static inline noh_v4 noh_v4_max(noh_v4 a, noh_v4 b) { const noh_v4 r = { { noh_v4_larger(a.f[0], b.f[0]), noh_v4_larger(a.f[1], b.f[1]), noh_v4_larger(a.f[2], b.f[2]), noh_v4_larger(a.f[3], b.f[3]) } }; return r; }
-static inline noh_v4 noh_v4_load_i16(const int16_t *p) { const noh_v4 r = { { (float)p[0], (float)p[1], (float)p[2], (float)p[3] } }; return r; }
-static inline void noh_v4_load_i16_pair(const int16_t *p, noh_v4 *first, noh_v4 *second)
+typedef struct noh_weights { int32_t to_a, to_b; } noh_weights;
+static inline noh_weights noh_weights_set(int32_t to_a, int32_t to_b) { const noh_weights w = { to_a, to_b }; return w; }
+static inline noh_v4 noh_v4_blend_four(const int16_t *a, const int16_t *b, noh_weights w)
 {
-    *first = noh_v4_load_i16(p);
-    *second = noh_v4_load_i16(p + 4);
+    const noh_v4 r = { { (float)(a[0] * w.to_a + b[0] * w.to_b), (float)(a[1] * w.to_a + b[1] * w.to_b),
+                         (float)(a[2] * w.to_a + b[2] * w.to_b), (float)(a[3] * w.to_a + b[3] * w.to_b) } };
+    return r;
+}
+static inline void noh_v4_blend_i16(const int16_t *a, const int16_t *b, noh_weights w, noh_v4 *first, noh_v4 *second)
+{
+    *first = noh_v4_blend_four(a, b, w);
+    *second = noh_v4_blend_four(a + 4, b + 4, w);
 }
 static inline void noh_v4_transpose(noh_v4 v[4])
 {

@@ -42,6 +42,14 @@ noh clip "$work/walk.noh" --dump "$work/x.rcl" --clip wlak
 expect 1 'a clip that is not there'
 says "did you mean 'walk'"
 
+noh bench "$work/walk.noh" --rounds 1 --json
+expect 0 'a bench of a clip of one segment, without a mesh'
+noh bench "$work/walk.noh" "$work/again.noh" --rounds 1 --json
+expect 0 'and of two packs'
+for row in clip/warm clip/alone clip/shared-100x2 clip/seek clip/worst-frame; do
+    check "has the row $row" grep -q "\"$row\"" "$work/out"
+done
+
 for option in '--error-cm 0' '--shell-cm -1' '--rate -3' '--only legs' '--unit-cm 0'; do
     # shellcheck disable=SC2086
     noh build "$work/walk.bvh" -o "$work/x.noh" $option

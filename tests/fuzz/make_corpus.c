@@ -1,4 +1,4 @@
-/* make_corpus.c: the fuzzer's seeds, small packs of every shape, written to a folder. */
+/* make_corpus.c: the fuzzers' seeds: small packs of every shape, and small clips, each in a folder. */
 #include "support.h"
 
 #include <stdio.h>
@@ -8,6 +8,7 @@
 #include "convert/convert.h"
 #include "convert/model_build.h"
 #include "motion_fixture.h"
+#include "unit/clip_fixture.h"
 
 static void write_pack(const char *folder, const char *name, const test_model_desc *desc)
 {
@@ -52,7 +53,57 @@ static void write_weights(const char *folder)
     model_free(m);
 }
 
-static const char *folder;
+static const char *folder, *clip_folder;
+
+/* Encode a motion, take it, and write its bytes. */
+static void write_clip(const char *name, raw_set *set, const clip_options *options)
+{
+    char path[4096];
+    fixture x;
+    const char *failed = fixture_build(&x, set, options, 2);
+    if (failed) fail_msg("%s: %s", name, failed);
+    snprintf(path, sizeof path, "%s/%s.clip", clip_folder, name);
+    test_write_file(path, x.blob.bytes, x.blob.count);
+    fixture_free(&x);
+}
+
+/* Spins too fast for components: raw and wild tracks; and a scale that moves. */
+static raw_set *spinning(void)
+{
+    raw_set *set = fixture_swing(4, 60, 1, 15.0f, 0.4, 0.5);
+    for (uint32_t f = 0; f < 60u; f++) {
+        fixture_axis_angle(fixture_rotation(&set->clips[0], f, 2), 0.2, 1.0, 0.3, 0.4 * (double)f);
+        fixture_axis_angle(fixture_rotation(&set->clips[0], f, 3), 1.0, 0.1, 0.3, 3.1 * (double)f);
+        fixture_scale(&set->clips[0], f, 1)[0] = (float)(1.0 + 0.3 * sin(0.2 * (double)f));
+    }
+    return set;
+}
+
+static raw_set *with_weights(void)
+{
+    raw_set *set = fixture_swing(2, 30, 1, 10.0f, 0.5, 0.5);
+    raw_clip *c = &set->clips[0];
+    c->floats = calloc(1, sizeof *c->floats);
+    c->float_count = 1;
+    assert_int_equal(raw_floats_alloc(&c->floats[0], 30, 5), 0);
+    for (uint32_t i = 0; i < 150u; i++) c->floats[0].values[i] = (float)(0.5 + 0.5 * sin(0.07 * (double)i));
+    return set;
+}
+
+static void clips(void **state)
+{
+    clip_options open;
+    (void)state;
+    memset(&open, 0, sizeof open);
+    open.open_loop = 1;
+    write_clip("still", fixture_still(3, 4, 1, 10.0f, 30.0), NULL);
+    write_clip("short", fixture_swing(3, 12, 1, 10.0f, 0.6, 0.5), NULL);
+    write_clip("segments", fixture_swing(6, 100, 2, 10.0f, 0.6, 0.5), NULL);
+    write_clip("wide", fixture_swing(3, 20, 1, 3000.0f, 0.5, 10.0), NULL);
+    write_clip("spinning", spinning(), NULL);
+    write_clip("weights", with_weights(), NULL);
+    write_clip("open", fixture_swing(4, 20, 1, 10.0f, 0.6, 0.5), &open);
+}
 
 static void corpus(void **state)
 {
@@ -75,11 +126,12 @@ static void corpus(void **state)
 
 int main(int argument_count, char **arguments)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(corpus) };
-    if (argument_count != 2) {
-        fprintf(stderr, "usage: make_corpus FOLDER\n");
+    const struct CMUnitTest tests[] = { cmocka_unit_test(corpus), cmocka_unit_test(clips) };
+    if (argument_count != 3) {
+        fprintf(stderr, "usage: make_corpus FOLDER FOLDER_OF_CLIPS\n");
         return 2;
     }
     folder = arguments[1];
+    clip_folder = arguments[2];
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,12 @@
 #!/bin/sh
-# replay.sh: the fuzzer's seeds, and whatever it once found (tests/fuzz/found), without libFuzzer.
+# replay.sh: the fuzzers' seeds, and whatever they once found (tests/fuzz/found, tests/fuzz/found_clips),
+# without libFuzzer.
 build=${NOH_BUILD:-build}
+failed=0
 set -- "$build/tests/fuzz/corpus"
 [ ! -d tests/fuzz/found ] || set -- "$@" tests/fuzz/found
-exec "$build/tests/fuzz/fuzz_pack" "$@"
+"$build/tests/fuzz/fuzz_pack" "$@" || failed=1
+set -- "$build/tests/fuzz/clips"
+[ ! -d tests/fuzz/found_clips ] || set -- "$@" tests/fuzz/found_clips
+"$build/tests/fuzz/fuzz_clip" "$@" || failed=1
+exit $failed

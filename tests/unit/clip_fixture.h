@@ -18,6 +18,7 @@ typedef struct fixture {
     void *clip_memory, *cache_memory;
     noh_clip *clip;
     noh_clip_cache *cache;
+    uint32_t rate_uhz; /* as the clip has it */
 } fixture;
 
 /* ---- motion ---- */
@@ -97,6 +98,7 @@ static inline const char *fixture_open(fixture *x, uint32_t slots)
     const uint32_t joints = x->set->clips[0].joint_count;
     const noh_clip *clips[1];
     noh_clip_cache_desc cache;
+    noh_clip_info info;
     noh_clip_desc desc;
     noh_error error;
     size_t size;
@@ -115,6 +117,8 @@ static inline const char *fixture_open(fixture *x, uint32_t slots)
     if (!size) return error.what;
     x->clip_memory = malloc(size);
     if (noh_clip_init(x->clip_memory, size, &desc, &x->clip, &error) != NOH_OK) return error.what;
+    noh_clip_info_of(x->clip, &info);
+    x->rate_uhz = info.rate_uhz;
     clips[0] = x->clip;
     memset(&cache, 0, sizeof cache);
     cache.clips = clips;

@@ -4,7 +4,7 @@
  * along its axes, carried by the whole chain of parents, against the raw motion; at every frame,
  * and between frames against the raw motion with translations and scales lerped and rotations
  * lerped and normalised (neighbouring raw quaternions taken in one hemisphere). It is at most
- * `error_cm` wherever it is measured: at frames and at the quarters between them, by the decoder's
+ * `error_cm` wherever it is measured: at frames and at the eighths between them, by the decoder's
  * own arithmetic. Floats are bounded each for itself: |error| x reach <= error_cm.
  * Deterministic: no clock, no address, contraction off. */
 #ifndef NOH_CONVERT_CLIP_ENCODE_H

@@ -17,7 +17,7 @@
 #include "clip_space.h"
 
 #define ENC_FRAMES_MAX NOH_CLIP_SEGMENT_FRAMES_MAX
-#define ENC_PARTS 4          /* errors are measured at quarters of a frame */
+#define ENC_PARTS 8          /* errors are measured at eighths of a frame */
 #define ENC_RIG_MAX 48u      /* points of a joint's rigid descendants that are watched */
 #define ENC_DROP 0.15        /* a track whose effect stays under this part of the bound is constant */
 #define ENC_NONE 0xffffffffu

@@ -378,7 +378,7 @@ static int fit_joint(encoder *e, uint32_t joint, const enc_segment *s)
     return 0;
 }
 
-/* Raw motion at the quarters before each frame of the segment. */
+/* Raw motion at the eighths before each frame of the segment. */
 static void raw_between(encoder *e, const enc_segment *s)
 {
     for (uint32_t f = s->first ? 0u : 1u; f < s->count; f++) {
@@ -400,7 +400,7 @@ static double peak(double before, double here, double after)
     return bend > 0.0 && fabs(slope) < 2.0 * bend ? here + slope * slope / (8.0 * bend) : here;
 }
 
-/* Errors of all joints at the quarters before frame f, in parts of their bounds. */
+/* Errors of all joints at the eighths before frame f, in parts of their bounds. */
 static void errors_between(const encoder *e, uint32_t f, uint32_t part, double *errors)
 {
     const space_global *raw = e->loop->raw_between + (size_t)(f * BETWEEN + part) * e->joint_count;
@@ -413,7 +413,7 @@ static void errors_between(const encoder *e, uint32_t f, uint32_t part, double *
     }
 }
 
-/* The largest error at frames and between, in parts of the joints' bounds. Between the quarters it is
+/* The largest error at frames and between, in parts of the joints' bounds. Between the eighths it is
  * taken to run along parabolas. */
 static double segment_error(const encoder *e, const enc_segment *s)
 {

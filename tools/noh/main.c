@@ -28,7 +28,7 @@ static const struct verb {
     { "dump", verb_dump, "PACK -o OUT.obj [--weight NAME=V]... [--clip NAME] [--time S] [--anim PACK] [--path P]",
       "the deformed mesh, as drawn, baked to a plain one" },
     { "verify", verb_verify, "PACK [--anim PACK] [--seed N] [--instances N] [--driver D] [--json]", "every path and format against the CPU reference" },
-    { "bench", verb_bench, "PACK [--source ASSET] [--driver D] [--rounds N] [--json]", "ratios against the named baselines, in one run" },
+    { "bench", verb_bench, "PACK... [--source ASSET] [--driver D] [--rounds N] [--json]", "ratios against the named baselines, in one run" },
 };
 
 static int help(void)

@@ -46,7 +46,7 @@ static int open_morph(crowd *c, gpu_morph *m, uint32_t heads)
     desc.mesh_count = 1;
     desc.instance_counts = &heads;
     desc.path = c->path;
-    return gpu_morph_open(m, &c->job->g, &desc, c->job->file.path);
+    return gpu_morph_open(m, &c->job->g, &desc, c->job->files[0].path);
 }
 
 static int can_run(const crowd *c)

@@ -10,6 +10,7 @@
  *   bench_morph.c       rows morph/one-pass, morph/three-pass and frame
  *   bench_crowd.c       rows crowd/100-heads, and cost over pairs
  *   bench_cpu.c         rows morph/cpu
+ *   bench_clip*.c       rows clip/ (see bench_clip.h)
  *   bench_report.c      rows, storage, and how they are printed
  *
  * A method is one way to morph a mesh: one of ours, a baseline, or none at all.
@@ -168,8 +169,12 @@ typedef struct bench_slope {
     uint32_t draws;                    /* accumulation draws for all heads */
 } bench_slope;
 
+#define BENCH_FILES_MAX 8
+
 typedef struct bench_job {
-    pack_file file;
+    pack_file files[BENCH_FILES_MAX]; /* the first one's meshes are benched, and the clips of all */
+    uint32_t file_count;
+    int has_mesh;           /* a mesh with targets; without, nothing is drawn: mesh, g, gl_clock and slopes are empty */
     noh_mesh mesh;
     uint32_t mesh_index;
     gpu g;
@@ -184,6 +189,7 @@ typedef struct bench_job {
 int bench_morph(bench_job *job);
 int bench_crowd(bench_job *job);
 int bench_cpu(bench_job *job);
+int bench_clip_rows(bench_job *job); /* none where no pack has clips */
 
 void bench_print(bench_job *job);
 void bench_print_json(bench_job *job);

@@ -51,7 +51,7 @@ static int take(morph_job *j, int status)
     if (status || m == &j->methods[FLOOR]) {
         return status;
     }
-    return bench_check(&j->stage, m, j->job->file.path);
+    return bench_check(&j->stage, m, j->job->files[0].path);
 }
 
 static int open_methods(morph_job *j)
@@ -164,7 +164,7 @@ int bench_morph(bench_job *job)
     }
     bench_stage_close(&j.stage);
     if (!status && job->g.gl.GetError() != GL_NO_ERROR) {
-        return tool_fail(job->file.path, "a GL error while measuring");
+        return tool_fail(job->files[0].path, "a GL error while measuring");
     }
     return status;
 }

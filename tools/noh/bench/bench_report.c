@@ -83,7 +83,7 @@ static int list_storage(bench_job *job, storage_row rows[STORAGE_MAX])
 static void print_head(const bench_job *job)
 {
     const noh_mesh_header *h = job->mesh.header;
-    printf("%s, mesh '%s': %u vertices, %u targets, %u pairs in %u texels of %u rectangles\n", job->file.path, job->mesh.name,
+    printf("%s, mesh '%s': %u vertices, %u targets, %u pairs in %u texels of %u rectangles\n", job->files[0].path, job->mesh.name,
            h->vertex_count, h->target_count, h->pair_count, h->texel_count, h->rect_count);
     printf("%s: %s; LP_NUM_THREADS=%s\n", job->g.caps.renderer, job->g.caps.version_text, getenv("LP_NUM_THREADS"));
     printf("%s, medians of at most %u interleaved rounds; morph/ rows are costs above the unmorphed mesh with rasterisation discarded\n",
@@ -127,10 +127,16 @@ static void print_storage(bench_job *job)
 
 void bench_print(bench_job *job)
 {
-    print_head(job);
+    if (job->has_mesh) {
+        print_head(job);
+    } else {
+        printf("%s: clips; %s, medians of at most %u interleaved rounds\n\n", job->files[0].path, job->cpu_clock.what, job->rounds);
+    }
     print_rows(&job->rows);
-    print_slopes(job);
-    print_storage(job);
+    if (job->has_mesh) {
+        print_slopes(job);
+        print_storage(job);
+    }
 }
 
 /* ---- for machines ---- */
@@ -166,27 +172,43 @@ static void json_slopes(json *j, const bench_job *job)
     json_close(j, ']');
 }
 
-void bench_print_json(bench_job *job)
+static void json_head(json *j, const bench_job *job)
+{
+    json_text(j, "driver", job->g.caps.renderer);
+    json_text(j, "gl_version", job->g.caps.version_text);
+    json_text(j, "clock", job->gl_clock.what);
+    json_text(j, "raster_threads", getenv("LP_NUM_THREADS"));
+    json_text(j, "mesh", job->mesh.name);
+    json_text(j, "quad_order", job->artist ? "asset" : "pack");
+}
+
+static void json_storage(json *j, bench_job *job)
 {
     storage_row rows[STORAGE_MAX];
     int count = list_storage(job, rows);
-    json j = json_begin(stdout);
-    json_text(&j, "driver", job->g.caps.renderer);
-    json_text(&j, "gl_version", job->g.caps.version_text);
-    json_text(&j, "clock", job->gl_clock.what);
-    json_text(&j, "raster_threads", getenv("LP_NUM_THREADS"));
-    json_text(&j, "mesh", job->mesh.name);
-    json_text(&j, "quad_order", job->artist ? "asset" : "pack");
-    json_rows(&j, &job->rows);
-    json_slopes(&j, job);
-    json_open(&j, "storage", '[');
+    json_open(j, "storage", '[');
     for (int i = 0; i < count; i++) {
-        json_open(&j, NULL, '{');
-        json_text(&j, "name", rows[i].name);
-        json_number(&j, "bytes", rows[i].bytes);
-        json_number(&j, "bytes_per_pair", rows[i].per_pair);
-        json_close(&j, '}');
+        json_open(j, NULL, '{');
+        json_text(j, "name", rows[i].name);
+        json_number(j, "bytes", rows[i].bytes);
+        json_number(j, "bytes_per_pair", rows[i].per_pair);
+        json_close(j, '}');
     }
-    json_close(&j, ']');
+    json_close(j, ']');
+}
+
+void bench_print_json(bench_job *job)
+{
+    json j = json_begin(stdout);
+    if (job->has_mesh) {
+        json_head(&j, job);
+    } else {
+        json_text(&j, "clock", job->cpu_clock.what);
+    }
+    json_rows(&j, &job->rows);
+    if (job->has_mesh) {
+        json_slopes(&j, job);
+        json_storage(&j, job);
+    }
     json_end(&j);
 }

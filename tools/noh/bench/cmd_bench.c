@@ -7,7 +7,8 @@
 #include "bench_job.h"
 
 typedef struct bench_args {
-    const char *pack, *driver, *source;
+    const char *packs[BENCH_FILES_MAX], *driver, *source;
+    int pack_count;
     double rounds;
     int as_json;
 } bench_args;
@@ -16,11 +17,11 @@ static int read_args(int argc, char **argv, bench_args *a)
 {
     const option options[] = { { "--driver", OPTION_TEXT, &a->driver }, { "--rounds", OPTION_NUMBER, &a->rounds },
                                { "--source", OPTION_TEXT, &a->source }, { "--json", OPTION_FLAG, &a->as_json } };
-    int count, status = tool_options(argc, argv, options, 4, &a->pack, 1, &count);
+    int status = tool_options(argc, argv, options, 4, a->packs, BENCH_FILES_MAX, &a->pack_count);
     if (status) {
         return status;
     }
-    if (!a->pack) {
+    if (!a->pack_count) {
         return tool_usage("bench wants a pack");
     }
     if (a->rounds < 1.0 || a->rounds > 1000.0 || a->rounds != (double)(uint32_t)a->rounds) {
@@ -30,34 +31,44 @@ static int read_args(int argc, char **argv, bench_args *a)
 }
 
 /* The mesh with the most pairs is what is benched. */
-static int choose_mesh(bench_job *job)
+static void choose_mesh(bench_job *job)
 {
     uint32_t most = 0;
-    for (uint32_t i = 0; i < job->file.pack.mesh_count; i++) {
+    for (uint32_t i = 0; i < job->files[0].pack.mesh_count; i++) {
         noh_mesh mesh;
-        noh_pack_mesh(&job->file.pack, i, &mesh);
+        noh_pack_mesh(&job->files[0].pack, i, &mesh);
         if (mesh.header->pair_count > most) {
             most = mesh.header->pair_count;
             job->mesh = mesh;
             job->mesh_index = i;
         }
     }
-    return most ? 0 : tool_fail(job->file.path, "no target of any mesh moves anything: there is nothing to measure");
+    job->has_mesh = most != 0;
+}
+
+static int bench_drawn(bench_job *job, const bench_args *a, uint32_t **artist)
+{
+    int status = 0;
+    if (a->source) {
+        status = bench_artist_order(a->source, job->mesh_index, &job->mesh, artist);
+        job->artist = *artist;
+    }
+    if (!status) status = bench_morph(job);
+    if (!status) status = bench_cpu(job);
+    if (!status) status = bench_crowd(job);
+    return status;
 }
 
 static int bench_all(bench_job *job, const bench_args *a)
 {
     uint32_t *artist = NULL;
-    int status = choose_mesh(job);
-    if (!status && a->source) {
-        status = bench_artist_order(a->source, job->mesh_index, &job->mesh, &artist);
-        job->artist = artist;
-    }
-    if (!status) status = bench_morph(job);
-    if (!status) status = bench_cpu(job);
-    if (!status) status = bench_crowd(job);
+    int status = job->has_mesh ? bench_drawn(job, a, &artist) : 0;
+    if (!status) status = bench_clip_rows(job);
     if (!status && job->rows.failed) {
-        status = tool_fail(a->pack, "out of memory");
+        status = tool_fail(a->packs[0], "out of memory");
+    }
+    if (!status && !job->rows.count) {
+        status = tool_fail(a->packs[0], "no target of any mesh moves anything, and there are no clips: there is nothing to measure");
     }
     if (!status) {
         (a->as_json ? bench_print_json : bench_print)(job);
@@ -66,9 +77,38 @@ static int bench_all(bench_job *job, const bench_args *a)
     return status;
 }
 
+static int open_packs(bench_job *job, const bench_args *a)
+{
+    int status = 0;
+    while (!status && job->file_count < (uint32_t)a->pack_count) {
+        status = pack_file_open(&job->files[job->file_count], a->packs[job->file_count]);
+        job->file_count += !status;
+    }
+    return status;
+}
+
+/* A GL only where something is drawn. */
+static int run(bench_job *job, const bench_args *a)
+{
+    int status;
+    bench_clock_open(&job->cpu_clock, NULL);
+    if (!job->has_mesh) {
+        return bench_all(job, a);
+    }
+    setenv("LP_NUM_THREADS", "0", 0); /* llvmpipe draws on this thread: what is counted is work, not waking others for it */
+    status = gpu_open(&job->g, a->driver);
+    if (!status) {
+        bench_clock_open(&job->gl_clock, &job->g);
+        status = bench_all(job, a);
+        bench_clock_close(&job->gl_clock);
+        gpu_close(&job->g);
+    }
+    return status;
+}
+
 int verb_bench(int argc, char **argv)
 {
-    bench_args a = { NULL, NULL, NULL, 15.0, 0 };
+    bench_args a = { { NULL }, NULL, NULL, 0, 15.0, 0 };
     bench_job job;
     int status = read_args(argc, argv, &a);
     if (status) {
@@ -76,20 +116,14 @@ int verb_bench(int argc, char **argv)
     }
     memset(&job, 0, sizeof job);
     job.rounds = (uint32_t)a.rounds;
-    status = pack_file_open(&job.file, a.pack);
-    if (status) {
-        return status;
-    }
-    setenv("LP_NUM_THREADS", "0", 0); /* llvmpipe draws on this thread: what is counted is work, not waking others for it */
-    status = gpu_open(&job.g, a.driver);
+    status = open_packs(&job, &a);
     if (!status) {
-        bench_clock_open(&job.gl_clock, &job.g);
-        bench_clock_open(&job.cpu_clock, NULL);
-        status = bench_all(&job, &a);
-        bench_clock_close(&job.gl_clock);
-        gpu_close(&job.g);
+        choose_mesh(&job);
+        status = run(&job, &a);
     }
     free(job.rows.rows);
-    pack_file_close(&job.file);
+    while (job.file_count > 0) {
+        pack_file_close(&job.files[--job.file_count]);
+    }
     return status;
 }
