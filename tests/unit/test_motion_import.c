@@ -797,13 +797,14 @@ static void keys_in_extras(void **state)
 {
     (void)state;
     scene *s = scene_new(TREE);
-    s->animation_rest = ",\"extras\":{\"fps\":30,\"events\":[{\"time\":0.75,\"name\":\"late\",\"payload\":-2,\"weightMin\":0.5},"
+    s->animation_rest = ",\"extras\":{\"fps\":30,\"loop\":true,\"events\":[{\"time\":0.75,\"name\":\"late\",\"payload\":-2,\"weightMin\":0.5},"
                         "{\"time\":0,\"name\":\"early\",\"payload\":\"0x1122334455667788\"},{\"time\":1.00001,\"name\":\"end\",\"payload\":2.5},"
                         "{\"time\":0.5},{\"name\":\"when\"},{\"time\":3,\"name\":\"x\"},{\"time\":0,\"name\":\"y\",\"payload\":\"z\"},7,"
                         "{\"time\":0,\"name\":\"w\",\"weightMin\":-1}]}";
     add_move(s, 2, "LINEAR", two_times, 2, two_moves, 6);
     loaded l = load(s, 0.0);
     const raw_clip *clip = only_clip(&l);
+    assert_int_equal(clip->loop, 1);
     assert_int_equal(clip->event_count, 3);
     assert_string_equal(clip->events[0].name, "early");
     assert_string_equal(clip->events[1].name, "late");
@@ -836,6 +837,7 @@ static void markers_in_extras(void **state)
     assert_int_equal(clip->events[0].is_marker, 0);
     assert_string_equal(clip->events[1].name, "left");
     assert_int_equal(clip->events[1].is_marker, 1);
+    assert_int_equal(clip->loop, 0);
     assert_true(has_warning(l.m, "event 2 was skipped: its marker"));
     assert_true(has_warning(l.m, "event 3 was skipped: a sync marker has no payload"));
     loaded_free(&l);

@@ -169,7 +169,7 @@ static void read_clip(file &f, size_t index)
     clip.name = copy_string(name);
     read_channels(f, a, where, clip);
     if (clip.channel_count > 0) {
-        read_events(f, a, where, clip);
+        read_extras(f, a, where, clip);
         return;
     }
     warn(f, "%s was skipped: no channel of it is left", where.c_str());

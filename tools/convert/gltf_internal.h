@@ -16,7 +16,7 @@
  *   gltf_influences.cpp which joints move which vertices
  *   gltf_skin.cpp      skins, and where skinned meshes stand in the rest pose
  *   gltf_animation.cpp animations
- *   gltf_events.cpp    callback keys in an animation's extras
+ *   gltf_extras.cpp    an animation's extras: callback keys, sync markers, loops
  *   gltf_material.cpp  materials, textures, images */
 #ifndef NOH_CONVERT_GLTF_INTERNAL_H
 #define NOH_CONVERT_GLTF_INTERNAL_H
@@ -148,7 +148,7 @@ void check_influences(const model_mesh &mesh, uint32_t joint_count);
 void read_nodes(file &f);
 void read_skins(file &f);          /* after read_nodes: places the nodes of skinned meshes */
 void read_animations(file &f);
-void read_events(file &f, const tinygltf::Animation &a, const std::string &where, model_clip &out);
+void read_extras(file &f, const tinygltf::Animation &a, const std::string &where, model_clip &out);
 
 } // namespace gltf
 

@@ -247,6 +247,7 @@ static void make_clip(const set_job &job, const model_clip &from, const std::vec
     bytes_left -= std::min(bytes_left, when.frame_count * per_frame);
     clip.name = copy_string(from.name);
     clip.rate_hz = when.rate_hz;
+    clip.loop = from.loop;
     clip.source_error_cm = when.error_cm;
     fill_joints(job, tracks, when, clip, where);
     clip.floats = zeros<raw_floats>(tracks.size());

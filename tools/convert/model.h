@@ -124,6 +124,7 @@ typedef struct model_clip {
     uint32_t channel_count;
     model_channel *channels;
     float duration_s;           /* the largest key time */
+    uint8_t loop;               /* its author says that it repeats */
     uint32_t event_count;
     model_event *events;        /* in the file's order, times within 0 and duration_s */
 } model_clip;

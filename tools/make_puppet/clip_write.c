@@ -82,20 +82,21 @@ static int write_times(Writer *w, int frames)
     return accessor;
 }
 
-/* In the syntax that the converter reads. */
+/* All repeat. In the syntax that the converter reads. */
 static void write_cues(Buffer *json, const Clip *clip)
 {
     Cue cues[CUES_MAX];
     int count = clip->cues(cues);
+    buffer_print(json, ",\"extras\":{\"loop\":true");
     for (int i = 0; i < count; i++) {
-        buffer_print(json, "%s{\"time\":%.6g,\"name\":\"%s\"", i ? ",\n" : ",\"extras\":{\"events\":[", cues[i].time_s,
+        buffer_print(json, "%s{\"time\":%.6g,\"name\":\"%s\"", i ? ",\n" : ",\"events\":[", cues[i].time_s,
                      cues[i].name);
         if (cues[i].payload >= 0) {
             buffer_print(json, ",\"payload\":%d", cues[i].payload);
         }
         buffer_print(json, "}");
     }
-    buffer_print(json, count ? "]}" : "");
+    buffer_print(json, count ? "]}" : "}");
 }
 
 void clip_write(Writer *w, Buffer *json, const Clip *clip, int mask_node)

@@ -1,10 +1,12 @@
-/* gltf_events.cpp: callback keys in an animation's extras.
+/* gltf_extras.cpp: what an animation's extras say: callback keys, sync markers, whether it repeats.
+ *
+ *     "extras": {"loop": true}
  *
  *     "extras": {"events": [{"time": 0.5, "name": "step", "payload": 7, "weightMin": 0.1}]}
  *
  *     "extras": {"events": [{"time": 0.25, "name": "left", "marker": true}]}
  *
- * The second is a sync marker. payload: a number, or for what a 32-bit integer and a double cannot hold, a text as in
+ * The last is a sync marker. payload: a number, or for what a 32-bit integer and a double cannot hold, a text as in
  * events_read.h. glTF says nothing about extras: a key that cannot be understood is left
  * out with a warning. */
 #include "gltf_internal.h"
@@ -73,9 +75,10 @@ static size_t count_to_read(file &f, const tinygltf::Value &keys, const std::str
     return RAW_EVENTS_MAX;
 }
 
-void read_events(file &f, const tinygltf::Animation &a, const std::string &where, model_clip &out)
+void read_extras(file &f, const tinygltf::Animation &a, const std::string &where, model_clip &out)
 {
     const tinygltf::Value none;
+    out.loop = a.extras.IsObject() && a.extras.Get("loop").IsBool() && a.extras.Get("loop").Get<bool>();
     const tinygltf::Value &keys = a.extras.IsObject() ? a.extras.Get("events") : none;
     if (!keys.IsArray() || keys.ArrayLen() == 0)
         return;
