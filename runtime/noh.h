@@ -20,6 +20,9 @@
  *   anim/graph.h         a small animation graph over a controller
  *   anim/local_to_model.h  joint matrices and palettes
  *   deform/morph.h       morph targets on the CPU: reference and fallback
+ *   character/character.h  one character: controller, detail, what it shows
+ *   character/detail.h   detail chosen by pixels; time_lod.h: posing less often than once a frame
+ *   character/scheduler.h  who is posed in a frame, within a budget; bounds.h: where a character is
  *   gl/gl_api.h          the GL ES functions that noh calls: you bring the lookup
  *   gl/gl_caps.h         what this GPU can really do, found by trying
  *   gl/gl_morph.h        morph targets accumulated on the GPU, five ways
@@ -50,5 +53,10 @@
 #include "gl/gl_memory.h"
 #include "gl/gl_morph.h"
 #include "gl/gl_draw.h"
+#include "character/bounds.h"
+#include "character/character.h"
+#include "character/detail.h"
+#include "character/scheduler.h"
+#include "character/time_lod.h"
 
 #endif

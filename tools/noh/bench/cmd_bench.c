@@ -64,6 +64,7 @@ static int bench_all(bench_job *job, const bench_args *a)
     uint32_t *artist = NULL;
     int status = job->has_mesh ? bench_drawn(job, a, &artist) : 0;
     if (!status) status = bench_clip_rows(job);
+    if (!status) status = bench_crowd_cpu(job);
     if (!status && job->rows.failed) {
         status = tool_fail(a->packs[0], "out of memory");
     }

@@ -1,0 +1,333 @@
+#include "character/character.h"
+
+#include <string.h>
+
+#include "anim/local_to_model.h"
+#include "base/arena.h"
+
+/* ---- memory ---- */
+
+typedef struct layout {
+    size_t controller, palettes[2], floats[2], bytes;
+} layout;
+
+static size_t place(noh_arena *arena, size_t bytes)
+{
+    (void)noh_arena_carve(arena, bytes, 16);
+    return arena->used - bytes;
+}
+
+static layout layout_of(const noh_character_desc *d, size_t controller_bytes)
+{
+    noh_arena arena = noh_arena_measure();
+    layout l;
+    (void)place(&arena, sizeof(noh_character));
+    l.controller = place(&arena, controller_bytes);
+    for (int i = 0; i < 2; i++) {
+        l.palettes[i] = place(&arena, 12u * sizeof(float) * (size_t)d->controller.set->joint_count);
+        l.floats[i] = place(&arena, d->controller.set->float_count * sizeof(float));
+    }
+    (void)noh_arena_carve(&arena, 0, 16); /* a multiple of the alignment: they lie in an array */
+    l.bytes = arena.used;
+    return l;
+}
+
+size_t noh_character_size(const noh_character_desc *desc)
+{
+    size_t controller_bytes = noh_controller_size(&desc->controller);
+    return controller_bytes ? layout_of(desc, controller_bytes).bytes : 0;
+}
+
+static void fill_head(noh_character *ch, const noh_character_desc *d, const layout *l)
+{
+    ch->start_clock = d->start_clock;
+    ch->bytes = (uint32_t)l->bytes;
+    ch->joint_count = d->controller.set->joint_count;
+    ch->float_count = d->controller.set->float_count;
+    ch->controller_offset = (uint32_t)l->controller;
+    for (int i = 0; i < 2; i++) {
+        ch->palette_offsets[i] = (uint32_t)l->palettes[i];
+        ch->float_offsets[i] = (uint32_t)l->floats[i];
+    }
+    noh_time_lod_init(&ch->time, d->instance);
+    ch->time.clock = d->start_clock;
+}
+
+noh_result noh_character_init(void *memory, size_t bytes, const noh_character_desc *desc, noh_character **character, noh_error *error)
+{
+    size_t controller_bytes = noh_controller_size(&desc->controller);
+    noh_controller *controller;
+    noh_character *ch = (noh_character *)memory;
+    noh_result result;
+    layout l;
+    if (controller_bytes == 0) {
+        return noh_controller_init(NULL, 0, &desc->controller, &controller, error); /* which names the field */
+    }
+    l = layout_of(desc, controller_bytes);
+    if (!memory || ((uintptr_t)memory & 15u) != 0) {
+        return noh_fail(error, NOH_ERR_ARG, "memory for a character is NULL or not 16-byte aligned", 0, l.bytes);
+    }
+    if (bytes < l.bytes) {
+        return noh_fail(error, NOH_ERR_MEMORY, "memory for a character is too small", bytes, l.bytes);
+    }
+    memset(memory, 0, l.bytes);
+    result = noh_controller_init((uint8_t *)memory + l.controller, controller_bytes, &desc->controller, &controller, error);
+    if (result == NOH_OK) {
+        fill_head(ch, desc, &l);
+        *character = ch;
+    }
+    return result;
+}
+
+static size_t carve_scratch(noh_arena *arena, const noh_character_desc *d, noh_character_scratch *s, void **pose_memory)
+{
+    const noh_anim_set *set = d->controller.set;
+    size_t pose_bytes = noh_pose_scratch_size(set, 0);
+    memset(s, 0, sizeof *s);
+    s->ahead_bytes = noh_controller_size(&d->controller);
+    s->ahead = (noh_controller *)noh_arena_carve(arena, s->ahead_bytes, 16);
+    *pose_memory = noh_arena_carve(arena, pose_bytes, 16);
+    s->model = (float *)noh_arena_carve(arena, 12u * sizeof(float) * (size_t)set->joint_count, 16);
+    s->local = (noh_transform *)noh_arena_carve(arena, set->joint_count * sizeof(noh_transform), 4);
+    s->floats = (float *)noh_arena_carve(arena, set->float_count * sizeof(float), 4);
+    return pose_bytes;
+}
+
+size_t noh_character_scratch_size(const noh_character_desc *desc)
+{
+    noh_arena arena = noh_arena_measure();
+    noh_character_scratch s;
+    void *pose_memory;
+    if (noh_controller_size(&desc->controller) == 0) {
+        return 0;
+    }
+    (void)carve_scratch(&arena, desc, &s, &pose_memory);
+    return arena.used;
+}
+
+noh_result noh_character_scratch_init(void *memory, size_t bytes, const noh_character_desc *desc, noh_character_scratch *scratch, noh_error *error)
+{
+    size_t need = noh_character_scratch_size(desc), pose_bytes;
+    noh_arena arena = noh_arena_over(memory, bytes);
+    noh_controller *controller;
+    void *pose_memory;
+    if (need == 0) {
+        return noh_controller_init(NULL, 0, &desc->controller, &controller, error);
+    }
+    if (!memory || ((uintptr_t)memory & 15u) != 0) {
+        return noh_fail(error, NOH_ERR_ARG, "memory for characters' scratch is NULL or not 16-byte aligned", 0, need);
+    }
+    if (bytes < need) {
+        return noh_fail(error, NOH_ERR_MEMORY, "memory for characters' scratch is too small", bytes, need);
+    }
+    pose_bytes = carve_scratch(&arena, desc, scratch, &pose_memory);
+    return noh_pose_scratch_init(pose_memory, pose_bytes, desc->controller.set, 0, &scratch->pose, error);
+}
+
+size_t noh_character_bytes(const noh_character *ch)
+{
+    return ch->bytes;
+}
+
+void noh_character_number(noh_character *ch, uint32_t instance)
+{
+    ch->time.instance = instance;
+}
+
+/* ---- parts ---- */
+
+noh_controller *noh_character_controller(noh_character *ch)
+{
+    return (noh_controller *)(void *)((uint8_t *)ch + ch->controller_offset);
+}
+
+static const noh_controller *controller_of(const noh_character *ch)
+{
+    return (const noh_controller *)(const void *)((const uint8_t *)ch + ch->controller_offset);
+}
+
+static float *palette_of(noh_character *ch, uint32_t slot)
+{
+    return (float *)(void *)((uint8_t *)ch + ch->palette_offsets[slot]);
+}
+
+static float *floats_of(noh_character *ch, uint32_t slot)
+{
+    return (float *)(void *)((uint8_t *)ch + ch->float_offsets[slot]);
+}
+
+static const float *at(const noh_character *ch, uint32_t offset)
+{
+    return (const float *)(const void *)((const uint8_t *)ch + offset);
+}
+
+int64_t noh_character_clock(const noh_character *ch)
+{
+    return ch->start_clock + controller_of(ch)->clock;
+}
+
+/* ---- a frame ---- */
+
+uint32_t noh_character_step(noh_character *ch, const noh_anim_set *set, uint32_t ticks, noh_event_fn fn, void *user)
+{
+    return noh_controller_step(noh_character_controller(ch), set, ticks, fn, user);
+}
+
+noh_due noh_character_look(noh_character *ch, const noh_detail_table *table, const noh_detail_settings *settings, float pixels_per_metre)
+{
+    noh_controller *c = noh_character_controller(ch);
+    int64_t clock = noh_character_clock(ch);
+    float rate_error_m[NOH_RATE_COUNT];
+    uint32_t joints;
+    if (table->rate_error_m) {
+        noh_time_lod_error(c, table->rate_error_m, rate_error_m);
+    }
+    noh_detail_choose(&ch->detail, table, settings, pixels_per_metre, table->rate_error_m ? rate_error_m : NULL, clock);
+    joints = noh_detail_joint_count(&ch->detail, table);
+    (void)noh_controller_set_lod(c, ch->detail.mesh, joints < ch->joint_count ? joints : 0);
+    noh_time_lod_frame(&ch->time, clock, (noh_rate)ch->detail.rate);
+    return noh_time_lod_due(&ch->time);
+}
+
+uint32_t noh_character_late(const noh_character *ch)
+{
+    return noh_time_lod_late(&ch->time);
+}
+
+uint32_t noh_character_joints(const noh_character *ch)
+{
+    const noh_controller *c = controller_of(ch);
+    uint32_t tracks = 0;
+    for (uint32_t i = 0; i < c->track_count; i++) {
+        const noh_track *t = noh_controller_track(c, i);
+        tracks += t->mode == NOH_TRACK_ON && t->weight > 0.0f;
+    }
+    return tracks * c->lod_joint_count;
+}
+
+/* Fours, so that compilers see vectors. out may be a. */
+static void mix_fours(const float *a, const float *b, float part, size_t fours, float *out)
+{
+    for (size_t i = 0; i < 4u * fours; i += 4u) {
+        float mixed[4];
+        for (size_t k = 0; k < 4; k++) {
+            mixed[k] = a[i + k] + (b[i + k] - a[i + k]) * part;
+        }
+        memcpy(out + i, mixed, sizeof mixed);
+    }
+}
+
+static void mix_floats(const float *a, const float *b, float part, uint32_t count, float *out)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        out[i] = a[i] + (b[i] - a[i]) * part;
+    }
+}
+
+/* What is shown now becomes what is come from. */
+static void keep_shown(noh_character *ch, uint32_t from, float part)
+{
+    uint32_t to = from ^ 1u;
+    mix_fours(palette_of(ch, from), palette_of(ch, to), part, 3u * (size_t)ch->joint_count, palette_of(ch, from));
+    mix_floats(floats_of(ch, from), floats_of(ch, to), part, ch->float_count, floats_of(ch, from));
+    mix_floats(ch->spheres[from], ch->spheres[to], part, 4, ch->spheres[from]);
+}
+
+void noh_character_update_begin(noh_character *ch, const noh_anim_set *set, noh_character_scratch *scratch)
+{
+    const noh_controller *c = controller_of(ch);
+    noh_time_update u = noh_time_lod_update(&ch->time);
+    int64_t ahead = u.pose_clock - noh_character_clock(ch);
+    if (u.keep < 1.0f) {
+        keep_shown(ch, u.slot ^ 1u, u.keep);
+    }
+    if (ahead > 0) {
+        NOH_ASSERT(noh_controller_bytes(c) <= scratch->ahead_bytes);
+        memcpy(scratch->ahead, c, noh_controller_bytes(c));
+        (void)noh_controller_step(scratch->ahead, set, (uint32_t)ahead, NULL, NULL);
+        c = scratch->ahead;
+    }
+    noh_controller_pose(c, set, &scratch->pose, scratch->local, scratch->floats);
+    scratch->joint_count = c->lod_joint_count;
+    scratch->slot = u.slot;
+    ch->updates++;
+}
+
+/* Matrices of all joints: with inverse bind matrices, those that were not sampled have their parents' palette
+ * matrix, which is what hanging their vertices on the parent comes to; without, they stand in the bind pose. */
+static void make_palette(const noh_skeleton *skeleton, const noh_character_scratch *s, uint32_t joint_count, float *palette)
+{
+    uint32_t count = skeleton->inverse_bind ? s->joint_count : joint_count;
+    noh_local_to_model(skeleton, s->local, count, s->model);
+    noh_model_to_palette(skeleton, s->model, count, palette);
+    for (uint32_t i = count; i < joint_count; i++) {
+        NOH_ASSERT(skeleton->parents[i] != NOH_JOINT_ROOT);
+        memcpy(palette + 12u * (size_t)i, palette + 12u * (size_t)skeleton->parents[i], 12u * sizeof(float));
+    }
+}
+
+void noh_character_update_end(noh_character *ch, const noh_skeleton *skeleton, const float *margin_m, noh_character_scratch *scratch)
+{
+    uint32_t slot = scratch->slot;
+    NOH_ASSERT(skeleton->joint_count == ch->joint_count);
+    make_palette(skeleton, scratch, ch->joint_count, palette_of(ch, slot));
+    memcpy(floats_of(ch, slot), scratch->floats, ch->float_count * sizeof(float));
+    if (margin_m) {
+        noh_bounds bounds;
+        noh_sphere_of_joints(skeleton, scratch->model, margin_m, scratch->joint_count, &bounds);
+        memcpy(ch->spheres[slot], bounds.centre, sizeof bounds.centre);
+        ch->spheres[slot][3] = bounds.radius;
+    }
+}
+
+void noh_character_update(noh_character *ch, const noh_anim_set *set, const noh_skeleton *skeleton, const float *margin_m,
+                          noh_character_scratch *scratch)
+{
+    noh_character_update_begin(ch, set, scratch);
+    noh_character_update_end(ch, skeleton, margin_m, scratch);
+}
+
+const float *noh_character_palette(const noh_character *ch, float *mixed, uint32_t joint_count)
+{
+    uint32_t to = ch->time.to_slot;
+    const float *last = at(ch, ch->palette_offsets[to]);
+    float part = noh_time_lod_fraction(&ch->time);
+    NOH_ASSERT(ch->time.posed && joint_count <= ch->joint_count);
+    if (part >= 1.0f) {
+        return last;
+    }
+    mix_fours(at(ch, ch->palette_offsets[to ^ 1u]), last, part, 3u * (size_t)joint_count, mixed);
+    return mixed;
+}
+
+const float *noh_character_floats(const noh_character *ch, float *mixed)
+{
+    uint32_t to = ch->time.to_slot;
+    const float *last = at(ch, ch->float_offsets[to]);
+    float part = noh_time_lod_fraction(&ch->time);
+    NOH_ASSERT(ch->time.posed);
+    if (part >= 1.0f) {
+        return last;
+    }
+    mix_floats(at(ch, ch->float_offsets[to ^ 1u]), last, part, ch->float_count, mixed);
+    return mixed;
+}
+
+void noh_character_sphere(const noh_character *ch, float sphere[4])
+{
+    uint32_t to = ch->time.to_slot;
+    float part = noh_time_lod_fraction(&ch->time);
+    NOH_ASSERT(ch->time.posed);
+    mix_floats(ch->spheres[to ^ 1u], ch->spheres[to], part, 4, sphere);
+}
+
+void noh_character_wake(noh_character *ch)
+{
+    noh_time_lod_wake(&ch->time);
+}
+
+void noh_character_cut(noh_character *ch)
+{
+    noh_detail_cut(&ch->detail);
+    ch->time.posed = 0;
+}

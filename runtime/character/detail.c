@@ -1,0 +1,291 @@
+#include "character/detail.h"
+
+#include "base/math.h"
+#include "base/trig.h"
+
+#define NEAREST_M 1e-3f
+
+/* ---- settings ---- */
+
+static const float default_shares[NOH_DETAIL_KIND_COUNT] = { 0.3f, 0.1f, 0.05f, 0.1f, 0.45f };
+
+static int has_shares(const noh_detail_settings *s)
+{
+    int any = 0;
+    for (int i = 0; i < NOH_DETAIL_KIND_COUNT; i++) {
+        any |= s->shares[i] != 0.0f;
+    }
+    return any;
+}
+
+static double share_of(const noh_detail_settings *s, noh_detail_kind kind)
+{
+    return (double)(has_shares(s) ? s->shares : default_shares)[kind];
+}
+
+static double hysteresis_of(const noh_detail_settings *s)
+{
+    return s->hysteresis > 0.0f ? (double)s->hysteresis : 0.3;
+}
+
+static double lead_of(const noh_detail_settings *s)
+{
+    return s->lead > 0.0f ? (double)s->lead : 0.5 * hysteresis_of(s);
+}
+
+noh_result noh_detail_settings_check(const noh_detail_settings *s, noh_error *error)
+{
+    double sum = 0.0;
+    if (!(s->pixels >= 0.0f && s->pixels <= 1e6f)) return noh_fail(error, NOH_ERR_ARG, "pixels", 0, 0);
+    for (uint32_t i = 0; i < NOH_DETAIL_KIND_COUNT; i++) {
+        if (!(s->shares[i] >= 0.0f && s->shares[i] <= 1.0f)) return noh_fail(error, NOH_ERR_ARG, "shares", i, 0);
+        sum += (double)s->shares[i];
+    }
+    if (sum > 1.0 + 1e-6) return noh_fail(error, NOH_ERR_ARG, "shares sum to more than 1", 0, 0);
+    if (!(s->hysteresis >= 0.0f && s->hysteresis < 1.0f)) return noh_fail(error, NOH_ERR_ARG, "hysteresis", 0, 0);
+    if (!(s->lead >= 0.0f && lead_of(s) < hysteresis_of(s))) return noh_fail(error, NOH_ERR_ARG, "lead", 0, 0);
+    return NOH_OK;
+}
+
+/* ---- the table ---- */
+
+/* The errors of one kind's levels, and how many there are. */
+typedef struct errors {
+    float error_m[NOH_DETAIL_LEVELS_MAX];
+    uint32_t count;
+} errors;
+
+static errors errors_of(const noh_detail_table *t, noh_detail_kind kind)
+{
+    errors e = { { 0.0f }, 0 };
+    e.count = kind == NOH_DETAIL_MESH ? t->mesh_level_count : kind == NOH_DETAIL_JOINTS ? t->joint_level_count : t->influence_level_count;
+    for (uint32_t i = 0; i < e.count; i++) {
+        e.error_m[i] = kind == NOH_DETAIL_MESH     ? t->meshes[i].error_m
+                       : kind == NOH_DETAIL_JOINTS ? t->joints[i].error_m
+                                                   : t->influences[i].error_m;
+    }
+    return e;
+}
+
+noh_result noh_detail_table_check(const noh_detail_table *t, noh_error *error)
+{
+    static const char *const what[] = { "error of a mesh level", "error of a joint level", "error of an influence level" };
+    if (t->mesh_level_count > NOH_DETAIL_LEVELS_MAX || (t->mesh_level_count && !t->meshes)) return noh_fail(error, NOH_ERR_ARG, "meshes", 0, 0);
+    if (t->joint_level_count > NOH_DETAIL_LEVELS_MAX || (t->joint_level_count && !t->joints)) return noh_fail(error, NOH_ERR_ARG, "joints", 0, 0);
+    if (t->influence_level_count > NOH_DETAIL_LEVELS_MAX || (t->influence_level_count && !t->influences)) {
+        return noh_fail(error, NOH_ERR_ARG, "influences", 0, 0);
+    }
+    for (int kind = 0; kind <= NOH_DETAIL_INFLUENCES; kind++) {
+        errors e = errors_of(t, (noh_detail_kind)kind);
+        for (uint32_t i = 0; i < e.count; i++) {
+            if (!(e.error_m[i] >= (i ? e.error_m[i - 1u] : 0.0f) && e.error_m[i] <= 1e30f)) {
+                return noh_fail(error, NOH_ERR_DATA, what[kind], i, 0);
+            }
+        }
+    }
+    for (uint32_t i = 0; i < t->joint_level_count; i++) {
+        if (t->joints[i].joint_count == 0) return noh_fail(error, NOH_ERR_DATA, "joints of a joint level", i, 0);
+    }
+    for (uint32_t i = 0; i < t->influence_level_count; i++) {
+        if (t->influences[i].influence_count == 0) return noh_fail(error, NOH_ERR_DATA, "influences of an influence level", i, 0);
+    }
+    if (!(t->clip_error_m >= 0.0f && t->clip_error_m <= 1e30f)) return noh_fail(error, NOH_ERR_DATA, "error of the clips", 0, 0);
+    return NOH_OK;
+}
+
+/* ---- choosing ---- */
+
+float noh_detail_scale(float distance_m, float field_of_view_rad, uint32_t viewport_height)
+{
+    float sine, cosine, distance = distance_m > NEAREST_M ? distance_m : NEAREST_M;
+    noh_sin_cos(0.5f * field_of_view_rad, &sine, &cosine);
+    return (float)viewport_height * cosine / (2.0f * distance * sine);
+}
+
+/* What the whole knob is in metres, at a scale. */
+static double knob_metres(const noh_detail_settings *s, float pixels_per_metre)
+{
+    double pixels = s->pixels > 0.0f ? (double)s->pixels : 1.0;
+    return pixels_per_metre > 0.0f ? pixels / (double)pixels_per_metre : 1e300;
+}
+
+/* The thresholds of one kind, in metres: a level is left over `refine`, one is entered up to `coarsen`. */
+typedef struct limits {
+    double refine, coarsen;
+} limits;
+
+static limits limits_of(const noh_detail_settings *s, noh_detail_kind kind, double knob_m)
+{
+    limits l;
+    double share_m = knob_m * share_of(s, kind);
+    l.refine = share_m * (kind == NOH_DETAIL_MESH ? 1.0 - lead_of(s) : 1.0);
+    l.coarsen = share_m * (1.0 - hysteresis_of(s));
+    return l;
+}
+
+/* Errors rise with the level and coarsen < refine: the second loop cannot undo the first. */
+static uint8_t choose_level(const errors *e, uint32_t level, limits l)
+{
+    level = level < e->count ? level : e->count ? e->count - 1u : 0;
+    while (level > 0 && (double)e->error_m[level] > l.refine) {
+        level--;
+    }
+    while (level + 1u < e->count && (double)e->error_m[level + 1u] <= l.coarsen) {
+        level++;
+    }
+    return (uint8_t)level;
+}
+
+static void choose_mesh(noh_detail *d, const errors *e, const noh_detail_settings *s, limits l, int64_t clock)
+{
+    uint8_t next;
+    if (d->fade_ticks && clock - d->fade_start < (int64_t)d->fade_ticks) {
+        return;
+    }
+    d->fade_ticks = 0;
+    d->mesh_before = d->mesh;
+    next = choose_level(e, d->mesh, l);
+    if (next != d->mesh) {
+        d->mesh = next;
+        d->fade_start = clock;
+        d->fade_ticks = s->fade_ticks ? s->fade_ticks : 12000u;
+    }
+}
+
+/* A rate that is coarser can only be worse: what was measured is made to say so. */
+static errors rate_errors(const noh_detail_table *t, const float *rate_error_m)
+{
+    errors e = { { 0.0f }, 1 };
+    e.error_m[0] = t->clip_error_m;
+    for (uint32_t r = 1; rate_error_m && r < NOH_RATE_COUNT; r++) {
+        float error_m = rate_error_m[r] + t->clip_error_m;
+        e.error_m[r] = error_m > e.error_m[r - 1u] ? error_m : e.error_m[r - 1u];
+        e.count = r + 1u;
+    }
+    return e;
+}
+
+void noh_detail_choose(noh_detail *d, const noh_detail_table *t, const noh_detail_settings *s, float pixels_per_metre,
+                       const float *rate_error_m, int64_t clock)
+{
+    double knob_m = knob_metres(s, pixels_per_metre);
+    errors mesh = errors_of(t, NOH_DETAIL_MESH), joints = errors_of(t, NOH_DETAIL_JOINTS);
+    errors influences = errors_of(t, NOH_DETAIL_INFLUENCES), rates = rate_errors(t, rate_error_m);
+    float coarser;
+    d->pixels_per_metre = pixels_per_metre;
+    choose_mesh(d, &mesh, s, limits_of(s, NOH_DETAIL_MESH, knob_m), clock);
+    d->joints = choose_level(&joints, d->joints, limits_of(s, NOH_DETAIL_JOINTS, knob_m));
+    d->influences = choose_level(&influences, d->influences, limits_of(s, NOH_DETAIL_INFLUENCES, knob_m));
+    d->rate = choose_level(&rates, d->rate, limits_of(s, NOH_DETAIL_TIME, knob_m));
+    if (!d->started) {
+        d->started = 1;
+        d->fade_ticks = 0;
+        d->mesh_before = d->mesh;
+    }
+    coarser = mesh.error_m[d->mesh > d->mesh_before ? d->mesh : d->mesh_before];
+    d->error_m = coarser + joints.error_m[d->joints] + influences.error_m[d->influences] + rates.error_m[d->rate];
+}
+
+void noh_detail_cut(noh_detail *d)
+{
+    d->started = 0;
+    d->fade_ticks = 0;
+    d->mesh = d->mesh_before = d->joints = d->influences = d->rate = 0; /* what was chosen before has no say */
+}
+
+float noh_detail_fade(const noh_detail *d, int64_t clock)
+{
+    int64_t since = clock - d->fade_start;
+    float x;
+    if (since >= (int64_t)d->fade_ticks) {
+        return 1.0f;
+    }
+    x = since > 0 ? (float)since / (float)d->fade_ticks : 0.0f;
+    return x * x * (3.0f - 2.0f * x);
+}
+
+float noh_detail_error_pixels(const noh_detail *d)
+{
+    return (d->error_m + d->skipped_m) * d->pixels_per_metre;
+}
+
+uint32_t noh_detail_joint_count(const noh_detail *d, const noh_detail_table *t)
+{
+    return t->joint_level_count ? t->joints[d->joints].joint_count : 0;
+}
+
+uint32_t noh_detail_influence_count(const noh_detail *d, const noh_detail_table *t)
+{
+    uint32_t used = t->influence_level_count ? t->influences[d->influences].influence_count : 0;
+    uint32_t stored = t->mesh_level_count ? t->meshes[d->mesh].influence_count : 0;
+    return used == 0 || (stored != 0 && stored < used) ? stored : used;
+}
+
+/* ---- targets ---- */
+
+/* What leaving one target out costs, in metres. Not a number: it is never below a limit. */
+static float cost_of(const float *weights, const float *reach_m, uint32_t i)
+{
+    float product = weights[i] * reach_m[i];
+    return product < 0.0f ? -product : product;
+}
+
+static double sum_up_to(const float *weights, const float *reach_m, uint32_t count, float limit)
+{
+    double sum = 0.0;
+    for (uint32_t i = 0; i < count; i++) {
+        float cost = cost_of(weights, reach_m, i);
+        sum += cost <= limit ? (double)cost : 0.0;
+    }
+    return sum;
+}
+
+/* Floats of one sign are ordered as their bits are. */
+static float float_of(uint32_t bits)
+{
+    union { uint32_t bits; float value; } u;
+    u.bits = bits;
+    return u.value;
+}
+
+#define LARGEST_BITS 0x7f7fffffu /* the largest finite float */
+
+/* Of the largest limit such that everything up to it may go, the bits: bisection over the floats, whose
+ * order is that of their bits. The next float after it is then a cost of which not all may go. */
+static uint32_t largest_limit(const float *weights, const float *reach_m, uint32_t count, double room)
+{
+    uint32_t fits = 0, over = LARGEST_BITS + 1u;
+    if (sum_up_to(weights, reach_m, count, float_of(LARGEST_BITS)) <= room) {
+        return LARGEST_BITS;
+    }
+    while (over - fits > 1u) {
+        uint32_t middle = fits + (over - fits) / 2u;
+        if (sum_up_to(weights, reach_m, count, float_of(middle)) <= room) {
+            fits = middle;
+        } else {
+            over = middle;
+        }
+    }
+    return fits;
+}
+
+uint32_t noh_detail_targets(noh_detail *d, const noh_detail_settings *settings, const float *weights, const float *reach_m, uint32_t count,
+                            float *kept)
+{
+    double room = knob_metres(settings, d->pixels_per_metre) * share_of(settings, NOH_DETAIL_TARGETS);
+    uint32_t bits = largest_limit(weights, reach_m, count, room), left = 0;
+    float limit = float_of(bits), next = float_of(bits + 1u);
+    double skipped = sum_up_to(weights, reach_m, count, limit);
+    for (uint32_t i = 0; i < count; i++) {
+        float cost = cost_of(weights, reach_m, i);
+        int skip = cost <= limit;
+        if (!skip && cost <= next && skipped + (double)cost <= room) { /* equal ones go by index */
+            skip = 1;
+            skipped += (double)cost;
+        }
+        kept[i] = skip ? 0.0f : weights[i];
+        left += kept[i] != 0.0f;
+    }
+    d->skipped_m = (float)skipped;
+    return left;
+}

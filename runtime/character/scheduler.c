@@ -1,0 +1,130 @@
+#include "character/scheduler.h"
+
+#include <string.h>
+
+/* ---- memory ---- */
+
+size_t noh_schedule_size(uint32_t capacity)
+{
+    return capacity > NOH_SCHEDULE_MAX ? 0 : capacity * sizeof(noh_schedule_item);
+}
+
+noh_result noh_schedule_init(void *memory, size_t bytes, uint32_t capacity, noh_schedule *s, noh_error *error)
+{
+    size_t need = noh_schedule_size(capacity);
+    if (need == 0) {
+        return noh_fail(error, NOH_ERR_ARG, "capacity", capacity, 0);
+    }
+    if (!memory || ((uintptr_t)memory & 15u) != 0) {
+        return noh_fail(error, NOH_ERR_ARG, "memory for a schedule is NULL or not 16-byte aligned", 0, need);
+    }
+    if (bytes < need) {
+        return noh_fail(error, NOH_ERR_MEMORY, "memory for a schedule is too small", bytes, need);
+    }
+    memset(s, 0, sizeof *s);
+    s->capacity = capacity;
+    s->items = (noh_schedule_item *)memory;
+    return NOH_OK;
+}
+
+/* ---- a frame ---- */
+
+void noh_schedule_begin(noh_schedule *s, uint32_t frame_ticks, uint64_t budget)
+{
+    s->count = s->offered = s->served = s->late_ticks = 0;
+    s->frame_ticks = frame_ticks;
+    s->budget = budget;
+    s->spent = 0;
+}
+
+void noh_schedule_spend(noh_schedule *s, uint32_t cost)
+{
+    s->spent += cost;
+}
+
+/* A binary heap, the most urgent first. */
+static int before(const noh_schedule_item *a, const noh_schedule_item *b)
+{
+    return a->urgency != b->urgency ? a->urgency > b->urgency : a->instance < b->instance;
+}
+
+static void sift_up(noh_schedule_item *items, uint32_t at)
+{
+    noh_schedule_item item = items[at];
+    while (at > 0 && before(&item, &items[(at - 1u) / 2u])) {
+        items[at] = items[(at - 1u) / 2u];
+        at = (at - 1u) / 2u;
+    }
+    items[at] = item;
+}
+
+static void sift_down(noh_schedule_item *items, uint32_t count)
+{
+    noh_schedule_item item = items[0];
+    uint32_t at = 0, child = 1;
+    while (child < count) {
+        child += child + 1u < count && before(&items[child + 1u], &items[child]);
+        if (!before(&items[child], &item)) {
+            break;
+        }
+        items[at] = items[child];
+        at = child;
+        child = 2u * at + 1u;
+    }
+    items[at] = item;
+}
+
+static uint32_t visibility_steps(float visibility)
+{
+    float clamped = visibility > 1.0f ? visibility < NOH_VISIBILITY_MAX ? visibility : NOH_VISIBILITY_MAX : 1.0f;
+    return (uint32_t)(clamped * 256.0f);
+}
+
+void noh_schedule_offer(noh_schedule *s, uint32_t instance, uint32_t late_ticks, float visibility, uint32_t cost)
+{
+    noh_schedule_item *item = &s->items[s->count];
+    s->late_ticks = late_ticks > s->late_ticks ? late_ticks : s->late_ticks;
+    s->late_high_water = late_ticks > s->late_high_water ? late_ticks : s->late_high_water;
+    if (s->count == s->capacity) {
+        s->lost++;
+        return;
+    }
+    s->offered++;
+    s->offered_high_water = s->offered > s->offered_high_water ? s->offered : s->offered_high_water;
+    item->urgency = ((uint64_t)late_ticks + s->frame_ticks + 1u) * visibility_steps(visibility);
+    item->instance = instance;
+    item->cost = cost;
+    sift_up(s->items, s->count++);
+}
+
+int noh_schedule_next(noh_schedule *s, uint32_t *instance)
+{
+    if (s->count == 0 || (s->spent >= s->budget && s->served > 0)) {
+        return 0;
+    }
+    *instance = s->items[0].instance;
+    s->spent += s->items[0].cost;
+    s->served++;
+    s->items[0] = s->items[--s->count];
+    sift_down(s->items, s->count);
+    return 1;
+}
+
+uint64_t noh_schedule_wait_max(uint32_t instances, uint64_t budget, uint32_t cost_max)
+{
+    uint64_t served = cost_max ? (budget + cost_max - 1u) / cost_max : instances;
+    uint64_t others = instances ? instances - 1u : 0;
+    served = served ? served : 1u;
+    return (uint64_t)NOH_VISIBILITY_MAX * ((others + served - 1u) / served + 2u);
+}
+
+/* ---- costs ---- */
+
+uint32_t noh_cost_of(const noh_cost_weights *w, uint32_t joints, uint32_t pairs, uint32_t vertices)
+{
+    double cost = (double)w->per_instance + (double)w->per_joint * joints + (double)w->per_pair * pairs + (double)w->per_vertex * vertices;
+    if (!(cost > 1.0)) {
+        return 1;
+    }
+    return cost >= 4294967295.0 ? UINT32_MAX : (uint32_t)(cost + 0.999999);
+}

@@ -1,0 +1,339 @@
+/* bench_crowd_cpu.c: rows crowd/cpu: what 1,000 characters on the first skeleton of a pack cost the CPU, from
+ * clocks to skinning matrices, posed as often as pixels want it and in every frame. None where a pack has no motion. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench_job.h"
+
+#define SAMPLE_NS 2e7
+#define CROWD 1000u
+#define MOTIONS_MAX 32u
+#define FRAME_TICKS 800u  /* 60 frames a second */
+#define FIELD_M 100.0f    /* they are strewn evenly over a disc of this radius */
+#define VIEW_RAD 1.0472f  /* 60 degrees */
+#define VIEW_LINES 720u
+#define FLESH_M 0.06f     /* around bones: there is no mesh here to say it */
+
+typedef struct crowd {
+    noh_skeleton skeleton;
+    noh_anim_set set;
+    noh_motion motions[MOTIONS_MAX];
+    const noh_clip *clips[MOTIONS_MAX];
+    void *clip_memory[MOTIONS_MAX];
+    void *cache_memory, *scratch_memory;
+    noh_clip_cache *cache;
+    noh_character_scratch scratch;
+    float *reach_m, *rate_errors;
+    size_t bytes;              /* of one character */
+    uint8_t *characters;       /* [CROWD][bytes] */
+    float *palette, *expected; /* [joint_count][12] */
+    const void *volatile shown; /* keeps the results alive */
+    float scales[CROWD];
+} crowd;
+
+typedef struct crowd_work {
+    crowd *crowd;
+    noh_detail_table table;
+    noh_detail_settings settings;
+    int seen;
+} crowd_work;
+
+static noh_character *character_of(const crowd *c, uint32_t i)
+{
+    return (noh_character *)(void *)(c->characters + i * c->bytes);
+}
+
+/* ---- what is timed ---- */
+
+/* Everyone is stepped and posed in every frame. */
+static void run_full(void *self, uint32_t frame)
+{
+    crowd *c = ((const crowd_work *)self)->crowd;
+    (void)frame;
+    noh_clip_cache_tick(c->cache);
+    for (uint32_t i = 0; i < CROWD; i++) {
+        noh_controller *controller = noh_character_controller(character_of(c, i));
+        noh_controller_step(controller, &c->set, FRAME_TICKS, NULL, NULL);
+        noh_controller_pose(controller, &c->set, &c->scratch.pose, c->scratch.local, c->scratch.floats);
+        noh_local_to_model(&c->skeleton, c->scratch.local, c->skeleton.joint_count, c->scratch.model);
+        noh_model_to_palette(&c->skeleton, c->scratch.model, c->skeleton.joint_count, c->palette);
+        c->shown = c->palette;
+    }
+}
+
+/* Everyone is stepped; who is seen is posed as often as its pixels want it. */
+static void run_detail(void *self, uint32_t frame)
+{
+    const crowd_work *w = (const crowd_work *)self;
+    crowd *c = w->crowd;
+    (void)frame;
+    noh_clip_cache_tick(c->cache);
+    for (uint32_t i = 0; i < CROWD; i++) {
+        noh_character *ch = character_of(c, i);
+        noh_character_step(ch, &c->set, FRAME_TICKS, NULL, NULL);
+        if (!w->seen) {
+            continue;
+        }
+        if (noh_character_look(ch, &w->table, &w->settings, c->scales[i]) != NOH_DUE_NOT) {
+            noh_character_update(ch, &c->set, &c->skeleton, NULL, &c->scratch);
+        }
+        c->shown = noh_character_palette(ch, c->palette, c->skeleton.joint_count);
+    }
+}
+
+/* ---- making ---- */
+
+static void sample_clip(void *user, uint32_t motion, uint32_t tick, uint32_t joints, noh_transform *pose, uint32_t floats, float *values)
+{
+    (void)floats;
+    (void)values;
+    noh_clip_sample(((crowd *)user)->cache, motion, tick, joints, pose, NULL);
+}
+
+static int open_clip(crowd *c, const pack_file *file, uint32_t index)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    uint32_t skeleton, at = c->set.motion_count;
+    noh_pack_motion motion;
+    noh_clip_desc desc;
+    noh_clip_info info;
+    noh_skeleton bound;
+    noh_clip *clip;
+    size_t bytes;
+    noh_pack_motion_at(&file->pack, index, &motion);
+    if (noh_pack_bind_motion(&file->pack, &motion, &bound, &skeleton, NULL) || skeleton != 0) {
+        return 0;
+    }
+    desc.bytes = motion.bytes;
+    desc.byte_count = motion.header->clip_bytes;
+    desc.bind = bound.bind_pose;
+    desc.joint_count = bound.joint_count;
+    bytes = noh_clip_size(&desc, &error);
+    c->clip_memory[at] = bytes ? malloc(bytes) : NULL;
+    if (!c->clip_memory[at] || noh_clip_init(c->clip_memory[at], bytes, &desc, &clip, &error)) {
+        return tool_fail(file->path, "clip '%s': %s", motion.name, error.result ? error.what : "out of memory");
+    }
+    noh_clip_info_of(clip, &info);
+    c->clips[at] = clip;
+    c->motions[at].duration_ticks = (uint32_t)info.duration_ticks;
+    c->motions[at].loop = NOH_LOOP_PING_PONG; /* no seam, whatever the clip */
+    c->set.motion_count++;
+    return 0;
+}
+
+/* Every segment stays decoded: what is timed is characters. */
+static int open_cache(crowd *c)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_clip_cache_desc desc = { c->clips, c->set.motion_count, 0 };
+    size_t bytes;
+    for (uint32_t i = 0; i < c->set.motion_count; i++) {
+        noh_clip_info info;
+        noh_clip_info_of(c->clips[i], &info);
+        desc.slot_count += info.segment_count;
+    }
+    desc.slot_count = desc.slot_count < NOH_CLIP_CACHE_SLOTS_MIN ? NOH_CLIP_CACHE_SLOTS_MIN : desc.slot_count;
+    bytes = noh_clip_cache_size(&desc, &error);
+    c->cache_memory = bytes ? malloc(bytes) : NULL;
+    if (!c->cache_memory || noh_clip_cache_init(c->cache_memory, bytes, &desc, &c->cache, &error)) {
+        return tool_fail("bench", "%s", error.result ? error.what : "out of memory");
+    }
+    return 0;
+}
+
+/* Around each joint as far as its longest bone. */
+static void set_reaches(crowd *c, float unit_m)
+{
+    const noh_skeleton *s = &c->skeleton;
+    for (uint32_t j = 0; j < s->joint_count; j++) {
+        c->reach_m[j] = FLESH_M / unit_m;
+    }
+    for (uint32_t j = 0; j < s->joint_count; j++) {
+        const float *t = s->bind_pose[j].translation;
+        float bone = sqrtf(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]) + FLESH_M / unit_m;
+        if (s->parents[j] != NOH_JOINT_ROOT && bone > c->reach_m[s->parents[j]]) {
+            c->reach_m[s->parents[j]] = bone;
+        }
+    }
+}
+
+static int measure_rates(crowd *c)
+{
+    noh_time_probe probe = { &c->set, &c->skeleton, c->reach_m, NULL };
+    size_t bytes = noh_time_lod_measure_size(&probe);
+    noh_error error = { NOH_OK, "", 0, 0 };
+    void *memory = malloc(bytes);
+    int status = memory ? 0 : tool_fail("bench", "out of memory");
+    for (uint32_t m = 0; m < c->set.motion_count && !status; m++) {
+        float *errors = c->rate_errors + NOH_RATE_COUNT * (size_t)m;
+        status = noh_time_lod_measure(memory, bytes, &probe, m, errors, &error) ? tool_fail_error("bench", &error) : 0;
+    }
+    free(memory);
+    return status;
+}
+
+/* Half of them blend two motions. Phases and places by a sequence that fills evenly. */
+static void populate(crowd *c, float unit_m)
+{
+    for (uint32_t i = 0; i < CROWD; i++) {
+        float part = (float)((i * 2654435769u) >> 8) / 16777216.0f, distance_m = FIELD_M * sqrtf(part);
+        noh_controller *controller = noh_character_controller(character_of(c, i));
+        for (uint32_t track = 0; track <= i % 2u; track++) {
+            noh_track_desc d;
+            memset(&d, 0, sizeof d);
+            d.motion = (i / 2u + track) % c->set.motion_count;
+            d.position_ticks = (int64_t)(part * 1e6f);
+            d.weight = 1.0f;
+            noh_controller_start(controller, &c->set, track, &d, NULL);
+        }
+        c->scales[i] = noh_detail_scale(distance_m, VIEW_RAD, VIEW_LINES) * unit_m;
+    }
+}
+
+static int make_characters(crowd *c)
+{
+    noh_character_desc desc;
+    noh_character *made;
+    noh_error error = { NOH_OK, "", 0, 0 };
+    size_t scratch_bytes;
+    memset(&desc, 0, sizeof desc);
+    desc.controller.set = &c->set;
+    c->bytes = noh_character_size(&desc);
+    scratch_bytes = noh_character_scratch_size(&desc);
+    c->characters = malloc(CROWD * c->bytes);
+    c->scratch_memory = malloc(scratch_bytes);
+    if (!c->characters || !c->scratch_memory) {
+        return tool_fail("bench", "out of memory");
+    }
+    for (uint32_t i = 0; i < CROWD; i++) {
+        desc.instance = i;
+        if (noh_character_init(c->characters + i * c->bytes, c->bytes, &desc, &made, &error)) {
+            return tool_fail_error("bench", &error);
+        }
+    }
+    return noh_character_scratch_init(c->scratch_memory, scratch_bytes, &desc, &c->scratch, &error) ? tool_fail_error("bench", &error) : 0;
+}
+
+static int crowd_open(crowd *c, const pack_file *file)
+{
+    const noh_skeleton_header *header;
+    int status = 0;
+    noh_pack_skeleton_at(&file->pack, 0, &c->skeleton, &header);
+    c->set.joint_count = c->skeleton.joint_count;
+    c->set.motions = c->motions;
+    c->set.bind_pose = c->skeleton.bind_pose;
+    c->set.sample = sample_clip;
+    c->set.user = c;
+    for (uint32_t i = 0; i < file->pack.motion_count && c->set.motion_count < MOTIONS_MAX && !status; i++) {
+        status = open_clip(c, file, i);
+    }
+    if (status || c->set.motion_count == 0) {
+        return status;
+    }
+    c->reach_m = malloc(c->skeleton.joint_count * sizeof(float));
+    c->rate_errors = malloc(c->set.motion_count * NOH_RATE_COUNT * sizeof(float));
+    c->palette = malloc(c->skeleton.joint_count * 48u);
+    c->expected = malloc(c->skeleton.joint_count * 48u);
+    if (!c->reach_m || !c->rate_errors || !c->palette || !c->expected) {
+        return tool_fail("bench", "out of memory");
+    }
+    set_reaches(c, header->unit_cm * 0.01f);
+    status = open_cache(c);
+    if (!status) status = make_characters(c);
+    if (!status) status = measure_rates(c);
+    if (!status) populate(c, header->unit_cm * 0.01f);
+    return status;
+}
+
+static void crowd_close(crowd *c)
+{
+    for (uint32_t i = 0; i < MOTIONS_MAX; i++) {
+        free(c->clip_memory[i]);
+    }
+    free(c->cache_memory);
+    free(c->scratch_memory);
+    free(c->reach_m);
+    free(c->rate_errors);
+    free(c->characters);
+    free(c->palette);
+    free(c->expected);
+}
+
+/* ---- rows ---- */
+
+/* Near enough to be posed in every frame, a character is what the baseline makes of it, to the bit. */
+static int check(crowd_work *w)
+{
+    crowd *c = w->crowd;
+    size_t bytes = 48u * (size_t)c->skeleton.joint_count;
+    for (uint32_t i = 0; i < CROWD; i++) {
+        noh_character *ch = character_of(c, i);
+        noh_controller_pose(noh_character_controller(ch), &c->set, &c->scratch.pose, c->scratch.local, c->scratch.floats);
+        noh_local_to_model(&c->skeleton, c->scratch.local, c->skeleton.joint_count, c->scratch.model);
+        noh_model_to_palette(&c->skeleton, c->scratch.model, c->skeleton.joint_count, c->expected);
+        noh_character_look(ch, &w->table, &w->settings, 1e9f);
+        noh_character_update(ch, &c->set, &c->skeleton, NULL, &c->scratch);
+        if (memcmp(noh_character_palette(ch, c->palette, c->skeleton.joint_count), c->expected, bytes) != 0) {
+            return tool_fail("bench", "crowd/cpu poses something else than full-rate");
+        }
+    }
+    return 0;
+}
+
+typedef struct variant {
+    const char *name;
+    float pixels;
+    int seen;
+} variant;
+
+static const variant variants[] = {
+    { "full-rate", 1.0f, 1 }, /* the baseline */
+    { "crowd/cpu/1-pixel", 1.0f, 1 },
+    { "crowd/cpu/4-pixels", 4.0f, 1 },
+    { "crowd/cpu/16-pixels", 16.0f, 1 },
+    { "crowd/cpu/unseen", 1.0f, 0 },
+};
+#define VARIANTS (sizeof variants / sizeof variants[0])
+
+static int measure(bench_job *job, crowd *c)
+{
+    crowd_work works[VARIANTS];
+    bench_cells cells;
+    int status;
+    memset(&cells, 0, sizeof cells);
+    memset(works, 0, sizeof works);
+    for (uint32_t i = 0; i < VARIANTS; i++) {
+        works[i].crowd = c;
+        works[i].table.rate_error_m = c->rate_errors;
+        works[i].settings.pixels = variants[i].pixels;
+        works[i].seen = variants[i].seen;
+        bench_add_cell(&cells, i ? run_detail : run_full, &works[i]);
+    }
+    status = check(&works[0]);
+    if (!status) {
+        status = bench_run_cells(&cells, &job->cpu_clock, job->rounds, SAMPLE_NS, "crowd/cpu");
+    }
+    for (uint32_t i = 1; i < VARIANTS && !status; i++) {
+        double full = bench_median(&cells, 0) / CROWD, own = bench_median(&cells, i) / CROWD;
+        bench_add_row(&job->rows, variants[i].name, variants[0].name, full, own, "ns/char", cells.rounds);
+    }
+    bench_free_cells(&cells);
+    return status;
+}
+
+int bench_crowd_cpu(bench_job *job)
+{
+    crowd c;
+    int status;
+    if (job->files[0].pack.skeleton_count == 0) {
+        return 0;
+    }
+    memset(&c, 0, sizeof c);
+    status = crowd_open(&c, &job->files[0]);
+    if (!status && c.set.motion_count) {
+        status = measure(job, &c);
+    }
+    crowd_close(&c);
+    return status;
+}
