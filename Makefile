@@ -55,8 +55,8 @@ TOOL_O     := $(TOOL_C:%.c=$(BUILD)/%.o) $(BUILD)/gen/tool_shaders.gen.o
 MASK_O     := $(MASK_C:%.c=$(BUILD)/%.o)
 TESTS      := $(TEST_C:tests/%.c=$(BUILD)/tests/%)
 
-# The accumulation kernel built for other instruction sets, for `noh bench` and the tests.
-KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(BUILD)/kernel/morph_sse2.o $(BUILD)/kernel/morph_avx2.o)
+# The accumulation and skinning kernels built for other instruction sets, for `noh bench` and the tests.
+KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/morph_$(set).o $(BUILD)/kernel/skin_$(set).o))
 
 .PHONY: install all demo check bench help clean deps-build deps-check deps-fuzz lib tests demo-run check-run fuzz sizes
 .SECONDARY:
@@ -129,6 +129,11 @@ $(BUILD)/kernel/clip_sample_%.o: runtime/anim/clip_sample.c
 	@mkdir -p $(@D)
 	$(call say,CC,$@)
 	$(Q)$(CC) $(CFLAGS) $(INCLUDES) -m$* -Dnoh_clip_blend_frames=noh_clip_blend_frames_$* -MMD -MP -c $< -o $@
+
+$(BUILD)/kernel/skin_%.o: runtime/deform/skin.c
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(CFLAGS) $(INCLUDES) -m$* -DNOH_SKIN_VERTICES=noh_skin_vertices_$* -MMD -MP -c $< -o $@
 
 $(BUILD)/noh: $(TOOL_O) $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(BUILD)/libnoh.a
 	$(call say,CXX,$@)

@@ -311,17 +311,47 @@ static uint32_t index_at(const uint8_t *bytes, size_t i, int component)
     return wide;
 }
 
-static void read_sparse(const oracle *o, uint32_t sparse, uint32_t components, double *out)
+static int is_true(const oracle *o, uint32_t object, const char *key)
 {
-    uint32_t indices = member(o, sparse, "indices"), values = member(o, sparse, "values");
-    size_t stride = 4u * components, unused = 0, count = (size_t)number(o, sparse, "count", 0);
+    uint32_t v = member(o, object, key);
+    return v && o->values[v].type == 't';
+}
+
+static size_t component_bytes(int component)
+{
+    return component == 5126 || component == 5125 ? 4 : component == 5122 || component == 5123 ? 2 : 1;
+}
+
+/* One number; integers as they are, or normalised as the specification says (3.11). */
+static double component_at(const uint8_t *at, int component, int normalized)
+{
+    int32_t i = component == 5120 ? (int8_t)at[0] : (int32_t)at[0];
+    float f;
+    if (component == 5126) {
+        memcpy(&f, at, 4);
+        return (double)f;
+    }
+    if (component == 5122 || component == 5123) {
+        uint16_t u;
+        memcpy(&u, at, 2);
+        i = component == 5122 ? (int16_t)u : (int32_t)u;
+    }
+    if (!normalized) {
+        return (double)i;
+    }
+    return component == 5120 ? fmax(i / 127.0, -1.0) : component == 5121 ? i / 255.0 : component == 5122 ? fmax(i / 32767.0, -1.0) : i / 65535.0;
+}
+
+static void read_sparse(const oracle *o, uint32_t accessor, uint32_t components, double *out)
+{
+    uint32_t sparse = member(o, accessor, "sparse"), indices = member(o, sparse, "indices"), values = member(o, sparse, "values");
+    int component = (int)number(o, accessor, "componentType", 0), normalized = is_true(o, accessor, "normalized");
+    size_t size = component_bytes(component), stride = size * components, unused = 0, count = (size_t)number(o, sparse, "count", 0);
     const uint8_t *index = view_at(o, indices, "bufferView", &unused), *from = view_at(o, values, "bufferView", &stride);
     for (size_t i = 0; i < count; i++) {
         uint32_t at = index_at(index, i, (int)number(o, indices, "componentType", 0));
         for (uint32_t c = 0; c < components; c++) {
-            float f;
-            memcpy(&f, from + i * stride + 4u * c, 4);
-            out[(size_t)at * components + c] = (double)f;
+            out[(size_t)at * components + c] = component_at(from + i * stride + size * c, component, normalized);
         }
     }
 }
@@ -330,22 +360,20 @@ static void read_sparse(const oracle *o, uint32_t sparse, uint32_t components, d
 static double *read_accessor(const oracle *o, uint32_t index, uint32_t components, uint32_t *count)
 {
     uint32_t a = top(o, "accessors", index);
-    size_t stride = 4u * components;
+    int component = (int)number(o, a, "componentType", 0), normalized = is_true(o, a, "normalized");
+    size_t size = component_bytes(component), stride = size * components;
     double *out;
     assert_int_not_equal(a, 0);
-    assert_int_equal((int)number(o, a, "componentType", 0), 5126); /* floats: all that this reader knows */
     *count = (uint32_t)number(o, a, "count", 0);
     out = test_zeros(sizeof *out * (size_t)*count * components);
     if (member(o, a, "bufferView")) {
         const uint8_t *from = view_at(o, a, "bufferView", &stride);
         for (size_t i = 0; i < (size_t)*count * components; i++) {
-            float f;
-            memcpy(&f, from + i / components * stride + i % components * 4u, 4);
-            out[i] = (double)f;
+            out[i] = component_at(from + i / components * stride + i % components * size, component, normalized);
         }
     }
     if (member(o, a, "sparse")) {
-        read_sparse(o, member(o, a, "sparse"), components, out);
+        read_sparse(o, a, components, out);
     }
     return out;
 }
@@ -505,4 +533,209 @@ void oracle_sample(const oracle *o, uint32_t animation, uint32_t channel, double
     }
     free(times);
     free(data);
+}
+
+/* ---- poses ---- */
+
+static void read_numbers(const oracle *o, uint32_t node, const char *key, uint32_t count, double *out)
+{
+    for (uint32_t i = 0; member(o, node, key) && i < count; i++) {
+        out[i] = o->values[element(o, member(o, node, key), i)].number;
+    }
+}
+
+static void slerp(const double *a, const double *b, double s, double *out)
+{
+    double dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3], sign = dot < 0.0 ? -1.0 : 1.0;
+    double angle = acos(fmin(fabs(dot), 1.0)), wa = 1.0 - s, wb = s;
+    if (angle > 1e-6) {
+        wa = sin((1.0 - s) * angle) / sin(angle);
+        wb = sin(s * angle) / sin(angle);
+    }
+    for (int i = 0; i < 4; i++) {
+        out[i] = wa * a[i] + sign * wb * b[i];
+    }
+}
+
+static void normalize4(double *q)
+{
+    double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    for (int i = 0; i < 4; i++) {
+        q[i] /= length;
+    }
+}
+
+/* Appendix C of the specification, for width 3 or 4. */
+static void sample_transform(const oracle *o, uint32_t animation, uint32_t channel, double time, uint32_t width, double *out)
+{
+    uint32_t sampler = sampler_at(o, animation, channel), keys, values, k = 0;
+    const char *kind = text(o, sampler, "interpolation");
+    double *times = read_accessor(o, (uint32_t)number(o, sampler, "input", 0), 1, &keys), span, s;
+    double *data = read_accessor(o, (uint32_t)number(o, sampler, "output", 0), width, &values);
+    while (k + 1 < keys && times[k + 1] <= time) {
+        k++;
+    }
+    span = k + 1 < keys ? times[k + 1] - times[k] : 1.0;
+    s = k + 1 < keys && time > times[0] ? (time - times[k]) / span : 0.0;
+    if (width == 4 && s > 0.0 && (!kind || kind[0] == 'L')) {
+        slerp(data + 4 * k, data + 4 * (k + 1), s, out);
+    } else {
+        for (uint32_t i = 0; i < width; i++) {
+            out[i] = interpolate(data, width, i, k, s, span, kind ? kind[0] : 'L');
+        }
+    }
+    if (width == 4) {
+        normalize4(out);
+    }
+    free(times);
+    free(data);
+}
+
+double oracle_animation_end(const oracle *o, uint32_t animation)
+{
+    double end = 0.0;
+    for (uint32_t c = 0; c < oracle_channel_count(o, animation); c++) {
+        end = fmax(end, oracle_channel_end(o, animation, c));
+    }
+    return end;
+}
+
+void oracle_pose(const oracle *o, int animation, double time, double *locals)
+{
+    for (uint32_t n = 0; n < oracle_node_count(o); n++) {
+        const double rest[10] = { 0, 0, 0, 1, 0, 0, 0, 1, 1, 1 };
+        uint32_t node = top(o, "nodes", n);
+        double *to = locals + 10 * (size_t)n;
+        assert_int_equal(member(o, node, "matrix"), 0);
+        memcpy(to, rest, sizeof rest);
+        read_numbers(o, node, "rotation", 4, to);
+        read_numbers(o, node, "translation", 3, to + 4);
+        read_numbers(o, node, "scale", 3, to + 7);
+        normalize4(to);
+    }
+    for (uint32_t c = 0; animation >= 0 && c < oracle_channel_count(o, (uint32_t)animation); c++) {
+        uint32_t target = member(o, channel_at(o, (uint32_t)animation, c), "target");
+        const char *path = text(o, target, "path");
+        double *to = locals + 10 * (size_t)number(o, target, "node", 0);
+        if (path[0] != 'w') {
+            sample_transform(o, (uint32_t)animation, c, time, path[0] == 'r' ? 4 : 3, to + (path[0] == 'r' ? 0 : path[0] == 't' ? 4 : 7));
+        }
+    }
+}
+
+static void local_matrix(const double *l, double *m)
+{
+    double x = l[0], y = l[1], z = l[2], w = l[3];
+    const double r[9] = { 1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w),     2 * (x * y - z * w), 1 - 2 * (x * x + z * z),
+                          2 * (y * z + x * w),     2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y) };
+    for (int i = 0; i < 16; i++) {
+        m[i] = i % 4 == 3 ? (i == 15) : i < 12 ? r[i / 4 * 3 + i % 4] * l[7 + i / 4] : l[4 + i - 12];
+    }
+}
+
+static void multiply(const double *a, const double *b, double *out)
+{
+    double m[16];
+    for (int i = 0; i < 16; i++) {
+        m[i] = a[i % 4] * b[i / 4 * 4] + a[4 + i % 4] * b[i / 4 * 4 + 1] + a[8 + i % 4] * b[i / 4 * 4 + 2] + a[12 + i % 4] * b[i / 4 * 4 + 3];
+    }
+    memcpy(out, m, sizeof m);
+}
+
+void oracle_worlds(const oracle *o, const double *locals, double *worlds)
+{
+    uint32_t count = oracle_node_count(o), *parents = test_zeros(sizeof *parents * count);
+    for (uint32_t n = 0; n < count; n++) {
+        uint32_t children = member(o, top(o, "nodes", n), "children");
+        for (uint32_t i = 0; i < length(o, children); i++) {
+            parents[(uint32_t)o->values[element(o, children, i)].number] = n + 1;
+        }
+    }
+    for (uint32_t n = 0; n < count; n++) {
+        double m[16], local[16];
+        local_matrix(locals + 10 * (size_t)n, m);
+        for (uint32_t p = parents[n]; p; p = parents[p - 1]) {
+            local_matrix(locals + 10 * (size_t)(p - 1), local);
+            multiply(local, m, m);
+        }
+        memcpy(worlds + 16 * (size_t)n, m, sizeof m);
+    }
+    free(parents);
+}
+
+/* ---- skins ---- */
+
+int oracle_node_skin(const oracle *o, uint32_t node)
+{
+    return (int)number(o, top(o, "nodes", node), "skin", -1);
+}
+
+/* [joints][16] world * inverse bind; to be freed */
+static double *joint_matrices(const oracle *o, uint32_t skin, const double *worlds)
+{
+    uint32_t s = top(o, "skins", skin), joints = member(o, s, "joints"), count = length(o, joints), unused;
+    double *binds = member(o, s, "inverseBindMatrices") ? read_accessor(o, (uint32_t)number(o, s, "inverseBindMatrices", 0), 16, &unused) : NULL;
+    double *out = test_zeros(sizeof *out * 16 * count);
+    for (uint32_t j = 0; j < count; j++) {
+        const double *world = worlds + 16 * (size_t)o->values[element(o, joints, j)].number;
+        if (binds) {
+            multiply(world, binds + 16 * (size_t)j, out + 16 * (size_t)j);
+        } else {
+            memcpy(out + 16 * (size_t)j, world, 16 * sizeof *out);
+        }
+    }
+    free(binds);
+    return out;
+}
+
+static void move_point(const double *m, const double *p, double factor, double *sum)
+{
+    for (int r = 0; r < 3; r++) {
+        sum[r] += factor * (m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]);
+    }
+}
+
+static void skin_points(const oracle *o, uint32_t attributes, uint32_t count, const double *matrices, double *points)
+{
+    double *sums = test_zeros(sizeof *sums * 4 * count);
+    for (int set = 0; set < 2; set++) {
+        char joints_name[16], weights_name[16];
+        double *joints, *weights;
+        uint32_t same;
+        snprintf(joints_name, sizeof joints_name, "JOINTS_%d", set);
+        snprintf(weights_name, sizeof weights_name, "WEIGHTS_%d", set);
+        if (!member(o, attributes, joints_name)) {
+            continue;
+        }
+        joints = read_accessor(o, (uint32_t)number(o, attributes, joints_name, 0), 4, &same);
+        weights = read_accessor(o, (uint32_t)number(o, attributes, weights_name, 0), 4, &same);
+        for (size_t i = 0; i < 4 * (size_t)count; i++) {
+            move_point(matrices + 16 * (size_t)joints[i], points + i / 4 * 3, weights[i], sums + i / 4 * 4);
+            sums[i / 4 * 4 + 3] += weights[i];
+        }
+        free(joints);
+        free(weights);
+    }
+    for (size_t i = 0; i < 3 * (size_t)count; i++) {
+        points[i] = sums[i / 3 * 4 + i % 3] / sums[i / 3 * 4 + 3];
+    }
+    free(sums);
+}
+
+void oracle_drawn(const oracle *o, uint32_t node, uint32_t primitive, const double *worlds, const double *weights, double *out)
+{
+    uint32_t mesh = (uint32_t)oracle_node_mesh(o, node), count = oracle_vertex_count(o, mesh, primitive);
+    int skin = oracle_node_skin(o, node);
+    oracle_positions(o, mesh, primitive, weights, out);
+    if (skin >= 0) {
+        double *matrices = joint_matrices(o, (uint32_t)skin, worlds);
+        skin_points(o, member(o, primitive_at(o, mesh, primitive), "attributes"), count, matrices, out);
+        free(matrices);
+        return;
+    }
+    for (uint32_t v = 0; v < count; v++) {
+        double moved[3] = { 0, 0, 0 };
+        move_point(worlds + 16 * (size_t)node, out + 3 * (size_t)v, 1.0, moved);
+        memcpy(out + 3 * (size_t)v, moved, sizeof moved);
+    }
 }

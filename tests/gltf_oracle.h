@@ -1,7 +1,8 @@
 /* gltf_oracle.h: a second reader of glTF, for tests only, that shares nothing with the
- * converter's: just enough to evaluate morph targets as the specification writes them, in
- * double precision. Float accessors only, sparse or not; data URIs, files or a .glb's own
- * chunk. What it does not understand fails the test. */
+ * converter's: just enough to evaluate morph targets, node animations and skins as the
+ * specification writes them, in double precision. Accessors of every type but uncompressed,
+ * sparse or not; data URIs, files or a .glb's own chunk; nodes without matrices. What it does
+ * not understand fails the test. */
 #ifndef NOH_TESTS_GLTF_ORACLE_H
 #define NOH_TESTS_GLTF_ORACLE_H
 
@@ -37,5 +38,17 @@ int oracle_channel_node(const oracle *o, uint32_t animation, uint32_t channel);
 double oracle_channel_end(const oracle *o, uint32_t animation, uint32_t channel);
 /* Appendix C of the specification. */
 void oracle_sample(const oracle *o, uint32_t animation, uint32_t channel, double time, double *weights);
+
+double oracle_animation_end(const oracle *o, uint32_t animation);
+/* Every node's local transform at a time of an animation (-1: at rest): locals[node_count][10]
+ * rotation, translation, scale. */
+void oracle_pose(const oracle *o, int animation, double time, double *locals);
+/* Global matrices, column-major: worlds[node_count][16]. */
+void oracle_worlds(const oracle *o, const double *locals, double *worlds);
+
+int oracle_node_skin(const oracle *o, uint32_t node); /* or -1 */
+/* The positions of a primitive as the node draws it in the world: morphed, then skinned (the weights made to sum to
+ * 1) or moved by the node: out[vertex_count][3]. */
+void oracle_drawn(const oracle *o, uint32_t node, uint32_t primitive, const double *worlds, const double *weights, double *out);
 
 #endif

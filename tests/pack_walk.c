@@ -134,12 +134,33 @@ static void walk_vertices(walk *w, const noh_mesh *mesh)
 static void walk_targets(walk *w, const noh_mesh *mesh)
 {
     eat(w, mesh->texels, 12u * (size_t)mesh->header->texel_count);
+    eat(w, mesh->target_boxes, 24u * (size_t)mesh->header->target_count);
     for (uint32_t t = 0; t < mesh->header->target_count; t++) {
         const char *name = noh_pack_string(mesh->pack, mesh->targets[t].name);
         eat(w, mesh->rects + mesh->targets[t].first_rect, sizeof(noh_rect) * mesh->targets[t].rect_count);
         if (t < NAMES_LOOKED_UP && noh_mesh_find_target(mesh, name) > t) {
             abort(); /* a target that has a name is found by it, or an earlier one of the same name */
         }
+    }
+}
+
+static void walk_influences(walk *w, const noh_mesh *mesh)
+{
+    noh_skin skin;
+    if (noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin) != NOH_OK) {
+        return;
+    }
+    eat(w, mesh->joint_boxes, 24u * (size_t)skin.header->joint_count);
+    for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
+        uint32_t joints[NOH_INFLUENCES_MAX], count;
+        float weights[NOH_INFLUENCES_MAX];
+        count = noh_mesh_influences(mesh, v, joints, weights);
+        for (uint32_t i = 0; i < count; i++) {
+            eat(w, skin.inverse_bind + 12u * (size_t)joints[i], 48);
+            eat(w, &skin.joints[joints[i]], sizeof *skin.joints);
+        }
+        eat(w, weights, sizeof *weights * count);
+        eat(w, mesh->positions + 3u * (size_t)noh_mesh_texel(mesh, v), 12);
     }
 }
 
@@ -214,6 +235,7 @@ static void walk_meshes(walk *w)
         eat_name(w, meshes[i].name);
         walk_vertices(w, &meshes[i]);
         walk_targets(w, &meshes[i]);
+        walk_influences(w, &meshes[i]);
         for (size_t k = 0; k < sizeof ways / sizeof ways[0]; k++) {
             walk_morph(w, &meshes[i], ways[k]);
         }

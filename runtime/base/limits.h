@@ -18,6 +18,8 @@
 #define NOH_MATERIALS_MAX 4096u
 #define NOH_TEXTURE_SIZE_MAX 2048u       /* wider or taller images are shrunk by the converter */
 #define NOH_JOINTS_MAX 4096u
+#define NOH_SKIN_JOINTS_MAX 4096u
+#define NOH_PALETTE_JOINTS_MAX 256u      /* a uniform block of 12 KiB; ES 3.0 guarantees 16. Vertices keep 8 bits for a place */
 #define NOH_MOTION_EVENTS_MAX 65536u
 #define NOH_MOTION_MARKERS_MAX 4096u
 #define NOH_NAME_BYTES_MAX 256u          /* with the final zero */

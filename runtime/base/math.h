@@ -23,10 +23,10 @@ static inline void noh_normalize3(float v[3], const float fallback[3])
 {
     float square = noh_dot3(v, v);
     if (square > 1e-30f) {
-        float length = noh_sqrt(square);
-        v[0] /= length;
-        v[1] /= length;
-        v[2] /= length;
+        float inverse = 1.0f / noh_sqrt(square);
+        v[0] *= inverse;
+        v[1] *= inverse;
+        v[2] *= inverse;
     } else {
         v[0] = fallback[0];
         v[1] = fallback[1];

@@ -155,13 +155,14 @@ void noh_morph_vertex(const noh_mesh *mesh, const noh_morph_layers *layers, uint
 {
     float rest_normal[3], rest_tangent[3];
     const float *p, *n, *t;
+    size_t texel = noh_mesh_texel(mesh, index);
     noh_mesh_vertex(mesh, index, out);
-    if (index >= mesh->header->touched_count) {
+    if (texel >= mesh->header->touched_count) {
         return;
     }
-    p = layers->position + 3u * (size_t)index;
-    n = layers->normal + 3u * (size_t)index;
-    t = layers->tangent + 3u * (size_t)index;
+    p = layers->position + 3u * texel;
+    n = layers->normal + 3u * texel;
+    t = layers->tangent + 3u * texel;
     memcpy(rest_normal, out->normal, sizeof rest_normal);
     memcpy(rest_tangent, out->tangent, sizeof rest_tangent);
     for (int i = 0; i < 3; i++) {
@@ -176,6 +177,15 @@ void noh_morph_vertex(const noh_mesh *mesh, const noh_morph_layers *layers, uint
             out->tangent[i] -= along * out->normal[i];
         }
         noh_normalize3(out->tangent, rest_tangent);
+    }
+}
+
+void noh_morph_position(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t index, float out[3])
+{
+    size_t texel = noh_mesh_texel(mesh, index);
+    memcpy(out, mesh->positions + 3u * (size_t)index, 3 * sizeof *out);
+    for (size_t i = 0; layers && texel < mesh->header->touched_count && i < 3; i++) {
+        out[i] += layers->position[3u * texel + i];
     }
 }
 

@@ -46,6 +46,9 @@ const char *noh_morph_simd(void);
  * tangent orthogonal to the normal, its handedness untouched (row A11). */
 void noh_morph_vertex(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t index, noh_vertex *out);
 
+/* Its position alone: base + delta. layers NULL: the base. */
+void noh_morph_position(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t index, float out[3]);
+
 /* One column of the work: (vertex, target) pairs that these weights touch, and the
  * texels and rectangles that hold them. For cost models and reports. */
 typedef struct noh_morph_cost {

@@ -25,6 +25,25 @@ noh_result noh_pack_mesh(const noh_pack *pack, uint32_t index, noh_mesh *mesh)
     mesh->weights = (const float *)(const void *)(chunk + h->weights_offset);
     mesh->rects = (const noh_rect *)(const void *)(chunk + h->rects_offset);
     mesh->texels = (const uint32_t *)(const void *)(chunk + h->texels_offset);
+    mesh->target_boxes = (const float *)(const void *)(chunk + h->target_boxes_offset);
+    mesh->influences = (const uint32_t *)(const void *)(chunk + h->influences_offset);
+    mesh->palettes = (const noh_palette *)(const void *)(chunk + h->palettes_offset);
+    mesh->palette_joints = (const uint16_t *)(const void *)(chunk + h->palette_joints_offset);
+    mesh->joint_boxes = (const float *)(const void *)(chunk + h->joint_boxes_offset);
+    return NOH_OK;
+}
+
+noh_result noh_pack_skin_at(const noh_pack *pack, uint32_t index, noh_skin *skin)
+{
+    const uint8_t *chunk;
+    if (index >= pack->skin_count) {
+        return NOH_ERR_NOT_FOUND;
+    }
+    chunk = pack->bytes + pack->chunks[pack->first_skin + index].offset;
+    skin->name = noh_pack_chunk_name(pack, pack->first_skin + index);
+    skin->header = (const noh_skin_header *)(const void *)chunk;
+    skin->joints = (const uint16_t *)(const void *)(chunk + skin->header->joints_offset);
+    skin->inverse_bind = (const float *)(const void *)(chunk + skin->header->inverse_bind_offset);
     return NOH_OK;
 }
 
@@ -63,7 +82,8 @@ int noh_mesh_uv_offset(const noh_mesh *mesh)
 
 int noh_mesh_color_offset(const noh_mesh *mesh)
 {
-    return (mesh->header->flags & NOH_MESH_COLORS) ? (int)mesh->header->attribute_stride - 4 : -1;
+    int after = (mesh->header->flags & NOH_MESH_TEXELS) ? 8 : 4;
+    return (mesh->header->flags & NOH_MESH_COLORS) ? (int)mesh->header->attribute_stride - after : -1;
 }
 
 uint32_t noh_mesh_index(const noh_mesh *mesh, uint32_t i)
@@ -78,16 +98,58 @@ static uint32_t load_u32(const uint8_t *bytes)
     return value;
 }
 
-/* Unfold an octahedral pair, x and y in -1..1, to a unit vector (Meyer et al. 2010). */
+static uint32_t texel_word(const noh_mesh *mesh, uint32_t vertex)
+{
+    return (mesh->header->flags & NOH_MESH_TEXELS)
+               ? load_u32(mesh->attributes + ((size_t)vertex + 1u) * mesh->header->attribute_stride - 4u)
+               : vertex;
+}
+
+uint32_t noh_mesh_texel(const noh_mesh *mesh, uint32_t vertex)
+{
+    return texel_word(mesh, vertex) & ((1u << NOH_TEXEL_VERTEX_BITS) - 1u);
+}
+
+uint32_t noh_mesh_palette(const noh_mesh *mesh, uint32_t vertex)
+{
+    return texel_word(mesh, vertex) >> NOH_TEXEL_VERTEX_BITS;
+}
+
+/* The n-th stored weight (the first is n = 1), in units of 1 / NOH_WEIGHT_ONE. */
+static uint32_t stored_weight(const uint32_t *words, uint32_t n)
+{
+    uint32_t bit = n == 1 ? 0 : 22u + 21u * (n - 2u), size = n == 1 ? 22u : 21u;
+    uint64_t pair = words[bit / 32u];
+    if (bit % 32u + size > 32u) {
+        pair |= (uint64_t)words[bit / 32u + 1u] << 32;
+    }
+    return (uint32_t)(pair >> bit % 32u) & ((1u << size) - 1u);
+}
+
+uint32_t noh_mesh_influences(const noh_mesh *mesh, uint32_t vertex, uint32_t joints[NOH_INFLUENCES_MAX],
+                             float weights[NOH_INFLUENCES_MAX])
+{
+    uint32_t count = mesh->header->influence_count, rest = NOH_WEIGHT_ONE;
+    const uint32_t *words = mesh->influences + (size_t)vertex * NOH_INFLUENCE_WORDS(count);
+    const uint16_t *palette = mesh->palette_joints + mesh->palettes[noh_mesh_palette(mesh, vertex)].first_joint;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t weight = i ? stored_weight(words + (count == 8u ? 2 : 1), i) : 0;
+        joints[i] = palette[words[i / 4u] >> 8u * (i % 4u) & 255u];
+        weights[i] = (float)weight / (float)NOH_WEIGHT_ONE;
+        rest -= weight;
+    }
+    weights[0] = (float)rest / (float)NOH_WEIGHT_ONE;
+    return count;
+}
+
+/* Unfold an octahedral pair, x and y in -1..1, to a direction (Meyer et al. 2010). */
 static void unfold(float x, float y, float out[3])
 {
-    static const float up[3] = { 0.0f, 0.0f, 1.0f };
     float z = 1.0f - (x < 0.0f ? -x : x) - (y < 0.0f ? -y : y);
     float fold = z < 0.0f ? -z : 0.0f;
     out[0] = x + (x >= 0.0f ? -fold : fold);
     out[1] = y + (y >= 0.0f ? -fold : fold);
     out[2] = z;
-    noh_normalize3(out, up);
 }
 
 static int32_t low_half(uint32_t word)
@@ -109,20 +171,34 @@ static void decode_color(const uint8_t *bytes, float color[4])
     color[3] = (float)bytes[3] / 255.0f;
 }
 
+void noh_mesh_directions(const noh_mesh *mesh, uint32_t index, float normal[3], float tangent[3])
+{
+    const uint8_t *record = mesh->attributes + (size_t)index * mesh->header->attribute_stride;
+    uint32_t word = load_u32(record);
+    unfold((float)low_half(word) * (1.0f / 32767.0f), (float)high_half(word) * (1.0f / 32767.0f), normal);
+    memset(tangent, 0, 3 * sizeof *tangent);
+    if (noh_mesh_tangent_offset(mesh) >= 0) {
+        word = load_u32(record + noh_mesh_tangent_offset(mesh));
+        unfold((float)low_half(word) * (1.0f / 32767.0f), (float)(high_half(word) >> 1) * (1.0f / 16383.0f), tangent);
+    }
+}
+
 void noh_mesh_vertex(const noh_mesh *mesh, uint32_t index, noh_vertex *out)
 {
+    static const float up[3] = { 0.0f, 0.0f, 1.0f };
     const noh_mesh_header *h = mesh->header;
     const uint8_t *record = mesh->attributes + (size_t)index * h->attribute_stride;
     int tangent = noh_mesh_tangent_offset(mesh), uv = noh_mesh_uv_offset(mesh), color = noh_mesh_color_offset(mesh);
     memset(out, 0, sizeof *out);
     memcpy(out->position, mesh->positions + 3u * (size_t)index, sizeof out->position);
-    unfold((float)low_half(load_u32(record)) / 32767.0f, (float)high_half(load_u32(record)) / 32767.0f, out->normal);
+    noh_mesh_directions(mesh, index, out->normal, out->tangent);
+    noh_normalize3(out->normal, up);
     for (unsigned i = 0; i < 4; i++) {
         out->color[i] = 1.0f;
     }
     if (tangent >= 0) {
         uint32_t word = load_u32(record + tangent);
-        unfold((float)low_half(word) / 32767.0f, (float)(high_half(word) >> 1) / 16383.0f, out->tangent);
+        noh_normalize3(out->tangent, up);
         out->tangent[3] = (word & 0x10000u) ? -1.0f : 1.0f;
     }
     if (uv >= 0) {

@@ -17,7 +17,20 @@ typedef struct noh_mesh {
     const float *weights;        /* [target_count], the asset's defaults */
     const noh_rect *rects;
     const uint32_t *texels;      /* [texel_count][3] */
+    const float *target_boxes;   /* [target_count][6] */
+    const uint32_t *influences;  /* [vertex_count][NOH_INFLUENCE_WORDS(influence_count)] */
+    const noh_palette *palettes;
+    const uint16_t *palette_joints;
+    const float *joint_boxes;    /* [the skin's joint_count][6] */
 } noh_mesh;
+
+/* The joints that move a mesh; likewise a view. */
+typedef struct noh_skin {
+    const char *name;
+    const noh_skin_header *header;
+    const uint16_t *joints;      /* [joint_count], of the skeleton header->skeleton */
+    const float *inverse_bind;   /* [joint_count][12] */
+} noh_skin;
 
 /* One vertex, decoded. */
 typedef struct noh_vertex {
@@ -31,16 +44,34 @@ typedef struct noh_vertex {
 /* The n-th mesh. NOT_FOUND past mesh_count. */
 noh_result noh_pack_mesh(const noh_pack *pack, uint32_t index, noh_mesh *mesh);
 
+/* The n-th skin. NOT_FOUND past skin_count; so for NOH_NONE, a rigid mesh's. */
+noh_result noh_pack_skin_at(const noh_pack *pack, uint32_t index, noh_skin *skin);
+
 /* The target of that name; target_count when there is none. */
 uint32_t noh_mesh_find_target(const noh_mesh *mesh, const char *name);
 
 /* Decode a vertex of the rest pose: the arithmetic of shaders_es/common_attributes.glsl. */
 void noh_mesh_vertex(const noh_mesh *mesh, uint32_t index, noh_vertex *out);
 
+/* Its normal and tangent as they unfold: of lengths from 0.57 to 1, for those who make them unit later anyway. */
+void noh_mesh_directions(const noh_mesh *mesh, uint32_t index, float normal[3], float tangent[3]);
+
 /* Byte offset of an attribute in its record, or -1 where the mesh has none. */
 int noh_mesh_tangent_offset(const noh_mesh *mesh);
 int noh_mesh_uv_offset(const noh_mesh *mesh);
 int noh_mesh_color_offset(const noh_mesh *mesh);
+
+/* The vertex whose morph texel a vertex shares (itself, but for doubled ones of a split mesh), and
+ * its palette (0 but in a split mesh). */
+uint32_t noh_mesh_texel(const noh_mesh *mesh, uint32_t vertex);
+uint32_t noh_mesh_palette(const noh_mesh *mesh, uint32_t vertex);
+
+/* What moves a vertex of a skinned mesh.
+ * shapes   joints[influence_count] places in the skin's joints, weights[influence_count]
+ * ranges   the weights sum to exactly 1 in float32, the first is the largest but for rounding
+ * returns  influence_count */
+uint32_t noh_mesh_influences(const noh_mesh *mesh, uint32_t vertex, uint32_t joints[NOH_INFLUENCES_MAX],
+                             float weights[NOH_INFLUENCES_MAX]);
 
 /* The i-th index. */
 uint32_t noh_mesh_index(const noh_mesh *mesh, uint32_t i);

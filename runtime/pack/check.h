@@ -37,7 +37,14 @@ noh_result noh_check_materials(noh_check *check);
 noh_result noh_check_mesh(noh_check *check);
 noh_result noh_check_nodes(noh_check *check);
 noh_result noh_check_skeleton(noh_check *check);
+noh_result noh_check_skin(noh_check *check);
 noh_result noh_check_motion(noh_check *check);
+
+/* A mesh's skin, palettes, influences and texel references; after its counts, arrays and submeshes. */
+noh_result noh_check_mesh_skin(const noh_check *check, const noh_mesh_header *h);
+
+/* The joints of the n-th skin; 0 for NOH_NONE. */
+uint32_t noh_check_skin_joints(const noh_pack *pack, uint32_t skin);
 
 /* Not NaN, not infinite. */
 static inline int noh_float_finite(float value)

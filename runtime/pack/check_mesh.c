@@ -18,10 +18,53 @@ static noh_result check_limits(const noh_check *check, const noh_mesh_header *h)
     if (h->target_count > NOH_TARGETS_MAX || h->texel_count > NOH_TEXELS_MAX || h->rect_count > h->texel_count) {
         return noh_check_fail(check, "target, texel or rectangle count is over its limit", 20);
     }
-    if (h->flags & ~(NOH_MESH_TANGENTS | NOH_MESH_UVS | NOH_MESH_COLORS)) {
-        return noh_check_fail(check, "unknown mesh flags", 0);
+    if ((h->flags & ~(NOH_MESH_TANGENTS | NOH_MESH_UVS | NOH_MESH_COLORS | NOH_MESH_DUAL_QUATERNION | NOH_MESH_TEXELS)) ||
+        h->reserved[0] || h->reserved[1] || h->reserved[2]) {
+        return noh_check_fail(check, "unknown mesh flags, or a reserved field is not zero", 0);
     }
     return NOH_OK;
+}
+
+/* What sizes the arrays of a skinned mesh; before they are looked at. */
+static noh_result check_skin_counts(const noh_check *check, const noh_mesh_header *h)
+{
+    const uint32_t n = h->influence_count;
+    const int split = h->palette_count > 1;
+    if (h->skin == NOH_NONE) {
+        return n || h->palette_count || h->palette_joint_count || (h->flags & (NOH_MESH_DUAL_QUATERNION | NOH_MESH_TEXELS))
+                   ? noh_check_fail(check, "rigid mesh has influences, palettes or a skin's flags", 148)
+                   : NOH_OK;
+    }
+    if (h->skin >= check->pack->skin_count) {
+        return noh_check_fail(check, "mesh names a skin that is not there", 148);
+    }
+    if (n != 1 && n != 2 && n != 4 && n != 8) {
+        return noh_check_fail(check, "skinned mesh has neither 1, 2, 4 nor 8 influences a vertex", 152);
+    }
+    if (!h->palette_count || h->palette_count > NOH_SUBMESHES_MAX ||
+        h->palette_joint_count > h->palette_count * NOH_PALETTE_JOINTS_MAX) {
+        return noh_check_fail(check, "palette count is zero or over the limit, or palettes have too many joints", 160);
+    }
+    if (split != ((h->flags & NOH_MESH_TEXELS) != 0)) {
+        return noh_check_fail(check, "texel references are there without a split, or a split is without them", 0);
+    }
+    return NOH_OK;
+}
+
+/* Boxes: finite, and not inside out, or (inverted) altogether. */
+static noh_result check_boxes(const noh_check *check, uint32_t offset, uint32_t count, int may_be_empty)
+{
+    const float *boxes = (const float *)(const void *)(check->bytes + offset);
+    noh_result result = noh_check_floats(check, boxes, count * 6u, "box is not finite");
+    for (uint32_t i = 0; !result && i < count; i++) {
+        const float *b = boxes + 6u * (size_t)i;
+        int proper = b[0] <= b[3] && b[1] <= b[4] && b[2] <= b[5];
+        int empty = may_be_empty && b[0] > b[3] && b[1] > b[4] && b[2] > b[5];
+        if (!proper && !empty) {
+            result = noh_check_fail(check, "box is inside out", offset + 24ull * i);
+        }
+    }
+    return result;
 }
 
 static noh_result check_texture_shape(const noh_check *check, const noh_mesh_header *h)
@@ -44,12 +87,12 @@ static noh_result check_texture_shape(const noh_check *check, const noh_mesh_hea
 static uint32_t stride_of(uint32_t flags)
 {
     return 4u + ((flags & NOH_MESH_TANGENTS) ? 4u : 0u) + ((flags & NOH_MESH_UVS) ? 4u : 0u) +
-           ((flags & NOH_MESH_COLORS) ? 4u : 0u);
+           ((flags & NOH_MESH_COLORS) ? 4u : 0u) + ((flags & NOH_MESH_TEXELS) ? 4u : 0u);
 }
 
 static noh_result check_arrays(noh_check *check, const noh_mesh_header *h)
 {
-    const struct { uint32_t offset; uint64_t count; uint32_t stride; } arrays[8] = {
+    const struct { uint32_t offset; uint64_t count; uint32_t stride; } arrays[13] = {
         { h->positions_offset, h->vertex_count, 12 },
         { h->attributes_offset, h->vertex_count, h->attribute_stride },
         { h->indices_offset, h->index_count, h->index_bytes },
@@ -57,12 +100,17 @@ static noh_result check_arrays(noh_check *check, const noh_mesh_header *h)
         { h->targets_offset, h->target_count, sizeof(noh_target) },
         { h->weights_offset, h->target_count, 4 },
         { h->rects_offset, h->rect_count, sizeof(noh_rect) },
-        { h->texels_offset, h->texel_count, 12 }
+        { h->texels_offset, h->texel_count, 12 },
+        { h->target_boxes_offset, h->target_count, 24 },
+        { h->influences_offset, h->vertex_count, 4u * NOH_INFLUENCE_WORDS(h->influence_count) },
+        { h->palettes_offset, h->palette_count, sizeof(noh_palette) },
+        { h->palette_joints_offset, h->palette_joint_count, 2 },
+        { h->joint_boxes_offset, noh_check_skin_joints(check->pack, h->skin), 24 }
     };
     if (h->attribute_stride != stride_of(h->flags)) {
         return noh_check_fail(check, "attribute stride does not fit the mesh flags", 52);
     }
-    for (unsigned i = 0; i < 8; i++) {
+    for (unsigned i = 0; i < sizeof arrays / sizeof arrays[0]; i++) {
         noh_result result = noh_check_array(check, arrays[i].offset, arrays[i].count, arrays[i].stride);
         if (result) {
             return result;
@@ -87,12 +135,17 @@ static noh_result check_indices(const noh_check *check, const noh_mesh_header *h
 static noh_result check_submeshes(const noh_check *check, const noh_mesh_header *h)
 {
     const noh_submesh *submeshes = (const noh_submesh *)(const void *)(check->bytes + h->submeshes_offset);
+    uint32_t next = 0;
     for (uint32_t i = 0; i < h->submesh_count; i++) {
         const noh_submesh *s = &submeshes[i];
         uint64_t at = h->submeshes_offset + (uint64_t)i * sizeof *s;
         if (s->first_index > h->index_count || s->index_count > h->index_count - s->first_index || s->index_count % 3) {
             return noh_check_fail(check, "submesh indices lie outside the mesh", at);
         }
+        if (s->first_index < next) {
+            return noh_check_fail(check, "submeshes overlap, or are out of order", at);
+        }
+        next = s->first_index + s->index_count;
         if (s->first_vertex > h->vertex_count || s->vertex_count > h->vertex_count - s->first_vertex) {
             return noh_check_fail(check, "submesh vertices lie outside the mesh", at);
         }
@@ -197,6 +250,7 @@ noh_result noh_check_mesh(noh_check *check)
     noh_result result = noh_check_head(check, sizeof *h);
     if (!result) result = check_limits(check, h);
     if (!result) result = check_texture_shape(check, h);
+    if (!result) result = check_skin_counts(check, h);
     if (!result) result = check_arrays(check, h);
     if (!result) result = noh_check_floats(check, h->bounds_min, 13, "bounds, error bound or scale are not finite");
     if (!result) {
@@ -206,6 +260,11 @@ noh_result noh_check_mesh(noh_check *check)
     if (!result) result = check_indices(check, h);
     if (!result) result = check_submeshes(check, h);
     if (!result) result = check_targets(check, h);
+    if (!result) result = check_boxes(check, h->target_boxes_offset, h->target_count, 0);
+    if (!result) {
+        result = check_boxes(check, h->joint_boxes_offset, noh_check_skin_joints(check->pack, h->skin), 1);
+    }
+    if (!result) result = noh_check_mesh_skin(check, h);
     if (!result) {
         result = noh_check_floats(check, (const float *)(const void *)(check->bytes + h->weights_offset),
                                   h->target_count, "default weight is not finite");

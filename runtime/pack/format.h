@@ -24,6 +24,7 @@
 #define NOH_CHUNK_TEXTURE NOH_FOURCC('T', 'X', 'T', 'R')
 #define NOH_CHUNK_SKELETON NOH_FOURCC('S', 'K', 'E', 'L')
 #define NOH_CHUNK_MOTION NOH_FOURCC('M', 'O', 'T', 'N')
+#define NOH_CHUNK_SKIN NOH_FOURCC('S', 'K', 'I', 'N')
 
 typedef struct noh_pack_header {
     uint32_t magic;
@@ -51,13 +52,18 @@ typedef struct noh_pack_chunk {
 #define NOH_MESH_TANGENTS 1u
 #define NOH_MESH_UVS 2u
 #define NOH_MESH_COLORS 4u
+#define NOH_MESH_DUAL_QUATERNION 8u /* skinned by dual quaternions, else by matrices */
+#define NOH_MESH_TEXELS 16u         /* split into several palettes: a texel reference per vertex */
 
 /* Attribute record, interleaved, 4 bytes each and in this order; those whose
  * flag is not set are absent:
  *   normal   int16 x 2, octahedral: n.xy / 32767 unfolds to a unit vector; always there
  *   tangent  int16 x 2, octahedral; y has 15 bits above bit 0, which is 1 for handedness -1 (TANGENTS)
  *   uv       unorm 16:16, uv = uv_offset + uv_scale * value (UVS)
- *   color    unorm 8:8:8:8, linear rgb with a square-root curve, alpha straight (COLORS) */
+ *   color    unorm 8:8:8:8, linear rgb with a square-root curve, alpha straight (COLORS)
+ *   texel    low 22 bits the vertex whose morph texel this one shares, above them the vertex's palette (TEXELS) */
+#define NOH_TEXEL_VERTEX_BITS 22u
+
 typedef struct noh_mesh_header {
     uint32_t flags;            /* NOH_MESH_* */
     uint32_t vertex_count;
@@ -87,13 +93,44 @@ typedef struct noh_mesh_header {
     float f16_direction_bound;  /* the same for normals and tangents, per component */
     float world_scale;          /* world units (metres) per model unit: the largest scale of the nodes that draw it */
     uint32_t texels_one_rect;   /* for reports: one rectangle per target, the asset's vertex order */
+    uint32_t target_boxes_offset; /* float[target_count][6]: smallest and largest x, y, z of its position deltas and of 0 */
+    uint32_t skin;              /* the n-th skin chunk, or NOH_NONE: a rigid mesh, and all below is 0 */
+    uint32_t influence_count;   /* joints per vertex: 0, 1, 2, 4 or 8 */
+    uint32_t influences_offset; /* uint32_t[vertex_count][NOH_INFLUENCE_WORDS] */
+    uint32_t palette_count;     /* 1, or more where a palette cannot hold all joints (row C3.6) */
+    uint32_t palettes_offset;   /* noh_palette[palette_count] */
+    uint32_t palette_joint_count;
+    uint32_t palette_joints_offset; /* uint16_t[palette_joint_count], places in the skin's joints */
+    uint32_t joint_boxes_offset; /* float[the skin's joint_count][6]: smallest and largest x, y, z of the rest positions of the
+                                  * vertices that this joint moves; the smallest above the largest where it moves none */
+    uint32_t reserved[3];
 } noh_mesh_header;
 
-/* A run of triangles with one material, and the vertices that it uses (row D9). */
+/* Influences of a vertex, in words. The first joint is the strongest: its weight is
+ * what the others leave of 1 (row E2), so sums are exact. The others' weights are
+ * integers of 2^-22. Joints are 8-bit places in the vertex's palette; those without a
+ * weight repeat the first.
+ *   1  j0
+ *   2  j0 | j1 << 8, then w1
+ *   4  j0 | j1 << 8 | j2 << 16 | j3 << 24, then w1, w2, w3
+ *   8  the same, j4 to j7, then w1 to w7
+ * Weights lie behind each other from the lowest bit of their words up: w1 has 22 bits
+ * (it may be one half), the others 21 (they are at most a third). */
+#define NOH_INFLUENCES_MAX 8u
+#define NOH_INFLUENCE_WORDS(count) ((count) == 8u ? 7u : (count) == 4u ? 3u : (count))
+#define NOH_WEIGHT_ONE 0x400000u /* 2^22 */
+
+/* A run of palette_joints: the matrices that one draw needs. */
+typedef struct noh_palette {
+    uint32_t first_joint, joint_count; /* 1..NOH_PALETTE_JOINTS_MAX */
+} noh_palette;
+
+/* A run of triangles with one material and one palette, and the vertices that it uses (row D9). */
 typedef struct noh_submesh {
     uint32_t first_index, index_count;
     uint32_t material; /* into the material chunk, or NOH_NONE */
     uint32_t first_vertex, vertex_count;
+    uint32_t palette;  /* 0 in a rigid mesh */
 } noh_submesh;
 
 /* One morph target. A delta texel is three words, word i for axis i: from the
@@ -132,7 +169,8 @@ typedef struct noh_node {
     uint32_t parent;        /* a lower index or NOH_NONE */
     uint32_t mesh;          /* the n-th mesh chunk, or NOH_NONE */
     float translation[3], rotation[4], scale[3]; /* local */
-    float world[12];        /* 3 rows of 4: world position = rows * (x, y, z, 1) */
+    float world[12];        /* 3 rows of 4: world position = rows * (x, y, z, 1); of a skinned mesh's node the
+                             * identity: the joints place it, and their model space is the world */
     uint32_t first_weight;  /* this node's default weights, or NOH_NONE: the mesh's hold */
     uint32_t flags;
 } noh_node;
@@ -181,6 +219,16 @@ typedef struct noh_skeleton_header {
     uint32_t reserved[2];
 } noh_skeleton_header;
 
+/* ---- CHUNK_SKIN: header, then two arrays. ---- */
+
+/* A joint of a skeleton may be there several times, with different inverse bind matrices. */
+typedef struct noh_skin_header {
+    uint32_t joint_count;
+    uint32_t skeleton;            /* the n-th skeleton chunk */
+    uint32_t joints_offset;       /* uint16_t[joint_count], joints of that skeleton */
+    uint32_t inverse_bind_offset; /* float[joint_count][12], rows as in noh_node.world: from mesh space to joint space */
+} noh_skin_header;
+
 /* ---- CHUNK_MOTION: header, callback keys and sync markers in time order, then the compressed clip
  * (anim/clip_format.h): joints of a skeleton, morph weights of nodes, named floats. ---- */
 
@@ -211,13 +259,17 @@ typedef struct noh_motion_marker {
 } noh_motion_marker;
 
 NOH_STATIC_ASSERT(sizeof(noh_skeleton_header) == 32, skeleton_header);
+NOH_STATIC_ASSERT(sizeof(noh_skin_header) == 16, skin_header);
+NOH_STATIC_ASSERT(sizeof(noh_palette) == 8, palette);
+NOH_STATIC_ASSERT(NOH_VERTICES_MAX <= 1u << NOH_TEXEL_VERTEX_BITS, texel_vertex);
+NOH_STATIC_ASSERT(NOH_SUBMESHES_MAX <= 1u << (32u - NOH_TEXEL_VERTEX_BITS), texel_palette);
 NOH_STATIC_ASSERT(sizeof(noh_motion_header) == 40, motion_header);
 NOH_STATIC_ASSERT(sizeof(noh_motion_event) == 24, motion_event);
 NOH_STATIC_ASSERT(sizeof(noh_motion_marker) == 12, motion_marker);
 NOH_STATIC_ASSERT(sizeof(noh_pack_header) == 64, pack_header);
 NOH_STATIC_ASSERT(sizeof(noh_pack_chunk) == 32, pack_chunk);
-NOH_STATIC_ASSERT(sizeof(noh_mesh_header) == 144, mesh_header);
-NOH_STATIC_ASSERT(sizeof(noh_submesh) == 20, submesh);
+NOH_STATIC_ASSERT(sizeof(noh_mesh_header) == 192, mesh_header);
+NOH_STATIC_ASSERT(sizeof(noh_submesh) == 24, submesh);
 NOH_STATIC_ASSERT(sizeof(noh_target) == 64, target);
 NOH_STATIC_ASSERT(sizeof(noh_rect) == 8, rect);
 NOH_STATIC_ASSERT(sizeof(noh_node) == 112, node);

@@ -12,10 +12,11 @@ static int chunk_rank(uint32_t type)
     case NOH_CHUNK_STRINGS: return 0;
     case NOH_CHUNK_TEXTURE: return 1;
     case NOH_CHUNK_MATERIALS: return 2;
-    case NOH_CHUNK_MESH: return 3;
-    case NOH_CHUNK_NODES: return 4;
-    case NOH_CHUNK_SKELETON: return 5;
-    case NOH_CHUNK_MOTION: return 6;
+    case NOH_CHUNK_SKELETON: return 3;
+    case NOH_CHUNK_SKIN: return 4;
+    case NOH_CHUNK_MESH: return 5;
+    case NOH_CHUNK_NODES: return 6;
+    case NOH_CHUNK_MOTION: return 7;
     default: return -1;
     }
 }
@@ -155,6 +156,10 @@ static noh_result open_chunk(noh_pack *pack, uint32_t index, noh_error *error)
     case NOH_CHUNK_SKELETON:
         result = noh_check_skeleton(&check);
         count_chunk(&pack->skeleton_count, &pack->first_skeleton, index);
+        break;
+    case NOH_CHUNK_SKIN:
+        result = noh_check_skin(&check);
+        count_chunk(&pack->skin_count, &pack->first_skin, index);
         break;
     default:
         result = noh_check_motion(&check);

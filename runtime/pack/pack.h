@@ -18,6 +18,7 @@ typedef struct noh_pack {
     uint32_t texture_count, first_texture; /* chunk index of the first one */
     uint32_t mesh_count, first_mesh;
     uint32_t skeleton_count, first_skeleton;
+    uint32_t skin_count, first_skin;
     uint32_t motion_count, first_motion;
     uint32_t material_count;
     const noh_material *materials;

@@ -51,6 +51,16 @@ for value in 0 -3 2.5 65536 many; do
     expect 2 "--rects $value"
     says '--rects wants'
 done
+for value in 0 9 2.5 many; do
+    noh build in.glb -o "$work/out.noh" --influences $value
+    expect 2 "--influences $value"
+    says '--influences wants'
+done
+for value in 3 257 4.5 many; do
+    noh build in.glb -o "$work/out.noh" --palette $value
+    expect 2 "--palette $value"
+    says '--palette wants'
+done
 for value in 0x512 512 512x 512x0 9000x10 -1x5 axb; do
     noh render "$pack" -o "$work/out.png" --size $value
     expect 2 "--size $value"

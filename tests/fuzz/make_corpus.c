@@ -8,6 +8,7 @@
 #include "convert/convert.h"
 #include "convert/model_build.h"
 #include "motion_fixture.h"
+#include "skin_asset.h"
 #include "unit/clip_fixture.h"
 
 static void write_pack(const char *folder, const char *name, const test_model_desc *desc)
@@ -48,6 +49,24 @@ static void write_weights(const char *folder)
     size_t count;
     uint8_t *bytes = test_pack_of(m, &count, NULL);
     snprintf(path, sizeof path, "%s/weights.noh", folder);
+    test_write_file(path, bytes, count);
+    free(bytes);
+    model_free(m);
+}
+
+/* A skinned tube, whole or split into palettes. */
+static void write_skin(const char *folder, const char *name, uint32_t palette)
+{
+    const skin_cylinder tube = { 3, 6, 9, 2, 1, 1, 1.0f, 0.5f };
+    model *m = skin_cylinder_model(&tube);
+    char path[4096];
+    skin_options options;
+    uint8_t *bytes;
+    size_t count;
+    memset(&options, 0, sizeof options);
+    options.palette = palette;
+    bytes = skin_pack_of(m, &options, 10.0f, &count, NULL);
+    snprintf(path, sizeof path, "%s/%s.noh", folder, name);
     test_write_file(path, bytes, count);
     free(bytes);
     model_free(m);
@@ -122,6 +141,8 @@ static void corpus(void **state)
     }
     write_motion(folder);
     write_weights(folder);
+    write_skin(folder, "skin", 0);
+    write_skin(folder, "skin_split", 4);
 }
 
 int main(int argument_count, char **arguments)

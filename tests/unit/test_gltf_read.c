@@ -251,6 +251,17 @@ static scene *triangle(const char *more_attributes, const char *more)
     return s;
 }
 
+/* A triangle that follows the first joint. */
+static scene *skinned_triangle(void)
+{
+    static const uint8_t joints[12] = {0};
+    static const float weights[12] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+    scene *s = triangle(",\"JOINTS_0\":1,\"WEIGHTS_0\":2", "");
+    add_array(s, joints, sizeof joints, U8, 3, "VEC4");
+    add_array(s, weights, sizeof weights, F32, 3, "VEC4");
+    return s;
+}
+
 /* A triangle with one target whose deltas are accessor 1. */
 static scene *morphing(const float *deltas, const char *more)
 {
@@ -993,18 +1004,24 @@ static void nodes_parents_first(void **state)
     model_free(m);
 }
 
-/* glTF 2.0, 3.7.3: the node of a skinned mesh does not place it. */
-static void skinned_mesh_stands_where_its_joint_is(void **state)
+/* glTF 2.0, 3.7.3: the node of a skinned mesh does not place it; so its size in the world is its joints'. */
+static void skinned_mesh_is_as_large_as_its_joints_make_it(void **state)
 {
     (void)state;
+    const char *rest = ",\"nodes\":[{\"mesh\":0,\"skin\":0,\"scale\":[9,9,9]},{\"translation\":[0,2,0],\"scale\":[3,3,3]},"
+                       "{\"scale\":[50,50,50]}],\"skins\":[{\"joints\":[1,2]}]";
     scene *s = triangle("", "");
-    APPEND(s->rest, ",\"nodes\":[{\"mesh\":0,\"skin\":0,\"translation\":[9,9,9]},{\"translation\":[0,2,0],\"scale\":[3,3,3]}],"
-           "\"skins\":[{\"joints\":[1]}]");
+    APPEND(s->rest, "%s", rest);
     model *m = load(s);
-    assert_true(m->nodes[0].skinned && !m->nodes[1].skinned);
-    assert_true(fabs(m->nodes[0].world[0] - 3.0) < 1e-7 && fabs(m->nodes[0].world[12]) < 1e-7);
-    assert_true(fabs(m->nodes[0].world[13] - 2.0) < 1e-7 && fabs(m->nodes[0].world[14]) < 1e-7);
-    assert_true(fabsf(model_mesh_scale(m, 0) - 3.0f) < 1e-6f);
+    assert_true(m->nodes[0].skin == MODEL_NONE && m->warning_count == 1); /* a skin has nothing to move in a rigid mesh */
+    assert_non_null(strstr(m->warnings[0], "node_0"));
+    assert_true(fabsf(model_mesh_scale(m, 0) - 9.0f) < 1e-6f);
+    model_free(m);
+    s = skinned_triangle();
+    APPEND(s->rest, "%s", rest);
+    m = load(s);
+    assert_true(m->nodes[0].skin == 0 && m->nodes[1].skin == MODEL_NONE);
+    assert_true(fabsf(model_mesh_scale(m, 0) - 3.0f) < 1e-6f); /* the second joint moves nothing */
     model_free(m);
 }
 
@@ -1686,7 +1703,7 @@ int main(void)
         cmocka_unit_test(target_tangents_from_the_morphed_mesh),
         cmocka_unit_test(no_uvs_no_tangents),
         cmocka_unit_test(nodes_parents_first),
-        cmocka_unit_test(skinned_mesh_stands_where_its_joint_is),
+        cmocka_unit_test(skinned_mesh_is_as_large_as_its_joints_make_it),
         cmocka_unit_test(bad_skins_are_refused),
         cmocka_unit_test(matrices_are_decomposed),
         cmocka_unit_test(skewed_and_mirrored_matrices),

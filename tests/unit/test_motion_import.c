@@ -722,6 +722,20 @@ static scene *morphing(const char *nodes)
     return s;
 }
 
+#define SKINNED "{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"JOINTS_0\":3,\"WEIGHTS_0\":4},\"targets\":[{\"POSITION\":1},{\"POSITION\":2}]}]}"
+
+/* The same, following the first joint of a skin. */
+static scene *skinned_morphing(const char *nodes)
+{
+    const float weights[12] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+    scene *s = morphing(nodes);
+    APPEND(s->views, ",{\"buffer\":0,\"byteOffset\":72,\"byteLength\":12}"); /* zeros of the second target */
+    APPEND(s->accessors, ",{\"bufferView\":%d,\"componentType\":5121,\"count\":3,\"type\":\"VEC4\"}", s->accessor_count++);
+    add_floats(s, weights, 12, "VEC4", 4);
+    s->meshes = SKINNED;
+    return s;
+}
+
 static const float weight_times[3] = {0, 0.5f, 1};
 static const float weight_values[6] = {0, 1, 0.5f, 0, 1, 0.25f};
 
@@ -767,8 +781,8 @@ static void weights_of_a_skinned_mesh(void **state)
 {
     (void)state;
     const float binds[16] = {0.5f, 0, 0, 0, 0, 0.5f, 0, 0, 0, 0, 0.5f, 0, 0, 0, 0, 1};
-    scene *s = morphing("{\"name\":\"face\",\"mesh\":0,\"skin\":0,\"scale\":[100,100,100]},{\"name\":\"joint\",\"scale\":[6,6,6]}");
-    s->skins = "{\"joints\":[1],\"inverseBindMatrices\":3}";
+    scene *s = skinned_morphing("{\"name\":\"face\",\"mesh\":0,\"skin\":0,\"scale\":[100,100,100]},{\"name\":\"joint\",\"scale\":[6,6,6]}");
+    s->skins = "{\"joints\":[1],\"inverseBindMatrices\":5}";
     add_floats(s, binds, 16, "MAT4", 16);
     add_channel(s, 0, "weights", "LINEAR", weight_times, 3, weight_values, 6, 1);
     add_move(s, 0, "LINEAR", two_times, 2, two_moves, 6); /* the node of a skinned mesh places nothing */
@@ -782,7 +796,7 @@ static void weights_of_a_skinned_mesh(void **state)
 static void what_moves_nothing_is_a_warning(void **state)
 {
     (void)state;
-    scene *s = morphing("{\"name\":\"face\",\"mesh\":0,\"skin\":0},{\"name\":\"joint\"}");
+    scene *s = skinned_morphing("{\"name\":\"face\",\"mesh\":0,\"skin\":0},{\"name\":\"joint\"}");
     s->skins = "{\"joints\":[1]}";
     add_move(s, 0, "LINEAR", two_times, 2, two_moves, 6);
     loaded l = load(s, 0.0);

@@ -13,9 +13,10 @@
 
 static source source_of(const char *path)
 {
+    const source_options options = { .unit_cm = 1.0 };
     source s;
     model_error error;
-    if (source_read(path, 0.0, 1.0, &s, &error)) {
+    if (source_read(path, &options, &s, &error)) {
         fail_msg("%s: %s", path, error.what);
     }
     return s;
@@ -70,9 +71,6 @@ static void clips_of_one_skeleton_are_joined(void **state)
     assert_string_equal(base.sets[0]->clips[1].name, "run");
     assert_int_equal(base.sets[0]->clips[1].frame_count, FRAMES + 3u);
     source_free(&other);
-    source_drop_clips(&base);
-    assert_int_equal(base.sets[0]->clip_count, 0);
-    assert_int_equal(base.sets[0]->skeleton.joint_count, 3);
     source_free(&base);
 }
 

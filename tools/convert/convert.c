@@ -69,7 +69,7 @@ static int encode_meshes(const model *m, const convert_options *options, morph_e
 }
 
 /* A pack that its own reader refuses must not leave the converter. */
-static int check_own_pack(byte_buffer *out, model_error *error)
+static int check_own_pack(byte_buffer *out, FILE *report, model_error *error)
 {
     noh_pack pack;
     noh_error refusal = { NOH_OK, "", 0, 0 };
@@ -79,6 +79,9 @@ static int check_own_pack(byte_buffer *out, model_error *error)
         error->where[0] = 0;
         buffer_free(out);
         return 1;
+    }
+    if (report) {
+        convert_report_skins(report, &pack);
     }
     return 0;
 }
@@ -108,13 +111,14 @@ static int convert_source(const source *s, const convert_options *options, byte_
     }
     settings.report = options->report;
     settings.progress = options->progress;
+    settings.skeletons_only = options->only == CONVERT_MESH;
     if (options->report) {
         report_warnings(options->report, s);
     }
     failed = pack_check_model(m, error) || encode_meshes(m, options, encodings, error);
     if (!failed) {
         failed = motions_encode(s->sets, s->set_count, &settings, &made, error) || pack_write(m, encodings, &made, out, error) ||
-                 check_own_pack(out, error);
+                 check_own_pack(out, options->report, error);
         motions_free(&made);
     }
     free_encodings(encodings, m->mesh_count);
@@ -134,9 +138,11 @@ static int base_of(const source *all, int count)
 
 static int read_all(const char *const *inputs, int count, const convert_options *options, source *all, convert_failure *failure)
 {
+    source_options reading = { options->motion.rate_hz, options->motion.unit_cm, options->skin, options->two_streams, options->two_stream_count };
+    reading.skin.report = options->report;
     for (int i = 0; i < count; i++) {
         failure->file = inputs[i];
-        if (source_read(inputs[i], options->motion.rate_hz, options->motion.unit_cm, &all[i], &failure->error)) {
+        if (source_read(inputs[i], &reading, &all[i], &failure->error)) {
             return 1;
         }
     }
@@ -169,7 +175,6 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
     if (!failed) {
         base = base_of(all, input_count);
         failed = join_all(inputs, input_count, base, all, failure) || apply_events(options, &all[base], &failure->error);
-        if (!failed && options->only == CONVERT_MESH) source_drop_clips(&all[base]);
         failed = failed || convert_source(&all[base], options, out, &failure->error);
     }
     for (int i = 0; i < input_count; i++) {

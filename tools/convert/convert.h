@@ -5,13 +5,18 @@
 #include <stdio.h>
 
 #include "motions.h"
+#include "pack/pack.h"
 #include "pack_write.h"
+#include "skins.h"
 
 typedef enum convert_only { CONVERT_ALL, CONVERT_MESH, CONVERT_MOTION } convert_only;
 
 typedef struct convert_options {
     morph_options morph;
     motion_settings motion;
+    skin_options skin;
+    const char *const *two_streams; /* [two_stream_count] "SOURCE=TARGET", see two_stream.h */
+    uint32_t two_stream_count;
     convert_only only;
     const char *events; /* a text file of callback keys; NULL: none */
     FILE *report;   /* NULL: quiet */
@@ -32,5 +37,8 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
 /* The report of one encoded mesh: counts, bits, and bytes beside the peers' layouts.
  * scale: model_mesh_scale, so that errors are printed as they show in the world. */
 void convert_report_mesh(FILE *out, const model_mesh *mesh, const morph_encoding *e, float scale, float error_um);
+
+/* What moves each skinned mesh of a finished pack, and into how many parts it was split. */
+void convert_report_skins(FILE *out, const noh_pack *pack);
 
 #endif

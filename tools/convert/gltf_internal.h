@@ -14,7 +14,7 @@
  *   gltf_mesh.cpp      meshes, primitives, targets
  *   gltf_scene.cpp     nodes
  *   gltf_influences.cpp which joints move which vertices
- *   gltf_skin.cpp      skins, and where skinned meshes stand in the rest pose
+ *   gltf_skin.cpp      skins, and the nodes whose meshes they move
  *   gltf_animation.cpp animations
  *   gltf_extras.cpp    an animation's extras: callback keys, sync markers, loops
  *   gltf_material.cpp  materials, textures, images */
@@ -146,7 +146,7 @@ void allocate_influences(file &f, const std::string &where, model_mesh &out);
 void read_influences(file &f, const tinygltf::Primitive &p, const model_submesh &part, const std::string &where, model_mesh &out);
 void check_influences(const model_mesh &mesh, uint32_t joint_count);
 void read_nodes(file &f);
-void read_skins(file &f);          /* after read_nodes: places the nodes of skinned meshes */
+void read_skins(file &f);          /* after read_nodes */
 void read_animations(file &f);
 void read_extras(file &f, const tinygltf::Animation &a, const std::string &where, model_clip &out);
 

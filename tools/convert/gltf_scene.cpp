@@ -292,7 +292,6 @@ static void read_node(file &f, const visit &v, model_node &out)
     std::string where = where_of(f, v.node);
     out.name = copy_string(name_or(node.name, "node", v.node));
     out.parent = v.parent;
-    out.skinned = node.skin >= 0;
     out.skin = MODEL_NONE;
     read_mesh_of_node(f, node, out, where);
     read_weights(f, node, out, where);

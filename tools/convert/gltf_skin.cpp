@@ -1,27 +1,10 @@
-/* gltf_skin.cpp: skins, and where a skinned mesh stands while it is drawn unskinned.
- *
- * A skinned mesh's own node does not place it; its joints do (glTF 2.0, 3.7.3).
- * In the rest pose that is joint matrix times inverse bind matrix, the same for
- * every joint when the rest pose is the bind pose. Until skinning is applied at
- * run time the first joint's product stands for all: it also carries the
- * dequantisation that packers put into inverse bind matrices. */
+/* gltf_skin.cpp: skins, and the nodes whose meshes they move. */
 #include "gltf_internal.h"
 
 #include <cmath>
 #include <cstring>
 
 namespace gltf {
-
-static void multiply(const double *a, const float *b, double *out)
-{
-    for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 4; ++row) {
-            double sum = 0.0;
-            for (int k = 0; k < 4; ++k)
-                sum += a[k * 4 + row] * static_cast<double>(b[column * 4 + k]);
-            out[column * 4 + row] = sum;
-        }
-}
 
 /* --- inverse bind matrices --- */
 
@@ -129,36 +112,24 @@ static void bind_node(file &f, size_t node, model_node &out)
     out.skin = f.skin_of[skin];
 }
 
-static std::vector<uint32_t> bind_nodes(file &f)
+/* A mesh without joints has nothing for a skin to move. */
+static void bind_nodes(file &f)
 {
-    std::vector<uint32_t> bound;
     for (size_t i = 0; i < f.json.nodes.size(); ++i) {
         uint32_t node = f.node_of[i];
         if (node == MODEL_NONE || f.json.nodes[i].skin < 0)
             continue;
-        bind_node(f, i, f.out->nodes[node]);
-        if (f.out->nodes[node].skin == MODEL_NONE)
+        model_node &out = f.out->nodes[node];
+        bind_node(f, i, out);
+        if (out.skin == MODEL_NONE || out.mesh == MODEL_NONE)
             continue;
-        if (f.out->nodes[node].mesh != MODEL_NONE)
-            check_influences(f.out->meshes[f.out->nodes[node].mesh], f.out->skins[f.out->nodes[node].skin].joint_count);
-        bound.push_back(node);
+        if (f.out->meshes[out.mesh].joints) {
+            check_influences(f.out->meshes[out.mesh], f.out->skins[out.skin].joint_count);
+            continue;
+        }
+        out.skin = MODEL_NONE;
+        warn(f, "node '%s' has a skin, but its mesh has no joints; the node alone places it", printable(out.name).c_str());
     }
-    return bound;
-}
-
-/* Found for all before any is changed: a skinned mesh's node may be a joint too. */
-static void place_nodes(file &f, const std::vector<uint32_t> &bound)
-{
-    std::vector<double> worlds(bound.size() * 16);
-    for (size_t i = 0; i < bound.size(); ++i) {
-        const model_skin &skin = f.out->skins[f.out->nodes[bound[i]].skin];
-        multiply(f.out->nodes[skin.joints[0]].world, skin.inverse_bind, &worlds[i * 16]);
-        for (size_t k = 0; k < 16; ++k)
-            if (!std::isfinite(worlds[i * 16 + k]))
-                fail("skin '" + printable(skin.name) + "'", "the rest matrix of the first joint is not finite");
-    }
-    for (size_t i = 0; i < bound.size(); ++i)
-        memcpy(f.out->nodes[bound[i]].world, &worlds[i * 16], 16 * sizeof(double));
 }
 
 void read_skins(file &f)
@@ -167,7 +138,7 @@ void read_skins(file &f)
     f.out->skins = allocate<model_skin>(f, f.json.skins.size(), "skins");
     for (size_t i = 0; i < f.json.skins.size(); ++i)
         read_skin(f, i);
-    place_nodes(f, bind_nodes(f));
+    bind_nodes(f);
 }
 
 } // namespace gltf

@@ -1,5 +1,6 @@
 /* model.c: making, warning about, and freeing a model. */
 #include <math.h>
+#include "affine.h"
 #include "model_build.h"
 
 #include <stdarg.h>
@@ -85,7 +86,7 @@ static void target_free(model_target *target)
     free(target->missing);
 }
 
-static void mesh_free(model_mesh *mesh)
+void model_mesh_clear(model_mesh *mesh)
 {
     for (uint32_t i = 0; mesh->targets && i < mesh->target_count; ++i)
         target_free(&mesh->targets[i]);
@@ -101,6 +102,16 @@ static void mesh_free(model_mesh *mesh)
     free(mesh->weights);
     free(mesh->joints);
     free(mesh->joint_weights);
+}
+
+void model_drop_mesh(model *m, uint32_t mesh)
+{
+    model_mesh_clear(&m->meshes[mesh]);
+    m->mesh_count -= 1;
+    memmove(m->meshes + mesh, m->meshes + mesh + 1, (m->mesh_count - mesh) * sizeof *m->meshes);
+    for (uint32_t n = 0; n < m->node_count; n++) {
+        m->nodes[n].mesh -= m->nodes[n].mesh != MODEL_NONE && m->nodes[n].mesh > mesh;
+    }
 }
 
 static void clip_free(model_clip *clip)
@@ -121,6 +132,7 @@ static void skin_free(model_skin *skin)
     free(skin->name);
     free(skin->joints);
     free(skin->inverse_bind);
+    free(skin->skeleton_joints);
 }
 
 void model_free(model *m)
@@ -128,7 +140,7 @@ void model_free(model *m)
     if (!m)
         return;
     for (uint32_t i = 0; m->meshes && i < m->mesh_count; ++i)
-        mesh_free(&m->meshes[i]);
+        model_mesh_clear(&m->meshes[i]);
     for (uint32_t i = 0; m->nodes && i < m->node_count; ++i) {
         free(m->nodes[i].name);
         free(m->nodes[i].weights);
@@ -155,13 +167,44 @@ void model_free(model *m)
     free(m);
 }
 
+/* The longest column of a matrix, squared. */
+static double scale_square(const double *w)
+{
+    double largest = 0.0;
+    for (int c = 0; c < 3; c++) {
+        double square = w[4 * c] * w[4 * c] + w[4 * c + 1] * w[4 * c + 1] + w[4 * c + 2] * w[4 * c + 2];
+        largest = square > largest ? square : largest;
+    }
+    return largest;
+}
+
+/* Of the joints that move a vertex. */
+static double skin_scale_square(const model *m, const model_mesh *mesh, const model_skin *skin)
+{
+    double largest = 0.0, *squares = model_zeros(skin->joint_count, sizeof *squares);
+    for (uint32_t j = 0; squares && j < skin->joint_count; j++) {
+        double bind[16], product[16];
+        affine_of_floats(skin->inverse_bind + 16 * (size_t)j, bind);
+        affine_multiply(m->nodes[skin->joints[j]].world, bind, product);
+        squares[j] = scale_square(product);
+    }
+    for (size_t i = 0; squares && i < (size_t)mesh->vertex_count * MODEL_INFLUENCES_MAX; i++) {
+        if (mesh->joint_weights[i] > 0.0f && squares[mesh->joints[i]] > largest) {
+            largest = squares[mesh->joints[i]];
+        }
+    }
+    free(squares);
+    return largest;
+}
+
 float model_mesh_scale(const model *m, uint32_t mesh)
 {
     double largest = 0.0;
     for (uint32_t i = 0; i < m->node_count; i++) {
-        const double *w = m->nodes[i].world;
-        for (int c = 0; m->nodes[i].mesh == mesh && c < 3; c++) {
-            double square = w[4 * c] * w[4 * c] + w[4 * c + 1] * w[4 * c + 1] + w[4 * c + 2] * w[4 * c + 2];
+        const model_node *n = &m->nodes[i];
+        if (n->mesh == mesh) {
+            int skinned = n->skin != MODEL_NONE && n->skin < m->skin_count && m->meshes[mesh].joints;
+            double square = skinned ? skin_scale_square(m, &m->meshes[mesh], &m->skins[n->skin]) : scale_square(n->world);
             largest = square > largest ? square : largest;
         }
     }

@@ -76,6 +76,10 @@ typedef struct model_mesh {
     uint32_t joint_limit;   /* above every place in `joints` that is used */
     uint16_t *joints;       /* [vertex_count][MODEL_INFLUENCES_MAX] places in the skin's joints; NULL where not skinned */
     float *joint_weights;   /* [vertex_count][MODEL_INFLUENCES_MAX] sum 1, the largest first, zeros last; likewise */
+    uint8_t bound;          /* skins_bind found the skin that moves it */
+    uint8_t dual_quaternion; /* skinned by dual quaternions, else by matrices */
+    uint32_t skin;          /* where it is bound */
+    uint32_t palette_limit; /* joints that one draw may use; 0: as many as the format holds */
 } model_mesh;
 
 typedef struct model_node {
@@ -83,10 +87,8 @@ typedef struct model_node {
     uint32_t parent;      /* index or MODEL_NONE; parents come first */
     uint32_t mesh;        /* index or MODEL_NONE */
     float translation[3], rotation[4], scale[3]; /* local; a matrix is decomposed */
-    double world[16];     /* column-major, from the local matrices in double precision; of a skinned mesh's
-                           * node: where the first joint puts it in the rest pose */
+    double world[16];     /* column-major, from the local matrices in double precision; it does not place a skinned mesh */
     float *weights;       /* [targets of the mesh] or NULL: the mesh's defaults hold */
-    uint8_t skinned;
     uint32_t skin;        /* index or MODEL_NONE: also where its skin was left out with a warning */
 } model_node;
 
@@ -96,6 +98,8 @@ typedef struct model_skin {
     uint32_t joint_count;
     uint32_t *joints;     /* [joint_count] nodes, in the order that the vertices count in */
     float *inverse_bind;  /* [joint_count][16] affine and invertible; identities where the file has none */
+    uint32_t set;         /* skins_bind: its skeleton, an index into motion.sets */
+    uint32_t *skeleton_joints; /* skins_bind: [joint_count] joints of that skeleton; else NULL */
 } model_skin;
 
 typedef enum model_path { MODEL_PATH_WEIGHTS, MODEL_PATH_TRANSLATION, MODEL_PATH_ROTATION, MODEL_PATH_SCALE } model_path;
@@ -151,7 +155,8 @@ typedef struct model_error {
  * Calls model_complete. */
 int model_read_gltf(const char *path, model **out, model_error *error);
 
-/* World units per unit of a mesh: the largest scale of the nodes that draw it; 1 where none does. */
+/* World units per unit of a mesh: the largest scale of the nodes that draw it, or of the joints that move it, in the
+ * rest pose; 1 where none does. */
 float model_mesh_scale(const model *m, uint32_t mesh);
 
 /* Fill in what the file left out (NULL arrays and MODEL_MISSING_* bits): normals

@@ -3,6 +3,7 @@
  *   model_new      an empty model
  *   model_zeros    a zeroed array, or NULL (also for a size that overflows)
  *   model_string   a copy of a string
+ *   model_mesh_clear  what a mesh holds, not the mesh itself
  *   model_warn     add a sentence to the model's warnings
  *   model_fail     fill an error
  *   weld_vertices  which vertices are one point of the surface
@@ -23,6 +24,9 @@ extern "C" {
 model *model_new(void);
 void *model_zeros(size_t count, size_t element_size);
 char *model_string(const char *text);
+void model_mesh_clear(model_mesh *mesh);
+/* Remove a mesh that no node draws. */
+void model_drop_mesh(model *m, uint32_t mesh);
 
 /* Add a warning (printf form). After MODEL_WARNINGS_MAX the rest is dropped with
  * a note, so that a hostile file cannot fill the memory. Returns 1 when out of memory. */

@@ -131,7 +131,7 @@ int motions_encode(raw_set **sets, uint32_t set_count, const motion_settings *s,
         snprintf(error->what, sizeof error->what, "out of memory");
         return 1;
     }
-    for (uint32_t i = 0; i < set_count && !failed; i++) {
+    for (uint32_t i = 0; i < set_count && !s->skeletons_only && !failed; i++) {
         for (uint32_t c = 0; c < sets[i]->clip_count && !failed; c++) {
             motion_clip *to = &out->clips[out->clip_count++];
             to->set = i;

@@ -24,6 +24,7 @@ typedef struct motion_settings {
     double rate_hz;  /* 0: as the source has it */
     double unit_cm;  /* of .bvh; 0: 1 */
     int check_loops; /* mark every clip as a loop, and say how far it is from closing */
+    int skeletons_only; /* no clips: what a mesh pack needs */
     clip_options clip;
     FILE *report, *progress; /* or NULL */
 } motion_settings;

@@ -28,14 +28,19 @@ static int check_mesh(const model_mesh *m, model_error *error)
 
 int pack_check_model(const model *m, model_error *error)
 {
-    uint64_t chunks = (uint64_t)m->mesh_count + m->texture_count + 3;
+    uint64_t chunks = (uint64_t)m->mesh_count + m->texture_count + m->skin_count + 3;
     if (over(m->material_count, NOH_MATERIALS_MAX, "materials", NULL, NULL, error) ||
         over(m->node_count, NOH_NODES_MAX, "nodes", NULL, NULL, error) ||
-        over(chunks, NOH_PACK_CHUNKS_MAX, "meshes and textures", NULL, NULL, error)) {
+        over(chunks, NOH_PACK_CHUNKS_MAX, "meshes, skins and textures", NULL, NULL, error)) {
         return 1;
     }
     for (uint32_t i = 0; i < m->mesh_count; i++) {
         if (check_mesh(&m->meshes[i], error)) {
+            return 1;
+        }
+    }
+    for (uint32_t i = 0; i < m->skin_count; i++) {
+        if (over(m->skins[i].joint_count, NOH_SKIN_JOINTS_MAX, "joints", "skin", m->skins[i].name, error)) {
             return 1;
         }
     }

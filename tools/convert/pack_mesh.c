@@ -1,14 +1,15 @@
-/* pack_mesh.c: vertices in the encoder's order, compact attributes, indices, targets. */
+/* pack_mesh.c: vertices in the encoder's order, compact attributes, indices, targets, influences. */
 #include "pack_mesh.h"
 
 #include <math.h>
-#include <meshoptimizer.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/hash.h"
 #include "f16_bound.h"
+#include "influence_pack.h"
+#include "mesh_layout.h"
 #include "pack/format.h"
+#include "pack_skin.h"
 
 /* A unit vector as an octahedral pair in -1..1. */
 static void fold(const float v[3], float pair[2])
@@ -99,85 +100,55 @@ static uint32_t pack_uv(const float uv[2], const noh_mesh_header *h)
     return word;
 }
 
-static void append_vertices(const model_mesh *m, const morph_encoding *e, noh_mesh_header *h, size_t base, byte_buffer *out)
+static uint32_t attribute_record(const model_mesh *m, const mesh_layout *l, uint32_t vertex, const noh_mesh_header *h,
+                                 uint32_t record[5])
+{
+    size_t old = l->source[vertex];
+    uint32_t words = 0;
+    record[words++] = pack_normal(m->normal + 3 * old);
+    if (m->tangent) {
+        record[words++] = pack_tangent(m->tangent + 4 * old);
+    }
+    if (m->uv) {
+        record[words++] = pack_uv(m->uv + 2 * old, h);
+    }
+    if (m->color) {
+        record[words++] = pack_color(m->color + 4 * old);
+    }
+    if (h->flags & NOH_MESH_TEXELS) {
+        record[words++] = l->texel[vertex] | l->palette[vertex] << NOH_TEXEL_VERTEX_BITS;
+    }
+    return words;
+}
+
+static void append_vertices(const model_mesh *m, const mesh_layout *l, noh_mesh_header *h, size_t base, byte_buffer *out)
 {
     buffer_align(out, 16);
     h->positions_offset = (uint32_t)(out->count - base);
-    for (uint32_t v = 0; v < m->vertex_count; v++) {
-        buffer_append(out, m->position + 3 * (size_t)e->order[v], 12);
+    for (uint32_t v = 0; v < l->vertex_count; v++) {
+        buffer_append(out, m->position + 3 * (size_t)l->source[v], 12);
     }
     buffer_align(out, 16);
     h->attributes_offset = (uint32_t)(out->count - base);
-    for (uint32_t v = 0; v < m->vertex_count; v++) {
-        size_t old = e->order[v];
-        uint32_t record[4], words = 0;
-        record[words++] = pack_normal(m->normal + 3 * old);
-        if (m->tangent) {
-            record[words++] = pack_tangent(m->tangent + 4 * old);
-        }
-        if (m->uv) {
-            record[words++] = pack_uv(m->uv + 2 * old, h);
-        }
-        if (m->color) {
-            record[words++] = pack_color(m->color + 4 * old);
-        }
-        h->attribute_stride = words * 4;
-        buffer_append(out, record, words * 4);
+    for (uint32_t v = 0; v < l->vertex_count; v++) {
+        uint32_t record[5];
+        h->attribute_stride = 4 * attribute_record(m, l, v, h, record);
+        buffer_append(out, record, h->attribute_stride);
     }
 }
 
-/* Indices in the new order, each submesh's triangles reordered for the vertex
- * cache. Those of blended materials keep the artist's order: it is the order in
- * which they are drawn over each other. */
-static uint32_t *make_indices(const model_mesh *m, const morph_encoding *e, const uint8_t *submesh_blends)
-{
-    uint32_t *inverse = malloc(sizeof *inverse * m->vertex_count);
-    uint32_t *indices = malloc(sizeof *indices * (m->index_count + 1u));
-    if (inverse && indices) {
-        for (uint32_t v = 0; v < m->vertex_count; v++) {
-            inverse[e->order[v]] = v;
-        }
-        for (uint32_t i = 0; i < m->index_count; i++) {
-            indices[i] = inverse[m->indices[i]];
-        }
-        for (uint32_t s = 0; s < m->submesh_count; s++) {
-            uint32_t *first = indices + m->submeshes[s].first_index;
-            if (!submesh_blends[s] && m->submeshes[s].index_count) {
-                meshopt_optimizeVertexCache(first, first, m->submeshes[s].index_count, m->vertex_count);
-            }
-        }
-    }
-    free(inverse);
-    return indices;
-}
-
-static void append_indices(const uint32_t *indices, noh_mesh_header *h, size_t base, byte_buffer *out)
+static void append_indices(const mesh_layout *l, noh_mesh_header *h, size_t base, byte_buffer *out)
 {
     buffer_align(out, 16);
     h->indices_offset = (uint32_t)(out->count - base);
     h->index_bytes = h->vertex_count <= 65536u ? 2u : 4u;
     for (uint32_t i = 0; i < h->index_count; i++) {
-        uint16_t narrow = (uint16_t)indices[i];
-        buffer_append(out, h->index_bytes == 2 ? (const void *)&narrow : (const void *)&indices[i], h->index_bytes);
+        uint16_t narrow = (uint16_t)l->indices[i];
+        buffer_append(out, h->index_bytes == 2 ? (const void *)&narrow : (const void *)&l->indices[i], h->index_bytes);
     }
-}
-
-static void append_submeshes(const model_mesh *m, const uint32_t *indices, noh_mesh_header *h, size_t base, byte_buffer *out)
-{
     buffer_align(out, 16);
     h->submeshes_offset = (uint32_t)(out->count - base);
-    for (uint32_t s = 0; s < m->submesh_count; s++) {
-        noh_submesh sub = { m->submeshes[s].first_index, m->submeshes[s].index_count, m->submeshes[s].material, 0, 0 };
-        uint32_t low = h->vertex_count, high = 0;
-        for (uint32_t i = 0; i < sub.index_count; i++) {
-            uint32_t v = indices[sub.first_index + i];
-            low = v < low ? v : low;
-            high = v > high ? v : high;
-        }
-        sub.first_vertex = sub.index_count ? low : 0;
-        sub.vertex_count = sub.index_count ? high - low + 1 : 0;
-        buffer_append(out, &sub, sizeof sub);
-    }
+    buffer_append(out, l->submeshes, sizeof *l->submeshes * l->submesh_count);
 }
 
 static void append_targets(const model_mesh *m, const morph_encoding *e, string_table *strings, noh_mesh_header *h, size_t base,
@@ -219,13 +190,31 @@ static void append_targets(const model_mesh *m, const morph_encoding *e, string_
     buffer_append(out, e->texels, 12u * (size_t)e->texel_count);
 }
 
-static void set_counts(const model_mesh *m, const morph_encoding *e, noh_mesh_header *h)
+/* Deltas of the source; what the pack decodes to is off by the certified error at most. */
+static void append_target_boxes(const model_mesh *m, const morph_encoding *e, noh_mesh_header *h, size_t base, byte_buffer *out)
+{
+    buffer_align(out, 16);
+    h->target_boxes_offset = (uint32_t)(out->count - base);
+    for (uint32_t t = 0; t < e->target_count; t++) {
+        float box[6] = { 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f };
+        for (uint32_t v = 0; v < m->vertex_count; v++) {
+            pack_grow_box(box, m->targets[t].position + 3 * (size_t)v);
+        }
+        for (int c = 0; c < 3; c++) {
+            box[c] -= e->targets[t].position_error;
+            box[3 + c] += e->targets[t].position_error;
+        }
+        buffer_append(out, box, sizeof box);
+    }
+}
+
+static void set_counts(const model_mesh *m, const morph_encoding *e, const mesh_layout *l, noh_mesh_header *h)
 {
     memset(h, 0, sizeof *h);
     h->flags = mesh_flags(m);
-    h->vertex_count = m->vertex_count;
-    h->index_count = m->index_count;
-    h->submesh_count = m->submesh_count;
+    h->vertex_count = l->vertex_count;
+    h->index_count = l->index_count;
+    h->submesh_count = l->submesh_count;
     h->target_count = e->target_count;
     h->rect_count = e->rect_count;
     h->texel_count = e->texel_count;
@@ -240,25 +229,39 @@ static void set_counts(const model_mesh *m, const morph_encoding *e, noh_mesh_he
     f16_bound(e, &h->f16_position_bound, &h->f16_direction_bound);
 }
 
-void pack_mesh(const model_mesh *m, const morph_encoding *e, const uint8_t *submesh_blends, float world_scale, string_table *strings,
-               byte_buffer *out)
+static void set_skin(const model_mesh *m, const mesh_layout *l, uint32_t skin, noh_mesh_header *h)
+{
+    h->skin = skin;
+    if (skin != NOH_NONE) {
+        h->flags |= (m->dual_quaternion ? NOH_MESH_DUAL_QUATERNION : 0u) | (l->palette_count > 1 ? NOH_MESH_TEXELS : 0u);
+        h->influence_count = influence_width(m);
+        h->palette_count = l->palette_count;
+        h->palette_joint_count = l->palette_joint_count;
+    }
+}
+
+int pack_mesh(const model_mesh *m, const morph_encoding *e, const uint8_t *submesh_blends, float world_scale, uint32_t skin,
+              uint32_t skin_joint_count, string_table *strings, byte_buffer *out, model_error *error)
 {
     size_t base = out->count;
-    uint32_t *indices = make_indices(m, e, submesh_blends);
     noh_mesh_header h;
-    if (!indices) {
-        out->failed = 1;
-        return;
+    mesh_layout l;
+    int failed = mesh_layout_make(m, e, submesh_blends, &l, error);
+    if (!failed) {
+        set_counts(m, e, &l, &h);
+        set_skin(m, &l, skin, &h);
+        h.world_scale = world_scale;
+        buffer_append(out, &h, sizeof h);
+        append_vertices(m, &l, &h, base, out);
+        append_indices(&l, &h, base, out);
+        append_targets(m, e, strings, &h, base, out);
+        append_target_boxes(m, e, &h, base, out);
+        pack_influences(m, &l, &h, base, out);
+        pack_joint_boxes(m, skin_joint_count, &h, base, out);
     }
-    set_counts(m, e, &h);
-    h.world_scale = world_scale;
-    buffer_append(out, &h, sizeof h);
-    append_vertices(m, e, &h, base, out);
-    append_indices(indices, &h, base, out);
-    append_submeshes(m, indices, &h, base, out);
-    append_targets(m, e, strings, &h, base, out);
-    if (!out->failed) {
+    if (!failed && !out->failed) {
         memcpy(out->bytes + base, &h, sizeof h);
     }
-    free(indices);
+    mesh_layout_free(&l);
+    return failed;
 }

@@ -8,6 +8,7 @@
 #include "pack/format.h"
 #include "motions.h"
 #include "pack_mesh.h"
+#include "pack_skin.h"
 
 typedef struct writer {
     const model *m;
@@ -16,6 +17,9 @@ typedef struct writer {
     string_table strings;
     noh_pack_chunk *chunks;
     uint32_t chunk_count;
+    uint32_t *skin_chunks; /* [skin_count] the n-th skin chunk, or NOH_NONE where no mesh is bound to it */
+    model_error *error;
+    int refused;           /* a mesh cannot be packed: the error says why */
 } writer;
 
 static void name_of(string_table *strings, const char *text, uint32_t *name, uint32_t *hash)
@@ -128,8 +132,18 @@ static void write_mesh(writer *w, uint32_t index, const morph_encoding *e)
         blends[s] = material != MODEL_NONE && w->m->materials[material].alpha == MODEL_ALPHA_BLEND;
     }
     begin_chunk(w, NOH_CHUNK_MESH, mesh->name);
-    pack_mesh(mesh, e, blends, model_mesh_scale(w->m, index), &w->strings, &w->out);
+    w->refused = w->refused || pack_mesh(mesh, e, blends, model_mesh_scale(w->m, index), mesh->bound ? w->skin_chunks[mesh->skin] : NOH_NONE,
+                                         mesh->bound ? w->m->skins[mesh->skin].joint_count : 0, &w->strings, &w->out, w->error);
     end_chunk(w);
+}
+
+/* A skinned mesh is placed by its joints, whose model space is the world. */
+static void set_world(const writer *w, const model_node *from, noh_node *to)
+{
+    int skinned = from->mesh != MODEL_NONE && w->m->meshes[from->mesh].bound;
+    for (int i = 0; i < 12; i++) {
+        to->world[i] = skinned ? (i % 5 == 0 ? 1.0f : 0.0f) : (float)from->world[4 * (i % 4) + i / 4];
+    }
 }
 
 static void write_node(writer *w, const model_node *from, uint32_t *weight_count)
@@ -142,11 +156,7 @@ static void write_node(writer *w, const model_node *from, uint32_t *weight_count
     memcpy(to.translation, from->translation, sizeof to.translation);
     memcpy(to.rotation, from->rotation, sizeof to.rotation);
     memcpy(to.scale, from->scale, sizeof to.scale);
-    for (int row = 0; row < 3; row++) {
-        for (int column = 0; column < 4; column++) {
-            to.world[4 * row + column] = (float)from->world[4 * column + row];
-        }
-    }
+    set_world(w, from, &to);
     to.first_weight = NOH_NONE;
     if (from->mesh != MODEL_NONE && from->weights) {
         to.first_weight = *weight_count;
@@ -179,6 +189,46 @@ static void write_nodes(writer *w)
     end_chunk(w);
 }
 
+/* The n-th skeleton chunk of a set; sets without joints have none. */
+static uint32_t skeleton_chunk(const motions *made, uint32_t set)
+{
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < set; i++) {
+        n += made->sets[i]->skeleton.joint_count > 0;
+    }
+    return n;
+}
+
+static void write_skeletons(writer *w)
+{
+    for (uint32_t i = 0; i < w->motions->set_count; i++) {
+        if (!w->motions->sets[i]->skeleton.joint_count) {
+            continue; /* clips of weights alone */
+        }
+        begin_chunk(w, NOH_CHUNK_SKELETON, w->motions->sets[i]->skeleton.name);
+        pack_skeleton(&w->motions->sets[i]->skeleton, &w->strings, &w->out);
+        end_chunk(w);
+    }
+}
+
+/* Those that move a mesh. */
+static void write_skins(writer *w)
+{
+    uint32_t count = 0;
+    for (uint32_t s = 0; s < w->m->skin_count; s++) {
+        int used = 0;
+        for (uint32_t i = 0; i < w->m->mesh_count; i++) {
+            used |= w->m->meshes[i].bound && w->m->meshes[i].skin == s;
+        }
+        w->skin_chunks[s] = used ? count++ : NOH_NONE;
+        if (used) {
+            begin_chunk(w, NOH_CHUNK_SKIN, w->m->skins[s].name);
+            pack_skin(&w->m->skins[s], skeleton_chunk(w->motions, w->m->skins[s].set), &w->out);
+            end_chunk(w);
+        }
+    }
+}
+
 static void write_content(writer *w, morph_encoding *const *encodings)
 {
     for (uint32_t i = 0; i < w->m->texture_count; i++) {
@@ -186,6 +236,10 @@ static void write_content(writer *w, morph_encoding *const *encodings)
     }
     if (w->m->material_count) {
         write_materials(w);
+    }
+    if (w->motions) {
+        write_skeletons(w);
+        write_skins(w);
     }
     for (uint32_t i = 0; i < w->m->mesh_count; i++) {
         write_mesh(w, i, encodings[i]);
@@ -197,14 +251,6 @@ static void write_content(writer *w, morph_encoding *const *encodings)
 
 static void write_motions(writer *w)
 {
-    for (uint32_t i = 0; i < w->motions->set_count; i++) {
-        if (!w->motions->sets[i]->skeleton.joint_count) {
-            continue; /* clips of weights alone */
-        }
-        begin_chunk(w, NOH_CHUNK_SKELETON, w->motions->sets[i]->skeleton.name);
-        pack_skeleton(&w->motions->sets[i]->skeleton, &w->strings, &w->out);
-        end_chunk(w);
-    }
     for (uint32_t i = 0; i < w->motions->clip_count; i++) {
         begin_chunk(w, NOH_CHUNK_MOTION, w->motions->clips[i].raw->name);
         pack_motion(w->motions, &w->motions->clips[i], &w->strings, &w->out);
@@ -248,7 +294,7 @@ static int assemble(writer *w, byte_buffer *out)
 
 static size_t chunk_capacity(const model *m, const motions *made)
 {
-    return (size_t)m->mesh_count + m->texture_count + 3 +
+    return (size_t)m->mesh_count + m->texture_count + m->skin_count + 3 +
            (made ? (size_t)made->set_count + made->clip_count : 0);
 }
 
@@ -270,9 +316,11 @@ int pack_write(const model *m, morph_encoding *const *encodings, const motions *
     memset(&w, 0, sizeof w);
     w.m = m;
     w.motions = made;
+    w.error = error;
     w.chunks = calloc(chunk_capacity(m, made), sizeof *w.chunks);
+    w.skin_chunks = calloc(m->skin_count + 1u, sizeof *w.skin_chunks);
     string_offset(&w.strings, "");
-    if (w.chunks) {
+    if (w.chunks && w.skin_chunks) {
         begin_chunk(&w, NOH_CHUNK_STRINGS, "");
         w.chunk_count = 1; /* filled by assemble */
         write_content(&w, encodings);
@@ -280,8 +328,8 @@ int pack_write(const model *m, morph_encoding *const *encodings, const motions *
             write_motions(&w);
         }
     }
-    failed = !w.chunks || w.out.failed || w.strings.bytes.failed || assemble(&w, out);
-    if (failed) {
+    failed = w.refused || !w.chunks || !w.skin_chunks || w.out.failed || w.strings.bytes.failed || assemble(&w, out);
+    if (failed && !w.refused) {
         snprintf(error->what, sizeof error->what, "out of memory, or the pack would be over %u bytes", NOH_PACK_BYTES_MAX);
         error->where[0] = 0;
         buffer_free(out);
@@ -289,5 +337,6 @@ int pack_write(const model *m, morph_encoding *const *encodings, const motions *
     buffer_free(&w.out);
     buffer_free(&w.strings.bytes);
     free(w.chunks);
+    free(w.skin_chunks);
     return failed;
 }

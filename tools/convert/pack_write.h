@@ -11,7 +11,8 @@ int pack_check_encoding(const model_mesh *m, const morph_encoding *e, model_erro
 
 struct motions;
 
-/* Build a pack. encodings[mesh_count], none NULL; made NULL: no motion. 0 on success, else 1 and a filled error. */
+/* Build a pack. encodings[mesh_count], none NULL; made NULL: no motion, and no mesh is bound to a skin. 0 on success,
+ * else 1 and a filled error. */
 int pack_write(const model *m, morph_encoding *const *encodings, const struct motions *made, byte_buffer *out,
                model_error *error);
 

@@ -54,12 +54,17 @@ int raw_floats_alloc(raw_floats *floats, uint32_t frame_count, uint32_t width)
     return !floats->values;
 }
 
+void raw_floats_clear(raw_floats *floats)
+{
+    free(floats->name);
+    free(floats->values);
+    free(floats->reach);
+}
+
 void raw_clip_clear(raw_clip *clip)
 {
     for (uint32_t i = 0; clip->floats && i < clip->float_count; ++i) {
-        free(clip->floats[i].name);
-        free(clip->floats[i].values);
-        free(clip->floats[i].reach);
+        raw_floats_clear(&clip->floats[i]);
     }
     for (uint32_t i = 0; clip->events && i < clip->event_count; ++i)
         free(clip->events[i].name);

@@ -30,6 +30,7 @@ int raw_skeleton_alloc(raw_skeleton *skeleton, uint32_t joint_count);
 /* Frames of zeros, to be filled; the clip's other fields are left alone. */
 int raw_clip_alloc(raw_clip *clip, uint32_t frame_count, uint32_t joint_count);
 int raw_floats_alloc(raw_floats *floats, uint32_t frame_count, uint32_t width);
+void raw_floats_clear(raw_floats *floats);
 void raw_clip_clear(raw_clip *clip);
 
 /* Add a copy, after those of the same time. The caller keeps to RAW_EVENTS_MAX. */

@@ -1,7 +1,7 @@
 /* report.c: what `noh build` did, beside what others would store (anchors: the
  * peers' layouts, bytes per vertex and target, or per non-zero pair). */
 #include "convert.h"
-#include "pack/format.h"
+#include "mesh/mesh.h"
 
 static double ratio(double a, double b)
 {
@@ -55,4 +55,30 @@ void convert_report_mesh(FILE *out, const model_mesh *m, const morph_encoding *e
             ratio(bytes, e->pair_count), 1e6 * (double)(scale * worst->position_error), m->targets[index].name, worst->position_bits,
             (double)error_um);
     report_peers(out, m, e, bytes);
+}
+
+void convert_report_skins(FILE *out, const noh_pack *pack)
+{
+    noh_mesh mesh;
+    for (uint32_t i = 0; noh_pack_mesh(pack, i, &mesh) == NOH_OK; i++) {
+        const noh_mesh_header *h = mesh.header;
+        uint32_t doubled = 0, followed = 0;
+        noh_skin skin;
+        if (noh_pack_skin_at(pack, h->skin, &skin)) {
+            continue;
+        }
+        for (uint32_t v = 0; v < h->vertex_count; v++) {
+            doubled += noh_mesh_texel(&mesh, v) != v;
+        }
+        for (uint32_t j = 0; j < skin.header->joint_count; j++) {
+            followed += mesh.joint_boxes[6 * j] <= mesh.joint_boxes[6 * j + 3];
+        }
+        fprintf(out, "mesh '%s' follows %u joints of skin '%s', %u a vertex, by %s: %u palette%s", mesh.name, followed,
+                skin.name, h->influence_count, h->flags & NOH_MESH_DUAL_QUATERNION ? "dual quaternions" : "matrices", h->palette_count,
+                h->palette_count == 1 ? "" : "s");
+        if (h->palette_count > 1) {
+            fprintf(out, ": split into %u parts, %u vertices doubled", h->submesh_count, doubled);
+        }
+        fputc('\n', out);
+    }
 }

@@ -9,6 +9,7 @@
 #include "raw_set.h"
 #include "rcl.h"
 #include "resample.h"
+#include "two_stream.h"
 
 static int out_of_memory(model_error *error)
 {
@@ -45,9 +46,9 @@ static int resample_set(raw_set *set, double rate_hz, model_error *error)
     return 0;
 }
 
-static int read_motion_file(const char *path, double rate_hz, double unit_cm, source *s, model_error *error)
+static int read_motion_file(const char *path, const source_options *options, source *s, model_error *error)
 {
-    bvh_options bvh = { unit_cm, 0 };
+    bvh_options bvh = { options->unit_cm, 0 };
     int failed = has_ending(path, ".rcl") ? rcl_read(path, &s->single, error) : bvh_read(path, &bvh, &s->single, error);
     if (failed) {
         return 1;
@@ -59,13 +60,21 @@ static int read_motion_file(const char *path, double rate_hz, double unit_cm, so
     }
     s->sets[0] = s->single;
     s->set_count = 1;
-    return rate_hz > 0.0 ? resample_set(s->single, rate_hz, error) : 0;
+    return options->rate_hz > 0.0 ? resample_set(s->single, options->rate_hz, error) : 0;
 }
 
-static int read_gltf_file(const char *path, double rate_hz, source *s, model_error *error)
+static int read_gltf_file(const char *path, const source_options *options, source *s, model_error *error)
 {
-    motion_options rate = { rate_hz };
-    if (model_read_gltf(path, &s->m, error) || motion_from_model(s->m, &rate, &s->made, error)) {
+    motion_options rate = { options->rate_hz };
+    if (model_read_gltf(path, &s->m, error)) {
+        return 1;
+    }
+    for (uint32_t i = 0; i < options->two_stream_count; i++) {
+        if (two_stream_join(s->m, options->two_streams[i], error)) {
+            return 1;
+        }
+    }
+    if (motion_from_model(s->m, &rate, &s->made, error) || skins_bind(s->m, s->made, &options->skin, error)) {
         return 1;
     }
     s->sets = malloc(((size_t)s->made->set_count + 1u) * sizeof *s->sets); /* with room for `single` */
@@ -77,13 +86,13 @@ static int read_gltf_file(const char *path, double rate_hz, source *s, model_err
     return 0;
 }
 
-int source_read(const char *path, double rate_hz, double unit_cm, source *s, model_error *error)
+int source_read(const char *path, const source_options *options, source *s, model_error *error)
 {
     memset(s, 0, sizeof *s);
     if (has_ending(path, ".rcl") || has_ending(path, ".bvh")) {
-        return read_motion_file(path, rate_hz, unit_cm, s, error);
+        return read_motion_file(path, options, s, error);
     }
-    return read_gltf_file(path, rate_hz, s, error);
+    return read_gltf_file(path, options, s, error);
 }
 
 void source_free(source *s)
@@ -93,16 +102,6 @@ void source_free(source *s)
     model_free(s->m);
     free(s->sets);
     memset(s, 0, sizeof *s);
-}
-
-void source_drop_clips(source *s)
-{
-    for (uint32_t i = 0; i < s->set_count; i++) {
-        for (uint32_t c = 0; c < s->sets[i]->clip_count; c++) {
-            raw_clip_clear(&s->sets[i]->clips[c]);
-        }
-        s->sets[i]->clip_count = 0;
-    }
 }
 
 /* ---- which skeleton ---- */

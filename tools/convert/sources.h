@@ -7,6 +7,7 @@
 #define NOH_CONVERT_SOURCES_H
 
 #include "gltf_motion.h"
+#include "skins.h"
 
 typedef struct source {
     model *m;        /* of a glTF file; an empty one otherwise */
@@ -16,15 +17,21 @@ typedef struct source {
     uint32_t set_count;
 } source;
 
-/* rate_hz 0: as the file has it. unit_cm: of .bvh. 0, or 1 and *error; free in both cases. */
-int source_read(const char *path, double rate_hz, double unit_cm, source *s, model_error *error);
+typedef struct source_options {
+    double rate_hz;                 /* 0: as the file has it */
+    double unit_cm;                 /* of .bvh */
+    skin_options skin;
+    const char *const *two_streams; /* [two_stream_count] "SOURCE=TARGET", see two_stream.h */
+    uint32_t two_stream_count;
+} source_options;
+
+/* 0, or 1 and *error; free in both cases. */
+int source_read(const char *path, const source_options *options, source *s, model_error *error);
 void source_free(source *s);
 
 /* Move the clips of `other` to `base`. Translations are brought to the base's unit. A clip whose name the
  * base has is called FILE/NAME, by the file's name without its ending. What is left out is a warning of base.
  * errors  1: no skeleton of base has these joints (what differs first is said), or `other` has no clips */
 int source_join(source *base, const char *base_path, source *other, const char *other_path, model_error *error);
-
-void source_drop_clips(source *s);
 
 #endif

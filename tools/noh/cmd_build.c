@@ -7,11 +7,13 @@
 
 #include "convert/convert.h"
 #include "noh_tool.h"
+#include "pack/format.h"
 
 typedef struct build_args {
     const char *inputs[64], *output, *rects, *only, *events;
-    int input_count, quiet, loop, mask;
-    double error_um, rate, error_cm, shell_cm, unit_cm;
+    int input_count, quiet, loop, mask, keep_parts;
+    double error_um, rate, error_cm, shell_cm, unit_cm, influences, palette;
+    option_list dual_quaternion, two_streams;
 } build_args;
 
 static int set_motion(const build_args *a, convert_options *o)
@@ -33,6 +35,24 @@ static int set_motion(const build_args *a, convert_options *o)
     return 0;
 }
 
+static int set_skin(const build_args *a, convert_options *o)
+{
+    if (a->influences < 1 || a->influences > MODEL_INFLUENCES_MAX || a->influences != (double)(uint32_t)a->influences) {
+        return tool_usage("--influences wants a whole number from 1 to %u", MODEL_INFLUENCES_MAX);
+    }
+    if (a->palette < 4 || a->palette > NOH_PALETTE_JOINTS_MAX || a->palette != (double)(uint32_t)a->palette) {
+        return tool_usage("--palette wants a whole number of joints from 4 to %u", NOH_PALETTE_JOINTS_MAX);
+    }
+    o->skin.influences = (uint32_t)a->influences;
+    o->skin.palette = (uint32_t)a->palette;
+    o->skin.keep_parts = a->keep_parts;
+    o->two_streams = a->two_streams.items;
+    o->two_stream_count = (uint32_t)a->two_streams.count;
+    o->skin.dual_quaternion = a->dual_quaternion.items;
+    o->skin.dual_quaternion_count = (uint32_t)a->dual_quaternion.count;
+    return 0;
+}
+
 static int read_args(int argc, char **argv, build_args *a, convert_options *o)
 {
     double rects;
@@ -42,7 +62,10 @@ static int read_args(int argc, char **argv, build_args *a, convert_options *o)
         { "--rate", OPTION_NUMBER, &a->rate }, { "--error-cm", OPTION_NUMBER, &a->error_cm },
         { "--shell-cm", OPTION_NUMBER, &a->shell_cm }, { "--unit-cm", OPTION_NUMBER, &a->unit_cm },
         { "--loop", OPTION_FLAG, &a->loop }, { "--for-masks", OPTION_FLAG, &a->mask },
-        { "--only", OPTION_TEXT, &a->only }, { "--events", OPTION_TEXT, &a->events }
+        { "--only", OPTION_TEXT, &a->only }, { "--events", OPTION_TEXT, &a->events },
+        { "--influences", OPTION_NUMBER, &a->influences }, { "--palette", OPTION_NUMBER, &a->palette },
+        { "--dual-quaternion", OPTION_LIST, &a->dual_quaternion }, { "--keep-parts", OPTION_FLAG, &a->keep_parts },
+        { "--two-stream", OPTION_LIST, &a->two_streams }
     };
     int status = tool_options(argc, argv, options, sizeof options / sizeof options[0], a->inputs, 64, &a->input_count);
     if (status) {
@@ -56,6 +79,9 @@ static int read_args(int argc, char **argv, build_args *a, convert_options *o)
     }
     o->morph.error_um = (float)a->error_um;
     status = set_motion(a, o);
+    if (!status) {
+        status = set_skin(a, o);
+    }
     if (status) {
         return status;
     }
@@ -82,6 +108,8 @@ int verb_build(int argc, char **argv)
     a.error_cm = 0.01;
     a.shell_cm = 3.0;
     a.unit_cm = 1.0;
+    a.influences = MODEL_INFLUENCES_MAX;
+    a.palette = NOH_PALETTE_JOINTS_MAX;
     status = read_args(argc, argv, &a, &o);
     if (status) {
         return status;

@@ -1,0 +1,165 @@
+#include "deform/dual_quaternion.h"
+
+#include <string.h>
+
+#include "base/math.h"
+#include "base/quat.h"
+#include "deform/skin_blend.h"
+
+#define POLAR_STEPS 24 /* axes of 1000 : 1 need 14: each step halves the ratio until it is small, then doubles the digits */
+
+/* ---- polar decomposition ---- */
+
+/* R of A = R H by Newton's iteration R <- (R + R^-T) / 2 (Higham 1986), from A brought to about unit size. m: 3 rows of 4,
+ * the fourth column is not looked at. Returns 0 where A has no inverse. */
+static int polar_rotation(const float a[12], float m[12])
+{
+    float size = noh_sqrt((noh_dot3(a, a) + noh_dot3(a + 4, a + 4) + noh_dot3(a + 8, a + 8)) / 3.0f), c[9], change = 1.0f;
+    if (!(size > 1e-18f)) {
+        return 0;
+    }
+    for (int i = 0; i < 12; i++) {
+        m[i] = a[i] / size;
+    }
+    for (int step = 0; step < POLAR_STEPS && change > 1e-12f; step++) {
+        float determinant;
+        noh_cofactors(m, c);
+        determinant = noh_dot3(m, c);
+        if (!(determinant > 1e-7f || determinant < -1e-7f)) {
+            return 0;
+        }
+        change = 0.0f;
+        for (int i = 0; i < 9; i++) {
+            float *e = &m[i / 3 * 4 + i % 3], next = 0.5f * (*e + c[i] / determinant), d = next - *e;
+            change += d * d;
+            *e = next;
+        }
+    }
+    return 1;
+}
+
+/* A rotation's quaternion; the largest of its four is found first, so that no division is by a small number. */
+static void rotation_quaternion(const float m[12], float q[4])
+{
+    const float squares[4] = { 1.0f + m[0] - m[5] - m[10], 1.0f - m[0] + m[5] - m[10], 1.0f - m[0] - m[5] + m[10],
+                               1.0f + m[0] + m[5] + m[10] };
+    const float xy = m[1] + m[4], xz = m[2] + m[8], yz = m[6] + m[9], xw = m[9] - m[6], yw = m[2] - m[8], zw = m[4] - m[1];
+    const float rows[4][4] = { { squares[0], xy, xz, xw }, { xy, squares[1], yz, yw }, { xz, yz, squares[2], zw }, { xw, yw, zw, squares[3] } };
+    int largest = 3;
+    for (int i = 0; i < 3; i++) {
+        largest = squares[i] > squares[largest] ? i : largest;
+    }
+    memcpy(q, rows[largest], 4 * sizeof *q);
+    noh_quat_normalize(q);
+}
+
+void noh_dual_quaternion_from_matrix(const float a[12], noh_dual_quaternion *out)
+{
+    static const float identity[12] = { 1.0f, 0.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f };
+    const float t[3] = { a[3], a[7], a[11] };
+    float r[12], sign, c[9];
+    if (!polar_rotation(a, r)) {
+        memcpy(r, identity, sizeof r);
+    }
+    sign = noh_cofactors(r, c); /* a mirror: -R is the rotation, and the stretch takes the sign */
+    for (int i = 0; i < 12; i++) {
+        r[i] *= sign;
+    }
+    rotation_quaternion(r, out->real);
+    for (int i = 0; i < 9; i++) { /* R^T A */
+        const int row = i / 3, column = i % 3;
+        out->stretch[i] = r[row] * a[column] + r[4 + row] * a[4 + column] + r[8 + row] * a[8 + column];
+    }
+    out->dual[0] = 0.5f * (out->real[3] * t[0] + t[1] * out->real[2] - t[2] * out->real[1]);
+    out->dual[1] = 0.5f * (out->real[3] * t[1] + t[2] * out->real[0] - t[0] * out->real[2]);
+    out->dual[2] = 0.5f * (out->real[3] * t[2] + t[0] * out->real[1] - t[1] * out->real[0]);
+    out->dual[3] = -0.5f * noh_dot3(t, out->real);
+}
+
+void noh_skin_dual_quaternions(const float *matrices, uint32_t count, noh_dual_quaternion *out)
+{
+    for (size_t j = 0; j < count; j++) {
+        noh_dual_quaternion_from_matrix(matrices + 12u * j, &out[j]);
+    }
+}
+
+/* ---- vertices ---- */
+
+static void add_scaled(float *sum, const float *values, float factor, int count)
+{
+    for (int i = 0; i < count; i++) {
+        sum[i] += factor * values[i];
+    }
+}
+
+/* The stretch as 3 rows of 4, and the rigid motion, of one vertex. */
+static void blend(const noh_dual_quaternion *joints, const uint32_t *places, const float *weights, uint32_t count,
+                  noh_dual_quaternion *sum)
+{
+    float inverse;
+    memset(sum, 0, sizeof *sum);
+    for (uint32_t i = 0; i < count; i++) {
+        const noh_dual_quaternion *joint = &joints[places[i]];
+        float shorter = noh_quat_dot(joint->real, joints[places[0]].real) < 0.0f ? -weights[i] : weights[i];
+        add_scaled(sum->real, joint->real, shorter, 4);
+        add_scaled(sum->dual, joint->dual, shorter, 4);
+        add_scaled(sum->stretch, joint->stretch, weights[i], 9);
+    }
+    inverse = 1.0f / noh_sqrt(noh_quat_dot(sum->real, sum->real)); /* at least the strongest weight, squared */
+    for (int i = 0; i < 4; i++) {
+        sum->real[i] *= inverse;
+        sum->dual[i] *= inverse;
+    }
+}
+
+static void move(const noh_dual_quaternion *q, noh_vertex *vertex)
+{
+    const float *r = q->real, *d = q->dual, *h = q->stretch;
+    float stretch[12] = { h[0], h[1], h[2], 0.0f, h[3], h[4], h[5], 0.0f, h[6], h[7], h[8], 0.0f };
+    float t[3] = { 2.0f * (r[3] * d[0] - d[3] * r[0] + (r[1] * d[2] - r[2] * d[1])),
+                   2.0f * (r[3] * d[1] - d[3] * r[1] + (r[2] * d[0] - r[0] * d[2])),
+                   2.0f * (r[3] * d[2] - d[3] * r[2] + (r[0] * d[1] - r[1] * d[0])) };
+    noh_skin_apply(stretch, vertex);
+    noh_quat_rotate(r, vertex->position, vertex->position);
+    noh_quat_rotate(r, vertex->normal, vertex->normal);
+    noh_quat_rotate(r, vertex->tangent, vertex->tangent);
+    for (int i = 0; i < 3; i++) {
+        vertex->position[i] += t[i];
+    }
+}
+
+void noh_skin_vertex_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers, uint32_t index,
+                          noh_vertex *out)
+{
+    uint32_t places[NOH_INFLUENCES_MAX];
+    float weights[NOH_INFLUENCES_MAX];
+    uint32_t count = noh_mesh_influences(mesh, index, places, weights);
+    noh_dual_quaternion sum;
+    blend(joints, places, weights, count, &sum);
+    if (layers) {
+        noh_morph_vertex(mesh, layers, index, out);
+    } else {
+        noh_mesh_vertex(mesh, index, out);
+    }
+    move(&sum, out);
+}
+
+void noh_skin_position_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers, uint32_t index,
+                            float out[3])
+{
+    noh_vertex vertex;
+    noh_skin_vertex_dual(mesh, joints, layers, index, &vertex);
+    memcpy(out, vertex.position, 3 * sizeof *out);
+}
+
+void noh_skin_vertices_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers,
+                            uint32_t first, uint32_t count, float *positions, float *normals, float *tangents)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        noh_vertex vertex;
+        noh_skin_vertex_dual(mesh, joints, layers, first + i, &vertex);
+        if (positions) memcpy(positions + 3u * (size_t)i, vertex.position, 12);
+        if (normals) memcpy(normals + 3u * (size_t)i, vertex.normal, 12);
+        if (tangents) memcpy(tangents + 4u * (size_t)i, vertex.tangent, 16);
+    }
+}
