@@ -187,7 +187,7 @@ fuzz: deps-fuzz
 tests: $(TESTS) $(BUILD)/tests/fuzz/fuzz_pack $(BUILD)/tests/fuzz/fuzz_clip $(BUILD)/tests/fuzz/corpus/.made
 
 # The tests read results back from the GPU as the tool does, and share what lies in tests/ itself.
-TEST_TOOL_O := $(addprefix $(BUILD)/tools/noh/,gpu.o readback.o message.o) $(BUILD)/gen/tool_shaders.gen.o
+TEST_TOOL_O := $(addprefix $(BUILD)/tools/noh/,gpu.o readback.o readback_vertices.o message.o) $(BUILD)/gen/tool_shaders.gen.o
 TEST_SHARED_O := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/*.c))
 TEST_KERNELS := $(if $(filter x86_64%,$(MACHINE)),$(BUILD)/kernel/clip_sample_avx2.o)
 TEST_LIBS := $(TEST_SHARED_O) $(TEST_TOOL_O) $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(TEST_KERNELS) $(BUILD)/libnoh.a

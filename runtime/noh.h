@@ -26,7 +26,8 @@
  *   gl/gl_api.h          the GL ES functions that noh calls: you bring the lookup
  *   gl/gl_caps.h         what this GPU can really do, found by trying
  *   gl/gl_morph.h        morph targets accumulated on the GPU, five ways
- *   gl/gl_draw.h         meshes on the GPU and a plain renderer
+ *   gl/gl_skin.h         joints of many instances on the GPU
+ *   gl/gl_draw.h         meshes on the GPU and a plain renderer; gl_variants.h: its programs
  *
  * The library needs memcpy, memset and memcmp, and nothing else. */
 #ifndef NOH_H
@@ -57,6 +58,8 @@
 #include "gl/gl_caps.h"
 #include "gl/gl_memory.h"
 #include "gl/gl_morph.h"
+#include "gl/gl_skin.h"
+#include "gl/gl_variants.h"
 #include "gl/gl_draw.h"
 #include "character/bounds.h"
 #include "character/character.h"

@@ -9,15 +9,23 @@ uniform highp sampler2DArray u_layers;
 #endif
 uniform highp ivec4 u_morph; /* tile x, tile y, width log2, touched vertices */
 
-/* Add the deltas of a vertex; vertices that no target touches have none. */
-void morph_fetch(int vertex, inout vec3 position, inout vec3 normal, inout vec3 tangent)
+/* Add the deltas of a vertex in the tile of an instance (the numbers of u_morph). False for vertices
+ * that no target touches: they have none, and need no morph_frame. */
+bool morph_fetch_tile(ivec4 tile, int vertex, inout vec3 position, inout vec3 normal, inout vec3 tangent)
 {
-    if (vertex < u_morph.w) {
-        ivec2 texel = u_morph.xy + ivec2(vertex & ((1 << u_morph.z) - 1), vertex >> u_morph.z);
+    bool touched = vertex < tile.w;
+    if (touched) {
+        ivec2 texel = tile.xy + ivec2(vertex & ((1 << tile.z) - 1), vertex >> tile.z);
         position += LAYER_FETCH(texel, 0);
         normal += LAYER_FETCH(texel, 1);
         tangent += LAYER_FETCH(texel, 2);
     }
+    return touched;
+}
+
+bool morph_fetch(int vertex, inout vec3 position, inout vec3 normal, inout vec3 tangent)
+{
+    return morph_fetch_tile(u_morph, vertex, position, normal, tangent);
 }
 
 /* Unit normal; unit tangent at right angles to it (row A11). */

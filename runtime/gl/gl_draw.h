@@ -1,12 +1,14 @@
 /* gl_draw.h: meshes on the GPU, and a plain renderer for them.
  *
- * The renderer is small on purpose: one program, one key light, base colour
- * textures and vertex colours. A game brings its own shaders and needs only
- * noh_gl_mesh and a noh_gl_morph_binding. */
+ * The renderer is small on purpose: one shader in variants, one key light, base
+ * colour textures and vertex colours. A game brings its own shaders and needs only
+ * noh_gl_mesh, a noh_gl_morph_binding and a noh_gl_skin_binding. */
 #ifndef NOH_GL_GL_DRAW_H
 #define NOH_GL_GL_DRAW_H
 
 #include "gl/gl_morph.h"
+#include "gl/gl_skin.h"
+#include "gl/gl_variants.h"
 
 /* Attribute locations of a noh_gl_mesh's vertex array. */
 #define NOH_ATTRIBUTE_POSITION 0u /* float3 */
@@ -14,11 +16,14 @@
 #define NOH_ATTRIBUTE_TANGENT 2u  /* ivec2, octahedral with handedness: tangent_of_pair; constant where the mesh has none */
 #define NOH_ATTRIBUTE_UV 3u       /* unorm16 x 2, to be scaled by the mesh's uv_offset and uv_scale */
 #define NOH_ATTRIBUTE_COLOR 4u    /* unorm8 x 4, rgb as square roots; constant white where there are none */
+#define NOH_ATTRIBUTE_INFLUENCES 5u      /* uint, uvec2, uvec3, uvec4: the first words of a vertex's influences */
+#define NOH_ATTRIBUTE_MORE_INFLUENCES 6u /* uvec3: the last three of seven */
+#define NOH_ATTRIBUTE_TEXEL 7u           /* uint: morph texel and palette, with NOH_MESH_TEXELS */
 
 typedef struct noh_gl_mesh {
     noh_mesh mesh;
     GLuint vertex_array;
-    noh_gl_buffer positions, attributes, indices;
+    noh_gl_buffer positions, attributes, influences, indices; /* no influences in a rigid mesh */
     GLenum index_type;
 } noh_gl_mesh;
 
@@ -37,22 +42,40 @@ uint64_t noh_gl_picture_bytes(const noh_texture *texture);
 noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
                                  noh_gl_texture *out, noh_error *error);
 
-typedef enum noh_debug_view { NOH_VIEW_LIT, NOH_VIEW_POSITION, NOH_VIEW_NORMAL, NOH_VIEW_TANGENT } noh_debug_view;
+typedef struct noh_gl_renderer_desc {
+    noh_debug_view view;
+    int layers_uint;           /* as in noh_gl_morph_binding.is_uint */
+    const noh_mesh *meshes;    /* [mesh_count] that will be drawn; not kept */
+    uint32_t mesh_count;
+    noh_palette_mode palettes; /* noh_gl_skin_plan.mode; 0: nothing is skinned, meshes stand in their bind pose */
+    int crowds;                /* noh_gl_draw_crowd will be called: wants NOH_PALETTE_TEXTURE */
+    int fewer_influences;      /* bindings will lower `influences` */
+} noh_gl_renderer_desc;
+
+#define NOH_GL_VARIANTS_MAX 32u /* a character of one kind of mesh needs 2 to 8 */
 
 typedef struct noh_gl_renderer {
     const noh_gl_api *gl;
     noh_gl_ledger *ledger;
-    GLuint program;
+    int layers_uint;
+    noh_debug_view view;
     noh_gl_texture white; /* 1 x 1, where a material has no texture */
-    GLint u_view_projection, u_world, u_normal, u_uv, u_morph, u_camera, u_key, u_base_color, u_material, u_bounds_min, u_bounds_size;
+    uint32_t variant_count;
+    noh_gl_variant variants[NOH_GL_VARIANTS_MAX];
 } noh_gl_renderer;
 
 #define NOH_GL_RENDERER_BYTES 4u /* the white texel */
 
-/* layers_uint: as in noh_gl_morph_binding.is_uint. */
-noh_result noh_gl_renderer_create(const noh_gl_api *api, noh_gl_ledger *ledger, noh_debug_view view, int layers_uint,
+/* Compile every variant that the meshes of the desc can be drawn by: nothing is compiled later.
+ * memory  writes *out at once; on error it holds nothing
+ * errors  ARG crowds without a texture for palettes; LIMIT the meshes need more variants than
+ *         NOH_GL_VARIANTS_MAX; MEMORY, GL, DATA as noh_gl_program_create and noh_gl_texture_create */
+noh_result noh_gl_renderer_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_gl_renderer_desc *desc,
                                   noh_gl_renderer *out, char *log, size_t log_bytes, noh_error *error);
 void noh_gl_renderer_delete(noh_gl_renderer *renderer);
+
+/* The variant of that key; NULL where the renderer was not told of such a mesh. */
+const noh_gl_variant *noh_gl_renderer_variant(const noh_gl_renderer *renderer, noh_gl_variant_key key);
 
 typedef struct noh_gl_camera {
     float view_projection[16]; /* column-major, clip space of GL */
@@ -60,19 +83,29 @@ typedef struct noh_gl_camera {
     float key[3];              /* unit vector towards the key light, world */
 } noh_gl_camera;
 
-/* Depth test on, the program in use; the framebuffer and viewport are the caller's. */
+/* Depth test on, blending set up, the camera in every variant; the framebuffer and viewport are the caller's. */
 void noh_gl_draw_begin(const noh_gl_renderer *renderer, const noh_gl_camera *camera);
 
 #define NOH_DRAW_OPAQUE 0
 #define NOH_DRAW_BLENDED 1
 
-/* Draw the submeshes of one pass: first every mesh opaque, then every mesh blended.
+/* Draw the submeshes of one pass: first every mesh opaque, then every mesh blended. A mesh of a kind
+ * that the renderer was not told of is not drawn.
  * shapes  world[12] rows of 3 x 4; pictures[pack texture_count]
- * binding where the deltas are; NULL: the rest pose */
+ * morph   where the deltas are; NULL: the rest pose
+ * skin    where the joints are; NULL: rigid, or the bind pose */
 void noh_gl_draw_mesh(const noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const float world[12],
-                      const noh_gl_morph_binding *binding, const noh_gl_texture *pictures, int pass);
+                      const noh_gl_morph_binding *morph, const noh_gl_skin_binding *skin, const noh_gl_texture *pictures,
+                      int pass);
 
-/* Back to no program, no vertex array, no textures, no depth or cull test, no blending. */
+/* The same for `count` instances of one mesh, from the one that `first` is the binding of: one draw per submesh for
+ * all. Each stands where noh_gl_skin_place put it. Rigid meshes too. morph: any instance's binding. Blended
+ * submeshes of a crowd are not sorted.
+ * errors  none; palettes are in a texture, or nothing is drawn */
+void noh_gl_draw_crowd(const noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph,
+                       const noh_gl_skin_binding *first, uint32_t count, const noh_gl_texture *pictures, int pass);
+
+/* Back to no program, no vertex array, no textures, no uniform buffer, no depth or cull test, no blending. */
 void noh_gl_draw_end(const noh_gl_renderer *renderer);
 
 #endif

@@ -18,9 +18,14 @@ static uint64_t index_bytes(const noh_mesh *mesh)
     return bytes ? bytes : 4u;
 }
 
+static uint64_t influence_bytes(const noh_mesh *mesh)
+{
+    return (uint64_t)mesh->header->vertex_count * NOH_INFLUENCE_WORDS(mesh->header->influence_count) * 4u;
+}
+
 uint64_t noh_gl_mesh_bytes(const noh_mesh *mesh)
 {
-    return position_bytes(mesh) + attribute_bytes(mesh) + index_bytes(mesh);
+    return position_bytes(mesh) + attribute_bytes(mesh) + influence_bytes(mesh) + index_bytes(mesh);
 }
 
 static void set_attribute(const noh_gl_api *gl, GLuint location, GLint size, GLenum type, GLboolean normalized, uint32_t stride,
@@ -41,6 +46,23 @@ static void set_pair(const noh_gl_api *gl, GLuint location, uint32_t stride, int
     }
 }
 
+static void set_words(const noh_gl_api *gl, GLuint location, uint32_t words, uint32_t stride, uint32_t offset)
+{
+    gl->EnableVertexAttribArray(location);
+    gl->VertexAttribIPointer(location, (GLint)words, GL_UNSIGNED_INT, (GLsizei)stride, (const void *)(uintptr_t)offset);
+}
+
+/* The words of common_skin.glsl: seven are four and three. */
+static void set_influences(const noh_gl_api *gl, const noh_gl_mesh *m)
+{
+    uint32_t words = NOH_INFLUENCE_WORDS(m->mesh.header->influence_count);
+    gl->BindBuffer(GL_ARRAY_BUFFER, m->influences.name);
+    set_words(gl, NOH_ATTRIBUTE_INFLUENCES, words > 4u ? 4u : words, 4u * words, 0);
+    if (words > 4u) {
+        set_words(gl, NOH_ATTRIBUTE_MORE_INFLUENCES, words - 4u, 4u * words, 16);
+    }
+}
+
 static void create_vertex_array(const noh_gl_api *gl, noh_gl_mesh *m)
 {
     uint32_t stride = m->mesh.header->attribute_stride;
@@ -53,6 +75,12 @@ static void create_vertex_array(const noh_gl_api *gl, noh_gl_mesh *m)
     set_pair(gl, NOH_ATTRIBUTE_TANGENT, stride, noh_mesh_tangent_offset(&m->mesh));
     set_attribute(gl, NOH_ATTRIBUTE_UV, 2, GL_UNSIGNED_SHORT, GL_TRUE, stride, noh_mesh_uv_offset(&m->mesh));
     set_attribute(gl, NOH_ATTRIBUTE_COLOR, 4, GL_UNSIGNED_BYTE, GL_TRUE, stride, noh_mesh_color_offset(&m->mesh));
+    if (m->mesh.header->flags & NOH_MESH_TEXELS) {
+        set_words(gl, NOH_ATTRIBUTE_TEXEL, 1, stride, stride - 4u);
+    }
+    if (m->influences.name) {
+        set_influences(gl, m);
+    }
     gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, m->indices.name);
     gl->BindVertexArray(0);
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
@@ -62,7 +90,7 @@ static void create_vertex_array(const noh_gl_api *gl, noh_gl_mesh *m)
 noh_result noh_gl_mesh_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_mesh *mesh, noh_gl_mesh *out,
                               noh_error *error)
 {
-    noh_gl_mesh m = { *mesh, 0, { 0, 0 }, { 0, 0 }, { 0, 0 }, 0 };
+    noh_gl_mesh m = { *mesh, 0, { 0, 0 }, { 0, 0 }, { 0, 0 }, { 0, 0 }, 0 };
     static const uint32_t no_indices = 0;
     const void *indices = mesh->header->index_count ? mesh->indices : &no_indices;
     noh_result result;
@@ -73,6 +101,10 @@ noh_result noh_gl_mesh_create(const noh_gl_api *api, noh_gl_ledger *ledger, cons
     if (!result) {
         result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, attribute_bytes(mesh), mesh->attributes, GL_STATIC_DRAW,
                                       &m.attributes, error);
+    }
+    if (!result && influence_bytes(mesh)) {
+        result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, influence_bytes(mesh), mesh->influences, GL_STATIC_DRAW,
+                                      &m.influences, error);
     }
     if (!result) {
         result = noh_gl_buffer_create(api, ledger, GL_ELEMENT_ARRAY_BUFFER, index_bytes(mesh), indices, GL_STATIC_DRAW, &m.indices,
@@ -95,6 +127,7 @@ void noh_gl_mesh_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mes
     }
     noh_gl_buffer_delete(api, ledger, &mesh->positions);
     noh_gl_buffer_delete(api, ledger, &mesh->attributes);
+    noh_gl_buffer_delete(api, ledger, &mesh->influences);
     noh_gl_buffer_delete(api, ledger, &mesh->indices);
 }
 

@@ -43,6 +43,27 @@ for model in hero/head.glb hero/head_sparse.glb hero/head_meshopt.glb hero/ident
     verify "$model" "$work/model.noh"
 done
 
+# ---- skins: joints as they were stored, split, and by dual quaternions; without clips, in random poses ----
+
+skinned() { # MODEL, OPTIONS OF noh build
+    model=$1
+    shift
+    if [ ! -f "$assets/$model" ]; then
+        skip "$model $*" 'not in NOH_ASSETS'
+        return
+    fi
+    noh build "$assets/$model" -o "$work/skin.noh" --quiet --only mesh "$@"
+    expect 0 "build of $model $*"
+    verify "$model $*" "$work/skin.noh"
+    check "and skinned vertices were compared" sh -c 'test "$(grep -c "\"path\": \"skin/" "$1")" = 2' - "$work/out"
+}
+skinned hero/body_8inf.glb
+skinned hero/body_quantized.glb
+skinned hero/body_8inf.glb --influences 1
+skinned hero/body.glb --palette 12
+skinned hero/body.glb --dual-quaternion all
+skinned khronos/SimpleSkin.gltf --influences 1 --dual-quaternion all
+
 # ---- capabilities taken away ----
 
 missing() { # the last run's JSON tells of a path that is not here, for this reason
@@ -65,6 +86,10 @@ if grep -q '"driver": "llvmpipe' "$work/out"; then
     verify 'bare ES 3.0' "$build/mask.noh" MESA_GLES_VERSION_OVERRIDE=3.0 \
         MESA_EXTENSION_OVERRIDE='-GL_EXT_color_buffer_float -GL_EXT_color_buffer_half_float -GL_EXT_float_blend -GL_EXT_geometry_shader -GL_OES_geometry_shader'
     missing RGBA32F
+    if [ -f "$work/skin.noh" ]; then
+        verify 'a skin on bare ES 3.0' "$work/skin.noh" MESA_GLES_VERSION_OVERRIDE=3.0 \
+            MESA_EXTENSION_OVERRIDE='-GL_EXT_color_buffer_float -GL_EXT_color_buffer_half_float -GL_EXT_float_blend'
+    fi
 else
     skip 'capabilities taken away' 'this GL is not llvmpipe, whose switches the test knows'
 fi

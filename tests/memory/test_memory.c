@@ -575,6 +575,8 @@ static void pictures_and_the_renderer_take_what_they_say(void **state)
     noh_pack pack = test_open(bytes, count);
     noh_texture texture;
     noh_gl_texture picture;
+    const noh_mesh mesh = test_mesh(&pack, 0);
+    const noh_gl_renderer_desc desc = { NOH_VIEW_LIT, 0, &mesh, 1, NOH_PALETTE_AUTO, 0, 0 };
     noh_gl_renderer renderer;
     noh_gl_ledger ledger;
     (void)state;
@@ -582,7 +584,7 @@ static void pictures_and_the_renderer_take_what_they_say(void **state)
     assert_int_equal(noh_pack_texture(&pack, 0, &texture), NOH_OK);
     assert_int_equal(noh_gl_picture_create(&g->gl, &ledger, &texture, &picture, NULL), NOH_OK);
     assert_int_equal(noh_gl_ledger_bytes(&ledger), noh_gl_picture_bytes(&texture));
-    assert_int_equal(noh_gl_renderer_create(&g->gl, &ledger, NOH_VIEW_LIT, 0, &renderer, NULL, 0, NULL), NOH_OK);
+    assert_int_equal(noh_gl_renderer_create(&g->gl, &ledger, &desc, &renderer, NULL, 0, NULL), NOH_OK);
     assert_int_equal(noh_gl_ledger_bytes(&ledger), noh_gl_picture_bytes(&texture) + NOH_GL_RENDERER_BYTES);
     noh_gl_renderer_delete(&renderer);
     noh_gl_texture_delete(&g->gl, &ledger, &picture);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "load.h"
+#include "verify_skin.h"
 
 #define ROUNDS 4 /* sets of random weights per path */
 
@@ -175,18 +176,17 @@ static void set_bound(verify_job *job, verify_row *row, int half)
     }
 }
 
-/* A row fails when a value differs where equality is demanded, when half floats stray past
- * the pack's bound, or when memory is not what was predicted. */
+/* A row fails when a value differs where equality is demanded, when half floats or skins stray
+ * past their bound, or when memory is not what was predicted. */
 static int row_failed(const verify_row *row)
 {
-    int half = strcmp(row->accumulate, "f16") == 0;
     if (row->cpu_predicted != row->cpu_used || row->gpu_predicted != row->gpu_used) {
         return 1;
     }
     if (row->exact && (row->differing || row->vertex_differing)) {
         return 1;
     }
-    return (half && row->max_error_um > row->bound_um) || row->max_normal_error > 1e-5;
+    return (row->bound_um > 0.0 && row->max_error_um > row->bound_um) || row->max_normal_error > 1e-5;
 }
 
 /* The block that init takes: one byte less is refused and leaves it untouched. Returns the
@@ -283,6 +283,32 @@ static int verify_simd(verify_job *job)
     return status;
 }
 
+/* Palettes in a uniform block, in a texture: skinned vertices within their bound of the CPU's. */
+static int verify_skins(verify_job *job, const noh_gl_mesh *gl_meshes)
+{
+    static const char *const names[] = { "", "skin/block", "skin/tex" };
+    int status = 0;
+    for (int mode = NOH_PALETTE_UNIFORM; mode <= NOH_PALETTE_TEXTURE && !status; mode++) {
+        verify_row *row = &job->rows[job->row_count++];
+        verify_skin skin;
+        memset(row, 0, sizeof *row);
+        status = verify_skin_run(&job->g, &job->file, &job->scene, gl_meshes, (noh_palette_mode)mode, &job->state, &skin);
+        row->path = names[mode];
+        row->accumulate = "f32";
+        row->reason = "skinned vertices";
+        row->available = row->exact = 1;
+        row->vertex_values = skin.values;
+        row->max_error_um = skin.error_um;
+        row->bound_um = skin.bound_um;
+        row->max_normal_error = skin.normal_error;
+        row->cpu_predicted = row->cpu_used = skin.cpu_predicted;
+        row->gpu_predicted = skin.gpu_predicted;
+        row->gpu_used = skin.gpu_used;
+        job->failed |= status || row_failed(row);
+    }
+    return status;
+}
+
 static int verify_all(verify_job *job)
 {
     static const noh_morph_path paths[] = { NOH_MORPH_LAYERED, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER, NOH_MORPH_GATHER, NOH_MORPH_CPU };
@@ -302,6 +328,9 @@ static int verify_all(verify_job *job)
         for (size_t p = 0; p < sizeof paths / sizeof paths[0] && !status; p++) {
             status = verify_path(job, paths[p], (noh_accumulate)a, gl_meshes);
         }
+    }
+    if (!status && verify_skin_wanted(&job->scene, &job->file.pack)) {
+        status = verify_skins(job, gl_meshes);
     }
     for (uint32_t i = 0; gl_meshes && i < count; i++) {
         noh_gl_mesh_delete(&job->g.gl, &job->g.ledger, &gl_meshes[i]);

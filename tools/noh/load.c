@@ -145,8 +145,13 @@ static int create_renderer(load *l, noh_debug_view view)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
     char log[4096] = "";
-    int is_uint = noh_gl_morph_plan_of(l->morph.morph)->layer_format == GL_RGBA32UI;
-    if (noh_gl_renderer_create(&l->g->gl, &l->g->ledger, view, is_uint, &l->renderer, log, sizeof log, &error)) {
+    noh_gl_renderer_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.view = view;
+    desc.layers_uint = noh_gl_morph_plan_of(l->morph.morph)->layer_format == GL_RGBA32UI;
+    desc.meshes = l->scene->meshes;
+    desc.mesh_count = l->file->pack.mesh_count;
+    if (noh_gl_renderer_create(&l->g->gl, &l->g->ledger, &desc, &l->renderer, log, sizeof log, &error)) {
         fputs(log, stderr);
         return tool_fail_error("renderer", &error);
     }
@@ -236,7 +241,7 @@ void load_draw(load *l, const noh_gl_camera *camera)
     for (int pass = NOH_DRAW_OPAQUE; pass <= NOH_DRAW_BLENDED; pass++) {
         for (uint32_t i = 0; i < l->scene->item_count; i++) {
             noh_gl_morph_binding binding = noh_gl_morph_binding_of(l->morph.morph, l->item_instances[i]);
-            noh_gl_draw_mesh(&l->renderer, &l->meshes[l->scene->items[i].mesh], scene_world(l->scene, l->file, i), &binding,
+            noh_gl_draw_mesh(&l->renderer, &l->meshes[l->scene->items[i].mesh], scene_world(l->scene, l->file, i), &binding, NULL,
                              l->pictures, pass);
         }
     }

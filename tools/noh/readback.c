@@ -1,4 +1,4 @@
-/* readback.c: results as bits, through RGBA32UI targets, which core ES 3.0 can always
+/* readback.c: accumulated layers as bits, through RGBA32UI targets, which core ES 3.0 can always
  * render and read: no format conversion stands between the test and the value. */
 #include <stdlib.h>
 #include <string.h>
@@ -85,9 +85,6 @@ int readback_open(readback *r, gpu *g, int is_uint)
     r->g = g;
     r->is_uint = is_uint;
     status = create_program(g, &noh_shader_full_screen_vert, &noh_shader_read_layers_frag, is_uint, &r->layers_program);
-    if (!status) {
-        status = create_program(g, &noh_shader_read_vertices_vert, &noh_shader_read_vertices_frag, is_uint, &r->vertices_program);
-    }
     g->gl.GenVertexArrays(1, &r->vertex_array);
     return status;
 }
@@ -95,7 +92,7 @@ int readback_open(readback *r, gpu *g, int is_uint)
 void readback_close(readback *r)
 {
     noh_gl_program_delete(&r->g->gl, NULL, &r->layers_program);
-    noh_gl_program_delete(&r->g->gl, NULL, &r->vertices_program);
+    noh_gl_variant_delete(&r->g->gl, NULL, &r->variant);
     r->g->gl.DeleteVertexArrays(1, &r->vertex_array);
 }
 
@@ -138,27 +135,6 @@ int readback_layers(readback *r, const noh_mesh *mesh, const noh_gl_morph_bindin
         r->g->gl.DrawArrays(GL_TRIANGLES, 0, 3);
         for (unsigned i = 0; i < 3 && !status; i++) {
             status = target_read(&r->g->gl, &t, i, texels, out + 3 * texels * i);
-        }
-    }
-    return finish(r, &t, status);
-}
-
-int readback_vertices(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_binding *binding, float *positions,
-                      float *normals, float *tangents)
-{
-    uint32_t count = mesh->mesh.header->vertex_count, width = count < 1024u ? count : 1024u;
-    float *const outs[3] = { positions, normals, tangents };
-    const noh_gl_api *gl = &r->g->gl;
-    bit_target t;
-    int status = target_open(gl, &t, width, (count + width - 1) / width);
-    if (!status) {
-        use(r, r->vertices_program, binding);
-        gl->Uniform2i(gl->GetUniformLocation(r->vertices_program, "u_size"), (GLint)width, (GLint)t.height);
-        gl->BindVertexArray(mesh->vertex_array);
-        gl->VertexAttribI4i(NOH_ATTRIBUTE_TANGENT, 0, 0, 0, 1);
-        gl->DrawArrays(GL_POINTS, 0, (GLsizei)count);
-        for (unsigned i = 0; i < 3 && !status; i++) {
-            status = target_read(gl, &t, i, count, outs[i]);
         }
     }
     return finish(r, &t, status);

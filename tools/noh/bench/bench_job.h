@@ -12,7 +12,8 @@
  *   bench_cpu.c         rows morph/cpu
  *   bench_clip*.c       rows clip/ (see bench_clip.h)
  *   bench_crowd_cpu.c   rows crowd/cpu: a thousand characters, detail by pixels
- *   bench_skin.c        rows skin/cpu, of a skinned mesh
+ *   bench_skin_gpu.c    rows skin/gpu: a crowd in one draw, joints per vertex
+ *   bench_skin_cpu.c    rows skin/cpu
  *   bench_report.c      rows, storage, and how they are printed
  *
  * A method is one way to morph a mesh: one of ours, a baseline, or none at all.
@@ -193,7 +194,9 @@ int bench_crowd(bench_job *job);
 int bench_cpu(bench_job *job);
 int bench_clip_rows(bench_job *job); /* none where no pack has clips */
 int bench_crowd_cpu(bench_job *job);
-int bench_skin(bench_job *job);
+/* The skinned mesh of the most vertices; no rows where the pack has none. */
+int bench_skin_gpu(bench_job *job);
+int bench_skin_cpu(bench_job *job);
 
 void bench_print(bench_job *job);
 void bench_print_json(bench_job *job);

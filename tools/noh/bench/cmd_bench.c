@@ -55,7 +55,8 @@ static int bench_drawn(bench_job *job, const bench_args *a, uint32_t **artist)
     }
     if (!status) status = bench_morph(job);
     if (!status) status = bench_cpu(job);
-    if (!status) status = bench_skin(job);
+    if (!status) status = bench_skin_cpu(job);
+    if (!status) status = bench_skin_gpu(job);
     if (!status) status = bench_crowd(job);
     return status;
 }

@@ -1,4 +1,4 @@
-/* bench_skin.c: rows skin/cpu: the kernels against straightforward scalar C, which reads the same pack (plain-scalar) or
+/* bench_skin_cpu.c: rows skin/cpu: the kernels against straightforward scalar C, which reads the same pack (plain-scalar) or
  * floats that were unpacked before (plain-floats), and against memcpy of what they write. */
 #include <math.h>
 #include <stdlib.h>
@@ -237,7 +237,7 @@ static int measure(bench_job *job, skin_bench *b)
     return status;
 }
 
-int bench_skin(bench_job *job)
+int bench_skin_cpu(bench_job *job)
 {
     skin_bench b;
     int status;

@@ -1,0 +1,103 @@
+/* gl_renderer.c: the plain renderer's programs and texture. */
+#include <string.h>
+
+#include "gl/gl_draw.h"
+
+static noh_result create_white(noh_gl_renderer *r, noh_error *error)
+{
+    static const uint8_t texel[4] = { 255, 255, 255, 255 };
+    noh_gl_texture_desc desc = { GL_RGBA8, 1, 1, 0, 0, 0, 0 };
+    noh_result result;
+    r->gl->ActiveTexture(GL_TEXTURE0);
+    result = noh_gl_texture_create(r->gl, r->ledger, &desc, &r->white, error);
+    if (!result) {
+        r->gl->BindTexture(GL_TEXTURE_2D, r->white.name);
+        r->gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, texel);
+        r->gl->BindTexture(GL_TEXTURE_2D, 0);
+    }
+    return result;
+}
+
+/* ---- which variants ---- */
+
+static noh_result want(noh_gl_renderer *r, noh_gl_variant_key key, noh_error *error)
+{
+    if (noh_gl_renderer_variant(r, key)) {
+        return NOH_OK;
+    }
+    if (r->variant_count == NOH_GL_VARIANTS_MAX) {
+        return noh_fail(error, NOH_ERR_LIMIT, "the meshes need more shader variants than the limit", NOH_GL_VARIANTS_MAX, 0);
+    }
+    r->variants[r->variant_count++].key = key;
+    return NOH_OK;
+}
+
+/* Without joints; with all of its influences; and with each lower number. */
+static noh_result want_mesh(noh_gl_renderer *r, const noh_gl_renderer_desc *desc, const noh_mesh *mesh, noh_error *error)
+{
+    noh_gl_skin_binding skin = { NOH_PALETTE_AUTO, 0, 0, 0, 0, 0, 0 };
+    uint32_t least = desc->fewer_influences ? 1u : NOH_INFLUENCES_MAX;
+    noh_result result = want(r, noh_gl_variant_key_of(mesh, NULL, 0, r->layers_uint, r->view), error);
+    skin.mode = desc->palettes;
+    for (uint32_t limit = NOH_INFLUENCES_MAX; limit >= least && !result && desc->palettes; limit /= 2u) {
+        skin.influences = limit;
+        result = want(r, noh_gl_variant_key_of(mesh, &skin, 0, r->layers_uint, r->view), error);
+        if (!result && desc->crowds) {
+            result = want(r, noh_gl_variant_key_of(mesh, &skin, 1, r->layers_uint, r->view), error);
+        }
+    }
+    return result;
+}
+
+const noh_gl_variant *noh_gl_renderer_variant(const noh_gl_renderer *r, noh_gl_variant_key key)
+{
+    for (uint32_t i = 0; i < r->variant_count; i++) {
+        if (memcmp(&r->variants[i].key, &key, sizeof key) == 0) {
+            return &r->variants[i];
+        }
+    }
+    return NULL;
+}
+
+/* ---- making ---- */
+
+static noh_result create_objects(noh_gl_renderer *r, char *log, size_t log_bytes, noh_error *error)
+{
+    noh_result result = create_white(r, error);
+    for (uint32_t i = 0; i < r->variant_count && !result; i++) {
+        result = noh_gl_variant_create(r->gl, r->ledger, r->variants[i].key, NULL, 0, &r->variants[i], log, log_bytes, error);
+    }
+    return result;
+}
+
+noh_result noh_gl_renderer_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_gl_renderer_desc *desc,
+                                  noh_gl_renderer *out, char *log, size_t log_bytes, noh_error *error)
+{
+    noh_result result = NOH_OK;
+    if (desc->crowds && desc->palettes != NOH_PALETTE_TEXTURE) {
+        return noh_fail(error, NOH_ERR_ARG, "crowds want palettes in a texture", 0, 0);
+    }
+    memset(out, 0, sizeof *out);
+    out->gl = api;
+    out->ledger = ledger;
+    out->layers_uint = desc->layers_uint != 0;
+    out->view = desc->view;
+    for (uint32_t i = 0; i < desc->mesh_count && !result; i++) {
+        result = want_mesh(out, desc, &desc->meshes[i], error);
+    }
+    if (!result) {
+        result = create_objects(out, log, log_bytes, error);
+    }
+    if (result) {
+        noh_gl_renderer_delete(out);
+    }
+    return result;
+}
+
+void noh_gl_renderer_delete(noh_gl_renderer *renderer)
+{
+    for (uint32_t i = 0; i < renderer->variant_count; i++) {
+        noh_gl_variant_delete(renderer->gl, renderer->ledger, &renderer->variants[i]);
+    }
+    noh_gl_texture_delete(renderer->gl, renderer->ledger, &renderer->white);
+}

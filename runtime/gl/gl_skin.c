@@ -1,0 +1,245 @@
+#include "gl/gl_skin.h"
+
+#include <string.h>
+
+#include "deform/dual_quaternion.h"
+#include "gl/gl_skin_internal.h"
+
+static const float identity[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
+
+/* ---- setting ---- */
+
+static const noh_gl_skin_mesh *mesh_of(const noh_gl_skin *skin, uint32_t instance)
+{
+    uint32_t i = 0;
+    NOH_ASSERT(instance < skin->plan.instance_count);
+    while (instance - skin->meshes[i].first_instance >= skin->meshes[i].instance_count) {
+        i++;
+    }
+    return &skin->meshes[i];
+}
+
+static uint32_t first_row(const noh_gl_skin_mesh *m, uint32_t instance)
+{
+    return m->first_row + (instance - m->first_instance) * m->stride;
+}
+
+/* Write rows that differ from what is there, and remember that they have to be sent. */
+static void put_rows(noh_gl_skin *skin, uint32_t row, const float *values, uint32_t count)
+{
+    float *own = skin->rows + 4u * (size_t)row;
+    if (memcmp(own, values, 16u * (size_t)count) != 0) {
+        memcpy(own, values, 16u * (size_t)count);
+        skin->dirty_first = row < skin->dirty_first ? row : skin->dirty_first;
+        skin->dirty_end = row + count > skin->dirty_end ? row + count : skin->dirty_end;
+    }
+}
+
+/* A joint of a mesh with NOH_MESH_DUAL_QUATERNION, as common_skin.glsl has it. */
+static void dual_rows(const float matrix[12], float rows[16])
+{
+    noh_dual_quaternion q;
+    const float *h = q.stretch;
+    noh_dual_quaternion_from_matrix(matrix, &q);
+    memcpy(rows, q.real, sizeof q.real);
+    memcpy(rows + 4, q.dual, sizeof q.dual);
+    rows[8] = h[0];
+    rows[9] = h[4];
+    rows[10] = h[8];
+    rows[11] = h[1];
+    rows[12] = h[2];
+    rows[13] = h[5];
+    rows[14] = rows[15] = 0.0f;
+}
+
+/* Gather a palette's joints. stride: floats from a joint's matrix to the next; 0: one for all. */
+static void put_palette(noh_gl_skin *skin, const noh_mesh *mesh, const noh_palette *palette, uint32_t row, const float *matrices,
+                        uint32_t stride)
+{
+    const uint16_t *joints = mesh->palette_joints + palette->first_joint;
+    uint32_t joint_rows = noh_gl_joint_rows(mesh);
+    for (uint32_t i = 0; i < palette->joint_count; i++) {
+        const float *matrix = matrices + (size_t)joints[i] * stride;
+        float rows[16];
+        if (joint_rows == 4u) {
+            dual_rows(matrix, rows);
+            matrix = rows;
+        }
+        put_rows(skin, row + joint_rows * i, matrix, joint_rows);
+    }
+}
+
+static void put_palettes(noh_gl_skin *skin, uint32_t instance, const float *matrices, uint32_t stride)
+{
+    const noh_gl_skin_mesh *m = mesh_of(skin, instance);
+    noh_gl_skin_binding binding = noh_gl_skin_binding_of(skin, instance);
+    for (uint32_t i = 0; i < m->mesh.header->palette_count; i++) {
+        put_palette(skin, &m->mesh, &m->mesh.palettes[i], binding.first + noh_gl_palette_row(&binding, &m->mesh, i), matrices, stride);
+    }
+}
+
+void noh_gl_skin_set(noh_gl_skin *skin, uint32_t instance, const float *matrices)
+{
+    put_palettes(skin, instance, matrices, 12);
+}
+
+float noh_gl_normal_rows(const float w[12], float rows[12])
+{
+    float determinant;
+    for (int i = 0; i < 3; i++) {
+        const float *a = w + 4 * ((i + 1) % 3), *b = w + 4 * ((i + 2) % 3);
+        rows[4 * i + 0] = a[1] * b[2] - a[2] * b[1];
+        rows[4 * i + 1] = a[2] * b[0] - a[0] * b[2];
+        rows[4 * i + 2] = a[0] * b[1] - a[1] * b[0];
+        rows[4 * i + 3] = 0.0f;
+    }
+    determinant = w[0] * rows[0] + w[1] * rows[1] + w[2] * rows[2];
+    for (int i = 0; determinant < 0.0f && i < 12; i++) {
+        rows[i] = -rows[i];
+    }
+    return determinant;
+}
+
+/* The tile's numbers are below 2^24, so floats hold them; bits of integers would be denormals, which GPUs flush. */
+noh_result noh_gl_skin_place(noh_gl_skin *skin, uint32_t instance, const float world[12],
+                             const noh_gl_morph_binding *morph, noh_error *error)
+{
+    uint32_t row = first_row(mesh_of(skin, instance), instance);
+    float normal[12], tile[4] = { 0.0f, 0.0f, 0.0f, 0.0f };
+    if (skin->plan.mode != NOH_PALETTE_TEXTURE) {
+        return noh_fail(error, NOH_ERR_UNSUPPORTED, "palettes are in a uniform buffer: crowds want NOH_PALETTE_TEXTURE", instance, 0);
+    }
+    if (noh_gl_normal_rows(world, normal) < 0.0f) {
+        return noh_fail(error, NOH_ERR_ARG, "an instance of a crowd is mirrored: draw it alone", instance, 0);
+    }
+    if (morph) {
+        tile[0] = (float)morph->tile_x;
+        tile[1] = (float)morph->tile_y;
+        tile[2] = (float)morph->width_log2;
+        tile[3] = (float)morph->touched;
+    }
+    put_rows(skin, row, world, 3);
+    put_rows(skin, row + 3u, tile, 1);
+    return NOH_OK;
+}
+
+/* ---- making ---- */
+
+static noh_result create_object(noh_gl_skin *skin, noh_error *error)
+{
+    noh_gl_texture_desc desc = { GL_RGBA32F, 0, 0, 0, 0, 0, 0 };
+    skin->dirty_first = 0; /* a new object holds nothing yet: the first update sends all */
+    skin->dirty_end = skin->plan.texel_count;
+    if (skin->plan.mode == NOH_PALETTE_UNIFORM) {
+        return skin->plan.gpu_bytes ? noh_gl_buffer_create(skin->gl, skin->ledger, GL_UNIFORM_BUFFER, skin->plan.gpu_bytes, NULL,
+                                                           GL_DYNAMIC_DRAW, &skin->buffer, error)
+                                    : NOH_OK;
+    }
+    desc.width = skin->plan.width;
+    desc.height = skin->plan.height;
+    skin->gl->ActiveTexture(GL_TEXTURE0);
+    return noh_gl_texture_create(skin->gl, skin->ledger, &desc, &skin->texture, error);
+}
+
+static void set_bind_pose(noh_gl_skin *skin)
+{
+    for (uint32_t i = 0; i < skin->plan.instance_count; i++) {
+        put_palettes(skin, i, identity, 0);
+        if (skin->plan.mode == NOH_PALETTE_TEXTURE) {
+            noh_gl_skin_place(skin, i, identity, NULL, NULL);
+        }
+    }
+}
+
+noh_result noh_gl_skin_init(void *memory, size_t bytes, const noh_gl_api *api, const noh_gl_caps *caps,
+                            noh_gl_ledger *ledger, const noh_gl_skin_desc *desc, noh_gl_skin **skin, noh_error *error)
+{
+    noh_gl_skin_plan plan;
+    noh_gl_skin *s;
+    noh_arena arena = noh_arena_over(memory, bytes);
+    noh_result result = noh_gl_skin_plan_make(desc, caps, &plan, error);
+    if (result) {
+        return result;
+    }
+    if (!memory || ((uintptr_t)memory & 15u) != 0) {
+        return noh_fail(error, NOH_ERR_ARG, "memory for the palettes is NULL or not 16-byte aligned", 0, plan.cpu_bytes);
+    }
+    if (bytes < plan.cpu_bytes) {
+        return noh_fail(error, NOH_ERR_MEMORY, "memory for the palettes is too small", bytes, plan.cpu_bytes);
+    }
+    memset(memory, 0, (size_t)plan.cpu_bytes);
+    s = (noh_gl_skin *)noh_arena_carve(&arena, sizeof *s, 16);
+    s->gl = api;
+    s->ledger = ledger;
+    s->plan = plan;
+    s->mesh_count = desc->mesh_count;
+    s->align = noh_gl_skin_align(&plan, caps);
+    while (plan.width >> s->width_log2 > 1u) {
+        s->width_log2++;
+    }
+    noh_gl_skin_carve(&arena, desc->mesh_count, &plan, s);
+    noh_gl_skin_layout(desc, plan.mode, s->align, s->meshes);
+    set_bind_pose(s);
+    result = create_object(s, error);
+    if (!result) {
+        *skin = s;
+    }
+    return result;
+}
+
+void noh_gl_skin_delete(noh_gl_skin *skin)
+{
+    noh_gl_buffer_delete(skin->gl, skin->ledger, &skin->buffer);
+    noh_gl_texture_delete(skin->gl, skin->ledger, &skin->texture);
+}
+
+/* ---- asking ---- */
+
+const noh_gl_skin_plan *noh_gl_skin_plan_of(const noh_gl_skin *skin)
+{
+    return &skin->plan;
+}
+
+uint32_t noh_gl_skin_instance(const noh_gl_skin *skin, uint32_t mesh, uint32_t i)
+{
+    return skin->meshes[mesh].first_instance + i;
+}
+
+noh_gl_skin_binding noh_gl_skin_binding_of(const noh_gl_skin *skin, uint32_t instance)
+{
+    const noh_gl_skin_mesh *m = mesh_of(skin, instance);
+    noh_gl_skin_binding binding = { NOH_PALETTE_AUTO, 0, 0, 0, 0, 0, 0 };
+    binding.mode = skin->plan.mode;
+    binding.name = skin->plan.mode == NOH_PALETTE_TEXTURE ? skin->texture.name : skin->buffer.name;
+    binding.first = first_row(m, instance);
+    binding.stride = m->stride;
+    binding.width_log2 = skin->width_log2;
+    binding.align = skin->align;
+    return binding;
+}
+
+/* ---- sending ---- */
+
+void noh_gl_skin_update(noh_gl_skin *skin)
+{
+    const noh_gl_api *gl = skin->gl;
+    uint32_t first = skin->dirty_first, end = skin->dirty_end;
+    if (first >= end) {
+        return;
+    }
+    if (skin->plan.mode == NOH_PALETTE_UNIFORM) {
+        gl->BindBuffer(GL_UNIFORM_BUFFER, skin->buffer.name);
+        gl->BufferSubData(GL_UNIFORM_BUFFER, (GLintptr)first * 16, (GLsizeiptr)(end - first) * 16, skin->rows + 4u * (size_t)first);
+        gl->BindBuffer(GL_UNIFORM_BUFFER, 0);
+    } else {
+        uint32_t y = first >> skin->width_log2, height = ((end - 1u) >> skin->width_log2) + 1u - y;
+        gl->ActiveTexture(GL_TEXTURE0);
+        gl->BindTexture(GL_TEXTURE_2D, skin->texture.name);
+        gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+        gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, (GLint)y, (GLsizei)skin->plan.width, (GLsizei)height, GL_RGBA, GL_FLOAT,
+                          skin->rows + ((size_t)y << skin->width_log2) * 4u);
+        gl->BindTexture(GL_TEXTURE_2D, 0);
+    }
+    skin->dirty_first = UINT32_MAX;
+    skin->dirty_end = 0;
+}

@@ -1,0 +1,40 @@
+/* gl_skin_internal.h (private to gl_skin*.c): how palettes are laid out. */
+#ifndef NOH_GL_GL_SKIN_INTERNAL_H
+#define NOH_GL_GL_SKIN_INTERNAL_H
+
+#include "base/arena.h"
+#include "gl/gl_skin.h"
+
+#define NOH_CROWD_ROWS 4u            /* before an instance's palettes in a texture: world, tile (crowd_row) */
+#define NOH_SKIN_ROWS_MAX (1u << 26) /* 1 GiB */
+
+/* One mesh of the set. */
+typedef struct noh_gl_skin_mesh {
+    noh_mesh mesh;
+    uint32_t instance_count, first_instance;
+    uint32_t first_row, stride; /* of the first instance; from one to the next */
+} noh_gl_skin_mesh;
+
+struct noh_gl_skin {
+    const noh_gl_api *gl;
+    noh_gl_ledger *ledger;
+    noh_gl_skin_plan plan;
+    uint32_t align, width_log2;
+    uint32_t mesh_count;
+    noh_gl_skin_mesh *meshes;        /* [mesh_count] */
+    float *rows;                     /* [texel_count, in a texture width * height][4] */
+    uint32_t dirty_first, dirty_end; /* rows that were not sent yet; none where first >= end */
+    noh_gl_buffer buffer;            /* one of these two */
+    noh_gl_texture texture;
+};
+
+/* Rows that palettes start at multiples of. */
+uint32_t noh_gl_skin_align(const noh_gl_skin_plan *plan, const noh_gl_caps *caps);
+
+/* Walk the set as init will; returns the rows. `meshes` may be NULL. */
+uint64_t noh_gl_skin_layout(const noh_gl_skin_desc *desc, noh_palette_mode mode, uint32_t align, noh_gl_skin_mesh *meshes);
+
+/* Carve everything behind the struct itself from an arena (or measure it). `skin` NULL only measures. */
+void noh_gl_skin_carve(noh_arena *arena, uint32_t mesh_count, const noh_gl_skin_plan *plan, noh_gl_skin *skin);
+
+#endif

@@ -1,0 +1,55 @@
+/* gl_variants.h: the programs of the plain renderer, one for each kind of mesh.
+ *
+ *   noh_gl_variant_key_of   what a mesh with these bindings is drawn by
+ *   noh_gl_variant_create   compile mesh.vert and mesh.frag for a key
+ *   noh_gl_variant_delete
+ *   noh_gl_variant_skin     bind an instance's palettes
+ *
+ * A key is the set of defines that common_skin.glsl, common_layers.glsl and mesh.frag name. */
+#ifndef NOH_GL_GL_VARIANTS_H
+#define NOH_GL_GL_VARIANTS_H
+
+#include "gl/gl_skin.h"
+
+typedef enum noh_debug_view { NOH_VIEW_LIT, NOH_VIEW_POSITION, NOH_VIEW_NORMAL, NOH_VIEW_TANGENT } noh_debug_view;
+
+typedef struct noh_gl_variant_key {
+    uint8_t influences;      /* stored per vertex: 0 (also: the bind pose), 1, 2, 4, 8 */
+    uint8_t drawn;           /* of these: 1, 2, 4, 8; 0 where influences is */
+    uint8_t texture;         /* 1: palettes from a texture, or a crowd */
+    uint8_t dual_quaternion;
+    uint8_t texels;          /* the mesh has NOH_MESH_TEXELS */
+    uint8_t crowd;
+    uint8_t layers_uint;     /* as in noh_gl_morph_binding.is_uint */
+    uint8_t view;            /* noh_debug_view */
+} noh_gl_variant_key;
+
+typedef struct noh_gl_variant {
+    noh_gl_variant_key key;
+    GLuint program;
+    GLint u_view_projection, u_world, u_normal, u_uv, u_morph, u_skin, u_camera, u_key, u_base_color, u_material, u_bounds_min,
+        u_bounds_size;
+} noh_gl_variant;
+
+/* Texture units of mesh.vert and mesh.frag; the uniform block binding is 0. */
+#define NOH_UNIT_LAYERS 0u
+#define NOH_UNIT_BASE_COLOR 1u
+#define NOH_UNIT_PALETTES 2u
+
+/* skin NULL: the bind pose. crowd: skin is then not NULL, and in a texture. */
+noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin_binding *skin, int crowd, int layers_uint,
+                                         noh_debug_view view);
+
+/* varyings[varying_count] for transform feedback, interleaved; 0: none. `log` as in
+ * noh_gl_program_create. errors  as there */
+noh_result noh_gl_variant_create(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_variant_key key,
+                                 const char *const *varyings, uint32_t varying_count, noh_gl_variant *out, char *log,
+                                 size_t log_bytes, noh_error *error);
+void noh_gl_variant_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_variant *variant);
+
+/* Bind the palettes for the submeshes of one palette; the variant is in use. Leaves the texture bound
+ * at NOH_UNIT_PALETTES, or the buffer's range at uniform binding 0. */
+void noh_gl_variant_skin(const noh_gl_api *api, const noh_gl_variant *variant, const noh_mesh *mesh,
+                         const noh_gl_skin_binding *skin, uint32_t palette);
+
+#endif

@@ -1,0 +1,232 @@
+/* common_skin.glsl: vertices moved by the joints of a palette (rows C3.4-C3.8, C8.7, E1-E4).
+ * Include it in your own vertex shader after common_layers.glsl; call morph_vertex for the texel
+ * to fetch deltas from, add them in bind space, then call skin. What is bound and set comes from a
+ * noh_gl_skin_binding. Define
+ *
+ *   INFLUENCES        joints stored per vertex: 0 (skin does nothing), 1, 2, 4 or 8
+ *   DRAWN             how many of them move it, the strongest first, their weights made to sum to 1
+ *   PALETTE_TEXTURE   where palettes are in a texture, else they are in a uniform block
+ *   DUAL_QUATERNION   where a joint is 4 rows: a rotation, a dual part, a stretch in two; else it is 3 rows of a matrix
+ *   MORPH_TEXELS      where the mesh has NOH_MESH_TEXELS: doubled vertices share a morph texel
+ *   CROWD             where one draw has many instances; wants PALETTE_TEXTURE */
+#if INFLUENCES == 1
+layout(location = 5) in highp uint a_influences;
+#elif INFLUENCES == 2
+layout(location = 5) in highp uvec2 a_influences;
+#elif INFLUENCES == 4
+layout(location = 5) in highp uvec3 a_influences;
+#elif INFLUENCES == 8
+layout(location = 5) in highp uvec4 a_influences;
+layout(location = 6) in highp uvec3 a_more_influences;
+#endif
+
+/* ---- what is fetched ---- */
+
+#ifdef MORPH_TEXELS
+layout(location = 7) in highp uint a_texel; /* above the lowest 22 bits: the vertex's palette */
+
+int morph_vertex()
+{
+    return int(a_texel & 0x3fffffu);
+}
+#else
+int morph_vertex()
+{
+    return gl_VertexID;
+}
+#endif
+
+#ifdef DUAL_QUATERNION
+#define JOINT_ROWS 4
+#else
+#define JOINT_ROWS 3
+#endif
+
+#ifdef PALETTE_TEXTURE
+uniform highp sampler2D u_palettes;
+uniform highp ivec4 u_skin; /* first texel, texels from an instance to the next, width log2, texel of the palette in an instance */
+
+vec4 skin_texel(int i)
+{
+    return texelFetch(u_palettes, ivec2(i & ((1 << u_skin.z) - 1), i >> u_skin.z), 0);
+}
+
+int skin_instance()
+{
+#ifdef CROWD
+    return u_skin.x + gl_InstanceID * u_skin.y;
+#else
+    return u_skin.x;
+#endif
+}
+
+/* Rows 0..2 place the instance in the world, 3 is its tile for morph_fetch_tile. */
+vec4 crowd_row(int i)
+{
+    return skin_texel(skin_instance() + i);
+}
+
+#define JOINT_ROW(i) (skin_instance() + u_skin.w + JOINT_ROWS * (i))
+#define PALETTE_ROW(i) skin_texel(i)
+#else
+layout(std140) uniform palette_block {
+    highp vec4 u_palette[256 * JOINT_ROWS];
+};
+#define JOINT_ROW(i) (JOINT_ROWS * (i))
+#define PALETTE_ROW(i) u_palette[i]
+#endif
+
+/* ---- influences: runtime/pack/format.h ---- */
+
+#if INFLUENCES > 0
+#if INFLUENCES == 1
+#define PLACES_LOW a_influences
+#else
+#define PLACES_LOW a_influences.x
+#endif
+#if INFLUENCES == 8
+#define PLACES_HIGH a_influences.y
+#else
+#define PLACES_HIGH 0u
+#endif
+
+/* The first row of the i-th joint. */
+int joint_row(int i)
+{
+    uint places = i < 4 ? PLACES_LOW : PLACES_HIGH;
+    return JOINT_ROW(int(places >> uint(8 * (i & 3)) & 255u));
+}
+
+/* The weights that are stored, as integers of 2^-22; the first is what they leave of 1. */
+void stored_weights(out float w[INFLUENCES])
+{
+#if INFLUENCES == 2
+    w[1] = float(a_influences.y);
+#elif INFLUENCES > 2
+#if INFLUENCES == 4
+    uvec2 words = a_influences.yz;
+#else
+    uvec2 words = a_influences.zw;
+    uvec3 more = a_more_influences;
+    w[4] = float(more.x & 0x1fffffu);
+    w[5] = float(more.x >> 21 | (more.y & 0x3ffu) << 11);
+    w[6] = float(more.y >> 10 & 0x1fffffu);
+    w[7] = float(more.y >> 31 | (more.z & 0xfffffu) << 1);
+#endif
+    w[1] = float(words.x & 0x3fffffu);
+    w[2] = float(words.x >> 22 | (words.y & 0x7ffu) << 10);
+    w[3] = float(words.y >> 11);
+#endif
+    w[0] = 4194304.0;
+    for (int i = 1; i < INFLUENCES; i++) {
+        w[0] -= w[i];
+    }
+}
+
+/* Of the joints that are drawn; they sum to 1. */
+void drawn_weights(out float drawn[DRAWN])
+{
+    float stored[INFLUENCES], sum = 4194304.0;
+    stored_weights(stored);
+#if DRAWN < INFLUENCES
+    sum = stored[0];
+    for (int i = 1; i < DRAWN; i++) {
+        sum += stored[i];
+    }
+#endif
+    drawn[0] = 1.0;
+    for (int i = 1; i < DRAWN; i++) {
+        drawn[i] = stored[i] / sum;
+        drawn[0] -= drawn[i];
+    }
+}
+
+vec3 unit_or(vec3 v, vec3 otherwise)
+{
+    float square = dot(v, v);
+    return square > 1e-30 ? v * inversesqrt(square) : otherwise;
+}
+
+/* ---- the two ways to blend ---- */
+
+#ifdef DUAL_QUATERNION
+vec3 rotate(vec4 q, vec3 v)
+{
+    return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v);
+}
+
+/* The stretch is blended first, linearly: xx, yy, zz, xy and then xz, yz of a symmetric matrix. Then the rigid
+ * motion: dual quaternions summed on the strongest joint's side of the sphere and made unit (Kavan et al. 2008). */
+void skin(inout vec3 position, inout vec3 normal, inout vec4 tangent)
+{
+    float w[DRAWN];
+    int row = joint_row(0);
+    vec4 pivot = PALETTE_ROW(row), rotation, dual, h, more;
+    vec3 x, y, z, cx, cy, cz;
+    float size, side;
+    drawn_weights(w);
+    rotation = pivot * w[0];
+    dual = PALETTE_ROW(row + 1) * w[0];
+    h = PALETTE_ROW(row + 2) * w[0];
+    more = PALETTE_ROW(row + 3) * w[0];
+    for (int i = 1; i < DRAWN; i++) {
+        vec4 q;
+        row = joint_row(i);
+        q = PALETTE_ROW(row);
+        side = dot(pivot, q) < 0.0 ? -w[i] : w[i];
+        rotation += q * side;
+        dual += PALETTE_ROW(row + 1) * side;
+        h += PALETTE_ROW(row + 2) * w[i];
+        more += PALETTE_ROW(row + 3) * w[i];
+    }
+    size = 1.0 / sqrt(dot(rotation, rotation));
+    rotation *= size;
+    dual *= size;
+    x = vec3(h.x, h.w, more.x);
+    y = vec3(h.w, h.y, more.y);
+    z = vec3(more.x, more.y, h.z);
+    cx = cross(y, z);
+    cy = cross(z, x);
+    cz = cross(x, y);
+    side = dot(x, cx) < 0.0 ? -1.0 : 1.0;
+    position = rotate(rotation, vec3(dot(x, position), dot(y, position), dot(z, position))) +
+               2.0 * (rotation.w * dual.xyz - dual.w * rotation.xyz + cross(rotation.xyz, dual.xyz));
+    normal = unit_or(rotate(rotation, vec3(dot(cx, normal), dot(cy, normal), dot(cz, normal)) * side), normal);
+    tangent = vec4(unit_or(rotate(rotation, vec3(dot(x, tangent.xyz), dot(y, tangent.xyz), dot(z, tangent.xyz))), tangent.xyz),
+                   tangent.w * side);
+}
+#else
+/* The matrices are blended first. Normals go by the cofactors, which are the inverse transpose up to a
+ * factor (rows C3.8, E4); a mirroring joint turns them and the tangent's handedness round. */
+void skin(inout vec3 position, inout vec3 normal, inout vec4 tangent)
+{
+    float w[DRAWN];
+    int row = joint_row(0);
+    vec4 x, y, z, p = vec4(position, 1.0);
+    vec3 cx, cy, cz;
+    float side;
+    drawn_weights(w);
+    x = PALETTE_ROW(row) * w[0];
+    y = PALETTE_ROW(row + 1) * w[0];
+    z = PALETTE_ROW(row + 2) * w[0];
+    for (int i = 1; i < DRAWN; i++) {
+        row = joint_row(i);
+        x += PALETTE_ROW(row) * w[i];
+        y += PALETTE_ROW(row + 1) * w[i];
+        z += PALETTE_ROW(row + 2) * w[i];
+    }
+    cx = cross(y.xyz, z.xyz);
+    cy = cross(z.xyz, x.xyz);
+    cz = cross(x.xyz, y.xyz);
+    side = dot(x.xyz, cx) < 0.0 ? -1.0 : 1.0;
+    position = vec3(dot(x, p), dot(y, p), dot(z, p));
+    normal = unit_or(vec3(dot(cx, normal), dot(cy, normal), dot(cz, normal)) * side, normal);
+    tangent = vec4(unit_or(vec3(dot(x.xyz, tangent.xyz), dot(y.xyz, tangent.xyz), dot(z.xyz, tangent.xyz)), tangent.xyz),
+                   tangent.w * side);
+}
+#endif
+#else
+void skin(inout vec3 position, inout vec3 normal, inout vec4 tangent)
+{
+}
+#endif
