@@ -208,7 +208,7 @@ install: all
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib
 	install -m 755 $(BUILD)/noh $(DESTDIR)$(PREFIX)/bin
 	install -m 644 $(BUILD)/libnoh.a $(DESTDIR)$(PREFIX)/lib
-	cd runtime && for h in noh.h $$(find . -name '*.h' ! -name '*_internal.h' ! -name '*_kernel.h' ! -name check.h); do \
+	cd runtime && for h in noh.h $$(find . -name '*.h' ! -name '*_internal.h' ! -name '*_kernel.h' ! -name check.h ! -name lanes.h ! -name skin_blend.h); do \
 	    install -D -m 644 $$h $(DESTDIR)$(PREFIX)/include/noh/$$h; done
 
 sizes: $(BUILD)/libnoh.a

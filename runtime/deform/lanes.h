@@ -10,10 +10,8 @@
 
 #include "base/math.h"
 
-/* -O2 leaves short loops over arrays of lanes as they are, in memory; unrolled they stay in registers. */
-#if defined(__clang__)
-#define NOH_UNROLL _Pragma("unroll")
-#elif defined(__GNUC__)
+/* gcc's -O2 leaves short loops over arrays of lanes as they are, in memory; unrolled they stay in registers. */
+#if defined(__GNUC__) && !defined(__clang__)
 #define NOH_UNROLL _Pragma("GCC unroll 8")
 #else
 #define NOH_UNROLL

@@ -61,13 +61,15 @@ void noh_skin_apply(const float m[12], noh_vertex *vertex)
     for (int r = 0; r < 3; r++) {
         vertex->position[r] = m[4 * r] * p[0] + m[4 * r + 1] * p[1] + m[4 * r + 2] * p[2] + m[4 * r + 3];
         vertex->normal[r] = sign * (c[3 * r] * n[0] + c[3 * r + 1] * n[1] + c[3 * r + 2] * n[2]);
-        vertex->tangent[r] = m[4 * r] * t[0] + m[4 * r + 1] * t[1] + m[4 * r + 2] * t[2];
     }
     unit_or_rest(vertex->normal, n);
-    if (t[3] != 0.0f) {
+    if (t[3] != 0.0f) { /* else the mesh has no tangents */
+        for (int r = 0; r < 3; r++) {
+            vertex->tangent[r] = m[4 * r] * t[0] + m[4 * r + 1] * t[1] + m[4 * r + 2] * t[2];
+        }
         unit_or_rest(vertex->tangent, t);
+        vertex->tangent[3] = sign * t[3];
     }
-    vertex->tangent[3] = t[3] != 0.0f ? sign * t[3] : 0.0f;
 }
 
 static void blend_matrix(const noh_mesh *mesh, const float *matrices, uint32_t index, float m[12])
