@@ -35,14 +35,14 @@ static void add_joint(noh_transform *sum, const noh_transform *joint, float weig
 void noh_blend_add(noh_blend *blend, const noh_transform *pose, const float *floats, float weight, noh_mask_view mask)
 {
     blend->total += weight;
-    for (uint32_t i = 0; i < blend->joint_count; i++) {
+    for (uint32_t i = 0; pose && i < blend->joint_count; i++) {
         float w = masked(mask.joints, i, weight);
         if (w > 0.0f) {
             add_joint(&blend->sum[i], &pose[i], w);
             blend->weights[i] += w;
         }
     }
-    for (uint32_t i = 0; i < blend->float_count; i++) {
+    for (uint32_t i = 0; floats && i < blend->float_count; i++) {
         float w = masked(mask.floats, i, weight);
         blend->float_sum[i] += w * floats[i];
         blend->float_weights[i] += w;

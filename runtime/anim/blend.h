@@ -36,7 +36,7 @@ typedef struct noh_mask_view {
 
 void noh_blend_begin(noh_blend *blend);
 
-/* ranges  weight > 0 */
+/* pose, floats NULL: not added. ranges  weight > 0 */
 void noh_blend_add(noh_blend *blend, const noh_transform *pose, const float *floats, float weight, noh_mask_view mask);
 
 /* Divide by the weights. defaults may be NULL: zero. */

@@ -91,8 +91,10 @@ static void sum_group(const view *v, noh_track_group group)
     for (uint32_t i = 0; i < v->c->track_count; i++) {
         const noh_track *t = noh_controller_track(v->c, i);
         if (t->group == group && !(t->flags & NOH_TRACK_ADDITIVE) && is_sampled(v->c, t)) {
+            const uint32_t flags = v->set->motions[t->motion].flags;
             sample_at(v, t->motion, clip_tick(v, t), s->sample, s->float_sample);
-            noh_blend_add(&s->blend, s->sample, s->float_sample, t->weight, noh_mask_of(v->set, t->mask));
+            noh_blend_add(&s->blend, flags & NOH_MOTION_NO_JOINTS ? NULL : s->sample, flags & NOH_MOTION_NO_FLOATS ? NULL : s->float_sample,
+                          t->weight, noh_mask_of(v->set, t->mask));
         }
     }
 }

@@ -55,7 +55,7 @@ static const char *bad_motion(const noh_anim_set *set, const noh_motion *motion)
     const char *what;
     if (motion->loop < NOH_LOOP_ONCE || motion->loop > NOH_LOOP_PING_PONG) return "loop";
     if (motion->duration_ticks > NOH_DURATION_MAX) return "duration_ticks";
-    if (motion->flags & ~NOH_MOTION_ADDITIVE) return "motion flags";
+    if (motion->flags & ~NOH_MOTION_FLAGS) return "motion flags";
     what = bad_events(set, motion);
     return what ? what : bad_markers(set, motion);
 }

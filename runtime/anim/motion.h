@@ -30,7 +30,10 @@ typedef struct noh_marker {
     uint32_t id;
 } noh_marker;
 
-#define NOH_MOTION_ADDITIVE 1u /* its poses are differences already: see noh_pose_difference */
+#define NOH_MOTION_ADDITIVE 1u  /* its poses are differences already: see noh_pose_difference */
+#define NOH_MOTION_NO_JOINTS 2u /* moves floats alone: among other tracks it leaves joints to those that move them */
+#define NOH_MOTION_NO_FLOATS 4u /* likewise: a walk leaves the face to the track that speaks */
+#define NOH_MOTION_FLAGS (NOH_MOTION_ADDITIVE | NOH_MOTION_NO_JOINTS | NOH_MOTION_NO_FLOATS)
 
 typedef struct noh_motion {
     uint32_t name_hash;

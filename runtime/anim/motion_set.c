@@ -267,6 +267,7 @@ static void fill_motion(const noh_motion_binding *b, uint32_t index, const noh_p
     to->loop = clip->info.flags & NOH_CLIP_FLAG_LOOP ? NOH_LOOP_REPEAT : NOH_LOOP_ONCE;
     fill_keys(from, p, to);
     fill_runs(b, clip, p, &p->clips[m]);
+    to->flags = (p->clips[m].joint_count ? 0u : NOH_MOTION_NO_JOINTS) | (p->clips[m].float_runs ? 0u : NOH_MOTION_NO_FLOATS);
 }
 
 static void fill(const noh_motion_binding *b, parts *p)

@@ -71,7 +71,7 @@ static void test_set_fields_broken_in_turn(void **state)
     s.motions[1].loop = 0; bad_set(&s, NOH_ERR_DATA, "loop");
     s.motions[1].loop = 4; bad_set(&s, NOH_ERR_DATA, "loop");
     s.motions[1].duration_ticks = 0x80000000u; bad_set(&s, NOH_ERR_DATA, "duration_ticks");
-    s.motions[1].flags = 2; bad_set(&s, NOH_ERR_DATA, "motion flags");
+    s.motions[1].flags = 8; bad_set(&s, NOH_ERR_DATA, "motion flags");
     s.motions[1].first_event = 9; bad_set(&s, NOH_ERR_DATA, "event range");
     s.motions[1].first_event = 1, s.motions[1].event_count = 0xffffffffu; bad_set(&s, NOH_ERR_DATA, "event range");
     s.motions[1].event_count = 1, s.events[0].tick = 30001; bad_set(&s, NOH_ERR_DATA, "event tick past the duration");
@@ -107,7 +107,7 @@ static void test_controller_desc_fields_broken_in_turn(void **state)
     d = fine, d.set = NULL; bad_controller(d, "set");
     d = fine, d.track_count = NOH_TRACKS_MAX + 1u; bad_controller(d, "track_count");
     d = fine, d.change_count = NOH_CHANGES_MAX + 1u; bad_controller(d, "change_count");
-    d = fine, d.flags = 2; bad_controller(d, "flags");
+    d = fine, d.flags = 8; bad_controller(d, "flags");
     s.set.joint_count = s.set.float_count = 0; bad_controller(fine, "set");
 }
 
@@ -588,6 +588,28 @@ static void test_masked_layer(void **state)
     }
 }
 
+/* A walk that moves no floats and a face that moves no joints, together: each is what it is alone. */
+static void test_motions_of_joints_and_of_floats(void **state)
+{
+    stage g;
+    noh_transform walk[JOINTS], face[JOINTS];
+    float walk_floats[FLOATS], face_floats[FLOATS];
+    (void)state;
+    stage_open(&g, 2, 0);
+    g.s.motions[WALK].flags = NOH_MOTION_NO_FLOATS;
+    g.s.motions[WAVE].flags = NOH_MOTION_NO_JOINTS;
+    scene_pose(&g.s, WALK, 0, walk, walk_floats);
+    scene_pose(&g.s, WAVE, 0, face, face_floats);
+    start(&g, 0, track_of(WALK, 1.0f));
+    start(&g, 1, track_of(WAVE, 0.4f));
+    take_pose(&g);
+    assert_true(pose_apart(g.pose, walk, JOINTS) < 1e-6);
+    assert_true(floats_apart(g.floats, face_floats, FLOATS) < 1e-6);
+    g.s.motions[WALK].flags = g.s.motions[WAVE].flags = 0;
+    take_pose(&g);
+    assert_true(pose_apart(g.pose, walk, JOINTS) > 1e-2 && floats_apart(g.floats, face_floats, FLOATS) > 1e-2);
+}
+
 static void test_lod(void **state)
 {
     stage g;
@@ -851,6 +873,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_one_track_is_its_motion),
         cmocka_unit_test(errata_C5_2_priority_is_the_blend_group),
         cmocka_unit_test(test_masked_layer),
+        cmocka_unit_test(test_motions_of_joints_and_of_floats),
         cmocka_unit_test(test_lod),
         cmocka_unit_test(test_additive_tracks),
         cmocka_unit_test(errata_C4_4_clones_share_nothing_they_write),

@@ -23,29 +23,24 @@ bounds bounds_union(bounds a, bounds b)
 
 static void grow_item(bounds *b, const scene *s, const pack_file *file, uint32_t item, int face)
 {
-    const noh_mesh *mesh = &s->meshes[s->items[item].mesh];
+    const noh_mesh_header *h = s->meshes[s->items[item].mesh].header;
     const float *world = scene_world(s, file, item);
-    uint32_t count = face ? mesh->header->touched_count : mesh->header->vertex_count;
-    size_t bytes = noh_morph_layers_size(mesh);
-    void *memory = malloc(bytes + 16);
-    noh_morph_layers layers;
-    if (!memory) {
+    uint32_t count = face ? h->touched_count : h->vertex_count;
+    noh_vertex *vertices = malloc(sizeof *vertices * (count + 1u));
+    if (!vertices || scene_deform(s, item, count, vertices)) {
+        free(vertices);
         return;
     }
-    noh_morph_layers_init(memory, bytes + 16, mesh, &layers, NULL);
-    noh_morph_accumulate(mesh, s->items[item].weights, &layers);
     for (uint32_t v = 0; v < count; v++) {
-        noh_vertex vertex;
-        double p[3];
-        noh_morph_vertex(mesh, &layers, v, &vertex);
+        const float *p = vertices[v].position;
+        double placed[3];
         for (int r = 0; r < 3; r++) {
             const float *row = world + 4 * r;
-            p[r] = (double)row[0] * vertex.position[0] + (double)row[1] * vertex.position[1] + (double)row[2] * vertex.position[2] +
-                   (double)row[3];
+            placed[r] = (double)row[0] * p[0] + (double)row[1] * p[1] + (double)row[2] * p[2] + (double)row[3];
         }
-        grow(b, p);
+        grow(b, placed);
     }
-    free(memory);
+    free(vertices);
 }
 
 bounds scene_bounds(const scene *s, const pack_file *file, int face)

@@ -9,9 +9,9 @@
 #include "load.h"
 
 typedef struct dump_args {
-    const char *pack, *output, *clip, *anim, *path, *accumulate, *driver;
+    const char *pack, *output, *anim, *path, *accumulate, *driver;
     double time_s;
-    option_list weights;
+    option_list weights, clips;
     load_options load;
 } dump_args;
 
@@ -41,10 +41,6 @@ static void transform_normal(const float w[12], const float n[3], double out[3])
         out[i] /= length;
     }
 }
-
-typedef struct fetched {
-    float *positions, *normals, *tangents; /* [vertex_count][3]; NULL: use the CPU's layers */
-} fetched;
 
 static void dump_vertex(byte_buffer *out, const noh_vertex *v, const float world[12])
 {
@@ -77,45 +73,51 @@ static void dump_faces(byte_buffer *out, const noh_mesh *mesh, uint32_t first)
     }
 }
 
-static int dump_item(byte_buffer *out, const pack_file *file, const scene *s, uint32_t item, const fetched *from, uint32_t *first)
+static void dump_item(byte_buffer *out, const pack_file *file, const scene *s, uint32_t item, const noh_vertex *vertices, uint32_t *first)
 {
     const noh_mesh *mesh = &s->meshes[s->items[item].mesh];
-    size_t bytes = noh_morph_layers_size(mesh);
-    void *memory = malloc(bytes + 16);
-    noh_morph_layers layers;
-    if (!memory) {
-        return tool_fail(file->path, "out of memory");
-    }
-    noh_morph_layers_init(memory, bytes + 16, mesh, &layers, NULL);
-    noh_morph_accumulate(mesh, s->items[item].weights, &layers);
     print_to(out, "o %s\n", mesh->name);
     for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
-        noh_vertex vertex;
-        noh_morph_vertex(mesh, &layers, v, &vertex);
-        if (from->positions) {
-            memcpy(vertex.position, from->positions + 3 * (size_t)v, sizeof vertex.position);
-            memcpy(vertex.normal, from->normals + 3 * (size_t)v, sizeof vertex.normal);
-        }
-        dump_vertex(out, &vertex, scene_world(s, file, item));
+        dump_vertex(out, &vertices[v], scene_world(s, file, item));
     }
     dump_faces(out, mesh, *first);
     *first += mesh->header->vertex_count;
-    free(memory);
-    return 0;
 }
 
-static int fetch_item(load *l, readback *r, uint32_t item, fetched *to)
+/* Positions and normals as the GPU's vertex shader has them. */
+static int fetch_item(load *l, readback *r, uint32_t item, noh_vertex *vertices)
 {
     const noh_gl_mesh *mesh = &l->meshes[l->scene->items[item].mesh];
-    noh_gl_morph_binding binding = noh_gl_morph_binding_of(l->morph.morph, l->item_instances[item]);
-    size_t bytes = (size_t)mesh->mesh.header->vertex_count * 12;
-    to->positions = malloc(bytes);
-    to->normals = malloc(bytes);
-    to->tangents = malloc(bytes);
-    if (!to->positions || !to->normals || !to->tangents) {
-        return tool_fail(l->file->path, "out of memory");
+    noh_gl_morph_binding morph = noh_gl_morph_binding_of(l->morph.morph, l->item_instances[item]);
+    noh_gl_skin_binding skin;
+    uint32_t count = mesh->mesh.header->vertex_count;
+    readback_vertex *read = malloc(sizeof *read * (count + 1u));
+    int status = read ? 0 : tool_fail(l->file->path, "out of memory");
+    if (!status) {
+        status = readback_skinned(r, mesh, &morph, load_skin_binding(l, item, &skin), 0, read);
     }
-    return readback_vertices(r, mesh, &binding, to->positions, to->normals, to->tangents);
+    for (uint32_t v = 0; v < count && !status; v++) {
+        memcpy(vertices[v].position, read[v].position, sizeof vertices[v].position);
+        memcpy(vertices[v].normal, read[v].normal, sizeof vertices[v].normal);
+    }
+    free(read);
+    return status;
+}
+
+/* l, r NULL: the CPU's vertices. */
+static int dump_items(byte_buffer *out, const pack_file *file, const scene *s, load *l, readback *r)
+{
+    uint32_t first = 1;
+    int status = 0;
+    for (uint32_t i = 0; i < s->item_count && !status; i++) {
+        uint32_t count = s->meshes[s->items[i].mesh].header->vertex_count;
+        noh_vertex *vertices = malloc(sizeof *vertices * (count + 1u));
+        status = vertices ? scene_deform(s, i, count, vertices) : tool_fail(file->path, "out of memory");
+        if (!status && l) status = fetch_item(l, r, i, vertices);
+        if (!status) dump_item(out, file, s, i, vertices, &first);
+        free(vertices);
+    }
+    return status;
 }
 
 static int dump_gpu(byte_buffer *out, const pack_file *file, const scene *s, const dump_args *a)
@@ -123,7 +125,6 @@ static int dump_gpu(byte_buffer *out, const pack_file *file, const scene *s, con
     gpu g;
     load l;
     readback r;
-    uint32_t first = 1;
     int status = gpu_open(&g, a->driver);
     if (status) {
         return status;
@@ -132,29 +133,13 @@ static int dump_gpu(byte_buffer *out, const pack_file *file, const scene *s, con
     if (!status) {
         status = load_update(&l, NULL);
         if (!status) status = readback_open(&r, &g, noh_gl_morph_plan_of(l.morph.morph)->layer_format == GL_RGBA32UI);
-        for (uint32_t i = 0; i < s->item_count && !status; i++) {
-            fetched f = { NULL, NULL, NULL };
-            status = fetch_item(&l, &r, i, &f);
-            if (!status) status = dump_item(out, file, s, i, &f, &first);
-            free(f.positions);
-            free(f.normals);
-            free(f.tangents);
+        if (!status) {
+            status = dump_items(out, file, s, &l, &r);
+            readback_close(&r);
         }
-        readback_close(&r);
         load_close(&l);
     }
     gpu_close(&g);
-    return status;
-}
-
-static int dump_cpu(byte_buffer *out, const pack_file *file, const scene *s)
-{
-    const fetched none = { NULL, NULL, NULL };
-    uint32_t first = 1;
-    int status = 0;
-    for (uint32_t i = 0; i < s->item_count && !status; i++) {
-        status = dump_item(out, file, s, i, &none, &first);
-    }
     return status;
 }
 
@@ -163,11 +148,11 @@ static int dump_scene(const pack_file *file, scene *s, const dump_args *a)
     byte_buffer out = { NULL, 0, 0, 0 };
     noh_error error = { NOH_OK, "", 0, 0 };
     int status = scene_open_anim(s, file, a->anim);
-    if (!status && a->clip) status = scene_set_clip(s, file, a->clip, a->time_s);
+    if (!status && a->clips.count) status = scene_set_clips(s, file, &a->clips, a->time_s);
     if (!status) status = scene_set_weights(s, file, &a->weights);
     if (!status) {
         print_to(&out, "# baked by noh: positions in world space, vertex colours linear\n");
-        status = a->path && a->load.path != NOH_MORPH_CPU ? dump_gpu(&out, file, s, a) : dump_cpu(&out, file, s);
+        status = a->path && a->load.path != NOH_MORPH_CPU ? dump_gpu(&out, file, s, a) : dump_items(&out, file, s, NULL, NULL);
     }
     if (!status && (out.failed || noh_file_write(a->output, out.bytes, out.count, &error))) {
         status = tool_fail(a->output, "cannot write: %s", out.failed ? "out of memory" : error.what);
@@ -180,7 +165,7 @@ static int read_args(int argc, char **argv, dump_args *a)
 {
     const option options[] = {
         { "-o", OPTION_TEXT, &a->output },        { "--weight", OPTION_LIST, &a->weights },
-        { "--clip", OPTION_TEXT, &a->clip },      { "--time", OPTION_NUMBER, &a->time_s },
+        { "--clip", OPTION_LIST, &a->clips },      { "--time", OPTION_NUMBER, &a->time_s },
         { "--path", OPTION_TEXT, &a->path },      { "--accumulate", OPTION_TEXT, &a->accumulate },
         { "--driver", OPTION_TEXT, &a->driver },    { "--anim", OPTION_TEXT, &a->anim }
     };

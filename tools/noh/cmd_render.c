@@ -5,11 +5,11 @@
 #include "stage.h"
 
 typedef struct render_args {
-    const char *pack, *output, *clip, *anim, *path, *accumulate, *driver, *debug;
+    const char *pack, *output, *anim, *path, *accumulate, *driver, *debug;
     uint32_t size[2];
     double time_s;
     int show_bones;
-    option_list weights;
+    option_list weights, clips;
     view_options view;
     load_options load;
 } render_args;
@@ -31,7 +31,7 @@ static int read_args(int argc, char **argv, render_args *a)
 {
     const option options[] = {
         { "-o", OPTION_TEXT, &a->output },          { "--size", OPTION_SIZE, a->size },
-        { "--weight", OPTION_LIST, &a->weights },   { "--clip", OPTION_TEXT, &a->clip },
+        { "--weight", OPTION_LIST, &a->weights },   { "--clip", OPTION_LIST, &a->clips },
         { "--time", OPTION_NUMBER, &a->time_s },    { "--path", OPTION_TEXT, &a->path },
         { "--accumulate", OPTION_TEXT, &a->accumulate }, { "--driver", OPTION_TEXT, &a->driver },
         { "--camera", OPTION_TEXT, &a->view.camera }, { "--debug", OPTION_TEXT, &a->debug },
@@ -90,7 +90,7 @@ static int pose_and_draw(const pack_file *file, const render_args *a)
     if (!status) {
         show_bones = stage_shows_bones(&s, file, a->show_bones);
         status = show_bones < 0 ? EXIT_FAILED : scene_open_anim(&s, file, a->anim);
-        if (!status && a->clip) status = scene_set_clip(&s, file, a->clip, a->time_s);
+        if (!status && a->clips.count) status = scene_set_clips(&s, file, &a->clips, a->time_s);
         if (!status) status = scene_set_weights(&s, file, &a->weights);
         if (!status) status = gpu_open(&g, a->driver);
         if (!status) {

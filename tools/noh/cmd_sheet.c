@@ -152,7 +152,7 @@ static int make_sheet(sheet *s, const pack_file *file)
 
 static int check_clips(const sheet_tiles *t, const char *transition)
 {
-    if ((t->blend || t->to || t->anim) && !t->clip) {
+    if ((t->blend || t->to || t->anim) && !t->clips.count) {
         return tool_usage("sheet wants --clip NAME with --blend, --to and --anim");
     }
     if (t->blend && t->to) {
@@ -170,7 +170,7 @@ static int read_args(int argc, char **argv, sheet *s)
     double tile = 192.0, tiles = 24.0, columns = 0.0;
     sheet_tiles *t = &s->tiles;
     const option options[] = {
-        { "-o", OPTION_TEXT, &s->output },       { "--clip", OPTION_TEXT, &t->clip },     { "--driver", OPTION_TEXT, &s->driver },
+        { "-o", OPTION_TEXT, &s->output },       { "--clip", OPTION_LIST, &t->clips },     { "--driver", OPTION_TEXT, &s->driver },
         { "--camera", OPTION_TEXT, &s->camera }, { "--path", OPTION_TEXT, &path },        { "--accumulate", OPTION_TEXT, &accumulate },
         { "--tile", OPTION_NUMBER, &tile },      { "--tiles", OPTION_NUMBER, &tiles },    { "--columns", OPTION_NUMBER, &columns },
         { "--target", OPTION_LIST, &t->only },   { "--anim", OPTION_TEXT, &t->anim },     { "--bones", OPTION_FLAG, &s->show_bones },

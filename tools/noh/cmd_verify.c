@@ -354,7 +354,7 @@ static int verify_load(verify_job *job)
         job->cpu_predicted = b.cpu_bytes;
         job->gpu_predicted = b.gpu_bytes;
         job->gpu_used = noh_gl_ledger_bytes(&job->g.ledger);
-        job->cpu_used = l.morph.bytes;
+        job->cpu_used = l.morph.bytes + l.skin.bytes + l.matrix_bytes;
         for (uint32_t i = 0; i < job->scene.player_count; i++) {
             const scene_player *p = &job->scene.players[i];
             job->cpu_used += p->set_bytes + p->controller_bytes + p->pose_bytes;

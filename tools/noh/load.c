@@ -37,6 +37,46 @@ static noh_gl_morph_desc morph_desc(const pack_file *file, const scene *s, const
     return desc;
 }
 
+static noh_gl_skin_desc skin_desc(const pack_file *file, const scene *s, const uint32_t *counts)
+{
+    noh_gl_skin_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.meshes = s->meshes;
+    desc.mesh_count = file->pack.mesh_count;
+    desc.instance_counts = counts;
+    return desc;
+}
+
+/* The matrices of one skin at a time; 0 where nothing that is drawn is skinned. */
+static size_t matrix_bytes(const pack_file *file, const scene *s)
+{
+    size_t most = 0;
+    for (uint32_t i = 0; i < s->item_count; i++) {
+        noh_skin skin;
+        if (noh_pack_skin_at(&file->pack, s->meshes[s->items[i].mesh].header->skin, &skin) == NOH_OK) {
+            size_t bytes = sizeof(float) * 12u * skin.header->joint_count;
+            most = bytes > most ? bytes : most;
+        }
+    }
+    return most;
+}
+
+static int add_skin(load_budget *b, const pack_file *file, const scene *s, const noh_gl_caps *caps, const uint32_t *counts)
+{
+    noh_gl_skin_desc desc = skin_desc(file, s, counts);
+    noh_error error = { NOH_OK, "", 0, 0 };
+    size_t matrices = matrix_bytes(file, s);
+    if (!matrices) {
+        return 0;
+    }
+    if (noh_gl_skin_plan_make(&desc, caps, &b->skin_plan, &error)) {
+        return tool_fail_error(file->path, &error);
+    }
+    add_part(b, b->skin_plan.cpu_bytes, b->skin_plan.gpu_bytes, "palettes", "");
+    add_part(b, matrices, 0, "skin matrices", "");
+    return 0;
+}
+
 /* What moves the scene: nothing in a pack without clips. */
 static int add_motion(load_budget *b, const pack_file *file, const scene *s, uint32_t instances)
 {
@@ -75,7 +115,7 @@ int load_budget_make(load_budget *b, const pack_file *file, const scene *s, cons
     noh_error error = { NOH_OK, "", 0, 0 };
     int status = 0;
     memset(b, 0, sizeof *b);
-    b->parts = calloc((size_t)file->pack.mesh_count + file->pack.texture_count + 11, sizeof *b->parts);
+    b->parts = calloc((size_t)file->pack.mesh_count + file->pack.texture_count + 13, sizeof *b->parts);
     b->pack_bytes = (uint64_t)file->pack.byte_count + (s->anim != file ? s->anim->pack.byte_count : 0u);
     if (!counts || !b->parts) {
         status = tool_fail(file->path, "out of memory");
@@ -85,7 +125,8 @@ int load_budget_make(load_budget *b, const pack_file *file, const scene *s, cons
         status = tool_fail_error(file->path, &error);
     } else {
         add_parts(b, file, s);
-        status = add_motion(b, file, s, o->instances);
+        status = add_skin(b, file, s, caps, counts);
+        if (!status) status = add_motion(b, file, s, o->instances);
     }
     free(counts);
     return status;
@@ -151,11 +192,23 @@ static int create_renderer(load *l, noh_debug_view view)
     desc.layers_uint = noh_gl_morph_plan_of(l->morph.morph)->layer_format == GL_RGBA32UI;
     desc.meshes = l->scene->meshes;
     desc.mesh_count = l->file->pack.mesh_count;
+    desc.palettes = l->skin.skin ? noh_gl_skin_plan_of(l->skin.skin)->mode : NOH_PALETTE_AUTO;
     if (noh_gl_renderer_create(&l->g->gl, &l->g->ledger, &desc, &l->renderer, log, sizeof log, &error)) {
         fputs(log, stderr);
         return tool_fail_error("renderer", &error);
     }
     return 0;
+}
+
+static int open_skin(load *l, const uint32_t *counts)
+{
+    noh_gl_skin_desc desc = skin_desc(l->file, l->scene, counts);
+    l->matrix_bytes = matrix_bytes(l->file, l->scene);
+    if (!l->matrix_bytes) {
+        return 0;
+    }
+    l->matrices = malloc(l->matrix_bytes);
+    return l->matrices ? gpu_skin_open(&l->skin, l->g, &desc, l->file->path) : tool_fail(l->file->path, "out of memory");
 }
 
 /* The k-th item that draws a mesh is that mesh's k-th instance. */
@@ -188,6 +241,7 @@ int load_open(load *l, gpu *g, const pack_file *file, const scene *s, const load
     if (!status) status = create_meshes(l);
     if (!status) status = create_pictures(l);
     if (!status) status = gpu_morph_open(&l->morph, g, &desc, file->path);
+    if (!status) status = open_skin(l, counts);
     if (!status) status = create_renderer(l, o->view);
     if (!status) number_items(l, counts);
     free(counts);
@@ -209,6 +263,8 @@ void load_close(load *l)
         noh_gl_renderer_delete(&l->renderer);
     }
     gpu_morph_close(&l->morph);
+    gpu_skin_close(&l->skin);
+    free(l->matrices);
     free(l->meshes);
     free(l->pictures);
     free(l->item_instances);
@@ -216,6 +272,18 @@ void load_close(load *l)
 }
 
 /* ---- using it ---- */
+
+static void update_joints(load *l)
+{
+    for (uint32_t i = 0; i < l->scene->item_count; i++) {
+        noh_skin skin;
+        if (noh_pack_skin_at(&l->file->pack, l->scene->meshes[l->scene->items[i].mesh].header->skin, &skin) == NOH_OK) {
+            scene_skin_matrices(l->scene, &skin, l->matrices);
+            noh_gl_skin_set(l->skin.skin, l->item_instances[i], l->matrices);
+        }
+    }
+    noh_gl_skin_update(l->skin.skin);
+}
 
 int load_update(load *l, noh_gl_morph_stats *stats)
 {
@@ -226,7 +294,19 @@ int load_update(load *l, noh_gl_morph_stats *stats)
         }
     }
     noh_gl_morph_update(l->morph.morph, stats);
+    if (l->skin.skin) {
+        update_joints(l);
+    }
     return 0;
+}
+
+const noh_gl_skin_binding *load_skin_binding(const load *l, uint32_t item, noh_gl_skin_binding *out)
+{
+    if (l->scene->meshes[l->scene->items[item].mesh].header->skin == NOH_NONE) {
+        return NULL;
+    }
+    *out = noh_gl_skin_binding_of(l->skin.skin, l->item_instances[item]);
+    return out;
 }
 
 const float *scene_world(const scene *s, const pack_file *file, uint32_t item)
@@ -241,8 +321,9 @@ void load_draw(load *l, const noh_gl_camera *camera)
     for (int pass = NOH_DRAW_OPAQUE; pass <= NOH_DRAW_BLENDED; pass++) {
         for (uint32_t i = 0; i < l->scene->item_count; i++) {
             noh_gl_morph_binding binding = noh_gl_morph_binding_of(l->morph.morph, l->item_instances[i]);
-            noh_gl_draw_mesh(&l->renderer, &l->meshes[l->scene->items[i].mesh], scene_world(l->scene, l->file, i), &binding, NULL,
-                             l->pictures, pass);
+            noh_gl_skin_binding skin;
+            noh_gl_draw_mesh(&l->renderer, &l->meshes[l->scene->items[i].mesh], scene_world(l->scene, l->file, i), &binding,
+                             load_skin_binding(l, i, &skin), l->pictures, pass);
         }
     }
     noh_gl_draw_end(&l->renderer);

@@ -12,6 +12,7 @@ typedef struct load_part {
 
 typedef struct load_budget {
     noh_gl_morph_plan plan;
+    noh_gl_skin_plan skin_plan; /* mode AUTO: nothing is skinned */
     load_part *parts;
     uint32_t part_count;
     uint64_t cpu_bytes, gpu_bytes, pack_bytes; /* pack_bytes: with that of --anim */
@@ -36,17 +37,23 @@ typedef struct load {
     noh_gl_texture *pictures;  /* [texture_count] */
     noh_gl_renderer renderer;
     gpu_morph morph;
+    gpu_skin skin;
+    float *matrices;           /* [joints of the largest skin][12] */
+    size_t matrix_bytes;
     uint32_t *item_instances;  /* [item_count]: the morph instance of each item of the first copy of the scene */
 } load;
 
 int load_open(load *l, gpu *g, const pack_file *file, const scene *s, const load_options *o);
 void load_close(load *l);
 
-/* Hand the scene's weights to the accumulator and accumulate. */
+/* Hand the scene's weights to the accumulator and accumulate; hand its joints to the palettes. */
 int load_update(load *l, noh_gl_morph_stats *stats);
 
 /* Draw every item: opaque, then blended. The framebuffer and viewport are the caller's. */
 void load_draw(load *l, const noh_gl_camera *camera);
+
+/* Where an item's joints are: out, or NULL for a rigid one. */
+const noh_gl_skin_binding *load_skin_binding(const load *l, uint32_t item, noh_gl_skin_binding *out);
 
 /* The item's world matrix, 3 rows of 4. */
 const float *scene_world(const scene *s, const pack_file *file, uint32_t item);

@@ -20,14 +20,14 @@ static const struct verb {
     { "budget", verb_budget, "PACK [--anim PACK] [--instances N] [--path P] [--accumulate A] [--driver D | --nominal] [--json]",
       "bytes before a load: CPU and GPU, by part" },
     { "render", verb_render,
-      "PACK -o OUT.png [--size 512x512] [--weight NAME=V]... [--clip NAME] [--time S] [--anim PACK]\n"
+      "PACK -o OUT.png [--size 512x512] [--weight NAME=V]... [--clip NAME]... [--time S] [--anim PACK]\n"
       "                 [--path P] [--accumulate auto|f32|f16] [--driver egl|osmesa|angle]\n"
       "                 [--camera face|body|AZ,EL,DIST] [--debug none|position|normal|tangent] [--bones]",
       "a picture" },
-    { "sheet", verb_sheet, "PACK -o OUT.png [--clip NAME [--anim PACK] [--tiles 24] | --target NAME...] [--tile 192] [--columns N] [--camera face]\n"
+    { "sheet", verb_sheet, "PACK -o OUT.png [--clip NAME... [--anim PACK] [--tiles 24] | --target NAME...] [--tile 192] [--columns N] [--camera face]\n"
       "                 [--blend CLIP | --to CLIP [--transition fade|inertia] [--over 0.3]] [--bones]\n"
       "                 [--path P] [--accumulate A] [--driver D]", "a contact sheet: every target at full weight, or a clip in time" },
-    { "dump", verb_dump, "PACK -o OUT.obj [--weight NAME=V]... [--clip NAME] [--time S] [--anim PACK] [--path P]",
+    { "dump", verb_dump, "PACK -o OUT.obj [--weight NAME=V]... [--clip NAME]... [--time S] [--anim PACK] [--path P]",
       "the deformed mesh, as drawn, baked to a plain one" },
     { "verify", verb_verify, "PACK [--anim PACK] [--seed N] [--instances N] [--driver D] [--json]", "every path and format against the CPU reference" },
     { "bench", verb_bench, "PACK... [--source ASSET] [--driver D] [--rounds N] [--json]", "ratios against the named baselines, in one run" },

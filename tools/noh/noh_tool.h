@@ -143,13 +143,13 @@ void scene_free(scene *s);
 void scene_close_player(scene_player *p);
 /* Take the clips from another pack (NULL: do not); before any of them is played. */
 int scene_open_anim(scene *s, const pack_file *file, const char *path);
-/* Open the clips, and so many controllers. scene_set_clip does it for one. */
+/* Open the clips, and so many controllers. scene_set_clips does it for one. */
 int scene_open_players(scene *s, const pack_file *file, uint32_t controllers);
 /* What that will take, before; add to *clips, *controllers, *poses. */
 int scene_measure_players(const scene *s, const pack_file *file, uint32_t controllers, uint64_t *clips, uint64_t *controller_bytes,
                           uint64_t *poses);
-/* Weights and joint matrices of a clip at a time; unknown names are an error that suggests the nearest. */
-int scene_set_clip(scene *s, const pack_file *file, const char *clip_name, double time_s);
+/* Weights and joint matrices of clips at a time, together; unknown names are an error that suggests the nearest. */
+int scene_set_clips(scene *s, const pack_file *file, const option_list *names, double time_s);
 /* A player's first controller as it was made; its pose, to its matrices and the scene's weights. */
 int scene_reset_player(scene_player *p);
 void scene_pose_player(scene *s, scene_player *p);
@@ -169,6 +169,11 @@ typedef struct scene_pair {
 int scene_set_pair(scene *s, const pack_file *file, const scene_pair *pair, double time);
 /* A clip's length; an error likewise. */
 int scene_clip_seconds(scene *s, const pack_file *file, const char *clip_name, double *seconds);
+/* What moves the vertices of a skin's meshes, as the scene stands: matrices[the skin's joint_count][12]. */
+void scene_skin_matrices(const scene *s, const noh_skin *skin, float *matrices);
+/* The first `count` vertices of an item as they are drawn, on the CPU, before its node's placement (scene_world).
+ * Prints an error and returns an exit code; 0 on success. */
+int scene_deform(const scene *s, uint32_t item, uint32_t count, noh_vertex *vertices);
 /* NAME=VALUE for every mesh that has such a target; suggests the nearest name otherwise. */
 int scene_set_weights(scene *s, const pack_file *file, const option_list *assignments);
 /* 0 when some mesh has the target; prints an error with the nearest name otherwise. */

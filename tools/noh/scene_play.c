@@ -258,35 +258,49 @@ void scene_pose_player(scene *s, scene_player *p)
     }
 }
 
-static int play_clip(scene *s, scene_player *p, uint32_t motion, double time_s)
+/* On the player's first track that is free. */
+static int start_clip(scene *s, scene_player *p, uint32_t motion, double time_s)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
     const double limit_s = 1e8; /* within what a track's position can be */
-    noh_track_desc track;
-    int status = scene_reset_player(p);
-    memset(&track, 0, sizeof track);
-    track.motion = motion;
-    track.position_ticks = noh_ticks_from_seconds(time_s > limit_s ? limit_s : time_s < -limit_s ? -limit_s : time_s);
-    if (!status && noh_controller_start(p->controllers[0], &p->set->anim, 0, &track, &error)) {
-        return tool_fail_error(s->anim->path, &error);
+    noh_controller *c = p->controllers[0];
+    noh_track_desc desc;
+    uint32_t track = 0;
+    while (track + 1 < c->track_count && noh_controller_track(c, track)->mode != NOH_TRACK_OFF) {
+        track++;
     }
-    if (!status) {
-        scene_pose_player(s, p);
-    }
-    return status;
+    memset(&desc, 0, sizeof desc);
+    desc.motion = motion;
+    desc.position_ticks = noh_ticks_from_seconds(time_s > limit_s ? limit_s : time_s < -limit_s ? -limit_s : time_s);
+    return noh_controller_start(c, &p->set->anim, track, &desc, &error) ? tool_fail_error(s->anim->path, &error) : 0;
 }
 
-int scene_set_clip(scene *s, const pack_file *file, const char *clip_name, double time_s)
+static int start_named(scene *s, const pack_file *file, const char *name, double time_s)
 {
-    int status = scene_open_players(s, file, 1), found = 0;
+    int status = 0, found = 0;
     for (uint32_t i = 0; i < s->player_count && !status; i++) {
         uint32_t motion;
-        if (has_motion(&s->players[i], clip_name, &motion)) {
-            status = play_clip(s, &s->players[i], motion, time_s);
+        if (has_motion(&s->players[i], name, &motion)) {
+            status = start_clip(s, &s->players[i], motion, time_s);
             found = 1;
         }
     }
-    return status || found ? status : fail_clip(s, file, clip_name);
+    return status || found ? status : fail_clip(s, file, name);
+}
+
+int scene_set_clips(scene *s, const pack_file *file, const option_list *names, double time_s)
+{
+    int status = scene_open_players(s, file, 1);
+    for (uint32_t i = 0; i < s->player_count && !status; i++) {
+        status = s->players[i].set ? scene_reset_player(&s->players[i]) : 0;
+    }
+    for (int i = 0; i < names->count && !status; i++) {
+        status = start_named(s, file, names->items[i], time_s);
+    }
+    for (uint32_t i = 0; i < s->player_count && !status; i++) {
+        if (s->players[i].set) scene_pose_player(s, &s->players[i]);
+    }
+    return status;
 }
 
 int scene_clip_seconds(scene *s, const pack_file *file, const char *clip_name, double *seconds)

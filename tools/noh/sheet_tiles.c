@@ -118,6 +118,7 @@ int sheet_tiles_open(sheet_tiles *t, const pack_file *file)
 {
     int status;
     t->file = file;
+    t->clip = t->clips.count ? t->clips.items[0] : NULL;
     status = scene_init(&t->rest, file);
     if (!status) status = scene_init(&t->posed, file);
     if (!status) status = list_names(t);
@@ -154,7 +155,7 @@ int sheet_tiles_pose(sheet_tiles *t, uint32_t tile)
                sizeof(float) * t->rest.meshes[t->rest.items[i].mesh].header->target_count);
     }
     if (t->clip) {
-        return t->blend || t->to ? pose_pair(t, tile) : scene_set_clip(&t->posed, t->file, t->clip, tile_time(t, tile));
+        return t->blend || t->to ? pose_pair(t, tile) : scene_set_clips(&t->posed, t->file, &t->clips, tile_time(t, tile));
     }
     if (tile) {
         pose_target(t, t->names[tile - 1]);

@@ -10,6 +10,7 @@
 typedef struct sheet_tiles {
     const pack_file *file;
     scene rest, posed;
+    option_list clips;   /* the first is the clip that is shown, the others play along */
     const char *clip, *blend, *to, *anim; /* clip names; NULL: none */
     int inertia;         /* how it goes to `to`: by inertia, else by a cross-fade */
     double over_s;       /* in this time */
