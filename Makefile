@@ -58,7 +58,7 @@ TESTS      := $(TEST_C:tests/%.c=$(BUILD)/tests/%)
 # The accumulation and skinning kernels built for other instruction sets, for `noh bench` and the tests.
 KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/morph_$(set).o $(BUILD)/kernel/skin_$(set).o))
 
-.PHONY: install all demo check bench help clean deps-build deps-check deps-fuzz lib tests demo-run check-run fuzz sizes
+.PHONY: install all demo demo-body check bench help clean deps-build deps-check deps-fuzz lib tests demo-run check-run fuzz sizes
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -67,6 +67,7 @@ all: $(BUILD)/noh $(BUILD)/libnoh.a
 help:
 	@echo 'make            build/noh and build/libnoh.a'
 	@echo 'make demo       install what is missing, build, make the mask, convert it, render it'
+	@echo 'make demo-body  the same with the puppet, a figure that walks, bows, looks round and dances'
 	@echo 'make check      install what is missing, build and run the tests'
 	@echo 'make bench      ratios against the named baselines (the mask, and hero/head.glb and clips where they are)'
 	@echo 'make fuzz       fuzz the pack reader and the clip decoder (FUZZ_SECONDS=60 each), needs clang'
@@ -170,6 +171,10 @@ deps-fuzz:
 demo: deps-build
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/mask.glb
 	@sh tools/demo.sh $(BUILD)
+
+demo-body: deps-build
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/demo/puppet.glb
+	@NOH_ASSETS="$(ASSETS)" sh tools/demo_body.sh $(BUILD)
 
 check: deps-check
 	@$(MAKE) --no-print-directory -j$(JOBS) all tests $(BUILD)/mask.noh $(BUILD)/demo/puppet.glb

@@ -1,0 +1,32 @@
+#!/bin/sh
+# demo_body.sh BUILD: convert the puppet, make it move, and say what it cost; and, where $NOH_ASSETS has it,
+# hero/body.glb.
+set -eu
+build=$1
+out=$build/demo
+noh=$build/noh
+
+echo
+"$noh" build "$out/puppet.glb" -o "$out/puppet.noh"
+echo
+"$noh" render "$out/puppet.noh" -o "$out/puppet.png" --size 640x720 --clip dance --time 14.73 --camera 15,4
+for clip in walk bow look_round dance; do
+    "$noh" sheet "$out/puppet.noh" -o "$out/puppet_$clip.png" --clip $clip --camera 25,4 --tiles 8 --columns 8 --tile 240
+done
+"$noh" sheet "$out/puppet.noh" -o "$out/puppet_bones.png" --clip dance --bones --camera 25,4 --tiles 8 --columns 8 --tile 240
+"$noh" budget "$out/puppet.noh"
+
+body=${NOH_ASSETS:-}/hero/body.glb
+if [ -f "$body" ]; then
+    echo
+    "$noh" build "$body" -o "$out/body.noh" --quiet
+    for clip in walk run dance; do
+        "$noh" sheet "$out/body.noh" -o "$out/body_$clip.png" --clip $clip --camera 25,4 --tiles 8 --columns 8 --tile 240
+    done
+    "$noh" sheet "$out/body.noh" -o "$out/body_speaks.png" --clip face_speak --clip dance --camera face --tiles 8 --columns 8 --tile 240
+    "$noh" render "$out/body.noh" -o "$out/body_smile.png" --size 640x720 --clip dance --time 7.64 --weight mouth-corner-puller=1 \
+        --weight mouth-part-later=0.5 --camera 15,4
+fi
+echo
+echo 'Pictures:'
+ls "$out"/*.png | sed 's/^/  /'
