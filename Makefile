@@ -181,7 +181,7 @@ check: deps-check
 	@CC="$(CC)" NOH_BUILD="$(BUILD)" NOH_ASSETS="$(ASSETS)" NOH_SAN="$(SAN)" sh tests/run.sh
 
 bench: deps-build
-	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/mask.noh
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/mask.noh $(BUILD)/demo/puppet.glb
 	@NOH_ASSETS="$(ASSETS)" sh tools/bench.sh $(BUILD)
 
 # FUZZ_SECONDS=60: how long, both at once. Skips where clang or its runtime is not.

@@ -1,6 +1,6 @@
 #!/bin/sh
-# bench.sh BUILD: `noh bench` on the mask, and, where $NOH_ASSETS has them, on hero/head.glb and on five
-# captured clips at 30 Hz.
+# bench.sh BUILD: `noh bench` on the mask and the puppet, and, where $NOH_ASSETS has them, on hero/head.glb,
+# hero/body.glb and five captured clips at 30 Hz.
 # Everything after BUILD goes to `noh bench`: --json, --rounds N, --driver D.
 set -eu
 
@@ -10,14 +10,20 @@ shift
 echo "== the mask" >&2
 "$build/noh" bench "$build/mask.noh" --source "$build/mask.glb" "$@"
 
-head=${NOH_ASSETS:-}/hero/head.glb
-if [ -f "$head" ]; then
-    "$build/noh" build "$head" -o "$build/head.noh" --quiet
-    echo "== $head" >&2
-    "$build/noh" bench "$build/head.noh" --source "$head" "$@"
-else
-    echo "no hero/head.glb in NOH_ASSETS: the mask only" >&2
-fi
+echo "== the puppet" >&2
+"$build/noh" build "$build/demo/puppet.glb" -o "$build/demo/puppet.noh" --quiet
+"$build/noh" bench "$build/demo/puppet.noh" "$@"
+
+for name in head body; do
+    asset=${NOH_ASSETS:-}/hero/$name.glb
+    if [ -f "$asset" ]; then
+        "$build/noh" build "$asset" -o "$build/$name.noh" --quiet
+        echo "== $asset" >&2
+        "$build/noh" bench "$build/$name.noh" --source "$asset" "$@"
+    else
+        echo "no hero/$name.glb in NOH_ASSETS" >&2
+    fi
+done
 
 clips=${NOH_ASSETS:-}/clips
 if [ -f "$clips/cmu_01_01.rcl" ]; then

@@ -18,6 +18,9 @@ static int init_clip(bench_clip *c, const pack_file *file, uint32_t index)
     size_t bytes;
     memset(c, 0, sizeof *c);
     noh_pack_motion_at(&file->pack, index, &motion);
+    if (motion.header->joint_count == 0u) {
+        return 0; /* weights alone */
+    }
     if (noh_pack_bind_motion(&file->pack, &motion, &skeleton, NULL, &error)) {
         return tool_fail(file->path, "clip '%s': %s", motion.name, error.what);
     }
