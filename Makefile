@@ -4,6 +4,7 @@ MAKEFLAGS += --no-builtin-rules
 
 BUILD   ?= build
 CC      ?= gcc
+HOSTCC  ?= gcc
 CXX     ?= g++
 AR      ?= ar
 PKG     ?= pkg-config
@@ -38,7 +39,8 @@ MACHINE  := $(shell $(CC) -dumpmachine)
 # ---- what there is ----
 
 RUNTIME_C  := $(sort $(wildcard runtime/*/*.c))
-PLATFORM_C := $(sort $(wildcard platform/*.c))
+# template.c is for reading; the tests compile it.
+PLATFORM_C := $(filter-out platform/template.c,$(sort $(wildcard platform/*.c)))
 CONVERT_C  := $(sort $(wildcard tools/convert/*.c))
 CONVERT_CC := $(sort $(wildcard tools/convert/*.cpp))
 TOOL_C     := $(sort $(wildcard tools/noh/*.c tools/noh/bench/*.c))
@@ -58,7 +60,7 @@ TESTS      := $(TEST_C:tests/%.c=$(BUILD)/tests/%)
 # The accumulation and skinning kernels built for other instruction sets, for `noh bench` and the tests.
 KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/morph_$(set).o $(BUILD)/kernel/skin_$(set).o))
 
-.PHONY: install all demo demo-body check bench help clean deps-build deps-check deps-fuzz lib tests demo-run check-run fuzz sizes
+.PHONY: install all demo demo-body check bench help clean deps-build deps-check deps-cross deps-web deps-fuzz cross cross-tests web web-check web-serve lib tests demo-run check-run fuzz sizes
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -71,6 +73,8 @@ help:
 	@echo 'make check      install what is missing, build and run the tests'
 	@echo 'make bench      ratios against the named baselines (the mask, and hero/head.glb and clips where they are)'
 	@echo 'make fuzz       fuzz the pack reader and the clip decoder (FUZZ_SECONDS=60 each), needs clang'
+	@echo 'make cross      the library and its CPU tests for aarch64, armv7 and wasm (qemu, node)'
+	@echo 'make web        the page, WebGL 2 (WEB_PACK=PACK: for another pack); make web-serve, web-check'
 	@echo 'make sizes      code and data of the library, by file'
 	@echo 'make install    PREFIX=/usr/local: noh, libnoh.a and the headers (compile with -IPREFIX/include/noh)'
 	@echo 'make clean      remove $(BUILD)'
@@ -111,7 +115,7 @@ $(BUILD)/gen/tool_shaders.gen.h: $(BUILD)/gen/tool_shaders.gen.c ;
 $(BUILD)/embed: tools/embed/embed.c
 	@mkdir -p $(@D)
 	$(call say,CC,$@)
-	$(Q)$(CC) $(CFLAGS) $< -o $@ $(LDFLAGS)
+	$(Q)$(HOSTCC) -std=c99 -O2 $(WARN) $(SANFLAGS) $< -o $@
 
 # ---- the tools ----
 
@@ -165,6 +169,10 @@ deps-build:
 	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build
 deps-check:
 	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build check
+deps-cross:
+	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build cross
+deps-web:
+	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build web
 deps-fuzz:
 	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build check fuzz
 
@@ -180,19 +188,68 @@ check: deps-check
 	@$(MAKE) --no-print-directory -j$(JOBS) all tests $(BUILD)/mask.noh $(BUILD)/demo/puppet.glb
 	@CC="$(CC)" NOH_BUILD="$(BUILD)" NOH_ASSETS="$(ASSETS)" NOH_SAN="$(SAN)" sh tests/run.sh
 
+cross: deps-cross
+	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tests/cross.sh
+
 bench: deps-build
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/mask.noh $(BUILD)/demo/puppet.glb
 	@NOH_ASSETS="$(ASSETS)" sh tools/bench.sh $(BUILD)
+
+# ---- the page ----
+
+# Built for one pack: WebAssembly memory cannot grow, and its size is the pack, what `noh budget` says
+# at most of any path, the program's own static data, the stack and a heap for emscripten's strings.
+WEB_PACK    ?= $(BUILD)/mask.noh
+WEB_FLAGS   := -std=c99 -O2 $(WARN) $(FP) -Wno-sign-conversion $(INCLUDES) -Iplatform/web
+WEB_LINK    := -s MIN_WEBGL_VERSION=2 -s MAX_WEBGL_VERSION=2 -s ALLOW_MEMORY_GROWTH=0 -s ENVIRONMENT=web --no-entry \
+               -s EXPORTED_RUNTIME_METHODS=UTF8ToString -s INCOMING_MODULE_JS_API=onRuntimeInitialized
+WEB_STACK   := 65536
+WEB_HEAP    := 65536
+WEB_STATIC  := 262144
+WEB_SHADERS := platform/web/present.vert platform/web/present.frag
+WEB_PAGE    := $(addprefix $(BUILD)/web/,index.html page.js page.noh)
+
+web: deps-web
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(WEB_PACK)
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/web/noh.js $(WEB_PAGE)
+
+web-check: web
+	@$(MAKE) --no-print-directory $(BUILD)/tests/gl/picture_diff
+	@NOH_BUILD="$(BUILD)" sh tests/web.sh
+
+web-serve: web
+	@echo 'http://localhost:8000/'
+	@cd $(BUILD)/web && python3 -m http.server 8000 --bind localhost
+
+$(BUILD)/gen/web_shaders.gen.c: $(WEB_SHADERS) $(BUILD)/embed
+	@mkdir -p $(@D)
+	$(call say,EMBED,$@)
+	$(Q)$(BUILD)/embed -o $@ -d $(BUILD)/gen/web_shaders.embed.d $(WEB_SHADERS)
+
+$(BUILD)/web/page.noh: $(WEB_PACK)
+	@mkdir -p $(@D)
+	@cp $< $@
+$(BUILD)/web/%: platform/web/%
+	@mkdir -p $(@D)
+	@cp $< $@
+
+WEB_C := $(wildcard platform/web/*.c) $(RUNTIME_C)
+$(BUILD)/web/noh.js: $(WEB_C) $(wildcard platform/web/*.h) $(BUILD)/gen/web_shaders.gen.c $(BUILD)/gen/shaders.gen.c $(WEB_PACK) $(BUILD)/noh
+	@mkdir -p $(@D)
+	@NOH_BUILD="$(BUILD)" PACK="$(WEB_PACK)" STACK=$(WEB_STACK) HEAP=$(WEB_HEAP) STATIC=$(WEB_STATIC) OUT=$@ \
+	    FLAGS="$(WEB_FLAGS)" LINK="$(WEB_LINK)" sh tools/web.sh $(WEB_C) $(BUILD)/gen/web_shaders.gen.c $(BUILD)/gen/shaders.gen.c
 
 # FUZZ_SECONDS=60: how long, both at once. Skips where clang or its runtime is not.
 fuzz: deps-fuzz
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/tests/fuzz/corpus/.made $(BUILD)/gen/shaders.gen.c
 	@NOH_BUILD="$(BUILD)" FUZZ_SECONDS="$(FUZZ_SECONDS)" sh tests/fuzz.sh
 
-tests: $(TESTS) $(BUILD)/tests/fuzz/fuzz_pack $(BUILD)/tests/fuzz/fuzz_clip $(BUILD)/tests/fuzz/corpus/.made
+tests: $(TESTS) $(BUILD)/tests/gl/window $(BUILD)/tests/gl/picture_diff $(BUILD)/platform/template.o \
+       $(BUILD)/tests/fuzz/fuzz_pack $(BUILD)/tests/fuzz/fuzz_clip $(BUILD)/tests/fuzz/corpus/.made
 
-# The tests read results back from the GPU as the tool does, and share what lies in tests/ itself.
-TEST_TOOL_O := $(addprefix $(BUILD)/tools/noh/,gpu.o readback.o readback_vertices.o message.o) $(BUILD)/gen/tool_shaders.gen.o
+# The tests load packs, draw them and read results back as the tool does, and share what lies in tests/ itself.
+TEST_TOOL_O := $(addprefix $(BUILD)/tools/noh/,gpu.o readback.o readback_vertices.o message.o load.o scene.o scene_play.o scene_deform.o \
+                   pack_file.o nearest.o args.o camera.o canvas.o) $(BUILD)/gen/tool_shaders.gen.o
 TEST_SHARED_O := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/*.c))
 TEST_KERNELS := $(if $(filter x86_64%,$(MACHINE)),$(BUILD)/kernel/clip_sample_avx2.o)
 TEST_LIBS := $(TEST_SHARED_O) $(TEST_TOOL_O) $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(TEST_KERNELS) $(BUILD)/libnoh.a
@@ -202,6 +259,23 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TEST_LIBS)
 	@mkdir -p $(@D)
 	$(call say,CXX,$@)
 	$(Q)$(CXX) $(LDFLAGS) $^ -o $@ -lcmocka $(TOOL_LIBS)
+
+# The library's CPU tests, those that need neither C++ nor GL, for another processor: tests/cross.sh
+# calls this with CC, AR and CROSS=1. tests/cross/ stands in for the libraries that it has no package of.
+CROSS       ?=
+CROSS_SKIP  := gltf_read gltf_formula embed motion_import pack_motion influences bvh_read events_read
+CROSS_TESTS := $(filter-out $(CROSS_SKIP:%=$(BUILD)/cross/test_%),$(patsubst tests/unit/%.c,$(BUILD)/cross/%,$(wildcard tests/unit/test_*.c)))
+CROSS_O     := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/cross/*.c) tests/support.c tests/pack_walk.c platform/file.c $(CONVERT_C))
+INCLUDES    += $(if $(CROSS),-Itests/cross -idirafter /usr/include)
+
+cross-tests: $(CROSS_TESTS)
+$(BUILD)/cross/libtests.a: $(CROSS_O) $(BUILD)/libnoh.a
+	@mkdir -p $(@D)
+	@rm -f $@
+	$(Q)$(AR) rcs $@ $(CROSS_O) $(RUNTIME_O)
+$(BUILD)/cross/test_%: $(BUILD)/tests/unit/test_%.o $(BUILD)/cross/libtests.a
+	$(call say,CC,$@)
+	$(Q)$(CC) $(LDFLAGS) $^ -o $@ -lm
 
 $(BUILD)/tests/fuzz/corpus/.made: $(BUILD)/tests/fuzz/make_corpus
 	@mkdir -p $(@D) $(BUILD)/tests/fuzz/clips

@@ -1,4 +1,5 @@
-/* A headless OpenGL ES context through EGL: the system's own, or ANGLE's.
+/* An OpenGL ES context through EGL: the system's own, or ANGLE's. Headless, or in
+ * a window that the caller made.
  *
  * ANGLE's two libraries are looked for in the folder that the environment
  * variable NOH_ANGLE names (a Chromium installation has them), then where
@@ -36,6 +37,9 @@
     X(CreateContext, CREATECONTEXT)              \
     X(DestroyContext, DESTROYCONTEXT)            \
     X(CreatePbufferSurface, CREATEPBUFFERSURFACE) \
+    X(CreateWindowSurface, CREATEWINDOWSURFACE)  \
+    X(QuerySurface, QUERYSURFACE)                \
+    X(SwapBuffers, SWAPBUFFERS)                  \
     X(DestroySurface, DESTROYSURFACE)            \
     X(MakeCurrent, MAKECURRENT)                  \
     X(GetProcAddress, GETPROCADDRESS)
@@ -106,6 +110,13 @@ static int choose_config(const attempt *at, EGLDisplay display, EGLint surface_t
     return at->egl.ChooseConfig(display, attributes, config, 1, &count) && count > 0;
 }
 
+/* The native types are pointers on some systems and integers on others. */
+static EGLSurface create_window(const attempt *at, EGLDisplay display, EGLConfig config)
+{
+    EGLNativeWindowType window = (EGLNativeWindowType)at->desc->native_window;
+    return at->egl.CreateWindowSurface(display, config, window, NULL);
+}
+
 static EGLSurface create_pbuffer(const attempt *at, EGLDisplay display, EGLConfig config)
 {
     EGLint width = at->desc->width ? (EGLint)at->desc->width : 1;
@@ -114,14 +125,26 @@ static EGLSurface create_pbuffer(const attempt *at, EGLDisplay display, EGLConfi
     return at->egl.CreatePbufferSurface(display, config, attributes);
 }
 
-/* Make the context current, without a surface where `surfaceless`, else with a pbuffer. */
-static int make_context(attempt *at, EGLDisplay display, const char *way, int surfaceless)
+/* Where the context draws to, and what to say of it. */
+typedef struct surface_kind {
+    EGLint type; /* of the config; 0: no surface at all */
+    EGLSurface (*create)(const attempt *at, EGLDisplay display, EGLConfig config);
+    const char *no_config, *no_current;
+} surface_kind;
+
+static const surface_kind no_surface = {0, NULL, "no config for OpenGL ES 3", "cannot make current without a surface"};
+static const surface_kind pbuffer = {EGL_PBUFFER_BIT, create_pbuffer, "no pbuffer config for OpenGL ES 3",
+                                     "cannot make current with a pbuffer"};
+static const surface_kind window = {EGL_WINDOW_BIT, create_window, "no window config for OpenGL ES 3",
+                                    "cannot make current with the window"};
+
+static int make_context(attempt *at, EGLDisplay display, const char *way, const surface_kind *kind)
 {
     const egl_api *egl = &at->egl;
     int highest = at->desc->es_version ? at->desc->es_version : 320;
     EGLConfig config;
-    if (!choose_config(at, display, surfaceless ? 0 : EGL_PBUFFER_BIT, &config)) {
-        say(at, way, surfaceless ? "no config for OpenGL ES 3" : "no pbuffer config for OpenGL ES 3");
+    if (!choose_config(at, display, kind->type, &config)) {
+        say(at, way, kind->no_config);
         return 0;
     }
     EGLContext context = create_context(egl, display, config, highest);
@@ -129,13 +152,13 @@ static int make_context(attempt *at, EGLDisplay display, const char *way, int su
         say(at, way, "no OpenGL ES 3.x context");
         return 0;
     }
-    EGLSurface surface = surfaceless ? EGL_NO_SURFACE : create_pbuffer(at, display, config);
-    int usable = surfaceless || surface != EGL_NO_SURFACE;
+    EGLSurface surface = kind->create ? kind->create(at, display, config) : EGL_NO_SURFACE;
+    int usable = !kind->create || surface != EGL_NO_SURFACE;
     if (usable && egl->MakeCurrent(display, surface, surface, context)) {
         *at->made = (noh_platform_context){at->egl, display, context, surface};
         return 1;
     }
-    say(at, way, surfaceless ? "cannot make current without a surface" : "cannot make current with a pbuffer");
+    say(at, way, kind->no_current);
     if (surface != EGL_NO_SURFACE) egl->DestroySurface(display, surface);
     egl->DestroyContext(display, context);
     return 0;
@@ -151,14 +174,16 @@ static int try_display(attempt *at, EGLDisplay display, const char *way)
         say(at, way, "eglInitialize fails");
         return 0;
     }
-    if (at->egl.BindAPI(EGL_OPENGL_ES_API)) {
+    if (!at->egl.BindAPI(EGL_OPENGL_ES_API)) {
+        say(at, way, "no OpenGL ES");
+    } else if (at->desc->native_window) {
+        if (make_context(at, display, way, &window)) return 1;
+    } else {
         /* A pbuffer first: without a surface, the default framebuffer is incomplete
          * and even draws with rasterisation discarded are refused there. */
-        if (make_context(at, display, way, 0)) return 1;
+        if (make_context(at, display, way, &pbuffer)) return 1;
         int surfaceless = lists(at->egl.QueryString(display, EGL_EXTENSIONS), "EGL_KHR_surfaceless_context");
-        if (surfaceless && make_context(at, display, way, 1)) return 1;
-    } else {
-        say(at, way, "no OpenGL ES");
+        if (surfaceless && make_context(at, display, way, &no_surface)) return 1;
     }
     at->egl.Terminate(display);
     return 0;
@@ -202,6 +227,9 @@ static int try_devices(attempt *at, const char *extensions)
 static int try_system(attempt *at)
 {
     const char *extensions = at->egl.QueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+    if (at->desc->native_window) {
+        return try_display(at, at->egl.GetDisplay((EGLNativeDisplayType)at->desc->native_display), "native display");
+    }
     if (try_surfaceless(at, extensions)) return 1;
     if (try_devices(at, extensions)) return 1;
     return try_display(at, at->egl.GetDisplay(EGL_DEFAULT_DISPLAY), "default display");
@@ -306,6 +334,24 @@ static noh_gl_proc get_proc(void *user, const char *name)
     return proc;
 }
 
+static noh_result present(noh_platform_context *context)
+{
+    const egl_api *egl = &context->egl;
+    if (context->surface == EGL_NO_SURFACE) return NOH_OK;
+    return egl->SwapBuffers(context->display, context->surface) ? NOH_OK : NOH_ERR_GL;
+}
+
+static void size(noh_platform_context *context, uint32_t *width, uint32_t *height)
+{
+    EGLint side[2] = {0, 0};
+    if (context->surface != EGL_NO_SURFACE) {
+        context->egl.QuerySurface(context->display, context->surface, EGL_WIDTH, &side[0]);
+        context->egl.QuerySurface(context->display, context->surface, EGL_HEIGHT, &side[1]);
+    }
+    *width = (uint32_t)side[0];
+    *height = (uint32_t)side[1];
+}
+
 /* The display stays initialised: other contexts of the process may share it. */
 static void destroy(noh_platform_context *context)
 {
@@ -318,8 +364,9 @@ static void destroy(noh_platform_context *context)
 }
 
 const noh_platform noh_platform_egl = {
-    "egl", "the system's EGL, headless (Mesa or a vendor's driver)", create_system, make_current, get_proc, destroy
+    "egl", "the system's EGL (Mesa or a vendor's driver), headless or in your window", create_system, make_current, get_proc,
+    present, size, destroy
 };
 const noh_platform noh_platform_angle = {
-    "angle", "ANGLE on SwiftShader, from a Chromium installation", create_angle, make_current, get_proc, destroy
+    "angle", "ANGLE on SwiftShader, from a Chromium installation", create_angle, make_current, get_proc, present, size, destroy
 };

@@ -18,6 +18,7 @@ typedef void *(*create_function)(const int *attributes, void *share);
 typedef void (*destroy_function)(void *context);
 typedef GLboolean (*make_current_function)(void *context, void *buffer, GLenum type, GLsizei width, GLsizei height);
 typedef noh_gl_proc (*get_proc_function)(const char *name);
+typedef void(GL_APIENTRY *finish_function)(void);
 
 struct noh_platform_context {
     create_function create;
@@ -109,6 +110,22 @@ static noh_gl_proc get_proc(void *user, const char *name)
     return context->get_proc(name);
 }
 
+/* The pixels are complete once GL has finished; there is nobody to show them to. */
+static noh_result present(noh_platform_context *context)
+{
+    finish_function finish = (finish_function)context->get_proc("glFinish");
+    if (!finish) return NOH_ERR_GL;
+    finish();
+    return NOH_OK;
+}
+
+static void size(noh_platform_context *context, uint32_t *width, uint32_t *height)
+{
+    *width = (uint32_t)context->width;
+    *height = (uint32_t)context->height;
+}
+
 const noh_platform noh_platform_osmesa = {
-    "osmesa", "Mesa's software renderer without a window system, desktop GL", create, make_current, get_proc, destroy
+    "osmesa", "Mesa's software renderer without a window system, desktop GL", create, make_current, get_proc, present, size,
+    destroy
 };

@@ -4,7 +4,8 @@
 
 #include <string.h>
 
-static const noh_platform *const platforms[] = {&noh_platform_egl, &noh_platform_angle, &noh_platform_osmesa};
+static const noh_platform *const platforms[] = {&noh_platform_egl, &noh_platform_angle, &noh_platform_osmesa,
+                                              &noh_platform_glfw, &noh_platform_null};
 
 const noh_platform *noh_platform_find(const char *name)
 {
@@ -16,5 +17,5 @@ const noh_platform *noh_platform_find(const char *name)
 
 const char *noh_platform_names(void)
 {
-    return "egl, angle, osmesa";
+    return "egl, angle, osmesa, glfw, null";
 }

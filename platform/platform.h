@@ -1,11 +1,12 @@
 /* platform.h: who makes a GL context, maps a file and reads a clock.
  *
- *   noh_platform_find      a context maker by name: "egl", "angle", "osmesa"
+ *   noh_platform_find      a context maker by name: "egl", "angle", "osmesa", "glfw", "null"
  *   noh_platform_names     all names, for messages
  *   noh_file_map / noh_file_unmap / noh_file_write
  *   noh_clock_ns / noh_cpu_clock_ns
  *
- * This is the part that a game replaces with its own. It may use libc; the
+ * This is the part that a game replaces with its own: README.md walks a porter
+ * through it, template.c is where a port begins. It may use libc; the
  * library in runtime/ never calls it. GL libraries are opened when a context is
  * asked for, so a program that never draws needs none of them installed. They
  * stay open until the process ends, because drivers do not survive being closed. */
@@ -24,6 +25,11 @@ typedef struct noh_platform_desc {
     uint32_t width;  /* of the default framebuffer, pixels; 0: 1. Draw into framebuffer objects */
     uint32_t height; /* all the same: an EGL without pbuffers gives no default framebuffer at all */
     int samples;     /* of the default framebuffer; 0: none. osmesa has none */
+
+    const char *window;   /* glfw: the title of a window to show; NULL: it stays hidden. Others have no window */
+    void *native_display; /* egl: what eglGetDisplay takes, with native_window */
+    void *native_window;  /* egl: draw into this window of the system's (EGLNativeWindowType as a pointer);
+                           * NULL: headless. width, height are then the window's own */
 } noh_platform_desc;
 
 typedef struct noh_platform {
@@ -40,6 +46,11 @@ typedef struct noh_platform {
     noh_result (*make_current)(noh_platform_context *context);
     /* A noh_gl_get_proc; user is the noh_platform_context. */
     noh_gl_proc (*get_proc)(void *user, const char *name);
+    /* Show what was drawn into the default framebuffer; without a window it only flushes.
+     * errors  NOH_ERR_GL the surface or the context is gone: make both again */
+    noh_result (*present)(noh_platform_context *context);
+    /* The default framebuffer as it is now, in pixels; a window's user may change it. */
+    void (*size)(noh_platform_context *context, uint32_t *width, uint32_t *height);
     /* Objects that were made in it die with it. NULL is left alone. */
     void (*destroy)(noh_platform_context *context);
 } noh_platform;
@@ -47,7 +58,7 @@ typedef struct noh_platform {
 /* NULL where there is no such platform. */
 const noh_platform *noh_platform_find(const char *name);
 
-/* "egl, angle, osmesa" */
+/* "egl, angle, osmesa, glfw, null" */
 const char *noh_platform_names(void);
 
 /* A file in memory, read only. */

@@ -7,6 +7,8 @@
 extern const noh_platform noh_platform_egl;
 extern const noh_platform noh_platform_angle;
 extern const noh_platform noh_platform_osmesa;
+extern const noh_platform noh_platform_glfw;
+extern const noh_platform noh_platform_null;
 
 /* Open a shared library, with its symbols for itself. NULL on failure, and the
  * reason is appended to message. */

@@ -25,9 +25,12 @@
  *   character/scheduler.h  who is posed in a frame, within a budget; bounds.h: where a character is
  *   gl/gl_api.h          the GL ES functions that noh calls: you bring the lookup
  *   gl/gl_caps.h         what this GPU can really do, found by trying
+ *   gl/gl_quirks.h       what a renderer's name tells and a probe cannot
  *   gl/gl_morph.h        morph targets accumulated on the GPU, five ways
  *   gl/gl_skin.h         joints of many instances on the GPU
  *   gl/gl_draw.h         meshes on the GPU and a plain renderer; gl_variants.h: its programs
+ *   gl/gl_debug.h        names for what RenderDoc and apitrace show
+ *   gl/gl_lost.h         after a lost context
  *
  * The library needs memcpy, memset and memcmp, and nothing else. */
 #ifndef NOH_H
@@ -56,11 +59,14 @@
 #include "deform/pick.h"
 #include "gl/gl_api.h"
 #include "gl/gl_caps.h"
+#include "gl/gl_quirks.h"
 #include "gl/gl_memory.h"
 #include "gl/gl_morph.h"
 #include "gl/gl_skin.h"
 #include "gl/gl_variants.h"
 #include "gl/gl_draw.h"
+#include "gl/gl_debug.h"
+#include "gl/gl_lost.h"
 #include "character/bounds.h"
 #include "character/character.h"
 #include "character/detail.h"

@@ -1,7 +1,9 @@
 #!/bin/sh
 # deps.sh SET...: install the Debian packages that are missing.
 #   build  compiler, converter libraries, headless GL        check  test tools
-#   fuzz   clang and its fuzzer
+#   fuzz   clang and its fuzzer                              cross  other processors
+#   web    the page and its test
+# What only widens a test is optional: where it cannot be had, that test is skipped and says so.
 # With apt it installs them (through sudo where not root) and says what and why;
 # elsewhere it prints the list and stops.
 set -eu
@@ -22,10 +24,25 @@ nlohmann-json3-dev:reading glTF
 libstb-dev:reading and writing pictures
 libmeshoptimizer-dev:reading compressed glTF'
 packages_check='libcmocka-dev:unit tests
+?libglfw3:windows
+?xvfb:a display for them
+?mesa-vulkan-drivers:a third GL, zink on lavapipe
 libosmesa6:a second GL
 binutils:the check of the archive'"'"'s symbols'
 packages_fuzz='clang:libFuzzer
 libclang-rt-dev:libFuzzer and the sanitizers'
+
+packages_cross='?gcc-aarch64-linux-gnu:aarch64
+?libc6-dev-arm64-cross:aarch64
+?gcc-arm-linux-gnueabihf:armv7
+?libc6-dev-armhf-cross:armv7
+?qemu-user-static:running both
+?emscripten:wasm
+?nodejs:running wasm'
+packages_web='emscripten:the page
+?nodejs:its test
+?npm:its test
+?chromium:its test'
 
 installed() {
     dpkg-query -W -f '${Status}' "$1" 2>/dev/null | grep -q 'install ok installed'
@@ -40,24 +57,29 @@ $packages_build" ;;
 $packages_check" ;;
     fuzz) all="$all
 $packages_fuzz" ;;
+    cross) all="$all
+$packages_cross" ;;
+    web) all="$all
+$packages_web" ;;
     *) echo "deps.sh: no set '$set'" >&2; exit 2 ;;
     esac
 done
 
 if ! command -v dpkg-query >/dev/null 2>&1 || ! command -v apt-get >/dev/null 2>&1; then
     echo 'This is not a Debian system. noh needs what these Debian packages hold (DEPS=0 skips this check):'
-    echo "$all" | sed -n 's/\(.*\):\(.*\)/  \1 (\2)/p'
+    echo "$all" | tr -d '?' | sed -n 's/\(.*\):\(.*\)/  \1 (\2)/p'
     exit 1
 fi
 
 missing=$(echo "$all" | while IFS=: read -r name why; do
-    [ -z "$name" ] || installed "$name" || echo "$name:$why"
+    [ -z "$name" ] || installed "${name#\?}" || echo "$name:$why"
 done)
 [ -n "$missing" ] || exit 0
 
 echo 'Installing what is missing:'
-echo "$missing" | sed 's/\(.*\):\(.*\)/  \1 (\2)/'
-names=$(echo "$missing" | cut -d: -f1)
+echo "$missing" | sed 's/^?\(.*\):\(.*\)/  \1 (\2; optional)/; s/^\([^ ].*\):\(.*\)/  \1 (\2)/'
+names=$(echo "$missing" | grep -v '^?' | cut -d: -f1)
+optional=$(echo "$missing" | sed -n 's/^?\(.*\):.*/\1/p')
 sudo=
 if [ "$(id -u)" != 0 ]; then
     command -v sudo >/dev/null 2>&1 || { echo 'deps.sh: not root and no sudo; install them yourself' >&2; exit 1; }
@@ -66,4 +88,7 @@ fi
 # shellcheck disable=SC2086
 export DEBIAN_FRONTEND=noninteractive
 $sudo apt-get update -qq
-$sudo apt-get install -y -qq --no-install-recommends $names >/dev/null
+[ -z "$names" ] || $sudo apt-get install -y -qq --no-install-recommends $names >/dev/null
+for name in $optional; do
+    $sudo apt-get install -y -qq --no-install-recommends "$name" >/dev/null 2>&1 || echo "  $name cannot be had here: its tests are skipped"
+done

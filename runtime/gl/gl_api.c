@@ -43,7 +43,7 @@ int noh_gl_has_extension(const noh_gl_api *api, const char *name)
     return 0;
 }
 
-/* Returns the name of the first ES 3.0 function that is not there, or NULL. */
+/* Returns the name of the first required function that is not there, or NULL. */
 static const char *load_required(noh_gl_api *api, noh_gl_get_proc get, void *user)
 {
     const char *missing = NULL;
@@ -51,6 +51,9 @@ static const char *load_required(noh_gl_api *api, noh_gl_get_proc get, void *use
     api->field = (PFNGL##TYPE##PROC)get(user, "gl" #field); \
     if (!missing && !api->field) missing = "gl" #field;
     NOH_GL_REQUIRED(NOH_GL_TAKE)
+#undef NOH_GL_TAKE
+#define NOH_GL_TAKE(field, TYPE) api->field = (PFNGL##TYPE##PROC)get(user, "gl" #field);
+    NOH_GL_EXTRA(NOH_GL_TAKE)
 #undef NOH_GL_TAKE
     return missing;
 }

@@ -2,7 +2,9 @@
 
 #include <string.h>
 
+#include "gl/gl_debug.h"
 #include "gl/gl_program.h"
+#include "gl/gl_quirks.h"
 #include "shaders.gen.h"
 
 #define TEXELS 16
@@ -457,6 +459,9 @@ static void run_probes(const probe *p, noh_gl_caps *caps)
     caps->blend_f16 = f16.blended;
     caps->f16_store_mode = f16.store_mode;
     caps->f16_blend_mode = f16.blend_mode;
+    if (noh_gl_quirk_find(caps->renderer, NOH_QUIRK_HALF_UNSURE)) {
+        caps->f16_store_mode = caps->f16_blend_mode = NOH_HALF_UNKNOWN;
+    }
     caps->render_u32 = probe_u32(p);
     caps->mrt3 = caps->render_f32 || caps->render_f16 || caps->render_u32;
     caps->layered = probe_layered(p);
@@ -475,9 +480,11 @@ noh_result noh_gl_caps_probe(const noh_gl_api *api, noh_gl_caps *out, noh_error 
     p.api = api;
     api->GetIntegerv(GL_VIEWPORT, viewport);
     read_limits(api, &caps);
+    noh_gl_group_begin(api, "noh probe", NULL);
     noh_result result = start(&p, error);
     if (result == NOH_OK) run_probes(&p, &caps);
     finish(&p, viewport);
+    noh_gl_group_end(api);
     if (result == NOH_OK) *out = caps;
     return result;
 }

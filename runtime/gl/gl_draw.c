@@ -1,8 +1,11 @@
 /* gl_draw.c: the plain renderer's draws. */
 #include "gl/gl_draw.h"
 
+#include "gl/gl_debug.h"
+
 void noh_gl_draw_begin(const noh_gl_renderer *r, const noh_gl_camera *camera)
 {
+    noh_gl_group_begin(r->gl, "noh meshes", NULL);
     r->gl->Enable(GL_DEPTH_TEST);
     r->gl->DepthFunc(GL_LEQUAL);
     r->gl->DepthMask(GL_TRUE);
@@ -154,4 +157,5 @@ void noh_gl_draw_end(const noh_gl_renderer *r)
     r->gl->Disable(GL_DEPTH_TEST);
     r->gl->Disable(GL_CULL_FACE);
     r->gl->FrontFace(GL_CCW);
+    noh_gl_group_end(r->gl);
 }

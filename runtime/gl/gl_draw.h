@@ -35,12 +35,19 @@ noh_result noh_gl_mesh_create(const noh_gl_api *api, noh_gl_ledger *ledger, cons
                               noh_error *error);
 void noh_gl_mesh_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mesh *mesh);
 
+/* Make it again in a new context (gl_lost.h). errors  as create; it then holds nothing */
+noh_result noh_gl_mesh_restore(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mesh *mesh, noh_error *error);
+
 /* GPU bytes of a pack's texture with its mip levels: exact. */
 uint64_t noh_gl_picture_bytes(const noh_texture *texture);
 
 /* An sRGB texture with mip levels. errors  as noh_gl_texture_create */
 noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
                                  noh_gl_texture *out, noh_error *error);
+
+/* Make it again in a new context (gl_lost.h). errors  as create; it then holds nothing */
+noh_result noh_gl_picture_restore(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
+                                  noh_gl_texture *picture, noh_error *error);
 
 typedef struct noh_gl_renderer_desc {
     noh_debug_view view;
@@ -74,6 +81,9 @@ noh_result noh_gl_renderer_create(const noh_gl_api *api, noh_gl_ledger *ledger, 
                                   noh_gl_renderer *out, char *log, size_t log_bytes, noh_error *error);
 void noh_gl_renderer_delete(noh_gl_renderer *renderer);
 
+/* Make it again in a new context (gl_lost.h). errors  as create; it then holds nothing */
+noh_result noh_gl_renderer_restore(noh_gl_renderer *renderer, char *log, size_t log_bytes, noh_error *error);
+
 /* The variant of that key; NULL where the renderer was not told of such a mesh. */
 const noh_gl_variant *noh_gl_renderer_variant(const noh_gl_renderer *renderer, noh_gl_variant_key key);
 
@@ -83,7 +93,8 @@ typedef struct noh_gl_camera {
     float key[3];              /* unit vector towards the key light, world */
 } noh_gl_camera;
 
-/* Depth test on, blending set up, the camera in every variant; the framebuffer and viewport are the caller's. */
+/* Depth test on, blending set up, the camera in every variant, a debug group open until noh_gl_draw_end; the framebuffer
+ * and viewport are the caller's. */
 void noh_gl_draw_begin(const noh_gl_renderer *renderer, const noh_gl_camera *camera);
 
 #define NOH_DRAW_OPAQUE 0

@@ -1,6 +1,9 @@
 /* gl_mesh.c: a pack's meshes and textures as GL objects. */
 #include "gl/gl_draw.h"
 
+#include "gl/gl_debug.h"
+#include "gl/gl_lost.h"
+
 static uint64_t position_bytes(const noh_mesh *mesh)
 {
     return (uint64_t)mesh->header->vertex_count * 12u;
@@ -63,6 +66,17 @@ static void set_influences(const noh_gl_api *gl, const noh_gl_mesh *m)
     }
 }
 
+static void label_mesh(const noh_gl_api *gl, const noh_gl_mesh *m)
+{
+    noh_gl_label(gl, GL_BUFFER, m->positions.name, "positions of", m->mesh.name);
+    noh_gl_label(gl, GL_BUFFER, m->attributes.name, "attributes of", m->mesh.name);
+    if (m->influences.name) {
+        noh_gl_label(gl, GL_BUFFER, m->influences.name, "influences of", m->mesh.name);
+    }
+    noh_gl_label(gl, GL_BUFFER, m->indices.name, "indices of", m->mesh.name);
+    noh_gl_label(gl, GL_VERTEX_ARRAY, m->vertex_array, "mesh", m->mesh.name);
+}
+
 static void create_vertex_array(const noh_gl_api *gl, noh_gl_mesh *m)
 {
     uint32_t stride = m->mesh.header->attribute_stride;
@@ -115,8 +129,16 @@ noh_result noh_gl_mesh_create(const noh_gl_api *api, noh_gl_ledger *ledger, cons
         return result;
     }
     create_vertex_array(api, &m);
+    label_mesh(api, &m);
     *out = m;
     return NOH_OK;
+}
+
+noh_result noh_gl_mesh_restore(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mesh *mesh, noh_error *error)
+{
+    noh_mesh view = mesh->mesh;
+    noh_gl_mesh_delete(noh_gl_lost_api(), ledger, mesh);
+    return noh_gl_mesh_create(api, ledger, &view, mesh, error);
 }
 
 void noh_gl_mesh_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mesh *mesh)
@@ -169,6 +191,7 @@ noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
         return result;
     }
     api->BindTexture(GL_TEXTURE_2D, out->name);
+    noh_gl_label(api, GL_TEXTURE, out->name, "texture", texture->name);
     api->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
     api->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, (GLsizei)desc.width, (GLsizei)desc.height, GL_RGBA, GL_UNSIGNED_BYTE, texture->pixels);
     if (desc.levels > 1) {
@@ -178,4 +201,11 @@ noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
     api->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap_of(texture->header->wrap_t));
     api->BindTexture(GL_TEXTURE_2D, 0);
     return NOH_OK;
+}
+
+noh_result noh_gl_picture_restore(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
+                                  noh_gl_texture *picture, noh_error *error)
+{
+    noh_gl_texture_delete(noh_gl_lost_api(), ledger, picture);
+    return noh_gl_picture_create(api, ledger, texture, picture, error);
 }

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "gl/gl_debug.h"
+#include "gl/gl_lost.h"
 #include "gl/gl_morph_internal.h"
 #include "gl/gl_program.h"
 
@@ -18,18 +20,35 @@ static noh_result create_layers(noh_gl_morph *m, noh_error *error)
     return noh_gl_texture_create(m->gl, m->ledger, &desc, &m->layers, error);
 }
 
+/* What every path has; the vertex array, program and framebuffers are labelled where they are made. */
+static void label_objects(const noh_gl_morph *m)
+{
+    const struct { GLuint name; const char *what; } textures[] = {
+        { m->layers.name, "morph layers" }, { m->deltas.texture.name, "morph deltas" },
+        { m->rects.texture.name, "morph table" }, { m->slot_table.texture.name, "morph slots" }
+    };
+    for (unsigned i = 0; i < sizeof textures / sizeof textures[0]; i++) {
+        if (textures[i].name) {
+            noh_gl_label(m->gl, GL_TEXTURE, textures[i].name, textures[i].what, NULL);
+        }
+    }
+}
+
 static noh_result make_gl_objects(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
 {
     noh_result result = create_layers(m, error);
-    if (result || m->plan.path == NOH_MORPH_CPU) {
-        return result;
+    if (!result && m->plan.path != NOH_MORPH_CPU) {
+        result = noh_gl_table_create(m->gl, m->ledger, GL_RGBA32UI, m->plan.weight_count, &m->slot_table, error);
+        if (!result && m->plan.path == NOH_MORPH_GATHER) {
+            result = noh_gl_morph_init_gather(m, log, log_bytes, error);
+        } else if (!result) {
+            result = noh_gl_morph_init_blend(m, log, log_bytes, error);
+        }
     }
-    result = noh_gl_table_create(m->gl, m->ledger, GL_RGBA32UI, m->plan.weight_count, &m->slot_table, error);
-    if (result) {
-        return result;
+    if (!result) {
+        label_objects(m);
     }
-    return m->plan.path == NOH_MORPH_GATHER ? noh_gl_morph_init_gather(m, log, log_bytes, error)
-                                            : noh_gl_morph_init_blend(m, log, log_bytes, error);
+    return result;
 }
 
 static void mark_all_dirty(noh_gl_morph *m)
@@ -82,21 +101,38 @@ noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_api *api, 
     return NOH_OK;
 }
 
-void noh_gl_morph_delete(noh_gl_morph *m)
+static void delete_objects(noh_gl_morph *m, const noh_gl_api *gl)
 {
     for (int i = 0; i < 3; i++) {
-        noh_gl_framebuffer_delete(m->gl, m->ledger, &m->framebuffers[i]);
+        noh_gl_framebuffer_delete(gl, m->ledger, &m->framebuffers[i]);
     }
-    noh_gl_program_delete(m->gl, m->ledger, &m->program);
+    noh_gl_program_delete(gl, m->ledger, &m->program);
     if (m->vertex_array) {
-        m->gl->DeleteVertexArrays(1, &m->vertex_array);
+        gl->DeleteVertexArrays(1, &m->vertex_array);
         m->vertex_array = 0;
     }
-    noh_gl_buffer_delete(m->gl, m->ledger, &m->stream);
-    noh_gl_texture_delete(m->gl, m->ledger, &m->slot_table.texture);
-    noh_gl_texture_delete(m->gl, m->ledger, &m->rects.texture);
-    noh_gl_texture_delete(m->gl, m->ledger, &m->deltas.texture);
-    noh_gl_texture_delete(m->gl, m->ledger, &m->layers);
+    noh_gl_buffer_delete(gl, m->ledger, &m->stream);
+    noh_gl_texture_delete(gl, m->ledger, &m->slot_table.texture);
+    noh_gl_texture_delete(gl, m->ledger, &m->rects.texture);
+    noh_gl_texture_delete(gl, m->ledger, &m->deltas.texture);
+    noh_gl_texture_delete(gl, m->ledger, &m->layers);
+}
+
+void noh_gl_morph_delete(noh_gl_morph *m)
+{
+    delete_objects(m, m->gl);
+}
+
+noh_result noh_gl_morph_restore(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
+{
+    noh_result result;
+    delete_objects(m, noh_gl_lost_api());
+    mark_all_dirty(m);
+    result = make_gl_objects(m, log, log_bytes, error);
+    if (result) {
+        noh_gl_morph_delete(m);
+    }
+    return result;
 }
 
 /* ---- asking ---- */
@@ -154,6 +190,7 @@ void noh_gl_morph_update(noh_gl_morph *morph, noh_gl_morph_stats *stats)
         return;
     }
     s->instances = morph->dirty_count;
+    noh_gl_group_begin(morph->gl, "noh morph", noh_morph_path_name(morph->plan.path));
     if (morph->plan.path == NOH_MORPH_CPU) {
         noh_gl_morph_update_cpu(morph, s);
     } else if (morph->plan.path == NOH_MORPH_GATHER) {
@@ -161,6 +198,7 @@ void noh_gl_morph_update(noh_gl_morph *morph, noh_gl_morph_stats *stats)
     } else {
         noh_gl_morph_update_blend(morph, s);
     }
+    noh_gl_group_end(morph->gl);
     memset(morph->dirty, 0, morph->plan.instance_count);
     morph->dirty_count = 0;
 }

@@ -5,6 +5,7 @@
  *   noh_gl_morph_weights  set one instance's weights (cheap when they did not change)
  *   noh_gl_morph_update   accumulate the instances whose weights changed
  *   noh_gl_morph_binding  where a vertex shader finds an instance's deltas
+ *   noh_gl_morph_restore  after a lost context
  *
  * Deltas of position, normal and tangent are accumulated in three layers of one
  * texture array; each instance owns a tile of it, one texel per touched vertex.
@@ -106,6 +107,11 @@ noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_api *api, 
 
 /* Delete the GL objects. The memory is yours again. */
 void noh_gl_morph_delete(noh_gl_morph *morph);
+
+/* Make its GL objects again in a new context (gl_lost.h). Weights stay; the next
+ * noh_gl_morph_update accumulates every instance. `log` as in noh_gl_program_create.
+ * errors  GL, DATA as init: it then holds no objects, and may be restored again */
+noh_result noh_gl_morph_restore(noh_gl_morph *morph, char *log, size_t log_bytes, noh_error *error);
 
 const noh_gl_morph_plan *noh_gl_morph_plan_of(const noh_gl_morph *morph);
 

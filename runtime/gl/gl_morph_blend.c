@@ -1,6 +1,7 @@
 /* gl_morph_blend.c: layered, mrt and per-layer: additive blending (rows A6-A9). */
 #include <string.h>
 
+#include "gl/gl_debug.h"
 #include "gl/gl_morph_internal.h"
 #include "gl/gl_program.h"
 #include "shaders.gen.h"
@@ -175,6 +176,7 @@ static void clear_tiles(noh_gl_morph *m)
 
 void noh_gl_morph_update_blend(noh_gl_morph *m, noh_gl_morph_stats *stats)
 {
+    static const char *const pass_names[3] = { "position", "normal", "tangent" };
     uint32_t slots = 0, rect_slots = 0;
     int passes = m->plan.path == NOH_MORPH_PER_LAYER ? 3 : 1;
     for (uint32_t i = 0; i < m->plan.instance_count; i++) {
@@ -192,6 +194,7 @@ void noh_gl_morph_update_blend(noh_gl_morph *m, noh_gl_morph_stats *stats)
     m->gl->BlendEquation(GL_FUNC_ADD);
     m->gl->BlendFunc(GL_ONE, GL_ONE);
     for (int pass = 0; pass < passes; pass++) {
+        noh_gl_group_begin(m->gl, "pass", passes == 3 ? pass_names[pass] : "all layers");
         m->gl->BindFramebuffer(GL_FRAMEBUFFER, m->framebuffers[pass]);
         clear_tiles(m);
         if (rect_slots) {
@@ -201,6 +204,7 @@ void noh_gl_morph_update_blend(noh_gl_morph *m, noh_gl_morph_stats *stats)
             m->gl->Disable(GL_BLEND);
             stats->draws += 1;
         }
+        noh_gl_group_end(m->gl);
     }
     noh_gl_morph_end(m);
 }

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "gl/gl_morph_internal.h"
+#include "gl/gl_quirks.h"
 
 static const char *const path_names[NOH_MORPH_PATH_COUNT] = { "auto", "layered", "mrt", "per-layer", "gather", "cpu" };
 
@@ -16,33 +17,6 @@ const char *noh_accumulate_name(noh_accumulate accumulate)
 }
 
 /* ---- which path ---- */
-
-static int contains(const char *text, const char *word)
-{
-    for (; *text; text++) {
-        const char *a = text, *b = word;
-        while (*b && *a == *b) {
-            a++;
-            b++;
-        }
-        if (!*b) {
-            return 1;
-        }
-    }
-    return 0;
-}
-
-/* A rasteriser that runs on the CPU: there the CPU path does the least work. */
-static int is_software(const noh_gl_caps *caps)
-{
-    static const char *const names[] = { "llvmpipe", "softpipe", "SwiftShader", "swrast" };
-    for (unsigned i = 0; i < sizeof names / sizeof names[0]; i++) {
-        if (contains(caps->renderer, names[i])) {
-            return 1;
-        }
-    }
-    return 0;
-}
 
 /* NULL when the path runs here, else what is missing. */
 static const char *missing(noh_morph_path path, noh_accumulate accumulate, const noh_gl_caps *caps)
@@ -82,6 +56,11 @@ static noh_morph_path cheapest_on_gpu(const noh_gl_morph_plan *plan, float activ
     float mrt = active * ((float)plan->texel_count + 4.0f * (float)plan->rect_count);
     float gather = 1.25f * (float)plan->pair_count;
     int can_mrt = !missing(NOH_MORPH_MRT, accumulate, caps), can_gather = !missing(NOH_MORPH_GATHER, accumulate, caps);
+    const noh_gl_quirk *dear = noh_gl_quirk_find(caps->renderer, NOH_QUIRK_BLEND_DEAR);
+    if (can_gather && dear) {
+        *reason = dear->reason;
+        return NOH_MORPH_GATHER;
+    }
     if (can_mrt && (mrt <= gather || !can_gather)) {
         *reason = "mrt: float blending works here, and blending the expected targets is the least work";
         return NOH_MORPH_MRT;
@@ -106,13 +85,14 @@ static noh_result choose_path(const noh_gl_morph_desc *desc, const noh_gl_caps *
     plan->path = desc->path;
     plan->reason = "forced by the caller";
     if (desc->path == NOH_MORPH_AUTO) {
+        const noh_gl_quirk *software = noh_gl_quirk_find(caps->renderer, NOH_QUIRK_SOFTWARE);
         float active = desc->expected_active > 0.0f ? desc->expected_active : 0.5f;
         if (plan->pair_count == 0) {
             plan->path = NOH_MORPH_CPU;
             plan->reason = "cpu: no target moves anything, there is nothing to accumulate";
-        } else if (is_software(caps)) {
+        } else if (software) {
             plan->path = NOH_MORPH_CPU;
-            plan->reason = "cpu: this GL is rasterised in software, so SIMD on the CPU is the least work";
+            plan->reason = software->reason;
         } else {
             plan->path = cheapest_on_gpu(plan, active, plan->accumulate, caps, &plan->reason);
         }

@@ -2,6 +2,7 @@
  * of instances, and the GL state around a draw. */
 #include <string.h>
 
+#include "gl/gl_debug.h"
 #include "gl/gl_morph_internal.h"
 
 /* ---- where things are ---- */
@@ -66,6 +67,7 @@ noh_result noh_gl_morph_framebuffer(noh_gl_morph *m, int which, GLuint *framebuf
     } else {
         m->gl->FramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, m->layers.name, 0, which);
     }
+    noh_gl_label(m->gl, GL_FRAMEBUFFER, *framebuffer, "morph target of", noh_morph_path_name(m->plan.path));
     status = m->gl->CheckFramebufferStatus(GL_FRAMEBUFFER);
     m->gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
     if (status != GL_FRAMEBUFFER_COMPLETE) {
@@ -88,6 +90,8 @@ noh_result noh_gl_morph_stream(noh_gl_morph *m, const char *attribute, GLint com
     m->gl->EnableVertexAttribArray(location);
     m->gl->VertexAttribIPointer(location, components, type, 0, NULL);
     m->gl->VertexAttribDivisor(location, 1);
+    noh_gl_label(m->gl, GL_BUFFER, m->stream.name, "morph stream", NULL);
+    noh_gl_label(m->gl, GL_VERTEX_ARRAY, m->vertex_array, "morph stream", NULL);
     m->gl->BindVertexArray(0);
     m->gl->BindBuffer(GL_ARRAY_BUFFER, 0);
     return NOH_OK;

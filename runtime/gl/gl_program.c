@@ -1,5 +1,7 @@
 #include "gl/gl_program.h"
 
+#include "gl/gl_debug.h"
+
 #include <string.h>
 
 enum { STAGE_VERTEX, STAGE_GEOMETRY, STAGE_FRAGMENT, STAGE_COUNT };
@@ -127,7 +129,7 @@ static void bind_names(const noh_gl_api *api, const noh_gl_program_desc *desc, G
         if (block != GL_INVALID_INDEX) api->UniformBlockBinding(program, block, i);
     }
     api->UseProgram(0);
-    if (desc->name && api->ObjectLabel) api->ObjectLabel(GL_PROGRAM_KHR, program, -1, desc->name);
+    if (desc->name) noh_gl_label(api, GL_PROGRAM, program, "program", desc->name);
 }
 
 noh_result noh_gl_program_create(const noh_gl_api *api, const noh_gl_program_desc *desc, GLuint *program, char *log,

@@ -1,7 +1,9 @@
 /* gl_renderer.c: the plain renderer's programs and texture. */
 #include <string.h>
 
+#include "gl/gl_debug.h"
 #include "gl/gl_draw.h"
+#include "gl/gl_lost.h"
 
 static noh_result create_white(noh_gl_renderer *r, noh_error *error)
 {
@@ -12,6 +14,7 @@ static noh_result create_white(noh_gl_renderer *r, noh_error *error)
     result = noh_gl_texture_create(r->gl, r->ledger, &desc, &r->white, error);
     if (!result) {
         r->gl->BindTexture(GL_TEXTURE_2D, r->white.name);
+        noh_gl_label(r->gl, GL_TEXTURE, r->white.name, "renderer white", NULL);
         r->gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, texel);
         r->gl->BindTexture(GL_TEXTURE_2D, 0);
     }
@@ -100,4 +103,13 @@ void noh_gl_renderer_delete(noh_gl_renderer *renderer)
         noh_gl_variant_delete(renderer->gl, renderer->ledger, &renderer->variants[i]);
     }
     noh_gl_texture_delete(renderer->gl, renderer->ledger, &renderer->white);
+}
+
+noh_result noh_gl_renderer_restore(noh_gl_renderer *renderer, char *log, size_t log_bytes, noh_error *error)
+{
+    const noh_gl_api *gl = renderer->gl;
+    renderer->gl = noh_gl_lost_api();
+    noh_gl_renderer_delete(renderer);
+    renderer->gl = gl;
+    return create_objects(renderer, log, log_bytes, error);
 }

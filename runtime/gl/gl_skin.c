@@ -3,6 +3,8 @@
 #include <string.h>
 
 #include "deform/dual_quaternion.h"
+#include "gl/gl_debug.h"
+#include "gl/gl_lost.h"
 #include "gl/gl_skin_internal.h"
 
 static const float identity[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
@@ -125,20 +127,35 @@ noh_result noh_gl_skin_place(noh_gl_skin *skin, uint32_t instance, const float w
 
 /* ---- making ---- */
 
+static noh_result create_buffer(noh_gl_skin *skin, noh_error *error)
+{
+    noh_result result = noh_gl_buffer_create(skin->gl, skin->ledger, GL_UNIFORM_BUFFER, skin->plan.gpu_bytes, NULL, GL_DYNAMIC_DRAW,
+                                             &skin->buffer, error);
+    if (!result) {
+        noh_gl_label(skin->gl, GL_BUFFER, skin->buffer.name, "palettes", NULL);
+    }
+    return result;
+}
+
 static noh_result create_object(noh_gl_skin *skin, noh_error *error)
 {
     noh_gl_texture_desc desc = { GL_RGBA32F, 0, 0, 0, 0, 0, 0 };
+    noh_result result;
     skin->dirty_first = 0; /* a new object holds nothing yet: the first update sends all */
     skin->dirty_end = skin->plan.texel_count;
     if (skin->plan.mode == NOH_PALETTE_UNIFORM) {
-        return skin->plan.gpu_bytes ? noh_gl_buffer_create(skin->gl, skin->ledger, GL_UNIFORM_BUFFER, skin->plan.gpu_bytes, NULL,
-                                                           GL_DYNAMIC_DRAW, &skin->buffer, error)
-                                    : NOH_OK;
+        return skin->plan.gpu_bytes ? create_buffer(skin, error) : NOH_OK;
     }
     desc.width = skin->plan.width;
     desc.height = skin->plan.height;
     skin->gl->ActiveTexture(GL_TEXTURE0);
-    return noh_gl_texture_create(skin->gl, skin->ledger, &desc, &skin->texture, error);
+    result = noh_gl_texture_create(skin->gl, skin->ledger, &desc, &skin->texture, error);
+    if (!result) {
+        skin->gl->BindTexture(GL_TEXTURE_2D, skin->texture.name);
+        noh_gl_label(skin->gl, GL_TEXTURE, skin->texture.name, "palettes", NULL);
+        skin->gl->BindTexture(GL_TEXTURE_2D, 0);
+    }
+    return result;
 }
 
 static void set_bind_pose(noh_gl_skin *skin)
@@ -191,6 +208,15 @@ void noh_gl_skin_delete(noh_gl_skin *skin)
 {
     noh_gl_buffer_delete(skin->gl, skin->ledger, &skin->buffer);
     noh_gl_texture_delete(skin->gl, skin->ledger, &skin->texture);
+}
+
+noh_result noh_gl_skin_restore(noh_gl_skin *skin, noh_error *error)
+{
+    const noh_gl_api *gl = skin->gl;
+    skin->gl = noh_gl_lost_api();
+    noh_gl_skin_delete(skin);
+    skin->gl = gl;
+    return create_object(skin, error);
 }
 
 /* ---- asking ---- */

@@ -75,6 +75,9 @@ noh_result noh_gl_skin_init(void *memory, size_t bytes, const noh_gl_api *api, c
 /* Delete the GL object. The memory is yours again. */
 void noh_gl_skin_delete(noh_gl_skin *skin);
 
+/* Make the object again in a new context (gl_lost.h); the next update sends all. errors  as init */
+noh_result noh_gl_skin_restore(noh_gl_skin *skin, noh_error *error);
+
 const noh_gl_skin_plan *noh_gl_skin_plan_of(const noh_gl_skin *skin);
 
 /* The number of the i-th instance of the m-th mesh. */

@@ -27,6 +27,7 @@
 #include "base/half.h"
 #include "gl/gl_memory.h"
 #include "gl/gl_program.h"
+#include "gl/gl_quirks.h"
 #include "gl/gl_timer.h"
 #include "shaders.gen.h"
 
@@ -260,7 +261,7 @@ static void api_names_what_is_missing(void **state)
 {
     (void)state;
     context *c = need_context();
-    static const char *const names[] = {"glEnable", "glTexStorage3D", "glGetQueryObjectuiv", "glGetError"};
+    static const char *const names[] = {"glEnable", "glTexStorage3D", "glVertexAttribDivisor", "glGetError"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         refusing r = {c, names[i]};
         noh_gl_api table;
@@ -576,6 +577,49 @@ static void without_real_blending(void **state)
     expect_no_errors(c);
 }
 
+/* A driver of another name: the quirks that the probe heeds. */
+static PFNGLGETSTRINGPROC real_string;
+
+static const GLubyte *GL_APIENTRY string_of_swiftshader(GLenum what)
+{
+    static const char name[] = "ANGLE (Google, Vulkan 1.3.0 (SwiftShader Device (Subzero)))";
+    return what == GL_RENDERER ? (const GLubyte *)name : real_string(what);
+}
+
+static void a_quirk_unsettles_the_half_modes(void **state)
+{
+    (void)state;
+    context *c = need_context();
+    noh_gl_api table = c->gl;
+    noh_gl_caps caps;
+    real_string = table.GetString;
+    table.GetString = string_of_swiftshader;
+    assert_int_equal(noh_gl_caps_probe(&table, &caps, NULL), NOH_OK);
+    assert_int_equal(caps.f16_store_mode, NOH_HALF_UNKNOWN);
+    assert_int_equal(caps.f16_blend_mode, NOH_HALF_UNKNOWN);
+    assert_int_equal(caps.blend_f16, c->caps.blend_f16);
+    expect_no_errors(c);
+}
+
+static void every_quirk_has_a_reason_and_a_source(void **state)
+{
+    uint32_t count;
+    const noh_gl_quirk *quirks = noh_gl_quirk_table(&count);
+    (void)state;
+    assert_true(count > 0);
+    for (uint32_t i = 0; i < count; i++) {
+        char renderer[128];
+        assert_true(strlen(quirks[i].reason) > 20);
+        assert_true(strlen(quirks[i].source) > 10);
+        snprintf(renderer, sizeof renderer, "a %s b", quirks[i].renderer);
+        assert_ptr_equal(noh_gl_quirk_find(renderer, quirks[i].quirk), &quirks[i]);
+    }
+    assert_null(noh_gl_quirk_find("a GPU", NOH_QUIRK_SOFTWARE));
+    assert_null(noh_gl_quirk_find("", NOH_QUIRK_BLEND_DEAR));
+    assert_null(noh_gl_quirk_find("llvmpip", NOH_QUIRK_SOFTWARE));
+    assert_null(noh_gl_quirk_find("llvmpipe", NOH_QUIRK_BLEND_DEAR));
+}
+
 static void on_osmesa(void **state)
 {
     (void)state;
@@ -609,7 +653,7 @@ static void on_angle(void **state)
     assert_int_equal(code, 0);
     assert_int_equal(said(output, "layered"), 0);
     assert_int_equal(said(output, "blend_f32_exact"), 1);
-    assert_int_equal(said(output, "f16_blend_mode"), NOH_HALF_RNE);
+    assert_int_equal(said(output, "f16_blend_mode"), NOH_HALF_UNKNOWN); /* gl_quirks.c */
     assert_int_equal(said(output, "gl_error"), 0);
 }
 
@@ -911,8 +955,8 @@ static void timer_without_queries(void **state)
 static void platforms_by_name(void **state)
 {
     (void)state;
-    static const char *const names[] = {"egl", "angle", "osmesa"};
-    for (size_t i = 0; i < 3; i++) {
+    static const char *const names[] = {"egl", "angle", "osmesa", "glfw", "null"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         assert_non_null(noh_platform_find(names[i]));
         assert_string_equal(noh_platform_find(names[i])->name, names[i]);
         assert_non_null(strstr(noh_platform_names(), names[i]));
@@ -1028,6 +1072,8 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(without_float_targets),
         cmocka_unit_test(without_any_float_target),
         cmocka_unit_test(without_real_blending),
+        cmocka_unit_test(a_quirk_unsettles_the_half_modes),
+        cmocka_unit_test(every_quirk_has_a_reason_and_a_source),
         cmocka_unit_test(on_osmesa),
         cmocka_unit_test(on_angle),
         cmocka_unit_test(program_counts_and_dies),

@@ -660,7 +660,8 @@ static void automatic_weighs_blending_against_lists(void **state)
 
 static void automatic_takes_the_cpu_on_a_software_rasteriser(void **state)
 {
-    static const char *const names[] = { "llvmpipe (LLVM 15.0.6, 256 bits)", "softpipe", "ANGLE (Google, Vulkan 1.3.0 (SwiftShader Device))" };
+    static const char *const names[] = { "llvmpipe (LLVM 15.0.6, 256 bits)", "softpipe", "ANGLE (Google, Vulkan 1.3.0 (SwiftShader Device))",
+                                         "ANGLE (Microsoft, Microsoft Basic Render Driver Direct3D11 vs_5_0 ps_5_0)", "swrast" };
     const fixture_way way = { NOH_MORPH_AUTO, NOH_ACCUMULATE_AUTO };
     noh_gl_morph_desc desc = desc_of(way);
     noh_gl_caps caps = fixture_gpu()->caps;
@@ -673,6 +674,29 @@ static void automatic_takes_the_cpu_on_a_software_rasteriser(void **state)
         assert_int_equal(plan.accumulate, NOH_ACCUMULATE_F32);
         assert_non_null(strstr(plan.reason, "software"));
     }
+}
+
+/* Few active targets, float blending: mrt anywhere else. Without gather, blending after all. */
+static void automatic_spares_mali_the_blending(void **state)
+{
+    const fixture_way way = { NOH_MORPH_AUTO, NOH_ACCUMULATE_AUTO };
+    noh_gl_morph_desc desc = desc_of(way);
+    noh_gl_caps caps = fixture_gpu()->caps;
+    noh_gl_morph_plan plan;
+    (void)state;
+    caps.mrt3 = caps.blend_f32 = caps.render_f32 = caps.blend_f16 = 1;
+    desc.expected_active = 0.01f;
+    strcpy(caps.renderer, "a GPU");
+    assert_int_equal(noh_gl_morph_plan_make(&desc, &caps, &plan, NULL), NOH_OK);
+    assert_int_equal(plan.path, NOH_MORPH_MRT);
+    strcpy(caps.renderer, "Mali-G78 MC20");
+    assert_int_equal(noh_gl_morph_plan_make(&desc, &caps, &plan, NULL), NOH_OK);
+    assert_int_equal(plan.path, NOH_MORPH_GATHER);
+    assert_non_null(strstr(plan.reason, "vendor"));
+    desc.accumulate = NOH_ACCUMULATE_F16;
+    caps.render_f16 = 0;
+    assert_int_equal(noh_gl_morph_plan_make(&desc, &caps, &plan, NULL), NOH_OK);
+    assert_int_equal(plan.path, NOH_MORPH_MRT);
 }
 
 static void a_forced_path_says_so(void **state)
@@ -727,6 +751,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(automatic_falls_to_the_next_path),
     cmocka_unit_test(automatic_weighs_blending_against_lists),
     cmocka_unit_test(automatic_takes_the_cpu_on_a_software_rasteriser),
+    cmocka_unit_test(automatic_spares_mali_the_blending),
     cmocka_unit_test(a_forced_path_says_so),
     cmocka_unit_test(gather_works_on_core_es3),
 };

@@ -1,6 +1,6 @@
 #!/bin/sh
-# `noh verify`: every path and format against the CPU, on every model and driver at hand, and
-# with capabilities taken away: it has to find no differing value where it can run at all.
+# `noh verify`: every path and format against the CPU, on every model, and with capabilities
+# taken away: it has to find no differing value where it can run at all. Drivers: matrix.sh.
 . tests/cli/lib.sh
 
 # Runs under `env VARIABLE=VALUE... noh verify PACK`; tells the result.
@@ -94,15 +94,4 @@ else
     skip 'capabilities taken away' 'this GL is not llvmpipe, whose switches the test knows'
 fi
 
-# ---- other drivers ----
-
-for driver in osmesa angle; do
-    "$build/noh" verify "$build/mask.noh" --driver $driver >"$work/out" 2>"$work/err"
-    if [ $? != 0 ] && grep -q 'no GL context' "$work/err"; then
-        skip "on $driver" 'this driver is not here'
-    else
-        options="--driver $driver"
-        verify "on $driver" "$build/mask.noh"
-    fi
-done
 finish

@@ -3,12 +3,37 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* For tests and debuggers: NOH_GL_DEBUG=1 ends the program at the first GL error. */
+static void GL_APIENTRY stop_at_error(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
+                                      const GLchar *message, const void *user)
+{
+    (void)id;
+    (void)severity;
+    (void)length;
+    (void)user;
+    if (type == GL_DEBUG_TYPE_ERROR && source == GL_DEBUG_SOURCE_API) {
+        exit(tool_fail("GL", "%s", message));
+    }
+}
+
+/* After the probe, which tries what may be refused. */
+static void watch_errors(const noh_gl_api *gl)
+{
+    const char *wish = getenv("NOH_GL_DEBUG");
+    if (wish && wish[0] && gl->DebugMessageCallback) {
+        gl->Enable(GL_DEBUG_OUTPUT);
+        gl->Enable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+        gl->DebugMessageCallback(stop_at_error, NULL);
+    }
+}
+
 int gpu_open(gpu *g, const char *driver)
 {
     char message[2048] = "";
     noh_error error = { NOH_OK, "", 0, 0 };
-    noh_platform_desc desc = { 0, 0, 0, 0 };
+    noh_platform_desc desc;
     const char *name = driver ? driver : "egl";
+    memset(&desc, 0, sizeof desc);
     memset(g, 0, sizeof *g);
     g->platform = noh_platform_find(name);
     if (!g->platform) {
@@ -21,6 +46,7 @@ int gpu_open(gpu *g, const char *driver)
         g->platform->destroy(g->context);
         return tool_fail_error(name, &error);
     }
+    watch_errors(&g->gl);
     return 0;
 }
 

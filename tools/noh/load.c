@@ -271,6 +271,30 @@ void load_close(load *l)
     memset(l, 0, sizeof *l);
 }
 
+int load_restore(load *l)
+{
+    const noh_gl_api *gl = &l->g->gl;
+    noh_error error = { NOH_OK, "", 0, 0 };
+    char log[4096] = "";
+    noh_result result = NOH_OK;
+    for (uint32_t i = 0; !result && i < l->file->pack.mesh_count; i++) {
+        result = noh_gl_mesh_restore(gl, &l->g->ledger, &l->meshes[i], &error);
+    }
+    for (uint32_t i = 0; !result && i < l->file->pack.texture_count; i++) {
+        noh_texture texture;
+        noh_pack_texture(&l->file->pack, i, &texture);
+        result = noh_gl_picture_restore(gl, &l->g->ledger, &texture, &l->pictures[i], &error);
+    }
+    if (!result) result = noh_gl_morph_restore(l->morph.morph, log, sizeof log, &error);
+    if (!result && l->skin.skin) result = noh_gl_skin_restore(l->skin.skin, &error);
+    if (!result) result = noh_gl_renderer_restore(&l->renderer, log, sizeof log, &error);
+    if (result) {
+        fputs(log, stderr);
+        return tool_fail_error(l->file->path, &error);
+    }
+    return 0;
+}
+
 /* ---- using it ---- */
 
 static void update_joints(load *l)

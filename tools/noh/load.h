@@ -46,6 +46,10 @@ typedef struct load {
 int load_open(load *l, gpu *g, const pack_file *file, const scene *s, const load_options *o);
 void load_close(load *l);
 
+/* Make everything again after g's context was lost and g->gl filled for a new one. On error
+ * what could be made stays, to be closed. */
+int load_restore(load *l);
+
 /* Hand the scene's weights to the accumulator and accumulate; hand its joints to the palettes. */
 int load_update(load *l, noh_gl_morph_stats *stats);
 

@@ -21,7 +21,7 @@ static const struct verb {
       "bytes before a load: CPU and GPU, by part" },
     { "render", verb_render,
       "PACK -o OUT.png [--size 512x512] [--weight NAME=V]... [--clip NAME]... [--time S] [--anim PACK]\n"
-      "                 [--path P] [--accumulate auto|f32|f16] [--driver egl|osmesa|angle]\n"
+      "                 [--path P] [--accumulate auto|f32|f16] [--driver egl|osmesa|angle|glfw]\n"
       "                 [--camera face|body|AZ,EL,DIST] [--debug none|position|normal|tangent] [--bones]",
       "a picture" },
     { "sheet", verb_sheet, "PACK -o OUT.png [--clip NAME... [--anim PACK] [--tiles 24] | --target NAME...] [--tile 192] [--columns N] [--camera face]\n"

@@ -1,0 +1,51 @@
+/* null.h: what the platform "null" saw.
+ *
+ *   noh_null_report_of    counts, objects that live, the first thing that was wrong
+ *   noh_null_calls_of     how often one function was called
+ *   noh_null_count_anew   begin counting calls again: at the start of a frame
+ *
+ * The platform "null" has no GL. Every function counts its call and checks that GL
+ * would have taken it: names that live, storage before content, updates within their
+ * buffer, uniforms with a program in use, complete framebuffers and nothing that is
+ * both read and drawn to. What would be wrong is a violation: the first is kept in
+ * words, and glGetError says GL_INVALID_OPERATION. Nothing is drawn: pixels read as
+ * zeros, so noh_gl_caps_probe finds no abilities; set those that you want to test.
+ *
+ * One context is current at a time for the whole process. */
+#ifndef NOH_PLATFORM_NULL_H
+#define NOH_PLATFORM_NULL_H
+
+#include "platform.h"
+
+typedef enum noh_null_kind {
+    NOH_NULL_BUFFER,
+    NOH_NULL_TEXTURE,
+    NOH_NULL_RENDERBUFFER,
+    NOH_NULL_FRAMEBUFFER,
+    NOH_NULL_VERTEX_ARRAY,
+    NOH_NULL_PROGRAM,
+    NOH_NULL_SHADER
+} noh_null_kind;
+#define NOH_NULL_KINDS 7
+
+typedef struct noh_null_report {
+    uint64_t calls;        /* since noh_null_count_anew, as the next three */
+    uint32_t draws;        /* glDraw* */
+    uint32_t outside;      /* draws and clears outside every debug group */
+    uint32_t allocations;  /* calls that make an object or its storage: a steady frame has none */
+    uint32_t violations;   /* since the context was made */
+    char first[160];       /* the first violation: "glDrawElements: no program in use"; "" for none */
+    uint32_t live[NOH_NULL_KINDS]; /* objects that were made and not deleted */
+    uint32_t unlabelled;   /* of them, those without a debug label */
+    uint64_t bytes;        /* storage of buffers, textures and renderbuffers that live */
+    uint32_t groups;       /* debug groups that are open */
+} noh_null_report;
+
+void noh_null_report_of(const noh_platform_context *context, noh_null_report *report);
+
+/* name as in "glDrawElements"; 0 for names that the platform does not have. */
+uint32_t noh_null_calls_of(const noh_platform_context *context, const char *name);
+
+void noh_null_count_anew(noh_platform_context *context);
+
+#endif

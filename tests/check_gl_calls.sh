@@ -1,0 +1,39 @@
+#!/bin/sh
+# check_gl_calls.sh: the GL functions that a port has to bring.
+#   - NOH_GL_REQUIRED (runtime/gl/gl_api.h) is what runtime/ calls: no more, no less
+#   - what runtime/ calls of the optional ones is asked for NULL somewhere
+#   - the list in platform/README.md is that list
+set -u
+. tests/cli/lib.sh
+header=runtime/gl/gl_api.h
+
+# The fields of a list in the header.
+fields() {
+    awk -v list="#define $1(X)" 'index($0, list) == 1 { on = 1; next } on { print } on && !/\\$/ { exit }' $header |
+        sed -n 's/.*X(\([A-Za-z0-9]*\),.*/\1/p' | sort -u
+}
+fields NOH_GL_REQUIRED >"$work/required"
+fields NOH_GL_EXTRA >"$work/extra"
+fields NOH_GL_OPTIONAL >"$work/optional"
+
+# gl->DrawArrays(, api->..., m->gl->..., p->api->...
+cat runtime/*/*.c | grep -oE '(gl|api)->[A-Z][A-Za-z0-9]*\(' | sed 's/.*->//; s/(//' | sort -u >"$work/called"
+comm -23 "$work/called" "$work/optional" >"$work/core"
+
+check 'the lists were read' test "$(wc -l <"$work/required")" -gt 50 -a "$(wc -l <"$work/called")" -gt 50
+echo "# the library calls $(wc -l <"$work/core") functions of ES 3.0, and $(comm -12 "$work/called" "$work/optional" | wc -l) more where they exist"
+comm -23 "$work/core" "$work/required" >"$work/forgotten"
+check 'all that is called is required (else move it to NOH_GL_REQUIRED)' sh -c '! grep . "$1"' - "$work/forgotten"
+comm -13 "$work/core" "$work/required" >"$work/idle"
+check 'all that is required is called (else move it to NOH_GL_EXTRA)' sh -c '! grep . "$1"' - "$work/idle"
+comm -12 "$work/required" "$work/extra" >"$work/twice"
+check 'no function is in both lists' sh -c '! grep . "$1"' - "$work/twice"
+comm -12 "$work/called" "$work/optional" | while read -r name; do
+    cat runtime/*/*.c | grep -qE "!(gl|api)->$name\>" || echo "$name"
+done >"$work/unasked"
+check 'optional functions are asked for before they are called' sh -c '! grep . "$1"' - "$work/unasked"
+
+awk '/^<!-- required -->/ { on = 1; next } /^<!-- end -->/ { on = 0 } on' platform/README.md |
+    grep -oE 'gl[A-Z][A-Za-z0-9]*' | sed 's/^gl//' | sort -u >"$work/documented"
+check 'platform/README.md lists them' cmp "$work/required" "$work/documented"
+finish

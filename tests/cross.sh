@@ -1,0 +1,69 @@
+#!/bin/sh
+# cross.sh: the library for other processors, and its CPU tests run there: aarch64 (NEON) and
+# armv7 (scalar) under qemu-user, wasm (scalar) under node. What is not installed is skipped and
+# says so. Closes with "N passed, N failed, N skipped", as tests/run.sh does.
+set -u
+cd "$(dirname "$0")/.." || exit 1
+build=${NOH_BUILD:-build}
+passed=0 failed=0 skipped=0
+# Encoding the large clips takes minutes under an emulator: only what the tests make themselves.
+NOH_ASSETS=none
+export NOH_ASSETS
+
+has() { # the first command of these that is not here is printed
+    for tool in "$@"; do
+        command -v "$tool" >/dev/null 2>&1 || { echo "no $tool here"; return 1; }
+    done
+}
+
+# Adds up a test's TAP; a program that stops early has one failure.
+count() { # NAME LOG EXIT_CODE
+    right=$(grep -c '^ok ' "$2")
+    left_out=$(grep -c '^ok .*# SKIP' "$2")
+    wrong=$(grep -c '^not ok ' "$2")
+    [ "$3" = 0 ] || [ "$wrong" != 0 ] || wrong=1
+    grep -q "^1\.\.$((right + wrong))" "$2" || wrong=$((wrong + 1))
+    passed=$((passed + right - left_out)) failed=$((failed + wrong)) skipped=$((skipped + left_out))
+    if [ "$wrong" != 0 ]; then
+        echo "    $1: $wrong FAILED, its output is in $2:"
+        grep -v '^ok ' "$2" | tail -n 20 | sed 's/^/    | /'
+    fi
+}
+
+# TARGET CC AR LDFLAGS RUNNER...: build, say how large the library is, run each test.
+target() {
+    name=$1 cc=$2 ar=$3 flags=$4
+    shift 4
+    folder=$build/$name
+    echo "== $name"
+    if ! why=$(has "${cc%% *}" "$ar" "$1"); then
+        echo "    skipped: $why"
+        skipped=$((skipped + 1))
+        return
+    fi
+    if ! make --no-print-directory -j"${JOBS:-2}" BUILD="$folder" CC="$cc" AR="$ar" LDFLAGS="$flags" CROSS=1 DEPS=0 \
+        lib cross-tests >"$folder.log" 2>&1; then
+        failed=$((failed + 1))
+        echo "    it does not build:"
+        tail -n 20 "$folder.log" | sed 's/^/    | /'
+        return
+    fi
+    passed=$((passed + 1))
+    before=$passed
+    for source in tests/unit/test_*.c; do
+        test=$folder/cross/$(basename "$source" .c)
+        [ -f "$test" ] || continue
+        timeout -k 5 600 "$@" "$test" >"$test.tap" 2>&1 </dev/null
+        count "$(basename "$test")" "$test.tap" $?
+    done
+    echo "    libnoh.a builds ($(wc -c <"$folder/libnoh.a") bytes), $((passed - before)) tests passed there"
+}
+
+mkdir -p "$build"
+target aarch64 aarch64-linux-gnu-gcc aarch64-linux-gnu-ar -static qemu-aarch64-static
+target armv7 'arm-linux-gnueabihf-gcc -mfpu=neon' arm-linux-gnueabihf-ar -static qemu-arm-static
+# node's own fetch would not read the .wasm file that emscripten's older loader asks it for
+target wasm emcc emar '-s NODERAWFS=1 -s EXIT_RUNTIME=1 -s ALLOW_MEMORY_GROWTH=1 -s TOTAL_STACK=1MB' node --no-experimental-fetch
+
+echo "$passed passed, $failed failed, $skipped skipped"
+[ $failed = 0 ] && [ $passed != 0 ]

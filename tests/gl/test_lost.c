@@ -1,0 +1,205 @@
+/* A lost context: destroyed for good, a new one made, everything made again out of the pack by
+ * load_restore. The picture is the same, the ledger stands as before to the byte, and what else
+ * lives in the new context under the old names is left alone. */
+#include "gl_fixture.h"
+
+#include "load.h"
+#include "null.h"
+#include "view.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SIDE 96u
+#define STRANGERS 64
+
+typedef struct stage {
+    gpu g;
+    pack_file file;
+    uint8_t *bytes;
+    scene s;
+    load l;
+} stage;
+
+static void open_stage(stage *st, const char *driver, fixture_way way, int uint_layers)
+{
+    const test_model_desc desc = { 2, 9, 6, TEST_TANGENTS | TEST_UVS | TEST_COLORS | TEST_SCENE, 23 };
+    load_options options;
+    test_random r = test_random_from(7);
+    size_t count;
+    memset(st, 0, sizeof *st);
+    if (gpu_open(&st->g, driver)) test_skip("no context of the driver %s here", driver);
+    if (uint_layers) st->g.caps.render_f32 = st->g.caps.blend_f32 = 0;
+    st->bytes = test_pack(&desc, &count);
+    st->file.path = "a pack in memory";
+    st->file.pack = test_open(st->bytes, count);
+    memset(&options, 0, sizeof options);
+    options.path = way.path;
+    options.accumulate = way.accumulate;
+    assert_int_equal(scene_init(&st->s, &st->file), 0);
+    for (uint32_t i = 0; i < st->s.item_count; i++) {
+        test_random_weights(&r, st->s.items[i].weights, st->s.meshes[st->s.items[i].mesh].header->target_count);
+    }
+    assert_int_equal(load_open(&st->l, &st->g, &st->file, &st->s, &options), 0);
+}
+
+static void close_stage(stage *st)
+{
+    noh_gl_ledger nothing;
+    memset(&nothing, 0, sizeof nothing);
+    load_close(&st->l);
+    assert_int_equal(st->g.gl.GetError(), GL_NO_ERROR);
+    assert_memory_equal(&st->g.ledger, &nothing, sizeof nothing);
+    scene_free(&st->s);
+    free(st->bytes);
+    gpu_close(&st->g);
+}
+
+static uint8_t *picture(stage *st)
+{
+    view_options view = { NULL, SIDE, SIDE };
+    bounds box = scene_bounds(&st->s, &st->file, 0);
+    noh_gl_camera camera;
+    canvas c;
+    uint8_t *rgba = test_zeros(SIDE * SIDE * 4);
+    assert_int_equal(view_camera(&view, &box, &camera), 0);
+    assert_int_equal(load_update(&st->l, NULL), 0);
+    assert_int_equal(canvas_open(&c, &st->g, SIDE, SIDE), 0);
+    canvas_begin(&c);
+    load_draw(&st->l, &camera);
+    assert_int_equal(canvas_read(&c, rgba), 0);
+    canvas_close(&c);
+    return rgba;
+}
+
+static uint32_t colours_in(const uint8_t *rgba)
+{
+    uint32_t different = 0;
+    for (size_t i = 4; i < SIDE * SIDE * 4; i += 4) different += memcmp(rgba, rgba + i, 4) != 0;
+    return different;
+}
+
+/* Destroy the context, make another and fill the same table. */
+static void lose(stage *st)
+{
+    char message[1024];
+    st->g.platform->destroy(st->g.context);
+    assert_int_equal(st->g.platform->create(NULL, &st->g.context, message, sizeof message), NOH_OK);
+    assert_int_equal(noh_gl_api_load(&st->g.gl, st->g.platform->get_proc, st->g.context, NULL), NOH_OK);
+}
+
+/* Somebody else's buffers, in the new context, with contents that tell them apart. */
+static void make_strangers(const noh_gl_api *gl, GLuint names[STRANGERS])
+{
+    gl->GenBuffers(STRANGERS, names);
+    for (int32_t i = 0; i < STRANGERS; i++) {
+        gl->BindBuffer(GL_ARRAY_BUFFER, names[i]);
+        gl->BufferData(GL_ARRAY_BUFFER, sizeof i, &i, GL_STATIC_DRAW);
+    }
+    gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+}
+
+static void expect_strangers(const noh_gl_api *gl, const GLuint names[STRANGERS])
+{
+    for (int32_t i = 0; i < STRANGERS; i++) {
+        gl->BindBuffer(GL_ARRAY_BUFFER, names[i]);
+        const int32_t *content = gl->MapBufferRange(GL_ARRAY_BUFFER, 0, sizeof i, GL_MAP_READ_BIT);
+        assert_non_null(content);
+        assert_int_equal(*content, i);
+        gl->UnmapBuffer(GL_ARRAY_BUFFER);
+    }
+    gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+    gl->DeleteBuffers(STRANGERS, names);
+}
+
+static void lose_and_restore(fixture_way way, int uint_layers)
+{
+    GLuint strangers[STRANGERS];
+    stage st;
+    open_stage(&st, "egl", way, uint_layers);
+    uint8_t *before = picture(&st);
+    noh_gl_ledger ledger = st.g.ledger;
+    assert_true(colours_in(before) > SIDE * SIDE / 20);
+    for (int round = 0; round < 2; round++) {
+        lose(&st);
+        make_strangers(&st.g.gl, strangers);
+        assert_int_equal(load_restore(&st.l), 0);
+        assert_memory_equal(&st.g.ledger, &ledger, sizeof ledger);
+        uint8_t *after = picture(&st);
+        assert_memory_equal(before, after, SIDE * SIDE * 4);
+        free(after);
+        expect_strangers(&st.g.gl, strangers);
+    }
+    free(before);
+    close_stage(&st);
+}
+
+static void every_path_comes_back(void **state)
+{
+    (void)state;
+    for (int i = 0; i < FIXTURE_WAYS; i++) {
+        print_message("# %s\n", fixture_way_name(fixture_ways[i]));
+        lose_and_restore(fixture_ways[i], 0);
+    }
+    lose_and_restore((fixture_way){ NOH_MORPH_GATHER, NOH_ACCUMULATE_F32 }, 1);
+}
+
+/* The same under the platform that knows which names live: nothing of the old context is touched. */
+static void nothing_old_is_called(void **state)
+{
+    noh_null_report before, after;
+    stage st;
+    (void)state;
+    open_stage(&st, "null", (fixture_way){ NOH_MORPH_CPU, NOH_ACCUMULATE_F32 }, 0);
+    noh_null_report_of(st.g.context, &before);
+    lose(&st);
+    assert_int_equal(load_restore(&st.l), 0);
+    assert_int_equal(load_update(&st.l, NULL), 0);
+    noh_null_report_of(st.g.context, &after);
+    assert_string_equal(after.first, "");
+    assert_true(after.bytes == before.bytes);
+    assert_memory_equal(after.live, before.live, sizeof after.live);
+    assert_int_equal(noh_null_calls_of(st.g.context, "glDeleteTextures"), 0);
+    assert_int_equal(noh_null_calls_of(st.g.context, "glDeleteBuffers"), 0);
+    close_stage(&st);
+}
+
+/* A context that cannot take the accumulator back: the object holds nothing and can be tried again. */
+static PFNGLTEXSTORAGE3DPROC real_storage;
+
+static void GL_APIENTRY no_storage(GLenum target, GLsizei levels, GLenum format, GLsizei width, GLsizei height, GLsizei depth)
+{
+    (void)depth;
+    real_storage(target, levels, format, width, height, -1);
+}
+
+static void a_refusal_leaves_nothing(void **state)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    stage st;
+    (void)state;
+    open_stage(&st, "egl", (fixture_way){ NOH_MORPH_GATHER, NOH_ACCUMULATE_F32 }, 0);
+    uint64_t whole = noh_gl_ledger_bytes(&st.g.ledger);
+    const noh_gl_morph_plan plan = *noh_gl_morph_plan_of(st.l.morph.morph);
+    lose(&st);
+    real_storage = st.g.gl.TexStorage3D;
+    st.g.gl.TexStorage3D = no_storage;
+    assert_int_equal(noh_gl_morph_restore(st.l.morph.morph, NULL, 0, &error), NOH_ERR_GL);
+    assert_true(noh_gl_ledger_bytes(&st.g.ledger) == whole - plan.gpu_bytes);
+    st.g.gl.TexStorage3D = real_storage;
+    assert_int_equal(load_restore(&st.l), 0);
+    assert_true(noh_gl_ledger_bytes(&st.g.ledger) == whole);
+    close_stage(&st);
+}
+
+int main(int argument_count, char **arguments)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_path_comes_back),
+        cmocka_unit_test(nothing_old_is_called),
+        cmocka_unit_test(a_refusal_leaves_nothing),
+    };
+    if (argument_count > 1) cmocka_set_test_filter(arguments[1]);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
