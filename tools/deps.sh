@@ -26,6 +26,7 @@ libmeshoptimizer-dev:reading compressed glTF'
 packages_check='libcmocka-dev:unit tests
 ?libglfw3:windows
 ?xvfb:a display for them
+?assimp-testmodels:real BVH files
 ?mesa-vulkan-drivers:a third GL, zink on lavapipe
 libosmesa6:a second GL
 binutils:the check of the archive'"'"'s symbols'

@@ -56,6 +56,21 @@ for option in '--error-cm 0' '--shell-cm -1' '--rate -3' '--only legs' '--unit-c
     expect 2 "build $option is a usage error"
 done
 
+# Bounds of single clips and joints: coarser is smaller, finer is certified.
+noh build "$work/walk.bvh" -o "$work/coarse.noh" --clip-error walk=1 --quiet
+expect 0 'a bound for one clip'
+noh clip "$work/coarse.noh"
+check 'is not the others' sh -c '! cmp -s "$1" "$2"' - "$work/coarse.noh" "$work/walk.noh"
+noh build "$work/walk.bvh" -o "$work/fine.noh" --joint-error knee=0.0005 --quiet
+expect 0 'a bound for one joint'
+check 'makes another pack' sh -c '! cmp -s "$1" "$2"' - "$work/fine.noh" "$work/walk.noh"
+noh build "$work/walk.bvh" -o "$work/x.noh" --clip-error run=1
+expect 1 'a bound for a clip that is not there'
+says "no clip is named 'run'"
+noh build "$work/walk.bvh" -o "$work/x.noh" --joint-error knee=none
+expect 1 'a bound that is no number'
+says '--joint-error wants NAME=CM'
+
 sed '$d' "$work/walk.bvh" >"$work/short.bvh"
 noh build "$work/short.bvh" -o "$work/x.noh"
 expect 1 'a frame too few'

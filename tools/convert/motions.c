@@ -100,6 +100,23 @@ static int check_markers(const raw_clip *clip, model_error *error)
 
 /* ---- encoding ---- */
 
+static int encode_bounded(const raw_set *set, const raw_clip *clip, const motion_settings *s, motion_clip *out, model_error *error)
+{
+    clip_options options = s->clip;
+    const double own = named_error(&s->clip_errors, clip->name);
+    int failed = 0;
+    double *joints = named_joint_errors(&s->joint_errors, &set->skeleton, &failed);
+    if (failed) {
+        snprintf(error->what, sizeof error->what, "out of memory");
+        return 1;
+    }
+    options.error_cm = own > 0.0 ? own : options.error_cm;
+    options.joint_error_cm = joints;
+    failed = clip_encode(&set->skeleton, clip, &options, &out->bytes, &out->report, error);
+    free(joints);
+    return failed;
+}
+
 static int encode_clip(const raw_set *set, raw_clip *clip, const motion_settings *s, motion_clip *out, model_error *error)
 {
     clip->loop = (uint8_t)(clip->loop || s->check_loops);
@@ -107,7 +124,7 @@ static int encode_clip(const raw_set *set, raw_clip *clip, const motion_settings
         fprintf(s->progress, "\rencoding clip %s \033[K", clip->name);
         fflush(s->progress);
     }
-    if (check_length(clip, error) || check_markers(clip, error) || clip_encode(&set->skeleton, clip, &s->clip, &out->bytes, &out->report, error)) {
+    if (check_length(clip, error) || check_markers(clip, error) || encode_bounded(set, clip, s, out, error)) {
         return 1;
     }
     if (s->report) {
@@ -131,6 +148,7 @@ int motions_encode(raw_set **sets, uint32_t set_count, const motion_settings *s,
         snprintf(error->what, sizeof error->what, "out of memory");
         return 1;
     }
+    failed = named_errors_check(&s->clip_errors, &s->joint_errors, sets, set_count, error);
     for (uint32_t i = 0; i < set_count && !s->skeletons_only && !failed; i++) {
         for (uint32_t c = 0; c < sets[i]->clip_count && !failed; c++) {
             motion_clip *to = &out->clips[out->clip_count++];

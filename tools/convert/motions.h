@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "clip_encode.h"
+#include "named_errors.h"
 
 typedef struct motion_clip {
     uint32_t set; /* index into motions.sets */
@@ -26,6 +27,7 @@ typedef struct motion_settings {
     int check_loops; /* mark every clip as a loop, and say how far it is from closing */
     int skeletons_only; /* no clips: what a mesh pack needs */
     clip_options clip;
+    named_errors clip_errors, joint_errors; /* over those of `clip` */
     FILE *report, *progress; /* or NULL */
 } motion_settings;
 

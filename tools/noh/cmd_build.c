@@ -13,7 +13,7 @@ typedef struct build_args {
     const char *inputs[64], *output, *rects, *only, *events;
     int input_count, quiet, loop, mask, keep_parts;
     double error_um, rate, error_cm, shell_cm, unit_cm, influences, palette;
-    option_list dual_quaternion, two_streams;
+    option_list dual_quaternion, two_streams, clip_errors, joint_errors;
 } build_args;
 
 static int set_motion(const build_args *a, convert_options *o)
@@ -30,6 +30,8 @@ static int set_motion(const build_args *a, convert_options *o)
     o->motion.clip.error_cm = a->error_cm;
     o->motion.clip.shell_cm = a->shell_cm;
     o->motion.clip.open_loop = a->mask;
+    o->motion.clip_errors = (named_errors){ a->clip_errors.items, (uint32_t)a->clip_errors.count };
+    o->motion.joint_errors = (named_errors){ a->joint_errors.items, (uint32_t)a->joint_errors.count };
     o->only = !a->only ? CONVERT_ALL : a->only[0] == 'm' ? CONVERT_MESH : CONVERT_MOTION;
     o->events = a->events;
     return 0;
@@ -65,7 +67,8 @@ static int read_args(int argc, char **argv, build_args *a, convert_options *o)
         { "--only", OPTION_TEXT, &a->only }, { "--events", OPTION_TEXT, &a->events },
         { "--influences", OPTION_NUMBER, &a->influences }, { "--palette", OPTION_NUMBER, &a->palette },
         { "--dual-quaternion", OPTION_LIST, &a->dual_quaternion }, { "--keep-parts", OPTION_FLAG, &a->keep_parts },
-        { "--two-stream", OPTION_LIST, &a->two_streams }
+        { "--two-stream", OPTION_LIST, &a->two_streams }, { "--clip-error", OPTION_LIST, &a->clip_errors },
+        { "--joint-error", OPTION_LIST, &a->joint_errors }
     };
     int status = tool_options(argc, argv, options, sizeof options / sizeof options[0], a->inputs, 64, &a->input_count);
     if (status) {
@@ -96,7 +99,7 @@ static int read_args(int argc, char **argv, build_args *a, convert_options *o)
 
 int verb_build(int argc, char **argv)
 {
-    build_args a;
+    static build_args a;
     convert_options o;
     convert_failure failure;
     noh_error error = { NOH_OK, "", 0, 0 };

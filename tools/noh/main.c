@@ -12,7 +12,7 @@ static const struct verb {
       "IN... -o OUT.noh [--error-um 10] [--rects auto|N] [--rate HZ] [--error-cm 0.01] [--shell-cm 3]\n"
       "                 [--loop] [--for-masks] [--events FILE] [--unit-cm 1] [--only mesh|anim] [--quiet]\n"
       "                 [--influences 8] [--palette 256] [--dual-quaternion MESH|all]... [--keep-parts]\n"
-      "                 [--two-stream SOURCE=TARGET]...",
+      "                 [--two-stream SOURCE=TARGET]... [--clip-error CLIP=CM]... [--joint-error JOINT=CM]...",
       "convert .gltf, .glb, .bvh and .rcl to a pack: the first model, the clips of all" },
     { "info", verb_info, "PACK [--json]", "chunks, counts, names, errors certified at build" },
     { "clip", verb_clip, "PACK [--json] [--dump OUT.rcl [--clip NAME]]",
