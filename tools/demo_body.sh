@@ -23,6 +23,12 @@ if [ -f "$body" ]; then
     for clip in walk run dance; do
         "$noh" sheet "$out/body.noh" -o "$out/body_$clip.png" --clip $clip --camera 25,4 --tiles 8 --columns 8 --tile 240
     done
+    for clip in walk run dance; do
+        "$noh" sheet "$out/body.noh" -o "$out/bones_$clip.png" --clip $clip --bones --camera 50,8 --tiles 8 --columns 8 --tile 200
+    done
+    "$noh" sheet "$out/body.noh" -o "$out/bones_blend.png" --clip walk --blend run --bones --camera 60,8 --tiles 8 --tile 160
+    "$noh" sheet "$out/body.noh" -o "$out/bones_inertia.png" --clip walk --to punch --transition inertia --over 0.4 --bones \
+        --camera 60,8 --tiles 12 --columns 6 --tile 200
     "$noh" sheet "$out/body.noh" -o "$out/body_speaks.png" --clip face_speak --clip dance --camera face --tiles 8 --columns 8 --tile 240
     "$noh" render "$out/body.noh" -o "$out/body_smile.png" --size 640x720 --clip dance --time 7.64 --weight mouth-corner-puller=1 \
         --weight mouth-part-later=0.5 --camera 15,4
