@@ -44,7 +44,7 @@ PLATFORM_C := $(filter-out platform/template.c,$(sort $(wildcard platform/*.c)))
 CONVERT_C  := $(sort $(wildcard tools/convert/*.c))
 CONVERT_CC := $(sort $(wildcard tools/convert/*.cpp))
 TOOL_C     := $(sort $(wildcard tools/noh/*.c tools/noh/bench/*.c))
-MASK_C     := $(sort $(wildcard tools/make_mask/*.c tools/make_puppet/*.c))
+MASK_C     := $(sort $(wildcard tools/make_mask/*.c tools/make_puppet/*.c tools/make_arm/*.c))
 STAGES     := vert geom frag
 SHADERS    := $(sort $(foreach stage,$(STAGES),$(wildcard shaders_es/*.$(stage))))
 TOOL_SHADERS := $(sort $(foreach stage,$(STAGES),$(wildcard tools/noh/shaders/*.$(stage) tools/noh/bench/*.$(stage))))
@@ -160,6 +160,10 @@ $(BUILD)/demo/puppet.glb: $(BUILD)/make_mask
 	@mkdir -p $(@D)
 	$(BUILD)/make_mask --puppet $@
 
+$(BUILD)/demo/arm.glb: $(BUILD)/make_mask
+	@mkdir -p $(@D)
+	$(BUILD)/make_mask --arm $@
+
 $(BUILD)/mask.noh: $(BUILD)/mask.glb $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --quiet
 
@@ -181,11 +185,11 @@ demo: deps-build
 	@sh tools/demo.sh $(BUILD)
 
 demo-body: deps-build
-	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/demo/puppet.glb
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/demo/puppet.glb $(BUILD)/demo/arm.glb
 	@NOH_ASSETS="$(ASSETS)" sh tools/demo_body.sh $(BUILD)
 
 check: deps-check
-	@$(MAKE) --no-print-directory -j$(JOBS) all tests $(BUILD)/mask.noh $(BUILD)/demo/puppet.glb
+	@$(MAKE) --no-print-directory -j$(JOBS) all tests $(BUILD)/mask.noh $(BUILD)/demo/puppet.glb $(BUILD)/demo/arm.glb
 	@CC="$(CC)" NOH_BUILD="$(BUILD)" NOH_ASSETS="$(ASSETS)" NOH_SAN="$(SAN)" sh tests/run.sh
 
 cross: deps-cross

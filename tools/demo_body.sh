@@ -1,6 +1,6 @@
 #!/bin/sh
-# demo_body.sh BUILD: convert the puppet, make it move, and say what it cost; and, where $NOH_ASSETS has it,
-# hero/body.glb.
+# demo_body.sh BUILD: convert the puppet, make it move, and say what it cost; the same arm bent and twisted by each
+# kind of skinning; and, where $NOH_ASSETS has it, hero/body.glb.
 set -eu
 build=$1
 out=$build/demo
@@ -15,6 +15,14 @@ for clip in walk bow look_round dance; do
 done
 "$noh" sheet "$out/puppet.noh" -o "$out/puppet_bones.png" --clip dance --bones --camera 25,4 --tiles 8 --columns 8 --tile 240
 "$noh" budget "$out/puppet.noh"
+
+echo
+"$noh" build "$out/arm.glb" -o "$out/arm.noh" --dual-quaternion twisted_dual --two-stream stream_a=stream_b --quiet
+"$noh" info "$out/arm.noh"
+"$noh" sheet "$out/arm.noh" -o "$out/arm_bend.png" --clip bend --camera -25,12 --tiles 8 --columns 4 --tile 400
+"$noh" sheet "$out/arm.noh" -o "$out/arm_twist.png" --clip twist --camera 0,4 --tiles 8 --columns 4 --tile 400
+"$noh" sheet "$out/arm.noh" -o "$out/arm_streams.png" --target stream_b=0.25 --target stream_b=0.5 --target stream_b=0.75 \
+    --target stream_b --camera face --columns 5 --tile 320
 
 body=${NOH_ASSETS:-}/hero/body.glb
 if [ -f "$body" ]; then

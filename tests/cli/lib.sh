@@ -79,14 +79,14 @@ fi
 json_node() {
     node -e 'const j = JSON.parse(require("fs").readFileSync(0, "utf8")); process.exit(eval(process.argv[1]) ? 0 : 1)' "$1"
 }
-# The same expressions, as far as the scripts use them: j.a.b, j.a[0].b, ===, !==, &&
+# The same expressions, as far as the scripts use them: j.a.b, j.a[0].b, ===, !==, &&, null
 json_python() {
     python3 -c '
 import json, sys
 class D(dict):
     __getattr__ = dict.__getitem__
 j = json.load(sys.stdin, object_hook=D)
-e = sys.argv[1].replace("!==", "!=").replace("===", "==").replace("&&", " and ").replace("true", "True").replace("false", "False")
+e = sys.argv[1].replace("!==", "!=").replace("===", "==").replace("&&", " and ").replace("true", "True").replace("false", "False").replace("null", "None")
 sys.exit(0 if eval(e) else 1)' "$1"
 }
 

@@ -14,7 +14,7 @@ check 'without a warning' sh -c '! grep -q warning "$1"' sh "$work/err"
 noh info "$work/puppet.noh"
 check 'two meshes, five clips' grep -q '2 meshes, 47 nodes, 1 skeletons, 5 clips' "$work/out"
 
-for arguments in '' '--puppet' '--other x.glb' 'a.glb b.glb'; do
+for arguments in '' '--puppet' '--arm' '--other x.glb' 'a.glb b.glb'; do
     # shellcheck disable=SC2086
     "$build/make_mask" $arguments >"$work/out" 2>"$work/err"
     code=$?

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The mask and the puppet are valid glTF: npm's gltf-validator has no error and no warning to tell.
+# The mask, the puppet and the arm are valid glTF: npm's gltf-validator has no error and no warning to tell.
 . "$(dirname "$0")/lib.sh"
 
 name='what make_mask writes is valid glTF'
@@ -30,4 +30,5 @@ validate() {
 
 validate "$build/mask.glb" 'the mask is valid glTF'
 validate "$build/demo/puppet.glb" 'the puppet is valid glTF'
+validate "$build/demo/arm.glb" 'the arm is valid glTF'
 finish

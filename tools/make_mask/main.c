@@ -1,6 +1,8 @@
 /* make_mask OUT.glb: models a Noh mask and writes it as a glTF binary.
- * make_mask --puppet OUT.glb: the same mask, worn by a puppet that moves. */
+ * make_mask --puppet OUT.glb: the same mask, worn by a puppet that moves.
+ * make_mask --arm OUT.glb: arms in parts and in one piece, bent and twisted by every kind of skinning. */
 #include "gltf_write.h"
+#include "make_arm/arm_write.h"
 #include "make_puppet/puppet_write.h"
 
 #include <stdio.h>
@@ -59,6 +61,19 @@ static int make_puppet(const char *path)
     return good;
 }
 
+static int make_arm(const char *path)
+{
+    Buffer file = { 0 };
+    ArmCensus census = arm_write(&file);
+    int good = save(path, &file);
+    if (good) {
+        printf("%s: %d meshes, %d vertices, %d triangles, %d joints, %d animations, %d bytes\n", path, census.meshes,
+               census.vertices, census.triangles, census.joints, census.animations, file.count);
+    }
+    buffer_free(&file);
+    return good;
+}
+
 int main(int argc, char **argv)
 {
     if (argc == 2 && argv[1][0] != '-') {
@@ -67,6 +82,9 @@ int main(int argc, char **argv)
     if (argc == 3 && !strcmp(argv[1], "--puppet")) {
         return make_puppet(argv[2]) ? 0 : 1;
     }
-    fprintf(stderr, "usage: make_mask OUT.glb\n       make_mask --puppet OUT.glb\n");
+    if (argc == 3 && !strcmp(argv[1], "--arm")) {
+        return make_arm(argv[2]) ? 0 : 1;
+    }
+    fprintf(stderr, "usage: make_mask OUT.glb\n       make_mask --puppet OUT.glb\n       make_mask --arm OUT.glb\n");
     return 2;
 }

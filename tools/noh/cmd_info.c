@@ -15,12 +15,27 @@ static void print_target(const noh_pack *pack, const noh_target *t, double scale
            1e3 * scale * (double)t->max_displacement, 1e6 * scale * (double)t->position_error);
 }
 
+static const char *method_of(const noh_mesh_header *h)
+{
+    return h->flags & NOH_MESH_DUAL_QUATERNION ? "dual quaternions" : "matrices";
+}
+
+static void print_skin(const noh_pack *pack, const noh_mesh_header *h)
+{
+    noh_skin skin;
+    if (noh_pack_skin_at(pack, h->skin, &skin) == NOH_OK) {
+        printf("  skin '%s': %u joints, %u influence%s a vertex, %u palette%s, by %s\n", skin.name, skin.header->joint_count,
+               h->influence_count, h->influence_count == 1 ? "" : "s", h->palette_count, h->palette_count == 1 ? "" : "s", method_of(h));
+    }
+}
+
 static void print_mesh(const noh_pack *pack, const noh_mesh *m)
 {
     const noh_mesh_header *h = m->header;
     printf("mesh '%s': %u vertices, %u indices, %u submeshes%s%s%s\n", m->name, h->vertex_count, h->index_count, h->submesh_count,
            (h->flags & NOH_MESH_TANGENTS) ? ", tangents" : "", (h->flags & NOH_MESH_UVS) ? ", uvs" : "",
            (h->flags & NOH_MESH_COLORS) ? ", colours" : "");
+    print_skin(pack, h);
     if (h->target_count) {
         printf("  %u targets, %u pairs in %u rectangles of %u texels (%.3f per pair), %llu bytes (%.2f per pair)\n", h->target_count,
                h->pair_count, h->rect_count, h->texel_count, h->pair_count ? (double)h->texel_count / h->pair_count : 0.0,
@@ -86,6 +101,23 @@ static void json_target(json *j, const noh_pack *pack, const noh_target *t, doub
     json_close(j, '}');
 }
 
+/* Null for a rigid mesh. */
+static void json_skin(json *j, const noh_pack *pack, const noh_mesh_header *h)
+{
+    noh_skin skin;
+    if (noh_pack_skin_at(pack, h->skin, &skin) != NOH_OK) {
+        json_null(j, "skin");
+        return;
+    }
+    json_open(j, "skin", '{');
+    json_text(j, "name", skin.name);
+    json_integer(j, "joints", skin.header->joint_count);
+    json_integer(j, "influences", h->influence_count);
+    json_integer(j, "palettes", h->palette_count);
+    json_bool(j, "dual_quaternion", (h->flags & NOH_MESH_DUAL_QUATERNION) != 0);
+    json_close(j, '}');
+}
+
 static void json_mesh(json *j, const noh_pack *pack, const noh_mesh *m)
 {
     const noh_mesh_header *h = m->header;
@@ -102,6 +134,7 @@ static void json_mesh(json *j, const noh_pack *pack, const noh_mesh *m)
     json_integer(j, "texels", h->texel_count);
     json_integer(j, "target_bytes", target_bytes(h));
     json_number(j, "f16_bound_um", 1e6 * (double)h->world_scale * (double)h->f16_position_bound);
+    json_skin(j, pack, h);
     json_open(j, "lods", '[');
     json_close(j, ']');
     json_open(j, "target_list", '[');

@@ -24,7 +24,7 @@ static const struct verb {
       "                 [--path P] [--accumulate auto|f32|f16] [--driver egl|osmesa|angle|glfw]\n"
       "                 [--camera face|body|AZ,EL,DIST] [--debug none|position|normal|tangent] [--bones]",
       "a picture" },
-    { "sheet", verb_sheet, "PACK -o OUT.png [--clip NAME... [--anim PACK] [--tiles 24] | --target NAME...] [--tile 192] [--columns N] [--camera face]\n"
+    { "sheet", verb_sheet, "PACK -o OUT.png [--clip NAME... [--anim PACK] [--tiles 24] | --target NAME[=V]...] [--tile 192] [--columns N] [--camera face]\n"
       "                 [--blend CLIP | --to CLIP [--transition fade|inertia] [--over 0.3]] [--bones]\n"
       "                 [--path P] [--accumulate A] [--driver D]", "a contact sheet: every target at full weight, or a clip in time" },
     { "dump", verb_dump, "PACK -o OUT.obj [--weight NAME=V]... [--clip NAME]... [--time S] [--anim PACK] [--path P]",

@@ -1,5 +1,6 @@
 #include "sheet_tiles.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,29 +8,45 @@
 
 /* ---- targets ---- */
 
+/* Names longer than a pack's are cut: none of them is found. */
+static void set_target(sheet_target *out, const char *name, size_t length, double weight)
+{
+    snprintf(out->name, sizeof out->name, "%.*s", (int)(length < sizeof out->name ? length : sizeof out->name), name);
+    out->weight = weight;
+}
+
+/* NAME, or NAME=WEIGHT where a number follows the last equals sign. */
+static void read_target(const char *text, sheet_target *out)
+{
+    const char *equals = strrchr(text, '=');
+    double weight = 1.0;
+    int has_weight = equals && !tool_number(equals + 1, &weight);
+    set_target(out, text, has_weight ? (size_t)(equals - text) : strlen(text), has_weight ? weight : 1.0);
+}
+
 /* The targets that were asked for; each has to be there. */
 static int list_only(sheet_tiles *t)
 {
     int status = 0;
-    t->names = calloc((size_t)t->only.count, sizeof *t->names);
-    if (!t->names) {
+    t->targets = calloc((size_t)t->only.count, sizeof *t->targets);
+    if (!t->targets) {
         return tool_fail(t->file->path, "out of memory");
     }
     for (int i = 0; i < t->only.count && !status; i++) {
-        status = scene_check_target(&t->rest, t->file, t->only.items[i]);
-        t->names[t->name_count++] = t->only.items[i];
+        read_target(t->only.items[i], &t->targets[t->target_count]);
+        status = scene_check_target(&t->rest, t->file, t->targets[t->target_count++].name);
     }
     return status;
 }
 
 static void add_name(sheet_tiles *t, const char *name)
 {
-    for (uint32_t i = 0; i < t->name_count; i++) {
-        if (strcmp(t->names[i], name) == 0) {
+    for (uint32_t i = 0; i < t->target_count; i++) {
+        if (strcmp(t->targets[i].name, name) == 0) {
             return;
         }
     }
-    t->names[t->name_count++] = name;
+    set_target(&t->targets[t->target_count++], name, strlen(name), 1.0);
 }
 
 /* Every target name of every mesh, once. */
@@ -42,8 +59,8 @@ static int list_names(sheet_tiles *t)
     for (uint32_t m = 0; m < t->file->pack.mesh_count; m++) {
         total += t->rest.meshes[m].header->target_count;
     }
-    t->names = calloc(total + 1, sizeof *t->names);
-    if (!t->names) {
+    t->targets = calloc(total + 1, sizeof *t->targets);
+    if (!t->targets) {
         return tool_fail(t->file->path, "out of memory");
     }
     for (uint32_t m = 0; m < t->file->pack.mesh_count; m++) {
@@ -54,14 +71,23 @@ static int list_names(sheet_tiles *t)
     return 0;
 }
 
-static void pose_target(sheet_tiles *t, const char *name)
+static void pose_target(sheet_tiles *t, const sheet_target *shown)
 {
     for (uint32_t i = 0; i < t->posed.item_count; i++) {
         const noh_mesh *mesh = &t->posed.meshes[t->posed.items[i].mesh];
-        uint32_t target = noh_mesh_find_target(mesh, name);
+        uint32_t target = noh_mesh_find_target(mesh, shown->name);
         if (target < mesh->header->target_count) {
-            t->posed.items[i].weights[target] = 1.0f;
+            t->posed.items[i].weights[target] = (float)shown->weight;
         }
+    }
+}
+
+static void label_target(const sheet_target *shown, char *text, size_t bytes)
+{
+    if (shown->weight == 1.0) {
+        snprintf(text, bytes, "%s", shown->name);
+    } else {
+        snprintf(text, bytes, "%s %g", shown->name, shown->weight);
     }
 }
 
@@ -129,7 +155,7 @@ int sheet_tiles_open(sheet_tiles *t, const pack_file *file)
 
 void sheet_tiles_close(sheet_tiles *t)
 {
-    free(t->names);
+    free(t->targets);
     scene_free(&t->rest);
     scene_free(&t->posed);
 }
@@ -137,7 +163,7 @@ void sheet_tiles_close(sheet_tiles *t)
 uint32_t sheet_tiles_count(const sheet_tiles *t)
 {
     if (!t->clip) {
-        return t->name_count + 1;
+        return t->target_count + 1;
     }
     return t->blend ? t->clip_tiles * SHEET_BLEND_ROWS : t->clip_tiles;
 }
@@ -158,7 +184,7 @@ int sheet_tiles_pose(sheet_tiles *t, uint32_t tile)
         return t->blend || t->to ? pose_pair(t, tile) : scene_set_clips(&t->posed, t->file, &t->clips, tile_time(t, tile));
     }
     if (tile) {
-        pose_target(t, t->names[tile - 1]);
+        pose_target(t, &t->targets[tile - 1]);
     }
     return 0;
 }
@@ -166,8 +192,12 @@ int sheet_tiles_pose(sheet_tiles *t, uint32_t tile)
 void sheet_tiles_label(const sheet_tiles *t, uint32_t tile, char *text, size_t bytes)
 {
     double time_s;
+    if (!t->clip && tile) {
+        label_target(&t->targets[tile - 1], text, bytes);
+        return;
+    }
     if (!t->clip) {
-        snprintf(text, bytes, "%s", tile ? t->names[tile - 1] : "(rest)");
+        snprintf(text, bytes, "(rest)");
         return;
     }
     time_s = tile_time(t, tile);

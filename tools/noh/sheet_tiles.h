@@ -7,6 +7,12 @@
 
 #define SHEET_BLEND_ROWS 5u /* weights 0, 1/4, 1/2, 3/4, 1 */
 
+/* One tile's. */
+typedef struct sheet_target {
+    char name[NOH_NAME_BYTES_MAX];
+    double weight;
+} sheet_target;
+
 typedef struct sheet_tiles {
     const pack_file *file;
     scene rest, posed;
@@ -16,9 +22,9 @@ typedef struct sheet_tiles {
     double over_s;       /* in this time */
     double clip_seconds;
     uint32_t clip_tiles; /* in time */
-    option_list only;    /* targets to show instead of all */
-    const char **names;  /* [name_count] */
-    uint32_t name_count;
+    option_list only;    /* NAME or NAME=WEIGHT: targets to show instead of all */
+    sheet_target *targets; /* [target_count] */
+    uint32_t target_count;
 } sheet_tiles;
 
 /* Open the scene and find what was asked for. Prints an error and returns an exit code; 0 on success. */
