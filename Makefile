@@ -60,7 +60,7 @@ TESTS      := $(TEST_C:tests/%.c=$(BUILD)/tests/%)
 # The accumulation and skinning kernels built for other instruction sets, for `noh bench` and the tests.
 KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/morph_$(set).o $(BUILD)/kernel/skin_$(set).o))
 
-.PHONY: install all demo demo-body check bench help clean deps-build deps-check deps-cross deps-web deps-fuzz cross cross-tests web web-check web-serve lib tests demo-run check-run fuzz sizes
+.PHONY: install all demo demo-body check bench bench-lod help clean deps-build deps-check deps-cross deps-web deps-fuzz cross cross-tests web web-check web-serve lib tests demo-run check-run fuzz sizes
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -72,6 +72,7 @@ help:
 	@echo 'make demo-body  the same with the puppet, a figure that walks, bows, looks round and dances'
 	@echo 'make check      install what is missing, build and run the tests'
 	@echo 'make bench      ratios against the named baselines (the mask, and hero/head.glb and clips where they are)'
+	@echo 'make bench-lod  of them only levels of detail against meshoptimizer'"'"'s'
 	@echo 'make fuzz       fuzz the pack reader and the clip decoder (FUZZ_SECONDS=60 each), needs clang'
 	@echo 'make cross      the library and its CPU tests for aarch64, armv7 and wasm (qemu, node)'
 	@echo 'make web        the page, WebGL 2 (WEB_PACK=PACK: for another pack); make web-serve, web-check'
@@ -153,6 +154,12 @@ $(BUILD)/clip_tables: $(BUILD)/tools/clip_tables/main.o $(CONVERT_O) $(PLATFORM_
 	$(call say,CXX,$@)
 	$(Q)$(CXX) $(LDFLAGS) $^ -o $@ $(TOOL_LIBS)
 
+# Our levels of detail against meshoptimizer's; for `make bench`.
+LOD_COMPARE_O := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tools/lod_compare/*.c)))
+$(BUILD)/lod_compare: $(LOD_COMPARE_O) $(CONVERT_O) $(PLATFORM_O) $(BUILD)/libnoh.a
+	$(call say,CXX,$@)
+	$(Q)$(CXX) $(LDFLAGS) $^ -o $@ $(TOOL_LIBS)
+
 $(BUILD)/mask.glb: $(BUILD)/make_mask
 	$(BUILD)/make_mask $@
 
@@ -196,8 +203,14 @@ cross: deps-cross
 	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tests/cross.sh
 
 bench: deps-build
-	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/mask.noh $(BUILD)/demo/puppet.glb
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/mask.noh $(BUILD)/demo/puppet.glb $(BUILD)/lod_compare
 	@NOH_ASSETS="$(ASSETS)" sh tools/bench.sh $(BUILD)
+	@NOH_ASSETS="$(ASSETS)" sh tools/lod_compare/compare.sh $(BUILD)
+
+# Only the comparison of levels of detail.
+bench-lod: deps-build
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/lod_compare $(BUILD)/mask.glb
+	@NOH_ASSETS="$(ASSETS)" sh tools/lod_compare/compare.sh $(BUILD)
 
 # ---- the page ----
 

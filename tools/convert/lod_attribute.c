@@ -1,0 +1,166 @@
+/* lod_attribute.c: how far UVs, colours and skin weights slide, told as lengths. */
+#include "lod_internal.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define UV_WEIGHT 0.1f
+#define COLOR_EDGES 0.6f
+#define SKIN_EDGES 1.0f
+#define FIRST_COLOR 2u
+
+static double area_of(const float *a, const float *b, const float *c, uint32_t axes)
+{
+    double u[3] = { 0 }, v[3] = { 0 }, x, y, z;
+    for (uint32_t k = 0; k < axes; k++) {
+        u[k] = (double)b[k] - a[k];
+        v[k] = (double)c[k] - a[k];
+    }
+    x = u[1] * v[2] - u[2] * v[1];
+    y = u[2] * v[0] - u[0] * v[2];
+    z = u[0] * v[1] - u[1] * v[0];
+    return sqrt(x * x + y * y + z * z);
+}
+
+/* Lengths of surface per UV unit, over the whole mesh. */
+static float uv_length(const model_mesh *mesh)
+{
+    double surface = 0.0, picture = 0.0;
+    for (uint32_t i = 0; mesh->uv && i + 2u < mesh->index_count; i += 3u) {
+        const uint32_t *c = mesh->indices + i;
+        surface += area_of(mesh->position + (size_t)c[0] * 3u, mesh->position + (size_t)c[1] * 3u,
+                           mesh->position + (size_t)c[2] * 3u, 3);
+        picture += area_of(mesh->uv + (size_t)c[0] * 2u, mesh->uv + (size_t)c[1] * 2u, mesh->uv + (size_t)c[2] * 2u, 2);
+    }
+    return picture > 0.0 ? (float)sqrt(surface / picture) : 0.0f;
+}
+
+static float chosen(float option, float standard) { return option < 0.0f ? 0.0f : option > 0.0f ? option : standard; }
+
+int lod_attributes_make(lod_surface *s, const lod_options *o)
+{
+    const model_mesh *mesh = s->mesh;
+    float uv = chosen(o->uv_weight, UV_WEIGHT) * uv_length(mesh);
+    float color = chosen(o->color_length, COLOR_EDGES * s->edge);
+    s->attribute = calloc((size_t)mesh->vertex_count + 1u, LOD_ATTRIBUTES * sizeof *s->attribute);
+    if (!s->attribute) {
+        return 1;
+    }
+    s->skin_length = mesh->joint_weights ? chosen(o->skin_length, SKIN_EDGES * s->edge) : 0.0f;
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
+        float *to = s->attribute + v * LOD_ATTRIBUTES;
+        for (uint32_t k = 0; mesh->uv && k < 2u; k++) {
+            to[k] = mesh->uv[v * 2u + k] * uv;
+        }
+        for (uint32_t k = 0; mesh->color && k < 4u; k++) {
+            to[2u + k] = mesh->color[v * 4u + k] * color;
+        }
+    }
+    return 0;
+}
+
+/* The place of the new surface that stands for a point of the old one. */
+typedef struct place {
+    float squared, weight[3];
+    uint32_t vertex[3];
+} place;
+
+static uint32_t moved(const lod_move *m, uint32_t vertex)
+{
+    for (uint32_t w = 0; w < m->wedge_count; w++) {
+        if (m->wedge_from[w] == vertex) {
+            return m->wedge_to[w];
+        }
+    }
+    return vertex;
+}
+
+/* The nearest one at rest among the new triangles of an island (LOD_NONE: all). 0 where it has none here. */
+static int nearest_place(const lod_surface *s, const lod_move *m, const float *at, uint32_t island, place *out)
+{
+    out->squared = FLT_MAX;
+    for (uint32_t i = 0; i < m->kept_count; i++) {
+        uint32_t c = m->kept[i];
+        float triangle[9], weight[3], squared;
+        if (island != LOD_NONE && s->island[c / 3u] != island) {
+            continue;
+        }
+        lod_move_triangle(s, c, m->to, 0, triangle);
+        squared = lod_distance_point(triangle, at, weight);
+        if (squared < out->squared) {
+            out->squared = squared;
+            memcpy(out->weight, weight, sizeof weight);
+            out->vertex[0] = moved(m, s->corner[c]);
+            out->vertex[1] = s->corner[lod_next(c)];
+            out->vertex[2] = s->corner[lod_previous(c)];
+        }
+    }
+    return out->squared < FLT_MAX;
+}
+
+static float attribute_error(const lod_surface *s, const place *p, const uint32_t *corners, uint32_t first)
+{
+    float sum = 0.0f;
+    for (uint32_t k = first; k < LOD_ATTRIBUTES; k++) {
+        float there = 0.0f, here = 0.0f;
+        for (uint32_t i = 0; i < 3u; i++) {
+            there += p->weight[i] * s->attribute[(size_t)p->vertex[i] * LOD_ATTRIBUTES + k];
+            here += s->attribute[(size_t)corners[i] * LOD_ATTRIBUTES + k] * (1.0f / 3.0f);
+        }
+        sum += (there - here) * (there - here);
+    }
+    return sum;
+}
+
+/* Of a vertex's weight on one joint, what the place does not carry. */
+static float missing_weight(const model_mesh *mesh, const place *p, uint16_t joint, float weight)
+{
+    for (uint32_t i = 0; i < 3u; i++) {
+        size_t row = (size_t)p->vertex[i] * MODEL_INFLUENCES_MAX;
+        for (uint32_t k = 0; k < MODEL_INFLUENCES_MAX; k++) {
+            if (mesh->joints[row + k] == joint) {
+                weight -= p->weight[i] * mesh->joint_weights[row + k];
+            }
+        }
+    }
+    return weight > 0.0f ? weight : 0.0f;
+}
+
+static double skin_error(const lod_surface *s, const lod_move *m)
+{
+    size_t row = (size_t)m->from * MODEL_INFLUENCES_MAX;
+    float missing = 0.0f;
+    place p;
+    if (!(s->skin_length > 0.0f) || !nearest_place(s, m, lod_posed(&s->poses, m->from, 0), LOD_NONE, &p)) {
+        return 0.0;
+    }
+    for (uint32_t k = 0; k < MODEL_INFLUENCES_MAX && s->mesh->joint_weights[row + k] > 0.0f; k++) {
+        missing += missing_weight(s->mesh, &p, s->mesh->joints[row + k], s->mesh->joint_weights[row + k]);
+    }
+    return (double)(missing * s->skin_length) * (missing * s->skin_length);
+}
+
+double lod_attribute_cost(const lod_surface *s, const lod_move *m, const uint32_t *triangles, uint32_t count,
+                          const uint32_t *source)
+{
+    double worst = skin_error(s, m);
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t *corners = source + (size_t)triangles[i] * 3u;
+        float at[3], error;
+        uint32_t first = 0;
+        place p;
+        for (uint32_t k = 0; k < 3u; k++) {
+            at[k] = (lod_posed(&s->poses, corners[0], 0)[k] + lod_posed(&s->poses, corners[1], 0)[k] +
+                     lod_posed(&s->poses, corners[2], 0)[k]) * (1.0f / 3.0f);
+        }
+        if (!nearest_place(s, m, at, s->island[triangles[i]], &p)) { /* an island has gone: its UVs say nothing about others */
+            nearest_place(s, m, at, LOD_NONE, &p);
+            first = FIRST_COLOR;
+        }
+        error = attribute_error(s, &p, corners, first);
+        worst = error > worst ? error : worst;
+    }
+    return worst;
+}

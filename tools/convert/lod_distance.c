@@ -1,0 +1,135 @@
+/* lod_distance.c: points to triangles. Branch-free over lanes, so that compilers make SIMD of it. */
+#include "lod_internal.h"
+
+/* Comparisons may be made for all lanes: nobody looks at the processor's exception flags. */
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("no-trapping-math")
+#endif
+
+/* A corner, the edge from it, and the plane through that edge upright on the triangle. */
+typedef struct edge {
+    float at[3], along[3], side[3], inverse; /* inverse: 1 / |along|^2, 0 for an edge without length */
+} edge;
+
+typedef struct prepared {
+    edge edges[3];
+    float normal[3], inverse; /* 1 / |normal|^2, 0 for a triangle without area */
+} prepared;
+
+static float dot(const float *a, const float *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static void cross(const float *a, const float *b, float *out)
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static void prepare(const float *triangle, prepared *out)
+{
+    float squared;
+    for (uint32_t e = 0; e < 3u; e++) {
+        const float *a = triangle + e * 3u, *b = triangle + (e + 1u) % 3u * 3u;
+        edge *to = &out->edges[e];
+        for (uint32_t k = 0; k < 3u; k++) {
+            to->at[k] = a[k];
+            to->along[k] = b[k] - a[k];
+        }
+        squared = dot(to->along, to->along);
+        to->inverse = squared > 0.0f ? 1.0f / squared : 0.0f;
+    }
+    cross(out->edges[0].along, out->edges[1].along, out->normal);
+    squared = dot(out->normal, out->normal);
+    out->inverse = squared > 0.0f ? 1.0f / squared : 0.0f;
+    for (uint32_t e = 0; e < 3u; e++) {
+        cross(out->normal, out->edges[e].along, out->edges[e].side);
+    }
+}
+
+/* The squared distance to an edge; *inside falls to the least of the sides' signs. */
+static inline float edge_squared(const edge *e, float x, float y, float z, float *inside)
+{
+    float dx = x - e->at[0], dy = y - e->at[1], dz = z - e->at[2];
+    float side = dx * e->side[0] + dy * e->side[1] + dz * e->side[2];
+    float t = (dx * e->along[0] + dy * e->along[1] + dz * e->along[2]) * e->inverse;
+    *inside = side < *inside ? side : *inside;
+    t = t < 0.0f ? 0.0f : t;
+    t = t > 1.0f ? 1.0f : t;
+    dx -= t * e->along[0];
+    dy -= t * e->along[1];
+    dz -= t * e->along[2];
+    return dx * dx + dy * dy + dz * dz;
+}
+
+static inline float triangle_squared(const prepared *p, float x, float y, float z)
+{
+    float inside = 1.0f;
+    float d0 = edge_squared(&p->edges[0], x, y, z, &inside);
+    float d1 = edge_squared(&p->edges[1], x, y, z, &inside);
+    float d2 = edge_squared(&p->edges[2], x, y, z, &inside);
+    float height = (x - p->edges[0].at[0]) * p->normal[0] + (y - p->edges[0].at[1]) * p->normal[1] +
+                   (z - p->edges[0].at[2]) * p->normal[2];
+    float plane = height * height * p->inverse;
+    d0 = d1 < d0 ? d1 : d0;
+    d0 = d2 < d0 ? d2 : d0;
+    return inside > 0.0f ? plane : d0;
+}
+
+void lod_distance_triangle(const float *triangle, const float *x, const float *y, const float *z, uint32_t count,
+                           float *squared)
+{
+    prepared p;
+    prepare(triangle, &p);
+    for (uint32_t i = 0; i < count; i += LOD_LANES) {
+        float lane[LOD_LANES];
+        for (uint32_t k = 0; k < LOD_LANES; k++) {
+            lane[k] = triangle_squared(&p, x[i + k], y[i + k], z[i + k]);
+        }
+        for (uint32_t k = 0; k < LOD_LANES; k++) {
+            squared[i + k] = lane[k] < squared[i + k] ? lane[k] : squared[i + k];
+        }
+    }
+}
+
+/* Weights of the nearest place on the edge from corner e. */
+static float edge_barycentric(const prepared *p, uint32_t e, const float *point, float *out)
+{
+    const edge *of = &p->edges[e];
+    float d[3] = { point[0] - of->at[0], point[1] - of->at[1], point[2] - of->at[2] }, t = dot(d, of->along) * of->inverse;
+    t = t < 0.0f ? 0.0f : t > 1.0f ? 1.0f : t;
+    for (uint32_t k = 0; k < 3u; k++) {
+        d[k] -= t * of->along[k];
+    }
+    out[e] = 1.0f - t;
+    out[(e + 1u) % 3u] = t;
+    out[(e + 2u) % 3u] = 0.0f;
+    return dot(d, d);
+}
+
+float lod_distance_point(const float *triangle, const float *point, float *barycentric)
+{
+    prepared p;
+    float squared, best = 0.0f;
+    prepare(triangle, &p);
+    squared = triangle_squared(&p, point[0], point[1], point[2]);
+    if (!barycentric) {
+        return squared;
+    }
+    for (uint32_t e = 0; e < 3u; e++) {
+        float weights[3], d = edge_barycentric(&p, e, point, weights);
+        if (e == 0 || d < best) {
+            best = d;
+            barycentric[0] = weights[0];
+            barycentric[1] = weights[1];
+            barycentric[2] = weights[2];
+        }
+    }
+    if (squared < best) { /* inside: areas against the edges opposite to the corners */
+        for (uint32_t e = 0; e < 3u; e++) {
+            const edge *of = &p.edges[e];
+            float d[3] = { point[0] - of->at[0], point[1] - of->at[1], point[2] - of->at[2] };
+            barycentric[(e + 2u) % 3u] = dot(d, of->side) * p.inverse;
+        }
+    }
+    return squared;
+}

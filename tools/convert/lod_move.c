@@ -1,0 +1,184 @@
+/* lod_move.c: whether a point may go to its neighbour, and going there. */
+#include "lod_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+#define TURN_COSINE 0.2588190451 /* 75 degrees at rest */
+#define SLIVER 0.01f             /* the least height of a new triangle over its longest edge */
+
+void lod_move_triangle(const lod_surface *s, uint32_t corner, uint32_t point, uint32_t pose, float *out)
+{
+    memcpy(out, lod_posed(&s->poses, point, pose), 3u * sizeof *out);
+    memcpy(out + 3, lod_posed(&s->poses, lod_point(s, lod_next(corner)), pose), 3u * sizeof *out);
+    memcpy(out + 6, lod_posed(&s->poses, lod_point(s, lod_previous(corner)), pose), 3u * sizeof *out);
+}
+
+/* Which wedge of `to` each wedge of `from` becomes. 0 where one has none, or two. */
+static int map_wedges(const lod_surface *s, const lod_fan *fan, lod_move *m)
+{
+    m->wedge_count = m->kept_count = m->gone_count = 0;
+    for (uint32_t i = 0; i < fan->count; i++) {
+        uint32_t c = fan->corner[i], other = lod_point(s, lod_next(c)) == m->to ? lod_next(c) : lod_previous(c), w = 0;
+        if (lod_point(s, other) != m->to) {
+            m->kept[m->kept_count++] = c;
+            continue;
+        }
+        m->gone[m->gone_count++] = c;
+        while (w < m->wedge_count && m->wedge_from[w] != s->corner[c]) {
+            w++;
+        }
+        if (w == m->wedge_count) {
+            m->wedge_from[w] = s->corner[c];
+            m->wedge_to[m->wedge_count++] = s->corner[other];
+        } else if (m->wedge_to[w] != s->corner[other]) {
+            return 0;
+        }
+    }
+    for (uint32_t i = 0; i < m->kept_count; i++) {
+        uint32_t w = 0;
+        while (w < m->wedge_count && m->wedge_from[w] != s->corner[m->kept[i]]) {
+            w++;
+        }
+        if (w == m->wedge_count) {
+            return 0;
+        }
+    }
+    return m->kept_count > 0; /* a piece of the surface never vanishes as a whole */
+}
+
+/* A border point stays on its border. */
+static int border_allows(const lod_fan *fan, uint32_t to)
+{
+    uint32_t borders = 0;
+    int along = 0;
+    for (uint32_t i = 0; i < fan->ring_count; i++) {
+        borders += fan->ring_use[i] == 1u;
+        along |= fan->ring[i] == to && fan->ring_use[i] == 1u;
+    }
+    return borders == 0 || (borders == 2u && along);
+}
+
+/* The link condition: both points' only common neighbours are the far corners of the triangles
+ * that vanish; and no triangle comes to lie on another. */
+static int link_allows(lod_surface *s, const lod_fan *fan, const lod_move *m)
+{
+    uint32_t common = 0, triangles = 0, stamp = s->stamp += 2u;
+    for (uint32_t i = 0; i < fan->ring_count; i++) {
+        s->mark[fan->ring[i]] = stamp;
+    }
+    for (uint32_t c = s->first[m->to]; c != LOD_NONE; c = s->next[c]) {
+        uint32_t a = lod_point(s, lod_next(c)), b = lod_point(s, lod_previous(c));
+        if (s->dead[c / 3u]) {
+            continue;
+        }
+        triangles++;
+        if (s->mark[a] >= stamp && s->mark[b] >= stamp && a != m->from && b != m->from) {
+            return 0;
+        }
+        common += s->mark[a] == stamp && a != m->from;
+        s->mark[a] += s->mark[a] == stamp;
+        common += s->mark[b] == stamp && b != m->from;
+        s->mark[b] += s->mark[b] == stamp;
+    }
+    return common == m->gone_count && triangles + m->kept_count - m->gone_count <= LOD_FAN_MAX;
+}
+
+static float cross_of(const float *t, float *out)
+{
+    float a[3] = { t[3] - t[0], t[4] - t[1], t[5] - t[2] }, b[3] = { t[6] - t[0], t[7] - t[1], t[8] - t[2] };
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+    return out[0] * out[0] + out[1] * out[1] + out[2] * out[2];
+}
+
+static float longest_edge(const float *t)
+{
+    float longest = 0.0f;
+    for (uint32_t i = 0; i < 3u; i++) {
+        const float *a = t + i * 3u, *b = t + (i + 1u) % 3u * 3u;
+        float d = (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
+        longest = d > longest ? d : longest;
+    }
+    return longest; /* squared */
+}
+
+/* At rest: no triangle turns too far or becomes a line, but for one that was one. */
+static int shape_allows(const lod_surface *s, const lod_move *m)
+{
+    for (uint32_t i = 0; i < m->kept_count; i++) {
+        float before[9], after[9], n0[3], n1[3], l0, l1, longest;
+        lod_move_triangle(s, m->kept[i], m->from, 0, before);
+        lod_move_triangle(s, m->kept[i], m->to, 0, after);
+        l0 = cross_of(before, n0);
+        l1 = cross_of(after, n1);
+        longest = longest_edge(after);
+        if (l1 <= SLIVER * SLIVER * longest * longest && l1 <= l0) {
+            return 0;
+        }
+        if (l0 > 0.0f && n0[0] * n1[0] + n0[1] * n1[1] + n0[2] * n1[2] < (float)TURN_COSINE * sqrtf(l0 * l1)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static uint32_t wedge_after(const lod_move *m, uint32_t wedge)
+{
+    uint32_t w = 0;
+    while (m->wedge_from[w] != wedge) {
+        w++;
+    }
+    return m->wedge_to[w];
+}
+
+static double uv_area(const float *a, const float *b, const float *c)
+{
+    return ((double)b[0] - a[0]) * ((double)c[1] - a[1]) - ((double)b[1] - a[1]) * ((double)c[0] - a[0]);
+}
+
+/* No triangle's picture turns over, or shrinks to a line. */
+static int uv_allows(const lod_surface *s, const lod_move *m)
+{
+    const float *uv = s->mesh->uv;
+    for (uint32_t i = 0; uv && i < m->kept_count; i++) {
+        uint32_t c = m->kept[i], from = s->corner[c], to = wedge_after(m, from);
+        const float *a = uv + (size_t)s->corner[lod_next(c)] * 2u, *b = uv + (size_t)s->corner[lod_previous(c)] * 2u;
+        double before = uv_area(uv + (size_t)from * 2u, a, b), after = uv_area(uv + (size_t)to * 2u, a, b);
+        if ((before > 0.0 && after <= 0.0) || (before < 0.0 && after >= 0.0)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+int lod_move_allowed(lod_surface *s, const lod_fan *fan, uint32_t to, lod_move *m)
+{
+    m->from = fan->point;
+    m->to = to;
+    return !s->locked[fan->point] && border_allows(fan, to) && map_wedges(s, fan, m) && link_allows(s, fan, m) &&
+           uv_allows(s, m) && shape_allows(s, m);
+}
+
+void lod_move_apply(lod_surface *s, const lod_move *m)
+{
+    uint32_t *end = &s->first[m->to];
+    for (uint32_t i = 0; i < m->gone_count; i++) {
+        uint32_t t = m->gone[i] / 3u;
+        s->dead[t] = 1;
+        s->live[s->submesh[t]]--;
+    }
+    while (*end != LOD_NONE) {
+        end = &s->next[*end];
+    }
+    for (uint32_t i = 0; i < m->kept_count; i++) {
+        uint32_t c = m->kept[i];
+        s->corner[c] = wedge_after(m, s->corner[c]);
+        s->next[c] = LOD_NONE;
+        *end = c;
+        end = &s->next[c];
+    }
+    s->first[m->from] = LOD_NONE;
+    s->removed[m->from] = 1;
+}

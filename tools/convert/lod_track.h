@@ -1,0 +1,40 @@
+/* lod_track.h (private to lod_track.c and lod_measure.c): samples of the full surface, attached to the
+ * triangles that stand for them.
+ *
+ * A sample is a point that was removed, or (vertex_count + t) the centroid of the mesh's triangle t. */
+#ifndef NOH_CONVERT_LOD_TRACK_H
+#define NOH_CONVERT_LOD_TRACK_H
+
+#include "lod_internal.h"
+
+/* What one pose makes of a fan; filled when first asked for. */
+typedef struct lod_pose_view {
+    uint32_t stamp;
+    float *samples;   /* [3][capacity]: x, y, z */
+    float *triangles; /* [capacity][9] */
+} lod_pose_view;
+
+struct lod_track {
+    lod_surface *surface;
+    uint32_t *first, *next;   /* [triangle_count], [vertex_count + triangle_count]: the samples at a triangle */
+    const lod_fan *fan;       /* that is open */
+    uint32_t capacity, count, padded; /* its samples; the last one repeats up to `padded` */
+    uint32_t *sample;         /* [capacity]; the fan's own point is the last one */
+    uint32_t triangle_count;  /* centroids among the samples */
+    uint32_t *triangle;       /* [capacity] whose they are */
+    float *squared, *nearest, *worst; /* [capacity] */
+    uint32_t *owner;          /* [capacity] */
+    uint64_t *shows;          /* [words] poses in which one of its samples is a rim that opens or closes */
+    uint64_t *set;            /* [words] poses in which the fan or its samples move */
+    uint32_t *pose;           /* [pose_count] those; the one that decided last comes first */
+    uint32_t pose_count, stamp;
+    lod_pose_view *views;         /* [poses.count] */
+    float *block;             /* of all views */
+};
+
+/* What a pose makes of the fan that is open. */
+const lod_pose_view *lod_track_view(lod_track *t, uint32_t pose);
+
+void lod_track_fill(float *values, uint32_t count); /* with FLT_MAX */
+
+#endif

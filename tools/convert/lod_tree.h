@@ -1,0 +1,30 @@
+/* lod_tree.h (private to lod_*.c): the nearest triangle of a surface that changes its pose. */
+#ifndef NOH_CONVERT_LOD_TREE_H
+#define NOH_CONVERT_LOD_TREE_H
+
+#include <stdint.h>
+
+typedef struct lod_tree_node {
+    float low[3], high[3];
+    uint32_t first, count; /* leaf: triangles in `order`; else count is 0 and first is the left child, the right one follows it */
+} lod_tree_node;
+
+typedef struct lod_tree {
+    uint32_t triangle_count, node_count;
+    const uint32_t *indices; /* the caller's, [triangle_count][3] */
+    lod_tree_node *nodes;    /* parents before children */
+    uint32_t *order;         /* [triangle_count] */
+    float *triangles;        /* [triangle_count][9] in the pose of the last lod_tree_pose */
+} lod_tree;
+
+/* Over the triangles in one pose, position [vertices][3]. Returns 1 when out of memory. */
+int lod_tree_make(const uint32_t *indices, uint32_t triangle_count, const float *position, lod_tree *out);
+void lod_tree_free(lod_tree *t);
+
+/* The same triangles in another pose. */
+void lod_tree_pose(lod_tree *t, const float *position);
+
+/* The squared distance to the surface. *nearest: a guess on entry (any triangle), the nearest on return. */
+float lod_tree_nearest(const lod_tree *t, const float *point, uint32_t *nearest);
+
+#endif
