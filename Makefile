@@ -60,7 +60,7 @@ TESTS      := $(TEST_C:tests/%.c=$(BUILD)/tests/%)
 # The accumulation and skinning kernels built for other instruction sets, for `noh bench` and the tests.
 KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/morph_$(set).o $(BUILD)/kernel/skin_$(set).o))
 
-.PHONY: install all demo demo-body check bench bench-lod help clean deps-build deps-check deps-cross deps-web deps-fuzz cross cross-tests web web-check web-serve lib tests demo-run check-run fuzz sizes
+.PHONY: install all demo demo-body check bench bench-lod help clean deps-build deps-check deps-cross deps-web deps-fuzz cross cross-tests web web-check web-serve web-bench lib tests demo-run check-run fuzz sizes
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -75,7 +75,7 @@ help:
 	@echo 'make bench-lod  of them only levels of detail against meshoptimizer'"'"'s'
 	@echo 'make fuzz       fuzz the pack reader and the clip decoder (FUZZ_SECONDS=60 each), needs clang'
 	@echo 'make cross      the library and its CPU tests for aarch64, armv7 and wasm (qemu, node)'
-	@echo 'make web        the page, WebGL 2 (WEB_PACK=PACK: for another pack); make web-serve, web-check'
+	@echo 'make web        the page, WebGL 2 (WEB_PACK=PACK: for another pack); make web-serve, web-check, web-bench'
 	@echo 'make sizes      code and data of the library, by file'
 	@echo 'make install    PREFIX=/usr/local: noh, libnoh.a and the headers (compile with -IPREFIX/include/noh)'
 	@echo 'make clean      remove $(BUILD)'
@@ -173,6 +173,8 @@ $(BUILD)/demo/arm.glb: $(BUILD)/make_mask
 
 $(BUILD)/mask.noh: $(BUILD)/mask.glb $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --quiet
+$(BUILD)/demo/puppet.noh: $(BUILD)/demo/puppet.glb $(BUILD)/noh
+	$(BUILD)/noh build $< -o $@ --quiet
 
 # ---- demo, tests, benchmarks ----
 
@@ -214,47 +216,55 @@ bench-lod: deps-build
 
 # ---- the page ----
 
-# Built for one pack: WebAssembly memory cannot grow, and its size is the pack, what `noh budget` says
-# at most of any path, the program's own static data, the stack and a heap for emscripten's strings.
+# Built for one pack, in a folder of its own: WebAssembly memory cannot grow, and its size is the pack, what
+# `noh budget` says at most of any path, the program's own static data, the stack and a heap for emscripten's strings.
 WEB_PACK    ?= $(BUILD)/mask.noh
-WEB_FLAGS   := -std=c99 -O2 $(WARN) $(FP) -Wno-sign-conversion $(INCLUDES) -Iplatform/web
+WEB         := $(BUILD)/web/$(basename $(notdir $(WEB_PACK)))
+WEB_FLAGS   := -std=c99 -O2 -msimd128 -msse2 $(WARN) $(FP) -Wno-sign-conversion $(INCLUDES) -Iplatform/web
 WEB_LINK    := -s MIN_WEBGL_VERSION=2 -s MAX_WEBGL_VERSION=2 -s ALLOW_MEMORY_GROWTH=0 -s ENVIRONMENT=web --no-entry \
                -s EXPORTED_RUNTIME_METHODS=UTF8ToString -s INCOMING_MODULE_JS_API=onRuntimeInitialized
 WEB_STACK   := 65536
 WEB_HEAP    := 65536
 WEB_STATIC  := 262144
-WEB_SHADERS := platform/web/present.vert platform/web/present.frag
-WEB_PAGE    := $(addprefix $(BUILD)/web/,index.html page.js page.noh)
+WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js page.noh)
 
 web: deps-web
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(WEB_PACK)
-	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/web/noh.js $(WEB_PAGE)
+	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB)/noh.js $(WEB_PAGE)
 
-web-check: web
+# Of the mask and of the puppet; or of one pack, if it is named.
+WEB_PACKS   := $(if $(filter file,$(origin WEB_PACK)),$(BUILD)/mask.noh $(BUILD)/demo/puppet.noh,$(WEB_PACK))
+web-check: deps-web
 	@$(MAKE) --no-print-directory $(BUILD)/tests/gl/picture_diff
-	@NOH_BUILD="$(BUILD)" sh tests/web.sh
+	@for pack in $(WEB_PACKS); do $(MAKE) --no-print-directory DEPS=0 web WEB_PACK=$$pack || exit 1; done
+	@NOH_BUILD="$(BUILD)" sh tests/web.sh $(WEB_PACKS)
 
 web-serve: web
 	@echo 'http://localhost:8000/'
-	@cd $(BUILD)/web && python3 -m http.server 8000 --bind localhost
+	@cd $(WEB) && python3 -m http.server 8000 --bind localhost
 
-$(BUILD)/gen/web_shaders.gen.c: $(WEB_SHADERS) $(BUILD)/embed
-	@mkdir -p $(@D)
-	$(call say,EMBED,$@)
-	$(Q)$(BUILD)/embed -o $@ -d $(BUILD)/gen/web_shaders.embed.d $(WEB_SHADERS)
+# The page's frame beside three.js's.
+WEB_BENCH ?= $(ASSETS)/hero/head.glb
+web-bench: deps-web
+	@[ -f "$(WEB_BENCH)" ] || { echo 'skipped: no $(WEB_BENCH) (ASSETS=DIR says where models are)'; exit 0; }; \
+	mkdir -p $(BUILD)/web-bench && \
+	$(MAKE) --no-print-directory $(BUILD)/noh $(BUILD)/tests/gl/picture_diff && \
+	$(BUILD)/noh build $(WEB_BENCH) -o $(BUILD)/web-bench/$(basename $(notdir $(WEB_BENCH))).noh --quiet && \
+	$(MAKE) --no-print-directory DEPS=0 web WEB_PACK=$(BUILD)/web-bench/$(basename $(notdir $(WEB_BENCH))).noh && \
+	NOH_BUILD="$(BUILD)" sh tests/web_bench.sh "$(WEB_BENCH)"
 
-$(BUILD)/web/page.noh: $(WEB_PACK)
+$(WEB)/page.noh: $(WEB_PACK)
 	@mkdir -p $(@D)
 	@cp $< $@
-$(BUILD)/web/%: platform/web/%
+$(WEB)/%: platform/web/%
 	@mkdir -p $(@D)
 	@cp $< $@
 
 WEB_C := $(wildcard platform/web/*.c) $(RUNTIME_C)
-$(BUILD)/web/noh.js: $(WEB_C) $(wildcard platform/web/*.h) $(BUILD)/gen/web_shaders.gen.c $(BUILD)/gen/shaders.gen.c $(WEB_PACK) $(BUILD)/noh
+$(WEB)/noh.js: $(WEB_C) $(wildcard platform/web/*.h runtime/*/*.h) $(BUILD)/gen/shaders.gen.c $(WEB_PACK) $(BUILD)/noh
 	@mkdir -p $(@D)
 	@NOH_BUILD="$(BUILD)" PACK="$(WEB_PACK)" STACK=$(WEB_STACK) HEAP=$(WEB_HEAP) STATIC=$(WEB_STATIC) OUT=$@ \
-	    FLAGS="$(WEB_FLAGS)" LINK="$(WEB_LINK)" sh tools/web.sh $(WEB_C) $(BUILD)/gen/web_shaders.gen.c $(BUILD)/gen/shaders.gen.c
+	    FLAGS="$(WEB_FLAGS)" LINK="$(WEB_LINK)" sh tools/web.sh $(WEB_C) $(BUILD)/gen/shaders.gen.c
 
 # FUZZ_SECONDS=60: how long, both at once. Skips where clang or its runtime is not.
 fuzz: deps-fuzz

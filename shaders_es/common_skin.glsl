@@ -68,7 +68,7 @@ vec4 crowd_row(int i)
 
 #define JOINT_ROW(i) (skin_instance() + u_skin.w + JOINT_ROWS * (i))
 #define PALETTE_ROW(i) skin_texel(i)
-#else
+#elif INFLUENCES > 0 /* a block is active even where nothing reads it, and WebGL then wants it bound */
 layout(std140) uniform palette_block {
     highp vec4 u_palette[256 * JOINT_ROWS];
 };

@@ -1,7 +1,7 @@
 #version 300 es
 /* mesh.frag: enough light to judge a face by. One key light with a wrapped edge,
  * a sky and ground fill, a soft rim; GGX highlight. Linear in and out: the target
- * is sRGB and encodes. DEBUG_VIEW shows a quantity instead. */
+ * is sRGB and encodes, or ENCODE_SRGB is defined. DEBUG_VIEW shows a quantity instead. */
 precision highp float;
 
 uniform vec3 u_camera;
@@ -48,6 +48,13 @@ vec3 shade(vec3 albedo, vec3 n, vec3 v)
     return color;
 }
 
+#ifdef ENCODE_SRGB
+vec3 encoded(vec3 c)
+{
+    return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, vec3(lessThanEqual(c, vec3(0.0031308))));
+}
+#endif
+
 void main()
 {
     vec4 base = u_base_color * v_color * texture(u_base_color_texture, v_uv);
@@ -68,5 +75,8 @@ void main()
     }
     vec3 color = u_material.w > 0.5 ? base.rgb : shade(base.rgb, n, normalize(u_camera - v_world));
     o_color = vec4(color, base.a);
+#endif
+#ifdef ENCODE_SRGB
+    o_color.rgb = encoded(o_color.rgb);
 #endif
 }

@@ -14,19 +14,21 @@ done
 pack=$(wc -c <"$PACK")
 pack=$(((pack + 63) / 64 * 64))
 noh=$(((noh + 63) / 64 * 64))
-sum=$((pack + noh + STATIC + STACK + HEAP))
+align=1024 # what lies between at most 64 objects that begin at multiples of 16
+sum=$((pack + noh + align + STATIC + STACK + HEAP))
 memory=$(((sum + 65535) / 65536 * 65536))
 
 # Debian's emscripten uses Debian's node modules, which another node does not look for.
 export NODE_PATH="${NODE_PATH:+$NODE_PATH:}/usr/share/nodejs"
 # shellcheck disable=SC2086
-emcc $FLAGS -DNOH_WEB_PACK_BYTES=$pack -DNOH_WEB_MEMORY_BYTES=$noh "$@" $LINK \
+emcc $FLAGS -DNOH_WEB_PACK_BYTES=$pack -DNOH_WEB_MEMORY_BYTES=$((noh + align)) "$@" $LINK \
     -s TOTAL_STACK="$STACK" -s INITIAL_MEMORY=$memory -o "$OUT"
 
 cat <<END
 WebAssembly memory, which cannot grow:
   the pack                     $pack
   what noh budget says         $noh
+  alignment of its parts       $align (at most)
   static data of the program   $STATIC (at most)
   stack                        $STACK
   heap of emscripten's strings $HEAP

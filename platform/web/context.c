@@ -33,11 +33,6 @@ static const struct {
 #define WEB_FUNCTION(field, TYPE) {"gl" #field, (noh_gl_proc)gl##field},
     NOH_GL_REQUIRED(WEB_FUNCTION)
 #undef WEB_FUNCTION
-    /* what the page's own canvas needs beside them */
-    {"glBlitFramebuffer", (noh_gl_proc)glBlitFramebuffer},
-    {"glFramebufferRenderbuffer", (noh_gl_proc)glFramebufferRenderbuffer},
-    {"glFramebufferTexture2D", (noh_gl_proc)glFramebufferTexture2D},
-    {"glDrawArrays", (noh_gl_proc)glDrawArrays}
 };
 
 void noh_web_enable_extensions(noh_platform_context *context)
@@ -61,8 +56,8 @@ static noh_result create(const noh_platform_desc *desc, noh_platform_context **o
     (void)message_bytes;
     emscripten_webgl_init_context_attributes(&attributes);
     attributes.majorVersion = 2;
-    attributes.antialias = 0; /* the page resolves its own samples */
-    attributes.depth = 0;
+    attributes.antialias = 1;
+    attributes.depth = 1;
     attributes.alpha = 0;
     attributes.preserveDrawingBuffer = 1; /* so that the canvas can be saved */
     only.handle = emscripten_webgl_create_context(CANVAS, &attributes);

@@ -57,6 +57,7 @@ typedef struct noh_gl_renderer_desc {
     noh_palette_mode palettes; /* noh_gl_skin_plan.mode; 0: nothing is skinned, meshes stand in their bind pose */
     int crowds;                /* noh_gl_draw_crowd will be called: wants NOH_PALETTE_TEXTURE */
     int fewer_influences;      /* bindings will lower `influences` */
+    int encode_srgb;           /* the shader encodes: for a target that is not sRGB, as WebGL's canvas. 0: the target does */
 } noh_gl_renderer_desc;
 
 #define NOH_GL_VARIANTS_MAX 32u /* a character of one kind of mesh needs 2 to 8 */
@@ -64,7 +65,7 @@ typedef struct noh_gl_renderer_desc {
 typedef struct noh_gl_renderer {
     const noh_gl_api *gl;
     noh_gl_ledger *ledger;
-    int layers_uint;
+    int layers_uint, encode_srgb;
     noh_debug_view view;
     noh_gl_texture white; /* 1 x 1, where a material has no texture */
     uint32_t variant_count;
@@ -84,7 +85,7 @@ void noh_gl_renderer_delete(noh_gl_renderer *renderer);
 /* Make it again in a new context (gl_lost.h). errors  as create; it then holds nothing */
 noh_result noh_gl_renderer_restore(noh_gl_renderer *renderer, char *log, size_t log_bytes, noh_error *error);
 
-/* The variant of that key; NULL where the renderer was not told of such a mesh. */
+/* The variant of that key, encoding as the renderer does; NULL where the renderer was not told of such a mesh. */
 const noh_gl_variant *noh_gl_renderer_variant(const noh_gl_renderer *renderer, noh_gl_variant_key key);
 
 typedef struct noh_gl_camera {

@@ -31,6 +31,7 @@ static noh_result want(noh_gl_renderer *r, noh_gl_variant_key key, noh_error *er
     if (r->variant_count == NOH_GL_VARIANTS_MAX) {
         return noh_fail(error, NOH_ERR_LIMIT, "the meshes need more shader variants than the limit", NOH_GL_VARIANTS_MAX, 0);
     }
+    key.encode_srgb = (uint8_t)r->encode_srgb;
     r->variants[r->variant_count++].key = key;
     return NOH_OK;
 }
@@ -54,6 +55,7 @@ static noh_result want_mesh(noh_gl_renderer *r, const noh_gl_renderer_desc *desc
 
 const noh_gl_variant *noh_gl_renderer_variant(const noh_gl_renderer *r, noh_gl_variant_key key)
 {
+    key.encode_srgb = (uint8_t)r->encode_srgb;
     for (uint32_t i = 0; i < r->variant_count; i++) {
         if (memcmp(&r->variants[i].key, &key, sizeof key) == 0) {
             return &r->variants[i];
@@ -84,6 +86,7 @@ noh_result noh_gl_renderer_create(const noh_gl_api *api, noh_gl_ledger *ledger, 
     out->gl = api;
     out->ledger = ledger;
     out->layers_uint = desc->layers_uint != 0;
+    out->encode_srgb = desc->encode_srgb != 0;
     out->view = desc->view;
     for (uint32_t i = 0; i < desc->mesh_count && !result; i++) {
         result = want_mesh(out, desc, &desc->meshes[i], error);

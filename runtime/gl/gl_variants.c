@@ -19,7 +19,7 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
                                          noh_debug_view view)
 {
     const noh_mesh_header *h = mesh->header;
-    noh_gl_variant_key key = { 0, 0, 0, 0, 0, 0, 0, 0 };
+    noh_gl_variant_key key = { 0, 0, 0, 0, 0, 0, 0, 0, 0 };
     if (skin && h->influence_count) {
         key.influences = (uint8_t)h->influence_count;
         key.drawn = drawn_of(h->influence_count, skin->influences);
@@ -38,7 +38,7 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
 
 /* ---- the text of the defines ---- */
 
-#define DEFINES_BYTES 256u /* all of them take 181 */
+#define DEFINES_BYTES 256u /* all of them take 201 */
 
 static size_t put_text(char *text, size_t at, const char *more)
 {
@@ -62,7 +62,7 @@ static void write_defines(noh_gl_variant_key key, char text[DEFINES_BYTES])
     const struct { int on; const char *line; } flags[] = {
         { key.texture, "#define PALETTE_TEXTURE\n" }, { key.dual_quaternion, "#define DUAL_QUATERNION\n" },
         { key.texels, "#define MORPH_TEXELS\n" },     { key.crowd, "#define CROWD\n" },
-        { key.layers_uint, "#define LAYERS_UINT\n" }
+        { key.layers_uint, "#define LAYERS_UINT\n" }, { key.encode_srgb, "#define ENCODE_SRGB\n" }
     };
     size_t at = put_digit(text, 0, "#define INFLUENCES ", key.influences);
     at = put_digit(text, at, "#define DRAWN ", key.drawn);

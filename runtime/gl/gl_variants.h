@@ -22,6 +22,7 @@ typedef struct noh_gl_variant_key {
     uint8_t crowd;
     uint8_t layers_uint;     /* as in noh_gl_morph_binding.is_uint */
     uint8_t view;            /* noh_debug_view */
+    uint8_t encode_srgb;     /* as in noh_gl_renderer_desc */
 } noh_gl_variant_key;
 
 typedef struct noh_gl_variant {

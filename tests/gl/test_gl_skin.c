@@ -804,6 +804,37 @@ static void renderers_make_what_they_were_told_of(void **state)
     fixture_expect_no_errors();
 }
 
+/* A block that a program has must be bound in WebGL, whether it is read or not; encoding is a define of its own. */
+static void rigid_variants_have_no_palettes(void **state)
+{
+    gpu *g = fixture_gpu();
+    made_meshes m;
+    noh_gl_ledger ledger;
+    noh_gl_renderer_desc desc;
+    noh_gl_renderer r;
+    noh_gl_skin_binding skin = { NOH_PALETTE_UNIFORM, 0, 0, 0, 0, 0, 0 };
+    const noh_gl_variant *rigid, *skinned;
+    noh_error error = { NOH_OK, "", 0, 0 };
+    char log[4096] = "";
+    (void)state;
+    memset(&ledger, 0, sizeof ledger);
+    memset(&desc, 0, sizeof desc);
+    make_meshes(&m);
+    m.headers[0].influence_count = 4;
+    desc.meshes = m.meshes;
+    desc.mesh_count = 1;
+    desc.palettes = NOH_PALETTE_UNIFORM;
+    desc.encode_srgb = 1;
+    assert_int_equal(noh_gl_renderer_create(&g->gl, &ledger, &desc, &r, log, sizeof log, &error), NOH_OK);
+    rigid = noh_gl_renderer_variant(&r, noh_gl_variant_key_of(&m.meshes[0], NULL, 0, 0, NOH_VIEW_LIT));
+    skinned = noh_gl_renderer_variant(&r, noh_gl_variant_key_of(&m.meshes[0], &skin, 0, 0, NOH_VIEW_LIT));
+    assert_true(rigid->key.encode_srgb && skinned->key.encode_srgb);
+    assert_true(g->gl.GetUniformBlockIndex(rigid->program, "palette_block") == GL_INVALID_INDEX);
+    assert_true(g->gl.GetUniformBlockIndex(skinned->program, "palette_block") == 0);
+    noh_gl_renderer_delete(&r);
+    fixture_expect_no_errors();
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(every_asset_equals_the_cpu),
     cmocka_unit_test(every_number_of_influences_equals_the_cpu),
@@ -820,7 +851,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(memory_is_exact),
     cmocka_unit_test(only_changes_are_sent),
     cmocka_unit_test(places_are_refused_where_they_cannot_be),
-    cmocka_unit_test(renderers_make_what_they_were_told_of)
+    cmocka_unit_test(renderers_make_what_they_were_told_of),
+    cmocka_unit_test(rigid_variants_have_no_palettes)
 };
 
 TEST_MAIN(tests, NULL, fixture_tear_down)

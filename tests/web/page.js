@@ -1,14 +1,14 @@
-// page.js FOLDER CHROMIUM OUT: the page in headless Chromium on SwiftShader. Loads it, moves sliders,
-// searches, plays a clip, loses the context and gets it back; saves canvases as PNG in OUT and tells
-// its checks as TAP. Uses playwright-core, found through NODE_PATH.
+// page.js FOLDER CHROMIUM OUT CLIP TIME SIZE: the page in headless Chromium on SwiftShader. Loads it, moves sliders,
+// searches, plays clips, turns the figure, loses the context and gets it back; saves canvases as PNG in OUT, among
+// them CLIP at TIME by each path, SIZE across, and tells its checks as TAP.
 'use strict';
 const fs = require('fs');
-const http = require('http');
 const path = require('path');
-const { chromium } = require('playwright-core');
+const { serve, launch, save } = require('./browser.js');
 
-const [folder, executablePath, out] = process.argv.slice(2);
-let told = 0, failures = 0;
+const [folder, executablePath, out, clip, time, size] = process.argv.slice(2);
+const forcedPaths = ['auto', 'mrt', 'gather'];
+let told = 0, failures = 0, address = '';
 
 function check(name, right, more) {
     told++;
@@ -17,37 +17,36 @@ function check(name, right, more) {
     if (!right && more !== undefined) console.log(`#   ${more}`);
 }
 
-const types = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm' };
-const server = http.createServer((request, answer) => {
-    const name = path.join(folder, path.basename(new URL(request.url, 'http://localhost').pathname) || 'index.html');
-    fs.readFile(name, (error, bytes) => {
-        answer.writeHead(error ? 404 : 200, { 'Content-Type': types[path.extname(name)] || 'application/octet-stream' });
-        answer.end(error ? '' : bytes);
-    });
-});
+const keep = (page, name) => save(page, '#canvas', path.join(out, name));
+const same = (a, b) => fs.readFileSync(path.join(out, a)).equals(fs.readFileSync(path.join(out, b)));
 
-async function save(page, name) {
-    const url = await page.evaluate(() => document.getElementById('canvas').toDataURL('image/png'));
-    fs.writeFileSync(path.join(out, name), Buffer.from(url.split(',')[1], 'base64'));
-}
-
-async function setSlider(page, target, value) {
+// Do it, and wait until the page has drawn what came of it.
+async function drawn(page, act) {
     const frames = await page.evaluate(() => window.noh.frames);
-    await page.locator(`input[data-target="${target}"]`).evaluate((slider, v) => {
-        slider.value = v;
-        slider.dispatchEvent(new Event('input'));
-    }, value);
+    await act();
     await page.waitForFunction((n) => window.noh.frames > n, frames);
 }
 
-async function open(browser, forced) {
-    const page = await browser.newPage({ viewport: { width: 1000, height: 700 } });
+const slide = (page, selector, value) => drawn(page, () => page.locator(selector).evaluate((slider, v) => {
+    slider.value = v;
+    slider.dispatchEvent(new Event('input'));
+}, value));
+const setTarget = (page, target, value) => slide(page, `input[data-target="${target}"]`, value);
+
+async function open(browser, options, search) {
+    const page = await browser.newPage(options);
     page.problems = [];
     page.on('pageerror', (error) => page.problems.push(String(error)));
     page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
-    await page.goto(`http://localhost:${server.address().port}/index.html?path=${forced}`);
+    await page.goto(`${address}/?${search}`);
     await page.waitForFunction(() => window.noh.ready || window.noh.error, null, { timeout: 60000 });
     return page;
+}
+
+async function close(page, name) {
+    check(`${name}: no GL error`, await page.evaluate(() => Module._web_check()) === 0);
+    check(`${name}: the browser has nothing to complain of`, page.problems.length === 0, page.problems.join(' | '));
+    await page.close();
 }
 
 async function loseAndRestore(page) {
@@ -60,69 +59,102 @@ async function loseAndRestore(page) {
     await page.waitForFunction(() => window.noh.restored === 1);
 }
 
+// The clip at its time, framed as `noh render` frames it.
+async function scrub(page) {
+    await drawn(page, () => page.selectOption('#clips', { label: clip }));
+    await slide(page, '#time', time);
+    await drawn(page, () => page.click('#fit'));
+}
+
 async function onePath(browser, forced) {
-    const page = await open(browser, forced);
+    const page = await open(browser, { viewport: { width: 1000, height: 700 } }, `path=${forced}&clip=none&size=${size}`);
     const state = await page.evaluate(() => window.noh);
     check(`${forced}: it loads`, state.ready && !state.error, state.error);
     if (!state.ready) return;
     check(`${forced}: and takes that path`, state.path === (forced === 'auto' ? 'cpu' : forced), state.path);
     if (forced === 'auto') console.log(`# ${state.renderer}; ${JSON.stringify(state.memory)}`);
-    check(`${forced}: what noh uses is within what the page was built for`, state.memory['noh uses'] <= state.memory['of it, pack and noh']);
-    await save(page, `${forced}_rest.png`);
-    await setSlider(page, 'smile', 1);
-    await save(page, `${forced}_smile.png`);
+    console.log(`# budget ${state.path} ${state.memory.cpu} ${state.memory.gpu}`);
+    check(`${forced}: what noh uses is within what the page was built for`, state.memory.cpu <= state.memory.room);
+    await keep(page, `${forced}_rest.png`);
+    await setTarget(page, 'smile', 1);
+    await keep(page, `${forced}_smile.png`);
+    check(`${forced}: a slider moves the picture`, !same(`${forced}_rest.png`, `${forced}_smile.png`));
+    await drawn(page, () => page.click('#reset'));
+    await keep(page, `${forced}_reset.png`);
+    check(`${forced}: and back`, same(`${forced}_rest.png`, `${forced}_reset.png`));
+    await scrub(page);
+    await keep(page, `${forced}_clip.png`);
+    check(`${forced}: a clip moves the picture`, !same(`${forced}_rest.png`, `${forced}_clip.png`));
     const gpu = await page.evaluate(() => Module._web_gpu_bytes());
     await loseAndRestore(page);
-    await save(page, `${forced}_restored.png`);
-    const same = (a, b) => fs.readFileSync(path.join(out, a)).equals(fs.readFileSync(path.join(out, b)));
-    check(`${forced}: a slider moves the picture`, !same(`${forced}_rest.png`, `${forced}_smile.png`));
-    check(`${forced}: after a lost context it is the same picture`, same(`${forced}_smile.png`, `${forced}_restored.png`));
+    await keep(page, `${forced}_restored.png`);
+    check(`${forced}: after a lost context it is the same picture`, same(`${forced}_clip.png`, `${forced}_restored.png`));
     check(`${forced}: and the same bytes on the GPU`, await page.evaluate(() => Module._web_gpu_bytes()) === gpu);
-    await setSlider(page, 'smile', 0);
-    await save(page, `${forced}_back.png`);
-    check(`${forced}: and the slider still moves it`, same(`${forced}_back.png`, `${forced}_rest.png`));
-    if (forced === 'auto') await panels(page, same);
-    check(`${forced}: memory did not grow`, await page.evaluate(() => Module.HEAPU8.length) === state.memory['WebAssembly memory']);
-    check(`${forced}: the browser has nothing to complain of`, page.problems.length === 0, page.problems.join(' | '));
-    await page.close();
+    await drawn(page, () => page.selectOption('#clips', { label: 'none' }));
+    await drawn(page, () => page.click('#fit'));
+    await keep(page, `${forced}_none.png`);
+    check(`${forced}: and without the clip it is as it was loaded`, same(`${forced}_none.png`, `${forced}_rest.png`));
+    check(`${forced}: memory did not grow`, await page.evaluate(() => Module.HEAPU8.length) === state.memory.all);
+    await close(page, forced);
 }
 
-async function panels(page, same) {
+async function panels(browser) {
+    const page = await open(browser, { viewport: { width: 1200, height: 800 } }, '');
+    const frames = await page.evaluate(() => window.noh.frames);
+    await page.waitForFunction((n) => window.noh.frames > n + 5, frames);
+    check('it plays on its own', Number(await page.inputValue('#time')) > 0);
+    await drawn(page, () => page.selectOption('#clips', { label: clip }));
+    await page.waitForFunction(() => Number(document.getElementById('time').value) > 0.6, null, { timeout: 60000 });
+    await slide(page, '#speed', 2);
+    await page.click('#play');
+    check('and stops when told to', await page.textContent('#play') === 'play');
+    await page.waitForTimeout(100);
+    const still = await page.inputValue('#time');
+    await page.waitForTimeout(200);
+    check('and then stands still', await page.inputValue('#time') === still);
+    await page.screenshot({ path: path.join(out, 'page.png') });
     await page.fill('#search', 'smil');
     const seen = await page.locator('#targets label:visible span').allTextContents();
     check('the search leaves what it names', seen.length > 0 && seen.every((name) => name.toLowerCase().includes('smil')), seen.join(' '));
-    await page.screenshot({ path: path.join(out, 'page.png') });
-    await page.fill('#search', '');
-    const clips = await page.locator('#clips option').count();
-    check('clips are listed', clips > 1, clips);
-    const frames = await page.evaluate(() => window.noh.frames);
-    await page.selectOption('#clips', { label: 'smile' });
-    await page.check('#play');
-    await page.waitForFunction((n) => window.noh.frames > n + 5, frames);
-    await page.uncheck('#play');
-    check('and played', Number(await page.inputValue('#time')) > 0);
-    const played = await page.evaluate(() => window.noh.frames);
-    await page.locator('#time').evaluate((slider) => {
-        slider.value = 0.5;
-        slider.dispatchEvent(new Event('input'));
+    await keep(page, 'before_turn.png');
+    await drawn(page, async () => {
+        await page.mouse.move(300, 300);
+        await page.mouse.down();
+        await page.mouse.move(380, 280);
+        await page.mouse.up();
     });
-    await page.waitForFunction((n) => window.noh.frames > n, played);
-    await save(page, 'clip.png');
-    check('and a clip moves the picture', !same('clip.png', 'auto_rest.png'));
+    await keep(page, 'after_turn.png');
+    check('a drag turns it', !same('before_turn.png', 'after_turn.png'));
+    await drawn(page, () => page.setViewportSize({ width: 900, height: 600 }));
+    await page.waitForFunction(() => document.getElementById('canvas').height === 600);
+    await close(page, 'panels');
+}
+
+async function phone(browser) {
+    const page = await open(browser, { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true }, `clip=${clip}`);
+    await page.waitForFunction(() => Number(document.getElementById('time').value) > 0.6, null, { timeout: 60000 });
+    await page.tap('#play');
+    const widths = await page.evaluate(() => [document.documentElement.scrollWidth, window.innerWidth]);
+    check('a phone: one column, nothing sticks out', widths[0] <= widths[1], widths.join(' of '));
+    const small = await page.locator('button:visible, select:visible').evaluateAll((all) => all.filter((e) => e.getBoundingClientRect().height < 36).length);
+    check('a phone: what is touched is large enough', small === 0, small);
+    await page.screenshot({ path: path.join(out, 'phone.png') });
+    await page.evaluate(() => window.scrollTo(0, 600));
+    await page.screenshot({ path: path.join(out, 'phone_scrolled.png') });
+    await close(page, 'a phone');
 }
 
 (async () => {
-    await new Promise((resolve) => server.listen(0, 'localhost', resolve));
-    const browser = await chromium.launch({
-        executablePath,
-        args: ['--headless', '--no-sandbox', '--disable-gpu', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
-            '--disable-background-networking', '--disable-component-update'],
-    });
+    const served = await serve({ '/': folder });
+    address = served.address;
+    const browser = await launch(executablePath);
     try {
-        for (const forced of ['auto', 'mrt', 'gather']) await onePath(browser, forced);
+        for (const forced of forcedPaths) await onePath(browser, forced);
+        await panels(browser);
+        await phone(browser);
     } finally {
         await browser.close();
-        server.close();
+        served.server.close();
     }
     console.log(`1..${told}`);
     process.exit(failures ? 1 : 0);

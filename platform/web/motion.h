@@ -1,0 +1,61 @@
+/* motion.h: what moves a scene: for each of its skeletons a motion set, a controller and a pose. */
+#ifndef NOH_PLATFORM_WEB_MOTION_H
+#define NOH_PLATFORM_WEB_MOTION_H
+
+#include "scene.h"
+
+#define WEB_PLAYERS_MAX 8u
+#define WEB_STILL_JOINTS_MAX 256u
+
+typedef struct web_player {
+    noh_skeleton skeleton;      /* joint_count 0: none, only weights are moved */
+    noh_motion_set *set;        /* NULL: no clip fits */
+    noh_controller *controller;
+    noh_pose_scratch scratch;
+    noh_transform *pose;        /* [joint_count] */
+    float *floats;              /* [set->anim.float_count] */
+    float *model;               /* [joint_count][12] model space */
+} web_player;
+
+typedef struct web_motion {
+    web_scene *scene;
+    web_player players[WEB_PLAYERS_MAX];
+    uint32_t player_count;
+    uint32_t clip;              /* that plays: its index in the pack; NOH_NONE: none does */
+    float speed;
+    float *matrices;            /* [joints of the largest skin][12]; NULL: nothing is skinned */
+    float still[WEB_STILL_JOINTS_MAX][12]; /* the joints of skeletons that no clip moves: `noh budget` does not count them */
+    uint32_t still_count;
+} web_motion;
+
+/* Three steps, in this order, each of which carves what one line of `noh budget` says.
+ * errors  as noh_motion_set_init, noh_controller_init, noh_pose_scratch_init; LIMIT more skeletons, or more joints
+ *         that nothing moves, than the page has room for; MEMORY */
+noh_result web_motion_open_clips(web_motion *motion, web_scene *scene, noh_arena *arena, noh_error *error);
+noh_result web_motion_open_controllers(web_motion *motion, noh_arena *arena, noh_error *error);
+noh_result web_motion_open_poses(web_motion *motion, noh_arena *arena, noh_error *error);
+
+/* Room for what is handed to noh_gl_skin_set, where the scene is skinned. errors  MEMORY */
+noh_result web_motion_open_matrices(web_motion *motion, noh_arena *arena, noh_error *error);
+
+/* The seconds of the pack's n-th clip; negative where it moves nothing here. */
+double web_motion_seconds(const web_motion *motion, uint32_t clip);
+
+/* Play a clip, over and over, from a time on; NOH_NONE: stop, in the bind pose. With a transition, in seconds, what
+ * played before runs out by inertia. */
+noh_result web_motion_play(web_motion *motion, uint32_t clip, double time_s, double transition_s, noh_error *error);
+void web_motion_set_speed(web_motion *motion, float speed);
+
+/* Move on by a time. */
+void web_motion_step(web_motion *motion, double seconds);
+
+/* Where the clip is, in seconds. */
+double web_motion_time(const web_motion *motion);
+
+/* What moves an item's vertices, as the scene stands, into motion->matrices. 0 for a rigid item. */
+int web_motion_matrices(web_motion *motion, const web_item *item);
+
+/* The smallest box around the scene as it stands, in the world, morphs aside. */
+void web_motion_bounds(web_motion *motion, float box[6]);
+
+#endif

@@ -1,6 +1,0 @@
-#version 300 es
-/* present.vert: one triangle over everything, from no buffers. */
-void main()
-{
-    gl_Position = vec4(float(gl_VertexID & 1) * 4.0 - 1.0, float(gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);
-}
