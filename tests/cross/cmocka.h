@@ -48,5 +48,7 @@ void cross_memory(const void *a, const void *b, size_t bytes, const char *file, 
                __FILE__, __LINE__)
 #define assert_string_equal(a, b) cross_texts((a), (b), __FILE__, __LINE__)
 #define assert_memory_equal(a, b, bytes) cross_memory((a), (b), (bytes), __FILE__, __LINE__)
+#define assert_memory_not_equal(a, b, bytes) cross_same(memcmp((a), (b), (bytes)) != 0, #a " is not " #b, __FILE__, __LINE__)
+#define assert_float_equal(a, b, epsilon) cross_same(fabs((double)(a) - (double)(b)) <= (double)(epsilon), #a " is " #b, __FILE__, __LINE__)
 
 #endif
