@@ -43,12 +43,23 @@ RUNTIME_C  := $(sort $(wildcard runtime/*/*.c))
 PLATFORM_C := $(filter-out platform/template.c,$(sort $(wildcard platform/*.c)))
 CONVERT_C  := $(sort $(wildcard tools/convert/*.c))
 CONVERT_CC := $(sort $(wildcard tools/convert/*.cpp))
-TOOL_C     := $(sort $(wildcard tools/noh/*.c tools/noh/bench/*.c))
+TOOL_C     := $(filter-out %/view_without.c,$(sort $(wildcard tools/noh/*.c tools/noh/bench/*.c)))
 MASK_C     := $(sort $(wildcard tools/make_mask/*.c tools/make_puppet/*.c tools/make_arm/*.c))
 STAGES     := vert geom frag
 SHADERS    := $(sort $(foreach stage,$(STAGES),$(wildcard shaders_es/*.$(stage))))
 TOOL_SHADERS := $(sort $(foreach stage,$(STAGES),$(wildcard tools/noh/shaders/*.$(stage) tools/noh/bench/*.$(stage))))
 TEST_C     := $(sort $(wildcard tests/unit/test_*.c tests/memory/test_*.c tests/gl/test_*.c))
+
+# `noh view` needs a window and panels; without their libraries the verb says which are missing.
+VIEW_WITHOUT := $(strip $(if $(shell $(PKG) --exists glfw3 && echo y),,glfw3) $(if $(shell $(PKG) --exists imgui && echo y),,imgui))
+VIEW_C     := $(sort $(wildcard tools/noh/view/*.c))
+VIEW_CC    := $(sort $(wildcard tools/noh/view/*.cpp))
+ifeq ($(VIEW_WITHOUT),)
+VIEW_O     := $(VIEW_C:%.c=$(BUILD)/%.o) $(VIEW_CC:%.cpp=$(BUILD)/%.o)
+VIEW_LIBS  := $(shell $(PKG) --libs glfw3 imgui)
+else
+VIEW_O     := $(BUILD)/tools/noh/view_without.o
+endif
 
 RUNTIME_O  := $(RUNTIME_C:%.c=$(BUILD)/%.o) $(BUILD)/gen/shaders.gen.o
 PLATFORM_O := $(PLATFORM_C:%.c=$(BUILD)/%.o)
@@ -60,7 +71,7 @@ TESTS      := $(TEST_C:tests/%.c=$(BUILD)/tests/%)
 # The accumulation and skinning kernels built for other instruction sets, for `noh bench` and the tests.
 KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/morph_$(set).o $(BUILD)/kernel/skin_$(set).o))
 
-.PHONY: install all demo demo-body check bench bench-lod help clean deps-build deps-check deps-cross deps-web deps-fuzz cross cross-tests web web-check web-serve web-bench lib tests demo-run check-run fuzz sizes
+.PHONY: FORCE install all demo demo-body view check bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz cross cross-tests web web-check web-serve web-bench lib tests demo-run check-run fuzz sizes
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -70,6 +81,7 @@ help:
 	@echo 'make            build/noh and build/libnoh.a'
 	@echo 'make demo       install what is missing, build, make the mask, convert it, render it'
 	@echo 'make demo-body  the same with the puppet, a figure that walks, bows, looks round and dances'
+	@echo 'make view       the puppet in a window: sliders, clips, memory and times (FILE=PACK|MODEL: another)'
 	@echo 'make check      install what is missing, build and run the tests'
 	@echo 'make bench      ratios against the named baselines (the mask, and hero/head.glb and clips where they are)'
 	@echo 'make bench-lod  of them only levels of detail against meshoptimizer'"'"'s'
@@ -141,9 +153,25 @@ $(BUILD)/kernel/skin_%.o: runtime/deform/skin.c
 	$(call say,CC,$@)
 	$(Q)$(CC) $(CFLAGS) $(INCLUDES) -m$* -DNOH_SKIN_VERTICES=noh_skin_vertices_$* -MMD -MP -c $< -o $@
 
-$(BUILD)/noh: $(TOOL_O) $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(BUILD)/libnoh.a
+$(BUILD)/tools/noh/view/%.o: tools/noh/view/%.cpp | $(BUILD)/gen/shaders.gen.h
+	@mkdir -p $(@D)
 	$(call say,CXX,$@)
-	$(Q)$(CXX) $(LDFLAGS) $^ -o $@ $(TOOL_LIBS)
+	$(Q)$(CXX) $(CXXFLAGS) $(INCLUDES) $(patsubst -I%,-isystem %,$(shell $(PKG) --cflags glfw3 imgui)) -MMD -MP -c $< -o $@
+
+$(BUILD)/tools/noh/view_without.o: tools/noh/view_without.c $(BUILD)/gen/view_without
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(CFLAGS) $(INCLUDES) -DNOH_VIEW_WITHOUT='"$(subst $() , and ,$(VIEW_WITHOUT))"' -MMD -MP -c $< -o $@
+
+# Changes when what is missing does: noh is then linked again.
+$(BUILD)/gen/view_without: FORCE
+	@mkdir -p $(@D)
+	@echo '$(VIEW_WITHOUT)' | cmp -s - $@ || echo '$(VIEW_WITHOUT)' >$@
+FORCE:
+
+$(BUILD)/noh: $(TOOL_O) $(VIEW_O) $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(BUILD)/libnoh.a $(BUILD)/gen/view_without
+	$(call say,CXX,$@)
+	$(Q)$(CXX) $(LDFLAGS) $(filter %.o %.a,$^) -o $@ $(VIEW_LIBS) $(TOOL_LIBS)
 
 $(BUILD)/make_mask: $(MASK_O)
 	$(call say,CC,$@)
@@ -181,11 +209,13 @@ $(BUILD)/demo/puppet.noh: $(BUILD)/demo/puppet.glb $(BUILD)/noh
 deps-build:
 	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build
 deps-check:
-	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build check
+	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build view check
 deps-cross:
 	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build cross
 deps-web:
 	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build web
+deps-view:
+	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build view
 deps-fuzz:
 	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build check fuzz
 
@@ -196,6 +226,11 @@ demo: deps-build
 demo-body: deps-build
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/demo/puppet.glb $(BUILD)/demo/arm.glb
 	@NOH_ASSETS="$(ASSETS)" sh tools/demo_body.sh $(BUILD)
+
+FILE    ?= $(BUILD)/demo/puppet.glb
+view: deps-view
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(FILE)
+	@$(BUILD)/noh view $(FILE)
 
 check: deps-check
 	@$(MAKE) --no-print-directory -j$(JOBS) all tests $(BUILD)/mask.noh $(BUILD)/demo/puppet.glb $(BUILD)/demo/arm.glb

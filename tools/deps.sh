@@ -2,8 +2,8 @@
 # deps.sh SET...: install the Debian packages that are missing.
 #   build  compiler, converter libraries, headless GL        check  test tools
 #   fuzz   clang and its fuzzer                              cross  other processors
-#   web    the page and its test
-# What only widens a test is optional: where it cannot be had, that test is skipped and says so.
+#   web    the page and its test                         view   the window of noh view
+# What is optional may be missing: what needs it is then left out, or its test skipped, and says so.
 # With apt it installs them (through sudo where not root) and says what and why;
 # elsewhere it prints the list and stops.
 set -eu
@@ -23,11 +23,15 @@ libtinygltf-dev:reading glTF
 nlohmann-json3-dev:reading glTF
 libstb-dev:reading and writing pictures
 libmeshoptimizer-dev:reading compressed glTF'
+packages_view='?libglfw3-dev:noh view
+?libimgui-dev:noh view'
 packages_check='libcmocka-dev:unit tests
 ?libglfw3:windows
 ?xvfb:a display for them
 ?assimp-testmodels:real BVH files
 ?mesa-vulkan-drivers:a third GL, zink on lavapipe
+?xdotool:keys and mouse for them
+?libx11-dev:files dropped on them
 libosmesa6:a second GL
 binutils:the check of the archive'"'"'s symbols'
 packages_fuzz='clang:libFuzzer
@@ -54,6 +58,8 @@ for set in "$@"; do
     case $set in
     build) all="$all
 $packages_build" ;;
+    view) all="$all
+$packages_view" ;;
     check) all="$all
 $packages_check" ;;
     fuzz) all="$all
@@ -91,5 +97,5 @@ export DEBIAN_FRONTEND=noninteractive
 $sudo apt-get update -qq
 [ -z "$names" ] || $sudo apt-get install -y -qq --no-install-recommends $names >/dev/null
 for name in $optional; do
-    $sudo apt-get install -y -qq --no-install-recommends "$name" >/dev/null 2>&1 || echo "  $name cannot be had here: its tests are skipped"
+    $sudo apt-get install -y -qq --no-install-recommends "$name" >/dev/null 2>&1 || echo "  $name cannot be had here: what needs it is left out"
 done

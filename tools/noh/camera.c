@@ -72,12 +72,7 @@ static void multiply(const double a[16], const double b[16], float out[16])
     }
 }
 
-typedef struct orbit {
-    double azimuth, elevation, distance;
-    double center[3], radius, aspect;
-} orbit;
-
-static void orbit_axes(const orbit *o, double right[3], double up[3], double back[3])
+void orbit_axes(const orbit *o, double right[3], double up[3], double back[3])
 {
     double ca = cos(o->azimuth), sa = sin(o->azimuth), ce = cos(o->elevation), se = sin(o->elevation);
     const double r[3] = { ca, 0.0, -sa }, u[3] = { -sa * se, ce, -ca * se }, b[3] = { sa * ce, se, ca * ce };
@@ -86,7 +81,7 @@ static void orbit_axes(const orbit *o, double right[3], double up[3], double bac
     memcpy(back, b, sizeof b);
 }
 
-static void make_camera(const orbit *o, noh_gl_camera *camera)
+void orbit_camera(const orbit *o, noh_gl_camera *camera)
 {
     double right[3], up[3], back[3], view[16] = { 0 }, projection[16] = { 0 };
     double near = fmax(o->distance - 2.0 * o->radius, o->distance * 0.02), far = o->distance + 2.0 * o->radius;
@@ -154,9 +149,9 @@ static int parse_orbit(const char *text, orbit *o)
     return count < 2 || fabs(values[1]) > 89.9 || o->distance <= 0.0;
 }
 
-int view_camera(const view_options *o, const bounds *box, noh_gl_camera *camera)
+orbit orbit_fit(const bounds *box, double aspect)
 {
-    orbit at = { 0.0, 0.05, 0.0, { 0.0, 0.0, 0.0 }, 0.0, (double)o->width / (double)o->height };
+    orbit at = { 0.0, 0.05, 0.0, { 0.0, 0.0, 0.0 }, 0.0, aspect };
     double half[3], need;
     for (int c = 0; c < 3; c++) {
         at.center[c] = (box->low[c] + box->high[c]) / 2.0;
@@ -165,10 +160,16 @@ int view_camera(const view_options *o, const bounds *box, noh_gl_camera *camera)
     at.radius = fmax(sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]), 1e-6);
     need = fmax(half[1], fmax(half[0], half[2] * 0.7) / at.aspect) * 1.05;
     at.distance = fmax(need / tan(FIELD_OF_VIEW / 2.0) + half[2], at.radius * 1.02);
+    return at;
+}
+
+int view_camera(const view_options *o, const bounds *box, noh_gl_camera *camera)
+{
+    orbit at = orbit_fit(box, (double)o->width / (double)o->height);
     if (o->camera && strcmp(o->camera, "face") != 0 && strcmp(o->camera, "body") != 0 && parse_orbit(o->camera, &at)) {
         return tool_usage("--camera wants face, body or AZIMUTH,ELEVATION[,DISTANCE] (degrees; elevation within 89; over 0), not '%s'",
                           o->camera);
     }
-    make_camera(&at, camera);
+    orbit_camera(&at, camera);
     return 0;
 }

@@ -30,6 +30,9 @@ static const struct verb {
     { "dump", verb_dump, "PACK -o OUT.obj [--weight NAME=V]... [--clip NAME]... [--time S] [--anim PACK] [--path P]",
       "the deformed mesh, as drawn, baked to a plain one" },
     { "verify", verb_verify, "PACK [--anim PACK] [--seed N] [--instances N] [--driver D] [--json]", "every path and format against the CPU reference" },
+    { "view", verb_view, "PACK|MODEL [--anim PACK] [--clip NAME] [--path P] [--accumulate A] [--driver egl|native] [--size 1280x800]\n"
+      "                 [--bones] [--frames N [--screenshot OUT.png]]",
+      "a window: sliders, clips, events, memory and times; files dropped on it are converted and shown" },
     { "bench", verb_bench, "PACK... [--source ASSET] [--driver D] [--rounds N] [--json]", "ratios against the named baselines, in one run" },
 };
 

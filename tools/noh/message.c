@@ -2,6 +2,8 @@
 
 #include "noh_tool.h"
 
+static char last_failure[512];
+
 int tool_fail(const char *subject, const char *format, ...)
 {
     va_list args;
@@ -10,7 +12,15 @@ int tool_fail(const char *subject, const char *format, ...)
     vfprintf(stderr, format, args);
     fputc('\n', stderr);
     va_end(args);
+    va_start(args, format);
+    vsnprintf(last_failure, sizeof last_failure, format, args);
+    va_end(args);
     return EXIT_FAILED;
+}
+
+const char *tool_last_failure(void)
+{
+    return last_failure;
 }
 
 int tool_usage(const char *format, ...)

@@ -23,6 +23,8 @@ int tool_fail(const char *subject, const char *format, ...)
     __attribute__((format(printf, 2, 3)))
 #endif
     ;
+/* The text of the last one, cut to fit; "" before any. */
+const char *tool_last_failure(void);
 /* Print "noh: text" and a pointer to `noh help`; return EXIT_USAGE. */
 int tool_usage(const char *format, ...)
 #ifdef __GNUC__
@@ -192,5 +194,6 @@ int verb_sheet(int argc, char **argv);
 int verb_dump(int argc, char **argv);
 int verb_verify(int argc, char **argv);
 int verb_bench(int argc, char **argv);
+int verb_view(int argc, char **argv);
 
 #endif

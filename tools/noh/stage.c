@@ -88,17 +88,22 @@ static void draw_bones(stage *st, const noh_gl_camera *camera)
     }
 }
 
-int stage_draw(stage *st, const noh_gl_camera *camera, uint8_t *rgba)
+void stage_paint(stage *st, const noh_gl_camera *camera)
 {
-    int status = st->bones ? 0 : load_update(&st->load, NULL);
-    if (status) {
-        return status;
-    }
     canvas_begin(&st->canvas);
     if (st->bones) {
         draw_bones(st, camera);
     } else {
         load_draw(&st->load, camera);
     }
+}
+
+int stage_draw(stage *st, const noh_gl_camera *camera, uint8_t *rgba)
+{
+    int status = st->bones ? 0 : load_update(&st->load, NULL);
+    if (status) {
+        return status;
+    }
+    stage_paint(st, camera);
     return canvas_read(&st->canvas, rgba);
 }

@@ -25,6 +25,9 @@ int stage_open(stage *st, gpu *g, const pack_file *file, const scene *s, const l
                uint32_t height);
 void stage_close(stage *st);
 
+/* Draw the scene into the canvas, as it was last handed to the GPU (load_update). */
+void stage_paint(stage *st, const noh_gl_camera *camera);
+
 /* One picture of the scene as it stands: rgba[height][width][4], top row first. */
 int stage_draw(stage *st, const noh_gl_camera *camera, uint8_t *rgba);
 

@@ -1,0 +1,228 @@
+#!/bin/sh
+# `noh view` on a virtual display, driven with real key, mouse and drop events. Every run fails on any GL error
+# that KHR_debug tells. F11 saves the figure without the panels: that is what is compared.
+. tests/cli/lib.sh
+mask=$build/mask.noh
+case $mask in /*) ;; *) mask=$PWD/$mask ;; esac
+case $build in /*) ;; *) build=$PWD/$build ;; esac
+tests_gl=$PWD/tests/gl
+
+DISPLAY= WAYLAND_DISPLAY= noh view "$mask" --frames 1
+if grep -q 'built without' "$work/err"; then
+    skip 'view' "$(sed 's/^noh: [^:]*: //' "$work/err")"
+    finish
+fi
+expect 1 'no display is an error'
+says 'DISPLAY'
+noh view
+expect 2 'no file is a usage error'
+noh view "$mask" --screenshot "$work/x.png"
+expect 2 'so is a screenshot without --frames'
+noh view "$mask" --driver osmesa
+expect 2 'so is a driver that windows do not have'
+
+for program in Xvfb xdotool; do
+    if ! command -v $program >/dev/null 2>&1; then
+        skip 'windows' "$program is not installed"
+        finish
+    fi
+done
+# -noreset: between two programs it would begin anew, and refuse whoever comes just then.
+Xvfb -noreset -displayfd 3 -screen 0 1280x800x24 3>"$work/display" >"$work/xvfb" 2>&1 &
+xvfb=$!
+trap 'kill $xvfb 2>/dev/null; rm -rf "$work"' EXIT
+tries=0
+while [ ! -s "$work/display" ] && [ $tries -lt 50 ]; do sleep 0.2; tries=$((tries + 1)); done
+if [ ! -s "$work/display" ]; then
+    skip 'windows' 'Xvfb does not start here'
+    finish
+fi
+DISPLAY=:$(cat "$work/display")
+export DISPLAY
+
+# ---- without a hand ----
+
+png_size() { # FILE: "640x480"
+    od -An -tu1 -j16 -N8 "$1" | awk '{ print ($1 * 256 + $2) * 65536 + $3 * 256 + $4 "x" ($5 * 256 + $6) * 65536 + $7 * 256 + $8 }'
+}
+noh view "$mask" --frames 2 --size 900x600 --screenshot "$work/shot.png"
+if [ $code != 0 ] && grep -q 'no window with OpenGL ES' "$work/err"; then
+    skip 'windows' 'no window with OpenGL ES 3 here'
+    finish
+fi
+expect 0 'some frames and a screenshot'
+check 'of the size of the window' test "$(png_size "$work/shot.png")" = 900x600
+for path in layered mrt per-layer gather cpu; do
+    noh view "$mask" --path $path --accumulate f16 --clip speak --frames 3 --size 700x400
+    if [ $code != 0 ] && grep -q "^noh: $mask: " "$work/err"; then
+        skip "path $path" "$(head -n 1 "$work/err")"
+    else
+        expect 0 "path $path"
+        check 'and GL has nothing to say' test ! -s "$work/err"
+    fi
+done
+cat >"$work/leg.bvh" <<'BVH'
+HIERARCHY
+ROOT hips
+{
+  OFFSET 0 0 0
+  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
+  JOINT knee
+  {
+    OFFSET 0 -10 0
+    CHANNELS 3 Zrotation Xrotation Yrotation
+    End Site
+    {
+      OFFSET 0 -10 0
+    }
+  }
+}
+MOTION
+Frames: 2
+Frame Time: 0.0333333
+0 20 0 0 0 0 0 0 0
+1 20 0 5 0 0 30 0 0
+BVH
+noh view "$work/leg.bvh" --frames 2 --size 700x400
+expect 0 'a motion is converted and its bones are shown'
+check 'without a complaint' test ! -s "$work/err"
+noh view "$work/leg.bvh" --frames 2 --clip jump
+expect 1 'a clip that is not there'
+says "no clip named 'jump'"
+noh view "$work/xvfb" --frames 2
+expect 1 'a file that is no pack'
+
+# ---- by hand ----
+
+# Each picture is a file noh-figure-N.png, written at once.
+shots=0
+figure() { # sets $shot
+    shots=$((shots + 1))
+    shot=$work/noh-figure-$shots.png
+    xdotool key F11
+    tries=0
+    while [ ! -f "$shot" ] && [ $tries -lt 200 ] && kill -0 $viewer 2>/dev/null; do sleep 0.1; tries=$((tries + 1)); done
+}
+same() { cmp -s "$1" "$2"; }
+differ() { [ -f "$1" ] && [ -f "$2" ] && ! cmp -s "$1" "$2"; }
+moves() { # within some pictures the figure changes
+    figure
+    first=$shot
+    tried=0
+    while [ $tried -lt 15 ]; do
+        figure
+        ! differ "$first" "$shot" || return 0
+        tried=$((tried + 1))
+    done
+    return 1
+}
+# A picture is saved some frames after its key, so it is also how to wait until all that went before has been drawn.
+click() { # X Y
+    xdotool mousemove "$1" "$2" click 1
+    figure
+}
+drag() { # X0 Y0 X1 Y1 BUTTON
+    xdotool mousemove "$1" "$2" mousedown "${5:-1}"
+    figure
+    xdotool mousemove $((($1 + $3) / 2)) $((($2 + $4) / 2))
+    figure
+    xdotool mousemove "$3" "$4"
+    figure
+    xdotool mouseup "${5:-1}"
+    figure
+}
+
+cd "$work" || exit 1
+"$build/noh" view "$mask" --size 1280x800 >"$work/out" 2>"$work/err" &
+viewer=$!
+trap 'kill $viewer $xvfb 2>/dev/null; rm -rf "$work"' EXIT
+window=$(timeout 60 xdotool search --sync --onlyvisible --pid $viewer 2>/dev/null | tail -n 1)
+check 'a window opens' test -n "$window"
+if [ -z "$window" ]; then
+    sed 's/^/# /' "$work/err"
+    finish
+fi
+timeout 20 xdotool windowfocus --sync "$window"
+
+figure
+rest=$shot
+check 'F11 saves the figure' test -f "$rest"
+"$build/noh" render "$mask" -o "$work/render.png" --size "$(png_size "$rest")" >/dev/null
+check 'which is what noh render draws' same "$rest" "$work/render.png"
+
+drag 610 300 500 350
+check 'a drag turns the camera' differ "$rest" "$shot"
+turned=$shot
+drag 610 300 590 280 3
+check 'the right button moves it' differ "$turned" "$shot"
+turned=$shot
+xdotool mousemove 610 300 click 4
+figure
+check 'the wheel brings it nearer' differ "$turned" "$shot"
+xdotool key f
+figure
+check 'F goes back to where it was' same "$rest" "$shot"
+
+# The search leaves one slider; dragged to its end it is at 1.
+click 100 55
+xdotool type cheekpuff
+drag 15 79 250 79
+"$build/noh" render "$mask" -o "$work/puff.png" --size "$(png_size "$rest")" --weight cheekPuff=1 >/dev/null
+check 'a slider moves the target that was searched for' same "$shot" "$work/puff.png"
+click 255 55
+check 'reset lets it go' same "$rest" "$shot"
+
+click 938 95 # play, third row: speak
+check 'a clip plays' moves
+xdotool key space
+figure
+paused=$shot
+sleep 0.5
+figure
+check 'space pauses it' same "$paused" "$shot"
+drag 1000 190 1180 190
+check 'its time can be scrubbed' differ "$paused" "$shot"
+xdotool key space
+check 'space plays it again' moves
+xdotool key space
+figure
+paused=$shot
+
+# The list of paths opens below its box; mrt is its third entry, 58 points below.
+click 1030 260
+click 1030 318
+check 'another path draws the same figure' same "$paused" "$shot"
+
+xdotool key Tab
+figure
+check 'Tab takes the panels away' test "$(png_size "$shot")" = 1280x800
+xdotool key Tab
+xdotool key F12
+shots=$((shots + 1))
+tries=0
+while [ ! -f "$work/noh-window-$shots.png" ] && [ $tries -lt 100 ]; do sleep 0.1; tries=$((tries + 1)); done
+check 'F12 saves the window' test "$(png_size "$work/noh-window-$shots.png")" = 1280x800
+
+if ${CC:-gcc} "$tests_gl/drop.c" -lX11 -o "$work/drop" >/dev/null 2>&1; then
+    before=$shot
+    check 'a file can be dropped' "$work/drop" "$window" "$work/leg.bvh"
+    figure
+    check 'and is shown' differ "$before" "$shot"
+    bones=$shot
+    check 'so can one that is no pack' "$work/drop" "$window" "$work/xvfb"
+    figure
+    check 'and what was shown stays' same "$bones" "$shot"
+    check 'the reason is told' grep -q "^noh: $work/xvfb: " "$work/err"
+    check 'the model of a pack is converted' "$work/drop" "$window" "$build/mask.glb"
+    figure
+    check 'and looks as the pack' same "$rest" "$shot"
+else
+    skip 'drop' 'no X11 headers to compile a source of drops with'
+fi
+
+xdotool key Escape
+wait $viewer
+code=$?
+expect 0 'Escape ends it'
+check 'GL had nothing to say' sh -c '! grep -q "^noh: GL" "$1"' - "$work/err"
+finish

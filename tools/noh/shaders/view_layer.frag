@@ -1,0 +1,15 @@
+#version 300 es
+/* view_layer.frag: one layer of the accumulators as a picture (row A14): x, y, z as red, green, blue, no change is grey. */
+precision highp float;
+precision highp int;
+#include "../../../shaders_es/common_layers.glsl"
+
+uniform highp int u_layer;
+uniform float u_gain;
+
+layout(location = 0) out vec4 o_color;
+
+void main()
+{
+    o_color = vec4(vec3(0.5) + u_gain * LAYER_FETCH(ivec2(gl_FragCoord.xy), u_layer), 1.0);
+}

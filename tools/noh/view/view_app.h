@@ -1,0 +1,86 @@
+/* view_app.h: the viewer's state: camera, playing, times, what the panels asked for. No window and no panels.
+ *
+ *   view_app_open / view_app_close
+ *   view_app_show        a pack or a model instead of what is shown
+ *   view_app_frame       time moves on, the figure is drawn into the window
+ *   view_app_after       what the panels asked for is done
+ *   view_turn, view_pan, view_zoom, view_frame_all   the camera
+ *   view_play            a clip
+ *   view_toggle_play     play and pause; starts the first clip where none is on
+ *   view_save            a picture */
+#ifndef NOH_TOOL_VIEW_APP_H
+#define NOH_TOOL_VIEW_APP_H
+
+#include "gl/gl_timer.h"
+#include "view/view_model.h"
+#include "view/view_screen.h"
+
+#define VIEW_LINES 64
+#define VIEW_HISTORY 120
+
+/* Layout, points of the window. */
+#define VIEW_LEFT 300
+#define VIEW_RIGHT 360
+#define VIEW_BOTTOM 132
+
+/* Milliseconds, smoothed over some frames; below 0: not known here. */
+typedef struct view_times {
+    float frame_ms[VIEW_HISTORY]; /* a ring, `next` is the oldest */
+    uint32_t next;
+    uint64_t last_ns;                /* when the last frame began; 0: none did, or it rested since */
+    double frame, animate, accumulate, draw;
+    noh_gl_timer accumulate_timer, draw_timer;
+    noh_gl_morph_stats stats; /* of the last accumulation that did anything */
+} view_times;
+
+/* Callback keys that were passed, as text: a ring, `next` is the oldest. */
+typedef struct view_log {
+    char lines[VIEW_LINES][160];
+    uint32_t next, total;
+} view_log;
+
+typedef struct view_app {
+    gpu gpu;
+    view_screen screen;
+    view_model *model; /* never NULL after view_app_open */
+    view_model_desc desc; /* how it was opened; path and anim are the caller's */
+    orbit orbit;
+    float window_width, window_height; /* points */
+    int show_panels, show_layers, playing;
+    float speed, layer_gain;
+    view_times times;
+    view_log log;
+    char message[512];    /* what went wrong last */
+
+    view_model_desc wish; /* the panels ask for this one ... */
+    int wants_reload;     /* ... to draw what is shown */
+} view_app;
+
+/* g: an open context, and the window's size. Prints an error and returns an exit code; 0 on success. */
+int view_app_open(view_app *a, const view_model_desc *desc);
+void view_app_close(view_app *a);
+
+/* What was shown stays where this fails. */
+int view_app_show(view_app *a, const char *path);
+
+/* width, height: of the window in points; its pixels are in a->screen. seconds: of the clips' time.
+ * Prints an error and returns an exit code; 0 on success. */
+int view_app_frame(view_app *a, float width, float height, double seconds);
+void view_app_after(view_app *a);
+
+/* The part of the window that the figure has: left, top, right, bottom in points. */
+void view_app_stage(const view_app *a, float box[4]);
+
+/* dx, dy in points, y down. */
+void view_turn(view_app *a, double dx, double dy);
+void view_pan(view_app *a, double dx, double dy);
+void view_zoom(view_app *a, double steps);
+void view_frame_all(view_app *a);
+void view_toggle_play(view_app *a);
+/* Start a clip, alone or beside those that play. */
+void view_play(view_app *a, uint32_t clip, int beside);
+
+/* The figure without the panels, or the whole window, to a file. */
+int view_save(view_app *a, const char *path, int with_panels);
+
+#endif

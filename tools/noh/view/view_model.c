@@ -1,0 +1,213 @@
+#include "view/view_model.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "convert/convert.h"
+
+/* ---- the file ---- */
+
+static int is_model(const char *path)
+{
+    static const char *const endings[] = { ".gltf", ".glb", ".bvh", ".rcl" };
+    const char *dot = strrchr(path, '.');
+    for (size_t i = 0; dot && i < sizeof endings / sizeof endings[0]; i++) {
+        if (strcmp(dot, endings[i]) == 0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static int convert_model(view_model *m)
+{
+    const char *inputs[1];
+    convert_options options;
+    convert_failure failure;
+    noh_error error = { NOH_OK, "", 0, 0 };
+    inputs[0] = m->path;
+    memset(&options, 0, sizeof options);
+    options.morph.error_um = 10.0f; /* as `noh build` without options */
+    options.motion.clip.error_cm = 0.01;
+    options.motion.clip.shell_cm = 3.0;
+    options.motion.unit_cm = 1.0;
+    if (convert_files(inputs, 1, &options, &m->converted, &failure)) {
+        return failure.error.where[0] ? tool_fail(m->path, "%s (%s)", failure.error.what, failure.error.where)
+                                      : tool_fail(m->path, "%s", failure.error.what);
+    }
+    m->file.path = m->path;
+    return noh_pack_open(m->converted.bytes, m->converted.count, &m->file.pack, &error) ? tool_fail_error(m->path, &error) : 0;
+}
+
+/* ---- lists for the panels ---- */
+
+static uint32_t find_target(view_model *m, const char *name)
+{
+    for (uint32_t t = 0; t < m->target_count; t++) {
+        if (strcmp(m->targets[t].name, name) == 0) {
+            return t;
+        }
+    }
+    m->targets[m->target_count].name = name;
+    return m->target_count++;
+}
+
+static int list_targets(view_model *m)
+{
+    size_t most = 1;
+    for (uint32_t i = 0; i < m->scene.item_count; i++) {
+        most += m->scene.meshes[m->scene.items[i].mesh].header->target_count;
+    }
+    m->targets = calloc(most, sizeof *m->targets);
+    m->weights = calloc(most, sizeof *m->weights);
+    if (!m->targets || !m->weights) {
+        return tool_fail(m->path, "out of memory");
+    }
+    m->delta_max = 1e-30f;
+    for (uint32_t i = 0; i < m->scene.item_count; i++) {
+        const scene_item *item = &m->scene.items[i];
+        const noh_mesh *mesh = &m->scene.meshes[item->mesh];
+        for (uint32_t t = 0; t < mesh->header->target_count; t++) {
+            view_weight *w = &m->weights[m->weight_count++];
+            w->target = find_target(m, noh_pack_string(&m->file.pack, mesh->targets[t].name));
+            w->item = i;
+            w->index = t;
+            w->initial = item->weights[t];
+            m->delta_max = mesh->targets[t].max_displacement > m->delta_max ? mesh->targets[t].max_displacement : m->delta_max;
+        }
+    }
+    return 0;
+}
+
+static int list_clips(view_model *m)
+{
+    size_t count = 0;
+    for (uint32_t p = 0; p < m->scene.player_count; p++) {
+        const noh_motion_set *set = m->scene.players[p].set;
+        count += set ? set->anim.motion_count : 0u;
+    }
+    m->clips = calloc(count + 1, sizeof *m->clips);
+    if (!m->clips) {
+        return tool_fail(m->path, "out of memory");
+    }
+    for (uint32_t p = 0; p < m->scene.player_count; p++) {
+        const noh_motion_set *set = m->scene.players[p].set;
+        for (uint32_t i = 0; set && i < set->anim.motion_count; i++) {
+            view_clip *clip = &m->clips[m->clip_count++];
+            clip->name = view_motion_name(m, p, i);
+            clip->player = p;
+            clip->motion = i;
+            clip->seconds = (double)set->anim.motions[i].duration_ticks / (double)NOH_TICKS_PER_SECOND;
+        }
+    }
+    return 0;
+}
+
+/* ---- opening ---- */
+
+static int open_stage(view_model *m, gpu *g, const view_model_desc *desc, stage *st, load_budget *budget)
+{
+    int show_bones = stage_shows_bones(&m->scene, &m->file, desc->show_bones), status;
+    memset(budget, 0, sizeof *budget);
+    if (show_bones < 0) {
+        return EXIT_FAILED;
+    }
+    status = show_bones ? 0 : load_budget_make(budget, &m->file, &m->scene, &g->caps, &desc->load);
+    if (!status) status = stage_open(st, g, &m->file, &m->scene, &desc->load, show_bones, desc->width, desc->height);
+    if (status) {
+        load_budget_free(budget);
+    }
+    return status;
+}
+
+static int open_scene(view_model *m, gpu *g, const view_model_desc *desc)
+{
+    int status = scene_init(&m->scene, &m->file);
+    if (!status) status = scene_open_anim(&m->scene, &m->file, desc->anim);
+    if (!status) status = scene_open_players(&m->scene, &m->file, 1);
+    if (!status) status = list_targets(m);
+    if (!status) status = list_clips(m);
+    if (!status) status = open_stage(m, g, desc, &m->stage, &m->budget);
+    return status;
+}
+
+int view_model_open(gpu *g, const view_model_desc *desc, view_model **out)
+{
+    view_model *m = calloc(1, sizeof *m); /* its address is kept by what is opened */
+    int status;
+    if (!m || strlen(desc->path) >= sizeof m->path) {
+        free(m);
+        return tool_fail(desc->path, m ? "the path is too long" : "out of memory");
+    }
+    strcpy(m->path, desc->path);
+    status = is_model(m->path) ? convert_model(m) : pack_file_open(&m->file, m->path);
+    if (!status) status = open_scene(m, g, desc);
+    if (status) {
+        view_model_close(m);
+        return status;
+    }
+    *out = m;
+    return 0;
+}
+
+void view_model_close(view_model *m)
+{
+    if (!m) {
+        return;
+    }
+    stage_close(&m->stage);
+    load_budget_free(&m->budget);
+    scene_free(&m->scene);
+    if (m->file.file.data) {
+        pack_file_close(&m->file);
+    }
+    buffer_free(&m->converted);
+    free(m->targets);
+    free(m->weights);
+    free(m->clips);
+    free(m);
+}
+
+int view_model_reload(view_model *m, gpu *g, const view_model_desc *desc)
+{
+    stage st;
+    load_budget budget;
+    int status = open_stage(m, g, desc, &st, &budget);
+    if (status) {
+        return status;
+    }
+    stage_close(&m->stage);
+    load_budget_free(&m->budget);
+    m->stage = st;
+    m->budget = budget;
+    return 0;
+}
+
+bounds view_model_bounds(const view_model *m)
+{
+    return stage_bounds(&m->scene, &m->file, 0, m->stage.bones != NULL);
+}
+
+/* ---- posing ---- */
+
+void view_model_pose(view_model *m)
+{
+    for (uint32_t i = 0; i < m->weight_count; i++) {
+        const view_weight *w = &m->weights[i];
+        m->scene.items[w->item].weights[w->index] = w->initial;
+    }
+    for (uint32_t p = 0; p < m->scene.player_count; p++) {
+        if (m->scene.players[p].set) {
+            scene_pose_player(&m->scene, &m->scene.players[p]);
+        }
+    }
+    for (uint32_t i = 0; i < m->weight_count; i++) {
+        const view_weight *w = &m->weights[i];
+        float *weight = &m->scene.items[w->item].weights[w->index];
+        if (m->targets[w->target].held) {
+            *weight = m->targets[w->target].value;
+        } else {
+            m->targets[w->target].value = *weight;
+        }
+    }
+}

@@ -1,0 +1,92 @@
+/* view_model.h: what the viewer shows: a pack, or a model converted in memory, ready to draw and to play.
+ *
+ *   view_model_open / view_model_close
+ *   view_model_pose            the scene's weights and joints for this frame
+ *   view_start, view_add, view_stop, view_stop_all, view_seek, view_step   its clips */
+#ifndef NOH_TOOL_VIEW_MODEL_H
+#define NOH_TOOL_VIEW_MODEL_H
+
+#include "convert/byte_buffer.h"
+#include "stage.h"
+
+/* A slider: all targets of one name. */
+typedef struct view_target {
+    const char *name;
+    float value;
+    int held; /* the slider was moved: clips do not reach these weights until it is let go */
+} view_target;
+
+/* A weight of the scene, and the slider that it belongs to. */
+typedef struct view_weight {
+    uint32_t target, item, index;
+    float initial;
+} view_weight;
+
+typedef struct view_clip {
+    const char *name;
+    uint32_t player, motion;
+    double seconds;
+} view_clip;
+
+typedef struct view_model {
+    char path[1024];
+    byte_buffer converted; /* the pack, where the file was a model */
+    pack_file file;
+    scene scene;
+    stage stage;
+    load_budget budget; /* parts NULL where bones are shown: nothing is loaded then */
+    float delta_max; /* how far one target moves a vertex at most, model units; over 0 */
+    view_target *targets;
+    view_weight *weights;
+    view_clip *clips;
+    uint32_t target_count, weight_count, clip_count;
+} view_model;
+
+typedef struct view_model_desc {
+    const char *path; /* a pack, or .gltf, .glb, .bvh, .rcl */
+    const char *anim; /* a pack whose clips are played instead; NULL: none */
+    load_options load;
+    int show_bones;
+    uint32_t width, height; /* of the canvas */
+} view_model_desc;
+
+/* Prints an error (tool_last_failure has it) and returns an exit code; 0 and *out on success. */
+int view_model_open(gpu *g, const view_model_desc *desc, view_model **out);
+void view_model_close(view_model *m);
+
+/* Make what draws it again, with other options. On failure it draws as before. */
+int view_model_reload(view_model *m, gpu *g, const view_model_desc *desc);
+
+/* The box of what is drawn, as it is posed. */
+bounds view_model_bounds(const view_model *m);
+
+/* The weights that the asset has, over them those of the clips, over them those that sliders hold. */
+void view_model_pose(view_model *m);
+
+/* Play one clip alone; or beside those that play. Prints an error and returns an exit code when no track is free. */
+int view_start(view_model *m, uint32_t clip);
+int view_add(view_model *m, uint32_t clip);
+void view_stop(view_model *m, uint32_t player, uint32_t track);
+void view_stop_all(view_model *m);
+/* Whether any track is on. */
+int view_plays(const view_model *m);
+/* Send a track to a time of its clip; nothing fires on the way. */
+void view_seek(view_model *m, uint32_t player, uint32_t track, double seconds);
+/* Where a track is in its clip. */
+double view_position(const view_model *m, uint32_t player, uint32_t track);
+/* The name of a player's motion. */
+const char *view_motion_name(const view_model *m, uint32_t player, uint32_t motion);
+
+typedef struct view_passed {
+    double clock_s;
+    const char *clip, *key; /* of the pack */
+    uint32_t track;
+    float weight;
+} view_passed;
+
+typedef void (*view_event_fn)(void *user, const view_passed *event);
+
+/* Move time on; every callback key that is passed goes to fn. */
+void view_step(view_model *m, double seconds, view_event_fn fn, void *user);
+
+#endif

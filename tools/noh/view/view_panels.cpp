@@ -1,0 +1,507 @@
+// view_panels.cpp: the panels. Reads and changes view_app; what needs the GPU is asked for through `wish`.
+#include "view/view_panels.h"
+
+#include <cfloat>
+#include <cstddef>
+#include <cstring>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+static_assert(sizeof(ImDrawVert) == sizeof(view_vertex) && offsetof(ImDrawVert, uv) == offsetof(view_vertex, uv) &&
+                  offsetof(ImDrawVert, col) == offsetof(view_vertex, color) && sizeof(ImDrawIdx) == sizeof(uint16_t),
+              "view_screen draws ImGui's vertices as they are");
+
+namespace {
+
+const ImVec4 amber(0.93f, 0.70f, 0.36f, 1.0f), red(0.95f, 0.45f, 0.38f, 1.0f);
+
+ImGuiTextFilter target_filter;
+bool mouse_held;
+
+ImTextureID texture_of(GLuint name)
+{
+    return reinterpret_cast<ImTextureID>(static_cast<intptr_t>(name));
+}
+
+// ---- a panel at a fixed place ----
+
+bool begin_panel(const char *name, float x, float y, float width, float height)
+{
+    ImGui::SetNextWindowPos(ImVec2(x, y));
+    ImGui::SetNextWindowSize(ImVec2(width, height));
+    return ImGui::Begin(name, nullptr,
+                        ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoTitleBar |
+                            ImGuiWindowFlags_NoBringToFrontOnFocus);
+}
+
+// ---- targets ----
+
+void target_slider(view_target &target)
+{
+    ImGui::PushID(&target);
+    const float width = ImGui::GetContentRegionAvail().x;
+    const bool held = target.held != 0; // as it began: the slider may change it
+    if (held) {
+        ImGui::PushStyleColor(ImGuiCol_SliderGrab, ImVec4(0.70f, 0.50f, 0.22f, 1.0f));
+        ImGui::PushStyleColor(ImGuiCol_Text, amber);
+    }
+    ImGui::SetNextItemWidth(width * 0.45f);
+    if (ImGui::SliderFloat("##value", &target.value, 0.0f, 1.0f, "%.2f")) {
+        target.held = 1;
+    }
+    ImGui::SameLine();
+    ImGui::TextUnformatted(target.name);
+    if (ImGui::IsItemHovered()) {
+        ImGui::SetTooltip("%s%s", target.name, held ? "\nheld: click to let go" : "");
+    }
+    if (ImGui::IsItemClicked()) {
+        target.held = 0;
+    }
+    if (held) {
+        ImGui::PopStyleColor(2);
+    }
+    ImGui::PopID();
+}
+
+void targets_panel(view_app *a)
+{
+    view_model *m = a->model;
+    begin_panel("targets", 0.0f, 0.0f, VIEW_LEFT, a->window_height);
+    const char *name = std::strrchr(m->path, '/');
+    ImGui::TextColored(amber, "%s", name ? name + 1 : m->path);
+    ImGui::Text("meshes %u, targets %u, clips %u", m->file.pack.mesh_count, m->target_count, m->clip_count);
+    ImGui::Separator();
+    ImGui::SetNextItemWidth(-80.0f);
+    if (ImGui::InputTextWithHint("##search", "search targets", target_filter.InputBuf, sizeof target_filter.InputBuf)) {
+        target_filter.Build();
+    }
+    ImGui::SameLine();
+    if (ImGui::Button("reset", ImVec2(-1.0f, 0.0f))) {
+        for (uint32_t t = 0; t < m->target_count; t++) {
+            m->targets[t].held = 0;
+        }
+    }
+    ImGui::BeginChild("list");
+    for (uint32_t t = 0; t < m->target_count; t++) {
+        if (target_filter.PassFilter(m->targets[t].name)) {
+            target_slider(m->targets[t]);
+        }
+    }
+    ImGui::EndChild();
+    ImGui::End();
+}
+
+// ---- clips ----
+
+void clip_row(view_app *a, uint32_t clip)
+{
+    const view_clip &c = a->model->clips[clip];
+    ImGui::PushID(static_cast<int>(clip));
+    if (ImGui::SmallButton("play")) {
+        view_play(a, clip, 0);
+    }
+    ImGui::SameLine();
+    if (ImGui::SmallButton("add")) {
+        view_play(a, clip, 1);
+    }
+    ImGui::SameLine();
+    ImGui::Text("%s", c.name);
+    ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 64.0f);
+    ImGui::TextDisabled("%7.2f s", c.seconds);
+    ImGui::PopID();
+}
+
+void track_row(view_app *a, uint32_t player, uint32_t track)
+{
+    const scene_player &p = a->model->scene.players[player];
+    noh_controller *c = p.controllers[0];
+    const noh_track *t = noh_controller_track(c, track);
+    float at = static_cast<float>(view_position(a->model, player, track)), weight = t->weight;
+    float speed = static_cast<float>(t->speed) / NOH_SPEED_ONE;
+    const float end = static_cast<float>(p.set->anim.motions[t->motion].duration_ticks) / NOH_TICKS_PER_SECOND;
+    ImGui::PushID(static_cast<int>(player * NOH_TRACKS_MAX + track));
+    ImGui::TextColored(amber, "%u %s", track, view_motion_name(a->model, player, t->motion));
+    ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 40.0f);
+    const bool stop = ImGui::SmallButton("stop");
+    ImGui::SetNextItemWidth(-1.0f);
+    if (ImGui::SliderFloat("##at", &at, 0.0f, end, "%.3f s", ImGuiSliderFlags_AlwaysClamp)) {
+        view_seek(a->model, player, track, static_cast<double>(at));
+    }
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.5f - 4.0f);
+    if (ImGui::SliderFloat("##weight", &weight, 0.0f, 1.0f, "weight %.2f", ImGuiSliderFlags_AlwaysClamp)) {
+        noh_controller_set_weight(c, track, weight);
+    }
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(-1.0f);
+    if (ImGui::SliderFloat("##speed", &speed, -2.0f, 2.0f, "speed %.2f", ImGuiSliderFlags_AlwaysClamp)) {
+        noh_controller_set_speed(c, track, static_cast<int32_t>(speed * NOH_SPEED_ONE));
+    }
+    if (stop) {
+        view_stop(a->model, player, track);
+    }
+    ImGui::PopID();
+}
+
+void clips_section(view_app *a)
+{
+    view_model *m = a->model;
+    if (!ImGui::CollapsingHeader("Clips", ImGuiTreeNodeFlags_DefaultOpen)) {
+        return;
+    }
+    if (!m->clip_count) {
+        ImGui::TextDisabled("none in this file");
+        return;
+    }
+    if (ImGui::Button(a->playing ? "pause" : "play", ImVec2(60.0f, 0.0f))) {
+        view_toggle_play(a);
+    }
+    ImGui::SameLine();
+    if (ImGui::Button("stop all")) {
+        view_stop_all(m);
+    }
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(-1.0f);
+    ImGui::SliderFloat("##speed", &a->speed, 0.0f, 2.0f, "speed %.2f", ImGuiSliderFlags_AlwaysClamp);
+    const float rows = m->clip_count < 6 ? static_cast<float>(m->clip_count) : 6.0f;
+    ImGui::BeginChild("clips", ImVec2(0.0f, rows * ImGui::GetTextLineHeightWithSpacing() + 4.0f));
+    for (uint32_t i = 0; i < m->clip_count; i++) {
+        clip_row(a, i);
+    }
+    ImGui::EndChild();
+    for (uint32_t player = 0; player < m->scene.player_count; player++) {
+        const scene_player &p = m->scene.players[player];
+        for (uint32_t t = 0; p.set && t < p.controllers[0]->track_count; t++) {
+            if (noh_controller_track(p.controllers[0], t)->mode != NOH_TRACK_OFF) {
+                track_row(a, player, t);
+            }
+        }
+    }
+}
+
+// ---- drawing ----
+
+void path_combo(view_app *a)
+{
+    if (ImGui::BeginCombo("path", noh_morph_path_name(a->desc.load.path))) {
+        for (int i = 0; i < NOH_MORPH_PATH_COUNT; i++) {
+            const noh_morph_path path = static_cast<noh_morph_path>(i);
+            if (ImGui::Selectable(noh_morph_path_name(path), path == a->desc.load.path)) {
+                a->wish.load.path = path;
+                a->wants_reload = 1;
+            }
+        }
+        ImGui::EndCombo();
+    }
+}
+
+void accumulate_combo(view_app *a)
+{
+    if (ImGui::BeginCombo("accumulators", noh_accumulate_name(a->desc.load.accumulate))) {
+        for (int i = 0; i < 3; i++) {
+            const noh_accumulate format = static_cast<noh_accumulate>(i);
+            if (ImGui::Selectable(noh_accumulate_name(format), format == a->desc.load.accumulate)) {
+                a->wish.load.accumulate = format;
+                a->wants_reload = 1;
+            }
+        }
+        ImGui::EndCombo();
+    }
+}
+
+void drawing_section(view_app *a)
+{
+    static const char *const views[] = { "lit", "position", "normal", "tangent" };
+    int view = static_cast<int>(a->desc.load.view);
+    bool bones = a->model->stage.bones != nullptr;
+    if (!ImGui::CollapsingHeader("Drawing", ImGuiTreeNodeFlags_DefaultOpen)) {
+        return;
+    }
+    ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x - 110.0f);
+    path_combo(a);
+    accumulate_combo(a);
+    if (ImGui::Combo("view", &view, views, 4)) {
+        a->wish.load.view = static_cast<noh_debug_view>(view);
+        a->wants_reload = 1;
+    }
+    ImGui::PopItemWidth();
+    if (a->model->scene.skeleton.joint_count && ImGui::Checkbox("bones", &bones)) {
+        a->wish.show_bones = bones;
+        a->wants_reload = 1;
+    }
+    if (a->model->stage.load.morph.morph) {
+        const noh_gl_morph_plan *plan = noh_gl_morph_plan_of(a->model->stage.load.morph.morph);
+        ImGui::TextWrapped("%s-%s (%s)", noh_morph_path_name(plan->path), noh_accumulate_name(plan->accumulate), plan->reason);
+    }
+}
+
+// ---- times, memory, layers ----
+
+void time_row(const char *name, double ms, const char *what)
+{
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(name);
+    ImGui::TableNextColumn();
+    if (ms < 0.0) {
+        ImGui::TextDisabled("       -");
+    } else {
+        ImGui::Text("%8.3f", ms);
+    }
+    ImGui::TableNextColumn();
+    ImGui::TextDisabled("%s", what);
+}
+
+void times_section(view_app *a)
+{
+    const view_times &t = a->times;
+    if (!ImGui::CollapsingHeader("Times", ImGuiTreeNodeFlags_DefaultOpen)) {
+        return;
+    }
+    if (ImGui::BeginTable("times", 3, ImGuiTableFlags_SizingFixedFit)) {
+        time_row("frame", t.frame, "ms, to the next");
+        time_row("animate", t.animate, "ms, CPU: clips and poses");
+        time_row("accumulate", t.accumulate, "ms, GPU: morph targets");
+        time_row("draw", t.draw, "ms, GPU: the figure");
+        ImGui::EndTable();
+    }
+    ImGui::PlotLines("##frames", t.frame_ms, VIEW_HISTORY, static_cast<int>(t.next), nullptr, 0.0f, FLT_MAX,
+                     ImVec2(ImGui::GetContentRegionAvail().x, 36.0f));
+    ImGui::TextDisabled("last change: %u targets, %u texels", t.stats.targets, t.stats.texels);
+}
+
+void memory_row(const char *name, uint64_t cpu, uint64_t gpu)
+{
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(name);
+    ImGui::TableNextColumn();
+    ImGui::Text("%11llu", static_cast<unsigned long long>(cpu));
+    ImGui::TableNextColumn();
+    ImGui::Text("%11llu", static_cast<unsigned long long>(gpu));
+}
+
+void memory_section(view_app *a)
+{
+    const load_budget &b = a->model->budget;
+    if (!ImGui::CollapsingHeader("Memory", ImGuiTreeNodeFlags_DefaultOpen)) {
+        return;
+    }
+    if (!b.parts) {
+        ImGui::TextDisabled("bones are drawn: no mesh is loaded");
+        return;
+    }
+    if (ImGui::BeginTable("memory", 3, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg)) {
+        ImGui::TableSetupColumn("bytes");
+        ImGui::TableSetupColumn("        CPU");
+        ImGui::TableSetupColumn("        GPU");
+        ImGui::TableHeadersRow();
+        for (uint32_t i = 0; i < b.part_count; i++) {
+            if (b.parts[i].cpu_bytes || b.parts[i].gpu_bytes) {
+                memory_row(b.parts[i].name, b.parts[i].cpu_bytes, b.parts[i].gpu_bytes);
+            }
+        }
+        memory_row("sum", b.cpu_bytes, b.gpu_bytes);
+        memory_row("on the GPU now", 0, noh_gl_ledger_bytes(&a->gpu.ledger));
+        memory_row("the pack", b.pack_bytes, 0);
+        ImGui::EndTable();
+    }
+}
+
+void layers_section(view_app *a)
+{
+    static const char *const names[] = { "position", "normal", "tangent" };
+    a->show_layers = ImGui::CollapsingHeader("Layers", ImGuiTreeNodeFlags_DefaultOpen);
+    if (!a->show_layers) {
+        return;
+    }
+    if (!a->model->stage.load.morph.morph || !a->screen.layers_width) {
+        ImGui::TextDisabled("no accumulators");
+        return;
+    }
+    ImGui::SetNextItemWidth(-1.0f);
+    ImGui::SliderFloat("##gain", &a->layer_gain, 0.1f, 20.0f, "gain %.2f", ImGuiSliderFlags_Logarithmic);
+    const float width = (ImGui::GetContentRegionAvail().x - 8.0f) / 3.0f;
+    const float height = width * static_cast<float>(a->screen.layers_height) / static_cast<float>(a->screen.layers_width);
+    for (int i = 0; i < 3; i++) {
+        ImGui::BeginGroup();
+        ImGui::Image(texture_of(a->screen.layers[i]), ImVec2(width, height));
+        ImGui::TextDisabled("%s", names[i]);
+        ImGui::EndGroup();
+        if (i < 2) {
+            ImGui::SameLine(0.0f, 4.0f);
+        }
+    }
+}
+
+void right_panel(view_app *a)
+{
+    begin_panel("figure", a->window_width - VIEW_RIGHT, 0.0f, VIEW_RIGHT, a->window_height);
+    clips_section(a);
+    drawing_section(a);
+    times_section(a);
+    layers_section(a);
+    memory_section(a);
+    ImGui::End();
+}
+
+// ---- events ----
+
+void events_panel(view_app *a)
+{
+    begin_panel("events", VIEW_LEFT, a->window_height - VIEW_BOTTOM, a->window_width - VIEW_LEFT - VIEW_RIGHT, VIEW_BOTTOM);
+    if (a->message[0]) {
+        ImGui::PushStyleColor(ImGuiCol_Text, red);
+        ImGui::TextWrapped("%s", a->message);
+        ImGui::PopStyleColor();
+    } else {
+        ImGui::TextDisabled("space play  drag turn  right drag move  wheel zoom  F fit  Tab panels  F11 F12 save");
+    }
+    ImGui::Separator();
+    ImGui::BeginChild("lines");
+    const uint32_t count = a->log.total < VIEW_LINES ? a->log.total : VIEW_LINES;
+    for (uint32_t i = 0; i < count; i++) {
+        ImGui::TextUnformatted(a->log.lines[(a->log.next + VIEW_LINES - count + i) % VIEW_LINES]);
+    }
+    if (!count) {
+        ImGui::TextDisabled("callback keys that the clips pass are listed here");
+    }
+    if (ImGui::GetScrollY() >= ImGui::GetScrollMaxY()) {
+        ImGui::SetScrollHereY(1.0f); // follows, unless someone scrolled up
+    }
+    ImGui::EndChild();
+    ImGui::End();
+}
+
+// ---- input and output ----
+
+void map_keys(ImGuiIO &io)
+{
+    io.KeyMap[ImGuiKey_Tab] = GLFW_KEY_TAB;
+    io.KeyMap[ImGuiKey_LeftArrow] = GLFW_KEY_LEFT;
+    io.KeyMap[ImGuiKey_RightArrow] = GLFW_KEY_RIGHT;
+    io.KeyMap[ImGuiKey_UpArrow] = GLFW_KEY_UP;
+    io.KeyMap[ImGuiKey_DownArrow] = GLFW_KEY_DOWN;
+    io.KeyMap[ImGuiKey_Home] = GLFW_KEY_HOME;
+    io.KeyMap[ImGuiKey_End] = GLFW_KEY_END;
+    io.KeyMap[ImGuiKey_Delete] = GLFW_KEY_DELETE;
+    io.KeyMap[ImGuiKey_Backspace] = GLFW_KEY_BACKSPACE;
+    io.KeyMap[ImGuiKey_Space] = GLFW_KEY_SPACE;
+    io.KeyMap[ImGuiKey_Enter] = GLFW_KEY_ENTER;
+    io.KeyMap[ImGuiKey_Escape] = GLFW_KEY_ESCAPE;
+    io.KeyMap[ImGuiKey_A] = GLFW_KEY_A;
+}
+
+void take_input(const view_app *a, const view_input *input, double seconds)
+{
+    ImGuiIO &io = ImGui::GetIO();
+    io.DisplaySize = ImVec2(a->window_width, a->window_height);
+    io.DeltaTime = seconds > 0.0 ? static_cast<float>(seconds) : 1.0f / 60.0f;
+    io.MousePos = ImVec2(input->mouse[0], input->mouse[1]);
+    for (int i = 0; i < 3; i++) {
+        io.MouseDown[i] = input->buttons[i] != 0;
+    }
+    io.MouseWheel = input->wheel;
+    for (size_t k = 0; k < sizeof input->keys; k++) {
+        io.KeysDown[k] = input->keys[k] != 0;
+    }
+    io.KeyCtrl = input->keys[GLFW_KEY_LEFT_CONTROL] || input->keys[GLFW_KEY_RIGHT_CONTROL];
+    io.KeyShift = input->keys[GLFW_KEY_LEFT_SHIFT] || input->keys[GLFW_KEY_RIGHT_SHIFT];
+    for (int i = 0; i < input->letter_count; i++) {
+        io.AddInputCharacter(input->letters[i]);
+    }
+}
+
+void draw_panels(view_app *a)
+{
+    const ImDrawData *data = ImGui::GetDrawData();
+    view_triangles_begin(&a->screen, a->window_width, a->window_height);
+    for (int i = 0; i < data->CmdListsCount; i++) {
+        const ImDrawList *list = data->CmdLists[i];
+        view_triangles_list(&a->screen, reinterpret_cast<const view_vertex *>(list->VtxBuffer.Data),
+                            static_cast<size_t>(list->VtxBuffer.Size), list->IdxBuffer.Data, static_cast<size_t>(list->IdxBuffer.Size));
+        for (const ImDrawCmd &command : list->CmdBuffer) {
+            const float clip[4] = { command.ClipRect.x, command.ClipRect.y, command.ClipRect.z, command.ClipRect.w };
+            view_triangles_draw(&a->screen, clip, static_cast<GLuint>(reinterpret_cast<intptr_t>(command.GetTexID())), command.IdxOffset,
+                                command.ElemCount);
+        }
+    }
+    view_triangles_end(&a->screen);
+}
+
+void set_style()
+{
+    ImGuiStyle &style = ImGui::GetStyle();
+    ImGui::StyleColorsDark();
+    style.WindowRounding = 0.0f;
+    style.WindowBorderSize = 0.0f;
+    style.FrameRounding = 2.0f;
+    style.ItemSpacing = ImVec2(6.0f, 4.0f);
+    style.Colors[ImGuiCol_WindowBg] = ImVec4(0.13f, 0.13f, 0.14f, 1.0f);
+    style.Colors[ImGuiCol_PopupBg] = ImVec4(0.16f, 0.16f, 0.17f, 1.0f);
+    style.Colors[ImGuiCol_FrameBg] = ImVec4(0.22f, 0.22f, 0.24f, 1.0f);
+    style.Colors[ImGuiCol_FrameBgHovered] = ImVec4(0.30f, 0.30f, 0.32f, 1.0f);
+    style.Colors[ImGuiCol_FrameBgActive] = ImVec4(0.34f, 0.34f, 0.36f, 1.0f);
+    style.Colors[ImGuiCol_Header] = ImVec4(0.26f, 0.24f, 0.21f, 1.0f);
+    style.Colors[ImGuiCol_HeaderHovered] = ImVec4(0.36f, 0.32f, 0.26f, 1.0f);
+    style.Colors[ImGuiCol_HeaderActive] = ImVec4(0.42f, 0.36f, 0.28f, 1.0f);
+    style.Colors[ImGuiCol_Button] = ImVec4(0.30f, 0.28f, 0.25f, 1.0f);
+    style.Colors[ImGuiCol_ButtonHovered] = ImVec4(0.46f, 0.38f, 0.27f, 1.0f);
+    style.Colors[ImGuiCol_ButtonActive] = ImVec4(0.58f, 0.46f, 0.30f, 1.0f);
+    style.Colors[ImGuiCol_SliderGrab] = ImVec4(0.47f, 0.41f, 0.33f, 1.0f);
+    style.Colors[ImGuiCol_SliderGrabActive] = ImVec4(0.70f, 0.50f, 0.22f, 1.0f);
+    style.Colors[ImGuiCol_CheckMark] = amber;
+    style.Colors[ImGuiCol_PlotLines] = amber;
+}
+
+} // namespace
+
+int view_panels_open(view_app *a)
+{
+    unsigned char *rgba = nullptr;
+    int width = 0, height = 0;
+    if (!IMGUI_CHECKVERSION() || !ImGui::CreateContext()) {
+        return tool_fail("view", "Dear ImGui's library and headers differ");
+    }
+    ImGuiIO &io = ImGui::GetIO();
+    io.IniFilename = nullptr; // nothing is written
+    map_keys(io);
+    set_style();
+    io.Fonts->GetTexDataAsRGBA32(&rgba, &width, &height);
+    view_screen_font(&a->screen, static_cast<uint32_t>(width), static_cast<uint32_t>(height), rgba);
+    io.Fonts->SetTexID(texture_of(a->screen.font));
+    return 0;
+}
+
+void view_panels_close(void)
+{
+    target_filter.Clear();
+    if (ImGui::GetCurrentContext()) {
+        ImGui::DestroyContext();
+    }
+}
+
+void view_panels_frame(view_app *a, const view_input *input, double seconds)
+{
+    take_input(a, input, seconds);
+    ImGui::NewFrame();
+    if (a->show_panels) {
+        targets_panel(a);
+        right_panel(a);
+        events_panel(a);
+    }
+    mouse_held = ImGui::IsAnyItemActive() || ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup);
+    ImGui::Render();
+    draw_panels(a);
+}
+
+int view_panels_hold_mouse(void)
+{
+    return mouse_held;
+}
+
+int view_panels_want_keys(void)
+{
+    return ImGui::GetIO().WantTextInput;
+}

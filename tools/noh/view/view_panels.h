@@ -1,0 +1,36 @@
+/* view_panels.h: the panels, by Dear ImGui. All C++ of the viewer is behind this header. */
+#ifndef NOH_TOOL_VIEW_PANELS_H
+#define NOH_TOOL_VIEW_PANELS_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#include "view/view_app.h"
+
+/* What happened in the window since the last frame. */
+typedef struct view_input {
+    float mouse[2];        /* points */
+    int buttons[3];        /* left, right, middle: down, or pressed since the last frame */
+    float wheel;
+    uint8_t keys[512];     /* by GLFW's codes: down, or pressed since the last frame */
+    unsigned letters[32];  /* [letter_count] typed */
+    int letter_count;
+} view_input;
+
+/* 0, or an exit code after printing. */
+int view_panels_open(view_app *a);
+void view_panels_close(void);
+
+/* Lay them out, take the input, draw them over the window. */
+void view_panels_frame(view_app *a, const view_input *input, double seconds);
+
+/* Whether a slider is being dragged or a list is open: the mouse is theirs wherever it is. */
+int view_panels_hold_mouse(void);
+/* Whether a text is being typed. */
+int view_panels_want_keys(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,53 @@
+/* view_screen.h: what the viewer draws into its window: the canvas, the layers as pictures, the panels.
+ *
+ *   view_screen_open / view_screen_close
+ *   view_screen_picture     the canvas into a rectangle of the window
+ *   view_screen_layers      the accumulators' three layers into textures
+ *   view_triangles_begin, view_triangles_list, view_triangles_draw, view_triangles_end   triangles of the panels
+ *   view_screen_read        the window's pixels */
+#ifndef NOH_TOOL_VIEW_SCREEN_H
+#define NOH_TOOL_VIEW_SCREEN_H
+
+#include "view.h"
+
+/* As Dear ImGui lays them out. */
+typedef struct view_vertex {
+    float position[2]; /* points of the window, from its upper left */
+    float uv[2];
+    uint8_t color[4];  /* sRGB */
+} view_vertex;
+
+typedef struct view_screen {
+    gpu *g;
+    GLuint picture_program, panel_program, layer_programs[2]; /* of float layers, of RGBA32UI ones */
+    GLuint empty_array, panel_array, vertex_buffer, index_buffer;
+    GLuint font;
+    GLuint layers[3], layers_framebuffer;
+    uint32_t layers_width, layers_height; /* 0: none yet */
+    uint32_t width, height;               /* of the window's framebuffer, pixels */
+    float scale[2];                       /* pixels per point */
+} view_screen;
+
+/* Prints an error and returns an exit code; 0 on success. */
+int view_screen_open(view_screen *s, gpu *g);
+void view_screen_close(view_screen *s);
+/* The panels' letters: rgba[height][width][4]. */
+void view_screen_font(view_screen *s, uint32_t width, uint32_t height, const uint8_t *rgba);
+
+/* x, y: of the lower left corner, pixels. */
+void view_screen_picture(view_screen *s, canvas *c, int x, int y);
+
+/* gains[layer]: how much of the range from black to white a delta of 1 takes. */
+void view_screen_layers(view_screen *s, const noh_gl_morph *morph, const float gains[3]);
+
+/* width, height of the window in points. */
+void view_triangles_begin(view_screen *s, float width, float height);
+void view_triangles_list(view_screen *s, const view_vertex *vertices, size_t vertex_count, const uint16_t *indices, size_t index_count);
+/* clip: left, top, right, bottom in points. */
+void view_triangles_draw(view_screen *s, const float clip[4], GLuint texture, size_t first_index, size_t index_count);
+void view_triangles_end(view_screen *s);
+
+/* The window's pixels before they are shown: rgba[height][width][4], top row first. */
+int view_screen_read(view_screen *s, uint8_t *rgba);
+
+#endif

@@ -1,0 +1,18 @@
+/* view_window.h: the viewer's window: GLFW, its events, the loop. */
+#ifndef NOH_TOOL_VIEW_WINDOW_H
+#define NOH_TOOL_VIEW_WINDOW_H
+
+#include "view/view_app.h"
+
+typedef struct view_run {
+    view_model_desc desc;   /* width, height: of the window */
+    const char *clip;       /* to play from the start; NULL: none */
+    int native;             /* the context by GLX or WGL instead of EGL */
+    uint32_t frames;        /* draw so many, each 1/60 s of the clips, and end; 0: until it is closed */
+    const char *screenshot; /* of the last of them; NULL: none */
+} view_run;
+
+/* Prints an error and returns an exit code; 0 when the window was closed and GL had nothing to complain of. */
+int view_window_run(const view_run *run);
+
+#endif
