@@ -60,10 +60,10 @@ int lod_check_options(lod_options *o, uint32_t target_count, model_error *error)
         return model_fail(error, "", "%u targets and %u poses are more than %u", target_count, o->pose_count, LOD_POSES_MAX);
     }
     if (!(o->pose_weight > 0.0f)) {
-        o->pose_weight = 0.5f;
+        o->pose_weight = 0.4f;
     }
     if (!(o->face_weight > 0.0f)) {
-        o->face_weight = 1.0f;
+        o->face_weight = o->pose_count ? 1.2f : 1.0f;
     }
     return 0;
 }

@@ -115,19 +115,26 @@ uint32_t lod_skinned_node(const model *m, uint32_t mesh)
     return MODEL_NONE;
 }
 
-/* From the mesh at rest to the mesh in the pose, for each joint. */
+static void inverse_bind(const model_skin *skin, uint32_t joint, double *out)
+{
+    double columns[16];
+    for (int i = 0; i < 16; i++) {
+        columns[i] = skin->inverse_bind[(size_t)joint * 16u + (size_t)i];
+    }
+    from_columns(columns, out);
+}
+
+/* From the mesh to the mesh in the pose, for each joint; the mesh is where the first joint puts it at rest. */
 static void joint_matrices(const model *m, const model_node *node, const double *worlds, double *out)
 {
     const model_skin *skin = &m->skins[node->skin];
-    double rest[12], to_mesh[12];
-    from_columns(node->world, rest);
+    double joint[12], bind[12], rest[12], to_mesh[12], posed[12];
+    from_columns(m->nodes[skin->joints[0]].world, joint);
+    inverse_bind(skin, 0, bind);
+    multiply(joint, bind, rest);
     invert(rest, to_mesh);
     for (uint32_t j = 0; j < skin->joint_count; j++) {
-        double bind16[16], bind[12], posed[12];
-        for (int i = 0; i < 16; i++) {
-            bind16[i] = skin->inverse_bind[(size_t)j * 16u + (size_t)i];
-        }
-        from_columns(bind16, bind);
+        inverse_bind(skin, j, bind);
         multiply(worlds + (size_t)skin->joints[j] * 12u, bind, posed);
         multiply(to_mesh, posed, out + (size_t)j * 12u);
     }
