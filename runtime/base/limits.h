@@ -9,6 +9,7 @@
 #define NOH_VERTICES_MAX (1u << 22)      /* per mesh: a 2048 x 2048 texture, which every ES 3.0 has */
 #define NOH_INDICES_MAX (1u << 26)
 #define NOH_SUBMESHES_MAX 256u
+#define NOH_LEVELS_MAX 8u                /* of detail, per mesh */
 #define NOH_TARGETS_MAX 1024u            /* per mesh: the gather list keeps 10 bits for a target */
 #define NOH_TEXELS_MAX (1u << 22)        /* delta texels of one mesh: the gather list keeps 22 bits */
 #define NOH_MORPH_WIDTH_LOG2_MIN 2u

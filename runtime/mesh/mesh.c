@@ -5,17 +5,10 @@
 #include "base/hash.h"
 #include "base/math.h"
 
-noh_result noh_pack_mesh(const noh_pack *pack, uint32_t index, noh_mesh *mesh)
+/* Point a view at a header of a mesh chunk. */
+static void view_of(const noh_mesh_header *h, noh_mesh *mesh)
 {
-    const uint8_t *chunk;
-    const noh_mesh_header *h;
-    if (index >= pack->mesh_count) {
-        return NOH_ERR_NOT_FOUND;
-    }
-    chunk = pack->bytes + pack->chunks[pack->first_mesh + index].offset;
-    h = (const noh_mesh_header *)(const void *)chunk;
-    mesh->pack = pack;
-    mesh->name = noh_pack_chunk_name(pack, pack->first_mesh + index);
+    const uint8_t *chunk = (const uint8_t *)(h - h->level);
     mesh->header = h;
     mesh->positions = (const float *)(const void *)(chunk + h->positions_offset);
     mesh->attributes = chunk + h->attributes_offset;
@@ -30,7 +23,25 @@ noh_result noh_pack_mesh(const noh_pack *pack, uint32_t index, noh_mesh *mesh)
     mesh->palettes = (const noh_palette *)(const void *)(chunk + h->palettes_offset);
     mesh->palette_joints = (const uint16_t *)(const void *)(chunk + h->palette_joints_offset);
     mesh->joint_boxes = (const float *)(const void *)(chunk + h->joint_boxes_offset);
+}
+
+noh_result noh_pack_mesh(const noh_pack *pack, uint32_t index, noh_mesh *mesh)
+{
+    if (index >= pack->mesh_count) {
+        return NOH_ERR_NOT_FOUND;
+    }
+    mesh->pack = pack;
+    mesh->name = noh_pack_chunk_name(pack, pack->first_mesh + index);
+    view_of((const noh_mesh_header *)(const void *)(pack->bytes + pack->chunks[pack->first_mesh + index].offset), mesh);
     return NOH_OK;
+}
+
+noh_mesh noh_mesh_at_level(const noh_mesh *mesh, uint32_t level)
+{
+    noh_mesh other = *mesh;
+    const uint32_t last = mesh->header->level_count - 1u;
+    view_of(mesh->header - mesh->header->level + (level < last ? level : last), &other);
+    return other;
 }
 
 noh_result noh_pack_skin_at(const noh_pack *pack, uint32_t index, noh_skin *skin)

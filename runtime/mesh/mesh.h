@@ -44,6 +44,11 @@ typedef struct noh_vertex {
 /* The n-th mesh. NOT_FOUND past mesh_count. */
 noh_result noh_pack_mesh(const noh_pack *pack, uint32_t index, noh_mesh *mesh);
 
+/* The same mesh at a level of detail, 0 the full one; past the last the coarsest. It is a mesh like any other: what
+ * is made from it (layers, skinned vertices, GL buffers) has that level's size, and every coarser one is a part of it.
+ * A view; `mesh` may be at any level. */
+noh_mesh noh_mesh_at_level(const noh_mesh *mesh, uint32_t level);
+
 /* The n-th skin. NOT_FOUND past skin_count; so for NOH_NONE, a rigid mesh's. */
 noh_result noh_pack_skin_at(const noh_pack *pack, uint32_t index, noh_skin *skin);
 
@@ -61,8 +66,8 @@ int noh_mesh_tangent_offset(const noh_mesh *mesh);
 int noh_mesh_uv_offset(const noh_mesh *mesh);
 int noh_mesh_color_offset(const noh_mesh *mesh);
 
-/* The vertex whose morph texel a vertex shares (itself, but for doubled ones of a split mesh), and
- * its palette (0 but in a split mesh). */
+/* A vertex's accumulation texel (header->touched_count or more: it has none), and its palette (0 but in a split
+ * mesh). */
 uint32_t noh_mesh_texel(const noh_mesh *mesh, uint32_t vertex);
 uint32_t noh_mesh_palette(const noh_mesh *mesh, uint32_t vertex);
 

@@ -40,8 +40,31 @@ noh_result noh_check_skeleton(noh_check *check);
 noh_result noh_check_skin(noh_check *check);
 noh_result noh_check_motion(noh_check *check);
 
-/* A mesh's skin, palettes, influences and texel references; after its counts, arrays and submeshes. */
+/* Parts of a mesh that each of its levels has; `h` is that level's header. */
+noh_result noh_check_texture_shape(const noh_check *check, const noh_mesh_header *h);
+noh_result noh_check_indices(const noh_check *check, const noh_mesh_header *h);
+noh_result noh_check_submeshes(const noh_check *check, const noh_mesh_header *h);
+noh_result noh_check_draws(const noh_check *check, const noh_mesh_header *h);
+noh_result noh_check_rects(const noh_check *check, const noh_mesh_header *h, const noh_target *t);
+
+/* The headers of a mesh's coarser levels behind that of the full mesh: there, and alike in all that levels share.
+ * Before the arrays are looked at. */
+noh_result noh_check_level_headers(noh_check *check, const noh_mesh_header *h);
+
+/* What lies behind each other for all levels of a mesh. */
+typedef struct noh_level_sums {
+    uint64_t indices, submeshes;
+} noh_level_sums;
+noh_level_sums noh_check_level_sums(const noh_mesh_header *h);
+
+/* The coarser levels, and every vertex's texel reference; after the full mesh and the arrays. */
+noh_result noh_check_levels(const noh_check *check, const noh_mesh_header *h);
+
+/* A mesh's skin, palettes and influences; after its counts, arrays and submeshes. */
 noh_result noh_check_mesh_skin(const noh_check *check, const noh_mesh_header *h);
+
+/* A vertex's texel reference and palette; without references its own number. */
+uint32_t noh_check_texel_word(const noh_check *check, const noh_mesh_header *h, uint32_t vertex);
 
 /* The joints of the n-th skin; 0 for NOH_NONE. */
 uint32_t noh_check_skin_joints(const noh_pack *pack, uint32_t skin);

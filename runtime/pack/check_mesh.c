@@ -1,10 +1,22 @@
 /* check_mesh.c: everything that later code trusts about a mesh chunk. */
 #include "pack/check.h"
 
+static int any_word(const uint32_t *words, size_t count)
+{
+    uint32_t all = 0;
+    for (size_t i = 0; i < count; i++) {
+        all |= words[i];
+    }
+    return all != 0;
+}
+
 static noh_result check_limits(const noh_check *check, const noh_mesh_header *h)
 {
     if (h->vertex_count == 0 || h->vertex_count > NOH_VERTICES_MAX) {
         return noh_check_fail(check, "vertex count is zero or over the limit", 4);
+    }
+    if (h->level || !h->level_count || h->level_count > NOH_LEVELS_MAX) {
+        return noh_check_fail(check, "mesh has no level or too many, or does not begin with the full one", 192);
     }
     if (h->index_count > NOH_INDICES_MAX || h->index_count % 3) {
         return noh_check_fail(check, "index count is over the limit or not a multiple of three", 8);
@@ -19,7 +31,7 @@ static noh_result check_limits(const noh_check *check, const noh_mesh_header *h)
         return noh_check_fail(check, "target, texel or rectangle count is over its limit", 20);
     }
     if ((h->flags & ~(NOH_MESH_TANGENTS | NOH_MESH_UVS | NOH_MESH_COLORS | NOH_MESH_DUAL_QUATERNION | NOH_MESH_TEXELS)) ||
-        h->reserved[0] || h->reserved[1] || h->reserved[2]) {
+        any_word(h->reserved, sizeof h->reserved / sizeof h->reserved[0])) {
         return noh_check_fail(check, "unknown mesh flags, or a reserved field is not zero", 0);
     }
     return NOH_OK;
@@ -31,7 +43,7 @@ static noh_result check_skin_counts(const noh_check *check, const noh_mesh_heade
     const uint32_t n = h->influence_count;
     const int split = h->palette_count > 1;
     if (h->skin == NOH_NONE) {
-        return n || h->palette_count || h->palette_joint_count || (h->flags & (NOH_MESH_DUAL_QUATERNION | NOH_MESH_TEXELS))
+        return n || h->palette_count || h->palette_joint_count || (h->flags & NOH_MESH_DUAL_QUATERNION)
                    ? noh_check_fail(check, "rigid mesh has influences, palettes or a skin's flags", 148)
                    : NOH_OK;
     }
@@ -45,8 +57,8 @@ static noh_result check_skin_counts(const noh_check *check, const noh_mesh_heade
         h->palette_joint_count > h->palette_count * NOH_PALETTE_JOINTS_MAX) {
         return noh_check_fail(check, "palette count is zero or over the limit, or palettes have too many joints", 160);
     }
-    if (split != ((h->flags & NOH_MESH_TEXELS) != 0)) {
-        return noh_check_fail(check, "texel references are there without a split, or a split is without them", 0);
+    if (split && !(h->flags & NOH_MESH_TEXELS)) {
+        return noh_check_fail(check, "mesh is split into palettes without texel references", 0);
     }
     return NOH_OK;
 }
@@ -67,7 +79,7 @@ static noh_result check_boxes(const noh_check *check, uint32_t offset, uint32_t 
     return result;
 }
 
-static noh_result check_texture_shape(const noh_check *check, const noh_mesh_header *h)
+noh_result noh_check_texture_shape(const noh_check *check, const noh_mesh_header *h)
 {
     uint64_t texels;
     if (h->touched_count > h->vertex_count) {
@@ -92,12 +104,13 @@ static uint32_t stride_of(uint32_t flags)
 
 static noh_result check_arrays(noh_check *check, const noh_mesh_header *h)
 {
+    const noh_level_sums sums = noh_check_level_sums(h);
     const struct { uint32_t offset; uint64_t count; uint32_t stride; } arrays[13] = {
         { h->positions_offset, h->vertex_count, 12 },
         { h->attributes_offset, h->vertex_count, h->attribute_stride },
-        { h->indices_offset, h->index_count, h->index_bytes },
-        { h->submeshes_offset, h->submesh_count, sizeof(noh_submesh) },
-        { h->targets_offset, h->target_count, sizeof(noh_target) },
+        { h->indices_offset, sums.indices, h->index_bytes },
+        { h->submeshes_offset, sums.submeshes, sizeof(noh_submesh) },
+        { h->targets_offset, (uint64_t)h->target_count * h->level_count, sizeof(noh_target) },
         { h->weights_offset, h->target_count, 4 },
         { h->rects_offset, h->rect_count, sizeof(noh_rect) },
         { h->texels_offset, h->texel_count, 12 },
@@ -119,7 +132,7 @@ static noh_result check_arrays(noh_check *check, const noh_mesh_header *h)
     return noh_check_end(check);
 }
 
-static noh_result check_indices(const noh_check *check, const noh_mesh_header *h)
+noh_result noh_check_indices(const noh_check *check, const noh_mesh_header *h)
 {
     const uint8_t *indices = check->bytes + h->indices_offset;
     for (uint32_t i = 0; i < h->index_count; i++) {
@@ -132,7 +145,7 @@ static noh_result check_indices(const noh_check *check, const noh_mesh_header *h
     return NOH_OK;
 }
 
-static noh_result check_submeshes(const noh_check *check, const noh_mesh_header *h)
+noh_result noh_check_submeshes(const noh_check *check, const noh_mesh_header *h)
 {
     const noh_submesh *submeshes = (const noh_submesh *)(const void *)(check->bytes + h->submeshes_offset);
     uint32_t next = 0;
@@ -197,7 +210,7 @@ static noh_result check_rect(const noh_check *check, const noh_mesh_header *h, c
     return NOH_OK;
 }
 
-static noh_result check_rects(const noh_check *check, const noh_mesh_header *h, const noh_target *t)
+noh_result noh_check_rects(const noh_check *check, const noh_mesh_header *h, const noh_target *t)
 {
     const noh_rect *rects = (const noh_rect *)(const void *)(check->bytes + h->rects_offset) + t->first_rect;
     uint32_t texel = t->first_texel, pairs = 0;
@@ -229,7 +242,7 @@ static noh_result check_targets(const noh_check *check, const noh_mesh_header *h
         uint64_t at = h->targets_offset + (uint64_t)i * sizeof *targets;
         noh_result result = check_target_head(check, h, &targets[i], rects, texels, at);
         if (!result) {
-            result = check_rects(check, h, &targets[i]);
+            result = noh_check_rects(check, h, &targets[i]);
         }
         if (result) {
             return result;
@@ -244,21 +257,16 @@ static noh_result check_targets(const noh_check *check, const noh_mesh_header *h
     return NOH_OK;
 }
 
-noh_result noh_check_mesh(noh_check *check)
+/* Of the full mesh and what all levels share. */
+static noh_result check_full(noh_check *check, const noh_mesh_header *h)
 {
-    const noh_mesh_header *h = (const noh_mesh_header *)(const void *)check->bytes;
-    noh_result result = noh_check_head(check, sizeof *h);
-    if (!result) result = check_limits(check, h);
-    if (!result) result = check_texture_shape(check, h);
-    if (!result) result = check_skin_counts(check, h);
-    if (!result) result = check_arrays(check, h);
-    if (!result) result = noh_check_floats(check, h->bounds_min, 13, "bounds, error bound or scale are not finite");
+    noh_result result = noh_check_floats(check, h->bounds_min, 13, "bounds, error bound or scale are not finite");
     if (!result) {
         result = noh_check_floats(check, (const float *)(const void *)(check->bytes + h->positions_offset),
                                   h->vertex_count * 3u, "position is not finite");
     }
-    if (!result) result = check_indices(check, h);
-    if (!result) result = check_submeshes(check, h);
+    if (!result) result = noh_check_indices(check, h);
+    if (!result) result = noh_check_submeshes(check, h);
     if (!result) result = check_targets(check, h);
     if (!result) result = check_boxes(check, h->target_boxes_offset, h->target_count, 0);
     if (!result) {
@@ -269,5 +277,19 @@ noh_result noh_check_mesh(noh_check *check)
         result = noh_check_floats(check, (const float *)(const void *)(check->bytes + h->weights_offset),
                                   h->target_count, "default weight is not finite");
     }
+    return result;
+}
+
+noh_result noh_check_mesh(noh_check *check)
+{
+    const noh_mesh_header *h = (const noh_mesh_header *)(const void *)check->bytes;
+    noh_result result = noh_check_head(check, sizeof *h);
+    if (!result) result = check_limits(check, h);
+    if (!result) result = noh_check_level_headers(check, h);
+    if (!result) result = noh_check_texture_shape(check, h);
+    if (!result) result = check_skin_counts(check, h);
+    if (!result) result = check_arrays(check, h);
+    if (!result) result = check_full(check, h);
+    if (!result) result = noh_check_levels(check, h);
     return result;
 }

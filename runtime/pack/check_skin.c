@@ -68,12 +68,6 @@ static noh_result check_palettes(const noh_check *check, const noh_mesh_header *
     return NOH_OK;
 }
 
-static uint32_t texel_word(const noh_check *check, const noh_mesh_header *h, uint32_t vertex)
-{
-    size_t last = h->attributes_offset + (size_t)(vertex + 1u) * h->attribute_stride - 4u;
-    return (h->flags & NOH_MESH_TEXELS) ? *(const uint32_t *)(const void *)(check->bytes + last) : vertex;
-}
-
 /* The bits of a vertex's weights, lowest first. */
 static uint32_t take_bits(const uint32_t *words, uint32_t bit, uint32_t count)
 {
@@ -118,12 +112,10 @@ static noh_result check_vertices(const noh_check *check, const noh_mesh_header *
     const uint32_t *words = (const uint32_t *)(const void *)(check->bytes + h->influences_offset);
     uint32_t stride = NOH_INFLUENCE_WORDS(h->influence_count);
     for (uint32_t v = 0; v < h->vertex_count; v++) {
-        uint32_t word = texel_word(check, h, v), palette = word >> NOH_TEXEL_VERTEX_BITS;
-        uint32_t from = word & ((1u << NOH_TEXEL_VERTEX_BITS) - 1u);
+        uint32_t palette = noh_check_texel_word(check, h, v) >> NOH_TEXEL_VERTEX_BITS;
         noh_result result;
-        if (palette >= h->palette_count || from > v || (v < h->touched_count && from != v)) {
-            return noh_check_fail(check, "vertex shares the texel of a later vertex, or its palette is not there",
-                                  h->attributes_offset + (uint64_t)v * h->attribute_stride);
+        if (palette >= h->palette_count) {
+            return noh_check_fail(check, "vertex's palette is not there", h->attributes_offset + (uint64_t)v * h->attribute_stride);
         }
         result = check_record(check, words + (size_t)v * stride, h->influence_count, palettes[palette].joint_count,
                               h->influences_offset + 4ull * v * stride);
@@ -135,7 +127,7 @@ static noh_result check_vertices(const noh_check *check, const noh_mesh_header *
 }
 
 /* A draw has one palette: all its vertices are written for it. */
-static noh_result check_draws(const noh_check *check, const noh_mesh_header *h)
+noh_result noh_check_draws(const noh_check *check, const noh_mesh_header *h)
 {
     const noh_submesh *submeshes = (const noh_submesh *)(const void *)(check->bytes + h->submeshes_offset);
     const uint8_t *indices = check->bytes + h->indices_offset;
@@ -147,7 +139,7 @@ static noh_result check_draws(const noh_check *check, const noh_mesh_header *h)
         for (uint32_t i = 0; h->palette_count > 1 && i < submeshes[s].index_count; i++) {
             size_t k = (size_t)submeshes[s].first_index + i;
             uint32_t v = h->index_bytes == 2 ? ((const uint16_t *)(const void *)indices)[k] : ((const uint32_t *)(const void *)indices)[k];
-            if (texel_word(check, h, v) >> NOH_TEXEL_VERTEX_BITS != submeshes[s].palette) {
+            if (noh_check_texel_word(check, h, v) >> NOH_TEXEL_VERTEX_BITS != submeshes[s].palette) {
                 return noh_check_fail(check, "submesh draws a vertex of another palette", at);
             }
         }
@@ -157,7 +149,7 @@ static noh_result check_draws(const noh_check *check, const noh_mesh_header *h)
 
 noh_result noh_check_mesh_skin(const noh_check *check, const noh_mesh_header *h)
 {
-    noh_result result = check_draws(check, h);
+    noh_result result = noh_check_draws(check, h);
     if (h->skin == NOH_NONE) {
         return result;
     }

@@ -13,7 +13,7 @@
 #include "base/result.h"
 
 #define NOH_PACK_MAGIC 0x50484f4eu /* "NOHP" */
-#define NOH_PACK_VERSION 2u
+#define NOH_PACK_VERSION 3u
 #define NOH_NONE 0xffffffffu
 
 #define NOH_FOURCC(a, b, c, d) ((uint32_t)(a) | ((uint32_t)(b) << 8) | ((uint32_t)(c) << 16) | ((uint32_t)(d) << 24))
@@ -53,7 +53,8 @@ typedef struct noh_pack_chunk {
 #define NOH_MESH_UVS 2u
 #define NOH_MESH_COLORS 4u
 #define NOH_MESH_DUAL_QUATERNION 8u /* skinned by dual quaternions, else by matrices */
-#define NOH_MESH_TEXELS 16u         /* split into several palettes: a texel reference per vertex */
+#define NOH_MESH_TEXELS 16u         /* a texel reference per vertex: split into several palettes, or levels of detail cut
+                                     * through moved and unmoved vertices */
 
 /* Attribute record, interleaved, 4 bytes each and in this order; those whose
  * flag is not set are absent:
@@ -61,9 +62,15 @@ typedef struct noh_pack_chunk {
  *   tangent  int16 x 2, octahedral; y has 15 bits above bit 0, which is 1 for handedness -1 (TANGENTS)
  *   uv       unorm 16:16, uv = uv_offset + uv_scale * value (UVS)
  *   color    unorm 8:8:8:8, linear rgb with a square-root curve, alpha straight (COLORS)
- *   texel    low 22 bits the vertex whose morph texel this one shares, above them the vertex's palette (TEXELS) */
+ *   texel    low 22 bits the vertex's accumulation texel, above them its palette (TEXELS). Without levels: the vertex
+ *            whose texel it shares, which has one if it is below touched_count; with levels: the texel, or NOH_TEXEL_NONE */
 #define NOH_TEXEL_VERTEX_BITS 22u
+#define NOH_TEXEL_NONE ((1u << NOH_TEXEL_VERTEX_BITS) - 1u)
 
+/* The header of the full mesh is followed by those of its coarser levels of detail, each a mesh of its own:
+ * a level's vertices, texels and, target by target, rectangles are the first ones of the finer level's arrays,
+ * which it shares; its indices, submeshes and targets lie behind the finer level's. So a level can be used, and
+ * loaded, as if there were no finer one (row C16.4). */
 typedef struct noh_mesh_header {
     uint32_t flags;            /* NOH_MESH_* */
     uint32_t vertex_count;
@@ -75,8 +82,8 @@ typedef struct noh_mesh_header {
     uint32_t texel_count;
     uint32_t pair_count;       /* delta texels that are not zero */
     uint32_t source_pair_count;/* what the asset had, for reports */
-    uint32_t touched_count;    /* vertices 0..touched_count-1 have an accumulation texel */
-    uint32_t morph_width_log2; /* texel of vertex v: x = v & (width - 1), y = v >> width_log2 */
+    uint32_t touched_count;    /* accumulation texels; without texel references vertices 0..touched_count-1 have one */
+    uint32_t morph_width_log2; /* texel t: x = t & (width - 1), y = t >> width_log2 */
     uint32_t morph_height;
     uint32_t attribute_stride;
     uint32_t positions_offset;  /* float[vertex_count][3] */
@@ -103,7 +110,16 @@ typedef struct noh_mesh_header {
     uint32_t palette_joints_offset; /* uint16_t[palette_joint_count], places in the skin's joints */
     uint32_t joint_boxes_offset; /* float[the skin's joint_count][6]: smallest and largest x, y, z of the rest positions of the
                                   * vertices that this joint moves; the smallest above the largest where it moves none */
-    uint32_t reserved[3];
+    uint32_t level;               /* 0: the full mesh; the others follow it in the chunk */
+    uint32_t level_count;         /* 1..NOH_LEVELS_MAX, of the mesh: in all its levels the same */
+    float level_error_rest;       /* certified: the largest distance between this level's surface and the full one, both ways, model
+                                   * units; all 0 in the full mesh. At rest, */
+    float level_error_rest_p99;   /* nearer than this for 99 % of the area; */
+    float level_error_targets;    /* with each target alone at weight 1, */
+    float level_error_pairs;      /* with the targets for left and right together, */
+    float level_error_motion;     /* over frames of the clips that the pack was built with */
+    float level_skipped;          /* what the targets that have no rectangles in this level alone move at most, all at weight 1 */
+    uint32_t reserved[11];
 } noh_mesh_header;
 
 /* Influences of a vertex, in words. The first joint is the strongest: its weight is
@@ -268,7 +284,7 @@ NOH_STATIC_ASSERT(sizeof(noh_motion_event) == 24, motion_event);
 NOH_STATIC_ASSERT(sizeof(noh_motion_marker) == 12, motion_marker);
 NOH_STATIC_ASSERT(sizeof(noh_pack_header) == 64, pack_header);
 NOH_STATIC_ASSERT(sizeof(noh_pack_chunk) == 32, pack_chunk);
-NOH_STATIC_ASSERT(sizeof(noh_mesh_header) == 192, mesh_header);
+NOH_STATIC_ASSERT(sizeof(noh_mesh_header) == 256, mesh_header);
 NOH_STATIC_ASSERT(sizeof(noh_submesh) == 24, submesh);
 NOH_STATIC_ASSERT(sizeof(noh_target) == 64, target);
 NOH_STATIC_ASSERT(sizeof(noh_rect) == 8, rect);

@@ -224,6 +224,7 @@ static void set_counts(const model_mesh *m, const morph_encoding *e, const mesh_
     h->morph_width_log2 = e->width_log2;
     h->morph_height = e->height;
     h->texels_one_rect = e->texels_one_rect;
+    h->level_count = 1;
     set_bounds(m, h);
     set_uv_range(m, h);
     f16_bound(e, &h->f16_position_bound, &h->f16_direction_bound);

@@ -1,0 +1,184 @@
+/* check_level.c: the checker of a mesh's levels of detail, and of its texel references. */
+#include "pack/check.h"
+
+#include <string.h>
+
+/* ---- headers ---- */
+
+/* What only this level has becomes what the full mesh has: the rest has to be equal already. */
+static noh_mesh_header as_full(const noh_mesh_header *l, const noh_mesh_header *h)
+{
+    noh_mesh_header same = *l;
+    same.vertex_count = h->vertex_count;
+    same.index_count = h->index_count;
+    same.submesh_count = h->submesh_count;
+    same.rect_count = h->rect_count;
+    same.texel_count = h->texel_count;
+    same.pair_count = h->pair_count;
+    same.touched_count = h->touched_count;
+    same.morph_height = h->morph_height;
+    same.indices_offset = h->indices_offset;
+    same.submeshes_offset = h->submeshes_offset;
+    same.targets_offset = h->targets_offset;
+    same.level = h->level;
+    memcpy(&same.level_error_rest, &h->level_error_rest, 6u * sizeof(float));
+    return same;
+}
+
+static int counts_rise(const noh_mesh_header *l, const noh_mesh_header *finer)
+{
+    return !l->vertex_count || l->vertex_count > finer->vertex_count || l->index_count > finer->index_count || l->index_count % 3 ||
+           !l->submesh_count || l->submesh_count > NOH_SUBMESHES_MAX || l->touched_count > finer->touched_count ||
+           l->rect_count > finer->rect_count || l->texel_count > finer->texel_count || l->pair_count > finer->pair_count;
+}
+
+static noh_result check_errors(const noh_check *check, const noh_mesh_header *l, const noh_mesh_header *finer)
+{
+    const float *mine = &l->level_error_rest, *before = &finer->level_error_rest;
+    noh_result result = noh_check_floats(check, mine, 6, "level's error is not finite");
+    for (unsigned i = 0; !result && i < 6; i++) {
+        if (mine[i] < before[i]) {
+            result = noh_check_fail(check, "level's error is below that of the finer level", (uint64_t)l->level * sizeof *l + 200u + 4u * i);
+        }
+    }
+    return result;
+}
+
+static noh_result check_full_errors(const noh_check *check, const noh_mesh_header *h)
+{
+    const float *errors = &h->level_error_rest;
+    for (unsigned i = 0; i < 6; i++) {
+        if (!(errors[i] == 0.0f)) {
+            return noh_check_fail(check, "full mesh has the error of a level", 200u + 4u * i);
+        }
+    }
+    return NOH_OK;
+}
+
+noh_result noh_check_level_headers(noh_check *check, const noh_mesh_header *h)
+{
+    noh_result result = noh_check_head(check, h->level_count * (uint32_t)sizeof *h);
+    if (!result) result = check_full_errors(check, h);
+    for (uint32_t k = 1; !result && k < h->level_count; k++) {
+        const noh_mesh_header same = as_full(&h[k], h);
+        if (h[k].level != k || memcmp(&same, h, sizeof same) != 0) {
+            return noh_check_fail(check, "level of detail is out of order, or differs in what all levels share", (uint64_t)k * sizeof *h);
+        }
+        if (counts_rise(&h[k], &h[k - 1])) {
+            return noh_check_fail(check, "level of detail has more of something than the finer one", (uint64_t)k * sizeof *h);
+        }
+        result = check_errors(check, &h[k], &h[k - 1]);
+    }
+    return result;
+}
+
+noh_level_sums noh_check_level_sums(const noh_mesh_header *h)
+{
+    noh_level_sums sums = { 0, 0 };
+    for (uint32_t k = 0; k < h->level_count; k++) {
+        sums.indices += h[k].index_count;
+        sums.submeshes += h[k].submesh_count;
+    }
+    return sums;
+}
+
+/* ---- texels ---- */
+
+uint32_t noh_check_texel_word(const noh_check *check, const noh_mesh_header *h, uint32_t vertex)
+{
+    size_t last = h->attributes_offset + (size_t)(vertex + 1u) * h->attribute_stride - 4u;
+    return (h->flags & NOH_MESH_TEXELS) ? *(const uint32_t *)(const void *)(check->bytes + last) : vertex;
+}
+
+static int texel_is_right(const noh_mesh_header *l, uint32_t vertex, uint32_t texel)
+{
+    return l->level_count > 1 ? texel < l->touched_count || texel == NOH_TEXEL_NONE
+                              : texel <= vertex && (vertex >= l->touched_count || texel == vertex);
+}
+
+/* The texels of a level's vertices are the level's. */
+static noh_result check_texels(const noh_check *check, const noh_mesh_header *h, const noh_mesh_header *l)
+{
+    if (!(l->flags & NOH_MESH_TEXELS)) {
+        const uint32_t least = l->vertex_count < h->touched_count ? l->vertex_count : h->touched_count;
+        return l->touched_count < least ? noh_check_fail(check, "level of detail lacks texels of its vertices", (uint64_t)l->level * sizeof *l)
+                                        : NOH_OK;
+    }
+    for (uint32_t v = 0; v < l->vertex_count; v++) {
+        const uint32_t word = noh_check_texel_word(check, l, v), texel = word & NOH_TEXEL_NONE;
+        if (!texel_is_right(l, v, texel) || (l->skin == NOH_NONE && word != texel)) {
+            return noh_check_fail(check, "vertex shares the texel of a later vertex, or one that its level does not have",
+                                  l->attributes_offset + (uint64_t)v * l->attribute_stride);
+        }
+    }
+    return NOH_OK;
+}
+
+/* ---- targets ---- */
+
+static noh_target as_full_target(const noh_target *t, const noh_target *full)
+{
+    noh_target same = *t;
+    same.rect_count = full->rect_count;
+    same.texel_count = full->texel_count;
+    same.pair_count = full->pair_count;
+    return same;
+}
+
+/* Each target's rectangles are the first ones of the finer level's. */
+static noh_result check_targets(const noh_check *check, const noh_mesh_header *h, const noh_mesh_header *l)
+{
+    const noh_target *full = (const noh_target *)(const void *)(check->bytes + h->targets_offset);
+    const noh_target *targets = (const noh_target *)(const void *)(check->bytes + l->targets_offset);
+    const noh_target *finer = targets - h->target_count;
+    uint64_t rects = 0, texels = 0, pairs = 0;
+    for (uint32_t i = 0; i < h->target_count; i++) {
+        const noh_target *t = &targets[i], same = as_full_target(t, &full[i]);
+        const uint64_t at = l->targets_offset + (uint64_t)i * sizeof *t;
+        noh_result result;
+        if (memcmp(&same, &full[i], sizeof same) != 0) {
+            return noh_check_fail(check, "level's target differs from the full mesh's", at);
+        }
+        if (t->rect_count > finer[i].rect_count || t->texel_count > finer[i].texel_count) {
+            return noh_check_fail(check, "level's target has more rectangles than the finer level's", at);
+        }
+        result = noh_check_rects(check, l, t);
+        if (result) {
+            return result;
+        }
+        rects += t->rect_count;
+        texels += t->texel_count;
+        pairs += t->pair_count;
+    }
+    if (rects != l->rect_count || texels != l->texel_count || pairs != l->pair_count) {
+        return noh_check_fail(check, "the targets' counts do not add up to the level's", l->targets_offset);
+    }
+    return NOH_OK;
+}
+
+/* ---- all of it ---- */
+
+static noh_result check_offsets(const noh_check *check, const noh_mesh_header *l, const noh_mesh_header *finer)
+{
+    const int follow = l->indices_offset == finer->indices_offset + finer->index_count * finer->index_bytes &&
+                       l->submeshes_offset == finer->submeshes_offset + finer->submesh_count * sizeof(noh_submesh) &&
+                       l->targets_offset == finer->targets_offset + finer->target_count * sizeof(noh_target);
+    return follow ? NOH_OK
+                  : noh_check_fail(check, "level's indices, submeshes or targets do not follow the finer level's", (uint64_t)l->level * sizeof *l);
+}
+
+noh_result noh_check_levels(const noh_check *check, const noh_mesh_header *h)
+{
+    noh_result result = check_texels(check, h, h);
+    for (uint32_t k = 1; !result && k < h->level_count; k++) {
+        const noh_mesh_header *l = &h[k];
+        result = check_offsets(check, l, &h[k - 1]);
+        if (!result) result = noh_check_texture_shape(check, l);
+        if (!result) result = noh_check_indices(check, l);
+        if (!result) result = noh_check_submeshes(check, l);
+        if (!result) result = noh_check_draws(check, l);
+        if (!result) result = check_targets(check, h, l);
+        if (!result) result = check_texels(check, h, l);
+    }
+    return result;
+}
