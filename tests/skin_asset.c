@@ -75,7 +75,7 @@ uint8_t *skin_pack_of(model *m, const skin_options *options, float error_um, siz
     motion_options rate = { 0.0 };
     motion_settings settings;
     motions encoded;
-    morph_options morph = { 0.0f, 0, 0.0f };
+    morph_options morph = { 0 };
     morph_encoding **encodings;
     byte_buffer out = { NULL, 0, 0, 0 };
     model_error error = { "", "" };
@@ -95,7 +95,7 @@ uint8_t *skin_pack_of(model *m, const skin_options *options, float error_um, siz
             memcpy(orders[i], encodings[i]->order, sizeof **orders * m->meshes[i].vertex_count);
         }
     }
-    if (pack_write(m, encodings, &encoded, &out, &error)) {
+    if (pack_write(m, NULL, encodings, &encoded, &out, &error)) {
         fail_msg("%s (%s)", error.what, error.where);
     }
     for (uint32_t i = 0; i < m->mesh_count; i++) {

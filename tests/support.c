@@ -366,7 +366,7 @@ static void encode_motion(model *m, motion **made, motions *encoded)
 uint8_t *test_pack_of(model *m, size_t *count, uint32_t **orders)
 {
     morph_encoding **encodings = test_zeros(sizeof *encodings * m->mesh_count);
-    morph_options options = { 0.0f, 0, 0.0f };
+    morph_options options = { 0 };
     byte_buffer out = { NULL, 0, 0, 0 };
     motion *made = NULL;
     motions encoded;
@@ -380,7 +380,7 @@ uint8_t *test_pack_of(model *m, size_t *count, uint32_t **orders)
         }
     }
     encode_motion(m, &made, &encoded);
-    if (pack_write(m, encodings, &encoded, &out, &error)) {
+    if (pack_write(m, NULL, encodings, &encoded, &out, &error)) {
         fail_msg("pack_write: %s", error.what);
     }
     motions_free(&encoded);

@@ -280,7 +280,7 @@ static void test_bits_are_smallest(void **state)
     uint32_t last_bits = 32;
     (void)state;
     for (float um = 1.0f; um < 2000.0f; um *= 3.0f) {
-        const morph_options options = { um, 0, 0.0f };
+        const morph_options options = { .error_um = um };
         morph_encoding *e = encode(m, &options);
         check(m, e);
         assert_true(e->targets[0].position_error <= um * 1e-6f);
@@ -296,7 +296,7 @@ static void test_bits_are_smallest(void **state)
 
 static void test_limit_of_bits(void **state)
 {
-    const morph_options options = { 0.001f, 0, 0.0f };
+    const morph_options options = { .error_um = 0.001f };
     model_mesh *m = bumpy_sheet(24, 6, 1, 10.0f, 3);
     morph_encoding *e = encode(m, &options);
     (void)state;
@@ -315,7 +315,7 @@ static void test_rect_limit(void **state)
     model_mesh *m = bumpy_sheet(40, 20, 0, 0.01f, 11);
     (void)state;
     for (size_t i = 0; i < sizeof limits / sizeof *limits; i++) {
-        const morph_options options = { 0.0f, limits[i], 0.0f };
+        const morph_options options = { .rects = limits[i] };
         morph_encoding *e = encode(m, &options);
         check(m, e);
         for (uint32_t t = 0; t < e->target_count; t++) assert_true(e->targets[t].rect_count <= limits[i]);
@@ -337,7 +337,7 @@ static void test_noise(void **state)
         for (uint32_t v = 0; v < m->vertex_count; v++)
             if (next(&r) % 2u) m->targets[t].position[v * AXES + next(&r) % AXES] = uniform(&r, -0.1f, 0.1f);
     for (size_t i = 0; i < 2u; i++) {
-        const morph_options options = { 0.0f, limits[i], 0.0f };
+        const morph_options options = { .rects = limits[i] };
         morph_encoding *e = encode(m, &options);
         check(m, e);
         for (uint32_t t = 0; t < 3u && limits[i]; t++) assert_true(e->targets[t].rect_count <= limits[i]);
@@ -407,7 +407,7 @@ static void test_random_small(void **state)
     for (uint32_t seed = 0; seed < 60u; seed++) {
         rng r = { seed * 7919u + 1u };
         const uint32_t vertices = 1u + next(&r) % 120u, targets = 1u + next(&r) % 9u, share = 2u + next(&r) % 12u;
-        const morph_options options = { uniform(&r, 1.0f, 500.0f), next(&r) % 4u, uniform(&r, 0.5f, 20.0f) };
+        const morph_options options = { uniform(&r, 1.0f, 500.0f), next(&r) % 4u, uniform(&r, 0.5f, 20.0f), NULL, 0 };
         model_mesh *m = mesh_new(vertices, targets, (int)(seed & 1u));
         morph_encoding *e;
         for (uint32_t t = 0; t < targets; t++)
@@ -437,7 +437,7 @@ static void test_deterministic(void **state)
 /* Position 0.0635 m in steps of 0.5 mm takes 8 bits; 24 are left, 12 for the normal, 12 for the tangent. */
 static void test_bit_layout(void **state)
 {
-    const morph_options options = { 433.1f, 0, 0.0f }; /* half of the diagonal of a 0.5 mm step, a little more */
+    const morph_options options = { .error_um = 433.1f }; /* half of the diagonal of a 0.5 mm step, a little more */
     model_mesh *m = mesh_new(3, 1, 1);
     model_target *t = &m->targets[0];
     morph_encoding *e;
@@ -506,7 +506,7 @@ static void test_bad_input(void **state)
     }
     m->targets[1].normal[2u * AXES + 1u] = 0.0f;
     for (size_t i = 0; i < 2u; i++) {
-        const morph_options options = { i ? 1.0f : -1.0f, 0, i ? NAN : 1.0f };
+        const morph_options options = { i ? 1.0f : -1.0f, 0, i ? NAN : 1.0f, NULL, 0 };
         assert_int_equal(morph_encode(m, &options, &e, &error), 1);
         assert_null(e);
     }

@@ -629,7 +629,7 @@ static void named_floats_are_shared(void **state)
     }
     memset(&settings, 0, sizeof settings);
     assert_int_equal(motions_encode(&raw, 1, &settings, &made, &error), 0);
-    assert_int_equal(pack_write(empty, NULL, &made, &out, &error), 0);
+    assert_int_equal(pack_write(empty, NULL, NULL, &made, &out, &error), 0);
     copy = test_aligned(out.bytes, out.count);
     packed = test_open(copy, out.count);
     set = set_of(&packed);

@@ -283,7 +283,7 @@ static void a_palette_too_small_for_a_triangle_is_refused(void **state)
     motion *moved;
     motion_options rate = { 0.0 };
     skin_options options;
-    morph_options morph = { 0.0f, 0, 0.0f };
+    morph_options morph = { 0 };
     morph_encoding *e;
     motion_settings settings;
     motions encoded;
@@ -297,7 +297,7 @@ static void a_palette_too_small_for_a_triangle_is_refused(void **state)
     assert_int_equal(skins_bind(m, moved, &options, &error), 0);
     assert_int_equal(morph_encode(&m->meshes[0], &morph, &e, &error), 0);
     assert_int_equal(motions_encode(moved->sets, moved->set_count, &settings, &encoded, &error), 0);
-    assert_int_equal(pack_write(m, &e, &encoded, &out, &error), 1);
+    assert_int_equal(pack_write(m, NULL, &e, &encoded, &out, &error), 1);
     assert_non_null(strstr(error.what, "give --palette at least"));
     assert_non_null(strstr(error.where, "cylinder"));
     assert_null(out.bytes);

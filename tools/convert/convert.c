@@ -28,39 +28,67 @@ static int apply_events(const convert_options *options, source *s, model_error *
 
 /* ---- encoding ---- */
 
-static void free_encodings(morph_encoding **encodings, uint32_t count)
+/* What becomes of the meshes of a model. */
+typedef struct encoded {
+    uint32_t count;
+    mesh_levels *levels;       /* [count] */
+    morph_encoding **morphs;   /* [count] */
+} encoded;
+
+static int encoded_make(uint32_t count, encoded *e)
 {
-    for (uint32_t i = 0; encodings && i < count; i++) {
-        if (encodings[i]) {
-            morph_encoding_free(encodings[i]);
-        }
-    }
-    free(encodings);
+    e->count = count;
+    e->levels = calloc(count + 1u, sizeof *e->levels);
+    e->morphs = calloc(count + 1u, sizeof *e->morphs);
+    return !e->levels || !e->morphs;
 }
 
-static int encode_mesh(const model *m, uint32_t index, const convert_options *options, morph_encoding **encoding, model_error *error)
+static void encoded_free(encoded *e)
 {
-    float scale = model_mesh_scale(m, index);
-    morph_options morph = options->morph;
-    morph.error_um = (morph.error_um > 0.0f ? morph.error_um : 10.0f) / scale; /* asked for in the world, kept in the mesh */
-    if (options->progress && m->meshes[index].target_count) {
-        fprintf(options->progress, "\rencoding %u targets of mesh %u of %u ", m->meshes[index].target_count, index + 1, m->mesh_count);
+    for (uint32_t i = 0; i < e->count && e->levels && e->morphs; i++) {
+        mesh_levels_free(&e->levels[i]);
+        morph_encoding_free(e->morphs[i]);
+    }
+    free(e->levels);
+    free(e->morphs);
+}
+
+static void say(const convert_options *options, const char *what, const model *m, uint32_t index)
+{
+    if (options->progress) {
+        fprintf(options->progress, "\r\033[K%s of mesh %u of %u ", what, index + 1, m->mesh_count);
         fflush(options->progress);
     }
-    if (morph_encode(&m->meshes[index], &morph, encoding, error)) {
+}
+
+static int encode_mesh(const model *m, uint32_t index, const convert_options *options, encoded *e, model_error *error)
+{
+    const model_mesh *mesh = &m->meshes[index];
+    const float scale = model_mesh_scale(m, index);
+    morph_options morph = options->morph;
+    morph.error_um = (morph.error_um > 0.0f ? morph.error_um : 10.0f) / scale; /* asked for in the world, kept in the mesh */
+    say(options, "levels of detail", m, index);
+    if (mesh_levels_make(m, index, &options->lod, &e->levels[index], error)) {
+        return 1;
+    }
+    morph.rank = e->levels[index].rank;
+    morph.level_count = e->levels[index].count;
+    say(options, "targets", m, index);
+    if (morph_encode(mesh, &morph, &e->morphs[index], error)) {
         return 1;
     }
     if (options->report) {
-        convert_report_mesh(options->report, &m->meshes[index], *encoding, scale, morph.error_um * scale);
+        convert_report_mesh(options->report, mesh, e->morphs[index], scale, morph.error_um * scale);
+        convert_report_levels(options->report, mesh, &e->levels[index], scale);
     }
     return 0;
 }
 
-static int encode_meshes(const model *m, const convert_options *options, morph_encoding **encodings, model_error *error)
+static int encode_meshes(const model *m, const convert_options *options, encoded *e, model_error *error)
 {
     int failed = 0;
     for (uint32_t i = 0; i < m->mesh_count && !failed; i++) {
-        failed = encode_mesh(m, i, options, &encodings[i], error);
+        failed = encode_mesh(m, i, options, e, error);
     }
     if (options->progress) {
         fputs("\r\033[K", options->progress); /* leave the terminal's line as it was */
@@ -102,11 +130,12 @@ static int convert_source(const source *s, const convert_options *options, byte_
 {
     model empty;
     const model *m = options->only == CONVERT_MOTION ? memset(&empty, 0, sizeof empty) : s->m;
-    morph_encoding **encodings = calloc(m->mesh_count + 1u, sizeof *encodings);
     motion_settings settings = options->motion;
+    encoded meshes;
     motions made;
     int failed;
-    if (!encodings) {
+    if (encoded_make(m->mesh_count, &meshes)) {
+        encoded_free(&meshes);
         return out_of_memory(error);
     }
     settings.report = options->report;
@@ -115,13 +144,13 @@ static int convert_source(const source *s, const convert_options *options, byte_
     if (options->report) {
         report_warnings(options->report, s);
     }
-    failed = pack_check_model(m, error) || encode_meshes(m, options, encodings, error);
+    failed = pack_check_model(m, error) || encode_meshes(m, options, &meshes, error);
     if (!failed) {
-        failed = motions_encode(s->sets, s->set_count, &settings, &made, error) || pack_write(m, encodings, &made, out, error) ||
-                 check_own_pack(out, options->report, error);
+        failed = motions_encode(s->sets, s->set_count, &settings, &made, error) ||
+                 pack_write(m, meshes.levels, meshes.morphs, &made, out, error) || check_own_pack(out, options->report, error);
         motions_free(&made);
     }
-    free_encodings(encodings, m->mesh_count);
+    encoded_free(&meshes);
     return failed;
 }
 

@@ -12,7 +12,8 @@
 typedef enum convert_only { CONVERT_ALL, CONVERT_MESH, CONVERT_MOTION } convert_only;
 
 typedef struct convert_options {
-    morph_options morph;
+    morph_options morph;  /* but rank and level_count */
+    lod_settings lod;
     motion_settings motion;
     skin_options skin;
     const char *const *two_streams; /* [two_stream_count] "SOURCE=TARGET", see two_stream.h */
@@ -37,6 +38,9 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
 /* The report of one encoded mesh: counts, bits, and bytes beside the peers' layouts.
  * scale: model_mesh_scale, so that errors are printed as they show in the world. */
 void convert_report_mesh(FILE *out, const model_mesh *mesh, const morph_encoding *e, float scale, float error_um);
+
+/* How far each level of detail is off. */
+void convert_report_levels(FILE *out, const model_mesh *mesh, const mesh_levels *levels, float scale);
 
 /* What moves each skinned mesh of a finished pack, and into how many parts it was split. */
 void convert_report_skins(FILE *out, const noh_pack *pack);

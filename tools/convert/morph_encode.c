@@ -90,7 +90,17 @@ static int is_touched(const morph_bits *b, uint32_t row)
     return 0;
 }
 
-/* Touched vertices first, both parts in the source's order. */
+static uint32_t rank_of(const encoder *c, uint32_t vertex) { return c->options.rank ? c->options.rank[vertex] : 0u; }
+
+static void take_touched(encoder *c, uint32_t vertex)
+{
+    c->touched_index[c->touched.rows] = vertex;
+    memcpy(c->touched.bits + (size_t)c->touched.rows * c->touched.words, morph_row(&c->vertices, vertex),
+           c->touched.words * sizeof(uint64_t));
+    c->touched.rows++;
+}
+
+/* Touched vertices first, those of the coarsest level before the others; else in the source's order. */
 static int compact(encoder *c)
 {
     morph_encoding *e = c->e;
@@ -101,30 +111,36 @@ static int compact(encoder *c)
     c->touched_index = morph_alloc(e->touched_count, sizeof *c->touched_index);
     if (!c->touched.bits || !c->touched_index) return no_memory(c);
     rest = e->touched_count;
-    for (uint32_t v = 0; v < e->vertex_count; v++) {
-        if (!is_touched(&c->vertices, v)) {
-            e->order[rest++] = v;
-            continue;
-        }
-        c->touched_index[c->touched.rows] = v;
-        memcpy(c->touched.bits + (size_t)c->touched.rows * c->touched.words, morph_row(&c->vertices, v),
-               c->touched.words * sizeof(uint64_t));
-        c->touched.rows++;
+    for (uint32_t v = 0; v < e->vertex_count; v++)
+        if (!is_touched(&c->vertices, v)) e->order[rest++] = v;
+    for (uint32_t level = e->level_count; level-- > 0u;) {
+        for (uint32_t v = 0; v < e->vertex_count; v++)
+            if (rank_of(c, v) == level && is_touched(&c->vertices, v)) take_touched(c, v);
+        e->level_touched[level] = c->touched.rows;
     }
     return 0;
 }
 
 /* ---- where they lie ---- */
 
+/* The texels that a level has more than the coarser one. */
+static morph_region block_of(const morph_encoding *e, uint32_t level)
+{
+    morph_region r = { e->width_log2, 0, 0 };
+    if (level + 1u < e->level_count) r.first = e->level_touched[level + 1u];
+    r.count = e->level_touched[level] - r.first;
+    return r;
+}
+
 /* The patterns' members, one pattern after another. */
-static int make_line(encoder *c, uint32_t *line)
+static int make_line(const morph_bits *vertices, float rect_cost, uint32_t *line)
 {
     morph_patterns patterns;
     uint32_t *path, place = 0;
     int failed;
-    if (morph_patterns_init(&patterns, &c->touched)) return 1;
+    if (morph_patterns_init(&patterns, vertices)) return 1;
     path = morph_alloc(patterns.count, sizeof *path);
-    failed = !path || morph_order_path(&patterns, c->options.rect_cost_texels, path);
+    failed = !path || morph_order_path(&patterns, rect_cost, path);
     for (uint32_t i = 0; !failed && i < patterns.count; i++)
         for (uint32_t m = patterns.first[path[i]]; m < patterns.first[path[i] + 1u]; m++)
             line[place++] = patterns.members[m];
@@ -133,48 +149,80 @@ static int make_line(encoder *c, uint32_t *line)
     return failed;
 }
 
-static int order_vertices(encoder *c)
+static int order_block(encoder *c, const morph_region *region)
 {
-    morph_encoding *e = c->e;
-    uint32_t *line = morph_alloc(e->touched_count, sizeof *line);
-    int failed = !line || make_line(c, line);
-    morph_fold_size(e->touched_count, &e->width_log2, &e->height);
-    failed = failed || morph_fold_settle(&c->touched, e->width_log2, e->height, c->options.rect_cost_texels, line);
+    const float rect_cost = c->options.rect_cost_texels;
+    const morph_bits vertices = { region->count, c->touched.words, c->touched.bits + (size_t)region->first * c->touched.words };
+    uint32_t *line = morph_alloc(region->count, sizeof *line), *order = c->e->order + region->first;
+    const int failed = !line || make_line(&vertices, rect_cost, line) || morph_fold_settle(&vertices, region, rect_cost, line);
     if (!failed) {
-        morph_fold_order(line, e->touched_count, e->width_log2, e->height, e->order);
-        for (uint32_t i = 0; i < e->touched_count; i++) e->order[i] = c->touched_index[e->order[i]];
+        morph_fold_order(line, region, order);
+        for (uint32_t i = 0; i < region->count; i++) order[i] = c->touched_index[region->first + order[i]];
     }
     free(line);
     return failed ? no_memory(c) : 0;
 }
 
+static int order_vertices(encoder *c)
+{
+    morph_encoding *e = c->e;
+    int failed = 0;
+    morph_fold_size(e->touched_count, &e->width_log2, &e->height);
+    for (uint32_t level = 0; level < e->level_count && !failed; level++) {
+        const morph_region region = block_of(e, level);
+        failed = order_block(c, &region);
+    }
+    return failed;
+}
+
 /* ---- rectangles and texels ---- */
 
-/* Indices, ascending, of what target t moves; order == NULL: the source's order. */
-static uint32_t list_texels(const encoder *c, uint32_t t, const uint32_t *order, uint32_t count, uint32_t *texels)
+/* Indices, ascending, of what target t moves among `count` from `first`; order == NULL: the source's order. */
+static uint32_t list_texels(const encoder *c, uint32_t t, const uint32_t *order, uint32_t first, uint32_t count, uint32_t *texels)
 {
     uint32_t n = 0;
-    for (uint32_t i = 0; i < count; i++)
+    for (uint32_t i = first; i < first + count; i++)
         if (morph_bit(&c->vertices, order ? order[i] : i, t)) texels[n++] = i;
     return n;
 }
 
+/* The rectangles of a target in one level's block: a rectangle never reaches from one level into another. */
+static int cover_block(encoder *c, uint32_t t, uint32_t level, uint32_t *texels, morph_rect_list *rects, uint64_t *area)
+{
+    morph_encoding *e = c->e;
+    morph_part *part = &e->parts[(size_t)level * e->target_count + t];
+    const morph_region region = block_of(e, level);
+    const uint32_t first = rects->count, count = list_texels(c, t, e->order, region.first, region.count, texels);
+    const morph_cover_options options = { e->width_log2, c->options.rect_cost_texels, c->options.rects };
+    if (morph_cover(texels, count, &options, rects)) return no_memory(c);
+    for (uint32_t r = first; r < rects->count; r++) {
+        *area += (uint64_t)rects->items[r].w * rects->items[r].h;
+        part->texel_count += (uint32_t)rects->items[r].w * rects->items[r].h;
+    }
+    if (*area > UINT32_MAX / MORPH_AXES) return fail(c, "too many morph texels (limit 1431655765)", "mesh");
+    part->rect_count = rects->count - first;
+    part->pair_count = count;
+    return 0;
+}
+
+/* From the coarsest level to the finest, so that each level's rectangles are the first ones. */
 static int cover_target(encoder *c, uint32_t t, uint32_t *texels, morph_rect_list *rects, uint64_t *area)
 {
     morph_encoding *e = c->e;
     morph_target *q = &e->targets[t];
-    const uint32_t count = list_texels(c, t, e->order, e->touched_count, texels);
-    const morph_cover_options options = { e->width_log2, c->options.rect_cost_texels, c->options.rects };
-    uint64_t texel_count = 0;
     q->first_rect = rects->count;
     q->first_texel = (uint32_t)*area;
-    if (morph_cover(texels, count, &options, rects)) return no_memory(c);
+    for (uint32_t level = e->level_count; level-- > 0u;) {
+        morph_part *part = &e->parts[(size_t)level * e->target_count + t];
+        if (cover_block(c, t, level, texels, rects, area)) return 1;
+        if (level + 1u < e->level_count) {
+            part->rect_count += part[e->target_count].rect_count;
+            part->texel_count += part[e->target_count].texel_count;
+            part->pair_count += part[e->target_count].pair_count;
+        }
+    }
     q->rect_count = rects->count - q->first_rect;
-    for (uint32_t r = q->first_rect; r < rects->count; r++)
-        texel_count += (uint64_t)rects->items[r].w * rects->items[r].h;
-    *area += texel_count;
-    if (*area > UINT32_MAX / MORPH_AXES) return fail(c, "too many morph texels (limit 1431655765)", "mesh");
-    q->texel_count = (uint32_t)texel_count;
+    q->texel_count = (uint32_t)*area - q->first_texel;
     return 0;
 }
 
@@ -191,22 +239,31 @@ static int cover_all(encoder *c, uint32_t *texels)
     return failed;
 }
 
+/* The texels of a rectangle, in a level's block. What it takes in besides belongs to another level's rectangles. */
+static uint32_t *fill_rect(const encoder *c, uint32_t t, const morph_rect *rect, const morph_region *block, uint32_t *out)
+{
+    const morph_encoding *e = c->e;
+    for (uint32_t i = 0; i < (uint32_t)rect->w * rect->h; i++, out += MORPH_AXES) {
+        const uint32_t x = rect->x + i % rect->w, y = rect->y + i / rect->w, texel = (y << e->width_log2) + x;
+        if (texel >= block->first && texel - block->first < block->count)
+            morph_quantise_pack(&e->targets[t], &c->mesh->targets[t], e->order[texel], out);
+    }
+    return out;
+}
+
 static int fill_texels(encoder *c)
 {
     morph_encoding *e = c->e;
-    uint32_t *out;
+    uint32_t *out, rect = 0;
     e->texels = morph_alloc((size_t)e->texel_count * MORPH_AXES, sizeof *e->texels);
     if (!e->texels) return no_memory(c);
     out = e->texels;
-    for (uint32_t t = 0; t < e->target_count; t++) {
-        const morph_target *q = &e->targets[t];
-        for (uint32_t r = q->first_rect; r < q->first_rect + q->rect_count; r++)
-            for (uint32_t i = 0; i < (uint32_t)e->rects[r].w * e->rects[r].h; i++, out += MORPH_AXES) {
-                const uint32_t x = e->rects[r].x + i % e->rects[r].w, y = e->rects[r].y + i / e->rects[r].w;
-                const uint32_t v = (y << e->width_log2) + x;
-                if (v < e->touched_count) morph_quantise_pack(q, &c->mesh->targets[t], e->order[v], out);
-            }
-    }
+    for (uint32_t t = 0; t < e->target_count; t++)
+        for (uint32_t level = e->level_count; level-- > 0u;) {
+            const uint32_t end = e->targets[t].first_rect + e->parts[(size_t)level * e->target_count + t].rect_count;
+            const morph_region block = block_of(e, level);
+            while (rect < end) out = fill_rect(c, t, &e->rects[rect++], &block, out);
+        }
     return 0;
 }
 
@@ -217,7 +274,7 @@ static void count_one_rect(encoder *c, uint32_t *texels)
     uint64_t sum = 0, width = 1;
     while (width * width < e->vertex_count) width++;
     for (uint32_t t = 0; t < e->target_count; t++) {
-        const uint32_t count = list_texels(c, t, NULL, e->vertex_count, texels);
+        const uint32_t count = list_texels(c, t, NULL, 0, e->vertex_count, texels);
         uint64_t low = width, high = 0;
         if (count == 0u) continue;
         for (uint32_t i = 0; i < count; i++) {
@@ -251,7 +308,10 @@ static int start(encoder *c)
     e->target_count = c->mesh->target_count;
     e->order = morph_alloc(e->vertex_count, sizeof *e->order);
     e->targets = morph_alloc(e->target_count, sizeof *e->targets);
-    return e->order && e->targets ? 0 : no_memory(c);
+    e->level_count = c->options.level_count;
+    e->level_touched = morph_alloc(e->level_count, sizeof *e->level_touched);
+    e->parts = morph_alloc((size_t)e->level_count * e->target_count, sizeof *e->parts);
+    return e->order && e->targets && e->level_touched && e->parts ? 0 : no_memory(c);
 }
 
 int morph_encode(const model_mesh *mesh, const morph_options *options, morph_encoding **out, model_error *error)
@@ -264,6 +324,7 @@ int morph_encode(const model_mesh *mesh, const morph_options *options, morph_enc
     if (options) c.options = *options;
     if (c.options.error_um == 0.0f) c.options.error_um = MORPH_DEFAULT_ERROR_UM;
     if (c.options.rect_cost_texels == 0.0f) c.options.rect_cost_texels = MORPH_DEFAULT_RECT_COST;
+    if (c.options.level_count == 0u || !c.options.rank) c.options.level_count = 1;
     failed = start(&c) || encode(&c);
     free(c.vertices.bits);
     free(c.touched.bits);
@@ -281,6 +342,8 @@ void morph_encoding_free(morph_encoding *e)
     if (!e) return;
     free(e->order);
     free(e->targets);
+    free(e->level_touched);
+    free(e->parts);
     free(e->rects);
     free(e->texels);
     free(e);

@@ -19,6 +19,8 @@ typedef struct morph_options {
     float error_um;          /* largest position error of one target at weight 1, micrometres (model unit = metre); 0 = 10 */
     uint32_t rects;          /* most rectangles per target; 0 = auto (by cost) */
     float rect_cost_texels;  /* auto: what one more rectangle costs, in texels; 0 = default */
+    const uint8_t *rank;     /* [vertex_count] the coarsest level of detail that a vertex is in; NULL: all in level 0 alone */
+    uint32_t level_count;    /* 0 = 1 */
 } morph_options;
 
 typedef struct morph_rect { uint16_t x, y, w, h; } morph_rect; /* texels of the accumulation texture */
@@ -35,13 +37,21 @@ typedef struct morph_target {
     float normal_error, tangent_error; /* likewise, per component */
 } morph_target;
 
+/* A target in a level of detail: the first so many of its rectangles, with the texels and pairs in them. */
+typedef struct morph_part {
+    uint32_t rect_count, texel_count, pair_count;
+} morph_part;
+
 /* Texels: [texel_count][3] words, word i holds axis i (x, y, z):
  *   bits from the top: position (position_bits), normal (normal_bits), tangent (tangent_bits),
  *   two's complement; bits that are left over at the bottom are zero. */
 typedef struct morph_encoding {
     uint32_t vertex_count, target_count;
-    uint32_t touched_count;  /* vertices 0..touched_count-1 of the new order are in the texture */
-    uint32_t *order;         /* [vertex_count] new index -> old index */
+    uint32_t touched_count;  /* vertices 0..touched_count-1 of the new order are in the texture; those of coarse levels first */
+    uint32_t *order;         /* [vertex_count] new index -> old index; untouched ones in the source's order */
+    uint32_t level_count;
+    uint32_t *level_touched; /* [level_count] the first so many texels are the level's */
+    morph_part *parts;       /* [level_count][target_count] */
     uint32_t width_log2;     /* texture width = 1 << width_log2; texel of vertex v: (v & (width-1), v >> width_log2) */
     uint32_t height;         /* ceil(touched_count / width) */
     morph_target *targets;

@@ -27,7 +27,7 @@ typedef struct fold {
     uint32_t columns;
     uint32_t *first;      /* [columns + 1] column -> place */
     uint32_t *column;     /* place -> column */
-    uint8_t *starts;      /* column is the first of its strip */
+    uint8_t *starts;      /* column is the first of its strip, or there is a gap before it */
     uint64_t *used;       /* two rows of words: this column and the one before */
     morph_random random;
 } fold;
@@ -43,36 +43,49 @@ void morph_fold_size(uint32_t touched, uint32_t *width_log2, uint32_t *height)
 
 /* ---- places ---- */
 
-static uint32_t rows_of_strip(uint32_t height, uint32_t y0)
+static uint32_t first_strip(const morph_region *r) { return (r->first >> r->width_log2) & ~(MORPH_STRIP_ROWS - 1u); }
+
+static uint32_t end_row(const morph_region *r) { return ((r->first + r->count - 1u) >> r->width_log2) + 1u; }
+
+static int has_texel(const morph_region *r, uint32_t texel) { return texel >= r->first && texel - r->first < r->count; }
+
+/* The rows of a strip's column that the region has: its first and its last row may be partly filled. */
+static uint32_t rows_of_column(const morph_region *r, uint32_t y0, uint32_t x)
 {
-    return height - y0 < MORPH_STRIP_ROWS ? height - y0 : MORPH_STRIP_ROWS;
+    uint32_t rows = 0;
+    for (uint32_t y = y0; y < y0 + MORPH_STRIP_ROWS; y++) rows += (uint32_t)has_texel(r, (y << r->width_log2) + x);
+    return rows;
 }
 
-/* The last row may be partly filled: its strip's last columns are shorter by one, or not there. */
-static void find_columns(fold *f, uint32_t width, uint32_t height)
+static void find_columns(fold *f, const morph_region *r)
 {
     uint32_t place = 0;
-    for (uint32_t y0 = 0; y0 < height; y0 += MORPH_STRIP_ROWS)
-        for (uint32_t x = 0; x < width; x++) {
-            uint32_t rows = rows_of_strip(height, y0);
-            if ((uint64_t)(y0 + rows - 1u) * width + x >= f->count) rows--;
-            if (rows == 0u) return;
-            f->starts[f->columns] = x == 0u;
+    for (uint32_t y0 = first_strip(r); y0 < end_row(r); y0 += MORPH_STRIP_ROWS) {
+        int starts = 1;
+        for (uint32_t x = 0; x < (uint32_t)1 << r->width_log2; x++) {
+            const uint32_t rows = rows_of_column(r, y0, x);
+            if (rows == 0u) {
+                starts = 1;
+                continue;
+            }
+            f->starts[f->columns] = (uint8_t)starts;
+            starts = 0;
             f->first[f->columns] = place;
             for (uint32_t i = 0; i < rows; i++) f->column[place++] = f->columns;
             f->first[++f->columns] = place;
         }
+    }
 }
 
-void morph_fold_order(const uint32_t *line, uint32_t count, uint32_t width_log2, uint32_t height, uint32_t *order)
+void morph_fold_order(const uint32_t *line, const morph_region *r, uint32_t *order)
 {
-    const uint32_t width = (uint32_t)1 << width_log2;
     uint32_t place = 0;
-    for (uint32_t y0 = 0; y0 < height; y0 += MORPH_STRIP_ROWS)
-        for (uint32_t x = 0; x < width; x++)
-            for (uint32_t i = 0; i < rows_of_strip(height, y0); i++) {
-                const uint32_t v = (y0 + i) * width + x;
-                if (v < count) order[v] = line[place++];
+    if (r->count == 0u) return;
+    for (uint32_t y0 = first_strip(r); y0 < end_row(r); y0 += MORPH_STRIP_ROWS)
+        for (uint32_t x = 0; x < (uint32_t)1 << r->width_log2; x++)
+            for (uint32_t y = y0; y < y0 + MORPH_STRIP_ROWS; y++) {
+                const uint32_t texel = (y << r->width_log2) + x;
+                if (has_texel(r, texel)) order[texel - r->first] = line[place++];
             }
 }
 
@@ -183,10 +196,13 @@ static int settle_or_leave(fold *f)
     return 0;
 }
 
-int morph_fold_settle(const morph_bits *vertices, uint32_t width_log2, uint32_t height, float rect_cost, uint32_t *line)
+static size_t most_columns(const morph_region *r)
 {
-    const uint32_t width = (uint32_t)1 << width_log2;
-    const size_t columns = (size_t)width * ((height + MORPH_STRIP_ROWS - 1u) / MORPH_STRIP_ROWS);
+    return (size_t)((end_row(r) - first_strip(r) + MORPH_STRIP_ROWS - 1u) / MORPH_STRIP_ROWS) << r->width_log2;
+}
+
+int morph_fold_settle(const morph_bits *vertices, const morph_region *region, float rect_cost, uint32_t *line)
+{
     fold f;
     int failed;
     if (vertices->rows == 0u) return 0;
@@ -197,13 +213,13 @@ int morph_fold_settle(const morph_bits *vertices, uint32_t width_log2, uint32_t 
     f.words = vertices->words;
     f.rect_cost = rect_cost < 1.0f ? 1u : rect_cost > (float)COST_MOST ? COST_MOST : (uint32_t)(rect_cost + 0.5f);
     f.random = MORPH_RANDOM_SEED;
-    f.first = morph_alloc(columns + 1u, sizeof *f.first);
+    f.first = morph_alloc(most_columns(region) + 1u, sizeof *f.first);
     f.column = morph_alloc(f.count, sizeof *f.column);
-    f.starts = morph_alloc(columns, sizeof *f.starts);
+    f.starts = morph_alloc(most_columns(region), sizeof *f.starts);
     f.used = morph_alloc(2u * (size_t)f.words, sizeof *f.used);
     failed = !f.first || !f.column || !f.starts || !f.used;
     if (!failed) {
-        find_columns(&f, width, height);
+        find_columns(&f, region);
         failed = settle_or_leave(&f);
     }
     free(f.first);

@@ -118,11 +118,18 @@ int morph_order_path(const morph_patterns *patterns, float rect_cost, uint32_t *
 
 void morph_fold_size(uint32_t touched, uint32_t *width_log2, uint32_t *height);
 
-/* Moves rows of `vertices` in line[vertices->rows] a little, to where they cost least in that texture. */
-int morph_fold_settle(const morph_bits *vertices, uint32_t width_log2, uint32_t height, float rect_cost, uint32_t *line);
+/* Texels that lie behind each other, row by row. */
+typedef struct morph_region {
+    uint32_t width_log2; /* of the texture */
+    uint32_t first, count;
+} morph_region;
 
-/* order[texel] = the line's entry that lies there. */
-void morph_fold_order(const uint32_t *line, uint32_t count, uint32_t width_log2, uint32_t height, uint32_t *order);
+/* Moves rows of `vertices` in line[vertices->rows] a little, to where they cost least in that region, which has
+ * as many texels. */
+int morph_fold_settle(const morph_bits *vertices, const morph_region *region, float rect_cost, uint32_t *line);
+
+/* order[texel - region->first] = the line's entry that lies there. */
+void morph_fold_order(const uint32_t *line, const morph_region *region, uint32_t *order);
 
 /* ---- rectangles ---- */
 typedef struct morph_rect_list {

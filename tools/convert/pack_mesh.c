@@ -137,12 +137,13 @@ static void append_vertices(const model_mesh *m, const mesh_layout *l, noh_mesh_
     }
 }
 
+/* Of all levels; h is the full mesh's header. */
 static void append_indices(const mesh_layout *l, noh_mesh_header *h, size_t base, byte_buffer *out)
 {
     buffer_align(out, 16);
     h->indices_offset = (uint32_t)(out->count - base);
     h->index_bytes = h->vertex_count <= 65536u ? 2u : 4u;
-    for (uint32_t i = 0; i < h->index_count; i++) {
+    for (uint32_t i = 0; i < l->index_count; i++) {
         uint16_t narrow = (uint16_t)l->indices[i];
         buffer_append(out, h->index_bytes == 2 ? (const void *)&narrow : (const void *)&l->indices[i], h->index_bytes);
     }
@@ -151,32 +152,39 @@ static void append_indices(const mesh_layout *l, noh_mesh_header *h, size_t base
     buffer_append(out, l->submeshes, sizeof *l->submeshes * l->submesh_count);
 }
 
+static noh_target target_of(const model_mesh *m, const morph_encoding *e, uint32_t level, uint32_t t, string_table *strings)
+{
+    const morph_target *from = &e->targets[t];
+    const morph_part *part = &e->parts[(size_t)level * e->target_count + t];
+    noh_target to;
+    memset(&to, 0, sizeof to);
+    to.name = string_offset(strings, m->targets[t].name);
+    to.name_hash = noh_hash_name((const char *)strings->bytes.bytes + to.name);
+    to.first_rect = from->first_rect;
+    to.rect_count = part->rect_count;
+    to.first_texel = from->first_texel;
+    to.texel_count = part->texel_count;
+    to.pair_count = part->pair_count;
+    to.position_bits = from->position_bits;
+    to.normal_bits = from->normal_bits;
+    to.tangent_bits = from->tangent_bits;
+    to.position_scale = from->position_scale;
+    to.normal_scale = from->normal_scale;
+    to.tangent_scale = from->tangent_scale;
+    to.max_displacement = from->max_displacement;
+    to.position_error = from->position_error;
+    to.normal_error = from->normal_error;
+    to.tangent_error = from->tangent_error;
+    return to;
+}
+
 static void append_targets(const model_mesh *m, const morph_encoding *e, string_table *strings, noh_mesh_header *h, size_t base,
                            byte_buffer *out)
 {
     buffer_align(out, 16);
     h->targets_offset = (uint32_t)(out->count - base);
-    for (uint32_t t = 0; t < e->target_count; t++) {
-        const morph_target *from = &e->targets[t];
-        noh_target to;
-        memset(&to, 0, sizeof to);
-        to.name = string_offset(strings, m->targets[t].name);
-        to.name_hash = noh_hash_name((const char *)strings->bytes.bytes + to.name);
-        to.first_rect = from->first_rect;
-        to.rect_count = from->rect_count;
-        to.first_texel = from->first_texel;
-        to.texel_count = from->texel_count;
-        to.pair_count = from->pair_count;
-        to.position_bits = from->position_bits;
-        to.normal_bits = from->normal_bits;
-        to.tangent_bits = from->tangent_bits;
-        to.position_scale = from->position_scale;
-        to.normal_scale = from->normal_scale;
-        to.tangent_scale = from->tangent_scale;
-        to.max_displacement = from->max_displacement;
-        to.position_error = from->position_error;
-        to.normal_error = from->normal_error;
-        to.tangent_error = from->tangent_error;
+    for (uint32_t i = 0; i < e->level_count * e->target_count; i++) {
+        const noh_target to = target_of(m, e, i / e->target_count, i % e->target_count, strings);
         buffer_append(out, &to, sizeof to);
     }
     buffer_align(out, 16);
@@ -213,8 +221,8 @@ static void set_counts(const model_mesh *m, const morph_encoding *e, const mesh_
     memset(h, 0, sizeof *h);
     h->flags = mesh_flags(m);
     h->vertex_count = l->vertex_count;
-    h->index_count = l->index_count;
-    h->submesh_count = l->submesh_count;
+    h->index_count = l->levels[0].index_count;
+    h->submesh_count = l->levels[0].submesh_count;
     h->target_count = e->target_count;
     h->rect_count = e->rect_count;
     h->texel_count = e->texel_count;
@@ -224,7 +232,7 @@ static void set_counts(const model_mesh *m, const morph_encoding *e, const mesh_
     h->morph_width_log2 = e->width_log2;
     h->morph_height = e->height;
     h->texels_one_rect = e->texels_one_rect;
-    h->level_count = 1;
+    h->level_count = l->level_count;
     set_bounds(m, h);
     set_uv_range(m, h);
     f16_bound(e, &h->f16_position_bound, &h->f16_direction_bound);
@@ -232,27 +240,58 @@ static void set_counts(const model_mesh *m, const morph_encoding *e, const mesh_
 
 static void set_skin(const model_mesh *m, const mesh_layout *l, uint32_t skin, noh_mesh_header *h)
 {
+    h->flags |= l->texel_references ? NOH_MESH_TEXELS : 0u;
     h->skin = skin;
     if (skin != NOH_NONE) {
-        h->flags |= (m->dual_quaternion ? NOH_MESH_DUAL_QUATERNION : 0u) | (l->palette_count > 1 ? NOH_MESH_TEXELS : 0u);
+        h->flags |= m->dual_quaternion ? NOH_MESH_DUAL_QUATERNION : 0u;
         h->influence_count = influence_width(m);
         h->palette_count = l->palette_count;
         h->palette_joint_count = l->palette_joint_count;
     }
 }
 
-int pack_mesh(const model_mesh *m, const morph_encoding *e, const uint8_t *submesh_blends, float world_scale, uint32_t skin,
-              uint32_t skin_joint_count, string_table *strings, byte_buffer *out, model_error *error)
+/* A level's header from the full mesh's, whose offsets are known. */
+static noh_mesh_header level_header(const noh_mesh_header *full, const morph_encoding *e, const mesh_layout *l, const lod_errors *errors,
+                                    uint32_t level)
+{
+    const level_layout *own = &l->levels[level];
+    noh_mesh_header h = *full;
+    h.level = level;
+    h.vertex_count = own->vertex_count;
+    h.index_count = own->index_count;
+    h.submesh_count = own->submesh_count;
+    h.touched_count = e->level_touched[level];
+    h.morph_height = (h.touched_count + (1u << h.morph_width_log2) - 1u) >> h.morph_width_log2;
+    h.rect_count = h.texel_count = h.pair_count = 0;
+    for (uint32_t t = 0; t < e->target_count; t++) {
+        const morph_part *part = &e->parts[(size_t)level * e->target_count + t];
+        h.rect_count += part->rect_count;
+        h.texel_count += part->texel_count;
+        h.pair_count += part->pair_count;
+    }
+    h.indices_offset += own->first_index * h.index_bytes;
+    h.submeshes_offset += own->first_submesh * (uint32_t)sizeof(noh_submesh);
+    h.targets_offset += level * h.target_count * (uint32_t)sizeof(noh_target);
+    h.level_error_rest = errors->rest;
+    h.level_error_rest_p99 = errors->rest_p99;
+    h.level_error_targets = errors->targets;
+    h.level_error_pairs = errors->pairs;
+    h.level_error_motion = errors->motion;
+    return h;
+}
+
+int pack_mesh(const model_mesh *m, const mesh_levels *levels, const morph_encoding *e, const uint8_t *submesh_blends, float world_scale,
+              uint32_t skin, uint32_t skin_joint_count, string_table *strings, byte_buffer *out, model_error *error)
 {
     size_t base = out->count;
     noh_mesh_header h;
     mesh_layout l;
-    int failed = mesh_layout_make(m, e, submesh_blends, &l, error);
+    int failed = mesh_layout_make(m, levels, e, submesh_blends, &l, error);
     if (!failed) {
         set_counts(m, e, &l, &h);
         set_skin(m, &l, skin, &h);
         h.world_scale = world_scale;
-        buffer_append(out, &h, sizeof h);
+        buffer_append(out, NULL, sizeof h * l.level_count);
         append_vertices(m, &l, &h, base, out);
         append_indices(&l, &h, base, out);
         append_targets(m, e, strings, &h, base, out);
@@ -260,8 +299,9 @@ int pack_mesh(const model_mesh *m, const morph_encoding *e, const uint8_t *subme
         pack_influences(m, &l, &h, base, out);
         pack_joint_boxes(m, skin_joint_count, &h, base, out);
     }
-    if (!failed && !out->failed) {
-        memcpy(out->bytes + base, &h, sizeof h);
+    for (uint32_t k = 0; k < l.level_count && !failed && !out->failed; k++) {
+        const noh_mesh_header header = level_header(&h, e, &l, &levels->errors[k], k);
+        memcpy(out->bytes + base + k * sizeof header, &header, sizeof header);
     }
     mesh_layout_free(&l);
     return failed;

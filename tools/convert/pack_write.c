@@ -12,7 +12,8 @@
 
 typedef struct writer {
     const model *m;
-    const motions *motions; /* or NULL */
+    const mesh_levels *levels; /* or NULL */
+    const motions *motions;    /* or NULL */
     byte_buffer out;      /* header and table first, then the chunks */
     string_table strings;
     noh_pack_chunk *chunks;
@@ -125,6 +126,7 @@ static void write_materials(writer *w)
 
 static void write_mesh(writer *w, uint32_t index, const morph_encoding *e)
 {
+    static const mesh_levels alone = { .count = 1 };
     const model_mesh *mesh = &w->m->meshes[index];
     uint8_t blends[NOH_SUBMESHES_MAX];
     for (uint32_t s = 0; s < mesh->submesh_count; s++) {
@@ -132,7 +134,8 @@ static void write_mesh(writer *w, uint32_t index, const morph_encoding *e)
         blends[s] = material != MODEL_NONE && w->m->materials[material].alpha == MODEL_ALPHA_BLEND;
     }
     begin_chunk(w, NOH_CHUNK_MESH, mesh->name);
-    w->refused = w->refused || pack_mesh(mesh, e, blends, model_mesh_scale(w->m, index), mesh->bound ? w->skin_chunks[mesh->skin] : NOH_NONE,
+    w->refused = w->refused || pack_mesh(mesh, w->levels ? &w->levels[index] : &alone, e, blends, model_mesh_scale(w->m, index),
+                                         mesh->bound ? w->skin_chunks[mesh->skin] : NOH_NONE,
                                          mesh->bound ? w->m->skins[mesh->skin].joint_count : 0, &w->strings, &w->out, w->error);
     end_chunk(w);
 }
@@ -298,7 +301,8 @@ static size_t chunk_capacity(const model *m, const motions *made)
            (made ? (size_t)made->set_count + made->clip_count : 0);
 }
 
-int pack_write(const model *m, morph_encoding *const *encodings, const motions *made, byte_buffer *out, model_error *error)
+int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const *encodings, const motions *made, byte_buffer *out,
+               model_error *error)
 {
     writer w;
     int failed;
@@ -315,6 +319,7 @@ int pack_write(const model *m, morph_encoding *const *encodings, const motions *
     }
     memset(&w, 0, sizeof w);
     w.m = m;
+    w.levels = levels;
     w.motions = made;
     w.error = error;
     w.chunks = calloc(chunk_capacity(m, made), sizeof *w.chunks);

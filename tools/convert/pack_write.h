@@ -3,6 +3,7 @@
 #define NOH_CONVERT_PACK_WRITE_H
 
 #include "byte_buffer.h"
+#include "lod_levels.h"
 #include "morph_encode.h"
 
 /* Refuse what no pack can hold: before encoding, and after. 0, or 1 and a filled error with the limit. */
@@ -11,9 +12,9 @@ int pack_check_encoding(const model_mesh *m, const morph_encoding *e, model_erro
 
 struct motions;
 
-/* Build a pack. encodings[mesh_count], none NULL; made NULL: no motion, and no mesh is bound to a skin. 0 on success,
- * else 1 and a filled error. */
-int pack_write(const model *m, morph_encoding *const *encodings, const struct motions *made, byte_buffer *out,
-               model_error *error);
+/* Build a pack. levels[mesh_count], NULL: none has coarser ones; encodings[mesh_count], none NULL; made NULL: no motion,
+ * and no mesh is bound to a skin. 0 on success, else 1 and a filled error. */
+int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const *encodings, const struct motions *made,
+               byte_buffer *out, model_error *error);
 
 #endif

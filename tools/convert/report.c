@@ -57,6 +57,21 @@ void convert_report_mesh(FILE *out, const model_mesh *m, const morph_encoding *e
     report_peers(out, m, e, bytes);
 }
 
+void convert_report_levels(FILE *out, const model_mesh *mesh, const mesh_levels *levels, float scale)
+{
+    for (uint32_t k = 1; k < levels->count; k++) {
+        const lod_errors *e = &levels->errors[k];
+        const uint32_t triangles = levels->built->levels[levels->which[k]].index_count / 3;
+        fprintf(out, "  level %u: %u triangles (%.1f %%), off by at most %.2f mm at rest (99 %%: %.2f), %.2f with one target, %.2f with left and right",
+                k, triangles, 300.0 * triangles / (double)mesh->index_count, 1e3 * (double)(scale * e->rest), 1e3 * (double)(scale * e->rest_p99),
+                1e3 * (double)(scale * e->targets), 1e3 * (double)(scale * e->pairs));
+        if (e->motion > 0.0f) {
+            fprintf(out, ", %.2f in motion", 1e3 * (double)(scale * e->motion));
+        }
+        fputc('\n', out);
+    }
+}
+
 void convert_report_skins(FILE *out, const noh_pack *pack)
 {
     noh_mesh mesh;
@@ -77,7 +92,10 @@ void convert_report_skins(FILE *out, const noh_pack *pack)
                 skin.name, h->influence_count, h->flags & NOH_MESH_DUAL_QUATERNION ? "dual quaternions" : "matrices", h->palette_count,
                 h->palette_count == 1 ? "" : "s");
         if (h->palette_count > 1) {
-            fprintf(out, ": split into %u parts, %u vertices doubled", h->submesh_count, doubled);
+            fprintf(out, ": split into %u parts", h->submesh_count);
+            if (h->level_count == 1) {
+                fprintf(out, ", %u vertices doubled", doubled);
+            }
         }
         fputc('\n', out);
     }

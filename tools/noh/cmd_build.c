@@ -10,8 +10,8 @@
 #include "pack/format.h"
 
 typedef struct build_args {
-    const char *inputs[64], *output, *rects, *only, *events;
-    int input_count, quiet, loop, mask, keep_parts;
+    const char *inputs[64], *output, *rects, *only, *events, *lod;
+    int input_count, quiet, loop, mask, keep_parts, lod_fast;
     double error_um, rate, error_cm, shell_cm, unit_cm, influences, palette;
     option_list dual_quaternion, two_streams, clip_errors, joint_errors;
 } build_args;
@@ -55,6 +55,18 @@ static int set_skin(const build_args *a, convert_options *o)
     return 0;
 }
 
+static int set_lod(const build_args *a, convert_options *o)
+{
+    double count = 1;
+    o->lod.mode = a->lod_fast ? LOD_FAST : LOD_QUALITY;
+    o->lod.by_error = a->lod && strcmp(a->lod, "auto") == 0;
+    if (a->lod && !o->lod.by_error && (tool_number(a->lod, &count) || count < 1 || count > NOH_LEVELS_MAX || count != (double)(uint32_t)count)) {
+        return tool_usage("--lod wants auto or a whole number from 1 to %u, not '%s'", NOH_LEVELS_MAX, a->lod);
+    }
+    o->lod.level_count = (uint32_t)count;
+    return 0;
+}
+
 static int read_args(int argc, char **argv, build_args *a, convert_options *o)
 {
     double rects;
@@ -68,7 +80,8 @@ static int read_args(int argc, char **argv, build_args *a, convert_options *o)
         { "--influences", OPTION_NUMBER, &a->influences }, { "--palette", OPTION_NUMBER, &a->palette },
         { "--dual-quaternion", OPTION_LIST, &a->dual_quaternion }, { "--keep-parts", OPTION_FLAG, &a->keep_parts },
         { "--two-stream", OPTION_LIST, &a->two_streams }, { "--clip-error", OPTION_LIST, &a->clip_errors },
-        { "--joint-error", OPTION_LIST, &a->joint_errors }
+        { "--joint-error", OPTION_LIST, &a->joint_errors }, { "--lod", OPTION_TEXT, &a->lod },
+        { "--lod-fast", OPTION_FLAG, &a->lod_fast }
     };
     int status = tool_options(argc, argv, options, sizeof options / sizeof options[0], a->inputs, 64, &a->input_count);
     if (status) {
@@ -84,6 +97,9 @@ static int read_args(int argc, char **argv, build_args *a, convert_options *o)
     status = set_motion(a, o);
     if (!status) {
         status = set_skin(a, o);
+    }
+    if (!status) {
+        status = set_lod(a, o);
     }
     if (status) {
         return status;

@@ -32,7 +32,7 @@ static int copy_order(const char *asset, const morph_encoding *e, uint32_t **out
 
 int bench_artist_order(const char *asset, uint32_t mesh_index, const noh_mesh *mesh, uint32_t **out)
 {
-    morph_options options = { 0.0f, 0, 0.0f };
+    morph_options options = { 0 };
     morph_encoding *e = NULL;
     model *m = NULL;
     model_error error;

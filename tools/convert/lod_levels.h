@@ -1,0 +1,52 @@
+/* lod_levels.h: the levels of detail of one mesh as its pack holds them: built, certified, and every vertex's rank. */
+#ifndef NOH_CONVERT_LOD_LEVELS_H
+#define NOH_CONVERT_LOD_LEVELS_H
+
+#include "base/limits.h"
+#include "lod.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* All zeros: the full mesh alone. */
+typedef struct lod_settings {
+    uint32_t level_count; /* with the full one, 2 to NOH_LEVELS_MAX; 0 and 1: no others. The triangles' shares are LOD_SHARES */
+    int by_error;         /* instead: levels whose errors are 1/4000 of the box's diagonal, and four times as much each time */
+    lod_mode mode;
+} lod_settings;
+
+#define LOD_SHARES { 1.0f, 0.5f, 0.25f, 0.1f, 0.05f, 0.025f, 0.01f, 0.005f }
+
+/* Certified: the largest distances to the full mesh, in the mesh's own lengths. None is below the finer level's. */
+typedef struct lod_errors {
+    float rest, rest_p99, targets, pairs, motion;
+} lod_errors;
+
+/* One level: what mesh_layout draws. */
+typedef struct lod_view {
+    const uint32_t *indices;  /* submeshes one after another */
+    const uint32_t *first, *count; /* [submesh_count] into indices */
+} lod_view;
+
+typedef struct mesh_levels {
+    uint32_t count;           /* 1: the full mesh alone, and all below is 0 */
+    lod *built;               /* level k of the mesh is built->levels[which[k]], for k of 1 and more */
+    uint32_t which[NOH_LEVELS_MAX];
+    uint8_t *rank;            /* [vertex_count] the coarsest level that a vertex is in */
+    lod_errors errors[NOH_LEVELS_MAX];
+} mesh_levels;
+
+/* Build and certify. Levels that would have nearly as many triangles as the finer one are left out.
+ * m, mesh  a model that is complete and bound to its skins: clips that move the mesh are sampled for poses
+ * Returns 1 and *error: out of memory, or as lod_build. Free in both cases. */
+int mesh_levels_make(const model *m, uint32_t mesh, const lod_settings *settings, mesh_levels *out, model_error *error);
+void mesh_levels_free(mesh_levels *levels);
+
+/* A level that is not the full mesh. */
+lod_view mesh_levels_view(const mesh_levels *levels, uint32_t level);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
