@@ -407,7 +407,7 @@ static void test_random_small(void **state)
     for (uint32_t seed = 0; seed < 60u; seed++) {
         rng r = { seed * 7919u + 1u };
         const uint32_t vertices = 1u + next(&r) % 120u, targets = 1u + next(&r) % 9u, share = 2u + next(&r) % 12u;
-        const morph_options options = { uniform(&r, 1.0f, 500.0f), next(&r) % 4u, uniform(&r, 0.5f, 20.0f), NULL, 0 };
+        const morph_options options = { uniform(&r, 1.0f, 500.0f), next(&r) % 4u, uniform(&r, 0.5f, 20.0f), NULL, 0, NULL };
         model_mesh *m = mesh_new(vertices, targets, (int)(seed & 1u));
         morph_encoding *e;
         for (uint32_t t = 0; t < targets; t++)
@@ -506,7 +506,7 @@ static void test_bad_input(void **state)
     }
     m->targets[1].normal[2u * AXES + 1u] = 0.0f;
     for (size_t i = 0; i < 2u; i++) {
-        const morph_options options = { i ? 1.0f : -1.0f, 0, i ? NAN : 1.0f, NULL, 0 };
+        const morph_options options = { i ? 1.0f : -1.0f, 0, i ? NAN : 1.0f, NULL, 0, NULL };
         assert_int_equal(morph_encode(m, &options, &e, &error), 1);
         assert_null(e);
     }

@@ -7,6 +7,10 @@
 #include "pack/pack.h"
 #include "sources.h"
 
+/* What a level leaves out of its targets, against how far its surface is off: the shares of both kinds of detail
+ * in the largest error in pixels (runtime/character/detail.h). */
+#define SKIP_SHARE (1.0f / 3.0f)
+
 static int out_of_memory(model_error *error)
 {
     snprintf(error->what, sizeof error->what, "out of memory");
@@ -65,6 +69,7 @@ static int encode_mesh(const model *m, uint32_t index, const convert_options *op
 {
     const model_mesh *mesh = &m->meshes[index];
     const float scale = model_mesh_scale(m, index);
+    float skip_reach[NOH_LEVELS_MAX];
     morph_options morph = options->morph;
     morph.error_um = (morph.error_um > 0.0f ? morph.error_um : 10.0f) / scale; /* asked for in the world, kept in the mesh */
     say(options, "levels of detail", m, index);
@@ -73,6 +78,10 @@ static int encode_mesh(const model *m, uint32_t index, const convert_options *op
     }
     morph.rank = e->levels[index].rank;
     morph.level_count = e->levels[index].count;
+    morph.skip_reach = skip_reach;
+    for (uint32_t k = 0; k < morph.level_count; k++) {
+        skip_reach[k] = lod_worst(&e->levels[index].errors[k]) * SKIP_SHARE;
+    }
     say(options, "targets", m, index);
     if (morph_encode(mesh, &morph, &e->morphs[index], error)) {
         return 1;

@@ -85,6 +85,8 @@ static int poses_make(const model_mesh *mesh, lod_frames *frames, pose_list *out
 
 static float larger(float a, float b) { return a > b ? a : b; }
 
+float lod_worst(const lod_errors *e) { return larger(larger(e->rest, e->targets), larger(e->pairs, e->motion)); }
+
 /* The worst submesh in each pose, and then the worst pose of each kind. */
 static lod_errors worst(const model_mesh *mesh, const pose_list *poses, const lod_distance *distances)
 {

@@ -23,6 +23,9 @@ typedef struct lod_errors {
     float rest, rest_p99, targets, pairs, motion;
 } lod_errors;
 
+/* The largest of them. */
+float lod_worst(const lod_errors *errors);
+
 /* One level: what mesh_layout draws. */
 typedef struct lod_view {
     const uint32_t *indices;  /* submeshes one after another */

@@ -251,6 +251,34 @@ static uint32_t *fill_rect(const encoder *c, uint32_t t, const morph_rect *rect,
     return out;
 }
 
+/* ---- targets that a level does without ---- */
+
+/* Targets in the order of what they move, from the one that moves least; `after` target_count: the first. */
+static uint32_t next_smallest(const morph_encoding *e, uint32_t after)
+{
+    uint32_t best = e->target_count;
+    for (uint32_t t = 0; t < e->target_count; t++) {
+        const float reach = e->targets[t].max_displacement;
+        if (after < e->target_count) {
+            const float last = e->targets[after].max_displacement;
+            if (reach < last || (reach == last && t <= after)) continue;
+        }
+        if (best == e->target_count || reach < e->targets[best].max_displacement) best = t;
+    }
+    return best;
+}
+
+static void leave_out(encoder *c, uint32_t level, float most)
+{
+    morph_encoding *e = c->e;
+    for (uint32_t t = next_smallest(e, e->target_count); t < e->target_count; t = next_smallest(e, t)) {
+        const float sum = e->level_skipped[level] + e->targets[t].max_displacement;
+        if (!(sum <= most)) break;
+        e->level_skipped[level] = sum;
+        memset(&e->parts[(size_t)level * e->target_count + t], 0, sizeof *e->parts);
+    }
+}
+
 static int fill_texels(encoder *c)
 {
     morph_encoding *e = c->e;
@@ -295,9 +323,11 @@ static int encode(encoder *c)
     texels = morph_alloc(c->e->vertex_count, sizeof *texels);
     if (!texels) return no_memory(c);
     count_one_rect(c, texels);
-    failed = cover_all(c, texels);
+    failed = cover_all(c, texels) || fill_texels(c);
     free(texels);
-    return failed || fill_texels(c);
+    for (uint32_t level = 1; !failed && c->options.skip_reach && level < c->e->level_count; level++)
+        leave_out(c, level, c->options.skip_reach[level]);
+    return failed;
 }
 
 static int start(encoder *c)
@@ -311,7 +341,8 @@ static int start(encoder *c)
     e->level_count = c->options.level_count;
     e->level_touched = morph_alloc(e->level_count, sizeof *e->level_touched);
     e->parts = morph_alloc((size_t)e->level_count * e->target_count, sizeof *e->parts);
-    return e->order && e->targets && e->level_touched && e->parts ? 0 : no_memory(c);
+    e->level_skipped = morph_alloc(e->level_count, sizeof *e->level_skipped);
+    return e->order && e->targets && e->level_touched && e->parts && e->level_skipped ? 0 : no_memory(c);
 }
 
 int morph_encode(const model_mesh *mesh, const morph_options *options, morph_encoding **out, model_error *error)
@@ -344,6 +375,7 @@ void morph_encoding_free(morph_encoding *e)
     free(e->targets);
     free(e->level_touched);
     free(e->parts);
+    free(e->level_skipped);
     free(e->rects);
     free(e->texels);
     free(e);

@@ -21,6 +21,8 @@ typedef struct morph_options {
     float rect_cost_texels;  /* auto: what one more rectangle costs, in texels; 0 = default */
     const uint8_t *rank;     /* [vertex_count] the coarsest level of detail that a vertex is in; NULL: all in level 0 alone */
     uint32_t level_count;    /* 0 = 1 */
+    const float *skip_reach; /* [level_count] rising: the targets that move least are left out of a level for as long as
+                              * what they move, all at weight 1, sums to no more than this; NULL: none is */
 } morph_options;
 
 typedef struct morph_rect { uint16_t x, y, w, h; } morph_rect; /* texels of the accumulation texture */
@@ -52,6 +54,7 @@ typedef struct morph_encoding {
     uint32_t level_count;
     uint32_t *level_touched; /* [level_count] the first so many texels are the level's */
     morph_part *parts;       /* [level_count][target_count] */
+    float *level_skipped;    /* [level_count] what the targets left out there sum to */
     uint32_t width_log2;     /* texture width = 1 << width_log2; texel of vertex v: (v & (width-1), v >> width_log2) */
     uint32_t height;         /* ceil(touched_count / width) */
     morph_target *targets;

@@ -277,6 +277,7 @@ static noh_mesh_header level_header(const noh_mesh_header *full, const morph_enc
     h.level_error_targets = errors->targets;
     h.level_error_pairs = errors->pairs;
     h.level_error_motion = errors->motion;
+    h.level_skipped = e->level_skipped[level];
     return h;
 }
 

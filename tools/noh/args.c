@@ -4,6 +4,15 @@
 
 #include "noh_tool.h"
 
+int parse_level(double value, uint32_t *level)
+{
+    if (!(value >= 0.0 && value < NOH_LEVELS_MAX) || value != (double)(uint32_t)value) {
+        return tool_usage("--lod wants a whole number from 0 to %u", NOH_LEVELS_MAX - 1u);
+    }
+    *level = (uint32_t)value;
+    return 0;
+}
+
 int tool_number(const char *text, double *value)
 {
     char *end;

@@ -23,9 +23,9 @@ bounds bounds_union(bounds a, bounds b)
 
 static void grow_item(bounds *b, const scene *s, const pack_file *file, uint32_t item, int face)
 {
-    const noh_mesh_header *h = s->meshes[s->items[item].mesh].header;
+    const noh_mesh *mesh = &s->meshes[s->items[item].mesh];
     const float *world = scene_world(s, file, item);
-    uint32_t count = face ? h->touched_count : h->vertex_count;
+    uint32_t count = mesh->header->vertex_count;
     noh_vertex *vertices = malloc(sizeof *vertices * (count + 1u));
     if (!vertices || scene_deform(s, item, count, vertices)) {
         free(vertices);
@@ -34,6 +34,9 @@ static void grow_item(bounds *b, const scene *s, const pack_file *file, uint32_t
     for (uint32_t v = 0; v < count; v++) {
         const float *p = vertices[v].position;
         double placed[3];
+        if (face && noh_mesh_texel(mesh, v) >= mesh->header->touched_count) {
+            continue;
+        }
         for (int r = 0; r < 3; r++) {
             const float *row = world + 4 * r;
             placed[r] = (double)row[0] * p[0] + (double)row[1] * p[1] + (double)row[2] * p[2] + (double)row[3];

@@ -6,7 +6,8 @@
 
 typedef struct budget_args {
     const char *pack, *anim, *path, *accumulate, *driver;
-    double instances;
+    double instances, lod;
+    uint32_t level;
     int as_json, nominal;
     load_options load;
 } budget_args;
@@ -76,7 +77,8 @@ static int budget_of(const budget_args *a, const pack_file *file)
         return status;
     }
     memset(&b, 0, sizeof b);
-    status = scene_open_anim(&s, file, a->anim);
+    status = scene_set_level(&s, file, a->level);
+    if (!status) status = scene_open_anim(&s, file, a->anim);
     if (!status) status = load_budget_make(&b, file, &s, &caps, &a->load);
     if (!status) {
         if (a->as_json) {
@@ -96,7 +98,7 @@ static int read_args(int argc, char **argv, budget_args *a)
         { "--instances", OPTION_NUMBER, &a->instances }, { "--path", OPTION_TEXT, &a->path },
         { "--accumulate", OPTION_TEXT, &a->accumulate }, { "--driver", OPTION_TEXT, &a->driver },
         { "--nominal", OPTION_FLAG, &a->nominal },       { "--json", OPTION_FLAG, &a->as_json },
-        { "--anim", OPTION_TEXT, &a->anim }
+        { "--anim", OPTION_TEXT, &a->anim },             { "--lod", OPTION_NUMBER, &a->lod }
     };
     int count, status = tool_options(argc, argv, options, sizeof options / sizeof options[0], &a->pack, 1, &count);
     if (!status) status = parse_path(a->path, &a->load.path);
@@ -105,6 +107,7 @@ static int read_args(int argc, char **argv, budget_args *a)
         status = tool_usage("budget wants a pack");
     }
     if (!status) status = parse_instances(a->instances, &a->load.instances);
+    if (!status) status = parse_level(a->lod, &a->level);
     return status;
 }
 

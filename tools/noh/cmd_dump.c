@@ -10,7 +10,8 @@
 
 typedef struct dump_args {
     const char *pack, *output, *anim, *path, *accumulate, *driver;
-    double time_s;
+    double time_s, lod;
+    uint32_t level;
     option_list weights, clips;
     load_options load;
 } dump_args;
@@ -147,7 +148,8 @@ static int dump_scene(const pack_file *file, scene *s, const dump_args *a)
 {
     byte_buffer out = { NULL, 0, 0, 0 };
     noh_error error = { NOH_OK, "", 0, 0 };
-    int status = scene_open_anim(s, file, a->anim);
+    int status = scene_set_level(s, file, a->level);
+    if (!status) status = scene_open_anim(s, file, a->anim);
     if (!status && a->clips.count) status = scene_set_clips(s, file, &a->clips, a->time_s);
     if (!status) status = scene_set_weights(s, file, &a->weights);
     if (!status) {
@@ -167,11 +169,13 @@ static int read_args(int argc, char **argv, dump_args *a)
         { "-o", OPTION_TEXT, &a->output },        { "--weight", OPTION_LIST, &a->weights },
         { "--clip", OPTION_LIST, &a->clips },      { "--time", OPTION_NUMBER, &a->time_s },
         { "--path", OPTION_TEXT, &a->path },      { "--accumulate", OPTION_TEXT, &a->accumulate },
-        { "--driver", OPTION_TEXT, &a->driver },    { "--anim", OPTION_TEXT, &a->anim }
+        { "--driver", OPTION_TEXT, &a->driver },    { "--anim", OPTION_TEXT, &a->anim },
+        { "--lod", OPTION_NUMBER, &a->lod }
     };
     int count, status = tool_options(argc, argv, options, sizeof options / sizeof options[0], &a->pack, 1, &count);
     if (!status) status = parse_path(a->path, &a->load.path);
     if (!status) status = parse_accumulate(a->accumulate, &a->load.accumulate);
+    if (!status) status = parse_level(a->lod, &a->level);
     if (!status && (!a->pack || !a->output)) {
         status = tool_usage("dump wants a pack and -o OUT.obj");
     }

@@ -29,6 +29,31 @@ static void print_skin(const noh_pack *pack, const noh_mesh_header *h)
     }
 }
 
+/* Lengths as they show in the world. */
+static double millimetres(const noh_mesh_header *h, float length)
+{
+    return 1e3 * (double)h->world_scale * (double)length;
+}
+
+static void print_levels(const noh_mesh *m)
+{
+    for (uint32_t k = 0; k < m->header->level_count && m->header->level_count > 1; k++) {
+        const noh_mesh level = noh_mesh_at_level(m, k);
+        const noh_mesh_header *h = level.header;
+        printf("  level %u: %6u vertices, %6u triangles, %6u texels, %7u pairs in %5u rectangles", k, h->vertex_count, h->index_count / 3,
+               h->touched_count, h->pair_count, h->rect_count);
+        if (k) {
+            printf("; off by at most, mm: %.3f at rest (99 %%: %.3f), %.3f a target, %.3f left and right, %.3f in motion",
+                   millimetres(h, h->level_error_rest), millimetres(h, h->level_error_rest_p99), millimetres(h, h->level_error_targets),
+                   millimetres(h, h->level_error_pairs), millimetres(h, h->level_error_motion));
+        }
+        if (h->level_skipped > 0.0f) {
+            printf(", targets of %.3f left out", millimetres(h, h->level_skipped));
+        }
+        putchar('\n');
+    }
+}
+
 static void print_mesh(const noh_pack *pack, const noh_mesh *m)
 {
     const noh_mesh_header *h = m->header;
@@ -43,6 +68,7 @@ static void print_mesh(const noh_pack *pack, const noh_mesh *m)
         printf("  %u vertices touched, in %u x %u texels; f16 accumulation within %.0f um (weights -2..2)\n", h->touched_count,
                1u << h->morph_width_log2, h->morph_height, 1e6 * (double)h->world_scale * (double)h->f16_position_bound);
     }
+    print_levels(m);
     for (uint32_t t = 0; t < h->target_count; t++) {
         print_target(pack, &m->targets[t], (double)h->world_scale);
     }
@@ -118,6 +144,30 @@ static void json_skin(json *j, const noh_pack *pack, const noh_mesh_header *h)
     json_close(j, '}');
 }
 
+static void json_levels(json *j, const noh_mesh *m)
+{
+    json_open(j, "lods", '[');
+    for (uint32_t k = 0; k < m->header->level_count; k++) {
+        const noh_mesh level = noh_mesh_at_level(m, k);
+        const noh_mesh_header *h = level.header;
+        json_open(j, NULL, '{');
+        json_integer(j, "vertices", h->vertex_count);
+        json_integer(j, "triangles", h->index_count / 3);
+        json_integer(j, "touched", h->touched_count);
+        json_integer(j, "pairs", h->pair_count);
+        json_integer(j, "rects", h->rect_count);
+        json_integer(j, "texels", h->texel_count);
+        json_number(j, "error_rest_um", 1e3 * millimetres(h, h->level_error_rest));
+        json_number(j, "error_rest_p99_um", 1e3 * millimetres(h, h->level_error_rest_p99));
+        json_number(j, "error_targets_um", 1e3 * millimetres(h, h->level_error_targets));
+        json_number(j, "error_pairs_um", 1e3 * millimetres(h, h->level_error_pairs));
+        json_number(j, "error_motion_um", 1e3 * millimetres(h, h->level_error_motion));
+        json_number(j, "skipped_um", 1e3 * millimetres(h, h->level_skipped));
+        json_close(j, '}');
+    }
+    json_close(j, ']');
+}
+
 static void json_mesh(json *j, const noh_pack *pack, const noh_mesh *m)
 {
     const noh_mesh_header *h = m->header;
@@ -135,8 +185,7 @@ static void json_mesh(json *j, const noh_pack *pack, const noh_mesh *m)
     json_integer(j, "target_bytes", target_bytes(h));
     json_number(j, "f16_bound_um", 1e6 * (double)h->world_scale * (double)h->f16_position_bound);
     json_skin(j, pack, h);
-    json_open(j, "lods", '[');
-    json_close(j, ']');
+    json_levels(j, m);
     json_open(j, "target_list", '[');
     for (uint32_t t = 0; t < h->target_count; t++) {
         json_target(j, pack, &m->targets[t], (double)h->world_scale);

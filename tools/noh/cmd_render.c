@@ -7,7 +7,8 @@
 typedef struct render_args {
     const char *pack, *output, *anim, *path, *accumulate, *driver, *debug;
     uint32_t size[2];
-    double time_s;
+    double time_s, lod;
+    uint32_t level;
     int show_bones;
     option_list weights, clips;
     view_options view;
@@ -35,12 +36,14 @@ static int read_args(int argc, char **argv, render_args *a)
         { "--time", OPTION_NUMBER, &a->time_s },    { "--path", OPTION_TEXT, &a->path },
         { "--accumulate", OPTION_TEXT, &a->accumulate }, { "--driver", OPTION_TEXT, &a->driver },
         { "--camera", OPTION_TEXT, &a->view.camera }, { "--debug", OPTION_TEXT, &a->debug },
-        { "--anim", OPTION_TEXT, &a->anim },        { "--bones", OPTION_FLAG, &a->show_bones }
+        { "--anim", OPTION_TEXT, &a->anim },        { "--bones", OPTION_FLAG, &a->show_bones },
+        { "--lod", OPTION_NUMBER, &a->lod }
     };
     int count, status = tool_options(argc, argv, options, sizeof options / sizeof options[0], &a->pack, 1, &count);
     if (!status) status = parse_path(a->path, &a->load.path);
     if (!status) status = parse_accumulate(a->accumulate, &a->load.accumulate);
     if (!status) status = parse_debug(a->debug, &a->load.view);
+    if (!status) status = parse_level(a->lod, &a->level);
     if (!status && (!a->pack || !a->output)) {
         status = tool_usage("render wants a pack and -o OUT.png");
     }
@@ -61,12 +64,14 @@ static void print_done(const render_args *a, const stage *st)
            noh_accumulate_name(plan->accumulate), plan->reason);
 }
 
-static int draw(gpu *g, const pack_file *file, const scene *s, const render_args *a, int show_bones, uint8_t *rgba)
+/* The full mesh frames the picture, whatever level is drawn. */
+static int draw(gpu *g, const pack_file *file, scene *s, const render_args *a, int show_bones, uint8_t *rgba)
 {
     stage st;
     noh_gl_camera camera;
     bounds box = stage_bounds(s, file, view_wants_face(&a->view), show_bones);
     int status = view_camera(&a->view, &box, &camera);
+    if (!status) status = scene_set_level(s, file, a->level);
     if (!status) {
         status = stage_open(&st, g, file, s, &a->load, show_bones, a->size[0], a->size[1]);
     }

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sheet_lods.h"
 #include "sheet_tiles.h"
 #include "stage.h"
 
@@ -11,7 +12,7 @@
 typedef struct sheet {
     sheet_tiles tiles;
     uint32_t tile_count, columns, rows, tile; /* tile: pixels */
-    int show_bones;
+    int show_bones, lods;
     bounds box; /* of all tiles, about what the camera follows */
     uint8_t *rgba;
     const char *pack, *output, *driver, *camera;
@@ -175,7 +176,7 @@ static int read_args(int argc, char **argv, sheet *s)
         { "--tile", OPTION_NUMBER, &tile },      { "--tiles", OPTION_NUMBER, &tiles },    { "--columns", OPTION_NUMBER, &columns },
         { "--target", OPTION_LIST, &t->only },   { "--anim", OPTION_TEXT, &t->anim },     { "--bones", OPTION_FLAG, &s->show_bones },
         { "--blend", OPTION_TEXT, &t->blend },   { "--to", OPTION_TEXT, &t->to },         { "--transition", OPTION_TEXT, &transition },
-        { "--over", OPTION_NUMBER, &t->over_s }
+        { "--over", OPTION_NUMBER, &t->over_s }, { "--lods", OPTION_FLAG, &s->lods }
     };
     int count, status = tool_options(argc, argv, options, sizeof options / sizeof options[0], &s->pack, 1, &count);
     if (!status) status = parse_path(path, &s->load.path);
@@ -187,11 +188,20 @@ static int read_args(int argc, char **argv, sheet *s)
         status = tool_usage("sheet wants a --tile of 16 to 1024 pixels, 1 to 1024 --tiles and up to 64 --columns");
     }
     if (!status) status = check_clips(t, transition);
+    if (!status && s->lods && (t->clips.count || s->show_bones)) {
+        status = tool_usage("sheet shows --lods at rest and with targets, without --clip and --bones");
+    }
     t->inertia = transition && strcmp(transition, "inertia") == 0;
     s->tile = (uint32_t)tile;
     t->clip_tiles = (uint32_t)tiles;
     s->columns = (uint32_t)columns;
     return status;
+}
+
+static int make_lods(const sheet *s, const pack_file *file)
+{
+    const sheet_lods o = { file, s->output, s->camera, s->driver, s->load, &s->tiles.only, s->tile };
+    return sheet_lods_write(&o);
 }
 
 int verb_sheet(int argc, char **argv)
@@ -206,7 +216,7 @@ int verb_sheet(int argc, char **argv)
     if (!status) {
         status = pack_file_open(&file, s.pack);
         if (!status) {
-            status = make_sheet(&s, &file);
+            status = s.lods ? make_lods(&s, &file) : make_sheet(&s, &file);
             pack_file_close(&file);
         }
     }

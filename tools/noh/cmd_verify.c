@@ -432,13 +432,15 @@ int verb_verify(int argc, char **argv)
 {
     static verify_job job;
     const char *path = NULL, *anim = NULL, *driver = NULL;
-    double seed = 1.0, instances = 1.0;
+    double seed = 1.0, instances = 1.0, lod = 0.0;
+    uint32_t level = 0;
     int count, as_json = 0, status;
     const option options[] = {
         { "--seed", OPTION_NUMBER, &seed }, { "--driver", OPTION_TEXT, &driver }, { "--json", OPTION_FLAG, &as_json },
-        { "--instances", OPTION_NUMBER, &instances }, { "--anim", OPTION_TEXT, &anim }
+        { "--instances", OPTION_NUMBER, &instances }, { "--anim", OPTION_TEXT, &anim },
+        { "--lod", OPTION_NUMBER, &lod }
     };
-    status = tool_options(argc, argv, options, 5, &path, 1, &count);
+    status = tool_options(argc, argv, options, sizeof options / sizeof options[0], &path, 1, &count);
     if (status) {
         return status;
     }
@@ -446,6 +448,7 @@ int verb_verify(int argc, char **argv)
         return tool_usage("verify wants a pack");
     }
     status = parse_instances(instances, &job.load.instances);
+    if (!status) status = parse_level(lod, &level);
     if (status) {
         return status;
     }
@@ -454,7 +457,8 @@ int verb_verify(int argc, char **argv)
     if (!status) {
         status = scene_init(&job.scene, &job.file);
         if (!status) {
-            status = scene_open_anim(&job.scene, &job.file, anim);
+            status = scene_set_level(&job.scene, &job.file, level);
+            if (!status) status = scene_open_anim(&job.scene, &job.file, anim);
             if (!status) status = gpu_open(&job.g, driver);
             if (!status) {
                 status = verify_all(&job);

@@ -12,24 +12,26 @@ static const struct verb {
       "IN... -o OUT.noh [--error-um 10] [--rects auto|N] [--rate HZ] [--error-cm 0.01] [--shell-cm 3]\n"
       "                 [--loop] [--for-masks] [--events FILE] [--unit-cm 1] [--only mesh|anim] [--quiet]\n"
       "                 [--influences 8] [--palette 256] [--dual-quaternion MESH|all]... [--keep-parts]\n"
-      "                 [--two-stream SOURCE=TARGET]... [--clip-error CLIP=CM]... [--joint-error JOINT=CM]...",
+      "                 [--two-stream SOURCE=TARGET]... [--clip-error CLIP=CM]... [--joint-error JOINT=CM]...\n"
+      "                 [--lod auto|N] [--lod-fast]",
       "convert .gltf, .glb, .bvh and .rcl to a pack: the first model, the clips of all" },
     { "info", verb_info, "PACK [--json]", "chunks, counts, names, errors certified at build" },
     { "clip", verb_clip, "PACK [--json] [--dump OUT.rcl [--clip NAME]]",
       "compressed motion: bytes, certified errors; a clip decoded" },
-    { "budget", verb_budget, "PACK [--anim PACK] [--instances N] [--path P] [--accumulate A] [--driver D | --nominal] [--json]",
+    { "budget", verb_budget, "PACK [--anim PACK] [--instances N] [--path P] [--accumulate A] [--lod K] [--driver D | --nominal] [--json]",
       "bytes before a load: CPU and GPU, by part" },
     { "render", verb_render,
       "PACK -o OUT.png [--size 512x512] [--weight NAME=V]... [--clip NAME]... [--time S] [--anim PACK]\n"
       "                 [--path P] [--accumulate auto|f32|f16] [--driver egl|osmesa|angle|glfw]\n"
-      "                 [--camera face|body|AZ,EL,DIST] [--debug none|position|normal|tangent] [--bones]",
+      "                 [--camera face|body|AZ,EL,DIST] [--debug none|position|normal|tangent] [--bones] [--lod K]",
       "a picture" },
     { "sheet", verb_sheet, "PACK -o OUT.png [--clip NAME... [--anim PACK] [--tiles 24] | --target NAME[=V]...] [--tile 192] [--columns N] [--camera face]\n"
       "                 [--blend CLIP | --to CLIP [--transition fade|inertia] [--over 0.3]] [--bones]\n"
-      "                 [--path P] [--accumulate A] [--driver D]", "a contact sheet: every target at full weight, or a clip in time" },
-    { "dump", verb_dump, "PACK -o OUT.obj [--weight NAME=V]... [--clip NAME]... [--time S] [--anim PACK] [--path P]",
+      "                 [--lods [--target NAME[=V][,NAME[=V]]...]] [--path P] [--accumulate A] [--driver D]",
+      "a contact sheet: every target at full weight, a clip in time, or the levels of detail" },
+    { "dump", verb_dump, "PACK -o OUT.obj [--weight NAME=V]... [--clip NAME]... [--time S] [--anim PACK] [--path P] [--lod K]",
       "the deformed mesh, as drawn, baked to a plain one" },
-    { "verify", verb_verify, "PACK [--anim PACK] [--seed N] [--instances N] [--driver D] [--json]", "every path and format against the CPU reference" },
+    { "verify", verb_verify, "PACK [--anim PACK] [--seed N] [--instances N] [--lod K] [--driver D] [--json]", "every path and format against the CPU reference" },
     { "view", verb_view, "PACK|MODEL [--anim PACK] [--clip NAME] [--path P] [--accumulate A] [--driver egl|native] [--size 1280x800]\n"
       "                 [--bones] [--frames N [--screenshot OUT.png]]",
       "a window: sliders, clips, events, memory and times; files dropped on it are converted and shown" },

@@ -60,6 +60,9 @@ int tool_options(int argc, char **argv, const option *options, int option_count,
 /* A float out of text; 0 if all of it was one finite number. */
 int tool_number(const char *text, double *value);
 
+/* --lod: a whole number from 0, the full mesh. Returns an exit code. */
+int parse_level(double value, uint32_t *level);
+
 /* ---- files ---- */
 
 typedef struct pack_file {
@@ -141,6 +144,9 @@ typedef struct scene {
  * The pack must stay where it is while the scene is used. */
 int scene_init(scene *s, const pack_file *file);
 void scene_free(scene *s);
+/* Take every mesh at a level of detail, or its coarsest; an error where no mesh has that many. */
+int scene_set_level(scene *s, const pack_file *file, uint32_t level);
+uint32_t scene_level_count(const scene *s, const pack_file *file);
 /* What a player opened; its skeleton stays. */
 void scene_close_player(scene_player *p);
 /* Take the clips from another pack (NULL: do not); before any of them is played. */
