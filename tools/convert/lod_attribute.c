@@ -54,8 +54,8 @@ int lod_attributes_make(lod_surface *s, const lod_options *o)
         for (uint32_t k = 0; mesh->uv && k < 2u; k++) {
             to[k] = mesh->uv[v * 2u + k] * uv;
         }
-        for (uint32_t k = 0; mesh->color && k < 4u; k++) {
-            to[2u + k] = mesh->color[v * 4u + k] * color;
+        for (uint32_t k = 0; mesh->color && k < 4u; k++) { /* as they are seen, not as light */
+            to[2u + k] = (k < 3u ? sqrtf(mesh->color[v * 4u + k]) : mesh->color[v * 4u + k]) * color;
         }
     }
     return 0;
@@ -100,14 +100,15 @@ static int nearest_place(const lod_surface *s, const lod_move *m, const float *a
     return out->squared < FLT_MAX;
 }
 
-static float attribute_error(const lod_surface *s, const place *p, const uint32_t *corners, uint32_t first)
+/* Between attributes first..end-1 at a place of the new surface, and where `mean` weighs an old triangle's corners. */
+static float attribute_error(const lod_surface *s, const place *p, const uint32_t *corners, const float *mean, uint32_t first, uint32_t end)
 {
     float sum = 0.0f;
-    for (uint32_t k = first; k < LOD_ATTRIBUTES; k++) {
+    for (uint32_t k = first; k < end; k++) {
         float there = 0.0f, here = 0.0f;
         for (uint32_t i = 0; i < 3u; i++) {
             there += p->weight[i] * s->attribute[(size_t)p->vertex[i] * LOD_ATTRIBUTES + k];
-            here += s->attribute[(size_t)corners[i] * LOD_ATTRIBUTES + k] * (1.0f / 3.0f);
+            here += mean[i] * s->attribute[(size_t)corners[i] * LOD_ATTRIBUTES + k];
         }
         sum += (there - here) * (there - here);
     }
@@ -142,24 +143,51 @@ static double skin_error(const lod_surface *s, const lod_move *m)
     return (double)(missing * s->skin_length) * (missing * s->skin_length);
 }
 
+static void weigh_corners(const lod_surface *s, const uint32_t *corners, const float *mean, float at[3])
+{
+    for (uint32_t k = 0; k < 3u; k++) {
+        at[k] = mean[0] * lod_posed(&s->poses, corners[0], 0)[k] + mean[1] * lod_posed(&s->poses, corners[1], 0)[k] +
+                mean[2] * lod_posed(&s->poses, corners[2], 0)[k];
+    }
+}
+
+/* Colours are looked for where they are seen: a pupil with vertices of its own would shrink into the iris around it.
+ * They often change at an edge, so that a triangle's middle does not tell. */
+static float color_error(const lod_surface *s, const lod_move *m, const uint32_t *corners)
+{
+    static const float means[4][3] = {
+        { 1.0f / 3.0f, 1.0f / 3.0f, 1.0f / 3.0f }, { 0.8f, 0.1f, 0.1f }, { 0.1f, 0.8f, 0.1f }, { 0.1f, 0.1f, 0.8f }
+    };
+    float worst = 0.0f;
+    for (uint32_t i = 0; i < 4u; i++) {
+        float at[3], error;
+        place p;
+        weigh_corners(s, corners, means[i], at);
+        nearest_place(s, m, at, LOD_NONE, &p);
+        error = attribute_error(s, &p, corners, means[i], FIRST_COLOR, LOD_ATTRIBUTES);
+        worst = error > worst ? error : worst;
+    }
+    return worst;
+}
+
+/* In the triangle's own island: one that has gone says nothing about others. */
+static float uv_error(const lod_surface *s, const lod_move *m, const uint32_t *corners, uint32_t island)
+{
+    static const float middle[3] = { 1.0f / 3.0f, 1.0f / 3.0f, 1.0f / 3.0f };
+    float at[3];
+    place p;
+    weigh_corners(s, corners, middle, at);
+    return nearest_place(s, m, at, island, &p) ? attribute_error(s, &p, corners, middle, 0, FIRST_COLOR) : 0.0f;
+}
+
 double lod_attribute_cost(const lod_surface *s, const lod_move *m, const uint32_t *triangles, uint32_t count,
                           const uint32_t *source)
 {
     double worst = skin_error(s, m);
-    for (uint32_t i = 0; i < count; i++) {
+    for (uint32_t i = 0; i < count && m->kept_count; i++) {
         const uint32_t *corners = source + (size_t)triangles[i] * 3u;
-        float at[3], error;
-        uint32_t first = 0;
-        place p;
-        for (uint32_t k = 0; k < 3u; k++) {
-            at[k] = (lod_posed(&s->poses, corners[0], 0)[k] + lod_posed(&s->poses, corners[1], 0)[k] +
-                     lod_posed(&s->poses, corners[2], 0)[k]) * (1.0f / 3.0f);
-        }
-        if (!nearest_place(s, m, at, s->island[triangles[i]], &p)) { /* an island has gone: its UVs say nothing about others */
-            nearest_place(s, m, at, LOD_NONE, &p);
-            first = FIRST_COLOR;
-        }
-        error = attribute_error(s, &p, corners, first);
+        float error = s->mesh->uv ? uv_error(s, m, corners, s->island[triangles[i]]) : 0.0f;
+        error += s->mesh->color ? color_error(s, m, corners) : 0.0f;
         worst = error > worst ? error : worst;
     }
     return worst;
