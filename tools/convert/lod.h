@@ -84,7 +84,7 @@ void lod_free(lod *l);
 /* How far two surfaces are apart in one pose: lengths, the larger of both ways. */
 typedef struct lod_distance {
     float max; /* over vertices, a fixed grid on every triangle and random samples */
-    float p99; /* 99 % of the area is nearer */
+    float p99; /* 99 % of the area is nearer; at rest only, else 0 */
 } lod_distance;
 
 /* Measure a level against the full mesh, each submesh against itself.

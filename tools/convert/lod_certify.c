@@ -29,7 +29,7 @@ typedef struct way {
     uint32_t *nearest;      /* [sample_count] in the last pose: the guess for the next */
     uint32_t *rest_nearest; /* [sample_count] */
     float *rest;            /* [sample_count] distances */
-    float *now;             /* [sample_count] */
+    uint32_t worst;         /* the sample that is farthest at rest */
 } way;
 
 typedef struct ranked {
@@ -124,12 +124,11 @@ static int way_make(way *w, const uint32_t *from, uint32_t from_count, const uin
     }
     w->samples = calloc(count + 1u, sizeof *w->samples);
     w->nearest = calloc(count + 1u, 2u * sizeof *w->nearest);
-    w->rest = calloc(count + 1u, 2u * sizeof *w->rest);
+    w->rest = calloc(count + 1u, sizeof *w->rest);
     if (count > UINT32_MAX || !w->samples || !w->nearest || !w->rest || lod_tree_make(to, to_count, position, &w->to)) {
         return 1;
     }
     w->rest_nearest = w->nearest + count;
-    w->now = w->rest + count;
     for (uint32_t t = 0; t < from_count; t++) {
         sample_triangle(w, t, grid_steps(w, position, t, spacing), triangle_area(position, from + (size_t)t * 3u), &random);
     }
@@ -149,34 +148,62 @@ static int moves(const uint8_t *moved, const uint32_t *corner)
     return moved[corner[0]] || moved[corner[1]] || moved[corner[2]];
 }
 
-/* moved: NULL, or [vertices]; where neither a sample nor what lay nearest moves, the distance at rest stands
- * (it may have become smaller, never larger). */
-static void way_measure(way *w, const float *position, const uint8_t *moved)
+static void sample_point(const way *w, const sample *s, const float *position, float at[3])
+{
+    const uint32_t *corner = w->from + (size_t)s->triangle * 3u;
+    for (uint32_t k = 0; k < 3u; k++) {
+        at[k] = s->weight[0] * position[(size_t)corner[0] * 3u + k] + s->weight[1] * position[(size_t)corner[1] * 3u + k] +
+                s->weight[2] * position[(size_t)corner[2] * 3u + k];
+    }
+}
+
+/* Every distance, at rest. */
+static void way_measure_rest(way *w, const float *position)
 {
     uint32_t guess = 0;
     lod_tree_pose(&w->to, position);
     for (uint32_t i = 0; i < w->sample_count; i++) {
-        const sample *s = &w->samples[i];
-        const uint32_t *corner = w->from + (size_t)s->triangle * 3u;
         float at[3];
-        if (moved && !moves(moved, corner) && !moves(moved, w->to.indices + (size_t)w->rest_nearest[i] * 3u)) {
-            w->now[i] = w->rest[i];
-            continue;
-        }
-        for (uint32_t k = 0; k < 3u; k++) {
-            at[k] = s->weight[0] * position[(size_t)corner[0] * 3u + k] + s->weight[1] * position[(size_t)corner[1] * 3u + k] +
-                    s->weight[2] * position[(size_t)corner[2] * 3u + k];
-        }
-        w->nearest[i] = moved ? w->rest_nearest[i] : guess;
-        w->now[i] = sqrtf(lod_tree_nearest(&w->to, at, &w->nearest[i]));
+        sample_point(w, &w->samples[i], position, at);
+        w->nearest[i] = guess;
+        w->rest[i] = sqrtf(lod_tree_nearest(&w->to, at, &w->nearest[i]));
         guess = w->nearest[i];
+        w->worst = w->rest[i] > w->rest[w->worst] ? i : w->worst;
+    }
+    memcpy(w->rest_nearest, w->nearest, w->sample_count * sizeof *w->nearest);
+}
+
+/* The distance of one sample where it is above *most. One that has any triangle nearer than that is not looked at:
+ * most samples are near the triangle that was nearest in the last pose. */
+static void way_raise(way *w, uint32_t i, const float *position, float *most)
+{
+    float at[3], squared;
+    sample_point(w, &w->samples[i], position, at);
+    squared = lod_tree_distance(&w->to, at, w->nearest[i]);
+    if (squared > *most * *most) {
+        squared = lod_tree_nearest(&w->to, at, &w->nearest[i]);
+        *most = squared > *most * *most ? sqrtf(squared) : *most;
     }
 }
 
-static void keep_as_rest(way *w)
+/* The largest distance in a pose. moved: NULL, or [vertices]; where neither a sample nor what lay nearest moves, the
+ * distance at rest stands (it may have become smaller, never larger). */
+static void way_measure(way *w, const float *position, const uint8_t *moved, float *most)
 {
-    memcpy(w->rest, w->now, w->sample_count * sizeof *w->rest);
-    memcpy(w->rest_nearest, w->nearest, w->sample_count * sizeof *w->nearest);
+    lod_tree_pose(&w->to, position);
+    if (moved) {
+        memcpy(w->nearest, w->rest_nearest, w->sample_count * sizeof *w->nearest);
+    } else if (w->sample_count) {
+        way_raise(w, w->worst, position, most);
+    }
+    for (uint32_t i = 0; i < w->sample_count; i++) {
+        const uint32_t *corner = w->from + (size_t)w->samples[i].triangle * 3u;
+        if (moved && !moves(moved, corner) && !moves(moved, w->to.indices + (size_t)w->rest_nearest[i] * 3u)) {
+            *most = w->rest[i] > *most ? w->rest[i] : *most;
+            continue;
+        }
+        way_raise(w, i, position, most);
+    }
 }
 
 static int by_distance(const void *a, const void *b)
@@ -190,9 +217,9 @@ static void raise_to(lod_distance *d, const way *w, ranked *list)
     uint32_t count = 0, i = 0;
     double area = 0.0, below = 0.0;
     for (uint32_t k = 0; k < w->sample_count; k++) {
-        d->max = w->now[k] > d->max ? w->now[k] : d->max;
+        d->max = w->rest[k] > d->max ? w->rest[k] : d->max;
         if (w->samples[k].area > 0.0f) {
-            list[count].distance = w->now[k];
+            list[count].distance = w->rest[k];
             list[count++].area = w->samples[k].area;
             area += w->samples[k].area;
         }
@@ -218,12 +245,20 @@ typedef struct certifier {
     uint8_t *moved;  /* [vertex_count] */
 } certifier;
 
+static void measure_rest(certifier *c, lod_distance *out)
+{
+    memset(out, 0, sizeof *out);
+    for (uint32_t i = 0; i < 2u; i++) {
+        way_measure_rest(&c->ways[i], c->mesh->position);
+        raise_to(out, &c->ways[i], c->list);
+    }
+}
+
 static void measure(certifier *c, const float *position, const uint8_t *moved, lod_distance *out)
 {
     memset(out, 0, sizeof *out);
     for (uint32_t i = 0; i < 2u; i++) {
-        way_measure(&c->ways[i], position, moved);
-        raise_to(out, &c->ways[i], c->list);
+        way_measure(&c->ways[i], position, moved, &out->max);
     }
 }
 
@@ -273,9 +308,7 @@ static int certify_submesh(certifier *c, const uint32_t *full, uint32_t full_cou
     c->list = NULL;
     failed = prepare(c, full, full_count, level, level_count);
     if (!failed) {
-        measure(c, c->mesh->position, NULL, &out[0]);
-        keep_as_rest(&c->ways[0]);
-        keep_as_rest(&c->ways[1]);
+        measure_rest(c, &out[0]);
         for (uint32_t t = 0; t < targets; t++) {
             measure_target(c, t, &out[1u + t]);
         }

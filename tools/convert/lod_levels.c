@@ -11,6 +11,7 @@
 #define FRAMES_CERTIFIED 28u /* and those that the levels are measured in */
 #define FINEST_ERROR (1.0f / 4000.0f)
 #define ERROR_STEP 4.0f
+#define LEVELS_BY_ERROR 5u    /* the coarsest is off by 1/62 of the diagonal */
 #define LEAST_SAVED 0.95f    /* of the finer level's triangles: a level with more is not worth its bytes */
 
 typedef struct pose_list {
@@ -152,7 +153,7 @@ static int build(const model_mesh *mesh, const lod_settings *settings, const lod
     o.mode = settings->mode;
     o.poses = (const float *const *)frames->poses;
     o.pose_count = frames->count < FRAMES_BUILT ? frames->count : FRAMES_BUILT;
-    o.level_count = (settings->by_error ? NOH_LEVELS_MAX : settings->level_count) - 1u;
+    o.level_count = (settings->by_error ? LEVELS_BY_ERROR : settings->level_count) - 1u;
     o.ratios = shares + 1;
     if (settings->by_error) {
         o.errors = errors;

@@ -12,7 +12,7 @@ extern "C" {
 /* All zeros: the full mesh alone. */
 typedef struct lod_settings {
     uint32_t level_count; /* with the full one, 2 to NOH_LEVELS_MAX; 0 and 1: no others. The triangles' shares are LOD_SHARES */
-    int by_error;         /* instead: levels whose errors are 1/4000 of the box's diagonal, and four times as much each time */
+    int by_error;         /* instead: up to four coarser levels whose costs are 1/4000 of the box's diagonal, and four times as much each time */
     lod_mode mode;
 } lod_settings;
 

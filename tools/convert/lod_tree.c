@@ -172,6 +172,11 @@ static void swap_last(box_stack *s)
     }
 }
 
+float lod_tree_distance(const lod_tree *t, const float *point, uint32_t triangle)
+{
+    return lod_distance_point(t->triangles + (size_t)triangle * 9u, point, NULL);
+}
+
 float lod_tree_nearest(const lod_tree *t, const float *point, uint32_t *nearest)
 {
     float best = lod_distance_point(t->triangles + (size_t)*nearest * 9u, point, NULL);

@@ -24,6 +24,9 @@ void lod_tree_free(lod_tree *t);
 /* The same triangles in another pose. */
 void lod_tree_pose(lod_tree *t, const float *position);
 
+/* The squared distance to one of its triangles. */
+float lod_tree_distance(const lod_tree *t, const float *point, uint32_t triangle);
+
 /* The squared distance to the surface. *nearest: a guess on entry (any triangle), the nearest on return. */
 float lod_tree_nearest(const lod_tree *t, const float *point, uint32_t *nearest);
 
