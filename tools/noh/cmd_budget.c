@@ -12,6 +12,76 @@ typedef struct budget_args {
     load_options load;
 } budget_args;
 
+/* One level of detail of the whole scene: what it costs to load it and all coarser ones, and what a frame does at it. */
+typedef struct level_cost {
+    uint64_t vertices, triangles, texels, pairs; /* of one copy of the scene; pairs: with all targets active */
+    uint64_t cpu_bytes, gpu_bytes;
+} level_cost;
+
+typedef struct level_costs {
+    level_cost levels[NOH_LEVELS_MAX];
+    uint32_t count;
+} level_costs;
+
+static void count_work(const scene *s, level_cost *out)
+{
+    for (uint32_t i = 0; i < s->item_count; i++) {
+        const noh_mesh_header *h = s->meshes[s->items[i].mesh].header;
+        out->vertices += h->vertex_count;
+        out->triangles += h->index_count / 3;
+        out->texels += h->touched_count;
+        out->pairs += h->pair_count;
+    }
+}
+
+static int find_level_costs(const budget_args *a, const pack_file *file, scene *s, const noh_gl_caps *caps, level_costs *out)
+{
+    int status = 0;
+    memset(out, 0, sizeof *out);
+    for (out->count = 0; out->count < scene_level_count(s, file) && !status; out->count++) {
+        level_cost *cost = &out->levels[out->count];
+        load_budget b;
+        status = scene_set_level(s, file, out->count);
+        if (!status) status = load_budget_make(&b, file, s, caps, &a->load);
+        if (!status) {
+            count_work(s, cost);
+            cost->cpu_bytes = b.cpu_bytes;
+            cost->gpu_bytes = b.gpu_bytes;
+            load_budget_free(&b);
+        }
+    }
+    return status;
+}
+
+static void print_levels(const level_costs *c)
+{
+    if (c->count > 1) {
+        printf("%-10s %10s %10s %10s %10s %12s %12s\n", "level", "vertices", "triangles", "texels", "pairs", "CPU bytes", "GPU bytes, from it on");
+    }
+    for (uint32_t k = 0; k < c->count && c->count > 1; k++) {
+        const level_cost *l = &c->levels[k];
+        printf("  %-8u %10llu %10llu %10llu %10llu %12llu %12llu\n", k, (unsigned long long)l->vertices, (unsigned long long)l->triangles,
+               (unsigned long long)l->texels, (unsigned long long)l->pairs, (unsigned long long)l->cpu_bytes, (unsigned long long)l->gpu_bytes);
+    }
+}
+
+static void json_levels(json *j, const level_costs *c)
+{
+    json_open(j, "levels", '[');
+    for (uint32_t k = 0; k < c->count; k++) {
+        const level_cost *l = &c->levels[k];
+        json_open(j, NULL, '{');
+        json_integer(j, "vertices", l->vertices);
+        json_integer(j, "triangles", l->triangles);
+        json_integer(j, "texels", l->texels);
+        json_integer(j, "pairs", l->pairs);
+        json_integer(j, "cpu_bytes", l->cpu_bytes);
+        json_integer(j, "gpu_bytes", l->gpu_bytes);
+        json_close(j, '}');
+    }
+    json_close(j, ']');
+}
+
 static void print_budget(const pack_file *file, const load_budget *b, const char *device)
 {
     printf("%-32s %12s %12s\n", file->path, "CPU bytes", "GPU bytes");
@@ -26,7 +96,7 @@ static void print_budget(const pack_file *file, const load_budget *b, const char
            device, b->plan.reason, b->plan.atlas_width, b->plan.atlas_height);
 }
 
-static void json_budget(const load_budget *b, const char *device)
+static void json_budget(const load_budget *b, const level_costs *levels, const char *device)
 {
     json j = json_begin(stdout);
     json_integer(&j, "cpu_bytes", b->cpu_bytes);
@@ -46,6 +116,7 @@ static void json_budget(const load_budget *b, const char *device)
         json_close(&j, '}');
     }
     json_close(&j, ']');
+    json_levels(&j, levels);
     json_end(&j);
 }
 
@@ -69,6 +140,7 @@ static int find_caps(const budget_args *a, noh_gl_caps *caps)
 static int budget_of(const budget_args *a, const pack_file *file)
 {
     noh_gl_caps caps;
+    level_costs levels;
     load_budget b;
     scene s;
     int status = find_caps(a, &caps);
@@ -80,11 +152,13 @@ static int budget_of(const budget_args *a, const pack_file *file)
     status = scene_set_level(&s, file, a->level);
     if (!status) status = scene_open_anim(&s, file, a->anim);
     if (!status) status = load_budget_make(&b, file, &s, &caps, &a->load);
+    if (!status) status = find_level_costs(a, file, &s, &caps, &levels);
     if (!status) {
         if (a->as_json) {
-            json_budget(&b, caps.renderer);
+            json_budget(&b, &levels, caps.renderer);
         } else {
             print_budget(file, &b, caps.renderer);
+            print_levels(&levels);
         }
     }
     load_budget_free(&b);
