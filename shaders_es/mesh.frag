@@ -1,7 +1,8 @@
 #version 300 es
 /* mesh.frag: enough light to judge a face by. One key light with a wrapped edge,
  * a sky and ground fill, a soft rim; GGX highlight. Linear in and out: the target
- * is sRGB and encodes, or ENCODE_SRGB is defined. DEBUG_VIEW shows a quantity instead. */
+ * is sRGB and encodes, or ENCODE_SRGB is defined. DEBUG_VIEW shows a quantity instead.
+ * FADE draws some of the pixels (noh_gl_detail). */
 precision highp float;
 
 uniform vec3 u_camera;
@@ -11,6 +12,7 @@ uniform vec4 u_material;         /* roughness, metallic, alpha cutoff, unlit */
 uniform mediump sampler2D u_base_color_texture;
 uniform vec3 u_bounds_min;
 uniform vec3 u_bounds_size;
+uniform vec3 u_detail;           /* pixels from and to, level */
 
 in vec3 v_world;
 in vec3 v_normal;
@@ -55,6 +57,20 @@ vec3 encoded(vec3 c)
 }
 #endif
 
+#ifdef FADE
+#include "common_fade.glsl"
+#endif
+
+#if DEBUG_VIEW == 4
+vec3 level_color()
+{
+    const vec3 colors[8] = vec3[8](vec3(0.90), vec3(0.79, 0.35, 0.0), vec3(0.09, 0.46, 0.81), vec3(0.0, 0.34, 0.17),
+                                   vec3(0.87, 0.78, 0.05), vec3(0.0, 0.17, 0.45), vec3(0.67, 0.11, 0.0), vec3(0.60, 0.19, 0.39));
+    vec3 facet = normalize(cross(dFdx(v_world), dFdy(v_world)));
+    return colors[int(u_detail.z)] * (0.35 + 0.65 * max(dot(facet, u_key), 0.0));
+}
+#endif
+
 void main()
 {
     vec4 base = u_base_color * v_color * texture(u_base_color_texture, v_uv);
@@ -69,6 +85,8 @@ void main()
 #elif DEBUG_VIEW == 3
     vec3 t = dot(v_tangent.xyz, v_tangent.xyz) > 0.0 ? normalize(v_tangent.xyz) : vec3(-1.0);
     o_color = vec4(pow(t * 0.5 + 0.5, vec3(2.2)), 1.0);
+#elif DEBUG_VIEW == 4
+    o_color = vec4(level_color(), 1.0);
 #else
     if (base.a < u_material.z) {
         discard;
@@ -78,5 +96,11 @@ void main()
 #endif
 #ifdef ENCODE_SRGB
     o_color.rgb = encoded(o_color.rgb);
+#endif
+#ifdef FADE
+    float noise = fade_noise(gl_FragCoord.xy);
+    if (noise < u_detail.x || noise >= u_detail.y) {
+        discard; /* last: a texture's level comes from neighbours */
+    }
 #endif
 }

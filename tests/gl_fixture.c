@@ -120,6 +120,7 @@ void fixture_morph_open(fixture_morph *m, const noh_gl_morph_desc *desc, const n
     for (uint32_t i = 0; i < m->plan.instance_count; i++) {
         m->weights[i] = test_zeros(4u * (size_t)fixture_mesh_of(m, i)->header->target_count);
     }
+    m->levels = test_zeros(sizeof *m->levels * m->plan.instance_count);
 }
 
 void fixture_morph_close(fixture_morph *m)
@@ -129,6 +130,7 @@ void fixture_morph_close(fixture_morph *m)
         free(m->weights[i]);
     }
     free(m->weights);
+    free(m->levels);
     free(m->memory);
     /* everything was given back, and nothing twice */
     assert_true(noh_gl_ledger_bytes(&m->ledger) == 0);
@@ -143,6 +145,18 @@ const noh_mesh *fixture_mesh_of(const fixture_morph *m, uint32_t instance)
         }
     }
     return &m->desc->meshes[m->desc->mesh_count - 1];
+}
+
+noh_mesh fixture_view_of(const fixture_morph *m, uint32_t instance)
+{
+    const noh_mesh *mesh = fixture_mesh_of(m, instance);
+    return m->levels[instance] > mesh->header->level ? noh_mesh_at_level(mesh, m->levels[instance]) : *mesh;
+}
+
+void fixture_set_level(fixture_morph *m, uint32_t instance, uint32_t level)
+{
+    m->levels[instance] = level;
+    noh_gl_morph_level(m->morph, instance, level);
 }
 
 void fixture_set(fixture_morph *m, uint32_t instance, const float *weights)
@@ -160,7 +174,7 @@ void fixture_set_random(fixture_morph *m, uint32_t instance, test_random *r)
 
 float *fixture_reference(const fixture_morph *m, uint32_t instance, int *exact)
 {
-    const noh_mesh *mesh = fixture_mesh_of(m, instance);
+    const noh_mesh view = fixture_view_of(m, instance), *mesh = &view;
     noh_morph_layers layers = test_layers(mesh);
     int blended = m->plan.path != NOH_MORPH_CPU && m->plan.path != NOH_MORPH_GATHER;
     noh_half_mode mode = blended ? m->caps.f16_blend_mode : m->plan.path == NOH_MORPH_CPU ? NOH_HALF_RNE : m->caps.f16_store_mode;
@@ -181,7 +195,7 @@ float *fixture_reference(const fixture_morph *m, uint32_t instance, int *exact)
 
 static void compare_layers(const fixture_morph *m, uint32_t instance, const float *got, const float *expected, int exact)
 {
-    const noh_mesh *mesh = fixture_mesh_of(m, instance);
+    const noh_mesh view = fixture_view_of(m, instance), *mesh = &view;
     size_t texels = (size_t)mesh->header->morph_height << mesh->header->morph_width_log2;
     for (size_t layer = 0; layer < 3; layer++) {
         double bound = layer ? (double)mesh->header->f16_direction_bound : (double)mesh->header->f16_position_bound;
@@ -197,17 +211,23 @@ static void compare_layers(const fixture_morph *m, uint32_t instance, const floa
     }
 }
 
-void fixture_expect_instance(const fixture_morph *m, uint32_t instance)
+float *fixture_layers(const fixture_morph *m, uint32_t instance)
 {
-    const noh_mesh *mesh = fixture_mesh_of(m, instance);
+    const noh_mesh mesh = fixture_view_of(m, instance);
     noh_gl_morph_binding binding = noh_gl_morph_binding_of(m->morph, instance);
-    float *got = test_zeros(noh_morph_layers_size(mesh));
-    int exact;
-    float *expected = fixture_reference(m, instance, &exact);
+    float *got = test_zeros(noh_morph_layers_size(&mesh));
     readback r;
     assert_int_equal(readback_open(&r, &shared, binding.is_uint), 0);
-    assert_int_equal(readback_layers(&r, mesh, &binding, got), 0);
+    assert_int_equal(readback_layers(&r, &mesh, &binding, got), 0);
     readback_close(&r);
+    return got;
+}
+
+void fixture_expect_instance(const fixture_morph *m, uint32_t instance)
+{
+    float *got = fixture_layers(m, instance);
+    int exact;
+    float *expected = fixture_reference(m, instance, &exact);
     compare_layers(m, instance, got, expected, exact);
     free(got);
     free(expected);
@@ -218,4 +238,39 @@ void fixture_expect_all(const fixture_morph *m)
     for (uint32_t i = 0; i < m->plan.instance_count; i++) {
         fixture_expect_instance(m, i);
     }
+}
+
+/* ---- pictures ---- */
+
+void fixture_frame_open(fixture_frame *f, uint32_t side)
+{
+    const noh_gl_api *gl = &fixture_gpu()->gl;
+    memset(f, 0, sizeof *f);
+    f->side = side;
+    assert_int_equal(noh_gl_renderbuffer_create(gl, &f->ledger, GL_RGBA8, side, side, 0, &f->color, NULL), NOH_OK);
+    assert_int_equal(noh_gl_renderbuffer_create(gl, &f->ledger, GL_DEPTH_COMPONENT24, side, side, 0, &f->depth, NULL), NOH_OK);
+    assert_int_equal(noh_gl_framebuffer_create(gl, &f->ledger, &f->framebuffer, NULL), NOH_OK);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, f->framebuffer);
+    gl->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, f->color.name);
+    gl->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, f->depth.name);
+    gl->Viewport(0, 0, (GLsizei)side, (GLsizei)side);
+    gl->ClearColor(0.0f, 0.0f, 0.0f, 0.0f);
+    gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+}
+
+uint8_t *fixture_frame_read(const fixture_frame *f)
+{
+    uint8_t *rgba = test_zeros((size_t)f->side * f->side * 4u);
+    fixture_gpu()->gl.ReadPixels(0, 0, (GLsizei)f->side, (GLsizei)f->side, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
+    return rgba;
+}
+
+void fixture_frame_close(fixture_frame *f)
+{
+    const noh_gl_api *gl = &fixture_gpu()->gl;
+    gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
+    noh_gl_framebuffer_delete(gl, &f->ledger, &f->framebuffer);
+    noh_gl_renderbuffer_delete(gl, &f->ledger, &f->depth);
+    noh_gl_renderbuffer_delete(gl, &f->ledger, &f->color);
+    assert_true(noh_gl_ledger_bytes(&f->ledger) == 0 && f->ledger.programs == 0);
 }

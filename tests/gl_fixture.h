@@ -47,12 +47,19 @@ typedef struct fixture_morph {
     noh_gl_ledger ledger;
     const noh_gl_morph_desc *desc;
     float **weights; /* [instance], what was set last */
+    uint32_t *levels; /* [instance], likewise */
 } fixture_morph;
 void fixture_morph_open(fixture_morph *m, const noh_gl_morph_desc *desc, const noh_gl_caps *caps);
 void fixture_morph_close(fixture_morph *m);
 
 /* The mesh that an instance shows. */
 const noh_mesh *fixture_mesh_of(const fixture_morph *m, uint32_t instance);
+
+/* The same at the level that was set for it. */
+noh_mesh fixture_view_of(const fixture_morph *m, uint32_t instance);
+
+/* Set an instance's level and remember it. */
+void fixture_set_level(fixture_morph *m, uint32_t instance, uint32_t level);
 
 /* Set an instance's weights and remember them. */
 void fixture_set(fixture_morph *m, uint32_t instance, const float *weights);
@@ -66,5 +73,21 @@ float *fixture_reference(const fixture_morph *m, uint32_t instance, int *exact);
  * or within the pack's bound where the rounding is not modelled. */
 void fixture_expect_instance(const fixture_morph *m, uint32_t instance);
 void fixture_expect_all(const fixture_morph *m);
+
+/* The values that an instance's accumulator holds: layers[3][...] of its view, to be freed. */
+float *fixture_layers(const fixture_morph *m, uint32_t instance);
+
+/* A square of pixels to draw to, RGBA8 with depth, cleared to zeros and bound. */
+typedef struct fixture_frame {
+    noh_gl_ledger ledger; /* its own, and what is made while it is open */
+    noh_gl_renderbuffer color, depth;
+    GLuint framebuffer;
+    uint32_t side;
+} fixture_frame;
+void fixture_frame_open(fixture_frame *f, uint32_t side);
+/* rgba[side][side][4], the lowest row first, to be freed. */
+uint8_t *fixture_frame_read(const fixture_frame *f);
+/* Everything that its ledger counts has to be deleted. */
+void fixture_frame_close(fixture_frame *f);
 
 #endif

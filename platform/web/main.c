@@ -276,7 +276,7 @@ static void draw_item(const web_item *item, int pass)
     int is_skinned = web.scene.meshes[item->mesh].header->skin != NOH_NONE;
     if (is_skinned) skin = noh_gl_skin_binding_of(web.skin, item->instance);
     noh_gl_draw_mesh(&web.renderer, &web.meshes[item->mesh], web_scene_world(&web.scene, item), web.at_rest ? NULL : &morph,
-                     is_skinned ? &skin : NULL, web.pictures, pass);
+                     is_skinned ? &skin : NULL, NULL, web.pictures, pass);
 }
 
 static void begin_frame(void)

@@ -19,7 +19,7 @@ void NOH_SKIN_VERTICES(const noh_mesh *mesh, const float *matrices, const noh_mo
                        uint32_t count, float *positions, float *normals, float *tangents)
 {
     skin_job job = { mesh, matrices, layers, positions, normals, tangents, (mesh->header->flags & NOH_MESH_TANGENTS) != 0,
-                     (mesh->header->flags & NOH_MESH_TEXELS) != 0, { NULL } };
+                     mesh->header->palette_count > 1, (mesh->header->flags & NOH_MESH_TEXELS) != 0, { NULL } };
     for (uint32_t j = 0; !job.split && j < mesh->palettes[0].joint_count; j++) {
         job.joints[j] = matrices + 12u * (size_t)mesh->palette_joints[j];
     }

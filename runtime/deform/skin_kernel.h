@@ -18,7 +18,9 @@ typedef struct skin_job {
     const float *matrices;
     const noh_morph_layers *layers; /* or NULL */
     float *positions, *normals, *tangents; /* or NULL */
-    int has_tangents, split;
+    int has_tangents;
+    int split;  /* into several palettes */
+    int texels; /* vertices have texel references */
     const float *joints[NOH_PALETTE_JOINTS_MAX];
 } skin_job;
 
@@ -85,8 +87,8 @@ static inline void unpack_weights(const uint32_t *bits, uint32_t count, float *w
     weights[0] = (float)(int32_t)rest * unit;
 }
 
-/* What noh_mesh_texel and noh_mesh_palette take apart, of a split mesh. */
-static inline uint32_t split_word(const skin_job *job, uint32_t vertex)
+/* What noh_mesh_texel and noh_mesh_palette take apart, of a mesh with texel references. */
+static inline uint32_t texel_word(const skin_job *job, uint32_t vertex)
 {
     const size_t stride = job->mesh->header->attribute_stride;
     uint32_t word;
@@ -102,7 +104,7 @@ static inline void blend_vertex(const skin_job *job, uint32_t vertex, uint32_t c
     float weights[NOH_INFLUENCES_MAX] = { 0.0f };
     unpack_weights(words + (count == 8u ? 2 : 1), count, weights);
     if (job->split) {
-        const uint32_t palette = split_word(job, vertex) >> NOH_TEXEL_VERTEX_BITS;
+        const uint32_t palette = texel_word(job, vertex) >> NOH_TEXEL_VERTEX_BITS;
         const uint16_t *joints = job->mesh->palette_joints + job->mesh->palettes[palette].first_joint;
         NOH_UNROLL
         for (uint32_t i = 0; i < count; i++) {
@@ -200,14 +202,16 @@ static inline int gather_deltas(const skin_job *job, uint32_t first, uint32_t co
 {
     const noh_morph_layers *layers = job->layers;
     int any = 0;
-    if (!layers || (!job->split && first >= job->mesh->header->touched_count)) {
+    if (!layers || (!job->texels && first >= job->mesh->header->touched_count)) {
         return 0;
     }
-    memset(d, 0, sizeof *d);
     for (uint32_t i = 0; i < count; i++) {
-        size_t texel = job->split ? split_word(job, first + i) & ((1u << NOH_TEXEL_VERTEX_BITS) - 1u) : first + i;
+        size_t texel = job->texels ? texel_word(job, first + i) & NOH_TEXEL_NONE : first + i;
         if (texel < job->mesh->header->touched_count) {
-            any = 1;
+            if (!any) {
+                memset(d, 0, sizeof *d);
+                any = 1;
+            }
             d->touched[i] = 1.0f;
             memcpy(d->of[0][i], layers->position + 3u * texel, 12);
             memcpy(d->of[1][i], layers->normal + 3u * texel, 12);

@@ -80,9 +80,23 @@ static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, cons
 
 /* ---- drawing ---- */
 
-static void draw_submesh(const noh_gl_renderer *r, const noh_gl_mesh *mesh, const noh_submesh *s, uint32_t count)
+static const noh_gl_detail whole = { 0, 0.0f, 1.0f };
+
+/* NULL where the renderer was not told of such a draw, or it has no pixels. */
+static const noh_gl_variant *variant_of(const noh_gl_renderer *r, const noh_gl_mesh *mesh, const noh_gl_skin_binding *skin, int crowd,
+                                        const noh_gl_detail *detail)
 {
-    const void *first = (const void *)((uintptr_t)s->first_index * mesh->mesh.header->index_bytes);
+    noh_gl_variant_key key = noh_gl_variant_key_of(&mesh->mesh, skin, crowd, r->layers_uint, r->view);
+    const noh_gl_variant *v;
+    key.fade = detail->from > 0.0f || detail->to < 1.0f;
+    v = noh_gl_renderer_variant(r, key);
+    NOH_ASSERT(v);
+    return detail->from < detail->to ? v : NULL;
+}
+
+static void draw_submesh(const noh_gl_renderer *r, const noh_gl_mesh *mesh, const noh_submesh *s, size_t level_first, uint32_t count)
+{
+    const void *first = (const void *)(level_first + (uintptr_t)s->first_index * mesh->mesh.header->index_bytes);
     if (count == 1u) {
         r->gl->DrawElements(GL_TRIANGLES, (GLsizei)s->index_count, mesh->index_type, first);
     } else {
@@ -91,15 +105,19 @@ static void draw_submesh(const noh_gl_renderer *r, const noh_gl_mesh *mesh, cons
 }
 
 static void draw_submeshes(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_gl_mesh *mesh,
-                           const noh_gl_skin_binding *skin, uint32_t count, const noh_gl_texture *pictures, int pass)
+                           const noh_gl_skin_binding *skin, uint32_t count, const noh_gl_detail *detail,
+                           const noh_gl_texture *pictures, int pass)
 {
+    size_t first;
+    const noh_mesh level = noh_gl_mesh_level(mesh, detail->level, &first);
     uint32_t palette = NOH_NONE;
+    r->gl->Uniform3f(v->u_detail, detail->from, detail->to, (float)level.header->level);
     if (pass == NOH_DRAW_BLENDED) {
         r->gl->Enable(GL_BLEND);
         r->gl->DepthMask(GL_FALSE);
     }
-    for (uint32_t i = 0; i < mesh->mesh.header->submesh_count; i++) {
-        const noh_submesh *s = &mesh->mesh.submeshes[i];
+    for (uint32_t i = 0; i < level.header->submesh_count; i++) {
+        const noh_submesh *s = &level.submeshes[i];
         const noh_material *m = material_of(mesh, s);
         int blended = (m->flags & NOH_MATERIAL_BLEND) != 0;
         if (blended == pass && s->index_count) {
@@ -108,7 +126,7 @@ static void draw_submeshes(const noh_gl_renderer *r, const noh_gl_variant *v, co
                 palette = s->palette;
                 noh_gl_variant_skin(r->gl, v, &mesh->mesh, skin, palette);
             }
-            draw_submesh(r, mesh, s, count);
+            draw_submesh(r, mesh, s, first, count);
         }
     }
     if (pass == NOH_DRAW_BLENDED) {
@@ -118,27 +136,28 @@ static void draw_submeshes(const noh_gl_renderer *r, const noh_gl_variant *v, co
 }
 
 void noh_gl_draw_mesh(const noh_gl_renderer *r, const noh_gl_mesh *mesh, const float world[12],
-                      const noh_gl_morph_binding *morph, const noh_gl_skin_binding *skin, const noh_gl_texture *pictures,
-                      int pass)
+                      const noh_gl_morph_binding *morph, const noh_gl_skin_binding *skin, const noh_gl_detail *detail,
+                      const noh_gl_texture *pictures, int pass)
 {
-    const noh_gl_variant *v = noh_gl_renderer_variant(r, noh_gl_variant_key_of(&mesh->mesh, skin, 0, r->layers_uint, r->view));
-    NOH_ASSERT(v);
+    const noh_gl_detail *d = detail ? detail : &whole;
+    const noh_gl_variant *v = variant_of(r, mesh, skin, 0, d);
     if (v) {
         set_mesh(r, v, mesh, morph);
         set_instance(r, v, world, morph);
-        draw_submeshes(r, v, mesh, skin, 1, pictures, pass);
+        draw_submeshes(r, v, mesh, skin, 1, d, pictures, pass);
     }
 }
 
 void noh_gl_draw_crowd(const noh_gl_renderer *r, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph,
-                       const noh_gl_skin_binding *first, uint32_t count, const noh_gl_texture *pictures, int pass)
+                       const noh_gl_skin_binding *first, uint32_t count, const noh_gl_detail *detail,
+                       const noh_gl_texture *pictures, int pass)
 {
-    const noh_gl_variant *v = noh_gl_renderer_variant(r, noh_gl_variant_key_of(&mesh->mesh, first, 1, r->layers_uint, r->view));
-    NOH_ASSERT(v);
+    const noh_gl_detail *d = detail ? detail : &whole;
+    const noh_gl_variant *v = variant_of(r, mesh, first, 1, d);
     if (v && count) {
         set_mesh(r, v, mesh, morph);
         r->gl->FrontFace(GL_CCW);
-        draw_submeshes(r, v, mesh, first, count, pictures, pass);
+        draw_submeshes(r, v, mesh, first, count, d, pictures, pass);
     }
 }
 

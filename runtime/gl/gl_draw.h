@@ -21,22 +21,27 @@
 #define NOH_ATTRIBUTE_TEXEL 7u           /* uint: morph texel and palette, with NOH_MESH_TEXELS */
 
 typedef struct noh_gl_mesh {
-    noh_mesh mesh;
+    noh_mesh mesh;       /* at the finest level that is there */
     GLuint vertex_array;
     noh_gl_buffer positions, attributes, influences, indices; /* no influences in a rigid mesh */
     GLenum index_type;
 } noh_gl_mesh;
 
-/* GPU bytes of a mesh's buffers: exact. */
+/* GPU bytes of a mesh's buffers: exact. `mesh` may be any level: then without what only finer ones have. */
 uint64_t noh_gl_mesh_bytes(const noh_mesh *mesh);
 
-/* Upload straight from the pack. errors  as noh_gl_buffer_create */
+/* Upload a mesh and all its coarser levels straight from the pack. `mesh` may be any level: the finest that will be
+ * there. errors  as noh_gl_buffer_create */
 noh_result noh_gl_mesh_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_mesh *mesh, noh_gl_mesh *out,
                               noh_error *error);
 void noh_gl_mesh_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mesh *mesh);
 
 /* Make it again in a new context (gl_lost.h). errors  as create; it then holds nothing */
 noh_result noh_gl_mesh_restore(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mesh *mesh, noh_error *error);
+
+/* What a draw of a level takes: that level, the finest that is there where it is not, past the last the coarsest.
+ * first  byte of the index buffer at which its indices begin; a submesh's first_index counts from there */
+noh_mesh noh_gl_mesh_level(const noh_gl_mesh *mesh, uint32_t level, size_t *first);
 
 /* GPU bytes of a pack's texture with its mip levels: exact. */
 uint64_t noh_gl_picture_bytes(const noh_texture *texture);
@@ -57,15 +62,16 @@ typedef struct noh_gl_renderer_desc {
     noh_palette_mode palettes; /* noh_gl_skin_plan.mode; 0: nothing is skinned, meshes stand in their bind pose */
     int crowds;                /* noh_gl_draw_crowd will be called: wants NOH_PALETTE_TEXTURE */
     int fewer_influences;      /* bindings will lower `influences` */
+    int fades;                 /* draws will fade (noh_gl_detail): variants that discard pixels beside those that do not */
     int encode_srgb;           /* the shader encodes: for a target that is not sRGB, as WebGL's canvas. 0: the target does */
 } noh_gl_renderer_desc;
 
-#define NOH_GL_VARIANTS_MAX 32u /* a character of one kind of mesh needs 2 to 8 */
+#define NOH_GL_VARIANTS_MAX 64u /* a character of one kind of mesh needs 2 to 8, twice that with fades */
 
 typedef struct noh_gl_renderer {
     const noh_gl_api *gl;
     noh_gl_ledger *ledger;
-    int layers_uint, encode_srgb;
+    int layers_uint, encode_srgb, fades;
     noh_debug_view view;
     noh_gl_texture white; /* 1 x 1, where a material has no texture */
     uint32_t variant_count;
@@ -101,21 +107,32 @@ void noh_gl_draw_begin(const noh_gl_renderer *renderer, const noh_gl_camera *cam
 #define NOH_DRAW_OPAQUE 0
 #define NOH_DRAW_BLENDED 1
 
+/* Which level of detail a draw takes, and which of its pixels. A change of level is faded by two draws, the level that
+ * comes with (0, f) and the one that goes with (f, 1), f as in noh_detail_fade: a pixel that both cover is drawn by
+ * exactly one of them, so that colour and depth are those of one surface. The pattern stands still on the screen. */
+typedef struct noh_gl_detail {
+    uint32_t level; /* as noh_gl_mesh_level takes it; influences are the skin binding's, joints those of its matrices */
+    float from, to; /* pixels are drawn where from <= noise < to, noise in [0, 1); 0 and 1: all. Other values want a
+                     * renderer with `fades` */
+} noh_gl_detail;
+
 /* Draw the submeshes of one pass: first every mesh opaque, then every mesh blended. A mesh of a kind
  * that the renderer was not told of is not drawn.
  * shapes  world[12] rows of 3 x 4; pictures[pack texture_count]
- * morph   where the deltas are; NULL: the rest pose
- * skin    where the joints are; NULL: rigid, or the bind pose */
+ * morph   where the deltas are, accumulated for this level or a finer one; NULL: the rest pose
+ * skin    where the joints are; NULL: rigid, or the bind pose
+ * detail  NULL: the finest level that is there, all pixels */
 void noh_gl_draw_mesh(const noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const float world[12],
-                      const noh_gl_morph_binding *morph, const noh_gl_skin_binding *skin, const noh_gl_texture *pictures,
-                      int pass);
+                      const noh_gl_morph_binding *morph, const noh_gl_skin_binding *skin, const noh_gl_detail *detail,
+                      const noh_gl_texture *pictures, int pass);
 
 /* The same for `count` instances of one mesh, from the one that `first` is the binding of: one draw per submesh for
  * all. Each stands where noh_gl_skin_place put it. Rigid meshes too. morph: any instance's binding. Blended
  * submeshes of a crowd are not sorted.
  * errors  none; palettes are in a texture, or nothing is drawn */
 void noh_gl_draw_crowd(const noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph,
-                       const noh_gl_skin_binding *first, uint32_t count, const noh_gl_texture *pictures, int pass);
+                       const noh_gl_skin_binding *first, uint32_t count, const noh_gl_detail *detail,
+                       const noh_gl_texture *pictures, int pass);
 
 /* Back to no program, no vertex array, no textures, no uniform buffer, no depth or cull test, no blending. */
 void noh_gl_draw_end(const noh_gl_renderer *renderer);

@@ -14,10 +14,21 @@ static uint64_t attribute_bytes(const noh_mesh *mesh)
     return (uint64_t)mesh->header->vertex_count * mesh->header->attribute_stride;
 }
 
+/* Of this level and all coarser ones: they follow each other in the pack. */
+static uint64_t index_count(const noh_mesh *mesh)
+{
+    const noh_mesh_header *h = mesh->header;
+    uint64_t count = h->index_count;
+    for (uint32_t k = h->level + 1u; k < h->level_count; k++) {
+        count += h[k - h->level].index_count;
+    }
+    return count;
+}
+
 /* A mesh without triangles still gets a buffer: GL has none of zero bytes. */
 static uint64_t index_bytes(const noh_mesh *mesh)
 {
-    uint64_t bytes = (uint64_t)mesh->header->index_count * mesh->header->index_bytes;
+    uint64_t bytes = index_count(mesh) * mesh->header->index_bytes;
     return bytes ? bytes : 4u;
 }
 
@@ -106,7 +117,7 @@ noh_result noh_gl_mesh_create(const noh_gl_api *api, noh_gl_ledger *ledger, cons
 {
     noh_gl_mesh m = { *mesh, 0, { 0, 0 }, { 0, 0 }, { 0, 0 }, { 0, 0 }, 0 };
     static const uint32_t no_indices = 0;
-    const void *indices = mesh->header->index_count ? mesh->indices : &no_indices;
+    const void *indices = index_count(mesh) ? mesh->indices : &no_indices;
     noh_result result;
     m.index_type = mesh->header->index_bytes == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
     api->BindVertexArray(0);
@@ -139,6 +150,14 @@ noh_result noh_gl_mesh_restore(const noh_gl_api *api, noh_gl_ledger *ledger, noh
     noh_mesh view = mesh->mesh;
     noh_gl_mesh_delete(noh_gl_lost_api(), ledger, mesh);
     return noh_gl_mesh_create(api, ledger, &view, mesh, error);
+}
+
+noh_mesh noh_gl_mesh_level(const noh_gl_mesh *mesh, uint32_t level, size_t *first)
+{
+    const noh_mesh_header *resident = mesh->mesh.header;
+    const noh_mesh view = level > resident->level ? noh_mesh_at_level(&mesh->mesh, level) : mesh->mesh;
+    *first = view.header->indices_offset - resident->indices_offset;
+    return view;
 }
 
 void noh_gl_mesh_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mesh *mesh)

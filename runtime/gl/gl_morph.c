@@ -89,6 +89,7 @@ noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_api *api, 
     for (uint32_t i = 0; i < m->mesh_count; i++) {
         for (uint32_t k = 0; k < m->meshes[i].instance_count; k++) {
             m->instance_mesh[m->meshes[i].first_instance + k] = i;
+            m->levels[m->meshes[i].first_instance + k] = (uint8_t)m->meshes[i].mesh.header->level;
         }
     }
     mark_all_dirty(m);
@@ -179,6 +180,19 @@ noh_result noh_gl_morph_weights(noh_gl_morph *morph, uint32_t instance, const fl
         morph->dirty[instance] = 1;
     }
     return NOH_OK;
+}
+
+void noh_gl_morph_level(noh_gl_morph *morph, uint32_t instance, uint32_t level)
+{
+    const noh_mesh_header *h = morph->meshes[morph->instance_mesh[instance]].mesh.header;
+    const uint32_t before = morph->levels[instance];
+    level = level < h->level_count ? level : h->level_count - 1u;
+    level = level > h->level ? level : h->level;
+    morph->levels[instance] = (uint8_t)level;
+    if (level < before) {
+        morph->dirty_count += !morph->dirty[instance];
+        morph->dirty[instance] = 1;
+    }
 }
 
 void noh_gl_morph_update(noh_gl_morph *morph, noh_gl_morph_stats *stats)

@@ -3,6 +3,7 @@
  *   noh_gl_morph_plan     which path, why, and every byte it will take: before any load
  *   noh_gl_morph_init     place it in your memory and make its GL objects
  *   noh_gl_morph_weights  set one instance's weights (cheap when they did not change)
+ *   noh_gl_morph_level    accumulate only what a level of detail of an instance needs
  *   noh_gl_morph_update   accumulate the instances whose weights changed
  *   noh_gl_morph_binding  where a vertex shader finds an instance's deltas
  *   noh_gl_morph_restore  after a lost context
@@ -49,7 +50,8 @@ const char *noh_morph_path_name(noh_morph_path path);
 const char *noh_accumulate_name(noh_accumulate accumulate);
 
 typedef struct noh_gl_morph_desc {
-    const noh_mesh *meshes;          /* [mesh_count]; copied, the packs must stay */
+    const noh_mesh *meshes;          /* [mesh_count]; copied, the packs must stay. May hold several levels of one mesh, each with
+                                      * tiles of its own size: a few instances near, many far. They share the finest one's tables */
     uint32_t mesh_count;
     const uint32_t *instance_counts; /* [mesh_count]; NULL: one of each. 1..NOH_MORPH_INSTANCES_MAX in all */
     noh_morph_path path;             /* 0: the cheapest that the capabilities allow */
@@ -64,7 +66,8 @@ typedef struct noh_gl_morph_plan {
     const char *reason;          /* why this path, in words; a string constant */
     GLenum layer_format;         /* RGBA32F, RGBA16F, RGBA32UI (float bits), RGB32F or RGB16F */
     uint32_t atlas_width, atlas_height;
-    uint32_t instance_count, rect_count, texel_count, pair_count, weight_count;
+    uint32_t instance_count, weight_count;
+    uint32_t rect_count, texel_count, pair_count; /* in the tables, which levels of one mesh share */
     uint64_t cpu_bytes;          /* the block that noh_gl_morph_init wants */
     uint64_t delta_bytes;        /* GPU: delta texels, or the gather entries */
     uint64_t table_bytes;        /* GPU: rectangles, or the gather list starts */
@@ -121,6 +124,14 @@ uint32_t noh_gl_morph_instance(const noh_gl_morph *morph, uint32_t mesh, uint32_
 /* Set weights[target_count of its mesh]; any finite values.
  * errors  ARG a weight is not finite, `where` is its index; nothing is then changed */
 noh_result noh_gl_morph_weights(noh_gl_morph *morph, uint32_t instance, const float *weights, noh_error *error);
+
+/* From now on accumulate only what this level of an instance's mesh needs: its rectangles, rows and lists. Draw the
+ * instance at this level or a coarser one; while two levels fade, this is the finer of both. The level's texels hold
+ * the same bits as at level 0, but for targets that have no rectangles in it at all: they do not move it. The
+ * instance's binding stays as it is.
+ * ranges  0 the full mesh; below the level that the desc has: that one; past the last: the coarsest
+ * Going finer accumulates at the next update; going coarser costs nothing, and shows when the weights change next. */
+void noh_gl_morph_level(noh_gl_morph *morph, uint32_t instance, uint32_t level);
 
 /* Accumulate what changed. stats may be NULL.
  * state   Afterwards: framebuffer 0, vertex array 0, program 0, array buffer 0 and textures of

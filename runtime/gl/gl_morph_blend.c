@@ -73,6 +73,17 @@ static void upload_rects(noh_gl_morph *m, const noh_gl_morph_mesh *mesh)
     }
 }
 
+/* A coarser level's texels are the first ones of each target's: they close up. */
+static void upload_texels(noh_gl_morph *m, const noh_gl_morph_mesh *mesh)
+{
+    uint32_t sent = mesh->first_texel;
+    for (uint32_t t = 0; t < mesh->mesh.header->target_count; t++) {
+        const noh_target *target = &mesh->mesh.targets[t];
+        noh_gl_table_upload(m->gl, &m->deltas, sent, target->texel_count, mesh->mesh.texels + 3u * (size_t)target->first_texel);
+        sent += target->texel_count;
+    }
+}
+
 static noh_result create_tables(noh_gl_morph *m, noh_error *error)
 {
     noh_result result = noh_gl_table_create(m->gl, m->ledger, GL_RGB32UI, m->plan.texel_count, &m->deltas, error);
@@ -81,8 +92,8 @@ static noh_result create_tables(noh_gl_morph *m, noh_error *error)
     }
     for (uint32_t i = 0; !result && i < m->mesh_count; i++) {
         const noh_gl_morph_mesh *mesh = &m->meshes[i];
-        if (mesh->mesh.header->texel_count) {
-            noh_gl_table_upload(m->gl, &m->deltas, mesh->first_texel, mesh->mesh.header->texel_count, mesh->mesh.texels);
+        if (mesh->owner == i && mesh->mesh.header->texel_count) {
+            upload_texels(m, mesh);
             upload_rects(m, mesh);
         }
     }
@@ -124,18 +135,20 @@ static void put_rect_slots(noh_gl_morph *m, uint32_t first_rect, uint32_t rect_c
     *count += rect_count;
 }
 
-/* The active targets of one instance, in index order: the order of the sums is part of the result. */
+/* The active targets of one instance, in index order: the order of the sums is part of the result. The table's
+ * rectangles are those of a level that may be finer: all of its targets' are counted past. */
 static void list_instance(noh_gl_morph *m, uint32_t instance, uint32_t *slot_count, uint32_t *rect_slots, noh_gl_morph_stats *stats)
 {
-    const noh_gl_morph_mesh *mesh = &m->meshes[m->instance_mesh[instance]];
+    const noh_mesh mesh = noh_gl_morph_view(m, instance);
+    const noh_gl_morph_mesh *tables = noh_gl_morph_tables(m, instance);
     const float *weights = m->weights + noh_gl_morph_first_weight(m, instance);
-    uint32_t x, y;
+    uint32_t x, y, first_rect = tables->first_rect;
     noh_gl_morph_tile(m, instance, &x, &y);
-    for (uint32_t t = 0; t < mesh->mesh.header->target_count; t++) {
-        const noh_target *target = &mesh->mesh.targets[t];
+    for (uint32_t t = 0; t < mesh.header->target_count; first_rect += tables->mesh.targets[t++].rect_count) {
+        const noh_target *target = &mesh.targets[t];
         if (weights[t] != 0.0f && target->rect_count) {
             noh_gl_morph_put_slot(m->slots + 4u * (size_t)*slot_count, target, weights[t], x | y << 16);
-            put_rect_slots(m, mesh->first_rect + target->first_rect, target->rect_count, *slot_count, rect_slots);
+            put_rect_slots(m, first_rect, target->rect_count, *slot_count, rect_slots);
             *slot_count += 1;
             stats->targets += 1;
             stats->rects += target->rect_count;
@@ -163,8 +176,8 @@ static void clear_tiles(noh_gl_morph *m)
     }
     m->gl->Enable(GL_SCISSOR_TEST);
     for (uint32_t i = 0; i < m->plan.instance_count; i++) {
-        const noh_mesh_header *h = m->meshes[m->instance_mesh[i]].mesh.header;
-        if (m->dirty[i] && h->morph_height) {
+        const noh_mesh_header *h = m->dirty[i] ? noh_gl_morph_view(m, i).header : NULL;
+        if (h && h->morph_height) {
             uint32_t x, y;
             noh_gl_morph_tile(m, i, &x, &y);
             m->gl->Scissor((GLint)x, (GLint)y, (GLsizei)(1u << h->morph_width_log2), (GLsizei)h->morph_height);

@@ -18,17 +18,17 @@ static void narrow_to_half(void *floats, size_t count)
 
 static void update_instance(noh_gl_morph *m, uint32_t instance, noh_gl_morph_stats *stats)
 {
-    const noh_gl_morph_mesh *mesh = &m->meshes[m->instance_mesh[instance]];
-    const noh_mesh_header *h = mesh->mesh.header;
+    const noh_mesh mesh = noh_gl_morph_view(m, instance);
+    const noh_mesh_header *h = mesh.header;
     const float *weights = m->weights + noh_gl_morph_first_weight(m, instance);
-    noh_morph_cost cost = noh_morph_cost_of(&mesh->mesh, weights);
+    noh_morph_cost cost = noh_morph_cost_of(&mesh, weights);
     int half = m->plan.accumulate == NOH_ACCUMULATE_F16;
     noh_morph_layers layers;
     uint32_t x, y;
-    noh_morph_layers_init(m->staging, m->staging_bytes, &mesh->mesh, &layers, NULL);
-    noh_morph_accumulate(&mesh->mesh, weights, &layers);
+    noh_morph_layers_init(m->staging, m->staging_bytes, &mesh, &layers, NULL);
+    noh_morph_accumulate(&mesh, weights, &layers);
     if (half) {
-        narrow_to_half(m->staging, noh_morph_layers_size(&mesh->mesh) / 4u);
+        narrow_to_half(m->staging, noh_morph_layers_size(&mesh) / 4u);
     }
     noh_gl_morph_tile(m, instance, &x, &y);
     m->gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, (GLint)x, (GLint)y, 0, (GLsizei)(1u << h->morph_width_log2),
@@ -45,7 +45,7 @@ void noh_gl_morph_update_cpu(noh_gl_morph *m, noh_gl_morph_stats *stats)
     m->gl->BindTexture(GL_TEXTURE_2D_ARRAY, m->layers.name);
     m->gl->PixelStorei(GL_UNPACK_ALIGNMENT, 2);
     for (uint32_t i = 0; i < m->plan.instance_count; i++) {
-        if (m->dirty[i] && m->meshes[m->instance_mesh[i]].mesh.header->morph_height) {
+        if (m->dirty[i] && noh_gl_morph_view(m, i).header->morph_height) {
             update_instance(m, i, stats);
         }
     }

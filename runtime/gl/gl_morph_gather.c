@@ -28,9 +28,9 @@ typedef void (*visit_pair)(void *context, uint32_t vertex, uint32_t target, cons
 /* Every delta that is not zero, targets in index order. */
 static void visit_pairs(const noh_mesh *mesh, visit_pair visit, void *context)
 {
-    const uint32_t *words = mesh->texels;
     for (uint32_t t = 0; t < mesh->header->target_count; t++) {
         const noh_rect *rect = mesh->rects + mesh->targets[t].first_rect;
+        const uint32_t *words = mesh->texels + 3u * (size_t)mesh->targets[t].first_texel;
         for (uint32_t r = 0; r < mesh->targets[t].rect_count; r++, rect++) {
             for (uint32_t y = rect->y; y < (uint32_t)rect->y + rect->h; y++) {
                 uint32_t vertex = (y << mesh->header->morph_width_log2) + rect->x;
@@ -97,14 +97,16 @@ static noh_result create_tables(noh_gl_morph *m, noh_error *error)
     uint32_t starts = 0;
     noh_result result;
     for (uint32_t i = 0; i < m->mesh_count; i++) {
-        starts += m->meshes[i].mesh.header->touched_count + 1u;
+        starts += m->meshes[i].owner == i ? m->meshes[i].mesh.header->touched_count + 1u : 0u;
     }
     result = noh_gl_table_create(m->gl, m->ledger, GL_RGBA32UI, m->plan.pair_count, &m->deltas, error);
     if (!result) {
         result = noh_gl_table_create(m->gl, m->ledger, GL_R32UI, starts, &m->rects, error);
     }
     for (uint32_t i = 0; !result && i < m->mesh_count; i++) {
-        upload_lists(m, &m->meshes[i]);
+        if (m->meshes[i].owner == i) {
+            upload_lists(m, &m->meshes[i]);
+        }
     }
     return result;
 }
@@ -121,21 +123,23 @@ noh_result noh_gl_morph_init_gather(noh_gl_morph *m, char *log, size_t log_bytes
 
 /* ---- updating ---- */
 
-/* The instance's row of slots, all targets, and its tile. */
+/* The instance's row of slots, all targets, and its tile. Lists may be those of a finer level, and name targets that
+ * this one does without: they weigh nothing. */
 static void list_instance(noh_gl_morph *m, uint32_t instance, uint32_t *tile, noh_gl_morph_stats *stats)
 {
-    const noh_gl_morph_mesh *mesh = &m->meshes[m->instance_mesh[instance]];
-    const noh_mesh_header *h = mesh->mesh.header;
+    const noh_mesh mesh = noh_gl_morph_view(m, instance);
+    const noh_mesh_header *h = mesh.header;
     uint32_t first = noh_gl_morph_first_weight(m, instance), x, y;
     for (uint32_t t = 0; t < h->target_count; t++) {
-        noh_gl_morph_put_slot(m->slots + 4u * (size_t)(first + t), &mesh->mesh.targets[t], m->weights[first + t],
-                              noh_gl_morph_target_bits(&mesh->mesh.targets[t]));
-        stats->targets += m->weights[first + t] != 0.0f;
+        const noh_target *target = &mesh.targets[t];
+        const float weight = target->rect_count ? m->weights[first + t] : 0.0f;
+        noh_gl_morph_put_slot(m->slots + 4u * (size_t)(first + t), target, weight, noh_gl_morph_target_bits(target));
+        stats->targets += weight != 0.0f;
     }
     noh_gl_morph_tile(m, instance, &x, &y);
     tile[0] = x | y << 16;
     tile[1] = first;
-    tile[2] = mesh->first_start;
+    tile[2] = noh_gl_morph_tables(m, instance)->first_start;
     tile[3] = h->touched_count | h->morph_width_log2 << 24;
     stats->pairs += h->pair_count;
     stats->texels += h->touched_count;
@@ -147,7 +151,7 @@ void noh_gl_morph_update_gather(noh_gl_morph *m, noh_gl_morph_stats *stats)
 {
     uint32_t tiles = 0;
     for (uint32_t i = 0; i < m->plan.instance_count; i++) {
-        if (m->dirty[i] && m->meshes[m->instance_mesh[i]].mesh.header->touched_count) {
+        if (m->dirty[i] && noh_gl_morph_view(m, i).header->touched_count) {
             list_instance(m, i, (uint32_t *)m->staging + 4u * (size_t)tiles, stats);
             tiles += 1;
         }

@@ -17,6 +17,8 @@ typedef struct noh_gl_morph_mesh {
     uint32_t instance_count, first_instance;
     uint32_t first_weight;  /* into weights */
     uint32_t columns, band_y;
+    uint32_t owner;         /* the mesh of the set whose part of the tables this one uses: itself, or a finer level */
+    /* of an owner, where its part begins */
     uint32_t first_rect;    /* into the rect table (blended paths) */
     uint32_t first_texel;   /* into the delta table */
     uint32_t first_start;   /* into the starts table (gather) */
@@ -31,6 +33,7 @@ struct noh_gl_morph {
     noh_gl_morph_mesh *meshes;  /* [mesh_count] */
     uint32_t *instance_mesh;    /* [instance_count] */
     uint8_t *dirty;             /* [instance_count] */
+    uint8_t *levels;            /* [instance_count], that are accumulated; none is finer than its mesh */
     uint32_t dirty_count;
     float *weights;             /* [weight_count], instance after instance */
     uint32_t *slots;            /* [weight_count][4] staging of the slot table */
@@ -62,6 +65,11 @@ int noh_gl_morph_wide(const noh_gl_morph_plan *plan);
  * 4 x 4, and the converter cut the rectangles to those blocks: every tile must lie on them as the
  * first one does (mrt, 100 heads on llvmpipe: an eighth less work). */
 uint32_t noh_gl_morph_pitch(const noh_mesh_header *header);
+
+/* An instance's mesh at the level that is accumulated. */
+noh_mesh noh_gl_morph_view(const noh_gl_morph *m, uint32_t instance);
+/* The mesh of the set whose part of the tables an instance uses. */
+const noh_gl_morph_mesh *noh_gl_morph_tables(const noh_gl_morph *m, uint32_t instance);
 
 void noh_gl_morph_tile(const noh_gl_morph *m, uint32_t instance, uint32_t *x, uint32_t *y);
 /* Where an instance's weights begin, and so its row of slots in the gather path. */

@@ -196,10 +196,54 @@ static noh_result place_tiles(const noh_gl_morph_desc *desc, uint32_t texture_si
     return NOH_OK;
 }
 
+/* The mesh of the set whose tables hold those of another: the finest level of the same mesh, the first of these. A
+ * level's rectangles, target by target, and its lists by texel are the first of every finer level's. */
+static uint32_t owner_of(const noh_gl_morph_desc *desc, uint32_t index)
+{
+    uint32_t owner = index;
+    for (uint32_t i = 0; i < desc->mesh_count; i++) {
+        const noh_mesh *a = &desc->meshes[i], *b = &desc->meshes[owner];
+        const int same = a->rects == b->rects && a->texels == b->texels;
+        if (same && (a->header->level < b->header->level || (a->header->level == b->header->level && i < owner))) {
+            owner = i;
+        }
+    }
+    return owner;
+}
+
+typedef struct table_sums {
+    uint64_t rects, texels, pairs, starts;
+} table_sums;
+
+/* Where each mesh's part of the tables begins. `meshes` may be NULL. */
+static table_sums place_tables(const noh_gl_morph_desc *desc, noh_gl_morph_mesh *meshes)
+{
+    table_sums sums = { 0, 0, 0, 0 };
+    for (uint32_t i = 0; i < desc->mesh_count; i++) {
+        const noh_mesh_header *h = desc->meshes[i].header;
+        const uint32_t owner = owner_of(desc, i);
+        if (meshes) {
+            meshes[i].owner = owner;
+            meshes[i].first_rect = (uint32_t)sums.rects;
+            meshes[i].first_texel = (uint32_t)sums.texels;
+            meshes[i].first_start = (uint32_t)sums.starts;
+            meshes[i].first_pair = (uint32_t)sums.pairs;
+        }
+        if (owner == i) {
+            sums.rects += h->rect_count;
+            sums.texels += h->texel_count;
+            sums.pairs += h->pair_count;
+            sums.starts += (uint64_t)h->touched_count + 1u;
+        }
+    }
+    return sums;
+}
+
 noh_result noh_gl_morph_layout(const noh_gl_morph_desc *desc, uint32_t texture_size_max, noh_gl_morph_mesh *meshes,
                                noh_gl_morph_plan *plan, noh_error *error)
 {
-    uint64_t weights = 0, rects = 0, texels = 0, pairs = 0, starts = 0;
+    const table_sums sums = place_tables(desc, meshes);
+    uint64_t weights = 0;
     plan->instance_count = 0;
     for (uint32_t i = 0; i < desc->mesh_count; i++) {
         const noh_mesh_header *h = desc->meshes[i].header;
@@ -210,27 +254,19 @@ noh_result noh_gl_morph_layout(const noh_gl_morph_desc *desc, uint32_t texture_s
             m->instance_count = count;
             m->first_instance = plan->instance_count;
             m->first_weight = (uint32_t)weights;
-            m->first_rect = (uint32_t)rects;
-            m->first_texel = (uint32_t)texels;
-            m->first_start = (uint32_t)starts;
-            m->first_pair = (uint32_t)pairs;
         }
         plan->instance_count += count;
         weights += (uint64_t)count * h->target_count;
-        rects += h->rect_count;
-        texels += h->texel_count;
-        pairs += h->pair_count;
-        starts += (uint64_t)h->touched_count + 1u;
     }
-    if (weights > NOH_GL_TABLE_TEXELS_MAX || rects > NOH_GL_TABLE_TEXELS_MAX || texels > NOH_GL_TABLE_TEXELS_MAX ||
-        starts > NOH_GL_TABLE_TEXELS_MAX) {
+    if (weights > NOH_GL_TABLE_TEXELS_MAX || sums.rects > NOH_GL_TABLE_TEXELS_MAX || sums.texels > NOH_GL_TABLE_TEXELS_MAX ||
+        sums.starts > NOH_GL_TABLE_TEXELS_MAX) {
         return noh_fail(error, NOH_ERR_LIMIT, "more weights, rectangles or delta texels than a table texture holds",
-                        NOH_GL_TABLE_TEXELS_MAX, weights > texels ? weights : texels);
+                        NOH_GL_TABLE_TEXELS_MAX, weights > sums.texels ? weights : sums.texels);
     }
     plan->weight_count = (uint32_t)weights;
-    plan->rect_count = (uint32_t)rects;
-    plan->texel_count = (uint32_t)texels;
-    plan->pair_count = (uint32_t)pairs;
+    plan->rect_count = (uint32_t)sums.rects;
+    plan->texel_count = (uint32_t)sums.texels;
+    plan->pair_count = (uint32_t)sums.pairs;
     return place_tiles(desc, texture_size_max, meshes, plan, error);
 }
 
@@ -291,15 +327,12 @@ void noh_gl_morph_carve(noh_arena *arena, const noh_gl_morph_desc *desc, const n
     to->weights = (float *)noh_arena_carve(arena, 4u * (size_t)plan->weight_count, 4);
     to->instance_mesh = (uint32_t *)noh_arena_carve(arena, 4u * (size_t)plan->instance_count, 4);
     to->dirty = (uint8_t *)noh_arena_carve(arena, plan->instance_count, 1);
+    to->levels = (uint8_t *)noh_arena_carve(arena, plan->instance_count, 1);
 }
 
 static void set_gpu_bytes(const noh_gl_morph_desc *desc, noh_gl_morph_plan *plan)
 {
     noh_gl_texture_desc layers = { 0, 0, 0, 0, 0, 0, 0 };
-    uint32_t starts = 0;
-    for (uint32_t i = 0; i < desc->mesh_count; i++) {
-        starts += desc->meshes[i].header->touched_count + 1u;
-    }
     layers.format = plan->layer_format;
     layers.width = plan->atlas_width;
     layers.height = plan->atlas_height;
@@ -307,7 +340,7 @@ static void set_gpu_bytes(const noh_gl_morph_desc *desc, noh_gl_morph_plan *plan
     plan->layer_bytes = noh_gl_texture_bytes(&layers);
     if (plan->path == NOH_MORPH_GATHER) {
         plan->delta_bytes = noh_gl_table_bytes(GL_RGBA32UI, plan->pair_count);
-        plan->table_bytes = noh_gl_table_bytes(GL_R32UI, starts);
+        plan->table_bytes = noh_gl_table_bytes(GL_R32UI, (uint32_t)place_tables(desc, NULL).starts);
         plan->stream_bytes = 16u * (uint64_t)plan->instance_count + noh_gl_table_bytes(GL_RGBA32UI, plan->weight_count);
     } else if (plan->path != NOH_MORPH_CPU) {
         plan->delta_bytes = noh_gl_table_bytes(GL_RGB32UI, plan->texel_count);

@@ -15,6 +15,17 @@ void noh_gl_morph_tile(const noh_gl_morph *m, uint32_t instance, uint32_t *x, ui
     *y = mesh->band_y + i / mesh->columns * noh_gl_morph_pitch(mesh->mesh.header);
 }
 
+noh_mesh noh_gl_morph_view(const noh_gl_morph *m, uint32_t instance)
+{
+    const noh_mesh *mesh = &m->meshes[m->instance_mesh[instance]].mesh;
+    return m->levels[instance] > mesh->header->level ? noh_mesh_at_level(mesh, m->levels[instance]) : *mesh;
+}
+
+const noh_gl_morph_mesh *noh_gl_morph_tables(const noh_gl_morph *m, uint32_t instance)
+{
+    return &m->meshes[m->meshes[m->instance_mesh[instance]].owner];
+}
+
 uint32_t noh_gl_morph_first_weight(const noh_gl_morph *m, uint32_t instance)
 {
     const noh_gl_morph_mesh *mesh = &m->meshes[m->instance_mesh[instance]];

@@ -23,7 +23,7 @@ static noh_result create_white(noh_gl_renderer *r, noh_error *error)
 
 /* ---- which variants ---- */
 
-static noh_result want(noh_gl_renderer *r, noh_gl_variant_key key, noh_error *error)
+static noh_result want_one(noh_gl_renderer *r, noh_gl_variant_key key, noh_error *error)
 {
     if (noh_gl_renderer_variant(r, key)) {
         return NOH_OK;
@@ -34,6 +34,17 @@ static noh_result want(noh_gl_renderer *r, noh_gl_variant_key key, noh_error *er
     key.encode_srgb = (uint8_t)r->encode_srgb;
     r->variants[r->variant_count++].key = key;
     return NOH_OK;
+}
+
+/* With every pixel, and where draws fade with some. */
+static noh_result want(noh_gl_renderer *r, noh_gl_variant_key key, noh_error *error)
+{
+    noh_result result = want_one(r, key, error);
+    if (!result && r->fades) {
+        key.fade = 1;
+        result = want_one(r, key, error);
+    }
+    return result;
 }
 
 /* Without joints; with all of its influences; and with each lower number. */
@@ -87,6 +98,7 @@ noh_result noh_gl_renderer_create(const noh_gl_api *api, noh_gl_ledger *ledger, 
     out->ledger = ledger;
     out->layers_uint = desc->layers_uint != 0;
     out->encode_srgb = desc->encode_srgb != 0;
+    out->fades = desc->fades != 0;
     out->view = desc->view;
     for (uint32_t i = 0; i < desc->mesh_count && !result; i++) {
         result = want_mesh(out, desc, &desc->meshes[i], error);

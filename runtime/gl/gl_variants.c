@@ -19,7 +19,7 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
                                          noh_debug_view view)
 {
     const noh_mesh_header *h = mesh->header;
-    noh_gl_variant_key key = { 0, 0, 0, 0, 0, 0, 0, 0, 0 };
+    noh_gl_variant_key key = { 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 };
     if (skin && h->influence_count) {
         key.influences = (uint8_t)h->influence_count;
         key.drawn = drawn_of(h->influence_count, skin->influences);
@@ -38,7 +38,7 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
 
 /* ---- the text of the defines ---- */
 
-#define DEFINES_BYTES 256u /* all of them take 201 */
+#define DEFINES_BYTES 256u /* all of them take 214 */
 
 static size_t put_text(char *text, size_t at, const char *more)
 {
@@ -62,7 +62,8 @@ static void write_defines(noh_gl_variant_key key, char text[DEFINES_BYTES])
     const struct { int on; const char *line; } flags[] = {
         { key.texture, "#define PALETTE_TEXTURE\n" }, { key.dual_quaternion, "#define DUAL_QUATERNION\n" },
         { key.texels, "#define MORPH_TEXELS\n" },     { key.crowd, "#define CROWD\n" },
-        { key.layers_uint, "#define LAYERS_UINT\n" }, { key.encode_srgb, "#define ENCODE_SRGB\n" }
+        { key.layers_uint, "#define LAYERS_UINT\n" }, { key.encode_srgb, "#define ENCODE_SRGB\n" },
+        { key.fade, "#define FADE\n" }
     };
     size_t at = put_digit(text, 0, "#define INFLUENCES ", key.influences);
     at = put_digit(text, at, "#define DRAWN ", key.drawn);
@@ -80,7 +81,7 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
         { "u_view_projection", &v->u_view_projection }, { "u_world", &v->u_world }, { "u_normal", &v->u_normal },
         { "u_uv", &v->u_uv }, { "u_morph", &v->u_morph }, { "u_skin", &v->u_skin }, { "u_camera", &v->u_camera },
         { "u_key", &v->u_key }, { "u_base_color", &v->u_base_color }, { "u_material", &v->u_material },
-        { "u_bounds_min", &v->u_bounds_min }, { "u_bounds_size", &v->u_bounds_size }
+        { "u_bounds_min", &v->u_bounds_min }, { "u_bounds_size", &v->u_bounds_size }, { "u_detail", &v->u_detail }
     };
     for (size_t i = 0; i < sizeof uniforms / sizeof uniforms[0]; i++) {
         *uniforms[i].at = gl->GetUniformLocation(v->program, uniforms[i].name);

@@ -5,13 +5,21 @@
  *   noh_gl_variant_delete
  *   noh_gl_variant_skin     bind an instance's palettes
  *
- * A key is the set of defines that common_skin.glsl, common_layers.glsl and mesh.frag name. */
+ * A key is the set of defines that common_skin.glsl, common_layers.glsl and mesh.frag name. Set `fade` in what
+ * noh_gl_variant_key_of returns where a draw fades. */
 #ifndef NOH_GL_GL_VARIANTS_H
 #define NOH_GL_GL_VARIANTS_H
 
 #include "gl/gl_skin.h"
 
-typedef enum noh_debug_view { NOH_VIEW_LIT, NOH_VIEW_POSITION, NOH_VIEW_NORMAL, NOH_VIEW_TANGENT } noh_debug_view;
+typedef enum noh_debug_view {
+    NOH_VIEW_LIT,
+    NOH_VIEW_POSITION,
+    NOH_VIEW_NORMAL,
+    NOH_VIEW_TANGENT,
+    NOH_VIEW_LOD /* facets in the colour of the level of detail, from 0: white, orange, sky blue, green, yellow, blue,
+                  * vermilion, purple (Okabe and Ito's, which the colour-blind tell apart, with white for black) */
+} noh_debug_view;
 
 typedef struct noh_gl_variant_key {
     uint8_t influences;      /* stored per vertex: 0 (also: the bind pose), 1, 2, 4, 8 */
@@ -22,6 +30,7 @@ typedef struct noh_gl_variant_key {
     uint8_t crowd;
     uint8_t layers_uint;     /* as in noh_gl_morph_binding.is_uint */
     uint8_t view;            /* noh_debug_view */
+    uint8_t fade;            /* draws only some pixels: noh_gl_detail */
     uint8_t encode_srgb;     /* as in noh_gl_renderer_desc */
 } noh_gl_variant_key;
 
@@ -29,7 +38,7 @@ typedef struct noh_gl_variant {
     noh_gl_variant_key key;
     GLuint program;
     GLint u_view_projection, u_world, u_normal, u_uv, u_morph, u_skin, u_camera, u_key, u_base_color, u_material, u_bounds_min,
-        u_bounds_size;
+        u_bounds_size, u_detail;
 } noh_gl_variant;
 
 /* Texture units of mesh.vert and mesh.frag; the uniform block binding is 0. */

@@ -25,6 +25,14 @@ check 'another picture' sh -c '! cmp -s "$1" "$2"' - "$work/rest.png" "$work/smi
 noh render "$pack" -o "$work/zero.png" --size 96x64 --weight smile=1 --weight smile=0
 check 'the last weight of a name holds' cmp "$work/rest.png" "$work/zero.png"
 
+# What the plain renderer can show instead: each another picture.
+for view in none position normal tangent lod; do
+    noh render "$pack" -o "$work/view_$view.png" --size 96x64 --debug $view
+    expect 0 "render --debug $view"
+done
+check 'none is the picture' cmp "$work/view_none.png" "$work/rest.png"
+check 'five different pictures' test "$(cksum "$work"/view_*.png | cut -d' ' -f1 | sort -u | wc -l)" = 5
+
 # Equal sums make equal pictures, on the driver's every path.
 noh render "$pack" -o "$work/cpu.png" --size 96x64 --weight smile=1 --path cpu
 for path in layered mrt per-layer gather; do

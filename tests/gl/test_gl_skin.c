@@ -299,9 +299,9 @@ static void draw_all(const fixture_skin *f, const noh_gl_renderer *renderer, dra
             noh_gl_morph_binding morph = noh_gl_morph_binding_of(f->morph.morph, instance);
             noh_gl_skin_binding skin = noh_gl_skin_binding_of(f->skin, instance);
             if (kind == CROWD) {
-                noh_gl_draw_crowd(renderer, &f->gl_meshes[i], &morph, &skin, f->copies, NULL, pass);
+                noh_gl_draw_crowd(renderer, &f->gl_meshes[i], &morph, &skin, f->copies, NULL, NULL, pass);
             } else {
-                noh_gl_draw_mesh(renderer, &f->gl_meshes[i], world, &morph, kind == BIND_POSE ? NULL : &skin, NULL, pass);
+                noh_gl_draw_mesh(renderer, &f->gl_meshes[i], world, &morph, kind == BIND_POSE ? NULL : &skin, NULL, NULL, pass);
             }
         }
     }
@@ -318,36 +318,6 @@ static void place_all(const fixture_skin *f)
     noh_gl_skin_update(f->skin);
 }
 
-typedef struct frame {
-    noh_gl_ledger ledger;
-    noh_gl_renderbuffer color, depth;
-    GLuint framebuffer;
-} frame;
-
-static void frame_open(frame *t)
-{
-    const noh_gl_api *gl = &fixture_gpu()->gl;
-    memset(t, 0, sizeof *t);
-    assert_int_equal(noh_gl_renderbuffer_create(gl, &t->ledger, GL_RGBA8, SIDE, SIDE, 0, &t->color, NULL), NOH_OK);
-    assert_int_equal(noh_gl_renderbuffer_create(gl, &t->ledger, GL_DEPTH_COMPONENT24, SIDE, SIDE, 0, &t->depth, NULL), NOH_OK);
-    assert_int_equal(noh_gl_framebuffer_create(gl, &t->ledger, &t->framebuffer, NULL), NOH_OK);
-    gl->BindFramebuffer(GL_FRAMEBUFFER, t->framebuffer);
-    gl->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, t->color.name);
-    gl->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, t->depth.name);
-    gl->Viewport(0, 0, SIDE, SIDE);
-    gl->ClearColor(0.0f, 0.0f, 0.0f, 0.0f);
-    gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-}
-
-static void frame_close(frame *t)
-{
-    const noh_gl_api *gl = &fixture_gpu()->gl;
-    gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
-    noh_gl_framebuffer_delete(gl, &t->ledger, &t->framebuffer);
-    noh_gl_renderbuffer_delete(gl, &t->ledger, &t->depth);
-    noh_gl_renderbuffer_delete(gl, &t->ledger, &t->color);
-}
-
 /* From the front; rgba[SIDE][SIDE][4], to be freed. */
 static uint8_t *picture(const fixture_skin *f, draw_kind kind)
 {
@@ -355,10 +325,10 @@ static uint8_t *picture(const fixture_skin *f, draw_kind kind)
     const noh_gl_api *gl = &fixture_gpu()->gl;
     noh_gl_renderer_desc desc;
     noh_gl_renderer renderer;
-    uint8_t *rgba = test_zeros(SIDE * SIDE * 4);
+    uint8_t *rgba;
     char log[4096];
-    frame t;
-    frame_open(&t);
+    fixture_frame t;
+    fixture_frame_open(&t, SIDE);
     memset(&desc, 0, sizeof desc);
     desc.meshes = f->meshes;
     desc.mesh_count = f->mesh_count;
@@ -370,10 +340,9 @@ static uint8_t *picture(const fixture_skin *f, draw_kind kind)
         draw_all(f, &renderer, kind, pass);
     }
     noh_gl_draw_end(&renderer);
-    gl->ReadPixels(0, 0, SIDE, SIDE, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
+    rgba = fixture_frame_read(&t);
     noh_gl_renderer_delete(&renderer);
-    frame_close(&t);
-    assert_true(noh_gl_ledger_bytes(&t.ledger) == 0 && t.ledger.programs == 0);
+    fixture_frame_close(&t);
     return rgba;
 }
 

@@ -2,6 +2,7 @@
  * load_restore. The picture is the same, the ledger stands as before to the byte, and what else
  * lives in the new context under the old names is left alone. */
 #include "gl_fixture.h"
+#include "level_fixture.h"
 
 #include "load.h"
 #include "null.h"
@@ -20,9 +21,10 @@ typedef struct stage {
     uint8_t *bytes;
     scene s;
     load l;
+    fixture_levels levels; /* bytes NULL: it has none */
 } stage;
 
-static void open_stage(stage *st, const char *driver, fixture_way way, int uint_layers)
+static void open_stage_of(stage *st, const char *driver, fixture_way way, int uint_layers, uint32_t level_count)
 {
     const test_model_desc desc = { 2, 9, 6, TEST_TANGENTS | TEST_UVS | TEST_COLORS | TEST_SCENE, 23 };
     load_options options;
@@ -34,6 +36,10 @@ static void open_stage(stage *st, const char *driver, fixture_way way, int uint_
     st->bytes = test_pack(&desc, &count);
     st->file.path = "a pack in memory";
     st->file.pack = test_open(st->bytes, count);
+    if (level_count > 1) {
+        fixture_levels_open(&st->levels, &st->file.pack, level_count, 2.0f);
+        st->file.pack = st->levels.pack;
+    }
     memset(&options, 0, sizeof options);
     options.path = way.path;
     options.accumulate = way.accumulate;
@@ -44,6 +50,11 @@ static void open_stage(stage *st, const char *driver, fixture_way way, int uint_
     assert_int_equal(load_open(&st->l, &st->g, &st->file, &st->s, &options), 0);
 }
 
+static void open_stage(stage *st, const char *driver, fixture_way way, int uint_layers)
+{
+    open_stage_of(st, driver, way, uint_layers, 1);
+}
+
 static void close_stage(stage *st)
 {
     noh_gl_ledger nothing;
@@ -52,11 +63,26 @@ static void close_stage(stage *st)
     assert_int_equal(st->g.gl.GetError(), GL_NO_ERROR);
     assert_memory_equal(&st->g.ledger, &nothing, sizeof nothing);
     scene_free(&st->s);
+    if (st->levels.bytes) fixture_levels_close(&st->levels);
     free(st->bytes);
     gpu_close(&st->g);
 }
 
-static uint8_t *picture(stage *st)
+static void draw(stage *st, const noh_gl_camera *camera, uint32_t level)
+{
+    const noh_gl_detail detail = { level, 0.0f, 1.0f };
+    noh_gl_draw_begin(&st->l.renderer, camera);
+    for (int pass = NOH_DRAW_OPAQUE; pass <= NOH_DRAW_BLENDED; pass++) {
+        for (uint32_t i = 0; i < st->s.item_count; i++) {
+            noh_gl_morph_binding morph = noh_gl_morph_binding_of(st->l.morph.morph, st->l.item_instances[i]);
+            noh_gl_draw_mesh(&st->l.renderer, &st->l.meshes[st->s.items[i].mesh], scene_world(&st->s, &st->file, i), &morph, NULL, &detail,
+                             st->l.pictures, pass);
+        }
+    }
+    noh_gl_draw_end(&st->l.renderer);
+}
+
+static uint8_t *picture_of_level(stage *st, uint32_t level)
 {
     view_options view = { NULL, SIDE, SIDE };
     bounds box = scene_bounds(&st->s, &st->file, 0);
@@ -67,10 +93,15 @@ static uint8_t *picture(stage *st)
     assert_int_equal(load_update(&st->l, NULL), 0);
     assert_int_equal(canvas_open(&c, &st->g, SIDE, SIDE), 0);
     canvas_begin(&c);
-    load_draw(&st->l, &camera);
+    draw(st, &camera, level);
     assert_int_equal(canvas_read(&c, rgba), 0);
     canvas_close(&c);
     return rgba;
+}
+
+static uint8_t *picture(stage *st)
+{
+    return picture_of_level(st, 0);
 }
 
 static uint32_t colours_in(const uint8_t *rgba)
@@ -145,6 +176,35 @@ static void every_path_comes_back(void **state)
     lose_and_restore((fixture_way){ NOH_MORPH_GATHER, NOH_ACCUMULATE_F32 }, 1);
 }
 
+/* Levels of detail, and what each instance accumulates of them. */
+static void levels_come_back(void **state)
+{
+    stage st;
+    (void)state;
+    for (int i = 0; i < FIXTURE_WAYS; i += 2) {
+        open_stage_of(&st, "egl", fixture_ways[i], 0, 3);
+        for (uint32_t k = 0; k < st.s.item_count; k++) noh_gl_morph_level(st.l.morph.morph, st.l.item_instances[k], 1);
+        uint8_t *before = picture_of_level(&st, 1), *coarser = picture_of_level(&st, 2);
+        noh_gl_ledger ledger = st.g.ledger;
+        noh_gl_morph_stats stats;
+        assert_memory_not_equal(before, coarser, SIDE * SIDE * 4);
+        lose(&st);
+        assert_int_equal(load_restore(&st.l), 0);
+        assert_memory_equal(&st.g.ledger, &ledger, sizeof ledger);
+        assert_int_equal(load_update(&st.l, &stats), 0);
+        assert_in_range(stats.pairs, 1, st.s.meshes[0].header[1].pair_count + st.s.meshes[1].header[1].pair_count);
+        uint8_t *after = picture_of_level(&st, 1);
+        assert_memory_equal(before, after, SIDE * SIDE * 4);
+        free(after);
+        after = picture_of_level(&st, 2);
+        assert_memory_equal(coarser, after, SIDE * SIDE * 4);
+        free(after);
+        free(before);
+        free(coarser);
+        close_stage(&st);
+    }
+}
+
 /* The same under the platform that knows which names live: nothing of the old context is touched. */
 static void nothing_old_is_called(void **state)
 {
@@ -197,6 +257,7 @@ int main(int argument_count, char **arguments)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_path_comes_back),
+        cmocka_unit_test(levels_come_back),
         cmocka_unit_test(nothing_old_is_called),
         cmocka_unit_test(a_refusal_leaves_nothing),
     };

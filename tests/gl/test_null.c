@@ -1,7 +1,7 @@
 /* The library on a GL that does nothing and checks every call (platform/null.h): whole loads,
  * frames and deletions without a violation, every object labelled and given back, every pass in
  * a debug group, and frames that make no object. And the checks themselves: each finds its lie. */
-#include "support.h"
+#include "level_fixture.h"
 
 #include "load.h"
 #include "null.h"
@@ -169,6 +169,79 @@ static void every_path_keeps_the_order(void **state)
     file.path = "a pack in memory";
     file.pack = test_open(bytes, count);
     for (size_t i = 0; i < TEST_COUNT(ways); i++) load_and_draw(&file, &ways[i]);
+    free(bytes);
+}
+
+/* ---- levels of detail ---- */
+
+/* Instances at levels that go round, drawn in two fading parts. */
+static void draw_levels(load *l, const scene *s, const noh_gl_renderer *r, uint32_t number)
+{
+    noh_gl_camera camera;
+    memset(&camera, 0, sizeof camera);
+    for (uint32_t i = 0; i < s->item_count; i++) noh_gl_morph_level(l->morph.morph, l->item_instances[i], (number + i) % 4u);
+    assert_int_equal(load_update(l, NULL), 0);
+    noh_gl_draw_begin(r, &camera);
+    for (uint32_t i = 0; i < 2u * s->item_count; i++) {
+        const noh_gl_detail part = { (number + i) % 4u, i % 2u ? 0.4f : 0.0f, i % 2u ? 1.0f : 0.4f };
+        noh_gl_morph_binding morph = noh_gl_morph_binding_of(l->morph.morph, l->item_instances[i / 2u]);
+        noh_gl_draw_mesh(r, &l->meshes[s->items[i / 2u].mesh], scene_world(s, l->file, i / 2u), &morph, NULL, &part, l->pictures, NOH_DRAW_OPAQUE);
+    }
+    noh_gl_draw_end(r);
+}
+
+/* No index past its buffer, no object in a frame, nothing outside the groups. */
+static void load_and_draw_levels(const pack_file *file, noh_morph_path path)
+{
+    noh_gl_renderer_desc desc;
+    noh_gl_renderer renderer;
+    load_options options;
+    gpu g;
+    scene s;
+    load l;
+    memset(&options, 0, sizeof options);
+    memset(&desc, 0, sizeof desc);
+    open_null(&g);
+    all_abilities(&g.caps);
+    options.path = path;
+    assert_int_equal(scene_init(&s, file), 0);
+    assert_int_equal(load_open(&l, &g, file, &s, &options), 0);
+    desc.meshes = s.meshes;
+    desc.mesh_count = file->pack.mesh_count;
+    desc.fades = 1;
+    assert_int_equal(noh_gl_renderer_create(&g.gl, &g.ledger, &desc, &renderer, NULL, 0, NULL), NOH_OK);
+    assert_int_equal(report_of(&g).unlabelled, 0);
+    for (uint32_t number = 0; number < 8; number++) {
+        set_weights(&s, number, 2);
+        noh_null_count_anew(g.context);
+        draw_levels(&l, &s, &renderer, number);
+        assert_int_equal(report_of(&g).allocations, 0);
+        assert_int_equal(report_of(&g).outside, 0);
+    }
+    noh_gl_renderer_delete(&renderer);
+    load_close(&l);
+    expect_clean(&g);
+    expect_nothing_lives(&g);
+    scene_free(&s);
+    gpu_close(&g);
+}
+
+static void levels_keep_the_order(void **state)
+{
+    const test_model_desc desc = { 3, 7, 9, TEST_TANGENTS | TEST_UVS | TEST_COLORS | TEST_SCENE, 11 };
+    const noh_morph_path paths[] = { NOH_MORPH_MRT, NOH_MORPH_GATHER, NOH_MORPH_CPU };
+    size_t count;
+    uint8_t *bytes = test_pack(&desc, &count);
+    const noh_pack pack = test_open(bytes, count);
+    fixture_levels levels;
+    pack_file file;
+    (void)state;
+    memset(&file, 0, sizeof file);
+    fixture_levels_open(&levels, &pack, 3, 2.0f);
+    file.path = "a pack in memory";
+    file.pack = levels.pack;
+    for (size_t i = 0; i < TEST_COUNT(paths); i++) load_and_draw_levels(&file, paths[i]);
+    fixture_levels_close(&levels);
     free(bytes);
 }
 
@@ -437,6 +510,7 @@ int main(int argument_count, char **arguments)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_probe_calls_in_order),
         cmocka_unit_test(every_path_keeps_the_order),
+        cmocka_unit_test(levels_keep_the_order),
         cmocka_unit_test(each_lie_is_found),
     };
     if (argument_count > 1) cmocka_set_test_filter(arguments[1]);

@@ -68,7 +68,8 @@ static double brightness(stage *st, int reset_light)
         gl->UseProgram(st->l.renderer.variants[i].program);
         gl->Uniform3f(st->l.renderer.variants[i].u_key, 0.0f, 0.0f, 0.0f);
     }
-    noh_gl_draw_mesh(&st->l.renderer, &st->l.meshes[0], scene_world(&st->s, &st->file, 0), &morph, NULL, st->l.pictures, NOH_DRAW_OPAQUE);
+    noh_gl_draw_mesh(&st->l.renderer, &st->l.meshes[0], scene_world(&st->s, &st->file, 0), &morph, NULL, NULL, st->l.pictures,
+                     NOH_DRAW_OPAQUE);
     noh_gl_draw_end(&st->l.renderer);
     assert_int_equal(canvas_read(&st->c, rgba), 0);
     for (size_t i = 0; i < (size_t)SIDE * SIDE; i++) {

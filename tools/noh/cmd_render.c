@@ -17,15 +17,15 @@ typedef struct render_args {
 
 static int parse_debug(const char *text, noh_debug_view *view)
 {
-    static const char *const names[] = { "none", "position", "normal", "tangent" };
+    static const char *const names[] = { "none", "position", "normal", "tangent", "lod" };
     *view = NOH_VIEW_LIT;
-    for (int i = 0; text && i < 4; i++) {
+    for (int i = 0; text && i < 5; i++) {
         if (strcmp(text, names[i]) == 0) {
             *view = (noh_debug_view)i;
             return 0;
         }
     }
-    return text ? tool_usage("--debug wants none, position, normal or tangent, not '%s'", text) : 0;
+    return text ? tool_usage("--debug wants none, position, normal, tangent or lod, not '%s'", text) : 0;
 }
 
 static int read_args(int argc, char **argv, render_args *a)

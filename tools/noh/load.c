@@ -347,7 +347,7 @@ void load_draw(load *l, const noh_gl_camera *camera)
             noh_gl_morph_binding binding = noh_gl_morph_binding_of(l->morph.morph, l->item_instances[i]);
             noh_gl_skin_binding skin;
             noh_gl_draw_mesh(&l->renderer, &l->meshes[l->scene->items[i].mesh], scene_world(l->scene, l->file, i), &binding,
-                             load_skin_binding(l, i, &skin), l->pictures, pass);
+                             load_skin_binding(l, i, &skin), NULL, l->pictures, pass);
         }
     }
     noh_gl_draw_end(&l->renderer);

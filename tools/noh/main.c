@@ -23,7 +23,7 @@ static const struct verb {
     { "render", verb_render,
       "PACK -o OUT.png [--size 512x512] [--weight NAME=V]... [--clip NAME]... [--time S] [--anim PACK]\n"
       "                 [--path P] [--accumulate auto|f32|f16] [--driver egl|osmesa|angle|glfw]\n"
-      "                 [--camera face|body|AZ,EL,DIST] [--debug none|position|normal|tangent] [--bones] [--lod K]",
+      "                 [--camera face|body|AZ,EL,DIST] [--debug none|position|normal|tangent|lod] [--bones] [--lod K]",
       "a picture" },
     { "sheet", verb_sheet, "PACK -o OUT.png [--clip NAME... [--anim PACK] [--tiles 24] | --target NAME[=V]...] [--tile 192] [--columns N] [--camera face]\n"
       "                 [--blend CLIP | --to CLIP [--transition fade|inertia] [--over 0.3]] [--bones]\n"

@@ -181,9 +181,10 @@ static void draw_pass(const skin_work *w, int pass)
         noh_gl_skin_binding skin = noh_gl_skin_binding_of(w->set->skin, k);
         skin.influences = w->influences == NOH_NONE ? 0 : w->influences;
         if (w->crowd) {
-            noh_gl_draw_crowd(&w->set->renderer, &b->gl_mesh, NULL, &skin, w->instances, b->pictures, pass);
+            noh_gl_draw_crowd(&w->set->renderer, &b->gl_mesh, NULL, &skin, w->instances, NULL, b->pictures, pass);
         } else {
-            noh_gl_draw_mesh(&w->set->renderer, &b->gl_mesh, world, NULL, w->influences == NOH_NONE ? NULL : &skin, b->pictures, pass);
+            noh_gl_draw_mesh(&w->set->renderer, &b->gl_mesh, world, NULL, w->influences == NOH_NONE ? NULL : &skin, NULL,
+                             b->pictures, pass);
         }
     }
 }
