@@ -28,7 +28,7 @@ for program in Xvfb xdotool; do
     fi
 done
 # -noreset: between two programs it would begin anew, and refuse whoever comes just then.
-Xvfb -noreset -displayfd 3 -screen 0 1280x800x24 3>"$work/display" >"$work/xvfb" 2>&1 &
+Xvfb -noreset -displayfd 3 -screen 0 1800x1000x24 3>"$work/display" >"$work/xvfb" 2>&1 &
 xvfb=$!
 trap 'kill $xvfb 2>/dev/null; rm -rf "$work"' EXIT
 tries=0
@@ -132,17 +132,38 @@ drag() { # X0 Y0 X1 Y1 BUTTON
     figure
 }
 
+open_viewer() { # SIZE: sets $viewer, $window
+    "$build/noh" view "$mask" --size "$1" >"$work/out" 2>"$work/err" &
+    viewer=$!
+    trap 'kill $viewer $xvfb 2>/dev/null; rm -rf "$work"' EXIT
+    find_window
+}
+find_window() {
+    window=$(timeout 60 xdotool search --sync --onlyvisible --pid $viewer 2>/dev/null | tail -n 1)
+    [ -z "$window" ] || timeout 20 xdotool windowfocus --sync "$window"
+}
+# F10 throws the context away, as a driver may: all of it is made again, in another window.
+lose() {
+    lost=$window
+    xdotool key F10
+    tries=0
+    while find_window; [ "${window:-$lost}" = "$lost" ] && [ $tries -lt 50 ] && kill -0 $viewer 2>/dev/null; do sleep 0.2; tries=$((tries + 1)); done
+}
+close_viewer() { # NAME
+    xdotool key Escape
+    wait $viewer
+    code=$?
+    expect 0 "$1"
+    check 'GL had nothing to say' sh -c '! grep -q "^noh: GL" "$1"' - "$work/err"
+}
+
 cd "$work" || exit 1
-"$build/noh" view "$mask" --size 1280x800 >"$work/out" 2>"$work/err" &
-viewer=$!
-trap 'kill $viewer $xvfb 2>/dev/null; rm -rf "$work"' EXIT
-window=$(timeout 60 xdotool search --sync --onlyvisible --pid $viewer 2>/dev/null | tail -n 1)
+open_viewer 1280x800
 check 'a window opens' test -n "$window"
 if [ -z "$window" ]; then
     sed 's/^/# /' "$work/err"
     finish
 fi
-timeout 20 xdotool windowfocus --sync "$window"
 
 figure
 rest=$shot
@@ -203,12 +224,20 @@ tries=0
 while [ ! -f "$work/noh-window-$shots.png" ] && [ $tries -lt 100 ]; do sleep 0.1; tries=$((tries + 1)); done
 check 'F12 saves the window' test "$(png_size "$work/noh-window-$shots.png")" = 1280x800
 
+lose
+check 'F10 loses the context, and a new one comes' test "${window:-$lost}" != "$lost"
+figure
+check 'in which the figure is as it was, drawn the same way' same "$paused" "$shot"
+
 if ${CC:-gcc} "$tests_gl/drop.c" -lX11 -o "$work/drop" >/dev/null 2>&1; then
     before=$shot
     check 'a file can be dropped' "$work/drop" "$window" "$work/leg.bvh"
     figure
     check 'and is shown' differ "$before" "$shot"
     bones=$shot
+    lose
+    figure
+    check 'bones are drawn again after a lost context' same "$bones" "$shot"
     check 'so can one that is no pack' "$work/drop" "$window" "$work/xvfb"
     figure
     check 'and what was shown stays' same "$bones" "$shot"
@@ -220,9 +249,22 @@ else
     skip 'drop' 'no X11 headers to compile a source of drops with'
 fi
 
-xdotool key Escape
-wait $viewer
-code=$?
-expect 0 'Escape ends it'
-check 'GL had nothing to say' sh -c '! grep -q "^noh: GL" "$1"' - "$work/err"
+close_viewer 'Escape ends it'
+
+# ---- twice as many pixels in a point ----
+
+if ! command -v xprop >/dev/null 2>&1; then
+    skip 'a dense screen' 'xprop is not installed'
+    finish
+fi
+xprop -root -f RESOURCE_MANAGER 8s -set RESOURCE_MANAGER 'Xft.dpi: 192'
+rm -f "$work"/noh-*.png
+shots=0
+open_viewer 860x480
+figure
+check 'a dense screen gets more pixels of the figure' test "$(png_size "$shot")" = 400x696
+drag 30 158 500 158
+"$build/noh" render "$mask" -o "$work/smile.png" --size 400x696 --weight smile=1 >/dev/null
+check 'and sliders where they are seen' same "$shot" "$work/smile.png"
+close_viewer 'Escape ends this one too'
 finish

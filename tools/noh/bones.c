@@ -230,6 +230,7 @@ void bones_draw(bones *b, const noh_skeleton *skeleton, const float *matrices, c
     gl->UniformMatrix4fv(b->u_view_projection, 1, GL_FALSE, camera->view_projection);
     gl->Uniform3fv(b->u_key, 1, camera->key);
     gl->Enable(GL_DEPTH_TEST);
+    gl->DepthFunc(GL_LESS);
     gl->BindVertexArray(b->vertex_array);
     gl->DrawArrays(GL_TRIANGLES, 0, (GLsizei)corners);
     gl->BindVertexArray(0);

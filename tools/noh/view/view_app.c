@@ -13,13 +13,18 @@ static void keep_failure(view_app *a, int status)
 
 static void stage_pixels(const view_app *a, int *x, int *y, uint32_t *width, uint32_t *height)
 {
-    const float sx = (float)a->screen.width / a->window_width, sy = (float)a->screen.height / a->window_height;
     float box[4];
     view_app_stage(a, box);
-    *x = (int)(box[0] * sx);
-    *y = (int)((a->window_height - box[3]) * sy);
-    *width = (uint32_t)fmaxf((box[2] - box[0]) * sx, 1.0f);
-    *height = (uint32_t)fmaxf((box[3] - box[1]) * sy, 1.0f);
+    *x = (int)(box[0] * a->scale);
+    *y = (int)((a->window_height - box[3]) * a->scale);
+    *width = (uint32_t)fmaxf((box[2] - box[0]) * a->scale, 1.0f);
+    *height = (uint32_t)fmaxf((box[3] - box[1]) * a->scale, 1.0f);
+}
+
+static void open_timers(view_app *a)
+{
+    noh_gl_timer_init(&a->times.accumulate_timer, &a->gpu.gl, &a->gpu.caps);
+    noh_gl_timer_init(&a->times.draw_timer, &a->gpu.gl, &a->gpu.caps);
 }
 
 int view_app_open(view_app *a, const view_model_desc *desc)
@@ -33,14 +38,14 @@ int view_app_open(view_app *a, const view_model_desc *desc)
     a->screen.height = desc->height;
     a->window_width = (float)desc->width;
     a->window_height = (float)desc->height;
+    a->scale = 1.0f;
     stage_pixels(a, &x, &y, &a->desc.width, &a->desc.height);
     if (!status) status = view_model_open(&a->gpu, &a->desc, &a->model);
     if (status) {
         return status;
     }
     a->wish = a->desc;
-    noh_gl_timer_init(&a->times.accumulate_timer, &a->gpu.gl, &a->gpu.caps);
-    noh_gl_timer_init(&a->times.draw_timer, &a->gpu.gl, &a->gpu.caps);
+    open_timers(a);
     a->times.accumulate = a->times.draw = a->times.accumulate_timer.available ? 0.0 : -1.0;
     view_frame_all(a);
     return 0;
@@ -52,6 +57,21 @@ void view_app_close(view_app *a)
     noh_gl_timer_delete(&a->times.draw_timer, &a->gpu.gl);
     view_model_close(a->model);
     view_screen_close(&a->screen);
+}
+
+void view_app_lost(view_app *a)
+{
+    memset(&a->screen, 0, sizeof a->screen);
+    memset(&a->times.accumulate_timer, 0, sizeof a->times.accumulate_timer);
+    memset(&a->times.draw_timer, 0, sizeof a->times.draw_timer);
+    view_model_lost(a->model, &a->gpu);
+}
+
+int view_app_restore(view_app *a)
+{
+    const int status = view_screen_open(&a->screen, &a->gpu);
+    open_timers(a);
+    return status ? status : view_model_restore(a->model, &a->gpu);
 }
 
 int view_app_show(view_app *a, const char *path)
@@ -238,11 +258,12 @@ static void time_frame(view_times *t)
     t->last_ns = now;
 }
 
-int view_app_frame(view_app *a, float width, float height, double seconds)
+int view_app_frame(view_app *a, float scale, double seconds)
 {
     int x, y, status;
-    a->window_width = width;
-    a->window_height = height;
+    a->scale = scale;
+    a->window_width = (float)a->screen.width / scale;
+    a->window_height = (float)a->screen.height / scale;
     time_frame(&a->times);
     animate(a, seconds);
     status = fit_canvas(a, &x, &y);

@@ -1,6 +1,7 @@
 /* view_app.h: the viewer's state: camera, playing, times, what the panels asked for. No window and no panels.
  *
  *   view_app_open / view_app_close
+ *   view_app_lost, view_app_restore   everything on the GPU again, after a lost context
  *   view_app_show        a pack or a model instead of what is shown
  *   view_app_frame       time moves on, the figure is drawn into the window
  *   view_app_after       what the panels asked for is done
@@ -46,6 +47,7 @@ typedef struct view_app {
     view_model_desc desc; /* how it was opened; path and anim are the caller's */
     orbit orbit;
     float window_width, window_height; /* points */
+    float scale;                       /* pixels in a point */
     int show_panels, show_layers, playing;
     float speed, layer_gain;
     view_times times;
@@ -63,9 +65,13 @@ void view_app_close(view_app *a);
 /* What was shown stays where this fails. */
 int view_app_show(view_app *a, const char *path);
 
-/* width, height: of the window in points; its pixels are in a->screen. seconds: of the clips' time.
+/* The context is gone: names that only it knew are forgotten. Then fill a->gpu for another one and restore, or close. */
+void view_app_lost(view_app *a);
+int view_app_restore(view_app *a);
+
+/* scale: pixels in a point; the window's pixels are in a->screen. seconds: of the clips' time.
  * Prints an error and returns an exit code; 0 on success. */
-int view_app_frame(view_app *a, float width, float height, double seconds);
+int view_app_frame(view_app *a, float scale, double seconds);
 void view_app_after(view_app *a);
 
 /* The part of the window that the figure has: left, top, right, bottom in points. */

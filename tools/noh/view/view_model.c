@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "convert/convert.h"
+#include "gl/gl_lost.h"
 
 /* ---- the file ---- */
 
@@ -181,6 +182,38 @@ int view_model_reload(view_model *m, gpu *g, const view_model_desc *desc)
     m->stage = st;
     m->budget = budget;
     return 0;
+}
+
+void view_model_lost(view_model *m, gpu *g)
+{
+    const noh_gl_api gl = g->gl;
+    m->stage.has_canvas = 0;
+    g->gl = *noh_gl_lost_api();
+    while (m->stage.bones_count) {
+        bones_close(&m->stage.bones[--m->stage.bones_count]);
+    }
+    g->gl = gl;
+}
+
+static int restore_bones(stage *st, gpu *g)
+{
+    int status = 0;
+    for (; st->bones_count < st->scene->player_count && !status; st->bones_count++) {
+        const uint32_t joints = st->scene->players[st->bones_count].skeleton.joint_count;
+        status = joints ? bones_open(&st->bones[st->bones_count], g, joints) : 0;
+    }
+    return status;
+}
+
+int view_model_restore(view_model *m, gpu *g)
+{
+    stage *st = &m->stage;
+    int status = st->bones ? restore_bones(st, g) : load_restore(&st->load);
+    if (!status) {
+        status = canvas_open(&st->canvas, g, st->canvas.width, st->canvas.height);
+        st->has_canvas = !status;
+    }
+    return status;
 }
 
 bounds view_model_bounds(const view_model *m)

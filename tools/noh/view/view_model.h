@@ -57,6 +57,10 @@ void view_model_close(view_model *m);
 /* Make what draws it again, with other options. On failure it draws as before. */
 int view_model_reload(view_model *m, gpu *g, const view_model_desc *desc);
 
+/* The context is gone: names that only it knew are forgotten. Then restore in another one, or close. */
+void view_model_lost(view_model *m, gpu *g);
+int view_model_restore(view_model *m, gpu *g);
+
 /* The box of what is drawn, as it is posed. */
 bounds view_model_bounds(const view_model *m);
 

@@ -1,17 +1,9 @@
 // view_panels.cpp: the panels. Reads and changes view_app; what needs the GPU is asked for through `wish`.
 #include "view/view_panels.h"
+#include "view/view_imgui.h"
 
 #include <cfloat>
-#include <cstddef>
 #include <cstring>
-
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
-#include <imgui.h>
-
-static_assert(sizeof(ImDrawVert) == sizeof(view_vertex) && offsetof(ImDrawVert, uv) == offsetof(view_vertex, uv) &&
-                  offsetof(ImDrawVert, col) == offsetof(view_vertex, color) && sizeof(ImDrawIdx) == sizeof(uint16_t),
-              "view_screen draws ImGui's vertices as they are");
 
 namespace {
 
@@ -19,11 +11,6 @@ const ImVec4 amber(0.93f, 0.70f, 0.36f, 1.0f), red(0.95f, 0.45f, 0.38f, 1.0f);
 
 ImGuiTextFilter target_filter;
 bool mouse_held;
-
-ImTextureID texture_of(GLuint name)
-{
-    return reinterpret_cast<ImTextureID>(static_cast<intptr_t>(name));
-}
 
 // ---- a panel at a fixed place ----
 
@@ -326,7 +313,7 @@ void layers_section(view_app *a)
     const float height = width * static_cast<float>(a->screen.layers_height) / static_cast<float>(a->screen.layers_width);
     for (int i = 0; i < 3; i++) {
         ImGui::BeginGroup();
-        ImGui::Image(texture_of(a->screen.layers[i]), ImVec2(width, height));
+        ImGui::Image(imgui_texture(a->screen.layers[i]), ImVec2(width, height));
         ImGui::TextDisabled("%s", names[i]);
         ImGui::EndGroup();
         if (i < 2) {
@@ -374,126 +361,29 @@ void events_panel(view_app *a)
     ImGui::End();
 }
 
-// ---- input and output ----
-
-void map_keys(ImGuiIO &io)
-{
-    io.KeyMap[ImGuiKey_Tab] = GLFW_KEY_TAB;
-    io.KeyMap[ImGuiKey_LeftArrow] = GLFW_KEY_LEFT;
-    io.KeyMap[ImGuiKey_RightArrow] = GLFW_KEY_RIGHT;
-    io.KeyMap[ImGuiKey_UpArrow] = GLFW_KEY_UP;
-    io.KeyMap[ImGuiKey_DownArrow] = GLFW_KEY_DOWN;
-    io.KeyMap[ImGuiKey_Home] = GLFW_KEY_HOME;
-    io.KeyMap[ImGuiKey_End] = GLFW_KEY_END;
-    io.KeyMap[ImGuiKey_Delete] = GLFW_KEY_DELETE;
-    io.KeyMap[ImGuiKey_Backspace] = GLFW_KEY_BACKSPACE;
-    io.KeyMap[ImGuiKey_Space] = GLFW_KEY_SPACE;
-    io.KeyMap[ImGuiKey_Enter] = GLFW_KEY_ENTER;
-    io.KeyMap[ImGuiKey_Escape] = GLFW_KEY_ESCAPE;
-    io.KeyMap[ImGuiKey_A] = GLFW_KEY_A;
-}
-
-void take_input(const view_app *a, const view_input *input, double seconds)
-{
-    ImGuiIO &io = ImGui::GetIO();
-    io.DisplaySize = ImVec2(a->window_width, a->window_height);
-    io.DeltaTime = seconds > 0.0 ? static_cast<float>(seconds) : 1.0f / 60.0f;
-    io.MousePos = ImVec2(input->mouse[0], input->mouse[1]);
-    for (int i = 0; i < 3; i++) {
-        io.MouseDown[i] = input->buttons[i] != 0;
-    }
-    io.MouseWheel = input->wheel;
-    for (size_t k = 0; k < sizeof input->keys; k++) {
-        io.KeysDown[k] = input->keys[k] != 0;
-    }
-    io.KeyCtrl = input->keys[GLFW_KEY_LEFT_CONTROL] || input->keys[GLFW_KEY_RIGHT_CONTROL];
-    io.KeyShift = input->keys[GLFW_KEY_LEFT_SHIFT] || input->keys[GLFW_KEY_RIGHT_SHIFT];
-    for (int i = 0; i < input->letter_count; i++) {
-        io.AddInputCharacter(input->letters[i]);
-    }
-}
-
-void draw_panels(view_app *a)
-{
-    const ImDrawData *data = ImGui::GetDrawData();
-    view_triangles_begin(&a->screen, a->window_width, a->window_height);
-    for (int i = 0; i < data->CmdListsCount; i++) {
-        const ImDrawList *list = data->CmdLists[i];
-        view_triangles_list(&a->screen, reinterpret_cast<const view_vertex *>(list->VtxBuffer.Data),
-                            static_cast<size_t>(list->VtxBuffer.Size), list->IdxBuffer.Data, static_cast<size_t>(list->IdxBuffer.Size));
-        for (const ImDrawCmd &command : list->CmdBuffer) {
-            const float clip[4] = { command.ClipRect.x, command.ClipRect.y, command.ClipRect.z, command.ClipRect.w };
-            view_triangles_draw(&a->screen, clip, static_cast<GLuint>(reinterpret_cast<intptr_t>(command.GetTexID())), command.IdxOffset,
-                                command.ElemCount);
-        }
-    }
-    view_triangles_end(&a->screen);
-}
-
-void set_style()
-{
-    ImGuiStyle &style = ImGui::GetStyle();
-    ImGui::StyleColorsDark();
-    style.WindowRounding = 0.0f;
-    style.WindowBorderSize = 0.0f;
-    style.FrameRounding = 2.0f;
-    style.ItemSpacing = ImVec2(6.0f, 4.0f);
-    style.Colors[ImGuiCol_WindowBg] = ImVec4(0.13f, 0.13f, 0.14f, 1.0f);
-    style.Colors[ImGuiCol_PopupBg] = ImVec4(0.16f, 0.16f, 0.17f, 1.0f);
-    style.Colors[ImGuiCol_FrameBg] = ImVec4(0.22f, 0.22f, 0.24f, 1.0f);
-    style.Colors[ImGuiCol_FrameBgHovered] = ImVec4(0.30f, 0.30f, 0.32f, 1.0f);
-    style.Colors[ImGuiCol_FrameBgActive] = ImVec4(0.34f, 0.34f, 0.36f, 1.0f);
-    style.Colors[ImGuiCol_Header] = ImVec4(0.26f, 0.24f, 0.21f, 1.0f);
-    style.Colors[ImGuiCol_HeaderHovered] = ImVec4(0.36f, 0.32f, 0.26f, 1.0f);
-    style.Colors[ImGuiCol_HeaderActive] = ImVec4(0.42f, 0.36f, 0.28f, 1.0f);
-    style.Colors[ImGuiCol_Button] = ImVec4(0.30f, 0.28f, 0.25f, 1.0f);
-    style.Colors[ImGuiCol_ButtonHovered] = ImVec4(0.46f, 0.38f, 0.27f, 1.0f);
-    style.Colors[ImGuiCol_ButtonActive] = ImVec4(0.58f, 0.46f, 0.30f, 1.0f);
-    style.Colors[ImGuiCol_SliderGrab] = ImVec4(0.47f, 0.41f, 0.33f, 1.0f);
-    style.Colors[ImGuiCol_SliderGrabActive] = ImVec4(0.70f, 0.50f, 0.22f, 1.0f);
-    style.Colors[ImGuiCol_CheckMark] = amber;
-    style.Colors[ImGuiCol_PlotLines] = amber;
-}
-
 } // namespace
 
-int view_panels_open(view_app *a)
+int view_panels_open(void)
 {
-    unsigned char *rgba = nullptr;
-    int width = 0, height = 0;
-    if (!IMGUI_CHECKVERSION() || !ImGui::CreateContext()) {
-        return tool_fail("view", "Dear ImGui's library and headers differ");
-    }
-    ImGuiIO &io = ImGui::GetIO();
-    io.IniFilename = nullptr; // nothing is written
-    map_keys(io);
-    set_style();
-    io.Fonts->GetTexDataAsRGBA32(&rgba, &width, &height);
-    view_screen_font(&a->screen, static_cast<uint32_t>(width), static_cast<uint32_t>(height), rgba);
-    io.Fonts->SetTexID(texture_of(a->screen.font));
-    return 0;
+    return imgui_open();
 }
 
 void view_panels_close(void)
 {
     target_filter.Clear();
-    if (ImGui::GetCurrentContext()) {
-        ImGui::DestroyContext();
-    }
+    imgui_close();
 }
 
 void view_panels_frame(view_app *a, const view_input *input, double seconds)
 {
-    take_input(a, input, seconds);
-    ImGui::NewFrame();
+    imgui_begin(a, input, seconds);
     if (a->show_panels) {
         targets_panel(a);
         right_panel(a);
         events_panel(a);
     }
     mouse_held = ImGui::IsAnyItemActive() || ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup);
-    ImGui::Render();
-    draw_panels(a);
+    imgui_end(a);
 }
 
 int view_panels_hold_mouse(void)

@@ -19,7 +19,7 @@ typedef struct view_input {
 } view_input;
 
 /* 0, or an exit code after printing. */
-int view_panels_open(view_app *a);
+int view_panels_open(void);
 void view_panels_close(void);
 
 /* Lay them out, take the input, draw them over the window. */

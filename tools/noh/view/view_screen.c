@@ -118,6 +118,7 @@ static GLuint make_texture(const noh_gl_api *gl, uint32_t width, uint32_t height
 void view_screen_font(view_screen *s, uint32_t width, uint32_t height, const uint8_t *rgba)
 {
     const noh_gl_api *gl = &s->g->gl;
+    gl->DeleteTextures(1, &s->font);
     s->font = make_texture(gl, width, height, GL_LINEAR);
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
     gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, (GLsizei)width, (GLsizei)height, GL_RGBA, GL_UNSIGNED_BYTE, rgba);

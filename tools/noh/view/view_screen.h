@@ -31,7 +31,7 @@ typedef struct view_screen {
 /* Prints an error and returns an exit code; 0 on success. */
 int view_screen_open(view_screen *s, gpu *g);
 void view_screen_close(view_screen *s);
-/* The panels' letters: rgba[height][width][4]. */
+/* The panels' letters, instead of those before: rgba[height][width][4]. */
 void view_screen_font(view_screen *s, uint32_t width, uint32_t height, const uint8_t *rgba);
 
 /* x, y: of the lower left corner, pixels. */

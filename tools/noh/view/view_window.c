@@ -2,17 +2,17 @@
 
 #include <string.h>
 
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
-
+#include "view/view_context.h"
 #include "view/view_panels.h"
 
 #define AWAKE_FRAMES 4 /* drawn after an input before a still picture rests */
 #define SETTLE_FRAMES 3 /* until what was clicked shows: press, release, pose */
 
 typedef struct view_window {
-    GLFWwindow *window;
+    view_context context;
     view_app app;
+    float units[2];                        /* points in a unit of the window system */
+    int lose;                              /* the context is to be lost */
     view_input input;
     uint8_t pressed[3], keys_pressed[512]; /* since the last frame: a click may be shorter than one */
     float pressed_at[2];
@@ -21,7 +21,6 @@ typedef struct view_window {
     int awake;
     int save_in[2];                        /* frames until the figure, the window is saved; 0: they are not asked for */
     uint32_t saved;                        /* pictures */
-    int gl_errors;
 } view_window;
 
 static view_window *of(GLFWwindow *window)
@@ -59,9 +58,10 @@ static void on_button(GLFWwindow *window, int button, int action, int mods)
     }
 }
 
-static void on_move(GLFWwindow *window, double x, double y)
+static void on_move(GLFWwindow *window, double window_x, double window_y)
 {
     view_window *w = of(window);
+    const double x = window_x * (double)w->units[0], y = window_y * (double)w->units[1];
     const double dx = x - w->mouse[0], dy = y - w->mouse[1];
     w->mouse[0] = x;
     w->mouse[1] = y;
@@ -100,9 +100,10 @@ static void on_command(view_window *w, int key)
     case GLFW_KEY_SPACE: view_toggle_play(a); break;
     case GLFW_KEY_F: view_frame_all(a); break;
     case GLFW_KEY_TAB: a->show_panels = !a->show_panels; break;
+    case GLFW_KEY_F10: w->lose = 1; break;
     case GLFW_KEY_F11: w->save_in[0] = SETTLE_FRAMES; break;
     case GLFW_KEY_F12: w->save_in[1] = SETTLE_FRAMES; break;
-    case GLFW_KEY_ESCAPE: glfwSetWindowShouldClose(w->window, GLFW_TRUE); break;
+    case GLFW_KEY_ESCAPE: glfwSetWindowShouldClose(w->context.window, GLFW_TRUE); break;
     default: break;
     }
 }
@@ -133,89 +134,6 @@ static void on_drop(GLFWwindow *window, int count, const char **paths)
 static void on_change(GLFWwindow *window)
 {
     of(window);
-}
-
-/* ---- opening ---- */
-
-static void GL_APIENTRY on_gl_message(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length, const GLchar *message,
-                                      const void *user)
-{
-    view_window *w = (view_window *)(uintptr_t)user;
-    (void)source;
-    (void)id;
-    (void)severity;
-    (void)length;
-    if (type == GL_DEBUG_TYPE_ERROR) {
-        w->gl_errors++;
-        tool_fail("GL", "%s", message);
-    }
-}
-
-/* After the probe of the capabilities, which tries what may be refused. */
-static void watch_errors(view_window *w)
-{
-    const noh_gl_api *gl = &w->app.gpu.gl;
-    if (gl->DebugMessageCallback) {
-        gl->Enable(GL_DEBUG_OUTPUT);
-        gl->Enable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
-        gl->DebugMessageCallback(on_gl_message, w);
-    }
-}
-
-static noh_gl_proc find_proc(void *user, const char *name)
-{
-    (void)user;
-    return glfwGetProcAddress(name);
-}
-
-static int fail_glfw(const char *what)
-{
-    const char *reason = NULL;
-    glfwGetError(&reason);
-    return tool_fail("view", "%s: %s", what, reason ? reason : "no reason given");
-}
-
-static GLFWwindow *make_window(const view_run *run)
-{
-    GLFWwindow *window = NULL;
-    for (int version = 32; version >= 30 && !window; version--) {
-        glfwWindowHint(GLFW_CLIENT_API, GLFW_OPENGL_ES_API);
-        glfwWindowHint(GLFW_CONTEXT_CREATION_API, run->native ? GLFW_NATIVE_CONTEXT_API : GLFW_EGL_CONTEXT_API);
-        glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, version / 10);
-        glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, version % 10);
-        glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, GLFW_TRUE);
-        window = glfwCreateWindow((int)run->desc.width, (int)run->desc.height, run->desc.path, NULL, NULL);
-    }
-    return window;
-}
-
-static void listen(view_window *w)
-{
-    glfwSetWindowUserPointer(w->window, w);
-    glfwSetMouseButtonCallback(w->window, on_button);
-    glfwSetCursorPosCallback(w->window, on_move);
-    glfwSetScrollCallback(w->window, on_wheel);
-    glfwSetKeyCallback(w->window, on_key);
-    glfwSetCharCallback(w->window, on_letter);
-    glfwSetDropCallback(w->window, on_drop);
-    glfwSetWindowRefreshCallback(w->window, on_change);
-}
-
-static int open_window(view_window *w, const view_run *run)
-{
-    gpu *g = &w->app.gpu;
-    noh_error error = { NOH_OK, "", 0, 0 };
-    w->window = make_window(run);
-    if (!w->window) {
-        return fail_glfw("no window with OpenGL ES 3");
-    }
-    glfwMakeContextCurrent(w->window);
-    glfwSwapInterval(run->frames ? 0 : 1);
-    if (noh_gl_api_load(&g->gl, find_proc, NULL, &error) || noh_gl_caps_probe(&g->gl, &g->caps, &error)) {
-        return tool_fail_error("view", &error);
-    }
-    watch_errors(w);
-    return 0;
 }
 
 /* ---- the loop ---- */
@@ -252,15 +170,14 @@ static void take_presses(view_window *w, view_input *input)
 static int draw_frame(view_window *w, double seconds)
 {
     view_input input;
-    int width, height, pixels[2], status;
-    glfwGetWindowSize(w->window, &width, &height);
-    glfwGetFramebufferSize(w->window, &pixels[0], &pixels[1]);
-    if (width < 1 || height < 1 || pixels[0] < 1 || pixels[1] < 1) {
-        return 0; /* minimised */
+    float scale;
+    int pixels[2], status;
+    if (!view_context_measure(&w->context, pixels, &scale, w->units)) {
+        return 0;
     }
     w->app.screen.width = (uint32_t)pixels[0];
     w->app.screen.height = (uint32_t)pixels[1];
-    status = view_app_frame(&w->app, (float)width, (float)height, seconds);
+    status = view_app_frame(&w->app, scale, seconds);
     if (status) {
         return status;
     }
@@ -301,11 +218,38 @@ static void wait_events(view_window *w, const view_run *run)
     w->awake -= w->awake > 0;
 }
 
+static void listen(view_window *w)
+{
+    GLFWwindow *window = w->context.window;
+    glfwSetWindowUserPointer(window, w);
+    glfwSetMouseButtonCallback(window, on_button);
+    glfwSetCursorPosCallback(window, on_move);
+    glfwSetScrollCallback(window, on_wheel);
+    glfwSetKeyCallback(window, on_key);
+    glfwSetCharCallback(window, on_letter);
+    glfwSetDropCallback(window, on_drop);
+    glfwSetWindowRefreshCallback(window, on_change);
+    w->awake = AWAKE_FRAMES;
+}
+
+/* Everything on the GPU is made again, in a new window; camera, clips and sliders are where they were. */
+static int restore(view_window *w)
+{
+    int status;
+    view_app_lost(&w->app);
+    status = view_context_reopen(&w->context, w->app.model->path);
+    if (!status) status = view_app_restore(&w->app);
+    if (!status) listen(w);
+    memset(&w->input, 0, sizeof w->input);
+    w->drag = w->lose = 0;
+    return status;
+}
+
 static int loop(view_window *w, const view_run *run)
 {
     uint64_t last = noh_clock_ns();
     int status = 0;
-    for (uint32_t frame = 0; !status && !glfwWindowShouldClose(w->window) && (!run->frames || frame < run->frames); frame++) {
+    for (uint32_t frame = 0; !status && !glfwWindowShouldClose(w->context.window) && (!run->frames || frame < run->frames); frame++) {
         const uint64_t now = noh_clock_ns();
         const double seconds = (double)(now - last) * 1e-9;
         last = now;
@@ -315,8 +259,11 @@ static int loop(view_window *w, const view_run *run)
         }
         save_when_asked(w);
         view_app_after(&w->app);
-        glfwSwapBuffers(w->window);
+        glfwSwapBuffers(w->context.window);
         wait_events(w, run);
+        if (!status && (w->lose || view_context_lost(&w->context))) {
+            status = restore(w);
+        }
     }
     return status;
 }
@@ -324,17 +271,16 @@ static int loop(view_window *w, const view_run *run)
 static int show(view_window *w, const view_run *run)
 {
     int status = view_app_open(&w->app, &run->desc);
-    if (!status) status = view_panels_open(&w->app);
+    if (!status) status = view_panels_open();
     if (!status && run->clip) status = start_clip(&w->app, run->clip);
     if (!status) {
         listen(w);
-        w->awake = AWAKE_FRAMES;
         status = loop(w, run);
     }
     view_panels_close();
     view_app_close(&w->app);
-    if (!status && w->gl_errors) {
-        status = tool_fail("view", "GL reported %d errors", w->gl_errors);
+    if (!status && w->context.errors) {
+        status = tool_fail("view", "GL reported %d errors", w->context.errors);
     }
     return status;
 }
@@ -344,13 +290,11 @@ int view_window_run(const view_run *run)
     static view_window w;
     int status;
     memset(&w, 0, sizeof w);
-    if (!glfwInit()) {
-        return fail_glfw("no display (DISPLAY, or xvfb-run)");
-    }
-    status = open_window(&w, run);
+    w.context.gpu = &w.app.gpu;
+    w.context.native = run->native;
+    w.context.interval = run->frames ? 0 : 1;
+    status = view_context_open(&w.context, run->desc.width, run->desc.height, run->desc.path);
     if (!status) status = show(&w, run);
-    if (w.window) {
-        glfwDestroyWindow(w.window);
-    }
-    return status; /* GLFW stays: drivers do not survive being closed */
+    view_context_close(&w.context);
+    return status;
 }

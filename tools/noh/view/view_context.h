@@ -1,0 +1,39 @@
+/* view_context.h: a GLFW window and its GL context, which a driver may take away.
+ *
+ *   view_context_open / view_context_close
+ *   view_context_lost     whether the context is gone
+ *   view_context_reopen   another window and context in its place
+ *   view_context_measure  the window's size and the screen's density */
+#ifndef NOH_TOOL_VIEW_CONTEXT_H
+#define NOH_TOOL_VIEW_CONTEXT_H
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include "gpu.h"
+
+typedef struct view_context {
+    GLFWwindow *window;                      /* NULL: none is open */
+    gpu *gpu;
+    int native;                              /* the context by GLX or WGL instead of EGL */
+    int interval;                            /* screen refreshes to wait for a swap */
+    GLenum(GL_APIENTRY *reset_status)(void); /* NULL: a loss is not told here */
+    int errors;                              /* that GL reported */
+} view_context;
+
+/* Fills g's table and capabilities; c->gpu, native and interval are the caller's. width, height in points.
+ * Prints an error and returns an exit code; 0 on success. */
+int view_context_open(view_context *c, uint32_t width, uint32_t height, const char *title);
+void view_context_close(view_context *c);
+
+int view_context_lost(const view_context *c);
+
+/* Where the old window was, of the same size: GLFW has no other way to a new context. The same table is filled.
+ * The new one has no callbacks yet. On failure there is no context, and the table only forgets (gl_lost.h). */
+int view_context_reopen(view_context *c, const char *title);
+
+/* pixels[2]: of the framebuffer. scale: pixels in a point. units[2]: points in a unit of the window system, in which it
+ * tells where the mouse is. Returns 0 where the window has no pixels now. */
+int view_context_measure(const view_context *c, int pixels[2], float *scale, float units[2]);
+
+#endif

@@ -1,0 +1,20 @@
+/* view_imgui.h: Dear ImGui fed with the window's input and drawn with view_screen. Its versions differ in this file only. */
+#ifndef NOH_TOOL_VIEW_IMGUI_H
+#define NOH_TOOL_VIEW_IMGUI_H
+
+#include "view/view_panels.h"
+
+#include <imgui.h>
+
+// GL's name of a texture as ImGui keeps it.
+ImTextureID imgui_texture(GLuint name);
+
+// Prints an error and returns an exit code; 0 on success.
+int imgui_open();
+void imgui_close();
+
+// Between the two: the panels.
+void imgui_begin(view_app *a, const view_input *input, double seconds);
+void imgui_end(view_app *a);
+
+#endif
