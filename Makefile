@@ -233,6 +233,7 @@ view: deps-view
 	@$(BUILD)/noh view $(FILE)
 
 check: deps-check
+	@[ "$(DEPS)" = 0 ] || sh tools/angle.sh $(BUILD)/angle
 	@$(MAKE) --no-print-directory -j$(JOBS) all tests $(BUILD)/mask.noh $(BUILD)/demo/puppet.glb $(BUILD)/demo/arm.glb
 	@CC="$(CC)" NOH_BUILD="$(BUILD)" NOH_ASSETS="$(ASSETS)" NOH_SAN="$(SAN)" sh tests/run.sh
 
@@ -270,8 +271,7 @@ web: deps-web
 # Of the mask and of the puppet; or of one pack, if it is named.
 WEB_PACKS   := $(if $(filter file,$(origin WEB_PACK)),$(BUILD)/mask.noh $(BUILD)/demo/puppet.noh,$(WEB_PACK))
 web-check: deps-web
-	@$(MAKE) --no-print-directory $(BUILD)/tests/gl/picture_diff
-	@for pack in $(WEB_PACKS); do $(MAKE) --no-print-directory DEPS=0 web WEB_PACK=$$pack || exit 1; done
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/tests/gl/picture_diff $(WEB_PACKS)
 	@NOH_BUILD="$(BUILD)" sh tests/web.sh $(WEB_PACKS)
 
 web-serve: web

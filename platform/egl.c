@@ -2,8 +2,8 @@
  * a window that the caller made.
  *
  * ANGLE's two libraries are looked for in the folder that the environment
- * variable NOH_ANGLE names (a Chromium installation has them), then where
- * Debian puts Chromium's. */
+ * variable NOH_ANGLE names (tools/angle.sh fills one), then where Debian puts
+ * Chromium's, which has them in some versions. */
 #define EGL_EGL_PROTOTYPES 0
 #include "platforms.h"
 
@@ -22,7 +22,7 @@
 #define ANGLE_DEVICE_SWIFTSHADER 0x3487
 
 #define EGL_HINT "to install on Debian: libegl1 libgles2 libegl-mesa0 libgl1-mesa-dri\n"
-#define ANGLE_HINT "NOH_ANGLE must name the folder that holds ANGLE's libEGL.so and libGLESv2.so\n"
+#define ANGLE_HINT "NOH_ANGLE must name the folder that holds ANGLE's libEGL.so and libGLESv2.so (tools/angle.sh makes one)\n"
 #define DEVICES_MAX 16
 
 /* X(field, the name in its PFNEGL...PROC type) */

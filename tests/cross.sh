@@ -50,11 +50,15 @@ target() {
     fi
     passed=$((passed + 1))
     before=$passed
-    for source in tests/unit/test_*.c; do
+    tests=$(for source in tests/unit/test_*.c; do
         test=$folder/cross/$(basename "$source" .c)
-        [ -f "$test" ] || continue
-        timeout -k 5 600 "$@" "$test" >"$test.tap" 2>&1 </dev/null
-        count "$(basename "$test")" "$test.tap" $?
+        [ ! -f "$test" ] || echo "$test"
+    done)
+    # shellcheck disable=SC2016
+    echo "$tests" | xargs -P "${JOBS:-2}" -I '{}' sh -c \
+        'test=$1; shift; timeout -k 5 900 "$@" "$test" >"$test.tap" 2>&1 </dev/null; echo $? >"$test.code"' sh '{}' "$@"
+    for test in $tests; do
+        count "$(basename "$test")" "$test.tap" "$(cat "$test.code")"
     done
     echo "    libnoh.a builds ($(wc -c <"$folder/libnoh.a") bytes), $((passed - before)) tests passed there"
 }

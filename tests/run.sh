@@ -3,6 +3,7 @@
 #
 #   NOH_BUILD   where the programs are (build)
 #   NOH_ASSETS  models that are not ours to ship; tests that want them skip without
+#   NOH_ANGLE   where ANGLE's libraries are (NOH_BUILD/angle, where tools/angle.sh puts them)
 #   NOH_SAN     the sanitizers that the build has, if any
 #   NOH_TEST    only programs and scripts whose name holds this: NOH_TEST=morph
 #   NOH_LIMIT_S seconds that one program may take (900)
@@ -19,6 +20,7 @@ case $build in /*) ;; *) build=$PWD/$build ;; esac
 case ${NOH_ASSETS:-} in ''|/*) ;; *) NOH_ASSETS=$PWD/$NOH_ASSETS ;; esac
 export NOH_BUILD="$build" NOH_ASSETS="${NOH_ASSETS:-}" NOH_SAN="${NOH_SAN:-}" CC="${CC:-gcc}" NOH_EMBED="$build/embed"
 export CMOCKA_MESSAGE_OUTPUT=TAP
+[ -n "${NOH_ANGLE:-}" ] || [ ! -f "$build/angle/libGLESv2.so" ] || export NOH_ANGLE="$build/angle"
 logs=$build/tests/log
 mkdir -p "$logs"
 

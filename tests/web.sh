@@ -1,6 +1,7 @@
 #!/bin/sh
-# web.sh PACK...: the page of `make web` for each pack in headless Chromium: loaded, moved, played, lost and restored;
-# its canvas compared with `noh render`, its bytes with `noh budget`. `make web-check` runs it. Closes as tests/run.sh does.
+# web.sh PACK...: the page of `make web` for each pack, built and in headless Chromium: loaded, moved, played, lost and
+# restored; its canvas compared with `noh render`, its bytes with `noh budget`. `make web-check` runs it. Closes as
+# tests/run.sh does; skips with the reason where emscripten, Chromium or what drives it cannot be had.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
@@ -12,6 +13,7 @@ leave_out() {
     echo '0 passed, 0 failed, 1 skipped'
     exit 0
 }
+command -v emcc >/dev/null 2>&1 || leave_out 'no emcc here (emscripten)'
 . tests/web/find_browser.sh
 find_browser "$build/web-check" playwright-core
 
@@ -60,7 +62,7 @@ END
 for pack in "$@"; do
     name=$(basename "$pack" .noh) clip=smile time=0.5
     [ "$name" != puppet ] || clip=dance time=3.25
-    check_pack
+    if make --no-print-directory DEPS=0 BUILD="${NOH_BUILD:-build}" web WEB_PACK="$pack"; then check_pack; else not_ok 'the page does not build'; fi
 done
 echo "$passed passed, $failed failed, 0 skipped"
 [ "$failed" = 0 ] && [ "$passed" != 0 ]

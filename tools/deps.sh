@@ -32,6 +32,7 @@ packages_check='libcmocka-dev:unit tests
 ?mesa-vulkan-drivers:a third GL, zink on lavapipe
 ?xdotool:keys and mouse for them
 ?libx11-dev:files dropped on them
+?x11-utils:a dense display
 libosmesa6:a second GL
 binutils:the check of the archive'"'"'s symbols'
 packages_fuzz='clang:libFuzzer
@@ -44,13 +45,15 @@ packages_cross='?gcc-aarch64-linux-gnu:aarch64
 ?qemu-user-static:running both
 ?emscripten:wasm
 ?nodejs:running wasm'
-packages_web='emscripten:the page
+packages_web='?emscripten:the page
 ?nodejs:its test
 ?npm:its test
-?chromium:its test'
+?chromium:its test
+libcmocka-dev:its test'
 
+# Or the command of that name is here from elsewhere.
 installed() {
-    dpkg-query -W -f '${Status}' "$1" 2>/dev/null | grep -q 'install ok installed'
+    command -v "$1" >/dev/null 2>&1 || dpkg-query -W -f '${Status}' "$1" 2>/dev/null | grep -q 'install ok installed'
 }
 
 all=

@@ -50,6 +50,7 @@ for instances in 1 100; do
     done
     check "the parts of the budget add up" awk '
         /"parts"/ { parts = 1 }
+        /"levels"/ { exit }
         /"(cpu|gpu)_bytes"/ { n = $2 + 0; if (parts) sum += n; else whole += n }
         END { exit !(sum == whole && sum > 0) }' "$work/budget.json"
 done

@@ -21,7 +21,9 @@ row() { # NAME DRIVER LACKING ENVIRONMENT...: LACKING paths cannot run there (''
     env "$@" "$build/noh" verify "$mask" --driver "$driver" --json >"$work/out" 2>"$work/err"
     code=$?
     if [ $code != 0 ] && grep -q 'no GL context' "$work/err"; then
-        skip "$name" "$(grep . "$work/err" | tail -n 1 | cut -c 1-120)"
+        reason=$(grep . "$work/err" | tail -n 1 | cut -c 1-120)
+        [ "$driver" != angle ] || reason=$(cat "$build/angle/missing.txt" 2>/dev/null || echo "$reason")
+        skip "$name" "$reason"
         printf '%-34s not here\n' "$name" >>"$table"
         return
     fi

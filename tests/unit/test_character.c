@@ -44,7 +44,7 @@ static void measure_errors(stage *g)
     probe.set = &g->s.set;
     probe.skeleton = &g->s.skeleton;
     probe.joint_reach_m = g->margin;
-    memory = test_zeros(noh_time_lod_measure_size(&probe));
+    memory = test_aligned(NULL, noh_time_lod_measure_size(&probe));
     for (uint32_t m = 0; m < MOTIONS; m++) {
         assert_int_equal(noh_time_lod_measure(memory, noh_time_lod_measure_size(&probe), &probe, m, errors[m], NULL), NOH_OK);
     }
