@@ -47,6 +47,11 @@ static noh_result check_errors(const noh_check *check, const noh_mesh_header *l,
 static noh_result check_full_errors(const noh_check *check, const noh_mesh_header *h)
 {
     const float *errors = &h->level_error_rest;
+    for (unsigned i = 0; i < 3; i++) {
+        if (!(h->influence_errors[i] >= (i ? h->influence_errors[i - 1] : 0.0f)) || !noh_float_finite(h->influence_errors[i])) {
+            return noh_check_fail(check, "error of fewer influences is not finite, or falls", 224u + 4u * i);
+        }
+    }
     for (unsigned i = 0; i < 6; i++) {
         if (!(errors[i] == 0.0f)) {
             return noh_check_fail(check, "full mesh has the error of a level", 200u + 4u * i);

@@ -119,7 +119,9 @@ typedef struct noh_mesh_header {
     float level_error_pairs;      /* with the targets for left and right together, */
     float level_error_motion;     /* over frames of the clips that the pack was built with */
     float level_skipped;          /* what the targets that have no rectangles in this level alone move at most, all at weight 1 */
-    uint32_t reserved[11];
+    float influence_errors[3];    /* how far a vertex is off at most over those frames where only its 4, 2, 1 heaviest joints move it,
+                                   * model units; with levels, else 0 */
+    uint32_t reserved[8];
 } noh_mesh_header;
 
 /* Influences of a vertex, in words. The first joint is the strongest: its weight is

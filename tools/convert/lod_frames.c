@@ -140,22 +140,45 @@ static void joint_matrices(const model *m, const model_node *node, const double 
     }
 }
 
-static void skin_vertex(const model_mesh *mesh, const double *joints, size_t v, float *out)
+/* By its heaviest joints, at most so many. */
+static void skin_vertex(const model_mesh *mesh, const double *joints, size_t v, uint32_t most, float *out)
 {
     const float *p = mesh->position + v * 3u;
-    double sum[3] = { 0.0, 0.0, 0.0 };
-    for (size_t i = v * MODEL_INFLUENCES_MAX; i < (v + 1u) * MODEL_INFLUENCES_MAX; i++) {
+    double sum[3] = { 0.0, 0.0, 0.0 }, total = 0.0;
+    for (size_t i = v * MODEL_INFLUENCES_MAX; i < v * MODEL_INFLUENCES_MAX + most; i++) {
         const double *m = joints + (size_t)mesh->joints[i] * 12u, weight = mesh->joint_weights[i];
         for (int row = 0; row < 3 && weight > 0.0; row++) {
             sum[row] += weight * (m[row] * p[0] + m[3 + row] * p[1] + m[6 + row] * p[2] + m[9 + row]);
         }
+        total += weight;
     }
     for (int row = 0; row < 3; row++) {
-        out[row] = (float)sum[row];
+        out[row] = (float)(most < MODEL_INFLUENCES_MAX ? sum[row] / total : sum[row]);
     }
 }
 
-static int skin_frame(const model *m, uint32_t node, const node_pose *poses, float *out)
+/* Raise errors[LOD_CAPS] to what the caps do to a frame. */
+static void measure_caps(const model_mesh *mesh, const double *joints, const float *frame, float *errors)
+{
+    static const uint32_t caps[LOD_CAPS] = { 4, 2, 1 };
+    for (uint32_t k = 0; k < LOD_CAPS; k++) {
+        for (size_t v = 0; v < mesh->vertex_count && mesh->influence_max > caps[k]; v++) {
+            float capped[3], dx, dy, dz, distance;
+            skin_vertex(mesh, joints, v, caps[k], capped);
+            dx = capped[0] - frame[v * 3u];
+            dy = capped[1] - frame[v * 3u + 1u];
+            dz = capped[2] - frame[v * 3u + 2u];
+            distance = sqrtf(dx * dx + dy * dy + dz * dz);
+            errors[k] = distance > errors[k] ? distance : errors[k];
+        }
+        if (k && errors[k] < errors[k - 1u]) {
+            errors[k] = errors[k - 1u];
+        }
+    }
+}
+
+/* cap_error: NULL, or [LOD_CAPS] to be raised. */
+static int skin_frame(const model *m, uint32_t node, const node_pose *poses, float *out, float *cap_error)
 {
     const model_mesh *mesh = &m->meshes[m->nodes[node].mesh];
     double *worlds = model_zeros(m->node_count, 12 * sizeof *worlds);
@@ -164,7 +187,10 @@ static int skin_frame(const model *m, uint32_t node, const node_pose *poses, flo
         world_matrices(m, poses, worlds);
         joint_matrices(m, &m->nodes[node], worlds, joints);
         for (size_t v = 0; v < mesh->vertex_count; v++) {
-            skin_vertex(mesh, joints, v, out + v * 3u);
+            skin_vertex(mesh, joints, v, MODEL_INFLUENCES_MAX, out + v * 3u);
+        }
+        if (cap_error) {
+            measure_caps(mesh, joints, out, cap_error);
         }
     }
     free(worlds);
@@ -175,7 +201,7 @@ static int skin_frame(const model *m, uint32_t node, const node_pose *poses, flo
 int lod_frame_pose(const model *m, uint32_t node, uint32_t clip, double time_s, float *out)
 {
     node_pose *poses = model_zeros(m->node_count, sizeof *poses);
-    int failed = !poses || sample_clip(m, clip, time_s, poses) || skin_frame(m, node, poses, out);
+    int failed = !poses || sample_clip(m, clip, time_s, poses) || skin_frame(m, node, poses, out, NULL);
     free(poses);
     return failed;
 }
@@ -267,7 +293,7 @@ static int choose(const model *m, uint32_t node, moment *list, uint32_t count, u
         }
         out->poses[out->count] = model_zeros(floats, sizeof(float));
         failed = !out->poses[out->count] || sample_clip(m, list[best].clip, list[best].time_s, taken) ||
-                 skin_frame(m, node, taken, out->poses[out->count]);
+                 skin_frame(m, node, taken, out->poses[out->count], out->cap_error);
         out->count++;
     }
     free(taken);
@@ -280,7 +306,7 @@ int lod_frames_choose(const model *m, uint32_t node, uint32_t count, lod_frames 
     uint32_t moments = list_moments(m, node, NULL);
     moment *list = model_zeros((size_t)moments + 1u, sizeof *list);
     int failed;
-    out->count = 0;
+    memset(out, 0, sizeof *out);
     out->poses = model_zeros((size_t)count + 1u, sizeof *out->poses);
     failed = !list || !out->poses;
     if (!failed && moments) {

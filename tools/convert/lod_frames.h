@@ -11,9 +11,13 @@
 extern "C" {
 #endif
 
+#define LOD_CAPS 3u /* at most 4, 2, 1 joints a vertex */
+
 typedef struct lod_frames {
     uint32_t count;
     float **poses; /* [count][vertex_count][3], lod_options.poses takes it */
+    float cap_error[LOD_CAPS]; /* how far a vertex of these frames is off at most where only its 4, 2, 1 heaviest joints move it, the
+                                * weights made to sum to 1: what a renderer does that caps influences */
 } lod_frames;
 
 /* The node that draws a mesh with a skin; MODEL_NONE where there is none. */

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "lod_frames.h"
 #include "model_build.h"
 
 #define FRAMES_BUILT 12u     /* frames that the builder sees */
@@ -193,10 +192,11 @@ static int make(const model *m, uint32_t index, const lod_settings *settings, me
 {
     const model_mesh *mesh = &m->meshes[index];
     const uint32_t node = lod_skinned_node(m, index);
-    lod_frames frames = { 0, NULL };
+    lod_frames frames = { 0 };
     pose_list poses = { 0, 0, NULL };
     int failed = node != MODEL_NONE && lod_frames_choose(m, node, FRAMES_CERTIFIED, &frames) &&
                  model_fail(error, mesh->name, "frames of its clips could not be skinned");
+    memcpy(out->cap_error, frames.cap_error, sizeof out->cap_error);
     failed = failed || build(mesh, settings, &frames, out, error);
     if (!failed) {
         choose_levels(mesh, out);

@@ -4,6 +4,7 @@
 
 #include "base/limits.h"
 #include "lod.h"
+#include "lod_frames.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -38,6 +39,7 @@ typedef struct mesh_levels {
     uint32_t which[NOH_LEVELS_MAX];
     uint8_t *rank;            /* [vertex_count] the coarsest level that a vertex is in */
     lod_errors errors[NOH_LEVELS_MAX];
+    float cap_error[LOD_CAPS]; /* lod_frames.h */
 } mesh_levels;
 
 /* Build and certify. Levels that would have nearly as many triangles as the finer one are left out.

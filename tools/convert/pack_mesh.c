@@ -292,6 +292,7 @@ int pack_mesh(const model_mesh *m, const mesh_levels *levels, const morph_encodi
         set_counts(m, e, &l, &h);
         set_skin(m, &l, skin, &h);
         h.world_scale = world_scale;
+        memcpy(h.influence_errors, levels->cap_error, sizeof h.influence_errors);
         buffer_append(out, NULL, sizeof h * l.level_count);
         append_vertices(m, &l, &h, base, out);
         append_indices(&l, &h, base, out);

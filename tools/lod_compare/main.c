@@ -62,7 +62,7 @@ static void show_progress(void *user, uint32_t done, uint32_t total)
 static lod *build(const model *m, lod_mode mode, model_error *error)
 {
     lod_options o = { 0 };
-    lod_frames seen = { 0, NULL };
+    lod_frames seen = { 0 };
     lod *l = NULL;
     uint32_t node = lod_skinned_node(m, 0);
     clock_t start = clock();

@@ -37,6 +37,11 @@ static double millimetres(const noh_mesh_header *h, float length)
 
 static void print_levels(const noh_mesh *m)
 {
+    if (m->header->influence_errors[2] > 0.0f) {
+        printf("  with only the 4, 2, 1 heaviest joints a vertex off by at most %.3f, %.3f, %.3f mm in motion\n",
+               millimetres(m->header, m->header->influence_errors[0]), millimetres(m->header, m->header->influence_errors[1]),
+               millimetres(m->header, m->header->influence_errors[2]));
+    }
     for (uint32_t k = 0; k < m->header->level_count && m->header->level_count > 1; k++) {
         const noh_mesh level = noh_mesh_at_level(m, k);
         const noh_mesh_header *h = level.header;
