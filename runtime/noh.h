@@ -22,6 +22,7 @@
  *   deform/morph.h       morph targets on the CPU: reference and fallback
  *   character/character.h  one character: controller, detail, what it shows
  *   character/detail.h   detail chosen by pixels; time_lod.h: posing less often than once a frame
+ *   character/detail_pack.h  what a pack says of both; joint_lod.h: what posing fewer joints costs
  *   character/scheduler.h  who is posed in a frame, within a budget; bounds.h: where a character is
  *   gl/gl_api.h          the GL ES functions that noh calls: you bring the lookup
  *   gl/gl_caps.h         what this GPU can really do, found by trying
@@ -70,6 +71,8 @@
 #include "character/bounds.h"
 #include "character/character.h"
 #include "character/detail.h"
+#include "character/detail_pack.h"
+#include "character/joint_lod.h"
 #include "character/scheduler.h"
 #include "character/time_lod.h"
 

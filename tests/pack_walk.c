@@ -297,6 +297,25 @@ static void walk_playing(walk *w, noh_motion_set *set)
     free(scratch_block);
 }
 
+/* What is known of leaving out joints and updates. */
+static void walk_detail(walk *w, const noh_motion_set *set, const noh_motion_set_desc *set_desc)
+{
+    noh_detail_pack_desc desc;
+    noh_detail_pack detail;
+    size_t bytes;
+    void *block;
+    memset(&desc, 0, sizeof desc);
+    desc.set = set;
+    desc.set_desc = set_desc;
+    bytes = noh_detail_pack_size(&desc);
+    block = memory(bytes);
+    if (noh_detail_pack_init(block, bytes, &desc, &detail, NULL) != NOH_OK) {
+        abort();
+    }
+    eat(w, block, bytes);
+    free(block);
+}
+
 /* All clips of one skeleton, where the decoder accepts them. */
 static void walk_set(walk *w, uint32_t skeleton)
 {
@@ -313,6 +332,7 @@ static void walk_set(walk *w, uint32_t skeleton)
     block = memory(bytes);
     if (bytes && noh_motion_set_init(block, bytes, &desc, &set, NULL) == NOH_OK) {
         walk_playing(w, set);
+        walk_detail(w, set, &desc);
     }
     free(block);
 }

@@ -34,6 +34,18 @@ const char *noh_pack_joint_name(const noh_pack *pack, uint32_t skeleton, uint32_
     return noh_pack_string(pack, ((const uint32_t *)(const void *)((const uint8_t *)h + h->names_offset))[joint]);
 }
 
+const uint32_t *noh_pack_joint_levels(const noh_pack *pack, uint32_t skeleton, uint32_t *level_count)
+{
+    noh_skeleton s;
+    const noh_skeleton_header *h;
+    if (noh_pack_skeleton_at(pack, skeleton, &s, &h)) {
+        *level_count = 0;
+        return NULL;
+    }
+    *level_count = h->level_count;
+    return (const uint32_t *)(const void *)((const uint8_t *)h + h->levels_offset);
+}
+
 noh_result noh_pack_motion_at(const noh_pack *pack, uint32_t index, noh_pack_motion *motion)
 {
     const uint8_t *chunk;
@@ -46,6 +58,7 @@ noh_result noh_pack_motion_at(const noh_pack *pack, uint32_t index, noh_pack_mot
     motion->events = (const noh_motion_event *)(const void *)(chunk + motion->header->events_offset);
     motion->markers = (const noh_motion_marker *)(const void *)(chunk + motion->header->markers_offset);
     motion->bytes = chunk + motion->header->clip_offset;
+    motion->joint_errors = (const float *)(const void *)(chunk + motion->header->joint_errors_offset);
     return NOH_OK;
 }
 

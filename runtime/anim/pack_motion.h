@@ -12,6 +12,7 @@ typedef struct noh_pack_motion {
     const noh_motion_event *events;   /* [header->event_count], in time order */
     const noh_motion_marker *markers; /* [header->marker_count], in time order */
     const uint8_t *bytes;             /* [header->clip_bytes] */
+    const float *joint_errors;        /* [header->joint_error_count], for the levels of header->skeleton, in its unit */
 } noh_pack_motion;
 
 /* The n-th skeleton; its hash and unit come with it where they are wanted. NOT_FOUND past skeleton_count. */
@@ -19,6 +20,11 @@ noh_result noh_pack_skeleton_at(const noh_pack *pack, uint32_t index, noh_skelet
 
 /* The name of a joint. */
 const char *noh_pack_joint_name(const noh_pack *pack, uint32_t skeleton, uint32_t joint);
+
+/* Its levels of detail: how many joints, the first ones, each poses.
+ * shapes   counts[*level_count], falling, the first is the skeleton's joint_count
+ * returns  NULL past skeleton_count */
+const uint32_t *noh_pack_joint_levels(const noh_pack *pack, uint32_t skeleton, uint32_t *level_count);
 
 /* The n-th clip. NOT_FOUND past motion_count. */
 noh_result noh_pack_motion_at(const noh_pack *pack, uint32_t index, noh_pack_motion *motion);

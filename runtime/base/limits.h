@@ -20,6 +20,7 @@
 #define NOH_TEXTURE_SIZE_MAX 2048u       /* wider or taller images are shrunk by the converter */
 #define NOH_JOINTS_MAX 4096u
 #define NOH_SKIN_JOINTS_MAX 4096u
+#define NOH_JOINT_LEVELS_MAX 8u          /* of a skeleton: levels of detail */
 #define NOH_PALETTE_JOINTS_MAX 256u      /* a uniform block of 12 KiB; ES 3.0 guarantees 16. Vertices keep 8 bits for a place */
 #define NOH_MOTION_EVENTS_MAX 65536u
 #define NOH_MOTION_MARKERS_MAX 4096u

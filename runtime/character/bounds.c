@@ -96,3 +96,55 @@ float noh_sphere_of_skeleton(const noh_skeleton *skeleton, const float *margin_m
     }
     return radius * ROUNDING;
 }
+
+/* What the targets add to a box: the sums of their own boxes, each of which holds 0. */
+static void add_targets(const noh_mesh *mesh, const float *weights, float deltas[6])
+{
+    for (int i = 0; i < 6; i++) {
+        deltas[i] = 0.0f;
+    }
+    for (uint32_t t = 0; t < mesh->header->target_count; t++) {
+        const float weight = weights ? weights[t] : 1.0f, *box = mesh->target_boxes + 6u * (size_t)t;
+        for (int i = 0; i < 6; i++) {
+            deltas[i] += weight * (weight < 0.0f ? box[(i + 3) % 6] : box[i]);
+        }
+    }
+}
+
+/* The farthest corner of a box from a joint, in the joint's space. */
+static float farthest_corner(const float *inverse_bind, const float box[6])
+{
+    float farthest = 0.0f;
+    for (int corner = 0; corner < 8; corner++) {
+        float at[3], square;
+        for (int r = 0; r < 3; r++) {
+            const float *row = inverse_bind + 4 * r;
+            at[r] = row[3];
+            for (int c = 0; c < 3; c++) {
+                at[r] += row[c] * box[(corner >> c & 1) * 3 + c];
+            }
+        }
+        square = noh_dot3(at, at);
+        farthest = square > farthest ? square : farthest;
+    }
+    return noh_sqrt(farthest) * ROUNDING;
+}
+
+void noh_margins_add(const noh_mesh *mesh, const float *weights, float *margin_m)
+{
+    noh_skin skin;
+    float deltas[6];
+    if (noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin)) {
+        return;
+    }
+    add_targets(mesh, weights, deltas);
+    for (size_t j = 0; j < skin.header->joint_count; j++) {
+        const float *rest = mesh->joint_boxes + 6u * j;
+        float box[6], margin;
+        for (int i = 0; i < 6; i++) {
+            box[i] = rest[i] + deltas[i];
+        }
+        margin = rest[0] <= rest[3] ? farthest_corner(skin.inverse_bind + 12u * j, box) : -1.0f;
+        margin_m[skin.joints[j]] = margin > margin_m[skin.joints[j]] ? margin : margin_m[skin.joints[j]];
+    }
+}

@@ -2,6 +2,7 @@
  *
  *   noh_sphere_of_joints     a box and a sphere around a posed skeleton
  *   noh_sphere_of_skeleton   how far any pose can reach from the root: before there is a pose
+ *   noh_margins_add          the margins that both want, out of a pack's mesh
  *
  * Both hold all vertices: a skinned vertex is a weighted mean of the places that its joints would put it,
  * each within that joint's margin of the joint, and a sphere and a box hold the means of what they hold.
@@ -11,6 +12,7 @@
 #define NOH_CHARACTER_BOUNDS_H
 
 #include "anim/skeleton.h"
+#include "mesh/mesh.h"
 
 typedef struct noh_bounds {
     float low[3], high[3];  /* the box; low above high: nothing is there */
@@ -28,5 +30,12 @@ void noh_sphere_of_joints(const noh_skeleton *skeleton, const float *model, cons
  * parent), whatever the rotations: the longest chain of bind translations, and the margin at its end.
  * ranges  poses that keep the bind pose's translations and scales of 1 below the roots */
 float noh_sphere_of_skeleton(const noh_skeleton *skeleton, const float *margin_m);
+
+/* Grow margins to hold what a mesh hangs on the joints: the farthest corner of each joint's box (noh_mesh.joint_boxes),
+ * grown by the targets' boxes, brought into the joint's space. Begin with -1 for every joint; add each mesh that is
+ * drawn. A rigid mesh hangs on no joint. For skins of matrices: dual quaternions may leave the bounds a little.
+ * shapes  weights[target_count] the farthest from 0 that each target is expected to go, all at once; NULL: 1 each;
+ *         margin_m[joint_count of the skeleton of the mesh's skin], in the unit of its joints */
+void noh_margins_add(const noh_mesh *mesh, const float *weights, float *margin_m);
 
 #endif

@@ -84,6 +84,8 @@ typedef struct noh_time_probe {
     const noh_skeleton *skeleton;  /* of the set */
     const float *joint_reach_m;    /* [joint_count] the farthest vertex that hangs on each joint, in the bind pose; below 0: none does */
     const float *float_reach_m;    /* [float_count] what each float moves at weight 1; NULL: floats are not counted */
+    int travels;                   /* 1: each pass of a repeating motion begins where joint 0 came in the one before, as if its
+                                    * translation were root motion: for a set that does not take it out, but will; 0: it leaps back */
 } noh_time_probe;
 
 /* Bytes of the working memory that measuring takes. */

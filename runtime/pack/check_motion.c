@@ -23,6 +23,24 @@ static noh_result check_joints(const noh_check *check, const noh_skeleton_header
     return noh_check_floats(check, bind, h->joint_count * 10u, "bind pose is not finite");
 }
 
+/* After the joints. */
+static noh_result check_levels(const noh_check *check, const noh_skeleton_header *h)
+{
+    const uint16_t *parents = (const uint16_t *)(const void *)(check->bytes + h->parents_offset);
+    const uint32_t *counts = (const uint32_t *)(const void *)(check->bytes + h->levels_offset);
+    for (uint32_t i = 0; i < h->level_count; i++) {
+        if (!counts[i] || (i ? counts[i] >= counts[i - 1] : counts[i] != h->joint_count)) {
+            return noh_check_fail(check, "joint levels do not begin with all joints, or do not fall", h->levels_offset + 4ull * i);
+        }
+    }
+    for (uint32_t j = counts[h->level_count - 1]; j < h->joint_count; j++) {
+        if (parents[j] == NOH_PACK_JOINT_ROOT) {
+            return noh_check_fail(check, "joint level leaves out a joint that has no parent", h->parents_offset + 2ull * j);
+        }
+    }
+    return NOH_OK;
+}
+
 noh_result noh_check_skeleton(noh_check *check)
 {
     const noh_skeleton_header *h = (const noh_skeleton_header *)(const void *)check->bytes;
@@ -30,15 +48,19 @@ noh_result noh_check_skeleton(noh_check *check)
     if (result) {
         return result;
     }
-    if (!h->joint_count || h->joint_count > NOH_JOINTS_MAX || !(h->unit_cm > 0.0f) || !noh_float_finite(h->unit_cm) ||
-        h->reserved[0] || h->reserved[1]) {
+    if (!h->joint_count || h->joint_count > NOH_JOINTS_MAX || !(h->unit_cm > 0.0f) || !noh_float_finite(h->unit_cm)) {
         return noh_check_fail(check, "joint count is zero or over the limit, or the unit is not a length", 0);
+    }
+    if (!h->level_count || h->level_count > NOH_JOINT_LEVELS_MAX) {
+        return noh_check_fail(check, "count of joint levels is zero or over the limit", 24);
     }
     result = noh_check_array(check, h->parents_offset, h->joint_count, 2);
     if (!result) result = noh_check_array(check, h->bind_offset, h->joint_count, 40);
     if (!result) result = noh_check_array(check, h->names_offset, h->joint_count, 4);
+    if (!result) result = noh_check_array(check, h->levels_offset, h->level_count, 4);
     if (!result) result = noh_check_end(check);
-    return result ? result : check_joints(check, h);
+    if (!result) result = check_joints(check, h);
+    return result ? result : check_levels(check, h);
 }
 
 static noh_result check_events(const noh_check *check, const noh_motion_header *h)
@@ -78,7 +100,7 @@ static noh_result check_binding(const noh_check *check, const noh_motion_header 
     const noh_pack *pack = check->pack;
     const noh_skeleton_header *skeleton;
     if (h->joint_count == 0) {
-        return h->skeleton_hash == 0 && h->skeleton == NOH_NONE ? NOH_OK : noh_check_fail(check, "motion without joints names a skeleton", 0);
+        return h->skeleton_hash == 0 && h->skeleton == NOH_NONE && h->joint_error_count == 0 ? NOH_OK : noh_check_fail(check, "motion without joints names a skeleton, or has joint errors", 0);
     }
     if (h->skeleton >= pack->skeleton_count) {
         return noh_check_fail(check, "motion names a skeleton that is not there", 4);
@@ -87,7 +109,32 @@ static noh_result check_binding(const noh_check *check, const noh_motion_header 
     if (skeleton->joint_count != h->joint_count || skeleton->hash != h->skeleton_hash) {
         return noh_check_fail(check, "motion's joint count or hash is not its skeleton's", 0);
     }
+    if (skeleton->level_count != h->joint_error_count) {
+        return noh_check_fail(check, "motion's joint errors are not of its skeleton's levels", 32);
+    }
     return NOH_OK;
+}
+
+/* From 0 up: what is left out never makes it better. */
+static noh_result check_errors(const noh_check *check, const float *errors, uint32_t count, const char *what)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        if (!noh_float_finite(errors[i]) || (i ? errors[i] < errors[i - 1] : errors[i] != 0.0f)) {
+            return noh_check_fail(check, what, (uint64_t)((const uint8_t *)(errors + i) - check->bytes));
+        }
+    }
+    return NOH_OK;
+}
+
+static noh_result check_motion_errors(const noh_check *check, const noh_motion_header *h)
+{
+    const float *joint_errors = (const float *)(const void *)(check->bytes + h->joint_errors_offset);
+    noh_result result = check_errors(check, joint_errors, h->joint_error_count, "joint errors do not begin with 0, or fall, or are not finite");
+    if (!result) result = check_errors(check, h->rate_error, NOH_MOTION_RATES, "rate errors do not begin with 0, or fall, or are not finite");
+    if (!result && (!noh_float_finite(h->error_shell) || h->error_shell < 0.0f)) {
+        result = noh_check_fail(check, "the shell of a motion's errors is not a length", 64);
+    }
+    return result;
 }
 
 noh_result noh_check_motion(noh_check *check)
@@ -103,8 +150,10 @@ noh_result noh_check_motion(noh_check *check)
     }
     result = noh_check_array(check, h->events_offset, h->event_count, sizeof(noh_motion_event));
     if (!result) result = noh_check_array(check, h->markers_offset, h->marker_count, sizeof(noh_motion_marker));
+    if (!result) result = noh_check_array(check, h->joint_errors_offset, h->joint_error_count, 4);
     if (!result) result = noh_check_array(check, h->clip_offset, h->clip_bytes, 1);
     if (!result) result = noh_check_end(check);
     if (!result) result = check_events(check, h);
-    return result ? result : check_markers(check, h);
+    if (!result) result = check_markers(check, h);
+    return result ? result : check_motion_errors(check, h);
 }

@@ -223,7 +223,8 @@ typedef struct noh_texture_header {
     uint32_t reserved[2];
 } noh_texture_header;
 
-/* ---- CHUNK_SKELETON: header, then three arrays. ---- */
+/* ---- CHUNK_SKELETON: header, then four arrays. Joints come in an order in which each level of detail is
+ * a prefix: those without a parent first, then by how far the bind pose reaches below them, falling. ---- */
 
 #define NOH_PACK_JOINT_ROOT 0xffffu /* parent of a joint that has none */
 
@@ -234,7 +235,9 @@ typedef struct noh_skeleton_header {
     uint32_t parents_offset; /* uint16_t[joint_count], parents first, or NOH_PACK_JOINT_ROOT */
     uint32_t bind_offset;    /* float[joint_count][10]: rotation xyzw, translation, scale; local */
     uint32_t names_offset;   /* uint32_t[joint_count] */
-    uint32_t reserved[2];
+    uint32_t level_count;    /* 1..NOH_JOINT_LEVELS_MAX */
+    uint32_t levels_offset;  /* uint32_t[level_count]: so many joints, the first ones, are posed. The first is
+                              * joint_count, then falling; every level has all joints without a parent */
 } noh_skeleton_header;
 
 /* ---- CHUNK_SKIN: header, then two arrays. ---- */
@@ -247,8 +250,11 @@ typedef struct noh_skin_header {
     uint32_t inverse_bind_offset; /* float[joint_count][12], rows as in noh_node.world: from mesh space to joint space */
 } noh_skin_header;
 
-/* ---- CHUNK_MOTION: header, callback keys and sync markers in time order, then the compressed clip
- * (anim/clip_format.h): joints of a skeleton, morph weights of nodes, named floats. ---- */
+/* ---- CHUNK_MOTION: header, callback keys and sync markers in time order, what leaving out joints costs, then
+ * the compressed clip (anim/clip_format.h): joints of a skeleton, morph weights of nodes, named floats.
+ * Errors are in the skeleton's unit; in motion without joints in metres. ---- */
+
+#define NOH_MOTION_RATES 4u /* every frame, 30, 15 and 8 Hz: noh_rate of character/detail.h */
 
 typedef struct noh_motion_header {
     uint32_t skeleton_hash;  /* 0 without joints */
@@ -259,8 +265,16 @@ typedef struct noh_motion_header {
     uint32_t events_offset;  /* noh_motion_event[event_count] */
     uint32_t marker_count;
     uint32_t markers_offset; /* noh_motion_marker[marker_count] */
+    uint32_t joint_error_count;   /* levels of its skeleton; 0 without joints */
+    uint32_t joint_errors_offset; /* float[joint_error_count]: the farthest that a point is off when only the joints of a level
+                                   * are sampled and the others go where their parents go; of level 0 it is 0; not falling */
     uint32_t clip_bytes;
     uint32_t clip_offset;
+    float rate_error[NOH_MOTION_RATES]; /* by noh_time_lod_measure of a probe that travels: a loop goes on from where it came, as
+                                         * with root motion, its leap back is not counted; the first is 0; not falling */
+    float error_shell;       /* 0: the errors hold for the vertices of the meshes that the clip was built with: of each joint the
+                              * farthest that it moves with a weight of 0.05 or more. Else there were none: they hold for points
+                              * at this distance from each joint (--shell-cm), in the skeleton's unit */
 } noh_motion_header;
 
 typedef struct noh_motion_event {
@@ -281,7 +295,7 @@ NOH_STATIC_ASSERT(sizeof(noh_skin_header) == 16, skin_header);
 NOH_STATIC_ASSERT(sizeof(noh_palette) == 8, palette);
 NOH_STATIC_ASSERT(NOH_VERTICES_MAX <= 1u << NOH_TEXEL_VERTEX_BITS, texel_vertex);
 NOH_STATIC_ASSERT(NOH_SUBMESHES_MAX <= 1u << (32u - NOH_TEXEL_VERTEX_BITS), texel_palette);
-NOH_STATIC_ASSERT(sizeof(noh_motion_header) == 40, motion_header);
+NOH_STATIC_ASSERT(sizeof(noh_motion_header) == 68, motion_header);
 NOH_STATIC_ASSERT(sizeof(noh_motion_event) == 24, motion_event);
 NOH_STATIC_ASSERT(sizeof(noh_motion_marker) == 12, motion_marker);
 NOH_STATIC_ASSERT(sizeof(noh_pack_header) == 64, pack_header);

@@ -28,6 +28,7 @@ holds info "j.bytes === $(wc -c <"$pack")"
 holds info 'j.meshes[0].vertices !== 0 && j.meshes[0].indices !== 0 && j.meshes[0].targets !== 0'
 holds info 'j.meshes[0].pairs !== 0 && j.meshes[0].texels !== 0 && j.meshes[0].target_bytes !== 0'
 holds info 'j.meshes[0].name !== "" && j.meshes[0].lods !== 0 && j.skeletons !== 0 && j.clips[0].name !== "" && j.events !== 1'
+holds info 'j.clips[0].rate_errors_cm[0] === 0 && j.clips[0].rate_errors_cm[3] !== 0 && j.clips[0].error_shell_cm === 0'
 holds budget 'j.cpu_bytes !== 0 && j.gpu_bytes !== 0 && j.parts[0].name !== "" && j.parts[0].cpu_bytes + j.parts[0].gpu_bytes !== 0'
 holds budget "j.pack_bytes === $(wc -c <"$pack")"
 holds verify 'j.ok === true && j.driver !== "" && j.gl_version !== ""'

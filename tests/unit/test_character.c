@@ -39,7 +39,7 @@ static void invert_rigid(const float *m, float *out)
 
 static void measure_errors(stage *g)
 {
-    noh_time_probe probe = { NULL, NULL, NULL, NULL };
+    noh_time_probe probe = { NULL, NULL, NULL, NULL, 0 };
     void *memory;
     probe.set = &g->s.set;
     probe.skeleton = &g->s.skeleton;

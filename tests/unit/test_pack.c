@@ -455,6 +455,13 @@ static float nan_value(void)
     X(motion_joints_without_skeleton, DATA, "skeleton that is not there", f->motion->joint_count = 1) \
     X(motion_skeleton_without_joints, DATA, "names a skeleton", f->motion->skeleton = 0) \
     X(motion_hash_without_joints, DATA, "names a skeleton", f->motion->skeleton_hash = 1) \
+    X(motion_joint_errors_without_joints, DATA, "joint errors", f->motion->joint_error_count = 1) \
+    X(motion_joint_errors_elsewhere, DATA, "begin", f->motion->joint_errors_offset += 16) \
+    X(motion_rate_error_at_full_rate, DATA, "rate errors", f->motion->rate_error[0] = 1.0f) \
+    X(motion_rate_error_nan, DATA, "rate errors", f->motion->rate_error[3] = nan_value()) \
+    X(motion_rate_error_falls, DATA, "rate errors", f->motion->rate_error[1] = f->motion->rate_error[2] + 1.0f) \
+    X(motion_shell_negative, DATA, "shell", f->motion->error_shell = -1.0f) \
+    X(motion_shell_infinite, DATA, "shell", f->motion->error_shell = INFINITE) \
     X(motion_clip_one_more, DATA, "", f->motion->clip_bytes += 1) \
     X(motion_clip_elsewhere, DATA, "begin", f->motion->clip_offset += 16)
 

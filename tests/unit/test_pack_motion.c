@@ -81,6 +81,29 @@ static void pack_holds_skeleton_clip_and_keys(void **state)
     assert_string_equal(noh_pack_string(&pack, motion.markers[1].name), "right");
 }
 
+/* Two joints: the level without the knee, and what it costs a clip whose knee turns by 25 degrees at most. */
+static void levels_and_errors_are_there(void **state)
+{
+    noh_pack pack = test_open(good.bytes, good.count);
+    noh_pack_motion motion;
+    uint32_t count = 9;
+    const uint32_t *levels = noh_pack_joint_levels(&pack, 0, &count);
+    (void)state;
+    assert_int_equal(count, 2);
+    assert_int_equal(levels[0], 2);
+    assert_int_equal(levels[1], 1);
+    assert_null(noh_pack_joint_levels(&pack, 1, &count));
+    assert_int_equal(count, 0);
+    assert_int_equal(noh_pack_motion_at(&pack, 0, &motion), NOH_OK);
+    assert_int_equal(motion.header->joint_error_count, 2);
+    assert_true(motion.joint_errors[0] == 0.0f);
+    /* 3 cm from the knee a turn by 25 degrees moves a point by 3 * 2 sin(12.5 degrees) = 1.2987 */
+    assert_true(motion.joint_errors[1] > 1.2986f && motion.joint_errors[1] < 1.2987f * 1.15f);
+    assert_true(motion.header->error_shell == 3.0f);
+    assert_true(motion.header->rate_error[0] == 0.0f && motion.header->rate_error[3] >= motion.header->rate_error[1]);
+    assert_true(motion.header->rate_error[3] > 0.0f);
+}
+
 static void another_skeleton_is_refused_by_name(void **state)
 {
     byte_buffer other;
@@ -182,6 +205,16 @@ static void expect_refused(forged *f, const char *what)
     free(f->bytes);
 }
 
+static uint32_t *levels_of(forged *f)
+{
+    return (uint32_t *)(void *)(f->skeleton_chunk + f->skeleton->levels_offset);
+}
+
+static float *joint_errors_of(forged *f)
+{
+    return (float *)(void *)(f->motion_chunk + f->motion->joint_errors_offset);
+}
+
 static void lies_are_named(void **state)
 {
     forged f = forge();
@@ -235,12 +268,62 @@ static void lies_are_named(void **state)
     expect_refused(&f, "time order");
 }
 
+static void lies_about_detail_are_named(void **state)
+{
+    forged f = forge();
+    (void)state;
+    f.skeleton->level_count = 0;
+    expect_refused(&f, "joint levels is zero");
+    f = forge();
+    f.skeleton->level_count = NOH_JOINT_LEVELS_MAX + 1u;
+    expect_refused(&f, "joint levels is zero or over");
+    f = forge();
+    f.skeleton->levels_offset += 16;
+    expect_refused(&f, "does not begin");
+    f = forge();
+    levels_of(&f)[0] = 1;
+    expect_refused(&f, "do not begin with all");
+    f = forge();
+    levels_of(&f)[1] = 2;
+    expect_refused(&f, "do not fall");
+    f = forge();
+    levels_of(&f)[1] = 0;
+    expect_refused(&f, "do not fall");
+    f = forge();
+    ((uint16_t *)(void *)(f.skeleton_chunk + f.skeleton->parents_offset))[1] = NOH_PACK_JOINT_ROOT;
+    expect_refused(&f, "leaves out a joint that has no parent");
+    f = forge();
+    f.motion->joint_error_count = 1;
+    expect_refused(&f, "not of its skeleton's levels");
+    f = forge();
+    joint_errors_of(&f)[0] = 0.5f;
+    expect_refused(&f, "joint errors do not begin with 0");
+    f = forge();
+    joint_errors_of(&f)[1] = -0.5f;
+    expect_refused(&f, "joint errors do not begin with 0, or fall");
+    f = forge();
+    memset(&joint_errors_of(&f)[1], 0xff, 4);
+    expect_refused(&f, "joint errors");
+    f = forge();
+    f.motion->rate_error[0] = 0.5f;
+    expect_refused(&f, "rate errors");
+    f = forge();
+    f.motion->rate_error[2] = -1.0f;
+    expect_refused(&f, "rate errors");
+    f = forge();
+    memset(&f.motion->rate_error[3], 0xff, 4);
+    expect_refused(&f, "rate errors");
+    f = forge();
+    f.motion->error_shell = -3.0f;
+    expect_refused(&f, "shell");
+}
+
 int main(int argument_count, char **arguments)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pack_holds_skeleton_clip_and_keys), cmocka_unit_test(another_skeleton_is_refused_by_name),
+        cmocka_unit_test(pack_holds_skeleton_clip_and_keys), cmocka_unit_test(levels_and_errors_are_there), cmocka_unit_test(another_skeleton_is_refused_by_name),
         cmocka_unit_test(every_truncation_and_flip_is_refused), cmocka_unit_test(repaired_flips_stay_in_bounds),
-        cmocka_unit_test(lies_are_named)
+        cmocka_unit_test(lies_are_named), cmocka_unit_test(lies_about_detail_are_named)
     };
     if (argument_count > 1) {
         cmocka_set_test_filter(arguments[1]);

@@ -382,7 +382,7 @@ typedef struct played {
 
 static void played_open(played *x, const char *path)
 {
-    noh_time_probe probe = { NULL, NULL, NULL, NULL };
+    noh_time_probe probe = { NULL, NULL, NULL, NULL, 0 };
     uint32_t joints;
     void *memory;
     size_t size;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "events_read.h"
+#include "joint_order.h"
 #include "pack/pack.h"
 #include "sources.h"
 
@@ -150,6 +151,7 @@ static int convert_source(const source *s, const convert_options *options, byte_
     settings.report = options->report;
     settings.progress = options->progress;
     settings.skeletons_only = options->only == CONVERT_MESH;
+    settings.m = s->m;
     if (options->report) {
         report_warnings(options->report, s);
     }
@@ -213,6 +215,7 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
     if (!failed) {
         base = base_of(all, input_count);
         failed = join_all(inputs, input_count, base, all, failure) || apply_events(options, &all[base], &failure->error);
+        failed = failed || (joint_order_sets(all[base].sets, all[base].set_count, all[base].m) && out_of_memory(&failure->error));
         failed = failed || convert_source(&all[base], options, out, &failure->error);
     }
     for (int i = 0; i < input_count; i++) {

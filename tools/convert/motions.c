@@ -6,10 +6,11 @@
 
 #include "anim/time.h"
 #include "base/hash.h"
+#include "joint_order.h"
+#include "joint_reach.h"
 #include "loop_check.h"
 #include "pack/format.h"
 #include "raw_set.h"
-
 
 static uint32_t float_count(const raw_clip *clip)
 {
@@ -20,10 +21,15 @@ static uint32_t float_count(const raw_clip *clip)
     return count;
 }
 
+static double shell_cm(const motion_settings *s)
+{
+    return s->clip.shell_cm > 0.0 ? s->clip.shell_cm : 3.0;
+}
+
 static int report_loop(const raw_set *set, const raw_clip *clip, const motion_settings *s, model_error *error)
 {
     raw_loop_check loop;
-    if (raw_clip_check_loop(&set->skeleton, clip, s->clip.shell_cm > 0.0 ? s->clip.shell_cm : 3.0, &loop)) {
+    if (raw_clip_check_loop(&set->skeleton, clip, shell_cm(s), &loop)) {
         snprintf(error->what, sizeof error->what, "out of memory");
         return 1;
     }
@@ -117,20 +123,42 @@ static int encode_bounded(const raw_set *set, const raw_clip *clip, const motion
     return failed;
 }
 
-static int encode_clip(const raw_set *set, raw_clip *clip, const motion_settings *s, motion_clip *out, model_error *error)
+/* reach: NULL: no mesh is bound to the skeleton. */
+static int encode_clip(const raw_set *set, raw_clip *clip, const float *reach, const motion_settings *s, motion_clip *out, model_error *error)
 {
     clip->loop = (uint8_t)(clip->loop || s->check_loops);
     if (s->progress) {
         fprintf(s->progress, "\rencoding clip %s \033[K", clip->name);
         fflush(s->progress);
     }
-    if (check_length(clip, error) || check_markers(clip, error) || encode_bounded(set, clip, s, out, error)) {
+    if (check_length(clip, error) || check_markers(clip, error) || encode_bounded(set, clip, s, out, error) ||
+        motion_errors_measure(&set->skeleton, clip, &out->bytes, reach, shell_cm(s), &out->errors, error)) {
         return 1;
     }
     if (s->report) {
         report_clip(s, set, out);
     }
     return s->check_loops && clip->joint_count ? report_loop(set, clip, s, error) : 0;
+}
+
+static int encode_set(motions *m, uint32_t index, const motion_settings *s, model_error *error)
+{
+    raw_set *set = m->sets[index];
+    float *reach = malloc((set->skeleton.joint_count + 1u) * sizeof *reach);
+    const float *known = reach && joint_reach(s->m, index, set->skeleton.joint_count, reach) ? reach : NULL;
+    int failed = 0;
+    if (!reach) {
+        snprintf(error->what, sizeof error->what, "out of memory");
+        return 1;
+    }
+    for (uint32_t c = 0; c < set->clip_count && !failed; c++) {
+        motion_clip *to = &m->clips[m->clip_count++];
+        to->set = index;
+        to->raw = &set->clips[c];
+        failed = encode_clip(set, &set->clips[c], known, s, to, error);
+    }
+    free(reach);
+    return failed;
 }
 
 int motions_encode(raw_set **sets, uint32_t set_count, const motion_settings *s, motions *out, model_error *error)
@@ -150,12 +178,7 @@ int motions_encode(raw_set **sets, uint32_t set_count, const motion_settings *s,
     }
     failed = named_errors_check(&s->clip_errors, &s->joint_errors, sets, set_count, error);
     for (uint32_t i = 0; i < set_count && !s->skeletons_only && !failed; i++) {
-        for (uint32_t c = 0; c < sets[i]->clip_count && !failed; c++) {
-            motion_clip *to = &out->clips[out->clip_count++];
-            to->set = i;
-            to->raw = &sets[i]->clips[c];
-            failed = encode_clip(sets[i], &sets[i]->clips[c], s, to, error);
-        }
+        failed = encode_set(out, i, s, error);
     }
     if (s->progress && total) {
         fputs("\r\033[K", s->progress);
@@ -183,9 +206,12 @@ static void begin_array(byte_buffer *out, size_t base, uint32_t *offset)
 void pack_skeleton(const raw_skeleton *skeleton, string_table *strings, byte_buffer *out)
 {
     size_t base = out->count;
+    uint32_t counts[NOH_JOINT_LEVELS_MAX];
     noh_skeleton_header h;
     memset(&h, 0, sizeof h);
     h.joint_count = skeleton->joint_count;
+    h.level_count = joint_levels(skeleton, counts);
+    out->failed = out->failed || !h.level_count;
     h.hash = raw_skeleton_hash(skeleton);
     h.unit_cm = (float)skeleton->unit_cm;
     buffer_append(out, &h, sizeof h);
@@ -206,6 +232,8 @@ void pack_skeleton(const raw_skeleton *skeleton, string_table *strings, byte_buf
         uint32_t name = string_offset(strings, skeleton->joints[j].name);
         buffer_append(out, &name, sizeof name);
     }
+    begin_array(out, base, &h.levels_offset);
+    buffer_append(out, counts, h.level_count * sizeof *counts);
     if (!out->failed) {
         memcpy(out->bytes + base, &h, sizeof h);
     }
@@ -251,6 +279,9 @@ static noh_motion_header motion_header(const motions *m, const motion_clip *clip
     h.skeleton_hash = h.joint_count ? raw_skeleton_hash(&m->sets[clip->set]->skeleton) : 0;
     h.raw_bytes = clip->report.raw_bytes < NOH_NONE ? (uint32_t)clip->report.raw_bytes : NOH_NONE;
     h.clip_bytes = (uint32_t)clip->bytes.count;
+    h.joint_error_count = clip->errors.level_count;
+    memcpy(h.rate_error, clip->errors.rate, sizeof h.rate_error);
+    h.error_shell = clip->errors.shell;
     for (uint32_t i = 0; i < clip->raw->event_count; i++) {
         *(clip->raw->events[i].is_marker ? &h.marker_count : &h.event_count) += 1;
     }
@@ -271,6 +302,8 @@ void pack_motion(const motions *m, const motion_clip *clip, string_table *string
     for (uint32_t i = 0; i < raw->event_count; i++) {
         if (raw->events[i].is_marker) append_marker(raw, &raw->events[i], strings, out);
     }
+    begin_array(out, base, &h.joint_errors_offset);
+    buffer_append(out, clip->errors.joint, h.joint_error_count * sizeof *clip->errors.joint);
     begin_array(out, base, &h.clip_offset);
     buffer_append(out, clip->bytes.bytes, clip->bytes.count);
     if (!out->failed) {

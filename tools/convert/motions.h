@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "clip_encode.h"
+#include "motion_errors.h"
 #include "named_errors.h"
 
 typedef struct motion_clip {
@@ -12,6 +13,7 @@ typedef struct motion_clip {
     const raw_clip *raw;
     byte_buffer bytes;
     clip_report report;
+    motion_errors errors;
 } motion_clip;
 
 typedef struct motions {
@@ -28,6 +30,7 @@ typedef struct motion_settings {
     int skeletons_only; /* no clips: what a mesh pack needs */
     clip_options clip;
     named_errors clip_errors, joint_errors; /* over those of `clip` */
+    const model *m; /* bound to the sets: errors of fewer joints and lower rates are those of its vertices; NULL: of the shell */
     FILE *report, *progress; /* or NULL */
 } motion_settings;
 

@@ -1,6 +1,7 @@
 /* cmd_info.c: what is in a pack. */
 #include <string.h>
 
+#include "info_joints.h"
 #include "noh_tool.h"
 
 static uint64_t target_bytes(const noh_mesh_header *h)
@@ -88,6 +89,7 @@ static int print_clip(const pack_file *file, uint32_t index)
         printf("clip '%s': %.3f s, %u joints, %u floats, %u bytes, %u callback keys, %u sync markers%s\n", motion.name, tool_clip_seconds(&info),
                info.joint_count, info.float_count, motion.header->clip_bytes, motion.header->event_count, motion.header->marker_count,
                info.flags & NOH_CLIP_FLAG_LOOP ? ", a loop" : "");
+        info_print_errors(&file->pack, &motion);
     }
     return status;
 }
@@ -107,7 +109,9 @@ static int print_info(const pack_file *file)
     for (uint32_t i = 0; i < p->skeleton_count; i++) {
         noh_skeleton skeleton;
         noh_pack_skeleton_at(p, i, &skeleton, NULL);
-        printf("skeleton '%s': %u joints\n", noh_pack_chunk_name(p, p->first_skeleton + i), skeleton.joint_count);
+        printf("skeleton '%s': %u joints", noh_pack_chunk_name(p, p->first_skeleton + i), skeleton.joint_count);
+        info_print_levels(p, i);
+        printf("\n");
     }
     for (uint32_t i = 0; i < p->motion_count && !status; i++) {
         status = print_clip(file, i);
@@ -209,6 +213,7 @@ static void json_skeleton(json *j, const noh_pack *pack, uint32_t index)
     json_integer(j, "joints", h->joint_count);
     json_integer(j, "hash", h->hash);
     json_number(j, "unit_cm", (double)h->unit_cm);
+    info_json_levels(j, pack, index);
     json_close(j, '}');
 }
 
@@ -227,6 +232,7 @@ static int json_clip(json *j, const pack_file *file, uint32_t index)
         json_integer(j, "bytes", motion.header->clip_bytes);
         json_integer(j, "events", motion.header->event_count);
         json_integer(j, "markers", motion.header->marker_count);
+        info_json_errors(j, &file->pack, &motion);
         json_close(j, '}');
     }
     return status;

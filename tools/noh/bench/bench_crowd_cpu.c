@@ -160,7 +160,7 @@ static void set_reaches(crowd *c, float unit_m)
 
 static int measure_rates(crowd *c)
 {
-    noh_time_probe probe = { &c->set, &c->skeleton, c->reach_m, NULL };
+    noh_time_probe probe = { &c->set, &c->skeleton, c->reach_m, NULL, 0 };
     size_t bytes = noh_time_lod_measure_size(&probe);
     noh_error error = { NOH_OK, "", 0, 0 };
     void *memory = malloc(bytes);

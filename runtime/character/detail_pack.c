@@ -1,0 +1,241 @@
+#include "character/detail_pack.h"
+
+#include "base/arena.h"
+#include "character/bounds.h"
+
+NOH_STATIC_ASSERT(NOH_JOINT_LEVELS_MAX == NOH_DETAIL_LEVELS_MAX, joint_levels);
+NOH_STATIC_ASSERT(NOH_MOTION_RATES == NOH_RATE_COUNT, motion_rates);
+NOH_STATIC_ASSERT(NOH_LEVELS_MAX == NOH_DETAIL_LEVELS_MAX, mesh_levels);
+
+/* A desc, resolved. */
+typedef struct source {
+    const noh_pack *clips, *pack;
+    const uint32_t *levels; /* [level_count] joints */
+    uint32_t level_count, skeleton, motion_count, joint_count;
+    uint32_t mesh_level_count;
+    int skinned;            /* there is a mesh, and joints move it */
+} source;
+
+/* Where it all lies. NULL while measuring. */
+typedef struct parts {
+    noh_mesh_level *meshes;
+    noh_joint_level *joints;
+    noh_influence_level *influences; /* [INFLUENCE_LEVELS] */
+    float *rates, *margins;
+} parts;
+
+#define INFLUENCE_LEVELS 4u /* all, 4, 2, 1 */
+
+/* ---- what is asked for ---- */
+
+static int is_of_skeleton(const source *s, const noh_mesh *mesh)
+{
+    noh_skin skin;
+    return mesh->pack->bytes == s->pack->bytes && noh_pack_skin_at(s->pack, mesh->header->skin, &skin) == NOH_OK && skin.header->skeleton == s->skeleton;
+}
+
+/* The name of the field that is wrong; NULL: none. */
+static const char *resolve(const noh_detail_pack_desc *desc, source *s)
+{
+    if (!desc->set) return "set";
+    if (!desc->set_desc || !desc->set_desc->clips) return "set_desc";
+    s->clips = desc->set_desc->clips;
+    s->pack = desc->set_desc->mesh ? desc->set_desc->mesh : s->clips;
+    s->skeleton = desc->set_desc->skeleton;
+    s->motion_count = desc->set->anim.motion_count;
+    s->joint_count = desc->set->skeleton.joint_count;
+    s->levels = NULL;
+    s->level_count = 0;
+    if (s->joint_count) {
+        s->levels = noh_pack_joint_levels(s->pack, s->skeleton, &s->level_count);
+        if (!s->levels || s->levels[0] != s->joint_count) return "set_desc";
+    }
+    s->mesh_level_count = desc->mesh ? desc->mesh->header->level_count - desc->mesh->header->level : 0;
+    s->skinned = desc->mesh && desc->mesh->header->skin != NOH_NONE;
+    return s->skinned && !(s->joint_count && is_of_skeleton(s, desc->mesh)) ? "mesh" : NULL;
+}
+
+static void carve(noh_arena *arena, const source *s, parts *p)
+{
+    p->meshes = (noh_mesh_level *)noh_arena_carve(arena, s->mesh_level_count * sizeof *p->meshes, 4);
+    p->influences = (noh_influence_level *)noh_arena_carve(arena, s->skinned ? INFLUENCE_LEVELS * sizeof *p->influences : 0, 4);
+    p->joints = (noh_joint_level *)noh_arena_carve(arena, s->level_count * sizeof *p->joints, 4);
+    p->rates = (float *)noh_arena_carve(arena, s->motion_count * (size_t)NOH_RATE_COUNT * sizeof(float), 4);
+    p->margins = (float *)noh_arena_carve(arena, s->skinned ? s->joint_count * sizeof(float) : 0, 4);
+}
+
+size_t noh_detail_pack_size(const noh_detail_pack_desc *desc)
+{
+    noh_arena arena = noh_arena_measure();
+    source s;
+    parts p;
+    if (resolve(desc, &s)) {
+        return 0;
+    }
+    carve(&arena, &s, &p);
+    return arena.used;
+}
+
+/* ---- errors of clips ---- */
+
+/* What a motion's errors are multiplied by to be metres that hold for vertices as far from their joints as `margin`. */
+static float to_metres(const source *s, const noh_motion_header *h, float margin)
+{
+    noh_skeleton skeleton;
+    const noh_skeleton_header *of;
+    float unit_m = 1.0f;
+    if (noh_pack_skeleton_at(s->clips, h->skeleton, &skeleton, &of) == NOH_OK) {
+        unit_m = of->unit_cm * 0.01f;
+    }
+    return h->error_shell > 0.0f && margin > h->error_shell ? unit_m * (margin / h->error_shell) : unit_m;
+}
+
+/* What a motion is off with so many joints: the error of the finest of its own levels that has no more. -1: there is none. */
+static float joint_error(const source *s, const noh_pack_motion *motion, uint32_t joint_count)
+{
+    uint32_t level_count;
+    const uint32_t *levels = noh_pack_joint_levels(s->clips, motion->header->skeleton, &level_count);
+    for (uint32_t i = 0; levels && i < level_count; i++) {
+        if (levels[i] <= joint_count) {
+            return motion->joint_errors[i];
+        }
+    }
+    return -1.0f;
+}
+
+/* Raise the errors of the levels to those of a motion; fewer levels where it does not vouch for all. */
+static void add_joint_errors(const source *s, const noh_pack_motion *motion, float metres, noh_joint_level *levels, uint32_t *level_count)
+{
+    for (uint32_t i = 0; i < *level_count; i++) {
+        const float error = joint_error(s, motion, levels[i].joint_count) * metres;
+        if (error < 0.0f) {
+            *level_count = i;
+        } else if (error > levels[i].error_m) {
+            levels[i].error_m = error;
+        }
+    }
+}
+
+static void fill_motions(const noh_detail_pack_desc *desc, const source *s, float margin, parts *p, noh_detail_table *table)
+{
+    for (uint32_t m = 0; m < s->motion_count; m++) {
+        noh_pack_motion motion;
+        noh_clip_info info;
+        float metres, clip_error_m;
+        (void)noh_pack_motion_at(s->clips, desc->set->pack_motions[m], &motion);
+        metres = to_metres(s, motion.header, margin);
+        for (uint32_t r = 0; r < NOH_RATE_COUNT; r++) {
+            p->rates[m * (uint32_t)NOH_RATE_COUNT + r] = motion.header->rate_error[r] * metres;
+        }
+        if (motion.header->joint_count) {
+            add_joint_errors(s, &motion, metres, p->joints, &table->joint_level_count);
+        }
+        noh_clip_info_of(noh_clip_cache_clip(desc->set->cache, m), &info);
+        clip_error_m = (float)info.max_error_cm * 0.01f;
+        table->clip_error_m = clip_error_m > table->clip_error_m ? clip_error_m : table->clip_error_m;
+    }
+}
+
+/* ---- meshes ---- */
+
+/* The worst error of a level, metres. */
+static float level_error(const noh_mesh_header *h)
+{
+    const float errors[4] = { h->level_error_rest, h->level_error_targets, h->level_error_pairs, h->level_error_motion };
+    float worst = 0.0f;
+    for (unsigned i = 0; i < 4; i++) {
+        worst = errors[i] > worst ? errors[i] : worst;
+    }
+    return worst * h->world_scale;
+}
+
+/* Errors are those against the full mesh, whatever the finest level at hand is. */
+static void fill_meshes(const noh_mesh *mesh, const source *s, noh_mesh_level *levels)
+{
+    for (uint32_t k = 0; k < s->mesh_level_count; k++) {
+        const noh_mesh level = noh_mesh_at_level(mesh, mesh->header->level + k);
+        levels[k].vertex_count = level.header->vertex_count;
+        levels[k].triangle_count = level.header->index_count / 3u;
+        levels[k].influence_count = level.header->influence_count;
+        levels[k].error_m = level_error(level.header);
+    }
+}
+
+/* Where the mesh was built without levels, nothing is known of fewer influences: all are always used. */
+static uint32_t fill_influences(const noh_mesh_header *h, noh_influence_level *levels)
+{
+    uint32_t count = 0;
+    levels[count].influence_count = h->influence_count;
+    levels[count++].error_m = 0.0f;
+    for (uint32_t i = 0; i < INFLUENCE_LEVELS - 1u && h->level_count > 1u; i++) {
+        if (4u >> i < h->influence_count) {
+            levels[count].influence_count = 4u >> i;
+            levels[count++].error_m = h->influence_errors[i] * h->world_scale;
+        }
+    }
+    return count;
+}
+
+/* ---- filling ---- */
+
+/* Returns the largest. */
+static float fill_margins(const noh_detail_pack_desc *desc, const source *s, float *margins)
+{
+    float largest = 0.0f;
+    for (uint32_t j = 0; s->skinned && j < s->joint_count; j++) {
+        margins[j] = -1.0f;
+    }
+    if (s->skinned) {
+        noh_margins_add(desc->mesh, desc->weights, margins);
+    }
+    for (uint32_t j = 0; s->skinned && j < s->joint_count; j++) {
+        largest = margins[j] > largest ? margins[j] : largest;
+    }
+    return largest;
+}
+
+static void fill(const noh_detail_pack_desc *desc, const source *s, parts *p, noh_detail_pack *detail)
+{
+    static const noh_detail_pack empty;
+    *detail = empty;
+    for (uint32_t i = 0; i < s->level_count; i++) {
+        p->joints[i].joint_count = s->levels[i];
+        p->joints[i].error_m = 0.0f;
+    }
+    if (desc->mesh) {
+        fill_meshes(desc->mesh, s, p->meshes);
+        detail->table.meshes = p->meshes;
+        detail->table.mesh_level_count = s->mesh_level_count;
+    }
+    if (s->skinned) {
+        detail->table.influences = p->influences;
+        detail->table.influence_level_count = fill_influences(desc->mesh->header, p->influences);
+    }
+    detail->margin_m = s->skinned ? p->margins : NULL;
+    detail->table.joints = p->joints;
+    detail->table.joint_level_count = s->level_count;
+    detail->table.rate_error_m = p->rates;
+    fill_motions(desc, s, fill_margins(desc, s, p->margins), p, &detail->table);
+}
+
+noh_result noh_detail_pack_init(void *memory, size_t bytes, const noh_detail_pack_desc *desc, noh_detail_pack *detail, noh_error *error)
+{
+    noh_arena arena = noh_arena_over(memory, bytes);
+    source s;
+    parts p;
+    size_t need;
+    const char *what = resolve(desc, &s);
+    if (what) {
+        return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
+    }
+    need = noh_detail_pack_size(desc);
+    if (!memory || ((uintptr_t)memory & 15u) != 0) {
+        return noh_fail(error, NOH_ERR_ARG, "memory of a detail table is NULL or not 16-byte aligned", 0, need);
+    }
+    if (bytes < need) {
+        return noh_fail(error, NOH_ERR_MEMORY, "memory of a detail table is too small", bytes, need);
+    }
+    carve(&arena, &s, &p);
+    fill(desc, &s, &p, detail);
+    return NOH_OK;
+}

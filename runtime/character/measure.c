@@ -1,0 +1,91 @@
+/* What measuring errors shares: measure_internal.h. */
+#include "anim/local_to_model.h"
+#include "anim/root_motion.h"
+#include "base/math.h"
+#include "character/measure_internal.h"
+
+const char *noh_probe_fault(const noh_time_probe *p, uint32_t motion)
+{
+    if (!p->set || !p->skeleton || !p->joint_reach_m || p->skeleton->joint_count != p->set->joint_count) return "probe";
+    if (motion >= p->set->motion_count) return "motion";
+    return NULL;
+}
+
+noh_result noh_probe_check_memory(const void *memory, size_t bytes, size_t need, noh_error *error)
+{
+    if (!memory || ((uintptr_t)memory & 15u) != 0) {
+        return noh_fail(error, NOH_ERR_ARG, "memory for measuring is NULL or not 16-byte aligned", 0, need);
+    }
+    return bytes >= need ? NOH_OK : noh_fail(error, NOH_ERR_MEMORY, "memory for measuring is too small", bytes, need);
+}
+
+void noh_probe_travel(const noh_time_probe *p, uint32_t motion, noh_transform *pose, float *floats, float travel[3])
+{
+    const noh_motion *m = &p->set->motions[motion];
+    for (int i = 0; i < 3; i++) {
+        travel[i] = 0.0f;
+    }
+    if (p->travels && m->loop == NOH_LOOP_REPEAT && p->set->joint_count) {
+        noh_root_sample_rest(p->set, motion, 0, 1, pose, floats);
+        for (int i = 0; i < 3; i++) {
+            travel[i] = -pose[0].translation[i];
+        }
+        noh_root_sample_rest(p->set, motion, m->duration_ticks, 1, pose, floats);
+        for (int i = 0; i < 3; i++) {
+            travel[i] += pose[0].translation[i];
+        }
+    }
+}
+
+void noh_probe_sample(const noh_time_probe *p, uint32_t motion, int64_t tick, const float *travel, noh_transform *pose, float *model,
+                      float *floats)
+{
+    const noh_motion *m = &p->set->motions[motion];
+    const int64_t position = noh_position_of(tick), clip = noh_time_clip(position, m->duration_ticks, (noh_loop)m->loop);
+    const float passes = (float)noh_time_legs(position, m->duration_ticks, (noh_loop)m->loop);
+    noh_root_sample_rest(p->set, motion, (uint32_t)(clip >> 16), p->set->joint_count, pose, floats);
+    noh_local_to_model(p->skeleton, pose, p->set->joint_count, model);
+    for (size_t i = 0; travel && passes > 0.0f && i < 3u * (size_t)p->set->joint_count; i++) {
+        model[4u * i + 3u] += passes * travel[i % 3u];
+    }
+}
+
+/* Above the largest singular value of a 3 x 3 matrix, by at most 3^(1/8): its Schatten 8-norm, the eighth
+ * root of the squared Frobenius norm of (A' A)^2. */
+static float norm_bound(const float a[9])
+{
+    float g[9], square[9], sum = 0.0f;
+    for (int r = 0; r < 3; r++) {
+        for (int c = 0; c < 3; c++) {
+            g[3 * r + c] = a[r] * a[c] + a[3 + r] * a[3 + c] + a[6 + r] * a[6 + c];
+        }
+    }
+    for (int r = 0; r < 3; r++) {
+        for (int c = 0; c < 3; c++) {
+            square[3 * r + c] = g[3 * r] * g[c] + g[3 * r + 1] * g[3 + c] + g[3 * r + 2] * g[6 + c];
+        }
+    }
+    for (int i = 0; i < 9; i++) {
+        sum += square[i] * square[i];
+    }
+    return noh_sqrt(noh_sqrt(noh_sqrt(sum)));
+}
+
+float noh_probe_off(const float difference[12], float reach, float least)
+{
+    float turn[9], way[3], square = 0.0f, length;
+    for (int i = 0; i < 12; i++) {
+        *(i % 4 < 3 ? &turn[i / 4 * 3 + i % 4] : &way[i / 4]) = difference[i];
+    }
+    for (int i = 0; i < 9; i++) {
+        square += turn[i] * turn[i];
+    }
+    length = noh_sqrt(noh_dot3(way, way));
+    reach = reach > 0.0f ? reach : 0.0f;
+    /* The Frobenius norm is never below the other, and cheap: most joints end here. */
+    if (length + reach * noh_sqrt(square) > least) {
+        const float off = length + reach * norm_bound(turn);
+        least = off > least ? off : least;
+    }
+    return least;
+}

@@ -1,0 +1,330 @@
+/* test_motion_errors.c: what a pack says that its clips are off with fewer joints and at lower rates, against poses
+ * computed in double precision, and against the library's own measurement of the opened pack. */
+#include "support.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "convert/convert.h"
+#include "convert/gltf_motion.h"
+#include "convert/joint_reach.h"
+#include "convert/skins.h"
+#include "motion_fixture.h"
+
+/* ---- a pack and its set ---- */
+
+typedef struct opened {
+    uint8_t *bytes;
+    noh_pack pack;
+    noh_motion_set *set;
+    void *memory;
+} opened;
+
+static opened open_motion(const char *input, convert_only only)
+{
+    opened o;
+    convert_options options;
+    noh_motion_set_desc desc;
+    size_t bytes;
+    memset(&options, 0, sizeof options);
+    memset(&desc, 0, sizeof desc);
+    memset(&o, 0, sizeof o);
+    options.only = only;
+    o.bytes = motion_pack(&input, 1, &options, &bytes);
+    o.pack = test_open(o.bytes, bytes);
+    desc.clips = &o.pack;
+    bytes = noh_motion_set_size(&desc, NULL);
+    o.memory = test_aligned(NULL, bytes);
+    assert_int_equal(noh_motion_set_init(o.memory, bytes, &desc, &o.set, NULL), NOH_OK);
+    return o;
+}
+
+static void close_motion(opened *o)
+{
+    free(o->memory);
+    free(o->bytes);
+}
+
+/* ---- the oracle ---- */
+
+/* out = a * translation * rotation * scale of t; 3 rows of 4. */
+static void append(const double *a, const noh_transform *t, double *out)
+{
+    const double x = (double)t->rotation[0], y = (double)t->rotation[1], z = (double)t->rotation[2], w = (double)t->rotation[3];
+    const double n = 2.0 / (x * x + y * y + z * z + w * w);
+    const double turn[3][3] = { { 1 - n * (y * y + z * z), n * (x * y - w * z), n * (x * z + w * y) },
+                                { n * (x * y + w * z), 1 - n * (x * x + z * z), n * (y * z - w * x) },
+                                { n * (x * z - w * y), n * (y * z + w * x), 1 - n * (x * x + y * y) } };
+    for (int r = 0; r < 3; r++) {
+        out[4 * r + 3] = a[4 * r + 3];
+        for (int c = 0; c < 3; c++) {
+            out[4 * r + c] = 0.0;
+            for (int k = 0; k < 3; k++) out[4 * r + c] += a[4 * r + k] * turn[k][c] * (double)t->scale[c];
+            out[4 * r + 3] += a[4 * r + c] * (double)t->translation[c];
+        }
+    }
+}
+
+/* Joints from `count` on are in the bind pose's place below their parents. */
+static void model_of(const noh_skeleton *s, const noh_transform *pose, uint32_t count, double *out)
+{
+    static const double identity[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
+    for (uint32_t j = 0; j < s->joint_count; j++) {
+        const double *above = s->parents[j] == NOH_JOINT_ROOT ? identity : out + 12u * (size_t)s->parents[j];
+        append(above, j < count ? &pose[j] : &s->bind_pose[j], out + 12u * (size_t)j);
+    }
+}
+
+/* The farthest of points around a joint, `reach` away in many directions. */
+static double farthest(const double *a, const double *b, double reach)
+{
+    double worst = 0.0;
+    for (int i = 0; i < 27; i++) {
+        double p[3] = { i % 3 - 1.0, i / 3 % 3 - 1.0, i / 9 - 1.0 }, length = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]), square = 0.0;
+        for (int r = 0; r < 3; r++) {
+            double off = a[4 * r + 3] - b[4 * r + 3];
+            for (int c = 0; c < 3; c++) off += (a[4 * r + c] - b[4 * r + c]) * p[c] / fmax(length, 1.0) * reach;
+            square += off * off;
+        }
+        worst = fmax(worst, square);
+    }
+    return sqrt(worst);
+}
+
+/* The largest found of one motion in one level, over poses every `step` ticks. */
+static double level_off(const opened *o, uint32_t clip, uint32_t count, const float *reach, uint32_t step)
+{
+    const noh_skeleton *s = &o->set->skeleton;
+    noh_transform *pose = test_zeros(s->joint_count * sizeof *pose);
+    float *floats = test_zeros((o->set->anim.float_count + 1u) * sizeof *floats);
+    double *whole = test_zeros(12u * s->joint_count * sizeof *whole), *less = test_zeros(12u * s->joint_count * sizeof *less), worst = 0.0;
+    for (uint32_t tick = 0; tick <= o->set->anim.motions[clip].duration_ticks; tick += step) {
+        o->set->anim.sample(o->set->anim.user, clip, tick, s->joint_count, pose, o->set->anim.float_count, floats);
+        model_of(s, pose, s->joint_count, whole);
+        model_of(s, pose, count, less);
+        for (uint32_t j = 0; j < s->joint_count; j++) {
+            if (reach[j] >= 0.0f) {
+                worst = fmax(worst, farthest(whole + 12u * (size_t)j, less + 12u * (size_t)j, (double)reach[j]));
+            }
+        }
+    }
+    free(pose);
+    free(floats);
+    free(whole);
+    free(less);
+    return worst;
+}
+
+/* The farthest vertex on each joint of the pack's skeleton, out of the file's own meshes and matrices. */
+static float *reach_of(const model *m, const motion *made, const noh_pack *pack, uint32_t joint_count)
+{
+    float *reach = test_zeros(joint_count * sizeof *reach);
+    for (uint32_t j = 0; j < joint_count; j++) reach[j] = -1.0f;
+    for (uint32_t n = 0; n < m->node_count; n++) {
+        const model_mesh *mesh = m->nodes[n].mesh == MODEL_NONE ? NULL : &m->meshes[m->nodes[n].mesh];
+        const model_skin *skin = m->nodes[n].skin == MODEL_NONE ? NULL : &m->skins[m->nodes[n].skin];
+        for (size_t i = 0; mesh && skin && i < (size_t)mesh->vertex_count * MODEL_INFLUENCES_MAX; i++) {
+            const uint32_t place = mesh->joints[i];
+            const float *bind = skin->inverse_bind + 16u * (size_t)place, *at = mesh->position + 3 * (i / MODEL_INFLUENCES_MAX);
+            const char *name = made->sets[0]->skeleton.joints[made->skins[m->nodes[n].skin].joints[place]].name;
+            double square = 0.0;
+            uint32_t j = 0;
+            if (mesh->joint_weights[i] < 0.05f) continue;
+            while (strcmp(noh_pack_joint_name(pack, 0, j), name) != 0) j++;
+            for (int r = 0; r < 3; r++) {
+                double x = (double)(bind[r] * at[0]) + (double)(bind[4 + r] * at[1]) + (double)(bind[8 + r] * at[2]) + (double)bind[12 + r];
+                square += x * x;
+            }
+            reach[j] = fmaxf(reach[j], (float)sqrt(square));
+        }
+    }
+    return reach;
+}
+
+/* ---- with vertices ---- */
+
+static void a_puppets_joint_errors_are_those_of_its_vertices(void **state)
+{
+    char path[4096];
+    const char *build = getenv("NOH_BUILD");
+    model *m;
+    motion *made;
+    model_error error;
+    motion_options rate = { 0.0 };
+    float *reach;
+    uint32_t level_count;
+    const uint32_t *levels;
+    opened o;
+    (void)state;
+    snprintf(path, sizeof path, "%s/demo/puppet.glb", build ? build : "build");
+    assert_int_equal(model_read_gltf(path, &m, &error), 0);
+    assert_int_equal(motion_from_model(m, &rate, &made, &error), 0);
+    o = open_motion(path, CONVERT_MOTION);
+    levels = noh_pack_joint_levels(&o.pack, 0, &level_count);
+    assert_true(level_count >= 4);
+    reach = reach_of(m, made, &o.pack, o.set->skeleton.joint_count);
+    for (uint32_t clip = 0; clip < o.set->anim.motion_count; clip++) {
+        noh_pack_motion from;
+        assert_int_equal(noh_pack_motion_at(&o.pack, o.set->pack_motions[clip], &from), NOH_OK);
+        assert_true(from.header->error_shell == 0.0f);
+        assert_true(from.header->rate_error[1] > 0.0f && from.header->rate_error[1] < 0.05f); /* no walk's leap back among them */
+        for (uint32_t i = 1; i < level_count; i++) {
+            const double stored = (double)from.joint_errors[i], coarse = level_off(&o, clip, levels[i], reach, 800);
+            print_message("%s, %u joints: %.4f m stored, %.4f found\n", from.name, levels[i], stored, coarse);
+            assert_true(coarse <= stored * 1.0001 + 1e-6);
+            assert_true(coarse >= 0.8 * stored);
+        }
+        assert_true(level_off(&o, clip, levels[level_count - 1], reach, 1234) <= 1.001 * (double)from.joint_errors[level_count - 1] + 1e-4);
+    }
+    free(reach);
+    close_motion(&o);
+    motion_free(made);
+    model_free(m);
+}
+
+/* Two joints a metre apart, three vertices; the farthest hangs on the second by too little to count. */
+static void only_what_a_joint_moves_counts(void **state)
+{
+    float positions[9] = { 0.0f, 0.5f, 0.0f, 0.0f, 1.25f, 0.0f, 0.0f, 4.0f, 0.0f }, weights[24] = { 0.0f }, reach[3];
+    float binds[32] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1 };
+    uint16_t joints[24] = { 0 };
+    uint32_t places[2] = { 0, 2 };
+    model_skin skin;
+    model_mesh mesh;
+    model m;
+    (void)state;
+    memset(&skin, 0, sizeof skin);
+    memset(&mesh, 0, sizeof mesh);
+    memset(&m, 0, sizeof m);
+    skin.joint_count = 2, skin.inverse_bind = binds, skin.skeleton_joints = places;
+    mesh.vertex_count = 3, mesh.position = positions, mesh.joints = joints, mesh.joint_weights = weights, mesh.bound = 1;
+    m.mesh_count = m.skin_count = 1, m.meshes = &mesh, m.skins = &skin;
+    weights[0] = 1.0f;
+    joints[8] = 0, weights[8] = 0.95f, joints[9] = 1, weights[9] = 0.05f;
+    joints[16] = 0, weights[16] = 0.96f, joints[17] = 1, weights[17] = 0.04f;
+    assert_int_equal(joint_reach(&m, 0, 3, reach), 1);
+    assert_true(reach[0] == 4.0f && reach[1] == -1.0f && reach[2] == 0.25f);
+    assert_int_equal(joint_reach(&m, 1, 3, reach), 0); /* no mesh of that skeleton */
+    assert_true(reach[0] == -1.0f);
+    assert_int_equal(joint_reach(NULL, 0, 3, reach), 0);
+}
+
+/* ---- without: a shell ---- */
+
+static noh_time_probe probe_of(const opened *o, float *reach, float distance)
+{
+    noh_time_probe probe;
+    memset(&probe, 0, sizeof probe);
+    for (uint32_t j = 0; j < o->set->skeleton.joint_count; j++) reach[j] = distance;
+    probe.set = &o->set->anim;
+    probe.skeleton = &o->set->skeleton;
+    probe.joint_reach_m = reach;
+    return probe;
+}
+
+/* Stored is what the library measures of the opened pack, to the bit: the same decoder, the same method. */
+static void a_chains_errors_are_what_the_library_measures(void **state)
+{
+    const char *path = motion_bvh("chain", "abcdefghijklmnopqrst", 2 * MOTION_PASS_FRAMES);
+    opened o = open_motion(path, CONVERT_ALL);
+    float reach[20], rates[NOH_RATE_COUNT], joints[NOH_JOINT_LEVELS_MAX];
+    noh_time_probe probe = probe_of(&o, reach, 3.0f);
+    uint32_t level_count;
+    const uint32_t *levels = noh_pack_joint_levels(&o.pack, 0, &level_count);
+    size_t bytes = noh_time_lod_measure_size(&probe), joint_bytes = noh_joint_lod_measure_size(&probe);
+    uint8_t *memory = test_aligned(NULL, bytes > joint_bytes ? bytes : joint_bytes);
+    noh_pack_motion from;
+    (void)state;
+    assert_int_equal(noh_pack_motion_at(&o.pack, 0, &from), NOH_OK);
+    assert_true(from.header->error_shell == 3.0f);
+    assert_int_equal(noh_time_lod_measure(memory, bytes, &probe, 0, rates, NULL), NOH_OK);
+    assert_memory_equal(rates, from.header->rate_error, sizeof rates);
+    assert_true(rates[1] > 0.0f && rates[1] < rates[2] && rates[2] < rates[3]);
+    assert_int_equal(noh_joint_lod_measure(memory, joint_bytes, &probe, 0, levels, level_count, joints, NULL), NOH_OK);
+    assert_memory_equal(joints, from.joint_errors, level_count * sizeof *joints);
+    for (uint32_t i = 1; i < level_count; i++) {
+        const double found = level_off(&o, 0, levels[i], reach, 400);
+        assert_true(found <= (double)joints[i] * 1.0001);
+        assert_true(joints[i] == joints[i - 1] || found >= 0.8 * (double)joints[i]); /* equal: it is not said to be better */
+    }
+    free(memory);
+    close_motion(&o);
+}
+
+/* A loop that travels goes on from where it ends, as with root motion, when the probe says so; else it leaps back. */
+static void a_travelling_loop_has_the_errors_of_its_pass(void **state)
+{
+    const char *path = motion_bvh("chain", "abcd", MOTION_PASS_FRAMES);
+    opened o = open_motion(path, CONVERT_ALL);
+    float reach[4], once[NOH_RATE_COUNT], loop[NOH_RATE_COUNT], leap[NOH_RATE_COUNT];
+    noh_time_probe probe = probe_of(&o, reach, 3.0f);
+    noh_motion played = o.set->anim.motions[0];
+    noh_anim_set set = o.set->anim;
+    size_t bytes;
+    uint8_t *memory;
+    (void)state;
+    probe.set = &set;
+    set.motions = &played;
+    bytes = noh_time_lod_measure_size(&probe);
+    memory = test_aligned(NULL, bytes);
+    played.loop = NOH_LOOP_ONCE;
+    assert_int_equal(noh_time_lod_measure(memory, bytes, &probe, 0, once, NULL), NOH_OK);
+    played.loop = NOH_LOOP_REPEAT;
+    assert_int_equal(noh_time_lod_measure(memory, bytes, &probe, 0, leap, NULL), NOH_OK);
+    probe.travels = 1;
+    assert_int_equal(noh_time_lod_measure(memory, bytes, &probe, 0, loop, NULL), NOH_OK);
+    print_message("8 Hz: once %.3f cm, looped %.3f cm, its way 240 cm\n", (double)once[3], (double)loop[3]);
+    for (int r = 1; r < NOH_RATE_COUNT; r++) {
+        assert_true(loop[r] > 0.0f && loop[r] <= once[r] * 1.001f); /* played once it stops short at its end */
+        assert_true(leap[r] > 100.0f);
+    }
+    free(memory);
+    close_motion(&o);
+}
+
+/* ---- what is refused ---- */
+
+static void bad_arguments_are_named(void **state)
+{
+    opened o = open_motion(motion_bvh("chain", "abcd", 4), CONVERT_ALL);
+    float reach[4], errors[4] = { 7.0f, 7.0f, 7.0f, 7.0f };
+    noh_time_probe probe = probe_of(&o, reach, 3.0f);
+    const uint32_t fine[2] = { 4, 1 }, more[1] = { 5 }, rising[2] = { 2, 3 }, rootless[2] = { 4, 0 };
+    size_t bytes = noh_joint_lod_measure_size(&probe);
+    uint8_t *memory = test_aligned(NULL, bytes + 16);
+    noh_error error = { NOH_OK, "", 0, 0 };
+    (void)state;
+    assert_int_equal(noh_joint_lod_measure(memory, bytes - 1, &probe, 0, fine, 2, errors, &error), NOH_ERR_MEMORY);
+    assert_int_equal(error.need, bytes);
+    assert_int_equal(noh_joint_lod_measure(memory + 4, bytes, &probe, 0, fine, 2, errors, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_joint_lod_measure(memory, bytes, &probe, 1, fine, 2, errors, &error), NOH_ERR_ARG);
+    assert_string_equal(error.what, "motion");
+    assert_int_equal(noh_joint_lod_measure(memory, bytes, &probe, 0, more, 1, errors, &error), NOH_ERR_ARG);
+    assert_string_equal(error.what, "counts");
+    assert_int_equal(noh_joint_lod_measure(memory, bytes, &probe, 0, rising, 2, errors, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_joint_lod_measure(memory, bytes, &probe, 0, rootless, 2, errors, &error), NOH_ERR_ARG);
+    assert_true(errors[0] == 7.0f && errors[1] == 7.0f);
+    probe.joint_reach_m = NULL;
+    assert_int_equal(noh_joint_lod_measure(memory, bytes, &probe, 0, fine, 2, errors, &error), NOH_ERR_ARG);
+    assert_string_equal(error.what, "probe");
+    probe.joint_reach_m = reach;
+    assert_int_equal(noh_joint_lod_measure(memory, bytes, &probe, 0, fine, 2, errors, &error), NOH_OK);
+    assert_true(errors[0] == 0.0f && errors[1] > 0.0f && errors[2] == 7.0f);
+    free(memory);
+    close_motion(&o);
+}
+
+int main(int argument_count, char **arguments)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_puppets_joint_errors_are_those_of_its_vertices), cmocka_unit_test(only_what_a_joint_moves_counts),
+        cmocka_unit_test(a_chains_errors_are_what_the_library_measures),
+        cmocka_unit_test(a_travelling_loop_has_the_errors_of_its_pass), cmocka_unit_test(bad_arguments_are_named)
+    };
+    if (argument_count > 1) {
+        cmocka_set_test_filter(arguments[1]);
+    }
+    return cmocka_run_group_tests_name("motion_errors", tests, NULL, NULL);
+}
