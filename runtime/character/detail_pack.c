@@ -12,7 +12,7 @@ typedef struct source {
     const noh_pack *clips, *pack;
     const uint32_t *levels; /* [level_count] joints */
     uint32_t level_count, skeleton, motion_count, joint_count;
-    uint32_t mesh_level_count;
+    uint32_t mesh_level_count, target_count;
     int skinned;            /* there is a mesh, and joints move it */
 } source;
 
@@ -21,7 +21,7 @@ typedef struct parts {
     noh_mesh_level *meshes;
     noh_joint_level *joints;
     noh_influence_level *influences; /* [INFLUENCE_LEVELS] */
-    float *rates, *margins;
+    float *rates, *margins, *reach;
 } parts;
 
 #define INFLUENCE_LEVELS 4u /* all, 4, 2, 1 */
@@ -51,6 +51,7 @@ static const char *resolve(const noh_detail_pack_desc *desc, source *s)
         if (!s->levels || s->levels[0] != s->joint_count) return "set_desc";
     }
     s->mesh_level_count = desc->mesh ? desc->mesh->header->level_count - desc->mesh->header->level : 0;
+    s->target_count = desc->mesh ? desc->mesh->header->target_count : 0;
     s->skinned = desc->mesh && desc->mesh->header->skin != NOH_NONE;
     return s->skinned && !(s->joint_count && is_of_skeleton(s, desc->mesh)) ? "mesh" : NULL;
 }
@@ -62,6 +63,7 @@ static void carve(noh_arena *arena, const source *s, parts *p)
     p->joints = (noh_joint_level *)noh_arena_carve(arena, s->level_count * sizeof *p->joints, 4);
     p->rates = (float *)noh_arena_carve(arena, s->motion_count * (size_t)NOH_RATE_COUNT * sizeof(float), 4);
     p->margins = (float *)noh_arena_carve(arena, s->skinned ? s->joint_count * sizeof(float) : 0, 4);
+    p->reach = (float *)noh_arena_carve(arena, s->target_count * sizeof(float), 4);
 }
 
 size_t noh_detail_pack_size(const noh_detail_pack_desc *desc)
@@ -203,6 +205,10 @@ static void fill(const noh_detail_pack_desc *desc, const source *s, parts *p, no
         p->joints[i].error_m = 0.0f;
     }
     if (desc->mesh) {
+        detail->reach_m = p->reach;
+        for (uint32_t t = 0; t < s->target_count; t++) {
+            p->reach[t] = desc->mesh->targets[t].max_displacement * desc->mesh->header->world_scale;
+        }
         fill_meshes(desc->mesh, s, p->meshes);
         detail->table.meshes = p->meshes;
         detail->table.mesh_level_count = s->mesh_level_count;

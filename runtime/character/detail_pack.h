@@ -24,6 +24,8 @@ typedef struct noh_detail_pack {
     noh_detail_table table; /* clip_error_m is what the clips certify at their own shell distance */
     float *margin_m;        /* [the skeleton's joint_count] of the mesh, for noh_character_update; NULL without a skinned mesh. Add
                              * others that are drawn by noh_margins_add */
+    float *reach_m;         /* [the mesh's target_count] what each target moves at most at weight 1, for noh_detail_targets; NULL without
+                             * a mesh */
 } noh_detail_pack;
 
 /* Exact bytes; 0 for an impossible desc. */

@@ -295,6 +295,9 @@ static void levels_come_from_the_mesh(void **state)
         assert_int_equal(level->influence_count, h[k].influence_count);
         assert_true(level->error_m == (k == 0 ? 0.0f : k == 1 ? 0.006f : 0.008f));
     }
+    for (uint32_t i = 0; i < h->target_count; i++) {
+        assert_true(t.detail.reach_m[i] == 2.0f * t.mesh.targets[i].max_displacement);
+    }
     assert_int_equal(t.detail.table.influences[0].influence_count, h->influence_count);
     assert_true(t.detail.table.influences[0].error_m == 0.0f);
     for (uint32_t i = 1; i < t.detail.table.influence_level_count; i++) {
@@ -322,7 +325,8 @@ static void a_byte_too_few_is_refused(void **state)
     (void)state;
     open_table(&t, NULL);
     t.bytes = noh_detail_pack_size(&t.desc);
-    assert_int_equal(t.bytes, sizeof(noh_mesh_level) + 4 * sizeof(noh_influence_level) + 3 * sizeof(noh_joint_level) + t.set->anim.motion_count * NOH_RATE_COUNT * sizeof(float) + 4 * sizeof(float));
+    assert_int_equal(t.bytes, sizeof(noh_mesh_level) + 4 * sizeof(noh_influence_level) + 3 * sizeof(noh_joint_level) + t.set->anim.motion_count * NOH_RATE_COUNT * sizeof(float) +
+                     (4 + t.mesh.header->target_count) * sizeof(float));
     block = test_aligned(NULL, t.bytes + 64);
     memset(block, 0xa5, t.bytes + 64);
     assert_int_equal(noh_detail_pack_init(block, t.bytes - 1, &t.desc, &t.detail, &error), NOH_ERR_MEMORY);
