@@ -160,8 +160,28 @@ static void walk_influences(walk *w, const noh_mesh *mesh)
             eat(w, &skin.joints[joints[i]], sizeof *skin.joints);
         }
         eat(w, weights, sizeof *weights * count);
-        eat(w, mesh->positions + 3u * (size_t)noh_mesh_texel(mesh, v), 12);
     }
+}
+
+/* Skinned by the inverse bind matrices: as good as any others, and there. */
+static void walk_skinned(walk *w, const noh_mesh *mesh)
+{
+    const uint32_t count = mesh->header->vertex_count;
+    noh_skin skin;
+    float *positions, *normals, *tangents;
+    if (noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin) != NOH_OK) {
+        return;
+    }
+    positions = memory(12u * (size_t)count);
+    normals = memory(12u * (size_t)count);
+    tangents = memory(16u * (size_t)count);
+    noh_skin_vertices(mesh, skin.inverse_bind, NULL, 0, count, positions, normals, tangents);
+    eat(w, positions, 12u * (size_t)count);
+    eat(w, normals, 12u * (size_t)count);
+    eat(w, tangents, 16u * (size_t)count);
+    free(positions);
+    free(normals);
+    free(tangents);
 }
 
 typedef void (*accumulate_function)(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers);
@@ -224,20 +244,29 @@ static void walk_plans(walk *w, const noh_mesh *meshes, uint32_t count)
     }
 }
 
-static void walk_meshes(walk *w)
+static void walk_level(walk *w, const noh_mesh *level)
 {
     static const accumulate_function ways[] = { noh_morph_accumulate, noh_morph_accumulate_scalar, accumulate_rne, accumulate_rtz };
+    walk_vertices(w, level);
+    walk_targets(w, level);
+    walk_influences(w, level);
+    walk_skinned(w, level);
+    for (size_t k = 0; k < sizeof ways / sizeof ways[0]; k++) {
+        walk_morph(w, level, ways[k]);
+    }
+}
+
+static void walk_meshes(walk *w)
+{
     noh_mesh *meshes = memory(sizeof *meshes * w->pack->mesh_count);
     for (uint32_t i = 0; i < w->pack->mesh_count; i++) {
         if (noh_pack_mesh(w->pack, i, &meshes[i]) != NOH_OK) {
             abort();
         }
         eat_name(w, meshes[i].name);
-        walk_vertices(w, &meshes[i]);
-        walk_targets(w, &meshes[i]);
-        walk_influences(w, &meshes[i]);
-        for (size_t k = 0; k < sizeof ways / sizeof ways[0]; k++) {
-            walk_morph(w, &meshes[i], ways[k]);
+        for (uint32_t k = 0; k < meshes[i].header->level_count; k++) {
+            const noh_mesh level = noh_mesh_at_level(&meshes[i], k);
+            walk_level(w, &level);
         }
     }
     if (w->pack->mesh_count) {

@@ -274,6 +274,7 @@ static void fill_identity(model_node *n, uint32_t parent, uint32_t mesh, const c
     n->name = model_string(name);
     n->parent = parent;
     n->mesh = mesh;
+    n->skin = MODEL_NONE;
     n->rotation[3] = 1.0f;
     for (int i = 0; i < 4; i++) {
         n->world[5 * i] = 1.0;

@@ -7,6 +7,7 @@
 
 #include "convert/convert.h"
 #include "convert/model_build.h"
+#include "lod_fixture.h"
 #include "motion_fixture.h"
 #include "skin_asset.h"
 #include "unit/clip_fixture.h"
@@ -69,6 +70,20 @@ static void write_skin(const char *folder, const char *name, uint32_t palette)
     snprintf(path, sizeof path, "%s/%s.noh", folder, name);
     test_write_file(path, bytes, count);
     free(bytes);
+    model_free(m);
+}
+
+/* Three levels of detail; the model is freed. */
+static void write_levels(const char *folder, const char *name, model *m, uint32_t palette)
+{
+    const lod_settings three = { 3, 0, LOD_FAST };
+    char path[4096];
+    lod_pack p;
+    lod_pack_make(m, &three, palette, &p);
+    assert_int_equal(p.mesh.header->level_count, 3);
+    snprintf(path, sizeof path, "%s/%s.noh", folder, name);
+    test_write_file(path, p.bytes, p.byte_count);
+    lod_pack_free(&p);
     model_free(m);
 }
 
@@ -135,6 +150,8 @@ static void corpus(void **state)
         { "two_meshes", { 2, 3, 2, TEST_SCENE, 6 } },
         { "many_targets", { 1, 5, 20, TEST_COLORS, 7 } }
     };
+    const lod_face face = { 8, 7, 2, 0, 0 }, all_touched = { 6, 6, 2, 0, 1 };
+    const skin_cylinder tube = { 4, 12, 8, 2, 2, 0, 2.0f, 0.5f };
     (void)state;
     for (size_t i = 0; i < TEST_COUNT(seeds); i++) {
         write_pack(folder, seeds[i].name, &seeds[i].desc);
@@ -143,6 +160,10 @@ static void corpus(void **state)
     write_weights(folder);
     write_skin(folder, "skin", 0);
     write_skin(folder, "skin_split", 4);
+    write_levels(folder, "levels", lod_face_model(&face), 0);
+    write_levels(folder, "levels_all_touched", lod_face_model(&all_touched), 0);
+    write_levels(folder, "levels_skin", lod_tube_model(&tube), 0);
+    write_levels(folder, "levels_split", lod_tube_model(&tube), 6);
 }
 
 int main(int argument_count, char **arguments)

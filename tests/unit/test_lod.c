@@ -545,6 +545,31 @@ static void closed_body_stays_closed(void **state)
     sheet_free(&s);
 }
 
+/* In any unit a mesh is the same: up to the largest size that is not refused. */
+static void size_does_not_matter(void **state)
+{
+    (void)state;
+    for (lod_mode mode = LOD_QUALITY; mode <= LOD_FAST; mode++) {
+        sheet small = sheet_new(9, 1, 1), large = sheet_new(9, 1, 1);
+        wrinkle(&small, 12);
+        wrinkle(&large, 12);
+        bump(&small, 0, 0.04f, 0.04f, 0.03f, 0.02f);
+        bump(&large, 0, 0.04f, 0.04f, 0.03f, 0.02f);
+        for (uint32_t i = 0; i < large.mesh.vertex_count * 3u; i++) {
+            large.mesh.position[i] *= 0x1p20f; /* a power of 2: every bit behind it stays */
+            large.mesh.targets[0].position[i] *= 0x1p20f;
+        }
+        lod *a = build_to(&small.mesh, mode, 0.25f), *b = build_to(&large.mesh, mode, 0.25f);
+        assert_int_equal(a->levels[0].index_count, b->levels[0].index_count);
+        assert_true(a->levels[0].index_count < small.mesh.index_count / 3u);
+        assert_memory_equal(a->levels[0].indices, b->levels[0].indices, sizeof(uint32_t) * a->levels[0].index_count);
+        lod_free(a);
+        lod_free(b);
+        sheet_free(&small);
+        sheet_free(&large);
+    }
+}
+
 static void refuse(const model_mesh *mesh, const lod_options *o, const char *word)
 {
     model_error error = { "", "" };
@@ -565,6 +590,8 @@ static void bad_input_is_refused(void **state)
     const float *const poses[1] = { s.mesh.position };
     s.mesh.position[7] = NAN;
     refuse(&s.mesh, &o, "vertex 2 is no finite");
+    s.mesh.position[7] = -1e9f;
+    refuse(&s.mesh, &o, "vertex 2 is -1e+09: levels of detail are made of meshes within 100000");
     s.mesh.position[7] = 0.0f;
     s.mesh.targets[0].position[3] = INFINITY;
     refuse(&s.mesh, &o, "target");
@@ -674,6 +701,7 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(isolated_vertices_are_ignored),
         cmocka_unit_test(one_triangle_stays),
         cmocka_unit_test(closed_body_stays_closed),
+        cmocka_unit_test(size_does_not_matter),
         cmocka_unit_test(bad_input_is_refused),
         cmocka_unit_test(distances_are_known_ones),
         cmocka_unit_test(frames_bend_a_tube),

@@ -74,9 +74,9 @@ typedef struct lod {
 } lod;
 
 /* Simplify. The same input and options give the same result on every machine.
- * ranges  finite positions; targets' positions not NULL; indices within vertex_count
+ * ranges  positions, deltas and poses within 1e5; targets' positions not NULL; indices within vertex_count
  * memory  about vertices x poses x 12 bytes, and 88 bytes for each vertex and pose that moves it
- * errors  1 and *error: out of memory, NaN, bad ratios, indices out of range. A mesh that cannot
+ * errors  1 and *error: out of memory, NaN, larger than 1e5, bad ratios, indices out of range. A mesh that cannot
  *         be simplified so far (locked borders, foldings) is no error: the level has more triangles. */
 int lod_build(const model_mesh *mesh, const lod_options *options, lod **out, model_error *error);
 void lod_free(lod *l);

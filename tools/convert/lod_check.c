@@ -5,6 +5,8 @@
 
 #include "model_build.h"
 
+#define LARGEST 1e5f /* far beyond it products of lengths overflow, and no collapse has a cost */
+
 static const float standard_ratios[] = { 1.0f, 0.5f, 0.25f, 0.1f };
 
 static int check_floats(const float *values, size_t count, const char *what, model_error *error)
@@ -12,6 +14,10 @@ static int check_floats(const float *values, size_t count, const char *what, mod
     for (size_t i = 0; i < count; i++) {
         if (!isfinite(values[i])) {
             return model_fail(error, "", "%s of vertex %zu is no finite number", what, i / 3u);
+        }
+        if (fabsf(values[i]) > LARGEST) {
+            return model_fail(error, "", "%s of vertex %zu is %g: levels of detail are made of meshes within %g", what, i / 3u,
+                              (double)values[i], (double)LARGEST);
         }
     }
     return 0;

@@ -20,16 +20,34 @@ typedef struct pose_list {
 
 /* ---- pairs of targets ---- */
 
-/* Whether `name` with its first "Left" or final "L" turned to the right is `other`. */
+/* Whether `name` with the first `left` in it turned into `right` is `other`. */
+static int is_other_side(const char *name, const char *other, const char *left, const char *right)
+{
+    const char *found = strstr(name, left);
+    const size_t before = found ? (size_t)(found - name) : 0u, length = strlen(right);
+    return found && !strncmp(name, other, before) && !strncmp(other + before, right, length) &&
+           !strcmp(found + strlen(left), other + before + length);
+}
+
+/* Whether they end in L and R, or in l and r behind a sign, and are alike before. */
+static int is_other_end(const char *name, const char *other)
+{
+    const size_t last = strlen(name) - 1u;
+    const int marked = last > 1u && strchr("._- ", name[last - 1u]);
+    return strlen(other) == last + 1u && !strncmp(name, other, last) &&
+           ((name[last] == 'L' && other[last] == 'R') || (marked && name[last] == 'l' && other[last] == 'r'));
+}
+
+/* Whether they are one thing on the left and on the right, by the names that artists give. */
 static int is_pair(const char *name, const char *other)
 {
-    const char *left = strstr(name, "Left");
-    size_t length = strlen(name);
-    if (left) {
-        size_t before = (size_t)(left - name);
-        return !strncmp(name, other, before) && !strncmp(other + before, "Right", 5) && !strcmp(left + 4, other + before + 5);
+    static const char *const sides[3][2] = { { "Left", "Right" }, { "left", "right" }, { "LEFT", "RIGHT" } };
+    for (int i = 0; i < 3; i++) {
+        if (is_other_side(name, other, sides[i][0], sides[i][1])) {
+            return 1;
+        }
     }
-    return length > 1 && strlen(other) == length && name[length - 1] == 'L' && other[length - 1] == 'R' && !strncmp(name, other, length - 1);
+    return strlen(name) > 1u && is_other_end(name, other);
 }
 
 static uint32_t right_of(const model_mesh *mesh, uint32_t target)

@@ -271,10 +271,10 @@ static uint32_t next_smallest(const morph_encoding *e, uint32_t after)
 static void leave_out(encoder *c, uint32_t level, float most)
 {
     morph_encoding *e = c->e;
+    float sum = 0.0f;
     for (uint32_t t = next_smallest(e, e->target_count); t < e->target_count; t = next_smallest(e, t)) {
-        const float sum = e->level_skipped[level] + e->targets[t].max_displacement;
+        sum += e->targets[t].max_displacement;
         if (!(sum <= most)) break;
-        e->level_skipped[level] = sum;
         memset(&e->parts[(size_t)level * e->target_count + t], 0, sizeof *e->parts);
     }
 }
@@ -341,8 +341,7 @@ static int start(encoder *c)
     e->level_count = c->options.level_count;
     e->level_touched = morph_alloc(e->level_count, sizeof *e->level_touched);
     e->parts = morph_alloc((size_t)e->level_count * e->target_count, sizeof *e->parts);
-    e->level_skipped = morph_alloc(e->level_count, sizeof *e->level_skipped);
-    return e->order && e->targets && e->level_touched && e->parts && e->level_skipped ? 0 : no_memory(c);
+    return e->order && e->targets && e->level_touched && e->parts ? 0 : no_memory(c);
 }
 
 int morph_encode(const model_mesh *mesh, const morph_options *options, morph_encoding **out, model_error *error)
@@ -375,7 +374,6 @@ void morph_encoding_free(morph_encoding *e)
     free(e->targets);
     free(e->level_touched);
     free(e->parts);
-    free(e->level_skipped);
     free(e->rects);
     free(e->texels);
     free(e);

@@ -17,7 +17,7 @@ extern "C" {
 
 typedef struct morph_options {
     float error_um;          /* largest position error of one target at weight 1, micrometres (model unit = metre); 0 = 10 */
-    uint32_t rects;          /* most rectangles per target; 0 = auto (by cost) */
+    uint32_t rects;          /* most rectangles per target, in each level of detail; 0 = auto (by cost) */
     float rect_cost_texels;  /* auto: what one more rectangle costs, in texels; 0 = default */
     const uint8_t *rank;     /* [vertex_count] the coarsest level of detail that a vertex is in; NULL: all in level 0 alone */
     uint32_t level_count;    /* 0 = 1 */
@@ -54,7 +54,6 @@ typedef struct morph_encoding {
     uint32_t level_count;
     uint32_t *level_touched; /* [level_count] the first so many texels are the level's */
     morph_part *parts;       /* [level_count][target_count] */
-    float *level_skipped;    /* [level_count] what the targets left out there sum to */
     uint32_t width_log2;     /* texture width = 1 << width_log2; texel of vertex v: (v & (width-1), v >> width_log2) */
     uint32_t height;         /* ceil(touched_count / width) */
     morph_target *targets;

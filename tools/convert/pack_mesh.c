@@ -268,6 +268,7 @@ static noh_mesh_header level_header(const noh_mesh_header *full, const morph_enc
         h.rect_count += part->rect_count;
         h.texel_count += part->texel_count;
         h.pair_count += part->pair_count;
+        h.level_skipped += e->targets[t].rect_count && !part->rect_count ? e->targets[t].max_displacement : 0.0f;
     }
     h.indices_offset += own->first_index * h.index_bytes;
     h.submeshes_offset += own->first_submesh * (uint32_t)sizeof(noh_submesh);
@@ -277,7 +278,6 @@ static noh_mesh_header level_header(const noh_mesh_header *full, const morph_enc
     h.level_error_targets = errors->targets;
     h.level_error_pairs = errors->pairs;
     h.level_error_motion = errors->motion;
-    h.level_skipped = e->level_skipped[level];
     return h;
 }
 

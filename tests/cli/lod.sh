@@ -1,0 +1,87 @@
+#!/bin/sh
+# noh build --lod: levels of detail by number and by error, what is refused, and that such a pack holds.
+. "$(dirname "$0")/lib.sh"
+
+arm=$build/demo/arm.glb
+head=$assets/hero/head.glb
+
+# The reported levels: lines of "level N: ... triangles"; of one number, where it is given.
+levels() {
+    grep -c "^  level ${1:-[0-9]}:" "$work/out"
+}
+
+noh build "$arm" -o "$work/none.noh"
+expect 0 'build'
+check 'reports no levels' test "$(levels)" = 0
+noh build "$arm" -o "$work/one.noh" --lod 1
+expect 0 'build --lod 1'
+check 'gives the same bytes' cmp "$work/none.noh" "$work/one.noh"
+
+noh build "$arm" -o "$work/four.noh" --lod 4 --lod-fast
+expect 0 'build --lod 4 --lod-fast'
+meshes=$(grep -c '^mesh .* targets$' "$work/out")
+check "reports a coarser level of each mesh ($meshes)" test "$meshes" -gt 0 -a "$(levels 1)" = "$meshes" -a "$(levels 2)" = "$meshes"
+check 'is another pack' sh -c '! cmp -s "$1" "$2"' - "$work/none.noh" "$work/four.noh"
+noh build "$arm" -o "$work/again.noh" --lod 4 --lod-fast --quiet
+expect 0 'build it again, quietly'
+check 'prints nothing' test ! -s "$work/out"
+check 'gives the same bytes' cmp "$work/four.noh" "$work/again.noh"
+noh verify "$work/four.noh"
+expect 0 'verify of a pack with levels'
+noh info "$work/four.noh"
+expect 0 'info of a pack with levels'
+
+noh build "$arm" -o "$work/auto.noh" --lod auto --lod-fast
+expect 0 'build --lod auto --lod-fast'
+check 'reports levels' test "$(levels)" -gt 0
+noh verify "$work/auto.noh"
+expect 0 'verify of levels by error'
+
+# ---- what is refused ----
+
+for value in 0 9 -1 2.5 x '' 4x; do
+    noh build "$arm" -o "$work/refused.noh" --lod "$value"
+    expect 2 "build --lod '$value'"
+    says "--lod wants auto or a whole number from 1 to 8, not '$value'"
+done
+noh build "$arm" -o "$work/refused.noh" --lod
+expect 2 'build --lod without a value'
+check 'no pack was written by any of these' test ! -e "$work/refused.noh"
+
+# ---- nothing to simplify ----
+
+cat >"$work/motion.bvh" <<'BVH'
+HIERARCHY
+ROOT a
+{
+OFFSET 0 0 0
+CHANNELS 3 Zrotation Xrotation Yrotation
+End Site
+{
+OFFSET 0 9 0
+}
+}
+MOTION
+Frames: 2
+Frame Time: 0.05
+0 0 0
+5 0 0
+BVH
+noh build "$work/motion.bvh" -o "$work/motion.noh" --quiet
+expect 0 'build of motion alone'
+noh build "$work/motion.bvh" -o "$work/motion_lod.noh" --lod 4 --quiet
+expect 0 'build of motion alone with --lod 4'
+check 'gives the same bytes' cmp "$work/motion.noh" "$work/motion_lod.noh"
+
+# ---- a real face ----
+
+if [ -f "$head" ]; then
+    noh build "$head" -o "$work/head.noh" --lod 4 --lod-fast
+    expect 0 'build of head.glb with --lod 4 --lod-fast'
+    check 'reports three levels' test "$(levels)" = 3
+    noh verify "$work/head.noh"
+    expect 0 'verify of it'
+else
+    skip 'head.glb with levels' 'no hero/head.glb in NOH_ASSETS'
+fi
+finish
