@@ -39,12 +39,13 @@ typedef struct lod_options {
     const float *errors;          /* [level_count] rising: instead of ratios, the largest cost that a level may have */
     const float *const *poses;    /* [pose_count][vertex_count][3] further shapes, such as frames of motion */
     uint32_t pose_count;
-    uint32_t mix_count;           /* random mixes of targets as poses; 0: 32 */
+    uint32_t mix_count;           /* random mixes of targets as poses; 0: 24 */
     uint64_t mix_seed;            /* 0: a fixed one */
     float pose_weight;            /* distances in the given poses count so many times; 0: 0.4, for motion is seen as a whole */
     float face_weight;            /* distances at vertices that targets move count so many times; 0: 1.2 with poses, else 1 */
     float uv_weight;              /* a UV slide of one length counts as so much of it; 0: 0.1; below 0: none */
-    float color_length;           /* a colour difference of 1 counts as this length; 0: 0.6 of the mean edge; below 0: none */
+    float color_length;           /* a colour difference of 1 counts as this length, in a small part as three times as much; 0: 0.24 of the
+                                   * mean edge; below 0: none */
     float skin_length;            /* all skin weight on other joints counts as this length; 0: the mean edge; below 0: none */
     void (*progress)(void *user, uint32_t done, uint32_t total); /* now and then, triangles taken away; NULL: none */
     void *user;

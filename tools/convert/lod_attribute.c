@@ -7,7 +7,8 @@
 #include <string.h>
 
 #define UV_WEIGHT 0.1f
-#define COLOR_EDGES 0.6f
+#define COLOR_EDGES 0.24f
+#define MINOR_COLORS 3.0f /* a small part, such as an eye, is its colours */
 #define SKIN_EDGES 1.0f
 #define FIRST_COLOR 2u
 
@@ -50,12 +51,12 @@ int lod_attributes_make(lod_surface *s, const lod_options *o)
     }
     s->skin_length = mesh->joint_weights ? chosen(o->skin_length, SKIN_EDGES * s->edge) : 0.0f;
     for (size_t v = 0; v < mesh->vertex_count; v++) {
-        float *to = s->attribute + v * LOD_ATTRIBUTES;
+        float *to = s->attribute + v * LOD_ATTRIBUTES, length = s->minor[s->part[s->point_of[v]]] ? color * MINOR_COLORS : color;
         for (uint32_t k = 0; mesh->uv && k < 2u; k++) {
             to[k] = mesh->uv[v * 2u + k] * uv;
         }
         for (uint32_t k = 0; mesh->color && k < 4u; k++) { /* as they are seen, not as light */
-            to[2u + k] = (k < 3u ? sqrtf(mesh->color[v * 4u + k]) : mesh->color[v * 4u + k]) * color;
+            to[2u + k] = (k < 3u ? sqrtf(mesh->color[v * 4u + k]) : mesh->color[v * 4u + k]) * length;
         }
     }
     return 0;

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define DEFAULT_MIXES 32u
+#define DEFAULT_MIXES 24u
 #define SPARSE_SHARE 0.25 /* of the targets, in every other mix */
 #define DENSE_SHARE 0.5
 #define DEFAULT_SEED UINT64_C(0x6e6f68206d697865)
