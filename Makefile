@@ -41,8 +41,8 @@ MACHINE  := $(shell $(CC) -dumpmachine)
 RUNTIME_C  := $(sort $(wildcard runtime/*/*.c))
 # template.c is for reading; the tests compile it.
 PLATFORM_C := $(filter-out platform/template.c,$(sort $(wildcard platform/*.c)))
-CONVERT_C  := $(sort $(wildcard tools/convert/*.c))
-CONVERT_CC := $(sort $(wildcard tools/convert/*.cpp))
+CONVERT_C  := $(sort $(wildcard tools/convert/*.c tools/convert/*/*.c))
+CONVERT_CC := $(sort $(wildcard tools/convert/*/*.cpp))
 TOOL_C     := $(filter-out %/view_without.c,$(sort $(wildcard tools/noh/*.c tools/noh/bench/*.c)))
 MASK_C     := $(sort $(wildcard tools/make_mask/*.c tools/make_puppet/*.c tools/make_arm/*.c))
 STAGES     := vert geom frag
@@ -316,7 +316,7 @@ TEST_SHARED_O := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/*.c))
 TEST_KERNELS := $(if $(filter x86_64%,$(MACHINE)),$(BUILD)/kernel/clip_sample_avx2.o)
 TEST_LIBS := $(TEST_SHARED_O) $(TEST_TOOL_O) $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(TEST_KERNELS) $(BUILD)/libnoh.a
 
-$(BUILD)/tests/%.o: INCLUDES += -Itests -Itools/convert
+$(BUILD)/tests/%.o: INCLUDES += -Itests
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TEST_LIBS)
 	@mkdir -p $(@D)
 	$(call say,CXX,$@)

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/byte_buffer.h"
+#include "convert/pack/byte_buffer.h"
 #include "pack_walk.h"
 
 #define CELLS 1024 /* to each side */

@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/gltf_motion.h"
-#include "convert/model_build.h"
-#include "convert/motions.h"
+#include "convert/gltf/gltf_motion.h"
+#include "convert/model/model_build.h"
+#include "convert/pack/motions.h"
 
 #define PI 3.14159265358979
 #define RADIUS 0.1

@@ -7,7 +7,7 @@
 #ifndef NOH_TESTS_LOD_FIXTURE_H
 #define NOH_TESTS_LOD_FIXTURE_H
 
-#include "convert/lod_levels.h"
+#include "convert/lod/lod_levels.h"
 #include "skin_asset.h"
 #include "support.h"
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/model_build.h"
+#include "convert/model/model_build.h"
 #include "support.h"
 
 #define TWO_PI 6.283185307179586

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "convert/convert.h"
-#include "convert/gltf_motion.h"
-#include "convert/model_build.h"
+#include "convert/gltf/gltf_motion.h"
+#include "convert/model/model_build.h"
 
 /* A mesh of the model before it is bound: which of the file's it is. */
 typedef struct part {

@@ -4,7 +4,7 @@
 
 #include "gltf_oracle.h"
 #include "support.h"
-#include "convert/skins.h"
+#include "convert/skin/skins.h"
 
 /* Where a vertex of the pack comes from. */
 typedef struct skin_source {

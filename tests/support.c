@@ -10,9 +10,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "convert/gltf_motion.h"
-#include "convert/model_build.h"
-#include "convert/motions.h"
+#include "convert/gltf/gltf_motion.h"
+#include "convert/model/model_build.h"
+#include "convert/pack/motions.h"
 
 /* ---- memory, files ---- */
 

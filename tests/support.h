@@ -15,7 +15,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "convert/pack_write.h"
+#include "convert/pack/pack_write.h"
 #include "noh.h"
 
 #define TEST_MAIN(tests, set_up, tear_down)                                          \

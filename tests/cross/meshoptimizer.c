@@ -1,4 +1,4 @@
-/* The one function that the converter's C files take from meshoptimizer, for processors that
+/* The functions that the converter's C files take from meshoptimizer, for processors that
  * have no package of it: the order of triangles stays as it is. */
 #include <meshoptimizer.h>
 
@@ -7,5 +7,15 @@
 void meshopt_optimizeVertexCache(unsigned int *destination, const unsigned int *indices, size_t index_count, size_t vertex_count)
 {
     (void)vertex_count;
+    memmove(destination, indices, index_count * sizeof *indices);
+}
+
+void meshopt_optimizeOverdraw(unsigned int *destination, const unsigned int *indices, size_t index_count, const float *vertex_positions,
+                              size_t vertex_count, size_t vertex_positions_stride, float threshold)
+{
+    (void)vertex_positions;
+    (void)vertex_count;
+    (void)vertex_positions_stride;
+    (void)threshold;
     memmove(destination, indices, index_count * sizeof *indices);
 }

@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "anim/clip_cache.h"
-#include "convert/clip_encode.h"
-#include "convert/raw_set.h"
+#include "convert/clip/clip_encode.h"
+#include "convert/motion/raw_set.h"
 
 typedef struct fixture {
     raw_set *set;

@@ -8,8 +8,8 @@
 #include "anim/blend.h"
 #include "anim/motion.h"
 #include "anim/skeleton.h"
-#include "convert/raw_set.h"
-#include "convert/rcl.h"
+#include "convert/motion/raw_set.h"
+#include "convert/motion/rcl.h"
 
 typedef struct raw_play {
     raw_set *raw;

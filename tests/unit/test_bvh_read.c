@@ -7,9 +7,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "convert/bvh_read.h"
-#include "convert/raw_set.h"
-#include "convert/rcl.h"
+#include "convert/motion/bvh_read.h"
+#include "convert/motion/raw_set.h"
+#include "convert/motion/rcl.h"
 
 static raw_set *load_path(const char *path, const bvh_options *options)
 {

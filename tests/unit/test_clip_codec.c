@@ -1,4 +1,4 @@
-/* Tests of the clip codec: the encoder (tools/convert/clip_*.c), the decoder and its cache
+/* Tests of the clip codec: the encoder (tools/convert/clip/), the decoder and its cache
  * (runtime/anim/clip_*.c). The evaluator here is written from the definition of the error, in
  * double precision, and shares nothing with the encoder's. */
 #include <setjmp.h>
@@ -10,7 +10,7 @@
 #include <stdio.h>
 
 #include "clip_fixture.h"
-#include "convert/rcl.h"
+#include "convert/motion/rcl.h"
 
 #define JOINTS_MAX 1100u
 #define SINGLE 3e-7      /* what single precision adds to a pose, of its distance from the origin */

@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/events_read.h"
-#include "convert/model_build.h"
-#include "convert/raw_set.h"
+#include "convert/motion/events_read.h"
+#include "convert/model/model_build.h"
+#include "convert/motion/raw_set.h"
 
 static const char *save(const char *text)
 {

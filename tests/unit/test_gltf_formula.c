@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/gltf_motion.h"
+#include "convert/gltf/gltf_motion.h"
 #include "gltf_oracle.h"
 
 #define TIMES 24

@@ -17,7 +17,7 @@
 #include <cmocka.h>
 #include <meshoptimizer.h>
 
-#include "model.h"
+#include "convert/model/model.h"
 
 enum { I8 = 5120, U8 = 5121, I16 = 5122, U16 = 5123, U32 = 5125, F32 = 5126 };
 

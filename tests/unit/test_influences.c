@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/model.h"
+#include "convert/model/model.h"
 
 /* Three vertices with up to three sets: positions, then JOINTS_n as bytes, then WEIGHTS_n as floats. */
 typedef struct skinned {

@@ -8,11 +8,11 @@
 #include <string.h>
 
 #include "convert/convert.h"
-#include "convert/gltf_motion.h"
-#include "convert/joint_order.h"
-#include "convert/model_build.h"
-#include "convert/raw_set.h"
-#include "convert/rcl.h"
+#include "convert/gltf/gltf_motion.h"
+#include "convert/skin/joint_order.h"
+#include "convert/model/model_build.h"
+#include "convert/motion/raw_set.h"
+#include "convert/motion/rcl.h"
 #include "motion_fixture.h"
 
 /* ---- skeletons made in code ---- */

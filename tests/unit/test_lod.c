@@ -1,13 +1,13 @@
-/* test_lod.c: simplification that keeps targets (tools/convert/lod_*.c), on sheets made here. */
+/* test_lod.c: simplification that keeps targets (tools/convert/lod/.c), on sheets made here. */
 #include "support.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/lod.h"
-#include "convert/lod_frames.h"
-#include "convert/model_build.h"
+#include "convert/lod/lod.h"
+#include "convert/lod/lod_frames.h"
+#include "convert/model/model_build.h"
 
 /* ---- sheets ---- */
 

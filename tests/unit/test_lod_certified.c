@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/model_build.h"
+#include "convert/model/model_build.h"
 
 #define POINTS 2500u /* random ones on each surface, besides all corners */
 

@@ -1,4 +1,4 @@
-/* Tests of the morph encoder (tools/convert/morph_*.c) on meshes made here. */
+/* Tests of the morph encoder (tools/convert/morph/) on meshes made here. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../tools/convert/morph_encode.h"
+#include "convert/morph/morph_encode.h"
 
 #define AXES 3u
 #define ERROR_UM 10.0f

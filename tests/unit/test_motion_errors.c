@@ -8,9 +8,9 @@
 #include <string.h>
 
 #include "convert/convert.h"
-#include "convert/gltf_motion.h"
-#include "convert/joint_reach.h"
-#include "convert/skins.h"
+#include "convert/gltf/gltf_motion.h"
+#include "convert/skin/joint_reach.h"
+#include "convert/skin/skins.h"
 #include "motion_fixture.h"
 
 /* ---- a pack and its set ---- */

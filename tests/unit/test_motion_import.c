@@ -9,9 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/gltf_motion.h"
-#include "convert/raw_set.h"
-#include "convert/rcl.h"
+#include "convert/gltf/gltf_motion.h"
+#include "convert/motion/raw_set.h"
+#include "convert/motion/rcl.h"
 
 /* --- writing files --- */
 

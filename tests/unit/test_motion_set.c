@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "anim/sync.h"
-#include "convert/model_build.h"
-#include "convert/raw_set.h"
+#include "convert/model/model_build.h"
+#include "convert/motion/raw_set.h"
 #include "motion_fixture.h"
 
 #define NAMES "abcdefghij"

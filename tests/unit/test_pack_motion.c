@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "convert/convert.h"
-#include "convert/model_build.h"
+#include "convert/model/model_build.h"
 #include "motion_fixture.h"
 #include "pack_walk.h"
 

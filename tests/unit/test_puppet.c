@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/gltf_motion.h"
-#include "convert/raw_set.h"
+#include "convert/gltf/gltf_motion.h"
+#include "convert/motion/raw_set.h"
 
 static model *puppet;
 static motion *moves;

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "convert/angle.h"
-#include "convert/quat.h"
+#include "convert/model/angle.h"
+#include "convert/motion/quat.h"
 
 #define PI 3.14159265358979323846
 

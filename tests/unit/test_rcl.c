@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "convert/input_file.h"
-#include "convert/raw_set.h"
-#include "convert/rcl.h"
+#include "convert/motion/raw_set.h"
+#include "convert/motion/rcl.h"
 
 /* --- a small file, byte by byte --- */
 

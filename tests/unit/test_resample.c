@@ -6,11 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/loop_check.h"
-#include "convert/model_build.h"
-#include "convert/rcl.h"
-#include "convert/raw_set.h"
-#include "convert/resample.h"
+#include "convert/motion/loop_check.h"
+#include "convert/model/model_build.h"
+#include "convert/motion/rcl.h"
+#include "convert/motion/raw_set.h"
+#include "convert/motion/resample.h"
 
 /* A root that travels along x by 2 a frame and turns about z by 10 degrees a frame; a child 10
  * away on its y axis; a float group. */

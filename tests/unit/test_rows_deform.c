@@ -7,9 +7,9 @@
 #include <string.h>
 
 #include "base/math.h"
-#include "convert/mesh_join.h"
-#include "convert/model_build.h"
-#include "convert/two_stream.h"
+#include "convert/skin/mesh_join.h"
+#include "convert/model/model_build.h"
+#include "convert/model/two_stream.h"
 
 /* A tube with its pack, posed by bending each joint about z. */
 typedef struct tube {

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "base/math.h"
-#include "convert/gltf_motion.h"
-#include "convert/motions.h"
+#include "convert/gltf/gltf_motion.h"
+#include "convert/pack/motions.h"
 
 typedef struct made {
     uint8_t *bytes;

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/model_build.h"
+#include "convert/model/model_build.h"
 #include "pack_walk.h"
 
 static const skin_cylinder small = { 4, 7, 6, 4, 1, 1, 2.0f, 0.5f };

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/model_build.h"
-#include "convert/raw_set.h"
+#include "convert/model/model_build.h"
+#include "convert/motion/raw_set.h"
 #include "convert/sources.h"
 #include "motion_fixture.h"
 

@@ -12,9 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/clip_encoder.h"
-#include "convert/raw_set.h"
-#include "convert/rcl.h"
+#include "convert/clip/clip_encoder.h"
+#include "convert/motion/raw_set.h"
+#include "convert/motion/rcl.h"
 
 #define SYMBOLS_MAX 65u
 #define ITEMS_MAX (2u * SYMBOLS_MAX)

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "events_read.h"
-#include "joint_order.h"
+#include "convert/motion/events_read.h"
+#include "convert/skin/joint_order.h"
 #include "pack/pack.h"
 #include "sources.h"
 

@@ -4,10 +4,10 @@
 
 #include <stdio.h>
 
-#include "motions.h"
+#include "convert/pack/motions.h"
 #include "pack/pack.h"
-#include "pack_write.h"
-#include "skins.h"
+#include "convert/pack/pack_write.h"
+#include "convert/skin/skins.h"
 
 typedef enum convert_only { CONVERT_ALL, CONVERT_MESH, CONVERT_MOTION } convert_only;
 

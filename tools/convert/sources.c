@@ -4,12 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bvh_read.h"
-#include "model_build.h"
-#include "raw_set.h"
-#include "rcl.h"
-#include "resample.h"
-#include "two_stream.h"
+#include "convert/motion/bvh_read.h"
+#include "convert/model/model_build.h"
+#include "convert/motion/raw_set.h"
+#include "convert/motion/rcl.h"
+#include "convert/motion/resample.h"
+#include "convert/model/two_stream.h"
 
 static int out_of_memory(model_error *error)
 {

@@ -6,8 +6,8 @@
 #ifndef NOH_CONVERT_SOURCES_H
 #define NOH_CONVERT_SOURCES_H
 
-#include "gltf_motion.h"
-#include "skins.h"
+#include "convert/gltf/gltf_motion.h"
+#include "convert/skin/skins.h"
 
 typedef struct source {
     model *m;        /* of a glTF file; an empty one otherwise */

@@ -3,7 +3,7 @@
 #ifndef NOH_CONVERT_TEXT_SCAN_H
 #define NOH_CONVERT_TEXT_SCAN_H
 
-#include "model.h"
+#include "convert/model/model.h"
 
 typedef struct text_scan {
     const char *at, *end;

@@ -9,8 +9,8 @@
 #ifndef NOH_LOD_COMPARE_H
 #define NOH_LOD_COMPARE_H
 
-#include "convert/lod.h"
-#include "convert/lod_frames.h"
+#include "convert/lod/lod.h"
+#include "convert/lod/lod_frames.h"
 
 /* ---- the peer: peer.c ---- */
 

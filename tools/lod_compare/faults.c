@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "compare.h"
-#include "convert/model_build.h"
+#include "convert/model/model_build.h"
 
 /* ---- UVs ---- */
 

@@ -2,8 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/raw_set.h"
-#include "convert/rcl.h"
+#include "convert/motion/raw_set.h"
+#include "convert/motion/rcl.h"
 #include "noh_tool.h"
 
 /* A clip that is open, with a cache of its own. */

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/byte_buffer.h"
+#include "convert/pack/byte_buffer.h"
 #include "load.h"
 
 typedef struct dump_args {

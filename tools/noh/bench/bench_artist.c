@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "bench_job.h"
-#include "convert/morph_encode.h"
+#include "convert/morph/morph_encode.h"
 
 /* 0 when the encoder's order turns the asset's vertices into the pack's. */
 static int differs(const model_mesh *from, const morph_encoding *e, const noh_mesh *mesh)

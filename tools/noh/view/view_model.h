@@ -6,7 +6,7 @@
 #ifndef NOH_TOOL_VIEW_MODEL_H
 #define NOH_TOOL_VIEW_MODEL_H
 
-#include "convert/byte_buffer.h"
+#include "convert/pack/byte_buffer.h"
 #include "stage.h"
 
 /* A slider: all targets of one name. */

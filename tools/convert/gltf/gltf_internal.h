@@ -1,0 +1,155 @@
+/* gltf_internal.h: what the glTF reader's files share (C++, because tinygltf is).
+ *
+ * tinygltf turns JSON into structs and decodes images. Around it the reader does
+ * itself what must survive a hostile file: it opens the container, checks the
+ * JSON before tinygltf sees it, loads the buffers, and reads every accessor with
+ * its bounds checked. Errors are thrown as gltf::failure and become a model_error
+ * at the boundary (model_read_gltf).
+ *
+ *   gltf_read.cpp      model_read_gltf: the container, the order of the steps
+ *   gltf_json.cpp      the JSON: checks, repairs, tinygltf
+ *   gltf_buffer.cpp    files, URIs, buffers, buffer views
+ *   gltf_meshopt.cpp   EXT_meshopt_compression
+ *   gltf_accessor.cpp  accessors to floats and indices
+ *   gltf_mesh.cpp      meshes, primitives, targets
+ *   gltf_scene.cpp     nodes
+ *   gltf_influences.cpp which joints move which vertices
+ *   gltf_skin.cpp      skins, and the nodes whose meshes they move
+ *   gltf_animation.cpp animations
+ *   gltf_extras.cpp    an animation's extras: callback keys, sync markers, loops
+ *   gltf_material.cpp  materials, textures, images */
+#ifndef NOH_CONVERT_GLTF_INTERNAL_H
+#define NOH_CONVERT_GLTF_INTERNAL_H
+
+#include "convert/model/model_build.h"
+
+#include <cstdint>
+#include <new>
+#include <string>
+#include <vector>
+
+#include <tiny_gltf.h>
+
+namespace gltf {
+
+using bytes = std::vector<uint8_t>;
+
+/* Why the file is refused; see model_error. */
+struct failure {
+    std::string what, where;
+};
+[[noreturn]] void fail(const std::string &where, const std::string &what);
+
+/* tinygltf would load buffers and images itself, but a fallback buffer has no data
+ * to load, and a bad image would fail the whole file: these are read by us. */
+struct buffer {
+    uint64_t byte_length = 0;
+    std::string uri;
+    bool has_uri = false;
+    bool fallback = false; /* only for readers without EXT_meshopt_compression: never loaded */
+    bool has_data = false;
+    bytes data;
+};
+struct image {
+    std::string name, uri;
+    int view = -1;
+};
+
+/* The bytes of a buffer view. */
+struct span {
+    const uint8_t *data;
+    uint64_t size;
+    uint64_t stride; /* 0 = tightly packed */
+};
+
+/* What is loaded of a file while the model is built from it. */
+struct file {
+    std::string path, directory; /* directory: with its slash, or empty */
+    tinygltf::Model json;
+    std::vector<buffer> buffers;
+    std::vector<image> images;
+    bytes bin;                        /* the BIN chunk of a .glb */
+    bool has_bin = false;
+    std::vector<bytes> decoded_views; /* of EXT_meshopt_compression, empty until used */
+    uint64_t input_bytes = 0;         /* of all that was read */
+    uint64_t output_bytes = 0;        /* of what the model needs so far */
+    ::model *out = nullptr;
+    std::vector<uint32_t> mesh_of;     /* [json.meshes] index into out->meshes or MODEL_NONE */
+    std::vector<uint32_t> node_of;     /* [json.nodes] likewise */
+    std::vector<uint32_t> skin_of;     /* [json.skins] likewise */
+    std::vector<uint32_t> texture_of;  /* [json.textures] likewise */
+};
+
+/* --- gltf_read.cpp --- */
+template <class... Arguments> void warn(file &f, const char *format, Arguments... arguments)
+{
+    if (model_warn(f.out, format, arguments...))
+        throw std::bad_alloc();
+}
+/* Count bytes of the model before they are allocated; refuse what no honest file of this size needs. */
+void charge(file &f, uint64_t count, uint64_t element_size, const std::string &where);
+/* A zeroed array of the model, charged. */
+template <class T> T *allocate(file &f, uint64_t count, const std::string &where)
+{
+    charge(f, count, sizeof(T), where);
+    T *array = static_cast<T *>(model_zeros(static_cast<size_t>(count), sizeof(T)));
+    if (!array)
+        throw std::bad_alloc();
+    return array;
+}
+char *copy_string(const std::string &text);
+/* A name as it may stand in a message: short, without control characters. */
+std::string printable(const std::string &name);
+/* The given name, or "<kind>_<index>". */
+std::string name_or(const std::string &name, const char *kind, size_t index);
+std::string text(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/* A JSON number as a float; refuses what a float cannot hold. */
+float to_float(double value, const std::string &where);
+
+/* --- gltf_json.cpp --- */
+void parse_json(file &f, const char *text, size_t size);
+bool uses_extension(const file &f, const char *name);
+
+/* --- gltf_buffer.cpp --- */
+void load_buffers(file &f);
+bytes read_whole_file(const std::string &path, const std::string &where);
+/* The bytes behind a URI: data: or a file beside the glTF. Throws failure. */
+bytes read_uri(file &f, const std::string &uri, const std::string &where);
+/* A buffer view's bytes, decompressed if need be; checked to lie inside its buffer. */
+span view_bytes(file &f, int view, const std::string &where);
+/* A range of a buffer, checked. */
+span buffer_bytes(file &f, int buffer, uint64_t offset, uint64_t size, const std::string &where);
+
+/* --- gltf_meshopt.cpp --- */
+bytes decode_meshopt(file &f, const tinygltf::Value &extension, const std::string &where);
+
+/* --- gltf_accessor.cpp --- */
+/* Component types as bits, so that each use can name what it accepts; _n = normalised. */
+enum component : uint32_t {
+    c_i8 = 1, c_i8n = 2, c_u8 = 4, c_u8n = 8, c_i16 = 16, c_i16n = 32, c_u16 = 64, c_u16n = 128, c_u32 = 256, c_f32 = 512
+};
+const tinygltf::Accessor &accessor_at(const file &f, int accessor, const std::string &where);
+/* Read an accessor as floats, all checked to be finite.
+ * components  1 to 4 per element, or 16: a 4 x 4 matrix
+ * accepted    a set of component bits
+ * count       the elements that out has room for; any other count in the file is an error */
+void read_floats(file &f, int accessor, uint32_t components, uint32_t accepted, uint64_t count,
+                 const std::string &where, float *out);
+/* Read an accessor as vertex indices, each checked to be below limit. */
+std::vector<uint32_t> read_indices(file &f, int accessor, uint32_t limit, const std::string &where);
+
+/* --- the parts of the model --- */
+void read_materials(file &f);
+void read_meshes(file &f);
+bool has_influences(const tinygltf::Primitive &p);
+void allocate_influences(file &f, const std::string &where, model_mesh &out);
+void read_influences(file &f, const tinygltf::Primitive &p, const model_submesh &part, const std::string &where, model_mesh &out);
+void check_influences(const model_mesh &mesh, uint32_t joint_count);
+void read_nodes(file &f);
+void read_skins(file &f);          /* after read_nodes */
+void read_animations(file &f);
+void read_extras(file &f, const tinygltf::Animation &a, const std::string &where, model_clip &out);
+
+} // namespace gltf
+
+#endif

@@ -1,0 +1,351 @@
+/* lod_build.c: the order of the collapses, and the levels. */
+#include "lod_internal.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "lod_queue.h"
+#include "convert/model/model_build.h"
+
+#define TESTED 4u            /* candidates of a point that are measured, the best by quadric */
+#define QUADRIC_SHARE 0.3    /* of the quadric in the cost of measured collapses */
+#define PROGRESS_STEP 256u
+
+#define MINOR_GROWTH 1.5
+
+typedef enum point_state { OUT, QUEUED, PARKED } point_state;
+
+typedef struct builder {
+    lod_surface surface;
+    lod_options options;
+    lod_quadric_row *quadrics;
+    lod_track *track;         /* NULL: fast */
+    lod_queue queue;
+    uint32_t *best_to;        /* [vertex_count] the neighbour that a queued point would go to */
+    float *best_length;       /* [vertex_count] that collapse's error as a length */
+    uint8_t *state;           /* [vertex_count] point_state; PARKED points wait for a coarser level */
+    uint32_t steps, live, full, coarsest; /* triangles: left, of the mesh, of the last level */
+    float cost;
+    lod *out;
+} builder;
+
+typedef struct candidate {
+    uint32_t to;
+    double quadric;
+} candidate;
+
+/* ---- costs ---- */
+
+static uint32_t list_candidates(builder *b, const lod_fan *fan, candidate *out)
+{
+    lod_move move;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < fan->ring_count; i++) {
+        uint32_t at = count;
+        candidate c = { fan->ring[i], 0.0 };
+        if (!lod_move_allowed(&b->surface, fan, c.to, &move)) {
+            continue;
+        }
+        c.quadric = lod_quadric_cost(&b->surface, b->quadrics, fan->point, c.to);
+        while (at > 0 && out[at - 1u].quadric > c.quadric) {
+            out[at] = out[at - 1u];
+            at--;
+        }
+        out[at] = c;
+        count++;
+    }
+    return count;
+}
+
+/* The squared length that a collapse costs; *length is the error that it leaves. Stops at `bound`. */
+static double measure(builder *b, const lod_fan *fan, const candidate *c, double bound, float *length)
+{
+    const lod_surface *s = &b->surface;
+    uint32_t triangles[LOD_FAN_MAX], count = fan->count;
+    const uint32_t *list = triangles;
+    double cost, tracked = c->quadric;
+    lod_move move;
+    lod_move_allowed(&b->surface, fan, c->to, &move);
+    if (b->track) {
+        cost = QUADRIC_SHARE * c->quadric;
+        list = lod_track_triangles(b->track, &count);
+        cost += lod_attribute_cost(s, &move, list, count, s->mesh->indices);
+        if (cost >= bound) {
+            return cost;
+        }
+        cost += lod_track_cost(b->track, &move, bound - cost, &tracked);
+        *length = (float)sqrt(tracked);
+        return cost;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        triangles[i] = fan->corner[i] / 3u;
+    }
+    *length = (float)sqrt(tracked > 0.0 ? tracked : 0.0);
+    return tracked + lod_attribute_cost(s, &move, list, count, s->corner);
+}
+
+/* What a squared length counts at a point: small parts (eyes, teeth) the more the larger it is, for the same
+ * length is more of them. */
+static double importance(const builder *b, uint32_t point, double squared)
+{
+    const lod_surface *s = &b->surface;
+    double weight = s->face[point] ? b->options.face_weight : 1.0;
+    if (s->minor[s->part[point]] && s->edge > 0.0f) {
+        weight *= 1.0 + MINOR_GROWTH * sqrt(squared) / s->edge;
+    }
+    return weight * weight;
+}
+
+/* Find a point's best collapse and queue it. Returns 1 when out of memory. */
+static int queue_point(builder *b, uint32_t point)
+{
+    candidate list[LOD_RING_MAX];
+    lod_fan fan;
+    double best = HUGE_VAL;
+    uint32_t count;
+    float length = 0.0f;
+    if (b->state[point] == QUEUED) {
+        lod_queue_drop(&b->queue, point);
+    }
+    b->state[point] = OUT;
+    if (b->surface.locked[point] || lod_fan_gather(&b->surface, point, &fan)) {
+        return 0;
+    }
+    count = list_candidates(b, &fan, list);
+    if (count == 0) {
+        return 0;
+    }
+    if (b->track && lod_track_open(b->track, &fan)) {
+        return 1;
+    }
+    count = b->track && count > TESTED ? TESTED : count;
+    for (uint32_t i = 0; i < count; i++) {
+        double cost = measure(b, &fan, &list[i], best, &length);
+        if (cost < best) {
+            best = cost;
+            b->best_to[point] = list[i].to;
+            b->best_length[point] = length;
+        }
+    }
+    b->state[point] = QUEUED;
+    lod_queue_put(&b->queue, point, (float)(best * importance(b, point, best)));
+    return 0;
+}
+
+/* ---- collapsing ---- */
+
+static int record(builder *b, const lod_move *m)
+{
+    lod *l = b->out;
+    float length = b->best_length[m->from];
+    b->cost = length > b->cost ? length : b->cost;
+    for (uint32_t w = 0; w < m->wedge_count; w++) {
+        lod_collapse *c = &l->collapses[l->collapse_count++];
+        c->from = m->wedge_from[w];
+        c->to = m->wedge_to[w];
+        c->step = b->steps;
+        c->cost = b->cost;
+    }
+    b->steps++;
+    b->live -= m->gone_count;
+    if (b->options.progress && b->steps % PROGRESS_STEP == 0) {
+        b->options.progress(b->options.user, b->full - b->live, b->full - b->coarsest);
+    }
+    return lod_quadric_merge(b->quadrics, m->from, m->to);
+}
+
+static int collapse(builder *b, lod_fan *fan, const lod_move *m)
+{
+    if (b->track) {
+        if (lod_track_open(b->track, fan)) {
+            return 1;
+        }
+        lod_track_commit(b->track, m);
+    }
+    lod_move_apply(&b->surface, m);
+    if (record(b, m)) {
+        return 1;
+    }
+    for (uint32_t i = 0; i < fan->ring_count; i++) { /* `to` is among them */
+        if (queue_point(b, fan->ring[i])) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Take the cheapest point of the queue. Returns 1 when out of memory. */
+static int take(builder *b, uint32_t point)
+{
+    lod_fan fan;
+    lod_move move;
+    b->state[point] = OUT;
+    if (lod_fan_gather(&b->surface, point, &fan)) {
+        return 0;
+    }
+    if (!lod_move_allowed(&b->surface, &fan, b->best_to[point], &move)) {
+        return queue_point(b, point); /* something two rings away is in the way now */
+    }
+    return collapse(b, &fan, &move);
+}
+
+/* 1 where a point has to wait for a coarser level. */
+static int is_beyond(const builder *b, uint32_t level, uint32_t point)
+{
+    return b->options.errors && b->best_length[point] > b->options.errors[level];
+}
+
+/* Triangles that a level is to have. */
+static uint32_t goal_of(const builder *b, uint32_t level)
+{
+    return b->options.errors ? 0u : (uint32_t)ceil((double)b->options.ratios[level] * b->full - 1e-3);
+}
+
+static int reach_level(builder *b, uint32_t level)
+{
+    uint32_t point, goal = goal_of(b, level);
+    int failed = 0;
+    for (uint32_t p = 0; p < b->surface.mesh->vertex_count; p++) {
+        if (b->state[p] == PARKED) {
+            b->state[p] = QUEUED;
+            lod_queue_put(&b->queue, p, b->queue.cost[p]);
+        }
+    }
+    while (!failed && b->live > goal && lod_queue_first(&b->queue, &point)) {
+        lod_queue_take(&b->queue);
+        if (is_beyond(b, level, point)) {
+            b->state[point] = PARKED;
+        } else {
+            failed = take(b, point);
+        }
+    }
+    return failed;
+}
+
+/* ---- levels ---- */
+
+static uint32_t count_vertices(const lod_level *level, uint32_t *mark, uint32_t stamp)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < level->index_count; i++) {
+        count += mark[level->indices[i]] != stamp;
+        mark[level->indices[i]] = stamp;
+    }
+    return count;
+}
+
+/* Copy what is left. Returns 1 when out of memory. */
+static int write_level(builder *b, lod_level *level)
+{
+    const lod_surface *s = &b->surface;
+    uint32_t at = 0;
+    for (uint32_t i = 0; i < b->out->submesh_count; i++) {
+        level->index_count += s->live[i] * 3u;
+    }
+    level->indices = calloc((size_t)level->index_count + 1u, sizeof *level->indices);
+    level->submesh_first = calloc((size_t)b->out->submesh_count * 2u + 1u, sizeof *level->submesh_first);
+    if (!level->indices || !level->submesh_first) {
+        return 1;
+    }
+    level->submesh_count = level->submesh_first + b->out->submesh_count;
+    for (uint32_t i = 0; i < b->out->submesh_count; i++) {
+        const model_submesh *sub = &s->mesh->submeshes[i];
+        level->submesh_first[i] = at;
+        level->submesh_count[i] = s->live[i] * 3u;
+        for (uint32_t t = sub->first_index / 3u; t < (sub->first_index + sub->index_count) / 3u; t++) {
+            if (!s->dead[t]) {
+                memcpy(level->indices + at, s->corner + (size_t)t * 3u, 3u * sizeof *level->indices);
+                at += 3u;
+            }
+        }
+    }
+    level->collapse_count = b->out->collapse_count;
+    level->cost = b->cost;
+    b->surface.stamp += 2u;
+    level->vertex_count = count_vertices(level, b->surface.mark, b->surface.stamp);
+    return 0;
+}
+
+static int build_levels(builder *b)
+{
+    int failed = 0;
+    for (uint32_t i = 0; i < b->out->submesh_count; i++) {
+        b->full += b->surface.live[i];
+    }
+    b->live = b->full;
+    b->coarsest = goal_of(b, b->options.level_count - 1u);
+    for (uint32_t p = 0; p < b->surface.mesh->vertex_count && !failed; p++) {
+        failed = queue_point(b, p);
+    }
+    for (uint32_t i = 0; i < b->options.level_count && !failed; i++) {
+        failed = reach_level(b, i) || write_level(b, &b->out->levels[i]);
+        b->out->level_count += !failed;
+    }
+    return failed;
+}
+
+/* ---- all of it ---- */
+
+static int allocate(builder *b, const model_mesh *mesh)
+{
+    size_t vertices = (size_t)mesh->vertex_count + 1u;
+    b->best_to = calloc(vertices, sizeof *b->best_to);
+    b->best_length = calloc(vertices, sizeof *b->best_length);
+    b->state = calloc(vertices, 1);
+    b->out = calloc(1, sizeof *b->out);
+    if (!b->best_to || !b->best_length || !b->state || !b->out) {
+        return 1;
+    }
+    b->out->submesh_count = mesh->submesh_count;
+    b->out->collapses = calloc(vertices, sizeof *b->out->collapses);
+    return !b->out->collapses || lod_queue_make(&b->queue, mesh->vertex_count);
+}
+
+static void builder_free(builder *b)
+{
+    lod_quadrics_free(b->quadrics, b->surface.mesh->vertex_count);
+    lod_track_free(b->track);
+    lod_surface_free(&b->surface);
+    lod_queue_free(&b->queue);
+    free(b->best_to);
+    free(b->best_length);
+    free(b->state);
+}
+
+int lod_build(const model_mesh *mesh, const lod_options *options, lod **out, model_error *error)
+{
+    builder b;
+    int failed;
+    memset(&b, 0, sizeof b);
+    *out = NULL;
+    b.options = *options;
+    if (lod_check_options(&b.options, mesh->target_count, error) || lod_check_mesh(mesh, &b.options, error)) {
+        return 1;
+    }
+    failed = lod_surface_make(mesh, &b.options, &b.surface) || allocate(&b, mesh);
+    if (!failed) {
+        b.quadrics = lod_quadrics_make(&b.surface);
+        b.track = b.options.mode == LOD_QUALITY ? lod_track_make(&b.surface) : NULL;
+        failed = !b.quadrics || (b.options.mode == LOD_QUALITY && !b.track) || build_levels(&b);
+    }
+    builder_free(&b);
+    if (failed) {
+        lod_free(b.out);
+        return model_fail(error, "", "out of memory for the levels of detail");
+    }
+    *out = b.out;
+    return 0;
+}
+
+void lod_free(lod *l)
+{
+    if (l) {
+        for (uint32_t i = 0; i < LOD_LEVELS_MAX; i++) {
+            free(l->levels[i].indices);
+            free(l->levels[i].submesh_first);
+        }
+        free(l->collapses);
+        free(l);
+    }
+}

@@ -1,0 +1,75 @@
+/* lod_check.c: what lod_build refuses, and its defaults. */
+#include "lod_internal.h"
+
+#include <math.h>
+
+#include "convert/model/model_build.h"
+
+#define LARGEST 1e5f /* far beyond it products of lengths overflow, and no collapse has a cost */
+
+static const float standard_ratios[] = { 1.0f, 0.5f, 0.25f, 0.1f };
+
+static int check_floats(const float *values, size_t count, const char *what, model_error *error)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (!isfinite(values[i])) {
+            return model_fail(error, "", "%s of vertex %zu is no finite number", what, i / 3u);
+        }
+        if (fabsf(values[i]) > LARGEST) {
+            return model_fail(error, "", "%s of vertex %zu is %g: levels of detail are made of meshes within %g", what, i / 3u,
+                              (double)values[i], (double)LARGEST);
+        }
+    }
+    return 0;
+}
+
+int lod_check_mesh(const model_mesh *mesh, const lod_options *o, model_error *error)
+{
+    size_t floats = (size_t)mesh->vertex_count * 3u;
+    if (check_floats(mesh->position, floats, "the position", error)) {
+        return 1;
+    }
+    for (uint32_t t = 0; t < mesh->target_count; t++) {
+        if (check_floats(mesh->targets[t].position, floats, "a target's delta", error)) {
+            return 1;
+        }
+    }
+    for (uint32_t i = 0; i < o->pose_count; i++) {
+        if (check_floats(o->poses[i], floats, "a pose's position", error)) {
+            return 1;
+        }
+    }
+    for (uint32_t i = 0; i < mesh->index_count; i++) {
+        if (mesh->indices[i] >= mesh->vertex_count) {
+            return model_fail(error, "", "index %u is vertex %u of %u", i, mesh->indices[i], mesh->vertex_count);
+        }
+    }
+    return 0;
+}
+
+int lod_check_options(lod_options *o, uint32_t target_count, model_error *error)
+{
+    if (!o->level_count && !o->ratios && !o->errors) {
+        o->ratios = standard_ratios;
+        o->level_count = (uint32_t)(sizeof standard_ratios / sizeof *standard_ratios);
+    }
+    if (!o->level_count || o->level_count > LOD_LEVELS_MAX || (!o->ratios && !o->errors)) {
+        return model_fail(error, "", "%u levels of detail: give 1 to %u ratios or errors", o->level_count, LOD_LEVELS_MAX);
+    }
+    for (uint32_t i = 0; i < o->level_count; i++) {
+        float value = o->errors ? o->errors[i] : o->ratios[i], last = i == 0 ? value : o->errors ? o->errors[i - 1u] : o->ratios[i - 1u];
+        if (!(value >= 0.0f) || (!o->errors && value > 1.0f) || (o->errors ? value < last : value > last)) {
+            return model_fail(error, "", "level of detail %u: %g after %g; levels go from fine to coarse", i, (double)value, (double)last);
+        }
+    }
+    if ((uint64_t)target_count + o->mix_count + o->pose_count + 64u > LOD_POSES_MAX) {
+        return model_fail(error, "", "%u targets and %u poses are more than %u", target_count, o->pose_count, LOD_POSES_MAX);
+    }
+    if (!(o->pose_weight > 0.0f)) {
+        o->pose_weight = 0.4f;
+    }
+    if (!(o->face_weight > 0.0f)) {
+        o->face_weight = o->pose_count ? 1.2f : 1.0f;
+    }
+    return 0;
+}

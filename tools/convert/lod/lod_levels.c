@@ -1,0 +1,251 @@
+#include "lod_levels.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "convert/model/model_build.h"
+
+#define FRAMES_BUILT 12u     /* frames that the builder sees */
+#define FRAMES_CERTIFIED 28u /* and those that the levels are measured in */
+#define FINEST_ERROR (1.0f / 4000.0f)
+#define ERROR_STEP 4.0f
+#define LEVELS_BY_ERROR 5u    /* the coarsest is off by 1/62 of the diagonal */
+#define LEAST_SAVED 0.95f    /* of the finer level's triangles: a level with more is not worth its bytes */
+
+typedef struct pose_list {
+    uint32_t count, pairs;   /* the first so many are pairs of targets */
+    float **poses;           /* [count][vertex_count][3] */
+} pose_list;
+
+/* ---- pairs of targets ---- */
+
+/* Whether `name` with the first `left` in it turned into `right` is `other`. */
+static int is_other_side(const char *name, const char *other, const char *left, const char *right)
+{
+    const char *found = strstr(name, left);
+    const size_t before = found ? (size_t)(found - name) : 0u, length = strlen(right);
+    return found && !strncmp(name, other, before) && !strncmp(other + before, right, length) &&
+           !strcmp(found + strlen(left), other + before + length);
+}
+
+/* Whether they end in L and R, or in l and r behind a sign, and are alike before. */
+static int is_other_end(const char *name, const char *other)
+{
+    const size_t last = strlen(name) - 1u;
+    const int marked = last > 1u && strchr("._- ", name[last - 1u]);
+    return strlen(other) == last + 1u && !strncmp(name, other, last) &&
+           ((name[last] == 'L' && other[last] == 'R') || (marked && name[last] == 'l' && other[last] == 'r'));
+}
+
+/* Whether they are one thing on the left and on the right, by the names that artists give. */
+static int is_pair(const char *name, const char *other)
+{
+    static const char *const sides[3][2] = { { "Left", "Right" }, { "left", "right" }, { "LEFT", "RIGHT" } };
+    for (int i = 0; i < 3; i++) {
+        if (is_other_side(name, other, sides[i][0], sides[i][1])) {
+            return 1;
+        }
+    }
+    return strlen(name) > 1u && is_other_end(name, other);
+}
+
+static uint32_t right_of(const model_mesh *mesh, uint32_t target)
+{
+    for (uint32_t t = 0; t < mesh->target_count; t++) {
+        if (is_pair(mesh->targets[target].name, mesh->targets[t].name)) {
+            return t;
+        }
+    }
+    return MODEL_NONE;
+}
+
+static int add_pair(const model_mesh *mesh, uint32_t left, uint32_t right, pose_list *out)
+{
+    float *pose = model_zeros(mesh->vertex_count, 3u * sizeof *pose);
+    out->poses[out->count++] = pose;
+    for (size_t i = 0; pose && i < 3u * (size_t)mesh->vertex_count; i++) {
+        pose[i] = mesh->position[i] + mesh->targets[left].position[i] + mesh->targets[right].position[i];
+    }
+    return !pose;
+}
+
+/* ---- poses to certify in ---- */
+
+static void poses_free(pose_list *p)
+{
+    for (uint32_t i = 0; p->poses && i < p->count; i++) {
+        free(p->poses[i]);
+    }
+    free(p->poses);
+}
+
+/* Pairs first, then the frames, which are taken over. */
+static int poses_make(const model_mesh *mesh, lod_frames *frames, pose_list *out)
+{
+    int failed = 0;
+    memset(out, 0, sizeof *out);
+    out->poses = model_zeros(mesh->target_count + frames->count, sizeof *out->poses);
+    if (!out->poses) {
+        return 1;
+    }
+    for (uint32_t t = 0; t < mesh->target_count && !failed; t++) {
+        uint32_t right = right_of(mesh, t);
+        failed = right != MODEL_NONE && add_pair(mesh, t, right, out);
+    }
+    out->pairs = out->count;
+    for (uint32_t i = 0; i < frames->count; i++) {
+        out->poses[out->count++] = frames->poses[i];
+        frames->poses[i] = NULL;
+    }
+    return failed;
+}
+
+static float larger(float a, float b) { return a > b ? a : b; }
+
+float lod_worst(const lod_errors *e) { return larger(larger(e->rest, e->targets), larger(e->pairs, e->motion)); }
+
+/* The worst submesh in each pose, and then the worst pose of each kind. */
+static lod_errors worst(const model_mesh *mesh, const pose_list *poses, const lod_distance *distances)
+{
+    const uint32_t columns = 1u + mesh->target_count + poses->count, first_pose = 1u + mesh->target_count;
+    lod_errors e = { 0.0f, 0.0f, 0.0f, 0.0f, 0.0f };
+    for (uint32_t s = 0; s < mesh->submesh_count; s++) {
+        const lod_distance *row = distances + (size_t)s * columns;
+        e.rest = larger(e.rest, row[0].max);
+        e.rest_p99 = larger(e.rest_p99, row[0].p99);
+        for (uint32_t i = 1; i < columns; i++) {
+            float *kind = i < first_pose ? &e.targets : i < first_pose + poses->pairs ? &e.pairs : &e.motion;
+            *kind = larger(*kind, row[i].max);
+        }
+    }
+    return e;
+}
+
+static lod_errors at_least(lod_errors e, const lod_errors *finer)
+{
+    e.rest = larger(e.rest, finer->rest);
+    e.rest_p99 = larger(e.rest_p99, finer->rest_p99);
+    e.targets = larger(e.targets, finer->targets);
+    e.pairs = larger(e.pairs, finer->pairs);
+    e.motion = larger(e.motion, finer->motion);
+    return e;
+}
+
+static int certify(const model_mesh *mesh, const pose_list *poses, mesh_levels *out, model_error *error)
+{
+    lod_distance *distances = model_zeros((size_t)mesh->submesh_count * (1u + mesh->target_count + poses->count), sizeof *distances);
+    int failed = !distances && model_fail(error, "", "out of memory");
+    for (uint32_t k = 1; k < out->count && !failed; k++) {
+        failed = lod_certify(mesh, &out->built->levels[out->which[k]], (const float *const *)poses->poses, poses->count, distances, error);
+        if (!failed) {
+            out->errors[k] = at_least(worst(mesh, poses, distances), &out->errors[k - 1]);
+        }
+    }
+    free(distances);
+    return failed;
+}
+
+/* ---- building ---- */
+
+static float diagonal(const model_mesh *mesh)
+{
+    float low[3] = { 0.0f, 0.0f, 0.0f }, high[3] = { 0.0f, 0.0f, 0.0f };
+    for (uint32_t i = 0; i < 3u * mesh->vertex_count; i++) {
+        float p = mesh->position[i];
+        low[i % 3u] = i < 3u || p < low[i % 3u] ? p : low[i % 3u];
+        high[i % 3u] = i < 3u || p > high[i % 3u] ? p : high[i % 3u];
+    }
+    for (int c = 0; c < 3; c++) {
+        high[c] -= low[c];
+    }
+    return sqrtf(high[0] * high[0] + high[1] * high[1] + high[2] * high[2]);
+}
+
+static int build(const model_mesh *mesh, const lod_settings *settings, const lod_frames *frames, mesh_levels *out, model_error *error)
+{
+    static const float shares[NOH_LEVELS_MAX] = LOD_SHARES;
+    float errors[NOH_LEVELS_MAX];
+    lod_options o = { 0 };
+    o.mode = settings->mode;
+    o.poses = (const float *const *)frames->poses;
+    o.pose_count = frames->count < FRAMES_BUILT ? frames->count : FRAMES_BUILT;
+    o.level_count = (settings->by_error ? LEVELS_BY_ERROR : settings->level_count) - 1u;
+    o.ratios = shares + 1;
+    if (settings->by_error) {
+        o.errors = errors;
+        errors[0] = diagonal(mesh) * FINEST_ERROR;
+        for (uint32_t i = 1; i < o.level_count; i++) {
+            errors[i] = errors[i - 1u] * ERROR_STEP;
+        }
+    }
+    return lod_build(mesh, &o, &out->built, error);
+}
+
+static void choose_levels(const model_mesh *mesh, mesh_levels *out)
+{
+    float before = (float)mesh->index_count;
+    for (uint32_t i = 0; i < out->built->level_count; i++) {
+        const uint32_t count = out->built->levels[i].index_count;
+        if (count && (float)count <= before * LEAST_SAVED) {
+            out->which[out->count++] = i;
+            before = (float)count;
+        }
+    }
+}
+
+static int rank_vertices(const model_mesh *mesh, mesh_levels *out, model_error *error)
+{
+    out->rank = model_zeros(mesh->vertex_count, sizeof *out->rank);
+    for (uint32_t k = 1; out->rank && k < out->count; k++) {
+        const lod_level *level = &out->built->levels[out->which[k]];
+        for (uint32_t i = 0; i < level->index_count; i++) {
+            out->rank[level->indices[i]] = (uint8_t)k;
+        }
+    }
+    return out->rank ? 0 : model_fail(error, "", "out of memory");
+}
+
+static int make(const model *m, uint32_t index, const lod_settings *settings, mesh_levels *out, model_error *error)
+{
+    const model_mesh *mesh = &m->meshes[index];
+    const uint32_t node = lod_skinned_node(m, index);
+    lod_frames frames = { 0 };
+    pose_list poses = { 0, 0, NULL };
+    int failed = node != MODEL_NONE && lod_frames_choose(m, node, FRAMES_CERTIFIED, &frames) &&
+                 model_fail(error, mesh->name, "frames of its clips could not be skinned");
+    memcpy(out->cap_error, frames.cap_error, sizeof out->cap_error);
+    failed = failed || build(mesh, settings, &frames, out, error);
+    if (!failed) {
+        choose_levels(mesh, out);
+        failed = (poses_make(mesh, &frames, &poses) && model_fail(error, "", "out of memory")) || certify(mesh, &poses, out, error) ||
+                 rank_vertices(mesh, out, error);
+    }
+    poses_free(&poses);
+    lod_frames_free(&frames);
+    return failed;
+}
+
+int mesh_levels_make(const model *m, uint32_t mesh, const lod_settings *settings, mesh_levels *out, model_error *error)
+{
+    memset(out, 0, sizeof *out);
+    out->count = 1;
+    if ((settings->level_count < 2 && !settings->by_error) || !m->meshes[mesh].index_count) {
+        return 0;
+    }
+    return make(m, mesh, settings, out, error);
+}
+
+void mesh_levels_free(mesh_levels *levels)
+{
+    lod_free(levels->built);
+    free(levels->rank);
+    memset(levels, 0, sizeof *levels);
+}
+
+lod_view mesh_levels_view(const mesh_levels *levels, uint32_t level)
+{
+    const lod_level *l = &levels->built->levels[levels->which[level]];
+    const lod_view view = { l->indices, l->submesh_first, l->submesh_count };
+    return view;
+}

@@ -1,0 +1,25 @@
+/* motion_errors.h: what an encoded clip is off with fewer joints, and when it is posed less often than
+ * once a frame: what the runtime chooses by (character/detail.h). */
+#ifndef NOH_CONVERT_MOTION_ERRORS_H
+#define NOH_CONVERT_MOTION_ERRORS_H
+
+#include "convert/pack/byte_buffer.h"
+#include "pack/format.h"
+#include "raw_clip.h"
+
+/* In the skeleton's unit; as noh_motion_header has them. */
+typedef struct motion_errors {
+    float joint[NOH_JOINT_LEVELS_MAX]; /* [level_count] */
+    float rate[NOH_MOTION_RATES];
+    float shell;                       /* 0: of vertices */
+    uint32_t level_count;              /* 0 without joints */
+} motion_errors;
+
+/* Measure a clip as its decoder plays it.
+ * clip     the encoded one, of `raw`
+ * reach    [joint_count] joint_reach of the skeleton; NULL: no mesh is bound to it, points lie `shell_cm` from each joint
+ * errors   1 and *error: out of memory, or errors beyond what a float holds */
+int motion_errors_measure(const raw_skeleton *skeleton, const raw_clip *raw, const byte_buffer *clip, const float *reach, double shell_cm,
+                          motion_errors *out, model_error *error);
+
+#endif

@@ -1,0 +1,16 @@
+/* joint_reach.h: how far from a joint lies what it moves. */
+#ifndef NOH_CONVERT_JOINT_REACH_H
+#define NOH_CONVERT_JOINT_REACH_H
+
+#include "convert/motion/raw_clip.h"
+
+#define JOINT_REACH_WEIGHT 0.05f /* a vertex that a joint moves less than that is moved by others */
+
+/* For each joint of a set's skeleton the distance of the farthest vertex that it moves with a weight of at least
+ * JOINT_REACH_WEIGHT, in the bind pose and in the joint's own space; -1 where it moves none.
+ * m    NULL: no meshes; else bound (skins.h)
+ * out  [joint_count]
+ * returns 0 where no mesh is bound to the skeleton: all are -1 */
+int joint_reach(const model *m, uint32_t set, uint32_t joint_count, float *out);
+
+#endif
