@@ -201,6 +201,8 @@ $(BUILD)/demo/arm.glb: $(BUILD)/make_mask
 
 $(BUILD)/mask.noh: $(BUILD)/mask.glb $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --quiet
+$(BUILD)/mask_levels.noh: $(BUILD)/mask.glb $(BUILD)/noh
+	$(BUILD)/noh build $< -o $@ --lod 4 --lod-fast --quiet
 $(BUILD)/demo/puppet.noh: $(BUILD)/demo/puppet.glb $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --quiet
 
@@ -234,7 +236,7 @@ view: deps-view
 
 check: deps-check
 	@[ "$(DEPS)" = 0 ] || sh tools/angle.sh $(BUILD)/angle
-	@$(MAKE) --no-print-directory -j$(JOBS) all tests $(BUILD)/mask.noh $(BUILD)/demo/puppet.glb $(BUILD)/demo/arm.glb
+	@$(MAKE) --no-print-directory -j$(JOBS) all tests $(BUILD)/mask.noh $(BUILD)/mask_levels.noh $(BUILD)/demo/puppet.glb $(BUILD)/demo/arm.glb
 	@CC="$(CC)" NOH_BUILD="$(BUILD)" NOH_ASSETS="$(ASSETS)" NOH_SAN="$(SAN)" sh tests/run.sh
 
 cross: deps-cross
@@ -310,7 +312,7 @@ tests: $(TESTS) $(BUILD)/tests/gl/window $(BUILD)/tests/gl/picture_diff $(BUILD)
        $(BUILD)/tests/fuzz/fuzz_pack $(BUILD)/tests/fuzz/fuzz_clip $(BUILD)/tests/fuzz/corpus/.made
 
 # The tests load packs, draw them and read results back as the tool does, and share what lies in tests/ itself.
-TEST_TOOL_O := $(addprefix $(BUILD)/tools/noh/,gpu.o readback.o readback_vertices.o message.o load.o scene.o scene_play.o scene_deform.o \
+TEST_TOOL_O := $(addprefix $(BUILD)/tools/noh/,gpu.o readback.o readback_vertices.o message.o load.o load_draw.o scene.o scene_play.o scene_deform.o \
                    pack_file.o nearest.o args.o camera.o canvas.o) $(BUILD)/gen/tool_shaders.gen.o
 TEST_SHARED_O := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/*.c))
 TEST_KERNELS := $(if $(filter x86_64%,$(MACHINE)),$(BUILD)/kernel/clip_sample_avx2.o)

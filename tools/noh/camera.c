@@ -4,8 +4,6 @@
 
 #include "view.h"
 
-#define FIELD_OF_VIEW 0.5235987755982988 /* 30 degrees */
-
 static void grow(bounds *b, const double p[3])
 {
     for (int c = 0; c < 3; c++) {
@@ -88,7 +86,7 @@ void orbit_camera(const orbit *o, noh_gl_camera *camera)
 {
     double right[3], up[3], back[3], view[16] = { 0 }, projection[16] = { 0 };
     double near = fmax(o->distance - 2.0 * o->radius, o->distance * 0.02), far = o->distance + 2.0 * o->radius;
-    double f = 1.0 / tan(FIELD_OF_VIEW / 2.0), key_length = 0.0;
+    double f = 1.0 / tan(ORBIT_VIEW_RAD / 2.0), key_length = 0.0;
     orbit_axes(o, right, up, back);
     for (int c = 0; c < 3; c++) {
         double eye = o->center[c] + back[c] * o->distance;
@@ -162,7 +160,7 @@ orbit orbit_fit(const bounds *box, double aspect)
     }
     at.radius = fmax(sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]), 1e-6);
     need = fmax(half[1], fmax(half[0], half[2] * 0.7) / at.aspect) * 1.05;
-    at.distance = fmax(need / tan(FIELD_OF_VIEW / 2.0) + half[2], at.radius * 1.02);
+    at.distance = fmax(need / tan(ORBIT_VIEW_RAD / 2.0) + half[2], at.radius * 1.02);
     return at;
 }
 

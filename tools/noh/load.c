@@ -182,13 +182,14 @@ static int create_meshes(load *l)
     return 0;
 }
 
-static int create_renderer(load *l, noh_debug_view view)
+static int create_renderer(load *l, const load_options *o)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
     char log[4096] = "";
     noh_gl_renderer_desc desc;
     memset(&desc, 0, sizeof desc);
-    desc.view = view;
+    desc.view = o->view;
+    desc.fades = o->fades;
     desc.layers_uint = noh_gl_morph_plan_of(l->morph.morph)->layer_format == GL_RGBA32UI;
     desc.meshes = l->scene->meshes;
     desc.mesh_count = l->file->pack.mesh_count;
@@ -218,6 +219,8 @@ static void number_items(load *l, uint32_t *next)
     for (uint32_t i = 0; i < l->scene->item_count; i++) {
         uint32_t mesh = l->scene->items[i].mesh;
         l->item_instances[i] = noh_gl_morph_instance(l->morph.morph, mesh, next[mesh]++);
+        l->details[i].parts[0].to = 1.0f;
+        l->details[i].part_count = 1;
     }
 }
 
@@ -233,7 +236,8 @@ int load_open(load *l, gpu *g, const pack_file *file, const scene *s, const load
     l->meshes = calloc(file->pack.mesh_count + 1u, sizeof *l->meshes);
     l->pictures = calloc(file->pack.texture_count + 1u, sizeof *l->pictures);
     l->item_instances = calloc(s->item_count + 1u, sizeof *l->item_instances);
-    if (!counts || !l->meshes || !l->pictures || !l->item_instances) {
+    l->details = calloc(s->item_count + 1u, sizeof *l->details);
+    if (!counts || !l->meshes || !l->pictures || !l->item_instances || !l->details) {
         status = tool_fail(file->path, "out of memory");
     } else if (s->item_count == 0) {
         status = tool_fail(file->path, "the pack has nothing to draw");
@@ -242,7 +246,7 @@ int load_open(load *l, gpu *g, const pack_file *file, const scene *s, const load
     if (!status) status = create_pictures(l);
     if (!status) status = gpu_morph_open(&l->morph, g, &desc, file->path);
     if (!status) status = open_skin(l, counts);
-    if (!status) status = create_renderer(l, o->view);
+    if (!status) status = create_renderer(l, o);
     if (!status) number_items(l, counts);
     free(counts);
     if (status) {
@@ -268,6 +272,7 @@ void load_close(load *l)
     free(l->meshes);
     free(l->pictures);
     free(l->item_instances);
+    free(l->details);
     memset(l, 0, sizeof *l);
 }
 
@@ -337,18 +342,4 @@ const float *scene_world(const scene *s, const pack_file *file, uint32_t item)
 {
     static const float identity[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
     return s->items[item].node == NOH_NONE ? identity : file->pack.nodes[s->items[item].node].world;
-}
-
-void load_draw(load *l, const noh_gl_camera *camera)
-{
-    noh_gl_draw_begin(&l->renderer, camera);
-    for (int pass = NOH_DRAW_OPAQUE; pass <= NOH_DRAW_BLENDED; pass++) {
-        for (uint32_t i = 0; i < l->scene->item_count; i++) {
-            noh_gl_morph_binding binding = noh_gl_morph_binding_of(l->morph.morph, l->item_instances[i]);
-            noh_gl_skin_binding skin;
-            noh_gl_draw_mesh(&l->renderer, &l->meshes[l->scene->items[i].mesh], scene_world(l->scene, l->file, i), &binding,
-                             load_skin_binding(l, i, &skin), NULL, l->pictures, pass);
-        }
-    }
-    noh_gl_draw_end(&l->renderer);
 }

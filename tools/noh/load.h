@@ -23,11 +23,18 @@ typedef struct load_options {
     noh_accumulate accumulate;
     uint32_t instances; /* of the whole scene; 0: 1 */
     noh_debug_view view;
+    int fades;          /* load_set_detail's levels fade into each other; else they change at once */
 } load_options;
 
 /* Prints an error and returns an exit code; 0 on success. */
 int load_budget_make(load_budget *b, const pack_file *file, const scene *s, const noh_gl_caps *caps, const load_options *o);
 void load_budget_free(load_budget *b);
+
+/* How an item is drawn: in one part, or in two while a level fades into another. */
+typedef struct load_detail {
+    noh_gl_detail parts[2];
+    uint32_t part_count;
+} load_detail;
 
 typedef struct load {
     gpu *g;
@@ -41,6 +48,7 @@ typedef struct load {
     float *matrices;           /* [joints of the largest skin][12] */
     size_t matrix_bytes;
     uint32_t *item_instances;  /* [item_count]: the morph instance of each item of the first copy of the scene */
+    load_detail *details;      /* [item_count]: the finest level that is there, until load_set_detail */
 } load;
 
 int load_open(load *l, gpu *g, const pack_file *file, const scene *s, const load_options *o);
@@ -52,6 +60,10 @@ int load_restore(load *l);
 
 /* Hand the scene's weights to the accumulator and accumulate; hand its joints to the palettes. */
 int load_update(load *l, noh_gl_morph_stats *stats);
+
+/* From now on draw an item at the mesh level that was chosen (noh_detail_choose), or at both that fade, and accumulate
+ * what the finer of them needs. Before load_update. Influences, joints and targets are the caller's to leave out. */
+void load_set_detail(load *l, uint32_t item, const noh_detail *detail, int64_t clock);
 
 /* Draw every item: opaque, then blended. The framebuffer and viewport are the caller's. */
 void load_draw(load *l, const noh_gl_camera *camera);

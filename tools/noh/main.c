@@ -29,6 +29,9 @@ static const struct verb {
       "                 [--blend CLIP | --to CLIP [--transition fade|inertia] [--over 0.3]] [--bones]\n"
       "                 [--lods [--target NAME[=V][,NAME[=V]]...]] [--path P] [--accumulate A] [--driver D]",
       "a contact sheet: every target at full weight, a clip in time, or the levels of detail" },
+    { "zoom", verb_zoom, "PACK [-o OUT.png] [--frames 600] [--pixels 1] [--near M] [--far M] [--size NxN] [--weight NAME=V]...\n"
+      "                 [--clip NAME]... [--time S] [--anim PACK] [--every 1] [--jitter 0.03] [--no-fades] [--driver D] [--json]",
+      "a slow zoom out and in by levels of detail against the full mesh: silhouettes, surfaces, pops, flicker" },
     { "dump", verb_dump, "PACK -o OUT.obj [--weight NAME=V]... [--clip NAME]... [--time S] [--anim PACK] [--path P] [--lod K]",
       "the deformed mesh, as drawn, baked to a plain one" },
     { "verify", verb_verify, "PACK [--anim PACK] [--seed N] [--instances N] [--lod K] [--driver D] [--json]", "every path and format against the CPU reference" },

@@ -197,6 +197,7 @@ int verb_info(int argc, char **argv);
 int verb_budget(int argc, char **argv);
 int verb_render(int argc, char **argv);
 int verb_sheet(int argc, char **argv);
+int verb_zoom(int argc, char **argv);
 int verb_dump(int argc, char **argv);
 int verb_verify(int argc, char **argv);
 int verb_bench(int argc, char **argv);

@@ -17,6 +17,8 @@ typedef struct view_options {
     uint32_t width, height;
 } view_options;
 
+#define ORBIT_VIEW_RAD 0.5235987755982988 /* the height of the view: 30 degrees */
+
 /* Where a camera is: round a centre. Angles in radians, lengths in model units. */
 typedef struct orbit {
     double azimuth, elevation, distance;
@@ -28,7 +30,7 @@ typedef struct orbit {
 orbit orbit_fit(const bounds *box, double aspect);
 /* Its unit axes in the world; `back` points from the centre to the eye. */
 void orbit_axes(const orbit *o, double right[3], double up[3], double back[3]);
-/* A perspective camera, 30 degrees high, lit from over the left shoulder. */
+/* A perspective camera, lit from over the left shoulder. */
 void orbit_camera(const orbit *o, noh_gl_camera *camera);
 
 /* A camera by the options, that holds the box. 0, or EXIT_USAGE after printing. */

@@ -1,0 +1,197 @@
+/* zoom_path.c: where the camera of a zoom is, and what is chosen there. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "zoom.h"
+
+/* The way begins and ends so much beyond where the last level is chosen: at its end a fade has time. */
+#define BEYOND_NEAR 1.1
+#define BEYOND_FAR 1.3
+
+#define SIDE_LEAST 16.0 /* pixels */
+#define SIDE_MOST (8192.0 / ZOOM_FINE)
+
+/* ---- what can be left out ---- */
+
+/* The certified error in all poses, and what targets that the level does without can add to it; metres. */
+static float level_error(const noh_mesh_header *h)
+{
+    float worst = h->level_error_rest;
+    const float others[3] = { h->level_error_targets, h->level_error_pairs, h->level_error_motion };
+    for (int i = 0; i < 3; i++) {
+        worst = others[i] > worst ? others[i] : worst;
+    }
+    return (worst + h->level_skipped) * h->world_scale;
+}
+
+static void fill_levels(zoom_item *item, const noh_mesh *mesh)
+{
+    item->table.mesh_level_count = mesh->header->level_count;
+    item->table.meshes = item->levels;
+    for (uint32_t k = 0; k < mesh->header->level_count; k++) {
+        const noh_mesh_header *h = noh_mesh_at_level(mesh, k).header;
+        noh_mesh_level *level = &item->levels[k];
+        level->vertex_count = h->vertex_count;
+        level->triangle_count = h->index_count / 3u;
+        level->influence_count = h->influence_count;
+        level->error_m = level_error(h);
+        level->error_m = k && level->error_m < level[-1].error_m ? level[-1].error_m : level->error_m;
+    }
+}
+
+static int fill_item(zoom_item *item, const noh_mesh *mesh)
+{
+    const uint32_t targets = mesh->header->target_count;
+    fill_levels(item, mesh);
+    item->reach_m = calloc(targets + 1u, sizeof *item->reach_m);
+    for (uint32_t t = 0; item->reach_m && t < targets; t++) {
+        item->reach_m[t] = mesh->targets[t].max_displacement * mesh->header->world_scale;
+    }
+    return !item->reach_m;
+}
+
+/* ---- the way ---- */
+
+/* Pixels per metre at which a level of this error takes the whole share of the meshes. */
+static double scale_of_share(const zoom_path *p, float error_m)
+{
+    return error_m > 0.0f ? (double)p->settings.pixels * (double)p->settings.shares[NOH_DETAIL_MESH] / (double)error_m : 0.0;
+}
+
+/* From where the finest level is chosen, whatever was before, to where the coarsest is. Returns 0 where all are full. */
+static int find_scales(const zoom_path *p, double *near, double *far)
+{
+    *near = *far = 0.0;
+    for (uint32_t i = 0; i < p->item_count; i++) {
+        const noh_detail_table *t = &p->items[i].table;
+        if (t->mesh_level_count > 1) {
+            const double first = scale_of_share(p, t->meshes[1].error_m) * BEYOND_NEAR;
+            const double last = scale_of_share(p, t->meshes[t->mesh_level_count - 1u].error_m) * (1.0 - (double)p->settings.hysteresis) / BEYOND_FAR;
+            *near = first > *near ? first : *near;
+            *far = *far == 0.0 || last < *far ? last : *far;
+        }
+    }
+    return *far > 0.0;
+}
+
+static double half_view(void) { return tan(ORBIT_VIEW_RAD / 2.0); }
+
+/* Of a scale at the scene's nearest point. */
+static double distance_of(const zoom_path *p, double scale) { return p->side / (2.0 * half_view() * scale) + p->at.radius; }
+
+static int plan(zoom_path *p, const char *path, double near, double far)
+{
+    double near_scale, far_scale;
+    if (!find_scales(p, &near_scale, &far_scale) && (near <= 0.0 || far <= 0.0 || !p->side)) {
+        return tool_fail(path, "no level of detail differs from the full mesh (`noh build --lod N` makes them): give --near, --far and --size");
+    }
+    if (!p->side) {
+        const double wanted = near_scale * 2.0 * half_view() * (p->at.distance - p->at.radius); /* that the scene fills it */
+        p->side = 2u * (uint32_t)fmin(SIDE_MOST / 2.0, fmax(SIDE_LEAST / 2.0, ceil(wanted / 2.0)));
+    }
+    p->near = near > 0.0 ? near : distance_of(p, near_scale);
+    p->far = far > 0.0 ? far : distance_of(p, far_scale);
+    if (p->near <= p->at.radius || p->far <= p->near) {
+        return tool_usage("--near wants more than the scene's radius, %g, --far more than --near; they are %g and %g", p->at.radius, p->near, p->far);
+    }
+    return 0;
+}
+
+int zoom_path_open(zoom_path *p, const pack_file *file, const scene *s, const noh_detail_settings *settings, double near, double far,
+                   uint32_t side, uint32_t frames)
+{
+    const bounds box = scene_bounds(s, file, 0);
+    int failed = 0;
+    memset(p, 0, sizeof *p);
+    p->settings = *settings;
+    p->at = orbit_fit(&box, 1.0);
+    p->side = side;
+    p->frames = frames;
+    p->items = calloc(s->item_count + 1u, sizeof *p->items);
+    for (; p->items && p->item_count < s->item_count && !failed; p->item_count++) {
+        failed = fill_item(&p->items[p->item_count], &s->meshes[s->items[p->item_count].mesh]);
+    }
+    return !p->items || failed ? tool_fail(file->path, "out of memory") : plan(p, file->path, near, far);
+}
+
+void zoom_path_close(zoom_path *p)
+{
+    for (uint32_t i = 0; i < p->item_count; i++) {
+        free(p->items[i].reach_m);
+    }
+    free(p->items);
+    memset(p, 0, sizeof *p);
+}
+
+/* ---- frame by frame ---- */
+
+static int way_of(const zoom_path *p, uint32_t frame) { return frame >= p->frames / 2u; }
+
+float zoom_path_place(zoom_path *p, uint32_t frame, double factor)
+{
+    const uint32_t half = p->frames / 2u, step = way_of(p, frame) ? p->frames - frame : frame;
+    p->at.distance = p->near * pow(p->far / p->near, (double)step / half) * factor;
+    return noh_detail_scale((float)(p->at.distance - p->at.radius), (float)ORBIT_VIEW_RAD, p->side);
+}
+
+void zoom_path_choose(zoom_path *p, uint32_t frame, float pixels_per_metre)
+{
+    for (uint32_t i = 0; i < p->item_count; i++) {
+        zoom_item *item = &p->items[i];
+        const uint8_t before = item->detail.mesh;
+        const int started = item->detail.started;
+        noh_detail_choose(&item->detail, &item->table, &p->settings, pixels_per_metre, NULL, (int64_t)ZOOM_TICKS * frame);
+        item->entered[way_of(p, frame)][item->detail.mesh] += started && item->detail.mesh != before;
+    }
+}
+
+uint32_t zoom_path_most_entered(const zoom_path *p)
+{
+    uint32_t most = 0;
+    for (uint32_t i = 0; i < p->item_count * 2u * NOH_LEVELS_MAX; i++) {
+        const uint32_t times = p->items[i / (2u * NOH_LEVELS_MAX)].entered[i / NOH_LEVELS_MAX % 2u][i % NOH_LEVELS_MAX];
+        most = times > most ? times : most;
+    }
+    return most;
+}
+
+uint32_t zoom_path_entered(const zoom_path *p, int way)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < p->item_count * NOH_LEVELS_MAX; i++) {
+        count += p->items[i / NOH_LEVELS_MAX].entered[way][i % NOH_LEVELS_MAX] != 0;
+    }
+    return count;
+}
+
+/* ---- a hand that shakes ---- */
+
+static void start_again(zoom_path *p)
+{
+    for (uint32_t i = 0; i < p->item_count; i++) {
+        memset(&p->items[i].detail, 0, sizeof p->items[i].detail);
+        memset(p->items[i].entered, 0, sizeof p->items[i].entered);
+    }
+}
+
+uint32_t zoom_path_jitter(zoom_path *p, double jitter)
+{
+    const uint32_t fade_ticks = p->settings.fade_ticks;
+    uint64_t state = 0x9e3779b97f4a7c15ull;
+    uint32_t most;
+    p->settings.fade_ticks = 1;
+    start_again(p);
+    for (uint32_t frame = 0; frame < p->frames; frame++) {
+        double unit;
+        state ^= state >> 12;
+        state ^= state << 25;
+        state ^= state >> 27;
+        unit = (double)((state * 2685821657736338717ull) >> 40) / 8388608.0 - 1.0;
+        zoom_path_choose(p, frame, zoom_path_place(p, frame, 1.0 + jitter * unit));
+    }
+    most = zoom_path_most_entered(p);
+    start_again(p);
+    p->settings.fade_ticks = fade_ticks;
+    return most;
+}
