@@ -11,7 +11,7 @@
  *   base/result.h        result codes and what went wrong
  *   base/limits.h        every limit, in one place
  *   pack/pack.h          open a pack where it lies; format.h has its bytes
- *   mesh/mesh.h          vertices, triangles, morph targets of a pack
+ *   mesh/mesh.h          vertices, triangles, morph targets and levels of detail of a pack
  *   anim/pack_motion.h   skeletons and compressed motion of a pack
  *   anim/clip_codec.h    a compressed clip, ready to be played
  *   anim/clip_cache.h    its frames in a fixed block, and poses from them
