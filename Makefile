@@ -313,7 +313,8 @@ tests: $(TESTS) $(BUILD)/tests/gl/window $(BUILD)/tests/gl/picture_diff $(BUILD)
 
 # The tests load packs, draw them and read results back as the tool does, and share what lies in tests/ itself.
 TEST_TOOL_O := $(addprefix $(BUILD)/tools/noh/,gpu.o readback.o readback_vertices.o message.o load.o load_draw.o scene.o scene_play.o scene_deform.o \
-                   pack_file.o nearest.o args.o camera.o canvas.o) $(BUILD)/gen/tool_shaders.gen.o
+                   pack_file.o nearest.o args.o camera.o canvas.o crowd.o crowd_plan.o crowd_place.o crowd_frame.o crowd_draw.o) \
+                   $(BUILD)/gen/tool_shaders.gen.o
 TEST_SHARED_O := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/*.c))
 TEST_KERNELS := $(if $(filter x86_64%,$(MACHINE)),$(BUILD)/kernel/clip_sample_avx2.o)
 TEST_LIBS := $(TEST_SHARED_O) $(TEST_TOOL_O) $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(TEST_KERNELS) $(BUILD)/libnoh.a

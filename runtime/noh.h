@@ -21,7 +21,8 @@
  *   anim/local_to_model.h  joint matrices and palettes
  *   deform/morph.h       morph targets on the CPU: reference and fallback
  *   character/character.h  one character: controller, detail, what it shows
- *   character/detail.h   detail chosen by pixels; time_lod.h: posing less often than once a frame
+ *   character/detail.h   detail chosen by pixels; level_pools.h: memory by level of detail, shared out among instances
+ *   character/time_lod.h posing less often than once a frame; time_lod_points.h: what that moves vertices by
  *   character/detail_pack.h  what a pack says of both; joint_lod.h: what posing fewer joints costs
  *   character/scheduler.h  who is posed in a frame, within a budget; bounds.h: where a character is
  *   gl/gl_api.h          the GL ES functions that noh calls: you bring the lookup
@@ -73,7 +74,9 @@
 #include "character/detail.h"
 #include "character/detail_pack.h"
 #include "character/joint_lod.h"
+#include "character/level_pools.h"
 #include "character/scheduler.h"
 #include "character/time_lod.h"
+#include "character/time_lod_points.h"
 
 #endif

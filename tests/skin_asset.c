@@ -68,7 +68,7 @@ static skin_source *sources_of(const oracle *o, const model *before, const model
     return out;
 }
 
-uint8_t *skin_pack_of(model *m, const skin_options *options, float error_um, size_t *count, uint32_t **orders)
+static uint8_t *pack_of(model *m, const skin_options *options, float error_um, int clips, size_t *count, uint32_t **orders)
 {
     static const skin_options none;
     motion *made;
@@ -81,7 +81,7 @@ uint8_t *skin_pack_of(model *m, const skin_options *options, float error_um, siz
     model_error error = { "", "" };
     uint8_t *bytes;
     memset(&settings, 0, sizeof settings);
-    settings.skeletons_only = 1;
+    settings.skeletons_only = !clips;
     if (motion_from_model(m, &rate, &made, &error) || skins_bind(m, made, options ? options : &none, &error) ||
         motions_encode(made->sets, made->set_count, &settings, &encoded, &error)) {
         fail_msg("%s (%s)", error.what, error.where);
@@ -108,6 +108,16 @@ uint8_t *skin_pack_of(model *m, const skin_options *options, float error_um, siz
     motions_free(&encoded);
     motion_free(made);
     return bytes;
+}
+
+uint8_t *skin_pack_of(model *m, const skin_options *options, float error_um, size_t *count, uint32_t **orders)
+{
+    return pack_of(m, options, error_um, 0, count, orders);
+}
+
+uint8_t *skin_pack_with_clips(model *m, float error_um, size_t *count)
+{
+    return pack_of(m, NULL, error_um, 1, count, NULL);
 }
 
 static void build(skin_asset *a, const char *path, const skin_options *options)

@@ -49,4 +49,7 @@ model *skin_cylinder_model(const skin_cylinder *c);
  * vertex orders (to be freed). */
 uint8_t *skin_pack_of(model *m, const skin_options *options, float error_um, size_t *count, uint32_t **orders);
 
+/* The same with the model's clips. */
+uint8_t *skin_pack_with_clips(model *m, float error_um, size_t *count);
+
 #endif

@@ -1,6 +1,6 @@
 #!/bin/sh
 # bench.sh BUILD: `noh bench` on the mask and the puppet, and, where $NOH_ASSETS has them, on hero/head.glb,
-# hero/body.glb and five captured clips at 30 Hz.
+# hero/body.glb, a crowd of it with four levels of detail, and five captured clips at 30 Hz.
 # Everything after BUILD goes to `noh bench`: --json, --rounds N, --driver D.
 set -eu
 
@@ -24,6 +24,13 @@ for name in head body; do
         echo "no hero/$name.glb in NOH_ASSETS" >&2
     fi
 done
+
+body=${NOH_ASSETS:-}/hero/body.glb
+if [ -f "$body" ]; then
+    "$build/noh" build "$body" -o "$build/body_levels.noh" --lod 4 --quiet
+    echo "== a crowd of $body with levels of detail" >&2
+    "$build/noh" bench "$build/body_levels.noh" --only crowd "$@"
+fi
 
 clips=${NOH_ASSETS:-}/clips
 if [ -f "$clips/cmu_01_01.rcl" ]; then

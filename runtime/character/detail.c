@@ -144,7 +144,10 @@ static void choose_mesh(noh_detail *d, const errors *e, const noh_detail_setting
     }
     d->fade_ticks = 0;
     d->mesh_before = d->mesh;
-    next = choose_level(e, d->mesh, l);
+    next = d->mesh_wanted = choose_level(e, d->mesh, l);
+    if (next < d->mesh_limit) {
+        next = d->mesh_limit < e->count ? d->mesh_limit : (uint8_t)(e->count ? e->count - 1u : 0);
+    }
     if (next != d->mesh) {
         d->mesh = next;
         d->fade_start = clock;
@@ -186,10 +189,22 @@ void noh_detail_choose(noh_detail *d, const noh_detail_table *t, const noh_detai
     d->error_m = coarser + joints.error_m[d->joints] + influences.error_m[d->influences] + rates.error_m[d->rate];
 }
 
+void noh_detail_limit(noh_detail *d, uint32_t level)
+{
+    d->mesh_limit = (uint8_t)(level < NOH_DETAIL_LEVELS_MAX ? level : NOH_DETAIL_LEVELS_MAX - 1u);
+}
+
+uint32_t noh_detail_finest(const noh_detail *d)
+{
+    uint8_t finest = d->mesh < d->mesh_before ? d->mesh : d->mesh_before;
+    return d->mesh_wanted < finest ? d->mesh_wanted : finest;
+}
+
 void noh_detail_cut(noh_detail *d)
 {
     d->started = 0;
     d->fade_ticks = 0;
+    d->mesh_limit = d->mesh_wanted = 0;
     d->mesh = d->mesh_before = d->joints = d->influences = d->rate = 0; /* what was chosen before has no say */
 }
 
@@ -230,16 +245,6 @@ static float cost_of(const float *weights, const float *reach_m, uint32_t i)
     return product < 0.0f ? -product : product;
 }
 
-static double sum_up_to(const float *weights, const float *reach_m, uint32_t count, float limit)
-{
-    double sum = 0.0;
-    for (uint32_t i = 0; i < count; i++) {
-        float cost = cost_of(weights, reach_m, i);
-        sum += cost <= limit ? (double)cost : 0.0;
-    }
-    return sum;
-}
-
 /* Floats of one sign are ordered as their bits are. */
 static float float_of(uint32_t bits)
 {
@@ -248,24 +253,54 @@ static float float_of(uint32_t bits)
     return u.value;
 }
 
+static uint32_t bits_of(float value)
+{
+    union { uint32_t bits; float value; } u;
+    u.value = value;
+    return u.bits;
+}
+
 #define LARGEST_BITS 0x7f7fffffu /* the largest finite float */
 
-/* Of the largest limit such that everything up to it may go, the bits: bisection over the floats, whose
- * order is that of their bits. The next float after it is then a cost of which not all may go. */
-static uint32_t largest_limit(const float *weights, const float *reach_m, uint32_t count, double room)
+/* The costs up to a limit, and those next to it on both sides. */
+typedef struct cut {
+    double sum;
+    float below, above; /* the largest up to the limit; the smallest over it, infinite where there is none */
+} cut;
+
+static cut cut_at(const float *weights, const float *reach_m, uint32_t count, float limit)
 {
-    uint32_t fits = 0, over = LARGEST_BITS + 1u;
-    if (sum_up_to(weights, reach_m, count, float_of(LARGEST_BITS)) <= room) {
-        return LARGEST_BITS;
+    cut c = { 0.0, 0.0f, float_of(LARGEST_BITS + 1u) };
+    for (uint32_t i = 0; i < count; i++) {
+        float cost = cost_of(weights, reach_m, i);
+        int goes = cost <= limit;
+        c.sum += goes ? (double)cost : 0.0;
+        c.below = goes && cost > c.below ? cost : c.below;
+        c.above = cost > limit && cost < c.above ? cost : c.above;
     }
+    return c;
+}
+
+/* Of the largest limit such that everything up to it may go, the bits: bisection over the floats, whose order is that of
+ * their bits, from cost to cost. The next float after it is then a cost of which not all may go. *sum of what goes.
+ * What is begun with: as many as there are of an equal part of the room fit; what is larger than the room does not. */
+static uint32_t largest_limit(const float *weights, const float *reach_m, uint32_t count, double room, double *sum)
+{
+    const float most = room < (double)float_of(LARGEST_BITS) ? (float)room : float_of(LARGEST_BITS);
+    uint32_t fits = bits_of(most / (float)(count + 1u)), over = LARGEST_BITS + 1u, middle = bits_of(most);
+    *sum = -1.0;
     while (over - fits > 1u) {
-        uint32_t middle = fits + (over - fits) / 2u;
-        if (sum_up_to(weights, reach_m, count, float_of(middle)) <= room) {
-            fits = middle;
+        cut c = cut_at(weights, reach_m, count, float_of(middle));
+        if (c.sum <= room) {
+            *sum = c.sum;
+            fits = bits_of(c.above) - 1u;
+            over = middle == bits_of(most) ? fits + 1u : over; /* none of the others has room alone */
         } else {
-            over = middle;
+            over = bits_of(c.below);
         }
+        middle = fits + (over - fits) / 2u;
     }
+    *sum = *sum < 0.0 ? cut_at(weights, reach_m, count, float_of(fits)).sum : *sum;
     return fits;
 }
 
@@ -273,9 +308,9 @@ uint32_t noh_detail_targets(noh_detail *d, const noh_detail_settings *settings, 
                             float *kept)
 {
     double room = knob_metres(settings, d->pixels_per_metre) * share_of(settings, NOH_DETAIL_TARGETS);
-    uint32_t bits = largest_limit(weights, reach_m, count, room), left = 0;
+    double skipped;
+    uint32_t bits = largest_limit(weights, reach_m, count, room, &skipped), left = 0;
     float limit = float_of(bits), next = float_of(bits + 1u);
-    double skipped = sum_up_to(weights, reach_m, count, limit);
     for (uint32_t i = 0; i < count; i++) {
         float cost = cost_of(weights, reach_m, i);
         int skip = cost <= limit;

@@ -84,7 +84,8 @@ typedef struct noh_detail {
     uint8_t mesh, mesh_before; /* levels; mesh_before is what is faded from, else the same */
     uint8_t joints, influences, rate;
     uint8_t started;        /* 0: the next choice is made afresh and does not fade */
-    uint8_t reserved[2];
+    uint8_t mesh_wanted;    /* what the knob asks for: finer than `mesh` only where noh_detail_limit holds it back */
+    uint8_t mesh_limit;     /* see there */
 } noh_detail;
 
 NOH_STATIC_ASSERT(sizeof(noh_detail) == 32, detail);
@@ -114,12 +115,19 @@ void noh_detail_choose(noh_detail *d, const noh_detail_table *table, const noh_d
 /* The camera has jumped, or the character was not seen: choose afresh, without a fade. */
 void noh_detail_cut(noh_detail *d);
 
+/* From the next choice on take no finer mesh level than this: there is no memory for it (level_pools.h). 0: take any.
+ * What the knob asks for goes on to be chosen, into mesh_wanted; error_m is that of what is shown. */
+void noh_detail_limit(noh_detail *d, uint32_t level);
+
+/* The finest mesh level that there has to be memory for: of what is shown, what is faded from and what is wanted. */
+uint32_t noh_detail_finest(const noh_detail *d);
+
 /* How far a change of mesh level has come: 0 mesh_before alone, 1 mesh alone; smooth at both ends. For a
  * geomorph along the collapsed edges, or a dither of two draws. No other change begins before it is 1. */
 float noh_detail_fade(const noh_detail *d, int64_t clock);
 
 /* Leave out morph targets that cannot be seen: the smallest |weight| * reach first, for as long as their sum
- * is within the share. Sets d->skipped_m to that sum. Costs one to 33 passes over the weights.
+ * is within the share. Sets d->skipped_m to that sum. Costs two passes over the weights where all go, else a few more: 33 at most.
  * shapes  weights[count], kept[count] (may be weights): 0 where left out; reach_m[count]: the largest
  *         displacement of each target at weight 1
  * returns how many weights that were not 0 were kept. What is not a number is kept. */

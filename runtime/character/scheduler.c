@@ -29,12 +29,16 @@ noh_result noh_schedule_init(void *memory, size_t bytes, uint32_t capacity, noh_
 
 /* ---- a frame ---- */
 
+/* noh_schedule.order */
+enum { AS_OFFERED = 0, ALL_SERVED, HEAP };
+
 void noh_schedule_begin(noh_schedule *s, uint32_t frame_ticks, uint64_t budget)
 {
     s->count = s->offered = s->served = s->late_ticks = 0;
     s->frame_ticks = frame_ticks;
     s->budget = budget;
-    s->spent = 0;
+    s->spent = s->offered_cost = 0;
+    s->order = AS_OFFERED;
 }
 
 void noh_schedule_spend(noh_schedule *s, uint32_t cost)
@@ -48,20 +52,10 @@ static int before(const noh_schedule_item *a, const noh_schedule_item *b)
     return a->urgency != b->urgency ? a->urgency > b->urgency : a->instance < b->instance;
 }
 
-static void sift_up(noh_schedule_item *items, uint32_t at)
+static void sift(noh_schedule_item *items, uint32_t at, uint32_t count)
 {
     noh_schedule_item item = items[at];
-    while (at > 0 && before(&item, &items[(at - 1u) / 2u])) {
-        items[at] = items[(at - 1u) / 2u];
-        at = (at - 1u) / 2u;
-    }
-    items[at] = item;
-}
-
-static void sift_down(noh_schedule_item *items, uint32_t count)
-{
-    noh_schedule_item item = items[0];
-    uint32_t at = 0, child = 1;
+    uint32_t child = 2u * at + 1u;
     while (child < count) {
         child += child + 1u < count && before(&items[child + 1u], &items[child]);
         if (!before(&items[child], &item)) {
@@ -94,19 +88,36 @@ void noh_schedule_offer(noh_schedule *s, uint32_t instance, uint32_t late_ticks,
     item->urgency = ((uint64_t)late_ticks + s->frame_ticks + 1u) * visibility_steps(visibility);
     item->instance = instance;
     item->cost = cost;
-    sift_up(s->items, s->count++);
+    s->offered_cost += cost;
+    s->count++;
+}
+
+static void put_in_order(noh_schedule *s)
+{
+    s->order = s->spent + s->offered_cost <= s->budget ? ALL_SERVED : HEAP;
+    for (uint32_t i = s->order == HEAP ? s->count / 2u : 0; i-- > 0;) {
+        sift(s->items, i, s->count);
+    }
 }
 
 int noh_schedule_next(noh_schedule *s, uint32_t *instance)
 {
-    if (s->count == 0 || (s->spent >= s->budget && s->served > 0)) {
+    const noh_schedule_item *next;
+    if (s->order == AS_OFFERED) {
+        put_in_order(s);
+    }
+    if (s->count == 0 || (s->order == HEAP && s->spent >= s->budget && s->served > 0)) {
         return 0;
     }
-    *instance = s->items[0].instance;
-    s->spent += s->items[0].cost;
+    next = s->order == HEAP ? &s->items[0] : &s->items[s->served];
+    *instance = next->instance;
+    s->spent += next->cost;
     s->served++;
-    s->items[0] = s->items[--s->count];
-    sift_down(s->items, s->count);
+    s->count--;
+    if (s->order == HEAP) {
+        s->items[0] = s->items[s->count];
+        sift(s->items, 0, s->count);
+    }
     return 1;
 }
 

@@ -8,7 +8,8 @@
  * What is off the screen is not offered: it costs its clock and its events.
  *
  * Served first is the largest (lateness + one frame) * visibility. A frame ends when the budget is spent: it is
- * passed by at most one instance, and at least one is served in every frame.
+ * passed by at most one instance, and at least one is served in every frame. Where the budget suffices for all, all are
+ * served in the order in which they were offered, and nothing is sorted.
  *
  * Nobody waits long. Let V be the range of visibilities (1..NOH_VISIBILITY_MAX), N the instances, k the least that
  * a frame serves, D the longest frame, and let an instance wait W ticks. Who was served at W before it had waited
@@ -36,10 +37,11 @@ typedef struct noh_schedule {
     uint32_t offered, served;
     uint32_t late_ticks;        /* the worst lateness of all that were offered: of those served now, and of those who wait on */
     uint64_t budget, spent;
+    uint64_t offered_cost; /* of all offers of the frame */
     uint32_t late_high_water;   /* the worst since init */
     uint32_t offered_high_water;
     uint32_t lost;              /* offers over the capacity since init: they were not taken, and wait on */
-    uint32_t reserved;
+    uint32_t order;             /* private: whether the items are a heap by now, or need not be */
     noh_schedule_item *items;   /* [capacity] */
 } noh_schedule;
 
@@ -59,7 +61,7 @@ void noh_schedule_spend(noh_schedule *s, uint32_t cost);
  *         each instance at most once in a frame; all offers before the first noh_schedule_next */
 void noh_schedule_offer(noh_schedule *s, uint32_t instance, uint32_t late_ticks, float visibility, uint32_t cost);
 
-/* The next to be served; 0 when the budget is spent or all have been. Equally urgent ones by number. */
+/* The next to be served; 0 when the budget is spent or all have been. Of equally urgent ones the lower number. */
 int noh_schedule_next(noh_schedule *s, uint32_t *instance);
 
 /* How many frames an instance waits at most when up to `instances` are offered, none of which costs more

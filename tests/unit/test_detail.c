@@ -285,6 +285,57 @@ static void slow_zoom_passes_each_level_once(void **state)
     assert_int_equal(n.rate, 6);
 }
 
+/* ---- limits ---- */
+
+/* What there is no memory for is wanted, but not taken; when it may be, it fades in. */
+static void a_limit_holds_finer_levels_back(void **state)
+{
+    noh_detail_table t = table_of();
+    noh_detail_settings s = settings_of(1.0f);
+    noh_detail d;
+    int64_t clock = 0;
+    (void)state;
+    memset(&d, 0, sizeof d);
+    noh_detail_choose(&d, &t, &s, 0.5f, rates, clock);
+    assert_int_equal(d.mesh, LEVELS - 1u);
+    noh_detail_limit(&d, LEVELS - 2u);
+    for (int frame = 0; frame < 60; frame++) {
+        noh_detail_choose(&d, &t, &s, 1e5f, rates, clock += FRAME);
+        assert_true(d.mesh >= LEVELS - 2u && d.mesh_before >= LEVELS - 2u);
+    }
+    assert_int_equal(d.mesh, LEVELS - 2u);
+    assert_int_equal(d.mesh_wanted, 0);
+    assert_int_equal(noh_detail_finest(&d), 0);
+    assert_true(d.error_m >= t.meshes[LEVELS - 2u].error_m); /* and it says so */
+    noh_detail_limit(&d, 0);
+    noh_detail_choose(&d, &t, &s, 1e5f, rates, clock += FRAME);
+    assert_int_equal(d.mesh, 0);
+    assert_int_equal(d.mesh_before, LEVELS - 2u);
+    assert_true(d.fade_ticks > 0);
+}
+
+/* A limit that comes when a finer level is shown: to the nearest that may be, with a fade, and on when less is wanted. */
+static void a_limit_sends_away_what_is_too_fine(void **state)
+{
+    noh_detail_table t = table_of();
+    noh_detail_settings s = settings_of(1.0f);
+    noh_detail d;
+    (void)state;
+    memset(&d, 0, sizeof d);
+    noh_detail_choose(&d, &t, &s, 1e5f, rates, 0);
+    assert_int_equal(d.mesh, 0);
+    noh_detail_limit(&d, 1);
+    noh_detail_choose(&d, &t, &s, 1e5f, rates, FRAME);
+    assert_int_equal(d.mesh, 1);
+    assert_true(d.fade_ticks > 0);
+    noh_detail_limit(&d, 200); /* past the last: the coarsest */
+    noh_detail_choose(&d, &t, &s, 1e5f, rates, FRAME + 12000);
+    assert_int_equal(d.mesh, LEVELS - 1u);
+    noh_detail_cut(&d);
+    noh_detail_choose(&d, &t, &s, 1e5f, rates, FRAME + 12000);
+    assert_int_equal(d.mesh, 0);
+}
+
 /* ---- fades ---- */
 
 static void fade_is_smooth_and_alone(void **state)
@@ -430,6 +481,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(trembling_never_flickers),
         cmocka_unit_test(random_walks_keep_every_promise),
         cmocka_unit_test(slow_zoom_passes_each_level_once),
+        cmocka_unit_test(a_limit_holds_finer_levels_back),
+        cmocka_unit_test(a_limit_sends_away_what_is_too_fine),
         cmocka_unit_test(fade_is_smooth_and_alone),
         cmocka_unit_test(skipped_targets_are_the_smallest_and_bounded),
         cmocka_unit_test(equal_targets_go_by_index),

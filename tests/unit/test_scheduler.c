@@ -70,6 +70,7 @@ static int by_urgency(const void *a, const void *b)
 static void the_most_urgent_come_first(void **state)
 {
     test_random r = test_random_from(31);
+    uint32_t sorted = 0;
     crowd c;
     (void)state;
     crowd_open(&c, CROWD);
@@ -85,7 +86,9 @@ static void the_most_urgent_come_first(void **state)
             offers[i].urgency = (uint64_t)(late + FRAME + 1u) * eighths;
             noh_schedule_offer(&c.s, i, late, (float)eighths / 8.0f, c.cost[i]);
         }
-        qsort(offers, count, sizeof *offers, by_urgency);
+        if (c.s.offered_cost > budget) { /* else all are served, as they come */
+            qsort(offers, count, sizeof *offers, by_urgency);
+        }
         while (noh_schedule_next(&c.s, &instance)) {
             assert_int_equal(instance, offers[served].instance);
             assert_true(served == 0 || spent < budget);
@@ -95,7 +98,9 @@ static void the_most_urgent_come_first(void **state)
         assert_true(served == count || spent >= budget);
         assert_int_equal(c.s.spent, spent);
         assert_int_equal(c.s.served, served);
+        sorted += c.s.offered_cost > budget;
     }
+    assert_in_range(sorted, 20, 180); /* of 200: both kinds came */
     free(c.memory);
 }
 
@@ -111,8 +116,9 @@ static void odd_visibilities_are_clamped(void **state)
     noh_schedule_offer(&c.s, 2, 0, INFINITY, 1);
     noh_schedule_offer(&c.s, 3, UINT32_MAX, 0.0f, 1);
     noh_schedule_offer(&c.s, 4, 0, NOH_VISIBILITY_MAX, 1);
+    noh_schedule_offer(&c.s, 5, 0, 0.0f, 96); /* a little more than there is for all of them */
     for (uint32_t i = 0; noh_schedule_next(&c.s, &instance); i++) {
-        static const uint32_t order[] = { 3, 2, 4, 0, 1 };
+        static const uint32_t order[] = { 3, 2, 4, 0, 1, 5 };
         assert_int_equal(instance, order[i]);
     }
     free(c.memory);

@@ -308,6 +308,44 @@ static void a_turn_is_off_by_its_arrow(void **state)
     }
 }
 
+/* A point is off by its own arrow: of what stands on the axis nothing is, and a point that two joints hold is between. */
+static void points_are_off_by_their_own_arrows(void **state)
+{
+    ALIGNED uint8_t memory[1024];
+    const noh_time_hold out = { 0, 1.0f, { 0.3f, 0.4f, 7.0f } }, none = { 5, 0.0f, { 0.0f, 0.0f, 0.0f } }, axis = { 0, 1.0f, { 0.0f, 0.0f, 7.0f } };
+    const noh_time_hold wrong = { 5, 1.0f, { 0.0f, 0.0f, 0.0f } }, half = { 0, 0.5f, { 0.3f, 0.4f, 7.0f } }, other_half = { 0, 0.5f, { 0.0f, 0.0f, 7.0f } };
+    const noh_time_hold holds[6] = { axis, none, out, none, half, other_half };
+    noh_time_points points = { holds + 2, 1, 2 };
+    float errors[NOH_RATE_COUNT], halves[NOH_RATE_COUNT];
+    noh_error error;
+    turning t;
+    (void)state;
+    turning_open(&t);
+    t.probe.joint_reach_m = NULL;
+    assert_int_equal(noh_time_points_measure(memory, sizeof memory, &t.probe, &points, 0, errors, NULL), NOH_OK);
+    points.holds = holds + 4;
+    assert_int_equal(noh_time_points_measure(memory, sizeof memory, &t.probe, &points, 0, halves, NULL), NOH_OK);
+    for (int r = 1; r < NOH_RATE_COUNT; r++) {
+        double angle = TWO_PI * noh_rate_period((noh_rate)r) / 96000.0, arrow = 0.5 * (1.0 - cos(angle / 2.0));
+        assert_true(fabs((double)errors[r] - arrow) <= 0.001 * arrow + 1e-6);
+        assert_true(fabs((double)halves[r] - 0.5 * arrow) <= 0.001 * arrow + 1e-6);
+    }
+    points.holds = holds;
+    assert_int_equal(noh_time_points_measure(memory, sizeof memory, &t.probe, &points, 0, halves, NULL), NOH_OK);
+    for (int r = 0; r < NOH_RATE_COUNT; r++) assert_true(halves[r] < 1e-5f);
+    points.point_count = 3; /* the worst counts */
+    assert_int_equal(noh_time_points_measure(memory, sizeof memory, &t.probe, &points, 0, halves, NULL), NOH_OK);
+    assert_memory_equal(halves, errors, sizeof errors);
+    points.point_count = 0;
+    assert_int_equal(noh_time_points_measure(memory, sizeof memory, &t.probe, &points, 0, errors, &error), NOH_ERR_ARG);
+    assert_string_equal(error.what, "points");
+    points.point_count = 1;
+    points.holds = &wrong;
+    points.holds_per_point = 1;
+    assert_int_equal(noh_time_points_measure(memory, sizeof memory, &t.probe, &points, 0, errors, &error), NOH_ERR_ARG);
+    assert_string_equal(error.what, "points: no such joint");
+}
+
 static void measuring_wants_its_fields_and_its_memory(void **state)
 {
     ALIGNED uint8_t memory[4096];
@@ -470,6 +508,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_finer_rate_begins_at_once),
         cmocka_unit_test(frames_longer_than_a_period_are_exact),
         cmocka_unit_test(a_turn_is_off_by_its_arrow),
+        cmocka_unit_test(points_are_off_by_their_own_arrows),
         cmocka_unit_test(measuring_wants_its_fields_and_its_memory),
         cmocka_unit_test(errors_of_what_plays),
         cmocka_unit_test(real_clips_stay_within_what_was_measured),

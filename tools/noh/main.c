@@ -38,7 +38,11 @@ static const struct verb {
     { "view", verb_view, "PACK|MODEL [--anim PACK] [--clip NAME] [--path P] [--accumulate A] [--driver egl|native] [--size 1280x800]\n"
       "                 [--bones] [--frames N [--screenshot OUT.png]]",
       "a window: sliders, clips, events, memory and times; files dropped on it are converted and shown" },
-    { "bench", verb_bench, "PACK... [--source ASSET] [--driver D] [--rounds N] [--json]", "ratios against the named baselines, in one run" },
+    { "crowd", verb_crowd,
+      "PACK -o OUT.png [--instances 1000] [--pixels 1] [--time 2] [--plain] [--debug lod] [--size 1280x720] [--driver D]",
+      "a crowd of a pack's skinned mesh, each as detailed as its pixels want it; --plain: without" },
+    { "bench", verb_bench, "PACK... [--source ASSET] [--driver D] [--rounds N] [--quick] [--json]\n"
+      "                 [--only morph|morph-cpu|skin-cpu|skin-gpu|heads|clip|pose|crowd]", "ratios against the named baselines, in one run" },
 };
 
 static int help(void)

@@ -200,6 +200,7 @@ int verb_sheet(int argc, char **argv);
 int verb_zoom(int argc, char **argv);
 int verb_dump(int argc, char **argv);
 int verb_verify(int argc, char **argv);
+int verb_crowd(int argc, char **argv);
 int verb_bench(int argc, char **argv);
 int verb_view(int argc, char **argv);
 

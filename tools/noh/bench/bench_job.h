@@ -11,7 +11,8 @@
  *   bench_crowd.c       rows crowd/100-heads, and cost over pairs
  *   bench_cpu.c         rows morph/cpu
  *   bench_clip*.c       rows clip/ (see bench_clip.h)
- *   bench_crowd_cpu.c   rows crowd/cpu: a thousand characters, detail by pixels
+ *   bench_crowd_pose.c  rows crowd/pose: a thousand characters, posed as often as pixels want it
+ *   bench_crowd_frame.c rows crowd/cpu and crowd/gpu: frames of a thousand bodies with and without detail
  *   bench_skin_gpu.c    rows skin/gpu: a crowd in one draw, joints per vertex
  *   bench_skin_cpu.c    rows skin/cpu
  *   bench_report.c      rows, storage, and how they are printed
@@ -172,6 +173,12 @@ typedef struct bench_slope {
     uint32_t draws;                    /* accumulation draws for all heads */
 } bench_slope;
 
+/* What was planned, and what was taken. */
+typedef struct bench_memory {
+    char name[32];
+    uint64_t planned_cpu, planned_gpu, cpu, gpu;
+} bench_memory;
+
 #define BENCH_FILES_MAX 8
 
 typedef struct bench_job {
@@ -187,13 +194,19 @@ typedef struct bench_job {
     bench_rows rows;
     bench_slope slopes[8];
     uint32_t slope_count;
+    bench_memory memories[8];
+    uint32_t memory_count;
+    uint64_t crowd_events;  /* that every crowd heard of, with detail and without */
+    int quick;              /* few bodies: for tests */
+    const char *only;       /* the one group of rows that is wanted; NULL: all */
 } bench_job;
 
 int bench_morph(bench_job *job);
 int bench_crowd(bench_job *job);
 int bench_cpu(bench_job *job);
 int bench_clip_rows(bench_job *job); /* none where no pack has clips */
-int bench_crowd_cpu(bench_job *job);
+int bench_crowd_pose(bench_job *job);
+int bench_crowd_frame(bench_job *job);
 /* The skinned mesh of the most vertices; no rows where the pack has none. */
 int bench_skin_gpu(bench_job *job);
 int bench_skin_cpu(bench_job *job);

@@ -125,6 +125,19 @@ static void print_storage(bench_job *job)
     }
 }
 
+static void print_memories(const bench_job *job)
+{
+    if (job->memory_count) {
+        printf("\n%-32s %14s %14s %14s %14s  (%llu events in each)\n", "memory", "CPU, planned", "taken", "GPU, planned", "taken",
+               (unsigned long long)job->crowd_events);
+    }
+    for (uint32_t i = 0; i < job->memory_count; i++) {
+        const bench_memory *m = &job->memories[i];
+        printf("%-32s %14llu %14llu %14llu %14llu\n", m->name, (unsigned long long)m->planned_cpu, (unsigned long long)m->cpu,
+               (unsigned long long)m->planned_gpu, (unsigned long long)m->gpu);
+    }
+}
+
 void bench_print(bench_job *job)
 {
     if (job->has_mesh) {
@@ -133,7 +146,8 @@ void bench_print(bench_job *job)
         printf("%s: clips; %s, medians of at most %u interleaved rounds\n\n", job->files[0].path, job->cpu_clock.what, job->rounds);
     }
     print_rows(&job->rows);
-    if (job->has_mesh) {
+    print_memories(job);
+    if (job->has_mesh && !job->only) {
         print_slopes(job);
         print_storage(job);
     }
@@ -197,6 +211,22 @@ static void json_storage(json *j, bench_job *job)
     json_close(j, ']');
 }
 
+static void json_memories(json *j, const bench_job *job)
+{
+    json_open(j, "memory", '[');
+    for (uint32_t i = 0; i < job->memory_count; i++) {
+        const bench_memory *m = &job->memories[i];
+        json_open(j, NULL, '{');
+        json_text(j, "name", m->name);
+        json_integer(j, "planned_cpu_bytes", m->planned_cpu);
+        json_integer(j, "cpu_bytes", m->cpu);
+        json_integer(j, "planned_gpu_bytes", m->planned_gpu);
+        json_integer(j, "gpu_bytes", m->gpu);
+        json_close(j, '}');
+    }
+    json_close(j, ']');
+}
+
 void bench_print_json(bench_job *job)
 {
     json j = json_begin(stdout);
@@ -206,6 +236,7 @@ void bench_print_json(bench_job *job)
         json_text(&j, "clock", job->cpu_clock.what);
     }
     json_rows(&j, &job->rows);
+    json_memories(&j, job);
     if (job->has_mesh) {
         json_slopes(&j, job);
         json_storage(&j, job);

@@ -7,28 +7,11 @@
 #include "bench_job.h"
 
 typedef struct bench_args {
-    const char *packs[BENCH_FILES_MAX], *driver, *source;
+    const char *packs[BENCH_FILES_MAX], *driver, *source, *only;
     int pack_count;
     double rounds;
-    int as_json;
+    int as_json, quick;
 } bench_args;
-
-static int read_args(int argc, char **argv, bench_args *a)
-{
-    const option options[] = { { "--driver", OPTION_TEXT, &a->driver }, { "--rounds", OPTION_NUMBER, &a->rounds },
-                               { "--source", OPTION_TEXT, &a->source }, { "--json", OPTION_FLAG, &a->as_json } };
-    int status = tool_options(argc, argv, options, 4, a->packs, BENCH_FILES_MAX, &a->pack_count);
-    if (status) {
-        return status;
-    }
-    if (!a->pack_count) {
-        return tool_usage("bench wants a pack");
-    }
-    if (a->rounds < 1.0 || a->rounds > 1000.0 || a->rounds != (double)(uint32_t)a->rounds) {
-        return tool_usage("--rounds wants a whole number from 1 to 1000");
-    }
-    return 0;
-}
 
 /* The mesh with the most pairs is what is benched. */
 static void choose_mesh(bench_job *job)
@@ -46,32 +29,74 @@ static void choose_mesh(bench_job *job)
     job->has_mesh = most != 0;
 }
 
-static int bench_drawn(bench_job *job, const bench_args *a, uint32_t **artist)
+/* The rows, group by group: --only takes one. */
+static const struct group {
+    const char *name;
+    int (*run)(bench_job *job);
+    int draws; /* wants a mesh with targets */
+} groups[] = {
+    { "morph", bench_morph, 1 },       { "morph-cpu", bench_cpu, 1 },      { "skin-cpu", bench_skin_cpu, 1 },
+    { "skin-gpu", bench_skin_gpu, 1 }, { "heads", bench_crowd, 1 },        { "clip", bench_clip_rows, 0 },
+    { "pose", bench_crowd_pose, 0 },   { "crowd", bench_crowd_frame, 1 },
+};
+#define GROUPS (sizeof groups / sizeof groups[0])
+
+static int check_only(const char *only)
+{
+    const char *names[GROUPS], *near;
+    for (size_t i = 0; i < GROUPS; i++) {
+        names[i] = groups[i].name;
+        if (!only || strcmp(only, names[i]) == 0) {
+            return 0;
+        }
+    }
+    near = nearest_name(only, names, GROUPS);
+    return tool_usage("--only wants a group of rows, not '%s'%s%s%s", only, near ? " (did you mean '" : "", near ? near : "", near ? "'?)" : "");
+}
+
+static int read_args(int argc, char **argv, bench_args *a)
+{
+    const option options[] = { { "--driver", OPTION_TEXT, &a->driver }, { "--rounds", OPTION_NUMBER, &a->rounds },
+                               { "--source", OPTION_TEXT, &a->source }, { "--json", OPTION_FLAG, &a->as_json },
+                               { "--only", OPTION_TEXT, &a->only },       { "--quick", OPTION_FLAG, &a->quick } };
+    int status = tool_options(argc, argv, options, sizeof options / sizeof options[0], a->packs, BENCH_FILES_MAX, &a->pack_count);
+    if (status) {
+        return status;
+    }
+    if (!a->pack_count) {
+        return tool_usage("bench wants a pack");
+    }
+    if (a->rounds < 1.0 || a->rounds > 1000.0 || a->rounds != (double)(uint32_t)a->rounds) {
+        return tool_usage("--rounds wants a whole number from 1 to 1000");
+    }
+    return check_only(a->only);
+}
+
+static int bench_groups(bench_job *job, const bench_args *a, uint32_t **artist)
 {
     int status = 0;
-    if (a->source) {
+    if (job->has_mesh && a->source) {
         status = bench_artist_order(a->source, job->mesh_index, &job->mesh, artist);
         job->artist = *artist;
     }
-    if (!status) status = bench_morph(job);
-    if (!status) status = bench_cpu(job);
-    if (!status) status = bench_skin_cpu(job);
-    if (!status) status = bench_skin_gpu(job);
-    if (!status) status = bench_crowd(job);
+    for (size_t i = 0; i < GROUPS && !status; i++) {
+        if ((!groups[i].draws || job->has_mesh) && (!a->only || strcmp(a->only, groups[i].name) == 0)) {
+            status = groups[i].run(job);
+        }
+    }
     return status;
 }
 
 static int bench_all(bench_job *job, const bench_args *a)
 {
     uint32_t *artist = NULL;
-    int status = job->has_mesh ? bench_drawn(job, a, &artist) : 0;
-    if (!status) status = bench_clip_rows(job);
-    if (!status) status = bench_crowd_cpu(job);
+    int status = bench_groups(job, a, &artist);
     if (!status && job->rows.failed) {
         status = tool_fail(a->packs[0], "out of memory");
     }
     if (!status && !job->rows.count) {
-        status = tool_fail(a->packs[0], "no target of any mesh moves anything, and there are no clips: there is nothing to measure");
+        status = tool_fail(a->packs[0], a->only ? "the pack has nothing for these rows: there is nothing to measure"
+                                                : "no target of any mesh moves anything, and there are no clips: there is nothing to measure");
     }
     if (!status) {
         (a->as_json ? bench_print_json : bench_print)(job);
@@ -111,14 +136,16 @@ static int run(bench_job *job, const bench_args *a)
 
 int verb_bench(int argc, char **argv)
 {
-    bench_args a = { { NULL }, NULL, NULL, 0, 15.0, 0 };
+    bench_args a = { { NULL }, NULL, NULL, NULL, 0, 15.0, 0, 0 };
     bench_job job;
     int status = read_args(argc, argv, &a);
     if (status) {
         return status;
     }
     memset(&job, 0, sizeof job);
-    job.rounds = (uint32_t)a.rounds;
+    job.rounds = a.quick ? 1u : (uint32_t)a.rounds;
+    job.quick = a.quick;
+    job.only = a.only;
     status = open_packs(&job, &a);
     if (!status) {
         choose_mesh(&job);

@@ -1,4 +1,4 @@
-/* bench_crowd_cpu.c: rows crowd/cpu: what 1,000 characters on the first skeleton of a pack cost the CPU, from
+/* bench_crowd_pose.c: rows crowd/pose: what 1,000 characters on the first skeleton of a pack cost the CPU, from
  * clocks to skinning matrices, posed as often as pixels want it and in every frame. None where a pack has no motion. */
 #include <math.h>
 #include <stdlib.h>
@@ -275,7 +275,7 @@ static int check(crowd_work *w)
         noh_character_look(ch, &w->table, &w->settings, 1e9f);
         noh_character_update(ch, &c->set, &c->skeleton, NULL, &c->scratch);
         if (memcmp(noh_character_palette(ch, c->palette, c->skeleton.joint_count), c->expected, bytes) != 0) {
-            return tool_fail("bench", "crowd/cpu poses something else than full-rate");
+            return tool_fail("bench", "crowd/pose poses something else than full-rate");
         }
     }
     return 0;
@@ -289,10 +289,10 @@ typedef struct variant {
 
 static const variant variants[] = {
     { "full-rate", 1.0f, 1 }, /* the baseline */
-    { "crowd/cpu/1-pixel", 1.0f, 1 },
-    { "crowd/cpu/4-pixels", 4.0f, 1 },
-    { "crowd/cpu/16-pixels", 16.0f, 1 },
-    { "crowd/cpu/unseen", 1.0f, 0 },
+    { "crowd/pose/1-pixel", 1.0f, 1 },
+    { "crowd/pose/4-pixels", 4.0f, 1 },
+    { "crowd/pose/16-pixels", 16.0f, 1 },
+    { "crowd/pose/unseen", 1.0f, 0 },
 };
 #define VARIANTS (sizeof variants / sizeof variants[0])
 
@@ -312,7 +312,7 @@ static int measure(bench_job *job, crowd *c)
     }
     status = check(&works[0]);
     if (!status) {
-        status = bench_run_cells(&cells, &job->cpu_clock, job->rounds, SAMPLE_NS, "crowd/cpu");
+        status = bench_run_cells(&cells, &job->cpu_clock, job->rounds, SAMPLE_NS, "crowd/pose");
     }
     for (uint32_t i = 1; i < VARIANTS && !status; i++) {
         double full = bench_median(&cells, 0) / CROWD, own = bench_median(&cells, i) / CROWD;
@@ -322,7 +322,7 @@ static int measure(bench_job *job, crowd *c)
     return status;
 }
 
-int bench_crowd_cpu(bench_job *job)
+int bench_crowd_pose(bench_job *job)
 {
     crowd c;
     int status;

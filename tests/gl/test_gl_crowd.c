@@ -1,0 +1,372 @@
+/* The crowd of tools/noh/crowd.h, with and without detail: sixty tubes that bend, bulge and tell of it, while the camera
+ * goes in among them and back. */
+#include "gl_fixture.h"
+#include "level_fixture.h"
+#include "skin_asset.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "convert/model/model_build.h"
+#include "crowd.h"
+
+#define BODIES 60u
+#define FRAMES 300u
+#define FRAME 800u
+#define SIDE 192u
+#define LEVELS 3u
+#define CANARY 256u
+#define JOINTS 9u
+#define TARGETS 3u
+#define KEYS 9u
+
+static uint8_t *tube_bytes;
+static fixture_levels levels;
+static pack_file file;
+
+/* ---- a tube with clips ---- */
+
+static void fill_channel(model_channel *c, uint32_t node, model_path path, uint32_t width, float duration_s)
+{
+    memset(c, 0, sizeof *c);
+    c->node = node;
+    c->path = path;
+    c->key_count = KEYS;
+    c->width = width;
+    c->times = test_zeros(KEYS * sizeof(float));
+    c->values = test_zeros(KEYS * width * sizeof(float));
+    for (uint32_t k = 0; k < KEYS; k++) {
+        c->times[k] = duration_s * (float)k / (float)(KEYS - 1u);
+    }
+}
+
+/* Every joint turns to and fro, `turn` radians at most. */
+static void fill_swing(model_clip *clip, float duration_s, float turn, uint32_t seed)
+{
+    clip->duration_s = duration_s;
+    clip->channel_count = JOINTS;
+    clip->channels = test_zeros(JOINTS * sizeof *clip->channels);
+    for (uint32_t j = 0; j < JOINTS; j++) {
+        fill_channel(&clip->channels[j], j, MODEL_PATH_ROTATION, 4, duration_s);
+        for (uint32_t k = 0; k < KEYS; k++) {
+            float half = 0.5f * turn * sinf(6.2831853f * (float)k / (float)(KEYS - 1u) + (float)(j + seed));
+            float *q = clip->channels[j].values + 4u * k;
+            q[(j + seed) % 3u] = sinf(half);
+            q[3] = cosf(half);
+        }
+    }
+}
+
+static void fill_face(model_clip *clip, float duration_s)
+{
+    clip->duration_s = duration_s;
+    clip->channel_count = 1;
+    clip->channels = test_zeros(sizeof *clip->channels);
+    fill_channel(clip->channels, JOINTS, MODEL_PATH_WEIGHTS, TARGETS, duration_s);
+    for (uint32_t k = 0; k < KEYS * TARGETS; k++) {
+        clip->channels->values[k] = 0.5f + 0.5f * sinf((float)k * 1.7f);
+    }
+}
+
+static void open_tube(void)
+{
+    const skin_cylinder c = { 24, 33, JOINTS, 4, TARGETS, 1, 2.0f, 0.35f };
+    static const char *const names[3] = { "swing", "shake", "face" };
+    model *m;
+    size_t count;
+    noh_pack plain;
+    if (tube_bytes) {
+        return;
+    }
+    m = skin_cylinder_model(&c);
+    m->clip_count = 3;
+    m->clips = test_zeros(3 * sizeof *m->clips);
+    for (uint32_t i = 0; i < 3; i++) {
+        m->clips[i].name = model_string(names[i]);
+    }
+    fill_swing(&m->clips[0], 1.5f, 0.12f, 0);
+    fill_swing(&m->clips[1], 0.8f, 0.2f, 1);
+    fill_face(&m->clips[2], 1.1f);
+    tube_bytes = skin_pack_with_clips(m, 1.0f, &count);
+    model_free(m);
+    plain = test_open(tube_bytes, count);
+    fixture_levels_open(&levels, &plain, LEVELS, 0.12f);
+    file.path = "tubes";
+    file.pack = levels.pack;
+}
+
+static int tear_down(void **state)
+{
+    if (tube_bytes) {
+        fixture_levels_close(&levels);
+        free(tube_bytes);
+    }
+    return fixture_tear_down(state);
+}
+
+/* ---- a crowd between canaries ---- */
+
+typedef struct stand {
+    crowd_plan plan;
+    crowd crowd;
+    uint8_t *whole;
+} stand;
+
+static void stand_open(stand *s, const crowd_options *options)
+{
+    gpu *g = fixture_gpu();
+    open_tube();
+    assert_int_equal(crowd_plan_make(&s->plan, &file, &g->caps, options), 0);
+    s->whole = test_aligned(NULL, (size_t)s->plan.cpu_bytes + 2u * CANARY);
+    memset(s->whole, 0xa5, (size_t)s->plan.cpu_bytes + 2u * CANARY);
+    assert_int_equal(crowd_open(&s->crowd, &s->plan, s->whole + CANARY, (size_t)s->plan.cpu_bytes, g, &file), 0);
+}
+
+static void expect_kept(const stand *s)
+{
+    assert_int_equal(s->crowd.used_bytes, s->plan.cpu_bytes);
+    assert_true(noh_gl_ledger_bytes(&s->crowd.ledger) == s->plan.gpu_bytes);
+    for (size_t i = 0; i < CANARY; i++) {
+        assert_int_equal(s->whole[i], 0xa5);
+        assert_int_equal(s->whole[CANARY + s->plan.cpu_bytes + i], 0xa5);
+    }
+}
+
+static void stand_close(stand *s)
+{
+    crowd_close(&s->crowd);
+    free(s->whole);
+}
+
+static crowd_options options_of(float pixels)
+{
+    crowd_options o;
+    memset(&o, 0, sizeof o);
+    o.count = BODIES;
+    o.plain = pixels == 0.0f;
+    o.pixels = pixels;
+    o.width = o.height = SIDE;
+    return o;
+}
+
+/* In among them, and back. */
+static crowd_camera camera_at(const crowd *c, uint32_t frame)
+{
+    const float part = (float)(frame < FRAMES / 2u ? frame : FRAMES - frame) / (float)(FRAMES / 2u);
+    const float eye[3] = { 0.0f, 3.0f, 10.0f - 50.0f * part };
+    return crowd_camera_at(c, eye, 0.2f * part, 0.05f);
+}
+
+static void run_frame(stand *s, uint32_t frame)
+{
+    const crowd_camera camera = camera_at(&s->crowd, frame);
+    crowd_step(&s->crowd, FRAME);
+    crowd_look(&s->crowd, &camera);
+    crowd_show(&s->crowd);
+}
+
+static uint8_t *picture(stand *s, uint32_t frame)
+{
+    const crowd_camera camera = camera_at(&s->crowd, frame);
+    fixture_frame f;
+    uint8_t *rgba;
+    crowd_send(&s->crowd);
+    fixture_frame_open(&f, SIDE);
+    crowd_draw(&s->crowd, &camera);
+    rgba = fixture_frame_read(&f);
+    fixture_frame_close(&f);
+    fixture_expect_no_errors();
+    return rgba;
+}
+
+/* ---- what holds in every frame ---- */
+
+typedef struct watch {
+    uint32_t waits[BODIES];  /* frames in which a body has wanted a finer level than it shows, for want of its frame of notice */
+    uint32_t coarser, finer, fades, seen_max, seen_min, by_level[LEVELS];
+    uint64_t aside;          /* the most that could not wait, after the first frame */
+} watch;
+
+/* No two bodies in one slot, nor more in a pool than it has. */
+static void expect_slots(const crowd *c)
+{
+    uint8_t taken[NOH_LEVELS_MAX][BODIES];
+    memset(taken, 0, sizeof taken);
+    for (uint32_t i = 0; i < BODIES; i++) {
+        const crowd_body *b = &c->bodies[i];
+        if (b->seen) {
+            assert_true(b->slot.pool < c->plan->pool_count && b->slot.slot < c->plan->slots[b->slot.pool]);
+            assert_true(!taken[b->slot.pool][b->slot.slot]);
+            assert_true(b->level >= c->plan->pool_levels[b->slot.pool] && b->level_before >= c->plan->pool_levels[b->slot.pool]);
+            taken[b->slot.pool][b->slot.slot] = 1;
+        }
+    }
+}
+
+/* Under its share of the knob; or it fades, or there is no finer slot, or it has asked for one just now. */
+static void expect_level(const crowd *c, uint32_t i, watch *w)
+{
+    const crowd_body *b = &c->bodies[i];
+    const noh_detail *d = &crowd_character(c, i)->detail;
+    const float share = 0.3f * c->plan->options.pixels;
+    const int over = c->levels[b->level].error_m * b->scale > share * 1.0001f;
+    const int crowded = noh_level_pools_stats_of(c->pools)->coarser > 0;
+    w->fades += b->level != b->level_before;
+    w->by_level[b->level]++;
+    w->waits[i] = over && !crowded && b->level == b->level_before ? w->waits[i] + 1u : 0;
+    assert_in_range(w->waits[i], 0, 1);
+    if (over && b->level == b->level_before) {
+        assert_true(d->mesh_wanted < b->level);
+        w->coarser += crowded != 0;
+    }
+    w->finer += !over;
+}
+
+static void expect_order(const crowd *c)
+{
+    uint32_t before = 0;
+    for (uint32_t k = 0; k < c->stats.seen; k++) {
+        const crowd_body *b = &c->bodies[c->order[k]];
+        const uint32_t run = b->level == b->level_before ? b->level : c->plan->level_count;
+        assert_true(b->seen && b->place == k && run >= before && k >= c->runs[run]);
+        before = run;
+    }
+}
+
+static void watch_frame(const stand *s, uint32_t frame, watch *w)
+{
+    const crowd *c = &s->crowd;
+    expect_slots(c);
+    expect_order(c);
+    for (uint32_t i = 0; i < BODIES; i++) {
+        if (c->bodies[i].seen) expect_level(c, i, w);
+        else w->waits[i] = 0;
+    }
+    w->seen_max = c->stats.seen > w->seen_max ? c->stats.seen : w->seen_max;
+    w->seen_min = frame && c->stats.seen >= w->seen_min ? w->seen_min : c->stats.seen;
+}
+
+/* What is spent aside shows between looking and showing. */
+static void run_watched(stand *s, uint32_t frame, watch *w)
+{
+    const crowd_camera camera = camera_at(&s->crowd, frame);
+    crowd_step(&s->crowd, FRAME);
+    crowd_look(&s->crowd, &camera);
+    w->aside = frame && s->crowd.schedule.spent > w->aside ? s->crowd.schedule.spent : w->aside;
+    crowd_show(&s->crowd);
+}
+
+/* ---- pictures ---- */
+
+/* The mean difference of what either covers, of 255; 0 where nothing is seen. */
+static double compare_pictures(uint8_t *a, uint8_t *b)
+{
+    double sum = 0.0;
+    uint32_t covered = 0;
+    for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+        if (a[4u * i + 3u] || b[4u * i + 3u]) {
+            for (uint32_t k = 0; k < 3; k++) {
+                sum += fabs((double)a[4u * i + k] - (double)b[4u * i + k]);
+            }
+            covered++;
+        }
+    }
+    free(a);
+    free(b);
+    assert_true(covered > 200u);
+    return sum / 3.0 / covered;
+}
+
+/* ---- tests ---- */
+
+static void a_crowd_with_detail_keeps_its_word(void **state)
+{
+    crowd_options o = options_of(1.0f);
+    const crowd_options none = options_of(0.0f);
+    uint32_t cost_max;
+    uint64_t wait;
+    double worst = 0.0;
+    static stand with, without;
+    watch w;
+    (void)state;
+    memset(&w, 0, sizeof w);
+    o.slots[0] = 2; /* fewer than want the full level, so that some have to make do with less */
+    o.slots[1] = 14;
+    o.slots[2] = 44;
+    o.budget_ns = 30000;
+    stand_open(&with, &o);
+    stand_open(&without, &none);
+    cost_max = crowd_update_cost(crowd_character(&with.crowd, 0));
+    for (uint32_t frame = 0; frame < FRAMES; frame++) {
+        run_watched(&with, frame, &w);
+        run_frame(&without, frame);
+        watch_frame(&with, frame, &w);
+        assert_true(with.crowd.events.count == without.crowd.events.count && with.crowd.events.sum == without.crowd.events.sum);
+        if (frame % 50u == 49u) {
+            worst = fmax(worst, compare_pictures(picture(&with, frame), picture(&without, frame)));
+            expect_kept(&with);
+        }
+    }
+    assert_true(o.budget_ns > w.aside + cost_max);
+    wait = noh_schedule_wait_max(BODIES, o.budget_ns - w.aside, cost_max);
+    print_message("%u to %u seen; levels %u %u %u, %u fading, %u times none finer was left; %llu events; at most %u ticks late of %llu; "
+                  "pictures differ by %.2f\n",
+                  w.seen_min, w.seen_max, w.by_level[0], w.by_level[1], w.by_level[2], w.fades, w.coarser,
+                  (unsigned long long)with.crowd.events.count, with.crowd.schedule.late_high_water, (unsigned long long)wait * FRAME, worst);
+    assert_true(wait < FRAMES && with.crowd.schedule.late_high_water > 0 && with.crowd.schedule.late_high_water <= wait * FRAME);
+    assert_int_equal(with.crowd.schedule.lost, 0);
+    assert_true(with.crowd.events.count > 100 && w.seen_min < w.seen_max);
+    assert_true(w.by_level[0] && w.by_level[1] && w.by_level[2] && w.fades && w.coarser);
+    assert_true(worst < 12.0);
+    stand_close(&with);
+    stand_close(&without);
+}
+
+/* With a knob of nothing and slots for all, what is drawn is what is drawn without detail. */
+static void a_knob_of_nothing_leaves_nothing_out(void **state)
+{
+    crowd_options o = options_of(1e-6f);
+    const crowd_options none = options_of(0.0f);
+    static stand with, without;
+    (void)state;
+    o.slots[0] = BODIES;
+    stand_open(&with, &o);
+    stand_open(&without, &none);
+    for (uint32_t frame = 0; frame < 12; frame++) {
+        run_frame(&with, frame);
+        run_frame(&without, frame);
+        if (frame % 4u == 3u) {
+            uint8_t *got = picture(&with, frame), *expected = picture(&without, frame);
+            assert_memory_equal(got, expected, SIDE * SIDE * 4u);
+            assert_true(compare_pictures(got, expected) == 0.0);
+        }
+    }
+    expect_kept(&with);
+    expect_kept(&without);
+    assert_true(with.plan.cpu_bytes >= without.plan.cpu_bytes);
+    stand_close(&with);
+    stand_close(&without);
+}
+
+/* Fewer accumulators are full-sized: that is what pools are for. */
+static void pools_by_level_take_less(void **state)
+{
+    const crowd_options o = options_of(4.0f), none = options_of(0.0f);
+    static crowd_plan with, without;
+    gpu *g = fixture_gpu();
+    (void)state;
+    open_tube();
+    assert_int_equal(crowd_plan_make(&with, &file, &g->caps, &o), 0);
+    assert_int_equal(crowd_plan_make(&without, &file, &g->caps, &none), 0);
+    assert_true(with.pool_count > 1 && with.morph.layer_bytes * 2u < without.morph.layer_bytes);
+    assert_true(with.gpu_bytes < without.gpu_bytes);
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_crowd_with_detail_keeps_its_word),
+    cmocka_unit_test(a_knob_of_nothing_leaves_nothing_out),
+    cmocka_unit_test(pools_by_level_take_less),
+};
+
+TEST_MAIN(tests, NULL, tear_down)

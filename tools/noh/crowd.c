@@ -1,0 +1,189 @@
+#include "crowd.h"
+
+#include <string.h>
+
+/* ---- opening ---- */
+
+static int has_joint_twice(const noh_skin *skin)
+{
+    for (uint32_t i = 0; i < skin->header->joint_count; i++) {
+        for (uint32_t k = 0; k < i; k++) {
+            if (skin->joints[i] == skin->joints[k]) {
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
+/* The skin's inverse bind matrices, by joint of the skeleton: a character's palette is then what the skin wants. Where
+ * the skin has a joint twice (rigid parts that were joined), a palette is the joints' own matrices. */
+static void open_skeleton(crowd *c)
+{
+    static const float identity[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
+    const noh_skin *skin = &c->plan->skin;
+    c->skeleton = c->set->skeleton;
+    for (uint32_t j = 0; j < c->skeleton.joint_count; j++) {
+        memcpy(c->inverse_bind + 12u * (size_t)j, identity, sizeof identity);
+    }
+    for (uint32_t i = 0; i < skin->header->joint_count; i++) {
+        memcpy(c->inverse_bind + 12u * (size_t)skin->joints[i], skin->inverse_bind + 12u * (size_t)i, sizeof identity);
+    }
+    c->skeleton.inverse_bind = has_joint_twice(skin) ? NULL : c->inverse_bind;
+}
+
+/* To and fro, so that there is no seam, whatever the clip; and two keys a pass where the pack has none at all. */
+static void open_motions(crowd *c)
+{
+    const noh_anim_set *from = &c->set->anim;
+    c->anim = *from;
+    c->anim.motions = c->motions;
+    memcpy(c->motions, from->motions, from->motion_count * sizeof *c->motions);
+    for (uint32_t m = 0; m < from->motion_count; m++) {
+        c->motions[m].loop = NOH_LOOP_PING_PONG;
+    }
+    if (from->event_count) {
+        return;
+    }
+    c->anim.events = c->keys;
+    for (uint32_t m = 0; m < from->motion_count; m++) {
+        c->motions[m].first_event = c->anim.event_count;
+        c->motions[m].event_count = 2;
+        for (uint32_t k = 0; k < 2; k++) {
+            noh_event_key *key = &c->keys[c->anim.event_count++];
+            memset(key, 0, sizeof *key);
+            key->tick = c->motions[m].duration_ticks / 4u * (1u + 2u * k);
+        }
+    }
+}
+
+/* Where the mesh's weights are among the floats of a pose: those of the first node that draws it. */
+static void find_weights(crowd *c)
+{
+    c->first_weight = NOH_NONE;
+    for (uint32_t g = c->set->group_count; g-- > 0;) {
+        const noh_clip_group *group = &c->set->groups[g];
+        noh_mesh mesh;
+        if (group->node != NOH_NONE && noh_pack_mesh(&c->file->pack, c->file->pack.nodes[group->node].mesh, &mesh) == NOH_OK &&
+            mesh.header == c->plan->mesh.header) {
+            c->first_weight = group->first;
+        }
+    }
+}
+
+static int open_characters(crowd *c, void *scratch, noh_error *error)
+{
+    const crowd_plan *p = c->plan;
+    noh_character_desc desc = crowd_character_desc(&c->anim);
+    noh_result result = noh_character_scratch_init(scratch, p->scratch_bytes, &desc, &c->scratch, error);
+    memset(c->bodies, 0, p->options.count * sizeof *c->bodies);
+    for (uint32_t i = 0; i < p->options.count && !result; i++) {
+        noh_character *made;
+        desc.instance = i;
+        result = noh_character_init(c->characters + i * p->character_bytes, p->character_bytes, &desc, &made, error);
+    }
+    return result;
+}
+
+/* The finest level that any pool holds, and all coarser ones. */
+static noh_result open_meshes(crowd *c, void *morph, void *palettes, char *log, size_t log_bytes, noh_error *error)
+{
+    const crowd_plan *p = c->plan;
+    const noh_gl_api *gl = &c->g->gl;
+    noh_gl_skin_desc skin = { &p->mesh, 1, &p->options.count, NOH_PALETTE_TEXTURE };
+    noh_result result = noh_gl_mesh_create(gl, &c->ledger, &p->views[0], &c->gl_mesh, error);
+    memset(c->pictures, 0, p->mesh.pack->texture_count * sizeof *c->pictures);
+    for (uint32_t i = 0; i < p->mesh.pack->texture_count && !result; i++) {
+        noh_texture texture;
+        noh_pack_texture(p->mesh.pack, i, &texture);
+        result = noh_gl_picture_create(gl, &c->ledger, &texture, &c->pictures[i], error);
+    }
+    if (!result) {
+        result = noh_gl_morph_init(morph, (size_t)p->morph.cpu_bytes, gl, &c->g->caps, &c->ledger, &p->morph_desc, &c->morph, log,
+                                   log_bytes, error);
+    }
+    if (!result) {
+        result = noh_gl_skin_init(palettes, (size_t)p->skin_plan.cpu_bytes, gl, &c->g->caps, &c->ledger, &skin, &c->palettes, error);
+    }
+    return result;
+}
+
+static noh_result open_renderer(crowd *c, char *log, size_t log_bytes, noh_error *error)
+{
+    noh_gl_renderer_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.view = c->plan->options.view;
+    desc.layers_uint = c->plan->morph.layer_format == GL_RGBA32UI;
+    desc.meshes = &c->plan->mesh;
+    desc.mesh_count = 1;
+    desc.palettes = c->plan->skin_plan.mode;
+    desc.crowds = 1;
+    desc.fades = !c->plan->options.plain;
+    return noh_gl_renderer_create(&c->g->gl, &c->ledger, &desc, &c->renderer, log, log_bytes, error);
+}
+
+static int open_all(crowd *c, noh_arena *arena)
+{
+    const crowd_plan *p = c->plan;
+    const noh_level_pools_desc pools_desc = crowd_pools_desc(p);
+    noh_error error = { NOH_OK, "", 0, 0 };
+    char log[4096] = "";
+    void *set, *scratch, *pools, *schedule, *morph, *palettes;
+    noh_result result;
+    crowd_carve(arena, p, c, &set, &scratch, &pools, &schedule, &morph, &palettes);
+    c->used_bytes = arena->used;
+    result = noh_motion_set_init(set, p->set_needs.bytes, &p->set_desc, &c->set, &error);
+    if (!result) {
+        open_skeleton(c);
+        open_motions(c);
+        find_weights(c);
+        result = open_characters(c, scratch, &error);
+    }
+    if (!result) result = noh_level_pools_init(pools, p->pools_bytes, &pools_desc, &c->pools, &error);
+    if (!result) result = noh_schedule_init(schedule, p->schedule_bytes, p->options.count, &c->schedule, &error);
+    if (!result) result = open_meshes(c, morph, palettes, log, sizeof log, &error);
+    if (!result) result = open_renderer(c, log, sizeof log, &error);
+    if (result) {
+        fputs(log, stderr);
+        return tool_fail_error(c->file->path, &error);
+    }
+    return 0;
+}
+
+int crowd_open(crowd *c, const crowd_plan *plan, void *memory, size_t bytes, gpu *g, const pack_file *file)
+{
+    noh_arena arena = noh_arena_over(memory, bytes);
+    int status;
+    if (bytes < plan->cpu_bytes) {
+        return tool_fail(file->path, "the crowd wants %llu bytes", (unsigned long long)plan->cpu_bytes);
+    }
+    memset(c, 0, sizeof *c);
+    c->plan = plan;
+    c->g = g;
+    c->file = file;
+    c->unculled = plan->options.unculled;
+    status = open_all(c, &arena);
+    if (!status) status = crowd_place(c);
+    if (status) {
+        crowd_close(c);
+    }
+    return status;
+}
+
+void crowd_close(crowd *c)
+{
+    const noh_gl_api *gl = &c->g->gl;
+    if (c->renderer.gl) noh_gl_renderer_delete(&c->renderer);
+    if (c->palettes) noh_gl_skin_delete(c->palettes);
+    if (c->morph) noh_gl_morph_delete(c->morph);
+    for (uint32_t i = 0; c->gl_mesh.vertex_array && i < c->plan->mesh.pack->texture_count; i++) {
+        noh_gl_texture_delete(gl, &c->ledger, &c->pictures[i]);
+    }
+    noh_gl_mesh_delete(gl, &c->ledger, &c->gl_mesh);
+    memset(c, 0, sizeof *c);
+}
+
+noh_character *crowd_character(const crowd *c, uint32_t body)
+{
+    return (noh_character *)(void *)(c->characters + body * c->plan->character_bytes);
+}
