@@ -271,7 +271,7 @@ web: deps-web
 	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB)/noh.js $(WEB_PAGE)
 
 # Of the mask and of the puppet; or of one pack, if it is named.
-WEB_PACKS   := $(if $(filter file,$(origin WEB_PACK)),$(BUILD)/mask.noh $(BUILD)/demo/puppet.noh,$(WEB_PACK))
+WEB_PACKS   := $(if $(filter file,$(origin WEB_PACK)),$(BUILD)/mask.noh $(BUILD)/demo/puppet.noh $(BUILD)/mask_levels.noh,$(WEB_PACK))
 web-check: deps-web
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/tests/gl/picture_diff $(WEB_PACKS)
 	@NOH_BUILD="$(BUILD)" sh tests/web.sh $(WEB_PACKS)

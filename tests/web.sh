@@ -43,6 +43,7 @@ budget_of() {
 check_pack() {
     out=$build/web-check/$name
     mkdir -p "$out"
+    rm -f "$out/level.png"
     timeout -k 5 300 node tests/web/page.js "$build/web/$name" "$chromium" "$out" "$clip" "$time" $size >"$out/log.txt" 2>&1
     code=$?
     good=$(grep -c '^ok ' "$out/log.txt") bad=$(grep -c '^not ok ' "$out/log.txt")
@@ -57,6 +58,9 @@ END
         "$build/noh" render "$pack" -o "$out/native.png" --size ${size}x$size ${shown#* } >/dev/null || not_ok "noh render $shown"
         for path in auto mrt gather; do compare "${path}_${shown%% *}"; done
     done
+    [ -f "$out/level.png" ] || return
+    "$build/noh" render "$pack" -o "$out/native.png" --size ${size}x$size --lod 2 >/dev/null || not_ok 'noh render --lod'
+    compare level
 }
 
 for pack in "$@"; do

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "context.h"
+#include "detail.h"
 #include "motion.h"
 
 #define PICTURES_MAX 64u
@@ -30,6 +31,7 @@ static struct web {
     noh_arena arena;
     web_scene scene;
     web_motion motion;
+    web_detail detail;
     noh_gl_mesh meshes[WEB_MESHES_MAX];
     noh_gl_texture pictures[PICTURES_MAX];
     noh_gl_morph *morph;
@@ -142,6 +144,7 @@ static noh_result load_renderer(void)
     desc.layers_uint = noh_gl_morph_plan_of(web.morph)->layer_format == GL_RGBA32UI;
     desc.meshes = web.scene.meshes;
     desc.mesh_count = web.scene.pack.mesh_count;
+    desc.fades = web.detail.level_count > 1;
     desc.encode_srgb = 1; /* a canvas encodes nothing */
     desc.palettes = web.skin ? noh_gl_skin_plan_of(web.skin)->mode : NOH_PALETTE_AUTO;
     noh_result result = noh_gl_renderer_create(&web.gl, &web.ledger, &desc, &web.renderer, NULL, 0, &web.error);
@@ -170,6 +173,7 @@ EMSCRIPTEN_KEEPALIVE int web_open(uint32_t bytes, int path)
     web.arena = noh_arena_over(memory, sizeof memory);
     noh_result result = noh_pack_open(pack_bytes, bytes, &web.scene.pack, &web.error);
     if (!result) result = web_scene_list(&web.scene, &web.error);
+    if (!result) web_detail_open(&web.detail, &web.scene);
     if (!result) result = open_context();
     if (!result) result = load_meshes();
     if (!result) result = load_morph((noh_morph_path)path);
@@ -229,6 +233,34 @@ EMSCRIPTEN_KEEPALIVE double web_time(void) { return web_motion_time(&web.motion)
 EMSCRIPTEN_KEEPALIVE void web_set_speed(float speed) { web_motion_set_speed(&web.motion, speed); }
 EMSCRIPTEN_KEEPALIVE void web_step(double seconds) { web_motion_step(&web.motion, seconds); }
 
+EMSCRIPTEN_KEEPALIVE uint32_t web_level_count(void) { return web.detail.level_count; }
+/* A level of detail, or -1: what one pixel of error allows. */
+EMSCRIPTEN_KEEPALIVE void web_set_detail(int level) { web.detail.level = level; }
+/* Of the frame that was drawn: the finest level of any item, the largest error that noh claims, whether a level fades. */
+EMSCRIPTEN_KEEPALIVE uint32_t web_level(void)
+{
+    uint32_t finest = NOH_DETAIL_LEVELS_MAX;
+    for (uint32_t i = 0; i < web.scene.item_count; i++) {
+        finest = web.detail.states[i].mesh < finest ? web.detail.states[i].mesh : finest;
+    }
+    return finest;
+}
+EMSCRIPTEN_KEEPALIVE float web_error_pixels(void)
+{
+    float most = 0.0f;
+    for (uint32_t i = 0; i < web.scene.item_count; i++) {
+        const float error = noh_detail_error_pixels(&web.detail.states[i]);
+        most = error > most ? error : most;
+    }
+    return most;
+}
+EMSCRIPTEN_KEEPALIVE int web_fades(void)
+{
+    int fades = 0;
+    for (uint32_t i = 0; i < web.scene.item_count; i++) fades |= noh_detail_fade(&web.detail.states[i], web.detail.clock) < 1.0f;
+    return fades;
+}
+
 EMSCRIPTEN_KEEPALIVE const char *web_clip_name(uint32_t i)
 {
     noh_pack_motion motion;
@@ -258,25 +290,35 @@ EMSCRIPTEN_KEEPALIVE void web_set_at_rest(int at_rest) { web.at_rest = at_rest; 
 
 static noh_result update(void)
 {
+    uint32_t width, height;
+    noh_platform_web.size(web.context, &width, &height);
     for (uint32_t i = 0; i < web.scene.item_count; i++) {
         const web_item *item = &web.scene.items[i];
-        noh_result result = noh_gl_morph_weights(web.morph, item->instance, web.scene.weights + item->first_weight, &web.error);
+        const float *matrices = web_motion_matrices(&web.motion, item) ? web.motion.matrices : NULL;
+        web_detail_choose(&web.detail, &web.scene, i, matrices, &web.camera, height);
+        noh_gl_morph_level(web.morph, item->instance, web_detail_finest(&web.detail, i));
+        noh_result result = noh_gl_morph_weights(web.morph, item->instance, web_detail_weights(&web.detail, &web.scene, i), &web.error);
         if (result) return result;
-        if (web_motion_matrices(&web.motion, item)) noh_gl_skin_set(web.skin, item->instance, web.motion.matrices);
+        if (matrices) noh_gl_skin_set(web.skin, item->instance, matrices);
     }
     noh_gl_morph_update(web.morph, NULL);
     if (web.skin) noh_gl_skin_update(web.skin);
     return NOH_OK;
 }
 
-static void draw_item(const web_item *item, int pass)
+static void draw_item(uint32_t index, int pass)
 {
+    const web_item *item = &web.scene.items[index];
+    noh_gl_detail parts[2];
+    uint32_t part_count = web_detail_parts(&web.detail, index, parts);
     noh_gl_morph_binding morph = noh_gl_morph_binding_of(web.morph, item->instance);
     noh_gl_skin_binding skin;
     int is_skinned = web.scene.meshes[item->mesh].header->skin != NOH_NONE;
     if (is_skinned) skin = noh_gl_skin_binding_of(web.skin, item->instance);
-    noh_gl_draw_mesh(&web.renderer, &web.meshes[item->mesh], web_scene_world(&web.scene, item), web.at_rest ? NULL : &morph,
-                     is_skinned ? &skin : NULL, NULL, web.pictures, pass);
+    for (uint32_t k = 0; k < part_count; k++) {
+        noh_gl_draw_mesh(&web.renderer, &web.meshes[item->mesh], web_scene_world(&web.scene, item), web.at_rest ? NULL : &morph,
+                         is_skinned ? &skin : NULL, &parts[k], web.pictures, pass);
+    }
 }
 
 static void begin_frame(void)
@@ -291,16 +333,17 @@ static void begin_frame(void)
     web.gl.ClearBufferfv(GL_DEPTH, 0, &far);
 }
 
-/* A lost context is not an error: nothing is drawn. */
-EMSCRIPTEN_KEEPALIVE int web_draw(void)
+/* seconds since the last one, for fades. A lost context is not an error: nothing is drawn. */
+EMSCRIPTEN_KEEPALIVE int web_draw(double seconds)
 {
+    web.detail.clock += (int64_t)(seconds * NOH_TICKS_PER_SECOND);
     if (noh_platform_web.present(web.context)) return 0;
     noh_result result = web.at_rest ? NOH_OK : update();
     if (result) return (int)result;
     begin_frame();
     noh_gl_draw_begin(&web.renderer, &web.camera);
     for (int pass = NOH_DRAW_OPAQUE; pass <= NOH_DRAW_BLENDED; pass++) {
-        for (uint32_t i = 0; i < web.scene.item_count; i++) draw_item(&web.scene.items[i], pass);
+        for (uint32_t i = 0; i < web.scene.item_count; i++) draw_item(i, pass);
     }
     noh_gl_draw_end(&web.renderer);
     return 0;

@@ -1,6 +1,6 @@
 // page.js: the page around the WebAssembly program (main.c): the camera, clips, sliders, the table of memory.
 // The pack is page.noh, or what ?pack=NAME says. ?path=gather forces a path, ?clip=NAME begins with that clip
-// (none: with none), ?size=512 draws so many pixels across.
+// (none: with none), ?detail=0 with that level of detail, ?size=512 draws so many pixels across.
 'use strict';
 
 const query = new URLSearchParams(location.search);
@@ -10,6 +10,7 @@ const byId = (id) => document.getElementById(id);
 const canvas = byId('canvas');
 let lost = false;
 let wanted = false;
+let drawn = 0; // when
 
 // Tests wait for these.
 window.noh = { ready: false, lost: 0, restored: 0, frames: 0, error: '' };
@@ -105,8 +106,12 @@ function draw() {
     wanted = false;
     if (lost || !window.noh.ready) return;
     setCamera();
-    check(Module._web_draw());
+    const now = performance.now();
+    check(Module._web_draw(Math.min(now - drawn, 100) / 1000));
+    drawn = now;
     window.noh.frames++;
+    showDetail();
+    if (Module._web_fades()) redraw();
 }
 
 function redraw() {
@@ -136,6 +141,29 @@ canvas.addEventListener('webglcontextrestored', () => {
     byId('message').textContent = '';
     draw();
 });
+
+// ---- levels of detail ----
+
+function showDetail() {
+    if (byId('details').hidden) return;
+    const shown = Module._web_level(), error = Module._web_error_pixels();
+    byId('detail-text').textContent = `${shown ? `level ${shown}` : 'full'}, off by at most ${error.toFixed(2)} pixels`;
+}
+
+byId('detail').addEventListener('change', () => {
+    Module._web_set_detail(Number(byId('detail').value));
+    redraw();
+});
+
+// By pixels, or what ?detail says.
+function beginDetail() {
+    const count = Module._web_level_count();
+    for (let i = 1; i < count; i++) byId('detail').add(new Option(`level ${i}`, i));
+    byId('details').hidden = count < 2;
+    const asked = Number(query.get('detail') || -1);
+    byId('detail').value = asked >= 0 && asked < count ? asked : -1;
+    Module._web_set_detail(Number(byId('detail').value));
+}
 
 // ---- targets ----
 
@@ -280,6 +308,7 @@ async function start() {
     byId('faces').hidden = !sliders.length;
     window.noh.renderer = text(Module._web_renderer());
     window.noh.path = text(Module._web_path());
+    beginDetail();
     beginClips();
     fit();
     byId('message').textContent = '';

@@ -140,7 +140,7 @@ static void fill_motions(const noh_detail_pack_desc *desc, const source *s, floa
 
 /* ---- meshes ---- */
 
-/* The worst error of a level, metres. */
+/* The worst error of a level in any pose, and what targets that it does without can add to it; metres. */
 static float level_error(const noh_mesh_header *h)
 {
     const float errors[4] = { h->level_error_rest, h->level_error_targets, h->level_error_pairs, h->level_error_motion };
@@ -148,19 +148,21 @@ static float level_error(const noh_mesh_header *h)
     for (unsigned i = 0; i < 4; i++) {
         worst = errors[i] > worst ? errors[i] : worst;
     }
-    return worst * h->world_scale;
+    return (worst + h->level_skipped) * h->world_scale;
 }
 
 /* Errors are those against the full mesh, whatever the finest level at hand is. */
-static void fill_meshes(const noh_mesh *mesh, const source *s, noh_mesh_level *levels)
+uint32_t noh_detail_mesh_levels(const noh_mesh *mesh, noh_mesh_level *levels)
 {
-    for (uint32_t k = 0; k < s->mesh_level_count; k++) {
+    const uint32_t count = mesh->header->level_count - mesh->header->level;
+    for (uint32_t k = 0; k < count; k++) {
         const noh_mesh level = noh_mesh_at_level(mesh, mesh->header->level + k);
         levels[k].vertex_count = level.header->vertex_count;
         levels[k].triangle_count = level.header->index_count / 3u;
         levels[k].influence_count = level.header->influence_count;
         levels[k].error_m = level_error(level.header);
     }
+    return count;
 }
 
 /* Where the mesh was built without levels, nothing is known of fewer influences: all are always used. */
@@ -209,9 +211,8 @@ static void fill(const noh_detail_pack_desc *desc, const source *s, parts *p, no
         for (uint32_t t = 0; t < s->target_count; t++) {
             p->reach[t] = desc->mesh->targets[t].max_displacement * desc->mesh->header->world_scale;
         }
-        fill_meshes(desc->mesh, s, p->meshes);
         detail->table.meshes = p->meshes;
-        detail->table.mesh_level_count = s->mesh_level_count;
+        detail->table.mesh_level_count = noh_detail_mesh_levels(desc->mesh, p->meshes);
     }
     if (s->skinned) {
         detail->table.influences = p->influences;

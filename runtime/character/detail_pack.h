@@ -2,7 +2,7 @@
  *
  * The converter measured what each level of a mesh is off, what fewer influences are, and what each clip is with fewer
  * joints and at lower rates; here that is brought to metres and joined for the motions of a set. Mesh levels have the
- * worst of their errors, at rest, with targets and in motion. Joint levels are those of the set's skeleton, each with
+ * worst of their errors, at rest, with targets and in motion, and what targets that they do without add. Joint levels are those of the set's skeleton, each with
  * the worst error of all its motions. */
 #ifndef NOH_CHARACTER_DETAIL_PACK_H
 #define NOH_CHARACTER_DETAIL_PACK_H
@@ -27,6 +27,12 @@ typedef struct noh_detail_pack {
     float *reach_m;         /* [the mesh's target_count] what each target moves at most at weight 1, for noh_detail_targets; NULL without
                              * a mesh */
 } noh_detail_pack;
+
+/* The levels of a mesh alone, without a motion set: for a table of your own, or one of a mesh that no clip moves.
+ * error_m is the worst of a level's errors in any pose, and what the targets that the level does without can add to it.
+ * shapes   levels[NOH_DETAIL_LEVELS_MAX]; mesh: at the finest level that is loaded
+ * returns  how many there are */
+uint32_t noh_detail_mesh_levels(const noh_mesh *mesh, noh_mesh_level *levels);
 
 /* Exact bytes; 0 for an impossible desc. */
 size_t noh_detail_pack_size(const noh_detail_pack_desc *desc);

@@ -35,7 +35,7 @@ async function openNoh() {
         draw(morphed, frame) {
             M._web_set_at_rest(morphed ? 0 : 1);
             for (let t = 0; morphed && t < count; t++) M._web_set_weight(t, weight(t, frame));
-            check(M._web_draw());
+            check(M._web_draw(0));
             wait(gl);
         },
     };

@@ -67,7 +67,7 @@ async function scrub(page) {
 }
 
 async function onePath(browser, forced) {
-    const page = await open(browser, { viewport: { width: 1000, height: 700 } }, `path=${forced}&clip=none&size=${size}`);
+    const page = await open(browser, { viewport: { width: 1000, height: 700 } }, `path=${forced}&clip=none&detail=0&size=${size}`);
     const state = await page.evaluate(() => window.noh);
     check(`${forced}: it loads`, state.ready && !state.error, state.error);
     if (!state.ready) return;
@@ -144,6 +144,41 @@ async function phone(browser) {
     await close(page, 'a phone');
 }
 
+// Which level is shown once no other fades in.
+async function settledLevel(page) {
+    await page.waitForFunction(() => !Module._web_fades());
+    return page.evaluate(() => Module._web_level());
+}
+
+async function levels(browser) {
+    const page = await open(browser, { viewport: { width: 1000, height: 700 } }, `clip=none&size=${size}`);
+    const count = await page.evaluate(() => Module._web_level_count());
+    check('detail: offered where there are levels', await page.isVisible('#detail') === count > 1);
+    if (count > 1) {
+        check('detail: all of them', await page.locator('#detail option').count() === count + 1);
+        await drawn(page, () => page.selectOption('#detail', { label: 'level 2' }));
+        check('detail: a level on request', await page.evaluate(() => Module._web_level()) === 2);
+        await keep(page, 'level.png');
+    }
+    await close(page, 'detail');
+    if (count > 1) await byPixels(browser);
+}
+
+async function byPixels(browser) {
+    const page = await open(browser, { viewport: { width: 1000, height: 700 } }, 'clip=none&size=512');
+    const wheel = async (by) => { for (let i = 0; i < 10; i++) await drawn(page, () => page.mouse.wheel(0, by)); };
+    check('detail by pixels: near, the full mesh', await settledLevel(page) === 0);
+    await page.mouse.move(300, 300);
+    await wheel(200);
+    const far = await settledLevel(page), error = await page.evaluate(() => Module._web_error_pixels());
+    check('detail by pixels: far away, a coarser one', far > 0, far);
+    check('detail by pixels: which is off by less than a pixel', error > 0 && error <= 1, error);
+    await page.screenshot({ path: path.join(out, 'detail.png') });
+    await wheel(-200);
+    check('detail by pixels: and back', await settledLevel(page) === 0);
+    await close(page, 'detail by pixels');
+}
+
 (async () => {
     const served = await serve({ '/': folder });
     address = served.address;
@@ -151,6 +186,7 @@ async function phone(browser) {
     try {
         for (const forced of forcedPaths) await onePath(browser, forced);
         await panels(browser);
+        await levels(browser);
         await phone(browser);
     } finally {
         await browser.close();

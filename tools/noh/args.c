@@ -13,6 +13,17 @@ int parse_level(double value, uint32_t *level)
     return 0;
 }
 
+int parse_levels(const char *text, uint32_t *count, int *by_error)
+{
+    double value = 1.0;
+    *by_error = strcmp(text, "auto") == 0;
+    if (!*by_error && (tool_number(text, &value) || value < 1.0 || value > NOH_LEVELS_MAX || value != (double)(uint32_t)value)) {
+        return tool_usage("--lod wants auto or a whole number from 1 to %u, not '%s'", NOH_LEVELS_MAX, text);
+    }
+    *count = (uint32_t)value;
+    return 0;
+}
+
 int tool_number(const char *text, double *value)
 {
     char *end;

@@ -2,7 +2,7 @@
  * holds one against the other. */
 #include <string.h>
 
-#include "load.h"
+#include "level_costs.h"
 
 typedef struct budget_args {
     const char *pack, *anim, *path, *accumulate, *driver;
@@ -11,47 +11,6 @@ typedef struct budget_args {
     int as_json, nominal;
     load_options load;
 } budget_args;
-
-/* One level of detail of the whole scene: what it costs to load it and all coarser ones, and what a frame does at it. */
-typedef struct level_cost {
-    uint64_t vertices, triangles, texels, pairs; /* of one copy of the scene; pairs: with all targets active */
-    uint64_t cpu_bytes, gpu_bytes;
-} level_cost;
-
-typedef struct level_costs {
-    level_cost levels[NOH_LEVELS_MAX];
-    uint32_t count;
-} level_costs;
-
-static void count_work(const scene *s, level_cost *out)
-{
-    for (uint32_t i = 0; i < s->item_count; i++) {
-        const noh_mesh_header *h = s->meshes[s->items[i].mesh].header;
-        out->vertices += h->vertex_count;
-        out->triangles += h->index_count / 3;
-        out->texels += h->touched_count;
-        out->pairs += h->pair_count;
-    }
-}
-
-static int find_level_costs(const budget_args *a, const pack_file *file, scene *s, const noh_gl_caps *caps, level_costs *out)
-{
-    int status = 0;
-    memset(out, 0, sizeof *out);
-    for (out->count = 0; out->count < scene_level_count(s, file) && !status; out->count++) {
-        level_cost *cost = &out->levels[out->count];
-        load_budget b;
-        status = scene_set_level(s, file, out->count);
-        if (!status) status = load_budget_make(&b, file, s, caps, &a->load);
-        if (!status) {
-            count_work(s, cost);
-            cost->cpu_bytes = b.cpu_bytes;
-            cost->gpu_bytes = b.gpu_bytes;
-            load_budget_free(&b);
-        }
-    }
-    return status;
-}
 
 static void print_levels(const level_costs *c)
 {
@@ -152,7 +111,7 @@ static int budget_of(const budget_args *a, const pack_file *file)
     status = scene_set_level(&s, file, a->level);
     if (!status) status = scene_open_anim(&s, file, a->anim);
     if (!status) status = load_budget_make(&b, file, &s, &caps, &a->load);
-    if (!status) status = find_level_costs(a, file, &s, &caps, &levels);
+    if (!status) status = level_costs_find(&levels, file, &s, &caps, &a->load);
     if (!status) {
         if (a->as_json) {
             json_budget(&b, &levels, caps.renderer);

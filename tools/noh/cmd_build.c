@@ -57,14 +57,8 @@ static int set_skin(const build_args *a, convert_options *o)
 
 static int set_lod(const build_args *a, convert_options *o)
 {
-    double count = 1;
     o->lod.mode = a->lod_fast ? LOD_FAST : LOD_QUALITY;
-    o->lod.by_error = a->lod && strcmp(a->lod, "auto") == 0;
-    if (a->lod && !o->lod.by_error && (tool_number(a->lod, &count) || count < 1 || count > NOH_LEVELS_MAX || count != (double)(uint32_t)count)) {
-        return tool_usage("--lod wants auto or a whole number from 1 to %u, not '%s'", NOH_LEVELS_MAX, a->lod);
-    }
-    o->lod.level_count = (uint32_t)count;
-    return 0;
+    return a->lod ? parse_levels(a->lod, &o->lod.level_count, &o->lod.by_error) : 0;
 }
 
 static int read_args(int argc, char **argv, build_args *a, convert_options *o)

@@ -36,7 +36,7 @@ static const struct verb {
       "the deformed mesh, as drawn, baked to a plain one" },
     { "verify", verb_verify, "PACK [--anim PACK] [--seed N] [--instances N] [--lod K] [--driver D] [--json]", "every path and format against the CPU reference" },
     { "view", verb_view, "PACK|MODEL [--anim PACK] [--clip NAME] [--path P] [--accumulate A] [--driver egl|native] [--size 1280x800]\n"
-      "                 [--bones] [--frames N [--screenshot OUT.png]]",
+      "                 [--bones] [--lod auto|N] [--frames N [--screenshot OUT.png]]",
       "a window: sliders, clips, events, memory and times; files dropped on it are converted and shown" },
     { "crowd", verb_crowd,
       "PACK -o OUT.png [--instances 1000] [--pixels 1] [--time 2] [--plain] [--debug lod] [--size 1280x720] [--driver D]",

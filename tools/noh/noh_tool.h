@@ -62,6 +62,8 @@ int tool_number(const char *text, double *value);
 
 /* --lod: a whole number from 0, the full mesh. Returns an exit code. */
 int parse_level(double value, uint32_t *level);
+/* --lod of what converts: auto, or how many levels with the full one. Returns an exit code. */
+int parse_levels(const char *text, uint32_t *count, int *by_error);
 
 /* ---- files ---- */
 

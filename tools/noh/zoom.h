@@ -10,25 +10,21 @@
 #ifndef NOH_TOOL_ZOOM_H
 #define NOH_TOOL_ZOOM_H
 
-#include "view.h"
+#include "scene_detail.h"
 
 #define ZOOM_TICKS 800    /* of a frame: sixty a second */
 #define ZOOM_FINE 4u      /* silhouettes are compared in pictures that are so many times larger */
 
 /* ---- where the camera is, what is chosen ---- */
 
-/* What can be left out of one item, and what is. */
-typedef struct zoom_item {
-    noh_mesh_level levels[NOH_LEVELS_MAX];
-    noh_detail_table table;
-    noh_detail detail;
-    float *reach_m; /* [target_count] */
-    uint32_t entered[2][NOH_LEVELS_MAX]; /* how often each level, on the way out and on the way in */
-} zoom_item;
+/* How often an item entered each level, on the way out and on the way in. */
+typedef struct zoom_entries {
+    uint32_t entered[2][NOH_LEVELS_MAX];
+} zoom_entries;
 
 typedef struct zoom_path {
-    zoom_item *items;  /* [item_count], of a scene at its finest level */
-    uint32_t item_count;
+    scene_detail detail;
+    zoom_entries *entries; /* [detail.item_count] */
     noh_detail_settings settings;
     orbit at;          /* its distance is the frame's */
     double near, far;  /* from the camera to the middle of the scene */

@@ -12,45 +12,6 @@
 #define SIDE_LEAST 16.0 /* pixels */
 #define SIDE_MOST (8192.0 / ZOOM_FINE)
 
-/* ---- what can be left out ---- */
-
-/* The certified error in all poses, and what targets that the level does without can add to it; metres. */
-static float level_error(const noh_mesh_header *h)
-{
-    float worst = h->level_error_rest;
-    const float others[3] = { h->level_error_targets, h->level_error_pairs, h->level_error_motion };
-    for (int i = 0; i < 3; i++) {
-        worst = others[i] > worst ? others[i] : worst;
-    }
-    return (worst + h->level_skipped) * h->world_scale;
-}
-
-static void fill_levels(zoom_item *item, const noh_mesh *mesh)
-{
-    item->table.mesh_level_count = mesh->header->level_count;
-    item->table.meshes = item->levels;
-    for (uint32_t k = 0; k < mesh->header->level_count; k++) {
-        const noh_mesh_header *h = noh_mesh_at_level(mesh, k).header;
-        noh_mesh_level *level = &item->levels[k];
-        level->vertex_count = h->vertex_count;
-        level->triangle_count = h->index_count / 3u;
-        level->influence_count = h->influence_count;
-        level->error_m = level_error(h);
-        level->error_m = k && level->error_m < level[-1].error_m ? level[-1].error_m : level->error_m;
-    }
-}
-
-static int fill_item(zoom_item *item, const noh_mesh *mesh)
-{
-    const uint32_t targets = mesh->header->target_count;
-    fill_levels(item, mesh);
-    item->reach_m = calloc(targets + 1u, sizeof *item->reach_m);
-    for (uint32_t t = 0; item->reach_m && t < targets; t++) {
-        item->reach_m[t] = mesh->targets[t].max_displacement * mesh->header->world_scale;
-    }
-    return !item->reach_m;
-}
-
 /* ---- the way ---- */
 
 /* Pixels per metre at which a level of this error takes the whole share of the meshes. */
@@ -63,8 +24,8 @@ static double scale_of_share(const zoom_path *p, float error_m)
 static int find_scales(const zoom_path *p, double *near, double *far)
 {
     *near = *far = 0.0;
-    for (uint32_t i = 0; i < p->item_count; i++) {
-        const noh_detail_table *t = &p->items[i].table;
+    for (uint32_t i = 0; i < p->detail.item_count; i++) {
+        const noh_detail_table *t = &p->detail.items[i].table;
         if (t->mesh_level_count > 1) {
             const double first = scale_of_share(p, t->meshes[1].error_m) * BEYOND_NEAR;
             const double last = scale_of_share(p, t->meshes[t->mesh_level_count - 1u].error_m) * (1.0 - (double)p->settings.hysteresis) / BEYOND_FAR;
@@ -102,25 +63,24 @@ int zoom_path_open(zoom_path *p, const pack_file *file, const scene *s, const no
                    uint32_t side, uint32_t frames)
 {
     const bounds box = scene_bounds(s, file, 0);
-    int failed = 0;
+    int status;
     memset(p, 0, sizeof *p);
     p->settings = *settings;
     p->at = orbit_fit(&box, 1.0);
     p->side = side;
     p->frames = frames;
-    p->items = calloc(s->item_count + 1u, sizeof *p->items);
-    for (; p->items && p->item_count < s->item_count && !failed; p->item_count++) {
-        failed = fill_item(&p->items[p->item_count], &s->meshes[s->items[p->item_count].mesh]);
+    status = scene_detail_open(&p->detail, file, s);
+    if (status) {
+        return status;
     }
-    return !p->items || failed ? tool_fail(file->path, "out of memory") : plan(p, file->path, near, far);
+    p->entries = calloc(s->item_count + 1u, sizeof *p->entries);
+    return p->entries ? plan(p, file->path, near, far) : tool_fail(file->path, "out of memory");
 }
 
 void zoom_path_close(zoom_path *p)
 {
-    for (uint32_t i = 0; i < p->item_count; i++) {
-        free(p->items[i].reach_m);
-    }
-    free(p->items);
+    scene_detail_close(&p->detail);
+    free(p->entries);
     memset(p, 0, sizeof *p);
 }
 
@@ -137,20 +97,20 @@ float zoom_path_place(zoom_path *p, uint32_t frame, double factor)
 
 void zoom_path_choose(zoom_path *p, uint32_t frame, float pixels_per_metre)
 {
-    for (uint32_t i = 0; i < p->item_count; i++) {
-        zoom_item *item = &p->items[i];
-        const uint8_t before = item->detail.mesh;
-        const int started = item->detail.started;
-        noh_detail_choose(&item->detail, &item->table, &p->settings, pixels_per_metre, NULL, (int64_t)ZOOM_TICKS * frame);
-        item->entered[way_of(p, frame)][item->detail.mesh] += started && item->detail.mesh != before;
+    for (uint32_t i = 0; i < p->detail.item_count; i++) {
+        const noh_detail *now = &p->detail.items[i].state;
+        const uint8_t before = now->mesh;
+        const int started = now->started;
+        scene_detail_choose(&p->detail, i, &p->settings, pixels_per_metre, (int64_t)ZOOM_TICKS * frame);
+        p->entries[i].entered[way_of(p, frame)][now->mesh] += started && now->mesh != before;
     }
 }
 
 uint32_t zoom_path_most_entered(const zoom_path *p)
 {
     uint32_t most = 0;
-    for (uint32_t i = 0; i < p->item_count * 2u * NOH_LEVELS_MAX; i++) {
-        const uint32_t times = p->items[i / (2u * NOH_LEVELS_MAX)].entered[i / NOH_LEVELS_MAX % 2u][i % NOH_LEVELS_MAX];
+    for (uint32_t i = 0; i < p->detail.item_count * 2u * NOH_LEVELS_MAX; i++) {
+        const uint32_t times = p->entries[i / (2u * NOH_LEVELS_MAX)].entered[i / NOH_LEVELS_MAX % 2u][i % NOH_LEVELS_MAX];
         most = times > most ? times : most;
     }
     return most;
@@ -159,8 +119,8 @@ uint32_t zoom_path_most_entered(const zoom_path *p)
 uint32_t zoom_path_entered(const zoom_path *p, int way)
 {
     uint32_t count = 0;
-    for (uint32_t i = 0; i < p->item_count * NOH_LEVELS_MAX; i++) {
-        count += p->items[i / NOH_LEVELS_MAX].entered[way][i % NOH_LEVELS_MAX] != 0;
+    for (uint32_t i = 0; i < p->detail.item_count * NOH_LEVELS_MAX; i++) {
+        count += p->entries[i / NOH_LEVELS_MAX].entered[way][i % NOH_LEVELS_MAX] != 0;
     }
     return count;
 }
@@ -169,9 +129,9 @@ uint32_t zoom_path_entered(const zoom_path *p, int way)
 
 static void start_again(zoom_path *p)
 {
-    for (uint32_t i = 0; i < p->item_count; i++) {
-        memset(&p->items[i].detail, 0, sizeof p->items[i].detail);
-        memset(p->items[i].entered, 0, sizeof p->items[i].entered);
+    for (uint32_t i = 0; i < p->detail.item_count; i++) {
+        memset(&p->detail.items[i].state, 0, sizeof p->detail.items[i].state);
+        memset(&p->entries[i], 0, sizeof p->entries[i]);
     }
 }
 

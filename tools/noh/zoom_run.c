@@ -22,7 +22,7 @@ static int open_pictures(zoom *z)
     for (int i = 0; i < 2; i++) {
         failed = failed || picture_open(&z->seen_full[i], side) || picture_open(&z->seen_kept[i], side);
     }
-    z->before = calloc(z->path.item_count + 1u, sizeof *z->before);
+    z->before = calloc(z->path.detail.item_count + 1u, sizeof *z->before);
     failed = failed || !z->before;
     return failed ? tool_fail(z->file->path, "out of memory for pictures of %ux%u", side, side) : 0;
 }
@@ -77,12 +77,8 @@ static int choose_weights(zoom *z, uint32_t item)
     const uint32_t count = z->full->meshes[z->full->items[item].mesh].header->target_count;
     const float *weights = z->full->items[item].weights;
     float kept[NOH_TARGETS_MAX];
-    uint32_t left_out = 0;
+    const uint32_t left_out = scene_detail_targets(&z->path.detail, item, &z->path.settings, weights, count, kept);
     int changed;
-    noh_detail_targets(&z->path.items[item].detail, &z->path.settings, weights, z->path.items[item].reach_m, count, kept);
-    for (uint32_t t = 0; t < count; t++) {
-        left_out += kept[t] != weights[t];
-    }
     z->worst.targets_left_out = left_out > z->worst.targets_left_out ? left_out : z->worst.targets_left_out;
     changed = memcmp(kept, z->kept->items[item].weights, sizeof *kept * count) != 0;
     memcpy(z->kept->items[item].weights, kept, sizeof *kept * count);
@@ -92,7 +88,7 @@ static int choose_weights(zoom *z, uint32_t item)
 /* What is drawn now, and what was before. */
 static void swap_details(zoom *z)
 {
-    for (uint32_t i = 0; i < z->path.item_count; i++) {
+    for (uint32_t i = 0; i < z->path.detail.item_count; i++) {
         const load_detail swap = z->kept_load.details[i];
         z->kept_load.details[i] = z->before[i];
         z->before[i] = swap;
@@ -107,8 +103,8 @@ static int choose(zoom *z, uint32_t frame, float scale, const noh_gl_camera *cam
     *changed = 0;
     *full = 1;
     zoom_path_choose(&z->path, frame, scale);
-    for (uint32_t i = 0; i < z->path.item_count; i++) {
-        const noh_detail *detail = &z->path.items[i].detail;
+    for (uint32_t i = 0; i < z->path.detail.item_count; i++) {
+        const noh_detail *detail = &z->path.detail.items[i].state;
         const load_detail *now = &z->kept_load.details[i];
         z->before[i] = *now;
         load_set_detail(&z->kept_load, i, detail, (int64_t)ZOOM_TICKS * frame);
@@ -129,7 +125,7 @@ static int choose(zoom *z, uint32_t frame, float scale, const noh_gl_camera *cam
 static int measure_positions(zoom *z, float scale)
 {
     int status = 0;
-    for (uint32_t i = 0; i < z->path.item_count; i++) {
+    for (uint32_t i = 0; i < z->path.detail.item_count; i++) {
         const load_detail *d = &z->kept_load.details[i];
         for (uint32_t k = 0; k < d->part_count && !status; k++) {
             double metres = 0.0;

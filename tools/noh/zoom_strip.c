@@ -45,8 +45,8 @@ static int draw_colors(zoom_strip *s, zoom *z, const noh_gl_camera *camera, uint
 {
     zoom_picture *p = &s->pictures[2][s->count];
     int status;
-    for (uint32_t i = 0; i < z->path.item_count; i++) {
-        load_set_detail(&s->colors, i, &z->path.items[i].detail, (int64_t)ZOOM_TICKS * frame);
+    for (uint32_t i = 0; i < z->path.detail.item_count; i++) {
+        load_set_detail(&s->colors, i, &z->path.detail.items[i].state, (int64_t)ZOOM_TICKS * frame);
     }
     p->rgba = malloc((size_t)z->seen.size * z->seen.size * 4);
     status = p->rgba ? load_update(&s->colors, NULL) : tool_fail("zoom", "out of memory");

@@ -4,7 +4,7 @@
 #include "view/view_window.h"
 
 typedef struct view_args {
-    const char *path, *accumulate, *driver;
+    const char *path, *accumulate, *driver, *lod;
     double frames;
     uint32_t size[2];
     view_run run;
@@ -38,11 +38,13 @@ static int read_args(int argc, char **argv, view_args *a)
         { "--path", OPTION_TEXT, &a->path },                 { "--accumulate", OPTION_TEXT, &a->accumulate },
         { "--driver", OPTION_TEXT, &a->driver },             { "--frames", OPTION_NUMBER, &a->frames },
         { "--screenshot", OPTION_TEXT, &a->run.screenshot }, { "--size", OPTION_SIZE, a->size },
-        { "--bones", OPTION_FLAG, &a->run.desc.show_bones }
+        { "--bones", OPTION_FLAG, &a->run.desc.show_bones }, { "--lod", OPTION_TEXT, &a->lod }
     };
     int count, status = tool_options(argc, argv, options, sizeof options / sizeof options[0], &a->run.desc.path, 1, &count);
     if (!status) status = parse_path(a->path, &a->run.desc.load.path);
     if (!status) status = parse_accumulate(a->accumulate, &a->run.desc.load.accumulate);
+    if (!status && a->lod) status = parse_levels(a->lod, &a->run.desc.lod.level_count, &a->run.desc.lod.by_error);
+    a->run.desc.lod.mode = LOD_FAST; /* conversion stays quick */
     return status ? status : check_args(a);
 }
 

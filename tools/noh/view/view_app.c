@@ -34,6 +34,7 @@ int view_app_open(view_app *a, const view_model_desc *desc)
     a->show_panels = a->show_layers = 1;
     a->speed = 1.0f;
     a->layer_gain = 1.0f;
+    a->detail.settings.pixels = 1.0f;
     a->screen.width = desc->width;
     a->screen.height = desc->height;
     a->window_width = (float)desc->width;
@@ -267,13 +268,21 @@ int view_app_frame(view_app *a, float scale, double seconds)
     time_frame(&a->times);
     animate(a, seconds);
     status = fit_canvas(a, &x, &y);
-    if (!status) status = draw(a);
+    if (!status) {
+        view_detail_frame(&a->detail, a->model, &a->orbit, seconds);
+        status = draw(a);
+    }
     if (status) {
         return status;
     }
     draw_layers(a);
     view_screen_picture(&a->screen, &a->model->stage.canvas, x, y);
     return 0;
+}
+
+int view_app_moves(const view_app *a)
+{
+    return a->detail.fade < 1.0f || (a->playing && view_plays(a->model));
 }
 
 void view_app_after(view_app *a)

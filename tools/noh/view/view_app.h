@@ -4,6 +4,7 @@
  *   view_app_lost, view_app_restore   everything on the GPU again, after a lost context
  *   view_app_show        a pack or a model instead of what is shown
  *   view_app_frame       time moves on, the figure is drawn into the window
+ *   view_app_moves       whether it changes by itself
  *   view_app_after       what the panels asked for is done
  *   view_turn, view_pan, view_zoom, view_frame_all   the camera
  *   view_play            a clip
@@ -13,7 +14,7 @@
 #define NOH_TOOL_VIEW_APP_H
 
 #include "gl/gl_timer.h"
-#include "view/view_model.h"
+#include "view/view_detail.h"
 #include "view/view_screen.h"
 
 #define VIEW_LINES 64
@@ -46,6 +47,7 @@ typedef struct view_app {
     view_model *model; /* never NULL after view_app_open */
     view_model_desc desc; /* how it was opened; path and anim are the caller's */
     orbit orbit;
+    view_detail detail;
     float window_width, window_height; /* points */
     float scale;                       /* pixels in a point */
     int show_panels, show_layers, playing;
@@ -73,6 +75,8 @@ int view_app_restore(view_app *a);
  * Prints an error and returns an exit code; 0 on success. */
 int view_app_frame(view_app *a, float scale, double seconds);
 void view_app_after(view_app *a);
+/* Clips play, or a level of detail fades into another: the next frame is another picture. */
+int view_app_moves(const view_app *a);
 
 /* The part of the window that the figure has: left, top, right, bottom in points. */
 void view_app_stage(const view_app *a, float box[4]);

@@ -9,6 +9,8 @@
 // GL's name of a texture as ImGui keeps it.
 ImTextureID imgui_texture(GLuint name);
 
+const ImVec4 amber(0.93f, 0.70f, 0.36f, 1.0f), red(0.95f, 0.45f, 0.38f, 1.0f);
+
 // Prints an error and returns an exit code; 0 on success.
 int imgui_open();
 void imgui_close();
@@ -16,5 +18,8 @@ void imgui_close();
 // Between the two: the panels.
 void imgui_begin(view_app *a, const view_input *input, double seconds);
 void imgui_end(view_app *a);
+
+// A section of the right panel, for packs with levels of detail.
+void detail_section(view_app *a);
 
 #endif

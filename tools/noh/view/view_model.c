@@ -20,7 +20,7 @@ static int is_model(const char *path)
     return 0;
 }
 
-static int convert_model(view_model *m)
+static int convert_model(view_model *m, const lod_settings *levels)
 {
     const char *inputs[1];
     convert_options options;
@@ -32,6 +32,7 @@ static int convert_model(view_model *m)
     options.motion.clip.error_cm = 0.01;
     options.motion.clip.shell_cm = 3.0;
     options.motion.unit_cm = 1.0;
+    options.lod = *levels;
     if (convert_files(inputs, 1, &options, &m->converted, &failure)) {
         return failure.error.where[0] ? tool_fail(m->path, "%s (%s)", failure.error.what, failure.error.where)
                                       : tool_fail(m->path, "%s", failure.error.what);
@@ -106,15 +107,19 @@ static int list_clips(view_model *m)
 
 /* ---- opening ---- */
 
-static int open_stage(view_model *m, gpu *g, const view_model_desc *desc, stage *st, load_budget *budget)
+static int open_stage(view_model *m, gpu *g, const view_model_desc *desc, stage *st, load_budget *budget, level_costs *costs)
 {
-    int show_bones = stage_shows_bones(&m->scene, &m->file, desc->show_bones), status;
+    int show_bones = stage_shows_bones(&m->scene, &m->file, desc->show_bones), status = 0;
+    load_options options = desc->load;
     memset(budget, 0, sizeof *budget);
+    memset(costs, 0, sizeof *costs);
     if (show_bones < 0) {
         return EXIT_FAILED;
     }
-    status = show_bones ? 0 : load_budget_make(budget, &m->file, &m->scene, &g->caps, &desc->load);
-    if (!status) status = stage_open(st, g, &m->file, &m->scene, &desc->load, show_bones, desc->width, desc->height);
+    options.fades = scene_level_count(&m->scene, &m->file) > 1u;
+    if (!show_bones) status = load_budget_make(budget, &m->file, &m->scene, &g->caps, &options);
+    if (!show_bones && !status) status = level_costs_find(costs, &m->file, &m->scene, &g->caps, &options);
+    if (!status) status = stage_open(st, g, &m->file, &m->scene, &options, show_bones, desc->width, desc->height);
     if (status) {
         load_budget_free(budget);
     }
@@ -128,7 +133,8 @@ static int open_scene(view_model *m, gpu *g, const view_model_desc *desc)
     if (!status) status = scene_open_players(&m->scene, &m->file, 1);
     if (!status) status = list_targets(m);
     if (!status) status = list_clips(m);
-    if (!status) status = open_stage(m, g, desc, &m->stage, &m->budget);
+    if (!status) status = scene_detail_open(&m->detail, &m->file, &m->scene);
+    if (!status) status = open_stage(m, g, desc, &m->stage, &m->budget, &m->costs);
     return status;
 }
 
@@ -141,7 +147,7 @@ int view_model_open(gpu *g, const view_model_desc *desc, view_model **out)
         return tool_fail(desc->path, m ? "the path is too long" : "out of memory");
     }
     strcpy(m->path, desc->path);
-    status = is_model(m->path) ? convert_model(m) : pack_file_open(&m->file, m->path);
+    status = is_model(m->path) ? convert_model(m, &desc->lod) : pack_file_open(&m->file, m->path);
     if (!status) status = open_scene(m, g, desc);
     if (status) {
         view_model_close(m);
@@ -158,6 +164,7 @@ void view_model_close(view_model *m)
     }
     stage_close(&m->stage);
     load_budget_free(&m->budget);
+    scene_detail_close(&m->detail);
     scene_free(&m->scene);
     if (m->file.file.data) {
         pack_file_close(&m->file);
@@ -173,7 +180,8 @@ int view_model_reload(view_model *m, gpu *g, const view_model_desc *desc)
 {
     stage st;
     load_budget budget;
-    int status = open_stage(m, g, desc, &st, &budget);
+    level_costs costs;
+    int status = open_stage(m, g, desc, &st, &budget, &costs);
     if (status) {
         return status;
     }
@@ -181,6 +189,7 @@ int view_model_reload(view_model *m, gpu *g, const view_model_desc *desc)
     load_budget_free(&m->budget);
     m->stage = st;
     m->budget = budget;
+    m->costs = costs;
     return 0;
 }
 

@@ -6,7 +6,10 @@
 #ifndef NOH_TOOL_VIEW_MODEL_H
 #define NOH_TOOL_VIEW_MODEL_H
 
+#include "convert/lod/lod_levels.h"
 #include "convert/pack/byte_buffer.h"
+#include "level_costs.h"
+#include "scene_detail.h"
 #include "stage.h"
 
 /* A slider: all targets of one name. */
@@ -35,6 +38,8 @@ typedef struct view_model {
     scene scene;
     stage stage;
     load_budget budget; /* parts NULL where bones are shown: nothing is loaded then */
+    level_costs costs; /* count 0 where bones are shown, 1 in a pack without levels of detail */
+    scene_detail detail;
     float delta_max; /* how far one target moves a vertex at most, model units; over 0 */
     view_target *targets;
     view_weight *weights;
@@ -45,7 +50,8 @@ typedef struct view_model {
 typedef struct view_model_desc {
     const char *path; /* a pack, or .gltf, .glb, .bvh, .rcl */
     const char *anim; /* a pack whose clips are played instead; NULL: none */
-    load_options load;
+    lod_settings lod; /* levels of detail that a model is converted with; level_count 0: none. A pack has its own */
+    load_options load; /* `fades` is the model's to say */
     int show_bones;
     uint32_t width, height; /* of the canvas */
 } view_model_desc;

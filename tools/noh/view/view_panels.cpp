@@ -7,8 +7,6 @@
 
 namespace {
 
-const ImVec4 amber(0.93f, 0.70f, 0.36f, 1.0f), red(0.95f, 0.45f, 0.38f, 1.0f);
-
 ImGuiTextFilter target_filter;
 bool mouse_held;
 
@@ -199,7 +197,7 @@ void accumulate_combo(view_app *a)
 
 void drawing_section(view_app *a)
 {
-    static const char *const views[] = { "lit", "position", "normal", "tangent" };
+    static const char *const views[] = { "lit", "position", "normal", "tangent", "lod" };
     int view = static_cast<int>(a->desc.load.view);
     bool bones = a->model->stage.bones != nullptr;
     if (!ImGui::CollapsingHeader("Drawing", ImGuiTreeNodeFlags_DefaultOpen)) {
@@ -208,7 +206,7 @@ void drawing_section(view_app *a)
     ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x - 110.0f);
     path_combo(a);
     accumulate_combo(a);
-    if (ImGui::Combo("view", &view, views, 4)) {
+    if (ImGui::Combo("view", &view, views, 5)) {
         a->wish.load.view = static_cast<noh_debug_view>(view);
         a->wants_reload = 1;
     }
@@ -255,7 +253,7 @@ void times_section(view_app *a)
     }
     ImGui::PlotLines("##frames", t.frame_ms, VIEW_HISTORY, static_cast<int>(t.next), nullptr, 0.0f, FLT_MAX,
                      ImVec2(ImGui::GetContentRegionAvail().x, 36.0f));
-    ImGui::TextDisabled("last change: %u targets, %u texels", t.stats.targets, t.stats.texels);
+    ImGui::TextDisabled("last change: %u targets, %u texels, %u pairs", t.stats.targets, t.stats.texels, t.stats.pairs);
 }
 
 void memory_row(const char *name, uint64_t cpu, uint64_t gpu)
@@ -290,6 +288,12 @@ void memory_section(view_app *a)
             }
         }
         memory_row("sum", b.cpu_bytes, b.gpu_bytes);
+        if (a->model->costs.count > 1) {
+            const level_cost &cost = a->model->costs.levels[a->detail.finest];
+            char name[32];
+            snprintf(name, sizeof name, "from level %u on", a->detail.finest);
+            memory_row(name, cost.cpu_bytes, cost.gpu_bytes);
+        }
         memory_row("on the GPU now", 0, noh_gl_ledger_bytes(&a->gpu.ledger));
         memory_row("the pack", b.pack_bytes, 0);
         ImGui::EndTable();
@@ -326,6 +330,7 @@ void right_panel(view_app *a)
 {
     begin_panel("figure", a->window_width - VIEW_RIGHT, 0.0f, VIEW_RIGHT, a->window_height);
     clips_section(a);
+    detail_section(a);
     drawing_section(a);
     times_section(a);
     layers_section(a);
@@ -343,7 +348,7 @@ void events_panel(view_app *a)
         ImGui::TextWrapped("%s", a->message);
         ImGui::PopStyleColor();
     } else {
-        ImGui::TextDisabled("space play  drag turn  right drag move  wheel zoom  F fit  Tab panels  F11 F12 save");
+        ImGui::TextDisabled("space play  drag turn, right move  wheel zoom  F fit  L detail  Tab hide  F11 F12 save");
     }
     ImGui::Separator();
     ImGui::BeginChild("lines");

@@ -99,6 +99,7 @@ static void on_command(view_window *w, int key)
     switch (key) {
     case GLFW_KEY_SPACE: view_toggle_play(a); break;
     case GLFW_KEY_F: view_frame_all(a); break;
+    case GLFW_KEY_L: view_detail_next(&a->detail, a->model); break;
     case GLFW_KEY_TAB: a->show_panels = !a->show_panels; break;
     case GLFW_KEY_F10: w->lose = 1; break;
     case GLFW_KEY_F11: w->save_in[0] = SETTLE_FRAMES; break;
@@ -208,7 +209,7 @@ static void save_when_asked(view_window *w)
 /* A picture in which nothing moves is drawn again only when something happens. */
 static void wait_events(view_window *w, const view_run *run)
 {
-    const int moving = run->frames || (w->app.playing && view_plays(w->app.model));
+    const int moving = run->frames || view_app_moves(&w->app);
     if (moving || w->awake > 0) {
         glfwPollEvents();
     } else {

@@ -1,0 +1,37 @@
+/* detail.h: how much detail each item of a scene is shown with: one level, or what the error in pixels allows. */
+#ifndef NOH_PLATFORM_WEB_DETAIL_H
+#define NOH_PLATFORM_WEB_DETAIL_H
+
+#include "scene.h"
+
+#define WEB_DETAIL_AUTO (-1)
+
+typedef struct web_detail {
+    noh_mesh_level levels[WEB_MESHES_MAX][NOH_DETAIL_LEVELS_MAX];
+    noh_detail_table tables[WEB_MESHES_MAX];
+    noh_detail states[WEB_ITEMS_MAX];
+    float kept[NOH_TARGETS_MAX], reach_m[NOH_TARGETS_MAX]; /* of the item at hand */
+    uint32_t level_count; /* the most that any mesh has */
+    int level;            /* that is shown, 0 the full mesh; WEB_DETAIL_AUTO: what the settings allow */
+    noh_detail_settings settings;
+    int64_t clock;        /* ticks, for fades */
+} web_detail;
+
+/* Of a scene that was listed. Packs without levels are always shown in full. */
+void web_detail_open(web_detail *detail, const web_scene *scene);
+
+/* Choose for an item as it stands. Before web_detail_weights.
+ * shapes  matrices[joints of its skin][12], NULL: rigid; height of the canvas in pixels */
+void web_detail_choose(web_detail *detail, const web_scene *scene, uint32_t item, const float *matrices, const noh_gl_camera *camera,
+                       uint32_t height);
+
+/* The item's weights without those of targets that cannot be seen: to be read at once. */
+const float *web_detail_weights(web_detail *detail, const web_scene *scene, uint32_t item);
+
+/* What to draw of the item: one part, or two while a level fades into another. Returns how many. */
+uint32_t web_detail_parts(const web_detail *detail, uint32_t item, noh_gl_detail parts[2]);
+
+/* The finest level that an item is drawn at, for noh_gl_morph_level. */
+uint32_t web_detail_finest(const web_detail *detail, uint32_t item);
+
+#endif

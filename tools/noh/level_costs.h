@@ -1,0 +1,21 @@
+/* level_costs.h: what each level of detail of a scene costs. */
+#ifndef NOH_TOOL_LEVEL_COSTS_H
+#define NOH_TOOL_LEVEL_COSTS_H
+
+#include "load.h"
+
+/* One level of detail of the whole scene: what it costs to load it and all coarser ones, and what a frame does at it. */
+typedef struct level_cost {
+    uint64_t vertices, triangles, texels, pairs; /* of one copy of the scene; pairs: with all targets active */
+    uint64_t cpu_bytes, gpu_bytes;
+} level_cost;
+
+typedef struct level_costs {
+    level_cost levels[NOH_LEVELS_MAX];
+    uint32_t count;
+} level_costs;
+
+/* Leaves the scene at its full level. Prints an error and returns an exit code; 0 on success. */
+int level_costs_find(level_costs *out, const pack_file *file, scene *s, const noh_gl_caps *caps, const load_options *o);
+
+#endif

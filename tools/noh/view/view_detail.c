@@ -1,0 +1,77 @@
+#include "view/view_detail.h"
+
+/* ---- the switch ---- */
+
+void view_detail_level(view_detail *d, uint32_t level)
+{
+    d->by_pixels = 0;
+    d->level = level;
+}
+
+void view_detail_pixels(view_detail *d)
+{
+    d->by_pixels = 1;
+}
+
+void view_detail_next(view_detail *d, const view_model *m)
+{
+    if (m->costs.count < 2) {
+        return;
+    }
+    if (d->by_pixels) {
+        view_detail_level(d, 0);
+    } else if (d->level + 1u < m->costs.count) {
+        view_detail_level(d, d->level + 1u);
+    } else {
+        view_detail_pixels(d);
+    }
+}
+
+/* ---- a frame ---- */
+
+static void choose_item(view_detail *d, view_model *m, uint32_t item, float scale)
+{
+    float *weights = m->scene.items[item].weights;
+    if (!d->by_pixels) {
+        scene_detail_fix(&m->detail, item, d->level, scale);
+        return;
+    }
+    scene_detail_choose(&m->detail, item, &d->settings, scale, d->clock);
+    d->left_out += scene_detail_targets(&m->detail, item, &d->settings, weights, m->scene.meshes[m->scene.items[item].mesh].header->target_count, weights);
+}
+
+static void note_item(view_detail *d, const noh_detail *state)
+{
+    const float fade = noh_detail_fade(state, d->clock), error_px = noh_detail_error_pixels(state);
+    d->finest = state->mesh < d->finest ? state->mesh : d->finest;
+    d->coarsest = state->mesh > d->coarsest ? state->mesh : d->coarsest;
+    d->fade = fade < d->fade ? fade : d->fade;
+    d->error_px = error_px > d->error_px ? error_px : d->error_px;
+}
+
+void view_detail_frame(view_detail *d, view_model *m, const orbit *at, double seconds)
+{
+    d->clock += (int64_t)(seconds * NOH_TICKS_PER_SECOND);
+    d->finest = NOH_LEVELS_MAX;
+    d->coarsest = d->left_out = 0;
+    d->fade = 1.0f;
+    d->error_px = 0.0f;
+    for (uint32_t i = 0; !m->stage.bones && m->costs.count > 1 && i < m->detail.item_count; i++) {
+        choose_item(d, m, i, scene_detail_scale(&m->detail, &m->file, &m->scene, i, at, m->stage.canvas.height));
+        note_item(d, &m->detail.items[i].state);
+        load_set_detail(&m->stage.load, i, &m->detail.items[i].state, d->clock);
+    }
+}
+
+void view_detail_text(const view_detail *d, char *text, size_t bytes)
+{
+    char fade[32] = "";
+    if (d->fade < 1.0f) {
+        snprintf(fade, sizeof fade, ", faded in by %.0f %%", 100.0 * (double)d->fade);
+    }
+    if (d->finest == d->coarsest) {
+        snprintf(text, bytes, "level %u%s", d->finest, fade);
+    } else {
+        snprintf(text, bytes, "levels %u to %u%s", d->finest, d->coarsest, fade);
+    }
+}
