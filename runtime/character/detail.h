@@ -54,7 +54,7 @@ typedef struct noh_detail_table {
     uint32_t joint_level_count;
     uint32_t influence_level_count;
     float clip_error_m;             /* of compressed motion, always there; counted in the share of time */
-    const float *rate_error_m;      /* [motion_count][NOH_RATE_COUNT] by noh_time_lod_measure; NULL: always full rate */
+    const float *rate_error_m;      /* [motion_count][NOH_RATE_COUNT] by noh_time_lod_measure or noh_time_points_measure; NULL: always full rate */
 } noh_detail_table;
 
 typedef enum noh_detail_kind {

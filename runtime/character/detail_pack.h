@@ -2,8 +2,8 @@
  *
  * The converter measured what each level of a mesh is off, what fewer influences are, and what each clip is with fewer
  * joints and at lower rates; here that is brought to metres and joined for the motions of a set. Mesh levels have the
- * worst of their errors, at rest, with targets and in motion, and what targets that they do without add. Joint levels are those of the set's skeleton, each with
- * the worst error of all its motions. */
+ * worst of their errors, at rest, with targets and in motion, and what the targets that they do without move. Joint levels
+ * are those of the set's skeleton, each with the worst error of all its motions. */
 #ifndef NOH_CHARACTER_DETAIL_PACK_H
 #define NOH_CHARACTER_DETAIL_PACK_H
 
@@ -34,13 +34,16 @@ typedef struct noh_detail_pack {
  * returns  how many there are */
 uint32_t noh_detail_mesh_levels(const noh_mesh *mesh, noh_mesh_level *levels);
 
-/* Exact bytes; 0 for an impossible desc. */
+/* Exact bytes; 0 for an impossible desc. Of the set only anim.motion_count and skeleton.joint_count are read: before there
+ * is one, zeros with the counts of noh_motion_set_needs.shape do. */
 size_t noh_detail_pack_size(const noh_detail_pack_desc *desc);
 
 /* Fill a table.
  * A clip that was built without a mesh has the errors of points at a shell distance. With a mesh they are
  * multiplied by how much farther its margins reach: safe, but several times too high. Build clips together with
  * their mesh (noh build BODY MOVES, also with --only anim), or measure them when you load (joint_lod.h, time_lod.h).
+ * Rates of a clip that was built with its mesh are what some hundred of its vertices are off, exactly; what lies between
+ * them may be a little more (noh_time_points_measure).
  * Rates are for sets that take out what root motion there is: the leap of a loop that travels is not counted.
  * Where clips were built for a skeleton of other proportions, levels may differ: a level that no level of a clip
  * vouches for is left out, and those after it.

@@ -63,7 +63,7 @@ static int bad_counts(const noh_skeleton *s, const uint32_t *counts, uint32_t le
 noh_result noh_joint_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t motion, const uint32_t *counts,
                                  uint32_t level_count, float *error_m, noh_error *error)
 {
-    const char *what = noh_probe_fault(probe, motion);
+    const char *what = probe->joint_reach_m ? noh_probe_fault(probe, motion) : "probe";
     noh_arena arena = noh_arena_over(memory, bytes);
     uint32_t duration;
     work w;

@@ -6,7 +6,7 @@
 
 const char *noh_probe_fault(const noh_time_probe *p, uint32_t motion)
 {
-    if (!p->set || !p->skeleton || !p->joint_reach_m || p->skeleton->joint_count != p->set->joint_count) return "probe";
+    if (!p->set || !p->skeleton || p->skeleton->joint_count != p->set->joint_count) return "probe";
     if (motion >= p->set->motion_count) return "motion";
     return NULL;
 }

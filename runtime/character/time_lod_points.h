@@ -24,6 +24,7 @@ size_t noh_time_points_size(const noh_time_probe *probe);
 
 /* The largest that a point is off when a motion, played in its own loop mode, is posed at each rate: over intervals
  * that begin every 400 ticks, every 200 ticks within each; and what the probe's floats add. joint_reach_m is not read.
+ * Where the probe travels, a loop goes on from where it came, as noh_time_lod_measure has it.
  * For a converter, or when a set is loaded: ten seconds of 31 joints and 128 points take about 0.2 s.
  * shapes  error_m[NOH_RATE_COUNT]; that of the full rate is 0
  * memory  16-byte aligned

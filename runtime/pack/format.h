@@ -270,11 +270,14 @@ typedef struct noh_motion_header {
                                    * are sampled and the others go where their parents go; of level 0 it is 0; not falling */
     uint32_t clip_bytes;
     uint32_t clip_offset;
-    float rate_error[NOH_MOTION_RATES]; /* by noh_time_lod_measure of a probe that travels: a loop goes on from where it came, as
-                                         * with root motion, its leap back is not counted; the first is 0; not falling */
-    float error_shell;       /* 0: the errors hold for the vertices of the meshes that the clip was built with: of each joint the
-                              * farthest that it moves with a weight of 0.05 or more. Else there were none: they hold for points
-                              * at this distance from each joint (--shell-cm), in the skeleton's unit */
+    float rate_error[NOH_MOTION_RATES]; /* of a probe that travels: a loop goes on from where it came, as with root motion, its leap
+                                         * back is not counted; the first is 0; not falling */
+    float error_shell;       /* 0: the errors hold for the meshes that the clip was built with. joint_errors are bounds, for all that
+                              * is as near to a joint as the farthest vertex that it moves with a weight of 0.05 or more
+                              * (noh_joint_lod_measure). rate_error is exact for some hundred vertices, the farthest of each joint
+                              * among them, and no bound on what lies between these (noh_time_points_measure).
+                              * Else there were none: both are bounds for points at this distance from each joint (--shell-cm), in the
+                              * skeleton's unit (noh_joint_lod_measure, noh_time_lod_measure) */
 } noh_motion_header;
 
 typedef struct noh_motion_event {

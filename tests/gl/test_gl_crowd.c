@@ -69,6 +69,72 @@ static void fill_face(model_clip *clip, float duration_s)
     }
 }
 
+/* Where the heaviest `count` of its joints put a vertex. */
+static void capped_vertex(const noh_mesh *mesh, const float *matrices, uint32_t vertex, uint32_t count, float out[3])
+{
+    const float *p = mesh->positions + 3u * (size_t)vertex;
+    uint32_t joints[NOH_INFLUENCES_MAX];
+    float weights[NOH_INFLUENCES_MAX], total = 0.0f, sum[3] = { 0.0f, 0.0f, 0.0f };
+    const uint32_t all = noh_mesh_influences(mesh, vertex, joints, weights);
+    for (uint32_t k = 0; k < count && k < all; k++) {
+        const float *m = matrices + 12u * (size_t)joints[k];
+        total += weights[k];
+        for (int r = 0; r < 3; r++) {
+            sum[r] += weights[k] * (m[4 * r] * p[0] + m[4 * r + 1] * p[1] + m[4 * r + 2] * p[2] + m[4 * r + 3]);
+        }
+    }
+    for (int r = 0; r < 3; r++) {
+        out[r] = sum[r] / total;
+    }
+}
+
+/* What 2 and 1 joints per vertex are off in a pose. */
+static void add_cap_errors(const noh_mesh *mesh, const float *matrices, float errors[3])
+{
+    for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
+        float right[3], capped[3];
+        capped_vertex(mesh, matrices, v, NOH_INFLUENCES_MAX, right);
+        for (uint32_t i = 1; i < 3; i++) {
+            capped_vertex(mesh, matrices, v, 4u >> i, capped);
+            for (int r = 0; r < 3; r++) {
+                capped[r] -= right[r];
+            }
+            errors[i] = fmaxf(errors[i], sqrtf(capped[0] * capped[0] + capped[1] * capped[1] + capped[2] * capped[2]));
+        }
+    }
+}
+
+/* The levels were not made by the converter: it would have measured this. */
+static void measure_caps(void)
+{
+    const noh_motion_set_desc desc = { &levels.pack, NULL, 0, 0, 0, 0 };
+    const size_t bytes = noh_motion_set_size(&desc, NULL);
+    float errors[3] = { 0.0f, 0.0f, 0.0f }, placed[12u * JOINTS], matrices[12u * JOINTS], floats[8];
+    void *memory = test_aligned(NULL, bytes);
+    noh_transform pose[JOINTS];
+    noh_mesh_header *headers;
+    noh_motion_set *set;
+    noh_mesh mesh;
+    noh_skin skin;
+    assert_int_equal(noh_motion_set_init(memory, bytes, &desc, &set, NULL), NOH_OK);
+    assert_int_equal(noh_pack_mesh(&levels.pack, 0, &mesh), NOH_OK);
+    assert_int_equal(noh_pack_skin_at(&levels.pack, mesh.header->skin, &skin), NOH_OK);
+    assert_true(set->anim.joint_count == JOINTS && skin.header->joint_count <= JOINTS && set->anim.float_count <= 8);
+    for (uint32_t m = 0; m < set->anim.motion_count; m++) {
+        for (uint32_t tick = 0; tick <= set->anim.motions[m].duration_ticks; tick += 1600) {
+            set->anim.sample(set->anim.user, m, tick, JOINTS, pose, set->anim.float_count, floats);
+            noh_local_to_model(&set->skeleton, pose, JOINTS, placed);
+            noh_skin_matrices(&skin, placed, matrices);
+            add_cap_errors(&mesh, matrices, errors);
+        }
+    }
+    headers = (noh_mesh_header *)(void *)(levels.bytes + levels.pack.chunks[levels.pack.first_mesh].offset);
+    for (uint32_t k = 0; k < LEVELS; k++) {
+        memcpy(headers[k].influence_errors, errors, sizeof errors);
+    }
+    free(memory);
+}
+
 static void open_tube(void)
 {
     const skin_cylinder c = { 24, 33, JOINTS, 4, TARGETS, 1, 2.0f, 0.35f };
@@ -92,6 +158,7 @@ static void open_tube(void)
     model_free(m);
     plain = test_open(tube_bytes, count);
     fixture_levels_open(&levels, &plain, LEVELS, 0.12f);
+    measure_caps();
     file.path = "tubes";
     file.pack = levels.pack;
 }
@@ -210,7 +277,7 @@ static void expect_level(const crowd *c, uint32_t i, watch *w)
     const crowd_body *b = &c->bodies[i];
     const noh_detail *d = &crowd_character(c, i)->detail;
     const float share = 0.3f * c->plan->options.pixels;
-    const int over = c->levels[b->level].error_m * b->scale > share * 1.0001f;
+    const int over = c->table.meshes[b->level].error_m * b->scale > share * 1.0001f;
     const int crowded = noh_level_pools_stats_of(c->pools)->coarser > 0;
     w->fades += b->level != b->level_before;
     w->by_level[b->level]++;
@@ -225,10 +292,12 @@ static void expect_level(const crowd *c, uint32_t i, watch *w)
 
 static void expect_order(const crowd *c)
 {
+    const uint32_t caps = c->table.influence_level_count;
     uint32_t before = 0;
     for (uint32_t k = 0; k < c->stats.seen; k++) {
         const crowd_body *b = &c->bodies[c->order[k]];
-        const uint32_t run = b->level == b->level_before ? b->level : c->plan->level_count;
+        const noh_detail *d = &crowd_character(c, c->order[k])->detail;
+        const uint32_t run = b->level == b->level_before ? b->level * caps + d->influences : c->plan->level_count * caps;
         assert_true(b->seen && b->place == k && run >= before && k >= c->runs[run]);
         before = run;
     }
@@ -349,6 +418,39 @@ static void a_knob_of_nothing_leaves_nothing_out(void **state)
     stand_close(&without);
 }
 
+/* With a knob of half the view, who is far is posed with fewer joints and drawn with fewer a vertex, and still seen. */
+static void far_bodies_hang_on_fewer_joints(void **state)
+{
+    const crowd_options o = options_of(96.0f), none = options_of(0.0f);
+    uint32_t fewer_joints = 0, fewer_influences = 0;
+    static stand with, without;
+    (void)state;
+    stand_open(&with, &o);
+    stand_open(&without, &none);
+    assert_true(with.crowd.table.joint_level_count > 1 && with.crowd.table.influence_level_count == 3);
+    for (uint32_t frame = 0; frame < 12; frame++) {
+        run_frame(&with, frame);
+        run_frame(&without, frame);
+        expect_order(&with.crowd);
+        for (uint32_t i = 0; i < BODIES; i++) {
+            const noh_detail *d = &crowd_character(&with.crowd, i)->detail;
+            const noh_detail_table *t = &with.crowd.table;
+            if (!with.crowd.bodies[i].seen) continue;
+            fewer_joints += d->joints > 0;
+            fewer_influences += d->influences > 0;
+            assert_true(t->joints[d->joints].error_m * with.crowd.bodies[i].scale <= 9.6f * 1.0001f);
+            assert_true(t->influences[d->influences].error_m * with.crowd.bodies[i].scale <= 4.8f * 1.0001f);
+        }
+        assert_true(with.crowd.events.sum == without.crowd.events.sum);
+    }
+    print_message("%u times fewer joints, %u times fewer a vertex; pictures differ by %.2f\n", fewer_joints, fewer_influences,
+                  compare_pictures(picture(&with, 11), picture(&without, 11)));
+    assert_true(fewer_joints && fewer_influences);
+    expect_kept(&with);
+    stand_close(&with);
+    stand_close(&without);
+}
+
 /* Fewer accumulators are full-sized: that is what pools are for. */
 static void pools_by_level_take_less(void **state)
 {
@@ -366,6 +468,7 @@ static void pools_by_level_take_less(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_crowd_with_detail_keeps_its_word),
     cmocka_unit_test(a_knob_of_nothing_leaves_nothing_out),
+    cmocka_unit_test(far_bodies_hang_on_fewer_joints),
     cmocka_unit_test(pools_by_level_take_less),
 };
 

@@ -265,7 +265,7 @@ static noh_mesh_header *header_of(fixture_levels *f, uint32_t mesh)
     return (noh_mesh_header *)(void *)(f->bytes + f->pack.chunks[f->pack.first_mesh + mesh].offset);
 }
 
-/* Every level has the worst of its errors, in metres; fewer influences have theirs. */
+/* Every level has the worst of its errors, and what it skips, in metres; fewer influences have theirs. */
 static void levels_come_from_the_mesh(void **state)
 {
     table t;
@@ -323,9 +323,16 @@ static void a_byte_too_few_is_refused(void **state)
     table t;
     noh_error error = { NOH_OK, "", 0, 0 };
     uint8_t *block;
+    noh_motion_set counts;
     (void)state;
     open_table(&t, NULL);
     t.bytes = noh_detail_pack_size(&t.desc);
+    memset(&counts, 0, sizeof counts); /* before there is a set */
+    counts.anim.motion_count = t.set->anim.motion_count;
+    counts.skeleton.joint_count = t.set->skeleton.joint_count;
+    t.desc.set = &counts;
+    assert_int_equal(noh_detail_pack_size(&t.desc), t.bytes);
+    t.desc.set = t.set;
     assert_int_equal(t.bytes, sizeof(noh_mesh_level) + 4 * sizeof(noh_influence_level) + 3 * sizeof(noh_joint_level) + t.set->anim.motion_count * NOH_RATE_COUNT * sizeof(float) +
                      (4 + t.mesh.header->target_count) * sizeof(float));
     block = test_aligned(NULL, t.bytes + 64);

@@ -9,6 +9,7 @@
 
 #include "convert/convert.h"
 #include "convert/gltf/gltf_motion.h"
+#include "convert/skin/joint_points.h"
 #include "convert/skin/joint_reach.h"
 #include "convert/skin/skins.h"
 #include "motion_fixture.h"
@@ -22,7 +23,7 @@ typedef struct opened {
     void *memory;
 } opened;
 
-static opened open_motion(const char *input, convert_only only)
+static opened open_skeleton(const char *input, convert_only only, uint32_t skeleton)
 {
     opened o;
     convert_options options;
@@ -35,10 +36,16 @@ static opened open_motion(const char *input, convert_only only)
     o.bytes = motion_pack(&input, 1, &options, &bytes);
     o.pack = test_open(o.bytes, bytes);
     desc.clips = &o.pack;
+    desc.skeleton = skeleton;
     bytes = noh_motion_set_size(&desc, NULL);
     o.memory = test_aligned(NULL, bytes);
     assert_int_equal(noh_motion_set_init(o.memory, bytes, &desc, &o.set, NULL), NOH_OK);
     return o;
+}
+
+static opened open_motion(const char *input, convert_only only)
+{
+    return open_skeleton(input, only, 0);
 }
 
 static void close_motion(opened *o)
@@ -184,6 +191,153 @@ static void a_puppets_joint_errors_are_those_of_its_vertices(void **state)
     model_free(m);
 }
 
+/* ---- rates, with vertices ---- */
+
+#define GRID 200u /* ticks */
+
+/* Where all joints are every GRID ticks of a motion, and for the longest period on: [count][joint_count][12]. A loop goes on from
+ * where it came. */
+static double *course_of(const opened *o, uint32_t clip, uint32_t *count)
+{
+    const noh_skeleton *s = &o->set->skeleton;
+    const noh_motion *m = &o->set->anim.motions[clip];
+    noh_transform *pose = test_zeros(s->joint_count * sizeof *pose);
+    float *floats = test_zeros((o->set->anim.float_count + 1u) * sizeof *floats), ends[2][3];
+    double *course;
+    *count = (m->duration_ticks + 400u + 6000u) / GRID + 1u;
+    course = test_zeros((size_t)*count * s->joint_count * 12u * sizeof *course);
+    for (uint32_t i = 0; i < 2; i++) {
+        o->set->anim.sample(o->set->anim.user, clip, i * m->duration_ticks, s->joint_count, pose, o->set->anim.float_count, floats);
+        memcpy(ends[i], pose[0].translation, sizeof ends[i]);
+    }
+    for (uint32_t i = 0; i < *count; i++) {
+        const uint32_t tick = i * GRID, passes = m->loop == NOH_LOOP_REPEAT ? tick / m->duration_ticks : 0;
+        const uint32_t at = m->loop == NOH_LOOP_REPEAT ? tick % m->duration_ticks : tick < m->duration_ticks ? tick : m->duration_ticks;
+        double *models = course + (size_t)i * s->joint_count * 12u;
+        o->set->anim.sample(o->set->anim.user, clip, at, s->joint_count, pose, o->set->anim.float_count, floats);
+        model_of(s, pose, s->joint_count, models);
+        for (uint32_t k = 0; k < 3u * s->joint_count; k++) models[4u * k + 3u] += passes * (double)(ends[1][k % 3u] - ends[0][k % 3u]);
+    }
+    free(pose);
+    free(floats);
+    return course;
+}
+
+/* Where a vertex is at each of these: way[count][3]; and how far it is from the joints that move it by 0.05 or more. */
+static void way_of(const noh_mesh *mesh, const noh_skin *skin, uint32_t vertex, const double *course, uint32_t count, uint32_t joint_count,
+                   double *way, float *reach)
+{
+    uint32_t joints[NOH_INFLUENCES_MAX];
+    float weights[NOH_INFLUENCES_MAX];
+    const uint32_t used = noh_mesh_influences(mesh, vertex, joints, weights);
+    const float *at = mesh->positions + 3u * (size_t)vertex;
+    memset(way, 0, 3u * (size_t)count * sizeof *way);
+    for (uint32_t k = 0; k < used; k++) {
+        const float *bind = skin->inverse_bind + 12u * (size_t)joints[k];
+        double place[3];
+        for (int r = 0; r < 3; r++) {
+            place[r] = (double)bind[4 * r + 3];
+            for (int i = 0; i < 3; i++) place[r] += (double)bind[4 * r + i] * (double)at[i];
+        }
+        if (weights[k] >= 0.05f) {
+            float *of = &reach[skin->joints[joints[k]]];
+            *of = fmaxf(*of, (float)sqrt(place[0] * place[0] + place[1] * place[1] + place[2] * place[2]));
+        }
+        for (size_t i = 0; i < count; i++) {
+            const double *m = course + 12u * (i * joint_count + skin->joints[joints[k]]);
+            for (size_t r = 0; r < 3; r++) {
+                const double x = m[4 * r] * place[0] + m[4 * r + 1] * place[1] + m[4 * r + 2] * place[2] + m[4 * r + 3];
+                way[3 * i + r] += (double)weights[k] * x;
+            }
+        }
+    }
+}
+
+/* The most that it is off on straight lines between places of its way. */
+static double way_off(const double *way, uint32_t duration, uint32_t period)
+{
+    const uint32_t steps = period / GRID;
+    double worst = 0.0;
+    for (uint32_t start = 0; start < duration; start += 400) {
+        const double *from = way + 3u * (size_t)(start / GRID), *to = from + 3u * (size_t)steps;
+        for (uint32_t i = 1; i < steps; i++) {
+            double square = 0.0;
+            for (size_t k = 0; k < 3; k++) {
+                const double off = from[k] + (to[k] - from[k]) * i / steps - from[3u * i + k];
+                square += off * off;
+            }
+            worst = fmax(worst, square);
+        }
+    }
+    return sqrt(worst);
+}
+
+/* Of all vertices that the set's skeleton moves; and how far they are from their joints. */
+static void worst_of_all(const opened *o, uint32_t skeleton, uint32_t clip, double worst[NOH_RATE_COUNT], float *reach)
+{
+    const uint32_t joint_count = o->set->skeleton.joint_count;
+    uint32_t count;
+    double *course = course_of(o, clip, &count), *way = test_zeros(3u * (size_t)count * sizeof *way);
+    for (uint32_t j = 0; j < joint_count; j++) reach[j] = -1.0f;
+    memset(worst, 0, NOH_RATE_COUNT * sizeof *worst);
+    for (uint32_t i = 0; i < o->pack.mesh_count; i++) {
+        noh_mesh mesh;
+        noh_skin skin;
+        noh_pack_mesh(&o->pack, i, &mesh);
+        if (noh_pack_skin_at(&o->pack, mesh.header->skin, &skin) != NOH_OK || skin.header->skeleton != skeleton) continue;
+        for (uint32_t v = 0; v < mesh.header->vertex_count; v++) {
+            way_of(&mesh, &skin, v, course, count, joint_count, way, reach);
+            for (int r = 1; r < NOH_RATE_COUNT; r++) {
+                worst[r] = fmax(worst[r], way_off(way, o->set->anim.motions[clip].duration_ticks, noh_rate_period((noh_rate)r)));
+            }
+        }
+    }
+    free(course);
+    free(way);
+}
+
+/* Not much less than its worst vertex, and never more than what was said of all that a joint reaches. */
+static void expect_rates(const opened *o, uint32_t skeleton)
+{
+    float *reach = test_zeros(o->set->skeleton.joint_count * sizeof *reach);
+    for (uint32_t clip = 0; clip < o->set->anim.motion_count; clip++) {
+        noh_time_probe probe;
+        double worst[NOH_RATE_COUNT];
+        float bound[NOH_RATE_COUNT];
+        noh_pack_motion from;
+        uint8_t *memory;
+        assert_int_equal(noh_pack_motion_at(&o->pack, o->set->pack_motions[clip], &from), NOH_OK);
+        if (from.header->joint_count == 0) continue;
+        worst_of_all(o, skeleton, clip, worst, reach);
+        memset(&probe, 0, sizeof probe);
+        probe.set = &o->set->anim, probe.skeleton = &o->set->skeleton, probe.joint_reach_m = reach, probe.travels = 1;
+        memory = test_aligned(NULL, noh_time_lod_measure_size(&probe));
+        assert_int_equal(noh_time_lod_measure(memory, noh_time_lod_measure_size(&probe), &probe, clip, bound, NULL), NOH_OK);
+        free(memory);
+        for (int r = 1; r < NOH_RATE_COUNT; r++) {
+            const double stored = (double)from.header->rate_error[r];
+            print_message("%s, rate %d: %.5f m stored, %.5f the worst vertex, %.5f the bound\n", from.name, r, stored, worst[r], (double)bound[r]);
+            assert_true(worst[r] > 0.0 && stored >= 0.9 * worst[r]);
+            assert_true(stored <= worst[r] * 1.001 + 1e-6 && stored <= (double)bound[r]);
+        }
+    }
+    free(reach);
+}
+
+static void rates_are_those_of_the_worst_vertex(void **state)
+{
+    char path[4096];
+    const char *build = getenv("NOH_BUILD");
+    (void)state;
+    snprintf(path, sizeof path, "%s/demo/arm.glb", build ? build : "build");
+    for (uint32_t skeleton = 0; skeleton < 2; skeleton++) {
+        opened o = open_skeleton(path, CONVERT_ALL, skeleton);
+        assert_true(o.set->anim.motion_count > 0);
+        expect_rates(&o, skeleton);
+        close_motion(&o);
+    }
+}
+
 /* Two joints a metre apart, three vertices; the farthest hangs on the second by too little to count. */
 static void only_what_a_joint_moves_counts(void **state)
 {
@@ -194,6 +348,7 @@ static void only_what_a_joint_moves_counts(void **state)
     model_skin skin;
     model_mesh mesh;
     model m;
+    joint_points chosen;
     (void)state;
     memset(&skin, 0, sizeof skin);
     memset(&mesh, 0, sizeof mesh);
@@ -209,6 +364,17 @@ static void only_what_a_joint_moves_counts(void **state)
     assert_int_equal(joint_reach(&m, 1, 3, reach), 0); /* no mesh of that skeleton */
     assert_true(reach[0] == -1.0f);
     assert_int_equal(joint_reach(NULL, 0, 3, reach), 0);
+    assert_int_equal(joint_points_choose(&m, 0, 3, &chosen), 0);
+    assert_true(chosen.points.point_count == 3 && chosen.points.holds_per_point == 2);
+    assert_true(chosen.holds[0].joint == 0 && chosen.holds[0].weight == 0.96f && chosen.holds[0].place[1] == 4.0f); /* the farthest of the first */
+    assert_true(chosen.holds[1].joint == 2 && chosen.holds[1].weight == 0.04f && chosen.holds[1].place[1] == 3.0f);
+    joint_points_free(&chosen);
+    assert_int_equal(joint_points_choose(&m, 1, 3, &chosen), 0);
+    assert_int_equal(chosen.points.point_count, 0);
+    joint_points_free(&chosen);
+    assert_int_equal(joint_points_choose(NULL, 0, 3, &chosen), 0);
+    assert_int_equal(chosen.points.point_count, 0);
+    joint_points_free(&chosen);
 }
 
 /* ---- without: a shell ---- */
@@ -319,7 +485,8 @@ static void bad_arguments_are_named(void **state)
 int main(int argument_count, char **arguments)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_puppets_joint_errors_are_those_of_its_vertices), cmocka_unit_test(only_what_a_joint_moves_counts),
+        cmocka_unit_test(a_puppets_joint_errors_are_those_of_its_vertices), cmocka_unit_test(rates_are_those_of_the_worst_vertex),
+        cmocka_unit_test(only_what_a_joint_moves_counts),
         cmocka_unit_test(a_chains_errors_are_what_the_library_measures),
         cmocka_unit_test(a_travelling_loop_has_the_errors_of_its_pass), cmocka_unit_test(bad_arguments_are_named)
     };

@@ -346,6 +346,35 @@ static void points_are_off_by_their_own_arrows(void **state)
     assert_string_equal(error.what, "points: no such joint");
 }
 
+static void sample_walk(void *user, uint32_t motion, uint32_t tick, uint32_t joints, noh_transform *pose, uint32_t floats, float *values)
+{
+    const turning *t = user;
+    sample_turning(user, motion, tick, joints, pose, floats, values);
+    pose[0].translation[0] = 3.0f * (float)tick / (float)t->motion.duration_ticks;
+}
+
+/* A loop that walks as it turns has the errors of one that turns in its place, when the probe says that it travels; else its leap's. */
+static void points_go_with_a_loop_that_travels(void **state)
+{
+    ALIGNED uint8_t memory[1024];
+    const noh_time_hold out = { 0, 1.0f, { 0.3f, 0.4f, 7.0f } };
+    const noh_time_points points = { &out, 1, 1 };
+    float still[NOH_RATE_COUNT], walked[NOH_RATE_COUNT], leapt[NOH_RATE_COUNT];
+    turning t;
+    (void)state;
+    turning_open(&t);
+    assert_int_equal(noh_time_points_measure(memory, sizeof memory, &t.probe, &points, 0, still, NULL), NOH_OK);
+    t.set.sample = sample_walk;
+    assert_int_equal(noh_time_points_measure(memory, sizeof memory, &t.probe, &points, 0, leapt, NULL), NOH_OK);
+    t.probe.travels = 1;
+    assert_int_equal(noh_time_points_measure(memory, sizeof memory, &t.probe, &points, 0, walked, NULL), NOH_OK);
+    assert_true(walked[0] == 0.0f);
+    for (int r = 1; r < NOH_RATE_COUNT; r++) {
+        assert_true(fabsf(walked[r] - still[r]) <= 0.001f * still[r] + 2e-6f);
+        assert_true(leapt[r] > 1.4f); /* about half of three metres */
+    }
+}
+
 static void measuring_wants_its_fields_and_its_memory(void **state)
 {
     ALIGNED uint8_t memory[4096];
@@ -508,7 +537,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_finer_rate_begins_at_once),
         cmocka_unit_test(frames_longer_than_a_period_are_exact),
         cmocka_unit_test(a_turn_is_off_by_its_arrow),
-        cmocka_unit_test(points_are_off_by_their_own_arrows),
+        cmocka_unit_test(points_are_off_by_their_own_arrows), cmocka_unit_test(points_go_with_a_loop_that_travels),
         cmocka_unit_test(measuring_wants_its_fields_and_its_memory),
         cmocka_unit_test(errors_of_what_plays),
         cmocka_unit_test(real_clips_stay_within_what_was_measured),

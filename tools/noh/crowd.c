@@ -32,7 +32,7 @@ static void open_skeleton(crowd *c)
     c->skeleton.inverse_bind = has_joint_twice(skin) ? NULL : c->inverse_bind;
 }
 
-/* To and fro, so that there is no seam, whatever the clip; and two keys a pass where the pack has none at all. */
+/* What ends goes to and fro instead, so that nobody stands still; and two keys a pass where the pack has none at all. */
 static void open_motions(crowd *c)
 {
     const noh_anim_set *from = &c->set->anim;
@@ -40,7 +40,9 @@ static void open_motions(crowd *c)
     c->anim.motions = c->motions;
     memcpy(c->motions, from->motions, from->motion_count * sizeof *c->motions);
     for (uint32_t m = 0; m < from->motion_count; m++) {
-        c->motions[m].loop = NOH_LOOP_PING_PONG;
+        if (c->motions[m].loop == NOH_LOOP_ONCE) {
+            c->motions[m].loop = NOH_LOOP_PING_PONG;
+        }
     }
     if (from->event_count) {
         return;
@@ -119,6 +121,7 @@ static noh_result open_renderer(crowd *c, char *log, size_t log_bytes, noh_error
     desc.palettes = c->plan->skin_plan.mode;
     desc.crowds = 1;
     desc.fades = !c->plan->options.plain;
+    desc.fewer_influences = !c->plan->options.plain;
     return noh_gl_renderer_create(&c->g->gl, &c->ledger, &desc, &c->renderer, log, log_bytes, error);
 }
 
@@ -128,26 +131,26 @@ static int open_all(crowd *c, noh_arena *arena)
     const noh_level_pools_desc pools_desc = crowd_pools_desc(p);
     noh_error error = { NOH_OK, "", 0, 0 };
     char log[4096] = "";
-    void *set, *scratch, *pools, *schedule, *morph, *palettes;
+    crowd_parts parts;
     noh_result result;
-    crowd_carve(arena, p, c, &set, &scratch, &pools, &schedule, &morph, &palettes);
+    crowd_carve(arena, p, c, &parts);
     c->used_bytes = arena->used;
-    result = noh_motion_set_init(set, p->set_needs.bytes, &p->set_desc, &c->set, &error);
+    result = noh_motion_set_init(parts.set, p->set_needs.bytes, &p->set_desc, &c->set, &error);
     if (!result) {
         open_skeleton(c);
         open_motions(c);
         find_weights(c);
-        result = open_characters(c, scratch, &error);
+        result = open_characters(c, parts.scratch, &error);
     }
-    if (!result) result = noh_level_pools_init(pools, p->pools_bytes, &pools_desc, &c->pools, &error);
-    if (!result) result = noh_schedule_init(schedule, p->schedule_bytes, p->options.count, &c->schedule, &error);
-    if (!result) result = open_meshes(c, morph, palettes, log, sizeof log, &error);
+    if (!result) result = noh_level_pools_init(parts.pools, p->pools_bytes, &pools_desc, &c->pools, &error);
+    if (!result) result = noh_schedule_init(parts.schedule, p->schedule_bytes, p->options.count, &c->schedule, &error);
+    if (!result) result = open_meshes(c, parts.morph, parts.palettes, log, sizeof log, &error);
     if (!result) result = open_renderer(c, log, sizeof log, &error);
     if (result) {
         fputs(log, stderr);
         return tool_fail_error(c->file->path, &error);
     }
-    return 0;
+    return crowd_place(c, parts.detail);
 }
 
 int crowd_open(crowd *c, const crowd_plan *plan, void *memory, size_t bytes, gpu *g, const pack_file *file)
@@ -163,7 +166,6 @@ int crowd_open(crowd *c, const crowd_plan *plan, void *memory, size_t bytes, gpu
     c->file = file;
     c->unculled = plan->options.unculled;
     status = open_all(c, &arena);
-    if (!status) status = crowd_place(c);
     if (status) {
         crowd_close(c);
     }

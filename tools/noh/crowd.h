@@ -17,7 +17,7 @@
  *
  *   crowd_plan.c   bytes
  *   crowd.c        opening and closing
- *   crowd_place.c  what was measured once: reaches, errors of rates; places and clips
+ *   crowd_place.c  what the pack says of detail; places and clips
  *   crowd_frame.c  a frame on the CPU
  *   crowd_draw.c   a frame on the GPU; the camera */
 #ifndef NOH_TOOL_CROWD_H
@@ -25,13 +25,13 @@
 
 #include "gpu.h"
 
+#define CROWD_RUNS_MAX (NOH_LEVELS_MAX * NOH_DETAIL_LEVELS_MAX)
 #define CROWD_FIELD_M 100.0f /* they stand within this of the place where the camera starts */
 
 typedef struct crowd_options {
     uint32_t count;            /* bodies; 1..NOH_MORPH_INSTANCES_MAX */
     int plain;                 /* 1: without detail */
     int unculled;              /* 1: as if all were seen */
-    const float *rate_error_m; /* [motion_count][NOH_RATE_COUNT] as another crowd of the pack has measured; default (NULL) measured */
     float pixels;              /* the knob; default (0) 1 */
     uint64_t budget_ns;        /* for updates, in each frame; default (0) as much as they take */
     float field_of_view_rad;   /* of the view, vertical; default (0) 40 degrees */
@@ -53,7 +53,7 @@ typedef struct crowd_plan {
     noh_gl_morph_desc morph_desc; /* of views and slots */
     noh_gl_morph_plan morph;
     noh_gl_skin_plan skin_plan;
-    size_t character_bytes, scratch_bytes, pools_bytes, schedule_bytes, table_bytes;
+    size_t character_bytes, scratch_bytes, pools_bytes, schedule_bytes, detail_bytes;
     uint64_t cpu_bytes, gpu_bytes;
 } crowd_plan;
 
@@ -96,14 +96,14 @@ typedef struct crowd {
     size_t used_bytes;            /* of the block */
     /* shared */
     noh_motion_set *set;
-    noh_anim_set anim;            /* the set's, with keys where the pack has none, every motion to and fro */
+    noh_anim_set anim;            /* the set's, with keys where the pack has none; what does not repeat itself goes to and fro */
     noh_motion *motions;
     noh_event_key *keys;
     noh_skeleton skeleton;        /* with the skin's inverse bind matrices */
-    float *inverse_bind, *margin_m, *rate_error_m, *reach_m; /* [joint], [joint], [motion][NOH_RATE_COUNT], [target] */
+    float *inverse_bind, *rate_error_m; /* [joint], [motion][NOH_RATE_COUNT] */
     uint32_t first_weight;        /* of the mesh, among the floats of the set; NOH_NONE: no clip knows them */
-    noh_mesh_level levels[NOH_LEVELS_MAX];
-    noh_detail_table table;
+    noh_detail_pack detail;       /* what the pack says */
+    noh_detail_table table;       /* the same, with the errors of rates as the motions are played here */
     noh_detail_settings settings;
     noh_character_scratch scratch;
     noh_schedule schedule;
@@ -114,8 +114,9 @@ typedef struct crowd {
     /* each */
     uint8_t *characters;          /* [count][character_bytes] */
     crowd_body *bodies;           /* [count] */
-    uint32_t *order;              /* [count] who is seen, level by level; who fades behind them */
-    uint32_t runs[NOH_LEVELS_MAX + 1u]; /* where each level begins in it; the last: those who fade */
+    uint32_t *order;              /* [count] who is seen, run by run; who fades behind them */
+    uint32_t runs[CROWD_RUNS_MAX + 1u]; /* where each run begins in it: those of one mesh level and one number of joints per vertex,
+                                         * level by level, within each the most joints first; the last: those who fade */
     int unculled;
     uint32_t frame_ticks;
     crowd_events events;
@@ -154,14 +155,20 @@ void crowd_draw(const crowd *c, const crowd_camera *camera);
 
 /* ---- private to crowd*.c ---- */
 
+/* What the library builds in the block. */
+typedef struct crowd_parts {
+    void *set, *scratch, *pools, *schedule, *detail, *morph, *palettes;
+} crowd_parts;
+
 noh_character_desc crowd_character_desc(const noh_anim_set *set);
 noh_level_pools_desc crowd_pools_desc(const crowd_plan *plan);
 /* Where everything lies in the block; NULL: how much it takes. */
-void crowd_carve(noh_arena *arena, const crowd_plan *plan, crowd *c, void **set, void **scratch, void **pools, void **schedule,
-                 void **morph, void **palettes);
-/* Certified: how far a level is off at most. */
-float crowd_level_error(const noh_mesh *level);
-/* Measure and place; prints an error and returns an exit code. */
-int crowd_place(crowd *c);
+void crowd_carve(noh_arena *arena, const crowd_plan *plan, crowd *c, crowd_parts *parts);
+/* What the pack says of a set's detail: of the one that is there, or will be. */
+noh_detail_pack_desc crowd_detail_desc(const crowd_plan *plan, const noh_motion_set *set);
+/* How many runs there may be, but for those who fade. */
+uint32_t crowd_run_count(const crowd *c);
+/* Detail out of the pack, in memory[plan->detail_bytes]; then everybody takes his place. Prints an error and returns an exit code. */
+int crowd_place(crowd *c, void *memory);
 
 #endif

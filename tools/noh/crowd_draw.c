@@ -15,13 +15,14 @@ void crowd_send(crowd *c)
 
 /* ---- drawing ---- */
 
-/* All who are drawn at one level, in one draw a submesh. */
-static void draw_run(const crowd *c, uint32_t level, int pass)
+/* All who are drawn alike, in one draw a submesh. */
+static void draw_run(const crowd *c, uint32_t run, int pass)
 {
-    const uint32_t first = c->runs[level], count = c->runs[level + 1u] - first;
-    const noh_gl_detail detail = { level, 0.0f, 1.0f };
-    const noh_gl_skin_binding skin = noh_gl_skin_binding_of(c->palettes, first);
+    const uint32_t first = c->runs[run], count = c->runs[run + 1u] - first, caps = c->table.influence_level_count;
+    const noh_gl_detail detail = { run / caps, 0.0f, 1.0f };
     const noh_gl_morph_binding morph = noh_gl_morph_binding_of(c->morph, 0); /* any: they are in one texture */
+    noh_gl_skin_binding skin = noh_gl_skin_binding_of(c->palettes, first);
+    skin.influences = c->table.influences[run % caps].influence_count;
     noh_gl_draw_crowd(&c->renderer, &c->gl_mesh, &morph, &skin, count, &detail, c->pictures, pass);
 }
 
@@ -32,8 +33,9 @@ static void draw_fading(const crowd *c, uint32_t i, int pass)
     const crowd_body *b = &c->bodies[i];
     const float part = noh_detail_fade(&ch->detail, noh_character_clock(ch));
     const noh_gl_detail details[2] = { { b->level, 0.0f, part }, { b->level_before, part, 1.0f } };
-    const noh_gl_skin_binding skin = noh_gl_skin_binding_of(c->palettes, b->place);
     const noh_gl_morph_binding morph = noh_gl_morph_binding_of(c->morph, noh_gl_morph_instance(c->morph, b->slot.pool, b->slot.slot));
+    noh_gl_skin_binding skin = noh_gl_skin_binding_of(c->palettes, b->place);
+    skin.influences = noh_detail_influence_count(&ch->detail, &c->table);
     for (int k = 0; k < 2; k++) {
         noh_gl_draw_mesh(&c->renderer, &c->gl_mesh, b->world, &morph, &skin, &details[k], c->pictures, pass);
     }
@@ -41,14 +43,15 @@ static void draw_fading(const crowd *c, uint32_t i, int pass)
 
 void crowd_draw(const crowd *c, const crowd_camera *camera)
 {
+    const uint32_t runs = crowd_run_count(c);
     noh_gl_draw_begin(&c->renderer, &camera->gl);
     for (int pass = NOH_DRAW_OPAQUE; pass <= NOH_DRAW_BLENDED; pass++) {
-        for (uint32_t level = 0; level < c->plan->level_count; level++) {
-            if (c->runs[level + 1u] > c->runs[level]) {
-                draw_run(c, level, pass);
+        for (uint32_t run = 0; run < runs; run++) {
+            if (c->runs[run + 1u] > c->runs[run]) {
+                draw_run(c, run, pass);
             }
         }
-        for (uint32_t k = c->runs[c->plan->level_count]; k < c->stats.seen; k++) {
+        for (uint32_t k = c->runs[runs]; k < c->stats.seen; k++) {
             draw_fading(c, c->order[k], pass);
         }
     }

@@ -104,30 +104,39 @@ static int fades(const crowd_body *b)
     return b->level != b->level_before;
 }
 
-/* Count, then sort: level by level, who fades behind all others. */
+uint32_t crowd_run_count(const crowd *c)
+{
+    return c->plan->level_count * c->table.influence_level_count;
+}
+
+static uint32_t run_of(const crowd *c, uint32_t i)
+{
+    const crowd_body *b = &c->bodies[i];
+    return fades(b) ? crowd_run_count(c) : b->level * c->table.influence_level_count + crowd_character(c, i)->detail.influences;
+}
+
+/* Count, then sort: run by run, who fades behind all others. */
 static void put_in_order(crowd *c)
 {
-    uint32_t next[NOH_LEVELS_MAX + 1u] = { 0 }, count = 0;
-    const uint32_t levels = c->plan->level_count;
+    uint32_t next[CROWD_RUNS_MAX + 1u] = { 0 }, count = 0;
+    const uint32_t runs = crowd_run_count(c);
     for (uint32_t i = 0; i < c->plan->options.count; i++) {
-        const crowd_body *b = &c->bodies[i];
-        if (b->seen) {
+        if (c->bodies[i].seen) {
             c->stats.seen++;
-            c->stats.levels[b->level]++;
-            next[fades(b) ? levels : b->level]++;
+            c->stats.levels[c->bodies[i].level]++;
+            next[run_of(c, i)]++;
         }
     }
-    c->stats.fading = next[levels];
-    for (uint32_t k = 0; k <= levels; k++) {
+    c->stats.fading = next[runs];
+    for (uint32_t k = 0; k <= runs; k++) {
         c->runs[k] = count;
         count += next[k];
         next[k] = c->runs[k];
     }
     for (uint32_t i = 0; i < c->plan->options.count; i++) {
-        crowd_body *b = &c->bodies[i];
-        if (b->seen) {
-            b->place = next[fades(b) ? levels : b->level]++;
-            c->order[b->place] = i;
+        if (c->bodies[i].seen) {
+            c->bodies[i].place = next[run_of(c, i)]++;
+            c->order[c->bodies[i].place] = i;
         }
     }
 }
@@ -184,7 +193,7 @@ static void give_weights(crowd *c, const crowd_body *b, uint32_t instance, noh_d
 {
     const float *weights = c->first_weight == NOH_NONE ? c->plan->mesh.weights : floats + c->first_weight;
     if (!c->plan->options.plain) {
-        noh_detail_targets(d, &c->settings, weights, c->reach_m, c->plan->mesh.header->target_count, c->weights);
+        noh_detail_targets(d, &c->settings, weights, c->detail.reach_m, c->plan->mesh.header->target_count, c->weights);
         weights = c->weights;
         noh_gl_morph_level(c->morph, instance, b->level < b->level_before ? b->level : b->level_before);
     }

@@ -62,14 +62,15 @@ noh_character_desc crowd_character_desc(const noh_anim_set *set)
 
 /* ---- pools ---- */
 
-float crowd_level_error(const noh_mesh *level)
+/* As the table of detail has it. */
+static float level_error(const noh_mesh *level)
 {
     const noh_mesh_header *h = level->header;
     float worst = h->level_error_rest;
     worst = h->level_error_targets > worst ? h->level_error_targets : worst;
     worst = h->level_error_pairs > worst ? h->level_error_pairs : worst;
     worst = h->level_error_motion > worst ? h->level_error_motion : worst;
-    return worst + h->level_skipped;
+    return (worst + h->level_skipped) * h->world_scale;
 }
 
 /* How many bodies may need something finer than this level. */
@@ -77,7 +78,7 @@ static double count_within(const crowd_plan *p, uint32_t level)
 {
     const crowd_options *o = &p->options;
     const noh_mesh view = noh_mesh_at_level(&p->mesh, level);
-    double scale = ENTERED * (double)o->pixels / (double)crowd_level_error(&view);
+    double scale = ENTERED * (double)o->pixels / (double)level_error(&view);
     double distance_m = (double)noh_detail_scale(1.0f, o->field_of_view_rad, o->height) / scale + REACH_M;
     double share = distance_m / CROWD_FIELD_M;
     return share < 1.0 ? RESERVE * o->count * share * share + RESERVE_BODIES : o->count;
@@ -129,17 +130,23 @@ static void *carve(noh_arena *arena, size_t count, size_t bytes)
     return noh_arena_carve(arena, count * bytes, 16);
 }
 
-void crowd_carve(noh_arena *a, const crowd_plan *p, crowd *c, void **set, void **scratch, void **pools, void **schedule, void **morph,
-                 void **palettes)
+noh_detail_pack_desc crowd_detail_desc(const crowd_plan *p, const noh_motion_set *set)
+{
+    const noh_detail_pack_desc desc = { set, &p->set_desc, &p->mesh, NULL };
+    return desc;
+}
+
+void crowd_carve(noh_arena *a, const crowd_plan *p, crowd *c, crowd_parts *parts)
 {
     const noh_anim_set *shape = &p->set_needs.shape;
     const size_t joints = shape->joint_count, targets = p->mesh.header->target_count, count = p->options.count;
-    *set = carve(a, 1, p->set_needs.bytes);
-    *scratch = carve(a, 1, p->scratch_bytes);
-    *pools = carve(a, 1, p->pools_bytes);
-    *schedule = carve(a, 1, p->schedule_bytes);
-    *morph = carve(a, 1, (size_t)p->morph.cpu_bytes);
-    *palettes = carve(a, 1, (size_t)p->skin_plan.cpu_bytes);
+    parts->set = carve(a, 1, p->set_needs.bytes);
+    parts->scratch = carve(a, 1, p->scratch_bytes);
+    parts->pools = carve(a, 1, p->pools_bytes);
+    parts->schedule = carve(a, 1, p->schedule_bytes);
+    parts->detail = carve(a, 1, p->detail_bytes);
+    parts->morph = carve(a, 1, (size_t)p->morph.cpu_bytes);
+    parts->palettes = carve(a, 1, (size_t)p->skin_plan.cpu_bytes);
     c->characters = carve(a, count, p->character_bytes);
     c->bodies = carve(a, count, sizeof *c->bodies);
     c->order = carve(a, count, sizeof *c->order);
@@ -149,19 +156,17 @@ void crowd_carve(noh_arena *a, const crowd_plan *p, crowd *c, void **set, void *
     c->inverse_bind = carve(a, joints, 12u * sizeof(float));
     c->mixed = carve(a, joints, 12u * sizeof(float));
     c->gathered = carve(a, p->skin.header->joint_count, 12u * sizeof(float));
-    c->margin_m = carve(a, joints, sizeof(float));
     c->floats = carve(a, shape->float_count, sizeof(float));
     c->weights = carve(a, targets, sizeof(float));
-    c->reach_m = carve(a, targets, sizeof(float));
     c->pictures = carve(a, p->mesh.pack->texture_count, sizeof *c->pictures);
 }
 
 static void sum_bytes(crowd_plan *p)
 {
     noh_arena arena = noh_arena_measure();
-    crowd parts;
-    void *memory[6];
-    crowd_carve(&arena, p, &parts, &memory[0], &memory[1], &memory[2], &memory[3], &memory[4], &memory[5]);
+    crowd measured;
+    crowd_parts parts;
+    crowd_carve(&arena, p, &measured, &parts);
     p->cpu_bytes = arena.used;
     p->gpu_bytes = noh_gl_mesh_bytes(&p->views[0]) + p->morph.gpu_bytes + p->skin_plan.gpu_bytes + NOH_GL_RENDERER_BYTES;
     for (uint32_t i = 0; i < p->mesh.pack->texture_count; i++) {
@@ -184,6 +189,18 @@ static int fill_options(crowd_plan *p, const crowd_options *o)
     return o->count && o->count <= NOH_MORPH_INSTANCES_MAX ? 0 : tool_fail("crowd", "from 1 to %u bodies", NOH_MORPH_INSTANCES_MAX);
 }
 
+/* There is no set yet: its counts do. */
+static size_t ask_detail(const crowd_plan *p)
+{
+    noh_motion_set counts;
+    noh_detail_pack_desc desc;
+    memset(&counts, 0, sizeof counts);
+    counts.anim = p->set_needs.shape;
+    counts.skeleton.joint_count = p->set_needs.shape.joint_count;
+    desc = crowd_detail_desc(p, &counts);
+    return noh_detail_pack_size(&desc);
+}
+
 /* What the library says of its own. */
 static int ask_sizes(crowd_plan *p, const pack_file *file, const noh_gl_caps *caps)
 {
@@ -198,6 +215,7 @@ static int ask_sizes(crowd_plan *p, const pack_file *file, const noh_gl_caps *ca
     p->scratch_bytes = noh_character_scratch_size(&character);
     p->pools_bytes = noh_level_pools_size(&pools);
     p->schedule_bytes = noh_schedule_size(p->options.count);
+    p->detail_bytes = ask_detail(p);
     if (!p->pools_bytes) {
         return tool_fail(file->path, "the slots of a crowd's pools: as many as bodies are wanted");
     }

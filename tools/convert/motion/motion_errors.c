@@ -95,7 +95,7 @@ static int open_player(const raw_skeleton *s, const raw_clip *raw, const byte_bu
     const uint32_t joints = raw->joint_count;
     const raw_skeleton none = { NULL, 0, NULL, s->unit_cm };
     uint32_t floats = 0;
-    size_t rates, levels;
+    size_t rates, points, levels;
     for (uint32_t g = 0; g < raw->float_count; g++) {
         floats += raw->floats[g].width;
     }
@@ -114,7 +114,9 @@ static int open_player(const raw_skeleton *s, const raw_clip *raw, const byte_bu
     fill_set(raw, s->unit_cm, p);
     rates = noh_time_lod_measure_size(&p->probe);
     levels = noh_joint_lod_measure_size(&p->probe);
+    points = noh_time_points_size(&p->probe);
     p->work_bytes = rates > levels ? rates : levels;
+    p->work_bytes = points > p->work_bytes ? points : p->work_bytes;
     p->work = malloc(p->work_bytes + 1u);
     return !p->work;
 }
@@ -141,20 +143,27 @@ static int settle(float *errors, uint32_t count)
     return fine;
 }
 
-int motion_errors_measure(const raw_skeleton *skeleton, const raw_clip *raw, const byte_buffer *clip, const float *reach, double shell_cm,
-                          motion_errors *out, model_error *error)
+/* points: NULL: by what the joints reach. */
+static int measure_rates(player *p, const noh_time_points *points, float *out)
 {
-    const double shell = shell_cm / skeleton->unit_cm;
+    return points ? noh_time_points_measure(p->work, p->work_bytes, &p->probe, points, 0, out, NULL) != NOH_OK
+                  : noh_time_lod_measure(p->work, p->work_bytes, &p->probe, 0, out, NULL) != NOH_OK;
+}
+
+int motion_errors_measure(const raw_skeleton *skeleton, const raw_clip *raw, const byte_buffer *clip, const motion_flesh *flesh, motion_errors *out,
+                          model_error *error)
+{
+    const double shell = flesh->shell_cm / skeleton->unit_cm;
     uint32_t counts[NOH_JOINT_LEVELS_MAX];
     player p;
-    int failed = open_player(skeleton, raw, clip, reach, shell, &p);
+    int failed = open_player(skeleton, raw, clip, flesh->reach, shell, &p);
     memset(out, 0, sizeof *out);
     if (!failed && raw->joint_count) {
-        out->shell = reach ? 0.0f : (float)shell;
+        out->shell = flesh->reach ? 0.0f : (float)shell;
         out->level_count = joint_levels(skeleton, counts);
         failed = !out->level_count || noh_joint_lod_measure(p.work, p.work_bytes, &p.probe, 0, counts, out->level_count, out->joint, NULL);
     }
-    failed = failed || noh_time_lod_measure(p.work, p.work_bytes, &p.probe, 0, out->rate, NULL);
+    failed = failed || measure_rates(&p, raw->joint_count && flesh->reach ? flesh->points : NULL, out->rate);
     close_player(&p);
     if (failed) {
         return model_fail(error, "", "out of memory");

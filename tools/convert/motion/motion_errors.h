@@ -3,6 +3,7 @@
 #ifndef NOH_CONVERT_MOTION_ERRORS_H
 #define NOH_CONVERT_MOTION_ERRORS_H
 
+#include "character/time_lod_points.h"
 #include "convert/pack/byte_buffer.h"
 #include "pack/format.h"
 #include "raw_clip.h"
@@ -15,11 +16,18 @@ typedef struct motion_errors {
     uint32_t level_count;              /* 0 without joints */
 } motion_errors;
 
+/* What a clip is measured by. Borrowed. */
+typedef struct motion_flesh {
+    const float *reach;            /* [joint_count] joint_reach of the skeleton; NULL: no mesh is bound to it, points lie `shell_cm` from
+                                    * each joint */
+    const noh_time_points *points; /* vertices that the rates are measured by; read only with `reach` */
+    double shell_cm;
+} motion_flesh;
+
 /* Measure a clip as its decoder plays it.
  * clip     the encoded one, of `raw`
- * reach    [joint_count] joint_reach of the skeleton; NULL: no mesh is bound to it, points lie `shell_cm` from each joint
  * errors   1 and *error: out of memory, or errors beyond what a float holds */
-int motion_errors_measure(const raw_skeleton *skeleton, const raw_clip *raw, const byte_buffer *clip, const float *reach, double shell_cm,
-                          motion_errors *out, model_error *error);
+int motion_errors_measure(const raw_skeleton *skeleton, const raw_clip *raw, const byte_buffer *clip, const motion_flesh *flesh, motion_errors *out,
+                          model_error *error);
 
 #endif

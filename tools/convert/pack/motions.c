@@ -7,6 +7,7 @@
 #include "anim/time.h"
 #include "base/hash.h"
 #include "convert/skin/joint_order.h"
+#include "convert/skin/joint_points.h"
 #include "convert/skin/joint_reach.h"
 #include "convert/motion/loop_check.h"
 #include "pack/format.h"
@@ -123,8 +124,7 @@ static int encode_bounded(const raw_set *set, const raw_clip *clip, const motion
     return failed;
 }
 
-/* reach: NULL: no mesh is bound to the skeleton. */
-static int encode_clip(const raw_set *set, raw_clip *clip, const float *reach, const motion_settings *s, motion_clip *out, model_error *error)
+static int encode_clip(const raw_set *set, raw_clip *clip, const motion_flesh *flesh, const motion_settings *s, motion_clip *out, model_error *error)
 {
     clip->loop = (uint8_t)(clip->loop || s->check_loops);
     if (s->progress) {
@@ -132,7 +132,7 @@ static int encode_clip(const raw_set *set, raw_clip *clip, const float *reach, c
         fflush(s->progress);
     }
     if (check_length(clip, error) || check_markers(clip, error) || encode_bounded(set, clip, s, out, error) ||
-        motion_errors_measure(&set->skeleton, clip, &out->bytes, reach, shell_cm(s), &out->errors, error)) {
+        motion_errors_measure(&set->skeleton, clip, &out->bytes, flesh, &out->errors, error)) {
         return 1;
     }
     if (s->report) {
@@ -141,22 +141,33 @@ static int encode_clip(const raw_set *set, raw_clip *clip, const float *reach, c
     return s->check_loops && clip->joint_count ? report_loop(set, clip, s, error) : 0;
 }
 
+/* reach[joint_count], points: to be filled, and freed, also where it fails. */
+static int open_flesh(const motion_settings *s, uint32_t index, uint32_t joint_count, float *reach, joint_points *points, motion_flesh *flesh)
+{
+    memset(points, 0, sizeof *points);
+    flesh->shell_cm = shell_cm(s);
+    flesh->reach = reach && joint_reach(s->m, index, joint_count, reach) ? reach : NULL;
+    flesh->points = flesh->reach ? &points->points : NULL;
+    return !reach || (flesh->reach && joint_points_choose(s->m, index, joint_count, points));
+}
+
 static int encode_set(motions *m, uint32_t index, const motion_settings *s, model_error *error)
 {
     raw_set *set = m->sets[index];
     float *reach = malloc((set->skeleton.joint_count + 1u) * sizeof *reach);
-    const float *known = reach && joint_reach(s->m, index, set->skeleton.joint_count, reach) ? reach : NULL;
-    int failed = 0;
-    if (!reach) {
+    joint_points points;
+    motion_flesh flesh;
+    int failed = open_flesh(s, index, set->skeleton.joint_count, reach, &points, &flesh);
+    if (failed) {
         snprintf(error->what, sizeof error->what, "out of memory");
-        return 1;
     }
     for (uint32_t c = 0; c < set->clip_count && !failed; c++) {
         motion_clip *to = &m->clips[m->clip_count++];
         to->set = index;
         to->raw = &set->clips[c];
-        failed = encode_clip(set, &set->clips[c], known, s, to, error);
+        failed = encode_clip(set, &set->clips[c], &flesh, s, to, error);
     }
+    joint_points_free(&points);
     free(reach);
     return failed;
 }

@@ -84,7 +84,6 @@ static int open_stand(fair *f, uint32_t i)
     o.height = HEIGHT;
     o.plain = i == PLAIN;
     o.pixels = o.plain ? 0.0f : knobs[i];
-    o.rate_error_m = i ? f->stands[0].crowd.rate_error_m : NULL;
     status = crowd_plan_make(&s->plan, &f->job->files[0], &g->caps, &o);
     if (!status) {
         s->memory = malloc((size_t)s->plan.cpu_bytes);
