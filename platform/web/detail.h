@@ -28,10 +28,4 @@ void web_detail_choose(web_detail *detail, const web_scene *scene, uint32_t item
 /* The item's weights without those of targets that cannot be seen: to be read at once. */
 const float *web_detail_weights(web_detail *detail, const web_scene *scene, uint32_t item);
 
-/* What to draw of the item: one part, or two while a level fades into another. Returns how many. */
-uint32_t web_detail_parts(const web_detail *detail, uint32_t item, noh_gl_detail parts[2]);
-
-/* The finest level that an item is drawn at, for noh_gl_morph_level. */
-uint32_t web_detail_finest(const web_detail *detail, uint32_t item);
-
 #endif

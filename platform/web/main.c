@@ -296,7 +296,7 @@ static noh_result update(void)
         const web_item *item = &web.scene.items[i];
         const float *matrices = web_motion_matrices(&web.motion, item) ? web.motion.matrices : NULL;
         web_detail_choose(&web.detail, &web.scene, i, matrices, &web.camera, height);
-        noh_gl_morph_level(web.morph, item->instance, web_detail_finest(&web.detail, i));
+        noh_gl_morph_level(web.morph, item->instance, noh_detail_drawn(&web.detail.states[i], web.detail.clock));
         noh_result result = noh_gl_morph_weights(web.morph, item->instance, web_detail_weights(&web.detail, &web.scene, i), &web.error);
         if (result) return result;
         if (matrices) noh_gl_skin_set(web.skin, item->instance, matrices);
@@ -309,15 +309,16 @@ static noh_result update(void)
 static void draw_item(uint32_t index, int pass)
 {
     const web_item *item = &web.scene.items[index];
-    noh_gl_detail parts[2];
-    uint32_t part_count = web_detail_parts(&web.detail, index, parts);
+    noh_detail_part parts[2];
+    const uint32_t part_count = noh_detail_parts(&web.detail.states[index], web.detail.clock, parts);
     noh_gl_morph_binding morph = noh_gl_morph_binding_of(web.morph, item->instance);
     noh_gl_skin_binding skin;
     int is_skinned = web.scene.meshes[item->mesh].header->skin != NOH_NONE;
     if (is_skinned) skin = noh_gl_skin_binding_of(web.skin, item->instance);
     for (uint32_t k = 0; k < part_count; k++) {
+        const noh_gl_detail detail = {parts[k].level, parts[k].from, parts[k].to};
         noh_gl_draw_mesh(&web.renderer, &web.meshes[item->mesh], web_scene_world(&web.scene, item), web.at_rest ? NULL : &morph,
-                         is_skinned ? &skin : NULL, &parts[k], web.pictures, pass);
+                         is_skinned ? &skin : NULL, &detail, web.pictures, pass);
     }
 }
 

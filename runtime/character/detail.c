@@ -102,6 +102,22 @@ float noh_detail_scale(float distance_m, float field_of_view_rad, uint32_t viewp
     return (float)viewport_height * cosine / (2.0f * distance * sine);
 }
 
+float noh_detail_depth(const float view_projection[16], const float world[12], const float box[6])
+{
+    const float *m = view_projection;
+    float nearest = 0.0f;
+    for (int corner = 0; corner < 8; corner++) {
+        const float x = box[corner & 1 ? 3 : 0], y = box[corner & 2 ? 4 : 1], z = box[corner & 4 ? 5 : 2];
+        float depth = m[15];
+        for (int r = 0; r < 3; r++) {
+            const float *row = world + 4 * r;
+            depth += m[4 * r + 3] * (row[0] * x + row[1] * y + row[2] * z + row[3]);
+        }
+        nearest = corner && nearest < depth ? nearest : depth;
+    }
+    return nearest;
+}
+
 /* What the whole knob is in metres, at a scale. */
 static double knob_metres(const noh_detail_settings *s, float pixels_per_metre)
 {
@@ -168,6 +184,13 @@ static errors rate_errors(const noh_detail_table *t, const float *rate_error_m)
     return e;
 }
 
+/* What was chosen before has no say. */
+static void forget_levels(noh_detail *d)
+{
+    d->fade_ticks = 0;
+    d->mesh = d->mesh_before = d->joints = d->influences = d->rate = 0;
+}
+
 void noh_detail_choose(noh_detail *d, const noh_detail_table *t, const noh_detail_settings *s, float pixels_per_metre,
                        const float *rate_error_m, int64_t clock)
 {
@@ -175,6 +198,9 @@ void noh_detail_choose(noh_detail *d, const noh_detail_table *t, const noh_detai
     errors mesh = errors_of(t, NOH_DETAIL_MESH), joints = errors_of(t, NOH_DETAIL_JOINTS);
     errors influences = errors_of(t, NOH_DETAIL_INFLUENCES), rates = rate_errors(t, rate_error_m);
     float coarser;
+    if (!d->started) {
+        forget_levels(d);
+    }
     d->pixels_per_metre = pixels_per_metre;
     choose_mesh(d, &mesh, s, limits_of(s, NOH_DETAIL_MESH, knob_m), clock);
     d->joints = choose_level(&joints, d->joints, limits_of(s, NOH_DETAIL_JOINTS, knob_m));
@@ -203,9 +229,18 @@ uint32_t noh_detail_finest(const noh_detail *d)
 void noh_detail_cut(noh_detail *d)
 {
     d->started = 0;
-    d->fade_ticks = 0;
     d->mesh_limit = d->mesh_wanted = 0;
-    d->mesh = d->mesh_before = d->joints = d->influences = d->rate = 0; /* what was chosen before has no say */
+    forget_levels(d);
+}
+
+void noh_detail_fix(noh_detail *d, const noh_detail_table *t, uint32_t level, float pixels_per_metre)
+{
+    static const noh_detail none;
+    const uint32_t last = t->mesh_level_count ? t->mesh_level_count - 1u : 0;
+    *d = none;
+    d->mesh = d->mesh_before = (uint8_t)(level < last ? level : last);
+    d->error_m = t->mesh_level_count ? t->meshes[d->mesh].error_m : 0.0f;
+    d->pixels_per_metre = pixels_per_metre;
 }
 
 float noh_detail_fade(const noh_detail *d, int64_t clock)
@@ -217,6 +252,25 @@ float noh_detail_fade(const noh_detail *d, int64_t clock)
     }
     x = since > 0 ? (float)since / (float)d->fade_ticks : 0.0f;
     return x * x * (3.0f - 2.0f * x);
+}
+
+uint32_t noh_detail_parts(const noh_detail *d, int64_t clock, noh_detail_part parts[2])
+{
+    const float fade = noh_detail_fade(d, clock);
+    const noh_detail_part whole = { fade < 1.0f ? d->mesh_before : d->mesh, 0.0f, 1.0f };
+    const noh_detail_part comes = { d->mesh, 0.0f, fade }, goes = { d->mesh_before, fade, 1.0f };
+    if (fade > 0.0f && fade < 1.0f) {
+        parts[0] = comes;
+        parts[1] = goes;
+        return 2;
+    }
+    parts[0] = whole;
+    return 1;
+}
+
+uint32_t noh_detail_drawn(const noh_detail *d, int64_t clock)
+{
+    return noh_detail_fade(d, clock) < 1.0f && d->mesh_before < d->mesh ? d->mesh_before : d->mesh;
 }
 
 float noh_detail_error_pixels(const noh_detail *d)

@@ -97,6 +97,11 @@ NOH_STATIC_ASSERT(sizeof(noh_detail) == 32, detail);
  * the nearest point instead of its distance to be right across the line of sight there too */
 float noh_detail_scale(float distance_m, float field_of_view_rad, uint32_t viewport_height);
 
+/* The depth of the nearest corner of a box, in world units; below 0: behind the camera.
+ * shapes  view_projection column-major with a last row of (-z, distance) as perspective has it; world[12] rows of 3 x 4;
+ *         box: smallest and largest x, y, z (noh_mesh_box, noh_skin_box) */
+float noh_detail_depth(const float view_projection[16], const float world[12], const float box[6]);
+
 /* Check what a pack or a program brings, once.
  * errors  DATA (where: the level) a count or an error that is not finite, negative, or smaller than that
  *         before it; ARG a count over the limit, named */
@@ -112,6 +117,10 @@ noh_result noh_detail_settings_check(const noh_detail_settings *settings, noh_er
 void noh_detail_choose(noh_detail *d, const noh_detail_table *table, const noh_detail_settings *settings, float pixels_per_metre,
                        const float *rate_error_m, int64_t clock);
 
+/* Show one mesh level whatever the knob says (past the last: that one), and all of everything else. The next choice is
+ * made afresh. */
+void noh_detail_fix(noh_detail *d, const noh_detail_table *table, uint32_t level, float pixels_per_metre);
+
 /* The camera has jumped, or the character was not seen: choose afresh, without a fade. */
 void noh_detail_cut(noh_detail *d);
 
@@ -125,6 +134,18 @@ uint32_t noh_detail_finest(const noh_detail *d);
 /* How far a change of mesh level has come: 0 mesh_before alone, 1 mesh alone; smooth at both ends. For a
  * geomorph along the collapsed edges, or a dither of two draws. No other change begins before it is 1. */
 float noh_detail_fade(const noh_detail *d, int64_t clock);
+
+/* One of the draws that a dithered fade takes: a level, and the pixels that are its, as in noh_gl_detail. */
+typedef struct noh_detail_part {
+    uint32_t level;
+    float from, to;
+} noh_detail_part;
+
+/* What to draw: one part with all pixels, or, while a level fades, that which comes and that which goes. Returns how many. */
+uint32_t noh_detail_parts(const noh_detail *d, int64_t clock, noh_detail_part parts[2]);
+
+/* The finest level that is drawn now or in the fade that has begun: for noh_gl_morph_level. */
+uint32_t noh_detail_drawn(const noh_detail *d, int64_t clock);
 
 /* Leave out morph targets that cannot be seen: the smallest |weight| * reach first, for as long as their sum
  * is within the share. Sets d->skipped_m to that sum. Costs two passes over the weights where all go, else a few more: 33 at most.

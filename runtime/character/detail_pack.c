@@ -165,6 +165,13 @@ uint32_t noh_detail_mesh_levels(const noh_mesh *mesh, noh_mesh_level *levels)
     return count;
 }
 
+void noh_detail_target_reach(const noh_mesh *mesh, float *reach_m)
+{
+    for (uint32_t t = 0; t < mesh->header->target_count; t++) {
+        reach_m[t] = mesh->targets[t].max_displacement * mesh->header->world_scale;
+    }
+}
+
 /* Where the mesh was built without levels, nothing is known of fewer influences: all are always used. */
 static uint32_t fill_influences(const noh_mesh_header *h, noh_influence_level *levels)
 {
@@ -208,9 +215,7 @@ static void fill(const noh_detail_pack_desc *desc, const source *s, parts *p, no
     }
     if (desc->mesh) {
         detail->reach_m = p->reach;
-        for (uint32_t t = 0; t < s->target_count; t++) {
-            p->reach[t] = desc->mesh->targets[t].max_displacement * desc->mesh->header->world_scale;
-        }
+        noh_detail_target_reach(desc->mesh, p->reach);
         detail->table.meshes = p->meshes;
         detail->table.mesh_level_count = noh_detail_mesh_levels(desc->mesh, p->meshes);
     }

@@ -34,6 +34,10 @@ typedef struct noh_detail_pack {
  * returns  how many there are */
 uint32_t noh_detail_mesh_levels(const noh_mesh *mesh, noh_mesh_level *levels);
 
+/* What each target moves at most at weight 1, metres, for noh_detail_targets.
+ * shapes  reach_m[target_count] */
+void noh_detail_target_reach(const noh_mesh *mesh, float *reach_m);
+
 /* Exact bytes; 0 for an impossible desc. Of the set only anim.motion_count and skeleton.joint_count are read: before there
  * is one, zeros with the counts of noh_motion_set_needs.shape do. */
 size_t noh_detail_pack_size(const noh_detail_pack_desc *desc);

@@ -390,6 +390,82 @@ static double greedy_sum(const float *weights, const float *reach, double room)
     return sum;
 }
 
+/* Both parts of a fade have all pixels together, each of a level that is shown; what is drawn has memory. */
+static void parts_of_a_fade_are_all_pixels(void **state)
+{
+    const uint8_t ways[2][2] = { { 1, 2 }, { 3, 0 } }; /* from, to */
+    (void)state;
+    for (int way = 0; way < 2; way++) {
+        noh_detail d;
+        noh_detail_part parts[2];
+        memset(&d, 0, sizeof d);
+        d.mesh_before = ways[way][0];
+        d.mesh = ways[way][1];
+        d.fade_start = 1000;
+        d.fade_ticks = 400;
+        for (int64_t clock = 1000; clock <= 1400; clock += 100) {
+            const float fade = noh_detail_fade(&d, clock);
+            const uint32_t count = noh_detail_parts(&d, clock, parts), drawn = noh_detail_drawn(&d, clock);
+            if (clock == 1000 || clock == 1400) {
+                assert_int_equal(count, 1);
+                assert_int_equal(parts[0].level, clock == 1000 ? d.mesh_before : d.mesh);
+                assert_true(parts[0].from == 0.0f && parts[0].to == 1.0f);
+            } else {
+                assert_int_equal(count, 2);
+                assert_int_equal(parts[0].level, d.mesh);
+                assert_int_equal(parts[1].level, d.mesh_before);
+                assert_true(parts[0].from == 0.0f && parts[0].to == fade && parts[1].from == fade && parts[1].to == 1.0f);
+            }
+            assert_int_equal(drawn, clock == 1400 ? d.mesh : d.mesh < d.mesh_before ? d.mesh : d.mesh_before);
+        }
+    }
+}
+
+static void a_fixed_level_has_no_say_afterwards(void **state)
+{
+    const noh_detail_table t = table_of();
+    const noh_detail_settings s = settings_of(1.0f);
+    noh_detail d, fresh;
+    noh_detail_part parts[2];
+    (void)state;
+    for (uint32_t level = 0; level < LEVELS + 2u; level++) {
+        memset(&d, 0xa5, sizeof d);
+        noh_detail_fix(&d, &t, level, 7.0f);
+        assert_int_equal(noh_detail_parts(&d, 123, parts), 1);
+        assert_int_equal(parts[0].level, level < LEVELS ? level : LEVELS - 1u);
+        assert_int_equal(noh_detail_drawn(&d, 123), parts[0].level);
+        assert_true(d.error_m == meshes[parts[0].level].error_m && noh_detail_error_pixels(&d) == 7.0f * d.error_m);
+        memset(&fresh, 0, sizeof fresh);
+        noh_detail_choose(&d, &t, &s, 40.0f, rates, 500); /* where hysteresis holds a coarser level that is there already */
+        noh_detail_choose(&fresh, &t, &s, 40.0f, rates, 500);
+        assert_memory_equal(&d, &fresh, sizeof d);
+    }
+}
+
+/* Against what every corner comes to in double precision. */
+static void depth_is_that_of_the_nearest_corner(void **state)
+{
+    test_random r = test_random_from(91);
+    (void)state;
+    for (int round = 0; round < 200; round++) {
+        float m[16], world[12], box[6];
+        double nearest = 1e30;
+        for (int i = 0; i < 16; i++) m[i] = test_random_float(&r, -2.0f, 2.0f);
+        for (int i = 0; i < 12; i++) world[i] = test_random_float(&r, -3.0f, 3.0f);
+        for (int i = 0; i < 3; i++) box[i] = test_random_float(&r, -1.0f, 0.0f), box[3 + i] = test_random_float(&r, 0.0f, 1.0f);
+        for (int corner = 0; corner < 8; corner++) {
+            double depth = (double)m[15];
+            for (int row = 0; row < 3; row++) {
+                double at = (double)world[4 * row + 3];
+                for (int c = 0; c < 3; c++) at += (double)world[4 * row + c] * (double)box[corner >> c & 1 ? 3 + c : c];
+                depth += (double)m[4 * row + 3] * at;
+            }
+            nearest = fmin(nearest, depth);
+        }
+        assert_true(fabs((double)noh_detail_depth(m, world, box) - nearest) < 1e-4);
+    }
+}
+
 static void skipped_targets_are_the_smallest_and_bounded(void **state)
 {
     noh_detail_settings s = settings_of(0.0f);
@@ -484,6 +560,9 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_limit_holds_finer_levels_back),
         cmocka_unit_test(a_limit_sends_away_what_is_too_fine),
         cmocka_unit_test(fade_is_smooth_and_alone),
+        cmocka_unit_test(parts_of_a_fade_are_all_pixels),
+        cmocka_unit_test(a_fixed_level_has_no_say_afterwards),
+        cmocka_unit_test(depth_is_that_of_the_nearest_corner),
         cmocka_unit_test(skipped_targets_are_the_smallest_and_bounded),
         cmocka_unit_test(equal_targets_go_by_index),
         cmocka_unit_test(a_larger_target_never_goes_first),

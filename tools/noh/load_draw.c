@@ -4,20 +4,13 @@
 void load_set_detail(load *l, uint32_t item, const noh_detail *detail, int64_t clock)
 {
     load_detail *d = &l->details[item];
-    const float come = l->renderer.fades ? noh_detail_fade(detail, clock) : 1.0f; /* how far */
-    const noh_gl_detail whole = { come < 1.0f ? detail->mesh_before : detail->mesh, 0.0f, 1.0f };
-    const int finer_comes = detail->mesh < detail->mesh_before;
-    d->parts[0] = whole;
-    d->part_count = 1;
-    if (come > 0.0f && come < 1.0f && detail->mesh != detail->mesh_before) {
-        d->parts[0].level = detail->mesh;
-        d->parts[0].to = come;
-        d->parts[1].level = detail->mesh_before;
-        d->parts[1].from = come;
-        d->parts[1].to = 1.0f;
-        d->part_count = 2;
+    const int fades = l->renderer.fades;
+    noh_detail_part parts[2] = { { detail->mesh, 0.0f, 1.0f }, { 0, 0.0f, 0.0f } };
+    d->part_count = fades ? noh_detail_parts(detail, clock, parts) : 1;
+    for (uint32_t i = 0; i < d->part_count; i++) {
+        d->parts[i] = (noh_gl_detail){ parts[i].level, parts[i].from, parts[i].to };
     }
-    noh_gl_morph_level(l->morph.morph, l->item_instances[item], finer_comes ? detail->mesh : whole.level);
+    noh_gl_morph_level(l->morph.morph, l->item_instances[item], fades ? noh_detail_drawn(detail, clock) : detail->mesh);
 }
 
 static void draw_item(load *l, uint32_t item, int pass)

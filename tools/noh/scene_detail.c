@@ -1,6 +1,5 @@
 #include "scene_detail.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,8 +9,8 @@ static int open_item(item_detail *item, const noh_mesh *mesh)
     item->table.meshes = item->levels;
     item->table.mesh_level_count = noh_detail_mesh_levels(mesh, item->levels);
     item->reach_m = calloc(targets + 1u, sizeof *item->reach_m);
-    for (uint32_t t = 0; item->reach_m && t < targets; t++) {
-        item->reach_m[t] = mesh->targets[t].max_displacement * mesh->header->world_scale;
+    if (item->reach_m) {
+        noh_detail_target_reach(mesh, item->reach_m);
     }
     return !item->reach_m;
 }
@@ -63,42 +62,23 @@ static void item_box(const scene_detail *d, const scene *s, uint32_t item, float
     noh_skin_box(mesh, d->matrices, weights, box);
 }
 
-float scene_detail_scale(const scene_detail *d, const pack_file *file, const scene *s, uint32_t item, const orbit *at, uint32_t height)
+float scene_detail_scale(const scene_detail *d, const pack_file *file, const scene *s, uint32_t item, const noh_gl_camera *camera,
+                         uint32_t height)
 {
-    const float *world = scene_world(s, file, item);
-    double right[3], up[3], back[3], nearest = INFINITY;
     float box[6];
-    orbit_axes(at, right, up, back);
     item_box(d, s, item, box);
-    for (int corner = 0; corner < 8; corner++) {
-        double depth = at->distance;
-        for (int r = 0; r < 3; r++) {
-            const float *row = world + 4 * r;
-            const float x = box[corner & 1 ? 3 : 0], y = box[corner & 2 ? 4 : 1], z = box[corner & 4 ? 5 : 2];
-            depth -= back[r] * ((double)(row[0] * x + row[1] * y + row[2] * z + row[3]) - at->center[r]);
-        }
-        nearest = fmin(nearest, depth);
-    }
-    return noh_detail_scale((float)nearest, (float)ORBIT_VIEW_RAD, height);
+    return noh_detail_scale(noh_detail_depth(camera->view_projection, scene_world(s, file, item), box), (float)ORBIT_VIEW_RAD, height);
 }
 
 void scene_detail_choose(scene_detail *d, uint32_t item, const noh_detail_settings *settings, float pixels_per_metre, int64_t clock)
 {
     item_detail *i = &d->items[item];
-    if (!i->state.started) {
-        noh_detail_cut(&i->state);
-    }
     noh_detail_choose(&i->state, &i->table, settings, pixels_per_metre, NULL, clock);
 }
 
 void scene_detail_fix(scene_detail *d, uint32_t item, uint32_t level, float pixels_per_metre)
 {
-    item_detail *i = &d->items[item];
-    const uint32_t last = i->table.mesh_level_count - 1u;
-    memset(&i->state, 0, sizeof i->state);
-    i->state.mesh = i->state.mesh_before = (uint8_t)(level < last ? level : last);
-    i->state.error_m = i->levels[i->state.mesh].error_m;
-    i->state.pixels_per_metre = pixels_per_metre;
+    noh_detail_fix(&d->items[item].state, &d->items[item].table, level, pixels_per_metre);
 }
 
 uint32_t scene_detail_targets(scene_detail *d, uint32_t item, const noh_detail_settings *settings, const float *weights, uint32_t count,

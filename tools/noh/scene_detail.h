@@ -31,7 +31,8 @@ int scene_detail_open(scene_detail *d, const pack_file *file, const scene *s);
 void scene_detail_close(scene_detail *d);
 
 /* As the item is posed, in a picture of that height; by its depth, so that it holds across the picture. */
-float scene_detail_scale(const scene_detail *d, const pack_file *file, const scene *s, uint32_t item, const orbit *at, uint32_t height);
+float scene_detail_scale(const scene_detail *d, const pack_file *file, const scene *s, uint32_t item, const noh_gl_camera *camera,
+                         uint32_t height);
 
 /* The first time, and after scene_detail_fix, without a fade. */
 void scene_detail_choose(scene_detail *d, uint32_t item, const noh_detail_settings *settings, float pixels_per_metre, int64_t clock);

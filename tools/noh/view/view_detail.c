@@ -51,13 +51,15 @@ static void note_item(view_detail *d, const noh_detail *state)
 
 void view_detail_frame(view_detail *d, view_model *m, const orbit *at, double seconds)
 {
+    noh_gl_camera camera;
+    orbit_camera(at, &camera);
     d->clock += (int64_t)(seconds * NOH_TICKS_PER_SECOND);
     d->finest = NOH_LEVELS_MAX;
     d->coarsest = d->left_out = 0;
     d->fade = 1.0f;
     d->error_px = 0.0f;
     for (uint32_t i = 0; !m->stage.bones && m->costs.count > 1 && i < m->detail.item_count; i++) {
-        choose_item(d, m, i, scene_detail_scale(&m->detail, &m->file, &m->scene, i, at, m->stage.canvas.height));
+        choose_item(d, m, i, scene_detail_scale(&m->detail, &m->file, &m->scene, i, &camera, m->stage.canvas.height));
         note_item(d, &m->detail.items[i].state);
         load_set_detail(&m->stage.load, i, &m->detail.items[i].state, d->clock);
     }
