@@ -1,5 +1,20 @@
 #include "base/arena.h"
 
+noh_result noh_arena_open(noh_arena *arena, void *memory, size_t bytes, size_t need, noh_error *error)
+{
+    if (!memory) {
+        return noh_fail(error, NOH_ERR_ARG, "memory is NULL", 0, need);
+    }
+    if (((uintptr_t)memory & (NOH_MEMORY_ALIGN - 1u)) != 0) {
+        return noh_fail(error, NOH_ERR_ARG, "memory is not aligned to 16 bytes", (uintptr_t)memory & (NOH_MEMORY_ALIGN - 1u), need);
+    }
+    if (bytes < need) {
+        return noh_fail(error, NOH_ERR_MEMORY, "memory is too small", bytes, need);
+    }
+    *arena = noh_arena_over(memory, bytes);
+    return NOH_OK;
+}
+
 noh_arena noh_arena_over(void *memory, size_t bytes)
 {
     noh_arena arena = { (uint8_t *)memory, memory ? bytes : 0, 0 };
@@ -15,6 +30,7 @@ noh_arena noh_arena_measure(void)
 void *noh_arena_carve(noh_arena *arena, size_t bytes, size_t alignment)
 {
     size_t start = (arena->used + alignment - 1) & ~(alignment - 1);
+    NOH_ASSERT(alignment && alignment <= NOH_MEMORY_ALIGN && (alignment & (alignment - 1u)) == 0);
     if (start < arena->used || bytes > SIZE_MAX - start) {
         arena->used = SIZE_MAX;
         return NULL;

@@ -8,19 +8,29 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/result.h"
+
+#define NOH_MEMORY_ALIGN 16u /* of every block that an init takes */
+
 typedef struct noh_arena {
     uint8_t *base;
     size_t bytes; /* of the block */
     size_t used;  /* carved so far; may pass `bytes`, carving then gives NULL */
 } noh_arena;
 
-/* An arena over memory[bytes]; memory must be 16-byte aligned. */
+/* Open the block that an init was given; every init begins with this call, so that all refuse the same things.
+ * need    the exact bytes that will be carved
+ * errors  ARG memory is NULL or not aligned to NOH_MEMORY_ALIGN; MEMORY it is too small (where: its bytes). `need` is
+ *         always the bytes needed. The arena is then untouched */
+noh_result noh_arena_open(noh_arena *arena, void *memory, size_t bytes, size_t need, noh_error *error);
+
+/* An arena over memory[bytes], which must be aligned to NOH_MEMORY_ALIGN. */
 noh_arena noh_arena_over(void *memory, size_t bytes);
 
 /* An arena that only measures. */
 noh_arena noh_arena_measure(void);
 
-/* Carve bytes at the alignment (a power of two, at most 16). NULL when the
+/* Carve bytes at the alignment (a power of two, at most NOH_MEMORY_ALIGN). NULL when the
  * block is exhausted or the arena measures. */
 void *noh_arena_carve(noh_arena *arena, size_t bytes, size_t alignment);
 

@@ -9,6 +9,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/assert.h"
+
 typedef enum noh_result {
     NOH_OK = 0,
     NOH_ERR_ARG,         /* a desc field is out of its range: `what` names it */
@@ -35,15 +37,5 @@ const char *noh_result_text(noh_result result);
 
 /* Fill `error` (which may be NULL) and return its result. */
 noh_result noh_fail(noh_error *error, noh_result result, const char *what, uint64_t where, uint64_t need);
-
-/* Caller bugs only, never file bytes. Define NOH_ASSERT before building to
- * route it into your own handler; the default does nothing, because the
- * library links no libc that could report. */
-#ifndef NOH_ASSERT
-#define NOH_ASSERT(condition) ((void)0)
-#endif
-
-/* A compile-time check that works in C99. */
-#define NOH_STATIC_ASSERT(condition, name) typedef char noh_static_assert_##name[(condition) ? 1 : -1]
 
 #endif
