@@ -545,6 +545,68 @@ static void errors_say_where(void **state)
     free(f.bytes);
 }
 
+/* Fields whose check is theirs alone: the error names the field's own byte. */
+#define PLACES(X) \
+    X(header->version, += 1) \
+    X(header->byte_count, += 64) \
+    X(header->chunk_count, = 0) \
+    X(header->reserved[10], = 1) \
+    X(texture->width, = 0) \
+    X(texture->wrap_s, = 9) \
+    X(materials[1].base_color_texture, = 7) \
+    X(materials[0].flags, = 16) \
+    X(mesh->flags, = 0x80000000u) \
+    X(mesh->vertex_count, = 0) \
+    X(mesh->index_count, -= 1) \
+    X(mesh->index_bytes, = 3) \
+    X(mesh->submesh_count, = 0) \
+    X(mesh->target_count, = NOH_TARGETS_MAX + 1u) \
+    X(mesh->rect_count, = f.mesh->texel_count + 1u) \
+    X(mesh->texel_count, = NOH_TEXELS_MAX + 1u) \
+    X(mesh->touched_count, = f.mesh->vertex_count + 1u) \
+    X(mesh->morph_width_log2, = 1) \
+    X(mesh->morph_height, += 1) \
+    X(mesh->attribute_stride, += 4) \
+    X(mesh->skin, = 0) \
+    X(mesh->level, = 1) \
+    X(mesh->level_count, = NOH_LEVELS_MAX + 1u) \
+    X(mesh->level_error_rest, = 1.0f) \
+    X(mesh->level_skipped, = 1.0f) \
+    X(mesh->influence_errors[1], = -1.0f) \
+    X(mesh->reserved[0], = 1) \
+    X(targets[1].position_bits, = 0) \
+    X(targets[1].position_scale, = -1.0f) \
+    X(nodes_header->node_count, = NOH_NODES_MAX + 1u) \
+    X(nodes[1].parent, = 1) \
+    X(nodes[1].mesh, = 1) \
+    X(nodes[0].first_weight, = 0) \
+    X(nodes[0].flags, = 1) \
+    X(motion->event_count, = NOH_MOTION_EVENTS_MAX + 1u) \
+    X(motion->marker_count, = NOH_MOTION_MARKERS_MAX + 1u) \
+    X(motion->rate_error[0], = 1.0f) \
+    X(motion->error_shell, = -1.0f)
+
+static void a_field_s_error_is_at_the_field(void **state)
+{
+    noh_error error = { NOH_OK, NULL, 0, 0 };
+    noh_pack pack;
+    size_t at;
+    forged f;
+    (void)state;
+#define X(field, lie) \
+    forge(&f); \
+    at = (size_t)((const uint8_t *)&f.field - f.bytes); \
+    f.field lie; \
+    pack_repair(f.bytes, f.count); \
+    assert_int_not_equal(noh_pack_open(f.bytes, f.count, &pack, &error), NOH_OK); \
+    if (error.where != at) { \
+        fail_msg("%s: byte %lu, not %zu (%s)", #field, (unsigned long)error.where, at, error.what); \
+    } \
+    free(f.bytes);
+    PLACES(X)
+#undef X
+}
+
 static void padding_has_to_be_zero(void **state)
 {
     forged f;
@@ -602,6 +664,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(an_honest_copy_opens),
     cmocka_unit_test(there_is_padding_behind_the_indices),
     cmocka_unit_test(errors_say_where),
+    cmocka_unit_test(a_field_s_error_is_at_the_field),
     cmocka_unit_test(padding_has_to_be_zero),
     cmocka_unit_test(bytes_after_the_last_chunk_are_refused),
 #define X(name, code, word, statement) \
