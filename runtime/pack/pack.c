@@ -228,6 +228,7 @@ noh_result noh_pack_open(const void *bytes, size_t byte_count, noh_pack *pack, n
     p.bytes = (const uint8_t *)bytes;
     p.byte_count = (uint32_t)byte_count;
     p.chunk_count = ((const noh_pack_header *)bytes)->chunk_count;
+    p.library_version = ((const noh_pack_header *)bytes)->library_version;
     p.chunks = (const noh_pack_chunk *)(const void *)(p.bytes + sizeof(noh_pack_header));
     result = open_chunks(&p, error);
     if (!result) result = check_tail(&p, error);
@@ -245,11 +246,13 @@ const char *noh_pack_chunk_name(const noh_pack *pack, uint32_t chunk)
     return chunk < pack->chunk_count ? noh_pack_string(pack, pack->chunks[chunk].name) : "";
 }
 
-noh_result noh_pack_texture(const noh_pack *pack, uint32_t index, noh_texture *texture)
+noh_result noh_pack_texture(const noh_pack *pack, uint32_t index, noh_texture *texture, noh_error *error)
 {
     const uint8_t *chunk;
+    NOH_ASSERT(pack && texture);
     if (index >= pack->texture_count) {
-        return NOH_ERR_NOT_FOUND;
+        return noh_fail(error, NOH_ERR_NOT_FOUND, pack->texture_count ? "texture index is past the pack's last texture" : "pack holds no texture",
+                        index, pack->texture_count);
     }
     chunk = pack->bytes + pack->chunks[pack->first_texture + index].offset;
     texture->name = noh_pack_chunk_name(pack, pack->first_texture + index);
