@@ -430,7 +430,7 @@ noh_motion_set *test_motion_set(const noh_motion_set_desc *desc)
 noh_mesh test_mesh(const noh_pack *pack, uint32_t index)
 {
     noh_mesh mesh;
-    assert_int_equal(noh_pack_mesh(pack, index, &mesh), NOH_OK);
+    assert_int_equal(noh_pack_mesh(pack, index, &mesh, NULL), NOH_OK);
     return mesh;
 }
 

@@ -179,7 +179,7 @@ static void fill_nodes(const noh_motion_binding *b, parts *p)
         const noh_clip_group *group = &p->groups[set->group_count++];
         const noh_node *n = &b->mesh->nodes[group->node];
         noh_mesh mesh;
-        (void)noh_pack_mesh(b->mesh, n->mesh, &mesh);
+        (void)noh_pack_mesh(b->mesh, n->mesh, &mesh, NULL);
         memcpy(p->defaults + group->first, n->first_weight == NOH_NONE ? mesh.weights : b->mesh->node_weights + n->first_weight,
                group->width * sizeof *p->defaults);
         set->anim.float_count = first;

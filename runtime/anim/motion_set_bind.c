@@ -12,7 +12,7 @@ static noh_result bind_skeleton(const noh_motion_set_desc *desc, noh_motion_bind
         return NOH_OK;
     }
     b->skeleton_index = desc->skeleton;
-    if (noh_pack_skeleton_at(b->mesh, desc->skeleton, &b->skeleton, &b->header) != NOH_OK) {
+    if (noh_pack_skeleton_at(b->mesh, desc->skeleton, &b->skeleton, &b->header, NULL) != NOH_OK) {
         return noh_fail(error, NOH_ERR_ARG, "skeleton of a motion set: the mesh pack has fewer", desc->skeleton, b->mesh->skeleton_count);
     }
     return NOH_OK;
@@ -24,7 +24,7 @@ static noh_result check_units(const noh_motion_binding *b, noh_error *error)
     for (uint32_t i = 0; b->header && i < b->clips->skeleton_count; i++) {
         noh_skeleton skeleton;
         const noh_skeleton_header *h;
-        noh_pack_skeleton_at(b->clips, i, &skeleton, &h);
+        noh_pack_skeleton_at(b->clips, i, &skeleton, &h, NULL);
         if (h->hash == b->header->hash && (h->unit_cm > b->header->unit_cm || h->unit_cm < b->header->unit_cm)) {
             return noh_fail(error, NOH_ERR_NOT_FOUND, "the clips' skeleton has another unit than the mesh's: build both in one unit, or in one pack",
                             i, 0);
@@ -50,7 +50,7 @@ int noh_motion_fits(const noh_motion_binding *b, uint32_t index, noh_pack_motion
 {
     noh_skeleton built_with;
     const noh_motion_header *h;
-    (void)noh_pack_motion_at(b->clips, index, motion);
+    (void)noh_pack_motion_at(b->clips, index, motion, NULL);
     h = motion->header;
     clip->bytes = motion->bytes;
     clip->byte_count = h->clip_bytes;
@@ -63,7 +63,7 @@ int noh_motion_fits(const noh_motion_binding *b, uint32_t index, noh_pack_motion
         (b->mesh == b->clips && h->skeleton != b->skeleton_index)) {
         return 0;
     }
-    (void)noh_pack_skeleton_at(b->clips, h->skeleton, &built_with, NULL);
+    (void)noh_pack_skeleton_at(b->clips, h->skeleton, &built_with, NULL, NULL);
     clip->bind = built_with.bind_pose;
     return 1;
 }
@@ -76,7 +76,7 @@ int noh_motion_next_node(const noh_motion_binding *b, uint32_t *node, uint32_t *
         if (n->mesh == NOH_NONE) {
             continue;
         }
-        (void)noh_pack_mesh(b->mesh, n->mesh, &mesh);
+        (void)noh_pack_mesh(b->mesh, n->mesh, &mesh, NULL);
         if (mesh.header->target_count) {
             group->name_hash = n->name_hash;
             group->node = (*node)++;

@@ -134,7 +134,7 @@ void noh_margins_add(const noh_mesh *mesh, const float *weights, float *margin_m
 {
     noh_skin skin;
     float deltas[6];
-    if (noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin)) {
+    if (noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin, NULL)) {
         return;
     }
     add_targets(mesh, weights, deltas);

@@ -31,7 +31,7 @@ typedef struct parts {
 static int is_of_skeleton(const source *s, const noh_mesh *mesh)
 {
     noh_skin skin;
-    return mesh->pack->bytes == s->pack->bytes && noh_pack_skin_at(s->pack, mesh->header->skin, &skin) == NOH_OK && skin.header->skeleton == s->skeleton;
+    return mesh->pack->bytes == s->pack->bytes && noh_pack_skin_at(s->pack, mesh->header->skin, &skin, NULL) == NOH_OK && skin.header->skeleton == s->skeleton;
 }
 
 /* The name of the field that is wrong; NULL: none. */
@@ -86,7 +86,7 @@ static float to_metres(const source *s, const noh_motion_header *h, float margin
     noh_skeleton skeleton;
     const noh_skeleton_header *of;
     float unit_m = 1.0f;
-    if (noh_pack_skeleton_at(s->clips, h->skeleton, &skeleton, &of) == NOH_OK) {
+    if (noh_pack_skeleton_at(s->clips, h->skeleton, &skeleton, &of, NULL) == NOH_OK) {
         unit_m = of->unit_cm * 0.01f;
     }
     return h->error_shell > 0.0f && margin > h->error_shell ? unit_m * (margin / h->error_shell) : unit_m;
@@ -124,7 +124,7 @@ static void fill_motions(const noh_detail_pack_desc *desc, const source *s, floa
         noh_pack_motion motion;
         noh_clip_info info;
         float metres, clip_error_m;
-        (void)noh_pack_motion_at(s->clips, desc->set->pack_motions[m], &motion);
+        (void)noh_pack_motion_at(s->clips, desc->set->pack_motions[m], &motion, NULL);
         metres = to_metres(s, motion.header, margin);
         for (uint32_t r = 0; r < NOH_RATE_COUNT; r++) {
             p->rates[m * (uint32_t)NOH_RATE_COUNT + r] = motion.header->rate_error[r] * metres;

@@ -200,7 +200,7 @@ static void finish(const noh_pick_surface *s, const ray *r, noh_pick_hit *hit)
 static uint32_t joint_count(const noh_mesh *mesh)
 {
     noh_skin skin;
-    return noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin) ? 0 : skin.header->joint_count;
+    return noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin, NULL) ? 0 : skin.header->joint_count;
 }
 
 size_t noh_pick_scratch_size(const noh_mesh *mesh)
@@ -251,7 +251,7 @@ noh_result noh_pick(const noh_pick_surface *surface, const float origin[3], cons
         }
     }
     if (nearest.triangle == NOH_NONE) {
-        return NOH_ERR_NOT_FOUND;
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "the ray hits nothing within its reach", 0, 0);
     }
     finish(surface, &r, &nearest);
     *hit = nearest;

@@ -26,7 +26,7 @@ typedef struct skin_job {
 
 /* ---- one matrix per vertex ---- */
 
-#if defined(__AVX2__)
+#if defined(NOH_AVX2)
 /* Two rows side by side, and one. */
 static inline void blend_rows(const float *const *from, const float *weights, uint32_t count, float m[12])
 {

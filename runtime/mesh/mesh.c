@@ -25,10 +25,12 @@ static void view_of(const noh_mesh_header *h, noh_mesh *mesh)
     mesh->joint_boxes = (const float *)(const void *)(chunk + h->joint_boxes_offset);
 }
 
-noh_result noh_pack_mesh(const noh_pack *pack, uint32_t index, noh_mesh *mesh)
+noh_result noh_pack_mesh(const noh_pack *pack, uint32_t index, noh_mesh *mesh, noh_error *error)
 {
+    NOH_ASSERT(pack && mesh);
     if (index >= pack->mesh_count) {
-        return NOH_ERR_NOT_FOUND;
+        return noh_fail(error, NOH_ERR_NOT_FOUND, pack->mesh_count ? "mesh index is past the pack's last mesh" : "pack holds no mesh", index,
+                        pack->mesh_count);
     }
     mesh->pack = pack;
     mesh->name = noh_pack_chunk_name(pack, pack->first_mesh + index);
@@ -44,11 +46,13 @@ noh_mesh noh_mesh_at_level(const noh_mesh *mesh, uint32_t level)
     return other;
 }
 
-noh_result noh_pack_skin_at(const noh_pack *pack, uint32_t index, noh_skin *skin)
+noh_result noh_pack_skin_at(const noh_pack *pack, uint32_t index, noh_skin *skin, noh_error *error)
 {
     const uint8_t *chunk;
+    NOH_ASSERT(pack && skin);
     if (index >= pack->skin_count) {
-        return NOH_ERR_NOT_FOUND;
+        return noh_fail(error, NOH_ERR_NOT_FOUND, index == NOH_NONE ? "a rigid mesh has no skin" : "skin index is past the pack's last skin",
+                        index, pack->skin_count);
     }
     chunk = pack->bytes + pack->chunks[pack->first_skin + index].offset;
     skin->name = noh_pack_chunk_name(pack, pack->first_skin + index);
@@ -75,7 +79,7 @@ uint32_t noh_mesh_find_target(const noh_mesh *mesh, const char *name)
             return i;
         }
     }
-    return mesh->header->target_count;
+    return NOH_NONE;
 }
 
 int noh_mesh_tangent_offset(const noh_mesh *mesh)

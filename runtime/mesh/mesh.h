@@ -41,18 +41,20 @@ typedef struct noh_vertex {
     float color[4];   /* linear; white without colours */
 } noh_vertex;
 
-/* The n-th mesh. NOT_FOUND past mesh_count. */
-noh_result noh_pack_mesh(const noh_pack *pack, uint32_t index, noh_mesh *mesh);
+/* The n-th mesh, its full level.
+ * errors  NOT_FOUND  past mesh_count (where: the index, need: the count); *mesh is untouched */
+noh_result noh_pack_mesh(const noh_pack *pack, uint32_t index, noh_mesh *mesh, noh_error *error);
 
 /* The same mesh at a level of detail, 0 the full one; past the last the coarsest. It is a mesh like any other: what
  * is made from it (layers, skinned vertices, GL buffers) has that level's size, and every coarser one is a part of it.
  * A view; `mesh` may be at any level. */
 noh_mesh noh_mesh_at_level(const noh_mesh *mesh, uint32_t level);
 
-/* The n-th skin. NOT_FOUND past skin_count; so for NOH_NONE, a rigid mesh's. */
-noh_result noh_pack_skin_at(const noh_pack *pack, uint32_t index, noh_skin *skin);
+/* The n-th skin; a mesh names its own in header->skin.
+ * errors  NOT_FOUND  past skin_count, so also for NOH_NONE, a rigid mesh's (where: the index, need: the count) */
+noh_result noh_pack_skin_at(const noh_pack *pack, uint32_t index, noh_skin *skin, noh_error *error);
 
-/* The target of that name; target_count when there is none. */
+/* The index of the target of that name, or NOH_NONE: weights[] has no place for it then. */
 uint32_t noh_mesh_find_target(const noh_mesh *mesh, const char *name);
 
 /* Decode a vertex of the rest pose: the arithmetic of shaders_es/common_attributes.glsl. */

@@ -32,7 +32,8 @@ typedef struct noh_pack_header {
     uint32_t byte_count;  /* of the whole file, a multiple of 64 */
     uint32_t chunk_count;
     uint32_t crc;         /* CRC-32C of the header (this field as 0) and the chunk table */
-    uint32_t reserved[11];
+    uint32_t library_version; /* NOH_VERSION_NUMBER of the noh that wrote it, for reports: any value opens; 0: before 0.2.0 */
+    uint32_t reserved[10];
 } noh_pack_header;
 
 typedef struct noh_pack_chunk {

@@ -11,6 +11,7 @@
 typedef struct noh_pack {
     const uint8_t *bytes;
     uint32_t byte_count;
+    uint32_t library_version; /* of the noh that wrote it (base/version.h); 0: before 0.2.0 */
     uint32_t chunk_count;
     const noh_pack_chunk *chunks;
     const char *strings;
@@ -46,7 +47,8 @@ const char *noh_pack_string(const noh_pack *pack, uint32_t offset);
 /* The name of the n-th chunk. */
 const char *noh_pack_chunk_name(const noh_pack *pack, uint32_t chunk);
 
-/* The n-th texture. NOT_FOUND past texture_count. */
-noh_result noh_pack_texture(const noh_pack *pack, uint32_t index, noh_texture *texture);
+/* The n-th texture.
+ * errors  NOT_FOUND  past texture_count (where: the index, need: the count); *texture is untouched */
+noh_result noh_pack_texture(const noh_pack *pack, uint32_t index, noh_texture *texture, noh_error *error);
 
 #endif

@@ -49,7 +49,7 @@ static void pose(side *s)
     noh_skin skin;
     uint32_t joints;
     float *matrices;
-    assert_int_equal(noh_pack_skin_at(s->mesh.pack, s->mesh.header->skin, &skin), NOH_OK);
+    assert_int_equal(noh_pack_skin_at(s->mesh.pack, s->mesh.header->skin, &skin, NULL), NOH_OK);
     joints = skin.header->joint_count;
     matrices = test_zeros(48u * (size_t)joints);
     for (uint32_t i = 0; i < COPIES; i++) {

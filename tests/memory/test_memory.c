@@ -581,7 +581,7 @@ static void pictures_and_the_renderer_take_what_they_say(void **state)
     noh_gl_ledger ledger;
     (void)state;
     memset(&ledger, 0, sizeof ledger);
-    assert_int_equal(noh_pack_texture(&pack, 0, &texture), NOH_OK);
+    assert_int_equal(noh_pack_texture(&pack, 0, &texture, NULL), NOH_OK);
     assert_int_equal(noh_gl_picture_create(&g->gl, &ledger, &texture, &picture, NULL), NOH_OK);
     assert_int_equal(noh_gl_ledger_bytes(&ledger), noh_gl_picture_bytes(&texture));
     assert_int_equal(noh_gl_renderer_create(&g->gl, &ledger, &desc, &renderer, NULL, 0, NULL), NOH_OK);

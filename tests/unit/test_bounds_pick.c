@@ -21,7 +21,7 @@ static void pose_mesh(const skin_asset *a, uint32_t index, const double *locals,
     noh_skin skin;
     memset(p, 0, sizeof *p);
     p->mesh = test_mesh(&a->pack, index);
-    assert_int_equal(noh_pack_skin_at(&a->pack, p->mesh.header->skin, &skin), NOH_OK);
+    assert_int_equal(noh_pack_skin_at(&a->pack, p->mesh.header->skin, &skin, NULL), NOH_OK);
     p->matrices = skin_asset_matrices(a, &p->mesh, locals);
     p->weights = test_zeros(4u * (size_t)p->mesh.header->target_count);
     p->positions = test_zeros(12u * (size_t)p->mesh.header->vertex_count);

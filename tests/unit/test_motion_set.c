@@ -130,9 +130,9 @@ static void alone_open(alone *a, const noh_pack *p, uint32_t index)
     noh_pack_motion m;
     const noh_clip *clips[1];
     size_t size;
-    noh_pack_motion_at(p, index, &m);
+    noh_pack_motion_at(p, index, &m, NULL);
     memset(&skeleton, 0, sizeof skeleton);
-    (void)noh_pack_skeleton_at(p, m.header->skeleton, &skeleton, NULL);
+    (void)noh_pack_skeleton_at(p, m.header->skeleton, &skeleton, NULL, NULL);
     desc.bytes = m.bytes;
     desc.byte_count = m.header->clip_bytes;
     desc.bind = skeleton.bind_pose;
@@ -694,13 +694,13 @@ static void lies_are_told_with_the_motion(void **state)
     noh_motion_marker *marker;
     uint32_t tick;
     (void)state;
-    noh_pack_motion_at(&p, 0, &m);
+    noh_pack_motion_at(&p, 0, &m, NULL);
     event = (noh_motion_event *)(void *)(copy + ((const uint8_t *)(const void *)m.events - copy)) + 2;
     tick = event->tick;
     event->tick += 1;
     expect_error(&desc, NOH_ERR_DATA, "event tick past the duration");
     event->tick = tick;
-    noh_pack_motion_at(&p, 1, &m);
+    noh_pack_motion_at(&p, 1, &m, NULL);
     marker = (noh_motion_marker *)(void *)(copy + ((const uint8_t *)(const void *)m.markers - copy)) + 1;
     marker->tick = 1u << 30;
     expect_error(&desc, NOH_ERR_DATA, "marker tick past the duration");

@@ -62,8 +62,8 @@ static void pack_holds_skeleton_clip_and_keys(void **state)
     (void)state;
     assert_int_equal(pack.skeleton_count, 1);
     assert_int_equal(pack.motion_count, 1);
-    assert_int_equal(noh_pack_motion_at(&pack, 0, &motion), NOH_OK);
-    assert_int_equal(noh_pack_motion_at(&pack, 1, &motion), NOH_ERR_NOT_FOUND);
+    assert_int_equal(noh_pack_motion_at(&pack, 0, &motion, NULL), NOH_OK);
+    assert_int_equal(noh_pack_motion_at(&pack, 1, &motion, NULL), NOH_ERR_NOT_FOUND);
     assert_int_equal(noh_pack_bind_motion(&pack, &motion, &skeleton, &index, NULL), NOH_OK);
     assert_int_equal(index, 0);
     assert_int_equal(skeleton.joint_count, 2);
@@ -94,7 +94,7 @@ static void levels_and_errors_are_there(void **state)
     assert_int_equal(levels[1], 1);
     assert_null(noh_pack_joint_levels(&pack, 1, &count));
     assert_int_equal(count, 0);
-    assert_int_equal(noh_pack_motion_at(&pack, 0, &motion), NOH_OK);
+    assert_int_equal(noh_pack_motion_at(&pack, 0, &motion, NULL), NOH_OK);
     assert_int_equal(motion.header->joint_error_count, 2);
     assert_true(motion.joint_errors[0] == 0.0f);
     /* 3 cm from the knee a turn by 25 degrees moves a point by 3 * 2 sin(12.5 degrees) = 1.2987 */
@@ -118,7 +118,7 @@ static void another_skeleton_is_refused_by_name(void **state)
     memcpy(strstr(renamed, "knee"), "shin", 4);
     assert_int_equal(build(renamed, NULL, &other, &failure), 0);
     other_pack = test_open(other.bytes, other.count);
-    noh_pack_motion_at(&pack, 0, &motion);
+    noh_pack_motion_at(&pack, 0, &motion, NULL);
     assert_int_equal(noh_pack_bind_motion(&other_pack, &motion, &skeleton, NULL, &error), NOH_ERR_NOT_FOUND);
     assert_non_null(strstr(error.what, "another skeleton"));
     buffer_free(&other);

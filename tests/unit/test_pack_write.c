@@ -109,7 +109,7 @@ static void large_pictures_are_halved_until_they_fit(void **state)
     memset(m->textures[0].rgba, 100, 4u * m->textures[0].width * m->textures[0].height);
     bytes = test_pack_of(m, &count, NULL);
     pack = test_open(bytes, count);
-    assert_int_equal(noh_pack_texture(&pack, 0, &texture), NOH_OK);
+    assert_int_equal(noh_pack_texture(&pack, 0, &texture, NULL), NOH_OK);
     assert_int_equal(texture.header->width, NOH_TEXTURE_SIZE_MAX);
     assert_int_equal(texture.header->height, 2);
     for (uint32_t i = 0; i < 8u * NOH_TEXTURE_SIZE_MAX; i++) {
@@ -135,7 +135,7 @@ static void wrap_modes_and_filters_are_kept(void **state)
         m->textures[0].mag_filter = i % 2 ? 9728 : 9729;
         bytes = test_pack_of(m, &count, NULL);
         pack = test_open(bytes, count);
-        assert_int_equal(noh_pack_texture(&pack, 0, &texture), NOH_OK);
+        assert_int_equal(noh_pack_texture(&pack, 0, &texture, NULL), NOH_OK);
         assert_int_equal(texture.header->wrap_s, packed[i]);
         assert_int_equal(texture.header->wrap_t, packed[(i + 1) % 4]);
         assert_int_equal(texture.header->nearest, i % 2);

@@ -83,7 +83,7 @@ static void compare(const skin_asset *a, uint32_t index, const double *locals, t
     float *weights = test_zeros(4u * (size_t)targets), *got = test_zeros(12u * (size_t)vertices), *matrices;
     double *wide = test_zeros(8u * (size_t)targets), *expected = test_zeros(24u * (size_t)vertices), *worlds;
     noh_skin skin;
-    assert_int_equal(noh_pack_skin_at(&a->pack, mesh.header->skin, &skin), NOH_OK);
+    assert_int_equal(noh_pack_skin_at(&a->pack, mesh.header->skin, &skin, NULL), NOH_OK);
     for (uint32_t t = 0; t < targets; t++) {
         weights[t] = test_random_below(random, 8) ? 0.0f : test_random_float(random, -0.5f, 1.0f);
         wide[t] = (double)weights[t];

@@ -66,7 +66,7 @@ static void find_weights(crowd *c)
     for (uint32_t g = c->set->group_count; g-- > 0;) {
         const noh_clip_group *group = &c->set->groups[g];
         noh_mesh mesh;
-        if (group->node != NOH_NONE && noh_pack_mesh(&c->file->pack, c->file->pack.nodes[group->node].mesh, &mesh) == NOH_OK &&
+        if (group->node != NOH_NONE && noh_pack_mesh(&c->file->pack, c->file->pack.nodes[group->node].mesh, &mesh, NULL) == NOH_OK &&
             mesh.header == c->plan->mesh.header) {
             c->first_weight = group->first;
         }
@@ -97,7 +97,7 @@ static noh_result open_meshes(crowd *c, void *morph, void *palettes, char *log, 
     memset(c->pictures, 0, p->mesh.pack->texture_count * sizeof *c->pictures);
     for (uint32_t i = 0; i < p->mesh.pack->texture_count && !result; i++) {
         noh_texture texture;
-        noh_pack_texture(p->mesh.pack, i, &texture);
+        noh_pack_texture(p->mesh.pack, i, &texture, NULL);
         result = noh_gl_picture_create(gl, &c->ledger, &texture, &c->pictures[i], error);
     }
     if (!result) {

@@ -15,8 +15,8 @@ static int find_mesh(crowd_plan *p, const pack_file *file)
     for (uint32_t i = 0; i < file->pack.mesh_count; i++) {
         noh_mesh mesh;
         noh_skin skin;
-        noh_pack_mesh(&file->pack, i, &mesh);
-        if (noh_pack_skin_at(&file->pack, mesh.header->skin, &skin) == NOH_OK &&
+        noh_pack_mesh(&file->pack, i, &mesh, NULL);
+        if (noh_pack_skin_at(&file->pack, mesh.header->skin, &skin, NULL) == NOH_OK &&
             (!found || mesh.header->pair_count > p->mesh.header->pair_count)) {
             found = 1;
             p->mesh = mesh;
@@ -171,7 +171,7 @@ static void sum_bytes(crowd_plan *p)
     p->gpu_bytes = noh_gl_mesh_bytes(&p->views[0]) + p->morph.gpu_bytes + p->skin_plan.gpu_bytes + NOH_GL_RENDERER_BYTES;
     for (uint32_t i = 0; i < p->mesh.pack->texture_count; i++) {
         noh_texture texture;
-        noh_pack_texture(p->mesh.pack, i, &texture);
+        noh_pack_texture(p->mesh.pack, i, &texture, NULL);
         p->gpu_bytes += noh_gl_picture_bytes(&texture);
     }
 }

@@ -53,7 +53,7 @@ static size_t matrix_bytes(const pack_file *file, const scene *s)
     size_t most = 0;
     for (uint32_t i = 0; i < s->item_count; i++) {
         noh_skin skin;
-        if (noh_pack_skin_at(&file->pack, s->meshes[s->items[i].mesh].header->skin, &skin) == NOH_OK) {
+        if (noh_pack_skin_at(&file->pack, s->meshes[s->items[i].mesh].header->skin, &skin, NULL) == NOH_OK) {
             size_t bytes = sizeof(float) * 12u * skin.header->joint_count;
             most = bytes > most ? bytes : most;
         }
@@ -97,7 +97,7 @@ static void add_parts(load_budget *b, const pack_file *file, const scene *s)
     }
     for (uint32_t i = 0; i < file->pack.texture_count; i++) {
         noh_texture texture;
-        noh_pack_texture(&file->pack, i, &texture);
+        noh_pack_texture(&file->pack, i, &texture, NULL);
         add_part(b, 0, noh_gl_picture_bytes(&texture), "texture", texture.name);
     }
     add_part(b, b->plan.cpu_bytes, 0, "morph state", "");
@@ -163,7 +163,7 @@ static int create_pictures(load *l)
     noh_error error = { NOH_OK, "", 0, 0 };
     for (uint32_t i = 0; i < l->file->pack.texture_count; i++) {
         noh_texture texture;
-        noh_pack_texture(&l->file->pack, i, &texture);
+        noh_pack_texture(&l->file->pack, i, &texture, NULL);
         if (noh_gl_picture_create(&l->g->gl, &l->g->ledger, &texture, &l->pictures[i], &error)) {
             return tool_fail_error(l->file->path, &error);
         }
@@ -287,7 +287,7 @@ int load_restore(load *l)
     }
     for (uint32_t i = 0; !result && i < l->file->pack.texture_count; i++) {
         noh_texture texture;
-        noh_pack_texture(&l->file->pack, i, &texture);
+        noh_pack_texture(&l->file->pack, i, &texture, NULL);
         result = noh_gl_picture_restore(gl, &l->g->ledger, &texture, &l->pictures[i], &error);
     }
     if (!result) result = noh_gl_morph_restore(l->morph.morph, log, sizeof log, &error);
@@ -306,7 +306,7 @@ static void update_joints(load *l)
 {
     for (uint32_t i = 0; i < l->scene->item_count; i++) {
         noh_skin skin;
-        if (noh_pack_skin_at(&l->file->pack, l->scene->meshes[l->scene->items[i].mesh].header->skin, &skin) == NOH_OK) {
+        if (noh_pack_skin_at(&l->file->pack, l->scene->meshes[l->scene->items[i].mesh].header->skin, &skin, NULL) == NOH_OK) {
             scene_skin_matrices(l->scene, &skin, l->matrices);
             noh_gl_skin_set(l->skin.skin, l->item_instances[i], l->matrices);
         }

@@ -9,7 +9,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "noh.h"
+#include "noh_gl.h"
 #include "platform.h"
 
 #define EXIT_FAILED 1

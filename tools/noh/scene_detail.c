@@ -19,7 +19,7 @@ static uint32_t most_joints(const pack_file *file)
 {
     uint32_t most = 0;
     noh_skin skin;
-    for (uint32_t i = 0; noh_pack_skin_at(&file->pack, i, &skin) == NOH_OK; i++) {
+    for (uint32_t i = 0; noh_pack_skin_at(&file->pack, i, &skin, NULL) == NOH_OK; i++) {
         most = skin.header->joint_count > most ? skin.header->joint_count : most;
     }
     return most;
@@ -54,7 +54,7 @@ static void item_box(const scene_detail *d, const scene *s, uint32_t item, float
     const noh_mesh *mesh = &s->meshes[s->items[item].mesh];
     const float *weights = s->items[item].weights;
     noh_skin skin;
-    if (noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin)) {
+    if (noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin, NULL)) {
         noh_mesh_box(mesh, NULL, weights, box);
         return;
     }

@@ -13,8 +13,8 @@ int tool_clip_info(const pack_file *file, uint32_t index, noh_pack_motion *motio
     noh_clip_desc desc;
     size_t bytes;
     memset(&skeleton, 0, sizeof skeleton);
-    noh_pack_motion_at(&file->pack, index, motion);
-    (void)noh_pack_skeleton_at(&file->pack, motion->header->skeleton, &skeleton, NULL);
+    noh_pack_motion_at(&file->pack, index, motion, NULL);
+    (void)noh_pack_skeleton_at(&file->pack, motion->header->skeleton, &skeleton, NULL, NULL);
     desc.bytes = motion->bytes;
     desc.byte_count = motion->header->clip_bytes;
     desc.bind = skeleton.bind_pose;
@@ -196,7 +196,7 @@ static int fail_clip(const scene *s, const pack_file *file, const char *name)
     int status = 0;
     for (uint32_t i = 0; names && i < count && !status; i++) {
         noh_pack_motion motion;
-        noh_pack_motion_at(&s->anim->pack, i, &motion);
+        noh_pack_motion_at(&s->anim->pack, i, &motion, NULL);
         names[i] = motion.name;
         if (strcmp(motion.name, name) == 0) {
             status = tool_fail(s->anim->path, "clip '%s' moves another skeleton than %s has: names or parents of joints differ", name, file->path);

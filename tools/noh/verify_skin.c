@@ -179,7 +179,7 @@ static int check_clips(mesh_job *m)
         noh_pack_motion motion;
         noh_skeleton skeleton;
         uint32_t index;
-        noh_pack_motion_at(pack, i, &motion);
+        noh_pack_motion_at(pack, i, &motion, NULL);
         if (!noh_pack_bind_motion(pack, &motion, &skeleton, &index, NULL) && index == m->skin.header->skeleton) {
             status = check_clip(m, &motion);
             checked++;
@@ -211,8 +211,8 @@ static int check_mesh(job *j, uint32_t index, const noh_gl_mesh *gl_mesh)
     m.mesh = &j->s->meshes[index];
     m.gl_mesh = gl_mesh;
     m.index = index;
-    noh_pack_skin_at(&j->file->pack, m.mesh->header->skin, &m.skin);
-    noh_pack_skeleton_at(&j->file->pack, m.skin.header->skeleton, &m.skeleton, NULL);
+    noh_pack_skin_at(&j->file->pack, m.mesh->header->skin, &m.skin, NULL);
+    noh_pack_skeleton_at(&j->file->pack, m.skin.header->skeleton, &m.skeleton, NULL, NULL);
     vertices = m.mesh->header->vertex_count;
     joints = m.skin.header->joint_count;
     m.pose = calloc(m.skeleton.joint_count, sizeof *m.pose);

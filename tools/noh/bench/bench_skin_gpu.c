@@ -44,7 +44,7 @@ static int largest_skinned_mesh(const noh_pack *pack, noh_mesh *out)
     uint32_t most = 0;
     for (uint32_t i = 0; i < pack->mesh_count; i++) {
         noh_mesh mesh;
-        noh_pack_mesh(pack, i, &mesh);
+        noh_pack_mesh(pack, i, &mesh, NULL);
         if (mesh.header->influence_count && mesh.header->vertex_count > most) {
             most = mesh.header->vertex_count;
             *out = mesh;
@@ -71,8 +71,8 @@ static int make_matrices(skin_bench *b)
     noh_skeleton skeleton;
     noh_transform *pose;
     float *model;
-    noh_pack_skin_at(b->mesh.pack, b->mesh.header->skin, &skin);
-    noh_pack_skeleton_at(b->mesh.pack, skin.header->skeleton, &skeleton, NULL);
+    noh_pack_skin_at(b->mesh.pack, b->mesh.header->skin, &skin, NULL);
+    noh_pack_skeleton_at(b->mesh.pack, skin.header->skeleton, &skeleton, NULL, NULL);
     b->joint_count = skin.header->joint_count;
     pose = calloc(skeleton.joint_count, sizeof *pose);
     model = calloc(skeleton.joint_count, 48);
