@@ -66,32 +66,66 @@ static double check_box(const float box[6], const float *positions, uint32_t cou
     return sqrt(square / tight_square);
 }
 
+/* ---- assets, converted once for boxes and rays ---- */
+
+typedef struct opened_asset {
+    const char *name, *dual_quaternion; /* dual_quaternion: NULL or the meshes skinned so */
+    skin_asset asset;
+} opened_asset;
+
+static opened_asset opened[16];
+static size_t opened_count;
+
+static const skin_asset *open_asset(const char *name, const char *dual_quaternion)
+{
+    opened_asset *to = &opened[opened_count];
+    skin_options options;
+    for (size_t i = 0; i < opened_count; i++) {
+        if (strcmp(opened[i].name, name) == 0 && !opened[i].dual_quaternion == !dual_quaternion) {
+            return &opened[i].asset;
+        }
+    }
+    assert_true(opened_count < TEST_COUNT(opened));
+    memset(&options, 0, sizeof options);
+    options.dual_quaternion = &dual_quaternion;
+    options.dual_quaternion_count = dual_quaternion != NULL;
+    skin_asset_open(&to->asset, name, &options);
+    to->name = name;
+    to->dual_quaternion = dual_quaternion;
+    opened_count++;
+    return &to->asset;
+}
+
+static int close_assets(void **state)
+{
+    (void)state;
+    while (opened_count) {
+        skin_asset_close(&opened[--opened_count].asset);
+    }
+    return 0;
+}
+
+/* ---- poses ---- */
+
 typedef void (*pose_check)(const scene_pose *p, test_random *r, void *context);
 
 static void each_pose(const char *name, const char *dual_quaternion, int times, pose_check check, void *context)
 {
+    const skin_asset *a = open_asset(name, dual_quaternion);
     test_random r = test_random_from(9);
-    double *locals;
-    skin_options options;
-    skin_asset a;
-    memset(&options, 0, sizeof options);
-    options.dual_quaternion = &dual_quaternion;
-    options.dual_quaternion_count = dual_quaternion != NULL;
-    skin_asset_open(&a, name, &options);
-    locals = test_zeros(sizeof *locals * 10 * oracle_node_count(a.o));
-    for (uint32_t clip = 0; clip < oracle_animation_count(a.o); clip++) {
+    double *locals = test_zeros(sizeof *locals * 10 * oracle_node_count(a->o));
+    for (uint32_t clip = 0; clip < oracle_animation_count(a->o); clip++) {
         for (int k = 0; k < times; k++) {
-            oracle_pose(a.o, (int)clip, oracle_animation_end(a.o, clip) * (double)test_random_float(&r, 0.0f, 1.0f), locals);
-            for (uint32_t m = 0; m < a.pack.mesh_count; m++) {
+            oracle_pose(a->o, (int)clip, oracle_animation_end(a->o, clip) * (double)test_random_float(&r, 0.0f, 1.0f), locals);
+            for (uint32_t m = 0; m < a->pack.mesh_count; m++) {
                 scene_pose p;
-                pose_mesh(&a, m, locals, &r, &p);
+                pose_mesh(a, m, locals, &r, &p);
                 check(&p, &r, context);
                 unpose(&p);
             }
         }
     }
     free(locals);
-    skin_asset_close(&a);
 }
 
 static void contains_all(const scene_pose *p, test_random *r, void *context)
@@ -372,4 +406,4 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(bad_picks_say_why),
 };
 
-TEST_MAIN(tests, NULL, NULL)
+TEST_MAIN(tests, NULL, close_assets)

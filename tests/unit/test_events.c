@@ -856,39 +856,6 @@ static void test_bounds_saturate(void **state)
 
 /* ---- errata ---- */
 
-/* Row C5.5: the compressed set was created with 0 callback keys, so every key was lost.
- * Here keys are a part of the motion: whoever has it has its keys. */
-static void errata_C5_5_keys_stay_with_the_motion(void **state)
-{
-    static const uint32_t ticks[] = { 3 };
-    one_motion o;
-    noh_motion without;
-    uint32_t lost, kept;
-    (void)state;
-    one_open(&o, 10, NOH_LOOP_REPEAT, ticks, 1);
-    without = o.f.motions[0];
-    without.event_count = 0; /* the source's call */
-    one_start(&o, 0, NOH_SPEED_ONE);
-    kept = noh_controller_step(o.c, &o.f.set, 100, NULL, NULL);
-    o.f.motions[0] = without;
-    lost = noh_controller_step(o.c, &o.f.set, 100, NULL, NULL);
-    assert_int_equal(kept, 10);
-    assert_int_equal(lost, 0);
-    one_close(&o);
-}
-
-/* Row C5.6: Time = time in seconds put the key into the first tick; it must be seconds * ticks per second. */
-static void errata_C5_6_key_times_are_ticks(void **state)
-{
-    double time_s = 0.75;
-    uint32_t of_the_source = (uint32_t)time_s, right = (uint32_t)noh_ticks_from_seconds(time_s);
-    (void)state;
-    assert_int_equal(of_the_source, 0);
-    assert_int_equal(right, 36000);
-    assert_int_equal(noh_ticks_from_seconds(-0.75), -36000);
-    assert_int_equal(noh_ticks_from_seconds(1e300), 0);
-}
-
 /* Row C5.6: a test of "is the key in this frame's [t0, t1] of wrapped times" fires twice on a
  * frame's edge, loses keys over the seam and all but one of several loops. */
 static void errata_C5_6_wrapped_intervals(void **state)
@@ -925,8 +892,6 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_a_day_in_one_step),
         cmocka_unit_test(test_queue_of_the_bound_never_overflows),
         cmocka_unit_test(test_bounds_saturate),
-        cmocka_unit_test(errata_C5_5_keys_stay_with_the_motion),
-        cmocka_unit_test(errata_C5_6_key_times_are_ticks),
         cmocka_unit_test(errata_C5_6_wrapped_intervals),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
