@@ -86,7 +86,7 @@ TESTS      := $(TEST_C:tests/%.c=$(BUILD)/tests/%)
 # The accumulation and skinning kernels built for other instruction sets, for `noh bench` and the tests.
 KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/morph_$(set).o $(BUILD)/kernel/skin_$(set).o))
 
-.PHONY: FORCE install install-lib uninstall amalgam docs examples all demo demo-body view check bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz cross cross-tests web web-check web-serve web-bench lib tests demo-run check-run fuzz sizes
+.PHONY: FORCE install install-lib uninstall amalgam docs examples sizes-update deps-docs lint all demo demo-body view check bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz cross cross-tests web web-check web-serve web-bench lib tests demo-run check-run fuzz sizes
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -103,10 +103,16 @@ help:
 	@echo 'make fuzz       fuzz the pack reader and the clip decoder (FUZZ_SECONDS=60 each), needs clang'
 	@echo 'make cross      the library and its CPU tests for aarch64, armv7 and wasm (qemu, node)'
 	@echo 'make web        the page, WebGL 2 (WEB_PACK=PACK: for another pack); make web-serve, web-check, web-bench'
-	@echo 'make sizes      code and data of the library, by file'
-	@echo 'make install    PREFIX=/usr/local: noh, libnoh.a and the headers (compile with -IPREFIX/include/noh)'
+	@echo 'make lint       clang-tidy and cppcheck over runtime/, platform/ and tools/'
+	@echo 'make sizes      code and data of the library for each processor, with what changed since the last commit'
+	@echo 'make amalgam    the library as three files, $(BUILD)/amalgam/noh.c, noh.h and noh_gl.h'
+	@echo 'make docs       the API reference out of the headers, $(BUILD)/docs/html/index.html'
+	@echo 'make install    PREFIX=/usr/local DESTDIR=: the tools, and the library for pkg-config and CMake; make uninstall'
+	@echo 'make install-lib  the library alone, without a C++ compiler (CC=, AR=: for another processor)'
 	@echo 'make clean      remove $(BUILD)'
 	@echo ''
+	@echo 'CFLAGS, CXXFLAGS, CPPFLAGS and LDFLAGS are appended to the flags that are needed; OPT="-O2 -g" and WERROR=-Werror can be'
+	@echo 'replaced. Objects do not know their flags: use another BUILD for others.'
 	@echo 'V=1 prints the commands. DEPS=0 installs nothing. SAN=address,undefined builds with sanitizers (use another BUILD).'
 	@echo 'ASSETS=DIR is where the tests look for models that are not ours to ship. NOH_TEST=NAME runs only those tests.'
 
@@ -336,7 +342,7 @@ fuzz: deps-fuzz
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/tests/fuzz/corpus/.made $(BUILD)/gen/shaders.gen.c
 	@NOH_BUILD="$(BUILD)" FUZZ_SECONDS="$(FUZZ_SECONDS)" sh tests/fuzz.sh
 
-tests: $(TESTS) $(BUILD)/tests/gl/window $(BUILD)/tests/gl/picture_diff $(BUILD)/platform/template.o \
+tests: $(TESTS) $(EXAMPLES) $(AMALGAM_TESTS) $(BUILD)/tests/gl/window $(BUILD)/tests/gl/picture_diff $(BUILD)/platform/template.o \
        $(BUILD)/tests/fuzz/fuzz_pack $(BUILD)/tests/fuzz/fuzz_clip $(BUILD)/tests/fuzz/corpus/.made
 
 # The tests load packs, draw them and read results back as the tool does, and share what lies in tests/ and
@@ -406,8 +412,43 @@ $(BUILD)/noh.1: $(wildcard tools/noh/noh.1) $(BUILD)/noh
 	@mkdir -p $(@D)
 	@if [ -f tools/noh/noh.1 ]; then cp tools/noh/noh.1 $@; else $(BUILD)/noh help --man >$@ 2>/dev/null || rm -f $@; fi
 
-sizes: $(BUILD)/libnoh.a
-	@size -t $(BUILD)/libnoh.a
+# The library as three files, and some of the tests linked with that instead of libnoh.a.
+AMALGAM       := $(BUILD)/amalgam
+AMALGAM_TESTS := $(patsubst tests/%.c,$(AMALGAM)/%,$(filter %/test_morph.c %/test_controller.c %/test_graph.c %/test_skin.c %/test_null.c,$(TEST_C)))
+amalgam: $(AMALGAM)/noh.c
+$(AMALGAM)/noh.c: $(BUILD)/amalgamate $(RUNTIME_C) $(call sources,runtime,*.h) $(BUILD)/gen/shaders.gen.c
+	@mkdir -p $(@D)
+	$(call say,AMALG,$@)
+	$(Q)$(BUILD)/amalgamate -o $(@D) -I runtime -I $(BUILD)/gen $(RUNTIME_C:runtime/%=%) shaders.gen.c
+$(BUILD)/amalgamate: tools/amalgam/amalgam.c
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(HOSTCC) -std=c99 -O2 $(WARN) $(SANFLAGS) $< -o $@
+$(AMALGAM)/noh.o: $(AMALGAM)/noh.c
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_CFLAGS) -c $< -o $@
+$(AMALGAM)/%: $(BUILD)/tests/%.o $(filter-out %/libnoh.a,$(TEST_LIBS)) $(AMALGAM)/noh.o
+	@mkdir -p $(@D)
+	$(call say,CXX,$@)
+	$(Q)$(CXX) $(ALL_LDFLAGS) $^ -o $@ -lcmocka $(TOOL_LIBS)
+
+# Small programs that show the library; they may use platform/ for a GL context.
+examples: $(EXAMPLES)
+$(BUILD)/examples/%: $(BUILD)/tools/examples/%.o $(PLATFORM_O) $(BUILD)/libnoh.a
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_LDFLAGS) $^ -o $@ -ldl -lm
+
+# Code and data of the library by processor, against the table of the last commit; make sizes-update writes that table.
+sizes:
+	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tools/sizes.sh
+sizes-update:
+	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tools/sizes.sh --update
+
+deps-docs:
+	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh docs
+docs: deps-docs
+	@NOH_BUILD="$(BUILD)" VERSION="$(VERSION)" sh tools/docs/docs.sh
 
 clean:
 	rm -rf $(BUILD)
