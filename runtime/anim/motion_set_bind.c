@@ -63,7 +63,7 @@ int noh_motion_fits(const noh_motion_binding *b, uint32_t index, noh_pack_motion
         (b->mesh == b->clips && h->skeleton != b->skeleton_index)) {
         return 0;
     }
-    (void)noh_pack_skeleton_at(b->clips, h->skeleton, &built_with, NULL, NULL);
+    if (noh_pack_skeleton_at(b->clips, h->skeleton, &built_with, NULL, NULL)) return 0;
     clip->bind = built_with.bind_pose;
     return 1;
 }
