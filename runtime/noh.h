@@ -21,6 +21,7 @@
  *   anim/local_to_model.h  joint matrices and palettes
  *   deform/morph.h       morph targets on the CPU: reference and fallback
  *   character/character.h  one character: controller, detail, what it shows
+ *   character/skin_palette.h  what it shows, as matrices of any skin
  *   character/detail.h   detail chosen by pixels; level_pools.h: memory by level of detail, shared out among instances
  *   character/time_lod.h posing less often than once a frame; time_lod_points.h: what that moves vertices by
  *   character/detail_pack.h  what a pack says of both; joint_lod.h: what posing fewer joints costs
@@ -76,6 +77,7 @@
 #include "character/joint_lod.h"
 #include "character/level_pools.h"
 #include "character/scheduler.h"
+#include "character/skin_palette.h"
 #include "character/time_lod.h"
 #include "character/time_lod_points.h"
 
