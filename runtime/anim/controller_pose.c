@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "anim/clock_internal.h"
 #include "anim/inertial.h"
 #include "anim/mask.h"
 #include "base/arena.h"
@@ -183,7 +184,7 @@ static const void *at(const noh_controller *c, uint32_t offset)
 
 void noh_controller_inertia_add(const noh_controller *c, int64_t ago, noh_transform *pose, float *floats)
 {
-    int64_t elapsed = c->clock - ago - c->inertia_start;
+    int64_t elapsed = noh_clock_since(noh_clock_add(c->clock, -ago), c->inertia_start);
     float elapsed_s = (float)(elapsed < 0 ? 0 : elapsed) / (float)NOH_TICKS_PER_SECOND;
     float duration_s = (float)c->inertia_ticks / (float)NOH_TICKS_PER_SECOND;
     if (c->inertia_ticks && elapsed < (int64_t)c->inertia_ticks) {

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "anim/clock_internal.h"
 #include "anim/local_to_model.h"
 #include "base/arena.h"
 #include "character/character_internal.h"
@@ -169,7 +170,7 @@ const float *noh_character_slot_palette(const noh_character *ch, uint32_t slot)
 
 int64_t noh_character_clock(const noh_character *ch)
 {
-    return ch->start_clock + controller_of(ch)->clock;
+    return noh_clock_add(ch->start_clock, controller_of(ch)->clock);
 }
 
 /* ---- a frame ---- */
@@ -242,7 +243,7 @@ void noh_character_update_begin(noh_character *ch, const noh_anim_set *set, noh_
 {
     const noh_controller *c = controller_of(ch);
     noh_time_update u = noh_time_lod_update(&ch->time);
-    int64_t ahead = u.pose_clock - noh_character_clock(ch);
+    int64_t ahead = noh_clock_since(u.pose_clock, noh_character_clock(ch));
     if (u.keep < 1.0f) {
         keep_shown(ch, u.slot ^ 1u, u.keep);
     }

@@ -1,5 +1,6 @@
 #include "character/detail.h"
 
+#include "anim/clock_internal.h"
 #include "base/math.h"
 #include "base/trig.h"
 
@@ -158,7 +159,7 @@ static uint8_t choose_level(const errors *e, uint32_t level, limits l)
 static void choose_mesh(noh_detail *d, const errors *e, const noh_detail_settings *s, limits l, int64_t clock)
 {
     uint8_t next;
-    if (d->fade_ticks && clock - d->fade_start < (int64_t)d->fade_ticks) {
+    if (d->fade_ticks && noh_clock_since(clock, d->fade_start) < (int64_t)d->fade_ticks) {
         return;
     }
     d->fade_ticks = 0;
@@ -251,7 +252,7 @@ void noh_detail_fix(noh_detail *d, const noh_detail_table *t, uint32_t level, fl
 
 float noh_detail_fade(const noh_detail *d, int64_t clock)
 {
-    int64_t since = clock - d->fade_start;
+    int64_t since = noh_clock_since(clock, d->fade_start);
     float x;
     if (since >= (int64_t)d->fade_ticks) {
         return 1.0f;

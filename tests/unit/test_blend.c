@@ -392,6 +392,39 @@ static void test_space_outside_and_degenerate(void **state)
     assert_int_equal(noh_space_2d_triangulate(NOH_SPACE_POINTS_MAX + 1u, square, tri, &space.triangle_count, &error), NOH_ERR_ARG);
 }
 
+/* The largest coordinates that are taken have exact results; what lies past them is refused, and held where it is asked for. */
+static void test_space_of_huge_coordinates(void **state)
+{
+    static const float far_away[] = { 3e38f, -3e38f, 1.1e18f, INFINITY, -INFINITY, NAN };
+    const float most = NOH_SPACE_COORDINATE_MAX, ends[2] = { -NOH_SPACE_COORDINATE_MAX, NOH_SPACE_COORDINATE_MAX };
+    const float square[8] = { -most, -most, most, -most, -most, most, most, most };
+    uint8_t tri[NOH_SPACE_TRIANGLES_MAX * 3u];
+    float w[4];
+    noh_space_2d space = { 4, 0, square, tri };
+    noh_error error;
+    (void)state;
+    for (uint32_t i = 0; i < 4; i++) {
+        for (uint32_t k = 0; k < sizeof far_away / sizeof *far_away; k++) {
+            float p[8] = { 0, 0, 1, 0, 0, 1, 1, 1 };
+            p[2u * i + k % 2u] = far_away[k];
+            assert_int_equal(noh_space_2d_triangulate(4, p, tri, &space.triangle_count, &error), NOH_ERR_DATA);
+            assert_int_equal(error.where, i);
+        }
+    }
+    assert_int_equal(noh_space_2d_triangulate(4, square, tri, &space.triangle_count, NULL), NOH_OK);
+    assert_int_equal(space.triangle_count, 2);
+    noh_space_2d_weights(&space, 0.0f, 0.0f, w);
+    assert_true(fabsf(w[0] + w[1] + w[2] + w[3] - 1.0f) < 1e-6f && fabsf(w[0] + w[1] - 0.5f) < 1e-6f);
+    noh_space_2d_weights(&space, 3e38f, 3e38f, w);
+    assert_true(w[3] == 1.0f);
+    noh_space_2d_weights(&space, INFINITY, -INFINITY, w);
+    assert_true(w[1] == 1.0f);
+    noh_space_1d_weights(2, ends, 5e17f, w);
+    assert_true(fabsf(w[1] - 0.75f) < 1e-6f);
+    noh_space_1d_weights(2, ends, 3e38f, w);
+    assert_true(w[1] == 1.0f);
+}
+
 /* ---- skeleton, local to model ---- */
 
 static void bad_skeleton(const noh_skeleton *s, noh_result result, const char *what)
@@ -496,6 +529,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_triangulation),
         cmocka_unit_test(test_delaunay),
         cmocka_unit_test(test_space_outside_and_degenerate),
+        cmocka_unit_test(test_space_of_huge_coordinates),
         cmocka_unit_test(test_skeleton_fields_broken_in_turn),
         cmocka_unit_test(errata_C3_1_parent_times_local),
         cmocka_unit_test(test_palette),
