@@ -44,6 +44,7 @@
 #include "anim/pack_motion.h"         /* its skeletons and clips */
 #include "anim/motion_set.h"          /* a pack's clips, ready to be played */
 #include "character/character.h"      /* one character: a controller, what it shows, how finely */
+#include "character/skin_palette.h"   /* what it shows, as matrices of any skin */
 #include "anim/controller.h"          /* tracks: start, fade, seek, callback keys */
 #include "anim/controller_pose.h"     /* poses of a controller */
 #include "anim/local_to_model.h"      /* poses to matrices and palettes */

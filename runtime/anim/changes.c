@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "anim/clock_internal.h"
+
 #define CURVE_ONE 2097152 /* 128^3: the curves in integers, at whole and half slices */
 #define HALVES (2 * NOH_CHANGE_SLICES)
 
@@ -110,7 +112,7 @@ noh_result noh_changes_add(noh_change *table, uint32_t count, noh_change_target 
         return noh_fail(error, NOH_ERR_ARG, what, desc->track, 0);
     }
     memset(&c, 0, sizeof c);
-    c.start = target->clock + desc->delay_ticks;
+    c.start = noh_clock_add(target->clock, desc->delay_ticks);
     c.to = wanted(desc);
     c.duration = desc->duration_ticks;
     c.state = NOH_CHANGE_WAITING;
@@ -310,7 +312,7 @@ static int64_t speed_rates(const noh_change *table, uint32_t count, const noh_ch
     for (uint32_t i = 0; i < count; i++) {
         if (runs(&table[i], NOH_CHANGE_SPEED)) {
             int64_t held = speed_rate(&table[i], target->clock - table[i].start, &target->tracks[table[i].track].speed);
-            end = sooner(end, table[i].start + held);
+            end = sooner(end, noh_clock_add(table[i].start, held));
         }
     }
     return end;
@@ -321,7 +323,7 @@ static int64_t position_rates(const noh_change *table, uint32_t count, const noh
     for (uint32_t i = 0; i < count; i++) {
         if (runs(&table[i], NOH_CHANGE_POSITION)) {
             int64_t held = position_rate(&table[i], target->clock - table[i].start, &target->tracks[table[i].track].rate);
-            end = sooner(end, table[i].start + held);
+            end = sooner(end, noh_clock_add(table[i].start, held));
         }
     }
     return end;
@@ -334,7 +336,7 @@ static int64_t next_change(const noh_change *table, uint32_t count, int64_t end)
         if (table[i].state == NOH_CHANGE_WAITING) {
             end = sooner(end, table[i].start);
         } else if (table[i].state == NOH_CHANGE_RUNNING) {
-            end = sooner(end, table[i].start + table[i].duration);
+            end = sooner(end, noh_clock_add(table[i].start, table[i].duration));
         }
     }
     return end;

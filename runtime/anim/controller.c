@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "anim/clock_internal.h"
 #include "anim/inertial.h"
 #include "anim/sync.h"
 #include "base/arena.h"
@@ -351,7 +352,7 @@ typedef struct delivery {
     noh_event_fn fn;
     void *user;
     int64_t clock;
-    uint32_t count;
+    uint32_t count, passed; /* passed: delivered or not */
 } delivery;
 
 static void deliver_key(void *user, uint32_t index, int64_t position_tick)
@@ -406,11 +407,10 @@ static uint32_t move_tracks(noh_controller *c, const noh_anim_set *set, int64_t 
 }
 
 /* Move time to a tick and deliver what has been passed by then. */
-static uint32_t advance(noh_controller *c, const noh_anim_set *set, int64_t clock, noh_event_fn fn, void *user)
+static void advance(noh_controller *c, const noh_anim_set *set, int64_t clock, delivery *d)
 {
     passed list[NOH_TRACKS_MAX];
     noh_change_target target;
-    delivery d = { NULL, NULL, NULL, NULL, 0, 0 };
     uint32_t count = move_tracks(c, set, clock - c->clock, list);
     c->clock = clock;
     target = target_of(c, set);
@@ -419,16 +419,13 @@ static uint32_t advance(noh_controller *c, const noh_anim_set *set, int64_t cloc
     for (uint32_t i = 0; i < count; i++) {
         list[i].weight = noh_controller_track(c, list[i].track)->weight;
     }
-    d.set = set;
-    d.fn = fn;
-    d.user = user;
-    d.clock = clock;
+    d->clock = clock;
     for (uint32_t i = 0; i < count; i++) {
         const noh_motion *m = &set->motions[list[i].motion];
-        d.from = &list[i];
-        noh_events_pass(set->events + m->first_event, m->event_count, &list[i].passage, deliver_key, &d);
+        d->from = &list[i];
+        d->passed += noh_events_pass(set->events + m->first_event, m->event_count, &list[i].passage, NOH_STEP_EVENTS_MAX - d->passed,
+                                     deliver_key, d);
     }
-    return d.count;
 }
 
 static int has_sync(const noh_controller *c)
@@ -445,7 +442,7 @@ static int has_sync(const noh_controller *c)
  * has touched them. Returns up to when they hold. */
 static int64_t sync_rates(noh_controller *c, const noh_anim_set *set, int64_t end)
 {
-    int64_t next = (c->clock / NOH_SYNC_TICKS + 1) * NOH_SYNC_TICKS;
+    int64_t next = noh_clock_add(c->clock, NOH_SYNC_TICKS - c->clock % NOH_SYNC_TICKS);
     if (!has_sync(c)) {
         return end;
     }
@@ -470,21 +467,24 @@ static int64_t next_event(const noh_controller *c, const noh_anim_set *set, int6
 
 uint32_t noh_controller_step(noh_controller *c, const noh_anim_set *set, uint32_t ticks, noh_event_fn fn, void *user)
 {
-    int64_t end = c->clock + ticks;
-    uint32_t count = 0;
+    int64_t end = noh_clock_add(c->clock, ticks);
+    delivery d = { NULL, NULL, NULL, NULL, 0, 0, 0 };
     NOH_ASSERT(set->joint_count == c->joint_count && set->motion_count == c->motion_count);
     if (c->flags & STEPPING) {
         return 0; /* called by its own callback */
     }
-    c->flags |= STEPPING;
+    c->flags = (uint8_t)((c->flags & ~NOH_CONTROLLER_EVENTS_CUT) | STEPPING);
+    d.set = set;
+    d.fn = fn;
+    d.user = user;
     while (c->clock < end) {
         noh_change_target target = target_of(c, set);
         int64_t until = noh_changes_rates(changes_of(c), c->change_count, &target, c->track_count, end);
         until = sync_rates(c, set, until);
-        until = next_event(c, set, until);
-        count += advance(c, set, until, fn, user);
+        until = d.passed < NOH_STEP_EVENTS_MAX ? next_event(c, set, until) : until;
+        advance(c, set, until, &d);
     }
-    c->flags = (uint8_t)(c->flags & ~STEPPING);
-    c->events_high_water = count > c->events_high_water ? count : c->events_high_water;
-    return count;
+    c->flags = (uint8_t)((c->flags & ~STEPPING) | (d.passed == NOH_STEP_EVENTS_MAX ? NOH_CONTROLLER_EVENTS_CUT : 0u));
+    c->events_high_water = d.count > c->events_high_water ? d.count : c->events_high_water;
+    return d.count;
 }

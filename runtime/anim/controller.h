@@ -24,6 +24,7 @@
 #include "anim/changes.h"
 
 #define NOH_CONTROLLER_INERTIAL 1u /* room for a pose of offsets: 48 bytes per joint, 8 per float (inertial.h) */
+#define NOH_CONTROLLER_EVENTS_CUT 2u /* set by a step that came to NOH_STEP_EVENTS_MAX keys and handed out no more */
 #define NOH_CHANGES_MAX 1024u
 
 /* Its bytes: 80, 48 per track, 32 per change; with room for inertia 48 per joint and 8
@@ -33,7 +34,7 @@ typedef struct noh_controller_desc {
     const noh_anim_set *set; /* checked with noh_anim_set_check; required */
     uint32_t track_count;    /* default (0) 4; at most NOH_TRACKS_MAX */
     uint32_t change_count;   /* changes that wait or run at one time; default (0) track_count + 2; at most NOH_CHANGES_MAX */
-    uint32_t flags;          /* NOH_CONTROLLER_* */
+    uint32_t flags;          /* NOH_CONTROLLER_INERTIAL */
 } noh_controller_desc;
 
 /* The head of the block; tables follow at byte offsets from it. Read what you like. */
@@ -121,11 +122,13 @@ noh_result noh_controller_cross_fade(noh_controller *c, const noh_anim_set *set,
                                      uint32_t duration_ticks, noh_curve curve, noh_error *error);
 
 /* Move time on. fn may be NULL. Returns how many events were delivered.
- * ranges  ticks 0..2^32-1; 0 does nothing */
+ * A step looks at NOH_STEP_EVENTS_MAX keys at most. Keys after that are passed without being delivered, and
+ * NOH_CONTROLLER_EVENTS_CUT is set in c->flags until the next step; noh_controller_events_max tells beforehand.
+ * ranges  ticks 0..2^32-1; 0 does nothing. The clock stops at INT64_MAX */
 uint32_t noh_controller_step(noh_controller *c, const noh_anim_set *set, uint32_t ticks, noh_event_fn fn, void *user);
 
 /* The most that a step of so many ticks can deliver as the controller stands, its
- * changes included, if its callback starts or moves nothing. Saturates at UINT32_MAX. */
+ * changes included, if its callback starts or moves nothing: NOH_STEP_EVENTS_MAX at most. */
 uint32_t noh_controller_events_max(const noh_controller *c, const noh_anim_set *set, uint32_t ticks);
 
 #endif

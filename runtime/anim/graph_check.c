@@ -9,6 +9,11 @@ static int is_finite(float x)
     return x - x == 0.0f;
 }
 
+static int is_coordinate(float x)
+{
+    return x >= -NOH_SPACE_COORDINATE_MAX && x <= NOH_SPACE_COORDINATE_MAX;
+}
+
 static const char *bad_count(const noh_graph *g)
 {
     if (g->node_count == 0 || g->node_count > NOH_GRAPH_NODES_MAX) return "node_count";
@@ -51,7 +56,7 @@ static const char *bad_space_1d(const noh_graph *g, const noh_graph_node *n)
     if (!in_range(n->first_item, n->child_count, g->threshold_count)) return "threshold range";
     for (uint32_t i = 0; i < n->child_count; i++) {
         const float *t = g->thresholds + n->first_item + i;
-        if (!is_finite(t[0]) || (i > 0 && !(t[0] > t[-1]))) return "threshold order";
+        if (!is_coordinate(t[0]) || (i > 0 && !(t[0] > t[-1]))) return "threshold order";
     }
     return NULL;
 }
@@ -65,7 +70,7 @@ static const char *bad_space_2d(const noh_graph *g, const noh_graph_node *n)
     if (s->point_count != n->child_count || !s->points) return "space points";
     if (s->triangle_count > NOH_SPACE_TRIANGLES_MAX || (s->triangle_count && !s->triangles)) return "space triangles";
     for (uint32_t i = 0; i < s->point_count; i++) {
-        if (!is_finite(s->points[2u * i]) || !is_finite(s->points[2u * i + 1u])) return "space point";
+        if (!is_coordinate(s->points[2u * i]) || !is_coordinate(s->points[2u * i + 1u])) return "space point";
     }
     for (uint32_t i = 0; i < s->triangle_count; i++) {
         const uint8_t *t = s->triangles + 3u * i;

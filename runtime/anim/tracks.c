@@ -51,7 +51,8 @@ noh_result noh_track_start(noh_track *track, const noh_anim_set *set, const noh_
 
 void noh_track_place(noh_track *track, const noh_motion *motion, int64_t position)
 {
-    track->position = noh_time_advance(position, 0, 0, motion->duration_ticks, (noh_loop)track->loop);
+    position = noh_time_advance(position, 0, 0, motion->duration_ticks, (noh_loop)track->loop);
+    track->position = position - noh_time_rebase(position, motion->duration_ticks, (noh_loop)track->loop);
     track->root_position = track->position;
     track->placed = 1;
 }

@@ -2,8 +2,10 @@
 
 #include <string.h>
 
+#include "anim/clock_internal.h"
 #include "anim/local_to_model.h"
 #include "base/arena.h"
+#include "character/character_internal.h"
 
 /* ---- memory ---- */
 
@@ -161,9 +163,14 @@ static const float *at(const noh_character *ch, uint32_t offset)
     return (const float *)(const void *)((const uint8_t *)ch + offset);
 }
 
+const float *noh_character_slot_palette(const noh_character *ch, uint32_t slot)
+{
+    return at(ch, ch->palette_offsets[slot]);
+}
+
 int64_t noh_character_clock(const noh_character *ch)
 {
-    return ch->start_clock + controller_of(ch)->clock;
+    return noh_clock_add(ch->start_clock, controller_of(ch)->clock);
 }
 
 /* ---- a frame ---- */
@@ -205,8 +212,7 @@ uint32_t noh_character_joints(const noh_character *ch)
     return tracks * c->lod_joint_count;
 }
 
-/* Fours, so that compilers see vectors. out may be a. */
-static void mix_fours(const float *a, const float *b, float part, size_t fours, float *out)
+void noh_mix_fours(const float *a, const float *b, float part, size_t fours, float *out)
 {
     for (size_t i = 0; i < 4u * fours; i += 4u) {
         float mixed[4];
@@ -228,7 +234,7 @@ static void mix_floats(const float *a, const float *b, float part, uint32_t coun
 static void keep_shown(noh_character *ch, uint32_t from, float part)
 {
     uint32_t to = from ^ 1u;
-    mix_fours(palette_of(ch, from), palette_of(ch, to), part, 3u * (size_t)ch->joint_count, palette_of(ch, from));
+    noh_mix_fours(palette_of(ch, from), palette_of(ch, to), part, 3u * (size_t)ch->joint_count, palette_of(ch, from));
     mix_floats(floats_of(ch, from), floats_of(ch, to), part, ch->float_count, floats_of(ch, from));
     mix_floats(ch->spheres[from], ch->spheres[to], part, 4, ch->spheres[from]);
 }
@@ -237,7 +243,7 @@ void noh_character_update_begin(noh_character *ch, const noh_anim_set *set, noh_
 {
     const noh_controller *c = controller_of(ch);
     noh_time_update u = noh_time_lod_update(&ch->time);
-    int64_t ahead = u.pose_clock - noh_character_clock(ch);
+    int64_t ahead = noh_clock_since(u.pose_clock, noh_character_clock(ch));
     if (u.keep < 1.0f) {
         keep_shown(ch, u.slot ^ 1u, u.keep);
     }
@@ -271,6 +277,7 @@ void noh_character_update_end(noh_character *ch, const noh_skeleton *skeleton, c
     uint32_t slot = scratch->slot;
     NOH_ASSERT(skeleton->joint_count == ch->joint_count);
     make_palette(skeleton, scratch, ch->joint_count, palette_of(ch, slot));
+    ch->multiplied = (ch->multiplied & ~(1u << slot)) | (skeleton->inverse_bind ? 1u << slot : 0u);
     memcpy(floats_of(ch, slot), scratch->floats, ch->float_count * sizeof(float));
     if (margin_m) {
         noh_bounds bounds;
@@ -296,7 +303,7 @@ const float *noh_character_palette(const noh_character *ch, float *mixed, uint32
     if (part >= 1.0f) {
         return last;
     }
-    mix_fours(at(ch, ch->palette_offsets[to ^ 1u]), last, part, 3u * (size_t)joint_count, mixed);
+    noh_mix_fours(at(ch, ch->palette_offsets[to ^ 1u]), last, part, 3u * (size_t)joint_count, mixed);
     return mixed;
 }
 

@@ -1,5 +1,6 @@
 #include "character/detail.h"
 
+#include "anim/clock_internal.h"
 #include "base/math.h"
 #include "base/trig.h"
 
@@ -52,12 +53,13 @@ noh_result noh_detail_settings_check(const noh_detail_settings *s, noh_error *er
 /* The errors of one kind's levels, and how many there are. */
 typedef struct errors {
     float error_m[NOH_DETAIL_LEVELS_MAX];
-    uint32_t count;
+    uint32_t count, first; /* first: the finest that may be chosen */
 } errors;
 
 static errors errors_of(const noh_detail_table *t, noh_detail_kind kind)
 {
-    errors e = { { 0.0f }, 0 };
+    errors e = { { 0.0f }, 0, 0 };
+    e.first = kind == NOH_DETAIL_MESH ? t->mesh_level_first : 0;
     e.count = kind == NOH_DETAIL_MESH ? t->mesh_level_count : kind == NOH_DETAIL_JOINTS ? t->joint_level_count : t->influence_level_count;
     for (uint32_t i = 0; i < e.count; i++) {
         e.error_m[i] = kind == NOH_DETAIL_MESH     ? t->meshes[i].error_m
@@ -71,6 +73,7 @@ noh_result noh_detail_table_check(const noh_detail_table *t, noh_error *error)
 {
     static const char *const what[] = { "error of a mesh level", "error of a joint level", "error of an influence level" };
     if (t->mesh_level_count > NOH_DETAIL_LEVELS_MAX || (t->mesh_level_count && !t->meshes)) return noh_fail(error, NOH_ERR_ARG, "meshes", 0, 0);
+    if (t->mesh_level_first && t->mesh_level_first >= t->mesh_level_count) return noh_fail(error, NOH_ERR_ARG, "mesh_level_first", 0, 0);
     if (t->joint_level_count > NOH_DETAIL_LEVELS_MAX || (t->joint_level_count && !t->joints)) return noh_fail(error, NOH_ERR_ARG, "joints", 0, 0);
     if (t->influence_level_count > NOH_DETAIL_LEVELS_MAX || (t->influence_level_count && !t->influences)) {
         return noh_fail(error, NOH_ERR_ARG, "influences", 0, 0);
@@ -143,7 +146,8 @@ static limits limits_of(const noh_detail_settings *s, noh_detail_kind kind, doub
 static uint8_t choose_level(const errors *e, uint32_t level, limits l)
 {
     level = level < e->count ? level : e->count ? e->count - 1u : 0;
-    while (level > 0 && (double)e->error_m[level] > l.refine) {
+    level = level < e->first ? e->first : level;
+    while (level > e->first && (double)e->error_m[level] > l.refine) {
         level--;
     }
     while (level + 1u < e->count && (double)e->error_m[level + 1u] <= l.coarsen) {
@@ -155,7 +159,7 @@ static uint8_t choose_level(const errors *e, uint32_t level, limits l)
 static void choose_mesh(noh_detail *d, const errors *e, const noh_detail_settings *s, limits l, int64_t clock)
 {
     uint8_t next;
-    if (d->fade_ticks && clock - d->fade_start < (int64_t)d->fade_ticks) {
+    if (d->fade_ticks && noh_clock_since(clock, d->fade_start) < (int64_t)d->fade_ticks) {
         return;
     }
     d->fade_ticks = 0;
@@ -174,7 +178,7 @@ static void choose_mesh(noh_detail *d, const errors *e, const noh_detail_setting
 /* A rate that is coarser can only be worse: what was measured is made to say so. */
 static errors rate_errors(const noh_detail_table *t, const float *rate_error_m)
 {
-    errors e = { { 0.0f }, 1 };
+    errors e = { { 0.0f }, 1, 0 };
     e.error_m[0] = t->clip_error_m;
     for (uint32_t r = 1; rate_error_m && r < NOH_RATE_COUNT; r++) {
         float error_m = rate_error_m[r] + t->clip_error_m;
@@ -202,6 +206,8 @@ void noh_detail_choose(noh_detail *d, const noh_detail_table *t, const noh_detai
         forget_levels(d);
     }
     d->pixels_per_metre = pixels_per_metre;
+    d->mesh = d->mesh < mesh.first ? (uint8_t)mesh.first : d->mesh;
+    d->mesh_before = d->mesh_before < mesh.first ? (uint8_t)mesh.first : d->mesh_before;
     choose_mesh(d, &mesh, s, limits_of(s, NOH_DETAIL_MESH, knob_m), clock);
     d->joints = choose_level(&joints, d->joints, limits_of(s, NOH_DETAIL_JOINTS, knob_m));
     d->influences = choose_level(&influences, d->influences, limits_of(s, NOH_DETAIL_INFLUENCES, knob_m));
@@ -237,15 +243,16 @@ void noh_detail_fix(noh_detail *d, const noh_detail_table *t, uint32_t level, fl
 {
     static const noh_detail none;
     const uint32_t last = t->mesh_level_count ? t->mesh_level_count - 1u : 0;
+    const uint32_t first = t->mesh_level_first < last ? t->mesh_level_first : last;
     *d = none;
-    d->mesh = d->mesh_before = (uint8_t)(level < last ? level : last);
+    d->mesh = d->mesh_before = (uint8_t)(level < first ? first : level < last ? level : last);
     d->error_m = t->mesh_level_count ? t->meshes[d->mesh].error_m : 0.0f;
     d->pixels_per_metre = pixels_per_metre;
 }
 
 float noh_detail_fade(const noh_detail *d, int64_t clock)
 {
-    int64_t since = clock - d->fade_start;
+    int64_t since = noh_clock_since(clock, d->fade_start);
     float x;
     if (since >= (int64_t)d->fade_ticks) {
         return 1.0f;

@@ -50,7 +50,7 @@ static const char *resolve(const noh_detail_pack_desc *desc, source *s)
         s->levels = noh_pack_joint_levels(s->pack, s->skeleton, &s->level_count);
         if (!s->levels || s->levels[0] != s->joint_count) return "set_desc";
     }
-    s->mesh_level_count = desc->mesh ? desc->mesh->header->level_count - desc->mesh->header->level : 0;
+    s->mesh_level_count = desc->mesh ? desc->mesh->header->level_count : 0;
     s->target_count = desc->mesh ? desc->mesh->header->target_count : 0;
     s->skinned = desc->mesh && desc->mesh->header->skin != NOH_NONE;
     return s->skinned && !(s->joint_count && is_of_skeleton(s, desc->mesh)) ? "mesh" : NULL;
@@ -152,17 +152,18 @@ static float level_error(const noh_mesh_header *h)
 }
 
 /* Errors are those against the full mesh, whatever the finest level at hand is. */
-uint32_t noh_detail_mesh_levels(const noh_mesh *mesh, noh_mesh_level *levels)
+void noh_detail_mesh_levels(const noh_mesh *mesh, noh_mesh_level *levels, noh_detail_table *table)
 {
-    const uint32_t count = mesh->header->level_count - mesh->header->level;
-    for (uint32_t k = 0; k < count; k++) {
-        const noh_mesh level = noh_mesh_at_level(mesh, mesh->header->level + k);
+    for (uint32_t k = 0; k < mesh->header->level_count; k++) {
+        const noh_mesh level = noh_mesh_at_level(mesh, k);
         levels[k].vertex_count = level.header->vertex_count;
         levels[k].triangle_count = level.header->index_count / 3u;
         levels[k].influence_count = level.header->influence_count;
         levels[k].error_m = level_error(level.header);
     }
-    return count;
+    table->meshes = levels;
+    table->mesh_level_count = mesh->header->level_count;
+    table->mesh_level_first = mesh->header->level;
 }
 
 void noh_detail_target_reach(const noh_mesh *mesh, float *reach_m)
@@ -216,8 +217,7 @@ static void fill(const noh_detail_pack_desc *desc, const source *s, parts *p, no
     if (desc->mesh) {
         detail->reach_m = p->reach;
         noh_detail_target_reach(desc->mesh, p->reach);
-        detail->table.meshes = p->meshes;
-        detail->table.mesh_level_count = noh_detail_mesh_levels(desc->mesh, p->meshes);
+        noh_detail_mesh_levels(desc->mesh, p->meshes, &detail->table);
     }
     if (s->skinned) {
         detail->table.influences = p->influences;

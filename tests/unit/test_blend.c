@@ -168,6 +168,56 @@ static void test_mix_at_the_ends_and_in_place(void **state)
     assert_memory_equal(fa, fb, sizeof fa);
 }
 
+/* Between rotations far apart the sum of two unit quaternions is short: a mix must be a rotation all the same, half way. */
+static void test_a_mix_is_unit(void **state)
+{
+    static const float a[4] = { 0, 0, 0, 1 };
+    (void)state;
+    for (int i = 1; i < 18; i++) {
+        const double angle = i * TWO_PI / 36.0;
+        const float b[4] = { 0, (float)sin(0.5 * angle), 0, (float)cos(0.5 * angle) };
+        for (int k = 0; k <= 8; k++) {
+            float q[4], length;
+            noh_quat_nlerp(a, b, (float)k / 8.0f, q);
+            length = sqrtf(noh_quat_dot(q, q));
+            assert_true(fabsf(length - 1.0f) < 1e-6f);
+            if (k == 4) assert_true(fabs(q[1] - sin(0.25 * angle)) < 1e-6 && fabs(q[3] - cos(0.25 * angle)) < 1e-6);
+        }
+    }
+}
+
+/* What is laid over a pose covers by the mean mask of what takes part: not by what animates no joints there, and
+ * wholly where the pose below has no weight. */
+static void test_cover(void **state)
+{
+    scene s;
+    sums b;
+    noh_transform poses[3][JOINTS], low[JOINTS], got[JOINTS], want[JOINTS];
+    float floats[3][FLOATS], low_floats[FLOATS], got_floats[FLOATS], totals[JOINTS], float_totals[FLOATS];
+    noh_mask_view half, tenths;
+    (void)state;
+    scene_open(&s);
+    sums_open(&b);
+    b.blend.totals = totals;
+    b.blend.float_totals = float_totals;
+    half = noh_mask_of(&s.set, 1);
+    tenths = noh_mask_of(&s.set, 2);
+    for (uint32_t m = 0; m < 3; m++) scene_pose(&s, m, 4000, poses[m], floats[m]);
+    noh_blend_add(&b.blend, poses[WALK], NULL, 1.0f, half); /* below: the upper half, no floats */
+    noh_blend_finish(&b.blend, s.bind, s.defaults, low, low_floats);
+    memcpy(got, low, sizeof got);
+    memcpy(got_floats, low_floats, sizeof got_floats);
+    noh_blend_begin_over(&b.blend);
+    noh_blend_add(&b.blend, poses[RUN], NULL, 0.5f, tenths);
+    noh_blend_add(&b.blend, NULL, floats[WAVE], 4.0f, tenths);
+    noh_blend_cover(&b.blend, 0.5f, got, got_floats);
+    noh_pose_mix(JOINTS, low, poses[RUN], 0.5f, tenths.joints, want);
+    assert_true(pose_apart(got + JOINTS / 2u, want + JOINTS / 2u, JOINTS / 2u) < 1e-6);
+    assert_true(pose_apart(got + 1, poses[RUN] + 1, JOINTS / 2u - 1u) < 1e-6); /* nothing below; joint 0 is masked out */
+    assert_true(pose_apart(got, low, 1) < 1e-6);
+    assert_true(floats_apart(got_floats, floats[WAVE], FLOATS) < 1e-6);
+}
+
 /* A difference added at full weight to its reference is the pose again. */
 static void test_difference_and_back(void **state)
 {
@@ -342,6 +392,39 @@ static void test_space_outside_and_degenerate(void **state)
     assert_int_equal(noh_space_2d_triangulate(NOH_SPACE_POINTS_MAX + 1u, square, tri, &space.triangle_count, &error), NOH_ERR_ARG);
 }
 
+/* The largest coordinates that are taken have exact results; what lies past them is refused, and held where it is asked for. */
+static void test_space_of_huge_coordinates(void **state)
+{
+    static const float far_away[] = { 3e38f, -3e38f, 1.1e18f, INFINITY, -INFINITY, NAN };
+    const float most = NOH_SPACE_COORDINATE_MAX, ends[2] = { -NOH_SPACE_COORDINATE_MAX, NOH_SPACE_COORDINATE_MAX };
+    const float square[8] = { -most, -most, most, -most, -most, most, most, most };
+    uint8_t tri[NOH_SPACE_TRIANGLES_MAX * 3u];
+    float w[4];
+    noh_space_2d space = { 4, 0, square, tri };
+    noh_error error;
+    (void)state;
+    for (uint32_t i = 0; i < 4; i++) {
+        for (uint32_t k = 0; k < sizeof far_away / sizeof *far_away; k++) {
+            float p[8] = { 0, 0, 1, 0, 0, 1, 1, 1 };
+            p[2u * i + k % 2u] = far_away[k];
+            assert_int_equal(noh_space_2d_triangulate(4, p, tri, &space.triangle_count, &error), NOH_ERR_DATA);
+            assert_int_equal(error.where, i);
+        }
+    }
+    assert_int_equal(noh_space_2d_triangulate(4, square, tri, &space.triangle_count, NULL), NOH_OK);
+    assert_int_equal(space.triangle_count, 2);
+    noh_space_2d_weights(&space, 0.0f, 0.0f, w);
+    assert_true(fabsf(w[0] + w[1] + w[2] + w[3] - 1.0f) < 1e-6f && fabsf(w[0] + w[1] - 0.5f) < 1e-6f);
+    noh_space_2d_weights(&space, 3e38f, 3e38f, w);
+    assert_true(w[3] == 1.0f);
+    noh_space_2d_weights(&space, INFINITY, -INFINITY, w);
+    assert_true(w[1] == 1.0f);
+    noh_space_1d_weights(2, ends, 5e17f, w);
+    assert_true(fabsf(w[1] - 0.75f) < 1e-6f);
+    noh_space_1d_weights(2, ends, 3e38f, w);
+    assert_true(w[1] == 1.0f);
+}
+
 /* ---- skeleton, local to model ---- */
 
 static void bad_skeleton(const noh_skeleton *s, noh_result result, const char *what)
@@ -438,12 +521,15 @@ int main(int argc, char **argv)
         cmocka_unit_test(errata_C5_4_weights_are_divided_by_their_sum),
         cmocka_unit_test(errata_C5_4_masked_joints_use_their_own_sum),
         cmocka_unit_test(test_mix_at_the_ends_and_in_place),
+        cmocka_unit_test(test_a_mix_is_unit),
+        cmocka_unit_test(test_cover),
         cmocka_unit_test(test_difference_and_back),
         cmocka_unit_test(test_masks),
         cmocka_unit_test(test_space_1d),
         cmocka_unit_test(test_triangulation),
         cmocka_unit_test(test_delaunay),
         cmocka_unit_test(test_space_outside_and_degenerate),
+        cmocka_unit_test(test_space_of_huge_coordinates),
         cmocka_unit_test(test_skeleton_fields_broken_in_turn),
         cmocka_unit_test(errata_C3_1_parent_times_local),
         cmocka_unit_test(test_palette),

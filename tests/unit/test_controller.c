@@ -610,6 +610,73 @@ static void test_motions_of_joints_and_of_floats(void **state)
     assert_true(pose_apart(g.pose, walk, JOINTS) > 1e-2 && floats_apart(g.floats, face_floats, FLOATS) > 1e-2);
 }
 
+/* In the high group likewise: a face that speaks neither covers the walk below nor dilutes the bow beside it, and a
+ * bow that moves no floats leaves them to the face. */
+static void test_clips_of_joints_and_of_floats_above(void **state)
+{
+    stage g;
+    noh_transform low[JOINTS], bow[JOINTS], face[JOINTS];
+    float low_floats[FLOATS], bow_floats[FLOATS], face_floats[FLOATS];
+    (void)state;
+    stage_open(&g, 3, 0);
+    scene_pose(&g.s, WALK, 0, low, low_floats);
+    scene_pose(&g.s, RUN, 0, bow, bow_floats);
+    scene_pose(&g.s, WAVE, 0, face, face_floats);
+    g.s.motions[WAVE].flags = NOH_MOTION_NO_JOINTS;
+    start(&g, 0, track_of(WALK, 1.0f));
+    start(&g, 2, (noh_track_desc){ .motion = WAVE, .weight = 3.0f, .group = NOH_GROUP_HIGH });
+    take_pose(&g);
+    assert_true(pose_apart(g.pose, low, JOINTS) < 1e-6 && floats_apart(g.floats, face_floats, FLOATS) < 1e-6);
+    g.s.motions[RUN].flags = NOH_MOTION_NO_FLOATS;
+    start(&g, 1, (noh_track_desc){ .motion = RUN, .weight = 0.5f, .group = NOH_GROUP_HIGH });
+    take_pose(&g);
+    assert_true(pose_apart(g.pose, bow, JOINTS) < 1e-6 && floats_apart(g.floats, face_floats, FLOATS) < 1e-6);
+    start(&g, 2, (noh_track_desc){ .motion = WAVE, .weight = 3.0f, .flags = NOH_TRACK_ADDITIVE });
+    g.s.motions[WAVE].flags |= NOH_MOTION_ADDITIVE; /* joints that it does not have are no difference either */
+    take_pose(&g);
+    assert_true(pose_apart(g.pose, bow, JOINTS) < 1e-6);
+}
+
+/* A high track whose mask leaves a joint out does not dilute another high track there. */
+static void test_a_masked_track_leaves_others_their_joints(void **state)
+{
+    stage g;
+    noh_transform run[JOINTS], wave[JOINTS], mean[JOINTS];
+    float run_floats[FLOATS], wave_floats[FLOATS];
+    (void)state;
+    stage_open(&g, 3, 0);
+    scene_pose(&g.s, RUN, 0, run, run_floats);
+    scene_pose(&g.s, WAVE, 0, wave, wave_floats);
+    start(&g, 0, track_of(WALK, 1.0f));
+    start(&g, 1, (noh_track_desc){ .motion = RUN, .weight = 2.0f, .group = NOH_GROUP_HIGH });
+    start(&g, 2, (noh_track_desc){ .motion = WAVE, .weight = 2.0f, .group = NOH_GROUP_HIGH, .mask = 1 });
+    take_pose(&g);
+    noh_pose_mix(JOINTS, run, wave, 0.5f, NULL, mean);
+    assert_true(pose_apart(g.pose, run, JOINTS / 2u) < 1e-6); /* masks[0]: the upper half */
+    assert_true(pose_apart(g.pose + JOINTS / 2u, mean + JOINTS / 2u, JOINTS / 2u) < 1e-6);
+    assert_true(floats_apart(g.floats, run_floats, 2) < 1e-6);
+}
+
+/* The low group is the mean by weight: three of a walk to one of a run. */
+static void test_tracks_count_by_weight(void **state)
+{
+    stage g;
+    noh_transform a[JOINTS], b[JOINTS], want[JOINTS];
+    float fa[FLOATS], fb[FLOATS];
+    (void)state;
+    stage_open(&g, 2, 0);
+    scene_pose(&g.s, WALK, 0, a, fa);
+    scene_pose(&g.s, RUN, 0, b, fb);
+    for (int group = NOH_GROUP_LOW; group <= NOH_GROUP_HIGH; group++) {
+        start(&g, 0, (noh_track_desc){ .motion = WALK, .weight = 3.0f, .group = (noh_track_group)group });
+        start(&g, 1, (noh_track_desc){ .motion = RUN, .weight = 1.0f, .group = (noh_track_group)group });
+        take_pose(&g);
+        noh_pose_mix(JOINTS, a, b, 0.25f, NULL, want);
+        assert_true(pose_apart(g.pose, want, JOINTS) < 1e-6);
+        for (uint32_t i = 0; i < FLOATS; i++) assert_true(fabsf(g.floats[i] - (0.75f * fa[i] + 0.25f * fb[i])) < 1e-6f);
+    }
+}
+
 static void test_lod(void **state)
 {
     stage g;
@@ -874,6 +941,9 @@ int main(int argc, char **argv)
         cmocka_unit_test(errata_C5_2_priority_is_the_blend_group),
         cmocka_unit_test(test_masked_layer),
         cmocka_unit_test(test_motions_of_joints_and_of_floats),
+        cmocka_unit_test(test_clips_of_joints_and_of_floats_above),
+        cmocka_unit_test(test_a_masked_track_leaves_others_their_joints),
+        cmocka_unit_test(test_tracks_count_by_weight),
         cmocka_unit_test(test_lod),
         cmocka_unit_test(test_additive_tracks),
         cmocka_unit_test(errata_C4_4_clones_share_nothing_they_write),

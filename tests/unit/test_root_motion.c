@@ -354,6 +354,40 @@ static void test_moves_are_blended_by_weight_and_group(void **state)
     assert_true(root_apart(&got, &want) < 1e-12);
 }
 
+/* A clip of floats alone, or one whose mask leaves the root out, takes no part: the walk goes as far as it does alone. */
+static void test_what_moves_no_joints_does_not_hold_the_root(void **state)
+{
+    static const uint8_t no_joints[1] = { 0 };
+    (void)state;
+    for (int group = NOH_GROUP_LOW; group <= NOH_GROUP_HIGH; group++) {
+        for (uint32_t mask = 0; mask < 2; mask++) {
+            stage g;
+            noh_track_desc face = track_of(1, 2.0f), bow = track_of(0, 1.0f);
+            noh_root_pose alone, got;
+            stage_open(&g, NOH_ROOT_GROUND);
+            g.w.set.mask_count = 1;
+            g.w.set.masks = no_joints;
+            g.w.motion[1].flags = mask ? 0 : NOH_MOTION_NO_JOINTS;
+            face.mask = mask;
+            face.group = (noh_track_group)group;
+            start(&g, 0, track_of(0, 1.0f));
+            start(&g, 1, face);
+            noh_controller_step(g.c, &g.w.set, 3000, NULL, NULL);
+            got = noh_controller_root_motion(g.c, &g.w.set);
+            alone = noh_root_at(&g.w.set, &g.w.roots[0], 0, NOH_LOOP_REPEAT, noh_position_of(3000));
+            assert_true(fabs(alone.translation[2]) > 0.05);
+            assert_true(root_apart(&got, &alone) < 1e-12);
+            bow.group = NOH_GROUP_HIGH; /* nor does it dilute another high track */
+            bow.position_ticks = 6000;
+            start(&g, 2, bow);
+            noh_controller_step(g.c, &g.w.set, 3000, NULL, NULL);
+            got = noh_controller_root_motion(g.c, &g.w.set);
+            alone = noh_root_between(&g.w.set, &g.w.roots[0], 0, NOH_LOOP_REPEAT, noh_position_of(6000), noh_position_of(9000));
+            assert_true(root_apart(&got, &alone) < 1e-12);
+        }
+    }
+}
+
 /* World * pose is the path of the motion without any extraction, over the seams. */
 static void test_pose_and_motion_make_the_whole(void **state)
 {
@@ -396,6 +430,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_one_track_moves_as_its_motion),
         cmocka_unit_test(test_seeks_do_not_move_play_does),
         cmocka_unit_test(test_moves_are_blended_by_weight_and_group),
+        cmocka_unit_test(test_what_moves_no_joints_does_not_hold_the_root),
         cmocka_unit_test(test_pose_and_motion_make_the_whole),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);

@@ -4,34 +4,6 @@
 
 /* ---- opening ---- */
 
-static int has_joint_twice(const noh_skin *skin)
-{
-    for (uint32_t i = 0; i < skin->header->joint_count; i++) {
-        for (uint32_t k = 0; k < i; k++) {
-            if (skin->joints[i] == skin->joints[k]) {
-                return 1;
-            }
-        }
-    }
-    return 0;
-}
-
-/* The skin's inverse bind matrices, by joint of the skeleton: a character's palette is then what the skin wants. Where
- * the skin has a joint twice (rigid parts that were joined), a palette is the joints' own matrices. */
-static void open_skeleton(crowd *c)
-{
-    static const float identity[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
-    const noh_skin *skin = &c->plan->skin;
-    c->skeleton = c->set->skeleton;
-    for (uint32_t j = 0; j < c->skeleton.joint_count; j++) {
-        memcpy(c->inverse_bind + 12u * (size_t)j, identity, sizeof identity);
-    }
-    for (uint32_t i = 0; i < skin->header->joint_count; i++) {
-        memcpy(c->inverse_bind + 12u * (size_t)skin->joints[i], skin->inverse_bind + 12u * (size_t)i, sizeof identity);
-    }
-    c->skeleton.inverse_bind = has_joint_twice(skin) ? NULL : c->inverse_bind;
-}
-
 /* What ends goes to and fro instead, so that nobody stands still; and two keys a pass where the pack has none at all. */
 static void open_motions(crowd *c)
 {
@@ -137,7 +109,7 @@ static int open_all(crowd *c, noh_arena *arena)
     c->used_bytes = arena->used;
     result = noh_motion_set_init(parts.set, p->set_needs.bytes, &p->set_desc, &c->set, &error);
     if (!result) {
-        open_skeleton(c);
+        (void)noh_skin_skeleton(&p->skin, &c->set->skeleton, c->inverse_bind, &c->skeleton); /* one skin: multiplied at updates */
         open_motions(c);
         find_weights(c);
         result = open_characters(c, parts.scratch, &error);

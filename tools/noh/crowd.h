@@ -109,7 +109,7 @@ typedef struct crowd {
     noh_schedule schedule;
     noh_level_pools *pools;
     float sphere[4];              /* of every body, from where it stands */
-    float *mixed, *gathered;      /* [joint][12], [the skin's joint][12] */
+    float *matrices;              /* [the skin's joint][12] */
     float *floats, *weights;      /* [float], [target] */
     /* each */
     uint8_t *characters;          /* [count][character_bytes] */

@@ -154,8 +154,7 @@ void crowd_carve(noh_arena *a, const crowd_plan *p, crowd *c, crowd_parts *parts
     c->keys = carve(a, 2u * (size_t)shape->motion_count, sizeof *c->keys);
     c->rate_error_m = carve(a, shape->motion_count, NOH_RATE_COUNT * sizeof(float));
     c->inverse_bind = carve(a, joints, 12u * sizeof(float));
-    c->mixed = carve(a, joints, 12u * sizeof(float));
-    c->gathered = carve(a, p->skin.header->joint_count, 12u * sizeof(float));
+    c->matrices = carve(a, p->skin.header->joint_count, 12u * sizeof(float));
     c->floats = carve(a, shape->float_count, sizeof(float));
     c->weights = carve(a, targets, sizeof(float));
     c->pictures = carve(a, p->mesh.pack->texture_count, sizeof *c->pictures);

@@ -6,8 +6,7 @@
 static int open_item(item_detail *item, const noh_mesh *mesh)
 {
     const uint32_t targets = mesh->header->target_count;
-    item->table.meshes = item->levels;
-    item->table.mesh_level_count = noh_detail_mesh_levels(mesh, item->levels);
+    noh_detail_mesh_levels(mesh, item->levels, &item->table);
     item->reach_m = calloc(targets + 1u, sizeof *item->reach_m);
     if (item->reach_m) {
         noh_detail_target_reach(mesh, item->reach_m);
