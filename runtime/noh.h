@@ -14,7 +14,7 @@
  *   mesh/mesh.h          vertices, triangles, morph targets and levels of detail of a pack
  *   anim/pack_motion.h   skeletons and compressed motion of a pack
  *   anim/clip_codec.h    a compressed clip, ready to be played
- *   anim/clip_cache.h    its frames in a fixed block, and poses from them
+ *   anim/clip_cache.h    its frames in a fixed block, and poses from them; clip_view.h: on several threads
  *   anim/controller.h    tracks, changes over time, callback keys; controller_pose.h: poses of them
  *   anim/motion_set.h    a pack's clips joined to the controller: start here
  *   anim/graph.h         a small animation graph over a controller
@@ -47,6 +47,7 @@
 #include "anim/pack_motion.h"
 #include "anim/clip_codec.h"
 #include "anim/clip_cache.h"
+#include "anim/clip_view.h"
 #include "anim/controller.h"
 #include "anim/controller_pose.h"
 #include "anim/event_queue.h"
