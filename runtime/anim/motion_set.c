@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "anim/motion_set_bind.h"
+#include "anim/motion_set_bind_internal.h"
 #include "anim/motion_set_internal.h"
 #include "base/arena.h"
 #include "base/hash.h"

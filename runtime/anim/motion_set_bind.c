@@ -1,4 +1,4 @@
-#include "anim/motion_set_bind.h"
+#include "anim/motion_set_bind_internal.h"
 
 #include <string.h>
 

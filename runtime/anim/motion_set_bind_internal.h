@@ -1,7 +1,7 @@
-/* motion_set_bind.h (private to anim/): which clips of a pack fit a skeleton and the nodes of a mesh pack. Reads only the
+/* motion_set_bind_internal.h (private to anim/): which clips of a pack fit a skeleton and the nodes of a mesh pack. Reads only the
  * packs' bytes, so that sizes are known before there is memory. */
-#ifndef NOH_ANIM_MOTION_SET_BIND_H
-#define NOH_ANIM_MOTION_SET_BIND_H
+#ifndef NOH_ANIM_MOTION_SET_BIND_INTERNAL_H
+#define NOH_ANIM_MOTION_SET_BIND_INTERNAL_H
 
 #include "anim/clip_internal.h"
 #include "anim/pack_motion.h"
