@@ -82,6 +82,7 @@
 #include "base/trig.h"                /* trigonometry without libm, the same bits everywhere */
 #include "anim/blend.h"               /* poses mixed and added */
 #include "anim/clip_cache.h"          /* decoded frames in a fixed block, and samples of them */
+#include "anim/clip_view.h"           /* a thread's own view of a clip cache */
 #include "anim/clip_codec.h"          /* one compressed clip */
 
 /* Glossary: one word for one thing, in names, documents, the command line and messages.

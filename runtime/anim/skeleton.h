@@ -1,12 +1,15 @@
-/* skeleton.h: joints, parents first (row C3.1). A view; the arrays are borrowed. */
+/* skeleton.h: joints, parents first, so that one pass over them makes model matrices. The arrays are borrowed.
+ *
+ * Threads: read only; any number may share one. */
 #ifndef NOH_ANIM_SKELETON_H
 #define NOH_ANIM_SKELETON_H
 
 #include "anim/pose.h"
+#include "base/limits.h"
 #include "base/result.h"
 
 #define NOH_JOINT_ROOT 0xffffu /* parent of a joint that has none */
-#define NOH_SKELETON_JOINTS_MAX 4096u
+#define NOH_SKELETON_JOINTS_MAX NOH_JOINTS_MAX
 
 typedef struct noh_skeleton {
     uint32_t joint_count;           /* 1..NOH_SKELETON_JOINTS_MAX */
@@ -16,8 +19,8 @@ typedef struct noh_skeleton {
 } noh_skeleton;
 
 /* Check a skeleton that does not come out of a checked pack.
- * errors  ARG a count or pointer, named; DATA (where: the joint) a parent that does
- *         not come first, a value that is not finite, a rotation that is not unit */
+ * errors  ARG a count or pointer, named; DATA (where: the joint) a parent that does not come first, a value that is not
+ *         finite, a rotation that is not unit */
 noh_result noh_skeleton_check(const noh_skeleton *skeleton, noh_error *error);
 
 #endif

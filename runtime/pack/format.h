@@ -14,7 +14,6 @@
 
 #define NOH_PACK_MAGIC 0x50484f4eu /* "NOHP" */
 #define NOH_PACK_VERSION 3u
-#define NOH_NONE 0xffffffffu
 
 #define NOH_FOURCC(a, b, c, d) ((uint32_t)(a) | ((uint32_t)(b) << 8) | ((uint32_t)(c) << 16) | ((uint32_t)(d) << 24))
 #define NOH_CHUNK_STRINGS NOH_FOURCC('S', 'T', 'R', 'S')

@@ -492,6 +492,34 @@ static void play_a_while(noh_motion_set *set)
     motion_player_close(&p);
 }
 
+static void expect_exact_view(const noh_motion_set *set, size_t bytes)
+{
+    noh_transform *pose = test_zeros(sizeof *pose * (set->anim.joint_count + 1u));
+    float *floats = test_zeros(sizeof *floats * (set->anim.float_count + 1u));
+    noh_motion_set_view *view = NULL;
+    noh_error error = { NOH_OK, NULL, 0, 0 };
+    guarded g = guarded_new(bytes);
+    assert_int_equal(noh_motion_set_view_size(set), bytes);
+    assert_int_equal(noh_motion_set_view_init(NULL, bytes, set, &view, &error), NOH_ERR_ARG);
+    assert_int_equal(error.need, bytes);
+    assert_int_equal(noh_motion_set_view_init(g.block, bytes - 1, set, &view, &error), NOH_ERR_MEMORY);
+    assert_int_equal(error.need, bytes);
+    assert_int_equal(noh_motion_set_view_init(g.block + 4, bytes, set, &view, &error), NOH_ERR_ARG);
+    assert_null(view);
+    expect_untouched(&g);
+    assert_int_equal(noh_motion_set_view_init(g.block, bytes, set, &view, &error), NOH_OK);
+    for (uint32_t m = 0; m < set->anim.motion_count; m++) {
+        const uint32_t duration = set->anim.motions[m].duration_ticks;
+        for (uint32_t i = 0; i <= 100; i++) {
+            view->anim.sample(view->anim.user, m, duration / 100u * i, set->anim.joint_count, pose, set->anim.float_count, floats);
+        }
+    }
+    expect_canaries(&g);
+    guarded_free(&g);
+    free(pose);
+    free(floats);
+}
+
 static void expect_exact_set(const noh_pack *pack, uint32_t skeleton, uint32_t slots, uint32_t root_axes)
 {
     noh_motion_set_desc desc;
@@ -509,7 +537,7 @@ static void expect_exact_set(const noh_pack *pack, uint32_t skeleton, uint32_t s
     g = guarded_new(needs.bytes);
     assert_int_equal(noh_motion_set_init(g.block, needs.bytes - 1, &desc, &set, &error), NOH_ERR_MEMORY);
     assert_int_equal(error.need, needs.bytes);
-    assert_int_equal(noh_motion_set_init(g.block + 4, needs.bytes, &desc, &set, &error), NOH_ERR_MEMORY);
+    assert_int_equal(noh_motion_set_init(g.block + 4, needs.bytes, &desc, &set, &error), NOH_ERR_ARG);
     assert_null(set);
     expect_untouched(&g);
     assert_int_equal(noh_motion_set_init(g.block, needs.bytes, &desc, &set, &error), NOH_OK);
@@ -517,6 +545,7 @@ static void expect_exact_set(const noh_pack *pack, uint32_t skeleton, uint32_t s
     assert_int_equal(set->anim.joint_count, needs.shape.joint_count);
     assert_int_equal(set->anim.float_count, needs.shape.float_count);
     play_a_while(set);
+    expect_exact_view(set, needs.view_bytes);
     expect_canaries(&g);
     guarded_free(&g);
 }

@@ -431,7 +431,7 @@ static void bad_skeleton(const noh_skeleton *s, noh_result result, const char *w
 {
     noh_error error;
     assert_int_equal(noh_skeleton_check(s, &error), result);
-    assert_string_equal(error.what, what);
+    assert_non_null(strstr(error.what, what));
 }
 
 static void test_skeleton_fields_broken_in_turn(void **state)

@@ -47,7 +47,7 @@ static void bad_set(scene *s, noh_result result, const char *what)
 {
     noh_error error;
     assert_int_equal(noh_anim_set_check(&s->set, &error), result);
-    assert_string_equal(error.what, what);
+    assert_non_null(strstr(error.what, what));
     scene_open(s);
 }
 
@@ -81,7 +81,7 @@ static void test_set_fields_broken_in_turn(void **state)
     s.markers[3].tick = 30000; bad_set(&s, NOH_ERR_DATA, "marker tick past the duration");
     s.markers[3].tick = 2000; bad_set(&s, NOH_ERR_DATA, "marker order");
     assert_int_equal(noh_anim_set_find(&s.set, 103), 3);
-    assert_int_equal(noh_anim_set_find(&s.set, 99), MOTIONS);
+    assert_int_equal(noh_anim_set_find(&s.set, 99), NOH_NONE);
 }
 
 static void bad_controller(noh_controller_desc d, const char *what)
