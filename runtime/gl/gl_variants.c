@@ -116,7 +116,12 @@ noh_result noh_gl_variant_create(const noh_gl_api *api, noh_gl_ledger *ledger, n
     if (!result) {
         v.key = key;
         find_uniforms(api, &v);
-        *out = v;
+        result = noh_gl_error_check(api, "the driver refuses to tell a shader variant's uniforms", 0, error);
+        if (result) {
+            noh_gl_variant_delete(api, ledger, &v);
+        } else {
+            *out = v;
+        }
     }
     return result;
 }
