@@ -46,7 +46,9 @@ CONVERT_CC := $(sort $(wildcard tools/convert/*/*.cpp))
 TOOL_C     := $(filter-out %/view_without.c,$(sort $(wildcard tools/noh/*.c tools/noh/bench/*.c)))
 MASK_C     := $(sort $(wildcard tools/make_mask/*.c tools/make_puppet/*.c tools/make_arm/*.c))
 STAGES     := vert geom frag
-SHADERS    := $(sort $(foreach stage,$(STAGES),$(wildcard shaders_es/*.$(stage))))
+# What games put into their own shaders (runtime/gl/gl_shader_text.h) is in the library by itself, too.
+SHADERS    := $(sort $(foreach stage,$(STAGES),$(wildcard shaders_es/*.$(stage)))) \
+              $(foreach text,layers attributes skin fade,shaders_es/common_$(text).glsl)
 TOOL_SHADERS := $(sort $(foreach stage,$(STAGES),$(wildcard tools/noh/shaders/*.$(stage) tools/noh/bench/*.$(stage))))
 TEST_C     := $(sort $(wildcard tests/unit/test_*.c tests/memory/test_*.c tests/gl/test_*.c))
 

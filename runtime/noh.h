@@ -31,6 +31,7 @@
  *   gl/gl_morph.h        morph targets accumulated on the GPU, five ways
  *   gl/gl_skin.h         joints of many instances on the GPU
  *   gl/gl_draw.h         meshes on the GPU and a plain renderer; gl_variants.h: its programs
+ *   gl/gl_shader_text.h  the library's GLSL, for your own shaders
  *   gl/gl_debug.h        names for what RenderDoc and apitrace show
  *   gl/gl_lost.h         after a lost context
  *
@@ -67,6 +68,7 @@
 #include "gl/gl_skin.h"
 #include "gl/gl_variants.h"
 #include "gl/gl_draw.h"
+#include "gl/gl_shader_text.h"
 #include "gl/gl_debug.h"
 #include "gl/gl_lost.h"
 #include "character/bounds.h"
