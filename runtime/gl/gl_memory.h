@@ -74,7 +74,7 @@ noh_result noh_gl_buffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, GL
                                 const void *data, GLenum usage, noh_gl_buffer *out, noh_error *error);
 void noh_gl_buffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_buffer *buffer);
 
-/* A texture without content, on the active texture unit.
+/* A texture without content. Leaves texture unit 0 active.
  * errors  NOH_ERR_ARG an impossible desc; NOH_ERR_MEMORY, NOH_ERR_GL as above.
  *         The caller compares with noh_gl_caps limits first: a driver's answer to
  *         a texture that is too large is only an NOH_ERR_GL */

@@ -16,7 +16,6 @@ static noh_result create_layers(noh_gl_morph *m, noh_error *error)
     desc.width = m->plan.atlas_width;
     desc.height = m->plan.atlas_height;
     desc.layers = 3;
-    m->gl->ActiveTexture(GL_TEXTURE0);
     return noh_gl_texture_create(m->gl, m->ledger, &desc, &m->layers, error);
 }
 
@@ -47,6 +46,7 @@ static noh_result make_gl_objects(noh_gl_morph *m, char *log, size_t log_bytes, 
     }
     if (!result) {
         label_objects(m);
+        result = noh_gl_error_check(m->gl, "the driver refuses a call that makes the accumulator", m->plan.gpu_bytes, error);
     }
     return result;
 }

@@ -20,7 +20,8 @@
  *   per-layer  ES 3.0, blending                     three additive passes
  *   gather     ES 3.0                               no blending: each fragment sums its vertex's list
  *   cpu        nothing                              SIMD on the CPU, the texture takes the result
- * "Blending" is into the accumulation format, which an extension grants: float32
+ * Two policies choose among them: `auto` takes the cheapest here, `blend` layered draws where supported and per-layer
+ * passes otherwise. "Blending" is into the accumulation format, which an extension grants: float32
  * (EXT_float_blend) is missing on most phones, float16 is not. */
 #ifndef NOH_GL_GL_MORPH_H
 #define NOH_GL_GL_MORPH_H
@@ -35,9 +36,10 @@ typedef enum noh_morph_path {
     NOH_MORPH_MRT,
     NOH_MORPH_PER_LAYER,
     NOH_MORPH_GATHER,
-    NOH_MORPH_CPU
+    NOH_MORPH_CPU,
+    NOH_MORPH_BLEND /* a policy: additive blending, layered draws where supported, else per-layer passes */
 } noh_morph_path;
-#define NOH_MORPH_PATH_COUNT 6
+#define NOH_MORPH_PATH_COUNT 7
 
 typedef enum noh_accumulate {
     NOH_ACCUMULATE_AUTO = 0, /* f32 */
@@ -45,7 +47,7 @@ typedef enum noh_accumulate {
     NOH_ACCUMULATE_F16       /* half the memory; error within the mesh's f16_position_bound */
 } noh_accumulate;
 
-/* "auto", "layered", "mrt", "per-layer", "gather", "cpu"; "auto", "f32", "f16". */
+/* "auto", "layered", "mrt", "per-layer", "gather", "cpu", "blend"; "auto", "f32", "f16". */
 const char *noh_morph_path_name(noh_morph_path path);
 const char *noh_accumulate_name(noh_accumulate accumulate);
 
@@ -54,14 +56,14 @@ typedef struct noh_gl_morph_desc {
                                       * tiles of its own size: a few instances near, many far. They share the finest one's tables */
     uint32_t mesh_count;
     const uint32_t *instance_counts; /* [mesh_count]; NULL: one of each. 1..NOH_MORPH_INSTANCES_MAX in all */
-    noh_morph_path path;             /* 0: the cheapest that the capabilities allow */
+    noh_morph_path path;             /* 0: the cheapest that the capabilities allow; or a policy, or one path */
     noh_accumulate accumulate;       /* 0: f32 */
     float expected_active;           /* for auto: share of the targets that is active at once, 0..1; 0: 0.5 */
 } noh_gl_morph_desc;
 
 /* What a desc comes to on a GPU with these capabilities. All bytes are exact. */
 typedef struct noh_gl_morph_plan {
-    noh_morph_path path;         /* never AUTO */
+    noh_morph_path path;         /* never AUTO or BLEND */
     noh_accumulate accumulate;   /* never AUTO */
     const char *reason;          /* why this path, in words; a string constant */
     GLenum layer_format;         /* RGBA32F, RGBA16F, RGBA32UI (float bits), RGB32F or RGB16F */

@@ -137,23 +137,39 @@ static noh_result create_buffer(noh_gl_skin *skin, noh_error *error)
     return result;
 }
 
-static noh_result create_object(noh_gl_skin *skin, noh_error *error)
+static noh_result create_texture(noh_gl_skin *skin, noh_error *error)
 {
     noh_gl_texture_desc desc = { GL_RGBA32F, 0, 0, 0, 0, 0, 0 };
     noh_result result;
-    skin->dirty_first = 0; /* a new object holds nothing yet: the first update sends all */
-    skin->dirty_end = skin->plan.texel_count;
-    if (skin->plan.mode == NOH_PALETTE_UNIFORM) {
-        return skin->plan.gpu_bytes ? create_buffer(skin, error) : NOH_OK;
-    }
     desc.width = skin->plan.width;
     desc.height = skin->plan.height;
-    skin->gl->ActiveTexture(GL_TEXTURE0);
     result = noh_gl_texture_create(skin->gl, skin->ledger, &desc, &skin->texture, error);
     if (!result) {
         skin->gl->BindTexture(GL_TEXTURE_2D, skin->texture.name);
         noh_gl_label(skin->gl, GL_TEXTURE, skin->texture.name, "palettes", NULL);
         skin->gl->BindTexture(GL_TEXTURE_2D, 0);
+    }
+    return result;
+}
+
+/* Leaves no object behind on error. */
+static noh_result create_object(noh_gl_skin *skin, noh_error *error)
+{
+    noh_result result = NOH_OK;
+    skin->dirty_first = 0; /* a new object holds nothing yet: the first update sends all */
+    skin->dirty_end = skin->plan.texel_count;
+    if (skin->plan.mode == NOH_PALETTE_TEXTURE) {
+        result = create_texture(skin, error);
+    } else if (skin->plan.gpu_bytes) {
+        result = create_buffer(skin, error);
+    } else {
+        return NOH_OK;
+    }
+    if (!result) {
+        result = noh_gl_error_check(skin->gl, "the driver refuses the palettes", skin->plan.gpu_bytes, error);
+    }
+    if (result) {
+        noh_gl_skin_delete(skin);
     }
     return result;
 }

@@ -51,7 +51,7 @@ static int help(void)
     for (size_t i = 0; i < sizeof verbs / sizeof verbs[0]; i++) {
         printf("  noh %-7s %s\n                 %s\n", verbs[i].name, verbs[i].usage, verbs[i].what);
     }
-    puts("\npaths (P): auto layered mrt per-layer gather cpu\n"
+    puts("\npaths (P): auto (the cheapest here), blend (layered where supported, else per-layer), layered mrt per-layer gather cpu\n"
          "exit code: 0, 1 (the input or the check failed), 2 (usage)");
     return 0;
 }
