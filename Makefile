@@ -14,6 +14,11 @@ SAN     ?=
 FUZZ_SECONDS ?= 60
 ASSETS  ?= $(if $(NOH_ASSETS),$(NOH_ASSETS),../shared/assets)
 
+# Make splits words at blanks.
+ifneq ($(words $(BUILD)),1)
+$(error BUILD wants a path without blanks, not '$(BUILD)')
+endif
+
 ifeq ($(origin CC),default)
 CC := gcc
 endif
@@ -75,7 +80,7 @@ KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)
 .SECONDARY:
 .DELETE_ON_ERROR:
 
-all: $(BUILD)/noh $(BUILD)/libnoh.a
+all: $(BUILD)/noh $(BUILD)/libnoh.a $(BUILD)/noh.1 $(BUILD)/noh.bash
 
 help:
 	@echo 'make            build/noh and build/libnoh.a'
@@ -172,6 +177,12 @@ FORCE:
 $(BUILD)/noh: $(TOOL_O) $(VIEW_O) $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(BUILD)/libnoh.a $(BUILD)/gen/view_without
 	$(call say,CXX,$@)
 	$(Q)$(CXX) $(LDFLAGS) $(filter %.o %.a,$^) -o $@ $(VIEW_LIBS) $(TOOL_LIBS)
+
+# The man page and the completion for bash come from the tables that the verbs read their options by.
+$(BUILD)/noh.1: $(BUILD)/noh
+	$(Q)$(BUILD)/noh help --man >$@
+$(BUILD)/noh.bash: $(BUILD)/noh
+	$(Q)$(BUILD)/noh help --bash >$@
 
 $(BUILD)/make_mask: $(MASK_O)
 	$(call say,CC,$@)

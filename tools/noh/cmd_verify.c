@@ -1,13 +1,21 @@
 /* cmd_verify.c: every path and format against the CPU reference, value for value, and
  * memory used against memory predicted. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "load.h"
 #include "verify_skin.h"
+#include "gpu_args.h"
+#include "json.h"
+#include "message.h"
+#include "options.h"
+#include "readback.h"
+#include "verbs.h"
 
 #define ROUNDS 4 /* sets of random weights per path */
+#define NORMAL_BOUND 1e-5 /* of a component of a fetched normal: what a GPU's reciprocal root may be off */
 
 typedef struct verify_row {
     const char *path, *accumulate, *reason;
@@ -16,6 +24,8 @@ typedef struct verify_row {
     double max_error_um, bound_um; /* f16 against f32 */
     double max_normal_error;       /* of fetched normals: the GPU's reciprocal root is not exact */
     uint64_t cpu_predicted, cpu_used, gpu_predicted, gpu_used;
+    const char *failure; /* which of its values is past its bound: below, NULL: none */
+    double failure_value, failure_bound;
 } verify_row;
 
 typedef struct verify_job {
@@ -25,6 +35,7 @@ typedef struct verify_job {
     uint64_t state; /* of the random weights */
     verify_row rows[16];
     int row_count, failed;
+    const char *memory_failure; /* NULL: memory is as predicted */
     load_options load;  /* of the load whose memory is compared with its budget */
     uint64_t gpu_predicted, gpu_used, cpu_predicted, cpu_used;
 } verify_job;
@@ -176,17 +187,35 @@ static void set_bound(verify_job *job, verify_row *row, int half)
     }
 }
 
-/* A row fails when a value differs where equality is demanded, when half floats or skins stray
- * past their bound, or when memory is not what was predicted. */
-static int row_failed(const verify_row *row)
+static void fail_row(verify_row *row, const char *what, double value, double bound)
 {
-    if (row->cpu_predicted != row->cpu_used || row->gpu_predicted != row->gpu_used) {
-        return 1;
+    if (!row->failure) {
+        row->failure = what;
+        row->failure_value = value;
+        row->failure_bound = bound;
     }
+}
+
+/* A row fails when a value differs where equality is demanded, when half floats or skins stray past their bound, or when
+ * memory is not what was predicted. The first reason is kept. */
+static int row_failed(verify_row *row)
+{
     if (row->exact && (row->differing || row->vertex_differing)) {
-        return 1;
+        fail_row(row, "differing values", (double)(row->differing + row->vertex_differing), 0.0);
     }
-    return (row->bound_um > 0.0 && row->max_error_um > row->bound_um) || row->max_normal_error > 1e-5;
+    if (row->bound_um > 0.0 && !(row->max_error_um <= row->bound_um)) {
+        fail_row(row, "position error, um", row->max_error_um, row->bound_um);
+    }
+    if (!(row->max_normal_error <= NORMAL_BOUND)) {
+        fail_row(row, "normal error", row->max_normal_error, NORMAL_BOUND);
+    }
+    if (row->cpu_predicted != row->cpu_used) {
+        fail_row(row, "CPU bytes used (bound: predicted)", (double)row->cpu_used, (double)row->cpu_predicted);
+    }
+    if (row->gpu_predicted != row->gpu_used) {
+        fail_row(row, "GPU bytes used (bound: predicted)", (double)row->gpu_used, (double)row->gpu_predicted);
+    }
+    return row->failure != NULL;
 }
 
 /* The block that init takes: one byte less is refused and leaves it untouched. Returns the
@@ -279,7 +308,7 @@ static int verify_simd(verify_job *job)
         }
         buffers_close(&b);
     }
-    job->failed |= status || row->differing != 0;
+    job->failed |= status || row_failed(row);
     return status;
 }
 
@@ -309,6 +338,14 @@ static int verify_skins(verify_job *job, const noh_gl_mesh *gl_meshes)
     return status;
 }
 
+static void check_memory(verify_job *job, int ok, const char *failure)
+{
+    if (!ok) {
+        job->failed = 1;
+        job->memory_failure = job->memory_failure ? job->memory_failure : failure;
+    }
+}
+
 static int verify_all(verify_job *job)
 {
     static const noh_morph_path paths[] = { NOH_MORPH_LAYERED, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER, NOH_MORPH_GATHER, NOH_MORPH_CPU };
@@ -336,7 +373,7 @@ static int verify_all(verify_job *job)
         noh_gl_mesh_delete(&job->g.gl, &job->g.ledger, &gl_meshes[i]);
     }
     free(gl_meshes);
-    job->failed |= noh_gl_ledger_bytes(&job->g.ledger) != 0; /* everything was given back */
+    check_memory(job, noh_gl_ledger_bytes(&job->g.ledger) == 0, "GPU memory was not given back");
     return status;
 }
 
@@ -360,13 +397,28 @@ static int verify_load(verify_job *job)
             job->cpu_used += p->set_bytes + p->controller_bytes + p->pose_bytes;
         }
         status = load_update(&l, NULL);
-        job->failed |= noh_gl_ledger_bytes(&job->g.ledger) != job->gpu_used; /* nothing is asked for after init */
+        check_memory(job, noh_gl_ledger_bytes(&job->g.ledger) == job->gpu_used, "GPU memory was taken after init");
         load_close(&l);
     }
     load_budget_free(&b);
-    job->failed |= status || job->gpu_predicted != job->gpu_used || job->cpu_predicted != job->cpu_used ||
-                   noh_gl_ledger_bytes(&job->g.ledger) != 0;
+    check_memory(job, job->cpu_predicted == job->cpu_used, "CPU bytes are not those predicted");
+    check_memory(job, job->gpu_predicted == job->gpu_used, "GPU bytes are not those predicted");
+    check_memory(job, noh_gl_ledger_bytes(&job->g.ledger) == 0, "GPU memory was not given back");
+    job->failed |= status;
     return status;
+}
+
+static void print_failures(const verify_job *job)
+{
+    for (int i = 0; i < job->row_count; i++) {
+        const verify_row *row = &job->rows[i];
+        if (row->failure) {
+            printf("FAILED: %s %s: %s: %.6g, bound %.6g\n", row->path, row->accumulate, row->failure, row->failure_value, row->failure_bound);
+        }
+    }
+    if (job->memory_failure) {
+        printf("FAILED: memory: %s\n", job->memory_failure);
+    }
 }
 
 static void print_rows(const verify_job *job)
@@ -385,12 +437,36 @@ static void print_rows(const verify_job *job)
     }
     printf("memory: CPU %llu bytes predicted, %llu used; GPU %llu predicted, %llu used\n", (unsigned long long)job->cpu_predicted,
            (unsigned long long)job->cpu_used, (unsigned long long)job->gpu_predicted, (unsigned long long)job->gpu_used);
+    print_failures(job);
     printf("%s: %s\n", job->file.path, job->failed ? "FAILED" : "ok");
 }
 
-static void print_json(const verify_job *job)
+static void json_failures(json *j, const verify_job *job)
 {
-    json j = json_begin(stdout);
+    json_open(j, "failures", '[');
+    for (int i = 0; i < job->row_count; i++) {
+        const verify_row *row = &job->rows[i];
+        if (row->failure) {
+            json_open(j, NULL, '{');
+            json_text(j, "path", row->path);
+            json_text(j, "accumulate", row->accumulate);
+            json_text(j, "what", row->failure);
+            json_number(j, "value", row->failure_value);
+            json_number(j, "bound", row->failure_bound);
+            json_close(j, '}');
+        }
+    }
+    if (job->memory_failure) {
+        json_open(j, NULL, '{');
+        json_text(j, "what", job->memory_failure);
+        json_close(j, '}');
+    }
+    json_close(j, ']');
+}
+
+static int print_json(const verify_job *job)
+{
+    json j = json_begin();
     json_text(&j, "driver", job->g.caps.renderer);
     json_text(&j, "gl_version", job->g.caps.version_text);
     json_open(&j, "paths", '[');
@@ -415,65 +491,83 @@ static void print_json(const verify_job *job)
     json_integer(&j, "gpu_predicted", job->gpu_predicted);
     json_integer(&j, "gpu_used", job->gpu_used);
     json_close(&j, '}');
+    json_failures(&j, job);
     json_bool(&j, "ok", !job->failed);
-    json_end(&j);
+    return json_end(&j);
 }
 
-static void print_result(const verify_job *job, int as_json)
+typedef struct verify_args {
+    const char *pack, *anim, *driver;
+    double seed, instances, lod;
+    int as_json;
+} verify_args;
+
+static int verify_scene(verify_job *job, const verify_args *a, uint32_t level)
 {
-    if (as_json) {
-        print_json(job);
-    } else {
+    int status = scene_set_level(&job->scene, &job->file, level);
+    if (!status) status = scene_open_anim(&job->scene, &job->file, a->anim);
+    if (!status) status = gpu_open(&job->g, a->driver);
+    if (status) {
+        return status;
+    }
+    status = verify_all(job);
+    if (!status) status = verify_load(job);
+    if (!status && a->as_json) {
+        status = print_json(job);
+    } else if (!status) {
         print_rows(job);
     }
+    gpu_close(&job->g);
+    return status;
 }
 
-int verb_verify(int argc, char **argv)
+static int run(void *args)
 {
     static verify_job job;
-    const char *path = NULL, *anim = NULL, *driver = NULL;
-    double seed = 1.0, instances = 1.0, lod = 0.0;
+    const verify_args *a = args;
     uint32_t level = 0;
-    int count, as_json = 0, status;
-    const option options[] = {
-        { "--seed", OPTION_NUMBER, &seed }, { "--driver", OPTION_TEXT, &driver }, { "--json", OPTION_FLAG, &as_json },
-        { "--instances", OPTION_NUMBER, &instances }, { "--anim", OPTION_TEXT, &anim },
-        { "--lod", OPTION_NUMBER, &lod }
-    };
-    status = tool_options(argc, argv, options, sizeof options / sizeof options[0], &path, 1, &count);
+    int status = parse_instances(a->instances, &job.load.instances);
+    if (!status) status = parse_level(a->lod, &level);
     if (status) {
         return status;
     }
-    if (!path) {
-        return tool_usage("verify wants a pack");
-    }
-    status = parse_instances(instances, &job.load.instances);
-    if (!status) status = parse_level(lod, &level);
+    job.state = 0x9e3779b97f4a7c15ull ^ (uint64_t)fabs(a->seed) << 20;
+    status = pack_file_open(&job.file, a->pack);
     if (status) {
         return status;
     }
-    job.state = 0x9e3779b97f4a7c15ull ^ (uint64_t)fabs(seed) << 20;
-    status = pack_file_open(&job.file, path);
+    status = scene_init(&job.scene, &job.file);
     if (!status) {
-        status = scene_init(&job.scene, &job.file);
-        if (!status) {
-            status = scene_set_level(&job.scene, &job.file, level);
-            if (!status) status = scene_open_anim(&job.scene, &job.file, anim);
-            if (!status) status = gpu_open(&job.g, driver);
-            if (!status) {
-                status = verify_all(&job);
-                if (!status) status = verify_load(&job);
-                if (!status) {
-                    print_result(&job, as_json);
-                }
-                gpu_close(&job.g);
-            }
-            scene_free(&job.scene);
-        }
-        pack_file_close(&job.file);
+        status = verify_scene(&job, a, level);
+        scene_free(&job.scene);
     }
-    if (status) {
-        return status;
-    }
-    return job.failed ? EXIT_FAILED : 0;
+    pack_file_close(&job.file);
+    return status ? status : job.failed ? EXIT_FAILED : 0;
 }
+
+static verify_args arguments;
+
+static const option options[] = {
+    OPTION_ANIM(verify_args, anim, .needs = NULL),
+    { .name = "--seed", .kind = OPTION_NUMBER, .at = offsetof(verify_args, seed), .value = "N", .initial = "1",
+      .what = "of the random weights and poses: the same on every machine", .example = "7" },
+    OPTION_INSTANCES(verify_args, instances, "1", .what = "copies of the scene whose memory is compared with the budget, 1 to 65536"),
+    OPTION_LOD(verify_args, lod, .needs = NULL),
+    OPTION_DRIVER(verify_args, driver, .initial = "egl"),
+    OPTION_JSON(verify_args, as_json),
+};
+
+const verb verb_verify = {
+    .name = "verify",
+    .files = "PACK",
+    .what = "every path and format against the CPU reference, memory against its budget",
+    .more = "Fails (exit code 1) where a value differs that has to be equal, or one is past its bound; each FAILED line names the row, the "
+            "value and the bound.",
+    .example = "face.noh\nbody.noh --instances 100 --lod 1 --json",
+    .options = options,
+    .option_count = sizeof options / sizeof options[0],
+    .file_max = 1,
+    .files_at = offsetof(verify_args, pack),
+    .args = &arguments,
+    .run = run,
+};

@@ -10,6 +10,8 @@
 #include "base/quat.h"
 #include "deform/dual_quaternion.h"
 #include "deform/skin.h"
+#include "message.h"
+#include "readback.h"
 
 typedef struct job {
     gpu *g;

@@ -3,6 +3,7 @@
 #define NOH_TOOL_VERIFY_SKIN_H
 
 #include "gpu.h"
+#include "scene.h"
 
 #define VERIFY_SKIN_TIMES 20u  /* random times of each clip; as many random poses where no clip fits a skeleton */
 #define VERIFY_SKIN_SHARE 2e-6 /* of the mesh's bounding box: how far off a vertex may be */
