@@ -35,6 +35,7 @@ typedef struct verify_job {
     uint64_t state; /* of the random weights */
     verify_row rows[16];
     int row_count, failed;
+    double bound_scale; /* of skinned vertices */
     const char *memory_failure; /* NULL: memory is as predicted */
     load_options load;  /* of the load whose memory is compared with its budget */
     uint64_t gpu_predicted, gpu_used, cpu_predicted, cpu_used;
@@ -321,6 +322,7 @@ static int verify_skins(verify_job *job, const noh_gl_mesh *gl_meshes)
         verify_row *row = &job->rows[job->row_count++];
         verify_skin skin;
         memset(row, 0, sizeof *row);
+        skin.bound_scale = job->bound_scale;
         status = verify_skin_run(&job->g, &job->file, &job->scene, gl_meshes, (noh_palette_mode)mode, &job->state, &skin);
         row->path = names[mode];
         row->accumulate = "f32";
@@ -498,7 +500,7 @@ static int print_json(const verify_job *job)
 
 typedef struct verify_args {
     const char *pack, *anim, *driver;
-    double seed, instances, lod;
+    double seed, instances, lod, bound_scale;
     int as_json;
 } verify_args;
 
@@ -531,6 +533,10 @@ static int run(void *args)
     if (status) {
         return status;
     }
+    if (!(a->bound_scale > 0.0)) {
+        return tool_usage("--bound-scale wants a number over 0");
+    }
+    job.bound_scale = a->bound_scale;
     job.state = 0x9e3779b97f4a7c15ull ^ (uint64_t)fabs(a->seed) << 20;
     status = pack_file_open(&job.file, a->pack);
     if (status) {
@@ -551,6 +557,8 @@ static const option options[] = {
     OPTION_ANIM(verify_args, anim, .needs = NULL),
     { .name = "--seed", .kind = OPTION_NUMBER, .at = offsetof(verify_args, seed), .value = "N", .initial = "1",
       .what = "of the random weights and poses: the same on every machine", .example = "7" },
+    { .name = "--bound-scale", .kind = OPTION_NUMBER, .at = offsetof(verify_args, bound_scale), .value = "X", .initial = "1",
+      .what = "multiply the bounds of skinned vertices, over 0: to see how near they come, or a check fail", .example = "0.1" },
     OPTION_INSTANCES(verify_args, instances, "1", .what = "copies of the scene whose memory is compared with the budget, 1 to 65536"),
     OPTION_LOD(verify_args, lod, .needs = NULL),
     OPTION_DRIVER(verify_args, driver, .initial = "egl"),
