@@ -14,6 +14,11 @@ SAN     ?=
 FUZZ_SECONDS ?= 60
 ASSETS  ?= $(if $(NOH_ASSETS),$(NOH_ASSETS),../shared/assets)
 
+# Make splits words at blanks.
+ifneq ($(words $(BUILD)),1)
+$(error BUILD wants a path without blanks, not '$(BUILD)')
+endif
+
 ifeq ($(origin CC),default)
 CC := gcc
 endif
@@ -91,7 +96,7 @@ KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)
 .SECONDARY:
 .DELETE_ON_ERROR:
 
-all: $(BUILD)/noh $(BUILD)/libnoh.a
+all: $(BUILD)/noh $(BUILD)/libnoh.a $(BUILD)/noh.1 $(BUILD)/noh.bash
 
 help:
 	@echo 'make            build/noh and build/libnoh.a'
@@ -207,6 +212,12 @@ FORCE:
 $(BUILD)/noh: $(TOOL_O) $(VIEW_O) $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(BUILD)/libnoh.a $(BUILD)/gen/view_without
 	$(call say,CXX,$@)
 	$(Q)$(CXX) $(ALL_LDFLAGS) $(filter %.o %.a,$^) -o $@ $(VIEW_LIBS) $(TOOL_LIBS)
+
+# The man page and the completion for bash come from the tables that the verbs read their options by.
+$(BUILD)/noh.1: $(BUILD)/noh
+	$(Q)$(BUILD)/noh help --man >$@
+$(BUILD)/noh.bash: $(BUILD)/noh
+	$(Q)$(BUILD)/noh help --bash >$@
 
 $(BUILD)/make_mask: $(DEMO_O)
 	$(call say,CC,$@)
@@ -400,18 +411,13 @@ DATADIR    ?= $(PREFIX)/share
 INSTALL    := BUILD="$(BUILD)" VERSION="$(VERSION)" CC="$(CC)" DESTDIR="$(DESTDIR)" PREFIX="$(PREFIX)" BINDIR="$(BINDIR)" \
               LIBDIR="$(LIBDIR)" INCLUDEDIR="$(INCLUDEDIR)" DATADIR="$(DATADIR)" sh tools/install/install.sh
 
-install: all $(BUILD)/noh.1
+install: all
 	@$(INSTALL) all
 # Needs no C++ compiler and none of the tools' libraries: make install-lib CC=... AR=... for another processor.
 install-lib: lib
 	@$(INSTALL) lib
 uninstall:
 	@$(INSTALL) remove
-
-# The man page is written by hand, or by the program itself; without either there is none.
-$(BUILD)/noh.1: $(wildcard tools/noh/noh.1) $(BUILD)/noh
-	@mkdir -p $(@D)
-	@if [ -f tools/noh/noh.1 ]; then cp tools/noh/noh.1 $@; else $(BUILD)/noh help --man >$@ 2>/dev/null || rm -f $@; fi
 
 # The library as three files, and some of the tests linked with that instead of libnoh.a.
 AMALGAM       := $(BUILD)/amalgam

@@ -5,7 +5,8 @@
 #include "base/math.h"
 #include "gl/gl_program.h"
 #include "load.h"
-#include "view.h"
+#include "camera.h"
+#include "canvas.h"
 
 #include <math.h>
 #include <stdlib.h>

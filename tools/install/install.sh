@@ -110,8 +110,8 @@ fill tools/install/nohConfigVersion.cmake.in "$LIBDIR/cmake/noh/nohConfigVersion
 if [ "$what" = all ]; then
     put 755 "$BUILD/noh" "$BINDIR/noh"
     put 755 "$BUILD/embed" "$BINDIR/noh-embed"
-    [ ! -f "$BUILD/noh.1" ] || put 644 "$BUILD/noh.1" "$DATADIR/man/man1/noh.1"
-    [ ! -f tools/completion/noh.bash ] || put 644 tools/completion/noh.bash "$DATADIR/bash-completion/completions/noh"
+    put 644 "$BUILD/noh.1" "$DATADIR/man/man1/noh.1"
+    put 644 "$BUILD/noh.bash" "$DATADIR/bash-completion/completions/noh"
 elif [ -f "$list" ]; then
     # The programs of an earlier `make install` stay, and stay listed.
     kept="^f $BINDIR/\|^f $DATADIR/man/\|^f $DATADIR/bash-completion/"

@@ -1,11 +1,13 @@
 #include "bones.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "gl/gl_program.h"
 #include "tool_shaders.gen.h"
+#include "message.h"
 
 #define CORNERS 24u /* 8 triangles */
 #define FLOATS 9u   /* of a corner: position, normal, colour */

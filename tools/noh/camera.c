@@ -1,8 +1,10 @@
+#include "camera.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "view.h"
+#include "message.h"
 
 static void grow(bounds *b, const double p[3])
 {

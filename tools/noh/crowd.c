@@ -1,6 +1,9 @@
 #include "crowd.h"
 
+#include <stdio.h>
 #include <string.h>
+
+#include "message.h"
 
 /* ---- opening ---- */
 

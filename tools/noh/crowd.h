@@ -24,6 +24,7 @@
 #define NOH_TOOL_CROWD_H
 
 #include "gpu.h"
+#include "pack_file.h"
 
 #define CROWD_RUNS_MAX (NOH_LEVELS_MAX * NOH_DETAIL_LEVELS_MAX)
 #define CROWD_FIELD_M 100.0f /* they stand within this of the place where the camera starts */

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "crowd.h"
+#include "message.h"
 
 #define NEAREST_M 1.5f
 #define HALF_ANGLE_RAD 0.68f /* somewhat more than a view of 16 : 9 shows */

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "crowd.h"
+#include "message.h"
 
 #define RESERVE 1.25 /* slots for more than stand so near when they are spread evenly, */
 #define RESERVE_BODIES 4.0

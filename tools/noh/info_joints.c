@@ -1,5 +1,7 @@
 #include "info_joints.h"
 
+#include <stdio.h>
+
 void info_print_levels(const noh_pack *pack, uint32_t skeleton)
 {
     uint32_t count;

@@ -2,7 +2,8 @@
 #ifndef NOH_TOOL_INFO_JOINTS_H
 #define NOH_TOOL_INFO_JOINTS_H
 
-#include "noh_tool.h"
+#include "json.h"
+#include "noh.h"
 
 /* Behind a skeleton's line and below a clip's; members of the open object. */
 void info_print_levels(const noh_pack *pack, uint32_t skeleton);

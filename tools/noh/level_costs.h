@@ -3,6 +3,7 @@
 #define NOH_TOOL_LEVEL_COSTS_H
 
 #include "load.h"
+#include "scene.h"
 
 /* One level of detail of the whole scene: what it costs to load it and all coarser ones, and what a frame does at it. */
 typedef struct level_cost {

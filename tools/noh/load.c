@@ -1,7 +1,10 @@
 #include "load.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "message.h"
 
 /* ---- what it will take ---- */
 
@@ -119,8 +122,11 @@ int load_budget_make(load_budget *b, const pack_file *file, const scene *s, cons
     b->pack_bytes = (uint64_t)file->pack.byte_count + (s->anim != file ? s->anim->pack.byte_count : 0u);
     if (!counts || !b->parts) {
         status = tool_fail(file->path, "out of memory");
+    } else if (s->item_count == 0 && s->anim->pack.motion_count) {
+        b->plan.reason = "clips alone: name them as --anim of the pack that they move for the whole sum";
+        status = add_motion(b, file, s, o->instances);
     } else if (s->item_count == 0) {
-        status = tool_fail(file->path, "the pack has nothing to draw");
+        status = tool_fail(file->path, "the pack has neither meshes nor clips");
     } else if (noh_gl_morph_plan_make(&desc, caps, &b->plan, &error)) {
         status = tool_fail_error(file->path, &error);
     } else {
@@ -338,8 +344,3 @@ const noh_gl_skin_binding *load_skin_binding(const load *l, uint32_t item, noh_g
     return out;
 }
 
-const float *scene_world(const scene *s, const pack_file *file, uint32_t item)
-{
-    static const float identity[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
-    return s->items[item].node == NOH_NONE ? identity : file->pack.nodes[s->items[item].node].world;
-}

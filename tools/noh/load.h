@@ -4,6 +4,7 @@
 #define NOH_TOOL_LOAD_H
 
 #include "gpu.h"
+#include "scene.h"
 
 typedef struct load_part {
     char name[96];
@@ -26,7 +27,8 @@ typedef struct load_options {
     int fades;          /* load_set_detail's levels fade into each other; else they change at once */
 } load_options;
 
-/* Prints an error and returns an exit code; 0 on success. */
+/* Of clips alone, the clips, with a plan that says nothing but its reason. Prints an error and returns an exit code; 0 on
+ * success. */
 int load_budget_make(load_budget *b, const pack_file *file, const scene *s, const noh_gl_caps *caps, const load_options *o);
 void load_budget_free(load_budget *b);
 
@@ -70,9 +72,6 @@ void load_draw(load *l, const noh_gl_camera *camera);
 
 /* Where an item's joints are: out, or NULL for a rigid one. */
 const noh_gl_skin_binding *load_skin_binding(const load *l, uint32_t item, noh_gl_skin_binding *out);
-
-/* The item's world matrix, 3 rows of 4. */
-const float *scene_world(const scene *s, const pack_file *file, uint32_t item);
 
 /* Capabilities to assume where there is no driver: a GLES 3.2 device on which everything
  * works and textures are as large as every ES 3.0 has them. */

@@ -1,9 +1,12 @@
 /* readback_vertices.c: every vertex as mesh.vert leaves it, through transform feedback: the shader that draws
  * is the shader that is read. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "gpu.h"
+#include "message.h"
+#include "readback.h"
 
 /* The variant that draws such a mesh, with its outputs kept; the last one is kept too. */
 static int use_variant(readback *r, noh_gl_variant_key key)

@@ -3,6 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "camera.h"
+#include "message.h"
+
 static int open_item(item_detail *item, const noh_mesh *mesh)
 {
     const uint32_t targets = mesh->header->target_count;

@@ -1,7 +1,8 @@
 /* scene_pair.c: a scene posed by two clips: blended, or on the way from one to the other. */
 #include <string.h>
 
-#include "noh_tool.h"
+#include "message.h"
+#include "scene.h"
 
 /* A player that has both clips. */
 static int find_pair(scene *s, const pack_file *file, const scene_pair *pair, scene_player **player, uint32_t motions[2])

@@ -2,30 +2,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "noh_tool.h"
+#include "message.h"
+#include "scene.h"
 
 /* ---- clips ---- */
-
-int tool_clip_info(const pack_file *file, uint32_t index, noh_pack_motion *motion, noh_clip_info *info)
-{
-    noh_error error = { NOH_OK, "", 0, 0 };
-    noh_skeleton skeleton;
-    noh_clip_desc desc;
-    size_t bytes;
-    memset(&skeleton, 0, sizeof skeleton);
-    noh_pack_motion_at(&file->pack, index, motion, NULL);
-    (void)noh_pack_skeleton_at(&file->pack, motion->header->skeleton, &skeleton, NULL, NULL);
-    desc.bytes = motion->bytes;
-    desc.byte_count = motion->header->clip_bytes;
-    desc.bind = skeleton.bind_pose;
-    desc.joint_count = motion->header->joint_count;
-    return noh_clip_measure(&desc, info, &bytes, &error) ? tool_fail(file->path, "clip '%s': %s", motion->name, error.what) : 0;
-}
-
-double tool_clip_seconds(const noh_clip_info *info)
-{
-    return (double)info->duration_ticks / (double)NOH_TICKS_PER_SECOND;
-}
 
 /* ---- opening ---- */
 

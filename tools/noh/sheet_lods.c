@@ -1,8 +1,13 @@
 #include "sheet_lods.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "label.h"
+#include "message.h"
+#include "png_file.h"
 
 #define USE_PIXELS 1.0 /* of error, at the size at which a level is used */
 

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "message.h"
+
 #define AROUND_S 0.3 /* what a transition's sheet shows of the time before and after it */
 
 /* ---- targets ---- */

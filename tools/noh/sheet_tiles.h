@@ -3,7 +3,7 @@
 #ifndef NOH_TOOL_SHEET_TILES_H
 #define NOH_TOOL_SHEET_TILES_H
 
-#include "noh_tool.h"
+#include "scene.h"
 
 #define SHEET_BLEND_ROWS 5u /* weights 0, 1/4, 1/2, 3/4, 1 */
 

@@ -3,6 +3,8 @@
 #define NOH_TOOL_STAGE_H
 
 #include "bones.h"
+#include "canvas.h"
+#include "load.h"
 
 typedef struct stage {
     const scene *scene;

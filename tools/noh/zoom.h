@@ -11,6 +11,8 @@
 #define NOH_TOOL_ZOOM_H
 
 #include "scene_detail.h"
+#include "camera.h"
+#include "load.h"
 
 #define ZOOM_TICKS 800    /* of a frame: sixty a second */
 #define ZOOM_FINE 4u      /* silhouettes are compared in pictures that are so many times larger */

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "zoom.h"
+#include "canvas.h"
 
 #define PATCH 1024u /* pixels: about a degree of view, all that an eye sees sharply at once */
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "zoom.h"
+#include "message.h"
 
 /* The way begins and ends so much beyond where the last level is chosen: at its end a fade has time. */
 #define BEYOND_NEAR 1.1

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "zoom.h"
+#include "message.h"
 
 #define SAMPLES 4u /* of a pixel that is seen */
 

@@ -1,8 +1,13 @@
 /* zoom_strip.c: frames of a zoom side by side: with levels, full, and in the colours of the levels. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "zoom.h"
+#include "canvas.h"
+#include "label.h"
+#include "message.h"
+#include "png_file.h"
 
 #define GAP 4u
 #define LABEL 14u  /* pixels above the pictures */

@@ -5,6 +5,7 @@
 
 #include "convert/lod/lod.h"
 #include "zoom.h"
+#include "message.h"
 
 typedef struct zoom_surface_entry {
     uint32_t item, level;

@@ -3,6 +3,8 @@
 #include <string.h>
 
 #include "zoom.h"
+#include "canvas.h"
+#include "message.h"
 
 #define MARGIN 8.0 /* pixels around the scene */
 

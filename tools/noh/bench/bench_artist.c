@@ -5,6 +5,7 @@
 
 #include "bench_job.h"
 #include "convert/morph/morph_encode.h"
+#include "message.h"
 
 /* 0 when the encoder's order turns the asset's vertices into the pack's. */
 static int differs(const model_mesh *from, const morph_encoding *e, const noh_mesh *mesh)

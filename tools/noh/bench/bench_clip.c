@@ -5,10 +5,12 @@
  *   shared   a hundred instances at random phases of all clips, one cache that holds them; with
  *            the wants and ticks of a game's frame
  *   seek     random times, a cache of two segments: nearly every sample of a long clip decodes */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench_clip.h"
+#include "message.h"
 
 #define SAMPLE_NS 2e6
 #define CHECK_TIMES 200u

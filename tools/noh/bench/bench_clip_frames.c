@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "bench_clip.h"
+#include "message.h"
 
 #define MINUTE 3600u
 #define STAGGER_TICKS 4800u

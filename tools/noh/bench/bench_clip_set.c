@@ -1,5 +1,6 @@
 /* bench_clip_set.c: the clips that are benched, their raw keys, caches; the baseline raw-keys. */
 #include "bench_clip.h"
+#include "message.h"
 
 #include <math.h>
 #include <stdlib.h>

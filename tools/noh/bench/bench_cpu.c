@@ -1,8 +1,10 @@
 /* bench_cpu.c: rows morph/cpu: the kernels against dense scalar C and against memcpy. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench_job.h"
+#include "message.h"
 
 #define SAMPLE_NS 5e6
 #define ATTRIBUTES 9u /* position, normal, tangent */

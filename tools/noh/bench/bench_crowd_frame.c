@@ -4,12 +4,14 @@
  * The CPU's part ends with palettes and weights handed to the library; the GPU's is accumulation, upload and draws up to
  * glFinish, into 1280 x 720 pixels of four samples. On a software rasteriser the GPU's part is a whole frame less
  * the CPU's part, in process CPU time. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench_job.h"
 #include "crowd.h"
-#include "view.h"
+#include "canvas.h"
+#include "message.h"
 
 #define SAMPLE_NS 2e7
 #define BODIES 1000u

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "bench_job.h"
+#include "message.h"
 
 #define SAMPLE_NS 2e7
 #define CROWD 1000u

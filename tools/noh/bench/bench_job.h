@@ -26,6 +26,7 @@
 #include "gl/gl_program.h"
 #include "gl/gl_timer.h"
 #include "gpu.h"
+#include "pack_file.h"
 
 /* ---- rows ---- */
 
@@ -212,6 +213,6 @@ int bench_skin_gpu(bench_job *job);
 int bench_skin_cpu(bench_job *job);
 
 void bench_print(bench_job *job);
-void bench_print_json(bench_job *job);
+int bench_print_json(bench_job *job);
 
 #endif

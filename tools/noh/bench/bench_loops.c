@@ -10,10 +10,12 @@
  *
  * Both skip a target whose weight is zero, as the peers do. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench_job.h"
+#include "message.h"
 
 #define FILAMENT_WIDTH 2048u
 #define FILAMENT_TARGETS 256u

@@ -1,9 +1,11 @@
 /* bench_morph.c: the rows about one mesh: above the unmorphed mesh with rasterisation
  * discarded, and whole frames. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench_job.h"
+#include "message.h"
 
 #define SAMPLE_NS 1e7
 #define METHODS_MAX 16 /* one floor, four baselines, ten paths and formats */

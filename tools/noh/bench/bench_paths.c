@@ -1,8 +1,10 @@
 /* bench_paths.c: our five ways, and the mesh that is not morphed at all. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench_job.h"
+#include "message.h"
 
 typedef struct path_method {
     bench_stage *stage;

@@ -6,11 +6,13 @@
  * Kinder than the sample in one respect: differences are summed and the base is added at
  * fetch, so that the base pose need not be copied into the layers first. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench_job.h"
 #include "tool_shaders.gen.h"
+#include "message.h"
 
 typedef struct quad_target {
     GLint rect[4]; /* x, y, width, height; no width: it moves nothing */

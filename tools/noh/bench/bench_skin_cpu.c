@@ -1,10 +1,12 @@
 /* bench_skin_cpu.c: rows skin/cpu: the kernels against straightforward scalar C, which reads the same pack (plain-scalar) or
  * floats that were unpacked before (plain-floats), and against memcpy of what they write. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench_job.h"
+#include "message.h"
 
 #define SAMPLE_NS 5e6
 #define OUT_FLOATS 10u /* position, normal, tangent */

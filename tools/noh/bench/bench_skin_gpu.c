@@ -1,5 +1,6 @@
 /* bench_skin_gpu.c: rows skin/gpu: a hundred instances, each in a pose of its own, in one draw per submesh against a
  * hundred draws; and what joints cost per vertex above the same mesh in its bind pose. Rasterisation is discarded. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,6 +9,7 @@
 #include "base/quat.h"
 #include "bench_job.h"
 #include "deform/skin.h"
+#include "message.h"
 
 #define SAMPLE_NS 1e7
 #define INSTANCES 100u

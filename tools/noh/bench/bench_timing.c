@@ -2,11 +2,13 @@
  * second hits all cells alike, and a median drops what hit only one. */
 #define _POSIX_C_SOURCE 200809L
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "bench_job.h"
+#include "message.h"
 
 #define REPEATS_MAX 100000u
 #define PROGRESS_NS 1000000000u

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "bench_job.h"
+#include "message.h"
 
 /* Target t is active in a frame when it is one of `active` evenly spread ones; the spread
  * moves on by one each frame, so that large and small targets all have their turn. */

@@ -1,6 +1,9 @@
 #include "view/view_app.h"
+#include "message.h"
+#include "png_file.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

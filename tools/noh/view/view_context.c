@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "gl/gl_lost.h"
+#include "message.h"
 
 /* ---- the window ---- */
 

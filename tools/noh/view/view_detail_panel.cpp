@@ -2,6 +2,8 @@
 #include "view/view_panels.h"
 #include "view/view_imgui.h"
 
+#include <cstdio>
+
 namespace {
 
 // The most that any item of the scene is off, millimetres.

@@ -3,6 +3,7 @@
 #include "view/view_imgui.h"
 
 #include <cfloat>
+#include <cstdio>
 #include <cstring>
 
 namespace {

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "view/view_model.h"
+#include "message.h"
 
 const char *view_motion_name(const view_model *m, uint32_t player, uint32_t motion)
 {

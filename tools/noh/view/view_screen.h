@@ -8,7 +8,7 @@
 #ifndef NOH_TOOL_VIEW_SCREEN_H
 #define NOH_TOOL_VIEW_SCREEN_H
 
-#include "view.h"
+#include "canvas.h"
 
 /* As Dear ImGui lays them out. */
 typedef struct view_vertex {

@@ -1,9 +1,11 @@
 #include "view/view_window.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "view/view_context.h"
 #include "view/view_panels.h"
+#include "message.h"
 
 #define AWAKE_FRAMES 4 /* drawn after an input before a still picture rests */
 #define SETTLE_FRAMES 3 /* until what was clicked shows: press, release, pose */

@@ -1,112 +1,14 @@
-/* noh_tool.h: what the verbs of the command line program share.
+/* scene.h: what a pack shows: its meshes and skeletons in a pose, by weights and clips.
  *
- * Exit codes: 0, 1 (the input or the check failed), 2 (usage). Errors go to
- * stderr as "noh: FILE: what is wrong (where)". */
-#ifndef NOH_TOOL_H
-#define NOH_TOOL_H
+ *   scene.c         nodes, meshes, LOD levels, weights
+ *   scene_play.c    clips
+ *   scene_pair.c    two clips at once
+ *   scene_deform.c  vertices on the CPU */
+#ifndef NOH_TOOL_SCENE_H
+#define NOH_TOOL_SCENE_H
 
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-
-#include "noh_gl.h"
-#include "platform.h"
-
-#define EXIT_FAILED 1
-#define EXIT_USAGE 2
-
-/* ---- messages ---- */
-
-/* Print "noh: subject: text" and return EXIT_FAILED. */
-int tool_fail(const char *subject, const char *format, ...)
-#ifdef __GNUC__
-    __attribute__((format(printf, 2, 3)))
-#endif
-    ;
-/* The text of the last one, cut to fit; "" before any. */
-const char *tool_last_failure(void);
-/* Print "noh: text" and a pointer to `noh help`; return EXIT_USAGE. */
-int tool_usage(const char *format, ...)
-#ifdef __GNUC__
-    __attribute__((format(printf, 1, 2)))
-#endif
-    ;
-/* The library's error as a message about `subject`. */
-int tool_fail_error(const char *subject, const noh_error *error);
-
-/* ---- arguments ---- */
-
-typedef enum option_kind { OPTION_FLAG, OPTION_TEXT, OPTION_NUMBER, OPTION_SIZE, OPTION_LIST } option_kind;
-
-#define OPTION_LIST_MAX 1024
-
-typedef struct option_list {
-    const char *items[OPTION_LIST_MAX];
-    int count;
-} option_list;
-
-/* One option of a verb; `value` is an int (FLAG), const char * (TEXT), double
- * (NUMBER), uint32_t[2] (SIZE, as 512x512) or option_list (LIST, may repeat). */
-typedef struct option {
-    const char *name; /* "--size" */
-    option_kind kind;
-    void *value;
-} option;
-
-/* Read a verb's arguments. Positional ones go into `files` (up to file_max).
- * Returns 0, or EXIT_USAGE after printing what is wrong. */
-int tool_options(int argc, char **argv, const option *options, int option_count, const char **files, int file_max, int *file_count);
-
-/* A float out of text; 0 if all of it was one finite number. */
-int tool_number(const char *text, double *value);
-
-/* --lod: a whole number from 0, the full mesh. Returns an exit code. */
-int parse_level(double value, uint32_t *level);
-/* --lod of what converts: auto, or how many levels with the full one. Returns an exit code. */
-int parse_levels(const char *text, uint32_t *count, int *by_error);
-
-/* ---- files ---- */
-
-typedef struct pack_file {
-    const char *path;
-    noh_file file;
-    noh_pack pack;
-} pack_file;
-
-/* Map and open a pack; prints the error and returns an exit code, 0 on success. */
-int pack_file_open(pack_file *file, const char *path);
-void pack_file_close(pack_file *file);
-
-/* Write a picture, atomically. rgba[height][width][4], top row first. */
-int tool_write_png(const char *path, uint32_t width, uint32_t height, const uint8_t *rgba);
-
-/* ---- JSON on stdout ---- */
-
-typedef struct json {
-    FILE *out;
-    int depth, first;
-} json;
-
-json json_begin(FILE *out);
-void json_open(json *j, const char *key, char bracket); /* '{' or '['; key NULL inside arrays */
-void json_close(json *j, char bracket);
-void json_text(json *j, const char *key, const char *value);
-void json_number(json *j, const char *key, double value);
-void json_integer(json *j, const char *key, uint64_t value);
-void json_bool(json *j, const char *key, int value);
-void json_null(json *j, const char *key);
-void json_end(json *j);
-
-/* ---- names ---- */
-
-/* The candidate nearest to `name` by edit distance, or NULL when none is near. */
-const char *nearest_name(const char *name, const char *const *candidates, size_t count);
-
-/* What the n-th clip of a pack says of itself; prints an error about a broken one and returns an exit code. */
-int tool_clip_info(const pack_file *file, uint32_t index, noh_pack_motion *motion, noh_clip_info *info);
-double tool_clip_seconds(const noh_clip_info *info);
-
-/* ---- the pose that the options ask for ---- */
+#include "args.h"
+#include "pack_file.h"
 
 /* What moves one skeleton of the pack (without any: its weights alone): a motion set, a controller for each copy of the
  * scene, and room for one pose at a time. */
@@ -191,19 +93,7 @@ int scene_check_target(const scene *s, const pack_file *file, const char *name);
 /* "no clip named 'wlak' (did you mean 'walk'?)"; returns an exit code. */
 int scene_fail_unknown(const pack_file *file, const char *kind, const char *name, const char *const *names, size_t count);
 
-/* ---- verbs ---- */
-
-int verb_build(int argc, char **argv);
-int verb_clip(int argc, char **argv);
-int verb_info(int argc, char **argv);
-int verb_budget(int argc, char **argv);
-int verb_render(int argc, char **argv);
-int verb_sheet(int argc, char **argv);
-int verb_zoom(int argc, char **argv);
-int verb_dump(int argc, char **argv);
-int verb_verify(int argc, char **argv);
-int verb_crowd(int argc, char **argv);
-int verb_bench(int argc, char **argv);
-int verb_view(int argc, char **argv);
+/* The item's world matrix, 3 rows of 4. */
+const float *scene_world(const scene *s, const pack_file *file, uint32_t item);
 
 #endif
