@@ -70,18 +70,35 @@ static void test_weighted_sum(void **state)
     }
 }
 
-/* Row C5.4: w = (rand() % 1000) / 1000 never reaches 1, so the first set alone is never seen. */
-static void errata_C5_4_the_random_weight_never_reaches_one(void **state)
+/* The source's weight, (rand() % 1000) / 1000, never reaches 1, so the first clip alone is never seen. Here weights of
+ * 1 and 0 show one clip alone, the translations to the bit. */
+static void a_weight_of_one_shows_its_clip_alone(void **state)
 {
-    float largest = 0.0f;
+    scene s;
+    sums b;
+    noh_transform a[JOINTS], c[JOINTS], got[JOINTS];
+    float fa[FLOATS], fc[FLOATS], out[FLOATS];
     (void)state;
-    for (int r = 0; r < 32768; r++) largest = fmaxf(largest, (float)(r % 1000) / 1000.0f);
-    assert_true(largest < 1.0f);
-    assert_true((float)1000 / 1000.0f == 1.0f); /* (rand() % 1001) / 1000 does */
+    scene_open(&s);
+    scene_pose(&s, WALK, 9000, a, fa);
+    scene_pose(&s, RUN, 5000, c, fc);
+    assert_true(pose_apart(a, c, JOINTS) > 0.1);
+    for (int first = 0; first <= 1; first++) {
+        const float weight = (float)first;
+        sums_open(&b);
+        noh_blend_add(&b.blend, a, fa, weight, everywhere);
+        noh_blend_add(&b.blend, c, fc, 1.0f - weight, everywhere);
+        noh_blend_finish(&b.blend, s.bind, s.defaults, got, out);
+        assert_true(pose_apart(got, first ? a : c, JOINTS) < 1e-6);
+        for (uint32_t j = 0; j < JOINTS; j++) {
+            assert_memory_equal(got[j].translation, (first ? a : c)[j].translation, sizeof got[j].translation);
+        }
+        assert_memory_equal(out, first ? fa : fc, sizeof out);
+    }
 }
 
-/* Row C5.4: quaternions summed as they come cancel out; aligned, they do not. */
-static void errata_C5_4_hemispheres_are_aligned(void **state)
+/* Quaternions summed as they come cancel out; aligned, they do not. */
+static void hemispheres_are_aligned(void **state)
 {
     scene s;
     sums b;
@@ -101,8 +118,8 @@ static void errata_C5_4_hemispheres_are_aligned(void **state)
     assert_true(pose_apart(got, a, JOINTS) < 1e-6);
 }
 
-/* Row C5.4: weights that do not sum to 1 must be divided by their sum; a sum of 0 gives the bind pose. */
-static void errata_C5_4_weights_are_divided_by_their_sum(void **state)
+/* Weights that do not sum to 1 must be divided by their sum; a sum of 0 gives the bind pose. */
+static void weights_are_divided_by_their_sum(void **state)
 {
     scene s;
     sums b;
@@ -124,8 +141,8 @@ static void errata_C5_4_weights_are_divided_by_their_sum(void **state)
     assert_true(out[3] == 0.0f);
 }
 
-/* Row C5.4: a masked joint uses its own sum. Dividing by the sum of the tracks pulls it to zero. */
-static void errata_C5_4_masked_joints_use_their_own_sum(void **state)
+/* A masked joint uses its own sum. Dividing by the sum of the tracks pulls it to zero. */
+static void masked_joints_use_their_own_sum(void **state)
 {
     scene s;
     sums b;
@@ -383,9 +400,9 @@ static void climb(const scene *s, const noh_transform *pose, uint32_t joint, dou
     }
 }
 
-/* Row C3.1: one linear loop, parents first: model = parent * local with column vectors. The source's row
+/* One linear loop, parents first: model = parent * local with column vectors. The source's row
  * order taken over as it stands (local * parent) puts the joints elsewhere. */
-static void errata_C3_1_parent_times_local(void **state)
+static void model_is_parent_times_local(void **state)
 {
     scene s;
     noh_transform pose[JOINTS];
@@ -433,10 +450,10 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_weighted_sum),
-        cmocka_unit_test(errata_C5_4_the_random_weight_never_reaches_one),
-        cmocka_unit_test(errata_C5_4_hemispheres_are_aligned),
-        cmocka_unit_test(errata_C5_4_weights_are_divided_by_their_sum),
-        cmocka_unit_test(errata_C5_4_masked_joints_use_their_own_sum),
+        cmocka_unit_test(a_weight_of_one_shows_its_clip_alone),
+        cmocka_unit_test(hemispheres_are_aligned),
+        cmocka_unit_test(weights_are_divided_by_their_sum),
+        cmocka_unit_test(masked_joints_use_their_own_sum),
         cmocka_unit_test(test_mix_at_the_ends_and_in_place),
         cmocka_unit_test(test_difference_and_back),
         cmocka_unit_test(test_masks),
@@ -445,7 +462,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_delaunay),
         cmocka_unit_test(test_space_outside_and_degenerate),
         cmocka_unit_test(test_skeleton_fields_broken_in_turn),
-        cmocka_unit_test(errata_C3_1_parent_times_local),
+        cmocka_unit_test(model_is_parent_times_local),
         cmocka_unit_test(test_palette),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);

@@ -265,8 +265,8 @@ static void test_time_functions(void **state)
     }
 }
 
-/* Row C5.1: integer time does not drift: a day of 60 Hz frames, then the sum in floats beside it. */
-static void errata_C5_1_time_does_not_drift(void **state)
+/* Integer time does not drift: a day of 60 Hz frames, then the sum in floats beside it. */
+static void time_does_not_drift(void **state)
 {
     stage g;
     float seconds = 0.0f;
@@ -534,9 +534,9 @@ static void test_one_track_is_its_motion(void **state)
     assert_memory_equal(g.pose, g.s.bind, sizeof g.pose);
 }
 
-/* Row C5.2: priority is the blend group, not a distance. All low tracks blend, all high
+/* Priority is the blend group, not a distance. All low tracks blend, all high
  * tracks blend, then the two: the source's one sum of all weights gives another pose. */
-static void errata_C5_2_priority_is_the_blend_group(void **state)
+static void priority_is_the_blend_group(void **state)
 {
     stage g;
     noh_transform low[JOINTS], high[JOINTS], want[JOINTS], one_sum[JOINTS];
@@ -674,9 +674,9 @@ static void test_additive_tracks(void **state)
     }
 }
 
-/* Row C4.4: clones that write one bone tree overwrite each other unless each is drawn before the
+/* Clones that write one bone tree overwrite each other unless each is drawn before the
  * next is updated. Here a clone is one memcpy and its pose lies where its owner says. */
-static void errata_C4_4_clones_share_nothing_they_write(void **state)
+static void clones_share_nothing_they_write(void **state)
 {
     stage g;
     ALIGNED uint8_t clone_memory[8192];
@@ -861,7 +861,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_track_desc_fields_broken_in_turn),
         cmocka_unit_test(test_setters_refuse),
         cmocka_unit_test(test_time_functions),
-        cmocka_unit_test(errata_C5_1_time_does_not_drift),
+        cmocka_unit_test(time_does_not_drift),
         cmocka_unit_test(test_ended),
         cmocka_unit_test(test_change_fields_broken_in_turn),
         cmocka_unit_test(test_weight_follows_its_curve),
@@ -871,12 +871,12 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_sync_by_markers_and_by_phase),
         cmocka_unit_test(test_sync_refuses_other_markers),
         cmocka_unit_test(test_one_track_is_its_motion),
-        cmocka_unit_test(errata_C5_2_priority_is_the_blend_group),
+        cmocka_unit_test(priority_is_the_blend_group),
         cmocka_unit_test(test_masked_layer),
         cmocka_unit_test(test_motions_of_joints_and_of_floats),
         cmocka_unit_test(test_lod),
         cmocka_unit_test(test_additive_tracks),
-        cmocka_unit_test(errata_C4_4_clones_share_nothing_they_write),
+        cmocka_unit_test(clones_share_nothing_they_write),
         cmocka_unit_test(test_snapshot_goes_on_the_same),
         cmocka_unit_test(test_decay),
         cmocka_unit_test(test_inertial_transition),
