@@ -165,6 +165,67 @@ static void masked_joints_use_their_own_sum(void **state)
     assert_true(fabsf(out[0] - fa[0]) < 1e-6f && fabsf(out[4] - 0.5f * (fa[4] + fc[4])) < 1e-6f);
 }
 
+/* A sum over what lies below: by its amount where there is something below, by its masked share of the group, and whole
+ * where nothing lies below. */
+static void a_sum_covers_what_lies_below(void **state)
+{
+    scene s;
+    sums b;
+    noh_transform low[JOINTS], high[JOINTS], got[JOINTS], want[JOINTS];
+    float fl[FLOATS], fh[FLOATS], floats[FLOATS], below[JOINTS], float_below[FLOATS];
+    (void)state;
+    scene_open(&s);
+    scene_pose(&s, WALK, 9000, low, fl);
+    scene_pose(&s, RUN, 5000, high, fh);
+    for (uint32_t j = 0; j < JOINTS; j++) below[j] = j % 2u ? 1.0f : 0.0f;
+    for (uint32_t i = 0; i < FLOATS; i++) float_below[i] = i % 2u ? 1.0f : 0.0f;
+    for (uint32_t mask = 0; mask <= 2; mask += 2) {
+        const noh_mask_view view = mask ? noh_mask_of(&s.set, mask) : everywhere;
+        memcpy(got, low, sizeof got);
+        memcpy(floats, fl, sizeof floats);
+        sums_open(&b);
+        noh_blend_add(&b.blend, high, fh, 4.0f, view);
+        noh_blend_cover(&b.blend, 0.25f, below, float_below, got, floats);
+        for (uint32_t j = 0; j < JOINTS; j++) {
+            const float part = mask ? (float)s.masks[1][j] / 255.0f : 1.0f;
+            noh_pose_mix(1, &low[j], &high[j], part > 0.0f ? (j % 2u ? 0.25f * part : 1.0f) : 0.0f, NULL, &want[j]);
+        }
+        assert_true(pose_apart(got, want, JOINTS) < 1e-6);
+        for (uint32_t i = 0; i < FLOATS; i++) {
+            const float part = mask ? 128.0f / 255.0f : 1.0f, t = i % 2u ? 0.25f * part : 1.0f;
+            assert_true(fabsf(floats[i] - (fl[i] + (fh[i] - fl[i]) * t)) < 1e-6f);
+        }
+    }
+}
+
+/* Palette = model * inverse bind: the bind pose's points come first into the joint's space. Turned joints tell the order. */
+static void palettes_take_the_bind_pose_away_first(void **state)
+{
+    scene s;
+    noh_transform pose[JOINTS];
+    float floats[FLOATS], model[JOINTS * 12], inverse[JOINTS * 12], palette[JOINTS * 12];
+    (void)state;
+    scene_open(&s);
+    scene_pose(&s, WALK, 12345, pose, floats);
+    noh_local_to_model(&s.skeleton, pose, JOINTS, model);
+    for (uint32_t i = 0; i < JOINTS; i++) {
+        noh_transform t = pose[(i + 5u) % JOINTS];
+        noh_transform_matrix(&t, inverse + 12u * i);
+    }
+    s.skeleton.inverse_bind = inverse;
+    noh_model_to_palette(&s.skeleton, model, JOINTS, palette);
+    for (uint32_t i = 0; i < JOINTS; i++) {
+        const float *m = model + 12u * i, *n = inverse + 12u * i, p[3] = { 0.3f, -0.2f, 0.1f };
+        float local[3];
+        for (int r = 0; r < 3; r++) local[r] = n[4 * r] * p[0] + n[4 * r + 1] * p[1] + n[4 * r + 2] * p[2] + n[4 * r + 3];
+        for (int r = 0; r < 3; r++) {
+            const float *q = palette + 12u * i + 4 * r;
+            const float want = m[4 * r] * local[0] + m[4 * r + 1] * local[1] + m[4 * r + 2] * local[2] + m[4 * r + 3];
+            assert_true(fabsf(q[0] * p[0] + q[1] * p[1] + q[2] * p[2] + q[3] - want) < 1e-5f);
+        }
+    }
+}
+
 static void test_mix_at_the_ends_and_in_place(void **state)
 {
     scene s;
@@ -464,6 +525,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_skeleton_fields_broken_in_turn),
         cmocka_unit_test(model_is_parent_times_local),
         cmocka_unit_test(test_palette),
+        cmocka_unit_test(a_sum_covers_what_lies_below),
+        cmocka_unit_test(palettes_take_the_bind_pose_away_first),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -854,7 +854,20 @@ static void test_bounds_saturate(void **state)
     assert_int_equal(noh_events_max(5, 0, NOH_LOOP_REPEAT, UINT64_MAX, 1), 5);
 }
 
-/* ---- errata ---- */
+/* Near a turn a clip that goes to and fro passes a key twice in a few ticks, and twice again where the speed changes its
+ * sign in the same step: four times in a way far shorter than the clip. The bound of a step counts both ways. */
+static void a_bound_holds_for_a_turn_within_the_step(void **state)
+{
+    static const uint32_t ticks[] = { 998 };
+    one_motion o;
+    (void)state;
+    one_open(&o, 1000, NOH_LOOP_PING_PONG, ticks, 1);
+    assert_int_equal(noh_anim_set_events_max(&o.f.set, 1, NOH_SPEED_ONE, 8), 4);
+    assert_int_equal(noh_anim_set_events_max(&o.f.set, 3, NOH_SPEED_ONE, 8), 12);
+    one_close(&o);
+}
+
+/* ---- errors of the sources ---- */
 
 /* Row C5.5: the compressed set was created with 0 callback keys, so every key was lost.
  * Here keys are a part of the motion: whoever has it has its keys. */
@@ -925,6 +938,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_a_day_in_one_step),
         cmocka_unit_test(test_queue_of_the_bound_never_overflows),
         cmocka_unit_test(test_bounds_saturate),
+        cmocka_unit_test(a_bound_holds_for_a_turn_within_the_step),
         cmocka_unit_test(errata_C5_5_keys_stay_with_the_motion),
         cmocka_unit_test(errata_C5_6_key_times_are_ticks),
         cmocka_unit_test(keys_fire_once_however_frames_fall),
