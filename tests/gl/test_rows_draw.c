@@ -353,22 +353,29 @@ static void each_mesh_has_its_own_stride(void **state)
     fixture_expect_no_errors();
 }
 
-/* A program that failed without a message passes where only messages are looked at; here the result tells. */
+/* A program that failed without a message passes where only messages are looked at. Here the result tells which stage
+ * failed, with no log to read, and so it does where the stages compile and do not fit each other. */
 static void a_failed_shader_is_an_error_without_a_message(void **state)
 {
     static const char *const bad[] = { "void main() { this is no shader }\n" };
-    static const char *const good[] = { "precision mediump float;\nout vec4 c;\nvoid main() { c = vec4(1.0); }\n" };
-    const noh_gl_source vertex = { "#version 300 es\n", bad, 1 }, fragment = { "#version 300 es\n", good, 1 };
+    static const char *const flat[] = { "in vec3 v_there;\nprecision mediump float;\nout vec4 c;\nvoid main() { c = vec4(v_there, 1.0); }\n" };
+    static const char *const alone[] = { "void main() { gl_Position = vec4(0.0); }\n" };
+    static const char *const what[] = { "the vertex shader does not compile", "the fragment shader does not compile", "the program does not link" };
     gpu *g = fixture_gpu();
-    noh_gl_program_desc desc;
-    noh_error error = { NOH_OK, "", 0, 0 };
-    GLuint program = 77;
     (void)state;
-    memset(&desc, 0, sizeof desc);
-    desc.vertex = &vertex;
-    desc.fragment = &fragment;
-    assert_int_equal(noh_gl_program_create(&g->gl, &desc, &program, NULL, 0, &error), NOH_ERR_DATA);
-    assert_int_equal(program, 77);
+    for (int i = 0; i < 3; i++) {
+        const noh_gl_source vertex = { "#version 300 es\n", i == 0 ? bad : alone, 1 };
+        const noh_gl_source fragment = { "#version 300 es\nprecision mediump float;\n", i == 1 ? bad : flat, 1 };
+        noh_gl_program_desc desc;
+        noh_error error = { NOH_OK, "", 0, 0 };
+        GLuint program = 77;
+        memset(&desc, 0, sizeof desc);
+        desc.vertex = &vertex;
+        desc.fragment = &fragment;
+        assert_int_equal(noh_gl_program_create(&g->gl, &desc, &program, NULL, 0, &error), NOH_ERR_DATA);
+        assert_string_equal(error.what, what[i]);
+        assert_int_equal(program, 77);
+    }
 }
 
 /* How many matrices blend is state that somebody else may have left; ours goes with each draw: what was drawn with one

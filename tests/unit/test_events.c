@@ -862,6 +862,7 @@ static void a_bound_holds_for_a_turn_within_the_step(void **state)
     one_motion o;
     (void)state;
     one_open(&o, 1000, NOH_LOOP_PING_PONG, ticks, 1);
+    o.f.set.motion_count = 1;
     assert_int_equal(noh_anim_set_events_max(&o.f.set, 1, NOH_SPEED_ONE, 8), 4);
     assert_int_equal(noh_anim_set_events_max(&o.f.set, 3, NOH_SPEED_ONE, 8), 12);
     one_close(&o);
