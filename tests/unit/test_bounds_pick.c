@@ -320,7 +320,7 @@ static void rays_at_fox(void **state) { (void)state; check_rays("khronos/Fox.glb
 static void rays_at_robot(void **state) { (void)state; check_rays("khronos/RobotExpressive.glb", NULL); }
 static void rays_by_dual_quaternions(void **state) { (void)state; check_rays("khronos/Fox.glb", "all"); }
 
-/* Row C14.2: a rigid mesh is picked too, as it is placed and morphed. */
+/* A rigid mesh is picked too, as it is placed and morphed. */
 static void rays_at_a_rigid_mesh(void **state)
 {
     const test_model_desc desc = { 1, 6, 2, 0, 3 };

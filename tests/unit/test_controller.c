@@ -265,8 +265,8 @@ static void test_time_functions(void **state)
     }
 }
 
-/* Row C5.1: integer time does not drift: a day of 60 Hz frames, then the sum in floats beside it. */
-static void errata_C5_1_time_does_not_drift(void **state)
+/* Integer time does not drift: a day of 60 Hz frames, then the sum in floats beside it. */
+static void time_does_not_drift(void **state)
 {
     stage g;
     float seconds = 0.0f;
@@ -534,9 +534,9 @@ static void test_one_track_is_its_motion(void **state)
     assert_memory_equal(g.pose, g.s.bind, sizeof g.pose);
 }
 
-/* Row C5.2: priority is the blend group, not a distance. All low tracks blend, all high
+/* Priority is the blend group, not a distance. All low tracks blend, all high
  * tracks blend, then the two: the source's one sum of all weights gives another pose. */
-static void errata_C5_2_priority_is_the_blend_group(void **state)
+static void priority_is_the_blend_group(void **state)
 {
     stage g;
     noh_transform low[JOINTS], high[JOINTS], want[JOINTS], one_sum[JOINTS];
@@ -586,6 +586,22 @@ static void test_masked_layer(void **state)
         assert_true(pose_apart(g.pose, want, JOINTS) < 2e-6);
         assert_true(floats_apart(g.floats, want_floats, FLOATS) < 1e-6);
     }
+}
+
+/* A track with a mask, alone: what its mask shuts out stands in the bind pose. */
+static void a_masked_track_alone_leaves_the_bind_pose(void **state)
+{
+    stage g;
+    noh_transform wave[JOINTS];
+    float floats[FLOATS];
+    (void)state;
+    stage_open(&g, 2, 0);
+    scene_pose(&g.s, WAVE, 0, wave, floats);
+    start(&g, 0, (noh_track_desc){ .motion = WAVE, .mask = 1 });
+    take_pose(&g);
+    assert_memory_equal(g.pose, g.s.bind, JOINTS / 2u * sizeof *g.pose);
+    assert_true(pose_apart(g.pose + JOINTS / 2u, wave + JOINTS / 2u, JOINTS / 2u) < 1e-6);
+    assert_true(g.floats[0] == g.s.defaults[0] && fabsf(g.floats[4] - floats[4]) < 1e-6f);
 }
 
 /* A walk that moves no floats and a face that moves no joints, together: each is what it is alone. */
@@ -741,9 +757,9 @@ static void test_additive_tracks(void **state)
     }
 }
 
-/* Row C4.4: clones that write one bone tree overwrite each other unless each is drawn before the
+/* Clones that write one bone tree overwrite each other unless each is drawn before the
  * next is updated. Here a clone is one memcpy and its pose lies where its owner says. */
-static void errata_C4_4_clones_share_nothing_they_write(void **state)
+static void clones_share_nothing_they_write(void **state)
 {
     stage g;
     ALIGNED uint8_t clone_memory[8192];
@@ -812,6 +828,32 @@ static void test_decay(void **state)
     assert_true(noh_inertia_decay(1.0f, 0.0f, 0.3f, 0.3f) == 0.0f);
     assert_true(noh_inertia_decay(0.0f, 0.0f, 0.1f, 0.3f) == 0.0f);
     assert_true(noh_inertia_decay(NAN, 0.0f, 0.1f, 0.3f) == 0.0f);
+}
+
+/* What was left of a transition some ticks ago, asked for now, is what it was then. */
+static void inertia_some_ticks_ago(void **state)
+{
+    stage g;
+    noh_transform then[JOINTS], now[JOINTS];
+    float floats_then[FLOATS], floats_now[FLOATS];
+    (void)state;
+    stage_open(&g, 2, NOH_CONTROLLER_INERTIAL);
+    start(&g, 0, track_of(WALK, 1.0f));
+    step(&g, 20000);
+    assert_int_equal(noh_controller_inertia_capture(g.c, &g.s.set, &g.scratch, NULL), NOH_OK);
+    start(&g, 0, track_of(RUN, 1.0f));
+    assert_int_equal(noh_controller_inertia_begin(g.c, &g.s.set, &g.scratch, 9600, NULL), NOH_OK);
+    step(&g, 1000);
+    memcpy(then, g.s.bind, sizeof then);
+    memcpy(floats_then, g.s.defaults, sizeof floats_then);
+    noh_controller_inertia_add(g.c, 0, then, floats_then);
+    assert_true(pose_apart(then, g.s.bind, JOINTS) > 0.1);
+    step(&g, 3000);
+    memcpy(now, g.s.bind, sizeof now);
+    memcpy(floats_now, g.s.defaults, sizeof floats_now);
+    noh_controller_inertia_add(g.c, 3000, now, floats_now);
+    assert_memory_equal(now, then, sizeof now);
+    assert_memory_equal(floats_now, floats_then, sizeof floats_now);
 }
 
 static void test_inertial_transition(void **state)
@@ -928,7 +970,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_track_desc_fields_broken_in_turn),
         cmocka_unit_test(test_setters_refuse),
         cmocka_unit_test(test_time_functions),
-        cmocka_unit_test(errata_C5_1_time_does_not_drift),
+        cmocka_unit_test(time_does_not_drift),
         cmocka_unit_test(test_ended),
         cmocka_unit_test(test_change_fields_broken_in_turn),
         cmocka_unit_test(test_weight_follows_its_curve),
@@ -938,17 +980,19 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_sync_by_markers_and_by_phase),
         cmocka_unit_test(test_sync_refuses_other_markers),
         cmocka_unit_test(test_one_track_is_its_motion),
-        cmocka_unit_test(errata_C5_2_priority_is_the_blend_group),
+        cmocka_unit_test(priority_is_the_blend_group),
         cmocka_unit_test(test_masked_layer),
+        cmocka_unit_test(a_masked_track_alone_leaves_the_bind_pose),
         cmocka_unit_test(test_motions_of_joints_and_of_floats),
         cmocka_unit_test(test_clips_of_joints_and_of_floats_above),
         cmocka_unit_test(test_a_masked_track_leaves_others_their_joints),
         cmocka_unit_test(test_tracks_count_by_weight),
         cmocka_unit_test(test_lod),
         cmocka_unit_test(test_additive_tracks),
-        cmocka_unit_test(errata_C4_4_clones_share_nothing_they_write),
+        cmocka_unit_test(clones_share_nothing_they_write),
         cmocka_unit_test(test_snapshot_goes_on_the_same),
         cmocka_unit_test(test_decay),
+        cmocka_unit_test(inertia_some_ticks_ago),
         cmocka_unit_test(test_inertial_transition),
         cmocka_unit_test(test_transition_within_a_transition),
         cmocka_unit_test(test_callback_starts_a_track_within_the_step),

@@ -485,8 +485,8 @@ static void test_events_by_weight(void **state)
     assert_true(counts[0] == 0 && counts[1] > 5);
 }
 
-/* Row C4.4: an instance is cloned by one memcpy. */
-static void errata_C4_4_a_graph_is_cloned_by_memcpy(void **state)
+/* An instance is cloned by one memcpy. */
+static void a_graph_is_cloned_by_memcpy(void **state)
 {
     static stage g;
     static ALIGNED uint8_t copy[8192];
@@ -535,7 +535,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_clips_of_joints_and_of_floats),
         cmocka_unit_test(test_space_2d_state),
         cmocka_unit_test(test_events_by_weight),
-        cmocka_unit_test(errata_C4_4_a_graph_is_cloned_by_memcpy),
+        cmocka_unit_test(a_graph_is_cloned_by_memcpy),
         cmocka_unit_test(test_lod_and_a_switch_without_a_pose),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
