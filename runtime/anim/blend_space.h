@@ -9,10 +9,8 @@
 #ifndef NOH_ANIM_BLEND_SPACE_H
 #define NOH_ANIM_BLEND_SPACE_H
 
+#include "base/limits.h"
 #include "base/result.h"
-
-#define NOH_SPACE_POINTS_MAX 32u
-#define NOH_SPACE_TRIANGLES_MAX (2u * NOH_SPACE_POINTS_MAX)
 
 typedef struct noh_space_2d {
     uint32_t point_count;           /* 1..NOH_SPACE_POINTS_MAX */

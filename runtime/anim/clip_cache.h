@@ -13,10 +13,7 @@
 #define NOH_ANIM_CLIP_CACHE_H
 
 #include "anim/clip_codec.h"
-
-#define NOH_CLIP_CACHE_SLOTS_MIN 2u /* a sample between two segments needs both */
-#define NOH_CLIP_CACHE_SLOTS_MAX 32768u
-#define NOH_CLIP_CACHE_CLIPS_MAX 4096u
+#include "base/limits.h"
 
 typedef struct noh_clip_cache_desc {
     const noh_clip *const *clips; /* [clip_count], copied; the clips must outlive the cache */

@@ -9,12 +9,8 @@
 
 #include "anim/pose.h"
 #include "anim/time.h"
+#include "base/limits.h"
 #include "base/result.h"
-
-#define NOH_MOTIONS_MAX 65535u
-#define NOH_MASKS_MAX 255u
-#define NOH_JOINTS_MAX 4096u
-#define NOH_FLOATS_MAX 4096u
 
 /* A callback key (row C5.6). */
 typedef struct noh_event_key {
