@@ -9,12 +9,8 @@
 #ifndef NOH_ANIM_BLEND_SPACE_H
 #define NOH_ANIM_BLEND_SPACE_H
 
+#include "base/limits.h"
 #include "base/result.h"
-
-#define NOH_SPACE_POINTS_MAX 32u
-#define NOH_SPACE_TRIANGLES_MAX (2u * NOH_SPACE_POINTS_MAX)
-
-#define NOH_SPACE_COORDINATE_MAX 1e18f /* of points and thresholds: squares of differences stay finite */
 
 typedef struct noh_space_2d {
     uint32_t point_count;           /* 1..NOH_SPACE_POINTS_MAX */

@@ -22,10 +22,10 @@
 #define NOH_ANIM_CONTROLLER_H
 
 #include "anim/changes.h"
+#include "base/limits.h"
 
 #define NOH_CONTROLLER_INERTIAL 1u /* room for a pose of offsets: 48 bytes per joint, 8 per float (inertial.h) */
 #define NOH_CONTROLLER_EVENTS_CUT 2u /* set by a step that came to NOH_STEP_EVENTS_MAX keys and handed out no more */
-#define NOH_CHANGES_MAX 1024u
 
 /* Its bytes: 80, 48 per track, 32 per change; with room for inertia 48 per joint and 8
  * per float. With the default table that is at most 64 per joint and 64 per track for

@@ -27,10 +27,6 @@ typedef struct noh_passage {
     uint8_t placed;          /* play was placed at `from` and has not moved since */
 } noh_passage;
 
-/* Keys that one step looks at. A track can pass billions of keys in one step (seek a day away in a clip of 10 ms, or step
- * a day at speed 256); a step that comes to this many hands out no more, and only moves time on. */
-#define NOH_STEP_EVENTS_MAX (1u << 20)
-
 /* What is passed: the index of the key and the tick of the position at which it happens. */
 typedef void (*noh_key_fn)(void *user, uint32_t index, int64_t position_tick);
 

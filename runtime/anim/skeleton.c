@@ -24,7 +24,7 @@ static const char *bad_joint(const noh_skeleton *s, uint32_t i)
 
 noh_result noh_skeleton_check(const noh_skeleton *skeleton, noh_error *error)
 {
-    if (skeleton->joint_count == 0 || skeleton->joint_count > NOH_SKELETON_JOINTS_MAX) {
+    if (skeleton->joint_count == 0 || skeleton->joint_count > NOH_JOINTS_MAX) {
         return noh_fail(error, NOH_ERR_ARG, "joint_count of a skeleton is 0, or above NOH_JOINTS_MAX", 0, skeleton->joint_count);
     }
     if (!skeleton->parents) return noh_fail(error, NOH_ERR_ARG, "parents of a skeleton is NULL", 0, 0);

@@ -9,10 +9,9 @@
 #include "base/result.h"
 
 #define NOH_JOINT_ROOT 0xffffu /* parent of a joint that has none */
-#define NOH_SKELETON_JOINTS_MAX NOH_JOINTS_MAX
 
 typedef struct noh_skeleton {
-    uint32_t joint_count;           /* 1..NOH_SKELETON_JOINTS_MAX */
+    uint32_t joint_count;           /* 1..NOH_JOINTS_MAX */
     const uint16_t *parents;        /* [joint_count], each below its joint's own index, or NOH_JOINT_ROOT */
     const noh_transform *bind_pose; /* [joint_count], local */
     const float *inverse_bind;      /* [joint_count][12], see local_to_model.h; NULL: all identity */

@@ -14,9 +14,8 @@
 #ifndef NOH_CHARACTER_DETAIL_H
 #define NOH_CHARACTER_DETAIL_H
 
+#include "base/limits.h"
 #include "base/result.h"
-
-#define NOH_DETAIL_LEVELS_MAX 8u
 
 /* How often an instance is posed (time_lod.h). */
 typedef enum noh_rate {

@@ -72,7 +72,8 @@ static noh_result check_table_crc(const uint8_t *bytes, noh_error *error)
     return NOH_OK;
 }
 
-/* The chunk lies right behind the one before, with zero padding between. */
+/* A chunk begins at the next multiple of 64 after the one before it, with zero padding between: every byte of the file then
+ * belongs to the header, the table, one chunk or padding, and all of them are checked. */
 static noh_result check_place(const noh_pack *pack, uint32_t index, uint64_t *cursor, noh_error *error)
 {
     const noh_pack_chunk *c = &pack->chunks[index];
@@ -238,11 +239,13 @@ noh_result noh_pack_open(const void *bytes, size_t byte_count, noh_pack *pack, n
 
 const char *noh_pack_string(const noh_pack *pack, uint32_t offset)
 {
+    NOH_ASSERT(pack);
     return offset < pack->string_bytes ? pack->strings + offset : "";
 }
 
 const char *noh_pack_chunk_name(const noh_pack *pack, uint32_t chunk)
 {
+    NOH_ASSERT(pack);
     return chunk < pack->chunk_count ? noh_pack_string(pack, pack->chunks[chunk].name) : "";
 }
 

@@ -523,7 +523,7 @@ static void test_skeleton_fields_broken_in_turn(void **state)
     s.skeleton.inverse_bind = inverse;
     assert_int_equal(noh_skeleton_check(&s.skeleton, NULL), NOH_OK);
     k = s.skeleton, k.joint_count = 0; bad_skeleton(&k, NOH_ERR_ARG, "joint_count");
-    k = s.skeleton, k.joint_count = NOH_SKELETON_JOINTS_MAX + 1u; bad_skeleton(&k, NOH_ERR_ARG, "joint_count");
+    k = s.skeleton, k.joint_count = NOH_JOINTS_MAX + 1u; bad_skeleton(&k, NOH_ERR_ARG, "joint_count");
     k = s.skeleton, k.parents = NULL; bad_skeleton(&k, NOH_ERR_ARG, "parents");
     k = s.skeleton, k.bind_pose = NULL; bad_skeleton(&k, NOH_ERR_ARG, "bind_pose");
     s.parents[3] = 3; bad_skeleton(&s.skeleton, NOH_ERR_DATA, "parent does not come first");

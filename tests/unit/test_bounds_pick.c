@@ -364,7 +364,7 @@ static void bad_picks_say_why(void **state)
     uint8_t *bytes = skin_pack_of(m, NULL, 1.0f, &count, NULL);
     noh_pack pack = test_open(bytes, count);
     noh_mesh mesh = test_mesh(&pack, 0);
-    float matrices[48], scratch[48 + 1];
+    float matrices[48], *scratch = test_zeros(49 * sizeof(float));
     const float o[3] = { 5, 1.03f, 0.01f }, d[3] = { -1, 0, 0 }, none[3] = { 0, 0, 0 };
     noh_pick_surface surface = { &mesh, NULL, matrices, NULL, NULL, NULL };
     noh_error error;
@@ -382,8 +382,18 @@ static void bad_picks_say_why(void **state)
     assert_true(scratch[48] == 12345.0f);
     assert_true(fabsf(hit.distance - 4.5f) < 0.05f);
     assert_true(hit.joint == 1 || hit.joint == 2); /* half way up, a bit nearer to the second */
+    memset(&error, 0, sizeof error);
+    assert_int_equal(noh_pick(&surface, o, d, 1.0f, scratch, 4 * 48, &hit, &error), NOH_ERR_NOT_FOUND);
+    assert_int_equal(error.result, NOH_ERR_NOT_FOUND);
+    assert_non_null(error.what);
+    for (size_t shift = 1; shift < NOH_MEMORY_ALIGN; shift++) {
+        assert_int_equal(noh_pick(&surface, o, d, 100.0f, (uint8_t *)scratch + shift, 4 * 48, &hit, &error), NOH_ERR_ARG);
+    }
+    assert_int_equal(noh_pick(&surface, o, d, 100.0f, NULL, 4 * 48, &hit, &error), NOH_ERR_ARG);
+    assert_int_equal(error.need, 4 * 48);
     surface.matrices = NULL;
     assert_int_equal(noh_pick(&surface, o, d, 100.0f, scratch, 4 * 48, &hit, &error), NOH_ERR_ARG);
+    free(scratch);
     free(bytes);
     model_free(m);
 }

@@ -10,6 +10,7 @@
 #ifndef NOH_TOOL_SCENE_DETAIL_H
 #define NOH_TOOL_SCENE_DETAIL_H
 
+#include "noh_gl.h"
 #include "scene.h"
 
 /* What can be left out of one item, and what is. */
