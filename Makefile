@@ -387,6 +387,12 @@ CROSS_O     := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/cross/*.c) $(filter 
 INCLUDES    += $(if $(CROSS),-Itests/cross -idirafter /usr/include)
 
 cross-tests: $(CROSS_TESTS)
+# build/cross/test_NAME is the test of that name, whichever folder it is in.
+define cross_alias
+$(BUILD)/cross/$(1): $(firstword $(filter %/$(1),$(CROSS_TESTS)))
+	@cp $$< $$@
+endef
+$(foreach name,$(sort $(notdir $(CROSS_TESTS))),$(eval $(call cross_alias,$(name))))
 $(BUILD)/cross/libtests.a: $(CROSS_O) $(BUILD)/libnoh.a
 	@mkdir -p $(@D)
 	@rm -f $@

@@ -1642,7 +1642,8 @@ static void all_assets_load(void **state)
 static int make_folder(void **state)
 {
     (void)state;
-    snprintf(folder, sizeof folder, "/tmp/noh_gltf_XXXXXX");
+    const char *base = getenv("TMPDIR");
+    snprintf(folder, sizeof folder, "%s/noh_gltf_XXXXXX", base && strlen(base) < 40 ? base : "/tmp");
     return mkdtemp(folder) ? 0 : -1;
 }
 
