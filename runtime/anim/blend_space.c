@@ -270,7 +270,7 @@ static noh_result check_apart(const mesh *m, noh_error *error)
 {
     for (uint32_t i = 1; i < m->count; i++) {
         if (!comes_before(m, m->order[i - 1], m->order[i])) {
-            return noh_fail(error, NOH_ERR_DATA, "two points in one place", m->order[i], 0);
+            return noh_fail(error, NOH_ERR_DATA, "two points are in one place", m->order[i], 0);
         }
     }
     return NOH_OK;
@@ -281,7 +281,7 @@ noh_result noh_space_2d_triangulate(uint32_t count, const float *points, uint8_t
     mesh m;
     noh_result result;
     if (count == 0 || count > NOH_SPACE_POINTS_MAX) {
-        return noh_fail(error, NOH_ERR_ARG, "count", count, NOH_SPACE_POINTS_MAX);
+        return noh_fail(error, NOH_ERR_ARG, "count is not in 1..NOH_SPACE_POINTS_MAX", count, NOH_SPACE_POINTS_MAX);
     }
     memset(&m, 0, sizeof m);
     m.count = count;

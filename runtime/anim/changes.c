@@ -47,20 +47,20 @@ static float float_of(int64_t bits)
 static const char *bad_value(const noh_change_desc *d)
 {
     float weight_max = d->kind == NOH_CHANGE_PRIORITY ? 1.0f : NOH_WEIGHT_MAX;
-    if (d->speed > NOH_SPEED_MAX || d->speed < -NOH_SPEED_MAX) return "speed";
-    if (!(d->weight >= 0.0f && d->weight <= weight_max)) return "weight";
-    if (d->position_ticks > ((int64_t)1 << 44) || d->position_ticks < -((int64_t)1 << 44)) return "position_ticks";
-    if ((unsigned)d->mode > NOH_TRACK_ON) return "mode";
+    if (d->speed > NOH_SPEED_MAX || d->speed < -NOH_SPEED_MAX) return "speed is past NOH_SPEED_MAX";
+    if (!(d->weight >= 0.0f && d->weight <= weight_max)) return "weight is not in 0..NOH_WEIGHT_MAX, or 0..1 for PRIORITY";
+    if (d->position_ticks > ((int64_t)1 << 44) || d->position_ticks < -((int64_t)1 << 44)) return "position_ticks is past 2^44";
+    if ((unsigned)d->mode > NOH_TRACK_ON) return "mode is not a noh_track_mode";
     return NULL;
 }
 
 static const char *bad_change(const noh_change_target *target, uint32_t track_count, const noh_change_desc *d)
 {
-    if ((unsigned)d->kind > NOH_CHANGE_PRIORITY) return "kind";
-    if (d->kind != NOH_CHANGE_PRIORITY && d->track >= track_count) return "track";
-    if (d->kind == NOH_CHANGE_POSITION && target->tracks[d->track].sync_group) return "track is synchronised";
-    if ((unsigned)d->curve > NOH_CURVE_SMOOTHSTEP) return "curve";
-    if (d->kind == NOH_CHANGE_MODE && d->duration_ticks) return "duration_ticks";
+    if ((unsigned)d->kind > NOH_CHANGE_PRIORITY) return "kind is not a noh_change_kind";
+    if (d->kind != NOH_CHANGE_PRIORITY && d->track >= track_count) return "track is not below track_count";
+    if (d->kind == NOH_CHANGE_POSITION && target->tracks[d->track].sync_group) return "track is synchronised: its group moves it";
+    if ((unsigned)d->curve > NOH_CURVE_SMOOTHSTEP) return "curve is not a noh_curve";
+    if (d->kind == NOH_CHANGE_MODE && d->duration_ticks) return "duration_ticks must be 0 for MODE";
     return bad_value(d);
 }
 

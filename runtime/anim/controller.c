@@ -29,11 +29,11 @@ static uint32_t change_count_of(const noh_controller_desc *d)
 
 static const char *bad_desc(const noh_controller_desc *d)
 {
-    if (!d->set || d->set->joint_count > NOH_JOINTS_MAX || d->set->float_count > NOH_FLOATS_MAX) return "set";
-    if (d->set->joint_count == 0 && d->set->float_count == 0) return "set";
-    if (d->track_count > NOH_TRACKS_MAX) return "track_count";
-    if (d->change_count > NOH_CHANGES_MAX) return "change_count";
-    if (d->flags & ~NOH_CONTROLLER_INERTIAL) return "flags";
+    if (!d->set || d->set->joint_count > NOH_JOINTS_MAX || d->set->float_count > NOH_FLOATS_MAX) return "set: NULL, or without joints and floats, or over NOH_JOINTS_MAX or NOH_FLOATS_MAX";
+    if (d->set->joint_count == 0 && d->set->float_count == 0) return "set: NULL, or without joints and floats, or over NOH_JOINTS_MAX or NOH_FLOATS_MAX";
+    if (d->track_count > NOH_TRACKS_MAX) return "track_count is above NOH_TRACKS_MAX";
+    if (d->change_count > NOH_CHANGES_MAX) return "change_count is above NOH_CHANGES_MAX";
+    if (d->flags & ~NOH_CONTROLLER_INERTIAL) return "flags has bits other than NOH_CONTROLLER_INERTIAL";
     return NULL;
 }
 
@@ -84,16 +84,16 @@ static void fill_head(noh_controller *c, const noh_controller_desc *d, layout l)
 noh_result noh_controller_init(void *memory, size_t bytes, const noh_controller_desc *desc, noh_controller **controller, noh_error *error)
 {
     const char *what = bad_desc(desc);
+    noh_arena arena;
+    noh_result result;
     layout l;
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }
     l = layout_of(desc);
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for a controller is NULL or not 16-byte aligned", 0, l.bytes);
-    }
-    if (bytes < l.bytes) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory for a controller is too small", bytes, l.bytes);
+    result = noh_arena_open(&arena, memory, bytes, l.bytes, error);
+    if (result != NOH_OK) {
+        return result;
     }
     memset(memory, 0, l.bytes);
     fill_head((noh_controller *)memory, desc, l);
@@ -166,7 +166,7 @@ noh_result noh_controller_start(noh_controller *c, const noh_anim_set *set, uint
     noh_result result;
     memset(&started, 0, sizeof started);
     if (track >= c->track_count) {
-        return noh_fail(error, NOH_ERR_ARG, "track", track, c->track_count);
+        return noh_fail(error, NOH_ERR_ARG, "track is not below track_count", track, c->track_count);
     }
     result = noh_track_start(&started, set, desc, error);
     if (result != NOH_OK) {
@@ -215,16 +215,16 @@ noh_result noh_controller_seek(noh_controller *c, const noh_anim_set *set, uint3
     noh_track *t;
     const noh_motion *m;
     int64_t position;
-    if (track >= c->track_count) return noh_fail(error, NOH_ERR_ARG, "track", track, c->track_count);
-    if (tick > (int64_t)1 << 43 || tick < -((int64_t)1 << 43)) return noh_fail(error, NOH_ERR_ARG, "tick", track, 0);
-    if ((unsigned)policy > NOH_SEEK_FIRE) return noh_fail(error, NOH_ERR_ARG, "policy", track, 0);
+    if (track >= c->track_count) return noh_fail(error, NOH_ERR_ARG, "track is not below track_count", track, c->track_count);
+    if (tick > (int64_t)1 << 43 || tick < -((int64_t)1 << 43)) return noh_fail(error, NOH_ERR_ARG, "tick is past 2^43", track, 0);
+    if ((unsigned)policy > NOH_SEEK_FIRE) return noh_fail(error, NOH_ERR_ARG, "policy is not a noh_seek", track, 0);
     t = &noh_controller_tracks(c)[track];
     m = &set->motions[t->motion];
     position = seek_position(t, m, tick);
     if (policy == NOH_SEEK_FIRE) {
         noh_change_target target = target_of(c, set);
         noh_result result;
-        if (t->sync_group) return noh_fail(error, NOH_ERR_ARG, "track is synchronised", track, 0);
+        if (t->sync_group) return noh_fail(error, NOH_ERR_ARG, "track is synchronised: its group moves it", track, 0);
         result = noh_changes_jump(changes_of(c), c->change_count, &target, track, position, error);
         settle(c, &target);
         return result;
@@ -314,9 +314,9 @@ noh_result noh_controller_cross_fade(noh_controller *c, const noh_anim_set *set,
                                      uint32_t duration_ticks, noh_curve curve, noh_error *error)
 {
     noh_change_desc d;
-    if (from >= c->track_count || to >= c->track_count || from == to) return noh_fail(error, NOH_ERR_ARG, "track", from, c->track_count);
-    if (!(weight >= 0.0f && weight <= NOH_WEIGHT_MAX)) return noh_fail(error, NOH_ERR_ARG, "weight", to, 0);
-    if ((unsigned)curve > NOH_CURVE_SMOOTHSTEP) return noh_fail(error, NOH_ERR_ARG, "curve", to, 0);
+    if (from >= c->track_count || to >= c->track_count || from == to) return noh_fail(error, NOH_ERR_ARG, "track: from and to must be two tracks of the controller", from, c->track_count);
+    if (!(weight >= 0.0f && weight <= NOH_WEIGHT_MAX)) return noh_fail(error, NOH_ERR_ARG, "weight is not in 0..NOH_WEIGHT_MAX", to, 0);
+    if ((unsigned)curve > NOH_CURVE_SMOOTHSTEP) return noh_fail(error, NOH_ERR_ARG, "curve is not a noh_curve", to, 0);
     if (free_changes(c) < 3) return noh_fail(error, NOH_ERR_LIMIT, "the table of changes is full", c->change_count, 3);
     memset(&d, 0, sizeof d);
     d.kind = NOH_CHANGE_WEIGHT;

@@ -46,16 +46,12 @@ size_t noh_pose_scratch_size(const noh_anim_set *set, int inertial)
 
 noh_result noh_pose_scratch_init(void *memory, size_t bytes, const noh_anim_set *set, int inertial, noh_pose_scratch *scratch, noh_error *error)
 {
-    size_t need = noh_pose_scratch_size(set, inertial);
-    noh_arena arena = noh_arena_over(memory, bytes);
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for a pose scratch is NULL or not 16-byte aligned", 0, need);
+    noh_arena arena;
+    noh_result result = noh_arena_open(&arena, memory, bytes, noh_pose_scratch_size(set, inertial), error);
+    if (result == NOH_OK) {
+        carve(&arena, set, inertial, scratch);
     }
-    if (bytes < need) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory for a pose scratch is too small", bytes, need);
-    }
-    carve(&arena, set, inertial, scratch);
-    return NOH_OK;
+    return result;
 }
 
 /* ---- the pose ---- */

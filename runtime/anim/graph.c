@@ -132,17 +132,16 @@ noh_result noh_graph_state_init(void *memory, size_t bytes, const noh_graph *gra
     noh_controller_desc d;
     noh_graph_state *s = (noh_graph_state *)memory;
     noh_controller *c;
+    noh_arena arena;
     layout l;
     if (result != NOH_OK) {
         return result;
     }
     l = layout_of(graph, set);
     d = controller_desc(graph, set);
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for a graph is NULL or not 16-byte aligned", 0, l.bytes);
-    }
-    if (bytes < l.bytes) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory for a graph is too small", bytes, l.bytes);
+    result = noh_arena_open(&arena, memory, bytes, l.bytes, error);
+    if (result != NOH_OK) {
+        return result;
     }
     fill_state(s, graph, l);
     result = noh_controller_init((uint8_t *)memory + l.controller, noh_controller_size(&d), &d, &c, error);

@@ -38,14 +38,11 @@ size_t noh_graph_scratch_size(const noh_graph *graph, const noh_anim_set *set)
 
 noh_result noh_graph_scratch_init(void *memory, size_t bytes, const noh_graph *graph, const noh_anim_set *set, noh_graph_scratch *scratch, noh_error *error)
 {
-    size_t need = noh_graph_scratch_size(graph, set), pose_need = noh_pose_scratch_size(set, is_inertial(graph));
-    noh_arena arena = noh_arena_over(memory, bytes);
-    noh_result result;
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for a graph scratch is NULL or not 16-byte aligned", 0, need);
-    }
-    if (bytes < need) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory for a graph scratch is too small", bytes, need);
+    size_t pose_need = noh_pose_scratch_size(set, is_inertial(graph));
+    noh_arena arena;
+    noh_result result = noh_arena_open(&arena, memory, bytes, noh_graph_scratch_size(graph, set), error);
+    if (result != NOH_OK) {
+        return result;
     }
     memset(scratch, 0, sizeof *scratch);
     result = noh_pose_scratch_init(noh_arena_carve(&arena, pose_need, 16), pose_need, set, is_inertial(graph), &scratch->pose, error);

@@ -156,9 +156,9 @@ noh_result noh_root_track_measure(const noh_anim_set *set, uint32_t motion, uint
 {
     noh_root_track t;
     noh_root_pose back;
-    if (motion >= set->motion_count) return noh_fail(error, NOH_ERR_ARG, "motion", motion, set->motion_count);
-    if (axes > 15u) return noh_fail(error, NOH_ERR_ARG, "axes", motion, 0);
-    if (up > 2u) return noh_fail(error, NOH_ERR_ARG, "up", motion, 0);
+    if (motion >= set->motion_count) return noh_fail(error, NOH_ERR_ARG, "motion is not a clip of the set", motion, set->motion_count);
+    if (axes > 15u) return noh_fail(error, NOH_ERR_ARG, "axes has bits other than NOH_ROOT_*", motion, 0);
+    if (up > 2u) return noh_fail(error, NOH_ERR_ARG, "up is not 0, 1 or 2", motion, 0);
     memset(&t, 0, sizeof t);
     t.axes = axes;
     t.up = up;

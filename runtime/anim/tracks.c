@@ -2,17 +2,17 @@
 
 static const char *bad_desc(const noh_anim_set *set, const noh_track_desc *d)
 {
-    if (d->motion >= set->motion_count) return "motion";
-    if (d->position_ticks > ((int64_t)1 << 44) || d->position_ticks < -((int64_t)1 << 44)) return "position_ticks";
-    if (d->speed > NOH_SPEED_MAX || d->speed < -NOH_SPEED_MAX) return "speed";
-    if (!(d->weight >= 0.0f && d->weight <= NOH_WEIGHT_MAX)) return "weight";
-    if ((unsigned)d->loop > NOH_LOOP_PING_PONG) return "loop";
-    if ((unsigned)d->mode > NOH_TRACK_ON) return "mode";
-    if ((unsigned)d->group > NOH_GROUP_HIGH) return "group";
-    if (d->mask > set->mask_count) return "mask";
-    if (d->lod_levels > 255u) return "lod_levels";
-    if (d->sync_group > NOH_SYNC_GROUPS_MAX) return "sync_group";
-    if (d->flags & ~NOH_TRACK_FLAGS) return "flags";
+    if (d->motion >= set->motion_count) return "motion is not a clip of the set";
+    if (d->position_ticks > ((int64_t)1 << 44) || d->position_ticks < -((int64_t)1 << 44)) return "position_ticks is past 2^44";
+    if (d->speed > NOH_SPEED_MAX || d->speed < -NOH_SPEED_MAX) return "speed is past NOH_SPEED_MAX";
+    if (!(d->weight >= 0.0f && d->weight <= NOH_WEIGHT_MAX)) return "weight is not in 0..NOH_WEIGHT_MAX";
+    if ((unsigned)d->loop > NOH_LOOP_PING_PONG) return "loop is not a noh_loop";
+    if ((unsigned)d->mode > NOH_TRACK_ON) return "mode is not a noh_track_mode";
+    if ((unsigned)d->group > NOH_GROUP_HIGH) return "group is not a noh_track_group";
+    if (d->mask > set->mask_count) return "mask is above mask_count of the set";
+    if (d->lod_levels > 255u) return "lod_levels is above 255";
+    if (d->sync_group > NOH_SYNC_GROUPS_MAX) return "sync_group is above NOH_SYNC_GROUPS_MAX";
+    if (d->flags & ~NOH_TRACK_FLAGS) return "flags has bits other than NOH_TRACK_FLAGS";
     return NULL;
 }
 
@@ -22,7 +22,7 @@ static const char *bad_sync(const noh_anim_set *set, const noh_track_desc *d)
     const noh_motion *m = &set->motions[d->motion];
     uint32_t loop = d->loop ? (uint32_t)d->loop : m->loop;
     int fits = m->duration_ticks >= NOH_SYNC_DURATION_MIN && m->duration_ticks <= NOH_SYNC_DURATION_MAX;
-    return d->sync_group && (loop != NOH_LOOP_REPEAT || !fits) ? "sync_group" : NULL;
+    return d->sync_group && (loop != NOH_LOOP_REPEAT || !fits) ? "sync_group is above NOH_SYNC_GROUPS_MAX" : NULL;
 }
 
 noh_result noh_track_start(noh_track *track, const noh_anim_set *set, const noh_track_desc *desc, noh_error *error)

@@ -60,17 +60,16 @@ noh_result noh_character_init(void *memory, size_t bytes, const noh_character_de
     size_t controller_bytes = noh_controller_size(&desc->controller);
     noh_controller *controller;
     noh_character *ch = (noh_character *)memory;
+    noh_arena arena;
     noh_result result;
     layout l;
     if (controller_bytes == 0) {
         return noh_controller_init(NULL, 0, &desc->controller, &controller, error); /* which names the field */
     }
     l = layout_of(desc, controller_bytes);
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for a character is NULL or not 16-byte aligned", 0, l.bytes);
-    }
-    if (bytes < l.bytes) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory for a character is too small", bytes, l.bytes);
+    result = noh_arena_open(&arena, memory, bytes, l.bytes, error);
+    if (result != NOH_OK) {
+        return result;
     }
     memset(memory, 0, l.bytes);
     result = noh_controller_init((uint8_t *)memory + l.controller, controller_bytes, &desc->controller, &controller, error);
@@ -110,17 +109,16 @@ size_t noh_character_scratch_size(const noh_character_desc *desc)
 noh_result noh_character_scratch_init(void *memory, size_t bytes, const noh_character_desc *desc, noh_character_scratch *scratch, noh_error *error)
 {
     size_t need = noh_character_scratch_size(desc), pose_bytes;
-    noh_arena arena = noh_arena_over(memory, bytes);
+    noh_arena arena;
+    noh_result result;
     noh_controller *controller;
     void *pose_memory;
     if (need == 0) {
         return noh_controller_init(NULL, 0, &desc->controller, &controller, error);
     }
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for characters' scratch is NULL or not 16-byte aligned", 0, need);
-    }
-    if (bytes < need) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory for characters' scratch is too small", bytes, need);
+    result = noh_arena_open(&arena, memory, bytes, need, error);
+    if (result != NOH_OK) {
+        return result;
     }
     pose_bytes = carve_scratch(&arena, desc, scratch, &pose_memory);
     return noh_pose_scratch_init(pose_memory, pose_bytes, desc->controller.set, 0, &scratch->pose, error);

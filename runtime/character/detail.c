@@ -37,14 +37,14 @@ static double lead_of(const noh_detail_settings *s)
 noh_result noh_detail_settings_check(const noh_detail_settings *s, noh_error *error)
 {
     double sum = 0.0;
-    if (!(s->pixels >= 0.0f && s->pixels <= 1e6f)) return noh_fail(error, NOH_ERR_ARG, "pixels", 0, 0);
+    if (!(s->pixels >= 0.0f && s->pixels <= 1e6f)) return noh_fail(error, NOH_ERR_ARG, "pixels is not in 0..1e6", 0, 0);
     for (uint32_t i = 0; i < NOH_DETAIL_KIND_COUNT; i++) {
-        if (!(s->shares[i] >= 0.0f && s->shares[i] <= 1.0f)) return noh_fail(error, NOH_ERR_ARG, "shares", i, 0);
+        if (!(s->shares[i] >= 0.0f && s->shares[i] <= 1.0f)) return noh_fail(error, NOH_ERR_ARG, "shares are not in 0..1", i, 0);
         sum += (double)s->shares[i];
     }
     if (sum > 1.0 + 1e-6) return noh_fail(error, NOH_ERR_ARG, "shares sum to more than 1", 0, 0);
-    if (!(s->hysteresis >= 0.0f && s->hysteresis < 1.0f)) return noh_fail(error, NOH_ERR_ARG, "hysteresis", 0, 0);
-    if (!(s->lead >= 0.0f && lead_of(s) < hysteresis_of(s))) return noh_fail(error, NOH_ERR_ARG, "lead", 0, 0);
+    if (!(s->hysteresis >= 0.0f && s->hysteresis < 1.0f)) return noh_fail(error, NOH_ERR_ARG, "hysteresis is not in 0..1", 0, 0);
+    if (!(s->lead >= 0.0f && lead_of(s) < hysteresis_of(s))) return noh_fail(error, NOH_ERR_ARG, "lead is not below the hysteresis", 0, 0);
     return NOH_OK;
 }
 
@@ -71,12 +71,12 @@ static errors errors_of(const noh_detail_table *t, noh_detail_kind kind)
 
 noh_result noh_detail_table_check(const noh_detail_table *t, noh_error *error)
 {
-    static const char *const what[] = { "error of a mesh level", "error of a joint level", "error of an influence level" };
-    if (t->mesh_level_count > NOH_DETAIL_LEVELS_MAX || (t->mesh_level_count && !t->meshes)) return noh_fail(error, NOH_ERR_ARG, "meshes", 0, 0);
-    if (t->mesh_level_first && t->mesh_level_first >= t->mesh_level_count) return noh_fail(error, NOH_ERR_ARG, "mesh_level_first", 0, 0);
-    if (t->joint_level_count > NOH_DETAIL_LEVELS_MAX || (t->joint_level_count && !t->joints)) return noh_fail(error, NOH_ERR_ARG, "joints", 0, 0);
+    static const char *const what[] = { "error of a mesh level is not finite, negative, or below that of a finer one", "error of a joint level is not finite, negative, or below that of a finer one", "error of an influence level is not finite, negative, or below that of a finer one" };
+    if (t->mesh_level_count > NOH_DETAIL_LEVELS_MAX || (t->mesh_level_count && !t->meshes)) return noh_fail(error, NOH_ERR_ARG, "meshes: NULL, or more than NOH_DETAIL_LEVELS_MAX", 0, 0);
+    if (t->mesh_level_first && t->mesh_level_first >= t->mesh_level_count) return noh_fail(error, NOH_ERR_ARG, "mesh_level_first is not below mesh_level_count", 0, 0);
+    if (t->joint_level_count > NOH_DETAIL_LEVELS_MAX || (t->joint_level_count && !t->joints)) return noh_fail(error, NOH_ERR_ARG, "joints: NULL, or more than NOH_DETAIL_LEVELS_MAX", 0, 0);
     if (t->influence_level_count > NOH_DETAIL_LEVELS_MAX || (t->influence_level_count && !t->influences)) {
-        return noh_fail(error, NOH_ERR_ARG, "influences", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "influences: NULL, or more than NOH_DETAIL_LEVELS_MAX", 0, 0);
     }
     for (int kind = 0; kind <= NOH_DETAIL_INFLUENCES; kind++) {
         errors e = errors_of(t, (noh_detail_kind)kind);
@@ -87,12 +87,12 @@ noh_result noh_detail_table_check(const noh_detail_table *t, noh_error *error)
         }
     }
     for (uint32_t i = 0; i < t->joint_level_count; i++) {
-        if (t->joints[i].joint_count == 0) return noh_fail(error, NOH_ERR_DATA, "joints of a joint level", i, 0);
+        if (t->joints[i].joint_count == 0) return noh_fail(error, NOH_ERR_DATA, "joints of a joint level: there must be at least one", i, 0);
     }
     for (uint32_t i = 0; i < t->influence_level_count; i++) {
-        if (t->influences[i].influence_count == 0) return noh_fail(error, NOH_ERR_DATA, "influences of an influence level", i, 0);
+        if (t->influences[i].influence_count == 0) return noh_fail(error, NOH_ERR_DATA, "influences of an influence level: there must be at least one", i, 0);
     }
-    if (!(t->clip_error_m >= 0.0f && t->clip_error_m <= 1e30f)) return noh_fail(error, NOH_ERR_DATA, "error of the clips", 0, 0);
+    if (!(t->clip_error_m >= 0.0f && t->clip_error_m <= 1e30f)) return noh_fail(error, NOH_ERR_DATA, "error of the clips is negative or not finite", 0, 0);
     return NOH_OK;
 }
 

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "base/arena.h"
+
 /* ---- memory ---- */
 
 size_t noh_schedule_size(uint32_t capacity)
@@ -12,19 +14,18 @@ size_t noh_schedule_size(uint32_t capacity)
 noh_result noh_schedule_init(void *memory, size_t bytes, uint32_t capacity, noh_schedule *s, noh_error *error)
 {
     size_t need = noh_schedule_size(capacity);
+    noh_arena arena;
+    noh_result result;
     if (need == 0) {
-        return noh_fail(error, NOH_ERR_ARG, "capacity", capacity, 0);
+        return noh_fail(error, NOH_ERR_ARG, "capacity is not in 1..NOH_SCHEDULE_MAX", capacity, NOH_SCHEDULE_MAX);
     }
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for a schedule is NULL or not 16-byte aligned", 0, need);
+    result = noh_arena_open(&arena, memory, bytes, need, error);
+    if (result == NOH_OK) {
+        memset(s, 0, sizeof *s);
+        s->capacity = capacity;
+        s->items = (noh_schedule_item *)noh_arena_carve(&arena, need, 16);
     }
-    if (bytes < need) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory for a schedule is too small", bytes, need);
-    }
-    memset(s, 0, sizeof *s);
-    s->capacity = capacity;
-    s->items = (noh_schedule_item *)memory;
-    return NOH_OK;
+    return result;
 }
 
 /* ---- a frame ---- */

@@ -31,14 +31,14 @@ static float pose_off(void *user, const noh_time_probe *p, const noh_rate_work *
 
 noh_result noh_time_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t motion, float *error_m, noh_error *error)
 {
-    const char *what = probe->joint_reach_m ? noh_probe_fault(probe, motion) : "probe";
+    const char *what = probe->joint_reach_m ? noh_probe_fault(probe, motion) : "probe: joint_reach_m is NULL";
     noh_result result;
-    noh_arena arena = noh_arena_over(memory, bytes);
+    noh_arena arena;
     noh_rate_work w;
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, motion, 0);
     }
-    result = noh_probe_check_memory(memory, bytes, noh_time_lod_measure_size(probe), error);
+    result = noh_arena_open(&arena, memory, bytes, noh_time_lod_measure_size(probe), error);
     if (result) {
         return result;
     }

