@@ -108,6 +108,7 @@ noh_result noh_changes_add(noh_change *table, uint32_t count, noh_change_target 
 {
     const char *what = bad_change(target, track_count, desc);
     noh_change c;
+    NOH_ASSERT(table && target && desc && target->set && target->tracks && target->priority_blend);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, desc->track, 0);
     }
@@ -125,6 +126,7 @@ noh_result noh_changes_add(noh_change *table, uint32_t count, noh_change_target 
 noh_result noh_changes_jump(noh_change *table, uint32_t count, noh_change_target *target, uint32_t track, int64_t position, noh_error *error)
 {
     noh_change c;
+    NOH_ASSERT(table && target && target->tracks);
     memset(&c, 0, sizeof c);
     c.start = target->clock;
     c.to = position;
@@ -138,6 +140,7 @@ noh_result noh_changes_jump(noh_change *table, uint32_t count, noh_change_target
 
 void noh_changes_cancel(noh_change *table, uint32_t count, noh_change_kind kind, uint32_t track)
 {
+    NOH_ASSERT(table || !count);
     for (uint32_t i = 0; i < count; i++) {
         if (table[i].state == NOH_CHANGE_RUNNING && table[i].kind == kind && table[i].track == track) {
             table[i].state = NOH_CHANGE_FREE;
@@ -147,6 +150,7 @@ void noh_changes_cancel(noh_change *table, uint32_t count, noh_change_kind kind,
 
 void noh_changes_drop(noh_change *table, uint32_t count, uint32_t track)
 {
+    NOH_ASSERT(table || !count);
     for (uint32_t i = 0; i < count; i++) {
         if (table[i].kind != NOH_CHANGE_PRIORITY && table[i].track == track) {
             table[i].state = NOH_CHANGE_FREE;
@@ -229,6 +233,7 @@ static void follow(const noh_change *c, noh_change_target *t)
 /* Running changes first: what begins takes over from the value of this very tick. */
 void noh_changes_update(noh_change *table, uint32_t count, noh_change_target *target)
 {
+    NOH_ASSERT(target && (table || !count));
     for (uint32_t i = 0; i < count; i++) {
         if (table[i].state != NOH_CHANGE_RUNNING) {
             continue;
@@ -344,6 +349,7 @@ static int64_t next_change(const noh_change *table, uint32_t count, int64_t end)
 
 int64_t noh_changes_rates(const noh_change *table, uint32_t count, const noh_change_target *target, uint32_t track_count, int64_t end)
 {
+    NOH_ASSERT(target && (table || !count) && end >= target->clock);
     end = speed_rates(table, count, target, next_change(table, count, end));
     for (uint32_t i = 0; i < track_count; i++) {
         noh_track *track = &target->tracks[i];

@@ -7,6 +7,9 @@
 #include "anim/sync.h"
 #include "base/arena.h"
 
+/* Whether a controller was made for a set like this one: for asserts. */
+#define IS_SET_OF(c, set) ((set) && (set)->motion_count == (c)->motion_count && (set)->joint_count == (c)->joint_count)
+
 /* flags of our own, above the public ones */
 #define STEPPING 64u     /* inside noh_controller_step */
 #define SYNC_TOUCHED 128u /* rates of the sync groups are to be found anew */
@@ -61,6 +64,7 @@ static layout layout_of(const noh_controller_desc *d)
 
 size_t noh_controller_size(const noh_controller_desc *desc)
 {
+    NOH_ASSERT(desc);
     return bad_desc(desc) ? 0 : layout_of(desc).bytes;
 }
 
@@ -87,6 +91,7 @@ noh_result noh_controller_init(void *memory, size_t bytes, const noh_controller_
     noh_arena arena;
     noh_result result;
     layout l;
+    NOH_ASSERT(desc && controller);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }
@@ -103,11 +108,13 @@ noh_result noh_controller_init(void *memory, size_t bytes, const noh_controller_
 
 size_t noh_controller_bytes(const noh_controller *c)
 {
+    NOH_ASSERT(c);
     return c->bytes;
 }
 
 noh_track *noh_controller_tracks(noh_controller *c)
 {
+    NOH_ASSERT(c);
     return (noh_track *)(void *)((uint8_t *)c + c->tracks_offset);
 }
 
@@ -164,6 +171,7 @@ noh_result noh_controller_start(noh_controller *c, const noh_anim_set *set, uint
     noh_track started;
     noh_track *tracks = noh_controller_tracks(c);
     noh_result result;
+    NOH_ASSERT(c && desc && IS_SET_OF(c, set));
     memset(&started, 0, sizeof started);
     if (track >= c->track_count) {
         return noh_fail(error, NOH_ERR_ARG, "track is not below track_count", track, c->track_count);
@@ -215,6 +223,7 @@ noh_result noh_controller_seek(noh_controller *c, const noh_anim_set *set, uint3
     noh_track *t;
     const noh_motion *m;
     int64_t position;
+    NOH_ASSERT(c && IS_SET_OF(c, set));
     if (track >= c->track_count) return noh_fail(error, NOH_ERR_ARG, "track is not below track_count", track, c->track_count);
     if (tick > (int64_t)1 << 43 || tick < -((int64_t)1 << 43)) return noh_fail(error, NOH_ERR_ARG, "tick is past 2^43", track, 0);
     if ((unsigned)policy > NOH_SEEK_FIRE) return noh_fail(error, NOH_ERR_ARG, "policy is not a noh_seek", track, 0);
@@ -239,6 +248,7 @@ noh_result noh_controller_seek(noh_controller *c, const noh_anim_set *set, uint3
 
 noh_result noh_controller_set_speed(noh_controller *c, uint32_t track, int32_t speed)
 {
+    NOH_ASSERT(c);
     if (track >= c->track_count || speed > NOH_SPEED_MAX || speed < -NOH_SPEED_MAX) {
         return NOH_ERR_ARG;
     }
@@ -250,6 +260,7 @@ noh_result noh_controller_set_speed(noh_controller *c, uint32_t track, int32_t s
 
 noh_result noh_controller_set_weight(noh_controller *c, uint32_t track, float weight)
 {
+    NOH_ASSERT(c);
     if (track >= c->track_count || !(weight >= 0.0f && weight <= NOH_WEIGHT_MAX)) {
         return NOH_ERR_ARG;
     }
@@ -261,6 +272,7 @@ noh_result noh_controller_set_weight(noh_controller *c, uint32_t track, float we
 
 noh_result noh_controller_set_mode(noh_controller *c, uint32_t track, noh_track_mode mode)
 {
+    NOH_ASSERT(c);
     if (track >= c->track_count || (unsigned)mode > NOH_TRACK_ON) {
         return NOH_ERR_ARG;
     }
@@ -272,6 +284,7 @@ noh_result noh_controller_set_mode(noh_controller *c, uint32_t track, noh_track_
 
 noh_result noh_controller_set_priority_blend(noh_controller *c, float blend)
 {
+    NOH_ASSERT(c);
     if (!(blend >= 0.0f && blend <= 1.0f)) {
         return NOH_ERR_ARG;
     }
@@ -282,6 +295,7 @@ noh_result noh_controller_set_priority_blend(noh_controller *c, float blend)
 
 noh_result noh_controller_set_lod(noh_controller *c, uint32_t lod, uint32_t joint_count)
 {
+    NOH_ASSERT(c);
     if (lod > 255u || joint_count > c->joint_count) {
         return NOH_ERR_ARG;
     }
@@ -296,6 +310,7 @@ noh_result noh_controller_change(noh_controller *c, const noh_anim_set *set, con
 {
     noh_change_target target = target_of(c, set);
     noh_result result = noh_changes_add(changes_of(c), c->change_count, &target, c->track_count, desc, error);
+    NOH_ASSERT(c && desc && IS_SET_OF(c, set));
     settle(c, &target);
     return result;
 }
@@ -314,6 +329,7 @@ noh_result noh_controller_cross_fade(noh_controller *c, const noh_anim_set *set,
                                      uint32_t duration_ticks, noh_curve curve, noh_error *error)
 {
     noh_change_desc d;
+    NOH_ASSERT(c && IS_SET_OF(c, set));
     if (from >= c->track_count || to >= c->track_count || from == to) return noh_fail(error, NOH_ERR_ARG, "track: from and to must be two tracks of the controller", from, c->track_count);
     if (!(weight >= 0.0f && weight <= NOH_WEIGHT_MAX)) return noh_fail(error, NOH_ERR_ARG, "weight is not in 0..NOH_WEIGHT_MAX", to, 0);
     if ((unsigned)curve > NOH_CURVE_SMOOTHSTEP) return noh_fail(error, NOH_ERR_ARG, "curve is not a noh_curve", to, 0);
@@ -382,7 +398,7 @@ static void move_track(noh_track *t, const noh_motion *m, const noh_passage *p)
 {
     int64_t rebase = noh_time_rebase(p->to, m->duration_ticks, (noh_loop)t->loop);
     t->position = p->to - rebase;
-    t->root_position -= rebase;
+    t->root_position = noh_clock_add(t->root_position, -rebase);
     t->placed = (uint8_t)(t->placed && t->rate == 0);
 }
 
@@ -469,7 +485,8 @@ uint32_t noh_controller_step(noh_controller *c, const noh_anim_set *set, uint32_
 {
     int64_t end = noh_clock_add(c->clock, ticks);
     delivery d = { NULL, NULL, NULL, NULL, 0, 0, 0 };
-    NOH_ASSERT(set->joint_count == c->joint_count && set->motion_count == c->motion_count);
+    NOH_ASSERT(c && IS_SET_OF(c, set));
+    NOH_VALIDATE((c->flags & STEPPING) || noh_controller_check(c, c->bytes, set, NULL) == NOH_OK);
     if (c->flags & STEPPING) {
         return 0; /* called by its own callback */
     }

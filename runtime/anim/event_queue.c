@@ -14,6 +14,7 @@ noh_result noh_event_queue_init(void *memory, size_t bytes, uint32_t capacity, n
     size_t need = noh_event_queue_size(capacity);
     noh_arena arena;
     noh_result result;
+    NOH_ASSERT(queue);
     if (need == 0) return noh_fail(error, NOH_ERR_ARG, "capacity is not in 1..16777216", capacity, CAPACITY_MAX);
     result = noh_arena_open(&arena, memory, bytes, need, error);
     if (result == NOH_OK) {
@@ -27,6 +28,7 @@ noh_result noh_event_queue_init(void *memory, size_t bytes, uint32_t capacity, n
 void noh_event_queue_push(void *queue, const noh_event *event)
 {
     noh_event_queue *q = (noh_event_queue *)queue;
+    NOH_ASSERT(q && event && q->count <= q->capacity);
     if (q->count == q->capacity) {
         q->lost++;
         return;
@@ -37,5 +39,6 @@ void noh_event_queue_push(void *queue, const noh_event *event)
 
 void noh_event_queue_clear(noh_event_queue *queue)
 {
+    NOH_ASSERT(queue);
     queue->count = 0;
 }

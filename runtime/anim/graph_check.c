@@ -162,6 +162,7 @@ noh_result noh_graph_check(const noh_graph *graph, const noh_anim_set *set, noh_
 {
     const char *what = bad_count(graph);
     uint32_t where = 0;
+    NOH_ASSERT(graph && set);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }
@@ -187,6 +188,7 @@ static uint32_t live_children(const noh_graph_node *n)
 uint32_t noh_graph_slots(const noh_graph *graph)
 {
     uint16_t need[NOH_GRAPH_NODES_MAX];
+    NOH_ASSERT(graph && graph->node_count > 0 && graph->node_count <= NOH_GRAPH_NODES_MAX);
     for (uint32_t i = 0; i < graph->node_count; i++) {
         const noh_graph_node *n = &graph->nodes[i];
         need[i] = 1;

@@ -29,6 +29,7 @@ noh_result noh_track_start(noh_track *track, const noh_anim_set *set, const noh_
 {
     const char *what = bad_desc(set, desc);
     const noh_motion *m;
+    NOH_ASSERT(track && set && desc);
     what = what ? what : bad_sync(set, desc);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
@@ -51,6 +52,7 @@ noh_result noh_track_start(noh_track *track, const noh_anim_set *set, const noh_
 
 void noh_track_place(noh_track *track, const noh_motion *motion, int64_t position)
 {
+    NOH_ASSERT(track && motion);
     position = noh_time_advance(position, 0, 0, motion->duration_ticks, (noh_loop)track->loop);
     track->position = position - noh_time_rebase(position, motion->duration_ticks, (noh_loop)track->loop);
     track->root_position = track->position;
@@ -60,6 +62,7 @@ void noh_track_place(noh_track *track, const noh_motion *motion, int64_t positio
 noh_passage noh_track_passage(const noh_track *track, const noh_motion *motion, int64_t ticks)
 {
     noh_passage p;
+    NOH_ASSERT(track && motion && ticks >= 0);
     p.from = track->position;
     p.to = noh_time_advance(track->position, track->rate, ticks, motion->duration_ticks, (noh_loop)track->loop);
     p.duration_ticks = motion->duration_ticks;
@@ -74,6 +77,7 @@ int64_t noh_track_next_event(const noh_track *track, const noh_anim_set *set, in
     const noh_motion *m = &set->motions[track->motion];
     noh_passage p;
     int64_t at, way, rate = track->rate < 0 ? -track->rate : track->rate;
+    NOH_ASSERT(track && set && track->motion < set->motion_count && ticks >= 0);
     if (track->mode == NOH_TRACK_OFF || rate == 0 || m->event_count == 0 || ticks == 0) {
         return 0;
     }
@@ -90,12 +94,16 @@ int64_t noh_track_next_event(const noh_track *track, const noh_anim_set *set, in
 int noh_track_ended(const noh_track *track, const noh_motion *motion)
 {
     int64_t end = track->rate < 0 ? 0 : noh_position_of(motion->duration_ticks);
+    NOH_ASSERT(track && motion);
     return track->loop == NOH_LOOP_ONCE && track->position == end && !track->placed;
 }
 
 uint32_t noh_track_clip_tick(const noh_track *track, const noh_motion *motion, int64_t ago)
 {
     noh_loop loop = (noh_loop)track->loop;
-    int64_t position = noh_time_advance(track->position, -track->rate, ago, motion->duration_ticks, loop);
+    const int64_t most = ((int64_t)1 << 61) / (ago > 0 ? ago : 1); /* a seek may have gone billions of passes in its tick */
+    int64_t rate = track->rate > most ? most : track->rate < -most ? -most : track->rate;
+    int64_t position = noh_time_advance(track->position, -rate, ago, motion->duration_ticks, loop);
+    NOH_ASSERT(track && motion);
     return (uint32_t)(noh_time_clip(position, motion->duration_ticks, loop) / 65536);
 }

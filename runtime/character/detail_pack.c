@@ -71,6 +71,7 @@ size_t noh_detail_pack_size(const noh_detail_pack_desc *desc)
     noh_arena arena = noh_arena_measure();
     source s;
     parts p;
+    NOH_ASSERT(desc);
     if (resolve(desc, &s)) {
         return 0;
     }
@@ -154,6 +155,7 @@ static float level_error(const noh_mesh_header *h)
 /* Errors are those against the full mesh, whatever the finest level at hand is. */
 void noh_detail_mesh_levels(const noh_mesh *mesh, noh_mesh_level *levels, noh_detail_table *table)
 {
+    NOH_ASSERT(mesh && levels && table && mesh->header->level_count <= NOH_DETAIL_LEVELS_MAX);
     for (uint32_t k = 0; k < mesh->header->level_count; k++) {
         const noh_mesh level = noh_mesh_at_level(mesh, k);
         levels[k].vertex_count = level.header->vertex_count;
@@ -168,6 +170,7 @@ void noh_detail_mesh_levels(const noh_mesh *mesh, noh_mesh_level *levels, noh_de
 
 void noh_detail_target_reach(const noh_mesh *mesh, float *reach_m)
 {
+    NOH_ASSERT(mesh && (reach_m || !mesh->header->target_count));
     for (uint32_t t = 0; t < mesh->header->target_count; t++) {
         reach_m[t] = mesh->targets[t].max_displacement * mesh->header->world_scale;
     }
@@ -237,6 +240,7 @@ noh_result noh_detail_pack_init(void *memory, size_t bytes, const noh_detail_pac
     source s;
     parts p;
     const char *what = resolve(desc, &s);
+    NOH_ASSERT(desc && detail);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }

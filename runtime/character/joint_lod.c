@@ -26,6 +26,7 @@ size_t noh_joint_lod_measure_size(const noh_time_probe *probe)
 {
     noh_arena arena = noh_arena_measure();
     work w;
+    NOH_ASSERT(probe && probe->set);
     carve(&arena, probe->set, &w);
     return arena.used;
 }
@@ -68,6 +69,7 @@ noh_result noh_joint_lod_measure(void *memory, size_t bytes, const noh_time_prob
     uint32_t duration;
     work w;
     noh_result result;
+    NOH_ASSERT(probe && counts && error_m);
     if (what || bad_counts(probe->skeleton, counts, level_count)) {
         return noh_fail(error, NOH_ERR_ARG, what ? what : "counts must fall, and hold all joints that have no parent", motion, 0);
     }

@@ -66,6 +66,7 @@ size_t noh_level_pools_size(const noh_level_pools_desc *desc)
     noh_arena arena = noh_arena_measure();
     noh_level_pools parts;
     uint32_t slots;
+    NOH_ASSERT(desc);
     if (bad_field(desc, &slots)) {
         return 0;
     }
@@ -95,6 +96,7 @@ noh_result noh_level_pools_init(void *memory, size_t bytes, const noh_level_pool
     noh_level_pools parts, *p;
     uint32_t slots = 0;
     const char *what = bad_field(desc, &slots);
+    NOH_ASSERT(desc && pools);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }
@@ -118,6 +120,7 @@ noh_result noh_level_pools_init(void *memory, size_t bytes, const noh_level_pool
 
 void noh_level_pools_begin(noh_level_pools *p)
 {
+    NOH_ASSERT(p);
     for (uint32_t i = 0; i < p->instance_count; i++) {
         p->places[i].next = ASKS_NOT;
     }
@@ -295,5 +298,6 @@ noh_level_slot noh_level_pools_slot(const noh_level_pools *p, uint32_t instance)
 
 const noh_level_pools_stats *noh_level_pools_stats_of(const noh_level_pools *p)
 {
+    NOH_ASSERT(p);
     return &p->stats;
 }

@@ -6,6 +6,7 @@ size_t noh_time_lod_measure_size(const noh_time_probe *probe)
 {
     noh_arena arena = noh_arena_measure();
     noh_rate_work w;
+    NOH_ASSERT(probe && probe->set);
     noh_rate_carve(&arena, probe->set, &w);
     return arena.used;
 }
@@ -35,6 +36,7 @@ noh_result noh_time_lod_measure(void *memory, size_t bytes, const noh_time_probe
     noh_result result;
     noh_arena arena;
     noh_rate_work w;
+    NOH_ASSERT(probe && error_m);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, motion, 0);
     }

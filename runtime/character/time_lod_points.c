@@ -20,6 +20,7 @@ size_t noh_time_points_size(const noh_time_probe *probe)
 {
     noh_arena arena = noh_arena_measure();
     work w;
+    NOH_ASSERT(probe && probe->set);
     carve(&arena, probe->set, &w);
     return arena.used;
 }
@@ -77,6 +78,7 @@ noh_result noh_time_points_measure(void *memory, size_t bytes, const noh_time_pr
     noh_arena arena;
     noh_result result;
     work w;
+    NOH_ASSERT(probe && points && error_m);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, where, 0);
     }

@@ -366,6 +366,7 @@ static void test_what_moves_no_joints_does_not_hold_the_root(void **state)
             noh_root_pose alone, got;
             stage_open(&g, NOH_ROOT_GROUND);
             g.w.set.mask_count = 1;
+            g.c->mask_count = 1; /* as if it had been made for this set */
             g.w.set.masks = no_joints;
             g.w.motion[1].flags = mask ? 0 : NOH_MOTION_NO_JOINTS;
             face.mask = mask;
