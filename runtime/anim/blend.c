@@ -11,6 +11,8 @@ static float masked(const uint8_t *mask, uint32_t i, float weight)
 
 void noh_blend_begin(noh_blend *blend)
 {
+    NOH_ASSERT(blend && (!blend->joint_count || (blend->sum && blend->weights)));
+    NOH_ASSERT(!blend->float_count || (blend->float_sum && blend->float_weights));
     blend->covers = 0;
     memset(blend->sum, 0, blend->joint_count * sizeof *blend->sum);
     memset(blend->weights, 0, blend->joint_count * sizeof *blend->weights);
@@ -34,6 +36,7 @@ static void begin_totals(const float *below, uint32_t count, float *totals)
 
 void noh_blend_begin_over(noh_blend *blend)
 {
+    NOH_ASSERT(blend && (!blend->joint_count || blend->totals) && (!blend->float_count || blend->float_totals));
     begin_totals(blend->weights, blend->joint_count, blend->totals);
     begin_totals(blend->float_weights, blend->float_count, blend->float_totals);
     noh_blend_begin(blend);
@@ -62,6 +65,7 @@ static void add_totals(const uint8_t *mask, uint32_t count, float weight, float 
 
 void noh_blend_add(noh_blend *blend, const noh_transform *pose, const float *floats, float weight, noh_mask_view mask)
 {
+    NOH_ASSERT(blend && weight > 0.0f);
     add_totals(mask.joints, pose && blend->covers ? blend->joint_count : 0, weight, blend->totals);
     add_totals(mask.floats, floats && blend->covers ? blend->float_count : 0, weight, blend->float_totals);
     for (uint32_t i = 0; pose && i < blend->joint_count; i++) {
@@ -91,6 +95,7 @@ static void divide_joint(const noh_transform *sum, float weight, noh_transform *
 
 void noh_blend_finish(const noh_blend *blend, const noh_transform *bind_pose, const float *defaults, noh_transform *pose, float *floats)
 {
+    NOH_ASSERT(blend && (!blend->joint_count || (bind_pose && pose)) && (!blend->float_count || floats));
     for (uint32_t i = 0; i < blend->joint_count; i++) {
         if (blend->weights[i] > 0.0f) {
             divide_joint(&blend->sum[i], blend->weights[i], &pose[i]);
@@ -122,6 +127,8 @@ static float cover_of(float amount, float weight, float total)
 
 void noh_blend_cover(const noh_blend *blend, float amount, noh_transform *pose, float *floats)
 {
+    NOH_ASSERT(blend && blend->covers && amount >= 0.0f && amount <= 1.0f);
+    NOH_ASSERT((!blend->joint_count || pose) && (!blend->float_count || floats));
     for (uint32_t i = 0; i < blend->joint_count; i++) {
         if (blend->weights[i] > 0.0f) {
             noh_transform over;
@@ -139,6 +146,7 @@ void noh_blend_cover(const noh_blend *blend, float amount, noh_transform *pose, 
 
 void noh_pose_mix(uint32_t joint_count, const noh_transform *a, const noh_transform *b, float t, const uint8_t *mask, noh_transform *out)
 {
+    NOH_ASSERT(!joint_count || (a && b && out));
     for (uint32_t i = 0; i < joint_count; i++) {
         mix_joint(&a[i], &b[i], masked(mask, i, t), &out[i]);
     }
@@ -146,6 +154,7 @@ void noh_pose_mix(uint32_t joint_count, const noh_transform *a, const noh_transf
 
 void noh_floats_mix(uint32_t count, const float *a, const float *b, float t, const uint8_t *mask, float *out)
 {
+    NOH_ASSERT(!count || (a && b && out));
     for (uint32_t i = 0; i < count; i++) {
         float w = masked(mask, i, t);
         out[i] = a[i] * (1.0f - w) + b[i] * w;
@@ -154,6 +163,8 @@ void noh_floats_mix(uint32_t count, const float *a, const float *b, float t, con
 
 void noh_pose_difference(uint32_t joint_count, const noh_transform *reference, const noh_transform *pose, noh_transform *out)
 {
+    NOH_ASSERT(!joint_count || (reference && pose && out));
+    NOH_ASSERT(reference != out);
     for (uint32_t j = 0; j < joint_count; j++) {
         float inverse[4];
         noh_quat_conjugate(reference[j].rotation, inverse);
@@ -169,6 +180,7 @@ void noh_pose_difference(uint32_t joint_count, const noh_transform *reference, c
 void noh_pose_add(uint32_t joint_count, const noh_transform *difference, float weight, const uint8_t *mask, noh_transform *pose)
 {
     static const float identity[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
+    NOH_ASSERT(!joint_count || (difference && pose));
     for (uint32_t j = 0; j < joint_count; j++) {
         float w = masked(mask, j, weight), turn[4];
         noh_quat_nlerp(identity, difference[j].rotation, w, turn);
@@ -182,6 +194,7 @@ void noh_pose_add(uint32_t joint_count, const noh_transform *difference, float w
 
 void noh_floats_add(uint32_t count, const float *difference, float weight, const uint8_t *mask, float *floats)
 {
+    NOH_ASSERT(!count || (difference && floats));
     for (uint32_t i = 0; i < count; i++) {
         floats[i] += masked(mask, i, weight) * difference[i];
     }

@@ -17,6 +17,7 @@
 #include <stdint.h>
 
 #include "anim/pose.h"
+#include "base/assert.h"
 
 /* Sums in the making. Borrowed arrays; joint_count may be fewer than they hold. */
 typedef struct noh_blend {

@@ -7,6 +7,9 @@
 #include "anim/sync.h"
 #include "base/arena.h"
 
+/* Whether a controller was made for a set like this one: for asserts. */
+#define IS_SET_OF(c, set) ((set) && (set)->motion_count == (c)->motion_count && (set)->joint_count == (c)->joint_count)
+
 /* flags of our own, above the public ones */
 #define STEPPING 64u     /* inside noh_controller_step */
 #define SYNC_TOUCHED 128u /* rates of the sync groups are to be found anew */
@@ -29,11 +32,11 @@ static uint32_t change_count_of(const noh_controller_desc *d)
 
 static const char *bad_desc(const noh_controller_desc *d)
 {
-    if (!d->set || d->set->joint_count > NOH_JOINTS_MAX || d->set->float_count > NOH_FLOATS_MAX) return "set";
-    if (d->set->joint_count == 0 && d->set->float_count == 0) return "set";
-    if (d->track_count > NOH_TRACKS_MAX) return "track_count";
-    if (d->change_count > NOH_CHANGES_MAX) return "change_count";
-    if (d->flags & ~NOH_CONTROLLER_INERTIAL) return "flags";
+    if (!d->set || d->set->joint_count > NOH_JOINTS_MAX || d->set->float_count > NOH_FLOATS_MAX) return "set: NULL, or without joints and floats, or over NOH_JOINTS_MAX or NOH_FLOATS_MAX";
+    if (d->set->joint_count == 0 && d->set->float_count == 0) return "set: NULL, or without joints and floats, or over NOH_JOINTS_MAX or NOH_FLOATS_MAX";
+    if (d->track_count > NOH_TRACKS_MAX) return "track_count is above NOH_TRACKS_MAX";
+    if (d->change_count > NOH_CHANGES_MAX) return "change_count is above NOH_CHANGES_MAX";
+    if (d->flags & ~NOH_CONTROLLER_INERTIAL) return "flags has bits other than NOH_CONTROLLER_INERTIAL";
     return NULL;
 }
 
@@ -61,6 +64,7 @@ static layout layout_of(const noh_controller_desc *d)
 
 size_t noh_controller_size(const noh_controller_desc *desc)
 {
+    NOH_ASSERT(desc);
     return bad_desc(desc) ? 0 : layout_of(desc).bytes;
 }
 
@@ -84,16 +88,17 @@ static void fill_head(noh_controller *c, const noh_controller_desc *d, layout l)
 noh_result noh_controller_init(void *memory, size_t bytes, const noh_controller_desc *desc, noh_controller **controller, noh_error *error)
 {
     const char *what = bad_desc(desc);
+    noh_arena arena;
+    noh_result result;
     layout l;
+    NOH_ASSERT(desc && controller);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }
     l = layout_of(desc);
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for a controller is NULL or not 16-byte aligned", 0, l.bytes);
-    }
-    if (bytes < l.bytes) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory for a controller is too small", bytes, l.bytes);
+    result = noh_arena_open(&arena, memory, bytes, l.bytes, error);
+    if (result != NOH_OK) {
+        return result;
     }
     memset(memory, 0, l.bytes);
     fill_head((noh_controller *)memory, desc, l);
@@ -103,11 +108,13 @@ noh_result noh_controller_init(void *memory, size_t bytes, const noh_controller_
 
 size_t noh_controller_bytes(const noh_controller *c)
 {
+    NOH_ASSERT(c);
     return c->bytes;
 }
 
 noh_track *noh_controller_tracks(noh_controller *c)
 {
+    NOH_ASSERT(c);
     return (noh_track *)(void *)((uint8_t *)c + c->tracks_offset);
 }
 
@@ -164,9 +171,10 @@ noh_result noh_controller_start(noh_controller *c, const noh_anim_set *set, uint
     noh_track started;
     noh_track *tracks = noh_controller_tracks(c);
     noh_result result;
+    NOH_ASSERT(c && desc && IS_SET_OF(c, set));
     memset(&started, 0, sizeof started);
     if (track >= c->track_count) {
-        return noh_fail(error, NOH_ERR_ARG, "track", track, c->track_count);
+        return noh_fail(error, NOH_ERR_ARG, "track is not below track_count", track, c->track_count);
     }
     result = noh_track_start(&started, set, desc, error);
     if (result != NOH_OK) {
@@ -215,16 +223,17 @@ noh_result noh_controller_seek(noh_controller *c, const noh_anim_set *set, uint3
     noh_track *t;
     const noh_motion *m;
     int64_t position;
-    if (track >= c->track_count) return noh_fail(error, NOH_ERR_ARG, "track", track, c->track_count);
-    if (tick > (int64_t)1 << 43 || tick < -((int64_t)1 << 43)) return noh_fail(error, NOH_ERR_ARG, "tick", track, 0);
-    if ((unsigned)policy > NOH_SEEK_FIRE) return noh_fail(error, NOH_ERR_ARG, "policy", track, 0);
+    NOH_ASSERT(c && IS_SET_OF(c, set));
+    if (track >= c->track_count) return noh_fail(error, NOH_ERR_ARG, "track is not below track_count", track, c->track_count);
+    if (tick > (int64_t)1 << 43 || tick < -((int64_t)1 << 43)) return noh_fail(error, NOH_ERR_ARG, "tick is past 2^43", track, 0);
+    if ((unsigned)policy > NOH_SEEK_FIRE) return noh_fail(error, NOH_ERR_ARG, "policy is not a noh_seek", track, 0);
     t = &noh_controller_tracks(c)[track];
     m = &set->motions[t->motion];
     position = seek_position(t, m, tick);
     if (policy == NOH_SEEK_FIRE) {
         noh_change_target target = target_of(c, set);
         noh_result result;
-        if (t->sync_group) return noh_fail(error, NOH_ERR_ARG, "track is synchronised", track, 0);
+        if (t->sync_group) return noh_fail(error, NOH_ERR_ARG, "track is synchronised: its group moves it", track, 0);
         result = noh_changes_jump(changes_of(c), c->change_count, &target, track, position, error);
         settle(c, &target);
         return result;
@@ -239,6 +248,7 @@ noh_result noh_controller_seek(noh_controller *c, const noh_anim_set *set, uint3
 
 noh_result noh_controller_set_speed(noh_controller *c, uint32_t track, int32_t speed)
 {
+    NOH_ASSERT(c);
     if (track >= c->track_count || speed > NOH_SPEED_MAX || speed < -NOH_SPEED_MAX) {
         return NOH_ERR_ARG;
     }
@@ -250,6 +260,7 @@ noh_result noh_controller_set_speed(noh_controller *c, uint32_t track, int32_t s
 
 noh_result noh_controller_set_weight(noh_controller *c, uint32_t track, float weight)
 {
+    NOH_ASSERT(c);
     if (track >= c->track_count || !(weight >= 0.0f && weight <= NOH_WEIGHT_MAX)) {
         return NOH_ERR_ARG;
     }
@@ -261,6 +272,7 @@ noh_result noh_controller_set_weight(noh_controller *c, uint32_t track, float we
 
 noh_result noh_controller_set_mode(noh_controller *c, uint32_t track, noh_track_mode mode)
 {
+    NOH_ASSERT(c);
     if (track >= c->track_count || (unsigned)mode > NOH_TRACK_ON) {
         return NOH_ERR_ARG;
     }
@@ -272,6 +284,7 @@ noh_result noh_controller_set_mode(noh_controller *c, uint32_t track, noh_track_
 
 noh_result noh_controller_set_priority_blend(noh_controller *c, float blend)
 {
+    NOH_ASSERT(c);
     if (!(blend >= 0.0f && blend <= 1.0f)) {
         return NOH_ERR_ARG;
     }
@@ -282,6 +295,7 @@ noh_result noh_controller_set_priority_blend(noh_controller *c, float blend)
 
 noh_result noh_controller_set_lod(noh_controller *c, uint32_t lod, uint32_t joint_count)
 {
+    NOH_ASSERT(c);
     if (lod > 255u || joint_count > c->joint_count) {
         return NOH_ERR_ARG;
     }
@@ -296,6 +310,7 @@ noh_result noh_controller_change(noh_controller *c, const noh_anim_set *set, con
 {
     noh_change_target target = target_of(c, set);
     noh_result result = noh_changes_add(changes_of(c), c->change_count, &target, c->track_count, desc, error);
+    NOH_ASSERT(c && desc && IS_SET_OF(c, set));
     settle(c, &target);
     return result;
 }
@@ -314,9 +329,10 @@ noh_result noh_controller_cross_fade(noh_controller *c, const noh_anim_set *set,
                                      uint32_t duration_ticks, noh_curve curve, noh_error *error)
 {
     noh_change_desc d;
-    if (from >= c->track_count || to >= c->track_count || from == to) return noh_fail(error, NOH_ERR_ARG, "track", from, c->track_count);
-    if (!(weight >= 0.0f && weight <= NOH_WEIGHT_MAX)) return noh_fail(error, NOH_ERR_ARG, "weight", to, 0);
-    if ((unsigned)curve > NOH_CURVE_SMOOTHSTEP) return noh_fail(error, NOH_ERR_ARG, "curve", to, 0);
+    NOH_ASSERT(c && IS_SET_OF(c, set));
+    if (from >= c->track_count || to >= c->track_count || from == to) return noh_fail(error, NOH_ERR_ARG, "track: from and to must be two tracks of the controller", from, c->track_count);
+    if (!(weight >= 0.0f && weight <= NOH_WEIGHT_MAX)) return noh_fail(error, NOH_ERR_ARG, "weight is not in 0..NOH_WEIGHT_MAX", to, 0);
+    if ((unsigned)curve > NOH_CURVE_SMOOTHSTEP) return noh_fail(error, NOH_ERR_ARG, "curve is not a noh_curve", to, 0);
     if (free_changes(c) < 3) return noh_fail(error, NOH_ERR_LIMIT, "the table of changes is full", c->change_count, 3);
     memset(&d, 0, sizeof d);
     d.kind = NOH_CHANGE_WEIGHT;
@@ -382,7 +398,7 @@ static void move_track(noh_track *t, const noh_motion *m, const noh_passage *p)
 {
     int64_t rebase = noh_time_rebase(p->to, m->duration_ticks, (noh_loop)t->loop);
     t->position = p->to - rebase;
-    t->root_position -= rebase;
+    t->root_position = noh_clock_add(t->root_position, -rebase);
     t->placed = (uint8_t)(t->placed && t->rate == 0);
 }
 
@@ -469,7 +485,8 @@ uint32_t noh_controller_step(noh_controller *c, const noh_anim_set *set, uint32_
 {
     int64_t end = noh_clock_add(c->clock, ticks);
     delivery d = { NULL, NULL, NULL, NULL, 0, 0, 0 };
-    NOH_ASSERT(set->joint_count == c->joint_count && set->motion_count == c->motion_count);
+    NOH_ASSERT(c && IS_SET_OF(c, set));
+    NOH_VALIDATE((c->flags & STEPPING) || noh_controller_check(c, c->bytes, set, NULL) == NOH_OK);
     if (c->flags & STEPPING) {
         return 0; /* called by its own callback */
     }

@@ -79,6 +79,11 @@ noh_result noh_controller_init(void *memory, size_t bytes, const noh_controller_
 /* What to copy to clone or save it. The copy must be 16-byte aligned too. */
 size_t noh_controller_bytes(const noh_controller *c);
 
+/* Check a block that comes from outside, as out of a saved game, before anything else is done with it: one that passes
+ * cannot make a call overrun, overflow or hang. The offsets of inertia are not looked at; a pose may then be nonsense.
+ * errors  ARG memory NULL or not 16-byte aligned; DATA not a controller for this set (where: the track or change) */
+noh_result noh_controller_check(const void *memory, size_t bytes, const noh_anim_set *set, noh_error *error);
+
 /* ---- tracks ---- */
 
 noh_track *noh_controller_tracks(noh_controller *c);             /* [track_count] */

@@ -110,6 +110,7 @@ static int stays_off(const noh_controller *c, uint32_t track)
 uint32_t noh_controller_events_max(const noh_controller *c, const noh_anim_set *set, uint32_t ticks)
 {
     uint64_t most = 0;
+    NOH_ASSERT(c && set && set->motion_count == c->motion_count);
     for (uint32_t i = 0; ticks && i < c->track_count; i++) {
         const noh_track *t = noh_controller_track(c, i);
         const noh_motion *m = &set->motions[t->motion];

@@ -40,22 +40,20 @@ size_t noh_pose_scratch_size(const noh_anim_set *set, int inertial)
 {
     noh_arena arena = noh_arena_measure();
     noh_pose_scratch s;
+    NOH_ASSERT(set);
     carve(&arena, set, inertial, &s);
     return arena.used;
 }
 
 noh_result noh_pose_scratch_init(void *memory, size_t bytes, const noh_anim_set *set, int inertial, noh_pose_scratch *scratch, noh_error *error)
 {
-    size_t need = noh_pose_scratch_size(set, inertial);
-    noh_arena arena = noh_arena_over(memory, bytes);
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for a pose scratch is NULL or not 16-byte aligned", 0, need);
+    noh_arena arena;
+    noh_result result = noh_arena_open(&arena, memory, bytes, noh_pose_scratch_size(set, inertial), error);
+    NOH_ASSERT(set && scratch);
+    if (result == NOH_OK) {
+        carve(&arena, set, inertial, scratch);
     }
-    if (bytes < need) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory for a pose scratch is too small", bytes, need);
-    }
-    carve(&arena, set, inertial, scratch);
-    return NOH_OK;
+    return result;
 }
 
 /* ---- the pose ---- */
@@ -187,6 +185,7 @@ void noh_controller_inertia_add(const noh_controller *c, int64_t ago, noh_transf
     int64_t elapsed = noh_clock_since(noh_clock_add(c->clock, -ago), c->inertia_start);
     float elapsed_s = (float)(elapsed < 0 ? 0 : elapsed) / (float)NOH_TICKS_PER_SECOND;
     float duration_s = (float)c->inertia_ticks / (float)NOH_TICKS_PER_SECOND;
+    NOH_ASSERT(c && (!c->inertia_ticks || c->inertia_offset));
     if (c->inertia_ticks && elapsed < (int64_t)c->inertia_ticks) {
         noh_inertia_apply(c->lod_joint_count, (const noh_inertia_joint *)at(c, c->inertia_offset), elapsed_s, duration_s, pose);
         noh_inertia_apply_floats(c->float_count, (const noh_inertia_float *)at(c, c->inertia_floats_offset), elapsed_s, duration_s, floats);
@@ -225,6 +224,8 @@ static void evaluate(const noh_controller *c, const noh_anim_set *set, noh_pose_
 
 void noh_controller_pose(const noh_controller *c, const noh_anim_set *set, noh_pose_scratch *scratch, noh_transform *pose, float *floats)
 {
+    NOH_ASSERT(c && set && scratch && (!set->joint_count || pose) && (!set->float_count || floats));
+    NOH_VALIDATE(noh_controller_check(c, c->bytes, set, NULL) == NOH_OK);
     evaluate(c, set, scratch, 0, 1, pose, floats);
 }
 
@@ -240,6 +241,7 @@ static const char *bad_transition(const noh_controller *c, const noh_pose_scratc
 noh_result noh_controller_inertia_capture(const noh_controller *c, const noh_anim_set *set, noh_pose_scratch *scratch, noh_error *error)
 {
     const char *what = bad_transition(c, scratch);
+    NOH_ASSERT(c && set && scratch);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }
@@ -252,6 +254,7 @@ void noh_controller_inertia_store(noh_controller *c, const noh_pose_scratch *scr
 {
     uint8_t *base = (uint8_t *)c;
     float before_s = (float)NOH_INERTIA_BEFORE_TICKS / (float)NOH_TICKS_PER_SECOND;
+    NOH_ASSERT(c && scratch && c->inertia_offset && scratch->captured[0] && duration_ticks);
     noh_inertia_begin(c->joint_count, scratch->captured[0], scratch->captured[1], scratch->captured[2], scratch->captured[3], before_s,
                       (noh_inertia_joint *)(void *)(base + c->inertia_offset));
     noh_inertia_begin_floats(c->float_count, scratch->float_captured[0], scratch->float_captured[1], scratch->float_captured[2],
@@ -264,6 +267,7 @@ noh_result noh_controller_inertia_begin(noh_controller *c, const noh_anim_set *s
                                         noh_error *error)
 {
     const char *what = bad_transition(c, scratch);
+    NOH_ASSERT(c && set && scratch);
     what = what ? what : duration_ticks == 0 ? "duration_ticks" : NULL;
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
@@ -342,6 +346,7 @@ noh_root_pose noh_controller_root_motion(noh_controller *c, const noh_anim_set *
     noh_root_pose out = { { 0.0, 0.0, 0.0 }, 0, 0 }, low, high;
     root_sum low_sum, high_sum, both;
     double cover;
+    NOH_ASSERT(c && set && set->motion_count == c->motion_count);
     if (!set->roots) {
         return out;
     }

@@ -106,6 +106,7 @@ int noh_events_first(const noh_event_key *keys, uint32_t count, const noh_passag
     span s = passage_span(passage);
     legs l = passage_legs(passage, s);
     leg g;
+    NOH_ASSERT(passage && position_tick && (keys || !count));
     /* every second whole leg holds every key, so this ends after three legs at most */
     while (count && next_leg(passage, s, &l, &g)) {
         uint32_t begin = keys_before(keys, count, g.low), end = keys_before(keys, count, g.high + 1);
@@ -148,6 +149,7 @@ uint32_t noh_events_pass(const noh_event_key *keys, uint32_t count, const noh_pa
     span s = passage_span(passage);
     legs l = passage_legs(passage, s);
     leg g;
+    NOH_ASSERT(passage && fn && (keys || !count));
     while (count && passed < limit && next_leg(passage, s, &l, &g)) {
         uint32_t begin = keys_before(keys, count, g.low), end = keys_before(keys, count, g.high + 1);
         passed += (g.descending ? pass_descending : pass_ascending)(keys, begin, end, &g, limit - passed, fn, user);
@@ -174,6 +176,7 @@ uint32_t noh_events_max(uint32_t key_count, uint32_t duration_ticks, noh_loop lo
 uint32_t noh_anim_set_events_max(const noh_anim_set *set, uint32_t track_count, uint32_t speed_max, uint32_t step_ticks_max)
 {
     uint64_t travel = (uint64_t)speed_max * step_ticks_max, most = 0;
+    NOH_ASSERT(set);
     for (uint32_t i = 0; i < set->motion_count; i++) {
         const noh_motion *m = &set->motions[i];
         /* the controller may play it in any mode: the worst of them */

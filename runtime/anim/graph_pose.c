@@ -28,6 +28,7 @@ static size_t pose_bytes(const noh_anim_set *set)
 size_t noh_graph_scratch_size(const noh_graph *graph, const noh_anim_set *set)
 {
     noh_arena arena = noh_arena_measure();
+    NOH_ASSERT(graph && set);
     (void)noh_arena_carve(&arena, noh_pose_scratch_size(set, is_inertial(graph)), 16);
     for (uint32_t i = 0; i < noh_graph_slots(graph); i++) {
         (void)noh_arena_carve(&arena, pose_bytes(set), 4);
@@ -38,14 +39,12 @@ size_t noh_graph_scratch_size(const noh_graph *graph, const noh_anim_set *set)
 
 noh_result noh_graph_scratch_init(void *memory, size_t bytes, const noh_graph *graph, const noh_anim_set *set, noh_graph_scratch *scratch, noh_error *error)
 {
-    size_t need = noh_graph_scratch_size(graph, set), pose_need = noh_pose_scratch_size(set, is_inertial(graph));
-    noh_arena arena = noh_arena_over(memory, bytes);
-    noh_result result;
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for a graph scratch is NULL or not 16-byte aligned", 0, need);
-    }
-    if (bytes < need) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory for a graph scratch is too small", bytes, need);
+    size_t pose_need = noh_pose_scratch_size(set, is_inertial(graph));
+    noh_arena arena;
+    noh_result result = noh_arena_open(&arena, memory, bytes, noh_graph_scratch_size(graph, set), error);
+    NOH_ASSERT(graph && set && scratch);
+    if (result != NOH_OK) {
+        return result;
     }
     memset(scratch, 0, sizeof *scratch);
     result = noh_pose_scratch_init(noh_arena_carve(&arena, pose_need, 16), pose_need, set, is_inertial(graph), &scratch->pose, error);
@@ -257,6 +256,8 @@ static void begin_inertia(noh_graph_state *state, const noh_graph *graph, const 
 
 void noh_graph_pose(noh_graph_state *state, const noh_graph *graph, const noh_anim_set *set, noh_graph_scratch *scratch, noh_transform *pose, float *floats)
 {
+    NOH_ASSERT(state && graph && set && scratch && (!set->joint_count || pose) && (!set->float_count || floats));
+    NOH_VALIDATE(noh_graph_check(graph, set, NULL) == NOH_OK);
     NOH_ASSERT(state->node_count == graph->node_count);
     if (state->inertia_ticks) {
         begin_inertia(state, graph, set, scratch);

@@ -7,11 +7,13 @@
 uint32_t noh_rate_period(noh_rate rate)
 {
     static const uint32_t periods[NOH_RATE_COUNT] = { 0, NOH_TICKS_PER_SECOND / 30u, NOH_TICKS_PER_SECOND / 15u, NOH_TICKS_PER_SECOND / 8u };
+    NOH_ASSERT((unsigned)rate < NOH_RATE_COUNT);
     return periods[rate];
 }
 
 void noh_time_lod_init(noh_time_lod *t, uint32_t instance)
 {
+    NOH_ASSERT(t);
     memset(t, 0, sizeof *t);
     t->instance = instance;
 }
@@ -27,6 +29,7 @@ static int64_t next_slot(uint32_t instance, int64_t clock, uint32_t period)
 void noh_time_lod_frame(noh_time_lod *t, int64_t clock, noh_rate rate)
 {
     int64_t ticks = noh_clock_since(clock, t->clock);
+    NOH_ASSERT(t && (unsigned)rate < NOH_RATE_COUNT);
     t->frame_ticks = ticks < 0 ? 0 : ticks > UINT32_MAX ? UINT32_MAX : (uint32_t)ticks;
     t->clock = clock;
     t->wanted = (uint8_t)rate;
@@ -38,6 +41,7 @@ void noh_time_lod_frame(noh_time_lod *t, int64_t clock, noh_rate rate)
 noh_due noh_time_lod_due(const noh_time_lod *t)
 {
     int unseen = t->frame_ticks > NOH_TIME_LOD_UNSEEN_TICKS;
+    NOH_ASSERT(t);
     if (!t->posed || (unseen && t->clock > t->to_clock)) {
         return NOH_DUE_AT_ONCE;
     }
@@ -47,6 +51,7 @@ noh_due noh_time_lod_due(const noh_time_lod *t)
 uint32_t noh_time_lod_late(const noh_time_lod *t)
 {
     int64_t late = noh_clock_since(t->clock, t->due_clock);
+    NOH_ASSERT(t);
     return late < 0 || !t->posed ? 0 : late > UINT32_MAX ? UINT32_MAX : (uint32_t)late;
 }
 
@@ -92,6 +97,7 @@ noh_time_update noh_time_lod_update(noh_time_lod *t)
 {
     uint32_t period = noh_rate_period((noh_rate)t->wanted);
     int exact = period == 0 || t->frame_ticks >= period || noh_time_lod_due(t) == NOH_DUE_AT_ONCE;
+    NOH_ASSERT(t->to_slot < 2u);
     t->posed = 1;
     t->running = t->wanted;
     return exact ? update_exactly(t) : update_ahead(t, period);
@@ -100,11 +106,13 @@ noh_time_update noh_time_lod_update(noh_time_lod *t)
 float noh_time_lod_fraction(const noh_time_lod *t)
 {
     int64_t since = noh_clock_since(t->clock, t->from_clock), span = noh_clock_since(t->to_clock, t->from_clock);
+    NOH_ASSERT(t);
     return since >= span ? 1.0f : since > 0 ? (float)since / (float)span : 0.0f;
 }
 
 void noh_time_lod_wake(noh_time_lod *t)
 {
+    NOH_ASSERT(t);
     t->due_clock = t->clock < t->due_clock ? t->clock : t->due_clock;
 }
 
@@ -119,6 +127,7 @@ static float haste(const noh_track *track)
 void noh_time_lod_error(const noh_controller *c, const float *motion_error_m, float *error_m)
 {
     float added[NOH_RATE_COUNT] = { 0.0f };
+    NOH_ASSERT(c && motion_error_m && error_m);
     for (int r = 0; r < NOH_RATE_COUNT; r++) {
         error_m[r] = 0.0f;
     }

@@ -196,9 +196,9 @@ static void impossible_descs_are_refused(void **state)
     assert_int_equal(noh_character_size(&d), 0);
     assert_int_equal(noh_character_scratch_size(&d), 0);
     assert_int_equal(noh_character_init(g.memory, g.size, &d, &ch, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, "track_count");
+    assert_int_equal(strncmp(error.what, "track_count", strlen("track_count")), 0);
     assert_int_equal(noh_character_scratch_init(g.memory, g.size, &d, &scratch, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, "track_count");
+    assert_int_equal(strncmp(error.what, "track_count", strlen("track_count")), 0);
     stage_close(&g);
 }
 

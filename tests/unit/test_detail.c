@@ -45,7 +45,7 @@ static void bad_table(noh_detail_table t, noh_result result, const char *what)
 {
     noh_error error;
     assert_int_equal(noh_detail_table_check(&t, &error), result);
-    assert_string_equal(error.what, what);
+    assert_int_equal(strncmp(error.what, what, strlen(what)), 0);
 }
 
 static void table_fields_broken_in_turn(void **state)
@@ -80,7 +80,7 @@ static void bad_settings(noh_detail_settings s, const char *what)
 {
     noh_error error;
     assert_int_equal(noh_detail_settings_check(&s, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, what);
+    assert_int_equal(strncmp(error.what, what, strlen(what)), 0);
 }
 
 static void settings_fields_broken_in_turn(void **state)

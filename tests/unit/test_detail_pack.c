@@ -379,7 +379,7 @@ static void expect_bad(const noh_detail_pack_desc *desc, const char *field)
     noh_detail_pack detail;
     assert_int_equal(noh_detail_pack_size(desc), 0);
     assert_int_equal(noh_detail_pack_init(memory, sizeof memory, desc, &detail, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, field);
+    assert_int_equal(strncmp(error.what, field, strlen(field)), 0);
 }
 
 static void bad_descs_are_named(void **state)

@@ -739,11 +739,11 @@ static void test_seek_skips_or_fires(void **state)
     expect(&o, 1, "21032"); /* from 8, itself passed before, back into the pass before */
     assert_int_equal(noh_controller_track(o.c, 0)->position, -5 * 65536);
     assert_int_equal(noh_controller_seek(o.c, &o.f.set, 9, 0, NOH_SEEK_FIRE, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, "track");
+    assert_int_equal(strncmp(error.what, "track", strlen("track")), 0);
     assert_int_equal(noh_controller_seek(o.c, &o.f.set, 0, (int64_t)1 << 50, NOH_SEEK_SKIP, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, "tick");
+    assert_int_equal(strncmp(error.what, "tick", strlen("tick")), 0);
     assert_int_equal(noh_controller_seek(o.c, &o.f.set, 0, 0, (noh_seek)7, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, "policy");
+    assert_int_equal(strncmp(error.what, "policy", strlen("policy")), 0);
     one_close(&o);
 }
 

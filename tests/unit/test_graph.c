@@ -159,7 +159,7 @@ static void bad_graph(rig *r, noh_result result, const char *what)
 {
     noh_error error;
     assert_int_equal(noh_graph_check(&r->g, &r->s.set, &error), result);
-    assert_string_equal(error.what, what);
+    assert_int_equal(strncmp(error.what, what, strlen(what)), 0);
     assert_int_equal(noh_graph_state_size(&r->g, &r->s.set), 0);
     rig_open(r);
 }

