@@ -37,15 +37,8 @@ static void open_motions(crowd *c)
 /* Where the mesh's weights are among the floats of a pose: those of the first node that draws it. */
 static void find_weights(crowd *c)
 {
-    c->first_weight = NOH_NONE;
-    for (uint32_t g = c->set->group_count; g-- > 0;) {
-        const noh_clip_group *group = &c->set->groups[g];
-        noh_mesh mesh;
-        if (group->node != NOH_NONE && noh_pack_mesh(&c->file->pack, c->file->pack.nodes[group->node].mesh, &mesh, NULL) == NOH_OK &&
-            mesh.header == c->plan->mesh.header) {
-            c->first_weight = group->first;
-        }
-    }
+    const uint32_t group = noh_motion_set_mesh_group(c->set, c->plan->mesh_index);
+    c->first_weight = group == NOH_NONE ? NOH_NONE : c->set->groups[group].first;
 }
 
 static int open_characters(crowd *c, void *scratch, noh_error *error)

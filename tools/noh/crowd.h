@@ -45,6 +45,7 @@ typedef struct crowd_options {
 typedef struct crowd_plan {
     crowd_options options;     /* with the defaults filled in */
     noh_mesh mesh;             /* the full level */
+    uint32_t mesh_index;       /* in the pack */
     noh_skin skin;
     uint32_t level_count;
     noh_mesh views[NOH_LEVELS_MAX]; /* the mesh at each level that has a pool */

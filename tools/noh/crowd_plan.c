@@ -21,6 +21,7 @@ static int find_mesh(crowd_plan *p, const pack_file *file)
             (!found || mesh.header->pair_count > p->mesh.header->pair_count)) {
             found = 1;
             p->mesh = mesh;
+            p->mesh_index = i;
             p->skin = skin;
             p->level_count = mesh.header->level_count;
         }
