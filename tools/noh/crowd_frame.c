@@ -185,7 +185,7 @@ static void give_palette(crowd *c, uint32_t place, const float *palette)
     for (uint32_t k = 0; k < skin->header->joint_count && c->skeleton.inverse_bind; k++) {
         memcpy(c->gathered + 12u * (size_t)k, palette + 12u * (size_t)skin->joints[k], 12u * sizeof(float));
     }
-    noh_gl_skin_set(c->palettes, place, c->gathered);
+    noh_gl_skin_set_matrices(c->palettes, place, c->gathered);
 }
 
 /* Weights that are too small to be seen are left out; those that no clip moves are the mesh's own. */
@@ -195,9 +195,9 @@ static void give_weights(crowd *c, const crowd_body *b, uint32_t instance, noh_d
     if (!c->plan->options.plain) {
         noh_detail_targets(d, &c->settings, weights, c->detail.reach_m, c->plan->mesh.header->target_count, c->weights);
         weights = c->weights;
-        noh_gl_morph_level(c->morph, instance, b->level < b->level_before ? b->level : b->level_before);
+        noh_gl_morph_set_level(c->morph, instance, b->level < b->level_before ? b->level : b->level_before);
     }
-    (void)noh_gl_morph_weights(c->morph, instance, weights, NULL); /* clips hold finite weights */
+    (void)noh_gl_morph_set_weights(c->morph, instance, weights, NULL); /* clips hold finite weights */
 }
 
 static void show_body(crowd *c, uint32_t i)
@@ -210,7 +210,7 @@ static void show_body(crowd *c, uint32_t i)
     noh_gl_morph_binding morph = noh_gl_morph_binding_of(c->morph, instance);
     give_palette(c, b->place, palette);
     give_weights(c, b, instance, &ch->detail, plain ? c->floats : noh_character_floats(ch, c->floats));
-    (void)noh_gl_skin_place(c->palettes, b->place, b->world, &morph, NULL); /* nobody is mirrored */
+    (void)noh_gl_skin_set_place(c->palettes, b->place, b->world, &morph, NULL); /* nobody is mirrored */
 }
 
 /* Who is updated is shown at once, while all of it is in the cache; then the others. */
