@@ -144,7 +144,7 @@ typedef struct noh_detail_part {
 /* What to draw: one part with all pixels, or, while a level fades, that which comes and that which goes. Returns how many. */
 uint32_t noh_detail_parts(const noh_detail *d, int64_t clock, noh_detail_part parts[2]);
 
-/* The finest level that is drawn now or in the fade that has begun: for noh_gl_morph_level. */
+/* The finest level that is drawn now or in the fade that has begun: for noh_gl_morph_set_level. */
 uint32_t noh_detail_drawn(const noh_detail *d, int64_t clock);
 
 /* Leave out morph targets that cannot be seen: the smallest |weight| * reach first, for as long as their sum

@@ -87,9 +87,8 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
     }
 }
 
-noh_result noh_gl_variant_create(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_variant_key key,
-                                 const char *const *varyings, uint32_t varying_count, noh_gl_variant *out, char *log,
-                                 size_t log_bytes, noh_error *error)
+noh_result noh_gl_variant_create(const noh_gl_device *device, noh_gl_variant_key key, const char *const *varyings,
+                                 uint32_t varying_count, noh_gl_variant *out, noh_error *error)
 {
     static const char *const samplers[] = { "u_layers", "u_base_color_texture", "u_palettes" };
     static const char *const blocks[] = { "palette_block" };
@@ -110,14 +109,14 @@ noh_result noh_gl_variant_create(const noh_gl_api *api, noh_gl_ledger *ledger, n
     desc.block_count = 1;
     desc.varyings = varyings;
     desc.varying_count = varying_count;
-    desc.ledger = ledger;
-    result = noh_gl_program_create(api, &desc, &v.program, log, log_bytes, error);
+    desc.ledger = device->ledger;
+    result = noh_gl_program_create(device->api, &desc, &v.program, device->log, device->log_bytes, error);
     if (!result) {
         v.key = key;
-        find_uniforms(api, &v);
-        result = noh_gl_error_check(api, "the driver refuses to tell a shader variant's uniforms", 0, error);
+        find_uniforms(device->api, &v);
+        result = noh_gl_error_check(device->api, "the driver refuses to tell a shader variant's uniforms", 0, error);
         if (result) {
-            noh_gl_variant_delete(api, ledger, &v);
+            noh_gl_variant_delete(device->api, device->ledger, &v);
         } else {
             *out = v;
         }

@@ -56,11 +56,10 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
 /* The key as whole lines of #define, zero-terminated: what common_skin.glsl, common_layers.glsl and mesh.frag want. */
 void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYTES]);
 
-/* varyings[varying_count] for transform feedback, interleaved; 0: none. `log` as in
- * noh_gl_program_create. errors  as there */
-noh_result noh_gl_variant_create(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_variant_key key,
-                                 const char *const *varyings, uint32_t varying_count, noh_gl_variant *out, char *log,
-                                 size_t log_bytes, noh_error *error);
+/* varyings[varying_count] for transform feedback, interleaved; 0: none. The device's ledger may be NULL.
+ * errors  as noh_gl_program_create */
+noh_result noh_gl_variant_create(const noh_gl_device *device, noh_gl_variant_key key, const char *const *varyings,
+                                 uint32_t varying_count, noh_gl_variant *out, noh_error *error);
 void noh_gl_variant_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_variant *variant);
 
 /* Bind the palettes for the submeshes of one palette; the variant is in use. For a program of your own fill a variant

@@ -57,8 +57,8 @@ static void pose(side *s)
         for (uint32_t e = 0; e < 12u * joints; e++) {
             matrices[e] = (e % 12u % 5u == 0 ? 1.0f : 0.0f) + test_random_float(&r, -0.08f, 0.08f);
         }
-        noh_gl_skin_set(s->skin, i, matrices);
-        assert_int_equal(noh_gl_skin_place(s->skin, i, worlds[i], &morph, NULL), NOH_OK);
+        noh_gl_skin_set_matrices(s->skin, i, matrices);
+        assert_int_equal(noh_gl_skin_set_place(s->skin, i, worlds[i], &morph, NULL), NOH_OK);
     }
     noh_gl_skin_update(s->skin);
     free(matrices);
@@ -80,7 +80,9 @@ static void side_open(side *s, const noh_mesh *mesh)
     fixture_morph_open(&s->morph, &s->morph_desc, NULL);
     assert_int_equal(noh_gl_skin_plan_make(&desc, &g->caps, &s->plan, NULL), NOH_OK);
     s->memory = test_aligned(NULL, (size_t)s->plan.cpu_bytes);
-    assert_int_equal(noh_gl_skin_init(s->memory, (size_t)s->plan.cpu_bytes, &g->gl, &g->caps, &s->ledger, &desc, &s->skin, NULL), NOH_OK);
+    assert_int_equal(noh_gl_skin_init(s->memory, (size_t)s->plan.cpu_bytes,
+                                      &(noh_gl_device){ &g->gl, &g->caps, &s->ledger, NULL, 0 }, &desc,
+                                      &s->skin, NULL), NOH_OK);
     set_weights(s);
     pose(s);
 }
@@ -186,7 +188,8 @@ static uint8_t *picture(const side *s, const noh_gl_mesh *gl, draw_kind kind, co
     fixture_frame f;
     fixture_frame_open(&f, SIDE);
     desc.view = view;
-    assert_int_equal(noh_gl_renderer_create(api, &f.ledger, &desc, &renderer, log, sizeof log, NULL), NOH_OK);
+    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ api, NULL, &f.ledger, log, sizeof log }, &desc,
+                                            &renderer, NULL), NOH_OK);
     noh_gl_draw_begin(&renderer, &camera);
     for (uint32_t i = 0; i < (details ? count : 1u); i++) {
         draw(&renderer, s, gl, kind, details ? &details[i] : NULL);
@@ -434,9 +437,11 @@ static void only_renderers_that_fade_pay_for_it(void **state)
     desc = renderer_desc(&with.mesh, 1);
     key = noh_gl_variant_key_of(&with.mesh, NULL, 0, 0, NOH_VIEW_LIT);
     memset(&ledger, 0, sizeof ledger);
-    assert_int_equal(noh_gl_renderer_create(gl, &ledger, &desc, &fading, log, sizeof log, NULL), NOH_OK);
+    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ gl, NULL, &ledger, log, sizeof log }, &desc,
+                                            &fading, NULL), NOH_OK);
     desc.fades = 0;
-    assert_int_equal(noh_gl_renderer_create(gl, &ledger, &desc, &plain, log, sizeof log, NULL), NOH_OK);
+    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ gl, NULL, &ledger, log, sizeof log }, &desc,
+                                            &plain, NULL), NOH_OK);
     assert_int_equal(fading.variant_count, 2u * plain.variant_count);
     assert_non_null(noh_gl_renderer_variant(&plain, key));
     key.fade = 1;

@@ -577,7 +577,9 @@ static void forced_paths_name_what_is_missing(void **state)
         if (!strstr(error.what, cases[i].word)) {
             fail_msg("%s without %s: '%s' does not name %s", fixture_way_name(way), cases[i].field, error.what, cases[i].word);
         }
-        assert_int_equal(noh_gl_morph_init(memory, sizeof memory, &g->gl, &caps, &g->ledger, &desc, &morph, NULL, 0, &error),
+        assert_int_equal(noh_gl_morph_init(memory, sizeof memory,
+                                           &(noh_gl_device){ &g->gl, &caps, &g->ledger, NULL, 0 }, &desc,
+                                           &morph, &error),
                          NOH_ERR_UNSUPPORTED);
         assert_null(morph);
     }

@@ -150,7 +150,9 @@ static void open_stage(stage *st)
     skin.mode = NOH_PALETTE_TEXTURE;
     assert_int_equal(noh_gl_skin_plan_make(&skin, &st->g->caps, &plan, NULL), NOH_OK);
     st->memory = test_aligned(NULL, (size_t)plan.cpu_bytes);
-    assert_int_equal(noh_gl_skin_init(st->memory, (size_t)plan.cpu_bytes, &st->g->gl, &st->g->caps, &st->ledger, &skin, &st->skin, NULL),
+    assert_int_equal(noh_gl_skin_init(st->memory, (size_t)plan.cpu_bytes,
+                                      &(noh_gl_device){ &st->g->gl, &st->g->caps, &st->ledger, NULL, 0 },
+                                      &skin, &st->skin, NULL),
                      NOH_OK);
 }
 
@@ -243,13 +245,14 @@ static void middle_pixel(stage *st, noh_debug_view view, const float world[12], 
     desc.mesh_count = 1;
     desc.palettes = NOH_PALETTE_TEXTURE;
     desc.crowds = 1;
-    assert_int_equal(noh_gl_renderer_create(&st->g->gl, &st->ledger, &desc, &renderer, log, sizeof log, NULL), NOH_OK);
+    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &st->g->gl, NULL, &st->ledger, log, sizeof log },
+                                            &desc, &renderer, NULL), NOH_OK);
     fixture_frame_open(&frame, SIDE);
     noh_gl_draw_begin(&renderer, camera);
     if (crowd) {
         noh_gl_skin_binding first = noh_gl_skin_binding_of(st->skin, 0);
         static const float away[12] = { 1, 0, 0, 900, 0, 1, 0, 900, 0, 0, 1, 900 };
-        for (uint32_t k = 0; k < 3; k++) assert_int_equal(noh_gl_skin_place(st->skin, k, k == 1 ? world : away, NULL, NULL), NOH_OK);
+        for (uint32_t k = 0; k < 3; k++) assert_int_equal(noh_gl_skin_set_place(st->skin, k, k == 1 ? world : away, NULL, NULL), NOH_OK);
         noh_gl_skin_update(st->skin);
         noh_gl_draw_crowd(&renderer, &st->gl_mesh, NULL, &first, 3, NULL, NULL, NOH_DRAW_OPAQUE);
     } else {

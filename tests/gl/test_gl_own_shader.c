@@ -118,9 +118,11 @@ static void open_skin(stage *st, noh_palette_mode mode)
     desc.mode = mode;
     assert_int_equal(noh_gl_skin_plan_make(&desc, &st->g->caps, &plan, NULL), NOH_OK);
     st->memory = test_aligned(NULL, (size_t)plan.cpu_bytes);
-    assert_int_equal(noh_gl_skin_init(st->memory, (size_t)plan.cpu_bytes, &st->g->gl, &st->g->caps, &st->ledger, &desc, &st->skin, NULL),
+    assert_int_equal(noh_gl_skin_init(st->memory, (size_t)plan.cpu_bytes,
+                                      &(noh_gl_device){ &st->g->gl, &st->g->caps, &st->ledger, NULL, 0 },
+                                      &desc, &st->skin, NULL),
                      NOH_OK);
-    noh_gl_skin_set(st->skin, 0, st->matrices);
+    noh_gl_skin_set_matrices(st->skin, 0, st->matrices);
     noh_gl_skin_update(st->skin);
 }
 

@@ -115,7 +115,8 @@ static noh_result make_renderer(maker *m, noh_error *error)
     desc.meshes = m->meshes;
     desc.mesh_count = 2;
     desc.fades = 1;
-    return noh_gl_renderer_create(&m->g.gl, &m->g.ledger, &desc, &m->made.renderer, NULL, 0, error);
+    return noh_gl_renderer_create(&(noh_gl_device){ &m->g.gl, NULL, &m->g.ledger, NULL, 0 }, &desc,
+                                  &m->made.renderer, error);
 }
 
 static void unmake_renderer(maker *m)
@@ -127,7 +128,8 @@ static noh_result make_variant(maker *m, noh_error *error)
 {
     static const char *const varyings[] = { "v_world" };
     noh_gl_variant_key key = noh_gl_variant_key_of(&m->meshes[0], NULL, 0, 0, NOH_VIEW_LIT);
-    return noh_gl_variant_create(&m->g.gl, &m->g.ledger, key, varyings, 1, &m->made.variant, NULL, 0, error);
+    return noh_gl_variant_create(&(noh_gl_device){ &m->g.gl, NULL, &m->g.ledger, NULL, 0 }, key, varyings, 1,
+                                 &m->made.variant, error);
 }
 
 static void unmake_variant(maker *m)
@@ -145,7 +147,9 @@ static noh_result make_morph(maker *m, noh_error *error)
     desc.instance_counts = counts;
     desc.path = m->path;
     desc.accumulate = m->accumulate;
-    return noh_gl_morph_init(m->room, sizeof m->room, &m->g.gl, &m->g.caps, &m->g.ledger, &desc, &m->made.morph, NULL, 0, error);
+    return noh_gl_morph_init(m->room, sizeof m->room,
+                             &(noh_gl_device){ &m->g.gl, &m->g.caps, &m->g.ledger, NULL, 0 }, &desc,
+                             &m->made.morph, error);
 }
 
 static void unmake_morph(maker *m)
@@ -160,7 +164,9 @@ static noh_result make_skin(maker *m, noh_error *error)
     desc.meshes = m->skinned;
     desc.mesh_count = 2;
     desc.mode = m->mode;
-    return noh_gl_skin_init(m->room, sizeof m->room, &m->g.gl, &m->g.caps, &m->g.ledger, &desc, &m->made.skin, error);
+    return noh_gl_skin_init(m->room, sizeof m->room,
+                            &(noh_gl_device){ &m->g.gl, &m->g.caps, &m->g.ledger, NULL, 0 }, &desc,
+                            &m->made.skin, error);
 }
 
 static void unmake_skin(maker *m)

@@ -69,11 +69,14 @@ static noh_result open_meshes(crowd *c, void *morph, void *palettes, char *log, 
         result = noh_gl_picture_create(gl, &c->ledger, &texture, &c->pictures[i], error);
     }
     if (!result) {
-        result = noh_gl_morph_init(morph, (size_t)p->morph.cpu_bytes, gl, &c->g->caps, &c->ledger, &p->morph_desc, &c->morph, log,
-                                   log_bytes, error);
+        result = noh_gl_morph_init(morph, (size_t)p->morph.cpu_bytes,
+                                   &(noh_gl_device){ gl, &c->g->caps, &c->ledger, log, log_bytes },
+                                   &p->morph_desc, &c->morph, error);
     }
     if (!result) {
-        result = noh_gl_skin_init(palettes, (size_t)p->skin_plan.cpu_bytes, gl, &c->g->caps, &c->ledger, &skin, &c->palettes, error);
+        result = noh_gl_skin_init(palettes, (size_t)p->skin_plan.cpu_bytes,
+                                  &(noh_gl_device){ gl, &c->g->caps, &c->ledger, NULL, 0 }, &skin,
+                                  &c->palettes, error);
     }
     return result;
 }
@@ -90,7 +93,8 @@ static noh_result open_renderer(crowd *c, char *log, size_t log_bytes, noh_error
     desc.crowds = 1;
     desc.fades = !c->plan->options.plain;
     desc.fewer_influences = !c->plan->options.plain;
-    return noh_gl_renderer_create(&c->g->gl, &c->ledger, &desc, &c->renderer, log, log_bytes, error);
+    return noh_gl_renderer_create(&(noh_gl_device){ &c->g->gl, NULL, &c->ledger, log, log_bytes }, &desc,
+                                  &c->renderer, error);
 }
 
 static int open_all(crowd *c, noh_arena *arena)

@@ -181,9 +181,9 @@ static void give_weights(crowd *c, const crowd_body *b, uint32_t instance, noh_d
     if (!c->plan->options.plain) {
         noh_detail_targets(d, &c->settings, weights, c->detail.reach_m, c->plan->mesh.header->target_count, c->weights);
         weights = c->weights;
-        noh_gl_morph_level(c->morph, instance, b->level < b->level_before ? b->level : b->level_before);
+        noh_gl_morph_set_level(c->morph, instance, b->level < b->level_before ? b->level : b->level_before);
     }
-    (void)noh_gl_morph_weights(c->morph, instance, weights, NULL); /* clips hold finite weights */
+    (void)noh_gl_morph_set_weights(c->morph, instance, weights, NULL); /* clips hold finite weights */
 }
 
 static void show_body(crowd *c, uint32_t i)
@@ -198,9 +198,9 @@ static void show_body(crowd *c, uint32_t i)
     } else {
         noh_character_skin(ch, &c->plan->skin, c->matrices);
     }
-    noh_gl_skin_set(c->palettes, b->place, c->matrices);
+    noh_gl_skin_set_matrices(c->palettes, b->place, c->matrices);
     give_weights(c, b, instance, &ch->detail, plain ? c->floats : noh_character_floats(ch, c->floats));
-    (void)noh_gl_skin_place(c->palettes, b->place, b->world, &morph, NULL); /* nobody is mirrored */
+    (void)noh_gl_skin_set_place(c->palettes, b->place, b->world, &morph, NULL); /* nobody is mirrored */
 }
 
 /* Who is updated is shown at once, while all of it is in the cache; then the others. */

@@ -200,7 +200,8 @@ static int create_renderer(load *l, const load_options *o)
     desc.meshes = l->scene->meshes;
     desc.mesh_count = l->file->pack.mesh_count;
     desc.palettes = l->skin.skin ? noh_gl_skin_plan_of(l->skin.skin)->mode : NOH_PALETTE_AUTO;
-    if (noh_gl_renderer_create(&l->g->gl, &l->g->ledger, &desc, &l->renderer, log, sizeof log, &error)) {
+    if (noh_gl_renderer_create(&(noh_gl_device){ &l->g->gl, NULL, &l->g->ledger, log, sizeof log }, &desc,
+                               &l->renderer, &error)) {
         fputs(log, stderr);
         return tool_fail_error("renderer", &error);
     }
@@ -314,7 +315,7 @@ static void update_joints(load *l)
         noh_skin skin;
         if (noh_pack_skin_at(&l->file->pack, l->scene->meshes[l->scene->items[i].mesh].header->skin, &skin, NULL) == NOH_OK) {
             scene_skin_matrices(l->scene, &skin, l->matrices);
-            noh_gl_skin_set(l->skin.skin, l->item_instances[i], l->matrices);
+            noh_gl_skin_set_matrices(l->skin.skin, l->item_instances[i], l->matrices);
         }
     }
     noh_gl_skin_update(l->skin.skin);
@@ -324,7 +325,7 @@ int load_update(load *l, noh_gl_morph_stats *stats)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
     for (uint32_t i = 0; i < l->scene->item_count; i++) {
-        if (noh_gl_morph_weights(l->morph.morph, l->item_instances[i], l->scene->items[i].weights, &error)) {
+        if (noh_gl_morph_set_weights(l->morph.morph, l->item_instances[i], l->scene->items[i].weights, &error)) {
             return tool_fail_error(l->file->path, &error);
         }
     }

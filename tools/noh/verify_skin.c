@@ -116,9 +116,9 @@ static int check_pose(mesh_job *m)
     noh_morph_layers_init(m->layers, noh_morph_layers_size(m->mesh) + 16u, m->mesh, &layers, NULL);
     noh_morph_accumulate_scalar(m->mesh, m->weights, &layers);
     reference(m, &layers);
-    noh_gl_morph_weights(j->morph.morph, instance, m->weights, NULL);
+    noh_gl_morph_set_weights(j->morph.morph, instance, m->weights, NULL);
     noh_gl_morph_update(j->morph.morph, NULL);
-    noh_gl_skin_set(j->skin, instance, m->matrices);
+    noh_gl_skin_set_matrices(j->skin, instance, m->matrices);
     noh_gl_skin_update(j->skin);
     status = readback_skinned(&j->back, m->gl_mesh, &morph, &skin, 0, m->got);
     if (!status) {
@@ -307,7 +307,8 @@ int verify_skin_run(gpu *g, const pack_file *file, const scene *s, const noh_gl_
     if (!memory) {
         return tool_fail(file->path, "out of memory");
     }
-    if (noh_gl_skin_init(memory, (size_t)plan.cpu_bytes, &g->gl, &g->caps, &g->ledger, &desc, &j.skin, &error)) {
+    if (noh_gl_skin_init(memory, (size_t)plan.cpu_bytes,
+                         &(noh_gl_device){ &g->gl, &g->caps, &g->ledger, NULL, 0 }, &desc, &j.skin, &error)) {
         free(memory);
         return tool_fail_error(file->path, &error);
     }
