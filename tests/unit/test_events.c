@@ -870,7 +870,7 @@ static void a_bound_holds_for_a_turn_within_the_step(void **state)
 
 /* ---- errors of the sources ---- */
 
-/* Row C5.5: the compressed set was created with 0 callback keys, so every key was lost.
+/* The compressed set was created with 0 callback keys, so every key was lost.
  * Here keys are a part of the motion: whoever has it has its keys. */
 static void errata_C5_5_keys_stay_with_the_motion(void **state)
 {
@@ -891,7 +891,7 @@ static void errata_C5_5_keys_stay_with_the_motion(void **state)
     one_close(&o);
 }
 
-/* Row C5.6: Time = time in seconds put the key into the first tick; it must be seconds * ticks per second. */
+/* Time = time in seconds put the key into the first tick; it must be seconds * ticks per second. */
 static void errata_C5_6_key_times_are_ticks(void **state)
 {
     double time_s = 0.75;

@@ -135,7 +135,7 @@ static void bad_influences_are_refused(void **state)
     refused(&s, "sum to 0.9", "mesh 'm' primitive 0 vertex 2");
     s.weights[0][2][0] = 0.0f;
     refused(&s, "sum to 0", "vertex 2");
-    s.weights[0][2][0] = 0.7f; /* row E2: given weights above one would leave the implied one negative */
+    s.weights[0][2][0] = 0.7f; /* given weights above one would leave the implied one negative */
     s.weights[0][2][1] = 0.5f;
     refused(&s, "sum to 1.2", "vertex 2");
     s.weights[0][2][0] = 1.5f;
