@@ -111,7 +111,7 @@ check 'segments are not stretched' awk -v s="$segmented" 'BEGIN { exit !(s > 0.9
 check 'the blended elbow is' awk -v s="$bent" 'BEGIN { exit !(s > 1.5) }'
 check 'four joints spread it' awk -v s="$four" -v b="$bent" 'BEGIN { exit !(s > 1.1 && s < b) }'
 
-# Rows D1, D3: half way lies in the middle of both shapes.
+# Half way lies in the middle of both shapes.
 check 'half the weight is half way' sh -c '
     for f in rest half open; do grep "^v " "$1/$f.obj" >"$1/$f.v"; done
     paste "$1/rest.v" "$1/half.v" "$1/open.v" | awk "

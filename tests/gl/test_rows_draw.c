@@ -182,7 +182,7 @@ static void draw_quad(const lit_quad *q, uint8_t *rgba)
     desc.meshes = &mesh;
     desc.mesh_count = 1;
     assert_int_equal(noh_gl_mesh_create(&g->gl, &ledger, &mesh, &drawn, NULL), NOH_OK);
-    assert_int_equal(noh_gl_renderer_create(&g->gl, &ledger, &desc, &renderer, log, sizeof log, NULL), NOH_OK);
+    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, log, sizeof log }, &desc, &renderer, NULL), NOH_OK);
     assert_int_equal(canvas_open(&c, g, QUAD, QUAD), 0);
     canvas_begin(&c);
     noh_gl_draw_begin(&renderer, &q->camera);

@@ -172,20 +172,26 @@ static void a_sum_covers_what_lies_below(void **state)
     scene s;
     sums b;
     noh_transform low[JOINTS], high[JOINTS], got[JOINTS], want[JOINTS];
-    float fl[FLOATS], fh[FLOATS], floats[FLOATS], below[JOINTS], float_below[FLOATS];
+    float fl[FLOATS], fh[FLOATS], floats[FLOATS], totals[JOINTS], float_totals[FLOATS];
+    uint8_t odd[JOINTS + FLOATS];
+    const noh_mask_view below = { odd, odd + JOINTS };
     (void)state;
     scene_open(&s);
     scene_pose(&s, WALK, 9000, low, fl);
     scene_pose(&s, RUN, 5000, high, fh);
-    for (uint32_t j = 0; j < JOINTS; j++) below[j] = j % 2u ? 1.0f : 0.0f;
-    for (uint32_t i = 0; i < FLOATS; i++) float_below[i] = i % 2u ? 1.0f : 0.0f;
+    for (uint32_t j = 0; j < JOINTS; j++) odd[j] = j % 2u ? 255 : 0;
+    for (uint32_t i = 0; i < FLOATS; i++) odd[JOINTS + i] = i % 2u ? 255 : 0;
     for (uint32_t mask = 0; mask <= 2; mask += 2) {
         const noh_mask_view view = mask ? noh_mask_of(&s.set, mask) : everywhere;
         memcpy(got, low, sizeof got);
         memcpy(floats, fl, sizeof floats);
         sums_open(&b);
+        b.blend.totals = totals;
+        b.blend.float_totals = float_totals;
+        noh_blend_add(&b.blend, low, fl, 2.0f, below);
+        noh_blend_begin_over(&b.blend);
         noh_blend_add(&b.blend, high, fh, 4.0f, view);
-        noh_blend_cover(&b.blend, 0.25f, below, float_below, got, floats);
+        noh_blend_cover(&b.blend, 0.25f, got, floats);
         for (uint32_t j = 0; j < JOINTS; j++) {
             const float part = mask ? (float)s.masks[1][j] / 255.0f : 1.0f;
             noh_pose_mix(1, &low[j], &high[j], part > 0.0f ? (j % 2u ? 0.25f * part : 1.0f) : 0.0f, NULL, &want[j]);

@@ -526,6 +526,59 @@ static void skipped_targets_are_the_smallest_and_bounded(void **state)
     }
 }
 
+/* Half of a fade's ticks is half of the pixels; it begins and ends without a jump of speed. */
+static void fades_follow_the_smoothstep(void **state)
+{
+    noh_detail d;
+    (void)state;
+    memset(&d, 0, sizeof d);
+    d.fade_start = 1000;
+    d.fade_ticks = 4000;
+    assert_true(noh_detail_fade(&d, 900) == 0.0f && noh_detail_fade(&d, 1000) == 0.0f && noh_detail_fade(&d, 2000) == 0.15625f);
+    assert_true(noh_detail_fade(&d, 3000) == 0.5f && noh_detail_fade(&d, 4000) == 0.84375f && noh_detail_fade(&d, 5000) == 1.0f);
+}
+
+/* What is off in pixels is the sum of all kinds, the targets left out among them; while a level fades the coarser of the two
+ * counts, whichever comes. */
+static void errors_of_all_kinds_add_up(void **state)
+{
+    const float weights[2] = { 0.5f, 1.0f }, reach[2] = { 0.002f, 1.0f };
+    noh_detail_table t = table_of();
+    noh_detail_settings s = settings_of(1.0f);
+    float kept[2];
+    noh_detail d;
+    (void)state;
+    memset(&d, 0, sizeof d);
+    s.fade_ticks = 24000;
+    noh_detail_choose(&d, &t, &s, 15.0f, rates, 0);
+    assert_int_equal(d.mesh, 3);
+    assert_int_equal(noh_detail_targets(&d, &s, weights, reach, 2, kept), 1);
+    assert_true(d.skipped_m == 0.001f);
+    assert_true(fabsf(d.error_m - (meshes[3].error_m + joints[d.joints].error_m + influences[d.influences].error_m + rates[d.rate] + t.clip_error_m)) < 1e-7f);
+    assert_true(noh_detail_error_pixels(&d) == (d.error_m + d.skipped_m) * 15.0f);
+    noh_detail_choose(&d, &t, &s, 1e5f, rates, 100); /* near at once: level 3 is still drawn while it fades */
+    assert_true(d.mesh == 0 && d.mesh_before == 3);
+    assert_true(fabsf(d.error_m - (meshes[3].error_m + t.clip_error_m)) < 1e-7f);
+    noh_detail_choose(&d, &t, &s, 1e5f, rates, 30000);
+    assert_true(fabsf(d.error_m - t.clip_error_m) < 1e-7f);
+}
+
+/* Posing less often can only be worse, whatever was measured: 15 Hz that happened to measure better than 30 Hz is not
+ * stayed at where 30 Hz is too coarse. */
+static void a_coarser_update_rate_is_never_better(void **state)
+{
+    static const float odd[NOH_RATE_COUNT] = { 0.0f, 0.02f, 0.005f, 0.03f };
+    noh_detail_table t = table_of();
+    noh_detail_settings s = settings_of(1.0f);
+    noh_detail d;
+    (void)state;
+    memset(&d, 0, sizeof d);
+    noh_detail_choose(&d, &t, &s, 1.0f, odd, 0);
+    assert_int_equal(d.rate, 3);
+    noh_detail_choose(&d, &t, &s, 31.5f, odd, 800); /* 0.0143 m may be off in time */
+    assert_int_equal(d.rate, 0);
+}
+
 static void equal_targets_go_by_index(void **state)
 {
     const float weights[5] = { 0.5f, -0.5f, 0.5f, 0.0f, 0.5f }, reach[5] = { 0.01f, 0.01f, 0.01f, 0.01f, 0.01f };
@@ -589,6 +642,9 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_fixed_level_has_no_say_afterwards),
         cmocka_unit_test(depth_is_that_of_the_nearest_corner),
         cmocka_unit_test(skipped_targets_are_the_smallest_and_bounded),
+        cmocka_unit_test(fades_follow_the_smoothstep),
+        cmocka_unit_test(errors_of_all_kinds_add_up),
+        cmocka_unit_test(a_coarser_update_rate_is_never_better),
         cmocka_unit_test(equal_targets_go_by_index),
         cmocka_unit_test(a_larger_target_never_goes_first),
         cmocka_unit_test(odd_weights_are_kept),

@@ -124,7 +124,7 @@ static void a_key_s_smallest_weight_is_kept(void **state)
     motion_player player;
     uint32_t walk;
     (void)state;
-    noh_pack_motion_at(&p, 0, &m);
+    noh_pack_motion_at(&p, 0, &m, NULL);
     events = (noh_motion_event *)(void *)(copy + ((const uint8_t *)(const void *)m.events - copy));
     for (uint32_t i = 0; i < 3; i++) {
         events[i].weight_min = 0.25f * (float)(i + 1u);
