@@ -167,7 +167,7 @@ static const option options[] = {
     { .name = "--frames", .kind = OPTION_NUMBER, .at = offsetof(zoom_args, frames), .value = "N", .initial = "600",
       .what = "frames out and back, 4 to 100000, 60 a second", .example = "120" },
     { .name = "--pixels", .kind = OPTION_NUMBER, .at = offsetof(zoom_args, pixels), .value = "N", .initial = "1",
-      .what = "the largest error that detail may have, pixels, over 0, at most 100", .example = "2" },
+      .what = "the largest error on screen that levels may have, pixels, over 0, at most 100", .example = "2" },
     { .name = "--near", .kind = OPTION_NUMBER, .at = offsetof(zoom_args, near), .value = "M",
       .what = "the nearest distance from the camera to the middle of the scene, metres; default: so that every level is shown for a while", .example = "0.5" },
     { .name = "--far", .kind = OPTION_NUMBER, .at = offsetof(zoom_args, far), .value = "M",

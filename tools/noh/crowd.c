@@ -76,7 +76,7 @@ static void find_weights(crowd *c)
     }
 }
 
-static int open_characters(crowd *c, void *scratch, noh_error *error)
+static noh_result open_characters(crowd *c, void *scratch, noh_error *error)
 {
     const crowd_plan *p = c->plan;
     noh_character_desc desc = crowd_character_desc(&c->anim);
