@@ -343,7 +343,7 @@ CROSS_SKIP  := gltf_read gltf_formula embed motion_import motion_set pack_motion
                skin skin_oracle skin_pack bounds_pick rows_deform puppet lod lod_pack lod_certified lod_lies levels pack joint_order \
                motion_errors detail_pack
 CROSS_TESTS := $(filter-out $(CROSS_SKIP:%=$(BUILD)/cross/test_%),$(patsubst tests/unit/%.c,$(BUILD)/cross/%,$(wildcard tests/unit/test_*.c)))
-CROSS_O     := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/cross/*.c) tests/support.c tests/pack_walk.c platform/file.c $(CONVERT_C))
+CROSS_O     := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/cross/*.c) tests/support.c tests/pack_walk.c platform/file.c platform/file_write.c $(CONVERT_C))
 INCLUDES    += $(if $(CROSS),-Itests/cross -idirafter /usr/include)
 
 cross-tests: $(CROSS_TESTS)

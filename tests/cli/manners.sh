@@ -112,7 +112,7 @@ noh info "$pack" --jsno
 expect 2 'a misspelt option'
 says 'did you mean --json?'
 cp "$pack" "$work/-pack.noh"
-check 'after -- a name may begin with a hyphen' sh -c 'cd "$2" && "$1" info -- -pack.noh' - "$build/noh" "$work"
+check 'after -- a name may begin with a hyphen' sh -c 'cd "$2" && "$1" info -- -pack.noh' - "$(cd "$build" && pwd)/noh" "$work"
 
 # ---- JSON ----
 
