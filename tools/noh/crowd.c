@@ -19,8 +19,8 @@ static int has_joint_twice(const noh_skin *skin)
     return 0;
 }
 
-/* The skin's inverse bind matrices by joint of the skeleton, so that a character's palette is the skin's. Where the skin has a
- * joint twice (rigid parts that were joined), the palette holds plain joint matrices and the skin gathers from it. */
+/* The skin's inverse bind matrices, by joint of the skeleton: a character's palette is then what the skin wants. Where
+ * the skin has a joint twice (rigid parts that were joined), a palette is the joints' own matrices. */
 static void open_skeleton(crowd *c)
 {
     static const float identity[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
@@ -35,7 +35,7 @@ static void open_skeleton(crowd *c)
     c->skeleton.inverse_bind = has_joint_twice(skin) ? NULL : c->inverse_bind;
 }
 
-/* Clips that do not loop play ping-pong, so that no body stands still; a pack without callback keys gets two per pass. */
+/* What ends goes to and fro instead, so that nobody stands still; and two keys a pass where the pack has none at all. */
 static void open_motions(crowd *c)
 {
     const noh_anim_set *from = &c->set->anim;

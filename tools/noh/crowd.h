@@ -110,7 +110,7 @@ typedef struct crowd {
     noh_character_scratch scratch;
     noh_schedule schedule;
     noh_level_pools *pools;
-    float sphere[4];              /* of every body, relative to its place */
+    float sphere[4];              /* of every body, from where it stands */
     float *mixed, *gathered;      /* [joint][12], [the skin's joint][12] */
     float *floats, *weights;      /* [float], [target] */
     /* each */

@@ -167,7 +167,7 @@ void crowd_look(crowd *c, const crowd_camera *camera)
 
 /* ---- uploads ---- */
 
-/* Without detail: pose it now, in full. */
+/* Without detail: posed now, all of it. */
 static const float *pose_fully(crowd *c, noh_character *ch)
 {
     noh_controller_pose(noh_character_controller(ch), &c->anim, &c->scratch.pose, c->scratch.local, c->floats);
@@ -210,7 +210,7 @@ static void show_body(crowd *c, uint32_t i)
     noh_gl_morph_binding morph = noh_gl_morph_binding_of(c->morph, instance);
     give_palette(c, b->place, palette);
     give_weights(c, b, instance, &ch->detail, plain ? c->floats : noh_character_floats(ch, c->floats));
-    (void)noh_gl_skin_place(c->palettes, b->place, b->world, &morph, NULL); /* no body is mirrored */
+    (void)noh_gl_skin_place(c->palettes, b->place, b->world, &morph, NULL); /* nobody is mirrored */
 }
 
 /* Updated bodies first, each uploaded while its pose is in the CPU's cache; then the others. */
