@@ -383,7 +383,7 @@ CROSS_SKIP  := gltf_read gltf_left_out gltf_formula embed motion_import motion_s
                motion_errors detail_pack threads
 CROSS_TESTS := $(patsubst tests/%.c,$(BUILD)/cross/%,$(filter-out $(CROSS_SKIP:%=%/test_%.c),$(call sources,tests/unit,test_*.c)))
 CROSS_O     := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/cross/*.c) $(filter %/support.c %/pack_walk.c,$(wildcard tests/*.c tests/support/*.c)) \
-                   platform/file.c $(CONVERT_C))
+                   platform/file.c platform/file_write.c $(CONVERT_C))
 INCLUDES    += $(if $(CROSS),-Itests/cross -idirafter /usr/include)
 
 cross-tests: $(CROSS_TESTS)

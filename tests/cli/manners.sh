@@ -112,15 +112,23 @@ noh info "$pack" --jsno
 expect 2 'a misspelt option'
 says 'did you mean --json?'
 cp "$pack" "$work/-pack.noh"
-check 'after -- a name may begin with a hyphen' sh -c 'cd "$2" && "$1" info -- -pack.noh' - "$build/noh" "$work"
+check 'after -- a name may begin with a hyphen' sh -c 'cd "$2" && "$1" info -- -pack.noh' - "$(cd "$build" && pwd)/noh" "$work"
 
 # ---- JSON ----
 
 # A pack of two clips, one of joints.
-printf 'HIERARCHY\nROOT hip\n{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 10 0\n}\n}\nMOTION\nFrames: 3\nFrame Time: 0.1\n0 0 0\n5 10 0\n0 20 0\n' >"$work/nod.bvh"
+printf 'HIERARCHY\nROOT hip\n{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 10 0\n}\n}\nMOTION\nFrames: 3\nFrame Time: 1\n0 0 0\n5 10 0\n0 20 0\n' >"$work/nod.bvh"
 sed 's/5 10 0/5 40 3/' "$work/nod.bvh" >"$work/turn.bvh"
 noh build "$work/nod.bvh" "$work/turn.bvh" -o "$work/two.noh" --quiet
 expect 0 'a pack of clips'
+# The events file of the help, with the names of these clips.
+noh help FORMATS
+sed -n '/^callback keys and sync/,/^callback keys in glTF/{s/^ *walk /nod /p; s/^ *"wave hand"/turn/p}' "$work/out" >"$work/keys.txt"
+check 'the help shows four events' test "$(wc -l <"$work/keys.txt")" = 4
+noh build "$work/nod.bvh" "$work/turn.bvh" -o "$work/two.noh" --events "$work/keys.txt" --quiet
+expect 0 'which build takes'
+noh clip "$work/two.noh"
+check 'and clip lists' sh -c 'grep -q "marker .right" "$1" && grep -q "step" "$1" && grep -q "1.5000 s .sound" "$1"' - "$work/out"
 noh clip "$work/two.noh" --clip turn --dump "$work/turn.rcl" --json
 expect 0 'clip --dump --json'
 check 'wrote the clip' test -s "$work/turn.rcl"

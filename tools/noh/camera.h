@@ -20,21 +20,21 @@ typedef struct view_options {
 
 #define ORBIT_VIEW_RAD 0.5235987755982988 /* the height of the view: 30 degrees */
 
-/* Where a camera is: round a centre. Angles in radians, lengths in model units. */
+/* A camera that orbits a centre. Angles in radians, lengths in model units. */
 typedef struct orbit {
     double azimuth, elevation, distance;
-    double center[3], radius; /* what it looks at; the radius of what is to be between its near and far planes */
+    double center[3], radius; /* what it looks at; radius of what lies between the near and the far plane */
     double aspect;            /* width over height */
 } orbit;
 
-/* One that holds the box, from the front. */
+/* An orbit from the front that frames the box. */
 orbit orbit_fit(const bounds *box, double aspect);
 /* Its unit axes in the world; `back` points from the centre to the eye. */
 void orbit_axes(const orbit *o, double right[3], double up[3], double back[3]);
 /* A perspective camera, lit from over the left shoulder. */
 void orbit_camera(const orbit *o, noh_gl_camera *camera);
 
-/* A camera by the options, that holds the box. 0, or EXIT_USAGE after printing. */
+/* The camera that the options ask for, framing the box. 0, or EXIT_USAGE after printing. */
 int view_camera(const view_options *o, const bounds *box, noh_gl_camera *camera);
 /* 1 when the option asks for the face. */
 int view_wants_face(const view_options *o);

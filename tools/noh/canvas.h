@@ -27,8 +27,8 @@ void canvas_resolve(canvas *c);
 /* Resolve and read: rgba[height][width][4], top row first. */
 int canvas_read(canvas *c, uint8_t *rgba);
 
-/* Pixels as GL reads them into a picture: the top row first, opaque (what blended meshes left in alpha is not the
- * picture's). Prints an error and returns an exit code; 0 on success. */
+/* Turn pixels as GL reads them into a picture: top row first, and opaque (blended meshes leave other values in alpha).
+ * Prints an error and returns an exit code; 0 on success. */
 int picture_from_gl(uint8_t *rgba, uint32_t width, uint32_t height);
 
 #endif

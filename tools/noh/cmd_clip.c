@@ -1,4 +1,4 @@
-/* cmd_clip.c: the compressed motion of a pack: its bytes, its certificate, its frames. */
+/* cmd_clip.c: the compressed clips of a pack: bytes, certified errors, decoded frames. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +13,7 @@
 #include "options.h"
 #include "verbs.h"
 
-/* A clip that is open, with a cache of its own. */
+/* An open clip with a cache of its own. */
 typedef struct opened {
     noh_pack_motion motion;
     noh_skeleton skeleton; /* joint_count 0: a clip of floats alone */
@@ -216,7 +216,7 @@ static int dump_named(const pack_file *file, const char *name, const char *path)
     if (!status) status = open_clip(&o, file, index);
     if (!status) {
         status = o.info.joint_count ? dump_clip(file, &o, path)
-                                    : tool_fail(file->path, "clip '%s' moves weights alone, and a .rcl file holds joints", o.motion.name);
+                                    : tool_fail(file->path, "clip '%s' animates weights alone, and a .rcl file holds joints", o.motion.name);
         close_clip(&o);
     }
     return status;

@@ -147,7 +147,7 @@ static const option options[] = {
       .what = "the picture", .example = "crowd.png" },
     OPTION_INSTANCES(crowd_args, instances, "1000", .what = "how many bodies, 1 to 65536"),
     { .name = "--pixels", .kind = OPTION_NUMBER, .at = offsetof(crowd_args, pixels), .value = "N", .initial = "1",
-      .what = "the largest error that detail may have, pixels, over 0", .example = "4", .excludes = "--plain" },
+      .what = "the largest error on screen that levels may have, pixels, over 0", .example = "4", .excludes = "--plain" },
     { .name = "--time", .kind = OPTION_NUMBER, .at = offsetof(crowd_args, time_s), .value = "S", .initial = "2",
       .what = "when the picture is taken, seconds, 0 to 3600; every frame up to then is run", .example = "0.5" },
     { .name = "--plain", .kind = OPTION_FLAG, .at = offsetof(crowd_args, plain),

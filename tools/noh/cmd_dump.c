@@ -33,7 +33,8 @@ static void print_to(byte_buffer *out, const char *format, ...)
     buffer_append(out, line, count < (int)sizeof line ? (size_t)count : sizeof line - 1);
 }
 
-/* The cofactors: normals by the inverse transpose (row E4). */
+/* A normal by the inverse transpose, which is the cofactor matrix up to a factor; unlike the inverse it exists for every
+ * matrix. Transforming it by the matrix itself would tilt it under unequal scales. */
 static void transform_normal(const float w[12], const float n[3], double out[3])
 {
     double length = 0.0;
@@ -91,7 +92,7 @@ static void dump_item(byte_buffer *out, const pack_file *file, const scene *s, u
     *first += mesh->header->vertex_count;
 }
 
-/* Positions and normals as the GPU's vertex shader has them. */
+/* Positions and normals as the vertex shader leaves them. */
 static int fetch_item(load *l, readback *r, uint32_t item, noh_vertex *vertices)
 {
     const noh_gl_mesh *mesh = &l->meshes[l->scene->items[item].mesh];

@@ -35,7 +35,7 @@ static void print_skin(const noh_pack *pack, const noh_mesh_header *h)
     }
 }
 
-/* Lengths as they show in the world. */
+/* A length in mesh units as millimetres in the world. */
 static double millimetres(const noh_mesh_header *h, float length)
 {
     return 1e3 * (double)h->world_scale * (double)length;
@@ -44,7 +44,7 @@ static double millimetres(const noh_mesh_header *h, float length)
 static void print_levels(const noh_mesh *m)
 {
     if (m->header->influence_errors[2] > 0.0f) {
-        printf("  with only the 4, 2, 1 heaviest joints a vertex off by at most %.3f, %.3f, %.3f mm in motion\n",
+        printf("  with only the 4, 2, 1 heaviest joints of a vertex: off by at most %.3f, %.3f, %.3f mm in motion\n",
                millimetres(m->header, m->header->influence_errors[0]), millimetres(m->header, m->header->influence_errors[1]),
                millimetres(m->header, m->header->influence_errors[2]));
     }

@@ -63,7 +63,7 @@ static void print_done(const render_args *a, const drawn *d)
             noh_accumulate_name(d->plan.accumulate), d->plan.reason);
 }
 
-/* The full mesh frames the picture, whatever level is drawn. */
+/* The camera frames the full mesh at every level. */
 static int draw(gpu *g, const pack_file *file, scene *s, const render_args *a, int show_bones, uint8_t *rgba, drawn *d)
 {
     stage st;

@@ -19,7 +19,7 @@ typedef struct sheet {
     sheet_tiles tiles;
     uint32_t tile_count, columns, rows, tile; /* tile: pixels */
     int show_bones, lods;
-    bounds box; /* of all tiles, about what the camera follows */
+    bounds box; /* of all tiles, relative to the anchor */
     uint8_t *rgba;
     const char *pack, *output, *driver, *camera;
     load_options load;
@@ -44,7 +44,7 @@ static void place_tile(sheet *s, uint32_t tile, const uint8_t *rgba)
               (int)(tile / s->columns * s->tile) + 6, 1, label);
 }
 
-/* Where on the ground the scene stands, so that a walk stays in its tile: the first joint. */
+/* The camera follows the first joint over the ground, so that a walk stays in its tile. */
 static void anchor_of(const scene *s, double anchor[3])
 {
     anchor[0] = s->skeleton.joint_count ? (double)s->joint_matrices[3] : 0.0;
@@ -61,7 +61,7 @@ static bounds move_box(bounds box, const double by[3], double sign)
     return box;
 }
 
-/* One box for all tiles, about the anchor: it holds every pose. */
+/* One box for all tiles, relative to the anchor, from at most 40 of the poses. */
 static int measure_tiles(sheet *s, int face)
 {
     const scene *posed = &s->tiles.posed;
@@ -121,7 +121,7 @@ static int draw_sheet(sheet *s)
     return status;
 }
 
-/* Tiles that stay empty look like the others' background. */
+/* Empty tiles have the colour of the canvas's background. */
 static int make_picture(sheet *s)
 {
     static const uint8_t background[4] = { CANVAS_BACKGROUND_SRGB, 255 };

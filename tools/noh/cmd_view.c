@@ -58,7 +58,7 @@ static const option options[] = {
     { .name = "--bones", .kind = OPTION_FLAG, .at = offsetof(view_args, run.desc.show_bones),
       .what = "draw the skeletons in place of the meshes" },
     { .name = "--lod", .kind = OPTION_TEXT, .at = offsetof(view_args, lod), .value = "auto|N",
-      .what = "LOD levels that a model is converted with, 1 to 8 with the full mesh; auto: as many as their errors allow", .example = "4" },
+      .what = "LOD levels that a model is converted with, 1 to 8 with the full mesh; auto: up to five, by error", .example = "4" },
     OPTION_PATH(view_args, path, .initial = "auto"),
     OPTION_ACCUMULATE(view_args, accumulate, .initial = "auto"),
     { .name = "--driver", .kind = OPTION_TEXT, .at = offsetof(view_args, driver), .value = "egl|native", .initial = "egl",

@@ -1,5 +1,5 @@
-/* cmd_zoom.c: a slow zoom out and in, drawn at chosen levels of detail and beside it at the full one, and measured:
- * nothing of the levels may show. */
+/* cmd_zoom.c: a slow zoom out and back, drawn at the chosen LOD levels and in full, and compared: the levels must not be
+ * visible. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,7 +21,7 @@ typedef struct zoom_args {
     option_list weights, clips;
 } zoom_args;
 
-/* ---- telling ---- */
+/* ---- printing ---- */
 
 static int print_result(const zoom *z, const zoom_args *a)
 {
@@ -32,9 +32,9 @@ static int print_result(const zoom *z, const zoom_args *a)
            z->path.side, a->pixels);
     fprintf(out, "  silhouettes off by at most   %6.3f pixels  (allowed: %g), slits and holes by %.3f\n", r->silhouette_px, most, r->hole_px);
     fprintf(out, "  the surface off by at most   %6.3f pixels  (allowed: %g), claimed %.3f\n", r->position_px, most, r->claimed_px);
-    fprintf(out, "  changed by detail in a frame %6.3f of 255  (allowed: %g), by the zoom %.3f\n", r->pop, ZOOM_POP, r->zoom_change);
+    fprintf(out, "  a level change alters        %6.3f of 255  (allowed: %g), by the zoom %.3f\n", r->pop, ZOOM_POP, r->zoom_change);
     fprintf(out, "  frame to frame more by       %6.3f of 255 than full pictures  (allowed: %g)\n", r->excess, ZOOM_POP);
-    fprintf(out, "  levels entered: %u out, %u in, each at most %u times; %u times from a camera that shakes by %g %%  (allowed: once)\n", r->entered[0],
+    fprintf(out, "  levels entered: %u out, %u in, each at most %u times; %u times from a camera shaken by %g %%  (allowed: once)\n", r->entered[0],
            r->entered[1], r->most_entered, r->most_entered_shaken, 100.0 * a->jitter);
     fprintf(out, "  targets left out: at most %u at once\n", r->targets_left_out);
     fprintf(out, "%s: %s\n", a->pack, zoom_result_ok(r, a->pixels) ? "ok" : "FAILED");
@@ -66,7 +66,7 @@ static int print_json(const zoom *z, const zoom_args *a)
     return json_end(&j);
 }
 
-/* ---- doing ---- */
+/* ---- measuring ---- */
 
 static int measure(zoom *z, const zoom_args *a)
 {
@@ -98,7 +98,7 @@ static int open_scene(scene *s, const pack_file *file, const zoom_args *a)
 
 static int zoom_pack(const pack_file *file, const zoom_args *a)
 {
-    /* shares are the library's own; the others are here because the way is planned by them */
+    /* the library's defaults, spelt out because the path is planned by them */
     const noh_detail_settings settings = { (float)a->pixels, { 0.3f, 0.1f, 0.05f, 0.1f, 0.45f }, 0.3f, 0.15f, a->no_fades ? 1 : FADE_TICKS };
     scene full, kept;
     gpu g;
@@ -167,7 +167,7 @@ static const option options[] = {
     { .name = "--frames", .kind = OPTION_NUMBER, .at = offsetof(zoom_args, frames), .value = "N", .initial = "600",
       .what = "frames out and back, 4 to 100000, 60 a second", .example = "120" },
     { .name = "--pixels", .kind = OPTION_NUMBER, .at = offsetof(zoom_args, pixels), .value = "N", .initial = "1",
-      .what = "the largest error that detail may have, pixels, over 0, at most 100", .example = "2" },
+      .what = "the largest error on screen that levels may have, pixels, over 0, at most 100", .example = "2" },
     { .name = "--near", .kind = OPTION_NUMBER, .at = offsetof(zoom_args, near), .value = "M",
       .what = "the nearest distance from the camera to the middle of the scene, metres; default: so that every level is shown for a while", .example = "0.5" },
     { .name = "--far", .kind = OPTION_NUMBER, .at = offsetof(zoom_args, far), .value = "M",

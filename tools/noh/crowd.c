@@ -34,14 +34,14 @@ static void open_motions(crowd *c)
     }
 }
 
-/* Where the mesh's weights are among the floats of a pose: those of the first node that draws it. */
+/* The first of the mesh's weights among the floats of a pose: those of the first node that draws it. */
 static void find_weights(crowd *c)
 {
     const uint32_t group = noh_motion_set_mesh_group(c->set, c->plan->mesh_index);
     c->first_weight = group == NOH_NONE ? NOH_NONE : c->set->groups[group].first;
 }
 
-static int open_characters(crowd *c, void *scratch, noh_error *error)
+static noh_result open_characters(crowd *c, void *scratch, noh_error *error)
 {
     const crowd_plan *p = c->plan;
     noh_character_desc desc = crowd_character_desc(&c->anim);

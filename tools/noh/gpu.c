@@ -19,7 +19,7 @@ static void GL_APIENTRY stop_at_error(GLenum source, GLenum type, GLuint id, GLe
     }
 }
 
-/* After the probe, which tries what may be refused. */
+/* Called after the probe, which provokes errors on purpose. */
 static void watch_errors(const noh_gl_api *gl)
 {
     const char *wish = getenv("NOH_GL_DEBUG");

@@ -50,7 +50,7 @@ static noh_gl_skin_desc skin_desc(const pack_file *file, const scene *s, const u
     return desc;
 }
 
-/* The matrices of one skin at a time; 0 where nothing that is drawn is skinned. */
+/* Bytes for the palette of one skin at a time; 0 where no drawn mesh is skinned. */
 static size_t matrix_bytes(const pack_file *file, const scene *s)
 {
     size_t most = 0;
@@ -80,7 +80,7 @@ static int add_skin(load_budget *b, const pack_file *file, const scene *s, const
     return 0;
 }
 
-/* What moves the scene: nothing in a pack without clips. */
+/* Clips, controllers and poses: none in a pack without clips. */
 static int add_motion(load_budget *b, const pack_file *file, const scene *s, uint32_t instances)
 {
     uint64_t clips = 0, controllers = 0, poses = 0;
@@ -219,7 +219,7 @@ static int open_skin(load *l, const uint32_t *counts)
     return l->matrices ? gpu_skin_open(&l->skin, l->g, &desc, l->file->path) : tool_fail(l->file->path, "out of memory");
 }
 
-/* The k-th item that draws a mesh is that mesh's k-th instance. */
+/* The k-th item that draws a mesh is its k-th instance. */
 static void number_items(load *l, uint32_t *next)
 {
     memset(next, 0, sizeof *next * l->file->pack.mesh_count);

@@ -19,7 +19,7 @@
 
 #define OPTION_TIME(T, m, ...)                                                                                 \
     { .name = "--time", .kind = OPTION_NUMBER, .at = offsetof(T, m), .value = "S", .initial = "0",             \
-      .what = "time in the clips, seconds; past the end a loop repeats and any other clip holds its last pose", \
+      .what = "time in the clips, seconds", \
       .example = "0.5", __VA_ARGS__ }
 
 #define OPTION_WEIGHT(T, m, ...)                                                                               \
@@ -28,7 +28,7 @@
 
 #define OPTION_PATH(T, m, ...)                                                                                 \
     { .name = "--path", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "auto|blend|layered|mrt|per-layer|gather|cpu", \
-      .what = "how targets are accumulated", __VA_ARGS__ }
+      .what = "how targets are accumulated (noh help FORMATS)", __VA_ARGS__ }
 
 #define OPTION_ACCUMULATE(T, m, ...)                                                                           \
     { .name = "--accumulate", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "auto|f32|f16",              \

@@ -10,8 +10,8 @@
 #include "args.h"
 #include "pack_file.h"
 
-/* What moves one skeleton of the pack (without any: its weights alone): a motion set, a controller for each copy of the
- * scene, and room for one pose at a time. */
+/* Plays clips on one skeleton of the pack, or on weights alone in a pack without skeletons: a clip set, a controller for each
+ * copy of the scene, and room for one pose at a time. */
 typedef struct scene_player {
     noh_skeleton skeleton;       /* joint_count 0: none */
     float *joint_matrices;       /* [joint_count][12] in model space, see local_to_model.h; the bind pose until a clip is set */
@@ -48,23 +48,23 @@ typedef struct scene {
  * The pack must stay where it is while the scene is used. */
 int scene_init(scene *s, const pack_file *file);
 void scene_free(scene *s);
-/* Take every mesh at a level of detail, or its coarsest; an error where no mesh has that many. */
+/* Take every mesh at an LOD level, or at its coarsest; an error where no mesh has that many. */
 int scene_set_level(scene *s, const pack_file *file, uint32_t level);
 uint32_t scene_level_count(const scene *s, const pack_file *file);
-/* What a player opened; its skeleton stays. */
+/* Free what scene_open_players made; the skeleton stays. */
 void scene_close_player(scene_player *p);
-/* Take the clips from another pack (NULL: do not); before any of them is played. */
+/* Take the clips from another pack (NULL: from the same one). Before any is played. */
 int scene_open_anim(scene *s, const pack_file *file, const char *path);
-/* Open the clips, and so many controllers. scene_set_clips does it for one. */
+/* Open the clips and `controllers` controllers for each player. scene_set_clips does so for one. */
 int scene_open_players(scene *s, const pack_file *file, uint32_t controllers);
-/* What that will take, before; add to *clips, *controllers, *poses. */
+/* The bytes that scene_open_players will take, added to *clips, *controller_bytes and *poses. */
 int scene_measure_players(const scene *s, const pack_file *file, uint32_t controllers, uint64_t *clips, uint64_t *controller_bytes,
                           uint64_t *poses);
 /* How many decoded segments the clips then hold at once, of how many in all. */
 void scene_measure_segments(const scene *s, const pack_file *file, uint32_t controllers, uint32_t *held, uint32_t *all);
 /* Weights and joint matrices of clips at a time, together; unknown names are an error that suggests the nearest. */
 int scene_set_clips(scene *s, const pack_file *file, const option_list *names, double time_s);
-/* A player's first controller as it was made; its pose, to its matrices and the scene's weights. */
+/* Reset a player's first controller; pose it into the player's matrices and the scene's weights. */
 int scene_reset_player(scene_player *p);
 void scene_pose_player(scene *s, scene_player *p);
 
@@ -83,9 +83,9 @@ typedef struct scene_pair {
 int scene_set_pair(scene *s, const pack_file *file, const scene_pair *pair, double time);
 /* A clip's length; an error likewise. */
 int scene_clip_seconds(scene *s, const pack_file *file, const char *clip_name, double *seconds);
-/* What moves the vertices of a skin's meshes, as the scene stands: matrices[the skin's joint_count][12]. */
+/* The palette of a skin in the scene's pose: matrices[the skin's joint_count][12]. */
 void scene_skin_matrices(const scene *s, const noh_skin *skin, float *matrices);
-/* The first `count` vertices of an item as they are drawn, on the CPU, before its node's placement (scene_world).
+/* The first `count` vertices of an item, morphed and skinned on the CPU, before its node's transform (scene_world).
  * Prints an error and returns an exit code; 0 on success. */
 int scene_deform(const scene *s, uint32_t item, uint32_t count, noh_vertex *vertices);
 /* NAME=VALUE for every mesh that has such a target; suggests the nearest name otherwise. */

@@ -50,7 +50,7 @@ void scene_detail_close(scene_detail *d)
     memset(d, 0, sizeof *d);
 }
 
-/* Of an item as it is posed, before its node's placement. */
+/* Bounds of an item in its pose, before its node's transform. */
 static void item_box(const scene_detail *d, const scene *s, uint32_t item, float box[6])
 {
     const noh_mesh *mesh = &s->meshes[s->items[item].mesh];

@@ -40,13 +40,13 @@ static noh_controller_desc controller_desc(const noh_anim_set *set)
     return desc;
 }
 
-/* A pose that is made, beside the scratch. */
+/* Bytes of one pose and its matrices, beside the scratch. */
 static uint64_t pose_bytes(const noh_anim_set *set)
 {
     return (uint64_t)set->joint_count * (sizeof(noh_transform) + 12 * sizeof(float)) + (uint64_t)set->float_count * sizeof(float);
 }
 
-/* NOT_FOUND is no failure of one player: another one's skeleton may be moved. */
+/* A player whose skeleton no clip fits (NOT_FOUND) is no error while the clips fit another one. */
 static int failed_for_good(const scene *s, const pack_file *file, uint32_t fitting, const noh_error *error)
 {
     if (error->result != NOH_OK && error->result != NOH_ERR_NOT_FOUND) {
@@ -118,7 +118,7 @@ static int open_poses(scene_player *p)
     return !p->scratch_memory || !p->pose || !p->floats || noh_pose_scratch_init(p->scratch_memory, bytes, set, 1, &p->scratch, NULL);
 }
 
-/* 0 also where no clip fits: the player then has no set, and the error says why. */
+/* Also 0 where no clip fits: the player then has no set, and *error says why. */
 static int open_player(scene *s, const pack_file *file, uint32_t index, uint32_t controllers, noh_error *error)
 {
     const noh_motion_set_desc desc = set_desc(s, file, index, controllers);
@@ -209,7 +209,7 @@ static int has_motion(const scene_player *p, const char *name, uint32_t *motion)
     return p->set && *motion < p->set->anim.motion_count;
 }
 
-/* Whether one of the motions that play moves the floats of a group. */
+/* Whether a playing clip has tracks for the floats of a group. */
 static int is_moved(const scene_player *p, uint32_t group)
 {
     const noh_controller *c = p->controllers[0];
@@ -222,7 +222,7 @@ static int is_moved(const scene_player *p, uint32_t group)
     return 0;
 }
 
-/* The weights that are moved, to all items of their nodes. */
+/* Animated weights, to every item of their nodes. */
 static void take_weights(scene *s, const scene_player *p)
 {
     for (uint32_t i = 0; i < s->item_count; i++) {
@@ -250,11 +250,11 @@ void scene_pose_player(scene *s, scene_player *p)
     }
 }
 
-/* On the player's first track that is free. */
+/* On the first free track. */
 static int start_clip(scene *s, scene_player *p, uint32_t motion, double time_s)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
-    const double limit_s = 1e8; /* within what a track's position can be */
+    const double limit_s = 1e8; /* a track's position cannot be larger */
     noh_controller *c = p->controllers[0];
     noh_track_desc desc;
     uint32_t track = 0;

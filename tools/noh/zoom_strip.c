@@ -76,7 +76,7 @@ int zoom_strip_take(zoom_strip *s, zoom *z, const noh_gl_camera *camera, uint32_
     return status;
 }
 
-/* Upright, behind what it covers the background. */
+/* Flipped upright, and opaque. */
 static void place(const zoom_picture *p, uint8_t *rgba, uint32_t width, uint32_t left, uint32_t top)
 {
     for (uint32_t y = 0; y < p->size; y++) {

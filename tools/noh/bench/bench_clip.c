@@ -15,8 +15,8 @@
 #define SAMPLE_NS 2e6
 #define CHECK_TIMES 200u
 #define TOLERANCE 1e-3f
-#define TOLERANCE_LENGTH 1e-2f /* keys of odd rates lie up to a tick, 1/48,000 s, beside their frames */
-#define SEEK_JOINTS 31.0  /* a seek is told for a body of so many */
+#define TOLERANCE_LENGTH 1e-2f /* keys of odd sample rates lie up to a tick, 1/48,000 s, off their frames */
+#define SEEK_JOINTS 31.0  /* a seek is reported for a skeleton of this size */
 #define EVERYTHING 0xffffffffu
 
 typedef struct clip_bench {

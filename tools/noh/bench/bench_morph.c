@@ -42,7 +42,7 @@ static void run_frame(void *self, uint32_t frame)
 
 /* ---- methods ---- */
 
-/* Take a method whose open said `status`, check it; one that this GL lacks is left out. */
+/* Check a method whose open returned `status`, and add it; one that this GL lacks is left out. */
 static int take(morph_job *j, int status)
 {
     bench_method *m = &j->methods[j->method_count];

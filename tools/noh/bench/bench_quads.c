@@ -42,7 +42,7 @@ static uint32_t *invert(const uint32_t *artist, uint32_t count)
     return order;
 }
 
-/* The pack's mesh with its vertices put back; `arrays` takes what must be freed. */
+/* The pack's mesh in the asset's vertex order; the caller frees `arrays`. */
 static int put_back(const quads_method *q, const uint32_t *artist, noh_mesh *out, void *arrays[3])
 {
     const noh_mesh *mesh = q->stage->mesh;
@@ -337,7 +337,7 @@ int bench_open_quads(bench_method *m, bench_stage *s, const uint32_t *artist)
     m->prepare = prepare;
     m->bind = bind;
     m->close = close_quads;
-    m->normal_slack = 3e-2; /* its differences are half floats, and a sum of many may be short */
+    m->normal_slack = 3e-2; /* its differences are half floats, and a sum of many may have a small length */
     status = create_mesh(q, artist);
     m->mesh = &q->drawn;
     m->order = q->order;

@@ -1,4 +1,4 @@
-/* bench_report.c: the rows, and what the targets weigh, for people and for machines. */
+/* bench_report.c: rows and storage, as text and as JSON. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -80,7 +80,7 @@ static int list_storage(bench_job *job, storage_row rows[STORAGE_MAX])
     return count;
 }
 
-/* ---- for people ---- */
+/* ---- text ---- */
 
 static void print_head(const bench_job *job)
 {
@@ -155,7 +155,7 @@ void bench_print(bench_job *job)
     }
 }
 
-/* ---- for machines ---- */
+/* ---- JSON ---- */
 
 static void json_rows(json *j, const bench_rows *rows)
 {

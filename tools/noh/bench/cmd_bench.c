@@ -17,7 +17,7 @@ typedef struct bench_args {
     int as_json, quick;
 } bench_args;
 
-/* The mesh with the most pairs is what is benched. */
+/* The mesh with the most pairs is measured. */
 static void choose_mesh(bench_job *job)
 {
     uint32_t most = 0;
@@ -109,7 +109,7 @@ static int open_packs(bench_job *job, const bench_args *a)
     return status;
 }
 
-/* A GL only where something is drawn. */
+/* A GL context only where something is drawn. */
 static int bench_packs(bench_job *job, const bench_args *a)
 {
     int status;
@@ -117,7 +117,7 @@ static int bench_packs(bench_job *job, const bench_args *a)
     if (!job->has_mesh) {
         return bench_all(job, a);
     }
-    setenv("LP_NUM_THREADS", "0", 0); /* llvmpipe draws on this thread: what is counted is work, not waking others for it */
+    setenv("LP_NUM_THREADS", "0", 0); /* llvmpipe draws on this thread, so that work is timed and not the waking of others */
     status = gpu_open(&job->g, a->driver);
     if (!status) {
         bench_clock_open(&job->gl_clock, &job->g);
