@@ -125,14 +125,14 @@ float noh_detail_depth(const float view_projection[16], const float world[12], c
     return nearest;
 }
 
-/* What the whole knob is in metres, at a scale. */
+/* The quality setting in metres, at a scale. */
 static double knob_metres(const noh_detail_settings *s, float pixels_per_metre)
 {
     double pixels = s->pixels > 0.0f ? (double)s->pixels : 1.0;
     return pixels_per_metre > 0.0f ? pixels / (double)pixels_per_metre : 1e300;
 }
 
-/* The thresholds of one kind, in metres: a level is left over `refine`, one is entered up to `coarsen`. */
+/* The thresholds of one kind, in metres: a level is left when its error is above `refine`, entered up to `coarsen`. */
 typedef struct limits {
     double refine, coarsen;
 } limits;
@@ -179,7 +179,8 @@ static void choose_mesh(noh_detail *d, const errors *e, const noh_detail_setting
     }
 }
 
-/* A rate that is coarser can only be worse: what was measured is made to say so. */
+/* Measured errors may fall from one update rate to a lower one by chance: raise them so that they never do, and add the
+ * clips' own. */
 static errors rate_errors(const noh_detail_table *t, const float *rate_error_m)
 {
     errors e = { { 0.0f }, 1, 0 };
@@ -192,7 +193,7 @@ static errors rate_errors(const noh_detail_table *t, const float *rate_error_m)
     return e;
 }
 
-/* What was chosen before has no say. */
+/* Begin again from the finest levels. */
 static void forget_levels(noh_detail *d)
 {
     d->fade_ticks = 0;
@@ -315,7 +316,7 @@ uint32_t noh_detail_influence_count(const noh_detail *d, const noh_detail_table 
 
 /* ---- targets ---- */
 
-/* What leaving one target out costs, in metres. Not a number: it is never below a limit. */
+/* The error of leaving one target out, metres. NaN compares above every limit, so such a target is kept. */
 static float cost_of(const float *weights, const float *reach_m, uint32_t i)
 {
     float product = weights[i] * reach_m[i];
@@ -339,7 +340,7 @@ static uint32_t bits_of(float value)
 
 #define LARGEST_BITS 0x7f7fffffu /* the largest finite float */
 
-/* The costs up to a limit, and those next to it on both sides. */
+/* The sum of the costs up to a limit, and the costs next to the limit on both sides. */
 typedef struct cut {
     double sum;
     float below, above; /* the largest up to the limit; the smallest over it, infinite where there is none */
@@ -358,9 +359,11 @@ static cut cut_at(const float *weights, const float *reach_m, uint32_t count, fl
     return c;
 }
 
-/* Of the largest limit such that everything up to it may go, the bits: bisection over the floats, whose order is that of
- * their bits, from cost to cost. The next float after it is then a cost of which not all may go. *sum of what goes.
- * What is begun with: as many as there are of an equal part of the room fit; what is larger than the room does not. */
+/* Find the largest limit such that all costs up to it fit into the room together, and return its bits. Sorting the costs
+ * would need memory; instead this bisects over the limit. Floats that are not negative have the order of their bits, so at
+ * most 31 halvings separate any two, and each pass tells the nearest costs on both sides, which lets the search step from
+ * cost to cost. The next float above the result is then a cost of which not all fit: noh_detail_targets takes those by
+ * index. The search starts between room / (count + 1), which always fits, and the room itself. *sum is that of what fits. */
 static uint32_t largest_limit(const float *weights, const float *reach_m, uint32_t count, double room, double *sum)
 {
     const float most = room < (double)float_of(LARGEST_BITS) ? (float)room : float_of(LARGEST_BITS);
@@ -371,7 +374,7 @@ static uint32_t largest_limit(const float *weights, const float *reach_m, uint32
         if (c.sum <= room) {
             *sum = c.sum;
             fits = bits_of(c.above) - 1u;
-            over = middle == bits_of(most) ? fits + 1u : over; /* none of the others has room alone */
+            over = middle == bits_of(most) ? fits + 1u : over; /* the others are larger than the whole room */
         } else {
             over = bits_of(c.below);
         }
@@ -392,7 +395,7 @@ uint32_t noh_detail_targets(noh_detail *d, const noh_detail_settings *settings, 
     for (uint32_t i = 0; i < count; i++) {
         float cost = cost_of(weights, reach_m, i);
         int skip = cost <= limit;
-        if (!skip && cost <= next && skipped + (double)cost <= room) { /* equal ones go by index */
+        if (!skip && cost <= next && skipped + (double)cost <= room) { /* of equal costs the first by index */
             skip = 1;
             skipped += (double)cost;
         }

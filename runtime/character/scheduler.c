@@ -50,7 +50,7 @@ void noh_schedule_spend(noh_schedule *s, uint32_t cost)
     s->spent += cost;
 }
 
-/* A binary heap, the most urgent first. */
+/* A binary heap with the most urgent item on top: building it is linear in the offers, and only what is served is sorted. */
 static int before(const noh_schedule_item *a, const noh_schedule_item *b)
 {
     return a->urgency != b->urgency ? a->urgency > b->urgency : a->instance < b->instance;
