@@ -251,7 +251,7 @@ void noh_character_update_begin(noh_character *ch, const noh_anim_set *set, noh_
 {
     const noh_controller *c = controller_of(ch);
     /* The pose of the next update is found by playing a copy of the controller to that tick without firing callbacks: the
-     * future is known as far as nobody changes it. */
+     * future is known, unless a program changes it. */
     noh_time_update u = noh_time_lod_update(&ch->time);
     int64_t ahead = noh_clock_since(u.pose_clock, noh_character_clock(ch));
     NOH_ASSERT(ch && set && scratch && set->joint_count == ch->joint_count && set->float_count == ch->float_count);
