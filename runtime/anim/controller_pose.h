@@ -37,7 +37,7 @@ void noh_controller_pose(const noh_controller *c, const noh_anim_set *set, noh_p
 
 /* Root displacement since the last call, weighted as the pose is at joint 0; additive tracks do not count, nor do clips that
  * animate no joints. Seeks do not move the root, and drop what their track had moved since the last call. Zero without
- * set->roots. */
+ * set->roots. All roots of a set must have the same up axis. */
 noh_root_pose noh_controller_root_motion(noh_controller *c, const noh_anim_set *set);
 
 /* A transition, wrapped around any change of the tracks:

@@ -70,31 +70,53 @@ static errors errors_of(const noh_detail_table *t, noh_detail_kind kind)
     return e;
 }
 
+/* Whether one kind's array is there, and short enough. */
+static int is_list(const void *levels, uint32_t count)
+{
+    return count <= NOH_DETAIL_LEVELS_MAX && (levels || !count);
+}
+
+static const char *bad_counts(const noh_detail_table *t)
+{
+    if (!is_list(t->meshes, t->mesh_level_count)) return "meshes: NULL, or more than NOH_DETAIL_LEVELS_MAX";
+    if (t->mesh_level_first && t->mesh_level_first >= t->mesh_level_count) return "mesh_level_first is not below mesh_level_count";
+    if (!is_list(t->joints, t->joint_level_count)) return "joints: NULL, or more than NOH_DETAIL_LEVELS_MAX";
+    if (!is_list(t->influences, t->influence_level_count)) return "influences: NULL, or more than NOH_DETAIL_LEVELS_MAX";
+    return NULL;
+}
+
+static const char *bad_level(const noh_detail_table *t, noh_detail_kind kind, uint32_t level)
+{
+    static const char *const what[] = { "error of a mesh level is not finite, negative, or below that of a finer one",
+                                        "error of a joint level is not finite, negative, or below that of a finer one",
+                                        "error of an influence level is not finite, negative, or below that of a finer one" };
+    const errors e = errors_of(t, kind);
+    if (!(e.error_m[level] >= (level ? e.error_m[level - 1u] : 0.0f) && e.error_m[level] <= 1e30f)) return what[kind];
+    if (kind == NOH_DETAIL_JOINTS && t->joints[level].joint_count == 0) return "joints of a joint level: there must be at least one";
+    if (kind == NOH_DETAIL_INFLUENCES && t->influences[level].influence_count == 0) {
+        return "influences of an influence level: there must be at least one";
+    }
+    return NULL;
+}
+
 noh_result noh_detail_table_check(const noh_detail_table *t, noh_error *error)
 {
-    static const char *const what[] = { "error of a mesh level is not finite, negative, or below that of a finer one", "error of a joint level is not finite, negative, or below that of a finer one", "error of an influence level is not finite, negative, or below that of a finer one" };
+    const char *what;
     NOH_ASSERT(t);
-    if (t->mesh_level_count > NOH_DETAIL_LEVELS_MAX || (t->mesh_level_count && !t->meshes)) return noh_fail(error, NOH_ERR_ARG, "meshes: NULL, or more than NOH_DETAIL_LEVELS_MAX", 0, 0);
-    if (t->mesh_level_first && t->mesh_level_first >= t->mesh_level_count) return noh_fail(error, NOH_ERR_ARG, "mesh_level_first is not below mesh_level_count", 0, 0);
-    if (t->joint_level_count > NOH_DETAIL_LEVELS_MAX || (t->joint_level_count && !t->joints)) return noh_fail(error, NOH_ERR_ARG, "joints: NULL, or more than NOH_DETAIL_LEVELS_MAX", 0, 0);
-    if (t->influence_level_count > NOH_DETAIL_LEVELS_MAX || (t->influence_level_count && !t->influences)) {
-        return noh_fail(error, NOH_ERR_ARG, "influences: NULL, or more than NOH_DETAIL_LEVELS_MAX", 0, 0);
+    what = bad_counts(t);
+    if (what) {
+        return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }
     for (int kind = 0; kind <= NOH_DETAIL_INFLUENCES; kind++) {
-        errors e = errors_of(t, (noh_detail_kind)kind);
-        for (uint32_t i = 0; i < e.count; i++) {
-            if (!(e.error_m[i] >= (i ? e.error_m[i - 1u] : 0.0f) && e.error_m[i] <= 1e30f)) {
-                return noh_fail(error, NOH_ERR_DATA, what[kind], i, 0);
-            }
+        const uint32_t count = errors_of(t, (noh_detail_kind)kind).count;
+        for (uint32_t i = 0; i < count; i++) {
+            what = bad_level(t, (noh_detail_kind)kind, i);
+            if (what) return noh_fail(error, NOH_ERR_DATA, what, i, 0);
         }
     }
-    for (uint32_t i = 0; i < t->joint_level_count; i++) {
-        if (t->joints[i].joint_count == 0) return noh_fail(error, NOH_ERR_DATA, "joints of a joint level: there must be at least one", i, 0);
+    if (!(t->clip_error_m >= 0.0f && t->clip_error_m <= 1e30f)) {
+        return noh_fail(error, NOH_ERR_DATA, "error of the clips is negative or not finite", 0, 0);
     }
-    for (uint32_t i = 0; i < t->influence_level_count; i++) {
-        if (t->influences[i].influence_count == 0) return noh_fail(error, NOH_ERR_DATA, "influences of an influence level: there must be at least one", i, 0);
-    }
-    if (!(t->clip_error_m >= 0.0f && t->clip_error_m <= 1e30f)) return noh_fail(error, NOH_ERR_DATA, "error of the clips is negative or not finite", 0, 0);
     return NOH_OK;
 }
 

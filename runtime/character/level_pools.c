@@ -153,6 +153,27 @@ void noh_level_pools_ask(noh_level_pools *p, uint32_t instance, uint32_t level, 
 
 /* ---- sharing ---- */
 
+#if NOH_ASSERT_LEVEL >= 2
+/* Every slot is free or held: the counts of each pool agree. */
+static int is_consistent(const noh_level_pools *p)
+{
+    uint32_t held[NOH_LEVEL_POOLS_MAX] = { 0 };
+    for (uint32_t i = 0; i < p->instance_count; i++) {
+        const place *at = &p->places[i];
+        if (at->held && (at->pool >= p->pool_count || at->slot >= p->pools[at->pool].slot_count)) {
+            return 0;
+        }
+        held[at->pool] += at->held;
+    }
+    for (uint32_t i = 0; i < p->pool_count; i++) {
+        if (held[i] + p->pools[i].free_count != p->pools[i].slot_count) {
+            return 0;
+        }
+    }
+    return 1;
+}
+#endif
+
 /* Let a key sink in a heap whose top is the lowest. */
 static void sift(uint64_t *keys, uint32_t at, uint32_t count)
 {
@@ -272,6 +293,7 @@ static void mark(uint32_t *high_water, uint32_t value)
 
 void noh_level_pools_share(noh_level_pools *p)
 {
+    NOH_ASSERT(p);
     if (!all_fit(p)) {
         sort_keys(p->keys, p->stats.asked);
     }
@@ -282,6 +304,7 @@ void noh_level_pools_share(noh_level_pools *p)
     for (uint32_t i = 0; i < p->pool_count; i++) {
         mark(&p->stats.used_high_water[i], p->stats.used[i]);
     }
+    NOH_VALIDATE(is_consistent(p));
 }
 
 /* ---- looking ---- */
