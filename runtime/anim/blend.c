@@ -43,6 +43,8 @@ void noh_blend_begin_over(noh_blend *blend)
     blend->covers = 1;
 }
 
+/* Adding unit quaternions and normalising the sum is normalised linear interpolation for any number of poses. Each is added
+ * with the sign that makes its dot product with the sum so far at least 0, so the length of the sum never falls. */
 static void add_joint(noh_transform *sum, const noh_transform *joint, float weight)
 {
     float turn = noh_quat_dot(sum->rotation, joint->rotation) < 0.0f ? -weight : weight;

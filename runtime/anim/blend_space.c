@@ -30,7 +30,7 @@ typedef struct nearest_edge {
     uint32_t a, b;
 } nearest_edge;
 
-/* Take an edge if it is nearer; of edges as near, the shorter one. */
+/* Keep an edge if it is nearer to (x, y); of equally near ones the shorter. */
 static void try_edge(const noh_space_2d *s, uint32_t a, uint32_t b, float x, float y, nearest_edge *best)
 {
     float ex = s->points[2u * b ] - s->points[2u * a ], ey = s->points[2u * b + 1u] - s->points[2u * a + 1u];
@@ -58,7 +58,7 @@ static void edge_weights(const noh_space_2d *s, float x, float y, float *weights
             try_edge(s, s->triangles[3u * i + k], s->triangles[3u * i + (k + 1) % 3], x, y, &best);
         }
     }
-    if (s->triangle_count == 0) { /* a line: the shortest of its overlapping edges are the right ones */
+    if (s->triangle_count == 0) { /* all points on a line: of the overlapping edges the shortest joins neighbours */
         for (uint32_t a = 0; a < s->point_count; a++) {
             for (uint32_t b = a + 1; b < s->point_count; b++) {
                 try_edge(s, a, b, x, y, &best);
@@ -178,8 +178,8 @@ static void sort_points(mesh *m)
     }
 }
 
-/* The first points of the sweep that lie on one line, and the first that does not:
- * a fan. Returns how many points that took; count when all are on a line. */
+/* The first triangles of the sweep: a fan from the first point that is off the line through those before it to all of them.
+ * Returns the number of points used; count when all are on one line. */
 static uint32_t first_fan(mesh *m)
 {
     uint32_t k = 2, tip;
@@ -201,7 +201,8 @@ static uint32_t first_fan(mesh *m)
     return k + 1;
 }
 
-/* Join a point outside the hull to every edge that it sees; those are neighbours. */
+/* Join a point to every hull edge that it sees. Points come in order of x, so each lies outside the hull of those before
+ * it, and the edges that it sees are neighbours: they leave the hull and two new edges take their place. */
 static void add_point(mesh *m, uint32_t p)
 {
     uint8_t hull[NOH_SPACE_POINTS_MAX + 1u];
@@ -223,7 +224,7 @@ static void add_point(mesh *m, uint32_t p)
     m->hull_count = count;
 }
 
-/* Turn the triangles' shared edge over if it is not Delaunay. */
+/* Flip the edge that two triangles share if it is not Delaunay: if the fourth point lies inside the circle of the other three. */
 static int flip(mesh *m, uint8_t *s, uint8_t *t)
 {
     for (uint32_t i = 0; i < 3; i++) {
@@ -241,7 +242,8 @@ static int flip(mesh *m, uint8_t *s, uint8_t *t)
 
 static void flip_all(mesh *m)
 {
-    /* Every flip lowers the lifted surface, so this ends; n^2 passes are far more than it takes. */
+    /* Lawson's algorithm (1977). Lift each point to the height x^2 + y^2: every flip lowers the surface of lifted triangles,
+     * so no triangulation comes twice and this ends; n^2 passes are far more than it takes. */
     uint32_t passes = m->count * m->count, flips = 1;
     while (flips && passes--) {
         flips = 0;

@@ -4,7 +4,7 @@
 
 #include "anim/clock_internal.h"
 
-#define CURVE_ONE 2097152 /* 128^3: the curves in integers, at whole and half slices */
+#define CURVE_ONE 2097152 /* 128^3: value 1 of the curves in integers, at whole and half slices */
 #define HALVES (2 * NOH_CHANGE_SLICES)
 
 NOH_STATIC_ASSERT(HALVES == 128, curve_one_is_a_cube);
@@ -21,7 +21,7 @@ static int64_t curve_fixed(uint32_t curve, int64_t halves)
     return curve == NOH_CURVE_SMOOTHSTEP ? halves * halves * (3 * HALVES - 2 * halves) : halves * (CURVE_ONE / HALVES);
 }
 
-/* difference * factor / CURVE_ONE, for differences whose product would not fit. */
+/* difference * factor / CURVE_ONE without the product, which would overflow. */
 static int64_t scaled(int64_t difference, int64_t factor)
 {
     return difference / CURVE_ONE * factor + difference % CURVE_ONE * factor / CURVE_ONE;
@@ -42,7 +42,7 @@ static float float_of(int64_t bits)
     return value;
 }
 
-/* ---- asking ---- */
+/* ---- adding ---- */
 
 static const char *bad_value(const noh_change_desc *d)
 {
@@ -74,7 +74,7 @@ static int64_t wanted(const noh_change_desc *d)
     }
 }
 
-/* The entry to fill: one that waits for the same, else a free one, else NULL. */
+/* The entry to fill: one of the same kind and track waiting for the same tick, else a free one, else NULL. */
 static noh_change *slot(noh_change *table, uint32_t count, const noh_change *c)
 {
     noh_change *free_one = NULL;
@@ -190,7 +190,7 @@ static void set_weight(const noh_change *c, noh_change_target *t, float weight)
     }
 }
 
-/* A change is over: its end value, exactly. A travelling position is there already. */
+/* A change is over: set its end value exactly. A travelling position has arrived already. */
 static void finish(noh_change *c, noh_change_target *t)
 {
     noh_track *track = track_of(c, t);
@@ -230,7 +230,7 @@ static void follow(const noh_change *c, noh_change_target *t)
     }
 }
 
-/* Running changes first: what begins takes over from the value of this very tick. */
+/* Running changes first, so that one that begins starts from the value of this very tick. */
 void noh_changes_update(noh_change *table, uint32_t count, noh_change_target *target)
 {
     NOH_ASSERT(target && (table || !count));
@@ -256,8 +256,8 @@ void noh_changes_update(noh_change *table, uint32_t count, noh_change_target *ta
 
 /* ---- rates ---- */
 
-/* Whole ticks in which a change is constant. Shorter than NOH_CHANGE_SLICES ticks, a
- * change has empty slices; their part of the curve goes to the next one. */
+/* A stretch of whole ticks in which a change is constant. A change shorter than NOH_CHANGE_SLICES ticks has empty slices;
+ * their part of the curve goes to the next one that is not empty. */
 typedef struct slice {
     int64_t begin, end;   /* ticks after the change's start */
     int64_t first, after; /* the part of the curve, in slices */
@@ -280,7 +280,8 @@ static slice slice_at(const noh_change *c, int64_t elapsed)
     return s;
 }
 
-/* Speed of one slice; returns how long it holds. */
+/* The speed of one slice: the curve's value in its middle, which is also its mean over the slice for a linear curve, and
+ * within 1/64^2 of it for the smoothstep. Returns up to when it holds. */
 static int64_t speed_rate(const noh_change *c, int64_t elapsed, int32_t *speed)
 {
     slice s = slice_at(c, elapsed);
@@ -289,8 +290,9 @@ static int64_t speed_rate(const noh_change *c, int64_t elapsed, int32_t *speed)
     return s.end;
 }
 
-/* Rate of a travel: each slice's way cut into whole steps, the longer ones last, so
- * that it ends exactly where the curve says. Returns how long the rate holds. */
+/* The speed of a travel. The distance of each slice is cut into whole steps of one tick, in two sizes that differ by one,
+ * the longer ones last (as Bresenham's line would, but in two runs), so that each slice ends exactly where the curve says.
+ * Returns up to when the speed holds. */
 static int64_t position_rate(const noh_change *c, int64_t elapsed, int64_t *rate)
 {
     slice s = slice_at(c, elapsed);

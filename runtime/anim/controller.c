@@ -10,9 +10,9 @@
 /* Whether a controller was made for a set like this one: for asserts. */
 #define IS_SET_OF(c, set) ((set) && (set)->motion_count == (c)->motion_count && (set)->joint_count == (c)->joint_count)
 
-/* flags of our own, above the public ones */
+/* private flags, above the public ones */
 #define STEPPING 64u     /* inside noh_controller_step */
-#define SYNC_TOUCHED 128u /* rates of the sync groups are to be found anew */
+#define SYNC_TOUCHED 128u /* the sync groups need new speeds before the next grid tick */
 
 /* ---- memory ---- */
 
@@ -139,7 +139,7 @@ static noh_change_target target_of(noh_controller *c, const noh_anim_set *set)
     return t;
 }
 
-/* After the table has been changed: the sync groups, and how full it has been. */
+/* After a change of the table: note its high-water mark, and whether a sync group is affected. */
 static void settle(noh_controller *c, const noh_change_target *t)
 {
     const noh_change *changes = changes_of(c);
@@ -153,7 +153,7 @@ static void settle(noh_controller *c, const noh_change_target *t)
 
 /* ---- tracks ---- */
 
-/* The leader of the group that a track would join, or the group's misfit. */
+/* Whether the markers of a joining track match those of its sync group. */
 static int sync_fits(const noh_controller *c, const noh_anim_set *set, uint32_t track, const noh_track *joining)
 {
     for (uint32_t i = 0; i < c->track_count; i++) {
@@ -208,7 +208,7 @@ static void gather_group(noh_controller *c, const noh_anim_set *set, uint32_t tr
     c->flags |= SYNC_TOUCHED;
 }
 
-/* The position of a tick of the pass, or cycle, that a track is in. */
+/* The position of a tick of the present pass, or ping-pong cycle. */
 static int64_t seek_position(const noh_track *t, const noh_motion *m, int64_t tick)
 {
     int64_t legs = noh_time_legs(t->position, m->duration_ticks, (noh_loop)t->loop);
@@ -353,8 +353,7 @@ noh_result noh_controller_cross_fade(noh_controller *c, const noh_anim_set *set,
 
 /* ---- time ---- */
 
-/* What a track has passed by the tick at which the controller stands, kept apart from
- * its state, which the callback may change. */
+/* A track's passage up to the present tick, kept apart from the track itself, which the callback may change. */
 typedef struct passed {
     noh_passage passage;
     float weight;
@@ -402,7 +401,7 @@ static void move_track(noh_track *t, const noh_motion *m, const noh_passage *p)
     t->placed = (uint8_t)(t->placed && t->rate == 0);
 }
 
-/* Move all tracks to a tick; returns how many passed keys. */
+/* Move all tracks on; returns how many may have passed keys. */
 static uint32_t move_tracks(noh_controller *c, const noh_anim_set *set, int64_t ticks, passed *out)
 {
     noh_track *tracks = noh_controller_tracks(c);
@@ -454,8 +453,8 @@ static int has_sync(const noh_controller *c)
     return any;
 }
 
-/* Sync groups get new rates at every multiple of NOH_SYNC_TICKS and when something
- * has touched them. Returns up to when they hold. */
+/* Give sync groups new speeds at every multiple of NOH_SYNC_TICKS, and whenever one was changed. Returns the tick up to
+ * which the speeds hold. */
 static int64_t sync_rates(noh_controller *c, const noh_anim_set *set, int64_t end)
 {
     int64_t next = noh_clock_add(c->clock, NOH_SYNC_TICKS - c->clock % NOH_SYNC_TICKS);
@@ -469,7 +468,7 @@ static int64_t sync_rates(noh_controller *c, const noh_anim_set *set, int64_t en
     return next < end ? next : end;
 }
 
-/* The first tick up to `end` at which a key has been passed; else `end`. */
+/* The first tick, up to `end`, by which a key has been passed; else `end`. */
 static int64_t next_event(const noh_controller *c, const noh_anim_set *set, int64_t end)
 {
     for (uint32_t i = 0; i < c->track_count; i++) {
@@ -481,6 +480,10 @@ static int64_t next_event(const noh_controller *c, const noh_anim_set *set, int6
     return end;
 }
 
+/* A step goes from one tick at which anything happens to the next: a change begins or ends or enters a new slice, a sync
+ * group gets new speeds, a key is passed. In between every track moves at a constant speed, so its position is one
+ * multiplication, exact in integers. That is why the events, and the state afterwards, are the same however time is cut:
+ * the ticks at which something happens depend on the clock alone, never on where a step ends. */
 uint32_t noh_controller_step(noh_controller *c, const noh_anim_set *set, uint32_t ticks, noh_event_fn fn, void *user)
 {
     int64_t end = noh_clock_add(c->clock, ticks);

@@ -58,12 +58,12 @@ noh_result noh_pose_scratch_init(void *memory, size_t bytes, const noh_anim_set 
 
 /* ---- the pose ---- */
 
-/* What is posed: a controller, some ticks ago. */
+/* A controller as it was some ticks ago. */
 typedef struct view {
     const noh_controller *c;
     const noh_anim_set *set;
     noh_pose_scratch *scratch;
-    int64_t ago; /* ticks: tracks are taken where they would have been, at their present rates */
+    int64_t ago; /* ticks: tracks are taken where they were then, had they always had their present speeds */
 } view;
 
 static int is_sampled(const noh_controller *c, const noh_track *t)
@@ -101,7 +101,7 @@ static uint32_t sum_group(const view *v, noh_track_group group)
     return count;
 }
 
-/* Row C5.2: low tracks among themselves, high tracks among themselves, then one over the other. */
+/* Blend the low tracks, blend the high tracks, lay the high result over the low one. */
 static void blend_groups(const view *v, noh_transform *pose, float *floats)
 {
     noh_pose_scratch *s = v->scratch;
@@ -114,7 +114,7 @@ static void blend_groups(const view *v, noh_transform *pose, float *floats)
     }
 }
 
-/* The track whose motion is the whole blend, if there is just one: it need not be summed. */
+/* The track that is the whole blend, if there is just one and it has no mask: its clip needs no sum. */
 static const noh_track *only_track(const view *v)
 {
     const noh_track *only = NULL;
@@ -130,7 +130,7 @@ static const noh_track *only_track(const view *v)
     return only;
 }
 
-/* The reference of an additive track, into the blend's sums, which are free by now. */
+/* The reference pose of an additive track, into the blend's sums, which are free by now. */
 static void reference_pose(const view *v, const noh_track *t, noh_transform *pose, float *floats)
 {
     const noh_anim_set *set = v->set;
@@ -192,7 +192,7 @@ void noh_controller_inertia_add(const noh_controller *c, int64_t ago, noh_transf
     }
 }
 
-/* The pose some ticks ago, with or without what is left of a transition. */
+/* The pose some ticks ago, with or without the rest of a transition. */
 static void evaluate(const noh_controller *c, const noh_anim_set *set, noh_pose_scratch *scratch, int64_t ago, int inertia,
                      noh_transform *pose, float *floats)
 {
@@ -280,7 +280,8 @@ noh_result noh_controller_inertia_begin(noh_controller *c, const noh_anim_set *s
 
 /* ---- root motion ---- */
 
-/* A weighted sum of moves. Turns are taken as angles of -half..half a turn. */
+/* A weighted sum of displacements. Turns count as angles of -1/2 to 1/2 turn. `total` is the unmasked weight of the tracks that
+ * take part: `weight` over it is the mean mask, by which a high group covers the low one. */
 typedef struct root_sum {
     double translation[3], turn, weight, total;
 } root_sum;

@@ -1,6 +1,7 @@
 #include "anim/events.h"
 
-/* The whole ticks that a passage covers, both ends included. */
+/* The whole ticks that a passage covers, both ends included. Occurrences lie on whole ticks, so this is all that is
+ * needed of the passage's 1/65,536 ticks; which end is open is settled here, once. */
 typedef struct span {
     int64_t low, high;
 } span;
@@ -30,7 +31,8 @@ static span passage_span(const noh_passage *p)
     return s;
 }
 
-/* The legs whose ticks meet the span. The tick between two legs belongs to both. */
+/* A leg is one traversal of the clip: a pass, or half of a ping-pong cycle. Find those that meet the span. The tick between
+ * two legs belongs to both, since keys at tick 0 and at tick `duration` both occur there in a repeating clip. */
 static legs passage_legs(const noh_passage *p, span s)
 {
     int64_t d = (int64_t)p->duration_ticks;
@@ -107,7 +109,7 @@ int noh_events_first(const noh_event_key *keys, uint32_t count, const noh_passag
     legs l = passage_legs(passage, s);
     leg g;
     NOH_ASSERT(passage && position_tick && (keys || !count));
-    /* every second whole leg holds every key, so this ends after three legs at most */
+    /* Every whole leg forth contains every key, so this ends after three legs at most. */
     while (count && next_leg(passage, s, &l, &g)) {
         uint32_t begin = keys_before(keys, count, g.low), end = keys_before(keys, count, g.high + 1);
         if (begin < end) {

@@ -74,7 +74,7 @@ static noh_graph_view view_of(const noh_graph_state *s, const noh_graph *g)
     return v;
 }
 
-/* Give the tracks what their clips weigh: in the pose, keeping time beside it, or standing still. */
+/* Give each track its clip's weight and mode: in the pose, playing outside of it, or off. */
 static void weigh_tracks(noh_graph_state *s, const noh_graph *g)
 {
     noh_graph_view v = view_of(s, g);
@@ -91,7 +91,7 @@ static void weigh_tracks(noh_graph_state *s, const noh_graph *g)
     }
 }
 
-/* Back to the beginning: clips at their starts, machines in their first states. */
+/* Reset a subtree: clips to their starts, machines to their first states. */
 static noh_result start_subtree(noh_graph_state *s, const noh_graph *g, const noh_anim_set *set, uint32_t node, noh_error *error)
 {
     noh_result result = NOH_OK;
@@ -180,7 +180,7 @@ uint32_t noh_graph_machine_state(const noh_graph_state *state, uint32_t machine)
 
 /* ---- state machines ---- */
 
-/* Whether a state's first clip ends within so many ticks, or has. */
+/* Whether a state's first clip ends within this many ticks, or has ended. */
 static int is_ending(noh_graph_state *s, const noh_graph *g, const noh_anim_set *set, uint32_t child, uint32_t ticks)
 {
     const noh_graph_node *clip = &g->nodes[noh_graph_first_of(g, child)];
@@ -234,7 +234,7 @@ static void take_first(noh_graph_state *s, const noh_graph *g, const noh_anim_se
     }
 }
 
-/* Inertial transitions that no pose was asked for: switch without. */
+/* No pose was asked for since the last step: its inertial transitions switch without inertia. */
 static void drop_switches(noh_graph_state *s)
 {
     for (uint32_t i = 0; i < s->machine_count; i++) {
@@ -247,7 +247,8 @@ static void drop_switches(noh_graph_state *s)
     s->inertia_ticks = 0;
 }
 
-/* Machines that are in play, outer ones first: a state entered anew resets those inside it. */
+/* Run the machines in play, outer ones first (parents come after their children): entering a state resets the machines
+ * inside it. */
 static void run_machines(noh_graph_state *s, const noh_graph *g, const noh_anim_set *set)
 {
     noh_graph_view v = view_of(s, g);

@@ -127,7 +127,9 @@ static const char *bad_node(const noh_graph *g, const noh_anim_set *set, const n
     }
 }
 
-/* Post-order: a node's children are the last finished subtrees, in order. */
+/* Post-order, checked with a stack of finished subtrees as in a postfix calculator: a node's children must be the topmost
+ * ones, in order, and are replaced by the node. One subtree, the whole graph, remains. That every node has one parent
+ * follows, and that the graph has no cycle. */
 static const char *bad_order(const noh_graph *g, uint32_t *where)
 {
     uint16_t done[NOH_GRAPH_NODES_MAX];
@@ -145,7 +147,7 @@ static const char *bad_order(const noh_graph *g, uint32_t *where)
     return count == 1 ? NULL : "more than one root: the last node must hold all others";
 }
 
-/* Slots count up in stored order, so that each is used once. */
+/* Numbers of clips and machines count up in stored order, so each is used once. */
 static const char *bad_slots(const noh_graph *g, uint32_t *where)
 {
     uint32_t clips = 0, machines = 0;
@@ -178,7 +180,7 @@ noh_result noh_graph_check(const noh_graph *graph, const noh_anim_set *set, noh_
     return what ? noh_fail(error, NOH_ERR_DATA, what, where, 0) : NOH_OK;
 }
 
-/* How many children of a node can weigh something at one time. */
+/* How many children of a node can have weight at one time. */
 static uint32_t live_children(const noh_graph_node *n)
 {
     uint32_t most = n->kind == NOH_NODE_SPACE_2D ? 3u : 2u;
@@ -193,7 +195,8 @@ uint32_t noh_graph_slots(const noh_graph *graph)
         const noh_graph_node *n = &graph->nodes[i];
         need[i] = 1;
         for (uint32_t k = 0; k < n->child_count; k++) {
-            /* while a child is evaluated, at most that many of its elder siblings wait */
+            /* While a child is evaluated, the buffers of its elder siblings wait, at most one less than can have weight: the
+             * numbering of Sethi and Ullman (1970) for registers, with a fixed order of children. */
             uint32_t waiting = k < live_children(n) - 1 ? k : live_children(n) - 1;
             uint32_t depth = need[graph->children[n->first_child + k]] + waiting;
             need[i] = (uint16_t)(depth > need[i] ? depth : need[i]);

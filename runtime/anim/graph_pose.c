@@ -73,7 +73,7 @@ static uint8_t take_slot(evaluation *e)
 {
     uint8_t i = 0;
     while (e->taken >> i & 1u) {
-        i++; /* noh_graph_slots says how far this can go */
+        i++; /* noh_graph_slots has counted how far this goes */
     }
     e->taken |= 1u << i;
     return i;
@@ -94,7 +94,7 @@ static void evaluate_clip(evaluation *e, uint32_t i)
     e->lacks[slot] = (uint8_t)(e->set->motions[t->motion].flags & LACKS);
 }
 
-/* The children that have a pose, and what each counts. */
+/* The children that have a pose, and their weights. */
 typedef struct parts {
     uint32_t count;
     uint8_t slots[3];
@@ -116,7 +116,7 @@ static parts parts_of(evaluation *e, const noh_graph_node *node)
     return p;
 }
 
-/* Sum by weight, as tracks are summed (row C5.4). */
+/* Blend the children by weight, as a controller blends tracks, into the first one's buffer. */
 static void sum_parts(evaluation *e, const parts *p)
 {
     static const noh_mask_view everywhere = { NULL, NULL };
@@ -136,7 +136,7 @@ static void sum_parts(evaluation *e, const parts *p)
     noh_blend_finish(b, e->set->bind_pose, e->set->float_defaults, e->scratch->slots[p->slots[0]], e->scratch->float_slots[p->slots[0]]);
 }
 
-/* Whether a subtree's motions are differences already: its first clip speaks for all. */
+/* Whether a subtree's clips are differences already; its first clip decides for all. */
 static int is_difference(const evaluation *e, uint32_t node)
 {
     const noh_graph *g = e->view.graph;

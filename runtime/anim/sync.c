@@ -7,7 +7,7 @@ static uint32_t interval_count(const noh_motion *m)
     return m->marker_count ? m->marker_count : 1u;
 }
 
-/* The marker at which phase 0 lies: the smallest id, the first of it. */
+/* The marker of phase 0: the first one of the smallest id. */
 static uint32_t canonical(const noh_anim_set *set, const noh_motion *m)
 {
     const noh_marker *markers = set->markers + m->first_marker;
@@ -20,7 +20,7 @@ static uint32_t canonical(const noh_anim_set *set, const noh_motion *m)
     return best;
 }
 
-/* Where the n-th marker lies, n from 0; past the last one they go on in the next pass. */
+/* The position of the n-th marker, n from 0; past the last one they continue in the next pass. */
 static int64_t marker_position(const noh_anim_set *set, const noh_motion *m, uint32_t n)
 {
     uint32_t count = interval_count(m);
@@ -35,7 +35,7 @@ noh_phase noh_sync_phase(const noh_anim_set *set, const noh_motion *motion, int6
     noh_phase p;
     NOH_ASSERT(set && motion && motion->duration_ticks > 0);
     if (rest < marker_position(set, motion, 0)) {
-        rest += noh_position_of(motion->duration_ticks); /* the last interval goes over the seam */
+        rest += noh_position_of(motion->duration_ticks); /* before the first marker: in the last interval, across the seam */
     }
     while (n + 1 < count && marker_position(set, motion, n + 1) <= rest) {
         n++;
@@ -118,7 +118,7 @@ static double interval_length(const noh_anim_set *set, const noh_motion *m, noh_
     return (double)(marker_position(set, m, n + 1) - marker_position(set, m, n));
 }
 
-/* Weighted mean of the group's speeds, in intervals per tick; the leader's own where nobody weighs anything. */
+/* Weighted mean of the group's phase speeds, in intervals per tick; the leader's own where all weights are 0. */
 static double mean_speed(const noh_anim_set *set, const noh_track *tracks, uint32_t track_count, uint32_t leader, noh_phase phase)
 {
     double sum = 0.0, weights = 0.0;
@@ -136,7 +136,10 @@ static int64_t rounded(double x)
     return (int64_t)(x < 0.0 ? x - 0.5 : x + 0.5);
 }
 
-/* The rate that brings a follower to the phase; never against the leader's direction. */
+/* The speed that brings a follower to the leader's phase in `ticks`. Of all positions with that phase (one in each pass) it
+ * takes the nearest to where the follower would be after covering as many passes as the leader; that keeps both in the
+ * same pass even where an interval is short in one clip and long in the other. A follower never moves against its leader:
+ * it would pass keys twice. It waits instead. */
 static void steer(const noh_anim_set *set, noh_track *track, noh_phase goal, double travelled, int64_t leader_rate, int64_t ticks)
 {
     const noh_motion *m = motion_of(set, track);

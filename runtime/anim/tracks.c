@@ -16,7 +16,7 @@ static const char *bad_desc(const noh_anim_set *set, const noh_track_desc *d)
     return NULL;
 }
 
-/* A track can be synchronised only where its motion goes round. */
+/* Only a repeating clip has a phase. */
 static const char *bad_sync(const noh_anim_set *set, const noh_track_desc *d)
 {
     const noh_motion *m = &set->motions[d->motion];
@@ -87,7 +87,8 @@ int64_t noh_track_next_event(const noh_track *track, const noh_anim_set *set, in
     }
     way = noh_position_of(at) - track->position;
     way = way < 0 ? -way : way;
-    /* rounded up: the first tick by which it has been passed. What lies under a placed track is passed by its first move. */
+    /* Rounded up: the first tick by which the key has been passed. A key exactly at a placed track's position is passed by
+     * its first move. */
     return way == 0 ? 1 : noh_ceil_div(way, rate);
 }
 

@@ -238,7 +238,7 @@ static void mix_floats(const float *a, const float *b, float part, uint32_t coun
     }
 }
 
-/* What is shown now becomes what is come from. */
+/* The mix that is shown now becomes the source pose. */
 static void keep_shown(noh_character *ch, uint32_t from, float part)
 {
     uint32_t to = from ^ 1u;
@@ -250,6 +250,8 @@ static void keep_shown(noh_character *ch, uint32_t from, float part)
 void noh_character_update_begin(noh_character *ch, const noh_anim_set *set, noh_character_scratch *scratch)
 {
     const noh_controller *c = controller_of(ch);
+    /* The pose of the next update is found by playing a copy of the controller to that tick without firing callbacks: the
+     * future is known, unless a program changes it. */
     noh_time_update u = noh_time_lod_update(&ch->time);
     int64_t ahead = noh_clock_since(u.pose_clock, noh_character_clock(ch));
     NOH_ASSERT(ch && set && scratch && set->joint_count == ch->joint_count && set->float_count == ch->float_count);
@@ -268,8 +270,9 @@ void noh_character_update_begin(noh_character *ch, const noh_anim_set *set, noh_
     ch->updates++;
 }
 
-/* Matrices of all joints: with inverse bind matrices, those that were not sampled have their parents' palette
- * matrix, which is what hanging their vertices on the parent comes to; without, they stand in the bind pose. */
+/* Matrices of all joints. With inverse bind matrices, a joint that was not sampled takes its parent's skinning matrix: that
+ * moves its vertices as if they hung on the parent, which is where the bind pose has them. Without, it takes its place in
+ * the bind pose relative to the parent, which comes to the same once a skin's inverse bind matrix is multiplied in. */
 static void make_palette(const noh_skeleton *skeleton, const noh_character_scratch *s, uint32_t joint_count, float *palette)
 {
     uint32_t count = skeleton->inverse_bind ? s->joint_count : joint_count;

@@ -70,31 +70,53 @@ static errors errors_of(const noh_detail_table *t, noh_detail_kind kind)
     return e;
 }
 
+/* Whether one kind's array is there, and short enough. */
+static int is_list(const void *levels, uint32_t count)
+{
+    return count <= NOH_DETAIL_LEVELS_MAX && (levels || !count);
+}
+
+static const char *bad_counts(const noh_detail_table *t)
+{
+    if (!is_list(t->meshes, t->mesh_level_count)) return "meshes: NULL, or more than NOH_DETAIL_LEVELS_MAX";
+    if (t->mesh_level_first && t->mesh_level_first >= t->mesh_level_count) return "mesh_level_first is not below mesh_level_count";
+    if (!is_list(t->joints, t->joint_level_count)) return "joints: NULL, or more than NOH_DETAIL_LEVELS_MAX";
+    if (!is_list(t->influences, t->influence_level_count)) return "influences: NULL, or more than NOH_DETAIL_LEVELS_MAX";
+    return NULL;
+}
+
+static const char *bad_level(const noh_detail_table *t, noh_detail_kind kind, uint32_t level)
+{
+    static const char *const what[] = { "error of a mesh level is not finite, negative, or below that of a finer one",
+                                        "error of a joint level is not finite, negative, or below that of a finer one",
+                                        "error of an influence level is not finite, negative, or below that of a finer one" };
+    const errors e = errors_of(t, kind);
+    if (!(e.error_m[level] >= (level ? e.error_m[level - 1u] : 0.0f) && e.error_m[level] <= 1e30f)) return what[kind];
+    if (kind == NOH_DETAIL_JOINTS && t->joints[level].joint_count == 0) return "joints of a joint level: there must be at least one";
+    if (kind == NOH_DETAIL_INFLUENCES && t->influences[level].influence_count == 0) {
+        return "influences of an influence level: there must be at least one";
+    }
+    return NULL;
+}
+
 noh_result noh_detail_table_check(const noh_detail_table *t, noh_error *error)
 {
-    static const char *const what[] = { "error of a mesh level is not finite, negative, or below that of a finer one", "error of a joint level is not finite, negative, or below that of a finer one", "error of an influence level is not finite, negative, or below that of a finer one" };
+    const char *what;
     NOH_ASSERT(t);
-    if (t->mesh_level_count > NOH_DETAIL_LEVELS_MAX || (t->mesh_level_count && !t->meshes)) return noh_fail(error, NOH_ERR_ARG, "meshes: NULL, or more than NOH_DETAIL_LEVELS_MAX", 0, 0);
-    if (t->mesh_level_first && t->mesh_level_first >= t->mesh_level_count) return noh_fail(error, NOH_ERR_ARG, "mesh_level_first is not below mesh_level_count", 0, 0);
-    if (t->joint_level_count > NOH_DETAIL_LEVELS_MAX || (t->joint_level_count && !t->joints)) return noh_fail(error, NOH_ERR_ARG, "joints: NULL, or more than NOH_DETAIL_LEVELS_MAX", 0, 0);
-    if (t->influence_level_count > NOH_DETAIL_LEVELS_MAX || (t->influence_level_count && !t->influences)) {
-        return noh_fail(error, NOH_ERR_ARG, "influences: NULL, or more than NOH_DETAIL_LEVELS_MAX", 0, 0);
+    what = bad_counts(t);
+    if (what) {
+        return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }
     for (int kind = 0; kind <= NOH_DETAIL_INFLUENCES; kind++) {
-        errors e = errors_of(t, (noh_detail_kind)kind);
-        for (uint32_t i = 0; i < e.count; i++) {
-            if (!(e.error_m[i] >= (i ? e.error_m[i - 1u] : 0.0f) && e.error_m[i] <= 1e30f)) {
-                return noh_fail(error, NOH_ERR_DATA, what[kind], i, 0);
-            }
+        const uint32_t count = errors_of(t, (noh_detail_kind)kind).count;
+        for (uint32_t i = 0; i < count; i++) {
+            what = bad_level(t, (noh_detail_kind)kind, i);
+            if (what) return noh_fail(error, NOH_ERR_DATA, what, i, 0);
         }
     }
-    for (uint32_t i = 0; i < t->joint_level_count; i++) {
-        if (t->joints[i].joint_count == 0) return noh_fail(error, NOH_ERR_DATA, "joints of a joint level: there must be at least one", i, 0);
+    if (!(t->clip_error_m >= 0.0f && t->clip_error_m <= 1e30f)) {
+        return noh_fail(error, NOH_ERR_DATA, "error of the clips is negative or not finite", 0, 0);
     }
-    for (uint32_t i = 0; i < t->influence_level_count; i++) {
-        if (t->influences[i].influence_count == 0) return noh_fail(error, NOH_ERR_DATA, "influences of an influence level: there must be at least one", i, 0);
-    }
-    if (!(t->clip_error_m >= 0.0f && t->clip_error_m <= 1e30f)) return noh_fail(error, NOH_ERR_DATA, "error of the clips is negative or not finite", 0, 0);
     return NOH_OK;
 }
 
@@ -125,14 +147,14 @@ float noh_detail_depth(const float view_projection[16], const float world[12], c
     return nearest;
 }
 
-/* What the whole knob is in metres, at a scale. */
+/* The quality setting in metres, at a scale. */
 static double knob_metres(const noh_detail_settings *s, float pixels_per_metre)
 {
     double pixels = s->pixels > 0.0f ? (double)s->pixels : 1.0;
     return pixels_per_metre > 0.0f ? pixels / (double)pixels_per_metre : 1e300;
 }
 
-/* The thresholds of one kind, in metres: a level is left over `refine`, one is entered up to `coarsen`. */
+/* The thresholds of one kind, in metres: a level is left when its error is above `refine`, entered up to `coarsen`. */
 typedef struct limits {
     double refine, coarsen;
 } limits;
@@ -179,7 +201,8 @@ static void choose_mesh(noh_detail *d, const errors *e, const noh_detail_setting
     }
 }
 
-/* A rate that is coarser can only be worse: what was measured is made to say so. */
+/* Measured errors may fall from one update rate to a lower one by chance: raise them so that they never do, and add the
+ * clips' own. */
 static errors rate_errors(const noh_detail_table *t, const float *rate_error_m)
 {
     errors e = { { 0.0f }, 1, 0 };
@@ -192,7 +215,7 @@ static errors rate_errors(const noh_detail_table *t, const float *rate_error_m)
     return e;
 }
 
-/* What was chosen before has no say. */
+/* Begin again from the finest levels. */
 static void forget_levels(noh_detail *d)
 {
     d->fade_ticks = 0;
@@ -315,7 +338,7 @@ uint32_t noh_detail_influence_count(const noh_detail *d, const noh_detail_table 
 
 /* ---- targets ---- */
 
-/* What leaving one target out costs, in metres. Not a number: it is never below a limit. */
+/* The error of leaving one target out, metres. NaN compares above every limit, so such a target is kept. */
 static float cost_of(const float *weights, const float *reach_m, uint32_t i)
 {
     float product = weights[i] * reach_m[i];
@@ -339,7 +362,7 @@ static uint32_t bits_of(float value)
 
 #define LARGEST_BITS 0x7f7fffffu /* the largest finite float */
 
-/* The costs up to a limit, and those next to it on both sides. */
+/* The sum of the costs up to a limit, and the costs next to the limit on both sides. */
 typedef struct cut {
     double sum;
     float below, above; /* the largest up to the limit; the smallest over it, infinite where there is none */
@@ -358,9 +381,11 @@ static cut cut_at(const float *weights, const float *reach_m, uint32_t count, fl
     return c;
 }
 
-/* Of the largest limit such that everything up to it may go, the bits: bisection over the floats, whose order is that of
- * their bits, from cost to cost. The next float after it is then a cost of which not all may go. *sum of what goes.
- * What is begun with: as many as there are of an equal part of the room fit; what is larger than the room does not. */
+/* Find the largest limit such that all costs up to it fit into the room together, and return its bits. Sorting the costs
+ * would need memory; instead this bisects over the limit. Floats that are not negative have the order of their bits, so at
+ * most 31 halvings separate any two, and each pass tells the nearest costs on both sides, which lets the search step from
+ * cost to cost. The next float above the result is then a cost of which not all fit: noh_detail_targets takes those by
+ * index. The search starts between room / (count + 1), which always fits, and the room itself. *sum is that of what fits. */
 static uint32_t largest_limit(const float *weights, const float *reach_m, uint32_t count, double room, double *sum)
 {
     const float most = room < (double)float_of(LARGEST_BITS) ? (float)room : float_of(LARGEST_BITS);
@@ -371,7 +396,7 @@ static uint32_t largest_limit(const float *weights, const float *reach_m, uint32
         if (c.sum <= room) {
             *sum = c.sum;
             fits = bits_of(c.above) - 1u;
-            over = middle == bits_of(most) ? fits + 1u : over; /* none of the others has room alone */
+            over = middle == bits_of(most) ? fits + 1u : over; /* the others are larger than the whole room */
         } else {
             over = bits_of(c.below);
         }
@@ -392,7 +417,7 @@ uint32_t noh_detail_targets(noh_detail *d, const noh_detail_settings *settings, 
     for (uint32_t i = 0; i < count; i++) {
         float cost = cost_of(weights, reach_m, i);
         int skip = cost <= limit;
-        if (!skip && cost <= next && skipped + (double)cost <= room) { /* equal ones go by index */
+        if (!skip && cost <= next && skipped + (double)cost <= room) { /* of equal costs the first by index */
             skip = 1;
             skipped += (double)cost;
         }

@@ -7,7 +7,7 @@ NOH_STATIC_ASSERT(NOH_JOINT_LEVELS_MAX == NOH_DETAIL_LEVELS_MAX, joint_levels);
 NOH_STATIC_ASSERT(NOH_MOTION_RATES == NOH_RATE_COUNT, motion_rates);
 NOH_STATIC_ASSERT(NOH_LEVELS_MAX == NOH_DETAIL_LEVELS_MAX, mesh_levels);
 
-/* A desc, resolved. */
+/* The resolved desc. */
 typedef struct source {
     const noh_pack *clips, *pack;
     const uint32_t *levels; /* [level_count] joints */
@@ -16,7 +16,7 @@ typedef struct source {
     int skinned;            /* there is a mesh, and joints move it */
 } source;
 
-/* Where it all lies. NULL while measuring. */
+/* The carved arrays; NULL while measuring. */
 typedef struct parts {
     noh_mesh_level *meshes;
     noh_joint_level *joints;
@@ -34,7 +34,7 @@ static int is_of_skeleton(const source *s, const noh_mesh *mesh)
     return mesh->pack->bytes == s->pack->bytes && noh_pack_skin_at(s->pack, mesh->header->skin, &skin, NULL) == NOH_OK && skin.header->skeleton == s->skeleton;
 }
 
-/* The name of the field that is wrong; NULL: none. */
+/* What is wrong with the desc; NULL: nothing. */
 static const char *resolve(const noh_detail_pack_desc *desc, source *s)
 {
     if (!desc->set) return "set is NULL";
@@ -81,7 +81,8 @@ size_t noh_detail_pack_size(const noh_detail_pack_desc *desc)
 
 /* ---- errors of clips ---- */
 
-/* What a motion's errors are multiplied by to be metres that hold for vertices as far from their joints as `margin`. */
+/* The factor from a clip's errors to metres that hold for vertices as far from their joints as `margin`. An error of
+ * rotation grows with the distance, one of translation does not, so scaling by the ratio of distances bounds both. */
 static float to_metres(const source *s, const noh_motion_header *h, float margin)
 {
     noh_skeleton skeleton;
@@ -93,7 +94,7 @@ static float to_metres(const source *s, const noh_motion_header *h, float margin
     return h->error_shell > 0.0f && margin > h->error_shell ? unit_m * (margin / h->error_shell) : unit_m;
 }
 
-/* What a motion is off with so many joints: the error of the finest of its own levels that has no more. -1: there is none. */
+/* The error of a clip with this many joints: that of the finest of its own levels that poses no more. -1: there is none. */
 static float joint_error(const source *s, const noh_pack_motion *motion, uint32_t joint_count)
 {
     uint32_t level_count;
@@ -106,7 +107,7 @@ static float joint_error(const source *s, const noh_pack_motion *motion, uint32_
     return -1.0f;
 }
 
-/* Raise the errors of the levels to those of a motion; fewer levels where it does not vouch for all. */
+/* Raise the errors of the levels to those of a clip; drop the levels that it has no error for. */
 static void add_joint_errors(const source *s, const noh_pack_motion *motion, float metres, noh_joint_level *levels, uint32_t *level_count)
 {
     for (uint32_t i = 0; i < *level_count; i++) {
@@ -152,7 +153,7 @@ static float level_error(const noh_mesh_header *h)
     return (worst + h->level_skipped) * h->world_scale;
 }
 
-/* Errors are those against the full mesh, whatever the finest level at hand is. */
+/* Errors are distances to the full mesh, whichever level is the finest loaded. */
 void noh_detail_mesh_levels(const noh_mesh *mesh, noh_mesh_level *levels, noh_detail_table *table)
 {
     NOH_ASSERT(mesh && levels && table && mesh->header->level_count <= NOH_DETAIL_LEVELS_MAX);
@@ -176,7 +177,7 @@ void noh_detail_target_reach(const noh_mesh *mesh, float *reach_m)
     }
 }
 
-/* Where the mesh was built without levels, nothing is known of fewer influences: all are always used. */
+/* A mesh that was built without levels has no errors of fewer influences: all are always used. */
 static uint32_t fill_influences(const noh_mesh_header *h, noh_influence_level *levels)
 {
     uint32_t count = 0;

@@ -31,7 +31,8 @@ size_t noh_joint_lod_measure_size(const noh_time_probe *probe)
     return arena.used;
 }
 
-/* The most that a point is off with the first `count` joints posed; `worst` where it is not more. */
+/* The largest error of a point with the first `count` joints posed, or `worst` if that is larger. Joints are stored parents
+ * first, so one pass over those left out builds their matrices from their parents'. */
 static float level_off(const noh_time_probe *p, work *w, uint32_t count, float worst)
 {
     const noh_skeleton *s = p->skeleton;

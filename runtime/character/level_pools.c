@@ -5,12 +5,12 @@
 #include "base/arena.h"
 
 #define ASKS_NOT 0xffu
-#define STAYS 1.25f /* what a holder's priority counts for more */
+#define STAYS 1.25f /* factor on the priority of an instance that keeps its slot */
 
 typedef struct pool {
     uint32_t level, slot_count;
     uint32_t first;      /* of its slots in `free` */
-    uint32_t free_count; /* free[first .. first + free_count - 1] are those that nobody holds */
+    uint32_t free_count; /* free[first .. first + free_count - 1] are its free slots */
 } pool;
 
 typedef struct place {
@@ -26,7 +26,7 @@ struct noh_level_pools {
     pool pools[NOH_LEVEL_POOLS_MAX];
     noh_level_pools_stats stats;
     place *places;  /* [instance_count] */
-    uint64_t *keys; /* [instance_count] who asks: priority above, what is left of 2^32 over the number below */
+    uint64_t *keys; /* [instance_count] requests: the bits of the priority above, 2^32 - 1 - instance below (lower numbers first) */
     uint32_t *free; /* [slots] */
 };
 
@@ -127,7 +127,7 @@ void noh_level_pools_begin(noh_level_pools *p)
     p->stats.asked = p->stats.coarser = p->stats.moved = 0;
 }
 
-/* Floats that are not negative are ordered as their bits are. */
+/* Floats that are not negative have the order of their bits. */
 static uint64_t key_of(float priority, uint32_t instance)
 {
     union { float value; uint32_t bits; } u;
@@ -153,6 +153,27 @@ void noh_level_pools_ask(noh_level_pools *p, uint32_t instance, uint32_t level, 
 
 /* ---- sharing ---- */
 
+#if NOH_ASSERT_LEVEL >= 2
+/* Every slot is free or held: the counts of each pool agree. */
+static int is_consistent(const noh_level_pools *p)
+{
+    uint32_t held[NOH_LEVEL_POOLS_MAX] = { 0 };
+    for (uint32_t i = 0; i < p->instance_count; i++) {
+        const place *at = &p->places[i];
+        if (at->held && (at->pool >= p->pool_count || at->slot >= p->pools[at->pool].slot_count)) {
+            return 0;
+        }
+        held[at->pool] += at->held;
+    }
+    for (uint32_t i = 0; i < p->pool_count; i++) {
+        if (held[i] + p->pools[i].free_count != p->pools[i].slot_count) {
+            return 0;
+        }
+    }
+    return 1;
+}
+#endif
+
 /* Let a key sink in a heap whose top is the lowest. */
 static void sift(uint64_t *keys, uint32_t at, uint32_t count)
 {
@@ -169,7 +190,8 @@ static void sift(uint64_t *keys, uint32_t at, uint32_t count)
     keys[at] = key;
 }
 
-/* The highest first: the lowest of the heap goes to the end, again and again. */
+/* Heap sort, the highest first: the top of the heap, its lowest key, moves to the end again and again. In place, and never
+ * worse than n log n. */
 static void sort_keys(uint64_t *keys, uint32_t count)
 {
     for (uint32_t i = count / 2u; i-- > 0;) {
@@ -183,7 +205,7 @@ static void sort_keys(uint64_t *keys, uint32_t count)
     }
 }
 
-/* How many of the pools hold a level: the first so many. */
+/* How many pools hold a level: the first ones, whose levels are as fine or finer. */
 static uint32_t count_fitting(const noh_level_pools *p, uint32_t level)
 {
     uint32_t fit = 0;
@@ -193,7 +215,7 @@ static uint32_t count_fitting(const noh_level_pools *p, uint32_t level)
     return fit;
 }
 
-/* Whether everyone can have the coarsest pool that holds the level: then it does not matter who comes first. */
+/* Whether every request fits into the coarsest pool that holds its level: then the order does not matter. */
 static int all_fit(const noh_level_pools *p)
 {
     uint32_t by_level[NOH_DETAIL_LEVELS_MAX] = { 0 }, by_pool[NOH_LEVEL_POOLS_MAX] = { 0 };
@@ -209,8 +231,8 @@ static int all_fit(const noh_level_pools *p)
     return 1;
 }
 
-/* The coarsest pool that holds the level and has room, else the next coarser one that has: there are as many slots as
- * instances. */
+/* The coarsest pool that holds the level and has room, else the next coarser one that has. One of them has, for there are
+ * at least as many slots as instances. */
 static uint32_t choose_pool(const noh_level_pools *p, uint32_t level)
 {
     const uint32_t *used = p->stats.used, fit = count_fitting(p, level);
@@ -237,7 +259,7 @@ static void choose_pools(noh_level_pools *p)
     }
 }
 
-/* Back go the slots of those who do not ask, and of those who are given another pool. */
+/* Free the slots of instances that did not ask, or that are given another pool. */
 static void release(noh_level_pools *p)
 {
     for (uint32_t i = 0; i < p->instance_count; i++) {
@@ -271,6 +293,7 @@ static void mark(uint32_t *high_water, uint32_t value)
 
 void noh_level_pools_share(noh_level_pools *p)
 {
+    NOH_ASSERT(p);
     if (!all_fit(p)) {
         sort_keys(p->keys, p->stats.asked);
     }
@@ -281,6 +304,7 @@ void noh_level_pools_share(noh_level_pools *p)
     for (uint32_t i = 0; i < p->pool_count; i++) {
         mark(&p->stats.used_high_water[i], p->stats.used[i]);
     }
+    NOH_VALIDATE(is_consistent(p));
 }
 
 /* ---- looking ---- */

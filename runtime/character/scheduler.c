@@ -50,7 +50,7 @@ void noh_schedule_spend(noh_schedule *s, uint32_t cost)
     s->spent += cost;
 }
 
-/* A binary heap, the most urgent first. */
+/* A binary heap with the most urgent item on top: building it is linear in the offers, and only what is served is sorted. */
 static int before(const noh_schedule_item *a, const noh_schedule_item *b)
 {
     return a->urgency != b->urgency ? a->urgency > b->urgency : a->instance < b->instance;
@@ -71,6 +71,17 @@ static void sift(noh_schedule_item *items, uint32_t at, uint32_t count)
     }
     items[at] = item;
 }
+
+#if NOH_ASSERT_LEVEL >= 2
+static int is_heap(const noh_schedule_item *items, uint32_t count)
+{
+    int ordered = 1;
+    for (uint32_t i = 1; i < count; i++) {
+        ordered = ordered && !before(&items[i], &items[(i - 1u) / 2u]);
+    }
+    return ordered;
+}
+#endif
 
 static uint32_t visibility_steps(float visibility)
 {
@@ -124,6 +135,7 @@ int noh_schedule_next(noh_schedule *s, uint32_t *instance)
         s->items[0] = s->items[s->count];
         sift(s->items, 0, s->count);
     }
+    NOH_VALIDATE(s->order != HEAP || is_heap(s->items, s->count));
     return 1;
 }
 

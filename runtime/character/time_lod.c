@@ -18,7 +18,7 @@ void noh_time_lod_init(noh_time_lod *t, uint32_t instance)
     t->instance = instance;
 }
 
-/* The first of the instance's own update times after a clock. */
+/* The first of the instance's own update ticks after a clock. */
 static int64_t next_slot(uint32_t instance, int64_t clock, uint32_t period)
 {
     const uint32_t golden = 2654435769u; /* 2^32 over the golden ratio */
@@ -34,7 +34,7 @@ void noh_time_lod_frame(noh_time_lod *t, int64_t clock, noh_rate rate)
     t->clock = clock;
     t->wanted = (uint8_t)rate;
     if (rate < t->running) {
-        noh_time_lod_wake(t); /* the interval that is shown is too coarse by now */
+        noh_time_lod_wake(t); /* the mix that is shown is too coarse by now */
     }
 }
 
@@ -55,7 +55,7 @@ uint32_t noh_time_lod_late(const noh_time_lod *t)
     return late < 0 || !t->posed ? 0 : late > UINT32_MAX ? UINT32_MAX : (uint32_t)late;
 }
 
-/* Pose it as it is, and show that. */
+/* Pose the instance as it is now, and show that alone. */
 static noh_time_update update_exactly(noh_time_lod *t)
 {
     noh_time_update u = { 0, 1.0f, 0 };
@@ -66,8 +66,8 @@ static noh_time_update update_exactly(noh_time_lod *t)
     return u;
 }
 
-/* Where the interval from from_clock ends: at the next of the instance's own times, but not more than a period
- * away; and after a restart, when what is shown may have far to go, not less than half of one. */
+/* Where a mix that begins at from_clock ends: at the next of the instance's own ticks, but at most a period away; and at
+ * least half a period away after a restart, when source and target may be far apart. */
 static int64_t interval_end(const noh_time_lod *t, uint32_t period, int restart)
 {
     int64_t longest = noh_clock_add(t->from_clock, period), shortest = noh_clock_add(t->from_clock, period / 2u);
@@ -79,8 +79,8 @@ static int64_t interval_end(const noh_time_lod *t, uint32_t period, int restart)
 static noh_time_update update_ahead(noh_time_lod *t, uint32_t period)
 {
     noh_time_update u = { 0, 1.0f, 0 };
-    int early = t->clock < t->to_clock;                           /* from what is shown now, a mix */
-    int held = t->to_clock < noh_clock_add(t->clock, -(int64_t)t->frame_ticks); /* has stood still for a frame or more: on from there */
+    int early = t->clock < t->to_clock;                           /* on the way: the mix shown now becomes the source */
+    int held = t->to_clock < noh_clock_add(t->clock, -(int64_t)t->frame_ticks); /* the target has been held for a frame or more: it becomes the source */
     if (early) {
         u.keep = noh_time_lod_fraction(t);
     } else {
@@ -116,7 +116,7 @@ void noh_time_lod_wake(noh_time_lod *t)
     t->due_clock = t->clock < t->due_clock ? t->clock : t->due_clock;
 }
 
-/* How much faster than recorded a track plays, squared; at least 1. */
+/* A track's playback speed, squared; at least 1. */
 static float haste(const noh_track *track)
 {
     float rate = (float)track->rate / (float)NOH_SPEED_ONE, speed = (float)track->speed / (float)NOH_SPEED_ONE;

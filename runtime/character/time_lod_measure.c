@@ -1,4 +1,4 @@
-/* How much interpolation is off: time_lod.h, noh_time_lod_measure. */
+/* The error of interpolation between updates: time_lod.h, noh_time_lod_measure. */
 #include "base/arena.h"
 #include "character/measure_internal.h"
 
@@ -11,7 +11,7 @@ size_t noh_time_lod_measure_size(const noh_time_probe *probe)
     return arena.used;
 }
 
-/* Any point within a joint's reach of it. */
+/* The largest error of any point within its joint's radius, plus that of the floats. */
 static float pose_off(void *user, const noh_time_probe *p, const noh_rate_work *w, float part, float least)
 {
     const float floats = noh_rate_floats_off(p, w, part);
@@ -26,7 +26,8 @@ static float pose_off(void *user, const noh_time_probe *p, const noh_rate_work *
         }
         worst = p->joint_reach_m[j] >= 0.0f ? noh_probe_off(difference, p->joint_reach_m[j], worst) : worst;
     }
-    /* Nothing found, nothing added: sums of what was taken away and put back would creep up. */
+    /* Where nothing worse was found `least` is returned as it came: subtracting the floats and adding them again would let it
+     * creep up by rounding. */
     return (worst > enough || floats > least) && worst + floats > least ? worst + floats : least;
 }
 

@@ -6,7 +6,7 @@
 
 typedef struct work {
     const noh_time_points *points;
-    float *off; /* [joint_count][12] what each joint's matrix is off */
+    float *off; /* [joint_count][12] the error of each joint's matrix: mixed minus true */
     noh_rate_work rates;
 } work;
 
@@ -25,7 +25,7 @@ size_t noh_time_points_size(const noh_time_probe *probe)
     return arena.used;
 }
 
-/* How far a point is off, squared. */
+/* A point's error, squared: the errors of its joints' matrices, applied to it and blended as skinning blends them. */
 static float point_off(const noh_time_hold *holds, uint32_t count, const float *off)
 {
     float way[3] = { 0.0f, 0.0f, 0.0f };
