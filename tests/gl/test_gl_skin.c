@@ -715,6 +715,38 @@ static void expect_sent(unsigned calls, uint64_t first, uint64_t bytes)
     sent.calls = 0;
 }
 
+/* What is set last may lie first: both are sent. */
+static void changes_in_any_order_are_sent(void **state)
+{
+    static const noh_palette_mode modes[2] = { NOH_PALETTE_UNIFORM, NOH_PALETTE_TEXTURE };
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        fixture_skin_desc desc = desc_of("khronos/Fox.glb", modes[i]);
+        fixture_skin f;
+        test_random r = { 76 };
+        float *swap;
+        desc.copies = 2;
+        fixture_skin_open(&f, &desc);
+        fixture_skin_pose(&f, &r);
+        swap = f.matrices[0];
+        f.matrices[0] = f.matrices[1];
+        f.matrices[1] = swap;
+        for (uint32_t k = 2; k-- > 0;) {
+            noh_gl_skin_set(f.skin, k, f.matrices[k]);
+        }
+        noh_gl_skin_update(f.skin);
+        for (uint32_t k = 0; k < 2; k++) {
+            noh_vertex *expected = fixture_skin_reference(&f, k);
+            readback_vertex *got = fixture_skin_read(&f, 0, k, 0, 0);
+            const fixture_error e = fixture_skin_compare(got, expected, f.meshes[0].header->vertex_count);
+            fixture_expect_close(&e, "after a change in falling order");
+            free(got);
+            free(expected);
+        }
+        fixture_skin_close(&f);
+    }
+}
+
 static void only_changes_are_sent(void **state)
 {
     noh_gl_api api;
@@ -867,6 +899,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(without_joints_stands_the_bind_pose),
     cmocka_unit_test(plans_choose_and_refuse),
     cmocka_unit_test(memory_is_exact),
+    cmocka_unit_test(changes_in_any_order_are_sent),
     cmocka_unit_test(only_changes_are_sent),
     cmocka_unit_test(places_are_refused_where_they_cannot_be),
     cmocka_unit_test(renderers_make_what_they_were_told_of),
