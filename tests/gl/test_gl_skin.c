@@ -230,6 +230,54 @@ static void a_crowd_stands_where_it_was_placed(void **state)
     fixture_skin_close(&f);
 }
 
+/* Instances that are scaled by another factor along each axis: their normals stand on the scaled surface, which those moved
+ * by the matrix itself do not. */
+static void a_crowd_s_normals_go_by_the_inverse_transpose(void **state)
+{
+    fixture_skin_desc desc = desc_of("khronos/Fox.glb", NOH_PALETTE_TEXTURE);
+    static const float world[12] = { 0.4f, 0.3f, 0, 5, -0.2f, 2.0f, 0.1f, -3, 0, 0.5f, 1.2f, 1 };
+    fixture_skin f;
+    test_random r = { 75 };
+    noh_vertex *expected;
+    readback_vertex *got;
+    float rows[12];
+    double by_matrix = 0.0;
+    (void)state;
+    fixture_skin_open(&f, &desc);
+    fixture_skin_pose(&f, &r);
+    assert_int_equal(noh_gl_skin_set_place(f.skin, 0, world, NULL, NULL), NOH_OK);
+    noh_gl_skin_update(f.skin);
+    got = fixture_skin_read(&f, 0, 0, 0, 1);
+    expected = fixture_skin_reference(&f, 0);
+    for (int i = 0; i < 3; i++) { /* the cofactors, written out: the inverse transpose times the determinant */
+        const float *a = world + 4 * ((i + 1) % 3), *b = world + 4 * ((i + 2) % 3);
+        for (int c = 0; c < 3; c++) {
+            rows[4 * i + c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
+        }
+    }
+    for (uint32_t v = 0; v < f.meshes[0].header->vertex_count; v++) {
+        double right[3], wrong[3], square[3] = { 0.0, 0.0, 0.0 }, near = 0.0, far = 0.0;
+        for (int c = 0; c < 3; c++) {
+            const float *n = expected[v].normal;
+            right[c] = (double)(rows[4 * c] * n[0] + rows[4 * c + 1] * n[1] + rows[4 * c + 2] * n[2]);
+            wrong[c] = (double)(world[4 * c] * n[0] + world[4 * c + 1] * n[1] + world[4 * c + 2] * n[2]);
+            square[0] += right[c] * right[c];
+            square[1] += wrong[c] * wrong[c];
+            square[2] += (double)(got[v].normal[c] * got[v].normal[c]);
+        }
+        for (int c = 0; c < 3; c++) {
+            near = fmax(near, fabs((double)got[v].normal[c] / sqrt(square[2]) - right[c] / sqrt(square[0])));
+            far = fmax(far, fabs(wrong[c] / sqrt(square[1]) - right[c] / sqrt(square[0])));
+        }
+        assert_true(near < 1e-4);
+        by_matrix = fmax(by_matrix, far);
+    }
+    assert_true(by_matrix > 0.5);
+    free(expected);
+    free(got);
+    fixture_skin_close(&f);
+}
+
 /* ---- fewer influences ---- */
 
 /* The strongest `drawn` of a vertex, their weights made to sum to 1, in double precision; without morphs. */
@@ -675,6 +723,38 @@ static void expect_sent(unsigned calls, uint64_t first, uint64_t bytes)
     sent.calls = 0;
 }
 
+/* What is set last may lie first: both are sent. */
+static void changes_in_any_order_are_sent(void **state)
+{
+    static const noh_palette_mode modes[2] = { NOH_PALETTE_UNIFORM, NOH_PALETTE_TEXTURE };
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        fixture_skin_desc desc = desc_of("khronos/Fox.glb", modes[i]);
+        fixture_skin f;
+        test_random r = { 76 };
+        float *swap;
+        desc.copies = 2;
+        fixture_skin_open(&f, &desc);
+        fixture_skin_pose(&f, &r);
+        swap = f.matrices[0];
+        f.matrices[0] = f.matrices[1];
+        f.matrices[1] = swap;
+        for (uint32_t k = 2; k-- > 0;) {
+            noh_gl_skin_set_matrices(f.skin, k, f.matrices[k]);
+        }
+        noh_gl_skin_update(f.skin);
+        for (uint32_t k = 0; k < 2; k++) {
+            noh_vertex *expected = fixture_skin_reference(&f, k);
+            readback_vertex *got = fixture_skin_read(&f, 0, k, 0, 0);
+            const fixture_error e = fixture_skin_compare(got, expected, f.meshes[0].header->vertex_count);
+            fixture_expect_close(&e, "after a change in falling order");
+            free(got);
+            free(expected);
+        }
+        fixture_skin_close(&f);
+    }
+}
+
 static void only_changes_are_sent(void **state)
 {
     noh_gl_api api;
@@ -822,6 +902,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(mirrors_and_lost_axes),
     cmocka_unit_test(uniform_texture_and_crowd_give_the_same_bits),
     cmocka_unit_test(a_crowd_stands_where_it_was_placed),
+    cmocka_unit_test(a_crowd_s_normals_go_by_the_inverse_transpose),
     cmocka_unit_test(influences_can_be_capped),
     cmocka_unit_test(small_palettes_give_the_same_picture),
     cmocka_unit_test(a_crowd_looks_like_its_instances),
@@ -829,6 +910,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(without_joints_stands_the_bind_pose),
     cmocka_unit_test(plans_choose_and_refuse),
     cmocka_unit_test(memory_is_exact),
+    cmocka_unit_test(changes_in_any_order_are_sent),
     cmocka_unit_test(only_changes_are_sent),
     cmocka_unit_test(places_are_refused_where_they_cannot_be),
     cmocka_unit_test(renderers_make_what_they_were_told_of),

@@ -200,6 +200,9 @@ static void check_arcs(uint32_t other)
         noh_skin_joint_boxes(&mesh, matrices, NULL, joints);
         assert_true(noh_box_is_empty(joints + 6u * (3u - other))); /* the joint that moves nothing */
         for (uint32_t v = 0; v < mesh.header->vertex_count; v++) {
+            const float *rest = mesh.positions + 3u * (size_t)v, y = rest[1] - pivot, cx = cosf(0.5f * turn), sx = sinf(0.5f * turn);
+            assert_true(fabsf(positions[3 * v] - (cx * rest[0] - sx * y)) < 1e-5f); /* by halves: half of the turn, about the same line */
+            assert_true(fabsf(positions[3 * v + 1] - (sx * rest[0] + cx * y + pivot)) < 1e-5f);
             largest = fmaxf(largest, fabsf(positions[3 * v]));
         }
     }

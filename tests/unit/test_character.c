@@ -656,6 +656,33 @@ static void a_crowd_keeps_its_budget(void **state)
     stage_close(&g);
 }
 
+/* A cut shows at once what is wanted then: no fade comes from before it. The controller hears of the level, so that
+ * tracks for near instances alone are not sampled far away. */
+static void a_cut_begins_anew_at_the_level_wanted(void **state)
+{
+    static const noh_mesh_level levels[2] = { { 100, 100, 4, 0.0f }, { 10, 10, 4, 0.1f } };
+    stage g;
+    (void)state;
+    for (int cut = 0; cut < 2; cut++) {
+        stage_open(&g);
+        g.table.meshes = levels;
+        g.table.mesh_level_count = 2;
+        g.table.rate_error_m = NULL;
+        g.settings.shares[NOH_DETAIL_MESH] = 0.5f;
+        g.settings.shares[NOH_DETAIL_TIME] = 0.5f;
+        (void)noh_character_look(g.ch, &g.table, &g.settings, 1e-3f);
+        assert_int_equal(g.ch->detail.mesh, 1);
+        assert_int_equal(noh_character_controller(g.ch)->lod, 1);
+        (void)noh_character_step(g.ch, &g.s.set, FRAME, NULL, NULL);
+        if (cut) noh_character_cut(g.ch);
+        (void)noh_character_look(g.ch, &g.table, &g.settings, 1e3f);
+        assert_int_equal(g.ch->detail.mesh, 0);
+        assert_int_equal(noh_character_controller(g.ch)->lod, 0);
+        assert_true((noh_detail_fade(&g.ch->detail, noh_character_clock(g.ch)) < 1.0f) == !cut);
+        stage_close(&g);
+    }
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -672,6 +699,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_program_changes_the_pose_between_the_halves),
         cmocka_unit_test(keys_fire_the_same_with_and_without_detail),
         cmocka_unit_test(a_copy_goes_on_the_same_and_alone),
+        cmocka_unit_test(a_cut_begins_anew_at_the_level_wanted),
         cmocka_unit_test(a_crowd_keeps_its_budget),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);

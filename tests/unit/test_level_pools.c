@@ -216,6 +216,11 @@ static void equals_do_not_take_turns(void **state)
     assert_int_equal(noh_level_pools_slot(p, 4).level, 0);
     assert_int_equal(noh_level_pools_stats_of(p)->moved, 2);
     assert_int_equal(noh_level_pools_stats_of(p)->coarser_high_water, 1);
+    memset(wishes, 0, sizeof wishes); /* nobody asks: the marks stay */
+    ask_all(p, wishes);
+    assert_int_equal(noh_level_pools_stats_of(p)->coarser, 0);
+    assert_int_equal(noh_level_pools_stats_of(p)->coarser_high_water, 1);
+    assert_int_equal(noh_level_pools_stats_of(p)->used_high_water[0], 4);
     free(p);
 }
 

@@ -236,6 +236,7 @@ static void costs_add_up(void **state)
     assert_int_equal(noh_cost_of(&w, 0, 0, 1000000), UINT32_MAX);
     assert_int_equal(noh_schedule_wait_max(0, 10, 1), 16);
     assert_int_equal(noh_schedule_wait_max(101, 20, 2), 8 * (10 + 2));
+    assert_int_equal(noh_schedule_wait_max(12, 9, 3), 8 * (4 + 2)); /* eleven others, three a frame: the last is served in the fourth */
 }
 
 int main(int argc, char **argv)

@@ -456,6 +456,28 @@ static void errors_of_what_plays(void **state)
     assert_int_equal(noh_controller_set_mode(c, 0, NOH_TRACK_TIME_ONLY), NOH_OK);
     noh_time_lod_error(c, errors[0], out);
     assert_true(out[2] == 6.0f + 4.0f);
+    noh_controller_tracks(c)[1].rate = 3 * NOH_SPEED_ONE; /* its sync group drives it faster than its own speed */
+    noh_time_lod_error(c, errors[0], out);
+    assert_true(out[2] == 9.0f * 6.0f + 4.0f);
+}
+
+/* Waking asks for an update now; who is late already stays as late as it was. */
+static void waking_does_not_forgive_lateness(void **state)
+{
+    noh_time_lod t;
+    (void)state;
+    noh_time_lod_init(&t, 3);
+    noh_time_lod_frame(&t, 0, NOH_RATE_30);
+    (void)noh_time_lod_update(&t);
+    noh_time_lod_frame(&t, 800, NOH_RATE_30);
+    (void)noh_time_lod_update(&t);
+    noh_time_lod_wake(&t);
+    assert_int_equal(noh_time_lod_due(&t), NOH_DUE);
+    assert_int_equal(noh_time_lod_late(&t), 0);
+    noh_time_lod_frame(&t, 2400, NOH_RATE_30);
+    assert_int_equal(noh_time_lod_late(&t), 1600);
+    noh_time_lod_wake(&t);
+    assert_int_equal(noh_time_lod_late(&t), 1600);
 }
 
 /* Real motion and what was measured of it. */
@@ -562,6 +584,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(points_are_off_by_their_own_arrows), cmocka_unit_test(points_go_with_a_loop_that_travels),
         cmocka_unit_test(measuring_wants_its_fields_and_its_memory),
         cmocka_unit_test(errors_of_what_plays),
+        cmocka_unit_test(waking_does_not_forgive_lateness),
         cmocka_unit_test(real_clips_stay_within_what_was_measured),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
