@@ -346,8 +346,7 @@ static void join(const noh_motion_binding *b, const counts *c, parts *p)
     set->anim.markers = p->markers;
     set->anim.bind_pose = b->header ? b->skeleton.bind_pose : (const noh_transform *)(const void *)p->motions; /* of no joints */
     set->anim.float_defaults = p->defaults;
-    set->anim.sample = noh_motion_set_sample;
-    set->anim.user = set;
+    noh_motion_set_sample_cache(set);
 }
 
 static noh_result open_cache(const counts *c, parts *p, noh_error *error)
