@@ -17,7 +17,10 @@
  *     n are delivered all the same, with the weights that they had at n. It may call
  *     everything but noh_controller_step (which then does nothing);
  *   - weights compared with a key's weight_min are those at the tick of the event,
- *     changes over time and changes due at that tick included. */
+ *     changes over time and changes due at that tick included.
+ *
+ * Threads: a controller belongs to one thread at a time; the set is only read, so any number of threads may step and change
+ * controllers of one set, each its own. */
 #ifndef NOH_ANIM_CONTROLLER_H
 #define NOH_ANIM_CONTROLLER_H
 

@@ -2,6 +2,8 @@
  *
  * Reads a controller; writes only to buffers of the caller's, which any number of
  * instances can use in turn (row C4.4). */
+/* Threads: all of these sample the set. Several threads may pose controllers of one set at a time, each with a scratch of its
+ * own, where the set's `sample` allows it: of a noh_motion_set hand each thread's view (motion_set.h). */
 #ifndef NOH_ANIM_CONTROLLER_POSE_H
 #define NOH_ANIM_CONTROLLER_POSE_H
 
