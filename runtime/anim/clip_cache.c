@@ -288,6 +288,7 @@ static uint32_t find_room(const noh_clip_cache *cache, uint32_t clip, uint32_t k
     return must ? any : NOH_CLIP_NOT_CACHED;
 }
 
+/* Give an entry to a segment; what it held is no longer cached. */
 static void take(noh_clip_cache *cache, uint32_t s, uint32_t clip, uint32_t segment)
 {
     cached *t = &cache->cached[s];
@@ -332,16 +333,46 @@ static uint32_t ready(noh_clip_cache *cache, uint32_t clip, uint32_t segment, ui
     return s;
 }
 
+#if NOH_ASSERT_LEVEL >= 2
+/* Each size's list holds each of its entries once; what the segments say is what the entries say; who waits is listed. */
+static int is_sound(const noh_clip_cache *cache)
+{
+    uint32_t first = 0, listed = 0, waiting = 0;
+    for (uint32_t k = 0; k < cache->size_count; k++) {
+        uint32_t count = 0, before = NOH_CLIP_NOT_CACHED;
+        for (uint32_t s = cache->sizes[k].oldest; s != NOH_CLIP_NOT_CACHED && count <= cache->sizes[k].count; s = cache->cached[s].newer, count++) {
+            if (cache->cached[s].older != before || cache->cached[s].size != k || s < first || s - first >= cache->sizes[k].count) return 0;
+            before = s;
+        }
+        if (count != cache->sizes[k].count || before != cache->sizes[k].newest) return 0;
+        first += count;
+    }
+    for (uint32_t s = cache->first_want; s != NOH_CLIP_NOT_CACHED && listed <= cache->cached_count; s = cache->cached[s].after) {
+        listed++;
+    }
+    for (uint32_t s = 0; s < cache->cached_count; s++) {
+        const cached *t = &cache->cached[s];
+        waiting += t->waits;
+        if (!t->used) continue;
+        if (cache->cached_of[cache->entries[t->clip].first + t->cursor.segment] != s) return 0;
+        if (!t->waits && t->cursor.track < t->wanted) return 0;
+    }
+    return listed == waiting;
+}
+#endif
+
 /* ---- what the game calls ---- */
 
 void noh_clip_cache_tick(noh_clip_cache *cache)
 {
+    NOH_VALIDATE(is_sound(cache));
     cache->stamp++;
 }
 
 static int want_segment(noh_clip_cache *cache, uint32_t clip, uint32_t segment, uint32_t tracks)
 {
     uint32_t s = cache->cached_of[cache->entries[clip].first + segment];
+    NOH_ASSERT(tracks <= cache->entries[clip].clip->info.track_count);
     if (s == NOH_CLIP_NOT_CACHED) {
         s = find_room(cache, clip, NOH_CLIP_NOT_CACHED, 0);
         if (s == NOH_CLIP_NOT_CACHED) return 0;
@@ -402,6 +433,7 @@ uint32_t noh_clip_cache_work(noh_clip_cache *cache, uint32_t budget)
 void noh_clip_sample(noh_clip_cache *cache, uint32_t clip, int64_t ticks, uint32_t joint_count, noh_transform *out, float *floats)
 {
     const noh_clip_place p = noh_clip_place_of(noh_clip_cache_clip(cache, clip), ticks, joint_count);
+    NOH_ASSERT(out || p.joints == 0u);
     const uint32_t s = ready(cache, clip, p.segment, p.tracks, NOH_CLIP_NOT_CACHED);
     const uint8_t *next = p.crosses ? cache->cached[ready(cache, clip, p.segment + 1u, p.tracks, s)].frames : NULL;
     cache->stats.samples++;

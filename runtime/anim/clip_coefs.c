@@ -1,5 +1,10 @@
 #include "anim/clip_coefs.h"
 
+/* Most coefficients of a track are 0, 1 or -1 and lie low; how large one is, its neighbours just above in frequency tell
+ * well. So the three components of one frequency are one symbol from a table that their neighbours choose, with the low
+ * bits, where neighbours are large, kept out of it (Rice coding with an adaptive parameter); clip_coefs.h has the rules.
+ * Any bits decode: quotients, shifts and escapes are cut to a width at which nothing overflows. */
+
 #define MAGNITUDE_MASK ((1u << NOH_CLIP_MAGNITUDE_BITS) - 1u)
 
 /* Magnitudes of one component at the three frequencies above the one being read. */

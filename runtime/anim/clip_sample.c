@@ -127,8 +127,10 @@ NOH_CLIP_INLINE void blend_group(const uint8_t *a, const uint8_t *b, uint32_t r,
     normalise_group(q);
 }
 
-/* Rotations: neighbouring frames lie in one hemisphere (the encoder sees to it), so there is
- * no sign to look at. */
+/* Rotations: a weighted sum, normalised. Frames of one segment lie in one hemisphere, and so do the last and first of two
+ * neighbours (the encoder negates them where needed), so there is no sign to look at. Cached frames hold rotations as 16-bit
+ * integers: they are weighed by whole numbers, exactly, and rounded once to floats, which is why every instruction set
+ * gives the same bits. */
 NOH_CLIP_INLINE void blend_rotations(const noh_clip *clip, const uint8_t *a, const uint8_t *b, const weights *w, uint32_t count, int wide,
                                      noh_transform *out)
 {
@@ -164,6 +166,7 @@ void noh_clip_blend_frames(const noh_clip *clip, const uint8_t *a, const uint8_t
     const noh_clip_prefix *prefix = &clip->prefixes[joints];
     const int32_t whole_b = (int32_t)(fraction * (float)clip->weight_one + 0.5f);
     const weights w = { (int32_t)clip->weight_one - whole_b, whole_b, 1.0f - fraction, fraction };
+    NOH_ASSERT(joints <= clip->info.joint_count && fraction >= 0.0f && fraction <= 1.0f);
     memcpy(out, clip->pose, joints * sizeof *out);
     if (clip->info.flags & NOH_CLIP_FLAG_WIDE) {
         blend_rotations(clip, a, b, &w, prefix->rotations, 1, out);

@@ -113,6 +113,7 @@ void noh_clip_view_sample(noh_clip_view *view, uint32_t clip, int64_t ticks, uin
     const noh_clip_place p = noh_clip_place_of(noh_clip_cache_clip(view->cache, clip), ticks, joint_count);
     const uint8_t *frames = frames_of(view, clip, p.segment, p.tracks);
     const uint8_t *next = p.crosses ? frames_of(view, clip, p.segment + 1u, p.tracks) : NULL;
+    NOH_ASSERT(out || p.joints == 0u);
     view->stats.samples++;
     noh_clip_blend_place(&p, frames, next, out, floats);
 }

@@ -19,7 +19,8 @@
  * source  D3DX's animation controller as in C. Granberg, "Character Animation with Direct3D", Charles River Media 2009,
  *         chapters 4 and 5, with keys in ticks rather than seconds and no state shared by clones
  *
- * Threads: a controller belongs to one thread at a time; the set is read-only and shared by any number of threads. */
+ * Threads: a controller belongs to one thread at a time; the set is only read, so any number of threads may step
+ * controllers of one set, each its own. */
 #ifndef NOH_ANIM_CONTROLLER_H
 #define NOH_ANIM_CONTROLLER_H
 

@@ -4,8 +4,8 @@
  * turn (Granberg 2009, chapter 4, lets all clones of a controller write one tree of joints, and must draw each before the
  * next is posed).
  *
- * Threads: a controller and a scratch belong to one thread at a time. Posing calls set->sample: several threads may pose
- * instances of one set, each with its own scratch, where that function allows it. */
+ * Threads: a controller and a scratch belong to one thread at a time. Several threads may pose controllers of one set,
+ * each with its own scratch, where set->sample allows it: of a noh_motion_set hand each thread its view (motion_set.h). */
 #ifndef NOH_ANIM_CONTROLLER_POSE_H
 #define NOH_ANIM_CONTROLLER_POSE_H
 

@@ -12,7 +12,10 @@ typedef struct noh_motion_set_clip set_clip;
 
 #define TRACKS 2u /* of an instance that play at once, where the desc does not say */
 
-/* Everything that has to be known before there is memory. */
+/* A set is made in two passes over the pack. The first counts (clips that fit, their keys, markers and floats, the cache's
+ * needs) without memory, out of the packs' bytes alone; the second carves exactly that and fills it in the same order. */
+
+/* What the first pass finds. */
 typedef struct counts {
     noh_anim_set shape;
     uint32_t groups, runs, sampled, foreign, unknown;
@@ -46,6 +49,7 @@ static size_t align_up(size_t bytes)
     return (bytes + 15u) & ~(size_t)15u;
 }
 
+/* The set's floats begin with the weights of every node that has targets. */
 static void count_nodes(const noh_motion_binding *b, counts *c)
 {
     noh_clip_group group;
@@ -55,6 +59,7 @@ static void count_nodes(const noh_motion_binding *b, counts *c)
     }
 }
 
+/* A clip's groups: named floats that no clip before had go behind; weights go to a node of the mesh pack, if it has one. */
 static void count_groups(const noh_motion_binding *b, uint32_t index, const noh_clip_desc *clip, counts *c)
 {
     noh_clip_group_reader reader = noh_clip_groups_of(clip);
@@ -242,6 +247,7 @@ static const noh_clip_group *name_group(parts *p, const noh_clip_group *wanted)
     return group;
 }
 
+/* Where the clip's floats go among the set's: one run for each of its groups that is played. */
 static void fill_runs(const noh_motion_binding *b, const noh_clip *opened, parts *p, set_clip *clip)
 {
     noh_motion_floats *run = p->runs;
@@ -340,8 +346,7 @@ static void join(const noh_motion_binding *b, const counts *c, parts *p)
     set->anim.markers = p->markers;
     set->anim.bind_pose = b->header ? b->skeleton.bind_pose : (const noh_transform *)(const void *)p->motions; /* of no joints */
     set->anim.float_defaults = p->defaults;
-    set->anim.sample = noh_motion_set_sample;
-    set->anim.user = set;
+    noh_motion_set_sample_cache(set);
 }
 
 static noh_result open_cache(const counts *c, parts *p, noh_error *error)

@@ -15,8 +15,7 @@ struct noh_motion_set_clip {
     uint32_t joint_count;
 };
 
-/* A noh_motion_sample whose user is the noh_motion_set: through its cache, which it changes. */
-void noh_motion_set_sample(void *user, uint32_t motion, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose, uint32_t float_count,
-                           float *floats);
+/* Let set->anim sample through the set's cache, which that changes. */
+void noh_motion_set_sample_cache(noh_motion_set *set);
 
 #endif

@@ -29,8 +29,8 @@ static void check_request(const noh_motion_set *set, uint32_t motion, uint32_t j
     (void)set, (void)motion, (void)joint_count, (void)float_count;
 }
 
-void noh_motion_set_sample(void *user, uint32_t motion, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose, uint32_t float_count,
-                           float *floats)
+static void sample_cache(void *user, uint32_t motion, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose, uint32_t float_count,
+                         float *floats)
 {
     const noh_motion_set *set = user;
     const struct noh_motion_set_clip *clip = &set->clips[motion];
@@ -53,6 +53,12 @@ static void sample_view(void *user, uint32_t motion, uint32_t clip_tick, uint32_
         noh_clip_view_sample(view->clips, motion, clip_tick, clip->joint_count ? joint_count : 0u, pose, moves_floats ? view->sampled : NULL);
     }
     complete(view->set, clip, view->sampled, joint_count, pose, float_count, floats);
+}
+
+void noh_motion_set_sample_cache(noh_motion_set *set)
+{
+    set->anim.sample = sample_cache;
+    set->anim.user = set;
 }
 
 /* ---- views ---- */

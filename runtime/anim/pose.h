@@ -1,4 +1,6 @@
-/* pose.h: what sampling gives and blending takes: joint transforms, local to the parent. */
+/* pose.h: what sampling gives and blending takes: joint transforms, local to the parent.
+ *
+ * A pose is an array of them in skeleton order, parents first. */
 #ifndef NOH_ANIM_POSE_H
 #define NOH_ANIM_POSE_H
 
