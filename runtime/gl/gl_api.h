@@ -8,7 +8,9 @@
  * likes, makes it current, and hands over a lookup function. The table is a
  * plain struct in the caller's memory and belongs to that context.
  *
- * Call through it: `gl->DrawArrays(GL_TRIANGLES, 0, 3)`. */
+ * Call through it: `gl->DrawArrays(GL_TRIANGLES, 0, 3)`.
+ *
+ * Threads: the context's own thread, for every function. */
 #ifndef NOH_GL_GL_API_H
 #define NOH_GL_GL_API_H
 
@@ -234,7 +236,7 @@ typedef noh_gl_proc (*noh_gl_get_proc)(void *user, const char *name);
 /* Fill the table for the context that is current on this thread.
  * memory  none; `api` is untouched on error
  * errors  NOH_ERR_ARG api or get is NULL; NOH_ERR_UNSUPPORTED below ES 3.0, or a
- *         function of NOH_GL_REQUIRED is missing: `what` is its name; NOH_ERR_GL no current context */
+ *         function of NOH_GL_REQUIRED is missing: `what` names it; NOH_ERR_GL no current context */
 noh_result noh_gl_api_load(noh_gl_api *api, noh_gl_get_proc get, void *user, noh_error *error);
 
 /* 1 where the context lists the extension, 0 elsewhere. `name` in full, "GL_EXT_...". */

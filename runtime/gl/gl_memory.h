@@ -14,7 +14,9 @@
  *
  * Every create leaves nothing bound at the target it used, checks glGetError, and
  * on error deletes what it made: the ledger then stands as before. Errors pending
- * before the call are cleared. Deleting an object twice does nothing. */
+ * before the call are cleared. Deleting an object twice does nothing.
+ *
+ * Threads: the context's own thread; the functions that only give bytes, any. */
 #ifndef NOH_GL_GL_MEMORY_H
 #define NOH_GL_GL_MEMORY_H
 

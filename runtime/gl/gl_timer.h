@@ -6,7 +6,9 @@
  *
  * Results come some frames late, so several measurements are in flight. Without
  * timer queries, and while all are in flight, begin and end do nothing. One timer
- * at a time may be open: GL does not nest time queries. */
+ * at a time may be open: GL does not nest time queries.
+ *
+ * Threads: the context's own thread, for every function. */
 #ifndef NOH_GL_GL_TIMER_H
 #define NOH_GL_GL_TIMER_H
 
