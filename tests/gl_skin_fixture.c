@@ -154,8 +154,8 @@ static float *random_matrices(const noh_pack *pack, uint32_t skin_index, test_ra
     noh_skeleton skeleton;
     noh_transform *pose;
     float *world, *matrices;
-    assert_int_equal(noh_pack_skin_at(pack, skin_index, &skin), NOH_OK);
-    assert_int_equal(noh_pack_skeleton_at(pack, skin.header->skeleton, &skeleton, NULL), NOH_OK);
+    assert_int_equal(noh_pack_skin_at(pack, skin_index, &skin, NULL), NOH_OK);
+    assert_int_equal(noh_pack_skeleton_at(pack, skin.header->skeleton, &skeleton, NULL, NULL), NOH_OK);
     pose = test_zeros(sizeof *pose * skeleton.joint_count);
     world = test_zeros(48u * (size_t)skeleton.joint_count);
     matrices = test_zeros(48u * (size_t)skin.header->joint_count);
@@ -197,7 +197,7 @@ noh_vertex *fixture_skin_reference(const fixture_skin *f, uint32_t instance)
     noh_skin skin;
     noh_morph_accumulate_scalar(mesh, f->morph.weights[instance], &layers);
     if (mesh->header->flags & NOH_MESH_DUAL_QUATERNION) {
-        assert_int_equal(noh_pack_skin_at(f->pack, mesh->header->skin, &skin), NOH_OK);
+        assert_int_equal(noh_pack_skin_at(f->pack, mesh->header->skin, &skin, NULL), NOH_OK);
         joints = test_zeros(sizeof *joints * skin.header->joint_count);
         noh_skin_dual_quaternions(f->matrices[instance], skin.header->joint_count, joints);
     }

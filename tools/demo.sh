@@ -18,7 +18,7 @@ echo
     --columns 5 --tile 288 --camera 14,4 --path "$path"
 "$noh" budget "$build/mask.noh" --path "$path"
 echo
-echo 'Levels of detail (--lod-fast; without it they are closer still, in a minute):'
+echo 'LOD levels (--lod-fast; without it their errors are smaller, and the build takes a minute):'
 "$noh" build "$build/mask.glb" -o "$build/mask_levels.noh" --lod 4 --lod-fast --quiet
 "$noh" sheet "$build/mask_levels.noh" -o "$build/mask_levels.png" --lods --tile 256 --target smile --target eyeBlinkLeft,eyeBlinkRight \
     --path "$path"
@@ -29,4 +29,4 @@ echo "  $build/mask.png           at rest"
 echo "  $build/mask_smile.png     --weight smile=1"
 echo "  $build/mask_targets.png   every target"
 echo "  $build/mask_faces.png     the picture in the README"
-echo "  $build/mask_levels.png    every level of detail, at rest, smiling, eyes shut, and as small as it is used"
+echo "  $build/mask_levels.png    every LOD level: at rest, smiling, eyes shut, and at the size at which it is used"

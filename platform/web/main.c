@@ -75,7 +75,7 @@ static noh_result load_meshes(void)
     }
     for (uint32_t i = 0; i < pack->texture_count && !result; i++) {
         noh_texture texture;
-        noh_pack_texture(pack, i, &texture);
+        noh_pack_texture(pack, i, &texture, NULL);
         result = noh_gl_picture_create(&web.gl, &web.ledger, &texture, &web.pictures[i], &web.error);
     }
     end_part("textures");
@@ -196,7 +196,7 @@ static noh_result restore_meshes(void)
     }
     for (uint32_t i = 0; i < web.scene.pack.texture_count && !result; i++) {
         noh_texture texture;
-        noh_pack_texture(&web.scene.pack, i, &texture);
+        noh_pack_texture(&web.scene.pack, i, &texture, NULL);
         result = noh_gl_picture_restore(&web.gl, &web.ledger, &texture, &web.pictures[i], &web.error);
     }
     return result;
@@ -269,7 +269,7 @@ EMSCRIPTEN_KEEPALIVE int web_fades(void)
 EMSCRIPTEN_KEEPALIVE const char *web_clip_name(uint32_t i)
 {
     noh_pack_motion motion;
-    return noh_pack_motion_at(&web.scene.pack, i, &motion) == NOH_OK ? motion.name : "";
+    return noh_pack_motion_at(&web.scene.pack, i, &motion, NULL) == NOH_OK ? motion.name : "";
 }
 
 /* clip: an index, or -1 for none. */

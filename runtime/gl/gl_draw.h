@@ -8,6 +8,7 @@
 #ifndef NOH_GL_GL_DRAW_H
 #define NOH_GL_GL_DRAW_H
 
+#include "base/limits.h"
 #include "gl/gl_morph.h"
 #include "gl/gl_skin.h"
 #include "gl/gl_variants.h"
@@ -67,8 +68,6 @@ typedef struct noh_gl_renderer_desc {
     int fades;                 /* draws will fade (noh_gl_detail): variants that discard pixels beside those that do not */
     int encode_srgb;           /* the shader encodes: for a target that is not sRGB, as WebGL's canvas. 0: the target does */
 } noh_gl_renderer_desc;
-
-#define NOH_GL_VARIANTS_MAX 64u /* a character of one kind of mesh needs 2 to 8, twice that with fades */
 
 typedef struct noh_gl_renderer {
     const noh_gl_api *gl;

@@ -49,7 +49,7 @@ static void pose(side *s)
     noh_skin skin;
     uint32_t joints;
     float *matrices;
-    assert_int_equal(noh_pack_skin_at(s->mesh.pack, s->mesh.header->skin, &skin), NOH_OK);
+    assert_int_equal(noh_pack_skin_at(s->mesh.pack, s->mesh.header->skin, &skin, NULL), NOH_OK);
     joints = skin.header->joint_count;
     matrices = test_zeros(48u * (size_t)joints);
     for (uint32_t i = 0; i < COPIES; i++) {
@@ -308,11 +308,15 @@ static void finer_levels_can_stay_away(void **state)
 {
     const noh_gl_detail details[LEVELS] = { { 0, 0.0f, 1.0f }, { 1, 0.0f, 1.0f }, { 2, 0.0f, 1.0f } };
     noh_mesh view;
+    noh_mesh_level table_levels[NOH_DETAIL_LEVELS_MAX];
+    noh_detail_table table;
+    noh_detail chosen;
     noh_gl_ledger ledger;
     noh_gl_mesh gl;
     size_t first;
     (void)state;
     open_both();
+    memset(&table, 0, sizeof table);
     view = noh_mesh_at_level(&with.mesh, 1);
     memset(&ledger, 0, sizeof ledger);
     assert_int_equal(noh_gl_mesh_create(&fixture_gpu()->gl, &ledger, &view, &gl, NULL), NOH_OK);
@@ -324,6 +328,15 @@ static void finer_levels_can_stay_away(void **state)
     assert_int_equal(first, 0);
     assert_int_equal(noh_gl_mesh_level(&gl, 9, &first).header->level, 2);
     assert_int_equal(first, view.header->index_count * view.header->index_bytes);
+    noh_detail_mesh_levels(&view, table_levels, &table); /* what detail chooses by is what is drawn */
+    for (uint32_t k = table.mesh_level_first; k < table.mesh_level_count; k++) {
+        const noh_mesh_header *drawn;
+        noh_detail_fix(&chosen, &table, k, 1.0f);
+        drawn = noh_gl_mesh_level(&gl, chosen.mesh, &first).header;
+        assert_int_equal(drawn->level, k);
+        assert_int_equal(drawn->vertex_count, table.meshes[chosen.mesh].vertex_count);
+    }
+    assert_int_equal(table.mesh_level_count, LEVELS);
     for (uint32_t k = 0; k < LEVELS; k++) {
         same_picture(picture(&with, &gl, CROWD, &details[k], 1, NOH_VIEW_LIT), picture_of_level(CROWD, k ? k : 1u));
     }

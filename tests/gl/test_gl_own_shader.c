@@ -100,8 +100,8 @@ static void open_skin(stage *st, noh_palette_mode mode)
     noh_transform pose[16];
     float world[16 * 12];
     test_random r = test_random_from(95);
-    assert_int_equal(noh_pack_skin_at(&st->pack, st->mesh.header->skin, &skin), NOH_OK);
-    assert_int_equal(noh_pack_skeleton_at(&st->pack, skin.header->skeleton, &skeleton, NULL), NOH_OK);
+    assert_int_equal(noh_pack_skin_at(&st->pack, st->mesh.header->skin, &skin, NULL), NOH_OK);
+    assert_int_equal(noh_pack_skeleton_at(&st->pack, skin.header->skeleton, &skeleton, NULL, NULL), NOH_OK);
     assert_in_range(skeleton.joint_count, 2, 16);
     memcpy(pose, skeleton.bind_pose, sizeof *pose * skeleton.joint_count);
     for (uint32_t i = 0; i < skeleton.joint_count; i++) {

@@ -70,7 +70,7 @@ static noh_result make_texture(maker *m, noh_error *error)
 static noh_result make_picture(maker *m, noh_error *error)
 {
     noh_texture texture;
-    assert_int_equal(noh_pack_texture(&m->pack, 0, &texture), NOH_OK);
+    assert_int_equal(noh_pack_texture(&m->pack, 0, &texture, NULL), NOH_OK);
     return noh_gl_picture_create(&m->g.gl, &m->g.ledger, &texture, &m->made.texture, error);
 }
 

@@ -93,7 +93,7 @@ static void dual_quaternions_equal_the_cpu(void **state)
 static void stretch_all(fixture_skin *f, const float scale[3])
 {
     noh_skin skin;
-    assert_int_equal(noh_pack_skin_at(f->pack, f->meshes[0].header->skin, &skin), NOH_OK);
+    assert_int_equal(noh_pack_skin_at(f->pack, f->meshes[0].header->skin, &skin, NULL), NOH_OK);
     for (uint32_t e = 0; e < 12 * skin.header->joint_count; e++) {
         f->matrices[0][e] = e % 4 == 3 ? 5.0f : e % 4 == e / 4 % 3 ? scale[e % 4] : 0.0f;
     }

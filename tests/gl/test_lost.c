@@ -6,7 +6,8 @@
 
 #include "load.h"
 #include "null.h"
-#include "view.h"
+#include "camera.h"
+#include "canvas.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -160,9 +160,11 @@ static void misaligned_layers_are_refused(void **state)
     guarded g;
     (void)state;
     fixture_meshes_open(&f);
-    g = guarded_new(noh_morph_layers_size(&f.meshes[0]) + 4);
-    for (size_t shift = 1; shift < 4; shift++) {
-        assert_int_equal(noh_morph_layers_init(g.block + shift, g.bytes - shift, &f.meshes[0], &layers, NULL), NOH_ERR_ARG);
+    g = guarded_new(noh_morph_layers_size(&f.meshes[0]) + NOH_MEMORY_ALIGN);
+    for (size_t shift = 1; shift < NOH_MEMORY_ALIGN; shift++) {
+        noh_error error = { NOH_OK, NULL, 0, 0 };
+        assert_int_equal(noh_morph_layers_init(g.block + shift, g.bytes - shift, &f.meshes[0], &layers, &error), NOH_ERR_ARG);
+        assert_int_equal(error.need, noh_morph_layers_size(&f.meshes[0]));
     }
     expect_untouched(&g);
     guarded_free(&g);
@@ -499,6 +501,34 @@ static void play_a_while(noh_motion_set *set)
     motion_player_close(&p);
 }
 
+static void expect_exact_view(const noh_motion_set *set, size_t bytes)
+{
+    noh_transform *pose = test_zeros(sizeof *pose * (set->anim.joint_count + 1u));
+    float *floats = test_zeros(sizeof *floats * (set->anim.float_count + 1u));
+    noh_motion_set_view *view = NULL;
+    noh_error error = { NOH_OK, NULL, 0, 0 };
+    guarded g = guarded_new(bytes);
+    assert_int_equal(noh_motion_set_view_size(set), bytes);
+    assert_int_equal(noh_motion_set_view_init(NULL, bytes, set, &view, &error), NOH_ERR_ARG);
+    assert_int_equal(error.need, bytes);
+    assert_int_equal(noh_motion_set_view_init(g.block, bytes - 1, set, &view, &error), NOH_ERR_MEMORY);
+    assert_int_equal(error.need, bytes);
+    assert_int_equal(noh_motion_set_view_init(g.block + 4, bytes, set, &view, &error), NOH_ERR_ARG);
+    assert_null(view);
+    expect_untouched(&g);
+    assert_int_equal(noh_motion_set_view_init(g.block, bytes, set, &view, &error), NOH_OK);
+    for (uint32_t m = 0; m < set->anim.motion_count; m++) {
+        const uint32_t duration = set->anim.motions[m].duration_ticks;
+        for (uint32_t i = 0; i <= 100; i++) {
+            view->anim.sample(view->anim.user, m, duration / 100u * i, set->anim.joint_count, pose, set->anim.float_count, floats);
+        }
+    }
+    expect_canaries(&g);
+    guarded_free(&g);
+    free(pose);
+    free(floats);
+}
+
 static void expect_exact_set(const noh_pack *pack, uint32_t skeleton, uint32_t slots, uint32_t root_axes)
 {
     noh_motion_set_desc desc;
@@ -516,7 +546,7 @@ static void expect_exact_set(const noh_pack *pack, uint32_t skeleton, uint32_t s
     g = guarded_new(needs.bytes);
     assert_int_equal(noh_motion_set_init(g.block, needs.bytes - 1, &desc, &set, &error), NOH_ERR_MEMORY);
     assert_int_equal(error.need, needs.bytes);
-    assert_int_equal(noh_motion_set_init(g.block + 4, needs.bytes, &desc, &set, &error), NOH_ERR_MEMORY);
+    assert_int_equal(noh_motion_set_init(g.block + 4, needs.bytes, &desc, &set, &error), NOH_ERR_ARG);
     assert_null(set);
     expect_untouched(&g);
     assert_int_equal(noh_motion_set_init(g.block, needs.bytes, &desc, &set, &error), NOH_OK);
@@ -524,6 +554,7 @@ static void expect_exact_set(const noh_pack *pack, uint32_t skeleton, uint32_t s
     assert_int_equal(set->anim.joint_count, needs.shape.joint_count);
     assert_int_equal(set->anim.float_count, needs.shape.float_count);
     play_a_while(set);
+    expect_exact_view(set, needs.view_bytes);
     expect_canaries(&g);
     guarded_free(&g);
 }
@@ -588,7 +619,7 @@ static void pictures_and_the_renderer_take_what_they_say(void **state)
     noh_gl_ledger ledger;
     (void)state;
     memset(&ledger, 0, sizeof ledger);
-    assert_int_equal(noh_pack_texture(&pack, 0, &texture), NOH_OK);
+    assert_int_equal(noh_pack_texture(&pack, 0, &texture, NULL), NOH_OK);
     assert_int_equal(noh_gl_picture_create(&g->gl, &ledger, &texture, &picture, NULL), NOH_OK);
     assert_int_equal(noh_gl_ledger_bytes(&ledger), noh_gl_picture_bytes(&texture));
     assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, NULL, 0 }, &desc,

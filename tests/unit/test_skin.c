@@ -27,8 +27,8 @@ static made make(const skin_cylinder *c, const skin_options *options)
     x.bytes = skin_pack_of(x.m, options, 1.0f, &count, NULL);
     x.pack = test_open(x.bytes, count);
     x.mesh = test_mesh(&x.pack, 0);
-    assert_int_equal(noh_pack_skin_at(&x.pack, x.mesh.header->skin, &x.skin), NOH_OK);
-    assert_int_equal(noh_pack_skeleton_at(&x.pack, x.skin.header->skeleton, &x.skeleton, NULL), NOH_OK);
+    assert_int_equal(noh_pack_skin_at(&x.pack, x.mesh.header->skin, &x.skin, NULL), NOH_OK);
+    assert_int_equal(noh_pack_skeleton_at(&x.pack, x.skin.header->skeleton, &x.skeleton, NULL, NULL), NOH_OK);
     x.matrices = test_zeros(48u * (size_t)x.skin.header->joint_count);
     return x;
 }
@@ -410,7 +410,7 @@ static float smallest_radius(const noh_mesh *mesh, const float *matrices, const 
     return sqrtf(smallest);
 }
 
-/* Row E1: half a turn collapses a linear blend to a point; dual quaternions keep the radius. */
+/* Half a turn collapses a linear blend to a point; dual quaternions keep the radius. */
 static void a_twisted_tube_keeps_its_radius(void **state)
 {
     const skin_cylinder c = { 16, 41, 2, 2, 0, 0, 4.0f, 0.5f };

@@ -1,4 +1,4 @@
-/* load_draw.c: the draws of a load, at chosen levels of detail or at the finest. */
+/* load_draw.c: the draws of a load, at chosen LOD levels or at the finest. */
 #include "load.h"
 
 void load_set_detail(load *l, uint32_t item, const noh_detail *detail, int64_t clock)

@@ -1,5 +1,6 @@
 /* bench_crowd.c: a hundred heads in one accumulator, each with weights of its own, against
  * one head alone; and how cost grows with pairs. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
