@@ -23,7 +23,7 @@ typedef struct probe {
     GLint first_row; /* a uniform of floats */
 } probe;
 
-/* What drawing into a float format gave. */
+/* The result of drawing into a float format. */
 typedef struct float_result {
     int stored, stored_exact, blended, blended_exact;
     noh_half_mode store_mode, blend_mode;
@@ -315,7 +315,7 @@ static int probe_layered(const probe *p)
     return right;
 }
 
-/* A counter of 0 bits is how a driver lists the extension and does not time. */
+/* A driver that lists the extension but cannot time has a counter of 0 bits. */
 static int probe_timer(const noh_gl_api *gl)
 {
     if (!gl->TimeGenQueries || !gl->TimeDeleteQueries || !gl->TimeBeginQuery || !gl->TimeEndQuery ||

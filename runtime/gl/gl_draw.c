@@ -21,7 +21,7 @@ void noh_gl_draw_begin(const noh_gl_renderer *r, const noh_gl_camera *camera)
     }
 }
 
-/* ---- what a mesh brings ---- */
+/* ---- uniforms, attributes, textures ---- */
 
 static void set_mesh(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_gl_mesh *mesh,
                      const noh_gl_morph_binding *morph)
@@ -42,7 +42,7 @@ static void set_mesh(const noh_gl_renderer *r, const noh_gl_variant *v, const no
     r->gl->BindVertexArray(mesh->vertex_array);
 }
 
-/* What a crowd's instances have each for themselves. */
+/* What each instance of a crowd has in its own rows instead. */
 static void set_instance(const noh_gl_renderer *r, const noh_gl_variant *v, const float world[12],
                          const noh_gl_morph_binding *morph)
 {
@@ -84,7 +84,7 @@ static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, cons
 
 static const noh_gl_detail whole = { 0, 0.0f, 1.0f };
 
-/* NULL where the renderer was not told of such a draw, or it has no pixels. */
+/* NULL where the renderer's desc had no such draw, or no pixel is to be drawn. */
 static const noh_gl_variant *variant_of(const noh_gl_renderer *r, const noh_gl_mesh *mesh, const noh_gl_skin_binding *skin, int crowd,
                                         const noh_gl_detail *detail)
 {

@@ -1,8 +1,8 @@
 /* gl_draw.h: meshes on the GPU, and a plain renderer for them.
  *
- * The renderer is small on purpose: one shader in variants, one key light, base
- * colour textures and vertex colours. A game brings its own shaders and needs only
- * noh_gl_mesh, a noh_gl_morph_binding and a noh_gl_skin_binding.
+ * The renderer is deliberately small: one shader in variants, one key light, base
+ * colour textures and vertex colours. A game has its own shaders (gl_shader_text.h)
+ * and needs only noh_gl_mesh, a noh_gl_morph_binding and a noh_gl_skin_binding.
  *
  * Threads: the context's own thread; noh_gl_mesh_bytes, noh_gl_mesh_level and noh_gl_picture_bytes, any. */
 #ifndef NOH_GL_GL_DRAW_H
@@ -24,17 +24,17 @@
 #define NOH_ATTRIBUTE_TEXEL 7u           /* uint: morph texel and palette, with NOH_MESH_TEXELS */
 
 typedef struct noh_gl_mesh {
-    noh_mesh mesh;       /* at the finest level that is there */
+    noh_mesh mesh;       /* at the finest LOD level that was uploaded */
     GLuint vertex_array;
     noh_gl_buffer positions, attributes, influences, indices; /* no influences in a rigid mesh */
     GLenum index_type;
 } noh_gl_mesh;
 
-/* GPU bytes of a mesh's buffers: exact. `mesh` may be any level: then without what only finer ones have. */
+/* GPU bytes of a mesh's buffers, exact. `mesh` may be any LOD level: what only finer ones have is not counted. */
 uint64_t noh_gl_mesh_bytes(const noh_mesh *mesh);
 
-/* Upload a mesh and all its coarser levels straight from the pack. `mesh` may be any level: the finest that will be
- * there. errors  as noh_gl_buffer_create */
+/* Upload a mesh and all its coarser LOD levels straight from the pack. `mesh` may be any level; finer ones are not
+ * uploaded. errors  as noh_gl_buffer_create */
 noh_result noh_gl_mesh_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_mesh *mesh, noh_gl_mesh *out,
                               noh_error *error);
 void noh_gl_mesh_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mesh *mesh);
@@ -62,7 +62,7 @@ typedef struct noh_gl_renderer_desc {
     int layers_uint;           /* as in noh_gl_morph_binding.is_uint */
     const noh_mesh *meshes;    /* [mesh_count] that will be drawn; not kept */
     uint32_t mesh_count;
-    noh_palette_mode palettes; /* noh_gl_skin_plan.mode; 0: nothing is skinned, meshes stand in their bind pose */
+    noh_palette_mode palettes; /* noh_gl_skin_plan.mode; 0: nothing is skinned, all meshes are in their bind pose */
     int crowds;                /* noh_gl_draw_crowd will be called: wants NOH_PALETTE_TEXTURE */
     int fewer_influences;      /* bindings will lower `influences` */
     int fades;                 /* draws will fade (noh_gl_detail): variants that discard pixels beside those that do not */

@@ -77,7 +77,7 @@ typedef struct noh_gl_morph_plan {
     uint32_t atlas_width, atlas_height;
     uint32_t instance_count, weight_count;
     uint32_t rect_count, texel_count, pair_count; /* in the tables, which levels of one mesh share */
-    uint64_t cpu_bytes;          /* the block that noh_gl_morph_init wants */
+    uint64_t cpu_bytes;          /* the block that noh_gl_morph_init needs */
     uint64_t delta_bytes;        /* GPU: delta texels, or the gather entries */
     uint64_t table_bytes;        /* GPU: rectangles, or the gather list starts */
     uint64_t stream_bytes;       /* GPU: what is sent at each update */

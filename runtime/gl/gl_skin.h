@@ -17,7 +17,7 @@
  * numbered as in a noh_gl_morph of the same meshes and counts.
  *
  *   mode     in                                for
- *   uniform  a uniform block of at most 16 KiB instances that are drawn one by one
+ *   uniform  a uniform block, up to 16 KiB     instances that are drawn one by one
  *   texture  RGBA32F, in rows                  crowds too: noh_gl_draw_crowd draws many in one call
  * Both are core ES 3.0, and both give the same bits.
  *
@@ -51,7 +51,7 @@ typedef struct noh_gl_skin_plan {
     uint32_t instance_count;
     uint32_t texel_count;   /* rows of four floats, gaps between palettes included */
     uint32_t width, height; /* of the texture; 0 in a uniform buffer */
-    uint64_t cpu_bytes;     /* the block that noh_gl_skin_init wants */
+    uint64_t cpu_bytes;     /* the block that noh_gl_skin_init needs */
     uint64_t gpu_bytes;
 } noh_gl_skin_plan;
 
@@ -64,8 +64,8 @@ typedef struct noh_gl_skin_binding {
     uint32_t first;      /* the instance's first row of four floats */
     uint32_t stride;     /* from there to the next instance of the same mesh */
     uint32_t width_log2; /* row i is the texel (i & (width - 1), i >> width_log2); 0 in a uniform buffer */
-    uint32_t align;      /* palettes start at multiples of so many rows */
-    uint32_t influences; /* draw with at most so many joints per vertex, the strongest (LOD); 0: all */
+    uint32_t align;      /* palettes start at multiples of this many rows */
+    uint32_t influences; /* at most this many joints per vertex, the strongest ones; 0: all */
 } noh_gl_skin_binding;
 
 /* Decide and measure, without touching GL.
@@ -109,7 +109,7 @@ noh_result noh_gl_skin_set_place(noh_gl_skin *skin, uint32_t instance, const flo
  * errors  none: everything was checked at init */
 void noh_gl_skin_update(noh_gl_skin *skin);
 
-/* All influences are drawn until you lower `influences`. */
+/* `influences` is 0; set it to draw fewer. */
 noh_gl_skin_binding noh_gl_skin_binding_of(const noh_gl_skin *skin, uint32_t instance);
 
 /* The first row of a palette, counted from the instance's own first row. */

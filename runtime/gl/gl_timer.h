@@ -25,8 +25,8 @@ typedef struct noh_gl_timer {
     int open;         /* between begin and end */
 } noh_gl_timer;
 
-/* Never fails: `available` says whether the timer will ever tell a time. It is 0 without timer queries, and where the
- * driver refuses to make them. */
+/* Never fails. `available` is 0 without timer queries, and where the driver refuses to make them: the timer then
+ * measures nothing. */
 void noh_gl_timer_init(noh_gl_timer *timer, const noh_gl_api *api, const noh_gl_caps *caps);
 void noh_gl_timer_delete(noh_gl_timer *timer, const noh_gl_api *api);
 
@@ -35,7 +35,7 @@ void noh_gl_timer_end(noh_gl_timer *timer, const noh_gl_api *api);
 
 /* units   nanoseconds
  * errors  NOH_ERR_NOT_FOUND none has finished yet; NOH_ERR_UNSUPPORTED no timer queries;
- *         NOH_ERR_GL the GPU changed clocks or was taken away: all in flight are dropped */
+ *         NOH_ERR_GL the GPU's clock was disjoint (a frequency change, for instance): all in flight are dropped */
 noh_result noh_gl_timer_poll(noh_gl_timer *timer, const noh_gl_api *api, uint64_t *elapsed_ns);
 
 #endif
