@@ -46,7 +46,7 @@ static struct web {
 
 /* ---- loading ---- */
 
-/* A part is what was taken since the part before. */
+/* A part's bytes are those carved since the part before. */
 static void end_part(const char *name)
 {
     uint32_t cpu = (uint32_t)web.arena.used, gpu = (uint32_t)noh_gl_ledger_bytes(&web.ledger);
@@ -149,7 +149,7 @@ static noh_result load_renderer(void)
     desc.meshes = web.scene.meshes;
     desc.mesh_count = web.scene.pack.mesh_count;
     desc.fades = web.detail.level_count > 1;
-    desc.encode_srgb = 1; /* a canvas encodes nothing */
+    desc.encode_srgb = 1; /* a canvas does not encode */
     desc.palettes = web.skin ? noh_gl_skin_plan_of(web.skin)->mode : NOH_PALETTE_AUTO;
     noh_result result = noh_gl_renderer_create(&(noh_gl_device){ &web.gl, NULL, &web.ledger, NULL, 0 }, &desc,
                                                &web.renderer, &web.error);
@@ -166,7 +166,7 @@ static noh_result open_context(void)
     return result ? result : noh_gl_caps_probe(&web.gl, &web.caps, &web.error);
 }
 
-/* Where the page puts the file; NULL where it is larger than the page was built for. */
+/* Where the page writes the file; NULL if it is larger than the page was built for. */
 EMSCRIPTEN_KEEPALIVE void *web_pack(uint32_t bytes)
 {
     return bytes <= sizeof pack_bytes ? pack_bytes : NULL;
@@ -202,7 +202,7 @@ static noh_result restore_meshes(void)
     return result;
 }
 
-/* After the browser took the context away and gave it back: everything again out of the pack. */
+/* After the browser restored a lost context: make every object again from the pack. */
 EMSCRIPTEN_KEEPALIVE int web_restore(void)
 {
     noh_web_enable_extensions(web.context);
@@ -280,7 +280,7 @@ EMSCRIPTEN_KEEPALIVE int web_play(int clip, double time_s, double transition_s)
 
 /* ---- a frame ---- */
 
-/* The box around the scene as it stands: 6 floats, to be read at once. */
+/* The scene's current bounding box: 6 floats, valid until the next call. */
 EMSCRIPTEN_KEEPALIVE float *web_measure(void)
 {
     web_motion_bounds(&web.motion, web.bounds);
@@ -355,7 +355,7 @@ EMSCRIPTEN_KEEPALIVE int web_draw(double seconds)
     return 0;
 }
 
-/* Whether GL has had an error since it was last asked. Waits for the GPU. */
+/* Whether GL raised an error since the last call. Waits for the GPU. */
 EMSCRIPTEN_KEEPALIVE int web_check(void)
 {
     GLenum code = noh_gl_error_take(&web.gl);

@@ -7,7 +7,9 @@
  * Extension strings lie both ways: OSMesa blends floats without listing the
  * extension, some drivers list formats that they cannot render. So each ability
  * is decided by doing it once, on 16 texels. The struct is plain: a test, or a
- * user with a driver bug, may clear any field after the probe. */
+ * user with a driver bug, may clear any field after the probe.
+ *
+ * Threads: the context's own thread, for every function. */
 #ifndef NOH_GL_GL_CAPS_H
 #define NOH_GL_GL_CAPS_H
 

@@ -5,7 +5,9 @@
  *   noh_gl_group_end    close it
  *
  * All do nothing where the context has no debug functions. Every object that the
- * library makes is labelled and every pass is in a group. */
+ * library makes is labelled and every pass is in a group.
+ *
+ * Threads: the context's own thread, for every function. */
 #ifndef NOH_GL_GL_DEBUG_H
 #define NOH_GL_GL_DEBUG_H
 

@@ -40,6 +40,7 @@ static uint32_t levels_max(uint32_t width, uint32_t height)
 
 uint64_t noh_gl_texture_bytes(const noh_gl_texture_desc *desc)
 {
+    NOH_ASSERT(desc);
     uint64_t texel = noh_gl_texel_bytes(desc->format);
     uint32_t width = desc->width, height = desc->height;
     uint64_t layers = desc->layers ? desc->layers : 1;
@@ -63,12 +64,14 @@ uint64_t noh_gl_renderbuffer_bytes(GLenum format, uint32_t width, uint32_t heigh
 
 uint64_t noh_gl_ledger_bytes(const noh_gl_ledger *ledger)
 {
+    NOH_ASSERT(ledger);
     return ledger->buffer_bytes + ledger->texture_bytes + ledger->renderbuffer_bytes;
 }
 
 noh_result noh_gl_buffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, GLenum target, uint64_t bytes,
                                 const void *data, GLenum usage, noh_gl_buffer *out, noh_error *error)
 {
+    NOH_ASSERT(api && ledger && out);
     if (bytes == 0) return noh_fail(error, NOH_ERR_ARG, "a buffer has no bytes", 0, 0);
     if (bytes > (uint64_t)PTRDIFF_MAX) return noh_fail(error, NOH_ERR_LIMIT, "a buffer is larger than the address space", (uint64_t)PTRDIFF_MAX, bytes);
     noh_gl_error_take(api);
@@ -91,7 +94,9 @@ noh_result noh_gl_buffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, GL
 
 void noh_gl_buffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_buffer *buffer)
 {
+    NOH_ASSERT(api && ledger && buffer);
     if (!buffer->name) return;
+    NOH_ASSERT(ledger->buffers > 0 && ledger->buffer_bytes >= buffer->bytes);
     api->DeleteBuffers(1, &buffer->name);
     ledger->buffers--;
     ledger->buffer_bytes -= buffer->bytes;
@@ -114,6 +119,7 @@ static void set_parameters(const noh_gl_api *api, GLenum target, const noh_gl_te
 noh_result noh_gl_texture_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_gl_texture_desc *desc,
                                  noh_gl_texture *out, noh_error *error)
 {
+    NOH_ASSERT(api && ledger && desc && out);
     uint64_t bytes = noh_gl_texture_bytes(desc);
     if (bytes == 0) return noh_fail(error, NOH_ERR_ARG, "a texture desc has an unknown format, no size, or more levels than its size has", 0, 0);
     GLenum target = desc->layers ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
@@ -146,7 +152,9 @@ noh_result noh_gl_texture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
 
 void noh_gl_texture_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_texture *texture)
 {
+    NOH_ASSERT(api && ledger && texture);
     if (!texture->name) return;
+    NOH_ASSERT(ledger->textures > 0 && ledger->texture_bytes >= texture->bytes);
     api->DeleteTextures(1, &texture->name);
     ledger->textures--;
     ledger->texture_bytes -= texture->bytes;
@@ -157,6 +165,7 @@ void noh_gl_texture_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_
 noh_result noh_gl_renderbuffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, GLenum format, uint32_t width,
                                       uint32_t height, uint32_t samples, noh_gl_renderbuffer *out, noh_error *error)
 {
+    NOH_ASSERT(api && ledger && out);
     uint64_t bytes = noh_gl_renderbuffer_bytes(format, width, height, samples);
     if (bytes == 0) return noh_fail(error, NOH_ERR_ARG, "a renderbuffer has an unknown format, no size, or too many samples", 0, 0);
     noh_gl_error_take(api);
@@ -180,7 +189,9 @@ noh_result noh_gl_renderbuffer_create(const noh_gl_api *api, noh_gl_ledger *ledg
 
 void noh_gl_renderbuffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_renderbuffer *renderbuffer)
 {
+    NOH_ASSERT(api && ledger && renderbuffer);
     if (!renderbuffer->name) return;
+    NOH_ASSERT(ledger->renderbuffers > 0 && ledger->renderbuffer_bytes >= renderbuffer->bytes);
     api->DeleteRenderbuffers(1, &renderbuffer->name);
     ledger->renderbuffers--;
     ledger->renderbuffer_bytes -= renderbuffer->bytes;
@@ -190,6 +201,7 @@ void noh_gl_renderbuffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, no
 
 noh_result noh_gl_framebuffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, GLuint *out, noh_error *error)
 {
+    NOH_ASSERT(api && ledger && out);
     noh_gl_error_take(api);
     GLuint name = 0;
     api->GenFramebuffers(1, &name);
@@ -206,7 +218,9 @@ noh_result noh_gl_framebuffer_create(const noh_gl_api *api, noh_gl_ledger *ledge
 
 void noh_gl_framebuffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, GLuint *framebuffer)
 {
+    NOH_ASSERT(api && ledger && framebuffer);
     if (!*framebuffer) return;
+    NOH_ASSERT(ledger->framebuffers > 0);
     api->DeleteFramebuffers(1, framebuffer);
     ledger->framebuffers--;
     *framebuffer = 0;

@@ -14,7 +14,7 @@ static uint64_t attribute_bytes(const noh_mesh *mesh)
     return (uint64_t)mesh->header->vertex_count * mesh->header->attribute_stride;
 }
 
-/* Of this level and all coarser ones: they follow each other in the pack. */
+/* Of this LOD level and all coarser ones, which follow each other in the pack. */
 static uint64_t index_count(const noh_mesh *mesh)
 {
     const noh_mesh_header *h = mesh->header;
@@ -39,6 +39,7 @@ static uint64_t influence_bytes(const noh_mesh *mesh)
 
 uint64_t noh_gl_mesh_bytes(const noh_mesh *mesh)
 {
+    NOH_ASSERT(mesh && mesh->header);
     return position_bytes(mesh) + attribute_bytes(mesh) + influence_bytes(mesh) + index_bytes(mesh);
 }
 
@@ -51,7 +52,7 @@ static void set_attribute(const noh_gl_api *gl, GLuint location, GLint size, GLe
     }
 }
 
-/* Directions go in as integers: drivers differ in how they normalise them. */
+/* Directions are integer attributes: drivers differ in how they convert normalised ones to floats. */
 static void set_pair(const noh_gl_api *gl, GLuint location, uint32_t stride, int offset)
 {
     if (offset >= 0) {
@@ -119,6 +120,7 @@ noh_result noh_gl_mesh_create(const noh_gl_api *api, noh_gl_ledger *ledger, cons
     static const uint32_t no_indices = 0;
     const void *indices = index_count(mesh) ? mesh->indices : &no_indices;
     noh_result result;
+    NOH_ASSERT(api && ledger && out);
     m.index_type = mesh->header->index_bytes == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
     noh_gl_error_take(api);
     api->BindVertexArray(0);
@@ -156,6 +158,7 @@ noh_result noh_gl_mesh_create(const noh_gl_api *api, noh_gl_ledger *ledger, cons
 
 noh_result noh_gl_mesh_restore(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mesh *mesh, noh_error *error)
 {
+    NOH_ASSERT(mesh && mesh->mesh.header);
     noh_mesh view = mesh->mesh;
     noh_gl_mesh_delete(noh_gl_lost_api(), ledger, mesh);
     return noh_gl_mesh_create(api, ledger, &view, mesh, error);
@@ -163,6 +166,7 @@ noh_result noh_gl_mesh_restore(const noh_gl_api *api, noh_gl_ledger *ledger, noh
 
 noh_mesh noh_gl_mesh_level(const noh_gl_mesh *mesh, uint32_t level, size_t *first)
 {
+    NOH_ASSERT(mesh && mesh->mesh.header && first);
     const noh_mesh_header *resident = mesh->mesh.header;
     const noh_mesh view = level > resident->level ? noh_mesh_at_level(&mesh->mesh, level) : mesh->mesh;
     *first = view.header->indices_offset - resident->indices_offset;
@@ -171,6 +175,7 @@ noh_mesh noh_gl_mesh_level(const noh_gl_mesh *mesh, uint32_t level, size_t *firs
 
 void noh_gl_mesh_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mesh *mesh)
 {
+    NOH_ASSERT(api && ledger && mesh);
     if (mesh->vertex_array) {
         api->DeleteVertexArrays(1, &mesh->vertex_array);
         mesh->vertex_array = 0;
@@ -199,6 +204,7 @@ static noh_gl_texture_desc picture_desc(const noh_texture *texture)
 
 uint64_t noh_gl_picture_bytes(const noh_texture *texture)
 {
+    NOH_ASSERT(texture && texture->header);
     noh_gl_texture_desc desc = picture_desc(texture);
     return noh_gl_texture_bytes(&desc);
 }
@@ -214,6 +220,7 @@ noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
     noh_gl_texture_desc desc = picture_desc(texture);
     noh_gl_texture picture;
     noh_result result;
+    NOH_ASSERT(api && ledger && out);
     result = noh_gl_texture_create(api, ledger, &desc, &picture, error);
     if (result) {
         return result;
@@ -240,6 +247,7 @@ noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
 noh_result noh_gl_picture_restore(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
                                   noh_gl_texture *picture, noh_error *error)
 {
+    NOH_ASSERT(texture && texture->header && picture);
     noh_gl_texture_delete(noh_gl_lost_api(), ledger, picture);
     return noh_gl_picture_create(api, ledger, texture, picture, error);
 }

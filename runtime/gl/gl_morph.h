@@ -13,10 +13,11 @@
  *   noh_morph_path_name, noh_accumulate_name
  *
  * Deltas of position, normal and tangent are accumulated in three layers of one
- * texture array; each instance owns a tile of it, one texel per touched vertex.
- * The base pose stays in the vertex buffers and is added when the vertex shader
- * fetches (shaders_es/common_layers.glsl), so a half-float accumulator only ever
- * rounds deltas (rows A5-A8, A10).
+ * texture array; each instance has a tile of it, one accumulation texel per vertex
+ * that a target moves. The base mesh stays in the vertex buffers and is added when
+ * the vertex shader fetches (shaders_es/common_layers.glsl), so a half-float
+ * accumulator rounds deltas only. Microsoft's SparseMorphTargets sample (DirectX
+ * SDK) accumulates the same way, but whole vertices and one mesh.
  *
  *   path       needs                                how
  *   layered    geometry shader, blending            one additive pass to three layers
@@ -26,7 +27,9 @@
  *   cpu        nothing                              SIMD on the CPU, the texture takes the result
  * Two policies choose among them: `auto` takes the cheapest here, `blend` layered draws where supported and per-layer
  * passes otherwise. "Blending" is into the accumulation format, which an extension grants: float32
- * (EXT_float_blend) is missing on most phones, float16 is not. */
+ * (EXT_float_blend) is missing on most phones, float16 is not.
+ *
+ * Threads: the context's own thread. noh_gl_morph_plan_make and the names, any. */
 #ifndef NOH_GL_GL_MORPH_H
 #define NOH_GL_GL_MORPH_H
 
@@ -56,7 +59,7 @@ const char *noh_morph_path_name(noh_morph_path path);
 const char *noh_accumulate_name(noh_accumulate accumulate);
 
 typedef struct noh_gl_morph_desc {
-    const noh_mesh *meshes;          /* [mesh_count]; copied, the packs must stay. May hold several levels of one mesh, each with
+    const noh_mesh *meshes;          /* [mesh_count]; copied, the packs must stay. May hold several LOD levels of one mesh, each with
                                       * tiles of its own size: a few instances near, many far. They share the finest one's tables */
     uint32_t mesh_count;
     const uint32_t *instance_counts; /* [mesh_count]; NULL: one of each. 1..NOH_MORPH_INSTANCES_MAX in all */
@@ -65,7 +68,7 @@ typedef struct noh_gl_morph_desc {
     float expected_active;           /* for auto: share of the targets that is active at once, 0..1; 0: 0.5 */
 } noh_gl_morph_desc;
 
-/* What a desc comes to on a GPU with these capabilities. All bytes are exact. */
+/* The resolved plan on a GPU with these capabilities. All bytes are exact. */
 typedef struct noh_gl_morph_plan {
     noh_morph_path path;         /* never AUTO or BLEND */
     noh_accumulate accumulate;   /* never AUTO */
@@ -74,7 +77,7 @@ typedef struct noh_gl_morph_plan {
     uint32_t atlas_width, atlas_height;
     uint32_t instance_count, weight_count;
     uint32_t rect_count, texel_count, pair_count; /* in the tables, which levels of one mesh share */
-    uint64_t cpu_bytes;          /* the block that noh_gl_morph_init wants */
+    uint64_t cpu_bytes;          /* the block that noh_gl_morph_init needs */
     uint64_t delta_bytes;        /* GPU: delta texels, or the gather entries */
     uint64_t table_bytes;        /* GPU: rectangles, or the gather list starts */
     uint64_t stream_bytes;       /* GPU: what is sent at each update */
@@ -131,19 +134,19 @@ uint32_t noh_gl_morph_instance(const noh_gl_morph *morph, uint32_t mesh, uint32_
  * errors  ARG a weight is not finite, `where` is its index; nothing is then changed */
 noh_result noh_gl_morph_set_weights(noh_gl_morph *morph, uint32_t instance, const float *weights, noh_error *error);
 
-/* From now on accumulate only what this level of an instance's mesh needs: its rectangles, rows and lists. Draw the
- * instance at this level or a coarser one; while two levels fade, this is the finer of both. The level's texels hold
- * the same bits as at level 0, but for targets that have no rectangles in it at all: they do not move it. The
- * instance's binding stays as it is.
- * ranges  0 the full mesh; below the level that the desc has: that one; past the last: the coarsest
- * Going finer accumulates at the next update; going coarser costs nothing, and shows when the weights change next. */
+/* Accumulate only what an LOD level of an instance's mesh needs. Draw the instance at this level or a coarser one; while
+ * two levels fade, pass the finer. The level's accumulation texels have the same bits as at level 0, except that targets
+ * without rectangles in the level do not move it. The instance's binding stays the same.
+ * ranges  level 0 is the full mesh; clamped to the levels that the mesh of the desc has
+ * A finer level is accumulated by the next update. A coarser one costs nothing and takes effect when the weights next
+ * change. */
 void noh_gl_morph_set_level(noh_gl_morph *morph, uint32_t instance, uint32_t level);
 
-/* Accumulate what changed. stats may be NULL.
+/* Accumulate the instances whose weights or level changed. stats may be NULL.
  * state   Afterwards: framebuffer 0, vertex array 0, program 0, array buffer 0 and textures of
  *         units 0..2 unbound; blending, scissor, depth and cull test off; viewport that of the
  *         atlas. Set your own before you draw. Nothing is touched when nothing changed.
- * errors  none: everything was checked at init */
+ * errors  none: everything was checked by init */
 void noh_gl_morph_update(noh_gl_morph *morph, noh_gl_morph_stats *stats);
 
 noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t instance);

@@ -47,9 +47,9 @@ static const char *missing(noh_morph_path path, noh_accumulate accumulate, const
     return NULL;
 }
 
-/* What accumulating costs on a GPU, in blended texels: a rectangle is worth 4 texels of
- * vertex work; a gather entry is two dependent fetches, and all entries are read whatever
- * is active. Ratios measured by `noh bench` (runtime/README.md). */
+/* The cheapest path on a GPU. Costs are in blended texels: mrt blends every texel of the active targets, and a rectangle
+ * costs as much as 4 texels of vertex work; gather makes two dependent fetches per entry and reads all entries, active or
+ * not. The ratios were measured by `noh bench` (runtime/README.md). Layered and per-layer are never cheaper than mrt. */
 static noh_morph_path cheapest_on_gpu(const noh_gl_morph_plan *plan, float active, noh_accumulate accumulate, const noh_gl_caps *caps,
                                       const char **reason)
 {
@@ -156,7 +156,8 @@ uint32_t noh_gl_morph_pitch(const noh_mesh_header *header)
     return (header->morph_height + 3u) & ~3u;
 }
 
-/* Stack the meshes' bands in an atlas of this width; the height may be too much. */
+/* Stack the meshes' bands in an atlas of this width: a mesh's tiles fill rows of as many as fit side by side. Returns the
+ * height, which may be more than a texture has. */
 static uint64_t stack_bands(const noh_gl_morph_desc *desc, uint32_t atlas_width, noh_gl_morph_mesh *meshes)
 {
     uint64_t y = 0;
@@ -174,8 +175,8 @@ static uint64_t stack_bands(const noh_gl_morph_desc *desc, uint32_t atlas_width,
     return y;
 }
 
-/* The narrowest power of two that is at most as high as wide textures may be, first
- * within what every ES 3.0 has, then within what this one has. */
+/* Choose the atlas: the narrowest width, a power of two, at which the bands are not higher than a texture may be. Widths up
+ * to 2048 are tried with heights up to 2048, which every ES 3.0 has, and only then the larger ones of this GPU. */
 static noh_result place_tiles(const noh_gl_morph_desc *desc, uint32_t texture_size_max, noh_gl_morph_mesh *meshes,
                               noh_gl_morph_plan *plan, noh_error *error)
 {
@@ -210,8 +211,9 @@ static noh_result place_tiles(const noh_gl_morph_desc *desc, uint32_t texture_si
     return NOH_OK;
 }
 
-/* The mesh of the set whose tables hold those of another: the finest level of the same mesh, the first of these. A
- * level's rectangles, target by target, and its lists by texel are the first of every finer level's. */
+/* The mesh of the set whose tables a mesh uses: the finest LOD level of the same mesh in the set, the first one of equals.
+ * This works because a level's rectangles, target by target, and its lists, vertex by vertex, are a prefix of those of
+ * every finer level. */
 static uint32_t owner_of(const noh_gl_morph_desc *desc, uint32_t index)
 {
     uint32_t owner = index;
@@ -289,7 +291,7 @@ int noh_gl_morph_wide(const noh_gl_morph_plan *plan)
     return plan->rect_count > 65536u || plan->weight_count > 65536u;
 }
 
-/* Every rectangle of every instance at once is the most that one update can draw. */
+/* The most that one update can draw: every rectangle of every instance. */
 static uint64_t rect_slot_bytes(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan)
 {
     uint64_t count = 0;
@@ -369,7 +371,9 @@ noh_result noh_gl_morph_plan_make(const noh_gl_morph_desc *desc, const noh_gl_ca
 {
     noh_gl_morph_plan p;
     noh_arena arena = noh_arena_measure();
-    noh_result result = check_desc(desc, error);
+    noh_result result;
+    NOH_ASSERT(desc && caps && plan);
+    result = check_desc(desc, error);
     memset(&p, 0, sizeof p);
     if (!result) result = noh_gl_morph_layout(desc, caps->texture_size_max, NULL, &p, error);
     if (!result) result = choose_path(desc, caps, &p, error);

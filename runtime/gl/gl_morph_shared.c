@@ -1,5 +1,5 @@
-/* gl_morph_shared.c: what the paths have in common: tiles, slots, framebuffers, the stream
- * of instances, and the GL state around a draw. */
+/* gl_morph_shared.c: what the paths share: tiles, weights for the shaders, framebuffers, the instanced vertex stream, and
+ * the GL state around a draw. */
 #include <string.h>
 
 #include "gl/gl_debug.h"
@@ -36,7 +36,7 @@ uint32_t noh_gl_morph_first_weight(const noh_gl_morph *m, uint32_t instance)
 
 void noh_gl_morph_put_slot(uint32_t slot[4], const noh_target *target, float weight, uint32_t last)
 {
-    /* the same products as the CPU reference makes, so that both round alike */
+    /* the same products as the CPU reference, so that both round alike */
     const float scaled[3] = { target->position_scale * weight, target->normal_scale * weight, target->tangent_scale * weight };
     memcpy(slot, scaled, sizeof scaled);
     slot[3] = last;

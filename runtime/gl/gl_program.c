@@ -38,15 +38,15 @@ static GLsizei log_rest(const log_text *log)
 
 static const char *check_source(const noh_gl_source *source)
 {
-    if (!source->version || !source->pieces) return "a stage has no text";
-    if (source->piece_count == 0 || source->piece_count > NOH_GL_PIECES_MAX) return "a stage's piece_count";
+    if (!source->version || !source->pieces) return "a shader stage has no text";
+    if (source->piece_count == 0 || source->piece_count > NOH_GL_PIECES_MAX) return "a shader stage has no pieces, or more than NOH_GL_PIECES_MAX";
     return NULL;
 }
 
 static const char *check_desc(const noh_gl_program_desc *desc)
 {
-    if (!desc->vertex) return "vertex";
-    if (!desc->fragment) return "fragment";
+    if (!desc->vertex) return "the program desc has no vertex stage";
+    if (!desc->fragment) return "the program desc has no fragment stage";
     const char *what = check_source(desc->vertex);
     if (!what) what = check_source(desc->fragment);
     if (!what && desc->geometry) what = check_source(desc->geometry);
@@ -135,6 +135,7 @@ static void bind_names(const noh_gl_api *api, const noh_gl_program_desc *desc, G
 noh_result noh_gl_program_create(const noh_gl_api *api, const noh_gl_program_desc *desc, GLuint *program, char *log,
                                  size_t log_bytes, noh_error *error)
 {
+    NOH_ASSERT(api && desc && program);
     log_text words = {log, log ? log_bytes : 0, 0};
     if (words.room) log[0] = 0;
     const char *wrong = check_desc(desc);
@@ -164,7 +165,9 @@ noh_result noh_gl_program_create(const noh_gl_api *api, const noh_gl_program_des
 
 void noh_gl_program_delete(const noh_gl_api *api, noh_gl_ledger *ledger, GLuint *program)
 {
+    NOH_ASSERT(api && program);
     if (!*program) return;
+    NOH_ASSERT(!ledger || ledger->programs > 0);
     api->DeleteProgram(*program);
     if (ledger) ledger->programs--;
     *program = 0;

@@ -4,7 +4,9 @@
  *   noh_gl_program_delete
  *
  * Sources come as tools/embed wrote them: the #version line apart from the rest,
- * the rest in pieces that glShaderSource takes as they are. Nothing is copied. */
+ * the rest in pieces that glShaderSource takes as they are. Nothing is copied.
+ *
+ * Threads: the context's own thread, for every function. */
 #ifndef NOH_GL_GL_PROGRAM_H
 #define NOH_GL_GL_PROGRAM_H
 

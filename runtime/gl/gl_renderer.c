@@ -65,6 +65,7 @@ static noh_result want_mesh(noh_gl_renderer *r, const noh_gl_renderer_desc *desc
 
 const noh_gl_variant *noh_gl_renderer_variant(const noh_gl_renderer *r, noh_gl_variant_key key)
 {
+    NOH_ASSERT(r && r->variant_count <= NOH_GL_VARIANTS_MAX);
     key.encode_srgb = (uint8_t)r->encode_srgb;
     for (uint32_t i = 0; i < r->variant_count; i++) {
         if (memcmp(&r->variants[i].key, &key, sizeof key) == 0) {
@@ -93,6 +94,7 @@ noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_rend
                                   noh_error *error)
 {
     noh_result result = NOH_OK;
+    NOH_ASSERT(device && device->api && device->ledger && desc && out && (desc->meshes || !desc->mesh_count));
     if (desc->crowds && desc->palettes != NOH_PALETTE_TEXTURE) {
         return noh_fail(error, NOH_ERR_ARG, "crowds want palettes in a texture", 0, 0);
     }
@@ -114,6 +116,7 @@ noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_rend
 
 void noh_gl_renderer_delete(noh_gl_renderer *renderer)
 {
+    NOH_ASSERT(renderer && renderer->variant_count <= NOH_GL_VARIANTS_MAX);
     for (uint32_t i = 0; i < renderer->variant_count; i++) {
         noh_gl_variant_delete(renderer->gl, renderer->ledger, &renderer->variants[i]);
     }
@@ -122,7 +125,9 @@ void noh_gl_renderer_delete(noh_gl_renderer *renderer)
 
 noh_result noh_gl_renderer_restore(noh_gl_renderer *renderer, char *log, size_t log_bytes, noh_error *error)
 {
-    const noh_gl_api *gl = renderer->gl;
+    const noh_gl_api *gl;
+    NOH_ASSERT(renderer && renderer->gl && renderer->ledger);
+    gl = renderer->gl;
     renderer->gl = noh_gl_lost_api();
     noh_gl_renderer_delete(renderer);
     renderer->gl = gl;

@@ -20,6 +20,7 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
 {
     const noh_mesh_header *h = mesh->header;
     noh_gl_variant_key key = { 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 };
+    NOH_ASSERT((unsigned)view <= NOH_VIEW_LOD);
     if (skin && h->influence_count) {
         key.influences = (uint8_t)h->influence_count;
         key.drawn = drawn_of(h->influence_count, skin->influences);
@@ -58,6 +59,7 @@ static size_t put_digit(char *text, size_t at, const char *name, unsigned digit)
 
 void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYTES])
 {
+    NOH_ASSERT(text && key.influences <= 8u && key.drawn <= key.influences && key.view <= NOH_VIEW_LOD);
     const struct { int on; const char *line; } flags[] = {
         { key.texture, "#define PALETTE_TEXTURE\n" }, { key.dual_quaternion, "#define DUAL_QUATERNION\n" },
         { key.texels, "#define MORPH_TEXELS\n" },     { key.crowd, "#define CROWD\n" },
@@ -96,6 +98,7 @@ noh_result noh_gl_variant_create(const noh_gl_device *device, noh_gl_variant_key
     noh_gl_variant v;
     noh_gl_program_desc desc;
     noh_result result;
+    NOH_ASSERT(device && device->api && out && (varyings || !varying_count));
     memset(&v, 0, sizeof v);
     memset(&desc, 0, sizeof desc);
     noh_gl_variant_defines(key, defines);
@@ -126,6 +129,7 @@ noh_result noh_gl_variant_create(const noh_gl_device *device, noh_gl_variant_key
 
 void noh_gl_variant_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_variant *variant)
 {
+    NOH_ASSERT(api && variant);
     noh_gl_program_delete(api, ledger, &variant->program);
 }
 
@@ -133,6 +137,8 @@ void noh_gl_variant_skin(const noh_gl_api *api, const noh_gl_variant *variant, c
                          const noh_gl_skin_binding *skin, uint32_t palette)
 {
     uint32_t row = mesh->header->palette_count ? noh_gl_palette_row(skin, mesh, palette) : 0;
+    NOH_ASSERT(palette < mesh->header->palette_count || !palette);
+    NOH_ASSERT(variant->key.texture == (skin->mode == NOH_PALETTE_TEXTURE) || !variant->key.influences);
     if (variant->key.texture) {
         api->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_PALETTES);
         api->BindTexture(GL_TEXTURE_2D, skin->name);

@@ -7,7 +7,9 @@
  *   noh_gl_variant_skin     bind an instance's palettes
  *
  * A key is the set of defines that common_skin.glsl, common_layers.glsl and mesh.frag name. Set `fade` in what
- * noh_gl_variant_key_of returns where a draw fades. */
+ * noh_gl_variant_key_of returns where a draw fades.
+ *
+ * Threads: the context's own thread; noh_gl_variant_key_of and noh_gl_variant_defines, any. */
 #ifndef NOH_GL_GL_VARIANTS_H
 #define NOH_GL_GL_VARIANTS_H
 

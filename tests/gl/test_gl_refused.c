@@ -44,6 +44,7 @@ typedef struct create_case {
     const char *name;
     noh_result (*make)(maker *m, noh_error *error);
     void (*unmake)(maker *m);
+    noh_result (*restore)(maker *m, noh_error *error); /* after a lost context; NULL: it has none */
     noh_morph_path path;
     noh_accumulate accumulate;
     noh_palette_mode mode;
@@ -174,18 +175,47 @@ static void unmake_skin(maker *m)
     noh_gl_skin_delete(m->made.skin);
 }
 
-#define MORPH(path, format) { "morph " #path " " #format, make_morph, unmake_morph, NOH_MORPH_##path, NOH_ACCUMULATE_##format, 0 }
+/* ---- made again ---- */
+
+static noh_result restore_picture(maker *m, noh_error *error)
+{
+    noh_texture texture;
+    assert_int_equal(noh_pack_texture(&m->pack, 0, &texture), NOH_OK);
+    return noh_gl_picture_restore(&m->g.gl, &m->g.ledger, &texture, &m->made.texture, error);
+}
+
+static noh_result restore_mesh(maker *m, noh_error *error)
+{
+    return noh_gl_mesh_restore(&m->g.gl, &m->g.ledger, &m->made.mesh, error);
+}
+
+static noh_result restore_renderer(maker *m, noh_error *error)
+{
+    return noh_gl_renderer_restore(&m->made.renderer, NULL, 0, error);
+}
+
+static noh_result restore_morph(maker *m, noh_error *error)
+{
+    return noh_gl_morph_restore(m->made.morph, NULL, 0, error);
+}
+
+static noh_result restore_skin(maker *m, noh_error *error)
+{
+    return noh_gl_skin_restore(m->made.skin, error);
+}
+
+#define MORPH(path, format) { "morph " #path " " #format, make_morph, unmake_morph, restore_morph, NOH_MORPH_##path, NOH_ACCUMULATE_##format, 0 }
 static const create_case cases[] = {
-    { "buffer", make_buffer, unmake_buffer, 0, 0, 0 },
-    { "texture", make_texture, unmake_texture, 0, 0, 0 },
-    { "picture", make_picture, unmake_texture, 0, 0, 0 },
-    { "renderbuffer", make_renderbuffer, unmake_renderbuffer, 0, 0, 0 },
-    { "framebuffer", make_framebuffer, unmake_framebuffer, 0, 0, 0 },
-    { "mesh", make_mesh, unmake_mesh, 0, 0, 0 },
-    { "renderer", make_renderer, unmake_renderer, 0, 0, 0 },
-    { "variant", make_variant, unmake_variant, 0, 0, 0 },
-    { "skin uniform", make_skin, unmake_skin, 0, 0, NOH_PALETTE_UNIFORM },
-    { "skin texture", make_skin, unmake_skin, 0, 0, NOH_PALETTE_TEXTURE },
+    { "buffer", make_buffer, unmake_buffer, NULL, 0, 0, 0 },
+    { "texture", make_texture, unmake_texture, NULL, 0, 0, 0 },
+    { "picture", make_picture, unmake_texture, restore_picture, 0, 0, 0 },
+    { "renderbuffer", make_renderbuffer, unmake_renderbuffer, NULL, 0, 0, 0 },
+    { "framebuffer", make_framebuffer, unmake_framebuffer, NULL, 0, 0, 0 },
+    { "mesh", make_mesh, unmake_mesh, restore_mesh, 0, 0, 0 },
+    { "renderer", make_renderer, unmake_renderer, restore_renderer, 0, 0, 0 },
+    { "variant", make_variant, unmake_variant, NULL, 0, 0, 0 },
+    { "skin uniform", make_skin, unmake_skin, restore_skin, 0, 0, NOH_PALETTE_UNIFORM },
+    { "skin texture", make_skin, unmake_skin, restore_skin, 0, 0, NOH_PALETTE_TEXTURE },
     MORPH(LAYERED, F32), MORPH(LAYERED, F16), MORPH(MRT, F32), MORPH(MRT, F16), MORPH(PER_LAYER, F32),
     MORPH(PER_LAYER, F16), MORPH(GATHER, F32), MORPH(GATHER, F16), MORPH(CPU, F32), MORPH(CPU, F16)
 };
@@ -250,6 +280,41 @@ static uint32_t refuse_each(const create_case *c, maker *m, const char *function
     }
 }
 
+/* ---- the same when a lost context comes back ---- */
+
+static void lose(maker *m)
+{
+    char message[256];
+    m->g.platform->destroy(m->g.context);
+    assert_int_equal(m->g.platform->create(NULL, &m->g.context, message, sizeof message), NOH_OK);
+    assert_int_equal(noh_gl_api_load(&m->g.gl, m->g.platform->get_proc, m->g.context, NULL), NOH_OK);
+}
+
+static uint32_t refuse_each_restore(const create_case *c, maker *m, const char *function, GLenum code)
+{
+    for (uint32_t k = 0;; k++) {
+        noh_error error = { NOH_OK, NULL, 0, 0 };
+        noh_result result;
+        int refused;
+        memset(&m->made, 0, sizeof m->made);
+        assert_int_equal(c->make(m, &error), NOH_OK);
+        lose(m);
+        assert_true(noh_null_refuse(m->g.context, function, k, code));
+        result = c->restore(m, &error);
+        refused = noh_null_refused(m->g.context);
+        noh_null_refuse(m->g.context, NULL, 0, 0);
+        if (refused) {
+            if (!result) fail_msg("%s is restored though call %u of %s was refused", c->name, k, function);
+            expect_nothing(m, c->name, function, k);
+            result = c->restore(m, &error); /* it may be restored again */
+        }
+        if (result) fail_msg("%s is not restored: %s", c->name, error.what);
+        c->unmake(m);
+        expect_nothing(m, c->name, function, k);
+        if (!refused) return k;
+    }
+}
+
 /* ---- the test ---- */
 
 static const char *const functions[] = {
@@ -271,7 +336,7 @@ static void no_create_hides_a_refusal(void **state)
     size_t count;
     uint8_t *bytes = test_pack(&desc, &count);
     const noh_pack pack = test_open(bytes, count);
-    uint32_t refusals = 0;
+    uint32_t refusals = 0, restored = 0;
     (void)state;
     for (size_t i = 0; i < TEST_COUNT(cases); i++) {
         for (size_t f = 0; f < TEST_COUNT(functions); f++) {
@@ -283,11 +348,13 @@ static void no_create_hides_a_refusal(void **state)
             m->mode = cases[i].mode;
             maker_open(m);
             refusals += refuse_each(&cases[i], m, functions[f], f % 2 ? GL_OUT_OF_MEMORY : GL_INVALID_VALUE);
+            if (cases[i].restore) restored += refuse_each_restore(&cases[i], m, functions[f], f % 2 ? GL_OUT_OF_MEMORY : GL_INVALID_VALUE);
             gpu_close(&m->g);
             free(m);
         }
     }
-    print_message("# %u refused calls in %u creates\n", refusals, (unsigned)TEST_COUNT(cases));
+    print_message("# %u refused calls in %u creates, %u in their restores\n", refusals, (unsigned)TEST_COUNT(cases), restored);
+    assert_true(restored > 500);
     assert_true(refusals > 500);
     free(bytes);
 }
