@@ -18,6 +18,10 @@
 
 #include "anim/pose.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Sums in the making. Borrowed arrays; joint_count may be fewer than they hold. */
 typedef struct noh_blend {
     uint32_t joint_count, float_count;
@@ -60,5 +64,9 @@ void noh_pose_difference(uint32_t joint_count, const noh_transform *reference, c
 /* Add weight times a difference, in place: pose * rotation, + translation, * scale. */
 void noh_pose_add(uint32_t joint_count, const noh_transform *difference, float weight, const uint8_t *mask, noh_transform *pose);
 void noh_floats_add(uint32_t count, const float *difference, float weight, const uint8_t *mask, float *floats);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -14,6 +14,10 @@
 
 #include "anim/tracks.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define NOH_CHANGE_SLICES 64
 
 typedef enum noh_change_kind {
@@ -93,5 +97,9 @@ void noh_changes_update(noh_change *table, uint32_t count, noh_change_target *ta
 /* Set the rates of the tracks for the ticks from target->clock on, and say up to
  * which tick, at most `end`, they hold. Synchronised tracks are left to their group. */
 int64_t noh_changes_rates(const noh_change *table, uint32_t count, const noh_change_target *target, uint32_t track_count, int64_t end);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -15,6 +15,10 @@
 #include "anim/clip_codec.h"
 #include "base/limits.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct noh_clip_cache_desc {
     const noh_clip *const *clips; /* [clip_count], copied; the clips must outlive the cache */
     uint32_t clip_count;          /* 1..NOH_CLIP_CACHE_CLIPS_MAX */
@@ -76,5 +80,9 @@ noh_clip_cache_stats noh_clip_cache_stats_of(const noh_clip_cache *cache);
 
 /* The clip at an index of the desc. */
 const noh_clip *noh_clip_cache_clip(const noh_clip_cache *cache, uint32_t clip);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -24,6 +24,10 @@
 #include "anim/changes.h"
 #include "base/limits.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define NOH_CONTROLLER_INERTIAL 1u /* room for a pose of offsets: 48 bytes per joint, 8 per float (inertial.h) */
 
 /* Its bytes: 80, 48 per track, 32 per change; with room for inertia 48 per joint and 8
@@ -127,5 +131,9 @@ uint32_t noh_controller_step(noh_controller *c, const noh_anim_set *set, uint32_
 /* The most that a step of so many ticks can deliver as the controller stands, its
  * changes included, if its callback starts or moves nothing. Saturates at UINT32_MAX. */
 uint32_t noh_controller_events_max(const noh_controller *c, const noh_anim_set *set, uint32_t ticks);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

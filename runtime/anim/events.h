@@ -18,6 +18,10 @@
 
 #include "anim/motion.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* A stretch of play in one direction. */
 typedef struct noh_passage {
     int64_t from, to;        /* positions */
@@ -48,5 +52,9 @@ uint32_t noh_events_max(uint32_t key_count, uint32_t duration_ticks, noh_loop lo
  * direction within the step is counted in.
  * ranges  |speed| <= speed_max (1/65,536), step <= step_ticks_max */
 uint32_t noh_anim_set_events_max(const noh_anim_set *set, uint32_t track_count, uint32_t speed_max, uint32_t step_ticks_max);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -9,6 +9,10 @@
 #include "anim/motion.h"
 #include "anim/skeleton.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* All entries, joints and floats. */
 void noh_mask_fill(uint8_t *mask, uint32_t count, uint8_t value);
 
@@ -20,5 +24,9 @@ void noh_mask_invert(uint8_t *mask, uint32_t count);
 
 /* A set's mask as blending takes it; index 0 is none, n is the set's mask n - 1. */
 noh_mask_view noh_mask_of(const noh_anim_set *set, uint32_t index);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

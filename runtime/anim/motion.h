@@ -12,6 +12,10 @@
 #include "base/limits.h"
 #include "base/result.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* A callback key (row C5.6). */
 typedef struct noh_event_key {
     uint32_t tick;       /* 0..duration of its motion */
@@ -73,5 +77,9 @@ noh_result noh_anim_set_check(const noh_anim_set *set, noh_error *error);
 
 /* The motion of that name; motion_count when there is none. */
 uint32_t noh_anim_set_find(const noh_anim_set *set, uint32_t name_hash);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -24,6 +24,10 @@
 #include "anim/pack_motion.h"
 #include "anim/root_motion.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct noh_motion_set_desc {
     const noh_pack *clips;  /* whose motion is played; required */
     const noh_pack *mesh;   /* whose skeleton and nodes are moved; default (NULL) `clips` */
@@ -80,5 +84,9 @@ int noh_motion_set_moves(const noh_motion_set *set, uint32_t motion, uint32_t gr
  * ranges  ahead_ticks up to 2^31; a slot for each segment that lies there
  * returns for how many segments no slot is left in this frame: they will be decoded late */
 uint32_t noh_motion_set_ahead(noh_motion_set *set, const noh_controller *controller, uint32_t ahead_ticks);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -7,10 +7,18 @@
 
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* From 0 at tick 0 to 1 at `duration`, and 1 from there; 0 before. A duration of 0 or less is over at once. */
 float noh_time_ramp(int64_t ticks, int64_t duration);
 
 /* From 0 at tick 0 to 1 at `half`, back to 0 at twice that, and so on; times before 0 too. half 0 or less gives 0. */
 float noh_time_ping_pong(int64_t ticks, int64_t half);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -16,6 +16,10 @@
 
 #include "anim/motion.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define NOH_ROOT_X 1u
 #define NOH_ROOT_Y 2u
 #define NOH_ROOT_Z 4u
@@ -60,5 +64,9 @@ noh_root_pose noh_root_between(const noh_anim_set *set, const noh_root_track *tr
 
 /* From position 0. */
 noh_root_pose noh_root_at(const noh_anim_set *set, const noh_root_track *track, uint32_t motion, noh_loop loop, int64_t position);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -8,6 +8,10 @@
 #include "anim/events.h"
 #include "base/limits.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Three levels of cost (row C5.3). */
 typedef enum noh_track_mode {
     NOH_TRACK_OFF = 0,   /* stands still */
@@ -79,5 +83,9 @@ int noh_track_ended(const noh_track *track, const noh_motion *motion);
 
 /* The clip tick to sample, `ago` ticks before now at the present rate. */
 uint32_t noh_track_clip_tick(const noh_track *track, const noh_motion *motion, int64_t ago);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -13,6 +13,10 @@
 
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #if defined(__GNUC__) && !defined(NOH_PLAIN_C)
 #define NOH_GNU 1 /* gcc, clang and those that follow them */
 #endif
@@ -82,5 +86,9 @@ static inline uint32_t noh_trailing_zeros(uint64_t word)
     return noh_trailing_zeros_plain(word);
 #endif
 }
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -6,6 +6,10 @@
 
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define NOH_VERSION_MAJOR 0
 #define NOH_VERSION_MINOR 2
 #define NOH_VERSION_PATCH 0
@@ -19,5 +23,9 @@ const char *noh_version(void);
 
 /* The same as a number. */
 uint32_t noh_version_number(void);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

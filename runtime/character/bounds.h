@@ -14,6 +14,10 @@
 #include "anim/skeleton.h"
 #include "mesh/mesh.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct noh_bounds {
     float low[3], high[3];  /* the box; low above high: nothing is there */
     float centre[3], radius; /* the sphere */
@@ -37,5 +41,9 @@ float noh_sphere_of_skeleton(const noh_skeleton *skeleton, const float *margin_m
  * shapes  weights[target_count] the farthest from 0 that each target is expected to go, all at once; NULL: 1 each;
  *         margin_m[joint_count of the skeleton of the mesh's skin], in the unit of its joints */
 void noh_margins_add(const noh_mesh *mesh, const float *weights, float *margin_m);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

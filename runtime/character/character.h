@@ -21,6 +21,10 @@
 #include "character/bounds.h"
 #include "character/time_lod.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct noh_character_desc {
     noh_controller_desc controller; /* set is required */
     uint32_t instance;              /* its number among those that are updated together; default 0 */
@@ -122,5 +126,9 @@ void noh_character_wake(noh_character *ch);
 
 /* The camera has jumped: choose detail afresh, pose before it is shown. */
 void noh_character_cut(noh_character *ch);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

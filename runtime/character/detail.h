@@ -17,6 +17,10 @@
 #include "base/limits.h"
 #include "base/result.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* How often an instance is posed (time_lod.h). */
 typedef enum noh_rate {
     NOH_RATE_FULL = 0, /* every frame */
@@ -161,5 +165,9 @@ float noh_detail_error_pixels(const noh_detail *d);
 /* What the levels come to: 0 where the table does not say, and everything is to be used. */
 uint32_t noh_detail_joint_count(const noh_detail *d, const noh_detail_table *table);
 uint32_t noh_detail_influence_count(const noh_detail *d, const noh_detail_table *table);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -11,6 +11,10 @@
 #include "character/detail.h"
 #include "mesh/mesh.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct noh_detail_pack_desc {
     const noh_motion_set *set;            /* required */
     const noh_motion_set_desc *set_desc;  /* that it was made by; required */
@@ -54,5 +58,9 @@ size_t noh_detail_pack_size(const noh_detail_pack_desc *desc);
  * memory  16-byte aligned
  * errors  ARG the field of desc, named; MEMORY need: the bytes */
 noh_result noh_detail_pack_init(void *memory, size_t bytes, const noh_detail_pack_desc *desc, noh_detail_pack *detail, noh_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -24,6 +24,10 @@
 #include "anim/skeleton.h"
 #include "character/detail.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define NOH_TIME_LOD_UNSEEN_TICKS 6000u /* what was not looked at for longer has to be posed before it is shown */
 
 /* State, without pointers. Clocks are of one clock that all instances share. */
@@ -107,5 +111,9 @@ noh_result noh_time_lod_measure(void *memory, size_t bytes, const noh_time_probe
  * Tracks faster than 1 have the square of their speed times the error: for motion that is smooth over a period.
  * shapes  motion_error_m[motion_count of the set][NOH_RATE_COUNT], error_m[NOH_RATE_COUNT] */
 void noh_time_lod_error(const noh_controller *c, const float *motion_error_m, float *error_m);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -7,6 +7,10 @@
 
 #include "character/time_lod.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* How one joint holds a point: at a place in the joint's own space (inverse bind matrix times vertex). */
 typedef struct noh_time_hold {
     uint32_t joint;
@@ -31,5 +35,9 @@ size_t noh_time_points_size(const noh_time_probe *probe);
  * errors  ARG probe, motion, memory; points: none, or a joint that there is not (where: the hold); MEMORY need: the bytes */
 noh_result noh_time_points_measure(void *memory, size_t bytes, const noh_time_probe *probe, const noh_time_points *points, uint32_t motion,
                                    float *error_m, noh_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -19,6 +19,10 @@
 
 #include "base/result.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* What the library itself calls, all of it OpenGL ES 3.0 core: a table without one
  * of these is refused. tests/check_gl_calls.sh holds the list to the calls in
  * runtime/, and platform/README.md prints it for porters.
@@ -242,5 +246,9 @@ int noh_gl_has_extension(const noh_gl_api *api, const char *name);
 /* The oldest pending GL error, GL_NO_ERROR where there is none. All are cleared,
  * but never more than 16 asked: a lost context answers for ever. */
 GLenum noh_gl_error_take(const noh_gl_api *api);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -11,6 +11,10 @@
 
 #include "base/result.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef enum noh_quirk {
     NOH_QUIRK_SOFTWARE,    /* auto takes the path cpu: the rasteriser runs there anyway */
     NOH_QUIRK_BLEND_DEAR,  /* auto takes gather before mrt, whatever number of targets is expected */
@@ -28,5 +32,9 @@ typedef struct noh_gl_quirk {
 const noh_gl_quirk *noh_gl_quirk_find(const char *renderer, noh_quirk quirk);
 
 const noh_gl_quirk *noh_gl_quirk_table(uint32_t *count);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

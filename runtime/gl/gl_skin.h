@@ -20,6 +20,10 @@
 
 #include "gl/gl_morph.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef enum noh_palette_mode {
     NOH_PALETTE_AUTO = 0, /* texture where a mesh has several instances, else uniform */
     NOH_PALETTE_UNIFORM,
@@ -114,5 +118,9 @@ uint32_t noh_gl_joint_rows(const noh_mesh *mesh);
  * of the determinant, so that a mirrored node's normals still point outwards (row E4). Returns the
  * determinant. */
 float noh_gl_normal_rows(const float world[12], float rows[12]);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

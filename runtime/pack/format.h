@@ -12,6 +12,10 @@
 #include "base/limits.h"
 #include "base/result.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define NOH_PACK_MAGIC 0x50484f4eu /* "NOHP" */
 #define NOH_PACK_VERSION 3u
 
@@ -309,5 +313,9 @@ NOH_STATIC_ASSERT(sizeof(noh_rect) == 8, rect);
 NOH_STATIC_ASSERT(sizeof(noh_node) == 112, node);
 NOH_STATIC_ASSERT(sizeof(noh_material) == 48, material);
 NOH_STATIC_ASSERT(sizeof(noh_texture_header) == 32, texture_header);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif
