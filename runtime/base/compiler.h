@@ -7,7 +7,8 @@
  *   NOH_AVX2, NOH_SSE2, NOH_NEON   which vector instructions the kernels may use; undefined: none
  *   noh_leading_zeros, noh_trailing_zeros   of a word that is not 0
  *
- * The plain twins are always compiled, as noh_..._plain, so that a test can hold them equal to what replaces them. */
+ * The plain twins are always compiled, as noh_..._plain, so that a test can hold them equal to what replaces them.
+ * Threads: no state; any thread. */
 #ifndef NOH_BASE_COMPILER_H
 #define NOH_BASE_COMPILER_H
 
