@@ -1,6 +1,7 @@
 #!/bin/sh
 # check_headers.sh: what a program sees of the library. Public is what noh.h and noh_gl.h reach.
 #   - noh.h reaches no header of gl/ and includes no GL header; nothing private (*_internal.h) is reached
+#   - limits.h holds every limit
 #   - each public header compiles alone, without a warning: C99, C11 and C++17, gcc and clang, for 32 bits too
 #   - all functions that they declare link, from C and from C++
 # NOH_HEADERS is where they lie: runtime, or PREFIX/include/noh of an installed library.
@@ -31,6 +32,13 @@ while read -r header; do
 done <"$work/plain" >"$work/with_gl"
 check 'noh.h includes no GL header' sh -c '! grep . "$1"' - "$work/with_gl"
 check 'nothing private is reached' sh -c '! grep "_internal\.h" "$1"' - "$work/public"
+
+# Each limit is defined once, in limits.h; clips and time describe theirs.
+while read -r header; do
+    case $header in */limits.h | */clip_format.h | */time.h) continue ;; esac
+    grep -Hn '^ *# *define NOH_[A-Z0-9_]*_\(MAX\|MIN\)\>' "$headers/$header"
+done <"$work/public" >"$work/limits"
+check 'limits.h holds the limits' sh -c '! grep . "$1"' - "$work/limits"
 
 # COMPILER... : every public header alone.
 alone() {

@@ -84,7 +84,7 @@ static noh_result skeleton_check(noh_error *e) { DESC(noh_skeleton); return noh_
 static noh_result queue_init(noh_error *e) { noh_event_queue q; return noh_event_queue_init(NULL, 0, 4, &q, e); }
 static noh_result schedule_init(noh_error *e) { noh_schedule q; return noh_schedule_init(NULL, 0, 4, &q, e); }
 static noh_result settings_check(noh_error *e) { DESC(noh_detail_settings); desc.pixels = -1.0f; return noh_detail_settings_check(&desc, e); }
-static noh_result table_check(noh_error *e) { DESC(noh_detail_table); return noh_detail_table_check(&desc, e); }
+static noh_result table_check(noh_error *e) { DESC(noh_detail_table); desc.mesh_level_count = NOH_DETAIL_LEVELS_MAX + 1u; return noh_detail_table_check(&desc, e); }
 static noh_result pools_init(noh_error *e) { noh_level_pools *p; DESC(noh_level_pools_desc); return noh_level_pools_init(s.memory.bytes, 64, &desc, &p, e); }
 
 static noh_result triangulate(noh_error *e)
