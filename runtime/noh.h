@@ -44,6 +44,7 @@
 #include "anim/pack_motion.h"         /* its skeletons and clips */
 #include "anim/motion_set.h"          /* a pack's clips, ready to be played */
 #include "character/character.h"      /* one character: a controller, what it shows, how finely */
+#include "character/skin_palette.h"   /* what it shows, as matrices of any skin */
 #include "anim/controller.h"          /* tracks: start, fade, seek, callback keys */
 #include "anim/controller_pose.h"     /* poses of a controller */
 #include "anim/local_to_model.h"      /* poses to matrices and palettes */
@@ -81,6 +82,7 @@
 #include "base/trig.h"                /* trigonometry without libm, the same bits everywhere */
 #include "anim/blend.h"               /* poses mixed and added */
 #include "anim/clip_cache.h"          /* decoded frames in a fixed block, and samples of them */
+#include "anim/clip_view.h"           /* a thread's own view of a clip cache */
 #include "anim/clip_codec.h"          /* one compressed clip */
 
 /* Glossary: one word for one thing, in names, documents, the command line and messages.

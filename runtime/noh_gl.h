@@ -22,6 +22,7 @@
 #include "gl/gl_morph.h"    /* targets of many instances accumulated on the GPU */
 #include "gl/gl_skin.h"     /* palettes of many instances on the GPU */
 #include "gl/gl_draw.h"     /* meshes on the GPU, and a plain renderer */
+#include "gl/gl_shader_text.h" /* the library's GLSL, for your own shaders */
 
 /* ---- when something is lost or slow ---- */
 

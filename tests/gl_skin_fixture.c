@@ -88,7 +88,8 @@ static void open_skin(fixture_skin *f, noh_palette_mode mode)
         fail_msg("plan: %s", error.what);
     }
     f->memory = test_aligned(NULL, (size_t)f->plan.cpu_bytes);
-    if (noh_gl_skin_init(f->memory, (size_t)f->plan.cpu_bytes, &g->gl, &g->caps, &f->ledger, &desc, &f->skin, &error)) {
+    if (noh_gl_skin_init(f->memory, (size_t)f->plan.cpu_bytes,
+                         &(noh_gl_device){ &g->gl, &g->caps, &f->ledger, NULL, 0 }, &desc, &f->skin, &error)) {
         fail_msg("init: %s", error.what);
     }
 }
@@ -178,7 +179,7 @@ void fixture_skin_pose(fixture_skin *f, test_random *r)
         f->matrices[i] = NULL;
         if (mesh->header->skin != NOH_NONE) {
             f->matrices[i] = random_matrices(f->pack, mesh->header->skin, r);
-            noh_gl_skin_set(f->skin, i, f->matrices[i]);
+            noh_gl_skin_set_matrices(f->skin, i, f->matrices[i]);
         }
     }
     noh_gl_morph_update(f->morph.morph, NULL);

@@ -153,15 +153,12 @@ double web_motion_seconds(const web_motion *m, uint32_t clip)
 static void move_weights(const web_motion *m, const web_player *p, int to_pose)
 {
     uint32_t motion;
-    for (uint32_t g = 0; has_motion(p, m->clip, &motion) && g < p->set->group_count; g++) {
-        const noh_clip_group *group = &p->set->groups[g];
-        if (group->node == NOH_NONE || !noh_motion_set_moves(p->set, motion, g)) continue;
-        for (uint32_t i = 0; i < m->scene->item_count; i++) {
-            const web_item *item = &m->scene->items[i];
-            if (item->node != group->node) continue;
-            web_scene_reset(m->scene, item);
-            if (to_pose) memcpy(m->scene->weights + item->first_weight, p->floats + group->first, group->width * sizeof(float));
-        }
+    for (uint32_t i = 0; has_motion(p, m->clip, &motion) && i < m->scene->item_count; i++) {
+        const web_item *item = &m->scene->items[i];
+        const uint32_t g = noh_motion_set_node_group(p->set, item->node);
+        if (g == NOH_NONE || !noh_motion_set_moves(p->set, motion, g)) continue;
+        web_scene_reset(m->scene, item);
+        if (to_pose) memcpy(m->scene->weights + item->first_weight, p->floats + p->set->groups[g].first, p->set->groups[g].width * sizeof(float));
     }
 }
 

@@ -1,19 +1,18 @@
-/* motion_set_bind.c: what a pack's clips can move of a mesh pack. Reads only the packs' bytes, so that
- * sizes are known before there is memory. */
+#include "anim/motion_set_bind_internal.h"
+
 #include <string.h>
 
-#include "anim/motion_set_internal.h"
 #include "mesh/mesh.h"
 
-static noh_result bind_skeleton(const noh_motion_set_desc *desc, noh_motion_binding *b, noh_error *error)
+static noh_result bind_skeleton(uint32_t skeleton, noh_motion_binding *b, noh_error *error)
 {
-    if (desc->skeleton == NOH_NONE || b->mesh->skeleton_count == 0) {
+    if (skeleton == NOH_NONE || b->mesh->skeleton_count == 0) {
         b->skeleton_index = NOH_NONE;
         return NOH_OK;
     }
-    b->skeleton_index = desc->skeleton;
-    if (noh_pack_skeleton_at(b->mesh, desc->skeleton, &b->skeleton, &b->header, NULL) != NOH_OK) {
-        return noh_fail(error, NOH_ERR_ARG, "skeleton of a motion set: the mesh pack has fewer", desc->skeleton, b->mesh->skeleton_count);
+    b->skeleton_index = skeleton;
+    if (noh_pack_skeleton_at(b->mesh, skeleton, &b->skeleton, &b->header, NULL) != NOH_OK) {
+        return noh_fail(error, NOH_ERR_ARG, "skeleton of a motion set: the mesh pack has fewer", skeleton, b->mesh->skeleton_count);
     }
     return NOH_OK;
 }
@@ -33,16 +32,13 @@ static noh_result check_units(const noh_motion_binding *b, noh_error *error)
     return NOH_OK;
 }
 
-noh_result noh_motion_bind(const noh_motion_set_desc *desc, noh_motion_binding *b, noh_error *error)
+noh_result noh_motion_bind(const noh_pack *clips, const noh_pack *mesh, uint32_t skeleton, noh_motion_binding *b, noh_error *error)
 {
     noh_result r;
     memset(b, 0, sizeof *b);
-    if (!desc->clips) return noh_fail(error, NOH_ERR_ARG, "clips of a motion set", 0, 0);
-    if (desc->root_axes > (NOH_ROOT_GROUND | NOH_ROOT_Y)) return noh_fail(error, NOH_ERR_ARG, "root_axes of a motion set", 0, 0);
-    if (desc->root_axes && desc->root_up > 2u) return noh_fail(error, NOH_ERR_ARG, "root_up of a motion set", 0, 0);
-    b->clips = desc->clips;
-    b->mesh = desc->mesh ? desc->mesh : desc->clips;
-    r = bind_skeleton(desc, b, error);
+    b->clips = clips;
+    b->mesh = mesh;
+    r = bind_skeleton(skeleton, b, error);
     return r ? r : check_units(b, error);
 }
 
@@ -63,7 +59,7 @@ int noh_motion_fits(const noh_motion_binding *b, uint32_t index, noh_pack_motion
         (b->mesh == b->clips && h->skeleton != b->skeleton_index)) {
         return 0;
     }
-    (void)noh_pack_skeleton_at(b->clips, h->skeleton, &built_with, NULL, NULL);
+    if (noh_pack_skeleton_at(b->clips, h->skeleton, &built_with, NULL, NULL)) return 0;
     clip->bind = built_with.bind_pose;
     return 1;
 }

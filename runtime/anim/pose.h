@@ -1,4 +1,5 @@
-/* pose.h: what sampling gives and blending takes: joint transforms, local to the parent. */
+/* pose.h: what sampling gives and blending takes: joint transforms, local to the parent.
+ * Threads: no state; any thread. */
 #ifndef NOH_ANIM_POSE_H
 #define NOH_ANIM_POSE_H
 

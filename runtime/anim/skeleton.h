@@ -1,4 +1,6 @@
-/* skeleton.h: joints, parents first (row C3.1). A view; the arrays are borrowed. */
+/* skeleton.h: joints, parents first, so that one pass over them makes model matrices. The arrays are borrowed.
+ *
+ * Threads: read only; any number may share one. */
 #ifndef NOH_ANIM_SKELETON_H
 #define NOH_ANIM_SKELETON_H
 
@@ -20,8 +22,8 @@ typedef struct noh_skeleton {
 } noh_skeleton;
 
 /* Check a skeleton that does not come out of a checked pack.
- * errors  ARG a count or pointer, named; DATA (where: the joint) a parent that does
- *         not come first, a value that is not finite, a rotation that is not unit */
+ * errors  ARG a count or pointer, named; DATA (where: the joint) a parent that does not come first, a value that is not
+ *         finite, a rotation that is not unit */
 noh_result noh_skeleton_check(const noh_skeleton *skeleton, noh_error *error);
 
 #ifdef __cplusplus

@@ -59,6 +59,8 @@
 #define NOH_TRACKS_MAX 64u
 #define NOH_CHANGES_MAX 1024u            /* waiting or running at one time */
 #define NOH_WEIGHT_MAX 1e6f              /* of a track */
+#define NOH_STEP_EVENTS_MAX (1u << 20)   /* callback keys that one step looks at. A track can pass billions (a seek a day away in a clip of
+                                          * 10 ms); a step that comes to this many hands out no more, and only moves time on */
 #define NOH_SYNC_GROUPS_MAX 15u
 #define NOH_SYNC_DURATION_MIN 480u       /* ticks, of a clip in a sync group: 10 ms */
 #define NOH_SYNC_DURATION_MAX (1u << 28) /* ticks: 93 minutes */
@@ -68,6 +70,7 @@
 #define NOH_GRAPH_SLOTS_MAX 32u          /* pose buffers */
 #define NOH_SPACE_POINTS_MAX 32u         /* of a blend space */
 #define NOH_SPACE_TRIANGLES_MAX (2u * NOH_SPACE_POINTS_MAX)
+#define NOH_SPACE_COORDINATE_MAX 1e18f   /* of points and thresholds: squares of differences stay finite */
 
 /* ---- characters ---- */
 

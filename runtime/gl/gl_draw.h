@@ -87,8 +87,8 @@ typedef struct noh_gl_renderer {
  * memory  writes *out at once; on error it holds nothing
  * errors  ARG crowds without a texture for palettes; LIMIT the meshes need more variants than
  *         NOH_GL_VARIANTS_MAX; MEMORY, GL, DATA as noh_gl_program_create and noh_gl_texture_create */
-noh_result noh_gl_renderer_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_gl_renderer_desc *desc,
-                                  noh_gl_renderer *out, char *log, size_t log_bytes, noh_error *error);
+noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_renderer_desc *desc, noh_gl_renderer *out,
+                                  noh_error *error);
 void noh_gl_renderer_delete(noh_gl_renderer *renderer);
 
 /* Make it again in a new context (gl_lost.h). errors  as create; it then holds nothing */
@@ -130,7 +130,7 @@ void noh_gl_draw_mesh(const noh_gl_renderer *renderer, const noh_gl_mesh *mesh, 
                       const noh_gl_texture *pictures, int pass);
 
 /* The same for `count` instances of one mesh, from the one that `first` is the binding of: one draw per submesh for
- * all. Each stands where noh_gl_skin_place put it. Rigid meshes too. morph: any instance's binding. Blended
+ * all. Each stands where noh_gl_skin_set_place put it. Rigid meshes too. morph: any instance's binding. Blended
  * submeshes of a crowd are not sorted.
  * errors  none; palettes are in a texture, or nothing is drawn */
 void noh_gl_draw_crowd(const noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph,

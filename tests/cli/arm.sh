@@ -1,5 +1,5 @@
 #!/bin/sh
-# make_mask --arm: every kind of skinning on the same arm (rows E1-E7) and two streams (D1-D9): what the pack says of it,
+# make_mask --arm: every kind of skinning on the same arm (Direct3D 9, "Geometry Blending") and two streams: what the pack says of it,
 # and where the vertices are when it bends and twists.
 . "$(dirname "$0")/lib.sh"
 
@@ -111,7 +111,7 @@ check 'segments are not stretched' awk -v s="$segmented" 'BEGIN { exit !(s > 0.9
 check 'the blended elbow is' awk -v s="$bent" 'BEGIN { exit !(s > 1.5) }'
 check 'four joints spread it' awk -v s="$four" -v b="$bent" 'BEGIN { exit !(s > 1.1 && s < b) }'
 
-# Rows D1, D3: half way lies in the middle of both shapes.
+# Half way lies in the middle of both shapes.
 check 'half the weight is half way' sh -c '
     for f in rest half open; do grep "^v " "$1/$f.obj" >"$1/$f.v"; done
     paste "$1/rest.v" "$1/half.v" "$1/open.v" | awk "

@@ -66,32 +66,66 @@ static double check_box(const float box[6], const float *positions, uint32_t cou
     return sqrt(square / tight_square);
 }
 
+/* ---- assets, converted once for boxes and rays ---- */
+
+typedef struct opened_asset {
+    const char *name, *dual_quaternion; /* dual_quaternion: NULL or the meshes skinned so */
+    skin_asset asset;
+} opened_asset;
+
+static opened_asset opened[16];
+static size_t opened_count;
+
+static const skin_asset *open_asset(const char *name, const char *dual_quaternion)
+{
+    opened_asset *to = &opened[opened_count];
+    skin_options options;
+    for (size_t i = 0; i < opened_count; i++) {
+        if (strcmp(opened[i].name, name) == 0 && !opened[i].dual_quaternion == !dual_quaternion) {
+            return &opened[i].asset;
+        }
+    }
+    assert_true(opened_count < TEST_COUNT(opened));
+    memset(&options, 0, sizeof options);
+    options.dual_quaternion = &dual_quaternion;
+    options.dual_quaternion_count = dual_quaternion != NULL;
+    skin_asset_open(&to->asset, name, &options);
+    to->name = name;
+    to->dual_quaternion = dual_quaternion;
+    opened_count++;
+    return &to->asset;
+}
+
+static int close_assets(void **state)
+{
+    (void)state;
+    while (opened_count) {
+        skin_asset_close(&opened[--opened_count].asset);
+    }
+    return 0;
+}
+
+/* ---- poses ---- */
+
 typedef void (*pose_check)(const scene_pose *p, test_random *r, void *context);
 
 static void each_pose(const char *name, const char *dual_quaternion, int times, pose_check check, void *context)
 {
+    const skin_asset *a = open_asset(name, dual_quaternion);
     test_random r = test_random_from(9);
-    double *locals;
-    skin_options options;
-    skin_asset a;
-    memset(&options, 0, sizeof options);
-    options.dual_quaternion = &dual_quaternion;
-    options.dual_quaternion_count = dual_quaternion != NULL;
-    skin_asset_open(&a, name, &options);
-    locals = test_zeros(sizeof *locals * 10 * oracle_node_count(a.o));
-    for (uint32_t clip = 0; clip < oracle_animation_count(a.o); clip++) {
+    double *locals = test_zeros(sizeof *locals * 10 * oracle_node_count(a->o));
+    for (uint32_t clip = 0; clip < oracle_animation_count(a->o); clip++) {
         for (int k = 0; k < times; k++) {
-            oracle_pose(a.o, (int)clip, oracle_animation_end(a.o, clip) * (double)test_random_float(&r, 0.0f, 1.0f), locals);
-            for (uint32_t m = 0; m < a.pack.mesh_count; m++) {
+            oracle_pose(a->o, (int)clip, oracle_animation_end(a->o, clip) * (double)test_random_float(&r, 0.0f, 1.0f), locals);
+            for (uint32_t m = 0; m < a->pack.mesh_count; m++) {
                 scene_pose p;
-                pose_mesh(&a, m, locals, &r, &p);
+                pose_mesh(a, m, locals, &r, &p);
                 check(&p, &r, context);
                 unpose(&p);
             }
         }
     }
     free(locals);
-    skin_asset_close(&a);
 }
 
 static void contains_all(const scene_pose *p, test_random *r, void *context)
@@ -123,6 +157,63 @@ static void boxes_by_dual_quaternions(void **state)
     (void)state;
     check_boxes("hero/body.glb", "all");
     check_boxes("khronos/Fox.glb", "all");
+}
+
+/* Every vertex hangs on two joints by halves, and the second one turns about a line far from it: by dual quaternions a
+ * vertex then goes along an arc that leaves the boxes of both joints, by as much as half of what they put it apart. */
+static void check_arcs(uint32_t other)
+{
+    const skin_cylinder c = { 6, 9, 3, 2, 0, 0, 2.0f, 0.05f };
+    static const char *const names[] = { "all" };
+    const skin_options all = { .dual_quaternion = names, .dual_quaternion_count = 1 };
+    model *m = skin_cylinder_model(&c);
+    model_mesh *source = &m->meshes[0];
+    noh_dual_quaternion dual[3];
+    float largest = 0.0f;
+    noh_pack pack;
+    noh_mesh mesh;
+    uint8_t *bytes;
+    float *positions;
+    size_t count;
+    const float pivot = (float)other;
+    for (size_t v = 0; v < source->vertex_count; v++) {
+        memset(source->joints + MODEL_INFLUENCES_MAX * v, 0, sizeof *source->joints * MODEL_INFLUENCES_MAX);
+        memset(source->joint_weights + MODEL_INFLUENCES_MAX * v, 0, sizeof *source->joint_weights * MODEL_INFLUENCES_MAX);
+        source->joints[MODEL_INFLUENCES_MAX * v + 1u] = (uint16_t)other;
+        source->joint_weights[MODEL_INFLUENCES_MAX * v] = source->joint_weights[MODEL_INFLUENCES_MAX * v + 1u] = 0.5f;
+    }
+    bytes = skin_pack_of(m, &all, 1.0f, &count, NULL);
+    pack = test_open(bytes, count);
+    mesh = test_mesh(&pack, 0);
+    assert_true(mesh.header->flags & NOH_MESH_DUAL_QUATERNION);
+    positions = test_zeros(12u * (size_t)mesh.header->vertex_count);
+    for (int degrees = 0; degrees < 180; degrees += 10) {
+        const float turn = (float)degrees * 0.0174532925f, cosine = cosf(turn), sine = sinf(turn);
+        const float turned[12] = { cosine, -sine, 0, pivot * sine, sine, cosine, 0, pivot - pivot * cosine, 0, 0, 1, 0 };
+        float matrices[36] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
+        float box[6], joints[18];
+        memcpy(matrices + 12u * other, turned, sizeof turned);
+        noh_skin_dual_quaternions(matrices, 3, dual);
+        noh_skin_vertices_dual(&mesh, dual, NULL, 0, mesh.header->vertex_count, positions, NULL, NULL);
+        noh_skin_box(&mesh, matrices, NULL, box);
+        check_box(box, positions, mesh.header->vertex_count);
+        noh_skin_joint_boxes(&mesh, matrices, NULL, joints);
+        assert_true(noh_box_is_empty(joints + 6u * (3u - other))); /* the joint that moves nothing */
+        for (uint32_t v = 0; v < mesh.header->vertex_count; v++) {
+            largest = fmaxf(largest, fabsf(positions[3 * v]));
+        }
+    }
+    assert_true(largest > 0.75f * pivot); /* it does leave them */
+    free(positions);
+    free(bytes);
+    model_free(m);
+}
+
+static void boxes_hold_the_arcs_of_dual_quaternions(void **state)
+{
+    (void)state;
+    check_arcs(1);
+    check_arcs(2);
 }
 
 static void boxes_of_rigid_meshes(void **state)
@@ -286,7 +377,7 @@ static void rays_at_fox(void **state) { (void)state; check_rays("khronos/Fox.glb
 static void rays_at_robot(void **state) { (void)state; check_rays("khronos/RobotExpressive.glb", NULL); }
 static void rays_by_dual_quaternions(void **state) { (void)state; check_rays("khronos/Fox.glb", "all"); }
 
-/* Row C14.2: a rigid mesh is picked too, as it is placed and morphed. */
+/* A rigid mesh is picked too, as it is placed and morphed. */
 static void rays_at_a_rigid_mesh(void **state)
 {
     const test_model_desc desc = { 1, 6, 2, 0, 3 };
@@ -372,6 +463,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(boxes_of_robot),
     cmocka_unit_test(boxes_of_simple_skin),
     cmocka_unit_test(boxes_by_dual_quaternions),
+    cmocka_unit_test(boxes_hold_the_arcs_of_dual_quaternions),
     cmocka_unit_test(boxes_of_rigid_meshes),
     cmocka_unit_test(rays_at_body),
     cmocka_unit_test(rays_at_body_8inf),
@@ -382,4 +474,4 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(bad_picks_say_why),
 };
 
-TEST_MAIN(tests, NULL, NULL)
+TEST_MAIN(tests, NULL, close_assets)

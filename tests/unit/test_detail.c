@@ -45,7 +45,7 @@ static void bad_table(noh_detail_table t, noh_result result, const char *what)
 {
     noh_error error;
     assert_int_equal(noh_detail_table_check(&t, &error), result);
-    assert_string_equal(error.what, what);
+    assert_int_equal(strncmp(error.what, what, strlen(what)), 0);
 }
 
 static void table_fields_broken_in_turn(void **state)
@@ -80,7 +80,7 @@ static void bad_settings(noh_detail_settings s, const char *what)
 {
     noh_error error;
     assert_int_equal(noh_detail_settings_check(&s, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, what);
+    assert_int_equal(strncmp(error.what, what, strlen(what)), 0);
 }
 
 static void settings_fields_broken_in_turn(void **state)
@@ -336,6 +336,30 @@ static void a_limit_sends_away_what_is_too_fine(void **state)
     assert_int_equal(d.mesh, 0);
 }
 
+/* Clocks at the ends of their range: nothing overflows, and a fade ends. */
+static void clocks_at_the_ends(void **state)
+{
+    static const int64_t clocks[] = { INT64_MIN, INT64_MIN + 5, -1, 0, INT64_MAX - 5, INT64_MAX };
+    noh_detail_table t = table_of();
+    noh_detail_settings s = settings_of(1.0f);
+    (void)state;
+    for (uint32_t i = 0; i < sizeof clocks / sizeof *clocks; i++) {
+        for (uint32_t k = i; k < sizeof clocks / sizeof *clocks; k++) {
+            noh_detail d;
+            noh_detail_part parts[2];
+            float fade;
+            memset(&d, 0, sizeof d);
+            noh_detail_choose(&d, &t, &s, 1e5f, rates, clocks[i]);
+            noh_detail_choose(&d, &t, &s, 0.5f, rates, clocks[i]);
+            fade = noh_detail_fade(&d, clocks[k]);
+            assert_true(k == i ? fade == 0.0f : k > 1 && i < 2 ? fade == 1.0f : fade >= 0.0f && fade <= 1.0f);
+            assert_true(noh_detail_parts(&d, clocks[k], parts) >= 1);
+            noh_detail_choose(&d, &t, &s, 0.5f, rates, clocks[k]);
+            assert_int_equal(d.mesh, LEVELS - 1u);
+        }
+    }
+}
+
 /* ---- fades ---- */
 
 static void fade_is_smooth_and_alone(void **state)
@@ -502,6 +526,59 @@ static void skipped_targets_are_the_smallest_and_bounded(void **state)
     }
 }
 
+/* Half of a fade's ticks is half of the pixels; it begins and ends without a jump of speed. */
+static void fades_follow_the_smoothstep(void **state)
+{
+    noh_detail d;
+    (void)state;
+    memset(&d, 0, sizeof d);
+    d.fade_start = 1000;
+    d.fade_ticks = 4000;
+    assert_true(noh_detail_fade(&d, 900) == 0.0f && noh_detail_fade(&d, 1000) == 0.0f && noh_detail_fade(&d, 2000) == 0.15625f);
+    assert_true(noh_detail_fade(&d, 3000) == 0.5f && noh_detail_fade(&d, 4000) == 0.84375f && noh_detail_fade(&d, 5000) == 1.0f);
+}
+
+/* What is off in pixels is the sum of all kinds, the targets left out among them; while a level fades the coarser of the two
+ * counts, whichever comes. */
+static void errors_of_all_kinds_add_up(void **state)
+{
+    const float weights[2] = { 0.5f, 1.0f }, reach[2] = { 0.002f, 1.0f };
+    noh_detail_table t = table_of();
+    noh_detail_settings s = settings_of(1.0f);
+    float kept[2];
+    noh_detail d;
+    (void)state;
+    memset(&d, 0, sizeof d);
+    s.fade_ticks = 24000;
+    noh_detail_choose(&d, &t, &s, 15.0f, rates, 0);
+    assert_int_equal(d.mesh, 3);
+    assert_int_equal(noh_detail_targets(&d, &s, weights, reach, 2, kept), 1);
+    assert_true(d.skipped_m == 0.001f);
+    assert_true(fabsf(d.error_m - (meshes[3].error_m + joints[d.joints].error_m + influences[d.influences].error_m + rates[d.rate] + t.clip_error_m)) < 1e-7f);
+    assert_true(noh_detail_error_pixels(&d) == (d.error_m + d.skipped_m) * 15.0f);
+    noh_detail_choose(&d, &t, &s, 1e5f, rates, 100); /* near at once: level 3 is still drawn while it fades */
+    assert_true(d.mesh == 0 && d.mesh_before == 3);
+    assert_true(fabsf(d.error_m - (meshes[3].error_m + t.clip_error_m)) < 1e-7f);
+    noh_detail_choose(&d, &t, &s, 1e5f, rates, 30000);
+    assert_true(fabsf(d.error_m - t.clip_error_m) < 1e-7f);
+}
+
+/* Posing less often can only be worse, whatever was measured: 15 Hz that happened to measure better than 30 Hz is not
+ * stayed at where 30 Hz is too coarse. */
+static void a_coarser_update_rate_is_never_better(void **state)
+{
+    static const float odd[NOH_RATE_COUNT] = { 0.0f, 0.02f, 0.005f, 0.03f };
+    noh_detail_table t = table_of();
+    noh_detail_settings s = settings_of(1.0f);
+    noh_detail d;
+    (void)state;
+    memset(&d, 0, sizeof d);
+    noh_detail_choose(&d, &t, &s, 1.0f, odd, 0);
+    assert_int_equal(d.rate, 3);
+    noh_detail_choose(&d, &t, &s, 31.5f, odd, 800); /* 0.0143 m may be off in time */
+    assert_int_equal(d.rate, 0);
+}
+
 static void equal_targets_go_by_index(void **state)
 {
     const float weights[5] = { 0.5f, -0.5f, 0.5f, 0.0f, 0.5f }, reach[5] = { 0.01f, 0.01f, 0.01f, 0.01f, 0.01f };
@@ -559,11 +636,15 @@ int main(int argc, char **argv)
         cmocka_unit_test(slow_zoom_passes_each_level_once),
         cmocka_unit_test(a_limit_holds_finer_levels_back),
         cmocka_unit_test(a_limit_sends_away_what_is_too_fine),
+        cmocka_unit_test(clocks_at_the_ends),
         cmocka_unit_test(fade_is_smooth_and_alone),
         cmocka_unit_test(parts_of_a_fade_are_all_pixels),
         cmocka_unit_test(a_fixed_level_has_no_say_afterwards),
         cmocka_unit_test(depth_is_that_of_the_nearest_corner),
         cmocka_unit_test(skipped_targets_are_the_smallest_and_bounded),
+        cmocka_unit_test(fades_follow_the_smoothstep),
+        cmocka_unit_test(errors_of_all_kinds_add_up),
+        cmocka_unit_test(a_coarser_update_rate_is_never_better),
         cmocka_unit_test(equal_targets_go_by_index),
         cmocka_unit_test(a_larger_target_never_goes_first),
         cmocka_unit_test(odd_weights_are_kept),

@@ -265,6 +265,33 @@ static noh_mesh_header *header_of(fixture_levels *f, uint32_t mesh)
     return (noh_mesh_header *)(void *)(f->bytes + f->pack.chunks[f->pack.first_mesh + mesh].offset);
 }
 
+/* A level has one number everywhere. Loaded from level 1 on: the coarsest is still 2, the finest that is chosen is 1. */
+static void loaded_from_level_1(table *t, const noh_mesh_header *h)
+{
+    noh_detail_settings settings;
+    noh_detail d;
+    memset(&settings, 0, sizeof settings);
+    t->mesh = noh_mesh_at_level(&t->mesh, 1);
+    fill_table(t);
+    assert_int_equal(t->detail.table.mesh_level_count, 3);
+    assert_int_equal(t->detail.table.mesh_level_first, 1);
+    for (uint32_t k = 0; k < 3; k++) assert_int_equal(t->detail.table.meshes[k].vertex_count, h[k].vertex_count);
+    for (int far = 0; far < 2; far++) {
+        memset(&d, 0, sizeof d);
+        noh_detail_choose(&d, &t->detail.table, &settings, far ? 1e-3f : 1e6f, NULL, 0);
+        assert_int_equal(d.mesh, far ? 2 : 1);
+        assert_int_equal(d.mesh_before, d.mesh);
+        assert_int_equal(d.fade_ticks, 0);
+        assert_true(d.error_m >= t->detail.table.meshes[d.mesh].error_m);
+        assert_int_equal(noh_detail_finest(&d), d.mesh);
+        noh_detail_fix(&d, &t->detail.table, far ? 9 : 0, 1.0f);
+        assert_int_equal(d.mesh, far ? 2 : 1);
+    }
+    t->detail.table.mesh_level_first = 3;
+    assert_int_equal(noh_detail_table_check(&t->detail.table, NULL), NOH_ERR_ARG);
+    t->detail.table.mesh_level_first = 1;
+}
+
 /* Every level has the worst of its errors, and what it skips, in metres; fewer influences have theirs. */
 static void levels_come_from_the_mesh(void **state)
 {
@@ -308,10 +335,7 @@ static void levels_come_from_the_mesh(void **state)
     }
     assert_int_equal(t.detail.table.influences[t.detail.table.influence_level_count - 1].influence_count, 1);
     free(t.memory);
-    t.mesh = noh_mesh_at_level(&t.mesh, 1); /* what is loaded from level 1 on begins there */
-    fill_table(&t);
-    assert_int_equal(t.detail.table.mesh_level_count, 2);
-    assert_int_equal(t.detail.table.meshes[0].vertex_count, h[1].vertex_count);
+    loaded_from_level_1(&t, h);
     fixture_levels_close(&f);
     close_table(&t);
 }
@@ -355,7 +379,7 @@ static void expect_bad(const noh_detail_pack_desc *desc, const char *field)
     noh_detail_pack detail;
     assert_int_equal(noh_detail_pack_size(desc), 0);
     assert_int_equal(noh_detail_pack_init(memory, sizeof memory, desc, &detail, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, field);
+    assert_int_equal(strncmp(error.what, field, strlen(field)), 0);
 }
 
 static void bad_descs_are_named(void **state)

@@ -410,7 +410,7 @@ static float smallest_radius(const noh_mesh *mesh, const float *matrices, const 
     return sqrtf(smallest);
 }
 
-/* Row E1: half a turn collapses a linear blend to a point; dual quaternions keep the radius. */
+/* Half a turn collapses a linear blend to a point; dual quaternions keep the radius. */
 static void a_twisted_tube_keeps_its_radius(void **state)
 {
     const skin_cylinder c = { 16, 41, 2, 2, 0, 0, 4.0f, 0.5f };

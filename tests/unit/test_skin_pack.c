@@ -287,7 +287,7 @@ static void check_plates(const noh_mesh *mesh)
     }
 }
 
-/* Row C3.9: rigid parts of one skeleton become one mesh of one influence, one draw per material. */
+/* Rigid parts of one skeleton become one mesh of one influence, one draw per material. */
 static void rigid_parts_become_one_mesh(void **state)
 {
     (void)state;

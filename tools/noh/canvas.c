@@ -1,7 +1,9 @@
+#include "canvas.h"
+
 #include <stdlib.h>
 #include <string.h>
 
-#include "view.h"
+#include "message.h"
 
 #define SAMPLES 4
 

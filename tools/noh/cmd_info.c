@@ -1,8 +1,13 @@
 /* cmd_info.c: what is in a pack. */
+#include <stdio.h>
 #include <string.h>
 
 #include "info_joints.h"
-#include "noh_tool.h"
+#include "args.h"
+#include "message.h"
+#include "pack_file.h"
+#include "options.h"
+#include "verbs.h"
 
 static uint64_t target_bytes(const noh_mesh_header *h)
 {
@@ -30,7 +35,7 @@ static void print_skin(const noh_pack *pack, const noh_mesh_header *h)
     }
 }
 
-/* Lengths as they show in the world. */
+/* A length in mesh units as millimetres in the world. */
 static double millimetres(const noh_mesh_header *h, float length)
 {
     return 1e3 * (double)h->world_scale * (double)length;
@@ -39,7 +44,7 @@ static double millimetres(const noh_mesh_header *h, float length)
 static void print_levels(const noh_mesh *m)
 {
     if (m->header->influence_errors[2] > 0.0f) {
-        printf("  with only the 4, 2, 1 heaviest joints a vertex off by at most %.3f, %.3f, %.3f mm in motion\n",
+        printf("  with only the 4, 2, 1 heaviest joints of a vertex: off by at most %.3f, %.3f, %.3f mm in motion\n",
                millimetres(m->header, m->header->influence_errors[0]), millimetres(m->header, m->header->influence_errors[1]),
                millimetres(m->header, m->header->influence_errors[2]));
     }
@@ -268,7 +273,7 @@ static int json_info(const pack_file *file)
 {
     const noh_pack *p = &file->pack;
     int status = 0;
-    json j = json_begin(stdout);
+    json j = json_begin();
     char writer[VERSION_BYTES];
     write_version(p, writer);
     json_integer(&j, "version", NOH_PACK_VERSION);
@@ -295,25 +300,42 @@ static int json_info(const pack_file *file)
     json_integer(&j, "nodes", p->node_count);
     json_integer(&j, "materials", p->material_count);
     json_integer(&j, "textures", p->texture_count);
-    json_end(&j);
+    if (status) {
+        json_drop(&j);
+    }
+    return status ? status : json_end(&j);
+}
+
+typedef struct info_args {
+    const char *pack;
+    int as_json;
+} info_args;
+
+static int run(void *args)
+{
+    const info_args *a = args;
+    pack_file file;
+    int status = pack_file_open(&file, a->pack);
+    if (!status) {
+        status = a->as_json ? json_info(&file) : print_info(&file);
+        pack_file_close(&file);
+    }
     return status;
 }
 
-int verb_info(int argc, char **argv)
-{
-    const char *path = NULL;
-    int as_json = 0, count, status;
-    pack_file file;
-    const option options[] = { { "--json", OPTION_FLAG, &as_json } };
-    status = tool_options(argc, argv, options, 1, &path, 1, &count);
-    if (!status && !path) {
-        status = tool_usage("info wants a pack");
-    }
-    if (!status) status = pack_file_open(&file, path);
-    if (status) {
-        return status;
-    }
-    status = as_json ? json_info(&file) : print_info(&file);
-    pack_file_close(&file);
-    return status;
-}
+static info_args arguments;
+
+static const option options[] = { OPTION_JSON(info_args, as_json) };
+
+const verb verb_info = {
+    .name = "info",
+    .files = "PACK",
+    .what = "chunks, counts, names, errors certified at build",
+    .example = "face.noh\nface.noh --json",
+    .options = options,
+    .option_count = sizeof options / sizeof options[0],
+    .file_max = 1,
+    .files_at = offsetof(info_args, pack),
+    .args = &arguments,
+    .run = run,
+};

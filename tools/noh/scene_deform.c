@@ -4,7 +4,8 @@
 
 #include "deform/dual_quaternion.h"
 #include "deform/skin.h"
-#include "noh_tool.h"
+#include "message.h"
+#include "scene.h"
 
 /* What one item needs to be deformed. */
 typedef struct work {

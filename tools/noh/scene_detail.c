@@ -3,11 +3,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "camera.h"
+#include "message.h"
+
 static int open_item(item_detail *item, const noh_mesh *mesh)
 {
     const uint32_t targets = mesh->header->target_count;
-    item->table.meshes = item->levels;
-    item->table.mesh_level_count = noh_detail_mesh_levels(mesh, item->levels);
+    noh_detail_mesh_levels(mesh, item->levels, &item->table);
     item->reach_m = calloc(targets + 1u, sizeof *item->reach_m);
     if (item->reach_m) {
         noh_detail_target_reach(mesh, item->reach_m);
@@ -48,7 +50,7 @@ void scene_detail_close(scene_detail *d)
     memset(d, 0, sizeof *d);
 }
 
-/* Of an item as it is posed, before its node's placement. */
+/* Bounds of an item in its pose, before its node's transform. */
 static void item_box(const scene_detail *d, const scene *s, uint32_t item, float box[6])
 {
     const noh_mesh *mesh = &s->meshes[s->items[item].mesh];

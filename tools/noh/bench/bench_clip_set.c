@@ -1,5 +1,6 @@
 /* bench_clip_set.c: the clips that are benched, their raw keys, caches; the baseline raw-keys. */
 #include "bench_clip.h"
+#include "message.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -53,7 +54,7 @@ static uint64_t weight_of(const bench_clip *c)
     return (uint64_t)c->info.joint_count * c->info.frame_count;
 }
 
-/* Put a clip where it belongs; the one that falls out at the end is freed. */
+/* Insert a clip by size; the one pushed out at the end is freed. */
 static void keep_largest(bench_clip_set *set, bench_clip *c)
 {
     uint32_t at = set->count;
@@ -72,7 +73,7 @@ static void keep_largest(bench_clip_set *set, bench_clip *c)
     set->count++;
 }
 
-/* The keys are what the clip decodes to at its frames. */
+/* The keys are the clip, decoded at its frames. */
 static int decode_keys(bench_clip_set *set, uint32_t index)
 {
     bench_clip *c = &set->clips[index];

@@ -1,7 +1,8 @@
-/* view_play.c: the clips of what is shown: which play, where they are, which keys they pass. */
+/* view_play.c: playback: which clips play, at which time, and the callback keys they fire. */
 #include <string.h>
 
 #include "view/view_model.h"
+#include "message.h"
 
 const char *view_motion_name(const view_model *m, uint32_t player, uint32_t motion)
 {
