@@ -23,6 +23,10 @@
 #include "anim/pose.h"
 #include "base/assert.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Sums under way. Borrowed arrays; joint_count may be less than they hold. */
 typedef struct noh_blend {
     uint32_t joint_count, float_count;
@@ -72,5 +76,9 @@ void noh_pose_difference(uint32_t joint_count, const noh_transform *reference, c
  * multiplied. Weights above 1 exaggerate. */
 void noh_pose_add(uint32_t joint_count, const noh_transform *difference, float weight, const uint8_t *mask, noh_transform *pose);
 void noh_floats_add(uint32_t count, const float *difference, float weight, const uint8_t *mask, float *floats);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -12,6 +12,10 @@
 #include "base/limits.h"
 #include "base/result.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct noh_space_2d {
     uint32_t point_count;           /* 1..NOH_SPACE_POINTS_MAX */
     uint32_t triangle_count;        /* 0: one point, or all on a line */
@@ -32,5 +36,9 @@ noh_result noh_space_2d_triangulate(uint32_t count, const float *points, uint8_t
 /* shapes  weights[point_count], of sum 1, at most three not zero
  * ranges  x, y are clamped to NOH_SPACE_COORDINATE_MAX; NaN counts as 0 */
 void noh_space_2d_weights(const noh_space_2d *space, float x, float y, float *weights);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -15,6 +15,10 @@
 
 #include "anim/tracks.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define NOH_CHANGE_SLICES 64
 
 typedef enum noh_change_kind {
@@ -93,5 +97,9 @@ void noh_changes_update(noh_change *table, uint32_t count, noh_change_target *ta
 /* Set the present speed (noh_track.rate) of all tracks from target->clock on, and return the tick, at most `end`, up to
  * which it holds. Synchronised tracks are left to their group. */
 int64_t noh_changes_rates(const noh_change *table, uint32_t count, const noh_change_target *target, uint32_t track_count, int64_t end);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

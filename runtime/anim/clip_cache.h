@@ -22,6 +22,10 @@
 #include "anim/clip_codec.h"
 #include "base/limits.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* What one playing track needs at most: the segment it is in, the next one, and the one before where root motion is
  * measured across their border. Holds for looking ahead by up to a segment. */
 #define NOH_CLIP_CACHE_SEGMENTS_PER_TRACK 3u
@@ -94,5 +98,9 @@ uint32_t noh_clip_cache_capacity(const noh_clip_cache *cache);
 
 /* The clip at an index of the desc. */
 const noh_clip *noh_clip_cache_clip(const noh_clip_cache *cache, uint32_t clip);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

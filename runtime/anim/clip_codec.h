@@ -16,6 +16,10 @@
 #include "anim/pose.h"
 #include "base/result.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct noh_clip_desc {
     const void *bytes;          /* the clip, any alignment; must outlive the noh_clip */
     size_t byte_count;
@@ -67,5 +71,9 @@ noh_clip_group noh_clip_group_at(const noh_clip *clip, uint32_t index);
 /* The frame at or before a time and the fraction 0 <= f < 1 to the next. Times before the first
  * frame give the first, after the last the last. Exact: integers. */
 uint32_t noh_clip_frame_at(const noh_clip *clip, int64_t ticks, float *fraction);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

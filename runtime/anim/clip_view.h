@@ -14,6 +14,10 @@
 
 #include "anim/clip_cache.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct noh_clip_view noh_clip_view;
 
 /* Exact bytes: the head, and two segments as large as the largest of the cache's clips. */
@@ -29,5 +33,9 @@ void noh_clip_view_sample(noh_clip_view *view, uint32_t clip, int64_t ticks, uin
 
 /* What this view sampled and had to decode (evictions stays 0). */
 noh_clip_cache_stats noh_clip_view_stats_of(const noh_clip_view *view);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -27,6 +27,10 @@
 #include "anim/changes.h"
 #include "base/limits.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define NOH_CONTROLLER_INERTIAL 1u /* room for a pose of offsets: 48 bytes per joint, 8 per float (inertial.h) */
 #define NOH_CONTROLLER_EVENTS_CUT 2u /* set by a step that came to NOH_STEP_EVENTS_MAX keys and handed out no more */
 
@@ -136,5 +140,9 @@ uint32_t noh_controller_step(noh_controller *c, const noh_anim_set *set, uint32_
 /* An upper bound on the events of a step, changes included, provided that the callback starts or moves nothing. At most
  * NOH_STEP_EVENTS_MAX. */
 uint32_t noh_controller_events_max(const noh_controller *c, const noh_anim_set *set, uint32_t ticks);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -13,6 +13,10 @@
 #include "anim/controller.h"
 #include "anim/root_motion.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Working memory of posing: not state, one for all instances of a set that are posed
  * one after another. Between noh_controller_inertia_capture and _begin it holds what was captured. */
 typedef struct noh_pose_scratch {
@@ -55,5 +59,9 @@ noh_result noh_controller_inertia_begin(noh_controller *c, const noh_anim_set *s
 #define NOH_INERTIA_BEFORE_TICKS 480 /* speeds are differences over this many ticks before the switch */
 void noh_controller_inertia_add(const noh_controller *c, int64_t ago, noh_transform *pose, float *floats);
 void noh_controller_inertia_store(noh_controller *c, const noh_pose_scratch *scratch, uint32_t duration_ticks);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

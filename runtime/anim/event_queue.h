@@ -9,6 +9,10 @@
 
 #include "anim/controller.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct noh_event_queue {
     uint32_t capacity, count;
     uint32_t lost;       /* events that did not fit; 0 if the capacity comes from a bound */
@@ -26,5 +30,9 @@ noh_result noh_event_queue_init(void *memory, size_t bytes, uint32_t capacity, n
 void noh_event_queue_push(void *queue, const noh_event *event);
 
 void noh_event_queue_clear(noh_event_queue *queue);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

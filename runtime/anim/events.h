@@ -21,6 +21,10 @@
 
 #include "anim/motion.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* A stretch of play in one direction. */
 typedef struct noh_passage {
     int64_t from, to;        /* positions */
@@ -51,5 +55,9 @@ uint32_t noh_events_max(uint32_t key_count, uint32_t duration_ticks, noh_loop lo
  * and queues. One change of direction within the step is allowed for.
  * ranges  |speed| <= speed_max (1/65,536), step <= step_ticks_max; saturates at NOH_STEP_EVENTS_MAX */
 uint32_t noh_anim_set_events_max(const noh_anim_set *set, uint32_t track_count, uint32_t speed_max, uint32_t step_ticks_max);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

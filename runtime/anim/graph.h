@@ -28,6 +28,10 @@
 #include "anim/controller_pose.h"
 #include "base/limits.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define NOH_GRAPH_NONE 0xffffu
 
 typedef enum noh_node_kind {
@@ -146,5 +150,9 @@ noh_result noh_graph_scratch_init(void *memory, size_t bytes, const noh_graph *g
  * without inertia.
  * shapes  pose[joint_count], floats[float_count] of the set */
 void noh_graph_pose(noh_graph_state *state, const noh_graph *graph, const noh_anim_set *set, noh_graph_scratch *scratch, noh_transform *pose, float *floats);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -9,6 +9,10 @@
 
 #include "anim/skeleton.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* translation * rotation * scale of one joint. */
 void noh_transform_matrix(const noh_transform *t, float matrix[12]);
 
@@ -23,5 +27,9 @@ void noh_local_to_model(const noh_skeleton *skeleton, const noh_transform *pose,
 /* Skinning matrices: model * inverse bind.
  * shapes  model[joint_count][12], palette[joint_count][12]; palette may be model */
 void noh_model_to_palette(const noh_skeleton *skeleton, const float *model, uint32_t joint_count, float *palette);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

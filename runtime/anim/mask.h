@@ -11,6 +11,10 @@
 #include "anim/motion.h"
 #include "anim/skeleton.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Set all entries, of joints and floats. */
 void noh_mask_fill(uint8_t *mask, uint32_t count, uint8_t value);
 
@@ -22,5 +26,9 @@ void noh_mask_invert(uint8_t *mask, uint32_t count);
 
 /* A mask of a set as blending takes it: index 0 is no mask, n is the set's mask n - 1. */
 noh_mask_view noh_mask_of(const noh_anim_set *set, uint32_t index);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -15,6 +15,10 @@
 #include "base/limits.h"
 #include "base/result.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* A callback key. */
 typedef struct noh_event_key {
     uint32_t tick;       /* 0..duration of its clip */
@@ -76,5 +80,9 @@ noh_result noh_anim_set_check(const noh_anim_set *set, noh_error *error);
 
 /* The index of the clip of that name; NOH_NONE when there is none. */
 uint32_t noh_anim_set_find(const noh_anim_set *set, uint32_t name_hash);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

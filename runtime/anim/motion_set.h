@@ -31,6 +31,10 @@
 #include "anim/pack_motion.h"
 #include "anim/root_motion.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct noh_motion_set_desc {
     const noh_pack *clips;  /* that are played; required */
     const noh_pack *mesh;   /* whose skeleton and nodes are moved; default (NULL) `clips` */
@@ -123,5 +127,9 @@ size_t noh_motion_set_view_size(const noh_motion_set *set);
 /* Make a view in memory[bytes], 16-byte aligned. The set must outlive it; its masks are taken as they are now.
  * errors  ARG memory NULL or misaligned; MEMORY need: the bytes */
 noh_result noh_motion_set_view_init(void *memory, size_t bytes, const noh_motion_set *set, noh_motion_set_view **view, noh_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

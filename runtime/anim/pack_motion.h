@@ -7,6 +7,10 @@
 #include "anim/skeleton.h"
 #include "pack/pack.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* One clip: give `bytes` to noh_clip_init (anim/clip_codec.h), with the bind pose of header->skeleton. */
 typedef struct noh_pack_motion {
     const char *name;
@@ -38,5 +42,9 @@ noh_result noh_pack_motion_at(const noh_pack *pack, uint32_t index, noh_pack_mot
  * errors  NOT_FOUND no skeleton there has the same joints: names and parents (where: the hash) */
 noh_result noh_pack_bind_motion(const noh_pack *pack, const noh_pack_motion *motion, noh_skeleton *skeleton, uint32_t *index,
                                 noh_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

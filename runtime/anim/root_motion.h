@@ -18,6 +18,10 @@
 
 #include "anim/motion.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define NOH_ROOT_X 1u
 #define NOH_ROOT_Y 2u
 #define NOH_ROOT_Z 4u
@@ -62,5 +66,9 @@ noh_root_pose noh_root_between(const noh_anim_set *set, const noh_root_track *tr
 
 /* The displacement from position 0. */
 noh_root_pose noh_root_at(const noh_anim_set *set, const noh_root_track *track, uint32_t motion, noh_loop loop, int64_t position);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

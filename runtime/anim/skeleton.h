@@ -8,6 +8,10 @@
 #include "base/limits.h"
 #include "base/result.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define NOH_JOINT_ROOT 0xffffu /* parent of a joint that has none */
 
 typedef struct noh_skeleton {
@@ -21,5 +25,9 @@ typedef struct noh_skeleton {
  * errors  ARG a count or pointer, named; DATA (where: the joint) a parent that does not come first, a value that is not
  *         finite, a rotation that is not unit */
 noh_result noh_skeleton_check(const noh_skeleton *skeleton, noh_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

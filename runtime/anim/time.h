@@ -18,6 +18,10 @@
 
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define NOH_TICKS_PER_SECOND 48000u
 #define NOH_SPEED_ONE 65536        /* speeds are 16.16 fixed point: clip ticks per tick */
 #define NOH_SPEED_MAX (256 * 65536)
@@ -64,5 +68,9 @@ static inline int64_t noh_ceil_div(int64_t a, int64_t b)
 {
     return a / b + (a % b > 0);
 }
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -10,6 +10,10 @@
 #include "anim/events.h"
 #include "base/limits.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Three levels of cost. Granberg switches ticking off for far characters; TIME_ONLY still fires their callback keys. */
 typedef enum noh_track_mode {
     NOH_TRACK_OFF = 0,   /* does not play */
@@ -80,5 +84,9 @@ int noh_track_ended(const noh_track *track, const noh_motion *motion);
 
 /* The clip tick to sample, `ago` ticks before now at the present speed. */
 uint32_t noh_track_clip_tick(const noh_track *track, const noh_motion *motion, int64_t ago);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -11,6 +11,10 @@
 
 #include "base/result.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define NOH_MEMORY_ALIGN 16u /* of every block that an init takes */
 
 typedef struct noh_arena {
@@ -36,5 +40,9 @@ noh_arena noh_arena_measure(void);
  * returns  NULL when the block is exhausted or the arena measures; `used` counts the bytes all the same, and is SIZE_MAX
  *          after a sum that does not fit a size_t */
 void *noh_arena_carve(noh_arena *arena, size_t bytes, size_t alignment);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -6,7 +6,8 @@
  *
  * NOH_ASSERT_LEVEL 0 (default) compiles neither, 1 the cheap ones (a debug build), 2 both (the tests). A failed check
  * calls NOH_ASSERT_FAILED(condition, file, line), which a build may define; the default traps, because the library
- * links nothing that could print. */
+ * links nothing that could print.
+ * Threads: no state; any thread. */
 #ifndef NOH_BASE_ASSERT_H
 #define NOH_BASE_ASSERT_H
 

@@ -7,11 +7,16 @@
  *   NOH_AVX2, NOH_SSE2, NOH_NEON   which vector instructions the kernels may use; undefined: none
  *   noh_leading_zeros, noh_trailing_zeros   of a word that is not 0
  *
- * The plain twins are always compiled, as noh_..._plain, so that a test can hold them equal to what replaces them. */
+ * The plain twins are always compiled, as noh_..._plain, so that a test can hold them equal to what replaces them.
+ * Threads: no state; any thread. */
 #ifndef NOH_BASE_COMPILER_H
 #define NOH_BASE_COMPILER_H
 
 #include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 #if defined(__GNUC__) && !defined(NOH_PLAIN_C)
 #define NOH_GNU 1 /* gcc, clang and those that follow them */
@@ -82,5 +87,9 @@ static inline uint32_t noh_trailing_zeros(uint64_t word)
     return noh_trailing_zeros_plain(word);
 #endif
 }
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

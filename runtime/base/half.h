@@ -11,6 +11,10 @@
 
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef enum noh_half_mode {
     NOH_HALF_UNKNOWN = 0, /* neither of these: results can only be compared within a bound */
     NOH_HALF_RTZ,         /* round toward zero */
@@ -27,5 +31,9 @@ uint16_t noh_half_from_float(float value, noh_half_mode mode);
 
 /* The float that a half stands for; exact. NaN stays NaN with its payload. */
 float noh_half_to_float(uint16_t half);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -45,7 +45,6 @@ static uint32_t crc_word(uint32_t crc)
 uint32_t noh_crc32c(uint32_t crc, const void *bytes, size_t count)
 {
     const uint8_t *p = (const uint8_t *)bytes;
-    NOH_ASSERT(bytes || !count);
     crc = ~crc;
     for (; count >= 4u; p += 4, count -= 4u) {
         crc = crc_word(crc ^ ((uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24));

@@ -6,6 +6,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* FNV-1a, 32 bits, of a zero-terminated name. Names that are equal have equal hashes; those that are not, nearly never:
  * a search compares the names too.
  * source  Fowler, Noll, Vo: draft-eastlake-fnv */
@@ -15,5 +19,9 @@ uint32_t noh_hash_name(const char *name);
  * 32 bits in a row, and every flipped bit.
  * source  RFC 3720, appendix B.4 */
 uint32_t noh_crc32c(uint32_t crc, const void *bytes, size_t count);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -14,6 +14,10 @@
 #ifndef NOH_BASE_QUAT_H
 #define NOH_BASE_QUAT_H
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* out may be a or b. */
 void noh_quat_mul(const float a[4], const float b[4], float out[4]);
 void noh_quat_conjugate(const float q[4], float out[4]);
@@ -41,5 +45,9 @@ static inline float noh_quat_dot(const float a[4], const float b[4])
 {
     return (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]);
 }
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -11,6 +11,10 @@
 
 #include "base/assert.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef enum noh_result {
     NOH_OK = 0,
     NOH_ERR_ARG,         /* an argument or a field of a desc is out of its range: `what` names it */
@@ -39,5 +43,9 @@ const char *noh_result_text(noh_result result);
 
 /* Fill `error` (which may be NULL) and return its result. */
 noh_result noh_fail(noh_error *error, noh_result result, const char *what, uint64_t where, uint64_t need);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

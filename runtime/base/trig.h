@@ -20,6 +20,10 @@
 
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define NOH_PI 3.14159265358979f
 
 /* ranges  |radians| <= 1e6; outside (and for NaN) the angle is taken as 0
@@ -51,5 +55,9 @@ uint32_t noh_turn_from_radians(float radians);
 
 /* -pi to pi. */
 float noh_radians_from_turn(uint32_t turn);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

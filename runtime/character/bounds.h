@@ -16,6 +16,10 @@
 #include "anim/skeleton.h"
 #include "mesh/mesh.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct noh_bounds {
     float low[3], high[3];  /* the box; low above high: empty */
     float centre[3], radius; /* the sphere */
@@ -39,5 +43,9 @@ float noh_sphere_of_skeleton(const noh_skeleton *skeleton, const float *margin_m
  * shapes  weights[target_count]: the weight farthest from 0 that each target is expected to reach, all at once; NULL: 1
  *         each; margin_m[joint_count of the skin's skeleton], in the unit of its joints */
 void noh_margins_add(const noh_mesh *mesh, const float *weights, float *margin_m);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -27,6 +27,10 @@
 #include "character/bounds.h"
 #include "character/time_lod.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct noh_character_desc {
     noh_controller_desc controller; /* set is required */
     uint32_t instance;              /* staggers updates: give each character its own number; default 0 */
@@ -131,5 +135,9 @@ void noh_character_wake(noh_character *ch);
 
 /* Call when the camera has jumped: LOD levels are chosen afresh, and the character is posed before it is shown. */
 void noh_character_cut(noh_character *ch);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

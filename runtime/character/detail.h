@@ -21,6 +21,9 @@
 #include "base/limits.h"
 #include "base/result.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 /* Update rate: how often an instance is posed (time_lod.h). */
 typedef enum noh_rate {
@@ -167,5 +170,9 @@ float noh_detail_error_pixels(const noh_detail *d);
 /* Joints to pose, and influences to use per vertex, at the chosen levels; 0: all, the table has no levels of that kind. */
 uint32_t noh_detail_joint_count(const noh_detail *d, const noh_detail_table *table);
 uint32_t noh_detail_influence_count(const noh_detail *d, const noh_detail_table *table);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

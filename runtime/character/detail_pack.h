@@ -13,6 +13,10 @@
 #include "character/detail.h"
 #include "mesh/mesh.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct noh_detail_pack_desc {
     const noh_motion_set *set;            /* required */
     const noh_motion_set_desc *set_desc;  /* the desc of that set; required */
@@ -54,5 +58,9 @@ size_t noh_detail_pack_size(const noh_detail_pack_desc *desc);
  * for is left out, and all coarser ones.
  * errors  ARG the field of desc, or memory NULL or not 16-byte aligned; MEMORY too small; need: the exact bytes */
 noh_result noh_detail_pack_init(void *memory, size_t bytes, const noh_detail_pack_desc *desc, noh_detail_pack *detail, noh_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -10,6 +10,10 @@
 
 #include "character/time_lod.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Bytes of the working memory that measuring takes. */
 size_t noh_joint_lod_measure_size(const noh_time_probe *probe);
 
@@ -22,5 +26,9 @@ size_t noh_joint_lod_measure_size(const noh_time_probe *probe);
  * The result is the largest error found, not a proof for all ticks (see noh_time_lod_measure) */
 noh_result noh_joint_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t motion, const uint32_t *counts,
                                  uint32_t level_count, float *error_m, noh_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

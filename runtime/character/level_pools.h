@@ -27,6 +27,10 @@
 #include "base/result.h"
 #include "character/detail.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct noh_level_pools_desc {
     uint32_t instance_count;     /* 1..NOH_LEVEL_POOL_SLOTS_MAX */
     uint32_t pool_count;         /* 1..NOH_LEVEL_POOLS_MAX */
@@ -71,5 +75,9 @@ void noh_level_pools_share(noh_level_pools *pools);
 noh_level_slot noh_level_pools_slot(const noh_level_pools *pools, uint32_t instance);
 
 const noh_level_pools_stats *noh_level_pools_stats_of(const noh_level_pools *pools);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -26,6 +26,10 @@
 #include "base/limits.h"
 #include "base/result.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct noh_schedule_item {
     uint64_t urgency;
     uint32_t instance, cost;
@@ -81,5 +85,9 @@ typedef struct noh_cost_weights {
 
 /* Nanoseconds, rounded up; at least 1, saturating. */
 uint32_t noh_cost_of(const noh_cost_weights *weights, uint32_t joints, uint32_t pairs, uint32_t vertices);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -15,6 +15,10 @@
 
 #include "character/character.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* The skin's matrices as the character shows them in this frame, once it was updated.
  * shapes  matrices[skin's joint_count][12]
  * ranges  a skin of the skeleton that the character is updated with; if that skeleton has inverse bind matrices, they
@@ -32,5 +36,9 @@ void noh_pose_skin(const noh_skeleton *skeleton, const noh_skin *skin, const noh
  * shapes   inverse_bind[the skeleton's joint_count][12], borrowed by `out`; out may be skeleton
  * returns  1: `out` has inverse bind matrices; 0: it has none */
 int noh_skin_skeleton(const noh_skin *skin, const noh_skeleton *skeleton, float *inverse_bind, noh_skeleton *out);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -26,6 +26,10 @@
 #include "anim/skeleton.h"
 #include "character/detail.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define NOH_TIME_LOD_UNSEEN_TICKS 6000u /* after a longer absence an instance is posed before it is shown */
 
 /* State, without pointers. All clocks are the game's, in ticks. */
@@ -108,5 +112,9 @@ noh_result noh_time_lod_measure(void *memory, size_t bytes, const noh_time_probe
  * smooth over an update period.
  * shapes  motion_error_m[motion_count of the set][NOH_RATE_COUNT], error_m[NOH_RATE_COUNT] */
 void noh_time_lod_error(const noh_controller *c, const float *motion_error_m, float *error_m);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

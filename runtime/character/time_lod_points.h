@@ -9,6 +9,10 @@
 
 #include "character/time_lod.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* One joint's part in a point: its position in the joint's space (inverse bind matrix times vertex), and a weight. */
 typedef struct noh_time_hold {
     uint32_t joint;
@@ -32,5 +36,9 @@ size_t noh_time_points_size(const noh_time_probe *probe);
  *         too small; need: the exact bytes */
 noh_result noh_time_points_measure(void *memory, size_t bytes, const noh_time_probe *probe, const noh_time_points *points, uint32_t motion,
                                    float *error_m, noh_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

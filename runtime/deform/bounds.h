@@ -17,6 +17,10 @@
 
 #include "mesh/mesh.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* A rigid mesh.
  * shapes  world[12], NULL: mesh space; weights[target_count], NULL: no morph targets */
 void noh_mesh_box(const noh_mesh *mesh, const float *world, const float *weights, float box[6]);
@@ -35,5 +39,9 @@ static inline int noh_box_is_empty(const float box[6])
 {
     return box[0] > box[3];
 }
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -25,6 +25,10 @@
 
 #include "deform/morph.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* One joint: 2 x 4 floats of rigid motion and the stretch. */
 typedef struct noh_dual_quaternion {
     float real[4];    /* xyzw, unit */
@@ -51,5 +55,9 @@ void noh_skin_position_dual(const noh_mesh *mesh, const noh_dual_quaternion *joi
 /* As noh_skin_vertices. */
 void noh_skin_vertices_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers,
                             uint32_t first, uint32_t count, float *positions, float *normals, float *tangents);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

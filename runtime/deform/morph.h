@@ -18,6 +18,10 @@
 #include "base/half.h"
 #include "mesh/mesh.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Accumulated differences of one instance, model units. The three layers are adjacent in memory, each
  * [morph_height << morph_width_log2][3]. */
 typedef struct noh_morph_layers {
@@ -63,5 +67,9 @@ typedef struct noh_morph_cost {
     uint32_t targets, rects, texels, pairs;
 } noh_morph_cost;
 noh_morph_cost noh_morph_cost_of(const noh_mesh *mesh, const float *weights);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -11,6 +11,10 @@
 
 #include "deform/dual_quaternion.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* A mesh as it is drawn. */
 typedef struct noh_pick_surface {
     const noh_mesh *mesh;
@@ -39,5 +43,9 @@ size_t noh_pick_scratch_size(const noh_mesh *mesh);
  *         misaligned; MEMORY scratch is too small, need: its bytes. *hit is then untouched */
 noh_result noh_pick(const noh_pick_surface *surface, const float origin[3], const float direction[3], float distance_max, void *scratch,
                     size_t scratch_bytes, noh_pick_hit *hit, noh_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -19,6 +19,10 @@
 
 #include "deform/morph.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* The matrices that move the vertices of a skin's meshes, made once per instance and frame: model[joint] * inverse bind.
  * shapes  model[the skeleton's joint_count][12] (noh_local_to_model), matrices[skin's joint_count][12] */
 void noh_skin_matrices(const noh_skin *skin, const float *model, float *matrices);
@@ -39,5 +43,9 @@ void noh_skin_vertices(const noh_mesh *mesh, const float *matrices, const noh_mo
 
 /* "scalar", "sse2", "avx2" or "neon": what noh_skin_vertices was compiled to. */
 const char *noh_skin_simd(void);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -22,6 +22,10 @@
 
 #include "base/result.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* What the library itself calls, all of it OpenGL ES 3.0 core; noh_gl_api_load refuses
  * a context that lacks one. tests/check_gl_calls.sh compares the list with the calls
  * in runtime/; platform/README.md prints it for porters.
@@ -249,5 +253,9 @@ GLenum noh_gl_error_take(const noh_gl_api *api);
  * never says NOH_OK though the driver refused one of its calls.
  * errors  MEMORY GL_OUT_OF_MEMORY; GL any other. `where` is the GL error; `what` and `need` are the arguments */
 noh_result noh_gl_error_check(const noh_gl_api *api, const char *what, uint64_t need, noh_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

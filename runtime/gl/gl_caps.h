@@ -16,6 +16,10 @@
 #include "gl/gl_api.h"
 #include "base/half.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct noh_gl_caps {
     int version;             /* major * 100 + minor * 10 */
     int is_es;               /* 0: desktop GL */
@@ -67,5 +71,9 @@ noh_result noh_gl_caps_probe(const noh_gl_api *api, noh_gl_caps *out, noh_error 
  * #extension is needed. */
 const char *noh_gl_geometry_version(const noh_gl_api *api);
 const char *noh_gl_geometry_defines(const noh_gl_api *api);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -14,6 +14,10 @@
 #include "base/limits.h"
 #include "gl/gl_api.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* kind: GL_BUFFER, GL_TEXTURE, GL_PROGRAM, GL_VERTEX_ARRAY, GL_FRAMEBUFFER or
  * GL_RENDERBUFFER; the object must have been bound once. The text is "what of"; of
  * NULL or "": only what. */
@@ -22,5 +26,9 @@ void noh_gl_label(const noh_gl_api *api, GLenum kind, GLuint name, const char *w
 /* Groups nest; each begin has its end. The text as above. */
 void noh_gl_group_begin(const noh_gl_api *api, const char *what, const char *of);
 void noh_gl_group_end(const noh_gl_api *api);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

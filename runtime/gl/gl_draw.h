@@ -13,6 +13,10 @@
 #include "gl/gl_skin.h"
 #include "gl/gl_variants.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Attribute locations of a noh_gl_mesh's vertex array. */
 #define NOH_ATTRIBUTE_POSITION 0u /* float3 */
 #define NOH_ATTRIBUTE_NORMAL 1u   /* ivec2, octahedral: direction_of_pair in shaders_es/common_attributes.glsl */
@@ -137,5 +141,9 @@ void noh_gl_draw_crowd(const noh_gl_renderer *renderer, const noh_gl_mesh *mesh,
 
 /* Unbind program, vertex array, textures and uniform buffer; depth test, culling and blending are then off. */
 void noh_gl_draw_end(const noh_gl_renderer *renderer);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

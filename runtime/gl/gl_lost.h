@@ -23,7 +23,15 @@
 
 #include "gl/gl_api.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Every function but glDelete* is NULL. */
 const noh_gl_api *noh_gl_lost_api(void);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

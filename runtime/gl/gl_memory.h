@@ -23,6 +23,10 @@
 #include "gl/gl_api.h"
 #include "gl/gl_caps.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* The GL objects that exist now, and their bytes. Start with zeros. */
 typedef struct noh_gl_ledger {
     uint64_t buffer_bytes, texture_bytes, renderbuffer_bytes;
@@ -102,5 +106,9 @@ void noh_gl_renderbuffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, no
 /* A framebuffer name; holds no bytes of its own. Never 0 on success. */
 noh_result noh_gl_framebuffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, GLuint *out, noh_error *error);
 void noh_gl_framebuffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, GLuint *framebuffer);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -37,6 +37,10 @@
 #include "gl/gl_memory.h"
 #include "mesh/mesh.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef enum noh_morph_path {
     NOH_MORPH_AUTO = 0,
     NOH_MORPH_LAYERED,
@@ -150,5 +154,9 @@ void noh_gl_morph_set_level(noh_gl_morph *morph, uint32_t instance, uint32_t lev
 void noh_gl_morph_update(noh_gl_morph *morph, noh_gl_morph_stats *stats);
 
 noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t instance);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -14,6 +14,10 @@
 #include "gl/gl_api.h"
 #include "gl/gl_memory.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* One shader stage's text. tools/embed makes these. */
 typedef struct noh_gl_source {
     const char *version;       /* "#version 300 es\n" */
@@ -55,5 +59,9 @@ noh_result noh_gl_program_create(const noh_gl_api *api, const noh_gl_program_des
 
 /* ledger NULL: not counted. A program that is 0 already is left alone. */
 void noh_gl_program_delete(const noh_gl_api *api, noh_gl_ledger *ledger, GLuint *program);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

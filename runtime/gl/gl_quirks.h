@@ -13,6 +13,10 @@
 
 #include "base/result.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef enum noh_quirk {
     NOH_QUIRK_SOFTWARE,    /* rasterised on the CPU: auto takes the path cpu */
     NOH_QUIRK_BLEND_DEAR,  /* float blending is slow: auto takes gather, however few targets are expected */
@@ -30,5 +34,9 @@ typedef struct noh_gl_quirk {
 const noh_gl_quirk *noh_gl_quirk_find(const char *renderer, noh_quirk quirk);
 
 const noh_gl_quirk *noh_gl_quirk_table(uint32_t *count);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

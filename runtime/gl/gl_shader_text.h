@@ -17,6 +17,10 @@
 #ifndef NOH_GL_GL_SHADER_TEXT_H
 #define NOH_GL_GL_SHADER_TEXT_H
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* GLSL ES 3.00 without a #version line, zero-terminated, constant; comments are left out.
  * name   "common_layers.glsl"      morph_fetch: an instance's deltas; defines LAYERS_UINT
  *        "common_attributes.glsl"  directions out of the pack's integers
@@ -24,5 +28,9 @@
  *        "common_fade.glsl"        fade_noise, for fragment shaders of LOD levels that fade
  * errors NULL for any other name */
 const char *noh_gl_shader_text(const char *name);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

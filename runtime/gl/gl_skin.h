@@ -28,6 +28,10 @@
 
 #include "gl/gl_morph.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef enum noh_palette_mode {
     NOH_PALETTE_AUTO = 0, /* texture where a mesh has several instances, else uniform */
     NOH_PALETTE_UNIFORM,
@@ -124,5 +128,9 @@ uint32_t noh_gl_joint_rows(const noh_mesh *mesh);
  * Transforming normals by the matrix itself is right for rotations and uniform scales only. Returns the determinant.
  * source  Turkowski, "Properties of Surface-Normal Transformations", Graphics Gems (1990) */
 float noh_gl_normal_rows(const float world[12], float rows[12]);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -15,6 +15,10 @@
 #include "gl/gl_api.h"
 #include "gl/gl_caps.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define NOH_GL_TIMER_FLIGHT 4u
 
 typedef struct noh_gl_timer {
@@ -37,5 +41,9 @@ void noh_gl_timer_end(noh_gl_timer *timer, const noh_gl_api *api);
  * errors  NOH_ERR_NOT_FOUND none has finished yet; NOH_ERR_UNSUPPORTED no timer queries;
  *         NOH_ERR_GL the GPU's clock was disjoint (a frequency change, for instance): all in flight are dropped */
 noh_result noh_gl_timer_poll(noh_gl_timer *timer, const noh_gl_api *api, uint64_t *elapsed_ns);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -15,6 +15,10 @@
 
 #include "gl/gl_skin.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef enum noh_debug_view {
     NOH_VIEW_LIT,
     NOH_VIEW_POSITION,
@@ -69,5 +73,9 @@ void noh_gl_variant_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_
  * at NOH_UNIT_PALETTES, or the buffer's range at uniform binding 0. */
 void noh_gl_variant_skin(const noh_gl_api *api, const noh_gl_variant *variant, const noh_mesh *mesh,
                          const noh_gl_skin_binding *skin, uint32_t palette);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -5,6 +5,10 @@
 
 #include "pack/pack.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* A mesh at one LOD level. A view: valid as long as the pack and its bytes are. Shapes are in format.h. */
 typedef struct noh_mesh {
     const noh_pack *pack;
@@ -86,5 +90,9 @@ uint32_t noh_mesh_influences(const noh_mesh *mesh, uint32_t vertex, uint32_t joi
 /* The i-th index of the triangles.
  * ranges  i below index_count */
 uint32_t noh_mesh_index(const noh_mesh *mesh, uint32_t i);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -1,16 +1,19 @@
 /* format.h: the bytes of a .noh pack, little-endian, read where they lie.
  *
- * A pack is a header, a chunk table and the chunks. Every chunk starts at the
- * next multiple of 64 after the one before it, and every array inside a chunk
- * at the next multiple of 16 after the array before it: offsets are therefore
- * known from counts, the file still carries them so that readers are simple,
- * and the checker demands that both agree. Padding is zero. Names are offsets
- * into the string chunk. No pointers, nothing to patch. */
+ * A pack is a header, a chunk table and the chunks. Every chunk begins at the next multiple of 64 after the one before it,
+ * and every array inside a chunk at the next multiple of 16 after the array before it. Offsets therefore follow from the
+ * counts; the file carries them all the same, so that readers are simple, and noh_pack_open demands that both agree.
+ * Padding and reserved fields are zero. Names are offsets into the string chunk. There are no pointers, nothing to patch.
+ * Threads: constant data; any thread. */
 #ifndef NOH_PACK_FORMAT_H
 #define NOH_PACK_FORMAT_H
 
 #include "base/limits.h"
 #include "base/result.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 #define NOH_PACK_MAGIC 0x50484f4eu /* "NOHP" */
 #define NOH_PACK_VERSION 3u
@@ -67,10 +70,10 @@ typedef struct noh_pack_chunk {
 #define NOH_TEXEL_VERTEX_BITS 22u
 #define NOH_TEXEL_NONE ((1u << NOH_TEXEL_VERTEX_BITS) - 1u)
 
-/* The header of the full mesh is followed by those of its coarser levels of detail, each a mesh of its own:
- * a level's vertices, texels and, target by target, rectangles are the first ones of the finer level's arrays,
- * which it shares; its indices, submeshes and targets lie behind the finer level's. So a level can be used, and
- * loaded, as if there were no finer one. */
+/* The header of the full mesh is followed by those of its coarser LOD levels, each a mesh of its own. A level's vertices,
+ * delta texels and, target by target, rectangles are the first ones of the finer level's arrays, which it shares; its
+ * indices, submeshes and targets follow the finer level's. So a level can be used, and loaded, as if there were no finer
+ * one. */
 typedef struct noh_mesh_header {
     uint32_t flags;            /* NOH_MESH_* */
     uint32_t vertex_count;
@@ -80,7 +83,7 @@ typedef struct noh_mesh_header {
     uint32_t target_count;
     uint32_t rect_count;
     uint32_t texel_count;
-    uint32_t pair_count;       /* delta texels that are not zero */
+    uint32_t pair_count;       /* vertices moved by targets: delta texels that are not zero */
     uint32_t source_pair_count;/* what the asset had, for reports */
     uint32_t touched_count;    /* accumulation texels; without texel references vertices 0..touched_count-1 have one */
     uint32_t morph_width_log2; /* texel t: x = t & (width - 1), y = t >> width_log2 */
@@ -309,5 +312,9 @@ NOH_STATIC_ASSERT(sizeof(noh_rect) == 8, rect);
 NOH_STATIC_ASSERT(sizeof(noh_node) == 112, node);
 NOH_STATIC_ASSERT(sizeof(noh_material) == 48, material);
 NOH_STATIC_ASSERT(sizeof(noh_texture_header) == 32, texture_header);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -8,6 +8,10 @@
 
 #include "pack/format.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct noh_pack {
     const uint8_t *bytes;
     uint32_t byte_count;
@@ -50,5 +54,9 @@ const char *noh_pack_chunk_name(const noh_pack *pack, uint32_t chunk);
 /* The n-th texture.
  * errors  NOT_FOUND  past texture_count (where: the index, need: the count); *texture is untouched */
 noh_result noh_pack_texture(const noh_pack *pack, uint32_t index, noh_texture *texture, noh_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif
