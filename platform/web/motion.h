@@ -35,7 +35,7 @@ noh_result web_motion_open_clips(web_motion *motion, web_scene *scene, noh_arena
 noh_result web_motion_open_controllers(web_motion *motion, noh_arena *arena, noh_error *error);
 noh_result web_motion_open_poses(web_motion *motion, noh_arena *arena, noh_error *error);
 
-/* Room for what is handed to noh_gl_skin_set, where the scene is skinned. errors  MEMORY */
+/* Room for what is handed to noh_gl_skin_set_matrices, where the scene is skinned. errors  MEMORY */
 noh_result web_motion_open_matrices(web_motion *motion, noh_arena *arena, noh_error *error);
 
 /* The seconds of the pack's n-th clip; negative where it moves nothing here. */

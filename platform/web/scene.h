@@ -2,7 +2,7 @@
 #ifndef NOH_PLATFORM_WEB_SCENE_H
 #define NOH_PLATFORM_WEB_SCENE_H
 
-#include "noh.h"
+#include "noh_gl.h"
 
 #define WEB_MESHES_MAX 64u
 #define WEB_ITEMS_MAX 128u

@@ -17,6 +17,7 @@
 #include <stdint.h>
 
 #include "anim/pose.h"
+#include "base/assert.h"
 
 /* Sums in the making. Borrowed arrays; joint_count may be fewer than they hold. */
 typedef struct noh_blend {
@@ -25,7 +26,9 @@ typedef struct noh_blend {
     float *weights;        /* [joint_count] */
     float *float_sum;      /* [float_count] */
     float *float_weights;  /* [float_count] */
-    float total;           /* sum of the tracks' weights, unmasked */
+    float *totals;         /* [joint_count] of a sum begun by noh_blend_begin_over; else not touched */
+    float *float_totals;   /* [float_count] likewise */
+    int covers;            /* 1: begun by noh_blend_begin_over */
 } noh_blend;
 
 /* A mask, 255 = full weight; NULL arrays mean full weight everywhere (row C16.7). */
@@ -36,17 +39,22 @@ typedef struct noh_mask_view {
 
 void noh_blend_begin(noh_blend *blend);
 
-/* pose, floats NULL: not added. ranges  weight > 0 */
+/* Begin a sum that noh_blend_cover will lay over the pose of the sum that `blend` holds. */
+void noh_blend_begin_over(noh_blend *blend);
+
+/* Add one pose. What a clip does not animate, or a mask leaves out, takes no part at all: it neither moves a joint nor
+ * dilutes what others do there.
+ * shapes  pose[joint_count], floats[float_count]; NULL: not animated
+ * ranges  weight > 0 */
 void noh_blend_add(noh_blend *blend, const noh_transform *pose, const float *floats, float weight, noh_mask_view mask);
 
 /* Divide by the weights. defaults may be NULL: zero. */
 void noh_blend_finish(const noh_blend *blend, const noh_transform *bind_pose, const float *defaults, noh_transform *pose, float *floats);
 
-/* Lay the sum over a pose: each joint by `amount` times the part of the sum's total
- * weight that its masks let through, wholly where the pose below has no weight of its
- * own.
- * shapes  below[joint_count], float_below[float_count]: the weights of the pose below */
-void noh_blend_cover(const noh_blend *blend, float amount, const float *below, const float *float_below, noh_transform *pose, float *floats);
+/* Lay a sum begun by noh_blend_begin_over over the pose below, in place. Each joint is covered by `amount` times the
+ * mean mask of the poses that take part there (sum of w * mask / sum of w), wholly where the pose below has no weight.
+ * shapes  pose[joint_count], floats[float_count] */
+void noh_blend_cover(const noh_blend *blend, float amount, noh_transform *pose, float *floats);
 
 /* out = a at 0, b at 1; out may be either. The mask scales t. */
 void noh_pose_mix(uint32_t joint_count, const noh_transform *a, const noh_transform *b, float t, const uint8_t *mask, noh_transform *out);

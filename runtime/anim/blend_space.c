@@ -5,6 +5,7 @@
 void noh_space_1d_weights(uint32_t count, const float *thresholds, float x, float *weights)
 {
     uint32_t i = 0;
+    NOH_ASSERT(count > 0 && thresholds && weights);
     memset(weights, 0, count * sizeof *weights);
     if (!(x > thresholds[0])) {
         weights[0] = 1.0f;
@@ -85,9 +86,16 @@ static int triangle_weights(const noh_space_2d *s, const uint8_t t[3], float x, 
     return 1;
 }
 
+static float clamped(float x)
+{
+    const float most = NOH_SPACE_COORDINATE_MAX;
+    return x > most ? most : x < -most ? -most : x == x ? x : 0.0f;
+}
+
 void noh_space_2d_weights(const noh_space_2d *space, float x, float y, float *weights)
 {
-    float px = x - x == 0.0f ? x : 0.0f, py = y - y == 0.0f ? y : 0.0f;
+    float px = clamped(x), py = clamped(y);
+    NOH_ASSERT(space && space->points && weights && space->point_count > 0 && space->point_count <= NOH_SPACE_POINTS_MAX);
     memset(weights, 0, space->point_count * sizeof *weights);
     for (uint32_t i = 0; i < space->triangle_count; i++) {
         if (triangle_weights(space, space->triangles + 3u * i, px, py, weights)) {
@@ -245,11 +253,16 @@ static void flip_all(mesh *m)
     }
 }
 
+static int in_range(float x)
+{
+    return x >= -NOH_SPACE_COORDINATE_MAX && x <= NOH_SPACE_COORDINATE_MAX; /* not where it is NaN */
+}
+
 static noh_result check_points(const mesh *m, const float *points, noh_error *error)
 {
     for (uint32_t i = 0; i < m->count; i++) {
-        if (points[2u * i] - points[2u * i] != 0.0f || points[2u * i + 1u] - points[2u * i + 1u] != 0.0f) {
-            return noh_fail(error, NOH_ERR_DATA, "point is not finite", i, 0);
+        if (!in_range(points[2u * i]) || !in_range(points[2u * i + 1u])) {
+            return noh_fail(error, NOH_ERR_DATA, "point is not finite or past NOH_SPACE_COORDINATE_MAX", i, 0);
         }
     }
     return NOH_OK;
@@ -259,7 +272,7 @@ static noh_result check_apart(const mesh *m, noh_error *error)
 {
     for (uint32_t i = 1; i < m->count; i++) {
         if (!comes_before(m, m->order[i - 1], m->order[i])) {
-            return noh_fail(error, NOH_ERR_DATA, "two points in one place", m->order[i], 0);
+            return noh_fail(error, NOH_ERR_DATA, "two points are in one place", m->order[i], 0);
         }
     }
     return NOH_OK;
@@ -269,8 +282,9 @@ noh_result noh_space_2d_triangulate(uint32_t count, const float *points, uint8_t
 {
     mesh m;
     noh_result result;
+    NOH_ASSERT(points && triangles && triangle_count);
     if (count == 0 || count > NOH_SPACE_POINTS_MAX) {
-        return noh_fail(error, NOH_ERR_ARG, "count", count, NOH_SPACE_POINTS_MAX);
+        return noh_fail(error, NOH_ERR_ARG, "count is not in 1..NOH_SPACE_POINTS_MAX", count, NOH_SPACE_POINTS_MAX);
     }
     memset(&m, 0, sizeof m);
     m.count = count;

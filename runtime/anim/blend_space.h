@@ -9,10 +9,8 @@
 #ifndef NOH_ANIM_BLEND_SPACE_H
 #define NOH_ANIM_BLEND_SPACE_H
 
+#include "base/limits.h"
 #include "base/result.h"
-
-#define NOH_SPACE_POINTS_MAX 32u
-#define NOH_SPACE_TRIANGLES_MAX (2u * NOH_SPACE_POINTS_MAX)
 
 typedef struct noh_space_2d {
     uint32_t point_count;           /* 1..NOH_SPACE_POINTS_MAX */
@@ -22,17 +20,17 @@ typedef struct noh_space_2d {
 } noh_space_2d;
 
 /* shapes  thresholds[count] increasing, weights[count]
- * ranges  x is held between the first and the last; NaN counts as the first */
+ * ranges  |thresholds| <= NOH_SPACE_COORDINATE_MAX; x is held between the first and the last; NaN counts as the first */
 void noh_space_1d_weights(uint32_t count, const float *thresholds, float x, float *weights);
 
 /* Triangulate. Points are rounded to 1/4096 of their extent first, so that all tests
  * are exact and the result is the same everywhere.
  * shapes  points[count][2], triangles[NOH_SPACE_TRIANGLES_MAX][3]
- * errors  ARG count; DATA (where: the point) not finite, or two points in one place */
+ * errors  ARG count; DATA (where: the point) not finite or past NOH_SPACE_COORDINATE_MAX, or two points in one place */
 noh_result noh_space_2d_triangulate(uint32_t count, const float *points, uint8_t *triangles, uint32_t *triangle_count, noh_error *error);
 
 /* shapes  weights[point_count], of sum 1, at most three not zero
- * ranges  NaN counts as 0 */
+ * ranges  x, y past NOH_SPACE_COORDINATE_MAX are held there; NaN counts as 0 */
 void noh_space_2d_weights(const noh_space_2d *space, float x, float y, float *weights);
 
 #endif

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "anim/clock_internal.h"
+
 #define CURVE_ONE 2097152 /* 128^3: the curves in integers, at whole and half slices */
 #define HALVES (2 * NOH_CHANGE_SLICES)
 
@@ -45,20 +47,20 @@ static float float_of(int64_t bits)
 static const char *bad_value(const noh_change_desc *d)
 {
     float weight_max = d->kind == NOH_CHANGE_PRIORITY ? 1.0f : NOH_WEIGHT_MAX;
-    if (d->speed > NOH_SPEED_MAX || d->speed < -NOH_SPEED_MAX) return "speed";
-    if (!(d->weight >= 0.0f && d->weight <= weight_max)) return "weight";
-    if (d->position_ticks > ((int64_t)1 << 44) || d->position_ticks < -((int64_t)1 << 44)) return "position_ticks";
-    if ((unsigned)d->mode > NOH_TRACK_ON) return "mode";
+    if (d->speed > NOH_SPEED_MAX || d->speed < -NOH_SPEED_MAX) return "speed is past NOH_SPEED_MAX";
+    if (!(d->weight >= 0.0f && d->weight <= weight_max)) return "weight is not in 0..NOH_WEIGHT_MAX, or 0..1 for PRIORITY";
+    if (d->position_ticks > ((int64_t)1 << 44) || d->position_ticks < -((int64_t)1 << 44)) return "position_ticks is past 2^44";
+    if ((unsigned)d->mode > NOH_TRACK_ON) return "mode is not a noh_track_mode";
     return NULL;
 }
 
 static const char *bad_change(const noh_change_target *target, uint32_t track_count, const noh_change_desc *d)
 {
-    if ((unsigned)d->kind > NOH_CHANGE_PRIORITY) return "kind";
-    if (d->kind != NOH_CHANGE_PRIORITY && d->track >= track_count) return "track";
-    if (d->kind == NOH_CHANGE_POSITION && target->tracks[d->track].sync_group) return "track is synchronised";
-    if ((unsigned)d->curve > NOH_CURVE_SMOOTHSTEP) return "curve";
-    if (d->kind == NOH_CHANGE_MODE && d->duration_ticks) return "duration_ticks";
+    if ((unsigned)d->kind > NOH_CHANGE_PRIORITY) return "kind is not a noh_change_kind";
+    if (d->kind != NOH_CHANGE_PRIORITY && d->track >= track_count) return "track is not below track_count";
+    if (d->kind == NOH_CHANGE_POSITION && target->tracks[d->track].sync_group) return "track is synchronised: its group moves it";
+    if ((unsigned)d->curve > NOH_CURVE_SMOOTHSTEP) return "curve is not a noh_curve";
+    if (d->kind == NOH_CHANGE_MODE && d->duration_ticks) return "duration_ticks must be 0 for MODE";
     return bad_value(d);
 }
 
@@ -106,11 +108,12 @@ noh_result noh_changes_add(noh_change *table, uint32_t count, noh_change_target 
 {
     const char *what = bad_change(target, track_count, desc);
     noh_change c;
+    NOH_ASSERT(table && target && desc && target->set && target->tracks && target->priority_blend);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, desc->track, 0);
     }
     memset(&c, 0, sizeof c);
-    c.start = target->clock + desc->delay_ticks;
+    c.start = noh_clock_add(target->clock, desc->delay_ticks);
     c.to = wanted(desc);
     c.duration = desc->duration_ticks;
     c.state = NOH_CHANGE_WAITING;
@@ -123,6 +126,7 @@ noh_result noh_changes_add(noh_change *table, uint32_t count, noh_change_target 
 noh_result noh_changes_jump(noh_change *table, uint32_t count, noh_change_target *target, uint32_t track, int64_t position, noh_error *error)
 {
     noh_change c;
+    NOH_ASSERT(table && target && target->tracks);
     memset(&c, 0, sizeof c);
     c.start = target->clock;
     c.to = position;
@@ -136,6 +140,7 @@ noh_result noh_changes_jump(noh_change *table, uint32_t count, noh_change_target
 
 void noh_changes_cancel(noh_change *table, uint32_t count, noh_change_kind kind, uint32_t track)
 {
+    NOH_ASSERT(table || !count);
     for (uint32_t i = 0; i < count; i++) {
         if (table[i].state == NOH_CHANGE_RUNNING && table[i].kind == kind && table[i].track == track) {
             table[i].state = NOH_CHANGE_FREE;
@@ -145,6 +150,7 @@ void noh_changes_cancel(noh_change *table, uint32_t count, noh_change_kind kind,
 
 void noh_changes_drop(noh_change *table, uint32_t count, uint32_t track)
 {
+    NOH_ASSERT(table || !count);
     for (uint32_t i = 0; i < count; i++) {
         if (table[i].kind != NOH_CHANGE_PRIORITY && table[i].track == track) {
             table[i].state = NOH_CHANGE_FREE;
@@ -227,6 +233,7 @@ static void follow(const noh_change *c, noh_change_target *t)
 /* Running changes first: what begins takes over from the value of this very tick. */
 void noh_changes_update(noh_change *table, uint32_t count, noh_change_target *target)
 {
+    NOH_ASSERT(target && (table || !count));
     for (uint32_t i = 0; i < count; i++) {
         if (table[i].state != NOH_CHANGE_RUNNING) {
             continue;
@@ -310,7 +317,7 @@ static int64_t speed_rates(const noh_change *table, uint32_t count, const noh_ch
     for (uint32_t i = 0; i < count; i++) {
         if (runs(&table[i], NOH_CHANGE_SPEED)) {
             int64_t held = speed_rate(&table[i], target->clock - table[i].start, &target->tracks[table[i].track].speed);
-            end = sooner(end, table[i].start + held);
+            end = sooner(end, noh_clock_add(table[i].start, held));
         }
     }
     return end;
@@ -321,7 +328,7 @@ static int64_t position_rates(const noh_change *table, uint32_t count, const noh
     for (uint32_t i = 0; i < count; i++) {
         if (runs(&table[i], NOH_CHANGE_POSITION)) {
             int64_t held = position_rate(&table[i], target->clock - table[i].start, &target->tracks[table[i].track].rate);
-            end = sooner(end, table[i].start + held);
+            end = sooner(end, noh_clock_add(table[i].start, held));
         }
     }
     return end;
@@ -334,7 +341,7 @@ static int64_t next_change(const noh_change *table, uint32_t count, int64_t end)
         if (table[i].state == NOH_CHANGE_WAITING) {
             end = sooner(end, table[i].start);
         } else if (table[i].state == NOH_CHANGE_RUNNING) {
-            end = sooner(end, table[i].start + table[i].duration);
+            end = sooner(end, noh_clock_add(table[i].start, table[i].duration));
         }
     }
     return end;
@@ -342,6 +349,7 @@ static int64_t next_change(const noh_change *table, uint32_t count, int64_t end)
 
 int64_t noh_changes_rates(const noh_change *table, uint32_t count, const noh_change_target *target, uint32_t track_count, int64_t end)
 {
+    NOH_ASSERT(target && (table || !count) && end >= target->clock);
     end = speed_rates(table, count, target, next_change(table, count, end));
     for (uint32_t i = 0; i < track_count; i++) {
         noh_track *track = &target->tracks[i];

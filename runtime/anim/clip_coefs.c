@@ -29,7 +29,7 @@ static uint32_t read_escape(noh_bits *b)
 {
     uint32_t zeros;
     noh_bits_refill(b);
-    zeros = b->word ? (uint32_t)__builtin_ctzll(b->word) : NOH_CLIP_MAGNITUDE_BITS;
+    zeros = b->word ? noh_trailing_zeros(b->word) : NOH_CLIP_MAGNITUDE_BITS;
     if (zeros > NOH_CLIP_MAGNITUDE_BITS) {
         zeros = NOH_CLIP_MAGNITUDE_BITS;
     }

@@ -400,12 +400,12 @@ int noh_clip_next_group(noh_clip_group_reader *reader, noh_clip_group *group)
 noh_result noh_clip_init(void *memory, size_t bytes, const noh_clip_desc *desc, noh_clip **out, noh_error *error)
 {
     noh_clip measured, *clip;
-    noh_arena arena = noh_arena_over(memory, bytes);
+    noh_arena arena;
     parser p;
     size_t size = 0;
-    const noh_result r = measure(desc, &measured, &p, &size, error);
-    if (r != NOH_OK) return r;
-    if (bytes < size) return noh_fail(error, NOH_ERR_MEMORY, "memory of a clip", 0, size);
+    noh_result r = measure(desc, &measured, &p, &size, error);
+    if (!r) r = noh_arena_open(&arena, memory, bytes, size, error);
+    if (r) return r;
     clip = noh_arena_carve(&arena, sizeof *clip, 16u);
     *clip = measured;
     carve(&arena, &measured, &p);

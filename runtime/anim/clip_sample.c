@@ -5,7 +5,7 @@
 #include "anim/clip_vec.h"
 
 /* Kernels in which a flag is a constant, or whose vectors must stay in registers. */
-#define NOH_CLIP_INLINE static inline __attribute__((always_inline))
+#define NOH_CLIP_INLINE NOH_ALWAYS_INLINE
 
 #define TINY 1e-30f /* so that frames of zeros, which only a broken clip has, divide */
 
@@ -21,7 +21,7 @@ static inline float *rotation_at(noh_transform *out, uint32_t offset)
     return (float *)(void *)((uint8_t *)out + offset);
 }
 
-#if defined(__AVX2__) && !defined(NOH_CLIP_SCALAR)
+#if defined(NOH_AVX2) && !defined(NOH_CLIP_SCALAR)
 #include <immintrin.h>
 
 /* Two joints to a register, eight at a time; sums in the order of the scalar twin. */

@@ -22,9 +22,10 @@
 #define NOH_ANIM_CONTROLLER_H
 
 #include "anim/changes.h"
+#include "base/limits.h"
 
 #define NOH_CONTROLLER_INERTIAL 1u /* room for a pose of offsets: 48 bytes per joint, 8 per float (inertial.h) */
-#define NOH_CHANGES_MAX 1024u
+#define NOH_CONTROLLER_EVENTS_CUT 2u /* set by a step that came to NOH_STEP_EVENTS_MAX keys and handed out no more */
 
 /* Its bytes: 80, 48 per track, 32 per change; with room for inertia 48 per joint and 8
  * per float. With the default table that is at most 64 per joint and 64 per track for
@@ -33,7 +34,7 @@ typedef struct noh_controller_desc {
     const noh_anim_set *set; /* checked with noh_anim_set_check; required */
     uint32_t track_count;    /* default (0) 4; at most NOH_TRACKS_MAX */
     uint32_t change_count;   /* changes that wait or run at one time; default (0) track_count + 2; at most NOH_CHANGES_MAX */
-    uint32_t flags;          /* NOH_CONTROLLER_* */
+    uint32_t flags;          /* NOH_CONTROLLER_INERTIAL */
 } noh_controller_desc;
 
 /* The head of the block; tables follow at byte offsets from it. Read what you like. */
@@ -78,6 +79,11 @@ noh_result noh_controller_init(void *memory, size_t bytes, const noh_controller_
 /* What to copy to clone or save it. The copy must be 16-byte aligned too. */
 size_t noh_controller_bytes(const noh_controller *c);
 
+/* Check a block that comes from outside, as out of a saved game, before anything else is done with it: one that passes
+ * cannot make a call overrun, overflow or hang. The offsets of inertia are not looked at; a pose may then be nonsense.
+ * errors  ARG memory NULL or not 16-byte aligned; DATA not a controller for this set (where: the track or change) */
+noh_result noh_controller_check(const void *memory, size_t bytes, const noh_anim_set *set, noh_error *error);
+
 /* ---- tracks ---- */
 
 noh_track *noh_controller_tracks(noh_controller *c);             /* [track_count] */
@@ -121,11 +127,13 @@ noh_result noh_controller_cross_fade(noh_controller *c, const noh_anim_set *set,
                                      uint32_t duration_ticks, noh_curve curve, noh_error *error);
 
 /* Move time on. fn may be NULL. Returns how many events were delivered.
- * ranges  ticks 0..2^32-1; 0 does nothing */
+ * A step looks at NOH_STEP_EVENTS_MAX keys at most. Keys after that are passed without being delivered, and
+ * NOH_CONTROLLER_EVENTS_CUT is set in c->flags until the next step; noh_controller_events_max tells beforehand.
+ * ranges  ticks 0..2^32-1; 0 does nothing. The clock stops at INT64_MAX */
 uint32_t noh_controller_step(noh_controller *c, const noh_anim_set *set, uint32_t ticks, noh_event_fn fn, void *user);
 
 /* The most that a step of so many ticks can deliver as the controller stands, its
- * changes included, if its callback starts or moves nothing. Saturates at UINT32_MAX. */
+ * changes included, if its callback starts or moves nothing: NOH_STEP_EVENTS_MAX at most. */
 uint32_t noh_controller_events_max(const noh_controller *c, const noh_anim_set *set, uint32_t ticks);
 
 #endif

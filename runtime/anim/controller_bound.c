@@ -74,7 +74,7 @@ static reach sync_reach(const noh_controller *c, const noh_anim_set *set, uint32
     }
     interval_range(set, &set->motions[t->motion], &shortest, &longest);
     r.runs = (uint64_t)ticks / NOH_SYNC_TICKS + c->change_count + 2u;
-    r.travel = plus(fastest * longest > UINT64_MAX / (ticks + 1u) ? UINT64_MAX : fastest * longest * ticks, 2u * 65536u);
+    r.travel = plus(fastest * longest > UINT64_MAX / ((uint64_t)ticks + 1u) ? UINT64_MAX : fastest * longest * ticks, 2u * 65536u);
     return r;
 }
 
@@ -110,6 +110,7 @@ static int stays_off(const noh_controller *c, uint32_t track)
 uint32_t noh_controller_events_max(const noh_controller *c, const noh_anim_set *set, uint32_t ticks)
 {
     uint64_t most = 0;
+    NOH_ASSERT(c && set && set->motion_count == c->motion_count);
     for (uint32_t i = 0; ticks && i < c->track_count; i++) {
         const noh_track *t = noh_controller_track(c, i);
         const noh_motion *m = &set->motions[t->motion];
@@ -119,5 +120,5 @@ uint32_t noh_controller_events_max(const noh_controller *c, const noh_anim_set *
             most += noh_events_max(m->event_count, m->duration_ticks, (noh_loop)t->loop, r.travel, runs);
         }
     }
-    return most > UINT32_MAX ? UINT32_MAX : (uint32_t)most;
+    return most > NOH_STEP_EVENTS_MAX ? NOH_STEP_EVENTS_MAX : (uint32_t)most;
 }

@@ -34,8 +34,9 @@ typedef void (*noh_key_fn)(void *user, uint32_t index, int64_t position_tick);
  * shapes  keys[count] in tick order */
 int noh_events_first(const noh_event_key *keys, uint32_t count, const noh_passage *passage, int64_t *position_tick);
 
-/* Hand every happening of a passage to fn, in order. */
-void noh_events_pass(const noh_event_key *keys, uint32_t count, const noh_passage *passage, noh_key_fn fn, void *user);
+/* Hand the happenings of a passage to fn, in order, the first `limit` of them.
+ * returns  how many; `limit` may mean that there are more */
+uint32_t noh_events_pass(const noh_event_key *keys, uint32_t count, const noh_passage *passage, uint32_t limit, noh_key_fn fn, void *user);
 
 /* The most happenings that play can pass in a given travel.
  * shapes  travel: the sum of all movements, in 1/65,536 ticks; runs: how many
@@ -46,7 +47,7 @@ uint32_t noh_events_max(uint32_t key_count, uint32_t duration_ticks, noh_loop lo
 /* The most that one step can deliver with every track on the worst motion of a
  * set: known before anything is played, for budgets and queues. One turn of the
  * direction within the step is counted in.
- * ranges  |speed| <= speed_max (1/65,536), step <= step_ticks_max */
+ * ranges  |speed| <= speed_max (1/65,536), step <= step_ticks_max; saturates at NOH_STEP_EVENTS_MAX */
 uint32_t noh_anim_set_events_max(const noh_anim_set *set, uint32_t track_count, uint32_t speed_max, uint32_t step_ticks_max);
 
 #endif

@@ -24,11 +24,8 @@
 
 #include "anim/blend_space.h"
 #include "anim/controller_pose.h"
+#include "base/limits.h"
 
-#define NOH_GRAPH_NODES_MAX 256u
-#define NOH_GRAPH_CHILDREN_MAX 32u /* of one node */
-#define NOH_GRAPH_PARAMS_MAX 256u
-#define NOH_GRAPH_SLOTS_MAX 32u    /* pose buffers */
 #define NOH_GRAPH_NONE 0xffffu
 
 typedef enum noh_node_kind {

@@ -57,6 +57,7 @@ static void rotation_between(const noh_transform *a, const noh_transform *b, flo
 void noh_inertia_begin(uint32_t joint_count, const noh_transform *source, const noh_transform *source_before,
                        const noh_transform *target, const noh_transform *target_before, float delta_s, noh_inertia_joint *out)
 {
+    NOH_ASSERT(delta_s > 0.0f && (!joint_count || (source && source_before && target && target_before && out)));
     for (uint32_t i = 0; i < joint_count; i++) {
         float before[3];
         rotation_between(&source[i], &target[i], out[i].rotation);
@@ -74,6 +75,7 @@ void noh_inertia_begin(uint32_t joint_count, const noh_transform *source, const 
 void noh_inertia_begin_floats(uint32_t count, const float *source, const float *source_before, const float *target,
                               const float *target_before, float delta_s, noh_inertia_float *out)
 {
+    NOH_ASSERT(delta_s > 0.0f && (!count || (source && source_before && target && target_before && out)));
     for (uint32_t i = 0; i < count; i++) {
         float offset = source[i] - target[i], before = source_before[i] - target_before[i];
         float speed = (offset < 0.0f ? before - offset : offset - before) / delta_s;
@@ -101,6 +103,7 @@ static void turn_by_share(const float rotation[3], float share, float q[4])
 
 void noh_inertia_apply(uint32_t joint_count, const noh_inertia_joint *joints, float elapsed_s, float duration_s, noh_transform *pose)
 {
+    NOH_ASSERT(!joint_count || (joints && pose));
     for (uint32_t j = 0; j < joint_count; j++) {
         const noh_inertia_joint *o = &joints[j];
         float turn = share_left(o->rotation, o->rotation_speed, elapsed_s, duration_s);
@@ -118,6 +121,7 @@ void noh_inertia_apply(uint32_t joint_count, const noh_inertia_joint *joints, fl
 
 void noh_inertia_apply_floats(uint32_t count, const noh_inertia_float *offsets, float elapsed_s, float duration_s, float *floats)
 {
+    NOH_ASSERT(!count || (offsets && floats));
     for (uint32_t i = 0; i < count; i++) {
         float size = offsets[i].offset < 0.0f ? -offsets[i].offset : offsets[i].offset;
         float left = noh_inertia_decay(size, offsets[i].speed, elapsed_s, duration_s);

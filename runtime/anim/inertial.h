@@ -12,6 +12,7 @@
 #include <stdint.h>
 
 #include "anim/pose.h"
+#include "base/assert.h"
 
 /* Offsets of one joint at the switch: 48 bytes. Speeds are along the vectors, per
  * second, never positive. */

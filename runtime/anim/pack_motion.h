@@ -15,8 +15,10 @@ typedef struct noh_pack_motion {
     const float *joint_errors;        /* [header->joint_error_count], for the levels of header->skeleton, in its unit */
 } noh_pack_motion;
 
-/* The n-th skeleton; its hash and unit come with it where they are wanted. NOT_FOUND past skeleton_count. */
-noh_result noh_pack_skeleton_at(const noh_pack *pack, uint32_t index, noh_skeleton *skeleton, const noh_skeleton_header **header);
+/* The n-th skeleton; header (NULL: not wanted) receives its hash and unit.
+ * errors  NOT_FOUND  past skeleton_count (where: the index, need: the count) */
+noh_result noh_pack_skeleton_at(const noh_pack *pack, uint32_t index, noh_skeleton *skeleton, const noh_skeleton_header **header,
+                                noh_error *error);
 
 /* The name of a joint. */
 const char *noh_pack_joint_name(const noh_pack *pack, uint32_t skeleton, uint32_t joint);
@@ -26,8 +28,9 @@ const char *noh_pack_joint_name(const noh_pack *pack, uint32_t skeleton, uint32_
  * returns  NULL past skeleton_count */
 const uint32_t *noh_pack_joint_levels(const noh_pack *pack, uint32_t skeleton, uint32_t *level_count);
 
-/* The n-th clip. NOT_FOUND past motion_count. */
-noh_result noh_pack_motion_at(const noh_pack *pack, uint32_t index, noh_pack_motion *motion);
+/* The n-th clip.
+ * errors  NOT_FOUND  past motion_count (where: the index, need: the count) */
+noh_result noh_pack_motion_at(const noh_pack *pack, uint32_t index, noh_pack_motion *motion, noh_error *error);
 
 /* The skeleton of a clip in another pack, by hash: that pack's index (NULL: not wanted).
  * errors  NOT_FOUND: no skeleton there has these names and parents of joints */

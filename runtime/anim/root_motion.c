@@ -62,6 +62,7 @@ static uint32_t heading(uint32_t up, const noh_transform *root)
 noh_root_pose noh_root_extract(uint32_t axes, uint32_t up, const noh_transform *root)
 {
     noh_root_pose e;
+    NOH_ASSERT(root && axes <= 15u && up <= 2u);
     memset(&e, 0, sizeof e);
     for (uint32_t i = 0; i < 3; i++) {
         e.translation[i] = axes & (1u << i) ? (double)root->translation[i] : 0.0;
@@ -75,6 +76,7 @@ void noh_root_remove(uint32_t axes, uint32_t up, noh_transform *root)
     noh_root_pose e = noh_root_extract(axes, up, root);
     float back[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
     double rest[3];
+    NOH_ASSERT(root && axes <= 15u && up <= 2u);
     /* half of minus the turn, as a signed angle: the quaternion of the inverse heading */
     noh_sin_cos(-0.5f * noh_radians_from_turn(e.turn), &back[up], &back[3]);
     for (int i = 0; i < 3; i++) {
@@ -89,6 +91,7 @@ void noh_root_remove(uint32_t axes, uint32_t up, noh_transform *root)
 
 void noh_root_sample_rest(const noh_anim_set *set, uint32_t motion, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose, float *floats)
 {
+    NOH_ASSERT(set && motion < set->motion_count && clip_tick <= set->motions[motion].duration_ticks && joint_count <= set->joint_count);
     set->sample(set->user, motion, clip_tick, joint_count, pose, set->float_count, floats);
     if (set->roots && set->roots[motion].axes) {
         noh_root_remove(set->roots[motion].axes, set->roots[motion].up, &pose[0]);
@@ -98,6 +101,7 @@ void noh_root_sample_rest(const noh_anim_set *set, uint32_t motion, uint32_t cli
 noh_root_pose noh_root_compose(uint32_t up, const noh_root_pose *a, const noh_root_pose *b)
 {
     noh_root_pose out = *b;
+    NOH_ASSERT(up <= 2u && a && b);
     turn_vector(up, 2u * (uint64_t)a->turn, out.translation);
     for (int i = 0; i < 3; i++) {
         out.translation[i] += a->translation[i];
@@ -109,6 +113,7 @@ noh_root_pose noh_root_compose(uint32_t up, const noh_root_pose *a, const noh_ro
 noh_root_pose noh_root_inverse(uint32_t up, const noh_root_pose *a)
 {
     noh_root_pose out = *a;
+    NOH_ASSERT(up <= 2u && a);
     for (int i = 0; i < 3; i++) {
         out.translation[i] = -a->translation[i];
     }
@@ -124,6 +129,7 @@ noh_root_pose noh_root_power(uint32_t up, const noh_root_pose *a, int64_t n)
     noh_root_pose base = n < 0 ? noh_root_inverse(up, a) : *a, out;
     uint64_t count = n < 0 ? (uint64_t)0 - (uint64_t)n : (uint64_t)n;
     double s_one, s_all, unused, ratio = (double)count;
+    NOH_ASSERT(up <= 2u && a);
     memset(&out, 0, sizeof out);
     if (count == 0) {
         return out;
@@ -156,9 +162,10 @@ noh_result noh_root_track_measure(const noh_anim_set *set, uint32_t motion, uint
 {
     noh_root_track t;
     noh_root_pose back;
-    if (motion >= set->motion_count) return noh_fail(error, NOH_ERR_ARG, "motion", motion, set->motion_count);
-    if (axes > 15u) return noh_fail(error, NOH_ERR_ARG, "axes", motion, 0);
-    if (up > 2u) return noh_fail(error, NOH_ERR_ARG, "up", motion, 0);
+    NOH_ASSERT(set && track);
+    if (motion >= set->motion_count) return noh_fail(error, NOH_ERR_ARG, "motion is not a clip of the set", motion, set->motion_count);
+    if (axes > 15u) return noh_fail(error, NOH_ERR_ARG, "axes has bits other than NOH_ROOT_*", motion, 0);
+    if (up > 2u) return noh_fail(error, NOH_ERR_ARG, "up is not 0, 1 or 2", motion, 0);
     memset(&t, 0, sizeof t);
     t.axes = axes;
     t.up = up;
@@ -175,6 +182,7 @@ noh_result noh_root_track_measure(const noh_anim_set *set, uint32_t motion, uint
 noh_root_pose noh_root_between(const noh_anim_set *set, const noh_root_track *track, uint32_t motion, noh_loop loop, int64_t from, int64_t to)
 {
     uint32_t duration = set->motions[motion].duration_ticks, up = track->up;
+    NOH_ASSERT(set && track && motion < set->motion_count);
     /* legs count only where they do not lead back */
     int64_t passes = loop == NOH_LOOP_REPEAT ? noh_time_legs(to, duration, loop) - noh_time_legs(from, duration, loop) : 0;
     noh_root_pose a = sample_root(set, motion, track->axes, up, (uint32_t)(noh_time_clip(from, duration, loop) / 65536));

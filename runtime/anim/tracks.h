@@ -6,12 +6,7 @@
 #define NOH_ANIM_TRACKS_H
 
 #include "anim/events.h"
-
-#define NOH_TRACKS_MAX 64u
-#define NOH_SYNC_GROUPS_MAX 15u
-#define NOH_SYNC_DURATION_MIN 480u        /* ticks, of a motion in a sync group */
-#define NOH_SYNC_DURATION_MAX (1u << 28)
-#define NOH_WEIGHT_MAX 1e6f
+#include "base/limits.h"
 
 /* Three levels of cost (row C5.3). */
 typedef enum noh_track_mode {

@@ -13,7 +13,8 @@
  * over the stated range by the tests.
  *
  * A turn is an angle as a uint32_t, 2^32 to the full circle: it wraps by itself
- * and adds without rounding, so that a heading never drifts. */
+ * and adds without rounding, so that a heading never drifts.
+ * Threads: no state; any thread. */
 #ifndef NOH_BASE_TRIG_H
 #define NOH_BASE_TRIG_H
 

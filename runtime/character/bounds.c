@@ -61,6 +61,7 @@ static float reach_from(const float *centre, ball b)
 void noh_sphere_of_joints(const noh_skeleton *skeleton, const float *model, const float *margin_m, uint32_t joint_count, noh_bounds *bounds)
 {
     const float far_away = 3e38f;
+    NOH_ASSERT(skeleton && model && margin_m && bounds && joint_count <= skeleton->joint_count);
     for (int i = 0; i < 3; i++) {
         bounds->low[i] = far_away;
         bounds->high[i] = -far_away;
@@ -87,6 +88,7 @@ void noh_sphere_of_joints(const noh_skeleton *skeleton, const float *model, cons
 float noh_sphere_of_skeleton(const noh_skeleton *skeleton, const float *margin_m)
 {
     float radius = 0.0f;
+    NOH_ASSERT(skeleton && margin_m);
     for (uint32_t j = 0; j < skeleton->joint_count; j++) {
         float reach = margin_m[j];
         for (uint32_t at = j; reach >= 0.0f && skeleton->parents[at] != NOH_JOINT_ROOT; at = skeleton->parents[at]) {
@@ -134,7 +136,8 @@ void noh_margins_add(const noh_mesh *mesh, const float *weights, float *margin_m
 {
     noh_skin skin;
     float deltas[6];
-    if (noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin)) {
+    NOH_ASSERT(mesh && margin_m);
+    if (noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin, NULL)) {
         return;
     }
     add_targets(mesh, weights, deltas);

@@ -8,7 +8,7 @@
  *   noh_character_step(ch, set, ticks, fn, user)              for every character, seen or not: clock and callback keys
  *   due = noh_character_look(ch, table, settings, scale)      for those that are seen: chooses detail
  *   noh_character_update(ch, set, skeleton, margins, &scratch)  for those that are due: samples, blends, makes matrices
- *   noh_character_palette(ch, mixed, joint_count)             for those that are drawn: mixes two palettes
+ *   noh_character_skin(ch, skin, matrices)                    for those that are drawn: skinning matrices (skin_palette.h)
  * Updates can be left to a budget: see scheduler.h. Change tracks through noh_character_controller, then
  * call noh_character_wake. After a memcpy, noh_character_number gives the copy its own place among the updates.
  *
@@ -35,7 +35,7 @@ typedef struct noh_character {
     uint32_t controller_offset;
     uint32_t palette_offsets[2], float_offsets[2];
     uint32_t updates;               /* since init */
-    uint32_t reserved;
+    uint32_t multiplied;            /* a bit per palette: it was multiplied by the skeleton's inverse bind matrices */
     noh_detail detail;
     noh_time_lod time;
     float spheres[2][4];            /* centre and radius around each of the poses */
@@ -103,10 +103,11 @@ void noh_character_update_begin(noh_character *ch, const noh_anim_set *set, noh_
  * shapes  margin_m[joint_count] as bounds.h has it; NULL: no sphere is kept */
 void noh_character_update_end(noh_character *ch, const noh_skeleton *skeleton, const float *margin_m, noh_character_scratch *scratch);
 
-/* What is shown in this frame, once the character was updated: the first so many skinning matrices, as
- * noh_model_to_palette makes them. (A joint's own matrix is its palette matrix times the inverse of its inverse bind matrix.)
- * shapes  mixed[joint_count][12]
- * returns `mixed`, or matrices of the character's own, to be read in this frame, where nothing had to be mixed */
+/* The first joint_count matrices shown in this frame, once the character was updated, in the skeleton's order: as
+ * noh_model_to_palette makes them of the skeleton that update_end was given. They are model-space joint matrices unless
+ * that skeleton has inverse bind matrices; to draw a mesh call noh_character_skin, which knows.
+ * shapes   mixed[joint_count][12]
+ * returns  `mixed`, or the character's own matrices where nothing had to be mixed: valid until the next update */
 const float *noh_character_palette(const noh_character *ch, float *mixed, uint32_t joint_count);
 
 /* The same of its floats.

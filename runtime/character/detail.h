@@ -14,9 +14,8 @@
 #ifndef NOH_CHARACTER_DETAIL_H
 #define NOH_CHARACTER_DETAIL_H
 
+#include "base/limits.h"
 #include "base/result.h"
-
-#define NOH_DETAIL_LEVELS_MAX 8u
 
 /* How often an instance is posed (time_lod.h). */
 typedef enum noh_rate {
@@ -51,6 +50,7 @@ typedef struct noh_detail_table {
     const noh_joint_level *joints;
     const noh_influence_level *influences;
     uint32_t mesh_level_count;      /* each 1..NOH_DETAIL_LEVELS_MAX, or 0: that kind is always full */
+    uint32_t mesh_level_first;      /* the finest mesh level that is loaded; below mesh_level_count, or 0. None finer is chosen */
     uint32_t joint_level_count;
     uint32_t influence_level_count;
     float clip_error_m;             /* of compressed motion, always there; counted in the share of time */
@@ -144,7 +144,7 @@ typedef struct noh_detail_part {
 /* What to draw: one part with all pixels, or, while a level fades, that which comes and that which goes. Returns how many. */
 uint32_t noh_detail_parts(const noh_detail *d, int64_t clock, noh_detail_part parts[2]);
 
-/* The finest level that is drawn now or in the fade that has begun: for noh_gl_morph_level. */
+/* The finest level that is drawn now or in the fade that has begun: for noh_gl_morph_set_level. */
 uint32_t noh_detail_drawn(const noh_detail *d, int64_t clock);
 
 /* Leave out morph targets that cannot be seen: the smallest |weight| * reach first, for as long as their sum

@@ -28,11 +28,11 @@ typedef struct noh_detail_pack {
                              * a mesh */
 } noh_detail_pack;
 
-/* The levels of a mesh alone, without a motion set: for a table of your own, or one of a mesh that no clip moves.
- * error_m is the worst of a level's errors in any pose, and what the targets that the level does without can add to it.
- * shapes   levels[NOH_DETAIL_LEVELS_MAX]; mesh: at the finest level that is loaded
- * returns  how many there are */
-uint32_t noh_detail_mesh_levels(const noh_mesh *mesh, noh_mesh_level *levels);
+/* Fill only the mesh levels of a table: for a table of your own, or for a mesh that no clip moves. Levels have the same
+ * numbers everywhere (the pack, this table, noh_gl_mesh_level, noh_gl_morph_level): 0 is the full mesh, loaded or not.
+ * error_m is a level's worst error in any pose plus what the targets that it leaves out can add; metres.
+ * shapes   levels[NOH_DETAIL_LEVELS_MAX], borrowed by the table; mesh: at the finest level that is loaded */
+void noh_detail_mesh_levels(const noh_mesh *mesh, noh_mesh_level *levels, noh_detail_table *table);
 
 /* What each target moves at most at weight 1, metres, for noh_detail_targets.
  * shapes  reach_m[target_count] */

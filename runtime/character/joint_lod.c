@@ -26,6 +26,7 @@ size_t noh_joint_lod_measure_size(const noh_time_probe *probe)
 {
     noh_arena arena = noh_arena_measure();
     work w;
+    NOH_ASSERT(probe && probe->set);
     carve(&arena, probe->set, &w);
     return arena.used;
 }
@@ -63,15 +64,16 @@ static int bad_counts(const noh_skeleton *s, const uint32_t *counts, uint32_t le
 noh_result noh_joint_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t motion, const uint32_t *counts,
                                  uint32_t level_count, float *error_m, noh_error *error)
 {
-    const char *what = probe->joint_reach_m ? noh_probe_fault(probe, motion) : "probe";
-    noh_arena arena = noh_arena_over(memory, bytes);
+    const char *what = probe->joint_reach_m ? noh_probe_fault(probe, motion) : "probe: joint_reach_m is NULL";
+    noh_arena arena;
     uint32_t duration;
     work w;
     noh_result result;
+    NOH_ASSERT(probe && counts && error_m);
     if (what || bad_counts(probe->skeleton, counts, level_count)) {
-        return noh_fail(error, NOH_ERR_ARG, what ? what : "counts", motion, 0);
+        return noh_fail(error, NOH_ERR_ARG, what ? what : "counts must fall, and hold all joints that have no parent", motion, 0);
     }
-    result = noh_probe_check_memory(memory, bytes, noh_joint_lod_measure_size(probe), error);
+    result = noh_arena_open(&arena, memory, bytes, noh_joint_lod_measure_size(probe), error);
     if (result) {
         return result;
     }

@@ -37,17 +37,17 @@ NOH_STATIC_ASSERT(sizeof(place) == 8, place);
 static const char *bad_field(const noh_level_pools_desc *d, uint32_t *slots)
 {
     uint64_t sum = 0;
-    if (d->instance_count == 0 || d->instance_count > NOH_LEVEL_POOL_SLOTS_MAX) return "instance_count of level pools";
-    if (d->pool_count == 0 || d->pool_count > NOH_LEVEL_POOLS_MAX) return "pool_count of level pools";
-    if (!d->levels) return "levels of level pools";
-    if (!d->slot_counts) return "slot_counts of level pools";
+    if (d->instance_count == 0 || d->instance_count > NOH_LEVEL_POOL_SLOTS_MAX) return "instance_count of level pools is not in 1..NOH_LEVEL_POOL_SLOTS_MAX";
+    if (d->pool_count == 0 || d->pool_count > NOH_LEVEL_POOLS_MAX) return "pool_count of level pools is not in 1..NOH_LEVEL_POOLS_MAX";
+    if (!d->levels) return "levels of level pools is NULL";
+    if (!d->slot_counts) return "slot_counts of level pools is NULL";
     for (uint32_t i = 0; i < d->pool_count; i++) {
         if (d->levels[i] >= NOH_DETAIL_LEVELS_MAX || (i && d->levels[i] <= d->levels[i - 1u])) return "levels of level pools do not rise";
         if (d->slot_counts[i] == 0) return "slot_counts of level pools: a pool without slots";
         sum += d->slot_counts[i];
     }
     if (sum < d->instance_count) return "slot_counts of level pools: fewer slots than instances";
-    if (sum > NOH_LEVEL_POOL_SLOTS_MAX) return "slot_counts of level pools: more than the limit";
+    if (sum > NOH_LEVEL_POOL_SLOTS_MAX) return "slot_counts of level pools: more than NOH_LEVEL_POOL_SLOTS_MAX in all";
     *slots = (uint32_t)sum;
     return NULL;
 }
@@ -66,6 +66,7 @@ size_t noh_level_pools_size(const noh_level_pools_desc *desc)
     noh_arena arena = noh_arena_measure();
     noh_level_pools parts;
     uint32_t slots;
+    NOH_ASSERT(desc);
     if (bad_field(desc, &slots)) {
         return 0;
     }
@@ -90,19 +91,18 @@ static void fill_pools(noh_level_pools *p, const noh_level_pools_desc *d)
 
 noh_result noh_level_pools_init(void *memory, size_t bytes, const noh_level_pools_desc *desc, noh_level_pools **pools, noh_error *error)
 {
-    noh_arena arena = noh_arena_over(memory, bytes);
+    noh_arena arena;
+    noh_result result;
     noh_level_pools parts, *p;
     uint32_t slots = 0;
     const char *what = bad_field(desc, &slots);
-    size_t need = noh_level_pools_size(desc);
+    NOH_ASSERT(desc && pools);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for level pools is NULL or not 16-byte aligned", 0, need);
-    }
-    if (bytes < need) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory for level pools is too small", bytes, need);
+    result = noh_arena_open(&arena, memory, bytes, noh_level_pools_size(desc), error);
+    if (result != NOH_OK) {
+        return result;
     }
     memset(&parts, 0, sizeof parts);
     p = carve(&arena, desc->instance_count, slots, &parts);
@@ -120,6 +120,7 @@ noh_result noh_level_pools_init(void *memory, size_t bytes, const noh_level_pool
 
 void noh_level_pools_begin(noh_level_pools *p)
 {
+    NOH_ASSERT(p);
     for (uint32_t i = 0; i < p->instance_count; i++) {
         p->places[i].next = ASKS_NOT;
     }
@@ -297,5 +298,6 @@ noh_level_slot noh_level_pools_slot(const noh_level_pools *p, uint32_t instance)
 
 const noh_level_pools_stats *noh_level_pools_stats_of(const noh_level_pools *p)
 {
+    NOH_ASSERT(p);
     return &p->stats;
 }

@@ -20,11 +20,9 @@
 #ifndef NOH_CHARACTER_LEVEL_POOLS_H
 #define NOH_CHARACTER_LEVEL_POOLS_H
 
+#include "base/limits.h"
 #include "base/result.h"
 #include "character/detail.h"
-
-#define NOH_LEVEL_POOLS_MAX NOH_DETAIL_LEVELS_MAX
-#define NOH_LEVEL_POOL_SLOTS_MAX 65536u
 
 typedef struct noh_level_pools_desc {
     uint32_t instance_count;     /* 1..NOH_LEVEL_POOL_SLOTS_MAX */

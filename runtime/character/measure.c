@@ -6,17 +6,9 @@
 
 const char *noh_probe_fault(const noh_time_probe *p, uint32_t motion)
 {
-    if (!p->set || !p->skeleton || p->skeleton->joint_count != p->set->joint_count) return "probe";
-    if (motion >= p->set->motion_count) return "motion";
+    if (!p->set || !p->skeleton || p->skeleton->joint_count != p->set->joint_count) return "probe: NULL set or skeleton, or a skeleton of other joints";
+    if (motion >= p->set->motion_count) return "motion is not a clip of the set";
     return NULL;
-}
-
-noh_result noh_probe_check_memory(const void *memory, size_t bytes, size_t need, noh_error *error)
-{
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for measuring is NULL or not 16-byte aligned", 0, need);
-    }
-    return bytes >= need ? NOH_OK : noh_fail(error, NOH_ERR_MEMORY, "memory for measuring is too small", bytes, need);
 }
 
 void noh_probe_travel(const noh_time_probe *p, uint32_t motion, noh_transform *pose, float *floats, float travel[3])

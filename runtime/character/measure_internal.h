@@ -9,9 +9,6 @@
 /* The name of a probe's or a motion's fault; NULL: none. joint_reach_m is not looked at. */
 const char *noh_probe_fault(const noh_time_probe *probe, uint32_t motion);
 
-/* MEMORY where memory[bytes] is not what measuring needs; ARG where it is not aligned. */
-noh_result noh_probe_check_memory(const void *memory, size_t bytes, size_t need, noh_error *error);
-
 /* How far joint 0 is from where it began when a motion that repeats begins again; 0 of another, or where the probe does not travel.
  * shapes  pose[joint_count], floats[float_count] to work in */
 void noh_probe_travel(const noh_time_probe *probe, uint32_t motion, noh_transform *pose, float *floats, float travel[3]);

@@ -20,10 +20,8 @@
 #ifndef NOH_CHARACTER_SCHEDULER_H
 #define NOH_CHARACTER_SCHEDULER_H
 
+#include "base/limits.h"
 #include "base/result.h"
-
-#define NOH_SCHEDULE_MAX 65536u
-#define NOH_VISIBILITY_MAX 8.0f
 
 typedef struct noh_schedule_item {
     uint64_t urgency;

@@ -6,6 +6,7 @@ size_t noh_time_lod_measure_size(const noh_time_probe *probe)
 {
     noh_arena arena = noh_arena_measure();
     noh_rate_work w;
+    NOH_ASSERT(probe && probe->set);
     noh_rate_carve(&arena, probe->set, &w);
     return arena.used;
 }
@@ -31,14 +32,15 @@ static float pose_off(void *user, const noh_time_probe *p, const noh_rate_work *
 
 noh_result noh_time_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t motion, float *error_m, noh_error *error)
 {
-    const char *what = probe->joint_reach_m ? noh_probe_fault(probe, motion) : "probe";
+    const char *what = probe->joint_reach_m ? noh_probe_fault(probe, motion) : "probe: joint_reach_m is NULL";
     noh_result result;
-    noh_arena arena = noh_arena_over(memory, bytes);
+    noh_arena arena;
     noh_rate_work w;
+    NOH_ASSERT(probe && error_m);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, motion, 0);
     }
-    result = noh_probe_check_memory(memory, bytes, noh_time_lod_measure_size(probe), error);
+    result = noh_arena_open(&arena, memory, bytes, noh_time_lod_measure_size(probe), error);
     if (result) {
         return result;
     }

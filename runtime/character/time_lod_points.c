@@ -20,6 +20,7 @@ size_t noh_time_points_size(const noh_time_probe *probe)
 {
     noh_arena arena = noh_arena_measure();
     work w;
+    NOH_ASSERT(probe && probe->set);
     carve(&arena, probe->set, &w);
     return arena.used;
 }
@@ -61,7 +62,7 @@ static const char *bad_argument(const noh_time_probe *p, const noh_time_points *
     *where = motion;
     if (what) return what;
     *where = 0;
-    if (!points->holds || !points->point_count || !points->holds_per_point) return "points";
+    if (!points->holds || !points->point_count || !points->holds_per_point) return "points: none";
     for (size_t i = 0; i < (size_t)points->point_count * points->holds_per_point; i++) {
         *where = i;
         if (points->holds[i].weight > 0.0f && points->holds[i].joint >= p->set->joint_count) return "points: no such joint";
@@ -74,13 +75,14 @@ noh_result noh_time_points_measure(void *memory, size_t bytes, const noh_time_pr
 {
     size_t where;
     const char *what = bad_argument(probe, points, motion, &where);
-    noh_arena arena = noh_arena_over(memory, bytes);
+    noh_arena arena;
     noh_result result;
     work w;
+    NOH_ASSERT(probe && points && error_m);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, where, 0);
     }
-    result = noh_probe_check_memory(memory, bytes, noh_time_points_size(probe), error);
+    result = noh_arena_open(&arena, memory, bytes, noh_time_points_size(probe), error);
     if (result) {
         return result;
     }

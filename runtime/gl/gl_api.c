@@ -32,6 +32,13 @@ GLenum noh_gl_error_take(const noh_gl_api *api)
     return first;
 }
 
+noh_result noh_gl_error_check(const noh_gl_api *api, const char *what, uint64_t need, noh_error *error)
+{
+    GLenum code = noh_gl_error_take(api);
+    if (code == GL_NO_ERROR) return NOH_OK;
+    return noh_fail(error, code == GL_OUT_OF_MEMORY ? NOH_ERR_MEMORY : NOH_ERR_GL, what, code, need);
+}
+
 int noh_gl_has_extension(const noh_gl_api *api, const char *name)
 {
     GLint count = 0;

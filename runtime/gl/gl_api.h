@@ -2,6 +2,7 @@
  *
  *   noh_gl_api_load    fills the table through the caller's lookup function
  *   noh_gl_error_take  returns the oldest GL error and clears them all
+ *   noh_gl_error_check the same as a result: what every create asks last
  *
  * The library links no GL: the application makes a context with whatever it
  * likes, makes it current, and hands over a lookup function. The table is a
@@ -242,5 +243,10 @@ int noh_gl_has_extension(const noh_gl_api *api, const char *name);
 /* The oldest pending GL error, GL_NO_ERROR where there is none. All are cleared,
  * but never more than 16 asked: a lost context answers for ever. */
 GLenum noh_gl_error_take(const noh_gl_api *api);
+
+/* The oldest pending GL error as a result; all are cleared. A create clears them first and asks this last, so that it
+ * never says NOH_OK though the driver refused one of its calls.
+ * errors  MEMORY GL_OUT_OF_MEMORY; GL any other. `where` is the GL error, `what` and `need` are what was handed in */
+noh_result noh_gl_error_check(const noh_gl_api *api, const char *what, uint64_t need, noh_error *error);
 
 #endif

@@ -9,9 +9,8 @@
 #ifndef NOH_GL_GL_DEBUG_H
 #define NOH_GL_GL_DEBUG_H
 
+#include "base/limits.h"
 #include "gl/gl_api.h"
-
-#define NOH_GL_LABEL_BYTES 96u /* longer ones are cut; GL takes 256 at least */
 
 /* kind: GL_BUFFER, GL_TEXTURE, GL_PROGRAM, GL_VERTEX_ARRAY, GL_FRAMEBUFFER or
  * GL_RENDERBUFFER; the object must have been bound once. The text is "what of"; of

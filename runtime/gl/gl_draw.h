@@ -6,6 +6,7 @@
 #ifndef NOH_GL_GL_DRAW_H
 #define NOH_GL_GL_DRAW_H
 
+#include "base/limits.h"
 #include "gl/gl_morph.h"
 #include "gl/gl_skin.h"
 #include "gl/gl_variants.h"
@@ -66,8 +67,6 @@ typedef struct noh_gl_renderer_desc {
     int encode_srgb;           /* the shader encodes: for a target that is not sRGB, as WebGL's canvas. 0: the target does */
 } noh_gl_renderer_desc;
 
-#define NOH_GL_VARIANTS_MAX 64u /* a character of one kind of mesh needs 2 to 8, twice that with fades */
-
 typedef struct noh_gl_renderer {
     const noh_gl_api *gl;
     noh_gl_ledger *ledger;
@@ -84,8 +83,8 @@ typedef struct noh_gl_renderer {
  * memory  writes *out at once; on error it holds nothing
  * errors  ARG crowds without a texture for palettes; LIMIT the meshes need more variants than
  *         NOH_GL_VARIANTS_MAX; MEMORY, GL, DATA as noh_gl_program_create and noh_gl_texture_create */
-noh_result noh_gl_renderer_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_gl_renderer_desc *desc,
-                                  noh_gl_renderer *out, char *log, size_t log_bytes, noh_error *error);
+noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_renderer_desc *desc, noh_gl_renderer *out,
+                                  noh_error *error);
 void noh_gl_renderer_delete(noh_gl_renderer *renderer);
 
 /* Make it again in a new context (gl_lost.h). errors  as create; it then holds nothing */
@@ -127,7 +126,7 @@ void noh_gl_draw_mesh(const noh_gl_renderer *renderer, const noh_gl_mesh *mesh, 
                       const noh_gl_texture *pictures, int pass);
 
 /* The same for `count` instances of one mesh, from the one that `first` is the binding of: one draw per submesh for
- * all. Each stands where noh_gl_skin_place put it. Rigid meshes too. morph: any instance's binding. Blended
+ * all. Each stands where noh_gl_skin_set_place put it. Rigid meshes too. morph: any instance's binding. Blended
  * submeshes of a crowd are not sorted.
  * errors  none; palettes are in a texture, or nothing is drawn */
 void noh_gl_draw_crowd(const noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph,

@@ -19,6 +19,7 @@
 #define NOH_GL_GL_MEMORY_H
 
 #include "gl/gl_api.h"
+#include "gl/gl_caps.h"
 
 /* What lives on the GPU now. Start with zeros. */
 typedef struct noh_gl_ledger {
@@ -65,6 +66,16 @@ uint64_t noh_gl_renderbuffer_bytes(GLenum format, uint32_t width, uint32_t heigh
 
 uint64_t noh_gl_ledger_bytes(const noh_gl_ledger *ledger);
 
+/* What larger objects are made on. The struct itself is not kept; the table and the ledger that it points to must stay
+ * as long as the object lives. */
+typedef struct noh_gl_device {
+    const noh_gl_api *api;
+    const noh_gl_caps *caps; /* noh_gl_morph_init and noh_gl_skin_init read it; NULL elsewhere */
+    noh_gl_ledger *ledger;
+    char *log;               /* [log_bytes], as in noh_gl_program_create: why a shader does not compile; NULL: nowhere */
+    size_t log_bytes;
+} noh_gl_device;
+
 /* A buffer of `bytes` bytes, filled from `data` (NULL: content undefined).
  * A GL_ELEMENT_ARRAY_BUFFER is a state of the bound vertex array: bind vertex
  * array 0 before creating one.
@@ -74,7 +85,7 @@ noh_result noh_gl_buffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, GL
                                 const void *data, GLenum usage, noh_gl_buffer *out, noh_error *error);
 void noh_gl_buffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_buffer *buffer);
 
-/* A texture without content, on the active texture unit.
+/* A texture without content. Leaves texture unit 0 active.
  * errors  NOH_ERR_ARG an impossible desc; NOH_ERR_MEMORY, NOH_ERR_GL as above.
  *         The caller compares with noh_gl_caps limits first: a driver's answer to
  *         a texture that is too large is only an NOH_ERR_GL */

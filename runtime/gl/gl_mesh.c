@@ -120,9 +120,13 @@ noh_result noh_gl_mesh_create(const noh_gl_api *api, noh_gl_ledger *ledger, cons
     const void *indices = index_count(mesh) ? mesh->indices : &no_indices;
     noh_result result;
     m.index_type = mesh->header->index_bytes == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
+    noh_gl_error_take(api);
     api->BindVertexArray(0);
-    result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, position_bytes(mesh), mesh->positions, GL_STATIC_DRAW,
-                                  &m.positions, error);
+    result = noh_gl_error_check(api, "the driver refuses to unbind a vertex array", 0, error);
+    if (!result) {
+        result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, position_bytes(mesh), mesh->positions, GL_STATIC_DRAW,
+                                      &m.positions, error);
+    }
     if (!result) {
         result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, attribute_bytes(mesh), mesh->attributes, GL_STATIC_DRAW,
                                       &m.attributes, error);
@@ -141,6 +145,11 @@ noh_result noh_gl_mesh_create(const noh_gl_api *api, noh_gl_ledger *ledger, cons
     }
     create_vertex_array(api, &m);
     label_mesh(api, &m);
+    result = noh_gl_error_check(api, "the driver refuses a mesh's vertex array", 0, error);
+    if (result) {
+        noh_gl_mesh_delete(api, ledger, &m);
+        return result;
+    }
     *out = m;
     return NOH_OK;
 }
@@ -203,14 +212,14 @@ noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
                                  noh_gl_texture *out, noh_error *error)
 {
     noh_gl_texture_desc desc = picture_desc(texture);
+    noh_gl_texture picture;
     noh_result result;
-    api->ActiveTexture(GL_TEXTURE0);
-    result = noh_gl_texture_create(api, ledger, &desc, out, error);
+    result = noh_gl_texture_create(api, ledger, &desc, &picture, error);
     if (result) {
         return result;
     }
-    api->BindTexture(GL_TEXTURE_2D, out->name);
-    noh_gl_label(api, GL_TEXTURE, out->name, "texture", texture->name);
+    api->BindTexture(GL_TEXTURE_2D, picture.name);
+    noh_gl_label(api, GL_TEXTURE, picture.name, "texture", texture->name);
     api->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
     api->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, (GLsizei)desc.width, (GLsizei)desc.height, GL_RGBA, GL_UNSIGNED_BYTE, texture->pixels);
     if (desc.levels > 1) {
@@ -219,6 +228,12 @@ noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
     api->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap_of(texture->header->wrap_s));
     api->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap_of(texture->header->wrap_t));
     api->BindTexture(GL_TEXTURE_2D, 0);
+    result = noh_gl_error_check(api, "the driver refuses a texture's pixels or mip levels", picture.bytes, error);
+    if (result) {
+        noh_gl_texture_delete(api, ledger, &picture);
+        return result;
+    }
+    *out = picture;
     return NOH_OK;
 }
 

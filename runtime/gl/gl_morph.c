@@ -16,7 +16,6 @@ static noh_result create_layers(noh_gl_morph *m, noh_error *error)
     desc.width = m->plan.atlas_width;
     desc.height = m->plan.atlas_height;
     desc.layers = 3;
-    m->gl->ActiveTexture(GL_TEXTURE0);
     return noh_gl_texture_create(m->gl, m->ledger, &desc, &m->layers, error);
 }
 
@@ -47,6 +46,7 @@ static noh_result make_gl_objects(noh_gl_morph *m, char *log, size_t log_bytes, 
     }
     if (!result) {
         label_objects(m);
+        result = noh_gl_error_check(m->gl, "the driver refuses a call that makes the accumulator", m->plan.gpu_bytes, error);
     }
     return result;
 }
@@ -58,34 +58,20 @@ static void mark_all_dirty(noh_gl_morph *m)
     m->dirty_count = m->plan.instance_count;
 }
 
-noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_api *api, const noh_gl_caps *caps,
-                             noh_gl_ledger *ledger, const noh_gl_morph_desc *desc, noh_gl_morph **morph, char *log,
-                             size_t log_bytes, noh_error *error)
+/* Everything but the GL objects. */
+static noh_gl_morph *build(noh_arena arena, const noh_gl_device *device, const noh_gl_morph_desc *desc, noh_gl_morph_plan plan)
 {
-    noh_gl_morph_plan plan;
-    noh_gl_morph *m;
-    noh_arena arena = noh_arena_over(memory, bytes);
-    noh_result result = noh_gl_morph_plan_make(desc, caps, &plan, error);
-    if (result) {
-        return result;
-    }
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for the accumulator is NULL or not 16-byte aligned", 0, plan.cpu_bytes);
-    }
-    if (bytes < plan.cpu_bytes) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory for the accumulator is too small", bytes, plan.cpu_bytes);
-    }
-    m = (noh_gl_morph *)noh_arena_carve(&arena, sizeof *m, 16);
+    noh_gl_morph *m = (noh_gl_morph *)noh_arena_carve(&arena, sizeof *m, 16);
     memset(m, 0, sizeof *m);
-    m->gl = api;
-    m->ledger = ledger;
+    m->gl = device->api;
+    m->ledger = device->ledger;
     m->plan = plan;
     m->mesh_count = desc->mesh_count;
     m->wide = noh_gl_morph_wide(&plan);
     noh_gl_morph_carve(&arena, desc, &plan, m);
     memset(m->meshes, 0, sizeof *m->meshes * m->mesh_count);
     memset(m->weights, 0, sizeof *m->weights * plan.weight_count);
-    noh_gl_morph_layout(desc, caps->texture_size_max, m->meshes, &plan, NULL);
+    noh_gl_morph_layout(desc, device->caps->texture_size_max, m->meshes, &plan, NULL);
     for (uint32_t i = 0; i < m->mesh_count; i++) {
         for (uint32_t k = 0; k < m->meshes[i].instance_count; k++) {
             m->instance_mesh[m->meshes[i].first_instance + k] = i;
@@ -93,7 +79,27 @@ noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_api *api, 
         }
     }
     mark_all_dirty(m);
-    result = make_gl_objects(m, log, log_bytes, error);
+    return m;
+}
+
+noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_device *device, const noh_gl_morph_desc *desc,
+                             noh_gl_morph **morph, noh_error *error)
+{
+    noh_gl_morph_plan plan;
+    noh_gl_morph *m;
+    noh_arena arena;
+    noh_result result;
+    NOH_ASSERT(device && device->api && device->caps && device->ledger && desc && morph);
+    result = noh_gl_morph_plan_make(desc, device->caps, &plan, error);
+    if (!result && plan.cpu_bytes > SIZE_MAX) {
+        result = noh_fail(error, NOH_ERR_LIMIT, "the accumulator needs more memory than this processor addresses", 0, plan.cpu_bytes);
+    }
+    if (!result) result = noh_arena_open(&arena, memory, bytes, (size_t)plan.cpu_bytes, error);
+    if (result) {
+        return result;
+    }
+    m = build(arena, device, desc, plan);
+    result = make_gl_objects(m, device->log, device->log_bytes, error);
     if (result) {
         noh_gl_morph_delete(m);
         return result;
@@ -165,7 +171,7 @@ noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t
 
 /* ---- setting and accumulating ---- */
 
-noh_result noh_gl_morph_weights(noh_gl_morph *morph, uint32_t instance, const float *weights, noh_error *error)
+noh_result noh_gl_morph_set_weights(noh_gl_morph *morph, uint32_t instance, const float *weights, noh_error *error)
 {
     uint32_t count = morph->meshes[morph->instance_mesh[instance]].mesh.header->target_count;
     float *own = morph->weights + noh_gl_morph_first_weight(morph, instance);
@@ -182,7 +188,7 @@ noh_result noh_gl_morph_weights(noh_gl_morph *morph, uint32_t instance, const fl
     return NOH_OK;
 }
 
-void noh_gl_morph_level(noh_gl_morph *morph, uint32_t instance, uint32_t level)
+void noh_gl_morph_set_level(noh_gl_morph *morph, uint32_t instance, uint32_t level)
 {
     const noh_mesh_header *h = morph->meshes[morph->instance_mesh[instance]].mesh.header;
     const uint32_t before = morph->levels[instance];

@@ -97,7 +97,7 @@ static noh_result create_tables(noh_gl_morph *m, noh_error *error)
             upload_rects(m, mesh);
         }
     }
-    return result;
+    return result ? result : noh_gl_error_check(m->gl, "the driver refuses the delta texels", m->plan.delta_bytes, error);
 }
 
 noh_result noh_gl_morph_init_blend(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)

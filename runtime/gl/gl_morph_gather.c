@@ -108,7 +108,7 @@ static noh_result create_tables(noh_gl_morph *m, noh_error *error)
             upload_lists(m, &m->meshes[i]);
         }
     }
-    return result;
+    return result ? result : noh_gl_error_check(m->gl, "the driver refuses the delta texels", m->plan.delta_bytes, error);
 }
 
 noh_result noh_gl_morph_init_gather(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)

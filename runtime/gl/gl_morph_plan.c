@@ -4,7 +4,7 @@
 #include "gl/gl_morph_internal.h"
 #include "gl/gl_quirks.h"
 
-static const char *const path_names[NOH_MORPH_PATH_COUNT] = { "auto", "layered", "mrt", "per-layer", "gather", "cpu" };
+static const char *const path_names[NOH_MORPH_PATH_COUNT] = { "auto", "layered", "mrt", "per-layer", "gather", "cpu", "blend" };
 
 const char *noh_morph_path_name(noh_morph_path path)
 {
@@ -78,6 +78,18 @@ static noh_morph_path cheapest_on_gpu(const noh_gl_morph_plan *plan, float activ
     return NOH_MORPH_CPU;
 }
 
+/* The policy `blend`: the three layers are blended into, by one draw where a geometry shader can send a triangle to
+ * each of them, else by a pass for each. Where this format cannot be blended into, per-layer says so. */
+static noh_morph_path blending_path(noh_accumulate accumulate, const noh_gl_caps *caps, const char **reason)
+{
+    if (!missing(NOH_MORPH_LAYERED, accumulate, caps)) {
+        *reason = "layered: one additive draw into all three layers";
+        return NOH_MORPH_LAYERED;
+    }
+    *reason = "per-layer: three additive passes, layered drawing is not supported here";
+    return NOH_MORPH_PER_LAYER;
+}
+
 static noh_result choose_path(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan, noh_error *error)
 {
     const char *lacking;
@@ -96,6 +108,8 @@ static noh_result choose_path(const noh_gl_morph_desc *desc, const noh_gl_caps *
         } else {
             plan->path = cheapest_on_gpu(plan, active, plan->accumulate, caps, &plan->reason);
         }
+    } else if (desc->path == NOH_MORPH_BLEND) {
+        plan->path = blending_path(plan->accumulate, caps, &plan->reason);
     }
     lacking = missing(plan->path, plan->accumulate, caps);
     if (lacking) {

@@ -8,10 +8,9 @@
 #ifndef NOH_GL_GL_PROGRAM_H
 #define NOH_GL_GL_PROGRAM_H
 
+#include "base/limits.h"
 #include "gl/gl_api.h"
 #include "gl/gl_memory.h"
-
-#define NOH_GL_PIECES_MAX 56u /* keep in step with PIECES_MAX in tools/embed */
 
 /* One shader stage's text. tools/embed makes these. */
 typedef struct noh_gl_source {

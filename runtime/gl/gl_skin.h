@@ -2,8 +2,8 @@
  *
  *   noh_gl_skin_plan_make  where palettes go, why, and every byte they will take: before any load
  *   noh_gl_skin_init       place it in your memory and make its GL object
- *   noh_gl_skin_set        give one instance its joint matrices
- *   noh_gl_skin_place      give one instance its place in the world and its morph tile, for crowds
+ *   noh_gl_skin_set_matrices        give one instance its joint matrices
+ *   noh_gl_skin_set_place      give one instance its place in the world and its morph tile, for crowds
  *   noh_gl_skin_update     one upload of what changed
  *   noh_gl_skin_binding_of where a vertex shader finds an instance's palettes
  *
@@ -66,11 +66,12 @@ typedef struct noh_gl_skin_binding {
 noh_result noh_gl_skin_plan_make(const noh_gl_skin_desc *desc, const noh_gl_caps *caps, noh_gl_skin_plan *plan,
                                  noh_error *error);
 
-/* Build in memory[bytes], 16-byte aligned, plan.cpu_bytes long; make the GL object, counted in the
- * ledger, which like the api must stay. All joints start as the identity: the bind pose.
- * errors  as plan; MEMORY with the bytes needed, nothing is then touched; GL */
-noh_result noh_gl_skin_init(void *memory, size_t bytes, const noh_gl_api *api, const noh_gl_caps *caps,
-                            noh_gl_ledger *ledger, const noh_gl_skin_desc *desc, noh_gl_skin **skin, noh_error *error);
+/* Build in memory[bytes], which is aligned to NOH_MEMORY_ALIGN and at least plan.cpu_bytes long, and make the GL object,
+ * counted in the device's ledger. All joints start as the identity: the bind pose.
+ * errors  as noh_gl_skin_plan_make; ARG memory is NULL or misaligned, MEMORY it is too small (`need`: plan.cpu_bytes),
+ *         nothing is then touched; GL, MEMORY the driver refused the object. On error no GL object is left */
+noh_result noh_gl_skin_init(void *memory, size_t bytes, const noh_gl_device *device, const noh_gl_skin_desc *desc,
+                            noh_gl_skin **skin, noh_error *error);
 
 /* Delete the GL object. The memory is yours again. */
 void noh_gl_skin_delete(noh_gl_skin *skin);
@@ -85,14 +86,14 @@ uint32_t noh_gl_skin_instance(const noh_gl_skin *skin, uint32_t mesh, uint32_t i
 
 /* Set the joints of one instance; cheap where they did not move. Nothing happens to a rigid one.
  * shapes  matrices[joint_count of the mesh's skin][12]: model space of the joint * inverse bind */
-void noh_gl_skin_set(noh_gl_skin *skin, uint32_t instance, const float *matrices);
+void noh_gl_skin_set_matrices(noh_gl_skin *skin, uint32_t instance, const float *matrices);
 
 /* Set where one instance stands, for noh_gl_draw_crowd.
  * shapes   world[12] rows of 3 x 4
  * morph    where its deltas are; NULL: none
  * errors   UNSUPPORTED palettes are in a uniform buffer, which draws no crowds; ARG `world` mirrors,
  *          and the triangles of one draw cannot face two ways: draw that instance alone */
-noh_result noh_gl_skin_place(noh_gl_skin *skin, uint32_t instance, const float world[12],
+noh_result noh_gl_skin_set_place(noh_gl_skin *skin, uint32_t instance, const float world[12],
                              const noh_gl_morph_binding *morph, noh_error *error);
 
 /* Send the span of what changed since the last update, in one call. Nothing is touched when nothing

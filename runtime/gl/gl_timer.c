@@ -7,10 +7,15 @@ void noh_gl_timer_init(noh_gl_timer *timer, const noh_gl_api *api, const noh_gl_
     memset(timer, 0, sizeof *timer);
     timer->available = caps->timer_query;
     if (!timer->available) return;
+    noh_gl_error_take(api);
     api->TimeGenQueries(NOH_GL_TIMER_FLIGHT, timer->queries);
     /* Reading the flag clears it: what happened before is not ours. */
     GLint disjoint = 0;
     if (api->is_es) api->GetIntegerv(GL_GPU_DISJOINT_EXT, &disjoint);
+    if (noh_gl_error_take(api) != GL_NO_ERROR) {
+        api->TimeDeleteQueries(NOH_GL_TIMER_FLIGHT, timer->queries);
+        memset(timer, 0, sizeof *timer);
+    }
 }
 
 void noh_gl_timer_delete(noh_gl_timer *timer, const noh_gl_api *api)

@@ -23,7 +23,8 @@ typedef struct noh_gl_timer {
     int open;         /* between begin and end */
 } noh_gl_timer;
 
-/* Never fails: `available` says whether the timer will ever tell a time. */
+/* Never fails: `available` says whether the timer will ever tell a time. It is 0 without timer queries, and where the
+ * driver refuses to make them. */
 void noh_gl_timer_init(noh_gl_timer *timer, const noh_gl_api *api, const noh_gl_caps *caps);
 void noh_gl_timer_delete(noh_gl_timer *timer, const noh_gl_api *api);
 

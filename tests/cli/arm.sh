@@ -1,5 +1,5 @@
 #!/bin/sh
-# make_mask --arm: every kind of skinning on the same arm (rows E1-E7) and two streams (D1-D9): what the pack says of it,
+# make_mask --arm: every kind of skinning on the same arm (Direct3D 9, "Geometry Blending") and two streams: what the pack says of it,
 # and where the vertices are when it bends and twists.
 . "$(dirname "$0")/lib.sh"
 

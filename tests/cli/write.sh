@@ -121,7 +121,7 @@ fi
 # ---- the Makefile ----
 
 env -u MAKEFLAGS make -s BUILD="$work/a b" DEPS=0 help >"$work/out" 2>"$work/err"
-check 'make refuses a BUILD with a blank' sh -c 'test "$2" != 0 && grep -q "BUILD wants a path without blanks" "$1"' - "$work/err" $?
+check 'make refuses a BUILD with a blank' sh -c 'test "$2" != 0 && grep -q "BUILD names one folder, without spaces" "$1"' - "$work/err" $?
 check 'and makes nothing' test ! -e "$work/a" -a ! -e "$work/a b"
 
 # ---- inputs ----

@@ -70,18 +70,35 @@ static void test_weighted_sum(void **state)
     }
 }
 
-/* Row C5.4: w = (rand() % 1000) / 1000 never reaches 1, so the first set alone is never seen. */
-static void errata_C5_4_the_random_weight_never_reaches_one(void **state)
+/* The source's weight, (rand() % 1000) / 1000, never reaches 1, so the first clip alone is never seen. Here weights of
+ * 1 and 0 show one clip alone, the translations to the bit. */
+static void a_weight_of_one_shows_its_clip_alone(void **state)
 {
-    float largest = 0.0f;
+    scene s;
+    sums b;
+    noh_transform a[JOINTS], c[JOINTS], got[JOINTS];
+    float fa[FLOATS], fc[FLOATS], out[FLOATS];
     (void)state;
-    for (int r = 0; r < 32768; r++) largest = fmaxf(largest, (float)(r % 1000) / 1000.0f);
-    assert_true(largest < 1.0f);
-    assert_true((float)1000 / 1000.0f == 1.0f); /* (rand() % 1001) / 1000 does */
+    scene_open(&s);
+    scene_pose(&s, WALK, 9000, a, fa);
+    scene_pose(&s, RUN, 5000, c, fc);
+    assert_true(pose_apart(a, c, JOINTS) > 0.1);
+    for (int first = 0; first <= 1; first++) {
+        const float weight = (float)first;
+        sums_open(&b);
+        noh_blend_add(&b.blend, a, fa, weight, everywhere);
+        noh_blend_add(&b.blend, c, fc, 1.0f - weight, everywhere);
+        noh_blend_finish(&b.blend, s.bind, s.defaults, got, out);
+        assert_true(pose_apart(got, first ? a : c, JOINTS) < 1e-6);
+        for (uint32_t j = 0; j < JOINTS; j++) {
+            assert_memory_equal(got[j].translation, (first ? a : c)[j].translation, sizeof got[j].translation);
+        }
+        assert_memory_equal(out, first ? fa : fc, sizeof out);
+    }
 }
 
-/* Row C5.4: quaternions summed as they come cancel out; aligned, they do not. */
-static void errata_C5_4_hemispheres_are_aligned(void **state)
+/* Quaternions summed as they come cancel out; aligned, they do not. */
+static void hemispheres_are_aligned(void **state)
 {
     scene s;
     sums b;
@@ -101,8 +118,8 @@ static void errata_C5_4_hemispheres_are_aligned(void **state)
     assert_true(pose_apart(got, a, JOINTS) < 1e-6);
 }
 
-/* Row C5.4: weights that do not sum to 1 must be divided by their sum; a sum of 0 gives the bind pose. */
-static void errata_C5_4_weights_are_divided_by_their_sum(void **state)
+/* Weights that do not sum to 1 must be divided by their sum; a sum of 0 gives the bind pose. */
+static void weights_are_divided_by_their_sum(void **state)
 {
     scene s;
     sums b;
@@ -124,8 +141,8 @@ static void errata_C5_4_weights_are_divided_by_their_sum(void **state)
     assert_true(out[3] == 0.0f);
 }
 
-/* Row C5.4: a masked joint uses its own sum. Dividing by the sum of the tracks pulls it to zero. */
-static void errata_C5_4_masked_joints_use_their_own_sum(void **state)
+/* A masked joint uses its own sum. Dividing by the sum of the tracks pulls it to zero. */
+static void masked_joints_use_their_own_sum(void **state)
 {
     scene s;
     sums b;
@@ -148,6 +165,67 @@ static void errata_C5_4_masked_joints_use_their_own_sum(void **state)
     assert_true(fabsf(out[0] - fa[0]) < 1e-6f && fabsf(out[4] - 0.5f * (fa[4] + fc[4])) < 1e-6f);
 }
 
+/* A sum over what lies below: by its amount where there is something below, by its masked share of the group, and whole
+ * where nothing lies below. */
+static void a_sum_covers_what_lies_below(void **state)
+{
+    scene s;
+    sums b;
+    noh_transform low[JOINTS], high[JOINTS], got[JOINTS], want[JOINTS];
+    float fl[FLOATS], fh[FLOATS], floats[FLOATS], below[JOINTS], float_below[FLOATS];
+    (void)state;
+    scene_open(&s);
+    scene_pose(&s, WALK, 9000, low, fl);
+    scene_pose(&s, RUN, 5000, high, fh);
+    for (uint32_t j = 0; j < JOINTS; j++) below[j] = j % 2u ? 1.0f : 0.0f;
+    for (uint32_t i = 0; i < FLOATS; i++) float_below[i] = i % 2u ? 1.0f : 0.0f;
+    for (uint32_t mask = 0; mask <= 2; mask += 2) {
+        const noh_mask_view view = mask ? noh_mask_of(&s.set, mask) : everywhere;
+        memcpy(got, low, sizeof got);
+        memcpy(floats, fl, sizeof floats);
+        sums_open(&b);
+        noh_blend_add(&b.blend, high, fh, 4.0f, view);
+        noh_blend_cover(&b.blend, 0.25f, below, float_below, got, floats);
+        for (uint32_t j = 0; j < JOINTS; j++) {
+            const float part = mask ? (float)s.masks[1][j] / 255.0f : 1.0f;
+            noh_pose_mix(1, &low[j], &high[j], part > 0.0f ? (j % 2u ? 0.25f * part : 1.0f) : 0.0f, NULL, &want[j]);
+        }
+        assert_true(pose_apart(got, want, JOINTS) < 1e-6);
+        for (uint32_t i = 0; i < FLOATS; i++) {
+            const float part = mask ? 128.0f / 255.0f : 1.0f, t = i % 2u ? 0.25f * part : 1.0f;
+            assert_true(fabsf(floats[i] - (fl[i] + (fh[i] - fl[i]) * t)) < 1e-6f);
+        }
+    }
+}
+
+/* Palette = model * inverse bind: the bind pose's points come first into the joint's space. Turned joints tell the order. */
+static void palettes_take_the_bind_pose_away_first(void **state)
+{
+    scene s;
+    noh_transform pose[JOINTS];
+    float floats[FLOATS], model[JOINTS * 12], inverse[JOINTS * 12], palette[JOINTS * 12];
+    (void)state;
+    scene_open(&s);
+    scene_pose(&s, WALK, 12345, pose, floats);
+    noh_local_to_model(&s.skeleton, pose, JOINTS, model);
+    for (uint32_t i = 0; i < JOINTS; i++) {
+        noh_transform t = pose[(i + 5u) % JOINTS];
+        noh_transform_matrix(&t, inverse + 12u * i);
+    }
+    s.skeleton.inverse_bind = inverse;
+    noh_model_to_palette(&s.skeleton, model, JOINTS, palette);
+    for (uint32_t i = 0; i < JOINTS; i++) {
+        const float *m = model + 12u * i, *n = inverse + 12u * i, p[3] = { 0.3f, -0.2f, 0.1f };
+        float local[3];
+        for (int r = 0; r < 3; r++) local[r] = n[4 * r] * p[0] + n[4 * r + 1] * p[1] + n[4 * r + 2] * p[2] + n[4 * r + 3];
+        for (int r = 0; r < 3; r++) {
+            const float *q = palette + 12u * i + 4 * r;
+            const float want = m[4 * r] * local[0] + m[4 * r + 1] * local[1] + m[4 * r + 2] * local[2] + m[4 * r + 3];
+            assert_true(fabsf(q[0] * p[0] + q[1] * p[1] + q[2] * p[2] + q[3] - want) < 1e-5f);
+        }
+    }
+}
+
 static void test_mix_at_the_ends_and_in_place(void **state)
 {
     scene s;
@@ -166,6 +244,56 @@ static void test_mix_at_the_ends_and_in_place(void **state)
     assert_memory_equal(got, a, sizeof got);
     noh_floats_mix(FLOATS, fa, fb, 1.0f, NULL, fa);
     assert_memory_equal(fa, fb, sizeof fa);
+}
+
+/* Between rotations far apart the sum of two unit quaternions is short: a mix must be a rotation all the same, half way. */
+static void test_a_mix_is_unit(void **state)
+{
+    static const float a[4] = { 0, 0, 0, 1 };
+    (void)state;
+    for (int i = 1; i < 18; i++) {
+        const double angle = i * TWO_PI / 36.0;
+        const float b[4] = { 0, (float)sin(0.5 * angle), 0, (float)cos(0.5 * angle) };
+        for (int k = 0; k <= 8; k++) {
+            float q[4], length;
+            noh_quat_nlerp(a, b, (float)k / 8.0f, q);
+            length = sqrtf(noh_quat_dot(q, q));
+            assert_true(fabsf(length - 1.0f) < 1e-6f);
+            if (k == 4) assert_true(fabs(q[1] - sin(0.25 * angle)) < 1e-6 && fabs(q[3] - cos(0.25 * angle)) < 1e-6);
+        }
+    }
+}
+
+/* What is laid over a pose covers by the mean mask of what takes part: not by what animates no joints there, and
+ * wholly where the pose below has no weight. */
+static void test_cover(void **state)
+{
+    scene s;
+    sums b;
+    noh_transform poses[3][JOINTS], low[JOINTS], got[JOINTS], want[JOINTS];
+    float floats[3][FLOATS], low_floats[FLOATS], got_floats[FLOATS], totals[JOINTS], float_totals[FLOATS];
+    noh_mask_view half, tenths;
+    (void)state;
+    scene_open(&s);
+    sums_open(&b);
+    b.blend.totals = totals;
+    b.blend.float_totals = float_totals;
+    half = noh_mask_of(&s.set, 1);
+    tenths = noh_mask_of(&s.set, 2);
+    for (uint32_t m = 0; m < 3; m++) scene_pose(&s, m, 4000, poses[m], floats[m]);
+    noh_blend_add(&b.blend, poses[WALK], NULL, 1.0f, half); /* below: the upper half, no floats */
+    noh_blend_finish(&b.blend, s.bind, s.defaults, low, low_floats);
+    memcpy(got, low, sizeof got);
+    memcpy(got_floats, low_floats, sizeof got_floats);
+    noh_blend_begin_over(&b.blend);
+    noh_blend_add(&b.blend, poses[RUN], NULL, 0.5f, tenths);
+    noh_blend_add(&b.blend, NULL, floats[WAVE], 4.0f, tenths);
+    noh_blend_cover(&b.blend, 0.5f, got, got_floats);
+    noh_pose_mix(JOINTS, low, poses[RUN], 0.5f, tenths.joints, want);
+    assert_true(pose_apart(got + JOINTS / 2u, want + JOINTS / 2u, JOINTS / 2u) < 1e-6);
+    assert_true(pose_apart(got + 1, poses[RUN] + 1, JOINTS / 2u - 1u) < 1e-6); /* nothing below; joint 0 is masked out */
+    assert_true(pose_apart(got, low, 1) < 1e-6);
+    assert_true(floats_apart(got_floats, floats[WAVE], FLOATS) < 1e-6);
 }
 
 /* A difference added at full weight to its reference is the pose again. */
@@ -342,13 +470,46 @@ static void test_space_outside_and_degenerate(void **state)
     assert_int_equal(noh_space_2d_triangulate(NOH_SPACE_POINTS_MAX + 1u, square, tri, &space.triangle_count, &error), NOH_ERR_ARG);
 }
 
+/* The largest coordinates that are taken have exact results; what lies past them is refused, and held where it is asked for. */
+static void test_space_of_huge_coordinates(void **state)
+{
+    static const float far_away[] = { 3e38f, -3e38f, 1.1e18f, INFINITY, -INFINITY, NAN };
+    const float most = NOH_SPACE_COORDINATE_MAX, ends[2] = { -NOH_SPACE_COORDINATE_MAX, NOH_SPACE_COORDINATE_MAX };
+    const float square[8] = { -most, -most, most, -most, -most, most, most, most };
+    uint8_t tri[NOH_SPACE_TRIANGLES_MAX * 3u];
+    float w[4];
+    noh_space_2d space = { 4, 0, square, tri };
+    noh_error error;
+    (void)state;
+    for (uint32_t i = 0; i < 4; i++) {
+        for (uint32_t k = 0; k < sizeof far_away / sizeof *far_away; k++) {
+            float p[8] = { 0, 0, 1, 0, 0, 1, 1, 1 };
+            p[2u * i + k % 2u] = far_away[k];
+            assert_int_equal(noh_space_2d_triangulate(4, p, tri, &space.triangle_count, &error), NOH_ERR_DATA);
+            assert_int_equal(error.where, i);
+        }
+    }
+    assert_int_equal(noh_space_2d_triangulate(4, square, tri, &space.triangle_count, NULL), NOH_OK);
+    assert_int_equal(space.triangle_count, 2);
+    noh_space_2d_weights(&space, 0.0f, 0.0f, w);
+    assert_true(fabsf(w[0] + w[1] + w[2] + w[3] - 1.0f) < 1e-6f && fabsf(w[0] + w[1] - 0.5f) < 1e-6f);
+    noh_space_2d_weights(&space, 3e38f, 3e38f, w);
+    assert_true(w[3] == 1.0f);
+    noh_space_2d_weights(&space, INFINITY, -INFINITY, w);
+    assert_true(w[1] == 1.0f);
+    noh_space_1d_weights(2, ends, 5e17f, w);
+    assert_true(fabsf(w[1] - 0.75f) < 1e-6f);
+    noh_space_1d_weights(2, ends, 3e38f, w);
+    assert_true(w[1] == 1.0f);
+}
+
 /* ---- skeleton, local to model ---- */
 
 static void bad_skeleton(const noh_skeleton *s, noh_result result, const char *what)
 {
     noh_error error;
     assert_int_equal(noh_skeleton_check(s, &error), result);
-    assert_string_equal(error.what, what);
+    assert_non_null(strstr(error.what, what));
 }
 
 static void test_skeleton_fields_broken_in_turn(void **state)
@@ -362,7 +523,7 @@ static void test_skeleton_fields_broken_in_turn(void **state)
     s.skeleton.inverse_bind = inverse;
     assert_int_equal(noh_skeleton_check(&s.skeleton, NULL), NOH_OK);
     k = s.skeleton, k.joint_count = 0; bad_skeleton(&k, NOH_ERR_ARG, "joint_count");
-    k = s.skeleton, k.joint_count = NOH_SKELETON_JOINTS_MAX + 1u; bad_skeleton(&k, NOH_ERR_ARG, "joint_count");
+    k = s.skeleton, k.joint_count = NOH_JOINTS_MAX + 1u; bad_skeleton(&k, NOH_ERR_ARG, "joint_count");
     k = s.skeleton, k.parents = NULL; bad_skeleton(&k, NOH_ERR_ARG, "parents");
     k = s.skeleton, k.bind_pose = NULL; bad_skeleton(&k, NOH_ERR_ARG, "bind_pose");
     s.parents[3] = 3; bad_skeleton(&s.skeleton, NOH_ERR_DATA, "parent does not come first");
@@ -383,9 +544,9 @@ static void climb(const scene *s, const noh_transform *pose, uint32_t joint, dou
     }
 }
 
-/* Row C3.1: one linear loop, parents first: model = parent * local with column vectors. The source's row
+/* One linear loop, parents first: model = parent * local with column vectors. The source's row
  * order taken over as it stands (local * parent) puts the joints elsewhere. */
-static void errata_C3_1_parent_times_local(void **state)
+static void model_is_parent_times_local(void **state)
 {
     scene s;
     noh_transform pose[JOINTS];
@@ -433,20 +594,25 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_weighted_sum),
-        cmocka_unit_test(errata_C5_4_the_random_weight_never_reaches_one),
-        cmocka_unit_test(errata_C5_4_hemispheres_are_aligned),
-        cmocka_unit_test(errata_C5_4_weights_are_divided_by_their_sum),
-        cmocka_unit_test(errata_C5_4_masked_joints_use_their_own_sum),
+        cmocka_unit_test(a_weight_of_one_shows_its_clip_alone),
+        cmocka_unit_test(hemispheres_are_aligned),
+        cmocka_unit_test(weights_are_divided_by_their_sum),
+        cmocka_unit_test(masked_joints_use_their_own_sum),
         cmocka_unit_test(test_mix_at_the_ends_and_in_place),
+        cmocka_unit_test(test_a_mix_is_unit),
+        cmocka_unit_test(test_cover),
         cmocka_unit_test(test_difference_and_back),
         cmocka_unit_test(test_masks),
         cmocka_unit_test(test_space_1d),
         cmocka_unit_test(test_triangulation),
         cmocka_unit_test(test_delaunay),
         cmocka_unit_test(test_space_outside_and_degenerate),
+        cmocka_unit_test(test_space_of_huge_coordinates),
         cmocka_unit_test(test_skeleton_fields_broken_in_turn),
-        cmocka_unit_test(errata_C3_1_parent_times_local),
+        cmocka_unit_test(model_is_parent_times_local),
         cmocka_unit_test(test_palette),
+        cmocka_unit_test(a_sum_covers_what_lies_below),
+        cmocka_unit_test(palettes_take_the_bind_pose_away_first),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);

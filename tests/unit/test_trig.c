@@ -68,7 +68,7 @@ static void test_atan2_acos(void **state)
     print_message("atan2 %.3g, relative %.3g; acos %.3g\n", worst, relative, arc);
     assert_true(worst <= 4e-7 && relative <= 3e-7 && arc <= 4e-7);
     assert_true(noh_atan2(0.0f, 0.0f) == 0.0f);
-    assert_true(noh_acos(1.0000001f) == 0.0f && noh_acos(-1.5f) == NOH_PI); /* row C11.2: a dot of unit vectors strays over 1 */
+    assert_true(noh_acos(1.0000001f) == 0.0f && noh_acos(-1.5f) == NOH_PI); /* a dot of unit vectors strays over 1 */
 }
 
 static void test_exp2(void **state)
@@ -131,8 +131,8 @@ static void test_quaternions(void **state)
     }
 }
 
-/* Row C4.1: without the hemisphere fix, halfway between q and -q's neighbour lies nowhere near either. */
-static void errata_C4_1_nlerp_takes_the_shorter_way(void **state)
+/* Without the hemisphere fix, halfway between q and -q's neighbour lies nowhere near either. */
+static void nlerp_takes_the_shorter_way(void **state)
 {
     float a[4] = { 0, 0, 0, 1 }, b[4] = { 0, 0, -0.1f, -0.99498744f }, naive[4], out[4];
     (void)state;
@@ -163,7 +163,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_exp2),
         cmocka_unit_test(test_turns),
         cmocka_unit_test(test_quaternions),
-        cmocka_unit_test(errata_C4_1_nlerp_takes_the_shorter_way),
+        cmocka_unit_test(nlerp_takes_the_shorter_way),
         cmocka_unit_test(test_degenerate_quaternions),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);

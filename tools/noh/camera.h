@@ -2,6 +2,7 @@
 #ifndef NOH_TOOL_CAMERA_H
 #define NOH_TOOL_CAMERA_H
 
+#include "noh_gl.h"
 #include "scene.h"
 
 typedef struct bounds {

@@ -47,7 +47,12 @@ static void json_levels(json *j, const level_costs *c)
     json_close(j, ']');
 }
 
-static void print_budget(const pack_file *file, const load_budget *b, const char *device)
+/* What the bytes of "clips" follow from. */
+typedef struct segments {
+    uint32_t held, all, instances;
+} segments;
+
+static void print_budget(const pack_file *file, const load_budget *b, const segments *clips, const char *device)
 {
     printf("%-32s %12s %12s\n", file->path, "CPU bytes", "GPU bytes");
     for (uint32_t i = 0; i < b->part_count; i++) {
@@ -57,6 +62,10 @@ static void print_budget(const pack_file *file, const load_budget *b, const char
     printf("  %-30s %12llu %12llu\n", "sum", (unsigned long long)b->cpu_bytes, (unsigned long long)b->gpu_bytes);
     printf("  %-30s %12llu %12s  read where it lies\n", "the pack itself", (unsigned long long)b->pack_bytes, "");
     printf("  %-30s %12u %12s  at most, for any call\n", "stack", NOH_STACK_BYTES, "");
+    if (clips->all) {
+        printf("clips: %u of %u decoded segments are held at once, enough for %u instance%s that cross-fade%s\n", clips->held, clips->all,
+               clips->instances, clips->instances == 1u ? "" : "s", clips->instances == 1u ? "s" : "");
+    }
     if (!b->plan.atlas_width) {
         printf("%s\n", b->plan.reason);
         return;
@@ -65,7 +74,7 @@ static void print_budget(const pack_file *file, const load_budget *b, const char
            device, b->plan.reason, b->plan.atlas_width, b->plan.atlas_height);
 }
 
-static int json_budget(const load_budget *b, const level_costs *levels, const char *device)
+static int json_budget(const load_budget *b, const level_costs *levels, const segments *clips, const char *device)
 {
     json j = json_begin();
     json_integer(&j, "cpu_bytes", b->cpu_bytes);
@@ -76,6 +85,9 @@ static int json_budget(const load_budget *b, const level_costs *levels, const ch
     json_text(&j, "accumulate", noh_accumulate_name(b->plan.accumulate));
     json_text(&j, "reason", b->plan.reason);
     json_text(&j, "device", device);
+    json_integer(&j, "instances", clips->instances);
+    json_integer(&j, "clip_segments_held", clips->held);
+    json_integer(&j, "clip_segments", clips->all);
     json_open(&j, "parts", '[');
     for (uint32_t i = 0; i < b->part_count; i++) {
         json_open(&j, NULL, '{');
@@ -110,6 +122,7 @@ static int budget_of(const budget_args *a, const pack_file *file)
 {
     noh_gl_caps caps;
     level_costs levels;
+    segments clips = { 0, 0, a->load.instances ? a->load.instances : 1u };
     load_budget b;
     scene s;
     int status = scene_init(&s, file);
@@ -123,10 +136,11 @@ static int budget_of(const budget_args *a, const pack_file *file)
     if (!status) status = load_budget_make(&b, file, &s, &caps, &a->load);
     if (!status) status = level_costs_find(&levels, file, &s, &caps, &a->load);
     if (!status) {
+        scene_measure_segments(&s, file, clips.instances, &clips.held, &clips.all);
         if (a->as_json) {
-            status = json_budget(&b, &levels, caps.renderer);
+            status = json_budget(&b, &levels, &clips, caps.renderer);
         } else {
-            print_budget(file, &b, caps.renderer);
+            print_budget(file, &b, &clips, caps.renderer);
             print_levels(&levels);
         }
     }

@@ -50,8 +50,8 @@ static int open_clip(opened *o, const pack_file *file, uint32_t index)
     noh_clip_desc desc;
     size_t bytes;
     memset(o, 0, sizeof *o);
-    noh_pack_motion_at(&file->pack, index, &o->motion);
-    (void)noh_pack_skeleton_at(&file->pack, o->motion.header->skeleton, &o->skeleton, NULL);
+    noh_pack_motion_at(&file->pack, index, &o->motion, NULL);
+    (void)noh_pack_skeleton_at(&file->pack, o->motion.header->skeleton, &o->skeleton, NULL, NULL);
     desc.bytes = o->motion.bytes;
     desc.byte_count = o->motion.header->clip_bytes;
     desc.bind = o->skeleton.bind_pose;
@@ -128,7 +128,7 @@ static void fill_skeleton(raw_skeleton *to, const pack_file *file, const opened 
 {
     const noh_skeleton_header *h;
     noh_skeleton s;
-    noh_pack_skeleton_at(&file->pack, o->motion.header->skeleton, &s, &h);
+    noh_pack_skeleton_at(&file->pack, o->motion.header->skeleton, &s, &h, NULL);
     to->unit_cm = (double)h->unit_cm;
     for (uint32_t j = 0; j < s.joint_count; j++) {
         raw_joint *joint = &to->joints[j];
@@ -190,7 +190,7 @@ static int find_motion(const pack_file *file, const char *name, uint32_t *index)
     const char *near;
     for (uint32_t i = 0; names && i < file->pack.motion_count; i++) {
         noh_pack_motion motion;
-        noh_pack_motion_at(&file->pack, i, &motion);
+        noh_pack_motion_at(&file->pack, i, &motion, NULL);
         names[i] = motion.name;
         if (strcmp(motion.name, name) == 0) {
             *index = i;

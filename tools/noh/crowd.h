@@ -46,6 +46,7 @@ typedef struct crowd_options {
 typedef struct crowd_plan {
     crowd_options options;     /* with the defaults filled in */
     noh_mesh mesh;             /* the full level */
+    uint32_t mesh_index;       /* in the pack */
     noh_skin skin;
     uint32_t level_count;
     noh_mesh views[NOH_LEVELS_MAX]; /* the mesh at each level that has a pool */
@@ -111,7 +112,7 @@ typedef struct crowd {
     noh_schedule schedule;
     noh_level_pools *pools;
     float sphere[4];              /* of every body, from where it stands */
-    float *mixed, *gathered;      /* [joint][12], [the skin's joint][12] */
+    float *matrices;              /* [the skin's joint][12] */
     float *floats, *weights;      /* [float], [target] */
     /* each */
     uint8_t *characters;          /* [count][character_bytes] */

@@ -168,24 +168,10 @@ void crowd_look(crowd *c, const crowd_camera *camera)
 /* ---- uploads ---- */
 
 /* Without detail: posed now, all of it. */
-static const float *pose_fully(crowd *c, noh_character *ch)
+static void pose_fully(crowd *c, noh_character *ch)
 {
     noh_controller_pose(noh_character_controller(ch), &c->anim, &c->scratch.pose, c->scratch.local, c->floats);
-    noh_local_to_model(&c->skeleton, c->scratch.local, c->skeleton.joint_count, c->scratch.model);
-    noh_model_to_palette(&c->skeleton, c->scratch.model, c->skeleton.joint_count, c->mixed);
-    return c->mixed;
-}
-
-static void give_palette(crowd *c, uint32_t place, const float *palette)
-{
-    const noh_skin *skin = &c->plan->skin;
-    if (!c->skeleton.inverse_bind) {
-        noh_skin_matrices(skin, palette, c->gathered);
-    }
-    for (uint32_t k = 0; k < skin->header->joint_count && c->skeleton.inverse_bind; k++) {
-        memcpy(c->gathered + 12u * (size_t)k, palette + 12u * (size_t)skin->joints[k], 12u * sizeof(float));
-    }
-    noh_gl_skin_set(c->palettes, place, c->gathered);
+    noh_pose_skin(&c->skeleton, &c->plan->skin, c->scratch.local, c->scratch.model, c->matrices);
 }
 
 /* Leave out weights too small to be seen; those that no clip animates are the mesh's own. */
@@ -195,9 +181,9 @@ static void give_weights(crowd *c, const crowd_body *b, uint32_t instance, noh_d
     if (!c->plan->options.plain) {
         noh_detail_targets(d, &c->settings, weights, c->detail.reach_m, c->plan->mesh.header->target_count, c->weights);
         weights = c->weights;
-        noh_gl_morph_level(c->morph, instance, b->level < b->level_before ? b->level : b->level_before);
+        noh_gl_morph_set_level(c->morph, instance, b->level < b->level_before ? b->level : b->level_before);
     }
-    (void)noh_gl_morph_weights(c->morph, instance, weights, NULL); /* clips hold finite weights */
+    (void)noh_gl_morph_set_weights(c->morph, instance, weights, NULL); /* clips hold finite weights */
 }
 
 static void show_body(crowd *c, uint32_t i)
@@ -206,11 +192,15 @@ static void show_body(crowd *c, uint32_t i)
     const crowd_body *b = &c->bodies[i];
     const int plain = c->plan->options.plain;
     const uint32_t instance = plain ? i : noh_gl_morph_instance(c->morph, b->slot.pool, b->slot.slot);
-    const float *palette = plain ? pose_fully(c, ch) : noh_character_palette(ch, c->mixed, c->skeleton.joint_count);
     noh_gl_morph_binding morph = noh_gl_morph_binding_of(c->morph, instance);
-    give_palette(c, b->place, palette);
+    if (plain) {
+        pose_fully(c, ch);
+    } else {
+        noh_character_skin(ch, &c->plan->skin, c->matrices);
+    }
+    noh_gl_skin_set_matrices(c->palettes, b->place, c->matrices);
     give_weights(c, b, instance, &ch->detail, plain ? c->floats : noh_character_floats(ch, c->floats));
-    (void)noh_gl_skin_place(c->palettes, b->place, b->world, &morph, NULL); /* nobody is mirrored */
+    (void)noh_gl_skin_set_place(c->palettes, b->place, b->world, &morph, NULL); /* nobody is mirrored */
 }
 
 /* Updated bodies first, each uploaded while its pose is in the CPU's cache; then the others. */

@@ -16,11 +16,12 @@ static int find_mesh(crowd_plan *p, const pack_file *file)
     for (uint32_t i = 0; i < file->pack.mesh_count; i++) {
         noh_mesh mesh;
         noh_skin skin;
-        noh_pack_mesh(&file->pack, i, &mesh);
-        if (noh_pack_skin_at(&file->pack, mesh.header->skin, &skin) == NOH_OK &&
+        noh_pack_mesh(&file->pack, i, &mesh, NULL);
+        if (noh_pack_skin_at(&file->pack, mesh.header->skin, &skin, NULL) == NOH_OK &&
             (!found || mesh.header->pair_count > p->mesh.header->pair_count)) {
             found = 1;
             p->mesh = mesh;
+            p->mesh_index = i;
             p->skin = skin;
             p->level_count = mesh.header->level_count;
         }
@@ -155,8 +156,7 @@ void crowd_carve(noh_arena *a, const crowd_plan *p, crowd *c, crowd_parts *parts
     c->keys = carve(a, 2u * (size_t)shape->motion_count, sizeof *c->keys);
     c->rate_error_m = carve(a, shape->motion_count, NOH_RATE_COUNT * sizeof(float));
     c->inverse_bind = carve(a, joints, 12u * sizeof(float));
-    c->mixed = carve(a, joints, 12u * sizeof(float));
-    c->gathered = carve(a, p->skin.header->joint_count, 12u * sizeof(float));
+    c->matrices = carve(a, p->skin.header->joint_count, 12u * sizeof(float));
     c->floats = carve(a, shape->float_count, sizeof(float));
     c->weights = carve(a, targets, sizeof(float));
     c->pictures = carve(a, p->mesh.pack->texture_count, sizeof *c->pictures);
@@ -172,7 +172,7 @@ static void sum_bytes(crowd_plan *p)
     p->gpu_bytes = noh_gl_mesh_bytes(&p->views[0]) + p->morph.gpu_bytes + p->skin_plan.gpu_bytes + NOH_GL_RENDERER_BYTES;
     for (uint32_t i = 0; i < p->mesh.pack->texture_count; i++) {
         noh_texture texture;
-        noh_pack_texture(p->mesh.pack, i, &texture);
+        noh_pack_texture(p->mesh.pack, i, &texture, NULL);
         p->gpu_bytes += noh_gl_picture_bytes(&texture);
     }
 }

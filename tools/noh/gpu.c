@@ -75,7 +75,9 @@ int gpu_morph_open(gpu_morph *m, gpu *g, const noh_gl_morph_desc *desc, const ch
     if (!m->memory) {
         return tool_fail(subject, "out of memory");
     }
-    if (noh_gl_morph_init(m->memory, m->bytes, &g->gl, &g->caps, &g->ledger, desc, &m->morph, log, sizeof log, &error)) {
+    if (noh_gl_morph_init(m->memory, m->bytes,
+                          &(noh_gl_device){ &g->gl, &g->caps, &g->ledger, log, sizeof log }, desc, &m->morph,
+                          &error)) {
         free(m->memory);
         memset(m, 0, sizeof *m);
         if (log[0]) {
@@ -108,7 +110,8 @@ int gpu_skin_open(gpu_skin *s, gpu *g, const noh_gl_skin_desc *desc, const char 
     if (!s->memory) {
         return tool_fail(subject, "out of memory");
     }
-    if (noh_gl_skin_init(s->memory, s->bytes, &g->gl, &g->caps, &g->ledger, desc, &s->skin, &error)) {
+    if (noh_gl_skin_init(s->memory, s->bytes, &(noh_gl_device){ &g->gl, &g->caps, &g->ledger, NULL, 0 }, desc,
+                         &s->skin, &error)) {
         free(s->memory);
         memset(s, 0, sizeof *s);
         return tool_fail_error(subject, &error);

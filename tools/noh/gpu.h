@@ -2,7 +2,7 @@
 #ifndef NOH_TOOL_GPU_H
 #define NOH_TOOL_GPU_H
 
-#include "noh.h"
+#include "noh_gl.h"
 #include "platform.h"
 
 typedef struct gpu {

@@ -3,7 +3,7 @@
 #define NOH_TOOL_GPU_ARGS_H
 
 #include "args.h"
-#include "noh.h"
+#include "noh_gl.h"
 
 /* The values of --path, --accumulate and --instances. Return 0, or EXIT_USAGE after printing. */
 int parse_path(const char *text, noh_morph_path *path);

@@ -27,7 +27,7 @@ static double unit_cm(const noh_pack *pack, const noh_pack_motion *motion)
 {
     noh_skeleton skeleton;
     const noh_skeleton_header *header;
-    return noh_pack_skeleton_at(pack, motion->header->skeleton, &skeleton, &header) == NOH_OK ? (double)header->unit_cm : 100.0;
+    return noh_pack_skeleton_at(pack, motion->header->skeleton, &skeleton, &header, NULL) == NOH_OK ? (double)header->unit_cm : 100.0;
 }
 
 void info_print_errors(const noh_pack *pack, const noh_pack_motion *motion)

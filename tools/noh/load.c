@@ -56,7 +56,7 @@ static size_t matrix_bytes(const pack_file *file, const scene *s)
     size_t most = 0;
     for (uint32_t i = 0; i < s->item_count; i++) {
         noh_skin skin;
-        if (noh_pack_skin_at(&file->pack, s->meshes[s->items[i].mesh].header->skin, &skin) == NOH_OK) {
+        if (noh_pack_skin_at(&file->pack, s->meshes[s->items[i].mesh].header->skin, &skin, NULL) == NOH_OK) {
             size_t bytes = sizeof(float) * 12u * skin.header->joint_count;
             most = bytes > most ? bytes : most;
         }
@@ -100,7 +100,7 @@ static void add_parts(load_budget *b, const pack_file *file, const scene *s)
     }
     for (uint32_t i = 0; i < file->pack.texture_count; i++) {
         noh_texture texture;
-        noh_pack_texture(&file->pack, i, &texture);
+        noh_pack_texture(&file->pack, i, &texture, NULL);
         add_part(b, 0, noh_gl_picture_bytes(&texture), "texture", texture.name);
     }
     add_part(b, b->plan.cpu_bytes, 0, "morph state", "");
@@ -169,7 +169,7 @@ static int create_pictures(load *l)
     noh_error error = { NOH_OK, "", 0, 0 };
     for (uint32_t i = 0; i < l->file->pack.texture_count; i++) {
         noh_texture texture;
-        noh_pack_texture(&l->file->pack, i, &texture);
+        noh_pack_texture(&l->file->pack, i, &texture, NULL);
         if (noh_gl_picture_create(&l->g->gl, &l->g->ledger, &texture, &l->pictures[i], &error)) {
             return tool_fail_error(l->file->path, &error);
         }
@@ -200,7 +200,8 @@ static int create_renderer(load *l, const load_options *o)
     desc.meshes = l->scene->meshes;
     desc.mesh_count = l->file->pack.mesh_count;
     desc.palettes = l->skin.skin ? noh_gl_skin_plan_of(l->skin.skin)->mode : NOH_PALETTE_AUTO;
-    if (noh_gl_renderer_create(&l->g->gl, &l->g->ledger, &desc, &l->renderer, log, sizeof log, &error)) {
+    if (noh_gl_renderer_create(&(noh_gl_device){ &l->g->gl, NULL, &l->g->ledger, log, sizeof log }, &desc,
+                               &l->renderer, &error)) {
         fputs(log, stderr);
         return tool_fail_error("renderer", &error);
     }
@@ -293,7 +294,7 @@ int load_restore(load *l)
     }
     for (uint32_t i = 0; !result && i < l->file->pack.texture_count; i++) {
         noh_texture texture;
-        noh_pack_texture(&l->file->pack, i, &texture);
+        noh_pack_texture(&l->file->pack, i, &texture, NULL);
         result = noh_gl_picture_restore(gl, &l->g->ledger, &texture, &l->pictures[i], &error);
     }
     if (!result) result = noh_gl_morph_restore(l->morph.morph, log, sizeof log, &error);
@@ -312,9 +313,9 @@ static void update_joints(load *l)
 {
     for (uint32_t i = 0; i < l->scene->item_count; i++) {
         noh_skin skin;
-        if (noh_pack_skin_at(&l->file->pack, l->scene->meshes[l->scene->items[i].mesh].header->skin, &skin) == NOH_OK) {
+        if (noh_pack_skin_at(&l->file->pack, l->scene->meshes[l->scene->items[i].mesh].header->skin, &skin, NULL) == NOH_OK) {
             scene_skin_matrices(l->scene, &skin, l->matrices);
-            noh_gl_skin_set(l->skin.skin, l->item_instances[i], l->matrices);
+            noh_gl_skin_set_matrices(l->skin.skin, l->item_instances[i], l->matrices);
         }
     }
     noh_gl_skin_update(l->skin.skin);
@@ -324,7 +325,7 @@ int load_update(load *l, noh_gl_morph_stats *stats)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
     for (uint32_t i = 0; i < l->scene->item_count; i++) {
-        if (noh_gl_morph_weights(l->morph.morph, l->item_instances[i], l->scene->items[i].weights, &error)) {
+        if (noh_gl_morph_set_weights(l->morph.morph, l->item_instances[i], l->scene->items[i].weights, &error)) {
             return tool_fail_error(l->file->path, &error);
         }
     }

@@ -27,7 +27,7 @@
       .what = "weight of a target; may repeat, the last of a name holds", .example = "smile=0.7", __VA_ARGS__ }
 
 #define OPTION_PATH(T, m, ...)                                                                                 \
-    { .name = "--path", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "auto|layered|mrt|per-layer|gather|cpu", \
+    { .name = "--path", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "auto|blend|layered|mrt|per-layer|gather|cpu", \
       .what = "how targets are accumulated (noh help FORMATS)", __VA_ARGS__ }
 
 #define OPTION_ACCUMULATE(T, m, ...)                                                                           \

@@ -35,8 +35,8 @@ int tool_clip_info(const pack_file *file, uint32_t index, noh_pack_motion *motio
     noh_clip_desc desc;
     size_t bytes;
     memset(&skeleton, 0, sizeof skeleton);
-    noh_pack_motion_at(&file->pack, index, motion);
-    (void)noh_pack_skeleton_at(&file->pack, motion->header->skeleton, &skeleton, NULL);
+    noh_pack_motion_at(&file->pack, index, motion, NULL);
+    (void)noh_pack_skeleton_at(&file->pack, motion->header->skeleton, &skeleton, NULL, NULL);
     desc.bytes = motion->bytes;
     desc.byte_count = motion->header->clip_bytes;
     desc.bind = skeleton.bind_pose;

@@ -27,7 +27,7 @@ static int add_item(scene *s, const pack_file *file, uint32_t node, uint32_t mes
 
 static int init_player(scene_player *p, const noh_pack *pack, uint32_t skeleton)
 {
-    if (noh_pack_skeleton_at(pack, skeleton, &p->skeleton, NULL)) {
+    if (noh_pack_skeleton_at(pack, skeleton, &p->skeleton, NULL, NULL)) {
         return 0;
     }
     p->joint_matrices = calloc(p->skeleton.joint_count, 12 * sizeof(float));
@@ -64,7 +64,7 @@ int scene_init(scene *s, const pack_file *file)
     s->anim = file;
     failed = !s->meshes || !s->items || init_players(s, pack);
     for (uint32_t i = 0; !failed && i < pack->mesh_count; i++) {
-        noh_pack_mesh(pack, i, &s->meshes[i]);
+        noh_pack_mesh(pack, i, &s->meshes[i], NULL);
     }
     for (uint32_t n = 0; !failed && n < pack->node_count; n++) {
         if (pack->nodes[n].mesh != NOH_NONE) {

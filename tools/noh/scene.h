@@ -60,6 +60,8 @@ int scene_open_players(scene *s, const pack_file *file, uint32_t controllers);
 /* The bytes that scene_open_players will take, added to *clips, *controller_bytes and *poses. */
 int scene_measure_players(const scene *s, const pack_file *file, uint32_t controllers, uint64_t *clips, uint64_t *controller_bytes,
                           uint64_t *poses);
+/* How many decoded segments the clips then hold at once, of how many in all. */
+void scene_measure_segments(const scene *s, const pack_file *file, uint32_t controllers, uint32_t *held, uint32_t *all);
 /* Weights and joint matrices of clips at a time, together; unknown names are an error that suggests the nearest. */
 int scene_set_clips(scene *s, const pack_file *file, const option_list *names, double time_s);
 /* Reset a player's first controller; pose it into the player's matrices and the scene's weights. */

@@ -10,6 +10,7 @@
 #ifndef NOH_TOOL_SCENE_DETAIL_H
 #define NOH_TOOL_SCENE_DETAIL_H
 
+#include "noh_gl.h"
 #include "scene.h"
 
 /* One item: the levels that it has, and the one chosen. */

@@ -20,13 +20,14 @@ int scene_open_anim(scene *s, const pack_file *file, const char *path)
     return s->anim->pack.motion_count ? 0 : tool_fail(path, "the pack has no clips for %s", file->path);
 }
 
-static noh_motion_set_desc set_desc(const scene *s, const pack_file *file, uint32_t player)
+static noh_motion_set_desc set_desc(const scene *s, const pack_file *file, uint32_t player, uint32_t controllers)
 {
     noh_motion_set_desc desc;
     memset(&desc, 0, sizeof desc);
     desc.clips = &s->anim->pack;
     desc.mesh = &file->pack;
     desc.skeleton = player;
+    desc.instance_count = controllers;
     return desc;
 }
 
@@ -60,7 +61,7 @@ int scene_measure_players(const scene *s, const pack_file *file, uint32_t contro
     noh_error error = { NOH_OK, "", 0, 0 };
     uint32_t fitting = 0;
     for (uint32_t i = 0; i < s->player_count && s->anim->pack.motion_count; i++) {
-        noh_motion_set_desc desc = set_desc(s, file, i);
+        noh_motion_set_desc desc = set_desc(s, file, i, controllers);
         noh_motion_set_needs needs;
         noh_controller_desc controller;
         if (noh_motion_set_measure(&desc, &needs, &error) == NOH_OK) {
@@ -74,6 +75,19 @@ int scene_measure_players(const scene *s, const pack_file *file, uint32_t contro
         }
     }
     return failed_for_good(s, file, fitting, &error);
+}
+
+void scene_measure_segments(const scene *s, const pack_file *file, uint32_t controllers, uint32_t *held, uint32_t *all)
+{
+    *held = *all = 0;
+    for (uint32_t i = 0; i < s->player_count && s->anim->pack.motion_count; i++) {
+        const noh_motion_set_desc desc = set_desc(s, file, i, controllers);
+        noh_motion_set_needs needs;
+        if (noh_motion_set_measure(&desc, &needs, NULL) == NOH_OK) {
+            *held += needs.slot_count;
+            *all += needs.segment_count;
+        }
+    }
 }
 
 static int open_controllers(scene_player *p, uint32_t count)
@@ -107,7 +121,7 @@ static int open_poses(scene_player *p)
 /* Also 0 where no clip fits: the player then has no set, and *error says why. */
 static int open_player(scene *s, const pack_file *file, uint32_t index, uint32_t controllers, noh_error *error)
 {
-    const noh_motion_set_desc desc = set_desc(s, file, index);
+    const noh_motion_set_desc desc = set_desc(s, file, index, controllers);
     scene_player *p = &s->players[index];
     const size_t bytes = noh_motion_set_size(&desc, error);
     if (!bytes) {
@@ -176,7 +190,7 @@ static int fail_clip(const scene *s, const pack_file *file, const char *name)
     int status = 0;
     for (uint32_t i = 0; names && i < count && !status; i++) {
         noh_pack_motion motion;
-        noh_pack_motion_at(&s->anim->pack, i, &motion);
+        noh_pack_motion_at(&s->anim->pack, i, &motion, NULL);
         names[i] = motion.name;
         if (strcmp(motion.name, name) == 0) {
             status = tool_fail(s->anim->path, "clip '%s' moves another skeleton than %s has: names or parents of joints differ", name, file->path);
@@ -211,12 +225,10 @@ static int is_moved(const scene_player *p, uint32_t group)
 /* Animated weights, to every item of their nodes. */
 static void take_weights(scene *s, const scene_player *p)
 {
-    for (uint32_t g = 0; g < p->set->group_count; g++) {
-        const noh_clip_group *group = &p->set->groups[g];
-        for (uint32_t i = 0; is_moved(p, g) && i < s->item_count; i++) {
-            if (s->items[i].node == group->node && group->node != NOH_NONE) {
-                memcpy(s->items[i].weights, p->floats + group->first, group->width * sizeof(float));
-            }
+    for (uint32_t i = 0; i < s->item_count; i++) {
+        const uint32_t group = noh_motion_set_node_group(p->set, s->items[i].node);
+        if (group != NOH_NONE && is_moved(p, group)) {
+            memcpy(s->items[i].weights, p->floats + p->set->groups[group].first, p->set->groups[group].width * sizeof(float));
         }
     }
 }

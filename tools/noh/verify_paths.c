@@ -135,7 +135,7 @@ static int verify_mesh(verify_job *job, gpu_morph *m, readback *r, uint32_t mesh
         noh_morph_layers_init(b.exact, bytes + 16, mesh, &exact, NULL);
         row->exact &= reference(job, plan, mesh, b.weights, &expected);
         noh_morph_accumulate_scalar(mesh, b.weights, &exact);
-        noh_gl_morph_weights(m->morph, instance, b.weights, NULL);
+        noh_gl_morph_set_weights(m->morph, instance, b.weights, NULL);
         noh_gl_morph_update(m->morph, NULL);
         status = readback_layers(r, mesh, &binding, b.got);
         if (!status) {
@@ -169,8 +169,8 @@ static uint64_t least_block(verify_job *job, const noh_gl_morph_desc *desc, uint
     int ok = memory != NULL;
     if (ok) {
         memset(memory, 0xa5, (size_t)predicted + 64);
-        ok = noh_gl_morph_init(memory, (size_t)predicted - 1, &job->g.gl, &job->g.caps, &job->g.ledger, desc, &morph, NULL, 0,
-                               &error) == NOH_ERR_MEMORY && error.need == predicted;
+        ok = noh_gl_morph_init(memory, (size_t)predicted - 1, &(noh_gl_device){ &job->g.gl, &job->g.caps, &job->g.ledger, NULL, 0 }, desc,
+                               &morph, &error) == NOH_ERR_MEMORY && error.need == predicted;
         for (size_t i = 0; i < (size_t)predicted + 64; i++) {
             ok &= memory[i] == 0xa5;
         }

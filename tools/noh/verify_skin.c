@@ -116,9 +116,9 @@ static int check_pose(mesh_job *m)
     noh_morph_layers_init(m->layers, noh_morph_layers_size(m->mesh) + 16u, m->mesh, &layers, NULL);
     noh_morph_accumulate_scalar(m->mesh, m->weights, &layers);
     reference(m, &layers);
-    noh_gl_morph_weights(j->morph.morph, instance, m->weights, NULL);
+    noh_gl_morph_set_weights(j->morph.morph, instance, m->weights, NULL);
     noh_gl_morph_update(j->morph.morph, NULL);
-    noh_gl_skin_set(j->skin, instance, m->matrices);
+    noh_gl_skin_set_matrices(j->skin, instance, m->matrices);
     noh_gl_skin_update(j->skin);
     status = readback_skinned(&j->back, m->gl_mesh, &morph, &skin, 0, m->got);
     if (!status) {
@@ -193,7 +193,7 @@ static int check_clips(mesh_job *m)
         noh_pack_motion motion;
         noh_skeleton skeleton;
         uint32_t index;
-        noh_pack_motion_at(pack, i, &motion);
+        noh_pack_motion_at(pack, i, &motion, NULL);
         if (!noh_pack_bind_motion(pack, &motion, &skeleton, &index, NULL) && index == m->skin.header->skeleton) {
             status = check_clip(m, &motion);
             checked++;
@@ -225,8 +225,8 @@ static int check_mesh(job *j, uint32_t index, const noh_gl_mesh *gl_mesh)
     m.mesh = &j->s->meshes[index];
     m.gl_mesh = gl_mesh;
     m.index = index;
-    noh_pack_skin_at(&j->file->pack, m.mesh->header->skin, &m.skin);
-    noh_pack_skeleton_at(&j->file->pack, m.skin.header->skeleton, &m.skeleton, NULL);
+    noh_pack_skin_at(&j->file->pack, m.mesh->header->skin, &m.skin, NULL);
+    noh_pack_skeleton_at(&j->file->pack, m.skin.header->skeleton, &m.skeleton, NULL, NULL);
     vertices = m.mesh->header->vertex_count;
     joints = m.skin.header->joint_count;
     m.pose = calloc(m.skeleton.joint_count, sizeof *m.pose);
@@ -307,7 +307,8 @@ int verify_skin_run(gpu *g, const pack_file *file, const scene *s, const noh_gl_
     if (!memory) {
         return tool_fail(file->path, "out of memory");
     }
-    if (noh_gl_skin_init(memory, (size_t)plan.cpu_bytes, &g->gl, &g->caps, &g->ledger, &desc, &j.skin, &error)) {
+    if (noh_gl_skin_init(memory, (size_t)plan.cpu_bytes,
+                         &(noh_gl_device){ &g->gl, &g->caps, &g->ledger, NULL, 0 }, &desc, &j.skin, &error)) {
         free(memory);
         return tool_fail_error(file->path, &error);
     }

@@ -159,6 +159,8 @@ static void read_model(file &f)
     read_nodes(f);
     read_skins(f);
     read_animations(f);
+    find_left_out(f);
+    warn_left_out(f);
     if (f.out->mesh_count == 0 && f.out->clip_count == 0)
         fail("glTF JSON", "the file has no triangle meshes and no animations: there is nothing to convert");
 }

@@ -18,7 +18,7 @@ static int init_clip(bench_clip *c, const pack_file *file, uint32_t index)
     noh_clip_desc desc;
     size_t bytes;
     memset(c, 0, sizeof *c);
-    noh_pack_motion_at(&file->pack, index, &motion);
+    noh_pack_motion_at(&file->pack, index, &motion, NULL);
     if (motion.header->joint_count == 0u) {
         return 0; /* weights alone */
     }

@@ -31,7 +31,7 @@ static void run_update(void *self, uint32_t frame)
     const crowd_work *w = (const crowd_work *)self;
     noh_gl_morph_stats stats;
     for (uint32_t i = 0; i < w->heads; i++) {
-        noh_gl_morph_weights(w->morph->morph, i, bench_weights_of(w->weights, frame + 7u * i), NULL);
+        noh_gl_morph_set_weights(w->morph->morph, i, bench_weights_of(w->weights, frame + 7u * i), NULL);
     }
     noh_gl_morph_update(w->morph->morph, &stats);
     if (w->heads > 1) {

@@ -228,7 +228,7 @@ static int has_crowd(const noh_pack *pack)
     int found = 0;
     for (uint32_t i = 0; i < pack->mesh_count; i++) {
         noh_mesh mesh;
-        noh_pack_mesh(pack, i, &mesh);
+        noh_pack_mesh(pack, i, &mesh, NULL);
         found |= mesh.header->skin != NOH_NONE && mesh.header->level_count > 1u;
     }
     return found && pack->motion_count;

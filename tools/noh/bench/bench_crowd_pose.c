@@ -102,7 +102,7 @@ static int open_clip(crowd *c, const pack_file *file, uint32_t index)
     noh_skeleton bound;
     noh_clip *clip;
     size_t bytes;
-    noh_pack_motion_at(&file->pack, index, &motion);
+    noh_pack_motion_at(&file->pack, index, &motion, NULL);
     if (noh_pack_bind_motion(&file->pack, &motion, &bound, &skeleton, NULL) || skeleton != 0) {
         return 0;
     }
@@ -220,7 +220,7 @@ static int crowd_open(crowd *c, const pack_file *file)
 {
     const noh_skeleton_header *header;
     int status = 0;
-    noh_pack_skeleton_at(&file->pack, 0, &c->skeleton, &header);
+    noh_pack_skeleton_at(&file->pack, 0, &c->skeleton, &header, NULL);
     c->set.joint_count = c->skeleton.joint_count;
     c->set.motions = c->motions;
     c->set.bind_pose = c->skeleton.bind_pose;

@@ -16,7 +16,7 @@ typedef struct path_method {
 static void prepare(void *self, const float *weights)
 {
     path_method *p = (path_method *)self;
-    noh_gl_morph_weights(p->morph.morph, 0, weights, NULL);
+    noh_gl_morph_set_weights(p->morph.morph, 0, weights, NULL);
     noh_gl_morph_update(p->morph.morph, NULL);
 }
 

@@ -124,8 +124,8 @@ static int make_matrices(skin_bench *b)
     noh_skin skin;
     noh_skeleton skeleton;
     float *model;
-    noh_pack_skin_at(b->mesh->pack, b->mesh->header->skin, &skin);
-    noh_pack_skeleton_at(b->mesh->pack, skin.header->skeleton, &skeleton, NULL);
+    noh_pack_skin_at(b->mesh->pack, b->mesh->header->skin, &skin, NULL);
+    noh_pack_skeleton_at(b->mesh->pack, skin.header->skeleton, &skeleton, NULL, NULL);
     b->matrices = calloc(skin.header->joint_count, 48);
     model = calloc(skeleton.joint_count, 48);
     if (b->matrices && model) {

@@ -23,7 +23,7 @@ static void choose_mesh(bench_job *job)
     uint32_t most = 0;
     for (uint32_t i = 0; i < job->files[0].pack.mesh_count; i++) {
         noh_mesh mesh;
-        noh_pack_mesh(&job->files[0].pack, i, &mesh);
+        noh_pack_mesh(&job->files[0].pack, i, &mesh, NULL);
         if (mesh.header->pair_count > most) {
             most = mesh.header->pair_count;
             job->mesh = mesh;
