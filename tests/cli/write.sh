@@ -33,6 +33,13 @@ expect 1 'a name of 256 characters'
 says 'cannot write'
 check 'leaves nothing' test -z "$(ls -A "$folder")"
 
+noh dump "$pack" -o ''
+expect 1 'an empty name'
+says 'No such file or directory'
+noh dump "$pack" -o "$folder/"
+expect 1 'a folder'
+says 'Is a directory'
+
 # ---- an older file ----
 
 echo old >"$folder/out.obj"
