@@ -14,11 +14,6 @@ SAN     ?=
 FUZZ_SECONDS ?= 60
 ASSETS  ?= $(if $(NOH_ASSETS),$(NOH_ASSETS),../shared/assets)
 
-# Make splits words at blanks.
-ifneq ($(words $(BUILD)),1)
-$(error BUILD wants a path without blanks, not '$(BUILD)')
-endif
-
 ifeq ($(origin CC),default)
 CC := gcc
 endif

@@ -129,6 +129,7 @@ static int write_file(const char *path, const void *data, size_t bytes)
     char resolved[PATH_BYTES];
     struct stat file;
     mode_t mode = 0;
+    if (!*path) return ENOENT;
     if (strlen(path) >= sizeof resolved) return ENAMETOOLONG;
     if (stat(path, &file) == 0) {
         int own = own_stream(&file);

@@ -33,6 +33,13 @@ expect 1 'a name of 256 characters'
 says 'cannot write'
 check 'leaves nothing' test -z "$(ls -A "$folder")"
 
+noh dump "$pack" -o ''
+expect 1 'an empty name'
+says 'No such file or directory'
+noh dump "$pack" -o "$folder/"
+expect 1 'a folder'
+says 'Is a directory'
+
 # ---- an older file ----
 
 echo old >"$folder/out.obj"
@@ -121,7 +128,7 @@ fi
 # ---- the Makefile ----
 
 env -u MAKEFLAGS make -s BUILD="$work/a b" DEPS=0 help >"$work/out" 2>"$work/err"
-check 'make refuses a BUILD with a blank' sh -c 'test "$2" != 0 && grep -q "BUILD wants a path without blanks" "$1"' - "$work/err" $?
+check 'make refuses a BUILD with a blank' sh -c 'test "$2" != 0 && grep -q "BUILD names one folder, without spaces" "$1"' - "$work/err" $?
 check 'and makes nothing' test ! -e "$work/a" -a ! -e "$work/a b"
 
 # ---- inputs ----

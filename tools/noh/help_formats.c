@@ -39,7 +39,7 @@ const char *const help_formats_text[] = {
     "--weight NAME=V sets a target; V is any number, 1 is the target as it was modelled. A name that no mesh has is refused with the nearest one.",
     "noh sheet --target NAME or NAME=V is a tile; with --lods NAME[=V],NAME[=V]... is a row.",
     "# paths (--path)",
-    "How deltas of targets are summed: auto, the cheapest that the driver has; layered, one additive pass to three layers through a geometry "
+    "How deltas of targets are summed: auto, the cheapest that the driver has; blend, additive blending: layered where supported, else per-layer; layered, one additive pass to three layers through a geometry "
     "shader; mrt, one additive pass with three outputs; per-layer, three additive passes; gather, without blending, a fragment sums the list "
     "of its vertex; cpu, SIMD on the CPU and an upload. noh verify shows which the driver has, and that their sums are equal.",
     "# cameras (--camera)",
