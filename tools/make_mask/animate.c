@@ -1,4 +1,5 @@
 #include "animate.h"
+#include "grab.h"
 
 #include "model.h"
 #include "targets.h"

@@ -1,4 +1,5 @@
 #include "colour.h"
+#include "grab.h"
 
 #include "eye.h"
 #include "face.h"
