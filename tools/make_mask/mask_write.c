@@ -1,6 +1,6 @@
 #include "mask_write.h"
-#include "grab.h"
 
+#include "grab.h"
 #include "hold.h"
 #include "targets.h"
 

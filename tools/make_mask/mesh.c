@@ -1,4 +1,5 @@
 #include "mesh.h"
+
 #include "grab.h"
 
 #include <math.h>

@@ -1,4 +1,5 @@
 #include "occlusion.h"
+
 #include "grab.h"
 
 #include <math.h>
