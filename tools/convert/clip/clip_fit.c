@@ -1,8 +1,13 @@
 /* clip_fit.c: one track of one segment, with the largest step that its check allows.
  *
- * Steps are tried from large to small. A step that just fails gets a few chances: the targets
- * of the frames that are out are pushed against their error, which lets the quantiser fall
- * another way. */
+ * The track's components are transformed by an orthonormal DCT along time: a smooth motion has nearly all of its
+ * energy in the first coefficients, and the rest quantise to zero. All coefficients share one step, because the
+ * transform is orthonormal: an error in any of them weighs the same in time. Each step is judged by decoding with the
+ * runtime's own arithmetic and asking `check`, so it does not matter how the error depends on the step.
+ *
+ * Steps (quarters of an octave) are tried from large to small, starting two octaves above what the last segment took.
+ * A step that just fails gets a few more chances: the targets of the frames that are out of bounds are pushed against
+ * their error, which lets the quantiser fall another way. */
 #include <stdlib.h>
 
 #include "clip_encoder.h"

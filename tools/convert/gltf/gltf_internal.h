@@ -8,8 +8,10 @@
  *
  *   gltf_read.cpp      model_read_gltf: the container, the order of the steps
  *   gltf_json.cpp      the JSON: checks, repairs, tinygltf
- *   gltf_buffer.cpp    files, URIs, buffers, buffer views
+ *   gltf_file.cpp      failures, warnings, names
+ *   gltf_buffer.cpp    files, URIs, buffers
  *   gltf_meshopt.cpp   EXT_meshopt_compression
+ *   gltf_view.cpp      buffer views, plain or compressed
  *   gltf_accessor.cpp  accessors to floats and indices
  *   gltf_mesh.cpp      meshes, primitives, targets
  *   gltf_scene.cpp     nodes
@@ -90,7 +92,7 @@ struct file {
     std::map<std::string, size_t> loss_of; /* what -> its place in losses */
 };
 
-/* --- gltf_read.cpp --- */
+/* --- gltf_file.cpp --- */
 template <class... Arguments> void warn(file &f, const char *format, Arguments... arguments)
 {
     if (model_warn(f.out, format, arguments...))
@@ -100,6 +102,8 @@ template <class... Arguments> void warn(file &f, const char *format, Arguments..
  * ": the normal texture was left out"). One warning for each `what` is given when the file has been read: it names
  * the first place and says how many more there are, so a file of a thousand nodes cannot bury other warnings. */
 void leave_out(file &f, const std::string &where, const std::string &what);
+/* Give those warnings. */
+void warn_left_out(file &f);
 /* Count bytes of the model before they are allocated; refuse what no honest file of this size needs. */
 void charge(file &f, uint64_t count, uint64_t element_size, const std::string &where);
 /* A zeroed array of the model, charged. */
@@ -130,13 +134,15 @@ void load_buffers(file &f);
 bytes read_whole_file(const std::string &path, const std::string &where);
 /* The bytes behind a URI: data: or a file beside the glTF. Throws failure. */
 bytes read_uri(file &f, const std::string &uri, const std::string &where);
-/* A buffer view's bytes, decompressed if need be; checked to lie inside its buffer. */
-span view_bytes(file &f, int view, const std::string &where);
 /* A range of a buffer, checked. */
 span buffer_bytes(file &f, int buffer, uint64_t offset, uint64_t size, const std::string &where);
 
 /* --- gltf_meshopt.cpp --- */
 bytes decode_meshopt(file &f, const tinygltf::Value &extension, const std::string &where);
+
+/* --- gltf_view.cpp --- */
+/* A buffer view's bytes, decompressed if need be; checked to lie inside its buffer. */
+span view_bytes(file &f, int view, const std::string &where);
 
 /* --- gltf_accessor.cpp --- */
 /* Component types as bits, so that each use can name what it accepts; _n = normalised. */
@@ -176,8 +182,6 @@ void read_animations(file &f);
 /* What no reader above looks at: textures other than the base colour's, further UV sets and colours, cameras, nodes
  * outside the scene. */
 void find_left_out(file &f);
-/* Give the warnings that leave_out collected. */
-void warn_left_out(file &f);
 void read_extras(file &f, const tinygltf::Animation &a, const std::string &where, model_clip &out);
 
 } // namespace gltf

@@ -6,22 +6,6 @@
 
 namespace gltf {
 
-void leave_out(file &f, const std::string &where, const std::string &what)
-{
-    auto known = f.loss_of.emplace(what, f.losses.size());
-    if (known.second)
-        f.losses.push_back({where, what, 0});
-    ++f.losses[known.first->second].count;
-}
-
-void warn_left_out(file &f)
-{
-    for (const left_out &loss : f.losses) {
-        std::string others = loss.count > 1 ? text(" (and %zu more like it)", loss.count - 1) : "";
-        warn(f, "%s%s%s", loss.first.c_str(), loss.what.c_str(), others.c_str());
-    }
-}
-
 /* --- materials --- */
 
 static void find_in_material(file &f, size_t index)

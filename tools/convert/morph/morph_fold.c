@@ -1,11 +1,15 @@
 /* morph_fold.c: lays the line of vertices into the texture, and settles it there.
  *
- * The texture is cut into strips of MORPH_STRIP_ROWS rows, and the line fills a strip
- * column by column. Rectangles then are a few texels high, which rasterisers
- * want: they shade 2x2 quads on GPUs and 4x4 blocks in software, so that runs
- * one texel high would pay for two to four. A target needs every column that
- * one of its vertices lies in, so runs should start and stop where columns do:
- * short stretches of the line are turned and exchanged until they mostly do. */
+ * The texture is cut into strips of MORPH_STRIP_ROWS rows, and the line fills a strip column by column. Rectangles
+ * are then a few texels high, which rasterisers want: they shade 2x2 quads on GPUs and 4x4 blocks in software, so that
+ * runs one texel high would pay for two to four.
+ *
+ * A target needs every column that one of its vertices lies in, so runs should start and stop where columns do. The
+ * line is annealed once more, now with that cost: short stretches are turned and exchanged (2-opt and or-opt moves),
+ * and a change is taken where it costs nothing, or with a chance that falls with its cost and with the temperature.
+ * The cost is a sum over columns of which targets use them. A change touches the columns of its stretch alone, so
+ * `used` keeps that set for every column: the cost before a change is a count of bits, and only the stretch is read
+ * again after it. */
 #include "morph_internal.h"
 
 #include <stdlib.h>
