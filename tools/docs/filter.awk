@@ -4,7 +4,8 @@
 function escape(text) {
     gsub(/\\/, "\\\\", text)
     gsub(/[@#<>%$&]/, "\\\\&", text)
-    gsub(/ \./, " \\.", text) # a dot by itself would end a list
+    gsub(/ \./, " \\&#46;", text) # a dot by itself would end a list
+    gsub(/\.\./, "\\&#46;\\&#46;", text)
     return text
 }
 function close_block() {
