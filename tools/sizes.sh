@@ -13,10 +13,14 @@ work=$build/sizes
 table=tools/sizes.txt
 mkdir -p "$work"
 
-# Lines "OBJECT:NAME BYTES" of an archive's symbols. WebAssembly's have addresses in the code section, no sizes.
+# The library's objects: an archive's members have no folders, and two may have one name.
+files() { # TARGET
+    find "$work/$1/runtime" "$work/$1/gen/shaders.gen.o" -name '*.o' | sort
+}
+# Lines "OBJECT:NAME BYTES". WebAssembly's have addresses in the code section, no sizes.
 symbols() { # TARGET NM
     if [ "$1" = wasm ]; then
-        "$2" --defined-only "$work/$1/libnoh.a" 2>/dev/null | awk '
+        files "$1" | xargs "$2" --defined-only 2>/dev/null | sed "s|^$work/$1/||" | awk '
             /:$/ { object = $1; sub(/:$/, "", object); next }
             NF == 3 && $2 ~ /[tT]/ { print object, $1, $3 }' | sort | awk '
             function number(h, i, n) { n = 0; for (i = 1; i <= length(h); i++) n = n * 16 + index("0123456789abcdef", substr(h, i, 1)) - 1; return n }
@@ -24,7 +28,7 @@ symbols() { # TARGET NM
             $1 == object && at > before { print object ":" name, at - before }
             { object = $1; name = $3; before = at }'
     else
-        "$2" -S -t d --defined-only "$work/$1/libnoh.a" | awk '
+        files "$1" | xargs "$2" -S -t d --defined-only | sed "s|^$work/$1/||" | awk '
             /:$/ { object = $1; sub(/:$/, "", object); next }
             NF == 4 && $3 ~ /[tTrRdD]/ { name = $4; sub(/\.(constprop|part|isra|[0-9]+).*/, "", name); sum[object ":" name] += $2 }
             END { for (key in sum) print key, sum[key] }'
@@ -33,7 +37,7 @@ symbols() { # TARGET NM
 
 # Lines "OBJECT BYTES".
 objects() { # TARGET SIZE
-    "$2" "$work/$1/libnoh.a" 2>/dev/null | awk 'NR > 1 { name = $6; sub(/.*\//, "", name); print name, $1 + $2 }'
+    files "$1" | xargs "$2" 2>/dev/null | sed "s|$work/$1/||" | awk 'NR > 1 { print $6, $1 + $2 }'
 }
 
 # target NAME CC AR NM SIZE OPT
