@@ -87,7 +87,7 @@ TESTS      := $(TEST_C:tests/%.c=$(BUILD)/tests/%)
 # The accumulation and skinning kernels built for other instruction sets, for `noh bench` and the tests.
 KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/morph_$(set).o $(BUILD)/kernel/skin_$(set).o))
 
-.PHONY: FORCE install install-lib uninstall amalgam docs examples sizes-update deps-docs lint all demo demo-body view check bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz cross cross-tests web web-check web-serve web-bench lib tests demo-run check-run fuzz sizes
+.PHONY: FORCE install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body view check bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz cross cross-tests web web-check web-serve web-bench lib tests demo-run check-run fuzz sizes
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -452,6 +452,12 @@ sizes:
 	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tools/sizes.sh
 sizes-update:
 	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tools/sizes.sh --update
+
+deps-lint:
+	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build view lint
+lint: deps-lint
+	@$(MAKE) --no-print-directory $(BUILD)/gen/shaders.gen.h $(BUILD)/gen/tool_shaders.gen.h
+	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tools/lint/lint.sh
 
 deps-docs:
 	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh docs

@@ -8,7 +8,7 @@ amalgam=$build/amalgam
 flags='-std=c99 -O2 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wvla -Werror -ffp-contract=off -fno-math-errno -ffunction-sections -fdata-sections'
 
 if [ -n "${NOH_SAN:-}" ]; then
-    skip 'the amalgam' 'the build without sanitizers says it'
+    skip 'the amalgam' 'checked in the build without sanitizers'
     finish
 fi
 check 'it is made' test -s "$amalgam/noh.c" -a -s "$amalgam/noh.h" -a -s "$amalgam/noh_gl.h"

@@ -7,7 +7,7 @@
 #   - flags from outside are added to those that the library needs
 . tests/cli/lib.sh
 if [ -n "${NOH_SAN:-}" ]; then
-    skip 'installing' 'the build without sanitizers says it'
+    skip 'installing' 'checked in the build without sanitizers'
     finish
 fi
 
