@@ -5,6 +5,8 @@
 #include "base/math.h"
 #include "gl/gl_program.h"
 #include "load.h"
+#include "camera.h"
+#include "canvas.h"
 #include "lit_quad.h"
 
 #include <math.h>
