@@ -335,7 +335,7 @@ static void broken_input_is_refused(void **state)
     raw_set *set = fixture_swing(4, 30, 1, 10.0f, 0.5, 1.0);
     (void)state;
     fixture_rotation(&set->clips[0], 3, 2)[1] = (float)NAN;
-    assert_string_equal(fixture_build(&x, set, NULL, 2), "a value that is no number");
+    assert_string_equal(fixture_build(&x, set, NULL, 2), "a value that is not a number");
     fixture_free(&x);
     set = fixture_swing(4, 30, 1, 10.0f, 0.5, 1.0);
     set->clips[0].rate_hz = 0.0;

@@ -589,7 +589,7 @@ static void bad_input_is_refused(void **state)
     const float rising[2] = { 0.1f, 0.5f }, above[1] = { 1.5f }, falling[2] = { 0.2f, 0.1f };
     const float *const poses[1] = { s.mesh.position };
     s.mesh.position[7] = NAN;
-    refuse(&s.mesh, &o, "vertex 2 is no finite");
+    refuse(&s.mesh, &o, "vertex 2 is not a finite");
     s.mesh.position[7] = -1e9f;
     refuse(&s.mesh, &o, "vertex 2 is -1e+09: levels of detail are made of meshes within 100000");
     s.mesh.position[7] = 0.0f;

@@ -39,10 +39,10 @@ static int check(encoder *e)
     if (!(micro >= 1.0 && micro <= 4294967295.0)) return enc_fail(e, "frames per second: above 0, at most 4294");
     if (c->float_count > NOH_CLIP_GROUPS_MAX || e->float_count > NOH_CLIP_FLOATS_MAX) return enc_fail(e, "more floats than the format holds (4096 in 1024 groups)");
     if (samples && !(numbers(c->rotations, samples * 4u) && numbers(c->translations, samples * 3u) && numbers(c->scales, samples * 3u))) {
-        return enc_fail(e, "a value that is no number");
+        return enc_fail(e, "a value that is not a number");
     }
     for (uint32_t g = 0; g < c->float_count; g++) {
-        if (!numbers(c->floats[g].values, (size_t)c->frame_count * c->floats[g].width)) return enc_fail(e, "a value that is no number");
+        if (!numbers(c->floats[g].values, (size_t)c->frame_count * c->floats[g].width)) return enc_fail(e, "a value that is not a number");
     }
     return 0;
 }
@@ -99,7 +99,7 @@ static int prepare_joints(encoder *e)
         noh_clip_quat_unit(r->rotation, e->bind[j].rotation);
         memcpy(e->bind[j].translation, r->translation, sizeof r->translation);
         memcpy(e->bind[j].scale, r->scale, sizeof r->scale);
-        if (!numbers(r->translation, 3) || !numbers(r->scale, 3)) return enc_fail(e, "a bind pose that is no number");
+        if (!numbers(r->translation, 3) || !numbers(r->scale, 3)) return enc_fail(e, "a bind pose that is not a number");
     }
     for (uint32_t f = 0; f < e->frame_count; f++) {
         space_global *pose = enc_global(e, f, 0);

@@ -88,7 +88,7 @@ void read_extras(file &f, const tinygltf::Animation &a, const std::string &where
         const tinygltf::Value &key = keys.Get(static_cast<int>(i));
         model_event event = {};
         if (const char *reason = read_key(key, static_cast<double>(out.duration_s), event)) {
-            warn(f, "%s event %zu was skipped: %s", where.c_str(), i, reason);
+            leave_out(f, where + text(" event %zu", i), std::string(" was skipped: ") + reason);
             continue;
         }
         event.name = copy_string(key.Get("name").Get<std::string>());

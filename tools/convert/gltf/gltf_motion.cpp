@@ -232,7 +232,7 @@ static void warn_of_error(const set_job &job, const raw_clip &clip, double toler
 {
     const double usual_hz = 119.0; /* linear keys of a usual rate are taken as they are, without a word */
     if (clip.source_error_cm > tolerance_cm && clip.rate_hz >= usual_hz)
-        check_memory(model_warn(job.m, "%s: between its frames at %g Hz it strays from its curves by up to %.3g cm", where.c_str(),
+        check_memory(model_warn(job.m, "%s: sampled at %g Hz it is up to %.3g cm off its curves between frames", where.c_str(),
                                 clip.rate_hz, clip.source_error_cm));
 }
 
@@ -327,7 +327,7 @@ static motion *make_motion(model &m, double rate_hz)
     }
     for (uint32_t c = 0; c < m.clip_count; ++c)
         if (!used[c])
-            check_memory(model_warn(&m, "animation '%s' was skipped: it moves nothing that shows", printable(m.clips[c].name).c_str()));
+            check_memory(model_warn(&m, "animation '%s' was skipped: it animates nothing that the pack holds", printable(m.clips[c].name).c_str()));
     return made.release();
 }
 
@@ -338,7 +338,7 @@ extern "C" int motion_from_model(model *m, const motion_options *options, motion
     double rate_hz = options ? options->rate_hz : 0.0;
     *out = nullptr;
     if (!(rate_hz >= 0.0 && rate_hz <= 1e6))
-        return model_fail(error, "", "a rate of %g Hz is not possible", rate_hz);
+        return model_fail(error, "", "a sample rate of %g Hz is not possible", rate_hz);
     try {
         *out = gltf::make_motion(*m, rate_hz);
         return 0;

@@ -28,7 +28,7 @@ static timing timing_at(double duration_s, double rate_hz, uint64_t frames_max, 
 {
     double steps = std::fmax(std::floor(duration_s * rate_hz + 0.5), 1.0);
     if (!(steps + 1.0 <= static_cast<double>(frames_max)))
-        fail(where, text("it lasts %g s: at %g Hz that is more than %llu frames, which is the limit; ask for a lower rate",
+        fail(where, text("it lasts %g s: at %g Hz that is more than %llu frames, which is the limit; ask for a lower sample rate",
                          duration_s, rate_hz, static_cast<unsigned long long>(frames_max)));
     double exact_hz = steps / duration_s;
     /* the last key's time is a rounded float */

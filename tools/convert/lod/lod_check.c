@@ -13,7 +13,7 @@ static int check_floats(const float *values, size_t count, const char *what, mod
 {
     for (size_t i = 0; i < count; i++) {
         if (!isfinite(values[i])) {
-            return model_fail(error, "", "%s of vertex %zu is no finite number", what, i / 3u);
+            return model_fail(error, "", "%s of vertex %zu is not a finite number", what, i / 3u);
         }
         if (fabsf(values[i]) > LARGEST) {
             return model_fail(error, "", "%s of vertex %zu is %g: levels of detail are made of meshes within %g", what, i / 3u,

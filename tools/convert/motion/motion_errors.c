@@ -169,7 +169,7 @@ int motion_errors_measure(const raw_skeleton *skeleton, const raw_clip *raw, con
         return model_fail(error, "", "out of memory");
     }
     if (!settle(out->joint, out->level_count) || !settle(out->rate, NOH_MOTION_RATES)) {
-        return model_fail(error, "", "clip '%.80s': its joints move farther than numbers go", raw->name);
+        return model_fail(error, "", "clip '%.80s': its joints move farther than a float can hold", raw->name);
     }
     return 0;
 }

@@ -149,11 +149,11 @@ int raw_clip_resample(const raw_clip *clip, double rate_hz, raw_clip *out, model
     const double duration_s = raw_clip_duration_s(clip), steps = fmax(floor(duration_s * rate_hz + 0.5), 1.0);
     memset(out, 0, sizeof *out);
     if (!(rate_hz > 0.0 && rate_hz <= 1e6))
-        return model_fail(error, "", "a rate of %g Hz is not possible", rate_hz);
+        return model_fail(error, "", "a sample rate of %g Hz is not possible", rate_hz);
     if (duration_s == 0.0)
         return copy_frames(clip, 1, rate_hz, 0, 1, out, error);
     if (steps + 1.0 > (double)RAW_FRAMES_MAX || steps * (double)bytes_per_frame(clip) > (double)RAW_BYTES_MAX)
-        return model_fail(error, "", "at %g Hz the clip's %g s are more frames than the limit; ask for a lower rate", rate_hz,
+        return model_fail(error, "", "at %g Hz the clip's %g s are more frames than the limit; ask for a lower sample rate", rate_hz,
                           duration_s);
     return copy_frames(clip, (uint32_t)steps + 1, steps / duration_s, clip->frame_count - 1, (uint64_t)steps, out, error);
 }
