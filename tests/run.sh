@@ -25,9 +25,11 @@ logs=$build/tests/log
 limit=${NOH_LIMIT_S:-$([ -n "$NOH_SAN" ] && echo 1800 || echo 900)}
 jobs=${NOH_JOBS:-$(nproc 2>/dev/null || echo 2)}
 mkdir -p "$logs"
-# The reader's tests write hundreds of small files: in memory, where there is some.
+# The reader's tests write hundreds of small files: in memory, where there is some in which programs may run.
 if [ -z "${TMPDIR:-}" ] && [ -w /dev/shm ] && [ "$(df -Pk /dev/shm | awk 'NR == 2 { print $4 }')" -gt 1000000 ]; then
-    export TMPDIR=/dev/shm
+    try=/dev/shm/noh_try_$$
+    printf '#!/bin/sh\n' >"$try" && chmod +x "$try" && "$try" 2>/dev/null && export TMPDIR=/dev/shm
+    rm -f "$try"
 fi
 
 # Graphics drivers free some memory only when the process ends. They are suppressed by name, so that our own leaks still
