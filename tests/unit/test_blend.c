@@ -70,8 +70,8 @@ static void test_weighted_sum(void **state)
     }
 }
 
-/* The source's weight, (rand() % 1000) / 1000, never reaches 1, so the first clip alone is never seen. Here weights of
- * 1 and 0 show one clip alone, the translations to the bit. */
+/* The source's weight, (rand() % 1000) / 1000, never reaches 1, so the first clip alone is never seen. Here the ends of a
+ * mix, and a sum of one, show one clip alone, translations and floats to the bit. */
 static void a_weight_of_one_shows_its_clip_alone(void **state)
 {
     scene s;
@@ -83,17 +83,21 @@ static void a_weight_of_one_shows_its_clip_alone(void **state)
     scene_pose(&s, WALK, 9000, a, fa);
     scene_pose(&s, RUN, 5000, c, fc);
     assert_true(pose_apart(a, c, JOINTS) > 0.1);
-    for (int first = 0; first <= 1; first++) {
-        const float weight = (float)first;
-        sums_open(&b);
-        noh_blend_add(&b.blend, a, fa, weight, everywhere);
-        noh_blend_add(&b.blend, c, fc, 1.0f - weight, everywhere);
-        noh_blend_finish(&b.blend, s.bind, s.defaults, got, out);
-        assert_true(pose_apart(got, first ? a : c, JOINTS) < 1e-6);
-        for (uint32_t j = 0; j < JOINTS; j++) {
-            assert_memory_equal(got[j].translation, (first ? a : c)[j].translation, sizeof got[j].translation);
+    for (int end = 0; end < 3; end++) {
+        const noh_transform *want = end == 1 ? c : a;
+        if (end < 2) {
+            noh_pose_mix(JOINTS, a, c, (float)end, NULL, got);
+            noh_floats_mix(FLOATS, fa, fc, (float)end, NULL, out);
+        } else {
+            sums_open(&b);
+            noh_blend_add(&b.blend, a, fa, 1.0f, everywhere);
+            noh_blend_finish(&b.blend, s.bind, s.defaults, got, out);
         }
-        assert_memory_equal(out, first ? fa : fc, sizeof out);
+        assert_true(pose_apart(got, want, JOINTS) < 1e-6);
+        for (uint32_t j = 0; j < JOINTS; j++) {
+            assert_memory_equal(got[j].translation, want[j].translation, sizeof got[j].translation);
+        }
+        assert_memory_equal(out, end == 1 ? fc : fa, sizeof out);
     }
 }
 
@@ -163,39 +167,6 @@ static void masked_joints_use_their_own_sum(void **state)
     assert_true(fabsf(naive - a[5].translation[1]) > 0.1f);
     assert_true(fabsf(got[20].translation[1] - 0.5f * (a[20].translation[1] + c[20].translation[1])) < 1e-6f);
     assert_true(fabsf(out[0] - fa[0]) < 1e-6f && fabsf(out[4] - 0.5f * (fa[4] + fc[4])) < 1e-6f);
-}
-
-/* A sum over what lies below: by its amount where there is something below, by its masked share of the group, and whole
- * where nothing lies below. */
-static void a_sum_covers_what_lies_below(void **state)
-{
-    scene s;
-    sums b;
-    noh_transform low[JOINTS], high[JOINTS], got[JOINTS], want[JOINTS];
-    float fl[FLOATS], fh[FLOATS], floats[FLOATS], below[JOINTS], float_below[FLOATS];
-    (void)state;
-    scene_open(&s);
-    scene_pose(&s, WALK, 9000, low, fl);
-    scene_pose(&s, RUN, 5000, high, fh);
-    for (uint32_t j = 0; j < JOINTS; j++) below[j] = j % 2u ? 1.0f : 0.0f;
-    for (uint32_t i = 0; i < FLOATS; i++) float_below[i] = i % 2u ? 1.0f : 0.0f;
-    for (uint32_t mask = 0; mask <= 2; mask += 2) {
-        const noh_mask_view view = mask ? noh_mask_of(&s.set, mask) : everywhere;
-        memcpy(got, low, sizeof got);
-        memcpy(floats, fl, sizeof floats);
-        sums_open(&b);
-        noh_blend_add(&b.blend, high, fh, 4.0f, view);
-        noh_blend_cover(&b.blend, 0.25f, below, float_below, got, floats);
-        for (uint32_t j = 0; j < JOINTS; j++) {
-            const float part = mask ? (float)s.masks[1][j] / 255.0f : 1.0f;
-            noh_pose_mix(1, &low[j], &high[j], part > 0.0f ? (j % 2u ? 0.25f * part : 1.0f) : 0.0f, NULL, &want[j]);
-        }
-        assert_true(pose_apart(got, want, JOINTS) < 1e-6);
-        for (uint32_t i = 0; i < FLOATS; i++) {
-            const float part = mask ? 128.0f / 255.0f : 1.0f, t = i % 2u ? 0.25f * part : 1.0f;
-            assert_true(fabsf(floats[i] - (fl[i] + (fh[i] - fl[i]) * t)) < 1e-6f);
-        }
-    }
 }
 
 /* Palette = model * inverse bind: the bind pose's points come first into the joint's space. Turned joints tell the order. */
@@ -525,7 +496,6 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_skeleton_fields_broken_in_turn),
         cmocka_unit_test(model_is_parent_times_local),
         cmocka_unit_test(test_palette),
-        cmocka_unit_test(a_sum_covers_what_lies_below),
         cmocka_unit_test(palettes_take_the_bind_pose_away_first),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
