@@ -329,7 +329,7 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TEST_LIBS)
 # calls this with CC, AR and CROSS=1. tests/cross/ stands in for the libraries that it has no package of.
 CROSS       ?=
 CROSS_SKIP  := gltf_read gltf_formula embed motion_import motion_set pack_motion influences bvh_read events_read sources \
-               skin skin_oracle skin_pack bounds_pick rows_deform puppet lod lod_pack lod_certified lod_lies levels pack joint_order \
+               skin skin_oracle skin_pack bounds_pick pick rows_deform puppet lod lod_pack lod_certified lod_lies levels pack joint_order \
                motion_errors detail_pack
 CROSS_TESTS := $(filter-out $(CROSS_SKIP:%=$(BUILD)/cross/test_%),$(patsubst tests/unit/%.c,$(BUILD)/cross/%,$(wildcard tests/unit/test_*.c)))
 CROSS_O     := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/cross/*.c) tests/support.c tests/pack_walk.c platform/file.c $(CONVERT_C))
