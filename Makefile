@@ -21,14 +21,22 @@ ifeq ($(origin CXX),default)
 CXX := g++
 endif
 
-# Contraction off: the CPU gives the same bits everywhere. No math errno: a square root is an instruction.
-WARN     := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wvla -Werror
+ifneq ($(words $(BUILD)),1)
+$(error BUILD names one folder, without spaces: "$(BUILD)")
+endif
+
+# What every object needs: CFLAGS, CXXFLAGS, CPPFLAGS and LDFLAGS from outside are appended and replace nothing here.
+# Contraction off: the CPU gives the same bits everywhere. No math errno: a square root is an instruction. A section
+# for each function: what links with --gc-sections gets only what it calls.
+WERROR   ?= -Werror
+WARN     := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wvla $(WERROR)
 FP       := -ffp-contract=off -fno-math-errno
+SECTIONS := -ffunction-sections -fdata-sections
 SANFLAGS := $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
 OPT      ?= -O2 -g
-CFLAGS   += -std=c99 $(OPT) $(WARN) $(FP) $(SANFLAGS)
-CXXFLAGS += -std=c++17 $(OPT) -Wall -Wextra $(FP) $(SANFLAGS)
-LDFLAGS  += $(SANFLAGS)
+ALL_CFLAGS   = -std=c99 $(OPT) $(WARN) $(FP) $(SECTIONS) $(SANFLAGS) $(CPPFLAGS) $(CFLAGS)
+ALL_CXXFLAGS = -std=c++17 $(OPT) -Wall -Wextra $(FP) $(SANFLAGS) $(CPPFLAGS) $(CXXFLAGS)
+ALL_LDFLAGS  = $(SANFLAGS) $(LDFLAGS)
 INCLUDES := -Iruntime -Iplatform -Itools -Itools/noh -I$(BUILD)/gen
 TOOL_LIBS := -ltinygltf -lmeshoptimizer -lstb -ldl -lm
 # What runs is printed as a word and a file; V=1 prints the commands.
@@ -38,44 +46,52 @@ MACHINE  := $(shell $(CC) -dumpmachine)
 
 # ---- what there is ----
 
-RUNTIME_C  := $(sort $(wildcard runtime/*/*.c))
+# Folders are found, never listed: a file that is added or moved is built. sources DIR,PATTERN: DIR and two levels below.
+sources     = $(sort $(foreach pattern,$(2),$(wildcard $(1)/$(pattern) $(1)/*/$(pattern) $(1)/*/*/$(pattern))))
+RUNTIME_C  := $(call sources,runtime,*.c)
 # template.c is for reading; the tests compile it.
 PLATFORM_C := $(filter-out platform/template.c,$(sort $(wildcard platform/*.c)))
-CONVERT_C  := $(sort $(wildcard tools/convert/*.c tools/convert/*/*.c))
-CONVERT_CC := $(sort $(wildcard tools/convert/*/*.cpp))
-TOOL_C     := $(filter-out %/view_without.c,$(sort $(wildcard tools/noh/*.c tools/noh/bench/*.c)))
-MASK_C     := $(sort $(wildcard tools/make_mask/*.c tools/make_puppet/*.c tools/make_arm/*.c))
+CONVERT_C  := $(call sources,tools/convert,*.c)
+CONVERT_CC := $(call sources,tools/convert,*.cpp)
+VIEW_NOT_C := $(call sources,tools/noh,view_without.c)
+VIEW_C     := $(filter-out $(VIEW_NOT_C),$(call sources,tools/noh/view,*.c))
+VIEW_CC    := $(call sources,tools/noh/view,*.cpp)
+TOOL_C     := $(filter-out $(VIEW_NOT_C) $(VIEW_C),$(call sources,tools/noh,*.c))
+DEMO_C     := $(sort $(wildcard tools/make_*/*.c) $(call sources,tools/demo_assets,*.c))
+EXAMPLE_C  := $(sort $(wildcard tools/examples/*.c))
 STAGES     := vert geom frag
-SHADERS    := $(sort $(foreach stage,$(STAGES),$(wildcard shaders_es/*.$(stage))))
-TOOL_SHADERS := $(sort $(foreach stage,$(STAGES),$(wildcard tools/noh/shaders/*.$(stage) tools/noh/bench/*.$(stage))))
-TEST_C     := $(sort $(wildcard tests/unit/test_*.c tests/memory/test_*.c tests/gl/test_*.c))
+# What games put into their own shaders (runtime/gl/gl_shader_text.h) is in the library by itself, too.
+SHADERS    := $(call sources,shaders_es,$(STAGES:%=*.%)) $(foreach text,layers attributes skin fade,shaders_es/common_$(text).glsl)
+TOOL_SHADERS := $(call sources,tools/noh,$(STAGES:%=*.%))
+TEST_C     := $(call sources,tests,test_*.c)
+VERSION    := $(shell sed -n 's/^\#define NOH_VERSION "\(.*\)"/\1/p' runtime/base/version.h)
 
 # `noh view` needs a window and panels; without their libraries the verb says which are missing.
 VIEW_WITHOUT := $(strip $(if $(shell $(PKG) --exists glfw3 && echo y),,glfw3) $(if $(shell $(PKG) --exists imgui && echo y),,imgui))
-VIEW_C     := $(sort $(wildcard tools/noh/view/*.c))
-VIEW_CC    := $(sort $(wildcard tools/noh/view/*.cpp))
 ifeq ($(VIEW_WITHOUT),)
 VIEW_O     := $(VIEW_C:%.c=$(BUILD)/%.o) $(VIEW_CC:%.cpp=$(BUILD)/%.o)
 VIEW_LIBS  := $(shell $(PKG) --libs glfw3 imgui)
 else
-VIEW_O     := $(BUILD)/tools/noh/view_without.o
+VIEW_O     := $(VIEW_NOT_C:%.c=$(BUILD)/%.o)
 endif
 
 RUNTIME_O  := $(RUNTIME_C:%.c=$(BUILD)/%.o) $(BUILD)/gen/shaders.gen.o
+ASSERT_O   := $(RUNTIME_C:%.c=$(BUILD)/assert/%.o) $(BUILD)/gen/shaders.gen.o
 PLATFORM_O := $(PLATFORM_C:%.c=$(BUILD)/%.o)
 CONVERT_O  := $(CONVERT_C:%.c=$(BUILD)/%.o) $(CONVERT_CC:%.cpp=$(BUILD)/%.o)
 TOOL_O     := $(TOOL_C:%.c=$(BUILD)/%.o) $(BUILD)/gen/tool_shaders.gen.o
-MASK_O     := $(MASK_C:%.c=$(BUILD)/%.o)
+DEMO_O     := $(DEMO_C:%.c=$(BUILD)/%.o)
+EXAMPLES   := $(EXAMPLE_C:tools/examples/%.c=$(BUILD)/examples/%)
 TESTS      := $(TEST_C:tests/%.c=$(BUILD)/tests/%)
 
 # The accumulation and skinning kernels built for other instruction sets, for `noh bench` and the tests.
 KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/morph_$(set).o $(BUILD)/kernel/skin_$(set).o))
 
-.PHONY: FORCE install all demo demo-body view check bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz cross cross-tests web web-check web-serve web-bench lib tests demo-run check-run fuzz sizes
+.PHONY: FORCE install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body view check bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz cross cross-tests web web-check web-serve web-bench lib tests demo-run check-run fuzz sizes
 .SECONDARY:
 .DELETE_ON_ERROR:
 
-all: $(BUILD)/noh $(BUILD)/libnoh.a
+all: $(BUILD)/noh $(BUILD)/libnoh.a $(BUILD)/noh.1 $(BUILD)/noh.bash
 
 help:
 	@echo 'make            build/noh and build/libnoh.a'
@@ -88,10 +104,16 @@ help:
 	@echo 'make fuzz       fuzz the pack reader and the clip decoder (FUZZ_SECONDS=60 each), needs clang'
 	@echo 'make cross      the library and its CPU tests for aarch64, armv7 and wasm (qemu, node)'
 	@echo 'make web        the page, WebGL 2 (WEB_PACK=PACK: for another pack); make web-serve, web-check, web-bench'
-	@echo 'make sizes      code and data of the library, by file'
-	@echo 'make install    PREFIX=/usr/local: noh, libnoh.a and the headers (compile with -IPREFIX/include/noh)'
+	@echo 'make lint       clang-tidy and cppcheck over runtime/, platform/ and tools/'
+	@echo 'make sizes      code and data of the library for each processor, with what changed since the last commit'
+	@echo 'make amalgam    the library as three files, $(BUILD)/amalgam/noh.c, noh.h and noh_gl.h'
+	@echo 'make docs       the API reference out of the headers, $(BUILD)/docs/html/index.html'
+	@echo 'make install    PREFIX=/usr/local DESTDIR=: the tools, and the library for pkg-config and CMake; make uninstall'
+	@echo 'make install-lib  the library alone, without a C++ compiler (CC=, AR=: for another processor)'
 	@echo 'make clean      remove $(BUILD)'
 	@echo ''
+	@echo 'CFLAGS, CXXFLAGS, CPPFLAGS and LDFLAGS are appended to the flags that are needed; OPT="-O2 -g" and WERROR=-Werror can be'
+	@echo 'replaced. Objects do not know their flags: use another BUILD for others.'
 	@echo 'V=1 prints the commands. DEPS=0 installs nothing. SAN=address,undefined builds with sanitizers (use another BUILD).'
 	@echo 'ASSETS=DIR is where the tests look for models that are not ours to ship. NOH_TEST=NAME runs only those tests.'
 
@@ -104,14 +126,25 @@ $(BUILD)/libnoh.a: $(RUNTIME_O)
 	$(call say,AR,$@)
 	$(Q)$(AR) rcsD $@ $^
 
+# The same with every assert on, for the tests: what ships has none.
+$(BUILD)/assert/libnoh.a: $(ASSERT_O)
+	@rm -f $@
+	$(call say,AR,$@)
+	$(Q)$(AR) rcsD $@ $^
+
+$(BUILD)/assert/%.o: %.c | $(BUILD)/gen/shaders.gen.h
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -DNOH_ASSERT_LEVEL=2 -MMD -MP -c $< -o $@
+
 $(BUILD)/%.o: %.c | $(BUILD)/gen/shaders.gen.h $(BUILD)/gen/tool_shaders.gen.h
 	@mkdir -p $(@D)
 	$(call say,CC,$@)
-	$(Q)$(CC) $(CFLAGS) $(INCLUDES) -MMD -MP -c $< -o $@
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -MMD -MP -c $< -o $@
 
 $(BUILD)/gen/%.o: $(BUILD)/gen/%.c
 	$(call say,CC,$@)
-	$(Q)$(CC) $(CFLAGS) $(INCLUDES) -MMD -MP -c $< -o $@
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -MMD -MP -c $< -o $@
 
 $(BUILD)/gen/shaders.gen.c: $(SHADERS) $(BUILD)/embed
 	@mkdir -p $(@D)
@@ -136,32 +169,34 @@ $(BUILD)/embed: tools/embed/embed.c
 $(BUILD)/tools/convert/%.o: tools/convert/%.cpp
 	@mkdir -p $(@D)
 	$(call say,CXX,$@)
-	$(Q)$(CXX) $(CXXFLAGS) -Iruntime -Itools -isystem /usr/include/stb -MMD -MP -c $< -o $@
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -Iruntime -Itools -isystem /usr/include/stb -MMD -MP -c $< -o $@
 
-$(BUILD)/kernel/morph_%.o: runtime/deform/morph.c
+# One file of the library, wherever it lies, for an instruction set, its entry renamed.
+kernel_c    = $(firstword $(filter %/$(1).c,$(RUNTIME_C)))
+$(BUILD)/kernel/morph_%.o: $(call kernel_c,morph)
 	@mkdir -p $(@D)
 	$(call say,CC,$@)
-	$(Q)$(CC) $(CFLAGS) $(INCLUDES) -m$* -DNOH_MORPH_ACCUMULATE=noh_morph_accumulate_$* -MMD -MP -c $< -o $@
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -m$* -DNOH_MORPH_ACCUMULATE=noh_morph_accumulate_$* -MMD -MP -c $< -o $@
 
-$(BUILD)/kernel/clip_sample_%.o: runtime/anim/clip_sample.c
+$(BUILD)/kernel/clip_sample_%.o: $(call kernel_c,clip_sample)
 	@mkdir -p $(@D)
 	$(call say,CC,$@)
-	$(Q)$(CC) $(CFLAGS) $(INCLUDES) -m$* -Dnoh_clip_blend_frames=noh_clip_blend_frames_$* -MMD -MP -c $< -o $@
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -m$* -Dnoh_clip_blend_frames=noh_clip_blend_frames_$* -MMD -MP -c $< -o $@
 
-$(BUILD)/kernel/skin_%.o: runtime/deform/skin.c
+$(BUILD)/kernel/skin_%.o: $(call kernel_c,skin)
 	@mkdir -p $(@D)
 	$(call say,CC,$@)
-	$(Q)$(CC) $(CFLAGS) $(INCLUDES) -m$* -DNOH_SKIN_VERTICES=noh_skin_vertices_$* -MMD -MP -c $< -o $@
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -m$* -DNOH_SKIN_VERTICES=noh_skin_vertices_$* -MMD -MP -c $< -o $@
 
 $(BUILD)/tools/noh/view/%.o: tools/noh/view/%.cpp | $(BUILD)/gen/shaders.gen.h
 	@mkdir -p $(@D)
 	$(call say,CXX,$@)
-	$(Q)$(CXX) $(CXXFLAGS) $(INCLUDES) $(patsubst -I%,-isystem %,$(shell $(PKG) --cflags glfw3 imgui)) -MMD -MP -c $< -o $@
+	$(Q)$(CXX) $(ALL_CXXFLAGS) $(INCLUDES) $(patsubst -I%,-isystem %,$(shell $(PKG) --cflags glfw3 imgui)) -MMD -MP -c $< -o $@
 
-$(BUILD)/tools/noh/view_without.o: tools/noh/view_without.c $(BUILD)/gen/view_without
+$(VIEW_NOT_C:%.c=$(BUILD)/%.o): $(VIEW_NOT_C) $(BUILD)/gen/view_without
 	@mkdir -p $(@D)
 	$(call say,CC,$@)
-	$(Q)$(CC) $(CFLAGS) $(INCLUDES) -DNOH_VIEW_WITHOUT='"$(subst $() , and ,$(VIEW_WITHOUT))"' -MMD -MP -c $< -o $@
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -DNOH_VIEW_WITHOUT='"$(subst $() , and ,$(VIEW_WITHOUT))"' -MMD -MP -c $< -o $@
 
 # Changes when what is missing does: noh is then linked again.
 $(BUILD)/gen/view_without: FORCE
@@ -171,22 +206,28 @@ FORCE:
 
 $(BUILD)/noh: $(TOOL_O) $(VIEW_O) $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(BUILD)/libnoh.a $(BUILD)/gen/view_without
 	$(call say,CXX,$@)
-	$(Q)$(CXX) $(LDFLAGS) $(filter %.o %.a,$^) -o $@ $(VIEW_LIBS) $(TOOL_LIBS)
+	$(Q)$(CXX) $(ALL_LDFLAGS) $(filter %.o %.a,$^) -o $@ $(VIEW_LIBS) $(TOOL_LIBS)
 
-$(BUILD)/make_mask: $(MASK_O)
+# The man page and the completion for bash come from the tables that the verbs read their options by.
+$(BUILD)/noh.1: $(BUILD)/noh
+	$(Q)$(BUILD)/noh help --man >$@
+$(BUILD)/noh.bash: $(BUILD)/noh
+	$(Q)$(BUILD)/noh help --bash >$@
+
+$(BUILD)/make_mask: $(DEMO_O)
 	$(call say,CC,$@)
-	$(Q)$(CC) $(LDFLAGS) $^ -o $@ -lm
+	$(Q)$(CC) $(ALL_LDFLAGS) $^ -o $@ -lm
 
 # Makes runtime/anim/clip_tables.c out of raw clips; after a change of the clip format only.
 $(BUILD)/clip_tables: $(BUILD)/tools/clip_tables/main.o $(CONVERT_O) $(PLATFORM_O) $(BUILD)/libnoh.a
 	$(call say,CXX,$@)
-	$(Q)$(CXX) $(LDFLAGS) $^ -o $@ $(TOOL_LIBS)
+	$(Q)$(CXX) $(ALL_LDFLAGS) $^ -o $@ $(TOOL_LIBS)
 
 # Our levels of detail against meshoptimizer's; for `make bench`.
 LOD_COMPARE_O := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tools/lod_compare/*.c)))
 $(BUILD)/lod_compare: $(LOD_COMPARE_O) $(CONVERT_O) $(PLATFORM_O) $(BUILD)/libnoh.a
 	$(call say,CXX,$@)
-	$(Q)$(CXX) $(LDFLAGS) $^ -o $@ $(TOOL_LIBS)
+	$(Q)$(CXX) $(ALL_LDFLAGS) $^ -o $@ $(TOOL_LIBS)
 
 $(BUILD)/mask.glb: $(BUILD)/make_mask
 	$(BUILD)/make_mask $@
@@ -308,57 +349,120 @@ fuzz: deps-fuzz
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/tests/fuzz/corpus/.made $(BUILD)/gen/shaders.gen.c
 	@NOH_BUILD="$(BUILD)" FUZZ_SECONDS="$(FUZZ_SECONDS)" sh tests/fuzz.sh
 
-tests: $(TESTS) $(BUILD)/tests/gl/window $(BUILD)/tests/gl/picture_diff $(BUILD)/platform/template.o \
+tests: $(TESTS) $(EXAMPLES) $(AMALGAM_TESTS) $(BUILD)/tests/gl/window $(BUILD)/tests/gl/picture_diff $(BUILD)/platform/template.o \
        $(BUILD)/tests/fuzz/fuzz_pack $(BUILD)/tests/fuzz/fuzz_clip $(BUILD)/tests/fuzz/corpus/.made
 
-# The tests load packs, draw them and read results back as the tool does, and share what lies in tests/ itself.
-TEST_TOOL_O := $(addprefix $(BUILD)/tools/noh/,gpu.o readback.o readback_vertices.o message.o load.o load_draw.o scene.o scene_play.o scene_deform.o \
-                   pack_file.o nearest.o args.o camera.o canvas.o crowd.o crowd_plan.o crowd_place.o crowd_frame.o crowd_draw.o) \
-                   $(BUILD)/gen/tool_shaders.gen.o
-TEST_SHARED_O := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/*.c))
+# The tests load packs, draw them and read results back as the tool does, and share what lies in tests/ and
+# tests/support. Of the tool each takes what it calls, and the library has its asserts on.
+TEST_SHARED_O := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(TEST_C),$(wildcard tests/*.c) $(call sources,tests/support,*.c)))
 TEST_KERNELS := $(if $(filter x86_64%,$(MACHINE)),$(BUILD)/kernel/clip_sample_avx2.o)
-TEST_LIBS := $(TEST_SHARED_O) $(TEST_TOOL_O) $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(TEST_KERNELS) $(BUILD)/libnoh.a
+TEST_LIBS := $(TEST_SHARED_O) $(BUILD)/tests/tool.a $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(TEST_KERNELS) $(BUILD)/assert/libnoh.a
 
-$(BUILD)/tests/%.o: INCLUDES += -Itests
+$(BUILD)/tests/tool.a: $(filter-out %/main.o,$(TOOL_O))
+	@mkdir -p $(@D)
+	@rm -f $@
+	$(call say,AR,$@)
+	$(Q)$(AR) rcsD $@ $^
+
+$(BUILD)/tests/%.o: INCLUDES += -Itests -Itests/support
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TEST_LIBS)
 	@mkdir -p $(@D)
 	$(call say,CXX,$@)
-	$(Q)$(CXX) $(LDFLAGS) $^ -o $@ -lcmocka $(TOOL_LIBS)
+	$(Q)$(CXX) $(ALL_LDFLAGS) $^ -o $@ -lcmocka $(TOOL_LIBS)
 
 # The library's CPU tests, those that need neither C++ nor GL, for another processor: tests/cross.sh
 # calls this with CC, AR and CROSS=1. tests/cross/ stands in for the libraries that it has no package of.
 CROSS       ?=
-CROSS_SKIP  := gltf_read gltf_formula embed motion_import motion_set pack_motion influences bvh_read events_read sources \
+CROSS_SKIP  := gltf_read gltf_left_out gltf_formula embed motion_import motion_set pack_motion influences bvh_read events_read sources \
                skin skin_oracle skin_pack bounds_pick pick rows_deform puppet lod lod_pack lod_certified lod_lies levels pack joint_order \
-               motion_errors detail_pack
-CROSS_TESTS := $(filter-out $(CROSS_SKIP:%=$(BUILD)/cross/test_%),$(patsubst tests/unit/%.c,$(BUILD)/cross/%,$(wildcard tests/unit/test_*.c)))
-CROSS_O     := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/cross/*.c) tests/support.c tests/pack_walk.c platform/file.c $(CONVERT_C))
+               motion_errors detail_pack threads
+CROSS_TESTS := $(patsubst tests/%.c,$(BUILD)/cross/%,$(filter-out $(CROSS_SKIP:%=%/test_%.c),$(call sources,tests/unit,test_*.c)))
+CROSS_O     := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/cross/*.c) $(filter %/support.c %/pack_walk.c,$(wildcard tests/*.c tests/support/*.c)) \
+                   platform/file.c platform/file_write.c $(CONVERT_C))
 INCLUDES    += $(if $(CROSS),-Itests/cross -idirafter /usr/include)
 
 cross-tests: $(CROSS_TESTS)
+# build/cross/test_NAME is the test of that name, whichever folder it is in.
+define cross_alias
+$(BUILD)/cross/$(1): $(firstword $(filter %/$(1),$(CROSS_TESTS)))
+	@cp $$< $$@
+endef
+$(foreach name,$(sort $(notdir $(CROSS_TESTS))),$(eval $(call cross_alias,$(name))))
 $(BUILD)/cross/libtests.a: $(CROSS_O) $(BUILD)/libnoh.a
 	@mkdir -p $(@D)
 	@rm -f $@
 	$(Q)$(AR) rcs $@ $(CROSS_O) $(RUNTIME_O)
-$(BUILD)/cross/test_%: $(BUILD)/tests/unit/test_%.o $(BUILD)/cross/libtests.a
+$(BUILD)/cross/%: $(BUILD)/tests/%.o $(BUILD)/cross/libtests.a
+	@mkdir -p $(@D)
 	$(call say,CC,$@)
-	$(Q)$(CC) $(LDFLAGS) $^ -o $@ -lm
+	$(Q)$(CC) $(ALL_LDFLAGS) $^ -o $@ -lm
 
 $(BUILD)/tests/fuzz/corpus/.made: $(BUILD)/tests/fuzz/make_corpus
 	@mkdir -p $(@D) $(BUILD)/tests/fuzz/clips
 	@$< $(@D) $(BUILD)/tests/fuzz/clips >$(BUILD)/tests/fuzz/make_corpus.txt 2>&1 || { cat $(BUILD)/tests/fuzz/make_corpus.txt; exit 1; }
 	@touch $@
 
-PREFIX  ?= /usr/local
-install: all
-	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib
-	install -m 755 $(BUILD)/noh $(DESTDIR)$(PREFIX)/bin
-	install -m 644 $(BUILD)/libnoh.a $(DESTDIR)$(PREFIX)/lib
-	cd runtime && for h in noh.h $$(find . -name '*.h' ! -name '*_internal.h' ! -name '*_kernel.h' ! -name check.h ! -name lanes.h ! -name skin_blend.h); do \
-	    install -D -m 644 $$h $(DESTDIR)$(PREFIX)/include/noh/$$h; done
+# ---- installing, and what is made of the library ----
 
-sizes: $(BUILD)/libnoh.a
-	@size -t $(BUILD)/libnoh.a
+PREFIX     ?= /usr/local
+BINDIR     ?= $(PREFIX)/bin
+LIBDIR     ?= $(PREFIX)/lib
+INCLUDEDIR ?= $(PREFIX)/include
+DATADIR    ?= $(PREFIX)/share
+INSTALL    := BUILD="$(BUILD)" VERSION="$(VERSION)" CC="$(CC)" DESTDIR="$(DESTDIR)" PREFIX="$(PREFIX)" BINDIR="$(BINDIR)" \
+              LIBDIR="$(LIBDIR)" INCLUDEDIR="$(INCLUDEDIR)" DATADIR="$(DATADIR)" sh tools/install/install.sh
+
+install: all
+	@$(INSTALL) all
+# Needs no C++ compiler and none of the tools' libraries: make install-lib CC=... AR=... for another processor.
+install-lib: lib
+	@$(INSTALL) lib
+uninstall:
+	@$(INSTALL) remove
+
+# The library as three files, and some of the tests linked with that instead of libnoh.a.
+AMALGAM       := $(BUILD)/amalgam
+AMALGAM_TESTS := $(patsubst tests/%.c,$(AMALGAM)/%,$(filter %/test_morph.c %/test_controller.c %/test_graph.c %/test_skin.c %/test_null.c,$(TEST_C)))
+amalgam: $(AMALGAM)/noh.c
+$(AMALGAM)/noh.c: $(BUILD)/amalgamate $(RUNTIME_C) $(call sources,runtime,*.h) $(BUILD)/gen/shaders.gen.c
+	@mkdir -p $(@D)
+	$(call say,AMALG,$@)
+	$(Q)$(BUILD)/amalgamate -o $(@D) -I runtime -I $(BUILD)/gen $(RUNTIME_C:runtime/%=%) shaders.gen.c
+$(BUILD)/amalgamate: tools/amalgam/amalgam.c
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(HOSTCC) -std=c99 -O2 $(WARN) $(SANFLAGS) $< -o $@
+$(AMALGAM)/noh.o: $(AMALGAM)/noh.c
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_CFLAGS) -c $< -o $@
+$(AMALGAM)/%: $(BUILD)/tests/%.o $(filter-out %/libnoh.a,$(TEST_LIBS)) $(AMALGAM)/noh.o
+	@mkdir -p $(@D)
+	$(call say,CXX,$@)
+	$(Q)$(CXX) $(ALL_LDFLAGS) $^ -o $@ -lcmocka $(TOOL_LIBS)
+
+# Small programs that show the library; they may use platform/ for a GL context.
+examples: $(EXAMPLES)
+$(BUILD)/examples/%: $(BUILD)/tools/examples/%.o $(PLATFORM_O) $(BUILD)/libnoh.a
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_LDFLAGS) $^ -o $@ -ldl -lm
+
+# Code and data of the library by processor, against the table of the last commit; make sizes-update writes that table.
+sizes:
+	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tools/sizes.sh
+sizes-update:
+	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tools/sizes.sh --update
+
+deps-lint:
+	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build view lint
+lint: deps-lint
+	@$(MAKE) --no-print-directory $(BUILD)/gen/shaders.gen.h $(BUILD)/gen/tool_shaders.gen.h
+	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tools/lint/lint.sh
+
+deps-docs:
+	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh docs
+docs: deps-docs
+	@NOH_BUILD="$(BUILD)" VERSION="$(VERSION)" sh tools/docs/docs.sh
 
 clean:
 	rm -rf $(BUILD)

@@ -58,7 +58,7 @@ struct noh_platform_context {
     EGLSurface surface; /* EGL_NO_SURFACE where none is needed */
 };
 
-/* What a try needs at hand: the functions, the wish, and where to say what failed. */
+/* What each attempt needs: the EGL functions, the desc, and the message for what failed. */
 typedef struct attempt {
     egl_api egl;
     const noh_platform_desc *desc;
@@ -125,7 +125,7 @@ static EGLSurface create_pbuffer(const attempt *at, EGLDisplay display, EGLConfi
     return at->egl.CreatePbufferSurface(display, config, attributes);
 }
 
-/* Where the context draws to, and what to say of it. */
+/* The surface that the context draws to, and its description for messages. */
 typedef struct surface_kind {
     EGLint type; /* of the config; 0: no surface at all */
     EGLSurface (*create)(const attempt *at, EGLDisplay display, EGLConfig config);

@@ -4,14 +4,11 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
-
-#define PATH_BYTES 4096
 
 static noh_result fail_errno(noh_error *error, noh_result result, int code)
 {
@@ -56,39 +53,6 @@ void noh_file_unmap(noh_file *file)
     }
     file->data = NULL;
     file->bytes = 0;
-}
-
-/* 0, or the errno of what failed. */
-static int write_all(int descriptor, const void *data, size_t bytes)
-{
-    const char *p = data;
-    while (bytes) {
-        ssize_t written = write(descriptor, p, bytes);
-        if (written < 0 && errno == EINTR) continue;
-        if (written < 0) return errno;
-        p += written;
-        bytes -= (size_t)written;
-    }
-    return 0;
-}
-
-noh_result noh_file_write(const char *path, const void *data, size_t bytes, noh_error *error)
-{
-    char temporary[PATH_BYTES];
-    int descriptor = -1;
-    for (int attempt = 0; attempt < 100 && descriptor < 0; attempt++) {
-        int length = snprintf(temporary, sizeof temporary, "%s.tmp%ld-%d", path, (long)getpid(), attempt);
-        if (length < 0 || (size_t)length >= sizeof temporary) return fail_errno(error, NOH_ERR_DATA, ENAMETOOLONG);
-        descriptor = open(temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (descriptor < 0 && errno != EEXIST) break;
-    }
-    if (descriptor < 0) return fail_errno(error, NOH_ERR_DATA, errno);
-    int code = write_all(descriptor, data, bytes);
-    if (close(descriptor) != 0 && code == 0) code = errno;
-    if (code == 0 && rename(temporary, path) != 0) code = errno;
-    if (code == 0) return NOH_OK;
-    unlink(temporary);
-    return fail_errno(error, NOH_ERR_DATA, code);
 }
 
 static uint64_t read_clock(clockid_t clock)

@@ -22,8 +22,32 @@ static const char *const call_names[NULL_CALL_COUNT] = {
 
 noh_platform_context *noh_null_count(int call)
 {
-    noh_null_current->counts[call]++;
-    return noh_null_current;
+    noh_platform_context *c = noh_null_current;
+    c->counts[call]++;
+    c->refusing = c->refused_call == call && c->refused_in-- == 0;
+    if (c->refusing) {
+        c->refused_call = -1;
+        c->refused = 1;
+        if (c->error == GL_NO_ERROR) c->error = c->refused_error;
+    }
+    return c;
+}
+
+int noh_null_refuse(noh_platform_context *context, const char *name, uint32_t k, GLenum error)
+{
+    context->refused_call = -1;
+    context->refused_in = k;
+    context->refused_error = error;
+    context->refused = 0;
+    for (int call = 0; name && call < NULL_CALL_COUNT; call++) {
+        if (strcmp(call_names[call], name) == 0) context->refused_call = call;
+    }
+    return !name || context->refused_call >= 0;
+}
+
+int noh_null_refused(const noh_platform_context *context)
+{
+    return context->refused;
 }
 
 void noh_null_wrong(int call, const char *format, ...)
@@ -84,6 +108,7 @@ static noh_result create(const noh_platform_desc *desc, noh_platform_context **o
     context->width = desc && desc->width ? desc->width : 1;
     context->height = desc && desc->height ? desc->height : 1;
     for (int kind = 0; kind < NOH_NULL_KINDS; kind++) context->next[kind] = 1;
+    context->refused_call = -1;
     context->viewport[2] = (GLint)context->width;
     context->viewport[3] = (GLint)context->height;
     noh_null_current = context;

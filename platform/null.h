@@ -3,6 +3,8 @@
  *   noh_null_report_of    counts, objects that live, the first thing that was wrong
  *   noh_null_calls_of     how often one function was called
  *   noh_null_count_anew   begin counting calls again: at the start of a frame
+ *   noh_null_refuse       let one call of a function fail, as a driver that runs out of memory would
+ *   noh_null_refused      whether that call has come
  *
  * The platform "null" has no GL. Every function counts its call and checks that GL
  * would have taken it: names that live, storage before content, updates within their
@@ -47,5 +49,10 @@ void noh_null_report_of(const noh_platform_context *context, noh_null_report *re
 uint32_t noh_null_calls_of(const noh_platform_context *context, const char *name);
 
 void noh_null_count_anew(noh_platform_context *context);
+
+/* From now on the k-th call (from 0) of the function raises a GL error, once; where it makes names it makes none. This
+ * is no violation. name NULL: none is refused any more. Returns 0 for names that the platform does not have. */
+int noh_null_refuse(noh_platform_context *context, const char *name, uint32_t k, GLenum error);
+int noh_null_refused(const noh_platform_context *context);
 
 #endif

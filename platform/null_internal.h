@@ -61,6 +61,10 @@ struct noh_platform_context {
     uint32_t counts[NULL_CALL_COUNT];
     uint32_t draws, outside, allocations, violations;
     char first[160];
+    int refused_call;         /* -1: none */
+    uint32_t refused_in;      /* calls of it until the one that fails */
+    GLenum refused_error;
+    int refusing, refused;    /* the call that runs now fails; it has come */
     GLenum error;
     uint32_t groups;
     GLint viewport[4];

@@ -28,6 +28,7 @@ GLuint noh_null_make(int call, noh_null_kind kind)
 {
     noh_platform_context *c = noh_null_current;
     c->allocations++;
+    if (c->refusing) return 0;
     if (c->next[kind] >= NULL_OBJECTS_MAX) {
         noh_null_wrong(call, "more objects than the null platform keeps");
         return 0;

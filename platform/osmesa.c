@@ -110,7 +110,7 @@ static noh_gl_proc get_proc(void *user, const char *name)
     return context->get_proc(name);
 }
 
-/* The pixels are complete once GL has finished; there is nobody to show them to. */
+/* There is no window: the pixels are in memory once GL has finished. */
 static noh_result present(noh_platform_context *context)
 {
     finish_function finish = (finish_function)context->get_proc("glFinish");

@@ -1,15 +1,18 @@
-/* platform.h: who makes a GL context, maps a file and reads a clock.
+/* platform.h: GL contexts, files and clocks for the tools and tests.
  *
  *   noh_platform_find      a context maker by name: "egl", "angle", "osmesa", "glfw", "null"
  *   noh_platform_names     all names, for messages
  *   noh_file_map / noh_file_unmap / noh_file_write
  *   noh_clock_ns / noh_cpu_clock_ns
  *
- * This is the part that a game replaces with its own: README.md walks a porter
- * through it, template.c is where a port begins. It may use libc; the
- * library in runtime/ never calls it. GL libraries are opened when a context is
- * asked for, so a program that never draws needs none of them installed. They
- * stay open until the process ends, because drivers do not survive being closed. */
+ * A game replaces this part with its own: README.md is the guide, template.c the
+ * starting point. It may use libc; the library in runtime/ never calls it. GL
+ * libraries are opened when a context is created, so a program that never draws
+ * needs none of them. They stay open until the process ends, because drivers do not
+ * survive being unloaded.
+ *
+ * Threads: a context belongs to the thread that made it current; null has one
+ * context for the whole process. Files and clocks, any. */
 #ifndef NOH_PLATFORM_PLATFORM_H
 #define NOH_PLATFORM_PLATFORM_H
 
@@ -28,7 +31,7 @@ typedef struct noh_platform_desc {
 
     const char *window;   /* glfw: the title of a window to show; NULL: it stays hidden. Others have no window */
     void *native_display; /* egl: what eglGetDisplay takes, with native_window */
-    void *native_window;  /* egl: draw into this window of the system's (EGLNativeWindowType as a pointer);
+    void *native_window;  /* egl: draw into this native window (EGLNativeWindowType as a pointer);
                            * NULL: headless. width, height are then the window's own */
 } noh_platform_desc;
 
@@ -37,7 +40,7 @@ typedef struct noh_platform {
     const char *what; /* one line for a person */
 
     /* Make a context and make it current on this thread.
-     * memory  one malloc, given back by destroy
+     * memory  one malloc, freed by destroy
      * errors  NOH_ERR_UNSUPPORTED no way worked: `message` (message_bytes, at least 1)
      *         lists what was tried and what to install; NOH_ERR_MEMORY */
     noh_result (*create)(const noh_platform_desc *desc, noh_platform_context **out, char *message,
@@ -72,8 +75,9 @@ typedef struct noh_file {
 noh_result noh_file_map(const char *path, noh_file *out, noh_error *error);
 void noh_file_unmap(noh_file *file);
 
-/* Write a whole file or change nothing: the bytes go to a new file in the same
- * folder, which then takes the name. A reader sees the old file or the new one.
+/* Write a whole file or change nothing: the bytes go to a new file in the same folder, which then takes the name, so that
+ * a reader sees the old file or the new one. A symbolic link stays: its target is written. A device, a FIFO and this
+ * process's own standard output (/dev/stdout) cannot be replaced and are written to directly.
  * errors  NOH_ERR_DATA the system refuses; `what` its own words, `where` its errno */
 noh_result noh_file_write(const char *path, const void *data, size_t bytes, noh_error *error);
 

@@ -2,8 +2,8 @@
  *
  * Copy this file, name it after your system, and put that system's own calls in place
  * of the system_* functions, which stand for them. Nothing else in noh has to change:
- * add the noh_platform at the end to platforms.h and platform.c if the tools shall know
- * it by name, or use it alone. README.md says what each part has to promise. */
+ * add the noh_platform at the end to platforms.h and platform.c if the tools should know
+ * it by name, or use it alone. README.md says what each part must do. */
 #include "platforms.h"
 
 #include <stdlib.h>
@@ -35,8 +35,8 @@ static noh_result make_current(noh_platform_context *c)
     return system_context_bind(c->context) ? NOH_OK : NOH_ERR_GL;
 }
 
-/* Try the highest OpenGL ES first, down to 3.0, which is enough for everything. Add a line
- * to the message for each try that failed: it is all that a person will see. */
+/* Try the highest OpenGL ES first, down to 3.0, which is enough. Add a line to the message for
+ * each attempt that failed: it is all that the user sees. */
 static noh_result create(const noh_platform_desc *desc, noh_platform_context **out, char *message, size_t message_bytes)
 {
     static const noh_platform_desc defaults;

@@ -1,82 +1,111 @@
-/* noh.h: one header for all of noh, a character runtime in fixed memory.
+/* noh.h: characters in fixed memory: one header for all of noh that needs no GL. With GL include noh_gl.h instead.
  *
- * A game hands noh one block of memory and one .noh pack (made by `noh build`).
- * Every object tells its exact size, is placed in memory that you bring, and is
- * never freed: drop the block and it is gone. Nothing is asked for after init.
+ * noh opens a pack of meshes, skeletons and compressed clips (made by `noh build`), plays the clips, morphs faces and
+ * skins bodies, on the CPU or on OpenGL ES 3.x. It is C99, links memcpy, memset and memcmp and nothing else, and never
+ * allocates, prints, reads a clock or a file, or keeps a global.
  *
- *   memory in, object out     noh_x_size(...) -> bytes
- *                             noh_x_init(memory, bytes, ..., &x, &error)
+ * Memory. An object tells its exact size, is built in memory that you bring, and is never freed: drop the memory and it
+ * is gone. Nothing asks for memory after init. Memory is aligned to NOH_MEMORY_ALIGN (16) bytes.
  *
- * What is where, in the order in which you need it:
- *   base/result.h        result codes and what went wrong
- *   base/limits.h        every limit, in one place
- *   pack/pack.h          open a pack where it lies; format.h has its bytes
- *   mesh/mesh.h          vertices, triangles, morph targets and levels of detail of a pack
- *   anim/pack_motion.h   skeletons and compressed motion of a pack
- *   anim/clip_codec.h    a compressed clip, ready to be played
- *   anim/clip_cache.h    its frames in a fixed block, and poses from them
- *   anim/controller.h    tracks, changes over time, callback keys; controller_pose.h: poses of them
- *   anim/motion_set.h    a pack's clips joined to the controller: start here
- *   anim/graph.h         a small animation graph over a controller
- *   anim/local_to_model.h  joint matrices and palettes
- *   deform/morph.h       morph targets on the CPU: reference and fallback
- *   character/character.h  one character: controller, detail, what it shows
- *   character/detail.h   detail chosen by pixels; level_pools.h: memory by level of detail, shared out among instances
- *   character/time_lod.h posing less often than once a frame; time_lod_points.h: what that moves vertices by
- *   character/detail_pack.h  what a pack says of both; joint_lod.h: what posing fewer joints costs
- *   character/scheduler.h  who is posed in a frame, within a budget; bounds.h: where a character is
- *   gl/gl_api.h          the GL ES functions that noh calls: you bring the lookup
- *   gl/gl_caps.h         what this GPU can really do, found by trying
- *   gl/gl_quirks.h       what a renderer's name tells and a probe cannot
- *   gl/gl_morph.h        morph targets accumulated on the GPU, five ways
- *   gl/gl_skin.h         joints of many instances on the GPU
- *   gl/gl_draw.h         meshes on the GPU and a plain renderer; gl_variants.h: its programs
- *   gl/gl_debug.h        names for what RenderDoc and apitrace show
- *   gl/gl_lost.h         after a lost context
+ *     bytes = noh_x_size(&desc);                        0: the desc is impossible, init says why
+ *     noh_x_init(memory, bytes, &desc, &x, &error)      builds it in place, writes not a byte past `bytes`
  *
- * The library needs memcpy, memset and memcmp, and nothing else. */
+ * A pack is read where it lies, and so is all that is made of it: keep its bytes readable and unchanged.
+ *
+ * Names. noh_noun_verb() is a function, noh_noun a type, NOH_NOUN a constant. A desc is a struct of settings in which
+ * zero means the documented default. x_count counts, x_bytes counts bytes, x_max is a limit. Times end in their unit:
+ * ticks, seconds. Matrices are 3 rows of 4 floats that multiply columns, quaternions x y z w, triangles counter-clockwise.
+ *
+ * Errors. What can fail returns a noh_result, NOH_OK (0) or an error, and leaves its outputs untouched on error. The last
+ * parameter is then a noh_error, which may be NULL: `what` is a sentence and never NULL after a failure, `where` the
+ * byte or index at fault, `need` the size or count that was wanted; 0 where that means nothing. Bad data, short memory
+ * and a missing capability are errors. A caller's bug (a NULL, an index past its count) is an assert: see base/assert.h.
+ *
+ * Not found. A function that finds by name returns an index, or NOH_NONE. A function that returns a noh_result returns
+ * NOH_ERR_NOT_FOUND.
+ *
+ * Inits. NULL or misaligned memory is NOH_ERR_ARG, too little is NOH_ERR_MEMORY; `need` is always the bytes needed.
+ *
+ * Threads. What is opened from bytes (packs, meshes, skins, skeletons, clips) and every desc is read-only: any number of
+ * threads may share it. What an init made is for one thread at a time, each object for itself: two characters may be
+ * posed on two threads. A clip cache is changed by whoever samples from it; its header says how threads share one.
+ * Functions without an object (base/, deform/) keep no state. GL objects belong to the thread of the GL context. The
+ * library takes no lock. Each header says in a line "Threads:" what differs. */
 #ifndef NOH_H
 #define NOH_H
 
-#include "base/arena.h"
-#include "base/hash.h"
-#include "base/limits.h"
-#include "base/result.h"
-#include "pack/pack.h"
-#include "mesh/mesh.h"
-#include "anim/pack_motion.h"
-#include "anim/clip_codec.h"
-#include "anim/clip_cache.h"
-#include "anim/controller.h"
-#include "anim/controller_pose.h"
-#include "anim/event_queue.h"
-#include "anim/motion_set.h"
-#include "anim/graph.h"
-#include "anim/local_to_model.h"
-#include "anim/ping_pong.h"
-#include "deform/morph.h"
-#include "deform/skin.h"
-#include "deform/dual_quaternion.h"
-#include "deform/bounds.h"
-#include "deform/pick.h"
-#include "gl/gl_api.h"
-#include "gl/gl_caps.h"
-#include "gl/gl_quirks.h"
-#include "gl/gl_memory.h"
-#include "gl/gl_morph.h"
-#include "gl/gl_skin.h"
-#include "gl/gl_variants.h"
-#include "gl/gl_draw.h"
-#include "gl/gl_debug.h"
-#include "gl/gl_lost.h"
-#include "character/bounds.h"
-#include "character/character.h"
-#include "character/detail.h"
-#include "character/detail_pack.h"
-#include "character/joint_lod.h"
-#include "character/level_pools.h"
-#include "character/scheduler.h"
-#include "character/time_lod.h"
-#include "character/time_lod_points.h"
+/* ---- what a game calls first ---- */
+
+#include "base/version.h"             /* which noh this is */
+#include "base/result.h"              /* noh_result, noh_error */
+#include "base/limits.h"              /* every limit, in one place */
+#include "pack/pack.h"                /* open a pack; pack/format.h has its bytes */
+#include "mesh/mesh.h"                /* its meshes and skins: vertices, triangles, targets, LOD levels */
+#include "anim/pack_motion.h"         /* its skeletons and clips */
+#include "anim/motion_set.h"          /* a pack's clips, ready to be played */
+#include "character/character.h"      /* one character: a controller, what it shows, how finely */
+#include "character/skin_palette.h"   /* what it shows, as matrices of any skin */
+#include "anim/controller.h"          /* tracks: start, fade, seek, callback keys */
+#include "anim/controller_pose.h"     /* poses of a controller */
+#include "anim/local_to_model.h"      /* poses to matrices and palettes */
+#include "deform/morph.h"             /* targets on the CPU: the reference and the fallback */
+#include "deform/skin.h"              /* skins on the CPU, likewise */
+#include "deform/bounds.h"            /* a box round what is deformed */
+#include "deform/pick.h"              /* a ray against what is deformed */
+
+/* ---- more ways to move ---- */
+
+#include "anim/graph.h"               /* an animation graph over a controller */
+#include "anim/mask.h"                /* joints that a clip moves */
+#include "anim/root_motion.h"         /* root displacement of clips */
+#include "anim/event_queue.h"         /* callback keys collected, to be read later */
+#include "anim/ping_pong.h"           /* a weight that swings */
+#include "deform/dual_quaternion.h"   /* skins that keep their volume where joints twist */
+
+/* ---- crowds: what is drawn and posed, how finely, how often ---- */
+
+#include "character/bounds.h"         /* where a character is */
+#include "character/detail.h"         /* LOD levels chosen by an error in pixels */
+#include "character/detail_pack.h"    /* the same, filled in from a pack */
+#include "character/level_pools.h"    /* memory by LOD level, shared out among instances */
+#include "character/scheduler.h"      /* which characters are posed in a frame, within a budget */
+#include "character/time_lod.h"       /* posing less often than once a frame */
+#include "character/time_lod_points.h" /* what that moves vertices by */
+#include "character/joint_lod.h"      /* what posing fewer joints costs */
+
+/* ---- parts, for tools and engines of your own ---- */
+
+#include "base/arena.h"               /* carve a block */
+#include "base/half.h"                /* 16-bit floats */
+#include "base/hash.h"                /* FNV-1a, CRC-32C */
+#include "base/quat.h"                /* quaternions */
+#include "base/trig.h"                /* trigonometry without libm, the same bits everywhere */
+#include "anim/blend.h"               /* poses mixed and added */
+#include "anim/clip_cache.h"          /* decoded frames in a fixed block, and samples of them */
+#include "anim/clip_view.h"           /* a thread's own view of a clip cache */
+#include "anim/clip_codec.h"          /* one compressed clip */
+
+/* Glossary: one word for one thing, in names, documents, the command line and messages.
+ *
+ *   pack, chunk          a .noh file; one of its parts: a mesh, a skeleton, a clip...
+ *   skeleton, bind pose  joints and their parents; the pose in which a mesh was attached to them
+ *   joint                a node of a skeleton (elsewhere also "bone")
+ *   palette              the matrices of the joints that one draw uses
+ *   target, pair         a morph target; one vertex moved by one target
+ *   delta texel          a stored difference of one vertex in one target: position, normal, tangent
+ *   accumulation texel   the sum of a vertex's weighted delta texels, in an accumulator
+ *   clip                 a compressed animation of joints and floats
+ *   clip set             the clips that characters share, with their keys and cache; short: set
+ *   track                a clip that a controller plays: its position, weight and playback speed
+ *   controller           the tracks of one character, and their changes over time
+ *   callback key         a named moment of a clip that is reported when a track passes it
+ *   tick                 1/48,000 second, of time and nothing else
+ *   sample rate          frames per second that a clip was made with
+ *   playback speed       how fast a track runs: 1 is as made
+ *   update rate          how often an instance is posed: every frame, 30, 15 or 8 times a second
+ *   cached segment       decoded frames of a clip, an entry of the clip cache
+ *   LOD level            a version of a mesh or skeleton; 0 is the full one, higher ones are coarser
+ *   slot                 a place in a fixed pool, held by an instance
+ *   radius               the farthest that something reaches from its centre, or is moved */
 
 #endif

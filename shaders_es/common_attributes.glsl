@@ -1,5 +1,6 @@
-/* common_attributes.glsl: directions as the pack stores them, octahedral pairs of 16-bit
- * integers. They come as integers because drivers differ in how they normalise. */
+/* common_attributes.glsl: directions as the pack stores them, pairs of 16-bit integers. The sphere is projected on an
+ * octahedron and the lower half folded over the upper one (Cigolle et al., "A Survey of Efficient Representations for
+ * Independent Unit Vectors", 2014). They are integer attributes because drivers differ in how they normalise. */
 vec3 unfold(vec2 p)
 {
     vec3 v = vec3(p, 1.0 - abs(p.x) - abs(p.y));

@@ -1,5 +1,6 @@
-/* common_delta.glsl: how a delta texel is read (runtime/pack/format.h).
- * Three words, one per axis; a field is shifted to the top, then down with its sign. */
+/* common_delta.glsl: how a delta texel is decoded (runtime/pack/format.h). Three words, one per axis, each with a field for
+ * position, normal and tangent. A signed field is extracted by two shifts: left until its sign is the word's, then right,
+ * which copies the sign. */
 precision highp float;
 precision highp int;
 precision highp usampler2D;

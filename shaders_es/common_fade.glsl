@@ -1,4 +1,4 @@
-/* common_fade.glsl: the pattern by which levels of detail fade. Include it in your own fragment shader and keep a pixel
+/* common_fade.glsl: the pattern by which LOD levels fade. Put it into your own fragment shader and keep a pixel
  * where from <= fade_noise(gl_FragCoord.xy) < to, of a noh_gl_detail.
  *
  * A number in [0, 1) for each pixel, in integers, so that every driver and both draws of a fade have the same one:

@@ -1,5 +1,5 @@
-/* common_layers.glsl: what a vertex shader needs to fetch its accumulated deltas.
- * Include it in your own vertex shader, call morph_fetch, add and renormalise. */
+/* common_layers.glsl: a vertex's accumulated deltas. In your own vertex shader call morph_fetch, which adds them, then
+ * morph_frame where it returned true (shaders_es/README.md). */
 #ifdef LAYERS_UINT
 uniform highp usampler2DArray u_layers;
 #define LAYER_FETCH(texel, layer) uintBitsToFloat(texelFetch(u_layers, ivec3(texel, layer), 0).xyz)
@@ -9,8 +9,8 @@ uniform highp sampler2DArray u_layers;
 #endif
 uniform highp ivec4 u_morph; /* tile x, tile y, width log2, touched vertices */
 
-/* Add the deltas of a vertex in the tile of an instance (the numbers of u_morph). False for vertices
- * that no target touches: they have none, and need no morph_frame. */
+/* Add a vertex's deltas from the tile of an instance (the numbers of u_morph). Texel i of a tile belongs to vertex i; the
+ * vertices that no target moves come last in a mesh and have none: then false, and morph_frame is not needed. */
 bool morph_fetch_tile(ivec4 tile, int vertex, inout vec3 position, inout vec3 normal, inout vec3 tangent)
 {
     bool touched = vertex < tile.w;
@@ -28,7 +28,7 @@ bool morph_fetch(int vertex, inout vec3 position, inout vec3 normal, inout vec3 
     return morph_fetch_tile(u_morph, vertex, position, normal, tangent);
 }
 
-/* Unit normal; unit tangent at right angles to it (row A11). */
+/* Sums of directions are not unit: make the normal unit, and the tangent perpendicular to it and unit (Gram and Schmidt). */
 void morph_frame(inout vec3 normal, inout vec3 tangent)
 {
     normal = normalize(normal);

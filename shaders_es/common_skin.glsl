@@ -1,7 +1,7 @@
-/* common_skin.glsl: vertices moved by the joints of a palette (rows C3.4-C3.8, C8.7, E1-E4).
- * Include it in your own vertex shader after common_layers.glsl; call morph_vertex for the texel
- * to fetch deltas from, add them in bind space, then call skin. What is bound and set comes from a
- * noh_gl_skin_binding. Define
+/* common_skin.glsl: vertices moved by the joints of a palette.
+ * In your own vertex shader it goes after common_layers.glsl (shaders_es/README.md). Call morph_vertex for the vertex to
+ * fetch deltas for, add them in bind space, then call skin: morphing comes before skinning (Granberg, Character Animation
+ * with Direct3D, 2009, ch. 8), normals and tangents too. Define
  *
  *   INFLUENCES        joints stored per vertex: 0 (skin does nothing), 1, 2, 4 or 8
  *   DRAWN             how many of them move it, the strongest first, their weights made to sum to 1
@@ -97,7 +97,8 @@ int joint_row(int i)
     return JOINT_ROW(int(places >> uint(8 * (i & 3)) & 255u));
 }
 
-/* The weights that are stored, as integers of 2^-22; the first is what they leave of 1. */
+/* The stored weights, integers in units of 2^-22. The first is not stored: it is what the others leave of 1, so the sum is
+ * exactly 1. */
 void stored_weights(out float w[INFLUENCES])
 {
 #if INFLUENCES == 2
@@ -155,8 +156,9 @@ vec3 rotate(vec4 q, vec3 v)
     return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v);
 }
 
-/* The stretch is blended first, linearly: xx, yy, zz, xy and then xz, yz of a symmetric matrix. Then the rigid
- * motion: dual quaternions summed on the strongest joint's side of the sphere and made unit (Kavan et al. 2008). */
+/* Dual quaternion blending (Kavan et al. 2008) with a stretch. The stretch, a symmetric matrix xx, yy, zz, xy, xz, yz, is
+ * blended linearly and applied first. Then the rigid motion: q and -q are the same rotation, so each dual quaternion is
+ * added with the sign that puts it on the strongest joint's side of the sphere; the sum is made unit. */
 void skin(inout vec3 position, inout vec3 normal, inout vec4 tangent)
 {
     float w[DRAWN];
@@ -196,8 +198,9 @@ void skin(inout vec3 position, inout vec3 normal, inout vec4 tangent)
                    tangent.w * side);
 }
 #else
-/* The matrices are blended first. Normals go by the cofactors, which are the inverse transpose up to a
- * factor (rows C3.8, E4); a mirroring joint turns them and the tangent's handedness round. */
+/* Linear blending (Granberg 2009, ch. 3): the matrices are blended first, then used once. Normals are transformed by the
+ * cofactors of the blend, its inverse transpose up to a factor, because scales need not be uniform; a blend that mirrors
+ * flips their sign and the tangent's handedness. */
 void skin(inout vec3 position, inout vec3 normal, inout vec4 tangent)
 {
     float w[DRAWN];

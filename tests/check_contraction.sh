@@ -1,15 +1,15 @@
 #!/bin/sh
-# check_contraction.sh: built for a machine with fused multiply-add, the library has none.
-# gcc 12 fuses alternating sums and differences of products in spite of -ffp-contract=off;
-# results are then other bits than everywhere else.
+# check_contraction.sh: built for a processor with fused multiply-add, the library uses none.
+# gcc 12 fuses alternating sums and differences of products in spite of -ffp-contract=off, and the results then differ
+# in bits from those of other processors.
 . "$(dirname "$0")/cli/lib.sh"
 
 if [ -n "${NOH_SAN:-}" ]; then
-    skip 'no fused multiply-add' 'the build without sanitizers says it'
+    skip 'no fused multiply-add' 'checked in the build without sanitizers'
 elif ! ${CC:-gcc} -mfma -E - </dev/null >/dev/null 2>&1 || ! command -v objdump >/dev/null 2>&1; then
     skip 'no fused multiply-add' "${CC:-gcc} does not build for x86-64 with -mfma, or objdump is missing"
 else
-    for source in runtime/*/*.c; do
+    for source in $(find runtime -name "*.c"); do
         object=$work/$(echo "$source" | tr / _).o
         ${CC:-gcc} -std=c99 -O2 -ffp-contract=off -fno-math-errno -mavx2 -mfma -Iruntime "-I$build/gen" -c "$source" -o "$object" || exit 1
         objdump -d "$object" | grep 'vfn\?m\(add\|sub\|addsub\|subadd\)' | sed "s|^|$source: |" >>"$work/fused"

@@ -1,7 +1,7 @@
 #!/bin/sh
-# check_stack.sh: the deepest stack of any library call, out of gcc's call graph, is at
-# most NOH_STACK_BYTES, and nothing recurses. A call through a pointer is one of the
-# library's own small callbacks, counted as 256 bytes, or the GL driver, which is not ours.
+# check_stack.sh: the deepest stack of any call of the library is at most NOH_STACK_BYTES, and nothing recurses, as
+# gcc's call graph tells. A call through a pointer counts 256 bytes: it is either a small callback of the library, or
+# the GL driver, whose stack is not ours.
 set -u
 build=${NOH_BUILD:-build}
 work=$build/stack
@@ -16,7 +16,7 @@ fi
 
 rm -rf "$work"
 mkdir -p "$work"
-for source in runtime/*/*.c; do
+for source in $(find runtime -name "*.c"); do
     object=$work/$(echo "$source" | tr / _).o
     gcc -std=c99 -O2 -ffp-contract=off -fno-math-errno -Iruntime "-I$build/gen" -fcallgraph-info=su -c "$source" -o "$object" || exit 1
 done

@@ -1,16 +1,16 @@
 #!/bin/sh
-# cross.sh: the library for other processors, and its CPU tests run there: aarch64 (NEON) and
-# armv7 (scalar) under qemu-user, wasm (scalar) under node. What is not installed is skipped and
-# says so. Closes with "N passed, N failed, N skipped", as tests/run.sh does.
+# cross.sh: builds the library for other processors and runs its CPU tests there: aarch64 (NEON) and armv7 (scalar)
+# under qemu-user, wasm (scalar) under node. A target whose tools are missing is skipped and says why. Closes with
+# "N passed, N failed, N skipped", as tests/run.sh does.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
 passed=0 failed=0 skipped=0
-# Encoding the large clips takes minutes under an emulator: only what the tests make themselves.
+# Encoding the large clips takes minutes under an emulator: the tests run on the clips that they make themselves.
 NOH_ASSETS=none
 export NOH_ASSETS
 
-has() { # the first command of these that is not here is printed
+has() { # prints the first of these commands that is missing
     for tool in "$@"; do
         command -v "$tool" >/dev/null 2>&1 || { echo "no $tool here"; return 1; }
     done
@@ -30,7 +30,7 @@ count() { # NAME LOG EXIT_CODE
     fi
 }
 
-# TARGET CC AR LDFLAGS RUNNER...: build, say how large the library is, run each test.
+# TARGET CC AR LDFLAGS RUNNER...: builds the library and its tests, prints its size, runs each test.
 target() {
     name=$1 cc=$2 ar=$3 flags=$4
     shift 4
@@ -41,7 +41,7 @@ target() {
         skipped=$((skipped + 1))
         return
     fi
-    if ! make --no-print-directory -j"${JOBS:-2}" BUILD="$folder" CC="$cc" AR="$ar" LDFLAGS="$flags" CROSS=1 DEPS=0 \
+    if ! make --no-print-directory -j"${JOBS:-2}" BUILD="$folder" CC="$cc" AR="$ar" LDFLAGS="$flags" CFLAGS= CXXFLAGS= CPPFLAGS= CROSS=1 DEPS=0 \
         lib cross-tests >"$folder.log" 2>&1; then
         failed=$((failed + 1))
         echo "    it does not build:"
@@ -50,15 +50,16 @@ target() {
     fi
     passed=$((passed + 1))
     before=$passed
-    tests=$(for source in tests/unit/test_*.c; do
-        test=$folder/cross/$(basename "$source" .c)
+    tests=$(find tests/unit -name 'test_*.c' | sort | while read -r source; do
+        test=${source#tests/}
+        test=$folder/cross/${test%.c}
         [ ! -f "$test" ] || echo "$test"
     done)
     # shellcheck disable=SC2016
     echo "$tests" | xargs -P "${JOBS:-2}" -I '{}' sh -c \
         'test=$1; shift; timeout -k 5 900 "$@" "$test" >"$test.tap" 2>&1 </dev/null; echo $? >"$test.code"' sh '{}' "$@"
     for test in $tests; do
-        count "$(basename "$test")" "$test.tap" "$(cat "$test.code")"
+        count "${test#"$folder"/cross/}" "$test.tap" "$(cat "$test.code")"
     done
     echo "    libnoh.a builds ($(wc -c <"$folder/libnoh.a") bytes), $((passed - before)) tests passed there"
 }
@@ -66,7 +67,7 @@ target() {
 mkdir -p "$build"
 target aarch64 aarch64-linux-gnu-gcc aarch64-linux-gnu-ar -static qemu-aarch64-static
 target armv7 'arm-linux-gnueabihf-gcc -mfpu=neon' arm-linux-gnueabihf-ar -static qemu-arm-static
-# node's own fetch would not read the .wasm file that emscripten's older loader asks it for
+# node's fetch does not read files, and emscripten's older loader asks it to
 target wasm emcc emar '-s NODERAWFS=1 -s EXIT_RUNTIME=1 -s ALLOW_MEMORY_GROWTH=1 -s TOTAL_STACK=1MB' node --no-experimental-fetch
 
 echo "$passed passed, $failed failed, $skipped skipped"

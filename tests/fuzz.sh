@@ -1,8 +1,8 @@
 #!/bin/sh
-# fuzz.sh: libFuzzer on the pack reader and on the clip decoder, with AddressSanitizer and UBSan, both
-# at once for FUZZ_SECONDS (60) each, from the seeds in build/tests/fuzz/corpus and clips. Closes like
-# run.sh. What is found lies in build/fuzz/TARGET-crash-*: copy it to tests/fuzz/found/ (packs) or
-# found_clips/, where `make check` replays it.
+# fuzz.sh: runs libFuzzer on the pack reader and on the clip decoder, with AddressSanitizer, UBSan and all asserts on,
+# both at once for FUZZ_SECONDS (60), from the seeds in build/tests/fuzz/corpus and clips. Closes like run.sh. A crash
+# is saved as build/fuzz/TARGET-crash-*: copy it to tests/fuzz/found/ (packs) or found_clips/, where `make check`
+# replays it.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
@@ -22,14 +22,14 @@ echo 'int LLVMFuzzerTestOneInput(const unsigned char *d, unsigned long n); int L
     skip "$clang has no libFuzzer or sanitizer runtime (libclang-rt-dev)"
 
 flags="-std=c99 -O1 -g -ffp-contract=off -fno-math-errno -DNOH_LIBFUZZER -fsanitize=fuzzer,address,undefined
-    -fno-sanitize-recover=all -fno-omit-frame-pointer -Iruntime -Itests -I$build/gen"
+    -fno-sanitize-recover=all -fno-omit-frame-pointer -DNOH_ASSERT_LEVEL=2 -Iruntime -Itests -Itests/support -I$build/gen"
 
-# fuzz TARGET MAX_LEN FOUND SEEDS: 0 when nothing was found
+# fuzz TARGET MAX_LEN FOUND SEEDS: succeeds when nothing was found
 fuzz() {
     target=$1 max_len=$2 found=$3
     mkdir -p "$work/$target.corpus"
     # shellcheck disable=SC2086
-    "$clang" $flags "tests/fuzz/$target.c" tests/pack_walk.c runtime/*/*.c "$build/gen/shaders.gen.c" -o "$work/$target" || return 1
+    "$clang" $flags "tests/fuzz/$target.c" $(find tests -name pack_walk.c) $(find runtime -name "*.c") "$build/gen/shaders.gen.c" -o "$work/$target" || return 1
     set -- "$work/$target.corpus" "$4"
     [ ! -d "$found" ] || set -- "$@" "$found"
     "$work/$target" -seed=1 -max_total_time="$seconds" -max_len="$max_len" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
@@ -40,7 +40,7 @@ packs=$!
 fuzz fuzz_clip 4096 tests/fuzz/found_clips "$build/tests/fuzz/clips" &
 clips=$!
 
-# told TARGET RESULT: what its log says
+# told TARGET RESULT: prints what its log says
 passed=0 failed=0
 told() {
     echo "$1"

@@ -112,7 +112,8 @@ void fixture_morph_open(fixture_morph *m, const noh_gl_morph_desc *desc, const n
         fail_msg("plan: %s", error.what);
     }
     m->memory = test_aligned(NULL, (size_t)m->plan.cpu_bytes);
-    if (noh_gl_morph_init(m->memory, (size_t)m->plan.cpu_bytes, &g->gl, &m->caps, &m->ledger, desc, &m->morph, log, sizeof log,
+    if (noh_gl_morph_init(m->memory, (size_t)m->plan.cpu_bytes,
+                          &(noh_gl_device){ &g->gl, &m->caps, &m->ledger, log, sizeof log }, desc, &m->morph,
                           &error)) {
         fail_msg("init: %s\n%s", error.what, log);
     }
@@ -156,13 +157,13 @@ noh_mesh fixture_view_of(const fixture_morph *m, uint32_t instance)
 void fixture_set_level(fixture_morph *m, uint32_t instance, uint32_t level)
 {
     m->levels[instance] = level;
-    noh_gl_morph_level(m->morph, instance, level);
+    noh_gl_morph_set_level(m->morph, instance, level);
 }
 
 void fixture_set(fixture_morph *m, uint32_t instance, const float *weights)
 {
     memcpy(m->weights[instance], weights, 4u * (size_t)fixture_mesh_of(m, instance)->header->target_count);
-    assert_int_equal(noh_gl_morph_weights(m->morph, instance, weights, NULL), NOH_OK);
+    assert_int_equal(noh_gl_morph_set_weights(m->morph, instance, weights, NULL), NOH_OK);
 }
 
 void fixture_set_random(fixture_morph *m, uint32_t instance, test_random *r)

@@ -5,7 +5,7 @@
 
 #include "support.h"
 
-#include "gpu.h"
+#include "readback.h"
 
 /* One EGL context for the whole program; skips the test where there is none. Starts with no
  * GL errors counted. */

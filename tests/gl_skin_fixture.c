@@ -88,7 +88,8 @@ static void open_skin(fixture_skin *f, noh_palette_mode mode)
         fail_msg("plan: %s", error.what);
     }
     f->memory = test_aligned(NULL, (size_t)f->plan.cpu_bytes);
-    if (noh_gl_skin_init(f->memory, (size_t)f->plan.cpu_bytes, &g->gl, &g->caps, &f->ledger, &desc, &f->skin, &error)) {
+    if (noh_gl_skin_init(f->memory, (size_t)f->plan.cpu_bytes,
+                         &(noh_gl_device){ &g->gl, &g->caps, &f->ledger, NULL, 0 }, &desc, &f->skin, &error)) {
         fail_msg("init: %s", error.what);
     }
 }
@@ -153,8 +154,8 @@ static float *random_matrices(const noh_pack *pack, uint32_t skin_index, test_ra
     noh_skeleton skeleton;
     noh_transform *pose;
     float *world, *matrices;
-    assert_int_equal(noh_pack_skin_at(pack, skin_index, &skin), NOH_OK);
-    assert_int_equal(noh_pack_skeleton_at(pack, skin.header->skeleton, &skeleton, NULL), NOH_OK);
+    assert_int_equal(noh_pack_skin_at(pack, skin_index, &skin, NULL), NOH_OK);
+    assert_int_equal(noh_pack_skeleton_at(pack, skin.header->skeleton, &skeleton, NULL, NULL), NOH_OK);
     pose = test_zeros(sizeof *pose * skeleton.joint_count);
     world = test_zeros(48u * (size_t)skeleton.joint_count);
     matrices = test_zeros(48u * (size_t)skin.header->joint_count);
@@ -178,7 +179,7 @@ void fixture_skin_pose(fixture_skin *f, test_random *r)
         f->matrices[i] = NULL;
         if (mesh->header->skin != NOH_NONE) {
             f->matrices[i] = random_matrices(f->pack, mesh->header->skin, r);
-            noh_gl_skin_set(f->skin, i, f->matrices[i]);
+            noh_gl_skin_set_matrices(f->skin, i, f->matrices[i]);
         }
     }
     noh_gl_morph_update(f->morph.morph, NULL);
@@ -196,7 +197,7 @@ noh_vertex *fixture_skin_reference(const fixture_skin *f, uint32_t instance)
     noh_skin skin;
     noh_morph_accumulate_scalar(mesh, f->morph.weights[instance], &layers);
     if (mesh->header->flags & NOH_MESH_DUAL_QUATERNION) {
-        assert_int_equal(noh_pack_skin_at(f->pack, mesh->header->skin, &skin), NOH_OK);
+        assert_int_equal(noh_pack_skin_at(f->pack, mesh->header->skin, &skin, NULL), NOH_OK);
         joints = test_zeros(sizeof *joints * skin.header->joint_count);
         noh_skin_dual_quaternions(f->matrices[instance], skin.header->joint_count, joints);
     }

@@ -17,6 +17,11 @@ typedef struct value {
     uint32_t first, next;
 } value;
 
+typedef struct decoded_accessor {
+    double *values; /* [count][components]; NULL until it is asked for */
+    uint32_t components, count;
+} decoded_accessor;
+
 struct oracle {
     char *path;
     uint8_t *file; /* the whole file */
@@ -26,6 +31,8 @@ struct oracle {
     uint32_t value_count;
     uint8_t **buffers; /* decoded or read; NULL: the .glb's chunk */
     uint32_t buffer_count;
+    decoded_accessor *decoded; /* [accessor_count] */
+    uint32_t accessor_count;
 };
 
 typedef struct reader {
@@ -264,11 +271,17 @@ oracle *oracle_read(const char *path)
     for (uint32_t i = 0; i < o->buffer_count; i++) {
         o->buffers[i] = load_buffer(o, i);
     }
+    o->accessor_count = length(o, member(o, 1, "accessors"));
+    o->decoded = test_zeros(sizeof *o->decoded * (o->accessor_count + 1u));
     return o;
 }
 
 void oracle_free(oracle *o)
 {
+    for (uint32_t i = 0; i < o->accessor_count; i++) {
+        free(o->decoded[i].values);
+    }
+    free(o->decoded);
     for (uint32_t i = 0; i < o->buffer_count; i++) {
         free(o->buffers[i]);
     }
@@ -357,7 +370,7 @@ static void read_sparse(const oracle *o, uint32_t accessor, uint32_t components,
 }
 
 /* out[count][components]; to be freed. */
-static double *read_accessor(const oracle *o, uint32_t index, uint32_t components, uint32_t *count)
+static double *decode_accessor(const oracle *o, uint32_t index, uint32_t components, uint32_t *count)
 {
     uint32_t a = top(o, "accessors", index);
     int component = (int)number(o, a, "componentType", 0), normalized = is_true(o, a, "normalized");
@@ -376,6 +389,20 @@ static double *read_accessor(const oracle *o, uint32_t index, uint32_t component
         read_sparse(o, a, components, out);
     }
     return out;
+}
+
+/* The same, decoded once: the tests ask for the same accessors in every pose. They belong to the oracle. */
+static const double *read_accessor(const oracle *o, uint32_t index, uint32_t components, uint32_t *count)
+{
+    decoded_accessor *a = &o->decoded[index];
+    assert_true(index < o->accessor_count);
+    if (!a->values || a->components != components) {
+        free(a->values);
+        a->values = decode_accessor(o, index, components, &a->count);
+        a->components = components;
+    }
+    *count = a->count;
+    return a->values;
 }
 
 /* ---- meshes ---- */
@@ -409,12 +436,11 @@ uint32_t oracle_vertex_count(const oracle *o, uint32_t mesh, uint32_t primitive)
 void oracle_positions(const oracle *o, uint32_t mesh, uint32_t primitive, const double *weights, double *out)
 {
     uint32_t p = primitive_at(o, mesh, primitive), targets = member(o, p, "targets"), count, same;
-    double *base = read_accessor(o, (uint32_t)number(o, member(o, p, "attributes"), "POSITION", 0), 3, &count);
+    const double *base = read_accessor(o, (uint32_t)number(o, member(o, p, "attributes"), "POSITION", 0), 3, &count);
     memcpy(out, base, sizeof *out * 3u * count);
-    free(base);
     for (uint32_t t = 0; t < length(o, targets); t++) {
         uint32_t target = element(o, targets, t);
-        double *delta;
+        const double *delta;
         if (!member(o, target, "POSITION") || weights[t] == 0.0) {
             continue;
         }
@@ -423,7 +449,6 @@ void oracle_positions(const oracle *o, uint32_t mesh, uint32_t primitive, const 
         for (size_t i = 0; i < 3u * (size_t)count; i++) {
             out[i] += weights[t] * delta[i];
         }
-        free(delta);
     }
 }
 
@@ -494,10 +519,8 @@ int oracle_channel_node(const oracle *o, uint32_t animation, uint32_t channel)
 double oracle_channel_end(const oracle *o, uint32_t animation, uint32_t channel)
 {
     uint32_t count;
-    double *times = read_accessor(o, (uint32_t)number(o, sampler_at(o, animation, channel), "input", 0), 1, &count);
-    double end = times[count - 1];
-    free(times);
-    return end;
+    const double *times = read_accessor(o, (uint32_t)number(o, sampler_at(o, animation, channel), "input", 0), 1, &count);
+    return times[count - 1];
 }
 
 /* Keys k and k + 1 around the time, s between them; values[key][3][width] for splines. */
@@ -520,8 +543,9 @@ void oracle_sample(const oracle *o, uint32_t animation, uint32_t channel, double
     uint32_t sampler = sampler_at(o, animation, channel), keys, values, k = 0;
     uint32_t width = oracle_target_count(o, (uint32_t)oracle_node_mesh(o, (uint32_t)oracle_channel_node(o, animation, channel)));
     const char *kind = text(o, sampler, "interpolation");
-    double *times = read_accessor(o, (uint32_t)number(o, sampler, "input", 0), 1, &keys);
-    double *data = read_accessor(o, (uint32_t)number(o, sampler, "output", 0), 1, &values), span, s;
+    const double *times = read_accessor(o, (uint32_t)number(o, sampler, "input", 0), 1, &keys);
+    const double *data = read_accessor(o, (uint32_t)number(o, sampler, "output", 0), 1, &values);
+    double span, s;
     assert_int_equal(values, keys * width * (kind && kind[0] == 'C' ? 3u : 1u));
     while (k + 1 < keys && times[k + 1] <= time) {
         k++;
@@ -531,8 +555,6 @@ void oracle_sample(const oracle *o, uint32_t animation, uint32_t channel, double
     for (uint32_t i = 0; i < width; i++) {
         weights[i] = interpolate(data, width, i, k, s, span, kind ? kind[0] : 'L');
     }
-    free(times);
-    free(data);
 }
 
 /* ---- poses ---- */
@@ -570,8 +592,9 @@ static void sample_transform(const oracle *o, uint32_t animation, uint32_t chann
 {
     uint32_t sampler = sampler_at(o, animation, channel), keys, values, k = 0;
     const char *kind = text(o, sampler, "interpolation");
-    double *times = read_accessor(o, (uint32_t)number(o, sampler, "input", 0), 1, &keys), span, s;
-    double *data = read_accessor(o, (uint32_t)number(o, sampler, "output", 0), width, &values);
+    const double *times = read_accessor(o, (uint32_t)number(o, sampler, "input", 0), 1, &keys);
+    const double *data = read_accessor(o, (uint32_t)number(o, sampler, "output", 0), width, &values);
+    double span, s;
     while (k + 1 < keys && times[k + 1] <= time) {
         k++;
     }
@@ -587,8 +610,6 @@ static void sample_transform(const oracle *o, uint32_t animation, uint32_t chann
     if (width == 4) {
         normalize4(out);
     }
-    free(times);
-    free(data);
 }
 
 double oracle_animation_end(const oracle *o, uint32_t animation)
@@ -674,7 +695,7 @@ int oracle_node_skin(const oracle *o, uint32_t node)
 static double *joint_matrices(const oracle *o, uint32_t skin, const double *worlds)
 {
     uint32_t s = top(o, "skins", skin), joints = member(o, s, "joints"), count = length(o, joints), unused;
-    double *binds = member(o, s, "inverseBindMatrices") ? read_accessor(o, (uint32_t)number(o, s, "inverseBindMatrices", 0), 16, &unused) : NULL;
+    const double *binds = member(o, s, "inverseBindMatrices") ? read_accessor(o, (uint32_t)number(o, s, "inverseBindMatrices", 0), 16, &unused) : NULL;
     double *out = test_zeros(sizeof *out * 16 * count);
     for (uint32_t j = 0; j < count; j++) {
         const double *world = worlds + 16 * (size_t)o->values[element(o, joints, j)].number;
@@ -684,7 +705,6 @@ static double *joint_matrices(const oracle *o, uint32_t skin, const double *worl
             memcpy(out + 16 * (size_t)j, world, 16 * sizeof *out);
         }
     }
-    free(binds);
     return out;
 }
 
@@ -700,7 +720,7 @@ static void skin_points(const oracle *o, uint32_t attributes, uint32_t count, co
     double *sums = test_zeros(sizeof *sums * 4 * count);
     for (int set = 0; set < 2; set++) {
         char joints_name[16], weights_name[16];
-        double *joints, *weights;
+        const double *joints, *weights;
         uint32_t same;
         snprintf(joints_name, sizeof joints_name, "JOINTS_%d", set);
         snprintf(weights_name, sizeof weights_name, "WEIGHTS_%d", set);
@@ -713,8 +733,6 @@ static void skin_points(const oracle *o, uint32_t attributes, uint32_t count, co
             move_point(matrices + 16 * (size_t)joints[i], points + i / 4 * 3, weights[i], sums + i / 4 * 4);
             sums[i / 4 * 4 + 3] += weights[i];
         }
-        free(joints);
-        free(weights);
     }
     for (size_t i = 0; i < 3 * (size_t)count; i++) {
         points[i] = sums[i / 3 * 4 + i % 3] / sums[i / 3 * 4 + 3];

@@ -285,7 +285,7 @@ static void put_rest(const maker *m, noh_mesh_header *h, byte_buffer *out)
     const noh_mesh *old = m->mesh;
     const uint32_t words = NOH_INFLUENCE_WORDS(h->influence_count);
     noh_skin skin;
-    const uint32_t joints = noh_pack_skin_at(old->pack, h->skin, &skin) == NOH_OK ? skin.header->joint_count : 0;
+    const uint32_t joints = noh_pack_skin_at(old->pack, h->skin, &skin, NULL) == NOH_OK ? skin.header->joint_count : 0;
     h->weights_offset = put_array(out, old->weights, 4u * (size_t)h->target_count);
     h->rects_offset = put_array(out, m->rects.bytes, m->rects.count);
     h->texels_offset = put_array(out, m->texels.bytes, m->texels.count);
@@ -362,7 +362,7 @@ void fixture_levels_open(fixture_levels *f, const noh_pack *from, uint32_t level
         byte_buffer chunk = { NULL, 0, 0, 0 };
         noh_pack_chunk *entry;
         noh_mesh mesh;
-        if (noh_pack_mesh(from, i - from->first_mesh, &mesh) == NOH_OK) {
+        if (noh_pack_mesh(from, i - from->first_mesh, &mesh, NULL) == NOH_OK) {
             f->orders[i - from->first_mesh] = make_mesh(&mesh, level_count, cell, &chunk);
         } else {
             buffer_append(&chunk, from->bytes + from->chunks[i].offset, from->chunks[i].bytes);

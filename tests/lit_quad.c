@@ -7,7 +7,8 @@
 #include "base/math.h"
 #include "convert/model/model_build.h"
 #include "support.h"
-#include "view.h"
+#include "camera.h"
+#include "canvas.h"
 
 /* Half a turn about y with a scale that differs by axis; the camera looks along +z, and from x and y the scales are taken
  * out again, so that the quad fills the picture. */
@@ -118,11 +119,11 @@ static void draw(gpu *g, const lit_quad *q, const noh_pack *pack, noh_gl_ledger 
     desc.mesh_count = 1;
     for (uint32_t i = 0; i < pack->texture_count; i++) {
         noh_texture texture;
-        noh_pack_texture(pack, i, &texture);
+        assert_int_equal(noh_pack_texture(pack, i, &texture, NULL), NOH_OK);
         assert_int_equal(noh_gl_picture_create(&g->gl, ledger, &texture, &pictures[i], NULL), NOH_OK);
     }
     assert_int_equal(noh_gl_mesh_create(&g->gl, ledger, &mesh, &drawn, NULL), NOH_OK);
-    assert_int_equal(noh_gl_renderer_create(&g->gl, ledger, &desc, &renderer, log, sizeof log, NULL), NOH_OK);
+    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, ledger, log, sizeof log }, &desc, &renderer, NULL), NOH_OK);
     noh_gl_draw_begin(&renderer, &q->camera);
     noh_gl_draw_mesh(&renderer, &drawn, q->world, NULL, NULL, NULL, pictures, pass);
     noh_gl_draw_end(&renderer);

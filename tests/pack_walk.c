@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "noh.h"
+#include "noh_gl.h"
 
 #define NAMES_LOOKED_UP 64u /* names cost targets squared: enough to see every kind */
 
@@ -77,14 +77,14 @@ static void walk_names(walk *w)
 static void walk_textures(walk *w)
 {
     noh_texture t;
-    for (uint32_t i = 0; noh_pack_texture(w->pack, i, &t) == NOH_OK; i++) {
+    for (uint32_t i = 0; noh_pack_texture(w->pack, i, &t, NULL) == NOH_OK; i++) {
         eat_name(w, t.name);
         eat(w, t.pixels, (size_t)t.header->width * t.header->height * 4u);
     }
     for (uint32_t i = 0; i < w->pack->material_count; i++) {
         const noh_material *m = &w->pack->materials[i];
         eat_name(w, noh_pack_string(w->pack, m->name));
-        if (m->base_color_texture != NOH_NONE && noh_pack_texture(w->pack, m->base_color_texture, &t) != NOH_OK) {
+        if (m->base_color_texture != NOH_NONE && noh_pack_texture(w->pack, m->base_color_texture, &t, NULL) != NOH_OK) {
             abort(); /* the checker promised that it is there */
         }
     }
@@ -100,7 +100,7 @@ static void walk_nodes(walk *w)
         for (uint32_t p = n->parent; p != NOH_NONE && steps <= i; steps++) {
             p = w->pack->nodes[p].parent;
         }
-        if (steps > i || (n->mesh != NOH_NONE && noh_pack_mesh(w->pack, n->mesh, &mesh) != NOH_OK)) {
+        if (steps > i || (n->mesh != NOH_NONE && noh_pack_mesh(w->pack, n->mesh, &mesh, NULL) != NOH_OK)) {
             abort();
         }
         if (n->first_weight != NOH_NONE) {
@@ -147,7 +147,7 @@ static void walk_targets(walk *w, const noh_mesh *mesh)
 static void walk_influences(walk *w, const noh_mesh *mesh)
 {
     noh_skin skin;
-    if (noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin) != NOH_OK) {
+    if (noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin, NULL) != NOH_OK) {
         return;
     }
     eat(w, mesh->joint_boxes, 24u * (size_t)skin.header->joint_count);
@@ -169,7 +169,7 @@ static void walk_skinned(walk *w, const noh_mesh *mesh)
     const uint32_t count = mesh->header->vertex_count;
     noh_skin skin;
     float *positions, *normals, *tangents;
-    if (noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin) != NOH_OK) {
+    if (noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin, NULL) != NOH_OK) {
         return;
     }
     positions = memory(12u * (size_t)count);
@@ -260,7 +260,7 @@ static void walk_meshes(walk *w)
 {
     noh_mesh *meshes = memory(sizeof *meshes * w->pack->mesh_count);
     for (uint32_t i = 0; i < w->pack->mesh_count; i++) {
-        if (noh_pack_mesh(w->pack, i, &meshes[i]) != NOH_OK) {
+        if (noh_pack_mesh(w->pack, i, &meshes[i], NULL) != NOH_OK) {
             abort();
         }
         eat_name(w, meshes[i].name);
@@ -369,7 +369,7 @@ static void walk_set(walk *w, uint32_t skeleton)
 static void walk_motions(walk *w)
 {
     noh_pack_motion motion;
-    for (uint32_t i = 0; noh_pack_motion_at(w->pack, i, &motion) == NOH_OK; i++) {
+    for (uint32_t i = 0; noh_pack_motion_at(w->pack, i, &motion, NULL) == NOH_OK; i++) {
         eat_name(w, motion.name);
         for (uint32_t k = 0; k < motion.header->event_count; k++) {
             eat_name(w, noh_pack_string(w->pack, motion.events[k].name));
@@ -380,7 +380,7 @@ static void walk_motions(walk *w)
     }
     for (uint32_t i = 0; i < w->pack->skeleton_count; i++) {
         noh_skeleton skeleton;
-        noh_pack_skeleton_at(w->pack, i, &skeleton, NULL);
+        noh_pack_skeleton_at(w->pack, i, &skeleton, NULL, NULL);
         for (uint32_t j = 0; j < skeleton.joint_count; j++) {
             eat_name(w, noh_pack_joint_name(w->pack, i, j));
             eat(w, &skeleton.parents[j], sizeof skeleton.parents[j]);

@@ -6,12 +6,12 @@
 #   NOH_ANGLE   where ANGLE's libraries are (NOH_BUILD/angle, where tools/angle.sh puts them)
 #   NOH_SAN     the sanitizers that the build has, if any
 #   NOH_TEST    only programs and scripts whose name holds this: NOH_TEST=morph
-#   NOH_LIMIT_S seconds that one program may take (900)
+#   NOH_JOBS    programs that run at a time (as many as there are processors); they share no file that they write
+#   NOH_LIMIT_S seconds that one program may take (900; 1800 with sanitizers)
 #
-# C programs are build/tests/{unit,memory,gl,fuzz}/test_*, scripts are tests/check_*.sh and
-# tests/{cli,gl}/*.sh. All print TAP ("ok 1 - name", "not ok 2 - name", "ok 3 - name # SKIP
-# reason", "1..3"); a program that tells less than it planned, or fails without saying, is
-# counted as a failure.
+# C programs are build/tests/**/test_*, scripts are tests/check_*.sh and tests/*/*.sh. All print TAP
+# ("ok 1 - name", "not ok 2 - name", "ok 3 - name # SKIP reason", "1..3"). A program that reports fewer results than it
+# planned, or that exits with an error but reports no failure, counts as one failure.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 
@@ -22,17 +22,23 @@ export NOH_BUILD="$build" NOH_ASSETS="${NOH_ASSETS:-}" NOH_SAN="${NOH_SAN:-}" CC
 export CMOCKA_MESSAGE_OUTPUT=TAP
 [ -n "${NOH_ANGLE:-}" ] || [ ! -f "$build/angle/libGLESv2.so" ] || export NOH_ANGLE="$build/angle"
 logs=$build/tests/log
+limit=${NOH_LIMIT_S:-$([ -n "$NOH_SAN" ] && echo 1800 || echo 900)}
+jobs=${NOH_JOBS:-$(nproc 2>/dev/null || echo 2)}
 mkdir -p "$logs"
+# The reader's tests write hundreds of small files: in memory, where there is some.
+if [ -z "${TMPDIR:-}" ] && [ -w /dev/shm ] && [ "$(df -Pk /dev/shm | awk 'NR == 2 { print $4 }')" -gt 1000000 ]; then
+    export TMPDIR=/dev/shm
+fi
 
-# Graphics drivers keep what they allocate until the process ends: suppressed by name, so that
-# our own leaks still show. A failed allocation has to come back as NULL, as it does unsanitized.
+# Graphics drivers free some memory only when the process ends. They are suppressed by name, so that our own leaks still
+# show. A failed allocation returns NULL, as it does without sanitizers.
 export LSAN_OPTIONS="suppressions=$PWD/tests/leaks.supp:print_suppressions=0:${LSAN_OPTIONS:-}"
 export ASAN_OPTIONS="allocator_may_return_null=1:${ASAN_OPTIONS:-}"
 export UBSAN_OPTIONS="print_stacktrace=1:${UBSAN_OPTIONS:-}"
 # The first GL error that a driver reports ends the program (tools/noh/gpu.c).
 export NOH_GL_DEBUG=1
 
-# Reads one program's output; prints "passed failed skipped" and a line for each skip.
+# Reads one program's output; prints its counts and a line for each skip.
 count='
     /^1\.\.[0-9]+/ { planned += substr($1, 4); next }
     /^(SKIP|skipped): / { reason = $0; sub(/^[^:]*: /, "", reason); next }
@@ -51,55 +57,80 @@ count='
     /^ok [0-9]/     { passed++; next }
     /^not ok [0-9]/ { failed++; next }
     END {
-        told = passed + failed + skipped
-        if (!planned || told < planned) failed++          # it died before it was done
+        reported = passed + failed + skipped
+        if (!planned || reported < planned) failed++      # it died before it was done
         else if (status != 0 && !failed) failed++         # it died after
-        printf "C %d %d %d\n", passed, failed, skipped
+        printf "C %d %d %d %d\n", passed, failed, skipped, seconds
     }'
 
-passed=0 failed=0 skipped=0
-all_skips=
+# ---- one program: run.sh --one NAME COMMAND..., as the loop below calls it ----
 
-run_one() {
-    name=$1
-    shift
-    case $name in *"${NOH_TEST:-}"*) ;; *) return ;; esac
-    log=$logs/$(echo "$name" | tr / _).txt
-    timeout -k 10 "${NOH_LIMIT_S:-900}" "$@" >"$log" 2>&1 </dev/null
+# Its log is NAME.txt; NAME.told holds "C passed failed skipped seconds" and an S line for each skip.
+if [ "${1:-}" = --one ]; then
+    name=$2
+    shift 2
+    log=$logs/$(echo "$name" | tr / _)
+    begin=$(date +%s)
+    timeout -k 10 "$limit" "$@" >"$log.txt" 2>&1 </dev/null
     status=$?
-    told=$(awk -v status=$status "$count" "$log")
-    set -- $(echo "$told" | sed -n 's/^C //p')
-    passed=$((passed + $1)) failed=$((failed + $2)) skipped=$((skipped + $3))
+    seconds=$(($(date +%s) - begin))
+    awk -v status=$status -v seconds=$seconds "$count" "$log.txt" >"$log.told"
+    echo $status >"$log.status"
+    # shellcheck disable=SC2046
+    set -- $(sed -n 's/^C //p' "$log.told")
     line="$1 passed"
     [ "$2" = 0 ] || line="$line, $2 FAILED"
     [ "$3" = 0 ] || line="$line, $3 skipped"
+    [ $seconds -lt 10 ] || line="$line ($seconds s)"
     printf '  %-28s %s\n' "$name" "$line"
-    skips=$(echo "$told" | sed -n 's/^S //p')
-    if [ -n "$skips" ]; then
-        all_skips="$all_skips$(echo "$skips" | sed "s|^|  $name: |")
-"
-    fi
-    if [ "$2" != 0 ]; then
-        [ $status != 124 ] && [ $status != 137 ] || echo "    it took more than ${NOH_LIMIT_S:-900} s, or was killed"
-        echo "    its output (exit code $status), all of it in $log:"
-        grep -v '^ok ' "$log" | tail -n 60 | sed 's/^/    | /'
-    fi
+    exit 0
+fi
+
+# ---- all of them ----
+
+# NAME and COMMAND of each, a line; names of files have no spaces.
+programs() {
+    find tests -name 'test_*.c' ! -path 'tests/cross/*' | sort | while read -r source; do
+        name=${source#tests/}
+        echo "${name%.c} $build/tests/${name%.c}"
+    done
+    for script in tests/check_*.sh tests/*/*.sh; do
+        [ -f "$script" ] || continue
+        name=${script#tests/}
+        case $name in */lib.sh | web/* | support/*) continue ;; esac
+        echo "${name%.sh} sh $script"
+    done
 }
+# Those that took long last time begin first, then those that have not run yet; the order is for speed alone.
+programs | while read -r name command; do
+    case $name in *"${NOH_TEST:-}"*) ;; *) continue ;; esac
+    log=$logs/$(echo "$name" | tr / _)
+    seconds=$(sed -n 's/^C [0-9]* [0-9]* [0-9]* //p' "$log.told" 2>/dev/null)
+    rm -f "$log.told" "$log.txt" "$log.status"
+    echo "${seconds:-1} $name $command"
+done | sort -s -k1,1nr | cut -d' ' -f2- >"$logs/programs"
+xargs -P "$jobs" -L 1 sh tests/run.sh --one <"$logs/programs"
 
-for source in tests/unit/test_*.c tests/memory/test_*.c tests/gl/test_*.c; do
-    name=${source#tests/}
-    run_one "${name%.c}" "$build/tests/${name%.c}"
-done
-for script in tests/check_*.sh tests/cli/*.sh tests/gl/*.sh tests/fuzz/*.sh; do
-    [ -f "$script" ] || continue
-    name=${script#tests/}
-    case $name in */lib.sh) continue ;; esac
-    run_one "${name%.sh}" sh "$script"
-done
+passed=0 failed=0 skipped=0
+: >"$logs/skips"
+while read -r name command; do
+    log=$logs/$(echo "$name" | tr / _)
+    # shellcheck disable=SC2046
+    set -- $(sed -n 's/^C //p' "$log.told" 2>/dev/null)
+    [ $# = 4 ] || set -- 0 1 0 0
+    passed=$((passed + $1)) failed=$((failed + $2)) skipped=$((skipped + $3))
+    sed -n "s|^S |  $name: |p" "$log.told" >>"$logs/skips"
+    if [ "$2" != 0 ]; then
+        status=$(cat "$log.status" 2>/dev/null)
+        echo "$name FAILED (exit code ${status:-unknown}); the end of its output, which is in $log.txt:"
+        case $status in 124 | 137) echo "    it took more than $limit s, or was killed" ;; esac
+        grep -v '^ok ' "$log.txt" | tail -n 60 | sed 's/^/    | /'
+    fi
+done <"$logs/programs"
 
-if [ -n "$all_skips" ]; then
+if [ -s "$logs/skips" ]; then
     echo 'skipped, and why:'
-    printf '%s' "$all_skips"
+    sort "$logs/skips"
 fi
 echo "$passed passed, $failed failed, $skipped skipped"
 [ $failed = 0 ] && [ $passed != 0 ]

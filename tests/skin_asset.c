@@ -221,7 +221,7 @@ float *skin_asset_model(const skin_asset *a, uint32_t skeleton, const double *lo
     noh_skeleton s;
     noh_transform *pose;
     float *model_space;
-    assert_int_equal(noh_pack_skeleton_at(&a->pack, skeleton, &s, NULL), NOH_OK);
+    assert_int_equal(noh_pack_skeleton_at(&a->pack, skeleton, &s, NULL, NULL), NOH_OK);
     pose = test_zeros(sizeof *pose * s.joint_count);
     model_space = test_zeros(48u * (size_t)s.joint_count);
     for (uint32_t j = 0; j < s.joint_count; j++) {
@@ -243,7 +243,7 @@ float *skin_asset_matrices(const skin_asset *a, const noh_mesh *mesh, const doub
 {
     noh_skin skin;
     float *model_space, *matrices;
-    assert_int_equal(noh_pack_skin_at(&a->pack, mesh->header->skin, &skin), NOH_OK);
+    assert_int_equal(noh_pack_skin_at(&a->pack, mesh->header->skin, &skin, NULL), NOH_OK);
     model_space = skin_asset_model(a, skin.header->skeleton, locals);
     matrices = test_zeros(48u * (size_t)skin.header->joint_count);
     noh_skin_matrices(&skin, model_space, matrices);

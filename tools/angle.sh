@@ -1,8 +1,8 @@
 #!/bin/sh
-# angle.sh FOLDER: ANGLE's libraries and SwiftShader into FOLDER, for the platform `angle`; nothing is installed. Debian
-# has them in chromium-common, in some versions: in others libEGL.so and libGLESv2.so are there by name and hold nothing.
-# So the versions that apt knows are tried, the oldest first. Where none can be had FOLDER/missing.txt says why, and
-# further calls leave it at that (remove FOLDER to try again). Never fails: what wants ANGLE is then skipped.
+# angle.sh FOLDER: puts ANGLE's libraries and SwiftShader into FOLDER, for the platform `angle`; installs nothing. They
+# come from Debian's chromium-common. Some of its versions have only empty libEGL.so and libGLESv2.so, so every version
+# that apt knows is tried, the oldest first. If none will do, FOLDER/missing.txt says why, and later calls do not try
+# again (remove FOLDER to retry). Never fails: tests that need ANGLE are then skipped.
 set -u
 folder=$1
 [ ! -f "$folder/libGLESv2.so" ] && [ ! -f "$folder/missing.txt" ] || exit 0
@@ -10,7 +10,7 @@ mkdir -p "$folder" && folder=$(cd "$folder" && pwd) || exit 0
 work=$folder/work
 
 give_up() {
-    echo "ANGLE cannot be had: $1" | tee "$folder/missing.txt"
+    echo "ANGLE is not available: $1" | tee "$folder/missing.txt"
     rm -rf "$work"
     exit 0
 }
@@ -21,7 +21,7 @@ list() {
 }
 versions=$(list)
 if [ -z "$versions" ] && [ "$(id -u)" = 0 ]; then
-    timeout -k 5 60 apt-get update -qq >/dev/null 2>&1
+    timeout -k 5 360 apt-get -o DPkg::Lock::Timeout=300 update -qq >/dev/null 2>&1
     versions=$(list)
 fi
 [ -n "$versions" ] || give_up 'apt knows no chromium-common'
@@ -40,4 +40,4 @@ for version in $versions; do
     exit 0
 done
 # shellcheck disable=SC2086
-give_up "chromium-common $(echo $versions | sed 's/ /, /g'): not to be downloaded, or without it"
+give_up "chromium-common $(echo $versions | sed 's/ /, /g'): cannot be downloaded, or have no ANGLE"

@@ -1,6 +1,6 @@
 #!/bin/sh
 # bench.sh BUILD: `noh bench` on the mask and the puppet, and, where $NOH_ASSETS has them, on hero/head.glb,
-# hero/body.glb, a crowd of it with four levels of detail, and five captured clips at 30 Hz.
+# hero/body.glb, a crowd of it with four LOD levels, and five captured clips at 30 Hz.
 # Everything after BUILD goes to `noh bench`: --json, --rounds N, --driver D.
 set -eu
 
@@ -28,7 +28,7 @@ done
 body=${NOH_ASSETS:-}/hero/body.glb
 if [ -f "$body" ]; then
     "$build/noh" build "$body" -o "$build/body_levels.noh" --lod 4 --quiet
-    echo "== a crowd of $body with levels of detail" >&2
+    echo "== a crowd of $body with LOD levels" >&2
     "$build/noh" bench "$build/body_levels.noh" --only crowd "$@"
 fi
 

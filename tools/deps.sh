@@ -1,11 +1,11 @@
 #!/bin/sh
 # deps.sh SET...: install the Debian packages that are missing.
-#   build  compiler, converter libraries, headless GL        check  test tools
-#   fuzz   clang and its fuzzer                              cross  other processors
-#   web    the page and its test                         view   the window of noh view
-# What is optional may be missing: what needs it is then left out, or its test skipped, and says so.
-# With apt it installs them (through sudo where not root) and says what and why;
-# elsewhere it prints the list and stops.
+#   build  compiler, converter libraries, headless GL     check  test tools
+#   fuzz   clang and its fuzzer                           cross  other processors
+#   web    the page and its test                          view   the window of noh view
+#   lint   clang-tidy and cppcheck                        docs   the API reference
+# Optional packages ("?") may be unavailable: what needs them is left out, or its test is skipped with the reason.
+# Where there is no apt, the list is printed and the script stops.
 set -eu
 
 packages_build='make:the build
@@ -34,6 +34,9 @@ packages_check='libcmocka-dev:unit tests
 ?libx11-dev:files dropped on them
 ?x11-utils:a dense display
 libosmesa6:a second GL
+?clang:a second compiler
+?cmake:using the installed library
+?gcc-12-multilib:32 bits
 binutils:the check of the archive'"'"'s symbols'
 packages_fuzz='clang:libFuzzer
 libclang-rt-dev:libFuzzer and the sanitizers'
@@ -50,6 +53,9 @@ packages_web='?emscripten:the page
 ?npm:its test
 ?chromium:its test
 libcmocka-dev:its test'
+packages_lint='clang-tidy:static analysis
+cppcheck:static analysis'
+packages_docs='doxygen:the API reference'
 
 # Or the command of that name is here from elsewhere.
 installed() {
@@ -71,6 +77,10 @@ $packages_fuzz" ;;
 $packages_cross" ;;
     web) all="$all
 $packages_web" ;;
+    lint) all="$all
+$packages_lint" ;;
+    docs) all="$all
+$packages_docs" ;;
     *) echo "deps.sh: no set '$set'" >&2; exit 2 ;;
     esac
 done
@@ -97,8 +107,10 @@ if [ "$(id -u)" != 0 ]; then
 fi
 # shellcheck disable=SC2086
 export DEBIAN_FRONTEND=noninteractive
-$sudo apt-get update -qq
-[ -z "$names" ] || $sudo apt-get install -y -qq --no-install-recommends $names >/dev/null
+# On a fresh machine another process often holds apt's lock: wait for it.
+apt="$sudo apt-get -o DPkg::Lock::Timeout=300 -qq"
+$apt update
+[ -z "$names" ] || $apt install -y --no-install-recommends $names >/dev/null
 for name in $optional; do
-    $sudo apt-get install -y -qq --no-install-recommends "$name" >/dev/null 2>&1 || echo "  $name cannot be had here: what needs it is left out"
+    $apt install -y --no-install-recommends "$name" >/dev/null 2>&1 || echo "  $name is not available: what needs it is left out"
 done

@@ -16,7 +16,7 @@ struct noh_platform_context {
 
 static noh_platform_context only; /* one canvas, one context */
 
-/* Browsers answer GL_RENDERER with their own name and keep the driver's, which quirks go by, apart. */
+/* Browsers put their own name in GL_RENDERER; the driver's, which quirks are matched with, is a separate query. */
 static const GLubyte *GL_APIENTRY get_string(GLenum what)
 {
     const GLubyte *text = NULL;

@@ -10,8 +10,7 @@ void web_detail_open(web_detail *d, const web_scene *scene)
     d->level = WEB_DETAIL_AUTO;
     for (uint32_t i = 0; i < scene->pack.mesh_count; i++) {
         noh_detail_table *table = &d->tables[i];
-        table->meshes = d->levels[i];
-        table->mesh_level_count = noh_detail_mesh_levels(&scene->meshes[i], d->levels[i]);
+        noh_detail_mesh_levels(&scene->meshes[i], d->levels[i], table);
         d->level_count = table->mesh_level_count > d->level_count ? table->mesh_level_count : d->level_count;
     }
 }

@@ -1,4 +1,4 @@
-/* detail.h: how much detail each item of a scene is shown with: one level, or what the error in pixels allows. */
+/* detail.h: the LOD level of each item of a scene: one for all, or what an error in pixels allows. */
 #ifndef NOH_PLATFORM_WEB_DETAIL_H
 #define NOH_PLATFORM_WEB_DETAIL_H
 
@@ -20,12 +20,12 @@ typedef struct web_detail {
 /* Of a scene that was listed. Packs without levels are always shown in full. */
 void web_detail_open(web_detail *detail, const web_scene *scene);
 
-/* Choose for an item as it stands. Before web_detail_weights.
+/* Choose an item's level in its current pose. Call before web_detail_weights.
  * shapes  matrices[joints of its skin][12], NULL: rigid; height of the canvas in pixels */
 void web_detail_choose(web_detail *detail, const web_scene *scene, uint32_t item, const float *matrices, const noh_gl_camera *camera,
                        uint32_t height);
 
-/* The item's weights without those of targets that cannot be seen: to be read at once. */
+/* The item's weights, 0 for targets too small to be seen; valid until the next call. */
 const float *web_detail_weights(web_detail *detail, const web_scene *scene, uint32_t item);
 
 #endif

@@ -46,7 +46,7 @@ static struct web {
 
 /* ---- loading ---- */
 
-/* A part is what was taken since the part before. */
+/* A part's bytes are those carved since the part before. */
 static void end_part(const char *name)
 {
     uint32_t cpu = (uint32_t)web.arena.used, gpu = (uint32_t)noh_gl_ledger_bytes(&web.ledger);
@@ -75,7 +75,7 @@ static noh_result load_meshes(void)
     }
     for (uint32_t i = 0; i < pack->texture_count && !result; i++) {
         noh_texture texture;
-        noh_pack_texture(pack, i, &texture);
+        noh_pack_texture(pack, i, &texture, NULL);
         result = noh_gl_picture_create(&web.gl, &web.ledger, &texture, &web.pictures[i], &web.error);
     }
     end_part("textures");
@@ -95,7 +95,9 @@ static noh_result load_morph(noh_morph_path path)
     if (!result) {
         size_t bytes = (size_t)plan.cpu_bytes;
         void *block = noh_arena_carve(&web.arena, bytes, 16);
-        result = noh_gl_morph_init(block, block ? bytes : 0, &web.gl, &web.caps, &web.ledger, &desc, &web.morph, NULL, 0, &web.error);
+        result = noh_gl_morph_init(block, block ? bytes : 0,
+                                   &(noh_gl_device){ &web.gl, &web.caps, &web.ledger, NULL, 0 }, &desc,
+                                   &web.morph, &web.error);
     }
     for (uint32_t i = 0; i < web.scene.item_count && !result; i++) {
         web_item *item = &web.scene.items[i];
@@ -120,7 +122,9 @@ static noh_result load_skin(void)
     if (!result) {
         size_t bytes = (size_t)plan.cpu_bytes;
         void *block = noh_arena_carve(&web.arena, bytes, 16);
-        result = noh_gl_skin_init(block, block ? bytes : 0, &web.gl, &web.caps, &web.ledger, &desc, &web.skin, &web.error);
+        result = noh_gl_skin_init(block, block ? bytes : 0,
+                                  &(noh_gl_device){ &web.gl, &web.caps, &web.ledger, NULL, 0 }, &desc,
+                                  &web.skin, &web.error);
     }
     end_part("palettes");
     return result;
@@ -145,9 +149,10 @@ static noh_result load_renderer(void)
     desc.meshes = web.scene.meshes;
     desc.mesh_count = web.scene.pack.mesh_count;
     desc.fades = web.detail.level_count > 1;
-    desc.encode_srgb = 1; /* a canvas encodes nothing */
+    desc.encode_srgb = 1; /* a canvas does not encode */
     desc.palettes = web.skin ? noh_gl_skin_plan_of(web.skin)->mode : NOH_PALETTE_AUTO;
-    noh_result result = noh_gl_renderer_create(&web.gl, &web.ledger, &desc, &web.renderer, NULL, 0, &web.error);
+    noh_result result = noh_gl_renderer_create(&(noh_gl_device){ &web.gl, NULL, &web.ledger, NULL, 0 }, &desc,
+                                               &web.renderer, &web.error);
     end_part("renderer");
     return result;
 }
@@ -161,7 +166,7 @@ static noh_result open_context(void)
     return result ? result : noh_gl_caps_probe(&web.gl, &web.caps, &web.error);
 }
 
-/* Where the page puts the file; NULL where it is larger than the page was built for. */
+/* Where the page writes the file; NULL if it is larger than the page was built for. */
 EMSCRIPTEN_KEEPALIVE void *web_pack(uint32_t bytes)
 {
     return bytes <= sizeof pack_bytes ? pack_bytes : NULL;
@@ -191,13 +196,13 @@ static noh_result restore_meshes(void)
     }
     for (uint32_t i = 0; i < web.scene.pack.texture_count && !result; i++) {
         noh_texture texture;
-        noh_pack_texture(&web.scene.pack, i, &texture);
+        noh_pack_texture(&web.scene.pack, i, &texture, NULL);
         result = noh_gl_picture_restore(&web.gl, &web.ledger, &texture, &web.pictures[i], &web.error);
     }
     return result;
 }
 
-/* After the browser took the context away and gave it back: everything again out of the pack. */
+/* After the browser restored a lost context: make every object again from the pack. */
 EMSCRIPTEN_KEEPALIVE int web_restore(void)
 {
     noh_web_enable_extensions(web.context);
@@ -264,7 +269,7 @@ EMSCRIPTEN_KEEPALIVE int web_fades(void)
 EMSCRIPTEN_KEEPALIVE const char *web_clip_name(uint32_t i)
 {
     noh_pack_motion motion;
-    return noh_pack_motion_at(&web.scene.pack, i, &motion) == NOH_OK ? motion.name : "";
+    return noh_pack_motion_at(&web.scene.pack, i, &motion, NULL) == NOH_OK ? motion.name : "";
 }
 
 /* clip: an index, or -1 for none. */
@@ -275,7 +280,7 @@ EMSCRIPTEN_KEEPALIVE int web_play(int clip, double time_s, double transition_s)
 
 /* ---- a frame ---- */
 
-/* The box around the scene as it stands: 6 floats, to be read at once. */
+/* The scene's current bounding box: 6 floats, valid until the next call. */
 EMSCRIPTEN_KEEPALIVE float *web_measure(void)
 {
     web_motion_bounds(&web.motion, web.bounds);
@@ -296,10 +301,10 @@ static noh_result update(void)
         const web_item *item = &web.scene.items[i];
         const float *matrices = web_motion_matrices(&web.motion, item) ? web.motion.matrices : NULL;
         web_detail_choose(&web.detail, &web.scene, i, matrices, &web.camera, height);
-        noh_gl_morph_level(web.morph, item->instance, noh_detail_drawn(&web.detail.states[i], web.detail.clock));
-        noh_result result = noh_gl_morph_weights(web.morph, item->instance, web_detail_weights(&web.detail, &web.scene, i), &web.error);
+        noh_gl_morph_set_level(web.morph, item->instance, noh_detail_drawn(&web.detail.states[i], web.detail.clock));
+        noh_result result = noh_gl_morph_set_weights(web.morph, item->instance, web_detail_weights(&web.detail, &web.scene, i), &web.error);
         if (result) return result;
-        if (matrices) noh_gl_skin_set(web.skin, item->instance, matrices);
+        if (matrices) noh_gl_skin_set_matrices(web.skin, item->instance, matrices);
     }
     noh_gl_morph_update(web.morph, NULL);
     if (web.skin) noh_gl_skin_update(web.skin);
@@ -350,7 +355,7 @@ EMSCRIPTEN_KEEPALIVE int web_draw(double seconds)
     return 0;
 }
 
-/* Whether GL has had an error since it was last asked. Waits for the GPU. */
+/* Whether GL raised an error since the last call. Waits for the GPU. */
 EMSCRIPTEN_KEEPALIVE int web_check(void)
 {
     GLenum code = noh_gl_error_take(&web.gl);

@@ -57,7 +57,7 @@ noh_result web_motion_open_clips(web_motion *m, web_scene *scene, noh_arena *are
         return noh_fail(error, NOH_ERR_LIMIT, "more skeletons than the page has room for", 0, m->player_count);
     }
     for (uint32_t i = 0; i < m->player_count && !result; i++) {
-        (void)noh_pack_skeleton_at(pack, i, &m->players[i].skeleton, NULL);
+        (void)noh_pack_skeleton_at(pack, i, &m->players[i].skeleton, NULL, NULL);
         result = open_clips(m, i, arena, &m->players[i].set, error);
     }
     return result;
@@ -118,7 +118,7 @@ noh_result web_motion_open_matrices(web_motion *m, noh_arena *arena, noh_error *
     uint32_t most = 0;
     for (uint32_t i = 0; i < m->scene->item_count; i++) {
         noh_skin skin;
-        if (noh_pack_skin_at(&m->scene->pack, m->scene->meshes[m->scene->items[i].mesh].header->skin, &skin) == NOH_OK) {
+        if (noh_pack_skin_at(&m->scene->pack, m->scene->meshes[m->scene->items[i].mesh].header->skin, &skin, NULL) == NOH_OK) {
             most = skin.header->joint_count > most ? skin.header->joint_count : most;
         }
     }
@@ -153,15 +153,12 @@ double web_motion_seconds(const web_motion *m, uint32_t clip)
 static void move_weights(const web_motion *m, const web_player *p, int to_pose)
 {
     uint32_t motion;
-    for (uint32_t g = 0; has_motion(p, m->clip, &motion) && g < p->set->group_count; g++) {
-        const noh_clip_group *group = &p->set->groups[g];
-        if (group->node == NOH_NONE || !noh_motion_set_moves(p->set, motion, g)) continue;
-        for (uint32_t i = 0; i < m->scene->item_count; i++) {
-            const web_item *item = &m->scene->items[i];
-            if (item->node != group->node) continue;
-            web_scene_reset(m->scene, item);
-            if (to_pose) memcpy(m->scene->weights + item->first_weight, p->floats + group->first, group->width * sizeof(float));
-        }
+    for (uint32_t i = 0; has_motion(p, m->clip, &motion) && i < m->scene->item_count; i++) {
+        const web_item *item = &m->scene->items[i];
+        const uint32_t g = noh_motion_set_node_group(p->set, item->node);
+        if (g == NOH_NONE || !noh_motion_set_moves(p->set, motion, g)) continue;
+        web_scene_reset(m->scene, item);
+        if (to_pose) memcpy(m->scene->weights + item->first_weight, p->floats + p->set->groups[g].first, p->set->groups[g].width * sizeof(float));
     }
 }
 
@@ -265,7 +262,7 @@ double web_motion_time(const web_motion *m)
 int web_motion_matrices(web_motion *m, const web_item *item)
 {
     noh_skin skin;
-    if (noh_pack_skin_at(&m->scene->pack, m->scene->meshes[item->mesh].header->skin, &skin)) return 0;
+    if (noh_pack_skin_at(&m->scene->pack, m->scene->meshes[item->mesh].header->skin, &skin, NULL)) return 0;
     noh_skin_matrices(&skin, m->players[skin.header->skeleton].model, m->matrices);
     return 1;
 }

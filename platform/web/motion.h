@@ -35,27 +35,27 @@ noh_result web_motion_open_clips(web_motion *motion, web_scene *scene, noh_arena
 noh_result web_motion_open_controllers(web_motion *motion, noh_arena *arena, noh_error *error);
 noh_result web_motion_open_poses(web_motion *motion, noh_arena *arena, noh_error *error);
 
-/* Room for what is handed to noh_gl_skin_set, where the scene is skinned. errors  MEMORY */
+/* Room for what is handed to noh_gl_skin_set_matrices, where the scene is skinned. errors  MEMORY */
 noh_result web_motion_open_matrices(web_motion *motion, noh_arena *arena, noh_error *error);
 
 /* The seconds of the pack's n-th clip; negative where it moves nothing here. */
 double web_motion_seconds(const web_motion *motion, uint32_t clip);
 
-/* Play a clip, over and over, from a time on; NOH_NONE: stop, in the bind pose. With a transition, in seconds, what
- * played before runs out by inertia. */
+/* Play a clip in a loop, from a time in seconds; NOH_NONE: stop, in the bind pose. A transition in seconds blends from the
+ * previous clip by inertialisation. */
 noh_result web_motion_play(web_motion *motion, uint32_t clip, double time_s, double transition_s, noh_error *error);
 void web_motion_set_speed(web_motion *motion, float speed);
 
-/* Move on by a time. */
+/* Advance by a time. */
 void web_motion_step(web_motion *motion, double seconds);
 
-/* Where the clip is, in seconds. */
+/* The clip's time, in seconds. */
 double web_motion_time(const web_motion *motion);
 
-/* What moves an item's vertices, as the scene stands, into motion->matrices. 0 for a rigid item. */
+/* Compute the item's skin matrices in the current pose into motion->matrices. Returns 0 for a rigid item. */
 int web_motion_matrices(web_motion *motion, const web_item *item);
 
-/* The smallest box around the scene as it stands, in the world, morphs aside. */
+/* The scene's current bounding box in the world, without morphs. */
 void web_motion_bounds(web_motion *motion, float box[6]);
 
 #endif

@@ -4,7 +4,7 @@
 'use strict';
 
 const query = new URLSearchParams(location.search);
-const paths = ['auto', 'layered', 'mrt', 'per-layer', 'gather', 'cpu'];
+const paths = ['auto', 'layered', 'mrt', 'per-layer', 'gather', 'cpu', 'blend'];
 const transition = 0.3; // seconds from one clip into another
 const byId = (id) => document.getElementById(id);
 const canvas = byId('canvas');

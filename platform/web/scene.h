@@ -1,8 +1,8 @@
-/* scene.h: what a pack draws, by number: its meshes as they stand in its nodes, with their weights. */
+/* scene.h: what a pack draws: its meshes, placed by its nodes, with their weights. */
 #ifndef NOH_PLATFORM_WEB_SCENE_H
 #define NOH_PLATFORM_WEB_SCENE_H
 
-#include "noh.h"
+#include "noh_gl.h"
 
 #define WEB_MESHES_MAX 64u
 #define WEB_ITEMS_MAX 128u
@@ -30,7 +30,7 @@ noh_result web_scene_list(web_scene *scene, noh_error *error);
 /* The item's world matrix, 3 rows of 4. */
 const float *web_scene_world(const web_scene *scene, const web_item *item);
 
-/* An item's weights to what the pack says. */
+/* Reset an item's weights to the pack's. */
 void web_scene_reset(web_scene *scene, const web_item *item);
 
 /* A target by its place in `names`, in every mesh that has it; read from the first of them. */

@@ -5,6 +5,7 @@
 void noh_space_1d_weights(uint32_t count, const float *thresholds, float x, float *weights)
 {
     uint32_t i = 0;
+    NOH_ASSERT(count > 0 && thresholds && weights);
     memset(weights, 0, count * sizeof *weights);
     if (!(x > thresholds[0])) {
         weights[0] = 1.0f;
@@ -29,7 +30,7 @@ typedef struct nearest_edge {
     uint32_t a, b;
 } nearest_edge;
 
-/* Take an edge if it is nearer; of edges as near, the shorter one. */
+/* Keep an edge if it is nearer to (x, y); of equally near ones the shorter. */
 static void try_edge(const noh_space_2d *s, uint32_t a, uint32_t b, float x, float y, nearest_edge *best)
 {
     float ex = s->points[2u * b ] - s->points[2u * a ], ey = s->points[2u * b + 1u] - s->points[2u * a + 1u];
@@ -57,7 +58,7 @@ static void edge_weights(const noh_space_2d *s, float x, float y, float *weights
             try_edge(s, s->triangles[3u * i + k], s->triangles[3u * i + (k + 1) % 3], x, y, &best);
         }
     }
-    if (s->triangle_count == 0) { /* a line: the shortest of its overlapping edges are the right ones */
+    if (s->triangle_count == 0) { /* all points on a line: of the overlapping edges the shortest joins neighbours */
         for (uint32_t a = 0; a < s->point_count; a++) {
             for (uint32_t b = a + 1; b < s->point_count; b++) {
                 try_edge(s, a, b, x, y, &best);
@@ -85,9 +86,16 @@ static int triangle_weights(const noh_space_2d *s, const uint8_t t[3], float x, 
     return 1;
 }
 
+static float clamped(float x)
+{
+    const float most = NOH_SPACE_COORDINATE_MAX;
+    return x > most ? most : x < -most ? -most : x == x ? x : 0.0f;
+}
+
 void noh_space_2d_weights(const noh_space_2d *space, float x, float y, float *weights)
 {
-    float px = x - x == 0.0f ? x : 0.0f, py = y - y == 0.0f ? y : 0.0f;
+    float px = clamped(x), py = clamped(y);
+    NOH_ASSERT(space && space->points && weights && space->point_count > 0 && space->point_count <= NOH_SPACE_POINTS_MAX);
     memset(weights, 0, space->point_count * sizeof *weights);
     for (uint32_t i = 0; i < space->triangle_count; i++) {
         if (triangle_weights(space, space->triangles + 3u * i, px, py, weights)) {
@@ -170,8 +178,8 @@ static void sort_points(mesh *m)
     }
 }
 
-/* The first points of the sweep that lie on one line, and the first that does not:
- * a fan. Returns how many points that took; count when all are on a line. */
+/* The first triangles of the sweep: a fan from the first point that is off the line through those before it to all of them.
+ * Returns the number of points used; count when all are on one line. */
 static uint32_t first_fan(mesh *m)
 {
     uint32_t k = 2, tip;
@@ -193,7 +201,8 @@ static uint32_t first_fan(mesh *m)
     return k + 1;
 }
 
-/* Join a point outside the hull to every edge that it sees; those are neighbours. */
+/* Join a point to every hull edge that it sees. Points come in order of x, so each lies outside the hull of those before
+ * it, and the edges that it sees are neighbours: they leave the hull and two new edges take their place. */
 static void add_point(mesh *m, uint32_t p)
 {
     uint8_t hull[NOH_SPACE_POINTS_MAX + 1u];
@@ -215,7 +224,7 @@ static void add_point(mesh *m, uint32_t p)
     m->hull_count = count;
 }
 
-/* Turn the triangles' shared edge over if it is not Delaunay. */
+/* Flip the edge that two triangles share if it is not Delaunay: if the fourth point lies inside the circle of the other three. */
 static int flip(mesh *m, uint8_t *s, uint8_t *t)
 {
     for (uint32_t i = 0; i < 3; i++) {
@@ -233,7 +242,8 @@ static int flip(mesh *m, uint8_t *s, uint8_t *t)
 
 static void flip_all(mesh *m)
 {
-    /* Every flip lowers the lifted surface, so this ends; n^2 passes are far more than it takes. */
+    /* Lawson's algorithm (1977). Lift each point to the height x^2 + y^2: every flip lowers the surface of lifted triangles,
+     * so no triangulation comes twice and this ends; n^2 passes are far more than it takes. */
     uint32_t passes = m->count * m->count, flips = 1;
     while (flips && passes--) {
         flips = 0;
@@ -245,11 +255,16 @@ static void flip_all(mesh *m)
     }
 }
 
+static int in_range(float x)
+{
+    return x >= -NOH_SPACE_COORDINATE_MAX && x <= NOH_SPACE_COORDINATE_MAX; /* not where it is NaN */
+}
+
 static noh_result check_points(const mesh *m, const float *points, noh_error *error)
 {
     for (uint32_t i = 0; i < m->count; i++) {
-        if (points[2u * i] - points[2u * i] != 0.0f || points[2u * i + 1u] - points[2u * i + 1u] != 0.0f) {
-            return noh_fail(error, NOH_ERR_DATA, "point is not finite", i, 0);
+        if (!in_range(points[2u * i]) || !in_range(points[2u * i + 1u])) {
+            return noh_fail(error, NOH_ERR_DATA, "point is not finite or past NOH_SPACE_COORDINATE_MAX", i, 0);
         }
     }
     return NOH_OK;
@@ -259,7 +274,7 @@ static noh_result check_apart(const mesh *m, noh_error *error)
 {
     for (uint32_t i = 1; i < m->count; i++) {
         if (!comes_before(m, m->order[i - 1], m->order[i])) {
-            return noh_fail(error, NOH_ERR_DATA, "two points in one place", m->order[i], 0);
+            return noh_fail(error, NOH_ERR_DATA, "two points are in one place", m->order[i], 0);
         }
     }
     return NOH_OK;
@@ -269,8 +284,9 @@ noh_result noh_space_2d_triangulate(uint32_t count, const float *points, uint8_t
 {
     mesh m;
     noh_result result;
+    NOH_ASSERT(points && triangles && triangle_count);
     if (count == 0 || count > NOH_SPACE_POINTS_MAX) {
-        return noh_fail(error, NOH_ERR_ARG, "count", count, NOH_SPACE_POINTS_MAX);
+        return noh_fail(error, NOH_ERR_ARG, "count is not in 1..NOH_SPACE_POINTS_MAX", count, NOH_SPACE_POINTS_MAX);
     }
     memset(&m, 0, sizeof m);
     m.count = count;

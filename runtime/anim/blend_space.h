@@ -1,18 +1,20 @@
-/* blend_space.h: weights of motions that are spread over one or two parameters.
+/* blend_space.h: weights of clips that are spread over one or two parameters.
  *
- * 1-D: between two neighbours, linear. 2-D: a Delaunay triangulation, made once when
- * the space is built, and barycentric weights in the triangle that holds the point:
- * at most three motions are sampled, the weights are continuous, and a motion's own
- * point gives it alone. Outside, the nearest point of the hull counts.
- * (Inverse distances would need no triangles, but sample every motion and give each
- * a share everywhere.) */
+ * 1-D: linear between two neighbours. 2-D: a Delaunay triangulation, made once with the space, and barycentric weights in the
+ * triangle that contains the point: at most three clips are sampled, the weights are continuous, and at a clip's own point
+ * it has all the weight. Outside, the nearest point of the hull counts. (Inverse distances need no triangles, but sample
+ * every clip and give each some weight everywhere.)
+ *
+ * Threads: pure functions of their arguments; any thread. */
 #ifndef NOH_ANIM_BLEND_SPACE_H
 #define NOH_ANIM_BLEND_SPACE_H
 
+#include "base/limits.h"
 #include "base/result.h"
 
-#define NOH_SPACE_POINTS_MAX 32u
-#define NOH_SPACE_TRIANGLES_MAX (2u * NOH_SPACE_POINTS_MAX)
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 typedef struct noh_space_2d {
     uint32_t point_count;           /* 1..NOH_SPACE_POINTS_MAX */
@@ -22,17 +24,21 @@ typedef struct noh_space_2d {
 } noh_space_2d;
 
 /* shapes  thresholds[count] increasing, weights[count]
- * ranges  x is held between the first and the last; NaN counts as the first */
+ * ranges  |thresholds| <= NOH_SPACE_COORDINATE_MAX; x is clamped to the first and the last; NaN counts as the first */
 void noh_space_1d_weights(uint32_t count, const float *thresholds, float x, float *weights);
 
-/* Triangulate. Points are rounded to 1/4096 of their extent first, so that all tests
- * are exact and the result is the same everywhere.
+/* Triangulate. Points are rounded to 1/4096 of their extent first, so that all geometric tests are exact in integers and the
+ * result is the same on every machine.
  * shapes  points[count][2], triangles[NOH_SPACE_TRIANGLES_MAX][3]
- * errors  ARG count; DATA (where: the point) not finite, or two points in one place */
+ * errors  ARG count; DATA (where: the point) not finite or past NOH_SPACE_COORDINATE_MAX, or two points in one place */
 noh_result noh_space_2d_triangulate(uint32_t count, const float *points, uint8_t *triangles, uint32_t *triangle_count, noh_error *error);
 
 /* shapes  weights[point_count], of sum 1, at most three not zero
- * ranges  NaN counts as 0 */
+ * ranges  x, y are clamped to NOH_SPACE_COORDINATE_MAX; NaN counts as 0 */
 void noh_space_2d_weights(const noh_space_2d *space, float x, float y, float *weights);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -2,7 +2,9 @@
 
 #include <string.h>
 
-#define CURVE_ONE 2097152 /* 128^3: the curves in integers, at whole and half slices */
+#include "anim/clock_internal.h"
+
+#define CURVE_ONE 2097152 /* 128^3: value 1 of the curves in integers, at whole and half slices */
 #define HALVES (2 * NOH_CHANGE_SLICES)
 
 NOH_STATIC_ASSERT(HALVES == 128, curve_one_is_a_cube);
@@ -19,7 +21,7 @@ static int64_t curve_fixed(uint32_t curve, int64_t halves)
     return curve == NOH_CURVE_SMOOTHSTEP ? halves * halves * (3 * HALVES - 2 * halves) : halves * (CURVE_ONE / HALVES);
 }
 
-/* difference * factor / CURVE_ONE, for differences whose product would not fit. */
+/* difference * factor / CURVE_ONE without the product, which would overflow. */
 static int64_t scaled(int64_t difference, int64_t factor)
 {
     return difference / CURVE_ONE * factor + difference % CURVE_ONE * factor / CURVE_ONE;
@@ -40,25 +42,25 @@ static float float_of(int64_t bits)
     return value;
 }
 
-/* ---- asking ---- */
+/* ---- adding ---- */
 
 static const char *bad_value(const noh_change_desc *d)
 {
     float weight_max = d->kind == NOH_CHANGE_PRIORITY ? 1.0f : NOH_WEIGHT_MAX;
-    if (d->speed > NOH_SPEED_MAX || d->speed < -NOH_SPEED_MAX) return "speed";
-    if (!(d->weight >= 0.0f && d->weight <= weight_max)) return "weight";
-    if (d->position_ticks > ((int64_t)1 << 44) || d->position_ticks < -((int64_t)1 << 44)) return "position_ticks";
-    if ((unsigned)d->mode > NOH_TRACK_ON) return "mode";
+    if (d->speed > NOH_SPEED_MAX || d->speed < -NOH_SPEED_MAX) return "speed is past NOH_SPEED_MAX";
+    if (!(d->weight >= 0.0f && d->weight <= weight_max)) return "weight is not in 0..NOH_WEIGHT_MAX, or 0..1 for PRIORITY";
+    if (d->position_ticks > ((int64_t)1 << 44) || d->position_ticks < -((int64_t)1 << 44)) return "position_ticks is past 2^44";
+    if ((unsigned)d->mode > NOH_TRACK_ON) return "mode is not a noh_track_mode";
     return NULL;
 }
 
 static const char *bad_change(const noh_change_target *target, uint32_t track_count, const noh_change_desc *d)
 {
-    if ((unsigned)d->kind > NOH_CHANGE_PRIORITY) return "kind";
-    if (d->kind != NOH_CHANGE_PRIORITY && d->track >= track_count) return "track";
-    if (d->kind == NOH_CHANGE_POSITION && target->tracks[d->track].sync_group) return "track is synchronised";
-    if ((unsigned)d->curve > NOH_CURVE_SMOOTHSTEP) return "curve";
-    if (d->kind == NOH_CHANGE_MODE && d->duration_ticks) return "duration_ticks";
+    if ((unsigned)d->kind > NOH_CHANGE_PRIORITY) return "kind is not a noh_change_kind";
+    if (d->kind != NOH_CHANGE_PRIORITY && d->track >= track_count) return "track is not below track_count";
+    if (d->kind == NOH_CHANGE_POSITION && target->tracks[d->track].sync_group) return "track is synchronised: its group moves it";
+    if ((unsigned)d->curve > NOH_CURVE_SMOOTHSTEP) return "curve is not a noh_curve";
+    if (d->kind == NOH_CHANGE_MODE && d->duration_ticks) return "duration_ticks must be 0 for MODE";
     return bad_value(d);
 }
 
@@ -72,7 +74,7 @@ static int64_t wanted(const noh_change_desc *d)
     }
 }
 
-/* The entry to fill: one that waits for the same, else a free one, else NULL. */
+/* The entry to fill: one of the same kind and track waiting for the same tick, else a free one, else NULL. */
 static noh_change *slot(noh_change *table, uint32_t count, const noh_change *c)
 {
     noh_change *free_one = NULL;
@@ -106,11 +108,12 @@ noh_result noh_changes_add(noh_change *table, uint32_t count, noh_change_target 
 {
     const char *what = bad_change(target, track_count, desc);
     noh_change c;
+    NOH_ASSERT(table && target && desc && target->set && target->tracks && target->priority_blend);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, desc->track, 0);
     }
     memset(&c, 0, sizeof c);
-    c.start = target->clock + desc->delay_ticks;
+    c.start = noh_clock_add(target->clock, desc->delay_ticks);
     c.to = wanted(desc);
     c.duration = desc->duration_ticks;
     c.state = NOH_CHANGE_WAITING;
@@ -123,6 +126,7 @@ noh_result noh_changes_add(noh_change *table, uint32_t count, noh_change_target 
 noh_result noh_changes_jump(noh_change *table, uint32_t count, noh_change_target *target, uint32_t track, int64_t position, noh_error *error)
 {
     noh_change c;
+    NOH_ASSERT(table && target && target->tracks);
     memset(&c, 0, sizeof c);
     c.start = target->clock;
     c.to = position;
@@ -136,6 +140,7 @@ noh_result noh_changes_jump(noh_change *table, uint32_t count, noh_change_target
 
 void noh_changes_cancel(noh_change *table, uint32_t count, noh_change_kind kind, uint32_t track)
 {
+    NOH_ASSERT(table || !count);
     for (uint32_t i = 0; i < count; i++) {
         if (table[i].state == NOH_CHANGE_RUNNING && table[i].kind == kind && table[i].track == track) {
             table[i].state = NOH_CHANGE_FREE;
@@ -145,6 +150,7 @@ void noh_changes_cancel(noh_change *table, uint32_t count, noh_change_kind kind,
 
 void noh_changes_drop(noh_change *table, uint32_t count, uint32_t track)
 {
+    NOH_ASSERT(table || !count);
     for (uint32_t i = 0; i < count; i++) {
         if (table[i].kind != NOH_CHANGE_PRIORITY && table[i].track == track) {
             table[i].state = NOH_CHANGE_FREE;
@@ -184,7 +190,7 @@ static void set_weight(const noh_change *c, noh_change_target *t, float weight)
     }
 }
 
-/* A change is over: its end value, exactly. A travelling position is there already. */
+/* A change is over: set its end value exactly. A travelling position has arrived already. */
 static void finish(noh_change *c, noh_change_target *t)
 {
     noh_track *track = track_of(c, t);
@@ -224,9 +230,10 @@ static void follow(const noh_change *c, noh_change_target *t)
     }
 }
 
-/* Running changes first: what begins takes over from the value of this very tick. */
+/* Running changes first, so that one that begins starts from the value of this very tick. */
 void noh_changes_update(noh_change *table, uint32_t count, noh_change_target *target)
 {
+    NOH_ASSERT(target && (table || !count));
     for (uint32_t i = 0; i < count; i++) {
         if (table[i].state != NOH_CHANGE_RUNNING) {
             continue;
@@ -249,8 +256,8 @@ void noh_changes_update(noh_change *table, uint32_t count, noh_change_target *ta
 
 /* ---- rates ---- */
 
-/* Whole ticks in which a change is constant. Shorter than NOH_CHANGE_SLICES ticks, a
- * change has empty slices; their part of the curve goes to the next one. */
+/* A stretch of whole ticks in which a change is constant. A change shorter than NOH_CHANGE_SLICES ticks has empty slices;
+ * their part of the curve goes to the next one that is not empty. */
 typedef struct slice {
     int64_t begin, end;   /* ticks after the change's start */
     int64_t first, after; /* the part of the curve, in slices */
@@ -273,7 +280,8 @@ static slice slice_at(const noh_change *c, int64_t elapsed)
     return s;
 }
 
-/* Speed of one slice; returns how long it holds. */
+/* The speed of one slice: the curve's value in its middle, which is also its mean over the slice for a linear curve, and
+ * within 1/64^2 of it for the smoothstep. Returns up to when it holds. */
 static int64_t speed_rate(const noh_change *c, int64_t elapsed, int32_t *speed)
 {
     slice s = slice_at(c, elapsed);
@@ -282,8 +290,9 @@ static int64_t speed_rate(const noh_change *c, int64_t elapsed, int32_t *speed)
     return s.end;
 }
 
-/* Rate of a travel: each slice's way cut into whole steps, the longer ones last, so
- * that it ends exactly where the curve says. Returns how long the rate holds. */
+/* The speed of a travel. The distance of each slice is cut into whole steps of one tick, in two sizes that differ by one,
+ * the longer ones last (as Bresenham's line would, but in two runs), so that each slice ends exactly where the curve says.
+ * Returns up to when the speed holds. */
 static int64_t position_rate(const noh_change *c, int64_t elapsed, int64_t *rate)
 {
     slice s = slice_at(c, elapsed);
@@ -310,7 +319,7 @@ static int64_t speed_rates(const noh_change *table, uint32_t count, const noh_ch
     for (uint32_t i = 0; i < count; i++) {
         if (runs(&table[i], NOH_CHANGE_SPEED)) {
             int64_t held = speed_rate(&table[i], target->clock - table[i].start, &target->tracks[table[i].track].speed);
-            end = sooner(end, table[i].start + held);
+            end = sooner(end, noh_clock_add(table[i].start, held));
         }
     }
     return end;
@@ -321,7 +330,7 @@ static int64_t position_rates(const noh_change *table, uint32_t count, const noh
     for (uint32_t i = 0; i < count; i++) {
         if (runs(&table[i], NOH_CHANGE_POSITION)) {
             int64_t held = position_rate(&table[i], target->clock - table[i].start, &target->tracks[table[i].track].rate);
-            end = sooner(end, table[i].start + held);
+            end = sooner(end, noh_clock_add(table[i].start, held));
         }
     }
     return end;
@@ -334,7 +343,7 @@ static int64_t next_change(const noh_change *table, uint32_t count, int64_t end)
         if (table[i].state == NOH_CHANGE_WAITING) {
             end = sooner(end, table[i].start);
         } else if (table[i].state == NOH_CHANGE_RUNNING) {
-            end = sooner(end, table[i].start + table[i].duration);
+            end = sooner(end, noh_clock_add(table[i].start, table[i].duration));
         }
     }
     return end;
@@ -342,6 +351,7 @@ static int64_t next_change(const noh_change *table, uint32_t count, int64_t end)
 
 int64_t noh_changes_rates(const noh_change *table, uint32_t count, const noh_change_target *target, uint32_t track_count, int64_t end)
 {
+    NOH_ASSERT(target && (table || !count) && end >= target->clock);
     end = speed_rates(table, count, target, next_change(table, count, end));
     for (uint32_t i = 0; i < track_count; i++) {
         noh_track *track = &target->tracks[i];

@@ -1,18 +1,23 @@
-/* changes.h: changes over a time, asked for ahead: speed, weight, position, mode, priority blend.
+/* changes.h: changes over time, now or scheduled: of speed, weight, position, mode, priority blend.
  *
- * A fixed table of 32-byte records inside a controller. All of it is exact in
- * ticks: what a change does at a tick does not depend on how time is cut in steps.
+ * A fixed table of 32-byte records inside a controller. Everything is exact in ticks: the effect of a change at a tick does
+ * not depend on how time is cut into steps.
  *   WEIGHT, PRIORITY   follow the curve at every tick
- *   SPEED              follows it in NOH_CHANGE_SLICES equal slices of constant speed,
- *                      each at the curve's middle value, so that the way travelled is
- *                      that of the curve
- *   POSITION           travels along the curve in the same slices and arrives exactly;
- *                      it is play and fires events. With duration 0 it jumps and fires none
- *   MODE               switches when it is due; its duration must be 0 */
+ *   SPEED              follows it in NOH_CHANGE_SLICES equal slices of constant speed, each at the curve's middle value,
+ *                      so that the distance travelled is that of the curve
+ *   POSITION           travels along the curve in the same slices and arrives exactly; this is play and fires events. With
+ *                      duration 0 it jumps and fires none
+ *   MODE               switches when it is due; its duration must be 0
+ *
+ * Threads: a table belongs to the thread of its controller. */
 #ifndef NOH_ANIM_CHANGES_H
 #define NOH_ANIM_CHANGES_H
 
 #include "anim/tracks.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 #define NOH_CHANGE_SLICES 64
 
@@ -51,7 +56,7 @@ typedef struct noh_change {
     uint8_t curve;     /* noh_curve, or NOH_CURVE_JUMP */
 } noh_change;
 
-#define NOH_CURVE_JUMP 2u /* a seek that fires what it passes: linear, one tick long, not root motion */
+#define NOH_CURVE_JUMP 2u /* a seek that fires the keys on its way: linear, one tick long, no root motion */
 
 #define NOH_CHANGE_FREE 0u
 #define NOH_CHANGE_WAITING 1u
@@ -59,7 +64,7 @@ typedef struct noh_change {
 
 NOH_STATIC_ASSERT(sizeof(noh_change) == 32, change);
 
-/* What the table works on. */
+/* What a table acts on. */
 typedef struct noh_change_target {
     const noh_anim_set *set;
     noh_track *tracks;
@@ -68,30 +73,33 @@ typedef struct noh_change_target {
     int sync_touched; /* out: something that a sync group depends on has changed */
 } noh_change_target;
 
-/* The value of a curve at t, which is held in 0..1. */
+/* The value of a curve at t, clamped to 0..1. */
 float noh_curve_at(noh_curve curve, float t);
 
-/* Check a desc and put it in the table; begins it if it is due now. A change of
- * the same kind and track that waits for the same tick is replaced.
- * errors  ARG names the field (POSITION of a synchronised track is refused: its
- *         group moves it); LIMIT the table is full (need: entries) */
+/* Add a change, and begin it if it is due now. It replaces a change of the same kind and track that waits for the same tick.
+ * errors  ARG a field of the desc (POSITION of a synchronised track is refused: its group moves it); LIMIT the table is full
+ *         (need: entries) */
 noh_result noh_changes_add(noh_change *table, uint32_t count, noh_change_target *target, uint32_t track_count,
                            const noh_change_desc *desc, noh_error *error);
 
-/* Travel to a position within the next tick, firing what is passed: a seek. */
+/* Travel to a position within the next tick, firing the keys on the way: NOH_SEEK_FIRE. */
 noh_result noh_changes_jump(noh_change *table, uint32_t count, noh_change_target *target, uint32_t track, int64_t position, noh_error *error);
 
-/* End a running change of this kind and track where it stands. */
+/* End a running change of this kind and track at its present value. */
 void noh_changes_cancel(noh_change *table, uint32_t count, noh_change_kind kind, uint32_t track);
 
-/* Drop all changes of a track, waiting ones too. */
+/* End all changes of a track, waiting ones too. */
 void noh_changes_drop(noh_change *table, uint32_t count, uint32_t track);
 
-/* Bring weights and the priority blend to target->clock, end what is over, begin what is due. */
+/* Bring weights and the priority blend to target->clock, end changes that are over, begin those that are due. */
 void noh_changes_update(noh_change *table, uint32_t count, noh_change_target *target);
 
-/* Set the rates of the tracks for the ticks from target->clock on, and say up to
- * which tick, at most `end`, they hold. Synchronised tracks are left to their group. */
+/* Set the present speed (noh_track.rate) of all tracks from target->clock on, and return the tick, at most `end`, up to
+ * which it holds. Synchronised tracks are left to their group. */
 int64_t noh_changes_rates(const noh_change *table, uint32_t count, const noh_change_target *target, uint32_t track_count, int64_t end);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -6,13 +6,19 @@
  *   noh_clip_size     bytes that noh_clip_init will use
  *   noh_clip_init     check a clip and expand its header
  *   noh_clip_info_of  what the clip says of itself
- *   noh_clip_frame_at a time's frame and fraction */
+ *   noh_clip_frame_at a time's frame and fraction
+ *
+ * Threads: an open clip is read only; any number may share it. */
 #ifndef NOH_ANIM_CLIP_CODEC_H
 #define NOH_ANIM_CLIP_CODEC_H
 
-#include "base/result.h"
 #include "anim/clip_format.h"
 #include "anim/pose.h"
+#include "base/result.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 typedef struct noh_clip_desc {
     const void *bytes;          /* the clip, any alignment; must outlive the noh_clip */
@@ -27,7 +33,7 @@ typedef struct noh_clip noh_clip;
 typedef struct noh_clip_info {
     uint32_t joint_count, frame_count, segment_count, float_count, group_count;
     uint32_t track_count;       /* animated ones */
-    uint32_t rate_uhz;          /* frames per second, times 10^6 */
+    uint32_t rate_uhz;          /* sample rate: frames per second, times 10^6 */
     uint64_t duration_ticks;    /* 1/48,000 s, of frame_count - 1 frames; the last frame is shown at the end */
     uint32_t flags;             /* NOH_CLIP_FLAG_* */
     double error_cm, shell_cm;  /* the bound, at the shell, that the clip was built for */
@@ -49,11 +55,12 @@ typedef struct noh_clip_group {
  * errors  as noh_clip_init, but for MEMORY */
 noh_result noh_clip_measure(const noh_clip_desc *desc, noh_clip_info *info, size_t *bytes, noh_error *error);
 
-/* Bytes of a noh_clip; 0 for a clip that noh_clip_init would refuse for its header. */
+/* Exact bytes of a noh_clip; 0 for a clip that noh_clip_measure refuses. */
 size_t noh_clip_size(const noh_clip_desc *desc, noh_error *error);
 
 /* Check the clip completely and expand its header into memory[noh_clip_size()], 16-byte aligned.
- * errors  NOH_ERR_ARG joints differ; NOH_ERR_MEMORY; NOH_ERR_VERSION; NOH_ERR_LIMIT; NOH_ERR_DATA with the byte */
+ * errors  ARG bytes or bind is NULL, the joints are not the skeleton's (need: the clip's), memory NULL or misaligned;
+ *         MEMORY need: the bytes; VERSION need: ours; LIMIT need: what the clip has; DATA where: the byte in the clip */
 noh_result noh_clip_init(void *memory, size_t bytes, const noh_clip_desc *desc, noh_clip **out, noh_error *error);
 
 void noh_clip_info_of(const noh_clip *clip, noh_clip_info *info);
@@ -64,5 +71,9 @@ noh_clip_group noh_clip_group_at(const noh_clip *clip, uint32_t index);
 /* The frame at or before a time and the fraction 0 <= f < 1 to the next. Times before the first
  * frame give the first, after the last the last. Exact: integers. */
 uint32_t noh_clip_frame_at(const noh_clip *clip, int64_t ticks, float *fraction);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

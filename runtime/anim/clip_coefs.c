@@ -1,5 +1,10 @@
 #include "anim/clip_coefs.h"
 
+/* Most coefficients of a track are 0, 1 or -1 and lie low; how large one is, its neighbours just above in frequency tell
+ * well. So the three components of one frequency are one symbol from a table that their neighbours choose, with the low
+ * bits, where neighbours are large, kept out of it (Rice coding with an adaptive parameter); clip_coefs.h has the rules.
+ * Any bits decode: quotients, shifts and escapes are cut to a width at which nothing overflows. */
+
 #define MAGNITUDE_MASK ((1u << NOH_CLIP_MAGNITUDE_BITS) - 1u)
 
 /* Magnitudes of one component at the three frequencies above the one being read. */
@@ -29,7 +34,7 @@ static uint32_t read_escape(noh_bits *b)
 {
     uint32_t zeros;
     noh_bits_refill(b);
-    zeros = b->word ? (uint32_t)__builtin_ctzll(b->word) : NOH_CLIP_MAGNITUDE_BITS;
+    zeros = b->word ? noh_trailing_zeros(b->word) : NOH_CLIP_MAGNITUDE_BITS;
     if (zeros > NOH_CLIP_MAGNITUDE_BITS) {
         zeros = NOH_CLIP_MAGNITUDE_BITS;
     }

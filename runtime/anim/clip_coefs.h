@@ -13,6 +13,7 @@
 
 #include "anim/clip_bits.h"
 #include "anim/clip_format.h"
+#include "base/compiler.h"
 
 #define NOH_CLIP_BUSY 2u
 #define NOH_CLIP_TRIPLE_FIRST 8u   /* context of the first triple */
@@ -39,7 +40,7 @@ extern const uint16_t noh_clip_step_table[NOH_CLIP_STEP_CONTEXTS][1u << NOH_CLIP
 
 static inline uint32_t noh_clip_bit_length(uint32_t v)
 {
-    return v ? 32u - (uint32_t)__builtin_clz(v) : 0u;
+    return v ? 32u - noh_leading_zeros(v) : 0u;
 }
 
 /* How many low bits of a magnitude stay out of the symbol; e is the sum of its neighbours. One more

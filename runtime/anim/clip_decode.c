@@ -49,6 +49,8 @@ static void decode_raw(noh_bits *b, const noh_clip *clip, const noh_clip_track *
     }
 }
 
+/* The quantiser's step of a track. Where there are several segments the header has a step for the track and the segment
+ * only the difference; a single segment has no header's step, and takes that of the track before. */
 static uint32_t read_step(noh_bits *b, const noh_clip *clip, const noh_clip_track *track, int16_t before)
 {
     const uint32_t single = clip->info.segment_count == 1u;
@@ -75,6 +77,8 @@ static void read_wild(noh_bits *b, float reference[4])
     }
 }
 
+/* One track of a segment: read its coefficients, bring them to size, turn mixed axes back, and sum the cosines into frames.
+ * Rotations become reference times what the components say, linear tracks reference plus it. */
 static void decode_track(noh_bits *b, const noh_clip *clip, const noh_clip_track *track, const noh_clip_basis *basis,
                          noh_clip_cursor *cursor, uint8_t *out)
 {
@@ -104,6 +108,8 @@ void noh_clip_decode(const noh_clip *clip, const noh_clip_basis *basis, noh_clip
 {
     const uint32_t rotation_bytes = clip->info.flags & NOH_CLIP_FLAG_WIDE ? ROTATION_WIDE : ROTATION_NARROW;
     noh_bits b = noh_bits_over(clip->bytes, 0, clip->segment_offsets[cursor->segment + 1u]);
+    NOH_ASSERT(track_end <= clip->info.track_count && cursor->segment < clip->info.segment_count);
+    NOH_ASSERT(basis->frames == noh_clip_segment_first(clip, cursor->segment + 1u) - noh_clip_segment_first(clip, cursor->segment));
     noh_bits_seek(&b, cursor->position);
     for (; cursor->track < track_end; cursor->track++) {
         const noh_clip_track *track = &clip->tracks[cursor->track];

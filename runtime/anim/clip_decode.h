@@ -1,7 +1,7 @@
 /* clip_decode.h (private to anim/ and the encoder): one segment, track by track.
  *
- * Decoding can stop after any track and go on later, so that a budget per frame can be
- * kept and a prefix of the joints be decoded alone. */
+ * Decoding can stop after any track and resume later: a budget per frame is kept, and a prefix of the joints decoded alone,
+ * with the same bits in the end. */
 #ifndef NOH_ANIM_CLIP_DECODE_H
 #define NOH_ANIM_CLIP_DECODE_H
 

@@ -1,5 +1,9 @@
-/* clip_open.c: the header, checked and expanded. One parser runs twice: over an arena that
- * measures, then over the caller's memory, so the two cannot disagree. */
+/* clip_open.c: the header, checked and expanded. One parser runs twice, first to measure (its pointers are NULL and it only
+ * counts), then into the caller's memory, so that size and use cannot disagree.
+ *
+ * A clip is untrusted bytes. The header is read to its end with every count held to a limit before it bounds a loop; past
+ * the end the bit reader gives zeros, and read_sizes finds that out. The segments' sizes must fill the clip exactly; what
+ * is in the segments need not be checked, because any bits decode to some frames, in bounds (clip_decode.h). */
 #include <string.h>
 
 #include "base/arena.h"
@@ -47,24 +51,24 @@ static noh_result read_counts(parser *p)
 {
     noh_bits *b = &p->bits;
     noh_clip_info *info = &p->clip->info;
-    if (noh_bits_get(b, 8u) != NOH_CLIP_VERSION) return fail(p, NOH_ERR_VERSION, "clip version", NOH_CLIP_VERSION);
+    if (noh_bits_get(b, 8u) != NOH_CLIP_VERSION) return fail(p, NOH_ERR_VERSION, "the clip is of another format version: build its pack again", NOH_CLIP_VERSION);
     info->flags = noh_bits_get(b, 4u);
     info->joint_count = noh_bits_varint(b);
     info->frame_count = noh_bits_varint(b);
-    if (info->joint_count > NOH_CLIP_JOINTS_MAX) return fail(p, NOH_ERR_LIMIT, "joints of a clip", info->joint_count);
-    if (info->joint_count != p->desc->joint_count) return fail(p, NOH_ERR_ARG, "clip and skeleton differ in joints", info->joint_count);
-    if (info->frame_count == 0u || info->frame_count > NOH_CLIP_FRAMES_MAX) return fail(p, NOH_ERR_LIMIT, "frames of a clip", info->frame_count);
+    if (info->joint_count > NOH_CLIP_JOINTS_MAX) return fail(p, NOH_ERR_LIMIT, "the clip has more joints than NOH_CLIP_JOINTS_MAX", info->joint_count);
+    if (info->joint_count != p->desc->joint_count) return fail(p, NOH_ERR_ARG, "the clip has another number of joints than the skeleton", info->joint_count);
+    if (info->frame_count == 0u || info->frame_count > NOH_CLIP_FRAMES_MAX) return fail(p, NOH_ERR_LIMIT, "the clip has no frames, or more than NOH_CLIP_FRAMES_MAX", info->frame_count);
     if (noh_bits_get(b, 1u)) {
         const uint32_t hertz = noh_bits_varint(b);
         info->rate_uhz = hertz <= 0xffffffffu / NOH_CLIP_MICRO ? hertz * NOH_CLIP_MICRO : 0u;
     } else {
         info->rate_uhz = noh_bits_get(b, 32u);
     }
-    if (info->rate_uhz == 0u) return fail(p, NOH_ERR_DATA, "clip rate", 0);
+    if (info->rate_uhz == 0u) return fail(p, NOH_ERR_DATA, "the clip's sample rate is 0 or past 32 bits", 0);
     info->segment_count = noh_bits_varint(b);
-    if (info->segment_count == 0u || info->segment_count > info->frame_count) return fail(p, NOH_ERR_DATA, "segments of a clip", info->segment_count);
+    if (info->segment_count == 0u || info->segment_count > info->frame_count) return fail(p, NOH_ERR_DATA, "the clip has no segments, or more than frames", info->segment_count);
     info->segment_frames_max = (info->frame_count + info->segment_count - 1u) / info->segment_count;
-    if (info->segment_frames_max > NOH_CLIP_SEGMENT_FRAMES_MAX) return fail(p, NOH_ERR_LIMIT, "frames of a segment", info->segment_frames_max);
+    if (info->segment_frames_max > NOH_CLIP_SEGMENT_FRAMES_MAX) return fail(p, NOH_ERR_LIMIT, "a segment of the clip is longer than NOH_CLIP_SEGMENT_FRAMES_MAX", info->segment_frames_max);
     p->size_width = info->segment_count > 1u ? noh_bits_get(b, 5u) : 0u;
     return NOH_OK;
 }
@@ -98,10 +102,10 @@ static noh_result read_groups(parser *p)
     noh_clip_info *info = &p->clip->info;
     info->group_count = noh_bits_varint(&p->bits);
     info->float_count = 0;
-    if (info->group_count > NOH_CLIP_GROUPS_MAX) return fail(p, NOH_ERR_LIMIT, "float groups of a clip", info->group_count);
+    if (info->group_count > NOH_CLIP_GROUPS_MAX) return fail(p, NOH_ERR_LIMIT, "the clip has more float groups than NOH_CLIP_GROUPS_MAX", info->group_count);
     for (uint32_t g = 0; g < info->group_count; g++) {
         const noh_clip_group group = read_group(&p->bits, info->float_count);
-        if (group.width > NOH_CLIP_FLOATS_MAX - info->float_count) return fail(p, NOH_ERR_LIMIT, "floats of a clip", group.width);
+        if (group.width > NOH_CLIP_FLOATS_MAX - info->float_count) return fail(p, NOH_ERR_LIMIT, "the clip has more floats than NOH_CLIP_FLOATS_MAX", group.width);
         info->float_count += group.width;
         if (p->groups) p->groups[g] = group;
     }
@@ -126,7 +130,8 @@ static noh_result read_floats(parser *p, uint32_t width, float v[3])
     return NOH_OK;
 }
 
-/* Keep a track that was read, or only count it. */
+/* Keep a track that was read, or only count it. Rotations are numbered by themselves, and so are linear tracks: in a cached
+ * frame each kind lies in a row, which is what makes sampling a loop over neighbours. */
 static void add_track(parser *p, const noh_clip_track *track)
 {
     noh_clip *clip = p->clip;
@@ -220,7 +225,7 @@ static noh_result read_joint(parser *p, uint32_t joint)
         }
     }
     if (rotation > NOH_CLIP_MODE_ANIMATED || translation > NOH_CLIP_MODE_ANIMATED || scale > NOH_CLIP_MODE_ANIMATED) {
-        return fail(p, NOH_ERR_DATA, "mode of a track", 0);
+        return fail(p, NOH_ERR_DATA, "a track of the clip has an unknown mode", 0);
     }
     r = read_subtrack(p, NOH_CLIP_TRANSLATION, translation, joint, t.translation);
     if (r == NOH_OK) r = read_subtrack(p, NOH_CLIP_SCALE, scale, joint, t.scale);
@@ -229,6 +234,8 @@ static noh_result read_joint(parser *p, uint32_t joint)
     return r;
 }
 
+/* Tracks come in the order of joints, so the first n joints need the first so many tracks, rotations and linear tracks:
+ * a LOD level that poses a prefix of the skeleton decodes and samples just those. */
 static void keep_prefix(parser *p, uint32_t joint)
 {
     if (p->prefixes) {
@@ -267,21 +274,24 @@ static noh_result read_sizes(parser *p)
     const size_t sizes_bits = (size_t)p->size_width * (info->segment_count > 1u ? info->segment_count : 0u);
     const size_t begin = (noh_bits_position(&p->bits) + sizes_bits + 7u) / 8u;
     size_t at = begin;
-    if (noh_bits_overrun(&p->bits) || begin > p->desc->byte_count) return fail(p, NOH_ERR_DATA, "clip ends in its header", begin);
+    if (noh_bits_overrun(&p->bits) || begin > p->desc->byte_count) return fail(p, NOH_ERR_DATA, "the clip ends in its header", begin);
     for (uint32_t s = 0; s < info->segment_count; s++) {
         const size_t bytes = info->segment_count > 1u ? noh_bits_get(&sizes, p->size_width) : p->desc->byte_count - begin;
         if (p->offsets) p->offsets[s] = (uint32_t)at;
         if (p->firsts) p->firsts[s] = (uint32_t)((uint64_t)s * info->frame_count / info->segment_count);
-        if (bytes > p->desc->byte_count - at) return fail(p, NOH_ERR_DATA, "segment passes the clip's end", s);
+        if (bytes > p->desc->byte_count - at) return fail(p, NOH_ERR_DATA, "a segment passes the clip's end", s);
         at += bytes;
     }
     if (p->offsets) p->offsets[info->segment_count] = (uint32_t)at;
     if (p->firsts) p->firsts[info->segment_count] = info->frame_count;
-    return at == p->desc->byte_count ? NOH_OK : fail(p, NOH_ERR_DATA, "bytes after the last segment", at);
+    return at == p->desc->byte_count ? NOH_OK : fail(p, NOH_ERR_DATA, "the clip has bytes after its last segment", at);
 }
 
-/* The largest number, up to NOH_CLIP_WEIGHT_MAX, of parts of a frame with every tick and every eighth
- * among them. At rates where there is none a time is off by less than 1/65,000 of a frame. */
+/* What the whole weights of two frames add up to: the largest number, up to NOH_CLIP_WEIGHT_MAX, of parts of a frame with
+ * every tick and every eighth of a frame among them. At 30 Hz a frame is 1,600 ticks, and 32,000 parts of one hold both.
+ * With g = gcd(48,000 Hz, sample rate), both in micro-hertz, a frame is 48,000 / rate ticks, so ticks lie at multiples of
+ * 1 / (48,000 / g) frames; doubling that until 8 divides it takes in the eighths. At sample rates where it is too large
+ * a time is off by less than 1/65,000 of a frame. */
 static uint32_t weight_one(uint32_t rate_uhz)
 {
     const uint64_t second = (uint64_t)NOH_CLIP_TICKS_PER_SECOND * NOH_CLIP_MICRO;
@@ -344,8 +354,8 @@ static noh_result measure(const noh_clip_desc *desc, noh_clip *clip, parser *p, 
     p->desc = desc;
     p->clip = clip;
     p->error = error;
-    if (!desc->bytes || (desc->joint_count && !desc->bind)) return noh_fail(error, NOH_ERR_ARG, "clip desc", 0, 0);
-    if (desc->byte_count > 0x7fffffffu) return noh_fail(error, NOH_ERR_LIMIT, "bytes of a clip", 0, desc->byte_count);
+    if (!desc->bytes || (desc->joint_count && !desc->bind)) return noh_fail(error, NOH_ERR_ARG, desc->bytes ? "bind of a clip desc is NULL, and joint_count is not 0" : "bytes of a clip desc is NULL", 0, 0);
+    if (desc->byte_count > 0x7fffffffu) return noh_fail(error, NOH_ERR_LIMIT, "byte_count of a clip desc is 2 GiB or more", 0, desc->byte_count);
     r = parse(p);
     if (r != NOH_OK) return r;
     (void)noh_arena_carve(&arena, sizeof *clip, 16u);
@@ -400,12 +410,12 @@ int noh_clip_next_group(noh_clip_group_reader *reader, noh_clip_group *group)
 noh_result noh_clip_init(void *memory, size_t bytes, const noh_clip_desc *desc, noh_clip **out, noh_error *error)
 {
     noh_clip measured, *clip;
-    noh_arena arena = noh_arena_over(memory, bytes);
+    noh_arena arena;
     parser p;
     size_t size = 0;
-    const noh_result r = measure(desc, &measured, &p, &size, error);
-    if (r != NOH_OK) return r;
-    if (bytes < size) return noh_fail(error, NOH_ERR_MEMORY, "memory of a clip", 0, size);
+    noh_result r = measure(desc, &measured, &p, &size, error);
+    if (!r) r = noh_arena_open(&arena, memory, bytes, size, error);
+    if (r) return r;
     clip = noh_arena_carve(&arena, sizeof *clip, 16u);
     *clip = measured;
     carve(&arena, &measured, &p);

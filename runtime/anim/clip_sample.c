@@ -5,7 +5,7 @@
 #include "anim/clip_vec.h"
 
 /* Kernels in which a flag is a constant, or whose vectors must stay in registers. */
-#define NOH_CLIP_INLINE static inline __attribute__((always_inline))
+#define NOH_CLIP_INLINE NOH_ALWAYS_INLINE
 
 #define TINY 1e-30f /* so that frames of zeros, which only a broken clip has, divide */
 
@@ -21,7 +21,7 @@ static inline float *rotation_at(noh_transform *out, uint32_t offset)
     return (float *)(void *)((uint8_t *)out + offset);
 }
 
-#if defined(__AVX2__) && !defined(NOH_CLIP_SCALAR)
+#if defined(NOH_AVX2) && !defined(NOH_CLIP_SCALAR)
 #include <immintrin.h>
 
 /* Two joints to a register, eight at a time; sums in the order of the scalar twin. */
@@ -127,8 +127,10 @@ NOH_CLIP_INLINE void blend_group(const uint8_t *a, const uint8_t *b, uint32_t r,
     normalise_group(q);
 }
 
-/* Rotations: neighbouring frames lie in one hemisphere (the encoder sees to it), so there is
- * no sign to look at. */
+/* Rotations: a weighted sum, normalised. Frames of one segment lie in one hemisphere, and so do the last and first of two
+ * neighbours (the encoder negates them where needed), so there is no sign to look at. Cached frames hold rotations as 16-bit
+ * integers: they are weighed by whole numbers, exactly, and rounded once to floats, which is why every instruction set
+ * gives the same bits. */
 NOH_CLIP_INLINE void blend_rotations(const noh_clip *clip, const uint8_t *a, const uint8_t *b, const weights *w, uint32_t count, int wide,
                                      noh_transform *out)
 {
@@ -164,6 +166,7 @@ void noh_clip_blend_frames(const noh_clip *clip, const uint8_t *a, const uint8_t
     const noh_clip_prefix *prefix = &clip->prefixes[joints];
     const int32_t whole_b = (int32_t)(fraction * (float)clip->weight_one + 0.5f);
     const weights w = { (int32_t)clip->weight_one - whole_b, whole_b, 1.0f - fraction, fraction };
+    NOH_ASSERT(joints <= clip->info.joint_count && fraction >= 0.0f && fraction <= 1.0f);
     memcpy(out, clip->pose, joints * sizeof *out);
     if (clip->info.flags & NOH_CLIP_FLAG_WIDE) {
         blend_rotations(clip, a, b, &w, prefix->rotations, 1, out);

@@ -23,6 +23,8 @@ static double quarter_cosine(uint32_t m, uint32_t n)
     return 1.0 + sum;
 }
 
+/* cos(pi m / (2 n)) for every m: folded into the first quarter of the turn by its symmetries, in integers, so that rows
+ * are exactly even or odd about their middle. */
 static double basis_cosine(uint32_t m, uint32_t n)
 {
     m %= 4u * n;
@@ -44,6 +46,7 @@ void noh_clip_basis_build(uint32_t frames, float *rows)
     }
 }
 
+/* Four steps to each factor of two: the exponent is written into the float's bits, the rest is a table of 2^(-i / 4). */
 float noh_clip_step(uint32_t id)
 {
     static const float parts[4] = { 1.0f, 0.84089642f, 0.70710678f, 0.59460356f };
@@ -54,6 +57,8 @@ float noh_clip_step(uint32_t id)
     return power * parts[id % 4u];
 }
 
+/* "Smallest three": the largest component of a unit quaternion is left out and made positive; none of the others is above
+ * sqrt(1/2), and they say what the largest was. Codes that are no unit quaternion (a broken clip) are scaled to one. */
 void noh_clip_quat_expand(const uint32_t codes[3], uint32_t left_out, uint32_t width, float q[4])
 {
     const uint32_t mid = (1u << (width - 1u)) - 1u;
@@ -122,7 +127,9 @@ void noh_clip_dequantise(const int32_t (*coefs)[4], uint32_t last, float step, c
     }
 }
 
-/* Four frames of three components, and the four that mirror them. */
+/* Four frames of three components, and the four that mirror them. Basis row k is even about the middle of the segment for
+ * even k and odd for odd k, so one sum over even frequencies and one over odd ones give two frames: their sum is the
+ * frame in the first half, their difference its mirror in the second. That halves the products. */
 typedef struct quad {
     noh_v4 front[3], back[3];
 } quad;
@@ -156,7 +163,8 @@ static inline void transform_quad(const noh_clip_basis *basis, const float (*coe
     }
 }
 
-/* reference * rodrigues(u), times 32767; then transposed: q[i] is frame i. */
+/* reference * rodrigues(u), times 32767; then transposed: q[i] is frame i. With v = u / 4 a modified Rodrigues vector is
+ * the unit quaternion (2 v, 1 - |v|^2) / (1 + |v|^2): no sine, no square root. */
 static inline void rotate_quad(const noh_v4 u[3], const noh_v4 r[4], noh_v4 q[4])
 {
     const noh_v4 quarter = noh_v4_set(0.25f), one = noh_v4_set(1.0f);

@@ -15,11 +15,11 @@
 
 #if defined(NOH_CLIP_SCALAR)
 #define NOH_CLIP_SIMD "scalar"
-#elif defined(__SSE2__)
+#elif defined(NOH_SSE2)
 #include <emmintrin.h>
 #define NOH_CLIP_SIMD "sse2"
 #define NOH_VEC_SSE 1
-#elif defined(__ARM_NEON) && defined(__aarch64__) /* 32-bit NEON flushes subnormals: not the same bits */
+#elif defined(NOH_NEON)
 #include <arm_neon.h>
 #define NOH_CLIP_SIMD "neon"
 #define NOH_VEC_NEON 1

@@ -2,13 +2,17 @@
 
 #include <string.h>
 
+#include "anim/clock_internal.h"
 #include "anim/inertial.h"
 #include "anim/sync.h"
 #include "base/arena.h"
 
-/* flags of our own, above the public ones */
+/* Whether a controller was made for a set like this one: for asserts. */
+#define IS_SET_OF(c, set) ((set) && (set)->motion_count == (c)->motion_count && (set)->joint_count == (c)->joint_count)
+
+/* private flags, above the public ones */
 #define STEPPING 64u     /* inside noh_controller_step */
-#define SYNC_TOUCHED 128u /* rates of the sync groups are to be found anew */
+#define SYNC_TOUCHED 128u /* the sync groups need new speeds before the next grid tick */
 
 /* ---- memory ---- */
 
@@ -28,11 +32,11 @@ static uint32_t change_count_of(const noh_controller_desc *d)
 
 static const char *bad_desc(const noh_controller_desc *d)
 {
-    if (!d->set || d->set->joint_count > NOH_JOINTS_MAX || d->set->float_count > NOH_FLOATS_MAX) return "set";
-    if (d->set->joint_count == 0 && d->set->float_count == 0) return "set";
-    if (d->track_count > NOH_TRACKS_MAX) return "track_count";
-    if (d->change_count > NOH_CHANGES_MAX) return "change_count";
-    if (d->flags & ~NOH_CONTROLLER_INERTIAL) return "flags";
+    if (!d->set || d->set->joint_count > NOH_JOINTS_MAX || d->set->float_count > NOH_FLOATS_MAX) return "set: NULL, or without joints and floats, or over NOH_JOINTS_MAX or NOH_FLOATS_MAX";
+    if (d->set->joint_count == 0 && d->set->float_count == 0) return "set: NULL, or without joints and floats, or over NOH_JOINTS_MAX or NOH_FLOATS_MAX";
+    if (d->track_count > NOH_TRACKS_MAX) return "track_count is above NOH_TRACKS_MAX";
+    if (d->change_count > NOH_CHANGES_MAX) return "change_count is above NOH_CHANGES_MAX";
+    if (d->flags & ~NOH_CONTROLLER_INERTIAL) return "flags has bits other than NOH_CONTROLLER_INERTIAL";
     return NULL;
 }
 
@@ -60,6 +64,7 @@ static layout layout_of(const noh_controller_desc *d)
 
 size_t noh_controller_size(const noh_controller_desc *desc)
 {
+    NOH_ASSERT(desc);
     return bad_desc(desc) ? 0 : layout_of(desc).bytes;
 }
 
@@ -83,16 +88,17 @@ static void fill_head(noh_controller *c, const noh_controller_desc *d, layout l)
 noh_result noh_controller_init(void *memory, size_t bytes, const noh_controller_desc *desc, noh_controller **controller, noh_error *error)
 {
     const char *what = bad_desc(desc);
+    noh_arena arena;
+    noh_result result;
     layout l;
+    NOH_ASSERT(desc && controller);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }
     l = layout_of(desc);
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for a controller is NULL or not 16-byte aligned", 0, l.bytes);
-    }
-    if (bytes < l.bytes) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory for a controller is too small", bytes, l.bytes);
+    result = noh_arena_open(&arena, memory, bytes, l.bytes, error);
+    if (result != NOH_OK) {
+        return result;
     }
     memset(memory, 0, l.bytes);
     fill_head((noh_controller *)memory, desc, l);
@@ -102,11 +108,13 @@ noh_result noh_controller_init(void *memory, size_t bytes, const noh_controller_
 
 size_t noh_controller_bytes(const noh_controller *c)
 {
+    NOH_ASSERT(c);
     return c->bytes;
 }
 
 noh_track *noh_controller_tracks(noh_controller *c)
 {
+    NOH_ASSERT(c);
     return (noh_track *)(void *)((uint8_t *)c + c->tracks_offset);
 }
 
@@ -131,7 +139,7 @@ static noh_change_target target_of(noh_controller *c, const noh_anim_set *set)
     return t;
 }
 
-/* After the table has been changed: the sync groups, and how full it has been. */
+/* After a change of the table: note its high-water mark, and whether a sync group is affected. */
 static void settle(noh_controller *c, const noh_change_target *t)
 {
     const noh_change *changes = changes_of(c);
@@ -145,7 +153,7 @@ static void settle(noh_controller *c, const noh_change_target *t)
 
 /* ---- tracks ---- */
 
-/* The leader of the group that a track would join, or the group's misfit. */
+/* Whether the markers of a joining track match those of its sync group. */
 static int sync_fits(const noh_controller *c, const noh_anim_set *set, uint32_t track, const noh_track *joining)
 {
     for (uint32_t i = 0; i < c->track_count; i++) {
@@ -163,9 +171,10 @@ noh_result noh_controller_start(noh_controller *c, const noh_anim_set *set, uint
     noh_track started;
     noh_track *tracks = noh_controller_tracks(c);
     noh_result result;
+    NOH_ASSERT(c && desc && IS_SET_OF(c, set));
     memset(&started, 0, sizeof started);
     if (track >= c->track_count) {
-        return noh_fail(error, NOH_ERR_ARG, "track", track, c->track_count);
+        return noh_fail(error, NOH_ERR_ARG, "track is not below track_count", track, c->track_count);
     }
     result = noh_track_start(&started, set, desc, error);
     if (result != NOH_OK) {
@@ -199,7 +208,7 @@ static void gather_group(noh_controller *c, const noh_anim_set *set, uint32_t tr
     c->flags |= SYNC_TOUCHED;
 }
 
-/* The position of a tick of the pass, or cycle, that a track is in. */
+/* The position of a tick of the present pass, or ping-pong cycle. */
 static int64_t seek_position(const noh_track *t, const noh_motion *m, int64_t tick)
 {
     int64_t legs = noh_time_legs(t->position, m->duration_ticks, (noh_loop)t->loop);
@@ -214,16 +223,17 @@ noh_result noh_controller_seek(noh_controller *c, const noh_anim_set *set, uint3
     noh_track *t;
     const noh_motion *m;
     int64_t position;
-    if (track >= c->track_count) return noh_fail(error, NOH_ERR_ARG, "track", track, c->track_count);
-    if (tick > (int64_t)1 << 43 || tick < -((int64_t)1 << 43)) return noh_fail(error, NOH_ERR_ARG, "tick", track, 0);
-    if ((unsigned)policy > NOH_SEEK_FIRE) return noh_fail(error, NOH_ERR_ARG, "policy", track, 0);
+    NOH_ASSERT(c && IS_SET_OF(c, set));
+    if (track >= c->track_count) return noh_fail(error, NOH_ERR_ARG, "track is not below track_count", track, c->track_count);
+    if (tick > (int64_t)1 << 43 || tick < -((int64_t)1 << 43)) return noh_fail(error, NOH_ERR_ARG, "tick is past 2^43", track, 0);
+    if ((unsigned)policy > NOH_SEEK_FIRE) return noh_fail(error, NOH_ERR_ARG, "policy is not a noh_seek", track, 0);
     t = &noh_controller_tracks(c)[track];
     m = &set->motions[t->motion];
     position = seek_position(t, m, tick);
     if (policy == NOH_SEEK_FIRE) {
         noh_change_target target = target_of(c, set);
         noh_result result;
-        if (t->sync_group) return noh_fail(error, NOH_ERR_ARG, "track is synchronised", track, 0);
+        if (t->sync_group) return noh_fail(error, NOH_ERR_ARG, "track is synchronised: its group moves it", track, 0);
         result = noh_changes_jump(changes_of(c), c->change_count, &target, track, position, error);
         settle(c, &target);
         return result;
@@ -238,6 +248,7 @@ noh_result noh_controller_seek(noh_controller *c, const noh_anim_set *set, uint3
 
 noh_result noh_controller_set_speed(noh_controller *c, uint32_t track, int32_t speed)
 {
+    NOH_ASSERT(c);
     if (track >= c->track_count || speed > NOH_SPEED_MAX || speed < -NOH_SPEED_MAX) {
         return NOH_ERR_ARG;
     }
@@ -249,6 +260,7 @@ noh_result noh_controller_set_speed(noh_controller *c, uint32_t track, int32_t s
 
 noh_result noh_controller_set_weight(noh_controller *c, uint32_t track, float weight)
 {
+    NOH_ASSERT(c);
     if (track >= c->track_count || !(weight >= 0.0f && weight <= NOH_WEIGHT_MAX)) {
         return NOH_ERR_ARG;
     }
@@ -260,6 +272,7 @@ noh_result noh_controller_set_weight(noh_controller *c, uint32_t track, float we
 
 noh_result noh_controller_set_mode(noh_controller *c, uint32_t track, noh_track_mode mode)
 {
+    NOH_ASSERT(c);
     if (track >= c->track_count || (unsigned)mode > NOH_TRACK_ON) {
         return NOH_ERR_ARG;
     }
@@ -271,6 +284,7 @@ noh_result noh_controller_set_mode(noh_controller *c, uint32_t track, noh_track_
 
 noh_result noh_controller_set_priority_blend(noh_controller *c, float blend)
 {
+    NOH_ASSERT(c);
     if (!(blend >= 0.0f && blend <= 1.0f)) {
         return NOH_ERR_ARG;
     }
@@ -281,6 +295,7 @@ noh_result noh_controller_set_priority_blend(noh_controller *c, float blend)
 
 noh_result noh_controller_set_lod(noh_controller *c, uint32_t lod, uint32_t joint_count)
 {
+    NOH_ASSERT(c);
     if (lod > 255u || joint_count > c->joint_count) {
         return NOH_ERR_ARG;
     }
@@ -295,6 +310,7 @@ noh_result noh_controller_change(noh_controller *c, const noh_anim_set *set, con
 {
     noh_change_target target = target_of(c, set);
     noh_result result = noh_changes_add(changes_of(c), c->change_count, &target, c->track_count, desc, error);
+    NOH_ASSERT(c && desc && IS_SET_OF(c, set));
     settle(c, &target);
     return result;
 }
@@ -313,9 +329,10 @@ noh_result noh_controller_cross_fade(noh_controller *c, const noh_anim_set *set,
                                      uint32_t duration_ticks, noh_curve curve, noh_error *error)
 {
     noh_change_desc d;
-    if (from >= c->track_count || to >= c->track_count || from == to) return noh_fail(error, NOH_ERR_ARG, "track", from, c->track_count);
-    if (!(weight >= 0.0f && weight <= NOH_WEIGHT_MAX)) return noh_fail(error, NOH_ERR_ARG, "weight", to, 0);
-    if ((unsigned)curve > NOH_CURVE_SMOOTHSTEP) return noh_fail(error, NOH_ERR_ARG, "curve", to, 0);
+    NOH_ASSERT(c && IS_SET_OF(c, set));
+    if (from >= c->track_count || to >= c->track_count || from == to) return noh_fail(error, NOH_ERR_ARG, "track: from and to must be two tracks of the controller", from, c->track_count);
+    if (!(weight >= 0.0f && weight <= NOH_WEIGHT_MAX)) return noh_fail(error, NOH_ERR_ARG, "weight is not in 0..NOH_WEIGHT_MAX", to, 0);
+    if ((unsigned)curve > NOH_CURVE_SMOOTHSTEP) return noh_fail(error, NOH_ERR_ARG, "curve is not a noh_curve", to, 0);
     if (free_changes(c) < 3) return noh_fail(error, NOH_ERR_LIMIT, "the table of changes is full", c->change_count, 3);
     memset(&d, 0, sizeof d);
     d.kind = NOH_CHANGE_WEIGHT;
@@ -336,8 +353,7 @@ noh_result noh_controller_cross_fade(noh_controller *c, const noh_anim_set *set,
 
 /* ---- time ---- */
 
-/* What a track has passed by the tick at which the controller stands, kept apart from
- * its state, which the callback may change. */
+/* A track's passage up to the present tick, kept apart from the track itself, which the callback may change. */
 typedef struct passed {
     noh_passage passage;
     float weight;
@@ -351,7 +367,7 @@ typedef struct delivery {
     noh_event_fn fn;
     void *user;
     int64_t clock;
-    uint32_t count;
+    uint32_t count, passed; /* passed: delivered or not */
 } delivery;
 
 static void deliver_key(void *user, uint32_t index, int64_t position_tick)
@@ -381,11 +397,11 @@ static void move_track(noh_track *t, const noh_motion *m, const noh_passage *p)
 {
     int64_t rebase = noh_time_rebase(p->to, m->duration_ticks, (noh_loop)t->loop);
     t->position = p->to - rebase;
-    t->root_position -= rebase;
+    t->root_position = noh_clock_add(t->root_position, -rebase);
     t->placed = (uint8_t)(t->placed && t->rate == 0);
 }
 
-/* Move all tracks to a tick; returns how many passed keys. */
+/* Move all tracks on; returns how many may have passed keys. */
 static uint32_t move_tracks(noh_controller *c, const noh_anim_set *set, int64_t ticks, passed *out)
 {
     noh_track *tracks = noh_controller_tracks(c);
@@ -406,11 +422,10 @@ static uint32_t move_tracks(noh_controller *c, const noh_anim_set *set, int64_t 
 }
 
 /* Move time to a tick and deliver what has been passed by then. */
-static uint32_t advance(noh_controller *c, const noh_anim_set *set, int64_t clock, noh_event_fn fn, void *user)
+static void advance(noh_controller *c, const noh_anim_set *set, int64_t clock, delivery *d)
 {
     passed list[NOH_TRACKS_MAX];
     noh_change_target target;
-    delivery d = { NULL, NULL, NULL, NULL, 0, 0 };
     uint32_t count = move_tracks(c, set, clock - c->clock, list);
     c->clock = clock;
     target = target_of(c, set);
@@ -419,16 +434,13 @@ static uint32_t advance(noh_controller *c, const noh_anim_set *set, int64_t cloc
     for (uint32_t i = 0; i < count; i++) {
         list[i].weight = noh_controller_track(c, list[i].track)->weight;
     }
-    d.set = set;
-    d.fn = fn;
-    d.user = user;
-    d.clock = clock;
+    d->clock = clock;
     for (uint32_t i = 0; i < count; i++) {
         const noh_motion *m = &set->motions[list[i].motion];
-        d.from = &list[i];
-        noh_events_pass(set->events + m->first_event, m->event_count, &list[i].passage, deliver_key, &d);
+        d->from = &list[i];
+        d->passed += noh_events_pass(set->events + m->first_event, m->event_count, &list[i].passage, NOH_STEP_EVENTS_MAX - d->passed,
+                                     deliver_key, d);
     }
-    return d.count;
 }
 
 static int has_sync(const noh_controller *c)
@@ -441,11 +453,11 @@ static int has_sync(const noh_controller *c)
     return any;
 }
 
-/* Sync groups get new rates at every multiple of NOH_SYNC_TICKS and when something
- * has touched them. Returns up to when they hold. */
+/* Give sync groups new speeds at every multiple of NOH_SYNC_TICKS, and whenever one was changed. Returns the tick up to
+ * which the speeds hold. */
 static int64_t sync_rates(noh_controller *c, const noh_anim_set *set, int64_t end)
 {
-    int64_t next = (c->clock / NOH_SYNC_TICKS + 1) * NOH_SYNC_TICKS;
+    int64_t next = noh_clock_add(c->clock, NOH_SYNC_TICKS - c->clock % NOH_SYNC_TICKS);
     if (!has_sync(c)) {
         return end;
     }
@@ -456,7 +468,7 @@ static int64_t sync_rates(noh_controller *c, const noh_anim_set *set, int64_t en
     return next < end ? next : end;
 }
 
-/* The first tick up to `end` at which a key has been passed; else `end`. */
+/* The first tick, up to `end`, by which a key has been passed; else `end`. */
 static int64_t next_event(const noh_controller *c, const noh_anim_set *set, int64_t end)
 {
     for (uint32_t i = 0; i < c->track_count; i++) {
@@ -468,23 +480,31 @@ static int64_t next_event(const noh_controller *c, const noh_anim_set *set, int6
     return end;
 }
 
+/* A step goes from one tick at which anything happens to the next: a change begins or ends or enters a new slice, a sync
+ * group gets new speeds, a key is passed. In between every track moves at a constant speed, so its position is one
+ * multiplication, exact in integers. That is why the events, and the state afterwards, are the same however time is cut:
+ * the ticks at which something happens depend on the clock alone, never on where a step ends. */
 uint32_t noh_controller_step(noh_controller *c, const noh_anim_set *set, uint32_t ticks, noh_event_fn fn, void *user)
 {
-    int64_t end = c->clock + ticks;
-    uint32_t count = 0;
-    NOH_ASSERT(set->joint_count == c->joint_count && set->motion_count == c->motion_count);
+    int64_t end = noh_clock_add(c->clock, ticks);
+    delivery d = { NULL, NULL, NULL, NULL, 0, 0, 0 };
+    NOH_ASSERT(c && IS_SET_OF(c, set));
+    NOH_VALIDATE((c->flags & STEPPING) || noh_controller_check(c, c->bytes, set, NULL) == NOH_OK);
     if (c->flags & STEPPING) {
         return 0; /* called by its own callback */
     }
-    c->flags |= STEPPING;
+    c->flags = (uint8_t)((c->flags & ~NOH_CONTROLLER_EVENTS_CUT) | STEPPING);
+    d.set = set;
+    d.fn = fn;
+    d.user = user;
     while (c->clock < end) {
         noh_change_target target = target_of(c, set);
         int64_t until = noh_changes_rates(changes_of(c), c->change_count, &target, c->track_count, end);
         until = sync_rates(c, set, until);
-        until = next_event(c, set, until);
-        count += advance(c, set, until, fn, user);
+        until = d.passed < NOH_STEP_EVENTS_MAX ? next_event(c, set, until) : until;
+        advance(c, set, until, &d);
     }
-    c->flags = (uint8_t)(c->flags & ~STEPPING);
-    c->events_high_water = count > c->events_high_water ? count : c->events_high_water;
-    return count;
+    c->flags = (uint8_t)((c->flags & ~STEPPING) | (d.passed == NOH_STEP_EVENTS_MAX ? NOH_CONTROLLER_EVENTS_CUT : 0u));
+    c->events_high_water = d.count > c->events_high_water ? d.count : c->events_high_water;
+    return d.count;
 }

@@ -1,9 +1,12 @@
-/* The bound on what one step can deliver: controller.h, noh_controller_events_max. */
+/* An upper bound on the events of a step: controller.h, noh_controller_events_max.
+ *
+ * Per track: the farthest that it can travel, and into how many stretches of one direction that travel can fall, since
+ * each change of direction can pass the keys around it again. noh_events_max turns both into a number of keys. */
 #include "anim/controller.h"
 #include "anim/sync.h"
 
 typedef struct reach {
-    uint64_t travel; /* the most it can move, 1/65,536 ticks */
+    uint64_t travel; /* the farthest it can move, 1/65,536 ticks */
     uint64_t runs;   /* the most stretches of one direction */
 } reach;
 
@@ -27,7 +30,7 @@ static int concerns(const noh_change *change, uint32_t track, noh_change_kind ki
     return change->state != NOH_CHANGE_FREE && change->kind == kind && change->track == track;
 }
 
-/* The fastest that a track goes now or by a change that waits or runs. */
+/* The highest speed of a track, now or by a change that waits or runs. */
 static uint64_t speed_reached(const noh_controller *c, uint32_t track)
 {
     const noh_change *changes = changes_of(c);
@@ -55,8 +58,8 @@ static void interval_range(const noh_anim_set *set, const noh_motion *m, uint32_
     }
 }
 
-/* A synchronised track can be as fast as its group's fastest phase makes it, and its
- * group may turn at every new rate. */
+/* A synchronised track moves at most at the phase speed of its group's fastest member, through its own longest interval;
+ * and the group may turn round whenever it gets new speeds. */
 static reach sync_reach(const noh_controller *c, const noh_anim_set *set, uint32_t track, uint32_t ticks)
 {
     const noh_track *t = noh_controller_track(c, track);
@@ -74,7 +77,7 @@ static reach sync_reach(const noh_controller *c, const noh_anim_set *set, uint32
     }
     interval_range(set, &set->motions[t->motion], &shortest, &longest);
     r.runs = (uint64_t)ticks / NOH_SYNC_TICKS + c->change_count + 2u;
-    r.travel = plus(fastest * longest > UINT64_MAX / (ticks + 1u) ? UINT64_MAX : fastest * longest * ticks, 2u * 65536u);
+    r.travel = plus(fastest * longest > UINT64_MAX / ((uint64_t)ticks + 1u) ? UINT64_MAX : fastest * longest * ticks, 2u * 65536u);
     return r;
 }
 
@@ -90,13 +93,13 @@ static reach free_reach(const noh_controller *c, uint32_t track, uint32_t ticks)
         } else if (concerns(&changes[i], track, NOH_CHANGE_POSITION)) {
             uint64_t there = plus(magnitude(changes[i].to - noh_controller_track(c, track)->position), way);
             r.runs += 3;
-            r.travel = plus(r.travel, plus(there, there)); /* there, and perhaps from there to the next */
+            r.travel = plus(r.travel, plus(there, there)); /* to the target, and perhaps from there to the next one */
         }
     }
     return r;
 }
 
-/* Off, and nothing that waits will switch it on. */
+/* Off, with no change waiting that could switch it on. */
 static int stays_off(const noh_controller *c, uint32_t track)
 {
     const noh_change *changes = changes_of(c);
@@ -110,6 +113,7 @@ static int stays_off(const noh_controller *c, uint32_t track)
 uint32_t noh_controller_events_max(const noh_controller *c, const noh_anim_set *set, uint32_t ticks)
 {
     uint64_t most = 0;
+    NOH_ASSERT(c && set && set->motion_count == c->motion_count);
     for (uint32_t i = 0; ticks && i < c->track_count; i++) {
         const noh_track *t = noh_controller_track(c, i);
         const noh_motion *m = &set->motions[t->motion];
@@ -119,5 +123,5 @@ uint32_t noh_controller_events_max(const noh_controller *c, const noh_anim_set *
             most += noh_events_max(m->event_count, m->duration_ticks, (noh_loop)t->loop, r.travel, runs);
         }
     }
-    return most > UINT32_MAX ? UINT32_MAX : (uint32_t)most;
+    return most > NOH_STEP_EVENTS_MAX ? NOH_STEP_EVENTS_MAX : (uint32_t)most;
 }

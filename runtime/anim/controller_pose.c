@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "anim/clock_internal.h"
 #include "anim/inertial.h"
 #include "anim/mask.h"
 #include "base/arena.h"
@@ -39,32 +40,30 @@ size_t noh_pose_scratch_size(const noh_anim_set *set, int inertial)
 {
     noh_arena arena = noh_arena_measure();
     noh_pose_scratch s;
+    NOH_ASSERT(set);
     carve(&arena, set, inertial, &s);
     return arena.used;
 }
 
 noh_result noh_pose_scratch_init(void *memory, size_t bytes, const noh_anim_set *set, int inertial, noh_pose_scratch *scratch, noh_error *error)
 {
-    size_t need = noh_pose_scratch_size(set, inertial);
-    noh_arena arena = noh_arena_over(memory, bytes);
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for a pose scratch is NULL or not 16-byte aligned", 0, need);
+    noh_arena arena;
+    noh_result result = noh_arena_open(&arena, memory, bytes, noh_pose_scratch_size(set, inertial), error);
+    NOH_ASSERT(set && scratch);
+    if (result == NOH_OK) {
+        carve(&arena, set, inertial, scratch);
     }
-    if (bytes < need) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory for a pose scratch is too small", bytes, need);
-    }
-    carve(&arena, set, inertial, scratch);
-    return NOH_OK;
+    return result;
 }
 
 /* ---- the pose ---- */
 
-/* What is posed: a controller, some ticks ago. */
+/* A controller as it was some ticks ago. */
 typedef struct view {
     const noh_controller *c;
     const noh_anim_set *set;
     noh_pose_scratch *scratch;
-    int64_t ago; /* ticks: tracks are taken where they would have been, at their present rates */
+    int64_t ago; /* ticks: tracks are taken where they were then, had they always had their present speeds */
 } view;
 
 static int is_sampled(const noh_controller *c, const noh_track *t)
@@ -84,10 +83,11 @@ static void sample_at(const view *v, uint32_t motion, uint32_t tick, noh_transfo
     noh_root_sample_rest(v->set, motion, tick, v->c->lod_joint_count, pose, floats);
 }
 
-static void sum_group(const view *v, noh_track_group group)
+/* Add a group's poses to the sum that was begun. Returns how many. */
+static uint32_t sum_group(const view *v, noh_track_group group)
 {
     noh_pose_scratch *s = v->scratch;
-    noh_blend_begin(&s->blend);
+    uint32_t count = 0;
     for (uint32_t i = 0; i < v->c->track_count; i++) {
         const noh_track *t = noh_controller_track(v->c, i);
         if (t->group == group && !(t->flags & NOH_TRACK_ADDITIVE) && is_sampled(v->c, t)) {
@@ -95,27 +95,26 @@ static void sum_group(const view *v, noh_track_group group)
             sample_at(v, t->motion, clip_tick(v, t), s->sample, s->float_sample);
             noh_blend_add(&s->blend, flags & NOH_MOTION_NO_JOINTS ? NULL : s->sample, flags & NOH_MOTION_NO_FLOATS ? NULL : s->float_sample,
                           t->weight, noh_mask_of(v->set, t->mask));
+            count++;
         }
     }
+    return count;
 }
 
-/* Row C5.2: low tracks among themselves, high tracks among themselves, then one over the other. */
+/* Blend the low tracks, blend the high tracks, lay the high result over the low one. */
 static void blend_groups(const view *v, noh_transform *pose, float *floats)
 {
     noh_pose_scratch *s = v->scratch;
-    sum_group(v, NOH_GROUP_LOW);
+    noh_blend_begin(&s->blend);
+    (void)sum_group(v, NOH_GROUP_LOW);
     noh_blend_finish(&s->blend, v->set->bind_pose, v->set->float_defaults, pose, floats);
-    memcpy(s->below, s->blend.weights, s->blend.joint_count * sizeof(float));
-    if (s->blend.float_count) {
-        memcpy(s->float_below, s->blend.float_weights, s->blend.float_count * sizeof(float));
-    }
-    sum_group(v, NOH_GROUP_HIGH);
-    if (s->blend.total > 0.0f) {
-        noh_blend_cover(&s->blend, v->c->priority_blend, s->below, s->float_below, pose, floats);
+    noh_blend_begin_over(&s->blend);
+    if (sum_group(v, NOH_GROUP_HIGH)) {
+        noh_blend_cover(&s->blend, v->c->priority_blend, pose, floats);
     }
 }
 
-/* The track whose motion is the whole blend, if there is just one: it need not be summed. */
+/* The track that is the whole blend, if there is just one and it has no mask: its clip needs no sum. */
 static const noh_track *only_track(const view *v)
 {
     const noh_track *only = NULL;
@@ -131,7 +130,7 @@ static const noh_track *only_track(const view *v)
     return only;
 }
 
-/* The reference of an additive track, into the blend's sums, which are free by now. */
+/* The reference pose of an additive track, into the blend's sums, which are free by now. */
 static void reference_pose(const view *v, const noh_track *t, noh_transform *pose, float *floats)
 {
     const noh_anim_set *set = v->set;
@@ -149,17 +148,21 @@ static void add_track(const view *v, const noh_track *t, noh_transform *pose, fl
 {
     noh_pose_scratch *s = v->scratch;
     noh_mask_view mask = noh_mask_of(v->set, t->mask);
-    uint32_t joints = v->c->lod_joint_count, count = v->set->float_count;
+    uint32_t joints = v->c->lod_joint_count, count = v->set->float_count, flags = v->set->motions[t->motion].flags;
     sample_at(v, t->motion, clip_tick(v, t), s->sample, s->float_sample);
-    if (!(v->set->motions[t->motion].flags & NOH_MOTION_ADDITIVE)) {
+    if (!(flags & NOH_MOTION_ADDITIVE)) {
         reference_pose(v, t, s->blend.sum, s->blend.float_sum);
         noh_pose_difference(joints, s->blend.sum, s->sample, s->sample);
         for (uint32_t i = 0; i < count; i++) {
             s->float_sample[i] -= s->blend.float_sum[i];
         }
     }
-    noh_pose_add(joints, s->sample, t->weight, mask.joints, pose);
-    noh_floats_add(count, s->float_sample, t->weight, mask.floats, floats);
+    if (!(flags & NOH_MOTION_NO_JOINTS)) {
+        noh_pose_add(joints, s->sample, t->weight, mask.joints, pose);
+    }
+    if (!(flags & NOH_MOTION_NO_FLOATS)) {
+        noh_floats_add(count, s->float_sample, t->weight, mask.floats, floats);
+    }
 }
 
 static void add_layers(const view *v, noh_transform *pose, float *floats)
@@ -179,16 +182,17 @@ static const void *at(const noh_controller *c, uint32_t offset)
 
 void noh_controller_inertia_add(const noh_controller *c, int64_t ago, noh_transform *pose, float *floats)
 {
-    int64_t elapsed = c->clock - ago - c->inertia_start;
+    int64_t elapsed = noh_clock_since(noh_clock_add(c->clock, -ago), c->inertia_start);
     float elapsed_s = (float)(elapsed < 0 ? 0 : elapsed) / (float)NOH_TICKS_PER_SECOND;
     float duration_s = (float)c->inertia_ticks / (float)NOH_TICKS_PER_SECOND;
+    NOH_ASSERT(c && (!c->inertia_ticks || c->inertia_offset));
     if (c->inertia_ticks && elapsed < (int64_t)c->inertia_ticks) {
         noh_inertia_apply(c->lod_joint_count, (const noh_inertia_joint *)at(c, c->inertia_offset), elapsed_s, duration_s, pose);
         noh_inertia_apply_floats(c->float_count, (const noh_inertia_float *)at(c, c->inertia_floats_offset), elapsed_s, duration_s, floats);
     }
 }
 
-/* The pose some ticks ago, with or without what is left of a transition. */
+/* The pose some ticks ago, with or without the rest of a transition. */
 static void evaluate(const noh_controller *c, const noh_anim_set *set, noh_pose_scratch *scratch, int64_t ago, int inertia,
                      noh_transform *pose, float *floats)
 {
@@ -201,6 +205,8 @@ static void evaluate(const noh_controller *c, const noh_anim_set *set, noh_pose_
     v.ago = ago;
     scratch->blend.joint_count = c->lod_joint_count;
     scratch->blend.float_count = c->float_count;
+    scratch->blend.totals = scratch->below;
+    scratch->blend.float_totals = scratch->float_below;
     only = only_track(&v);
     if (only) {
         sample_at(&v, only->motion, clip_tick(&v, only), pose, floats);
@@ -218,6 +224,8 @@ static void evaluate(const noh_controller *c, const noh_anim_set *set, noh_pose_
 
 void noh_controller_pose(const noh_controller *c, const noh_anim_set *set, noh_pose_scratch *scratch, noh_transform *pose, float *floats)
 {
+    NOH_ASSERT(c && set && scratch && (!set->joint_count || pose) && (!set->float_count || floats));
+    NOH_VALIDATE(noh_controller_check(c, c->bytes, set, NULL) == NOH_OK);
     evaluate(c, set, scratch, 0, 1, pose, floats);
 }
 
@@ -233,6 +241,7 @@ static const char *bad_transition(const noh_controller *c, const noh_pose_scratc
 noh_result noh_controller_inertia_capture(const noh_controller *c, const noh_anim_set *set, noh_pose_scratch *scratch, noh_error *error)
 {
     const char *what = bad_transition(c, scratch);
+    NOH_ASSERT(c && set && scratch);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }
@@ -245,6 +254,7 @@ void noh_controller_inertia_store(noh_controller *c, const noh_pose_scratch *scr
 {
     uint8_t *base = (uint8_t *)c;
     float before_s = (float)NOH_INERTIA_BEFORE_TICKS / (float)NOH_TICKS_PER_SECOND;
+    NOH_ASSERT(c && scratch && c->inertia_offset && scratch->captured[0] && duration_ticks);
     noh_inertia_begin(c->joint_count, scratch->captured[0], scratch->captured[1], scratch->captured[2], scratch->captured[3], before_s,
                       (noh_inertia_joint *)(void *)(base + c->inertia_offset));
     noh_inertia_begin_floats(c->float_count, scratch->float_captured[0], scratch->float_captured[1], scratch->float_captured[2],
@@ -257,6 +267,7 @@ noh_result noh_controller_inertia_begin(noh_controller *c, const noh_anim_set *s
                                         noh_error *error)
 {
     const char *what = bad_transition(c, scratch);
+    NOH_ASSERT(c && set && scratch);
     what = what ? what : duration_ticks == 0 ? "duration_ticks" : NULL;
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
@@ -269,7 +280,8 @@ noh_result noh_controller_inertia_begin(noh_controller *c, const noh_anim_set *s
 
 /* ---- root motion ---- */
 
-/* A weighted sum of moves. Turns are taken as angles of -half..half a turn. */
+/* A weighted sum of displacements. Turns count as angles of -1/2 to 1/2 turn. `total` is the unmasked weight of the tracks that
+ * take part: `weight` over it is the mean mask, by which a high group covers the low one. */
 typedef struct root_sum {
     double translation[3], turn, weight, total;
 } root_sum;
@@ -285,9 +297,13 @@ static void add_root(root_sum *sum, const noh_root_pose *move, double weight, do
     sum->total += weight;
 }
 
+/* How far a track takes part in moving the root: 0 where its clip animates no joints or its mask leaves joint 0 out. */
 static double root_part(const noh_anim_set *set, const noh_track *t)
 {
     noh_mask_view mask = noh_mask_of(set, t->mask);
+    if (set->motions[t->motion].flags & NOH_MOTION_NO_JOINTS) {
+        return 0.0;
+    }
     return mask.joints ? (double)mask.joints[0] / 255.0 : 1.0;
 }
 
@@ -298,15 +314,17 @@ static root_sum group_root(noh_controller *c, const noh_anim_set *set, noh_track
     for (uint32_t i = 0; i < c->track_count; i++) {
         noh_track *t = &noh_controller_tracks(c)[i];
         const noh_root_track *root = &set->roots[t->motion];
+        double part;
         if (t->group != group || t->mode == NOH_TRACK_OFF) {
             continue;
         }
-        if (is_sampled(c, t) && !(t->flags & NOH_TRACK_ADDITIVE)) {
+        part = root_part(set, t);
+        if (part > 0.0 && is_sampled(c, t) && !(t->flags & NOH_TRACK_ADDITIVE)) {
             noh_root_pose move = { { 0.0, 0.0, 0.0 }, 0, 0 };
             if (root->axes) {
                 move = noh_root_between(set, root, t->motion, (noh_loop)t->loop, t->root_position, t->position);
             }
-            add_root(&sum, &move, (double)t->weight, root_part(set, t));
+            add_root(&sum, &move, (double)t->weight, part);
         }
         t->root_position = t->position;
     }
@@ -329,6 +347,7 @@ noh_root_pose noh_controller_root_motion(noh_controller *c, const noh_anim_set *
     noh_root_pose out = { { 0.0, 0.0, 0.0 }, 0, 0 }, low, high;
     root_sum low_sum, high_sum, both;
     double cover;
+    NOH_ASSERT(c && set && set->motion_count == c->motion_count);
     if (!set->roots) {
         return out;
     }

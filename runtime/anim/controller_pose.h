@@ -1,13 +1,21 @@
 /* controller_pose.h: a controller's pose, its root motion, and transitions by inertia.
  *
- * Reads a controller; writes only to buffers of the caller's, which any number of
- * instances can use in turn (row C4.4). */
+ * Posing reads a controller and writes only to buffers of the caller's, so one scratch serves any number of instances in
+ * turn (Granberg 2009, chapter 4, lets all clones of a controller write one tree of joints, and must draw each before the
+ * next is posed).
+ *
+ * Threads: a controller and a scratch belong to one thread at a time. Several threads may pose controllers of one set,
+ * each with its own scratch, where set->sample allows it: of a noh_motion_set hand each thread its view (motion_set.h). */
 #ifndef NOH_ANIM_CONTROLLER_POSE_H
 #define NOH_ANIM_CONTROLLER_POSE_H
 
 #include "anim/blend.h"
 #include "anim/controller.h"
 #include "anim/root_motion.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 /* Working memory of posing: not state, one for all instances of a set that are posed
  * one after another. Between noh_controller_inertia_capture and _begin it holds what was captured. */
@@ -25,32 +33,35 @@ typedef struct noh_pose_scratch {
 size_t noh_pose_scratch_size(const noh_anim_set *set, int inertial);
 noh_result noh_pose_scratch_init(void *memory, size_t bytes, const noh_anim_set *set, int inertial, noh_pose_scratch *scratch, noh_error *error);
 
-/* The pose at the controller's clock: low group, high group over it by the priority
- * blend, additive tracks in their order, what is left of a transition. One track
- * alone, unmasked, is its motion to the bit.
+/* The pose at the controller's clock: the low group, the high group over it by the priority blend, additive tracks in their
+ * order, the rest of a transition. Clips that animate no joints (NOH_MOTION_NO_JOINTS) take no part in joints, and those
+ * without floats none in floats. One unmasked track alone gives its clip to the bit.
  * shapes  pose[joint_count], floats[float_count] of the set */
 void noh_controller_pose(const noh_controller *c, const noh_anim_set *set, noh_pose_scratch *scratch, noh_transform *pose, float *floats);
 
-/* What the tracks moved the root since they were last asked, weighted as the pose is
- * (joint 0; additive tracks aside). Seeks do not move; what a track had moved since
- * the last call and before a seek is dropped with it. Zero without set->roots. The
- * up axis is that of the first track that has any. */
+/* Root displacement since the last call, weighted as the pose is at joint 0; additive tracks do not count, nor do clips that
+ * animate no joints. Seeks do not move the root, and drop what their track had moved since the last call. Zero without
+ * set->roots. All roots of a set must have the same up axis. */
 noh_root_pose noh_controller_root_motion(noh_controller *c, const noh_anim_set *set);
 
-/* A transition, around any change of the tracks:
+/* A transition, wrapped around any change of the tracks:
  *   noh_controller_inertia_capture(c, set, &scratch);
- *   ... start, stop, weigh: what is to play from now on, alone ...
+ *   ... start, stop, set weights: what plays from now on ...
  *   noh_controller_inertia_begin(c, set, &scratch, duration_ticks);
- * A transition may begin while another one is on: the captured pose includes it.
+ * A transition may begin while another one runs: the captured pose includes it.
  * errors  ARG no room (NOH_CONTROLLER_INERTIAL, scratch made with inertial); duration 0 */
 noh_result noh_controller_inertia_capture(const noh_controller *c, const noh_anim_set *set, noh_pose_scratch *scratch, noh_error *error);
 noh_result noh_controller_inertia_begin(noh_controller *c, const noh_anim_set *set, noh_pose_scratch *scratch, uint32_t duration_ticks,
                                         noh_error *error);
 
-/* The parts of these, for what poses tracks in its own way (graph_pose.c): add what is
- * left, `ago` ticks before now; store offsets from the four captured poses. */
-#define NOH_INERTIA_BEFORE_TICKS 480 /* how far before the switch the speeds are taken */
+/* The parts of these, for graph_pose.c, which poses tracks in its own way: add the offsets left `ago` ticks before now; store
+ * offsets from the four captured poses. */
+#define NOH_INERTIA_BEFORE_TICKS 480 /* speeds are differences over this many ticks before the switch */
 void noh_controller_inertia_add(const noh_controller *c, int64_t ago, noh_transform *pose, float *floats);
 void noh_controller_inertia_store(noh_controller *c, const noh_pose_scratch *scratch, uint32_t duration_ticks);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

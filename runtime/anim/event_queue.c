@@ -1,5 +1,7 @@
 #include "anim/event_queue.h"
 
+#include "base/arena.h"
+
 #define CAPACITY_MAX (1u << 24)
 
 size_t noh_event_queue_size(uint32_t capacity)
@@ -10,20 +12,23 @@ size_t noh_event_queue_size(uint32_t capacity)
 noh_result noh_event_queue_init(void *memory, size_t bytes, uint32_t capacity, noh_event_queue *queue, noh_error *error)
 {
     size_t need = noh_event_queue_size(capacity);
-    if (need == 0) return noh_fail(error, NOH_ERR_ARG, "capacity", capacity, CAPACITY_MAX);
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for an event queue is NULL or not 16-byte aligned", 0, need);
+    noh_arena arena;
+    noh_result result;
+    NOH_ASSERT(queue);
+    if (need == 0) return noh_fail(error, NOH_ERR_ARG, "capacity is not in 1..16777216", capacity, CAPACITY_MAX);
+    result = noh_arena_open(&arena, memory, bytes, need, error);
+    if (result == NOH_OK) {
+        queue->capacity = capacity;
+        queue->count = queue->lost = queue->high_water = 0;
+        queue->events = (noh_event *)noh_arena_carve(&arena, need, 16);
     }
-    if (bytes < need) return noh_fail(error, NOH_ERR_MEMORY, "memory for an event queue is too small", bytes, need);
-    queue->capacity = capacity;
-    queue->count = queue->lost = queue->high_water = 0;
-    queue->events = (noh_event *)memory;
-    return NOH_OK;
+    return result;
 }
 
 void noh_event_queue_push(void *queue, const noh_event *event)
 {
     noh_event_queue *q = (noh_event_queue *)queue;
+    NOH_ASSERT(q && event && q->count <= q->capacity);
     if (q->count == q->capacity) {
         q->lost++;
         return;
@@ -34,5 +39,6 @@ void noh_event_queue_push(void *queue, const noh_event *event)
 
 void noh_event_queue_clear(noh_event_queue *queue)
 {
+    NOH_ASSERT(queue);
     queue->count = 0;
 }

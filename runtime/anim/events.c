@@ -1,6 +1,7 @@
 #include "anim/events.h"
 
-/* The whole ticks that a passage covers, both ends included. */
+/* The whole ticks that a passage covers, both ends included. Occurrences lie on whole ticks, so this is all that is
+ * needed of the passage's 1/65,536 ticks; which end is open is settled here, once. */
 typedef struct span {
     int64_t low, high;
 } span;
@@ -30,7 +31,8 @@ static span passage_span(const noh_passage *p)
     return s;
 }
 
-/* The legs whose ticks meet the span. The tick between two legs belongs to both. */
+/* A leg is one traversal of the clip: a pass, or half of a ping-pong cycle. Find those that meet the span. The tick between
+ * two legs belongs to both, since keys at tick 0 and at tick `duration` both occur there in a repeating clip. */
 static legs passage_legs(const noh_passage *p, span s)
 {
     int64_t d = (int64_t)p->duration_ticks;
@@ -106,7 +108,8 @@ int noh_events_first(const noh_event_key *keys, uint32_t count, const noh_passag
     span s = passage_span(passage);
     legs l = passage_legs(passage, s);
     leg g;
-    /* every second whole leg holds every key, so this ends after three legs at most */
+    NOH_ASSERT(passage && position_tick && (keys || !count));
+    /* Every whole leg forth contains every key, so this ends after three legs at most. */
     while (count && next_leg(passage, s, &l, &g)) {
         uint32_t begin = keys_before(keys, count, g.low), end = keys_before(keys, count, g.high + 1);
         if (begin < end) {
@@ -117,35 +120,43 @@ int noh_events_first(const noh_event_key *keys, uint32_t count, const noh_passag
     return 0;
 }
 
-static void pass_descending(const noh_event_key *keys, uint32_t begin, uint32_t end, const leg *g, noh_key_fn fn, void *user)
+static uint32_t pass_ascending(const noh_event_key *keys, uint32_t begin, uint32_t end, const leg *g, uint32_t limit, noh_key_fn fn,
+                               void *user)
 {
-    while (end > begin) {
+    uint32_t i = begin;
+    for (; i < end && i - begin < limit; i++) {
+        fn(user, i, g->base + g->sign * (int64_t)keys[i].tick);
+    }
+    return i - begin;
+}
+
+static uint32_t pass_descending(const noh_event_key *keys, uint32_t begin, uint32_t end, const leg *g, uint32_t limit, noh_key_fn fn,
+                                void *user)
+{
+    uint32_t passed = 0;
+    while (end > begin && passed < limit) {
         uint32_t first = end - 1; /* of the keys at this tick: they keep their order */
         while (first > begin && keys[first - 1].tick == keys[first].tick) {
             first--;
         }
-        for (uint32_t i = first; i < end; i++) {
-            fn(user, i, g->base + g->sign * (int64_t)keys[i].tick);
-        }
+        passed += pass_ascending(keys, first, end, g, limit - passed, fn, user);
         end = first;
     }
+    return passed;
 }
 
-void noh_events_pass(const noh_event_key *keys, uint32_t count, const noh_passage *passage, noh_key_fn fn, void *user)
+uint32_t noh_events_pass(const noh_event_key *keys, uint32_t count, const noh_passage *passage, uint32_t limit, noh_key_fn fn, void *user)
 {
+    uint32_t passed = 0;
     span s = passage_span(passage);
     legs l = passage_legs(passage, s);
     leg g;
-    while (count && next_leg(passage, s, &l, &g)) {
+    NOH_ASSERT(passage && fn && (keys || !count));
+    while (count && passed < limit && next_leg(passage, s, &l, &g)) {
         uint32_t begin = keys_before(keys, count, g.low), end = keys_before(keys, count, g.high + 1);
-        if (g.descending) {
-            pass_descending(keys, begin, end, &g, fn, user);
-        } else {
-            for (uint32_t i = begin; i < end; i++) {
-                fn(user, i, g.base + g.sign * (int64_t)keys[i].tick);
-            }
-        }
+        passed += (g.descending ? pass_descending : pass_ascending)(keys, begin, end, &g, limit - passed, fn, user);
     }
+    return passed;
 }
 
 uint32_t noh_events_max(uint32_t key_count, uint32_t duration_ticks, noh_loop loop, uint64_t travel, uint32_t runs)
@@ -167,6 +178,7 @@ uint32_t noh_events_max(uint32_t key_count, uint32_t duration_ticks, noh_loop lo
 uint32_t noh_anim_set_events_max(const noh_anim_set *set, uint32_t track_count, uint32_t speed_max, uint32_t step_ticks_max)
 {
     uint64_t travel = (uint64_t)speed_max * step_ticks_max, most = 0;
+    NOH_ASSERT(set);
     for (uint32_t i = 0; i < set->motion_count; i++) {
         const noh_motion *m = &set->motions[i];
         /* the controller may play it in any mode: the worst of them */
@@ -176,5 +188,5 @@ uint32_t noh_anim_set_events_max(const noh_anim_set *set, uint32_t track_count, 
         most = back > most ? back : most;
     }
     most *= track_count;
-    return most > UINT32_MAX ? UINT32_MAX : (uint32_t)most;
+    return most > NOH_STEP_EVENTS_MAX ? NOH_STEP_EVENTS_MAX : (uint32_t)most;
 }

@@ -45,11 +45,13 @@ static layout layout_of(const noh_graph *g, const noh_anim_set *set)
 
 size_t noh_graph_state_size(const noh_graph *graph, const noh_anim_set *set)
 {
+    NOH_ASSERT(graph && set);
     return noh_graph_check(graph, set, NULL) == NOH_OK ? layout_of(graph, set).bytes : 0;
 }
 
 noh_controller *noh_graph_controller(noh_graph_state *state)
 {
+    NOH_ASSERT(state);
     return (noh_controller *)(void *)((uint8_t *)state + state->controller_offset);
 }
 
@@ -72,7 +74,7 @@ static noh_graph_view view_of(const noh_graph_state *s, const noh_graph *g)
     return v;
 }
 
-/* Give the tracks what their clips weigh: in the pose, keeping time beside it, or standing still. */
+/* Give each track its clip's weight and mode: in the pose, playing outside of it, or off. */
 static void weigh_tracks(noh_graph_state *s, const noh_graph *g)
 {
     noh_graph_view v = view_of(s, g);
@@ -89,7 +91,7 @@ static void weigh_tracks(noh_graph_state *s, const noh_graph *g)
     }
 }
 
-/* Back to the beginning: clips at their starts, machines in their first states. */
+/* Reset a subtree: clips to their starts, machines to their first states. */
 static noh_result start_subtree(noh_graph_state *s, const noh_graph *g, const noh_anim_set *set, uint32_t node, noh_error *error)
 {
     noh_result result = NOH_OK;
@@ -132,17 +134,17 @@ noh_result noh_graph_state_init(void *memory, size_t bytes, const noh_graph *gra
     noh_controller_desc d;
     noh_graph_state *s = (noh_graph_state *)memory;
     noh_controller *c;
+    noh_arena arena;
     layout l;
+    NOH_ASSERT(graph && set && state);
     if (result != NOH_OK) {
         return result;
     }
     l = layout_of(graph, set);
     d = controller_desc(graph, set);
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for a graph is NULL or not 16-byte aligned", 0, l.bytes);
-    }
-    if (bytes < l.bytes) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory for a graph is too small", bytes, l.bytes);
+    result = noh_arena_open(&arena, memory, bytes, l.bytes, error);
+    if (result != NOH_OK) {
+        return result;
     }
     fill_state(s, graph, l);
     result = noh_controller_init((uint8_t *)memory + l.controller, noh_controller_size(&d), &d, &c, error);
@@ -156,6 +158,7 @@ noh_result noh_graph_state_init(void *memory, size_t bytes, const noh_graph *gra
 
 noh_result noh_graph_set_param(noh_graph_state *state, uint32_t param, float value)
 {
+    NOH_ASSERT(state);
     if (param >= state->param_count || value - value != 0.0f) {
         return NOH_ERR_ARG;
     }
@@ -177,7 +180,7 @@ uint32_t noh_graph_machine_state(const noh_graph_state *state, uint32_t machine)
 
 /* ---- state machines ---- */
 
-/* Whether a state's first clip ends within so many ticks, or has. */
+/* Whether a state's first clip ends within this many ticks, or has ended. */
 static int is_ending(noh_graph_state *s, const noh_graph *g, const noh_anim_set *set, uint32_t child, uint32_t ticks)
 {
     const noh_graph_node *clip = &g->nodes[noh_graph_first_of(g, child)];
@@ -231,7 +234,7 @@ static void take_first(noh_graph_state *s, const noh_graph *g, const noh_anim_se
     }
 }
 
-/* Inertial transitions that no pose was asked for: switch without. */
+/* No pose was asked for since the last step: its inertial transitions switch without inertia. */
 static void drop_switches(noh_graph_state *s)
 {
     for (uint32_t i = 0; i < s->machine_count; i++) {
@@ -244,7 +247,8 @@ static void drop_switches(noh_graph_state *s)
     s->inertia_ticks = 0;
 }
 
-/* Machines that are in play, outer ones first: a state entered anew resets those inside it. */
+/* Run the machines in play, outer ones first (parents come after their children): entering a state resets the machines
+ * inside it. */
 static void run_machines(noh_graph_state *s, const noh_graph *g, const noh_anim_set *set)
 {
     noh_graph_view v = view_of(s, g);
@@ -276,6 +280,8 @@ static void run_fades(noh_graph_state *s, uint32_t ticks)
 
 uint32_t noh_graph_step(noh_graph_state *state, const noh_graph *graph, const noh_anim_set *set, uint32_t ticks, noh_event_fn fn, void *user)
 {
+    NOH_ASSERT(state && graph && set);
+    NOH_VALIDATE(noh_graph_check(graph, set, NULL) == NOH_OK);
     NOH_ASSERT(state->node_count == graph->node_count && state->param_count == graph->param_count);
     drop_switches(state);
     run_machines(state, graph, set);

@@ -7,6 +7,7 @@
 #include "base/arena.h"
 
 #define NO_SLOT 255u
+#define LACKS (NOH_MOTION_NO_JOINTS | NOH_MOTION_NO_FLOATS)
 
 /* ---- scratch ---- */
 
@@ -27,6 +28,7 @@ static size_t pose_bytes(const noh_anim_set *set)
 size_t noh_graph_scratch_size(const noh_graph *graph, const noh_anim_set *set)
 {
     noh_arena arena = noh_arena_measure();
+    NOH_ASSERT(graph && set);
     (void)noh_arena_carve(&arena, noh_pose_scratch_size(set, is_inertial(graph)), 16);
     for (uint32_t i = 0; i < noh_graph_slots(graph); i++) {
         (void)noh_arena_carve(&arena, pose_bytes(set), 4);
@@ -37,14 +39,12 @@ size_t noh_graph_scratch_size(const noh_graph *graph, const noh_anim_set *set)
 
 noh_result noh_graph_scratch_init(void *memory, size_t bytes, const noh_graph *graph, const noh_anim_set *set, noh_graph_scratch *scratch, noh_error *error)
 {
-    size_t need = noh_graph_scratch_size(graph, set), pose_need = noh_pose_scratch_size(set, is_inertial(graph));
-    noh_arena arena = noh_arena_over(memory, bytes);
-    noh_result result;
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for a graph scratch is NULL or not 16-byte aligned", 0, need);
-    }
-    if (bytes < need) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory for a graph scratch is too small", bytes, need);
+    size_t pose_need = noh_pose_scratch_size(set, is_inertial(graph));
+    noh_arena arena;
+    noh_result result = noh_arena_open(&arena, memory, bytes, noh_graph_scratch_size(graph, set), error);
+    NOH_ASSERT(graph && set && scratch);
+    if (result != NOH_OK) {
+        return result;
     }
     memset(scratch, 0, sizeof *scratch);
     result = noh_pose_scratch_init(noh_arena_carve(&arena, pose_need, 16), pose_need, set, is_inertial(graph), &scratch->pose, error);
@@ -66,13 +66,14 @@ typedef struct evaluation {
     uint32_t taken;                       /* a bit per slot */
     float weights[NOH_GRAPH_NODES_MAX];
     uint8_t slot[NOH_GRAPH_NODES_MAX];    /* where a node's pose lies, or NO_SLOT */
+    uint8_t lacks[NOH_GRAPH_SLOTS_MAX];   /* NOH_MOTION_NO_JOINTS, NO_FLOATS: what nothing animates in a buffer's pose */
 } evaluation;
 
 static uint8_t take_slot(evaluation *e)
 {
     uint8_t i = 0;
     while (e->taken >> i & 1u) {
-        i++; /* noh_graph_slots says how far this can go */
+        i++; /* noh_graph_slots has counted how far this goes */
     }
     e->taken |= 1u << i;
     return i;
@@ -90,9 +91,10 @@ static void evaluate_clip(evaluation *e, uint32_t i)
     noh_root_sample_rest(e->set, t->motion, noh_track_clip_tick(t, &e->set->motions[t->motion], e->ago), e->c->lod_joint_count,
                          e->scratch->slots[slot], e->scratch->float_slots[slot]);
     e->slot[i] = slot;
+    e->lacks[slot] = (uint8_t)(e->set->motions[t->motion].flags & LACKS);
 }
 
-/* The children that have a pose, and what each counts. */
+/* The children that have a pose, and their weights. */
 typedef struct parts {
     uint32_t count;
     uint8_t slots[3];
@@ -114,22 +116,27 @@ static parts parts_of(evaluation *e, const noh_graph_node *node)
     return p;
 }
 
-/* Sum by weight, as tracks are summed (row C5.4). */
+/* Blend the children by weight, as a controller blends tracks, into the first one's buffer. */
 static void sum_parts(evaluation *e, const parts *p)
 {
     static const noh_mask_view everywhere = { NULL, NULL };
     noh_blend *b = &e->scratch->pose.blend;
+    uint8_t lacks = LACKS;
     if (p->count < 2) {
         return;
     }
     noh_blend_begin(b);
     for (uint32_t k = 0; k < p->count; k++) {
-        noh_blend_add(b, e->scratch->slots[p->slots[k]], e->scratch->float_slots[p->slots[k]], p->weights[k], everywhere);
+        uint8_t slot = p->slots[k];
+        noh_blend_add(b, e->lacks[slot] & NOH_MOTION_NO_JOINTS ? NULL : e->scratch->slots[slot],
+                      e->lacks[slot] & NOH_MOTION_NO_FLOATS ? NULL : e->scratch->float_slots[slot], p->weights[k], everywhere);
+        lacks = (uint8_t)(lacks & e->lacks[slot]);
     }
+    e->lacks[p->slots[0]] = lacks;
     noh_blend_finish(b, e->set->bind_pose, e->set->float_defaults, e->scratch->slots[p->slots[0]], e->scratch->float_slots[p->slots[0]]);
 }
 
-/* Whether a subtree's motions are differences already: its first clip speaks for all. */
+/* Whether a subtree's clips are differences already; its first clip decides for all. */
 static int is_difference(const evaluation *e, uint32_t node)
 {
     const noh_graph *g = e->view.graph;
@@ -148,8 +155,13 @@ static void add_part(evaluation *e, const noh_graph_node *node, const parts *p)
             float_over[i] -= e->set->float_defaults[i];
         }
     }
-    noh_pose_add(joints, over, p->weights[1], NULL, e->scratch->slots[p->slots[0]]);
-    noh_floats_add(floats, float_over, p->weights[1], NULL, e->scratch->float_slots[p->slots[0]]);
+    if (!(e->lacks[p->slots[1]] & NOH_MOTION_NO_JOINTS)) {
+        noh_pose_add(joints, over, p->weights[1], NULL, e->scratch->slots[p->slots[0]]);
+    }
+    if (!(e->lacks[p->slots[1]] & NOH_MOTION_NO_FLOATS)) {
+        noh_floats_add(floats, float_over, p->weights[1], NULL, e->scratch->float_slots[p->slots[0]]);
+    }
+    e->lacks[p->slots[0]] &= e->lacks[p->slots[1]];
 }
 
 static void mask_part(evaluation *e, const noh_graph_node *node, const parts *p)
@@ -157,8 +169,13 @@ static void mask_part(evaluation *e, const noh_graph_node *node, const parts *p)
     noh_mask_view mask = noh_mask_of(e->set, node->mask);
     noh_transform *base = e->scratch->slots[p->slots[0]];
     float *float_base = e->scratch->float_slots[p->slots[0]];
-    noh_pose_mix(e->c->lod_joint_count, base, e->scratch->slots[p->slots[1]], p->weights[1], mask.joints, base);
-    noh_floats_mix(e->set->float_count, float_base, e->scratch->float_slots[p->slots[1]], p->weights[1], mask.floats, float_base);
+    if (!(e->lacks[p->slots[1]] & NOH_MOTION_NO_JOINTS)) {
+        noh_pose_mix(e->c->lod_joint_count, base, e->scratch->slots[p->slots[1]], p->weights[1], mask.joints, base);
+    }
+    if (!(e->lacks[p->slots[1]] & NOH_MOTION_NO_FLOATS)) {
+        noh_floats_mix(e->set->float_count, float_base, e->scratch->float_slots[p->slots[1]], p->weights[1], mask.floats, float_base);
+    }
+    e->lacks[p->slots[0]] &= e->lacks[p->slots[1]];
 }
 
 static void evaluate_node(evaluation *e, uint32_t i)
@@ -239,6 +256,8 @@ static void begin_inertia(noh_graph_state *state, const noh_graph *graph, const 
 
 void noh_graph_pose(noh_graph_state *state, const noh_graph *graph, const noh_anim_set *set, noh_graph_scratch *scratch, noh_transform *pose, float *floats)
 {
+    NOH_ASSERT(state && graph && set && scratch && (!set->joint_count || pose) && (!set->float_count || floats));
+    NOH_VALIDATE(noh_graph_check(graph, set, NULL) == NOH_OK);
     NOH_ASSERT(state->node_count == graph->node_count);
     if (state->inertia_ticks) {
         begin_inertia(state, graph, set, scratch);

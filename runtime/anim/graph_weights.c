@@ -60,7 +60,7 @@ void noh_graph_child_weights(const noh_graph_view *view, const noh_graph_node *n
     }
 }
 
-/* Whether a node lets this child live: a machine only those it is in or leaves. */
+/* Whether a child is in play: of a machine only the state it is in and the one it leaves. */
 static int lets_live(const noh_graph_view *view, const noh_graph_node *node, uint32_t child)
 {
     const noh_machine *m;
@@ -71,7 +71,7 @@ static int lets_live(const noh_graph_view *view, const noh_graph_node *node, uin
     return child == m->current || child == m->previous;
 }
 
-/* Of two weights: zero only where one of them is, so that what a parent asks for is always there. */
+/* A product that is 0 only where a factor is: an underflow would leave a node unsampled whose parent expects its pose. */
 static float product(float a, float b)
 {
     float p = a * b;

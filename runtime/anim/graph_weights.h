@@ -1,4 +1,4 @@
-/* graph_weights.h (private to anim/): what every node of a graph weighs. */
+/* graph_weights.h (private to anim/): the weight of every node of a graph. */
 #ifndef NOH_ANIM_GRAPH_WEIGHTS_H
 #define NOH_ANIM_GRAPH_WEIGHTS_H
 
@@ -8,7 +8,7 @@ typedef struct noh_graph_view {
     const noh_graph *graph;
     const float *params;
     const noh_machine *machines;
-    int before; /* as it was before the transitions that wait for a pose */
+    int before; /* 1: as it was before the inertial transitions that begin with the next pose */
 } noh_graph_view;
 
 const float *noh_graph_params_of(const noh_graph_state *state);
@@ -17,10 +17,10 @@ const noh_machine *noh_graph_machines_of(const noh_graph_state *state);
 /* A node's t or x. */
 float noh_graph_amount(const noh_graph_view *view, const noh_graph_node *node);
 
-/* What each child counts in its node: shapes local[child_count]. ADD and MASK: 1 and t. */
+/* The weight of each child in its node. ADD and MASK: 1 and t. shapes  local[child_count] */
 void noh_graph_child_weights(const noh_graph_view *view, const noh_graph_node *node, float *local);
 
-/* Products of these from the root down, and which nodes are not shut out by a machine.
+/* The products of these weights from the root down, and which nodes are in play: not in a state that its machine is not in.
  * shapes  weights[node_count], active[node_count] */
 void noh_graph_weights(const noh_graph_view *view, float *weights, uint8_t *active);
 

@@ -1,20 +1,22 @@
-/* inertial.h: transitions by a pose of offsets that dies away.
+/* inertial.h: transitions by a pose of offsets that decays.
  *
- * At the switch the difference between the old and the new animation is kept, per
- * joint, with its speed; from then on only the new one is sampled, and the
- * difference is added, shrinking to nothing along a quintic that starts with that
- * speed and ends with neither speed nor acceleration. It never grows and never
- * overshoots. Rotation, translation and scale are each a direction and a length.
- * source  D. Bollo, "Inertialization: High-Performance Animation Transitions in Gears of War", GDC 2018 */
+ * At the switch the difference between the old and the new animation is stored for each joint, with its speed. From then on
+ * only the new one is sampled, and the difference is added, shrinking along a quintic that starts with that speed and ends
+ * with neither speed nor acceleration. It never grows and never overshoots. Rotation, translation and scale are each a
+ * direction and a length.
+ *
+ * source  D. Bollo, "Inertialization: High-Performance Animation Transitions in Gears of War", GDC 2018
+ *
+ * Threads: pure functions of their arguments; any thread. */
 #ifndef NOH_ANIM_INERTIAL_H
 #define NOH_ANIM_INERTIAL_H
 
 #include <stdint.h>
 
 #include "anim/pose.h"
+#include "base/assert.h"
 
-/* Offsets of one joint at the switch: 48 bytes. Speeds are along the vectors, per
- * second, never positive. */
+/* The offsets of one joint at the switch: 48 bytes. Speeds are along the vectors, per second, never positive. */
 typedef struct noh_inertia_joint {
     float rotation[3], rotation_speed; /* axis times angle: source = rotation * target */
     float translation[3], translation_speed;
@@ -25,12 +27,11 @@ typedef struct noh_inertia_float {
     float offset, speed;
 } noh_inertia_float;
 
-/* What is left of an offset x0 >= 0 with speed v0 <= 0 after t of its duration: x0
- * at 0, 0 from the duration on.
+/* The offset that is left of x0 >= 0 with speed v0 <= 0 at time t: x0 at 0, 0 from the duration on.
  * units   seconds */
 float noh_inertia_decay(float x0, float v0, float t, float duration);
 
-/* Offsets from poses at the switch and `delta_s` before it.
+/* Offsets from the poses at the switch and those `delta_s` seconds before it.
  * shapes  all [joint_count]
  * ranges  delta_s > 0 */
 void noh_inertia_begin(uint32_t joint_count, const noh_transform *source, const noh_transform *source_before,
@@ -38,7 +39,7 @@ void noh_inertia_begin(uint32_t joint_count, const noh_transform *source, const 
 void noh_inertia_begin_floats(uint32_t count, const float *source, const float *source_before, const float *target,
                               const float *target_before, float delta_s, noh_inertia_float *out);
 
-/* Add what is left of the offsets to the pose, in place. */
+/* Add the offsets that are left to the pose, in place. */
 void noh_inertia_apply(uint32_t joint_count, const noh_inertia_joint *joints, float elapsed_s, float duration_s, noh_transform *pose);
 void noh_inertia_apply_floats(uint32_t count, const noh_inertia_float *offsets, float elapsed_s, float duration_s, float *floats);
 

@@ -37,10 +37,13 @@ void noh_matrix_multiply(const float a[12], const float b[12], float out[12])
 void noh_local_to_model(const noh_skeleton *skeleton, const noh_transform *pose, uint32_t joint_count, float *model)
 {
     NOH_ASSERT(joint_count <= skeleton->joint_count);
+    NOH_ASSERT(joint_count == 0u || (skeleton->parents && pose && model));
+    /* A parent comes before its joints, so its matrix is made when theirs need it. */
     for (uint32_t i = 0; i < joint_count; i++) {
         float *out = model + 12u * (size_t)i;
         noh_transform_matrix(&pose[i], out);
         if (skeleton->parents[i] != NOH_JOINT_ROOT) {
+            NOH_ASSERT(skeleton->parents[i] < i);
             noh_matrix_multiply(model + 12u * (size_t)skeleton->parents[i], out, out);
         }
     }

@@ -4,12 +4,13 @@
 
 void noh_mask_fill(uint8_t *mask, uint32_t count, uint8_t value)
 {
+    NOH_ASSERT(mask || !count);
     if (count) {
         memset(mask, value, count);
     }
 }
 
-/* Whether `joint` is `above` or lies below it. Parents come first, so this climbs at most joint_count times. */
+/* Whether `joint` is `above` or one of its descendants. Parents come first, so this climbs at most joint_count times. */
 static int is_below(const noh_skeleton *s, uint32_t joint, uint32_t above)
 {
     while (joint > above && s->parents[joint] != NOH_JOINT_ROOT) {
@@ -30,6 +31,7 @@ void noh_mask_subtree(uint8_t *mask, const noh_skeleton *skeleton, uint32_t join
 
 void noh_mask_invert(uint8_t *mask, uint32_t count)
 {
+    NOH_ASSERT(mask || !count);
     for (uint32_t i = 0; i < count; i++) {
         mask[i] = (uint8_t)(255 - mask[i]);
     }
@@ -38,6 +40,7 @@ void noh_mask_invert(uint8_t *mask, uint32_t count)
 noh_mask_view noh_mask_of(const noh_anim_set *set, uint32_t index)
 {
     noh_mask_view view = { NULL, NULL };
+    NOH_ASSERT(set && index <= set->mask_count);
     if (index) {
         size_t stride = (size_t)set->joint_count + set->float_count;
         view.joints = set->masks + (index - 1u) * stride;

@@ -1,7 +1,9 @@
-/* mask.h: weights per joint and per float, a byte each (row C16.7).
+/* mask.h: weights per joint and per float, a byte each (track masks: Granberg 2009, chapter 16).
  *
- * 255 = full weight, 0 = not touched. A mask of a set is uint8_t[joint_count +
- * float_count]; these fill one in memory of the caller's, at load. */
+ * 255 = full weight, 0 = left out. A mask of a set is uint8_t[joint_count + float_count]; these functions fill one in memory
+ * of the caller's, at load time.
+ *
+ * Threads: pure functions of their arguments; any thread. */
 #ifndef NOH_ANIM_MASK_H
 #define NOH_ANIM_MASK_H
 
@@ -9,16 +11,24 @@
 #include "anim/motion.h"
 #include "anim/skeleton.h"
 
-/* All entries, joints and floats. */
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Set all entries, of joints and floats. */
 void noh_mask_fill(uint8_t *mask, uint32_t count, uint8_t value);
 
-/* A joint and everything below it. ranges  joint < skeleton->joint_count */
+/* Set the entries of a joint and of all its descendants. ranges  joint < skeleton->joint_count */
 void noh_mask_subtree(uint8_t *mask, const noh_skeleton *skeleton, uint32_t joint, uint8_t value);
 
-/* 255 - every entry. */
+/* Replace every entry by 255 minus it. */
 void noh_mask_invert(uint8_t *mask, uint32_t count);
 
-/* A set's mask as blending takes it; index 0 is none, n is the set's mask n - 1. */
+/* A mask of a set as blending takes it: index 0 is no mask, n is the set's mask n - 1. */
 noh_mask_view noh_mask_of(const noh_anim_set *set, uint32_t index);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "anim/motion_set_bind_internal.h"
 #include "anim/motion_set_internal.h"
 #include "base/arena.h"
 #include "base/hash.h"
@@ -9,12 +10,18 @@
 
 typedef struct noh_motion_set_clip set_clip;
 
-/* Everything that has to be known before there is memory. */
+#define TRACKS 2u /* of an instance that play at once, where the desc does not say */
+
+/* A set is made in two passes over the pack. The first counts (clips that fit, their keys, markers and floats, the cache's
+ * needs) without memory, out of the packs' bytes alone; the second carves exactly that and fills it in the same order. */
+
+/* What the first pass finds. */
 typedef struct counts {
     noh_anim_set shape;
     uint32_t groups, runs, sampled, foreign, unknown;
     size_t clip_bytes;
     noh_clip_cache_needs cache;
+    uint32_t slots;
     size_t cache_bytes;
     int roots;
 } counts;
@@ -42,6 +49,7 @@ static size_t align_up(size_t bytes)
     return (bytes + 15u) & ~(size_t)15u;
 }
 
+/* The set's floats begin with the weights of every node that has targets. */
 static void count_nodes(const noh_motion_binding *b, counts *c)
 {
     noh_clip_group group;
@@ -51,6 +59,7 @@ static void count_nodes(const noh_motion_binding *b, counts *c)
     }
 }
 
+/* A clip's groups: named floats that no clip before had go behind; weights go to a node of the mesh pack, if it has one. */
 static void count_groups(const noh_motion_binding *b, uint32_t index, const noh_clip_desc *clip, counts *c)
 {
     noh_clip_group_reader reader = noh_clip_groups_of(clip);
@@ -95,6 +104,15 @@ static noh_result count_motion(const noh_motion_binding *b, uint32_t index, coun
     return NOH_OK;
 }
 
+/* Segments for what plays at once, unless the desc says how many. */
+static uint32_t slots_of(const noh_motion_set_desc *desc, uint32_t segments)
+{
+    const uint64_t instances = desc->instance_count ? desc->instance_count : 1u, tracks = desc->track_count ? desc->track_count : TRACKS;
+    const uint64_t plays = NOH_CLIP_CACHE_SEGMENTS_PER_TRACK * instances * tracks;
+    const uint64_t wanted = desc->slot_count ? desc->slot_count : plays < NOH_CLIP_CACHE_SLOTS_MAX ? plays : NOH_CLIP_CACHE_SLOTS_MAX;
+    return wanted < segments || desc->slot_count == 1u ? (uint32_t)wanted : segments > 1u ? segments : NOH_CLIP_CACHE_SLOTS_MIN;
+}
+
 static noh_result count(const noh_motion_set_desc *desc, const noh_motion_binding *b, counts *c, noh_error *error)
 {
     memset(c, 0, sizeof *c);
@@ -115,7 +133,8 @@ static noh_result count(const noh_motion_set_desc *desc, const noh_motion_bindin
     if (c->shape.float_count > NOH_FLOATS_MAX) {
         return noh_fail(error, NOH_ERR_LIMIT, "floats of a motion set: morph weights of all nodes, and named ones", 0, c->shape.float_count);
     }
-    c->cache_bytes = noh_clip_cache_needs_size(&c->cache, desc->slot_count, error);
+    c->slots = slots_of(desc, c->cache.segment_count);
+    c->cache_bytes = noh_clip_cache_needs_size(&c->cache, c->slots, error);
     return c->cache_bytes ? NOH_OK : NOH_ERR_ARG;
 }
 
@@ -139,14 +158,35 @@ static size_t carve(noh_arena *arena, const counts *c, parts *p)
     return arena->used;
 }
 
+static noh_result check_desc(const noh_motion_set_desc *desc, noh_error *error)
+{
+    if (!desc->clips) return noh_fail(error, NOH_ERR_ARG, "clips of a motion set is NULL", 0, 0);
+    if (desc->root_axes > (NOH_ROOT_GROUND | NOH_ROOT_Y)) {
+        return noh_fail(error, NOH_ERR_ARG, "root_axes of a motion set hold unknown bits", desc->root_axes, 0);
+    }
+    if (desc->root_axes && desc->root_up > 2u) return noh_fail(error, NOH_ERR_ARG, "root_up of a motion set is no axis", desc->root_up, 0);
+    return NOH_OK;
+}
+
 static noh_result measure(const noh_motion_set_desc *desc, noh_motion_binding *b, counts *c, size_t *bytes, noh_error *error)
 {
     noh_arena arena = noh_arena_measure();
     parts p;
-    noh_result r = noh_motion_bind(desc, b, error);
+    noh_result r = check_desc(desc, error);
+    if (!r) r = noh_motion_bind(desc->clips, desc->mesh ? desc->mesh : desc->clips, desc->skeleton, b, error);
     if (!r) r = count(desc, b, c, error);
     if (!r) *bytes = carve(&arena, c, &p);
     return r;
+}
+
+/* As noh_motion_set_view_size, before there is a set. */
+static size_t view_bytes(const counts *c)
+{
+    noh_arena arena = noh_arena_measure();
+    (void)noh_arena_carve(&arena, sizeof(noh_motion_set_view), 16u);
+    (void)noh_arena_carve(&arena, noh_clip_view_needs_size(&c->cache), 16u);
+    (void)noh_arena_carve(&arena, c->sampled * sizeof(float), 4u);
+    return arena.used;
 }
 
 noh_result noh_motion_set_measure(const noh_motion_set_desc *desc, noh_motion_set_needs *needs, noh_error *error)
@@ -157,7 +197,10 @@ noh_result noh_motion_set_measure(const noh_motion_set_desc *desc, noh_motion_se
     const noh_result r = measure(desc, &b, &c, &bytes, error);
     if (!r) {
         needs->bytes = bytes;
+        needs->view_bytes = view_bytes(&c);
         needs->shape = c.shape;
+        needs->slot_count = c.slots < c.cache.segment_count ? c.slots : c.cache.segment_count;
+        needs->segment_count = c.cache.segment_count;
         needs->foreign_count = c.foreign;
     }
     return r;
@@ -179,7 +222,7 @@ static void fill_nodes(const noh_motion_binding *b, parts *p)
         const noh_clip_group *group = &p->groups[set->group_count++];
         const noh_node *n = &b->mesh->nodes[group->node];
         noh_mesh mesh;
-        (void)noh_pack_mesh(b->mesh, n->mesh, &mesh);
+        (void)noh_pack_mesh(b->mesh, n->mesh, &mesh, NULL);
         memcpy(p->defaults + group->first, n->first_weight == NOH_NONE ? mesh.weights : b->mesh->node_weights + n->first_weight,
                group->width * sizeof *p->defaults);
         set->anim.float_count = first;
@@ -204,6 +247,7 @@ static const noh_clip_group *name_group(parts *p, const noh_clip_group *wanted)
     return group;
 }
 
+/* Where the clip's floats go among the set's: one run for each of its groups that is played. */
 static void fill_runs(const noh_motion_binding *b, const noh_clip *opened, parts *p, set_clip *clip)
 {
     noh_motion_floats *run = p->runs;
@@ -282,28 +326,7 @@ static void fill(const noh_motion_binding *b, parts *p)
     }
 }
 
-/* ---- sampling ---- */
-
-/* A noh_motion_sample. Joints that the clip does not have, and floats that it does not move, are at rest. */
-static void sample(void *user, uint32_t motion, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose, uint32_t float_count, float *floats)
-{
-    const noh_motion_set *set = user;
-    const set_clip *clip = &set->clips[motion];
-    const int moves_floats = float_count && clip->float_runs;
-    if (clip->joint_count || moves_floats) {
-        noh_clip_sample(set->cache, motion, clip_tick, clip->joint_count ? joint_count : 0u, pose, moves_floats ? set->sampled : NULL);
-    }
-    if (!clip->joint_count && joint_count) {
-        memcpy(pose, set->skeleton.bind_pose, joint_count * sizeof *pose);
-    }
-    if (float_count) {
-        memcpy(floats, set->anim.float_defaults, float_count * sizeof *floats);
-    }
-    for (uint32_t i = 0; moves_floats && i < clip->float_runs; i++) {
-        const noh_motion_floats *run = &clip->floats[i];
-        memcpy(floats + run->to, set->sampled + run->from, run->width * sizeof *floats);
-    }
-}
+/* ---- joining ---- */
 
 static void join(const noh_motion_binding *b, const counts *c, parts *p)
 {
@@ -315,22 +338,23 @@ static void join(const noh_motion_binding *b, const counts *c, parts *p)
     set->unknown_count = c->unknown;
     set->clips = p->clips;
     set->sampled = p->sampled;
+    set->sampled_count = c->sampled;
+    set->nodes = b->mesh->nodes;
     set->anim.joint_count = b->skeleton.joint_count;
     set->anim.motions = p->motions;
     set->anim.events = p->events;
     set->anim.markers = p->markers;
     set->anim.bind_pose = b->header ? b->skeleton.bind_pose : (const noh_transform *)(const void *)p->motions; /* of no joints */
     set->anim.float_defaults = p->defaults;
-    set->anim.sample = sample;
-    set->anim.user = set;
+    noh_motion_set_sample_cache(set);
 }
 
-static noh_result open_cache(const noh_motion_set_desc *desc, const counts *c, parts *p, noh_error *error)
+static noh_result open_cache(const counts *c, parts *p, noh_error *error)
 {
     noh_clip_cache_desc cache;
     cache.clips = p->opened;
     cache.clip_count = c->shape.motion_count;
-    cache.slot_count = desc->slot_count;
+    cache.slot_count = c->slots;
     return noh_clip_cache_init(p->cache_memory, c->cache_bytes, &cache, &p->set->cache, error);
 }
 
@@ -347,22 +371,20 @@ static noh_result measure_roots(const noh_motion_set_desc *desc, parts *p, noh_e
 
 noh_result noh_motion_set_init(void *memory, size_t bytes, const noh_motion_set_desc *desc, noh_motion_set **set, noh_error *error)
 {
-    noh_arena arena = noh_arena_over(memory, bytes);
+    noh_arena arena;
     noh_error why = { NOH_OK, "", 0, 0 };
     noh_motion_binding b;
     counts c;
     parts p;
     size_t need = 0;
     noh_result r = measure(desc, &b, &c, &need, error);
+    if (!r) r = noh_arena_open(&arena, memory, bytes, need, error);
     if (r) return r;
-    if (!memory || ((uintptr_t)memory & 15u) != 0 || bytes < need) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory of a motion set: too little, or not 16-byte aligned", bytes, need);
-    }
     (void)carve(&arena, &c, &p);
     memset(p.set, 0, sizeof *p.set);
     fill(&b, &p);
     join(&b, &c, &p);
-    r = open_cache(desc, &c, &p, error);
+    r = open_cache(&c, &p, error);
     if (r) return r;
     if (noh_anim_set_check(&p.set->anim, &why)) {
         return noh_fail(error, why.result, why.what, p.pack_motions[why.where], 0);
@@ -382,10 +404,33 @@ uint32_t noh_motion_set_find(const noh_motion_set *set, const char *name)
 int noh_motion_set_moves(const noh_motion_set *set, uint32_t motion, uint32_t group)
 {
     const set_clip *clip = &set->clips[motion];
+    NOH_ASSERT(motion < set->anim.motion_count && group < set->group_count);
     for (uint32_t i = 0; i < clip->float_runs; i++) {
         if (clip->floats[i].to == set->groups[group].first && clip->floats[i].width == set->groups[group].width) {
             return 1;
         }
     }
     return 0;
+}
+
+uint32_t noh_motion_set_node_group(const noh_motion_set *set, uint32_t node)
+{
+    for (uint32_t g = 0; node != NOH_NONE && g < set->group_count; g++) {
+        if (set->groups[g].node == node) return g;
+    }
+    return NOH_NONE;
+}
+
+uint32_t noh_motion_set_mesh_group(const noh_motion_set *set, uint32_t mesh)
+{
+    for (uint32_t g = 0; mesh != NOH_NONE && g < set->group_count; g++) {
+        if (set->groups[g].node != NOH_NONE && set->nodes[set->groups[g].node].mesh == mesh) return g;
+    }
+    return NOH_NONE;
+}
+
+const float *noh_motion_set_mesh_weights(const noh_motion_set *set, const float *floats, uint32_t mesh)
+{
+    const uint32_t group = noh_motion_set_mesh_group(set, mesh);
+    return group == NOH_NONE ? NULL : floats + set->groups[group].first;
 }

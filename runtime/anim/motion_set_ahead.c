@@ -1,7 +1,13 @@
-/* motion_set_ahead.c: which segments a controller will need soon. */
-#include "anim/motion_set_internal.h"
+/* motion_set_ahead.c: which segments a controller will need soon.
+ *
+ * A track plays in legs: passes of its clip, forwards or (every other one of a ping-pong) backwards. The way from its
+ * position to where it will be after `ahead_ticks` is cut at the ends of legs; each piece is one stretch of frames of the
+ * clip, and the cache is asked for all segments under it. Three pieces suffice: the rest of this leg, one whole leg, which
+ * covers the whole clip, and nothing new after that. */
+#include "anim/clip_internal.h"
+#include "anim/motion_set.h"
 
-#define LEGS_MAX 3 /* a part of one, a whole one, which is all of the clip, and nothing new after that */
+#define LEGS_MAX 3
 
 /* The stretch of a clip that is played in one leg: ticks, in the order of play. */
 typedef struct stretch {
@@ -53,6 +59,7 @@ static uint32_t want_track(const noh_motion_set *set, const noh_track *t, uint32
 uint32_t noh_motion_set_ahead(noh_motion_set *set, const noh_controller *controller, uint32_t ahead_ticks)
 {
     uint32_t missing = 0;
+    NOH_ASSERT(controller->motion_count == set->anim.motion_count && controller->joint_count == set->anim.joint_count);
     for (uint32_t i = 0; i < controller->track_count; i++) {
         const noh_track *t = noh_controller_track(controller, i);
         const noh_motion *m = &set->anim.motions[t->motion];

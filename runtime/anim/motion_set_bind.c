@@ -1,19 +1,18 @@
-/* motion_set_bind.c: what a pack's clips can move of a mesh pack. Reads only the packs' bytes, so that
- * sizes are known before there is memory. */
+#include "anim/motion_set_bind_internal.h"
+
 #include <string.h>
 
-#include "anim/motion_set_internal.h"
 #include "mesh/mesh.h"
 
-static noh_result bind_skeleton(const noh_motion_set_desc *desc, noh_motion_binding *b, noh_error *error)
+static noh_result bind_skeleton(uint32_t skeleton, noh_motion_binding *b, noh_error *error)
 {
-    if (desc->skeleton == NOH_NONE || b->mesh->skeleton_count == 0) {
+    if (skeleton == NOH_NONE || b->mesh->skeleton_count == 0) {
         b->skeleton_index = NOH_NONE;
         return NOH_OK;
     }
-    b->skeleton_index = desc->skeleton;
-    if (noh_pack_skeleton_at(b->mesh, desc->skeleton, &b->skeleton, &b->header) != NOH_OK) {
-        return noh_fail(error, NOH_ERR_ARG, "skeleton of a motion set: the mesh pack has fewer", desc->skeleton, b->mesh->skeleton_count);
+    b->skeleton_index = skeleton;
+    if (noh_pack_skeleton_at(b->mesh, skeleton, &b->skeleton, &b->header, NULL) != NOH_OK) {
+        return noh_fail(error, NOH_ERR_ARG, "skeleton of a motion set: the mesh pack has fewer", skeleton, b->mesh->skeleton_count);
     }
     return NOH_OK;
 }
@@ -24,7 +23,7 @@ static noh_result check_units(const noh_motion_binding *b, noh_error *error)
     for (uint32_t i = 0; b->header && i < b->clips->skeleton_count; i++) {
         noh_skeleton skeleton;
         const noh_skeleton_header *h;
-        noh_pack_skeleton_at(b->clips, i, &skeleton, &h);
+        noh_pack_skeleton_at(b->clips, i, &skeleton, &h, NULL);
         if (h->hash == b->header->hash && (h->unit_cm > b->header->unit_cm || h->unit_cm < b->header->unit_cm)) {
             return noh_fail(error, NOH_ERR_NOT_FOUND, "the clips' skeleton has another unit than the mesh's: build both in one unit, or in one pack",
                             i, 0);
@@ -33,16 +32,13 @@ static noh_result check_units(const noh_motion_binding *b, noh_error *error)
     return NOH_OK;
 }
 
-noh_result noh_motion_bind(const noh_motion_set_desc *desc, noh_motion_binding *b, noh_error *error)
+noh_result noh_motion_bind(const noh_pack *clips, const noh_pack *mesh, uint32_t skeleton, noh_motion_binding *b, noh_error *error)
 {
     noh_result r;
     memset(b, 0, sizeof *b);
-    if (!desc->clips) return noh_fail(error, NOH_ERR_ARG, "clips of a motion set", 0, 0);
-    if (desc->root_axes > (NOH_ROOT_GROUND | NOH_ROOT_Y)) return noh_fail(error, NOH_ERR_ARG, "root_axes of a motion set", 0, 0);
-    if (desc->root_axes && desc->root_up > 2u) return noh_fail(error, NOH_ERR_ARG, "root_up of a motion set", 0, 0);
-    b->clips = desc->clips;
-    b->mesh = desc->mesh ? desc->mesh : desc->clips;
-    r = bind_skeleton(desc, b, error);
+    b->clips = clips;
+    b->mesh = mesh;
+    r = bind_skeleton(skeleton, b, error);
     return r ? r : check_units(b, error);
 }
 
@@ -50,7 +46,7 @@ int noh_motion_fits(const noh_motion_binding *b, uint32_t index, noh_pack_motion
 {
     noh_skeleton built_with;
     const noh_motion_header *h;
-    (void)noh_pack_motion_at(b->clips, index, motion);
+    (void)noh_pack_motion_at(b->clips, index, motion, NULL);
     h = motion->header;
     clip->bytes = motion->bytes;
     clip->byte_count = h->clip_bytes;
@@ -63,7 +59,7 @@ int noh_motion_fits(const noh_motion_binding *b, uint32_t index, noh_pack_motion
         (b->mesh == b->clips && h->skeleton != b->skeleton_index)) {
         return 0;
     }
-    (void)noh_pack_skeleton_at(b->clips, h->skeleton, &built_with, NULL);
+    if (noh_pack_skeleton_at(b->clips, h->skeleton, &built_with, NULL, NULL)) return 0;
     clip->bind = built_with.bind_pose;
     return 1;
 }
@@ -76,7 +72,7 @@ int noh_motion_next_node(const noh_motion_binding *b, uint32_t *node, uint32_t *
         if (n->mesh == NOH_NONE) {
             continue;
         }
-        (void)noh_pack_mesh(b->mesh, n->mesh, &mesh);
+        (void)noh_pack_mesh(b->mesh, n->mesh, &mesh, NULL);
         if (mesh.header->target_count) {
             group->name_hash = n->name_hash;
             group->node = (*node)++;

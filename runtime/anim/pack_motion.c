@@ -5,12 +5,16 @@
 NOH_STATIC_ASSERT(sizeof(noh_transform) == 40, transform_is_packed);
 NOH_STATIC_ASSERT(NOH_PACK_JOINT_ROOT == NOH_JOINT_ROOT, joint_roots_agree);
 
-noh_result noh_pack_skeleton_at(const noh_pack *pack, uint32_t index, noh_skeleton *skeleton, const noh_skeleton_header **header)
+noh_result noh_pack_skeleton_at(const noh_pack *pack, uint32_t index, noh_skeleton *skeleton, const noh_skeleton_header **header,
+                                noh_error *error)
 {
     const uint8_t *chunk;
     const noh_skeleton_header *h;
+    NOH_ASSERT(pack && skeleton);
     if (index >= pack->skeleton_count) {
-        return NOH_ERR_NOT_FOUND;
+        return noh_fail(error, NOH_ERR_NOT_FOUND,
+                        pack->skeleton_count ? "skeleton index is past the pack's last skeleton" : "pack holds no skeleton", index,
+                        pack->skeleton_count);
     }
     chunk = pack->bytes + pack->chunks[pack->first_skeleton + index].offset;
     h = (const noh_skeleton_header *)(const void *)chunk;
@@ -27,8 +31,8 @@ noh_result noh_pack_skeleton_at(const noh_pack *pack, uint32_t index, noh_skelet
 const char *noh_pack_joint_name(const noh_pack *pack, uint32_t skeleton, uint32_t joint)
 {
     noh_skeleton s;
-    const noh_skeleton_header *h;
-    if (noh_pack_skeleton_at(pack, skeleton, &s, &h) || joint >= h->joint_count) {
+    const noh_skeleton_header *h = NULL;
+    if (noh_pack_skeleton_at(pack, skeleton, &s, &h, NULL) || joint >= h->joint_count) {
         return "";
     }
     return noh_pack_string(pack, ((const uint32_t *)(const void *)((const uint8_t *)h + h->names_offset))[joint]);
@@ -37,8 +41,8 @@ const char *noh_pack_joint_name(const noh_pack *pack, uint32_t skeleton, uint32_
 const uint32_t *noh_pack_joint_levels(const noh_pack *pack, uint32_t skeleton, uint32_t *level_count)
 {
     noh_skeleton s;
-    const noh_skeleton_header *h;
-    if (noh_pack_skeleton_at(pack, skeleton, &s, &h)) {
+    const noh_skeleton_header *h = NULL;
+    if (noh_pack_skeleton_at(pack, skeleton, &s, &h, NULL)) {
         *level_count = 0;
         return NULL;
     }
@@ -46,11 +50,13 @@ const uint32_t *noh_pack_joint_levels(const noh_pack *pack, uint32_t skeleton, u
     return (const uint32_t *)(const void *)((const uint8_t *)h + h->levels_offset);
 }
 
-noh_result noh_pack_motion_at(const noh_pack *pack, uint32_t index, noh_pack_motion *motion)
+noh_result noh_pack_motion_at(const noh_pack *pack, uint32_t index, noh_pack_motion *motion, noh_error *error)
 {
     const uint8_t *chunk;
+    NOH_ASSERT(pack && motion);
     if (index >= pack->motion_count) {
-        return NOH_ERR_NOT_FOUND;
+        return noh_fail(error, NOH_ERR_NOT_FOUND, pack->motion_count ? "clip index is past the pack's last clip" : "pack holds no clip", index,
+                        pack->motion_count);
     }
     chunk = pack->bytes + pack->chunks[pack->first_motion + index].offset;
     motion->name = noh_pack_chunk_name(pack, pack->first_motion + index);
@@ -67,7 +73,7 @@ noh_result noh_pack_bind_motion(const noh_pack *pack, const noh_pack_motion *mot
 {
     for (uint32_t i = 0; i < pack->skeleton_count; i++) {
         const noh_skeleton_header *h;
-        noh_pack_skeleton_at(pack, i, skeleton, &h);
+        noh_pack_skeleton_at(pack, i, skeleton, &h, NULL);
         if (h->hash == motion->header->skeleton_hash && h->joint_count == motion->header->joint_count) {
             if (index) {
                 *index = i;

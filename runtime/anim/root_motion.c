@@ -12,8 +12,8 @@ static void ground_axes(uint32_t up, uint32_t *a, uint32_t *b)
     *b = (up + 2u) % 3u;
 }
 
-/* Sine and cosine in double: a way of a million passes needs more than 24 bits.
- * Taylor series to x^17; |x| <= pi/4, error under 1e-16. */
+/* Sine and cosine in double, because the displacement of a million passes needs more than 24 bits, and without libm, so that
+ * all machines get the same bits. Taylor series to x^17 in Horner form; |x| <= pi/4, error below 1e-16. */
 static void sin_cos_double(double x, double *sine, double *cosine)
 {
     double y = x * x;
@@ -23,7 +23,8 @@ static void sin_cos_double(double x, double *sine, double *cosine)
         * (1.0 - y / 132.0 * (1.0 - y / 182.0 * (1.0 - y / 240.0 * (1.0 - y / 306.0))))))));
 }
 
-/* Of half a turn's fraction: `half_turns` counts 2^-33 turns and wraps at 2^33. */
+/* Sine and cosine of `half_turns` times 2^-33 turns, which wraps at 2^33. The nearest quarter turn is split off as an integer,
+ * so the series sees at most an eighth. */
 static void sin_cos_half(uint64_t half_turns, double *sine, double *cosine)
 {
     uint64_t wrapped = half_turns & (((uint64_t)1 << 33) - 1u);
@@ -51,7 +52,7 @@ static void turn_vector(uint32_t up, uint64_t half_turns, double v[3])
     v[b] = s * va + c * vb;
 }
 
-/* The twist's angle as a turn: twice the half angle that the quaternion holds. */
+/* The heading: the angle of the twist about the up axis, which is twice the half angle that a quaternion holds. */
 static uint32_t heading(uint32_t up, const noh_transform *root)
 {
     float twist[4];
@@ -62,6 +63,7 @@ static uint32_t heading(uint32_t up, const noh_transform *root)
 noh_root_pose noh_root_extract(uint32_t axes, uint32_t up, const noh_transform *root)
 {
     noh_root_pose e;
+    NOH_ASSERT(root && axes <= 15u && up <= 2u);
     memset(&e, 0, sizeof e);
     for (uint32_t i = 0; i < 3; i++) {
         e.translation[i] = axes & (1u << i) ? (double)root->translation[i] : 0.0;
@@ -75,6 +77,7 @@ void noh_root_remove(uint32_t axes, uint32_t up, noh_transform *root)
     noh_root_pose e = noh_root_extract(axes, up, root);
     float back[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
     double rest[3];
+    NOH_ASSERT(root && axes <= 15u && up <= 2u);
     /* half of minus the turn, as a signed angle: the quaternion of the inverse heading */
     noh_sin_cos(-0.5f * noh_radians_from_turn(e.turn), &back[up], &back[3]);
     for (int i = 0; i < 3; i++) {
@@ -89,6 +92,7 @@ void noh_root_remove(uint32_t axes, uint32_t up, noh_transform *root)
 
 void noh_root_sample_rest(const noh_anim_set *set, uint32_t motion, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose, float *floats)
 {
+    NOH_ASSERT(set && motion < set->motion_count && clip_tick <= set->motions[motion].duration_ticks && joint_count <= set->joint_count);
     set->sample(set->user, motion, clip_tick, joint_count, pose, set->float_count, floats);
     if (set->roots && set->roots[motion].axes) {
         noh_root_remove(set->roots[motion].axes, set->roots[motion].up, &pose[0]);
@@ -98,6 +102,7 @@ void noh_root_sample_rest(const noh_anim_set *set, uint32_t motion, uint32_t cli
 noh_root_pose noh_root_compose(uint32_t up, const noh_root_pose *a, const noh_root_pose *b)
 {
     noh_root_pose out = *b;
+    NOH_ASSERT(up <= 2u && a && b);
     turn_vector(up, 2u * (uint64_t)a->turn, out.translation);
     for (int i = 0; i < 3; i++) {
         out.translation[i] += a->translation[i];
@@ -109,6 +114,7 @@ noh_root_pose noh_root_compose(uint32_t up, const noh_root_pose *a, const noh_ro
 noh_root_pose noh_root_inverse(uint32_t up, const noh_root_pose *a)
 {
     noh_root_pose out = *a;
+    NOH_ASSERT(up <= 2u && a);
     for (int i = 0; i < 3; i++) {
         out.translation[i] = -a->translation[i];
     }
@@ -117,13 +123,15 @@ noh_root_pose noh_root_inverse(uint32_t up, const noh_root_pose *a)
     return out;
 }
 
-/* The sum over k = 0..n-1 of d turned by k * turn is d turned by (n-1)/2 * turn, times
- * sin(n turn / 2) / sin(turn / 2). Along the up axis, and without a turn, it is n d. */
+/* L^n turns by n * turn and translates by the sum of d turned by k * turn for k = 0..n-1. That is a geometric series of
+ * rotations: d turned by (n-1)/2 * turn, times sin(n turn / 2) / sin(turn / 2). Along the up axis, and without a turn, it
+ * is n d. Turns are integers modulo 2^32, half turns modulo 2^33, so no angle loses bits however large n is. */
 noh_root_pose noh_root_power(uint32_t up, const noh_root_pose *a, int64_t n)
 {
     noh_root_pose base = n < 0 ? noh_root_inverse(up, a) : *a, out;
     uint64_t count = n < 0 ? (uint64_t)0 - (uint64_t)n : (uint64_t)n;
     double s_one, s_all, unused, ratio = (double)count;
+    NOH_ASSERT(up <= 2u && a);
     memset(&out, 0, sizeof out);
     if (count == 0) {
         return out;
@@ -144,7 +152,7 @@ noh_root_pose noh_root_power(uint32_t up, const noh_root_pose *a, int64_t n)
     return out;
 }
 
-/* E at a position inside the clip. */
+/* E at a tick of the clip. */
 static noh_root_pose sample_root(const noh_anim_set *set, uint32_t motion, uint32_t axes, uint32_t up, uint32_t clip_tick)
 {
     noh_transform root;
@@ -156,9 +164,10 @@ noh_result noh_root_track_measure(const noh_anim_set *set, uint32_t motion, uint
 {
     noh_root_track t;
     noh_root_pose back;
-    if (motion >= set->motion_count) return noh_fail(error, NOH_ERR_ARG, "motion", motion, set->motion_count);
-    if (axes > 15u) return noh_fail(error, NOH_ERR_ARG, "axes", motion, 0);
-    if (up > 2u) return noh_fail(error, NOH_ERR_ARG, "up", motion, 0);
+    NOH_ASSERT(set && track);
+    if (motion >= set->motion_count) return noh_fail(error, NOH_ERR_ARG, "motion is not a clip of the set", motion, set->motion_count);
+    if (axes > 15u) return noh_fail(error, NOH_ERR_ARG, "axes has bits other than NOH_ROOT_*", motion, 0);
+    if (up > 2u) return noh_fail(error, NOH_ERR_ARG, "up is not 0, 1 or 2", motion, 0);
     memset(&t, 0, sizeof t);
     t.axes = axes;
     t.up = up;
@@ -175,7 +184,8 @@ noh_result noh_root_track_measure(const noh_anim_set *set, uint32_t motion, uint
 noh_root_pose noh_root_between(const noh_anim_set *set, const noh_root_track *track, uint32_t motion, noh_loop loop, int64_t from, int64_t to)
 {
     uint32_t duration = set->motions[motion].duration_ticks, up = track->up;
-    /* legs count only where they do not lead back */
+    NOH_ASSERT(set && track && motion < set->motion_count);
+    /* passes count only where they do not lead back */
     int64_t passes = loop == NOH_LOOP_REPEAT ? noh_time_legs(to, duration, loop) - noh_time_legs(from, duration, loop) : 0;
     noh_root_pose a = sample_root(set, motion, track->axes, up, (uint32_t)(noh_time_clip(from, duration, loop) / 65536));
     noh_root_pose b = sample_root(set, motion, track->axes, up, (uint32_t)(noh_time_clip(to, duration, loop) / 65536));
@@ -183,7 +193,7 @@ noh_root_pose noh_root_between(const noh_anim_set *set, const noh_root_track *tr
     if (passes == 0) {
         return noh_root_compose(up, &back, &b);
     }
-    /* inverse(E(a)) E(0) L^n inverse(E(0)) E(b); for n = 1 the E(0) cancel into E(end) */
+    /* inverse(E(a)) E(0) L^n inverse(E(0)) E(b): the formula of root_motion.h, with E(end) = E(0) L */
     step = noh_root_power(up, &track->loop, passes);
     start_back = noh_root_inverse(up, &track->start);
     back = noh_root_compose(up, &back, &track->start);

@@ -7,7 +7,7 @@ static uint32_t interval_count(const noh_motion *m)
     return m->marker_count ? m->marker_count : 1u;
 }
 
-/* The marker at which phase 0 lies: the smallest id, the first of it. */
+/* The marker of phase 0: the first one of the smallest id. */
 static uint32_t canonical(const noh_anim_set *set, const noh_motion *m)
 {
     const noh_marker *markers = set->markers + m->first_marker;
@@ -20,7 +20,7 @@ static uint32_t canonical(const noh_anim_set *set, const noh_motion *m)
     return best;
 }
 
-/* Where the n-th marker lies, n from 0; past the last one they go on in the next pass. */
+/* The position of the n-th marker, n from 0; past the last one they continue in the next pass. */
 static int64_t marker_position(const noh_anim_set *set, const noh_motion *m, uint32_t n)
 {
     uint32_t count = interval_count(m);
@@ -33,8 +33,9 @@ noh_phase noh_sync_phase(const noh_anim_set *set, const noh_motion *motion, int6
     uint32_t count = interval_count(motion), first = canonical(set, motion), n = 0;
     int64_t rest = noh_time_clip(position, motion->duration_ticks, NOH_LOOP_REPEAT), begin, end;
     noh_phase p;
+    NOH_ASSERT(set && motion && motion->duration_ticks > 0);
     if (rest < marker_position(set, motion, 0)) {
-        rest += noh_position_of(motion->duration_ticks); /* the last interval goes over the seam */
+        rest += noh_position_of(motion->duration_ticks); /* before the first marker: in the last interval, across the seam */
     }
     while (n + 1 < count && marker_position(set, motion, n + 1) <= rest) {
         n++;
@@ -51,12 +52,14 @@ int64_t noh_sync_position(const noh_anim_set *set, const noh_motion *motion, noh
     uint32_t count = interval_count(motion), n = ((uint32_t)phase.interval + canonical(set, motion)) % count;
     int64_t begin = marker_position(set, motion, n), end = marker_position(set, motion, n + 1);
     int64_t position = begin + (int64_t)((double)(end - begin) * phase.fraction + 0.5);
+    NOH_ASSERT(set && motion && motion->duration_ticks > 0 && phase.interval >= 0);
     return noh_time_clip(position, motion->duration_ticks, NOH_LOOP_REPEAT);
 }
 
 int noh_sync_fits(const noh_anim_set *set, const noh_motion *a, const noh_motion *b)
 {
     uint32_t first_a = canonical(set, a), first_b = canonical(set, b);
+    NOH_ASSERT(set && a && b);
     if (a->marker_count != b->marker_count) {
         return 0;
     }
@@ -79,6 +82,7 @@ static int is_member(const noh_track *track, uint32_t group)
 uint32_t noh_sync_leader(const noh_track *tracks, uint32_t track_count, uint32_t group)
 {
     uint32_t best = track_count;
+    NOH_ASSERT(tracks || !track_count);
     for (uint32_t i = 0; i < track_count; i++) {
         if (is_member(&tracks[i], group) && (best == track_count || tracks[i].weight > tracks[best].weight)) {
             best = i;
@@ -103,6 +107,7 @@ static int64_t nearest(const noh_anim_set *set, const noh_motion *m, noh_phase p
 void noh_sync_join(const noh_anim_set *set, noh_track *track, const noh_track *leader)
 {
     noh_phase phase = noh_sync_phase(set, motion_of(set, leader), leader->position);
+    NOH_ASSERT(set && track && leader && track != leader);
     noh_track_place(track, motion_of(set, track), nearest(set, motion_of(set, track), phase, track->position));
 }
 
@@ -113,7 +118,7 @@ static double interval_length(const noh_anim_set *set, const noh_motion *m, noh_
     return (double)(marker_position(set, m, n + 1) - marker_position(set, m, n));
 }
 
-/* Weighted mean of the group's speeds, in intervals per tick; the leader's own where nobody weighs anything. */
+/* Weighted mean of the group's phase speeds, in intervals per tick; the leader's own where all weights are 0. */
 static double mean_speed(const noh_anim_set *set, const noh_track *tracks, uint32_t track_count, uint32_t leader, noh_phase phase)
 {
     double sum = 0.0, weights = 0.0;
@@ -131,7 +136,10 @@ static int64_t rounded(double x)
     return (int64_t)(x < 0.0 ? x - 0.5 : x + 0.5);
 }
 
-/* The rate that brings a follower to the phase; never against the leader's direction. */
+/* The speed that brings a follower to the leader's phase in `ticks`. Of all positions with that phase (one in each pass) it
+ * takes the nearest to where the follower would be after covering as many passes as the leader; that keeps both in the
+ * same pass even where an interval is short in one clip and long in the other. A follower never moves against its leader:
+ * it would pass keys twice. It waits instead. */
 static void steer(const noh_anim_set *set, noh_track *track, noh_phase goal, double travelled, int64_t leader_rate, int64_t ticks)
 {
     const noh_motion *m = motion_of(set, track);
@@ -157,6 +165,7 @@ static void group_rates(const noh_anim_set *set, noh_track *tracks, uint32_t tra
 
 void noh_sync_rates(const noh_anim_set *set, noh_track *tracks, uint32_t track_count, int64_t ticks)
 {
+    NOH_ASSERT(set && (tracks || !track_count) && ticks > 0);
     for (uint32_t group = 1; group <= NOH_SYNC_GROUPS_MAX; group++) {
         uint32_t leader = noh_sync_leader(tracks, track_count, group);
         if (leader < track_count) {

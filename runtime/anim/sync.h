@@ -1,14 +1,15 @@
-/* sync.h: tracks that keep step: by phase, or by markers where their motions have them.
+/* sync.h: tracks that keep step: by phase, or by markers where their clips have them.
  *
- * The tracks of a sync group share a phase: the marker interval they are in and how
- * far through it. A motion without markers is one interval. Markers of one group's
- * motions must be the same ids in the same cyclic order; the smallest id is where
- * phase 0 lies, so that a walk that starts on the left foot keeps step with a run
- * that starts on the right. All move at the weighted mean of their own phase speeds;
- * the heaviest leads and the others are steered onto its phase, every
- * NOH_SYNC_TICKS of the controller's clock and whenever the group changes. Between,
- * their rates are constant: events stay exact, and independent of the step size; where
- * a marker is passed between, a follower is off by part of those few milliseconds. */
+ * The tracks of a sync group share a phase: a marker interval and the fraction of it that has passed. A clip without markers
+ * is one interval. The clips of a group must have the same marker ids in the same cyclic order; phase 0 lies at the
+ * smallest id, so a walk that starts on the left foot keeps step with a run that starts on the right.
+ *
+ * All tracks of a group move at the weighted mean of their own phase speeds. The heaviest leads; the others are steered to
+ * its phase, every NOH_SYNC_TICKS of the controller's clock and whenever the group changes. In between speeds are
+ * constant, so events stay exact and independent of the step size; when a marker is passed in between, a follower is off
+ * by a part of those 10 milliseconds.
+ *
+ * Threads: as tracks.h. */
 #ifndef NOH_ANIM_SYNC_H
 #define NOH_ANIM_SYNC_H
 
@@ -17,25 +18,25 @@
 #define NOH_SYNC_TICKS 480 /* 10 ms */
 
 typedef struct noh_phase {
-    int64_t interval; /* 0..markers - 1, from the canonical marker on */
+    int64_t interval; /* 0..markers - 1, counted from the marker of phase 0 */
     double fraction;  /* 0..1 of that interval */
 } noh_phase;
 
 /* The phase of a position, and the position of a phase in the first pass.
- * ranges  repeating motion with a duration */
+ * ranges  a repeating clip of a duration above 0 */
 noh_phase noh_sync_phase(const noh_anim_set *set, const noh_motion *motion, int64_t position);
 int64_t noh_sync_position(const noh_anim_set *set, const noh_motion *motion, noh_phase phase);
 
-/* Whether two motions can keep step. */
+/* Whether the markers of two clips match. */
 int noh_sync_fits(const noh_anim_set *set, const noh_motion *a, const noh_motion *b);
 
-/* The leading track of a group: on, heaviest, lowest index; track_count when there is none. */
+/* The leader of a group: the heaviest track that is not off, of equal ones the first; track_count when there is none. */
 uint32_t noh_sync_leader(const noh_track *tracks, uint32_t track_count, uint32_t group);
 
-/* Place a track on the phase of another, in its own pass; nothing fires. */
+/* Move a track to the phase of another one, nearest to where it is, without firing callbacks. */
 void noh_sync_join(const noh_anim_set *set, noh_track *track, const noh_track *leader);
 
-/* Set the rates of all groups for the next `ticks`. */
+/* Set the present speeds (noh_track.rate) of all groups for the next `ticks`. */
 void noh_sync_rates(const noh_anim_set *set, noh_track *tracks, uint32_t track_count, int64_t ticks);
 
 #endif

@@ -1,5 +1,8 @@
 #include "anim/time.h"
 
+#define POSITION_TICKS_MAX (INT64_MAX / 65536)
+#define SMALL ((int64_t)1 << 30)
+
 int64_t noh_ticks_from_seconds(double seconds)
 {
     double ticks = seconds * (double)NOH_TICKS_PER_SECOND;
@@ -11,12 +14,39 @@ int64_t noh_ticks_from_seconds(double seconds)
 
 int64_t noh_position_of(int64_t ticks)
 {
+    ticks = ticks > POSITION_TICKS_MAX ? POSITION_TICKS_MAX : ticks < -POSITION_TICKS_MAX ? -POSITION_TICKS_MAX : ticks;
     return ticks * 65536;
+}
+
+/* position + rate * ticks, held at the ends of what 64 bits hold. */
+static int64_t advance_saturated(int64_t position, int64_t rate, int64_t ticks)
+{
+    const int back = (rate < 0) != (ticks < 0);
+    /* magnitudes as unsigned: INT64_MIN has none in int64_t */
+    const uint64_t r = rate < 0 ? (uint64_t)0 - (uint64_t)rate : (uint64_t)rate;
+    const uint64_t t = ticks < 0 ? (uint64_t)0 - (uint64_t)ticks : (uint64_t)ticks;
+    uint64_t left; /* to the end that play goes to */
+    if (r == 0u || t == 0u) {
+        return position;
+    }
+    left = back ? (uint64_t)position - (uint64_t)INT64_MIN : (uint64_t)INT64_MAX - (uint64_t)position;
+    if (r > left / t) {
+        return back ? INT64_MIN : INT64_MAX;
+    }
+    return (int64_t)(back ? (uint64_t)position - r * t : (uint64_t)position + r * t); /* in range, so modulo 2^64 is exact */
+}
+
+static int is_small(int64_t x)
+{
+    return x < SMALL && x > -SMALL;
 }
 
 int64_t noh_time_advance(int64_t position, int64_t rate, int64_t ticks, uint32_t duration_ticks, noh_loop loop)
 {
-    int64_t end = noh_position_of(duration_ticks), to = position + rate * ticks;
+    const int64_t end = noh_position_of(duration_ticks);
+    /* two factors below 2^30 move by less than 2^60: from within 2^62 that cannot overflow */
+    const int safe = is_small(rate) && is_small(ticks) && position < 4 * NOH_POSITION_MAX && position > -4 * NOH_POSITION_MAX;
+    int64_t to = safe ? position + rate * ticks : advance_saturated(position, rate, ticks);
     if (loop == NOH_LOOP_ONCE || end == 0) {
         to = to < 0 ? 0 : to > end ? end : to;
     }
@@ -30,12 +60,18 @@ int64_t noh_time_legs(int64_t position, uint32_t duration_ticks, noh_loop loop)
 
 int64_t noh_time_clip(int64_t position, uint32_t duration_ticks, noh_loop loop)
 {
-    int64_t duration = noh_position_of(duration_ticks), leg, rest;
+    const int64_t duration = noh_position_of(duration_ticks);
+    int64_t leg, rest;
     if (loop == NOH_LOOP_ONCE || duration == 0) {
         return position < 0 ? 0 : position > duration ? duration : position;
     }
-    leg = noh_floor_div(position, duration);
-    rest = position - leg * duration;
+    /* the remainder first: leg * duration may lie below INT64_MIN */
+    leg = position / duration;
+    rest = position % duration;
+    if (rest < 0) {
+        rest += duration;
+        leg--;
+    }
     return loop == NOH_LOOP_PING_PONG && (leg & 1) ? duration - rest : rest;
 }
 

@@ -1,21 +1,26 @@
 /* time.h: time as integers, so that nothing drifts.
  *
- * A tick is 1/48,000 s: one audio sample. A position counts 1/65,536 ticks from
- * the start of a motion's first leg and is never wrapped: a repeating motion at
- * position 2.5 durations is half through its third pass, a ping-pong motion half
- * through its third leg. Play is then one addition per step, exact for any
- * partition of an interval, and every function of a position (pose, events,
- * root motion) is a function of the whole history of passes, in closed form.
+ * A tick is 1/48,000 s: one audio sample. A position counts 1/65,536 ticks from the start of a clip's first leg and is
+ * never wrapped: a repeating clip at position 2.5 durations is half through its third pass, a ping-pong clip half through
+ * its third leg. Play is then one addition per step, exact for any partition of an interval, and every function of a
+ * position (pose, events, root motion) is a function of the whole history of passes, in closed form.
  *
- *   noh_ticks_from_seconds   a time of the outside world
+ *   noh_ticks_from_seconds   ticks of a time in seconds
  *   noh_time_advance         where play is after a number of ticks
  *   noh_time_clip            the position inside the clip, folded by the loop mode
  *   noh_time_legs            how many durations have been passed
- *   noh_time_rebase          an equal position of small magnitude */
+ *   noh_time_rebase          an equal position of small magnitude
+ *
+ * All are defined for every argument: what would overflow is held at the ends of the range.
+ * Threads: functions of their arguments, callable from anywhere. */
 #ifndef NOH_ANIM_TIME_H
 #define NOH_ANIM_TIME_H
 
 #include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 #define NOH_TICKS_PER_SECOND 48000u
 #define NOH_SPEED_ONE 65536        /* speeds are 16.16 fixed point: clip ticks per tick */
@@ -24,33 +29,33 @@
 #define NOH_POSITION_MAX ((int64_t)1 << 60) /* a placed position; 8,000 years are left after it at speed one */
 
 typedef enum noh_loop {
-    NOH_LOOP_OF_MOTION = 0, /* in descs only: what the motion says */
+    NOH_LOOP_OF_MOTION = 0, /* in descs only: what the clip says */
     NOH_LOOP_ONCE,          /* holds its first and last tick */
     NOH_LOOP_REPEAT,
     NOH_LOOP_PING_PONG      /* there and back: two durations make one cycle */
 } noh_loop;
 
-/* Ticks nearest to a time in seconds (row C5.6: keys are in ticks, not seconds).
+/* Ticks nearest to a time in seconds.
  * ranges  |seconds| <= 1e9, else 0 */
 int64_t noh_ticks_from_seconds(double seconds);
 
-/* The position of a number of whole ticks. */
+/* The position of a number of whole ticks.
+ * ranges  |ticks| < 2^47, 93 years; more is held there */
 int64_t noh_position_of(int64_t ticks);
 
-/* Where play is `ticks` later.
- * ranges  |rate| * ticks < 2^62; for ONCE the result is held in 0..duration */
+/* Where play is `ticks` later at a playback speed (`rate`, 16.16 fixed point).
+ * ranges  any; the result is held in 0..duration for ONCE, and at INT64_MIN and INT64_MAX else */
 int64_t noh_time_advance(int64_t position, int64_t rate, int64_t ticks, uint32_t duration_ticks, noh_loop loop);
 
-/* The position in the clip, 0..duration << 16. A repeating motion is at 0, not at
+/* The position in the clip, 0..duration << 16. A repeating clip is at 0, not at
  * its duration, when a pass is complete. */
 int64_t noh_time_clip(int64_t position, uint32_t duration_ticks, noh_loop loop);
 
 /* Whole durations up to the position, rounded down; 0 for ONCE and for a duration of 0. */
 int64_t noh_time_legs(int64_t position, uint32_t duration_ticks, noh_loop loop);
 
-/* What to subtract from a position so that it is small and everything that
- * follows from it stays the same: a whole number of double durations. 0 for
- * positions within NOH_POSITION_MAX. */
+/* What to subtract from a position to make it small while all that follows from it stays the same: a whole number of
+ * double durations. 0 for positions within NOH_POSITION_MAX. */
 int64_t noh_time_rebase(int64_t position, uint32_t duration_ticks, noh_loop loop);
 
 /* Quotient rounded down, and up. b > 0. */
@@ -63,5 +68,9 @@ static inline int64_t noh_ceil_div(int64_t a, int64_t b)
 {
     return a / b + (a % b > 0);
 }
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -2,33 +2,34 @@
 
 static const char *bad_desc(const noh_anim_set *set, const noh_track_desc *d)
 {
-    if (d->motion >= set->motion_count) return "motion";
-    if (d->position_ticks > ((int64_t)1 << 44) || d->position_ticks < -((int64_t)1 << 44)) return "position_ticks";
-    if (d->speed > NOH_SPEED_MAX || d->speed < -NOH_SPEED_MAX) return "speed";
-    if (!(d->weight >= 0.0f && d->weight <= NOH_WEIGHT_MAX)) return "weight";
-    if ((unsigned)d->loop > NOH_LOOP_PING_PONG) return "loop";
-    if ((unsigned)d->mode > NOH_TRACK_ON) return "mode";
-    if ((unsigned)d->group > NOH_GROUP_HIGH) return "group";
-    if (d->mask > set->mask_count) return "mask";
-    if (d->lod_levels > 255u) return "lod_levels";
-    if (d->sync_group > NOH_SYNC_GROUPS_MAX) return "sync_group";
-    if (d->flags & ~NOH_TRACK_FLAGS) return "flags";
+    if (d->motion >= set->motion_count) return "motion is not a clip of the set";
+    if (d->position_ticks > ((int64_t)1 << 44) || d->position_ticks < -((int64_t)1 << 44)) return "position_ticks is past 2^44";
+    if (d->speed > NOH_SPEED_MAX || d->speed < -NOH_SPEED_MAX) return "speed is past NOH_SPEED_MAX";
+    if (!(d->weight >= 0.0f && d->weight <= NOH_WEIGHT_MAX)) return "weight is not in 0..NOH_WEIGHT_MAX";
+    if ((unsigned)d->loop > NOH_LOOP_PING_PONG) return "loop is not a noh_loop";
+    if ((unsigned)d->mode > NOH_TRACK_ON) return "mode is not a noh_track_mode";
+    if ((unsigned)d->group > NOH_GROUP_HIGH) return "group is not a noh_track_group";
+    if (d->mask > set->mask_count) return "mask is above mask_count of the set";
+    if (d->lod_levels > 255u) return "lod_levels is above 255";
+    if (d->sync_group > NOH_SYNC_GROUPS_MAX) return "sync_group is above NOH_SYNC_GROUPS_MAX";
+    if (d->flags & ~NOH_TRACK_FLAGS) return "flags has bits other than NOH_TRACK_FLAGS";
     return NULL;
 }
 
-/* A track can be synchronised only where its motion goes round. */
+/* Only a repeating clip has a phase. */
 static const char *bad_sync(const noh_anim_set *set, const noh_track_desc *d)
 {
     const noh_motion *m = &set->motions[d->motion];
     uint32_t loop = d->loop ? (uint32_t)d->loop : m->loop;
     int fits = m->duration_ticks >= NOH_SYNC_DURATION_MIN && m->duration_ticks <= NOH_SYNC_DURATION_MAX;
-    return d->sync_group && (loop != NOH_LOOP_REPEAT || !fits) ? "sync_group" : NULL;
+    return d->sync_group && (loop != NOH_LOOP_REPEAT || !fits) ? "sync_group is above NOH_SYNC_GROUPS_MAX" : NULL;
 }
 
 noh_result noh_track_start(noh_track *track, const noh_anim_set *set, const noh_track_desc *desc, noh_error *error)
 {
     const char *what = bad_desc(set, desc);
     const noh_motion *m;
+    NOH_ASSERT(track && set && desc);
     what = what ? what : bad_sync(set, desc);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
@@ -51,7 +52,9 @@ noh_result noh_track_start(noh_track *track, const noh_anim_set *set, const noh_
 
 void noh_track_place(noh_track *track, const noh_motion *motion, int64_t position)
 {
-    track->position = noh_time_advance(position, 0, 0, motion->duration_ticks, (noh_loop)track->loop);
+    NOH_ASSERT(track && motion);
+    position = noh_time_advance(position, 0, 0, motion->duration_ticks, (noh_loop)track->loop);
+    track->position = position - noh_time_rebase(position, motion->duration_ticks, (noh_loop)track->loop);
     track->root_position = track->position;
     track->placed = 1;
 }
@@ -59,6 +62,7 @@ void noh_track_place(noh_track *track, const noh_motion *motion, int64_t positio
 noh_passage noh_track_passage(const noh_track *track, const noh_motion *motion, int64_t ticks)
 {
     noh_passage p;
+    NOH_ASSERT(track && motion && ticks >= 0);
     p.from = track->position;
     p.to = noh_time_advance(track->position, track->rate, ticks, motion->duration_ticks, (noh_loop)track->loop);
     p.duration_ticks = motion->duration_ticks;
@@ -73,6 +77,7 @@ int64_t noh_track_next_event(const noh_track *track, const noh_anim_set *set, in
     const noh_motion *m = &set->motions[track->motion];
     noh_passage p;
     int64_t at, way, rate = track->rate < 0 ? -track->rate : track->rate;
+    NOH_ASSERT(track && set && track->motion < set->motion_count && ticks >= 0);
     if (track->mode == NOH_TRACK_OFF || rate == 0 || m->event_count == 0 || ticks == 0) {
         return 0;
     }
@@ -82,19 +87,24 @@ int64_t noh_track_next_event(const noh_track *track, const noh_anim_set *set, in
     }
     way = noh_position_of(at) - track->position;
     way = way < 0 ? -way : way;
-    /* rounded up: the first tick by which it has been passed. What lies under a placed track is passed by its first move. */
+    /* Rounded up: the first tick by which the key has been passed. A key exactly at a placed track's position is passed by
+     * its first move. */
     return way == 0 ? 1 : noh_ceil_div(way, rate);
 }
 
 int noh_track_ended(const noh_track *track, const noh_motion *motion)
 {
     int64_t end = track->rate < 0 ? 0 : noh_position_of(motion->duration_ticks);
+    NOH_ASSERT(track && motion);
     return track->loop == NOH_LOOP_ONCE && track->position == end && !track->placed;
 }
 
 uint32_t noh_track_clip_tick(const noh_track *track, const noh_motion *motion, int64_t ago)
 {
     noh_loop loop = (noh_loop)track->loop;
-    int64_t position = noh_time_advance(track->position, -track->rate, ago, motion->duration_ticks, loop);
+    const int64_t most = ((int64_t)1 << 61) / (ago > 0 ? ago : 1); /* a seek may have gone billions of passes in its tick */
+    int64_t rate = track->rate > most ? most : track->rate < -most ? -most : track->rate;
+    int64_t position = noh_time_advance(track->position, -rate, ago, motion->duration_ticks, loop);
+    NOH_ASSERT(track && motion);
     return (uint32_t)(noh_time_clip(position, motion->duration_ticks, loop) / 65536);
 }

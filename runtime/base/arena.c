@@ -2,6 +2,7 @@
 
 noh_result noh_arena_open(noh_arena *arena, void *memory, size_t bytes, size_t need, noh_error *error)
 {
+    NOH_ASSERT(arena);
     if (!memory) {
         return noh_fail(error, NOH_ERR_ARG, "memory is NULL", 0, need);
     }
@@ -18,6 +19,7 @@ noh_result noh_arena_open(noh_arena *arena, void *memory, size_t bytes, size_t n
 noh_arena noh_arena_over(void *memory, size_t bytes)
 {
     noh_arena arena = { (uint8_t *)memory, memory ? bytes : 0, 0 };
+    NOH_ASSERT(((uintptr_t)memory & (NOH_MEMORY_ALIGN - 1u)) == 0);
     return arena;
 }
 
@@ -29,7 +31,7 @@ noh_arena noh_arena_measure(void)
 
 void *noh_arena_carve(noh_arena *arena, size_t bytes, size_t alignment)
 {
-    size_t start = (arena->used + alignment - 1) & ~(alignment - 1);
+    const size_t start = (arena->used + alignment - 1) & ~(alignment - 1);
     NOH_ASSERT(alignment && alignment <= NOH_MEMORY_ALIGN && (alignment & (alignment - 1u)) == 0);
     if (start < arena->used || bytes > SIZE_MAX - start) {
         arena->used = SIZE_MAX;

@@ -1,7 +1,8 @@
-/* arena.h: carving one block that the caller gave.
+/* arena.h: carving one block of memory that the caller brought.
  *
- * An arena with base NULL only measures: the same code that carves also says
- * how many bytes it will need, so a size can never disagree with its use. */
+ * An arena without a block measures: the code that carves an object also says how many bytes it needs, so the two cannot
+ * disagree.
+ * Threads: an arena is for one thread at a time. */
 #ifndef NOH_BASE_ARENA_H
 #define NOH_BASE_ARENA_H
 
@@ -9,6 +10,10 @@
 #include <stdint.h>
 
 #include "base/result.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 #define NOH_MEMORY_ALIGN 16u /* of every block that an init takes */
 
@@ -18,7 +23,7 @@ typedef struct noh_arena {
     size_t used;  /* carved so far; may pass `bytes`, carving then gives NULL */
 } noh_arena;
 
-/* Open the block that an init was given; every init begins with this call, so that all refuse the same things.
+/* Open the block that an init was given. Every init begins with this call, so all of them refuse the same memory.
  * need    the exact bytes that will be carved
  * errors  ARG memory is NULL or not aligned to NOH_MEMORY_ALIGN; MEMORY it is too small (where: its bytes). `need` is
  *         always the bytes needed. The arena is then untouched */
@@ -30,8 +35,14 @@ noh_arena noh_arena_over(void *memory, size_t bytes);
 /* An arena that only measures. */
 noh_arena noh_arena_measure(void);
 
-/* Carve bytes at the alignment (a power of two, at most NOH_MEMORY_ALIGN). NULL when the
- * block is exhausted or the arena measures. */
+/* Carve bytes at an alignment.
+ * ranges   alignment is a power of two, at most NOH_MEMORY_ALIGN
+ * returns  NULL when the block is exhausted or the arena measures; `used` counts the bytes all the same, and is SIZE_MAX
+ *          after a sum that does not fit a size_t */
 void *noh_arena_carve(noh_arena *arena, size_t bytes, size_t alignment);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -6,20 +6,19 @@
  *
  * NOH_ASSERT_LEVEL 0 (default) compiles neither, 1 the cheap ones (a debug build), 2 both (the tests). A failed check
  * calls NOH_ASSERT_FAILED(condition, file, line), which a build may define; the default traps, because the library
- * links nothing that could print. */
+ * links nothing that could print.
+ * Threads: no state; any thread. */
 #ifndef NOH_BASE_ASSERT_H
 #define NOH_BASE_ASSERT_H
+
+#include "base/compiler.h"
 
 #ifndef NOH_ASSERT_LEVEL
 #define NOH_ASSERT_LEVEL 0
 #endif
 
 #ifndef NOH_ASSERT_FAILED
-#if defined(__GNUC__)
-#define NOH_ASSERT_FAILED(condition, file, line) __builtin_trap()
-#else
-#define NOH_ASSERT_FAILED(condition, file, line) ((void)(*(volatile char *)0 = 0))
-#endif
+#define NOH_ASSERT_FAILED(condition, file, line) NOH_TRAP()
 #endif
 
 #if NOH_ASSERT_LEVEL >= 1

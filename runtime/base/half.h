@@ -3,16 +3,20 @@
  *   noh_half_from_float   one float to half, in a named rounding mode
  *   noh_half_to_float     one half to float, always exact
  *
- * Drivers differ in how they round a colour into an RGBA16F target. Both ways
- * seen in the field are here, so that a CPU reference can give a driver's bits.
- * Only integers are used: the result does not depend on the processor. */
+ * Drivers differ in how they round a colour into an RGBA16F target. Both roundings in use are here, so that a CPU
+ * reference can give a driver's bits. Only integers are used: the result does not depend on the processor.
+ * Threads: no state; any thread. */
 #ifndef NOH_BASE_HALF_H
 #define NOH_BASE_HALF_H
 
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef enum noh_half_mode {
-    NOH_HALF_UNKNOWN = 0, /* neither of the two below: compare within a bound only */
+    NOH_HALF_UNKNOWN = 0, /* neither of these: results can only be compared within a bound */
     NOH_HALF_RTZ,         /* round toward zero */
     NOH_HALF_RNE          /* round to nearest, ties to even */
 } noh_half_mode;
@@ -27,5 +31,9 @@ uint16_t noh_half_from_float(float value, noh_half_mode mode);
 
 /* The float that a half stands for; exact. NaN stays NaN with its payload. */
 float noh_half_to_float(uint16_t half);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

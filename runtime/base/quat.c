@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "base/assert.h"
 #include "base/math.h"
 #include "base/trig.h"
 
@@ -49,7 +50,7 @@ void noh_quat_normalize(float q[4])
 void noh_quat_rotate(const float q[4], const float v[3], float out[3])
 {
     float t[3], r[3];
-    /* v + 2 w (u x v) + 2 u x (u x v) */
+    /* q v q* without the terms that cancel: v + 2 w (u x v) + 2 u x (u x v), u the vector part; t = 2 u x v */
     t[0] = 2.0f * (q[1] * v[2] - q[2] * v[1]);
     t[1] = 2.0f * (q[2] * v[0] - q[0] * v[2]);
     t[2] = 2.0f * (q[0] * v[1] - q[1] * v[0]);
@@ -68,6 +69,8 @@ void noh_quat_nlerp(const float a[4], const float b[4], float t, float out[4])
     noh_quat_normalize(out);
 }
 
+/* The vector part is the axis times sin(angle / 2), w is cos(angle / 2), and atan2 of both is exact at every angle, where an
+ * arccosine loses half the digits near 0. Near 0 the quotient angle / sine is 2. */
 void noh_quat_to_rotation(const float q[4], float rotation[3])
 {
     float sign = q[3] < 0.0f ? -1.0f : 1.0f;
@@ -95,6 +98,7 @@ void noh_quat_from_rotation(const float rotation[3], float q[4])
 void noh_quat_twist(const float q[4], unsigned axis, float out[4])
 {
     float along = q[axis], w = q[3];
+    NOH_ASSERT(axis < 3u);
     identity(out);
     if (along * along + w * w > 1e-12f) {
         out[axis] = along;

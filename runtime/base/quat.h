@@ -3,14 +3,20 @@
  *   noh_quat_mul          first b, then a
  *   noh_quat_conjugate    the inverse of a unit quaternion
  *   noh_quat_dot
- *   noh_quat_normalize    length 1, identity where there is no length
+ *   noh_quat_normalize    to length 1; the identity where there is no length
  *   noh_quat_rotate       a vector
- *   noh_quat_nlerp        along the shorter way, normalised
- *   noh_quat_to_rotation  axis times angle, angle 0 to pi
+ *   noh_quat_nlerp        between two rotations, along the shorter arc
+ *   noh_quat_to_rotation  to axis times angle, 0 to pi
  *   noh_quat_from_rotation
- *   noh_quat_twist        the part of a rotation about one axis */
+ *   noh_quat_twist        the part of a rotation about one axis
+ *
+ * Threads: no state; any thread. */
 #ifndef NOH_BASE_QUAT_H
 #define NOH_BASE_QUAT_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 /* out may be a or b. */
 void noh_quat_mul(const float a[4], const float b[4], float out[4]);
@@ -20,15 +26,18 @@ void noh_quat_normalize(float q[4]);
 /* out may be v. q need not be exactly unit: the error is of second order. */
 void noh_quat_rotate(const float q[4], const float v[3], float out[3]);
 
-/* ranges  t 0..1; row C4.1: b is negated where that is the shorter way. out may be a or b */
+/* Interpolate linearly and normalise: the arc of slerp at a speed that varies slightly. b is negated where dot(a, b) is
+ * negative, since q and -q are one rotation and the other arc is the longer one.
+ * ranges  t 0..1; out may be a or b
+ * source  Granberg, Character Animation with Direct3D, 2009, chapter 4 (which leaves the sign out) */
 void noh_quat_nlerp(const float a[4], const float b[4], float t, float out[4]);
 
 /* The rotation as a vector: unit axis times angle, the angle 0 to pi. */
 void noh_quat_to_rotation(const float q[4], float rotation[3]);
 void noh_quat_from_rotation(const float rotation[3], float q[4]);
 
-/* The twist of q about the axis 0, 1 or 2, as a quaternion; identity where q
- * turns by pi about an axis across it (then no twist is defined).
+/* The twist of q about the axis 0, 1 or 2, as a quaternion; the identity where q turns by pi about an axis orthogonal to it
+ * (the twist is then undefined).
  * source  swing-twist decomposition: the projection of the vector part on the axis */
 void noh_quat_twist(const float q[4], unsigned axis, float out[4]);
 
@@ -36,5 +45,9 @@ static inline float noh_quat_dot(const float a[4], const float b[4])
 {
     return (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]);
 }
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

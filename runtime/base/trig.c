@@ -9,7 +9,9 @@
 #define RADIAN_PER_TURN 1.46291807926715968e-9
 #define ANGLE_MAX 1e6f
 
-/* |x| <= pi/4, all three: the smallest range that quarter turns leave. */
+/* Every angle is a whole number of quarter turns and a rest within pi/4, and a quarter turn swaps sine and cosine but for
+ * signs; so two odd and even polynomials over that range are enough. Their coefficients are Chebyshev
+ * fits, which spread the error over the range; the leading one is exactly 1, so that small angles keep their relative error. */
 static float sin_poly(float x)
 {
     float y = x * x;

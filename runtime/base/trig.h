@@ -13,11 +13,16 @@
  * over the stated range by the tests.
  *
  * A turn is an angle as a uint32_t, 2^32 to the full circle: it wraps by itself
- * and adds without rounding, so that a heading never drifts. */
+ * and adds without rounding, so that a heading never drifts.
+ * Threads: no state; any thread. */
 #ifndef NOH_BASE_TRIG_H
 #define NOH_BASE_TRIG_H
 
 #include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 #define NOH_PI 3.14159265358979f
 
@@ -50,5 +55,9 @@ uint32_t noh_turn_from_radians(float radians);
 
 /* -pi to pi. */
 float noh_radians_from_turn(uint32_t turn);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -2,9 +2,9 @@
 
 #include "base/math.h"
 
-#define ROUNDING 1.000002f /* of the sums and roots below */
+#define ROUNDING 1.000002f /* more than the sums and roots below can lose */
 
-/* A ball around a posed joint, in which is what hangs on this joint or on one that follows it. */
+/* A ball around a posed joint that contains the vertices of one joint: of this one, or of a descendant that was not posed. */
 typedef struct ball {
     const float *matrix;
     float radius;
@@ -16,7 +16,7 @@ static float bone_length(const noh_skeleton *s, uint32_t joint)
     return noh_sqrt(noh_dot3(t, t));
 }
 
-/* The length of the longest column: how much the matrix stretches a margin. */
+/* The length of the longest column: the most that the matrix stretches a radius. */
 static float longest_axis(const float *m)
 {
     float longest = 0.0f;
@@ -58,9 +58,12 @@ static float reach_from(const float *centre, ball b)
     return noh_sqrt(noh_dot3(d, d)) * ROUNDING + b.radius;
 }
 
+/* The box is that of all balls. The sphere is centred in the box, not minimal: one more pass over the joints finds the
+ * radius that contains every ball, which is at most sqrt(3) times the smallest one. */
 void noh_sphere_of_joints(const noh_skeleton *skeleton, const float *model, const float *margin_m, uint32_t joint_count, noh_bounds *bounds)
 {
     const float far_away = 3e38f;
+    NOH_ASSERT(skeleton && model && margin_m && bounds && joint_count <= skeleton->joint_count);
     for (int i = 0; i < 3; i++) {
         bounds->low[i] = far_away;
         bounds->high[i] = -far_away;
@@ -87,6 +90,7 @@ void noh_sphere_of_joints(const noh_skeleton *skeleton, const float *model, cons
 float noh_sphere_of_skeleton(const noh_skeleton *skeleton, const float *margin_m)
 {
     float radius = 0.0f;
+    NOH_ASSERT(skeleton && margin_m);
     for (uint32_t j = 0; j < skeleton->joint_count; j++) {
         float reach = margin_m[j];
         for (uint32_t at = j; reach >= 0.0f && skeleton->parents[at] != NOH_JOINT_ROOT; at = skeleton->parents[at]) {
@@ -97,7 +101,7 @@ float noh_sphere_of_skeleton(const noh_skeleton *skeleton, const float *margin_m
     return radius * ROUNDING;
 }
 
-/* What the targets add to a box: the sums of their own boxes, each of which holds 0. */
+/* What the targets add to a box: the sum of their boxes, each of which contains 0. A negative weight swaps low and high. */
 static void add_targets(const noh_mesh *mesh, const float *weights, float deltas[6])
 {
     for (int i = 0; i < 6; i++) {
@@ -134,7 +138,8 @@ void noh_margins_add(const noh_mesh *mesh, const float *weights, float *margin_m
 {
     noh_skin skin;
     float deltas[6];
-    if (noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin)) {
+    NOH_ASSERT(mesh && margin_m);
+    if (noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin, NULL)) {
         return;
     }
     add_targets(mesh, weights, deltas);

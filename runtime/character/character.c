@@ -2,8 +2,10 @@
 
 #include <string.h>
 
+#include "anim/clock_internal.h"
 #include "anim/local_to_model.h"
 #include "base/arena.h"
+#include "character/character_internal.h"
 
 /* ---- memory ---- */
 
@@ -35,6 +37,7 @@ static layout layout_of(const noh_character_desc *d, size_t controller_bytes)
 size_t noh_character_size(const noh_character_desc *desc)
 {
     size_t controller_bytes = noh_controller_size(&desc->controller);
+    NOH_ASSERT(desc);
     return controller_bytes ? layout_of(desc, controller_bytes).bytes : 0;
 }
 
@@ -58,17 +61,17 @@ noh_result noh_character_init(void *memory, size_t bytes, const noh_character_de
     size_t controller_bytes = noh_controller_size(&desc->controller);
     noh_controller *controller;
     noh_character *ch = (noh_character *)memory;
+    noh_arena arena;
     noh_result result;
     layout l;
+    NOH_ASSERT(desc && character);
     if (controller_bytes == 0) {
         return noh_controller_init(NULL, 0, &desc->controller, &controller, error); /* which names the field */
     }
     l = layout_of(desc, controller_bytes);
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for a character is NULL or not 16-byte aligned", 0, l.bytes);
-    }
-    if (bytes < l.bytes) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory for a character is too small", bytes, l.bytes);
+    result = noh_arena_open(&arena, memory, bytes, l.bytes, error);
+    if (result != NOH_OK) {
+        return result;
     }
     memset(memory, 0, l.bytes);
     result = noh_controller_init((uint8_t *)memory + l.controller, controller_bytes, &desc->controller, &controller, error);
@@ -98,6 +101,7 @@ size_t noh_character_scratch_size(const noh_character_desc *desc)
     noh_arena arena = noh_arena_measure();
     noh_character_scratch s;
     void *pose_memory;
+    NOH_ASSERT(desc);
     if (noh_controller_size(&desc->controller) == 0) {
         return 0;
     }
@@ -108,17 +112,17 @@ size_t noh_character_scratch_size(const noh_character_desc *desc)
 noh_result noh_character_scratch_init(void *memory, size_t bytes, const noh_character_desc *desc, noh_character_scratch *scratch, noh_error *error)
 {
     size_t need = noh_character_scratch_size(desc), pose_bytes;
-    noh_arena arena = noh_arena_over(memory, bytes);
+    noh_arena arena;
+    noh_result result;
     noh_controller *controller;
     void *pose_memory;
+    NOH_ASSERT(desc && scratch);
     if (need == 0) {
         return noh_controller_init(NULL, 0, &desc->controller, &controller, error);
     }
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for characters' scratch is NULL or not 16-byte aligned", 0, need);
-    }
-    if (bytes < need) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory for characters' scratch is too small", bytes, need);
+    result = noh_arena_open(&arena, memory, bytes, need, error);
+    if (result != NOH_OK) {
+        return result;
     }
     pose_bytes = carve_scratch(&arena, desc, scratch, &pose_memory);
     return noh_pose_scratch_init(pose_memory, pose_bytes, desc->controller.set, 0, &scratch->pose, error);
@@ -126,11 +130,13 @@ noh_result noh_character_scratch_init(void *memory, size_t bytes, const noh_char
 
 size_t noh_character_bytes(const noh_character *ch)
 {
+    NOH_ASSERT(ch);
     return ch->bytes;
 }
 
 void noh_character_number(noh_character *ch, uint32_t instance)
 {
+    NOH_ASSERT(ch);
     ch->time.instance = instance;
 }
 
@@ -138,6 +144,7 @@ void noh_character_number(noh_character *ch, uint32_t instance)
 
 noh_controller *noh_character_controller(noh_character *ch)
 {
+    NOH_ASSERT(ch);
     return (noh_controller *)(void *)((uint8_t *)ch + ch->controller_offset);
 }
 
@@ -161,15 +168,21 @@ static const float *at(const noh_character *ch, uint32_t offset)
     return (const float *)(const void *)((const uint8_t *)ch + offset);
 }
 
+const float *noh_character_slot_palette(const noh_character *ch, uint32_t slot)
+{
+    return at(ch, ch->palette_offsets[slot]);
+}
+
 int64_t noh_character_clock(const noh_character *ch)
 {
-    return ch->start_clock + controller_of(ch)->clock;
+    return noh_clock_add(ch->start_clock, controller_of(ch)->clock);
 }
 
 /* ---- a frame ---- */
 
 uint32_t noh_character_step(noh_character *ch, const noh_anim_set *set, uint32_t ticks, noh_event_fn fn, void *user)
 {
+    NOH_ASSERT(ch && set);
     return noh_controller_step(noh_character_controller(ch), set, ticks, fn, user);
 }
 
@@ -179,6 +192,7 @@ noh_due noh_character_look(noh_character *ch, const noh_detail_table *table, con
     int64_t clock = noh_character_clock(ch);
     float rate_error_m[NOH_RATE_COUNT];
     uint32_t joints;
+    NOH_ASSERT(ch && table && settings);
     if (table->rate_error_m) {
         noh_time_lod_error(c, table->rate_error_m, rate_error_m);
     }
@@ -191,6 +205,7 @@ noh_due noh_character_look(noh_character *ch, const noh_detail_table *table, con
 
 uint32_t noh_character_late(const noh_character *ch)
 {
+    NOH_ASSERT(ch);
     return noh_time_lod_late(&ch->time);
 }
 
@@ -205,8 +220,7 @@ uint32_t noh_character_joints(const noh_character *ch)
     return tracks * c->lod_joint_count;
 }
 
-/* Fours, so that compilers see vectors. out may be a. */
-static void mix_fours(const float *a, const float *b, float part, size_t fours, float *out)
+void noh_mix_fours(const float *a, const float *b, float part, size_t fours, float *out)
 {
     for (size_t i = 0; i < 4u * fours; i += 4u) {
         float mixed[4];
@@ -224,11 +238,11 @@ static void mix_floats(const float *a, const float *b, float part, uint32_t coun
     }
 }
 
-/* What is shown now becomes what is come from. */
+/* The mix that is shown now becomes the source pose. */
 static void keep_shown(noh_character *ch, uint32_t from, float part)
 {
     uint32_t to = from ^ 1u;
-    mix_fours(palette_of(ch, from), palette_of(ch, to), part, 3u * (size_t)ch->joint_count, palette_of(ch, from));
+    noh_mix_fours(palette_of(ch, from), palette_of(ch, to), part, 3u * (size_t)ch->joint_count, palette_of(ch, from));
     mix_floats(floats_of(ch, from), floats_of(ch, to), part, ch->float_count, floats_of(ch, from));
     mix_floats(ch->spheres[from], ch->spheres[to], part, 4, ch->spheres[from]);
 }
@@ -236,8 +250,11 @@ static void keep_shown(noh_character *ch, uint32_t from, float part)
 void noh_character_update_begin(noh_character *ch, const noh_anim_set *set, noh_character_scratch *scratch)
 {
     const noh_controller *c = controller_of(ch);
+    /* The pose of the next update is found by playing a copy of the controller to that tick without firing callbacks: the
+     * future is known, unless a program changes it. */
     noh_time_update u = noh_time_lod_update(&ch->time);
-    int64_t ahead = u.pose_clock - noh_character_clock(ch);
+    int64_t ahead = noh_clock_since(u.pose_clock, noh_character_clock(ch));
+    NOH_ASSERT(ch && set && scratch && set->joint_count == ch->joint_count && set->float_count == ch->float_count);
     if (u.keep < 1.0f) {
         keep_shown(ch, u.slot ^ 1u, u.keep);
     }
@@ -253,8 +270,9 @@ void noh_character_update_begin(noh_character *ch, const noh_anim_set *set, noh_
     ch->updates++;
 }
 
-/* Matrices of all joints: with inverse bind matrices, those that were not sampled have their parents' palette
- * matrix, which is what hanging their vertices on the parent comes to; without, they stand in the bind pose. */
+/* Matrices of all joints. With inverse bind matrices, a joint that was not sampled takes its parent's skinning matrix: that
+ * moves its vertices as if they hung on the parent, which is where the bind pose has them. Without, it takes its place in
+ * the bind pose relative to the parent, which comes to the same once a skin's inverse bind matrix is multiplied in. */
 static void make_palette(const noh_skeleton *skeleton, const noh_character_scratch *s, uint32_t joint_count, float *palette)
 {
     uint32_t count = skeleton->inverse_bind ? s->joint_count : joint_count;
@@ -269,8 +287,10 @@ static void make_palette(const noh_skeleton *skeleton, const noh_character_scrat
 void noh_character_update_end(noh_character *ch, const noh_skeleton *skeleton, const float *margin_m, noh_character_scratch *scratch)
 {
     uint32_t slot = scratch->slot;
+    NOH_ASSERT(ch && skeleton && scratch && slot < 2u);
     NOH_ASSERT(skeleton->joint_count == ch->joint_count);
     make_palette(skeleton, scratch, ch->joint_count, palette_of(ch, slot));
+    ch->multiplied = (ch->multiplied & ~(1u << slot)) | (skeleton->inverse_bind ? 1u << slot : 0u);
     memcpy(floats_of(ch, slot), scratch->floats, ch->float_count * sizeof(float));
     if (margin_m) {
         noh_bounds bounds;
@@ -292,11 +312,12 @@ const float *noh_character_palette(const noh_character *ch, float *mixed, uint32
     uint32_t to = ch->time.to_slot;
     const float *last = at(ch, ch->palette_offsets[to]);
     float part = noh_time_lod_fraction(&ch->time);
+    NOH_ASSERT(mixed || part >= 1.0f);
     NOH_ASSERT(ch->time.posed && joint_count <= ch->joint_count);
     if (part >= 1.0f) {
         return last;
     }
-    mix_fours(at(ch, ch->palette_offsets[to ^ 1u]), last, part, 3u * (size_t)joint_count, mixed);
+    noh_mix_fours(at(ch, ch->palette_offsets[to ^ 1u]), last, part, 3u * (size_t)joint_count, mixed);
     return mixed;
 }
 
@@ -305,6 +326,7 @@ const float *noh_character_floats(const noh_character *ch, float *mixed)
     uint32_t to = ch->time.to_slot;
     const float *last = at(ch, ch->float_offsets[to]);
     float part = noh_time_lod_fraction(&ch->time);
+    NOH_ASSERT(mixed || part >= 1.0f || !ch->float_count);
     NOH_ASSERT(ch->time.posed);
     if (part >= 1.0f) {
         return last;
@@ -317,17 +339,20 @@ void noh_character_sphere(const noh_character *ch, float sphere[4])
 {
     uint32_t to = ch->time.to_slot;
     float part = noh_time_lod_fraction(&ch->time);
+    NOH_ASSERT(sphere);
     NOH_ASSERT(ch->time.posed);
     mix_floats(ch->spheres[to ^ 1u], ch->spheres[to], part, 4, sphere);
 }
 
 void noh_character_wake(noh_character *ch)
 {
+    NOH_ASSERT(ch);
     noh_time_lod_wake(&ch->time);
 }
 
 void noh_character_cut(noh_character *ch)
 {
+    NOH_ASSERT(ch);
     noh_detail_cut(&ch->detail);
     ch->time.posed = 0;
 }

@@ -1,5 +1,6 @@
 #include "character/detail.h"
 
+#include "anim/clock_internal.h"
 #include "base/math.h"
 #include "base/trig.h"
 
@@ -36,14 +37,15 @@ static double lead_of(const noh_detail_settings *s)
 noh_result noh_detail_settings_check(const noh_detail_settings *s, noh_error *error)
 {
     double sum = 0.0;
-    if (!(s->pixels >= 0.0f && s->pixels <= 1e6f)) return noh_fail(error, NOH_ERR_ARG, "pixels", 0, 0);
+    NOH_ASSERT(s);
+    if (!(s->pixels >= 0.0f && s->pixels <= 1e6f)) return noh_fail(error, NOH_ERR_ARG, "pixels is not in 0..1e6", 0, 0);
     for (uint32_t i = 0; i < NOH_DETAIL_KIND_COUNT; i++) {
-        if (!(s->shares[i] >= 0.0f && s->shares[i] <= 1.0f)) return noh_fail(error, NOH_ERR_ARG, "shares", i, 0);
+        if (!(s->shares[i] >= 0.0f && s->shares[i] <= 1.0f)) return noh_fail(error, NOH_ERR_ARG, "shares are not in 0..1", i, 0);
         sum += (double)s->shares[i];
     }
     if (sum > 1.0 + 1e-6) return noh_fail(error, NOH_ERR_ARG, "shares sum to more than 1", 0, 0);
-    if (!(s->hysteresis >= 0.0f && s->hysteresis < 1.0f)) return noh_fail(error, NOH_ERR_ARG, "hysteresis", 0, 0);
-    if (!(s->lead >= 0.0f && lead_of(s) < hysteresis_of(s))) return noh_fail(error, NOH_ERR_ARG, "lead", 0, 0);
+    if (!(s->hysteresis >= 0.0f && s->hysteresis < 1.0f)) return noh_fail(error, NOH_ERR_ARG, "hysteresis is not in 0..1", 0, 0);
+    if (!(s->lead >= 0.0f && lead_of(s) < hysteresis_of(s))) return noh_fail(error, NOH_ERR_ARG, "lead is not below the hysteresis", 0, 0);
     return NOH_OK;
 }
 
@@ -52,12 +54,13 @@ noh_result noh_detail_settings_check(const noh_detail_settings *s, noh_error *er
 /* The errors of one kind's levels, and how many there are. */
 typedef struct errors {
     float error_m[NOH_DETAIL_LEVELS_MAX];
-    uint32_t count;
+    uint32_t count, first; /* first: the finest that may be chosen */
 } errors;
 
 static errors errors_of(const noh_detail_table *t, noh_detail_kind kind)
 {
-    errors e = { { 0.0f }, 0 };
+    errors e = { { 0.0f }, 0, 0 };
+    e.first = kind == NOH_DETAIL_MESH ? t->mesh_level_first : 0;
     e.count = kind == NOH_DETAIL_MESH ? t->mesh_level_count : kind == NOH_DETAIL_JOINTS ? t->joint_level_count : t->influence_level_count;
     for (uint32_t i = 0; i < e.count; i++) {
         e.error_m[i] = kind == NOH_DETAIL_MESH     ? t->meshes[i].error_m
@@ -67,29 +70,53 @@ static errors errors_of(const noh_detail_table *t, noh_detail_kind kind)
     return e;
 }
 
+/* Whether one kind's array is there, and short enough. */
+static int is_list(const void *levels, uint32_t count)
+{
+    return count <= NOH_DETAIL_LEVELS_MAX && (levels || !count);
+}
+
+static const char *bad_counts(const noh_detail_table *t)
+{
+    if (!is_list(t->meshes, t->mesh_level_count)) return "meshes: NULL, or more than NOH_DETAIL_LEVELS_MAX";
+    if (t->mesh_level_first && t->mesh_level_first >= t->mesh_level_count) return "mesh_level_first is not below mesh_level_count";
+    if (!is_list(t->joints, t->joint_level_count)) return "joints: NULL, or more than NOH_DETAIL_LEVELS_MAX";
+    if (!is_list(t->influences, t->influence_level_count)) return "influences: NULL, or more than NOH_DETAIL_LEVELS_MAX";
+    return NULL;
+}
+
+static const char *bad_level(const noh_detail_table *t, noh_detail_kind kind, uint32_t level)
+{
+    static const char *const what[] = { "error of a mesh level is not finite, negative, or below that of a finer one",
+                                        "error of a joint level is not finite, negative, or below that of a finer one",
+                                        "error of an influence level is not finite, negative, or below that of a finer one" };
+    const errors e = errors_of(t, kind);
+    if (!(e.error_m[level] >= (level ? e.error_m[level - 1u] : 0.0f) && e.error_m[level] <= 1e30f)) return what[kind];
+    if (kind == NOH_DETAIL_JOINTS && t->joints[level].joint_count == 0) return "joints of a joint level: there must be at least one";
+    if (kind == NOH_DETAIL_INFLUENCES && t->influences[level].influence_count == 0) {
+        return "influences of an influence level: there must be at least one";
+    }
+    return NULL;
+}
+
 noh_result noh_detail_table_check(const noh_detail_table *t, noh_error *error)
 {
-    static const char *const what[] = { "error of a mesh level", "error of a joint level", "error of an influence level" };
-    if (t->mesh_level_count > NOH_DETAIL_LEVELS_MAX || (t->mesh_level_count && !t->meshes)) return noh_fail(error, NOH_ERR_ARG, "meshes", 0, 0);
-    if (t->joint_level_count > NOH_DETAIL_LEVELS_MAX || (t->joint_level_count && !t->joints)) return noh_fail(error, NOH_ERR_ARG, "joints", 0, 0);
-    if (t->influence_level_count > NOH_DETAIL_LEVELS_MAX || (t->influence_level_count && !t->influences)) {
-        return noh_fail(error, NOH_ERR_ARG, "influences", 0, 0);
+    const char *what;
+    NOH_ASSERT(t);
+    what = bad_counts(t);
+    if (what) {
+        return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }
     for (int kind = 0; kind <= NOH_DETAIL_INFLUENCES; kind++) {
-        errors e = errors_of(t, (noh_detail_kind)kind);
-        for (uint32_t i = 0; i < e.count; i++) {
-            if (!(e.error_m[i] >= (i ? e.error_m[i - 1u] : 0.0f) && e.error_m[i] <= 1e30f)) {
-                return noh_fail(error, NOH_ERR_DATA, what[kind], i, 0);
-            }
+        const uint32_t count = errors_of(t, (noh_detail_kind)kind).count;
+        for (uint32_t i = 0; i < count; i++) {
+            what = bad_level(t, (noh_detail_kind)kind, i);
+            if (what) return noh_fail(error, NOH_ERR_DATA, what, i, 0);
         }
     }
-    for (uint32_t i = 0; i < t->joint_level_count; i++) {
-        if (t->joints[i].joint_count == 0) return noh_fail(error, NOH_ERR_DATA, "joints of a joint level", i, 0);
+    if (!(t->clip_error_m >= 0.0f && t->clip_error_m <= 1e30f)) {
+        return noh_fail(error, NOH_ERR_DATA, "error of the clips is negative or not finite", 0, 0);
     }
-    for (uint32_t i = 0; i < t->influence_level_count; i++) {
-        if (t->influences[i].influence_count == 0) return noh_fail(error, NOH_ERR_DATA, "influences of an influence level", i, 0);
-    }
-    if (!(t->clip_error_m >= 0.0f && t->clip_error_m <= 1e30f)) return noh_fail(error, NOH_ERR_DATA, "error of the clips", 0, 0);
     return NOH_OK;
 }
 
@@ -98,6 +125,7 @@ noh_result noh_detail_table_check(const noh_detail_table *t, noh_error *error)
 float noh_detail_scale(float distance_m, float field_of_view_rad, uint32_t viewport_height)
 {
     float sine, cosine, distance = distance_m > NEAREST_M ? distance_m : NEAREST_M;
+    NOH_ASSERT(field_of_view_rad > 0.0f && field_of_view_rad < 3.1415927f);
     noh_sin_cos(0.5f * field_of_view_rad, &sine, &cosine);
     return (float)viewport_height * cosine / (2.0f * distance * sine);
 }
@@ -106,6 +134,7 @@ float noh_detail_depth(const float view_projection[16], const float world[12], c
 {
     const float *m = view_projection;
     float nearest = 0.0f;
+    NOH_ASSERT(view_projection && world && box);
     for (int corner = 0; corner < 8; corner++) {
         const float x = box[corner & 1 ? 3 : 0], y = box[corner & 2 ? 4 : 1], z = box[corner & 4 ? 5 : 2];
         float depth = m[15];
@@ -118,14 +147,14 @@ float noh_detail_depth(const float view_projection[16], const float world[12], c
     return nearest;
 }
 
-/* What the whole knob is in metres, at a scale. */
+/* The quality setting in metres, at a scale. */
 static double knob_metres(const noh_detail_settings *s, float pixels_per_metre)
 {
     double pixels = s->pixels > 0.0f ? (double)s->pixels : 1.0;
     return pixels_per_metre > 0.0f ? pixels / (double)pixels_per_metre : 1e300;
 }
 
-/* The thresholds of one kind, in metres: a level is left over `refine`, one is entered up to `coarsen`. */
+/* The thresholds of one kind, in metres: a level is left when its error is above `refine`, entered up to `coarsen`. */
 typedef struct limits {
     double refine, coarsen;
 } limits;
@@ -143,7 +172,8 @@ static limits limits_of(const noh_detail_settings *s, noh_detail_kind kind, doub
 static uint8_t choose_level(const errors *e, uint32_t level, limits l)
 {
     level = level < e->count ? level : e->count ? e->count - 1u : 0;
-    while (level > 0 && (double)e->error_m[level] > l.refine) {
+    level = level < e->first ? e->first : level;
+    while (level > e->first && (double)e->error_m[level] > l.refine) {
         level--;
     }
     while (level + 1u < e->count && (double)e->error_m[level + 1u] <= l.coarsen) {
@@ -155,7 +185,7 @@ static uint8_t choose_level(const errors *e, uint32_t level, limits l)
 static void choose_mesh(noh_detail *d, const errors *e, const noh_detail_settings *s, limits l, int64_t clock)
 {
     uint8_t next;
-    if (d->fade_ticks && clock - d->fade_start < (int64_t)d->fade_ticks) {
+    if (d->fade_ticks && noh_clock_since(clock, d->fade_start) < (int64_t)d->fade_ticks) {
         return;
     }
     d->fade_ticks = 0;
@@ -171,10 +201,11 @@ static void choose_mesh(noh_detail *d, const errors *e, const noh_detail_setting
     }
 }
 
-/* A rate that is coarser can only be worse: what was measured is made to say so. */
+/* Measured errors may fall from one update rate to a lower one by chance: raise them so that they never do, and add the
+ * clips' own. */
 static errors rate_errors(const noh_detail_table *t, const float *rate_error_m)
 {
-    errors e = { { 0.0f }, 1 };
+    errors e = { { 0.0f }, 1, 0 };
     e.error_m[0] = t->clip_error_m;
     for (uint32_t r = 1; rate_error_m && r < NOH_RATE_COUNT; r++) {
         float error_m = rate_error_m[r] + t->clip_error_m;
@@ -184,7 +215,7 @@ static errors rate_errors(const noh_detail_table *t, const float *rate_error_m)
     return e;
 }
 
-/* What was chosen before has no say. */
+/* Begin again from the finest levels. */
 static void forget_levels(noh_detail *d)
 {
     d->fade_ticks = 0;
@@ -198,10 +229,15 @@ void noh_detail_choose(noh_detail *d, const noh_detail_table *t, const noh_detai
     errors mesh = errors_of(t, NOH_DETAIL_MESH), joints = errors_of(t, NOH_DETAIL_JOINTS);
     errors influences = errors_of(t, NOH_DETAIL_INFLUENCES), rates = rate_errors(t, rate_error_m);
     float coarser;
+    NOH_ASSERT(d && t && s && pixels_per_metre >= 0.0f);
+    NOH_VALIDATE(noh_detail_table_check(t, NULL) == NOH_OK);
+    NOH_VALIDATE(noh_detail_settings_check(s, NULL) == NOH_OK);
     if (!d->started) {
         forget_levels(d);
     }
     d->pixels_per_metre = pixels_per_metre;
+    d->mesh = d->mesh < mesh.first ? (uint8_t)mesh.first : d->mesh;
+    d->mesh_before = d->mesh_before < mesh.first ? (uint8_t)mesh.first : d->mesh_before;
     choose_mesh(d, &mesh, s, limits_of(s, NOH_DETAIL_MESH, knob_m), clock);
     d->joints = choose_level(&joints, d->joints, limits_of(s, NOH_DETAIL_JOINTS, knob_m));
     d->influences = choose_level(&influences, d->influences, limits_of(s, NOH_DETAIL_INFLUENCES, knob_m));
@@ -217,17 +253,20 @@ void noh_detail_choose(noh_detail *d, const noh_detail_table *t, const noh_detai
 
 void noh_detail_limit(noh_detail *d, uint32_t level)
 {
+    NOH_ASSERT(d);
     d->mesh_limit = (uint8_t)(level < NOH_DETAIL_LEVELS_MAX ? level : NOH_DETAIL_LEVELS_MAX - 1u);
 }
 
 uint32_t noh_detail_finest(const noh_detail *d)
 {
     uint8_t finest = d->mesh < d->mesh_before ? d->mesh : d->mesh_before;
+    NOH_ASSERT(d);
     return d->mesh_wanted < finest ? d->mesh_wanted : finest;
 }
 
 void noh_detail_cut(noh_detail *d)
 {
+    NOH_ASSERT(d);
     d->started = 0;
     d->mesh_limit = d->mesh_wanted = 0;
     forget_levels(d);
@@ -237,16 +276,19 @@ void noh_detail_fix(noh_detail *d, const noh_detail_table *t, uint32_t level, fl
 {
     static const noh_detail none;
     const uint32_t last = t->mesh_level_count ? t->mesh_level_count - 1u : 0;
+    const uint32_t first = t->mesh_level_first < last ? t->mesh_level_first : last;
+    NOH_ASSERT(d && t);
     *d = none;
-    d->mesh = d->mesh_before = (uint8_t)(level < last ? level : last);
+    d->mesh = d->mesh_before = (uint8_t)(level < first ? first : level < last ? level : last);
     d->error_m = t->mesh_level_count ? t->meshes[d->mesh].error_m : 0.0f;
     d->pixels_per_metre = pixels_per_metre;
 }
 
 float noh_detail_fade(const noh_detail *d, int64_t clock)
 {
-    int64_t since = clock - d->fade_start;
+    int64_t since = noh_clock_since(clock, d->fade_start);
     float x;
+    NOH_ASSERT(d);
     if (since >= (int64_t)d->fade_ticks) {
         return 1.0f;
     }
@@ -259,6 +301,7 @@ uint32_t noh_detail_parts(const noh_detail *d, int64_t clock, noh_detail_part pa
     const float fade = noh_detail_fade(d, clock);
     const noh_detail_part whole = { fade < 1.0f ? d->mesh_before : d->mesh, 0.0f, 1.0f };
     const noh_detail_part comes = { d->mesh, 0.0f, fade }, goes = { d->mesh_before, fade, 1.0f };
+    NOH_ASSERT(parts);
     if (fade > 0.0f && fade < 1.0f) {
         parts[0] = comes;
         parts[1] = goes;
@@ -275,11 +318,13 @@ uint32_t noh_detail_drawn(const noh_detail *d, int64_t clock)
 
 float noh_detail_error_pixels(const noh_detail *d)
 {
+    NOH_ASSERT(d);
     return (d->error_m + d->skipped_m) * d->pixels_per_metre;
 }
 
 uint32_t noh_detail_joint_count(const noh_detail *d, const noh_detail_table *t)
 {
+    NOH_ASSERT(d && t && (!t->joint_level_count || d->joints < t->joint_level_count));
     return t->joint_level_count ? t->joints[d->joints].joint_count : 0;
 }
 
@@ -287,12 +332,13 @@ uint32_t noh_detail_influence_count(const noh_detail *d, const noh_detail_table 
 {
     uint32_t used = t->influence_level_count ? t->influences[d->influences].influence_count : 0;
     uint32_t stored = t->mesh_level_count ? t->meshes[d->mesh].influence_count : 0;
+    NOH_ASSERT(d && t && (!t->influence_level_count || d->influences < t->influence_level_count));
     return used == 0 || (stored != 0 && stored < used) ? stored : used;
 }
 
 /* ---- targets ---- */
 
-/* What leaving one target out costs, in metres. Not a number: it is never below a limit. */
+/* The error of leaving one target out, metres. NaN compares above every limit, so such a target is kept. */
 static float cost_of(const float *weights, const float *reach_m, uint32_t i)
 {
     float product = weights[i] * reach_m[i];
@@ -316,7 +362,7 @@ static uint32_t bits_of(float value)
 
 #define LARGEST_BITS 0x7f7fffffu /* the largest finite float */
 
-/* The costs up to a limit, and those next to it on both sides. */
+/* The sum of the costs up to a limit, and the costs next to the limit on both sides. */
 typedef struct cut {
     double sum;
     float below, above; /* the largest up to the limit; the smallest over it, infinite where there is none */
@@ -335,9 +381,11 @@ static cut cut_at(const float *weights, const float *reach_m, uint32_t count, fl
     return c;
 }
 
-/* Of the largest limit such that everything up to it may go, the bits: bisection over the floats, whose order is that of
- * their bits, from cost to cost. The next float after it is then a cost of which not all may go. *sum of what goes.
- * What is begun with: as many as there are of an equal part of the room fit; what is larger than the room does not. */
+/* Find the largest limit such that all costs up to it fit into the room together, and return its bits. Sorting the costs
+ * would need memory; instead this bisects over the limit. Floats that are not negative have the order of their bits, so at
+ * most 31 halvings separate any two, and each pass tells the nearest costs on both sides, which lets the search step from
+ * cost to cost. The next float above the result is then a cost of which not all fit: noh_detail_targets takes those by
+ * index. The search starts between room / (count + 1), which always fits, and the room itself. *sum is that of what fits. */
 static uint32_t largest_limit(const float *weights, const float *reach_m, uint32_t count, double room, double *sum)
 {
     const float most = room < (double)float_of(LARGEST_BITS) ? (float)room : float_of(LARGEST_BITS);
@@ -348,7 +396,7 @@ static uint32_t largest_limit(const float *weights, const float *reach_m, uint32
         if (c.sum <= room) {
             *sum = c.sum;
             fits = bits_of(c.above) - 1u;
-            over = middle == bits_of(most) ? fits + 1u : over; /* none of the others has room alone */
+            over = middle == bits_of(most) ? fits + 1u : over; /* the others are larger than the whole room */
         } else {
             over = bits_of(c.below);
         }
@@ -365,10 +413,11 @@ uint32_t noh_detail_targets(noh_detail *d, const noh_detail_settings *settings, 
     double skipped;
     uint32_t bits = largest_limit(weights, reach_m, count, room, &skipped), left = 0;
     float limit = float_of(bits), next = float_of(bits + 1u);
+    NOH_ASSERT(d && settings && (!count || (weights && reach_m && kept)));
     for (uint32_t i = 0; i < count; i++) {
         float cost = cost_of(weights, reach_m, i);
         int skip = cost <= limit;
-        if (!skip && cost <= next && skipped + (double)cost <= room) { /* equal ones go by index */
+        if (!skip && cost <= next && skipped + (double)cost <= room) { /* of equal costs the first by index */
             skip = 1;
             skipped += (double)cost;
         }

@@ -7,7 +7,7 @@ NOH_STATIC_ASSERT(NOH_JOINT_LEVELS_MAX == NOH_DETAIL_LEVELS_MAX, joint_levels);
 NOH_STATIC_ASSERT(NOH_MOTION_RATES == NOH_RATE_COUNT, motion_rates);
 NOH_STATIC_ASSERT(NOH_LEVELS_MAX == NOH_DETAIL_LEVELS_MAX, mesh_levels);
 
-/* A desc, resolved. */
+/* The resolved desc. */
 typedef struct source {
     const noh_pack *clips, *pack;
     const uint32_t *levels; /* [level_count] joints */
@@ -16,7 +16,7 @@ typedef struct source {
     int skinned;            /* there is a mesh, and joints move it */
 } source;
 
-/* Where it all lies. NULL while measuring. */
+/* The carved arrays; NULL while measuring. */
 typedef struct parts {
     noh_mesh_level *meshes;
     noh_joint_level *joints;
@@ -31,14 +31,14 @@ typedef struct parts {
 static int is_of_skeleton(const source *s, const noh_mesh *mesh)
 {
     noh_skin skin;
-    return mesh->pack->bytes == s->pack->bytes && noh_pack_skin_at(s->pack, mesh->header->skin, &skin) == NOH_OK && skin.header->skeleton == s->skeleton;
+    return mesh->pack->bytes == s->pack->bytes && noh_pack_skin_at(s->pack, mesh->header->skin, &skin, NULL) == NOH_OK && skin.header->skeleton == s->skeleton;
 }
 
-/* The name of the field that is wrong; NULL: none. */
+/* What is wrong with the desc; NULL: nothing. */
 static const char *resolve(const noh_detail_pack_desc *desc, source *s)
 {
-    if (!desc->set) return "set";
-    if (!desc->set_desc || !desc->set_desc->clips) return "set_desc";
+    if (!desc->set) return "set is NULL";
+    if (!desc->set_desc || !desc->set_desc->clips) return "set_desc: NULL, without clips, or not what the set was made by";
     s->clips = desc->set_desc->clips;
     s->pack = desc->set_desc->mesh ? desc->set_desc->mesh : s->clips;
     s->skeleton = desc->set_desc->skeleton;
@@ -48,12 +48,12 @@ static const char *resolve(const noh_detail_pack_desc *desc, source *s)
     s->level_count = 0;
     if (s->joint_count) {
         s->levels = noh_pack_joint_levels(s->pack, s->skeleton, &s->level_count);
-        if (!s->levels || s->levels[0] != s->joint_count) return "set_desc";
+        if (!s->levels || s->levels[0] != s->joint_count) return "set_desc: NULL, without clips, or not what the set was made by";
     }
-    s->mesh_level_count = desc->mesh ? desc->mesh->header->level_count - desc->mesh->header->level : 0;
+    s->mesh_level_count = desc->mesh ? desc->mesh->header->level_count : 0;
     s->target_count = desc->mesh ? desc->mesh->header->target_count : 0;
     s->skinned = desc->mesh && desc->mesh->header->skin != NOH_NONE;
-    return s->skinned && !(s->joint_count && is_of_skeleton(s, desc->mesh)) ? "mesh" : NULL;
+    return s->skinned && !(s->joint_count && is_of_skeleton(s, desc->mesh)) ? "mesh is not moved by the skeleton of the set" : NULL;
 }
 
 static void carve(noh_arena *arena, const source *s, parts *p)
@@ -71,6 +71,7 @@ size_t noh_detail_pack_size(const noh_detail_pack_desc *desc)
     noh_arena arena = noh_arena_measure();
     source s;
     parts p;
+    NOH_ASSERT(desc);
     if (resolve(desc, &s)) {
         return 0;
     }
@@ -80,19 +81,20 @@ size_t noh_detail_pack_size(const noh_detail_pack_desc *desc)
 
 /* ---- errors of clips ---- */
 
-/* What a motion's errors are multiplied by to be metres that hold for vertices as far from their joints as `margin`. */
+/* The factor from a clip's errors to metres that hold for vertices as far from their joints as `margin`. An error of
+ * rotation grows with the distance, one of translation does not, so scaling by the ratio of distances bounds both. */
 static float to_metres(const source *s, const noh_motion_header *h, float margin)
 {
     noh_skeleton skeleton;
     const noh_skeleton_header *of;
     float unit_m = 1.0f;
-    if (noh_pack_skeleton_at(s->clips, h->skeleton, &skeleton, &of) == NOH_OK) {
+    if (noh_pack_skeleton_at(s->clips, h->skeleton, &skeleton, &of, NULL) == NOH_OK) {
         unit_m = of->unit_cm * 0.01f;
     }
     return h->error_shell > 0.0f && margin > h->error_shell ? unit_m * (margin / h->error_shell) : unit_m;
 }
 
-/* What a motion is off with so many joints: the error of the finest of its own levels that has no more. -1: there is none. */
+/* The error of a clip with this many joints: that of the finest of its own levels that poses no more. -1: there is none. */
 static float joint_error(const source *s, const noh_pack_motion *motion, uint32_t joint_count)
 {
     uint32_t level_count;
@@ -105,7 +107,7 @@ static float joint_error(const source *s, const noh_pack_motion *motion, uint32_
     return -1.0f;
 }
 
-/* Raise the errors of the levels to those of a motion; fewer levels where it does not vouch for all. */
+/* Raise the errors of the levels to those of a clip; drop the levels that it has no error for. */
 static void add_joint_errors(const source *s, const noh_pack_motion *motion, float metres, noh_joint_level *levels, uint32_t *level_count)
 {
     for (uint32_t i = 0; i < *level_count; i++) {
@@ -124,7 +126,7 @@ static void fill_motions(const noh_detail_pack_desc *desc, const source *s, floa
         noh_pack_motion motion;
         noh_clip_info info;
         float metres, clip_error_m;
-        (void)noh_pack_motion_at(s->clips, desc->set->pack_motions[m], &motion);
+        (void)noh_pack_motion_at(s->clips, desc->set->pack_motions[m], &motion, NULL);
         metres = to_metres(s, motion.header, margin);
         for (uint32_t r = 0; r < NOH_RATE_COUNT; r++) {
             p->rates[m * (uint32_t)NOH_RATE_COUNT + r] = motion.header->rate_error[r] * metres;
@@ -151,28 +153,31 @@ static float level_error(const noh_mesh_header *h)
     return (worst + h->level_skipped) * h->world_scale;
 }
 
-/* Errors are those against the full mesh, whatever the finest level at hand is. */
-uint32_t noh_detail_mesh_levels(const noh_mesh *mesh, noh_mesh_level *levels)
+/* Errors are distances to the full mesh, whichever level is the finest loaded. */
+void noh_detail_mesh_levels(const noh_mesh *mesh, noh_mesh_level *levels, noh_detail_table *table)
 {
-    const uint32_t count = mesh->header->level_count - mesh->header->level;
-    for (uint32_t k = 0; k < count; k++) {
-        const noh_mesh level = noh_mesh_at_level(mesh, mesh->header->level + k);
+    NOH_ASSERT(mesh && levels && table && mesh->header->level_count <= NOH_DETAIL_LEVELS_MAX);
+    for (uint32_t k = 0; k < mesh->header->level_count; k++) {
+        const noh_mesh level = noh_mesh_at_level(mesh, k);
         levels[k].vertex_count = level.header->vertex_count;
         levels[k].triangle_count = level.header->index_count / 3u;
         levels[k].influence_count = level.header->influence_count;
         levels[k].error_m = level_error(level.header);
     }
-    return count;
+    table->meshes = levels;
+    table->mesh_level_count = mesh->header->level_count;
+    table->mesh_level_first = mesh->header->level;
 }
 
 void noh_detail_target_reach(const noh_mesh *mesh, float *reach_m)
 {
+    NOH_ASSERT(mesh && (reach_m || !mesh->header->target_count));
     for (uint32_t t = 0; t < mesh->header->target_count; t++) {
         reach_m[t] = mesh->targets[t].max_displacement * mesh->header->world_scale;
     }
 }
 
-/* Where the mesh was built without levels, nothing is known of fewer influences: all are always used. */
+/* A mesh that was built without levels has no errors of fewer influences: all are always used. */
 static uint32_t fill_influences(const noh_mesh_header *h, noh_influence_level *levels)
 {
     uint32_t count = 0;
@@ -216,8 +221,7 @@ static void fill(const noh_detail_pack_desc *desc, const source *s, parts *p, no
     if (desc->mesh) {
         detail->reach_m = p->reach;
         noh_detail_target_reach(desc->mesh, p->reach);
-        detail->table.meshes = p->meshes;
-        detail->table.mesh_level_count = noh_detail_mesh_levels(desc->mesh, p->meshes);
+        noh_detail_mesh_levels(desc->mesh, p->meshes, &detail->table);
     }
     if (s->skinned) {
         detail->table.influences = p->influences;
@@ -232,20 +236,18 @@ static void fill(const noh_detail_pack_desc *desc, const source *s, parts *p, no
 
 noh_result noh_detail_pack_init(void *memory, size_t bytes, const noh_detail_pack_desc *desc, noh_detail_pack *detail, noh_error *error)
 {
-    noh_arena arena = noh_arena_over(memory, bytes);
+    noh_arena arena;
+    noh_result result;
     source s;
     parts p;
-    size_t need;
     const char *what = resolve(desc, &s);
+    NOH_ASSERT(desc && detail);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }
-    need = noh_detail_pack_size(desc);
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory of a detail table is NULL or not 16-byte aligned", 0, need);
-    }
-    if (bytes < need) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory of a detail table is too small", bytes, need);
+    result = noh_arena_open(&arena, memory, bytes, noh_detail_pack_size(desc), error);
+    if (result != NOH_OK) {
+        return result;
     }
     carve(&arena, &s, &p);
     fill(desc, &s, &p, detail);

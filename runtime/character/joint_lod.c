@@ -26,11 +26,13 @@ size_t noh_joint_lod_measure_size(const noh_time_probe *probe)
 {
     noh_arena arena = noh_arena_measure();
     work w;
+    NOH_ASSERT(probe && probe->set);
     carve(&arena, probe->set, &w);
     return arena.used;
 }
 
-/* The most that a point is off with the first `count` joints posed; `worst` where it is not more. */
+/* The largest error of a point with the first `count` joints posed, or `worst` if that is larger. Joints are stored parents
+ * first, so one pass over those left out builds their matrices from their parents'. */
 static float level_off(const noh_time_probe *p, work *w, uint32_t count, float worst)
 {
     const noh_skeleton *s = p->skeleton;
@@ -63,15 +65,16 @@ static int bad_counts(const noh_skeleton *s, const uint32_t *counts, uint32_t le
 noh_result noh_joint_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t motion, const uint32_t *counts,
                                  uint32_t level_count, float *error_m, noh_error *error)
 {
-    const char *what = probe->joint_reach_m ? noh_probe_fault(probe, motion) : "probe";
-    noh_arena arena = noh_arena_over(memory, bytes);
+    const char *what = probe->joint_reach_m ? noh_probe_fault(probe, motion) : "probe: joint_reach_m is NULL";
+    noh_arena arena;
     uint32_t duration;
     work w;
     noh_result result;
+    NOH_ASSERT(probe && counts && error_m);
     if (what || bad_counts(probe->skeleton, counts, level_count)) {
-        return noh_fail(error, NOH_ERR_ARG, what ? what : "counts", motion, 0);
+        return noh_fail(error, NOH_ERR_ARG, what ? what : "counts must fall, and hold all joints that have no parent", motion, 0);
     }
-    result = noh_probe_check_memory(memory, bytes, noh_joint_lod_measure_size(probe), error);
+    result = noh_arena_open(&arena, memory, bytes, noh_joint_lod_measure_size(probe), error);
     if (result) {
         return result;
     }

@@ -5,12 +5,12 @@
 #include "base/arena.h"
 
 #define ASKS_NOT 0xffu
-#define STAYS 1.25f /* what a holder's priority counts for more */
+#define STAYS 1.25f /* factor on the priority of an instance that keeps its slot */
 
 typedef struct pool {
     uint32_t level, slot_count;
     uint32_t first;      /* of its slots in `free` */
-    uint32_t free_count; /* free[first .. first + free_count - 1] are those that nobody holds */
+    uint32_t free_count; /* free[first .. first + free_count - 1] are its free slots */
 } pool;
 
 typedef struct place {
@@ -26,7 +26,7 @@ struct noh_level_pools {
     pool pools[NOH_LEVEL_POOLS_MAX];
     noh_level_pools_stats stats;
     place *places;  /* [instance_count] */
-    uint64_t *keys; /* [instance_count] who asks: priority above, what is left of 2^32 over the number below */
+    uint64_t *keys; /* [instance_count] requests: the bits of the priority above, 2^32 - 1 - instance below (lower numbers first) */
     uint32_t *free; /* [slots] */
 };
 
@@ -37,17 +37,17 @@ NOH_STATIC_ASSERT(sizeof(place) == 8, place);
 static const char *bad_field(const noh_level_pools_desc *d, uint32_t *slots)
 {
     uint64_t sum = 0;
-    if (d->instance_count == 0 || d->instance_count > NOH_LEVEL_POOL_SLOTS_MAX) return "instance_count of level pools";
-    if (d->pool_count == 0 || d->pool_count > NOH_LEVEL_POOLS_MAX) return "pool_count of level pools";
-    if (!d->levels) return "levels of level pools";
-    if (!d->slot_counts) return "slot_counts of level pools";
+    if (d->instance_count == 0 || d->instance_count > NOH_LEVEL_POOL_SLOTS_MAX) return "instance_count of level pools is not in 1..NOH_LEVEL_POOL_SLOTS_MAX";
+    if (d->pool_count == 0 || d->pool_count > NOH_LEVEL_POOLS_MAX) return "pool_count of level pools is not in 1..NOH_LEVEL_POOLS_MAX";
+    if (!d->levels) return "levels of level pools is NULL";
+    if (!d->slot_counts) return "slot_counts of level pools is NULL";
     for (uint32_t i = 0; i < d->pool_count; i++) {
         if (d->levels[i] >= NOH_DETAIL_LEVELS_MAX || (i && d->levels[i] <= d->levels[i - 1u])) return "levels of level pools do not rise";
         if (d->slot_counts[i] == 0) return "slot_counts of level pools: a pool without slots";
         sum += d->slot_counts[i];
     }
     if (sum < d->instance_count) return "slot_counts of level pools: fewer slots than instances";
-    if (sum > NOH_LEVEL_POOL_SLOTS_MAX) return "slot_counts of level pools: more than the limit";
+    if (sum > NOH_LEVEL_POOL_SLOTS_MAX) return "slot_counts of level pools: more than NOH_LEVEL_POOL_SLOTS_MAX in all";
     *slots = (uint32_t)sum;
     return NULL;
 }
@@ -66,6 +66,7 @@ size_t noh_level_pools_size(const noh_level_pools_desc *desc)
     noh_arena arena = noh_arena_measure();
     noh_level_pools parts;
     uint32_t slots;
+    NOH_ASSERT(desc);
     if (bad_field(desc, &slots)) {
         return 0;
     }
@@ -90,19 +91,18 @@ static void fill_pools(noh_level_pools *p, const noh_level_pools_desc *d)
 
 noh_result noh_level_pools_init(void *memory, size_t bytes, const noh_level_pools_desc *desc, noh_level_pools **pools, noh_error *error)
 {
-    noh_arena arena = noh_arena_over(memory, bytes);
+    noh_arena arena;
+    noh_result result;
     noh_level_pools parts, *p;
     uint32_t slots = 0;
     const char *what = bad_field(desc, &slots);
-    size_t need = noh_level_pools_size(desc);
+    NOH_ASSERT(desc && pools);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for level pools is NULL or not 16-byte aligned", 0, need);
-    }
-    if (bytes < need) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory for level pools is too small", bytes, need);
+    result = noh_arena_open(&arena, memory, bytes, noh_level_pools_size(desc), error);
+    if (result != NOH_OK) {
+        return result;
     }
     memset(&parts, 0, sizeof parts);
     p = carve(&arena, desc->instance_count, slots, &parts);
@@ -120,13 +120,14 @@ noh_result noh_level_pools_init(void *memory, size_t bytes, const noh_level_pool
 
 void noh_level_pools_begin(noh_level_pools *p)
 {
+    NOH_ASSERT(p);
     for (uint32_t i = 0; i < p->instance_count; i++) {
         p->places[i].next = ASKS_NOT;
     }
     p->stats.asked = p->stats.coarser = p->stats.moved = 0;
 }
 
-/* Floats that are not negative are ordered as their bits are. */
+/* Floats that are not negative have the order of their bits. */
 static uint64_t key_of(float priority, uint32_t instance)
 {
     union { float value; uint32_t bits; } u;
@@ -152,6 +153,27 @@ void noh_level_pools_ask(noh_level_pools *p, uint32_t instance, uint32_t level, 
 
 /* ---- sharing ---- */
 
+#if NOH_ASSERT_LEVEL >= 2
+/* Every slot is free or held: the counts of each pool agree. */
+static int is_consistent(const noh_level_pools *p)
+{
+    uint32_t held[NOH_LEVEL_POOLS_MAX] = { 0 };
+    for (uint32_t i = 0; i < p->instance_count; i++) {
+        const place *at = &p->places[i];
+        if (at->held && (at->pool >= p->pool_count || at->slot >= p->pools[at->pool].slot_count)) {
+            return 0;
+        }
+        held[at->pool] += at->held;
+    }
+    for (uint32_t i = 0; i < p->pool_count; i++) {
+        if (held[i] + p->pools[i].free_count != p->pools[i].slot_count) {
+            return 0;
+        }
+    }
+    return 1;
+}
+#endif
+
 /* Let a key sink in a heap whose top is the lowest. */
 static void sift(uint64_t *keys, uint32_t at, uint32_t count)
 {
@@ -168,7 +190,8 @@ static void sift(uint64_t *keys, uint32_t at, uint32_t count)
     keys[at] = key;
 }
 
-/* The highest first: the lowest of the heap goes to the end, again and again. */
+/* Heap sort, the highest first: the top of the heap, its lowest key, moves to the end again and again. In place, and never
+ * worse than n log n. */
 static void sort_keys(uint64_t *keys, uint32_t count)
 {
     for (uint32_t i = count / 2u; i-- > 0;) {
@@ -182,7 +205,7 @@ static void sort_keys(uint64_t *keys, uint32_t count)
     }
 }
 
-/* How many of the pools hold a level: the first so many. */
+/* How many pools hold a level: the first ones, whose levels are as fine or finer. */
 static uint32_t count_fitting(const noh_level_pools *p, uint32_t level)
 {
     uint32_t fit = 0;
@@ -192,7 +215,7 @@ static uint32_t count_fitting(const noh_level_pools *p, uint32_t level)
     return fit;
 }
 
-/* Whether everyone can have the coarsest pool that holds the level: then it does not matter who comes first. */
+/* Whether every request fits into the coarsest pool that holds its level: then the order does not matter. */
 static int all_fit(const noh_level_pools *p)
 {
     uint32_t by_level[NOH_DETAIL_LEVELS_MAX] = { 0 }, by_pool[NOH_LEVEL_POOLS_MAX] = { 0 };
@@ -208,8 +231,8 @@ static int all_fit(const noh_level_pools *p)
     return 1;
 }
 
-/* The coarsest pool that holds the level and has room, else the next coarser one that has: there are as many slots as
- * instances. */
+/* The coarsest pool that holds the level and has room, else the next coarser one that has. One of them has, for there are
+ * at least as many slots as instances. */
 static uint32_t choose_pool(const noh_level_pools *p, uint32_t level)
 {
     const uint32_t *used = p->stats.used, fit = count_fitting(p, level);
@@ -236,7 +259,7 @@ static void choose_pools(noh_level_pools *p)
     }
 }
 
-/* Back go the slots of those who do not ask, and of those who are given another pool. */
+/* Free the slots of instances that did not ask, or that are given another pool. */
 static void release(noh_level_pools *p)
 {
     for (uint32_t i = 0; i < p->instance_count; i++) {
@@ -270,6 +293,7 @@ static void mark(uint32_t *high_water, uint32_t value)
 
 void noh_level_pools_share(noh_level_pools *p)
 {
+    NOH_ASSERT(p);
     if (!all_fit(p)) {
         sort_keys(p->keys, p->stats.asked);
     }
@@ -280,6 +304,7 @@ void noh_level_pools_share(noh_level_pools *p)
     for (uint32_t i = 0; i < p->pool_count; i++) {
         mark(&p->stats.used_high_water[i], p->stats.used[i]);
     }
+    NOH_VALIDATE(is_consistent(p));
 }
 
 /* ---- looking ---- */
@@ -297,5 +322,6 @@ noh_level_slot noh_level_pools_slot(const noh_level_pools *p, uint32_t instance)
 
 const noh_level_pools_stats *noh_level_pools_stats_of(const noh_level_pools *p)
 {
+    NOH_ASSERT(p);
     return &p->stats;
 }

@@ -1,4 +1,4 @@
-/* What measuring errors shares: measure_internal.h. */
+/* What the measurements of LOD errors share: measure_internal.h. */
 #include "anim/local_to_model.h"
 #include "anim/root_motion.h"
 #include "base/math.h"
@@ -6,17 +6,9 @@
 
 const char *noh_probe_fault(const noh_time_probe *p, uint32_t motion)
 {
-    if (!p->set || !p->skeleton || p->skeleton->joint_count != p->set->joint_count) return "probe";
-    if (motion >= p->set->motion_count) return "motion";
+    if (!p->set || !p->skeleton || p->skeleton->joint_count != p->set->joint_count) return "probe: NULL set or skeleton, or a skeleton of other joints";
+    if (motion >= p->set->motion_count) return "motion is not a clip of the set";
     return NULL;
-}
-
-noh_result noh_probe_check_memory(const void *memory, size_t bytes, size_t need, noh_error *error)
-{
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for measuring is NULL or not 16-byte aligned", 0, need);
-    }
-    return bytes >= need ? NOH_OK : noh_fail(error, NOH_ERR_MEMORY, "memory for measuring is too small", bytes, need);
 }
 
 void noh_probe_travel(const noh_time_probe *p, uint32_t motion, noh_transform *pose, float *floats, float travel[3])
@@ -50,8 +42,9 @@ void noh_probe_sample(const noh_time_probe *p, uint32_t motion, int64_t tick, co
     }
 }
 
-/* Above the largest singular value of a 3 x 3 matrix, by at most 3^(1/8): its Schatten 8-norm, the eighth
- * root of the squared Frobenius norm of (A' A)^2. */
+/* An upper bound on the largest singular value of a 3 x 3 matrix, too high by a factor of at most 3^(1/8): the Schatten
+ * 8-norm. With singular values s, (A'A)^2 has eigenvalues s^4, and the square of its Frobenius norm is the sum of s^8;
+ * the eighth root of that is at least the largest s. Three square roots and no iteration. */
 static float norm_bound(const float a[9])
 {
     float g[9], square[9], sum = 0.0f;
@@ -82,7 +75,7 @@ float noh_probe_off(const float difference[12], float reach, float least)
     }
     length = noh_sqrt(noh_dot3(way, way));
     reach = reach > 0.0f ? reach : 0.0f;
-    /* The Frobenius norm is never below the other, and cheap: most joints end here. */
+    /* The Frobenius norm is never below the largest singular value, and cheap: most joints end here. */
     if (length + reach * noh_sqrt(square) > least) {
         const float off = length + reach * norm_bound(turn);
         least = off > least ? off : least;

@@ -1,4 +1,4 @@
-/* measure_internal.h (private to character/): what measuring errors shares. */
+/* measure_internal.h (private to character/): what the measurements of LOD errors share. */
 #ifndef NOH_CHARACTER_MEASURE_INTERNAL_H
 #define NOH_CHARACTER_MEASURE_INTERNAL_H
 
@@ -6,18 +6,15 @@
 #include "base/arena.h"
 #include "character/time_lod.h"
 
-/* The name of a probe's or a motion's fault; NULL: none. joint_reach_m is not looked at. */
+/* What is wrong with a probe or a clip; NULL: nothing. joint_reach_m is not looked at. */
 const char *noh_probe_fault(const noh_time_probe *probe, uint32_t motion);
 
-/* MEMORY where memory[bytes] is not what measuring needs; ARG where it is not aligned. */
-noh_result noh_probe_check_memory(const void *memory, size_t bytes, size_t need, noh_error *error);
-
-/* How far joint 0 is from where it began when a motion that repeats begins again; 0 of another, or where the probe does not travel.
+/* How far joint 0 travels in one pass of a repeating clip; 0 for other clips, or where the probe does not travel.
  * shapes  pose[joint_count], floats[float_count] to work in */
 void noh_probe_travel(const noh_time_probe *probe, uint32_t motion, noh_transform *pose, float *floats, float travel[3]);
 
-/* The matrices and floats of a motion at a tick of its own clock, played in its own loop mode; moved by `travel` for
- * every pass that a repeating one has made: NULL: not.
+/* The matrices and floats of a clip at a tick of its own clock, played in its own loop mode, moved by `travel` for every
+ * pass completed; NULL: not moved.
  * shapes  pose[joint_count], model[joint_count][12], floats[float_count] */
 void noh_probe_sample(const noh_time_probe *probe, uint32_t motion, int64_t tick, const float *travel, noh_transform *pose, float *model,
                       float *floats);
@@ -29,28 +26,28 @@ typedef struct noh_rate_pose {
     float *floats;
 } noh_rate_pose;
 
-/* What measuring rates works in: the two poses that are mixed, and the true one in between. */
+/* Working memory of measuring update rates: the two poses that are mixed, and the true one in between. */
 typedef struct noh_rate_work {
     noh_transform *pose;
     noh_rate_pose from, to, right;
     float travel[3];
 } noh_rate_work;
 
-/* The most that a mix of the two poses, `part` of the second, is off; `least` where it is not more. */
+/* The largest error of a mix of the two poses, `part` of the second, or `least` if that is larger. */
 typedef float (*noh_rate_off)(void *user, const noh_time_probe *probe, const noh_rate_work *work, float part, float least);
 
 void noh_rate_carve(noh_arena *arena, const noh_anim_set *set, noh_rate_work *work);
 
-/* What the probe's floats are off in a mix, all at their worst. */
+/* The error of the probe's floats in a mix: the sum of their worst displacements. */
 float noh_rate_floats_off(const noh_time_probe *probe, const noh_rate_work *work, float part);
 
-/* error_m[NOH_RATE_COUNT] of a motion, over all intervals and places that time_lod.h names. */
+/* error_m[NOH_RATE_COUNT] of a clip, over all periods and ticks that time_lod.h names. */
 void noh_rate_measure(const noh_time_probe *probe, uint32_t motion, noh_rate_off off, void *user, noh_rate_work *work, float *error_m);
 
 /* ---- */
 
-/* The most that a point within reach of a joint is off where the joint's matrix is off by this difference: the joint's own
- * way, and the turn; `least` where it is not more than that. */
+/* The largest error of a point within `reach` of a joint whose matrix has this error (mixed minus true): the error of its
+ * translation plus reach times the norm of the rest; or `least` if that is larger. */
 float noh_probe_off(const float difference[12], float reach, float least);
 
 #endif

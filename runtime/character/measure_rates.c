@@ -1,11 +1,11 @@
-/* The loop over intervals and places within them, whatever is looked at there: measure_internal.h. */
+/* The loop over update periods and ticks within them, for any error: measure_internal.h. */
 #include "base/arena.h"
 #include "character/measure_internal.h"
 
 /* Frames of clips of 24, 30, 60 and 120 Hz lie on these, and with them the corners of what is interpolated
  * between frames, where errors are largest. */
-#define START_TICKS 400u /* from one interval that is looked at to the next */
-#define PLACE_TICKS 200u /* from one place within it to the next */
+#define START_TICKS 400u /* from the start of one period that is measured to the next */
+#define PLACE_TICKS 200u /* from one tick that is measured within it to the next */
 
 static void carve_one(noh_arena *arena, const noh_anim_set *set, noh_rate_pose *pose)
 {
@@ -36,7 +36,8 @@ static void sample(const noh_time_probe *p, uint32_t motion, int64_t tick, noh_r
     noh_probe_sample(p, motion, tick, w->travel, w->pose, out->model, out->floats);
 }
 
-/* From the first tick of the motion to where it begins to repeat itself, or stands. */
+/* From the clip's first tick to where play repeats itself or stands still. At the start of each period and at its end the
+ * shown pose is true; in between it is a straight mix, which is compared with the true pose. */
 static float measure(const noh_time_probe *p, uint32_t motion, uint32_t period, noh_rate_off off, void *user, noh_rate_work *w)
 {
     const noh_motion *m = &p->set->motions[motion];

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "base/arena.h"
+
 /* ---- memory ---- */
 
 size_t noh_schedule_size(uint32_t capacity)
@@ -12,19 +14,19 @@ size_t noh_schedule_size(uint32_t capacity)
 noh_result noh_schedule_init(void *memory, size_t bytes, uint32_t capacity, noh_schedule *s, noh_error *error)
 {
     size_t need = noh_schedule_size(capacity);
+    noh_arena arena;
+    noh_result result;
+    NOH_ASSERT(s);
     if (need == 0) {
-        return noh_fail(error, NOH_ERR_ARG, "capacity", capacity, 0);
+        return noh_fail(error, NOH_ERR_ARG, "capacity is not in 1..NOH_SCHEDULE_MAX", capacity, NOH_SCHEDULE_MAX);
     }
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for a schedule is NULL or not 16-byte aligned", 0, need);
+    result = noh_arena_open(&arena, memory, bytes, need, error);
+    if (result == NOH_OK) {
+        memset(s, 0, sizeof *s);
+        s->capacity = capacity;
+        s->items = (noh_schedule_item *)noh_arena_carve(&arena, need, 16);
     }
-    if (bytes < need) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory for a schedule is too small", bytes, need);
-    }
-    memset(s, 0, sizeof *s);
-    s->capacity = capacity;
-    s->items = (noh_schedule_item *)memory;
-    return NOH_OK;
+    return result;
 }
 
 /* ---- a frame ---- */
@@ -34,6 +36,7 @@ enum { AS_OFFERED = 0, ALL_SERVED, HEAP };
 
 void noh_schedule_begin(noh_schedule *s, uint32_t frame_ticks, uint64_t budget)
 {
+    NOH_ASSERT(s);
     s->count = s->offered = s->served = s->late_ticks = 0;
     s->frame_ticks = frame_ticks;
     s->budget = budget;
@@ -43,10 +46,11 @@ void noh_schedule_begin(noh_schedule *s, uint32_t frame_ticks, uint64_t budget)
 
 void noh_schedule_spend(noh_schedule *s, uint32_t cost)
 {
+    NOH_ASSERT(s);
     s->spent += cost;
 }
 
-/* A binary heap, the most urgent first. */
+/* A binary heap with the most urgent item on top: building it is linear in the offers, and only what is served is sorted. */
 static int before(const noh_schedule_item *a, const noh_schedule_item *b)
 {
     return a->urgency != b->urgency ? a->urgency > b->urgency : a->instance < b->instance;
@@ -68,6 +72,17 @@ static void sift(noh_schedule_item *items, uint32_t at, uint32_t count)
     items[at] = item;
 }
 
+#if NOH_ASSERT_LEVEL >= 2
+static int is_heap(const noh_schedule_item *items, uint32_t count)
+{
+    int ordered = 1;
+    for (uint32_t i = 1; i < count; i++) {
+        ordered = ordered && !before(&items[i], &items[(i - 1u) / 2u]);
+    }
+    return ordered;
+}
+#endif
+
 static uint32_t visibility_steps(float visibility)
 {
     float clamped = visibility > 1.0f ? visibility < NOH_VISIBILITY_MAX ? visibility : NOH_VISIBILITY_MAX : 1.0f;
@@ -77,6 +92,7 @@ static uint32_t visibility_steps(float visibility)
 void noh_schedule_offer(noh_schedule *s, uint32_t instance, uint32_t late_ticks, float visibility, uint32_t cost)
 {
     noh_schedule_item *item = &s->items[s->count];
+    NOH_ASSERT(s && s->order == AS_OFFERED);
     s->late_ticks = late_ticks > s->late_ticks ? late_ticks : s->late_ticks;
     s->late_high_water = late_ticks > s->late_high_water ? late_ticks : s->late_high_water;
     if (s->count == s->capacity) {
@@ -103,6 +119,7 @@ static void put_in_order(noh_schedule *s)
 int noh_schedule_next(noh_schedule *s, uint32_t *instance)
 {
     const noh_schedule_item *next;
+    NOH_ASSERT(s && instance);
     if (s->order == AS_OFFERED) {
         put_in_order(s);
     }
@@ -118,6 +135,7 @@ int noh_schedule_next(noh_schedule *s, uint32_t *instance)
         s->items[0] = s->items[s->count];
         sift(s->items, 0, s->count);
     }
+    NOH_VALIDATE(s->order != HEAP || is_heap(s->items, s->count));
     return 1;
 }
 
@@ -134,6 +152,7 @@ uint64_t noh_schedule_wait_max(uint32_t instances, uint64_t budget, uint32_t cos
 uint32_t noh_cost_of(const noh_cost_weights *w, uint32_t joints, uint32_t pairs, uint32_t vertices)
 {
     double cost = (double)w->per_instance + (double)w->per_joint * joints + (double)w->per_pair * pairs + (double)w->per_vertex * vertices;
+    NOH_ASSERT(w);
     if (!(cost > 1.0)) {
         return 1;
     }

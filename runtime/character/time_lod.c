@@ -2,40 +2,46 @@
 
 #include <string.h>
 
+#include "anim/clock_internal.h"
+
 uint32_t noh_rate_period(noh_rate rate)
 {
     static const uint32_t periods[NOH_RATE_COUNT] = { 0, NOH_TICKS_PER_SECOND / 30u, NOH_TICKS_PER_SECOND / 15u, NOH_TICKS_PER_SECOND / 8u };
+    NOH_ASSERT((unsigned)rate < NOH_RATE_COUNT);
     return periods[rate];
 }
 
 void noh_time_lod_init(noh_time_lod *t, uint32_t instance)
 {
+    NOH_ASSERT(t);
     memset(t, 0, sizeof *t);
     t->instance = instance;
 }
 
-/* The first of the instance's own update times after a clock. */
+/* The first of the instance's own update ticks after a clock. */
 static int64_t next_slot(uint32_t instance, int64_t clock, uint32_t period)
 {
     const uint32_t golden = 2654435769u; /* 2^32 over the golden ratio */
-    int64_t phase = (int64_t)(((uint64_t)(instance * golden) * period) >> 32);
-    return phase + (noh_floor_div(clock - phase, period) + 1) * (int64_t)period;
+    int64_t phase = (int64_t)(((uint64_t)(instance * golden) * period) >> 32), rest = noh_clock_since(clock, phase) % (int64_t)period;
+    return noh_clock_add(clock, (int64_t)period - (rest < 0 ? rest + (int64_t)period : rest));
 }
 
 void noh_time_lod_frame(noh_time_lod *t, int64_t clock, noh_rate rate)
 {
-    int64_t ticks = clock - t->clock;
+    int64_t ticks = noh_clock_since(clock, t->clock);
+    NOH_ASSERT(t && (unsigned)rate < NOH_RATE_COUNT);
     t->frame_ticks = ticks < 0 ? 0 : ticks > UINT32_MAX ? UINT32_MAX : (uint32_t)ticks;
     t->clock = clock;
     t->wanted = (uint8_t)rate;
     if (rate < t->running) {
-        noh_time_lod_wake(t); /* the interval that is shown is too coarse by now */
+        noh_time_lod_wake(t); /* the mix that is shown is too coarse by now */
     }
 }
 
 noh_due noh_time_lod_due(const noh_time_lod *t)
 {
     int unseen = t->frame_ticks > NOH_TIME_LOD_UNSEEN_TICKS;
+    NOH_ASSERT(t);
     if (!t->posed || (unseen && t->clock > t->to_clock)) {
         return NOH_DUE_AT_ONCE;
     }
@@ -44,26 +50,27 @@ noh_due noh_time_lod_due(const noh_time_lod *t)
 
 uint32_t noh_time_lod_late(const noh_time_lod *t)
 {
-    int64_t late = t->clock - t->due_clock;
+    int64_t late = noh_clock_since(t->clock, t->due_clock);
+    NOH_ASSERT(t);
     return late < 0 || !t->posed ? 0 : late > UINT32_MAX ? UINT32_MAX : (uint32_t)late;
 }
 
-/* Pose it as it is, and show that. */
+/* Pose the instance as it is now, and show that alone. */
 static noh_time_update update_exactly(noh_time_lod *t)
 {
     noh_time_update u = { 0, 1.0f, 0 };
     t->from_clock = t->to_clock = t->clock;
-    t->due_clock = t->clock + 1; /* with the next frame */
+    t->due_clock = noh_clock_add(t->clock, 1); /* with the next frame */
     u.pose_clock = t->clock;
     u.slot = t->to_slot;
     return u;
 }
 
-/* Where the interval from from_clock ends: at the next of the instance's own times, but not more than a period
- * away; and after a restart, when what is shown may have far to go, not less than half of one. */
+/* Where a mix that begins at from_clock ends: at the next of the instance's own ticks, but at most a period away; and at
+ * least half a period away after a restart, when source and target may be far apart. */
 static int64_t interval_end(const noh_time_lod *t, uint32_t period, int restart)
 {
-    int64_t longest = t->from_clock + (int64_t)period, shortest = t->from_clock + (int64_t)(period / 2u);
+    int64_t longest = noh_clock_add(t->from_clock, period), shortest = noh_clock_add(t->from_clock, period / 2u);
     int64_t end = next_slot(t->instance, t->clock, period);
     end = end > longest ? longest : end;
     return restart && end < shortest ? shortest : end;
@@ -72,8 +79,8 @@ static int64_t interval_end(const noh_time_lod *t, uint32_t period, int restart)
 static noh_time_update update_ahead(noh_time_lod *t, uint32_t period)
 {
     noh_time_update u = { 0, 1.0f, 0 };
-    int early = t->clock < t->to_clock;                           /* from what is shown now, a mix */
-    int held = t->to_clock < t->clock - (int64_t)t->frame_ticks; /* has stood still for a frame or more: on from there */
+    int early = t->clock < t->to_clock;                           /* on the way: the mix shown now becomes the source */
+    int held = t->to_clock < noh_clock_add(t->clock, -(int64_t)t->frame_ticks); /* the target has been held for a frame or more: it becomes the source */
     if (early) {
         u.keep = noh_time_lod_fraction(t);
     } else {
@@ -90,6 +97,7 @@ noh_time_update noh_time_lod_update(noh_time_lod *t)
 {
     uint32_t period = noh_rate_period((noh_rate)t->wanted);
     int exact = period == 0 || t->frame_ticks >= period || noh_time_lod_due(t) == NOH_DUE_AT_ONCE;
+    NOH_ASSERT(t->to_slot < 2u);
     t->posed = 1;
     t->running = t->wanted;
     return exact ? update_exactly(t) : update_ahead(t, period);
@@ -97,16 +105,18 @@ noh_time_update noh_time_lod_update(noh_time_lod *t)
 
 float noh_time_lod_fraction(const noh_time_lod *t)
 {
-    int64_t since = t->clock - t->from_clock, span = t->to_clock - t->from_clock;
+    int64_t since = noh_clock_since(t->clock, t->from_clock), span = noh_clock_since(t->to_clock, t->from_clock);
+    NOH_ASSERT(t);
     return since >= span ? 1.0f : since > 0 ? (float)since / (float)span : 0.0f;
 }
 
 void noh_time_lod_wake(noh_time_lod *t)
 {
+    NOH_ASSERT(t);
     t->due_clock = t->clock < t->due_clock ? t->clock : t->due_clock;
 }
 
-/* How much faster than recorded a track plays, squared; at least 1. */
+/* A track's playback speed, squared; at least 1. */
 static float haste(const noh_track *track)
 {
     float rate = (float)track->rate / (float)NOH_SPEED_ONE, speed = (float)track->speed / (float)NOH_SPEED_ONE;
@@ -117,6 +127,7 @@ static float haste(const noh_track *track)
 void noh_time_lod_error(const noh_controller *c, const float *motion_error_m, float *error_m)
 {
     float added[NOH_RATE_COUNT] = { 0.0f };
+    NOH_ASSERT(c && motion_error_m && error_m);
     for (int r = 0; r < NOH_RATE_COUNT; r++) {
         error_m[r] = 0.0f;
     }

@@ -1,22 +1,24 @@
-/* time_lod.h: posing an instance less often than once a frame (row C16.4).
+/* time_lod.h: posing an instance less often than once a frame.
  *
- * An instance holds two poses and shows a mix of them. Which two: not the last two, which are either late
- * (shown one update behind, the feet of a walk 125 ms behind the ground and the sound of the step) or wrong
- * (extrapolated: up to 8 times the error of interpolation, and a jump at every update). The future is known: a
- * controller is a block of bytes that can be copied and played on without anyone's hearing of it. So an update
- * at tick t poses the instance as it will be at its next update, and until then what is shown goes from the true
- * pose at t to the true pose there: no lag, no jump, and an error that grows with the square of the interval,
- * measured for each motion by noh_time_lod_measure. What a program changes in between is not foreseen: it is
- * shown from the next update on, or, after noh_time_lod_wake, from the next frame on; never as a jump.
+ * An instance holds two poses, source and target, and shows a mix of them. They are not the last two poses: mixing those
+ * shows the past (125 ms late at 8 Hz: a walk's feet slide against the ground and the sound of its steps), and
+ * extrapolating from them costs up to 8 times the error of interpolation and a jump at every update. A controller is a
+ * block of bytes: a copy of it can be played ahead without firing callbacks. So an update at tick t poses the instance as
+ * it will be at its next update, and until then what is shown moves from the true pose at t to the true pose there: no
+ * lag, no jumps, and an error that grows with the square of the update period, measured for each clip by
+ * noh_time_lod_measure. What a program changes in between was not foreseen: it is shown from the next update on, or after
+ * noh_time_lod_wake from the next frame on, and never as a jump.
  *
- * Poses are mixed as matrices in object space: every skinned vertex goes straight from one true place to the
- * next. Local transforms would go along arcs, but would have to be made matrices in every frame, which costs
- * more than sampling them does.
+ * Poses are mixed as matrices in object space, so every skinned vertex moves in a straight line from one true position to
+ * the next. Mixing local transforms would follow arcs, but would need new matrices in every frame, which costs more than
+ * sampling does.
  *
- * Callback keys have nothing to do with all this: controllers are stepped every frame, seen or not.
+ * Callback keys are not affected: controllers are stepped in every frame, seen or not.
  *
- * Updates are staggered by the number of the instance: the n-th is updated at the fraction n * golden ratio (modulo
- * 1) of the period, so that any stretch of numbers is spread evenly (Weyl's sequence). */
+ * Updates are staggered: instance n is updated at the fraction n * golden ratio (modulo 1) of the period, so that any run
+ * of numbers is spread evenly (H. Weyl, "Ueber die Gleichverteilung von Zahlen mod. Eins", 1916).
+ *
+ * Threads: a noh_time_lod belongs to one thread at a time; measuring may run on any thread that may sample the set. */
 #ifndef NOH_CHARACTER_TIME_LOD_H
 #define NOH_CHARACTER_TIME_LOD_H
 
@@ -24,18 +26,22 @@
 #include "anim/skeleton.h"
 #include "character/detail.h"
 
-#define NOH_TIME_LOD_UNSEEN_TICKS 6000u /* what was not looked at for longer has to be posed before it is shown */
+#ifdef __cplusplus
+extern "C" {
+#endif
 
-/* State, without pointers. Clocks are of one clock that all instances share. */
+#define NOH_TIME_LOD_UNSEEN_TICKS 6000u /* after a longer absence an instance is posed before it is shown */
+
+/* State, without pointers. All clocks are the game's, in ticks. */
 typedef struct noh_time_lod {
-    int64_t from_clock, to_clock; /* what is shown goes from one pose to the other between these; equal: the second alone */
-    int64_t due_clock;            /* when the next update is wanted */
+    int64_t from_clock, to_clock; /* the mix runs from source to target between these; equal: the target alone */
+    int64_t due_clock;            /* when the next update is due */
     int64_t clock;                /* of the last frame */
     uint32_t frame_ticks;         /* from the frame before it to that one */
     uint32_t instance;
-    uint8_t wanted, running;      /* noh_rate: as chosen last, and of the interval that is shown */
-    uint8_t to_slot;              /* 0, 1: which pose is gone to; the other one is come from */
-    uint8_t posed;                /* 0: there is no pose yet */
+    uint8_t wanted, running;      /* noh_rate: as chosen last, and of the mix that is shown */
+    uint8_t to_slot;              /* target slot, 0 or 1; the other is the source */
+    uint8_t posed;                /* 0: no valid pose yet */
     uint8_t reserved[4];
 } noh_time_lod;
 
@@ -46,13 +52,13 @@ uint32_t noh_rate_period(noh_rate rate);
 
 void noh_time_lod_init(noh_time_lod *t, uint32_t instance);
 
-/* Once for each frame in which the instance is seen. Frames as long as a period or longer are posed exactly. */
+/* Call once in each frame in which the instance is in view. Frames of an update period or longer are posed exactly. */
 void noh_time_lod_frame(noh_time_lod *t, int64_t clock, noh_rate rate);
 
 typedef enum noh_due {
-    NOH_DUE_NOT = 0, /* what is shown goes on to be right */
-    NOH_DUE,         /* an update is wanted; for as long as it does not come, the last pose is held */
-    NOH_DUE_AT_ONCE  /* there is nothing fit to be shown: never posed, or not seen for NOH_TIME_LOD_UNSEEN_TICKS */
+    NOH_DUE_NOT = 0, /* the mix is still valid */
+    NOH_DUE,         /* an update is due; until it comes the target pose is held */
+    NOH_DUE_AT_ONCE  /* no valid pose: never posed, or out of view for NOH_TIME_LOD_UNSEEN_TICKS */
 } noh_due;
 
 noh_due noh_time_lod_due(const noh_time_lod *t);
@@ -60,52 +66,55 @@ noh_due noh_time_lod_due(const noh_time_lod *t);
 /* Ticks since the update was due; 0 when it is not. */
 uint32_t noh_time_lod_late(const noh_time_lod *t);
 
-/* What an update has to do, in this order. */
+/* The two steps of an update. */
 typedef struct noh_time_update {
-    int64_t pose_clock; /* 2. pose the instance as it is (the clock of this frame) or will be then */
-    float keep;         /* 1. below 1: the pose in the other slot becomes the mix of both at this fraction, as it is shown now */
-    uint8_t slot;       /* 2. into this slot; the other one is what is come from */
+    int64_t pose_clock; /* second: pose the instance as it will be at this clock (this frame's, or later) */
+    float keep;         /* first, below 1: replace the pose in the other slot by the mix of both at this fraction, as shown now */
+    uint8_t slot;       /* second: into this slot; the other becomes the source */
 } noh_time_update;
 
 /* Begin an update; allowed in any frame, due or not. */
 noh_time_update noh_time_lod_update(noh_time_lod *t);
 
-/* Of this frame: 0 the pose come from, 1 that in to_slot. */
+/* The mix of this frame: 0 the source, 1 the target (to_slot). */
 float noh_time_lod_fraction(const noh_time_lod *t);
 
-/* Something was changed that the poses do not know: a track started, sought, stopped. Due from now on. */
+/* Tracks were changed: an update is due from now on. */
 void noh_time_lod_wake(noh_time_lod *t);
 
 /* ---- errors ---- */
 
-/* What a motion is measured for. All borrowed. */
+/* What a clip is measured for. All borrowed. */
 typedef struct noh_time_probe {
     const noh_anim_set *set;
     const noh_skeleton *skeleton;  /* of the set */
-    const float *joint_reach_m;    /* [joint_count] the farthest vertex that hangs on each joint, in the bind pose; below 0: none does */
-    const float *float_reach_m;    /* [float_count] what each float moves at weight 1; NULL: floats are not counted */
-    int travels;                   /* 1: each pass of a repeating motion begins where joint 0 came in the one before, as if its
-                                    * translation were root motion: for a set that does not take it out, but will; 0: it leaps back */
+    const float *joint_reach_m;    /* [joint_count] radius of each joint's vertices in the bind pose; below 0: it moves none */
+    const float *float_reach_m;    /* [float_count] the most that each float moves a vertex at weight 1; NULL: floats are left out */
+    int travels;                   /* 1: each pass of a repeating clip begins where joint 0 ended the one before, as if its translation
+                                    * were root motion (for a set that will extract it, but does not yet); 0: it jumps back */
 } noh_time_probe;
 
 /* Bytes of the working memory that measuring takes. */
 size_t noh_time_lod_measure_size(const noh_time_probe *probe);
 
-/* Measure what a motion, played in its own loop mode, is off at most when it is posed at each rate: over intervals that
- * begin every 400 ticks, every 200 ticks within each, for any point within a joint's reach of it, in object
- * space (without root motion where the set takes it out). For a converter, or when a set is loaded: ten
- * seconds of 31 joints take about 0.1 s.
- * shapes  error_m[NOH_RATE_COUNT]; that of the full rate is 0
+/* Measure the largest error of a clip, played in its own loop mode, at each update rate: over periods that begin every 400
+ * ticks, every 200 ticks within each, for any point within a joint's radius, in object space (without root motion where
+ * the set extracts it). For converters and for load time: ten seconds of 31 joints take about 0.1 s.
+ * shapes  error_m[NOH_RATE_COUNT]; at the full rate it is 0
  * units   model units, as metres
- * memory  16-byte aligned
- * errors  ARG probe, motion, memory; MEMORY need: the bytes
- * A largest value found, not a proof; of each place, though, a bound: the difference of two matrices moves a
- * point by at most its norm, taken up to 15 % too high (Schatten's 8-norm) */
+ * errors  ARG probe, motion, or memory NULL or not 16-byte aligned; MEMORY too small; need: the exact bytes
+ * The result is the largest error found, not a proof for all ticks. At each tick it is a bound: a difference of two matrices
+ * moves a point by at most its norm, which is overestimated by up to 15 % (the Schatten 8-norm) */
 noh_result noh_time_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t motion, float *error_m, noh_error *error);
 
-/* The errors of what a controller plays: the worst of the blended tracks, plus the weighted sum of the additive ones.
- * Tracks faster than 1 have the square of their speed times the error: for motion that is smooth over a period.
+/* The errors of what a controller plays: the largest among its blended tracks plus the weighted sum of its additive ones.
+ * The error of a track faster than 1 grows with the square of its playback speed, as interpolation's does where a clip is
+ * smooth over an update period.
  * shapes  motion_error_m[motion_count of the set][NOH_RATE_COUNT], error_m[NOH_RATE_COUNT] */
 void noh_time_lod_error(const noh_controller *c, const float *motion_error_m, float *error_m);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

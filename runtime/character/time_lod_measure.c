@@ -1,4 +1,4 @@
-/* How much interpolation is off: time_lod.h, noh_time_lod_measure. */
+/* The error of interpolation between updates: time_lod.h, noh_time_lod_measure. */
 #include "base/arena.h"
 #include "character/measure_internal.h"
 
@@ -6,11 +6,12 @@ size_t noh_time_lod_measure_size(const noh_time_probe *probe)
 {
     noh_arena arena = noh_arena_measure();
     noh_rate_work w;
+    NOH_ASSERT(probe && probe->set);
     noh_rate_carve(&arena, probe->set, &w);
     return arena.used;
 }
 
-/* Any point within a joint's reach of it. */
+/* The largest error of any point within its joint's radius, plus that of the floats. */
 static float pose_off(void *user, const noh_time_probe *p, const noh_rate_work *w, float part, float least)
 {
     const float floats = noh_rate_floats_off(p, w, part);
@@ -25,20 +26,22 @@ static float pose_off(void *user, const noh_time_probe *p, const noh_rate_work *
         }
         worst = p->joint_reach_m[j] >= 0.0f ? noh_probe_off(difference, p->joint_reach_m[j], worst) : worst;
     }
-    /* Nothing found, nothing added: sums of what was taken away and put back would creep up. */
+    /* Where nothing worse was found `least` is returned as it came: subtracting the floats and adding them again would let it
+     * creep up by rounding. */
     return (worst > enough || floats > least) && worst + floats > least ? worst + floats : least;
 }
 
 noh_result noh_time_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t motion, float *error_m, noh_error *error)
 {
-    const char *what = probe->joint_reach_m ? noh_probe_fault(probe, motion) : "probe";
+    const char *what = probe->joint_reach_m ? noh_probe_fault(probe, motion) : "probe: joint_reach_m is NULL";
     noh_result result;
-    noh_arena arena = noh_arena_over(memory, bytes);
+    noh_arena arena;
     noh_rate_work w;
+    NOH_ASSERT(probe && error_m);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, motion, 0);
     }
-    result = noh_probe_check_memory(memory, bytes, noh_time_lod_measure_size(probe), error);
+    result = noh_arena_open(&arena, memory, bytes, noh_time_lod_measure_size(probe), error);
     if (result) {
         return result;
     }

@@ -6,7 +6,7 @@
 
 typedef struct work {
     const noh_time_points *points;
-    float *off; /* [joint_count][12] what each joint's matrix is off */
+    float *off; /* [joint_count][12] the error of each joint's matrix: mixed minus true */
     noh_rate_work rates;
 } work;
 
@@ -20,11 +20,12 @@ size_t noh_time_points_size(const noh_time_probe *probe)
 {
     noh_arena arena = noh_arena_measure();
     work w;
+    NOH_ASSERT(probe && probe->set);
     carve(&arena, probe->set, &w);
     return arena.used;
 }
 
-/* How far a point is off, squared. */
+/* A point's error, squared: the errors of its joints' matrices, applied to it and blended as skinning blends them. */
 static float point_off(const noh_time_hold *holds, uint32_t count, const float *off)
 {
     float way[3] = { 0.0f, 0.0f, 0.0f };
@@ -61,7 +62,7 @@ static const char *bad_argument(const noh_time_probe *p, const noh_time_points *
     *where = motion;
     if (what) return what;
     *where = 0;
-    if (!points->holds || !points->point_count || !points->holds_per_point) return "points";
+    if (!points->holds || !points->point_count || !points->holds_per_point) return "points: none";
     for (size_t i = 0; i < (size_t)points->point_count * points->holds_per_point; i++) {
         *where = i;
         if (points->holds[i].weight > 0.0f && points->holds[i].joint >= p->set->joint_count) return "points: no such joint";
@@ -74,13 +75,14 @@ noh_result noh_time_points_measure(void *memory, size_t bytes, const noh_time_pr
 {
     size_t where;
     const char *what = bad_argument(probe, points, motion, &where);
-    noh_arena arena = noh_arena_over(memory, bytes);
+    noh_arena arena;
     noh_result result;
     work w;
+    NOH_ASSERT(probe && points && error_m);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, where, 0);
     }
-    result = noh_probe_check_memory(memory, bytes, noh_time_points_size(probe), error);
+    result = noh_arena_open(&arena, memory, bytes, noh_time_points_size(probe), error);
     if (result) {
         return result;
     }

@@ -1,35 +1,44 @@
-/* time_lod_points.h: what posing less often than once a frame moves the points of a mesh by (row C16.4).
+/* time_lod_points.h: the error of lower update rates, measured on points of a mesh.
  *
- * noh_time_lod_measure bounds any point within reach of a joint: safe, and on a body three to seven times what its
- * vertices are off. Here some vertices are looked at, exactly, and what lies between them is not. */
+ * noh_time_lod_measure bounds every point within a joint's radius: safe, but on a body three to seven times the error of
+ * its vertices. Here chosen vertices are measured exactly, and what lies between them is not looked at.
+ *
+ * Threads: as time_lod.h. */
 #ifndef NOH_CHARACTER_TIME_LOD_POINTS_H
 #define NOH_CHARACTER_TIME_LOD_POINTS_H
 
 #include "character/time_lod.h"
 
-/* How one joint holds a point: at a place in the joint's own space (inverse bind matrix times vertex). */
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* One joint's part in a point: its position in the joint's space (inverse bind matrix times vertex), and a weight. */
 typedef struct noh_time_hold {
     uint32_t joint;
-    float weight; /* 0: not at all */
+    float weight; /* 0: unused */
     float place[3];
 } noh_time_hold;
 
 typedef struct noh_time_points {
-    const noh_time_hold *holds; /* [point_count][holds_per_point], weights of each sum to 1 */
+    const noh_time_hold *holds; /* [point_count][holds_per_point]; the weights of a point sum to 1 */
     uint32_t point_count, holds_per_point;
 } noh_time_points;
 
 /* Bytes of the working memory that measuring takes. */
 size_t noh_time_points_size(const noh_time_probe *probe);
 
-/* The largest that a point is off when a motion, played in its own loop mode, is posed at each rate: over intervals
- * that begin every 400 ticks, every 200 ticks within each; and what the probe's floats add. joint_reach_m is not read.
- * Where the probe travels, a loop goes on from where it came, as noh_time_lod_measure has it.
- * For a converter, or when a set is loaded: ten seconds of 31 joints and 128 points take about 0.2 s.
- * shapes  error_m[NOH_RATE_COUNT]; that of the full rate is 0
- * memory  16-byte aligned
- * errors  ARG probe, motion, memory; points: none, or a joint that there is not (where: the hold); MEMORY need: the bytes */
+/* Measure the largest error of any point at each update rate, over the periods and ticks of noh_time_lod_measure, plus what
+ * the probe's floats add. joint_reach_m is not read. Ten seconds of 31 joints and 128 points take about 0.2 s.
+ * shapes  error_m[NOH_RATE_COUNT]; at the full rate it is 0
+ * units   model units, as metres
+ * errors  ARG probe, motion, points (none, or no such joint; where: the hold), or memory NULL or not 16-byte aligned; MEMORY
+ *         too small; need: the exact bytes */
 noh_result noh_time_points_measure(void *memory, size_t bytes, const noh_time_probe *probe, const noh_time_points *points, uint32_t motion,
                                    float *error_m, noh_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -29,7 +29,8 @@ void noh_box_unite(const float a[6], const float b[6], float out[6])
     }
 }
 
-/* Where the sum of weighted deltas may lie; weights below zero turn a target's box round. */
+/* The box of the sum of weighted differences: interval arithmetic per axis, since each target's difference lies in its box
+ * whatever the vertex. A negative weight swaps the ends of an interval. */
 static void delta_box(const noh_mesh *mesh, const float *weights, float box[6])
 {
     memset(box, 0, 6 * sizeof *box);
@@ -48,7 +49,8 @@ static void delta_box(const noh_mesh *mesh, const float *weights, float box[6])
     }
 }
 
-/* The box of a box moved by a matrix. */
+/* The box of a moved box (Arvo, Graphics Gems, 1990): its centre moves as a point, its half size by the absolute values of
+ * the matrix, because each axis of the result is largest in the corner where all terms are. */
 static void move_box(const float m[12], const float box[6], float out[6])
 {
     for (int r = 0; r < 3; r++) {
@@ -76,6 +78,7 @@ void noh_mesh_box(const noh_mesh *mesh, const float *world, const float *weights
 {
     static const float identity[12] = { 1.0f, 0.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f };
     float deltas[6], rest[6];
+    NOH_ASSERT(mesh && box);
     memcpy(rest, mesh->header->bounds_min, 3 * sizeof *rest);
     memcpy(rest + 3, mesh->header->bounds_max, 3 * sizeof *rest);
     delta_box(mesh, weights, deltas);
@@ -88,7 +91,7 @@ void noh_mesh_box(const noh_mesh *mesh, const float *world, const float *weights
 static uint32_t joint_count(const noh_mesh *mesh)
 {
     noh_skin skin;
-    return noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin) ? 0 : skin.header->joint_count;
+    return noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin, NULL) ? 0 : skin.header->joint_count;
 }
 
 /* The box that both have. Returns 0 where there is none. */
@@ -144,6 +147,7 @@ typedef struct growth {
 static growth growth_of(const noh_mesh *mesh, const float *matrices, const float *weights, uint32_t count)
 {
     growth g;
+    NOH_ASSERT(matrices || !count);
     delta_box(mesh, weights, g.deltas);
     g.reach = (mesh->header->flags & NOH_MESH_DUAL_QUATERNION) ? arc_reach(mesh, matrices, g.deltas, count) : 0.0f;
     return g;
@@ -167,6 +171,7 @@ void noh_skin_joint_boxes(const noh_mesh *mesh, const float *matrices, const flo
 {
     uint32_t count = joint_count(mesh);
     growth g = growth_of(mesh, matrices, weights, count);
+    NOH_ASSERT(boxes);
     for (size_t j = 0; j < count; j++) {
         joint_box(mesh, matrices, &g, j, boxes + 6u * j);
     }

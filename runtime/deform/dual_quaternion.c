@@ -10,8 +10,11 @@
 
 /* ---- polar decomposition ---- */
 
-/* R of A = R H by Newton's iteration R <- (R + R^-T) / 2 (Higham 1986), from A brought to about unit size. m: 3 rows of 4,
- * the fourth column is not looked at. Returns 0 where A has no inverse. */
+/* R of the polar decomposition A = R H by Newton's iteration R <- (R + R^-T) / 2 (Higham, Computing the polar
+ * decomposition, 1986). In terms of the singular values of R, each becomes the mean of itself and its reciprocal while
+ * the directions stay: all go to 1, quadratically once they are near. A is first brought to about unit size, which saves
+ * the steps that would only halve large values. m: 3 rows of 4, the fourth column is unused. Returns 0 where A has no
+ * inverse. */
 static int polar_rotation(const float a[12], float m[12])
 {
     float size = noh_sqrt((noh_dot3(a, a) + noh_dot3(a + 4, a + 4) + noh_dot3(a + 8, a + 8)) / 3.0f), c[9], change = 1.0f;
@@ -38,7 +41,8 @@ static int polar_rotation(const float a[12], float m[12])
     return 1;
 }
 
-/* A rotation's quaternion; the largest of its four is found first, so that no division is by a small number. */
+/* The quaternion of a rotation. Each row below is the quaternion times four of one of its components, from sums and
+ * differences of the matrix; the row of the largest component is exact where the others cancel, and is normalised. */
 static void rotation_quaternion(const float m[12], float q[4])
 {
     const float squares[4] = { 1.0f + m[0] - m[5] - m[10], 1.0f - m[0] + m[5] - m[10], 1.0f - m[0] - m[5] + m[10],
@@ -92,7 +96,9 @@ static void add_scaled(float *sum, const float *values, float factor, int count)
     }
 }
 
-/* The stretch as 3 rows of 4, and the rigid motion, of one vertex. */
+/* The weighted sums of one vertex's joints, with the rotation part unit. r and -r are one rotation: those on the far side of
+ * the strongest joint's are negated, or the blend would go the long way round. |r| is at least that joint's weight: no
+ * division by 0. */
 static void blend(const noh_dual_quaternion *joints, const uint32_t *places, const float *weights, uint32_t count,
                   noh_dual_quaternion *sum)
 {
@@ -105,7 +111,7 @@ static void blend(const noh_dual_quaternion *joints, const uint32_t *places, con
         add_scaled(sum->dual, joint->dual, shorter, 4);
         add_scaled(sum->stretch, joint->stretch, weights[i], 9);
     }
-    inverse = 1.0f / noh_sqrt(noh_quat_dot(sum->real, sum->real)); /* at least the strongest weight, squared */
+    inverse = 1.0f / noh_sqrt(noh_quat_dot(sum->real, sum->real));
     for (int i = 0; i < 4; i++) {
         sum->real[i] *= inverse;
         sum->dual[i] *= inverse;
@@ -135,6 +141,7 @@ void noh_skin_vertex_dual(const noh_mesh *mesh, const noh_dual_quaternion *joint
     float weights[NOH_INFLUENCES_MAX];
     uint32_t count = noh_mesh_influences(mesh, index, places, weights);
     noh_dual_quaternion sum;
+    NOH_ASSERT(joints && out && mesh->header->skin != NOH_NONE);
     blend(joints, places, weights, count, &sum);
     if (layers) {
         noh_morph_vertex(mesh, layers, index, out);

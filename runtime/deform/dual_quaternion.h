@@ -1,4 +1,4 @@
-/* dual_quaternion.h: skinning that keeps volume where joints twist (row E1).
+/* dual_quaternion.h: skinning that keeps volume where joints twist.
  *
  * Linear blending of matrices flattens what lies between two joints that twist against
  * each other ("candy wrapper"); blending rigid motions as dual quaternions does not.
@@ -18,11 +18,16 @@
  *   rotate(r, v) = v + 2 cross(r, cross(r, v) + r_w v)
  * A joint alone moves its vertices exactly as its matrix does, scale and mirror included.
  * source  Kavan, Collins, Zara, O'Sullivan: Geometric skinning with approximate dual
- *         quaternion blending, 2008; the stretch in a first phase is theirs too (section 4.2) */
+ *         quaternion blending, 2008; the stretch in a first phase is theirs too (section 4.2)
+ * Threads: no state; any thread. */
 #ifndef NOH_DEFORM_DUAL_QUATERNION_H
 #define NOH_DEFORM_DUAL_QUATERNION_H
 
 #include "deform/morph.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 /* One joint: 2 x 4 floats of rigid motion and the stretch. */
 typedef struct noh_dual_quaternion {
@@ -31,24 +36,28 @@ typedef struct noh_dual_quaternion {
     float stretch[9]; /* [3][3] rows, symmetric */
 } noh_dual_quaternion;
 
-/* Split a matrix of 3 rows of 4. Where its axes have no length or lie in a plane there is no one rotation: then it
- * is the identity and all of A is stretch. */
+/* Split a matrix of 3 rows of 4. Where its axes vanish or lie in a plane the rotation is not defined: it is then the
+ * identity, and all of A is stretch. */
 void noh_dual_quaternion_from_matrix(const float matrix[12], noh_dual_quaternion *out);
 
-/* What moves the vertices of a skin's meshes, made once per instance and frame, out of noh_skin_matrices.
+/* The same for all joints of a skin, made once per instance and frame from noh_skin_matrices.
  * shapes  matrices[count][12], out[count] */
 void noh_skin_dual_quaternions(const float *matrices, uint32_t count, noh_dual_quaternion *out);
 
-/* One vertex as drawn, in model space. shapes: joints[skin's joint_count]; layers NULL: no morphs. */
+/* One vertex as drawn, in model space. shapes: joints[skin's joint_count]; layers NULL: no morph targets. */
 void noh_skin_vertex_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers, uint32_t index,
                           noh_vertex *out);
 
-/* Its position alone, in the same bits. */
+/* Only its position, in the same bits. */
 void noh_skin_position_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers, uint32_t index,
                             float out[3]);
 
 /* As noh_skin_vertices. */
 void noh_skin_vertices_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers,
                             uint32_t first, uint32_t count, float *positions, float *normals, float *tangents);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -10,14 +10,7 @@
 
 #include "base/math.h"
 
-/* gcc's -O2 leaves short loops over arrays of lanes as they are, in memory; unrolled they stay in registers. */
-#if defined(__GNUC__) && !defined(__clang__)
-#define NOH_UNROLL _Pragma("GCC unroll 8")
-#else
-#define NOH_UNROLL
-#endif
-
-#if defined(__AVX2__)
+#if defined(NOH_AVX2)
 #include <immintrin.h>
 #define NOH_LANES 8
 typedef __m256 lanes;
@@ -71,7 +64,7 @@ static inline void lanes_rows(const lanes columns[4], float *rows, size_t stride
     }
 }
 
-#elif defined(__SSE2__)
+#elif defined(NOH_SSE2)
 #include <emmintrin.h>
 #define NOH_LANES 4
 typedef __m128 lanes;
@@ -111,7 +104,7 @@ static inline void lanes_rows(const lanes columns[4], float *rows, size_t stride
     }
 }
 
-#elif defined(__ARM_NEON) && defined(__aarch64__) /* 32-bit NEON flushes subnormals: not the same bits */
+#elif defined(NOH_NEON)
 #include <arm_neon.h>
 #define NOH_LANES 4
 typedef float32x4_t lanes;

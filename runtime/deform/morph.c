@@ -11,7 +11,9 @@ static noh_field make_field(unsigned before, unsigned bits, float weight)
     return f;
 }
 
-/* Where the fields of a target's words lie; scales and weight make one factor, as on the GPU. */
+/* A delta texel is three words, one for each axis; each word holds the position, the normal and the tangent difference of
+ * that axis as two's complement integers, from the top bit down. Shifted left to the top and then right arithmetically, a
+ * field is its integer; scale and weight make one factor, as on the GPU, so that CPU and GPU round the same products. */
 static void target_fields(const noh_target *t, float weight, noh_field f[3])
 {
     f[0] = make_field(0, t->position_bits, t->position_scale * weight);
@@ -26,7 +28,8 @@ static void run_simd(const uint32_t *words, size_t count, const noh_field f[3], 
     noh_add_run(words, count, f, layers);
 }
 
-/* Every row of every rectangle of one target. */
+/* Every row of every rectangle of one target. The delta texels of a target lie in the order of its rectangles, row by
+ * row, so that a row is one run of words in the pack and one run of floats in each layer: the inner loop only streams. */
 static void accumulate_target(const noh_mesh *mesh, const noh_target *t, const noh_field f[3], const noh_morph_layers *layers,
                               run_function run)
 {
@@ -44,8 +47,22 @@ static void accumulate_target(const noh_mesh *mesh, const noh_target *t, const n
     }
 }
 
+#if NOH_ASSERT_LEVEL >= 2
+static int all_finite(const float *values, uint32_t count)
+{
+    uint32_t finite = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        finite += values[i] - values[i] == 0.0f;
+    }
+    return finite == count;
+}
+#endif
+
 static void accumulate(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers, run_function run)
 {
+    NOH_ASSERT(mesh && weights && layers);
+    NOH_ASSERT(layers->position || !mesh->header->touched_count);
+    NOH_VALIDATE(all_finite(weights, mesh->header->target_count));
     for (uint32_t i = 0; i < mesh->header->target_count; i++) {
         noh_field f[3];
         if (weights[i] != 0.0f) {
@@ -76,25 +93,25 @@ static size_t layer_texels(const noh_mesh *mesh)
 
 size_t noh_morph_layers_size(const noh_mesh *mesh)
 {
+    NOH_ASSERT(mesh && mesh->header);
     return layer_texels(mesh) * 9u * sizeof(float);
 }
 
 noh_result noh_morph_layers_init(void *memory, size_t bytes, const noh_mesh *mesh, noh_morph_layers *layers, noh_error *error)
 {
-    size_t floats = layer_texels(mesh) * 3u;
-    size_t need = noh_morph_layers_size(mesh);
-    if (((uintptr_t)memory & 3u) != 0 || (!memory && need)) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for morph layers is NULL or not 4-byte aligned", 0, need);
-    }
-    if (bytes < need) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory for morph layers is too small", bytes, need);
-    }
-    layers->position = (float *)memory;
-    layers->normal = need ? layers->position + floats : NULL;
-    layers->tangent = need ? layers->normal + floats : NULL;
+    const size_t floats = layer_texels(mesh) * 3u, need = noh_morph_layers_size(mesh);
+    NOH_ASSERT(layers);
     if (need) {
+        noh_arena arena;
+        const noh_result result = noh_arena_open(&arena, memory, bytes, need, error);
+        if (result) {
+            return result;
+        }
         memset(memory, 0, need);
     }
+    layers->position = need ? (float *)memory : NULL;
+    layers->normal = need ? layers->position + floats : NULL;
+    layers->tangent = need ? layers->normal + floats : NULL;
     return NOH_OK;
 }
 

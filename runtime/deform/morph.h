@@ -1,39 +1,50 @@
-/* morph.h: morph targets accumulated on the CPU.
+/* morph.h: morph targets accumulated on the CPU: the reference for every GPU path, the fallback where there is none, and
+ * the surface that picking sees.
  *
- * The reference for every GPU path, the fallback where there is none, and the
- * surface that picking uses. What is accumulated is deltas only, in three
- * layers (position, normal, tangent), one texel per touched vertex (rows A4-A7,
- * C8.3): layer += weight * (target - base), targets in index order, one product
- * and one sum per value, never fused. The SIMD path is chosen when the library
- * is compiled (AVX2, SSE2, NEON, else scalar); all give the scalar bits. */
+ * Only differences are accumulated, in three layers (position, normal, tangent), one accumulation texel for each vertex
+ * that any target moves. For each target, in index order, and each of its delta texels:
+ *   layer += weight * delta
+ * with one product and one sum per value, never fused. The SIMD path is chosen when the library is compiled (AVX2, SSE2,
+ * NEON, else scalar); each gives the scalar bits.
+ * source  Microsoft, SparseMorphTargets (DirectX SDK): additive blending of sparse rectangles into three render
+ *         targets. There the accumulator begins as the mesh; here it begins at 0, so that half floats round the small
+ *         differences and not the coordinates. Loops over targets outside and moved vertices inside, weights by target:
+ *         Granberg, Character Animation with Direct3D, 2009, chapter 8 (whose listing indexes weights by vertex)
+ * Threads: no state; any thread, each with layers of its own. */
 #ifndef NOH_DEFORM_MORPH_H
 #define NOH_DEFORM_MORPH_H
 
+#include "base/arena.h"
 #include "base/half.h"
 #include "mesh/mesh.h"
 
-/* Accumulated deltas of one instance. The three layers lie one behind another,
- * each [morph_height << morph_width_log2][3] floats. */
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Accumulated differences of one instance, model units. The three layers are adjacent in memory, each
+ * [morph_height << morph_width_log2][3]. */
 typedef struct noh_morph_layers {
     float *position, *normal, *tangent;
 } noh_morph_layers;
 
-/* Exact bytes of the layers of a mesh; 0 for a mesh that no target touches. */
+/* Exact bytes of the layers of a mesh; 0 for a mesh that no target moves. */
 size_t noh_morph_layers_size(const noh_mesh *mesh);
 
-/* Place the layers in memory[bytes], 4-byte aligned, and clear them.
- * errors  MEMORY with the bytes needed */
+/* Place the layers in memory[bytes], aligned to NOH_MEMORY_ALIGN, and clear them. A mesh without accumulation texels needs
+ * none: memory may then be NULL.
+ * errors  ARG memory is NULL or misaligned; MEMORY it is too small; need: the bytes */
 noh_result noh_morph_layers_init(void *memory, size_t bytes, const noh_mesh *mesh, noh_morph_layers *layers, noh_error *error);
 
 /* Accumulate all targets whose weight is not zero into cleared layers.
- * shapes  weights[target_count], any finite value */
+ * shapes  weights[target_count]
+ * ranges  any finite value; below 0 and above 1 extrapolate */
 void noh_morph_accumulate(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers);
 
-/* The same in plain C: what the others are held equal to. */
+/* The same in plain C: the reference of the SIMD paths. */
 void noh_morph_accumulate_scalar(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers);
 
-/* What a GPU leaves in a half-float accumulator that it blends into: after each
- * target the sum is rounded to half in the given mode. */
+/* The contents of a half-float accumulator that a GPU blends into: the sum is rounded to half after each target. */
 void noh_morph_accumulate_f16(const noh_mesh *mesh, const float *weights, noh_half_mode mode, const noh_morph_layers *layers);
 
 /* Round finished layers to half once: the gather path's half-float result. */
@@ -42,18 +53,23 @@ void noh_morph_round_f16(const noh_mesh *mesh, noh_half_mode mode, const noh_mor
 /* "scalar", "sse2", "avx2" or "neon": what noh_morph_accumulate was compiled to. */
 const char *noh_morph_simd(void);
 
-/* The vertex as drawn: base + deltas, normal and tangent made unit again, the
- * tangent orthogonal to the normal, its handedness untouched (row A11). */
+/* The vertex as drawn: position, normal and tangent of the bind pose plus their differences. The normal is made unit, the
+ * tangent orthogonal to it and unit; its handedness stays. A direction that vanishes becomes the bind pose's.
+ * ranges  index below vertex_count */
 void noh_morph_vertex(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t index, noh_vertex *out);
 
-/* Its position alone: base + delta. layers NULL: the base. */
+/* Only its position. layers NULL: that of the bind pose. */
 void noh_morph_position(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t index, float out[3]);
 
-/* One column of the work: (vertex, target) pairs that these weights touch, and the
- * texels and rectangles that hold them. For cost models and reports. */
+/* The work that these weights cause: targets whose weight is not 0, their rectangles, delta texels and pairs. For cost
+ * models and reports. */
 typedef struct noh_morph_cost {
     uint32_t targets, rects, texels, pairs;
 } noh_morph_cost;
 noh_morph_cost noh_morph_cost_of(const noh_mesh *mesh, const float *weights);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

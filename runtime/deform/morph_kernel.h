@@ -11,13 +11,15 @@
 #include <stdint.h>
 #include <string.h>
 
-#if defined(__AVX2__)
+#include "base/compiler.h"
+
+#if defined(NOH_AVX2)
 #include <immintrin.h>
 #define NOH_MORPH_SIMD "avx2"
-#elif defined(__SSE2__)
+#elif defined(NOH_SSE2)
 #include <emmintrin.h>
 #define NOH_MORPH_SIMD "sse2"
-#elif defined(__ARM_NEON) && defined(__aarch64__) /* 32-bit NEON flushes subnormals: not the same bits */
+#elif defined(NOH_NEON)
 #include <arm_neon.h>
 #define NOH_MORPH_SIMD "neon"
 #else
@@ -44,7 +46,7 @@ static inline void noh_add_run_scalar(const uint32_t *words, size_t count, noh_f
     }
 }
 
-#if defined(__SSE2__) /* AVX2 has it too */
+#if defined(NOH_SSE2) /* AVX2 has it too */
 static inline __m128 noh_add_four(__m128i q, noh_field f, __m128 layer)
 {
     q = _mm_sra_epi32(_mm_sll_epi32(q, _mm_cvtsi32_si128((int)f.left)), _mm_cvtsi32_si128((int)f.right));
@@ -85,7 +87,7 @@ static inline void noh_add_tail(const uint32_t *words, size_t count, noh_field f
 }
 #endif
 
-#if defined(__AVX2__)
+#if defined(NOH_AVX2)
 #define NOH_MORPH_STEP 8u
 static inline void noh_add_step(const uint32_t *words, noh_field f, float *layer)
 {
@@ -93,13 +95,13 @@ static inline void noh_add_step(const uint32_t *words, noh_field f, float *layer
     q = _mm256_sra_epi32(_mm256_sll_epi32(q, _mm_cvtsi32_si128((int)f.left)), _mm_cvtsi32_si128((int)f.right));
     _mm256_storeu_ps(layer, _mm256_add_ps(_mm256_loadu_ps(layer), _mm256_mul_ps(_mm256_cvtepi32_ps(q), _mm256_set1_ps(f.weight))));
 }
-#elif defined(__SSE2__)
+#elif defined(NOH_SSE2)
 #define NOH_MORPH_STEP 4u
 static inline void noh_add_step(const uint32_t *words, noh_field f, float *layer)
 {
     noh_add_step4(words, f, layer);
 }
-#elif defined(__ARM_NEON) && defined(__aarch64__) /* 32-bit NEON flushes subnormals: not the same bits */
+#elif defined(NOH_NEON)
 #define NOH_MORPH_STEP 4u
 static inline void noh_add_step(const uint32_t *words, noh_field f, float *layer)
 {

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "base/arena.h"
 #include "base/math.h"
 #include "deform/bounds.h"
 #include "deform/skin.h"
@@ -12,7 +13,8 @@ typedef struct ray {
     float origin[3], direction[3], limit; /* limit: the nearest hit so far */
 } ray;
 
-/* Slabs. A direction without a component along an axis is inside that slab or never. */
+/* A box is where three slabs meet; a ray is inside each slab for an interval of its distance, and in the box where the
+ * three intervals and 0..limit overlap. Without a component along an axis it is inside that slab always or never. */
 static int ray_meets_box(const ray *r, const float box[6])
 {
     float enter = 0.0f, leave = r->limit;
@@ -44,7 +46,9 @@ static void cross(const float a[3], const float b[3], float out[3])
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* Moller and Trumbore 1997. Fills distance and barycentric of a hit that is nearer than the limit. */
+/* Moller and Trumbore 1997: origin + t direction = a + u ab + v ac is three linear equations in t, u and v, solved by
+ * Cramer's rule; the scalar triple products share two cross products. The sign of the determinant says from which side
+ * the triangle is seen, and both count. Fills distance and barycentric of a hit that is nearer than the limit. */
 static int ray_meets_triangle(const ray *r, float corners[3][3], noh_pick_hit *hit)
 {
     float ab[3], ac[3], from[3], p[3], q[3], determinant, u, v, t;
@@ -96,8 +100,9 @@ static int boxes_meet(const float a[6], const float b[6])
     return a[0] <= b[3] && b[0] <= a[3] && a[1] <= b[4] && b[1] <= a[4] && a[2] <= b[5] && b[2] <= a[5];
 }
 
-/* For each joint where the vertices that it moves may be: the union of the boxes of all joints that may move one of
- * them too, for these vertices lie in both joints' rest boxes. */
+/* For each joint the box of where its vertices may be. A vertex lies within the hull of where each of its joints would put
+ * it, and each of its joints has it in its box of the bind pose, so only joints whose boxes meet there can share one: the
+ * union of their moved boxes holds it. Conservative, so no hit is lost; it is made once and spares most triangles. */
 static void neighbourhoods(const noh_mesh *mesh, uint32_t count, const float *boxes, float *out)
 {
     for (size_t j = 0; j < count; j++) {
@@ -200,7 +205,7 @@ static void finish(const noh_pick_surface *s, const ray *r, noh_pick_hit *hit)
 static uint32_t joint_count(const noh_mesh *mesh)
 {
     noh_skin skin;
-    return noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin) ? 0 : skin.header->joint_count;
+    return noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin, NULL) ? 0 : skin.header->joint_count;
 }
 
 size_t noh_pick_scratch_size(const noh_mesh *mesh)
@@ -231,18 +236,25 @@ static int may_hit(const noh_pick_surface *s, const ray *r, float *boxes, uint32
 noh_result noh_pick(const noh_pick_surface *surface, const float origin[3], const float direction[3], float distance_max, void *scratch,
                     size_t scratch_bytes, noh_pick_hit *hit, noh_error *error)
 {
-    uint32_t count = joint_count(surface->mesh);
-    size_t need = noh_pick_scratch_size(surface->mesh);
+    const uint32_t count = joint_count(surface->mesh);
+    const size_t need = noh_pick_scratch_size(surface->mesh);
     noh_pick_hit nearest = { 0 };
+    noh_arena arena;
+    noh_result result;
     ray r;
+    NOH_ASSERT(origin && direction && hit);
     memcpy(r.origin, origin, sizeof r.origin);
     memcpy(r.direction, direction, sizeof r.direction);
     r.limit = distance_max;
-    if ((count && !surface->matrices) || !(noh_dot3(direction, direction) > 0.0f)) {
-        return noh_fail(error, NOH_ERR_ARG, "a skinned mesh is picked without matrices, or the direction has no length", 0, 0);
+    if (count && !surface->matrices) {
+        return noh_fail(error, NOH_ERR_ARG, "a skinned mesh is picked without matrices", 0, 0);
     }
-    if (scratch_bytes < need || (need && !scratch)) {
-        return noh_fail(error, NOH_ERR_MEMORY, "scratch for picking is too small", scratch_bytes, need);
+    if (!(noh_dot3(direction, direction) > 0.0f)) {
+        return noh_fail(error, NOH_ERR_ARG, "the ray's direction has no length", 0, 0);
+    }
+    result = need ? noh_arena_open(&arena, scratch, scratch_bytes, need, error) : NOH_OK;
+    if (result) {
+        return result;
     }
     nearest.triangle = NOH_NONE;
     if (may_hit(surface, &r, (float *)scratch, count)) {
@@ -251,7 +263,7 @@ noh_result noh_pick(const noh_pick_surface *surface, const float origin[3], cons
         }
     }
     if (nearest.triangle == NOH_NONE) {
-        return NOH_ERR_NOT_FOUND;
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "the ray hits nothing within its reach", 0, 0);
     }
     finish(surface, &r, &nearest);
     *hit = nearest;

@@ -20,6 +20,8 @@ void NOH_SKIN_VERTICES(const noh_mesh *mesh, const float *matrices, const noh_mo
 {
     skin_job job = { mesh, matrices, layers, positions, normals, tangents, (mesh->header->flags & NOH_MESH_TANGENTS) != 0,
                      mesh->header->palette_count > 1, (mesh->header->flags & NOH_MESH_TEXELS) != 0, { NULL } };
+    NOH_ASSERT(matrices && mesh->header->skin != NOH_NONE);
+    NOH_ASSERT(first <= mesh->header->vertex_count && count <= mesh->header->vertex_count - first);
     for (uint32_t j = 0; !job.split && j < mesh->palettes[0].joint_count; j++) {
         job.joints[j] = matrices + 12u * (size_t)mesh->palette_joints[j];
     }
@@ -36,6 +38,7 @@ void NOH_SKIN_VERTICES(const noh_mesh *mesh, const float *matrices, const noh_mo
 
 void noh_skin_matrices(const noh_skin *skin, const float *model, float *matrices)
 {
+    NOH_ASSERT(skin && model && matrices);
     for (size_t j = 0; j < skin->header->joint_count; j++) {
         noh_matrix_multiply(model + 12u * (size_t)skin->joints[j], skin->inverse_bind + 12u * j, matrices + 12u * j);
     }
@@ -72,10 +75,13 @@ void noh_skin_apply(const float m[12], noh_vertex *vertex)
     }
 }
 
+/* Matrices are blended and then applied once, not applied by each joint and blended: twelve sums per joint and vertex
+ * whatever is moved, and the normal follows the very matrix that moved the position. */
 static void blend_matrix(const noh_mesh *mesh, const float *matrices, uint32_t index, float m[12])
 {
     uint32_t joints[NOH_INFLUENCES_MAX], count;
     float weights[NOH_INFLUENCES_MAX];
+    NOH_ASSERT(mesh->header->skin != NOH_NONE && index < mesh->header->vertex_count && matrices);
     count = noh_mesh_influences(mesh, index, joints, weights);
     for (size_t e = 0; e < 12; e++) {
         m[e] = weights[0] * matrices[12u * (size_t)joints[0] + e];

@@ -12,7 +12,7 @@
 #include "deform/morph.h"
 #include "deform/skin.h"
 
-/* What a call works on; `joints` is filled for meshes of one palette: a place's matrix at once. */
+/* The arguments of a call. `joints`, filled for meshes of one palette, gives the matrix of a place in it directly. */
 typedef struct skin_job {
     const noh_mesh *mesh;
     const float *matrices;
@@ -26,7 +26,7 @@ typedef struct skin_job {
 
 /* ---- one matrix per vertex ---- */
 
-#if defined(__AVX2__)
+#if defined(NOH_AVX2)
 /* Two rows side by side, and one. */
 static inline void blend_rows(const float *const *from, const float *weights, uint32_t count, float m[12])
 {
@@ -69,7 +69,7 @@ static inline void blend_rows(const float *const *from, const float *weights, ui
 }
 #endif
 
-/* noh_mesh_influences' weights, for a count that the compiler knows. */
+/* The weights of noh_mesh_influences, for a count that the compiler knows. */
 static inline void unpack_weights(const uint32_t *bits, uint32_t count, float *weights)
 {
     const float unit = 1.0f / (float)NOH_WEIGHT_ONE;
@@ -87,7 +87,7 @@ static inline void unpack_weights(const uint32_t *bits, uint32_t count, float *w
     weights[0] = (float)(int32_t)rest * unit;
 }
 
-/* What noh_mesh_texel and noh_mesh_palette take apart, of a mesh with texel references. */
+/* A vertex's texel reference and palette, of a mesh with texel references. */
 static inline uint32_t texel_word(const skin_job *job, uint32_t vertex)
 {
     const size_t stride = job->mesh->header->attribute_stride;
@@ -139,8 +139,8 @@ static inline void blend_block(const skin_job *job, uint32_t first, uint32_t cou
 
 /* ---- a block ---- */
 
-/* Positions, and the first four words of the records. Blocks that are not full come over a copy. What a load
- * takes past its vertex is the pack's: other arrays follow both of these. */
+/* Positions, and the first four words of the records. Blocks that are not full are copied first. A load
+ * reads past its vertex, but not past the pack: other arrays follow both of these. */
 static inline void load_block(const skin_job *job, uint32_t first, uint32_t count, lanes p[4], lanes words[4])
 {
     const size_t stride = job->mesh->header->attribute_stride;
@@ -187,13 +187,13 @@ static inline void make_unit_or_rest(lanes v[3], const lanes rest[3])
         make_unit(unit);
         lanes_normalize3(v, unit);
     } else {
-        lanes_normalize3(v, rest); /* which is not taken */
+        lanes_normalize3(v, rest); /* none is short: `rest` is never chosen */
     }
 }
 
 /* Deltas of the block's vertices that a target may move. */
 typedef struct skin_deltas {
-    float of[3][NOH_LANES][4]; /* position, normal, tangent; the fourth float is not looked at */
+    float of[3][NOH_LANES][4]; /* position, normal, tangent; the fourth float is unused */
     float touched[NOH_LANES];  /* 1, or 0 */
 } skin_deltas;
 

@@ -26,14 +26,23 @@ static int text_starts(const char *text, const char *start)
 
 GLenum noh_gl_error_take(const noh_gl_api *api)
 {
+    NOH_ASSERT(api && api->GetError);
     GLenum first = api->GetError();
     GLenum next = first;
     for (int i = 1; i < 16 && next != GL_NO_ERROR; i++) next = api->GetError();
     return first;
 }
 
+noh_result noh_gl_error_check(const noh_gl_api *api, const char *what, uint64_t need, noh_error *error)
+{
+    GLenum code = noh_gl_error_take(api);
+    if (code == GL_NO_ERROR) return NOH_OK;
+    return noh_fail(error, code == GL_OUT_OF_MEMORY ? NOH_ERR_MEMORY : NOH_ERR_GL, what, code, need);
+}
+
 int noh_gl_has_extension(const noh_gl_api *api, const char *name)
 {
+    NOH_ASSERT(api && name);
     GLint count = 0;
     api->GetIntegerv(GL_NUM_EXTENSIONS, &count);
     for (GLint i = 0; i < count; i++) {
@@ -43,13 +52,28 @@ int noh_gl_has_extension(const noh_gl_api *api, const char *name)
     return 0;
 }
 
-/* Returns the name of the first required function that is not there, or NULL. */
+/* Look up the function that `sentence` begins with; the first one that is not there becomes *missing. */
+static noh_gl_proc get_required(noh_gl_get_proc get, void *user, const char *sentence, const char **missing)
+{
+    char name[PROC_NAME_BYTES];
+    size_t length = 0;
+    noh_gl_proc proc;
+    while (sentence[length] != ' ' && length + 1 < sizeof name) {
+        name[length] = sentence[length];
+        length++;
+    }
+    name[length] = 0;
+    proc = get(user, name);
+    if (!proc && !*missing) *missing = sentence;
+    return proc;
+}
+
+/* Returns a sentence about the first required function that is not there, or NULL. */
 static const char *load_required(noh_gl_api *api, noh_gl_get_proc get, void *user)
 {
     const char *missing = NULL;
-#define NOH_GL_TAKE(field, TYPE)                            \
-    api->field = (PFNGL##TYPE##PROC)get(user, "gl" #field); \
-    if (!missing && !api->field) missing = "gl" #field;
+#define NOH_GL_TAKE(field, TYPE) \
+    api->field = (PFNGL##TYPE##PROC)get_required(get, user, "gl" #field " is missing", &missing);
     NOH_GL_REQUIRED(NOH_GL_TAKE)
 #undef NOH_GL_TAKE
 #define NOH_GL_TAKE(field, TYPE) api->field = (PFNGL##TYPE##PROC)get(user, "gl" #field);
@@ -69,7 +93,7 @@ static noh_result read_version(noh_gl_api *api, noh_error *error)
     api->version = major * 100 + minor * 10;
     /* ES 2.0 does not know GL_MAJOR_VERSION and leaves zeros. */
     if (noh_gl_error_take(api) != GL_NO_ERROR || api->version < 300) {
-        return noh_fail(error, NOH_ERR_UNSUPPORTED, "OpenGL ES 3.0 or later", (uint64_t)api->version, 300);
+        return noh_fail(error, NOH_ERR_UNSUPPORTED, "the context is older than OpenGL ES 3.0", (uint64_t)api->version, 300);
     }
     return NOH_OK;
 }
@@ -123,8 +147,8 @@ static void load_optional(noh_gl_api *api, noh_gl_get_proc get, void *user)
 
 noh_result noh_gl_api_load(noh_gl_api *api, noh_gl_get_proc get, void *user, noh_error *error)
 {
-    if (!api) return noh_fail(error, NOH_ERR_ARG, "api", 0, 0);
-    if (!get) return noh_fail(error, NOH_ERR_ARG, "get", 0, 0);
+    if (!api) return noh_fail(error, NOH_ERR_ARG, "the GL table to fill is NULL", 0, 0);
+    if (!get) return noh_fail(error, NOH_ERR_ARG, "the lookup function is NULL", 0, 0);
     noh_gl_api table;
     memset(&table, 0, sizeof table);
     const char *missing = load_required(&table, get, user);

@@ -2,12 +2,15 @@
  *
  *   noh_gl_api_load    fills the table through the caller's lookup function
  *   noh_gl_error_take  returns the oldest GL error and clears them all
+ *   noh_gl_error_check the same as a result: what every create asks last
  *
- * The library links no GL: the application makes a context with whatever it
- * likes, makes it current, and hands over a lookup function. The table is a
- * plain struct in the caller's memory and belongs to that context.
+ * The library links no GL: the application makes a context, makes it current, and
+ * passes a lookup function. The table is a plain struct in the caller's memory and
+ * belongs to that context.
  *
- * Call through it: `gl->DrawArrays(GL_TRIANGLES, 0, 3)`. */
+ * Call through it: `gl->DrawArrays(GL_TRIANGLES, 0, 3)`.
+ *
+ * Threads: the context's own thread, for every function. */
 #ifndef NOH_GL_GL_API_H
 #define NOH_GL_GL_API_H
 
@@ -19,9 +22,13 @@
 
 #include "base/result.h"
 
-/* What the library itself calls, all of it OpenGL ES 3.0 core: a table without one
- * of these is refused. tests/check_gl_calls.sh holds the list to the calls in
- * runtime/, and platform/README.md prints it for porters.
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What the library itself calls, all of it OpenGL ES 3.0 core; noh_gl_api_load refuses
+ * a context that lacks one. tests/check_gl_calls.sh compares the list with the calls
+ * in runtime/; platform/README.md prints it for porters.
  * X(field, the name as Khronos spells it in its PFNGL...PROC type) */
 #define NOH_GL_REQUIRED(X)                                         \
     /* state */                                                    \
@@ -118,8 +125,8 @@
     /* transform feedback */                                       \
     X(TransformFeedbackVaryings, TRANSFORMFEEDBACKVARYINGS)
 
-/* The rest of ES 3.0 that a renderer is likely to want beside the library: filled
- * in where the lookup knows it, NULL where not. The library never calls these. */
+/* More of ES 3.0 that a renderer is likely to need: NULL where the lookup does not
+ * know it. The library never calls these. */
 #define NOH_GL_EXTRA(X)                                            \
     /* state */                                                    \
     X(IsEnabled, ISENABLED)                                        \
@@ -189,10 +196,9 @@
     X(EndQuery, ENDQUERY)                                          \
     X(GetQueryObjectuiv, GETQUERYOBJECTUIV)
 
-/* Functions that a context may lack. One that is not NULL may be called: the
- * loader asked the version and the extension strings, because most lookups
- * answer with a stub for any name at all. Each field hides whether the function
- * is core, KHR, EXT or OES here.
+/* Functions that a context may lack. One that is not NULL may be called: the loader
+ * checks the version and the extension strings, because most lookups return a stub
+ * for any name. A field does not tell whether the function is core, KHR, EXT or OES.
  * X(field, type, name without suffix, group) */
 #define NOH_GL_OPTIONAL(X)                                                                        \
     X(FramebufferTexture, FRAMEBUFFERTEXTURE, "glFramebufferTexture", NOH_GL_GROUP_GEOMETRY)      \
@@ -233,14 +239,23 @@ typedef noh_gl_proc (*noh_gl_get_proc)(void *user, const char *name);
 /* Fill the table for the context that is current on this thread.
  * memory  none; `api` is untouched on error
  * errors  NOH_ERR_ARG api or get is NULL; NOH_ERR_UNSUPPORTED below ES 3.0, or a
- *         function of NOH_GL_REQUIRED is missing: `what` is its name; NOH_ERR_GL no current context */
+ *         function of NOH_GL_REQUIRED is missing: `what` names it; NOH_ERR_GL no current context */
 noh_result noh_gl_api_load(noh_gl_api *api, noh_gl_get_proc get, void *user, noh_error *error);
 
 /* 1 where the context lists the extension, 0 elsewhere. `name` in full, "GL_EXT_...". */
 int noh_gl_has_extension(const noh_gl_api *api, const char *name);
 
-/* The oldest pending GL error, GL_NO_ERROR where there is none. All are cleared,
- * but never more than 16 asked: a lost context answers for ever. */
+/* The oldest pending GL error, GL_NO_ERROR where there is none. All are cleared, with at
+ * most 16 calls of glGetError: a lost context reports an error every time. */
 GLenum noh_gl_error_take(const noh_gl_api *api);
+
+/* The oldest pending GL error as a result; all are cleared. A create clears them first and asks this last, so that it
+ * never says NOH_OK though the driver refused one of its calls.
+ * errors  MEMORY GL_OUT_OF_MEMORY; GL any other. `where` is the GL error; `what` and `need` are the arguments */
+noh_result noh_gl_error_check(const noh_gl_api *api, const char *what, uint64_t need, noh_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -23,7 +23,7 @@ typedef struct probe {
     GLint first_row; /* a uniform of floats */
 } probe;
 
-/* What drawing into a float format gave. */
+/* The result of drawing into a float format. */
 typedef struct float_result {
     int stored, stored_exact, blended, blended_exact;
     noh_half_mode store_mode, blend_mode;
@@ -128,7 +128,11 @@ static int draw_and_read(const probe *p, GLint first_row, GLsizei rows, float pi
     return noh_gl_error_take(p->api) == GL_NO_ERROR;
 }
 
-/* --- comparing --- */
+/* --- comparing ---
+ *
+ * What lies in a target is compared with three models of it: exact float32 sums, and halves that were rounded toward zero
+ * or to nearest after each pass. The values are chosen so that the two roundings differ, ties included; the model that
+ * matches every bit is how this driver rounds. If none does, a half-float result is only held to a bound. */
 
 /* The models of what lies in the target after some passes, one per rounding. */
 typedef struct models {
@@ -311,7 +315,7 @@ static int probe_layered(const probe *p)
     return right;
 }
 
-/* A counter of 0 bits is how a driver lists the extension and does not time. */
+/* A driver that lists the extension but cannot time has a counter of 0 bits. */
 static int probe_timer(const noh_gl_api *gl)
 {
     if (!gl->TimeGenQueries || !gl->TimeDeleteQueries || !gl->TimeBeginQuery || !gl->TimeEndQuery ||
@@ -376,12 +380,14 @@ static void read_limits(const noh_gl_api *api, noh_gl_caps *out)
 
 const char *noh_gl_geometry_version(const noh_gl_api *api)
 {
+    NOH_ASSERT(api);
     if (!api->FramebufferTexture) return NULL;
     return api->geometry_ext ? "#version 310 es\n" : "#version 320 es\n";
 }
 
 const char *noh_gl_geometry_defines(const noh_gl_api *api)
 {
+    NOH_ASSERT(api);
     if (api->geometry_ext == 1) return "#extension GL_EXT_geometry_shader : require\n";
     if (api->geometry_ext == 2) return "#extension GL_OES_geometry_shader : require\n";
     return NULL;
@@ -427,7 +433,7 @@ static noh_result start(probe *p, noh_error *error)
     }
     p->first_row = gl->GetUniformLocation(p->floats, "first_row");
     GLenum code = noh_gl_error_take(gl);
-    if (code != GL_NO_ERROR) return noh_fail(error, NOH_ERR_GL, "the probe's texture", code, 0);
+    if (code != GL_NO_ERROR) return noh_fail(error, NOH_ERR_GL, "the driver refuses the texture of the probe", code, 0);
     return NOH_OK;
 }
 
@@ -470,8 +476,8 @@ static void run_probes(const probe *p, noh_gl_caps *caps)
 
 noh_result noh_gl_caps_probe(const noh_gl_api *api, noh_gl_caps *out, noh_error *error)
 {
-    if (!api) return noh_fail(error, NOH_ERR_ARG, "api", 0, 0);
-    if (!out) return noh_fail(error, NOH_ERR_ARG, "out", 0, 0);
+    if (!api) return noh_fail(error, NOH_ERR_ARG, "the GL table is NULL", 0, 0);
+    if (!out) return noh_fail(error, NOH_ERR_ARG, "the struct for the capabilities is NULL", 0, 0);
     noh_gl_caps caps;
     probe p;
     GLint viewport[4] = {0, 0, 0, 0};

@@ -7,12 +7,18 @@
  * Extension strings lie both ways: OSMesa blends floats without listing the
  * extension, some drivers list formats that they cannot render. So each ability
  * is decided by doing it once, on 16 texels. The struct is plain: a test, or a
- * user with a driver bug, may clear any field after the probe. */
+ * user with a driver bug, may clear any field after the probe.
+ *
+ * Threads: the context's own thread, for every function. */
 #ifndef NOH_GL_GL_CAPS_H
 #define NOH_GL_GL_CAPS_H
 
 #include "gl/gl_api.h"
 #include "base/half.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 typedef struct noh_gl_caps {
     int version;             /* major * 100 + minor * 10 */
@@ -65,5 +71,9 @@ noh_result noh_gl_caps_probe(const noh_gl_api *api, noh_gl_caps *out, noh_error 
  * #extension is needed. */
 const char *noh_gl_geometry_version(const noh_gl_api *api);
 const char *noh_gl_geometry_defines(const noh_gl_api *api);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -14,6 +14,7 @@ static void join(char text[NOH_GL_LABEL_BYTES], const char *what, const char *of
 void noh_gl_label(const noh_gl_api *api, GLenum kind, GLuint name, const char *what, const char *of)
 {
     char text[NOH_GL_LABEL_BYTES];
+    NOH_ASSERT(api && what);
     if (!api->ObjectLabel) return;
     join(text, what, of);
     api->ObjectLabel(kind, name, -1, text);
@@ -22,6 +23,7 @@ void noh_gl_label(const noh_gl_api *api, GLenum kind, GLuint name, const char *w
 void noh_gl_group_begin(const noh_gl_api *api, const char *what, const char *of)
 {
     char text[NOH_GL_LABEL_BYTES];
+    NOH_ASSERT(api && what);
     if (!api->PushDebugGroup || !api->PopDebugGroup) return;
     join(text, what, of);
     api->PushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, GROUP_ID, -1, text);

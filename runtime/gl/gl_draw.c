@@ -5,6 +5,7 @@
 
 void noh_gl_draw_begin(const noh_gl_renderer *r, const noh_gl_camera *camera)
 {
+    NOH_ASSERT(r && r->gl && camera);
     noh_gl_group_begin(r->gl, "noh meshes", NULL);
     r->gl->Enable(GL_DEPTH_TEST);
     r->gl->DepthFunc(GL_LEQUAL);
@@ -20,7 +21,7 @@ void noh_gl_draw_begin(const noh_gl_renderer *r, const noh_gl_camera *camera)
     }
 }
 
-/* ---- what a mesh brings ---- */
+/* ---- uniforms, attributes, textures ---- */
 
 static void set_mesh(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_gl_mesh *mesh,
                      const noh_gl_morph_binding *morph)
@@ -41,7 +42,7 @@ static void set_mesh(const noh_gl_renderer *r, const noh_gl_variant *v, const no
     r->gl->BindVertexArray(mesh->vertex_array);
 }
 
-/* What a crowd's instances have each for themselves. */
+/* What each instance of a crowd has in its own rows instead. */
 static void set_instance(const noh_gl_renderer *r, const noh_gl_variant *v, const float world[12],
                          const noh_gl_morph_binding *morph)
 {
@@ -66,6 +67,7 @@ static const noh_material *material_of(const noh_gl_mesh *mesh, const noh_submes
 static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m, const noh_gl_texture *pictures)
 {
     GLuint texture = m->base_color_texture == NOH_NONE ? r->white.name : pictures[m->base_color_texture].name;
+    NOH_ASSERT(texture); /* a picture that was not made */
     r->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_BASE_COLOR);
     r->gl->BindTexture(GL_TEXTURE_2D, texture);
     r->gl->Uniform4fv(v->u_base_color, 1, m->base_color);
@@ -82,7 +84,7 @@ static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, cons
 
 static const noh_gl_detail whole = { 0, 0.0f, 1.0f };
 
-/* NULL where the renderer was not told of such a draw, or it has no pixels. */
+/* NULL where the renderer's desc had no such draw, or no pixel is to be drawn. */
 static const noh_gl_variant *variant_of(const noh_gl_renderer *r, const noh_gl_mesh *mesh, const noh_gl_skin_binding *skin, int crowd,
                                         const noh_gl_detail *detail)
 {
@@ -141,6 +143,8 @@ void noh_gl_draw_mesh(const noh_gl_renderer *r, const noh_gl_mesh *mesh, const f
 {
     const noh_gl_detail *d = detail ? detail : &whole;
     const noh_gl_variant *v = variant_of(r, mesh, skin, 0, d);
+    NOH_ASSERT(world && mesh->vertex_array && (pass == NOH_DRAW_OPAQUE || pass == NOH_DRAW_BLENDED));
+    NOH_ASSERT(!morph || morph->is_uint == r->layers_uint);
     if (v) {
         set_mesh(r, v, mesh, morph);
         set_instance(r, v, world, morph);
@@ -154,6 +158,8 @@ void noh_gl_draw_crowd(const noh_gl_renderer *r, const noh_gl_mesh *mesh, const 
 {
     const noh_gl_detail *d = detail ? detail : &whole;
     const noh_gl_variant *v = variant_of(r, mesh, first, 1, d);
+    NOH_ASSERT(mesh->vertex_array && (pass == NOH_DRAW_OPAQUE || pass == NOH_DRAW_BLENDED));
+    NOH_ASSERT(!morph || morph->is_uint == r->layers_uint);
     if (v && count) {
         set_mesh(r, v, mesh, morph);
         r->gl->FrontFace(GL_CCW);
@@ -163,6 +169,7 @@ void noh_gl_draw_crowd(const noh_gl_renderer *r, const noh_gl_mesh *mesh, const 
 
 void noh_gl_draw_end(const noh_gl_renderer *r)
 {
+    NOH_ASSERT(r && r->gl);
     static const GLuint units[] = { NOH_UNIT_PALETTES, NOH_UNIT_BASE_COLOR };
     r->gl->BindVertexArray(0);
     r->gl->UseProgram(0);

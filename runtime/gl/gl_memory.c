@@ -40,6 +40,7 @@ static uint32_t levels_max(uint32_t width, uint32_t height)
 
 uint64_t noh_gl_texture_bytes(const noh_gl_texture_desc *desc)
 {
+    NOH_ASSERT(desc);
     uint64_t texel = noh_gl_texel_bytes(desc->format);
     uint32_t width = desc->width, height = desc->height;
     uint64_t layers = desc->layers ? desc->layers : 1;
@@ -63,30 +64,23 @@ uint64_t noh_gl_renderbuffer_bytes(GLenum format, uint32_t width, uint32_t heigh
 
 uint64_t noh_gl_ledger_bytes(const noh_gl_ledger *ledger)
 {
+    NOH_ASSERT(ledger);
     return ledger->buffer_bytes + ledger->texture_bytes + ledger->renderbuffer_bytes;
-}
-
-/* Turn the pending GL error, if any, into a result. */
-static noh_result check_created(const noh_gl_api *api, const char *what, uint64_t bytes, noh_error *error)
-{
-    GLenum code = noh_gl_error_take(api);
-    if (code == GL_NO_ERROR) return NOH_OK;
-    noh_result result = code == GL_OUT_OF_MEMORY ? NOH_ERR_MEMORY : NOH_ERR_GL;
-    return noh_fail(error, result, what, code, bytes);
 }
 
 noh_result noh_gl_buffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, GLenum target, uint64_t bytes,
                                 const void *data, GLenum usage, noh_gl_buffer *out, noh_error *error)
 {
-    if (bytes == 0) return noh_fail(error, NOH_ERR_ARG, "buffer bytes", 0, 0);
-    if (bytes > (uint64_t)PTRDIFF_MAX) return noh_fail(error, NOH_ERR_LIMIT, "buffer bytes", 0, bytes);
+    NOH_ASSERT(api && ledger && out);
+    if (bytes == 0) return noh_fail(error, NOH_ERR_ARG, "a buffer has no bytes", 0, 0);
+    if (bytes > (uint64_t)PTRDIFF_MAX) return noh_fail(error, NOH_ERR_LIMIT, "a buffer is larger than the address space", (uint64_t)PTRDIFF_MAX, bytes);
     noh_gl_error_take(api);
     GLuint name = 0;
     api->GenBuffers(1, &name);
     api->BindBuffer(target, name);
     api->BufferData(target, (GLsizeiptr)bytes, data, usage);
     api->BindBuffer(target, 0);
-    noh_result result = check_created(api, "GL buffer", bytes, error);
+    noh_result result = noh_gl_error_check(api, "the driver refuses a buffer", bytes, error);
     if (result != NOH_OK) {
         api->DeleteBuffers(1, &name);
         return result;
@@ -100,7 +94,9 @@ noh_result noh_gl_buffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, GL
 
 void noh_gl_buffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_buffer *buffer)
 {
+    NOH_ASSERT(api && ledger && buffer);
     if (!buffer->name) return;
+    NOH_ASSERT(ledger->buffers > 0 && ledger->buffer_bytes >= buffer->bytes);
     api->DeleteBuffers(1, &buffer->name);
     ledger->buffers--;
     ledger->buffer_bytes -= buffer->bytes;
@@ -123,13 +119,15 @@ static void set_parameters(const noh_gl_api *api, GLenum target, const noh_gl_te
 noh_result noh_gl_texture_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_gl_texture_desc *desc,
                                  noh_gl_texture *out, noh_error *error)
 {
+    NOH_ASSERT(api && ledger && desc && out);
     uint64_t bytes = noh_gl_texture_bytes(desc);
-    if (bytes == 0) return noh_fail(error, NOH_ERR_ARG, "texture desc", 0, 0);
+    if (bytes == 0) return noh_fail(error, NOH_ERR_ARG, "a texture desc has an unknown format, no size, or more levels than its size has", 0, 0);
     GLenum target = desc->layers ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
     GLsizei width = (GLsizei)desc->width, height = (GLsizei)desc->height;
     GLsizei levels = desc->levels ? (GLsizei)desc->levels : 1;
     noh_gl_error_take(api);
     GLuint name = 0;
+    api->ActiveTexture(GL_TEXTURE0);
     api->GenTextures(1, &name);
     api->BindTexture(target, name);
     if (desc->layers) {
@@ -139,7 +137,7 @@ noh_result noh_gl_texture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
     }
     set_parameters(api, target, desc);
     api->BindTexture(target, 0);
-    noh_result result = check_created(api, "GL texture", bytes, error);
+    noh_result result = noh_gl_error_check(api, "the driver refuses a texture", bytes, error);
     if (result != NOH_OK) {
         api->DeleteTextures(1, &name);
         return result;
@@ -154,7 +152,9 @@ noh_result noh_gl_texture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
 
 void noh_gl_texture_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_texture *texture)
 {
+    NOH_ASSERT(api && ledger && texture);
     if (!texture->name) return;
+    NOH_ASSERT(ledger->textures > 0 && ledger->texture_bytes >= texture->bytes);
     api->DeleteTextures(1, &texture->name);
     ledger->textures--;
     ledger->texture_bytes -= texture->bytes;
@@ -165,8 +165,9 @@ void noh_gl_texture_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_
 noh_result noh_gl_renderbuffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, GLenum format, uint32_t width,
                                       uint32_t height, uint32_t samples, noh_gl_renderbuffer *out, noh_error *error)
 {
+    NOH_ASSERT(api && ledger && out);
     uint64_t bytes = noh_gl_renderbuffer_bytes(format, width, height, samples);
-    if (bytes == 0) return noh_fail(error, NOH_ERR_ARG, "renderbuffer size or format", 0, 0);
+    if (bytes == 0) return noh_fail(error, NOH_ERR_ARG, "a renderbuffer has an unknown format, no size, or too many samples", 0, 0);
     noh_gl_error_take(api);
     GLuint name = 0;
     api->GenRenderbuffers(1, &name);
@@ -174,7 +175,7 @@ noh_result noh_gl_renderbuffer_create(const noh_gl_api *api, noh_gl_ledger *ledg
     GLsizei sample_count = samples > 1 ? (GLsizei)samples : 0;
     api->RenderbufferStorageMultisample(GL_RENDERBUFFER, sample_count, format, (GLsizei)width, (GLsizei)height);
     api->BindRenderbuffer(GL_RENDERBUFFER, 0);
-    noh_result result = check_created(api, "GL renderbuffer", bytes, error);
+    noh_result result = noh_gl_error_check(api, "the driver refuses a renderbuffer", bytes, error);
     if (result != NOH_OK) {
         api->DeleteRenderbuffers(1, &name);
         return result;
@@ -188,7 +189,9 @@ noh_result noh_gl_renderbuffer_create(const noh_gl_api *api, noh_gl_ledger *ledg
 
 void noh_gl_renderbuffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_renderbuffer *renderbuffer)
 {
+    NOH_ASSERT(api && ledger && renderbuffer);
     if (!renderbuffer->name) return;
+    NOH_ASSERT(ledger->renderbuffers > 0 && ledger->renderbuffer_bytes >= renderbuffer->bytes);
     api->DeleteRenderbuffers(1, &renderbuffer->name);
     ledger->renderbuffers--;
     ledger->renderbuffer_bytes -= renderbuffer->bytes;
@@ -198,12 +201,16 @@ void noh_gl_renderbuffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, no
 
 noh_result noh_gl_framebuffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, GLuint *out, noh_error *error)
 {
+    NOH_ASSERT(api && ledger && out);
     noh_gl_error_take(api);
     GLuint name = 0;
     api->GenFramebuffers(1, &name);
-    noh_result result = check_created(api, "GL framebuffer", 0, error);
-    if (result != NOH_OK) return result;
-    if (!name) return noh_fail(error, NOH_ERR_GL, "GL framebuffer", 0, 0);
+    noh_result result = noh_gl_error_check(api, "the driver refuses a framebuffer", 0, error);
+    if (result == NOH_OK && !name) result = noh_fail(error, NOH_ERR_GL, "the driver gives no name for a framebuffer", 0, 0);
+    if (result != NOH_OK) {
+        if (name) api->DeleteFramebuffers(1, &name);
+        return result;
+    }
     ledger->framebuffers++;
     *out = name;
     return NOH_OK;
@@ -211,7 +218,9 @@ noh_result noh_gl_framebuffer_create(const noh_gl_api *api, noh_gl_ledger *ledge
 
 void noh_gl_framebuffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, GLuint *framebuffer)
 {
+    NOH_ASSERT(api && ledger && framebuffer);
     if (!*framebuffer) return;
+    NOH_ASSERT(ledger->framebuffers > 0);
     api->DeleteFramebuffers(1, framebuffer);
     ledger->framebuffers--;
     *framebuffer = 0;

@@ -8,19 +8,26 @@
  *   noh_gl_renderbuffer_create / noh_gl_renderbuffer_delete
  *   noh_gl_framebuffer_create / noh_gl_framebuffer_delete
  *
- * The sizes are those that the application asked for: what a driver adds in
- * alignment or compression metadata cannot be asked in OpenGL ES. The same three
- * functions that predict a budget count the use, so the two agree to the byte.
+ * The sizes are those that were requested: OpenGL ES does not tell what a driver adds
+ * in alignment or metadata. The same three functions predict a budget and count the
+ * use, so the two agree to the byte.
  *
- * Every create leaves nothing bound at the target it used, checks glGetError, and
- * on error deletes what it made: the ledger then stands as before. Errors pending
- * before the call are cleared. Deleting an object twice does nothing. */
+ * Every create leaves nothing bound at the target it used, checks glGetError, and on
+ * error deletes what it made: the ledger is then as before. Errors pending
+ * before the call are cleared. Deleting an object twice does nothing.
+ *
+ * Threads: the context's own thread; the functions that only give bytes, any. */
 #ifndef NOH_GL_GL_MEMORY_H
 #define NOH_GL_GL_MEMORY_H
 
 #include "gl/gl_api.h"
+#include "gl/gl_caps.h"
 
-/* What lives on the GPU now. Start with zeros. */
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The GL objects that exist now, and their bytes. Start with zeros. */
 typedef struct noh_gl_ledger {
     uint64_t buffer_bytes, texture_bytes, renderbuffer_bytes;
     uint32_t buffers, textures, renderbuffers, framebuffers, programs;
@@ -43,7 +50,6 @@ typedef struct noh_gl_renderbuffer {
     uint64_t bytes;
 } noh_gl_renderbuffer;
 
-/* What texture to make. */
 typedef struct noh_gl_texture_desc {
     GLenum format;   /* a sized internal format that noh_gl_texel_bytes knows */
     uint32_t width;  /* texels, 1..65536 */
@@ -65,6 +71,16 @@ uint64_t noh_gl_renderbuffer_bytes(GLenum format, uint32_t width, uint32_t heigh
 
 uint64_t noh_gl_ledger_bytes(const noh_gl_ledger *ledger);
 
+/* What objects are created with. The struct is not kept; the table and the ledger that it points to must outlive the
+ * object. */
+typedef struct noh_gl_device {
+    const noh_gl_api *api;
+    const noh_gl_caps *caps; /* noh_gl_morph_init and noh_gl_skin_init read it; NULL elsewhere */
+    noh_gl_ledger *ledger;
+    char *log;               /* [log_bytes], as in noh_gl_program_create: why a shader does not compile; NULL: not kept */
+    size_t log_bytes;
+} noh_gl_device;
+
 /* A buffer of `bytes` bytes, filled from `data` (NULL: content undefined).
  * A GL_ELEMENT_ARRAY_BUFFER is a state of the bound vertex array: bind vertex
  * array 0 before creating one.
@@ -74,7 +90,7 @@ noh_result noh_gl_buffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, GL
                                 const void *data, GLenum usage, noh_gl_buffer *out, noh_error *error);
 void noh_gl_buffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_buffer *buffer);
 
-/* A texture without content, on the active texture unit.
+/* A texture without content. Leaves texture unit 0 active.
  * errors  NOH_ERR_ARG an impossible desc; NOH_ERR_MEMORY, NOH_ERR_GL as above.
  *         The caller compares with noh_gl_caps limits first: a driver's answer to
  *         a texture that is too large is only an NOH_ERR_GL */
@@ -90,5 +106,9 @@ void noh_gl_renderbuffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, no
 /* A framebuffer name; holds no bytes of its own. Never 0 on success. */
 noh_result noh_gl_framebuffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, GLuint *out, noh_error *error);
 void noh_gl_framebuffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, GLuint *framebuffer);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

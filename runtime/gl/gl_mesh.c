@@ -14,7 +14,7 @@ static uint64_t attribute_bytes(const noh_mesh *mesh)
     return (uint64_t)mesh->header->vertex_count * mesh->header->attribute_stride;
 }
 
-/* Of this level and all coarser ones: they follow each other in the pack. */
+/* Of this LOD level and all coarser ones, which follow each other in the pack. */
 static uint64_t index_count(const noh_mesh *mesh)
 {
     const noh_mesh_header *h = mesh->header;
@@ -39,6 +39,7 @@ static uint64_t influence_bytes(const noh_mesh *mesh)
 
 uint64_t noh_gl_mesh_bytes(const noh_mesh *mesh)
 {
+    NOH_ASSERT(mesh && mesh->header);
     return position_bytes(mesh) + attribute_bytes(mesh) + influence_bytes(mesh) + index_bytes(mesh);
 }
 
@@ -51,7 +52,7 @@ static void set_attribute(const noh_gl_api *gl, GLuint location, GLint size, GLe
     }
 }
 
-/* Directions go in as integers: drivers differ in how they normalise them. */
+/* Directions are integer attributes: drivers differ in how they convert normalised ones to floats. */
 static void set_pair(const noh_gl_api *gl, GLuint location, uint32_t stride, int offset)
 {
     if (offset >= 0) {
@@ -119,10 +120,15 @@ noh_result noh_gl_mesh_create(const noh_gl_api *api, noh_gl_ledger *ledger, cons
     static const uint32_t no_indices = 0;
     const void *indices = index_count(mesh) ? mesh->indices : &no_indices;
     noh_result result;
+    NOH_ASSERT(api && ledger && out);
     m.index_type = mesh->header->index_bytes == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
+    noh_gl_error_take(api);
     api->BindVertexArray(0);
-    result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, position_bytes(mesh), mesh->positions, GL_STATIC_DRAW,
-                                  &m.positions, error);
+    result = noh_gl_error_check(api, "the driver refuses to unbind a vertex array", 0, error);
+    if (!result) {
+        result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, position_bytes(mesh), mesh->positions, GL_STATIC_DRAW,
+                                      &m.positions, error);
+    }
     if (!result) {
         result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, attribute_bytes(mesh), mesh->attributes, GL_STATIC_DRAW,
                                       &m.attributes, error);
@@ -141,12 +147,18 @@ noh_result noh_gl_mesh_create(const noh_gl_api *api, noh_gl_ledger *ledger, cons
     }
     create_vertex_array(api, &m);
     label_mesh(api, &m);
+    result = noh_gl_error_check(api, "the driver refuses a mesh's vertex array", 0, error);
+    if (result) {
+        noh_gl_mesh_delete(api, ledger, &m);
+        return result;
+    }
     *out = m;
     return NOH_OK;
 }
 
 noh_result noh_gl_mesh_restore(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mesh *mesh, noh_error *error)
 {
+    NOH_ASSERT(mesh && mesh->mesh.header);
     noh_mesh view = mesh->mesh;
     noh_gl_mesh_delete(noh_gl_lost_api(), ledger, mesh);
     return noh_gl_mesh_create(api, ledger, &view, mesh, error);
@@ -154,6 +166,7 @@ noh_result noh_gl_mesh_restore(const noh_gl_api *api, noh_gl_ledger *ledger, noh
 
 noh_mesh noh_gl_mesh_level(const noh_gl_mesh *mesh, uint32_t level, size_t *first)
 {
+    NOH_ASSERT(mesh && mesh->mesh.header && first);
     const noh_mesh_header *resident = mesh->mesh.header;
     const noh_mesh view = level > resident->level ? noh_mesh_at_level(&mesh->mesh, level) : mesh->mesh;
     *first = view.header->indices_offset - resident->indices_offset;
@@ -162,6 +175,7 @@ noh_mesh noh_gl_mesh_level(const noh_gl_mesh *mesh, uint32_t level, size_t *firs
 
 void noh_gl_mesh_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mesh *mesh)
 {
+    NOH_ASSERT(api && ledger && mesh);
     if (mesh->vertex_array) {
         api->DeleteVertexArrays(1, &mesh->vertex_array);
         mesh->vertex_array = 0;
@@ -190,6 +204,7 @@ static noh_gl_texture_desc picture_desc(const noh_texture *texture)
 
 uint64_t noh_gl_picture_bytes(const noh_texture *texture)
 {
+    NOH_ASSERT(texture && texture->header);
     noh_gl_texture_desc desc = picture_desc(texture);
     return noh_gl_texture_bytes(&desc);
 }
@@ -203,14 +218,15 @@ noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
                                  noh_gl_texture *out, noh_error *error)
 {
     noh_gl_texture_desc desc = picture_desc(texture);
+    noh_gl_texture picture;
     noh_result result;
-    api->ActiveTexture(GL_TEXTURE0);
-    result = noh_gl_texture_create(api, ledger, &desc, out, error);
+    NOH_ASSERT(api && ledger && out);
+    result = noh_gl_texture_create(api, ledger, &desc, &picture, error);
     if (result) {
         return result;
     }
-    api->BindTexture(GL_TEXTURE_2D, out->name);
-    noh_gl_label(api, GL_TEXTURE, out->name, "texture", texture->name);
+    api->BindTexture(GL_TEXTURE_2D, picture.name);
+    noh_gl_label(api, GL_TEXTURE, picture.name, "texture", texture->name);
     api->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
     api->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, (GLsizei)desc.width, (GLsizei)desc.height, GL_RGBA, GL_UNSIGNED_BYTE, texture->pixels);
     if (desc.levels > 1) {
@@ -219,12 +235,19 @@ noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
     api->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap_of(texture->header->wrap_s));
     api->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap_of(texture->header->wrap_t));
     api->BindTexture(GL_TEXTURE_2D, 0);
+    result = noh_gl_error_check(api, "the driver refuses a texture's pixels or mip levels", picture.bytes, error);
+    if (result) {
+        noh_gl_texture_delete(api, ledger, &picture);
+        return result;
+    }
+    *out = picture;
     return NOH_OK;
 }
 
 noh_result noh_gl_picture_restore(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
                                   noh_gl_texture *picture, noh_error *error)
 {
+    NOH_ASSERT(texture && texture->header && picture);
     noh_gl_texture_delete(noh_gl_lost_api(), ledger, picture);
     return noh_gl_picture_create(api, ledger, texture, picture, error);
 }

@@ -16,7 +16,6 @@ static noh_result create_layers(noh_gl_morph *m, noh_error *error)
     desc.width = m->plan.atlas_width;
     desc.height = m->plan.atlas_height;
     desc.layers = 3;
-    m->gl->ActiveTexture(GL_TEXTURE0);
     return noh_gl_texture_create(m->gl, m->ledger, &desc, &m->layers, error);
 }
 
@@ -47,45 +46,57 @@ static noh_result make_gl_objects(noh_gl_morph *m, char *log, size_t log_bytes, 
     }
     if (!result) {
         label_objects(m);
+        result = noh_gl_error_check(m->gl, "the driver refuses a call that makes the accumulator", m->plan.gpu_bytes, error);
     }
     return result;
 }
 
+#if NOH_ASSERT_LEVEL >= 2
+/* Every instance has a mesh of the set, a level that the mesh has, finite weights, and a tile inside the atlas; the
+ * count of changed instances is right. */
+static int is_valid(const noh_gl_morph *m)
+{
+    uint32_t dirty = 0;
+    int valid = 1;
+    for (uint32_t i = 0; i < m->plan.instance_count && valid; i++) {
+        const noh_gl_morph_mesh *mesh = &m->meshes[m->instance_mesh[i] < m->mesh_count ? m->instance_mesh[i] : 0];
+        const noh_mesh_header *h = mesh->mesh.header;
+        uint32_t x, y;
+        dirty += m->dirty[i] != 0;
+        noh_gl_morph_tile(m, i, &x, &y);
+        valid = m->instance_mesh[i] < m->mesh_count && i - mesh->first_instance < mesh->instance_count;
+        valid = valid && m->levels[i] >= h->level && m->levels[i] < h->level_count;
+        valid = valid && (!h->touched_count || (x + (1u << h->morph_width_log2) <= m->plan.atlas_width &&
+                                                y + h->morph_height <= m->plan.atlas_height));
+    }
+    for (uint32_t i = 0; i < m->plan.weight_count && valid; i++) {
+        valid = m->weights[i] - m->weights[i] == 0.0f;
+    }
+    return valid && dirty == m->dirty_count;
+}
+#endif
+
 static void mark_all_dirty(noh_gl_morph *m)
 {
-    /* a new texture holds nothing yet: the first update clears every tile */
+    /* the content of a new texture is undefined: the first update clears every tile */
     memset(m->dirty, 1, m->plan.instance_count);
     m->dirty_count = m->plan.instance_count;
 }
 
-noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_api *api, const noh_gl_caps *caps,
-                             noh_gl_ledger *ledger, const noh_gl_morph_desc *desc, noh_gl_morph **morph, char *log,
-                             size_t log_bytes, noh_error *error)
+/* Everything but the GL objects. */
+static noh_gl_morph *build(noh_arena arena, const noh_gl_device *device, const noh_gl_morph_desc *desc, noh_gl_morph_plan plan)
 {
-    noh_gl_morph_plan plan;
-    noh_gl_morph *m;
-    noh_arena arena = noh_arena_over(memory, bytes);
-    noh_result result = noh_gl_morph_plan_make(desc, caps, &plan, error);
-    if (result) {
-        return result;
-    }
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for the accumulator is NULL or not 16-byte aligned", 0, plan.cpu_bytes);
-    }
-    if (bytes < plan.cpu_bytes) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory for the accumulator is too small", bytes, plan.cpu_bytes);
-    }
-    m = (noh_gl_morph *)noh_arena_carve(&arena, sizeof *m, 16);
+    noh_gl_morph *m = (noh_gl_morph *)noh_arena_carve(&arena, sizeof *m, 16);
     memset(m, 0, sizeof *m);
-    m->gl = api;
-    m->ledger = ledger;
+    m->gl = device->api;
+    m->ledger = device->ledger;
     m->plan = plan;
     m->mesh_count = desc->mesh_count;
     m->wide = noh_gl_morph_wide(&plan);
     noh_gl_morph_carve(&arena, desc, &plan, m);
     memset(m->meshes, 0, sizeof *m->meshes * m->mesh_count);
     memset(m->weights, 0, sizeof *m->weights * plan.weight_count);
-    noh_gl_morph_layout(desc, caps->texture_size_max, m->meshes, &plan, NULL);
+    noh_gl_morph_layout(desc, device->caps->texture_size_max, m->meshes, &plan, NULL);
     for (uint32_t i = 0; i < m->mesh_count; i++) {
         for (uint32_t k = 0; k < m->meshes[i].instance_count; k++) {
             m->instance_mesh[m->meshes[i].first_instance + k] = i;
@@ -93,7 +104,27 @@ noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_api *api, 
         }
     }
     mark_all_dirty(m);
-    result = make_gl_objects(m, log, log_bytes, error);
+    return m;
+}
+
+noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_device *device, const noh_gl_morph_desc *desc,
+                             noh_gl_morph **morph, noh_error *error)
+{
+    noh_gl_morph_plan plan;
+    noh_gl_morph *m;
+    noh_arena arena;
+    noh_result result;
+    NOH_ASSERT(device && device->api && device->caps && device->ledger && desc && morph);
+    result = noh_gl_morph_plan_make(desc, device->caps, &plan, error);
+    if (!result && plan.cpu_bytes > SIZE_MAX) {
+        result = noh_fail(error, NOH_ERR_LIMIT, "the accumulator needs more memory than this processor addresses", 0, plan.cpu_bytes);
+    }
+    if (!result) result = noh_arena_open(&arena, memory, bytes, (size_t)plan.cpu_bytes, error);
+    if (result) {
+        return result;
+    }
+    m = build(arena, device, desc, plan);
+    result = make_gl_objects(m, device->log, device->log_bytes, error);
     if (result) {
         noh_gl_morph_delete(m);
         return result;
@@ -121,11 +152,13 @@ static void delete_objects(noh_gl_morph *m, const noh_gl_api *gl)
 
 void noh_gl_morph_delete(noh_gl_morph *m)
 {
+    NOH_ASSERT(m && m->gl && m->ledger);
     delete_objects(m, m->gl);
 }
 
 noh_result noh_gl_morph_restore(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
 {
+    NOH_ASSERT(m && m->gl && m->ledger);
     noh_result result;
     delete_objects(m, noh_gl_lost_api());
     mark_all_dirty(m);
@@ -140,19 +173,23 @@ noh_result noh_gl_morph_restore(noh_gl_morph *m, char *log, size_t log_bytes, no
 
 const noh_gl_morph_plan *noh_gl_morph_plan_of(const noh_gl_morph *morph)
 {
+    NOH_ASSERT(morph);
     return &morph->plan;
 }
 
 uint32_t noh_gl_morph_instance(const noh_gl_morph *morph, uint32_t mesh, uint32_t i)
 {
+    NOH_ASSERT(morph && mesh < morph->mesh_count && i < morph->meshes[mesh].instance_count);
     return morph->meshes[mesh].first_instance + i;
 }
 
 noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t instance)
 {
-    const noh_mesh_header *h = morph->meshes[morph->instance_mesh[instance]].mesh.header;
+    const noh_mesh_header *h;
     noh_gl_morph_binding binding;
     uint32_t x, y;
+    NOH_ASSERT(morph && instance < morph->plan.instance_count);
+    h = morph->meshes[morph->instance_mesh[instance]].mesh.header;
     noh_gl_morph_tile(morph, instance, &x, &y);
     binding.texture = morph->layers.name;
     binding.is_uint = morph->plan.layer_format == GL_RGBA32UI;
@@ -165,10 +202,14 @@ noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t
 
 /* ---- setting and accumulating ---- */
 
-noh_result noh_gl_morph_weights(noh_gl_morph *morph, uint32_t instance, const float *weights, noh_error *error)
+noh_result noh_gl_morph_set_weights(noh_gl_morph *morph, uint32_t instance, const float *weights, noh_error *error)
 {
-    uint32_t count = morph->meshes[morph->instance_mesh[instance]].mesh.header->target_count;
-    float *own = morph->weights + noh_gl_morph_first_weight(morph, instance);
+    uint32_t count;
+    float *own;
+    NOH_ASSERT(morph && instance < morph->plan.instance_count);
+    count = morph->meshes[morph->instance_mesh[instance]].mesh.header->target_count;
+    own = morph->weights + noh_gl_morph_first_weight(morph, instance);
+    NOH_ASSERT(weights || !count);
     for (uint32_t i = 0; i < count; i++) {
         if (weights[i] - weights[i] != 0.0f) {
             return noh_fail(error, NOH_ERR_ARG, "weight is not finite", i, 0);
@@ -182,10 +223,13 @@ noh_result noh_gl_morph_weights(noh_gl_morph *morph, uint32_t instance, const fl
     return NOH_OK;
 }
 
-void noh_gl_morph_level(noh_gl_morph *morph, uint32_t instance, uint32_t level)
+void noh_gl_morph_set_level(noh_gl_morph *morph, uint32_t instance, uint32_t level)
 {
-    const noh_mesh_header *h = morph->meshes[morph->instance_mesh[instance]].mesh.header;
-    const uint32_t before = morph->levels[instance];
+    const noh_mesh_header *h;
+    uint32_t before;
+    NOH_ASSERT(morph && instance < morph->plan.instance_count);
+    h = morph->meshes[morph->instance_mesh[instance]].mesh.header;
+    before = morph->levels[instance];
     level = level < h->level_count ? level : h->level_count - 1u;
     level = level > h->level ? level : h->level;
     morph->levels[instance] = (uint8_t)level;
@@ -199,6 +243,8 @@ void noh_gl_morph_update(noh_gl_morph *morph, noh_gl_morph_stats *stats)
 {
     noh_gl_morph_stats local;
     noh_gl_morph_stats *s = stats ? stats : &local;
+    NOH_ASSERT(morph && morph->dirty_count <= morph->plan.instance_count);
+    NOH_VALIDATE(is_valid(morph));
     memset(s, 0, sizeof *s);
     if (!morph->dirty_count) {
         return;

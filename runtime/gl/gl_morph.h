@@ -1,18 +1,23 @@
 /* gl_morph.h: morph targets accumulated on the GPU, for many instances at once.
  *
- *   noh_gl_morph_plan     which path, why, and every byte it will take: before any load
- *   noh_gl_morph_init     place it in your memory and make its GL objects
- *   noh_gl_morph_weights  set one instance's weights (cheap when they did not change)
- *   noh_gl_morph_level    accumulate only what a level of detail of an instance needs
- *   noh_gl_morph_update   accumulate the instances whose weights changed
- *   noh_gl_morph_binding  where a vertex shader finds an instance's deltas
- *   noh_gl_morph_restore  after a lost context
+ *   noh_gl_morph_plan_make    which path, why, and every byte it will take: before any load
+ *   noh_gl_morph_init         build it in your memory and make its GL objects
+ *   noh_gl_morph_delete       delete the GL objects
+ *   noh_gl_morph_restore      make them again after a lost context
+ *   noh_gl_morph_set_weights  one instance's weights; cheap when they did not change
+ *   noh_gl_morph_set_level    accumulate only what an LOD level of an instance needs
+ *   noh_gl_morph_update       accumulate the instances whose weights changed
+ *   noh_gl_morph_binding_of   where a vertex shader finds an instance's deltas
+ *   noh_gl_morph_plan_of      the plan that it was built by
+ *   noh_gl_morph_instance     the number of an instance of a mesh
+ *   noh_morph_path_name, noh_accumulate_name
  *
  * Deltas of position, normal and tangent are accumulated in three layers of one
- * texture array; each instance owns a tile of it, one texel per touched vertex.
- * The base pose stays in the vertex buffers and is added when the vertex shader
- * fetches (shaders_es/common_layers.glsl), so a half-float accumulator only ever
- * rounds deltas (rows A5-A8, A10).
+ * texture array; each instance has a tile of it, one accumulation texel per vertex
+ * that a target moves. The base mesh stays in the vertex buffers and is added when
+ * the vertex shader fetches (shaders_es/common_layers.glsl), so a half-float
+ * accumulator rounds deltas only. Microsoft's SparseMorphTargets sample (DirectX
+ * SDK) accumulates the same way, but whole vertices and one mesh.
  *
  *   path       needs                                how
  *   layered    geometry shader, blending            one additive pass to three layers
@@ -20,8 +25,11 @@
  *   per-layer  ES 3.0, blending                     three additive passes
  *   gather     ES 3.0                               no blending: each fragment sums its vertex's list
  *   cpu        nothing                              SIMD on the CPU, the texture takes the result
- * "Blending" is into the accumulation format, which an extension grants: float32
- * (EXT_float_blend) is missing on most phones, float16 is not. */
+ * Two policies choose among them: `auto` takes the cheapest here, `blend` layered draws where supported and per-layer
+ * passes otherwise. "Blending" is into the accumulation format, which an extension grants: float32
+ * (EXT_float_blend) is missing on most phones, float16 is not.
+ *
+ * Threads: the context's own thread. noh_gl_morph_plan_make and the names, any. */
 #ifndef NOH_GL_GL_MORPH_H
 #define NOH_GL_GL_MORPH_H
 
@@ -29,15 +37,20 @@
 #include "gl/gl_memory.h"
 #include "mesh/mesh.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef enum noh_morph_path {
     NOH_MORPH_AUTO = 0,
     NOH_MORPH_LAYERED,
     NOH_MORPH_MRT,
     NOH_MORPH_PER_LAYER,
     NOH_MORPH_GATHER,
-    NOH_MORPH_CPU
+    NOH_MORPH_CPU,
+    NOH_MORPH_BLEND /* a policy: additive blending, layered draws where supported, else per-layer passes */
 } noh_morph_path;
-#define NOH_MORPH_PATH_COUNT 6
+#define NOH_MORPH_PATH_COUNT 7
 
 typedef enum noh_accumulate {
     NOH_ACCUMULATE_AUTO = 0, /* f32 */
@@ -45,30 +58,30 @@ typedef enum noh_accumulate {
     NOH_ACCUMULATE_F16       /* half the memory; error within the mesh's f16_position_bound */
 } noh_accumulate;
 
-/* "auto", "layered", "mrt", "per-layer", "gather", "cpu"; "auto", "f32", "f16". */
+/* "auto", "layered", "mrt", "per-layer", "gather", "cpu", "blend"; "auto", "f32", "f16". */
 const char *noh_morph_path_name(noh_morph_path path);
 const char *noh_accumulate_name(noh_accumulate accumulate);
 
 typedef struct noh_gl_morph_desc {
-    const noh_mesh *meshes;          /* [mesh_count]; copied, the packs must stay. May hold several levels of one mesh, each with
+    const noh_mesh *meshes;          /* [mesh_count]; copied, the packs must stay. May hold several LOD levels of one mesh, each with
                                       * tiles of its own size: a few instances near, many far. They share the finest one's tables */
     uint32_t mesh_count;
     const uint32_t *instance_counts; /* [mesh_count]; NULL: one of each. 1..NOH_MORPH_INSTANCES_MAX in all */
-    noh_morph_path path;             /* 0: the cheapest that the capabilities allow */
+    noh_morph_path path;             /* 0: the cheapest that the capabilities allow; or a policy, or one path */
     noh_accumulate accumulate;       /* 0: f32 */
     float expected_active;           /* for auto: share of the targets that is active at once, 0..1; 0: 0.5 */
 } noh_gl_morph_desc;
 
-/* What a desc comes to on a GPU with these capabilities. All bytes are exact. */
+/* The resolved plan on a GPU with these capabilities. All bytes are exact. */
 typedef struct noh_gl_morph_plan {
-    noh_morph_path path;         /* never AUTO */
+    noh_morph_path path;         /* never AUTO or BLEND */
     noh_accumulate accumulate;   /* never AUTO */
     const char *reason;          /* why this path, in words; a string constant */
     GLenum layer_format;         /* RGBA32F, RGBA16F, RGBA32UI (float bits), RGB32F or RGB16F */
     uint32_t atlas_width, atlas_height;
     uint32_t instance_count, weight_count;
     uint32_t rect_count, texel_count, pair_count; /* in the tables, which levels of one mesh share */
-    uint64_t cpu_bytes;          /* the block that noh_gl_morph_init wants */
+    uint64_t cpu_bytes;          /* the block that noh_gl_morph_init needs */
     uint64_t delta_bytes;        /* GPU: delta texels, or the gather entries */
     uint64_t table_bytes;        /* GPU: rectangles, or the gather list starts */
     uint64_t stream_bytes;       /* GPU: what is sent at each update */
@@ -100,13 +113,13 @@ typedef struct noh_gl_morph_binding {
 noh_result noh_gl_morph_plan_make(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan,
                                   noh_error *error);
 
-/* Build in memory[bytes], 16-byte aligned, plan.cpu_bytes long; make the GL objects,
- * counted in the ledger, which like the api must stay. `log` as in noh_gl_program_create.
- * All instances start at weight 0.
- * errors  as plan; MEMORY with the bytes needed, nothing is then touched; GL, DATA (a shader) */
-noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_api *api, const noh_gl_caps *caps,
-                             noh_gl_ledger *ledger, const noh_gl_morph_desc *desc, noh_gl_morph **morph, char *log,
-                             size_t log_bytes, noh_error *error);
+/* Build in memory[bytes], which is aligned to NOH_MEMORY_ALIGN and at least plan.cpu_bytes long, and make the GL objects,
+ * counted in the device's ledger. All instances start at weight 0.
+ * errors  as noh_gl_morph_plan_make; ARG memory is NULL or misaligned, MEMORY it is too small (`need`: plan.cpu_bytes),
+ *         nothing is then touched; GL, MEMORY the driver refused an object; DATA a shader does not compile or link. On
+ *         error no GL object is left */
+noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_device *device, const noh_gl_morph_desc *desc,
+                             noh_gl_morph **morph, noh_error *error);
 
 /* Delete the GL objects. The memory is yours again. */
 void noh_gl_morph_delete(noh_gl_morph *morph);
@@ -123,23 +136,27 @@ uint32_t noh_gl_morph_instance(const noh_gl_morph *morph, uint32_t mesh, uint32_
 
 /* Set weights[target_count of its mesh]; any finite values.
  * errors  ARG a weight is not finite, `where` is its index; nothing is then changed */
-noh_result noh_gl_morph_weights(noh_gl_morph *morph, uint32_t instance, const float *weights, noh_error *error);
+noh_result noh_gl_morph_set_weights(noh_gl_morph *morph, uint32_t instance, const float *weights, noh_error *error);
 
-/* From now on accumulate only what this level of an instance's mesh needs: its rectangles, rows and lists. Draw the
- * instance at this level or a coarser one; while two levels fade, this is the finer of both. The level's texels hold
- * the same bits as at level 0, but for targets that have no rectangles in it at all: they do not move it. The
- * instance's binding stays as it is.
- * ranges  0 the full mesh; below the level that the desc has: that one; past the last: the coarsest
- * Going finer accumulates at the next update; going coarser costs nothing, and shows when the weights change next. */
-void noh_gl_morph_level(noh_gl_morph *morph, uint32_t instance, uint32_t level);
+/* Accumulate only what an LOD level of an instance's mesh needs. Draw the instance at this level or a coarser one; while
+ * two levels fade, pass the finer. The level's accumulation texels have the same bits as at level 0, except that targets
+ * without rectangles in the level do not move it. The instance's binding stays the same.
+ * ranges  level 0 is the full mesh; clamped to the levels that the mesh of the desc has
+ * A finer level is accumulated by the next update. A coarser one costs nothing and takes effect when the weights next
+ * change. */
+void noh_gl_morph_set_level(noh_gl_morph *morph, uint32_t instance, uint32_t level);
 
-/* Accumulate what changed. stats may be NULL.
+/* Accumulate the instances whose weights or level changed. stats may be NULL.
  * state   Afterwards: framebuffer 0, vertex array 0, program 0, array buffer 0 and textures of
  *         units 0..2 unbound; blending, scissor, depth and cull test off; viewport that of the
  *         atlas. Set your own before you draw. Nothing is touched when nothing changed.
- * errors  none: everything was checked at init */
+ * errors  none: everything was checked by init */
 void noh_gl_morph_update(noh_gl_morph *morph, noh_gl_morph_stats *stats);
 
 noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t instance);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -1,4 +1,12 @@
-/* gl_morph_blend.c: layered, mrt and per-layer: additive blending (rows A6-A9). */
+/* gl_morph_blend.c: the paths layered, mrt and per-layer: the blending unit is the adder.
+ *
+ * Each rectangle of an active target is drawn as a quad over the instance's tile, with blending ONE, ONE. The fragment
+ * decodes the delta texel under it and multiplies it by weight and scale; alpha plays no part, so weights below 0 and
+ * above 1 work. All quads of all instances are one instanced draw. Blending keeps the order in which primitives were
+ * submitted (OpenGL ES 3.2, 2.1), so sums are made target by target as on the CPU and have its bits wherever the blender
+ * adds in float32. Targets drawn additively, each cut to what it changes, and a geometry shader that sends a triangle to
+ * three layers are those of Microsoft's SparseMorphTargets sample (DirectX SDK); that sample blends by source alpha and
+ * starts from the base mesh. Here only deltas are summed, which costs half floats no precision of the base. */
 #include <string.h>
 
 #include "gl/gl_debug.h"
@@ -73,7 +81,7 @@ static void upload_rects(noh_gl_morph *m, const noh_gl_morph_mesh *mesh)
     }
 }
 
-/* A coarser level's texels are the first ones of each target's: they close up. */
+/* A coarser LOD level has a prefix of each target's delta texels: the gaps behind them are closed. */
 static void upload_texels(noh_gl_morph *m, const noh_gl_morph_mesh *mesh)
 {
     uint32_t sent = mesh->first_texel;
@@ -97,7 +105,7 @@ static noh_result create_tables(noh_gl_morph *m, noh_error *error)
             upload_rects(m, mesh);
         }
     }
-    return result;
+    return result ? result : noh_gl_error_check(m->gl, "the driver refuses the delta texels", m->plan.delta_bytes, error);
 }
 
 noh_result noh_gl_morph_init_blend(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
@@ -135,8 +143,8 @@ static void put_rect_slots(noh_gl_morph *m, uint32_t first_rect, uint32_t rect_c
     *count += rect_count;
 }
 
-/* The active targets of one instance, in index order: the order of the sums is part of the result. The table's
- * rectangles are those of a level that may be finer: all of its targets' are counted past. */
+/* The active targets of one instance, in index order: the order of the sums is part of the result. The table may belong
+ * to a finer LOD level, so the first rectangle of each target is counted by that level's numbers. */
 static void list_instance(noh_gl_morph *m, uint32_t instance, uint32_t *slot_count, uint32_t *rect_slots, noh_gl_morph_stats *stats)
 {
     const noh_mesh mesh = noh_gl_morph_view(m, instance);

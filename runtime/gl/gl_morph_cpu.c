@@ -1,9 +1,10 @@
-/* gl_morph_cpu.c: the CPU accumulates, the texture takes the result. */
+/* gl_morph_cpu.c: the path cpu: deform/morph.h accumulates, and the sums of each changed instance are uploaded to its
+ * tile. The texture is only sampled, so three components do. */
 #include <string.h>
 
 #include "gl/gl_morph_internal.h"
 
-/* Floats to halves where they lie: a half is never written past the float it came from. */
+/* Floats to halves in place: half i ends at byte 2 i + 2, before float i + 1 begins, so no unread float is overwritten. */
 static void narrow_to_half(void *floats, size_t count)
 {
     uint8_t *bytes = (uint8_t *)floats;

@@ -1,5 +1,9 @@
-/* gl_morph_gather.c: no blending. Each touched vertex has the list of its deltas, in
- * target order; one fragment walks it and writes three layers once. */
+/* gl_morph_gather.c: the path gather: sums without blending.
+ *
+ * Each vertex that a target moves has a list of its deltas, in target order, in compressed-row form: starts[v] to
+ * starts[v + 1] are the entries of vertex v. One fragment per vertex walks its list, adds delta * weight in registers,
+ * and writes the three layers once. The additions are those of the CPU in the same order, so the bits are the same. The
+ * cost does not depend on how many targets are active, because every entry is read. */
 #include <string.h>
 
 #include "gl/gl_morph_internal.h"
@@ -67,8 +71,10 @@ static void fill_pair(void *context, uint32_t vertex, uint32_t target, const uin
     }
 }
 
-/* Lists by vertex out of rectangles by target, without memory for the whole: the starts
- * are counted, then each chunk of entries takes one walk over the mesh. */
+/* Lists by vertex out of rectangles by target: a counting sort in fixed memory. The first walk over the mesh counts each
+ * vertex's entries, and the running sum gives the starts. A second array of cursors then gives each delta its place; but
+ * only NOH_GATHER_CHUNK entries fit in the staging memory, so the walk is repeated once per chunk and keeps the entries
+ * that fall into it. Targets are visited in index order, so each list is in target order. */
 static void upload_lists(noh_gl_morph *m, const noh_gl_morph_mesh *mesh)
 {
     uint32_t touched = mesh->mesh.header->touched_count, pairs = mesh->mesh.header->pair_count;
@@ -108,7 +114,7 @@ static noh_result create_tables(noh_gl_morph *m, noh_error *error)
             upload_lists(m, &m->meshes[i]);
         }
     }
-    return result;
+    return result ? result : noh_gl_error_check(m->gl, "the driver refuses the delta texels", m->plan.delta_bytes, error);
 }
 
 noh_result noh_gl_morph_init_gather(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
@@ -123,8 +129,8 @@ noh_result noh_gl_morph_init_gather(noh_gl_morph *m, char *log, size_t log_bytes
 
 /* ---- updating ---- */
 
-/* The instance's row of slots, all targets, and its tile. Lists may be those of a finer level, and name targets that
- * this one does without: they weigh nothing. */
+/* The weights of all targets of an instance, and its tile. The lists may belong to a finer LOD level and name targets
+ * that this one leaves out: their weight is 0. */
 static void list_instance(noh_gl_morph *m, uint32_t instance, uint32_t *tile, noh_gl_morph_stats *stats)
 {
     const noh_mesh mesh = noh_gl_morph_view(m, instance);

@@ -61,9 +61,9 @@ void noh_gl_morph_carve(noh_arena *arena, const noh_gl_morph_desc *desc, const n
 /* 1 when rect slots need 32 bits. */
 int noh_gl_morph_wide(const noh_gl_morph_plan *plan);
 
-/* Rows from one tile to the one above it: a multiple of four. Rasterisers work in blocks of 2 x 2 to
- * 4 x 4, and the converter cut the rectangles to those blocks: every tile must lie on them as the
- * first one does (mrt, 100 heads on llvmpipe: an eighth less work). */
+/* Rows from one tile to the next one: a multiple of four. Rasterisers work in blocks of 2 x 2 to 4 x 4 pixels, and the
+ * converter cuts rectangles to those blocks, so every tile must be aligned to them (mrt, 100 heads on llvmpipe: an
+ * eighth less work). */
 uint32_t noh_gl_morph_pitch(const noh_mesh_header *header);
 
 /* An instance's mesh at the level that is accumulated. */

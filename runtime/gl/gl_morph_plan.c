@@ -4,7 +4,7 @@
 #include "gl/gl_morph_internal.h"
 #include "gl/gl_quirks.h"
 
-static const char *const path_names[NOH_MORPH_PATH_COUNT] = { "auto", "layered", "mrt", "per-layer", "gather", "cpu" };
+static const char *const path_names[NOH_MORPH_PATH_COUNT] = { "auto", "layered", "mrt", "per-layer", "gather", "cpu", "blend" };
 
 const char *noh_morph_path_name(noh_morph_path path)
 {
@@ -47,9 +47,9 @@ static const char *missing(noh_morph_path path, noh_accumulate accumulate, const
     return NULL;
 }
 
-/* What accumulating costs on a GPU, in blended texels: a rectangle is worth 4 texels of
- * vertex work; a gather entry is two dependent fetches, and all entries are read whatever
- * is active. Ratios measured by `noh bench` (runtime/README.md). */
+/* The cheapest path on a GPU. Costs are in blended texels: mrt blends every texel of the active targets, and a rectangle
+ * costs as much as 4 texels of vertex work; gather makes two dependent fetches per entry and reads all entries, active or
+ * not. The ratios were measured by `noh bench` (runtime/README.md). Layered and per-layer are never cheaper than mrt. */
 static noh_morph_path cheapest_on_gpu(const noh_gl_morph_plan *plan, float active, noh_accumulate accumulate, const noh_gl_caps *caps,
                                       const char **reason)
 {
@@ -78,6 +78,18 @@ static noh_morph_path cheapest_on_gpu(const noh_gl_morph_plan *plan, float activ
     return NOH_MORPH_CPU;
 }
 
+/* The policy `blend`: the three layers are blended into, by one draw where a geometry shader can send a triangle to
+ * each of them, else by a pass for each. Where this format cannot be blended into, per-layer says so. */
+static noh_morph_path blending_path(noh_accumulate accumulate, const noh_gl_caps *caps, const char **reason)
+{
+    if (!missing(NOH_MORPH_LAYERED, accumulate, caps)) {
+        *reason = "layered: one additive draw into all three layers";
+        return NOH_MORPH_LAYERED;
+    }
+    *reason = "per-layer: three additive passes, layered drawing is not supported here";
+    return NOH_MORPH_PER_LAYER;
+}
+
 static noh_result choose_path(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan, noh_error *error)
 {
     const char *lacking;
@@ -96,6 +108,8 @@ static noh_result choose_path(const noh_gl_morph_desc *desc, const noh_gl_caps *
         } else {
             plan->path = cheapest_on_gpu(plan, active, plan->accumulate, caps, &plan->reason);
         }
+    } else if (desc->path == NOH_MORPH_BLEND) {
+        plan->path = blending_path(plan->accumulate, caps, &plan->reason);
     }
     lacking = missing(plan->path, plan->accumulate, caps);
     if (lacking) {
@@ -142,7 +156,8 @@ uint32_t noh_gl_morph_pitch(const noh_mesh_header *header)
     return (header->morph_height + 3u) & ~3u;
 }
 
-/* Stack the meshes' bands in an atlas of this width; the height may be too much. */
+/* Stack the meshes' bands in an atlas of this width: a mesh's tiles fill rows of as many as fit side by side. Returns the
+ * height, which may be more than a texture has. */
 static uint64_t stack_bands(const noh_gl_morph_desc *desc, uint32_t atlas_width, noh_gl_morph_mesh *meshes)
 {
     uint64_t y = 0;
@@ -160,8 +175,8 @@ static uint64_t stack_bands(const noh_gl_morph_desc *desc, uint32_t atlas_width,
     return y;
 }
 
-/* The narrowest power of two that is at most as high as wide textures may be, first
- * within what every ES 3.0 has, then within what this one has. */
+/* Choose the atlas: the narrowest width, a power of two, at which the bands are not higher than a texture may be. Widths up
+ * to 2048 are tried with heights up to 2048, which every ES 3.0 has, and only then the larger ones of this GPU. */
 static noh_result place_tiles(const noh_gl_morph_desc *desc, uint32_t texture_size_max, noh_gl_morph_mesh *meshes,
                               noh_gl_morph_plan *plan, noh_error *error)
 {
@@ -196,8 +211,9 @@ static noh_result place_tiles(const noh_gl_morph_desc *desc, uint32_t texture_si
     return NOH_OK;
 }
 
-/* The mesh of the set whose tables hold those of another: the finest level of the same mesh, the first of these. A
- * level's rectangles, target by target, and its lists by texel are the first of every finer level's. */
+/* The mesh of the set whose tables a mesh uses: the finest LOD level of the same mesh in the set, the first one of equals.
+ * This works because a level's rectangles, target by target, and its lists, vertex by vertex, are a prefix of those of
+ * every finer level. */
 static uint32_t owner_of(const noh_gl_morph_desc *desc, uint32_t index)
 {
     uint32_t owner = index;
@@ -275,7 +291,7 @@ int noh_gl_morph_wide(const noh_gl_morph_plan *plan)
     return plan->rect_count > 65536u || plan->weight_count > 65536u;
 }
 
-/* Every rectangle of every instance at once is the most that one update can draw. */
+/* The most that one update can draw: every rectangle of every instance. */
 static uint64_t rect_slot_bytes(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan)
 {
     uint64_t count = 0;
@@ -355,7 +371,9 @@ noh_result noh_gl_morph_plan_make(const noh_gl_morph_desc *desc, const noh_gl_ca
 {
     noh_gl_morph_plan p;
     noh_arena arena = noh_arena_measure();
-    noh_result result = check_desc(desc, error);
+    noh_result result;
+    NOH_ASSERT(desc && caps && plan);
+    result = check_desc(desc, error);
     memset(&p, 0, sizeof p);
     if (!result) result = noh_gl_morph_layout(desc, caps->texture_size_max, NULL, &p, error);
     if (!result) result = choose_path(desc, caps, &p, error);

@@ -1,5 +1,5 @@
-/* gl_morph_shared.c: what the paths have in common: tiles, slots, framebuffers, the stream
- * of instances, and the GL state around a draw. */
+/* gl_morph_shared.c: what the paths share: tiles, weights for the shaders, framebuffers, the instanced vertex stream, and
+ * the GL state around a draw. */
 #include <string.h>
 
 #include "gl/gl_debug.h"
@@ -36,7 +36,7 @@ uint32_t noh_gl_morph_first_weight(const noh_gl_morph *m, uint32_t instance)
 
 void noh_gl_morph_put_slot(uint32_t slot[4], const noh_target *target, float weight, uint32_t last)
 {
-    /* the same products as the CPU reference makes, so that both round alike */
+    /* the same products as the CPU reference, so that both round alike */
     const float scaled[3] = { target->position_scale * weight, target->normal_scale * weight, target->tangent_scale * weight };
     memcpy(slot, scaled, sizeof scaled);
     slot[3] = last;
@@ -82,19 +82,21 @@ noh_result noh_gl_morph_framebuffer(noh_gl_morph *m, int which, GLuint *framebuf
     status = m->gl->CheckFramebufferStatus(GL_FRAMEBUFFER);
     m->gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
     if (status != GL_FRAMEBUFFER_COMPLETE) {
+        noh_gl_error_take(m->gl);
         return noh_fail(error, NOH_ERR_GL, "the driver refuses the accumulation framebuffer", status, 0);
     }
-    return NOH_OK;
+    return noh_gl_error_check(m->gl, "the driver refuses a call that makes the accumulation framebuffer", 0, error);
 }
 
 noh_result noh_gl_morph_stream(noh_gl_morph *m, const char *attribute, GLint components, GLenum type, noh_error *error)
 {
     uint64_t bytes = m->plan.stream_bytes - m->slot_table.texture.bytes;
-    GLuint location = (GLuint)m->gl->GetAttribLocation(m->program, attribute);
+    GLuint location;
     noh_result result = noh_gl_buffer_create(m->gl, m->ledger, GL_ARRAY_BUFFER, bytes, NULL, GL_STREAM_DRAW, &m->stream, error);
     if (result) {
         return result;
     }
+    location = (GLuint)m->gl->GetAttribLocation(m->program, attribute);
     m->gl->GenVertexArrays(1, &m->vertex_array);
     m->gl->BindVertexArray(m->vertex_array);
     m->gl->BindBuffer(GL_ARRAY_BUFFER, m->stream.name);
@@ -105,7 +107,7 @@ noh_result noh_gl_morph_stream(noh_gl_morph *m, const char *attribute, GLint com
     noh_gl_label(m->gl, GL_VERTEX_ARRAY, m->vertex_array, "morph stream", NULL);
     m->gl->BindVertexArray(0);
     m->gl->BindBuffer(GL_ARRAY_BUFFER, 0);
-    return NOH_OK;
+    return noh_gl_error_check(m->gl, "the driver refuses the vertex array of the accumulator", 0, error);
 }
 
 /* ---- the state around a draw ---- */

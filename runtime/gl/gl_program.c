@@ -38,15 +38,15 @@ static GLsizei log_rest(const log_text *log)
 
 static const char *check_source(const noh_gl_source *source)
 {
-    if (!source->version || !source->pieces) return "a stage has no text";
-    if (source->piece_count == 0 || source->piece_count > NOH_GL_PIECES_MAX) return "a stage's piece_count";
+    if (!source->version || !source->pieces) return "a shader stage has no text";
+    if (source->piece_count == 0 || source->piece_count > NOH_GL_PIECES_MAX) return "a shader stage has no pieces, or more than NOH_GL_PIECES_MAX";
     return NULL;
 }
 
 static const char *check_desc(const noh_gl_program_desc *desc)
 {
-    if (!desc->vertex) return "vertex";
-    if (!desc->fragment) return "fragment";
+    if (!desc->vertex) return "the program desc has no vertex stage";
+    if (!desc->fragment) return "the program desc has no fragment stage";
     const char *what = check_source(desc->vertex);
     if (!what) what = check_source(desc->fragment);
     if (!what && desc->geometry) what = check_source(desc->geometry);
@@ -70,7 +70,7 @@ static noh_result compile(const noh_gl_api *api, const noh_gl_program_desc *desc
     for (uint32_t i = 0; i < source->piece_count; i++) strings[count++] = source->pieces[i];
 
     GLuint shader = api->CreateShader(types[stage]);
-    if (!shader) return noh_fail(error, NOH_ERR_GL, failed[stage], noh_gl_error_take(api), 0);
+    if (!shader) return noh_fail(error, NOH_ERR_GL, "the driver gives no name for a shader", 0, 0);
     api->ShaderSource(shader, count, strings, NULL);
     api->CompileShader(shader);
     GLint compiled = GL_FALSE;
@@ -135,19 +135,29 @@ static void bind_names(const noh_gl_api *api, const noh_gl_program_desc *desc, G
 noh_result noh_gl_program_create(const noh_gl_api *api, const noh_gl_program_desc *desc, GLuint *program, char *log,
                                  size_t log_bytes, noh_error *error)
 {
+    NOH_ASSERT(api && desc && program);
     log_text words = {log, log ? log_bytes : 0, 0};
     if (words.room) log[0] = 0;
     const char *wrong = check_desc(desc);
     if (wrong) return noh_fail(error, NOH_ERR_ARG, wrong, 0, 0);
+    noh_gl_error_take(api);
     GLuint name = api->CreateProgram();
-    if (!name) return noh_fail(error, NOH_ERR_GL, "GL program", noh_gl_error_take(api), 0);
-    noh_result result = attach_stages(api, desc, name, &words, error);
+    noh_result result = noh_gl_error_check(api, "the driver refuses a program", 0, error);
+    if (result == NOH_OK && !name) result = noh_fail(error, NOH_ERR_GL, "the driver gives no name for a program", 0, 0);
+    if (result != NOH_OK) {
+        if (name) api->DeleteProgram(name);
+        return result;
+    }
+    result = attach_stages(api, desc, name, &words, error);
     if (result == NOH_OK) result = link_program(api, desc, name, &words, error);
+    if (result == NOH_OK) bind_names(api, desc, name);
+    /* A refused call explains more than what came of it: a shader whose text never arrived does not compile either. */
+    noh_result refused = noh_gl_error_check(api, "the driver refuses a call that makes a program", 0, error);
+    if (refused != NOH_OK) result = refused;
     if (result != NOH_OK) {
         api->DeleteProgram(name);
         return result;
     }
-    bind_names(api, desc, name);
     if (desc->ledger) desc->ledger->programs++;
     *program = name;
     return NOH_OK;
@@ -155,7 +165,9 @@ noh_result noh_gl_program_create(const noh_gl_api *api, const noh_gl_program_des
 
 void noh_gl_program_delete(const noh_gl_api *api, noh_gl_ledger *ledger, GLuint *program)
 {
+    NOH_ASSERT(api && program);
     if (!*program) return;
+    NOH_ASSERT(!ledger || ledger->programs > 0);
     api->DeleteProgram(*program);
     if (ledger) ledger->programs--;
     *program = 0;

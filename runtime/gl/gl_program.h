@@ -4,14 +4,19 @@
  *   noh_gl_program_delete
  *
  * Sources come as tools/embed wrote them: the #version line apart from the rest,
- * the rest in pieces that glShaderSource takes as they are. Nothing is copied. */
+ * the rest in pieces that glShaderSource takes as they are. Nothing is copied.
+ *
+ * Threads: the context's own thread, for every function. */
 #ifndef NOH_GL_GL_PROGRAM_H
 #define NOH_GL_GL_PROGRAM_H
 
+#include "base/limits.h"
 #include "gl/gl_api.h"
 #include "gl/gl_memory.h"
 
-#define NOH_GL_PIECES_MAX 56u /* keep in step with PIECES_MAX in tools/embed */
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 /* One shader stage's text. tools/embed makes these. */
 typedef struct noh_gl_source {
@@ -54,5 +59,9 @@ noh_result noh_gl_program_create(const noh_gl_api *api, const noh_gl_program_des
 
 /* ledger NULL: not counted. A program that is 0 already is left alone. */
 void noh_gl_program_delete(const noh_gl_api *api, noh_gl_ledger *ledger, GLuint *program);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -34,6 +34,7 @@ static int contains(const char *text, const char *word)
 
 const noh_gl_quirk *noh_gl_quirk_find(const char *renderer, noh_quirk quirk)
 {
+    NOH_ASSERT(renderer && quirk <= NOH_QUIRK_HALF_UNSURE);
     for (uint32_t i = 0; i < QUIRK_COUNT; i++) {
         if (quirks[i].quirk == quirk && contains(renderer, quirks[i].renderer)) {
             return &quirks[i];
@@ -44,6 +45,7 @@ const noh_gl_quirk *noh_gl_quirk_find(const char *renderer, noh_quirk quirk)
 
 const noh_gl_quirk *noh_gl_quirk_table(uint32_t *count)
 {
+    NOH_ASSERT(count);
     *count = (uint32_t)QUIRK_COUNT;
     return quirks;
 }

@@ -3,17 +3,23 @@
  *   noh_gl_quirk_find   the entry that says so of a renderer, with its reason and source
  *   noh_gl_quirk_table  all of them
  *
- * Abilities are found by trying (gl_caps.h). Here is only what the library does
- * otherwise because of a name, each thing once. A quirk is forced or lifted by
- * changing caps.renderer. */
+ * Capabilities are found by trying (gl_caps.h). Only what cannot be tried is decided
+ * by a renderer's name, and all of that is in this table. To force or lift a quirk,
+ * change caps.renderer.
+ *
+ * Threads: any; the table is constant. */
 #ifndef NOH_GL_GL_QUIRKS_H
 #define NOH_GL_GL_QUIRKS_H
 
 #include "base/result.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef enum noh_quirk {
-    NOH_QUIRK_SOFTWARE,    /* auto takes the path cpu: the rasteriser runs there anyway */
-    NOH_QUIRK_BLEND_DEAR,  /* auto takes gather before mrt, whatever number of targets is expected */
+    NOH_QUIRK_SOFTWARE,    /* rasterised on the CPU: auto takes the path cpu */
+    NOH_QUIRK_BLEND_DEAR,  /* float blending is slow: auto takes gather, however few targets are expected */
     NOH_QUIRK_HALF_UNSURE  /* the probe's half-float modes become NOH_HALF_UNKNOWN */
 } noh_quirk;
 
@@ -28,5 +34,9 @@ typedef struct noh_gl_quirk {
 const noh_gl_quirk *noh_gl_quirk_find(const char *renderer, noh_quirk quirk);
 
 const noh_gl_quirk *noh_gl_quirk_table(uint32_t *count);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

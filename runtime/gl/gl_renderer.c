@@ -9,16 +9,15 @@ static noh_result create_white(noh_gl_renderer *r, noh_error *error)
 {
     static const uint8_t texel[4] = { 255, 255, 255, 255 };
     noh_gl_texture_desc desc = { GL_RGBA8, 1, 1, 0, 0, 0, 0 };
-    noh_result result;
-    r->gl->ActiveTexture(GL_TEXTURE0);
-    result = noh_gl_texture_create(r->gl, r->ledger, &desc, &r->white, error);
+    noh_result result = noh_gl_texture_create(r->gl, r->ledger, &desc, &r->white, error);
     if (!result) {
         r->gl->BindTexture(GL_TEXTURE_2D, r->white.name);
         noh_gl_label(r->gl, GL_TEXTURE, r->white.name, "renderer white", NULL);
         r->gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, texel);
         r->gl->BindTexture(GL_TEXTURE_2D, 0);
+        result = noh_gl_error_check(r->gl, "the driver refuses the renderer's white texel", r->white.bytes, error);
     }
-    return result;
+    return result; /* where it fails, create_objects deletes */
 }
 
 /* ---- which variants ---- */
@@ -66,6 +65,7 @@ static noh_result want_mesh(noh_gl_renderer *r, const noh_gl_renderer_desc *desc
 
 const noh_gl_variant *noh_gl_renderer_variant(const noh_gl_renderer *r, noh_gl_variant_key key)
 {
+    NOH_ASSERT(r && r->variant_count <= NOH_GL_VARIANTS_MAX);
     key.encode_srgb = (uint8_t)r->encode_srgb;
     for (uint32_t i = 0; i < r->variant_count; i++) {
         if (memcmp(&r->variants[i].key, &key, sizeof key) == 0) {
@@ -79,23 +79,28 @@ const noh_gl_variant *noh_gl_renderer_variant(const noh_gl_renderer *r, noh_gl_v
 
 static noh_result create_objects(noh_gl_renderer *r, char *log, size_t log_bytes, noh_error *error)
 {
+    const noh_gl_device device = { r->gl, NULL, r->ledger, log, log_bytes };
     noh_result result = create_white(r, error);
     for (uint32_t i = 0; i < r->variant_count && !result; i++) {
-        result = noh_gl_variant_create(r->gl, r->ledger, r->variants[i].key, NULL, 0, &r->variants[i], log, log_bytes, error);
+        result = noh_gl_variant_create(&device, r->variants[i].key, NULL, 0, &r->variants[i], error);
+    }
+    if (result) {
+        noh_gl_renderer_delete(r);
     }
     return result;
 }
 
-noh_result noh_gl_renderer_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_gl_renderer_desc *desc,
-                                  noh_gl_renderer *out, char *log, size_t log_bytes, noh_error *error)
+noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_renderer_desc *desc, noh_gl_renderer *out,
+                                  noh_error *error)
 {
     noh_result result = NOH_OK;
+    NOH_ASSERT(device && device->api && device->ledger && desc && out && (desc->meshes || !desc->mesh_count));
     if (desc->crowds && desc->palettes != NOH_PALETTE_TEXTURE) {
         return noh_fail(error, NOH_ERR_ARG, "crowds want palettes in a texture", 0, 0);
     }
     memset(out, 0, sizeof *out);
-    out->gl = api;
-    out->ledger = ledger;
+    out->gl = device->api;
+    out->ledger = device->ledger;
     out->layers_uint = desc->layers_uint != 0;
     out->encode_srgb = desc->encode_srgb != 0;
     out->fades = desc->fades != 0;
@@ -104,16 +109,14 @@ noh_result noh_gl_renderer_create(const noh_gl_api *api, noh_gl_ledger *ledger, 
         result = want_mesh(out, desc, &desc->meshes[i], error);
     }
     if (!result) {
-        result = create_objects(out, log, log_bytes, error);
-    }
-    if (result) {
-        noh_gl_renderer_delete(out);
+        result = create_objects(out, device->log, device->log_bytes, error);
     }
     return result;
 }
 
 void noh_gl_renderer_delete(noh_gl_renderer *renderer)
 {
+    NOH_ASSERT(renderer && renderer->variant_count <= NOH_GL_VARIANTS_MAX);
     for (uint32_t i = 0; i < renderer->variant_count; i++) {
         noh_gl_variant_delete(renderer->gl, renderer->ledger, &renderer->variants[i]);
     }
@@ -122,7 +125,9 @@ void noh_gl_renderer_delete(noh_gl_renderer *renderer)
 
 noh_result noh_gl_renderer_restore(noh_gl_renderer *renderer, char *log, size_t log_bytes, noh_error *error)
 {
-    const noh_gl_api *gl = renderer->gl;
+    const noh_gl_api *gl;
+    NOH_ASSERT(renderer && renderer->gl && renderer->ledger);
+    gl = renderer->gl;
     renderer->gl = noh_gl_lost_api();
     noh_gl_renderer_delete(renderer);
     renderer->gl = gl;

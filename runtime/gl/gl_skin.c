@@ -26,10 +26,11 @@ static uint32_t first_row(const noh_gl_skin_mesh *m, uint32_t instance)
     return m->first_row + (instance - m->first_instance) * m->stride;
 }
 
-/* Write rows that differ from what is there, and remember that they have to be sent. */
+/* Write rows if they differ from what is there, and widen the span that the next update sends. */
 static void put_rows(noh_gl_skin *skin, uint32_t row, const float *values, uint32_t count)
 {
     float *own = skin->rows + 4u * (size_t)row;
+    NOH_ASSERT((uint64_t)row + count <= skin->plan.texel_count);
     if (memcmp(own, values, 16u * (size_t)count) != 0) {
         memcpy(own, values, 16u * (size_t)count);
         skin->dirty_first = row < skin->dirty_first ? row : skin->dirty_first;
@@ -80,11 +81,13 @@ static void put_palettes(noh_gl_skin *skin, uint32_t instance, const float *matr
     }
 }
 
-void noh_gl_skin_set(noh_gl_skin *skin, uint32_t instance, const float *matrices)
+void noh_gl_skin_set_matrices(noh_gl_skin *skin, uint32_t instance, const float *matrices)
 {
+    NOH_ASSERT(skin && matrices && instance < skin->plan.instance_count);
     put_palettes(skin, instance, matrices, 12);
 }
 
+/* Row i of the cofactors is the cross product of the other two rows; the determinant is any row times its cofactors. */
 float noh_gl_normal_rows(const float w[12], float rows[12])
 {
     float determinant;
@@ -102,12 +105,14 @@ float noh_gl_normal_rows(const float w[12], float rows[12])
     return determinant;
 }
 
-/* The tile's numbers are below 2^24, so floats hold them; bits of integers would be denormals, which GPUs flush. */
-noh_result noh_gl_skin_place(noh_gl_skin *skin, uint32_t instance, const float world[12],
+/* The tile goes in as floats: its numbers are below 2^24 and so exact. Integer bits would be denormal floats, which GPUs
+ * flush to zero. */
+noh_result noh_gl_skin_set_place(noh_gl_skin *skin, uint32_t instance, const float world[12],
                              const noh_gl_morph_binding *morph, noh_error *error)
 {
     uint32_t row = first_row(mesh_of(skin, instance), instance);
     float normal[12], tile[4] = { 0.0f, 0.0f, 0.0f, 0.0f };
+    NOH_ASSERT(world);
     if (skin->plan.mode != NOH_PALETTE_TEXTURE) {
         return noh_fail(error, NOH_ERR_UNSUPPORTED, "palettes are in a uniform buffer: crowds want NOH_PALETTE_TEXTURE", instance, 0);
     }
@@ -137,18 +142,12 @@ static noh_result create_buffer(noh_gl_skin *skin, noh_error *error)
     return result;
 }
 
-static noh_result create_object(noh_gl_skin *skin, noh_error *error)
+static noh_result create_texture(noh_gl_skin *skin, noh_error *error)
 {
     noh_gl_texture_desc desc = { GL_RGBA32F, 0, 0, 0, 0, 0, 0 };
     noh_result result;
-    skin->dirty_first = 0; /* a new object holds nothing yet: the first update sends all */
-    skin->dirty_end = skin->plan.texel_count;
-    if (skin->plan.mode == NOH_PALETTE_UNIFORM) {
-        return skin->plan.gpu_bytes ? create_buffer(skin, error) : NOH_OK;
-    }
     desc.width = skin->plan.width;
     desc.height = skin->plan.height;
-    skin->gl->ActiveTexture(GL_TEXTURE0);
     result = noh_gl_texture_create(skin->gl, skin->ledger, &desc, &skin->texture, error);
     if (!result) {
         skin->gl->BindTexture(GL_TEXTURE_2D, skin->texture.name);
@@ -158,39 +157,61 @@ static noh_result create_object(noh_gl_skin *skin, noh_error *error)
     return result;
 }
 
+/* Leaves no object behind on error. */
+static noh_result create_object(noh_gl_skin *skin, noh_error *error)
+{
+    noh_result result = NOH_OK;
+    skin->dirty_first = 0; /* the content of a new object is undefined: the first update sends all */
+    skin->dirty_end = skin->plan.texel_count;
+    if (skin->plan.mode == NOH_PALETTE_TEXTURE) {
+        result = create_texture(skin, error);
+    } else if (skin->plan.gpu_bytes) {
+        result = create_buffer(skin, error);
+    } else {
+        return NOH_OK;
+    }
+    if (!result) {
+        result = noh_gl_error_check(skin->gl, "the driver refuses the palettes", skin->plan.gpu_bytes, error);
+    }
+    if (result) {
+        noh_gl_skin_delete(skin);
+    }
+    return result;
+}
+
 static void set_bind_pose(noh_gl_skin *skin)
 {
     for (uint32_t i = 0; i < skin->plan.instance_count; i++) {
         put_palettes(skin, i, identity, 0);
         if (skin->plan.mode == NOH_PALETTE_TEXTURE) {
-            noh_gl_skin_place(skin, i, identity, NULL, NULL);
+            noh_gl_skin_set_place(skin, i, identity, NULL, NULL);
         }
     }
 }
 
-noh_result noh_gl_skin_init(void *memory, size_t bytes, const noh_gl_api *api, const noh_gl_caps *caps,
-                            noh_gl_ledger *ledger, const noh_gl_skin_desc *desc, noh_gl_skin **skin, noh_error *error)
+noh_result noh_gl_skin_init(void *memory, size_t bytes, const noh_gl_device *device, const noh_gl_skin_desc *desc,
+                            noh_gl_skin **skin, noh_error *error)
 {
     noh_gl_skin_plan plan;
     noh_gl_skin *s;
-    noh_arena arena = noh_arena_over(memory, bytes);
-    noh_result result = noh_gl_skin_plan_make(desc, caps, &plan, error);
+    noh_arena arena;
+    noh_result result;
+    NOH_ASSERT(device && device->api && device->caps && device->ledger && desc && skin);
+    result = noh_gl_skin_plan_make(desc, device->caps, &plan, error);
+    if (!result && plan.cpu_bytes > SIZE_MAX) {
+        result = noh_fail(error, NOH_ERR_LIMIT, "the palettes need more memory than this processor addresses", 0, plan.cpu_bytes);
+    }
+    if (!result) result = noh_arena_open(&arena, memory, bytes, (size_t)plan.cpu_bytes, error);
     if (result) {
         return result;
     }
-    if (!memory || ((uintptr_t)memory & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory for the palettes is NULL or not 16-byte aligned", 0, plan.cpu_bytes);
-    }
-    if (bytes < plan.cpu_bytes) {
-        return noh_fail(error, NOH_ERR_MEMORY, "memory for the palettes is too small", bytes, plan.cpu_bytes);
-    }
     memset(memory, 0, (size_t)plan.cpu_bytes);
     s = (noh_gl_skin *)noh_arena_carve(&arena, sizeof *s, 16);
-    s->gl = api;
-    s->ledger = ledger;
+    s->gl = device->api;
+    s->ledger = device->ledger;
     s->plan = plan;
     s->mesh_count = desc->mesh_count;
-    s->align = noh_gl_skin_align(&plan, caps);
+    s->align = noh_gl_skin_align(&plan, device->caps);
     while (plan.width >> s->width_log2 > 1u) {
         s->width_log2++;
     }
@@ -206,6 +227,7 @@ noh_result noh_gl_skin_init(void *memory, size_t bytes, const noh_gl_api *api, c
 
 void noh_gl_skin_delete(noh_gl_skin *skin)
 {
+    NOH_ASSERT(skin && skin->gl && skin->ledger);
     noh_gl_buffer_delete(skin->gl, skin->ledger, &skin->buffer);
     noh_gl_texture_delete(skin->gl, skin->ledger, &skin->texture);
 }
@@ -213,6 +235,7 @@ void noh_gl_skin_delete(noh_gl_skin *skin)
 noh_result noh_gl_skin_restore(noh_gl_skin *skin, noh_error *error)
 {
     const noh_gl_api *gl = skin->gl;
+    NOH_ASSERT(skin->ledger);
     skin->gl = noh_gl_lost_api();
     noh_gl_skin_delete(skin);
     skin->gl = gl;
@@ -223,11 +246,13 @@ noh_result noh_gl_skin_restore(noh_gl_skin *skin, noh_error *error)
 
 const noh_gl_skin_plan *noh_gl_skin_plan_of(const noh_gl_skin *skin)
 {
+    NOH_ASSERT(skin);
     return &skin->plan;
 }
 
 uint32_t noh_gl_skin_instance(const noh_gl_skin *skin, uint32_t mesh, uint32_t i)
 {
+    NOH_ASSERT(skin && mesh < skin->mesh_count && i < skin->meshes[mesh].instance_count);
     return skin->meshes[mesh].first_instance + i;
 }
 
@@ -250,6 +275,7 @@ void noh_gl_skin_update(noh_gl_skin *skin)
 {
     const noh_gl_api *gl = skin->gl;
     uint32_t first = skin->dirty_first, end = skin->dirty_end;
+    NOH_ASSERT(first >= end || end <= skin->plan.texel_count);
     if (first >= end) {
         return;
     }

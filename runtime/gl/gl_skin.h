@@ -1,24 +1,36 @@
 /* gl_skin.h: the joints of skinned meshes on the GPU, for many instances at once.
  *
- *   noh_gl_skin_plan_make  where palettes go, why, and every byte they will take: before any load
- *   noh_gl_skin_init       place it in your memory and make its GL object
- *   noh_gl_skin_set        give one instance its joint matrices
- *   noh_gl_skin_place      give one instance its place in the world and its morph tile, for crowds
- *   noh_gl_skin_update     one upload of what changed
- *   noh_gl_skin_binding_of where a vertex shader finds an instance's palettes
+ *   noh_gl_skin_plan_make     where palettes go, why, and every byte they will take: before any load
+ *   noh_gl_skin_init          build it in your memory and make its GL object
+ *   noh_gl_skin_delete        delete the GL object
+ *   noh_gl_skin_restore       make it again after a lost context
+ *   noh_gl_skin_set_matrices  one instance's joint matrices
+ *   noh_gl_skin_set_place     one instance's place in the world and its morph tile, for crowds
+ *   noh_gl_skin_update        one upload of what changed
+ *   noh_gl_skin_binding_of    where a vertex shader finds an instance's palettes
+ *   noh_gl_skin_plan_of, noh_gl_skin_instance, noh_palette_mode_name
+ *   noh_gl_palette_row, noh_gl_joint_rows, noh_gl_normal_rows
  *
  * A palette is what one draw needs, in rows of four floats: three a joint, a matrix; or, in a mesh with
- * NOH_MESH_DUAL_QUATERNION, four: rotation, dual part and the stretch (rows C3.4-C3.6). Instances are
+ * NOH_MESH_DUAL_QUATERNION, four: rotation, dual part and the stretch. The converter splits meshes whose
+ * joints do not fit one palette, as Granberg, Character Animation with Direct3D (2009), ch. 3, has it. Instances are
  * numbered as in a noh_gl_morph of the same meshes and counts.
  *
  *   mode     in                                for
- *   uniform  a uniform block of at most 16 KiB instances that are drawn one by one
+ *   uniform  a uniform block, up to 16 KiB     instances that are drawn one by one
  *   texture  RGBA32F, in rows                  crowds too: noh_gl_draw_crowd draws many in one call
- * Both are core ES 3.0, and both give the same bits. */
+ * Both are core ES 3.0, and both give the same bits.
+ *
+ * Threads: the context's own thread. noh_gl_skin_set_matrices and noh_gl_skin_set_place call no GL: another thread may,
+ * while no other call on that object runs. noh_gl_skin_plan_make and the pure functions, any. */
 #ifndef NOH_GL_GL_SKIN_H
 #define NOH_GL_GL_SKIN_H
 
 #include "gl/gl_morph.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 typedef enum noh_palette_mode {
     NOH_PALETTE_AUTO = 0, /* texture where a mesh has several instances, else uniform */
@@ -36,14 +48,14 @@ typedef struct noh_gl_skin_desc {
     noh_palette_mode mode;           /* 0: auto */
 } noh_gl_skin_desc;
 
-/* What a desc comes to on a GPU with these capabilities. All bytes are exact. */
+/* The resolved plan on a GPU with these capabilities. All bytes are exact. */
 typedef struct noh_gl_skin_plan {
     noh_palette_mode mode;  /* never AUTO */
     const char *reason;     /* why this mode, in words; a string constant */
     uint32_t instance_count;
-    uint32_t texel_count;   /* rows of four floats, with what lies between palettes */
+    uint32_t texel_count;   /* rows of four floats, gaps between palettes included */
     uint32_t width, height; /* of the texture; 0 in a uniform buffer */
-    uint64_t cpu_bytes;     /* the block that noh_gl_skin_init wants */
+    uint64_t cpu_bytes;     /* the block that noh_gl_skin_init needs */
     uint64_t gpu_bytes;
 } noh_gl_skin_plan;
 
@@ -56,8 +68,8 @@ typedef struct noh_gl_skin_binding {
     uint32_t first;      /* the instance's first row of four floats */
     uint32_t stride;     /* from there to the next instance of the same mesh */
     uint32_t width_log2; /* row i is the texel (i & (width - 1), i >> width_log2); 0 in a uniform buffer */
-    uint32_t align;      /* palettes start at multiples of so many rows */
-    uint32_t influences; /* draw with at most so many joints per vertex, the strongest (LOD); 0: all */
+    uint32_t align;      /* palettes start at multiples of this many rows */
+    uint32_t influences; /* at most this many joints per vertex, the strongest ones; 0: all */
 } noh_gl_skin_binding;
 
 /* Decide and measure, without touching GL.
@@ -66,11 +78,12 @@ typedef struct noh_gl_skin_binding {
 noh_result noh_gl_skin_plan_make(const noh_gl_skin_desc *desc, const noh_gl_caps *caps, noh_gl_skin_plan *plan,
                                  noh_error *error);
 
-/* Build in memory[bytes], 16-byte aligned, plan.cpu_bytes long; make the GL object, counted in the
- * ledger, which like the api must stay. All joints start as the identity: the bind pose.
- * errors  as plan; MEMORY with the bytes needed, nothing is then touched; GL */
-noh_result noh_gl_skin_init(void *memory, size_t bytes, const noh_gl_api *api, const noh_gl_caps *caps,
-                            noh_gl_ledger *ledger, const noh_gl_skin_desc *desc, noh_gl_skin **skin, noh_error *error);
+/* Build in memory[bytes], which is aligned to NOH_MEMORY_ALIGN and at least plan.cpu_bytes long, and make the GL object,
+ * counted in the device's ledger. All joints start as the identity: the bind pose.
+ * errors  as noh_gl_skin_plan_make; ARG memory is NULL or misaligned, MEMORY it is too small (`need`: plan.cpu_bytes),
+ *         nothing is then touched; GL, MEMORY the driver refused the object. On error no GL object is left */
+noh_result noh_gl_skin_init(void *memory, size_t bytes, const noh_gl_device *device, const noh_gl_skin_desc *desc,
+                            noh_gl_skin **skin, noh_error *error);
 
 /* Delete the GL object. The memory is yours again. */
 void noh_gl_skin_delete(noh_gl_skin *skin);
@@ -83,16 +96,16 @@ const noh_gl_skin_plan *noh_gl_skin_plan_of(const noh_gl_skin *skin);
 /* The number of the i-th instance of the m-th mesh. */
 uint32_t noh_gl_skin_instance(const noh_gl_skin *skin, uint32_t mesh, uint32_t i);
 
-/* Set the joints of one instance; cheap where they did not move. Nothing happens to a rigid one.
+/* Set the joint matrices of one instance; only rows that changed are sent. Does nothing for a rigid mesh.
  * shapes  matrices[joint_count of the mesh's skin][12]: model space of the joint * inverse bind */
-void noh_gl_skin_set(noh_gl_skin *skin, uint32_t instance, const float *matrices);
+void noh_gl_skin_set_matrices(noh_gl_skin *skin, uint32_t instance, const float *matrices);
 
-/* Set where one instance stands, for noh_gl_draw_crowd.
+/* Set the placement of one instance, for noh_gl_draw_crowd.
  * shapes   world[12] rows of 3 x 4
  * morph    where its deltas are; NULL: none
- * errors   UNSUPPORTED palettes are in a uniform buffer, which draws no crowds; ARG `world` mirrors,
- *          and the triangles of one draw cannot face two ways: draw that instance alone */
-noh_result noh_gl_skin_place(noh_gl_skin *skin, uint32_t instance, const float world[12],
+ * errors   UNSUPPORTED palettes are in a uniform buffer, which cannot draw crowds; ARG `world` mirrors: the
+ *          triangles of one draw cannot face both ways, so draw that instance alone. `where` is the instance */
+noh_result noh_gl_skin_set_place(noh_gl_skin *skin, uint32_t instance, const float world[12],
                              const noh_gl_morph_binding *morph, noh_error *error);
 
 /* Send the span of what changed since the last update, in one call. Nothing is touched when nothing
@@ -100,7 +113,7 @@ noh_result noh_gl_skin_place(noh_gl_skin *skin, uint32_t instance, const float w
  * errors  none: everything was checked at init */
 void noh_gl_skin_update(noh_gl_skin *skin);
 
-/* All influences are drawn until you lower `influences`. */
+/* `influences` is 0; set it to draw fewer. */
 noh_gl_skin_binding noh_gl_skin_binding_of(const noh_gl_skin *skin, uint32_t instance);
 
 /* The first row of a palette, counted from the instance's own first row. */
@@ -110,9 +123,14 @@ uint32_t noh_gl_palette_row(const noh_gl_skin_binding *binding, const noh_mesh *
  * 16 * (binding.first + noh_gl_palette_row) bytes and holds NOH_PALETTE_JOINTS_MAX joints. */
 uint32_t noh_gl_joint_rows(const noh_mesh *mesh);
 
-/* Rows of the inverse transpose of a placement, up to a positive factor: the cofactors with the sign
- * of the determinant, so that a mirrored node's normals still point outwards (row E4). Returns the
- * determinant. */
+/* Rows that transform normals: the inverse transpose of a placement's 3 x 3 part, up to a positive factor. They are its
+ * cofactors times the sign of its determinant, so nothing is divided and normals of a mirrored node still point outwards.
+ * Transforming normals by the matrix itself is right for rotations and uniform scales only. Returns the determinant.
+ * source  Turkowski, "Properties of Surface-Normal Transformations", Graphics Gems (1990) */
 float noh_gl_normal_rows(const float world[12], float rows[12]);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -11,6 +11,7 @@ NOH_STATIC_ASSERT(NOH_PALETTE_JOINTS_MAX == 256u, palette_block_of_common_skin);
 const char *noh_palette_mode_name(noh_palette_mode mode)
 {
     static const char *const names[] = { "auto", "uniform", "texture" };
+    NOH_ASSERT((unsigned)mode <= NOH_PALETTE_TEXTURE);
     return names[mode];
 }
 
@@ -78,7 +79,8 @@ uint32_t noh_gl_skin_align(const noh_gl_skin_plan *plan, const noh_gl_caps *caps
     return plan->mode == NOH_PALETTE_TEXTURE ? 1u : (bytes + 15u) / 16u;
 }
 
-/* The narrowest texture that is at most as high as textures may be, first within what every ES 3.0 has. */
+/* The narrowest texture that holds the rows and is not higher than textures may be: up to 2048 x 2048, which every ES 3.0
+ * has, then up to the limits of this GPU. */
 static noh_result shape_texture(uint64_t rows, uint32_t side_max, noh_gl_skin_plan *plan, noh_error *error)
 {
     uint32_t log2 = WIDTH_LOG2_MIN;
@@ -98,6 +100,7 @@ static noh_result shape_texture(uint64_t rows, uint32_t side_max, noh_gl_skin_pl
 uint32_t noh_gl_palette_row(const noh_gl_skin_binding *binding, const noh_mesh *mesh, uint32_t palette)
 {
     uint32_t row = binding->mode == NOH_PALETTE_TEXTURE ? NOH_CROWD_ROWS : 0;
+    NOH_ASSERT(binding->align && palette <= mesh->header->palette_count);
     for (uint32_t i = 0; i < palette; i++) {
         row += (noh_gl_joint_rows(mesh) * mesh->palettes[i].joint_count + binding->align - 1u) / binding->align * binding->align;
     }
@@ -154,7 +157,9 @@ noh_result noh_gl_skin_plan_make(const noh_gl_skin_desc *desc, const noh_gl_caps
 {
     noh_gl_skin_plan p;
     uint64_t rows;
-    noh_result result = check_desc(desc, error);
+    noh_result result;
+    NOH_ASSERT(desc && caps && plan);
+    result = check_desc(desc, error);
     memset(&p, 0, sizeof p);
     if (!result) {
         result = choose_mode(desc, caps, &p, error);

@@ -6,6 +6,7 @@
 
 void noh_gl_table_shape(uint32_t count, uint32_t *width_log2, uint32_t *height)
 {
+    NOH_ASSERT(width_log2 && height && count <= NOH_GL_TABLE_TEXELS_MAX);
     uint32_t log2 = WIDTH_LOG2_MIN;
     while (log2 < WIDTH_LOG2_MAX && (count >> log2) >= HEIGHT_MAX) {
         log2++;
@@ -37,6 +38,7 @@ uint64_t noh_gl_table_bytes(GLenum format, uint32_t count)
 noh_result noh_gl_table_create(const noh_gl_api *api, noh_gl_ledger *ledger, GLenum format, uint32_t count,
                                noh_gl_table *out, noh_error *error)
 {
+    NOH_ASSERT(format == GL_R32UI || format == GL_RGB32UI || format == GL_RGBA32UI);
     noh_gl_table table;
     noh_gl_texture_desc desc = table_desc(format, count, &table.width_log2, &table.height);
     noh_result result = noh_gl_texture_create(api, ledger, &desc, &table.texture, error);
@@ -59,12 +61,16 @@ static void upload_block(const noh_gl_api *api, const noh_gl_table *t, uint32_t 
     }
 }
 
+/* Texels first to first + count - 1 are the rest of one row, whole rows, and the beginning of a last row: at most three
+ * rectangles. */
 void noh_gl_table_upload(const noh_gl_api *api, const noh_gl_table *table, uint32_t first, uint32_t count, const void *data)
 {
     uint32_t width = 1u << table->width_log2, x = first & (width - 1u), y = first >> table->width_log2;
     uint32_t head = x ? (count < width - x ? count : width - x) : 0; /* the rest of a row that is begun */
     uint32_t rows = (count - head) >> table->width_log2;
     const uint8_t *bytes = (const uint8_t *)data;
+    NOH_ASSERT(table->texture.name && (data || !count));
+    NOH_ASSERT((uint64_t)first + count <= (uint64_t)table->height << table->width_log2);
     api->ActiveTexture(GL_TEXTURE0);
     api->BindTexture(GL_TEXTURE_2D, table->texture.name);
     api->PixelStorei(GL_UNPACK_ALIGNMENT, 4);

@@ -1,7 +1,9 @@
 /* gl_table.h: a one-dimensional table of texels, folded into a 2-D texture.
  *
  * Texel i lies at (i & (width - 1), i >> width_log2). Core ES 3.0 has no buffer
- * textures and guarantees textures of 2048 x 2048, so tables may have 2^22 texels. */
+ * textures and guarantees textures of 2048 x 2048, so tables may have 2^22 texels.
+ *
+ * Threads: the context's own thread; noh_gl_table_shape and noh_gl_table_bytes, any. */
 #ifndef NOH_GL_GL_TABLE_H
 #define NOH_GL_GL_TABLE_H
 

@@ -4,17 +4,24 @@
 
 void noh_gl_timer_init(noh_gl_timer *timer, const noh_gl_api *api, const noh_gl_caps *caps)
 {
+    NOH_ASSERT(timer && api && caps);
     memset(timer, 0, sizeof *timer);
     timer->available = caps->timer_query;
     if (!timer->available) return;
+    noh_gl_error_take(api);
     api->TimeGenQueries(NOH_GL_TIMER_FLIGHT, timer->queries);
-    /* Reading the flag clears it: what happened before is not ours. */
+    /* Reading the flag clears it: discard what happened before. */
     GLint disjoint = 0;
     if (api->is_es) api->GetIntegerv(GL_GPU_DISJOINT_EXT, &disjoint);
+    if (noh_gl_error_take(api) != GL_NO_ERROR) {
+        api->TimeDeleteQueries(NOH_GL_TIMER_FLIGHT, timer->queries);
+        memset(timer, 0, sizeof *timer);
+    }
 }
 
 void noh_gl_timer_delete(noh_gl_timer *timer, const noh_gl_api *api)
 {
+    NOH_ASSERT(timer && api);
     noh_gl_timer_end(timer, api);
     if (timer->available) api->TimeDeleteQueries(NOH_GL_TIMER_FLIGHT, timer->queries);
     memset(timer, 0, sizeof *timer);
@@ -22,6 +29,7 @@ void noh_gl_timer_delete(noh_gl_timer *timer, const noh_gl_api *api)
 
 void noh_gl_timer_begin(noh_gl_timer *timer, const noh_gl_api *api)
 {
+    NOH_ASSERT(timer && api);
     if (!timer->available || timer->open || timer->flying == NOH_GL_TIMER_FLIGHT) return;
     uint32_t slot = (timer->oldest + timer->flying) % NOH_GL_TIMER_FLIGHT;
     api->TimeBeginQuery(GL_TIME_ELAPSED_EXT, timer->queries[slot]);
@@ -30,7 +38,9 @@ void noh_gl_timer_begin(noh_gl_timer *timer, const noh_gl_api *api)
 
 void noh_gl_timer_end(noh_gl_timer *timer, const noh_gl_api *api)
 {
+    NOH_ASSERT(timer && api && timer->flying <= NOH_GL_TIMER_FLIGHT);
     if (!timer->open) return;
+    NOH_ASSERT(timer->available && timer->flying < NOH_GL_TIMER_FLIGHT);
     api->TimeEndQuery(GL_TIME_ELAPSED_EXT);
     timer->open = 0;
     timer->flying++;
@@ -38,6 +48,7 @@ void noh_gl_timer_end(noh_gl_timer *timer, const noh_gl_api *api)
 
 noh_result noh_gl_timer_poll(noh_gl_timer *timer, const noh_gl_api *api, uint64_t *elapsed_ns)
 {
+    NOH_ASSERT(timer && api && elapsed_ns && timer->flying <= NOH_GL_TIMER_FLIGHT && timer->oldest < NOH_GL_TIMER_FLIGHT);
     if (!timer->available) return NOH_ERR_UNSUPPORTED;
     if (timer->flying == 0) return NOH_ERR_NOT_FOUND;
     GLuint query = timer->queries[timer->oldest];

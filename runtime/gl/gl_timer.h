@@ -6,12 +6,18 @@
  *
  * Results come some frames late, so several measurements are in flight. Without
  * timer queries, and while all are in flight, begin and end do nothing. One timer
- * at a time may be open: GL does not nest time queries. */
+ * at a time may be open: GL does not nest time queries.
+ *
+ * Threads: the context's own thread, for every function. */
 #ifndef NOH_GL_GL_TIMER_H
 #define NOH_GL_GL_TIMER_H
 
 #include "gl/gl_api.h"
 #include "gl/gl_caps.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 #define NOH_GL_TIMER_FLIGHT 4u
 
@@ -23,7 +29,8 @@ typedef struct noh_gl_timer {
     int open;         /* between begin and end */
 } noh_gl_timer;
 
-/* Never fails: `available` says whether the timer will ever tell a time. */
+/* Never fails. `available` is 0 without timer queries, and where the driver refuses to make them: the timer then
+ * measures nothing. */
 void noh_gl_timer_init(noh_gl_timer *timer, const noh_gl_api *api, const noh_gl_caps *caps);
 void noh_gl_timer_delete(noh_gl_timer *timer, const noh_gl_api *api);
 
@@ -32,7 +39,11 @@ void noh_gl_timer_end(noh_gl_timer *timer, const noh_gl_api *api);
 
 /* units   nanoseconds
  * errors  NOH_ERR_NOT_FOUND none has finished yet; NOH_ERR_UNSUPPORTED no timer queries;
- *         NOH_ERR_GL the GPU changed clocks or was taken away: all in flight are dropped */
+ *         NOH_ERR_GL the GPU's clock was disjoint (a frequency change, for instance): all in flight are dropped */
 noh_result noh_gl_timer_poll(noh_gl_timer *timer, const noh_gl_api *api, uint64_t *elapsed_ns);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

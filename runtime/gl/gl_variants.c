@@ -20,6 +20,7 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
 {
     const noh_mesh_header *h = mesh->header;
     noh_gl_variant_key key = { 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 };
+    NOH_ASSERT((unsigned)view <= NOH_VIEW_LOD);
     if (skin && h->influence_count) {
         key.influences = (uint8_t)h->influence_count;
         key.drawn = drawn_of(h->influence_count, skin->influences);
@@ -38,11 +39,10 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
 
 /* ---- the text of the defines ---- */
 
-#define DEFINES_BYTES 256u /* all of them take 214 */
-
+/* All of them take 214 bytes. */
 static size_t put_text(char *text, size_t at, const char *more)
 {
-    while (*more && at + 1u < DEFINES_BYTES) {
+    while (*more && at + 1u < NOH_GL_DEFINES_BYTES) {
         text[at++] = *more++;
     }
     text[at] = 0;
@@ -57,8 +57,9 @@ static size_t put_digit(char *text, size_t at, const char *name, unsigned digit)
     return put_text(text, at, value);
 }
 
-static void write_defines(noh_gl_variant_key key, char text[DEFINES_BYTES])
+void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYTES])
 {
+    NOH_ASSERT(text && key.influences <= 8u && key.drawn <= key.influences && key.view <= NOH_VIEW_LOD);
     const struct { int on; const char *line; } flags[] = {
         { key.texture, "#define PALETTE_TEXTURE\n" }, { key.dual_quaternion, "#define DUAL_QUATERNION\n" },
         { key.texels, "#define MORPH_TEXELS\n" },     { key.crowd, "#define CROWD\n" },
@@ -88,19 +89,19 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
     }
 }
 
-noh_result noh_gl_variant_create(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_variant_key key,
-                                 const char *const *varyings, uint32_t varying_count, noh_gl_variant *out, char *log,
-                                 size_t log_bytes, noh_error *error)
+noh_result noh_gl_variant_create(const noh_gl_device *device, noh_gl_variant_key key, const char *const *varyings,
+                                 uint32_t varying_count, noh_gl_variant *out, noh_error *error)
 {
     static const char *const samplers[] = { "u_layers", "u_base_color_texture", "u_palettes" };
     static const char *const blocks[] = { "palette_block" };
-    char defines[DEFINES_BYTES];
+    char defines[NOH_GL_DEFINES_BYTES];
     noh_gl_variant v;
     noh_gl_program_desc desc;
     noh_result result;
+    NOH_ASSERT(device && device->api && out && (varyings || !varying_count));
     memset(&v, 0, sizeof v);
     memset(&desc, 0, sizeof desc);
-    write_defines(key, defines);
+    noh_gl_variant_defines(key, defines);
     desc.name = "mesh";
     desc.vertex = &noh_shader_mesh_vert;
     desc.fragment = &noh_shader_mesh_frag;
@@ -111,18 +112,24 @@ noh_result noh_gl_variant_create(const noh_gl_api *api, noh_gl_ledger *ledger, n
     desc.block_count = 1;
     desc.varyings = varyings;
     desc.varying_count = varying_count;
-    desc.ledger = ledger;
-    result = noh_gl_program_create(api, &desc, &v.program, log, log_bytes, error);
+    desc.ledger = device->ledger;
+    result = noh_gl_program_create(device->api, &desc, &v.program, device->log, device->log_bytes, error);
     if (!result) {
         v.key = key;
-        find_uniforms(api, &v);
-        *out = v;
+        find_uniforms(device->api, &v);
+        result = noh_gl_error_check(device->api, "the driver refuses to tell a shader variant's uniforms", 0, error);
+        if (result) {
+            noh_gl_variant_delete(device->api, device->ledger, &v);
+        } else {
+            *out = v;
+        }
     }
     return result;
 }
 
 void noh_gl_variant_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_variant *variant)
 {
+    NOH_ASSERT(api && variant);
     noh_gl_program_delete(api, ledger, &variant->program);
 }
 
@@ -130,6 +137,8 @@ void noh_gl_variant_skin(const noh_gl_api *api, const noh_gl_variant *variant, c
                          const noh_gl_skin_binding *skin, uint32_t palette)
 {
     uint32_t row = mesh->header->palette_count ? noh_gl_palette_row(skin, mesh, palette) : 0;
+    NOH_ASSERT(palette < mesh->header->palette_count || !palette);
+    NOH_ASSERT(variant->key.texture == (skin->mode == NOH_PALETTE_TEXTURE) || !variant->key.influences);
     if (variant->key.texture) {
         api->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_PALETTES);
         api->BindTexture(GL_TEXTURE_2D, skin->name);

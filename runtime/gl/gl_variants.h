@@ -1,16 +1,23 @@
 /* gl_variants.h: the programs of the plain renderer, one for each kind of mesh.
  *
  *   noh_gl_variant_key_of   what a mesh with these bindings is drawn by
+ *   noh_gl_variant_defines  a key as the text of its #defines, for your own shaders (gl_shader_text.h)
  *   noh_gl_variant_create   compile mesh.vert and mesh.frag for a key
  *   noh_gl_variant_delete
  *   noh_gl_variant_skin     bind an instance's palettes
  *
  * A key is the set of defines that common_skin.glsl, common_layers.glsl and mesh.frag name. Set `fade` in what
- * noh_gl_variant_key_of returns where a draw fades. */
+ * noh_gl_variant_key_of returns where a draw fades.
+ *
+ * Threads: the context's own thread; noh_gl_variant_key_of and noh_gl_variant_defines, any. */
 #ifndef NOH_GL_GL_VARIANTS_H
 #define NOH_GL_GL_VARIANTS_H
 
 #include "gl/gl_skin.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 typedef enum noh_debug_view {
     NOH_VIEW_LIT,
@@ -50,16 +57,25 @@ typedef struct noh_gl_variant {
 noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin_binding *skin, int crowd, int layers_uint,
                                          noh_debug_view view);
 
-/* varyings[varying_count] for transform feedback, interleaved; 0: none. `log` as in
- * noh_gl_program_create. errors  as there */
-noh_result noh_gl_variant_create(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_variant_key key,
-                                 const char *const *varyings, uint32_t varying_count, noh_gl_variant *out, char *log,
-                                 size_t log_bytes, noh_error *error);
+#define NOH_GL_DEFINES_BYTES 256u
+
+/* The key as whole lines of #define, zero-terminated: what common_skin.glsl, common_layers.glsl and mesh.frag want. */
+void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYTES]);
+
+/* varyings[varying_count] for transform feedback, interleaved; 0: none. The device's ledger may be NULL.
+ * errors  as noh_gl_program_create */
+noh_result noh_gl_variant_create(const noh_gl_device *device, noh_gl_variant_key key, const char *const *varyings,
+                                 uint32_t varying_count, noh_gl_variant *out, noh_error *error);
 void noh_gl_variant_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_variant *variant);
 
-/* Bind the palettes for the submeshes of one palette; the variant is in use. Leaves the texture bound
+/* Bind the palettes for the submeshes of one palette; the variant is in use. For a program of your own fill a variant
+ * with `key` and `u_skin` (the place of that uniform; -1 with a uniform block). Leaves the texture bound
  * at NOH_UNIT_PALETTES, or the buffer's range at uniform binding 0. */
 void noh_gl_variant_skin(const noh_gl_api *api, const noh_gl_variant *variant, const noh_mesh *mesh,
                          const noh_gl_skin_binding *skin, uint32_t palette);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

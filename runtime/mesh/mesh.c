@@ -5,7 +5,8 @@
 #include "base/hash.h"
 #include "base/math.h"
 
-/* Point a view at a header of a mesh chunk. */
+/* Point a view at a level's header. The headers of a mesh's levels lie at the chunk's start, so header - level is the
+ * chunk; the offsets of every level count from there. */
 static void view_of(const noh_mesh_header *h, noh_mesh *mesh)
 {
     const uint8_t *chunk = (const uint8_t *)(h - h->level);
@@ -25,10 +26,12 @@ static void view_of(const noh_mesh_header *h, noh_mesh *mesh)
     mesh->joint_boxes = (const float *)(const void *)(chunk + h->joint_boxes_offset);
 }
 
-noh_result noh_pack_mesh(const noh_pack *pack, uint32_t index, noh_mesh *mesh)
+noh_result noh_pack_mesh(const noh_pack *pack, uint32_t index, noh_mesh *mesh, noh_error *error)
 {
+    NOH_ASSERT(pack && mesh);
     if (index >= pack->mesh_count) {
-        return NOH_ERR_NOT_FOUND;
+        return noh_fail(error, NOH_ERR_NOT_FOUND, pack->mesh_count ? "mesh index is past the pack's last mesh" : "pack holds no mesh", index,
+                        pack->mesh_count);
     }
     mesh->pack = pack;
     mesh->name = noh_pack_chunk_name(pack, pack->first_mesh + index);
@@ -40,15 +43,18 @@ noh_mesh noh_mesh_at_level(const noh_mesh *mesh, uint32_t level)
 {
     noh_mesh other = *mesh;
     const uint32_t last = mesh->header->level_count - 1u;
+    NOH_ASSERT(mesh->header->level <= last);
     view_of(mesh->header - mesh->header->level + (level < last ? level : last), &other);
     return other;
 }
 
-noh_result noh_pack_skin_at(const noh_pack *pack, uint32_t index, noh_skin *skin)
+noh_result noh_pack_skin_at(const noh_pack *pack, uint32_t index, noh_skin *skin, noh_error *error)
 {
     const uint8_t *chunk;
+    NOH_ASSERT(pack && skin);
     if (index >= pack->skin_count) {
-        return NOH_ERR_NOT_FOUND;
+        return noh_fail(error, NOH_ERR_NOT_FOUND, index == NOH_NONE ? "a rigid mesh has no skin" : "skin index is past the pack's last skin",
+                        index, pack->skin_count);
     }
     chunk = pack->bytes + pack->chunks[pack->first_skin + index].offset;
     skin->name = noh_pack_chunk_name(pack, pack->first_skin + index);
@@ -69,13 +75,14 @@ static int names_equal(const char *a, const char *b)
 
 uint32_t noh_mesh_find_target(const noh_mesh *mesh, const char *name)
 {
-    uint32_t hash = noh_hash_name(name);
+    const uint32_t hash = noh_hash_name(name);
+    NOH_ASSERT(mesh && mesh->header);
     for (uint32_t i = 0; i < mesh->header->target_count; i++) {
         if (mesh->targets[i].name_hash == hash && names_equal(noh_pack_string(mesh->pack, mesh->targets[i].name), name)) {
             return i;
         }
     }
-    return mesh->header->target_count;
+    return NOH_NONE;
 }
 
 int noh_mesh_tangent_offset(const noh_mesh *mesh)
@@ -99,6 +106,7 @@ int noh_mesh_color_offset(const noh_mesh *mesh)
 
 uint32_t noh_mesh_index(const noh_mesh *mesh, uint32_t i)
 {
+    NOH_ASSERT(i < mesh->header->index_count);
     return mesh->header->index_bytes == 2 ? ((const uint16_t *)mesh->indices)[i] : ((const uint32_t *)mesh->indices)[i];
 }
 
@@ -111,6 +119,7 @@ static uint32_t load_u32(const uint8_t *bytes)
 
 static uint32_t texel_word(const noh_mesh *mesh, uint32_t vertex)
 {
+    NOH_ASSERT(vertex < mesh->header->vertex_count);
     return (mesh->header->flags & NOH_MESH_TEXELS)
                ? load_u32(mesh->attributes + ((size_t)vertex + 1u) * mesh->header->attribute_stride - 4u)
                : vertex;
@@ -126,7 +135,8 @@ uint32_t noh_mesh_palette(const noh_mesh *mesh, uint32_t vertex)
     return texel_word(mesh, vertex) >> NOH_TEXEL_VERTEX_BITS;
 }
 
-/* The n-th stored weight (the first is n = 1), in units of 1 / NOH_WEIGHT_ONE. */
+/* The n-th stored weight (the first is n = 1), in units of 1 / NOH_WEIGHT_ONE: the second heaviest, at most a half, in 22 bits,
+ * the others, at most a third, in 21. */
 static uint32_t stored_weight(const uint32_t *words, uint32_t n)
 {
     uint32_t bit = n == 1 ? 0 : 22u + 21u * (n - 2u), size = n == 1 ? 22u : 21u;
@@ -142,7 +152,9 @@ uint32_t noh_mesh_influences(const noh_mesh *mesh, uint32_t vertex, uint32_t joi
 {
     uint32_t count = mesh->header->influence_count, rest = NOH_WEIGHT_ONE;
     const uint32_t *words = mesh->influences + (size_t)vertex * NOH_INFLUENCE_WORDS(count);
-    const uint16_t *palette = mesh->palette_joints + mesh->palettes[noh_mesh_palette(mesh, vertex)].first_joint;
+    const uint16_t *palette;
+    NOH_ASSERT(mesh->header->skin != NOH_NONE && vertex < mesh->header->vertex_count && joints && weights);
+    palette = mesh->palette_joints + mesh->palettes[noh_mesh_palette(mesh, vertex)].first_joint;
     for (uint32_t i = 0; i < count; i++) {
         uint32_t weight = i ? stored_weight(words + (count == 8u ? 2 : 1), i) : 0;
         joints[i] = palette[words[i / 4u] >> 8u * (i % 4u) & 255u];
@@ -153,7 +165,10 @@ uint32_t noh_mesh_influences(const noh_mesh *mesh, uint32_t vertex, uint32_t joi
     return count;
 }
 
-/* Unfold an octahedral pair, x and y in -1..1, to a direction (Meyer et al. 2010). */
+/* Decode an octahedral direction from x and y in -1..1. The sphere is projected on the octahedron |x| + |y| + |z| = 1; its
+ * upper half lies in the square as it is, the lower half is folded outwards over the four edges. So z is what x and y leave
+ * of 1, and where it is negative x and y are folded back by it.
+ * source  Meyer, Suessmuth, Sussner, Stamminger, Greiner: On floating-point normal vectors, 2010 */
 static void unfold(float x, float y, float out[3])
 {
     float z = 1.0f - (x < 0.0f ? -x : x) - (y < 0.0f ? -y : y);
@@ -173,6 +188,7 @@ static int32_t high_half(uint32_t word)
     return (int32_t)word >> 16;
 }
 
+/* Stored as square roots, close to how the eye tells shades apart: 8 bits then show no steps, and decoding is a product. */
 static void decode_color(const uint8_t *bytes, float color[4])
 {
     for (int c = 0; c < 3; c++) {
@@ -185,7 +201,9 @@ static void decode_color(const uint8_t *bytes, float color[4])
 void noh_mesh_directions(const noh_mesh *mesh, uint32_t index, float normal[3], float tangent[3])
 {
     const uint8_t *record = mesh->attributes + (size_t)index * mesh->header->attribute_stride;
-    uint32_t word = load_u32(record);
+    uint32_t word;
+    NOH_ASSERT(index < mesh->header->vertex_count && normal && tangent);
+    word = load_u32(record);
     unfold((float)low_half(word) * (1.0f / 32767.0f), (float)high_half(word) * (1.0f / 32767.0f), normal);
     memset(tangent, 0, 3 * sizeof *tangent);
     if (noh_mesh_tangent_offset(mesh) >= 0) {
@@ -199,7 +217,8 @@ void noh_mesh_vertex(const noh_mesh *mesh, uint32_t index, noh_vertex *out)
     static const float up[3] = { 0.0f, 0.0f, 1.0f };
     const noh_mesh_header *h = mesh->header;
     const uint8_t *record = mesh->attributes + (size_t)index * h->attribute_stride;
-    int tangent = noh_mesh_tangent_offset(mesh), uv = noh_mesh_uv_offset(mesh), color = noh_mesh_color_offset(mesh);
+    const int tangent = noh_mesh_tangent_offset(mesh), uv = noh_mesh_uv_offset(mesh), color = noh_mesh_color_offset(mesh);
+    NOH_ASSERT(index < h->vertex_count && out);
     memset(out, 0, sizeof *out);
     memcpy(out->position, mesh->positions + 3u * (size_t)index, sizeof out->position);
     noh_mesh_directions(mesh, index, out->normal, out->tangent);

@@ -1,10 +1,15 @@
-/* mesh.h: a mesh of a pack, as pointers into the pack's bytes. */
+/* mesh.h: a mesh of a pack and the skin that moves it, as pointers into the pack's bytes; and its vertices, decoded.
+ * Threads: views are read-only; any number of threads. */
 #ifndef NOH_MESH_MESH_H
 #define NOH_MESH_MESH_H
 
 #include "pack/pack.h"
 
-/* A view; valid as long as the pack's bytes are. Shapes are in format.h. */
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A mesh at one LOD level. A view: valid as long as the pack and its bytes are. Shapes are in format.h. */
 typedef struct noh_mesh {
     const noh_pack *pack;
     const char *name;
@@ -14,7 +19,7 @@ typedef struct noh_mesh {
     const void *indices;         /* uint16_t or uint32_t [index_count] */
     const noh_submesh *submeshes;
     const noh_target *targets;
-    const float *weights;        /* [target_count], the asset's defaults */
+    const float *weights;        /* [target_count], default weights */
     const noh_rect *rects;
     const uint32_t *texels;      /* [texel_count][3] */
     const float *target_boxes;   /* [target_count][6] */
@@ -24,11 +29,11 @@ typedef struct noh_mesh {
     const float *joint_boxes;    /* [the skin's joint_count][6] */
 } noh_mesh;
 
-/* The joints that move a mesh; likewise a view. */
+/* The joints that move a mesh. A view likewise. */
 typedef struct noh_skin {
     const char *name;
     const noh_skin_header *header;
-    const uint16_t *joints;      /* [joint_count], of the skeleton header->skeleton */
+    const uint16_t *joints;      /* [joint_count], joints of skeleton header->skeleton */
     const float *inverse_bind;   /* [joint_count][12] */
 } noh_skin;
 
@@ -41,44 +46,53 @@ typedef struct noh_vertex {
     float color[4];   /* linear; white without colours */
 } noh_vertex;
 
-/* The n-th mesh. NOT_FOUND past mesh_count. */
-noh_result noh_pack_mesh(const noh_pack *pack, uint32_t index, noh_mesh *mesh);
+/* The n-th mesh, its full level.
+ * errors  NOT_FOUND  past mesh_count (where: the index, need: the count); *mesh is untouched */
+noh_result noh_pack_mesh(const noh_pack *pack, uint32_t index, noh_mesh *mesh, noh_error *error);
 
-/* The same mesh at a level of detail, 0 the full one; past the last the coarsest. It is a mesh like any other: what
- * is made from it (layers, skinned vertices, GL buffers) has that level's size, and every coarser one is a part of it.
- * A view; `mesh` may be at any level. */
+/* The same mesh at a LOD level: 0 is the full one, past the last it is the coarsest. Levels are absolute, whichever level
+ * `mesh` is at. The result is a mesh like any other: what is made from it (layers, skinned vertices, GL buffers) has that
+ * level's size and can show every coarser level too. */
 noh_mesh noh_mesh_at_level(const noh_mesh *mesh, uint32_t level);
 
-/* The n-th skin. NOT_FOUND past skin_count; so for NOH_NONE, a rigid mesh's. */
-noh_result noh_pack_skin_at(const noh_pack *pack, uint32_t index, noh_skin *skin);
+/* The n-th skin; a mesh names its own in header->skin.
+ * errors  NOT_FOUND  past skin_count, so also for NOH_NONE, a rigid mesh's (where: the index, need: the count) */
+noh_result noh_pack_skin_at(const noh_pack *pack, uint32_t index, noh_skin *skin, noh_error *error);
 
-/* The target of that name; target_count when there is none. */
+/* The index of the target of that name, or NOH_NONE: weights[] has no place for it then. */
 uint32_t noh_mesh_find_target(const noh_mesh *mesh, const char *name);
 
-/* Decode a vertex of the rest pose: the arithmetic of shaders_es/common_attributes.glsl. */
+/* Decode a vertex of the bind pose, with the arithmetic of shaders_es/common_attributes.glsl.
+ * ranges  index below vertex_count */
 void noh_mesh_vertex(const noh_mesh *mesh, uint32_t index, noh_vertex *out);
 
-/* Its normal and tangent as they unfold: of lengths from 0.57 to 1, for those who make them unit later anyway. */
+/* Its normal and tangent unnormalised: of lengths from 0.57 to 1, for a caller that normalises later. Without tangents the
+ * tangent is 0. */
 void noh_mesh_directions(const noh_mesh *mesh, uint32_t index, float normal[3], float tangent[3]);
 
-/* Byte offset of an attribute in its record, or -1 where the mesh has none. */
+/* Byte offset of an attribute in a vertex's record, or -1 where the mesh has none. */
 int noh_mesh_tangent_offset(const noh_mesh *mesh);
 int noh_mesh_uv_offset(const noh_mesh *mesh);
 int noh_mesh_color_offset(const noh_mesh *mesh);
 
-/* A vertex's accumulation texel (header->touched_count or more: it has none), and its palette (0 but in a split
- * mesh). */
+/* A vertex's accumulation texel: it has none where that is header->touched_count or more. And its palette: 0 unless the mesh
+ * is split into several. */
 uint32_t noh_mesh_texel(const noh_mesh *mesh, uint32_t vertex);
 uint32_t noh_mesh_palette(const noh_mesh *mesh, uint32_t vertex);
 
-/* What moves a vertex of a skinned mesh.
- * shapes   joints[influence_count] places in the skin's joints, weights[influence_count]
+/* The joints that move a vertex of a skinned mesh.
+ * shapes   joints[influence_count] indices into the skin's joints, weights[influence_count]
  * ranges   the weights sum to exactly 1 in float32, the first is the largest but for rounding
  * returns  influence_count */
 uint32_t noh_mesh_influences(const noh_mesh *mesh, uint32_t vertex, uint32_t joints[NOH_INFLUENCES_MAX],
                              float weights[NOH_INFLUENCES_MAX]);
 
-/* The i-th index. */
+/* The i-th index of the triangles.
+ * ranges  i below index_count */
 uint32_t noh_mesh_index(const noh_mesh *mesh, uint32_t i);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

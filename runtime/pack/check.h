@@ -1,14 +1,15 @@
 /* check.h (private to pack/): the checkers of the chunks, one per type.
  *
- * Each sees only its own chunk's bytes and the pack as far as it has been
- * opened: chunks come in an order in which nothing refers forward. */
+ * Each sees only the bytes of its own chunk and the pack as far as it has been opened: chunks come in an order in which none
+ * refers to a later one. Files call each other in one direction: check_mesh.c calls check_level.c and check_skin.c, and all
+ * three call check_mesh_part.c and check.c. */
 #ifndef NOH_PACK_CHECK_H
 #define NOH_PACK_CHECK_H
 
 #include "pack/pack.h"
 
 typedef struct noh_check {
-    const noh_pack *pack;  /* what the chunks before this one told */
+    const noh_pack *pack;  /* what the chunks before this one hold */
     const uint8_t *bytes;  /* of this chunk */
     uint32_t count;
     uint32_t file_offset;
@@ -22,8 +23,7 @@ noh_result noh_check_fail(const noh_check *check, const char *what, uint64_t off
 /* The fixed head of a chunk. */
 noh_result noh_check_head(noh_check *check, uint32_t bytes);
 
-/* The next array: it has to begin at the next multiple of 16, and fit; the
- * padding before it has to be zero. */
+/* The next array has to begin at the next multiple of 16 and to fit; the padding before it has to be zero. */
 noh_result noh_check_array(noh_check *check, uint32_t offset, uint64_t count, uint32_t stride);
 
 /* The chunk has to end where its last array did. */
@@ -40,18 +40,18 @@ noh_result noh_check_skeleton(noh_check *check);
 noh_result noh_check_skin(noh_check *check);
 noh_result noh_check_motion(noh_check *check);
 
-/* Parts of a mesh that each of its levels has; `h` is that level's header. */
+/* check_mesh_part.c: what every level of a mesh has; `h` is that level's header. */
 noh_result noh_check_texture_shape(const noh_check *check, const noh_mesh_header *h);
 noh_result noh_check_indices(const noh_check *check, const noh_mesh_header *h);
 noh_result noh_check_submeshes(const noh_check *check, const noh_mesh_header *h);
 noh_result noh_check_draws(const noh_check *check, const noh_mesh_header *h);
 noh_result noh_check_rects(const noh_check *check, const noh_mesh_header *h, const noh_target *t);
 
-/* The headers of a mesh's coarser levels behind that of the full mesh: there, and alike in all that levels share.
- * Before the arrays are looked at. */
+/* The headers of a mesh's coarser levels, which follow that of the full one: present, and equal in all that levels share.
+ * Comes before the arrays. */
 noh_result noh_check_level_headers(noh_check *check, const noh_mesh_header *h);
 
-/* What lies behind each other for all levels of a mesh. */
+/* Sums over all levels of a mesh, of the arrays that each level has a part of. */
 typedef struct noh_level_sums {
     uint64_t indices, submeshes;
 } noh_level_sums;

@@ -1,6 +1,7 @@
 /* check_level.c: the checker of a mesh's levels of detail, and of its texel references. */
 #include "pack/check.h"
 
+#include <stddef.h>
 #include <string.h>
 
 /* ---- headers ---- */
@@ -38,7 +39,7 @@ static noh_result check_errors(const noh_check *check, const noh_mesh_header *l,
     noh_result result = noh_check_floats(check, mine, 6, "level's error is not finite");
     for (unsigned i = 0; !result && i < 6; i++) {
         if (mine[i] < before[i]) {
-            result = noh_check_fail(check, "level's error is below that of the finer level", (uint64_t)l->level * sizeof *l + 200u + 4u * i);
+            result = noh_check_fail(check, "level's error is below that of the finer level", (uint64_t)l->level * sizeof *l + offsetof(noh_mesh_header, level_error_rest) + 4u * i);
         }
     }
     return result;
@@ -49,12 +50,12 @@ static noh_result check_full_errors(const noh_check *check, const noh_mesh_heade
     const float *errors = &h->level_error_rest;
     for (unsigned i = 0; i < 3; i++) {
         if (!(h->influence_errors[i] >= (i ? h->influence_errors[i - 1] : 0.0f)) || !noh_float_finite(h->influence_errors[i])) {
-            return noh_check_fail(check, "error of fewer influences is not finite, or falls", 224u + 4u * i);
+            return noh_check_fail(check, "error of fewer influences is not finite, or falls", offsetof(noh_mesh_header, influence_errors) + 4u * i);
         }
     }
     for (unsigned i = 0; i < 6; i++) {
         if (!(errors[i] == 0.0f)) {
-            return noh_check_fail(check, "full mesh has the error of a level", 200u + 4u * i);
+            return noh_check_fail(check, "full mesh has the error of a level", offsetof(noh_mesh_header, level_error_rest) + 4u * i);
         }
     }
     return NOH_OK;
@@ -88,12 +89,6 @@ noh_level_sums noh_check_level_sums(const noh_mesh_header *h)
 }
 
 /* ---- texels ---- */
-
-uint32_t noh_check_texel_word(const noh_check *check, const noh_mesh_header *h, uint32_t vertex)
-{
-    size_t last = h->attributes_offset + (size_t)(vertex + 1u) * h->attribute_stride - 4u;
-    return (h->flags & NOH_MESH_TEXELS) ? *(const uint32_t *)(const void *)(check->bytes + last) : vertex;
-}
 
 static int texel_is_right(const noh_mesh_header *l, uint32_t vertex, uint32_t texel)
 {

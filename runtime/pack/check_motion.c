@@ -2,6 +2,8 @@
  * chunk is checked by its decoder when it is opened, against its own bytes alone. */
 #include "pack/check.h"
 
+#include <stddef.h>
+
 static noh_result check_joints(const noh_check *check, const noh_skeleton_header *h)
 {
     const uint16_t *parents = (const uint16_t *)(const void *)(check->bytes + h->parents_offset);
@@ -48,11 +50,14 @@ noh_result noh_check_skeleton(noh_check *check)
     if (result) {
         return result;
     }
-    if (!h->joint_count || h->joint_count > NOH_JOINTS_MAX || !(h->unit_cm > 0.0f) || !noh_float_finite(h->unit_cm)) {
-        return noh_check_fail(check, "joint count is zero or over the limit, or the unit is not a length", 0);
+    if (!h->joint_count || h->joint_count > NOH_JOINTS_MAX) {
+        return noh_check_fail(check, "joint count is zero or over the limit", offsetof(noh_skeleton_header, joint_count));
+    }
+    if (!(h->unit_cm > 0.0f) || !noh_float_finite(h->unit_cm)) {
+        return noh_check_fail(check, "unit of a skeleton is not a length", offsetof(noh_skeleton_header, unit_cm));
     }
     if (!h->level_count || h->level_count > NOH_JOINT_LEVELS_MAX) {
-        return noh_check_fail(check, "count of joint levels is zero or over the limit", 24);
+        return noh_check_fail(check, "count of joint levels is zero or over the limit", offsetof(noh_skeleton_header, level_count));
     }
     result = noh_check_array(check, h->parents_offset, h->joint_count, 2);
     if (!result) result = noh_check_array(check, h->bind_offset, h->joint_count, 40);
@@ -100,17 +105,19 @@ static noh_result check_binding(const noh_check *check, const noh_motion_header 
     const noh_pack *pack = check->pack;
     const noh_skeleton_header *skeleton;
     if (h->joint_count == 0) {
-        return h->skeleton_hash == 0 && h->skeleton == NOH_NONE && h->joint_error_count == 0 ? NOH_OK : noh_check_fail(check, "motion without joints names a skeleton, or has joint errors", 0);
+        return h->skeleton_hash == 0 && h->skeleton == NOH_NONE && h->joint_error_count == 0
+                   ? NOH_OK
+                   : noh_check_fail(check, "clip without joints names a skeleton, or has joint errors", offsetof(noh_motion_header, joint_count));
     }
     if (h->skeleton >= pack->skeleton_count) {
-        return noh_check_fail(check, "motion names a skeleton that is not there", 4);
+        return noh_check_fail(check, "clip names a skeleton that is not there", offsetof(noh_motion_header, skeleton));
     }
     skeleton = (const noh_skeleton_header *)(const void *)(pack->bytes + pack->chunks[pack->first_skeleton + h->skeleton].offset);
     if (skeleton->joint_count != h->joint_count || skeleton->hash != h->skeleton_hash) {
-        return noh_check_fail(check, "motion's joint count or hash is not its skeleton's", 0);
+        return noh_check_fail(check, "clip's joint count or hash is not its skeleton's", offsetof(noh_motion_header, skeleton_hash));
     }
     if (skeleton->level_count != h->joint_error_count) {
-        return noh_check_fail(check, "motion's joint errors are not of its skeleton's levels", 32);
+        return noh_check_fail(check, "clip's joint errors are not of its skeleton's levels", offsetof(noh_motion_header, joint_error_count));
     }
     return NOH_OK;
 }
@@ -132,7 +139,7 @@ static noh_result check_motion_errors(const noh_check *check, const noh_motion_h
     noh_result result = check_errors(check, joint_errors, h->joint_error_count, "joint errors do not begin with 0, or fall, or are not finite");
     if (!result) result = check_errors(check, h->rate_error, NOH_MOTION_RATES, "rate errors do not begin with 0, or fall, or are not finite");
     if (!result && (!noh_float_finite(h->error_shell) || h->error_shell < 0.0f)) {
-        result = noh_check_fail(check, "the shell of a motion's errors is not a length", 64);
+        result = noh_check_fail(check, "the shell of a clip's errors is not a length", offsetof(noh_motion_header, error_shell));
     }
     return result;
 }
@@ -145,8 +152,11 @@ noh_result noh_check_motion(noh_check *check)
     if (result) {
         return result;
     }
-    if (h->event_count > NOH_MOTION_EVENTS_MAX || h->marker_count > NOH_MOTION_MARKERS_MAX) {
-        return noh_check_fail(check, "callback key or sync marker count is over the limit", 16);
+    if (h->event_count > NOH_MOTION_EVENTS_MAX) {
+        return noh_check_fail(check, "callback key count is over the limit", offsetof(noh_motion_header, event_count));
+    }
+    if (h->marker_count > NOH_MOTION_MARKERS_MAX) {
+        return noh_check_fail(check, "sync marker count is over the limit", offsetof(noh_motion_header, marker_count));
     }
     result = noh_check_array(check, h->events_offset, h->event_count, sizeof(noh_motion_event));
     if (!result) result = noh_check_array(check, h->markers_offset, h->marker_count, sizeof(noh_motion_marker));

@@ -1,6 +1,8 @@
 /* check_scene.c: the checkers of textures, materials and nodes. */
 #include "pack/check.h"
 
+#include <stddef.h>
+
 noh_result noh_check_texture(noh_check *check)
 {
     const noh_texture_header *h = (const noh_texture_header *)(const void *)check->bytes;
@@ -9,10 +11,10 @@ noh_result noh_check_texture(noh_check *check)
         return result;
     }
     if (!h->width || !h->height || h->width > NOH_TEXTURE_SIZE_MAX || h->height > NOH_TEXTURE_SIZE_MAX) {
-        return noh_check_fail(check, "texture size is zero or over the limit", 0);
+        return noh_check_fail(check, "texture size is zero or over the limit", offsetof(noh_texture_header, width));
     }
     if (h->wrap_s > NOH_WRAP_MIRROR || h->wrap_t > NOH_WRAP_MIRROR || h->nearest > 1 || h->reserved[0] || h->reserved[1]) {
-        return noh_check_fail(check, "unknown texture sampling", 8);
+        return noh_check_fail(check, "unknown texture sampling, or a reserved field is not zero", offsetof(noh_texture_header, wrap_s));
     }
     result = noh_check_array(check, h->pixels_offset, (uint64_t)h->width * h->height, 4);
     return result ? result : noh_check_end(check);
@@ -35,10 +37,10 @@ noh_result noh_check_materials(noh_check *check)
             return result;
         }
         if (m[i].base_color_texture != NOH_NONE && m[i].base_color_texture >= check->pack->texture_count) {
-            return noh_check_fail(check, "material names a texture that is not there", at + 12);
+            return noh_check_fail(check, "material names a texture that is not there", at + offsetof(noh_material, base_color_texture));
         }
         if (m[i].flags & ~15u || m[i].reserved) {
-            return noh_check_fail(check, "unknown material flags", at + 8);
+            return noh_check_fail(check, "unknown material flags, or a reserved field is not zero", at + offsetof(noh_material, flags));
         }
     }
     return NOH_OK;
@@ -61,17 +63,17 @@ static noh_result check_node(const noh_check *check, const noh_nodes_header *h, 
         return result;
     }
     if (node->parent != NOH_NONE && node->parent >= index) {
-        return noh_check_fail(check, "node comes before its parent", at + 8);
+        return noh_check_fail(check, "node comes before its parent", at + offsetof(noh_node, parent));
     }
     if (node->mesh != NOH_NONE && node->mesh >= check->pack->mesh_count) {
-        return noh_check_fail(check, "node names a mesh that is not there", at + 12);
+        return noh_check_fail(check, "node names a mesh that is not there", at + offsetof(noh_node, mesh));
     }
     if (node->first_weight != NOH_NONE &&
         (node->mesh == NOH_NONE || node->first_weight > h->weight_count ||
          mesh_target_count(check->pack, node->mesh) > h->weight_count - node->first_weight)) {
-        return noh_check_fail(check, "node's weights lie outside the weights", at + 104);
+        return noh_check_fail(check, "node's weights lie outside the weights", at + offsetof(noh_node, first_weight));
     }
-    return node->flags ? noh_check_fail(check, "unknown node flags", at + 108) : NOH_OK;
+    return node->flags ? noh_check_fail(check, "unknown node flags", at + offsetof(noh_node, flags)) : NOH_OK;
 }
 
 noh_result noh_check_nodes(noh_check *check)
@@ -82,7 +84,7 @@ noh_result noh_check_nodes(noh_check *check)
         return result;
     }
     if (h->node_count > NOH_NODES_MAX) {
-        return noh_check_fail(check, "node count is over the limit", 0);
+        return noh_check_fail(check, "node count is over the limit", offsetof(noh_nodes_header, node_count));
     }
     result = noh_check_array(check, h->nodes_offset, h->node_count, sizeof(noh_node));
     if (!result) result = noh_check_array(check, h->weights_offset, h->weight_count, 4);

@@ -1,6 +1,8 @@
 /* check_skin.c: the checkers of skins, and of what a skinned mesh says of its vertices. */
 #include "pack/check.h"
 
+#include <stddef.h>
+
 static uint32_t skeleton_joints(const noh_pack *pack, uint32_t skeleton)
 {
     const noh_pack_chunk *chunk = &pack->chunks[pack->first_skeleton + skeleton];
@@ -21,8 +23,11 @@ noh_result noh_check_skin(noh_check *check)
     if (result) {
         return result;
     }
-    if (!h->joint_count || h->joint_count > NOH_SKIN_JOINTS_MAX || h->skeleton >= check->pack->skeleton_count) {
-        return noh_check_fail(check, "skin has no joints, too many, or names a skeleton that is not there", 0);
+    if (!h->joint_count || h->joint_count > NOH_SKIN_JOINTS_MAX) {
+        return noh_check_fail(check, "skin has no joints or too many", offsetof(noh_skin_header, joint_count));
+    }
+    if (h->skeleton >= check->pack->skeleton_count) {
+        return noh_check_fail(check, "skin names a skeleton that is not there", offsetof(noh_skin_header, skeleton));
     }
     result = noh_check_array(check, h->joints_offset, h->joint_count, 2);
     if (!result) result = noh_check_array(check, h->inverse_bind_offset, h->joint_count, 48);
@@ -121,27 +126,6 @@ static noh_result check_vertices(const noh_check *check, const noh_mesh_header *
                               h->influences_offset + 4ull * v * stride);
         if (result) {
             return result;
-        }
-    }
-    return NOH_OK;
-}
-
-/* A draw has one palette: all its vertices are written for it. */
-noh_result noh_check_draws(const noh_check *check, const noh_mesh_header *h)
-{
-    const noh_submesh *submeshes = (const noh_submesh *)(const void *)(check->bytes + h->submeshes_offset);
-    const uint8_t *indices = check->bytes + h->indices_offset;
-    for (uint32_t s = 0; s < h->submesh_count; s++) {
-        uint64_t at = h->submeshes_offset + (uint64_t)s * sizeof *submeshes;
-        if (submeshes[s].palette >= (h->palette_count ? h->palette_count : 1u)) {
-            return noh_check_fail(check, "submesh names a palette that is not there", at);
-        }
-        for (uint32_t i = 0; h->palette_count > 1 && i < submeshes[s].index_count; i++) {
-            size_t k = (size_t)submeshes[s].first_index + i;
-            uint32_t v = h->index_bytes == 2 ? ((const uint16_t *)(const void *)indices)[k] : ((const uint32_t *)(const void *)indices)[k];
-            if (noh_check_texel_word(check, h, v) >> NOH_TEXEL_VERTEX_BITS != submeshes[s].palette) {
-                return noh_check_fail(check, "submesh draws a vertex of another palette", at);
-            }
         }
     }
     return NOH_OK;

@@ -1,20 +1,22 @@
 /* format.h: the bytes of a .noh pack, little-endian, read where they lie.
  *
- * A pack is a header, a chunk table and the chunks. Every chunk starts at the
- * next multiple of 64 after the one before it, and every array inside a chunk
- * at the next multiple of 16 after the array before it: offsets are therefore
- * known from counts, the file still carries them so that readers are simple,
- * and the checker demands that both agree. Padding is zero. Names are offsets
- * into the string chunk. No pointers, nothing to patch. */
+ * A pack is a header, a chunk table and the chunks. Every chunk begins at the next multiple of 64 after the one before it,
+ * and every array inside a chunk at the next multiple of 16 after the array before it. Offsets therefore follow from the
+ * counts; the file carries them all the same, so that readers are simple, and noh_pack_open demands that both agree.
+ * Padding and reserved fields are zero. Names are offsets into the string chunk. There are no pointers, nothing to patch.
+ * Threads: constant data; any thread. */
 #ifndef NOH_PACK_FORMAT_H
 #define NOH_PACK_FORMAT_H
 
 #include "base/limits.h"
 #include "base/result.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define NOH_PACK_MAGIC 0x50484f4eu /* "NOHP" */
 #define NOH_PACK_VERSION 3u
-#define NOH_NONE 0xffffffffu
 
 #define NOH_FOURCC(a, b, c, d) ((uint32_t)(a) | ((uint32_t)(b) << 8) | ((uint32_t)(c) << 16) | ((uint32_t)(d) << 24))
 #define NOH_CHUNK_STRINGS NOH_FOURCC('S', 'T', 'R', 'S')
@@ -32,7 +34,8 @@ typedef struct noh_pack_header {
     uint32_t byte_count;  /* of the whole file, a multiple of 64 */
     uint32_t chunk_count;
     uint32_t crc;         /* CRC-32C of the header (this field as 0) and the chunk table */
-    uint32_t reserved[11];
+    uint32_t library_version; /* NOH_VERSION_NUMBER of the noh that wrote it, for reports: any value opens; 0: before 0.2.0 */
+    uint32_t reserved[10];
 } noh_pack_header;
 
 typedef struct noh_pack_chunk {
@@ -67,10 +70,10 @@ typedef struct noh_pack_chunk {
 #define NOH_TEXEL_VERTEX_BITS 22u
 #define NOH_TEXEL_NONE ((1u << NOH_TEXEL_VERTEX_BITS) - 1u)
 
-/* The header of the full mesh is followed by those of its coarser levels of detail, each a mesh of its own:
- * a level's vertices, texels and, target by target, rectangles are the first ones of the finer level's arrays,
- * which it shares; its indices, submeshes and targets lie behind the finer level's. So a level can be used, and
- * loaded, as if there were no finer one (row C16.4). */
+/* The header of the full mesh is followed by those of its coarser LOD levels, each a mesh of its own. A level's vertices,
+ * delta texels and, target by target, rectangles are the first ones of the finer level's arrays, which it shares; its
+ * indices, submeshes and targets follow the finer level's. So a level can be used, and loaded, as if there were no finer
+ * one. */
 typedef struct noh_mesh_header {
     uint32_t flags;            /* NOH_MESH_* */
     uint32_t vertex_count;
@@ -80,7 +83,7 @@ typedef struct noh_mesh_header {
     uint32_t target_count;
     uint32_t rect_count;
     uint32_t texel_count;
-    uint32_t pair_count;       /* delta texels that are not zero */
+    uint32_t pair_count;       /* vertices moved by targets: delta texels that are not zero */
     uint32_t source_pair_count;/* what the asset had, for reports */
     uint32_t touched_count;    /* accumulation texels; without texel references vertices 0..touched_count-1 have one */
     uint32_t morph_width_log2; /* texel t: x = t & (width - 1), y = t >> width_log2 */
@@ -104,7 +107,7 @@ typedef struct noh_mesh_header {
     uint32_t skin;              /* the n-th skin chunk, or NOH_NONE: a rigid mesh, and all below is 0 */
     uint32_t influence_count;   /* joints per vertex: 0, 1, 2, 4 or 8 */
     uint32_t influences_offset; /* uint32_t[vertex_count][NOH_INFLUENCE_WORDS] */
-    uint32_t palette_count;     /* 1, or more where a palette cannot hold all joints (row C3.6) */
+    uint32_t palette_count;     /* 1, or more where one palette cannot hold all joints: the mesh is split, triangle by triangle */
     uint32_t palettes_offset;   /* noh_palette[palette_count] */
     uint32_t palette_joint_count;
     uint32_t palette_joints_offset; /* uint16_t[palette_joint_count], places in the skin's joints */
@@ -125,7 +128,7 @@ typedef struct noh_mesh_header {
 } noh_mesh_header;
 
 /* Influences of a vertex, in words. The first joint is the strongest: its weight is
- * what the others leave of 1 (row E2), so sums are exact. The others' weights are
+ * what the others leave of 1, so sums are exact. The others' weights are
  * integers of 2^-22. Joints are 8-bit places in the vertex's palette; those without a
  * weight repeat the first.
  *   1  j0
@@ -134,7 +137,6 @@ typedef struct noh_mesh_header {
  *   8  the same, j4 to j7, then w1 to w7
  * Weights lie behind each other from the lowest bit of their words up: w1 has 22 bits
  * (it may be one half), the others 21 (they are at most a third). */
-#define NOH_INFLUENCES_MAX 8u
 #define NOH_INFLUENCE_WORDS(count) ((count) == 8u ? 7u : (count) == 4u ? 3u : (count))
 #define NOH_WEIGHT_ONE 0x400000u /* 2^22 */
 
@@ -143,7 +145,7 @@ typedef struct noh_palette {
     uint32_t first_joint, joint_count; /* 1..NOH_PALETTE_JOINTS_MAX */
 } noh_palette;
 
-/* A run of triangles with one material and one palette, and the vertices that it uses (row D9). */
+/* A range of triangles with one material and one palette, and the range of vertices that it uses. */
 typedef struct noh_submesh {
     uint32_t first_index, index_count;
     uint32_t material; /* into the material chunk, or NOH_NONE */
@@ -259,7 +261,7 @@ typedef struct noh_skin_header {
 typedef struct noh_motion_header {
     uint32_t skeleton_hash;  /* 0 without joints */
     uint32_t skeleton;       /* of this pack: the one that the clip was built with; NOH_NONE without joints */
-    uint32_t joint_count;    /* 0: moves floats alone */
+    uint32_t joint_count;    /* 0: animates floats only */
     uint32_t raw_bytes;      /* 40 per joint and frame, 4 per float: what it would be uncompressed */
     uint32_t event_count;
     uint32_t events_offset;  /* noh_motion_event[event_count] */
@@ -310,5 +312,9 @@ NOH_STATIC_ASSERT(sizeof(noh_rect) == 8, rect);
 NOH_STATIC_ASSERT(sizeof(noh_node) == 112, node);
 NOH_STATIC_ASSERT(sizeof(noh_material) == 48, material);
 NOH_STATIC_ASSERT(sizeof(noh_texture_header) == 32, texture_header);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -1,5 +1,6 @@
 #include "pack/pack.h"
 
+#include <stddef.h>
 #include <string.h>
 
 #include "base/hash.h"
@@ -35,18 +36,18 @@ static noh_result check_header(const uint8_t *bytes, size_t byte_count, noh_erro
         return noh_fail(error, NOH_ERR_DATA, "not a .noh pack (the first four bytes are not NOHP)", 0, 0);
     }
     if (h.version != NOH_PACK_VERSION) {
-        return noh_fail(error, NOH_ERR_VERSION, "pack has another format version: build it again with this noh", 4,
+        return noh_fail(error, NOH_ERR_VERSION, "pack has another format version: build it again with this noh", offsetof(noh_pack_header, version),
                         NOH_PACK_VERSION);
     }
     if (h.byte_count != byte_count) {
-        return noh_fail(error, NOH_ERR_DATA, "file length differs from what its header says: it is cut or has extra bytes", 8,
+        return noh_fail(error, NOH_ERR_DATA, "file length differs from what its header says: it is cut or has extra bytes", offsetof(noh_pack_header, byte_count),
                         h.byte_count);
     }
     if (byte_count > NOH_PACK_BYTES_MAX || h.chunk_count == 0 || h.chunk_count > NOH_PACK_CHUNKS_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "pack has no chunks, or more bytes or chunks than the limit", 12, h.chunk_count);
+        return noh_fail(error, NOH_ERR_LIMIT, "pack has no chunks, or more bytes or chunks than the limit", offsetof(noh_pack_header, chunk_count), h.chunk_count);
     }
     if (sizeof h + (uint64_t)h.chunk_count * sizeof(noh_pack_chunk) > byte_count) {
-        return noh_fail(error, NOH_ERR_DATA, "chunk table reaches past the end of the file", 12, 0);
+        return noh_fail(error, NOH_ERR_DATA, "chunk table reaches past the end of the file", offsetof(noh_pack_header, chunk_count), 0);
     }
     return NOH_OK;
 }
@@ -61,17 +62,18 @@ static noh_result check_table_crc(const uint8_t *bytes, noh_error *error)
     crc = noh_crc32c(0, &h, sizeof h);
     crc = noh_crc32c(crc, bytes + sizeof h, (size_t)h.chunk_count * sizeof(noh_pack_chunk));
     if (crc != stored) {
-        return noh_fail(error, NOH_ERR_DATA, "header or chunk table is damaged (its checksum differs)", 16, 0);
+        return noh_fail(error, NOH_ERR_DATA, "header or chunk table is damaged (its checksum differs)", offsetof(noh_pack_header, crc), 0);
     }
     for (unsigned i = 0; i < sizeof h.reserved / sizeof h.reserved[0]; i++) {
         if (h.reserved[i]) {
-            return noh_fail(error, NOH_ERR_DATA, "reserved header field is not zero", 20 + 4ull * i, 0);
+            return noh_fail(error, NOH_ERR_DATA, "reserved header field is not zero", offsetof(noh_pack_header, reserved) + 4ull * i, 0);
         }
     }
     return NOH_OK;
 }
 
-/* The chunk lies right behind the one before, with zero padding between. */
+/* A chunk begins at the next multiple of 64 after the one before it, with zero padding between: every byte of the file then
+ * belongs to the header, the table, one chunk or padding, and all of them are checked. */
 static noh_result check_place(const noh_pack *pack, uint32_t index, uint64_t *cursor, noh_error *error)
 {
     const noh_pack_chunk *c = &pack->chunks[index];
@@ -227,6 +229,7 @@ noh_result noh_pack_open(const void *bytes, size_t byte_count, noh_pack *pack, n
     p.bytes = (const uint8_t *)bytes;
     p.byte_count = (uint32_t)byte_count;
     p.chunk_count = ((const noh_pack_header *)bytes)->chunk_count;
+    p.library_version = ((const noh_pack_header *)bytes)->library_version;
     p.chunks = (const noh_pack_chunk *)(const void *)(p.bytes + sizeof(noh_pack_header));
     result = open_chunks(&p, error);
     if (!result) result = check_tail(&p, error);
@@ -236,19 +239,23 @@ noh_result noh_pack_open(const void *bytes, size_t byte_count, noh_pack *pack, n
 
 const char *noh_pack_string(const noh_pack *pack, uint32_t offset)
 {
+    NOH_ASSERT(pack);
     return offset < pack->string_bytes ? pack->strings + offset : "";
 }
 
 const char *noh_pack_chunk_name(const noh_pack *pack, uint32_t chunk)
 {
+    NOH_ASSERT(pack);
     return chunk < pack->chunk_count ? noh_pack_string(pack, pack->chunks[chunk].name) : "";
 }
 
-noh_result noh_pack_texture(const noh_pack *pack, uint32_t index, noh_texture *texture)
+noh_result noh_pack_texture(const noh_pack *pack, uint32_t index, noh_texture *texture, noh_error *error)
 {
     const uint8_t *chunk;
+    NOH_ASSERT(pack && texture);
     if (index >= pack->texture_count) {
-        return NOH_ERR_NOT_FOUND;
+        return noh_fail(error, NOH_ERR_NOT_FOUND, pack->texture_count ? "texture index is past the pack's last texture" : "pack holds no texture",
+                        index, pack->texture_count);
     }
     chunk = pack->bytes + pack->chunks[pack->first_texture + index].offset;
     texture->name = noh_pack_chunk_name(pack, pack->first_texture + index);

@@ -1,16 +1,21 @@
-/* pack.h: open a .noh pack where it lies (a mapped file, flash, an array).
+/* pack.h: open a .noh pack where it lies: in a mapped file, in flash, in an array.
  *
- * noh_pack_open checks every byte once, in one pass; afterwards no field is
- * checked again, and nothing is copied. The bytes must stay readable and
- * unchanged for as long as the pack, or anything made from it, is used. */
+ * noh_pack_open checks every byte once; afterwards no field is checked again, and nothing is copied. The bytes must stay
+ * readable and unchanged for as long as the pack, or anything made from it, is used.
+ * Threads: an open pack is read-only; any number of threads. */
 #ifndef NOH_PACK_PACK_H
 #define NOH_PACK_PACK_H
 
 #include "pack/format.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct noh_pack {
     const uint8_t *bytes;
     uint32_t byte_count;
+    uint32_t library_version; /* of the noh that wrote it (base/version.h); 0: before 0.2.0 */
     uint32_t chunk_count;
     const noh_pack_chunk *chunks;
     const char *strings;
@@ -34,19 +39,24 @@ typedef struct noh_texture {
     const uint8_t *pixels; /* [height][width][4], sRGB with straight alpha, top row first */
 } noh_texture;
 
-/* Open a pack.
- * memory  none; *pack is filled only on success; bytes 16-byte aligned
- * errors  ARG misaligned; VERSION another format; DATA with the byte offset in
- *         error->where; LIMIT over a number of limits.h */
+/* Open a pack: check all of it, and fill *pack.
+ * memory  none; bytes must be aligned to 16
+ * errors  ARG bytes or pack is NULL, or bytes are misaligned; VERSION another format version, need: ours; DATA broken, where:
+ *         the byte offset of the field at fault; LIMIT over a number of limits.h. *pack is then untouched */
 noh_result noh_pack_open(const void *bytes, size_t byte_count, noh_pack *pack, noh_error *error);
 
-/* The string at an offset that the pack holds. Never NULL. */
+/* The string at an offset that the pack stores; "" past the strings. */
 const char *noh_pack_string(const noh_pack *pack, uint32_t offset);
 
-/* The name of the n-th chunk. */
+/* The name of the n-th chunk; "" past chunk_count. */
 const char *noh_pack_chunk_name(const noh_pack *pack, uint32_t chunk);
 
-/* The n-th texture. NOT_FOUND past texture_count. */
-noh_result noh_pack_texture(const noh_pack *pack, uint32_t index, noh_texture *texture);
+/* The n-th texture.
+ * errors  NOT_FOUND  past texture_count (where: the index, need: the count); *texture is untouched */
+noh_result noh_pack_texture(const noh_pack *pack, uint32_t index, noh_texture *texture, noh_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -74,9 +74,12 @@ check 'makes another pack' sh -c '! cmp -s "$1" "$2"' - "$work/fine.noh" "$work/
 noh build "$work/walk.bvh" -o "$work/x.noh" --clip-error run=1
 expect 1 'a bound for a clip that is not there'
 says "no clip is named 'run'"
-noh build "$work/walk.bvh" -o "$work/x.noh" --joint-error knee=none
-expect 1 'a bound that is no number'
-says '--joint-error wants NAME=CM'
+for option in '--joint-error knee=none' '--clip-error walk' '--clip-error walk=' '--clip-error walk=0' '--clip-error =1' '--joint-error knee=-1'; do
+    # shellcheck disable=SC2086
+    noh build "$work/walk.bvh" -o "$work/x.noh" $option
+    expect 2 "a bad bound is a usage error: $option"
+    says "${option%% *} wants NAME=CM"
+done
 
 sed '$d' "$work/walk.bvh" >"$work/short.bvh"
 noh build "$work/short.bvh" -o "$work/x.noh"

@@ -270,7 +270,7 @@ static void api_names_what_is_missing(void **state)
         memset(&table, 0x5a, sizeof table);
         before = table;
         assert_int_equal(noh_gl_api_load(&table, get_but_one, &r, &error), NOH_ERR_UNSUPPORTED);
-        assert_string_equal(error.what, names[i]);
+        assert_non_null(strstr(error.what, names[i]));
         assert_memory_equal(&table, &before, sizeof table);
     }
     expect_no_errors(c);
@@ -718,7 +718,7 @@ static void program_says_what_is_wrong(void **state)
     }
     desc.fragment = NULL;
     assert_int_equal(noh_gl_program_create(&c->gl, &desc, &program, NULL, 0, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, "fragment");
+    assert_non_null(strstr(error.what, "fragment"));
     desc = good_desc();
     desc.vertex = NULL;
     assert_int_equal(noh_gl_program_create(&c->gl, &desc, &program, NULL, 0, &error), NOH_ERR_ARG);

@@ -107,7 +107,7 @@ static void add_cap_errors(const noh_mesh *mesh, const float *matrices, float er
 /* The levels were not made by the converter: it would have measured this. */
 static void measure_caps(void)
 {
-    const noh_motion_set_desc desc = { &levels.pack, NULL, 0, 0, 0, 0 };
+    const noh_motion_set_desc desc = { &levels.pack, NULL, 0, 0, 0, 0, 0, 0 };
     const size_t bytes = noh_motion_set_size(&desc, NULL);
     float errors[3] = { 0.0f, 0.0f, 0.0f }, placed[12u * JOINTS], matrices[12u * JOINTS], floats[8];
     void *memory = test_aligned(NULL, bytes);
@@ -117,8 +117,8 @@ static void measure_caps(void)
     noh_mesh mesh;
     noh_skin skin;
     assert_int_equal(noh_motion_set_init(memory, bytes, &desc, &set, NULL), NOH_OK);
-    assert_int_equal(noh_pack_mesh(&levels.pack, 0, &mesh), NOH_OK);
-    assert_int_equal(noh_pack_skin_at(&levels.pack, mesh.header->skin, &skin), NOH_OK);
+    assert_int_equal(noh_pack_mesh(&levels.pack, 0, &mesh, NULL), NOH_OK);
+    assert_int_equal(noh_pack_skin_at(&levels.pack, mesh.header->skin, &skin, NULL), NOH_OK);
     assert_true(set->anim.joint_count == JOINTS && skin.header->joint_count <= JOINTS && set->anim.float_count <= 8);
     for (uint32_t m = 0; m < set->anim.motion_count; m++) {
         for (uint32_t tick = 0; tick <= set->anim.motions[m].duration_ticks; tick += 1600) {

@@ -49,7 +49,7 @@ static void pose(side *s)
     noh_skin skin;
     uint32_t joints;
     float *matrices;
-    assert_int_equal(noh_pack_skin_at(s->mesh.pack, s->mesh.header->skin, &skin), NOH_OK);
+    assert_int_equal(noh_pack_skin_at(s->mesh.pack, s->mesh.header->skin, &skin, NULL), NOH_OK);
     joints = skin.header->joint_count;
     matrices = test_zeros(48u * (size_t)joints);
     for (uint32_t i = 0; i < COPIES; i++) {
@@ -57,8 +57,8 @@ static void pose(side *s)
         for (uint32_t e = 0; e < 12u * joints; e++) {
             matrices[e] = (e % 12u % 5u == 0 ? 1.0f : 0.0f) + test_random_float(&r, -0.08f, 0.08f);
         }
-        noh_gl_skin_set(s->skin, i, matrices);
-        assert_int_equal(noh_gl_skin_place(s->skin, i, worlds[i], &morph, NULL), NOH_OK);
+        noh_gl_skin_set_matrices(s->skin, i, matrices);
+        assert_int_equal(noh_gl_skin_set_place(s->skin, i, worlds[i], &morph, NULL), NOH_OK);
     }
     noh_gl_skin_update(s->skin);
     free(matrices);
@@ -80,7 +80,9 @@ static void side_open(side *s, const noh_mesh *mesh)
     fixture_morph_open(&s->morph, &s->morph_desc, NULL);
     assert_int_equal(noh_gl_skin_plan_make(&desc, &g->caps, &s->plan, NULL), NOH_OK);
     s->memory = test_aligned(NULL, (size_t)s->plan.cpu_bytes);
-    assert_int_equal(noh_gl_skin_init(s->memory, (size_t)s->plan.cpu_bytes, &g->gl, &g->caps, &s->ledger, &desc, &s->skin, NULL), NOH_OK);
+    assert_int_equal(noh_gl_skin_init(s->memory, (size_t)s->plan.cpu_bytes,
+                                      &(noh_gl_device){ &g->gl, &g->caps, &s->ledger, NULL, 0 }, &desc,
+                                      &s->skin, NULL), NOH_OK);
     set_weights(s);
     pose(s);
 }
@@ -186,7 +188,8 @@ static uint8_t *picture(const side *s, const noh_gl_mesh *gl, draw_kind kind, co
     fixture_frame f;
     fixture_frame_open(&f, SIDE);
     desc.view = view;
-    assert_int_equal(noh_gl_renderer_create(api, &f.ledger, &desc, &renderer, log, sizeof log, NULL), NOH_OK);
+    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ api, NULL, &f.ledger, log, sizeof log }, &desc,
+                                            &renderer, NULL), NOH_OK);
     noh_gl_draw_begin(&renderer, &camera);
     for (uint32_t i = 0; i < (details ? count : 1u); i++) {
         draw(&renderer, s, gl, kind, details ? &details[i] : NULL);
@@ -305,11 +308,15 @@ static void finer_levels_can_stay_away(void **state)
 {
     const noh_gl_detail details[LEVELS] = { { 0, 0.0f, 1.0f }, { 1, 0.0f, 1.0f }, { 2, 0.0f, 1.0f } };
     noh_mesh view;
+    noh_mesh_level table_levels[NOH_DETAIL_LEVELS_MAX];
+    noh_detail_table table;
+    noh_detail chosen;
     noh_gl_ledger ledger;
     noh_gl_mesh gl;
     size_t first;
     (void)state;
     open_both();
+    memset(&table, 0, sizeof table);
     view = noh_mesh_at_level(&with.mesh, 1);
     memset(&ledger, 0, sizeof ledger);
     assert_int_equal(noh_gl_mesh_create(&fixture_gpu()->gl, &ledger, &view, &gl, NULL), NOH_OK);
@@ -321,6 +328,15 @@ static void finer_levels_can_stay_away(void **state)
     assert_int_equal(first, 0);
     assert_int_equal(noh_gl_mesh_level(&gl, 9, &first).header->level, 2);
     assert_int_equal(first, view.header->index_count * view.header->index_bytes);
+    noh_detail_mesh_levels(&view, table_levels, &table); /* what detail chooses by is what is drawn */
+    for (uint32_t k = table.mesh_level_first; k < table.mesh_level_count; k++) {
+        const noh_mesh_header *drawn;
+        noh_detail_fix(&chosen, &table, k, 1.0f);
+        drawn = noh_gl_mesh_level(&gl, chosen.mesh, &first).header;
+        assert_int_equal(drawn->level, k);
+        assert_int_equal(drawn->vertex_count, table.meshes[chosen.mesh].vertex_count);
+    }
+    assert_int_equal(table.mesh_level_count, LEVELS);
     for (uint32_t k = 0; k < LEVELS; k++) {
         same_picture(picture(&with, &gl, CROWD, &details[k], 1, NOH_VIEW_LIT), picture_of_level(CROWD, k ? k : 1u));
     }
@@ -421,9 +437,11 @@ static void only_renderers_that_fade_pay_for_it(void **state)
     desc = renderer_desc(&with.mesh, 1);
     key = noh_gl_variant_key_of(&with.mesh, NULL, 0, 0, NOH_VIEW_LIT);
     memset(&ledger, 0, sizeof ledger);
-    assert_int_equal(noh_gl_renderer_create(gl, &ledger, &desc, &fading, log, sizeof log, NULL), NOH_OK);
+    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ gl, NULL, &ledger, log, sizeof log }, &desc,
+                                            &fading, NULL), NOH_OK);
     desc.fades = 0;
-    assert_int_equal(noh_gl_renderer_create(gl, &ledger, &desc, &plain, log, sizeof log, NULL), NOH_OK);
+    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ gl, NULL, &ledger, log, sizeof log }, &desc,
+                                            &plain, NULL), NOH_OK);
     assert_int_equal(fading.variant_count, 2u * plain.variant_count);
     assert_non_null(noh_gl_renderer_variant(&plain, key));
     key.fade = 1;

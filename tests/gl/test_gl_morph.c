@@ -577,7 +577,9 @@ static void forced_paths_name_what_is_missing(void **state)
         if (!strstr(error.what, cases[i].word)) {
             fail_msg("%s without %s: '%s' does not name %s", fixture_way_name(way), cases[i].field, error.what, cases[i].word);
         }
-        assert_int_equal(noh_gl_morph_init(memory, sizeof memory, &g->gl, &caps, &g->ledger, &desc, &morph, NULL, 0, &error),
+        assert_int_equal(noh_gl_morph_init(memory, sizeof memory,
+                                           &(noh_gl_device){ &g->gl, &caps, &g->ledger, NULL, 0 }, &desc,
+                                           &morph, &error),
                          NOH_ERR_UNSUPPORTED);
         assert_null(morph);
     }
@@ -628,6 +630,48 @@ static void automatic_falls_to_the_next_path(void **state)
         assert_non_null(strstr(m.plan.reason, noh_morph_path_name(cases[i].path)));
         set_all_random(&m, &r);
         update(&m);
+        fixture_expect_all(&m);
+        fixture_morph_close(&m);
+        fixture_expect_no_errors();
+    }
+}
+
+/* The policy `blend`: layered draws where supported, per-layer passes otherwise, whatever else could be done, on
+ * software too; each time every sum is the CPU's, bit for bit. Where nothing blends it is refused, by name. */
+static void blending_is_layered_or_per_layer(void **state)
+{
+    static const struct { const char *cleared; noh_accumulate accumulate; noh_morph_path path; } cases[] = {
+        { "", NOH_ACCUMULATE_F32, NOH_MORPH_LAYERED },          { "", NOH_ACCUMULATE_F16, NOH_MORPH_LAYERED },
+        { "layered", NOH_ACCUMULATE_F32, NOH_MORPH_PER_LAYER }, { "layered", NOH_ACCUMULATE_F16, NOH_MORPH_PER_LAYER },
+        { "mrt3", NOH_ACCUMULATE_F32, NOH_MORPH_LAYERED },      { "mrt3 layered render_u32", NOH_ACCUMULATE_F32, NOH_MORPH_PER_LAYER }
+    };
+    gpu *g = fixture_gpu();
+    test_random r = test_random_from(74);
+    const fixture_way blend = { NOH_MORPH_BLEND, NOH_ACCUMULATE_F32 };
+    noh_gl_morph_desc refused = desc_of(blend);
+    noh_gl_morph_plan plan;
+    noh_gl_caps bare = g->caps;
+    noh_error error = { NOH_OK, "", 0, 0 };
+    (void)state;
+    clear_cap(&bare, "blend_f32");
+    assert_int_equal(noh_gl_morph_plan_make(&refused, &bare, &plan, &error), NOH_ERR_UNSUPPORTED);
+    assert_non_null(strstr(error.what, "EXT_float_blend"));
+    if (!g->caps.blend_f32 || !g->caps.blend_f16 || !g->caps.layered) {
+        test_skip("this driver lacks more than the test takes away");
+    }
+    for (size_t i = 0; i < TEST_COUNT(cases); i++) {
+        const fixture_way way = { NOH_MORPH_BLEND, cases[i].accumulate };
+        noh_gl_morph_desc desc = desc_of(way);
+        noh_gl_caps caps = g->caps;
+        fixture_morph m;
+        noh_gl_morph_stats stats;
+        clear_cap(&caps, cases[i].cleared);
+        fixture_morph_open(&m, &desc, &caps);
+        assert_int_equal(m.plan.path, cases[i].path);
+        assert_non_null(strstr(m.plan.reason, noh_morph_path_name(cases[i].path)));
+        set_all_random(&m, &r);
+        stats = update(&m);
+        assert_int_equal(stats.draws, cases[i].path == NOH_MORPH_LAYERED ? 1 : 3);
         fixture_expect_all(&m);
         fixture_morph_close(&m);
         fixture_expect_no_errors();
@@ -749,6 +793,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(foreign_state_does_not_matter),
     cmocka_unit_test(forced_paths_name_what_is_missing),
     cmocka_unit_test(automatic_falls_to_the_next_path),
+    cmocka_unit_test(blending_is_layered_or_per_layer),
     cmocka_unit_test(automatic_weighs_blending_against_lists),
     cmocka_unit_test(automatic_takes_the_cpu_on_a_software_rasteriser),
     cmocka_unit_test(automatic_spares_mali_the_blending),

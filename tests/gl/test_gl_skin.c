@@ -93,11 +93,11 @@ static void dual_quaternions_equal_the_cpu(void **state)
 static void stretch_all(fixture_skin *f, const float scale[3])
 {
     noh_skin skin;
-    assert_int_equal(noh_pack_skin_at(f->pack, f->meshes[0].header->skin, &skin), NOH_OK);
+    assert_int_equal(noh_pack_skin_at(f->pack, f->meshes[0].header->skin, &skin, NULL), NOH_OK);
     for (uint32_t e = 0; e < 12 * skin.header->joint_count; e++) {
         f->matrices[0][e] = e % 4 == 3 ? 5.0f : e % 4 == e / 4 % 3 ? scale[e % 4] : 0.0f;
     }
-    noh_gl_skin_set(f->skin, 0, f->matrices[0]);
+    noh_gl_skin_set_matrices(f->skin, 0, f->matrices[0]);
     noh_gl_skin_update(f->skin);
 }
 
@@ -167,7 +167,7 @@ static void check_same_bits(const char *asset, const skin_options *options)
             static const float identity[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
             uint32_t instance = noh_gl_skin_instance(texture.skin, i, k);
             noh_gl_morph_binding morph = noh_gl_morph_binding_of(texture.morph.morph, instance);
-            assert_int_equal(noh_gl_skin_place(texture.skin, instance, identity, &morph, NULL), NOH_OK);
+            assert_int_equal(noh_gl_skin_set_place(texture.skin, instance, identity, &morph, NULL), NOH_OK);
         }
         noh_gl_skin_update(texture.skin);
         crowd = fixture_skin_read(&texture, i, 1, 0, COPIES - 1u); /* all but the first */
@@ -215,7 +215,7 @@ static void a_crowd_stands_where_it_was_placed(void **state)
         for (uint32_t e = 0; e < 12; e++) {
             worlds[k][e] = e % 5 == 0 ? 2.0f : test_random_float(&r, -0.3f, 0.3f) * (e % 4 == 3 ? 100.0f : 1.0f);
         }
-        assert_int_equal(noh_gl_skin_place(f.skin, k, worlds[k], NULL, NULL), NOH_OK);
+        assert_int_equal(noh_gl_skin_set_place(f.skin, k, worlds[k], NULL, NULL), NOH_OK);
     }
     noh_gl_skin_update(f.skin);
     got = fixture_skin_read(&f, 0, 0, 0, 3);
@@ -245,7 +245,7 @@ static void a_crowd_s_normals_go_by_the_inverse_transpose(void **state)
     (void)state;
     fixture_skin_open(&f, &desc);
     fixture_skin_pose(&f, &r);
-    assert_int_equal(noh_gl_skin_place(f.skin, 0, world, NULL, NULL), NOH_OK);
+    assert_int_equal(noh_gl_skin_set_place(f.skin, 0, world, NULL, NULL), NOH_OK);
     noh_gl_skin_update(f.skin);
     got = fixture_skin_read(&f, 0, 0, 0, 1);
     expected = fixture_skin_reference(&f, 0);
@@ -361,7 +361,7 @@ static void place_all(const fixture_skin *f)
         uint32_t k = i % f->copies;
         const float world[12] = { 1, 0, 0, 0.7f * (float)k, 0, 1, 0, 0, 0, 0, 1, -0.1f * (float)k };
         noh_gl_morph_binding morph = noh_gl_morph_binding_of(f->morph.morph, i);
-        assert_int_equal(noh_gl_skin_place(f->skin, i, world, &morph, NULL), NOH_OK);
+        assert_int_equal(noh_gl_skin_set_place(f->skin, i, world, &morph, NULL), NOH_OK);
     }
     noh_gl_skin_update(f->skin);
 }
@@ -382,7 +382,8 @@ static uint8_t *picture(const fixture_skin *f, draw_kind kind)
     desc.mesh_count = f->mesh_count;
     desc.palettes = f->plan.mode;
     desc.crowds = kind == CROWD;
-    assert_int_equal(noh_gl_renderer_create(gl, &t.ledger, &desc, &renderer, log, sizeof log, NULL), NOH_OK);
+    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ gl, NULL, &t.ledger, log, sizeof log }, &desc,
+                                            &renderer, NULL), NOH_OK);
     noh_gl_draw_begin(&renderer, &camera);
     for (int pass = NOH_DRAW_OPAQUE; pass <= NOH_DRAW_BLENDED; pass++) {
         draw_all(f, &renderer, kind, pass);
@@ -635,13 +636,19 @@ static void memory_is_exact(void **state)
         bytes = (size_t)plan.cpu_bytes;
         memory = test_aligned(NULL, bytes + 64);
         memset(memory, 0xa5, bytes + 64);
-        assert_int_equal(noh_gl_skin_init(memory, bytes - 1, &g->gl, &g->caps, &ledger, &desc, &skin, &error), NOH_ERR_MEMORY);
+        assert_int_equal(noh_gl_skin_init(memory, bytes - 1,
+                                          &(noh_gl_device){ &g->gl, &g->caps, &ledger, NULL, 0 }, &desc, &skin,
+                                          &error), NOH_ERR_MEMORY);
         assert_int_equal(error.need, bytes);
         for (size_t i = 0; i < bytes + 64; i++) {
             assert_int_equal(memory[i], 0xa5);
         }
-        assert_int_equal(noh_gl_skin_init(memory + 1, bytes, &g->gl, &g->caps, &ledger, &desc, &skin, &error), NOH_ERR_ARG);
-        assert_int_equal(noh_gl_skin_init(memory, bytes, &g->gl, &g->caps, &ledger, &desc, &skin, &error), NOH_OK);
+        assert_int_equal(noh_gl_skin_init(memory + 1, bytes,
+                                          &(noh_gl_device){ &g->gl, &g->caps, &ledger, NULL, 0 }, &desc, &skin,
+                                          &error), NOH_ERR_ARG);
+        assert_int_equal(noh_gl_skin_init(memory, bytes,
+                                          &(noh_gl_device){ &g->gl, &g->caps, &ledger, NULL, 0 }, &desc, &skin,
+                                          &error), NOH_OK);
         assert_true(noh_gl_ledger_bytes(&ledger) == plan.gpu_bytes);
         noh_gl_skin_update(skin);
         assert_true(noh_gl_ledger_bytes(&ledger) == plan.gpu_bytes);
@@ -701,7 +708,8 @@ static noh_gl_skin *noted_skin(noh_gl_api *api, noh_gl_ledger *ledger, made_mesh
     desc = made_desc(m, mode);
     assert_int_equal(noh_gl_skin_plan_make(&desc, &g->caps, plan, NULL), NOH_OK);
     *memory = test_aligned(NULL, (size_t)plan->cpu_bytes);
-    assert_int_equal(noh_gl_skin_init(*memory, (size_t)plan->cpu_bytes, api, &g->caps, ledger, &desc, &skin, NULL), NOH_OK);
+    assert_int_equal(noh_gl_skin_init(*memory, (size_t)plan->cpu_bytes,
+                                      &(noh_gl_device){ api, &g->caps, ledger, NULL, 0 }, &desc, &skin, NULL), NOH_OK);
     return skin;
 }
 
@@ -732,7 +740,7 @@ static void changes_in_any_order_are_sent(void **state)
         f.matrices[0] = f.matrices[1];
         f.matrices[1] = swap;
         for (uint32_t k = 2; k-- > 0;) {
-            noh_gl_skin_set(f.skin, k, f.matrices[k]);
+            noh_gl_skin_set_matrices(f.skin, k, f.matrices[k]);
         }
         noh_gl_skin_update(f.skin);
         for (uint32_t k = 0; k < 2; k++) {
@@ -768,12 +776,12 @@ static void only_changes_are_sent(void **state)
             matrices[j][e] = e % 5 == 0 ? 1.0f : 0.0f; /* the identity, which is there already */
         }
     }
-    noh_gl_skin_set(skin, 0, matrices[0]);
-    noh_gl_skin_set(skin, 1, matrices[0]); /* rigid: nothing */
+    noh_gl_skin_set_matrices(skin, 0, matrices[0]);
+    noh_gl_skin_set_matrices(skin, 1, matrices[0]); /* rigid: nothing */
     noh_gl_skin_update(skin);
     expect_sent(0, 0, 0);
     matrices[1][3] = 7.0f; /* the second of the first palette, the first of the second */
-    noh_gl_skin_set(skin, 0, matrices[0]);
+    noh_gl_skin_set_matrices(skin, 0, matrices[0]);
     noh_gl_skin_update(skin);
     expect_sent(1, 16u * 3u, 16u * noh_gl_palette_row(&binding, &m.meshes[0], 1)); /* rows 3 to 5, and to the next's 0 to 2 */
     noh_gl_skin_delete(skin);
@@ -786,7 +794,7 @@ static void only_changes_are_sent(void **state)
     first = (binding.first + noh_gl_palette_row(&binding, &m.meshes[2], 0) + 4u) / plan.width;
     last = (binding.first + noh_gl_palette_row(&binding, &m.meshes[2], 1) + 3u) / plan.width;
     assert_true(first > 0);
-    noh_gl_skin_set(skin, noh_gl_skin_instance(skin, 2, 0), matrices[0]);
+    noh_gl_skin_set_matrices(skin, noh_gl_skin_instance(skin, 2, 0), matrices[0]);
     noh_gl_skin_update(skin);
     expect_sent(1, 16u * plan.width * first, 16u * plan.width * (last + 1u - first)); /* whole rows of texels */
     noh_gl_skin_delete(skin);
@@ -805,13 +813,13 @@ static void places_are_refused_where_they_cannot_be(void **state)
     noh_error error = { NOH_OK, "", 0, 0 };
     noh_gl_skin *skin = noted_skin(&api, &ledger, &m, NOH_PALETTE_UNIFORM, &memory, &plan);
     (void)state;
-    assert_int_equal(noh_gl_skin_place(skin, 0, identity, NULL, &error), NOH_ERR_UNSUPPORTED);
+    assert_int_equal(noh_gl_skin_set_place(skin, 0, identity, NULL, &error), NOH_ERR_UNSUPPORTED);
     noh_gl_skin_delete(skin);
     free(memory);
     skin = noted_skin(&api, &ledger, &m, NOH_PALETTE_TEXTURE, &memory, &plan);
-    assert_int_equal(noh_gl_skin_place(skin, 5, mirror, NULL, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_gl_skin_set_place(skin, 5, mirror, NULL, &error), NOH_ERR_ARG);
     assert_int_equal(error.where, 5);
-    assert_int_equal(noh_gl_skin_place(skin, 5, identity, NULL, &error), NOH_OK);
+    assert_int_equal(noh_gl_skin_set_place(skin, 5, identity, NULL, &error), NOH_OK);
     noh_gl_skin_delete(skin);
     free(memory);
 }
@@ -836,10 +844,12 @@ static void renderers_make_what_they_were_told_of(void **state)
     desc.meshes = m.meshes;
     desc.mesh_count = MADE;
     desc.crowds = 1;
-    assert_int_equal(noh_gl_renderer_create(&g->gl, &ledger, &desc, &r, log, sizeof log, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, log, sizeof log }, &desc,
+                                            &r, &error), NOH_ERR_ARG);
     desc.palettes = NOH_PALETTE_TEXTURE;
     desc.fewer_influences = 1;
-    assert_int_equal(noh_gl_renderer_create(&g->gl, &ledger, &desc, &r, log, sizeof log, &error), NOH_OK);
+    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, log, sizeof log }, &desc,
+                                            &r, &error), NOH_OK);
     assert_int_equal(r.variant_count, 14); /* rigid, and 4, 2, 1 by matrices and by dual quaternions; alone and in crowds */
     assert_int_equal(ledger.programs, 14);
     assert_true(noh_gl_ledger_bytes(&ledger) == NOH_GL_RENDERER_BYTES);
@@ -874,7 +884,8 @@ static void rigid_variants_have_no_palettes(void **state)
     desc.mesh_count = 1;
     desc.palettes = NOH_PALETTE_UNIFORM;
     desc.encode_srgb = 1;
-    assert_int_equal(noh_gl_renderer_create(&g->gl, &ledger, &desc, &r, log, sizeof log, &error), NOH_OK);
+    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, log, sizeof log }, &desc,
+                                            &r, &error), NOH_OK);
     rigid = noh_gl_renderer_variant(&r, noh_gl_variant_key_of(&m.meshes[0], NULL, 0, 0, NOH_VIEW_LIT));
     skinned = noh_gl_renderer_variant(&r, noh_gl_variant_key_of(&m.meshes[0], &skin, 0, 0, NOH_VIEW_LIT));
     assert_true(rigid->key.encode_srgb && skinned->key.encode_srgb);

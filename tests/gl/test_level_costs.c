@@ -1,6 +1,7 @@
 /* What a level of detail of the mask takes: its vertices alone are transformed, its texels alone accumulated, and both
  * fall as the level does. */
 #include "gl_fixture.h"
+#include "pack_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>

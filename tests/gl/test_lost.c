@@ -6,7 +6,8 @@
 
 #include "load.h"
 #include "null.h"
-#include "view.h"
+#include "camera.h"
+#include "canvas.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -183,7 +184,7 @@ static void levels_come_back(void **state)
     (void)state;
     for (int i = 0; i < FIXTURE_WAYS; i += 2) {
         open_stage_of(&st, "egl", fixture_ways[i], 0, 3);
-        for (uint32_t k = 0; k < st.s.item_count; k++) noh_gl_morph_level(st.l.morph.morph, st.l.item_instances[k], 1);
+        for (uint32_t k = 0; k < st.s.item_count; k++) noh_gl_morph_set_level(st.l.morph.morph, st.l.item_instances[k], 1);
         uint8_t *before = picture_of_level(&st, 1), *coarser = picture_of_level(&st, 2);
         noh_gl_ledger ledger = st.g.ledger;
         noh_gl_morph_stats stats;

@@ -179,7 +179,7 @@ static void draw_levels(load *l, const scene *s, const noh_gl_renderer *r, uint3
 {
     noh_gl_camera camera;
     memset(&camera, 0, sizeof camera);
-    for (uint32_t i = 0; i < s->item_count; i++) noh_gl_morph_level(l->morph.morph, l->item_instances[i], (number + i) % 4u);
+    for (uint32_t i = 0; i < s->item_count; i++) noh_gl_morph_set_level(l->morph.morph, l->item_instances[i], (number + i) % 4u);
     assert_int_equal(load_update(l, NULL), 0);
     noh_gl_draw_begin(r, &camera);
     for (uint32_t i = 0; i < 2u * s->item_count; i++) {
@@ -209,7 +209,8 @@ static void load_and_draw_levels(const pack_file *file, noh_morph_path path)
     desc.meshes = s.meshes;
     desc.mesh_count = file->pack.mesh_count;
     desc.fades = 1;
-    assert_int_equal(noh_gl_renderer_create(&g.gl, &g.ledger, &desc, &renderer, NULL, 0, NULL), NOH_OK);
+    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &g.gl, NULL, &g.ledger, NULL, 0 }, &desc,
+                                            &renderer, NULL), NOH_OK);
     assert_int_equal(report_of(&g).unlabelled, 0);
     for (uint32_t number = 0; number < 8; number++) {
         set_weights(&s, number, 2);

@@ -6,7 +6,6 @@
 #include "gl/gl_program.h"
 #include "load.h"
 #include "lit_quad.h"
-#include "view.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -29,6 +29,13 @@ for seed in 2 3; do
     verify "the mask, seed $seed" "$build/mask.noh"
 done
 options=
+
+# Vertices that name their delta texels themselves: with levels of detail, and split by palettes.
+verify 'the mask with levels' "$build/mask_levels.noh"
+noh build "$build/demo/puppet.glb" -o "$work/split.noh" --quiet --only mesh --palette 6
+expect 0 'build of a puppet that is split'
+verify 'a puppet that is split' "$work/split.noh"
+
 for model in hero/head.glb hero/head_sparse.glb hero/head_meshopt.glb hero/identity.glb hero/body.glb \
              khronos/AnimatedMorphCube/glTF/AnimatedMorphCube.gltf khronos/AnimatedMorphSphere/glTF/AnimatedMorphSphere.gltf \
              khronos/MorphPrimitivesTest/glTF/MorphPrimitivesTest.gltf khronos/SimpleMorph/glTF/SimpleMorph.gltf \

@@ -104,7 +104,7 @@ figure() { # sets $shot
     shot=$work/noh-figure-$shots.png
     xdotool key F11
     tries=0
-    while [ ! -f "$shot" ] && [ $tries -lt 200 ] && kill -0 $viewer 2>/dev/null; do sleep 0.1; tries=$((tries + 1)); done
+    while [ ! -f "$shot" ] && [ $tries -lt 900 ] && kill -0 $viewer 2>/dev/null; do sleep 0.1; tries=$((tries + 1)); done
 }
 same() { cmp -s "$1" "$2"; }
 differ() { [ -f "$1" ] && [ -f "$2" ] && ! cmp -s "$1" "$2"; }

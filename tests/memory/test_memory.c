@@ -160,9 +160,11 @@ static void misaligned_layers_are_refused(void **state)
     guarded g;
     (void)state;
     fixture_meshes_open(&f);
-    g = guarded_new(noh_morph_layers_size(&f.meshes[0]) + 4);
-    for (size_t shift = 1; shift < 4; shift++) {
-        assert_int_equal(noh_morph_layers_init(g.block + shift, g.bytes - shift, &f.meshes[0], &layers, NULL), NOH_ERR_ARG);
+    g = guarded_new(noh_morph_layers_size(&f.meshes[0]) + NOH_MEMORY_ALIGN);
+    for (size_t shift = 1; shift < NOH_MEMORY_ALIGN; shift++) {
+        noh_error error = { NOH_OK, NULL, 0, 0 };
+        assert_int_equal(noh_morph_layers_init(g.block + shift, g.bytes - shift, &f.meshes[0], &layers, &error), NOH_ERR_ARG);
+        assert_int_equal(error.need, noh_morph_layers_size(&f.meshes[0]));
     }
     expect_untouched(&g);
     guarded_free(&g);
@@ -225,7 +227,9 @@ static void expect_one_byte_less_refused(const gpu *g, const noh_gl_morph_desc *
     noh_error error = { NOH_OK, NULL, 0, 0 };
     memset(&ledger, 0, sizeof ledger);
     before = ledger;
-    assert_int_equal(noh_gl_morph_init(block.block, block.bytes - 1, &g->gl, &g->caps, &ledger, desc, &morph, NULL, 0, &error),
+    assert_int_equal(noh_gl_morph_init(block.block, block.bytes - 1,
+                                       &(noh_gl_device){ &g->gl, &g->caps, &ledger, NULL, 0 }, desc, &morph,
+                                       &error),
                      NOH_ERR_MEMORY);
     assert_int_equal(error.need, plan->cpu_bytes);
     assert_null(morph);
@@ -242,7 +246,7 @@ static void set_all_and_update(noh_gl_morph *morph, const noh_gl_morph_desc *des
         for (uint32_t k = 0; k < count; k++) {
             float weights[NOH_TARGETS_MAX];
             test_random_weights(&r, weights, desc->meshes[i].header->target_count);
-            assert_int_equal(noh_gl_morph_weights(morph, noh_gl_morph_instance(morph, i, k), weights, NULL), NOH_OK);
+            assert_int_equal(noh_gl_morph_set_weights(morph, noh_gl_morph_instance(morph, i, k), weights, NULL), NOH_OK);
         }
     }
     noh_gl_morph_update(morph, NULL);
@@ -255,7 +259,9 @@ static void expect_exact_size_works(const gpu *g, const noh_gl_morph_desc *desc,
     noh_gl_ledger ledger;
     noh_gl_morph *morph = NULL;
     memset(&ledger, 0, sizeof ledger);
-    assert_int_equal(noh_gl_morph_init(block.block, block.bytes, &g->gl, &g->caps, &ledger, desc, &morph, NULL, 0, NULL), NOH_OK);
+    assert_int_equal(noh_gl_morph_init(block.block, block.bytes,
+                                       &(noh_gl_device){ &g->gl, &g->caps, &ledger, NULL, 0 }, desc, &morph,
+                                       NULL), NOH_OK);
     assert_int_equal(noh_gl_ledger_bytes(&ledger), plan->gpu_bytes);
     assert_int_equal(plan->gpu_bytes, plan->delta_bytes + plan->table_bytes + plan->stream_bytes + plan->layer_bytes);
     for (uint64_t seed = 1; seed <= 3; seed++) {
@@ -316,10 +322,13 @@ static void misaligned_or_no_memory_is_refused(void **state)
     assert_int_equal(noh_gl_morph_plan_make(&desc, &g->caps, &plan, NULL), NOH_OK);
     block = guarded_new((size_t)plan.cpu_bytes + 16);
     for (size_t shift = 1; shift < 16; shift++) {
-        assert_int_equal(noh_gl_morph_init(block.block + shift, (size_t)plan.cpu_bytes, &g->gl, &g->caps, &g->ledger, &desc, &morph,
-                                           NULL, 0, NULL), NOH_ERR_ARG);
+        assert_int_equal(noh_gl_morph_init(block.block + shift, (size_t)plan.cpu_bytes,
+                                           &(noh_gl_device){ &g->gl, &g->caps, &g->ledger, NULL, 0 }, &desc,
+                                           &morph, NULL), NOH_ERR_ARG);
     }
-    assert_int_equal(noh_gl_morph_init(NULL, 1u << 30, &g->gl, &g->caps, &g->ledger, &desc, &morph, NULL, 0, NULL), NOH_ERR_ARG);
+    assert_int_equal(noh_gl_morph_init(NULL, 1u << 30,
+                                       &(noh_gl_device){ &g->gl, &g->caps, &g->ledger, NULL, 0 }, &desc,
+                                       &morph, NULL), NOH_ERR_ARG);
     expect_untouched(&block);
     guarded_free(&block);
     fixture_meshes_close(&f);
@@ -466,7 +475,7 @@ static void weights_have_to_be_finite(void **state)
         float weights[7] = { 1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f };
         noh_error error = { NOH_OK, NULL, 0, 0 };
         weights[4] = wrong[i];
-        assert_int_equal(noh_gl_morph_weights(m.morph, 0, weights, &error), NOH_ERR_ARG);
+        assert_int_equal(noh_gl_morph_set_weights(m.morph, 0, weights, &error), NOH_ERR_ARG);
         assert_int_equal(error.where, 4);
         assert_non_null(strstr(error.what, "finite"));
     }
@@ -492,6 +501,34 @@ static void play_a_while(noh_motion_set *set)
     motion_player_close(&p);
 }
 
+static void expect_exact_view(const noh_motion_set *set, size_t bytes)
+{
+    noh_transform *pose = test_zeros(sizeof *pose * (set->anim.joint_count + 1u));
+    float *floats = test_zeros(sizeof *floats * (set->anim.float_count + 1u));
+    noh_motion_set_view *view = NULL;
+    noh_error error = { NOH_OK, NULL, 0, 0 };
+    guarded g = guarded_new(bytes);
+    assert_int_equal(noh_motion_set_view_size(set), bytes);
+    assert_int_equal(noh_motion_set_view_init(NULL, bytes, set, &view, &error), NOH_ERR_ARG);
+    assert_int_equal(error.need, bytes);
+    assert_int_equal(noh_motion_set_view_init(g.block, bytes - 1, set, &view, &error), NOH_ERR_MEMORY);
+    assert_int_equal(error.need, bytes);
+    assert_int_equal(noh_motion_set_view_init(g.block + 4, bytes, set, &view, &error), NOH_ERR_ARG);
+    assert_null(view);
+    expect_untouched(&g);
+    assert_int_equal(noh_motion_set_view_init(g.block, bytes, set, &view, &error), NOH_OK);
+    for (uint32_t m = 0; m < set->anim.motion_count; m++) {
+        const uint32_t duration = set->anim.motions[m].duration_ticks;
+        for (uint32_t i = 0; i <= 100; i++) {
+            view->anim.sample(view->anim.user, m, duration / 100u * i, set->anim.joint_count, pose, set->anim.float_count, floats);
+        }
+    }
+    expect_canaries(&g);
+    guarded_free(&g);
+    free(pose);
+    free(floats);
+}
+
 static void expect_exact_set(const noh_pack *pack, uint32_t skeleton, uint32_t slots, uint32_t root_axes)
 {
     noh_motion_set_desc desc;
@@ -509,7 +546,7 @@ static void expect_exact_set(const noh_pack *pack, uint32_t skeleton, uint32_t s
     g = guarded_new(needs.bytes);
     assert_int_equal(noh_motion_set_init(g.block, needs.bytes - 1, &desc, &set, &error), NOH_ERR_MEMORY);
     assert_int_equal(error.need, needs.bytes);
-    assert_int_equal(noh_motion_set_init(g.block + 4, needs.bytes, &desc, &set, &error), NOH_ERR_MEMORY);
+    assert_int_equal(noh_motion_set_init(g.block + 4, needs.bytes, &desc, &set, &error), NOH_ERR_ARG);
     assert_null(set);
     expect_untouched(&g);
     assert_int_equal(noh_motion_set_init(g.block, needs.bytes, &desc, &set, &error), NOH_OK);
@@ -517,6 +554,7 @@ static void expect_exact_set(const noh_pack *pack, uint32_t skeleton, uint32_t s
     assert_int_equal(set->anim.joint_count, needs.shape.joint_count);
     assert_int_equal(set->anim.float_count, needs.shape.float_count);
     play_a_while(set);
+    expect_exact_view(set, needs.view_bytes);
     expect_canaries(&g);
     guarded_free(&g);
 }
@@ -581,10 +619,11 @@ static void pictures_and_the_renderer_take_what_they_say(void **state)
     noh_gl_ledger ledger;
     (void)state;
     memset(&ledger, 0, sizeof ledger);
-    assert_int_equal(noh_pack_texture(&pack, 0, &texture), NOH_OK);
+    assert_int_equal(noh_pack_texture(&pack, 0, &texture, NULL), NOH_OK);
     assert_int_equal(noh_gl_picture_create(&g->gl, &ledger, &texture, &picture, NULL), NOH_OK);
     assert_int_equal(noh_gl_ledger_bytes(&ledger), noh_gl_picture_bytes(&texture));
-    assert_int_equal(noh_gl_renderer_create(&g->gl, &ledger, &desc, &renderer, NULL, 0, NULL), NOH_OK);
+    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, NULL, 0 }, &desc,
+                                            &renderer, NULL), NOH_OK);
     assert_int_equal(noh_gl_ledger_bytes(&ledger), noh_gl_picture_bytes(&texture) + NOH_GL_RENDERER_BYTES);
     noh_gl_renderer_delete(&renderer);
     noh_gl_texture_delete(&g->gl, &ledger, &picture);

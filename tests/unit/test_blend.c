@@ -169,6 +169,45 @@ static void masked_joints_use_their_own_sum(void **state)
     assert_true(fabsf(out[0] - fa[0]) < 1e-6f && fabsf(out[4] - 0.5f * (fa[4] + fc[4])) < 1e-6f);
 }
 
+/* A sum over what lies below: by its amount where there is something below, by its masked share of the group, and whole
+ * where nothing lies below. */
+static void a_sum_covers_what_lies_below(void **state)
+{
+    scene s;
+    sums b;
+    noh_transform low[JOINTS], high[JOINTS], got[JOINTS], want[JOINTS];
+    float fl[FLOATS], fh[FLOATS], floats[FLOATS], totals[JOINTS], float_totals[FLOATS];
+    uint8_t odd[JOINTS + FLOATS];
+    const noh_mask_view below = { odd, odd + JOINTS };
+    (void)state;
+    scene_open(&s);
+    scene_pose(&s, WALK, 9000, low, fl);
+    scene_pose(&s, RUN, 5000, high, fh);
+    for (uint32_t j = 0; j < JOINTS; j++) odd[j] = j % 2u ? 255 : 0;
+    for (uint32_t i = 0; i < FLOATS; i++) odd[JOINTS + i] = i % 2u ? 255 : 0;
+    for (uint32_t mask = 0; mask <= 2; mask += 2) {
+        const noh_mask_view view = mask ? noh_mask_of(&s.set, mask) : everywhere;
+        memcpy(got, low, sizeof got);
+        memcpy(floats, fl, sizeof floats);
+        sums_open(&b);
+        b.blend.totals = totals;
+        b.blend.float_totals = float_totals;
+        noh_blend_add(&b.blend, low, fl, 2.0f, below);
+        noh_blend_begin_over(&b.blend);
+        noh_blend_add(&b.blend, high, fh, 4.0f, view);
+        noh_blend_cover(&b.blend, 0.25f, got, floats);
+        for (uint32_t j = 0; j < JOINTS; j++) {
+            const float part = mask ? (float)s.masks[1][j] / 255.0f : 1.0f;
+            noh_pose_mix(1, &low[j], &high[j], part > 0.0f ? (j % 2u ? 0.25f * part : 1.0f) : 0.0f, NULL, &want[j]);
+        }
+        assert_true(pose_apart(got, want, JOINTS) < 1e-6);
+        for (uint32_t i = 0; i < FLOATS; i++) {
+            const float part = mask ? 128.0f / 255.0f : 1.0f, t = i % 2u ? 0.25f * part : 1.0f;
+            assert_true(fabsf(floats[i] - (fl[i] + (fh[i] - fl[i]) * t)) < 1e-6f);
+        }
+    }
+}
+
 /* Palette = model * inverse bind: the bind pose's points come first into the joint's space. Turned joints tell the order. */
 static void palettes_take_the_bind_pose_away_first(void **state)
 {
@@ -215,6 +254,56 @@ static void test_mix_at_the_ends_and_in_place(void **state)
     assert_memory_equal(got, a, sizeof got);
     noh_floats_mix(FLOATS, fa, fb, 1.0f, NULL, fa);
     assert_memory_equal(fa, fb, sizeof fa);
+}
+
+/* Between rotations far apart the sum of two unit quaternions is short: a mix must be a rotation all the same, half way. */
+static void test_a_mix_is_unit(void **state)
+{
+    static const float a[4] = { 0, 0, 0, 1 };
+    (void)state;
+    for (int i = 1; i < 18; i++) {
+        const double angle = i * TWO_PI / 36.0;
+        const float b[4] = { 0, (float)sin(0.5 * angle), 0, (float)cos(0.5 * angle) };
+        for (int k = 0; k <= 8; k++) {
+            float q[4], length;
+            noh_quat_nlerp(a, b, (float)k / 8.0f, q);
+            length = sqrtf(noh_quat_dot(q, q));
+            assert_true(fabsf(length - 1.0f) < 1e-6f);
+            if (k == 4) assert_true(fabs(q[1] - sin(0.25 * angle)) < 1e-6 && fabs(q[3] - cos(0.25 * angle)) < 1e-6);
+        }
+    }
+}
+
+/* What is laid over a pose covers by the mean mask of what takes part: not by what animates no joints there, and
+ * wholly where the pose below has no weight. */
+static void test_cover(void **state)
+{
+    scene s;
+    sums b;
+    noh_transform poses[3][JOINTS], low[JOINTS], got[JOINTS], want[JOINTS];
+    float floats[3][FLOATS], low_floats[FLOATS], got_floats[FLOATS], totals[JOINTS], float_totals[FLOATS];
+    noh_mask_view half, tenths;
+    (void)state;
+    scene_open(&s);
+    sums_open(&b);
+    b.blend.totals = totals;
+    b.blend.float_totals = float_totals;
+    half = noh_mask_of(&s.set, 1);
+    tenths = noh_mask_of(&s.set, 2);
+    for (uint32_t m = 0; m < 3; m++) scene_pose(&s, m, 4000, poses[m], floats[m]);
+    noh_blend_add(&b.blend, poses[WALK], NULL, 1.0f, half); /* below: the upper half, no floats */
+    noh_blend_finish(&b.blend, s.bind, s.defaults, low, low_floats);
+    memcpy(got, low, sizeof got);
+    memcpy(got_floats, low_floats, sizeof got_floats);
+    noh_blend_begin_over(&b.blend);
+    noh_blend_add(&b.blend, poses[RUN], NULL, 0.5f, tenths);
+    noh_blend_add(&b.blend, NULL, floats[WAVE], 4.0f, tenths);
+    noh_blend_cover(&b.blend, 0.5f, got, got_floats);
+    noh_pose_mix(JOINTS, low, poses[RUN], 0.5f, tenths.joints, want);
+    assert_true(pose_apart(got + JOINTS / 2u, want + JOINTS / 2u, JOINTS / 2u) < 1e-6);
+    assert_true(pose_apart(got + 1, poses[RUN] + 1, JOINTS / 2u - 1u) < 1e-6); /* nothing below; joint 0 is masked out */
+    assert_true(pose_apart(got, low, 1) < 1e-6);
+    assert_true(floats_apart(got_floats, floats[WAVE], FLOATS) < 1e-6);
 }
 
 /* A difference added at full weight to its reference is the pose again. */
@@ -391,13 +480,46 @@ static void test_space_outside_and_degenerate(void **state)
     assert_int_equal(noh_space_2d_triangulate(NOH_SPACE_POINTS_MAX + 1u, square, tri, &space.triangle_count, &error), NOH_ERR_ARG);
 }
 
+/* The largest coordinates that are taken have exact results; what lies past them is refused, and held where it is asked for. */
+static void test_space_of_huge_coordinates(void **state)
+{
+    static const float far_away[] = { 3e38f, -3e38f, 1.1e18f, INFINITY, -INFINITY, NAN };
+    const float most = NOH_SPACE_COORDINATE_MAX, ends[2] = { -NOH_SPACE_COORDINATE_MAX, NOH_SPACE_COORDINATE_MAX };
+    const float square[8] = { -most, -most, most, -most, -most, most, most, most };
+    uint8_t tri[NOH_SPACE_TRIANGLES_MAX * 3u];
+    float w[4];
+    noh_space_2d space = { 4, 0, square, tri };
+    noh_error error;
+    (void)state;
+    for (uint32_t i = 0; i < 4; i++) {
+        for (uint32_t k = 0; k < sizeof far_away / sizeof *far_away; k++) {
+            float p[8] = { 0, 0, 1, 0, 0, 1, 1, 1 };
+            p[2u * i + k % 2u] = far_away[k];
+            assert_int_equal(noh_space_2d_triangulate(4, p, tri, &space.triangle_count, &error), NOH_ERR_DATA);
+            assert_int_equal(error.where, i);
+        }
+    }
+    assert_int_equal(noh_space_2d_triangulate(4, square, tri, &space.triangle_count, NULL), NOH_OK);
+    assert_int_equal(space.triangle_count, 2);
+    noh_space_2d_weights(&space, 0.0f, 0.0f, w);
+    assert_true(fabsf(w[0] + w[1] + w[2] + w[3] - 1.0f) < 1e-6f && fabsf(w[0] + w[1] - 0.5f) < 1e-6f);
+    noh_space_2d_weights(&space, 3e38f, 3e38f, w);
+    assert_true(w[3] == 1.0f);
+    noh_space_2d_weights(&space, INFINITY, -INFINITY, w);
+    assert_true(w[1] == 1.0f);
+    noh_space_1d_weights(2, ends, 5e17f, w);
+    assert_true(fabsf(w[1] - 0.75f) < 1e-6f);
+    noh_space_1d_weights(2, ends, 3e38f, w);
+    assert_true(w[1] == 1.0f);
+}
+
 /* ---- skeleton, local to model ---- */
 
 static void bad_skeleton(const noh_skeleton *s, noh_result result, const char *what)
 {
     noh_error error;
     assert_int_equal(noh_skeleton_check(s, &error), result);
-    assert_string_equal(error.what, what);
+    assert_non_null(strstr(error.what, what));
 }
 
 static void test_skeleton_fields_broken_in_turn(void **state)
@@ -411,7 +533,7 @@ static void test_skeleton_fields_broken_in_turn(void **state)
     s.skeleton.inverse_bind = inverse;
     assert_int_equal(noh_skeleton_check(&s.skeleton, NULL), NOH_OK);
     k = s.skeleton, k.joint_count = 0; bad_skeleton(&k, NOH_ERR_ARG, "joint_count");
-    k = s.skeleton, k.joint_count = NOH_SKELETON_JOINTS_MAX + 1u; bad_skeleton(&k, NOH_ERR_ARG, "joint_count");
+    k = s.skeleton, k.joint_count = NOH_JOINTS_MAX + 1u; bad_skeleton(&k, NOH_ERR_ARG, "joint_count");
     k = s.skeleton, k.parents = NULL; bad_skeleton(&k, NOH_ERR_ARG, "parents");
     k = s.skeleton, k.bind_pose = NULL; bad_skeleton(&k, NOH_ERR_ARG, "bind_pose");
     s.parents[3] = 3; bad_skeleton(&s.skeleton, NOH_ERR_DATA, "parent does not come first");
@@ -487,15 +609,19 @@ int main(int argc, char **argv)
         cmocka_unit_test(weights_are_divided_by_their_sum),
         cmocka_unit_test(masked_joints_use_their_own_sum),
         cmocka_unit_test(test_mix_at_the_ends_and_in_place),
+        cmocka_unit_test(test_a_mix_is_unit),
+        cmocka_unit_test(test_cover),
         cmocka_unit_test(test_difference_and_back),
         cmocka_unit_test(test_masks),
         cmocka_unit_test(test_space_1d),
         cmocka_unit_test(test_triangulation),
         cmocka_unit_test(test_delaunay),
         cmocka_unit_test(test_space_outside_and_degenerate),
+        cmocka_unit_test(test_space_of_huge_coordinates),
         cmocka_unit_test(test_skeleton_fields_broken_in_turn),
         cmocka_unit_test(model_is_parent_times_local),
         cmocka_unit_test(test_palette),
+        cmocka_unit_test(a_sum_covers_what_lies_below),
         cmocka_unit_test(palettes_take_the_bind_pose_away_first),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);

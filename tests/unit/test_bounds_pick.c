@@ -21,7 +21,7 @@ static void pose_mesh(const skin_asset *a, uint32_t index, const double *locals,
     noh_skin skin;
     memset(p, 0, sizeof *p);
     p->mesh = test_mesh(&a->pack, index);
-    assert_int_equal(noh_pack_skin_at(&a->pack, p->mesh.header->skin, &skin), NOH_OK);
+    assert_int_equal(noh_pack_skin_at(&a->pack, p->mesh.header->skin, &skin, NULL), NOH_OK);
     p->matrices = skin_asset_matrices(a, &p->mesh, locals);
     p->weights = test_zeros(4u * (size_t)p->mesh.header->target_count);
     p->positions = test_zeros(12u * (size_t)p->mesh.header->vertex_count);
@@ -66,32 +66,66 @@ static double check_box(const float box[6], const float *positions, uint32_t cou
     return sqrt(square / tight_square);
 }
 
+/* ---- assets, converted once for boxes and rays ---- */
+
+typedef struct opened_asset {
+    const char *name, *dual_quaternion; /* dual_quaternion: NULL or the meshes skinned so */
+    skin_asset asset;
+} opened_asset;
+
+static opened_asset opened[16];
+static size_t opened_count;
+
+static const skin_asset *open_asset(const char *name, const char *dual_quaternion)
+{
+    opened_asset *to = &opened[opened_count];
+    skin_options options;
+    for (size_t i = 0; i < opened_count; i++) {
+        if (strcmp(opened[i].name, name) == 0 && !opened[i].dual_quaternion == !dual_quaternion) {
+            return &opened[i].asset;
+        }
+    }
+    assert_true(opened_count < TEST_COUNT(opened));
+    memset(&options, 0, sizeof options);
+    options.dual_quaternion = &dual_quaternion;
+    options.dual_quaternion_count = dual_quaternion != NULL;
+    skin_asset_open(&to->asset, name, &options);
+    to->name = name;
+    to->dual_quaternion = dual_quaternion;
+    opened_count++;
+    return &to->asset;
+}
+
+static int close_assets(void **state)
+{
+    (void)state;
+    while (opened_count) {
+        skin_asset_close(&opened[--opened_count].asset);
+    }
+    return 0;
+}
+
+/* ---- poses ---- */
+
 typedef void (*pose_check)(const scene_pose *p, test_random *r, void *context);
 
 static void each_pose(const char *name, const char *dual_quaternion, int times, pose_check check, void *context)
 {
+    const skin_asset *a = open_asset(name, dual_quaternion);
     test_random r = test_random_from(9);
-    double *locals;
-    skin_options options;
-    skin_asset a;
-    memset(&options, 0, sizeof options);
-    options.dual_quaternion = &dual_quaternion;
-    options.dual_quaternion_count = dual_quaternion != NULL;
-    skin_asset_open(&a, name, &options);
-    locals = test_zeros(sizeof *locals * 10 * oracle_node_count(a.o));
-    for (uint32_t clip = 0; clip < oracle_animation_count(a.o); clip++) {
+    double *locals = test_zeros(sizeof *locals * 10 * oracle_node_count(a->o));
+    for (uint32_t clip = 0; clip < oracle_animation_count(a->o); clip++) {
         for (int k = 0; k < times; k++) {
-            oracle_pose(a.o, (int)clip, oracle_animation_end(a.o, clip) * (double)test_random_float(&r, 0.0f, 1.0f), locals);
-            for (uint32_t m = 0; m < a.pack.mesh_count; m++) {
+            oracle_pose(a->o, (int)clip, oracle_animation_end(a->o, clip) * (double)test_random_float(&r, 0.0f, 1.0f), locals);
+            for (uint32_t m = 0; m < a->pack.mesh_count; m++) {
                 scene_pose p;
-                pose_mesh(&a, m, locals, &r, &p);
+                pose_mesh(a, m, locals, &r, &p);
                 check(&p, &r, context);
                 unpose(&p);
             }
         }
     }
     free(locals);
-    skin_asset_close(&a);
 }
 
 static void contains_all(const scene_pose *p, test_random *r, void *context)
@@ -390,7 +424,7 @@ static void bad_picks_say_why(void **state)
     uint8_t *bytes = skin_pack_of(m, NULL, 1.0f, &count, NULL);
     noh_pack pack = test_open(bytes, count);
     noh_mesh mesh = test_mesh(&pack, 0);
-    float matrices[48], scratch[48 + 1];
+    float matrices[48], *scratch = test_zeros(49 * sizeof(float));
     const float o[3] = { 5, 1.03f, 0.01f }, d[3] = { -1, 0, 0 }, none[3] = { 0, 0, 0 };
     noh_pick_surface surface = { &mesh, NULL, matrices, NULL, NULL, NULL };
     noh_error error;
@@ -408,8 +442,18 @@ static void bad_picks_say_why(void **state)
     assert_true(scratch[48] == 12345.0f);
     assert_true(fabsf(hit.distance - 4.5f) < 0.05f);
     assert_true(hit.joint == 1 || hit.joint == 2); /* half way up, a bit nearer to the second */
+    memset(&error, 0, sizeof error);
+    assert_int_equal(noh_pick(&surface, o, d, 1.0f, scratch, 4 * 48, &hit, &error), NOH_ERR_NOT_FOUND);
+    assert_int_equal(error.result, NOH_ERR_NOT_FOUND);
+    assert_non_null(error.what);
+    for (size_t shift = 1; shift < NOH_MEMORY_ALIGN; shift++) {
+        assert_int_equal(noh_pick(&surface, o, d, 100.0f, (uint8_t *)scratch + shift, 4 * 48, &hit, &error), NOH_ERR_ARG);
+    }
+    assert_int_equal(noh_pick(&surface, o, d, 100.0f, NULL, 4 * 48, &hit, &error), NOH_ERR_ARG);
+    assert_int_equal(error.need, 4 * 48);
     surface.matrices = NULL;
     assert_int_equal(noh_pick(&surface, o, d, 100.0f, scratch, 4 * 48, &hit, &error), NOH_ERR_ARG);
+    free(scratch);
     free(bytes);
     model_free(m);
 }
@@ -433,4 +477,4 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(bad_picks_say_why),
 };
 
-TEST_MAIN(tests, NULL, NULL)
+TEST_MAIN(tests, NULL, close_assets)

@@ -196,9 +196,9 @@ static void impossible_descs_are_refused(void **state)
     assert_int_equal(noh_character_size(&d), 0);
     assert_int_equal(noh_character_scratch_size(&d), 0);
     assert_int_equal(noh_character_init(g.memory, g.size, &d, &ch, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, "track_count");
+    assert_int_equal(strncmp(error.what, "track_count", strlen("track_count")), 0);
     assert_int_equal(noh_character_scratch_init(g.memory, g.size, &d, &scratch, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, "track_count");
+    assert_int_equal(strncmp(error.what, "track_count", strlen("track_count")), 0);
     stage_close(&g);
 }
 
@@ -397,6 +397,67 @@ static void dropped_joints_follow_their_parents(void **state)
     assert_int_equal(noh_character_look(g.ch, &g.table, &g.settings, 10.0f), NOH_DUE_AT_ONCE);
     assert_int_equal(noh_character_joints(g.ch), JOINTS);
     stage_close(&g);
+}
+
+/* Of a skin: what a vertex of its k-th entry is moved by, in every frame, mixed or not, whatever skeleton the character was
+ * updated with. `pair` characters play the same: one with the skeleton of the pack, one with the skin's own. */
+static void skins_of_all_packs_are_posed(stage *g, const noh_skin *skin, int has_matrices)
+{
+    stage own;
+    float inverse_bind[JOINTS * 12], joints_model[JOINTS * 12], a[JOINTS * 12], b[JOINTS * 12], palette[JOINTS * 12];
+    uint32_t mixes = 0;
+    stage_open(&own);
+    g->s.skeleton.inverse_bind = NULL;
+    assert_int_equal(noh_skin_skeleton(skin, &g->s.skeleton, inverse_bind, &own.s.skeleton), has_matrices);
+    assert_ptr_equal(own.s.skeleton.inverse_bind, has_matrices ? inverse_bind : NULL);
+    play(g, g->ch, 0, track_of(RUN, 1.0f));
+    play(&own, own.ch, 0, track_of(RUN, 1.0f));
+    for (int frame = 0; frame < 60; frame++) {
+        const float scale = frame < 5 ? 1e6f : scale_for(errors[RUN][NOH_RATE_15]);
+        noh_character_step(g->ch, &g->s.set, FRAME, NULL, NULL);
+        noh_character_step(own.ch, &own.s.set, FRAME, NULL, NULL);
+        if (noh_character_look(g->ch, &g->table, &g->settings, scale)) update(g, g->ch);
+        if (noh_character_look(own.ch, &own.table, &own.settings, scale)) update(&own, own.ch);
+        noh_character_skin(g->ch, skin, a);
+        noh_character_skin(own.ch, skin, b);
+        take_palette(g->ch, palette);
+        noh_skin_matrices(skin, palette, joints_model);
+        assert_memory_equal(a, joints_model, skin->header->joint_count * 48u);
+        for (uint32_t i = 0; i < skin->header->joint_count * 12u; i++) assert_true(fabsf(a[i] - b[i]) < 4e-6f);
+        mixes += noh_time_lod_fraction(&g->ch->time) < 1.0f;
+        if (frame < 5) {
+            noh_controller_pose(noh_character_controller(g->ch), &g->s.set, &g->scratch.pose, g->scratch.local, g->scratch.floats);
+            noh_pose_skin(&g->s.skeleton, skin, g->scratch.local, joints_model, b);
+            assert_memory_equal(a, b, skin->header->joint_count * 48u);
+        }
+    }
+    assert_true(mixes > 20);
+    stage_close(&own);
+}
+
+static void a_skin_is_posed_with_and_without_inverse_bind_matrices(void **state)
+{
+    static const uint16_t once[5] = { 9, 3, 0, 22, 4 }, twice[5] = { 9, 3, 9, 22, 4 };
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        stage g;
+        float inverse_bind[5 * 12];
+        noh_skin_header header;
+        noh_skin skin;
+        stage_open(&g);
+        memset(&header, 0, sizeof header);
+        memset(&skin, 0, sizeof skin);
+        header.joint_count = 5;
+        skin.header = &header;
+        skin.joints = k ? twice : once;
+        skin.inverse_bind = inverse_bind;
+        for (uint32_t i = 0; i < 5; i++) {
+            memcpy(inverse_bind + 12 * i, g.inverse_bind + 12 * skin.joints[i], 48);
+            inverse_bind[12 * i + 7] += 0.1f * (float)i; /* each bound in its own way */
+        }
+        skins_of_all_packs_are_posed(&g, &skin, !k);
+        stage_close(&g);
+    }
 }
 
 /* What the second half of an update is handed can be changed: a look-at. */
@@ -634,6 +695,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(cross_fades_are_off_a_little_more),
         cmocka_unit_test(the_sphere_holds_what_is_shown),
         cmocka_unit_test(dropped_joints_follow_their_parents),
+        cmocka_unit_test(a_skin_is_posed_with_and_without_inverse_bind_matrices),
         cmocka_unit_test(a_program_changes_the_pose_between_the_halves),
         cmocka_unit_test(keys_fire_the_same_with_and_without_detail),
         cmocka_unit_test(a_copy_goes_on_the_same_and_alone),

@@ -532,7 +532,9 @@ static void other_skeletons_and_versions_are_refused(void **state)
 {
     fixture x;
     noh_clip_desc desc;
+    noh_clip *clip = NULL;
     noh_error error;
+    size_t size;
     (void)state;
     assert_null(fixture_build(&x, fixture_swing(5, 30, 1, 10.0f, 0.5, 0.5), NULL, 2));
     desc.bytes = x.blob.bytes;
@@ -543,6 +545,18 @@ static void other_skeletons_and_versions_are_refused(void **state)
     assert_int_equal(error.result, NOH_ERR_ARG);
     assert_int_equal(error.need, 5);
     desc.joint_count = 5;
+    size = noh_clip_size(&desc, &error);
+    assert_int_equal(noh_clip_init(NULL, size, &desc, &clip, &error), NOH_ERR_ARG);
+    assert_int_equal(error.need, size);
+    assert_int_equal(noh_clip_init((uint8_t *)x.clip_memory + 8, size, &desc, &clip, &error), NOH_ERR_ARG);
+    assert_int_equal(error.need, size);
+    assert_int_equal(noh_clip_init(x.clip_memory, size - 1u, &desc, &clip, &error), NOH_ERR_MEMORY);
+    assert_int_equal(error.need, size);
+    assert_null(clip);
+    desc.bytes = NULL;
+    assert_int_equal(noh_clip_size(&desc, &error), 0);
+    assert_non_null(strstr(error.what, "NULL"));
+    desc.bytes = x.blob.bytes;
     x.blob.bytes[0]++;
     assert_int_equal(noh_clip_size(&desc, &error), 0);
     assert_int_equal(error.result, NOH_ERR_VERSION);

@@ -47,7 +47,7 @@ static void bad_set(scene *s, noh_result result, const char *what)
 {
     noh_error error;
     assert_int_equal(noh_anim_set_check(&s->set, &error), result);
-    assert_string_equal(error.what, what);
+    assert_non_null(strstr(error.what, what));
     scene_open(s);
 }
 
@@ -81,7 +81,7 @@ static void test_set_fields_broken_in_turn(void **state)
     s.markers[3].tick = 30000; bad_set(&s, NOH_ERR_DATA, "marker tick past the duration");
     s.markers[3].tick = 2000; bad_set(&s, NOH_ERR_DATA, "marker order");
     assert_int_equal(noh_anim_set_find(&s.set, 103), 3);
-    assert_int_equal(noh_anim_set_find(&s.set, 99), MOTIONS);
+    assert_int_equal(noh_anim_set_find(&s.set, 99), NOH_NONE);
 }
 
 static void bad_controller(noh_controller_desc d, const char *what)
@@ -91,7 +91,7 @@ static void bad_controller(noh_controller_desc d, const char *what)
     noh_error error;
     assert_int_equal(noh_controller_size(&d), 0);
     assert_int_equal(noh_controller_init(memory, sizeof memory, &d, &c, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, what);
+    assert_int_equal(strncmp(error.what, what, strlen(what)), 0);
     assert_null(c);
 }
 
@@ -193,7 +193,7 @@ static void bad_start(stage *g, noh_track_desc d, const char *what)
     noh_error error;
     noh_track before = *noh_controller_track(g->c, 1);
     assert_int_equal(noh_controller_start(g->c, &g->s.set, 1, &d, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, what);
+    assert_int_equal(strncmp(error.what, what, strlen(what)), 0);
     assert_memory_equal(&before, noh_controller_track(g->c, 1), sizeof before);
 }
 
@@ -221,7 +221,7 @@ static void test_track_desc_fields_broken_in_turn(void **state)
     d = track_of(0, 1.0f), d.flags = 16; bad_start(&g, d, "flags");
     d = track_of(0, 1.0f);
     assert_int_equal(noh_controller_start(g.c, &g.s.set, 4, &d, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, "track");
+    assert_int_equal(strncmp(error.what, "track", strlen("track")), 0);
 }
 
 static void test_setters_refuse(void **state)
@@ -311,7 +311,7 @@ static void bad_change(stage *g, noh_change_desc d, const char *what)
 {
     noh_error error;
     assert_int_equal(noh_controller_change(g->c, &g->s.set, &d, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, what);
+    assert_int_equal(strncmp(error.what, what, strlen(what)), 0);
 }
 
 static void test_change_fields_broken_in_turn(void **state)
@@ -650,6 +650,73 @@ static void test_motions_of_joints_and_of_floats(void **state)
     assert_true(pose_apart(g.pose, walk, JOINTS) > 1e-2 && floats_apart(g.floats, face_floats, FLOATS) > 1e-2);
 }
 
+/* In the high group likewise: a face that speaks neither covers the walk below nor dilutes the bow beside it, and a
+ * bow that moves no floats leaves them to the face. */
+static void test_clips_of_joints_and_of_floats_above(void **state)
+{
+    stage g;
+    noh_transform low[JOINTS], bow[JOINTS], face[JOINTS];
+    float low_floats[FLOATS], bow_floats[FLOATS], face_floats[FLOATS];
+    (void)state;
+    stage_open(&g, 3, 0);
+    scene_pose(&g.s, WALK, 0, low, low_floats);
+    scene_pose(&g.s, RUN, 0, bow, bow_floats);
+    scene_pose(&g.s, WAVE, 0, face, face_floats);
+    g.s.motions[WAVE].flags = NOH_MOTION_NO_JOINTS;
+    start(&g, 0, track_of(WALK, 1.0f));
+    start(&g, 2, (noh_track_desc){ .motion = WAVE, .weight = 3.0f, .group = NOH_GROUP_HIGH });
+    take_pose(&g);
+    assert_true(pose_apart(g.pose, low, JOINTS) < 1e-6 && floats_apart(g.floats, face_floats, FLOATS) < 1e-6);
+    g.s.motions[RUN].flags = NOH_MOTION_NO_FLOATS;
+    start(&g, 1, (noh_track_desc){ .motion = RUN, .weight = 0.5f, .group = NOH_GROUP_HIGH });
+    take_pose(&g);
+    assert_true(pose_apart(g.pose, bow, JOINTS) < 1e-6 && floats_apart(g.floats, face_floats, FLOATS) < 1e-6);
+    start(&g, 2, (noh_track_desc){ .motion = WAVE, .weight = 3.0f, .flags = NOH_TRACK_ADDITIVE });
+    g.s.motions[WAVE].flags |= NOH_MOTION_ADDITIVE; /* joints that it does not have are no difference either */
+    take_pose(&g);
+    assert_true(pose_apart(g.pose, bow, JOINTS) < 1e-6);
+}
+
+/* A high track whose mask leaves a joint out does not dilute another high track there. */
+static void test_a_masked_track_leaves_others_their_joints(void **state)
+{
+    stage g;
+    noh_transform run[JOINTS], wave[JOINTS], mean[JOINTS];
+    float run_floats[FLOATS], wave_floats[FLOATS];
+    (void)state;
+    stage_open(&g, 3, 0);
+    scene_pose(&g.s, RUN, 0, run, run_floats);
+    scene_pose(&g.s, WAVE, 0, wave, wave_floats);
+    start(&g, 0, track_of(WALK, 1.0f));
+    start(&g, 1, (noh_track_desc){ .motion = RUN, .weight = 2.0f, .group = NOH_GROUP_HIGH });
+    start(&g, 2, (noh_track_desc){ .motion = WAVE, .weight = 2.0f, .group = NOH_GROUP_HIGH, .mask = 1 });
+    take_pose(&g);
+    noh_pose_mix(JOINTS, run, wave, 0.5f, NULL, mean);
+    assert_true(pose_apart(g.pose, run, JOINTS / 2u) < 1e-6); /* masks[0]: the upper half */
+    assert_true(pose_apart(g.pose + JOINTS / 2u, mean + JOINTS / 2u, JOINTS / 2u) < 1e-6);
+    assert_true(floats_apart(g.floats, run_floats, 2) < 1e-6);
+}
+
+/* The low group is the mean by weight: three of a walk to one of a run. */
+static void test_tracks_count_by_weight(void **state)
+{
+    stage g;
+    noh_transform a[JOINTS], b[JOINTS], want[JOINTS];
+    float fa[FLOATS], fb[FLOATS];
+    (void)state;
+    stage_open(&g, 2, 0);
+    scene_pose(&g.s, WALK, 0, a, fa);
+    scene_pose(&g.s, RUN, 0, b, fb);
+    for (int group = NOH_GROUP_LOW; group <= NOH_GROUP_HIGH; group++) {
+        start(&g, 0, (noh_track_desc){ .motion = WALK, .weight = 3.0f, .group = (noh_track_group)group });
+        start(&g, 1, (noh_track_desc){ .motion = RUN, .weight = 1.0f, .group = (noh_track_group)group });
+        take_pose(&g);
+        noh_pose_mix(JOINTS, a, b, 0.25f, NULL, want);
+        assert_true(pose_apart(g.pose, want, JOINTS) < 1e-6);
+        for (uint32_t i = 0; i < FLOATS; i++) assert_true(fabsf(g.floats[i] - (0.75f * fa[i] + 0.25f * fb[i])) < 1e-6f);
+    }
+}
+
 static void test_lod(void **state)
 {
     stage g;
@@ -870,7 +937,7 @@ static void test_transition_within_a_transition(void **state)
         assert_true(pose_apart(g.pose, before, JOINTS) < 1e-5);
     }
     assert_int_equal(noh_controller_inertia_begin(g.c, &g.s.set, &g.scratch, 0, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, "duration_ticks");
+    assert_int_equal(strncmp(error.what, "duration_ticks", strlen("duration_ticks")), 0);
     stage_open(&g, 2, 0);
     assert_int_equal(noh_controller_inertia_capture(g.c, &g.s.set, &g.scratch, &error), NOH_ERR_ARG);
     stage_open(&g, 2, NOH_CONTROLLER_INERTIAL);
@@ -884,6 +951,97 @@ typedef struct handler {
     stage *g;
     int64_t fired_at, restarted_at;
 } handler;
+
+/* ---- blocks from outside ---- */
+
+/* A controller with everything on: fades, a travel, a sync group, a transition. */
+static void busy_open(stage *g)
+{
+    noh_change_desc d;
+    stage_open(g, 4, NOH_CONTROLLER_INERTIAL);
+    start_synced(g, 0, WALK, 1.0f);
+    start_synced(g, 1, RUN, 0.5f);
+    start(g, 2, (noh_track_desc){ .motion = JUMP, .group = NOH_GROUP_HIGH, .mask = 2 });
+    start(g, 3, (noh_track_desc){ .motion = WAVE, .flags = NOH_TRACK_ADDITIVE, .weight = 0.3f });
+    memset(&d, 0, sizeof d);
+    d.kind = NOH_CHANGE_WEIGHT, d.track = 1, d.weight = 0.1f, d.duration_ticks = 9000, change(g, d);
+    d.kind = NOH_CHANGE_POSITION, d.track = 3, d.position_ticks = 90000, change(g, d);
+    d.kind = NOH_CHANGE_SPEED, d.track = 2, d.speed = 2 * NOH_SPEED_ONE, d.delay_ticks = 700, change(g, d);
+    assert_int_equal(noh_controller_inertia_capture(g->c, &g->s.set, &g->scratch, NULL), NOH_OK);
+    start(g, 3, (noh_track_desc){ .motion = LEAN, .flags = NOH_TRACK_ADDITIVE, .weight = 0.6f });
+    assert_int_equal(noh_controller_inertia_begin(g->c, &g->s.set, &g->scratch, 4000, NULL), NOH_OK);
+    step(g, 1234);
+}
+
+static void test_check_takes_what_a_step_leaves(void **state)
+{
+    stage g;
+    noh_error error;
+    (void)state;
+    busy_open(&g);
+    for (int i = 0; i < 300; i++) {
+        step(&g, (uint32_t)(i * i));
+        assert_int_equal(noh_controller_check(g.c, g.c->bytes, &g.s.set, NULL), NOH_OK);
+    }
+    assert_int_equal(noh_controller_check(g.c, g.c->bytes - 1u, &g.s.set, &error), NOH_ERR_DATA);
+    assert_int_equal(noh_controller_check(g.c, sizeof *g.c - 1u, &g.s.set, &error), NOH_ERR_DATA);
+    assert_int_equal(noh_controller_check(g.memory + 8, g.c->bytes, &g.s.set, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_controller_check(NULL, 0, &g.s.set, &error), NOH_ERR_ARG);
+    g.s.set.mask_count--;
+    assert_int_equal(noh_controller_check(g.c, g.c->bytes, &g.s.set, &error), NOH_ERR_DATA);
+    assert_int_equal(strncmp(error.what, "controller: made for another set", 32), 0);
+}
+
+/* Damage of head, tracks and changes is refused, or does no harm. */
+static void test_damaged_blocks_do_no_harm(void **state)
+{
+    static stage g, kept;
+    noh_error error;
+    uint32_t seed = 11, refused = 0, taken = 0, head_bytes;
+    (void)state;
+    busy_open(&g);
+    kept = g;
+    head_bytes = g.c->inertia_offset;
+    for (int round = 0; round < 20000; round++) {
+        memcpy(g.memory, kept.memory, sizeof g.memory);
+        for (int k = 0; k < 1 + round % 3; k++) {
+            uint32_t at;
+            seed = seed * 1664525u + 1013904223u;
+            at = (seed >> 8) % head_bytes;
+            seed = seed * 1664525u + 1013904223u;
+            g.memory[at] = (uint8_t)(round % 2 ? seed >> 24 : g.memory[at] ^ (1u << (seed >> 29)));
+        }
+        g.c->flags &= 1u; /* not as if called back */
+        if (noh_controller_check(g.memory, sizeof g.memory, &g.s.set, NULL) != NOH_OK) {
+            refused++;
+            continue;
+        }
+        taken++;
+        for (int k = 0; k < 3; k++) {
+            step(&g, 700);
+            take_pose(&g);
+            (void)noh_controller_events_max(g.c, &g.s.set, 10000);
+            (void)noh_controller_inertia_capture(g.c, &g.s.set, &g.scratch, NULL);
+            if (noh_controller_check(g.memory, sizeof g.memory, &g.s.set, &error) != NOH_OK) fail_msg("round %d: %s (%u)", round, error.what, (unsigned)error.where);
+        }
+    }
+    print_message("%u damaged blocks refused, %u played\n", refused, taken);
+    assert_true(refused > 1000 && taken > 1000);
+}
+
+/* A seek that fires goes any distance in one tick; what was shown 10 ms before it is still asked for by a transition. */
+static void test_a_pose_before_a_far_seek(void **state)
+{
+    stage g;
+    (void)state;
+    stage_open(&g, 1, NOH_CONTROLLER_INERTIAL);
+    start(&g, 0, track_of(RUN, 1.0f));
+    assert_int_equal(noh_controller_seek(g.c, &g.s.set, 0, (int64_t)1 << 43, NOH_SEEK_FIRE, NULL), NOH_OK);
+    step(&g, 1);
+    assert_int_equal(noh_controller_inertia_capture(g.c, &g.s.set, &g.scratch, NULL), NOH_OK);
+    assert_int_equal(noh_controller_inertia_begin(g.c, &g.s.set, &g.scratch, 4000, NULL), NOH_OK);
+    take_pose(&g);
+}
 
 static void restart_other(void *user, const noh_event *e)
 {
@@ -942,6 +1100,9 @@ int main(int argc, char **argv)
         cmocka_unit_test(the_high_group_covers_what_nothing_lies_below),
         cmocka_unit_test(a_masked_track_alone_leaves_the_bind_pose),
         cmocka_unit_test(test_motions_of_joints_and_of_floats),
+        cmocka_unit_test(test_clips_of_joints_and_of_floats_above),
+        cmocka_unit_test(test_a_masked_track_leaves_others_their_joints),
+        cmocka_unit_test(test_tracks_count_by_weight),
         cmocka_unit_test(test_lod),
         cmocka_unit_test(test_additive_tracks),
         cmocka_unit_test(clones_share_nothing_they_write),
@@ -951,6 +1112,9 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_inertial_transition),
         cmocka_unit_test(test_transition_within_a_transition),
         cmocka_unit_test(test_callback_starts_a_track_within_the_step),
+        cmocka_unit_test(test_check_takes_what_a_step_leaves),
+        cmocka_unit_test(test_damaged_blocks_do_no_harm),
+        cmocka_unit_test(test_a_pose_before_a_far_seek),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);

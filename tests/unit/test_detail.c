@@ -45,7 +45,7 @@ static void bad_table(noh_detail_table t, noh_result result, const char *what)
 {
     noh_error error;
     assert_int_equal(noh_detail_table_check(&t, &error), result);
-    assert_string_equal(error.what, what);
+    assert_int_equal(strncmp(error.what, what, strlen(what)), 0);
 }
 
 static void table_fields_broken_in_turn(void **state)
@@ -80,7 +80,7 @@ static void bad_settings(noh_detail_settings s, const char *what)
 {
     noh_error error;
     assert_int_equal(noh_detail_settings_check(&s, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, what);
+    assert_int_equal(strncmp(error.what, what, strlen(what)), 0);
 }
 
 static void settings_fields_broken_in_turn(void **state)
@@ -334,6 +334,30 @@ static void a_limit_sends_away_what_is_too_fine(void **state)
     noh_detail_cut(&d);
     noh_detail_choose(&d, &t, &s, 1e5f, rates, FRAME + 12000);
     assert_int_equal(d.mesh, 0);
+}
+
+/* Clocks at the ends of their range: nothing overflows, and a fade ends. */
+static void clocks_at_the_ends(void **state)
+{
+    static const int64_t clocks[] = { INT64_MIN, INT64_MIN + 5, -1, 0, INT64_MAX - 5, INT64_MAX };
+    noh_detail_table t = table_of();
+    noh_detail_settings s = settings_of(1.0f);
+    (void)state;
+    for (uint32_t i = 0; i < sizeof clocks / sizeof *clocks; i++) {
+        for (uint32_t k = i; k < sizeof clocks / sizeof *clocks; k++) {
+            noh_detail d;
+            noh_detail_part parts[2];
+            float fade;
+            memset(&d, 0, sizeof d);
+            noh_detail_choose(&d, &t, &s, 1e5f, rates, clocks[i]);
+            noh_detail_choose(&d, &t, &s, 0.5f, rates, clocks[i]);
+            fade = noh_detail_fade(&d, clocks[k]);
+            assert_true(k == i ? fade == 0.0f : k > 1 && i < 2 ? fade == 1.0f : fade >= 0.0f && fade <= 1.0f);
+            assert_true(noh_detail_parts(&d, clocks[k], parts) >= 1);
+            noh_detail_choose(&d, &t, &s, 0.5f, rates, clocks[k]);
+            assert_int_equal(d.mesh, LEVELS - 1u);
+        }
+    }
 }
 
 /* ---- fades ---- */
@@ -618,6 +642,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(slow_zoom_passes_each_level_once),
         cmocka_unit_test(a_limit_holds_finer_levels_back),
         cmocka_unit_test(a_limit_sends_away_what_is_too_fine),
+        cmocka_unit_test(clocks_at_the_ends),
         cmocka_unit_test(fade_is_smooth_and_alone),
         cmocka_unit_test(parts_of_a_fade_are_all_pixels),
         cmocka_unit_test(a_fixed_level_has_no_say_afterwards),

@@ -79,7 +79,7 @@ static void open_table(table *t, forge change)
     t->bytes = noh_motion_set_size(&t->set_desc, NULL);
     t->set_memory = test_aligned(NULL, t->bytes);
     assert_int_equal(noh_motion_set_init(t->set_memory, t->bytes, &t->set_desc, &t->set, NULL), NOH_OK);
-    assert_int_equal(noh_pack_mesh(&t->pack, FOUR, &t->mesh), NOH_OK);
+    assert_int_equal(noh_pack_mesh(&t->pack, FOUR, &t->mesh, NULL), NOH_OK);
     assert_string_equal(t->mesh.name, "four");
     t->desc.set = t->set;
     t->desc.set_desc = &t->set_desc;
@@ -104,7 +104,7 @@ static void close_table(table *t)
 static noh_pack_motion clip_of(const table *t, uint32_t index)
 {
     noh_pack_motion clip;
-    assert_int_equal(noh_pack_motion_at(&t->clips, t->set->pack_motions[index], &clip), NOH_OK);
+    assert_int_equal(noh_pack_motion_at(&t->clips, t->set->pack_motions[index], &clip, NULL), NOH_OK);
     return clip;
 }
 
@@ -186,7 +186,7 @@ static void centimetres_become_metres(void **state)
     bytes = noh_detail_pack_size(&desc);
     memory = test_aligned(NULL, bytes);
     assert_int_equal(noh_detail_pack_init(memory, bytes, &desc, &detail, NULL), NOH_OK);
-    assert_int_equal(noh_pack_motion_at(&pack, 0, &clip), NOH_OK);
+    assert_int_equal(noh_pack_motion_at(&pack, 0, &clip, NULL), NOH_OK);
     assert_null(detail.margin_m);
     assert_true(detail.table.joint_level_count >= 2);
     assert_true(clip.joint_errors[1] > 0.1f); /* centimetres */
@@ -265,6 +265,33 @@ static noh_mesh_header *header_of(fixture_levels *f, uint32_t mesh)
     return (noh_mesh_header *)(void *)(f->bytes + f->pack.chunks[f->pack.first_mesh + mesh].offset);
 }
 
+/* A level has one number everywhere. Loaded from level 1 on: the coarsest is still 2, the finest that is chosen is 1. */
+static void loaded_from_level_1(table *t, const noh_mesh_header *h)
+{
+    noh_detail_settings settings;
+    noh_detail d;
+    memset(&settings, 0, sizeof settings);
+    t->mesh = noh_mesh_at_level(&t->mesh, 1);
+    fill_table(t);
+    assert_int_equal(t->detail.table.mesh_level_count, 3);
+    assert_int_equal(t->detail.table.mesh_level_first, 1);
+    for (uint32_t k = 0; k < 3; k++) assert_int_equal(t->detail.table.meshes[k].vertex_count, h[k].vertex_count);
+    for (int far = 0; far < 2; far++) {
+        memset(&d, 0, sizeof d);
+        noh_detail_choose(&d, &t->detail.table, &settings, far ? 1e-3f : 1e6f, NULL, 0);
+        assert_int_equal(d.mesh, far ? 2 : 1);
+        assert_int_equal(d.mesh_before, d.mesh);
+        assert_int_equal(d.fade_ticks, 0);
+        assert_true(d.error_m >= t->detail.table.meshes[d.mesh].error_m);
+        assert_int_equal(noh_detail_finest(&d), d.mesh);
+        noh_detail_fix(&d, &t->detail.table, far ? 9 : 0, 1.0f);
+        assert_int_equal(d.mesh, far ? 2 : 1);
+    }
+    t->detail.table.mesh_level_first = 3;
+    assert_int_equal(noh_detail_table_check(&t->detail.table, NULL), NOH_ERR_ARG);
+    t->detail.table.mesh_level_first = 1;
+}
+
 /* Every level has the worst of its errors, and what it skips, in metres; fewer influences have theirs. */
 static void levels_come_from_the_mesh(void **state)
 {
@@ -286,7 +313,7 @@ static void levels_come_from_the_mesh(void **state)
     h[2].level_error_motion = 0.003f;
     h[2].level_skipped = 0.0005f;
     t.set_desc.mesh = &f.pack;
-    assert_int_equal(noh_pack_mesh(&f.pack, FOUR, &t.mesh), NOH_OK);
+    assert_int_equal(noh_pack_mesh(&f.pack, FOUR, &t.mesh, NULL), NOH_OK);
     fill_table(&t);
     assert_int_equal(t.detail.table.mesh_level_count, 3);
     for (uint32_t k = 0; k < 3; k++) {
@@ -308,10 +335,7 @@ static void levels_come_from_the_mesh(void **state)
     }
     assert_int_equal(t.detail.table.influences[t.detail.table.influence_level_count - 1].influence_count, 1);
     free(t.memory);
-    t.mesh = noh_mesh_at_level(&t.mesh, 1); /* what is loaded from level 1 on begins there */
-    fill_table(&t);
-    assert_int_equal(t.detail.table.mesh_level_count, 2);
-    assert_int_equal(t.detail.table.meshes[0].vertex_count, h[1].vertex_count);
+    loaded_from_level_1(&t, h);
     fixture_levels_close(&f);
     close_table(&t);
 }
@@ -355,7 +379,7 @@ static void expect_bad(const noh_detail_pack_desc *desc, const char *field)
     noh_detail_pack detail;
     assert_int_equal(noh_detail_pack_size(desc), 0);
     assert_int_equal(noh_detail_pack_init(memory, sizeof memory, desc, &detail, &error), NOH_ERR_ARG);
-    assert_string_equal(error.what, field);
+    assert_int_equal(strncmp(error.what, field, strlen(field)), 0);
 }
 
 static void bad_descs_are_named(void **state)
@@ -377,11 +401,11 @@ static void bad_descs_are_named(void **state)
     desc = t.desc;
     desc.set_desc = &set_desc;
     expect_bad(&desc, "set_desc");
-    assert_int_equal(noh_pack_mesh(&t.pack, 0, &other), NOH_OK); /* another skeleton moves it */
+    assert_int_equal(noh_pack_mesh(&t.pack, 0, &other, NULL), NOH_OK); /* another skeleton moves it */
     desc = t.desc;
     desc.mesh = &other;
     expect_bad(&desc, "mesh");
-    assert_int_equal(noh_pack_mesh(&t.clips, FOUR, &other), NOH_OK); /* of another pack */
+    assert_int_equal(noh_pack_mesh(&t.clips, FOUR, &other, NULL), NOH_OK); /* of another pack */
     expect_bad(&desc, "mesh");
     close_table(&t);
 }
@@ -408,7 +432,7 @@ static void distances(const noh_mesh *mesh, const float *weights, double *out, u
     uint8_t *memory = test_aligned(NULL, noh_morph_layers_size(mesh));
     noh_skin skin;
     assert_int_equal(noh_morph_layers_init(memory, noh_morph_layers_size(mesh), mesh, &layers, NULL), NOH_OK);
-    assert_int_equal(noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin), NOH_OK);
+    assert_int_equal(noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin, NULL), NOH_OK);
     noh_morph_accumulate(mesh, weights, &layers);
     for (uint32_t j = 0; j < joint_count; j++) out[j] = -1.0;
     for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
@@ -442,8 +466,8 @@ static void margins_hold_all_vertices_of_all_weights(void **state)
     for (uint32_t v = 0; v < m->meshes[0].vertex_count; v++) m->meshes[0].targets[0].position[3 * v] = 0.05f; /* all to one side */
     bytes = skin_pack_of(m, NULL, 10.0f, &count, NULL);
     pack = test_open(bytes, count);
-    assert_int_equal(noh_pack_mesh(&pack, 0, &mesh), NOH_OK);
-    assert_int_equal(noh_pack_skeleton_at(&pack, 0, &skeleton, NULL), NOH_OK);
+    assert_int_equal(noh_pack_mesh(&pack, 0, &mesh, NULL), NOH_OK);
+    assert_int_equal(noh_pack_skeleton_at(&pack, 0, &skeleton, NULL, NULL), NOH_OK);
     n = skeleton.joint_count;
     assert_true(n <= 16 && mesh.header->target_count == 3);
     distances(&mesh, none, rest, n);
@@ -498,7 +522,7 @@ static void a_posed_arm_is_in_its_sphere(void **state)
     (void)state;
     open_table(&t, NULL);
     fill_table(&t);
-    assert_int_equal(noh_pack_skin_at(&t.pack, t.mesh.header->skin, &skin), NOH_OK);
+    assert_int_equal(noh_pack_skin_at(&t.pack, t.mesh.header->skin, &skin, NULL), NOH_OK);
     for (uint32_t tick = 0; tick <= t.set->anim.motions[0].duration_ticks; tick += 4800) {
         noh_transform pose[4];
         float matrices[48];

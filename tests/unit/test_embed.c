@@ -123,7 +123,7 @@ static void plain_file(void **state)
     assert_int_equal(run(output, sizeof output, "%s -o out.c plain.vert", tool), 0);
     assert_string_equal(output, "");
     read_back("noh_shader_plain_vert", output, sizeof output);
-    assert_string_equal(output, "#version 300 es\n#line 1 0\n// first a comment\n\nvoid main() {}\n");
+    assert_string_equal(output, "#version 300 es\n#line 3 0\nvoid main() {}\n");
 }
 
 static void odd_bytes(void **state)
@@ -131,11 +131,11 @@ static void odd_bytes(void **state)
     (void)state;
     char output[8192];
     need_tool();
-    /* Quotes, trigraphs, a backslash, tabs, UTF-8, CR LF, no newline at the end. */
-    write_text("odd.frag", "#version 300 es\r\n// \"q\" \?\?= \?\?/ \\ \t \303\2511\r\nvoid main() {}");
+    /* Quotes, trigraphs, a backslash, UTF-8, CR LF, no newline at the end. */
+    write_text("odd.frag", "#version 300 es\r\n\"q\" \?\?= \?\?/ \\ \303\2511\r\nvoid main() {}");
     assert_int_equal(run(output, sizeof output, "%s -o out.c odd.frag", tool), 0);
     read_back("noh_shader_odd_frag", output, sizeof output);
-    assert_string_equal(output, "#version 300 es\n#line 1 0\n\n// \"q\" \?\?= \?\?/ \\ \t \303\2511\nvoid main() {}\n");
+    assert_string_equal(output, "#version 300 es\n#line 2 0\n\"q\" \?\?= \?\?/ \\ \303\2511\nvoid main() {}\n");
 }
 
 static void defines_come_first(void **state)
@@ -146,7 +146,7 @@ static void defines_come_first(void **state)
     write_text("a.vert", "#version 300 es\nA\n");
     assert_int_equal(run(output, sizeof output, "%s -o out.c -D LAYERS=3 -D 'NAME=(1 + 2)' a.vert", tool), 0);
     read_back("noh_shader_a_vert", output, sizeof output);
-    assert_string_equal(output, "#version 300 es\n#define LAYERS 3\n#define NAME (1 + 2)\n#line 1 0\n\nA\n");
+    assert_string_equal(output, "#version 300 es\n#define LAYERS 3\n#define NAME (1 + 2)\n#line 2 0\nA\n");
 }
 
 static void includes_once_with_lines(void **state)
@@ -161,7 +161,7 @@ static void includes_once_with_lines(void **state)
     write_text("sub/c.glsl", "c1\n#include \"deep/e.glsl\"\nc3\n");
     assert_int_equal(run(output, sizeof output, "%s -o out.c -d out.d sub/a.vert", tool), 0);
     read_back("noh_shader_a_vert", output, sizeof output);
-    assert_string_equal(output, "#version 300 es\n#line 1 0\n\nbefore\n"
+    assert_string_equal(output, "#version 300 es\n#line 2 0\nbefore\n"
                                 "#line 1 1\nb1\n#line 1 2\ne\n#line 3 1\nb3\n#line 4 0\nbetween\n"
                                 "#line 1 3\nc1\n\nc3\n#line 6 0\nafter\n");
     assert_int_equal(run(output, sizeof output, "cat out.d"), 0);
@@ -181,9 +181,9 @@ static void each_file_includes_for_itself(void **state)
     write_text("c.glsl", "common\n");
     assert_int_equal(run(output, sizeof output, "%s -o out.c a.vert a.frag", tool), 0);
     read_back("noh_shader_a_vert", output, sizeof output);
-    assert_string_equal(output, "#version 300 es\n#line 1 0\n\n#line 1 1\ncommon\n#line 3 0\n");
+    assert_string_equal(output, "#version 300 es\n#line 1 1\ncommon\n");
     read_back("noh_shader_a_frag", output, sizeof output);
-    assert_string_equal(output, "#version 310 es\n#line 1 0\n\n#line 1 1\ncommon\n#line 3 0\n");
+    assert_string_equal(output, "#version 310 es\n#line 1 1\ncommon\n");
 }
 
 static void comments_hide_directives(void **state)
@@ -194,8 +194,42 @@ static void comments_hide_directives(void **state)
     write_text("a.vert", "/*\n#version 100\n#include \"no.glsl\"\n*/\n#version 300 es\n// #include \"no.glsl\"\n");
     assert_int_equal(run(output, sizeof output, "%s -o out.c a.vert", tool), 0);
     read_back("noh_shader_a_vert", output, sizeof output);
-    assert_string_equal(output, "#version 300 es\n#line 1 0\n/*\n#version 100\n#include \"no.glsl\"\n*/\n\n"
-                                "// #include \"no.glsl\"\n");
+    assert_string_equal(output, "#version 300 es\n\n");
+}
+
+/* Comments, indents and blanks go; the lines keep their numbers. */
+static void comments_and_indents_go(void **state)
+{
+    (void)state;
+    char output[8192];
+    need_tool();
+    write_text("a.vert", "#version 300 es\n/* about\n   this */\n  #define  F(x)\t(x) /* one */ + 1 // two\n\n\n\tint  a =/*b*/3; /* c\n"
+                         "*/ int b; /**/ int c;//\n\n\n\n\n\n\n\n\n\n\n\n\nlast / 2 /* 3\n // */ * 4\n");
+    assert_int_equal(run(output, sizeof output, "%s -o out.c a.vert", tool), 0);
+    assert_string_equal(output, "");
+    read_back("noh_shader_a_vert", output, sizeof output);
+    assert_string_equal(output, "#version 300 es\n#line 4 0\n#define F(x) (x) + 1\n\n\nint a = 3;\nint b; int c;\n"
+                                "#line 21 0\nlast / 2\n* 4\n");
+    write_text("b.vert", "#version 300 es\n#define A /* one\ntwo */ 1\n");
+    assert_int_equal(run(output, sizeof output, "%s -o out.c b.vert", tool), 1);
+    assert_string_equal(output, "embed: b.vert:2: a comment in a directive does not end in its line\n");
+}
+
+/* A .glsl file alone: an array of characters without #version and #line. */
+static void snippets(void **state)
+{
+    (void)state;
+    char output[8192];
+    need_tool();
+    write_text("piece.glsl", "/* about */\nint a;\n\n  /* b */\n\n\n\n\n\n\n\n\n\nint f() { return 1; }\n");
+    write_text("gl/gl_program.h", program_header);
+    write_text("main.c", "#include <stdio.h>\n#include \"out.h\"\nint main(void) { fputs(noh_shader_piece_glsl, stdout); return 0; }\n");
+    assert_int_equal(run(output, sizeof output, "%s -o out.c -D A=1 piece.glsl", tool), 0);
+    assert_int_equal(run(output, sizeof output, "%s -std=c99 -Wall -Wextra -Wpedantic -Werror -I. -o main main.c out.c && ./main", compiler), 0);
+    assert_string_equal(output, "int a;\nint f() { return 1; }\n");
+    write_text("bad.glsl", "int a;\n#include \"piece.glsl\"\n");
+    assert_int_equal(run(output, sizeof output, "%s -o out.c bad.glsl", tool), 1);
+    assert_string_equal(output, "embed: bad.glsl:2: a .glsl file includes nothing when it is embedded by itself\n");
 }
 
 /* Sources longer than a C99 literal come in pieces that join to the same text. */
@@ -218,7 +252,7 @@ static void long_sources(void **state)
     write_file("long.vert", source, length);
     assert_int_equal(run(output, sizeof output, "%s -o out.c long.vert", tool), 0);
     read_back("noh_shader_long_vert", output, sizeof output);
-    snprintf(want, sizeof want, "#version 300 es\n#line 1 0\n\n%.*s", (int)(length - 16), source + 16);
+    snprintf(want, sizeof want, "#version 300 es\n#line 2 0\n%.*s", (int)(length - 16), source + 16);
     assert_int_equal(strlen(output), strlen(want));
     assert_memory_equal(output, want, strlen(want));
 }
@@ -333,6 +367,8 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(includes_once_with_lines),
         cmocka_unit_test(each_file_includes_for_itself),
         cmocka_unit_test(comments_hide_directives),
+        cmocka_unit_test(comments_and_indents_go),
+        cmocka_unit_test(snippets),
         cmocka_unit_test(long_sources),
         cmocka_unit_test(same_bytes_twice),
         cmocka_unit_test(refused_sources),

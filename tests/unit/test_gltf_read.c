@@ -630,8 +630,7 @@ static void points_and_lines_are_skipped(void **state)
     APPEND(s->primitives, ",{\"attributes\":{\"POSITION\":0},\"mode\":1},{\"attributes\":{\"POSITION\":0}}");
     model *m = load(s);
     assert_int_equal(m->meshes[0].submesh_count, 1);
-    assert_true(has_warning(m, "mesh 'm' primitive 0 was skipped: it holds points or lines"));
-    assert_true(has_warning(m, "mesh 'm' primitive 1 was skipped"));
+    assert_true(has_warning(m, "mesh 'm' primitive 0 was skipped: it holds points or lines, not triangles (and 1 more like it)"));
     model_free(m);
 }
 
@@ -1643,7 +1642,8 @@ static void all_assets_load(void **state)
 static int make_folder(void **state)
 {
     (void)state;
-    snprintf(folder, sizeof folder, "/tmp/noh_gltf_XXXXXX");
+    const char *base = getenv("TMPDIR");
+    snprintf(folder, sizeof folder, "%s/noh_gltf_XXXXXX", base && strlen(base) < 40 ? base : "/tmp");
     return mkdtemp(folder) ? 0 : -1;
 }
 

@@ -159,7 +159,7 @@ static void bad_graph(rig *r, noh_result result, const char *what)
 {
     noh_error error;
     assert_int_equal(noh_graph_check(&r->g, &r->s.set, &error), result);
-    assert_string_equal(error.what, what);
+    assert_int_equal(strncmp(error.what, what, strlen(what)), 0);
     assert_int_equal(noh_graph_state_size(&r->g, &r->s.set), 0);
     rig_open(r);
 }
@@ -391,6 +391,48 @@ static void test_layers_and_inertial_transitions(void **state)
     assert_int_equal(track(&g, 0)->position - left_at, noh_position_of(1)); /* goes on where it was left */
 }
 
+/* Half a walk, half a face: nodes leave joints to the clips that animate them, and floats likewise. */
+static void test_clips_of_joints_and_of_floats(void **state)
+{
+    static const noh_node_kind kinds[3] = { NOH_NODE_BLEND, NOH_NODE_ADD, NOH_NODE_MASK };
+    static const uint16_t children[2] = { 0, 1 };
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        ALIGNED uint8_t memory[2048], scratch_memory[16384];
+        noh_track_desc clips[2] = { track_of(WALK, 0.0f), track_of(WAVE, 0.0f) };
+        noh_graph_node nodes[3];
+        noh_graph graph;
+        noh_graph_state *it;
+        noh_graph_scratch scratch;
+        scene s;
+        noh_transform walk[JOINTS], face[JOINTS], pose[JOINTS];
+        float walk_floats[FLOATS], face_floats[FLOATS], floats[FLOATS];
+        uint8_t mask[JOINTS + FLOATS];
+        memset(mask, 255, sizeof mask);
+        scene_open(&s);
+        s.set.masks = mask;
+        s.set.mask_count = 1;
+        s.motions[WALK].flags = NOH_MOTION_NO_FLOATS;
+        s.motions[WAVE].flags = NOH_MOTION_NO_JOINTS;
+        memset(nodes, 0, sizeof nodes);
+        memset(&graph, 0, sizeof graph);
+        for (uint16_t i = 0; i < 3; i++) nodes[i].slot = i, nodes[i].param = NOH_GRAPH_NONE;
+        nodes[2].kind = (uint16_t)kinds[k];
+        nodes[2].child_count = 2;
+        nodes[2].mask = 1;
+        nodes[2].value = 0.5f;
+        graph.node_count = 3, graph.child_count = 2, graph.clip_count = 2;
+        graph.nodes = nodes, graph.children = children, graph.clips = clips;
+        assert_int_equal(noh_graph_state_init(memory, sizeof memory, &graph, &s.set, &it, NULL), NOH_OK);
+        assert_int_equal(noh_graph_scratch_init(scratch_memory, sizeof scratch_memory, &graph, &s.set, &scratch, NULL), NOH_OK);
+        scene_pose(&s, WALK, 0, walk, walk_floats);
+        scene_pose(&s, WAVE, 0, face, face_floats);
+        noh_graph_pose(it, &graph, &s.set, &scratch, pose, floats);
+        assert_true(pose_apart(pose, walk, JOINTS) < 1e-6);
+        if (kinds[k] == NOH_NODE_BLEND) assert_true(floats_apart(floats, face_floats, FLOATS) < 1e-6);
+    }
+}
+
 static void test_space_2d_state(void **state)
 {
     static stage g;
@@ -490,6 +532,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_blend_space_in_step),
         cmocka_unit_test(test_cross_fade_and_back_at_the_end),
         cmocka_unit_test(test_layers_and_inertial_transitions),
+        cmocka_unit_test(test_clips_of_joints_and_of_floats),
         cmocka_unit_test(test_space_2d_state),
         cmocka_unit_test(test_events_by_weight),
         cmocka_unit_test(a_graph_is_cloned_by_memcpy),

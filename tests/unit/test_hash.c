@@ -29,6 +29,26 @@ static void crc32c_of_the_iscsi_examples(void **state)
     assert_int_equal(noh_crc32c(0, bytes, 32), 0x113fdb5cu);
 }
 
+/* Against the definition, a bit at a time: every length and alignment around the words that the library takes at once. */
+static void crc32c_of_every_length_and_alignment(void **state)
+{
+    uint8_t bytes[80];
+    (void)state;
+    for (uint32_t i = 0; i < sizeof bytes; i++) {
+        bytes[i] = (uint8_t)(i * 167u + (i >> 2) * 29u + 5u);
+    }
+    for (size_t first = 0; first < 4; first++) {
+        for (size_t count = 0; first + count <= sizeof bytes; count++) {
+            uint32_t crc = 0xffffffffu;
+            for (size_t i = 0; i < 8 * count; i++) {
+                const uint32_t bit = (crc ^ (uint32_t)bytes[first + i / 8] >> i % 8) & 1u;
+                crc = crc >> 1 ^ (bit ? 0x82f63b78u : 0u);
+            }
+            assert_int_equal(noh_crc32c(0, bytes + first, count), ~crc);
+        }
+    }
+}
+
 static void crc32c_of_nothing_changes_nothing(void **state)
 {
     (void)state;
@@ -68,6 +88,7 @@ static void names_hash_bytes_above_127_as_unsigned(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(crc32c_of_the_check_string),
     cmocka_unit_test(crc32c_of_the_iscsi_examples),
+    cmocka_unit_test(crc32c_of_every_length_and_alignment),
     cmocka_unit_test(crc32c_of_nothing_changes_nothing),
     cmocka_unit_test(crc32c_continues),
     cmocka_unit_test(names_hash_as_fnv1a),

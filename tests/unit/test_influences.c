@@ -69,6 +69,14 @@ static model *load(const skinned *s)
     return m;
 }
 
+static int has_warning(const model *m, const char *text)
+{
+    int found = 0;
+    for (uint32_t i = 0; i < m->warning_count; ++i)
+        found += strstr(m->warnings[i], text) != NULL;
+    return found;
+}
+
 static void refused(const skinned *s, const char *what, const char *where)
 {
     model *m = NULL;
@@ -120,10 +128,31 @@ static void more_than_eight_lose_the_weakest(void **state)
         sum += m->meshes[0].joint_weights[8 + i];
     }
     assert_true(fabsf(sum - 1.0f) < 1e-6f);
-    int warned = 0;
-    for (uint32_t i = 0; i < m->warning_count; ++i)
-        warned |= strstr(m->warnings[i], "1 vertices have more than 8 joints") != NULL;
-    assert_true(warned);
+    assert_true(has_warning(m, "2 vertices have more than 8 joints"));
+    model_free(m);
+}
+
+/* What does not sum to 1 is divided by its sum. One warning for the whole mesh: how many vertices, and the sum that is
+ * farthest from 1. The second primitive has the same vertices. */
+static void weights_are_normalised_with_a_warning(void **state)
+{
+    (void)state;
+    skinned s = simple(1);
+    s.weights[0][0][0] = 0.5f;
+    s.weights[0][0][1] = 0.4812f;
+    s.weights[0][2][0] = 0.999f; /* as exporters round: not worth a word */
+    model *m = load(&s);
+    assert_int_equal(m->warning_count, 1);
+    assert_string_equal(m->warnings[0], "mesh 'm': the weights of 2 vertices do not sum to 1 and were divided by their sum, at worst 0.9812");
+    assert_true(fabsf(m->meshes[0].joint_weights[0] - 0.5f / 0.9812f) < 1e-6f && fabsf(m->meshes[0].joint_weights[1] - 0.4812f / 0.9812f) < 1e-6f);
+    assert_true(m->meshes[0].joint_weights[16] == 1.0f);
+    model_free(m);
+    s.weights[0][0][0] = 0.7f; /* above 1 the implied last weight would be negative */
+    s.weights[0][0][1] = 0.5f;
+    s.weights[0][1][0] = 0.9f;
+    m = load(&s);
+    assert_true(has_warning(m, "the weights of 4 vertices do not sum to 1 and were divided by their sum, at worst 1.2"));
+    assert_true(fabsf(m->meshes[0].joint_weights[0] - 0.7f / 1.2f) < 1e-6f && fabsf(m->meshes[0].joint_weights[1] - 0.5f / 1.2f) < 1e-6f);
     model_free(m);
 }
 
@@ -131,13 +160,8 @@ static void bad_influences_are_refused(void **state)
 {
     (void)state;
     skinned s = simple(1);
-    s.weights[0][2][0] = 0.9f;
-    refused(&s, "sum to 0.9", "mesh 'm' primitive 0 vertex 2");
     s.weights[0][2][0] = 0.0f;
-    refused(&s, "sum to 0", "vertex 2");
-    s.weights[0][2][0] = 0.7f; /* given weights above one would leave the implied one negative */
-    s.weights[0][2][1] = 0.5f;
-    refused(&s, "sum to 1.2", "vertex 2");
+    refused(&s, "sum to 0", "mesh 'm' primitive 0 vertex 2");
     s.weights[0][2][0] = 1.5f;
     s.weights[0][2][1] = -0.5f;
     refused(&s, "negative", "vertex 2");
@@ -193,6 +217,7 @@ static void real_meshes(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(sorted_and_summed),
     cmocka_unit_test(more_than_eight_lose_the_weakest),
+    cmocka_unit_test(weights_are_normalised_with_a_warning),
     cmocka_unit_test(bad_influences_are_refused),
     cmocka_unit_test(primitives_without_joints_follow_the_first),
     cmocka_unit_test(real_meshes),

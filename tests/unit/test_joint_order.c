@@ -317,7 +317,7 @@ static uint32_t hash_of_pack(const char *input, convert_only only, char *first_n
     options.only = only;
     built = motion_pack(&input, 1, &options, &bytes);
     pack = test_open(built, bytes);
-    assert_int_equal(noh_pack_skeleton_at(&pack, 0, &skeleton, &header), NOH_OK);
+    assert_int_equal(noh_pack_skeleton_at(&pack, 0, &skeleton, &header, NULL), NOH_OK);
     hash = header->hash;
     first_names[0] = 0;
     for (uint32_t j = 0; j < skeleton.joint_count; j++) {

@@ -49,7 +49,7 @@ static void descs_are_checked(void **state)
     d = three, d.slot_counts = NULL, bad(d, "slot_counts");
     d = three, d.slot_counts = none, bad(d, "without slots");
     d = three, d.slot_counts = few, bad(d, "fewer slots than instances");
-    d = three, d.slot_counts = many, bad(d, "limit");
+    d = three, d.slot_counts = many, bad(d, "more than");
 }
 
 static void the_size_is_exact(void **state)

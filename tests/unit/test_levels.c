@@ -35,7 +35,7 @@ static void make(made *x, uint32_t influences, uint32_t palette)
     fixture_levels_open(&x->levels, &x->pack, LEVELS, 0.15f);
     x->plain = test_mesh(&x->pack, 0);
     x->mesh = test_mesh(&x->levels.pack, 0);
-    assert_int_equal(noh_pack_skin_at(&x->pack, x->plain.header->skin, &skin), NOH_OK);
+    assert_int_equal(noh_pack_skin_at(&x->pack, x->plain.header->skin, &skin, NULL), NOH_OK);
     x->matrices = test_zeros(48u * (size_t)skin.header->joint_count);
     for (uint32_t i = 0; i < 12u * skin.header->joint_count; i++) {
         x->matrices[i] = test_random_float(&r, -2.0f, 2.0f);

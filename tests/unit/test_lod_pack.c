@@ -633,6 +633,8 @@ static void large_meshes_have_word_indices(void **state)
     lod_pack p;
     noh_mesh level;
     (void)state;
+    /* the width is that of the vertices; an eighth of the triangles is simplified in an eighth of the time */
+    m->meshes[0].index_count = m->meshes[0].submeshes[0].index_count = m->meshes[0].index_count / 8u / 3u * 3u;
     lod_pack_make(m, &two, 0, &p);
     level = noh_mesh_at_level(&p.mesh, 1);
     assert_true(p.mesh.header->vertex_count > 65536u && level.header->vertex_count < 65536u);

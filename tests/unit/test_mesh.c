@@ -256,9 +256,9 @@ static void targets_are_found_by_name(void **state)
     assert_int_equal(noh_mesh_find_target(&mesh, "smile"), 0);
     assert_int_equal(noh_mesh_find_target(&mesh, "blink"), 1);
     assert_int_equal(noh_mesh_find_target(&mesh, "target_2"), 2);
-    assert_int_equal(noh_mesh_find_target(&mesh, "simle"), 3);
-    assert_int_equal(noh_mesh_find_target(&mesh, ""), 3);
-    assert_int_equal(noh_mesh_find_target(&mesh, "smil"), 3);
+    assert_int_equal(noh_mesh_find_target(&mesh, "simle"), NOH_NONE);
+    assert_int_equal(noh_mesh_find_target(&mesh, ""), NOH_NONE);
+    assert_int_equal(noh_mesh_find_target(&mesh, "smil"), NOH_NONE);
 }
 
 static void default_weights_are_kept(void **state)

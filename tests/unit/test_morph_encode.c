@@ -170,22 +170,25 @@ static double source_value(const float *p, size_t i) { return p ? (double)p[i] :
 
 static void check_errors(const model_mesh *m, const morph_target *q, const model_target *s, const decoded *d)
 {
-    double position = 0.0, normal = 0.0, tangent = 0.0;
+    double position = 0.0, normal = 0.0, tangent = 0.0, farthest = 0.0;
     uint32_t moves = 0;
     for (uint32_t v = 0; v < m->vertex_count; v++) {
-        double sum = 0.0;
+        double sum = 0.0, moved = 0.0;
         for (uint32_t a = 0; a < AXES; a++) {
             const size_t i = (size_t)v * AXES + a;
             const double e = (double)d->position[i] - source_value(s->position, i);
             sum += e * e;
+            moved += source_value(s->position, i) * source_value(s->position, i);
             normal = fmax(normal, fabs((double)d->normal[i] - source_value(s->normal, i)));
             tangent = fmax(tangent, fabs((double)d->tangent[i] - source_value(s->tangent, i)));
         }
         position = fmax(position, sqrt(sum));
+        farthest = fmax(farthest, sqrt(moved));
         moves += d->moves[v];
     }
     assert_int_equal(moves, q->pair_count);
     assert_true(position <= (double)q->position_error && (double)q->position_error <= position * 1.000001 + 1e-40);
+    assert_true(farthest <= (double)q->max_displacement && (double)q->max_displacement <= farthest * 1.000001 + 1e-40);
     assert_true(normal <= (double)q->normal_error && (double)q->normal_error <= normal * 1.000001 + 1e-40);
     assert_true(tangent <= (double)q->tangent_error && (double)q->tangent_error <= tangent * 1.000001 + 1e-40);
 }

@@ -68,7 +68,7 @@ static void clips_keys_and_markers_are_joined(void **state)
     const noh_motion *m = &set->anim.motions[walk];
     (void)state;
     assert_int_equal(set->anim.motion_count, 2);
-    assert_int_equal(noh_motion_set_find(set, "fly"), 2);
+    assert_int_equal(noh_motion_set_find(set, "fly"), NOH_NONE);
     assert_int_equal(set->skeleton.joint_count, JOINTS);
     assert_int_equal(set->anim.float_count, 0);
     assert_int_equal(set->foreign_count + set->unknown_count, 0);
@@ -113,6 +113,64 @@ static void weights_and_joints_of_a_model(void **state)
     model_free(m);
 }
 
+/* A key's smallest weight comes through: it is silent under a lighter track. */
+static void a_key_s_smallest_weight_is_kept(void **state)
+{
+    uint8_t *copy = test_aligned(bytes, byte_count);
+    noh_pack p = test_open(copy, byte_count);
+    noh_motion_set *set;
+    noh_pack_motion m;
+    noh_motion_event *events;
+    motion_player player;
+    uint32_t walk;
+    (void)state;
+    noh_pack_motion_at(&p, 0, &m, NULL);
+    events = (noh_motion_event *)(void *)(copy + ((const uint8_t *)(const void *)m.events - copy));
+    for (uint32_t i = 0; i < 3; i++) {
+        events[i].weight_min = 0.25f * (float)(i + 1u);
+    }
+    set = set_of(&p);
+    walk = noh_motion_set_find(set, m.name);
+    for (uint32_t i = 0; i < 3; i++) {
+        assert_true(set->anim.events[set->anim.motions[walk].first_event + i].weight_min == 0.25f * (float)(i + 1u));
+    }
+    motion_player_open(&player, set);
+    for (uint32_t i = 0; i <= 3; i++) { /* 0.2, 0.45, 0.7, 0.95: heavy enough for i of the keys */
+        motion_start(&player, walk, NOH_LOOP_ONCE, 0, 0);
+        assert_int_equal(noh_controller_set_weight(player.c, 0, 0.2f + 0.25f * (float)i), NOH_OK);
+        assert_int_equal(noh_controller_step(player.c, &set->anim, set->anim.motions[walk].duration_ticks + 1u, NULL, NULL), i);
+    }
+    motion_player_close(&player);
+    free(set);
+    free(copy);
+}
+
+/* Weights of a mesh, of a node, of none: where the library says they are. */
+static void floats_are_joined_to_meshes(void **state)
+{
+    model *m = motion_model(5);
+    size_t count;
+    uint8_t *made = test_pack_of(m, &count, NULL);
+    noh_pack p = test_open(made, count);
+    noh_motion_set *set = set_of(&p);
+    const uint32_t mesh = p.nodes[1].mesh;
+    float floats[5] = { 0.5f, 0.25f, 0.125f, 0.0f, 1.0f };
+    (void)state;
+    assert_int_equal(mesh, 0);
+    assert_int_equal(noh_motion_set_node_group(set, 0), NOH_NONE); /* a joint */
+    assert_int_equal(noh_motion_set_node_group(set, 1), 0);
+    assert_int_equal(noh_motion_set_node_group(set, p.node_count), NOH_NONE);
+    assert_int_equal(noh_motion_set_node_group(set, NOH_NONE), NOH_NONE);
+    assert_int_equal(noh_motion_set_mesh_group(set, mesh), 0);
+    assert_int_equal(noh_motion_set_mesh_group(set, p.mesh_count), NOH_NONE);
+    assert_int_equal(noh_motion_set_mesh_group(set, NOH_NONE), NOH_NONE); /* what a node without a mesh has */
+    assert_ptr_equal(noh_motion_set_mesh_weights(set, floats, mesh), floats + set->groups[0].first);
+    assert_null(noh_motion_set_mesh_weights(set, floats, p.mesh_count));
+    free(set);
+    free(made);
+    model_free(m);
+}
+
 /* ---- poses ---- */
 
 /* A clip of the pack by itself. */
@@ -130,9 +188,9 @@ static void alone_open(alone *a, const noh_pack *p, uint32_t index)
     noh_pack_motion m;
     const noh_clip *clips[1];
     size_t size;
-    noh_pack_motion_at(p, index, &m);
+    noh_pack_motion_at(p, index, &m, NULL);
     memset(&skeleton, 0, sizeof skeleton);
-    (void)noh_pack_skeleton_at(p, m.header->skeleton, &skeleton, NULL);
+    (void)noh_pack_skeleton_at(p, m.header->skeleton, &skeleton, NULL, NULL);
     desc.bytes = m.bytes;
     desc.byte_count = m.header->clip_bytes;
     desc.bind = skeleton.bind_pose;
@@ -694,13 +752,13 @@ static void lies_are_told_with_the_motion(void **state)
     noh_motion_marker *marker;
     uint32_t tick;
     (void)state;
-    noh_pack_motion_at(&p, 0, &m);
+    noh_pack_motion_at(&p, 0, &m, NULL);
     event = (noh_motion_event *)(void *)(copy + ((const uint8_t *)(const void *)m.events - copy)) + 2;
     tick = event->tick;
     event->tick += 1;
     expect_error(&desc, NOH_ERR_DATA, "event tick past the duration");
     event->tick = tick;
-    noh_pack_motion_at(&p, 1, &m);
+    noh_pack_motion_at(&p, 1, &m, NULL);
     marker = (noh_motion_marker *)(void *)(copy + ((const uint8_t *)(const void *)m.markers - copy)) + 1;
     marker->tick = 1u << 30;
     expect_error(&desc, NOH_ERR_DATA, "marker tick past the duration");
@@ -714,6 +772,8 @@ static void lies_are_told_with_the_motion(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(clips_keys_and_markers_are_joined),
     cmocka_unit_test(weights_and_joints_of_a_model),
+    cmocka_unit_test(a_key_s_smallest_weight_is_kept),
+    cmocka_unit_test(floats_are_joined_to_meshes),
     cmocka_unit_test(playing_is_sampling_to_the_bit),
     cmocka_unit_test(weights_are_sampled_to_the_bit),
     cmocka_unit_test(a_set_without_joints_plays_weights),

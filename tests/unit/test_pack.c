@@ -49,12 +49,43 @@ static void past_the_last_is_not_found(void **state)
     noh_mesh mesh;
     noh_pack_motion motion;
     noh_texture texture;
+    noh_skin skin;
+    noh_skeleton skeleton;
     (void)state;
-    assert_int_equal(noh_pack_mesh(&pack, 1, &mesh), NOH_ERR_NOT_FOUND);
-    assert_int_equal(noh_pack_motion_at(&pack, 3, &motion), NOH_ERR_NOT_FOUND);
-    assert_int_equal(noh_pack_texture(&pack, 1, &texture), NOH_ERR_NOT_FOUND);
+#define MISSING(call, index, count) \
+    do { \
+        noh_error error = { NOH_OK, NULL, 7, 7 }; \
+        assert_int_equal(call, NOH_ERR_NOT_FOUND); \
+        assert_int_equal(error.result, NOH_ERR_NOT_FOUND); \
+        assert_non_null(error.what); \
+        assert_int_equal(error.where, index); \
+        assert_int_equal(error.need, count); \
+    } while (0)
+    MISSING(noh_pack_mesh(&pack, 1, &mesh, &error), 1, 1);
+    MISSING(noh_pack_motion_at(&pack, 3, &motion, &error), 3, 3);
+    MISSING(noh_pack_texture(&pack, 1, &texture, &error), 1, 1);
+    MISSING(noh_pack_skin_at(&pack, 0, &skin, &error), 0, 0);
+    MISSING(noh_pack_skin_at(&pack, NOH_NONE, &skin, &error), NOH_NONE, 0);
+    MISSING(noh_pack_skeleton_at(&pack, 0, &skeleton, NULL, &error), 0, 0);
+#undef MISSING
     assert_string_equal(noh_pack_string(&pack, pack.string_bytes), "");
     assert_string_equal(noh_pack_chunk_name(&pack, pack.chunk_count), "");
+}
+
+/* The writer's version is told, and hinders nobody. */
+static void the_writer_s_version_is_in_the_header(void **state)
+{
+    uint8_t *other = test_aligned(good, good_count);
+    noh_pack pack = test_open(good, good_count);
+    (void)state;
+    assert_string_equal(noh_version(), NOH_VERSION);
+    assert_int_equal(noh_version_number(), NOH_VERSION_NUMBER(NOH_VERSION_MAJOR, NOH_VERSION_MINOR, NOH_VERSION_PATCH));
+    assert_int_equal(pack.library_version, noh_version_number());
+    ((noh_pack_header *)(void *)other)->library_version = NOH_VERSION_NUMBER(9, 1, 2);
+    pack_repair(other, good_count);
+    pack = test_open(other, good_count);
+    assert_int_equal(pack.library_version >> 24, 9);
+    free(other);
 }
 
 static void the_smallest_mesh_opens(void **state)
@@ -331,7 +362,7 @@ static float nan_value(void)
     X(no_chunks, LIMIT, "no chunks", f->header->chunk_count = 0) \
     X(chunk_count_overflows, LIMIT, "limit", f->header->chunk_count = 0xffffffffu) \
     X(chunk_count_past_end, DATA, "past the end", f->header->chunk_count = NOH_PACK_CHUNKS_MAX) \
-    X(header_reserved, DATA, "reserved", f->header->reserved[10] = 1) \
+    X(header_reserved, DATA, "reserved", f->header->reserved[9] = 1) \
     X(chunk_type_unknown, DATA, "unknown type", f->mesh_at->type ^= 0x20u) \
     X(chunk_reserved, DATA, "unknown type", f->mesh_at->reserved[1] = 1) \
     X(chunks_out_of_order, DATA, "out of order", f->clip_at[1].type = NOH_CHUNK_TEXTURE) \
@@ -545,6 +576,68 @@ static void errors_say_where(void **state)
     free(f.bytes);
 }
 
+/* Fields whose check is theirs alone: the error names the field's own byte. */
+#define PLACES(X) \
+    X(header->version, += 1) \
+    X(header->byte_count, += 64) \
+    X(header->chunk_count, = 0) \
+    X(header->reserved[9], = 1) \
+    X(texture->width, = 0) \
+    X(texture->wrap_s, = 9) \
+    X(materials[1].base_color_texture, = 7) \
+    X(materials[0].flags, = 16) \
+    X(mesh->flags, = 0x80000000u) \
+    X(mesh->vertex_count, = 0) \
+    X(mesh->index_count, -= 1) \
+    X(mesh->index_bytes, = 3) \
+    X(mesh->submesh_count, = 0) \
+    X(mesh->target_count, = NOH_TARGETS_MAX + 1u) \
+    X(mesh->rect_count, = f.mesh->texel_count + 1u) \
+    X(mesh->texel_count, = NOH_TEXELS_MAX + 1u) \
+    X(mesh->touched_count, = f.mesh->vertex_count + 1u) \
+    X(mesh->morph_width_log2, = 1) \
+    X(mesh->morph_height, += 1) \
+    X(mesh->attribute_stride, += 4) \
+    X(mesh->skin, = 0) \
+    X(mesh->level, = 1) \
+    X(mesh->level_count, = NOH_LEVELS_MAX + 1u) \
+    X(mesh->level_error_rest, = 1.0f) \
+    X(mesh->level_skipped, = 1.0f) \
+    X(mesh->influence_errors[1], = -1.0f) \
+    X(mesh->reserved[0], = 1) \
+    X(targets[1].position_bits, = 0) \
+    X(targets[1].position_scale, = -1.0f) \
+    X(nodes_header->node_count, = NOH_NODES_MAX + 1u) \
+    X(nodes[1].parent, = 1) \
+    X(nodes[1].mesh, = 1) \
+    X(nodes[0].first_weight, = 0) \
+    X(nodes[0].flags, = 1) \
+    X(motion->event_count, = NOH_MOTION_EVENTS_MAX + 1u) \
+    X(motion->marker_count, = NOH_MOTION_MARKERS_MAX + 1u) \
+    X(motion->rate_error[0], = 1.0f) \
+    X(motion->error_shell, = -1.0f)
+
+static void a_field_s_error_is_at_the_field(void **state)
+{
+    noh_error error = { NOH_OK, NULL, 0, 0 };
+    noh_pack pack;
+    size_t at;
+    forged f;
+    (void)state;
+#define X(field, lie) \
+    forge(&f); \
+    at = (size_t)((const uint8_t *)&f.field - f.bytes); \
+    f.field lie; \
+    pack_repair(f.bytes, f.count); \
+    assert_int_not_equal(noh_pack_open(f.bytes, f.count, &pack, &error), NOH_OK); \
+    if (error.where != at) { \
+        fail_msg("%s: byte %lu, not %zu (%s)", #field, (unsigned long)error.where, at, error.what); \
+    } \
+    free(f.bytes);
+    PLACES(X)
+#undef X
+}
+
 static void padding_has_to_be_zero(void **state)
 {
     forged f;
@@ -590,6 +683,7 @@ enum {
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(opens_and_walks),
     cmocka_unit_test(past_the_last_is_not_found),
+    cmocka_unit_test(the_writer_s_version_is_in_the_header),
     cmocka_unit_test(the_smallest_mesh_opens),
     cmocka_unit_test(misaligned_memory_is_an_argument_error),
     cmocka_unit_test(null_is_an_argument_error),
@@ -602,6 +696,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(an_honest_copy_opens),
     cmocka_unit_test(there_is_padding_behind_the_indices),
     cmocka_unit_test(errors_say_where),
+    cmocka_unit_test(a_field_s_error_is_at_the_field),
     cmocka_unit_test(padding_has_to_be_zero),
     cmocka_unit_test(bytes_after_the_last_chunk_are_refused),
 #define X(name, code, word, statement) \

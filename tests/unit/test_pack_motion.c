@@ -62,8 +62,8 @@ static void pack_holds_skeleton_clip_and_keys(void **state)
     (void)state;
     assert_int_equal(pack.skeleton_count, 1);
     assert_int_equal(pack.motion_count, 1);
-    assert_int_equal(noh_pack_motion_at(&pack, 0, &motion), NOH_OK);
-    assert_int_equal(noh_pack_motion_at(&pack, 1, &motion), NOH_ERR_NOT_FOUND);
+    assert_int_equal(noh_pack_motion_at(&pack, 0, &motion, NULL), NOH_OK);
+    assert_int_equal(noh_pack_motion_at(&pack, 1, &motion, NULL), NOH_ERR_NOT_FOUND);
     assert_int_equal(noh_pack_bind_motion(&pack, &motion, &skeleton, &index, NULL), NOH_OK);
     assert_int_equal(index, 0);
     assert_int_equal(skeleton.joint_count, 2);
@@ -81,6 +81,77 @@ static void pack_holds_skeleton_clip_and_keys(void **state)
     assert_string_equal(noh_pack_string(&pack, motion.markers[1].name), "right");
 }
 
+/* ---- keys that have been through compression ---- */
+
+typedef struct fired_key {
+    int64_t clock;
+    uint32_t name_hash, payload;
+    float weight_min;
+} fired_key;
+
+typedef struct fired_list {
+    fired_key items[64];
+    uint32_t count;
+} fired_list;
+
+static void note_key(void *user, const noh_event *event)
+{
+    fired_list *list = user;
+    assert_true(list->count < TEST_COUNT(list->items));
+    list->items[list->count++] = (fired_key){ event->clock, event->key->name_hash, event->key->payload[0], event->key->weight_min };
+}
+
+/* Repeats the pack's clip at its own speed, a millisecond a step. */
+static void play_pack(uint32_t passes, fired_list *list)
+{
+    noh_pack pack = test_open(good.bytes, good.count);
+    noh_motion_set_desc desc;
+    noh_motion_set *set;
+    motion_player player;
+    memset(&desc, 0, sizeof desc);
+    memset(list, 0, sizeof *list);
+    desc.clips = &pack;
+    set = test_motion_set(&desc);
+    motion_player_open(&player, set);
+    motion_start(&player, 0, NOH_LOOP_REPEAT, NOH_SPEED_ONE, 0);
+    for (uint32_t ticks = 0; ticks < passes * set->anim.motions[0].duration_ticks; ticks += 48) {
+        noh_controller_step(player.c, &set->anim, 48, note_key, list);
+    }
+    motion_player_close(&player);
+    free(set);
+}
+
+/* The source of this design compresses a keyframe set into a new one that is created with 0 callback keys, so every
+ * key is lost (Granberg, Character Animation with Direct3D, chapter 5). Here the keys come out of the compressed pack,
+ * in every pass, with all that the text file said of them. */
+static void errata_C5_5_keys_survive_compression(void **state)
+{
+    fired_list list;
+    (void)state;
+    play_pack(5, &list);
+    assert_int_equal(list.count, 10);
+    for (uint32_t i = 0; i < list.count; i++) {
+        assert_int_equal(list.items[i].name_hash, noh_hash_name(i % 2 ? "step_right" : "step_left"));
+        assert_int_equal(list.items[i].payload, i % 2 ? 0 : 7);
+        assert_true(list.items[i].weight_min == (i % 2 ? 0.0f : 0.5f));
+    }
+}
+
+/* The source stores a key's time in seconds in a field that counts ticks, so every key of the first second is in the
+ * first tick (the same chapter). Keys at 0.05 s and 0.1 s fire at these times of the clock: 48,000 ticks are a second. */
+static void errata_C5_6_key_times_are_ticks(void **state)
+{
+    fired_list list;
+    (void)state;
+    play_pack(1, &list);
+    assert_int_equal(list.count, 2);
+    assert_int_equal(list.items[0].clock, 2400);
+    assert_int_equal(list.items[1].clock, 4800);
+    assert_int_equal(noh_ticks_from_seconds(0.75), 36000);
+    assert_int_equal(noh_ticks_from_seconds(-0.75), -36000);
+    assert_int_equal(noh_ticks_from_seconds(1e300), 0);
+}
+
 /* Two joints: the level without the knee, and what it costs a clip whose knee turns by 25 degrees at most. */
 static void levels_and_errors_are_there(void **state)
 {
@@ -94,7 +165,7 @@ static void levels_and_errors_are_there(void **state)
     assert_int_equal(levels[1], 1);
     assert_null(noh_pack_joint_levels(&pack, 1, &count));
     assert_int_equal(count, 0);
-    assert_int_equal(noh_pack_motion_at(&pack, 0, &motion), NOH_OK);
+    assert_int_equal(noh_pack_motion_at(&pack, 0, &motion, NULL), NOH_OK);
     assert_int_equal(motion.header->joint_error_count, 2);
     assert_true(motion.joint_errors[0] == 0.0f);
     /* 3 cm from the knee a turn by 25 degrees moves a point by 3 * 2 sin(12.5 degrees) = 1.2987 */
@@ -118,7 +189,7 @@ static void another_skeleton_is_refused_by_name(void **state)
     memcpy(strstr(renamed, "knee"), "shin", 4);
     assert_int_equal(build(renamed, NULL, &other, &failure), 0);
     other_pack = test_open(other.bytes, other.count);
-    noh_pack_motion_at(&pack, 0, &motion);
+    noh_pack_motion_at(&pack, 0, &motion, NULL);
     assert_int_equal(noh_pack_bind_motion(&other_pack, &motion, &skeleton, NULL, &error), NOH_ERR_NOT_FOUND);
     assert_non_null(strstr(error.what, "another skeleton"));
     buffer_free(&other);
@@ -321,7 +392,8 @@ static void lies_about_detail_are_named(void **state)
 int main(int argument_count, char **arguments)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pack_holds_skeleton_clip_and_keys), cmocka_unit_test(levels_and_errors_are_there), cmocka_unit_test(another_skeleton_is_refused_by_name),
+        cmocka_unit_test(pack_holds_skeleton_clip_and_keys), cmocka_unit_test(errata_C5_5_keys_survive_compression),
+        cmocka_unit_test(errata_C5_6_key_times_are_ticks), cmocka_unit_test(levels_and_errors_are_there), cmocka_unit_test(another_skeleton_is_refused_by_name),
         cmocka_unit_test(every_truncation_and_flip_is_refused), cmocka_unit_test(repaired_flips_stay_in_bounds),
         cmocka_unit_test(lies_are_named), cmocka_unit_test(lies_about_detail_are_named)
     };

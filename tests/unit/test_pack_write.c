@@ -3,6 +3,7 @@
 #include "support.h"
 
 #include <stdio.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -109,7 +110,7 @@ static void large_pictures_are_halved_until_they_fit(void **state)
     memset(m->textures[0].rgba, 100, 4u * m->textures[0].width * m->textures[0].height);
     bytes = test_pack_of(m, &count, NULL);
     pack = test_open(bytes, count);
-    assert_int_equal(noh_pack_texture(&pack, 0, &texture), NOH_OK);
+    assert_int_equal(noh_pack_texture(&pack, 0, &texture, NULL), NOH_OK);
     assert_int_equal(texture.header->width, NOH_TEXTURE_SIZE_MAX);
     assert_int_equal(texture.header->height, 2);
     for (uint32_t i = 0; i < 8u * NOH_TEXTURE_SIZE_MAX; i++) {
@@ -135,7 +136,7 @@ static void wrap_modes_and_filters_are_kept(void **state)
         m->textures[0].mag_filter = i % 2 ? 9728 : 9729;
         bytes = test_pack_of(m, &count, NULL);
         pack = test_open(bytes, count);
-        assert_int_equal(noh_pack_texture(&pack, 0, &texture), NOH_OK);
+        assert_int_equal(noh_pack_texture(&pack, 0, &texture, NULL), NOH_OK);
         assert_int_equal(texture.header->wrap_s, packed[i]);
         assert_int_equal(texture.header->wrap_t, packed[(i + 1) % 4]);
         assert_int_equal(texture.header->nearest, i % 2);
@@ -169,6 +170,30 @@ static void the_scene_is_kept(void **state)
     model_free(m);
 }
 
+/* A target's largest displacement, which culling and levels of detail trust, is that of the model's deltas. */
+static void targets_say_how_far_they_move(void **state)
+{
+    model *m = whole();
+    size_t count;
+    uint8_t *bytes = test_pack_of(m, &count, NULL);
+    noh_pack pack = test_open(bytes, count);
+    (void)state;
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        const noh_mesh mesh = test_mesh(&pack, i);
+        for (uint32_t t = 0; t < m->meshes[i].target_count; t++) {
+            double farthest = 0.0;
+            for (size_t v = 0; v < m->meshes[i].vertex_count; v++) {
+                const float *d = m->meshes[i].targets[t].position + 3 * v;
+                farthest = fmax(farthest, sqrt((double)d[0] * (double)d[0] + (double)d[1] * (double)d[1] + (double)d[2] * (double)d[2]));
+            }
+            assert_true(farthest > 0.0);
+            assert_true((double)mesh.targets[t].max_displacement >= farthest && (double)mesh.targets[t].max_displacement <= farthest * 1.000001);
+        }
+    }
+    free(bytes);
+    model_free(m);
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(the_same_model_gives_the_same_bytes),
     cmocka_unit_test(limits_are_told),
@@ -176,6 +201,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(large_pictures_are_halved_until_they_fit),
     cmocka_unit_test(wrap_modes_and_filters_are_kept),
     cmocka_unit_test(the_scene_is_kept),
+    cmocka_unit_test(targets_say_how_far_they_move),
 };
 
 TEST_MAIN(tests, NULL, NULL)

@@ -11,6 +11,7 @@
 #include "convert/skin/mesh_join.h"
 #include "convert/model/model_build.h"
 #include "convert/model/two_stream.h"
+#include "pack_walk.h"
 
 /* A tube with its pack, posed by bending each joint about z. */
 typedef struct tube {
@@ -32,8 +33,8 @@ static tube *make_tube(const skin_cylinder *c, const skin_options *options)
     t->bytes = skin_pack_of(t->m, options, 1.0f, &count, &t->order);
     t->pack = test_open(t->bytes, count);
     t->mesh = test_mesh(&t->pack, 0);
-    assert_int_equal(noh_pack_skin_at(&t->pack, t->mesh.header->skin, &t->skin), NOH_OK);
-    assert_int_equal(noh_pack_skeleton_at(&t->pack, t->skin.header->skeleton, &t->skeleton, NULL), NOH_OK);
+    assert_int_equal(noh_pack_skin_at(&t->pack, t->mesh.header->skin, &t->skin, NULL), NOH_OK);
+    assert_int_equal(noh_pack_skeleton_at(&t->pack, t->skin.header->skeleton, &t->skeleton, NULL, NULL), NOH_OK);
     return t;
 }
 
@@ -106,14 +107,38 @@ static void a_vertex_may_follow_many_joints(void **state)
     free_tube(limited);
 }
 
-/* Four rows of constants for a matrix of three waste one: a palette of 256 would not fit beside anything else. */
-static void C3_5_palette_rows(void **state)
+/* Four rows of constants for each matrix waste one: 16 KiB, the smallest uniform block that ES 3.0 guarantees, then hold
+ * 256 joints and nothing beside them. Three rows leave room. The converter fills palettes to that limit and not beyond,
+ * and noh_skin_matrices writes three rows of four for a joint, not a float more. */
+static void a_palette_fits_a_uniform_block(void **state)
 {
-    const uint32_t block = 16384, others = 1024; /* ES 3.0's smallest uniform block; view, lights */
+    const skin_cylinder c = { 4, 400, 300, 2, 0, 0, 40.0f, 0.5f };
+    const uint32_t block = 16384, others = 1024, row_bytes = 4u * sizeof(float); /* others: view, lights */
+    tube *t = make_tube(&c, NULL);
+    const uint32_t joints = t->skin.header->joint_count;
+    float *space = test_zeros(12 * sizeof(float) * t->skeleton.joint_count), *matrices = test_zeros(sizeof(float) * (12u * joints + 1u));
+    uint32_t fullest = 0;
     (void)state;
-    assert_true(NOH_PALETTE_JOINTS_MAX * 64u + others > block);
-    assert_true(NOH_PALETTE_JOINTS_MAX * 48u + others <= block);
-    assert_int_equal(block / 48, 341);
+    assert_int_equal(joints, 300);
+    assert_true(t->mesh.header->palette_count > 1);
+    for (uint32_t p = 0; p < t->mesh.header->palette_count; p++) {
+        const uint32_t count = t->mesh.palettes[p].joint_count;
+        assert_true(count * 3u * row_bytes + others <= block);
+        fullest = count > fullest ? count : fullest;
+    }
+    assert_true(fullest * 4u * row_bytes + others > block);
+    matrices[12u * joints] = 77.0f;
+    noh_local_to_model(&t->skeleton, t->skeleton.bind_pose, t->skeleton.joint_count, space);
+    noh_skin_matrices(&t->skin, space, matrices);
+    assert_true(matrices[12u * joints] == 77.0f);
+    for (uint32_t j = 0; j < joints; j++) { /* in the bind pose nothing moves */
+        for (uint32_t e = 0; e < 12; e++) {
+            assert_true(fabsf(matrices[12u * j + e] - (e % 5u == 0 ? 1.0f : 0.0f)) < 1e-4f);
+        }
+    }
+    free(matrices);
+    free(space);
+    free_tube(t);
 }
 
 /* Weights rounded to bytes one by one sum to anything near 255, and are off by up to 1/510. Ours sum to one, and each is
@@ -250,7 +275,7 @@ static void picking_sees_the_morphed_and_posed_surface(void **state)
     tube *t = make_tube(&c, NULL);
     noh_morph_layers layers = test_layers(&t->mesh);
     const float weight = 1.0f, d[3] = { -1, 0, 0 };
-    float scratch[36], at[3], o[3] = { 5, 0, 0.02f };
+    float *scratch = test_zeros(36 * sizeof(float)), at[3], o[3] = { 5, 0, 0.02f };
     noh_pick_surface plain = { &t->mesh, NULL, t->matrices, NULL, NULL, NULL }, smiling = plain;
     noh_pick_hit hit, other, miss;
     (void)state;
@@ -260,16 +285,17 @@ static void picking_sees_the_morphed_and_posed_surface(void **state)
     bend(t, 0.0f, 1, 1);
     noh_morph_position(&t->mesh, &layers, 0, at); /* a ring that the target moves */
     o[1] = at[1];
-    assert_int_equal(noh_pick(&plain, o, d, 100.0f, scratch, sizeof scratch, &hit, NULL), NOH_OK);
-    assert_int_equal(noh_pick(&smiling, o, d, 100.0f, scratch, sizeof scratch, &other, NULL), NOH_OK);
+    assert_int_equal(noh_pick(&plain, o, d, 100.0f, scratch, 36 * sizeof(float), &hit, NULL), NOH_OK);
+    assert_int_equal(noh_pick(&smiling, o, d, 100.0f, scratch, 36 * sizeof(float), &other, NULL), NOH_OK);
     assert_true(hit.distance - other.distance > 0.15f); /* the bulge of 0.2 comes first; a clone of the base misses it */
     bend(t, 1.0f, 1, 1);
     memset(&miss, 0x5a, sizeof miss);
     hit = miss;
     o[1] = 40.0f;
-    assert_int_equal(noh_pick(&smiling, o, d, 100.0f, scratch, sizeof scratch, &miss, NULL), NOH_ERR_NOT_FOUND);
+    assert_int_equal(noh_pick(&smiling, o, d, 100.0f, scratch, 36 * sizeof(float), &miss, NULL), NOH_ERR_NOT_FOUND);
     assert_memory_equal(&miss, &hit, sizeof hit);
     free(layers.position);
+    free(scratch);
     free_tube(t);
 }
 
@@ -473,18 +499,34 @@ static void the_last_weight_is_implied(void **state)
     }
 }
 
-/* Given weights above one make the implied one negative: the vertex leaves the hull of its joints. */
-static void E2_sums_above_one(void **state)
+/* Given weights above one make the implied one negative: the vertex leaves the hull of its joints. A pack may hold
+ * weights up to exactly one, and is refused for that reason and no other when they are one unit more. */
+static void weights_above_one_are_refused(void **state)
 {
-    const float given[3] = { 0.7f, 0.5f, 0.1f };
-    float implied = 1.0f - given[0] - given[1] - given[2];
     const skin_cylinder c = { 4, 5, 4, 4, 0, 0, 1.0f, 0.5f };
     tube *t = make_tube(&c, NULL);
-    uint32_t *words = (uint32_t *)(uintptr_t)t->mesh.influences;
+    uint32_t *words = (uint32_t *)(uintptr_t)t->mesh.influences, joints[NOH_INFLUENCES_MAX];
+    const uint32_t joint_words = words[0], half = NOH_WEIGHT_ONE / 2u, quarter = NOH_WEIGHT_ONE / 4u;
+    float weights[NOH_INFLUENCES_MAX];
+    noh_error error = { NOH_OK, NULL, 0, 0 };
+    noh_pack pack;
     (void)state;
-    assert_true(implied < 0.0f);
-    words[1] = words[2] = 0xffffffffu; /* the checker's own test is forged_weights_above_one */
-    assert_int_not_equal(noh_pack_open(t->bytes, t->pack.byte_count, &t->pack, NULL), NOH_OK);
+    assert_int_equal(t->mesh.header->influence_count, 4);
+    for (uint32_t over = 0; over < 2; over++) { /* w1 22 bits, w2 and w3 21, lowest first */
+        const uint64_t bits = (uint64_t)(half + over) | (uint64_t)quarter << 22 | (uint64_t)quarter << 43;
+        words[0] = joint_words;
+        words[1] = (uint32_t)bits;
+        words[2] = (uint32_t)(bits >> 32);
+        pack_repair(t->bytes, t->pack.byte_count);
+        if (!over) {
+            assert_int_equal(noh_pack_open(t->bytes, t->pack.byte_count, &pack, &error), NOH_OK);
+            noh_mesh_influences(&t->mesh, 0, joints, weights);
+            assert_true(weights[0] == 0.0f && weights[1] == 0.5f && weights[2] == 0.25f && weights[3] == 0.25f);
+        }
+    }
+    assert_int_equal(noh_pack_open(t->bytes, t->pack.byte_count, &pack, &error), NOH_ERR_DATA);
+    assert_non_null(strstr(error.what, "above 1"));
+    assert_int_equal(error.where, (uint8_t *)words - t->bytes);
     free_tube(t);
 }
 
@@ -558,7 +600,7 @@ static void weight_zero_is_not_affected(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_vertex_may_follow_many_joints),
-    cmocka_unit_test(C3_5_palette_rows),
+    cmocka_unit_test(a_palette_fits_a_uniform_block),
     cmocka_unit_test(quantised_weights_are_the_source_s),
     cmocka_unit_test(normals_by_the_inverse_transpose),
     cmocka_unit_test(a_shift_turns_no_normal),
@@ -570,7 +612,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(mixed_normals_are_unit),
     cmocka_unit_test(two_streams_must_correspond),
     cmocka_unit_test(the_last_weight_is_implied),
-    cmocka_unit_test(E2_sums_above_one),
+    cmocka_unit_test(weights_above_one_are_refused),
     cmocka_unit_test(segmented_and_blended_arm),
     cmocka_unit_test(weight_zero_is_not_affected),
 };

@@ -27,8 +27,8 @@ static made make(const skin_cylinder *c, const skin_options *options)
     x.bytes = skin_pack_of(x.m, options, 1.0f, &count, NULL);
     x.pack = test_open(x.bytes, count);
     x.mesh = test_mesh(&x.pack, 0);
-    assert_int_equal(noh_pack_skin_at(&x.pack, x.mesh.header->skin, &x.skin), NOH_OK);
-    assert_int_equal(noh_pack_skeleton_at(&x.pack, x.skin.header->skeleton, &x.skeleton, NULL), NOH_OK);
+    assert_int_equal(noh_pack_skin_at(&x.pack, x.mesh.header->skin, &x.skin, NULL), NOH_OK);
+    assert_int_equal(noh_pack_skeleton_at(&x.pack, x.skin.header->skeleton, &x.skeleton, NULL, NULL), NOH_OK);
     x.matrices = test_zeros(48u * (size_t)x.skin.header->joint_count);
     return x;
 }

@@ -304,7 +304,7 @@ static void rigid_parts_become_one_mesh(void **state)
             assert_int_equal(mesh.header->influence_count, 1);
             assert_int_equal(mesh.header->vertex_count, 6);
             assert_int_equal(mesh.header->submesh_count, materials);
-            assert_int_equal(noh_pack_skin_at(&pack, mesh.header->skin, &skin), NOH_OK);
+            assert_int_equal(noh_pack_skin_at(&pack, mesh.header->skin, &skin, NULL), NOH_OK);
             assert_int_equal(skin.header->joint_count, 2);
             assert_true(pack.nodes[4].world[0] == 1.0f && pack.nodes[4].world[7] == 0.0f);
             check_plates(&mesh);
@@ -354,9 +354,9 @@ static void parts_hidden_at_rest_are_kept(void **state)
     bytes = skin_pack_of(m, NULL, 1.0f, &count, NULL);
     pack = test_open(bytes, count);
     mesh = test_mesh(&pack, pack.nodes[5].mesh);
-    assert_int_equal(noh_pack_skin_at(&pack, mesh.header->skin, &skin), NOH_OK);
+    assert_int_equal(noh_pack_skin_at(&pack, mesh.header->skin, &skin, NULL), NOH_OK);
     assert_int_equal(skin.header->joint_count, 1);
-    assert_int_equal(noh_pack_skeleton_at(&pack, skin.header->skeleton, &skeleton, NULL), NOH_OK);
+    assert_int_equal(noh_pack_skeleton_at(&pack, skin.header->skeleton, &skeleton, NULL, NULL), NOH_OK);
     memcpy(pose, skeleton.bind_pose, sizeof pose);
     pose[2].scale[0] = pose[2].scale[1] = pose[2].scale[2] = 3.0f;
     noh_local_to_model(&skeleton, pose, 3, model_space);

@@ -213,8 +213,8 @@ static void the_pack_of_several_files(void **state)
     }
     for (uint32_t i = 0; i < 2; i++) {
         noh_pack_motion a, b;
-        noh_pack_motion_at(&packs[0], i, &a);
-        noh_pack_motion_at(&packs[1], 1 - i, &b);
+        noh_pack_motion_at(&packs[0], i, &a, NULL);
+        noh_pack_motion_at(&packs[1], 1 - i, &b, NULL);
         assert_string_equal(a.name, b.name);
         assert_int_equal(a.header->clip_bytes, b.header->clip_bytes);
         assert_memory_equal(a.bytes, b.bytes, a.header->clip_bytes);

@@ -5,7 +5,7 @@ import * as THREE from 'three';
 import { GLTFLoader } from 'three/loaders/GLTFLoader.js';
 
 const M = window.Module;
-const paths = ['auto', 'layered', 'mrt', 'per-layer', 'gather', 'cpu'];
+const paths = ['auto', 'layered', 'mrt', 'per-layer', 'gather', 'cpu', 'blend'];
 const text = (pointer) => M.UTF8ToString(pointer);
 const check = (result) => { if (result) throw new Error(text(M._web_error())); };
 

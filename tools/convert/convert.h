@@ -21,7 +21,7 @@ typedef struct convert_options {
     convert_only only;
     const char *events; /* a text file of callback keys; NULL: none */
     FILE *report;   /* NULL: quiet */
-    FILE *progress; /* a terminal, to say what takes its time; NULL: none */
+    FILE *progress; /* a terminal, for progress; NULL: none */
 } convert_options;
 
 typedef struct convert_failure {
@@ -39,10 +39,10 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
  * scale: model_mesh_scale, so that errors are printed as they show in the world. */
 void convert_report_mesh(FILE *out, const model_mesh *mesh, const morph_encoding *e, float scale, float error_um);
 
-/* How far each level of detail is off. */
+/* The certified errors of each LOD level. */
 void convert_report_levels(FILE *out, const model_mesh *mesh, const mesh_levels *levels, float scale);
 
-/* What moves each skinned mesh of a finished pack, and into how many parts it was split. */
+/* The skin of each skinned mesh of a finished pack, and the parts that it was split into. */
 void convert_report_skins(FILE *out, const noh_pack *pack);
 
 #endif

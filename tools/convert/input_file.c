@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/model/model_build.h"
 #include "platform.h"
 
 char *input_read(const char *path, size_t *bytes, model_error *error)

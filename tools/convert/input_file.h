@@ -2,7 +2,7 @@
 #ifndef NOH_CONVERT_INPUT_FILE_H
 #define NOH_CONVERT_INPUT_FILE_H
 
-#include "convert/model/model.h"
+#include "convert/base/error.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -75,11 +75,11 @@ void convert_report_levels(FILE *out, const model_mesh *mesh, const mesh_levels 
 void convert_report_skins(FILE *out, const noh_pack *pack)
 {
     noh_mesh mesh;
-    for (uint32_t i = 0; noh_pack_mesh(pack, i, &mesh) == NOH_OK; i++) {
+    for (uint32_t i = 0; noh_pack_mesh(pack, i, &mesh, NULL) == NOH_OK; i++) {
         const noh_mesh_header *h = mesh.header;
         uint32_t doubled = 0, followed = 0;
         noh_skin skin;
-        if (noh_pack_skin_at(pack, h->skin, &skin)) {
+        if (noh_pack_skin_at(pack, h->skin, &skin, NULL)) {
             continue;
         }
         for (uint32_t v = 0; v < h->vertex_count; v++) {

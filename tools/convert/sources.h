@@ -1,7 +1,7 @@
 /* sources.h: the files that one pack is built from.
  *
- * One of them is the base: its model and its skeletons are the pack's. Of the others the clips
- * are added: joints where their skeleton has the same joints (names and parents) as one of the
+ * One of them is the base: its model and its skeletons are the pack's. Of the others only the clips
+ * are added: those of joints where their skeleton has the same joints (names and parents) as one of the
  * base, morph weights where the base has a node of the same name with as many targets. */
 #ifndef NOH_CONVERT_SOURCES_H
 #define NOH_CONVERT_SOURCES_H
@@ -12,7 +12,7 @@
 typedef struct source {
     model *m;        /* of a glTF file; an empty one otherwise */
     motion *made;    /* of a glTF file */
-    raw_set *single; /* of a .bvh or .rcl; or clips that were added to a glTF file without any motion */
+    raw_set *single; /* of a .bvh or .rcl; or clips that were added to a glTF file without any of its own */
     raw_set **sets;  /* [set_count] those of `made`, or `single` */
     uint32_t set_count;
 } source;

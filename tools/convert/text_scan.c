@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/model/model_build.h"
 
 void text_start(text_scan *s, const char *text, size_t size, model_error *error)
 {

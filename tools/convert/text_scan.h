@@ -3,7 +3,9 @@
 #ifndef NOH_CONVERT_TEXT_SCAN_H
 #define NOH_CONVERT_TEXT_SCAN_H
 
-#include "convert/model/model.h"
+#include <stdint.h>
+
+#include "convert/base/error.h"
 
 typedef struct text_scan {
     const char *at, *end;

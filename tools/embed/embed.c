@@ -8,6 +8,14 @@
  * another version. #include "x" is replaced by that file, found beside the
  * including one, once per FILE, whatever #if stands around it; the #line numbers
  * tell source files apart, and a comment in OUT.c says which number is which file.
+ * Comments, indents and blanks at line ends are left out; a run of lines without code
+ * becomes empty lines or a #line, whichever is shorter, so that a driver's message still
+ * names the file and line of the source.
+ *
+ * A FILE that ends in .glsl has no #version: it becomes one zero-terminated array of
+ * characters, `const char noh_shader_NAME_glsl[]`, for glShaderSource behind a #version of
+ * the caller's. It may not #include, so that every file's text is there once.
+ *
  * Every -D becomes a #define at the top. OUT.h, beside OUT.c, declares all of it.
  *
  * Errors go to stderr as `embed: FILE:LINE: what`, exit code 1, and neither
@@ -49,6 +57,9 @@ typedef struct flattened {
     size_t file_count;
     size_t stack[DEPTH_MAX]; /* indices into files: the chain of includes */
     size_t depth;
+    int is_snippet;          /* a .glsl file */
+    size_t at_file;          /* where the compiler believes to be in the text so far: the next line is line */
+    unsigned at_line;        /* at_line of files[at_file]; 0: anywhere else */
 } flattened;
 
 typedef struct job {
@@ -186,6 +197,54 @@ static int scan_comments(const char *line, int in_comment, int *has_code)
     return in_comment;
 }
 
+/* Append what is left of a line without comments, its first and last blanks, and more than one blank in a row. A comment
+ * counts as a blank. Returns whether a block comment is open at the end. */
+static int append_code(text *out, const char *line, int in_comment)
+{
+    size_t start = out->bytes;
+    int blank = 0;
+    for (const char *p = line; *p; p++) {
+        if (in_comment || (p[0] == '/' && p[1] == '*')) {
+            const char *end = strstr(in_comment ? p : p + 2, "*/");
+            in_comment = !end;
+            blank = 1;
+            if (!end) break;
+            p = end + 1;
+        } else if (p[0] == '/' && p[1] == '/') {
+            break;
+        } else if (isspace((unsigned char)*p)) {
+            blank = 1;
+        } else {
+            if (blank && out->bytes > start) append(out, " ", 1);
+            append(out, p, 1);
+            blank = 0;
+        }
+    }
+    return in_comment;
+}
+
+/* One line of a file. Lines without code before it become empty lines, or a #line where that is shorter. */
+#define EMPTY_LINES_MAX 9u
+static void write_line(flattened *out, const char *path, unsigned line, const char *content, int in_comment)
+{
+    const size_t file = out->stack[out->depth - 1];
+    text code = {NULL, 0, 0};
+    int open = append_code(&code, content, in_comment);
+    if (code.bytes) {
+        if (open && code.data[0] == '#') fail(path, line, "a comment in a directive does not end in its line");
+        if (out->at_file == file && line >= out->at_line && line - out->at_line <= EMPTY_LINES_MAX && out->at_line) {
+            for (unsigned i = out->at_line; i < line; i++) append(&out->body, "\n", 1);
+        } else if (!out->is_snippet) {
+            appendf(&out->body, "#line %u %zu\n", line, file);
+        }
+        append(&out->body, code.data, code.bytes);
+        append(&out->body, "\n", 1);
+        out->at_file = file;
+        out->at_line = line + 1;
+    }
+    free(code.data);
+}
+
 /* The path of an #include's file: beside the file that includes it. */
 static char *include_path(const char *from, unsigned line, const char *rest)
 {
@@ -216,6 +275,7 @@ static size_t find_file(const flattened *out, const char *path)
 static void take_version(flattened *out, const char *path, unsigned line, const char *text_line, int at_top)
 {
     if (out->depth > 1) fail(path, line, "#version in an included file");
+    if (out->is_snippet) fail(path, line, "#version in a .glsl file");
     if (out->version[0]) fail(path, line, "a second #version");
     if (!at_top) fail(path, line, "#version must come first");
     if (strlen(text_line) + 2 > sizeof out->version) fail(path, line, "the #version line is too long");
@@ -227,18 +287,12 @@ static void flatten(flattened *out, const char *path, const char *from, unsigned
 /* Put the included file in place of line `line` of `path`, then come back. */
 static void take_include(flattened *out, const char *path, unsigned line, const char *rest)
 {
-    size_t self = out->stack[out->depth - 1];
     char *included = include_path(path, line, rest);
     size_t index = find_file(out, included);
     for (size_t i = 0; i < out->depth; i++) {
         if (out->stack[i] == index) fail(path, line, "%s includes itself", included);
     }
-    if (index < out->file_count) {
-        append(&out->body, "\n", 1); /* already there: an empty line keeps the count */
-    } else {
-        flatten(out, included, path, line);
-        appendf(&out->body, "#line %u %zu\n", line + 1, self);
-    }
+    if (index == out->file_count) flatten(out, included, path, line);
     free(included);
 }
 
@@ -259,14 +313,13 @@ static void flatten_lines(flattened *out, source *in)
         if (in_comment && !was_in_comment) comment_line = line;
         const char *rest;
         if (!was_in_comment && (rest = directive(p, "include")) != NULL) {
+            if (out->is_snippet) fail(path, line, "a .glsl file includes nothing when it is embedded by itself");
             if (out->depth == 1 && !out->version[0]) fail(path, line, "#include before #version");
             take_include(out, path, line, rest);
         } else if (!was_in_comment && directive(p, "version")) {
             take_version(out, path, line, p, !code_seen);
-            append(&out->body, "\n", 1);
         } else {
-            append(&out->body, p, strlen(p));
-            append(&out->body, "\n", 1);
+            write_line(out, path, line, p, was_in_comment);
         }
         code_seen |= has_code;
         p = next;
@@ -283,7 +336,6 @@ static void flatten(flattened *out, const char *path, const char *from, unsigned
     size_t index = out->file_count++;
     out->files[index] = copy(path, strlen(path));
     out->stack[out->depth++] = index;
-    appendf(&out->body, "#line 1 %zu\n", index);
     flatten_lines(out, &in);
     out->depth--;
     free(in.content);
@@ -340,6 +392,19 @@ static void write_source(job *work, const flattened *in)
     for (const char *p = in->version; *p; p++) append_escaped(c, *p);
     appendf(c, "\", %s_pieces, %zu\n};\n", in->name, pieces);
     appendf(&work->h, "extern const noh_gl_source %s; /* %s */\n", in->name, in->files[0]);
+}
+
+/* As an array: literals of C99 end at 4095 characters. */
+static void write_snippet(job *work, const flattened *in)
+{
+    text *c = &work->c;
+    appendf(c, "\n/* %s */\nconst char %s[] = {", in->files[0], in->name);
+    for (size_t i = 0; i < in->body.bytes; i++) {
+        if (i % 24 == 0) append(c, "\n    ", 5);
+        appendf(c, "%d,", in->body.data[i]);
+    }
+    append(c, "0\n};\n", 5);
+    appendf(&work->h, "extern const char %s[]; /* %s */\n", in->name, in->files[0]);
 }
 
 /* "shaders/probe_store.frag" gives "noh_shader_probe_store_frag". */
@@ -483,11 +548,12 @@ static void embed_file(job *work, const char *path, char names[][128], size_t in
     flattened *out = allocate(NULL, sizeof *out);
     memset(out, 0, sizeof *out);
     name_source(out, path);
+    out->is_snippet = strlen(path) > 5 && strcmp(path + strlen(path) - 5, ".glsl") == 0;
     for (size_t i = 0; i < index; i++) {
         if (strcmp(names[i], out->name) == 0) fail(path, 0, "gives the same name as %s: %s", work->inputs[i], out->name);
     }
     memcpy(names[index], out->name, sizeof out->name);
-    for (size_t i = 0; i < work->define_count; i++) {
+    for (size_t i = 0; i < work->define_count && !out->is_snippet; i++) {
         const char *equals = strchr(work->defines[i], '=');
         append(&out->body, "#define ", 8);
         append(&out->body, work->defines[i], (size_t)(equals - work->defines[i]));
@@ -496,8 +562,10 @@ static void embed_file(job *work, const char *path, char names[][128], size_t in
         append(&out->body, "\n", 1);
     }
     flatten(out, path, path, 0);
-    if (!out->version[0]) fail(path, 1, "no #version line");
-    write_source(work, out);
+    if (!out->version[0] && !out->is_snippet) fail(path, 1, "no #version line");
+    if (!out->body.bytes) append(&out->body, "\n", 1); /* C has no empty arrays */
+    if (out->is_snippet) write_snippet(work, out);
+    else write_source(work, out);
     note_prerequisites(work, out);
     for (size_t i = 0; i < out->file_count; i++) free(out->files[i]);
     free(out->body.data);

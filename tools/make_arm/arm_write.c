@@ -2,8 +2,7 @@
 
 #include "arms.h"
 #include "hand.h"
-#include "make_mask/mask_write.h"
-#include "make_mask/model.h"
+#include "make_mask/grab.h"
 #include "make_mask/writer.h"
 #include "make_puppet/quat.h"
 

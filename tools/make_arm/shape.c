@@ -1,6 +1,6 @@
 #include "shape.h"
 
-#include "make_mask/model.h"
+#include "make_mask/grab.h"
 
 #include <stdlib.h>
 

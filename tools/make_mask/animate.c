@@ -1,5 +1,6 @@
 #include "animate.h"
 
+#include "grab.h"
 #include "model.h"
 #include "targets.h"
 

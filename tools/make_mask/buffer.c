@@ -1,6 +1,6 @@
 #include "buffer.h"
 
-#include "model.h"
+#include "grab.h"
 
 #include <stdarg.h>
 #include <stdio.h>

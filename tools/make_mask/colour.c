@@ -1,5 +1,6 @@
 #include "colour.h"
 
+#include "grab.h"
 #include "eye.h"
 #include "face.h"
 #include "hair.h"

@@ -2,6 +2,7 @@
  * make_mask --puppet OUT.glb: the same mask, worn by a puppet that moves.
  * make_mask --arm OUT.glb: arms in parts and in one piece, bent and twisted by every kind of skinning. */
 #include "gltf_write.h"
+#include "grab.h"
 #include "make_arm/arm_write.h"
 #include "make_puppet/puppet_write.h"
 

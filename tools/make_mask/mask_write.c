@@ -1,5 +1,6 @@
 #include "mask_write.h"
 
+#include "grab.h"
 #include "hold.h"
 #include "targets.h"
 
@@ -215,14 +216,6 @@ void mask_mesh_write(Writer *w, Buffer *json, const Mask *mask, const MaskWearer
         buffer_print(json, "%s\"%s\"", i ? "," : "", target_name(i));
     }
     buffer_print(json, "]}}");
-}
-
-void material_write(Buffer *json, int is_first, const char *name, double roughness)
-{
-    buffer_print(json,
-                 "%s{\"name\":\"%s\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,1],"
-                 "\"metallicFactor\":0,\"roughnessFactor\":%.2f}}",
-                 is_first ? "" : ",\n", name, roughness);
 }
 
 void mask_materials_write(Buffer *json)

@@ -18,7 +18,4 @@ void mask_mesh_write(Writer *w, Buffer *json, const Mask *mask, const MaskWearer
 /* Prints PART_COUNT material objects, with commas between them. */
 void mask_materials_write(Buffer *json);
 
-/* The same for one material; the first has no comma before it. */
-void material_write(Buffer *json, int is_first, const char *name, double roughness);
-
 #endif

@@ -1,5 +1,7 @@
 #include "mesh.h"
 
+#include "grab.h"
+
 #include <math.h>
 #include <stdlib.h>
 

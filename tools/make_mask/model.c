@@ -5,27 +5,12 @@
 #include "face.h"
 #include "face_grid.h"
 #include "folds.h"
+#include "grab.h"
 #include "hair.h"
 #include "mouth.h"
 #include "wood.h"
 
-#include <stdio.h>
 #include <stdlib.h>
-
-double side_sign(int side)
-{
-    return side == LEFT ? 1 : -1;
-}
-
-void *grab(void *old, int count, int size)
-{
-    void *memory = realloc(old, (size_t)count * (size_t)size);
-    if (!memory) {
-        fprintf(stderr, "make_mask: out of memory\n");
-        exit(1);
-    }
-    return memory;
-}
 
 uint32_t model_seed(Model *model, int part, const Seed *seed)
 {

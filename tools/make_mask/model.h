@@ -55,7 +55,4 @@ void model_triangle(Model *model, int part, uint32_t a, uint32_t b, uint32_t c);
 void model_quad(Model *model, int part, uint32_t a, uint32_t b, uint32_t c, uint32_t d);
 V3 model_place(const Seed *seed, const Pose *pose);
 
-/* Memory or the end of the program: a generator has nothing better to do. */
-void *grab(void *old, int count, int size);
-
 #endif

@@ -1,5 +1,7 @@
 #include "occlusion.h"
 
+#include "grab.h"
+
 #include <math.h>
 #include <stdlib.h>
 

@@ -2,7 +2,7 @@
 #ifndef MASK_POSE_H
 #define MASK_POSE_H
 
-enum { LEFT, RIGHT, SIDES }; /* the character's own left: +x */
+#include "sides.h"
 
 typedef struct {
     double brow_inner_up;
@@ -16,8 +16,5 @@ typedef struct {
     double pucker, funnel, roll_upper, roll_lower, shrug_upper, shrug_lower;
     double mouth_side, mouth_close, tongue_out;
 } Pose;
-
-/* +1 for the left, -1 for the right. */
-double side_sign(int side);
 
 #endif

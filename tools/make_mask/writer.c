@@ -1,6 +1,6 @@
 #include "writer.h"
 
-#include "model.h"
+#include "grab.h"
 
 #include <stdlib.h>
 
@@ -169,4 +169,12 @@ void writer_finish(Writer *w, Buffer *json, Buffer *file)
     buffer_free(&w->views);
     buffer_free(&w->accessors);
     buffer_free(&w->data);
+}
+
+void material_write(Buffer *json, int is_first, const char *name, double roughness)
+{
+    buffer_print(json,
+                 "%s{\"name\":\"%s\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,1],"
+                 "\"metallicFactor\":0,\"roughnessFactor\":%.2f}}",
+                 is_first ? "" : ",\n", name, roughness);
 }

@@ -1,6 +1,6 @@
 #include "ambient.h"
 
-#include "make_mask/model.h"
+#include "make_mask/grab.h"
 
 #include <math.h>
 #include <stdlib.h>

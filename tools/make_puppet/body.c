@@ -1,7 +1,7 @@
 #include "body.h"
 
 #include "ambient.h"
-#include "make_mask/model.h"
+#include "make_mask/grab.h"
 #include "parts.h"
 #include "subdivide.h"
 

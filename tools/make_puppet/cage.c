@@ -1,6 +1,6 @@
 #include "cage.h"
 
-#include "make_mask/model.h"
+#include "make_mask/grab.h"
 
 #include <stdlib.h>
 

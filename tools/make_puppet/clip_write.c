@@ -1,6 +1,6 @@
 #include "clip_write.h"
 
-#include "make_mask/model.h"
+#include "make_mask/grab.h"
 #include "make_mask/targets.h"
 
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #define PUPPET_JOINTS_H
 
 #include "make_mask/maths.h"
-#include "make_mask/pose.h"
+#include "make_mask/sides.h"
 
 /* Joints in the middle, then those of the left, then those of the right. */
 enum { ROOT, HIPS, SPINE, CHEST, NECK, HEAD, JAW, MIDDLE_JOINTS };

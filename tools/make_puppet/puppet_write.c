@@ -2,6 +2,7 @@
 
 #include "body.h"
 #include "clip_write.h"
+#include "make_mask/grab.h"
 #include "make_mask/mask_write.h"
 #include "make_mask/targets.h"
 

@@ -1,6 +1,6 @@
 #include "subdivide.h"
 
-#include "make_mask/model.h"
+#include "make_mask/grab.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,11 +1,13 @@
 #include "bones.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "gl/gl_program.h"
 #include "tool_shaders.gen.h"
+#include "message.h"
 
 #define CORNERS 24u /* 8 triangles */
 #define FLOATS 9u   /* of a corner: position, normal, colour */
@@ -57,7 +59,7 @@ static float *octahedron(float *out, const float tips[2][3], const float ring[4]
     return out;
 }
 
-/* Thickest a sixth of the way, as modelling programs draw them. */
+/* Thickest at a sixth of the length, as modelling programs draw bones. */
 static float *draw_bone(float *out, const float from[3], const float to[3], float width_max, const float color[3])
 {
     float along[3], side[3], up[3], tips[2][3], ring[4][3];
@@ -104,7 +106,7 @@ static void joint_place(const float *matrices, uint32_t joint, float out[3])
     }
 }
 
-/* A joint that is its parent's only child goes on with its chain. */
+/* A joint that is its parent's only child continues the chain. */
 static uint32_t chain_of(const noh_skeleton *s, uint32_t joint)
 {
     while (s->parents[joint] != NOH_JOINT_ROOT) {
@@ -120,7 +122,7 @@ static uint32_t chain_of(const noh_skeleton *s, uint32_t joint)
     return joint;
 }
 
-/* Hues a golden angle apart, light and dull. */
+/* Hues a golden angle apart are never close; light, of low saturation. */
 static void chain_color(uint32_t chain, float color[3])
 {
     float hue = fmodf((float)chain * 0.61803399f, 1.0f) * 6.2831853f;

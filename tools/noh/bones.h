@@ -3,7 +3,8 @@
 #ifndef NOH_TOOL_BONES_H
 #define NOH_TOOL_BONES_H
 
-#include "view.h"
+#include "camera.h"
+#include "gpu.h"
 
 typedef struct bones {
     gpu *g;

@@ -1,8 +1,10 @@
+#include "camera.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "view.h"
+#include "message.h"
 
 static void grow(bounds *b, const double p[3])
 {
@@ -105,7 +107,7 @@ void orbit_camera(const orbit *o, noh_gl_camera *camera)
     projection[11] = -1.0;
     projection[14] = -2.0 * far * near / (far - near);
     multiply(projection, view, camera->view_projection);
-    for (int c = 0; c < 3; c++) { /* over the left shoulder of whoever looks */
+    for (int c = 0; c < 3; c++) { /* over the viewer's left shoulder */
         double key = -0.45 * right[c] + 0.62 * up[c] + 0.64 * back[c];
         camera->key[c] = (float)key;
         key_length += key * key;

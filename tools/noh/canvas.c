@@ -1,7 +1,9 @@
+#include "canvas.h"
+
 #include <stdlib.h>
 #include <string.h>
 
-#include "view.h"
+#include "message.h"
 
 #define SAMPLES 4
 
@@ -35,6 +37,7 @@ int canvas_open(canvas *c, gpu *g, uint32_t width, uint32_t height)
     c->g = g;
     c->width = width;
     c->height = height;
+    noh_gl_error_take(gl);
     gl->GenFramebuffers(1, &c->framebuffer);
     gl->GenFramebuffers(1, &c->resolved_framebuffer);
     c->color = renderbuffer(gl, GL_SRGB8_ALPHA8, samples, width, height);
@@ -47,7 +50,7 @@ int canvas_open(canvas *c, gpu *g, uint32_t width, uint32_t height)
     gl->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, c->depth);
     status = gl->CheckFramebufferStatus(GL_FRAMEBUFFER);
     gl->BindRenderbuffer(GL_RENDERBUFFER, 0);
-    if (status != GL_FRAMEBUFFER_COMPLETE) {
+    if (noh_gl_error_take(gl) != GL_NO_ERROR || status != GL_FRAMEBUFFER_COMPLETE) {
         canvas_close(c);
         return tool_fail("canvas", "the driver refuses a target of %ux%u pixels", width, height);
     }

@@ -1,12 +1,19 @@
-/* cmd_clip.c: the compressed motion of a pack: its bytes, its certificate, its frames. */
+/* cmd_clip.c: the compressed clips of a pack: bytes, certified errors, decoded frames. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "convert/motion/raw_set.h"
 #include "convert/motion/rcl.h"
-#include "noh_tool.h"
+#include "args.h"
+#include "json.h"
+#include "message.h"
+#include "nearest.h"
+#include "pack_file.h"
+#include "options.h"
+#include "verbs.h"
 
-/* A clip that is open, with a cache of its own. */
+/* An open clip with a cache of its own. */
 typedef struct opened {
     noh_pack_motion motion;
     noh_skeleton skeleton; /* joint_count 0: a clip of floats alone */
@@ -43,8 +50,8 @@ static int open_clip(opened *o, const pack_file *file, uint32_t index)
     noh_clip_desc desc;
     size_t bytes;
     memset(o, 0, sizeof *o);
-    noh_pack_motion_at(&file->pack, index, &o->motion);
-    (void)noh_pack_skeleton_at(&file->pack, o->motion.header->skeleton, &o->skeleton, NULL);
+    noh_pack_motion_at(&file->pack, index, &o->motion, NULL);
+    (void)noh_pack_skeleton_at(&file->pack, o->motion.header->skeleton, &o->skeleton, NULL, NULL);
     desc.bytes = o->motion.bytes;
     desc.byte_count = o->motion.header->clip_bytes;
     desc.bind = o->skeleton.bind_pose;
@@ -121,7 +128,7 @@ static void fill_skeleton(raw_skeleton *to, const pack_file *file, const opened 
 {
     const noh_skeleton_header *h;
     noh_skeleton s;
-    noh_pack_skeleton_at(&file->pack, o->motion.header->skeleton, &s, &h);
+    noh_pack_skeleton_at(&file->pack, o->motion.header->skeleton, &s, &h, NULL);
     to->unit_cm = (double)h->unit_cm;
     for (uint32_t j = 0; j < s.joint_count; j++) {
         raw_joint *joint = &to->joints[j];
@@ -183,7 +190,7 @@ static int find_motion(const pack_file *file, const char *name, uint32_t *index)
     const char *near;
     for (uint32_t i = 0; names && i < file->pack.motion_count; i++) {
         noh_pack_motion motion;
-        noh_pack_motion_at(&file->pack, i, &motion);
+        noh_pack_motion_at(&file->pack, i, &motion, NULL);
         names[i] = motion.name;
         if (strcmp(motion.name, name) == 0) {
             *index = i;
@@ -209,56 +216,89 @@ static int dump_named(const pack_file *file, const char *name, const char *path)
     if (!status) status = open_clip(&o, file, index);
     if (!status) {
         status = o.info.joint_count ? dump_clip(file, &o, path)
-                                    : tool_fail(file->path, "clip '%s' moves weights alone, and a .rcl file holds joints", o.motion.name);
+                                    : tool_fail(file->path, "clip '%s' animates weights alone, and a .rcl file holds joints", o.motion.name);
         close_clip(&o);
     }
     return status;
 }
 
-static int list_clips(const pack_file *file, int as_json)
+static int list_clips(const pack_file *file)
 {
-    json j = { stdout, 0, 1 };
     int status = 0;
-    if (as_json) {
-        j = json_begin(stdout);
-        json_open(&j, "clips", '[');
-    }
     for (uint32_t i = 0; i < file->pack.motion_count && !status; i++) {
         opened o;
         status = open_clip(&o, file, i);
         if (!status) {
-            if (as_json) {
-                json_one(&j, &o);
-            } else {
-                print_clip(file, &o);
-            }
+            print_clip(file, &o);
             close_clip(&o);
         }
-    }
-    if (as_json) {
-        json_close(&j, ']');
-        json_end(&j);
     }
     return status;
 }
 
-int verb_clip(int argc, char **argv)
+static int json_clips(const pack_file *file)
 {
-    const char *path = NULL, *dump = NULL, *name = NULL;
-    int as_json = 0, count, status;
-    pack_file file;
-    const option options[] = {
-        { "--json", OPTION_FLAG, &as_json }, { "--dump", OPTION_TEXT, &dump }, { "--clip", OPTION_TEXT, &name }
-    };
-    status = tool_options(argc, argv, options, 3, &path, 1, &count);
-    if (!status && !path) {
-        status = tool_usage("clip wants a pack");
+    json j = json_begin();
+    int status = 0;
+    json_open(&j, "clips", '[');
+    for (uint32_t i = 0; i < file->pack.motion_count && !status; i++) {
+        opened o;
+        status = open_clip(&o, file, i);
+        if (!status) {
+            json_one(&j, &o);
+            close_clip(&o);
+        }
     }
-    if (!status) status = pack_file_open(&file, path);
+    json_close(&j, ']');
+    if (status) {
+        json_drop(&j);
+    }
+    return status ? status : json_end(&j);
+}
+
+typedef struct clip_args {
+    const char *pack, *dump, *name;
+    int as_json;
+} clip_args;
+
+/* With --dump the list is printed as JSON alone, and only once the file is there. */
+static int run(void *args)
+{
+    const clip_args *a = args;
+    pack_file file;
+    int status = pack_file_open(&file, a->pack);
     if (status) {
         return status;
     }
-    status = dump ? dump_named(&file, name, dump) : list_clips(&file, as_json);
+    if (a->dump) status = dump_named(&file, a->name, a->dump);
+    if (!status && a->as_json) {
+        status = json_clips(&file);
+    } else if (!status && !a->dump) {
+        status = list_clips(&file);
+    }
     pack_file_close(&file);
     return status;
 }
+
+static clip_args arguments;
+
+static const option options[] = {
+    { .name = "--dump", .kind = OPTION_OUTPUT, .at = offsetof(clip_args, dump), .value = "OUT.rcl",
+      .what = "write a clip's decoded frames, joints only, in place of the list", .example = "walk.rcl" },
+    { .name = "--clip", .kind = OPTION_TEXT, .at = offsetof(clip_args, name), .value = "NAME",
+      .what = "which clip; a pack of one clip needs no name", .example = "walk", .needs = "--dump" },
+    OPTION_JSON(clip_args, as_json),
+};
+
+const verb verb_clip = {
+    .name = "clip",
+    .files = "PACK",
+    .what = "compressed clips: bytes, certified errors; a clip decoded",
+    .example = "body.noh\nbody.noh --dump walk.rcl --clip walk --json",
+    .options = options,
+    .option_count = sizeof options / sizeof options[0],
+    .file_max = 1,
+    .files_at = offsetof(clip_args, pack),
+    .args = &arguments,
+    .run = run,
+};

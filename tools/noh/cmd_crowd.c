@@ -1,9 +1,16 @@
 /* cmd_crowd.c: a crowd drawn, and what it took. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "crowd.h"
-#include "view.h"
+#include "canvas.h"
+#include "gpu_args.h"
+#include "message.h"
+#include "png_file.h"
+#include "options.h"
+#include "report_stream.h"
+#include "verbs.h"
 
 #define FRAME_TICKS 800u /* 60 frames a second */
 
@@ -15,17 +22,9 @@ typedef struct crowd_args {
     crowd_options options;
 } crowd_args;
 
-static int read_args(int argc, char **argv, crowd_args *a)
+static int check_args(crowd_args *a)
 {
-    const option options[] = { { "-o", OPTION_TEXT, &a->output },         { "--size", OPTION_SIZE, a->size },
-                               { "--pixels", OPTION_NUMBER, &a->pixels }, { "--instances", OPTION_NUMBER, &a->instances },
-                               { "--time", OPTION_NUMBER, &a->time_s },   { "--debug", OPTION_TEXT, &a->debug },
-                               { "--plain", OPTION_FLAG, &a->plain },     { "--driver", OPTION_TEXT, &a->driver } };
-    int count, status = tool_options(argc, argv, options, sizeof options / sizeof options[0], &a->pack, 1, &count);
-    if (!status) status = parse_instances(a->instances, &a->options.count);
-    if (!status && (!a->pack || !a->output)) {
-        status = tool_usage("crowd wants a pack and -o OUT.png");
-    }
+    int status = parse_instances(a->instances, &a->options.count);
     if (!status && !(a->pixels > 0.0 && a->pixels <= 1e6)) {
         status = tool_usage("--pixels wants a number above 0");
     }
@@ -43,15 +42,31 @@ static int read_args(int argc, char **argv, crowd_args *a)
     return status;
 }
 
-static void print_crowd(const crowd *c, const crowd_args *a)
+/* What was drawn, to be told once the picture is written. */
+typedef struct crowd_drawn {
+    crowd_stats stats;
+    uint32_t level_count;
+    uint64_t cpu_planned, gpu_planned, gpu_used;
+} crowd_drawn;
+
+static void print_crowd(const crowd_drawn *d, const crowd_args *a)
 {
-    const crowd_plan *p = c->plan;
-    printf("%s: %u bodies, %u seen", a->output, p->options.count, c->stats.seen);
-    for (uint32_t k = 0; k < p->level_count && !p->options.plain; k++) {
-        printf("%s %u", k ? "," : "; by level", c->stats.levels[k]);
+    FILE *out = report_stream(a->output);
+    fprintf(out, "%s: %u bodies, %u seen", a->output, a->options.count, d->stats.seen);
+    for (uint32_t k = 0; k < d->level_count && !a->plain; k++) {
+        fprintf(out, "%s %u", k ? "," : "; by level", d->stats.levels[k]);
     }
-    printf("; %u fade\n%llu bytes CPU, %llu GPU; planned %llu and %llu\n", c->stats.fading, (unsigned long long)p->cpu_bytes,
-           (unsigned long long)noh_gl_ledger_bytes(&c->ledger), (unsigned long long)p->cpu_bytes, (unsigned long long)p->gpu_bytes);
+    fprintf(out, "; %u fade\n%llu bytes CPU, %llu GPU; planned %llu and %llu\n", d->stats.fading, (unsigned long long)d->cpu_planned,
+            (unsigned long long)d->gpu_used, (unsigned long long)d->cpu_planned, (unsigned long long)d->gpu_planned);
+}
+
+static void take_drawn(const crowd *c, crowd_drawn *d)
+{
+    d->stats = c->stats;
+    d->level_count = c->plan->level_count;
+    d->cpu_planned = c->plan->cpu_bytes;
+    d->gpu_planned = c->plan->gpu_bytes;
+    d->gpu_used = noh_gl_ledger_bytes(&c->ledger);
 }
 
 /* Frame after frame up to the time, as a game comes there. */
@@ -76,7 +91,7 @@ static int draw(crowd *c, const crowd_args *a, uint8_t *rgba)
     return status;
 }
 
-static int open_and_draw(gpu *g, const pack_file *file, const crowd_args *a, uint8_t *rgba)
+static int open_and_draw(gpu *g, const pack_file *file, const crowd_args *a, uint8_t *rgba, crowd_drawn *d)
 {
     static crowd_plan plan;
     crowd c;
@@ -89,41 +104,70 @@ static int open_and_draw(gpu *g, const pack_file *file, const crowd_args *a, uin
     status = memory ? crowd_open(&c, &plan, memory, (size_t)plan.cpu_bytes, g, file) : tool_fail(file->path, "out of memory");
     if (!status) {
         status = draw(&c, a, rgba);
-        if (!status) print_crowd(&c, a);
+        take_drawn(&c, d);
         crowd_close(&c);
     }
     free(memory);
     return status;
 }
 
-int verb_crowd(int argc, char **argv)
+static int draw_pack(const pack_file *file, const crowd_args *a)
 {
-    crowd_args a;
-    pack_file file;
+    crowd_drawn d;
     gpu g;
-    uint8_t *rgba;
-    int status;
-    memset(&a, 0, sizeof a);
-    a.pixels = 1.0;
-    a.instances = 1000.0;
-    a.time_s = 2.0;
-    a.size[0] = 1280;
-    a.size[1] = 720;
-    status = read_args(argc, argv, &a);
-    if (!status) status = pack_file_open(&file, a.pack);
-    if (status) {
-        return status;
-    }
-    rgba = malloc((size_t)a.size[0] * a.size[1] * 4);
-    status = rgba ? gpu_open(&g, a.driver) : tool_fail(a.pack, "out of memory");
+    uint8_t *rgba = malloc((size_t)a->size[0] * a->size[1] * 4);
+    int status = rgba ? gpu_open(&g, a->driver) : tool_fail(a->pack, "out of memory");
     if (!status) {
-        status = open_and_draw(&g, &file, &a, rgba);
+        status = open_and_draw(&g, file, a, rgba, &d);
         gpu_close(&g);
     }
-    if (!status) {
-        status = tool_write_png(a.output, a.size[0], a.size[1], rgba);
-    }
+    if (!status) status = tool_write_png(a->output, a->size[0], a->size[1], rgba);
+    if (!status) print_crowd(&d, a);
     free(rgba);
-    pack_file_close(&file);
     return status;
 }
+
+static int run(void *args)
+{
+    crowd_args *a = args;
+    pack_file file;
+    int status = check_args(a);
+    if (!status) status = pack_file_open(&file, a->pack);
+    if (!status) {
+        status = draw_pack(&file, a);
+        pack_file_close(&file);
+    }
+    return status;
+}
+
+static crowd_args arguments;
+
+static const option options[] = {
+    { .name = "-o", .kind = OPTION_OUTPUT, .at = offsetof(crowd_args, output), .required = 1, .value = "OUT.png",
+      .what = "the picture", .example = "crowd.png" },
+    OPTION_INSTANCES(crowd_args, instances, "1000", .what = "how many bodies, 1 to 65536"),
+    { .name = "--pixels", .kind = OPTION_NUMBER, .at = offsetof(crowd_args, pixels), .value = "N", .initial = "1",
+      .what = "the largest error on screen that levels may have, pixels, over 0", .example = "4", .excludes = "--plain" },
+    { .name = "--time", .kind = OPTION_NUMBER, .at = offsetof(crowd_args, time_s), .value = "S", .initial = "2",
+      .what = "when the picture is taken, seconds, 0 to 3600; every frame up to then is run", .example = "0.5" },
+    { .name = "--plain", .kind = OPTION_FLAG, .at = offsetof(crowd_args, plain),
+      .what = "without detail: every body at the full mesh, posed in every frame" },
+    { .name = "--debug", .kind = OPTION_TEXT, .at = offsetof(crowd_args, debug), .value = "lod",
+      .what = "colour each body by its LOD level" },
+    { .name = "--size", .kind = OPTION_SIZE, .at = offsetof(crowd_args, size), .value = "WxH", .initial = "1280x720",
+      .what = "size of the picture, pixels, 1 to 8192 each", .example = "1920x1080" },
+    OPTION_DRIVER(crowd_args, driver, .initial = "egl"),
+};
+
+const verb verb_crowd = {
+    .name = "crowd",
+    .files = "PACK",
+    .what = "a crowd of the skinned mesh of a pack, each body as detailed as its pixels want it",
+    .example = "body.noh -o crowd.png\nbody.noh -o crowd.png --instances 200 --pixels 4 --debug lod",
+    .options = options,
+    .option_count = sizeof options / sizeof options[0],
+    .file_max = 1,
+    .files_at = offsetof(crowd_args, pack),
+    .args = &arguments,
+    .run = run,
+};

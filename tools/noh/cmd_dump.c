@@ -2,11 +2,17 @@
  * which needs no GL at all; with --path what the GPU's vertex shader fetches. */
 #include <math.h>
 #include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "convert/pack/byte_buffer.h"
 #include "load.h"
+#include "gpu_args.h"
+#include "message.h"
+#include "readback.h"
+#include "options.h"
+#include "verbs.h"
 
 typedef struct dump_args {
     const char *pack, *output, *anim, *path, *accumulate, *driver;
@@ -27,7 +33,8 @@ static void print_to(byte_buffer *out, const char *format, ...)
     buffer_append(out, line, count < (int)sizeof line ? (size_t)count : sizeof line - 1);
 }
 
-/* The cofactors: normals by the inverse transpose (row E4). */
+/* A normal by the inverse transpose, which is the cofactor matrix up to a factor; unlike the inverse it exists for every
+ * matrix. Transforming it by the matrix itself would tilt it under unequal scales. */
 static void transform_normal(const float w[12], const float n[3], double out[3])
 {
     double length = 0.0;
@@ -85,7 +92,7 @@ static void dump_item(byte_buffer *out, const pack_file *file, const scene *s, u
     *first += mesh->header->vertex_count;
 }
 
-/* Positions and normals as the GPU's vertex shader has them. */
+/* Positions and normals as the vertex shader leaves them. */
 static int fetch_item(load *l, readback *r, uint32_t item, noh_vertex *vertices)
 {
     const noh_gl_mesh *mesh = &l->meshes[l->scene->items[item].mesh];
@@ -163,42 +170,58 @@ static int dump_scene(const pack_file *file, scene *s, const dump_args *a)
     return status;
 }
 
-static int read_args(int argc, char **argv, dump_args *a)
+static int check_args(dump_args *a)
 {
-    const option options[] = {
-        { "-o", OPTION_TEXT, &a->output },        { "--weight", OPTION_LIST, &a->weights },
-        { "--clip", OPTION_LIST, &a->clips },      { "--time", OPTION_NUMBER, &a->time_s },
-        { "--path", OPTION_TEXT, &a->path },      { "--accumulate", OPTION_TEXT, &a->accumulate },
-        { "--driver", OPTION_TEXT, &a->driver },    { "--anim", OPTION_TEXT, &a->anim },
-        { "--lod", OPTION_NUMBER, &a->lod }
-    };
-    int count, status = tool_options(argc, argv, options, sizeof options / sizeof options[0], &a->pack, 1, &count);
-    if (!status) status = parse_path(a->path, &a->load.path);
+    int status = parse_path(a->path, &a->load.path);
     if (!status) status = parse_accumulate(a->accumulate, &a->load.accumulate);
     if (!status) status = parse_level(a->lod, &a->level);
-    if (!status && (!a->pack || !a->output)) {
-        status = tool_usage("dump wants a pack and -o OUT.obj");
-    }
     return status;
 }
 
-int verb_dump(int argc, char **argv)
+static int run(void *args)
 {
-    static dump_args a;
+    dump_args *a = args;
     pack_file file;
     scene s;
-    int status;
-    memset(&a, 0, sizeof a);
-    status = read_args(argc, argv, &a);
-    if (!status) status = pack_file_open(&file, a.pack);
+    int status = check_args(a);
+    if (!status) status = pack_file_open(&file, a->pack);
     if (status) {
         return status;
     }
     status = scene_init(&s, &file);
     if (!status) {
-        status = dump_scene(&file, &s, &a);
+        status = dump_scene(&file, &s, a);
         scene_free(&s);
     }
     pack_file_close(&file);
     return status;
 }
+
+static dump_args arguments;
+
+static const option options[] = {
+    { .name = "-o", .kind = OPTION_OUTPUT, .at = offsetof(dump_args, output), .required = 1, .value = "OUT.obj",
+      .what = "the mesh, positions in world space, vertex colours linear", .example = "face.obj" },
+    OPTION_WEIGHT(dump_args, weights, .needs = NULL),
+    OPTION_CLIP(dump_args, clips, .needs = NULL),
+    OPTION_TIME(dump_args, time_s, .needs = "--clip"),
+    OPTION_ANIM(dump_args, anim, .needs = NULL),
+    OPTION_LOD(dump_args, lod, .needs = NULL),
+    OPTION_PATH(dump_args, path, .initial = NULL),
+    OPTION_ACCUMULATE(dump_args, accumulate, .needs = "--path", .excludes = "--path=cpu"),
+    OPTION_DRIVER(dump_args, driver, .needs = "--path", .excludes = "--path=cpu"),
+};
+
+const verb verb_dump = {
+    .name = "dump",
+    .files = "PACK",
+    .what = "the deformed mesh, as drawn, baked to a plain one",
+    .more = "Without --path, and with --path cpu, the CPU computes the mesh and no GL is needed. With another path it is what the vertex shader has.",
+    .example = "face.noh -o face.obj --weight smile=1\nbody.noh -o walk.obj --clip walk --time 0.5 --path mrt",
+    .options = options,
+    .option_count = sizeof options / sizeof options[0],
+    .file_max = 1,
+    .files_at = offsetof(dump_args, pack),
+    .args = &arguments,
+    .run = run,
+};

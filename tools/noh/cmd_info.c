@@ -1,8 +1,13 @@
 /* cmd_info.c: what is in a pack. */
+#include <stdio.h>
 #include <string.h>
 
 #include "info_joints.h"
-#include "noh_tool.h"
+#include "args.h"
+#include "message.h"
+#include "pack_file.h"
+#include "options.h"
+#include "verbs.h"
 
 static uint64_t target_bytes(const noh_mesh_header *h)
 {
@@ -24,13 +29,13 @@ static const char *method_of(const noh_mesh_header *h)
 static void print_skin(const noh_pack *pack, const noh_mesh_header *h)
 {
     noh_skin skin;
-    if (noh_pack_skin_at(pack, h->skin, &skin) == NOH_OK) {
+    if (noh_pack_skin_at(pack, h->skin, &skin, NULL) == NOH_OK) {
         printf("  skin '%s': %u joints, %u influence%s a vertex, %u palette%s, by %s\n", skin.name, skin.header->joint_count,
                h->influence_count, h->influence_count == 1 ? "" : "s", h->palette_count, h->palette_count == 1 ? "" : "s", method_of(h));
     }
 }
 
-/* Lengths as they show in the world. */
+/* A length in mesh units as millimetres in the world. */
 static double millimetres(const noh_mesh_header *h, float length)
 {
     return 1e3 * (double)h->world_scale * (double)length;
@@ -39,7 +44,7 @@ static double millimetres(const noh_mesh_header *h, float length)
 static void print_levels(const noh_mesh *m)
 {
     if (m->header->influence_errors[2] > 0.0f) {
-        printf("  with only the 4, 2, 1 heaviest joints a vertex off by at most %.3f, %.3f, %.3f mm in motion\n",
+        printf("  with only the 4, 2, 1 heaviest joints of a vertex: off by at most %.3f, %.3f, %.3f mm in motion\n",
                millimetres(m->header, m->header->influence_errors[0]), millimetres(m->header, m->header->influence_errors[1]),
                millimetres(m->header, m->header->influence_errors[2]));
     }
@@ -94,21 +99,36 @@ static int print_clip(const pack_file *file, uint32_t index)
     return status;
 }
 
+#define VERSION_BYTES 24
+
+/* The version of the noh that wrote the pack; "?" before packs held one. */
+static void write_version(const noh_pack *pack, char text[VERSION_BYTES])
+{
+    const uint32_t v = pack->library_version;
+    if (v) {
+        snprintf(text, VERSION_BYTES, "%u.%u.%u", v >> 24, v >> 12 & 0xfffu, v & 0xfffu);
+    } else {
+        snprintf(text, VERSION_BYTES, "?");
+    }
+}
+
 static int print_info(const pack_file *file)
 {
     const noh_pack *p = &file->pack;
     int status = 0;
-    printf("%s: format %u, %u bytes, %u chunks; %u meshes, %u nodes, %u skeletons, %u clips, %u materials, %u textures\n", file->path,
-           NOH_PACK_VERSION, p->byte_count, p->chunk_count, p->mesh_count, p->node_count, p->skeleton_count, p->motion_count,
+    char writer[VERSION_BYTES];
+    write_version(p, writer);
+    printf("%s: format %u, written by noh %s, %u bytes, %u chunks; %u meshes, %u nodes, %u skeletons, %u clips, %u materials, %u textures\n",
+           file->path, NOH_PACK_VERSION, writer, p->byte_count, p->chunk_count, p->mesh_count, p->node_count, p->skeleton_count, p->motion_count,
            p->material_count, p->texture_count);
     for (uint32_t i = 0; i < p->mesh_count; i++) {
         noh_mesh mesh;
-        noh_pack_mesh(p, i, &mesh);
+        noh_pack_mesh(p, i, &mesh, NULL);
         print_mesh(p, &mesh);
     }
     for (uint32_t i = 0; i < p->skeleton_count; i++) {
         noh_skeleton skeleton;
-        noh_pack_skeleton_at(p, i, &skeleton, NULL);
+        noh_pack_skeleton_at(p, i, &skeleton, NULL, NULL);
         printf("skeleton '%s': %u joints", noh_pack_chunk_name(p, p->first_skeleton + i), skeleton.joint_count);
         info_print_levels(p, i);
         printf("\n");
@@ -140,7 +160,7 @@ static void json_target(json *j, const noh_pack *pack, const noh_target *t, doub
 static void json_skin(json *j, const noh_pack *pack, const noh_mesh_header *h)
 {
     noh_skin skin;
-    if (noh_pack_skin_at(pack, h->skin, &skin) != NOH_OK) {
+    if (noh_pack_skin_at(pack, h->skin, &skin, NULL) != NOH_OK) {
         json_null(j, "skin");
         return;
     }
@@ -207,7 +227,7 @@ static void json_skeleton(json *j, const noh_pack *pack, uint32_t index)
 {
     noh_skeleton skeleton;
     const noh_skeleton_header *h;
-    noh_pack_skeleton_at(pack, index, &skeleton, &h);
+    noh_pack_skeleton_at(pack, index, &skeleton, &h, NULL);
     json_open(j, NULL, '{');
     json_text(j, "name", noh_pack_chunk_name(pack, pack->first_skeleton + index));
     json_integer(j, "joints", h->joint_count);
@@ -243,7 +263,7 @@ static uint64_t count_events(const noh_pack *pack)
     uint64_t count = 0;
     for (uint32_t i = 0; i < pack->motion_count; i++) {
         noh_pack_motion motion;
-        noh_pack_motion_at(pack, i, &motion);
+        noh_pack_motion_at(pack, i, &motion, NULL);
         count += motion.header->event_count;
     }
     return count;
@@ -253,13 +273,16 @@ static int json_info(const pack_file *file)
 {
     const noh_pack *p = &file->pack;
     int status = 0;
-    json j = json_begin(stdout);
+    json j = json_begin();
+    char writer[VERSION_BYTES];
+    write_version(p, writer);
     json_integer(&j, "version", NOH_PACK_VERSION);
+    json_text(&j, "writer", writer);
     json_integer(&j, "bytes", p->byte_count);
     json_open(&j, "meshes", '[');
     for (uint32_t i = 0; i < p->mesh_count; i++) {
         noh_mesh mesh;
-        noh_pack_mesh(p, i, &mesh);
+        noh_pack_mesh(p, i, &mesh, NULL);
         json_mesh(&j, p, &mesh);
     }
     json_close(&j, ']');
@@ -277,25 +300,42 @@ static int json_info(const pack_file *file)
     json_integer(&j, "nodes", p->node_count);
     json_integer(&j, "materials", p->material_count);
     json_integer(&j, "textures", p->texture_count);
-    json_end(&j);
+    if (status) {
+        json_drop(&j);
+    }
+    return status ? status : json_end(&j);
+}
+
+typedef struct info_args {
+    const char *pack;
+    int as_json;
+} info_args;
+
+static int run(void *args)
+{
+    const info_args *a = args;
+    pack_file file;
+    int status = pack_file_open(&file, a->pack);
+    if (!status) {
+        status = a->as_json ? json_info(&file) : print_info(&file);
+        pack_file_close(&file);
+    }
     return status;
 }
 
-int verb_info(int argc, char **argv)
-{
-    const char *path = NULL;
-    int as_json = 0, count, status;
-    pack_file file;
-    const option options[] = { { "--json", OPTION_FLAG, &as_json } };
-    status = tool_options(argc, argv, options, 1, &path, 1, &count);
-    if (!status && !path) {
-        status = tool_usage("info wants a pack");
-    }
-    if (!status) status = pack_file_open(&file, path);
-    if (status) {
-        return status;
-    }
-    status = as_json ? json_info(&file) : print_info(&file);
-    pack_file_close(&file);
-    return status;
-}
+static info_args arguments;
+
+static const option options[] = { OPTION_JSON(info_args, as_json) };
+
+const verb verb_info = {
+    .name = "info",
+    .files = "PACK",
+    .what = "chunks, counts, names, errors certified at build",
+    .example = "face.noh\nface.noh --json",
+    .options = options,
+    .option_count = sizeof options / sizeof options[0],
+    .file_max = 1,
+    .files_at = offsetof(info_args, pack),
+    .args = &arguments,
+    .run = run,
+};

@@ -1,8 +1,15 @@
 /* cmd_render.c: one picture. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "stage.h"
+#include "gpu_args.h"
+#include "message.h"
+#include "png_file.h"
+#include "options.h"
+#include "report_stream.h"
+#include "verbs.h"
 
 typedef struct render_args {
     const char *pack, *output, *anim, *path, *accumulate, *driver, *debug;
@@ -28,44 +35,36 @@ static int parse_debug(const char *text, noh_debug_view *view)
     return text ? tool_usage("--debug wants none, position, normal, tangent or lod, not '%s'", text) : 0;
 }
 
-static int read_args(int argc, char **argv, render_args *a)
+static int check_args(render_args *a)
 {
-    const option options[] = {
-        { "-o", OPTION_TEXT, &a->output },          { "--size", OPTION_SIZE, a->size },
-        { "--weight", OPTION_LIST, &a->weights },   { "--clip", OPTION_LIST, &a->clips },
-        { "--time", OPTION_NUMBER, &a->time_s },    { "--path", OPTION_TEXT, &a->path },
-        { "--accumulate", OPTION_TEXT, &a->accumulate }, { "--driver", OPTION_TEXT, &a->driver },
-        { "--camera", OPTION_TEXT, &a->view.camera }, { "--debug", OPTION_TEXT, &a->debug },
-        { "--anim", OPTION_TEXT, &a->anim },        { "--bones", OPTION_FLAG, &a->show_bones },
-        { "--lod", OPTION_NUMBER, &a->lod }
-    };
-    int count, status = tool_options(argc, argv, options, sizeof options / sizeof options[0], &a->pack, 1, &count);
-    if (!status) status = parse_path(a->path, &a->load.path);
+    int status = parse_path(a->path, &a->load.path);
     if (!status) status = parse_accumulate(a->accumulate, &a->load.accumulate);
     if (!status) status = parse_debug(a->debug, &a->load.view);
     if (!status) status = parse_level(a->lod, &a->level);
-    if (!status && (!a->pack || !a->output)) {
-        status = tool_usage("render wants a pack and -o OUT.png");
-    }
     a->view.width = a->size[0];
     a->view.height = a->size[1];
     return status;
 }
 
-static void print_done(const render_args *a, const stage *st)
+/* What was drawn, to be told once the picture is written. */
+typedef struct drawn {
+    int bones;
+    noh_gl_morph_plan plan; /* without bones */
+} drawn;
+
+static void print_done(const render_args *a, const drawn *d)
 {
-    const noh_gl_morph_plan *plan;
-    if (st->bones) {
-        printf("%s: %ux%u, bones\n", a->output, a->size[0], a->size[1]);
+    FILE *out = report_stream(a->output);
+    if (d->bones) {
+        fprintf(out, "%s: %ux%u, bones\n", a->output, a->size[0], a->size[1]);
         return;
     }
-    plan = noh_gl_morph_plan_of(st->load.morph.morph);
-    printf("%s: %ux%u, %s-%s (%s)\n", a->output, a->size[0], a->size[1], noh_morph_path_name(plan->path),
-           noh_accumulate_name(plan->accumulate), plan->reason);
+    fprintf(out, "%s: %ux%u, %s-%s (%s)\n", a->output, a->size[0], a->size[1], noh_morph_path_name(d->plan.path),
+            noh_accumulate_name(d->plan.accumulate), d->plan.reason);
 }
 
-/* The full mesh frames the picture, whatever level is drawn. */
-static int draw(gpu *g, const pack_file *file, scene *s, const render_args *a, int show_bones, uint8_t *rgba)
+/* The camera frames the full mesh at every level. */
+static int draw(gpu *g, const pack_file *file, scene *s, const render_args *a, int show_bones, uint8_t *rgba, drawn *d)
 {
     stage st;
     noh_gl_camera camera;
@@ -79,8 +78,9 @@ static int draw(gpu *g, const pack_file *file, scene *s, const render_args *a, i
         return status;
     }
     status = stage_draw(&st, &camera, rgba);
-    if (!status) {
-        print_done(a, &st);
+    d->bones = show_bones;
+    if (!show_bones) {
+        d->plan = *noh_gl_morph_plan_of(st.load.morph.morph);
     }
     stage_close(&st);
     return status;
@@ -91,6 +91,7 @@ static int pose_and_draw(const pack_file *file, const render_args *a)
     uint8_t *rgba = malloc((size_t)a->size[0] * a->size[1] * 4);
     scene s;
     gpu g;
+    drawn d;
     int show_bones, status = rgba ? scene_init(&s, file) : tool_fail(file->path, "out of memory");
     if (!status) {
         show_bones = stage_shows_bones(&s, file, a->show_bones);
@@ -99,7 +100,7 @@ static int pose_and_draw(const pack_file *file, const render_args *a)
         if (!status) status = scene_set_weights(&s, file, &a->weights);
         if (!status) status = gpu_open(&g, a->driver);
         if (!status) {
-            status = draw(&g, file, &s, a, show_bones, rgba);
+            status = draw(&g, file, &s, a, show_bones, rgba, &d);
             gpu_close(&g);
         }
         scene_free(&s);
@@ -107,24 +108,59 @@ static int pose_and_draw(const pack_file *file, const render_args *a)
     if (!status) {
         status = tool_write_png(a->output, a->size[0], a->size[1], rgba);
     }
+    if (!status) {
+        print_done(a, &d);
+    }
     free(rgba);
     return status;
 }
 
-int verb_render(int argc, char **argv)
+static int run(void *args)
 {
-    static render_args a;
+    render_args *a = args;
     pack_file file;
-    int status;
-    memset(&a, 0, sizeof a);
-    a.size[0] = a.size[1] = 512;
-    status = read_args(argc, argv, &a);
+    int status = check_args(a);
     if (!status) {
-        status = pack_file_open(&file, a.pack);
+        status = pack_file_open(&file, a->pack);
         if (!status) {
-            status = pose_and_draw(&file, &a);
+            status = pose_and_draw(&file, a);
             pack_file_close(&file);
         }
     }
     return status;
 }
+
+static render_args arguments;
+
+static const option options[] = {
+    { .name = "-o", .kind = OPTION_OUTPUT, .at = offsetof(render_args, output), .required = 1, .value = "OUT.png",
+      .what = "the picture", .example = "face.png" },
+    { .name = "--size", .kind = OPTION_SIZE, .at = offsetof(render_args, size), .value = "WxH", .initial = "512x512",
+      .what = "size of the picture, pixels, 1 to 8192 each", .example = "1280x720" },
+    OPTION_WEIGHT(render_args, weights, .excludes = "--bones"),
+    OPTION_CLIP(render_args, clips, .needs = NULL),
+    OPTION_TIME(render_args, time_s, .needs = "--clip"),
+    OPTION_ANIM(render_args, anim, .needs = "--clip"),
+    OPTION_CAMERA(render_args, view.camera, "body"),
+    OPTION_LOD(render_args, lod, .excludes = "--bones"),
+    { .name = "--bones", .kind = OPTION_FLAG, .at = offsetof(render_args, show_bones),
+      .what = "draw the skeletons in place of the meshes; a pack without meshes is always drawn so" },
+    { .name = "--debug", .kind = OPTION_TEXT, .at = offsetof(render_args, debug), .value = "none|position|normal|tangent|lod", .initial = "none",
+      .what = "draw this as a colour instead of lighting", .excludes = "--bones" },
+    OPTION_PATH(render_args, path, .initial = "auto", .excludes = "--bones"),
+    OPTION_ACCUMULATE(render_args, accumulate, .initial = "auto", .excludes = "--bones"),
+    OPTION_DRIVER(render_args, driver, .initial = "egl"),
+};
+
+const verb verb_render = {
+    .name = "render",
+    .files = "PACK",
+    .what = "a picture",
+    .example = "face.noh -o face.png --weight smile=1 --camera face\nbody.noh -o walk.png --clip walk --time 0.5",
+    .options = options,
+    .option_count = sizeof options / sizeof options[0],
+    .file_max = 1,
+    .files_at = offsetof(render_args, pack),
+    .args = &arguments,
+    .run = run,
+};

@@ -6,6 +6,12 @@
 #include "sheet_lods.h"
 #include "sheet_tiles.h"
 #include "stage.h"
+#include "gpu_args.h"
+#include "label.h"
+#include "message.h"
+#include "png_file.h"
+#include "options.h"
+#include "verbs.h"
 
 #define SHEET_PIXELS_MAX 16384u /* high */
 
@@ -13,11 +19,17 @@ typedef struct sheet {
     sheet_tiles tiles;
     uint32_t tile_count, columns, rows, tile; /* tile: pixels */
     int show_bones, lods;
-    bounds box; /* of all tiles, about what the camera follows */
+    bounds box; /* of all tiles, relative to the anchor */
     uint8_t *rgba;
     const char *pack, *output, *driver, *camera;
     load_options load;
 } sheet;
+
+typedef struct sheet_args {
+    const char *path, *accumulate, *transition;
+    double tile, tiles, columns;
+    sheet s;
+} sheet_args;
 
 static void place_tile(sheet *s, uint32_t tile, const uint8_t *rgba)
 {
@@ -32,7 +44,7 @@ static void place_tile(sheet *s, uint32_t tile, const uint8_t *rgba)
               (int)(tile / s->columns * s->tile) + 6, 1, label);
 }
 
-/* Where on the ground the scene stands, so that a walk stays in its tile: the first joint. */
+/* The camera follows the first joint over the ground, so that a walk stays in its tile. */
 static void anchor_of(const scene *s, double anchor[3])
 {
     anchor[0] = s->skeleton.joint_count ? (double)s->joint_matrices[3] : 0.0;
@@ -49,7 +61,7 @@ static bounds move_box(bounds box, const double by[3], double sign)
     return box;
 }
 
-/* One box for all tiles, about the anchor: it holds every pose. */
+/* One box for all tiles, relative to the anchor, from at most 40 of the poses. */
 static int measure_tiles(sheet *s, int face)
 {
     const scene *posed = &s->tiles.posed;
@@ -109,7 +121,7 @@ static int draw_sheet(sheet *s)
     return status;
 }
 
-/* Tiles that stay empty look like the others' background. */
+/* Empty tiles have the colour of the canvas's background. */
 static int make_picture(sheet *s)
 {
     static const uint8_t background[4] = { CANVAS_BACKGROUND_SRGB, 255 };
@@ -153,48 +165,25 @@ static int make_sheet(sheet *s, const pack_file *file)
 
 static int check_clips(const sheet_tiles *t, const char *transition)
 {
-    if ((t->blend || t->to || t->anim) && !t->clips.count) {
-        return tool_usage("sheet wants --clip NAME with --blend, --to and --anim");
-    }
-    if (t->blend && t->to) {
-        return tool_usage("sheet shows a --blend or a transition --to, not both");
-    }
-    if (transition && strcmp(transition, "fade") != 0 && strcmp(transition, "inertia") != 0) {
+    if (strcmp(transition, "fade") != 0 && strcmp(transition, "inertia") != 0) {
         return tool_usage("--transition wants fade or inertia, not '%s'", transition);
     }
     return t->over_s > 0.0 && t->over_s <= 60.0 ? 0 : tool_usage("--over wants up to 60 seconds");
 }
 
-static int read_args(int argc, char **argv, sheet *s)
+static int check_args(sheet_args *a)
 {
-    const char *path = NULL, *accumulate = NULL, *transition = NULL;
-    double tile = 192.0, tiles = 24.0, columns = 0.0;
-    sheet_tiles *t = &s->tiles;
-    const option options[] = {
-        { "-o", OPTION_TEXT, &s->output },       { "--clip", OPTION_LIST, &t->clips },     { "--driver", OPTION_TEXT, &s->driver },
-        { "--camera", OPTION_TEXT, &s->camera }, { "--path", OPTION_TEXT, &path },        { "--accumulate", OPTION_TEXT, &accumulate },
-        { "--tile", OPTION_NUMBER, &tile },      { "--tiles", OPTION_NUMBER, &tiles },    { "--columns", OPTION_NUMBER, &columns },
-        { "--target", OPTION_LIST, &t->only },   { "--anim", OPTION_TEXT, &t->anim },     { "--bones", OPTION_FLAG, &s->show_bones },
-        { "--blend", OPTION_TEXT, &t->blend },   { "--to", OPTION_TEXT, &t->to },         { "--transition", OPTION_TEXT, &transition },
-        { "--over", OPTION_NUMBER, &t->over_s }, { "--lods", OPTION_FLAG, &s->lods }
-    };
-    int count, status = tool_options(argc, argv, options, sizeof options / sizeof options[0], &s->pack, 1, &count);
-    if (!status) status = parse_path(path, &s->load.path);
-    if (!status) status = parse_accumulate(accumulate, &s->load.accumulate);
-    if (!status && (!s->pack || !s->output)) {
-        status = tool_usage("sheet wants a pack and -o OUT.png");
-    }
-    if (!status && !(tile >= 16.0 && tile <= 1024.0 && tiles >= 1.0 && tiles <= 1024.0 && columns >= 0.0 && columns <= 64.0)) {
+    sheet *s = &a->s;
+    int status = parse_path(a->path, &s->load.path);
+    if (!status) status = parse_accumulate(a->accumulate, &s->load.accumulate);
+    if (!status && !(a->tile >= 16.0 && a->tile <= 1024.0 && a->tiles >= 1.0 && a->tiles <= 1024.0 && a->columns >= 0.0 && a->columns <= 64.0)) {
         status = tool_usage("sheet wants a --tile of 16 to 1024 pixels, 1 to 1024 --tiles and up to 64 --columns");
     }
-    if (!status) status = check_clips(t, transition);
-    if (!status && s->lods && (t->clips.count || s->show_bones)) {
-        status = tool_usage("sheet shows --lods at rest and with targets, without --clip and --bones");
-    }
-    t->inertia = transition && strcmp(transition, "inertia") == 0;
-    s->tile = (uint32_t)tile;
-    t->clip_tiles = (uint32_t)tiles;
-    s->columns = (uint32_t)columns;
+    if (!status) status = check_clips(&s->tiles, a->transition);
+    s->tiles.inertia = strcmp(a->transition, "inertia") == 0;
+    s->tile = (uint32_t)a->tile;
+    s->tiles.clip_tiles = (uint32_t)a->tiles;
+    s->columns = (uint32_t)a->columns;
     return status;
 }
 
@@ -204,21 +193,65 @@ static int make_lods(const sheet *s, const pack_file *file)
     return sheet_lods_write(&o);
 }
 
-int verb_sheet(int argc, char **argv)
+static int run(void *args)
 {
-    static sheet s;
+    sheet_args *a = args;
     pack_file file;
-    int status;
-    memset(&s, 0, sizeof s);
-    s.camera = "face";
-    s.tiles.over_s = 0.3;
-    status = read_args(argc, argv, &s);
+    int status = check_args(a);
     if (!status) {
-        status = pack_file_open(&file, s.pack);
+        status = pack_file_open(&file, a->s.pack);
         if (!status) {
-            status = s.lods ? make_lods(&s, &file) : make_sheet(&s, &file);
+            status = a->s.lods ? make_lods(&a->s, &file) : make_sheet(&a->s, &file);
             pack_file_close(&file);
         }
     }
     return status;
 }
+
+static sheet_args arguments;
+
+static const option options[] = {
+    { .name = "-o", .kind = OPTION_OUTPUT, .at = offsetof(sheet_args, s.output), .required = 1, .value = "OUT.png",
+      .what = "the picture", .example = "sheet.png" },
+    { .name = "--target", .kind = OPTION_LIST, .at = offsetof(sheet_args, s.tiles.only), .value = "NAME[=V]",
+      .what = "a tile of this target alone, at weight V or 1; may repeat; with --lods a row of several: NAME[=V],NAME[=V]...",
+      .example = "smile=0.5", .excludes = "--clip --bones" },
+    { .name = "--clip", .kind = OPTION_LIST, .at = offsetof(sheet_args, s.tiles.clips), .value = "NAME",
+      .what = "show this clip in time; repeat it to play others along with the first", .example = "walk", .excludes = "--lods" },
+    OPTION_ANIM(sheet_args, s.tiles.anim, .needs = "--clip"),
+    { .name = "--tiles", .kind = OPTION_NUMBER, .at = offsetof(sheet_args, tiles), .value = "N", .initial = "24",
+      .what = "times of the clip that are shown, 1 to 1024", .example = "12", .needs = "--clip" },
+    { .name = "--blend", .kind = OPTION_TEXT, .at = offsetof(sheet_args, s.tiles.blend), .value = "CLIP",
+      .what = "blend the clip with this one, in step: five rows of weights from 0 to 1", .example = "run", .needs = "--clip", .excludes = "--to" },
+    { .name = "--to", .kind = OPTION_TEXT, .at = offsetof(sheet_args, s.tiles.to), .value = "CLIP",
+      .what = "a transition from the clip to this one", .example = "bow", .needs = "--clip" },
+    { .name = "--transition", .kind = OPTION_TEXT, .at = offsetof(sheet_args, transition), .value = "fade|inertia", .initial = "fade",
+      .what = "a cross-fade, or inertialization", .needs = "--to" },
+    { .name = "--over", .kind = OPTION_NUMBER, .at = offsetof(sheet_args, s.tiles.over_s), .value = "S", .initial = "0.3",
+      .what = "how long the transition takes, seconds, over 0, at most 60", .example = "0.5", .needs = "--to" },
+    { .name = "--lods", .kind = OPTION_FLAG, .at = offsetof(sheet_args, s.lods),
+      .what = "a column for each LOD level: at rest, with each --target (default: smiles), and as small as it is used", .excludes = "--bones" },
+    { .name = "--bones", .kind = OPTION_FLAG, .at = offsetof(sheet_args, s.show_bones),
+      .what = "draw the skeletons in place of the meshes" },
+    { .name = "--tile", .kind = OPTION_NUMBER, .at = offsetof(sheet_args, tile), .value = "N", .initial = "192",
+      .what = "side of a tile, pixels, 16 to 1024", .example = "256" },
+    { .name = "--columns", .kind = OPTION_NUMBER, .at = offsetof(sheet_args, columns), .value = "N",
+      .what = "tiles in a row, 1 to 64; default: nearly square", .example = "8", .excludes = "--lods --blend" },
+    OPTION_CAMERA(sheet_args, s.camera, "face"),
+    OPTION_PATH(sheet_args, path, .initial = "auto", .excludes = "--bones"),
+    OPTION_ACCUMULATE(sheet_args, accumulate, .initial = "auto", .excludes = "--bones"),
+    OPTION_DRIVER(sheet_args, s.driver, .initial = "egl"),
+};
+
+const verb verb_sheet = {
+    .name = "sheet",
+    .files = "PACK",
+    .what = "a contact sheet: every target at full weight, a clip in time, or the LOD levels",
+    .example = "face.noh -o targets.png\nbody.noh -o walk.png --clip walk --tiles 12 --camera body\nbody.noh -o bow.png --clip walk --to bow --transition inertia\nface.noh -o lods.png --lods --target smile --target jawOpen=0.6,smile",
+    .options = options,
+    .option_count = sizeof options / sizeof options[0],
+    .file_max = 1,
+    .files_at = offsetof(sheet_args, s.pack),
+    .args = &arguments,
+    .run = run,
+};

@@ -1,36 +1,11 @@
 #include "crowd.h"
 
+#include <stdio.h>
 #include <string.h>
 
+#include "message.h"
+
 /* ---- opening ---- */
-
-static int has_joint_twice(const noh_skin *skin)
-{
-    for (uint32_t i = 0; i < skin->header->joint_count; i++) {
-        for (uint32_t k = 0; k < i; k++) {
-            if (skin->joints[i] == skin->joints[k]) {
-                return 1;
-            }
-        }
-    }
-    return 0;
-}
-
-/* The skin's inverse bind matrices, by joint of the skeleton: a character's palette is then what the skin wants. Where
- * the skin has a joint twice (rigid parts that were joined), a palette is the joints' own matrices. */
-static void open_skeleton(crowd *c)
-{
-    static const float identity[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
-    const noh_skin *skin = &c->plan->skin;
-    c->skeleton = c->set->skeleton;
-    for (uint32_t j = 0; j < c->skeleton.joint_count; j++) {
-        memcpy(c->inverse_bind + 12u * (size_t)j, identity, sizeof identity);
-    }
-    for (uint32_t i = 0; i < skin->header->joint_count; i++) {
-        memcpy(c->inverse_bind + 12u * (size_t)skin->joints[i], skin->inverse_bind + 12u * (size_t)i, sizeof identity);
-    }
-    c->skeleton.inverse_bind = has_joint_twice(skin) ? NULL : c->inverse_bind;
-}
 
 /* What ends goes to and fro instead, so that nobody stands still; and two keys a pass where the pack has none at all. */
 static void open_motions(crowd *c)
@@ -59,21 +34,14 @@ static void open_motions(crowd *c)
     }
 }
 
-/* Where the mesh's weights are among the floats of a pose: those of the first node that draws it. */
+/* The first of the mesh's weights among the floats of a pose: those of the first node that draws it. */
 static void find_weights(crowd *c)
 {
-    c->first_weight = NOH_NONE;
-    for (uint32_t g = c->set->group_count; g-- > 0;) {
-        const noh_clip_group *group = &c->set->groups[g];
-        noh_mesh mesh;
-        if (group->node != NOH_NONE && noh_pack_mesh(&c->file->pack, c->file->pack.nodes[group->node].mesh, &mesh) == NOH_OK &&
-            mesh.header == c->plan->mesh.header) {
-            c->first_weight = group->first;
-        }
-    }
+    const uint32_t group = noh_motion_set_mesh_group(c->set, c->plan->mesh_index);
+    c->first_weight = group == NOH_NONE ? NOH_NONE : c->set->groups[group].first;
 }
 
-static int open_characters(crowd *c, void *scratch, noh_error *error)
+static noh_result open_characters(crowd *c, void *scratch, noh_error *error)
 {
     const crowd_plan *p = c->plan;
     noh_character_desc desc = crowd_character_desc(&c->anim);
@@ -97,15 +65,18 @@ static noh_result open_meshes(crowd *c, void *morph, void *palettes, char *log, 
     memset(c->pictures, 0, p->mesh.pack->texture_count * sizeof *c->pictures);
     for (uint32_t i = 0; i < p->mesh.pack->texture_count && !result; i++) {
         noh_texture texture;
-        noh_pack_texture(p->mesh.pack, i, &texture);
+        noh_pack_texture(p->mesh.pack, i, &texture, NULL);
         result = noh_gl_picture_create(gl, &c->ledger, &texture, &c->pictures[i], error);
     }
     if (!result) {
-        result = noh_gl_morph_init(morph, (size_t)p->morph.cpu_bytes, gl, &c->g->caps, &c->ledger, &p->morph_desc, &c->morph, log,
-                                   log_bytes, error);
+        result = noh_gl_morph_init(morph, (size_t)p->morph.cpu_bytes,
+                                   &(noh_gl_device){ gl, &c->g->caps, &c->ledger, log, log_bytes },
+                                   &p->morph_desc, &c->morph, error);
     }
     if (!result) {
-        result = noh_gl_skin_init(palettes, (size_t)p->skin_plan.cpu_bytes, gl, &c->g->caps, &c->ledger, &skin, &c->palettes, error);
+        result = noh_gl_skin_init(palettes, (size_t)p->skin_plan.cpu_bytes,
+                                  &(noh_gl_device){ gl, &c->g->caps, &c->ledger, NULL, 0 }, &skin,
+                                  &c->palettes, error);
     }
     return result;
 }
@@ -122,7 +93,8 @@ static noh_result open_renderer(crowd *c, char *log, size_t log_bytes, noh_error
     desc.crowds = 1;
     desc.fades = !c->plan->options.plain;
     desc.fewer_influences = !c->plan->options.plain;
-    return noh_gl_renderer_create(&c->g->gl, &c->ledger, &desc, &c->renderer, log, log_bytes, error);
+    return noh_gl_renderer_create(&(noh_gl_device){ &c->g->gl, NULL, &c->ledger, log, log_bytes }, &desc,
+                                  &c->renderer, error);
 }
 
 static int open_all(crowd *c, noh_arena *arena)
@@ -137,7 +109,7 @@ static int open_all(crowd *c, noh_arena *arena)
     c->used_bytes = arena->used;
     result = noh_motion_set_init(parts.set, p->set_needs.bytes, &p->set_desc, &c->set, &error);
     if (!result) {
-        open_skeleton(c);
+        (void)noh_skin_skeleton(&p->skin, &c->set->skeleton, c->inverse_bind, &c->skeleton); /* one skin: multiplied at updates */
         open_motions(c);
         find_weights(c);
         result = open_characters(c, parts.scratch, &error);

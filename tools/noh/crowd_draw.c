@@ -1,4 +1,4 @@
-/* crowd_draw.c: a frame of a crowd on the GPU, and the camera that sees it. */
+/* crowd_draw.c: a frame of a crowd on the GPU, and its camera. */
 #include <math.h>
 #include <string.h>
 
@@ -15,18 +15,18 @@ void crowd_send(crowd *c)
 
 /* ---- drawing ---- */
 
-/* All who are drawn alike, in one draw a submesh. */
+/* One run: one instanced draw per submesh. */
 static void draw_run(const crowd *c, uint32_t run, int pass)
 {
     const uint32_t first = c->runs[run], count = c->runs[run + 1u] - first, caps = c->table.influence_level_count;
     const noh_gl_detail detail = { run / caps, 0.0f, 1.0f };
-    const noh_gl_morph_binding morph = noh_gl_morph_binding_of(c->morph, 0); /* any: they are in one texture */
+    const noh_gl_morph_binding morph = noh_gl_morph_binding_of(c->morph, 0); /* any instance: they share a texture */
     noh_gl_skin_binding skin = noh_gl_skin_binding_of(c->palettes, first);
     skin.influences = c->table.influences[run % caps].influence_count;
     noh_gl_draw_crowd(&c->renderer, &c->gl_mesh, &morph, &skin, count, &detail, c->pictures, pass);
 }
 
-/* The level that comes and the one that goes, each with its part of the pixels. */
+/* A fading body: the incoming and the outgoing level, each with its share of the pixels. */
 static void draw_fading(const crowd *c, uint32_t i, int pass)
 {
     const noh_character *ch = crowd_character(c, i);

@@ -1,12 +1,12 @@
-/* crowd_frame.c: a frame of a crowd on the CPU: clocks, detail, poses, and what the GPU is to be given. */
+/* crowd_frame.c: a frame of a crowd on the CPU: clocks, detail, poses, uploads. */
 #include <math.h>
 #include <string.h>
 
 #include "crowd.h"
 
-#define BODY_PIXELS 0.018f /* of a body's height, 1.8 m, in hundreds: what makes one more urgent than another */
+#define BODY_PIXELS 0.018f /* of a body's height, 1.8 m, in hundreds: weights the urgency of an update */
 
-/* What an update costs, nanoseconds, about: `noh bench` measures it. */
+/* The cost of an update, nanoseconds, roughly as `noh bench` measures it. */
 static const noh_cost_weights costs = { 500.0f, 40.0f, 0.0f, 0.0f };
 
 /* ---- clocks ---- */
@@ -28,7 +28,7 @@ static void on_event(void *user, const noh_event *event)
     w->events->sum += hash;
 }
 
-/* Seen or not: all that who is not seen costs. */
+/* Visible or not: all that an invisible body costs. */
 void crowd_step(crowd *c, uint32_t ticks)
 {
     noh_clip_cache_tick(c->set->cache);
@@ -39,7 +39,7 @@ void crowd_step(crowd *c, uint32_t ticks)
     }
 }
 
-/* ---- who is seen, with how much detail ---- */
+/* ---- visibility and detail ---- */
 
 static int is_seen(const crowd *c, const crowd_camera *camera, crowd_body *b)
 {
@@ -67,7 +67,7 @@ uint32_t crowd_update_cost(const noh_character *ch)
     return noh_cost_of(&costs, noh_character_joints(ch), 0, 0);
 }
 
-/* What it is due, and the memory that its level wants. */
+/* Choose a body's detail, and ask for a slot of its level. */
 static void look_at(crowd *c, uint32_t i)
 {
     noh_character *ch = crowd_character(c, i);
@@ -88,7 +88,7 @@ static void look_at(crowd *c, uint32_t i)
     noh_level_pools_ask(c->pools, i, noh_detail_finest(&ch->detail), b->scale);
 }
 
-/* No finer than there is memory for, now and in the next choice. */
+/* No finer than its slot, now and in the next choice. */
 static void take_slot(crowd *c, uint32_t i)
 {
     crowd_body *b = &c->bodies[i];
@@ -115,7 +115,7 @@ static uint32_t run_of(const crowd *c, uint32_t i)
     return fades(b) ? crowd_run_count(c) : b->level * c->table.influence_level_count + crowd_character(c, i)->detail.influences;
 }
 
-/* Count, then sort: run by run, who fades behind all others. */
+/* A counting sort by run; fading bodies last. */
 static void put_in_order(crowd *c)
 {
     uint32_t next[CROWD_RUNS_MAX + 1u] = { 0 }, count = 0;
@@ -165,39 +165,25 @@ void crowd_look(crowd *c, const crowd_camera *camera)
     put_in_order(c);
 }
 
-/* ---- what the GPU is given ---- */
+/* ---- uploads ---- */
 
 /* Without detail: posed now, all of it. */
-static const float *pose_fully(crowd *c, noh_character *ch)
+static void pose_fully(crowd *c, noh_character *ch)
 {
     noh_controller_pose(noh_character_controller(ch), &c->anim, &c->scratch.pose, c->scratch.local, c->floats);
-    noh_local_to_model(&c->skeleton, c->scratch.local, c->skeleton.joint_count, c->scratch.model);
-    noh_model_to_palette(&c->skeleton, c->scratch.model, c->skeleton.joint_count, c->mixed);
-    return c->mixed;
+    noh_pose_skin(&c->skeleton, &c->plan->skin, c->scratch.local, c->scratch.model, c->matrices);
 }
 
-static void give_palette(crowd *c, uint32_t place, const float *palette)
-{
-    const noh_skin *skin = &c->plan->skin;
-    if (!c->skeleton.inverse_bind) {
-        noh_skin_matrices(skin, palette, c->gathered);
-    }
-    for (uint32_t k = 0; k < skin->header->joint_count && c->skeleton.inverse_bind; k++) {
-        memcpy(c->gathered + 12u * (size_t)k, palette + 12u * (size_t)skin->joints[k], 12u * sizeof(float));
-    }
-    noh_gl_skin_set(c->palettes, place, c->gathered);
-}
-
-/* Weights that are too small to be seen are left out; those that no clip moves are the mesh's own. */
+/* Leave out weights too small to be seen; those that no clip animates are the mesh's own. */
 static void give_weights(crowd *c, const crowd_body *b, uint32_t instance, noh_detail *d, const float *floats)
 {
     const float *weights = c->first_weight == NOH_NONE ? c->plan->mesh.weights : floats + c->first_weight;
     if (!c->plan->options.plain) {
         noh_detail_targets(d, &c->settings, weights, c->detail.reach_m, c->plan->mesh.header->target_count, c->weights);
         weights = c->weights;
-        noh_gl_morph_level(c->morph, instance, b->level < b->level_before ? b->level : b->level_before);
+        noh_gl_morph_set_level(c->morph, instance, b->level < b->level_before ? b->level : b->level_before);
     }
-    (void)noh_gl_morph_weights(c->morph, instance, weights, NULL); /* clips hold finite weights */
+    (void)noh_gl_morph_set_weights(c->morph, instance, weights, NULL); /* clips hold finite weights */
 }
 
 static void show_body(crowd *c, uint32_t i)
@@ -206,14 +192,18 @@ static void show_body(crowd *c, uint32_t i)
     const crowd_body *b = &c->bodies[i];
     const int plain = c->plan->options.plain;
     const uint32_t instance = plain ? i : noh_gl_morph_instance(c->morph, b->slot.pool, b->slot.slot);
-    const float *palette = plain ? pose_fully(c, ch) : noh_character_palette(ch, c->mixed, c->skeleton.joint_count);
     noh_gl_morph_binding morph = noh_gl_morph_binding_of(c->morph, instance);
-    give_palette(c, b->place, palette);
+    if (plain) {
+        pose_fully(c, ch);
+    } else {
+        noh_character_skin(ch, &c->plan->skin, c->matrices);
+    }
+    noh_gl_skin_set_matrices(c->palettes, b->place, c->matrices);
     give_weights(c, b, instance, &ch->detail, plain ? c->floats : noh_character_floats(ch, c->floats));
-    (void)noh_gl_skin_place(c->palettes, b->place, b->world, &morph, NULL); /* nobody is mirrored */
+    (void)noh_gl_skin_set_place(c->palettes, b->place, b->world, &morph, NULL); /* nobody is mirrored */
 }
 
-/* Who is updated is shown at once, while all of it is in the cache; then the others. */
+/* Updated bodies first, each uploaded while its pose is in the CPU's cache; then the others. */
 void crowd_show(crowd *c)
 {
     uint32_t i;

@@ -1,14 +1,15 @@
-/* crowd_place.c: what the pack says of detail, and where everybody stands and what they play. */
+/* crowd_place.c: the errors that the pack states, and the places and clips of the bodies. */
 #include <math.h>
 #include <string.h>
 
 #include "crowd.h"
+#include "message.h"
 
 #define NEAREST_M 1.5f
-#define HALF_ANGLE_RAD 0.68f /* somewhat more than a view of 16 : 9 shows */
+#define HALF_ANGLE_RAD 0.68f /* a little more than a 16 : 9 view shows */
 #define BEHIND 8u            /* every eighth stands behind the camera */
 #define SAMPLE_TICKS 1600u
-#define BETWEEN 1.02f        /* what a sphere grows by, for what lies between two samples */
+#define BETWEEN 1.02f        /* enlarges a sphere for motion between two samples */
 
 /* ---- detail ---- */
 
@@ -42,8 +43,7 @@ static int read_detail(crowd *c, void *memory)
                                                                                                      : 0;
 }
 
-/* One sphere that holds every pose of every clip: what is culled by before there is a pose. Its centre is over the
- * place where a body stands. */
+/* One sphere that holds every pose of every clip, to cull by before there is a pose. Its centre is above the body's place. */
 static void measure_sphere(crowd *c)
 {
     noh_bounds b;
@@ -93,7 +93,7 @@ static int moves_joints(const crowd *c, uint32_t motion)
     return (c->motions[motion].flags & NOH_MOTION_NO_JOINTS) == 0;
 }
 
-/* The n-th, counted round and round, of the motions that move joints, or of those that move none; NOH_NONE: none. */
+/* The n-th clip, modulo their count, among those with joints, or among those without; NOH_NONE: there is none. */
 static uint32_t nth_motion(const crowd *c, uint32_t n, int joints)
 {
     uint32_t count = 0, m = 0;

@@ -1,25 +1,27 @@
-/* crowd_plan.c: what a crowd takes, to the byte, before it is there. */
+/* crowd_plan.c: every byte of a crowd, before it is made. */
 #include <string.h>
 
 #include "crowd.h"
+#include "message.h"
 
-#define RESERVE 1.25 /* slots for more than stand so near when they are spread evenly, */
+#define RESERVE 1.25 /* slots for more bodies than an even spread puts so near, */
 #define RESERVE_BODIES 4.0
-#define ENTERED 0.21 /* of the knob: detail.h's share of meshes, less its hysteresis */
-#define REACH_M 1.5  /* from where a body stands to its nearest point, about */
+#define ENTERED 0.21 /* of the allowed error: the share of meshes in detail.h, less its hysteresis */
+#define REACH_M 1.5  /* from a body's place to its nearest point, roughly */
 
-/* Of those that are skinned, that whose targets move most. */
+/* Of the skinned meshes the one with the most pairs. */
 static int find_mesh(crowd_plan *p, const pack_file *file)
 {
     int found = 0;
     for (uint32_t i = 0; i < file->pack.mesh_count; i++) {
         noh_mesh mesh;
         noh_skin skin;
-        noh_pack_mesh(&file->pack, i, &mesh);
-        if (noh_pack_skin_at(&file->pack, mesh.header->skin, &skin) == NOH_OK &&
+        noh_pack_mesh(&file->pack, i, &mesh, NULL);
+        if (noh_pack_skin_at(&file->pack, mesh.header->skin, &skin, NULL) == NOH_OK &&
             (!found || mesh.header->pair_count > p->mesh.header->pair_count)) {
             found = 1;
             p->mesh = mesh;
+            p->mesh_index = i;
             p->skin = skin;
             p->level_count = mesh.header->level_count;
         }
@@ -27,9 +29,9 @@ static int find_mesh(crowd_plan *p, const pack_file *file)
     return found ? 0 : tool_fail(file->path, "a crowd wants a skinned mesh, and the pack has none");
 }
 
-/* ---- motion ---- */
+/* ---- clips ---- */
 
-/* Every segment of every clip stays decoded: a thousand bodies play them all. */
+/* Every segment of every clip stays decoded, since a thousand bodies play all of them. */
 static int measure_motion(crowd_plan *p, const pack_file *file)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
@@ -46,7 +48,7 @@ static int measure_motion(crowd_plan *p, const pack_file *file)
     p->set_desc.clips = &file->pack;
     p->set_desc.skeleton = p->skin.header->skeleton;
     p->set_desc.slot_count = segments < NOH_CLIP_CACHE_SLOTS_MIN ? NOH_CLIP_CACHE_SLOTS_MIN : segments;
-    p->set_desc.root_axes = NOH_ROOT_X | NOH_ROOT_Z; /* they stay where they are */
+    p->set_desc.root_axes = NOH_ROOT_X | NOH_ROOT_Z; /* bodies stay in place */
     p->set_desc.root_up = 1;
     return noh_motion_set_measure(&p->set_desc, &p->set_needs, &error) ? tool_fail_error(file->path, &error) : 0;
 }
@@ -62,7 +64,7 @@ noh_character_desc crowd_character_desc(const noh_anim_set *set)
 
 /* ---- pools ---- */
 
-/* As the table of detail has it. */
+/* As in the detail table. */
 static float level_error(const noh_mesh *level)
 {
     const noh_mesh_header *h = level->header;
@@ -73,7 +75,7 @@ static float level_error(const noh_mesh *level)
     return (worst + h->level_skipped) * h->world_scale;
 }
 
-/* How many bodies may need something finer than this level. */
+/* The number of bodies that may need a finer level than this one. */
 static double count_within(const crowd_plan *p, uint32_t level)
 {
     const crowd_options *o = &p->options;
@@ -154,8 +156,7 @@ void crowd_carve(noh_arena *a, const crowd_plan *p, crowd *c, crowd_parts *parts
     c->keys = carve(a, 2u * (size_t)shape->motion_count, sizeof *c->keys);
     c->rate_error_m = carve(a, shape->motion_count, NOH_RATE_COUNT * sizeof(float));
     c->inverse_bind = carve(a, joints, 12u * sizeof(float));
-    c->mixed = carve(a, joints, 12u * sizeof(float));
-    c->gathered = carve(a, p->skin.header->joint_count, 12u * sizeof(float));
+    c->matrices = carve(a, p->skin.header->joint_count, 12u * sizeof(float));
     c->floats = carve(a, shape->float_count, sizeof(float));
     c->weights = carve(a, targets, sizeof(float));
     c->pictures = carve(a, p->mesh.pack->texture_count, sizeof *c->pictures);
@@ -171,7 +172,7 @@ static void sum_bytes(crowd_plan *p)
     p->gpu_bytes = noh_gl_mesh_bytes(&p->views[0]) + p->morph.gpu_bytes + p->skin_plan.gpu_bytes + NOH_GL_RENDERER_BYTES;
     for (uint32_t i = 0; i < p->mesh.pack->texture_count; i++) {
         noh_texture texture;
-        noh_pack_texture(p->mesh.pack, i, &texture);
+        noh_pack_texture(p->mesh.pack, i, &texture, NULL);
         p->gpu_bytes += noh_gl_picture_bytes(&texture);
     }
 }
@@ -189,7 +190,7 @@ static int fill_options(crowd_plan *p, const crowd_options *o)
     return o->count && o->count <= NOH_MORPH_INSTANCES_MAX ? 0 : tool_fail("crowd", "from 1 to %u bodies", NOH_MORPH_INSTANCES_MAX);
 }
 
-/* There is no set yet: its counts do. */
+/* The set does not exist yet; its counts suffice. */
 static size_t ask_detail(const crowd_plan *p)
 {
     noh_motion_set counts;
@@ -201,7 +202,7 @@ static size_t ask_detail(const crowd_plan *p)
     return noh_detail_pack_size(&desc);
 }
 
-/* What the library says of its own. */
+/* The sizes of the library's objects. */
 static int ask_sizes(crowd_plan *p, const pack_file *file, const noh_gl_caps *caps)
 {
     const noh_character_desc character = crowd_character_desc(&p->set_needs.shape);

@@ -1,7 +1,10 @@
 #include "gpu.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "message.h"
 
 /* For tests and debuggers: NOH_GL_DEBUG=1 ends the program at the first GL error. */
 static void GL_APIENTRY stop_at_error(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
@@ -16,7 +19,7 @@ static void GL_APIENTRY stop_at_error(GLenum source, GLenum type, GLuint id, GLe
     }
 }
 
-/* After the probe, which tries what may be refused. */
+/* Called after the probe, which provokes errors on purpose. */
 static void watch_errors(const noh_gl_api *gl)
 {
     const char *wish = getenv("NOH_GL_DEBUG");
@@ -58,39 +61,6 @@ void gpu_close(gpu *g)
     memset(g, 0, sizeof *g);
 }
 
-int parse_path(const char *text, noh_morph_path *path)
-{
-    *path = NOH_MORPH_AUTO;
-    for (unsigned i = 0; text && i < NOH_MORPH_PATH_COUNT; i++) {
-        if (strcmp(text, noh_morph_path_name((noh_morph_path)i)) == 0) {
-            *path = (noh_morph_path)i;
-            return 0;
-        }
-    }
-    return text ? tool_usage("--path wants auto, layered, mrt, per-layer, gather or cpu, not '%s'", text) : 0;
-}
-
-int parse_accumulate(const char *text, noh_accumulate *accumulate)
-{
-    *accumulate = NOH_ACCUMULATE_AUTO;
-    for (unsigned i = 0; text && i < 3; i++) {
-        if (strcmp(text, noh_accumulate_name((noh_accumulate)i)) == 0) {
-            *accumulate = (noh_accumulate)i;
-            return 0;
-        }
-    }
-    return text ? tool_usage("--accumulate wants auto, f32 or f16, not '%s'", text) : 0;
-}
-
-int parse_instances(double value, uint32_t *instances)
-{
-    if (value < 1.0 || value > NOH_MORPH_INSTANCES_MAX || value != (double)(uint32_t)value) {
-        return tool_usage("--instances wants a whole number from 1 to %u", NOH_MORPH_INSTANCES_MAX);
-    }
-    *instances = (uint32_t)value;
-    return 0;
-}
-
 int gpu_morph_open(gpu_morph *m, gpu *g, const noh_gl_morph_desc *desc, const char *subject)
 {
     noh_gl_morph_plan plan;
@@ -105,7 +75,9 @@ int gpu_morph_open(gpu_morph *m, gpu *g, const noh_gl_morph_desc *desc, const ch
     if (!m->memory) {
         return tool_fail(subject, "out of memory");
     }
-    if (noh_gl_morph_init(m->memory, m->bytes, &g->gl, &g->caps, &g->ledger, desc, &m->morph, log, sizeof log, &error)) {
+    if (noh_gl_morph_init(m->memory, m->bytes,
+                          &(noh_gl_device){ &g->gl, &g->caps, &g->ledger, log, sizeof log }, desc, &m->morph,
+                          &error)) {
         free(m->memory);
         memset(m, 0, sizeof *m);
         if (log[0]) {
@@ -138,7 +110,8 @@ int gpu_skin_open(gpu_skin *s, gpu *g, const noh_gl_skin_desc *desc, const char 
     if (!s->memory) {
         return tool_fail(subject, "out of memory");
     }
-    if (noh_gl_skin_init(s->memory, s->bytes, &g->gl, &g->caps, &g->ledger, desc, &s->skin, &error)) {
+    if (noh_gl_skin_init(s->memory, s->bytes, &(noh_gl_device){ &g->gl, &g->caps, &g->ledger, NULL, 0 }, desc,
+                         &s->skin, &error)) {
         free(s->memory);
         memset(s, 0, sizeof *s);
         return tool_fail_error(subject, &error);

@@ -1,8 +1,9 @@
-/* gpu.h: a context for the verbs that draw, and reading results back. */
+/* gpu.h: a GL context for the verbs that draw, and the library's objects with their memory. */
 #ifndef NOH_TOOL_GPU_H
 #define NOH_TOOL_GPU_H
 
-#include "noh_tool.h"
+#include "noh_gl.h"
+#include "platform.h"
 
 typedef struct gpu {
     const noh_platform *platform;
@@ -15,12 +16,6 @@ typedef struct gpu {
 /* Make a context of that driver ("egl" when NULL) and probe it. Prints why not; 0 on success. */
 int gpu_open(gpu *g, const char *driver);
 void gpu_close(gpu *g);
-
-/* The values of --path and --accumulate. Return 0, or EXIT_USAGE after printing. */
-int parse_path(const char *text, noh_morph_path *path);
-int parse_accumulate(const char *text, noh_accumulate *accumulate);
-/* The value of --instances. */
-int parse_instances(double value, uint32_t *instances);
 
 /* One noh_gl_morph with its memory. */
 typedef struct gpu_morph {
@@ -42,38 +37,5 @@ typedef struct gpu_skin {
 
 int gpu_skin_open(gpu_skin *s, gpu *g, const noh_gl_skin_desc *desc, const char *subject);
 void gpu_skin_close(gpu_skin *s);
-
-/* Programs and a target that read results back; not counted in the ledger. */
-typedef struct readback {
-    gpu *g;
-    int is_uint;
-    GLuint layers_program, vertex_array;
-    noh_gl_variant variant; /* what read vertices last */
-} readback;
-
-int readback_open(readback *r, gpu *g, int is_uint);
-void readback_close(readback *r);
-
-/* An instance's accumulated deltas, as the vertex shader fetches them:
- * out[3][morph_height << morph_width_log2][3]. */
-int readback_layers(readback *r, const noh_mesh *mesh, const noh_gl_morph_binding *binding, float *out);
-
-/* A vertex as mesh.vert leaves it, before the camera. */
-typedef struct readback_vertex {
-    float position[3]; /* morphed and skinned, model space */
-    float normal[3];   /* in the world, as below */
-    float tangent[4];  /* with handedness */
-    float world[3];
-} readback_vertex;
-
-/* Every vertex of a mesh with these bindings (NULL: rest pose, bind pose), each by its own palette: out[vertex_count].
- * crowd: 0 draws one mesh in an identity world; else so many instances in one draw from the one that skin binds, each in
- * its own world, and out is [crowd][vertex_count]. Prints why not; 0 on success. */
-int readback_skinned(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph, const noh_gl_skin_binding *skin,
-                     uint32_t crowd, readback_vertex *out);
-
-/* Every vertex as drawn in the bind pose: positions, normals, tangents, each [vertex_count][3]. */
-int readback_vertices(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_binding *binding, float *positions,
-                      float *normals, float *tangents);
 
 #endif

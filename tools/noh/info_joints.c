@@ -1,5 +1,7 @@
 #include "info_joints.h"
 
+#include <stdio.h>
+
 void info_print_levels(const noh_pack *pack, uint32_t skeleton)
 {
     uint32_t count;
@@ -20,12 +22,12 @@ void info_json_levels(json *j, const noh_pack *pack, uint32_t skeleton)
     json_close(j, ']');
 }
 
-/* Centimetres per unit of a motion's errors; without a skeleton they are metres. */
+/* Centimetres per unit of a clip's errors, which are metres where it has no skeleton. */
 static double unit_cm(const noh_pack *pack, const noh_pack_motion *motion)
 {
     noh_skeleton skeleton;
     const noh_skeleton_header *header;
-    return noh_pack_skeleton_at(pack, motion->header->skeleton, &skeleton, &header) == NOH_OK ? (double)header->unit_cm : 100.0;
+    return noh_pack_skeleton_at(pack, motion->header->skeleton, &skeleton, &header, NULL) == NOH_OK ? (double)header->unit_cm : 100.0;
 }
 
 void info_print_errors(const noh_pack *pack, const noh_pack_motion *motion)

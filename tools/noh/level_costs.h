@@ -1,10 +1,11 @@
-/* level_costs.h: what each level of detail of a scene costs. */
+/* level_costs.h: what each LOD level of a scene costs. */
 #ifndef NOH_TOOL_LEVEL_COSTS_H
 #define NOH_TOOL_LEVEL_COSTS_H
 
 #include "load.h"
+#include "scene.h"
 
-/* One level of detail of the whole scene: what it costs to load it and all coarser ones, and what a frame does at it. */
+/* One level of the whole scene: bytes to load it and all coarser ones, and the work of a frame at it. */
 typedef struct level_cost {
     uint64_t vertices, triangles, texels, pairs; /* of one copy of the scene; pairs: with all targets active */
     uint64_t cpu_bytes, gpu_bytes;

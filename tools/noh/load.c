@@ -1,7 +1,10 @@
 #include "load.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "message.h"
 
 /* ---- what it will take ---- */
 
@@ -47,13 +50,13 @@ static noh_gl_skin_desc skin_desc(const pack_file *file, const scene *s, const u
     return desc;
 }
 
-/* The matrices of one skin at a time; 0 where nothing that is drawn is skinned. */
+/* Bytes for the palette of one skin at a time; 0 where no drawn mesh is skinned. */
 static size_t matrix_bytes(const pack_file *file, const scene *s)
 {
     size_t most = 0;
     for (uint32_t i = 0; i < s->item_count; i++) {
         noh_skin skin;
-        if (noh_pack_skin_at(&file->pack, s->meshes[s->items[i].mesh].header->skin, &skin) == NOH_OK) {
+        if (noh_pack_skin_at(&file->pack, s->meshes[s->items[i].mesh].header->skin, &skin, NULL) == NOH_OK) {
             size_t bytes = sizeof(float) * 12u * skin.header->joint_count;
             most = bytes > most ? bytes : most;
         }
@@ -77,7 +80,7 @@ static int add_skin(load_budget *b, const pack_file *file, const scene *s, const
     return 0;
 }
 
-/* What moves the scene: nothing in a pack without clips. */
+/* Clips, controllers and poses: none in a pack without clips. */
 static int add_motion(load_budget *b, const pack_file *file, const scene *s, uint32_t instances)
 {
     uint64_t clips = 0, controllers = 0, poses = 0;
@@ -97,7 +100,7 @@ static void add_parts(load_budget *b, const pack_file *file, const scene *s)
     }
     for (uint32_t i = 0; i < file->pack.texture_count; i++) {
         noh_texture texture;
-        noh_pack_texture(&file->pack, i, &texture);
+        noh_pack_texture(&file->pack, i, &texture, NULL);
         add_part(b, 0, noh_gl_picture_bytes(&texture), "texture", texture.name);
     }
     add_part(b, b->plan.cpu_bytes, 0, "morph state", "");
@@ -119,8 +122,11 @@ int load_budget_make(load_budget *b, const pack_file *file, const scene *s, cons
     b->pack_bytes = (uint64_t)file->pack.byte_count + (s->anim != file ? s->anim->pack.byte_count : 0u);
     if (!counts || !b->parts) {
         status = tool_fail(file->path, "out of memory");
+    } else if (s->item_count == 0 && s->anim->pack.motion_count) {
+        b->plan.reason = "clips alone: name them as --anim of the pack that they move for the whole sum";
+        status = add_motion(b, file, s, o->instances);
     } else if (s->item_count == 0) {
-        status = tool_fail(file->path, "the pack has nothing to draw");
+        status = tool_fail(file->path, "the pack has neither meshes nor clips");
     } else if (noh_gl_morph_plan_make(&desc, caps, &b->plan, &error)) {
         status = tool_fail_error(file->path, &error);
     } else {
@@ -163,7 +169,7 @@ static int create_pictures(load *l)
     noh_error error = { NOH_OK, "", 0, 0 };
     for (uint32_t i = 0; i < l->file->pack.texture_count; i++) {
         noh_texture texture;
-        noh_pack_texture(&l->file->pack, i, &texture);
+        noh_pack_texture(&l->file->pack, i, &texture, NULL);
         if (noh_gl_picture_create(&l->g->gl, &l->g->ledger, &texture, &l->pictures[i], &error)) {
             return tool_fail_error(l->file->path, &error);
         }
@@ -194,7 +200,8 @@ static int create_renderer(load *l, const load_options *o)
     desc.meshes = l->scene->meshes;
     desc.mesh_count = l->file->pack.mesh_count;
     desc.palettes = l->skin.skin ? noh_gl_skin_plan_of(l->skin.skin)->mode : NOH_PALETTE_AUTO;
-    if (noh_gl_renderer_create(&l->g->gl, &l->g->ledger, &desc, &l->renderer, log, sizeof log, &error)) {
+    if (noh_gl_renderer_create(&(noh_gl_device){ &l->g->gl, NULL, &l->g->ledger, log, sizeof log }, &desc,
+                               &l->renderer, &error)) {
         fputs(log, stderr);
         return tool_fail_error("renderer", &error);
     }
@@ -212,7 +219,7 @@ static int open_skin(load *l, const uint32_t *counts)
     return l->matrices ? gpu_skin_open(&l->skin, l->g, &desc, l->file->path) : tool_fail(l->file->path, "out of memory");
 }
 
-/* The k-th item that draws a mesh is that mesh's k-th instance. */
+/* The k-th item that draws a mesh is its k-th instance. */
 static void number_items(load *l, uint32_t *next)
 {
     memset(next, 0, sizeof *next * l->file->pack.mesh_count);
@@ -287,7 +294,7 @@ int load_restore(load *l)
     }
     for (uint32_t i = 0; !result && i < l->file->pack.texture_count; i++) {
         noh_texture texture;
-        noh_pack_texture(&l->file->pack, i, &texture);
+        noh_pack_texture(&l->file->pack, i, &texture, NULL);
         result = noh_gl_picture_restore(gl, &l->g->ledger, &texture, &l->pictures[i], &error);
     }
     if (!result) result = noh_gl_morph_restore(l->morph.morph, log, sizeof log, &error);
@@ -306,9 +313,9 @@ static void update_joints(load *l)
 {
     for (uint32_t i = 0; i < l->scene->item_count; i++) {
         noh_skin skin;
-        if (noh_pack_skin_at(&l->file->pack, l->scene->meshes[l->scene->items[i].mesh].header->skin, &skin) == NOH_OK) {
+        if (noh_pack_skin_at(&l->file->pack, l->scene->meshes[l->scene->items[i].mesh].header->skin, &skin, NULL) == NOH_OK) {
             scene_skin_matrices(l->scene, &skin, l->matrices);
-            noh_gl_skin_set(l->skin.skin, l->item_instances[i], l->matrices);
+            noh_gl_skin_set_matrices(l->skin.skin, l->item_instances[i], l->matrices);
         }
     }
     noh_gl_skin_update(l->skin.skin);
@@ -318,7 +325,7 @@ int load_update(load *l, noh_gl_morph_stats *stats)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
     for (uint32_t i = 0; i < l->scene->item_count; i++) {
-        if (noh_gl_morph_weights(l->morph.morph, l->item_instances[i], l->scene->items[i].weights, &error)) {
+        if (noh_gl_morph_set_weights(l->morph.morph, l->item_instances[i], l->scene->items[i].weights, &error)) {
             return tool_fail_error(l->file->path, &error);
         }
     }
@@ -338,8 +345,3 @@ const noh_gl_skin_binding *load_skin_binding(const load *l, uint32_t item, noh_g
     return out;
 }
 
-const float *scene_world(const scene *s, const pack_file *file, uint32_t item)
-{
-    static const float identity[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
-    return s->items[item].node == NOH_NONE ? identity : file->pack.nodes[s->items[item].node].world;
-}

@@ -1,9 +1,10 @@
-/* load.h: a pack made ready to draw: its meshes, textures, accumulators and renderer.
- * What load_budget says before is what load_open takes, to the byte. */
+/* load.h: a pack on the GPU: its meshes, textures, accumulators and renderer. load_open takes exactly the bytes that
+ * load_budget_make predicts. */
 #ifndef NOH_TOOL_LOAD_H
 #define NOH_TOOL_LOAD_H
 
 #include "gpu.h"
+#include "scene.h"
 
 typedef struct load_part {
     char name[96];
@@ -23,14 +24,15 @@ typedef struct load_options {
     noh_accumulate accumulate;
     uint32_t instances; /* of the whole scene; 0: 1 */
     noh_debug_view view;
-    int fades;          /* load_set_detail's levels fade into each other; else they change at once */
+    int fades;          /* 1: levels set by load_set_detail fade into each other; 0: they change at once */
 } load_options;
 
-/* Prints an error and returns an exit code; 0 on success. */
+/* Of clips alone, the clips, with a plan that says nothing but its reason. Prints an error and returns an exit code; 0 on
+ * success. */
 int load_budget_make(load_budget *b, const pack_file *file, const scene *s, const noh_gl_caps *caps, const load_options *o);
 void load_budget_free(load_budget *b);
 
-/* How an item is drawn: in one part, or in two while a level fades into another. */
+/* How an item is drawn: in one part, or in two while one level fades into another. */
 typedef struct load_detail {
     noh_gl_detail parts[2];
     uint32_t part_count;
@@ -48,34 +50,29 @@ typedef struct load {
     float *matrices;           /* [joints of the largest skin][12] */
     size_t matrix_bytes;
     uint32_t *item_instances;  /* [item_count]: the morph instance of each item of the first copy of the scene */
-    load_detail *details;      /* [item_count]: the finest level that is there, until load_set_detail */
+    load_detail *details;      /* [item_count]: the finest loaded level until load_set_detail */
 } load;
 
 int load_open(load *l, gpu *g, const pack_file *file, const scene *s, const load_options *o);
 void load_close(load *l);
 
-/* Make everything again after g's context was lost and g->gl filled for a new one. On error
- * what could be made stays, to be closed. */
+/* Make everything again after g's context was lost and g->gl was filled for a new one. After an error close it. */
 int load_restore(load *l);
 
-/* Hand the scene's weights to the accumulator and accumulate; hand its joints to the palettes. */
+/* Upload the scene's weights and palettes, and accumulate. */
 int load_update(load *l, noh_gl_morph_stats *stats);
 
-/* From now on draw an item at the mesh level that was chosen (noh_detail_choose), or at both that fade, and accumulate
- * what the finer of them needs. Before load_update. Influences, joints and targets are the caller's to leave out. */
+/* From now on draw an item at the chosen mesh level (noh_detail_choose), or at both while they fade, and accumulate for the
+ * finer one. Call it before load_update. Leaving out influences, joints and targets is up to the caller. */
 void load_set_detail(load *l, uint32_t item, const noh_detail *detail, int64_t clock);
 
 /* Draw every item: opaque, then blended. The framebuffer and viewport are the caller's. */
 void load_draw(load *l, const noh_gl_camera *camera);
 
-/* Where an item's joints are: out, or NULL for a rigid one. */
+/* The binding of an item's palette: out, or NULL for a rigid item. */
 const noh_gl_skin_binding *load_skin_binding(const load *l, uint32_t item, noh_gl_skin_binding *out);
 
-/* The item's world matrix, 3 rows of 4. */
-const float *scene_world(const scene *s, const pack_file *file, uint32_t item);
-
-/* Capabilities to assume where there is no driver: a GLES 3.2 device on which everything
- * works and textures are as large as every ES 3.0 has them. */
+/* Capabilities to assume without a driver: a GLES 3.2 device with every feature, and textures as large as ES 3.0 demands. */
 noh_gl_caps nominal_caps(void);
 
 #endif

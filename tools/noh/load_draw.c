@@ -1,4 +1,4 @@
-/* load_draw.c: the draws of a load, at chosen levels of detail or at the finest. */
+/* load_draw.c: the draws of a load, at chosen LOD levels or at the finest. */
 #include "load.h"
 
 void load_set_detail(load *l, uint32_t item, const noh_detail *detail, int64_t clock)
@@ -10,7 +10,7 @@ void load_set_detail(load *l, uint32_t item, const noh_detail *detail, int64_t c
     for (uint32_t i = 0; i < d->part_count; i++) {
         d->parts[i] = (noh_gl_detail){ parts[i].level, parts[i].from, parts[i].to };
     }
-    noh_gl_morph_level(l->morph.morph, l->item_instances[item], fades ? noh_detail_drawn(detail, clock) : detail->mesh);
+    noh_gl_morph_set_level(l->morph.morph, l->item_instances[item], fades ? noh_detail_drawn(detail, clock) : detail->mesh);
 }
 
 static void draw_item(load *l, uint32_t item, int pass)

@@ -1,7 +1,8 @@
+#include "nearest.h"
+
 #include <ctype.h>
 #include <string.h>
 
-#include "noh_tool.h"
 
 #define NAME_MAX_COMPARED 64
 

@@ -1,11 +1,15 @@
 /* readback.c: accumulated layers as bits, through RGBA32UI targets, which core ES 3.0 can always
  * render and read: no format conversion stands between the test and the value. */
+#include "readback.h"
+
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "gl/gl_program.h"
 #include "gpu.h"
 #include "tool_shaders.gen.h"
+#include "message.h"
 
 typedef struct bit_target {
     GLuint framebuffer, renderbuffers[3];

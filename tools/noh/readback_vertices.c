@@ -1,11 +1,14 @@
 /* readback_vertices.c: every vertex as mesh.vert leaves it, through transform feedback: the shader that draws
  * is the shader that is read. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "gpu.h"
+#include "message.h"
+#include "readback.h"
 
-/* The variant that draws such a mesh, with its outputs kept; the last one is kept too. */
+/* The shader variant that draws such a mesh, with transform feedback; the last one is cached. */
 static int use_variant(readback *r, noh_gl_variant_key key)
 {
     static const char *const varyings[] = { "v_model", "v_normal", "v_tangent", "v_world" };
@@ -15,7 +18,8 @@ static int use_variant(readback *r, noh_gl_variant_key key)
         return 0;
     }
     noh_gl_variant_delete(&r->g->gl, NULL, &r->variant);
-    if (noh_gl_variant_create(&r->g->gl, NULL, key, varyings, 4, &r->variant, log, sizeof log, &error)) {
+    if (noh_gl_variant_create(&(noh_gl_device){ &r->g->gl, NULL, NULL, log, sizeof log }, key, varyings, 4,
+                              &r->variant, &error)) {
         fputs(log, stderr);
         return tool_fail_error("readback", &error);
     }
@@ -51,7 +55,7 @@ static void tear_down(gpu *g)
     gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
 }
 
-/* One draw of all vertices with one palette; out takes the vertices that this palette is for (NOH_NONE: all). */
+/* Draw all vertices with one palette, and keep in `out` those that use it (NOH_NONE: all). */
 static int capture(gpu *g, const noh_gl_mesh *mesh, uint32_t palette, uint32_t count, readback_vertex *out)
 {
     const noh_gl_api *gl = &g->gl;

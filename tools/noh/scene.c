@@ -1,7 +1,10 @@
+#include "scene.h"
+
 #include <stdlib.h>
 #include <string.h>
 
-#include "noh_tool.h"
+#include "message.h"
+#include "nearest.h"
 
 static int add_item(scene *s, const pack_file *file, uint32_t node, uint32_t mesh)
 {
@@ -24,7 +27,7 @@ static int add_item(scene *s, const pack_file *file, uint32_t node, uint32_t mes
 
 static int init_player(scene_player *p, const noh_pack *pack, uint32_t skeleton)
 {
-    if (noh_pack_skeleton_at(pack, skeleton, &p->skeleton, NULL)) {
+    if (noh_pack_skeleton_at(pack, skeleton, &p->skeleton, NULL, NULL)) {
         return 0;
     }
     p->joint_matrices = calloc(p->skeleton.joint_count, 12 * sizeof(float));
@@ -61,7 +64,7 @@ int scene_init(scene *s, const pack_file *file)
     s->anim = file;
     failed = !s->meshes || !s->items || init_players(s, pack);
     for (uint32_t i = 0; !failed && i < pack->mesh_count; i++) {
-        noh_pack_mesh(pack, i, &s->meshes[i]);
+        noh_pack_mesh(pack, i, &s->meshes[i], NULL);
     }
     for (uint32_t n = 0; !failed && n < pack->node_count; n++) {
         if (pack->nodes[n].mesh != NOH_NONE) {
@@ -91,7 +94,7 @@ int scene_set_level(scene *s, const pack_file *file, uint32_t level)
 {
     const uint32_t count = scene_level_count(s, file);
     if (level >= count) {
-        return tool_fail(file->path, "no level of detail %u: it has %u (`noh build --lod N` makes them)", level, count);
+        return tool_fail(file->path, "no LOD level %u: the pack has %u (`noh build --lod N` makes them)", level, count);
     }
     for (uint32_t i = 0; i < file->pack.mesh_count; i++) {
         s->meshes[i] = noh_mesh_at_level(&s->meshes[i], level);
@@ -190,4 +193,10 @@ int scene_set_weights(scene *s, const pack_file *file, const option_list *assign
         }
     }
     return 0;
+}
+
+const float *scene_world(const scene *s, const pack_file *file, uint32_t item)
+{
+    static const float identity[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
+    return s->items[item].node == NOH_NONE ? identity : file->pack.nodes[s->items[item].node].world;
 }

@@ -4,7 +4,8 @@
 
 #include "deform/dual_quaternion.h"
 #include "deform/skin.h"
-#include "noh_tool.h"
+#include "message.h"
+#include "scene.h"
 
 /* What one item needs to be deformed. */
 typedef struct work {
@@ -31,7 +32,7 @@ void scene_skin_matrices(const scene *s, const noh_skin *skin, float *matrices)
 static int prepare_joints(work *w, const scene *s)
 {
     uint32_t count;
-    if (noh_pack_skin_at(w->mesh->pack, w->mesh->header->skin, &w->skin)) {
+    if (noh_pack_skin_at(w->mesh->pack, w->mesh->header->skin, &w->skin, NULL)) {
         return 0; /* rigid */
     }
     count = w->skin.header->joint_count;

@@ -3,11 +3,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "camera.h"
+#include "message.h"
+
 static int open_item(item_detail *item, const noh_mesh *mesh)
 {
     const uint32_t targets = mesh->header->target_count;
-    item->table.meshes = item->levels;
-    item->table.mesh_level_count = noh_detail_mesh_levels(mesh, item->levels);
+    noh_detail_mesh_levels(mesh, item->levels, &item->table);
     item->reach_m = calloc(targets + 1u, sizeof *item->reach_m);
     if (item->reach_m) {
         noh_detail_target_reach(mesh, item->reach_m);
@@ -19,7 +21,7 @@ static uint32_t most_joints(const pack_file *file)
 {
     uint32_t most = 0;
     noh_skin skin;
-    for (uint32_t i = 0; noh_pack_skin_at(&file->pack, i, &skin) == NOH_OK; i++) {
+    for (uint32_t i = 0; noh_pack_skin_at(&file->pack, i, &skin, NULL) == NOH_OK; i++) {
         most = skin.header->joint_count > most ? skin.header->joint_count : most;
     }
     return most;
@@ -48,13 +50,13 @@ void scene_detail_close(scene_detail *d)
     memset(d, 0, sizeof *d);
 }
 
-/* Of an item as it is posed, before its node's placement. */
+/* Bounds of an item in its pose, before its node's transform. */
 static void item_box(const scene_detail *d, const scene *s, uint32_t item, float box[6])
 {
     const noh_mesh *mesh = &s->meshes[s->items[item].mesh];
     const float *weights = s->items[item].weights;
     noh_skin skin;
-    if (noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin)) {
+    if (noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin, NULL)) {
         noh_mesh_box(mesh, NULL, weights, box);
         return;
     }

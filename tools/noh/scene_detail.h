@@ -1,18 +1,19 @@
-/* scene_detail.h: how much detail each item of a scene is shown with, by what it is off in pixels.
+/* scene_detail.h: the LOD level of each item of a scene, chosen by its error in pixels.
  *
  *   scene_detail_open / scene_detail_close
- *   scene_detail_scale    how many pixels a metre is where an item is nearest to the camera
+ *   scene_detail_scale    pixels per metre at an item's nearest point
  *   scene_detail_choose   for a frame
- *   scene_detail_fix      one level instead
- *   scene_detail_targets  weights without those of targets that cannot be seen
+ *   scene_detail_fix      a fixed level instead
+ *   scene_detail_targets  weights without those of targets too small to be seen
  *
- * Mesh levels and targets: joints, influences and rates stay full. */
+ * It chooses mesh levels and targets; joints, influences and update rates stay full. */
 #ifndef NOH_TOOL_SCENE_DETAIL_H
 #define NOH_TOOL_SCENE_DETAIL_H
 
-#include "view.h"
+#include "noh_gl.h"
+#include "scene.h"
 
-/* What can be left out of one item, and what is. */
+/* One item: the levels that it has, and the one chosen. */
 typedef struct item_detail {
     noh_mesh_level levels[NOH_LEVELS_MAX];
     noh_detail_table table;
@@ -26,21 +27,22 @@ typedef struct scene_detail {
     float *matrices;    /* [joints of the largest skin][12] */
 } scene_detail;
 
-/* Of a scene at its finest level. Prints an error and returns an exit code; 0 on success. */
+/* The scene must be at its finest level. Prints an error and returns an exit code; 0 on success. */
 int scene_detail_open(scene_detail *d, const pack_file *file, const scene *s);
 void scene_detail_close(scene_detail *d);
 
-/* As the item is posed, in a picture of that height; by its depth, so that it holds across the picture. */
+/* For the item's pose and a picture of that height, in pixels. By depth, not distance, so that it holds across the picture. */
 float scene_detail_scale(const scene_detail *d, const pack_file *file, const scene *s, uint32_t item, const noh_gl_camera *camera,
                          uint32_t height);
 
-/* The first time, and after scene_detail_fix, without a fade. */
+/* Choose a level. The first choice, and the first after scene_detail_fix, does not fade. */
 void scene_detail_choose(scene_detail *d, uint32_t item, const noh_detail_settings *settings, float pixels_per_metre, int64_t clock);
 
-/* Past the item's last level: that one. No targets are left out. */
+/* A level past the item's last means the last. No targets are left out. */
 void scene_detail_fix(scene_detail *d, uint32_t item, uint32_t level, float pixels_per_metre);
 
-/* After scene_detail_choose. kept (may be weights) is 0 where a target is left out. Returns how many are that had a weight. */
+/* After scene_detail_choose: weights to kept[count] (may alias), 0 where a target is left out. Returns how many of these had
+ * a weight. */
 uint32_t scene_detail_targets(scene_detail *d, uint32_t item, const noh_detail_settings *settings, const float *weights, uint32_t count,
                               float *kept);
 

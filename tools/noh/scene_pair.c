@@ -1,7 +1,8 @@
-/* scene_pair.c: a scene posed by two clips: blended, or on the way from one to the other. */
+/* scene_pair.c: a scene posed by two clips: blended, or in a transition from one to the other. */
 #include <string.h>
 
-#include "noh_tool.h"
+#include "message.h"
+#include "scene.h"
 
 /* A player that has both clips. */
 static int find_pair(scene *s, const pack_file *file, const scene_pair *pair, scene_player **player, uint32_t motions[2])
@@ -37,7 +38,7 @@ static int start(scene_player *p, uint32_t track, uint32_t motion, int64_t posit
     return 0;
 }
 
-/* Both at the same phase. */
+/* Both clips at the same phase. */
 static int pose_blend(scene_player *p, const scene_pair *pair, const uint32_t motions[2], double phase)
 {
     const noh_motion *m = p->set->anim.motions;

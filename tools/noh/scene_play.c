@@ -2,30 +2,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "noh_tool.h"
+#include "message.h"
+#include "scene.h"
 
 /* ---- clips ---- */
-
-int tool_clip_info(const pack_file *file, uint32_t index, noh_pack_motion *motion, noh_clip_info *info)
-{
-    noh_error error = { NOH_OK, "", 0, 0 };
-    noh_skeleton skeleton;
-    noh_clip_desc desc;
-    size_t bytes;
-    memset(&skeleton, 0, sizeof skeleton);
-    noh_pack_motion_at(&file->pack, index, motion);
-    (void)noh_pack_skeleton_at(&file->pack, motion->header->skeleton, &skeleton, NULL);
-    desc.bytes = motion->bytes;
-    desc.byte_count = motion->header->clip_bytes;
-    desc.bind = skeleton.bind_pose;
-    desc.joint_count = motion->header->joint_count;
-    return noh_clip_measure(&desc, info, &bytes, &error) ? tool_fail(file->path, "clip '%s': %s", motion->name, error.what) : 0;
-}
-
-double tool_clip_seconds(const noh_clip_info *info)
-{
-    return (double)info->duration_ticks / (double)NOH_TICKS_PER_SECOND;
-}
 
 /* ---- opening ---- */
 
@@ -40,13 +20,14 @@ int scene_open_anim(scene *s, const pack_file *file, const char *path)
     return s->anim->pack.motion_count ? 0 : tool_fail(path, "the pack has no clips for %s", file->path);
 }
 
-static noh_motion_set_desc set_desc(const scene *s, const pack_file *file, uint32_t player)
+static noh_motion_set_desc set_desc(const scene *s, const pack_file *file, uint32_t player, uint32_t controllers)
 {
     noh_motion_set_desc desc;
     memset(&desc, 0, sizeof desc);
     desc.clips = &s->anim->pack;
     desc.mesh = &file->pack;
     desc.skeleton = player;
+    desc.instance_count = controllers;
     return desc;
 }
 
@@ -59,13 +40,13 @@ static noh_controller_desc controller_desc(const noh_anim_set *set)
     return desc;
 }
 
-/* A pose that is made, beside the scratch. */
+/* Bytes of one pose and its matrices, beside the scratch. */
 static uint64_t pose_bytes(const noh_anim_set *set)
 {
     return (uint64_t)set->joint_count * (sizeof(noh_transform) + 12 * sizeof(float)) + (uint64_t)set->float_count * sizeof(float);
 }
 
-/* NOT_FOUND is no failure of one player: another one's skeleton may be moved. */
+/* A player whose skeleton no clip fits (NOT_FOUND) is no error while the clips fit another one. */
 static int failed_for_good(const scene *s, const pack_file *file, uint32_t fitting, const noh_error *error)
 {
     if (error->result != NOH_OK && error->result != NOH_ERR_NOT_FOUND) {
@@ -80,7 +61,7 @@ int scene_measure_players(const scene *s, const pack_file *file, uint32_t contro
     noh_error error = { NOH_OK, "", 0, 0 };
     uint32_t fitting = 0;
     for (uint32_t i = 0; i < s->player_count && s->anim->pack.motion_count; i++) {
-        noh_motion_set_desc desc = set_desc(s, file, i);
+        noh_motion_set_desc desc = set_desc(s, file, i, controllers);
         noh_motion_set_needs needs;
         noh_controller_desc controller;
         if (noh_motion_set_measure(&desc, &needs, &error) == NOH_OK) {
@@ -94,6 +75,19 @@ int scene_measure_players(const scene *s, const pack_file *file, uint32_t contro
         }
     }
     return failed_for_good(s, file, fitting, &error);
+}
+
+void scene_measure_segments(const scene *s, const pack_file *file, uint32_t controllers, uint32_t *held, uint32_t *all)
+{
+    *held = *all = 0;
+    for (uint32_t i = 0; i < s->player_count && s->anim->pack.motion_count; i++) {
+        const noh_motion_set_desc desc = set_desc(s, file, i, controllers);
+        noh_motion_set_needs needs;
+        if (noh_motion_set_measure(&desc, &needs, NULL) == NOH_OK) {
+            *held += needs.slot_count;
+            *all += needs.segment_count;
+        }
+    }
 }
 
 static int open_controllers(scene_player *p, uint32_t count)
@@ -124,10 +118,10 @@ static int open_poses(scene_player *p)
     return !p->scratch_memory || !p->pose || !p->floats || noh_pose_scratch_init(p->scratch_memory, bytes, set, 1, &p->scratch, NULL);
 }
 
-/* 0 also where no clip fits: the player then has no set, and the error says why. */
+/* Also 0 where no clip fits: the player then has no set, and *error says why. */
 static int open_player(scene *s, const pack_file *file, uint32_t index, uint32_t controllers, noh_error *error)
 {
-    const noh_motion_set_desc desc = set_desc(s, file, index);
+    const noh_motion_set_desc desc = set_desc(s, file, index, controllers);
     scene_player *p = &s->players[index];
     const size_t bytes = noh_motion_set_size(&desc, error);
     if (!bytes) {
@@ -196,7 +190,7 @@ static int fail_clip(const scene *s, const pack_file *file, const char *name)
     int status = 0;
     for (uint32_t i = 0; names && i < count && !status; i++) {
         noh_pack_motion motion;
-        noh_pack_motion_at(&s->anim->pack, i, &motion);
+        noh_pack_motion_at(&s->anim->pack, i, &motion, NULL);
         names[i] = motion.name;
         if (strcmp(motion.name, name) == 0) {
             status = tool_fail(s->anim->path, "clip '%s' moves another skeleton than %s has: names or parents of joints differ", name, file->path);
@@ -215,7 +209,7 @@ static int has_motion(const scene_player *p, const char *name, uint32_t *motion)
     return p->set && *motion < p->set->anim.motion_count;
 }
 
-/* Whether one of the motions that play moves the floats of a group. */
+/* Whether a playing clip has tracks for the floats of a group. */
 static int is_moved(const scene_player *p, uint32_t group)
 {
     const noh_controller *c = p->controllers[0];
@@ -228,15 +222,13 @@ static int is_moved(const scene_player *p, uint32_t group)
     return 0;
 }
 
-/* The weights that are moved, to all items of their nodes. */
+/* Animated weights, to every item of their nodes. */
 static void take_weights(scene *s, const scene_player *p)
 {
-    for (uint32_t g = 0; g < p->set->group_count; g++) {
-        const noh_clip_group *group = &p->set->groups[g];
-        for (uint32_t i = 0; is_moved(p, g) && i < s->item_count; i++) {
-            if (s->items[i].node == group->node && group->node != NOH_NONE) {
-                memcpy(s->items[i].weights, p->floats + group->first, group->width * sizeof(float));
-            }
+    for (uint32_t i = 0; i < s->item_count; i++) {
+        const uint32_t group = noh_motion_set_node_group(p->set, s->items[i].node);
+        if (group != NOH_NONE && is_moved(p, group)) {
+            memcpy(s->items[i].weights, p->floats + p->set->groups[group].first, p->set->groups[group].width * sizeof(float));
         }
     }
 }
@@ -258,11 +250,11 @@ void scene_pose_player(scene *s, scene_player *p)
     }
 }
 
-/* On the player's first track that is free. */
+/* On the first free track. */
 static int start_clip(scene *s, scene_player *p, uint32_t motion, double time_s)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
-    const double limit_s = 1e8; /* within what a track's position can be */
+    const double limit_s = 1e8; /* a track's position cannot be larger */
     noh_controller *c = p->controllers[0];
     noh_track_desc desc;
     uint32_t track = 0;

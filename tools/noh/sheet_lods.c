@@ -1,8 +1,13 @@
 #include "sheet_lods.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "label.h"
+#include "message.h"
+#include "png_file.h"
 
 #define USE_PIXELS 1.0 /* of error, at the size at which a level is used */
 
@@ -57,7 +62,7 @@ static void apply_smile(grid *g)
 
 static uint32_t face_count(const sheet_lods *o) { return o->faces->count ? (uint32_t)o->faces->count : 1u; }
 
-/* Weights of a row; those of the rows before it go. */
+/* The weights of a row, in place of those of the row before. */
 static int apply_row(grid *g, uint32_t row)
 {
     for (uint32_t i = 0; i < g->scene.item_count; i++) {
@@ -75,7 +80,7 @@ static int apply_row(grid *g, uint32_t row)
 
 /* ---- sizes ---- */
 
-/* How many pixels of a tile a unit of length is, where the camera looks. */
+/* Pixels of a tile per unit of length, at the centre of the view. */
 static double pixels_per_unit(const noh_gl_camera *camera, const bounds *box, uint32_t tile)
 {
     const float *m = camera->view_projection;
@@ -88,7 +93,7 @@ static double pixels_per_unit(const noh_gl_camera *camera, const bounds *box, ui
     return sqrt(up) / w * tile / 2.0;
 }
 
-/* In the world's units; the worst of the meshes. */
+/* The largest error of any mesh, world units. */
 static double level_error(const grid *g)
 {
     double worst = 0.0;

@@ -1,4 +1,4 @@
-/* sheet_lods.h: the levels of detail side by side. */
+/* sheet_lods.h: the LOD levels side by side. */
 #ifndef NOH_TOOL_SHEET_LODS_H
 #define NOH_TOOL_SHEET_LODS_H
 

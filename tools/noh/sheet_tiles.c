@@ -4,11 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define AROUND_S 0.3 /* what a transition's sheet shows of the time before and after it */
+#include "message.h"
+
+#define AROUND_S 0.3 /* shown before and after a transition */
 
 /* ---- targets ---- */
 
-/* Names longer than a pack's are cut: none of them is found. */
+/* A name longer than a pack can hold is cut, and then not found. */
 static void set_target(sheet_target *out, const char *name, size_t length, double weight)
 {
     snprintf(out->name, sizeof out->name, "%.*s", (int)(length < sizeof out->name ? length : sizeof out->name), name);
@@ -24,7 +26,7 @@ static void read_target(const char *text, sheet_target *out)
     set_target(out, text, has_weight ? (size_t)(equals - text) : strlen(text), has_weight ? weight : 1.0);
 }
 
-/* The targets that were asked for; each has to be there. */
+/* The targets named by --target; each must exist. */
 static int list_only(sheet_tiles *t)
 {
     int status = 0;
@@ -103,7 +105,7 @@ static double blend_weight(const sheet_tiles *t, uint32_t tile)
     return fraction(tile / t->clip_tiles, SHEET_BLEND_ROWS);
 }
 
-/* A repeating clip ends where it starts: its last column is left out. */
+/* A loop ends where it starts, so the last column is left out. */
 static double blend_phase(const sheet_tiles *t, uint32_t tile)
 {
     return (double)(tile % t->clip_tiles) / (double)t->clip_tiles;

@@ -3,11 +3,11 @@
 #ifndef NOH_TOOL_SHEET_TILES_H
 #define NOH_TOOL_SHEET_TILES_H
 
-#include "noh_tool.h"
+#include "scene.h"
 
 #define SHEET_BLEND_ROWS 5u /* weights 0, 1/4, 1/2, 3/4, 1 */
 
-/* One tile's. */
+/* What one tile shows. */
 typedef struct sheet_target {
     char name[NOH_NAME_BYTES_MAX];
     double weight;
@@ -16,12 +16,12 @@ typedef struct sheet_target {
 typedef struct sheet_tiles {
     const pack_file *file;
     scene rest, posed;
-    option_list clips;   /* the first is the clip that is shown, the others play along */
+    option_list clips;   /* the first sets the time, the others play along */
     const char *clip, *blend, *to, *anim; /* clip names; NULL: none */
-    int inertia;         /* how it goes to `to`: by inertia, else by a cross-fade */
-    double over_s;       /* in this time */
+    int inertia;         /* the transition to `to`: 1 inertialization, 0 a cross-fade */
+    double over_s;       /* its duration */
     double clip_seconds;
-    uint32_t clip_tiles; /* in time */
+    uint32_t clip_tiles; /* columns in time */
     option_list only;    /* NAME or NAME=WEIGHT: targets to show instead of all */
     sheet_target *targets; /* [target_count] */
     uint32_t target_count;
@@ -31,7 +31,7 @@ typedef struct sheet_tiles {
 int sheet_tiles_open(sheet_tiles *t, const pack_file *file);
 void sheet_tiles_close(sheet_tiles *t);
 
-/* How many there are, and in how many columns where that is given by what they show; 0: any. */
+/* The number of tiles; and of columns, where the content dictates it (else 0). */
 uint32_t sheet_tiles_count(const sheet_tiles *t);
 uint32_t sheet_tiles_columns(const sheet_tiles *t);
 

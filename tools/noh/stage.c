@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "message.h"
+
 int stage_shows_bones(const scene *s, const pack_file *file, int asked_for)
 {
     if (!asked_for && s->item_count) {

@@ -10,6 +10,8 @@
 #include "base/quat.h"
 #include "deform/dual_quaternion.h"
 #include "deform/skin.h"
+#include "message.h"
+#include "readback.h"
 
 typedef struct job {
     gpu *g;
@@ -59,15 +61,27 @@ static void reference(mesh_job *m, const noh_morph_layers *layers)
     }
 }
 
+/* The largest number that the skinning of this pose rounds: the diagonal of the box, or an absolute coordinate. */
+static double magnitude(const mesh_job *m)
+{
+    const noh_mesh_header *h = m->mesh->header;
+    double square = 0.0, largest = 0.0;
+    for (int i = 0; i < 3; i++) {
+        square += pow((double)h->bounds_max[i] - (double)h->bounds_min[i], 2.0);
+        largest = fmax(largest, fmax(fabs((double)h->bounds_max[i]), fabs((double)h->bounds_min[i])));
+    }
+    for (size_t i = 0; i < 3u * (size_t)h->vertex_count; i++) {
+        largest = fmax(largest, fabs((double)m->positions[i]));
+    }
+    return fmax(largest, sqrt(square));
+}
+
 static void compare(mesh_job *m)
 {
     const noh_mesh_header *h = m->mesh->header;
     verify_skin *out = m->j->out;
-    double square = 0.0, bound, error = 0.0;
-    for (int i = 0; i < 3; i++) {
-        square += pow((double)h->bounds_max[i] - (double)h->bounds_min[i], 2.0);
-    }
-    bound = 1e6 * VERIFY_SKIN_SHARE * (double)h->world_scale * sqrt(square);
+    double square = 0.0, error = 0.0;
+    const double bound = out->bound_scale * 1e6 * VERIFY_SKIN_SHARE * (double)h->world_scale * magnitude(m);
     for (size_t v = 0; v < h->vertex_count; v++) {
         square = 0.0;
         for (size_t c = 0; c < 3; c++) {
@@ -102,9 +116,9 @@ static int check_pose(mesh_job *m)
     noh_morph_layers_init(m->layers, noh_morph_layers_size(m->mesh) + 16u, m->mesh, &layers, NULL);
     noh_morph_accumulate_scalar(m->mesh, m->weights, &layers);
     reference(m, &layers);
-    noh_gl_morph_weights(j->morph.morph, instance, m->weights, NULL);
+    noh_gl_morph_set_weights(j->morph.morph, instance, m->weights, NULL);
     noh_gl_morph_update(j->morph.morph, NULL);
-    noh_gl_skin_set(j->skin, instance, m->matrices);
+    noh_gl_skin_set_matrices(j->skin, instance, m->matrices);
     noh_gl_skin_update(j->skin);
     status = readback_skinned(&j->back, m->gl_mesh, &morph, &skin, 0, m->got);
     if (!status) {
@@ -179,7 +193,7 @@ static int check_clips(mesh_job *m)
         noh_pack_motion motion;
         noh_skeleton skeleton;
         uint32_t index;
-        noh_pack_motion_at(pack, i, &motion);
+        noh_pack_motion_at(pack, i, &motion, NULL);
         if (!noh_pack_bind_motion(pack, &motion, &skeleton, &index, NULL) && index == m->skin.header->skeleton) {
             status = check_clip(m, &motion);
             checked++;
@@ -211,8 +225,8 @@ static int check_mesh(job *j, uint32_t index, const noh_gl_mesh *gl_mesh)
     m.mesh = &j->s->meshes[index];
     m.gl_mesh = gl_mesh;
     m.index = index;
-    noh_pack_skin_at(&j->file->pack, m.mesh->header->skin, &m.skin);
-    noh_pack_skeleton_at(&j->file->pack, m.skin.header->skeleton, &m.skeleton, NULL);
+    noh_pack_skin_at(&j->file->pack, m.mesh->header->skin, &m.skin, NULL);
+    noh_pack_skeleton_at(&j->file->pack, m.skin.header->skeleton, &m.skeleton, NULL, NULL);
     vertices = m.mesh->header->vertex_count;
     joints = m.skin.header->joint_count;
     m.pose = calloc(m.skeleton.joint_count, sizeof *m.pose);
@@ -274,9 +288,11 @@ int verify_skin_run(gpu *g, const pack_file *file, const scene *s, const noh_gl_
     noh_error error = { NOH_OK, "", 0, 0 };
     uint64_t before = noh_gl_ledger_bytes(&g->ledger);
     job j;
+    const double bound_scale = out->bound_scale;
     void *memory;
     int status;
     memset(out, 0, sizeof *out);
+    out->bound_scale = bound_scale;
     memset(&j, 0, sizeof j);
     j.g = g;
     j.file = file;
@@ -291,7 +307,8 @@ int verify_skin_run(gpu *g, const pack_file *file, const scene *s, const noh_gl_
     if (!memory) {
         return tool_fail(file->path, "out of memory");
     }
-    if (noh_gl_skin_init(memory, (size_t)plan.cpu_bytes, &g->gl, &g->caps, &g->ledger, &desc, &j.skin, &error)) {
+    if (noh_gl_skin_init(memory, (size_t)plan.cpu_bytes,
+                         &(noh_gl_device){ &g->gl, &g->caps, &g->ledger, NULL, 0 }, &desc, &j.skin, &error)) {
         free(memory);
         return tool_fail_error(file->path, &error);
     }

@@ -1,9 +1,9 @@
-/* view_without.c: the verb `view` where the window's libraries were missing at build time. */
-#include "noh_tool.h"
+/* view_without.c: in place of view/ where its libraries were missing when noh was built. */
+#include "message.h"
+#include "view/view_window.h"
 
-int verb_view(int argc, char **argv)
+int view_window_run(const view_run *run)
 {
-    (void)argc;
-    (void)argv;
+    (void)run;
     return tool_fail("view", "noh was built without %s (Debian: apt install libglfw3-dev libimgui-dev, then make again)", NOH_VIEW_WITHOUT);
 }

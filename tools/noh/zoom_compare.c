@@ -3,8 +3,9 @@
 #include <stdlib.h>
 
 #include "zoom.h"
+#include "canvas.h"
 
-#define PATCH 1024u /* pixels: about a degree of view, all that an eye sees sharply at once */
+#define PATCH 1024u /* pixels: about one degree of view, the extent of sharp vision */
 
 static int covered(const zoom_picture *p, int x, int y)
 {
@@ -51,7 +52,7 @@ zoom_shift zoom_compare_silhouettes(const zoom_picture *a, const zoom_picture *b
 
 /* ---- colours ---- */
 
-/* A pixel of a larger picture with the same middle. */
+/* A pixel, addressed in a larger picture with the same centre. */
 static const uint8_t *pixel(const zoom_picture *p, uint32_t size, uint32_t x, uint32_t y)
 {
     static const uint8_t nothing[4] = { CANVAS_BACKGROUND_SRGB, 0 };

@@ -1,11 +1,12 @@
-/* zoom_path.c: where the camera of a zoom is, and what is chosen there. */
+/* zoom_path.c: the camera of a zoom in each frame, and the levels chosen there. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "zoom.h"
+#include "message.h"
 
-/* The way begins and ends so much beyond where the last level is chosen: at its end a fade has time. */
+/* The path extends this factor beyond the outermost switches, so that the last fade can end. */
 #define BEYOND_NEAR 1.1
 #define BEYOND_FAR 1.3
 
@@ -14,13 +15,14 @@
 
 /* ---- the way ---- */
 
-/* Pixels per metre at which a level of this error takes the whole share of the meshes. */
+/* Pixels per metre at which a level with this error uses up the share of the error budget that meshes have. */
 static double scale_of_share(const zoom_path *p, float error_m)
 {
     return error_m > 0.0f ? (double)p->settings.pixels * (double)p->settings.shares[NOH_DETAIL_MESH] / (double)error_m : 0.0;
 }
 
-/* From where the finest level is chosen, whatever was before, to where the coarsest is. Returns 0 where all are full. */
+/* The range of scales from where the finest level is chosen, despite hysteresis, to where the coarsest is. Returns 0 where no
+ * item has levels. */
 static int find_scales(const zoom_path *p, double *near, double *far)
 {
     *near = *far = 0.0;
@@ -38,7 +40,7 @@ static int find_scales(const zoom_path *p, double *near, double *far)
 
 static double half_view(void) { return tan(ORBIT_VIEW_RAD / 2.0); }
 
-/* Of a scale at the scene's nearest point. */
+/* The distance at which the scene's nearest point has this scale. */
 static double distance_of(const zoom_path *p, double scale) { return p->side / (2.0 * half_view() * scale) + p->at.radius; }
 
 static int plan(zoom_path *p, const char *path, double near, double far)
@@ -48,7 +50,7 @@ static int plan(zoom_path *p, const char *path, double near, double far)
         return tool_fail(path, "no level of detail differs from the full mesh (`noh build --lod N` makes them): give --near, --far and --size");
     }
     if (!p->side) {
-        const double wanted = near_scale * 2.0 * half_view() * (p->at.distance - p->at.radius); /* that the scene fills it */
+        const double wanted = near_scale * 2.0 * half_view() * (p->at.distance - p->at.radius); /* so that the scene fills it */
         p->side = 2u * (uint32_t)fmin(SIDE_MOST / 2.0, fmax(SIDE_LEAST / 2.0, ceil(wanted / 2.0)));
     }
     p->near = near > 0.0 ? near : distance_of(p, near_scale);
@@ -125,7 +127,7 @@ uint32_t zoom_path_entered(const zoom_path *p, int way)
     return count;
 }
 
-/* ---- a hand that shakes ---- */
+/* ---- a shaking camera ---- */
 
 static void start_again(zoom_path *p)
 {

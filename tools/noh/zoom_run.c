@@ -4,8 +4,9 @@
 #include <string.h>
 
 #include "zoom.h"
+#include "message.h"
 
-#define SAMPLES 4u /* of a pixel that is seen */
+#define SAMPLES 4u /* per pixel, of the pictures whose colours are compared */
 
 /* ---- opening ---- */
 
@@ -71,7 +72,7 @@ static int same_detail(const load_detail *a, const load_detail *b)
     return same;
 }
 
-/* What is left of an item's weights. Returns whether they are others than before. */
+/* An item's weights without the targets left out. Returns 1 where they changed since the last frame. */
 static int choose_weights(zoom *z, uint32_t item)
 {
     const uint32_t count = z->full->meshes[z->full->items[item].mesh].header->target_count;
@@ -85,7 +86,7 @@ static int choose_weights(zoom *z, uint32_t item)
     return changed;
 }
 
-/* What is drawn now, and what was before. */
+/* What is drawn in this frame, against the one before. */
 static void swap_details(zoom *z)
 {
     for (uint32_t i = 0; i < z->path.detail.item_count; i++) {

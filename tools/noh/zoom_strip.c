@@ -1,8 +1,13 @@
 /* zoom_strip.c: frames of a zoom side by side: with levels, full, and in the colours of the levels. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "zoom.h"
+#include "canvas.h"
+#include "label.h"
+#include "message.h"
+#include "png_file.h"
 
 #define GAP 4u
 #define LABEL 14u  /* pixels above the pictures */
@@ -71,7 +76,7 @@ int zoom_strip_take(zoom_strip *s, zoom *z, const noh_gl_camera *camera, uint32_
     return status;
 }
 
-/* Upright, behind what it covers the background. */
+/* Flipped upright, and opaque. */
 static void place(const zoom_picture *p, uint8_t *rgba, uint32_t width, uint32_t left, uint32_t top)
 {
     for (uint32_t y = 0; y < p->size; y++) {

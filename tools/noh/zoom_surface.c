@@ -5,6 +5,7 @@
 
 #include "convert/lod/lod.h"
 #include "zoom.h"
+#include "message.h"
 
 typedef struct zoom_surface_entry {
     uint32_t item, level;
@@ -12,9 +13,9 @@ typedef struct zoom_surface_entry {
     double metres;
 } zoom_surface_entry;
 
-/* Both surfaces as one mesh: the full one's vertices, behind them the level's. */
+/* Both surfaces as one mesh: the vertices of the full one, then those of the level. */
 typedef struct pair {
-    model_mesh mesh;  /* its triangles are the full one's */
+    model_mesh mesh;  /* with the triangles of the full one */
     lod_level level;
     lod_distance *distances;
 } pair;
@@ -77,7 +78,7 @@ static int take_positions(const scene *s, uint32_t item, float *position)
     return status;
 }
 
-/* `shown` has the item's mesh at the level. */
+/* `shown` has the item's mesh at that level. */
 static int measure(const scene *full, const scene *shown, uint32_t item, double *metres)
 {
     const noh_mesh *fine = &full->meshes[full->items[item].mesh], *coarse = &shown->meshes[shown->items[item].mesh];

@@ -1,8 +1,10 @@
-/* zoom_target.c: pictures of a zoom, read back with what they cover. */
+/* zoom_target.c: pictures of a zoom, read back with their coverage in alpha. */
 #include <math.h>
 #include <string.h>
 
 #include "zoom.h"
+#include "canvas.h"
+#include "message.h"
 
 #define MARGIN 8.0 /* pixels around the scene */
 
@@ -79,7 +81,7 @@ int zoom_target_draw(zoom_target *t, load *l, const noh_gl_camera *camera, zoom_
     const noh_gl_api *gl = &t->g->gl;
     const GLint low = (GLint)((t->side - t->size) / 2u);
     gl->BindFramebuffer(GL_FRAMEBUFFER, t->framebuffer);
-    gl->Viewport(0, 0, (GLsizei)t->side, (GLsizei)t->side); /* the whole of it: fades go by the pixel's place */
+    gl->Viewport(0, 0, (GLsizei)t->side, (GLsizei)t->side); /* all of it: fades dither by pixel coordinates */
     gl->Enable(GL_SCISSOR_TEST);
     gl->Scissor(low, low, (GLsizei)t->size, (GLsizei)t->size);
     if (!t->g->caps.is_es) {

@@ -1,5 +1,10 @@
-/* clip_analyse.c: what of each joint is animated, what its error weighs, and what its tracks
- * are relative to. */
+/* clip_analyse.c: what of each joint is animated, what an error of it moves, and what its tracks are relative to.
+ *
+ * A track whose whole range moves nothing by more than a part of the bound is stored as a constant. An error of a
+ * rotation moves everything below the joint: its "lever" is the farthest such point that no animated joint in between
+ * can correct. Animated rotations are stored relative to a reference (their mean, or the bind pose where that is near),
+ * as three numbers that grow like the angle; where the three are correlated, as in a hinge that is not aligned with an
+ * axis, they are turned into the axes of their covariance (`find_mix`), which leaves fewer coefficients to store. */
 #include <stdlib.h>
 
 #include "clip_encoder.h"
@@ -101,7 +106,7 @@ static void find_modes(encoder *e)
     free(lever);
 }
 
-/* Does `joint` move rigidly with `carrier`? All between them must be constant. */
+/* Whether `joint` moves rigidly with `carrier`: all joints between them are constant. */
 static int carried(const encoder *e, uint32_t carrier, uint32_t joint)
 {
     while (joint != carrier) {
@@ -140,7 +145,7 @@ static void point_offset(const encoder *e, uint32_t carrier, enc_point *point)
     memcpy(point->offset, v, sizeof v);
 }
 
-/* How far from a joint its descendants come; their shells included. */
+/* The radius of a joint's descendants around it, shells included. */
 static double scale_reach(const encoder *e, uint32_t joint)
 {
     double reach = 0.0;
@@ -281,7 +286,7 @@ static enc_track *new_track(encoder *e, noh_clip_kind kind, uint32_t target)
     return t;
 }
 
-/* Negate a joint's whole motion, so that it starts in its reference's hemisphere. */
+/* Negate a joint's rotations in the whole clip where it begins outside its reference's hemisphere. */
 static void align_motion(encoder *e, uint32_t joint, const double reference[4])
 {
     double sum = 0.0;
@@ -368,7 +373,9 @@ static void float_tracks(encoder *e)
 
 /* ---- mixed axes ---- */
 
-/* Eigenvectors of a symmetric matrix in the columns of v, by Jacobi rotations. */
+/* Eigenvectors of a symmetric matrix in the columns of v, by Jacobi rotations: each one zeroes an element beside the
+ * diagonal and shrinks their sum of squares, so a few sweeps reach single precision (Golub and Van Loan, Matrix
+ * Computations, 8.5). */
 static void eigen3(double a[9], double v[9])
 {
     memset(v, 0, 9 * sizeof *v);

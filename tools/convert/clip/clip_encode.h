@@ -1,11 +1,12 @@
-/* clip_encode.h: from raw motion to the bytes of runtime/anim/clip_format.h.
+/* clip_encode.h: from a raw clip to the bytes of runtime/anim/clip_format.h.
  *
  * The error is an object-space distance: three virtual points at `shell_cm` from each joint,
- * along its axes, carried by the whole chain of parents, against the raw motion; at every frame,
- * and between frames against the raw motion with translations and scales lerped and rotations
+ * along its axes, carried by the whole chain of parents, against the raw clip; at every frame,
+ * and between frames against the raw clip with translations and scales lerped and rotations
  * lerped and normalised (neighbouring raw quaternions taken in one hemisphere). It is at most
  * `error_cm` wherever it is measured: at frames and at the eighths between them, by the decoder's
- * own arithmetic. Floats are bounded each for itself: |error| x reach <= error_cm.
+ * own arithmetic. Scalars are bounded one by one: |error| x radius <= error_cm, where the
+ * radius is how far the scalar moves the surface per unit.
  * Deterministic: no clock, no address, contraction off. */
 #ifndef NOH_CONVERT_CLIP_ENCODE_H
 #define NOH_CONVERT_CLIP_ENCODE_H
@@ -23,7 +24,7 @@ typedef struct clip_options {
     double float_error;       /* bound of floats without a reach, in their own unit; 0 = 0.001 */
     const double *joint_error_cm; /* [joint_count] bounds of single joints, 0 = error_cm; NULL = none */
     uint32_t segment_frames;  /* wanted length of a segment, 8..40; 0 = 24 */
-    int open_loop;            /* for masking: no joint makes up for the error of its parents */
+    int open_loop;            /* for masking: no joint corrects the error of its parents */
     void (*progress)(void *user, uint32_t done, uint32_t of); /* segments; NULL = none */
     void *user;
     struct clip_histogram *histogram; /* NULL, or where symbols are counted, to train the tables */

@@ -1,8 +1,13 @@
 /* clip_fit.c: one track of one segment, with the largest step that its check allows.
  *
- * Steps are tried from large to small. A step that just fails gets a few chances: the targets
- * of the frames that are out are pushed against their error, which lets the quantiser fall
- * another way. */
+ * The track's components are transformed by an orthonormal DCT along time: a smooth motion has nearly all of its
+ * energy in the first coefficients, and the rest quantise to zero. All coefficients share one step, because the
+ * transform is orthonormal: an error in any of them weighs the same in time. Each step is judged by decoding with the
+ * runtime's own arithmetic and asking `check`, so it does not matter how the error depends on the step.
+ *
+ * Steps (quarters of an octave) are tried from large to small, starting two octaves above what the last segment took.
+ * A step that just fails gets a few more chances: the targets of the frames that are out of bounds are pushed against
+ * their error, which lets the quantiser fall another way. */
 #include <stdlib.h>
 
 #include "clip_encoder.h"
@@ -45,10 +50,15 @@ static void forward(const encoder *e, const enc_track *t, uint32_t n, double (*x
     const double *b = e->transforms[n];
     const float *m = t->track.mix;
     for (uint32_t k = 0; k < n; k++, b += n) {
-        double a[3] = { 0.0, 0.0, 0.0 };
+        double a0 = 0.0, a1 = 0.0, a2 = 0.0, a[3];
         for (uint32_t f = 0; f < n; f++) {
-            for (int c = 0; c < 3; c++) a[c] += b[f] * x[f][c];
+            a0 += b[f] * x[f][0];
+            a1 += b[f] * x[f][1];
+            a2 += b[f] * x[f][2];
         }
+        a[0] = a0;
+        a[1] = a1;
+        a[2] = a2;
         for (int c = 0; c < 3; c++) {
             if (t->track.kind == NOH_CLIP_FLOATS) {
                 out[k][c] = a[c] / (double)m[4 * c];
@@ -83,19 +93,18 @@ typedef struct attempt {
     enc_piece *piece;
     uint32_t count;
     const float *reference;
+    double whole[ENC_FRAMES_MAX][3]; /* the spectrum of the targets as they came: it does not depend on the step */
     float components[ENC_FRAMES_MAX][4];
     uint8_t frames[ENC_FRAMES_MAX * FRAME_BYTES];
 } attempt;
 
 /* Quantise and decode as the runtime does. */
-static int try_step(attempt *a, double (*targets)[3], int id)
+static int try_spectrum(attempt *a, double (*spectrum)[3], int id)
 {
-    double spectrum[ENC_FRAMES_MAX][3];
     const noh_clip_basis *basis = &a->e->bases[a->count];
     const float step = noh_clip_step((uint32_t)id);
     const int32_t(*coefs)[4] = (const int32_t(*)[4])a->piece->coefs;
     const float(*components)[4] = (const float(*)[4])a->components;
-    forward(a->e, a->track, a->count, targets, spectrum);
     if (!quantise(a->e, spectrum, a->count, (double)step, a->piece)) return 0;
     noh_clip_dequantise(coefs, a->piece->last, step, a->track->track.flags & NOH_CLIP_TRACK_MIX ? a->track->track.mix : NULL, a->components);
     if (a->track->track.kind == NOH_CLIP_ROTATION) {
@@ -124,16 +133,17 @@ static void nudge(attempt *a, double (*targets)[3], double (*work)[3], const dou
 /* Returns whether the step holds; *first is the violation before any nudge. */
 static int try_nudged(attempt *a, double (*targets)[3], int id, enc_check check, void *user, double *first)
 {
-    double work[ENC_FRAMES_MAX][3], violations[ENC_FRAMES_MAX];
-    memcpy(work, targets, a->count * sizeof *work);
+    double work[ENC_FRAMES_MAX][3], spectrum[ENC_FRAMES_MAX][3], violations[ENC_FRAMES_MAX];
     *first = INFINITY;
     for (int i = 0; i <= a->e->tuning.nudges; i++) {
         double v;
-        if (!try_step(a, work, id)) return 0;
+        if (i) forward(a->e, a->track, a->count, work, spectrum);
+        if (!try_spectrum(a, i ? spectrum : a->whole, id)) return 0;
         v = check(a->e, user, a->frames, violations);
         if (i == 0) *first = v;
         if (v <= 1.0) return 1;
         if (!(v <= HOPELESS) || i == a->e->tuning.nudges) return 0;
+        if (i == 0) memcpy(work, targets, a->count * sizeof *work);
         nudge(a, targets, work, violations);
     }
     return 0;
@@ -185,7 +195,8 @@ int enc_fit(encoder *e, enc_track *track, enc_piece *piece, uint32_t count, cons
     a.piece = piece;
     a.count = count;
     a.reference = reference;
-    if (!search(&a, targets, check, user, &best) && !try_step(&a, targets, best)) return 1;
+    forward(e, track, count, targets, a.whole);
+    if (!search(&a, targets, check, user, &best) && !try_spectrum(&a, a.whole, best)) return 1;
     check(e, user, a.frames, violations);
     return 0;
 }

@@ -1,9 +1,15 @@
 /* clip_segment.c: one segment in a closed loop.
  *
- * Joints are coded parents first, each against what the decoder will have made of its parents:
- * the target of a rotation is the raw object-space rotation seen from the lossy parent, turned
- * a little so that what it carries makes up for the error of its own position; the target of a
- * translation is the raw position seen from there. Errors of parents so do not add up. */
+ * Joints are coded parents first, and each is coded against what the decoder will have made of its parents: the
+ * target of a rotation is the raw object-space rotation seen from the decoded parent, the target of a translation the
+ * raw position seen from there. A parent's error so becomes part of its child's target and is corrected instead of
+ * added to; this is what prediction from decoded values does in every lossy codec (DPCM, video), applied along the
+ * skeleton. A rotation's target is also turned a little (`correct`), so that the points it carries make up for the
+ * error of its own position, which it cannot change.
+ *
+ * How exact a joint must be is not known in advance: the bound is on the object-space error of the whole chain, at
+ * frames and between them. So the segment is fitted, measured as a whole, and fitted again with a smaller share of
+ * the bound (`slack`) until it holds; four tunings are tried and the one of fewest bytes is kept. */
 #include <stdlib.h>
 
 #include "clip_encoder.h"
@@ -101,7 +107,11 @@ static void add_pull(double a[6], double b[3], const double u[3], const double o
     b[2] -= weight * (u[0] * off[1] - u[1] * off[0]);
 }
 
-/* The small turn that best moves a joint's shell and what it carries back by its position's error. */
+/* The small turn that best moves a joint's shell and what it carries back by its position's error.
+ *
+ * A turn by the small vector x moves a point at u by x cross u. The turn that brings all points nearest to -off, in the
+ * sense of least squares, solves A x = b with A = sum of w (u.u I - u u^T) and b = -sum of w (u cross off): three
+ * equations, by Cramer's rule. Where the points lie on a line the turn about it is not determined, and none is made. */
 static void correct(const encoder *e, uint32_t joint, uint32_t frame, const double position[3], double q[4])
 {
     const enc_joint *t = &e->joints[joint];

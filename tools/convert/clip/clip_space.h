@@ -77,7 +77,10 @@ static inline void space_matrix(const double q[4], double m[9])
 
 static inline void space_apply(const double m[9], const double v[3], double o[3])
 {
-    for (int r = 0; r < 3; r++) o[r] = m[3 * r] * v[0] + m[3 * r + 1] * v[1] + m[3 * r + 2] * v[2];
+    const double x = v[0], y = v[1], z = v[2];
+    o[0] = m[0] * x + m[1] * y + m[2] * z;
+    o[1] = m[3] * x + m[4] * y + m[5] * z;
+    o[2] = m[6] * x + m[7] * y + m[8] * z;
 }
 
 static inline double space_distance(const double a[3], const double b[3])
@@ -127,13 +130,11 @@ static inline void space_compose(const space_global *parent, const space_local *
 /* The largest distance of the three points at the shell. */
 static inline double space_error(const space_global *a, const space_global *b, double shell)
 {
+    const double x = a->p[0] - b->p[0], y = a->p[1] - b->p[1], z = a->p[2] - b->p[2];
     double worst = 0.0;
     for (int k = 0; k < 3; k++) {
-        double square = 0.0;
-        for (int i = 0; i < 3; i++) {
-            const double d = shell * (a->m[3 * i + k] - b->m[3 * i + k]) + (a->p[i] - b->p[i]);
-            square += d * d;
-        }
+        const double dx = shell * (a->m[k] - b->m[k]) + x, dy = shell * (a->m[3 + k] - b->m[3 + k]) + y,
+                     dz = shell * (a->m[6 + k] - b->m[6 + k]) + z, square = dx * dx + dy * dy + dz * dz;
         if (!(square <= worst)) worst = square; /* a not-a-number wins */
     }
     return sqrt(worst);

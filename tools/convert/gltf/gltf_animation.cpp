@@ -149,7 +149,7 @@ static void read_channels(file &f, const tinygltf::Animation &a, const std::stri
         if (!reason && !taken.insert({node, path}).second)
             reason = "another channel has the same target";
         if (reason) {
-            warn(f, "%s was skipped: %s", where.c_str(), reason);
+            leave_out(f, where, std::string(" was skipped: ") + reason);
             continue;
         }
         model_channel &channel = out.channels[out.channel_count++];
@@ -172,7 +172,7 @@ static void read_clip(file &f, size_t index)
         read_extras(f, a, where, clip);
         return;
     }
-    warn(f, "%s was skipped: no channel of it is left", where.c_str());
+    leave_out(f, where, " was skipped: no channel of it is left");
     free(clip.channels);
     free(clip.name);
     clip = model_clip();

@@ -7,7 +7,7 @@
 namespace gltf {
 
 static const size_t sets_max = 16;
-static const double sum_tolerance = 1e-2;
+static const double sum_tolerance = 1e-3; /* of floats; exporters round */
 
 struct influence {
     uint32_t joint;
@@ -48,35 +48,51 @@ static std::vector<float> read_sets(file &f, const tinygltf::Primitive &p, const
     return all;
 }
 
-/* Used influences of one vertex, the strongest first; as many as their weights make, whatever their number. */
+/* Half a step of the coarsest type that any set of weights is stored in: how far rounding may move one weight. */
+static double weight_rounding(const file &f, const tinygltf::Primitive &p, size_t sets)
+{
+    double most = 0.0;
+    for (size_t s = 0; s < sets; ++s) {
+        int type = accessor_at(f, p.attributes.at(text("WEIGHTS_%zu", s)), "").componentType;
+        double half = type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ? 0.5 / 255.0 : type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ? 0.5 / 65535.0 : 0.0;
+        most = std::max(most, half);
+    }
+    return most;
+}
+
+static double sum_of(const std::vector<influence> &used)
+{
+    double sum = 0.0;
+    for (const influence &i : used)
+        sum += static_cast<double>(i.weight);
+    return sum;
+}
+
+/* Used influences of one vertex, the strongest first. A vertex without any has no place in any pose: it is refused. */
 static std::vector<influence> sort_influences(const float *joints, const float *weights, size_t count, const std::string &where,
                                               size_t vertex)
 {
     std::vector<influence> used;
-    double sum = 0.0;
     for (size_t i = 0; i < count; ++i) {
         if (weights[i] < 0.0f)
             fail(where + text(" vertex %zu", vertex), text("the weight %g is negative", static_cast<double>(weights[i])));
-        sum += static_cast<double>(weights[i]);
         if (weights[i] > 0.0f)
             used.push_back({static_cast<uint32_t>(joints[i]), weights[i]});
     }
-    /* each weight of normalised bytes may be rounded by half a step */
-    if (!(std::fabs(sum - 1.0) <= sum_tolerance + static_cast<double>(used.size()) * 0.5 / 255.0))
-        fail(where + text(" vertex %zu", vertex), text("the weights sum to %g: they must sum to 1", sum));
+    if (used.empty())
+        fail(where + text(" vertex %zu", vertex), "its weights sum to 0: give it at least one joint");
     std::stable_sort(used.begin(), used.end(), [](const influence &a, const influence &b) { return a.weight > b.weight; });
     return used;
 }
 
-/* Keeps the strongest. Returns the weight that is left out. */
+/* Keeps the strongest and divides them by their sum, so that they sum to 1 whatever the file says: without that a
+ * vertex would be drawn towards the origin (or away from it) by what is missing. Returns the share that is dropped. */
 static double store_influences(const std::vector<influence> &used, size_t vertex, model_mesh &out)
 {
     size_t count = std::min<size_t>(used.size(), MODEL_INFLUENCES_MAX);
-    double kept = 0.0, all = 0.0;
-    for (size_t i = 0; i < used.size(); ++i) {
-        all += static_cast<double>(used[i].weight);
-        kept += i < count ? static_cast<double>(used[i].weight) : 0.0;
-    }
+    double kept = 0.0, all = sum_of(used);
+    for (size_t i = 0; i < count; ++i)
+        kept += static_cast<double>(used[i].weight);
     for (size_t i = 0; i < count; ++i) {
         out.joint_limit = std::max(out.joint_limit, used[i].joint + 1);
         out.joints[vertex * MODEL_INFLUENCES_MAX + i] = static_cast<uint16_t>(used[i].joint);
@@ -101,27 +117,45 @@ static void fill_rigid(const model_submesh &part, model_mesh &out)
     out.joint_limit = std::max(out.joint_limit, 1u);
 }
 
-void read_influences(file &f, const tinygltf::Primitive &p, const model_submesh &part, const std::string &where, model_mesh &out)
+static void note_changes(const std::vector<influence> &used, double lost, double rounding, influence_changes &changes)
 {
-    size_t sets = count_sets(p, where), count = part.vertex_count, dropped = 0;
-    double most = 0.0;
+    double sum = sum_of(used);
+    if (!(std::fabs(sum - 1.0) <= sum_tolerance + rounding * static_cast<double>(used.size()))) {
+        ++changes.rescaled;
+        if (std::fabs(sum - 1.0) > std::fabs(changes.farthest_sum - 1.0))
+            changes.farthest_sum = sum;
+    }
+    changes.truncated += used.size() > MODEL_INFLUENCES_MAX;
+    changes.most_lost = std::fmax(changes.most_lost, lost);
+}
+
+void read_influences(file &f, const tinygltf::Primitive &p, const model_submesh &part, const std::string &where, model_mesh &out,
+                     influence_changes &changes)
+{
+    size_t sets = count_sets(p, where), count = part.vertex_count;
     if (sets == 0) {
-        warn(f, "%s has no joints, but others of its mesh have: it was bound to the first joint", where.c_str());
+        leave_out(f, where, " has no joints, but others of its mesh have: it was bound to the first joint");
         fill_rigid(part, out);
         return;
     }
     charge(f, uint64_t{count} * sets, 8 * sizeof(float), where);
     std::vector<float> joints = read_sets(f, p, "JOINTS", c_u8 | c_u16, sets, count, where);
     std::vector<float> weights = read_sets(f, p, "WEIGHTS", c_f32 | c_u8n | c_u16n, sets, count, where);
+    const double rounding = weight_rounding(f, p, sets);
     for (size_t v = 0; v < count; ++v) {
         const std::vector<influence> used = sort_influences(&joints[v * sets * 4], &weights[v * sets * 4], sets * 4, where, v);
-        double lost = store_influences(used, part.first_vertex + v, out);
-        dropped += used.size() > MODEL_INFLUENCES_MAX;
-        most = std::fmax(most, lost);
+        note_changes(used, store_influences(used, part.first_vertex + v, out), rounding, changes);
     }
-    if (dropped > 0)
+}
+
+void warn_influence_changes(file &f, const influence_changes &changes, const std::string &where)
+{
+    if (changes.rescaled > 0)
+        warn(f, "%s: the weights of %zu vertices do not sum to 1 and were divided by their sum, at worst %.4g", where.c_str(),
+             changes.rescaled, changes.farthest_sum);
+    if (changes.truncated > 0)
         warn(f, "%s: %zu vertices have more than %u joints; the strongest were kept, up to %.2g of the weight was dropped",
-             where.c_str(), dropped, MODEL_INFLUENCES_MAX, most);
+             where.c_str(), changes.truncated, MODEL_INFLUENCES_MAX, changes.most_lost);
 }
 
 /* A mesh names joints by their place in the skin of the node that draws it. */

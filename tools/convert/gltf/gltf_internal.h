@@ -8,8 +8,10 @@
  *
  *   gltf_read.cpp      model_read_gltf: the container, the order of the steps
  *   gltf_json.cpp      the JSON: checks, repairs, tinygltf
- *   gltf_buffer.cpp    files, URIs, buffers, buffer views
+ *   gltf_file.cpp      failures, warnings, names
+ *   gltf_buffer.cpp    files, URIs, buffers
  *   gltf_meshopt.cpp   EXT_meshopt_compression
+ *   gltf_view.cpp      buffer views, plain or compressed
  *   gltf_accessor.cpp  accessors to floats and indices
  *   gltf_mesh.cpp      meshes, primitives, targets
  *   gltf_scene.cpp     nodes
@@ -17,13 +19,15 @@
  *   gltf_skin.cpp      skins, and the nodes whose meshes they move
  *   gltf_animation.cpp animations
  *   gltf_extras.cpp    an animation's extras: callback keys, sync markers, loops
- *   gltf_material.cpp  materials, textures, images */
+ *   gltf_material.cpp  materials, textures, images
+ *   gltf_left_out.cpp  warnings about what the file has and the model has no place for */
 #ifndef NOH_CONVERT_GLTF_INTERNAL_H
 #define NOH_CONVERT_GLTF_INTERNAL_H
 
 #include "convert/model/model_build.h"
 
 #include <cstdint>
+#include <map>
 #include <new>
 #include <string>
 #include <vector>
@@ -62,6 +66,12 @@ struct span {
     uint64_t stride; /* 0 = tightly packed */
 };
 
+/* One kind of thing that the model has no place for. */
+struct left_out {
+    std::string first, what; /* where the first one is, and what a warning says of it */
+    size_t count;
+};
+
 /* What is loaded of a file while the model is built from it. */
 struct file {
     std::string path, directory; /* directory: with its slash, or empty */
@@ -78,14 +88,22 @@ struct file {
     std::vector<uint32_t> node_of;     /* [json.nodes] likewise */
     std::vector<uint32_t> skin_of;     /* [json.skins] likewise */
     std::vector<uint32_t> texture_of;  /* [json.textures] likewise */
+    std::vector<left_out> losses;      /* in the order in which they were met */
+    std::map<std::string, size_t> loss_of; /* what -> its place in losses */
 };
 
-/* --- gltf_read.cpp --- */
+/* --- gltf_file.cpp --- */
 template <class... Arguments> void warn(file &f, const char *format, Arguments... arguments)
 {
     if (model_warn(f.out, format, arguments...))
         throw std::bad_alloc();
 }
+/* Something at `where` is left out, or read as something else; `what` continues the sentence (" was skipped: ...",
+ * ": the normal texture was left out"). One warning for each `what` is given when the file has been read: it names
+ * the first place and says how many more there are, so a file of a thousand nodes cannot bury other warnings. */
+void leave_out(file &f, const std::string &where, const std::string &what);
+/* Give those warnings. */
+void warn_left_out(file &f);
 /* Count bytes of the model before they are allocated; refuse what no honest file of this size needs. */
 void charge(file &f, uint64_t count, uint64_t element_size, const std::string &where);
 /* A zeroed array of the model, charged. */
@@ -109,19 +127,22 @@ float to_float(double value, const std::string &where);
 /* --- gltf_json.cpp --- */
 void parse_json(file &f, const char *text, size_t size);
 bool uses_extension(const file &f, const char *name);
+bool is_supported(const std::string &extension);
 
 /* --- gltf_buffer.cpp --- */
 void load_buffers(file &f);
 bytes read_whole_file(const std::string &path, const std::string &where);
 /* The bytes behind a URI: data: or a file beside the glTF. Throws failure. */
 bytes read_uri(file &f, const std::string &uri, const std::string &where);
-/* A buffer view's bytes, decompressed if need be; checked to lie inside its buffer. */
-span view_bytes(file &f, int view, const std::string &where);
 /* A range of a buffer, checked. */
 span buffer_bytes(file &f, int buffer, uint64_t offset, uint64_t size, const std::string &where);
 
 /* --- gltf_meshopt.cpp --- */
 bytes decode_meshopt(file &f, const tinygltf::Value &extension, const std::string &where);
+
+/* --- gltf_view.cpp --- */
+/* A buffer view's bytes, decompressed if need be; checked to lie inside its buffer. */
+span view_bytes(file &f, int view, const std::string &where);
 
 /* --- gltf_accessor.cpp --- */
 /* Component types as bits, so that each use can name what it accepts; _n = normalised. */
@@ -143,11 +164,24 @@ void read_materials(file &f);
 void read_meshes(file &f);
 bool has_influences(const tinygltf::Primitive &p);
 void allocate_influences(file &f, const std::string &where, model_mesh &out);
-void read_influences(file &f, const tinygltf::Primitive &p, const model_submesh &part, const std::string &where, model_mesh &out);
+/* What was done to the weights of one mesh's vertices. */
+struct influence_changes {
+    size_t truncated = 0, rescaled = 0; /* vertices: over MODEL_INFLUENCES_MAX joints; weights that do not sum to 1 */
+    double most_lost = 0.0;             /* the largest share of a vertex's weight that was dropped */
+    double farthest_sum = 1.0;          /* the sum farthest from 1 */
+};
+void read_influences(file &f, const tinygltf::Primitive &p, const model_submesh &part, const std::string &where, model_mesh &out,
+                     influence_changes &changes);
+void warn_influence_changes(file &f, const influence_changes &changes, const std::string &where);
+/* The UV set that a primitive's base colour texture uses ("TEXCOORD_1"), or the first where the primitive lacks it. */
+std::string uv_name(const file &f, const tinygltf::Primitive &p);
 void check_influences(const model_mesh &mesh, uint32_t joint_count);
 void read_nodes(file &f);
 void read_skins(file &f);          /* after read_nodes */
 void read_animations(file &f);
+/* What no reader above looks at: textures other than the base colour's, further UV sets and colours, cameras, nodes
+ * outside the scene. */
+void find_left_out(file &f);
 void read_extras(file &f, const tinygltf::Animation &a, const std::string &where, model_clip &out);
 
 } // namespace gltf

@@ -39,7 +39,7 @@ static const integer_rule integer_rules[] = {
 static const char *const supported[] = {"KHR_mesh_quantization", "EXT_meshopt_compression", "KHR_texture_transform",
                                         "KHR_materials_unlit"};
 
-static bool is_supported(const std::string &name)
+bool is_supported(const std::string &name)
 {
     for (const char *known : supported)
         if (name == known)
@@ -56,6 +56,11 @@ bool uses_extension(const file &f, const char *name)
         if (required == name)
             return true;
     return false;
+}
+
+static std::string not_supported(const std::string &extension)
+{
+    return "the extension " + printable(extension) + " is not supported and was ignored";
 }
 
 /* Brackets outside strings, so that no recursive code below can exhaust the stack. */
@@ -300,11 +305,45 @@ static void mark_untargeted_channels(json &document)
     }
 }
 
-static void warn_extensions(file &f)
+/* Every extension that some object carries and that is not read, under the name of that object. */
+static void find_extensions(file &f, const json &value, const std::string &where)
 {
-    for (const std::string &name : f.json.extensionsUsed)
-        if (!is_supported(name))
-            warn(f, "the extension %s is not supported and was ignored", printable(name).c_str());
+    for (auto member = value.begin(); member != value.end(); ++member) {
+        if (!member->is_structured() || (value.is_object() && member.key() == "extras"))
+            continue;
+        if (value.is_object() && member.key() == "extensions" && member->is_object()) {
+            for (auto extension = member->begin(); extension != member->end(); ++extension)
+                if (!is_supported(extension.key()))
+                    leave_out(f, where, ": " + not_supported(extension.key()));
+            continue; /* what an extension holds is not read either */
+        }
+        find_extensions(f, *member, where);
+    }
+}
+
+static const char *const named_arrays[][2] = {{"materials", "material"}, {"meshes", "mesh"}, {"nodes", "node"},
+                                              {"textures", "texture"},   {"images", "image"}, {"samplers", "sampler"},
+                                              {"cameras", "camera"},     {"scenes", "scene"}, {"animations", "animation"},
+                                              {"skins", "skin"},         {"accessors", "accessor"},
+                                              {"bufferViews", "buffer view"}, {"buffers", "buffer"}};
+
+/* After check_top_level: these are arrays. The document's own "extensions" (lists of lights and the like) are used by
+ * the objects that are looked at here; an extension that no object carries is named without one. */
+static void find_unsupported(file &f, const json &document)
+{
+    for (const auto &array : named_arrays) {
+        auto found = document.find(array[0]);
+        for (size_t i = 0; found != document.end() && i < found->size(); ++i) {
+            std::string name = printable(string_member((*found)[i], "name"));
+            find_extensions(f, (*found)[i], name.empty() ? text("%s %zu", array[1], i) : array[1] + (" '" + name + "'"));
+        }
+    }
+    auto used = document.find("extensionsUsed");
+    for (size_t i = 0; used != document.end() && used->is_array() && i < used->size(); ++i) {
+        std::string name = (*used)[i].is_string() ? (*used)[i].get<std::string>() : "";
+        if (!name.empty() && !is_supported(name) && f.loss_of.count(": " + not_supported(name)) == 0)
+            leave_out(f, "", not_supported(name));
+    }
 }
 
 /* tinygltf's message, without its line ends. */
@@ -331,13 +370,13 @@ void parse_json(file &f, const char *text_begin, size_t size)
     check_required(document);
     check_top_level(document);
     check_value(document, "", "");
+    find_unsupported(f, document);
     take_buffers(f, document);
     take_images(f, document);
     repair_skins(document);
     mark_untargeted_channels(document);
     run_tinygltf(f, document);
     f.decoded_views.resize(f.json.bufferViews.size());
-    warn_extensions(f);
 }
 
 } // namespace gltf

@@ -3,6 +3,8 @@
 
 #include <cstring>
 
+#include "base/limits.h"
+
 #include <stb/stb_image.h>
 
 namespace gltf {
@@ -82,7 +84,7 @@ static uint32_t wrap_of(file &f, int wrap, const std::string &where)
     bool known = wrap == TINYGLTF_TEXTURE_WRAP_REPEAT || wrap == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE ||
                  wrap == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT;
     if (!known)
-        warn(f, "%s: the wrap mode %d is unknown and was taken as repeat", where.c_str(), wrap);
+        leave_out(f, where, text(": the wrap mode %d is unknown and was taken as repeat", wrap));
     return static_cast<uint32_t>(known ? wrap : TINYGLTF_TEXTURE_WRAP_REPEAT);
 }
 
@@ -92,7 +94,7 @@ static uint32_t filter_of(file &f, int filter, const std::string &where)
                  (filter >= TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST &&
                   filter <= TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR);
     if (!known)
-        warn(f, "%s: the filter %d is unknown and was ignored", where.c_str(), filter);
+        leave_out(f, where, text(": the filter %d is unknown and was ignored", filter));
     return known && filter != -1 ? static_cast<uint32_t>(filter) : 0;
 }
 
@@ -121,6 +123,8 @@ static void read_texture(file &f, size_t index, model_texture &out)
     where += text(" image %d", texture.source);
     read_sampler(f, texture.sampler, out, where);
     decode_image(f, source, out, where);
+    if (out.width > NOH_TEXTURE_SIZE_MAX || out.height > NOH_TEXTURE_SIZE_MAX)
+        leave_out(f, where, text(": the image was halved until no side is above %u pixels", NOH_TEXTURE_SIZE_MAX));
     out.name = copy_string(name_or(texture.name.empty() ? source.name : texture.name, "texture", index));
 }
 
@@ -166,7 +170,7 @@ static model_alpha alpha_of(file &f, const std::string &mode, const std::string 
     if (mode == "BLEND")
         return MODEL_ALPHA_BLEND;
     if (mode != "OPAQUE")
-        warn(f, "%s: the alpha mode '%s' is unknown and was taken as OPAQUE", where.c_str(), printable(mode).c_str());
+        leave_out(f, where, ": the alpha mode '" + printable(mode) + "' is unknown and was taken as OPAQUE");
     return MODEL_ALPHA_OPAQUE;
 }
 

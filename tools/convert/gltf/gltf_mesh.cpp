@@ -145,7 +145,7 @@ static void find_parts(file &f, mesh_job &job)
         std::string where = where_of(job, p);
         check_mode(source, where);
         if (const char *reason = reason_to_skip(source)) {
-            warn(f, "%s was skipped: %s", where.c_str(), reason);
+            leave_out(f, where, std::string(" was skipped: ") + reason);
             continue;
         }
         int position = find(source.attributes, "POSITION");
@@ -158,7 +158,7 @@ static void find_parts(file &f, mesh_job &job)
         read_triangles(f, job, p);
         check_vertex_total(job, vertices + count, indices + p.indices.size());
         if (p.indices.empty()) {
-            warn(f, "%s was skipped: a strip or fan needs three vertices", where.c_str());
+            leave_out(f, where, " was skipped: a strip or fan needs three vertices");
             continue;
         }
         vertices += count;
@@ -220,7 +220,7 @@ static uv_use uv_use_of(const file &f, const tinygltf::Primitive &p)
     return use;
 }
 
-static std::string uv_name(const file &f, const tinygltf::Primitive &p)
+std::string uv_name(const file &f, const tinygltf::Primitive &p)
 {
     std::string wanted = text("TEXCOORD_%d", uv_use_of(f, p).set);
     return has(p.attributes, wanted) ? wanted : "TEXCOORD_0";
@@ -231,7 +231,7 @@ static void transform_uvs(file &f, const mesh_job &job, const part &p, float *uv
 {
     uv_use use = uv_use_of(f, *p.source);
     if (use.rotated)
-        warn(f, "%s: the rotation of KHR_texture_transform is not supported and was ignored", where_of(job, p).c_str());
+        leave_out(f, where_of(job, p), ": the rotation of KHR_texture_transform is not supported and was ignored");
     if (use.offset[0] == 0.0 && use.offset[1] == 0.0 && use.scale[0] == 1.0 && use.scale[1] == 1.0)
         return;
     for (uint64_t i = 0; i < uint64_t{p.vertex_count} * 2; ++i)
@@ -317,6 +317,8 @@ static void read_base(file &f, mesh_job &job, const part &p, model_submesh &subm
         submesh.missing |= MODEL_MISSING_TANGENT;
     std::string uv = uv_name(f, *p.source);
     if (has(a, uv)) {
+        if (uv != text("TEXCOORD_%d", uv_use_of(f, *p.source).set))
+            leave_out(f, where, ": it lacks the UV set that its texture uses; TEXCOORD_0 was taken");
         read_floats(f, find(a, uv), 2, accepted_uv(f), p.vertex_count, where + " " + uv, m.uv + first * 2);
         transform_uvs(f, job, p, m.uv + first * 2);
     }
@@ -389,8 +391,8 @@ static void warn_unused_deltas(file &f, const part &p, size_t t, const std::stri
         bool known = delta.first == "POSITION" || delta.first == "NORMAL" || delta.first == "TANGENT";
         if (known && gives(p, t, delta.first.c_str()))
             continue;
-        warn(f, "%s: the deltas of %s were ignored %s", where.c_str(), printable(delta.first).c_str(),
-             known ? "because the primitive has no such attribute" : "which cannot be morphed");
+        leave_out(f, where, ": the deltas of " + printable(delta.first) + " were ignored " +
+                                (known ? "because the primitive has no such attribute" : "which cannot be morphed"));
     }
 }
 
@@ -453,8 +455,7 @@ static void name_targets(file &f, mesh_job &job)
     for (uint32_t t = 0; t < job.out->target_count; ++t) {
         std::string wanted = name_or(given_name(names, t), "target", t), name = unique_name(taken, wanted);
         if (name != wanted)
-            warn(f, "%s: two targets are named '%s'; the second is called '%s'", job.where.c_str(),
-                 printable(wanted).c_str(), printable(name).c_str());
+            leave_out(f, job.where + ": two targets are named '" + printable(wanted) + "'", "; the second got a number behind its name");
         taken.insert(name);
         job.out->targets[t].name = copy_string(name);
     }
@@ -505,8 +506,10 @@ static void read_skinning(file &f, mesh_job &job)
     if (!any)
         return;
     allocate_influences(f, job.where, *job.out);
+    influence_changes changes;
     for (size_t i = 0; i < job.parts.size(); ++i)
-        read_influences(f, *job.parts[i].source, job.out->submeshes[i], where_of(job, job.parts[i]), *job.out);
+        read_influences(f, *job.parts[i].source, job.out->submeshes[i], where_of(job, job.parts[i]), *job.out, changes);
+    warn_influence_changes(f, changes, job.where);
 }
 
 static void fill_mesh(file &f, mesh_job &job)
@@ -536,7 +539,7 @@ static bool read_mesh(file &f, size_t index, model_mesh *out)
     job.out = out;
     find_parts(f, job);
     if (job.parts.empty()) {
-        warn(f, "%s was skipped: it has no triangles", job.where.c_str());
+        leave_out(f, job.where, " was skipped: it has no triangles");
         return false;
     }
     out->name = copy_string(name);

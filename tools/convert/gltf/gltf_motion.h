@@ -3,11 +3,11 @@
  * Skeletons. Skins that share joints, or whose joints lie below each other's, share one
  * skeleton. It holds their joints, the animated nodes below these, and of the nodes above
  * them those that are animated or have a transform: a skeleton's object space is the scene,
- * and nothing is folded or rounded. Animated nodes that no skin reaches make one skeleton more.
+ * and nothing is folded or rounded. Animated nodes that belong to no skin form one more skeleton.
  *
  * Clips. Each skeleton gets the animations that move a joint of it or the weights of its meshes.
  * Frames lie at equal times from 0 to the animation's last key, both exactly: with R Hz asked
- * for there are n = round(duration * R), at least 1, steps, and the rate is n / duration. */
+ * for there are n = round(duration * R), at least 1, steps, and the sample rate is n / duration. */
 #ifndef NOH_CONVERT_GLTF_MOTION_H
 #define NOH_CONVERT_GLTF_MOTION_H
 

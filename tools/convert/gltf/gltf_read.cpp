@@ -1,75 +1,11 @@
 /* gltf_read.cpp: from a .gltf or .glb file to a model. */
 #include "gltf_internal.h"
 
-#include <cfloat>
-#include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <cstring>
 #include <exception>
 #include <memory>
 
 namespace gltf {
-
-/* A model may be this much larger than its file: sparse targets become dense ones. */
-static const uint64_t expansion_base = 256u << 20, expansion_factor = 256;
-
-void fail(const std::string &where, const std::string &what)
-{
-    throw failure{what, where};
-}
-
-std::string text(const char *format, ...)
-{
-    char line[512];
-    va_list arguments;
-    va_start(arguments, format);
-    (void)vsnprintf(line, sizeof line, format, arguments);
-    va_end(arguments);
-    return line;
-}
-
-void charge(file &f, uint64_t count, uint64_t element_size, const std::string &where)
-{
-    uint64_t limit = expansion_base + expansion_factor * f.input_bytes;
-    if (count > limit / element_size || f.output_bytes + count * element_size > limit)
-        fail(where, text("the decoded model would need more than %llu MiB, which a file of this size cannot honestly "
-                         "hold", static_cast<unsigned long long>(limit >> 20)));
-    f.output_bytes += count * element_size;
-}
-
-char *copy_string(const std::string &string)
-{
-    char *copy = model_string(string.c_str());
-    if (!copy)
-        throw std::bad_alloc();
-    return copy;
-}
-
-std::string printable(const std::string &name)
-{
-    const size_t limit = 40;
-    std::string out = name.substr(0, limit);
-    /* do not cut a UTF-8 sequence in two */
-    while (name.size() > out.size() && !out.empty() && (static_cast<unsigned char>(name[out.size()]) & 0xc0) == 0x80)
-        out.pop_back();
-    for (char &c : out)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-            c = '?';
-    return out;
-}
-
-std::string name_or(const std::string &name, const char *kind, size_t index)
-{
-    return name.empty() || name[0] == '\0' ? kind + ("_" + std::to_string(index)) : name;
-}
-
-float to_float(double value, const std::string &where)
-{
-    if (!(std::fabs(value) <= static_cast<double>(FLT_MAX)))
-        fail(where, text("the number %g is too large for a float", value));
-    return static_cast<float>(value);
-}
 
 static uint32_t read_u32(const bytes &data, size_t offset)
 {
@@ -159,6 +95,8 @@ static void read_model(file &f)
     read_nodes(f);
     read_skins(f);
     read_animations(f);
+    find_left_out(f);
+    warn_left_out(f);
     if (f.out->mesh_count == 0 && f.out->clip_count == 0)
         fail("glTF JSON", "the file has no triangle meshes and no animations: there is nothing to convert");
 }

@@ -108,7 +108,7 @@ static void normalize_rotation(file &f, double *q, const std::string &where)
 {
     double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     if (!(length > 1e-6)) {
-        warn(f, "%s: the rotation has no length and was taken as none", where.c_str());
+        leave_out(f, where, ": the rotation has no length and was taken as none");
         q[0] = q[1] = q[2] = 0.0;
         q[3] = length = 1.0;
     }
@@ -203,7 +203,7 @@ static void decompose(file &f, transform &t, const std::string &where)
     transform again = t;
     compose(again);
     if (differs(t.matrix, again.matrix, 1e-4))
-        warn(f, "%s: the matrix is skewed; as translation, rotation and scale it is only approximate", where.c_str());
+        leave_out(f, where, ": the matrix is skewed; as translation, rotation and scale it is only approximate");
 }
 
 static void check_affine(const double *m, const std::string &where)
@@ -274,7 +274,7 @@ static void read_weights(file &f, const tinygltf::Node &node, model_node &out, c
     if (node.weights.empty())
         return;
     if (out.mesh == MODEL_NONE) {
-        warn(f, "%s has weights but no mesh; they were ignored", where.c_str());
+        leave_out(f, where, " has weights but no mesh; they were ignored");
         return;
     }
     const model_mesh &mesh = f.out->meshes[out.mesh];

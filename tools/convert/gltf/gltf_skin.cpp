@@ -89,7 +89,7 @@ static void read_skin(file &f, size_t index)
     std::string where = text("skin %zu", index);
     check_joints(f, skin, where);
     if (!all_in_scene(f, skin)) {
-        warn(f, "%s was skipped: a joint of it is not in the default scene; its meshes stay where their nodes are", where.c_str());
+        leave_out(f, where, " was skipped: a joint of it is not in the default scene; its meshes stay where their nodes are");
         return;
     }
     model_skin &out = f.out->skins[f.out->skin_count]; /* counted first, so that it is freed when reading fails */
@@ -128,7 +128,7 @@ static void bind_nodes(file &f)
             continue;
         }
         out.skin = MODEL_NONE;
-        warn(f, "node '%s' has a skin, but its mesh has no joints; the node alone places it", printable(out.name).c_str());
+        leave_out(f, "node '" + printable(out.name) + "'", " has a skin, but its mesh has no joints; the node alone places it");
     }
 }
 

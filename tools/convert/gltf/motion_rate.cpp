@@ -1,8 +1,8 @@
 /* motion_rate.cpp: how many frames a clip needs.
  *
- * Frames are played with linear interpolation; curves are not all linear, and keys lie
- * anywhere. So rates are tried from the keys' own upward, until playing the frames stays
- * within a tolerance of the curves. */
+ * Frames are played with linear interpolation at a constant sample rate; the source's curves need not be linear, and
+ * its keys lie at any time. So sample rates are tried from the keys' own upwards, until the played frames stay within
+ * a tolerance of the curves. */
 #include "motion_internal.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-/* motion_reach.cpp: how far a morph weight moves what is seen. */
+/* motion_reach.cpp: the radius of a morph weight: how far, in the world, it moves the surface. */
 #include "motion_internal.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-/* lod.h: coarser levels of a mesh that keep its face: every morph target, mixes of them and
- * frames of motion are poses that the levels have to follow.
+/* lod.h: coarser levels of a mesh that keep its face: every morph target, mixes of them and frames of clips are poses
+ * that the levels have to follow.
  *
  *   lod_build, lod_free     half-edge collapses in order, and the levels cut out of them
  *   lod_certify             how far a level lies from the full mesh, measured both ways
@@ -41,8 +41,8 @@ typedef struct lod_options {
     uint32_t pose_count;
     uint32_t mix_count;           /* random mixes of targets as poses; 0: 24 */
     uint64_t mix_seed;            /* 0: a fixed one */
-    float pose_weight;            /* distances in the given poses count so many times; 0: 0.4, for motion is seen as a whole */
-    float face_weight;            /* distances at vertices that targets move count so many times; 0: 1.2 with poses, else 1 */
+    float pose_weight;            /* factor on distances in the given poses; 0: 0.4, because a moving body is seen as a whole */
+    float face_weight;            /* factor on distances at vertices that targets move; 0: 1.2 with poses, else 1 */
     float uv_weight;              /* a UV slide of one length counts as so much of it; 0: 0.1; below 0: none */
     float color_length;           /* a colour difference of 1 counts as this length, in a small part as three times as much; 0: 0.24 of the
                                    * mean edge; below 0: none */
@@ -51,12 +51,12 @@ typedef struct lod_options {
     void *user;
 } lod_options;
 
-/* One vertex goes, and what used it uses another one. The vertices of one point (a seam splits
+/* One vertex is removed; its triangles use another one. The vertices of one point (a seam splits
  * it) follow each other and carry the same step. */
 typedef struct lod_collapse {
     uint32_t from, to; /* vertices of the mesh */
     uint32_t step;     /* counts the points collapsed, from 0 */
-    float cost;        /* how far the surface lies off so far, a length, in the worst pose that the builder saw; never falls along the list */
+    float cost;        /* distance of the surface from the full one after this collapse, in the worst pose that the builder saw; never falls along the list */
 } lod_collapse;
 
 typedef struct lod_level {

@@ -1,4 +1,9 @@
-/* lod_attribute.c: how far UVs, colours and skin weights slide, told as lengths. */
+/* lod_attribute.c: how far UVs, colours and skin weights slide, as lengths.
+ *
+ * A collapse may keep the shape and still drag the texture over it. For places on the triangles that it replaces the
+ * nearest place of the new surface is looked up, and what is interpolated there is compared with what was here. The
+ * difference is turned into a length (UVs by the mesh's length per UV unit, colours and weights by parts of the mean
+ * edge), so that it adds to a distance and is held to the same bound. */
 #include "lod_internal.h"
 
 #include <float.h>

@@ -1,4 +1,15 @@
-/* lod_build.c: the order of the collapses, and the levels. */
+/* lod_build.c: the order of the collapses, and the levels.
+ *
+ * Simplification by half-edge collapses from a priority queue: the point whose best collapse costs least goes, its
+ * neighbours are judged again, until the level has few enough triangles (or the next collapse would exceed the
+ * level's error). What is unusual is the cost, for a face must still smile when it is coarse: the quadrics of a point
+ * exist once for each pose in which it moves (at rest, every target, mixes, frames of clips), and the largest counts,
+ * not the sum: an error that shows in one pose alone is not averaged away.
+ *
+ * Quadrics forget how far the surface has already moved and measure planes, not triangles. So they only rank: the
+ * TESTED best collapses of a point are then measured by samples of the full surface that stay attached to the
+ * triangles standing for them (lod_track.c, lod_measure.c), with UVs, colours and skin weights as lengths beside
+ * (lod_attribute.c). LOD_FAST leaves the measuring out. */
 #include "lod_internal.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* lod_frames.h: frames of a model's motion as poses of a skinned mesh.
+/* lod_frames.h: frames of a model's clips as poses of a skinned mesh.
  *
  *   lod_frame_pose      one frame
  *   lod_frames_choose   a few that differ most, for lod_options.poses */
@@ -16,8 +16,8 @@ extern "C" {
 typedef struct lod_frames {
     uint32_t count;
     float **poses; /* [count][vertex_count][3], lod_options.poses takes it */
-    float cap_error[LOD_CAPS]; /* how far a vertex of these frames is off at most where only its 4, 2, 1 heaviest joints move it, the
-                                * weights made to sum to 1: what a renderer does that caps influences */
+    float cap_error[LOD_CAPS]; /* largest error of a vertex in these frames when only its 4, 2, 1 heaviest joints move it and the
+                                * weights are normalised, as a renderer does that caps influences */
 } lod_frames;
 
 /* The node that draws a mesh with a skin; MODEL_NONE where there is none. */

@@ -1,4 +1,4 @@
-/* lod_levels.h: the levels of detail of one mesh as its pack holds them: built, certified, and every vertex's rank. */
+/* lod_levels.h: the LOD levels of one mesh as its pack holds them: built, certified, and each vertex's rank. */
 #ifndef NOH_CONVERT_LOD_LEVELS_H
 #define NOH_CONVERT_LOD_LEVELS_H
 

@@ -1,4 +1,8 @@
-/* lod_move.c: whether a point may go to its neighbour, and going there. */
+/* lod_move.c: whether a point may move to its neighbour, and the move itself.
+ *
+ * A collapse is refused where it would change the surface's topology (the link condition of Dey et al. 1999: the two
+ * rings may share only the triangles that disappear), tear a seam (every wedge of the point needs one of the
+ * neighbour's to become), turn a triangle over at rest, or leave a sliver. */
 #include "lod_internal.h"
 
 #include <math.h>

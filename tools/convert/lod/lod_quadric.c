@@ -1,4 +1,11 @@
-/* lod_quadric.c: one quadric per point and pose, the largest counts. */
+/* lod_quadric.c: one quadric per point and pose, the largest counts.
+ *
+ * A quadric is the sum of squared distances to the planes of the triangles around a point, weighted by their areas: a
+ * symmetric 4 x 4 matrix, ten numbers, that can be added when two points become one (Garland and Heckbert 1997). On
+ * borders a plane stands upright on the edge, so that outlines hold.
+ *
+ * A row holds the poses in which the point or one of its neighbours differs from rest, sorted; in every other pose its
+ * surroundings lie as at rest, so the rest quadric serves. A target moves a part of a face, so most rows are short. */
 #include "lod_internal.h"
 
 #include <math.h>

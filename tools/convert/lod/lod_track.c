@@ -1,4 +1,9 @@
-/* lod_track.c: which samples belong to which triangle, and where they are in each pose. */
+/* lod_track.c: which samples belong to which triangle, and where they are in each pose.
+ *
+ * Every removed point and the centroid of every original triangle is a sample that stays attached to the triangle
+ * nearest to it (Kobbelt, Campagna and Seidel 1998). A collapse replaces a fan of triangles, and only the samples of
+ * that fan can change their distance: so the error against the full mesh, not against the last step, is measured
+ * locally, and errors of successive collapses do not add up unseen. */
 #include "lod_track.h"
 
 #include <float.h>

@@ -1,4 +1,5 @@
-/* lod_tree.c: boxes around boxes around triangles, fitted anew for each pose. */
+/* lod_tree.c: a bounding volume hierarchy of axis-aligned boxes. The tree is split once, at the median of the widest
+ * axis at rest; each pose only fits the boxes anew from the leaves up, in linear time. */
 #include "lod_tree.h"
 
 #include <float.h>

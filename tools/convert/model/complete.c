@@ -1,4 +1,4 @@
-/* complete.c: normals and tangents that the file left out, in the base and in the targets.
+/* complete.c: computes the normals and tangents that a file lacks, in the base and in the targets.
  *
  * A delta that is missing is what our own algorithm gives for the morphed mesh
  * minus what it gives for the base, added to whatever base the file has. Where

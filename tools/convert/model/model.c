@@ -8,25 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-void *model_zeros(size_t count, size_t element_size)
-{
-    if (element_size == 0 || count > SIZE_MAX / element_size)
-        return NULL;
-    return calloc(count ? count : 1, element_size);
-}
-
 model *model_new(void)
 {
     return model_zeros(1, sizeof(model));
-}
-
-char *model_string(const char *text)
-{
-    size_t bytes = strlen(text) + 1;
-    char *copy = malloc(bytes);
-    if (copy)
-        memcpy(copy, text, bytes);
-    return copy;
 }
 
 /* The array is grown to powers of two, so its capacity need not be stored. */
@@ -63,18 +47,6 @@ int model_warn(model *m, const char *format, ...)
     }
     m->warnings[m->warning_count++] = copy;
     return 0;
-}
-
-int model_fail(model_error *error, const char *where, const char *format, ...)
-{
-    if (!error)
-        return 1;
-    va_list arguments;
-    va_start(arguments, format);
-    (void)vsnprintf(error->what, sizeof error->what, format, arguments);
-    va_end(arguments);
-    (void)snprintf(error->where, sizeof error->where, "%s", where);
-    return 1;
 }
 
 static void target_free(model_target *target)

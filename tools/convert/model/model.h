@@ -10,6 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "convert/base/error.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -144,12 +146,6 @@ typedef struct model {
     uint32_t warning_count;
     char **warnings;            /* sentences for the user, e.g. what was skipped and why */
 } model;
-
-/* Why a file was refused: what is wrong, and where (e.g. "accessor 7, element 12"). */
-typedef struct model_error {
-    char what[256];
-    char where[128];
-} model_error;
 
 /* Read a .gltf or .glb file. Returns 0 and *out on success, else 1 and a filled error (*out = NULL).
  * Calls model_complete. */

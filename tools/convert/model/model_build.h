@@ -1,11 +1,8 @@
 /* model_build.h: what readers and model_complete share while they build a model.
  *
  *   model_new      an empty model
- *   model_zeros    a zeroed array, or NULL (also for a size that overflows)
- *   model_string   a copy of a string
  *   model_mesh_clear  what a mesh holds, not the mesh itself
  *   model_warn     add a sentence to the model's warnings
- *   model_fail     fill an error
  *   weld_vertices  which vertices are one point of the surface
  *   normals_*      fans of smooth corners, and their normals in any pose
  *   tangents_*     groups of corners that share a tangent, likewise */
@@ -22,8 +19,6 @@ extern "C" {
 #define MODEL_DELTA_NOISE 1e-7
 
 model *model_new(void);
-void *model_zeros(size_t count, size_t element_size);
-char *model_string(const char *text);
 void model_mesh_clear(model_mesh *mesh);
 /* Remove a mesh that no node draws. */
 void model_drop_mesh(model *m, uint32_t mesh);
@@ -35,12 +30,6 @@ void model_drop_mesh(model *m, uint32_t mesh);
 __attribute__((format(printf, 2, 3)))
 #endif
 int model_warn(model *m, const char *format, ...);
-
-/* Fill *error (printf form for `what`) and return 1. */
-#if defined(__GNUC__)
-__attribute__((format(printf, 3, 4)))
-#endif
-int model_fail(model_error *error, const char *where, const char *format, ...);
 
 /* For each vertex the first one that is the same point of the surface: at the same
  * position, and moved alike by every target (two lips that touch are two points).

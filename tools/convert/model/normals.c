@@ -1,10 +1,12 @@
-/* normals.c: smooth normals for meshes that come without.
+/* normals.c: smooth normals for meshes that have none.
  *
- * glTF asks for flat normals where a file has none, which would split every
- * vertex of an indexed mesh. We keep the vertices: all triangles of one vertex
+ * glTF (2.0, 3.7.2.1) asks for flat normals where a file has none, which would split every vertex of an indexed mesh.
+ * The vertices are kept: all triangles of one vertex
  * share its normal, and triangles of welded vertices join in where they meet at
  * an edge below the crease angle. A mesh with split vertices at its hard edges
- * (or without indices) keeps those edges hard, and its seams vanish. */
+ * (or without indices) keeps those edges hard, and its seams vanish. Triangles are weighted by their angle at the
+ * vertex, which makes the normal independent of the triangulation (Thürmer and Wüthrich, "Computing Vertex Normals
+ * from Polygonal Facets", 1998). */
 #include "model_build.h"
 
 #include <math.h>

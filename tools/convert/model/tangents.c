@@ -1,4 +1,4 @@
-/* tangents.c: tangents for meshes that have UVs but came without.
+/* tangents.c: tangents for meshes that have UVs but no tangents.
  *
  * In the spirit of MikkTSpace (what normal maps are baked for): each corner of a
  * triangle adds the direction in which u grows, projected to the plane of the

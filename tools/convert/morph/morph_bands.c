@@ -1,8 +1,9 @@
 /* morph_bands.c: the start of a cover: each band of rows cut into boxes, at best.
  *
- * A band is `rows` texture rows. Its used columns are cut into stretches, each
- * covered by the bounding box of its texels; dynamic programming finds the cut
- * of least area + rectangles. Boxes of different bands are joined later. */
+ * A band is `rows` texture rows. Its used columns are cut into stretches, each covered by the bounding box of its
+ * texels. The best cut of the first n columns is the best cut of some first m < n and one box over the rest, so dynamic
+ * programming over n finds the cut of least area + rectangles exactly; boxes that are mostly empty end the search
+ * early. Boxes of different bands are joined later (morph_rects.c). */
 #include "morph_internal.h"
 
 #include <stdlib.h>

@@ -1,11 +1,11 @@
 /* morph_encode.h: from dense morph targets to the pack's sparse form.
  *
- * The encoder drops what moves nothing, orders vertices so that the vertices
- * which move together lie together in a texture of `width` columns, covers each
- * target's vertices by rectangles, and quantises the deltas (rows A2-A4 of the
- * systems table; layouts in runtime/pack/format.h). Deterministic: no clock, no
- * address-dependent order, fixed pseudo-random seeds, no float result that
- * depends on the compiler's choice of contraction. */
+ * The encoder drops pairs that move nothing, orders vertices so that those which move together lie together in a
+ * texture of `width` columns, covers each target's vertices by rectangles, and quantises the deltas (layouts in
+ * runtime/pack/format.h). Microsoft's SparseMorphTargets sample keeps one rectangle per target, in the order in which
+ * the artist's tool wrote the vertices; here the order is chosen, and a target may have many rectangles.
+ * Deterministic: no clock, no order that depends on addresses, fixed seeds, no float result that depends on the
+ * compiler's choice of contraction. */
 #ifndef NOH_CONVERT_MORPH_ENCODE_H
 #define NOH_CONVERT_MORPH_ENCODE_H
 

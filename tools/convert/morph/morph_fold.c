@@ -1,11 +1,15 @@
 /* morph_fold.c: lays the line of vertices into the texture, and settles it there.
  *
- * The texture is cut into strips of MORPH_STRIP_ROWS rows, and the line fills a strip
- * column by column. Rectangles then are a few texels high, which rasterisers
- * want: they shade 2x2 quads on GPUs and 4x4 blocks in software, so that runs
- * one texel high would pay for two to four. A target needs every column that
- * one of its vertices lies in, so runs should start and stop where columns do:
- * short stretches of the line are turned and exchanged until they mostly do. */
+ * The texture is cut into strips of MORPH_STRIP_ROWS rows, and the line fills a strip column by column. Rectangles
+ * are then a few texels high, which rasterisers want: they shade 2x2 quads on GPUs and 4x4 blocks in software, so that
+ * runs one texel high would pay for two to four.
+ *
+ * A target needs every column that one of its vertices lies in, so runs should start and stop where columns do. The
+ * line is annealed once more, now with that cost: short stretches are turned and exchanged (2-opt and or-opt moves),
+ * and a change is taken where it costs nothing, or with a chance that falls with its cost and with the temperature.
+ * The cost is a sum over columns of which targets use them. A change touches the columns of its stretch alone, so
+ * `used` keeps that set for every column: the cost before a change is a count of bits, and only the stretch is read
+ * again after it. */
 #include "morph_internal.h"
 
 #include <stdlib.h>
@@ -28,7 +32,8 @@ typedef struct fold {
     uint32_t *first;      /* [columns + 1] column -> place */
     uint32_t *column;     /* place -> column */
     uint8_t *starts;      /* column is the first of its strip, or there is a gap before it */
-    uint64_t *used;       /* two rows of words: this column and the one before */
+    uint64_t *used;       /* [columns][words] the targets that move a vertex of a column */
+    uint64_t *saved;      /* [STRETCH_MOST + 1][words] those of a stretch before it was moved */
     morph_random random;
 } fold;
 
@@ -91,29 +96,27 @@ void morph_fold_order(const uint32_t *line, const morph_region *r, uint32_t *ord
 
 /* ---- the cost of some columns ---- */
 
-static void use_column(const fold *f, uint32_t c, uint64_t *used)
+static void use_columns(fold *f, uint32_t low, uint32_t high)
 {
-    memset(used, 0, f->words * sizeof *used);
-    for (uint32_t i = f->first[c]; i < f->first[c + 1u]; i++)
-        for (uint32_t w = 0; w < f->words; w++) used[w] |= morph_row(f->vertices, f->line[i])[w];
+    for (uint32_t c = low; c <= high; c++) {
+        uint64_t *used = f->used + (size_t)c * f->words;
+        memset(used, 0, f->words * sizeof *used);
+        for (uint32_t i = f->first[c]; i < f->first[c + 1u]; i++)
+            for (uint32_t w = 0; w < f->words; w++) used[w] |= morph_row(f->vertices, f->line[i])[w];
+    }
 }
 
 /* Texels of columns low..high, and rectangles that start in low..high + 1, summed over targets. */
-static int64_t column_cost(fold *f, uint32_t low, uint32_t high)
+static int64_t column_cost(const fold *f, uint32_t low, uint32_t high)
 {
-    uint64_t *before = f->used, *here = f->used + f->words, *swap;
     uint64_t texels = 0, rects = 0;
-    if (low > 0u) use_column(f, low - 1u, before);
     for (uint32_t c = low; c <= high + 1u && c < f->columns; c++) {
         const uint32_t rows = c <= high ? f->first[c + 1u] - f->first[c] : 0u;
-        use_column(f, c, here);
+        const uint64_t *here = f->used + (size_t)c * f->words, *before = f->starts[c] ? NULL : here - f->words;
         for (uint32_t w = 0; w < f->words; w++) {
             texels += (uint64_t)rows * morph_popcount(here[w]);
-            rects += morph_popcount(f->starts[c] ? here[w] : here[w] & ~before[w]);
+            rects += morph_popcount(before ? here[w] & ~before[w] : here[w]);
         }
-        swap = before;
-        before = here;
-        here = swap;
     }
     return (int64_t)(texels + rects * f->rect_cost);
 }
@@ -144,8 +147,9 @@ static uint32_t next_change(const fold *f, uint32_t at, uint32_t limit)
 /* Turns [a, c), or exchanges [a, b) and [b, c): both are turns, and undone by turns. */
 static void step(fold *f, uint32_t odds)
 {
-    uint32_t a = morph_random_below(&f->random, f->count), b, c, limit;
+    uint32_t a = morph_random_below(&f->random, f->count), b, c, limit, low, high;
     const uint32_t kind = morph_random_below(&f->random, 4u);
+    size_t bytes;
     int64_t old, cost;
     limit = a + STRETCH_MOST < f->count ? a + STRETCH_MOST : f->count;
     if (kind & 1u) a = next_change(f, a, limit);
@@ -157,12 +161,18 @@ static void step(fold *f, uint32_t odds)
     if (kind & 1u && c < limit) c = next_change(f, c, limit);
     if (b >= c) return;
     if (kind & 2u) b = c;
-    old = column_cost(f, f->column[a], f->column[c - 1u]);
+    low = f->column[a];
+    high = f->column[c - 1u];
+    bytes = (size_t)(high - low + 1u) * f->words * sizeof *f->used;
+    old = column_cost(f, low, high);
+    memcpy(f->saved, f->used + (size_t)low * f->words, bytes);
     turn(f->line, a, b);
     turn(f->line, b, c);
     if (b < c) turn(f->line, a, c);
-    cost = column_cost(f, f->column[a], f->column[c - 1u]);
+    use_columns(f, low, high);
+    cost = column_cost(f, low, high);
     if (morph_accepts(&f->random, cost - old, odds)) return;
+    memcpy(f->used + (size_t)low * f->words, f->saved, bytes);
     if (b < c) turn(f->line, a, c);
     turn(f->line, b, c);
     turn(f->line, a, b);
@@ -186,10 +196,12 @@ static void settle(fold *f)
 static int settle_or_leave(fold *f)
 {
     const size_t bytes = f->count * sizeof *f->line;
-    const int64_t before = column_cost(f, 0, f->columns - 1u);
+    int64_t before;
     uint32_t *old = morph_alloc(f->count, sizeof *old);
     if (!old) return 1;
     memcpy(old, f->line, bytes);
+    use_columns(f, 0, f->columns - 1u);
+    before = column_cost(f, 0, f->columns - 1u);
     settle(f);
     if (column_cost(f, 0, f->columns - 1u) > before) memcpy(f->line, old, bytes);
     free(old);
@@ -216,8 +228,9 @@ int morph_fold_settle(const morph_bits *vertices, const morph_region *region, fl
     f.first = morph_alloc(most_columns(region) + 1u, sizeof *f.first);
     f.column = morph_alloc(f.count, sizeof *f.column);
     f.starts = morph_alloc(most_columns(region), sizeof *f.starts);
-    f.used = morph_alloc(2u * (size_t)f.words, sizeof *f.used);
-    failed = !f.first || !f.column || !f.starts || !f.used;
+    f.used = morph_alloc(most_columns(region) * f.words, sizeof *f.used);
+    f.saved = morph_alloc((STRETCH_MOST + 1u) * (size_t)f.words, sizeof *f.saved);
+    failed = !f.first || !f.column || !f.starts || !f.used || !f.saved;
     if (!failed) {
         find_columns(&f, region);
         failed = settle_or_leave(&f);
@@ -226,5 +239,6 @@ int morph_fold_settle(const morph_bits *vertices, const morph_region *region, fl
     free(f.column);
     free(f.starts);
     free(f.used);
+    free(f.saved);
     return failed;
 }

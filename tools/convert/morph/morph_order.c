@@ -1,13 +1,19 @@
 /* morph_order.c: a line of patterns along which targets rarely start or stop.
  *
- * A target's vertices along the line form runs, and a run becomes a rectangle.
- * A gap of g vertices between two runs costs min(g, reach) texels: it is filled
- * with zeros or a new rectangle starts, whichever is cheaper. With c(t, p) the
- * distance from a cut to the nearest vertex of target t on side p of it, the two
- * sides lying together save max(0, reach - c(t, left) - c(t, right)) against
- * lying far apart, and that is all that a cut's cost depends on: so reversing a
- * stretch of the line is judged by its two ends. The line starts by nearest
- * neighbours and is then annealed by such reversals. All costs are integers. */
+ * Vertices that exactly the same targets move form a pattern. A target's vertices along the line form runs, and a run
+ * becomes a rectangle. A gap of g vertices between two runs costs min(g, reach) texels: it is filled with zeros, or a
+ * new rectangle starts, whichever is cheaper. Finding the line of least cost is a travelling-salesman problem, with a
+ * pattern for each city and about the Hamming distance between them; it is solved as such problems are: a
+ * nearest-neighbour tour, then 2-opt reversals accepted by simulated annealing (Kirkpatrick, Gelatt and Vecchi,
+ * "Optimization by Simulated Annealing", 1983).
+ *
+ * A reversal is judged in constant time. With c(t, p) the distance from a cut to the nearest vertex of target t on
+ * side p of it, two sides that lie together save max(0, reach - c(t, left) - c(t, right)) against lying far apart, and
+ * nothing else depends on the cut. Reversing a stretch changes the two cuts at its ends and no other, so the change of
+ * cost is the difference of four such sums, each a few words of bits.
+ *
+ * Costs are integers and chances are taken from a fixed sequence without libm, so every machine takes the same
+ * decisions and writes the same bytes. */
 #include "morph_internal.h"
 
 #include <stdlib.h>

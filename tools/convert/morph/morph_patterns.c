@@ -1,7 +1,8 @@
 /* morph_patterns.c: groups vertices that exactly the same targets move.
  *
- * A real face has few such groups (318 for 2,966 vertices of the test head), and
- * no good order tears one apart, so the order is looked for among groups. */
+ * A real face has few such groups (318 for 2,966 vertices of the test head), and no good order separates vertices of
+ * one group, so groups are ordered instead of vertices. Rows of bits are sorted by merges; equal ones are neighbours
+ * then. */
 #include "morph_internal.h"
 
 #include <stdlib.h>

@@ -1,11 +1,11 @@
 /* morph_rects.c: covers the texels of one target by disjoint rectangles.
  *
- * It starts from the boxes of bands (of one row, and of a strip; the cheaper end
- * is taken) and joins two rectangles into their bounding box, with all that the
- * box touches, while that pays: a rectangle
- * less against the empty texels that the box takes in. Always the join that
- * gains most; the candidates of a rectangle are its successor in row order and
- * those right below it, and each rectangle remembers its best one. */
+ * The least cover is a hard problem (minimum rectangle cover is NP-hard), and rectangles may also hold texels that the
+ * target does not need, at the price of storing zeros. This is a greedy cover: it starts from the boxes of bands (of
+ * single rows, and of strips; the cheaper result is taken) and joins two rectangles into their bounding box, together
+ * with all that the box touches, while that pays: each rectangle saved is worth `rect_cost` texels, each empty texel
+ * taken in costs one. The join that gains most comes first. A rectangle's candidates are its successor in row order
+ * and those right below it; each remembers its best join, and after a join only those near it look again. */
 #include "morph_internal.h"
 
 #include <stdlib.h>

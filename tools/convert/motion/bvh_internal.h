@@ -32,7 +32,10 @@ typedef struct bvh_file {
     raw_set *set;
 } bvh_file;
 
-int bvh_out_of_memory(bvh_file *f);
+static inline int bvh_out_of_memory(bvh_file *f)
+{
+    return model_fail(f->text.error, "", "there is not enough memory to read this file");
+}
 
 /* From the word MOTION to the end: fills the set's clip. */
 int bvh_read_motion(bvh_file *f);

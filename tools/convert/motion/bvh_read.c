@@ -10,11 +10,6 @@
 #include "convert/model/model_build.h"
 #include "raw_set.h"
 
-int bvh_out_of_memory(bvh_file *f)
-{
-    return model_fail(f->text.error, "", "there is not enough memory to read this file");
-}
-
 static int expect(bvh_file *f, const char *keyword, const char *after)
 {
     char shown[TEXT_SHOWN];

@@ -1,9 +1,9 @@
-/* bvh_read.h: .bvh, what motion capture is exchanged in.
+/* bvh_read.h: .bvh, the exchange format of motion capture.
  *
  * Channels may stand in any order on any joint; rotations are composed in the order of
  * the file, the first outermost. Position channels replace the offset on their axes.
- * One frame per line, as many as announced (one more is a warning). End sites become raw_joint.end, not joints: they cannot move, and
- * cost nothing so. Frames come out in the file's own unit. */
+ * One frame per line, as many as announced (one more is a warning). End sites become
+ * raw_joint.end, not joints: they cannot move, so they need no tracks. Frames are in the file's own unit. */
 #ifndef NOH_CONVERT_BVH_READ_H
 #define NOH_CONVERT_BVH_READ_H
 

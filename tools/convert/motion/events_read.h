@@ -6,7 +6,7 @@
  * PAYLOAD is a number: 8 bytes that the callback gets, little endian. Whole numbers (also
  * 0x and up to 16 hexadecimal digits) are 64-bit integers, those with a point or an
  * exponent 64-bit floats. WEIGHT is the least weight at which the key is delivered.
- * A marker lies before its clip's end, no two of a clip at one time; clips that are to keep step
+ * A marker lies before its clip's end, no two of a clip at one time; clips of one sync group
  * have the same markers in the same order.
  * What follows a # that begins a word is a comment. */
 #ifndef NOH_CONVERT_EVENTS_READ_H

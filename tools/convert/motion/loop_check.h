@@ -1,4 +1,4 @@
-/* loop_check.h: does a clip end where it began? */
+/* loop_check.h: the gap between a clip's last frame and its first. */
 #ifndef NOH_CONVERT_LOOP_CHECK_H
 #define NOH_CONVERT_LOOP_CHECK_H
 
@@ -13,8 +13,8 @@ typedef struct raw_loop_check {
     uint32_t joint;         /* where; MODEL_NONE for a clip without joints */
     double in_place_cm;     /* likewise with the topmost joint that travels put back: how a loop with root motion closes */
     uint32_t in_place_joint;
-    double float_cm;        /* of morph weights: the sum of a group, by its reach */
-    double float_units;     /* of floats without a reach, in their own unit */
+    double float_cm;        /* of morph weights: the sum over a group, by its radius */
+    double float_units;     /* of scalars without a radius, in their own unit */
 } raw_loop_check;
 
 /* Compare at six points around each joint, shell_cm from it (3 is usual) in the first

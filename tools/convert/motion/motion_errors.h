@@ -1,5 +1,5 @@
-/* motion_errors.h: what an encoded clip is off with fewer joints, and when it is posed less often than
- * once a frame: what the runtime chooses by (character/detail.h). */
+/* motion_errors.h: the error of an encoded clip with fewer joints, and at lower update rates. The runtime chooses LOD
+ * levels by these (character/detail.h). */
 #ifndef NOH_CONVERT_MOTION_ERRORS_H
 #define NOH_CONVERT_MOTION_ERRORS_H
 
@@ -16,11 +16,11 @@ typedef struct motion_errors {
     uint32_t level_count;              /* 0 without joints */
 } motion_errors;
 
-/* What a clip is measured by. Borrowed. */
+/* Where a clip's error is measured. Borrowed. */
 typedef struct motion_flesh {
-    const float *reach;            /* [joint_count] joint_reach of the skeleton; NULL: no mesh is bound to it, points lie `shell_cm` from
-                                    * each joint */
-    const noh_time_points *points; /* vertices that the rates are measured by; read only with `reach` */
+    const float *reach;            /* [joint_count] radius of what each joint moves (joint_reach); NULL: no mesh is bound to the
+                                    * skeleton, points lie `shell_cm` from each joint */
+    const noh_time_points *points; /* vertices on which update rates are measured; read only with `reach` */
     double shell_cm;
 } motion_flesh;
 

@@ -1,6 +1,5 @@
-/* raw_clip.h: motion as the readers leave it and the clip encoder takes it: every
- * frame of every track, uniformly sampled, lossless. Units: model units (metres in
- * glTF, centimetres in .rcl and most BVH; `unit_cm` says), seconds, quaternions xyzw. */
+/* raw_clip.h: a clip between reader and encoder: every frame of every track at one sample rate, without loss. Units:
+ * model units (metres in glTF, centimetres in .rcl and most BVH; `unit_cm` says which), seconds, quaternions xyzw. */
 #ifndef NOH_CONVERT_RAW_CLIP_H
 #define NOH_CONVERT_RAW_CLIP_H
 
@@ -14,7 +13,7 @@ typedef struct raw_joint {
     char *name;
     uint32_t parent;        /* index, lower than its own, or MODEL_NONE */
     float rotation[4], translation[3], scale[3]; /* bind pose, local to the parent */
-    float end[3];           /* where its last bone ends (a BVH end site), local to the joint; zero: not known */
+    float end[3];           /* the end site of a BVH leaf joint, local to the joint; zero: not known */
     uint32_t node;          /* glTF node, or MODEL_NONE */
 } raw_joint;
 
@@ -26,13 +25,13 @@ typedef struct raw_skeleton {
     double unit_cm;         /* centimetres per unit: 100 for glTF, 1 for .rcl */
 } raw_skeleton;
 
-/* A group of float tracks that are sampled together: a node's morph weights, or named floats. */
+/* Scalar tracks that are sampled together: a node's morph weights, or named scalars. */
 typedef struct raw_floats {
     char *name;             /* of the node, or of the float */
     uint32_t node;          /* glTF node for morph weights, else MODEL_NONE */
     uint32_t width;
     float *values;          /* [frame_count][width] */
-    float *reach;           /* [width] displacement in centimetres that a value of 1 causes; NULL: the error is in the float's own unit */
+    float *reach;           /* [width] radius in centimetres: how far a value of 1 moves the surface; NULL: errors are in the scalar's own unit */
 } raw_floats;
 
 typedef struct raw_event {
@@ -47,7 +46,7 @@ typedef struct raw_clip {
     char *name;
     double rate_hz;
     uint32_t frame_count;   /* at least 1; the clip lasts (frame_count - 1) / rate_hz seconds */
-    uint32_t joint_count;   /* of its skeleton; 0: floats only */
+    uint32_t joint_count;   /* of its skeleton; 0: animates scalar tracks only */
     uint8_t loop;           /* marked as a loop: the last frame equals the first */
     float *rotations;       /* [frame_count][joint_count][4] unit */
     float *translations;    /* [frame_count][joint_count][3] */
@@ -56,11 +55,11 @@ typedef struct raw_clip {
     raw_floats *floats;
     uint32_t event_count;
     raw_event *events;      /* keys and markers, in time order */
-    double source_error_cm; /* how far playing these frames (lerp, normalise) strays between them from the source's
-                             * own curves: the largest of all joints and floats, each judged alone; 0: not at all */
+    double source_error_cm; /* the largest distance, between frames, from the source's own curves when these frames are
+                             * played (lerp, normalise): over all joints and scalars, one by one; 0: none */
 } raw_clip;
 
-/* One skeleton and the clips that move it. */
+/* One skeleton and its clips. */
 typedef struct raw_set {
     raw_skeleton skeleton;
     uint32_t clip_count;

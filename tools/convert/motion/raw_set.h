@@ -1,11 +1,11 @@
-/* raw_set.h: making, freeing and looking at raw motion (raw_clip.h).
+/* raw_set.h: allocates, frees and inspects raw clips (raw_clip.h).
  *
  *   raw_set_new, raw_set_free       a set on the heap
  *   raw_set_clear                   what a set holds, not the set itself
  *   raw_skeleton_alloc              joints in a bind pose of no rotation
  *   raw_clip_alloc, raw_clip_clear  frames
  *   raw_clip_add_event              keeps the events in time order
- *   raw_skeleton_hash               what binds mesh packs to animation packs
+ *   raw_skeleton_hash               binds the clips of one pack to the skeleton of another
  *   raw_pose_object                 a pose in object space, double precision */
 #ifndef NOH_CONVERT_RAW_SET_H
 #define NOH_CONVERT_RAW_SET_H

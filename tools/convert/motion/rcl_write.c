@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "convert/model/model_build.h"
-#include "convert/pack/pack_write.h"
+#include "convert/pack/byte_buffer.h"
 #include "platform.h"
 
 static void put_u32(byte_buffer *b, uint32_t value)

@@ -1,4 +1,4 @@
-/* resample.h: raw clips at other rates. */
+/* resample.h: raw clips at other sample rates. */
 #ifndef NOH_CONVERT_RESAMPLE_H
 #define NOH_CONVERT_RESAMPLE_H
 
@@ -8,9 +8,9 @@
 extern "C" {
 #endif
 
-/* A copy at another rate, of the same length: n = round(duration * rate_hz) steps, at least
+/* A copy at another sample rate, of the same length: n = round(duration * rate_hz) steps, at least
  * one, from the first frame to the last, both kept exactly; so its rate is n / duration.
- * Between frames it is what playing shows: lerp along the shorter chord, rotations normalised.
+ * Between frames it interpolates as the player does: lerp along the shorter chord, rotations normalised.
  * *out is filled, to be freed with raw_clip_clear. Returns 1 and *error where the rate is
  * not possible. */
 int raw_clip_resample(const raw_clip *clip, double rate_hz, raw_clip *out, model_error *error);

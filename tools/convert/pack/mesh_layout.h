@@ -1,8 +1,8 @@
 /* mesh_layout.h (private to the pack writer): which vertex goes where, and which palette draws it.
  *
  * Vertices lie by level of detail, the coarsest first, and within a level in the morph encoder's order. Where a
- * skinned mesh needs more joints than its palette holds, its triangles are dealt out to several palettes (greedy by
- * triangle, row C3.6); a vertex that several palettes need is doubled and shares the first one's morph texel. */
+ * skinned mesh needs more joints than its palette holds, its triangles are dealt out to several palettes
+ * (palette_deal.h); a vertex that several palettes need is doubled and shares the first one's morph texel. */
 #ifndef NOH_CONVERT_MESH_LAYOUT_H
 #define NOH_CONVERT_MESH_LAYOUT_H
 

@@ -26,11 +26,11 @@ typedef struct motions {
 typedef struct motion_settings {
     double rate_hz;  /* 0: as the source has it */
     double unit_cm;  /* of .bvh; 0: 1 */
-    int check_loops; /* mark every clip as a loop, and say how far it is from closing */
+    int check_loops; /* mark every clip as a loop, and report the gap between its ends */
     int skeletons_only; /* no clips: what a mesh pack needs */
     clip_options clip;
     named_errors clip_errors, joint_errors; /* over those of `clip` */
-    const model *m; /* bound to the sets: errors of fewer joints and lower rates are those of its vertices; NULL: of the shell */
+    const model *m; /* bound to the sets: errors of fewer joints and lower update rates are measured on its vertices; NULL: on the shell */
     FILE *report, *progress; /* or NULL */
 } motion_settings;
 

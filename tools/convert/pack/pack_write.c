@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/hash.h"
+#include "base/version.h"
 #include "pack/format.h"
 #include "motions.h"
 #include "pack_mesh.h"
@@ -287,6 +288,7 @@ static int assemble(writer *w, byte_buffer *out)
     }
     h.magic = NOH_PACK_MAGIC;
     h.version = NOH_PACK_VERSION;
+    h.library_version = noh_version_number();
     h.byte_count = (uint32_t)out->count;
     h.chunk_count = w->chunk_count;
     memcpy(out->bytes + sizeof h, w->chunks, table - sizeof h);

@@ -1,4 +1,4 @@
-/* joint_points.h: some vertices of what a skeleton moves, by which motion is measured. */
+/* joint_points.h: a sample of the vertices that a skeleton moves, on which a clip's error is measured. */
 #ifndef NOH_CONVERT_JOINT_POINTS_H
 #define NOH_CONVERT_JOINT_POINTS_H
 
@@ -12,8 +12,8 @@ typedef struct joint_points {
     noh_time_hold *holds;   /* its own */
 } joint_points;
 
-/* Choose those that motion moves most: of each joint the farthest that hang on it, as far as they do, all in all
- * and along its axes; the extremes of the box; then whichever is farthest from all that were chosen.
+/* Choose those that move most: of each joint the farthest that it moves, in all and along its axes, weighted; the
+ * extremes of the box; then always the vertex farthest from all that were chosen (farthest-point sampling).
  * m       NULL: no meshes; else bound (skins.h)
  * errors  1: out of memory; nothing is then left open */
 int joint_points_choose(const model *m, uint32_t set, uint32_t joint_count, joint_points *out);

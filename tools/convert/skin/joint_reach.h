@@ -1,10 +1,10 @@
-/* joint_reach.h: how far from a joint lies what it moves. */
+/* joint_reach.h: the radius of what each joint moves. */
 #ifndef NOH_CONVERT_JOINT_REACH_H
 #define NOH_CONVERT_JOINT_REACH_H
 
 #include "convert/motion/raw_clip.h"
 
-#define JOINT_REACH_WEIGHT 0.05f /* a vertex that a joint moves less than that is moved by others */
+#define JOINT_REACH_WEIGHT 0.05f /* weights below this do not count: other joints place the vertex */
 
 /* For each joint of a set's skeleton the distance of the farthest vertex that it moves with a weight of at least
  * JOINT_REACH_WEIGHT, in the bind pose and in the joint's own space; -1 where it moves none.

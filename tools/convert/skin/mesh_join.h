@@ -11,7 +11,7 @@ typedef struct mesh_part {
     uint32_t place_rigid;   /* the joint that a rigid part follows */
 } mesh_part;
 
-/* Join them, in order. Triangles of one material become one submesh (one draw, row C3.9). Parts with targets must
+/* Join them, in order. Triangles of one material become one submesh, drawn at once. Parts with targets must
  * have the same ones by name and order; what a part lacks of the others' attributes gets a neutral value.
  * *out is to be added to a model; its name and skin are left to the caller. Returns 1 when out of memory. */
 int mesh_join(const mesh_part *parts, uint32_t part_count, model_mesh *out);

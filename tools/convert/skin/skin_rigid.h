@@ -1,9 +1,10 @@
-/* skin_rigid.h (private to skins_bind): rigid meshes in a bone hierarchy (rows C3.9, C3.10).
+/* skin_rigid.h (private to skins_bind): rigid meshes in a joint hierarchy, such as the parts of a robot.
  *
- * A mesh without joints whose node is, or hangs below, a joint moves as that joint does. It becomes
- * a skinned mesh of one influence, its vertices where the rest pose puts them, in model space. All that one
- * skeleton moves so become one mesh, with one draw per material; a skinned mesh of that skeleton
- * joins them where that saves draws: all its materials are among theirs. */
+ * A mesh without joints whose node is a joint, or hangs below one, moves with it. Drawing each part with its joint's
+ * matrix (Granberg, Character Animation with Direct3D, chapter 3) costs a draw per part. Here a part becomes a skinned
+ * mesh of one influence per vertex, placed in model space by the rest pose; all parts of one skeleton become one mesh
+ * with one draw per material. A skinned mesh of that skeleton joins them where that saves draws: where all its
+ * materials are among theirs. */
 #ifndef NOH_CONVERT_SKIN_RIGID_H
 #define NOH_CONVERT_SKIN_RIGID_H
 

@@ -18,8 +18,8 @@ typedef struct skin_options {
 } skin_options;
 
 /* Bind every skinned mesh of a model to its skin, and every skin to its skeleton. Rigid meshes that a joint moves
- * become skinned ones (skin_rigid.h); a mesh that several skins move, or that is drawn both ways, is copied. What is left out of the weights is a
- * warning of the model. 0, or 1 and a filled error. */
+ * become skinned ones (skin_rigid.h); a mesh that several skins move, or that is drawn both with and without one, is copied. Weights that are left
+ * out are a warning of the model. 0, or 1 and a filled error. */
 int skins_bind(model *m, struct motion *made, const skin_options *options, model_error *error);
 
 #endif

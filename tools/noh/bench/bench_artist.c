@@ -5,8 +5,9 @@
 
 #include "bench_job.h"
 #include "convert/morph/morph_encode.h"
+#include "message.h"
 
-/* 0 when the encoder's order turns the asset's vertices into the pack's. */
+/* 0 where the encoder's order, applied to the asset, gives the pack's vertices. */
 static int differs(const model_mesh *from, const morph_encoding *e, const noh_mesh *mesh)
 {
     if (e->vertex_count != mesh->header->vertex_count || e->target_count != mesh->header->target_count) {

@@ -1,10 +1,11 @@
-/* bench_check.c: a method is timed only after it gave what the CPU reference gives, so that
- * equals are compared. Vertices come back through transform feedback. */
+/* bench_check.c: a method is timed only after its vertices matched the CPU reference, so that like is compared with like.
+ * Vertices come back through transform feedback. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench_job.h"
+#include "message.h"
 
 typedef struct check {
     bench_stage *stage;
@@ -58,7 +59,7 @@ static int capture(check *c)
     return !mapped || gl->GetError() != GL_NO_ERROR;
 }
 
-/* How far positions and normals are from the reference, at most. */
+/* The largest errors of positions and normals against the reference. */
 static void measure(check *c, double *position_error, double *normal_error)
 {
     noh_morph_layers layers;

@@ -5,16 +5,18 @@
  *   shared   a hundred instances at random phases of all clips, one cache that holds them; with
  *            the wants and ticks of a game's frame
  *   seek     random times, a cache of two segments: nearly every sample of a long clip decodes */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench_clip.h"
+#include "message.h"
 
 #define SAMPLE_NS 2e6
 #define CHECK_TIMES 200u
 #define TOLERANCE 1e-3f
-#define TOLERANCE_LENGTH 1e-2f /* keys of odd rates lie up to a tick, 1/48,000 s, beside their frames */
-#define SEEK_JOINTS 31.0  /* a seek is told for a body of so many */
+#define TOLERANCE_LENGTH 1e-2f /* keys of odd sample rates lie up to a tick, 1/48,000 s, off their frames */
+#define SEEK_JOINTS 31.0  /* a seek is reported for a skeleton of this size */
 #define EVERYTHING 0xffffffffu
 
 typedef struct clip_bench {

@@ -12,7 +12,7 @@
 #define BENCH_INSTANCES 100u
 #define BENCH_FRAME_TICKS 800 /* of a game at 60 Hz */
 
-/* A clip, and what `raw-keys` plays instead of it. */
+/* A clip, and the raw keys that the baseline plays. */
 typedef struct bench_clip {
     const char *name;
     void *memory;
@@ -47,7 +47,7 @@ void bench_cache_close(bench_cache *c);
 /* The time of a game's frame in a clip that loops; phase: ticks. */
 int64_t bench_clip_time(const bench_clip *c, uint32_t frame, uint64_t phase);
 
-/* The baseline `raw-keys`: floats as they come, lerped; rotations in one hemisphere and normalised. */
+/* The baseline `raw-keys`: uncompressed floats, lerped; rotations in one hemisphere and normalised. */
 void bench_sample_keys(const bench_clip *c, int64_t ticks, noh_transform *out);
 
 /* The row clip/worst-frame. */

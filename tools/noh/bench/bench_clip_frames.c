@@ -1,12 +1,12 @@
 /* bench_clip_frames.c: row clip/worst-frame: a minute of a hundred instances at 60 Hz.
  *
- * The instances of a clip follow each other at a tenth of a second, over and over; the cache holds
- * what they cover and little more, so that decoding never ends. Each frame asks for what is needed a
- * segment later and decodes as much of it as a fixed budget allows. A frame's time is the least of
- * several passes over the same minute: what the machine did besides does not count. */
+ * The instances of a clip loop a tenth of a second apart; the cache holds the segments that they cover and few more, so that
+ * decoding never ends. Each frame requests the segments needed next and decodes as much as a fixed budget allows. A frame's
+ * time is the least of several passes over the same minute, which removes what else the machine did. */
 #include <stdlib.h>
 
 #include "bench_clip.h"
+#include "message.h"
 
 #define MINUTE 3600u
 #define STAGGER_TICKS 4800u

@@ -1,5 +1,6 @@
 /* bench_clip_set.c: the clips that are benched, their raw keys, caches; the baseline raw-keys. */
 #include "bench_clip.h"
+#include "message.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,7 +18,7 @@ static int init_clip(bench_clip *c, const pack_file *file, uint32_t index)
     noh_clip_desc desc;
     size_t bytes;
     memset(c, 0, sizeof *c);
-    noh_pack_motion_at(&file->pack, index, &motion);
+    noh_pack_motion_at(&file->pack, index, &motion, NULL);
     if (motion.header->joint_count == 0u) {
         return 0; /* weights alone */
     }
@@ -53,7 +54,7 @@ static uint64_t weight_of(const bench_clip *c)
     return (uint64_t)c->info.joint_count * c->info.frame_count;
 }
 
-/* Put a clip where it belongs; the one that falls out at the end is freed. */
+/* Insert a clip by size; the one pushed out at the end is freed. */
 static void keep_largest(bench_clip_set *set, bench_clip *c)
 {
     uint32_t at = set->count;
@@ -72,7 +73,7 @@ static void keep_largest(bench_clip_set *set, bench_clip *c)
     set->count++;
 }
 
-/* The keys are what the clip decodes to at its frames. */
+/* The keys are the clip, decoded at its frames. */
 static int decode_keys(bench_clip_set *set, uint32_t index)
 {
     bench_clip *c = &set->clips[index];

@@ -1,8 +1,10 @@
 /* bench_cpu.c: rows morph/cpu: the kernels against dense scalar C and against memcpy. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench_job.h"
+#include "message.h"
 
 #define SAMPLE_NS 5e6
 #define ATTRIBUTES 9u /* position, normal, tangent */
@@ -41,7 +43,7 @@ static void run_kernel(void *self, uint32_t frame)
     b->seen = b->layer_memory;
 }
 
-/* Scalar means scalar: some compilers would vectorise this loop, and say nothing of it. */
+/* Keep the compiler from vectorising the scalar baseline. */
 #if defined(__clang__)
 #define SCALAR_LOOP _Pragma("clang loop vectorize(disable) interleave(disable)")
 #define SCALAR_FUNCTION
@@ -61,7 +63,7 @@ SCALAR_FUNCTION static void add_dense(float *restrict sums, const float *restric
     }
 }
 
-/* The plain way: every target's floats for every vertex; zero weights skipped. */
+/* The straightforward way: all floats of a target for every vertex; zero weights are skipped. */
 static void run_dense(void *self, uint32_t frame)
 {
     cpu_bench *b = ((const cpu_work *)self)->bench;

@@ -1,5 +1,6 @@
 /* bench_crowd.c: a hundred heads in one accumulator, each with weights of its own, against
  * one head alone; and how cost grows with pairs. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -30,7 +31,7 @@ static void run_update(void *self, uint32_t frame)
     const crowd_work *w = (const crowd_work *)self;
     noh_gl_morph_stats stats;
     for (uint32_t i = 0; i < w->heads; i++) {
-        noh_gl_morph_weights(w->morph->morph, i, bench_weights_of(w->weights, frame + 7u * i), NULL);
+        noh_gl_morph_set_weights(w->morph->morph, i, bench_weights_of(w->weights, frame + 7u * i), NULL);
     }
     noh_gl_morph_update(w->morph->morph, &stats);
     if (w->heads > 1) {

@@ -1,15 +1,17 @@
-/* bench_crowd_frame.c: rows crowd/cpu and crowd/gpu: a frame of 1,000 bodies over 100 m (tools/noh/crowd.h), at knobs of
- * several pixels, against the same frame without detail. None where a pack has no skinned mesh with levels, or no clips.
+/* bench_crowd_frame.c: rows crowd/cpu and crowd/gpu: a frame of 1,000 bodies over 100 m (tools/noh/crowd.h), at several
+ * allowed errors in pixels, against the same frame without detail. None where a pack has no skinned mesh with levels, or no clips.
  *
  * The CPU's part ends with palettes and weights handed to the library; the GPU's is accumulation, upload and draws up to
  * glFinish, into 1280 x 720 pixels of four samples. On a software rasteriser the GPU's part is a whole frame less
  * the CPU's part, in process CPU time. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench_job.h"
 #include "crowd.h"
-#include "view.h"
+#include "canvas.h"
+#include "message.h"
 
 #define SAMPLE_NS 2e7
 #define BODIES 1000u
@@ -20,7 +22,7 @@
 #define WIDTH 1280u
 #define HEIGHT 720u
 
-/* One crowd, and the memory that it lives in. */
+/* One crowd and its memory. */
 typedef struct stand {
     crowd_plan plan;
     crowd crowd;
@@ -28,7 +30,7 @@ typedef struct stand {
     int is_open;
 } stand;
 
-/* The last but one has no detail, and the last draws those out of sight too: they are one crowd. */
+/* The last but one has no detail; the last is the same crowd, drawing invisible bodies too. */
 static const float knobs[] = { 1.0f, 2.0f, 4.0f, 16.0f };
 #define KNOBS (sizeof knobs / sizeof knobs[0])
 #define PLAIN KNOBS
@@ -130,9 +132,9 @@ static void make_work(fair *f, uint32_t variant, fair_work *w)
     w->unculled = variant == UNCULLED;
 }
 
-/* ---- what has to hold ---- */
+/* ---- checks ---- */
 
-/* All crowds hear of the same events, from the same start. */
+/* All crowds get the same events from the same start. */
 static int check_events(fair *f)
 {
     const crowd_events *expected = &f->stands[PLAIN].crowd.events;
@@ -173,7 +175,7 @@ static void note_memory(fair *f)
 
 /* ---- rows ---- */
 
-/* Both baselines for each knob. cost[VARIANTS] in nanoseconds a frame. */
+/* Both baselines for each allowed error. cost[VARIANTS] in nanoseconds a frame. */
 static void add_rows(fair *f, const char *part, const double *cost, uint32_t rounds)
 {
     for (uint32_t i = 0; i < KNOBS; i++) {
@@ -220,13 +222,13 @@ static int measure_all(fair *f)
     return status;
 }
 
-/* A mesh with joints and levels, and something that moves it. */
+/* A mesh with joints and levels, and clips for it. */
 static int has_crowd(const noh_pack *pack)
 {
     int found = 0;
     for (uint32_t i = 0; i < pack->mesh_count; i++) {
         noh_mesh mesh;
-        noh_pack_mesh(pack, i, &mesh);
+        noh_pack_mesh(pack, i, &mesh, NULL);
         found |= mesh.header->skin != NOH_NONE && mesh.header->level_count > 1u;
     }
     return found && pack->motion_count;

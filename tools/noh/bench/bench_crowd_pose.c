@@ -1,19 +1,20 @@
 /* bench_crowd_pose.c: rows crowd/pose: what 1,000 characters on the first skeleton of a pack cost the CPU, from
- * clocks to skinning matrices, posed as often as pixels want it and in every frame. None where a pack has no motion. */
+ * clocks to palettes, posed at the update rate that pixels need, and in every frame. None where a pack has no clips. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench_job.h"
+#include "message.h"
 
 #define SAMPLE_NS 2e7
 #define CROWD 1000u
 #define MOTIONS_MAX 32u
 #define FRAME_TICKS 800u  /* 60 frames a second */
-#define FIELD_M 100.0f    /* they are strewn evenly over a disc of this radius */
+#define FIELD_M 100.0f    /* radius of the disc over which they are spread evenly */
 #define VIEW_RAD 1.0472f  /* 60 degrees */
 #define VIEW_LINES 720u
-#define FLESH_M 0.06f     /* around bones: there is no mesh here to say it */
+#define FLESH_M 0.06f     /* radius round bones, since there is no mesh to measure */
 
 typedef struct crowd {
     noh_skeleton skeleton;
@@ -46,7 +47,7 @@ static noh_character *character_of(const crowd *c, uint32_t i)
 
 /* ---- what is timed ---- */
 
-/* Everyone is stepped and posed in every frame. */
+/* Step and pose all in every frame. */
 static void run_full(void *self, uint32_t frame)
 {
     crowd *c = ((const crowd_work *)self)->crowd;
@@ -62,7 +63,7 @@ static void run_full(void *self, uint32_t frame)
     }
 }
 
-/* Everyone is stepped; who is seen is posed as often as its pixels want it. */
+/* Step all; pose the visible ones at the update rate that their pixels need. */
 static void run_detail(void *self, uint32_t frame)
 {
     const crowd_work *w = (const crowd_work *)self;
@@ -101,7 +102,7 @@ static int open_clip(crowd *c, const pack_file *file, uint32_t index)
     noh_skeleton bound;
     noh_clip *clip;
     size_t bytes;
-    noh_pack_motion_at(&file->pack, index, &motion);
+    noh_pack_motion_at(&file->pack, index, &motion, NULL);
     if (noh_pack_bind_motion(&file->pack, &motion, &bound, &skeleton, NULL) || skeleton != 0) {
         return 0;
     }
@@ -122,7 +123,7 @@ static int open_clip(crowd *c, const pack_file *file, uint32_t index)
     return 0;
 }
 
-/* Every segment stays decoded: what is timed is characters. */
+/* Every segment stays decoded, so that decoding is not timed. */
 static int open_cache(crowd *c)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
@@ -142,7 +143,7 @@ static int open_cache(crowd *c)
     return 0;
 }
 
-/* Around each joint as far as its longest bone. */
+/* A radius for each joint: its longest bone. */
 static void set_reaches(crowd *c, float unit_m)
 {
     const noh_skeleton *s = &c->skeleton;
@@ -173,7 +174,7 @@ static int measure_rates(crowd *c)
     return status;
 }
 
-/* Half of them blend two motions. Phases and places by a sequence that fills evenly. */
+/* Half of them blend two clips. Phases and places from a low-discrepancy sequence. */
 static void populate(crowd *c, float unit_m)
 {
     for (uint32_t i = 0; i < CROWD; i++) {
@@ -219,7 +220,7 @@ static int crowd_open(crowd *c, const pack_file *file)
 {
     const noh_skeleton_header *header;
     int status = 0;
-    noh_pack_skeleton_at(&file->pack, 0, &c->skeleton, &header);
+    noh_pack_skeleton_at(&file->pack, 0, &c->skeleton, &header, NULL);
     c->set.joint_count = c->skeleton.joint_count;
     c->set.motions = c->motions;
     c->set.bind_pose = c->skeleton.bind_pose;
@@ -262,7 +263,7 @@ static void crowd_close(crowd *c)
 
 /* ---- rows ---- */
 
-/* Near enough to be posed in every frame, a character is what the baseline makes of it, to the bit. */
+/* A character near enough to be posed in every frame equals the baseline bit for bit. */
 static int check(crowd_work *w)
 {
     crowd *c = w->crowd;

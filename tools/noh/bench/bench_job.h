@@ -12,7 +12,7 @@
  *   bench_cpu.c         rows morph/cpu
  *   bench_clip*.c       rows clip/ (see bench_clip.h)
  *   bench_crowd_pose.c  rows crowd/pose: a thousand characters, posed as often as pixels want it
- *   bench_crowd_frame.c rows crowd/cpu and crowd/gpu: frames of a thousand bodies with and without detail
+ *   bench_crowd_frame.c rows crowd/cpu and crowd/gpu: frames of a thousand bodies, with and without detail
  *   bench_skin_gpu.c    rows skin/gpu: a crowd in one draw, joints per vertex
  *   bench_skin_cpu.c    rows skin/cpu
  *   bench_report.c      rows, storage, and how they are printed
@@ -26,6 +26,7 @@
 #include "gl/gl_program.h"
 #include "gl/gl_timer.h"
 #include "gpu.h"
+#include "pack_file.h"
 
 /* ---- rows ---- */
 
@@ -83,7 +84,7 @@ typedef struct bench_cell {
     void (*work)(void *self, uint32_t frame);
     void *self;
     uint32_t repeats;
-    uint32_t frame;  /* counts on from sample to sample: weights never stand still */
+    uint32_t frame;  /* runs on from sample to sample, so that weights always change */
     double *samples; /* [rounds] nanoseconds per repeat */
 } bench_cell;
 
@@ -128,7 +129,7 @@ typedef struct bench_method {
     const noh_gl_mesh *mesh;   /* what is drawn: the same triangles for all */
     const uint32_t *order;     /* [vertex_count] drawn vertex -> pack vertex, or NULL where they are the same */
     int is_baseline;
-    double slack;              /* what this method may be off, model units, besides what all may */
+    double slack;              /* error allowed to this method on top of the common one, model units */
     double normal_slack;
     int normals_of_one_only;   /* normals agree with a linear sum only while one target is active at weight 1 */
     void *self;
@@ -151,7 +152,7 @@ int bench_check(bench_stage *s, const bench_method *m, const char *subject);
 
 /* ---- methods ---- */
 
-/* Each fills *m; 0 on success, an exit code after a message otherwise, -1 where this GL cannot (no message). */
+/* Each fills *m. 0 on success, an exit code after a message on failure, -1 without one where this GL lacks it. */
 int bench_open_unmorphed(bench_method *m, bench_stage *s);
 int bench_open_path(bench_method *m, bench_stage *s, noh_morph_path path, noh_accumulate accumulate);
 int bench_open_dense(bench_method *m, bench_stage *s, int hoisted);
@@ -173,7 +174,7 @@ typedef struct bench_slope {
     uint32_t draws;                    /* accumulation draws for all heads */
 } bench_slope;
 
-/* What was planned, and what was taken. */
+/* Memory planned and taken. */
 typedef struct bench_memory {
     char name[32];
     uint64_t planned_cpu, planned_gpu, cpu, gpu;
@@ -196,9 +197,9 @@ typedef struct bench_job {
     uint32_t slope_count;
     bench_memory memories[8];
     uint32_t memory_count;
-    uint64_t crowd_events;  /* that every crowd heard of, with detail and without */
+    uint64_t crowd_events;  /* events that every crowd got, with detail and without */
     int quick;              /* few bodies: for tests */
-    const char *only;       /* the one group of rows that is wanted; NULL: all */
+    const char *only;       /* the one group of rows to measure; NULL: all */
 } bench_job;
 
 int bench_morph(bench_job *job);
@@ -212,6 +213,6 @@ int bench_skin_gpu(bench_job *job);
 int bench_skin_cpu(bench_job *job);
 
 void bench_print(bench_job *job);
-void bench_print_json(bench_job *job);
+int bench_print_json(bench_job *job);
 
 #endif

@@ -3,21 +3,23 @@
  *
  *   dense-vertex-loop   three.js: one RGBA32F array texture, a layer for each target, position
  *                       and normal texels of every vertex side by side, weights in a uniform array;
- *                       its division of the texel's number by the width stands in the loop
+ *                       the texel index is divided by the width inside the loop
  *   dense-hoisted       the same with that division done once for each vertex: kinder than three.js
  *   filament-layout     Filament: RGBA32F positions, and the morphed frames as quaternions in
  *                       RGBA16I; rows of 2048 texels, weights in a uniform block
  *
  * Both skip a target whose weight is zero, as the peers do. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench_job.h"
+#include "message.h"
 
 #define FILAMENT_WIDTH 2048u
 #define FILAMENT_TARGETS 256u
-#define UNIFORM_FLOATS 256u /* what every ES 3.0 has room for, beside the rest, if it packs badly */
+#define UNIFORM_FLOATS 256u /* fits every ES 3.0 beside the other uniforms, even badly packed */
 
 typedef struct loop_method {
     bench_stage *stage;
@@ -136,7 +138,7 @@ static void close_loop(void *self)
     free(l);
 }
 
-/* What both baselines begin with; NULL when out of memory. */
+/* The start of both baselines; NULL when out of memory. */
 static loop_method *begin_loop(bench_method *m, bench_stage *s, const char *name)
 {
     loop_method *l = calloc(1, sizeof *l);
@@ -201,7 +203,7 @@ int bench_open_dense(bench_method *m, bench_stage *s, int hoisted)
 static void put_frame(const float n[3], int16_t out[4])
 {
     double q[4] = { -(double)n[1], (double)n[0], 0.0, 1.0 + (double)n[2] }, length;
-    if (q[3] < 1e-9) { /* straight back: half a turn about x */
+    if (q[3] < 1e-9) { /* opposite: half a turn about x */
         q[0] = 1.0;
         q[1] = q[3] = 0.0;
     }

@@ -1,9 +1,11 @@
 /* bench_morph.c: the rows about one mesh: above the unmorphed mesh with rasterisation
  * discarded, and whole frames. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench_job.h"
+#include "message.h"
 
 #define SAMPLE_NS 1e7
 #define METHODS_MAX 16 /* one floor, four baselines, ten paths and formats */
@@ -40,7 +42,7 @@ static void run_frame(void *self, uint32_t frame)
 
 /* ---- methods ---- */
 
-/* Take a method whose open said `status`, check it; one that this GL lacks is left out. */
+/* Check a method whose open returned `status`, and add it; one that this GL lacks is left out. */
 static int take(morph_job *j, int status)
 {
     bench_method *m = &j->methods[j->method_count];

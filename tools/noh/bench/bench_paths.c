@@ -1,8 +1,10 @@
-/* bench_paths.c: our five ways, and the mesh that is not morphed at all. */
+/* bench_paths.c: our five paths, and the unmorphed mesh. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench_job.h"
+#include "message.h"
 
 typedef struct path_method {
     bench_stage *stage;
@@ -14,7 +16,7 @@ typedef struct path_method {
 static void prepare(void *self, const float *weights)
 {
     path_method *p = (path_method *)self;
-    noh_gl_morph_weights(p->morph.morph, 0, weights, NULL);
+    noh_gl_morph_set_weights(p->morph.morph, 0, weights, NULL);
     noh_gl_morph_update(p->morph.morph, NULL);
 }
 
@@ -35,7 +37,7 @@ static void close_path(void *self)
     free(p);
 }
 
-/* Half floats may be off by what the pack says. */
+/* Half floats are allowed the error that the pack states. */
 static void set_slack(bench_method *m, const noh_mesh_header *h, noh_accumulate accumulate)
 {
     if (accumulate == NOH_ACCUMULATE_F16) {

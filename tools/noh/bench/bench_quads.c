@@ -6,11 +6,13 @@
  * Kinder than the sample in one respect: differences are summed and the base is added at
  * fetch, so that the base pose need not be copied into the layers first. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench_job.h"
 #include "tool_shaders.gen.h"
+#include "message.h"
 
 typedef struct quad_target {
     GLint rect[4]; /* x, y, width, height; no width: it moves nothing */
@@ -40,7 +42,7 @@ static uint32_t *invert(const uint32_t *artist, uint32_t count)
     return order;
 }
 
-/* The pack's mesh with its vertices put back; `arrays` takes what must be freed. */
+/* The pack's mesh in the asset's vertex order; the caller frees `arrays`. */
 static int put_back(const quads_method *q, const uint32_t *artist, noh_mesh *out, void *arrays[3])
 {
     const noh_mesh *mesh = q->stage->mesh;
@@ -335,7 +337,7 @@ int bench_open_quads(bench_method *m, bench_stage *s, const uint32_t *artist)
     m->prepare = prepare;
     m->bind = bind;
     m->close = close_quads;
-    m->normal_slack = 3e-2; /* its differences are half floats, and a sum of many may be short */
+    m->normal_slack = 3e-2; /* its differences are half floats, and a sum of many may have a small length */
     status = create_mesh(q, artist);
     m->mesh = &q->drawn;
     m->order = q->order;

@@ -1,9 +1,11 @@
-/* bench_report.c: the rows, and what the targets weigh, for people and for machines. */
+/* bench_report.c: rows and storage, as text and as JSON. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench_job.h"
+#include "json.h"
 
 void bench_add_row(bench_rows *rows, const char *name, const char *baseline, double theirs, double ours, const char *unit,
                    uint32_t runs)
@@ -78,7 +80,7 @@ static int list_storage(bench_job *job, storage_row rows[STORAGE_MAX])
     return count;
 }
 
-/* ---- for people ---- */
+/* ---- text ---- */
 
 static void print_head(const bench_job *job)
 {
@@ -153,7 +155,7 @@ void bench_print(bench_job *job)
     }
 }
 
-/* ---- for machines ---- */
+/* ---- JSON ---- */
 
 static void json_rows(json *j, const bench_rows *rows)
 {
@@ -227,9 +229,9 @@ static void json_memories(json *j, const bench_job *job)
     json_close(j, ']');
 }
 
-void bench_print_json(bench_job *job)
+int bench_print_json(bench_job *job)
 {
-    json j = json_begin(stdout);
+    json j = json_begin();
     if (job->has_mesh) {
         json_head(&j, job);
     } else {
@@ -241,5 +243,5 @@ void bench_print_json(bench_job *job)
         json_slopes(&j, job);
         json_storage(&j, job);
     }
-    json_end(&j);
+    return json_end(&j);
 }

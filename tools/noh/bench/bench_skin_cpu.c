@@ -1,10 +1,12 @@
 /* bench_skin_cpu.c: rows skin/cpu: the kernels against straightforward scalar C, which reads the same pack (plain-scalar) or
  * floats that were unpacked before (plain-floats), and against memcpy of what they write. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench_job.h"
+#include "message.h"
 
 #define SAMPLE_NS 5e6
 #define OUT_FLOATS 10u /* position, normal, tangent */
@@ -54,7 +56,7 @@ static void run_memcpy(void *self, uint32_t frame)
     b->seen = b->copy;
 }
 
-/* Scalar means scalar: some compilers would vectorise these loops, and say nothing of it. */
+/* Keep the compiler from vectorising the scalar baselines. */
 #if defined(__GNUC__) && !defined(__clang__)
 #define SCALAR_FUNCTION __attribute__((optimize("no-tree-vectorize")))
 #else
@@ -69,7 +71,7 @@ static void make_unit(const float *sum, float *out)
     }
 }
 
-/* The formula as it stands in books: every joint moves position, normal and tangent, the results are mixed. */
+/* The textbook formula: every joint transforms position, normal and tangent, and the results are blended. */
 SCALAR_FUNCTION static void move_plainly(skin_bench *b, size_t v, const noh_vertex *in, const uint32_t *joints, const float *weights)
 {
     const size_t vertices = b->mesh->header->vertex_count, count = b->mesh->header->influence_count;
@@ -116,14 +118,14 @@ SCALAR_FUNCTION static void run_plain(void *self, uint32_t frame)
 
 /* ---- making ---- */
 
-/* Matrices of the bind pose: what they hold does not change what they cost. */
+/* Bind pose matrices: the cost does not depend on their values. */
 static int make_matrices(skin_bench *b)
 {
     noh_skin skin;
     noh_skeleton skeleton;
     float *model;
-    noh_pack_skin_at(b->mesh->pack, b->mesh->header->skin, &skin);
-    noh_pack_skeleton_at(b->mesh->pack, skin.header->skeleton, &skeleton, NULL);
+    noh_pack_skin_at(b->mesh->pack, b->mesh->header->skin, &skin, NULL);
+    noh_pack_skeleton_at(b->mesh->pack, skin.header->skeleton, &skeleton, NULL, NULL);
     b->matrices = calloc(skin.header->joint_count, 48);
     model = calloc(skeleton.joint_count, 48);
     if (b->matrices && model) {
@@ -167,7 +169,7 @@ static void skin_close(skin_bench *b)
     free(b->copy);
 }
 
-/* Both ways put every vertex in one place. */
+/* Both give the same vertices, within rounding. */
 static int skin_check(skin_bench *b, skin_work *kernel, const char *name)
 {
     const size_t floats = 3u * (size_t)b->mesh->header->vertex_count;

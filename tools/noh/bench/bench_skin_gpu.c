@@ -1,5 +1,6 @@
 /* bench_skin_gpu.c: rows skin/gpu: a hundred instances, each in a pose of its own, in one draw per submesh against a
  * hundred draws; and what joints cost per vertex above the same mesh in its bind pose. Rasterisation is discarded. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,6 +9,7 @@
 #include "base/quat.h"
 #include "bench_job.h"
 #include "deform/skin.h"
+#include "message.h"
 
 #define SAMPLE_NS 1e7
 #define INSTANCES 100u
@@ -44,7 +46,7 @@ static int largest_skinned_mesh(const noh_pack *pack, noh_mesh *out)
     uint32_t most = 0;
     for (uint32_t i = 0; i < pack->mesh_count; i++) {
         noh_mesh mesh;
-        noh_pack_mesh(pack, i, &mesh);
+        noh_pack_mesh(pack, i, &mesh, NULL);
         if (mesh.header->influence_count && mesh.header->vertex_count > most) {
             most = mesh.header->vertex_count;
             *out = mesh;
@@ -71,8 +73,8 @@ static int make_matrices(skin_bench *b)
     noh_skeleton skeleton;
     noh_transform *pose;
     float *model;
-    noh_pack_skin_at(b->mesh.pack, b->mesh.header->skin, &skin);
-    noh_pack_skeleton_at(b->mesh.pack, skin.header->skeleton, &skeleton, NULL);
+    noh_pack_skin_at(b->mesh.pack, b->mesh.header->skin, &skin, NULL);
+    noh_pack_skeleton_at(b->mesh.pack, skin.header->skeleton, &skeleton, NULL, NULL);
     b->joint_count = skin.header->joint_count;
     pose = calloc(skeleton.joint_count, sizeof *pose);
     model = calloc(skeleton.joint_count, 48);
@@ -101,7 +103,8 @@ static int open_renderer(skin_bench *b, skin_set *s, noh_palette_mode mode)
     desc.palettes = mode;
     desc.crowds = mode == NOH_PALETTE_TEXTURE;
     desc.fewer_influences = 1;
-    if (noh_gl_renderer_create(&g->gl, &g->ledger, &desc, &s->renderer, log, sizeof log, &error)) {
+    if (noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &g->ledger, log, sizeof log }, &desc,
+                               &s->renderer, &error)) {
         fputs(log, stderr);
         return tool_fail_error("bench", &error);
     }
@@ -121,13 +124,14 @@ static int open_set(skin_bench *b, skin_set *s, noh_palette_mode mode)
         return tool_fail_error("bench", &error);
     }
     s->memory = malloc((size_t)plan.cpu_bytes);
-    if (noh_gl_skin_init(s->memory, (size_t)plan.cpu_bytes, &g->gl, &g->caps, &g->ledger, &desc, &s->skin, &error)) {
+    if (noh_gl_skin_init(s->memory, (size_t)plan.cpu_bytes,
+                         &(noh_gl_device){ &g->gl, &g->caps, &g->ledger, NULL, 0 }, &desc, &s->skin, &error)) {
         return tool_fail_error("bench", &error);
     }
     for (uint32_t k = 0; k < INSTANCES; k++) {
-        noh_gl_skin_set(s->skin, k, b->matrices + 12u * (size_t)k * b->joint_count);
+        noh_gl_skin_set_matrices(s->skin, k, b->matrices + 12u * (size_t)k * b->joint_count);
         if (mode == NOH_PALETTE_TEXTURE) {
-            noh_gl_skin_place(s->skin, k, world, NULL, NULL);
+            noh_gl_skin_set_place(s->skin, k, world, NULL, NULL);
         }
     }
     noh_gl_skin_update(s->skin);

@@ -1,9 +1,11 @@
 /* bench_stage.c: where the methods draw: one 512 x 512 target, one camera, one fragment shader. */
+#include <stdio.h>
 #include <string.h>
 
 #include "bench_job.h"
 #include "shaders.gen.h"
 #include "tool_shaders.gen.h"
+#include "message.h"
 
 /* ---- the stage ---- */
 

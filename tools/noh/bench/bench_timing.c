@@ -1,12 +1,14 @@
-/* bench_timing.c: cells timed in interleaved rounds. Whatever else the machine does in a
- * second hits all cells alike, and a median drops what hit only one. */
+/* bench_timing.c: cells timed in interleaved rounds. Slow disturbances hit all cells of a round alike, and the median drops
+ * those that hit only one. */
 #define _POSIX_C_SOURCE 200809L
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "bench_job.h"
+#include "message.h"
 
 #define REPEATS_MAX 100000u
 #define PROGRESS_NS 1000000000u
@@ -15,7 +17,7 @@
 
 /* ---- clocks ---- */
 
-/* A rasteriser that runs on this processor has no other time than the processor's. */
+/* A software rasteriser runs on this CPU: its time is CPU time. */
 static int is_software(const noh_gl_caps *caps)
 {
     static const char *const names[] = { "llvmpipe", "softpipe", "SwiftShader", "swrast" };
@@ -57,7 +59,7 @@ static void finish(const bench_clock *clock)
     }
 }
 
-/* Frames end as they do in an application: the GL has done all of it. */
+/* Wait until the GL has finished. */
 static void repeat(bench_cell *cell, const bench_clock *clock)
 {
     for (uint32_t i = 0; i < cell->repeats; i++) {
@@ -66,7 +68,7 @@ static void repeat(bench_cell *cell, const bench_clock *clock)
     }
 }
 
-/* 0 where the GPU gave no time: it changed clocks in between. */
+/* 0 where the GPU's clock was disjoint and the time is void. */
 static double time_on_gpu(bench_cell *cell, bench_clock *clock)
 {
     uint64_t elapsed = 0;
@@ -159,7 +161,7 @@ int bench_run_cells(bench_cells *cells, bench_clock *clock, uint32_t rounds, dou
     }
     for (uint32_t r = 0; r < rounds && !cells->failed; r++) {
         for (uint32_t i = 0; i < cells->count; i++) {
-            bench_cell *cell = &cells->cells[(i + r) % cells->count]; /* no cell always follows the same one */
+            bench_cell *cell = &cells->cells[(i + r) % cells->count]; /* vary which cell precedes which */
             cell->samples[r] = time_cell(cell, clock) / cell->repeats;
             show_progress(what, r + 1, rounds, start, &shown);
         }
@@ -197,7 +199,7 @@ double bench_median_of(double *values, uint32_t count)
     return count & 1u ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
 }
 
-#define ROUNDS_MAX 1024u /* as verb_bench allows */
+#define ROUNDS_MAX 1024u /* no fewer than --rounds allows */
 
 double bench_median_above(const bench_cells *cells, uint32_t cell, uint32_t floor)
 {

@@ -3,9 +3,10 @@
 #include <string.h>
 
 #include "bench_job.h"
+#include "message.h"
 
-/* Target t is active in a frame when it is one of `active` evenly spread ones; the spread
- * moves on by one each frame, so that large and small targets all have their turn. */
+/* Target t is active in a frame when it is one of `active` evenly spread ones; the pattern
+ * shifts by one each frame, so that large and small targets are all used. */
 static void activate(const bench_weights *w, uint32_t frame)
 {
     float *weights = w->frames + (size_t)frame * w->target_count;

@@ -5,6 +5,10 @@
 #include <string.h>
 
 #include "bench_job.h"
+#include "options.h"
+#include "verbs.h"
+#include "message.h"
+#include "nearest.h"
 
 typedef struct bench_args {
     const char *packs[BENCH_FILES_MAX], *driver, *source, *only;
@@ -13,13 +17,13 @@ typedef struct bench_args {
     int as_json, quick;
 } bench_args;
 
-/* The mesh with the most pairs is what is benched. */
+/* The mesh with the most pairs is measured. */
 static void choose_mesh(bench_job *job)
 {
     uint32_t most = 0;
     for (uint32_t i = 0; i < job->files[0].pack.mesh_count; i++) {
         noh_mesh mesh;
-        noh_pack_mesh(&job->files[0].pack, i, &mesh);
+        noh_pack_mesh(&job->files[0].pack, i, &mesh, NULL);
         if (mesh.header->pair_count > most) {
             most = mesh.header->pair_count;
             job->mesh = mesh;
@@ -54,18 +58,8 @@ static int check_only(const char *only)
     return tool_usage("--only wants a group of rows, not '%s'%s%s%s", only, near ? " (did you mean '" : "", near ? near : "", near ? "'?)" : "");
 }
 
-static int read_args(int argc, char **argv, bench_args *a)
+static int check_args(const bench_args *a)
 {
-    const option options[] = { { "--driver", OPTION_TEXT, &a->driver }, { "--rounds", OPTION_NUMBER, &a->rounds },
-                               { "--source", OPTION_TEXT, &a->source }, { "--json", OPTION_FLAG, &a->as_json },
-                               { "--only", OPTION_TEXT, &a->only },       { "--quick", OPTION_FLAG, &a->quick } };
-    int status = tool_options(argc, argv, options, sizeof options / sizeof options[0], a->packs, BENCH_FILES_MAX, &a->pack_count);
-    if (status) {
-        return status;
-    }
-    if (!a->pack_count) {
-        return tool_usage("bench wants a pack");
-    }
     if (a->rounds < 1.0 || a->rounds > 1000.0 || a->rounds != (double)(uint32_t)a->rounds) {
         return tool_usage("--rounds wants a whole number from 1 to 1000");
     }
@@ -99,7 +93,7 @@ static int bench_all(bench_job *job, const bench_args *a)
                                                 : "no target of any mesh moves anything, and there are no clips: there is nothing to measure");
     }
     if (!status) {
-        (a->as_json ? bench_print_json : bench_print)(job);
+        status = a->as_json ? bench_print_json(job) : (bench_print(job), 0);
     }
     free(artist);
     return status;
@@ -115,15 +109,15 @@ static int open_packs(bench_job *job, const bench_args *a)
     return status;
 }
 
-/* A GL only where something is drawn. */
-static int run(bench_job *job, const bench_args *a)
+/* A GL context only where something is drawn. */
+static int bench_packs(bench_job *job, const bench_args *a)
 {
     int status;
     bench_clock_open(&job->cpu_clock, NULL);
     if (!job->has_mesh) {
         return bench_all(job, a);
     }
-    setenv("LP_NUM_THREADS", "0", 0); /* llvmpipe draws on this thread: what is counted is work, not waking others for it */
+    setenv("LP_NUM_THREADS", "0", 0); /* llvmpipe draws on this thread, so that work is timed and not the waking of others */
     status = gpu_open(&job->g, a->driver);
     if (!status) {
         bench_clock_open(&job->gl_clock, &job->g);
@@ -134,22 +128,22 @@ static int run(bench_job *job, const bench_args *a)
     return status;
 }
 
-int verb_bench(int argc, char **argv)
+static int run(void *args)
 {
-    bench_args a = { { NULL }, NULL, NULL, NULL, 0, 15.0, 0, 0 };
+    const bench_args *a = args;
     bench_job job;
-    int status = read_args(argc, argv, &a);
+    int status = check_args(a);
     if (status) {
         return status;
     }
     memset(&job, 0, sizeof job);
-    job.rounds = a.quick ? 1u : (uint32_t)a.rounds;
-    job.quick = a.quick;
-    job.only = a.only;
-    status = open_packs(&job, &a);
+    job.rounds = a->quick ? 1u : (uint32_t)a->rounds;
+    job.quick = a->quick;
+    job.only = a->only;
+    status = open_packs(&job, a);
     if (!status) {
         choose_mesh(&job);
-        status = run(&job, &a);
+        status = bench_packs(&job, a);
     }
     free(job.rows.rows);
     while (job.file_count > 0) {
@@ -157,3 +151,31 @@ int verb_bench(int argc, char **argv)
     }
     return status;
 }
+
+static bench_args arguments;
+
+static const option options[] = {
+    { .name = "--only", .kind = OPTION_TEXT, .at = offsetof(bench_args, only), .value = "morph|morph-cpu|skin-cpu|skin-gpu|heads|clip|pose|crowd",
+      .what = "one group of rows; default: all that the packs have something for" },
+    { .name = "--source", .kind = OPTION_INPUT, .at = offsetof(bench_args, source), .value = "ASSET",
+      .what = "the model that the first pack was built from, for the baselines that need its vertex order", .example = "head.glb" },
+    { .name = "--rounds", .kind = OPTION_NUMBER, .at = offsetof(bench_args, rounds), .value = "N", .initial = "15",
+      .what = "measurements of each row, 1 to 1000; the median is printed", .example = "31", .excludes = "--quick" },
+    { .name = "--quick", .kind = OPTION_FLAG, .at = offsetof(bench_args, quick), .what = "one short round: to see that it works" },
+    OPTION_DRIVER(bench_args, driver, .initial = "egl"),
+    OPTION_JSON(bench_args, as_json),
+};
+
+const verb verb_bench = {
+    .name = "bench",
+    .files = "PACK...",
+    .what = "ratios against named baselines measured in the same run",
+    .example = "head.noh --source head.glb\nwalk.noh run.noh --only clip --json",
+    .options = options,
+    .option_count = sizeof options / sizeof options[0],
+    .file_max = BENCH_FILES_MAX,
+    .files_at = offsetof(bench_args, packs),
+    .file_count_at = offsetof(bench_args, pack_count),
+    .args = &arguments,
+    .run = run,
+};

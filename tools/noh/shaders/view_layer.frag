@@ -1,5 +1,5 @@
 #version 300 es
-/* view_layer.frag: one layer of the accumulators as a picture (row A14): x, y, z as red, green, blue, no change is grey. */
+/* view_layer.frag: one accumulator layer as a picture: x, y, z as red, green, blue; grey is no change. */
 precision highp float;
 precision highp int;
 #include "../../../shaders_es/common_layers.glsl"

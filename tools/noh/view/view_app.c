@@ -1,6 +1,9 @@
 #include "view/view_app.h"
+#include "message.h"
+#include "png_file.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -81,7 +84,7 @@ int view_app_show(view_app *a, const char *path)
     view_model *shown;
     int status;
     desc.path = path;
-    desc.anim = NULL; /* clips of another pack were for another figure */
+    desc.anim = NULL; /* another pack's clips belonged to the old model */
     status = view_model_open(&a->gpu, &desc, &shown);
     keep_failure(a, status);
     if (status) {

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "gl/gl_lost.h"
+#include "message.h"
 
 /* ---- the window ---- */
 
@@ -13,7 +14,7 @@ static int fail_glfw(const char *what)
     return tool_fail("view", "%s: %s", what, reason ? reason : "no reason given");
 }
 
-/* The highest version of OpenGL ES that there is; with `robust` a loss is told instead of passed over. */
+/* The highest OpenGL ES version available; with `robust`, losses are reported. */
 static GLFWwindow *make_version(const view_context *c, int width, int height, const char *title, int robust)
 {
     GLFWwindow *window = NULL;
@@ -54,7 +55,7 @@ static void GL_APIENTRY on_gl_message(GLenum source, GLenum type, GLuint id, GLe
     }
 }
 
-/* After the probe of the capabilities, which tries what may be refused. */
+/* Called after the probe, which provokes errors on purpose. */
 static void watch_errors(view_context *c)
 {
     const noh_gl_api *gl = &c->gpu->gl;
@@ -71,7 +72,7 @@ static noh_gl_proc find_proc(void *user, const char *name)
     return glfwGetProcAddress(name);
 }
 
-/* OpenGL ES 3.2 has it, and so do two extensions; what is not there must not be looked up. */
+/* Core in OpenGL ES 3.2, and in two extensions; looking it up without them is not allowed. */
 static void find_reset_status(view_context *c, const noh_gl_caps *caps)
 {
     const char *name = NULL;
@@ -115,7 +116,7 @@ void view_context_close(view_context *c)
     if (c->window) {
         glfwDestroyWindow(c->window);
     }
-    c->window = NULL; /* GLFW stays: drivers do not survive being closed */
+    c->window = NULL; /* GLFW stays initialised: drivers do not survive its termination */
 }
 
 int view_context_lost(const view_context *c)
@@ -130,13 +131,13 @@ static int reopen(view_context *c, const char *title)
     glfwGetWindowPos(c->window, &place[0], &place[1]);
     glfwGetWindowSize(c->window, &size[0], &size[1]);
     view_context_close(c);
-    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_FALSE); /* it was when the first one was opened */
+    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_FALSE); /* the first window was scaled already */
     status = make_window(c, size[0], size[1], title);
     if (!status) {
         glfwSetWindowPos(c->window, place[0], place[1]);
         status = start_context(c, &caps);
     }
-    /* What was planned for the old one may not run on another. */
+    /* A plan for the old driver may not work on another. */
     if (!status && memcmp(&caps, &c->gpu->caps, sizeof caps) != 0) {
         status = tool_fail("view", "the context was lost and another driver came back (%s): start again", caps.renderer);
     }

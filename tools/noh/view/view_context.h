@@ -17,8 +17,8 @@ typedef struct view_context {
     gpu *gpu;
     int native;                              /* the context by GLX or WGL instead of EGL */
     int interval;                            /* screen refreshes to wait for a swap */
-    GLenum(GL_APIENTRY *reset_status)(void); /* NULL: a loss is not told here */
-    int errors;                              /* that GL reported */
+    GLenum(GL_APIENTRY *reset_status)(void); /* NULL: losses are not reported here */
+    int errors;                              /* reported by GL */
 } view_context;
 
 /* Fills g's table and capabilities; c->gpu, native and interval are the caller's. width, height in points.
@@ -28,12 +28,12 @@ void view_context_close(view_context *c);
 
 int view_context_lost(const view_context *c);
 
-/* Where the old window was, of the same size: GLFW has no other way to a new context. The same table is filled.
- * The new one has no callbacks yet. On failure there is no context, and the table only forgets (gl_lost.h). */
+/* A new window of the same size in the same place, since GLFW makes no context without one; fills the same table. It has no
+ * callbacks yet. On failure there is no context, and the table's calls do nothing (gl_lost.h). */
 int view_context_reopen(view_context *c, const char *title);
 
-/* pixels[2]: of the framebuffer. scale: pixels in a point. units[2]: points in a unit of the window system, in which it
- * tells where the mouse is. Returns 0 where the window has no pixels now. */
+/* pixels[2]: of the framebuffer. scale: pixels in a point. units[2]: points in a unit of the window system, in which the
+ * mouse is reported. Returns 0 while the window has no pixels. */
 int view_context_measure(const view_context *c, int pixels[2], float *scale, float units[2]);
 
 #endif

@@ -1,5 +1,7 @@
 #include "view/view_detail.h"
 
+#include <stdio.h>
+
 /* ---- the switch ---- */
 
 void view_detail_level(view_detail *d, uint32_t level)

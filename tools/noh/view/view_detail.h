@@ -1,11 +1,11 @@
-/* view_detail.h: how much detail the viewer shows: one level, or what the error in pixels allows.
+/* view_detail.h: the LOD level that the viewer shows: a fixed one, or by the error in pixels.
  *
  *   view_detail_level, view_detail_pixels   the switch
  *   view_detail_next                        all of its positions in turn
- *   view_detail_frame                       for this frame, of a model that is posed
- *   view_detail_text                        what is shown, in words
+ *   view_detail_frame                       choose for this frame, of a posed model
+ *   view_detail_text                        the choice, in words
  *
- * Where bones are drawn it does nothing. */
+ * It does nothing where bones are drawn. */
 #ifndef NOH_TOOL_VIEW_DETAIL_H
 #define NOH_TOOL_VIEW_DETAIL_H
 
@@ -15,15 +15,15 @@
 #define VIEW_PIXELS_MOST 16.0f
 
 typedef struct view_detail {
-    noh_detail_settings settings; /* pixels: the knob */
+    noh_detail_settings settings; /* pixels: the allowed error */
     int by_pixels;
-    uint32_t level;               /* that is shown else; 0: the full mesh */
+    uint32_t level;               /* the fixed level; 0: the full mesh */
     int64_t clock;                /* ticks, for fades */
 
     /* what the last frame showed, of all items */
     uint32_t finest, coarsest;    /* levels */
-    float fade;                   /* how far the change that has come the least has; 1: none is on */
-    float error_px;               /* the largest that the runtime claims */
+    float fade;                   /* progress of the latest fade; 1: none is under way */
+    float error_px;               /* the largest, as the runtime states it */
     uint32_t left_out;            /* targets with weights */
 } view_detail;
 
@@ -31,7 +31,7 @@ void view_detail_level(view_detail *d, uint32_t level);
 void view_detail_pixels(view_detail *d);
 void view_detail_next(view_detail *d, const view_model *m);
 
-/* seconds since the last one. Chooses, and takes weights that cannot be seen out of the scene until it is posed again. */
+/* seconds since the last frame. Chooses levels, and zeroes weights too small to be seen until the scene is posed again. */
 void view_detail_frame(view_detail *d, view_model *m, const orbit *at, double seconds);
 
 void view_detail_text(const view_detail *d, char *text, size_t bytes);

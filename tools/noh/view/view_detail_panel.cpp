@@ -1,10 +1,12 @@
-// view_detail_panel.cpp: the switch for detail, with what each level costs.
+// view_detail_panel.cpp: the switch for LOD levels, with the cost of each.
 #include "view/view_panels.h"
 #include "view/view_imgui.h"
 
+#include <cstdio>
+
 namespace {
 
-// The most that any item of the scene is off, millimetres.
+// The largest error of any item of the scene, millimetres.
 double level_error_mm(const view_model *m, uint32_t level)
 {
     double most = 0.0;
@@ -88,7 +90,7 @@ void detail_section(view_app *a)
     ImGui::TextColored(amber, "%s", text);
     ImGui::SameLine();
     ImGui::Text("off by at most %.2f pixels", static_cast<double>(d->error_px));
-    if (d->by_pixels) { // also where it is none: what is below stays where it is
+    if (d->by_pixels) { // also when empty, so that what is below does not move
         ImGui::Text("%u targets left out", d->left_out);
     }
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "message.h"
+
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 

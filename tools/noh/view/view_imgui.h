@@ -1,4 +1,5 @@
-/* view_imgui.h: Dear ImGui fed with the window's input and drawn with view_screen. Its versions differ in this file only. */
+/* view_imgui.h: feeds Dear ImGui with the window's input and draws it with view_screen. Differences between its versions are
+ * handled here alone. */
 #ifndef NOH_TOOL_VIEW_IMGUI_H
 #define NOH_TOOL_VIEW_IMGUI_H
 

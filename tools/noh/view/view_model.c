@@ -5,6 +5,7 @@
 
 #include "convert/convert.h"
 #include "gl/gl_lost.h"
+#include "message.h"
 
 /* ---- the file ---- */
 

@@ -1,4 +1,4 @@
-/* view_model.h: what the viewer shows: a pack, or a model converted in memory, ready to draw and to play.
+/* view_model.h: the viewer's model: a pack, or a model converted in memory, ready to draw and to play.
  *
  *   view_model_open / view_model_close
  *   view_model_pose            the scene's weights and joints for this frame
@@ -16,7 +16,7 @@
 typedef struct view_target {
     const char *name;
     float value;
-    int held; /* the slider was moved: clips do not reach these weights until it is let go */
+    int held; /* the slider was moved: clips do not change these weights until it is released */
 } view_target;
 
 /* A weight of the scene, and the slider that it belongs to. */
@@ -37,8 +37,8 @@ typedef struct view_model {
     pack_file file;
     scene scene;
     stage stage;
-    load_budget budget; /* parts NULL where bones are shown: nothing is loaded then */
-    level_costs costs; /* count 0 where bones are shown, 1 in a pack without levels of detail */
+    load_budget budget; /* parts NULL where bones are drawn: nothing is loaded then */
+    level_costs costs; /* count 0 where bones are drawn, 1 in a pack without LOD levels */
     scene_detail detail;
     float delta_max; /* how far one target moves a vertex at most, model units; over 0 */
     view_target *targets;
@@ -50,8 +50,8 @@ typedef struct view_model {
 typedef struct view_model_desc {
     const char *path; /* a pack, or .gltf, .glb, .bvh, .rcl */
     const char *anim; /* a pack whose clips are played instead; NULL: none */
-    lod_settings lod; /* levels of detail that a model is converted with; level_count 0: none. A pack has its own */
-    load_options load; /* `fades` is the model's to say */
+    lod_settings lod; /* LOD levels to convert a model with; level_count 0: none. A pack has its own */
+    load_options load; /* `fades` is set by the model */
     int show_bones;
     uint32_t width, height; /* of the canvas */
 } view_model_desc;
@@ -60,31 +60,31 @@ typedef struct view_model_desc {
 int view_model_open(gpu *g, const view_model_desc *desc, view_model **out);
 void view_model_close(view_model *m);
 
-/* Make what draws it again, with other options. On failure it draws as before. */
+/* Remake what draws it, with other options. On failure it draws as before. */
 int view_model_reload(view_model *m, gpu *g, const view_model_desc *desc);
 
-/* The context is gone: names that only it knew are forgotten. Then restore in another one, or close. */
+/* The context was lost: drop its object names. Then restore in another context, or close. */
 void view_model_lost(view_model *m, gpu *g);
 int view_model_restore(view_model *m, gpu *g);
 
-/* The box of what is drawn, as it is posed. */
+/* The box of what is drawn, in its pose. */
 bounds view_model_bounds(const view_model *m);
 
-/* The weights that the asset has, over them those of the clips, over them those that sliders hold. */
+/* The asset's weights, overridden by clips, overridden by held sliders. */
 void view_model_pose(view_model *m);
 
-/* Play one clip alone; or beside those that play. Prints an error and returns an exit code when no track is free. */
+/* Play one clip alone, or beside those playing. Prints an error and returns an exit code when no track is free. */
 int view_start(view_model *m, uint32_t clip);
 int view_add(view_model *m, uint32_t clip);
 void view_stop(view_model *m, uint32_t player, uint32_t track);
 void view_stop_all(view_model *m);
 /* Whether any track is on. */
 int view_plays(const view_model *m);
-/* Send a track to a time of its clip; nothing fires on the way. */
+/* Seek a track to a time of its clip without firing callbacks. */
 void view_seek(view_model *m, uint32_t player, uint32_t track, double seconds);
 /* Where a track is in its clip. */
 double view_position(const view_model *m, uint32_t player, uint32_t track);
-/* The name of a player's motion. */
+/* The name of a player's clip. */
 const char *view_motion_name(const view_model *m, uint32_t player, uint32_t motion);
 
 typedef struct view_passed {
@@ -96,7 +96,7 @@ typedef struct view_passed {
 
 typedef void (*view_event_fn)(void *user, const view_passed *event);
 
-/* Move time on; every callback key that is passed goes to fn. */
+/* Advance time; fn gets every callback key that fires. */
 void view_step(view_model *m, double seconds, view_event_fn fn, void *user);
 
 #endif

@@ -1,8 +1,9 @@
-// view_panels.cpp: the panels. Reads and changes view_app; what needs the GPU is asked for through `wish`.
+// view_panels.cpp: the panels. Reads and changes view_app; requests what needs the GPU through `wish`.
 #include "view/view_panels.h"
 #include "view/view_imgui.h"
 
 #include <cfloat>
+#include <cstdio>
 #include <cstring>
 
 namespace {

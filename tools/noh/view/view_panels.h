@@ -22,10 +22,10 @@ typedef struct view_input {
 int view_panels_open(void);
 void view_panels_close(void);
 
-/* Lay them out, take the input, draw them over the window. */
+/* Take the input, lay out the panels, draw them over the window. */
 void view_panels_frame(view_app *a, const view_input *input, double seconds);
 
-/* Whether a slider is being dragged or a list is open: the mouse is theirs wherever it is. */
+/* Whether a slider is dragged or a list open: then the panels own the mouse everywhere. */
 int view_panels_hold_mouse(void);
 /* Whether a text is being typed. */
 int view_panels_want_keys(void);

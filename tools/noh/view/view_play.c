@@ -1,12 +1,13 @@
-/* view_play.c: the clips of what is shown: which play, where they are, which keys they pass. */
+/* view_play.c: playback: which clips play, at which time, and the callback keys they fire. */
 #include <string.h>
 
 #include "view/view_model.h"
+#include "message.h"
 
 const char *view_motion_name(const view_model *m, uint32_t player, uint32_t motion)
 {
     noh_pack_motion found;
-    noh_pack_motion_at(&m->scene.anim->pack, m->scene.players[player].set->pack_motions[motion], &found);
+    noh_pack_motion_at(&m->scene.anim->pack, m->scene.players[player].set->pack_motions[motion], &found, NULL);
     return found.name;
 }
 
@@ -96,7 +97,7 @@ static void pass_event(void *user, const noh_event *event)
     const noh_pack *pack = &s->m->scene.anim->pack;
     noh_pack_motion motion;
     view_passed passed;
-    noh_pack_motion_at(pack, s->m->scene.players[s->player].set->pack_motions[event->motion], &motion);
+    noh_pack_motion_at(pack, s->m->scene.players[s->player].set->pack_motions[event->motion], &motion, NULL);
     passed.clock_s = (double)event->clock / (double)NOH_TICKS_PER_SECOND;
     passed.clip = motion.name;
     passed.key = noh_pack_string(pack, motion.events[event->index].name);

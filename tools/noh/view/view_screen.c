@@ -1,10 +1,12 @@
 #include "view/view_screen.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "gl/gl_program.h"
 #include "tool_shaders.gen.h"
+#include "message.h"
 
 /* ---- making it ---- */
 

@@ -1,4 +1,4 @@
-/* view_screen.h: what the viewer draws into its window: the canvas, the layers as pictures, the panels.
+/* view_screen.h: the viewer's drawing: the canvas, accumulator layers as pictures, the panels.
  *
  *   view_screen_open / view_screen_close
  *   view_screen_picture     the canvas into a rectangle of the window
@@ -8,7 +8,7 @@
 #ifndef NOH_TOOL_VIEW_SCREEN_H
 #define NOH_TOOL_VIEW_SCREEN_H
 
-#include "view.h"
+#include "canvas.h"
 
 /* As Dear ImGui lays them out. */
 typedef struct view_vertex {
@@ -31,13 +31,13 @@ typedef struct view_screen {
 /* Prints an error and returns an exit code; 0 on success. */
 int view_screen_open(view_screen *s, gpu *g);
 void view_screen_close(view_screen *s);
-/* The panels' letters, instead of those before: rgba[height][width][4]. */
+/* Replace the panels' font: rgba[height][width][4]. */
 void view_screen_font(view_screen *s, uint32_t width, uint32_t height, const uint8_t *rgba);
 
 /* x, y: of the lower left corner, pixels. */
 void view_screen_picture(view_screen *s, canvas *c, int x, int y);
 
-/* gains[layer]: how much of the range from black to white a delta of 1 takes. */
+/* gains[layer]: the share of the range from black to white for a delta of 1. */
 void view_screen_layers(view_screen *s, const noh_gl_morph *morph, const float gains[3]);
 
 /* width, height of the window in points. */

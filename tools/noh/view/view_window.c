@@ -1,25 +1,27 @@
 #include "view/view_window.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "view/view_context.h"
 #include "view/view_panels.h"
+#include "message.h"
 
-#define AWAKE_FRAMES 4 /* drawn after an input before a still picture rests */
-#define SETTLE_FRAMES 3 /* until what was clicked shows: press, release, pose */
+#define AWAKE_FRAMES 4 /* drawn after an input before an unchanging picture idles */
+#define SETTLE_FRAMES 3 /* until a click shows: press, release, pose */
 
 typedef struct view_window {
     view_context context;
     view_app app;
     float units[2];                        /* points in a unit of the window system */
-    int lose;                              /* the context is to be lost */
+    int lose;                              /* simulate a lost context */
     view_input input;
     uint8_t pressed[3], keys_pressed[512]; /* since the last frame: a click may be shorter than one */
     float pressed_at[2];
     int drag;                              /* GLFW's button + 1 that drags the camera, 0: none */
     double mouse[2];
     int awake;
-    int save_in[2];                        /* frames until the figure, the window is saved; 0: they are not asked for */
+    int save_in[2];                        /* frames until the figure, the window is saved; 0: not requested */
     uint32_t saved;                        /* pictures */
 } view_window;
 
@@ -206,7 +208,7 @@ static void save_when_asked(view_window *w)
     }
 }
 
-/* A picture in which nothing moves is drawn again only when something happens. */
+/* An unchanging picture is redrawn only after an event. */
 static void wait_events(view_window *w, const view_run *run)
 {
     const int moving = run->frames || view_app_moves(&w->app);
@@ -233,7 +235,7 @@ static void listen(view_window *w)
     w->awake = AWAKE_FRAMES;
 }
 
-/* Everything on the GPU is made again, in a new window; camera, clips and sliders are where they were. */
+/* Remake everything on the GPU in a new window; camera, clips and sliders keep their state. */
 static int restore(view_window *w)
 {
     int status;

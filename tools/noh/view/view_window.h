@@ -8,11 +8,11 @@ typedef struct view_run {
     view_model_desc desc;   /* width, height: of the window */
     const char *clip;       /* to play from the start; NULL: none */
     int native;             /* the context by GLX or WGL instead of EGL */
-    uint32_t frames;        /* draw so many, each 1/60 s of the clips, and end; 0: until it is closed */
+    uint32_t frames;        /* draw this many, each 1/60 s of the clips, and end; 0: until the window is closed */
     const char *screenshot; /* of the last of them; NULL: none */
 } view_run;
 
-/* Prints an error and returns an exit code; 0 when the window was closed and GL had nothing to complain of. */
+/* Prints an error and returns an exit code; 0 when the window was closed and GL reported no errors. */
 int view_window_run(const view_run *run);
 
 #endif

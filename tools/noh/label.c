@@ -1,4 +1,4 @@
-/* text.c: labels in pictures, from stb_easy_font's quads. */
+/* label.c: labels in pictures, from stb_easy_font's quads. */
 #include <string.h>
 
 #if defined(__GNUC__)
@@ -13,7 +13,7 @@
 #pragma GCC diagnostic pop
 #endif
 
-#include "view.h"
+#include "label.h"
 
 typedef struct font_vertex {
     float x, y, z;

@@ -1,0 +1,95 @@
+/* compiler.h: everything that depends on the compiler, with plain C beside it.
+ *
+ *   NOH_PLAIN_C          define it to build with no builtin, attribute, pragma or SIMD: any C99 compiler can
+ *   NOH_ALWAYS_INLINE    of a function that must be inlined for its speed
+ *   NOH_UNROLL           before a short loop over an array of registers
+ *   NOH_TRAP             ends the program, without a library
+ *   NOH_AVX2, NOH_SSE2, NOH_NEON   which vector instructions the kernels may use; undefined: none
+ *   noh_leading_zeros, noh_trailing_zeros   of a word that is not 0
+ *
+ * The plain twins are always compiled, as noh_..._plain, so that a test can hold them equal to what replaces them.
+ * Threads: no state; any thread. */
+#ifndef NOH_BASE_COMPILER_H
+#define NOH_BASE_COMPILER_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(__GNUC__) && !defined(NOH_PLAIN_C)
+#define NOH_GNU 1 /* gcc, clang and those that follow them */
+#endif
+
+#if !defined(NOH_PLAIN_C)
+#if defined(__AVX2__)
+#define NOH_AVX2 1
+#endif
+#if defined(__SSE2__)
+#define NOH_SSE2 1
+#elif defined(__ARM_NEON) && defined(__aarch64__) /* 32-bit NEON flushes subnormals: other bits */
+#define NOH_NEON 1
+#endif
+#endif
+
+#if defined(NOH_GNU)
+#define NOH_ALWAYS_INLINE static inline __attribute__((always_inline))
+#define NOH_TRAP() __builtin_trap()
+#else
+#define NOH_ALWAYS_INLINE static inline
+#define NOH_TRAP() ((void)(*(volatile char *)0 = 0))
+#endif
+
+/* gcc's -O2 leaves short loops over arrays of lanes as they are, in memory; unrolled they stay in registers. */
+#if defined(NOH_GNU) && !defined(__clang__)
+#define NOH_UNROLL _Pragma("GCC unroll 8")
+#else
+#define NOH_UNROLL
+#endif
+
+static inline uint32_t noh_leading_zeros_plain(uint32_t word)
+{
+    uint32_t zeros = 0;
+    while (!(word & 0x80000000u)) {
+        word <<= 1;
+        zeros++;
+    }
+    return zeros;
+}
+
+static inline uint32_t noh_trailing_zeros_plain(uint64_t word)
+{
+    uint32_t zeros = 0;
+    while (!(word & 1u)) {
+        word >>= 1;
+        zeros++;
+    }
+    return zeros;
+}
+
+/* Zero bits above the highest one. ranges  word is not 0 */
+static inline uint32_t noh_leading_zeros(uint32_t word)
+{
+#if defined(NOH_GNU)
+    return (uint32_t)__builtin_clz(word);
+#else
+    return noh_leading_zeros_plain(word);
+#endif
+}
+
+/* Zero bits below the lowest one. ranges  word is not 0 */
+static inline uint32_t noh_trailing_zeros(uint64_t word)
+{
+#if defined(NOH_GNU)
+    return (uint32_t)__builtin_ctzll(word);
+#else
+    return noh_trailing_zeros_plain(word);
+#endif
+}
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,13 @@
+/* character_internal.h (private to character/): what character.c and skin_palette.c share. */
+#ifndef NOH_CHARACTER_CHARACTER_INTERNAL_H
+#define NOH_CHARACTER_CHARACTER_INTERNAL_H
+
+#include "character/character.h"
+
+/* The palette in slot 0 or 1: [joint_count][12]. */
+const float *noh_character_slot_palette(const noh_character *ch, uint32_t slot);
+
+/* out = a + (b - a) * part, four floats at a time, so that compilers see vectors. out may be a. */
+void noh_mix_fours(const float *a, const float *b, float part, size_t fours, float *out);
+
+#endif

@@ -1,0 +1,134 @@
+/* check_mesh_part.c: checks of the parts that every level of a mesh has: its accumulation texture, triangles,
+ * submeshes, rectangles and texel references. check_mesh.c, check_level.c and check_skin.c call them; they call none
+ * of these. `h` is always the header of the level that is checked. */
+#include "pack/check.h"
+
+#include <stddef.h>
+
+noh_result noh_check_texture_shape(const noh_check *check, const noh_mesh_header *h)
+{
+    const uint64_t at = (uint64_t)h->level * sizeof *h;
+    uint64_t texels;
+    if (h->touched_count > h->vertex_count) {
+        return noh_check_fail(check, "more touched vertices than vertices", at + offsetof(noh_mesh_header, touched_count));
+    }
+    if (h->morph_width_log2 < NOH_MORPH_WIDTH_LOG2_MIN || h->morph_width_log2 > NOH_MORPH_WIDTH_LOG2_MAX) {
+        return noh_check_fail(check, "width of the accumulation texture is outside its limits", at + offsetof(noh_mesh_header, morph_width_log2));
+    }
+    if (h->morph_height > NOH_MORPH_HEIGHT_MAX) {
+        return noh_check_fail(check, "height of the accumulation texture is over its limits", at + offsetof(noh_mesh_header, morph_height));
+    }
+    texels = (uint64_t)h->morph_height << h->morph_width_log2;
+    if (texels < h->touched_count || texels - h->touched_count >= (1u << h->morph_width_log2)) {
+        return noh_check_fail(check, "accumulation texture does not fit the touched vertices", at + offsetof(noh_mesh_header, morph_height));
+    }
+    return NOH_OK;
+}
+
+noh_result noh_check_indices(const noh_check *check, const noh_mesh_header *h)
+{
+    const uint8_t *indices = check->bytes + h->indices_offset;
+    for (uint32_t i = 0; i < h->index_count; i++) {
+        uint32_t index = h->index_bytes == 2 ? ((const uint16_t *)(const void *)indices)[i]
+                                             : ((const uint32_t *)(const void *)indices)[i];
+        if (index >= h->vertex_count) {
+            return noh_check_fail(check, "index past the last vertex", h->indices_offset + (uint64_t)i * h->index_bytes);
+        }
+    }
+    return NOH_OK;
+}
+
+noh_result noh_check_submeshes(const noh_check *check, const noh_mesh_header *h)
+{
+    const noh_submesh *submeshes = (const noh_submesh *)(const void *)(check->bytes + h->submeshes_offset);
+    uint32_t next = 0;
+    for (uint32_t i = 0; i < h->submesh_count; i++) {
+        const noh_submesh *s = &submeshes[i];
+        uint64_t at = h->submeshes_offset + (uint64_t)i * sizeof *s;
+        if (s->first_index > h->index_count || s->index_count > h->index_count - s->first_index || s->index_count % 3) {
+            return noh_check_fail(check, "submesh indices lie outside the mesh", at);
+        }
+        if (s->first_index < next) {
+            return noh_check_fail(check, "submeshes overlap, or are out of order", at);
+        }
+        next = s->first_index + s->index_count;
+        if (s->first_vertex > h->vertex_count || s->vertex_count > h->vertex_count - s->first_vertex) {
+            return noh_check_fail(check, "submesh vertices lie outside the mesh", at);
+        }
+        if (s->material != NOH_NONE && s->material >= check->pack->material_count) {
+            return noh_check_fail(check, "submesh names a material that is not there", at);
+        }
+    }
+    return NOH_OK;
+}
+
+/* One rectangle: inside the texture, and no delta on a texel that no vertex has. */
+static noh_result check_rect(const noh_check *check, const noh_mesh_header *h, const noh_rect *r, uint32_t first_texel,
+                             uint32_t *pairs, uint64_t at)
+{
+    const uint32_t *texel = (const uint32_t *)(const void *)(check->bytes + h->texels_offset) + 3u * (size_t)first_texel;
+    if (!r->w || !r->h || (uint32_t)r->x + r->w > (1u << h->morph_width_log2) || (uint32_t)r->y + r->h > h->morph_height) {
+        return noh_check_fail(check, "rectangle lies outside the accumulation texture", at);
+    }
+    for (uint32_t y = r->y; y < (uint32_t)r->y + r->h; y++) {
+        for (uint32_t x = r->x; x < (uint32_t)r->x + r->w; x++, texel += 3) {
+            uint32_t any = (texel[0] | texel[1] | texel[2]) != 0u;
+            if (any && (y << h->morph_width_log2) + x >= h->touched_count) {
+                return noh_check_fail(check, "rectangle moves a texel that no vertex has", at);
+            }
+            *pairs += any;
+        }
+    }
+    return NOH_OK;
+}
+
+noh_result noh_check_rects(const noh_check *check, const noh_mesh_header *h, const noh_target *t)
+{
+    const noh_rect *rects = (const noh_rect *)(const void *)(check->bytes + h->rects_offset) + t->first_rect;
+    uint32_t texel = t->first_texel, pairs = 0;
+    for (uint32_t i = 0; i < t->rect_count; i++) {
+        uint64_t at = h->rects_offset + ((uint64_t)t->first_rect + i) * sizeof *rects;
+        uint64_t area = (uint64_t)rects[i].w * rects[i].h;
+        noh_result result;
+        if (area > t->texel_count - (texel - t->first_texel)) {
+            return noh_check_fail(check, "rectangle has more texels than its target", at);
+        }
+        result = check_rect(check, h, &rects[i], texel, &pairs, at);
+        if (result) {
+            return result;
+        }
+        texel += (uint32_t)area;
+    }
+    if (texel - t->first_texel != t->texel_count || pairs != t->pair_count) {
+        return noh_check_fail(check, "target's texel or pair count is wrong",
+                              h->targets_offset + (uint64_t)((const uint8_t *)t - (check->bytes + h->targets_offset)));
+    }
+    return NOH_OK;
+}
+
+uint32_t noh_check_texel_word(const noh_check *check, const noh_mesh_header *h, uint32_t vertex)
+{
+    size_t last = h->attributes_offset + (size_t)(vertex + 1u) * h->attribute_stride - 4u;
+    return (h->flags & NOH_MESH_TEXELS) ? *(const uint32_t *)(const void *)(check->bytes + last) : vertex;
+}
+
+/* A draw has one palette: all its vertices are written for it. */
+noh_result noh_check_draws(const noh_check *check, const noh_mesh_header *h)
+{
+    const noh_submesh *submeshes = (const noh_submesh *)(const void *)(check->bytes + h->submeshes_offset);
+    const uint8_t *indices = check->bytes + h->indices_offset;
+    for (uint32_t s = 0; s < h->submesh_count; s++) {
+        uint64_t at = h->submeshes_offset + (uint64_t)s * sizeof *submeshes;
+        if (submeshes[s].palette >= (h->palette_count ? h->palette_count : 1u)) {
+            return noh_check_fail(check, "submesh names a palette that is not there", at);
+        }
+        for (uint32_t i = 0; h->palette_count > 1 && i < submeshes[s].index_count; i++) {
+            size_t k = (size_t)submeshes[s].first_index + i;
+            uint32_t v = h->index_bytes == 2 ? ((const uint16_t *)(const void *)indices)[k] : ((const uint32_t *)(const void *)indices)[k];
+            if (noh_check_texel_word(check, h, v) >> NOH_TEXEL_VERTEX_BITS != submeshes[s].palette) {
+                return noh_check_fail(check, "submesh draws a vertex of another palette", at);
+            }
+        }
+    }
+    return NOH_OK;
+}

@@ -1,0 +1,202 @@
+#!/bin/sh
+# check_install.sh: from a clean prefix, what a stranger gets.
+#   - make install, install-lib (without a C++ compiler) and uninstall, DESTDIR, a prefix that is moved
+#   - every header alone as C99 and C++17, gcc and clang, and with -m32
+#   - the README's program and the examples by pkg-config, by CMake and from the amalgam, as C99, C11 and C++17
+#   - the smallest program that morphs: how large
+#   - flags from outside are added to those that the library needs
+. tests/cli/lib.sh
+if [ -n "${NOH_SAN:-}" ]; then
+    skip 'installing' 'checked in the build without sanitizers'
+    finish
+fi
+
+has() {
+    command -v "$1" >/dev/null 2>&1
+}
+make_noh() {
+    make --no-print-directory BUILD="$build" DEPS=0 "$@" >"$work/made" 2>&1
+}
+installs() { # NAME ARGUMENTS
+    installed=$1
+    shift
+    if make_noh "$@"; then ok "$installed"; else not_ok "$installed"; tail -n 20 "$work/made" | sed 's/^/#   /'; fi
+}
+
+# ---- install, move, uninstall ----
+
+prefix=$work/prefix
+installs 'make install-lib without a C++ compiler' install-lib PREFIX="$prefix" CXX=false
+check 'the library alone: no program' test ! -e "$prefix/bin" -a -f "$prefix/lib/libnoh.a"
+installs 'make install over it' install PREFIX="$prefix"
+for file in bin/noh bin/noh-embed lib/libnoh.a lib/pkgconfig/noh.pc lib/cmake/noh/nohConfig.cmake lib/cmake/noh/nohConfigVersion.cmake \
+    include/noh/noh.h share/noh/shaders/common_layers.glsl; do
+    check "$file" test -s "$prefix/$file"
+done
+[ ! -f "$build/noh.1" ] || check 'the man page' test -s "$prefix/share/man/man1/noh.1"
+[ ! -f tools/completion/noh.bash ] || check 'bash completion' test -s "$prefix/share/bash-completion/completions/noh"
+(cd "$prefix/include/noh" && find . -name '*.h') | sed 's|^\./||' | sort >"$work/headers"
+check 'no private header' sh -c '! grep -E "_(internal|kernel)\.h$|(^|/)(check|lanes|skin_blend)\.h$" "$1"' - "$work/headers"
+version=$(sed -n 's/^#define NOH_VERSION "\(.*\)"/\1/p' runtime/base/version.h)
+(cd "$prefix" && find . -type f | sort) >"$work/before"
+mv "$prefix" "$work/moved"
+cp -r "$work/moved" "$prefix"
+
+installs 'uninstall' uninstall PREFIX="$prefix"
+check 'leaves nothing' test ! -e "$prefix"
+mkdir -p "$prefix/lib" "$prefix/include/noh"
+echo 'not ours' >"$prefix/include/noh/other.h"
+installs 'install into folders that are there' install-lib PREFIX="$prefix"
+installs 'and uninstall' uninstall PREFIX="$prefix"
+(cd "$prefix" && find . | sort | tr '\n' ' ') >"$work/rest"
+check 'leaves what is not ours' grep -qx '. ./include ./include/noh ./include/noh/other.h ./lib ' "$work/rest"
+if make_noh uninstall PREFIX="$prefix"; then not_ok 'nothing to uninstall is an error'; else ok 'nothing to uninstall is an error'; fi
+installs 'DESTDIR' install PREFIX=/opt/noh DESTDIR="$work/stage"
+(cd "$work/stage/opt/noh" && find . -type f | sort) >"$work/staged"
+check 'has the same files' cmp "$work/before" "$work/staged"
+check 'and does not know it' sh -c '! grep -rq "$1" "$1/opt/noh/lib/pkgconfig" "$1/opt/noh/lib/cmake" "$1/opt/noh/share"' - "$work/stage"
+installs 'uninstall with DESTDIR' uninstall PREFIX=/opt/noh DESTDIR="$work/stage"
+check 'leaves nothing there' sh -c '! find "$1" -type f | grep .' - "$work/stage"
+prefix=$work/moved
+
+# ---- headers ----
+
+# alone NAME COMPILER...: each header is a program
+alone() {
+    name=$1
+    shift
+    while read -r header; do
+        printf '#include "%s"\nint main(void) { return 0; }\n' "$header" >"$work/alone.c"
+        "$@" -Wall -Wextra -Wpedantic -Werror "-I$prefix/include/noh" -fsyntax-only "$work/alone.c" || return 1
+    done <"$work/headers" >"$work/err" 2>&1
+}
+headers() {
+    if alone "$@"; then ok "each of $(wc -l <"$work/headers") headers alone: $1"; else not_ok "headers alone: $1"; head -n 10 "$work/err" | sed 's/^/#   /'; fi
+}
+headers 'gcc, C99' gcc -std=c99
+has g++ && headers 'g++, C++17' g++ -std=c++17 -x c++
+if has clang; then
+    headers 'clang, C99' clang -std=c99
+    headers 'clang, C++17' clang -std=c++17 -x c++
+else
+    skip 'headers alone: clang' 'no clang here'
+fi
+
+# ---- programs ----
+
+awk '/^```c$/ { inside = 1; next } /^```$/ { inside = 0 } inside' README.md >"$work/smile.c"
+cp tools/examples/*.c "$work" 2>/dev/null
+programs=$(cd "$work" && ls ./*.c | sed 's|^\./||; s|\.c$||' | grep -v '^alone$')
+libraries() { # PROGRAM: a program that makes its own context links EGL
+    sed -n 's|^ *# *include <EGL/.*|-lEGL|p' "$work/$1.c" | head -n 1
+}
+# The same lines with every compiler, language and way to build.
+runs() { # WHAT PROGRAM EXECUTABLE
+    (cd "$work" && "$3" "$build/mask.noh" >told.txt 2>&1; echo "exit code $?" >>told.txt)
+    [ -f "$work/$2.told" ] || cp "$work/told.txt" "$work/$2.told"
+    check "$1: $2 runs and prints the same" cmp "$work/$2.told" "$work/told.txt"
+}
+by_pkg_config() { # NAME COMPILER...
+    name=$1
+    shift
+    for program in $programs; do
+        # shellcheck disable=SC2046
+        check "pkg-config, $name: $program builds" "$@" -x "$language" "$work/$program.c" -x none -o "$work/program" \
+            $(PKG_CONFIG_PATH="$prefix/lib/pkgconfig" pkg-config --define-variable=prefix="$prefix" --cflags --libs noh) $(libraries "$program") -lm
+        runs "pkg-config, $name" "$program" "$work/program"
+    done
+}
+if has pkg-config; then
+    check 'pkg-config says the version' test "$(PKG_CONFIG_PATH="$prefix/lib/pkgconfig" pkg-config --modversion noh)" = "$version"
+    language=c
+    by_pkg_config 'gcc, C99' gcc -std=gnu99 -O2
+    by_pkg_config 'gcc, C11' gcc -std=gnu11 -O2
+    ! has clang || by_pkg_config 'clang, C99' clang -std=gnu99 -O2
+    language=c++
+    ! has g++ || by_pkg_config 'g++, C++17' g++ -std=gnu++17 -O2
+    ! has clang++ || by_pkg_config 'clang, C++17' clang++ -std=gnu++17 -O2
+else
+    skip 'pkg-config' 'no pkg-config here'
+fi
+check 'the README'"'"'s program does what it says' grep -q 'vertex 0 smiles' "$work/smile.told"
+
+if has cmake; then
+    for program in $programs; do
+        mkdir "$work/cmake_$program"
+        cp "$work/$program.c" "$work/cmake_$program/c.c"
+        cp "$work/$program.c" "$work/cmake_$program/cpp.cpp"
+        cat >"$work/cmake_$program/CMakeLists.txt" <<END
+cmake_minimum_required(VERSION 3.13)
+project(user C CXX)
+find_package(noh ${version%.*} REQUIRED)
+add_executable(c c.c)
+add_executable(cpp cpp.cpp)
+set_target_properties(c PROPERTIES C_STANDARD 99)
+set_target_properties(cpp PROPERTIES CXX_STANDARD 17)
+target_link_libraries(c noh::noh m $(libraries "$program"))
+target_link_libraries(cpp noh::noh m $(libraries "$program"))
+if(NOT EXISTS "\${noh_SHADERS_DIR}/common_layers.glsl")
+    message(FATAL_ERROR "no shaders in \${noh_SHADERS_DIR}")
+endif()
+END
+        check "CMake: $program builds" sh -c 'cmake -S "$1" -B "$1/build" -DCMAKE_PREFIX_PATH="$2" && cmake --build "$1/build"' - "$work/cmake_$program" "$prefix"
+        runs 'CMake, C99' "$program" "$work/cmake_$program/build/c"
+        runs 'CMake, C++17' "$program" "$work/cmake_$program/build/cpp"
+    done
+    sed 's/noh [0-9.]* REQUIRED/noh 99.0 REQUIRED/' "$work/cmake_smile/CMakeLists.txt" >"$work/CMakeLists.txt"
+    mkdir "$work/cmake_new" && mv "$work/CMakeLists.txt" "$work/cmake_smile/"*.c* "$work/cmake_new"
+    check 'CMake: another version is refused' sh -c '! cmake -S "$1" -B "$1/build" -DCMAKE_PREFIX_PATH="$2"' - "$work/cmake_new" "$prefix"
+else
+    skip 'CMake' 'no cmake here'
+fi
+
+# ---- 32 bits ----
+
+echo '#include <stdio.h>
+int main(void) { return 0; }' >"$work/alone.c"
+if gcc -m32 "$work/alone.c" -o "$work/alone32" >/dev/null 2>&1; then
+    headers 'gcc -m32, C99' gcc -m32 -std=c99
+    check '-m32: the amalgam builds' gcc -m32 -std=c99 -O2 -ffp-contract=off -fno-math-errno -Wall -Wextra -c "$build/amalgam/noh.c" -o "$work/noh32.o"
+    check '-m32: the program links, without libm' gcc -m32 -std=gnu99 -O2 "-I$build/amalgam" "$work/smile.c" "$work/noh32.o" -o "$work/smile32"
+    if "$work/alone32" 2>/dev/null; then runs '-m32' smile "$work/smile32"; else skip '-m32: the program runs' 'no 32-bit programs run here'; fi
+else
+    skip '-m32' 'no 32-bit C library here (gcc-multilib)'
+fi
+
+# ---- what a program gets ----
+
+readelf -sW "$prefix/lib/libnoh.a" | awk '$7 == "UND" && $8 != "" { print $8 }' | sort -u >"$work/asked"
+readelf -sW "$prefix/lib/libnoh.a" | awk '$7 != "UND" && $5 == "GLOBAL" { print $8 }' | sort -u >"$work/given"
+comm -23 "$work/asked" "$work/given" | tr '\n' ' ' >"$work/undefined"
+check 'the installed library asks for memcmp, memcpy and memset only' grep -qx '\(_GLOBAL_OFFSET_TABLE_ \)\?memcmp memcpy memset ' "$work/undefined"
+
+# The library's code and constants in the README's program, which opens a pack and morphs: what the linker left.
+largest=24576
+gcc -std=gnu99 -O2 "$work/smile.c" "-I$prefix/include/noh" "-L$prefix/lib" -lnoh -Wl,--gc-sections -Wl,-Map="$work/map" -o "$work/smallest"
+bytes=$(nm -S -t d "$work/smallest" | awk '$3 ~ /^[tTrRdD]$/ && $4 != "main" && $4 !~ /^_/ { sum += $2 } END { print sum + 0 }')
+whole=$(size "$build/libnoh.a" | awk 'NR > 1 { sum += $1 + $2 } END { print sum }')
+echo "# the smallest program that morphs takes $bytes bytes of the library's $whole"
+check "the smallest program that morphs takes at most $largest bytes" test "$bytes" -gt 4096 -a "$bytes" -le $largest
+gcc -std=gnu99 -O2 -ffunction-sections -fdata-sections -ffp-contract=off -fno-math-errno "$work/smile.c" "-I$build/amalgam" "$build/amalgam/noh.c" \
+    -Wl,--gc-sections -o "$work/smallest" && bytes=$(nm -S -t d "$work/smallest" | awk '$3 ~ /^[tTrRdD]$/ && $4 != "main" && $4 !~ /^_/ { sum += $2 } END { print sum + 0 }')
+echo "# from the amalgam: $bytes bytes"
+check 'and as much from the amalgam' test "$bytes" -gt 4096 -a "$bytes" -le $largest
+
+# ---- flags from outside ----
+
+make --no-print-directory -B -n BUILD="$work/flags" DEPS=0 V=1 lib CFLAGS=-Os CXXFLAGS=-Os LDFLAGS=-s CPPFLAGS=-DX OPT=-O1 2>/dev/null |
+    grep ' -c runtime/' >"$work/commands"
+check 'CFLAGS=-Os is appended' sh -c 'grep -q . "$1" && ! grep -v -- "-std=c99.*-ffp-contract=off.* -DX -Os" "$1"' - "$work/commands"
+check 'and OPT is replaced' sh -c '! grep -e "-O2" "$1"' - "$work/commands"
+check 'a BUILD with a space is refused' sh -c '! make -n BUILD="a b" DEPS=0 lib 2>"$1" && grep -q "without spaces" "$1"' - "$work/refused"
+
+# ---- another processor ----
+
+if has arm-linux-gnueabihf-gcc && has arm-linux-gnueabihf-ar; then
+    check 'a cross target builds and installs' make --no-print-directory BUILD="$work/arm" DEPS=0 OPT=-O0 CC=arm-linux-gnueabihf-gcc AR=arm-linux-gnueabihf-ar \
+        CXX=false PREFIX=/usr DESTDIR="$work/armhf" install-lib
+    check 'for that processor' sh -c 'readelf -h "$1" | grep -q "Machine:.*ARM"' - "$work/armhf/usr/lib/libnoh.a"
+else
+    skip 'a cross target builds and installs' 'no arm-linux-gnueabihf-gcc here'
+fi
+finish

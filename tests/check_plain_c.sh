@@ -1,0 +1,43 @@
+#!/bin/sh
+# check_plain_c.sh: the library needs a C99 compiler and no more.
+#   - no builtin, attribute, pragma or compiler's macro outside base/compiler.h and base/math.h
+#   - built without any of them (NOH_PLAIN_C) it passes the tests of bits: hashes, square roots, quaternions,
+#     trigonometry, meshes, bounds, poses, clips
+#   - on i386 without SSE it asks for nothing of libm
+. "$(dirname "$0")/cli/lib.sh"
+
+grep -rnE '__builtin_|__attribute__|_Pragma|^ *# *pragma|__GNUC__|__clang__|__SSE|__AVX|__ARM|__has_' runtime |
+    grep -v '^runtime/base/\(compiler\|math\)\.h:' >"$work/words"
+check 'what depends on the compiler is in base/compiler.h and base/math.h' sh -c '! grep . "$1"' - "$work/words"
+
+if [ -n "${NOH_SAN:-}" ]; then
+    skip 'plain C gives the same bits' 'the build without sanitizers says it'
+else
+    plain=$build/plain
+    plain_make() {
+        make --no-print-directory -j"${JOBS:-2}" BUILD="$plain" CC="${CC:-gcc}" CROSS=1 DEPS=0 SAN= OPT='-O2 -DNOH_PLAIN_C' "$@" >"$work/log" 2>&1
+    }
+    check 'the library builds as plain C' plain_make lib
+    plain_make -k cross-tests # those that ask for other instruction sets by name do not link
+    for name in hash math quat trig mesh bounds blend clip_codec; do
+        program=$(find "$plain/cross" -type f -name "test_$name")
+        check "plain C: test_$name" sh -c 'NOH_ASSETS=none "$1" >"$2" 2>&1 || { grep -v "^ok" "$2" | tail -n 20; exit 1; }' - \
+            "${program:-test_$name}" "$work/log"
+    done
+fi
+
+if ! echo '#include <stddef.h>' | ${CC:-gcc} -m32 -E - >/dev/null 2>&1 || ! command -v nm >/dev/null 2>&1; then
+    skip 'i386 without SSE asks for nothing of libm' "${CC:-gcc} does not build for i386 here, or nm is missing"
+else
+    for source in runtime/*/*.c; do
+        case $source in runtime/gl/*) continue ;; esac
+        ${CC:-gcc} -std=c99 -O2 -m32 -march=i386 -mno-sse -Iruntime -c "$source" -o "$work/$(echo "$source" | tr / _).o" || exit 1
+    done
+    nm -u "$work"/*.o | awk 'NF == 2 { print $2 }' | sort -u | grep -v '^noh_' >"$work/asked"
+    # the compiler's own: 64-bit arithmetic, and where the program lies
+    grep -vE '^(memcpy|memset|memcmp|__u?(div|mod)di3|__udivmoddi4|__divmoddi4|__fixunssfdi|__c[lt]z[sd]i2|__fixunsdfdi|_GLOBAL_OFFSET_TABLE_|__x86\..*)$' \
+        "$work/asked" >"$work/foreign"
+    check 'i386 without SSE asks for nothing of libm' sh -c '! grep . "$1"' - "$work/foreign"
+    check 'the list was read' grep -qx __udivdi3 "$work/asked"
+fi
+finish

@@ -1,0 +1,294 @@
+/* A game's own vertex shader, put together as shaders_es/README.md says out of its example and noh_gl_shader_text:
+ * what it makes of a mesh that morphs and bends is what the CPU makes of it, with palettes in a block and in a texture,
+ * float layers and integer ones, and for a mesh without joints. */
+#include "gl_fixture.h"
+
+#include "base/quat.h"
+#include "skin_asset.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- the shader ---- */
+
+/* The first ```glsl block of a file, to be freed. */
+static char *example(const char *path)
+{
+    FILE *file = fopen(path, "rb");
+    char *text = test_zeros(1u << 16), *start, *end;
+    if (!file) test_skip("%s is not here: run in the repository's root", path);
+    assert_in_range(fread(text, 1, (1u << 16) - 1u, file), 1000, (1u << 16) - 2u);
+    fclose(file);
+    start = strstr(text, "```glsl\n");
+    assert_non_null(start);
+    start += 8;
+    end = strstr(start, "```");
+    assert_non_null(end);
+    *end = 0;
+    memmove(text, start, strlen(start) + 1);
+    return text;
+}
+
+static GLuint compile(const noh_gl_api *gl, GLenum stage, const char *const *texts, GLsizei count)
+{
+    GLuint shader = gl->CreateShader(stage);
+    GLint ok = 0;
+    char log[2048] = "";
+    gl->ShaderSource(shader, count, texts, NULL);
+    gl->CompileShader(shader);
+    gl->GetShaderiv(shader, GL_COMPILE_STATUS, &ok);
+    gl->GetShaderInfoLog(shader, sizeof log, NULL, log);
+    if (!ok) fail_msg("%s", log);
+    return shader;
+}
+
+static GLuint own_program(const noh_gl_api *gl, noh_gl_variant_key key)
+{
+    static const char *const varyings[] = { "v_position", "v_normal" };
+    static const char fragment_text[] = "#version 300 es\nprecision mediump float;\nout vec4 c;\nvoid main() { c = vec4(1.0); }\n";
+    char defines[NOH_GL_DEFINES_BYTES], *own = example("shaders_es/README.md");
+    const char *vertex[] = { "#version 300 es\n", defines, "precision highp float;\nprecision highp int;\n",
+                             noh_gl_shader_text("common_layers.glsl"), noh_gl_shader_text("common_attributes.glsl"),
+                             noh_gl_shader_text("common_skin.glsl"), own };
+    const char *fragment[] = { fragment_text };
+    GLuint shaders[2], program = gl->CreateProgram(), block;
+    GLint ok = 0;
+    noh_gl_variant_defines(key, defines);
+    shaders[0] = compile(gl, GL_VERTEX_SHADER, vertex, 7);
+    shaders[1] = compile(gl, GL_FRAGMENT_SHADER, fragment, 1);
+    for (int i = 0; i < 2; i++) {
+        gl->AttachShader(program, shaders[i]);
+        gl->DeleteShader(shaders[i]);
+    }
+    gl->TransformFeedbackVaryings(program, 2, varyings, GL_INTERLEAVED_ATTRIBS);
+    gl->LinkProgram(program);
+    gl->GetProgramiv(program, GL_LINK_STATUS, &ok);
+    assert_true(ok);
+    gl->UseProgram(program);
+    gl->Uniform1i(gl->GetUniformLocation(program, "u_layers"), (GLint)NOH_UNIT_LAYERS);
+    gl->Uniform1i(gl->GetUniformLocation(program, "u_palettes"), (GLint)NOH_UNIT_PALETTES);
+    block = gl->GetUniformBlockIndex(program, "palette_block");
+    if (block != GL_INVALID_INDEX) gl->UniformBlockBinding(program, block, 0);
+    free(own);
+    return program;
+}
+
+/* ---- a mesh that morphs and bends ---- */
+
+typedef struct stage {
+    gpu *g;
+    uint8_t *bytes;
+    noh_pack pack;
+    noh_mesh mesh;
+    noh_gl_ledger ledger;
+    noh_gl_mesh gl_mesh;
+    fixture_morph morph;
+    noh_gl_morph_desc morph_desc;
+    void *memory;
+    noh_gl_skin *skin; /* NULL: a mesh without joints */
+    float matrices[16 * 12];
+} stage;
+
+static void open_skin(stage *st, noh_palette_mode mode)
+{
+    noh_gl_skin_desc desc;
+    noh_gl_skin_plan plan;
+    noh_skin skin;
+    noh_skeleton skeleton;
+    noh_transform pose[16];
+    float world[16 * 12];
+    test_random r = test_random_from(95);
+    assert_int_equal(noh_pack_skin_at(&st->pack, st->mesh.header->skin, &skin, NULL), NOH_OK);
+    assert_int_equal(noh_pack_skeleton_at(&st->pack, skin.header->skeleton, &skeleton, NULL, NULL), NOH_OK);
+    assert_in_range(skeleton.joint_count, 2, 16);
+    memcpy(pose, skeleton.bind_pose, sizeof *pose * skeleton.joint_count);
+    for (uint32_t i = 0; i < skeleton.joint_count; i++) {
+        const float turn[3] = { test_random_float(&r, -0.4f, 0.4f), test_random_float(&r, -0.4f, 0.4f), 0.2f };
+        float q[4];
+        noh_quat_from_rotation(turn, q);
+        noh_quat_mul(pose[i].rotation, q, pose[i].rotation);
+    }
+    noh_local_to_model(&skeleton, pose, skeleton.joint_count, world);
+    noh_skin_matrices(&skin, world, st->matrices);
+    memset(&desc, 0, sizeof desc);
+    desc.meshes = &st->mesh;
+    desc.mesh_count = 1;
+    desc.mode = mode;
+    assert_int_equal(noh_gl_skin_plan_make(&desc, &st->g->caps, &plan, NULL), NOH_OK);
+    st->memory = test_aligned(NULL, (size_t)plan.cpu_bytes);
+    assert_int_equal(noh_gl_skin_init(st->memory, (size_t)plan.cpu_bytes,
+                                      &(noh_gl_device){ &st->g->gl, &st->g->caps, &st->ledger, NULL, 0 },
+                                      &desc, &st->skin, NULL),
+                     NOH_OK);
+    noh_gl_skin_set_matrices(st->skin, 0, st->matrices);
+    noh_gl_skin_update(st->skin);
+}
+
+static void open_stage(stage *st, int jointed, noh_palette_mode mode, int is_uint)
+{
+    const skin_cylinder tube = { 12, 9, 4, 2, 3, 1, 2.0f, 0.3f };
+    const test_model_desc grid = { 1, 9, 3, TEST_TANGENTS, 96 };
+    noh_gl_caps caps;
+    test_random r = test_random_from(97);
+    model *m = jointed ? skin_cylinder_model(&tube) : NULL;
+    size_t count;
+    memset(st, 0, sizeof *st);
+    st->g = fixture_gpu();
+    caps = st->g->caps;
+    if (is_uint) caps.render_f32 = caps.blend_f32 = 0;
+    st->bytes = jointed ? skin_pack_of(m, NULL, 0.5f, &count, NULL) : test_pack(&grid, &count);
+    if (m) model_free(m);
+    st->pack = test_open(st->bytes, count);
+    st->mesh = test_mesh(&st->pack, 0);
+    assert_int_equal(noh_gl_mesh_create(&st->g->gl, &st->ledger, &st->mesh, &st->gl_mesh, NULL), NOH_OK);
+    st->morph_desc.meshes = &st->mesh;
+    st->morph_desc.mesh_count = 1;
+    st->morph_desc.path = is_uint ? NOH_MORPH_GATHER : NOH_MORPH_CPU;
+    fixture_morph_open(&st->morph, &st->morph_desc, &caps);
+    fixture_set_random(&st->morph, 0, &r);
+    noh_gl_morph_update(st->morph.morph, NULL);
+    if (jointed) open_skin(st, mode);
+}
+
+static void close_stage(stage *st)
+{
+    if (st->skin) noh_gl_skin_delete(st->skin);
+    fixture_morph_close(&st->morph);
+    noh_gl_mesh_delete(&st->g->gl, &st->ledger, &st->gl_mesh);
+    assert_true(noh_gl_ledger_bytes(&st->ledger) == 0);
+    free(st->memory);
+    free(st->bytes);
+    fixture_expect_no_errors();
+}
+
+/* ---- drawing with it ---- */
+
+/* [vertex_count] position and normal, to be freed. */
+static float *draw(const stage *st)
+{
+    static const float identity[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 };
+    const noh_gl_api *gl = &st->g->gl;
+    const noh_gl_morph_binding morph = noh_gl_morph_binding_of(st->morph.morph, 0);
+    const noh_gl_skin_binding skin = st->skin ? noh_gl_skin_binding_of(st->skin, 0) : (noh_gl_skin_binding){ 0 };
+    const size_t bytes = 24u * (size_t)st->mesh.header->vertex_count;
+    noh_gl_variant own;
+    GLuint buffer = 0;
+    float *out = test_zeros(bytes);
+    const void *mapped;
+    memset(&own, 0, sizeof own);
+    own.key = noh_gl_variant_key_of(&st->mesh, st->skin ? &skin : NULL, 0, morph.is_uint, NOH_VIEW_LIT);
+    own.program = own_program(gl, own.key);
+    own.u_skin = gl->GetUniformLocation(own.program, "u_skin");
+    gl->UniformMatrix4fv(gl->GetUniformLocation(own.program, "u_view_projection"), 1, GL_FALSE, identity);
+    gl->Uniform4i(gl->GetUniformLocation(own.program, "u_morph"), morph.tile_x, morph.tile_y, morph.width_log2, morph.touched);
+    gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_LAYERS);
+    gl->BindTexture(GL_TEXTURE_2D_ARRAY, morph.texture);
+    gl->GenBuffers(1, &buffer);
+    gl->BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffer);
+    gl->BufferData(GL_TRANSFORM_FEEDBACK_BUFFER, (GLsizeiptr)bytes, NULL, GL_STREAM_READ);
+    gl->BindVertexArray(st->gl_mesh.vertex_array);
+    if (st->skin) noh_gl_variant_skin(gl, &own, &st->mesh, &skin, 0);
+    gl->Enable(GL_RASTERIZER_DISCARD);
+    gl->BeginTransformFeedback(GL_POINTS);
+    gl->DrawArrays(GL_POINTS, 0, (GLsizei)st->mesh.header->vertex_count);
+    gl->EndTransformFeedback();
+    gl->Disable(GL_RASTERIZER_DISCARD);
+    mapped = gl->MapBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, (GLsizeiptr)bytes, GL_MAP_READ_BIT);
+    assert_non_null(mapped);
+    memcpy(out, mapped, bytes);
+    gl->UnmapBuffer(GL_TRANSFORM_FEEDBACK_BUFFER);
+    gl->BindVertexArray(0);
+    gl->UseProgram(0);
+    gl->BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
+    gl->BindBufferBase(GL_UNIFORM_BUFFER, 0, 0);
+    gl->DeleteBuffers(1, &buffer);
+    gl->DeleteProgram(own.program);
+    return out;
+}
+
+static void check(int jointed, noh_palette_mode mode, int is_uint)
+{
+    stage st;
+    noh_morph_layers layers;
+    float *got;
+    double moved = 0.0;
+    open_stage(&st, jointed, mode, is_uint);
+    got = draw(&st);
+    layers = test_layers(&st.mesh);
+    noh_morph_accumulate(&st.mesh, st.morph.weights[0], &layers);
+    for (uint32_t v = 0; v < st.mesh.header->vertex_count; v++) {
+        noh_vertex rest, want;
+        noh_mesh_vertex(&st.mesh, v, &rest);
+        if (jointed) {
+            noh_skin_vertex(&st.mesh, st.matrices, &layers, v, &want);
+        } else {
+            noh_morph_vertex(&st.mesh, &layers, v, &want);
+        }
+        for (int c = 0; c < 3; c++) {
+            moved = fmax(moved, fabs((double)want.position[c] - (double)rest.position[c]));
+            if (jointed) {
+                assert_true(fabsf(got[6 * v + (uint32_t)c] - want.position[c]) < 4e-6f);
+            } else {
+                assert_memory_equal(&got[6 * v + (uint32_t)c], &want.position[c], 4); /* one sum: the same bits */
+            }
+            assert_true(fabsf(got[6 * v + 3 + (uint32_t)c] - want.normal[c]) < 2e-5f);
+        }
+    }
+    assert_true(moved > 0.05);
+    free(layers.position);
+    free(got);
+    close_stage(&st);
+}
+
+static void it_morphs(void **state)
+{
+    (void)state;
+    check(0, NOH_PALETTE_AUTO, 0);
+}
+
+static void it_morphs_with_integer_layers(void **state)
+{
+    (void)state;
+    if (!fixture_gpu()->caps.render_u32) test_skip("no renderable RGBA32UI here");
+    check(0, NOH_PALETTE_AUTO, 1);
+}
+
+static void it_skins_by_a_block(void **state)
+{
+    (void)state;
+    check(1, NOH_PALETTE_UNIFORM, 0);
+}
+
+static void it_skins_by_a_texture(void **state)
+{
+    (void)state;
+    check(1, NOH_PALETTE_TEXTURE, 0);
+}
+
+static void other_names_have_no_text(void **state)
+{
+    static const char *const names[] = { "common_layers.glsl", "common_attributes.glsl", "common_skin.glsl", "common_fade.glsl" };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(names); i++) {
+        const char *text = noh_gl_shader_text(names[i]);
+        assert_non_null(text);
+        assert_null(strstr(text, "#version"));
+        assert_null(strstr(text, "/*"));
+    }
+    assert_null(noh_gl_shader_text("common_layers"));
+    assert_null(noh_gl_shader_text("mesh.vert"));
+    assert_null(noh_gl_shader_text(""));
+}
+
+int main(int argument_count, char **arguments)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(it_morphs),          cmocka_unit_test(it_morphs_with_integer_layers),
+        cmocka_unit_test(it_skins_by_a_block), cmocka_unit_test(it_skins_by_a_texture),
+        cmocka_unit_test(other_names_have_no_text),
+    };
+    if (argument_count > 1) cmocka_set_test_filter(arguments[1]);
+    return cmocka_run_group_tests(tests, NULL, fixture_tear_down);
+}

@@ -1,0 +1,32 @@
+/* error.h: why an input is refused, and memory that says when there is none. */
+#ifndef NOH_CONVERT_ERROR_H
+#define NOH_CONVERT_ERROR_H
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What is wrong, and where (e.g. "accessor 7, element 12"; may be empty). */
+typedef struct model_error {
+    char what[256];
+    char where[128];
+} model_error;
+
+/* Fill *error (printf form for `what`) unless it is NULL. Returns 1. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 3, 4)))
+#endif
+int model_fail(model_error *error, const char *where, const char *format, ...);
+
+/* A zeroed array, or NULL (also for a size that overflows). 0 elements get a block too. */
+void *model_zeros(size_t count, size_t element_size);
+
+/* A copy of a string, or NULL. */
+char *model_string(const char *text);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

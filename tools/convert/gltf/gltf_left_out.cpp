@@ -1,0 +1,99 @@
+/* gltf_left_out.cpp: what the file has and the model has no place for, as warnings: one for each kind. */
+#include "gltf_internal.h"
+
+#include <cstring>
+#include <set>
+
+namespace gltf {
+
+/* --- materials --- */
+
+static void find_in_material(file &f, size_t index)
+{
+    const tinygltf::Material &m = f.json.materials[index];
+    const std::string where = "material '" + printable(name_or(m.name, "material", index)) + "'";
+    const struct { int texture; const char *name; } textures[] = {
+        {m.normalTexture.index, "normal"}, {m.occlusionTexture.index, "occlusion"}, {m.emissiveTexture.index, "emissive"},
+        {m.pbrMetallicRoughness.metallicRoughnessTexture.index, "metallic-roughness"}};
+    for (const auto &t : textures)
+        if (t.texture >= 0)
+            leave_out(f, where, text(": the %s texture was left out", t.name));
+    for (double part : m.emissiveFactor)
+        if (part > 0.0 && m.emissiveTexture.index < 0) {
+            leave_out(f, where, ": the emissive colour was left out");
+            break;
+        }
+}
+
+/* A pack filters a texture in one way: nearest or linear. */
+static void find_in_samplers(file &f)
+{
+    std::set<int> used;
+    for (const tinygltf::Material &m : f.json.materials) {
+        int texture = m.pbrMetallicRoughness.baseColorTexture.index;
+        if (texture >= 0 && static_cast<size_t>(texture) < f.json.textures.size())
+            used.insert(f.json.textures[static_cast<size_t>(texture)].sampler);
+    }
+    for (int index : used) {
+        if (index < 0 || static_cast<size_t>(index) >= f.json.samplers.size())
+            continue;
+        const tinygltf::Sampler &s = f.json.samplers[static_cast<size_t>(index)];
+        bool nearest = s.minFilter == TINYGLTF_TEXTURE_FILTER_NEAREST || s.minFilter == TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST ||
+                       s.minFilter == TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_LINEAR;
+        if (s.minFilter != -1 && nearest != (s.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST))
+            leave_out(f, text("sampler %d", index), ": 'minFilter' was ignored: a pack filters as 'magFilter' says");
+    }
+}
+
+/* --- meshes --- */
+
+static bool begins_with(const std::string &name, const char *beginning)
+{
+    return name.compare(0, strlen(beginning), beginning) == 0;
+}
+
+/* Joints and weights are read whole, in sets of four, or the file is refused. */
+static bool is_read(const std::string &name, const std::string &uv)
+{
+    return name == "POSITION" || name == "NORMAL" || name == "TANGENT" || name == "COLOR_0" || name == uv || begins_with(name, "JOINTS_") ||
+           begins_with(name, "WEIGHTS_");
+}
+
+static void find_in_primitive(file &f, const tinygltf::Primitive &p, const std::string &where)
+{
+    const std::string uv = uv_name(f, p);
+    for (const auto &attribute : p.attributes)
+        if (!is_read(attribute.first, uv))
+            leave_out(f, where, ": the attribute " + printable(attribute.first) + " was left out");
+    if (p.material < 0 || static_cast<size_t>(p.material) >= f.json.materials.size())
+        return;
+    const tinygltf::TextureInfo &texture = f.json.materials[static_cast<size_t>(p.material)].pbrMetallicRoughness.baseColorTexture;
+    if (texture.index >= 0 && p.attributes.count(uv) == 0)
+        leave_out(f, where, text(": its material has a texture, but the primitive has no %s", uv.c_str()));
+}
+
+/* --- the scene --- */
+
+static void find_in_scene(file &f)
+{
+    for (size_t i = 0; i < f.json.cameras.size(); ++i)
+        leave_out(f, "camera '" + printable(name_or(f.json.cameras[i].name, "camera", i)) + "'", ": cameras are not kept");
+    for (size_t i = 0; i < f.json.nodes.size(); ++i)
+        if (f.node_of[i] == MODEL_NONE)
+            leave_out(f, "node '" + printable(name_or(f.json.nodes[i].name, "node", i)) + "'",
+                      " was left out: it is not in the default scene");
+}
+
+void find_left_out(file &f)
+{
+    for (size_t i = 0; i < f.json.materials.size(); ++i)
+        find_in_material(f, i);
+    find_in_samplers(f);
+    for (size_t m = 0; m < f.json.meshes.size(); ++m)
+        for (size_t i = 0; f.mesh_of[m] != MODEL_NONE && i < f.json.meshes[m].primitives.size(); ++i)
+            find_in_primitive(f, f.json.meshes[m].primitives[i],
+                              "mesh '" + printable(name_or(f.json.meshes[m].name, "mesh", m)) + "'" + text(" primitive %zu", i));
+    find_in_scene(f);
+}
+
+} // namespace gltf

@@ -1,0 +1,81 @@
+# filter.awk: a header of the library as Doxygen reads it. The headers have plain comments with our own headings; this
+# turns a comment in column 1 into a documentation comment, one behind a member into the member's, "shapes", "units" and
+# the like into titled paragraphs, and lines that are indented (tables, examples) into verbatim blocks.
+function escape(text) {
+    gsub(/\\/, "\\\\", text)
+    gsub(/[@#<>%$&]/, "\\\\&", text)
+    gsub(/ \./, " \\&#46;", text) # a dot by itself would end a list
+    gsub(/\.\./, "\\&#46;\\&#46;", text)
+    return text
+}
+function close_block() {
+    if (in_block) print " * @endverbatim"
+    in_block = 0
+}
+# A line of a comment without its " * ".
+function comment(text,   word) {
+    if (text ~ /^   /) {
+        if (!in_block) print " * @verbatim"
+        in_block = 1
+        print " * " text
+        return
+    }
+    close_block()
+    sub(/^ /, "", text)
+    if (text ~ /^(shapes|units|ranges|memory|errors|source|cost|threads|returns|order|example|note)  /) {
+        word = text
+        sub(/ .*/, "", word)
+        sub(/^[a-z]+ +/, "", text)
+        print " * @par " word
+        under_title = 1
+    } else if (under_title) {
+        sub(/^ +/, "", text)
+    }
+    print " * " escape(text)
+}
+BEGIN { first = 1 }
+!inside && /^\/\*/ {
+    print first ? "/** @file" : "/**"
+    first = under_title = in_block = 0
+    inside = 1
+    sub(/^\/\*/, "")
+    if (/\*\/ *$/) {
+        sub(/ *\*\/ *$/, "")
+        inside = 0
+    }
+    comment($0)
+    if (!inside) { close_block(); print " */" }
+    next
+}
+inside {
+    ends = /\*\/ *$/
+    sub(/ *\*\/ *$/, "")
+    sub(/^ \*/, "")
+    if (ends && $0 == "") { close_block(); print " */"; inside = 0; next }
+    comment($0)
+    if (ends) { close_block(); print " */"; inside = 0 }
+    next
+}
+# Behind a member, an enumerator or a define: /**< text */; a comment on lines of its own is left alone.
+/[;,a-zA-Z0-9_)"}] *\/\* .*\*\/ *$/ && !/^ *\/\*/ {
+    at = index($0, "/*")
+    text = substr($0, at + 2)
+    sub(/ *\*\/ *$/, "", text)
+    print substr($0, 1, at - 1) "/**<" escape(text) " */"
+    next
+}
+/[;,] *\/\* [^*]*$/ && !/\*\// {
+    at = index($0, "/*")
+    print substr($0, 1, at - 1) "/**<" escape(substr($0, at + 2))
+    behind = 1
+    next
+}
+behind {
+    line = $0
+    ends = line ~ /\*\/ *$/
+    sub(/ *\*\/ *$/, "", line)
+    print escape(line) (ends ? " */" : "")
+    if (ends) behind = 0
+    next
+}
+{ print }

@@ -1,0 +1,74 @@
+#!/bin/sh
+# lint.sh: clang-tidy (.clang-tidy) and cppcheck over the C of runtime/, platform/ and tools/. `make lint` calls it.
+#
+# Findings that are none are in accepted.txt, one a line: FILE CHECK REASON. A finding is fixed, or it gets a line there
+# with the reason; what the list does not hold is a failure. Lines that no longer match anything are named, so that the
+# list does not grow stale. Closes with "N passed, N failed, N skipped": a file that a tool has nothing to say about is
+# one passed.
+set -u
+cd "$(dirname "$0")/../.." || exit 1
+build=${NOH_BUILD:-build}
+work=$build/lint
+accepted=tools/lint/accepted.txt
+jobs=${JOBS:-$(nproc 2>/dev/null || echo 2)}
+mkdir -p "$work"
+includes="-Iruntime -Iplatform -Itools -Itools/noh -I$build/gen"
+# The page is compiled with emscripten's headers, the template by its reader.
+find runtime platform tools -name '*.c' ! -path 'platform/web/*' ! -name template.c | sort >"$work/files"
+total=$(wc -l <"$work/files")
+passed=0 failed=0 skipped=0
+
+# FILE CHECK of each finding in "PATH:LINE:COLUMN: kind: text [check]" lines, without what is accepted.
+findings() { # TOOL
+    grep -E '^[^ ]*:[0-9]+:[0-9]+: [a-z]+: .*\[[-a-zA-Z.,]+\]$' "$work/$1.txt" | grep -v ': note: ' | sort -u |
+        sed 's/,-warnings-as-errors\]$/]/' | while IFS= read -r line; do
+        file=$(echo "${line%%:*}" | sed 's|.*/||')
+        check=$(echo "$line" | sed 's/.*\[\([^]]*\)\]$/\1/')
+        if grep -q "^$file $check " "$accepted"; then
+            echo "$file $check " >>"$work/$1.used"
+        else
+            echo "$line"
+        fi
+    done
+}
+
+tell() { # TOOL
+    : >"$work/$1.used"
+    findings "$1" >"$work/$1.findings"
+    found=$(wc -l <"$work/$1.findings")
+    cat "$work/$1.findings"
+    echo "$1: $total files, $(sort -u "$work/$1.used" | wc -l) accepted findings, $found others"
+    failed=$((failed + found))
+    passed=$((passed + total - $(cut -d: -f1 "$work/$1.findings" | sort -u | wc -l)))
+}
+
+if command -v clang-tidy >/dev/null 2>&1; then
+    # Clang's path analysis takes most of the time: it is for what games link. tools/ has cppcheck's.
+    # shellcheck disable=SC2016
+    xargs -P "$jobs" -I '{}' sh -c '
+        case $1 in tools/*) fewer=--checks=-clang-analyzer-* ;; *) fewer= ;; esac
+        clang-tidy --quiet $fewer "$1" -- -std=c99 $2 2>/dev/null' sh '{}' "$includes" <"$work/files" >"$work/clang-tidy.txt"
+    tell clang-tidy
+else
+    echo 'clang-tidy skipped: it is not installed'
+    skipped=$((skipped + 1))
+fi
+if command -v cppcheck >/dev/null 2>&1; then
+    # Its uninitialised variables are arrays that a called function fills; the compilers and clang-tidy see those.
+    # shellcheck disable=SC2086
+    cppcheck -q -j "$jobs" --std=c99 --enable=warning,performance,portability --suppress=missingIncludeSystem --suppress=uninitvar \
+        --suppress=legacyUninitvar --suppress=uninitStructMember $includes \
+        --template='{file}:{line}:{column}: {severity}: {message} [{id}]' --template-location= --file-list="$work/files" 2>"$work/cppcheck.txt" ||
+        { tail -n 20 "$work/cppcheck.txt"; failed=$((failed + 1)); }
+    tell cppcheck
+else
+    echo 'cppcheck skipped: it is not installed'
+    skipped=$((skipped + 1))
+fi
+
+[ ! -f "$work/clang-tidy.used" ] || [ ! -f "$work/cppcheck.used" ] ||
+    sed '/^#/d; /^$/d' "$accepted" | cut -d' ' -f1,2 | while read -r line; do
+        cat "$work"/*.used | grep -q "^$line " || echo "no longer found, remove it from $accepted: $line"
+    done
+echo "$passed passed, $failed failed, $skipped skipped"
+[ $failed = 0 ]
