@@ -15,7 +15,7 @@ auto=$("$noh" budget "$pack" --json)
 auto_says="auto would take $(echo "$auto" | field path) ($(echo "$auto" | field reason | sed 's/^[a-z-]*: //'))"
 if ! blend=$("$noh" budget "$pack" --path blend --json 2>&1); then
     echo auto
-    echo "Drawn by $(echo "$auto" | field path)-$(echo "$auto" | field accumulate), not by blending: $(echo "$blend" | sed -n '$s/^noh: [^:]*: //p')."
+    echo "Drawn by $(echo "$auto" | field path)-$(echo "$auto" | field accumulate), not by blending: $(echo "$blend" | sed -n 's/^noh: [^:]*: //p' | sed -n 1p)."
     exit 0
 fi
 path=$(echo "$blend" | field path)

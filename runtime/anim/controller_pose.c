@@ -268,7 +268,7 @@ noh_result noh_controller_inertia_begin(noh_controller *c, const noh_anim_set *s
 {
     const char *what = bad_transition(c, scratch);
     NOH_ASSERT(c && set && scratch);
-    what = what ? what : duration_ticks == 0 ? "duration_ticks" : NULL;
+    what = what ? what : duration_ticks == 0 ? "duration_ticks is 0" : NULL;
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }

@@ -180,7 +180,7 @@ static void unmake_skin(maker *m)
 static noh_result restore_picture(maker *m, noh_error *error)
 {
     noh_texture texture;
-    assert_int_equal(noh_pack_texture(&m->pack, 0, &texture), NOH_OK);
+    assert_int_equal(noh_pack_texture(&m->pack, 0, &texture, error), NOH_OK);
     return noh_gl_picture_restore(&m->g.gl, &m->g.ledger, &texture, &m->made.texture, error);
 }
 

@@ -7,6 +7,8 @@
 #include "canvas.h"
 #include "gl/gl_program.h"
 #include "load.h"
+#include "camera.h"
+#include "canvas.h"
 #include "lit_quad.h"
 
 #include <math.h>
