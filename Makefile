@@ -374,7 +374,7 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TEST_LIBS)
 # calls this with CC, AR and CROSS=1. tests/cross/ stands in for the libraries that it has no package of.
 CROSS       ?=
 CROSS_SKIP  := gltf_read gltf_left_out gltf_formula embed motion_import motion_set pack_motion influences bvh_read events_read sources \
-               skin skin_oracle skin_pack bounds_pick rows_deform puppet lod lod_pack lod_certified lod_lies levels pack joint_order \
+               skin skin_oracle skin_pack bounds_pick pick rows_deform puppet lod lod_pack lod_certified lod_lies levels pack joint_order \
                motion_errors detail_pack threads
 CROSS_TESTS := $(patsubst tests/%.c,$(BUILD)/cross/%,$(filter-out $(addprefix %/test_,$(CROSS_SKIP:%=%.c)),$(call sources,tests/unit,test_*.c)))
 CROSS_O     := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/cross/*.c) $(filter %/support.c %/pack_walk.c,$(wildcard tests/*.c tests/support/*.c)) \

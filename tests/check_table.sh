@@ -3,13 +3,12 @@
 # A row is `| source | technique | code | test | command |`. Names in backquotes are looked up:
 #   code     a file
 #   test     `test_NAME` `function`: a program's source below tests/ that lists this function; or a script, `DIR/NAME.sh`
-#   command  `noh VERB [--OPTION [VALUE]]`: the program's help has the verb, and the option in it; or `make TARGET`
+#   command  `noh VERB [--OPTION [VALUE]]`: the verb has a help, and the option in it; or `make TARGET`
 # A row whose code is "not yet" names neither a test nor a command.
 set -u
 . tests/cli/lib.sh
 table=${1:-tests/README.md}
 
-"$build/noh" help >"$work/help"
 # The rows of tables with five columns, without head and rule: code, test and command, one a line, by tabs.
 awk -F ' *[|] *' 'NF == 7 && $2 != "source" && $2 !~ /^-+$/ { print $4 "\t" $5 "\t" $6 "\t" $2 ": " $3 }' "$table" >"$work/rows"
 
@@ -32,9 +31,7 @@ has_command() {
     case $1 in
     make) grep -q "^$2:" Makefile || missing "no target $2" ;;
     noh)
-        # the lines of the verb, up to the next one
-        awk -v verb="$2" '$1 == "noh" { on = $2 == verb } on' "$work/help" >"$work/verb"
-        [ -s "$work/verb" ] || missing "no verb $2"
+        "$build/noh" "$2" --help >"$work/verb" 2>/dev/null || missing "no verb $2"
         case ${3:-} in ''|[!-]*) ;; *) grep -q -e "$3\\b" "$work/verb" || missing "noh $2 has no $3" ;; esac ;;
     *) missing "a command that is neither noh nor make: $1" ;;
     esac

@@ -142,15 +142,26 @@ static void textures_are_looked_up_at_the_uvs(void **state)
 
 static void vertex_colors_multiply_the_base(void **state)
 {
-    static const float color[16] = { 0.25f, 1.0f, 0.5f, 1.0f, 0.25f, 1.0f, 0.5f, 1.0f, 0.25f, 1.0f, 0.5f, 1.0f, 0.25f, 1.0f, 0.5f, 1.0f };
     lit_quad q = lit_quad_of();
+    float color[16];
     uint8_t *rgba;
     (void)state;
     q.unlit = 1;
     q.color = color;
+    for (int i = 0; i < 16; i++) {
+        static const float one[4] = { 0.25f, 1.0f, 0.5f, 0.75f };
+        color[i] = one[i % 4];
+    }
     rgba = drawn(&q, NOH_DRAW_OPAQUE);
     expect_color(lit_quad_at(rgba, LIT_QUAD_SIDE / 2u), lit_quad_encoded(0.25 * 0.8), lit_quad_encoded(0.6), lit_quad_encoded(0.5 * 0.4));
     free(rgba);
+    q.alpha = MODEL_ALPHA_MASK;
+    for (int below = 0; below < 2; below++) { /* alpha too: 0.75 of 1 against the cutoff */
+        q.cutoff = below ? 0.8f : 0.7f;
+        rgba = drawn(&q, NOH_DRAW_OPAQUE);
+        assert_int_equal(draws_nothing(rgba), below);
+        free(rgba);
+    }
 }
 
 /* Blended materials are drawn in the pass for them, over what is there. */

@@ -3,6 +3,8 @@
 #include "gl_fixture.h"
 
 #include "base/math.h"
+#include "camera.h"
+#include "canvas.h"
 #include "gl/gl_program.h"
 #include "load.h"
 #include "camera.h"

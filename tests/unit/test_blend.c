@@ -70,8 +70,8 @@ static void test_weighted_sum(void **state)
     }
 }
 
-/* The source's weight, (rand() % 1000) / 1000, never reaches 1, so the first clip alone is never seen. Here weights of
- * 1 and 0 show one clip alone, the translations to the bit. */
+/* The source's weight, (rand() % 1000) / 1000, never reaches 1, so the first clip alone is never seen. Here the ends of a
+ * mix, and a sum of one, show one clip alone, translations and floats to the bit. */
 static void a_weight_of_one_shows_its_clip_alone(void **state)
 {
     scene s;
@@ -83,17 +83,21 @@ static void a_weight_of_one_shows_its_clip_alone(void **state)
     scene_pose(&s, WALK, 9000, a, fa);
     scene_pose(&s, RUN, 5000, c, fc);
     assert_true(pose_apart(a, c, JOINTS) > 0.1);
-    for (int first = 0; first <= 1; first++) {
-        const float weight = (float)first;
-        sums_open(&b);
-        if (weight > 0.0f) noh_blend_add(&b.blend, a, fa, weight, everywhere); /* as controllers do */
-        if (weight < 1.0f) noh_blend_add(&b.blend, c, fc, 1.0f - weight, everywhere);
-        noh_blend_finish(&b.blend, s.bind, s.defaults, got, out);
-        assert_true(pose_apart(got, first ? a : c, JOINTS) < 1e-6);
-        for (uint32_t j = 0; j < JOINTS; j++) {
-            assert_memory_equal(got[j].translation, (first ? a : c)[j].translation, sizeof got[j].translation);
+    for (int end = 0; end < 3; end++) {
+        const noh_transform *want = end == 1 ? c : a;
+        if (end < 2) {
+            noh_pose_mix(JOINTS, a, c, (float)end, NULL, got);
+            noh_floats_mix(FLOATS, fa, fc, (float)end, NULL, out);
+        } else {
+            sums_open(&b);
+            noh_blend_add(&b.blend, a, fa, 1.0f, everywhere);
+            noh_blend_finish(&b.blend, s.bind, s.defaults, got, out);
         }
-        assert_memory_equal(out, first ? fa : fc, sizeof out);
+        assert_true(pose_apart(got, want, JOINTS) < 1e-6);
+        for (uint32_t j = 0; j < JOINTS; j++) {
+            assert_memory_equal(got[j].translation, want[j].translation, sizeof got[j].translation);
+        }
+        assert_memory_equal(out, end == 1 ? fc : fa, sizeof out);
     }
 }
 

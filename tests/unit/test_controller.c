@@ -588,6 +588,30 @@ static void test_masked_layer(void **state)
     }
 }
 
+/* The high group covers the low one by the priority blend, and wholly where no low track has a say. */
+static void the_high_group_covers_what_nothing_lies_below(void **state)
+{
+    stage g;
+    noh_transform low[JOINTS], high[JOINTS], want[JOINTS];
+    float low_floats[FLOATS], high_floats[FLOATS];
+    (void)state;
+    stage_open(&g, 2, 0);
+    scene_pose(&g.s, WALK, 0, low, low_floats);
+    scene_pose(&g.s, RUN, 0, high, high_floats);
+    start(&g, 0, (noh_track_desc){ .motion = WALK, .mask = 1 }); /* the upper half */
+    start(&g, 1, (noh_track_desc){ .motion = RUN, .group = NOH_GROUP_HIGH, .weight = 4.0f });
+    assert_int_equal(noh_controller_set_priority_blend(g.c, 0.25f), NOH_OK);
+    take_pose(&g);
+    for (uint32_t j = 0; j < JOINTS; j++) {
+        noh_pose_mix(1, &low[j], &high[j], j < JOINTS / 2u ? 1.0f : 0.25f, NULL, &want[j]);
+    }
+    assert_true(pose_apart(g.pose, want, JOINTS) < 1e-6);
+    for (uint32_t i = 0; i < FLOATS; i++) {
+        const float t = i < 2 ? 1.0f : 0.25f;
+        assert_true(fabsf(g.floats[i] - (low_floats[i] + (high_floats[i] - low_floats[i]) * t)) < 1e-6f);
+    }
+}
+
 /* A track with a mask, alone: what its mask shuts out stands in the bind pose. */
 static void a_masked_track_alone_leaves_the_bind_pose(void **state)
 {
@@ -1073,6 +1097,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_one_track_is_its_motion),
         cmocka_unit_test(priority_is_the_blend_group),
         cmocka_unit_test(test_masked_layer),
+        cmocka_unit_test(the_high_group_covers_what_nothing_lies_below),
         cmocka_unit_test(a_masked_track_alone_leaves_the_bind_pose),
         cmocka_unit_test(test_motions_of_joints_and_of_floats),
         cmocka_unit_test(test_clips_of_joints_and_of_floats_above),

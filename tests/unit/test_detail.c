@@ -529,6 +529,8 @@ static void skipped_targets_are_the_smallest_and_bounded(void **state)
 /* Half of a fade's ticks is half of the pixels; it begins and ends without a jump of speed. */
 static void fades_follow_the_smoothstep(void **state)
 {
+    const noh_detail_table t = table_of();
+    const noh_detail_settings s = settings_of(1.0f);
     noh_detail d;
     (void)state;
     memset(&d, 0, sizeof d);
@@ -536,6 +538,10 @@ static void fades_follow_the_smoothstep(void **state)
     d.fade_ticks = 4000;
     assert_true(noh_detail_fade(&d, 900) == 0.0f && noh_detail_fade(&d, 1000) == 0.0f && noh_detail_fade(&d, 2000) == 0.15625f);
     assert_true(noh_detail_fade(&d, 3000) == 0.5f && noh_detail_fade(&d, 4000) == 0.84375f && noh_detail_fade(&d, 5000) == 1.0f);
+    memset(&d, 0, sizeof d);
+    noh_detail_choose(&d, &t, &s, 15.0f, rates, 0);
+    noh_detail_choose(&d, &t, &s, 1e5f, rates, 100);
+    assert_int_equal(d.fade_ticks, 12000); /* a quarter of a second where nothing is asked for */
 }
 
 /* What is off in pixels is the sum of all kinds, the targets left out among them; while a level fades the coarser of the two

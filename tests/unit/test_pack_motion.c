@@ -124,7 +124,7 @@ static void play_pack(uint32_t passes, fired_list *list)
 /* The source of this design compresses a keyframe set into a new one that is created with 0 callback keys, so every
  * key is lost (Granberg, Character Animation with Direct3D, chapter 5). Here the keys come out of the compressed pack,
  * in every pass, with all that the text file said of them. */
-static void errata_C5_5_keys_survive_compression(void **state)
+static void keys_survive_compression(void **state)
 {
     fired_list list;
     (void)state;
@@ -139,7 +139,7 @@ static void errata_C5_5_keys_survive_compression(void **state)
 
 /* The source stores a key's time in seconds in a field that counts ticks, so every key of the first second is in the
  * first tick (the same chapter). Keys at 0.05 s and 0.1 s fire at these times of the clock: 48,000 ticks are a second. */
-static void errata_C5_6_key_times_are_ticks(void **state)
+static void key_times_are_ticks(void **state)
 {
     fired_list list;
     (void)state;
@@ -392,8 +392,8 @@ static void lies_about_detail_are_named(void **state)
 int main(int argument_count, char **arguments)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pack_holds_skeleton_clip_and_keys), cmocka_unit_test(errata_C5_5_keys_survive_compression),
-        cmocka_unit_test(errata_C5_6_key_times_are_ticks), cmocka_unit_test(levels_and_errors_are_there), cmocka_unit_test(another_skeleton_is_refused_by_name),
+        cmocka_unit_test(pack_holds_skeleton_clip_and_keys), cmocka_unit_test(keys_survive_compression),
+        cmocka_unit_test(key_times_are_ticks), cmocka_unit_test(levels_and_errors_are_there), cmocka_unit_test(another_skeleton_is_refused_by_name),
         cmocka_unit_test(every_truncation_and_flip_is_refused), cmocka_unit_test(repaired_flips_stay_in_bounds),
         cmocka_unit_test(lies_are_named), cmocka_unit_test(lies_about_detail_are_named)
     };

@@ -1,6 +1,6 @@
 /* Tests of runtime/deform/pick.c in closed form: a flat sheet and a folded one. Real bodies over their clips, against a
  * search through all triangles, are in test_bounds_pick. */
-#include "support.h"
+#include "skin_asset.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -124,6 +124,10 @@ static void the_nearest_layer_is_hit(void **state)
         assert_true(fabsf(hit.distance - 2.0f) < 1e-5f && fabsf(hit.point[2] - 1.0f) < 1e-5f);
         assert_int_equal(pick(&s, x, y, -3, 0, 0, 1, 100, &hit), NOH_OK);
         assert_true(fabsf(hit.distance - 3.0f) < 1e-5f && fabsf(hit.point[2]) < 1e-5f);
+        assert_int_equal(pick(&s, x, y, 0.6f, 0, 0, 1, 100, &hit), NOH_OK); /* between them: what lies behind does not count */
+        assert_true(fabsf(hit.distance - 0.4f) < 1e-5f);
+        assert_int_equal(pick(&s, x, y, 0.6f, 0, 0, -1, 100, &hit), NOH_OK);
+        assert_true(fabsf(hit.distance - 0.6f) < 1e-5f);
     }
     free(s.bytes);
 }
@@ -144,12 +148,59 @@ static void placed_surfaces_are_hit_where_they_stand(void **state)
     free(s.bytes);
 }
 
+/* The joint of a hit is the one that weighs most at the point: the corners' weights, each by its share of the point. */
+static void the_joint_is_that_of_the_point(void **state)
+{
+    const skin_cylinder c = { 12, 6, 4, 2, 0, 0, 3.0f, 0.5f };
+    model *m = skin_cylinder_model(&c);
+    test_random r = test_random_from(24);
+    float matrices[4 * 12], scratch[4 * 12];
+    noh_pick_surface surface;
+    uint32_t told = 0;
+    size_t count;
+    uint8_t *bytes = skin_pack_of(m, NULL, 1.0f, &count, NULL);
+    noh_pack pack = test_open(bytes, count);
+    noh_mesh mesh = test_mesh(&pack, 0);
+    (void)state;
+    memset(&surface, 0, sizeof surface);
+    surface.mesh = &mesh;
+    surface.matrices = matrices;
+    for (uint32_t e = 0; e < 4 * 12; e++) {
+        matrices[e] = e % 12u % 5u == 0 ? 1.0f : 0.0f;
+    }
+    assert_true(noh_pick_scratch_size(&mesh) <= sizeof scratch);
+    for (int k = 0; k < 500; k++) {
+        const float o[3] = { 4, test_random_float(&r, 0.05f, 2.95f), test_random_float(&r, -0.4f, 0.4f) }, d[3] = { -1, 0, 0 };
+        double sums[4] = { 0, 0, 0, 0 };
+        uint32_t best = 0;
+        noh_pick_hit hit;
+        assert_int_equal(noh_pick(&surface, o, d, 100.0f, scratch, sizeof scratch, &hit, NULL), NOH_OK);
+        for (uint32_t corner = 0; corner < 3; corner++) {
+            uint32_t joints[NOH_INFLUENCES_MAX];
+            float weights[NOH_INFLUENCES_MAX];
+            const uint32_t n = noh_mesh_influences(&mesh, noh_mesh_index(&mesh, 3 * hit.triangle + corner), joints, weights);
+            for (uint32_t i = 0; i < n; i++) {
+                sums[joints[i]] += (double)hit.barycentric[corner] * (double)weights[i];
+            }
+        }
+        for (uint32_t j = 1; j < 4; j++) {
+            best = sums[j] > sums[best] ? j : best;
+        }
+        assert_true(sums[hit.joint] >= sums[best] - 1e-5);
+        told |= 1u << hit.joint;
+    }
+    assert_int_equal(told, 15);
+    free(bytes);
+    model_free(m);
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_hit_says_where_it_is),
     cmocka_unit_test(a_ray_ends_at_its_distance),
     cmocka_unit_test(no_ray_slips_through_an_edge),
     cmocka_unit_test(the_nearest_layer_is_hit),
     cmocka_unit_test(placed_surfaces_are_hit_where_they_stand),
+    cmocka_unit_test(the_joint_is_that_of_the_point),
 };
 
 TEST_MAIN(tests, NULL, NULL)
