@@ -73,8 +73,7 @@ noh_result noh_pack_bind_motion(const noh_pack *pack, const noh_pack_motion *mot
 {
     for (uint32_t i = 0; i < pack->skeleton_count; i++) {
         const noh_skeleton_header *h;
-        noh_pack_skeleton_at(pack, i, skeleton, &h, NULL);
-        if (h->hash == motion->header->skeleton_hash && h->joint_count == motion->header->joint_count) {
+        if (noh_pack_skeleton_at(pack, i, skeleton, &h, NULL) == NOH_OK && h->hash == motion->header->skeleton_hash && h->joint_count == motion->header->joint_count) {
             if (index) {
                 *index = i;
             }
