@@ -57,7 +57,7 @@ VIEW_NOT_C := $(call sources,tools/noh,view_without.c)
 VIEW_C     := $(filter-out $(VIEW_NOT_C),$(call sources,tools/noh/view,*.c))
 VIEW_CC    := $(call sources,tools/noh/view,*.cpp)
 TOOL_C     := $(filter-out $(VIEW_NOT_C) $(VIEW_C),$(call sources,tools/noh,*.c))
-DEMO_C     := $(sort $(wildcard tools/make_*/*.c) $(call sources,tools/demo_assets,*.c))
+DEMO_C     := $(call sources,tools/demo_assets,*.c)
 EXAMPLE_C  := $(sort $(wildcard tools/examples/*.c))
 STAGES     := vert geom frag
 # What games put into their own shaders (runtime/gl/gl_shader_text.h) is in the library by itself, too.
@@ -81,6 +81,7 @@ PLATFORM_O := $(PLATFORM_C:%.c=$(BUILD)/%.o)
 CONVERT_O  := $(CONVERT_C:%.c=$(BUILD)/%.o) $(CONVERT_CC:%.cpp=$(BUILD)/%.o)
 TOOL_O     := $(TOOL_C:%.c=$(BUILD)/%.o) $(BUILD)/gen/tool_shaders.gen.o
 DEMO_O     := $(DEMO_C:%.c=$(BUILD)/%.o)
+$(DEMO_O): INCLUDES += -Itools/demo_assets
 EXAMPLES   := $(EXAMPLE_C:tools/examples/%.c=$(BUILD)/examples/%)
 TESTS      := $(TEST_C:tests/%.c=$(BUILD)/tests/%)
 
@@ -100,7 +101,7 @@ help:
 	@echo 'make view       the puppet in a window: sliders, clips, memory and times (FILE=PACK|MODEL: another)'
 	@echo 'make check      install what is missing, build and run the tests'
 	@echo 'make bench      ratios against the named baselines (the mask, and hero/head.glb and clips where they are)'
-	@echo 'make bench-lod  of them only levels of detail against meshoptimizer'"'"'s'
+	@echo 'make bench-lod  of them only LOD levels against meshoptimizer'"'"'s'
 	@echo 'make fuzz       fuzz the pack reader and the clip decoder (FUZZ_SECONDS=60 each), needs clang'
 	@echo 'make cross      the library and its CPU tests for aarch64, armv7 and wasm (qemu, node)'
 	@echo 'make web        the page, WebGL 2 (WEB_PACK=PACK: for another pack); make web-serve, web-check, web-bench'
@@ -214,31 +215,31 @@ $(BUILD)/noh.1: $(BUILD)/noh
 $(BUILD)/noh.bash: $(BUILD)/noh
 	$(Q)$(BUILD)/noh help --bash >$@
 
-$(BUILD)/make_mask: $(DEMO_O)
+$(BUILD)/demo_assets: $(DEMO_O)
 	$(call say,CC,$@)
 	$(Q)$(CC) $(ALL_LDFLAGS) $^ -o $@ -lm
 
-# Makes runtime/anim/clip_tables.c out of raw clips; after a change of the clip format only.
+# Makes runtime/clip/clip_tables.c out of raw clips; after a change of the clip format only.
 $(BUILD)/clip_tables: $(BUILD)/tools/clip_tables/main.o $(CONVERT_O) $(PLATFORM_O) $(BUILD)/libnoh.a
 	$(call say,CXX,$@)
 	$(Q)$(CXX) $(ALL_LDFLAGS) $^ -o $@ $(TOOL_LIBS)
 
-# Our levels of detail against meshoptimizer's; for `make bench`.
+# Our LOD levels against meshoptimizer's; for `make bench`.
 LOD_COMPARE_O := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tools/lod_compare/*.c)))
 $(BUILD)/lod_compare: $(LOD_COMPARE_O) $(CONVERT_O) $(PLATFORM_O) $(BUILD)/libnoh.a
 	$(call say,CXX,$@)
 	$(Q)$(CXX) $(ALL_LDFLAGS) $^ -o $@ $(TOOL_LIBS)
 
-$(BUILD)/mask.glb: $(BUILD)/make_mask
-	$(BUILD)/make_mask $@
+$(BUILD)/mask.glb: $(BUILD)/demo_assets
+	$(BUILD)/demo_assets $@
 
-$(BUILD)/demo/puppet.glb: $(BUILD)/make_mask
+$(BUILD)/demo/puppet.glb: $(BUILD)/demo_assets
 	@mkdir -p $(@D)
-	$(BUILD)/make_mask --puppet $@
+	$(BUILD)/demo_assets --puppet $@
 
-$(BUILD)/demo/arm.glb: $(BUILD)/make_mask
+$(BUILD)/demo/arm.glb: $(BUILD)/demo_assets
 	@mkdir -p $(@D)
-	$(BUILD)/make_mask --arm $@
+	$(BUILD)/demo_assets --arm $@
 
 $(BUILD)/mask.noh: $(BUILD)/mask.glb $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --quiet
@@ -288,7 +289,7 @@ bench: deps-build
 	@NOH_ASSETS="$(ASSETS)" sh tools/bench.sh $(BUILD)
 	@NOH_ASSETS="$(ASSETS)" sh tools/lod_compare/compare.sh $(BUILD)
 
-# Only the comparison of levels of detail.
+# Only the comparison of LOD levels.
 bench-lod: deps-build
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/lod_compare $(BUILD)/mask.glb
 	@NOH_ASSETS="$(ASSETS)" sh tools/lod_compare/compare.sh $(BUILD)
@@ -373,9 +374,9 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TEST_LIBS)
 # The library's CPU tests, those that need neither C++ nor GL, for another processor: tests/cross.sh
 # calls this with CC, AR and CROSS=1. tests/cross/ stands in for the libraries that it has no package of.
 CROSS       ?=
-CROSS_SKIP  := gltf_read gltf_left_out gltf_formula embed motion_import motion_set pack_motion influences bvh_read events_read sources \
-               skin skin_oracle skin_pack bounds_pick pick rows_deform puppet lod lod_pack lod_certified lod_lies levels pack joint_order \
-               motion_errors detail_pack threads
+CROSS_SKIP  := gltf_read gltf_left_out gltf_formula embed clip_import clip_bank pack_clip influences bvh_read events_read sources sources_kept \
+               skin skin_oracle skin_pack bounds_pick pick source_errors puppet simplify lod_chunks lod_certified lod_lies levels pack \
+               joint_order clip_errors lod_pack threads
 CROSS_TESTS := $(patsubst tests/%.c,$(BUILD)/cross/%,$(filter-out $(addprefix %/test_,$(CROSS_SKIP:%=%.c)),$(call sources,tests/unit,test_*.c)))
 CROSS_O     := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/cross/*.c) $(filter %/support.c %/pack_walk.c,$(wildcard tests/*.c tests/support/*.c)) \
                    platform/file.c platform/file_write.c $(CONVERT_C))

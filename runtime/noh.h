@@ -41,13 +41,13 @@
 #include "base/limits.h"              /* every limit, in one place */
 #include "pack/pack.h"                /* open a pack; pack/format.h has its bytes */
 #include "mesh/mesh.h"                /* its meshes and skins: vertices, triangles, targets, LOD levels */
-#include "anim/pack_motion.h"         /* its skeletons and clips */
-#include "anim/motion_set.h"          /* a pack's clips, ready to be played */
+#include "clip/pack_clip.h"         /* its skeletons and clips */
+#include "bank/clip_bank.h"          /* a pack's clips, ready to be played */
 #include "character/character.h"      /* one character: a controller, what it shows, how finely */
 #include "character/skin_palette.h"   /* what it shows, as matrices of any skin */
 #include "anim/controller.h"          /* tracks: start, fade, seek, callback keys */
 #include "anim/controller_pose.h"     /* poses of a controller */
-#include "anim/local_to_model.h"      /* poses to matrices and palettes */
+#include "pose/local_to_model.h"      /* poses to matrices and palettes */
 #include "deform/morph.h"             /* targets on the CPU: the reference and the fallback */
 #include "deform/skin.h"              /* skins on the CPU, likewise */
 #include "deform/bounds.h"            /* a box round what is deformed */
@@ -55,7 +55,7 @@
 
 /* ---- more ways to move ---- */
 
-#include "anim/graph.h"               /* an animation graph over a controller */
+#include "graph/graph.h"               /* an animation graph over a controller */
 #include "anim/mask.h"                /* joints that a clip moves */
 #include "anim/root_motion.h"         /* root displacement of clips */
 #include "anim/event_queue.h"         /* callback keys collected, to be read later */
@@ -65,9 +65,9 @@
 /* ---- crowds: what is drawn and posed, how finely, how often ---- */
 
 #include "character/bounds.h"         /* where a character is */
-#include "character/detail.h"         /* LOD levels chosen by an error in pixels */
-#include "character/detail_pack.h"    /* the same, filled in from a pack */
-#include "character/level_pools.h"    /* memory by LOD level, shared out among instances */
+#include "character/lod.h"         /* LOD levels chosen by an error in pixels */
+#include "character/lod_pack.h"    /* the same, filled in from a pack */
+#include "character/lod_pools.h"    /* memory by LOD level, shared out among instances */
 #include "character/scheduler.h"      /* which characters are posed in a frame, within a budget */
 #include "character/time_lod.h"       /* posing less often than once a frame */
 #include "character/time_lod_points.h" /* what that moves vertices by */
@@ -80,10 +80,10 @@
 #include "base/hash.h"                /* FNV-1a, CRC-32C */
 #include "base/quat.h"                /* quaternions */
 #include "base/trig.h"                /* trigonometry without libm, the same bits everywhere */
-#include "anim/blend.h"               /* poses mixed and added */
-#include "anim/clip_cache.h"          /* decoded frames in a fixed block, and samples of them */
-#include "anim/clip_view.h"           /* a thread's own view of a clip cache */
-#include "anim/clip_codec.h"          /* one compressed clip */
+#include "pose/blend.h"               /* poses mixed and added */
+#include "clip/clip_cache.h"          /* decoded frames in a fixed block, and samples of them */
+#include "clip/clip_view.h"           /* a thread's own view of a clip cache */
+#include "clip/clip_codec.h"          /* one compressed clip */
 
 /* Glossary: one word for one thing, in names, documents, the command line and messages.
  *

@@ -1,5 +1,5 @@
 /* common_fade.glsl: the pattern by which LOD levels fade. Put it into your own fragment shader and keep a pixel
- * where from <= fade_noise(gl_FragCoord.xy) < to, of a noh_gl_detail.
+ * where from <= fade_noise(gl_FragCoord.xy) < to, of a noh_gl_lod.
  *
  * A number in [0, 1) for each pixel, in integers, so that every driver and both draws of a fade have the same one:
  * multiples of the plastic number's powers (Roberts 2018, the sequence R2), which spread evenly over every small

@@ -157,7 +157,7 @@ vec3 rotate(vec4 q, vec3 v)
 }
 
 /* Dual quaternion blending (Kavan et al. 2008) with a stretch. The stretch, a symmetric matrix xx, yy, zz, xy, xz, yz, is
- * blended linearly and applied first. Then the rigid motion: q and -q are the same rotation, so each dual quaternion is
+ * blended linearly and applied first. Then the rigid clip: q and -q are the same rotation, so each dual quaternion is
  * added with the sign that puts it on the strongest joint's side of the sphere; the sum is made unit. */
 void skin(inout vec3 position, inout vec3 normal, inout vec4 tangent)
 {

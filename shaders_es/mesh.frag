@@ -2,7 +2,7 @@
 /* mesh.frag: enough light to judge a face by. One key light with a wrapped edge,
  * a sky and ground fill, a soft rim; GGX highlight. Linear in and out: the target
  * is sRGB and encodes, or ENCODE_SRGB is defined. DEBUG_VIEW shows a quantity instead.
- * FADE draws some of the pixels (noh_gl_detail). */
+ * FADE draws some of the pixels (noh_gl_lod). */
 precision highp float;
 
 uniform vec3 u_camera;
@@ -12,7 +12,7 @@ uniform vec4 u_material;         /* roughness, metallic, alpha cutoff, unlit */
 uniform mediump sampler2D u_base_color_texture;
 uniform vec3 u_bounds_min;
 uniform vec3 u_bounds_size;
-uniform vec3 u_detail;           /* pixels from and to, level */
+uniform vec3 u_lod;           /* pixels from and to, level */
 
 in vec3 v_world;
 in vec3 v_normal;
@@ -67,7 +67,7 @@ vec3 level_color()
     const vec3 colors[8] = vec3[8](vec3(0.90), vec3(0.79, 0.35, 0.0), vec3(0.09, 0.46, 0.81), vec3(0.0, 0.34, 0.17),
                                    vec3(0.87, 0.78, 0.05), vec3(0.0, 0.17, 0.45), vec3(0.67, 0.11, 0.0), vec3(0.60, 0.19, 0.39));
     vec3 facet = normalize(cross(dFdx(v_world), dFdy(v_world)));
-    return colors[int(u_detail.z)] * (0.35 + 0.65 * max(dot(facet, u_key), 0.0));
+    return colors[int(u_lod.z)] * (0.35 + 0.65 * max(dot(facet, u_key), 0.0));
 }
 #endif
 
@@ -99,7 +99,7 @@ void main()
 #endif
 #ifdef FADE
     float noise = fade_noise(gl_FragCoord.xy);
-    if (noise < u_detail.x || noise >= u_detail.y) {
+    if (noise < u_lod.x || noise >= u_lod.y) {
         discard; /* last: a texture's level comes from neighbours */
     }
 #endif

@@ -6,8 +6,8 @@
 
 uniform usampler2D u_entries;  /* delta words, target */
 uniform usampler2D u_starts;   /* where each touched vertex's entries begin; one more at the end */
-uniform usampler2D u_slots;    /* weight * scale of position, normal, tangent; bits */
-uniform ivec3 u_tables;        /* width log2 of starts, slots, entries */
+uniform usampler2D u_records;    /* weight * scale of position, normal, tangent; bits */
+uniform ivec3 u_tables;        /* width log2 of starts, records, entries */
 
 flat in uvec4 f_tile;
 
@@ -32,10 +32,10 @@ void main()
     vec3 position = vec3(0.0), normal = vec3(0.0), tangent = vec3(0.0);
     for (uint i = from; i < to; i++) {
         uvec4 entry = texelFetch(u_entries, table_texel(i, u_tables.z), 0);
-        uvec4 slot = texelFetch(u_slots, table_texel(f_tile.y + entry.w, u_tables.y), 0);
-        position += delta_field(entry.xyz, delta_shifts(slot.w, 0), uintBitsToFloat(slot.x));
-        normal += delta_field(entry.xyz, delta_shifts(slot.w, 1), uintBitsToFloat(slot.y));
-        tangent += delta_field(entry.xyz, delta_shifts(slot.w, 2), uintBitsToFloat(slot.z));
+        uvec4 record = texelFetch(u_records, table_texel(f_tile.y + entry.w, u_tables.y), 0);
+        position += delta_field(entry.xyz, delta_shifts(record.w, 0), uintBitsToFloat(record.x));
+        normal += delta_field(entry.xyz, delta_shifts(record.w, 1), uintBitsToFloat(record.y));
+        tangent += delta_field(entry.xyz, delta_shifts(record.w, 2), uintBitsToFloat(record.z));
     }
     o_position = LAYER_VALUE(position);
     o_normal = LAYER_VALUE(normal);

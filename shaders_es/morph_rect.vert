@@ -5,12 +5,12 @@
 #include "common_delta.glsl"
 
 uniform usampler2D u_rects;   /* x | y << 16, w | h << 16, first texel, bits */
-uniform usampler2D u_slots;   /* weight * scale of position, normal, tangent; tile x | y << 16 */
-uniform ivec3 u_tables;       /* width log2 of rects, slots, deltas */
+uniform usampler2D u_records;   /* weight * scale of position, normal, tangent; tile x | y << 16 */
+uniform ivec3 u_tables;       /* width log2 of rects, records, deltas */
 uniform vec2 u_atlas;         /* 2 / size of the accumulation texture */
 uniform int u_layer;
 
-in uvec2 a_rect_slot;
+in uvec2 a_rect_record;
 
 #if defined(MORPH_LAYERED)
 flat out uvec3 v_place;       /* place (common_place.glsl), bits */
@@ -24,13 +24,13 @@ flat out uvec4 f_place;       /* place_of_layer */
 
 void main()
 {
-    uvec4 rect = texelFetch(u_rects, table_texel(a_rect_slot.x, u_tables.x), 0);
-    uvec4 slot = texelFetch(u_slots, table_texel(a_rect_slot.y, u_tables.y), 0);
+    uvec4 rect = texelFetch(u_rects, table_texel(a_rect_record.x, u_tables.x), 0);
+    uvec4 record = texelFetch(u_records, table_texel(a_rect_record.y, u_tables.y), 0);
     uvec2 size = uvec2(rect.y & 0xffffu, rect.y >> 16);
-    uvec2 at = uvec2(rect.x & 0xffffu, rect.x >> 16) + uvec2(slot.w & 0xffffu, slot.w >> 16);
+    uvec2 at = uvec2(rect.x & 0xffffu, rect.x >> 16) + uvec2(record.w & 0xffffu, record.w >> 16);
     uvec2 corner = uvec2(gl_VertexID & 1, gl_VertexID >> 1);
     uvec3 place = uvec3(rect.z - at.y * size.x - at.x, size.x, rect.w);
-    vec3 weights = uintBitsToFloat(slot.xyz);
+    vec3 weights = uintBitsToFloat(record.xyz);
     gl_Position = vec4(vec2(at + corner * size) * u_atlas - 1.0, 0.0, 1.0);
 #if defined(MORPH_LAYERED)
     v_place = place;

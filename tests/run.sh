@@ -37,7 +37,7 @@ fi
 export LSAN_OPTIONS="suppressions=$PWD/tests/leaks.supp:print_suppressions=0:${LSAN_OPTIONS:-}"
 export ASAN_OPTIONS="allocator_may_return_null=1:${ASAN_OPTIONS:-}"
 export UBSAN_OPTIONS="print_stacktrace=1:${UBSAN_OPTIONS:-}"
-# The first GL error that a driver reports ends the program (tools/noh/gpu.c).
+# The first GL error that a driver reports ends the program (tools/noh/gpu/gpu.c).
 export NOH_GL_DEBUG=1
 
 # Reads one program's output; prints its counts and a line for each skip.

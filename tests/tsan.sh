@@ -1,5 +1,5 @@
 #!/bin/sh
-# tsan.sh: the library and tests/unit/test_threads.c built with ThreadSanitizer, and run: four threads pose the controllers
+# tsan.sh: the library and tests/unit/bank/test_threads.c built with ThreadSanitizer, and run: four threads pose the controllers
 # of one clip set. Passes when every test does and nothing was reported. CC=clang or gcc; NOH_BUILD=build.
 # Asserts of both tiers are on. Needs neither C++ nor GL: it is built as the cross tests are.
 set -eu

@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "context.h"
-#include "detail.h"
-#include "motion.h"
+#include "lod.h"
+#include "play.h"
 
 #define PICTURES_MAX 64u
 #define PARTS_MAX 16u
@@ -30,8 +30,8 @@ static struct web {
     noh_error error;
     noh_arena arena;
     web_scene scene;
-    web_motion motion;
-    web_detail detail;
+    web_clip clip;
+    web_lod lod;
     noh_gl_mesh meshes[WEB_MESHES_MAX];
     noh_gl_texture pictures[PICTURES_MAX];
     noh_gl_morph *morph;
@@ -75,7 +75,7 @@ static noh_result load_meshes(void)
     }
     for (uint32_t i = 0; i < pack->texture_count && !result; i++) {
         noh_texture texture;
-        noh_pack_texture(pack, i, &texture, NULL);
+        noh_pack_texture_at(pack, i, &texture, NULL);
         result = noh_gl_picture_create(&web.gl, &web.ledger, &texture, &web.pictures[i], &web.error);
     }
     end_part("textures");
@@ -115,9 +115,9 @@ static noh_result load_skin(void)
     desc.meshes = web.scene.meshes;
     desc.mesh_count = web.scene.pack.mesh_count;
     desc.instance_counts = web.scene.instance_counts;
-    noh_result result = web_motion_open_matrices(&web.motion, &web.arena, &web.error);
+    noh_result result = web_clip_open_matrices(&web.clip, &web.arena, &web.error);
     end_part("skin matrices");
-    if (result || !web.motion.matrices) return result;
+    if (result || !web.clip.matrices) return result;
     result = noh_gl_skin_plan_make(&desc, &web.caps, &plan, &web.error);
     if (!result) {
         size_t bytes = (size_t)plan.cpu_bytes;
@@ -130,13 +130,13 @@ static noh_result load_skin(void)
     return result;
 }
 
-static noh_result load_motion(void)
+static noh_result load_clip(void)
 {
-    noh_result result = web_motion_open_clips(&web.motion, &web.scene, &web.arena, &web.error);
+    noh_result result = web_clip_open_clips(&web.clip, &web.scene, &web.arena, &web.error);
     end_part("clips");
-    if (!result) result = web_motion_open_controllers(&web.motion, &web.arena, &web.error);
+    if (!result) result = web_clip_open_controllers(&web.clip, &web.arena, &web.error);
     end_part("controllers");
-    if (!result) result = web_motion_open_poses(&web.motion, &web.arena, &web.error);
+    if (!result) result = web_clip_open_poses(&web.clip, &web.arena, &web.error);
     end_part("pose scratch");
     return result;
 }
@@ -148,7 +148,7 @@ static noh_result load_renderer(void)
     desc.layers_uint = noh_gl_morph_plan_of(web.morph)->layer_format == GL_RGBA32UI;
     desc.meshes = web.scene.meshes;
     desc.mesh_count = web.scene.pack.mesh_count;
-    desc.fades = web.detail.level_count > 1;
+    desc.fades = web.lod.level_count > 1;
     desc.encode_srgb = 1; /* a canvas does not encode */
     desc.palettes = web.skin ? noh_gl_skin_plan_of(web.skin)->mode : NOH_PALETTE_AUTO;
     noh_result result = noh_gl_renderer_create(&(noh_gl_device){ &web.gl, NULL, &web.ledger, NULL, 0 }, &desc,
@@ -178,11 +178,11 @@ EMSCRIPTEN_KEEPALIVE int web_open(uint32_t bytes, int path)
     web.arena = noh_arena_over(memory, sizeof memory);
     noh_result result = noh_pack_open(pack_bytes, bytes, &web.scene.pack, &web.error);
     if (!result) result = web_scene_list(&web.scene, &web.error);
-    if (!result) web_detail_open(&web.detail, &web.scene);
+    if (!result) web_lod_open(&web.lod, &web.scene);
     if (!result) result = open_context();
     if (!result) result = load_meshes();
     if (!result) result = load_morph((noh_morph_path)path);
-    if (!result) result = load_motion();
+    if (!result) result = load_clip();
     if (!result) result = load_skin();
     if (!result) result = load_renderer();
     return (int)result;
@@ -196,7 +196,7 @@ static noh_result restore_meshes(void)
     }
     for (uint32_t i = 0; i < web.scene.pack.texture_count && !result; i++) {
         noh_texture texture;
-        noh_pack_texture(&web.scene.pack, i, &texture, NULL);
+        noh_pack_texture_at(&web.scene.pack, i, &texture, NULL);
         result = noh_gl_picture_restore(&web.gl, &web.ledger, &texture, &web.pictures[i], &web.error);
     }
     return result;
@@ -232,21 +232,21 @@ EMSCRIPTEN_KEEPALIVE const char *web_target_name(uint32_t i) { return web.scene.
 EMSCRIPTEN_KEEPALIVE float web_weight(uint32_t target) { return web_scene_weight(&web.scene, target); }
 EMSCRIPTEN_KEEPALIVE void web_set_weight(uint32_t target, float weight) { web_scene_set_weight(&web.scene, target, weight); }
 
-EMSCRIPTEN_KEEPALIVE uint32_t web_clip_count(void) { return web.scene.pack.motion_count; }
-EMSCRIPTEN_KEEPALIVE double web_clip_seconds(uint32_t i) { return web_motion_seconds(&web.motion, i); }
-EMSCRIPTEN_KEEPALIVE double web_time(void) { return web_motion_time(&web.motion); }
-EMSCRIPTEN_KEEPALIVE void web_set_speed(float speed) { web_motion_set_speed(&web.motion, speed); }
-EMSCRIPTEN_KEEPALIVE void web_step(double seconds) { web_motion_step(&web.motion, seconds); }
+EMSCRIPTEN_KEEPALIVE uint32_t web_clip_count(void) { return web.scene.pack.clip_count; }
+EMSCRIPTEN_KEEPALIVE double web_clip_seconds(uint32_t i) { return web_clip_seconds(&web.clip, i); }
+EMSCRIPTEN_KEEPALIVE double web_time(void) { return web_clip_time(&web.clip); }
+EMSCRIPTEN_KEEPALIVE void web_set_speed(float speed) { web_clip_bank_speed(&web.clip, speed); }
+EMSCRIPTEN_KEEPALIVE void web_step(double seconds) { web_clip_step(&web.clip, seconds); }
 
-EMSCRIPTEN_KEEPALIVE uint32_t web_level_count(void) { return web.detail.level_count; }
-/* A level of detail, or -1: what one pixel of error allows. */
-EMSCRIPTEN_KEEPALIVE void web_set_detail(int level) { web.detail.level = level; }
+EMSCRIPTEN_KEEPALIVE uint32_t web_level_count(void) { return web.lod.level_count; }
+/* A LOD level, or -1: what one pixel of error allows. */
+EMSCRIPTEN_KEEPALIVE void web_set_lod(int level) { web.lod.level = level; }
 /* Of the frame that was drawn: the finest level of any item, the largest error that noh claims, whether a level fades. */
 EMSCRIPTEN_KEEPALIVE uint32_t web_level(void)
 {
-    uint32_t finest = NOH_DETAIL_LEVELS_MAX;
+    uint32_t finest = NOH_LOD_LEVELS_MAX;
     for (uint32_t i = 0; i < web.scene.item_count; i++) {
-        finest = web.detail.states[i].mesh < finest ? web.detail.states[i].mesh : finest;
+        finest = web.lod.states[i].mesh < finest ? web.lod.states[i].mesh : finest;
     }
     return finest;
 }
@@ -254,7 +254,7 @@ EMSCRIPTEN_KEEPALIVE float web_error_pixels(void)
 {
     float most = 0.0f;
     for (uint32_t i = 0; i < web.scene.item_count; i++) {
-        const float error = noh_detail_error_pixels(&web.detail.states[i]);
+        const float error = noh_lod_error_pixels(&web.lod.states[i]);
         most = error > most ? error : most;
     }
     return most;
@@ -262,20 +262,20 @@ EMSCRIPTEN_KEEPALIVE float web_error_pixels(void)
 EMSCRIPTEN_KEEPALIVE int web_fades(void)
 {
     int fades = 0;
-    for (uint32_t i = 0; i < web.scene.item_count; i++) fades |= noh_detail_fade(&web.detail.states[i], web.detail.clock) < 1.0f;
+    for (uint32_t i = 0; i < web.scene.item_count; i++) fades |= noh_lod_fade(&web.lod.states[i], web.lod.clock) < 1.0f;
     return fades;
 }
 
 EMSCRIPTEN_KEEPALIVE const char *web_clip_name(uint32_t i)
 {
-    noh_pack_motion motion;
-    return noh_pack_motion_at(&web.scene.pack, i, &motion, NULL) == NOH_OK ? motion.name : "";
+    noh_pack_clip clip;
+    return noh_pack_clip_at(&web.scene.pack, i, &clip, NULL) == NOH_OK ? clip.name : "";
 }
 
 /* clip: an index, or -1 for none. */
 EMSCRIPTEN_KEEPALIVE int web_play(int clip, double time_s, double transition_s)
 {
-    return (int)web_motion_play(&web.motion, clip < 0 ? NOH_NONE : (uint32_t)clip, time_s, transition_s, &web.error);
+    return (int)web_clip_play(&web.clip, clip < 0 ? NOH_NONE : (uint32_t)clip, time_s, transition_s, &web.error);
 }
 
 /* ---- a frame ---- */
@@ -283,7 +283,7 @@ EMSCRIPTEN_KEEPALIVE int web_play(int clip, double time_s, double transition_s)
 /* The scene's current bounding box: 6 floats, valid until the next call. */
 EMSCRIPTEN_KEEPALIVE float *web_measure(void)
 {
-    web_motion_bounds(&web.motion, web.bounds);
+    web_clip_bounds(&web.clip, web.bounds);
     return web.bounds;
 }
 
@@ -299,10 +299,10 @@ static noh_result update(void)
     noh_platform_web.size(web.context, &width, &height);
     for (uint32_t i = 0; i < web.scene.item_count; i++) {
         const web_item *item = &web.scene.items[i];
-        const float *matrices = web_motion_matrices(&web.motion, item) ? web.motion.matrices : NULL;
-        web_detail_choose(&web.detail, &web.scene, i, matrices, &web.camera, height);
-        noh_gl_morph_set_level(web.morph, item->instance, noh_detail_drawn(&web.detail.states[i], web.detail.clock));
-        noh_result result = noh_gl_morph_set_weights(web.morph, item->instance, web_detail_weights(&web.detail, &web.scene, i), &web.error);
+        const float *matrices = web_clip_matrices(&web.clip, item) ? web.clip.matrices : NULL;
+        web_lod_choose(&web.lod, &web.scene, i, matrices, &web.camera, height);
+        noh_gl_morph_set_lod(web.morph, item->instance, noh_lod_drawn(&web.lod.states[i], web.lod.clock));
+        noh_result result = noh_gl_morph_set_weights(web.morph, item->instance, web_lod_weights(&web.lod, &web.scene, i), &web.error);
         if (result) return result;
         if (matrices) noh_gl_skin_set_matrices(web.skin, item->instance, matrices);
     }
@@ -314,16 +314,16 @@ static noh_result update(void)
 static void draw_item(uint32_t index, int pass)
 {
     const web_item *item = &web.scene.items[index];
-    noh_detail_part parts[2];
-    const uint32_t part_count = noh_detail_parts(&web.detail.states[index], web.detail.clock, parts);
+    noh_lod_part parts[2];
+    const uint32_t part_count = noh_lod_parts(&web.lod.states[index], web.lod.clock, parts);
     noh_gl_morph_binding morph = noh_gl_morph_binding_of(web.morph, item->instance);
     noh_gl_skin_binding skin;
     int is_skinned = web.scene.meshes[item->mesh].header->skin != NOH_NONE;
     if (is_skinned) skin = noh_gl_skin_binding_of(web.skin, item->instance);
     for (uint32_t k = 0; k < part_count; k++) {
-        const noh_gl_detail detail = {parts[k].level, parts[k].from, parts[k].to};
+        const noh_gl_lod lod = {parts[k].level, parts[k].from, parts[k].to};
         noh_gl_draw_mesh(&web.renderer, &web.meshes[item->mesh], web_scene_world(&web.scene, item), web.at_rest ? NULL : &morph,
-                         is_skinned ? &skin : NULL, &detail, web.pictures, pass);
+                         is_skinned ? &skin : NULL, &lod, web.pictures, pass);
     }
 }
 
@@ -342,7 +342,7 @@ static void begin_frame(void)
 /* seconds since the last one, for fades. A lost context is not an error: nothing is drawn. */
 EMSCRIPTEN_KEEPALIVE int web_draw(double seconds)
 {
-    web.detail.clock += (int64_t)(seconds * NOH_TICKS_PER_SECOND);
+    web.lod.clock += (int64_t)(seconds * NOH_TICKS_PER_SECOND);
     if (noh_platform_web.present(web.context)) return 0;
     noh_result result = web.at_rest ? NOH_OK : update();
     if (result) return (int)result;

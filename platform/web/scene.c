@@ -46,7 +46,7 @@ noh_result web_scene_list(web_scene *scene, noh_error *error)
         return noh_fail(error, NOH_ERR_LIMIT, "more meshes than the page has room for", pack->mesh_count, WEB_MESHES_MAX);
     }
     for (uint32_t i = 0; i < pack->mesh_count; i++) {
-        noh_pack_mesh(pack, i, &scene->meshes[i], NULL);
+        noh_pack_mesh_at(pack, i, &scene->meshes[i], NULL);
         add_names(scene, &scene->meshes[i]);
     }
     for (uint32_t n = 0; n < pack->node_count && !result; n++) {

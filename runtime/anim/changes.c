@@ -165,9 +165,9 @@ static noh_track *track_of(const noh_change *c, noh_change_target *t)
     return &t->tracks[c->track];
 }
 
-static const noh_motion *motion_of(const noh_change *c, const noh_change_target *t)
+static const noh_clip_entry *clip_of(const noh_change *c, const noh_change_target *t)
 {
-    return &t->set->motions[t->tracks[c->track].motion];
+    return &t->set->clips[t->tracks[c->track].clip];
 }
 
 static int64_t present(const noh_change *c, noh_change_target *t)
@@ -201,7 +201,7 @@ static void finish(noh_change *c, noh_change_target *t)
     case NOH_CHANGE_MODE: track->mode = (uint8_t)c->to; break;
     case NOH_CHANGE_POSITION:
         if (c->duration == 0) {
-            noh_track_place(track, motion_of(c, t), c->to);
+            noh_track_place(track, clip_of(c, t), c->to);
         } else if (c->curve == NOH_CURVE_JUMP) {
             track->root_position = track->position;
         }
@@ -215,7 +215,7 @@ static void begin(noh_change *table, uint32_t count, noh_change *c, noh_change_t
     noh_changes_cancel(table, count, (noh_change_kind)c->kind, c->track);
     c->from = present(c, t);
     if (c->kind == NOH_CHANGE_POSITION) {
-        const noh_motion *m = motion_of(c, t);
+        const noh_clip_entry *m = clip_of(c, t);
         c->to = noh_time_advance(c->to, 0, 0, m->duration_ticks, (noh_loop)track_of(c, t)->loop);
     }
     c->state = NOH_CHANGE_RUNNING;
@@ -349,7 +349,7 @@ static int64_t next_change(const noh_change *table, uint32_t count, int64_t end)
     return end;
 }
 
-int64_t noh_changes_rates(const noh_change *table, uint32_t count, const noh_change_target *target, uint32_t track_count, int64_t end)
+int64_t noh_changes_speeds(const noh_change *table, uint32_t count, const noh_change_target *target, uint32_t track_count, int64_t end)
 {
     NOH_ASSERT(target && (table || !count) && end >= target->clock);
     end = speed_rates(table, count, target, next_change(table, count, end));

@@ -66,7 +66,7 @@ NOH_STATIC_ASSERT(sizeof(noh_change) == 32, change);
 
 /* What a table acts on. */
 typedef struct noh_change_target {
-    const noh_anim_set *set;
+    const noh_clip_set *set;
     noh_track *tracks;
     float *priority_blend;
     int64_t clock;
@@ -96,7 +96,7 @@ void noh_changes_update(noh_change *table, uint32_t count, noh_change_target *ta
 
 /* Set the present speed (noh_track.rate) of all tracks from target->clock on, and return the tick, at most `end`, up to
  * which it holds. Synchronised tracks are left to their group. */
-int64_t noh_changes_rates(const noh_change *table, uint32_t count, const noh_change_target *target, uint32_t track_count, int64_t end);
+int64_t noh_changes_speeds(const noh_change *table, uint32_t count, const noh_change_target *target, uint32_t track_count, int64_t end);
 
 #ifdef __cplusplus
 }

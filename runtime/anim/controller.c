@@ -3,12 +3,12 @@
 #include <string.h>
 
 #include "anim/clock_internal.h"
-#include "anim/inertial.h"
-#include "anim/sync.h"
+#include "pose/inertial_internal.h"
+#include "anim/sync_internal.h"
 #include "base/arena.h"
 
 /* Whether a controller was made for a set like this one: for asserts. */
-#define IS_SET_OF(c, set) ((set) && (set)->motion_count == (c)->motion_count && (set)->joint_count == (c)->joint_count)
+#define IS_SET_OF(c, set) ((set) && (set)->clip_count == (c)->clip_count && (set)->joint_count == (c)->joint_count)
 
 /* private flags, above the public ones */
 #define STEPPING 64u     /* inside noh_controller_step */
@@ -71,7 +71,7 @@ size_t noh_controller_size(const noh_controller_desc *desc)
 static void fill_head(noh_controller *c, const noh_controller_desc *d, layout l)
 {
     c->bytes = (uint32_t)l.bytes;
-    c->motion_count = d->set->motion_count;
+    c->clip_count = d->set->clip_count;
     c->joint_count = c->lod_joint_count = d->set->joint_count;
     c->float_count = d->set->float_count;
     c->mask_count = d->set->mask_count;
@@ -129,7 +129,7 @@ static noh_change *changes_of(noh_controller *c)
     return (noh_change *)(void *)((uint8_t *)c + c->changes_offset);
 }
 
-static noh_change_target target_of(noh_controller *c, const noh_anim_set *set)
+static noh_change_target target_of(noh_controller *c, const noh_clip_set *set)
 {
     noh_change_target t = { NULL, NULL, NULL, 0, 0 };
     t.set = set;
@@ -154,19 +154,19 @@ static void settle(noh_controller *c, const noh_change_target *t)
 /* ---- tracks ---- */
 
 /* Whether the markers of a joining track match those of its sync group. */
-static int sync_fits(const noh_controller *c, const noh_anim_set *set, uint32_t track, const noh_track *joining)
+static int sync_fits(const noh_controller *c, const noh_clip_set *set, uint32_t track, const noh_track *joining)
 {
     for (uint32_t i = 0; i < c->track_count; i++) {
         const noh_track *other = noh_controller_track(c, i);
         if (i != track && other->sync_group == joining->sync_group && other->mode != NOH_TRACK_OFF
-            && !noh_sync_fits(set, &set->motions[other->motion], &set->motions[joining->motion])) {
+            && !noh_sync_fits(set, &set->clips[other->clip], &set->clips[joining->clip])) {
             return 0;
         }
     }
     return 1;
 }
 
-noh_result noh_controller_start(noh_controller *c, const noh_anim_set *set, uint32_t track, const noh_track_desc *desc, noh_error *error)
+noh_result noh_controller_start(noh_controller *c, const noh_clip_set *set, uint32_t track, const noh_track_desc *desc, noh_error *error)
 {
     noh_track started;
     noh_track *tracks = noh_controller_tracks(c);
@@ -197,7 +197,7 @@ noh_result noh_controller_start(noh_controller *c, const noh_anim_set *set, uint
 }
 
 /* Put a whole sync group on the phase of one of its tracks. */
-static void gather_group(noh_controller *c, const noh_anim_set *set, uint32_t track)
+static void gather_group(noh_controller *c, const noh_clip_set *set, uint32_t track)
 {
     noh_track *tracks = noh_controller_tracks(c);
     for (uint32_t i = 0; i < c->track_count; i++) {
@@ -209,7 +209,7 @@ static void gather_group(noh_controller *c, const noh_anim_set *set, uint32_t tr
 }
 
 /* The position of a tick of the present pass, or ping-pong cycle. */
-static int64_t seek_position(const noh_track *t, const noh_motion *m, int64_t tick)
+static int64_t seek_position(const noh_track *t, const noh_clip_entry *m, int64_t tick)
 {
     int64_t legs = noh_time_legs(t->position, m->duration_ticks, (noh_loop)t->loop);
     if (t->loop == NOH_LOOP_PING_PONG) {
@@ -218,17 +218,17 @@ static int64_t seek_position(const noh_track *t, const noh_motion *m, int64_t ti
     return noh_position_of(legs * (int64_t)m->duration_ticks + tick);
 }
 
-noh_result noh_controller_seek(noh_controller *c, const noh_anim_set *set, uint32_t track, int64_t tick, noh_seek policy, noh_error *error)
+noh_result noh_controller_seek(noh_controller *c, const noh_clip_set *set, uint32_t track, int64_t tick, noh_seek policy, noh_error *error)
 {
     noh_track *t;
-    const noh_motion *m;
+    const noh_clip_entry *m;
     int64_t position;
     NOH_ASSERT(c && IS_SET_OF(c, set));
     if (track >= c->track_count) return noh_fail(error, NOH_ERR_ARG, "track is not below track_count", track, c->track_count);
     if (tick > (int64_t)1 << 43 || tick < -((int64_t)1 << 43)) return noh_fail(error, NOH_ERR_ARG, "tick is past 2^43", track, 0);
     if ((unsigned)policy > NOH_SEEK_FIRE) return noh_fail(error, NOH_ERR_ARG, "policy is not a noh_seek", track, 0);
     t = &noh_controller_tracks(c)[track];
-    m = &set->motions[t->motion];
+    m = &set->clips[t->clip];
     position = seek_position(t, m, tick);
     if (policy == NOH_SEEK_FIRE) {
         noh_change_target target = target_of(c, set);
@@ -306,7 +306,7 @@ noh_result noh_controller_set_lod(noh_controller *c, uint32_t lod, uint32_t join
 
 /* ---- changes ---- */
 
-noh_result noh_controller_change(noh_controller *c, const noh_anim_set *set, const noh_change_desc *desc, noh_error *error)
+noh_result noh_controller_change(noh_controller *c, const noh_clip_set *set, const noh_change_desc *desc, noh_error *error)
 {
     noh_change_target target = target_of(c, set);
     noh_result result = noh_changes_add(changes_of(c), c->change_count, &target, c->track_count, desc, error);
@@ -325,7 +325,7 @@ static uint32_t free_changes(noh_controller *c)
     return count;
 }
 
-noh_result noh_controller_cross_fade(noh_controller *c, const noh_anim_set *set, uint32_t from, uint32_t to, float weight,
+noh_result noh_controller_cross_fade(noh_controller *c, const noh_clip_set *set, uint32_t from, uint32_t to, float weight,
                                      uint32_t duration_ticks, noh_curve curve, noh_error *error)
 {
     noh_change_desc d;
@@ -357,12 +357,12 @@ noh_result noh_controller_cross_fade(noh_controller *c, const noh_anim_set *set,
 typedef struct passed {
     noh_passage passage;
     float weight;
-    uint16_t motion;
+    uint16_t clip;
     uint8_t track;
 } passed;
 
 typedef struct delivery {
-    const noh_anim_set *set;
+    const noh_clip_set *set;
     const passed *from;
     noh_event_fn fn;
     void *user;
@@ -373,7 +373,7 @@ typedef struct delivery {
 static void deliver_key(void *user, uint32_t index, int64_t position_tick)
 {
     delivery *d = (delivery *)user;
-    const noh_motion *m = &d->set->motions[d->from->motion];
+    const noh_clip_entry *m = &d->set->clips[d->from->clip];
     noh_event e;
     e.key = &d->set->events[m->first_event + index];
     if (d->from->weight < e.key->weight_min) {
@@ -382,7 +382,7 @@ static void deliver_key(void *user, uint32_t index, int64_t position_tick)
     e.clock = d->clock;
     e.position_tick = position_tick;
     e.track = d->from->track;
-    e.motion = d->from->motion;
+    e.clip = d->from->clip;
     e.index = index;
     e.weight = d->from->weight;
     e.backward = d->from->passage.backward;
@@ -393,7 +393,7 @@ static void deliver_key(void *user, uint32_t index, int64_t position_tick)
 }
 
 /* Move one track on by `ticks`. */
-static void move_track(noh_track *t, const noh_motion *m, const noh_passage *p)
+static void move_track(noh_track *t, const noh_clip_entry *m, const noh_passage *p)
 {
     int64_t rebase = noh_time_rebase(p->to, m->duration_ticks, (noh_loop)t->loop);
     t->position = p->to - rebase;
@@ -402,18 +402,18 @@ static void move_track(noh_track *t, const noh_motion *m, const noh_passage *p)
 }
 
 /* Move all tracks on; returns how many may have passed keys. */
-static uint32_t move_tracks(noh_controller *c, const noh_anim_set *set, int64_t ticks, passed *out)
+static uint32_t move_tracks(noh_controller *c, const noh_clip_set *set, int64_t ticks, passed *out)
 {
     noh_track *tracks = noh_controller_tracks(c);
     uint32_t count = 0;
     for (uint32_t i = 0; i < c->track_count; i++) {
         noh_track *t = &tracks[i];
-        const noh_motion *m = &set->motions[t->motion];
+        const noh_clip_entry *m = &set->clips[t->clip];
         if (t->mode == NOH_TRACK_OFF) {
             continue;
         }
         out[count].passage = noh_track_passage(t, m, ticks);
-        out[count].motion = t->motion;
+        out[count].clip = t->clip;
         out[count].track = (uint8_t)i;
         move_track(t, m, &out[count].passage);
         count += m->event_count != 0 && t->rate != 0;
@@ -422,7 +422,7 @@ static uint32_t move_tracks(noh_controller *c, const noh_anim_set *set, int64_t 
 }
 
 /* Move time to a tick and deliver what has been passed by then. */
-static void advance(noh_controller *c, const noh_anim_set *set, int64_t clock, delivery *d)
+static void advance(noh_controller *c, const noh_clip_set *set, int64_t clock, delivery *d)
 {
     passed list[NOH_TRACKS_MAX];
     noh_change_target target;
@@ -436,7 +436,7 @@ static void advance(noh_controller *c, const noh_anim_set *set, int64_t clock, d
     }
     d->clock = clock;
     for (uint32_t i = 0; i < count; i++) {
-        const noh_motion *m = &set->motions[list[i].motion];
+        const noh_clip_entry *m = &set->clips[list[i].clip];
         d->from = &list[i];
         d->passed += noh_events_pass(set->events + m->first_event, m->event_count, &list[i].passage, NOH_STEP_EVENTS_MAX - d->passed,
                                      deliver_key, d);
@@ -455,21 +455,21 @@ static int has_sync(const noh_controller *c)
 
 /* Give sync groups new speeds at every multiple of NOH_SYNC_TICKS, and whenever one was changed. Returns the tick up to
  * which the speeds hold. */
-static int64_t sync_rates(noh_controller *c, const noh_anim_set *set, int64_t end)
+static int64_t sync_rates(noh_controller *c, const noh_clip_set *set, int64_t end)
 {
     int64_t next = noh_clock_add(c->clock, NOH_SYNC_TICKS - c->clock % NOH_SYNC_TICKS);
     if (!has_sync(c)) {
         return end;
     }
     if (c->clock % NOH_SYNC_TICKS == 0 || (c->flags & SYNC_TOUCHED)) {
-        noh_sync_rates(set, noh_controller_tracks(c), c->track_count, next - c->clock);
+        noh_sync_speeds(set, noh_controller_tracks(c), c->track_count, next - c->clock);
         c->flags = (uint8_t)(c->flags & ~SYNC_TOUCHED);
     }
     return next < end ? next : end;
 }
 
 /* The first tick, up to `end`, by which a key has been passed; else `end`. */
-static int64_t next_event(const noh_controller *c, const noh_anim_set *set, int64_t end)
+static int64_t next_event(const noh_controller *c, const noh_clip_set *set, int64_t end)
 {
     for (uint32_t i = 0; i < c->track_count; i++) {
         int64_t ticks = noh_track_next_event(noh_controller_track(c, i), set, end - c->clock);
@@ -484,7 +484,7 @@ static int64_t next_event(const noh_controller *c, const noh_anim_set *set, int6
  * group gets new speeds, a key is passed. In between every track moves at a constant speed, so its position is one
  * multiplication, exact in integers. That is why the events, and the state afterwards, are the same however time is cut:
  * the ticks at which something happens depend on the clock alone, never on where a step ends. */
-uint32_t noh_controller_step(noh_controller *c, const noh_anim_set *set, uint32_t ticks, noh_event_fn fn, void *user)
+uint32_t noh_controller_step(noh_controller *c, const noh_clip_set *set, uint32_t ticks, noh_event_fn fn, void *user)
 {
     int64_t end = noh_clock_add(c->clock, ticks);
     delivery d = { NULL, NULL, NULL, NULL, 0, 0, 0 };
@@ -499,7 +499,7 @@ uint32_t noh_controller_step(noh_controller *c, const noh_anim_set *set, uint32_
     d.user = user;
     while (c->clock < end) {
         noh_change_target target = target_of(c, set);
-        int64_t until = noh_changes_rates(changes_of(c), c->change_count, &target, c->track_count, end);
+        int64_t until = noh_changes_speeds(changes_of(c), c->change_count, &target, c->track_count, end);
         until = sync_rates(c, set, until);
         until = d.passed < NOH_STEP_EVENTS_MAX ? next_event(c, set, until) : until;
         advance(c, set, until, &d);

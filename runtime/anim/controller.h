@@ -37,7 +37,7 @@ extern "C" {
 /* Bytes: 80, 48 per track, 32 per change; with room for inertia 48 per joint and 8 per float. With the default number of
  * changes that is at most 64 per joint and 64 per track for any skeleton with 9 joints more than tracks. */
 typedef struct noh_controller_desc {
-    const noh_anim_set *set; /* checked with noh_anim_set_check; required */
+    const noh_clip_set *set; /* checked with noh_clip_set_check; required */
     uint32_t track_count;    /* default (0) 4; at most NOH_TRACKS_MAX */
     uint32_t change_count;   /* changes waiting or running at one time; default (0) track_count + 2; at most NOH_CHANGES_MAX */
     uint32_t flags;          /* NOH_CONTROLLER_INERTIAL */
@@ -49,7 +49,7 @@ typedef struct noh_controller {
     int64_t inertia_start;      /* clock at which the offsets of a transition began to decay */
     uint32_t inertia_ticks;     /* for how long they decay; 0: there are none */
     uint32_t bytes;             /* of the whole block */
-    uint32_t motion_count, joint_count, float_count, mask_count; /* of its set */
+    uint32_t clip_count, joint_count, float_count, mask_count; /* of its set */
     uint32_t track_count, change_count;
     uint32_t tracks_offset, changes_offset, inertia_offset, inertia_floats_offset; /* inertia: 0 without room for it */
     float priority_blend;       /* 0..1: how far the high group covers the low one; starts at 1 */
@@ -65,7 +65,7 @@ typedef struct noh_event {
     const noh_event_key *key; /* in the set */
     int64_t clock;            /* of the controller, ticks */
     int64_t position_tick;    /* of the key on its track, unwrapped */
-    uint32_t track, motion;
+    uint32_t track, clip;
     uint32_t index;           /* of the key in its clip */
     float weight;             /* of the track at that tick */
     int backward;             /* 1: passed in backward play */
@@ -88,7 +88,7 @@ size_t noh_controller_bytes(const noh_controller *c);
 /* Check a block from outside, such as a saved game, before any other call: with a block that passes no call overruns its
  * memory, overflows or hangs. The offsets of a transition are not looked at, so a pose may still be nonsense.
  * errors  ARG memory NULL or not 16-byte aligned; DATA not a controller for this set (where: the track or change) */
-noh_result noh_controller_check(const void *memory, size_t bytes, const noh_anim_set *set, noh_error *error);
+noh_result noh_controller_check(const void *memory, size_t bytes, const noh_clip_set *set, noh_error *error);
 
 /* ---- tracks ---- */
 
@@ -98,7 +98,7 @@ const noh_track *noh_controller_track(const noh_controller *c, uint32_t track);
 /* Start a clip on a track, ending what played there and its changes. A track that joins a sync group is moved to the
  * group's phase.
  * errors  ARG names the field; the track then stays as it was */
-noh_result noh_controller_start(noh_controller *c, const noh_anim_set *set, uint32_t track, const noh_track_desc *desc, noh_error *error);
+noh_result noh_controller_start(noh_controller *c, const noh_clip_set *set, uint32_t track, const noh_track_desc *desc, noh_error *error);
 
 typedef enum noh_seek {
     NOH_SEEK_SKIP = 0, /* jumps without firing callbacks; keys at the target fire when play moves on */
@@ -109,7 +109,7 @@ typedef enum noh_seek {
  * passes before and after. Its sync group follows.
  * errors  ARG track, position or policy; FIRE on a synchronised track; LIMIT FIRE
  *         needs a free change */
-noh_result noh_controller_seek(noh_controller *c, const noh_anim_set *set, uint32_t track, int64_t tick, noh_seek policy, noh_error *error);
+noh_result noh_controller_seek(noh_controller *c, const noh_clip_set *set, uint32_t track, int64_t tick, noh_seek policy, noh_error *error);
 
 /* These take effect at once, and end a running change of the same kind. ARG: out of range, see noh_track_desc. */
 noh_result noh_controller_set_speed(noh_controller *c, uint32_t track, int32_t speed);
@@ -124,22 +124,22 @@ noh_result noh_controller_set_lod(noh_controller *c, uint32_t lod, uint32_t join
 
 /* Start a change over time, now or later (changes.h).
  * errors  ARG a field of the desc; LIMIT the table of changes is full */
-noh_result noh_controller_change(noh_controller *c, const noh_anim_set *set, const noh_change_desc *desc, noh_error *error);
+noh_result noh_controller_change(noh_controller *c, const noh_clip_set *set, const noh_change_desc *desc, noh_error *error);
 
 /* Fade one track out to 0, then switch it off, and fade another in to `weight` over the same time. Takes three changes.
  * errors  as noh_controller_change; then nothing is changed */
-noh_result noh_controller_cross_fade(noh_controller *c, const noh_anim_set *set, uint32_t from, uint32_t to, float weight,
+noh_result noh_controller_cross_fade(noh_controller *c, const noh_clip_set *set, uint32_t from, uint32_t to, float weight,
                                      uint32_t duration_ticks, noh_curve curve, noh_error *error);
 
 /* Move time on. fn may be NULL. Returns how many events were delivered.
  * A step looks at NOH_STEP_EVENTS_MAX keys at most. Keys after that are passed without being delivered, and
  * NOH_CONTROLLER_EVENTS_CUT is set in c->flags until the next step; noh_controller_events_max tells beforehand.
  * ranges  ticks 0..2^32-1; 0 does nothing. The clock stops at INT64_MAX */
-uint32_t noh_controller_step(noh_controller *c, const noh_anim_set *set, uint32_t ticks, noh_event_fn fn, void *user);
+uint32_t noh_controller_step(noh_controller *c, const noh_clip_set *set, uint32_t ticks, noh_event_fn fn, void *user);
 
 /* An upper bound on the events of a step, changes included, provided that the callback starts or moves nothing. At most
  * NOH_STEP_EVENTS_MAX. */
-uint32_t noh_controller_events_max(const noh_controller *c, const noh_anim_set *set, uint32_t ticks);
+uint32_t noh_controller_events_max(const noh_controller *c, const noh_clip_set *set, uint32_t ticks);
 
 #ifdef __cplusplus
 }

@@ -3,7 +3,7 @@
  * Per track: the farthest that it can travel, and into how many stretches of one direction that travel can fall, since
  * each change of direction can pass the keys around it again. noh_events_max turns both into a number of keys. */
 #include "anim/controller.h"
-#include "anim/sync.h"
+#include "anim/sync_internal.h"
 
 typedef struct reach {
     uint64_t travel; /* the farthest it can move, 1/65,536 ticks */
@@ -46,7 +46,7 @@ static uint64_t speed_reached(const noh_controller *c, uint32_t track)
 }
 
 /* The shortest and the longest marker interval, in ticks. */
-static void interval_range(const noh_anim_set *set, const noh_motion *m, uint32_t *shortest, uint32_t *longest)
+static void interval_range(const noh_clip_set *set, const noh_clip_entry *m, uint32_t *shortest, uint32_t *longest)
 {
     const noh_marker *markers = set->markers + m->first_marker;
     *shortest = *longest = m->duration_ticks;
@@ -60,7 +60,7 @@ static void interval_range(const noh_anim_set *set, const noh_motion *m, uint32_
 
 /* A synchronised track moves at most at the phase speed of its group's fastest member, through its own longest interval;
  * and the group may turn round whenever it gets new speeds. */
-static reach sync_reach(const noh_controller *c, const noh_anim_set *set, uint32_t track, uint32_t ticks)
+static reach sync_reach(const noh_controller *c, const noh_clip_set *set, uint32_t track, uint32_t ticks)
 {
     const noh_track *t = noh_controller_track(c, track);
     uint32_t shortest, longest;
@@ -70,12 +70,12 @@ static reach sync_reach(const noh_controller *c, const noh_anim_set *set, uint32
         const noh_track *other = noh_controller_track(c, i);
         if (other->sync_group == t->sync_group) {
             uint64_t speed;
-            interval_range(set, &set->motions[other->motion], &shortest, &longest);
+            interval_range(set, &set->clips[other->clip], &shortest, &longest);
             speed = speed_reached(c, i) / shortest + 1u; /* intervals per 65,536 ticks */
             fastest = speed > fastest ? speed : fastest;
         }
     }
-    interval_range(set, &set->motions[t->motion], &shortest, &longest);
+    interval_range(set, &set->clips[t->clip], &shortest, &longest);
     r.runs = (uint64_t)ticks / NOH_SYNC_TICKS + c->change_count + 2u;
     r.travel = plus(fastest * longest > UINT64_MAX / ((uint64_t)ticks + 1u) ? UINT64_MAX : fastest * longest * ticks, 2u * 65536u);
     return r;
@@ -110,13 +110,13 @@ static int stays_off(const noh_controller *c, uint32_t track)
     return off;
 }
 
-uint32_t noh_controller_events_max(const noh_controller *c, const noh_anim_set *set, uint32_t ticks)
+uint32_t noh_controller_events_max(const noh_controller *c, const noh_clip_set *set, uint32_t ticks)
 {
     uint64_t most = 0;
-    NOH_ASSERT(c && set && set->motion_count == c->motion_count);
+    NOH_ASSERT(c && set && set->clip_count == c->clip_count);
     for (uint32_t i = 0; ticks && i < c->track_count; i++) {
         const noh_track *t = noh_controller_track(c, i);
-        const noh_motion *m = &set->motions[t->motion];
+        const noh_clip_entry *m = &set->clips[t->clip];
         if (m->event_count && !stays_off(c, i)) {
             reach r = t->sync_group ? sync_reach(c, set, i, ticks) : free_reach(c, i, ticks);
             uint32_t runs = r.runs > UINT32_MAX ? UINT32_MAX : (uint32_t)r.runs;

@@ -14,7 +14,7 @@ static int is_within(int64_t value, int64_t most)
     return value >= -most && value <= most;
 }
 
-static const char *bad_head(const noh_controller *c, size_t bytes, const noh_anim_set *set)
+static const char *bad_head(const noh_controller *c, size_t bytes, const noh_clip_set *set)
 {
     const uint64_t tracks = sizeof *c, changes = tracks + (uint64_t)c->track_count * sizeof(noh_track);
     const uint64_t inertia = changes + (uint64_t)c->change_count * sizeof(noh_change);
@@ -25,7 +25,7 @@ static const char *bad_head(const noh_controller *c, size_t bytes, const noh_ani
     d.change_count = c->change_count;
     d.flags = inertial ? NOH_CONTROLLER_INERTIAL : 0u;
     if (c->track_count == 0 || c->change_count == 0 || noh_controller_size(&d) == 0) return "controller: impossible counts";
-    if (c->motion_count != set->motion_count || c->joint_count != set->joint_count || c->float_count != set->float_count
+    if (c->clip_count != set->clip_count || c->joint_count != set->joint_count || c->float_count != set->float_count
         || c->mask_count != set->mask_count) return "controller: made for another set";
     if (c->bytes != noh_controller_size(&d) || c->bytes > bytes) return "controller: its bytes do not suit its counts";
     if (c->tracks_offset != tracks || c->changes_offset != changes) return "controller: bad offset of a table";
@@ -36,21 +36,21 @@ static const char *bad_head(const noh_controller *c, size_t bytes, const noh_ani
     return NULL;
 }
 
-static const char *bad_track(const noh_anim_set *set, const noh_track *t)
+static const char *bad_track(const noh_clip_set *set, const noh_track *t)
 {
     int64_t most = NOH_POSITION_MAX, least = -NOH_POSITION_MAX;
-    if (t->motion >= set->motion_count) return "track: motion is not a clip of the set";
+    if (t->clip >= set->clip_count) return "track: clip is not a clip of the set";
     if (t->mask > set->mask_count) return "track: mask is above mask_count of the set";
     if (t->loop > NOH_LOOP_PING_PONG || t->mode > NOH_TRACK_ON || t->group > NOH_GROUP_HIGH) return "track: bad loop, mode or group";
     if (t->sync_group > NOH_SYNC_GROUPS_MAX) return "track: sync_group is above NOH_SYNC_GROUPS_MAX";
-    if (t->sync_group && (t->loop != NOH_LOOP_REPEAT || set->motions[t->motion].duration_ticks < NOH_SYNC_DURATION_MIN
-                          || set->motions[t->motion].duration_ticks > NOH_SYNC_DURATION_MAX)) return "track: cannot be synchronised";
+    if (t->sync_group && (t->loop != NOH_LOOP_REPEAT || set->clips[t->clip].duration_ticks < NOH_SYNC_DURATION_MIN
+                          || set->clips[t->clip].duration_ticks > NOH_SYNC_DURATION_MAX)) return "track: cannot be synchronised";
     if (!(t->weight >= 0.0f && t->weight <= NOH_WEIGHT_MAX)) return "track: weight is not in 0..NOH_WEIGHT_MAX";
     if (!is_within(t->speed, NOH_SPEED_MAX)) return "track: speed is past NOH_SPEED_MAX";
     if (!is_within(t->rate, t->sync_group ? SYNC_RATE_MAX : RATE_MAX)) return "track: its rate is out of range";
     if (t->loop == NOH_LOOP_ONCE) {
         least = 0;
-        most = noh_position_of(set->motions[t->motion].duration_ticks);
+        most = noh_position_of(set->clips[t->clip].duration_ticks);
     }
     return t->position < least || t->position > most ? "track: its position is out of range" : NULL;
 }
@@ -86,7 +86,7 @@ static const char *bad_change(const noh_controller *c, const noh_change *change)
     }
 }
 
-noh_result noh_controller_check(const void *memory, size_t bytes, const noh_anim_set *set, noh_error *error)
+noh_result noh_controller_check(const void *memory, size_t bytes, const noh_clip_set *set, noh_error *error)
 {
     const noh_controller *c = (const noh_controller *)memory;
     const noh_change *changes;

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "anim/clock_internal.h"
-#include "anim/inertial.h"
+#include "pose/inertial_internal.h"
 #include "anim/mask.h"
 #include "base/arena.h"
 
@@ -19,7 +19,7 @@ static noh_transform *carve_pose(noh_arena *arena, uint32_t count)
     return (noh_transform *)noh_arena_carve(arena, count * sizeof(noh_transform), 4);
 }
 
-static void carve(noh_arena *arena, const noh_anim_set *set, int inertial, noh_pose_scratch *s)
+static void carve(noh_arena *arena, const noh_clip_set *set, int inertial, noh_pose_scratch *s)
 {
     memset(s, 0, sizeof *s);
     s->blend.sum = carve_pose(arena, set->joint_count);
@@ -36,7 +36,7 @@ static void carve(noh_arena *arena, const noh_anim_set *set, int inertial, noh_p
     }
 }
 
-size_t noh_pose_scratch_size(const noh_anim_set *set, int inertial)
+size_t noh_pose_scratch_size(const noh_clip_set *set, int inertial)
 {
     noh_arena arena = noh_arena_measure();
     noh_pose_scratch s;
@@ -45,7 +45,7 @@ size_t noh_pose_scratch_size(const noh_anim_set *set, int inertial)
     return arena.used;
 }
 
-noh_result noh_pose_scratch_init(void *memory, size_t bytes, const noh_anim_set *set, int inertial, noh_pose_scratch *scratch, noh_error *error)
+noh_result noh_pose_scratch_init(void *memory, size_t bytes, const noh_clip_set *set, int inertial, noh_pose_scratch *scratch, noh_error *error)
 {
     noh_arena arena;
     noh_result result = noh_arena_open(&arena, memory, bytes, noh_pose_scratch_size(set, inertial), error);
@@ -61,7 +61,7 @@ noh_result noh_pose_scratch_init(void *memory, size_t bytes, const noh_anim_set 
 /* A controller as it was some ticks ago. */
 typedef struct view {
     const noh_controller *c;
-    const noh_anim_set *set;
+    const noh_clip_set *set;
     noh_pose_scratch *scratch;
     int64_t ago; /* ticks: tracks are taken where they were then, had they always had their present speeds */
 } view;
@@ -74,13 +74,13 @@ static int is_sampled(const noh_controller *c, const noh_track *t)
 
 static uint32_t clip_tick(const view *v, const noh_track *t)
 {
-    return noh_track_clip_tick(t, &v->set->motions[t->motion], v->ago);
+    return noh_track_clip_tick(t, &v->set->clips[t->clip], v->ago);
 }
 
 /* One track's pose into the scratch, without its root motion. */
-static void sample_at(const view *v, uint32_t motion, uint32_t tick, noh_transform *pose, float *floats)
+static void sample_at(const view *v, uint32_t clip, uint32_t tick, noh_transform *pose, float *floats)
 {
-    noh_root_sample_rest(v->set, motion, tick, v->c->lod_joint_count, pose, floats);
+    noh_root_sample_rest(v->set, clip, tick, v->c->lod_joint_count, pose, floats);
 }
 
 /* Add a group's poses to the sum that was begun. Returns how many. */
@@ -91,10 +91,10 @@ static uint32_t sum_group(const view *v, noh_track_group group)
     for (uint32_t i = 0; i < v->c->track_count; i++) {
         const noh_track *t = noh_controller_track(v->c, i);
         if (t->group == group && !(t->flags & NOH_TRACK_ADDITIVE) && is_sampled(v->c, t)) {
-            const uint32_t flags = v->set->motions[t->motion].flags;
-            sample_at(v, t->motion, clip_tick(v, t), s->sample, s->float_sample);
-            noh_blend_add(&s->blend, flags & NOH_MOTION_NO_JOINTS ? NULL : s->sample, flags & NOH_MOTION_NO_FLOATS ? NULL : s->float_sample,
-                          t->weight, noh_mask_of(v->set, t->mask));
+            const uint32_t flags = v->set->clips[t->clip].flags;
+            sample_at(v, t->clip, clip_tick(v, t), s->sample, s->float_sample);
+            noh_blend_add(&s->blend, flags & NOH_CLIP_FLOATS_ONLY ? NULL : s->sample, flags & NOH_CLIP_JOINTS_ONLY ? NULL : s->float_sample,
+                          t->weight, noh_clip_set_mask(v->set, t->mask));
             count++;
         }
     }
@@ -133,9 +133,9 @@ static const noh_track *only_track(const view *v)
 /* The reference pose of an additive track, into the blend's sums, which are free by now. */
 static void reference_pose(const view *v, const noh_track *t, noh_transform *pose, float *floats)
 {
-    const noh_anim_set *set = v->set;
+    const noh_clip_set *set = v->set;
     if (t->flags & NOH_TRACK_REFERENCE_START) {
-        sample_at(v, t->motion, 0, pose, floats);
+        sample_at(v, t->clip, 0, pose, floats);
         return;
     }
     memcpy(pose, set->bind_pose, v->c->lod_joint_count * sizeof *pose);
@@ -147,20 +147,20 @@ static void reference_pose(const view *v, const noh_track *t, noh_transform *pos
 static void add_track(const view *v, const noh_track *t, noh_transform *pose, float *floats)
 {
     noh_pose_scratch *s = v->scratch;
-    noh_mask_view mask = noh_mask_of(v->set, t->mask);
-    uint32_t joints = v->c->lod_joint_count, count = v->set->float_count, flags = v->set->motions[t->motion].flags;
-    sample_at(v, t->motion, clip_tick(v, t), s->sample, s->float_sample);
-    if (!(flags & NOH_MOTION_ADDITIVE)) {
+    noh_mask_view mask = noh_clip_set_mask(v->set, t->mask);
+    uint32_t joints = v->c->lod_joint_count, count = v->set->float_count, flags = v->set->clips[t->clip].flags;
+    sample_at(v, t->clip, clip_tick(v, t), s->sample, s->float_sample);
+    if (!(flags & NOH_CLIP_ADDITIVE)) {
         reference_pose(v, t, s->blend.sum, s->blend.float_sum);
         noh_pose_difference(joints, s->blend.sum, s->sample, s->sample);
         for (uint32_t i = 0; i < count; i++) {
             s->float_sample[i] -= s->blend.float_sum[i];
         }
     }
-    if (!(flags & NOH_MOTION_NO_JOINTS)) {
+    if (!(flags & NOH_CLIP_FLOATS_ONLY)) {
         noh_pose_add(joints, s->sample, t->weight, mask.joints, pose);
     }
-    if (!(flags & NOH_MOTION_NO_FLOATS)) {
+    if (!(flags & NOH_CLIP_JOINTS_ONLY)) {
         noh_floats_add(count, s->float_sample, t->weight, mask.floats, floats);
     }
 }
@@ -193,7 +193,7 @@ void noh_controller_inertia_add(const noh_controller *c, int64_t ago, noh_transf
 }
 
 /* The pose some ticks ago, with or without the rest of a transition. */
-static void evaluate(const noh_controller *c, const noh_anim_set *set, noh_pose_scratch *scratch, int64_t ago, int inertia,
+static void evaluate(const noh_controller *c, const noh_clip_set *set, noh_pose_scratch *scratch, int64_t ago, int inertia,
                      noh_transform *pose, float *floats)
 {
     view v = { NULL, NULL, NULL, 0 };
@@ -209,7 +209,7 @@ static void evaluate(const noh_controller *c, const noh_anim_set *set, noh_pose_
     scratch->blend.float_totals = scratch->float_below;
     only = only_track(&v);
     if (only) {
-        sample_at(&v, only->motion, clip_tick(&v, only), pose, floats);
+        sample_at(&v, only->clip, clip_tick(&v, only), pose, floats);
     } else {
         blend_groups(&v, pose, floats);
     }
@@ -222,7 +222,7 @@ static void evaluate(const noh_controller *c, const noh_anim_set *set, noh_pose_
     }
 }
 
-void noh_controller_pose(const noh_controller *c, const noh_anim_set *set, noh_pose_scratch *scratch, noh_transform *pose, float *floats)
+void noh_controller_pose(const noh_controller *c, const noh_clip_set *set, noh_pose_scratch *scratch, noh_transform *pose, float *floats)
 {
     NOH_ASSERT(c && set && scratch && (!set->joint_count || pose) && (!set->float_count || floats));
     NOH_VALIDATE(noh_controller_check(c, c->bytes, set, NULL) == NOH_OK);
@@ -238,7 +238,7 @@ static const char *bad_transition(const noh_controller *c, const noh_pose_scratc
     return NULL;
 }
 
-noh_result noh_controller_inertia_capture(const noh_controller *c, const noh_anim_set *set, noh_pose_scratch *scratch, noh_error *error)
+noh_result noh_controller_inertia_capture(const noh_controller *c, const noh_clip_set *set, noh_pose_scratch *scratch, noh_error *error)
 {
     const char *what = bad_transition(c, scratch);
     NOH_ASSERT(c && set && scratch);
@@ -263,7 +263,7 @@ void noh_controller_inertia_store(noh_controller *c, const noh_pose_scratch *scr
     c->inertia_ticks = duration_ticks;
 }
 
-noh_result noh_controller_inertia_begin(noh_controller *c, const noh_anim_set *set, noh_pose_scratch *scratch, uint32_t duration_ticks,
+noh_result noh_controller_inertia_begin(noh_controller *c, const noh_clip_set *set, noh_pose_scratch *scratch, uint32_t duration_ticks,
                                         noh_error *error)
 {
     const char *what = bad_transition(c, scratch);
@@ -298,22 +298,22 @@ static void add_root(root_sum *sum, const noh_root_pose *move, double weight, do
 }
 
 /* How far a track takes part in moving the root: 0 where its clip animates no joints or its mask leaves joint 0 out. */
-static double root_part(const noh_anim_set *set, const noh_track *t)
+static double root_part(const noh_clip_set *set, const noh_track *t)
 {
-    noh_mask_view mask = noh_mask_of(set, t->mask);
-    if (set->motions[t->motion].flags & NOH_MOTION_NO_JOINTS) {
+    noh_mask_view mask = noh_clip_set_mask(set, t->mask);
+    if (set->clips[t->clip].flags & NOH_CLIP_FLOATS_ONLY) {
         return 0.0;
     }
     return mask.joints ? (double)mask.joints[0] / 255.0 : 1.0;
 }
 
-static root_sum group_root(noh_controller *c, const noh_anim_set *set, noh_track_group group)
+static root_sum group_root(noh_controller *c, const noh_clip_set *set, noh_track_group group)
 {
     root_sum sum;
     memset(&sum, 0, sizeof sum);
     for (uint32_t i = 0; i < c->track_count; i++) {
         noh_track *t = &noh_controller_tracks(c)[i];
-        const noh_root_track *root = &set->roots[t->motion];
+        const noh_root_track *root = &set->roots[t->clip];
         double part;
         if (t->group != group || t->mode == NOH_TRACK_OFF) {
             continue;
@@ -322,7 +322,7 @@ static root_sum group_root(noh_controller *c, const noh_anim_set *set, noh_track
         if (part > 0.0 && is_sampled(c, t) && !(t->flags & NOH_TRACK_ADDITIVE)) {
             noh_root_pose move = { { 0.0, 0.0, 0.0 }, 0, 0 };
             if (root->axes) {
-                move = noh_root_between(set, root, t->motion, (noh_loop)t->loop, t->root_position, t->position);
+                move = noh_root_between(set, root, t->clip, (noh_loop)t->loop, t->root_position, t->position);
             }
             add_root(&sum, &move, (double)t->weight, part);
         }
@@ -342,12 +342,12 @@ static noh_root_pose mean_root(const root_sum *sum)
     return out;
 }
 
-noh_root_pose noh_controller_root_motion(noh_controller *c, const noh_anim_set *set)
+noh_root_pose noh_controller_root_motion(noh_controller *c, const noh_clip_set *set)
 {
     noh_root_pose out = { { 0.0, 0.0, 0.0 }, 0, 0 }, low, high;
     root_sum low_sum, high_sum, both;
     double cover;
-    NOH_ASSERT(c && set && set->motion_count == c->motion_count);
+    NOH_ASSERT(c && set && set->clip_count == c->clip_count);
     if (!set->roots) {
         return out;
     }

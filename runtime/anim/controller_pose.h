@@ -5,11 +5,11 @@
  * next is posed).
  *
  * Threads: a controller and a scratch belong to one thread at a time. Several threads may pose controllers of one set,
- * each with its own scratch, where set->sample allows it: of a noh_motion_set hand each thread its view (motion_set.h). */
+ * each with its own scratch, where set->sample allows it: of a noh_clip_bank hand each thread its view (clip_bank.h). */
 #ifndef NOH_ANIM_CONTROLLER_POSE_H
 #define NOH_ANIM_CONTROLLER_POSE_H
 
-#include "anim/blend.h"
+#include "pose/blend.h"
 #include "anim/controller.h"
 #include "anim/root_motion.h"
 
@@ -30,19 +30,19 @@ typedef struct noh_pose_scratch {
 
 /* inertial: with room for the four poses of a transition.
  * errors of init  ARG memory NULL or not 16-byte aligned; MEMORY need: the bytes */
-size_t noh_pose_scratch_size(const noh_anim_set *set, int inertial);
-noh_result noh_pose_scratch_init(void *memory, size_t bytes, const noh_anim_set *set, int inertial, noh_pose_scratch *scratch, noh_error *error);
+size_t noh_pose_scratch_size(const noh_clip_set *set, int inertial);
+noh_result noh_pose_scratch_init(void *memory, size_t bytes, const noh_clip_set *set, int inertial, noh_pose_scratch *scratch, noh_error *error);
 
 /* The pose at the controller's clock: the low group, the high group over it by the priority blend, additive tracks in their
- * order, the rest of a transition. Clips that animate no joints (NOH_MOTION_NO_JOINTS) take no part in joints, and those
+ * order, the rest of a transition. Clips that animate no joints (NOH_CLIP_FLOATS_ONLY) take no part in joints, and those
  * without floats none in floats. One unmasked track alone gives its clip to the bit.
  * shapes  pose[joint_count], floats[float_count] of the set */
-void noh_controller_pose(const noh_controller *c, const noh_anim_set *set, noh_pose_scratch *scratch, noh_transform *pose, float *floats);
+void noh_controller_pose(const noh_controller *c, const noh_clip_set *set, noh_pose_scratch *scratch, noh_transform *pose, float *floats);
 
 /* Root displacement since the last call, weighted as the pose is at joint 0; additive tracks do not count, nor do clips that
  * animate no joints. Seeks do not move the root, and drop what their track had moved since the last call. Zero without
  * set->roots. All roots of a set must have the same up axis. */
-noh_root_pose noh_controller_root_motion(noh_controller *c, const noh_anim_set *set);
+noh_root_pose noh_controller_root_motion(noh_controller *c, const noh_clip_set *set);
 
 /* A transition, wrapped around any change of the tracks:
  *   noh_controller_inertia_capture(c, set, &scratch);
@@ -50,8 +50,8 @@ noh_root_pose noh_controller_root_motion(noh_controller *c, const noh_anim_set *
  *   noh_controller_inertia_begin(c, set, &scratch, duration_ticks);
  * A transition may begin while another one runs: the captured pose includes it.
  * errors  ARG no room (NOH_CONTROLLER_INERTIAL, scratch made with inertial); duration 0 */
-noh_result noh_controller_inertia_capture(const noh_controller *c, const noh_anim_set *set, noh_pose_scratch *scratch, noh_error *error);
-noh_result noh_controller_inertia_begin(noh_controller *c, const noh_anim_set *set, noh_pose_scratch *scratch, uint32_t duration_ticks,
+noh_result noh_controller_inertia_capture(const noh_controller *c, const noh_clip_set *set, noh_pose_scratch *scratch, noh_error *error);
+noh_result noh_controller_inertia_begin(noh_controller *c, const noh_clip_set *set, noh_pose_scratch *scratch, uint32_t duration_ticks,
                                         noh_error *error);
 
 /* The parts of these, for graph_pose.c, which poses tracks in its own way: add the offsets left `ago` ticks before now; store

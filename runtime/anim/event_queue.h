@@ -1,6 +1,6 @@
 /* event_queue.h: keep the events of a step for later, instead of acting in the callback.
  *
- * A fixed array sized by a bound (noh_controller_events_max or noh_anim_set_events_max), so that it cannot overflow. Pass
+ * A fixed array sized by a bound (noh_controller_events_max or noh_clip_set_events_max), so that it cannot overflow. Pass
  * noh_event_queue_push as the callback and the queue as its pointer.
  *
  * Threads: a queue belongs to one thread at a time. */

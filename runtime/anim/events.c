@@ -175,12 +175,12 @@ uint32_t noh_events_max(uint32_t key_count, uint32_t duration_ticks, noh_loop lo
     return most > UINT32_MAX ? UINT32_MAX : (uint32_t)most;
 }
 
-uint32_t noh_anim_set_events_max(const noh_anim_set *set, uint32_t track_count, uint32_t speed_max, uint32_t step_ticks_max)
+uint32_t noh_clip_set_events_max(const noh_clip_set *set, uint32_t track_count, uint32_t speed_max, uint32_t step_ticks_max)
 {
     uint64_t travel = (uint64_t)speed_max * step_ticks_max, most = 0;
     NOH_ASSERT(set);
-    for (uint32_t i = 0; i < set->motion_count; i++) {
-        const noh_motion *m = &set->motions[i];
+    for (uint32_t i = 0; i < set->clip_count; i++) {
+        const noh_clip_entry *m = &set->clips[i];
         /* the controller may play it in any mode: the worst of them */
         uint64_t there = noh_events_max(m->event_count, m->duration_ticks, NOH_LOOP_REPEAT, travel, 2);
         uint64_t back = noh_events_max(m->event_count, m->duration_ticks, NOH_LOOP_PING_PONG, travel, 2);

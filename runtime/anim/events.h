@@ -19,7 +19,7 @@
 #ifndef NOH_ANIM_EVENTS_H
 #define NOH_ANIM_EVENTS_H
 
-#include "anim/motion.h"
+#include "anim/clip_set.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -54,7 +54,7 @@ uint32_t noh_events_max(uint32_t key_count, uint32_t duration_ticks, noh_loop lo
 /* The most that one step can deliver with every track on the worst clip of a set: known before anything plays, for budgets
  * and queues. One change of direction within the step is allowed for.
  * ranges  |speed| <= speed_max (1/65,536), step <= step_ticks_max; saturates at NOH_STEP_EVENTS_MAX */
-uint32_t noh_anim_set_events_max(const noh_anim_set *set, uint32_t track_count, uint32_t speed_max, uint32_t step_ticks_max);
+uint32_t noh_clip_set_events_max(const noh_clip_set *set, uint32_t track_count, uint32_t speed_max, uint32_t step_ticks_max);
 
 #ifdef __cplusplus
 }

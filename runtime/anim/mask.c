@@ -37,7 +37,7 @@ void noh_mask_invert(uint8_t *mask, uint32_t count)
     }
 }
 
-noh_mask_view noh_mask_of(const noh_anim_set *set, uint32_t index)
+noh_mask_view noh_clip_set_mask(const noh_clip_set *set, uint32_t index)
 {
     noh_mask_view view = { NULL, NULL };
     NOH_ASSERT(set && index <= set->mask_count);

@@ -7,9 +7,9 @@
 #ifndef NOH_ANIM_MASK_H
 #define NOH_ANIM_MASK_H
 
-#include "anim/blend.h"
-#include "anim/motion.h"
-#include "anim/skeleton.h"
+#include "pose/blend.h"
+#include "anim/clip_set.h"
+#include "pose/skeleton.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -25,7 +25,7 @@ void noh_mask_subtree(uint8_t *mask, const noh_skeleton *skeleton, uint32_t join
 void noh_mask_invert(uint8_t *mask, uint32_t count);
 
 /* A mask of a set as blending takes it: index 0 is no mask, n is the set's mask n - 1. */
-noh_mask_view noh_mask_of(const noh_anim_set *set, uint32_t index);
+noh_mask_view noh_clip_set_mask(const noh_clip_set *set, uint32_t index);
 
 #ifdef __cplusplus
 }

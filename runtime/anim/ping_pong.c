@@ -1,6 +1,6 @@
 #include "anim/ping_pong.h"
 
-float noh_time_ramp(int64_t ticks, int64_t duration)
+float noh_ramp(int64_t ticks, int64_t duration)
 {
     if (ticks < 0 || (ticks == 0 && duration > 0)) {
         return 0.0f;
@@ -8,7 +8,7 @@ float noh_time_ramp(int64_t ticks, int64_t duration)
     return ticks >= duration ? 1.0f : (float)ticks / (float)duration;
 }
 
-float noh_time_ping_pong(int64_t ticks, int64_t half)
+float noh_ping_pong(int64_t ticks, int64_t half)
 {
     int64_t phase;
     if (half <= 0 || half > INT64_MAX / 2) {

@@ -13,10 +13,10 @@ extern "C" {
 #endif
 
 /* 0 up to tick 0, rising to 1 at `duration`, then 1. A duration of 0 or less is over at once. */
-float noh_time_ramp(int64_t ticks, int64_t duration);
+float noh_ramp(int64_t ticks, int64_t duration);
 
 /* 0 at tick 0, 1 at `half`, 0 at twice that, and so on, also before tick 0. A half of 0 or less gives 0. */
-float noh_time_ping_pong(int64_t ticks, int64_t half);
+float noh_ping_pong(int64_t ticks, int64_t half);
 
 #ifdef __cplusplus
 }

@@ -90,12 +90,12 @@ void noh_root_remove(uint32_t axes, uint32_t up, noh_transform *root)
     noh_quat_mul(back, root->rotation, root->rotation);
 }
 
-void noh_root_sample_rest(const noh_anim_set *set, uint32_t motion, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose, float *floats)
+void noh_root_sample_rest(const noh_clip_set *set, uint32_t clip, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose, float *floats)
 {
-    NOH_ASSERT(set && motion < set->motion_count && clip_tick <= set->motions[motion].duration_ticks && joint_count <= set->joint_count);
-    set->sample(set->user, motion, clip_tick, joint_count, pose, set->float_count, floats);
-    if (set->roots && set->roots[motion].axes) {
-        noh_root_remove(set->roots[motion].axes, set->roots[motion].up, &pose[0]);
+    NOH_ASSERT(set && clip < set->clip_count && clip_tick <= set->clips[clip].duration_ticks && joint_count <= set->joint_count);
+    set->sample(set->user, clip, clip_tick, joint_count, pose, set->float_count, floats);
+    if (set->roots && set->roots[clip].axes) {
+        noh_root_remove(set->roots[clip].axes, set->roots[clip].up, &pose[0]);
     }
 }
 
@@ -153,27 +153,27 @@ noh_root_pose noh_root_power(uint32_t up, const noh_root_pose *a, int64_t n)
 }
 
 /* E at a tick of the clip. */
-static noh_root_pose sample_root(const noh_anim_set *set, uint32_t motion, uint32_t axes, uint32_t up, uint32_t clip_tick)
+static noh_root_pose sample_root(const noh_clip_set *set, uint32_t clip, uint32_t axes, uint32_t up, uint32_t clip_tick)
 {
     noh_transform root;
-    set->sample(set->user, motion, clip_tick, 1, &root, 0, NULL);
+    set->sample(set->user, clip, clip_tick, 1, &root, 0, NULL);
     return noh_root_extract(axes, up, &root);
 }
 
-noh_result noh_root_track_measure(const noh_anim_set *set, uint32_t motion, uint32_t axes, uint32_t up, noh_root_track *track, noh_error *error)
+noh_result noh_root_track_measure(const noh_clip_set *set, uint32_t clip, uint32_t axes, uint32_t up, noh_root_track *track, noh_error *error)
 {
     noh_root_track t;
     noh_root_pose back;
     NOH_ASSERT(set && track);
-    if (motion >= set->motion_count) return noh_fail(error, NOH_ERR_ARG, "motion is not a clip of the set", motion, set->motion_count);
-    if (axes > 15u) return noh_fail(error, NOH_ERR_ARG, "axes has bits other than NOH_ROOT_*", motion, 0);
-    if (up > 2u) return noh_fail(error, NOH_ERR_ARG, "up is not 0, 1 or 2", motion, 0);
+    if (clip >= set->clip_count) return noh_fail(error, NOH_ERR_ARG, "clip is not a clip of the set", clip, set->clip_count);
+    if (axes > 15u) return noh_fail(error, NOH_ERR_ARG, "axes has bits other than NOH_ROOT_*", clip, 0);
+    if (up > 2u) return noh_fail(error, NOH_ERR_ARG, "up is not 0, 1 or 2", clip, 0);
     memset(&t, 0, sizeof t);
     t.axes = axes;
     t.up = up;
     if (axes) {
-        t.start = sample_root(set, motion, axes, up, 0);
-        t.end = sample_root(set, motion, axes, up, set->motions[motion].duration_ticks);
+        t.start = sample_root(set, clip, axes, up, 0);
+        t.end = sample_root(set, clip, axes, up, set->clips[clip].duration_ticks);
         back = noh_root_inverse(up, &t.start);
         t.loop = noh_root_compose(up, &back, &t.end);
     }
@@ -181,14 +181,14 @@ noh_result noh_root_track_measure(const noh_anim_set *set, uint32_t motion, uint
     return NOH_OK;
 }
 
-noh_root_pose noh_root_between(const noh_anim_set *set, const noh_root_track *track, uint32_t motion, noh_loop loop, int64_t from, int64_t to)
+noh_root_pose noh_root_between(const noh_clip_set *set, const noh_root_track *track, uint32_t clip, noh_loop loop, int64_t from, int64_t to)
 {
-    uint32_t duration = set->motions[motion].duration_ticks, up = track->up;
-    NOH_ASSERT(set && track && motion < set->motion_count);
+    uint32_t duration = set->clips[clip].duration_ticks, up = track->up;
+    NOH_ASSERT(set && track && clip < set->clip_count);
     /* passes count only where they do not lead back */
     int64_t passes = loop == NOH_LOOP_REPEAT ? noh_time_legs(to, duration, loop) - noh_time_legs(from, duration, loop) : 0;
-    noh_root_pose a = sample_root(set, motion, track->axes, up, (uint32_t)(noh_time_clip(from, duration, loop) / 65536));
-    noh_root_pose b = sample_root(set, motion, track->axes, up, (uint32_t)(noh_time_clip(to, duration, loop) / 65536));
+    noh_root_pose a = sample_root(set, clip, track->axes, up, (uint32_t)(noh_time_clip(from, duration, loop) / 65536));
+    noh_root_pose b = sample_root(set, clip, track->axes, up, (uint32_t)(noh_time_clip(to, duration, loop) / 65536));
     noh_root_pose back = noh_root_inverse(up, &a), step, start_back;
     if (passes == 0) {
         return noh_root_compose(up, &back, &b);
@@ -202,7 +202,7 @@ noh_root_pose noh_root_between(const noh_anim_set *set, const noh_root_track *tr
     return noh_root_compose(up, &back, &b);
 }
 
-noh_root_pose noh_root_at(const noh_anim_set *set, const noh_root_track *track, uint32_t motion, noh_loop loop, int64_t position)
+noh_root_pose noh_root_at(const noh_clip_set *set, const noh_root_track *track, uint32_t clip, noh_loop loop, int64_t position)
 {
-    return noh_root_between(set, track, motion, loop, 0, position);
+    return noh_root_between(set, track, clip, loop, 0, position);
 }

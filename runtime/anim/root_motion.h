@@ -16,7 +16,7 @@
 #ifndef NOH_ANIM_ROOT_MOTION_H
 #define NOH_ANIM_ROOT_MOTION_H
 
-#include "anim/motion.h"
+#include "anim/clip_set.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -48,7 +48,7 @@ void noh_root_remove(uint32_t axes, uint32_t up, noh_transform *root);
 
 /* Sample a clip as it is posed: without its root motion, if the set extracts any.
  * shapes  pose[joint_count], floats[the set's float_count] */
-void noh_root_sample_rest(const noh_anim_set *set, uint32_t motion, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose, float *floats);
+void noh_root_sample_rest(const noh_clip_set *set, uint32_t clip, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose, float *floats);
 
 /* Displacement a, then b in the frame that a leads to; and the displacement that undoes a. */
 noh_root_pose noh_root_compose(uint32_t up, const noh_root_pose *a, const noh_root_pose *b);
@@ -58,14 +58,14 @@ noh_root_pose noh_root_inverse(uint32_t up, const noh_root_pose *a);
 noh_root_pose noh_root_power(uint32_t up, const noh_root_pose *a, int64_t n);
 
 /* Sample a clip's two ends. Joint 0 is the root.
- * errors  ARG motion, axes, up */
-noh_result noh_root_track_measure(const noh_anim_set *set, uint32_t motion, uint32_t axes, uint32_t up, noh_root_track *track, noh_error *error);
+ * errors  ARG clip, axes, up */
+noh_result noh_root_track_measure(const noh_clip_set *set, uint32_t clip, uint32_t axes, uint32_t up, noh_root_track *track, noh_error *error);
 
 /* The displacement from one unwrapped position to another. */
-noh_root_pose noh_root_between(const noh_anim_set *set, const noh_root_track *track, uint32_t motion, noh_loop loop, int64_t from, int64_t to);
+noh_root_pose noh_root_between(const noh_clip_set *set, const noh_root_track *track, uint32_t clip, noh_loop loop, int64_t from, int64_t to);
 
 /* The displacement from position 0. */
-noh_root_pose noh_root_at(const noh_anim_set *set, const noh_root_track *track, uint32_t motion, noh_loop loop, int64_t position);
+noh_root_pose noh_root_at(const noh_clip_set *set, const noh_root_track *track, uint32_t clip, noh_loop loop, int64_t position);
 
 #ifdef __cplusplus
 }

@@ -1,14 +1,14 @@
-#include "anim/sync.h"
+#include "anim/sync_internal.h"
 
 /* ---- phases ---- */
 
-static uint32_t interval_count(const noh_motion *m)
+static uint32_t interval_count(const noh_clip_entry *m)
 {
     return m->marker_count ? m->marker_count : 1u;
 }
 
 /* The marker of phase 0: the first one of the smallest id. */
-static uint32_t canonical(const noh_anim_set *set, const noh_motion *m)
+static uint32_t canonical(const noh_clip_set *set, const noh_clip_entry *m)
 {
     const noh_marker *markers = set->markers + m->first_marker;
     uint32_t best = 0;
@@ -21,42 +21,42 @@ static uint32_t canonical(const noh_anim_set *set, const noh_motion *m)
 }
 
 /* The position of the n-th marker, n from 0; past the last one they continue in the next pass. */
-static int64_t marker_position(const noh_anim_set *set, const noh_motion *m, uint32_t n)
+static int64_t marker_position(const noh_clip_set *set, const noh_clip_entry *m, uint32_t n)
 {
     uint32_t count = interval_count(m);
     int64_t pass = noh_position_of(m->duration_ticks) * (int64_t)(n / count);
     return m->marker_count ? pass + noh_position_of(set->markers[m->first_marker + n % count].tick) : pass;
 }
 
-noh_phase noh_sync_phase(const noh_anim_set *set, const noh_motion *motion, int64_t position)
+noh_phase noh_sync_phase(const noh_clip_set *set, const noh_clip_entry *clip, int64_t position)
 {
-    uint32_t count = interval_count(motion), first = canonical(set, motion), n = 0;
-    int64_t rest = noh_time_clip(position, motion->duration_ticks, NOH_LOOP_REPEAT), begin, end;
+    uint32_t count = interval_count(clip), first = canonical(set, clip), n = 0;
+    int64_t rest = noh_time_clip(position, clip->duration_ticks, NOH_LOOP_REPEAT), begin, end;
     noh_phase p;
-    NOH_ASSERT(set && motion && motion->duration_ticks > 0);
-    if (rest < marker_position(set, motion, 0)) {
-        rest += noh_position_of(motion->duration_ticks); /* before the first marker: in the last interval, across the seam */
+    NOH_ASSERT(set && clip && clip->duration_ticks > 0);
+    if (rest < marker_position(set, clip, 0)) {
+        rest += noh_position_of(clip->duration_ticks); /* before the first marker: in the last interval, across the seam */
     }
-    while (n + 1 < count && marker_position(set, motion, n + 1) <= rest) {
+    while (n + 1 < count && marker_position(set, clip, n + 1) <= rest) {
         n++;
     }
-    begin = marker_position(set, motion, n);
-    end = marker_position(set, motion, n + 1);
+    begin = marker_position(set, clip, n);
+    end = marker_position(set, clip, n + 1);
     p.interval = (n + count - first) % count;
     p.fraction = (double)(rest - begin) / (double)(end - begin);
     return p;
 }
 
-int64_t noh_sync_position(const noh_anim_set *set, const noh_motion *motion, noh_phase phase)
+int64_t noh_sync_position(const noh_clip_set *set, const noh_clip_entry *clip, noh_phase phase)
 {
-    uint32_t count = interval_count(motion), n = ((uint32_t)phase.interval + canonical(set, motion)) % count;
-    int64_t begin = marker_position(set, motion, n), end = marker_position(set, motion, n + 1);
+    uint32_t count = interval_count(clip), n = ((uint32_t)phase.interval + canonical(set, clip)) % count;
+    int64_t begin = marker_position(set, clip, n), end = marker_position(set, clip, n + 1);
     int64_t position = begin + (int64_t)((double)(end - begin) * phase.fraction + 0.5);
-    NOH_ASSERT(set && motion && motion->duration_ticks > 0 && phase.interval >= 0);
-    return noh_time_clip(position, motion->duration_ticks, NOH_LOOP_REPEAT);
+    NOH_ASSERT(set && clip && clip->duration_ticks > 0 && phase.interval >= 0);
+    return noh_time_clip(position, clip->duration_ticks, NOH_LOOP_REPEAT);
 }
 
-int noh_sync_fits(const noh_anim_set *set, const noh_motion *a, const noh_motion *b)
+int noh_sync_fits(const noh_clip_set *set, const noh_clip_entry *a, const noh_clip_entry *b)
 {
     uint32_t first_a = canonical(set, a), first_b = canonical(set, b);
     NOH_ASSERT(set && a && b);
@@ -91,44 +91,44 @@ uint32_t noh_sync_leader(const noh_track *tracks, uint32_t track_count, uint32_t
     return best;
 }
 
-static const noh_motion *motion_of(const noh_anim_set *set, const noh_track *track)
+static const noh_clip_entry *clip_of(const noh_clip_set *set, const noh_track *track)
 {
-    return &set->motions[track->motion];
+    return &set->clips[track->clip];
 }
 
 /* The position of a phase that is nearest to another position. */
-static int64_t nearest(const noh_anim_set *set, const noh_motion *m, noh_phase phase, int64_t to)
+static int64_t nearest(const noh_clip_set *set, const noh_clip_entry *m, noh_phase phase, int64_t to)
 {
     int64_t duration = noh_position_of(m->duration_ticks);
     int64_t apart = to - noh_sync_position(set, m, phase);
     return to - apart + noh_floor_div(apart + duration / 2, duration) * duration;
 }
 
-void noh_sync_join(const noh_anim_set *set, noh_track *track, const noh_track *leader)
+void noh_sync_join(const noh_clip_set *set, noh_track *track, const noh_track *leader)
 {
-    noh_phase phase = noh_sync_phase(set, motion_of(set, leader), leader->position);
+    noh_phase phase = noh_sync_phase(set, clip_of(set, leader), leader->position);
     NOH_ASSERT(set && track && leader && track != leader);
-    noh_track_place(track, motion_of(set, track), nearest(set, motion_of(set, track), phase, track->position));
+    noh_track_place(track, clip_of(set, track), nearest(set, clip_of(set, track), phase, track->position));
 }
 
 /* Length of the marker interval of a phase, in 1/65,536 ticks. */
-static double interval_length(const noh_anim_set *set, const noh_motion *m, noh_phase phase)
+static double interval_length(const noh_clip_set *set, const noh_clip_entry *m, noh_phase phase)
 {
     uint32_t n = ((uint32_t)phase.interval + canonical(set, m)) % interval_count(m);
     return (double)(marker_position(set, m, n + 1) - marker_position(set, m, n));
 }
 
 /* Weighted mean of the group's phase speeds, in intervals per tick; the leader's own where all weights are 0. */
-static double mean_speed(const noh_anim_set *set, const noh_track *tracks, uint32_t track_count, uint32_t leader, noh_phase phase)
+static double mean_speed(const noh_clip_set *set, const noh_track *tracks, uint32_t track_count, uint32_t leader, noh_phase phase)
 {
     double sum = 0.0, weights = 0.0;
     for (uint32_t i = 0; i < track_count; i++) {
         if (is_member(&tracks[i], tracks[leader].sync_group)) {
-            sum += (double)tracks[i].weight * (double)tracks[i].speed / interval_length(set, motion_of(set, &tracks[i]), phase);
+            sum += (double)tracks[i].weight * (double)tracks[i].speed / interval_length(set, clip_of(set, &tracks[i]), phase);
             weights += (double)tracks[i].weight;
         }
     }
-    return weights > 0.0 ? sum / weights : (double)tracks[leader].speed / interval_length(set, motion_of(set, &tracks[leader]), phase);
+    return weights > 0.0 ? sum / weights : (double)tracks[leader].speed / interval_length(set, clip_of(set, &tracks[leader]), phase);
 }
 
 static int64_t rounded(double x)
@@ -140,19 +140,19 @@ static int64_t rounded(double x)
  * takes the nearest to where the follower would be after covering as many passes as the leader; that keeps both in the
  * same pass even where an interval is short in one clip and long in the other. A follower never moves against its leader:
  * it would pass keys twice. It waits instead. */
-static void steer(const noh_anim_set *set, noh_track *track, noh_phase goal, double travelled, int64_t leader_rate, int64_t ticks)
+static void steer(const noh_clip_set *set, noh_track *track, noh_phase goal, double travelled, int64_t leader_speed, int64_t ticks)
 {
-    const noh_motion *m = motion_of(set, track);
+    const noh_clip_entry *m = clip_of(set, track);
     int64_t expected = track->position + rounded(travelled * (double)m->duration_ticks * 65536.0);
     int64_t way = nearest(set, m, goal, expected) - track->position;
     int64_t rate = noh_floor_div(way + ticks / 2, ticks);
-    track->rate = (leader_rate > 0 && rate < 0) || (leader_rate < 0 && rate > 0) || leader_rate == 0 ? 0 : rate;
+    track->rate = (leader_speed > 0 && rate < 0) || (leader_speed < 0 && rate > 0) || leader_speed == 0 ? 0 : rate;
 }
 
-static void group_rates(const noh_anim_set *set, noh_track *tracks, uint32_t track_count, uint32_t leader, int64_t ticks)
+static void group_rates(const noh_clip_set *set, noh_track *tracks, uint32_t track_count, uint32_t leader, int64_t ticks)
 {
     noh_track *lead = &tracks[leader];
-    const noh_motion *m = motion_of(set, lead);
+    const noh_clip_entry *m = clip_of(set, lead);
     noh_phase now = noh_sync_phase(set, m, lead->position), goal;
     lead->rate = rounded(mean_speed(set, tracks, track_count, leader, now) * interval_length(set, m, now));
     goal = noh_sync_phase(set, m, lead->position + lead->rate * ticks);
@@ -163,7 +163,7 @@ static void group_rates(const noh_anim_set *set, noh_track *tracks, uint32_t tra
     }
 }
 
-void noh_sync_rates(const noh_anim_set *set, noh_track *tracks, uint32_t track_count, int64_t ticks)
+void noh_sync_speeds(const noh_clip_set *set, noh_track *tracks, uint32_t track_count, int64_t ticks)
 {
     NOH_ASSERT(set && (tracks || !track_count) && ticks > 0);
     for (uint32_t group = 1; group <= NOH_SYNC_GROUPS_MAX; group++) {

@@ -29,7 +29,7 @@ extern "C" {
 #define NOH_POSITION_MAX ((int64_t)1 << 60) /* a placed position; 8,000 years are left after it at speed one */
 
 typedef enum noh_loop {
-    NOH_LOOP_OF_MOTION = 0, /* in descs only: what the clip says */
+    NOH_LOOP_OF_CLIP = 0, /* in descs only: what the clip says */
     NOH_LOOP_ONCE,          /* holds its first and last tick */
     NOH_LOOP_REPEAT,
     NOH_LOOP_PING_PONG      /* there and back: two durations make one cycle */

@@ -1,8 +1,8 @@
 #include "anim/tracks.h"
 
-static const char *bad_desc(const noh_anim_set *set, const noh_track_desc *d)
+static const char *bad_desc(const noh_clip_set *set, const noh_track_desc *d)
 {
-    if (d->motion >= set->motion_count) return "motion is not a clip of the set";
+    if (d->clip >= set->clip_count) return "clip is not a clip of the set";
     if (d->position_ticks > ((int64_t)1 << 44) || d->position_ticks < -((int64_t)1 << 44)) return "position_ticks is past 2^44";
     if (d->speed > NOH_SPEED_MAX || d->speed < -NOH_SPEED_MAX) return "speed is past NOH_SPEED_MAX";
     if (!(d->weight >= 0.0f && d->weight <= NOH_WEIGHT_MAX)) return "weight is not in 0..NOH_WEIGHT_MAX";
@@ -17,25 +17,25 @@ static const char *bad_desc(const noh_anim_set *set, const noh_track_desc *d)
 }
 
 /* Only a repeating clip has a phase. */
-static const char *bad_sync(const noh_anim_set *set, const noh_track_desc *d)
+static const char *bad_sync(const noh_clip_set *set, const noh_track_desc *d)
 {
-    const noh_motion *m = &set->motions[d->motion];
+    const noh_clip_entry *m = &set->clips[d->clip];
     uint32_t loop = d->loop ? (uint32_t)d->loop : m->loop;
     int fits = m->duration_ticks >= NOH_SYNC_DURATION_MIN && m->duration_ticks <= NOH_SYNC_DURATION_MAX;
     return d->sync_group && (loop != NOH_LOOP_REPEAT || !fits) ? "sync_group is above NOH_SYNC_GROUPS_MAX" : NULL;
 }
 
-noh_result noh_track_start(noh_track *track, const noh_anim_set *set, const noh_track_desc *desc, noh_error *error)
+noh_result noh_track_start(noh_track *track, const noh_clip_set *set, const noh_track_desc *desc, noh_error *error)
 {
     const char *what = bad_desc(set, desc);
-    const noh_motion *m;
+    const noh_clip_entry *m;
     NOH_ASSERT(track && set && desc);
     what = what ? what : bad_sync(set, desc);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }
-    m = &set->motions[desc->motion];
-    track->motion = (uint16_t)desc->motion;
+    m = &set->clips[desc->clip];
+    track->clip = (uint16_t)desc->clip;
     track->speed = desc->flags & NOH_TRACK_PAUSED ? 0 : desc->speed ? desc->speed : NOH_SPEED_ONE;
     track->rate = track->speed;
     track->weight = desc->flags & NOH_TRACK_SILENT ? 0.0f : desc->weight > 0.0f ? desc->weight : 1.0f;
@@ -50,34 +50,34 @@ noh_result noh_track_start(noh_track *track, const noh_anim_set *set, const noh_
     return NOH_OK;
 }
 
-void noh_track_place(noh_track *track, const noh_motion *motion, int64_t position)
+void noh_track_place(noh_track *track, const noh_clip_entry *clip, int64_t position)
 {
-    NOH_ASSERT(track && motion);
-    position = noh_time_advance(position, 0, 0, motion->duration_ticks, (noh_loop)track->loop);
-    track->position = position - noh_time_rebase(position, motion->duration_ticks, (noh_loop)track->loop);
+    NOH_ASSERT(track && clip);
+    position = noh_time_advance(position, 0, 0, clip->duration_ticks, (noh_loop)track->loop);
+    track->position = position - noh_time_rebase(position, clip->duration_ticks, (noh_loop)track->loop);
     track->root_position = track->position;
     track->placed = 1;
 }
 
-noh_passage noh_track_passage(const noh_track *track, const noh_motion *motion, int64_t ticks)
+noh_passage noh_track_passage(const noh_track *track, const noh_clip_entry *clip, int64_t ticks)
 {
     noh_passage p;
-    NOH_ASSERT(track && motion && ticks >= 0);
+    NOH_ASSERT(track && clip && ticks >= 0);
     p.from = track->position;
-    p.to = noh_time_advance(track->position, track->rate, ticks, motion->duration_ticks, (noh_loop)track->loop);
-    p.duration_ticks = motion->duration_ticks;
+    p.to = noh_time_advance(track->position, track->rate, ticks, clip->duration_ticks, (noh_loop)track->loop);
+    p.duration_ticks = clip->duration_ticks;
     p.loop = track->loop;
     p.backward = track->rate < 0;
     p.placed = track->placed;
     return p;
 }
 
-int64_t noh_track_next_event(const noh_track *track, const noh_anim_set *set, int64_t ticks)
+int64_t noh_track_next_event(const noh_track *track, const noh_clip_set *set, int64_t ticks)
 {
-    const noh_motion *m = &set->motions[track->motion];
+    const noh_clip_entry *m = &set->clips[track->clip];
     noh_passage p;
     int64_t at, way, rate = track->rate < 0 ? -track->rate : track->rate;
-    NOH_ASSERT(track && set && track->motion < set->motion_count && ticks >= 0);
+    NOH_ASSERT(track && set && track->clip < set->clip_count && ticks >= 0);
     if (track->mode == NOH_TRACK_OFF || rate == 0 || m->event_count == 0 || ticks == 0) {
         return 0;
     }
@@ -92,19 +92,19 @@ int64_t noh_track_next_event(const noh_track *track, const noh_anim_set *set, in
     return way == 0 ? 1 : noh_ceil_div(way, rate);
 }
 
-int noh_track_ended(const noh_track *track, const noh_motion *motion)
+int noh_track_ended(const noh_track *track, const noh_clip_entry *clip)
 {
-    int64_t end = track->rate < 0 ? 0 : noh_position_of(motion->duration_ticks);
-    NOH_ASSERT(track && motion);
+    int64_t end = track->rate < 0 ? 0 : noh_position_of(clip->duration_ticks);
+    NOH_ASSERT(track && clip);
     return track->loop == NOH_LOOP_ONCE && track->position == end && !track->placed;
 }
 
-uint32_t noh_track_clip_tick(const noh_track *track, const noh_motion *motion, int64_t ago)
+uint32_t noh_track_clip_tick(const noh_track *track, const noh_clip_entry *clip, int64_t ago)
 {
     noh_loop loop = (noh_loop)track->loop;
     const int64_t most = ((int64_t)1 << 61) / (ago > 0 ? ago : 1); /* a seek may have gone billions of passes in its tick */
     int64_t rate = track->rate > most ? most : track->rate < -most ? -most : track->rate;
-    int64_t position = noh_time_advance(track->position, -rate, ago, motion->duration_ticks, loop);
-    NOH_ASSERT(track && motion);
-    return (uint32_t)(noh_time_clip(position, motion->duration_ticks, loop) / 65536);
+    int64_t position = noh_time_advance(track->position, -rate, ago, clip->duration_ticks, loop);
+    NOH_ASSERT(track && clip);
+    return (uint32_t)(noh_time_clip(position, clip->duration_ticks, loop) / 65536);
 }

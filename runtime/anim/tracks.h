@@ -37,11 +37,11 @@ typedef enum noh_track_group {
 
 /* How a track starts. All zeros play clip 0 from its start. */
 typedef struct noh_track_desc {
-    uint32_t motion;        /* the clip's index in the set; default 0 */
+    uint32_t clip;        /* the clip's index in the set; default 0 */
     int64_t position_ticks; /* default 0; unwrapped, see time.h; |position| <= 2^44 */
     int32_t speed;          /* 1/65,536; default (0) 65536; |speed| <= NOH_SPEED_MAX, negative plays backwards */
     float weight;           /* default (0) 1; 0..NOH_WEIGHT_MAX */
-    noh_loop loop;          /* default NOH_LOOP_OF_MOTION: the clip's own */
+    noh_loop loop;          /* default NOH_LOOP_OF_CLIP: the clip's own */
     noh_track_mode mode;    /* default (NOH_TRACK_OFF) NOH_TRACK_ON: a track cannot start off */
     noh_track_group group;  /* default NOH_GROUP_LOW */
     uint32_t mask;          /* default 0: none; else 1 + index in the set's masks */
@@ -57,7 +57,7 @@ typedef struct noh_track {
     int64_t rate;          /* present speed, 1/65,536 clip ticks per tick: its own, that of a change, or its sync group's */
     int32_t speed;
     float weight;
-    uint16_t motion;
+    uint16_t clip;
     uint8_t mask;          /* 1 + index, 0: none */
     uint8_t loop, mode, group, sync_group, lod_levels, flags;
     uint8_t placed;        /* 1: has not moved since it was started or sought */
@@ -68,22 +68,22 @@ NOH_STATIC_ASSERT(sizeof(noh_track) == 48, track);
 
 /* Fill a track from a desc.
  * errors  ARG names the field; the track is then untouched */
-noh_result noh_track_start(noh_track *track, const noh_anim_set *set, const noh_track_desc *desc, noh_error *error);
+noh_result noh_track_start(noh_track *track, const noh_clip_set *set, const noh_track_desc *desc, noh_error *error);
 
 /* Move a track to a position without firing callbacks; keys that lie exactly there fire when play moves on. */
-void noh_track_place(noh_track *track, const noh_motion *motion, int64_t position);
+void noh_track_place(noh_track *track, const noh_clip_entry *clip, int64_t position);
 
 /* The passage of the next `ticks`: events.h. */
-noh_passage noh_track_passage(const noh_track *track, const noh_motion *motion, int64_t ticks);
+noh_passage noh_track_passage(const noh_track *track, const noh_clip_entry *clip, int64_t ticks);
 
 /* Ticks until the next key is passed, 1..ticks; 0: none is within `ticks`. */
-int64_t noh_track_next_event(const noh_track *track, const noh_anim_set *set, int64_t ticks);
+int64_t noh_track_next_event(const noh_track *track, const noh_clip_set *set, int64_t ticks);
 
 /* Whether a ONCE track has reached its end in the direction of play. */
-int noh_track_ended(const noh_track *track, const noh_motion *motion);
+int noh_track_ended(const noh_track *track, const noh_clip_entry *clip);
 
 /* The clip tick to sample, `ago` ticks before now at the present speed. */
-uint32_t noh_track_clip_tick(const noh_track *track, const noh_motion *motion, int64_t ago);
+uint32_t noh_track_clip_tick(const noh_track *track, const noh_clip_entry *clip, int64_t ago);
 
 #ifdef __cplusplus
 }

@@ -2,7 +2,7 @@
  * message, and again when it is opened; a desc over a limit is NOH_ERR_ARG or NOH_ERR_LIMIT, with the number asked for.
  *
  * What the width of a field or a number sets stands where that is described: a compressed clip's (NOH_CLIP_*_MAX) in
- * anim/clip_format.h, those of time (NOH_DURATION_MAX, NOH_SPEED_MAX, NOH_POSITION_MAX) in anim/time.h.
+ * clip/clip_format.h, those of time (NOH_DURATION_MAX, NOH_SPEED_MAX, NOH_POSITION_MAX) in anim/time.h.
  * Threads: constants. */
 #ifndef NOH_BASE_LIMITS_H
 #define NOH_BASE_LIMITS_H
@@ -27,9 +27,9 @@
 #define NOH_VERTICES_MAX (1u << 22)      /* a texture of 2048 x 2048, which every ES 3.0 has */
 #define NOH_INDICES_MAX (1u << 26)
 #define NOH_SUBMESHES_MAX 256u
-#define NOH_LEVELS_MAX 8u                /* LOD levels */
+#define NOH_LOD_LEVELS_MAX 8u                /* LOD levels */
 #define NOH_TARGETS_MAX 1024u            /* the gather list keeps 10 bits for a target */
-#define NOH_TEXELS_MAX (1u << 22)        /* delta texels; the gather list keeps 22 bits */
+#define NOH_DELTA_TEXELS_MAX (1u << 22)        /* delta texels; the gather list keeps 22 bits */
 #define NOH_MORPH_WIDTH_LOG2_MIN 2u      /* of the texture of accumulation texels */
 #define NOH_MORPH_WIDTH_LOG2_MAX 11u     /* ES 3.0 guarantees textures of 2048 */
 #define NOH_MORPH_HEIGHT_MAX 2048u
@@ -38,21 +38,21 @@
 /* ---- skeletons and skins ---- */
 
 #define NOH_JOINTS_MAX 4096u             /* of a skeleton */
-#define NOH_JOINT_LEVELS_MAX 8u          /* LOD levels of a skeleton */
+#define NOH_LOD_LEVELS_MAX 8u          /* LOD levels of a skeleton */
 #define NOH_SKIN_JOINTS_MAX 4096u        /* of a skin */
 #define NOH_PALETTE_JOINTS_MAX 256u      /* a uniform block of 12 KiB; ES 3.0 guarantees 16. Vertices keep 8 bits for a place */
 #define NOH_INFLUENCES_MAX 8u            /* joints that move one vertex */
 
 /* ---- clips and sets ---- */
 
-#define NOH_MOTION_EVENTS_MAX 65536u     /* callback keys of one clip in a pack */
-#define NOH_MOTION_MARKERS_MAX 4096u     /* sync markers of one clip in a pack */
-#define NOH_MOTIONS_MAX 65535u           /* clips of one set */
+#define NOH_CLIP_EVENTS_MAX 65536u     /* callback keys of one clip in a pack */
+#define NOH_CLIP_MARKERS_MAX 4096u     /* sync markers of one clip in a pack */
+#define NOH_CLIPS_MAX 65535u           /* clips of one set */
 #define NOH_FLOATS_MAX 4096u             /* of one set: morph weights of all nodes, and named floats */
 #define NOH_MASKS_MAX 255u               /* of one set */
 #define NOH_CLIP_CACHE_CLIPS_MAX 4096u
-#define NOH_CLIP_CACHE_SLOTS_MIN 2u      /* cached segments; a sample between two segments needs both */
-#define NOH_CLIP_CACHE_SLOTS_MAX 32768u
+#define NOH_CLIP_CACHE_SEGMENTS_MIN 2u      /* cached segments; a sample between two segments needs both */
+#define NOH_CLIP_CACHE_SEGMENTS_MAX 32768u
 
 /* ---- controllers and graphs ---- */
 
@@ -67,16 +67,16 @@
 #define NOH_GRAPH_NODES_MAX 256u
 #define NOH_GRAPH_CHILDREN_MAX 32u       /* of one node */
 #define NOH_GRAPH_PARAMS_MAX 256u
-#define NOH_GRAPH_SLOTS_MAX 32u          /* pose buffers */
-#define NOH_SPACE_POINTS_MAX 32u         /* of a blend space */
-#define NOH_SPACE_TRIANGLES_MAX (2u * NOH_SPACE_POINTS_MAX)
-#define NOH_SPACE_COORDINATE_MAX 1e18f   /* of points and thresholds: squares of differences stay finite */
+#define NOH_GRAPH_BUFFERS_MAX 32u          /* pose buffers */
+#define NOH_BLEND_SPACE_POINTS_MAX 32u         /* of a blend space */
+#define NOH_BLEND_SPACE_TRIANGLES_MAX (2u * NOH_BLEND_SPACE_POINTS_MAX)
+#define NOH_BLEND_SPACE_COORDINATE_MAX 1e18f   /* of points and thresholds: squares of differences stay finite */
 
 /* ---- characters ---- */
 
-#define NOH_DETAIL_LEVELS_MAX 8u         /* rows of a table of LOD levels */
-#define NOH_LEVEL_POOLS_MAX NOH_DETAIL_LEVELS_MAX
-#define NOH_LEVEL_POOL_SLOTS_MAX 65536u
+#define NOH_LOD_LEVELS_MAX 8u         /* rows of a table of LOD levels */
+#define NOH_LOD_POOLS_MAX NOH_LOD_LEVELS_MAX
+#define NOH_LOD_POOL_SLOTS_MAX 65536u
 #define NOH_SCHEDULE_MAX 65536u          /* characters of one scheduler */
 #define NOH_VISIBILITY_MAX 8.0f
 

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "base/assert.h"
-#include "base/math.h"
+#include "base/math_internal.h"
 #include "base/trig.h"
 
 /* Sums only, with b's signs taken beforehand: gcc 12 makes fused multiply-adds out of

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "base/math.h"
+#include "base/math_internal.h"
 
 #define HALF_PI 1.57079632679489662
 #define TURN_PER_RADIAN 683565275.576431634 /* 2^32 / (2 pi) */

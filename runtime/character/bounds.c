@@ -1,6 +1,6 @@
 #include "character/bounds.h"
 
-#include "base/math.h"
+#include "base/math_internal.h"
 
 #define ROUNDING 1.000002f /* more than the sums and roots below can lose */
 
@@ -60,10 +60,10 @@ static float reach_from(const float *centre, ball b)
 
 /* The box is that of all balls. The sphere is centred in the box, not minimal: one more pass over the joints finds the
  * radius that contains every ball, which is at most sqrt(3) times the smallest one. */
-void noh_sphere_of_joints(const noh_skeleton *skeleton, const float *model, const float *margin_m, uint32_t joint_count, noh_bounds *bounds)
+void noh_joint_bounds(const noh_skeleton *skeleton, const float *model, const float *joint_radius_m, uint32_t joint_count, noh_bounds *bounds)
 {
     const float far_away = 3e38f;
-    NOH_ASSERT(skeleton && model && margin_m && bounds && joint_count <= skeleton->joint_count);
+    NOH_ASSERT(skeleton && model && joint_radius_m && bounds && joint_count <= skeleton->joint_count);
     for (int i = 0; i < 3; i++) {
         bounds->low[i] = far_away;
         bounds->high[i] = -far_away;
@@ -71,8 +71,8 @@ void noh_sphere_of_joints(const noh_skeleton *skeleton, const float *model, cons
     }
     bounds->radius = 0.0f;
     for (uint32_t j = 0; j < skeleton->joint_count; j++) {
-        if (margin_m[j] >= 0.0f) {
-            add_to_box(bounds, ball_of(skeleton, model, margin_m[j], j, joint_count));
+        if (joint_radius_m[j] >= 0.0f) {
+            add_to_box(bounds, ball_of(skeleton, model, joint_radius_m[j], j, joint_count));
         }
     }
     if (bounds->low[0] > bounds->high[0]) {
@@ -82,17 +82,17 @@ void noh_sphere_of_joints(const noh_skeleton *skeleton, const float *model, cons
         bounds->centre[i] = 0.5f * bounds->low[i] + 0.5f * bounds->high[i];
     }
     for (uint32_t j = 0; j < skeleton->joint_count; j++) {
-        float reach = margin_m[j] >= 0.0f ? reach_from(bounds->centre, ball_of(skeleton, model, margin_m[j], j, joint_count)) : 0.0f;
+        float reach = joint_radius_m[j] >= 0.0f ? reach_from(bounds->centre, ball_of(skeleton, model, joint_radius_m[j], j, joint_count)) : 0.0f;
         bounds->radius = reach > bounds->radius ? reach : bounds->radius;
     }
 }
 
-float noh_sphere_of_skeleton(const noh_skeleton *skeleton, const float *margin_m)
+float noh_skeleton_radius(const noh_skeleton *skeleton, const float *joint_radius_m)
 {
     float radius = 0.0f;
-    NOH_ASSERT(skeleton && margin_m);
+    NOH_ASSERT(skeleton && joint_radius_m);
     for (uint32_t j = 0; j < skeleton->joint_count; j++) {
-        float reach = margin_m[j];
+        float reach = joint_radius_m[j];
         for (uint32_t at = j; reach >= 0.0f && skeleton->parents[at] != NOH_JOINT_ROOT; at = skeleton->parents[at]) {
             reach += bone_length(skeleton, at);
         }
@@ -134,11 +134,11 @@ static float farthest_corner(const float *inverse_bind, const float box[6])
     return noh_sqrt(farthest) * ROUNDING;
 }
 
-void noh_margins_add(const noh_mesh *mesh, const float *weights, float *margin_m)
+void noh_mesh_add_joint_radii(const noh_mesh *mesh, const float *weights, float *joint_radius_m)
 {
     noh_skin skin;
     float deltas[6];
-    NOH_ASSERT(mesh && margin_m);
+    NOH_ASSERT(mesh && joint_radius_m);
     if (noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin, NULL)) {
         return;
     }
@@ -150,6 +150,6 @@ void noh_margins_add(const noh_mesh *mesh, const float *weights, float *margin_m
             box[i] = rest[i] + deltas[i];
         }
         margin = rest[0] <= rest[3] ? farthest_corner(skin.inverse_bind + 12u * j, box) : -1.0f;
-        margin_m[skin.joints[j]] = margin > margin_m[skin.joints[j]] ? margin : margin_m[skin.joints[j]];
+        joint_radius_m[skin.joints[j]] = margin > joint_radius_m[skin.joints[j]] ? margin : joint_radius_m[skin.joints[j]];
     }
 }

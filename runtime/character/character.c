@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "anim/clock_internal.h"
-#include "anim/local_to_model.h"
+#include "pose/local_to_model.h"
 #include "base/arena.h"
 #include "character/character_internal.h"
 
@@ -84,7 +84,7 @@ noh_result noh_character_init(void *memory, size_t bytes, const noh_character_de
 
 static size_t carve_scratch(noh_arena *arena, const noh_character_desc *d, noh_character_scratch *s, void **pose_memory)
 {
-    const noh_anim_set *set = d->controller.set;
+    const noh_clip_set *set = d->controller.set;
     size_t pose_bytes = noh_pose_scratch_size(set, 0);
     memset(s, 0, sizeof *s);
     s->ahead_bytes = noh_controller_size(&d->controller);
@@ -134,7 +134,7 @@ size_t noh_character_bytes(const noh_character *ch)
     return ch->bytes;
 }
 
-void noh_character_number(noh_character *ch, uint32_t instance)
+void noh_character_set_instance(noh_character *ch, uint32_t instance)
 {
     NOH_ASSERT(ch);
     ch->time.instance = instance;
@@ -153,14 +153,14 @@ static const noh_controller *controller_of(const noh_character *ch)
     return (const noh_controller *)(const void *)((const uint8_t *)ch + ch->controller_offset);
 }
 
-static float *palette_of(noh_character *ch, uint32_t slot)
+static float *palette_of(noh_character *ch, uint32_t target)
 {
-    return (float *)(void *)((uint8_t *)ch + ch->palette_offsets[slot]);
+    return (float *)(void *)((uint8_t *)ch + ch->palette_offsets[target]);
 }
 
-static float *floats_of(noh_character *ch, uint32_t slot)
+static float *floats_of(noh_character *ch, uint32_t target)
 {
-    return (float *)(void *)((uint8_t *)ch + ch->float_offsets[slot]);
+    return (float *)(void *)((uint8_t *)ch + ch->float_offsets[target]);
 }
 
 static const float *at(const noh_character *ch, uint32_t offset)
@@ -168,9 +168,9 @@ static const float *at(const noh_character *ch, uint32_t offset)
     return (const float *)(const void *)((const uint8_t *)ch + offset);
 }
 
-const float *noh_character_slot_palette(const noh_character *ch, uint32_t slot)
+const float *noh_character_pose_palette(const noh_character *ch, uint32_t target)
 {
-    return at(ch, ch->palette_offsets[slot]);
+    return at(ch, ch->palette_offsets[target]);
 }
 
 int64_t noh_character_clock(const noh_character *ch)
@@ -180,26 +180,26 @@ int64_t noh_character_clock(const noh_character *ch)
 
 /* ---- a frame ---- */
 
-uint32_t noh_character_step(noh_character *ch, const noh_anim_set *set, uint32_t ticks, noh_event_fn fn, void *user)
+uint32_t noh_character_step(noh_character *ch, const noh_clip_set *set, uint32_t ticks, noh_event_fn fn, void *user)
 {
     NOH_ASSERT(ch && set);
     return noh_controller_step(noh_character_controller(ch), set, ticks, fn, user);
 }
 
-noh_due noh_character_look(noh_character *ch, const noh_detail_table *table, const noh_detail_settings *settings, float pixels_per_metre)
+noh_due noh_character_look(noh_character *ch, const noh_lod_table *table, const noh_lod_settings *settings, float pixels_per_metre)
 {
     noh_controller *c = noh_character_controller(ch);
     int64_t clock = noh_character_clock(ch);
-    float rate_error_m[NOH_RATE_COUNT];
+    float update_error_m[NOH_UPDATE_RATE_COUNT];
     uint32_t joints;
     NOH_ASSERT(ch && table && settings);
-    if (table->rate_error_m) {
-        noh_time_lod_error(c, table->rate_error_m, rate_error_m);
+    if (table->update_error_m) {
+        noh_time_lod_error(c, table->update_error_m, update_error_m);
     }
-    noh_detail_choose(&ch->detail, table, settings, pixels_per_metre, table->rate_error_m ? rate_error_m : NULL, clock);
-    joints = noh_detail_joint_count(&ch->detail, table);
-    (void)noh_controller_set_lod(c, ch->detail.mesh, joints < ch->joint_count ? joints : 0);
-    noh_time_lod_frame(&ch->time, clock, (noh_rate)ch->detail.rate);
+    noh_lod_choose(&ch->lod, table, settings, pixels_per_metre, table->update_error_m ? update_error_m : NULL, clock);
+    joints = noh_lod_joint_count(&ch->lod, table);
+    (void)noh_controller_set_lod(c, ch->lod.mesh, joints < ch->joint_count ? joints : 0);
+    noh_time_lod_frame(&ch->time, clock, (noh_update_rate)ch->lod.rate);
     return noh_time_lod_due(&ch->time);
 }
 
@@ -209,7 +209,7 @@ uint32_t noh_character_late(const noh_character *ch)
     return noh_time_lod_late(&ch->time);
 }
 
-uint32_t noh_character_joints(const noh_character *ch)
+uint32_t noh_character_joint_work(const noh_character *ch)
 {
     const noh_controller *c = controller_of(ch);
     uint32_t tracks = 0;
@@ -247,7 +247,7 @@ static void keep_shown(noh_character *ch, uint32_t from, float part)
     mix_floats(ch->spheres[from], ch->spheres[to], part, 4, ch->spheres[from]);
 }
 
-void noh_character_update_begin(noh_character *ch, const noh_anim_set *set, noh_character_scratch *scratch)
+void noh_character_update_begin(noh_character *ch, const noh_clip_set *set, noh_character_scratch *scratch)
 {
     const noh_controller *c = controller_of(ch);
     /* The pose of the next update is found by playing a copy of the controller to that tick without firing callbacks: the
@@ -256,7 +256,7 @@ void noh_character_update_begin(noh_character *ch, const noh_anim_set *set, noh_
     int64_t ahead = noh_clock_since(u.pose_clock, noh_character_clock(ch));
     NOH_ASSERT(ch && set && scratch && set->joint_count == ch->joint_count && set->float_count == ch->float_count);
     if (u.keep < 1.0f) {
-        keep_shown(ch, u.slot ^ 1u, u.keep);
+        keep_shown(ch, u.pose ^ 1u, u.keep);
     }
     if (ahead > 0) {
         NOH_ASSERT(noh_controller_bytes(c) <= scratch->ahead_bytes);
@@ -266,7 +266,7 @@ void noh_character_update_begin(noh_character *ch, const noh_anim_set *set, noh_
     }
     noh_controller_pose(c, set, &scratch->pose, scratch->local, scratch->floats);
     scratch->joint_count = c->lod_joint_count;
-    scratch->slot = u.slot;
+    scratch->target = u.pose;
     ch->updates++;
 }
 
@@ -284,32 +284,32 @@ static void make_palette(const noh_skeleton *skeleton, const noh_character_scrat
     }
 }
 
-void noh_character_update_end(noh_character *ch, const noh_skeleton *skeleton, const float *margin_m, noh_character_scratch *scratch)
+void noh_character_update_end(noh_character *ch, const noh_skeleton *skeleton, const float *joint_radius_m, noh_character_scratch *scratch)
 {
-    uint32_t slot = scratch->slot;
-    NOH_ASSERT(ch && skeleton && scratch && slot < 2u);
+    uint32_t target = scratch->target;
+    NOH_ASSERT(ch && skeleton && scratch && target < 2u);
     NOH_ASSERT(skeleton->joint_count == ch->joint_count);
-    make_palette(skeleton, scratch, ch->joint_count, palette_of(ch, slot));
-    ch->multiplied = (ch->multiplied & ~(1u << slot)) | (skeleton->inverse_bind ? 1u << slot : 0u);
-    memcpy(floats_of(ch, slot), scratch->floats, ch->float_count * sizeof(float));
-    if (margin_m) {
+    make_palette(skeleton, scratch, ch->joint_count, palette_of(ch, target));
+    ch->multiplied = (ch->multiplied & ~(1u << target)) | (skeleton->inverse_bind ? 1u << target : 0u);
+    memcpy(floats_of(ch, target), scratch->floats, ch->float_count * sizeof(float));
+    if (joint_radius_m) {
         noh_bounds bounds;
-        noh_sphere_of_joints(skeleton, scratch->model, margin_m, scratch->joint_count, &bounds);
-        memcpy(ch->spheres[slot], bounds.centre, sizeof bounds.centre);
-        ch->spheres[slot][3] = bounds.radius;
+        noh_joint_bounds(skeleton, scratch->model, joint_radius_m, scratch->joint_count, &bounds);
+        memcpy(ch->spheres[target], bounds.centre, sizeof bounds.centre);
+        ch->spheres[target][3] = bounds.radius;
     }
 }
 
-void noh_character_update(noh_character *ch, const noh_anim_set *set, const noh_skeleton *skeleton, const float *margin_m,
+void noh_character_update(noh_character *ch, const noh_clip_set *set, const noh_skeleton *skeleton, const float *joint_radius_m,
                           noh_character_scratch *scratch)
 {
     noh_character_update_begin(ch, set, scratch);
-    noh_character_update_end(ch, skeleton, margin_m, scratch);
+    noh_character_update_end(ch, skeleton, joint_radius_m, scratch);
 }
 
 const float *noh_character_palette(const noh_character *ch, float *mixed, uint32_t joint_count)
 {
-    uint32_t to = ch->time.to_slot;
+    uint32_t to = ch->time.to_pose;
     const float *last = at(ch, ch->palette_offsets[to]);
     float part = noh_time_lod_fraction(&ch->time);
     NOH_ASSERT(mixed || part >= 1.0f);
@@ -323,7 +323,7 @@ const float *noh_character_palette(const noh_character *ch, float *mixed, uint32
 
 const float *noh_character_floats(const noh_character *ch, float *mixed)
 {
-    uint32_t to = ch->time.to_slot;
+    uint32_t to = ch->time.to_pose;
     const float *last = at(ch, ch->float_offsets[to]);
     float part = noh_time_lod_fraction(&ch->time);
     NOH_ASSERT(mixed || part >= 1.0f || !ch->float_count);
@@ -337,7 +337,7 @@ const float *noh_character_floats(const noh_character *ch, float *mixed)
 
 void noh_character_sphere(const noh_character *ch, float sphere[4])
 {
-    uint32_t to = ch->time.to_slot;
+    uint32_t to = ch->time.to_pose;
     float part = noh_time_lod_fraction(&ch->time);
     NOH_ASSERT(sphere);
     NOH_ASSERT(ch->time.posed);
@@ -353,6 +353,6 @@ void noh_character_wake(noh_character *ch)
 void noh_character_cut(noh_character *ch)
 {
     NOH_ASSERT(ch);
-    noh_detail_cut(&ch->detail);
+    noh_lod_cut(&ch->lod);
     ch->time.posed = 0;
 }

@@ -1,7 +1,7 @@
 /* character.h: one character: its controller, its LOD levels, and the two poses that it shows a mix of.
  *
  * A character is one block of bytes without pointers: clone, save or move it with one memcpy of noh_character_bytes(ch).
- * Hundreds lie in one array. What they share (the set, the detail table, the scratch) is passed to every call.
+ * Hundreds lie in one array. What they share (the set, the LOD table, the scratch) is passed to every call.
  *
  * A frame of a game:
  *   noh_character_step(ch, set, ticks, fn, user)              every character, seen or not: clock and callback keys
@@ -9,7 +9,7 @@
  *   noh_character_update(ch, set, skeleton, margins, &scratch)  those that are due: samples, blends, makes matrices
  *   noh_character_skin(ch, skin, matrices)                    those that are drawn: skinning matrices (skin_palette.h)
  * A scheduler can spread updates within a time budget (scheduler.h). Change tracks through noh_character_controller, then
- * call noh_character_wake. After a memcpy, noh_character_number gives the copy its own place in the stagger of updates.
+ * call noh_character_wake. After a memcpy, noh_character_set_instance gives the copy its own place in the stagger of updates.
  *
  * Bytes: 160 for the head, the controller's (controller.h), and two palettes of 48 per joint with 4 per float, each
  * rounded up to 16. 31 joints, 34 floats and 4 tracks: 3,888; with room for inertia 5,648.
@@ -19,7 +19,7 @@
  *
  * Threads: a character belongs to one thread at a time, and so does a scratch; set, skeleton, table and settings are
  * read-only and shared. Characters may be stepped and looked at on several threads at once, and updated wherever the
- * set's sample function allows it (motion_set.h). */
+ * set's sample function allows it (clip_bank.h). */
 #ifndef NOH_CHARACTER_CHARACTER_H
 #define NOH_CHARACTER_CHARACTER_H
 
@@ -46,7 +46,7 @@ typedef struct noh_character {
     uint32_t palette_offsets[2], float_offsets[2];
     uint32_t updates;               /* since init */
     uint32_t multiplied;            /* a bit per palette: it was multiplied by the skeleton's inverse bind matrices */
-    noh_detail detail;
+    noh_lod lod;
     noh_time_lod time;
     float spheres[2][4];            /* centre and radius around each of the two poses */
 } noh_character;
@@ -59,7 +59,7 @@ typedef struct noh_character_scratch {
     noh_transform *local;  /* [joint_count] the pose, between noh_character_update_begin and _end */
     float *floats;         /* [float_count] its floats */
     uint32_t joint_count;  /* joints that were sampled; the others have the bind pose */
-    uint32_t slot;         /* 0 or 1: which of the character's two poses this becomes */
+    uint32_t target;         /* 0 or 1: which of the character's two poses this becomes */
     float *model;          /* [joint_count][12] model-space matrices, after _end */
 } noh_character_scratch;
 
@@ -80,7 +80,7 @@ noh_result noh_character_scratch_init(void *memory, size_t bytes, const noh_char
 size_t noh_character_bytes(const noh_character *ch);
 
 /* Give a copy its own place in the stagger of updates. */
-void noh_character_number(noh_character *ch, uint32_t instance);
+void noh_character_set_instance(noh_character *ch, uint32_t instance);
 
 noh_controller *noh_character_controller(noh_character *ch);
 
@@ -90,30 +90,30 @@ noh_controller *noh_character_controller(noh_character *ch);
 int64_t noh_character_clock(const noh_character *ch);
 
 /* Move time on and deliver callback keys: noh_controller_step. LOD levels make no difference to it. */
-uint32_t noh_character_step(noh_character *ch, const noh_anim_set *set, uint32_t ticks, noh_event_fn fn, void *user);
+uint32_t noh_character_step(noh_character *ch, const noh_clip_set *set, uint32_t ticks, noh_event_fn fn, void *user);
 
 /* The character is in view: choose its LOD levels and say whether an update is due. At most once a frame. The
  * controller's lod becomes the mesh level, its sampled joints those of the joint level.
- * units   pixels_per_metre at its nearest point (noh_detail_scale) */
-noh_due noh_character_look(noh_character *ch, const noh_detail_table *table, const noh_detail_settings *settings, float pixels_per_metre);
+ * units   pixels_per_metre at its nearest point (noh_lod_scale) */
+noh_due noh_character_look(noh_character *ch, const noh_lod_table *table, const noh_lod_settings *settings, float pixels_per_metre);
 
 /* Ticks since an update was due, for noh_schedule_offer. */
 uint32_t noh_character_late(const noh_character *ch);
 
-/* How many joints an update samples: joints times tracks in the pose, for noh_cost_of. */
-uint32_t noh_character_joints(const noh_character *ch);
+/* How many joints an update samples: joints times tracks in the pose, for noh_cost_ns. */
+uint32_t noh_character_joint_work(const noh_character *ch);
 
 /* Pose it, for this frame or for the next update: _begin and _end. Not within a callback of noh_character_step. */
-void noh_character_update(noh_character *ch, const noh_anim_set *set, const noh_skeleton *skeleton, const float *margin_m,
+void noh_character_update(noh_character *ch, const noh_clip_set *set, const noh_skeleton *skeleton, const float *joint_radius_m,
                           noh_character_scratch *scratch);
 
 /* First half: the local pose into scratch->local and scratch->floats, where a program may change it (look-at, IK). */
-void noh_character_update_begin(noh_character *ch, const noh_anim_set *set, noh_character_scratch *scratch);
+void noh_character_update_begin(noh_character *ch, const noh_clip_set *set, noh_character_scratch *scratch);
 
 /* Second half: matrices and bounds into the character. Joints that were not sampled move with their parents.
- * shapes  margin_m[joint_count], the joints' radii (bounds.h); NULL: no sphere is kept
+ * shapes  joint_radius_m[joint_count], the joints' radii (bounds.h); NULL: no sphere is kept
  * ranges  the same skeleton in all updates of a character */
-void noh_character_update_end(noh_character *ch, const noh_skeleton *skeleton, const float *margin_m, noh_character_scratch *scratch);
+void noh_character_update_end(noh_character *ch, const noh_skeleton *skeleton, const float *joint_radius_m, noh_character_scratch *scratch);
 
 /* The first joint_count matrices shown in this frame, once the character was updated, in the skeleton's order: as
  * noh_model_to_palette makes them of the skeleton that update_end was given. They are model-space joint matrices unless

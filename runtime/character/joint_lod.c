@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "anim/local_to_model.h"
+#include "pose/local_to_model.h"
 #include "base/arena.h"
 #include "character/measure_internal.h"
 
@@ -14,7 +14,7 @@ typedef struct work {
     float *floats;
 } work;
 
-static void carve(noh_arena *arena, const noh_anim_set *set, work *w)
+static void carve(noh_arena *arena, const noh_clip_set *set, work *w)
 {
     w->pose = (noh_transform *)noh_arena_carve(arena, set->joint_count * sizeof(noh_transform), 4);
     w->model = (float *)noh_arena_carve(arena, 12u * sizeof(float) * (size_t)set->joint_count, 4);
@@ -44,7 +44,7 @@ static float level_off(const noh_time_probe *p, work *w, uint32_t count, float w
         for (int i = 0; i < 12; i++) {
             difference[i] = to[i] - w->model[12u * (size_t)j + (size_t)i];
         }
-        worst = p->joint_reach_m[j] >= 0.0f ? noh_probe_off(difference, p->joint_reach_m[j], worst) : worst;
+        worst = p->joint_radius_m[j] >= 0.0f ? noh_probe_off(difference, p->joint_radius_m[j], worst) : worst;
     }
     return worst;
 }
@@ -62,17 +62,17 @@ static int bad_counts(const noh_skeleton *s, const uint32_t *counts, uint32_t le
     return 0;
 }
 
-noh_result noh_joint_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t motion, const uint32_t *counts,
+noh_result noh_joint_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t clip, const uint32_t *counts,
                                  uint32_t level_count, float *error_m, noh_error *error)
 {
-    const char *what = probe->joint_reach_m ? noh_probe_fault(probe, motion) : "probe: joint_reach_m is NULL";
+    const char *what = probe->joint_radius_m ? noh_probe_fault(probe, clip) : "probe: joint_radius_m is NULL";
     noh_arena arena;
     uint32_t duration;
     work w;
     noh_result result;
     NOH_ASSERT(probe && counts && error_m);
     if (what || bad_counts(probe->skeleton, counts, level_count)) {
-        return noh_fail(error, NOH_ERR_ARG, what ? what : "counts must fall, and hold all joints that have no parent", motion, 0);
+        return noh_fail(error, NOH_ERR_ARG, what ? what : "counts must fall, and hold all joints that have no parent", clip, 0);
     }
     result = noh_arena_open(&arena, memory, bytes, noh_joint_lod_measure_size(probe), error);
     if (result) {
@@ -80,9 +80,9 @@ noh_result noh_joint_lod_measure(void *memory, size_t bytes, const noh_time_prob
     }
     carve(&arena, probe->set, &w);
     memset(error_m, 0, level_count * sizeof *error_m);
-    duration = probe->set->motions[motion].duration_ticks;
+    duration = probe->set->clips[clip].duration_ticks;
     for (int64_t tick = 0; tick < (int64_t)duration + (int64_t)STEP_TICKS; tick += STEP_TICKS) {
-        noh_probe_sample(probe, motion, tick < (int64_t)duration ? tick : (int64_t)duration, NULL, w.pose, w.model, w.floats);
+        noh_probe_sample(probe, clip, tick < (int64_t)duration ? tick : (int64_t)duration, NULL, w.pose, w.model, w.floats);
         for (uint32_t i = 0; i < level_count; i++) {
             error_m[i] = level_off(probe, &w, counts[i], error_m[i]);
         }

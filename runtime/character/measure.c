@@ -1,41 +1,41 @@
 /* What the measurements of LOD errors share: measure_internal.h. */
-#include "anim/local_to_model.h"
+#include "pose/local_to_model.h"
 #include "anim/root_motion.h"
-#include "base/math.h"
+#include "base/math_internal.h"
 #include "character/measure_internal.h"
 
-const char *noh_probe_fault(const noh_time_probe *p, uint32_t motion)
+const char *noh_probe_fault(const noh_time_probe *p, uint32_t clip)
 {
     if (!p->set || !p->skeleton || p->skeleton->joint_count != p->set->joint_count) return "probe: NULL set or skeleton, or a skeleton of other joints";
-    if (motion >= p->set->motion_count) return "motion is not a clip of the set";
+    if (clip >= p->set->clip_count) return "clip is not a clip of the set";
     return NULL;
 }
 
-void noh_probe_travel(const noh_time_probe *p, uint32_t motion, noh_transform *pose, float *floats, float travel[3])
+void noh_probe_travel(const noh_time_probe *p, uint32_t clip, noh_transform *pose, float *floats, float travel[3])
 {
-    const noh_motion *m = &p->set->motions[motion];
+    const noh_clip_entry *m = &p->set->clips[clip];
     for (int i = 0; i < 3; i++) {
         travel[i] = 0.0f;
     }
     if (p->travels && m->loop == NOH_LOOP_REPEAT && p->set->joint_count) {
-        noh_root_sample_rest(p->set, motion, 0, 1, pose, floats);
+        noh_root_sample_rest(p->set, clip, 0, 1, pose, floats);
         for (int i = 0; i < 3; i++) {
             travel[i] = -pose[0].translation[i];
         }
-        noh_root_sample_rest(p->set, motion, m->duration_ticks, 1, pose, floats);
+        noh_root_sample_rest(p->set, clip, m->duration_ticks, 1, pose, floats);
         for (int i = 0; i < 3; i++) {
             travel[i] += pose[0].translation[i];
         }
     }
 }
 
-void noh_probe_sample(const noh_time_probe *p, uint32_t motion, int64_t tick, const float *travel, noh_transform *pose, float *model,
+void noh_probe_sample(const noh_time_probe *p, uint32_t clip, int64_t tick, const float *travel, noh_transform *pose, float *model,
                       float *floats)
 {
-    const noh_motion *m = &p->set->motions[motion];
-    const int64_t position = noh_position_of(tick), clip = noh_time_clip(position, m->duration_ticks, (noh_loop)m->loop);
+    const noh_clip_entry *m = &p->set->clips[clip];
+    const int64_t position = noh_position_of(tick), folded = noh_time_clip(position, m->duration_ticks, (noh_loop)m->loop);
     const float passes = (float)noh_time_legs(position, m->duration_ticks, (noh_loop)m->loop);
-    noh_root_sample_rest(p->set, motion, (uint32_t)(clip >> 16), p->set->joint_count, pose, floats);
+    noh_root_sample_rest(p->set, clip, (uint32_t)(folded >> 16), p->set->joint_count, pose, floats);
     noh_local_to_model(p->skeleton, pose, p->set->joint_count, model);
     for (size_t i = 0; travel && passes > 0.0f && i < 3u * (size_t)p->set->joint_count; i++) {
         model[4u * i + 3u] += passes * travel[i % 3u];

@@ -2,21 +2,21 @@
 #ifndef NOH_CHARACTER_MEASURE_INTERNAL_H
 #define NOH_CHARACTER_MEASURE_INTERNAL_H
 
-#include "anim/pose.h"
+#include "pose/pose.h"
 #include "base/arena.h"
 #include "character/time_lod.h"
 
-/* What is wrong with a probe or a clip; NULL: nothing. joint_reach_m is not looked at. */
-const char *noh_probe_fault(const noh_time_probe *probe, uint32_t motion);
+/* What is wrong with a probe or a clip; NULL: nothing. joint_radius_m is not looked at. */
+const char *noh_probe_fault(const noh_time_probe *probe, uint32_t clip);
 
 /* How far joint 0 travels in one pass of a repeating clip; 0 for other clips, or where the probe does not travel.
  * shapes  pose[joint_count], floats[float_count] to work in */
-void noh_probe_travel(const noh_time_probe *probe, uint32_t motion, noh_transform *pose, float *floats, float travel[3]);
+void noh_probe_travel(const noh_time_probe *probe, uint32_t clip, noh_transform *pose, float *floats, float travel[3]);
 
 /* The matrices and floats of a clip at a tick of its own clock, played in its own loop mode, moved by `travel` for every
  * pass completed; NULL: not moved.
  * shapes  pose[joint_count], model[joint_count][12], floats[float_count] */
-void noh_probe_sample(const noh_time_probe *probe, uint32_t motion, int64_t tick, const float *travel, noh_transform *pose, float *model,
+void noh_probe_sample(const noh_time_probe *probe, uint32_t clip, int64_t tick, const float *travel, noh_transform *pose, float *model,
                       float *floats);
 
 /* ---- rates ---- */
@@ -36,13 +36,13 @@ typedef struct noh_rate_work {
 /* The largest error of a mix of the two poses, `part` of the second, or `least` if that is larger. */
 typedef float (*noh_rate_off)(void *user, const noh_time_probe *probe, const noh_rate_work *work, float part, float least);
 
-void noh_rate_carve(noh_arena *arena, const noh_anim_set *set, noh_rate_work *work);
+void noh_rate_carve(noh_arena *arena, const noh_clip_set *set, noh_rate_work *work);
 
 /* The error of the probe's floats in a mix: the sum of their worst displacements. */
 float noh_rate_floats_off(const noh_time_probe *probe, const noh_rate_work *work, float part);
 
-/* error_m[NOH_RATE_COUNT] of a clip, over all periods and ticks that time_lod.h names. */
-void noh_rate_measure(const noh_time_probe *probe, uint32_t motion, noh_rate_off off, void *user, noh_rate_work *work, float *error_m);
+/* error_m[NOH_UPDATE_RATE_COUNT] of a clip, over all periods and ticks that time_lod.h names. */
+void noh_rate_measure(const noh_time_probe *probe, uint32_t clip, noh_rate_off off, void *user, noh_rate_work *work, float *error_m);
 
 /* ---- */
 

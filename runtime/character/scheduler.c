@@ -149,7 +149,7 @@ uint64_t noh_schedule_wait_max(uint32_t instances, uint64_t budget, uint32_t cos
 
 /* ---- costs ---- */
 
-uint32_t noh_cost_of(const noh_cost_weights *w, uint32_t joints, uint32_t pairs, uint32_t vertices)
+uint32_t noh_cost_ns(const noh_cost_weights *w, uint32_t joints, uint32_t pairs, uint32_t vertices)
 {
     double cost = (double)w->per_instance + (double)w->per_joint * joints + (double)w->per_pair * pairs + (double)w->per_vertex * vertices;
     NOH_ASSERT(w);

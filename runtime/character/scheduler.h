@@ -56,7 +56,7 @@ size_t noh_schedule_size(uint32_t capacity);
 /* errors  ARG capacity, or memory NULL or not 16-byte aligned; MEMORY too small; need: the exact bytes */
 noh_result noh_schedule_init(void *memory, size_t bytes, uint32_t capacity, noh_schedule *s, noh_error *error);
 
-/* units  budget and costs in any one unit (noh_cost_of: nanoseconds); ticks of 1/48,000 s */
+/* units  budget and costs in any one unit (noh_cost_ns: nanoseconds); ticks of 1/48,000 s */
 void noh_schedule_begin(noh_schedule *s, uint32_t frame_ticks, uint64_t budget);
 
 /* Charge the budget for work that is done in this frame in any case. */
@@ -84,7 +84,7 @@ typedef struct noh_cost_weights {
 } noh_cost_weights;
 
 /* Nanoseconds, rounded up; at least 1, saturating. */
-uint32_t noh_cost_of(const noh_cost_weights *weights, uint32_t joints, uint32_t pairs, uint32_t vertices);
+uint32_t noh_cost_ns(const noh_cost_weights *weights, uint32_t joints, uint32_t pairs, uint32_t vertices);
 
 #ifdef __cplusplus
 }

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "anim/local_to_model.h"
+#include "pose/local_to_model.h"
 #include "character/character_internal.h"
 #include "deform/skin.h"
 
@@ -50,8 +50,8 @@ int noh_skin_skeleton(const noh_skin *skin, const noh_skeleton *skeleton, float 
  * first, joint by joint, and the product follows where it is still to be made. */
 void noh_character_skin(const noh_character *ch, const noh_skin *skin, float *matrices)
 {
-    const uint32_t to = ch->time.to_slot;
-    const float *first = noh_character_slot_palette(ch, to ^ 1u), *last = noh_character_slot_palette(ch, to);
+    const uint32_t to = ch->time.to_pose;
+    const float *first = noh_character_pose_palette(ch, to ^ 1u), *last = noh_character_pose_palette(ch, to);
     const float part = noh_time_lod_fraction(&ch->time);
     const int multiplied = (int)(ch->multiplied >> to & 1u);
     NOH_ASSERT(ch->time.posed && skin && matrices);

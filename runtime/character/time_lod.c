@@ -4,10 +4,10 @@
 
 #include "anim/clock_internal.h"
 
-uint32_t noh_rate_period(noh_rate rate)
+uint32_t noh_update_period(noh_update_rate rate)
 {
-    static const uint32_t periods[NOH_RATE_COUNT] = { 0, NOH_TICKS_PER_SECOND / 30u, NOH_TICKS_PER_SECOND / 15u, NOH_TICKS_PER_SECOND / 8u };
-    NOH_ASSERT((unsigned)rate < NOH_RATE_COUNT);
+    static const uint32_t periods[NOH_UPDATE_RATE_COUNT] = { 0, NOH_TICKS_PER_SECOND / 30u, NOH_TICKS_PER_SECOND / 15u, NOH_TICKS_PER_SECOND / 8u };
+    NOH_ASSERT((unsigned)rate < NOH_UPDATE_RATE_COUNT);
     return periods[rate];
 }
 
@@ -19,17 +19,17 @@ void noh_time_lod_init(noh_time_lod *t, uint32_t instance)
 }
 
 /* The first of the instance's own update ticks after a clock. */
-static int64_t next_slot(uint32_t instance, int64_t clock, uint32_t period)
+static int64_t next_due(uint32_t instance, int64_t clock, uint32_t period)
 {
     const uint32_t golden = 2654435769u; /* 2^32 over the golden ratio */
     int64_t phase = (int64_t)(((uint64_t)(instance * golden) * period) >> 32), rest = noh_clock_since(clock, phase) % (int64_t)period;
     return noh_clock_add(clock, (int64_t)period - (rest < 0 ? rest + (int64_t)period : rest));
 }
 
-void noh_time_lod_frame(noh_time_lod *t, int64_t clock, noh_rate rate)
+void noh_time_lod_frame(noh_time_lod *t, int64_t clock, noh_update_rate rate)
 {
     int64_t ticks = noh_clock_since(clock, t->clock);
-    NOH_ASSERT(t && (unsigned)rate < NOH_RATE_COUNT);
+    NOH_ASSERT(t && (unsigned)rate < NOH_UPDATE_RATE_COUNT);
     t->frame_ticks = ticks < 0 ? 0 : ticks > UINT32_MAX ? UINT32_MAX : (uint32_t)ticks;
     t->clock = clock;
     t->wanted = (uint8_t)rate;
@@ -62,7 +62,7 @@ static noh_time_update update_exactly(noh_time_lod *t)
     t->from_clock = t->to_clock = t->clock;
     t->due_clock = noh_clock_add(t->clock, 1); /* with the next frame */
     u.pose_clock = t->clock;
-    u.slot = t->to_slot;
+    u.pose = t->to_pose;
     return u;
 }
 
@@ -71,7 +71,7 @@ static noh_time_update update_exactly(noh_time_lod *t)
 static int64_t interval_end(const noh_time_lod *t, uint32_t period, int restart)
 {
     int64_t longest = noh_clock_add(t->from_clock, period), shortest = noh_clock_add(t->from_clock, period / 2u);
-    int64_t end = next_slot(t->instance, t->clock, period);
+    int64_t end = next_due(t->instance, t->clock, period);
     end = end > longest ? longest : end;
     return restart && end < shortest ? shortest : end;
 }
@@ -84,20 +84,20 @@ static noh_time_update update_ahead(noh_time_lod *t, uint32_t period)
     if (early) {
         u.keep = noh_time_lod_fraction(t);
     } else {
-        t->to_slot ^= 1u;
+        t->to_pose ^= 1u;
     }
     t->from_clock = early || held ? t->clock : t->to_clock;
     t->to_clock = t->due_clock = interval_end(t, period, early || held);
     u.pose_clock = t->to_clock;
-    u.slot = t->to_slot;
+    u.pose = t->to_pose;
     return u;
 }
 
 noh_time_update noh_time_lod_update(noh_time_lod *t)
 {
-    uint32_t period = noh_rate_period((noh_rate)t->wanted);
+    uint32_t period = noh_update_period((noh_update_rate)t->wanted);
     int exact = period == 0 || t->frame_ticks >= period || noh_time_lod_due(t) == NOH_DUE_AT_ONCE;
-    NOH_ASSERT(t->to_slot < 2u);
+    NOH_ASSERT(t->to_pose < 2u);
     t->posed = 1;
     t->running = t->wanted;
     return exact ? update_exactly(t) : update_ahead(t, period);
@@ -124,21 +124,21 @@ static float haste(const noh_track *track)
     return square > 1.0f ? square : 1.0f;
 }
 
-void noh_time_lod_error(const noh_controller *c, const float *motion_error_m, float *error_m)
+void noh_time_lod_error(const noh_controller *c, const float *clip_error_m, float *error_m)
 {
-    float added[NOH_RATE_COUNT] = { 0.0f };
-    NOH_ASSERT(c && motion_error_m && error_m);
-    for (int r = 0; r < NOH_RATE_COUNT; r++) {
+    float added[NOH_UPDATE_RATE_COUNT] = { 0.0f };
+    NOH_ASSERT(c && clip_error_m && error_m);
+    for (int r = 0; r < NOH_UPDATE_RATE_COUNT; r++) {
         error_m[r] = 0.0f;
     }
     for (uint32_t i = 0; i < c->track_count; i++) {
         const noh_track *track = noh_controller_track(c, i);
-        const float *of_motion = motion_error_m + (size_t)track->motion * NOH_RATE_COUNT;
+        const float *of_clip = clip_error_m + (size_t)track->clip * NOH_UPDATE_RATE_COUNT;
         if (track->mode != NOH_TRACK_ON || !(track->weight > 0.0f)) {
             continue;
         }
-        for (int r = 0; r < NOH_RATE_COUNT; r++) {
-            float off = of_motion[r] * haste(track);
+        for (int r = 0; r < NOH_UPDATE_RATE_COUNT; r++) {
+            float off = of_clip[r] * haste(track);
             if (track->flags & NOH_TRACK_ADDITIVE) {
                 added[r] += track->weight * off;
             } else {
@@ -146,7 +146,7 @@ void noh_time_lod_error(const noh_controller *c, const float *motion_error_m, fl
             }
         }
     }
-    for (int r = 0; r < NOH_RATE_COUNT; r++) {
+    for (int r = 0; r < NOH_UPDATE_RATE_COUNT; r++) {
         error_m[r] += added[r];
     }
 }

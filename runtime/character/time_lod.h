@@ -23,8 +23,8 @@
 #define NOH_CHARACTER_TIME_LOD_H
 
 #include "anim/controller.h"
-#include "anim/skeleton.h"
-#include "character/detail.h"
+#include "pose/skeleton.h"
+#include "character/lod.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -39,21 +39,21 @@ typedef struct noh_time_lod {
     int64_t clock;                /* of the last frame */
     uint32_t frame_ticks;         /* from the frame before it to that one */
     uint32_t instance;
-    uint8_t wanted, running;      /* noh_rate: as chosen last, and of the mix that is shown */
-    uint8_t to_slot;              /* target slot, 0 or 1; the other is the source */
+    uint8_t wanted, running;      /* noh_update_rate: as chosen last, and of the mix that is shown */
+    uint8_t to_pose;              /* target pose, 0 or 1; the other is the source */
     uint8_t posed;                /* 0: no valid pose yet */
     uint8_t reserved[4];
 } noh_time_lod;
 
 NOH_STATIC_ASSERT(sizeof(noh_time_lod) == 48, time_lod);
 
-/* Ticks between updates; 0 for NOH_RATE_FULL. */
-uint32_t noh_rate_period(noh_rate rate);
+/* Ticks between updates; 0 for NOH_UPDATE_RATE_FULL. */
+uint32_t noh_update_period(noh_update_rate rate);
 
 void noh_time_lod_init(noh_time_lod *t, uint32_t instance);
 
 /* Call once in each frame in which the instance is in view. Frames of an update period or longer are posed exactly. */
-void noh_time_lod_frame(noh_time_lod *t, int64_t clock, noh_rate rate);
+void noh_time_lod_frame(noh_time_lod *t, int64_t clock, noh_update_rate rate);
 
 typedef enum noh_due {
     NOH_DUE_NOT = 0, /* the mix is still valid */
@@ -69,14 +69,14 @@ uint32_t noh_time_lod_late(const noh_time_lod *t);
 /* The two steps of an update. */
 typedef struct noh_time_update {
     int64_t pose_clock; /* second: pose the instance as it will be at this clock (this frame's, or later) */
-    float keep;         /* first, below 1: replace the pose in the other slot by the mix of both at this fraction, as shown now */
-    uint8_t slot;       /* second: into this slot; the other becomes the source */
+    float keep;         /* first, below 1: replace the pose in the other pose by the mix of both at this fraction, as shown now */
+    uint8_t pose;       /* second: into this pose; the other becomes the source */
 } noh_time_update;
 
 /* Begin an update; allowed in any frame, due or not. */
 noh_time_update noh_time_lod_update(noh_time_lod *t);
 
-/* The mix of this frame: 0 the source, 1 the target (to_slot). */
+/* The mix of this frame: 0 the source, 1 the target (to_pose). */
 float noh_time_lod_fraction(const noh_time_lod *t);
 
 /* Tracks were changed: an update is due from now on. */
@@ -86,10 +86,10 @@ void noh_time_lod_wake(noh_time_lod *t);
 
 /* What a clip is measured for. All borrowed. */
 typedef struct noh_time_probe {
-    const noh_anim_set *set;
+    const noh_clip_set *set;
     const noh_skeleton *skeleton;  /* of the set */
-    const float *joint_reach_m;    /* [joint_count] radius of each joint's vertices in the bind pose; below 0: it moves none */
-    const float *float_reach_m;    /* [float_count] the most that each float moves a vertex at weight 1; NULL: floats are left out */
+    const float *joint_radius_m;    /* [joint_count] radius of each joint's vertices in the bind pose; below 0: it moves none */
+    const float *float_radius_m;    /* [float_count] the most that each float moves a vertex at weight 1; NULL: floats are left out */
     int travels;                   /* 1: each pass of a repeating clip begins where joint 0 ended the one before, as if its translation
                                     * were root motion (for a set that will extract it, but does not yet); 0: it jumps back */
 } noh_time_probe;
@@ -100,18 +100,18 @@ size_t noh_time_lod_measure_size(const noh_time_probe *probe);
 /* Measure the largest error of a clip, played in its own loop mode, at each update rate: over periods that begin every 400
  * ticks, every 200 ticks within each, for any point within a joint's radius, in object space (without root motion where
  * the set extracts it). For converters and for load time: ten seconds of 31 joints take about 0.1 s.
- * shapes  error_m[NOH_RATE_COUNT]; at the full rate it is 0
+ * shapes  error_m[NOH_UPDATE_RATE_COUNT]; at the full rate it is 0
  * units   model units, as metres
- * errors  ARG probe, motion, or memory NULL or not 16-byte aligned; MEMORY too small; need: the exact bytes
+ * errors  ARG probe, clip, or memory NULL or not 16-byte aligned; MEMORY too small; need: the exact bytes
  * The result is the largest error found, not a proof for all ticks. At each tick it is a bound: a difference of two matrices
  * moves a point by at most its norm, which is overestimated by up to 15 % (the Schatten 8-norm) */
-noh_result noh_time_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t motion, float *error_m, noh_error *error);
+noh_result noh_time_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t clip, float *error_m, noh_error *error);
 
 /* The errors of what a controller plays: the largest among its blended tracks plus the weighted sum of its additive ones.
  * The error of a track faster than 1 grows with the square of its playback speed, as interpolation's does where a clip is
  * smooth over an update period.
- * shapes  motion_error_m[motion_count of the set][NOH_RATE_COUNT], error_m[NOH_RATE_COUNT] */
-void noh_time_lod_error(const noh_controller *c, const float *motion_error_m, float *error_m);
+ * shapes  clip_error_m[clip_count of the set][NOH_UPDATE_RATE_COUNT], error_m[NOH_UPDATE_RATE_COUNT] */
+void noh_time_lod_error(const noh_controller *c, const float *clip_error_m, float *error_m);
 
 #ifdef __cplusplus
 }

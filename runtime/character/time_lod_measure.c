@@ -21,31 +21,31 @@ static float pose_off(void *user, const noh_time_probe *p, const noh_rate_work *
     for (size_t j = 0; j < p->set->joint_count; j++) {
         const float *from = w->from.model + 12u * j, *to = w->to.model + 12u * j, *right = w->right.model + 12u * j;
         float difference[12];
-        for (int i = 0; p->joint_reach_m[j] >= 0.0f && i < 12; i++) {
+        for (int i = 0; p->joint_radius_m[j] >= 0.0f && i < 12; i++) {
             difference[i] = from[i] + (to[i] - from[i]) * part - right[i];
         }
-        worst = p->joint_reach_m[j] >= 0.0f ? noh_probe_off(difference, p->joint_reach_m[j], worst) : worst;
+        worst = p->joint_radius_m[j] >= 0.0f ? noh_probe_off(difference, p->joint_radius_m[j], worst) : worst;
     }
     /* Where nothing worse was found `least` is returned as it came: subtracting the floats and adding them again would let it
      * creep up by rounding. */
     return (worst > enough || floats > least) && worst + floats > least ? worst + floats : least;
 }
 
-noh_result noh_time_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t motion, float *error_m, noh_error *error)
+noh_result noh_time_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t clip, float *error_m, noh_error *error)
 {
-    const char *what = probe->joint_reach_m ? noh_probe_fault(probe, motion) : "probe: joint_reach_m is NULL";
+    const char *what = probe->joint_radius_m ? noh_probe_fault(probe, clip) : "probe: joint_radius_m is NULL";
     noh_result result;
     noh_arena arena;
     noh_rate_work w;
     NOH_ASSERT(probe && error_m);
     if (what) {
-        return noh_fail(error, NOH_ERR_ARG, what, motion, 0);
+        return noh_fail(error, NOH_ERR_ARG, what, clip, 0);
     }
     result = noh_arena_open(&arena, memory, bytes, noh_time_lod_measure_size(probe), error);
     if (result) {
         return result;
     }
     noh_rate_carve(&arena, probe->set, &w);
-    noh_rate_measure(probe, motion, pose_off, NULL, &w, error_m);
+    noh_rate_measure(probe, clip, pose_off, NULL, &w, error_m);
     return NOH_OK;
 }

@@ -1,22 +1,22 @@
 #include "character/time_lod_points.h"
 
 #include "base/arena.h"
-#include "base/math.h"
+#include "base/math_internal.h"
 #include "character/measure_internal.h"
 
 typedef struct work {
-    const noh_time_points *points;
+    const noh_time_lod_points *points;
     float *off; /* [joint_count][12] the error of each joint's matrix: mixed minus true */
     noh_rate_work rates;
 } work;
 
-static void carve(noh_arena *arena, const noh_anim_set *set, work *w)
+static void carve(noh_arena *arena, const noh_clip_set *set, work *w)
 {
     noh_rate_carve(arena, set, &w->rates);
     w->off = (float *)noh_arena_carve(arena, 12u * sizeof(float) * (size_t)set->joint_count, 4);
 }
 
-size_t noh_time_points_size(const noh_time_probe *probe)
+size_t noh_time_lod_points_size(const noh_time_probe *probe)
 {
     noh_arena arena = noh_arena_measure();
     work w;
@@ -42,7 +42,7 @@ static float point_off(const noh_time_hold *holds, uint32_t count, const float *
 static float pose_off(void *user, const noh_time_probe *p, const noh_rate_work *w, float part, float least)
 {
     const work *own = (const work *)user;
-    const noh_time_points *points = own->points;
+    const noh_time_lod_points *points = own->points;
     float worst = 0.0f;
     for (size_t i = 0; i < 12u * (size_t)p->set->joint_count; i++) {
         const float from = w->from.model[i];
@@ -56,10 +56,10 @@ static float pose_off(void *user, const noh_time_probe *p, const noh_rate_work *
     return worst > least ? worst : least;
 }
 
-static const char *bad_argument(const noh_time_probe *p, const noh_time_points *points, uint32_t motion, size_t *where)
+static const char *bad_argument(const noh_time_probe *p, const noh_time_lod_points *points, uint32_t clip, size_t *where)
 {
-    const char *what = noh_probe_fault(p, motion);
-    *where = motion;
+    const char *what = noh_probe_fault(p, clip);
+    *where = clip;
     if (what) return what;
     *where = 0;
     if (!points->holds || !points->point_count || !points->holds_per_point) return "points: none";
@@ -70,11 +70,11 @@ static const char *bad_argument(const noh_time_probe *p, const noh_time_points *
     return NULL;
 }
 
-noh_result noh_time_points_measure(void *memory, size_t bytes, const noh_time_probe *probe, const noh_time_points *points, uint32_t motion,
+noh_result noh_time_lod_points_measure(void *memory, size_t bytes, const noh_time_probe *probe, const noh_time_lod_points *points, uint32_t clip,
                                    float *error_m, noh_error *error)
 {
     size_t where;
-    const char *what = bad_argument(probe, points, motion, &where);
+    const char *what = bad_argument(probe, points, clip, &where);
     noh_arena arena;
     noh_result result;
     work w;
@@ -82,12 +82,12 @@ noh_result noh_time_points_measure(void *memory, size_t bytes, const noh_time_pr
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, where, 0);
     }
-    result = noh_arena_open(&arena, memory, bytes, noh_time_points_size(probe), error);
+    result = noh_arena_open(&arena, memory, bytes, noh_time_lod_points_size(probe), error);
     if (result) {
         return result;
     }
     carve(&arena, probe->set, &w);
     w.points = points;
-    noh_rate_measure(probe, motion, pose_off, &w, &w.rates, error_m);
+    noh_rate_measure(probe, clip, pose_off, &w, &w.rates, error_m);
     return NOH_OK;
 }

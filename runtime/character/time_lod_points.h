@@ -20,21 +20,21 @@ typedef struct noh_time_hold {
     float place[3];
 } noh_time_hold;
 
-typedef struct noh_time_points {
+typedef struct noh_time_lod_points {
     const noh_time_hold *holds; /* [point_count][holds_per_point]; the weights of a point sum to 1 */
     uint32_t point_count, holds_per_point;
-} noh_time_points;
+} noh_time_lod_points;
 
 /* Bytes of the working memory that measuring takes. */
-size_t noh_time_points_size(const noh_time_probe *probe);
+size_t noh_time_lod_points_size(const noh_time_probe *probe);
 
 /* Measure the largest error of any point at each update rate, over the periods and ticks of noh_time_lod_measure, plus what
- * the probe's floats add. joint_reach_m is not read. Ten seconds of 31 joints and 128 points take about 0.2 s.
- * shapes  error_m[NOH_RATE_COUNT]; at the full rate it is 0
+ * the probe's floats add. joint_radius_m is not read. Ten seconds of 31 joints and 128 points take about 0.2 s.
+ * shapes  error_m[NOH_UPDATE_RATE_COUNT]; at the full rate it is 0
  * units   model units, as metres
- * errors  ARG probe, motion, points (none, or no such joint; where: the hold), or memory NULL or not 16-byte aligned; MEMORY
+ * errors  ARG probe, clip, points (none, or no such joint; where: the hold), or memory NULL or not 16-byte aligned; MEMORY
  *         too small; need: the exact bytes */
-noh_result noh_time_points_measure(void *memory, size_t bytes, const noh_time_probe *probe, const noh_time_points *points, uint32_t motion,
+noh_result noh_time_lod_points_measure(void *memory, size_t bytes, const noh_time_probe *probe, const noh_time_lod_points *points, uint32_t clip,
                                    float *error_m, noh_error *error);
 
 #ifdef __cplusplus

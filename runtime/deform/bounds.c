@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "base/math.h"
+#include "base/math_internal.h"
 
 /* Rounding of a moved vertex is below this share of the largest terms that are summed: eight products and sums of
  * matrices, four of the vertex, each within 2^-24. */

@@ -2,9 +2,9 @@
 
 #include <string.h>
 
-#include "base/math.h"
+#include "base/math_internal.h"
 #include "base/quat.h"
-#include "deform/skin_blend.h"
+#include "deform/skin_blend_internal.h"
 
 #define POLAR_STEPS 24 /* axes of 1000 : 1 need 14: each step halves the ratio until it is small, then doubles the digits */
 

@@ -1,7 +1,7 @@
 /* dual_quaternion.h: skinning that keeps volume where joints twist.
  *
  * Linear blending of matrices flattens what lies between two joints that twist against
- * each other ("candy wrapper"); blending rigid motions as dual quaternions does not.
+ * each other ("candy wrapper"); blending rigid clips as dual quaternions does not.
  *
  * A joint's matrix M (position = A p + t) is split as A = R H, R a rotation and H
  * symmetric (polar decomposition): first the mesh is stretched, then it moves rigidly.
@@ -29,7 +29,7 @@
 extern "C" {
 #endif
 
-/* One joint: 2 x 4 floats of rigid motion and the stretch. */
+/* One joint: 2 x 4 floats of rigid clip and the stretch. */
 typedef struct noh_dual_quaternion {
     float real[4];    /* xyzw, unit */
     float dual[4];

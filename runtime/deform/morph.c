@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-#include "base/math.h"
-#include "deform/morph_kernel.h"
+#include "base/math_internal.h"
+#include "deform/morph_kernel_internal.h"
 
 static noh_field make_field(unsigned before, unsigned bits, float weight)
 {
@@ -172,7 +172,7 @@ void noh_morph_vertex(const noh_mesh *mesh, const noh_morph_layers *layers, uint
 {
     float rest_normal[3], rest_tangent[3];
     const float *p, *n, *t;
-    size_t texel = noh_mesh_texel(mesh, index);
+    size_t texel = noh_mesh_accumulation_texel(mesh, index);
     noh_mesh_vertex(mesh, index, out);
     if (texel >= mesh->header->touched_count) {
         return;
@@ -199,7 +199,7 @@ void noh_morph_vertex(const noh_mesh *mesh, const noh_morph_layers *layers, uint
 
 void noh_morph_position(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t index, float out[3])
 {
-    size_t texel = noh_mesh_texel(mesh, index);
+    size_t texel = noh_mesh_accumulation_texel(mesh, index);
     memcpy(out, mesh->positions + 3u * (size_t)index, 3 * sizeof *out);
     for (size_t i = 0; layers && texel < mesh->header->touched_count && i < 3; i++) {
         out[i] += layers->position[3u * texel + i];

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "base/arena.h"
-#include "base/math.h"
+#include "base/math_internal.h"
 #include "deform/bounds.h"
 #include "deform/skin.h"
 

@@ -2,10 +2,10 @@
 
 #include <string.h>
 
-#include "anim/local_to_model.h"
-#include "base/math.h"
-#include "deform/skin_blend.h"
-#include "deform/skin_kernel.h"
+#include "pose/local_to_model.h"
+#include "base/math_internal.h"
+#include "deform/skin_blend_internal.h"
+#include "deform/skin_kernel_internal.h"
 
 /* The benches and tests build this file again for other instruction sets, under other names. */
 #ifndef NOH_SKIN_VERTICES
@@ -97,7 +97,7 @@ void noh_skin_vertex(const noh_mesh *mesh, const float *matrices, const noh_morp
 {
     float m[12];
     blend_matrix(mesh, matrices, index, m);
-    if (layers && noh_mesh_texel(mesh, index) < mesh->header->touched_count) {
+    if (layers && noh_mesh_accumulation_texel(mesh, index) < mesh->header->touched_count) {
         noh_morph_vertex(mesh, layers, index, out);
     } else {
         noh_mesh_vertex(mesh, index, out);

@@ -82,18 +82,18 @@ static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, cons
 
 /* ---- drawing ---- */
 
-static const noh_gl_detail whole = { 0, 0.0f, 1.0f };
+static const noh_gl_lod whole = { 0, 0.0f, 1.0f };
 
 /* NULL where the renderer's desc had no such draw, or no pixel is to be drawn. */
 static const noh_gl_variant *variant_of(const noh_gl_renderer *r, const noh_gl_mesh *mesh, const noh_gl_skin_binding *skin, int crowd,
-                                        const noh_gl_detail *detail)
+                                        const noh_gl_lod *lod)
 {
     noh_gl_variant_key key = noh_gl_variant_key_of(&mesh->mesh, skin, crowd, r->layers_uint, r->view);
     const noh_gl_variant *v;
-    key.fade = detail->from > 0.0f || detail->to < 1.0f;
+    key.fade = lod->from > 0.0f || lod->to < 1.0f;
     v = noh_gl_renderer_variant(r, key);
     NOH_ASSERT(v);
-    return detail->from < detail->to ? v : NULL;
+    return lod->from < lod->to ? v : NULL;
 }
 
 static void draw_submesh(const noh_gl_renderer *r, const noh_gl_mesh *mesh, const noh_submesh *s, size_t level_first, uint32_t count)
@@ -107,13 +107,13 @@ static void draw_submesh(const noh_gl_renderer *r, const noh_gl_mesh *mesh, cons
 }
 
 static void draw_submeshes(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_gl_mesh *mesh,
-                           const noh_gl_skin_binding *skin, uint32_t count, const noh_gl_detail *detail,
+                           const noh_gl_skin_binding *skin, uint32_t count, const noh_gl_lod *lod,
                            const noh_gl_texture *pictures, int pass)
 {
     size_t first;
-    const noh_mesh level = noh_gl_mesh_level(mesh, detail->level, &first);
+    const noh_mesh level = noh_gl_mesh_lod(mesh, lod->level, &first);
     uint32_t palette = NOH_NONE;
-    r->gl->Uniform3f(v->u_detail, detail->from, detail->to, (float)level.header->level);
+    r->gl->Uniform3f(v->u_lod, lod->from, lod->to, (float)level.header->level);
     if (pass == NOH_DRAW_BLENDED) {
         r->gl->Enable(GL_BLEND);
         r->gl->DepthMask(GL_FALSE);
@@ -138,10 +138,10 @@ static void draw_submeshes(const noh_gl_renderer *r, const noh_gl_variant *v, co
 }
 
 void noh_gl_draw_mesh(const noh_gl_renderer *r, const noh_gl_mesh *mesh, const float world[12],
-                      const noh_gl_morph_binding *morph, const noh_gl_skin_binding *skin, const noh_gl_detail *detail,
+                      const noh_gl_morph_binding *morph, const noh_gl_skin_binding *skin, const noh_gl_lod *lod,
                       const noh_gl_texture *pictures, int pass)
 {
-    const noh_gl_detail *d = detail ? detail : &whole;
+    const noh_gl_lod *d = lod ? lod : &whole;
     const noh_gl_variant *v = variant_of(r, mesh, skin, 0, d);
     NOH_ASSERT(world && mesh->vertex_array && (pass == NOH_DRAW_OPAQUE || pass == NOH_DRAW_BLENDED));
     NOH_ASSERT(!morph || morph->is_uint == r->layers_uint);
@@ -153,10 +153,10 @@ void noh_gl_draw_mesh(const noh_gl_renderer *r, const noh_gl_mesh *mesh, const f
 }
 
 void noh_gl_draw_crowd(const noh_gl_renderer *r, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph,
-                       const noh_gl_skin_binding *first, uint32_t count, const noh_gl_detail *detail,
+                       const noh_gl_skin_binding *first, uint32_t count, const noh_gl_lod *lod,
                        const noh_gl_texture *pictures, int pass)
 {
-    const noh_gl_detail *d = detail ? detail : &whole;
+    const noh_gl_lod *d = lod ? lod : &whole;
     const noh_gl_variant *v = variant_of(r, mesh, first, 1, d);
     NOH_ASSERT(mesh->vertex_array && (pass == NOH_DRAW_OPAQUE || pass == NOH_DRAW_BLENDED));
     NOH_ASSERT(!morph || morph->is_uint == r->layers_uint);

@@ -4,7 +4,7 @@
  * colour textures and vertex colours. A game has its own shaders (gl_shader_text.h)
  * and needs only noh_gl_mesh, a noh_gl_morph_binding and a noh_gl_skin_binding.
  *
- * Threads: the context's own thread; noh_gl_mesh_bytes, noh_gl_mesh_level and noh_gl_picture_bytes, any. */
+ * Threads: the context's own thread; noh_gl_mesh_bytes, noh_gl_mesh_lod and noh_gl_picture_bytes, any. */
 #ifndef NOH_GL_GL_DRAW_H
 #define NOH_GL_GL_DRAW_H
 
@@ -48,7 +48,7 @@ noh_result noh_gl_mesh_restore(const noh_gl_api *api, noh_gl_ledger *ledger, noh
 
 /* The view that a draw of an LOD level uses. level 0 is the full mesh; it is clamped to the levels that were uploaded.
  * first  byte offset of its indices in the index buffer; a submesh's first_index counts from there */
-noh_mesh noh_gl_mesh_level(const noh_gl_mesh *mesh, uint32_t level, size_t *first);
+noh_mesh noh_gl_mesh_lod(const noh_gl_mesh *mesh, uint32_t level, size_t *first);
 
 /* GPU bytes of a pack's texture with its mip levels: exact. */
 uint64_t noh_gl_picture_bytes(const noh_texture *texture);
@@ -69,7 +69,7 @@ typedef struct noh_gl_renderer_desc {
     noh_palette_mode palettes; /* noh_gl_skin_plan.mode; 0: nothing is skinned, all meshes are in their bind pose */
     int crowds;                /* noh_gl_draw_crowd will be called: wants NOH_PALETTE_TEXTURE */
     int fewer_influences;      /* bindings will lower `influences` */
-    int fades;                 /* draws will fade (noh_gl_detail): variants that discard pixels beside those that do not */
+    int fades;                 /* draws will fade (noh_gl_lod): variants that discard pixels beside those that do not */
     int encode_srgb;           /* the shader encodes: for a target that is not sRGB, as WebGL's canvas. 0: the target does */
 } noh_gl_renderer_desc;
 
@@ -114,13 +114,13 @@ void noh_gl_draw_begin(const noh_gl_renderer *renderer, const noh_gl_camera *cam
 #define NOH_DRAW_BLENDED 1
 
 /* The LOD level of a draw, and which of its pixels are drawn. A change of level is faded by two draws, the new level with
- * (0, f) and the old one with (f, 1), f as in noh_detail_fade: a pixel that both cover is drawn by exactly one of them,
+ * (0, f) and the old one with (f, 1), f as in noh_lod_fade: a pixel that both cover is drawn by exactly one of them,
  * so colour and depth are those of one surface. The pattern is fixed to the screen. */
-typedef struct noh_gl_detail {
-    uint32_t level; /* as noh_gl_mesh_level takes it; influences are the skin binding's, joints those of its matrices */
+typedef struct noh_gl_lod {
+    uint32_t level; /* as noh_gl_mesh_lod takes it; influences are the skin binding's, joints those of its matrices */
     float from, to; /* pixels are drawn where from <= noise < to, noise in [0, 1); 0 and 1: all. Other values want a
                      * renderer with `fades` */
-} noh_gl_detail;
+} noh_gl_lod;
 
 /* Draw a mesh's submeshes of one pass: draw every mesh opaque, then every mesh blended. A mesh that needs a variant which
  * was not in the renderer's desc is not drawn (and asserts).
@@ -129,14 +129,14 @@ typedef struct noh_gl_detail {
  * skin    where the joints are; NULL: rigid, or the bind pose
  * detail  NULL: the finest level that is there, all pixels */
 void noh_gl_draw_mesh(const noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const float world[12],
-                      const noh_gl_morph_binding *morph, const noh_gl_skin_binding *skin, const noh_gl_detail *detail,
+                      const noh_gl_morph_binding *morph, const noh_gl_skin_binding *skin, const noh_gl_lod *lod,
                       const noh_gl_texture *pictures, int pass);
 
 /* The same for `count` instances of one mesh, beginning with that of the binding `first`: one draw per submesh for all.
  * Each stands where noh_gl_skin_set_place put it; rigid meshes work too. morph: any instance's binding. Blended submeshes
  * of a crowd are not sorted. Palettes must be in a texture. */
 void noh_gl_draw_crowd(const noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph,
-                       const noh_gl_skin_binding *first, uint32_t count, const noh_gl_detail *detail,
+                       const noh_gl_skin_binding *first, uint32_t count, const noh_gl_lod *lod,
                        const noh_gl_texture *pictures, int pass);
 
 /* Unbind program, vertex array, textures and uniform buffer; depth test, culling and blending are then off. */

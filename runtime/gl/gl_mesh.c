@@ -164,11 +164,11 @@ noh_result noh_gl_mesh_restore(const noh_gl_api *api, noh_gl_ledger *ledger, noh
     return noh_gl_mesh_create(api, ledger, &view, mesh, error);
 }
 
-noh_mesh noh_gl_mesh_level(const noh_gl_mesh *mesh, uint32_t level, size_t *first)
+noh_mesh noh_gl_mesh_lod(const noh_gl_mesh *mesh, uint32_t level, size_t *first)
 {
     NOH_ASSERT(mesh && mesh->mesh.header && first);
     const noh_mesh_header *resident = mesh->mesh.header;
-    const noh_mesh view = level > resident->level ? noh_mesh_at_level(&mesh->mesh, level) : mesh->mesh;
+    const noh_mesh view = level > resident->level ? noh_mesh_at_lod(&mesh->mesh, level) : mesh->mesh;
     *first = view.header->indices_offset - resident->indices_offset;
     return view;
 }

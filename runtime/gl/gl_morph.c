@@ -24,7 +24,7 @@ static void label_objects(const noh_gl_morph *m)
 {
     const struct { GLuint name; const char *what; } textures[] = {
         { m->layers.name, "morph layers" }, { m->deltas.texture.name, "morph deltas" },
-        { m->rects.texture.name, "morph table" }, { m->slot_table.texture.name, "morph slots" }
+        { m->rects.texture.name, "morph table" }, { m->record_table.texture.name, "morph records" }
     };
     for (unsigned i = 0; i < sizeof textures / sizeof textures[0]; i++) {
         if (textures[i].name) {
@@ -37,7 +37,7 @@ static noh_result make_gl_objects(noh_gl_morph *m, char *log, size_t log_bytes, 
 {
     noh_result result = create_layers(m, error);
     if (!result && m->plan.path != NOH_MORPH_CPU) {
-        result = noh_gl_table_create(m->gl, m->ledger, GL_RGBA32UI, m->plan.weight_count, &m->slot_table, error);
+        result = noh_gl_table_create(m->gl, m->ledger, GL_RGBA32UI, m->plan.weight_count, &m->record_table, error);
         if (!result && m->plan.path == NOH_MORPH_GATHER) {
             result = noh_gl_morph_init_gather(m, log, log_bytes, error);
         } else if (!result) {
@@ -144,7 +144,7 @@ static void delete_objects(noh_gl_morph *m, const noh_gl_api *gl)
         m->vertex_array = 0;
     }
     noh_gl_buffer_delete(gl, m->ledger, &m->stream);
-    noh_gl_texture_delete(gl, m->ledger, &m->slot_table.texture);
+    noh_gl_texture_delete(gl, m->ledger, &m->record_table.texture);
     noh_gl_texture_delete(gl, m->ledger, &m->rects.texture);
     noh_gl_texture_delete(gl, m->ledger, &m->deltas.texture);
     noh_gl_texture_delete(gl, m->ledger, &m->layers);
@@ -223,7 +223,7 @@ noh_result noh_gl_morph_set_weights(noh_gl_morph *morph, uint32_t instance, cons
     return NOH_OK;
 }
 
-void noh_gl_morph_set_level(noh_gl_morph *morph, uint32_t instance, uint32_t level)
+void noh_gl_morph_set_lod(noh_gl_morph *morph, uint32_t instance, uint32_t level)
 {
     const noh_mesh_header *h;
     uint32_t before;

@@ -5,7 +5,7 @@
  *   noh_gl_morph_delete       delete the GL objects
  *   noh_gl_morph_restore      make them again after a lost context
  *   noh_gl_morph_set_weights  one instance's weights; cheap when they did not change
- *   noh_gl_morph_set_level    accumulate only what an LOD level of an instance needs
+ *   noh_gl_morph_set_lod    accumulate only what an LOD level of an instance needs
  *   noh_gl_morph_update       accumulate the instances whose weights changed
  *   noh_gl_morph_binding_of   where a vertex shader finds an instance's deltas
  *   noh_gl_morph_plan_of      the plan that it was built by
@@ -144,7 +144,7 @@ noh_result noh_gl_morph_set_weights(noh_gl_morph *morph, uint32_t instance, cons
  * ranges  level 0 is the full mesh; clamped to the levels that the mesh of the desc has
  * A finer level is accumulated by the next update. A coarser one costs nothing and takes effect when the weights next
  * change. */
-void noh_gl_morph_set_level(noh_gl_morph *morph, uint32_t instance, uint32_t level);
+void noh_gl_morph_set_lod(noh_gl_morph *morph, uint32_t instance, uint32_t level);
 
 /* Accumulate the instances whose weights or level changed. stats may be NULL.
  * state   Afterwards: framebuffer 0, vertex array 0, program 0, array buffer 0 and textures of

@@ -18,7 +18,7 @@
 
 static noh_result create_program(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
 {
-    static const char *const samplers[] = { "u_deltas", "u_rects", "u_slots" };
+    static const char *const samplers[] = { "u_deltas", "u_rects", "u_records" };
     noh_gl_program_desc desc;
     memset(&desc, 0, sizeof desc);
     desc.name = noh_morph_path_name(m->plan.path);
@@ -114,7 +114,7 @@ noh_result noh_gl_morph_init_blend(noh_gl_morph *m, char *log, size_t log_bytes,
     if (!result) result = create_framebuffers(m, error);
     if (!result) result = create_tables(m, error);
     if (!result) {
-        result = noh_gl_morph_stream(m, "a_rect_slot", 2, m->wide ? GL_UNSIGNED_INT : GL_UNSIGNED_SHORT, error);
+        result = noh_gl_morph_stream(m, "a_rect_record", 2, m->wide ? GL_UNSIGNED_INT : GL_UNSIGNED_SHORT, error);
     }
     if (!result) {
         noh_gl_morph_constants(m);
@@ -125,19 +125,19 @@ noh_result noh_gl_morph_init_blend(noh_gl_morph *m, char *log, size_t log_bytes,
 
 /* ---- updating ---- */
 
-static void put_rect_slots(noh_gl_morph *m, uint32_t first_rect, uint32_t rect_count, uint32_t slot, uint32_t *count)
+static void put_rect_records(noh_gl_morph *m, uint32_t first_rect, uint32_t rect_count, uint32_t record, uint32_t *count)
 {
     if (m->wide) {
         uint32_t *to = (uint32_t *)m->staging + 2u * (size_t)*count;
         for (uint32_t r = 0; r < rect_count; r++) {
             *to++ = first_rect + r;
-            *to++ = slot;
+            *to++ = record;
         }
     } else {
         uint16_t *to = (uint16_t *)m->staging + 2u * (size_t)*count;
         for (uint32_t r = 0; r < rect_count; r++) {
             *to++ = (uint16_t)(first_rect + r);
-            *to++ = (uint16_t)slot;
+            *to++ = (uint16_t)record;
         }
     }
     *count += rect_count;
@@ -145,7 +145,7 @@ static void put_rect_slots(noh_gl_morph *m, uint32_t first_rect, uint32_t rect_c
 
 /* The active targets of one instance, in index order: the order of the sums is part of the result. The table may belong
  * to a finer LOD level, so the first rectangle of each target is counted by that level's numbers. */
-static void list_instance(noh_gl_morph *m, uint32_t instance, uint32_t *slot_count, uint32_t *rect_slots, noh_gl_morph_stats *stats)
+static void list_instance(noh_gl_morph *m, uint32_t instance, uint32_t *slot_count, uint32_t *rect_records, noh_gl_morph_stats *stats)
 {
     const noh_mesh mesh = noh_gl_morph_view(m, instance);
     const noh_gl_morph_mesh *tables = noh_gl_morph_tables(m, instance);
@@ -155,8 +155,8 @@ static void list_instance(noh_gl_morph *m, uint32_t instance, uint32_t *slot_cou
     for (uint32_t t = 0; t < mesh.header->target_count; first_rect += tables->mesh.targets[t++].rect_count) {
         const noh_target *target = &mesh.targets[t];
         if (weights[t] != 0.0f && target->rect_count) {
-            noh_gl_morph_put_slot(m->slots + 4u * (size_t)*slot_count, target, weights[t], x | y << 16);
-            put_rect_slots(m, first_rect, target->rect_count, *slot_count, rect_slots);
+            noh_gl_morph_put_record(m->records + 4u * (size_t)*slot_count, target, weights[t], x | y << 16);
+            put_rect_records(m, first_rect, target->rect_count, *slot_count, rect_records);
             *slot_count += 1;
             stats->targets += 1;
             stats->rects += target->rect_count;
@@ -198,17 +198,17 @@ static void clear_tiles(noh_gl_morph *m)
 void noh_gl_morph_update_blend(noh_gl_morph *m, noh_gl_morph_stats *stats)
 {
     static const char *const pass_names[3] = { "position", "normal", "tangent" };
-    uint32_t slots = 0, rect_slots = 0;
+    uint32_t records = 0, rect_records = 0;
     int passes = m->plan.path == NOH_MORPH_PER_LAYER ? 3 : 1;
     for (uint32_t i = 0; i < m->plan.instance_count; i++) {
         if (m->dirty[i]) {
-            list_instance(m, i, &slots, &rect_slots, stats);
+            list_instance(m, i, &records, &rect_records, stats);
         }
     }
-    if (rect_slots) {
-        noh_gl_table_upload(m->gl, &m->slot_table, 0, slots, m->slots);
+    if (rect_records) {
+        noh_gl_table_upload(m->gl, &m->record_table, 0, records, m->records);
         m->gl->BindBuffer(GL_ARRAY_BUFFER, m->stream.name);
-        m->gl->BufferSubData(GL_ARRAY_BUFFER, 0, (GLsizeiptr)((size_t)rect_slots * (m->wide ? 8u : 4u)), m->staging);
+        m->gl->BufferSubData(GL_ARRAY_BUFFER, 0, (GLsizeiptr)((size_t)rect_records * (m->wide ? 8u : 4u)), m->staging);
         m->gl->BindBuffer(GL_ARRAY_BUFFER, 0);
     }
     noh_gl_morph_begin(m);
@@ -218,10 +218,10 @@ void noh_gl_morph_update_blend(noh_gl_morph *m, noh_gl_morph_stats *stats)
         noh_gl_group_begin(m->gl, "pass", passes == 3 ? pass_names[pass] : "all layers");
         m->gl->BindFramebuffer(GL_FRAMEBUFFER, m->framebuffers[pass]);
         clear_tiles(m);
-        if (rect_slots) {
+        if (rect_records) {
             m->gl->Uniform1i(m->u_layer, pass);
             m->gl->Enable(GL_BLEND);
-            m->gl->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)rect_slots);
+            m->gl->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)rect_records);
             m->gl->Disable(GL_BLEND);
             stats->draws += 1;
         }

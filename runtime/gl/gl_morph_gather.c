@@ -14,7 +14,7 @@
 
 static noh_result create_program(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
 {
-    static const char *const samplers[] = { "u_entries", "u_starts", "u_slots" };
+    static const char *const samplers[] = { "u_entries", "u_starts", "u_records" };
     noh_gl_program_desc desc;
     memset(&desc, 0, sizeof desc);
     desc.name = "gather";
@@ -139,7 +139,7 @@ static void list_instance(noh_gl_morph *m, uint32_t instance, uint32_t *tile, no
     for (uint32_t t = 0; t < h->target_count; t++) {
         const noh_target *target = &mesh.targets[t];
         const float weight = target->rect_count ? m->weights[first + t] : 0.0f;
-        noh_gl_morph_put_slot(m->slots + 4u * (size_t)(first + t), target, weight, noh_gl_morph_target_bits(target));
+        noh_gl_morph_put_record(m->records + 4u * (size_t)(first + t), target, weight, noh_gl_morph_target_bits(target));
         stats->targets += weight != 0.0f;
     }
     noh_gl_morph_tile(m, instance, &x, &y);
@@ -150,7 +150,7 @@ static void list_instance(noh_gl_morph *m, uint32_t instance, uint32_t *tile, no
     stats->pairs += h->pair_count;
     stats->texels += h->touched_count;
     stats->rects += 1;
-    noh_gl_table_upload(m->gl, &m->slot_table, first, h->target_count, m->slots + 4u * (size_t)first);
+    noh_gl_table_upload(m->gl, &m->record_table, first, h->target_count, m->records + 4u * (size_t)first);
 }
 
 void noh_gl_morph_update_gather(noh_gl_morph *m, noh_gl_morph_stats *stats)

@@ -5,7 +5,7 @@
 #include "base/arena.h"
 #include "deform/morph.h"
 #include "gl/gl_morph.h"
-#include "gl/gl_table.h"
+#include "gl/gl_table_internal.h"
 
 #define NOH_GATHER_CHUNK 2048u /* gather entries that are built at once at load: 32 KiB */
 
@@ -36,16 +36,16 @@ struct noh_gl_morph {
     uint8_t *levels;            /* [instance_count], that are accumulated; none is finer than its mesh */
     uint32_t dirty_count;
     float *weights;             /* [weight_count], instance after instance */
-    uint32_t *slots;            /* [weight_count][4] staging of the slot table */
-    void *staging;              /* rect slots, gather tiles, or the CPU's layers; at load, gather's chunk */
+    uint32_t *records;            /* [weight_count][4] staging of the record table */
+    void *staging;              /* rect records, gather tiles, or the CPU's layers; at load, gather's chunk */
     size_t staging_bytes;
-    int wide;                   /* a rect slot (rectangle, slot) is 2 x 32 bits, not 2 x 16 */
+    int wide;                   /* a rect record (rectangle, record) is 2 x 32 bits, not 2 x 16 */
 
     noh_gl_texture layers;
     noh_gl_table deltas;        /* delta texels, or gather entries */
     noh_gl_table rects;         /* rectangles, or gather starts */
-    noh_gl_table slot_table;
-    noh_gl_buffer stream;       /* rect slots or gather tiles */
+    noh_gl_table record_table;
+    noh_gl_buffer stream;       /* rect records or gather tiles */
     GLuint vertex_array, program;
     GLuint framebuffers[3];
     GLint u_layer;
@@ -58,7 +58,7 @@ noh_result noh_gl_morph_layout(const noh_gl_morph_desc *desc, uint32_t texture_s
 /* Carve everything from an arena (or measure it). `m` NULL only measures. */
 void noh_gl_morph_carve(noh_arena *arena, const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan, noh_gl_morph *m);
 
-/* 1 when rect slots need 32 bits. */
+/* 1 when rect records need 32 bits. */
 int noh_gl_morph_wide(const noh_gl_morph_plan *plan);
 
 /* Rows from one tile to the next one: a multiple of four. Rasterisers work in blocks of 2 x 2 to 4 x 4 pixels, and the
@@ -72,11 +72,11 @@ noh_mesh noh_gl_morph_view(const noh_gl_morph *m, uint32_t instance);
 const noh_gl_morph_mesh *noh_gl_morph_tables(const noh_gl_morph *m, uint32_t instance);
 
 void noh_gl_morph_tile(const noh_gl_morph *m, uint32_t instance, uint32_t *x, uint32_t *y);
-/* Where an instance's weights begin, and so its row of slots in the gather path. */
+/* Where an instance's weights begin, and so its row of records in the gather path. */
 uint32_t noh_gl_morph_first_weight(const noh_gl_morph *m, uint32_t instance);
 
-/* Write the slot of an active target: weight * scale per layer, and a last word. */
-void noh_gl_morph_put_slot(uint32_t slot[4], const noh_target *target, float weight, uint32_t last);
+/* Write the record of an active target: weight * scale per layer, and a last word. */
+void noh_gl_morph_put_record(uint32_t record[4], const noh_target *target, float weight, uint32_t last);
 
 uint32_t noh_gl_morph_target_bits(const noh_target *target);
 

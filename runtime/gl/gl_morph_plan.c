@@ -292,7 +292,7 @@ int noh_gl_morph_wide(const noh_gl_morph_plan *plan)
 }
 
 /* The most that one update can draw: every rectangle of every instance. */
-static uint64_t rect_slot_bytes(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan)
+static uint64_t rect_record_bytes(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan)
 {
     uint64_t count = 0;
     for (uint32_t i = 0; i < desc->mesh_count; i++) {
@@ -325,7 +325,7 @@ static size_t staging_size(const noh_gl_morph_desc *desc, const noh_gl_morph_pla
         bytes = load > bytes ? load : bytes;
     } else {
         size_t load = 16u * (size_t)NOH_RECT_CHUNK;
-        bytes = (size_t)rect_slot_bytes(desc, plan);
+        bytes = (size_t)rect_record_bytes(desc, plan);
         bytes = bytes > load ? bytes : load;
     }
     return bytes;
@@ -337,7 +337,7 @@ void noh_gl_morph_carve(noh_arena *arena, const noh_gl_morph_desc *desc, const n
     noh_gl_morph *to = m ? m : &dummy;
     memset(&dummy, 0, sizeof dummy);
     to->meshes = (noh_gl_morph_mesh *)noh_arena_carve(arena, sizeof *to->meshes * desc->mesh_count, 16);
-    to->slots = plan->path == NOH_MORPH_CPU ? NULL : (uint32_t *)noh_arena_carve(arena, 16u * (size_t)plan->weight_count, 16);
+    to->records = plan->path == NOH_MORPH_CPU ? NULL : (uint32_t *)noh_arena_carve(arena, 16u * (size_t)plan->weight_count, 16);
     to->staging_bytes = staging_size(desc, plan);
     to->staging = noh_arena_carve(arena, to->staging_bytes, 16);
     to->weights = (float *)noh_arena_carve(arena, 4u * (size_t)plan->weight_count, 4);
@@ -361,7 +361,7 @@ static void set_gpu_bytes(const noh_gl_morph_desc *desc, noh_gl_morph_plan *plan
     } else if (plan->path != NOH_MORPH_CPU) {
         plan->delta_bytes = noh_gl_table_bytes(GL_RGB32UI, plan->texel_count);
         plan->table_bytes = noh_gl_table_bytes(GL_RGBA32UI, plan->rect_count);
-        plan->stream_bytes = rect_slot_bytes(desc, plan) + noh_gl_table_bytes(GL_RGBA32UI, plan->weight_count);
+        plan->stream_bytes = rect_record_bytes(desc, plan) + noh_gl_table_bytes(GL_RGBA32UI, plan->weight_count);
     }
     plan->gpu_bytes = plan->delta_bytes + plan->table_bytes + plan->stream_bytes + plan->layer_bytes;
 }

@@ -18,7 +18,7 @@ void noh_gl_morph_tile(const noh_gl_morph *m, uint32_t instance, uint32_t *x, ui
 noh_mesh noh_gl_morph_view(const noh_gl_morph *m, uint32_t instance)
 {
     const noh_mesh *mesh = &m->meshes[m->instance_mesh[instance]].mesh;
-    return m->levels[instance] > mesh->header->level ? noh_mesh_at_level(mesh, m->levels[instance]) : *mesh;
+    return m->levels[instance] > mesh->header->level ? noh_mesh_at_lod(mesh, m->levels[instance]) : *mesh;
 }
 
 const noh_gl_morph_mesh *noh_gl_morph_tables(const noh_gl_morph *m, uint32_t instance)
@@ -34,12 +34,12 @@ uint32_t noh_gl_morph_first_weight(const noh_gl_morph *m, uint32_t instance)
 
 /* ---- what the shaders are given ---- */
 
-void noh_gl_morph_put_slot(uint32_t slot[4], const noh_target *target, float weight, uint32_t last)
+void noh_gl_morph_put_record(uint32_t record[4], const noh_target *target, float weight, uint32_t last)
 {
     /* the same products as the CPU reference, so that both round alike */
     const float scaled[3] = { target->position_scale * weight, target->normal_scale * weight, target->tangent_scale * weight };
-    memcpy(slot, scaled, sizeof scaled);
-    slot[3] = last;
+    memcpy(record, scaled, sizeof scaled);
+    record[3] = last;
 }
 
 uint32_t noh_gl_morph_target_bits(const noh_target *t)
@@ -51,7 +51,7 @@ void noh_gl_morph_constants(noh_gl_morph *m)
 {
     m->gl->UseProgram(m->program);
     m->gl->Uniform3i(m->gl->GetUniformLocation(m->program, "u_tables"), (GLint)m->rects.width_log2,
-                     (GLint)m->slot_table.width_log2, (GLint)m->deltas.width_log2);
+                     (GLint)m->record_table.width_log2, (GLint)m->deltas.width_log2);
     m->gl->Uniform2f(m->gl->GetUniformLocation(m->program, "u_atlas"), 2.0f / (float)m->plan.atlas_width,
                      2.0f / (float)m->plan.atlas_height);
     m->gl->UseProgram(0);
@@ -90,7 +90,7 @@ noh_result noh_gl_morph_framebuffer(noh_gl_morph *m, int which, GLuint *framebuf
 
 noh_result noh_gl_morph_stream(noh_gl_morph *m, const char *attribute, GLint components, GLenum type, noh_error *error)
 {
-    uint64_t bytes = m->plan.stream_bytes - m->slot_table.texture.bytes;
+    uint64_t bytes = m->plan.stream_bytes - m->record_table.texture.bytes;
     GLuint location;
     noh_result result = noh_gl_buffer_create(m->gl, m->ledger, GL_ARRAY_BUFFER, bytes, NULL, GL_STREAM_DRAW, &m->stream, error);
     if (result) {
@@ -123,7 +123,7 @@ static void plain_state(const noh_gl_morph *m)
 
 void noh_gl_morph_begin(const noh_gl_morph *m)
 {
-    const GLuint names[3] = { m->deltas.texture.name, m->rects.texture.name, m->slot_table.texture.name };
+    const GLuint names[3] = { m->deltas.texture.name, m->rects.texture.name, m->record_table.texture.name };
     for (unsigned i = 3; i-- > 0;) {
         m->gl->ActiveTexture(GL_TEXTURE0 + i);
         m->gl->BindTexture(GL_TEXTURE_2D, names[i]);

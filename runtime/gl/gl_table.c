@@ -1,4 +1,4 @@
-#include "gl/gl_table.h"
+#include "gl/gl_table_internal.h"
 
 #define WIDTH_LOG2_MIN 8u
 #define WIDTH_LOG2_MAX 11u

@@ -82,7 +82,7 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
         { "u_view_projection", &v->u_view_projection }, { "u_world", &v->u_world }, { "u_normal", &v->u_normal },
         { "u_uv", &v->u_uv }, { "u_morph", &v->u_morph }, { "u_skin", &v->u_skin }, { "u_camera", &v->u_camera },
         { "u_key", &v->u_key }, { "u_base_color", &v->u_base_color }, { "u_material", &v->u_material },
-        { "u_bounds_min", &v->u_bounds_min }, { "u_bounds_size", &v->u_bounds_size }, { "u_detail", &v->u_detail }
+        { "u_bounds_min", &v->u_bounds_min }, { "u_bounds_size", &v->u_bounds_size }, { "u_lod", &v->u_lod }
     };
     for (size_t i = 0; i < sizeof uniforms / sizeof uniforms[0]; i++) {
         *uniforms[i].at = gl->GetUniformLocation(v->program, uniforms[i].name);

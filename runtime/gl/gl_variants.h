@@ -24,7 +24,7 @@ typedef enum noh_debug_view {
     NOH_VIEW_POSITION,
     NOH_VIEW_NORMAL,
     NOH_VIEW_TANGENT,
-    NOH_VIEW_LOD /* facets in the colour of the level of detail, from 0: white, orange, sky blue, green, yellow, blue,
+    NOH_VIEW_LOD /* facets in the colour of the LOD level, from 0: white, orange, sky blue, green, yellow, blue,
                   * vermilion, purple (Okabe and Ito's, which the colour-blind tell apart, with white for black) */
 } noh_debug_view;
 
@@ -37,7 +37,7 @@ typedef struct noh_gl_variant_key {
     uint8_t crowd;
     uint8_t layers_uint;     /* as in noh_gl_morph_binding.is_uint */
     uint8_t view;            /* noh_debug_view */
-    uint8_t fade;            /* draws only some pixels: noh_gl_detail */
+    uint8_t fade;            /* draws only some pixels: noh_gl_lod */
     uint8_t encode_srgb;     /* as in noh_gl_renderer_desc */
 } noh_gl_variant_key;
 
@@ -45,7 +45,7 @@ typedef struct noh_gl_variant {
     noh_gl_variant_key key;
     GLuint program;
     GLint u_view_projection, u_world, u_normal, u_uv, u_morph, u_skin, u_camera, u_key, u_base_color, u_material, u_bounds_min,
-        u_bounds_size, u_detail;
+        u_bounds_size, u_lod;
 } noh_gl_variant;
 
 /* Texture units of mesh.vert and mesh.frag; the uniform block binding is 0. */

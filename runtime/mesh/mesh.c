@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "base/hash.h"
-#include "base/math.h"
+#include "base/math_internal.h"
 
 /* Point a view at a level's header. The headers of a mesh's levels lie at the chunk's start, so header - level is the
  * chunk; the offsets of every level count from there. */
@@ -26,7 +26,7 @@ static void view_of(const noh_mesh_header *h, noh_mesh *mesh)
     mesh->joint_boxes = (const float *)(const void *)(chunk + h->joint_boxes_offset);
 }
 
-noh_result noh_pack_mesh(const noh_pack *pack, uint32_t index, noh_mesh *mesh, noh_error *error)
+noh_result noh_pack_mesh_at(const noh_pack *pack, uint32_t index, noh_mesh *mesh, noh_error *error)
 {
     NOH_ASSERT(pack && mesh);
     if (index >= pack->mesh_count) {
@@ -39,7 +39,7 @@ noh_result noh_pack_mesh(const noh_pack *pack, uint32_t index, noh_mesh *mesh, n
     return NOH_OK;
 }
 
-noh_mesh noh_mesh_at_level(const noh_mesh *mesh, uint32_t level)
+noh_mesh noh_mesh_at_lod(const noh_mesh *mesh, uint32_t level)
 {
     noh_mesh other = *mesh;
     const uint32_t last = mesh->header->level_count - 1u;
@@ -125,7 +125,7 @@ static uint32_t texel_word(const noh_mesh *mesh, uint32_t vertex)
                : vertex;
 }
 
-uint32_t noh_mesh_texel(const noh_mesh *mesh, uint32_t vertex)
+uint32_t noh_mesh_accumulation_texel(const noh_mesh *mesh, uint32_t vertex)
 {
     return texel_word(mesh, vertex) & ((1u << NOH_TEXEL_VERTEX_BITS) - 1u);
 }

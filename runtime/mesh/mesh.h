@@ -48,12 +48,12 @@ typedef struct noh_vertex {
 
 /* The n-th mesh, its full level.
  * errors  NOT_FOUND  past mesh_count (where: the index, need: the count); *mesh is untouched */
-noh_result noh_pack_mesh(const noh_pack *pack, uint32_t index, noh_mesh *mesh, noh_error *error);
+noh_result noh_pack_mesh_at(const noh_pack *pack, uint32_t index, noh_mesh *mesh, noh_error *error);
 
 /* The same mesh at a LOD level: 0 is the full one, past the last it is the coarsest. Levels are absolute, whichever level
  * `mesh` is at. The result is a mesh like any other: what is made from it (layers, skinned vertices, GL buffers) has that
  * level's size and can show every coarser level too. */
-noh_mesh noh_mesh_at_level(const noh_mesh *mesh, uint32_t level);
+noh_mesh noh_mesh_at_lod(const noh_mesh *mesh, uint32_t level);
 
 /* The n-th skin; a mesh names its own in header->skin.
  * errors  NOT_FOUND  past skin_count, so also for NOH_NONE, a rigid mesh's (where: the index, need: the count) */
@@ -77,7 +77,7 @@ int noh_mesh_color_offset(const noh_mesh *mesh);
 
 /* A vertex's accumulation texel: it has none where that is header->touched_count or more. And its palette: 0 unless the mesh
  * is split into several. */
-uint32_t noh_mesh_texel(const noh_mesh *mesh, uint32_t vertex);
+uint32_t noh_mesh_accumulation_texel(const noh_mesh *mesh, uint32_t vertex);
 uint32_t noh_mesh_palette(const noh_mesh *mesh, uint32_t vertex);
 
 /* The joints that move a vertex of a skinned mesh.

@@ -1,5 +1,5 @@
 /* check.c: what all chunk checkers share. */
-#include "pack/check.h"
+#include "pack/check_internal.h"
 
 #include "base/hash.h"
 

@@ -1,5 +1,5 @@
-/* check_level.c: the checker of a mesh's levels of detail, and of its texel references. */
-#include "pack/check.h"
+/* check_level.c: the checker of a mesh's LOD levels, and of its texel references. */
+#include "pack/check_internal.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -68,10 +68,10 @@ noh_result noh_check_level_headers(noh_check *check, const noh_mesh_header *h)
     for (uint32_t k = 1; !result && k < h->level_count; k++) {
         const noh_mesh_header same = as_full(&h[k], h);
         if (h[k].level != k || memcmp(&same, h, sizeof same) != 0) {
-            return noh_check_fail(check, "level of detail is out of order, or differs in what all levels share", (uint64_t)k * sizeof *h);
+            return noh_check_fail(check, "LOD level is out of order, or differs in what all levels share", (uint64_t)k * sizeof *h);
         }
         if (counts_rise(&h[k], &h[k - 1])) {
-            return noh_check_fail(check, "level of detail has more of something than the finer one", (uint64_t)k * sizeof *h);
+            return noh_check_fail(check, "LOD level has more of something than the finer one", (uint64_t)k * sizeof *h);
         }
         result = check_errors(check, &h[k], &h[k - 1]);
     }
@@ -101,7 +101,7 @@ static noh_result check_texels(const noh_check *check, const noh_mesh_header *h,
 {
     if (!(l->flags & NOH_MESH_TEXELS)) {
         const uint32_t least = l->vertex_count < h->touched_count ? l->vertex_count : h->touched_count;
-        return l->touched_count < least ? noh_check_fail(check, "level of detail lacks texels of its vertices", (uint64_t)l->level * sizeof *l)
+        return l->touched_count < least ? noh_check_fail(check, "LOD level lacks texels of its vertices", (uint64_t)l->level * sizeof *l)
                                         : NOH_OK;
     }
     for (uint32_t v = 0; v < l->vertex_count; v++) {

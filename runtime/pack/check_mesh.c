@@ -1,5 +1,5 @@
 /* check_mesh.c: everything that later code trusts about a mesh chunk. */
-#include "pack/check.h"
+#include "pack/check_internal.h"
 
 #include <stddef.h>
 
@@ -20,7 +20,7 @@ static noh_result check_limits(const noh_check *check, const noh_mesh_header *h)
     if (h->level) {
         return noh_check_fail(check, "mesh does not begin with the full one of its levels", offsetof(noh_mesh_header, level));
     }
-    if (!h->level_count || h->level_count > NOH_LEVELS_MAX) {
+    if (!h->level_count || h->level_count > NOH_LOD_LEVELS_MAX) {
         return noh_check_fail(check, "mesh has no level or too many", offsetof(noh_mesh_header, level_count));
     }
     if (h->index_count > NOH_INDICES_MAX || h->index_count % 3) {
@@ -35,7 +35,7 @@ static noh_result check_limits(const noh_check *check, const noh_mesh_header *h)
     if (h->target_count > NOH_TARGETS_MAX) {
         return noh_check_fail(check, "target count is over the limit", offsetof(noh_mesh_header, target_count));
     }
-    if (h->texel_count > NOH_TEXELS_MAX) {
+    if (h->texel_count > NOH_DELTA_TEXELS_MAX) {
         return noh_check_fail(check, "delta texel count is over the limit", offsetof(noh_mesh_header, texel_count));
     }
     if (h->rect_count > h->texel_count) {
@@ -144,7 +144,7 @@ static noh_result check_target_head(const noh_check *check, const noh_mesh_heade
         t->tangent_bits > 24 || t->position_bits + t->normal_bits + t->tangent_bits > 32 || t->reserved0 || t->reserved1) {
         return noh_check_fail(check, "target's bit widths are impossible", at + offsetof(noh_target, position_bits));
     }
-    if (t->position_scale < 0.0f || t->normal_scale < 0.0f || t->tangent_scale < 0.0f || t->max_displacement < 0.0f) {
+    if (t->position_scale < 0.0f || t->normal_scale < 0.0f || t->tangent_scale < 0.0f || t->radius < 0.0f) {
         return noh_check_fail(check, "target's scale is negative", at + offsetof(noh_target, position_scale));
     }
     return noh_check_floats(check, &t->position_scale, 7, "target's scale is not finite");

@@ -1,5 +1,5 @@
 /* check_scene.c: the checkers of textures, materials and nodes. */
-#include "pack/check.h"
+#include "pack/check_internal.h"
 
 #include <stddef.h>
 

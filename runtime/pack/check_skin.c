@@ -1,5 +1,5 @@
 /* check_skin.c: the checkers of skins, and of what a skinned mesh says of its vertices. */
-#include "pack/check.h"
+#include "pack/check_internal.h"
 
 #include <stddef.h>
 

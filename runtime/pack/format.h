@@ -25,7 +25,7 @@ extern "C" {
 #define NOH_CHUNK_MATERIALS NOH_FOURCC('M', 'A', 'T', 'L')
 #define NOH_CHUNK_TEXTURE NOH_FOURCC('T', 'X', 'T', 'R')
 #define NOH_CHUNK_SKELETON NOH_FOURCC('S', 'K', 'E', 'L')
-#define NOH_CHUNK_MOTION NOH_FOURCC('M', 'O', 'T', 'N')
+#define NOH_CHUNK_CLIP NOH_FOURCC('M', 'O', 'T', 'N')
 #define NOH_CHUNK_SKIN NOH_FOURCC('S', 'K', 'I', 'N')
 
 typedef struct noh_pack_header {
@@ -56,7 +56,7 @@ typedef struct noh_pack_chunk {
 #define NOH_MESH_UVS 2u
 #define NOH_MESH_COLORS 4u
 #define NOH_MESH_DUAL_QUATERNION 8u /* skinned by dual quaternions, else by matrices */
-#define NOH_MESH_TEXELS 16u         /* a texel reference per vertex: split into several palettes, or levels of detail cut
+#define NOH_MESH_TEXELS 16u         /* a texel reference per vertex: split into several palettes, or LOD levels cut
                                      * through moved and unmoved vertices */
 
 /* Attribute record, interleaved, 4 bytes each and in this order; those whose
@@ -114,13 +114,13 @@ typedef struct noh_mesh_header {
     uint32_t joint_boxes_offset; /* float[the skin's joint_count][6]: smallest and largest x, y, z of the rest positions of the
                                   * vertices that this joint moves; the smallest above the largest where it moves none */
     uint32_t level;               /* 0: the full mesh; the others follow it in the chunk */
-    uint32_t level_count;         /* 1..NOH_LEVELS_MAX, of the mesh: in all its levels the same */
+    uint32_t level_count;         /* 1..NOH_LOD_LEVELS_MAX, of the mesh: in all its levels the same */
     float level_error_rest;       /* certified: the largest distance between this level's surface and the full one, both ways, model
                                    * units; all 0 in the full mesh. At rest, */
     float level_error_rest_p99;   /* nearer than this for 99 % of the area; */
     float level_error_targets;    /* with each target alone at weight 1, */
     float level_error_pairs;      /* with the targets for left and right together, */
-    float level_error_motion;     /* over frames of the clips that the pack was built with */
+    float level_error_clip;     /* over frames of the clips that the pack was built with */
     float level_skipped;          /* what the targets that have no rectangles in this level alone move at most, all at weight 1 */
     float influence_errors[3];    /* how far a vertex is off at most over those frames where only its 4, 2, 1 heaviest joints move it,
                                    * model units; with levels, else 0 */
@@ -163,7 +163,7 @@ typedef struct noh_target {
     uint32_t pair_count;
     uint8_t position_bits, normal_bits, tangent_bits, reserved0;
     float position_scale, normal_scale, tangent_scale;
-    float max_displacement;  /* model units, at weight 1 */
+    float radius;  /* model units, at weight 1 */
     float position_error;    /* largest error at weight 1, model units: certified by the converter */
     float normal_error, tangent_error; /* per component */
     uint32_t reserved1;
@@ -225,19 +225,19 @@ typedef struct noh_texture_header {
     uint32_t reserved[2];
 } noh_texture_header;
 
-/* ---- CHUNK_SKELETON: header, then four arrays. Joints come in an order in which each level of detail is
+/* ---- CHUNK_SKELETON: header, then four arrays. Joints come in an order in which each LOD level is
  * a prefix: those without a parent first, then by how far the bind pose reaches below them, falling. ---- */
 
 #define NOH_PACK_JOINT_ROOT 0xffffu /* parent of a joint that has none */
 
 typedef struct noh_skeleton_header {
     uint32_t joint_count;
-    uint32_t hash;           /* of names and parents: binds motion packs to mesh packs */
+    uint32_t hash;           /* of names and parents: binds clip packs to mesh packs */
     float unit_cm;           /* centimetres per unit of the translations */
     uint32_t parents_offset; /* uint16_t[joint_count], parents first, or NOH_PACK_JOINT_ROOT */
     uint32_t bind_offset;    /* float[joint_count][10]: rotation xyzw, translation, scale; local */
     uint32_t names_offset;   /* uint32_t[joint_count] */
-    uint32_t level_count;    /* 1..NOH_JOINT_LEVELS_MAX */
+    uint32_t level_count;    /* 1..NOH_LOD_LEVELS_MAX */
     uint32_t levels_offset;  /* uint32_t[level_count]: so many joints, the first ones, are posed. The first is
                               * joint_count, then falling; every level has all joints without a parent */
 } noh_skeleton_header;
@@ -252,57 +252,57 @@ typedef struct noh_skin_header {
     uint32_t inverse_bind_offset; /* float[joint_count][12], rows as in noh_node.world: from mesh space to joint space */
 } noh_skin_header;
 
-/* ---- CHUNK_MOTION: header, callback keys and sync markers in time order, what leaving out joints costs, then
- * the compressed clip (anim/clip_format.h): joints of a skeleton, morph weights of nodes, named floats.
+/* ---- CHUNK_CLIP: header, callback keys and sync markers in time order, what leaving out joints costs, then
+ * the compressed clip (clip/clip_format.h): joints of a skeleton, morph weights of nodes, named floats.
  * Errors are in the skeleton's unit; in motion without joints in metres. ---- */
 
-#define NOH_MOTION_RATES 4u /* every frame, 30, 15 and 8 Hz: noh_rate of character/detail.h */
+#define NOH_CLIP_UPDATE_RATES 4u /* every frame, 30, 15 and 8 Hz: noh_update_rate of character/lod.h */
 
-typedef struct noh_motion_header {
+typedef struct noh_clip_header {
     uint32_t skeleton_hash;  /* 0 without joints */
     uint32_t skeleton;       /* of this pack: the one that the clip was built with; NOH_NONE without joints */
     uint32_t joint_count;    /* 0: animates floats only */
     uint32_t raw_bytes;      /* 40 per joint and frame, 4 per float: what it would be uncompressed */
     uint32_t event_count;
-    uint32_t events_offset;  /* noh_motion_event[event_count] */
+    uint32_t events_offset;  /* noh_clip_event[event_count] */
     uint32_t marker_count;
-    uint32_t markers_offset; /* noh_motion_marker[marker_count] */
+    uint32_t markers_offset; /* noh_clip_marker[marker_count] */
     uint32_t joint_error_count;   /* levels of its skeleton; 0 without joints */
     uint32_t joint_errors_offset; /* float[joint_error_count]: the farthest that a point is off when only the joints of a level
                                    * are sampled and the others go where their parents go; of level 0 it is 0; not falling */
     uint32_t clip_bytes;
     uint32_t clip_offset;
-    float rate_error[NOH_MOTION_RATES]; /* of a probe that travels: a loop goes on from where it came, as with root motion, its leap
+    float update_rate_error[NOH_CLIP_UPDATE_RATES]; /* of a probe that travels: a loop goes on from where it came, as with root motion, its leap
                                          * back is not counted; the first is 0; not falling */
     float error_shell;       /* 0: the errors hold for the meshes that the clip was built with. joint_errors are bounds, for all that
                               * is as near to a joint as the farthest vertex that it moves with a weight of 0.05 or more
                               * (noh_joint_lod_measure). rate_error is exact for some hundred vertices, the farthest of each joint
-                              * among them, and no bound on what lies between these (noh_time_points_measure).
+                              * among them, and no bound on what lies between these (noh_time_lod_points_measure).
                               * Else there were none: both are bounds for points at this distance from each joint (--shell-cm), in the
                               * skeleton's unit (noh_joint_lod_measure, noh_time_lod_measure) */
-} noh_motion_header;
+} noh_clip_header;
 
-typedef struct noh_motion_event {
+typedef struct noh_clip_event {
     uint32_t tick;           /* 1/48,000 s */
     uint32_t name, name_hash;
     uint8_t payload[8];
     float weight_min;        /* below it the key does not fire */
-} noh_motion_event;
+} noh_clip_event;
 
-/* A place that motions share which keep step: a foot on the ground (anim/sync.h). */
-typedef struct noh_motion_marker {
+/* A place that clips share which keep step: a foot on the ground (anim/sync_internal.h). */
+typedef struct noh_clip_marker {
     uint32_t tick;            /* increasing */
     uint32_t name, name_hash; /* the hash is its id */
-} noh_motion_marker;
+} noh_clip_marker;
 
 NOH_STATIC_ASSERT(sizeof(noh_skeleton_header) == 32, skeleton_header);
 NOH_STATIC_ASSERT(sizeof(noh_skin_header) == 16, skin_header);
 NOH_STATIC_ASSERT(sizeof(noh_palette) == 8, palette);
 NOH_STATIC_ASSERT(NOH_VERTICES_MAX <= 1u << NOH_TEXEL_VERTEX_BITS, texel_vertex);
 NOH_STATIC_ASSERT(NOH_SUBMESHES_MAX <= 1u << (32u - NOH_TEXEL_VERTEX_BITS), texel_palette);
-NOH_STATIC_ASSERT(sizeof(noh_motion_header) == 68, motion_header);
-NOH_STATIC_ASSERT(sizeof(noh_motion_event) == 24, motion_event);
-NOH_STATIC_ASSERT(sizeof(noh_motion_marker) == 12, motion_marker);
+NOH_STATIC_ASSERT(sizeof(noh_clip_header) == 68, clip_header);
+NOH_STATIC_ASSERT(sizeof(noh_clip_event) == 24, clip_event);
+NOH_STATIC_ASSERT(sizeof(noh_clip_marker) == 12, clip_marker);
 NOH_STATIC_ASSERT(sizeof(noh_pack_header) == 64, pack_header);
 NOH_STATIC_ASSERT(sizeof(noh_pack_chunk) == 32, pack_chunk);
 NOH_STATIC_ASSERT(sizeof(noh_mesh_header) == 256, mesh_header);

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/hash.h"
-#include "pack/check.h"
+#include "pack/check_internal.h"
 
 /* Chunks come in this order, so that no chunk refers to a later one. */
 static int chunk_rank(uint32_t type)
@@ -17,7 +17,7 @@ static int chunk_rank(uint32_t type)
     case NOH_CHUNK_SKIN: return 4;
     case NOH_CHUNK_MESH: return 5;
     case NOH_CHUNK_NODES: return 6;
-    case NOH_CHUNK_MOTION: return 7;
+    case NOH_CHUNK_CLIP: return 7;
     default: return -1;
     }
 }
@@ -164,8 +164,8 @@ static noh_result open_chunk(noh_pack *pack, uint32_t index, noh_error *error)
         count_chunk(&pack->skin_count, &pack->first_skin, index);
         break;
     default:
-        result = noh_check_motion(&check);
-        count_chunk(&pack->motion_count, &pack->first_motion, index);
+        result = noh_check_clip(&check);
+        count_chunk(&pack->clip_count, &pack->first_clip, index);
         break;
     }
     return result ? result : noh_check_name(&check, c->name, c->name_hash, 0);
@@ -249,7 +249,7 @@ const char *noh_pack_chunk_name(const noh_pack *pack, uint32_t chunk)
     return chunk < pack->chunk_count ? noh_pack_string(pack, pack->chunks[chunk].name) : "";
 }
 
-noh_result noh_pack_texture(const noh_pack *pack, uint32_t index, noh_texture *texture, noh_error *error)
+noh_result noh_pack_texture_at(const noh_pack *pack, uint32_t index, noh_texture *texture, noh_error *error)
 {
     const uint8_t *chunk;
     NOH_ASSERT(pack && texture);

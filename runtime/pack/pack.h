@@ -24,7 +24,7 @@ typedef struct noh_pack {
     uint32_t mesh_count, first_mesh;
     uint32_t skeleton_count, first_skeleton;
     uint32_t skin_count, first_skin;
-    uint32_t motion_count, first_motion;
+    uint32_t clip_count, first_clip;
     uint32_t material_count;
     const noh_material *materials;
     uint32_t node_count;
@@ -53,7 +53,7 @@ const char *noh_pack_chunk_name(const noh_pack *pack, uint32_t chunk);
 
 /* The n-th texture.
  * errors  NOT_FOUND  past texture_count (where: the index, need: the count); *texture is untouched */
-noh_result noh_pack_texture(const noh_pack *pack, uint32_t index, noh_texture *texture, noh_error *error);
+noh_result noh_pack_texture_at(const noh_pack *pack, uint32_t index, noh_texture *texture, noh_error *error);
 
 #ifdef __cplusplus
 }

@@ -1,9 +1,9 @@
 #!/bin/sh
-# make_mask --arm: every kind of skinning on the same arm (Direct3D 9, "Geometry Blending") and two streams: what the pack says of it,
+# demo_assets --arm: every kind of skinning on the same arm (Direct3D 9, "Geometry Blending") and two streams: what the pack says of it,
 # and where the vertices are when it bends and twists.
 . "$(dirname "$0")/lib.sh"
 
-check 'the arm is made' "$build/make_mask" --arm "$work/arm.glb"
+check 'the arm is made' "$build/demo_assets" --arm "$work/arm.glb"
 check 'the same bytes every time' cmp "$work/arm.glb" "$build/demo/arm.glb"
 
 noh build "$work/arm.glb" -o "$work/arm.noh" --dual-quaternion twisted_dual --two-stream stream_a=stream_b

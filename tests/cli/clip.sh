@@ -1,5 +1,5 @@
 #!/bin/sh
-# noh build and noh clip on motion: .bvh, .rcl, glTF; what is wrong with a file is said with its line.
+# noh build and noh clip on clip: .bvh, .rcl, glTF; what is wrong with a file is said with its line.
 . "$(dirname "$0")/lib.sh"
 
 cat >"$work/walk.bvh" <<'BVH'

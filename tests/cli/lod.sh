@@ -1,5 +1,5 @@
 #!/bin/sh
-# noh build --lod: levels of detail by number and by error, what is refused, and that such a pack holds.
+# noh build --lod: LOD levels by number and by error, what is refused, and that such a pack holds.
 . "$(dirname "$0")/lib.sh"
 
 arm=$build/demo/arm.glb
@@ -50,7 +50,7 @@ check 'no pack was written by any of these' test ! -e "$work/refused.noh"
 
 # ---- nothing to simplify ----
 
-cat >"$work/motion.bvh" <<'BVH'
+cat >"$work/clip.bvh" <<'BVH'
 HIERARCHY
 ROOT a
 {
@@ -67,11 +67,11 @@ Frame Time: 0.05
 0 0 0
 5 0 0
 BVH
-noh build "$work/motion.bvh" -o "$work/motion.noh" --quiet
-expect 0 'build of motion alone'
-noh build "$work/motion.bvh" -o "$work/motion_lod.noh" --lod 4 --quiet
-expect 0 'build of motion alone with --lod 4'
-check 'gives the same bytes' cmp "$work/motion.noh" "$work/motion_lod.noh"
+noh build "$work/clip.bvh" -o "$work/clip.noh" --quiet
+expect 0 'build of clip alone'
+noh build "$work/clip.bvh" -o "$work/clip_lod.noh" --lod 4 --quiet
+expect 0 'build of clip alone with --lod 4'
+check 'gives the same bytes' cmp "$work/clip.noh" "$work/clip_lod.noh"
 
 # ---- a real face ----
 

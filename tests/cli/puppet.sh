@@ -1,11 +1,11 @@
 #!/bin/sh
-# make_mask --puppet: the same bytes every time, taken by the converter without a warning; and what
-# make_mask says when it cannot do what it is asked to.
+# demo_assets --puppet: the same bytes every time, taken by the converter without a warning; and what
+# demo_assets says when it cannot do what it is asked to.
 . "$(dirname "$0")/lib.sh"
 
-check 'the puppet is made' "$build/make_mask" --puppet "$work/puppet.glb"
+check 'the puppet is made' "$build/demo_assets" --puppet "$work/puppet.glb"
 check 'the same bytes every time' cmp "$work/puppet.glb" "$build/demo/puppet.glb"
-check 'the mask is made' "$build/make_mask" "$work/mask.glb"
+check 'the mask is made' "$build/demo_assets" "$work/mask.glb"
 check 'and has the same bytes too' cmp "$work/mask.glb" "$build/mask.glb"
 
 noh build "$work/puppet.glb" -o "$work/puppet.noh"
@@ -16,11 +16,11 @@ check 'two meshes, five clips' grep -q '2 meshes, 47 nodes, 1 skeletons, 5 clips
 
 for arguments in '' '--puppet' '--arm' '--other x.glb' 'a.glb b.glb'; do
     # shellcheck disable=SC2086
-    "$build/make_mask" $arguments >"$work/out" 2>"$work/err"
+    "$build/demo_assets" $arguments >"$work/out" 2>"$work/err"
     code=$?
-    expect 2 "make_mask '$arguments' is a mistake of usage"
+    expect 2 "demo_assets '$arguments' is a mistake of usage"
 done
-"$build/make_mask" --puppet "$work/no/such/folder.glb" >"$work/out" 2>"$work/err"
+"$build/demo_assets" --puppet "$work/no/such/folder.glb" >"$work/out" 2>"$work/err"
 code=$?
 expect 1 'a place that cannot be written to is an error'
 check 'that names it' grep -q 'cannot write .*folder.glb' "$work/err"

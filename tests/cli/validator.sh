@@ -2,7 +2,7 @@
 # The mask, the puppet and the arm are valid glTF: npm's gltf-validator has no error and no warning to tell.
 . "$(dirname "$0")/lib.sh"
 
-name='what make_mask writes is valid glTF'
+name='what demo_assets writes is valid glTF'
 if ! command -v npm >/dev/null 2>&1 || ! command -v node >/dev/null 2>&1; then
     skip "$name" 'no npm here'
     finish

@@ -1,9 +1,9 @@
-/* motion.c: stands in for the C++ side of the converter: a model has no motion here. Tests that want any are left out. */
+/* clip.c: stands in for the C++ side of the converter: a model has no clip here. Tests that want any are left out. */
 #include <stdlib.h>
 
-#include "convert/gltf/gltf_motion.h"
+#include "convert/clips/model_clips.h"
 
-int motion_from_model(model *m, const motion_options *options, motion **out, model_error *error)
+int clips_from_model(model *m, const sample_options *options, model_clips **out, model_error *error)
 {
     (void)m;
     (void)options;
@@ -12,7 +12,7 @@ int motion_from_model(model *m, const motion_options *options, motion **out, mod
     return *out == NULL;
 }
 
-void motion_free(motion *made)
+void model_clips_free(model_clips *made)
 {
     free(made);
 }

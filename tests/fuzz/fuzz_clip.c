@@ -4,13 +4,13 @@
  * the clip says, its bind pose made up. Samples go forward, back and past the ends, of all joints and of
  * prefixes, through a cache of two segments, some of them wanted before.
  *
- * With libFuzzer (make fuzz) or replayed (make check), see tests/fuzz_replay.h. */
+ * With libFuzzer (make fuzz) or replayed (make check), see tests/support/fuzz_replay.h. */
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "fuzz_replay.h"
+#include "support/fuzz_replay.h"
 #include "noh.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count);
@@ -65,7 +65,7 @@ static void play(const noh_clip *clip)
         /* 0, 5/11, 10/11, 4/11 ... of the clip, and a little past both ends */
         const int64_t ticks = (int64_t)((info.duration_ticks + 1600u) / 11u * (i * 5u % 12u)) - 800;
         const uint32_t joints = i % 3u ? info.joint_count : info.joint_count * i / SAMPLES;
-        noh_clip_cache_tick(cache);
+        noh_clip_cache_begin_frame(cache);
         if (i % 2u) {
             noh_clip_cache_want(cache, 0, ticks, info.joint_count / 2u);
             noh_clip_cache_work(cache, 100u * i);

@@ -2,7 +2,7 @@
  *
  * With libFuzzer (make fuzz) LLVMFuzzerTestOneInput is called with mutated bytes. Without
  * (make check) the main below replays the files and folders that it is given, tells each as a
- * test, and damages each in a few thousand seeded ways (tests/fuzz_replay.c).
+ * test, and damages each in a few thousand seeded ways (tests/support/fuzz_replay.c).
  *
  * Each input is tried as it is, then with its length and checksums made right: a fuzzer cannot
  * guess a CRC, so only the second way reaches the structural checks. */
@@ -13,9 +13,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fuzz_replay.h"
+#include "support/fuzz_replay.h"
 #include "noh.h"
-#include "pack_walk.h"
+#include "support/pack_walk.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count);
 

@@ -1,5 +1,5 @@
 /* make_corpus.c: the fuzzers' seeds: small packs of every shape, and small clips, each in a folder. */
-#include "support.h"
+#include "support/support.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,10 +7,10 @@
 
 #include "convert/convert.h"
 #include "convert/model/model_build.h"
-#include "lod_fixture.h"
-#include "motion_fixture.h"
-#include "skin_asset.h"
-#include "unit/clip_fixture.h"
+#include "support/lod_fixture.h"
+#include "support/clip_bank_fixture.h"
+#include "support/skin_asset.h"
+#include "support/clip_fixture.h"
 
 static void write_pack(const char *folder, const char *name, const test_model_desc *desc)
 {
@@ -23,13 +23,13 @@ static void write_pack(const char *folder, const char *name, const test_model_de
 }
 
 /* A skeleton and a clip, out of a .bvh. */
-static void write_motion(const char *folder)
+static void write_clip_pack(const char *folder)
 {
     static const char bvh[] =
         "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n"
         "JOINT b\n{\nOFFSET 0 -9 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 -9 0\n}\n}\n}\nMOTION\n"
         "Frames: 4\nFrame Time: 0.05\n0 20 0 0 0 0 0 0 0\n1 20 0 5 0 0 10 0 0\n2 21 0 10 0 0 25 0 0\n3 20 0 5 0 0 10 3 0\n";
-    const char *input = test_path("motion.bvh");
+    const char *input = test_path("clip.bvh");
     char path[4096];
     convert_options options;
     convert_failure failure;
@@ -37,7 +37,7 @@ static void write_motion(const char *folder)
     memset(&options, 0, sizeof options);
     test_write_file(input, bvh, sizeof bvh - 1);
     assert_int_equal(convert_files(&input, 1, &options, &out, &failure), 0);
-    snprintf(path, sizeof path, "%s/motion.noh", folder);
+    snprintf(path, sizeof path, "%s/clip.noh", folder);
     test_write_file(path, out.bytes, out.count);
     buffer_free(&out);
 }
@@ -45,7 +45,7 @@ static void write_motion(const char *folder)
 /* Weights, a joint, callback keys and sync markers. */
 static void write_weights(const char *folder)
 {
-    model *m = motion_model(2);
+    model *m = clip_model(2);
     char path[4096];
     size_t count;
     uint8_t *bytes = test_pack_of(m, &count, NULL);
@@ -73,7 +73,7 @@ static void write_skin(const char *folder, const char *name, uint32_t palette)
     model_free(m);
 }
 
-/* Three levels of detail; the model is freed. */
+/* Three LOD levels; the model is freed. */
 static void write_levels(const char *folder, const char *name, model *m, uint32_t palette)
 {
     const lod_settings three = { 3, 0, LOD_FAST };
@@ -89,7 +89,7 @@ static void write_levels(const char *folder, const char *name, model *m, uint32_
 
 static const char *folder, *clip_folder;
 
-/* Encode a motion, take it, and write its bytes. */
+/* Encode a clip, take it, and write its bytes. */
 static void write_clip(const char *name, raw_set *set, const clip_options *options)
 {
     char path[4096];
@@ -156,7 +156,7 @@ static void corpus(void **state)
     for (size_t i = 0; i < TEST_COUNT(seeds); i++) {
         write_pack(folder, seeds[i].name, &seeds[i].desc);
     }
-    write_motion(folder);
+    write_clip_pack(folder);
     write_weights(folder);
     write_skin(folder, "skin", 0);
     write_skin(folder, "skin_split", 4);

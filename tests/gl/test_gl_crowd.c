@@ -1,15 +1,15 @@
-/* The crowd of tools/noh/crowd.h, with and without detail: sixty tubes that bend, bulge and tell of it, while the camera
+/* The crowd of tools/noh/crowd/crowd.h, with and without LOD: sixty tubes that bend, bulge and tell of it, while the camera
  * goes in among them and back. */
-#include "gl_fixture.h"
-#include "level_fixture.h"
-#include "skin_asset.h"
+#include "support/gl_fixture.h"
+#include "support/level_fixture.h"
+#include "support/skin_asset.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "convert/model/model_build.h"
-#include "crowd.h"
+#include "crowd/crowd.h"
 
 #define BODIES 60u
 #define FRAMES 300u
@@ -107,22 +107,22 @@ static void add_cap_errors(const noh_mesh *mesh, const float *matrices, float er
 /* The levels were not made by the converter: it would have measured this. */
 static void measure_caps(void)
 {
-    const noh_motion_set_desc desc = { &levels.pack, NULL, 0, 0, 0, 0, 0, 0 };
-    const size_t bytes = noh_motion_set_size(&desc, NULL);
+    const noh_clip_bank_desc desc = { &levels.pack, NULL, 0, 0, 0, 0, 0, 0 };
+    const size_t bytes = noh_clip_bank_size(&desc, NULL);
     float errors[3] = { 0.0f, 0.0f, 0.0f }, placed[12u * JOINTS], matrices[12u * JOINTS], floats[8];
     void *memory = test_aligned(NULL, bytes);
     noh_transform pose[JOINTS];
     noh_mesh_header *headers;
-    noh_motion_set *set;
+    noh_clip_bank *set;
     noh_mesh mesh;
     noh_skin skin;
-    assert_int_equal(noh_motion_set_init(memory, bytes, &desc, &set, NULL), NOH_OK);
-    assert_int_equal(noh_pack_mesh(&levels.pack, 0, &mesh, NULL), NOH_OK);
+    assert_int_equal(noh_clip_bank_init(memory, bytes, &desc, &set, NULL), NOH_OK);
+    assert_int_equal(noh_pack_mesh_at(&levels.pack, 0, &mesh, NULL), NOH_OK);
     assert_int_equal(noh_pack_skin_at(&levels.pack, mesh.header->skin, &skin, NULL), NOH_OK);
-    assert_true(set->anim.joint_count == JOINTS && skin.header->joint_count <= JOINTS && set->anim.float_count <= 8);
-    for (uint32_t m = 0; m < set->anim.motion_count; m++) {
-        for (uint32_t tick = 0; tick <= set->anim.motions[m].duration_ticks; tick += 1600) {
-            set->anim.sample(set->anim.user, m, tick, JOINTS, pose, set->anim.float_count, floats);
+    assert_true(set->clips.joint_count == JOINTS && skin.header->joint_count <= JOINTS && set->clips.float_count <= 8);
+    for (uint32_t m = 0; m < set->clips.clip_count; m++) {
+        for (uint32_t tick = 0; tick <= set->clips.clips[m].duration_ticks; tick += 1600) {
+            set->clips.sample(set->clips.user, m, tick, JOINTS, pose, set->clips.float_count, floats);
             noh_local_to_model(&set->skeleton, pose, JOINTS, placed);
             noh_skin_matrices(&skin, placed, matrices);
             add_cap_errors(&mesh, matrices, errors);
@@ -258,7 +258,7 @@ typedef struct watch {
 /* No two bodies in one slot, nor more in a pool than it has. */
 static void expect_slots(const crowd *c)
 {
-    uint8_t taken[NOH_LEVELS_MAX][BODIES];
+    uint8_t taken[NOH_LOD_LEVELS_MAX][BODIES];
     memset(taken, 0, sizeof taken);
     for (uint32_t i = 0; i < BODIES; i++) {
         const crowd_body *b = &c->bodies[i];
@@ -275,10 +275,10 @@ static void expect_slots(const crowd *c)
 static void expect_level(const crowd *c, uint32_t i, watch *w)
 {
     const crowd_body *b = &c->bodies[i];
-    const noh_detail *d = &crowd_character(c, i)->detail;
+    const noh_lod *d = &crowd_character(c, i)->lod;
     const float share = 0.3f * c->plan->options.pixels;
     const int over = c->table.meshes[b->level].error_m * b->scale > share * 1.0001f;
-    const int crowded = noh_level_pools_stats_of(c->pools)->coarser > 0;
+    const int crowded = noh_lod_pools_stats_of(c->pools)->coarser > 0;
     w->fades += b->level != b->level_before;
     w->by_level[b->level]++;
     w->waits[i] = over && !crowded && b->level == b->level_before ? w->waits[i] + 1u : 0;
@@ -296,7 +296,7 @@ static void expect_order(const crowd *c)
     uint32_t before = 0;
     for (uint32_t k = 0; k < c->stats.seen; k++) {
         const crowd_body *b = &c->bodies[c->order[k]];
-        const noh_detail *d = &crowd_character(c, c->order[k])->detail;
+        const noh_lod *d = &crowd_character(c, c->order[k])->lod;
         const uint32_t run = b->level == b->level_before ? b->level * caps + d->influences : c->plan->level_count * caps;
         assert_true(b->seen && b->place == k && run >= before && k >= c->runs[run]);
         before = run;
@@ -349,7 +349,7 @@ static double compare_pictures(uint8_t *a, uint8_t *b)
 
 /* ---- tests ---- */
 
-static void a_crowd_with_detail_keeps_its_word(void **state)
+static void a_crowd_with_lod_keeps_its_word(void **state)
 {
     crowd_options o = options_of(1.0f);
     const crowd_options none = options_of(0.0f);
@@ -392,7 +392,7 @@ static void a_crowd_with_detail_keeps_its_word(void **state)
     stand_close(&without);
 }
 
-/* With a knob of nothing and slots for all, what is drawn is what is drawn without detail. */
+/* With a knob of nothing and slots for all, what is drawn is what is drawn without LOD. */
 static void a_knob_of_nothing_leaves_nothing_out(void **state)
 {
     crowd_options o = options_of(1e-6f);
@@ -433,8 +433,8 @@ static void far_bodies_hang_on_fewer_joints(void **state)
         run_frame(&without, frame);
         expect_order(&with.crowd);
         for (uint32_t i = 0; i < BODIES; i++) {
-            const noh_detail *d = &crowd_character(&with.crowd, i)->detail;
-            const noh_detail_table *t = &with.crowd.table;
+            const noh_lod *d = &crowd_character(&with.crowd, i)->lod;
+            const noh_lod_table *t = &with.crowd.table;
             if (!with.crowd.bodies[i].seen) continue;
             fewer_joints += d->joints > 0;
             fewer_influences += d->influences > 0;
@@ -466,7 +466,7 @@ static void pools_by_level_take_less(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_crowd_with_detail_keeps_its_word),
+    cmocka_unit_test(a_crowd_with_lod_keeps_its_word),
     cmocka_unit_test(a_knob_of_nothing_leaves_nothing_out),
     cmocka_unit_test(far_bodies_hang_on_fewer_joints),
     cmocka_unit_test(pools_by_level_take_less),

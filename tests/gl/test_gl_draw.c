@@ -1,7 +1,7 @@
 /* Tests of runtime/gl/gl_draw.c and mesh.frag: what a material, a texture, colours and a mirrored world make of a pixel. */
-#include "gl_fixture.h"
+#include "support/gl_fixture.h"
 
-#include "lit_quad.h"
+#include "support/lit_quad.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* The viewer's pictures of the accumulators: every texel of every layer of an instance's tile is grey plus gain times
  * the delta that is accumulated there, float layers and integer ones. */
-#include "gl_fixture.h"
+#include "support/gl_fixture.h"
 
 #include "gl/gl_program.h"
 #include "tool_shaders.gen.h"

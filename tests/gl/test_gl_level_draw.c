@@ -1,8 +1,8 @@
-/* Levels of detail drawn: each level as a mesh of its triangles alone, faded pixel by pixel, alone and in crowds,
+/* LOD levels drawn: each level as a mesh of its triangles alone, faded pixel by pixel, alone and in crowds,
  * from meshes that have no finer levels, and in the colours that tell them apart. */
-#include "gl_fixture.h"
-#include "level_fixture.h"
-#include "skin_asset.h"
+#include "support/gl_fixture.h"
+#include "support/level_fixture.h"
+#include "support/skin_asset.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -151,16 +151,16 @@ static int tear_down(void **state)
 
 typedef enum draw_kind { RIGID, SKINNED, FEWER, CROWD } draw_kind;
 
-static void draw(const noh_gl_renderer *r, const side *s, const noh_gl_mesh *gl, draw_kind kind, const noh_gl_detail *detail)
+static void draw(const noh_gl_renderer *r, const side *s, const noh_gl_mesh *gl, draw_kind kind, const noh_gl_lod *drawn)
 {
     for (uint32_t i = 0; i < (kind == CROWD ? 1u : COPIES); i++) {
         noh_gl_morph_binding morph = noh_gl_morph_binding_of(s->morph.morph, i);
         noh_gl_skin_binding skin = noh_gl_skin_binding_of(s->skin, i);
         skin.influences = kind == FEWER ? 1u + i : 0;
         if (kind == CROWD) {
-            noh_gl_draw_crowd(r, gl, &morph, &skin, COPIES, detail, NULL, NOH_DRAW_OPAQUE);
+            noh_gl_draw_crowd(r, gl, &morph, &skin, COPIES, drawn, NULL, NOH_DRAW_OPAQUE);
         } else {
-            noh_gl_draw_mesh(r, gl, worlds[i], &morph, kind == RIGID ? NULL : &skin, detail, NULL, NOH_DRAW_OPAQUE);
+            noh_gl_draw_mesh(r, gl, worlds[i], &morph, kind == RIGID ? NULL : &skin, drawn, NULL, NOH_DRAW_OPAQUE);
         }
     }
 }
@@ -177,7 +177,7 @@ static noh_gl_renderer_desc renderer_desc(const noh_mesh *meshes, uint32_t count
 }
 
 /* One side's copies, drawn once for each detail (NULL: of none), into one frame. */
-static uint8_t *picture(const side *s, const noh_gl_mesh *gl, draw_kind kind, const noh_gl_detail *details, uint32_t count, noh_debug_view view)
+static uint8_t *picture(const side *s, const noh_gl_mesh *gl, draw_kind kind, const noh_gl_lod *lods, uint32_t count, noh_debug_view view)
 {
     static const noh_gl_camera camera = { { 0.8f, 0, 0, 0, 0, 0.8f, 0, 0, 0, 0, -0.3f, 0, 0, -0.8f, 0, 1 }, { 0, 0.8f, 9 }, { 0.6f, 0, 0.8f } };
     const noh_gl_api *api = &fixture_gpu()->gl;
@@ -191,8 +191,8 @@ static uint8_t *picture(const side *s, const noh_gl_mesh *gl, draw_kind kind, co
     assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ api, NULL, &f.ledger, log, sizeof log }, &desc,
                                             &renderer, NULL), NOH_OK);
     noh_gl_draw_begin(&renderer, &camera);
-    for (uint32_t i = 0; i < (details ? count : 1u); i++) {
-        draw(&renderer, s, gl, kind, details ? &details[i] : NULL);
+    for (uint32_t i = 0; i < (lods ? count : 1u); i++) {
+        draw(&renderer, s, gl, kind, lods ? &lods[i] : NULL);
     }
     noh_gl_draw_end(&renderer);
     rgba = fixture_frame_read(&f);
@@ -204,8 +204,8 @@ static uint8_t *picture(const side *s, const noh_gl_mesh *gl, draw_kind kind, co
 
 static uint8_t *picture_of_level(draw_kind kind, uint32_t level)
 {
-    const noh_gl_detail detail = { level, 0.0f, 1.0f };
-    return picture(&with, &with.gl, kind, &detail, 1, NOH_VIEW_LIT);
+    const noh_gl_lod drawn = { level, 0.0f, 1.0f };
+    return picture(&with, &with.gl, kind, &drawn, 1, NOH_VIEW_LIT);
 }
 
 static int covered(const uint8_t *rgba, uint32_t pixel)
@@ -235,7 +235,7 @@ static void same_picture(uint8_t *got, uint8_t *expected)
 /* The mesh without levels, of the triangles of one alone, drawn. */
 static uint8_t *picture_without(draw_kind kind, uint32_t level)
 {
-    const noh_mesh of = noh_mesh_at_level(&with.mesh, level);
+    const noh_mesh of = noh_mesh_at_lod(&with.mesh, level);
     noh_mesh_header header = *without.mesh.header;
     noh_mesh cut = without.mesh;
     noh_gl_ledger ledger;
@@ -294,7 +294,7 @@ static void levels_differ(void **state)
     free(coarse);
 }
 
-static void no_detail_is_the_finest(void **state)
+static void no_lod_is_the_finest(void **state)
 {
     (void)state;
     open_both();
@@ -306,39 +306,39 @@ static void no_detail_is_the_finest(void **state)
 /* Made of level 1: what is finer takes no memory, and draws as level 1. */
 static void finer_levels_can_stay_away(void **state)
 {
-    const noh_gl_detail details[LEVELS] = { { 0, 0.0f, 1.0f }, { 1, 0.0f, 1.0f }, { 2, 0.0f, 1.0f } };
+    const noh_gl_lod lods[LEVELS] = { { 0, 0.0f, 1.0f }, { 1, 0.0f, 1.0f }, { 2, 0.0f, 1.0f } };
     noh_mesh view;
-    noh_mesh_level table_levels[NOH_DETAIL_LEVELS_MAX];
-    noh_detail_table table;
-    noh_detail chosen;
+    noh_lod_mesh table_levels[NOH_LOD_LEVELS_MAX];
+    noh_lod_table table;
+    noh_lod chosen;
     noh_gl_ledger ledger;
     noh_gl_mesh gl;
     size_t first;
     (void)state;
     open_both();
     memset(&table, 0, sizeof table);
-    view = noh_mesh_at_level(&with.mesh, 1);
+    view = noh_mesh_at_lod(&with.mesh, 1);
     memset(&ledger, 0, sizeof ledger);
     assert_int_equal(noh_gl_mesh_create(&fixture_gpu()->gl, &ledger, &view, &gl, NULL), NOH_OK);
     assert_true(noh_gl_ledger_bytes(&ledger) == noh_gl_mesh_bytes(&view));
     assert_int_equal(noh_gl_mesh_bytes(&with.mesh) - noh_gl_mesh_bytes(&view),
                      (with.mesh.header->vertex_count - view.header->vertex_count) * (12u + with.mesh.header->attribute_stride + 12u) +
                          with.mesh.header->index_count * with.mesh.header->index_bytes);
-    assert_int_equal(noh_gl_mesh_level(&gl, 0, &first).header->level, 1);
+    assert_int_equal(noh_gl_mesh_lod(&gl, 0, &first).header->level, 1);
     assert_int_equal(first, 0);
-    assert_int_equal(noh_gl_mesh_level(&gl, 9, &first).header->level, 2);
+    assert_int_equal(noh_gl_mesh_lod(&gl, 9, &first).header->level, 2);
     assert_int_equal(first, view.header->index_count * view.header->index_bytes);
-    noh_detail_mesh_levels(&view, table_levels, &table); /* what detail chooses by is what is drawn */
+    noh_lod_mesh_levels(&view, table_levels, &table); /* what detail chooses by is what is drawn */
     for (uint32_t k = table.mesh_level_first; k < table.mesh_level_count; k++) {
         const noh_mesh_header *drawn;
-        noh_detail_fix(&chosen, &table, k, 1.0f);
-        drawn = noh_gl_mesh_level(&gl, chosen.mesh, &first).header;
+        noh_lod_set_mesh(&chosen, &table, k, 1.0f);
+        drawn = noh_gl_mesh_lod(&gl, chosen.mesh, &first).header;
         assert_int_equal(drawn->level, k);
         assert_int_equal(drawn->vertex_count, table.meshes[chosen.mesh].vertex_count);
     }
     assert_int_equal(table.mesh_level_count, LEVELS);
     for (uint32_t k = 0; k < LEVELS; k++) {
-        same_picture(picture(&with, &gl, CROWD, &details[k], 1, NOH_VIEW_LIT), picture_of_level(CROWD, k ? k : 1u));
+        same_picture(picture(&with, &gl, CROWD, &lods[k], 1, NOH_VIEW_LIT), picture_of_level(CROWD, k ? k : 1u));
     }
     noh_gl_mesh_delete(&fixture_gpu()->gl, &ledger, &gl);
 }
@@ -354,8 +354,8 @@ static float noise(uint32_t x, uint32_t y)
 /* Each pixel is that of the level which the pattern says, or of the background: never both, never neither. */
 static void check_fade(draw_kind kind, float f)
 {
-    const noh_gl_detail details[2] = { { 1, 0.0f, f }, { 0, f, 1.0f } };
-    uint8_t *got = picture(&with, &with.gl, kind, details, 2, NOH_VIEW_LIT);
+    const noh_gl_lod lods[2] = { { 1, 0.0f, f }, { 0, f, 1.0f } };
+    uint8_t *got = picture(&with, &with.gl, kind, lods, 2, NOH_VIEW_LIT);
     uint8_t *in = picture_of_level(kind, 1), *out = picture_of_level(kind, 0);
     uint32_t from_in = 0, from_out = 0;
     for (uint32_t i = 0; i < SIDE * SIDE; i++) {
@@ -389,7 +389,7 @@ static void a_fade_draws_each_pixel_once(void **state)
 
 static void a_level_fades_into_itself(void **state)
 {
-    const noh_gl_detail parts[3] = { { 0, 0.0f, 0.3f }, { 0, 0.3f, 0.31f }, { 0, 0.31f, 1.0f } };
+    const noh_gl_lod parts[3] = { { 0, 0.0f, 0.3f }, { 0, 0.3f, 0.31f }, { 0, 0.31f, 1.0f } };
     (void)state;
     open_both();
     same_picture(picture(&with, &with.gl, SKINNED, parts, 3, NOH_VIEW_LIT), picture_of_level(SKINNED, 0));
@@ -397,7 +397,7 @@ static void a_level_fades_into_itself(void **state)
 
 static void a_draw_of_no_pixels_draws_none(void **state)
 {
-    const noh_gl_detail none[3] = { { 0, 0.0f, 0.0f }, { 1, 1.0f, 1.0f }, { 1, 0.7f, 0.2f } };
+    const noh_gl_lod none[3] = { { 0, 0.0f, 0.0f }, { 1, 1.0f, 1.0f }, { 1, 0.7f, 0.2f } };
     uint8_t *got;
     (void)state;
     open_both();
@@ -477,16 +477,16 @@ static void each_level_has_a_color(void **state)
 {
     fixture_levels eight;
     noh_mesh mesh;
-    double colors[NOH_LEVELS_MAX][3];
+    double colors[NOH_LOD_LEVELS_MAX][3];
     side s;
     (void)state;
     open_both();
-    fixture_levels_open(&eight, &tube, NOH_LEVELS_MAX, 0.005f);
+    fixture_levels_open(&eight, &tube, NOH_LOD_LEVELS_MAX, 0.005f);
     mesh = test_mesh(&eight.pack, 0);
     side_open(&s, &mesh);
-    for (uint32_t k = 0; k < NOH_LEVELS_MAX; k++) {
-        const noh_gl_detail detail = { k, 0.0f, 1.0f };
-        uint8_t *rgba = picture(&s, &s.gl, SKINNED, &detail, 1, NOH_VIEW_LOD);
+    for (uint32_t k = 0; k < NOH_LOD_LEVELS_MAX; k++) {
+        const noh_gl_lod drawn = { k, 0.0f, 1.0f };
+        uint8_t *rgba = picture(&s, &s.gl, SKINNED, &drawn, 1, NOH_VIEW_LOD);
         mean_color(rgba, colors[k]);
         free(rgba);
         for (uint32_t other = 0; other < k; other++) {
@@ -506,7 +506,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_level_draws_its_triangles),
     cmocka_unit_test(so_where_joints_do_not_fit_a_palette),
     cmocka_unit_test(levels_differ),
-    cmocka_unit_test(no_detail_is_the_finest),
+    cmocka_unit_test(no_lod_is_the_finest),
     cmocka_unit_test(finer_levels_can_stay_away),
     cmocka_unit_test(a_fade_draws_each_pixel_once),
     cmocka_unit_test(a_level_fades_into_itself),

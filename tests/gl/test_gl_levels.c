@@ -1,7 +1,7 @@
-/* Levels of detail in the accumulators: every path at every level against the CPU, the finer level's bits in the
+/* LOD levels in the accumulators: every path at every level against the CPU, the finer level's bits in the
  * coarser, what is not done any more, and sets that hold several levels of one mesh. */
-#include "gl_fixture.h"
-#include "level_fixture.h"
+#include "support/gl_fixture.h"
+#include "support/level_fixture.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -229,7 +229,7 @@ static void less_is_done_at_coarser_levels(void **state)
 
 static void levels_are_clamped(void **state)
 {
-    const noh_mesh views[2] = { noh_mesh_at_level(&meshes[2], 1), meshes[0] };
+    const noh_mesh views[2] = { noh_mesh_at_lod(&meshes[2], 1), meshes[0] };
     noh_gl_morph_desc desc;
     fixture_morph m;
     test_random r = { 84 };
@@ -257,7 +257,7 @@ static void levels_are_clamped(void **state)
 
 static void compare_with_level(const fixture_morph *m, uint32_t level, const noh_mesh *mesh)
 {
-    const noh_mesh finest = noh_mesh_at_level(mesh, level);
+    const noh_mesh finest = noh_mesh_at_lod(mesh, level);
     const uint32_t one = 1;
     noh_gl_morph_desc desc = *m->desc;
     noh_gl_morph_plan plan;
@@ -285,8 +285,8 @@ static void check_pools(fixture_morph *m)
 
 static void levels_of_a_mesh_share_their_tables(void **state)
 {
-    const noh_mesh all[3] = { noh_mesh_at_level(&meshes[2], 2), meshes[2], noh_mesh_at_level(&meshes[2], 1) };
-    const noh_mesh coarse[3] = { noh_mesh_at_level(&meshes[2], 2), noh_mesh_at_level(&meshes[2], 1), noh_mesh_at_level(&meshes[2], 1) };
+    const noh_mesh all[3] = { noh_mesh_at_lod(&meshes[2], 2), meshes[2], noh_mesh_at_lod(&meshes[2], 1) };
+    const noh_mesh coarse[3] = { noh_mesh_at_lod(&meshes[2], 2), noh_mesh_at_lod(&meshes[2], 1), noh_mesh_at_lod(&meshes[2], 1) };
     const uint32_t counts[3] = { 20, 2, 5 };
     (void)state;
     in_every_way(all, counts, 3, check_pools);
@@ -297,8 +297,8 @@ static void levels_of_a_mesh_share_their_tables(void **state)
 /* Beside other meshes, whose tables follow. */
 static void pools_stand_beside_other_meshes(void **state)
 {
-    const noh_mesh views[5] = { noh_mesh_at_level(&meshes[0], 1), meshes[FIXTURE_BARE], noh_mesh_at_level(&meshes[2], 2), meshes[0],
-                                noh_mesh_at_level(&meshes[2], 1) };
+    const noh_mesh views[5] = { noh_mesh_at_lod(&meshes[0], 1), meshes[FIXTURE_BARE], noh_mesh_at_lod(&meshes[2], 2), meshes[0],
+                                noh_mesh_at_lod(&meshes[2], 1) };
     const uint32_t counts[5] = { 3, 1, 7, 2, 2 };
     (void)state;
     in_every_way(views, counts, 5, check_random_levels);
@@ -307,7 +307,7 @@ static void pools_stand_beside_other_meshes(void **state)
 /* Tiles of coarse levels are small: that is what they are for. */
 static void pools_take_less_memory(void **state)
 {
-    const noh_mesh views[2] = { meshes[2], noh_mesh_at_level(&meshes[2], 2) };
+    const noh_mesh views[2] = { meshes[2], noh_mesh_at_lod(&meshes[2], 2) };
     const uint32_t near_and_far[2] = { 10, 1000 };
     const uint32_t all = 1010;
     noh_gl_morph_desc desc;

@@ -1,6 +1,6 @@
 /* Accumulation on the GPU: every path and format against the CPU reference, value for value;
  * what is not accumulated again; and what happens where capabilities are missing. */
-#include "gl_fixture.h"
+#include "support/gl_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>

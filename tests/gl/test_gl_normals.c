@@ -1,7 +1,7 @@
 /* Normals of nodes whose scales are unequal, against closed forms that are worked out here in doubles: what
  * noh_gl_normal_rows gives, what leaves the vertex shader for a mesh drawn alone and in a crowd, and the colour of
  * pixels in the middle of triangles, where the interpolated normal is not unit. */
-#include "gl_fixture.h"
+#include "support/gl_fixture.h"
 
 #include "base/quat.h"
 

@@ -1,10 +1,10 @@
 /* A game's own vertex shader, put together as shaders_es/README.md says out of its example and noh_gl_shader_text:
  * what it makes of a mesh that morphs and bends is what the CPU makes of it, with palettes in a block and in a texture,
  * float layers and integer ones, and for a mesh without joints. */
-#include "gl_fixture.h"
+#include "support/gl_fixture.h"
 
 #include "base/quat.h"
-#include "skin_asset.h"
+#include "support/skin_asset.h"
 
 #include <math.h>
 #include <stdio.h>

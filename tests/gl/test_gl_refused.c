@@ -2,9 +2,9 @@
  * it fails, then the second, until a create passes without the refusal. None may say NOH_OK before, nothing is left
  * behind in GL or in the ledger, and a second attempt with the same memory succeeds. On the null platform, which keeps
  * count of what lives. */
-#include "support.h"
+#include "support/support.h"
 
-#include "gpu.h"
+#include "gpu/gpu.h"
 #include "gl/gl_timer.h"
 #include "null.h"
 
@@ -70,7 +70,7 @@ static noh_result make_texture(maker *m, noh_error *error)
 static noh_result make_picture(maker *m, noh_error *error)
 {
     noh_texture texture;
-    assert_int_equal(noh_pack_texture(&m->pack, 0, &texture, NULL), NOH_OK);
+    assert_int_equal(noh_pack_texture_at(&m->pack, 0, &texture, NULL), NOH_OK);
     return noh_gl_picture_create(&m->g.gl, &m->g.ledger, &texture, &m->made.texture, error);
 }
 
@@ -180,7 +180,7 @@ static void unmake_skin(maker *m)
 static noh_result restore_picture(maker *m, noh_error *error)
 {
     noh_texture texture;
-    assert_int_equal(noh_pack_texture(&m->pack, 0, &texture, error), NOH_OK);
+    assert_int_equal(noh_pack_texture_at(&m->pack, 0, &texture, error), NOH_OK);
     return noh_gl_picture_restore(&m->g.gl, &m->g.ledger, &texture, &m->made.texture, error);
 }
 

@@ -1,6 +1,6 @@
 /* Skinning on the GPU: every vertex against the CPU reference; a uniform block, a texture and a crowd give the same
  * bits; split meshes give the same picture; what is sent, and what is refused. */
-#include "gl_skin_fixture.h"
+#include "support/gl_skin_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
-/* What a level of detail of the mask takes: its vertices alone are transformed, its texels alone accumulated, and both
+/* What a LOD level of the mask takes: its vertices alone are transformed, its texels alone accumulated, and both
  * fall as the level does. */
-#include "gl_fixture.h"
-#include "pack_file.h"
+#include "support/gl_fixture.h"
+#include "file/pack_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -50,7 +50,7 @@ static void a_level_draws_all_its_vertices_and_no_other(void **state)
     (void)state;
     open_mask();
     for (uint32_t k = 0; k < LEVELS; k++) {
-        const noh_mesh level = noh_mesh_at_level(&mask, k);
+        const noh_mesh level = noh_mesh_at_lod(&mask, k);
         uint8_t *used = test_zeros(mask.header->vertex_count);
         for (uint32_t i = 0; i < level.header->index_count; i++) {
             used[noh_mesh_index(&level, i)] = 1;
@@ -82,7 +82,7 @@ static void an_update_accumulates_what_the_level_has(void **state)
     open_mask();
     for (uint32_t i = 0; i < 2u * LEVELS; i++) {
         const uint32_t k = i < LEVELS ? i : 2u * LEVELS - 1u - i;
-        const noh_mesh_header *h = noh_mesh_at_level(&mask, k).header;
+        const noh_mesh_header *h = noh_mesh_at_lod(&mask, k).header;
         const noh_gl_morph_stats stats = accumulate(k, 0.1f + 0.1f * (float)i);
         assert_int_equal(stats.instances, 1);
         assert_int_equal(stats.pairs, h->pair_count);
@@ -97,7 +97,7 @@ static void its_cost_falls_as_its_vertices_do(void **state)
     (void)state;
     open_mask();
     for (uint32_t k = 1; k < LEVELS; k++) {
-        const noh_mesh_header *full = mask.header, *h = noh_mesh_at_level(&mask, k).header;
+        const noh_mesh_header *full = mask.header, *h = noh_mesh_at_lod(&mask, k).header;
         const noh_gl_morph_stats stats = accumulate(k, 0.05f + 0.1f * (float)k);
         const double vertices = share(h->vertex_count, full->vertex_count), accumulator = share(h->touched_count, full->touched_count);
         const double deltas = share(stats.texels, full->texel_count);

@@ -1,13 +1,13 @@
 /* A lost context: destroyed for good, a new one made, everything made again out of the pack by
  * load_restore. The picture is the same, the ledger stands as before to the byte, and what else
  * lives in the new context under the old names is left alone. */
-#include "gl_fixture.h"
-#include "level_fixture.h"
+#include "support/gl_fixture.h"
+#include "support/level_fixture.h"
 
-#include "load.h"
+#include "draw/load.h"
 #include "null.h"
-#include "camera.h"
-#include "canvas.h"
+#include "draw/camera.h"
+#include "gpu/canvas.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -71,12 +71,12 @@ static void close_stage(stage *st)
 
 static void draw(stage *st, const noh_gl_camera *camera, uint32_t level)
 {
-    const noh_gl_detail detail = { level, 0.0f, 1.0f };
+    const noh_gl_lod drawn = { level, 0.0f, 1.0f };
     noh_gl_draw_begin(&st->l.renderer, camera);
     for (int pass = NOH_DRAW_OPAQUE; pass <= NOH_DRAW_BLENDED; pass++) {
         for (uint32_t i = 0; i < st->s.item_count; i++) {
             noh_gl_morph_binding morph = noh_gl_morph_binding_of(st->l.morph.morph, st->l.item_instances[i]);
-            noh_gl_draw_mesh(&st->l.renderer, &st->l.meshes[st->s.items[i].mesh], scene_world(&st->s, &st->file, i), &morph, NULL, &detail,
+            noh_gl_draw_mesh(&st->l.renderer, &st->l.meshes[st->s.items[i].mesh], scene_world(&st->s, &st->file, i), &morph, NULL, &drawn,
                              st->l.pictures, pass);
         }
     }
@@ -177,14 +177,14 @@ static void every_path_comes_back(void **state)
     lose_and_restore((fixture_way){ NOH_MORPH_GATHER, NOH_ACCUMULATE_F32 }, 1);
 }
 
-/* Levels of detail, and what each instance accumulates of them. */
+/* LOD levels, and what each instance accumulates of them. */
 static void levels_come_back(void **state)
 {
     stage st;
     (void)state;
     for (int i = 0; i < FIXTURE_WAYS; i += 2) {
         open_stage_of(&st, "egl", fixture_ways[i], 0, 3);
-        for (uint32_t k = 0; k < st.s.item_count; k++) noh_gl_morph_set_level(st.l.morph.morph, st.l.item_instances[k], 1);
+        for (uint32_t k = 0; k < st.s.item_count; k++) noh_gl_morph_set_lod(st.l.morph.morph, st.l.item_instances[k], 1);
         uint8_t *before = picture_of_level(&st, 1), *coarser = picture_of_level(&st, 2);
         noh_gl_ledger ledger = st.g.ledger;
         noh_gl_morph_stats stats;

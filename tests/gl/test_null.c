@@ -1,9 +1,9 @@
 /* The library on a GL that does nothing and checks every call (platform/null.h): whole loads,
  * frames and deletions without a violation, every object labelled and given back, every pass in
  * a debug group, and frames that make no object. And the checks themselves: each finds its lie. */
-#include "level_fixture.h"
+#include "support/level_fixture.h"
 
-#include "load.h"
+#include "draw/load.h"
 #include "null.h"
 
 #include <stdio.h>
@@ -172,18 +172,18 @@ static void every_path_keeps_the_order(void **state)
     free(bytes);
 }
 
-/* ---- levels of detail ---- */
+/* ---- LOD levels ---- */
 
 /* Instances at levels that go round, drawn in two fading parts. */
 static void draw_levels(load *l, const scene *s, const noh_gl_renderer *r, uint32_t number)
 {
     noh_gl_camera camera;
     memset(&camera, 0, sizeof camera);
-    for (uint32_t i = 0; i < s->item_count; i++) noh_gl_morph_set_level(l->morph.morph, l->item_instances[i], (number + i) % 4u);
+    for (uint32_t i = 0; i < s->item_count; i++) noh_gl_morph_set_lod(l->morph.morph, l->item_instances[i], (number + i) % 4u);
     assert_int_equal(load_update(l, NULL), 0);
     noh_gl_draw_begin(r, &camera);
     for (uint32_t i = 0; i < 2u * s->item_count; i++) {
-        const noh_gl_detail part = { (number + i) % 4u, i % 2u ? 0.4f : 0.0f, i % 2u ? 1.0f : 0.4f };
+        const noh_gl_lod part = { (number + i) % 4u, i % 2u ? 0.4f : 0.0f, i % 2u ? 1.0f : 0.4f };
         noh_gl_morph_binding morph = noh_gl_morph_binding_of(l->morph.morph, l->item_instances[i / 2u]);
         noh_gl_draw_mesh(r, &l->meshes[s->items[i / 2u].mesh], scene_world(s, l->file, i / 2u), &morph, NULL, &part, l->pictures, NOH_DRAW_OPAQUE);
     }

@@ -30,7 +30,7 @@ for seed in 2 3; do
 done
 options=
 
-# Vertices that name their delta texels themselves: with levels of detail, and split by palettes.
+# Vertices that name their delta texels themselves: with LOD levels, and split by palettes.
 verify 'the mask with levels' "$build/mask_levels.noh"
 noh build "$build/demo/puppet.glb" -o "$work/split.noh" --quiet --only mesh --palette 6
 expect 0 'build of a puppet that is split'

@@ -22,7 +22,7 @@ expect 2 'so is a screenshot without --frames'
 noh view "$mask" --driver osmesa
 expect 2 'so is a driver that windows do not have'
 noh view "$mask" --lod 9
-expect 2 'so are more levels of detail than there can be'
+expect 2 'so are more LOD levels than there can be'
 
 for program in Xvfb xdotool; do
     if ! command -v $program >/dev/null 2>&1; then
@@ -87,7 +87,7 @@ Frame Time: 0.0333333
 1 20 0 5 0 0 30 0 0
 BVH
 noh view "$work/leg.bvh" --frames 2 --size 700x400
-expect 0 'a motion is converted and its bones are shown'
+expect 0 'a clip is converted and its bones are shown'
 check 'without a complaint' test ! -s "$work/err"
 noh view "$work/leg.bvh" --frames 2 --clip jump
 expect 1 'a clip that is not there'
@@ -258,7 +258,7 @@ fi
 
 close_viewer 'Escape ends it'
 
-# ---- levels of detail ----
+# ---- LOD levels ----
 
 # Pictures until one is as the one before: a change of level has been faded.
 settled() {

@@ -1,11 +1,11 @@
 /* Every object of anim/ and character/ opens its block in the same way: NULL and misaligned memory are ARG, one byte too
  * few is MEMORY, `need` is the exact bytes each time, nothing is touched on an error, and nothing past the end ever. */
-#include "support.h"
+#include "support/support.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#include "unit/anim_set.h"
+#include "support/clip_set_fixture.h"
 
 #define CANARY 64u
 
@@ -16,7 +16,7 @@ typedef struct blocks {
     noh_graph graph;
     noh_graph_node node;
     noh_track_desc clip;
-    noh_level_pools_desc pools;
+    noh_lod_pools_desc pools;
     uint32_t level, slots;
 } blocks;
 
@@ -82,10 +82,10 @@ static noh_result character_scratch(const blocks *b, void *memory, size_t bytes,
     return noh_character_scratch_init(memory, bytes, &b->character, &scratch, error);
 }
 
-static noh_result level_pools(const blocks *b, void *memory, size_t bytes, noh_error *error)
+static noh_result lod_pools(const blocks *b, void *memory, size_t bytes, noh_error *error)
 {
-    noh_level_pools *pools;
-    return noh_level_pools_init(memory, bytes, &b->pools, &pools, error);
+    noh_lod_pools *pools;
+    return noh_lod_pools_init(memory, bytes, &b->pools, &pools, error);
 }
 
 static noh_result schedule(const blocks *b, void *memory, size_t bytes, noh_error *error)
@@ -108,17 +108,17 @@ static noh_result time_measure(const blocks *b, void *memory, size_t bytes, noh_
 {
     static float radius[JOINTS];
     const noh_time_probe probe = { &b->s.set, &b->s.skeleton, radius, NULL, 0 };
-    float errors[NOH_RATE_COUNT];
+    float errors[NOH_UPDATE_RATE_COUNT];
     return noh_time_lod_measure(memory, bytes, &probe, POSE, errors, error);
 }
 
 static noh_result points_measure(const blocks *b, void *memory, size_t bytes, noh_error *error)
 {
     const noh_time_hold hold = { 1, 1.0f, { 0, 0, 0 } };
-    const noh_time_points points = { &hold, 1, 1 };
+    const noh_time_lod_points points = { &hold, 1, 1 };
     const noh_time_probe probe = { &b->s.set, &b->s.skeleton, NULL, NULL, 0 };
-    float errors[NOH_RATE_COUNT];
-    return noh_time_points_measure(memory, bytes, &probe, &points, POSE, errors, error);
+    float errors[NOH_UPDATE_RATE_COUNT];
+    return noh_time_lod_points_measure(memory, bytes, &probe, &points, POSE, errors, error);
 }
 
 static int untouched(const uint8_t *bytes, size_t count)
@@ -140,7 +140,7 @@ static void refuse(const blocks *b, init_fn init, void *memory, size_t bytes, no
 static void every_block_opens_in_the_same_way(void **state)
 {
     static const init_fn inits[] = { controller, pose_scratch, event_queue, graph_state, graph_scratch, character, character_scratch,
-                                     level_pools, schedule, joint_measure, time_measure, points_measure };
+                                     lod_pools, schedule, joint_measure, time_measure, points_measure };
     (void)state;
     for (size_t i = 0; i < sizeof inits / sizeof *inits; i++) {
         blocks b;

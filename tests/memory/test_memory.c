@@ -1,14 +1,14 @@
 /* The memory contract: sizes are exact, one byte less is refused and nothing is touched, and
  * nothing outside the block is ever written; what a plan says before a load is what the load
  * takes, on the CPU and on the GPU. */
-#include "gl_fixture.h"
+#include "support/gl_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/arena.h"
-#include "motion_fixture.h"
+#include "support/clip_bank_fixture.h"
 
 #define CANARY 256u
 #define FILL 0xa5
@@ -486,41 +486,41 @@ static void weights_have_to_be_finite(void **state)
     fixture_meshes_close(&f);
 }
 
-/* ---- motion sets: the set with its clips and cache, controllers, poses ---- */
+/* ---- clip banks: the set with its clips and cache, controllers, poses ---- */
 
-static void play_a_while(noh_motion_set *set)
+static void play_a_while(noh_clip_bank *set)
 {
-    motion_player p;
-    motion_player_open(&p, set);
-    for (uint32_t m = 0; m < set->anim.motion_count; m++) {
-        motion_start(&p, m, NOH_LOOP_PING_PONG, 2 * NOH_SPEED_ONE, 100);
+    clip_player p;
+    clip_player_open(&p, set);
+    for (uint32_t m = 0; m < set->clips.clip_count; m++) {
+        clip_start(&p, m, NOH_LOOP_PING_PONG, 2 * NOH_SPEED_ONE, 100);
         for (int i = 0; i < 150; i++) {
-            motion_frame(&p, 800, i % 2 ? 4800 : 0, 50);
+            clip_frame(&p, 800, i % 2 ? 4800 : 0, 50);
         }
     }
-    motion_player_close(&p);
+    clip_player_close(&p);
 }
 
-static void expect_exact_view(const noh_motion_set *set, size_t bytes)
+static void expect_exact_view(const noh_clip_bank *set, size_t bytes)
 {
-    noh_transform *pose = test_zeros(sizeof *pose * (set->anim.joint_count + 1u));
-    float *floats = test_zeros(sizeof *floats * (set->anim.float_count + 1u));
-    noh_motion_set_view *view = NULL;
+    noh_transform *pose = test_zeros(sizeof *pose * (set->clips.joint_count + 1u));
+    float *floats = test_zeros(sizeof *floats * (set->clips.float_count + 1u));
+    noh_clip_bank_view *view = NULL;
     noh_error error = { NOH_OK, NULL, 0, 0 };
     guarded g = guarded_new(bytes);
-    assert_int_equal(noh_motion_set_view_size(set), bytes);
-    assert_int_equal(noh_motion_set_view_init(NULL, bytes, set, &view, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_clip_bank_view_size(set), bytes);
+    assert_int_equal(noh_clip_bank_view_init(NULL, bytes, set, &view, &error), NOH_ERR_ARG);
     assert_int_equal(error.need, bytes);
-    assert_int_equal(noh_motion_set_view_init(g.block, bytes - 1, set, &view, &error), NOH_ERR_MEMORY);
+    assert_int_equal(noh_clip_bank_view_init(g.block, bytes - 1, set, &view, &error), NOH_ERR_MEMORY);
     assert_int_equal(error.need, bytes);
-    assert_int_equal(noh_motion_set_view_init(g.block + 4, bytes, set, &view, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_clip_bank_view_init(g.block + 4, bytes, set, &view, &error), NOH_ERR_ARG);
     assert_null(view);
     expect_untouched(&g);
-    assert_int_equal(noh_motion_set_view_init(g.block, bytes, set, &view, &error), NOH_OK);
-    for (uint32_t m = 0; m < set->anim.motion_count; m++) {
-        const uint32_t duration = set->anim.motions[m].duration_ticks;
+    assert_int_equal(noh_clip_bank_view_init(g.block, bytes, set, &view, &error), NOH_OK);
+    for (uint32_t m = 0; m < set->clips.clip_count; m++) {
+        const uint32_t duration = set->clips.clips[m].duration_ticks;
         for (uint32_t i = 0; i <= 100; i++) {
-            view->anim.sample(view->anim.user, m, duration / 100u * i, set->anim.joint_count, pose, set->anim.float_count, floats);
+            view->clips.sample(view->clips.user, m, duration / 100u * i, set->clips.joint_count, pose, set->clips.float_count, floats);
         }
     }
     expect_canaries(&g);
@@ -531,45 +531,45 @@ static void expect_exact_view(const noh_motion_set *set, size_t bytes)
 
 static void expect_exact_set(const noh_pack *pack, uint32_t skeleton, uint32_t slots, uint32_t root_axes)
 {
-    noh_motion_set_desc desc;
-    noh_motion_set_needs needs;
+    noh_clip_bank_desc desc;
+    noh_clip_bank_needs needs;
     noh_error error = { NOH_OK, NULL, 0, 0 };
-    noh_motion_set *set = NULL;
+    noh_clip_bank *set = NULL;
     guarded g;
     memset(&desc, 0, sizeof desc);
     desc.clips = pack;
     desc.skeleton = skeleton;
-    desc.slot_count = slots;
+    desc.cached_segment_count = slots;
     desc.root_axes = root_axes;
-    assert_int_equal(noh_motion_set_measure(&desc, &needs, &error), NOH_OK);
-    assert_int_equal(needs.bytes, noh_motion_set_size(&desc, NULL));
+    assert_int_equal(noh_clip_bank_measure(&desc, &needs, &error), NOH_OK);
+    assert_int_equal(needs.bytes, noh_clip_bank_size(&desc, NULL));
     g = guarded_new(needs.bytes);
-    assert_int_equal(noh_motion_set_init(g.block, needs.bytes - 1, &desc, &set, &error), NOH_ERR_MEMORY);
+    assert_int_equal(noh_clip_bank_init(g.block, needs.bytes - 1, &desc, &set, &error), NOH_ERR_MEMORY);
     assert_int_equal(error.need, needs.bytes);
-    assert_int_equal(noh_motion_set_init(g.block + 4, needs.bytes, &desc, &set, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_clip_bank_init(g.block + 4, needs.bytes, &desc, &set, &error), NOH_ERR_ARG);
     assert_null(set);
     expect_untouched(&g);
-    assert_int_equal(noh_motion_set_init(g.block, needs.bytes, &desc, &set, &error), NOH_OK);
-    assert_int_equal(set->anim.motion_count, needs.shape.motion_count);
-    assert_int_equal(set->anim.joint_count, needs.shape.joint_count);
-    assert_int_equal(set->anim.float_count, needs.shape.float_count);
+    assert_int_equal(noh_clip_bank_init(g.block, needs.bytes, &desc, &set, &error), NOH_OK);
+    assert_int_equal(set->clips.clip_count, needs.shape.clip_count);
+    assert_int_equal(set->clips.joint_count, needs.shape.joint_count);
+    assert_int_equal(set->clips.float_count, needs.shape.float_count);
     play_a_while(set);
     expect_exact_view(set, needs.view_bytes);
     expect_canaries(&g);
     guarded_free(&g);
 }
 
-static void motion_sets_want_their_exact_size(void **state)
+static void clip_banks_want_their_exact_size(void **state)
 {
     const char *inputs[2];
-    model *m = motion_model(7);
+    model *m = clip_model(7);
     size_t counts[2];
     uint8_t *made[2];
     noh_pack packs[2];
     (void)state;
-    inputs[0] = motion_bvh("walk", "abcde", 100);
-    inputs[1] = motion_bvh("long", "abcde", 211);
-    made[0] = motion_pack(inputs, 2, NULL, &counts[0]);
+    inputs[0] = clip_bvh("walk", "abcde", 100);
+    inputs[1] = clip_bvh("long", "abcde", 211);
+    made[0] = clip_pack(inputs, 2, NULL, &counts[0]);
     made[1] = test_pack_of(m, &counts[1], NULL);
     for (int i = 0; i < 2; i++) {
         packs[i] = test_open(made[i], counts[i]);
@@ -619,7 +619,7 @@ static void pictures_and_the_renderer_take_what_they_say(void **state)
     noh_gl_ledger ledger;
     (void)state;
     memset(&ledger, 0, sizeof ledger);
-    assert_int_equal(noh_pack_texture(&pack, 0, &texture, NULL), NOH_OK);
+    assert_int_equal(noh_pack_texture_at(&pack, 0, &texture, NULL), NOH_OK);
     assert_int_equal(noh_gl_picture_create(&g->gl, &ledger, &texture, &picture, NULL), NOH_OK);
     assert_int_equal(noh_gl_ledger_bytes(&ledger), noh_gl_picture_bytes(&texture));
     assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, NULL, 0 }, &desc,
@@ -650,7 +650,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(instance_counts_have_a_limit),
     cmocka_unit_test(tiles_have_to_fit_a_texture),
     cmocka_unit_test(weights_have_to_be_finite),
-    cmocka_unit_test(motion_sets_want_their_exact_size),
+    cmocka_unit_test(clip_banks_want_their_exact_size),
     cmocka_unit_test(meshes_take_what_they_say),
     cmocka_unit_test(pictures_and_the_renderer_take_what_they_say),
 };

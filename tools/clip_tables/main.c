@@ -1,7 +1,7 @@
-/* clip_tables: derive the prefix codes of the clip codec from motion.
+/* clip_tables: derive the prefix codes of the clip codec from clip.
  *
- *   clip_tables > runtime/anim/clip_tables.c                 flat codes, to start from
- *   clip_tables CLIP.rcl... > runtime/anim/clip_tables.c     codes for these clips
+ *   clip_tables > runtime/clip/clip_tables.c                 flat codes, to start from
+ *   clip_tables CLIP.rcl... > runtime/clip/clip_tables.c     codes for these clips
  *
  * Every clip is encoded at 0.01 cm with a 3 cm shell and at 0.1 cm with a 10 cm shell; clips
  * above 60 Hz also with every 4th frame. Symbols are counted per context, each clip weighted so
@@ -13,8 +13,8 @@
 #include <string.h>
 
 #include "convert/clip/clip_encoder.h"
-#include "convert/motion/raw_set.h"
-#include "convert/motion/rcl.h"
+#include "convert/clips/raw_set.h"
+#include "convert/clips/rcl.h"
 
 #define SYMBOLS_MAX 65u
 #define ITEMS_MAX (2u * SYMBOLS_MAX)
@@ -151,7 +151,7 @@ static void decimate(raw_clip *clip, uint32_t n)
         memmove(clip->scales + 3u * to, clip->scales + 3u * from, 3u * clip->joint_count * sizeof(float));
     }
     clip->frame_count = count;
-    clip->rate_hz /= n;
+    clip->sample_rate_hz /= n;
 }
 
 static int count_file(const char *path, totals *t)
@@ -164,7 +164,7 @@ static int count_file(const char *path, totals *t)
         return 1;
     }
     failed = count_clip(&set->skeleton, set->clips, 0.01, 3.0, t) || count_clip(&set->skeleton, set->clips, 0.1, 10.0, t);
-    if (set->clips[0].rate_hz > FAST_HZ) {
+    if (set->clips[0].sample_rate_hz > FAST_HZ) {
         decimate(set->clips, DECIMATE);
         failed = failed || count_clip(&set->skeleton, set->clips, 0.01, 3.0, t) || count_clip(&set->skeleton, set->clips, 0.1, 10.0, t);
     }
@@ -177,7 +177,7 @@ int main(int argc, char **argv)
     static totals t;
     int failed = 0;
     for (int i = 1; i < argc; i++) failed |= count_file(argv[i], &t);
-    printf("/* Made by tools/clip_tables; do not edit.%s */\n#include \"anim/clip_coefs.h\"\n\n", argc > 1 ? " From:" : " Flat codes.");
+    printf("/* Made by tools/clip_tables; do not edit.%s */\n#include \"clip/clip_coefs_internal.h\"\n\n", argc > 1 ? " From:" : " Flat codes.");
     for (int i = 1; i < argc; i++) {
         const char *name = strrchr(argv[i], '/');
         printf("/* %s */\n", name ? name + 1 : argv[i]);

@@ -3,13 +3,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/motion/events_read.h"
-#include "convert/skin/joint_order.h"
+#include "convert/clips/events_read.h"
+#include "convert/clips/joint_order.h"
 #include "pack/pack.h"
 #include "sources.h"
 
 /* What a level leaves out of its targets, against how far its surface is off: the shares of both kinds of detail
- * in the largest error in pixels (runtime/character/detail.h). */
+ * in the largest error in pixels (runtime/character/lod.h). */
 #define SKIP_SHARE (1.0f / 3.0f)
 
 static int out_of_memory(model_error *error)
@@ -70,18 +70,18 @@ static int encode_mesh(const model *m, uint32_t index, const convert_options *op
 {
     const model_mesh *mesh = &m->meshes[index];
     const float scale = model_mesh_scale(m, index);
-    float skip_reach[NOH_LEVELS_MAX];
+    float skip_radius[NOH_LOD_LEVELS_MAX];
     morph_options morph = options->morph;
     morph.error_um = (morph.error_um > 0.0f ? morph.error_um : 10.0f) / scale; /* asked for in the world, kept in the mesh */
-    say(options, "levels of detail", m, index);
+    say(options, "LOD levels", m, index);
     if (mesh_levels_make(m, index, &options->lod, &e->levels[index], error)) {
         return 1;
     }
     morph.rank = e->levels[index].rank;
     morph.level_count = e->levels[index].count;
-    morph.skip_reach = skip_reach;
+    morph.skip_radius = skip_radius;
     for (uint32_t k = 0; k < morph.level_count; k++) {
-        skip_reach[k] = lod_worst(&e->levels[index].errors[k]) * SKIP_SHARE;
+        skip_radius[k] = lod_worst(&e->levels[index].errors[k]) * SKIP_SHARE;
     }
     say(options, "targets", m, index);
     if (morph_encode(mesh, &morph, &e->morphs[index], error)) {
@@ -89,7 +89,7 @@ static int encode_mesh(const model *m, uint32_t index, const convert_options *op
     }
     if (options->report) {
         convert_report_mesh(options->report, mesh, e->morphs[index], scale, morph.error_um * scale);
-        convert_report_levels(options->report, mesh, &e->levels[index], scale);
+        convert_report_lods(options->report, mesh, &e->levels[index], scale);
     }
     return 0;
 }
@@ -139,10 +139,10 @@ static void report_warnings(FILE *report, const source *s)
 static int convert_source(const source *s, const convert_options *options, byte_buffer *out, model_error *error)
 {
     model empty;
-    const model *m = options->only == CONVERT_MOTION ? memset(&empty, 0, sizeof empty) : s->m;
-    motion_settings settings = options->motion;
+    const model *m = options->only == CONVERT_CLIPS ? memset(&empty, 0, sizeof empty) : s->m;
+    clips_settings settings = options->clip;
     encoded meshes;
-    motions made;
+    encoded_clips made;
     int failed;
     if (encoded_make(m->mesh_count, &meshes)) {
         encoded_free(&meshes);
@@ -157,9 +157,9 @@ static int convert_source(const source *s, const convert_options *options, byte_
     }
     failed = pack_check_model(m, error) || encode_meshes(m, options, &meshes, error);
     if (!failed) {
-        failed = motions_encode(s->sets, s->set_count, &settings, &made, error) ||
+        failed = clips_encode(s->sets, s->set_count, &settings, &made, error) ||
                  pack_write(m, meshes.levels, meshes.morphs, &made, out, error) || check_own_pack(out, options->report, error);
-        motions_free(&made);
+        clips_free(&made);
     }
     encoded_free(&meshes);
     return failed;
@@ -178,7 +178,7 @@ static int base_of(const source *all, int count)
 
 static int read_all(const char *const *inputs, int count, const convert_options *options, source *all, convert_failure *failure)
 {
-    source_options reading = { options->motion.rate_hz, options->motion.unit_cm, options->skin, options->two_streams, options->two_stream_count };
+    source_options reading = { options->clip.sample_rate_hz, options->clip.unit_cm, options->skin, options->two_streams, options->two_stream_count };
     reading.skin.report = options->report;
     for (int i = 0; i < count; i++) {
         failure->file = inputs[i];

@@ -4,17 +4,17 @@
 
 #include <stdio.h>
 
-#include "convert/pack/motions.h"
+#include "convert/pack/clips.h"
 #include "pack/pack.h"
 #include "convert/pack/pack_write.h"
 #include "convert/skin/skins.h"
 
-typedef enum convert_only { CONVERT_ALL, CONVERT_MESH, CONVERT_MOTION } convert_only;
+typedef enum convert_only { CONVERT_ALL, CONVERT_MESH, CONVERT_CLIPS } convert_only;
 
 typedef struct convert_options {
     morph_options morph;  /* but rank and level_count */
     lod_settings lod;
-    motion_settings motion;
+    clips_settings clip;
     skin_options skin;
     const char *const *two_streams; /* [two_stream_count] "SOURCE=TARGET", see two_stream.h */
     uint32_t two_stream_count;
@@ -40,7 +40,7 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
 void convert_report_mesh(FILE *out, const model_mesh *mesh, const morph_encoding *e, float scale, float error_um);
 
 /* The certified errors of each LOD level. */
-void convert_report_levels(FILE *out, const model_mesh *mesh, const mesh_levels *levels, float scale);
+void convert_report_lods(FILE *out, const model_mesh *mesh, const mesh_levels *levels, float scale);
 
 /* The skin of each skinned mesh of a finished pack, and the parts that it was split into. */
 void convert_report_skins(FILE *out, const noh_pack *pack);

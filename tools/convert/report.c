@@ -57,7 +57,7 @@ void convert_report_mesh(FILE *out, const model_mesh *m, const morph_encoding *e
     report_peers(out, m, e, bytes);
 }
 
-void convert_report_levels(FILE *out, const model_mesh *mesh, const mesh_levels *levels, float scale)
+void convert_report_lods(FILE *out, const model_mesh *mesh, const mesh_levels *levels, float scale)
 {
     for (uint32_t k = 1; k < levels->count; k++) {
         const lod_errors *e = &levels->errors[k];
@@ -65,8 +65,8 @@ void convert_report_levels(FILE *out, const model_mesh *mesh, const mesh_levels 
         fprintf(out, "  level %u: %u triangles (%.1f %%), off by at most %.2f mm at rest (99 %%: %.2f), %.2f with one target, %.2f with left and right",
                 k, triangles, 300.0 * triangles / (double)mesh->index_count, 1e3 * (double)(scale * e->rest), 1e3 * (double)(scale * e->rest_p99),
                 1e3 * (double)(scale * e->targets), 1e3 * (double)(scale * e->pairs));
-        if (e->motion > 0.0f) {
-            fprintf(out, ", %.2f in motion", 1e3 * (double)(scale * e->motion));
+        if (e->clip > 0.0f) {
+            fprintf(out, ", %.2f in motion", 1e3 * (double)(scale * e->clip));
         }
         fputc('\n', out);
     }
@@ -75,7 +75,7 @@ void convert_report_levels(FILE *out, const model_mesh *mesh, const mesh_levels 
 void convert_report_skins(FILE *out, const noh_pack *pack)
 {
     noh_mesh mesh;
-    for (uint32_t i = 0; noh_pack_mesh(pack, i, &mesh, NULL) == NOH_OK; i++) {
+    for (uint32_t i = 0; noh_pack_mesh_at(pack, i, &mesh, NULL) == NOH_OK; i++) {
         const noh_mesh_header *h = mesh.header;
         uint32_t doubled = 0, followed = 0;
         noh_skin skin;
@@ -83,7 +83,7 @@ void convert_report_skins(FILE *out, const noh_pack *pack)
             continue;
         }
         for (uint32_t v = 0; v < h->vertex_count; v++) {
-            doubled += noh_mesh_texel(&mesh, v) != v;
+            doubled += noh_mesh_accumulation_texel(&mesh, v) != v;
         }
         for (uint32_t j = 0; j < skin.header->joint_count; j++) {
             followed += mesh.joint_boxes[6 * j] <= mesh.joint_boxes[6 * j + 3];

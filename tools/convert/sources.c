@@ -4,11 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/motion/bvh_read.h"
+#include "convert/clips/bvh_read.h"
 #include "convert/model/model_build.h"
-#include "convert/motion/raw_set.h"
-#include "convert/motion/rcl.h"
-#include "convert/motion/resample.h"
+#include "convert/clips/raw_set.h"
+#include "convert/clips/rcl.h"
+#include "convert/clips/resample.h"
 #include "convert/model/two_stream.h"
 
 static int out_of_memory(model_error *error)
@@ -33,11 +33,11 @@ static int has_ending(const char *path, const char *ending)
     return 1;
 }
 
-static int resample_set(raw_set *set, double rate_hz, model_error *error)
+static int resample_set(raw_set *set, double sample_rate_hz, model_error *error)
 {
     for (uint32_t i = 0; i < set->clip_count; i++) {
         raw_clip resampled;
-        if (raw_clip_resample(&set->clips[i], rate_hz, &resampled, error)) {
+        if (raw_clip_resample(&set->clips[i], sample_rate_hz, &resampled, error)) {
             return 1;
         }
         raw_clip_clear(&set->clips[i]);
@@ -46,7 +46,7 @@ static int resample_set(raw_set *set, double rate_hz, model_error *error)
     return 0;
 }
 
-static int read_motion_file(const char *path, const source_options *options, source *s, model_error *error)
+static int read_clip_file(const char *path, const source_options *options, source *s, model_error *error)
 {
     bvh_options bvh = { options->unit_cm, 0 };
     int failed = has_ending(path, ".rcl") ? rcl_read(path, &s->single, error) : bvh_read(path, &bvh, &s->single, error);
@@ -60,12 +60,12 @@ static int read_motion_file(const char *path, const source_options *options, sou
     }
     s->sets[0] = s->single;
     s->set_count = 1;
-    return options->rate_hz > 0.0 ? resample_set(s->single, options->rate_hz, error) : 0;
+    return options->sample_rate_hz > 0.0 ? resample_set(s->single, options->sample_rate_hz, error) : 0;
 }
 
 static int read_gltf_file(const char *path, const source_options *options, source *s, model_error *error)
 {
-    motion_options rate = { options->rate_hz };
+    sample_options rate = { options->sample_rate_hz };
     if (model_read_gltf(path, &s->m, error)) {
         return 1;
     }
@@ -74,7 +74,7 @@ static int read_gltf_file(const char *path, const source_options *options, sourc
             return 1;
         }
     }
-    if (motion_from_model(s->m, &rate, &s->made, error) || skins_bind(s->m, s->made, &options->skin, error)) {
+    if (clips_from_model(s->m, &rate, &s->made, error) || skins_bind(s->m, s->made, &options->skin, error)) {
         return 1;
     }
     s->sets = malloc(((size_t)s->made->set_count + 1u) * sizeof *s->sets); /* with room for `single` */
@@ -90,14 +90,14 @@ int source_read(const char *path, const source_options *options, source *s, mode
 {
     memset(s, 0, sizeof *s);
     if (has_ending(path, ".rcl") || has_ending(path, ".bvh")) {
-        return read_motion_file(path, options, s, error);
+        return read_clip_file(path, options, s, error);
     }
     return read_gltf_file(path, options, s, error);
 }
 
 void source_free(source *s)
 {
-    motion_free(s->made);
+    model_clips_free(s->made);
     raw_set_free(s->single);
     model_free(s->m);
     free(s->sets);

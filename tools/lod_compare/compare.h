@@ -6,8 +6,8 @@
  *   canvas_*        a software z-buffer, for what shows and for pictures
  *   figures_*       all of it in numbers
  *   pictures_write  and to look at */
-#ifndef NOH_LOD_COMPARE_H
-#define NOH_LOD_COMPARE_H
+#ifndef NOH_LOD_COMPARE_COMPARE_H
+#define NOH_LOD_COMPARE_COMPARE_H
 
 #include "convert/lod/lod.h"
 #include "convert/lod/lod_frames.h"

@@ -1,5 +1,5 @@
 #!/bin/sh
-# compare.sh BUILD: our levels of detail against meshoptimizer's, on the mask, and on hero/head.glb and
+# compare.sh BUILD: our LOD levels against meshoptimizer's, on the mask, and on hero/head.glb and
 # hero/body.glb where $NOH_ASSETS has them. Pictures are left in BUILD.
 set -eu
 

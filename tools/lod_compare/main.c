@@ -1,4 +1,4 @@
-/* lod_compare: our levels of detail against meshoptimizer's, at equal triangle counts, in one run.
+/* lod_compare: our LOD levels against meshoptimizer's, at equal triangle counts, in one run.
  *
  *   lod_compare FILE.glb [--fast] [--picture OUT.png]
  *

@@ -4,11 +4,11 @@
 #include <string.h>
 
 #include "base/version.h"
-#include "help.h"
-#include "json.h"
-#include "message.h"
-#include "nearest.h"
-#include "verbs.h"
+#include "help/help.h"
+#include "cli/json.h"
+#include "cli/message.h"
+#include "cli/nearest.h"
+#include "cli/verbs.h"
 
 /* The names of enum noh_result, without their prefix. */
 static const char *result_name(const tool_error *e)

@@ -1,6 +1,6 @@
 /* error.h: why an input is refused, and memory that says when there is none. */
-#ifndef NOH_CONVERT_ERROR_H
-#define NOH_CONVERT_ERROR_H
+#ifndef NOH_CONVERT_BASE_ERROR_H
+#define NOH_CONVERT_BASE_ERROR_H
 
 #include <stddef.h>
 

@@ -121,7 +121,7 @@ static int carried(const encoder *e, uint32_t carrier, uint32_t joint)
     return 1;
 }
 
-static double point_reach(const encoder *e, uint32_t carrier, uint32_t joint)
+static double point_radius(const encoder *e, uint32_t carrier, uint32_t joint)
 {
     double reach = 0.0;
     for (uint32_t f = 0; f < e->frame_count; f += stride_of(e)) {
@@ -146,14 +146,14 @@ static void point_offset(const encoder *e, uint32_t carrier, enc_point *point)
 }
 
 /* The radius of a joint's descendants around it, shells included. */
-static double scale_reach(const encoder *e, uint32_t joint)
+static double scale_radius(const encoder *e, uint32_t joint)
 {
     double reach = 0.0;
     for (uint32_t j = joint + 1u; j < e->joint_count; j++) {
         uint32_t p = j;
         while (p != ENC_NONE && p > joint) p = e->joints[p].parent;
         if (p == joint) {
-            const double r = point_reach(e, joint, j);
+            const double r = point_radius(e, joint, j);
             if (r > reach) reach = r;
         }
     }
@@ -169,12 +169,12 @@ static int find_points(encoder *e, uint32_t carrier)
     if (!t->points) return 1;
     t->point_count = 0;
     t->lever = e->shell;
-    if (t->modes[SCALE] == NOH_CLIP_MODE_ANIMATED) t->scale_lever = scale_reach(e, carrier);
+    if (t->modes[SCALE] == NOH_CLIP_MODE_ANIMATED) t->scale_lever = scale_radius(e, carrier);
     for (uint32_t j = carrier + 1u; j < e->joint_count; j++) {
         uint32_t at = t->point_count;
         double reach;
         if (!carried(e, carrier, j)) continue;
-        reach = point_reach(e, carrier, j);
+        reach = point_radius(e, carrier, j);
         if (reach > t->lever) t->lever = reach;
         if (at == ENC_RIG_MAX) {
             at = 0;
@@ -287,7 +287,7 @@ static enc_track *new_track(encoder *e, noh_clip_kind kind, uint32_t target)
 }
 
 /* Negate a joint's rotations in the whole clip where it begins outside its reference's hemisphere. */
-static void align_motion(encoder *e, uint32_t joint, const double reference[4])
+static void align_clip(encoder *e, uint32_t joint, const double reference[4])
 {
     double sum = 0.0;
     for (uint32_t f = 0; f < e->frame_count; f++) sum += space_dot(reference, enc_local(e, f, joint)->q);
@@ -314,7 +314,7 @@ static void rotation_reference(encoder *e, enc_track *t, uint32_t joint)
         enc_quat_value(t->reference_codes, NOH_CLIP_REFERENCE_BITS, t->track.reference);
     }
     for (int i = 0; i < 4; i++) reference[i] = (double)t->track.reference[i];
-    align_motion(e, joint, reference);
+    align_clip(e, joint, reference);
 }
 
 static void linear_reference(encoder *e, enc_track *t, uint32_t joint, int what)

@@ -1,8 +1,8 @@
-/* clip_certify.c: decode what was written and measure it against the raw motion. */
+/* clip_certify.c: decode what was written and measure it against the raw clip. */
 #include <stdlib.h>
 
-#include "anim/clip_decode.h"
-#include "anim/clip_sample.h"
+#include "clip/clip_decode_internal.h"
+#include "clip/clip_sample_internal.h"
 #include "clip_encoder.h"
 
 typedef struct certifier {

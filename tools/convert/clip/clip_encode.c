@@ -136,7 +136,7 @@ static int write_certified(encoder *e, byte_buffer *out, double *worst_part)
     e->options.histogram = histogram;
     if (enc_write(e, r->max_error_cm, r->rms_error_cm, r->max_error_joint, time_parts, out)) return 1;
     r->bytes = out->count - begin;
-    r->max_error_time_s = (double)time_parts / ENC_PARTS / e->clip->rate_hz;
+    r->max_error_time_s = (double)time_parts / ENC_PARTS / e->clip->sample_rate_hz;
     r->segment_count = e->segment_count;
     r->wide = e->wide;
     r->raw_bytes = (size_t)e->frame_count * (e->joint_count * RAW_JOINT_BYTES + e->float_count * RAW_FLOAT_BYTES);

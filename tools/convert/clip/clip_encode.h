@@ -1,4 +1,4 @@
-/* clip_encode.h: from a raw clip to the bytes of runtime/anim/clip_format.h.
+/* clip_encode.h: from a raw clip to the bytes of runtime/clip/clip_format.h.
  *
  * The error is an object-space distance: three virtual points at `shell_cm` from each joint,
  * along its axes, carried by the whole chain of parents, against the raw clip; at every frame,
@@ -8,11 +8,11 @@
  * own arithmetic. Scalars are bounded one by one: |error| x radius <= error_cm, where the
  * radius is how far the scalar moves the surface per unit.
  * Deterministic: no clock, no address, contraction off. */
-#ifndef NOH_CONVERT_CLIP_ENCODE_H
-#define NOH_CONVERT_CLIP_ENCODE_H
+#ifndef NOH_CONVERT_CLIP_CLIP_ENCODE_H
+#define NOH_CONVERT_CLIP_CLIP_ENCODE_H
 
-#include "convert/pack/byte_buffer.h"
-#include "convert/motion/raw_clip.h"
+#include "convert/base/byte_buffer.h"
+#include "convert/clips/raw_clip.h"
 
 #ifdef __cplusplus
 extern "C" {

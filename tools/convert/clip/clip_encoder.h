@@ -1,18 +1,18 @@
 /* clip_encoder.h (private to clip_*.c): what the parts of the encoder share.
  *
- * clip_prepare.c  raw motion to double, in one hemisphere; object space
+ * clip_prepare.c  raw clip to double, in one hemisphere; object space
  * clip_analyse.c  what is animated, levers, references, mixes
  * clip_fit.c      one track of one segment: the largest step that holds
  * clip_segment.c  one segment: tracks in order, parents first, in a closed loop
  * clip_write.c    bits
  * clip_certify.c  decodes what was written and measures it
  * clip_encode.c   the order of things, and what to do when the bound does not hold */
-#ifndef NOH_CONVERT_CLIP_ENCODER_H
-#define NOH_CONVERT_CLIP_ENCODER_H
+#ifndef NOH_CONVERT_CLIP_CLIP_ENCODER_H
+#define NOH_CONVERT_CLIP_CLIP_ENCODER_H
 
-#include "anim/clip_coefs.h"
-#include "anim/clip_internal.h"
-#include "anim/clip_synth.h"
+#include "clip/clip_coefs_internal.h"
+#include "clip/clip_internal.h"
+#include "clip/clip_synth_internal.h"
 #include "clip_encode.h"
 #include "clip_space.h"
 
@@ -102,11 +102,11 @@ typedef struct encoder {
     clip_report report;
 } encoder;
 
-/* Lossy motion of the segment in work: [joint][frame], and what is measured against it. */
+/* Lossy clip of the segment in work: [joint][frame], and what is measured against it. */
 typedef struct enc_loop {
     space_local *local;            /* [joint][ENC_FRAMES_MAX] */
     space_global *global;
-    space_global *raw_between;     /* [(frames) * 3][joint]: raw motion between this frame and the last */
+    space_global *raw_between;     /* [(frames) * 3][joint]: raw clip between this frame and the last */
     space_local *before;           /* [joint] last frame of the segment before */
     space_local *end;              /* [joint] last frame of the best attempt so far */
     space_global *scratch;         /* [joint] */

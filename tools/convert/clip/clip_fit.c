@@ -1,6 +1,6 @@
 /* clip_fit.c: one track of one segment, with the largest step that its check allows.
  *
- * The track's components are transformed by an orthonormal DCT along time: a smooth motion has nearly all of its
+ * The track's components are transformed by an orthonormal DCT along time: a smooth clip has nearly all of its
  * energy in the first coefficients, and the rest quantise to zero. All coefficients share one step, because the
  * transform is orthonormal: an error in any of them weighs the same in time. Each step is judged by decoding with the
  * runtime's own arithmetic and asking `check`, so it does not matter how the error depends on the step.

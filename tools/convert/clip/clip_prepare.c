@@ -1,4 +1,4 @@
-/* clip_prepare.c: raw motion in double precision and in object space. */
+/* clip_prepare.c: raw clip in double precision and in object space. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -32,7 +32,7 @@ static int check(encoder *e)
 {
     const raw_clip *c = e->clip;
     const size_t samples = (size_t)c->frame_count * c->joint_count;
-    const double micro = floor(c->rate_hz * (double)NOH_CLIP_MICRO + 0.5);
+    const double micro = floor(c->sample_rate_hz * (double)NOH_CLIP_MICRO + 0.5);
     if (c->joint_count && c->joint_count != e->skeleton->joint_count) return enc_fail(e, "clip and skeleton differ in joints");
     if (c->joint_count > NOH_CLIP_JOINTS_MAX) return enc_fail(e, "more joints than the format holds (4096)");
     if (c->frame_count == 0u || c->frame_count > NOH_CLIP_FRAMES_MAX) return enc_fail(e, "frames: at least 1, at most 1048576");

@@ -44,7 +44,7 @@ typedef struct judged {
 
 /* ---- rotations ---- */
 
-/* How far a joint's shell and what it carries are from the raw motion, in parts of what is allowed. */
+/* How far a joint's shell and what it carries are from the raw clip, in parts of what is allowed. */
 static double rotation_violation(const encoder *e, uint32_t joint, uint32_t frame, const space_global *g)
 {
     const enc_joint *t = &e->joints[joint];
@@ -139,7 +139,7 @@ static void correct(const encoder *e, uint32_t joint, uint32_t frame, const doub
     memcpy(q, turned, sizeof turned);
 }
 
-/* The local rotation that frame f should have, in the raw motion's hemisphere. */
+/* The local rotation that frame f should have, in the raw clip's hemisphere. */
 static void rotation_target(const encoder *e, uint32_t joint, uint32_t frame, uint32_t f, double q[4])
 {
     const space_global *parent = lossy_parent(e, joint, f), *raw = enc_global(e, frame, joint);
@@ -388,7 +388,7 @@ static int fit_joint(encoder *e, uint32_t joint, const enc_segment *s)
     return 0;
 }
 
-/* Raw motion at the eighths before each frame of the segment. */
+/* Raw clip at the eighths before each frame of the segment. */
 static void raw_between(encoder *e, const enc_segment *s)
 {
     for (uint32_t f = s->first ? 0u : 1u; f < s->count; f++) {

@@ -331,7 +331,7 @@ static void put_header(bit_writer *w, const encoder *e, double max_error, double
     put(w, flags, 4);
     put_varint(w, e->joint_count);
     put_varint(w, e->frame_count);
-    put_rate(w, e->clip->rate_hz);
+    put_rate(w, e->clip->sample_rate_hz);
     put_varint(w, e->segment_count);
     for (uint32_t s = 0; s < e->segment_count; s++) {
         if (noh_clip_bit_length(sizes[s]) > width) width = noh_clip_bit_length(sizes[s]);

@@ -1,8 +1,8 @@
 /* named_errors.h: error bounds of single clips and joints, as the command line gives them: "NAME=CM". */
-#ifndef NOH_CONVERT_NAMED_ERRORS_H
-#define NOH_CONVERT_NAMED_ERRORS_H
+#ifndef NOH_CONVERT_CLIP_NAMED_ERRORS_H
+#define NOH_CONVERT_CLIP_NAMED_ERRORS_H
 
-#include "convert/motion/raw_clip.h"
+#include "convert/clips/raw_clip.h"
 
 typedef struct named_errors {
     const char *const *items; /* [count] "NAME=CM" */

@@ -14,8 +14,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "convert/motion/events_read.h"
-#include "convert/motion/raw_set.h"
+#include "convert/clips/events_read.h"
+#include "convert/clips/raw_set.h"
 
 namespace gltf {
 

@@ -21,8 +21,8 @@
  *   gltf_extras.cpp    an animation's extras: callback keys, sync markers, loops
  *   gltf_material.cpp  materials, textures, images
  *   gltf_left_out.cpp  warnings about what the file has and the model has no place for */
-#ifndef NOH_CONVERT_GLTF_INTERNAL_H
-#define NOH_CONVERT_GLTF_INTERNAL_H
+#ifndef NOH_CONVERT_GLTF_GLTF_INTERNAL_H
+#define NOH_CONVERT_GLTF_GLTF_INTERNAL_H
 
 #include "convert/model/model_build.h"
 

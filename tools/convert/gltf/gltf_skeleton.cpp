@@ -1,5 +1,5 @@
-/* gltf_skeleton.cpp: which nodes make which skeletons. The rules are in gltf_motion.h. */
-#include "motion_internal.h"
+/* gltf_skeleton.cpp: which nodes make which skeletons. The rules are in gltf_clip.h. */
+#include "clips_internal.h"
 
 #include <algorithm>
 
@@ -155,7 +155,7 @@ static std::vector<bool> nodes_with_weights(const model &m)
 static void plan_weights(const model &m, const std::vector<uint32_t> &plan_of_skin, std::vector<skeleton_plan> &plans)
 {
     std::vector<bool> animated = nodes_with_weights(m);
-    std::vector<motion_node> movers = find_movers(m, plans);
+    std::vector<node_joint> movers = find_movers(m, plans);
     for (uint32_t n = 0; n < m.node_count; ++n) {
         if (!animated[n])
             continue;
@@ -189,9 +189,9 @@ uint32_t joint_of(const skeleton_plan &p, uint32_t node)
 }
 
 /* A node is a joint of several skeletons only where it is above them all: then the first is as good as any. */
-std::vector<motion_node> find_movers(const model &m, const std::vector<skeleton_plan> &plans)
+std::vector<node_joint> find_movers(const model &m, const std::vector<skeleton_plan> &plans)
 {
-    std::vector<motion_node> movers(m.node_count, {MODEL_NONE, MODEL_NONE});
+    std::vector<node_joint> movers(m.node_count, {MODEL_NONE, MODEL_NONE});
     for (size_t i = plans.size(); i-- > 0;)
         for (uint32_t j = 0; j < plans[i].nodes.size(); ++j)
             movers[plans[i].nodes[j]] = {static_cast<uint32_t>(i), j};

@@ -14,8 +14,8 @@
  *         Seidel, "A General Framework for Mesh Decimation" (1998) for distances tracked by
  *         samples that stay attached to the surface; Dey et al., "Topology Preserving Edge
  *         Contraction" (1999) for the link condition. */
-#ifndef NOH_CONVERT_LOD_H
-#define NOH_CONVERT_LOD_H
+#ifndef NOH_CONVERT_LOD_LOD_H
+#define NOH_CONVERT_LOD_LOD_H
 
 #include "convert/model/model.h"
 
@@ -37,7 +37,7 @@ typedef struct lod_options {
     uint32_t level_count;         /* 0: four, or no more than LOD_LEVELS_MAX */
     const float *ratios;          /* [level_count] falling shares of the triangles, 0 to 1; NULL: 1, 0.5, 0.25, 0.1 */
     const float *errors;          /* [level_count] rising: instead of ratios, the largest cost that a level may have */
-    const float *const *poses;    /* [pose_count][vertex_count][3] further shapes, such as frames of motion */
+    const float *const *poses;    /* [pose_count][vertex_count][3] further shapes, such as frames of clip */
     uint32_t pose_count;
     uint32_t mix_count;           /* random mixes of targets as poses; 0: 24 */
     uint64_t mix_seed;            /* 0: a fixed one */

@@ -343,7 +343,7 @@ int lod_build(const model_mesh *mesh, const lod_options *options, lod **out, mod
     builder_free(&b);
     if (failed) {
         lod_free(b.out);
-        return model_fail(error, "", "out of memory for the levels of detail");
+        return model_fail(error, "", "out of memory for the LOD levels");
     }
     *out = b.out;
     return 0;

@@ -347,5 +347,5 @@ int lod_certify(const model_mesh *mesh, const lod_level *level, const float *con
     }
     free(c.position);
     free(c.moved);
-    return failed ? model_fail(error, "", "out of memory for measuring a level of detail") : 0;
+    return failed ? model_fail(error, "", "out of memory for measuring a LOD level") : 0;
 }

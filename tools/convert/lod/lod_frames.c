@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/motion/channel_sample.h"
+#include "convert/clips/channel_sample.h"
 #include "convert/model/model_build.h"
-#include "convert/motion/quat.h"
+#include "convert/base/quat.h"
 
 #define LOOKED_AT_HZ 8.0
 #define SNAP_S 1e-6

@@ -2,8 +2,8 @@
  *
  *   lod_frame_pose      one frame
  *   lod_frames_choose   a few that differ most, for lod_options.poses */
-#ifndef NOH_CONVERT_LOD_FRAMES_H
-#define NOH_CONVERT_LOD_FRAMES_H
+#ifndef NOH_CONVERT_LOD_LOD_FRAMES_H
+#define NOH_CONVERT_LOD_LOD_FRAMES_H
 
 #include "convert/model/model.h"
 

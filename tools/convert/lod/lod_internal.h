@@ -2,8 +2,8 @@
  *
  * A point is a place of the surface: the vertices that lie there and move alike (wedges). It goes
  * by the first of them. A corner is 3 x triangle + place. */
-#ifndef NOH_CONVERT_LOD_INTERNAL_H
-#define NOH_CONVERT_LOD_INTERNAL_H
+#ifndef NOH_CONVERT_LOD_LOD_INTERNAL_H
+#define NOH_CONVERT_LOD_LOD_INTERNAL_H
 
 #include "lod.h"
 

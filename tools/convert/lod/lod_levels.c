@@ -103,7 +103,7 @@ static int poses_make(const model_mesh *mesh, lod_frames *frames, pose_list *out
 
 static float larger(float a, float b) { return a > b ? a : b; }
 
-float lod_worst(const lod_errors *e) { return larger(larger(e->rest, e->targets), larger(e->pairs, e->motion)); }
+float lod_worst(const lod_errors *e) { return larger(larger(e->rest, e->targets), larger(e->pairs, e->clip)); }
 
 /* The worst submesh in each pose, and then the worst pose of each kind. */
 static lod_errors worst(const model_mesh *mesh, const pose_list *poses, const lod_distance *distances)
@@ -115,7 +115,7 @@ static lod_errors worst(const model_mesh *mesh, const pose_list *poses, const lo
         e.rest = larger(e.rest, row[0].max);
         e.rest_p99 = larger(e.rest_p99, row[0].p99);
         for (uint32_t i = 1; i < columns; i++) {
-            float *kind = i < first_pose ? &e.targets : i < first_pose + poses->pairs ? &e.pairs : &e.motion;
+            float *kind = i < first_pose ? &e.targets : i < first_pose + poses->pairs ? &e.pairs : &e.clip;
             *kind = larger(*kind, row[i].max);
         }
     }
@@ -128,7 +128,7 @@ static lod_errors at_least(lod_errors e, const lod_errors *finer)
     e.rest_p99 = larger(e.rest_p99, finer->rest_p99);
     e.targets = larger(e.targets, finer->targets);
     e.pairs = larger(e.pairs, finer->pairs);
-    e.motion = larger(e.motion, finer->motion);
+    e.clip = larger(e.clip, finer->clip);
     return e;
 }
 
@@ -164,8 +164,8 @@ static float diagonal(const model_mesh *mesh)
 
 static int build(const model_mesh *mesh, const lod_settings *settings, const lod_frames *frames, mesh_levels *out, model_error *error)
 {
-    static const float shares[NOH_LEVELS_MAX] = LOD_SHARES;
-    float errors[NOH_LEVELS_MAX];
+    static const float shares[NOH_LOD_LEVELS_MAX] = LOD_SHARES;
+    float errors[NOH_LOD_LEVELS_MAX];
     lod_options o = { 0 };
     o.mode = settings->mode;
     o.poses = (const float *const *)frames->poses;

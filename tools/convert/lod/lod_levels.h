@@ -1,6 +1,6 @@
 /* lod_levels.h: the LOD levels of one mesh as its pack holds them: built, certified, and each vertex's rank. */
-#ifndef NOH_CONVERT_LOD_LEVELS_H
-#define NOH_CONVERT_LOD_LEVELS_H
+#ifndef NOH_CONVERT_LOD_LOD_LEVELS_H
+#define NOH_CONVERT_LOD_LOD_LEVELS_H
 
 #include "base/limits.h"
 #include "lod.h"
@@ -12,7 +12,7 @@ extern "C" {
 
 /* All zeros: the full mesh alone. */
 typedef struct lod_settings {
-    uint32_t level_count; /* with the full one, 2 to NOH_LEVELS_MAX; 0 and 1: no others. The triangles' shares are LOD_SHARES */
+    uint32_t level_count; /* with the full one, 2 to NOH_LOD_LEVELS_MAX; 0 and 1: no others. The triangles' shares are LOD_SHARES */
     int by_error;         /* instead: up to four coarser levels whose costs are 1/4000 of the box's diagonal, and four times as much each time */
     lod_mode mode;
 } lod_settings;
@@ -21,7 +21,7 @@ typedef struct lod_settings {
 
 /* Certified: the largest distances to the full mesh, in the mesh's own lengths. None is below the finer level's. */
 typedef struct lod_errors {
-    float rest, rest_p99, targets, pairs, motion;
+    float rest, rest_p99, targets, pairs, clip;
 } lod_errors;
 
 /* The largest of them. */
@@ -36,9 +36,9 @@ typedef struct lod_view {
 typedef struct mesh_levels {
     uint32_t count;           /* 1: the full mesh alone, and all below is 0 */
     lod *built;               /* level k of the mesh is built->levels[which[k]], for k of 1 and more */
-    uint32_t which[NOH_LEVELS_MAX];
+    uint32_t which[NOH_LOD_LEVELS_MAX];
     uint8_t *rank;            /* [vertex_count] the coarsest level that a vertex is in */
-    lod_errors errors[NOH_LEVELS_MAX];
+    lod_errors errors[NOH_LOD_LEVELS_MAX];
     float cap_error[LOD_CAPS]; /* lod_frames.h */
 } mesh_levels;
 

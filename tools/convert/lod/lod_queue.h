@@ -1,6 +1,6 @@
 /* lod_queue.h (private to lod_*.c): points by cost, the cheapest first; of equal ones the lower number. */
-#ifndef NOH_CONVERT_LOD_QUEUE_H
-#define NOH_CONVERT_LOD_QUEUE_H
+#ifndef NOH_CONVERT_LOD_LOD_QUEUE_H
+#define NOH_CONVERT_LOD_LOD_QUEUE_H
 
 #include <stdint.h>
 

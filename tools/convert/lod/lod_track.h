@@ -2,8 +2,8 @@
  * triangles that stand for them.
  *
  * A sample is a point that was removed, or (vertex_count + t) the centroid of the mesh's triangle t. */
-#ifndef NOH_CONVERT_LOD_TRACK_H
-#define NOH_CONVERT_LOD_TRACK_H
+#ifndef NOH_CONVERT_LOD_LOD_TRACK_H
+#define NOH_CONVERT_LOD_LOD_TRACK_H
 
 #include "lod_internal.h"
 

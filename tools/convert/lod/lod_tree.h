@@ -1,6 +1,6 @@
 /* lod_tree.h (private to lod_*.c): the nearest triangle of a surface that changes its pose. */
-#ifndef NOH_CONVERT_LOD_TREE_H
-#define NOH_CONVERT_LOD_TREE_H
+#ifndef NOH_CONVERT_LOD_LOD_TREE_H
+#define NOH_CONVERT_LOD_LOD_TREE_H
 
 #include <stdint.h>
 

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "model_build.h"
-#include "convert/motion/quat.h"
+#include "convert/base/quat.h"
 
 void affine_identity(double out[16])
 {

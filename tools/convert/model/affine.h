@@ -1,6 +1,6 @@
 /* affine.h: 4 x 4 matrices whose last row is 0 0 0 1; column-major, double precision. */
-#ifndef NOH_CONVERT_AFFINE_H
-#define NOH_CONVERT_AFFINE_H
+#ifndef NOH_CONVERT_MODEL_AFFINE_H
+#define NOH_CONVERT_MODEL_AFFINE_H
 
 #include "model.h"
 

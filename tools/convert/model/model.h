@@ -4,8 +4,8 @@
  * read nothing else. All arrays are owned by the model and freed by
  * model_free. Units: metres, seconds; right-handed, Y up; quaternions xyzw;
  * matrices column-major. */
-#ifndef NOH_CONVERT_MODEL_H
-#define NOH_CONVERT_MODEL_H
+#ifndef NOH_CONVERT_MODEL_MODEL_H
+#define NOH_CONVERT_MODEL_MODEL_H
 
 #include <stddef.h>
 #include <stdint.h>
@@ -100,7 +100,7 @@ typedef struct model_skin {
     uint32_t joint_count;
     uint32_t *joints;     /* [joint_count] nodes, in the order that the vertices count in */
     float *inverse_bind;  /* [joint_count][16] affine and invertible; identities where the file has none */
-    uint32_t set;         /* skins_bind: its skeleton, an index into motion.sets */
+    uint32_t set;         /* skins_bind: its skeleton, an index into clip.sets */
     uint32_t *skeleton_joints; /* skins_bind: [joint_count] joints of that skeleton; else NULL */
 } model_skin;
 

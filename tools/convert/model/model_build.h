@@ -6,8 +6,8 @@
  *   weld_vertices  which vertices are one point of the surface
  *   normals_*      fans of smooth corners, and their normals in any pose
  *   tangents_*     groups of corners that share a tangent, likewise */
-#ifndef NOH_CONVERT_MODEL_BUILD_H
-#define NOH_CONVERT_MODEL_BUILD_H
+#ifndef NOH_CONVERT_MODEL_MODEL_BUILD_H
+#define NOH_CONVERT_MODEL_MODEL_BUILD_H
 
 #include "model.h"
 

@@ -3,8 +3,8 @@
  * The classic way binds two vertex streams and mixes them in the shader. Here the second mesh's difference from the
  * first becomes a target with its name, goes through the same encoder and accumulation, and is played by one weight
  * (runtime/anim/ping_pong.h). */
-#ifndef NOH_CONVERT_TWO_STREAM_H
-#define NOH_CONVERT_TWO_STREAM_H
+#ifndef NOH_CONVERT_MODEL_TWO_STREAM_H
+#define NOH_CONVERT_MODEL_TWO_STREAM_H
 
 #include "model.h"
 

@@ -1,6 +1,6 @@
 /* f16_bound.h: what a half-float accumulator may lose, proven from the data. */
-#ifndef NOH_CONVERT_F16_BOUND_H
-#define NOH_CONVERT_F16_BOUND_H
+#ifndef NOH_CONVERT_MORPH_F16_BOUND_H
+#define NOH_CONVERT_MORPH_F16_BOUND_H
 
 #include "morph_encode.h"
 

@@ -258,12 +258,12 @@ static uint32_t next_smallest(const morph_encoding *e, uint32_t after)
 {
     uint32_t best = e->target_count;
     for (uint32_t t = 0; t < e->target_count; t++) {
-        const float reach = e->targets[t].max_displacement;
+        const float reach = e->targets[t].radius;
         if (after < e->target_count) {
-            const float last = e->targets[after].max_displacement;
+            const float last = e->targets[after].radius;
             if (reach < last || (reach == last && t <= after)) continue;
         }
-        if (best == e->target_count || reach < e->targets[best].max_displacement) best = t;
+        if (best == e->target_count || reach < e->targets[best].radius) best = t;
     }
     return best;
 }
@@ -273,7 +273,7 @@ static void leave_out(encoder *c, uint32_t level, float most)
     morph_encoding *e = c->e;
     float sum = 0.0f;
     for (uint32_t t = next_smallest(e, e->target_count); t < e->target_count; t = next_smallest(e, t)) {
-        sum += e->targets[t].max_displacement;
+        sum += e->targets[t].radius;
         if (!(sum <= most)) break;
         memset(&e->parts[(size_t)level * e->target_count + t], 0, sizeof *e->parts);
     }
@@ -325,8 +325,8 @@ static int encode(encoder *c)
     count_one_rect(c, texels);
     failed = cover_all(c, texels) || fill_texels(c);
     free(texels);
-    for (uint32_t level = 1; !failed && c->options.skip_reach && level < c->e->level_count; level++)
-        leave_out(c, level, c->options.skip_reach[level]);
+    for (uint32_t level = 1; !failed && c->options.skip_radius && level < c->e->level_count; level++)
+        leave_out(c, level, c->options.skip_radius[level]);
     return failed;
 }
 

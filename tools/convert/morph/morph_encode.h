@@ -6,8 +6,8 @@
  * the artist's tool wrote the vertices; here the order is chosen, and a target may have many rectangles.
  * Deterministic: no clock, no order that depends on addresses, fixed seeds, no float result that depends on the
  * compiler's choice of contraction. */
-#ifndef NOH_CONVERT_MORPH_ENCODE_H
-#define NOH_CONVERT_MORPH_ENCODE_H
+#ifndef NOH_CONVERT_MORPH_MORPH_ENCODE_H
+#define NOH_CONVERT_MORPH_MORPH_ENCODE_H
 
 #include "convert/model/model.h"
 
@@ -17,11 +17,11 @@ extern "C" {
 
 typedef struct morph_options {
     float error_um;          /* largest position error of one target at weight 1, micrometres (model unit = metre); 0 = 10 */
-    uint32_t rects;          /* most rectangles per target, in each level of detail; 0 = auto (by cost) */
+    uint32_t rects;          /* most rectangles per target, in each LOD level; 0 = auto (by cost) */
     float rect_cost_texels;  /* auto: what one more rectangle costs, in texels; 0 = default */
-    const uint8_t *rank;     /* [vertex_count] the coarsest level of detail that a vertex is in; NULL: all in level 0 alone */
+    const uint8_t *rank;     /* [vertex_count] the coarsest LOD level that a vertex is in; NULL: all in level 0 alone */
     uint32_t level_count;    /* 0 = 1 */
-    const float *skip_reach; /* [level_count] rising: the targets that move least are left out of a level for as long as
+    const float *skip_radius; /* [level_count] rising: the targets that move least are left out of a level for as long as
                               * what they move, all at weight 1, sums to no more than this; NULL: none is */
 } morph_options;
 
@@ -34,12 +34,12 @@ typedef struct morph_target {
     uint32_t source_pairs;             /* pairs of the source above the 1e-6 x bounding-box diagonal threshold (or normal/tangent > 1e-5) */
     uint8_t position_bits, normal_bits, tangent_bits;
     float position_scale, normal_scale, tangent_scale; /* value = integer x scale */
-    float max_displacement;            /* largest |position delta| of the source */
+    float radius;            /* largest |position delta| of the source */
     float position_error;              /* largest |decoded - source| over all vertices, dropped ones included */
     float normal_error, tangent_error; /* likewise, per component */
 } morph_target;
 
-/* A target in a level of detail: the first so many of its rectangles, with the texels and pairs in them. */
+/* A target in a LOD level: the first so many of its rectangles, with the texels and pairs in them. */
 typedef struct morph_part {
     uint32_t rect_count, texel_count, pair_count;
 } morph_part;

@@ -4,8 +4,8 @@
  * the errors; morph_patterns.c groups vertices by the targets that move them;
  * morph_order.c puts the groups in a line; morph_fold.c lays the line into the
  * texture; morph_bands.c and morph_rects.c cover a target's texels by rectangles. */
-#ifndef NOH_CONVERT_MORPH_INTERNAL_H
-#define NOH_CONVERT_MORPH_INTERNAL_H
+#ifndef NOH_CONVERT_MORPH_MORPH_INTERNAL_H
+#define NOH_CONVERT_MORPH_MORPH_INTERNAL_H
 
 #include "morph_encode.h"
 

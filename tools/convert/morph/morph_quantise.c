@@ -243,7 +243,7 @@ static void certify(const model_mesh *mesh, const model_target *s, morph_target 
     q->position_error = float_above(sqrt(worst[0]));
     q->normal_error = float_above(worst[1]);
     q->tangent_error = float_above(worst[2]);
-    q->max_displacement = float_above(displacement);
+    q->radius = float_above(displacement);
 }
 
 void morph_quantise_choose(const model_mesh *mesh, uint32_t t, float error_um, morph_target *out)

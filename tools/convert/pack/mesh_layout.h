@@ -1,16 +1,16 @@
 /* mesh_layout.h (private to the pack writer): which vertex goes where, and which palette draws it.
  *
- * Vertices lie by level of detail, the coarsest first, and within a level in the morph encoder's order. Where a
+ * Vertices lie by LOD level, the coarsest first, and within a level in the morph encoder's order. Where a
  * skinned mesh needs more joints than its palette holds, its triangles are dealt out to several palettes
  * (palette_deal.h); a vertex that several palettes need is doubled and shares the first one's morph texel. */
-#ifndef NOH_CONVERT_MESH_LAYOUT_H
-#define NOH_CONVERT_MESH_LAYOUT_H
+#ifndef NOH_CONVERT_PACK_MESH_LAYOUT_H
+#define NOH_CONVERT_PACK_MESH_LAYOUT_H
 
 #include "convert/lod/lod_levels.h"
 #include "convert/morph/morph_encode.h"
 #include "pack/format.h"
 
-/* Of one level of detail: the first vertices, and runs of indices and submeshes. */
+/* Of one LOD level: the first vertices, and runs of indices and submeshes. */
 typedef struct level_layout {
     uint32_t vertex_count;
     uint32_t first_index, index_count;
@@ -20,7 +20,7 @@ typedef struct level_layout {
 typedef struct mesh_layout {
     uint32_t vertex_count, index_count, submesh_count, palette_count, palette_joint_count; /* of all levels */
     uint32_t level_count;
-    level_layout levels[NOH_LEVELS_MAX];
+    level_layout levels[NOH_LOD_LEVELS_MAX];
     int texel_references;     /* vertices are not where their texels are: NOH_MESH_TEXELS */
     uint32_t *source;         /* [vertex_count] the model's vertex */
     uint32_t *texel;          /* [vertex_count] as in the pack's texel reference */

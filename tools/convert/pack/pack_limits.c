@@ -51,5 +51,5 @@ int pack_check_encoding(const model_mesh *m, const morph_encoding *e, model_erro
 {
     uint64_t touched_max = (uint64_t)NOH_MORPH_HEIGHT_MAX << e->width_log2;
     return over(e->touched_count, touched_max, "vertices that targets move", "mesh", m->name, error) ||
-           over(e->texel_count, NOH_TEXELS_MAX, "delta texels", "mesh", m->name, error);
+           over(e->texel_count, NOH_DELTA_TEXELS_MAX, "delta texels", "mesh", m->name, error);
 }

@@ -171,7 +171,7 @@ static noh_target target_of(const model_mesh *m, const morph_encoding *e, uint32
     to.position_scale = from->position_scale;
     to.normal_scale = from->normal_scale;
     to.tangent_scale = from->tangent_scale;
-    to.max_displacement = from->max_displacement;
+    to.radius = from->radius;
     to.position_error = from->position_error;
     to.normal_error = from->normal_error;
     to.tangent_error = from->tangent_error;
@@ -268,7 +268,7 @@ static noh_mesh_header level_header(const noh_mesh_header *full, const morph_enc
         h.rect_count += part->rect_count;
         h.texel_count += part->texel_count;
         h.pair_count += part->pair_count;
-        h.level_skipped += e->targets[t].rect_count && !part->rect_count ? e->targets[t].max_displacement : 0.0f;
+        h.level_skipped += e->targets[t].rect_count && !part->rect_count ? e->targets[t].radius : 0.0f;
     }
     h.indices_offset += own->first_index * h.index_bytes;
     h.submeshes_offset += own->first_submesh * (uint32_t)sizeof(noh_submesh);
@@ -277,7 +277,7 @@ static noh_mesh_header level_header(const noh_mesh_header *full, const morph_enc
     h.level_error_rest_p99 = errors->rest_p99;
     h.level_error_targets = errors->targets;
     h.level_error_pairs = errors->pairs;
-    h.level_error_motion = errors->motion;
+    h.level_error_clip = errors->clip;
     return h;
 }
 

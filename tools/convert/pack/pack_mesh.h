@@ -1,8 +1,8 @@
 /* pack_mesh.h (private to the pack writer): the bytes of one mesh chunk. */
-#ifndef NOH_CONVERT_PACK_MESH_H
-#define NOH_CONVERT_PACK_MESH_H
+#ifndef NOH_CONVERT_PACK_PACK_MESH_H
+#define NOH_CONVERT_PACK_PACK_MESH_H
 
-#include "byte_buffer.h"
+#include "convert/base/byte_buffer.h"
 #include "convert/lod/lod_levels.h"
 #include "convert/morph/morph_encode.h"
 

@@ -1,8 +1,8 @@
 /* pack_skin.h (private to the pack writer): the bytes of a skin chunk, and a mesh's share of its skin. */
-#ifndef NOH_CONVERT_PACK_SKIN_H
-#define NOH_CONVERT_PACK_SKIN_H
+#ifndef NOH_CONVERT_PACK_PACK_SKIN_H
+#define NOH_CONVERT_PACK_PACK_SKIN_H
 
-#include "byte_buffer.h"
+#include "convert/base/byte_buffer.h"
 #include "mesh_layout.h"
 
 /* Append a skin chunk. skeleton: the n-th skeleton chunk. */

@@ -7,14 +7,14 @@
 #include "base/hash.h"
 #include "base/version.h"
 #include "pack/format.h"
-#include "motions.h"
+#include "clips.h"
 #include "pack_mesh.h"
 #include "pack_skin.h"
 
 typedef struct writer {
     const model *m;
     const mesh_levels *levels; /* or NULL */
-    const motions *motions;    /* or NULL */
+    const encoded_clips *clips;    /* or NULL */
     byte_buffer out;      /* header and table first, then the chunks */
     string_table strings;
     noh_pack_chunk *chunks;
@@ -194,7 +194,7 @@ static void write_nodes(writer *w)
 }
 
 /* The n-th skeleton chunk of a set; sets without joints have none. */
-static uint32_t skeleton_chunk(const motions *made, uint32_t set)
+static uint32_t skeleton_chunk(const encoded_clips *made, uint32_t set)
 {
     uint32_t n = 0;
     for (uint32_t i = 0; i < set; i++) {
@@ -205,12 +205,12 @@ static uint32_t skeleton_chunk(const motions *made, uint32_t set)
 
 static void write_skeletons(writer *w)
 {
-    for (uint32_t i = 0; i < w->motions->set_count; i++) {
-        if (!w->motions->sets[i]->skeleton.joint_count) {
+    for (uint32_t i = 0; i < w->clips->set_count; i++) {
+        if (!w->clips->sets[i]->skeleton.joint_count) {
             continue; /* clips of weights alone */
         }
-        begin_chunk(w, NOH_CHUNK_SKELETON, w->motions->sets[i]->skeleton.name);
-        pack_skeleton(&w->motions->sets[i]->skeleton, &w->strings, &w->out);
+        begin_chunk(w, NOH_CHUNK_SKELETON, w->clips->sets[i]->skeleton.name);
+        pack_skeleton(&w->clips->sets[i]->skeleton, &w->strings, &w->out);
         end_chunk(w);
     }
 }
@@ -227,7 +227,7 @@ static void write_skins(writer *w)
         w->skin_chunks[s] = used ? count++ : NOH_NONE;
         if (used) {
             begin_chunk(w, NOH_CHUNK_SKIN, w->m->skins[s].name);
-            pack_skin(&w->m->skins[s], skeleton_chunk(w->motions, w->m->skins[s].set), &w->out);
+            pack_skin(&w->m->skins[s], skeleton_chunk(w->clips, w->m->skins[s].set), &w->out);
             end_chunk(w);
         }
     }
@@ -241,7 +241,7 @@ static void write_content(writer *w, morph_encoding *const *encodings)
     if (w->m->material_count) {
         write_materials(w);
     }
-    if (w->motions) {
+    if (w->clips) {
         write_skeletons(w);
         write_skins(w);
     }
@@ -253,11 +253,11 @@ static void write_content(writer *w, morph_encoding *const *encodings)
     }
 }
 
-static void write_motions(writer *w)
+static void write_clips(writer *w)
 {
-    for (uint32_t i = 0; i < w->motions->clip_count; i++) {
-        begin_chunk(w, NOH_CHUNK_MOTION, w->motions->clips[i].raw->name);
-        pack_motion(w->motions, &w->motions->clips[i], &w->strings, &w->out);
+    for (uint32_t i = 0; i < w->clips->clip_count; i++) {
+        begin_chunk(w, NOH_CHUNK_CLIP, w->clips->clips[i].raw->name);
+        pack_clip(w->clips, &w->clips->clips[i], &w->strings, &w->out);
         end_chunk(w);
     }
 }
@@ -297,13 +297,13 @@ static int assemble(writer *w, byte_buffer *out)
     return 0;
 }
 
-static size_t chunk_capacity(const model *m, const motions *made)
+static size_t chunk_capacity(const model *m, const encoded_clips *made)
 {
     return (size_t)m->mesh_count + m->texture_count + m->skin_count + 3 +
            (made ? (size_t)made->set_count + made->clip_count : 0);
 }
 
-int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const *encodings, const motions *made, byte_buffer *out,
+int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const *encodings, const encoded_clips *made, byte_buffer *out,
                model_error *error)
 {
     writer w;
@@ -322,7 +322,7 @@ int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const 
     memset(&w, 0, sizeof w);
     w.m = m;
     w.levels = levels;
-    w.motions = made;
+    w.clips = made;
     w.error = error;
     w.chunks = calloc(chunk_capacity(m, made), sizeof *w.chunks);
     w.skin_chunks = calloc(m->skin_count + 1u, sizeof *w.skin_chunks);
@@ -332,7 +332,7 @@ int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const 
         w.chunk_count = 1; /* filled by assemble */
         write_content(&w, encodings);
         if (made) {
-            write_motions(&w);
+            write_clips(&w);
         }
     }
     failed = w.refused || !w.chunks || !w.skin_chunks || w.out.failed || w.strings.bytes.failed || assemble(&w, out);

@@ -1,8 +1,8 @@
 /* pack_write.h: from a model and its encoded targets to the bytes of a pack. */
-#ifndef NOH_CONVERT_PACK_WRITE_H
-#define NOH_CONVERT_PACK_WRITE_H
+#ifndef NOH_CONVERT_PACK_PACK_WRITE_H
+#define NOH_CONVERT_PACK_PACK_WRITE_H
 
-#include "byte_buffer.h"
+#include "convert/base/byte_buffer.h"
 #include "convert/lod/lod_levels.h"
 #include "convert/morph/morph_encode.h"
 
@@ -10,11 +10,11 @@
 int pack_check_model(const model *m, model_error *error);
 int pack_check_encoding(const model_mesh *m, const morph_encoding *e, model_error *error);
 
-struct motions;
+struct encoded_clips;
 
-/* Build a pack. levels[mesh_count], NULL: none has coarser ones; encodings[mesh_count], none NULL; made NULL: no motion,
+/* Build a pack. levels[mesh_count], NULL: none has coarser ones; encodings[mesh_count], none NULL; made NULL: no clip,
  * and no mesh is bound to a skin. 0 on success, else 1 and a filled error. */
-int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const *encodings, const struct motions *made,
+int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const *encodings, const struct encoded_clips *made,
                byte_buffer *out, model_error *error);
 
 #endif

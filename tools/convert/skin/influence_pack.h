@@ -1,7 +1,7 @@
 /* influence_pack.h (private to the pack writer): a vertex's joints and weights as the pack keeps them
  * (runtime/pack/format.h). */
-#ifndef NOH_CONVERT_INFLUENCE_PACK_H
-#define NOH_CONVERT_INFLUENCE_PACK_H
+#ifndef NOH_CONVERT_SKIN_INFLUENCE_PACK_H
+#define NOH_CONVERT_SKIN_INFLUENCE_PACK_H
 
 #include "convert/model/model.h"
 

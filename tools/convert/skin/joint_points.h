@@ -1,6 +1,6 @@
 /* joint_points.h: a sample of the vertices that a skeleton moves, on which a clip's error is measured. */
-#ifndef NOH_CONVERT_JOINT_POINTS_H
-#define NOH_CONVERT_JOINT_POINTS_H
+#ifndef NOH_CONVERT_SKIN_JOINT_POINTS_H
+#define NOH_CONVERT_SKIN_JOINT_POINTS_H
 
 #include "character/time_lod_points.h"
 #include "convert/model/model.h"
@@ -8,7 +8,7 @@
 #define JOINT_POINTS 256u /* at most, and one more for each joint */
 
 typedef struct joint_points {
-    noh_time_points points; /* point_count 0: no mesh is bound to the skeleton */
+    noh_time_lod_points points; /* point_count 0: no mesh is bound to the skeleton */
     noh_time_hold *holds;   /* its own */
 } joint_points;
 

@@ -1,6 +1,6 @@
 /* mesh_join.h: several meshes as one, each placed, and following joints of one skin. */
-#ifndef NOH_CONVERT_MESH_JOIN_H
-#define NOH_CONVERT_MESH_JOIN_H
+#ifndef NOH_CONVERT_SKIN_MESH_JOIN_H
+#define NOH_CONVERT_SKIN_MESH_JOIN_H
 
 #include "convert/model/model.h"
 

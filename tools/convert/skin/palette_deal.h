@@ -4,8 +4,8 @@
  * one. Triangles of one region follow the same few joints and come in the mesh's order, so palettes fill with
  * neighbours; vertices on the border of two palettes are doubled. Fewest parts would be a
  * set-cover problem; a greedy deal does not promise them, and no part is over its limit. */
-#ifndef NOH_CONVERT_PALETTE_DEAL_H
-#define NOH_CONVERT_PALETTE_DEAL_H
+#ifndef NOH_CONVERT_SKIN_PALETTE_DEAL_H
+#define NOH_CONVERT_SKIN_PALETTE_DEAL_H
 
 #include "convert/model/model.h"
 

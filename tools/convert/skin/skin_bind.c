@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/gltf/gltf_motion.h"
+#include "convert/clips/model_clips.h"
 #include "mesh_join.h"
 #include "convert/model/model_build.h"
 #include "skin_rigid.h"
@@ -13,7 +13,7 @@ static int fail_memory(model_error *error)
     return model_fail(error, "", "out of memory");
 }
 
-static int bind_skeletons(model *m, motion *made)
+static int bind_skeletons(model *m, model_clips *made)
 {
     for (uint32_t s = 0; s < m->skin_count; s++) {
         model_skin *skin = &m->skins[s];
@@ -126,7 +126,7 @@ static int mark_dual_quaternion(model *m, const char *name, model_error *error)
     return found ? 0 : model_fail(error, "", "--dual-quaternion: no skinned mesh is named '%.80s'", name);
 }
 
-int skins_bind(model *m, motion *made, const skin_options *options, model_error *error)
+int skins_bind(model *m, model_clips *made, const skin_options *options, model_error *error)
 {
     if (bind_skeletons(m, made) || bind_meshes(m) || skin_rigid_meshes(m, made, options->keep_parts, options->report)) {
         return fail_memory(error);

@@ -7,12 +7,12 @@
 #include "convert/model/affine.h"
 #include "mesh_join.h"
 #include "convert/model/model_build.h"
-#include "convert/motion/raw_set.h"
+#include "convert/clips/raw_set.h"
 
 /* One mesh to be, and its skin: a joint and a matrix may be shared by several parts. */
 typedef struct join_job {
     model *m;
-    motion *made;
+    model_clips *made;
     uint32_t set;
     uint8_t *taken;        /* [node_count] drawn by a mesh made here */
     uint32_t *nodes;       /* [node_count] of the parts */
@@ -414,7 +414,7 @@ static int join_all(join_job *j, int keep_parts, FILE *report)
     return failed;
 }
 
-int skin_rigid_meshes(model *m, motion *made, int keep_parts, FILE *report)
+int skin_rigid_meshes(model *m, model_clips *made, int keep_parts, FILE *report)
 {
     uint32_t mesh_count = m->mesh_count;
     uint8_t *was_drawn = model_zeros(mesh_count, 1);

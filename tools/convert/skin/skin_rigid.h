@@ -5,14 +5,14 @@
  * mesh of one influence per vertex, placed in model space by the rest pose; all parts of one skeleton become one mesh
  * with one draw per material. A skinned mesh of that skeleton joins them where that saves draws: where all its
  * materials are among theirs. */
-#ifndef NOH_CONVERT_SKIN_RIGID_H
-#define NOH_CONVERT_SKIN_RIGID_H
+#ifndef NOH_CONVERT_SKIN_SKIN_RIGID_H
+#define NOH_CONVERT_SKIN_SKIN_RIGID_H
 
 #include <stdio.h>
 
-#include "convert/gltf/gltf_motion.h"
+#include "convert/clips/model_clips.h"
 
 /* keep_parts: none are joined. report: NULL: quiet. Returns 0, or 1 when out of memory. */
-int skin_rigid_meshes(model *m, motion *made, int keep_parts, FILE *report);
+int skin_rigid_meshes(model *m, model_clips *made, int keep_parts, FILE *report);
 
 #endif

@@ -1,12 +1,12 @@
 /* skins.h: joins meshes to the joints that move them, before they are encoded. */
-#ifndef NOH_CONVERT_SKINS_H
-#define NOH_CONVERT_SKINS_H
+#ifndef NOH_CONVERT_SKIN_SKINS_H
+#define NOH_CONVERT_SKIN_SKINS_H
 
 #include <stdio.h>
 
 #include "convert/model/model.h"
 
-struct motion; /* gltf_motion.h */
+struct model_clips; /* gltf_clip.h */
 
 typedef struct skin_options {
     uint32_t influences;    /* the most per vertex, 1 to MODEL_INFLUENCES_MAX; 0: that */
@@ -20,6 +20,6 @@ typedef struct skin_options {
 /* Bind every skinned mesh of a model to its skin, and every skin to its skeleton. Rigid meshes that a joint moves
  * become skinned ones (skin_rigid.h); a mesh that several skins move, or that is drawn both with and without one, is copied. Weights that are left
  * out are a warning of the model. 0, or 1 and a filled error. */
-int skins_bind(model *m, struct motion *made, const skin_options *options, model_error *error);
+int skins_bind(model *m, struct model_clips *made, const skin_options *options, model_error *error);
 
 #endif

@@ -5,7 +5,7 @@
 
 #include "bench_job.h"
 #include "convert/morph/morph_encode.h"
-#include "message.h"
+#include "cli/message.h"
 
 /* 0 where the encoder's order, applied to the asset, gives the pack's vertices. */
 static int differs(const model_mesh *from, const morph_encoding *e, const noh_mesh *mesh)

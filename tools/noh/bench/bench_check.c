@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "bench_job.h"
-#include "message.h"
+#include "cli/message.h"
 
 typedef struct check {
     bench_stage *stage;

@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "bench_clip.h"
-#include "message.h"
+#include "cli/message.h"
 
 #define SAMPLE_NS 2e6
 #define CHECK_TIMES 200u
@@ -64,7 +64,7 @@ static void run_alone(void *self, uint32_t frame)
 {
     clip_bench *b = self;
     const bench_clip *c = &b->set->clips[0];
-    noh_clip_cache_tick(b->alone.cache);
+    noh_clip_cache_begin_frame(b->alone.cache);
     noh_clip_sample(b->alone.cache, 0, bench_clip_time(c, frame, 0), c->info.joint_count, b->poses, NULL);
     b->seen = b->poses;
 }
@@ -96,7 +96,7 @@ static void run_seek_keys(void *self, uint32_t frame)
 static void run_shared(void *self, uint32_t frame)
 {
     clip_bench *b = self;
-    noh_clip_cache_tick(b->all.cache);
+    noh_clip_cache_begin_frame(b->all.cache);
     for (uint32_t i = 0; i < BENCH_INSTANCES; i++) {
         const bench_clip *c = &b->set->clips[b->clip_of[i]];
         noh_clip_cache_want(b->all.cache, b->clip_of[i], bench_clip_time(c, frame + 1u, b->phases[i]), c->info.joint_count);
@@ -193,8 +193,8 @@ static int open_bench(clip_bench *b, const bench_clip_set *set)
     memset(b, 0, sizeof *b);
     b->set = set;
     status = bench_cache_open(&b->all, set, set->count, 0);
-    if (!status) status = bench_cache_open(&b->alone, set, 1, NOH_CLIP_CACHE_SLOTS_MIN);
-    if (!status) status = bench_cache_open(&b->two, set, 1, NOH_CLIP_CACHE_SLOTS_MIN);
+    if (!status) status = bench_cache_open(&b->alone, set, 1, NOH_CLIP_CACHE_SEGMENTS_MIN);
+    if (!status) status = bench_cache_open(&b->two, set, 1, NOH_CLIP_CACHE_SEGMENTS_MIN);
     b->poses = calloc((size_t)BENCH_INSTANCES * set->joints_max, sizeof *b->poses);
     b->other = calloc((size_t)set->joints_max, sizeof *b->other);
     if (!status && (!b->poses || !b->other)) {

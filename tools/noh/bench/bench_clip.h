@@ -3,8 +3,8 @@
  *   bench_clip_set.c     the clips of the packs, their raw keys, caches
  *   bench_clip.c         rows clip/warm, clip/alone, clip/shared, clip/seek
  *   bench_clip_frames.c  row clip/worst-frame */
-#ifndef NOH_TOOL_BENCH_CLIP_H
-#define NOH_TOOL_BENCH_CLIP_H
+#ifndef NOH_NOH_BENCH_BENCH_CLIP_H
+#define NOH_NOH_BENCH_BENCH_CLIP_H
 
 #include "bench_job.h"
 

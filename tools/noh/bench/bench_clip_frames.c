@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #include "bench_clip.h"
-#include "message.h"
+#include "cli/message.h"
 
 #define MINUTE 3600u
 #define STAGGER_TICKS 4800u
@@ -80,7 +80,7 @@ static void want_all(minute *m, uint32_t frame, int ahead)
 
 static void play_frame(minute *m, uint32_t frame)
 {
-    noh_clip_cache_tick(m->cache.cache);
+    noh_clip_cache_begin_frame(m->cache.cache);
     want_all(m, frame, 1);
     noh_clip_cache_work(m->cache.cache, m->budget);
     for (uint32_t i = 0; i < BENCH_INSTANCES; i++) {

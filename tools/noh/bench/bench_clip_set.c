@@ -1,6 +1,6 @@
 /* bench_clip_set.c: the clips that are benched, their raw keys, caches; the baseline raw-keys. */
 #include "bench_clip.h"
-#include "message.h"
+#include "cli/message.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,24 +13,24 @@
 static int init_clip(bench_clip *c, const pack_file *file, uint32_t index)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
-    noh_pack_motion motion;
+    noh_pack_clip clip;
     noh_skeleton skeleton;
     noh_clip_desc desc;
     size_t bytes;
     memset(c, 0, sizeof *c);
-    noh_pack_motion_at(&file->pack, index, &motion, NULL);
-    if (motion.header->joint_count == 0u) {
+    noh_pack_clip_at(&file->pack, index, &clip, NULL);
+    if (clip.header->joint_count == 0u) {
         return 0; /* weights alone */
     }
-    if (noh_pack_bind_motion(&file->pack, &motion, &skeleton, NULL, &error)) {
-        return tool_fail(file->path, "clip '%s': %s", motion.name, error.what);
+    if (noh_pack_bind_clip(&file->pack, &clip, &skeleton, NULL, &error)) {
+        return tool_fail(file->path, "clip '%s': %s", clip.name, error.what);
     }
-    desc.bytes = motion.bytes;
-    desc.byte_count = motion.header->clip_bytes;
+    desc.bytes = clip.bytes;
+    desc.byte_count = clip.header->clip_bytes;
     desc.bind = skeleton.bind_pose;
     desc.joint_count = skeleton.joint_count;
     bytes = noh_clip_size(&desc, &error);
-    c->name = motion.name;
+    c->name = clip.name;
     c->memory = bytes ? malloc(bytes) : NULL;
     if (!c->memory) {
         return bytes ? tool_fail(file->path, "out of memory") : tool_fail_error(file->path, &error);
@@ -97,7 +97,7 @@ int bench_clip_set_open(bench_clip_set *set, const bench_job *job)
     int status = 0;
     memset(set, 0, sizeof *set);
     for (uint32_t f = 0; f < job->file_count; f++) {
-        for (uint32_t i = 0; i < job->files[f].pack.motion_count && !status; i++) {
+        for (uint32_t i = 0; i < job->files[f].pack.clip_count && !status; i++) {
             bench_clip c;
             status = init_clip(&c, &job->files[f], i);
             if (status || c.info.joint_count == 0u) {
@@ -136,7 +136,7 @@ int bench_cache_open(bench_cache *c, const bench_clip_set *set, uint32_t clip_co
     slots = slots && slots < segments ? slots : segments;
     c->desc.clips = c->clips;
     c->desc.clip_count = clip_count;
-    c->desc.slot_count = slots < NOH_CLIP_CACHE_SLOTS_MIN ? NOH_CLIP_CACHE_SLOTS_MIN : slots;
+    c->desc.cached_segment_count = slots < NOH_CLIP_CACHE_SEGMENTS_MIN ? NOH_CLIP_CACHE_SEGMENTS_MIN : slots;
     c->bytes = noh_clip_cache_size(&c->desc, &error);
     c->memory = c->bytes ? malloc(c->bytes) : NULL;
     if (!c->memory) {
@@ -180,7 +180,7 @@ static inline void blend_key(const noh_transform *restrict a, const noh_transfor
 void bench_sample_keys(const bench_clip *c, int64_t ticks, noh_transform *out)
 {
     const uint32_t last = c->info.frame_count - 1u, joints = c->info.joint_count;
-    const double position = (double)ticks * ((double)c->info.rate_uhz * 1e-6 / TICKS_PER_SECOND);
+    const double position = (double)ticks * ((double)c->info.sample_rate_uhz * 1e-6 / TICKS_PER_SECOND);
     const uint32_t frame = position < (double)last ? (uint32_t)position : last, next = frame < last ? frame + 1u : last;
     const float fraction = frame < last ? (float)(position - (double)frame) : 0.0f;
     const noh_transform *a = c->keys + (size_t)frame * joints, *b = c->keys + (size_t)next * joints;

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "bench_job.h"
-#include "message.h"
+#include "cli/message.h"
 
 #define SAMPLE_NS 5e6
 #define ATTRIBUTES 9u /* position, normal, tangent */

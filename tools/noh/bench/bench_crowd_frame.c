@@ -1,5 +1,5 @@
-/* bench_crowd_frame.c: rows crowd/cpu and crowd/gpu: a frame of 1,000 bodies over 100 m (tools/noh/crowd.h), at several
- * allowed errors in pixels, against the same frame without detail. None where a pack has no skinned mesh with levels, or no clips.
+/* bench_crowd_frame.c: rows crowd/cpu and crowd/gpu: a frame of 1,000 bodies over 100 m (tools/noh/crowd/crowd.h), at several
+ * allowed errors in pixels, against the same frame without LOD. None where a pack has no skinned mesh with levels, or no clips.
  *
  * The CPU's part ends with palettes and weights handed to the library; the GPU's is accumulation, upload and draws up to
  * glFinish, into 1280 x 720 pixels of four samples. On a software rasteriser the GPU's part is a whole frame less
@@ -9,9 +9,9 @@
 #include <string.h>
 
 #include "bench_job.h"
-#include "crowd.h"
-#include "canvas.h"
-#include "message.h"
+#include "crowd/crowd.h"
+#include "gpu/canvas.h"
+#include "cli/message.h"
 
 #define SAMPLE_NS 2e7
 #define BODIES 1000u
@@ -148,7 +148,7 @@ static int check_events(fair *f)
     for (uint32_t i = 0; i < PLAIN; i++) {
         const crowd_events *got = &f->stands[i].crowd.events;
         if (!expected->count || got->count != expected->count || got->sum != expected->sum) {
-            return tool_fail("bench", "crowd: %llu events with detail, %llu without", (unsigned long long)got->count,
+            return tool_fail("bench", "crowd: %llu events with LOD, %llu without", (unsigned long long)got->count,
                              (unsigned long long)expected->count);
         }
     }
@@ -162,7 +162,7 @@ static void note_memory(fair *f)
         bench_memory *m = &f->job->memories[f->job->memory_count++];
         const stand *s = &f->stands[i];
         if (i == PLAIN) {
-            snprintf(m->name, sizeof m->name, "crowd, without detail");
+            snprintf(m->name, sizeof m->name, "crowd, without LOD");
         } else {
             snprintf(m->name, sizeof m->name, "crowd, %g pixel%s", (double)knobs[i], knobs[i] > 1.0f ? "s" : "");
         }
@@ -228,10 +228,10 @@ static int has_crowd(const noh_pack *pack)
     int found = 0;
     for (uint32_t i = 0; i < pack->mesh_count; i++) {
         noh_mesh mesh;
-        noh_pack_mesh(pack, i, &mesh, NULL);
+        noh_pack_mesh_at(pack, i, &mesh, NULL);
         found |= mesh.header->skin != NOH_NONE && mesh.header->level_count > 1u;
     }
-    return found && pack->motion_count;
+    return found && pack->clip_count;
 }
 
 int bench_crowd_frame(bench_job *job)

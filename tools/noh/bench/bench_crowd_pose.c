@@ -1,15 +1,15 @@
 /* bench_crowd_pose.c: rows crowd/pose: what 1,000 characters on the first skeleton of a pack cost the CPU, from
- * clocks to palettes, posed at the update rate that pixels need, and in every frame. None where a pack has no clips. */
+ * clocks to palettes, posed at the update rate that pixels need, and in every frame. None where a pack has no opened_clips. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench_job.h"
-#include "message.h"
+#include "cli/message.h"
 
 #define SAMPLE_NS 2e7
 #define CROWD 1000u
-#define MOTIONS_MAX 32u
+#define CLIPS_MAX 32u
 #define FRAME_TICKS 800u  /* 60 frames a second */
 #define FIELD_M 100.0f    /* radius of the disc over which they are spread evenly */
 #define VIEW_RAD 1.0472f  /* 60 degrees */
@@ -18,14 +18,14 @@
 
 typedef struct crowd {
     noh_skeleton skeleton;
-    noh_anim_set set;
-    noh_motion motions[MOTIONS_MAX];
-    const noh_clip *clips[MOTIONS_MAX];
-    void *clip_memory[MOTIONS_MAX];
+    noh_clip_set set;
+    noh_clip_entry entries[CLIPS_MAX];
+    const noh_clip *opened_clips[CLIPS_MAX];
+    void *clip_memory[CLIPS_MAX];
     void *cache_memory, *scratch_memory;
     noh_clip_cache *cache;
     noh_character_scratch scratch;
-    float *reach_m, *rate_errors;
+    float *radius_m, *rate_errors;
     size_t bytes;              /* of one character */
     uint8_t *characters;       /* [CROWD][bytes] */
     float *palette, *expected; /* [joint_count][12] */
@@ -35,8 +35,8 @@ typedef struct crowd {
 
 typedef struct crowd_work {
     crowd *crowd;
-    noh_detail_table table;
-    noh_detail_settings settings;
+    noh_lod_table table;
+    noh_lod_settings settings;
     int seen;
 } crowd_work;
 
@@ -52,7 +52,7 @@ static void run_full(void *self, uint32_t frame)
 {
     crowd *c = ((const crowd_work *)self)->crowd;
     (void)frame;
-    noh_clip_cache_tick(c->cache);
+    noh_clip_cache_begin_frame(c->cache);
     for (uint32_t i = 0; i < CROWD; i++) {
         noh_controller *controller = noh_character_controller(character_of(c, i));
         noh_controller_step(controller, &c->set, FRAME_TICKS, NULL, NULL);
@@ -64,12 +64,12 @@ static void run_full(void *self, uint32_t frame)
 }
 
 /* Step all; pose the visible ones at the update rate that their pixels need. */
-static void run_detail(void *self, uint32_t frame)
+static void run_lod(void *self, uint32_t frame)
 {
     const crowd_work *w = (const crowd_work *)self;
     crowd *c = w->crowd;
     (void)frame;
-    noh_clip_cache_tick(c->cache);
+    noh_clip_cache_begin_frame(c->cache);
     for (uint32_t i = 0; i < CROWD; i++) {
         noh_character *ch = character_of(c, i);
         noh_character_step(ch, &c->set, FRAME_TICKS, NULL, NULL);
@@ -85,41 +85,41 @@ static void run_detail(void *self, uint32_t frame)
 
 /* ---- making ---- */
 
-static void sample_clip(void *user, uint32_t motion, uint32_t tick, uint32_t joints, noh_transform *pose, uint32_t floats, float *values)
+static void sample_clip(void *user, uint32_t clip, uint32_t tick, uint32_t joints, noh_transform *pose, uint32_t floats, float *values)
 {
     (void)floats;
     (void)values;
-    noh_clip_sample(((crowd *)user)->cache, motion, tick, joints, pose, NULL);
+    noh_clip_sample(((crowd *)user)->cache, clip, tick, joints, pose, NULL);
 }
 
 static int open_clip(crowd *c, const pack_file *file, uint32_t index)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
-    uint32_t skeleton, at = c->set.motion_count;
-    noh_pack_motion motion;
+    uint32_t skeleton, at = c->set.clip_count;
+    noh_pack_clip clip;
     noh_clip_desc desc;
     noh_clip_info info;
     noh_skeleton bound;
-    noh_clip *clip;
+    noh_clip *opened;
     size_t bytes;
-    noh_pack_motion_at(&file->pack, index, &motion, NULL);
-    if (noh_pack_bind_motion(&file->pack, &motion, &bound, &skeleton, NULL) || skeleton != 0) {
+    noh_pack_clip_at(&file->pack, index, &clip, NULL);
+    if (noh_pack_bind_clip(&file->pack, &clip, &bound, &skeleton, NULL) || skeleton != 0) {
         return 0;
     }
-    desc.bytes = motion.bytes;
-    desc.byte_count = motion.header->clip_bytes;
+    desc.bytes = clip.bytes;
+    desc.byte_count = clip.header->clip_bytes;
     desc.bind = bound.bind_pose;
     desc.joint_count = bound.joint_count;
     bytes = noh_clip_size(&desc, &error);
     c->clip_memory[at] = bytes ? malloc(bytes) : NULL;
-    if (!c->clip_memory[at] || noh_clip_init(c->clip_memory[at], bytes, &desc, &clip, &error)) {
-        return tool_fail(file->path, "clip '%s': %s", motion.name, error.result ? error.what : "out of memory");
+    if (!c->clip_memory[at] || noh_clip_init(c->clip_memory[at], bytes, &desc, &opened, &error)) {
+        return tool_fail(file->path, "clip '%s': %s", clip.name, error.result ? error.what : "out of memory");
     }
-    noh_clip_info_of(clip, &info);
-    c->clips[at] = clip;
-    c->motions[at].duration_ticks = (uint32_t)info.duration_ticks;
-    c->motions[at].loop = NOH_LOOP_PING_PONG; /* no seam, whatever the clip */
-    c->set.motion_count++;
+    noh_clip_info_of(opened, &info);
+    c->opened_clips[at] = opened;
+    c->entries[at].duration_ticks = (uint32_t)info.duration_ticks;
+    c->entries[at].loop = NOH_LOOP_PING_PONG; /* no seam, whatever the clip */
+    c->set.clip_count++;
     return 0;
 }
 
@@ -127,14 +127,14 @@ static int open_clip(crowd *c, const pack_file *file, uint32_t index)
 static int open_cache(crowd *c)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
-    noh_clip_cache_desc desc = { c->clips, c->set.motion_count, 0 };
+    noh_clip_cache_desc desc = { c->opened_clips, c->set.clip_count, 0 };
     size_t bytes;
-    for (uint32_t i = 0; i < c->set.motion_count; i++) {
+    for (uint32_t i = 0; i < c->set.clip_count; i++) {
         noh_clip_info info;
-        noh_clip_info_of(c->clips[i], &info);
-        desc.slot_count += info.segment_count;
+        noh_clip_info_of(c->opened_clips[i], &info);
+        desc.cached_segment_count += info.segment_count;
     }
-    desc.slot_count = desc.slot_count < NOH_CLIP_CACHE_SLOTS_MIN ? NOH_CLIP_CACHE_SLOTS_MIN : desc.slot_count;
+    desc.cached_segment_count = desc.cached_segment_count < NOH_CLIP_CACHE_SEGMENTS_MIN ? NOH_CLIP_CACHE_SEGMENTS_MIN : desc.cached_segment_count;
     bytes = noh_clip_cache_size(&desc, &error);
     c->cache_memory = bytes ? malloc(bytes) : NULL;
     if (!c->cache_memory || noh_clip_cache_init(c->cache_memory, bytes, &desc, &c->cache, &error)) {
@@ -148,33 +148,33 @@ static void set_reaches(crowd *c, float unit_m)
 {
     const noh_skeleton *s = &c->skeleton;
     for (uint32_t j = 0; j < s->joint_count; j++) {
-        c->reach_m[j] = FLESH_M / unit_m;
+        c->radius_m[j] = FLESH_M / unit_m;
     }
     for (uint32_t j = 0; j < s->joint_count; j++) {
         const float *t = s->bind_pose[j].translation;
         float bone = sqrtf(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]) + FLESH_M / unit_m;
-        if (s->parents[j] != NOH_JOINT_ROOT && bone > c->reach_m[s->parents[j]]) {
-            c->reach_m[s->parents[j]] = bone;
+        if (s->parents[j] != NOH_JOINT_ROOT && bone > c->radius_m[s->parents[j]]) {
+            c->radius_m[s->parents[j]] = bone;
         }
     }
 }
 
 static int measure_rates(crowd *c)
 {
-    noh_time_probe probe = { &c->set, &c->skeleton, c->reach_m, NULL, 0 };
+    noh_time_probe probe = { &c->set, &c->skeleton, c->radius_m, NULL, 0 };
     size_t bytes = noh_time_lod_measure_size(&probe);
     noh_error error = { NOH_OK, "", 0, 0 };
     void *memory = malloc(bytes);
     int status = memory ? 0 : tool_fail("bench", "out of memory");
-    for (uint32_t m = 0; m < c->set.motion_count && !status; m++) {
-        float *errors = c->rate_errors + NOH_RATE_COUNT * (size_t)m;
+    for (uint32_t m = 0; m < c->set.clip_count && !status; m++) {
+        float *errors = c->rate_errors + NOH_UPDATE_RATE_COUNT * (size_t)m;
         status = noh_time_lod_measure(memory, bytes, &probe, m, errors, &error) ? tool_fail_error("bench", &error) : 0;
     }
     free(memory);
     return status;
 }
 
-/* Half of them blend two clips. Phases and places from a low-discrepancy sequence. */
+/* Half of them blend two opened_clips. Phases and places from a low-discrepancy sequence. */
 static void populate(crowd *c, float unit_m)
 {
     for (uint32_t i = 0; i < CROWD; i++) {
@@ -183,12 +183,12 @@ static void populate(crowd *c, float unit_m)
         for (uint32_t track = 0; track <= i % 2u; track++) {
             noh_track_desc d;
             memset(&d, 0, sizeof d);
-            d.motion = (i / 2u + track) % c->set.motion_count;
+            d.clip = (i / 2u + track) % c->set.clip_count;
             d.position_ticks = (int64_t)(part * 1e6f);
             d.weight = 1.0f;
             noh_controller_start(controller, &c->set, track, &d, NULL);
         }
-        c->scales[i] = noh_detail_scale(distance_m, VIEW_RAD, VIEW_LINES) * unit_m;
+        c->scales[i] = noh_lod_scale(distance_m, VIEW_RAD, VIEW_LINES) * unit_m;
     }
 }
 
@@ -222,21 +222,21 @@ static int crowd_open(crowd *c, const pack_file *file)
     int status = 0;
     noh_pack_skeleton_at(&file->pack, 0, &c->skeleton, &header, NULL);
     c->set.joint_count = c->skeleton.joint_count;
-    c->set.motions = c->motions;
+    c->set.clips = c->entries;
     c->set.bind_pose = c->skeleton.bind_pose;
     c->set.sample = sample_clip;
     c->set.user = c;
-    for (uint32_t i = 0; i < file->pack.motion_count && c->set.motion_count < MOTIONS_MAX && !status; i++) {
+    for (uint32_t i = 0; i < file->pack.clip_count && c->set.clip_count < CLIPS_MAX && !status; i++) {
         status = open_clip(c, file, i);
     }
-    if (status || c->set.motion_count == 0) {
+    if (status || c->set.clip_count == 0) {
         return status;
     }
-    c->reach_m = malloc(c->skeleton.joint_count * sizeof(float));
-    c->rate_errors = malloc(c->set.motion_count * NOH_RATE_COUNT * sizeof(float));
+    c->radius_m = malloc(c->skeleton.joint_count * sizeof(float));
+    c->rate_errors = malloc(c->set.clip_count * NOH_UPDATE_RATE_COUNT * sizeof(float));
     c->palette = malloc(c->skeleton.joint_count * 48u);
     c->expected = malloc(c->skeleton.joint_count * 48u);
-    if (!c->reach_m || !c->rate_errors || !c->palette || !c->expected) {
+    if (!c->radius_m || !c->rate_errors || !c->palette || !c->expected) {
         return tool_fail("bench", "out of memory");
     }
     set_reaches(c, header->unit_cm * 0.01f);
@@ -249,12 +249,12 @@ static int crowd_open(crowd *c, const pack_file *file)
 
 static void crowd_close(crowd *c)
 {
-    for (uint32_t i = 0; i < MOTIONS_MAX; i++) {
+    for (uint32_t i = 0; i < CLIPS_MAX; i++) {
         free(c->clip_memory[i]);
     }
     free(c->cache_memory);
     free(c->scratch_memory);
-    free(c->reach_m);
+    free(c->radius_m);
     free(c->rate_errors);
     free(c->characters);
     free(c->palette);
@@ -306,10 +306,10 @@ static int measure(bench_job *job, crowd *c)
     memset(works, 0, sizeof works);
     for (uint32_t i = 0; i < VARIANTS; i++) {
         works[i].crowd = c;
-        works[i].table.rate_error_m = c->rate_errors;
+        works[i].table.update_error_m = c->rate_errors;
         works[i].settings.pixels = variants[i].pixels;
         works[i].seen = variants[i].seen;
-        bench_add_cell(&cells, i ? run_detail : run_full, &works[i]);
+        bench_add_cell(&cells, i ? run_lod : run_full, &works[i]);
     }
     status = check(&works[0]);
     if (!status) {
@@ -332,7 +332,7 @@ int bench_crowd_pose(bench_job *job)
     }
     memset(&c, 0, sizeof c);
     status = crowd_open(&c, &job->files[0]);
-    if (!status && c.set.motion_count) {
+    if (!status && c.set.clip_count) {
         status = measure(job, &c);
     }
     crowd_close(&c);

@@ -12,7 +12,7 @@
  *   bench_cpu.c         rows morph/cpu
  *   bench_clip*.c       rows clip/ (see bench_clip.h)
  *   bench_crowd_pose.c  rows crowd/pose: a thousand characters, posed as often as pixels want it
- *   bench_crowd_frame.c rows crowd/cpu and crowd/gpu: frames of a thousand bodies, with and without detail
+ *   bench_crowd_frame.c rows crowd/cpu and crowd/gpu: frames of a thousand bodies, with and without LOD
  *   bench_skin_gpu.c    rows skin/gpu: a crowd in one draw, joints per vertex
  *   bench_skin_cpu.c    rows skin/cpu
  *   bench_report.c      rows, storage, and how they are printed
@@ -20,13 +20,13 @@
  * A method is one way to morph a mesh: one of ours, a baseline, or none at all.
  * All of them draw the same triangles with the same fragment shader and give it
  * the same position and normal. */
-#ifndef NOH_TOOL_BENCH_JOB_H
-#define NOH_TOOL_BENCH_JOB_H
+#ifndef NOH_NOH_BENCH_BENCH_JOB_H
+#define NOH_NOH_BENCH_BENCH_JOB_H
 
 #include "gl/gl_program.h"
 #include "gl/gl_timer.h"
-#include "gpu.h"
-#include "pack_file.h"
+#include "gpu/gpu.h"
+#include "file/pack_file.h"
 
 /* ---- rows ---- */
 
@@ -197,7 +197,7 @@ typedef struct bench_job {
     uint32_t slope_count;
     bench_memory memories[8];
     uint32_t memory_count;
-    uint64_t crowd_events;  /* events that every crowd got, with detail and without */
+    uint64_t crowd_events;  /* events that every crowd got, with LOD and without */
     int quick;              /* few bodies: for tests */
     const char *only;       /* the one group of rows to measure; NULL: all */
 } bench_job;

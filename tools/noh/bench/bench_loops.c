@@ -15,7 +15,7 @@
 #include <string.h>
 
 #include "bench_job.h"
-#include "message.h"
+#include "cli/message.h"
 
 #define FILAMENT_WIDTH 2048u
 #define FILAMENT_TARGETS 256u

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "bench_job.h"
-#include "message.h"
+#include "cli/message.h"
 
 #define SAMPLE_NS 1e7
 #define METHODS_MAX 16 /* one floor, four baselines, ten paths and formats */

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "bench_job.h"
-#include "message.h"
+#include "cli/message.h"
 
 typedef struct path_method {
     bench_stage *stage;

@@ -12,7 +12,7 @@
 
 #include "bench_job.h"
 #include "tool_shaders.gen.h"
-#include "message.h"
+#include "cli/message.h"
 
 typedef struct quad_target {
     GLint rect[4]; /* x, y, width, height; no width: it moves nothing */

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "bench_job.h"
-#include "json.h"
+#include "cli/json.h"
 
 void bench_add_row(bench_rows *rows, const char *name, const char *baseline, double theirs, double ours, const char *unit,
                    uint32_t runs)

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "bench_job.h"
-#include "message.h"
+#include "cli/message.h"
 
 #define SAMPLE_NS 5e6
 #define OUT_FLOATS 10u /* position, normal, tangent */

@@ -4,12 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "anim/local_to_model.h"
-#include "anim/pack_motion.h"
+#include "pose/local_to_model.h"
+#include "clip/pack_clip.h"
 #include "base/quat.h"
 #include "bench_job.h"
 #include "deform/skin.h"
-#include "message.h"
+#include "cli/message.h"
 
 #define SAMPLE_NS 1e7
 #define INSTANCES 100u
@@ -46,7 +46,7 @@ static int largest_skinned_mesh(const noh_pack *pack, noh_mesh *out)
     uint32_t most = 0;
     for (uint32_t i = 0; i < pack->mesh_count; i++) {
         noh_mesh mesh;
-        noh_pack_mesh(pack, i, &mesh, NULL);
+        noh_pack_mesh_at(pack, i, &mesh, NULL);
         if (mesh.header->influence_count && mesh.header->vertex_count > most) {
             most = mesh.header->vertex_count;
             *out = mesh;

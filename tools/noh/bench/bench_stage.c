@@ -5,7 +5,7 @@
 #include "bench_job.h"
 #include "shaders.gen.h"
 #include "tool_shaders.gen.h"
-#include "message.h"
+#include "cli/message.h"
 
 /* ---- the stage ---- */
 

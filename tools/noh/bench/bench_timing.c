@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "bench_job.h"
-#include "message.h"
+#include "cli/message.h"
 
 #define REPEATS_MAX 100000u
 #define PROGRESS_NS 1000000000u

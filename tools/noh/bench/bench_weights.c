@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "bench_job.h"
-#include "message.h"
+#include "cli/message.h"
 
 /* Target t is active in a frame when it is one of `active` evenly spread ones; the pattern
  * shifts by one each frame, so that large and small targets are all used. */

@@ -5,10 +5,10 @@
 #include <string.h>
 
 #include "bench_job.h"
-#include "options.h"
-#include "verbs.h"
-#include "message.h"
-#include "nearest.h"
+#include "cli/options.h"
+#include "cli/verbs.h"
+#include "cli/message.h"
+#include "cli/nearest.h"
 
 typedef struct bench_args {
     const char *packs[BENCH_FILES_MAX], *driver, *source, *only;
@@ -23,7 +23,7 @@ static void choose_mesh(bench_job *job)
     uint32_t most = 0;
     for (uint32_t i = 0; i < job->files[0].pack.mesh_count; i++) {
         noh_mesh mesh;
-        noh_pack_mesh(&job->files[0].pack, i, &mesh, NULL);
+        noh_pack_mesh_at(&job->files[0].pack, i, &mesh, NULL);
         if (mesh.header->pair_count > most) {
             most = mesh.header->pair_count;
             job->mesh = mesh;

@@ -1,6 +1,6 @@
 #include "view/view_app.h"
-#include "message.h"
-#include "png_file.h"
+#include "cli/message.h"
+#include "file/png_file.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -37,7 +37,7 @@ int view_app_open(view_app *a, const view_model_desc *desc)
     a->show_panels = a->show_layers = 1;
     a->speed = 1.0f;
     a->layer_gain = 1.0f;
-    a->detail.settings.pixels = 1.0f;
+    a->lod.settings.pixels = 1.0f;
     a->screen.width = desc->width;
     a->screen.height = desc->height;
     a->window_width = (float)desc->width;
@@ -272,7 +272,7 @@ int view_app_frame(view_app *a, float scale, double seconds)
     animate(a, seconds);
     status = fit_canvas(a, &x, &y);
     if (!status) {
-        view_detail_frame(&a->detail, a->model, &a->orbit, seconds);
+        view_lod_frame(&a->lod, a->model, &a->orbit, seconds);
         status = draw(a);
     }
     if (status) {
@@ -285,7 +285,7 @@ int view_app_frame(view_app *a, float scale, double seconds)
 
 int view_app_moves(const view_app *a)
 {
-    return a->detail.fade < 1.0f || (a->playing && view_plays(a->model));
+    return a->lod.fade < 1.0f || (a->playing && view_plays(a->model));
 }
 
 void view_app_after(view_app *a)

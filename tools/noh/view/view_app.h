@@ -10,11 +10,11 @@
  *   view_play            a clip
  *   view_toggle_play     play and pause; starts the first clip where none is on
  *   view_save            a picture */
-#ifndef NOH_TOOL_VIEW_APP_H
-#define NOH_TOOL_VIEW_APP_H
+#ifndef NOH_NOH_VIEW_VIEW_APP_H
+#define NOH_NOH_VIEW_VIEW_APP_H
 
 #include "gl/gl_timer.h"
-#include "view/view_detail.h"
+#include "view/view_lod.h"
 #include "view/view_screen.h"
 
 #define VIEW_LINES 64
@@ -47,7 +47,7 @@ typedef struct view_app {
     view_model *model; /* never NULL after view_app_open */
     view_model_desc desc; /* how it was opened; path and anim are the caller's */
     orbit orbit;
-    view_detail detail;
+    view_lod lod;
     float window_width, window_height; /* points */
     float scale;                       /* pixels in a point */
     int show_panels, show_layers, playing;

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "gl/gl_lost.h"
-#include "message.h"
+#include "cli/message.h"
 
 /* ---- the window ---- */
 

@@ -4,13 +4,13 @@
  *   view_context_lost     whether the context is gone
  *   view_context_reopen   another window and context in its place
  *   view_context_measure  the window's size and the screen's density */
-#ifndef NOH_TOOL_VIEW_CONTEXT_H
-#define NOH_TOOL_VIEW_CONTEXT_H
+#ifndef NOH_NOH_VIEW_VIEW_CONTEXT_H
+#define NOH_NOH_VIEW_VIEW_CONTEXT_H
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-#include "gpu.h"
+#include "gpu/gpu.h"
 
 typedef struct view_context {
     GLFWwindow *window;                      /* NULL: none is open */

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "message.h"
+#include "cli/message.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>

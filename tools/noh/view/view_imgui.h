@@ -1,7 +1,7 @@
 /* view_imgui.h: feeds Dear ImGui with the window's input and draws it with view_screen. Differences between its versions are
  * handled here alone. */
-#ifndef NOH_TOOL_VIEW_IMGUI_H
-#define NOH_TOOL_VIEW_IMGUI_H
+#ifndef NOH_NOH_VIEW_VIEW_IMGUI_H
+#define NOH_NOH_VIEW_VIEW_IMGUI_H
 
 #include "view/view_panels.h"
 
@@ -20,7 +20,7 @@ void imgui_close();
 void imgui_begin(view_app *a, const view_input *input, double seconds);
 void imgui_end(view_app *a);
 
-// A section of the right panel, for packs with levels of detail.
-void detail_section(view_app *a);
+// A section of the right panel, for packs with LOD levels.
+void lod_section(view_app *a);
 
 #endif

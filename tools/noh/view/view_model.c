@@ -5,7 +5,7 @@
 
 #include "convert/convert.h"
 #include "gl/gl_lost.h"
-#include "message.h"
+#include "cli/message.h"
 
 /* ---- the file ---- */
 
@@ -30,9 +30,9 @@ static int convert_model(view_model *m, const lod_settings *levels)
     inputs[0] = m->path;
     memset(&options, 0, sizeof options);
     options.morph.error_um = 10.0f; /* as `noh build` without options */
-    options.motion.clip.error_cm = 0.01;
-    options.motion.clip.shell_cm = 3.0;
-    options.motion.unit_cm = 1.0;
+    options.clip.clip.error_cm = 0.01;
+    options.clip.clip.shell_cm = 3.0;
+    options.clip.unit_cm = 1.0;
     options.lod = *levels;
     if (convert_files(inputs, 1, &options, &m->converted, &failure)) {
         return failure.error.where[0] ? tool_fail(m->path, "%s (%s)", failure.error.what, failure.error.where)
@@ -76,7 +76,7 @@ static int list_targets(view_model *m)
             w->item = i;
             w->index = t;
             w->initial = item->weights[t];
-            m->delta_max = mesh->targets[t].max_displacement > m->delta_max ? mesh->targets[t].max_displacement : m->delta_max;
+            m->delta_max = mesh->targets[t].radius > m->delta_max ? mesh->targets[t].radius : m->delta_max;
         }
     }
     return 0;
@@ -86,21 +86,21 @@ static int list_clips(view_model *m)
 {
     size_t count = 0;
     for (uint32_t p = 0; p < m->scene.player_count; p++) {
-        const noh_motion_set *set = m->scene.players[p].set;
-        count += set ? set->anim.motion_count : 0u;
+        const noh_clip_bank *set = m->scene.players[p].set;
+        count += set ? set->clips.clip_count : 0u;
     }
     m->clips = calloc(count + 1, sizeof *m->clips);
     if (!m->clips) {
         return tool_fail(m->path, "out of memory");
     }
     for (uint32_t p = 0; p < m->scene.player_count; p++) {
-        const noh_motion_set *set = m->scene.players[p].set;
-        for (uint32_t i = 0; set && i < set->anim.motion_count; i++) {
+        const noh_clip_bank *set = m->scene.players[p].set;
+        for (uint32_t i = 0; set && i < set->clips.clip_count; i++) {
             view_clip *clip = &m->clips[m->clip_count++];
-            clip->name = view_motion_name(m, p, i);
+            clip->name = view_clip_name(m, p, i);
             clip->player = p;
-            clip->motion = i;
-            clip->seconds = (double)set->anim.motions[i].duration_ticks / (double)NOH_TICKS_PER_SECOND;
+            clip->clip = i;
+            clip->seconds = (double)set->clips.clips[i].duration_ticks / (double)NOH_TICKS_PER_SECOND;
         }
     }
     return 0;
@@ -134,7 +134,7 @@ static int open_scene(view_model *m, gpu *g, const view_model_desc *desc)
     if (!status) status = scene_open_players(&m->scene, &m->file, 1);
     if (!status) status = list_targets(m);
     if (!status) status = list_clips(m);
-    if (!status) status = scene_detail_open(&m->detail, &m->file, &m->scene);
+    if (!status) status = scene_lod_open(&m->lod, &m->file, &m->scene);
     if (!status) status = open_stage(m, g, desc, &m->stage, &m->budget, &m->costs);
     return status;
 }
@@ -165,7 +165,7 @@ void view_model_close(view_model *m)
     }
     stage_close(&m->stage);
     load_budget_free(&m->budget);
-    scene_detail_close(&m->detail);
+    scene_lod_close(&m->lod);
     scene_free(&m->scene);
     if (m->file.file.data) {
         pack_file_close(&m->file);

@@ -3,14 +3,14 @@
  *   view_model_open / view_model_close
  *   view_model_pose            the scene's weights and joints for this frame
  *   view_start, view_add, view_stop, view_stop_all, view_seek, view_step   its clips */
-#ifndef NOH_TOOL_VIEW_MODEL_H
-#define NOH_TOOL_VIEW_MODEL_H
+#ifndef NOH_NOH_VIEW_VIEW_MODEL_H
+#define NOH_NOH_VIEW_VIEW_MODEL_H
 
 #include "convert/lod/lod_levels.h"
-#include "convert/pack/byte_buffer.h"
-#include "level_costs.h"
-#include "scene_detail.h"
-#include "stage.h"
+#include "convert/base/byte_buffer.h"
+#include "budget/level_costs.h"
+#include "draw/scene_lod.h"
+#include "draw/drawing.h"
 
 /* A slider: all targets of one name. */
 typedef struct view_target {
@@ -27,7 +27,7 @@ typedef struct view_weight {
 
 typedef struct view_clip {
     const char *name;
-    uint32_t player, motion;
+    uint32_t player, clip;
     double seconds;
 } view_clip;
 
@@ -39,7 +39,7 @@ typedef struct view_model {
     stage stage;
     load_budget budget; /* parts NULL where bones are drawn: nothing is loaded then */
     level_costs costs; /* count 0 where bones are drawn, 1 in a pack without LOD levels */
-    scene_detail detail;
+    scene_lod lod;
     float delta_max; /* how far one target moves a vertex at most, model units; over 0 */
     view_target *targets;
     view_weight *weights;
@@ -85,7 +85,7 @@ void view_seek(view_model *m, uint32_t player, uint32_t track, double seconds);
 /* Where a track is in its clip. */
 double view_position(const view_model *m, uint32_t player, uint32_t track);
 /* The name of a player's clip. */
-const char *view_motion_name(const view_model *m, uint32_t player, uint32_t motion);
+const char *view_clip_name(const view_model *m, uint32_t player, uint32_t clip);
 
 typedef struct view_passed {
     double clock_s;

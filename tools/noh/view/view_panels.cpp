@@ -106,9 +106,9 @@ void track_row(view_app *a, uint32_t player, uint32_t track)
     const noh_track *t = noh_controller_track(c, track);
     float at = static_cast<float>(view_position(a->model, player, track)), weight = t->weight;
     float speed = static_cast<float>(t->speed) / NOH_SPEED_ONE;
-    const float end = static_cast<float>(p.set->anim.motions[t->motion].duration_ticks) / NOH_TICKS_PER_SECOND;
+    const float end = static_cast<float>(p.set->clips.clips[t->clip].duration_ticks) / NOH_TICKS_PER_SECOND;
     ImGui::PushID(static_cast<int>(player * NOH_TRACKS_MAX + track));
-    ImGui::TextColored(amber, "%u %s", track, view_motion_name(a->model, player, t->motion));
+    ImGui::TextColored(amber, "%u %s", track, view_clip_name(a->model, player, t->clip));
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 40.0f);
     const bool stop = ImGui::SmallButton("stop");
     ImGui::SetNextItemWidth(-1.0f);
@@ -290,9 +290,9 @@ void memory_section(view_app *a)
         }
         memory_row("sum", b.cpu_bytes, b.gpu_bytes);
         if (a->model->costs.count > 1) {
-            const level_cost &cost = a->model->costs.levels[a->detail.finest];
+            const level_cost &cost = a->model->costs.levels[a->lod.finest];
             char name[32];
-            snprintf(name, sizeof name, "from level %u on", a->detail.finest);
+            snprintf(name, sizeof name, "from level %u on", a->lod.finest);
             memory_row(name, cost.cpu_bytes, cost.gpu_bytes);
         }
         memory_row("on the GPU now", 0, noh_gl_ledger_bytes(&a->gpu.ledger));
@@ -331,7 +331,7 @@ void right_panel(view_app *a)
 {
     begin_panel("figure", a->window_width - VIEW_RIGHT, 0.0f, VIEW_RIGHT, a->window_height);
     clips_section(a);
-    detail_section(a);
+    lod_section(a);
     drawing_section(a);
     times_section(a);
     layers_section(a);

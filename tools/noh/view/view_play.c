@@ -2,12 +2,12 @@
 #include <string.h>
 
 #include "view/view_model.h"
-#include "message.h"
+#include "cli/message.h"
 
-const char *view_motion_name(const view_model *m, uint32_t player, uint32_t motion)
+const char *view_clip_name(const view_model *m, uint32_t player, uint32_t clip)
 {
-    noh_pack_motion found;
-    noh_pack_motion_at(&m->scene.anim->pack, m->scene.players[player].set->pack_motions[motion], &found, NULL);
+    noh_pack_clip found;
+    noh_pack_clip_at(&m->scene.anim->pack, m->scene.players[player].set->pack_clips[clip], &found, NULL);
     return found.name;
 }
 
@@ -25,8 +25,8 @@ int view_add(view_model *m, uint32_t clip)
         return tool_fail(m->path, "all %u tracks are on: stop one to play '%s'", c->track_count, m->clips[clip].name);
     }
     memset(&desc, 0, sizeof desc);
-    desc.motion = m->clips[clip].motion;
-    return noh_controller_start(c, &p->set->anim, track, &desc, &error) ? tool_fail_error(m->path, &error) : 0;
+    desc.clip = m->clips[clip].clip;
+    return noh_controller_start(c, &p->set->clips, track, &desc, &error) ? tool_fail_error(m->path, &error) : 0;
 }
 
 void view_stop(view_model *m, uint32_t player, uint32_t track)
@@ -72,7 +72,7 @@ void view_seek(view_model *m, uint32_t player, uint32_t track, double seconds)
 {
     const scene_player *p = &m->scene.players[player];
     noh_error error = { NOH_OK, "", 0, 0 };
-    if (noh_controller_seek(p->controllers[0], &p->set->anim, track, noh_ticks_from_seconds(seconds), NOH_SEEK_SKIP, &error)) {
+    if (noh_controller_seek(p->controllers[0], &p->set->clips, track, noh_ticks_from_seconds(seconds), NOH_SEEK_SKIP, &error)) {
         tool_fail_error(m->path, &error);
     }
 }
@@ -81,7 +81,7 @@ double view_position(const view_model *m, uint32_t player, uint32_t track)
 {
     const scene_player *p = &m->scene.players[player];
     const noh_track *t = noh_controller_track(p->controllers[0], track);
-    return (double)noh_track_clip_tick(t, &p->set->anim.motions[t->motion], 0) / (double)NOH_TICKS_PER_SECOND;
+    return (double)noh_track_clip_tick(t, &p->set->clips.clips[t->clip], 0) / (double)NOH_TICKS_PER_SECOND;
 }
 
 typedef struct step {
@@ -95,12 +95,12 @@ static void pass_event(void *user, const noh_event *event)
 {
     const step *s = (const step *)user;
     const noh_pack *pack = &s->m->scene.anim->pack;
-    noh_pack_motion motion;
+    noh_pack_clip clip;
     view_passed passed;
-    noh_pack_motion_at(pack, s->m->scene.players[s->player].set->pack_motions[event->motion], &motion, NULL);
+    noh_pack_clip_at(pack, s->m->scene.players[s->player].set->pack_clips[event->clip], &clip, NULL);
     passed.clock_s = (double)event->clock / (double)NOH_TICKS_PER_SECOND;
-    passed.clip = motion.name;
-    passed.key = noh_pack_string(pack, motion.events[event->index].name);
+    passed.clip = clip.name;
+    passed.key = noh_pack_string(pack, clip.events[event->index].name);
     passed.track = event->track;
     passed.weight = event->weight;
     s->fn(s->user, &passed);
@@ -112,8 +112,8 @@ void view_step(view_model *m, double seconds, view_event_fn fn, void *user)
     for (; s.player < m->scene.player_count; s.player++) {
         const scene_player *p = &m->scene.players[s.player];
         if (p->set) {
-            noh_clip_cache_tick(p->set->cache);
-            noh_controller_step(p->controllers[0], &p->set->anim, (uint32_t)noh_ticks_from_seconds(seconds), pass_event, &s);
+            noh_clip_cache_begin_frame(p->set->cache);
+            noh_controller_step(p->controllers[0], &p->set->clips, (uint32_t)noh_ticks_from_seconds(seconds), pass_event, &s);
         }
     }
 }

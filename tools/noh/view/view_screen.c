@@ -6,7 +6,7 @@
 
 #include "gl/gl_program.h"
 #include "tool_shaders.gen.h"
-#include "message.h"
+#include "cli/message.h"
 
 /* ---- making it ---- */
 

@@ -5,10 +5,10 @@
  *   view_screen_layers      the accumulators' three layers into textures
  *   view_triangles_begin, view_triangles_list, view_triangles_draw, view_triangles_end   triangles of the panels
  *   view_screen_read        the window's pixels */
-#ifndef NOH_TOOL_VIEW_SCREEN_H
-#define NOH_TOOL_VIEW_SCREEN_H
+#ifndef NOH_NOH_VIEW_VIEW_SCREEN_H
+#define NOH_NOH_VIEW_VIEW_SCREEN_H
 
-#include "canvas.h"
+#include "gpu/canvas.h"
 
 /* As Dear ImGui lays them out. */
 typedef struct view_vertex {

@@ -5,7 +5,7 @@
 
 #include "view/view_context.h"
 #include "view/view_panels.h"
-#include "message.h"
+#include "cli/message.h"
 
 #define AWAKE_FRAMES 4 /* drawn after an input before an unchanging picture idles */
 #define SETTLE_FRAMES 3 /* until a click shows: press, release, pose */
@@ -101,7 +101,7 @@ static void on_command(view_window *w, int key)
     switch (key) {
     case GLFW_KEY_SPACE: view_toggle_play(a); break;
     case GLFW_KEY_F: view_frame_all(a); break;
-    case GLFW_KEY_L: view_detail_next(&a->detail, a->model); break;
+    case GLFW_KEY_L: view_lod_next(&a->lod, a->model); break;
     case GLFW_KEY_TAB: a->show_panels = !a->show_panels; break;
     case GLFW_KEY_F10: w->lose = 1; break;
     case GLFW_KEY_F11: w->save_in[0] = SETTLE_FRAMES; break;

@@ -1,6 +1,6 @@
 /* view_window.h: the viewer's window: GLFW, its events, the loop. */
-#ifndef NOH_TOOL_VIEW_WINDOW_H
-#define NOH_TOOL_VIEW_WINDOW_H
+#ifndef NOH_NOH_VIEW_VIEW_WINDOW_H
+#define NOH_NOH_VIEW_VIEW_WINDOW_H
 
 #include "view/view_app.h"
 

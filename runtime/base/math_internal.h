@@ -1,0 +1,113 @@
+/* math.h: the little arithmetic that the library needs, without libm.
+ *
+ *   noh_sqrt          correctly rounded
+ *   noh_dot3
+ *   noh_normalize3
+ *
+ * Everything is +, -, *, / and square roots, each rounded once, with contraction off: the same bits on every machine
+ * whose float arithmetic is IEEE 754 in single precision (x87, which keeps 80 bits, is not).
+ * Threads: no state; any thread. */
+#ifndef NOH_BASE_MATH_INTERNAL_H
+#define NOH_BASE_MATH_INTERNAL_H
+
+#include <stdint.h>
+#include <string.h>
+
+#include "base/compiler.h"
+
+/* With errno off (-fno-math-errno) gcc and clang turn the builtin into the processor's instruction. With errno on they
+ * call sqrtf for what is negative, and where the processor has no such instruction always: there the vector unit does
+ * it, or plain C. All give the same bits. */
+#if defined(NOH_GNU) && defined(__NO_MATH_ERRNO__) && !(defined(__i386__) && !defined(__SSE__)) && !defined(__SOFTFP__) && \
+    !(defined(__riscv) && !defined(__riscv_flen)) && !defined(__mips_soft_float)
+#define NOH_SQRT_BUILTIN 1
+#elif defined(NOH_SSE2)
+#include <emmintrin.h>
+#elif defined(NOH_NEON)
+#include <arm_neon.h>
+#endif
+
+/* The largest integer whose square is at most n, n below 2^50: 25 bits of result, the highest first. A bit stays where
+ * what has been found so far, with it, is not too large; `rest` is n less the square of what has been found. */
+static inline uint32_t noh_integer_root(uint64_t n)
+{
+    uint64_t root = 0, rest = n;
+    for (uint64_t bit = (uint64_t)1 << 48; bit; bit >>= 2) { /* the square of the bit that is tried */
+        if (rest >= root + bit) {
+            rest -= root + bit;
+            root = (root >> 1) + bit;
+        } else {
+            root >>= 1;
+        }
+    }
+    return (uint32_t)root;
+}
+
+/* The square root in integers, correctly rounded.
+ *
+ * x = m 2^e with m of 24 bits and e even or odd. m is shifted left by 25 or 26 bits, whichever leaves an even exponent,
+ * so that it lies in 2^48..2^50 and its integer root in 2^24..2^25: the 24 bits of the result and one more, which says
+ * on which side of the middle between two floats the root lies. It never lies in the middle: a root of 25 bits whose
+ * last one is set has an odd square, and the shifted m is even. So adding that bit rounds, and 2^24 is not reached. */
+static inline float noh_sqrt_plain(float x)
+{
+    uint32_t bits, mantissa, root;
+    int32_t exponent;
+    memcpy(&bits, &x, sizeof bits);
+    if ((bits & 0x7fffffffu) == 0u || bits == 0x7f800000u) {
+        return x; /* 0, -0 and infinity */
+    }
+    if (bits > 0x7f800000u) {
+        return (x - x) / (x - x); /* NaN for what is negative, and NaN stays it */
+    }
+    exponent = (int32_t)(bits >> 23);
+    mantissa = bits & 0x7fffffu;
+    if (exponent) {
+        mantissa |= 0x800000u;
+    } else { /* subnormal: bring its highest bit up */
+        const int32_t shift = (int32_t)noh_leading_zeros(mantissa) - 8;
+        mantissa <<= shift;
+        exponent = 1 - shift;
+    }
+    exponent -= 127; /* of a mantissa in 1..2 */
+    root = noh_integer_root((uint64_t)mantissa << ((exponent & 1) ? 26 : 25));
+    bits = ((root + 1u) >> 1) + ((uint32_t)(((exponent & 1) ? exponent - 1 : exponent) / 2 + 126) << 23);
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+static inline float noh_sqrt(float x)
+{
+#if defined(NOH_SQRT_BUILTIN)
+    return __builtin_sqrtf(x);
+#elif defined(NOH_SSE2)
+    return _mm_cvtss_f32(_mm_sqrt_ss(_mm_set_ss(x)));
+#elif defined(NOH_NEON)
+    return vget_lane_f32(vsqrt_f32(vdup_n_f32(x)), 0);
+#else
+    return noh_sqrt_plain(x);
+#endif
+}
+
+static inline float noh_dot3(const float a[3], const float b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Make v unit; a vector too short to have a direction becomes `fallback`. */
+static inline void noh_normalize3(float v[3], const float fallback[3])
+{
+    float square = noh_dot3(v, v);
+    if (square > 1e-30f) {
+        float inverse = 1.0f / noh_sqrt(square);
+        v[0] *= inverse;
+        v[1] *= inverse;
+        v[2] *= inverse;
+    } else {
+        v[0] = fallback[0];
+        v[1] = fallback[1];
+        v[2] = fallback[2];
+    }
+}
+
+#endif

@@ -1,0 +1,327 @@
+#include "character/lod_pools.h"
+
+#include <string.h>
+
+#include "base/arena.h"
+
+#define ASKS_NOT 0xffu
+#define STAYS 1.25f /* factor on the priority of an instance that keeps its slot */
+
+typedef struct pool {
+    uint32_t level, slot_count;
+    uint32_t first;      /* of its slots in `free` */
+    uint32_t free_count; /* free[first .. first + free_count - 1] are its free slots */
+} pool;
+
+typedef struct place {
+    uint32_t slot;
+    uint8_t held;  /* 1: the slot is this instance's */
+    uint8_t pool;  /* whose slot it is */
+    uint8_t level; /* asked for */
+    uint8_t next;  /* the pool that it is given now; ASKS_NOT */
+} place;
+
+struct noh_lod_pools {
+    uint32_t instance_count, pool_count;
+    pool pools[NOH_LOD_POOLS_MAX];
+    noh_lod_pools_stats stats;
+    place *places;  /* [instance_count] */
+    uint64_t *keys; /* [instance_count] requests: the bits of the priority above, 2^32 - 1 - instance below (lower numbers first) */
+    uint32_t *free; /* [slots] */
+};
+
+NOH_STATIC_ASSERT(sizeof(place) == 8, place);
+
+/* ---- making ---- */
+
+static const char *bad_field(const noh_lod_pools_desc *d, uint32_t *slots)
+{
+    uint64_t sum = 0;
+    if (d->instance_count == 0 || d->instance_count > NOH_LOD_POOL_SLOTS_MAX) return "instance_count of level pools is not in 1..NOH_LOD_POOL_SLOTS_MAX";
+    if (d->pool_count == 0 || d->pool_count > NOH_LOD_POOLS_MAX) return "pool_count of level pools is not in 1..NOH_LOD_POOLS_MAX";
+    if (!d->levels) return "levels of level pools is NULL";
+    if (!d->slot_counts) return "slot_counts of level pools is NULL";
+    for (uint32_t i = 0; i < d->pool_count; i++) {
+        if (d->levels[i] >= NOH_LOD_LEVELS_MAX || (i && d->levels[i] <= d->levels[i - 1u])) return "levels of level pools do not rise";
+        if (d->slot_counts[i] == 0) return "slot_counts of level pools: a pool without slots";
+        sum += d->slot_counts[i];
+    }
+    if (sum < d->instance_count) return "slot_counts of level pools: fewer slots than instances";
+    if (sum > NOH_LOD_POOL_SLOTS_MAX) return "slot_counts of level pools: more than NOH_LOD_POOL_SLOTS_MAX in all";
+    *slots = (uint32_t)sum;
+    return NULL;
+}
+
+static noh_lod_pools *carve(noh_arena *arena, uint32_t instances, uint32_t slots, noh_lod_pools *parts)
+{
+    noh_lod_pools *p = (noh_lod_pools *)noh_arena_carve(arena, sizeof *p, 16);
+    parts->keys = (uint64_t *)noh_arena_carve(arena, instances * sizeof *parts->keys, 8);
+    parts->places = (place *)noh_arena_carve(arena, instances * sizeof *parts->places, 4);
+    parts->free = (uint32_t *)noh_arena_carve(arena, slots * sizeof *parts->free, 4);
+    return p;
+}
+
+size_t noh_lod_pools_size(const noh_lod_pools_desc *desc)
+{
+    noh_arena arena = noh_arena_measure();
+    noh_lod_pools parts;
+    uint32_t slots;
+    NOH_ASSERT(desc);
+    if (bad_field(desc, &slots)) {
+        return 0;
+    }
+    (void)carve(&arena, desc->instance_count, slots, &parts);
+    return arena.used;
+}
+
+static void fill_pools(noh_lod_pools *p, const noh_lod_pools_desc *d)
+{
+    uint32_t first = 0;
+    for (uint32_t i = 0; i < d->pool_count; i++) {
+        pool *to = &p->pools[i];
+        to->level = d->levels[i];
+        to->slot_count = to->free_count = d->slot_counts[i];
+        to->first = first;
+        for (uint32_t k = 0; k < to->slot_count; k++) {
+            p->free[first + k] = to->slot_count - 1u - k; /* the last is taken first: slot 0 */
+        }
+        first += to->slot_count;
+    }
+}
+
+noh_result noh_lod_pools_init(void *memory, size_t bytes, const noh_lod_pools_desc *desc, noh_lod_pools **pools, noh_error *error)
+{
+    noh_arena arena;
+    noh_result result;
+    noh_lod_pools parts, *p;
+    uint32_t slots = 0;
+    const char *what = bad_field(desc, &slots);
+    NOH_ASSERT(desc && pools);
+    if (what) {
+        return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
+    }
+    result = noh_arena_open(&arena, memory, bytes, noh_lod_pools_size(desc), error);
+    if (result != NOH_OK) {
+        return result;
+    }
+    memset(&parts, 0, sizeof parts);
+    p = carve(&arena, desc->instance_count, slots, &parts);
+    *p = parts;
+    p->instance_count = desc->instance_count;
+    p->pool_count = desc->pool_count;
+    memset(p->places, 0, p->instance_count * sizeof *p->places);
+    fill_pools(p, desc);
+    noh_lod_pools_begin(p);
+    *pools = p;
+    return NOH_OK;
+}
+
+/* ---- asking ---- */
+
+void noh_lod_pools_begin(noh_lod_pools *p)
+{
+    NOH_ASSERT(p);
+    for (uint32_t i = 0; i < p->instance_count; i++) {
+        p->places[i].next = ASKS_NOT;
+    }
+    p->stats.asked = p->stats.coarser = p->stats.moved = 0;
+}
+
+/* Floats that are not negative have the order of their bits. */
+static uint64_t key_of(float priority, uint32_t instance)
+{
+    union { float value; uint32_t bits; } u;
+    u.value = priority > 0.0f ? priority : 0.0f;
+    return (uint64_t)u.bits << 32 | (UINT32_MAX - instance);
+}
+
+static uint32_t instance_of(uint64_t key)
+{
+    return UINT32_MAX - (uint32_t)key;
+}
+
+void noh_lod_pools_ask(noh_lod_pools *p, uint32_t instance, uint32_t level, float priority)
+{
+    place *at = &p->places[instance];
+    int stays;
+    NOH_ASSERT(instance < p->instance_count && at->next == ASKS_NOT);
+    at->level = (uint8_t)(level < NOH_LOD_LEVELS_MAX ? level : NOH_LOD_LEVELS_MAX - 1u);
+    at->next = 0;
+    stays = at->held && p->pools[at->pool].level <= at->level;
+    p->keys[p->stats.asked++] = key_of(stays ? priority * STAYS : priority, instance);
+}
+
+/* ---- sharing ---- */
+
+#if NOH_ASSERT_LEVEL >= 2
+/* Every slot is free or held: the counts of each pool agree. */
+static int is_consistent(const noh_lod_pools *p)
+{
+    uint32_t held[NOH_LOD_POOLS_MAX] = { 0 };
+    for (uint32_t i = 0; i < p->instance_count; i++) {
+        const place *at = &p->places[i];
+        if (at->held && (at->pool >= p->pool_count || at->slot >= p->pools[at->pool].slot_count)) {
+            return 0;
+        }
+        held[at->pool] += at->held;
+    }
+    for (uint32_t i = 0; i < p->pool_count; i++) {
+        if (held[i] + p->pools[i].free_count != p->pools[i].slot_count) {
+            return 0;
+        }
+    }
+    return 1;
+}
+#endif
+
+/* Let a key sink in a heap whose top is the lowest. */
+static void sift(uint64_t *keys, uint32_t at, uint32_t count)
+{
+    uint64_t key = keys[at];
+    uint32_t child;
+    while ((child = 2u * at + 1u) < count) {
+        child += child + 1u < count && keys[child + 1u] < keys[child];
+        if (key <= keys[child]) {
+            break;
+        }
+        keys[at] = keys[child];
+        at = child;
+    }
+    keys[at] = key;
+}
+
+/* Heap sort, the highest first: the top of the heap, its lowest key, moves to the end again and again. In place, and never
+ * worse than n log n. */
+static void sort_keys(uint64_t *keys, uint32_t count)
+{
+    for (uint32_t i = count / 2u; i-- > 0;) {
+        sift(keys, i, count);
+    }
+    for (uint32_t end = count; end-- > 1u;) {
+        uint64_t lowest = keys[0];
+        keys[0] = keys[end];
+        keys[end] = lowest;
+        sift(keys, 0, end);
+    }
+}
+
+/* How many pools hold a level: the first ones, whose levels are as fine or finer. */
+static uint32_t count_fitting(const noh_lod_pools *p, uint32_t level)
+{
+    uint32_t fit = 0;
+    while (fit < p->pool_count && p->pools[fit].level <= level) {
+        fit++;
+    }
+    return fit;
+}
+
+/* Whether every request fits into the coarsest pool that holds its level: then the order does not matter. */
+static int all_fit(const noh_lod_pools *p)
+{
+    uint32_t by_level[NOH_LOD_LEVELS_MAX] = { 0 }, by_pool[NOH_LOD_POOLS_MAX] = { 0 };
+    for (uint32_t i = 0; i < p->stats.asked; i++) {
+        by_level[p->places[instance_of(p->keys[i])].level]++;
+    }
+    for (uint32_t level = 0; level < NOH_LOD_LEVELS_MAX; level++) {
+        const uint32_t fit = count_fitting(p, level);
+        if (by_level[level] && (fit == 0 || (by_pool[fit - 1u] += by_level[level]) > p->pools[fit - 1u].slot_count)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* The coarsest pool that holds the level and has room, else the next coarser one that has. One of them has, for there are
+ * at least as many slots as instances. */
+static uint32_t choose_pool(const noh_lod_pools *p, uint32_t level)
+{
+    const uint32_t *used = p->stats.used, fit = count_fitting(p, level);
+    uint32_t i;
+    for (i = fit; i-- > 0;) {
+        if (used[i] < p->pools[i].slot_count) {
+            return i;
+        }
+    }
+    for (i = fit; used[i] == p->pools[i].slot_count; i++) {
+        NOH_ASSERT(i + 1u < p->pool_count);
+    }
+    return i;
+}
+
+static void choose_pools(noh_lod_pools *p)
+{
+    memset(p->stats.used, 0, sizeof p->stats.used);
+    for (uint32_t i = 0; i < p->stats.asked; i++) {
+        place *at = &p->places[instance_of(p->keys[i])];
+        at->next = (uint8_t)choose_pool(p, at->level);
+        p->stats.used[at->next]++;
+        p->stats.coarser += p->pools[at->next].level > at->level;
+    }
+}
+
+/* Free the slots of instances that did not ask, or that are given another pool. */
+static void release(noh_lod_pools *p)
+{
+    for (uint32_t i = 0; i < p->instance_count; i++) {
+        place *at = &p->places[i];
+        if (at->held && at->next != at->pool) {
+            pool *from = &p->pools[at->pool];
+            p->free[from->first + from->free_count++] = at->slot;
+            at->held = 0;
+        }
+    }
+}
+
+static void take(noh_lod_pools *p)
+{
+    for (uint32_t i = 0; i < p->stats.asked; i++) {
+        place *at = &p->places[instance_of(p->keys[i])];
+        if (!at->held) {
+            pool *to = &p->pools[at->next];
+            at->slot = p->free[to->first + --to->free_count];
+            at->pool = at->next;
+            at->held = 1;
+            p->stats.moved++;
+        }
+    }
+}
+
+static void mark(uint32_t *high_water, uint32_t value)
+{
+    *high_water = value > *high_water ? value : *high_water;
+}
+
+void noh_lod_pools_share(noh_lod_pools *p)
+{
+    NOH_ASSERT(p);
+    if (!all_fit(p)) {
+        sort_keys(p->keys, p->stats.asked);
+    }
+    choose_pools(p);
+    release(p);
+    take(p);
+    mark(&p->stats.coarser_high_water, p->stats.coarser);
+    for (uint32_t i = 0; i < p->pool_count; i++) {
+        mark(&p->stats.used_high_water[i], p->stats.used[i]);
+    }
+    NOH_VALIDATE(is_consistent(p));
+}
+
+/* ---- looking ---- */
+
+noh_lod_slot noh_lod_pools_slot(const noh_lod_pools *p, uint32_t instance)
+{
+    const place *at = &p->places[instance];
+    noh_lod_slot s;
+    NOH_ASSERT(instance < p->instance_count && at->held && at->next == at->pool);
+    s.pool = at->pool;
+    s.slot = at->slot;
+    s.level = at->level > p->pools[at->pool].level ? at->level : p->pools[at->pool].level;
+    return s;
+}
+
+const noh_lod_pools_stats *noh_lod_pools_stats_of(const noh_lod_pools *p)
+{
+    NOH_ASSERT(p);
+    return &p->stats;
+}

@@ -1,0 +1,91 @@
+/* clip_cache_internal.h (private to anim/): what a cache and its views share. */
+#ifndef NOH_CLIP_CLIP_CACHE_INTERNAL_H
+#define NOH_CLIP_CLIP_CACHE_INTERNAL_H
+
+#include "clip/clip_cache.h"
+#include "clip/clip_decode_internal.h"
+#include "clip/clip_sample_internal.h"
+
+#define NOH_CLIP_NOT_CACHED 0xffffu
+
+/* Entries of one size, least recently touched first: a list through the entries' `older` and `newer`. */
+typedef struct noh_clip_size_class {
+    uint32_t bytes, count;
+    uint16_t oldest, newest;
+} noh_clip_size_class;
+
+/* One cached segment, or room for one. */
+typedef struct noh_clip_cached {
+    noh_clip_cursor cursor;
+    uint8_t *frames;
+    uint32_t clip;
+    uint32_t stamp;         /* frame of the game in which it was touched last */
+    uint32_t wanted;        /* tracks to decode up to */
+    uint16_t older, newer;  /* in its size's list */
+    uint16_t before, after; /* in the list of wants, while it is in it */
+    uint8_t size;           /* index of its noh_clip_size_class */
+    uint8_t used, waits;    /* holds a segment; is in the list of wants */
+} noh_clip_cached;
+
+typedef struct noh_cached_segment {
+    const noh_clip *clip;
+    uint32_t first;         /* of its segments in `cached_of` */
+    uint32_t size;          /* smallest that its segments fit in */
+} noh_cached_segment;
+
+struct noh_clip_cache {
+    noh_cached_segment *entries; /* [clip_count] */
+    uint16_t *cached_of;       /* [segments of all clips] */
+    noh_clip_cached *cached;    /* [cached_count] */
+    noh_clip_size_class *sizes;    /* [size_count], largest first */
+    uint32_t clip_count, cached_count, size_count;
+    uint32_t segment_bytes;  /* of the largest segment of any clip */
+    uint32_t stamp;
+    uint16_t first_want, last_want;
+    noh_clip_cache_stats stats;
+    noh_clip_basis bases[NOH_CLIP_SEGMENT_FRAMES_MAX + 1u];
+};
+
+/* Where a sample lies. */
+typedef struct noh_clip_place {
+    const noh_clip *clip;
+    uint32_t joints, tracks; /* to be sampled, and to be decoded for that */
+    uint32_t segment, frame; /* frame: in the segment */
+    float fraction;          /* towards the next frame, */
+    int crosses;             /* which is the first of the next segment */
+} noh_clip_place;
+
+static inline noh_clip_place noh_clip_place_of(const noh_clip *clip, int64_t ticks, uint32_t joint_count)
+{
+    noh_clip_place p;
+    const uint32_t frame = noh_clip_frame_at(clip, ticks, &p.fraction);
+    p.clip = clip;
+    p.joints = joint_count < clip->info.joint_count ? joint_count : clip->info.joint_count;
+    p.tracks = clip->prefixes[p.joints].tracks;
+    p.segment = noh_clip_segment_of(clip, frame);
+    p.frame = frame - noh_clip_segment_first(clip, p.segment);
+    p.crosses = p.fraction > 0.0f && frame + 1u == noh_clip_segment_first(clip, p.segment + 1u);
+    return p;
+}
+
+/* Blend out of decoded frames. `next`: those of the next segment, read only where the place crosses into it. */
+static inline void noh_clip_blend_place(const noh_clip_place *p, const uint8_t *frames, const uint8_t *next, noh_transform *out, float *floats)
+{
+    const uint8_t *a = frames + (size_t)p->frame * p->clip->frame_bytes;
+    const uint8_t *b = p->crosses ? next : p->fraction > 0.0f ? a + p->clip->frame_bytes : a;
+    noh_clip_blend_frames(p->clip, a, b, p->fraction, p->joints, out, floats);
+}
+
+/* Decode a segment from where its cursor stands up to a track. Returns track-frames. */
+static inline uint32_t noh_clip_decode_up_to(const noh_clip_cache *cache, const noh_clip *clip, noh_clip_cursor *cursor, uint32_t track_end,
+                                             uint8_t *out)
+{
+    const uint32_t frames = noh_clip_segment_first(clip, cursor->segment + 1u) - noh_clip_segment_first(clip, cursor->segment);
+    const uint32_t before = cursor->track;
+    if (track_end > before) {
+        noh_clip_decode(clip, &cache->bases[frames], cursor, track_end, out);
+    }
+    return (cursor->track - before) * frames;
+}
+
+#endif

@@ -1,0 +1,263 @@
+#include "clip/clip_synth_internal.h"
+
+#include <string.h>
+
+#include "clip/clip_vec_internal.h"
+
+#define QUAT_ONE 32767.0f
+#define HALF_ROOT 0.70710678f
+#define COSINE_TERMS 12u
+
+/* cos(pi m / (2 n)), 0 <= m <= n: Taylor's series in double, below 1e-16 of the value at pi / 2. */
+static double quarter_cosine(uint32_t m, uint32_t n)
+{
+    const double x = 1.57079632679489661923 * (double)m / (double)n;
+    double sum = 0.0;
+    if (m == n) {
+        return 0.0;
+    }
+    for (uint32_t term = COSINE_TERMS; term > 0u; term--) {
+        const double k = 2.0 * (double)term;
+        sum = (1.0 + sum) * (-(x * x) / (k * (k - 1.0)));
+    }
+    return 1.0 + sum;
+}
+
+/* cos(pi m / (2 n)) for every m: folded into the first quarter of the turn by its symmetries, in integers, so that rows
+ * are exactly even or odd about their middle. */
+static double basis_cosine(uint32_t m, uint32_t n)
+{
+    m %= 4u * n;
+    if (m > 2u * n) {
+        m = 4u * n - m;
+    }
+    return m <= n ? quarter_cosine(m, n) : -quarter_cosine(2u * n - m, n);
+}
+
+void noh_clip_basis_build(uint32_t frames, float *rows)
+{
+    const uint32_t half = noh_clip_basis_half(frames);
+    memset(rows, 0, (size_t)noh_clip_basis_count(frames) * sizeof *rows);
+    for (uint32_t k = 0; k < frames; k++) {
+        const float scale = noh_sqrt((k ? 2.0f : 1.0f) / (float)frames);
+        for (uint32_t f = 0; f < (frames + 1u) / 2u; f++) {
+            rows[k * half + f] = scale * (float)basis_cosine((2u * f + 1u) * k, frames);
+        }
+    }
+}
+
+/* Four steps to each factor of two: the exponent is written into the float's bits, the rest is a table of 2^(-i / 4). */
+float noh_clip_step(uint32_t id)
+{
+    static const float parts[4] = { 1.0f, 0.84089642f, 0.70710678f, 0.59460356f };
+    const int32_t exponent = NOH_CLIP_STEP_TOP - (int32_t)(id / 4u);
+    const uint32_t bits = (uint32_t)(exponent + 127) << 23;
+    float power;
+    memcpy(&power, &bits, sizeof power);
+    return power * parts[id % 4u];
+}
+
+/* "Smallest three": the largest component of a unit quaternion is left out and made positive; none of the others is above
+ * sqrt(1/2), and they say what the largest was. Codes that are no unit quaternion (a broken clip) are scaled to one. */
+void noh_clip_quat_expand(const uint32_t codes[3], uint32_t left_out, uint32_t width, float q[4])
+{
+    const uint32_t mid = (1u << (width - 1u)) - 1u;
+    float square = 0.0f, scale = 1.0f, rest = 0.0f;
+    for (uint32_t i = 0, k = 0; i < 4u; i++) {
+        if (i != left_out) {
+            const float v = (float)((int32_t)codes[k++] - (int32_t)mid) * (HALF_ROOT / (float)mid);
+            q[i] = v;
+            square += v * v;
+        }
+    }
+    if (square > 1.0f) {
+        scale = 1.0f / noh_sqrt(square);
+    } else {
+        rest = noh_sqrt(1.0f - square);
+    }
+    q[left_out] = 0.0f;
+    for (uint32_t i = 0; i < 4u; i++) {
+        q[i] *= scale;
+    }
+    q[left_out] = rest;
+}
+
+void noh_clip_quat_unit(const float q[4], float unit[4])
+{
+    const float square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    if (square > 1e-30f && square < 1e30f) {
+        const float r = 1.0f / noh_sqrt(square);
+        for (uint32_t i = 0; i < 4u; i++) {
+            unit[i] = q[i] * r;
+        }
+    } else {
+        unit[0] = unit[1] = unit[2] = 0.0f;
+        unit[3] = 1.0f;
+    }
+}
+
+void noh_clip_mix_matrix(const float q[4], float m[9])
+{
+    const float x = q[0], y = q[1], z = q[2], w = q[3];
+    m[0] = 1.0f - 2.0f * (y * y + z * z);
+    m[1] = 2.0f * (x * y - z * w);
+    m[2] = 2.0f * (x * z + y * w);
+    m[3] = 2.0f * (x * y + z * w);
+    m[4] = 1.0f - 2.0f * (x * x + z * z);
+    m[5] = 2.0f * (y * z - x * w);
+    m[6] = 2.0f * (x * z - y * w);
+    m[7] = 2.0f * (y * z + x * w);
+    m[8] = 1.0f - 2.0f * (x * x + y * y);
+}
+
+void noh_clip_dequantise(const int32_t (*coefs)[4], uint32_t last, float step, const float *mix, float out[][4])
+{
+    for (uint32_t k = 0; k < last; k++) {
+        const float a = (float)coefs[k][0] * step, b = (float)coefs[k][1] * step, c = (float)coefs[k][2] * step;
+        if (mix) {
+            out[k][0] = mix[0] * a + mix[1] * b + mix[2] * c;
+            out[k][1] = mix[3] * a + mix[4] * b + mix[5] * c;
+            out[k][2] = mix[6] * a + mix[7] * b + mix[8] * c;
+        } else {
+            out[k][0] = a;
+            out[k][1] = b;
+            out[k][2] = c;
+        }
+        out[k][3] = 0.0f;
+    }
+}
+
+/* Four frames of three components, and the four that mirror them. Basis row k is even about the middle of the segment for
+ * even k and odd for odd k, so one sum over even frequencies and one over odd ones give two frames: their sum is the
+ * frame in the first half, their difference its mirror in the second. That halves the products. */
+typedef struct quad {
+    noh_v4 front[3], back[3];
+} quad;
+
+static inline void transform_quad(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last, uint32_t first, quad *out)
+{
+    const float *row = basis->rows + first;
+    const uint32_t half = basis->half;
+    noh_v4 even[3], odd[3];
+    uint32_t k = 0;
+    for (int c = 0; c < 3; c++) {
+        even[c] = noh_v4_set(0.0f);
+        odd[c] = noh_v4_set(0.0f);
+    }
+    for (; k + 1u < last; k += 2u, row += 2u * half) {
+        const noh_v4 a = noh_v4_load(row), b = noh_v4_load(row + half);
+        for (int c = 0; c < 3; c++) {
+            even[c] = noh_v4_add(even[c], noh_v4_mul(a, noh_v4_set(coefs[k][c])));
+            odd[c] = noh_v4_add(odd[c], noh_v4_mul(b, noh_v4_set(coefs[k + 1u][c])));
+        }
+    }
+    if (k < last) {
+        const noh_v4 a = noh_v4_load(row);
+        for (int c = 0; c < 3; c++) {
+            even[c] = noh_v4_add(even[c], noh_v4_mul(a, noh_v4_set(coefs[k][c])));
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        out->front[c] = noh_v4_add(even[c], odd[c]);
+        out->back[c] = noh_v4_sub(even[c], odd[c]);
+    }
+}
+
+/* reference * rodrigues(u), times 32767; then transposed: q[i] is frame i. With v = u / 4 a modified Rodrigues vector is
+ * the unit quaternion (2 v, 1 - |v|^2) / (1 + |v|^2): no sine, no square root. */
+static inline void rotate_quad(const noh_v4 u[3], const noh_v4 r[4], noh_v4 q[4])
+{
+    const noh_v4 quarter = noh_v4_set(0.25f), one = noh_v4_set(1.0f);
+    noh_v4 a = noh_v4_mul(u[0], quarter), b = noh_v4_mul(u[1], quarter), c = noh_v4_mul(u[2], quarter);
+    const noh_v4 n = noh_v4_add(noh_v4_add(noh_v4_mul(a, a), noh_v4_mul(b, b)), noh_v4_mul(c, c));
+    const noh_v4 k = noh_v4_div(noh_v4_set(QUAT_ONE), noh_v4_add(one, n));
+    const noh_v4 d = noh_v4_mul(noh_v4_sub(one, n), k);
+    const noh_v4 twice = noh_v4_add(k, k);
+    a = noh_v4_mul(a, twice);
+    b = noh_v4_mul(b, twice);
+    c = noh_v4_mul(c, twice);
+#define SUM(p, q0, r0, s) noh_v4_add(noh_v4_add(p, q0), noh_v4_sub(r0, s))
+    q[0] = SUM(noh_v4_mul(r[3], a), noh_v4_mul(r[0], d), noh_v4_mul(r[1], c), noh_v4_mul(r[2], b));
+    q[1] = SUM(noh_v4_mul(r[3], b), noh_v4_mul(r[1], d), noh_v4_mul(r[2], a), noh_v4_mul(r[0], c));
+    q[2] = SUM(noh_v4_mul(r[3], c), noh_v4_mul(r[2], d), noh_v4_mul(r[0], b), noh_v4_mul(r[1], a));
+#undef SUM
+    q[3] = noh_v4_sub(noh_v4_sub(noh_v4_mul(r[3], d), noh_v4_mul(r[0], a)), noh_v4_add(noh_v4_mul(r[1], b), noh_v4_mul(r[2], c)));
+    noh_v4_transpose(q);
+}
+
+static inline void store_quat(uint8_t *out, noh_v4 q, int wide)
+{
+    if (wide) {
+        noh_v4_store((float *)(void *)out, q);
+    } else {
+        noh_v4_store_i16((int16_t *)(void *)out, q);
+    }
+}
+
+static inline void synth_rotation(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last, const float reference[4], int wide,
+                                  uint8_t *out, size_t stride)
+{
+    const uint32_t frames = basis->frames, middle = (frames + 1u) / 2u;
+    noh_v4 r[4], front[4], back[4];
+    for (int i = 0; i < 4; i++) {
+        r[i] = noh_v4_set(reference[i]);
+    }
+    for (uint32_t f = 0; f < middle; f += 4u) {
+        const uint32_t lanes = middle - f < 4u ? middle - f : 4u;
+        quad u;
+        transform_quad(basis, coefs, last, f, &u);
+        rotate_quad(u.front, r, front);
+        rotate_quad(u.back, r, back);
+        for (uint32_t i = 0; i < lanes; i++) {
+            store_quat(out + (frames - 1u - f - i) * stride, back[i], wide);
+            store_quat(out + (f + i) * stride, front[i], wide);
+        }
+    }
+}
+
+void noh_clip_synth_rotation(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last, const float reference[4], int wide,
+                             uint8_t *out, size_t stride)
+{
+    if (wide) {
+        synth_rotation(basis, coefs, last, reference, 1, out, stride);
+    } else {
+        synth_rotation(basis, coefs, last, reference, 0, out, stride);
+    }
+}
+
+void noh_clip_synth_linear(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last, const float reference[3], uint8_t *out,
+                           size_t stride)
+{
+    const uint32_t frames = basis->frames, middle = (frames + 1u) / 2u;
+    for (uint32_t f = 0; f < middle; f += 4u) {
+        const uint32_t lanes = middle - f < 4u ? middle - f : 4u;
+        float front[4][4], back[4][4];
+        noh_v4 v[4];
+        quad u;
+        transform_quad(basis, coefs, last, f, &u);
+        for (int side = 0; side < 2; side++) {
+            for (int c = 0; c < 3; c++) {
+                v[c] = noh_v4_add(noh_v4_set(reference[c]), side ? u.back[c] : u.front[c]);
+            }
+            v[3] = noh_v4_set(0.0f);
+            noh_v4_transpose(v);
+            for (int i = 0; i < 4; i++) {
+                noh_v4_store(side ? back[i] : front[i], v[i]);
+            }
+        }
+        for (uint32_t i = 0; i < lanes; i++) {
+            memcpy(out + (frames - 1u - f - i) * stride, back[i], 3u * sizeof(float));
+            memcpy(out + (f + i) * stride, front[i], 3u * sizeof(float));
+        }
+    }
+}
+
+void noh_clip_store_rotation(const float q[4], int wide, uint8_t *out)
+{
+    float scaled[4];
+    for (uint32_t i = 0; i < 4u; i++) {
+        scaled[i] = q[i] > -1.0001f && q[i] < 1.0001f ? q[i] * QUAT_ONE : 0.0f;
+        scaled[i] = scaled[i] > QUAT_ONE ? QUAT_ONE : scaled[i] < -QUAT_ONE ? -QUAT_ONE : scaled[i];
+    }
+    store_quat(out, noh_v4_load(scaled), wide);
+}

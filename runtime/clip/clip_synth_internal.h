@@ -1,0 +1,62 @@
+/* clip_synth.h (private to anim/ and the encoder): from coefficients to frames.
+ *
+ * The encoder calls these very functions, so that its closed loop sees the decoder's
+ * bits. Index:
+ *   noh_clip_basis_build    the DCT-II rows of a segment length
+ *   noh_clip_step           a step id's size
+ *   noh_clip_quat_expand    three small components to a unit quaternion
+ *   noh_clip_mix_matrix     a quaternion's matrix
+ *   noh_clip_dequantise     integers to components
+ *   noh_clip_synth_*        components to frames of a cache */
+#ifndef NOH_CLIP_CLIP_SYNTH_INTERNAL_H
+#define NOH_CLIP_CLIP_SYNTH_INTERNAL_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "clip/clip_format.h"
+
+/* The orthonormal DCT-II of one length, first halves of its rows: row k is even about the
+ * middle for even k, odd for odd k. */
+typedef struct noh_clip_basis {
+    uint32_t frames;
+    uint32_t half;     /* (frames + 1) / 2, up to a multiple of 4 */
+    const float *rows; /* [frames][half], zeros past the middle */
+} noh_clip_basis;
+
+/* floats of a basis */
+static inline uint32_t noh_clip_basis_half(uint32_t frames) { return ((frames + 1u) / 2u + 3u) & ~3u; }
+static inline uint32_t noh_clip_basis_count(uint32_t frames) { return frames * noh_clip_basis_half(frames); }
+
+/* Fill rows[noh_clip_basis_count(frames)]; frames 1..NOH_CLIP_SEGMENT_FRAMES_MAX. */
+void noh_clip_basis_build(uint32_t frames, float *rows);
+
+/* 2^(NOH_CLIP_STEP_TOP - id / 4); id below NOH_CLIP_STEP_IDS. */
+float noh_clip_step(uint32_t id);
+
+/* codes[3] of `width` bits (see clip_format.h) and the index left out, to a unit quaternion. */
+void noh_clip_quat_expand(const uint32_t codes[3], uint32_t left_out, uint32_t width, float q[4]);
+
+/* Make q unit; one of no length becomes the identity. */
+void noh_clip_quat_unit(const float q[4], float unit[4]);
+
+/* m[r * 3 + c]: the rotation matrix of a unit quaternion. */
+void noh_clip_mix_matrix(const float q[4], float m[9]);
+
+/* Integers to components. out[k][c] = step * coefs[k][c], turned by mix (may be NULL). */
+void noh_clip_dequantise(const int32_t (*coefs)[4], uint32_t last, float step, const float *mix, float out[][4]);
+
+/* Frames of a rotation track: reference * rodrigues(components).
+ * shapes  coefs[last][4]; frame f goes to out + f * stride, 4 int16 (times 32767) or 4 floats
+ * source  Shuster, "A survey of attitude representations", 1993, section on modified Rodrigues parameters */
+void noh_clip_synth_rotation(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last, const float reference[4], int wide,
+                             uint8_t *out, size_t stride);
+
+/* Frames of a linear track: reference + components; 3 floats each. */
+void noh_clip_synth_linear(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last, const float reference[3], uint8_t *out,
+                           size_t stride);
+
+/* Store one frame of a raw rotation as the cache keeps it; not-a-numbers become zeros. */
+void noh_clip_store_rotation(const float q[4], int wide, uint8_t *out);
+
+#endif

@@ -1,0 +1,142 @@
+/* morph_kernel.h (private to deform/): add one run of delta words to the layers.
+ *
+ * Words and layers both run x, y, z, x, y, z..., so that a run of texels is a run
+ * of words, whatever the vector width: no shuffles. Each kernel does, per word,
+ *   layer[i] = layer[i] + (float)field(word[i]) * weight
+ * with one rounding per operation; that is what makes all of them equal. */
+#ifndef NOH_DEFORM_MORPH_KERNEL_INTERNAL_H
+#define NOH_DEFORM_MORPH_KERNEL_INTERNAL_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "base/compiler.h"
+
+#if defined(NOH_AVX2)
+#include <immintrin.h>
+#define NOH_MORPH_SIMD "avx2"
+#elif defined(NOH_SSE2)
+#include <emmintrin.h>
+#define NOH_MORPH_SIMD "sse2"
+#elif defined(NOH_NEON)
+#include <arm_neon.h>
+#define NOH_MORPH_SIMD "neon"
+#else
+#define NOH_MORPH_SIMD "scalar"
+#endif
+
+/* Where a field lies in a word (shift left, then arithmetic shift right), and what
+ * one unit of it weighs. */
+typedef struct noh_field {
+    uint32_t left, right;
+    float weight;
+} noh_field;
+
+static inline float noh_field_value(uint32_t word, noh_field f)
+{
+    /* the shift of a negative value is arithmetic in every compiler that we know of; a test says so */
+    return (float)((int32_t)(word << f.left) >> f.right) * f.weight;
+}
+
+static inline void noh_add_run_scalar(const uint32_t *words, size_t count, noh_field f, float *layer)
+{
+    for (size_t i = 0; i < count; i++) {
+        layer[i] = layer[i] + noh_field_value(words[i], f);
+    }
+}
+
+#if defined(NOH_SSE2) /* AVX2 has it too */
+static inline __m128 noh_add_four(__m128i q, noh_field f, __m128 layer)
+{
+    q = _mm_sra_epi32(_mm_sll_epi32(q, _mm_cvtsi32_si128((int)f.left)), _mm_cvtsi32_si128((int)f.right));
+    return _mm_add_ps(layer, _mm_mul_ps(_mm_cvtepi32_ps(q), _mm_set1_ps(f.weight)));
+}
+
+static inline void noh_add_step4(const uint32_t *words, noh_field f, float *layer)
+{
+    __m128i q = _mm_loadu_si128((const __m128i *)(const void *)words);
+    _mm_storeu_ps(layer, noh_add_four(q, f, _mm_loadu_ps(layer)));
+}
+
+/* The last one to three words of a run: runs are rows of rectangles, so they end often (a
+ * sixth less time in all with AVX2). Nothing past them is read or written. */
+#define NOH_MORPH_TAIL 1
+static inline __m128i noh_load_tail(const void *from, size_t count)
+{
+    __m128i low = count >= 2 ? _mm_loadl_epi64((const __m128i *)from) : _mm_setzero_si128();
+    int32_t last;
+    if (count == 2) {
+        return low;
+    }
+    memcpy(&last, (const uint8_t *)from + 4 * (count - 1), 4);
+    return count == 3 ? _mm_unpacklo_epi64(low, _mm_cvtsi32_si128(last)) : _mm_cvtsi32_si128(last);
+}
+
+static inline void noh_add_tail(const uint32_t *words, size_t count, noh_field f, float *layer)
+{
+    __m128 sum = noh_add_four(noh_load_tail(words, count), f, _mm_castsi128_ps(noh_load_tail(layer, count)));
+    if (count == 1) {
+        _mm_store_ss(layer, sum);
+    } else {
+        _mm_storel_epi64((__m128i *)(void *)layer, _mm_castps_si128(sum));
+        if (count == 3) {
+            _mm_store_ss(layer + 2, _mm_movehl_ps(sum, sum));
+        }
+    }
+}
+#endif
+
+#if defined(NOH_AVX2)
+#define NOH_MORPH_STEP 8u
+static inline void noh_add_step(const uint32_t *words, noh_field f, float *layer)
+{
+    __m256i q = _mm256_loadu_si256((const __m256i *)(const void *)words);
+    q = _mm256_sra_epi32(_mm256_sll_epi32(q, _mm_cvtsi32_si128((int)f.left)), _mm_cvtsi32_si128((int)f.right));
+    _mm256_storeu_ps(layer, _mm256_add_ps(_mm256_loadu_ps(layer), _mm256_mul_ps(_mm256_cvtepi32_ps(q), _mm256_set1_ps(f.weight))));
+}
+#elif defined(NOH_SSE2)
+#define NOH_MORPH_STEP 4u
+static inline void noh_add_step(const uint32_t *words, noh_field f, float *layer)
+{
+    noh_add_step4(words, f, layer);
+}
+#elif defined(NOH_NEON)
+#define NOH_MORPH_STEP 4u
+static inline void noh_add_step(const uint32_t *words, noh_field f, float *layer)
+{
+    int32x4_t q = vreinterpretq_s32_u32(vld1q_u32(words));
+    q = vshlq_s32(vshlq_s32(q, vdupq_n_s32((int32_t)f.left)), vdupq_n_s32(-(int32_t)f.right));
+    vst1q_f32(layer, vaddq_f32(vld1q_f32(layer), vmulq_f32(vcvtq_f32_s32(q), vdupq_n_f32(f.weight))));
+}
+#endif
+
+/* A run into all three layers. */
+static inline void noh_add_run(const uint32_t *words, size_t count, const noh_field f[3], float *const layers[3])
+{
+    size_t i = 0;
+#ifdef NOH_MORPH_STEP
+    for (; i + NOH_MORPH_STEP <= count; i += NOH_MORPH_STEP) {
+        noh_add_step(words + i, f[0], layers[0] + i);
+        noh_add_step(words + i, f[1], layers[1] + i);
+        noh_add_step(words + i, f[2], layers[2] + i);
+    }
+#endif
+#ifdef NOH_MORPH_TAIL
+    if (NOH_MORPH_STEP > 4u && i + 4u <= count) {
+        noh_add_step4(words + i, f[0], layers[0] + i);
+        noh_add_step4(words + i, f[1], layers[1] + i);
+        noh_add_step4(words + i, f[2], layers[2] + i);
+        i += 4u;
+    }
+    for (int l = 0; l < 3 && i < count; l++) {
+        noh_add_tail(words + i, count - i, f[l], layers[l] + i);
+    }
+#else
+    for (int l = 0; l < 3; l++) {
+        noh_add_run_scalar(words + i, count - i, f[l], layers[l] + i);
+    }
+#endif
+}
+
+#endif

@@ -1,0 +1,28 @@
+/* skin_blend.h (private to deform/): the matrix of one vertex, and what it does to a vertex. */
+#ifndef NOH_DEFORM_SKIN_BLEND_INTERNAL_H
+#define NOH_DEFORM_SKIN_BLEND_INTERNAL_H
+
+#include "mesh/mesh.h"
+
+/* c[3][3] rows: the cofactors of a matrix of 3 rows of 4, which turn normals as the matrix turns points, times its
+ * determinant. Returns the determinant's sign: a mirror's cofactors point inward. */
+static inline float noh_cofactors(const float m[12], float c[9])
+{
+    float determinant;
+    c[0] = m[5] * m[10] - m[6] * m[9];
+    c[1] = m[6] * m[8] - m[4] * m[10];
+    c[2] = m[4] * m[9] - m[5] * m[8];
+    c[3] = m[2] * m[9] - m[1] * m[10];
+    c[4] = m[0] * m[10] - m[2] * m[8];
+    c[5] = m[1] * m[8] - m[0] * m[9];
+    c[6] = m[1] * m[6] - m[2] * m[5];
+    c[7] = m[2] * m[4] - m[0] * m[6];
+    c[8] = m[0] * m[5] - m[1] * m[4];
+    determinant = m[0] * c[0] + m[1] * c[1] + m[2] * c[2];
+    return determinant < 0.0f ? -1.0f : 1.0f;
+}
+
+/* Move a vertex by a matrix: position, normal, tangent. */
+void noh_skin_apply(const float m[12], noh_vertex *vertex);
+
+#endif

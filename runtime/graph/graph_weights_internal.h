@@ -1,0 +1,30 @@
+/* graph_weights.h (private to anim/): the weight of every node of a graph. */
+#ifndef NOH_GRAPH_GRAPH_WEIGHTS_INTERNAL_H
+#define NOH_GRAPH_GRAPH_WEIGHTS_INTERNAL_H
+
+#include "graph/graph.h"
+
+typedef struct noh_graph_view {
+    const noh_graph *graph;
+    const float *params;
+    const noh_machine *machines;
+    int before; /* 1: as it was before the inertial transitions that begin with the next pose */
+} noh_graph_view;
+
+const float *noh_graph_params_of(const noh_graph_state *state);
+const noh_machine *noh_graph_machines_of(const noh_graph_state *state);
+
+/* A node's t or x. */
+float noh_graph_amount(const noh_graph_view *view, const noh_graph_node *node);
+
+/* The weight of each child in its node. ADD and MASK: 1 and t. shapes  local[child_count] */
+void noh_graph_child_weights(const noh_graph_view *view, const noh_graph_node *node, float *local);
+
+/* The products of these weights from the root down, and which nodes are in play: not in a state that its machine is not in.
+ * shapes  weights[node_count], active[node_count] */
+void noh_graph_weights(const noh_graph_view *view, float *weights, uint8_t *active);
+
+/* The first node of a subtree; it is a clip. */
+uint32_t noh_graph_first_of(const noh_graph *graph, uint32_t node);
+
+#endif

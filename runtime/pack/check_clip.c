@@ -1,0 +1,169 @@
+/* check_clip.c: the checkers of skeletons and clip. The compressed clip inside a clip
+ * chunk is checked by its decoder when it is opened, against its own bytes alone. */
+#include "pack/check_internal.h"
+
+#include <stddef.h>
+
+static noh_result check_joints(const noh_check *check, const noh_skeleton_header *h)
+{
+    const uint16_t *parents = (const uint16_t *)(const void *)(check->bytes + h->parents_offset);
+    const float *bind = (const float *)(const void *)(check->bytes + h->bind_offset);
+    const uint32_t *names = (const uint32_t *)(const void *)(check->bytes + h->names_offset);
+    for (uint32_t j = 0; j < h->joint_count; j++) {
+        const float *q = bind + 10u * (size_t)j;
+        float square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+        if (parents[j] != NOH_PACK_JOINT_ROOT && parents[j] >= j) {
+            return noh_check_fail(check, "joint comes before its parent", h->parents_offset + 2ull * j);
+        }
+        if (!(square > 0.99f && square < 1.01f)) {
+            return noh_check_fail(check, "bind rotation is not a unit quaternion", h->bind_offset + 40ull * j);
+        }
+        if (names[j] >= check->pack->string_bytes) {
+            return noh_check_fail(check, "joint's name lies outside the strings", h->names_offset + 4ull * j);
+        }
+    }
+    return noh_check_floats(check, bind, h->joint_count * 10u, "bind pose is not finite");
+}
+
+/* After the joints. */
+static noh_result check_levels(const noh_check *check, const noh_skeleton_header *h)
+{
+    const uint16_t *parents = (const uint16_t *)(const void *)(check->bytes + h->parents_offset);
+    const uint32_t *counts = (const uint32_t *)(const void *)(check->bytes + h->levels_offset);
+    for (uint32_t i = 0; i < h->level_count; i++) {
+        if (!counts[i] || (i ? counts[i] >= counts[i - 1] : counts[i] != h->joint_count)) {
+            return noh_check_fail(check, "joint levels do not begin with all joints, or do not fall", h->levels_offset + 4ull * i);
+        }
+    }
+    for (uint32_t j = counts[h->level_count - 1]; j < h->joint_count; j++) {
+        if (parents[j] == NOH_PACK_JOINT_ROOT) {
+            return noh_check_fail(check, "joint level leaves out a joint that has no parent", h->parents_offset + 2ull * j);
+        }
+    }
+    return NOH_OK;
+}
+
+noh_result noh_check_skeleton(noh_check *check)
+{
+    const noh_skeleton_header *h = (const noh_skeleton_header *)(const void *)check->bytes;
+    noh_result result = noh_check_head(check, sizeof *h);
+    if (result) {
+        return result;
+    }
+    if (!h->joint_count || h->joint_count > NOH_JOINTS_MAX) {
+        return noh_check_fail(check, "joint count is zero or over the limit", offsetof(noh_skeleton_header, joint_count));
+    }
+    if (!(h->unit_cm > 0.0f) || !noh_float_finite(h->unit_cm)) {
+        return noh_check_fail(check, "unit of a skeleton is not a length", offsetof(noh_skeleton_header, unit_cm));
+    }
+    if (!h->level_count || h->level_count > NOH_LOD_LEVELS_MAX) {
+        return noh_check_fail(check, "count of joint levels is zero or over the limit", offsetof(noh_skeleton_header, level_count));
+    }
+    result = noh_check_array(check, h->parents_offset, h->joint_count, 2);
+    if (!result) result = noh_check_array(check, h->bind_offset, h->joint_count, 40);
+    if (!result) result = noh_check_array(check, h->names_offset, h->joint_count, 4);
+    if (!result) result = noh_check_array(check, h->levels_offset, h->level_count, 4);
+    if (!result) result = noh_check_end(check);
+    if (!result) result = check_joints(check, h);
+    return result ? result : check_levels(check, h);
+}
+
+static noh_result check_events(const noh_check *check, const noh_clip_header *h)
+{
+    const noh_clip_event *events = (const noh_clip_event *)(const void *)(check->bytes + h->events_offset);
+    for (uint32_t i = 0; i < h->event_count; i++) {
+        uint64_t at = h->events_offset + (uint64_t)i * sizeof *events;
+        noh_result result = noh_check_name(check, events[i].name, events[i].name_hash, at);
+        if (result) {
+            return result;
+        }
+        if ((i && events[i].tick < events[i - 1].tick) || !noh_float_finite(events[i].weight_min) || events[i].weight_min < 0.0f) {
+            return noh_check_fail(check, "callback keys are not in time order, or a weight is not 0 or more", at);
+        }
+    }
+    return NOH_OK;
+}
+
+static noh_result check_markers(const noh_check *check, const noh_clip_header *h)
+{
+    const noh_clip_marker *markers = (const noh_clip_marker *)(const void *)(check->bytes + h->markers_offset);
+    for (uint32_t i = 0; i < h->marker_count; i++) {
+        uint64_t at = h->markers_offset + (uint64_t)i * sizeof *markers;
+        noh_result result = noh_check_name(check, markers[i].name, markers[i].name_hash, at);
+        if (result) {
+            return result;
+        }
+        if (i && markers[i].tick <= markers[i - 1].tick) {
+            return noh_check_fail(check, "sync markers are not in time order", at);
+        }
+    }
+    return NOH_OK;
+}
+
+static noh_result check_binding(const noh_check *check, const noh_clip_header *h)
+{
+    const noh_pack *pack = check->pack;
+    const noh_skeleton_header *skeleton;
+    if (h->joint_count == 0) {
+        return h->skeleton_hash == 0 && h->skeleton == NOH_NONE && h->joint_error_count == 0
+                   ? NOH_OK
+                   : noh_check_fail(check, "clip without joints names a skeleton, or has joint errors", offsetof(noh_clip_header, joint_count));
+    }
+    if (h->skeleton >= pack->skeleton_count) {
+        return noh_check_fail(check, "clip names a skeleton that is not there", offsetof(noh_clip_header, skeleton));
+    }
+    skeleton = (const noh_skeleton_header *)(const void *)(pack->bytes + pack->chunks[pack->first_skeleton + h->skeleton].offset);
+    if (skeleton->joint_count != h->joint_count || skeleton->hash != h->skeleton_hash) {
+        return noh_check_fail(check, "clip's joint count or hash is not its skeleton's", offsetof(noh_clip_header, skeleton_hash));
+    }
+    if (skeleton->level_count != h->joint_error_count) {
+        return noh_check_fail(check, "clip's joint errors are not of its skeleton's levels", offsetof(noh_clip_header, joint_error_count));
+    }
+    return NOH_OK;
+}
+
+/* From 0 up: what is left out never makes it better. */
+static noh_result check_errors(const noh_check *check, const float *errors, uint32_t count, const char *what)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        if (!noh_float_finite(errors[i]) || (i ? errors[i] < errors[i - 1] : errors[i] != 0.0f)) {
+            return noh_check_fail(check, what, (uint64_t)((const uint8_t *)(errors + i) - check->bytes));
+        }
+    }
+    return NOH_OK;
+}
+
+static noh_result check_clip_errors(const noh_check *check, const noh_clip_header *h)
+{
+    const float *joint_errors = (const float *)(const void *)(check->bytes + h->joint_errors_offset);
+    noh_result result = check_errors(check, joint_errors, h->joint_error_count, "joint errors do not begin with 0, or fall, or are not finite");
+    if (!result) result = check_errors(check, h->update_rate_error, NOH_CLIP_UPDATE_RATES, "rate errors do not begin with 0, or fall, or are not finite");
+    if (!result && (!noh_float_finite(h->error_shell) || h->error_shell < 0.0f)) {
+        result = noh_check_fail(check, "the shell of a clip's errors is not a length", offsetof(noh_clip_header, error_shell));
+    }
+    return result;
+}
+
+noh_result noh_check_clip(noh_check *check)
+{
+    const noh_clip_header *h = (const noh_clip_header *)(const void *)check->bytes;
+    noh_result result = noh_check_head(check, sizeof *h);
+    if (!result) result = check_binding(check, h);
+    if (result) {
+        return result;
+    }
+    if (h->event_count > NOH_CLIP_EVENTS_MAX) {
+        return noh_check_fail(check, "callback key count is over the limit", offsetof(noh_clip_header, event_count));
+    }
+    if (h->marker_count > NOH_CLIP_MARKERS_MAX) {
+        return noh_check_fail(check, "sync marker count is over the limit", offsetof(noh_clip_header, marker_count));
+    }
+    result = noh_check_array(check, h->events_offset, h->event_count, sizeof(noh_clip_event));
+    if (!result) result = noh_check_array(check, h->markers_offset, h->marker_count, sizeof(noh_clip_marker));
+    if (!result) result = noh_check_array(check, h->joint_errors_offset, h->joint_error_count, 4);
+    if (!result) result = noh_check_array(check, h->clip_offset, h->clip_bytes, 1);
+    if (!result) result = noh_check_end(check);
+    if (!result) result = check_events(check, h);
+    if (!result) result = check_markers(check, h);
+    return result ? result : check_clip_errors(check, h);
+}

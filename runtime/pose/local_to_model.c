@@ -1,0 +1,62 @@
+#include "pose/local_to_model.h"
+
+#include <string.h>
+
+void noh_transform_matrix(const noh_transform *t, float matrix[12])
+{
+    const float *q = t->rotation, *s = t->scale;
+    float xx = q[0] * q[0], yy = q[1] * q[1], zz = q[2] * q[2];
+    float xy = q[0] * q[1], xz = q[0] * q[2], yz = q[1] * q[2];
+    float wx = q[3] * q[0], wy = q[3] * q[1], wz = q[3] * q[2];
+    matrix[0] = (1.0f - 2.0f * (yy + zz)) * s[0];
+    matrix[1] = 2.0f * (xy - wz) * s[1];
+    matrix[2] = 2.0f * (xz + wy) * s[2];
+    matrix[3] = t->translation[0];
+    matrix[4] = 2.0f * (xy + wz) * s[0];
+    matrix[5] = (1.0f - 2.0f * (xx + zz)) * s[1];
+    matrix[6] = 2.0f * (yz - wx) * s[2];
+    matrix[7] = t->translation[1];
+    matrix[8] = 2.0f * (xz - wy) * s[0];
+    matrix[9] = 2.0f * (yz + wx) * s[1];
+    matrix[10] = (1.0f - 2.0f * (xx + yy)) * s[2];
+    matrix[11] = t->translation[2];
+}
+
+void noh_matrix_multiply(const float a[12], const float b[12], float out[12])
+{
+    float m[12];
+    for (int r = 0; r < 12; r += 4) {
+        for (int c = 0; c < 3; c++) {
+            m[r + c] = a[r] * b[c] + a[r + 1] * b[4 + c] + a[r + 2] * b[8 + c];
+        }
+        m[r + 3] = a[r] * b[3] + a[r + 1] * b[7] + a[r + 2] * b[11] + a[r + 3]; /* added in place it would wait for the others */
+    }
+    memcpy(out, m, sizeof m);
+}
+
+void noh_local_to_model(const noh_skeleton *skeleton, const noh_transform *pose, uint32_t joint_count, float *model)
+{
+    NOH_ASSERT(joint_count <= skeleton->joint_count);
+    NOH_ASSERT(joint_count == 0u || (skeleton->parents && pose && model));
+    /* A parent comes before its joints, so its matrix is made when theirs need it. */
+    for (uint32_t i = 0; i < joint_count; i++) {
+        float *out = model + 12u * (size_t)i;
+        noh_transform_matrix(&pose[i], out);
+        if (skeleton->parents[i] != NOH_JOINT_ROOT) {
+            NOH_ASSERT(skeleton->parents[i] < i);
+            noh_matrix_multiply(model + 12u * (size_t)skeleton->parents[i], out, out);
+        }
+    }
+}
+
+void noh_model_to_palette(const noh_skeleton *skeleton, const float *model, uint32_t joint_count, float *palette)
+{
+    NOH_ASSERT(joint_count <= skeleton->joint_count);
+    for (size_t i = 0; i < joint_count; i++) {
+        if (skeleton->inverse_bind) {
+            noh_matrix_multiply(model + 12u * i, skeleton->inverse_bind + 12u * i, palette + 12u * i);
+        } else if (palette != model) {
+            memcpy(palette + 12u * i, model + 12u * i, 12u * sizeof(float));
+        }
+    }
+}

@@ -1,0 +1,239 @@
+/* test_rows_draw.c: errors of the source documents that show only where something is drawn. Each test draws, and
+ * fails when the source's error is put into the library or its shaders (tests/README.md lists them). */
+#include "support/gl_fixture.h"
+
+#include "base/math_internal.h"
+#include "draw/camera.h"
+#include "gpu/canvas.h"
+#include "gl/gl_program.h"
+#include "draw/load.h"
+#include "draw/camera.h"
+#include "gpu/canvas.h"
+#include "support/lit_quad.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SIDE 48u
+
+typedef struct stage {
+    gpu *g;
+    pack_file file;
+    uint8_t *bytes;
+    scene s;
+    load l;
+    canvas c;
+    noh_gl_camera camera;
+} stage;
+
+static void open_stage(stage *st)
+{
+    const test_model_desc desc = { 1, 9, 3, TEST_UVS, 5 };
+    const view_options view = { "0,0", SIDE, SIDE };
+    load_options options;
+    size_t count;
+    bounds box;
+    memset(st, 0, sizeof *st);
+    memset(&options, 0, sizeof options);
+    st->g = fixture_gpu();
+    st->bytes = test_pack(&desc, &count);
+    st->file.path = "a pack in memory";
+    st->file.pack = test_open(st->bytes, count);
+    assert_int_equal(scene_init(&st->s, &st->file), 0);
+    assert_int_equal(load_open(&st->l, st->g, &st->file, &st->s, &options), 0);
+    assert_int_equal(load_update(&st->l, NULL), 0);
+    assert_int_equal(canvas_open(&st->c, st->g, SIDE, SIDE), 0);
+    box = scene_bounds(&st->s, &st->file, 0);
+    assert_int_equal(view_camera(&view, &box, &st->camera), 0);
+}
+
+static void close_stage(stage *st)
+{
+    canvas_close(&st->c);
+    load_close(&st->l);
+    scene_free(&st->s);
+    free(st->bytes);
+    fixture_expect_no_errors();
+}
+
+/* The mean of green where something was drawn over the background. */
+static double brightness(stage *st, int reset_light)
+{
+    const noh_gl_api *gl = &st->g->gl;
+    noh_gl_morph_binding morph = noh_gl_morph_binding_of(st->l.morph.morph, st->l.item_instances[0]);
+    uint8_t *rgba = test_zeros((size_t)SIDE * SIDE * 4u);
+    double sum = 0.0;
+    uint32_t drawn = 0;
+    canvas_begin(&st->c);
+    noh_gl_draw_begin(&st->l.renderer, &st->camera);
+    for (uint32_t i = 0; reset_light && i < st->l.renderer.variant_count; i++) {
+        gl->UseProgram(st->l.renderer.variants[i].program);
+        gl->Uniform3f(st->l.renderer.variants[i].u_key, 0.0f, 0.0f, 0.0f);
+    }
+    noh_gl_draw_mesh(&st->l.renderer, &st->l.meshes[0], scene_world(&st->s, &st->file, 0), &morph, NULL, NULL, st->l.pictures,
+                     NOH_DRAW_OPAQUE);
+    noh_gl_draw_end(&st->l.renderer);
+    assert_int_equal(canvas_read(&st->c, rgba), 0);
+    for (size_t i = 0; i < (size_t)SIDE * SIDE; i++) {
+        if (!lit_quad_is_background(rgba + 4 * i)) {
+            sum += rgba[4 * i + 1];
+            drawn++;
+        }
+    }
+    free(rgba);
+    assert_true(drawn > SIDE * SIDE / 8u);
+    return sum / drawn;
+}
+
+/* The light is set, then all constants are set to their defaults: the light is gone. Ours is set once a frame, last. */
+static void defaults_come_first(void **state)
+{
+    stage st;
+    double lit, reset;
+    (void)state;
+    open_stage(&st);
+    lit = brightness(&st, 0);
+    reset = brightness(&st, 1);
+    assert_true(reset < 0.8 * lit);
+    assert_true(fabs(brightness(&st, 0) - lit) < 0.5); /* the next frame sets it again */
+    close_stage(&st);
+}
+
+/* A light of the world wants normals of the world: by the inverse transpose, made unit again in every pixel, and what
+ * faces away from the light takes none. The source has the light in the world and the normal in the object, mixed and
+ * not made unit, and a product that may be negative. Every pixel of a row is held against the closed form. */
+static void light_and_normal_in_one_space(void **state)
+{
+    const lit_quad q = lit_quad_of();
+    uint8_t *rgba = lit_quad_draw(fixture_gpu(), &q, NOH_DRAW_OPAQUE);
+    double off = 0.0, by_matrix = 0.0, by_nothing = 0.0, not_unit = 0.0, not_held = 0.0;
+    (void)state;
+    for (uint32_t x = 0; x < LIT_QUAD_SIDE; x++) {
+        const uint8_t *pixel = lit_quad_at(rgba, x);
+        double right[3], wrong[4][3];
+        lit_quad_pixel(&q, x, NORMALS_BY_INVERSE_TRANSPOSE, 1, right);
+        lit_quad_pixel(&q, x, NORMALS_BY_MATRIX, 1, wrong[0]);
+        lit_quad_pixel(&q, x, NORMALS_BY_NOTHING, 1, wrong[1]);
+        lit_quad_pixel(&q, x, NORMALS_NOT_UNIT, 1, wrong[2]);
+        lit_quad_pixel(&q, x, NORMALS_BY_INVERSE_TRANSPOSE, 0, wrong[3]);
+        for (int i = 0; i < 3; i++) {
+            off = fmax(off, fabs((double)pixel[i] - right[i]));
+            by_matrix = fmax(by_matrix, fabs(wrong[0][i] - right[i]));
+            by_nothing = fmax(by_nothing, fabs(wrong[1][i] - right[i]));
+            not_unit = fmax(not_unit, fabs(wrong[2][i] - right[i]));
+            not_held = fmax(not_held, fabs(wrong[3][i] - right[i]));
+        }
+    }
+    print_message("off by %.2f; normals by the matrix %.0f, by nothing %.0f, not unit %.0f, light not held %.0f (of 255)\n", off, by_matrix,
+                  by_nothing, not_unit, not_held);
+    assert_true(off < LIT_QUAD_CLOSE);
+    assert_true(by_matrix > 10.0 && by_nothing > 10.0 && not_unit > 10.0 && not_held > 10.0);
+    fixture_expect_no_errors();
+    free(rgba);
+}
+
+/* ---- streams ---- */
+
+/* Two meshes whose records differ in length, both on the GPU at once: each is fetched by its own stride. The source
+ * binds the first mesh with the second one's, and a later bind hides it. */
+static void each_mesh_has_its_own_stride(void **state)
+{
+    const test_model_desc lean = { 1, 7, 0, 0, 3 }, rich = { 1, 7, 0, TEST_UVS | TEST_COLORS | TEST_TANGENTS, 3 };
+    size_t counts[2];
+    uint8_t *bytes[2] = { test_pack(&lean, &counts[0]), test_pack(&rich, &counts[1]) };
+    noh_pack packs[2] = { test_open(bytes[0], counts[0]), test_open(bytes[1], counts[1]) };
+    noh_mesh meshes[2] = { test_mesh(&packs[0], 0), test_mesh(&packs[1], 0) };
+    gpu *g = fixture_gpu();
+    noh_gl_ledger ledger = { 0 };
+    noh_gl_mesh uploaded[2];
+    readback r;
+    (void)state;
+    assert_int_not_equal(meshes[0].header->attribute_stride, meshes[1].header->attribute_stride);
+    assert_int_equal(readback_open(&r, g, 0), 0);
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(noh_gl_mesh_create(&g->gl, &ledger, &meshes[i], &uploaded[i], NULL), NOH_OK);
+    }
+    for (int i = 0; i < 4; i++) { /* in turns: what one left bound must not reach the other */
+        const noh_mesh *mesh = &meshes[i % 2];
+        const uint32_t count = mesh->header->vertex_count;
+        float *got = test_zeros(9u * sizeof *got * count);
+        assert_int_equal(readback_vertices(&r, &uploaded[i % 2], NULL, got, got + 3u * count, got + 6u * count), 0);
+        for (uint32_t v = 0; v < count; v++) {
+            noh_vertex expected;
+            noh_mesh_vertex(mesh, v, &expected);
+            for (uint32_t k = 0; k < 3; k++) {
+                assert_true(fabsf(got[3u * v + k] - expected.position[k]) < 1e-6f);
+                assert_true(fabsf(got[3u * count + 3u * v + k] - expected.normal[k]) < 1e-5f);
+                assert_true(i % 2 == 0 || fabsf(got[6u * count + 3u * v + k] - expected.tangent[k]) < 1e-5f);
+            }
+        }
+        free(got);
+    }
+    for (int i = 0; i < 2; i++) {
+        noh_gl_mesh_delete(&g->gl, &ledger, &uploaded[i]);
+        free(bytes[i]);
+    }
+    readback_close(&r);
+    fixture_expect_no_errors();
+}
+
+/* A program that failed without a message passes where only messages are looked at. Here the result tells which stage
+ * failed, with no log to read, and so it does where the stages compile and do not fit each other. */
+static void a_failed_shader_is_an_error_without_a_message(void **state)
+{
+    static const char *const bad[] = { "void main() { this is no shader }\n" };
+    static const char *const flat[] = { "in vec3 v_there;\nprecision mediump float;\nout vec4 c;\nvoid main() { c = vec4(v_there, 1.0); }\n" };
+    static const char *const alone[] = { "void main() { gl_Position = vec4(0.0); }\n" };
+    static const char *const what[] = { "the vertex shader does not compile", "the fragment shader does not compile", "the program does not link" };
+    gpu *g = fixture_gpu();
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        const noh_gl_source vertex = { "#version 300 es\n", i == 0 ? bad : alone, 1 };
+        const noh_gl_source fragment = { "#version 300 es\nprecision mediump float;\n", i == 1 ? bad : flat, 1 };
+        noh_gl_program_desc desc;
+        noh_error error = { NOH_OK, "", 0, 0 };
+        GLuint program = 77;
+        memset(&desc, 0, sizeof desc);
+        desc.vertex = &vertex;
+        desc.fragment = &fragment;
+        assert_int_equal(noh_gl_program_create(&g->gl, &desc, &program, NULL, 0, &error), NOH_ERR_DATA);
+        assert_string_equal(error.what, what[i]);
+        assert_int_equal(program, 77);
+    }
+}
+
+/* How many matrices blend is state that somebody else may have left; ours goes with each draw: what was drawn with one
+ * joint a vertex leaves the next draw with all of its own. */
+static void influences_go_with_the_draw(void **state)
+{
+    noh_gl_skin_binding binding;
+    noh_mesh_header header;
+    noh_mesh mesh;
+    (void)state;
+    memset(&binding, 0, sizeof binding);
+    memset(&header, 0, sizeof header);
+    memset(&mesh, 0, sizeof mesh);
+    header.influence_count = 4;
+    mesh.header = &header;
+    binding.mode = NOH_PALETTE_UNIFORM;
+    for (uint32_t limit = 1; limit <= 4; limit *= 2u) {
+        binding.influences = limit;
+        assert_int_equal(noh_gl_variant_key_of(&mesh, &binding, 0, 0, NOH_VIEW_LIT).drawn, limit);
+    }
+    binding.influences = 0;
+    assert_int_equal(noh_gl_variant_key_of(&mesh, &binding, 0, 0, NOH_VIEW_LIT).drawn, 4);
+    assert_int_equal(noh_gl_variant_key_of(&mesh, NULL, 0, 0, NOH_VIEW_LIT).drawn, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(defaults_come_first),
+        cmocka_unit_test(light_and_normal_in_one_space),
+        cmocka_unit_test(each_mesh_has_its_own_stride),
+        cmocka_unit_test(a_failed_shader_is_an_error_without_a_message),
+        cmocka_unit_test(influences_go_with_the_draw),
+    };
+    return cmocka_run_group_tests(tests, NULL, fixture_tear_down);
+}

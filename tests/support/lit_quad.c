@@ -1,0 +1,260 @@
+#include "lit_quad.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/math_internal.h"
+#include "convert/model/model_build.h"
+#include "support.h"
+#include "draw/camera.h"
+#include "gpu/canvas.h"
+
+/* Half a turn about y with a scale that differs by axis; the camera looks along +z, and from x and y the scales are taken
+ * out again, so that the quad fills the picture. */
+lit_quad lit_quad_of(void)
+{
+    const float scale[3] = { 0.5f, 2.0f, 1.0f }, key[3] = { 0.95f, -0.2f, -0.24f };
+    lit_quad q;
+    memset(&q, 0, sizeof q);
+    for (int i = 0; i < 3; i++) {
+        q.world[5 * i] = i == 1 ? scale[i] : -scale[i];
+        q.camera.key[i] = key[i] / sqrtf(noh_dot3(key, key));
+        q.base[i] = 0.8f - 0.2f * (float)i;
+    }
+    q.base[3] = 1.0f;
+    q.camera.view_projection[0] = -1.0f / scale[0];
+    q.camera.view_projection[5] = 1.0f / scale[1];
+    q.camera.view_projection[10] = 0.1f;
+    q.camera.view_projection[15] = 1.0f;
+    q.camera.eye[2] = -4.0f;
+    q.metallic = 0.25f;
+    q.roughness = 0.5f;
+    q.cutoff = 0.5f;
+    return q;
+}
+
+/* The unit normal at x = -1..1 of the quad is the mix of those at its ends, made unit again. */
+static void quad_normal(float x, float out[3])
+{
+    out[0] = 0.96f * x;
+    out[1] = 0.168f;
+    out[2] = 0.224f;
+}
+
+/* ---- drawing ---- */
+
+static void fill_material(const lit_quad *q, model *m)
+{
+    model_material *material = m->materials = test_zeros(sizeof *m->materials);
+    m->material_count = 1;
+    material->name = model_string("quad");
+    material->base_color_texture = q->picture ? 1 : MODEL_NONE;
+    memcpy(material->base_color, q->base, sizeof q->base);
+    material->metallic = q->metallic;
+    material->roughness = q->roughness;
+    material->alpha = q->alpha;
+    material->alpha_cutoff = q->cutoff;
+    material->double_sided = (uint8_t)(q->double_sided != 0);
+    material->unlit = (uint8_t)(q->unlit != 0);
+    m->meshes[0].submeshes[0].material = 0;
+}
+
+/* Two textures: a grey one that nothing uses, and the quad's. */
+static void fill_textures(const lit_quad *q, model *m)
+{
+    m->textures = test_zeros(2 * sizeof *m->textures);
+    m->texture_count = 2;
+    for (int i = 0; i < 2; i++) {
+        model_texture *t = &m->textures[i];
+        t->name = model_string(i ? "picture" : "grey");
+        t->width = 2;
+        t->height = 1;
+        t->rgba = test_zeros(8);
+        memset(t->rgba, 99, 8);
+        if (i) memcpy(t->rgba, q->picture, 8);
+        t->wrap_s = t->wrap_t = 33071;
+        t->mag_filter = t->min_filter = 9728;
+    }
+}
+
+static float *copied(const float *values, size_t count)
+{
+    float *copy = test_zeros(count * sizeof *copy);
+    memcpy(copy, values, count * sizeof *copy);
+    return copy;
+}
+
+static uint8_t *quad_pack(const lit_quad *q, size_t *count)
+{
+    const test_model_desc desc = { 1, 2, 0, 0, 1 };
+    model *m = test_model(&desc);
+    model_mesh *mesh = &m->meshes[0];
+    uint8_t *bytes;
+    fill_material(q, m);
+    if (q->picture) fill_textures(q, m);
+    if (q->uv) mesh->uv = copied(q->uv, 8);
+    if (q->color) mesh->color = copied(q->color, 16);
+    for (uint32_t v = 0; v < 4; v++) {
+        const float x = v % 2 ? 1.0f : -1.0f, y = v / 2 ? 1.0f : -1.0f, at[3] = { x, y, 0.0f };
+        memcpy(mesh->position + 3 * v, at, sizeof at);
+        quad_normal(x, mesh->normal + 3 * v);
+    }
+    bytes = test_pack_of(m, count, NULL);
+    model_free(m);
+    return bytes;
+}
+
+static void draw(gpu *g, const lit_quad *q, const noh_pack *pack, noh_gl_ledger *ledger, int pass)
+{
+    noh_mesh mesh = test_mesh(pack, 0);
+    noh_gl_renderer_desc desc;
+    noh_gl_renderer renderer;
+    noh_gl_mesh drawn;
+    noh_gl_texture pictures[2];
+    char log[1024] = "";
+    memset(&desc, 0, sizeof desc);
+    memset(pictures, 0, sizeof pictures);
+    desc.meshes = &mesh;
+    desc.mesh_count = 1;
+    for (uint32_t i = 0; i < pack->texture_count; i++) {
+        noh_texture texture;
+        noh_pack_texture_at(pack, i, &texture, NULL);
+        assert_int_equal(noh_gl_picture_create(&g->gl, ledger, &texture, &pictures[i], NULL), NOH_OK);
+    }
+    assert_int_equal(noh_gl_mesh_create(&g->gl, ledger, &mesh, &drawn, NULL), NOH_OK);
+    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, ledger, log, sizeof log }, &desc, &renderer, NULL), NOH_OK);
+    noh_gl_draw_begin(&renderer, &q->camera);
+    noh_gl_draw_mesh(&renderer, &drawn, q->world, NULL, NULL, NULL, pictures, pass);
+    noh_gl_draw_end(&renderer);
+    noh_gl_renderer_delete(&renderer);
+    noh_gl_mesh_delete(&g->gl, ledger, &drawn);
+    for (uint32_t i = 0; i < pack->texture_count; i++) {
+        noh_gl_texture_delete(&g->gl, ledger, &pictures[i]);
+    }
+}
+
+uint8_t *lit_quad_draw(gpu *g, const lit_quad *q, int pass)
+{
+    size_t count;
+    uint8_t *bytes = quad_pack(q, &count), *rgba = test_zeros(LIT_QUAD_SIDE * LIT_QUAD_SIDE * 4u);
+    noh_pack pack = test_open(bytes, count);
+    noh_gl_ledger ledger;
+    canvas c;
+    memset(&ledger, 0, sizeof ledger);
+    assert_int_equal(canvas_open(&c, g, LIT_QUAD_SIDE, LIT_QUAD_SIDE), 0);
+    canvas_begin(&c);
+    draw(g, q, &pack, &ledger, pass);
+    assert_int_equal(canvas_read(&c, rgba), 0);
+    canvas_close(&c);
+    free(bytes);
+    return rgba;
+}
+
+const uint8_t *lit_quad_at(const uint8_t *rgba, uint32_t column)
+{
+    return rgba + 4u * (LIT_QUAD_SIDE / 2u * LIT_QUAD_SIDE + column);
+}
+
+int lit_quad_is_background(const uint8_t *pixel)
+{
+    static const uint8_t background[3] = { CANVAS_BACKGROUND_SRGB };
+    for (int i = 0; i < 3; i++) {
+        if (abs(pixel[i] - background[i]) > 1) { /* drivers round it each their way */
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* ---- what it has to be ---- */
+
+double lit_quad_encoded(double linear)
+{
+    double c = fmin(fmax(linear, 0.0), 1.0);
+    return 255.0 * (c <= 0.0031308 ? 12.92 * c : 1.055 * pow(c, 1.0 / 2.4) - 0.055);
+}
+
+static double dot(const double *a, const double *b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void unit(double v[3])
+{
+    const double length = sqrt(dot(v, v));
+    for (int i = 0; i < 3; i++) {
+        v[i] /= length;
+    }
+}
+
+/* GGX with Smith's visibility (Walter et al. 2007). */
+static double highlight(double nh, double nl, double nv, double roughness)
+{
+    const double a = roughness * roughness, d = nh * nh * (a * a - 1.0) + 1.0, k = 0.5 * a;
+    return a * a / (3.14159265 * d * d) * 0.25 / ((nl * (1.0 - k) + k) * (nv * (1.0 - k) + k));
+}
+
+/* The cosines that the light depends on. */
+typedef struct cosines {
+    double lit, wrapped, nv, nh, edge, up;
+} cosines;
+
+static cosines cosines_of(const lit_quad *q, const double n[3], const double at[3], int held)
+{
+    const double key[3] = { (double)q->camera.key[0], (double)q->camera.key[1], (double)q->camera.key[2] };
+    const double nl = dot(n, key);
+    double v[3], h[3];
+    cosines c;
+    for (int i = 0; i < 3; i++) {
+        v[i] = (double)q->camera.eye[i] - at[i];
+    }
+    unit(v);
+    for (int i = 0; i < 3; i++) {
+        h[i] = key[i] + v[i];
+    }
+    unit(h);
+    c.lit = held ? fmax(nl, 0.0) : nl;
+    c.wrapped = held ? fmax((nl + 0.18) / 1.18, 0.0) : nl;
+    c.nv = fmax(dot(n, v), 1e-3);
+    c.nh = fmax(dot(n, h), 0.0);
+    c.edge = pow(1.0 - fmax(dot(h, v), 0.0), 5.0);
+    c.up = 0.5 * n[1] + 0.5;
+    return c;
+}
+
+static double shade(const lit_quad *q, const cosines *c, int i)
+{
+    static const double warm[3] = { 1.02, 0.98, 0.92 }, ground[3] = { 0.23, 0.20, 0.18 }, above[3] = { 0.50, 0.54, 0.60 };
+    const double albedo = (double)q->base[i], metallic = (double)q->metallic, rough = (double)q->roughness;
+    const double f0 = 0.04 + (albedo - 0.04) * metallic, sky = ground[i] + (above[i] - ground[i]) * c->up;
+    double color = albedo * (1.0 - metallic) * (warm[i] * c->wrapped * fabs(c->wrapped) + 0.62 * sky);
+    color += (f0 + (1.0 - f0) * c->edge) * highlight(c->nh, fmax(c->lit, 0.0), c->nv, rough) * c->lit * 2.6;
+    color += f0 * sky * (0.7 - 0.4 * rough) * (0.15 + 0.85 * metallic);
+    return color + 0.10 * sky * pow(1.0 - c->nv, 3.0) * (1.0 - 0.6 * rough);
+}
+
+void lit_quad_pixel(const lit_quad *q, uint32_t column, lit_quad_normals by, int held, double out[3])
+{
+    const float screen = (2.0f * (float)column + 1.0f) / (float)LIT_QUAD_SIDE - 1.0f;
+    const float x = screen / (q->camera.view_projection[0] * q->world[0]);
+    const double at[3] = { (double)(q->world[0] * x), 0.0, 0.0 }, determinant = (double)(q->world[0] * q->world[5] * q->world[10]);
+    float normal[3];
+    double n[3];
+    cosines c;
+    quad_normal(x, normal);
+    for (int i = 0; i < 3; i++) { /* NOT_UNIT: by the cofactors, as long as they leave it */
+        const double axis = (double)q->world[5 * i];
+        n[i] = (double)normal[i] * (by == NORMALS_BY_MATRIX ? axis : by == NORMALS_BY_NOTHING ? 1.0 : fabs(determinant) / axis);
+    }
+    for (int i = 0; q->world[10] > 0.0f && i < 3; i++) { /* seen from behind: its other side's */
+        n[i] = -n[i];
+    }
+    if (by != NORMALS_NOT_UNIT) {
+        unit(n);
+    }
+    c = cosines_of(q, n, at, held);
+    for (int i = 0; i < 3; i++) {
+        out[i] = lit_quad_encoded(shade(q, &c, i));
+    }
+}

@@ -1,0 +1,239 @@
+/* test_sources.c: several files in one pack: whose clips are taken, and why not. */
+#include "support/support.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "convert/model/model_build.h"
+#include "convert/clips/raw_set.h"
+#include "convert/sources.h"
+#include "support/clip_bank_fixture.h"
+
+#define FRAMES 40u
+
+static source source_of(const char *path)
+{
+    const source_options options = { .unit_cm = 1.0 };
+    source s;
+    model_error error;
+    if (source_read(path, &options, &s, &error)) {
+        fail_msg("%s: %s", path, error.what);
+    }
+    return s;
+}
+
+/* Of a model; takes it. */
+static source source_of_model(model *m)
+{
+    source s;
+    model_error error;
+    memset(&s, 0, sizeof s);
+    s.m = m;
+    assert_int_equal(clips_from_model(m, NULL, &s.made, &error), 0);
+    s.set_count = s.made->set_count;
+    s.sets = test_zeros((s.set_count + 1u) * sizeof *s.sets);
+    for (uint32_t i = 0; i < s.set_count; i++) {
+        s.sets[i] = s.made->sets[i];
+    }
+    return s;
+}
+
+static void expect_refused(source *base, source *other, const char *what)
+{
+    model_error error = { "", "" };
+    assert_int_equal(source_join(base, "base.glb", other, "other.bvh", &error), 1);
+    if (!strstr(error.what, what)) {
+        fail_msg("'%s' does not say '%s'", error.what, what);
+    }
+    source_free(base);
+    source_free(other);
+}
+
+static int has_warning(const model *m, const char *text)
+{
+    for (uint32_t i = 0; i < m->warning_count; i++) {
+        if (strstr(m->warnings[i], text)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static void clips_of_one_skeleton_are_joined(void **state)
+{
+    source base = source_of(clip_bvh("walk", "abc", FRAMES)), other = source_of(clip_bvh("run", "abc", FRAMES + 3u));
+    model_error error;
+    (void)state;
+    assert_int_equal(source_join(&base, "walk.bvh", &other, "run.bvh", &error), 0);
+    assert_int_equal(base.set_count, 1);
+    assert_int_equal(base.sets[0]->clip_count, 2);
+    assert_string_equal(base.sets[0]->clips[0].name, "walk");
+    assert_string_equal(base.sets[0]->clips[1].name, "run");
+    assert_int_equal(base.sets[0]->clips[1].frame_count, FRAMES + 3u);
+    source_free(&other);
+    source_free(&base);
+}
+
+static void a_name_that_is_taken_gets_the_file_s(void **state)
+{
+    source base = source_of(clip_bvh("walk", "abc", FRAMES)), other = source_of(clip_bvh("walk", "abc", FRAMES));
+    model_error error;
+    (void)state;
+    assert_int_equal(source_join(&base, "walk.bvh", &other, "dir/slow.v2.bvh", &error), 0);
+    assert_string_equal(base.sets[0]->clips[1].name, "slow.v2/walk");
+    source_free(&base);
+    source_free(&other);
+}
+
+/* Twice the same file: the second name is taken too. */
+static void a_name_that_is_taken_twice_is_refused(void **state)
+{
+    source base = source_of(clip_bvh("walk", "abc", FRAMES)), other = source_of(clip_bvh("walk", "abc", FRAMES)),
+           third = source_of(clip_bvh("walk", "abc", FRAMES));
+    model_error error;
+    (void)state;
+    assert_int_equal(source_join(&base, "walk.bvh", &other, "other.bvh", &error), 0);
+    source_free(&other);
+    expect_refused(&base, &third, "two clips would be called 'other/walk'");
+}
+
+static void the_first_difference_is_told(void **state)
+{
+    source base = source_of(clip_bvh("walk", "abcd", FRAMES)), other = source_of(clip_bvh("run", "abxd", FRAMES));
+    (void)state;
+    expect_refused(&base, &other, "not that of base.glb: joint 2 is 'x' here and 'c' there");
+    base = source_of(clip_bvh("walk", "abcd", FRAMES));
+    other = source_of(clip_bvh("run", "abc", FRAMES));
+    expect_refused(&base, &other, "it has 3 joints here and 4 there");
+    base = source_of(clip_bvh("walk", "abcd", FRAMES));
+    other = source_of(clip_bvh("run", "abcd", FRAMES));
+    other.sets[0]->skeleton.joints[3].parent = 1;
+    expect_refused(&base, &other, "the parent of joint 'd' is 'b' here and 'c' there");
+}
+
+static void translations_come_to_the_base_s_unit(void **state)
+{
+    source base = source_of(clip_bvh("walk", "abc", FRAMES)), other = source_of(clip_bvh("run", "abc", FRAMES));
+    const float before = other.sets[0]->clips[0].translations[1];
+    model_error error;
+    (void)state;
+    base.sets[0]->skeleton.unit_cm = 100.0;
+    assert_int_equal(source_join(&base, "walk.bvh", &other, "run.bvh", &error), 0);
+    assert_true(before > 80.0f);
+    assert_true(base.sets[0]->clips[1].translations[1] == (float)((double)before * 0.01));
+    source_free(&base);
+    source_free(&other);
+}
+
+static void weights_go_to_nodes_of_the_same_name(void **state)
+{
+    model *to = clip_model(4), *from = clip_model(4);
+    source base, other;
+    model_error error;
+    (void)state;
+    free(from->clips[1].name); /* "linear", "shake" and "cubic" */
+    from->clips[1].name = model_string("shake");
+    base = source_of_model(to);
+    other = source_of_model(from);
+    assert_int_equal(source_join(&base, "base.glb", &other, "other.glb", &error), 0);
+    assert_int_equal(base.sets[0]->clip_count, 6);
+    assert_string_equal(base.sets[0]->clips[3].name, "other/linear");
+    assert_string_equal(base.sets[0]->clips[4].name, "shake");
+    assert_int_equal(base.sets[0]->clips[4].float_count, 1);
+    assert_int_equal(base.sets[0]->clips[4].floats[0].node, 1);
+    assert_int_equal(base.sets[0]->clips[3].event_count, 3); /* keys and markers too */
+    assert_true(has_warning(base.m, "other.glb: of this file only the clips were taken"));
+    source_free(&base);
+    source_free(&other);
+}
+
+static void weights_of_unknown_nodes_are_left_out(void **state)
+{
+    source base = source_of_model(clip_model(4)), other = source_of_model(clip_model(5));
+    model_error error;
+    (void)state;
+    assert_int_equal(source_join(&base, "base.glb", &other, "other.glb", &error), 0);
+    assert_int_equal(base.sets[0]->clip_count, 4); /* of "linear" its joint is left */
+    assert_int_equal(base.sets[0]->clips[3].float_count, 0);
+    assert_int_equal(base.sets[0]->clips[3].joint_count, 1);
+    assert_true(has_warning(base.m, "clip 'step': base.glb has no node 'grid_0' with 5 targets"));
+    source_free(&base);
+    source_free(&other);
+}
+
+/* A face without an animation of its own. */
+static void weights_come_to_a_model_without_clip(void **state)
+{
+    model *still = clip_model(4), *from = clip_model(4);
+    source base, other;
+    model_error error;
+    (void)state;
+    still->clip_count = 0; /* kept, not freed: given back below */
+    base = source_of_model(still);
+    assert_int_equal(base.set_count, 0);
+    other = source_of_model(from);
+    raw_clip_clear(&other.sets[0]->clips[0]); /* the one that moves a joint */
+    memmove(other.sets[0]->clips, other.sets[0]->clips + 1, 2 * sizeof *other.sets[0]->clips);
+    other.sets[0]->clip_count = 2;
+    assert_int_equal(source_join(&base, "base.glb", &other, "other.glb", &error), 0);
+    assert_int_equal(base.set_count, 1);
+    assert_int_equal(base.sets[0]->clip_count, 2);
+    still->clip_count = 3;
+    source_free(&base);
+    source_free(&other);
+}
+
+static void what_adds_nothing_is_refused(void **state)
+{
+    const test_model_desc still = { 1, 4, 0, TEST_SCENE, 11 };
+    source base = source_of(clip_bvh("walk", "abc", FRAMES)), other = source_of_model(test_model(&still));
+    (void)state;
+    expect_refused(&base, &other, "it has no clips to add to base.glb");
+    base = source_of_model(test_model(&still));
+    other = source_of(clip_bvh("walk", "abc", FRAMES));
+    expect_refused(&base, &other, "it moves a skeleton, and base.glb has none");
+}
+
+/* The clips of all, the same bytes in whatever order. */
+static void the_pack_of_several_files(void **state)
+{
+    const char *inputs[2], *swapped[2];
+    size_t counts[2];
+    uint8_t *made[2];
+    noh_pack packs[2];
+    (void)state;
+    inputs[0] = swapped[1] = clip_bvh("walk", "abc", FRAMES);
+    inputs[1] = swapped[0] = clip_bvh("run", "abc", 2u * FRAMES);
+    made[0] = clip_pack(inputs, 2, NULL, &counts[0]);
+    made[1] = clip_pack(swapped, 2, NULL, &counts[1]);
+    for (int i = 0; i < 2; i++) {
+        packs[i] = test_open(made[i], counts[i]);
+        assert_int_equal(packs[i].skeleton_count, 1);
+        assert_int_equal(packs[i].clip_count, 2);
+    }
+    for (uint32_t i = 0; i < 2; i++) {
+        noh_pack_clip a, b;
+        noh_pack_clip_at(&packs[0], i, &a, NULL);
+        noh_pack_clip_at(&packs[1], 1 - i, &b, NULL);
+        assert_string_equal(a.name, b.name);
+        assert_int_equal(a.header->clip_bytes, b.header->clip_bytes);
+        assert_memory_equal(a.bytes, b.bytes, a.header->clip_bytes);
+    }
+    free(made[0]);
+    free(made[1]);
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(clips_of_one_skeleton_are_joined),
+    cmocka_unit_test(a_name_that_is_taken_gets_the_file_s),
+    cmocka_unit_test(a_name_that_is_taken_twice_is_refused),
+    cmocka_unit_test(the_first_difference_is_told),
+    cmocka_unit_test(translations_come_to_the_base_s_unit),
+    cmocka_unit_test(weights_go_to_nodes_of_the_same_name),
+    cmocka_unit_test(weights_of_unknown_nodes_are_left_out),
+    cmocka_unit_test(weights_come_to_a_model_without_clip),
+    cmocka_unit_test(what_adds_nothing_is_refused),
+    cmocka_unit_test(the_pack_of_several_files),
+};
+
+TEST_MAIN(tests, NULL, NULL)

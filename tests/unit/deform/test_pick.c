@@ -1,0 +1,206 @@
+/* Tests of runtime/deform/pick.c in closed form: a flat sheet and a folded one. Real bodies over their clips, against a
+ * search through all triangles, are in test_bounds_pick. */
+#include "support/skin_asset.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SIDE 5u /* vertices; the sheet covers 0..4 in x and y */
+
+typedef struct sheet {
+    uint8_t *bytes;
+    noh_pack pack;
+    noh_mesh mesh;
+    noh_pick_surface surface;
+} sheet;
+
+/* folded: what lies beyond x = 2 comes back over the rest, up to 1 above it. */
+static void sheet_open(sheet *s, int folded)
+{
+    const test_model_desc desc = { 1, SIDE, 0, TEST_SCENE, 1 };
+    model *m = test_model(&desc);
+    size_t count;
+    memset(s, 0, sizeof *s);
+    for (uint32_t v = 0; v < SIDE * SIDE; v++) {
+        float *p = m->meshes[0].position + 3 * v;
+        p[2] = folded && p[0] > 2.0f ? 1.0f : 0.0f;
+        p[0] = folded && p[0] > 2.0f ? 4.0f - p[0] : p[0];
+    }
+    s->bytes = test_pack_of(m, &count, NULL);
+    s->pack = test_open(s->bytes, count);
+    s->mesh = test_mesh(&s->pack, 0);
+    s->surface.mesh = &s->mesh;
+    model_free(m);
+}
+
+static noh_result pick(const sheet *s, float ox, float oy, float oz, float dx, float dy, float dz, float distance_max, noh_pick_hit *hit)
+{
+    const float o[3] = { ox, oy, oz }, d[3] = { dx, dy, dz };
+    return noh_pick(&s->surface, o, d, distance_max, NULL, 0, hit, NULL);
+}
+
+/* Distance, point, triangle, its submesh and the place in it agree with each other and with the ray. */
+static void a_hit_says_where_it_is(void **state)
+{
+    sheet s;
+    test_random r = test_random_from(21);
+    uint32_t submeshes = 0;
+    (void)state;
+    sheet_open(&s, 0);
+    assert_int_equal(s.mesh.header->submesh_count, 2);
+    for (int k = 0; k < 500; k++) {
+        const float at[3] = { test_random_float(&r, 0.01f, 3.99f), test_random_float(&r, 0.01f, 3.99f), 0.0f };
+        const float from[3] = { test_random_float(&r, -2.0f, 6.0f), test_random_float(&r, -2.0f, 6.0f), test_random_float(&r, 1.0f, 4.0f) };
+        noh_pick_hit hit;
+        float sum = 0.0f;
+        assert_int_equal(pick(&s, from[0], from[1], from[2], at[0] - from[0], at[1] - from[1], -from[2], 2.0f, &hit), NOH_OK);
+        assert_true(fabsf(hit.distance - 1.0f) < 1e-5f);
+        assert_true(3 * hit.triangle >= s.mesh.submeshes[hit.submesh].first_index);
+        assert_true(3 * hit.triangle < s.mesh.submeshes[hit.submesh].first_index + s.mesh.submeshes[hit.submesh].index_count);
+        assert_int_equal(hit.joint, NOH_NONE);
+        submeshes |= 1u << hit.submesh;
+        for (uint32_t i = 0; i < 3; i++) {
+            float mixed = 0.0f;
+            for (uint32_t c = 0; c < 3; c++) {
+                mixed += hit.barycentric[c] * s.mesh.positions[3 * noh_mesh_index(&s.mesh, 3 * hit.triangle + c) + i];
+            }
+            assert_true(hit.barycentric[i] > -1e-5f);
+            assert_true(fabsf(mixed - at[i]) < 1e-5f && fabsf(hit.point[i] - at[i]) < 1e-5f && fabsf(hit.bind_point[i] - at[i]) < 1e-5f);
+            sum += hit.barycentric[i];
+        }
+        assert_true(fabsf(sum - 1.0f) < 1e-6f);
+    }
+    assert_int_equal(submeshes, 3);
+    free(s.bytes);
+}
+
+/* What lies behind the origin, or farther than the distance, or beside the sheet, is not hit. */
+static void a_ray_ends_at_its_distance(void **state)
+{
+    sheet s;
+    noh_pick_hit hit;
+    (void)state;
+    sheet_open(&s, 0);
+    assert_int_equal(pick(&s, 1.2f, 1.7f, 3, 0, 0, 1, 100, &hit), NOH_ERR_NOT_FOUND);
+    assert_int_equal(pick(&s, 1.2f, 1.7f, 3, 0, 0, -1, 2.99f, &hit), NOH_ERR_NOT_FOUND);
+    assert_int_equal(pick(&s, 1.2f, 1.7f, 3, 0, 0, -1, 3.01f, &hit), NOH_OK);
+    assert_int_equal(pick(&s, 1.2f, 1.7f, -3, 0, 0, 1, 3.01f, &hit), NOH_OK); /* both sides count */
+    assert_int_equal(pick(&s, -0.003f, 1.7f, 3, 0, 0, -1, 100, &hit), NOH_ERR_NOT_FOUND);
+    assert_int_equal(pick(&s, 4.003f, 1.7f, 3, 0, 0, -1, 100, &hit), NOH_ERR_NOT_FOUND);
+    assert_int_equal(pick(&s, -5, 2, 0, 1, 0, 0, 100, &hit), NOH_ERR_NOT_FOUND); /* along the sheet: it has no thickness */
+    assert_int_equal(pick(&s, -5, 2, 1, 1, 0, 0, 100, &hit), NOH_ERR_NOT_FOUND);
+    free(s.bytes);
+}
+
+/* Rays at edges and corners inside the sheet, from anywhere: none slips between two triangles. */
+static void no_ray_slips_through_an_edge(void **state)
+{
+    sheet s;
+    test_random r = test_random_from(22);
+    (void)state;
+    sheet_open(&s, 0);
+    for (int k = 0; k < 4000; k++) {
+        const float along = k % 4 ? test_random_float(&r, 0.1f, 3.9f) : (float)(1u + test_random_below(&r, 3)), edge = (float)(1u + test_random_below(&r, 3));
+        const float x = k % 2 ? along : edge, y = k % 2 ? edge : along;
+        const float from[3] = { test_random_float(&r, -9.0f, 9.0f), test_random_float(&r, -9.0f, 9.0f), test_random_float(&r, 0.5f, 9.0f) };
+        noh_pick_hit hit;
+        assert_int_equal(pick(&s, from[0], from[1], from[2], x - from[0], y - from[1], -from[2], 2.0f, &hit), NOH_OK);
+    }
+    free(s.bytes);
+}
+
+/* Of two layers the nearer one is hit, from above and from below, in whatever order their triangles lie. */
+static void the_nearest_layer_is_hit(void **state)
+{
+    sheet s;
+    test_random r = test_random_from(23);
+    (void)state;
+    sheet_open(&s, 1);
+    for (int k = 0; k < 200; k++) {
+        const float x = test_random_float(&r, 0.05f, 0.95f), y = test_random_float(&r, 0.05f, 3.95f);
+        noh_pick_hit hit;
+        assert_int_equal(pick(&s, x, y, 3, 0, 0, -1, 100, &hit), NOH_OK);
+        assert_true(fabsf(hit.distance - 2.0f) < 1e-5f && fabsf(hit.point[2] - 1.0f) < 1e-5f);
+        assert_int_equal(pick(&s, x, y, -3, 0, 0, 1, 100, &hit), NOH_OK);
+        assert_true(fabsf(hit.distance - 3.0f) < 1e-5f && fabsf(hit.point[2]) < 1e-5f);
+        assert_int_equal(pick(&s, x, y, 0.6f, 0, 0, 1, 100, &hit), NOH_OK); /* between them: what lies behind does not count */
+        assert_true(fabsf(hit.distance - 0.4f) < 1e-5f);
+        assert_int_equal(pick(&s, x, y, 0.6f, 0, 0, -1, 100, &hit), NOH_OK);
+        assert_true(fabsf(hit.distance - 0.6f) < 1e-5f);
+    }
+    free(s.bytes);
+}
+
+/* A placed sheet is hit where it stands; the bind point stays in the mesh's own space. */
+static void placed_surfaces_are_hit_where_they_stand(void **state)
+{
+    static const float world[12] = { 0, -2, 0, 10, 2, 0, 0, 20, 0, 0, 2, 30 }; /* a quarter about z, twice as large */
+    sheet s;
+    noh_pick_hit hit;
+    (void)state;
+    sheet_open(&s, 0);
+    s.surface.world = world;
+    assert_int_equal(pick(&s, 10 - 2 * 1.7f, 20 + 2 * 1.2f, 40, 0, 0, -1, 100, &hit), NOH_OK);
+    assert_true(fabsf(hit.distance - 10.0f) < 1e-4f);
+    assert_true(fabsf(hit.bind_point[0] - 1.2f) < 1e-5f && fabsf(hit.bind_point[1] - 1.7f) < 1e-5f);
+    assert_true(fabsf(hit.point[0] - 6.6f) < 1e-4f && fabsf(hit.point[1] - 22.4f) < 1e-4f && fabsf(hit.point[2] - 30.0f) < 1e-4f);
+    free(s.bytes);
+}
+
+/* The joint of a hit is the one that weighs most at the point: the corners' weights, each by its share of the point. */
+static void the_joint_is_that_of_the_point(void **state)
+{
+    const skin_cylinder c = { 12, 6, 4, 2, 0, 0, 3.0f, 0.5f };
+    model *m = skin_cylinder_model(&c);
+    test_random r = test_random_from(24);
+    float matrices[4 * 12], scratch[4 * 12];
+    noh_pick_surface surface;
+    uint32_t told = 0;
+    size_t count;
+    uint8_t *bytes = skin_pack_of(m, NULL, 1.0f, &count, NULL);
+    noh_pack pack = test_open(bytes, count);
+    noh_mesh mesh = test_mesh(&pack, 0);
+    (void)state;
+    memset(&surface, 0, sizeof surface);
+    surface.mesh = &mesh;
+    surface.matrices = matrices;
+    for (uint32_t e = 0; e < 4 * 12; e++) {
+        matrices[e] = e % 12u % 5u == 0 ? 1.0f : 0.0f;
+    }
+    assert_true(noh_pick_scratch_size(&mesh) <= sizeof scratch);
+    for (int k = 0; k < 500; k++) {
+        const float o[3] = { 4, test_random_float(&r, 0.05f, 2.95f), test_random_float(&r, -0.4f, 0.4f) }, d[3] = { -1, 0, 0 };
+        double sums[4] = { 0, 0, 0, 0 };
+        uint32_t best = 0;
+        noh_pick_hit hit;
+        assert_int_equal(noh_pick(&surface, o, d, 100.0f, scratch, sizeof scratch, &hit, NULL), NOH_OK);
+        for (uint32_t corner = 0; corner < 3; corner++) {
+            uint32_t joints[NOH_INFLUENCES_MAX];
+            float weights[NOH_INFLUENCES_MAX];
+            const uint32_t n = noh_mesh_influences(&mesh, noh_mesh_index(&mesh, 3 * hit.triangle + corner), joints, weights);
+            for (uint32_t i = 0; i < n; i++) {
+                sums[joints[i]] += (double)hit.barycentric[corner] * (double)weights[i];
+            }
+        }
+        for (uint32_t j = 1; j < 4; j++) {
+            best = sums[j] > sums[best] ? j : best;
+        }
+        assert_true(sums[hit.joint] >= sums[best] - 1e-5);
+        told |= 1u << hit.joint;
+    }
+    assert_int_equal(told, 15);
+    free(bytes);
+    model_free(m);
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_hit_says_where_it_is),
+    cmocka_unit_test(a_ray_ends_at_its_distance),
+    cmocka_unit_test(no_ray_slips_through_an_edge),
+    cmocka_unit_test(the_nearest_layer_is_hit),
+    cmocka_unit_test(placed_surfaces_are_hit_where_they_stand),
+    cmocka_unit_test(the_joint_is_that_of_the_point),
+};
+
+TEST_MAIN(tests, NULL, NULL)

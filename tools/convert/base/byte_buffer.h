@@ -1,0 +1,32 @@
+/* byte_buffer.h: a growing block of bytes, and the string table of a pack. */
+#ifndef NOH_CONVERT_BASE_BYTE_BUFFER_H
+#define NOH_CONVERT_BASE_BYTE_BUFFER_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/limits.h"
+
+/* A growing block of bytes. */
+typedef struct byte_buffer {
+    uint8_t *bytes;
+    size_t count, capacity;
+    int failed; /* out of memory at some append; later appends do nothing */
+} byte_buffer;
+
+void *buffer_append(byte_buffer *b, const void *bytes, size_t count); /* bytes NULL: zeros */
+void buffer_align(byte_buffer *b, size_t alignment);
+void buffer_free(byte_buffer *b);
+
+/* The names of a pack, one copy of each. */
+typedef struct string_table {
+    byte_buffer bytes;
+} string_table;
+
+/* A name as a pack keeps it: cut to the format's limit, with the final zero, at a character's end. */
+void string_cut(const char *name, char cut[NOH_NAME_BYTES_MAX]);
+
+/* The offset of a name, cut likewise; added if it is new. */
+uint32_t string_offset(string_table *strings, const char *name);
+
+#endif

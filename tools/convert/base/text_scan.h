@@ -1,0 +1,58 @@
+/* text_scan.h: a text in memory, taken word by word and line by line, with line numbers
+ * for messages. Lines end with LF or CRLF; words are apart by blanks and tabs. */
+#ifndef NOH_CONVERT_BASE_TEXT_SCAN_H
+#define NOH_CONVERT_BASE_TEXT_SCAN_H
+
+#include <stdint.h>
+
+#include "convert/base/error.h"
+
+typedef struct text_scan {
+    const char *at, *end;
+    uint32_t line; /* of `at`, from 1 */
+    model_error *error;
+} text_scan;
+
+typedef struct text_word {
+    const char *text; /* not terminated */
+    size_t size;      /* 0: there was none */
+    uint32_t line;
+} text_word;
+
+void text_start(text_scan *s, const char *text, size_t size, model_error *error);
+
+/* The next word, on this line or a later one. A word of size 0 at the end of the text. */
+text_word text_next(text_scan *s);
+
+/* The next word of this line. A word of size 0 at the line's end, which is not passed. */
+text_word text_next_on_line(text_scan *s);
+
+/* What is left of this line, without blanks around it. The line's end is not passed. */
+text_word text_rest_of_line(text_scan *s);
+
+/* To the first word of a later line, from the end of this one. 0 at the end of the text. */
+int text_next_line(text_scan *s);
+
+/* Compare with letters of any case. */
+int text_is(text_word word, const char *keyword);
+
+/* A copy for messages: short, without control characters. Returns `out`. */
+#define TEXT_SHOWN 48
+const char *text_show(text_word word, char out[TEXT_SHOWN]);
+
+/* A name on the heap, control characters replaced. NULL when out of memory. */
+char *text_copy(text_word word);
+
+/* Fill the error with a line number (printf form) and return 1. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 3, 4)))
+#endif
+int text_fail(text_scan *s, uint32_t line, const char *format, ...);
+
+/* A finite decimal number, or 1 and an error. */
+int text_number(text_scan *s, text_word word, double *out);
+
+/* A whole number without sign, up to limit, or 1 and an error. */
+int text_count(text_scan *s, text_word word, uint32_t limit, uint32_t *out);
+
+#endif

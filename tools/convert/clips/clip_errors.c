@@ -1,0 +1,175 @@
+#include "clip_errors.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "clip/clip_cache.h"
+#include "anim/clip_set.h"
+#include "character/joint_lod.h"
+#include "convert/clips/joint_order.h"
+#include "convert/model/model_build.h"
+
+#define SLOTS 4u /* segments: an eighth of a second lies in two or three */
+
+/* A skeleton and its one clip as the runtime has them. */
+typedef struct player {
+    noh_skeleton skeleton;
+    uint16_t *parents;
+    noh_transform *bind;
+    float *joint_radius, *scalar_radius;
+    void *clip_memory, *cache_memory, *work;
+    size_t work_bytes;
+    noh_clip *clip;
+    noh_clip_cache *cache;
+    noh_clip_entry entry;
+    noh_clip_set set;
+    noh_time_probe probe;
+} player;
+
+static void sample(void *user, uint32_t entry, uint32_t tick, uint32_t joint_count, noh_transform *pose, uint32_t float_count, float *floats)
+{
+    player *p = user;
+    noh_clip_sample(p->cache, entry, tick, joint_count, pose, float_count ? floats : NULL);
+}
+
+static int open_clip(const byte_buffer *bytes, player *p)
+{
+    noh_clip_desc desc = { bytes->bytes, bytes->count, p->bind, p->skeleton.joint_count };
+    const noh_clip *clips[1];
+    noh_clip_cache_desc cache = { clips, 1, SLOTS };
+    size_t clip_size = noh_clip_size(&desc, NULL), cache_size;
+    p->clip_memory = malloc(clip_size + 1u);
+    if (!p->clip_memory || noh_clip_init(p->clip_memory, clip_size, &desc, &p->clip, NULL)) {
+        return 1;
+    }
+    clips[0] = p->clip;
+    cache_size = noh_clip_cache_size(&cache, NULL);
+    p->cache_memory = malloc(cache_size + 1u);
+    return !p->cache_memory || noh_clip_cache_init(p->cache_memory, cache_size, &cache, &p->cache, NULL) != NOH_OK;
+}
+
+static void fill_skeleton(const raw_skeleton *s, const float *reach, double shell, player *p)
+{
+    p->skeleton.joint_count = s->joint_count;
+    p->skeleton.parents = p->parents;
+    p->skeleton.bind_pose = p->bind;
+    for (uint32_t j = 0; j < s->joint_count; j++) {
+        const raw_joint *joint = &s->joints[j];
+        p->parents[j] = joint->parent == MODEL_NONE ? (uint16_t)NOH_JOINT_ROOT : (uint16_t)joint->parent;
+        memcpy(p->bind[j].rotation, joint->rotation, sizeof joint->rotation);
+        memcpy(p->bind[j].translation, joint->translation, sizeof joint->translation);
+        memcpy(p->bind[j].scale, joint->scale, sizeof joint->scale);
+        p->joint_radius[j] = reach ? reach[j] : (float)shell;
+    }
+}
+
+static void fill_set(const raw_clip *raw, double unit_cm, player *p)
+{
+    noh_clip_info info;
+    uint32_t count = 0;
+    noh_clip_info_of(p->clip, &info);
+    p->entry.duration_ticks = (uint32_t)info.duration_ticks;
+    p->entry.loop = info.flags & NOH_CLIP_FLAG_LOOP ? NOH_LOOP_REPEAT : NOH_LOOP_ONCE;
+    for (uint32_t g = 0; g < raw->float_count; g++) {
+        for (uint32_t i = 0; i < raw->floats[g].width; i++) {
+            p->scalar_radius[count++] = raw->floats[g].reach ? (float)((double)raw->floats[g].reach[i] / unit_cm) : 0.0f;
+        }
+    }
+    p->set.clip_count = 1;
+    p->set.joint_count = p->skeleton.joint_count;
+    p->set.float_count = info.float_count;
+    p->set.clips = &p->entry;
+    p->set.bind_pose = p->bind;
+    p->set.sample = sample;
+    p->set.user = p;
+    p->probe.set = &p->set;
+    p->probe.skeleton = &p->skeleton;
+    p->probe.joint_radius_m = p->joint_radius;
+    p->probe.float_radius_m = p->scalar_radius;
+    p->probe.travels = 1;
+}
+
+static int open_player(const raw_skeleton *s, const raw_clip *raw, const byte_buffer *bytes, const float *reach, double shell, player *p)
+{
+    const uint32_t joints = raw->joint_count;
+    const raw_skeleton none = { NULL, 0, NULL, s->unit_cm };
+    uint32_t floats = 0;
+    size_t rates, points, levels;
+    for (uint32_t g = 0; g < raw->float_count; g++) {
+        floats += raw->floats[g].width;
+    }
+    memset(p, 0, sizeof *p);
+    p->parents = model_zeros(joints + 1u, sizeof *p->parents);
+    p->bind = model_zeros(joints + 1u, sizeof *p->bind);
+    p->joint_radius = model_zeros(joints + 1u, sizeof *p->joint_radius);
+    p->scalar_radius = model_zeros(floats + 1u, sizeof *p->scalar_radius);
+    if (!p->parents || !p->bind || !p->joint_radius || !p->scalar_radius) {
+        return 1;
+    }
+    fill_skeleton(joints ? s : &none, reach, shell, p);
+    if (open_clip(bytes, p)) {
+        return 1;
+    }
+    fill_set(raw, s->unit_cm, p);
+    rates = noh_time_lod_measure_size(&p->probe);
+    levels = noh_joint_lod_measure_size(&p->probe);
+    points = noh_time_lod_points_size(&p->probe);
+    p->work_bytes = rates > levels ? rates : levels;
+    p->work_bytes = points > p->work_bytes ? points : p->work_bytes;
+    p->work = malloc(p->work_bytes + 1u);
+    return !p->work;
+}
+
+static void close_player(player *p)
+{
+    free(p->parents);
+    free(p->bind);
+    free(p->joint_radius);
+    free(p->scalar_radius);
+    free(p->clip_memory);
+    free(p->cache_memory);
+    free(p->work);
+}
+
+/* A lower rate is not said to be better. Returns 0 where a number is not finite. */
+static int settle(float *errors, uint32_t count)
+{
+    int fine = 1;
+    for (uint32_t i = 0; i < count; i++) {
+        fine = fine && isfinite(errors[i]);
+        errors[i] = i && errors[i] < errors[i - 1] ? errors[i - 1] : errors[i];
+    }
+    return fine;
+}
+
+/* points: NULL: by what the joints reach. */
+static int measure_rates(player *p, const noh_time_lod_points *points, float *out)
+{
+    return points ? noh_time_lod_points_measure(p->work, p->work_bytes, &p->probe, points, 0, out, NULL) != NOH_OK
+                  : noh_time_lod_measure(p->work, p->work_bytes, &p->probe, 0, out, NULL) != NOH_OK;
+}
+
+int clip_errors_measure(const raw_skeleton *skeleton, const raw_clip *raw, const byte_buffer *clip, const error_points *flesh, clip_errors *out,
+                          model_error *error)
+{
+    const double shell = flesh->shell_cm / skeleton->unit_cm;
+    uint32_t counts[NOH_LOD_LEVELS_MAX];
+    player p;
+    int failed = open_player(skeleton, raw, clip, flesh->reach, shell, &p);
+    memset(out, 0, sizeof *out);
+    if (!failed && raw->joint_count) {
+        out->shell = flesh->reach ? 0.0f : (float)shell;
+        out->level_count = joint_levels(skeleton, counts);
+        failed = !out->level_count || noh_joint_lod_measure(p.work, p.work_bytes, &p.probe, 0, counts, out->level_count, out->joint, NULL);
+    }
+    failed = failed || measure_rates(&p, raw->joint_count && flesh->reach ? flesh->points : NULL, out->rate);
+    close_player(&p);
+    if (failed) {
+        return model_fail(error, "", "out of memory");
+    }
+    if (!settle(out->joint, out->level_count) || !settle(out->rate, NOH_CLIP_UPDATE_RATES)) {
+        return model_fail(error, "", "clip '%.80s': its joints move farther than a float can hold", raw->name);
+    }
+    return 0;
+}

@@ -1,0 +1,51 @@
+/* gltf_clip.h: from a model's nodes, skins and animations to skeletons and sampled clips.
+ *
+ * Skeletons. Skins that share joints, or whose joints lie below each other's, share one
+ * skeleton. It holds their joints, the animated nodes below these, and of the nodes above
+ * them those that are animated or have a transform: a skeleton's object space is the scene,
+ * and nothing is folded or rounded. Animated nodes that belong to no skin form one more skeleton.
+ *
+ * Clips. Each skeleton gets the animations that move a joint of it or the weights of its meshes.
+ * Frames lie at equal times from 0 to the animation's last key, both exactly: with R Hz asked
+ * for there are n = round(duration * R), at least 1, steps, and the sample rate is n / duration. */
+#ifndef NOH_CONVERT_CLIPS_MODEL_CLIPS_H
+#define NOH_CONVERT_CLIPS_MODEL_CLIPS_H
+
+#include "convert/clips/raw_clip.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct sample_options {
+    double sample_rate_hz; /* 0: the rate of the keys, where they lie on a grid of 15 Hz or more and are linear. Else the
+                     * lowest of the grid's multiples, or of 30, 60 and 120, at which playing the frames strays from
+                     * the curves by at most 1/1000 of the skeleton's size; at most 120 */
+} sample_options;
+
+/* The joints of a model's skin in its skeleton. */
+typedef struct clip_skin {
+    uint32_t set;
+    uint32_t *joints; /* [model_skin.joint_count] */
+} clip_skin;
+
+/* The joint at or next above a node; MODEL_NONE twice where nothing moves it. */
+typedef struct node_joint {
+    uint32_t set, joint;
+} node_joint;
+
+typedef struct model_clips {
+    uint32_t set_count, skin_count;
+    raw_set **sets;     /* [set_count] */
+    clip_skin *skins; /* [skin_count], as the model's */
+    node_joint *nodes; /* [the model's node_count] */
+} model_clips;
+
+/* Adds warnings to the model. Returns 0 and *out, or 1 and *error. */
+int clips_from_model(model *m, const sample_options *options, model_clips **out, model_error *error);
+void model_clips_free(model_clips *made);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

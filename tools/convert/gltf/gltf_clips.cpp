@@ -1,0 +1,364 @@
+/* gltf_clip.cpp: a model's animations as sampled clips. */
+#include "clips_internal.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <memory>
+
+#include "convert/clips/channel_sample.h"
+#include "convert/base/quat.h"
+
+namespace gltf {
+
+static const double tolerance_part = 1e-3;  /* of the skeleton's size */
+static const double shell_cm = 3.0;         /* around a joint without anything below it */
+
+struct clip_deleter {
+    void operator()(model_clips *made) const { model_clips_free(made); }
+};
+using clips_pointer = std::unique_ptr<model_clips, clip_deleter>;
+
+/* What the clips of one skeleton have in common. */
+struct set_job {
+    model *m;
+    const skeleton_plan *plan;
+    const model_clips *made;
+    uint32_t index;
+    raw_set *set;
+    std::vector<double> lever_cm;        /* [joints] of a rotation: the reach below it */
+    std::vector<double> parent_scale_cm; /* [joints] centimetres per unit of its translation */
+};
+
+template <class T> static T *zeros(size_t count)
+{
+    T *array = static_cast<T *>(model_zeros(count, sizeof(T)));
+    if (!array)
+        throw std::bad_alloc();
+    return array;
+}
+
+static void check_memory(int failed)
+{
+    if (failed)
+        throw std::bad_alloc();
+}
+
+/* --- what errors are worth --- */
+
+static double column_length(const double *m)
+{
+    return std::fmax(std::fmax(std::sqrt(vec_dot(m, m)), std::sqrt(vec_dot(m + 3, m + 3))), std::sqrt(vec_dot(m + 6, m + 6)));
+}
+
+static void find_levers(set_job &job)
+{
+    const raw_skeleton &skeleton = job.set->skeleton;
+    std::vector<double> pose(size_t{skeleton.joint_count} * 12 + 12);
+    double size_cm = 0.0;
+    job.lever_cm.assign(skeleton.joint_count + 1, 0.0);
+    job.parent_scale_cm.assign(skeleton.joint_count + 1, skeleton.unit_cm);
+    check_memory(raw_skeleton_radius(&skeleton, job.lever_cm.data(), &size_cm));
+    raw_pose_object(&skeleton, nullptr, 0, pose.data());
+    for (uint32_t j = 0; j < skeleton.joint_count; ++j) {
+        job.lever_cm[j] = std::fmax(job.lever_cm[j], shell_cm);
+        if (skeleton.joints[j].parent != MODEL_NONE)
+            job.parent_scale_cm[j] = skeleton.unit_cm * column_length(&pose[size_t{skeleton.joints[j].parent} * 12]);
+    }
+}
+
+static double lever_of(const set_job &job, const model_channel &c, uint32_t joint)
+{
+    if (c.path == MODEL_PATH_TRANSLATION)
+        return job.parent_scale_cm[joint];
+    if (c.path == MODEL_PATH_ROTATION)
+        return job.lever_cm[joint];
+    const float *s = job.set->skeleton.joints[joint].scale; /* levers hold the bind scale already */
+    double largest = static_cast<double>(std::fmax(std::fmax(std::fabs(s[0]), std::fabs(s[1])), std::fabs(s[2])));
+    return job.lever_cm[joint] / std::fmax(largest, 1e-3);
+}
+
+/* The joints of a node's skin in the skeleton, or null. */
+static const uint32_t *skin_joints(const set_job &job, uint32_t node)
+{
+    uint32_t skin = job.m->nodes[node].skin;
+    return skin < job.m->skin_count ? job.made->skins[skin].joints : nullptr;
+}
+
+static std::vector<double> reach_of(const set_job &job, uint32_t node, const raw_clip *clip)
+{
+    const node_joint &mover = job.made->nodes[node];
+    uint32_t joint = mover.set == job.index ? mover.joint : MODEL_NONE;
+    std::vector<double> reach = target_sizes(job.m->meshes[job.m->nodes[node].mesh]);
+    double scale_cm = 100.0 * largest_scale(*job.m, node, skin_joints(job, node), joint, *job.set, clip);
+    for (double &r : reach)
+        r *= scale_cm;
+    return reach;
+}
+
+/* --- the tracks of one clip --- */
+
+static std::vector<track> find_tracks(const set_job &job, const model_clip &clip)
+{
+    std::vector<track> tracks;
+    const std::vector<uint32_t> &weight_nodes = job.plan->weight_nodes;
+    for (uint32_t i = 0; i < clip.channel_count; ++i) {
+        const model_channel &c = clip.channels[i];
+        uint32_t joint = joint_of(*job.plan, c.node);
+        if (c.path != MODEL_PATH_WEIGHTS && joint != MODEL_NONE)
+            tracks.push_back({&c, joint, lever_of(job, c, joint), {}});
+        if (c.path == MODEL_PATH_WEIGHTS && std::binary_search(weight_nodes.begin(), weight_nodes.end(), c.node))
+            tracks.push_back({&c, MODEL_NONE, 0.0, reach_of(job, c.node, nullptr)});
+    }
+    return tracks;
+}
+
+static double largest_value(const model_channel &c)
+{
+    float largest = 0.0f;
+    for (uint32_t key = 0; key < c.key_count; ++key)
+        for (uint32_t i = 0; i < c.width; ++i)
+            largest = std::fmax(largest, std::fabs(channel_key(&c, key)[i]));
+    return static_cast<double>(largest);
+}
+
+/* What playing may stray by: a part of how large all that moves is. */
+static double tolerance_of(const set_job &job, const std::vector<track> &tracks)
+{
+    double size_cm = *std::max_element(job.lever_cm.begin(), job.lever_cm.end());
+    size_cm = std::fmax(size_cm, shell_cm);
+    for (const track &t : tracks) {
+        if (t.channel->path == MODEL_PATH_TRANSLATION)
+            size_cm = std::fmax(size_cm, largest_value(*t.channel) * t.lever_cm);
+        for (double r : t.reach)
+            size_cm = std::fmax(size_cm, r);
+    }
+    return size_cm * tolerance_part;
+}
+
+static uint64_t frame_bytes(const set_job &job, const std::vector<track> &tracks)
+{
+    uint64_t floats = 1; /* never zero */
+    bool moves = false;
+    for (const track &t : tracks) {
+        moves = moves || t.joint != MODEL_NONE;
+        floats += t.joint == MODEL_NONE ? t.channel->width : 0;
+    }
+    return floats * sizeof(float) + (moves ? uint64_t{job.set->skeleton.joint_count} * RAW_JOINT_BYTES : 0);
+}
+
+/* --- filling frames --- */
+
+static void fill_bind_pose(const raw_skeleton &skeleton, raw_clip &clip)
+{
+    for (size_t i = 0; i < size_t{clip.frame_count} * clip.joint_count; ++i) {
+        const raw_joint &joint = skeleton.joints[i % clip.joint_count];
+        std::copy_n(joint.rotation, 4, clip.rotations + i * 4);
+        std::copy_n(joint.translation, 3, clip.translations + i * 3);
+        std::copy_n(joint.scale, 3, clip.scales + i * 3);
+    }
+}
+
+/* stride: floats from one frame to the next */
+static void sample_track(const track &t, const timing &when, float *out, size_t stride, const std::string &where)
+{
+    const model_channel &c = *t.channel;
+    std::vector<double> value(c.width), before(c.width, 0.0);
+    if (c.path == MODEL_PATH_ROTATION)
+        std::copy_n(out, 4, before.begin()); /* the bind pose */
+    for (uint32_t frame = 0; frame < when.frame_count; ++frame) {
+        double time_s = frame_time_s(when, frame);
+        if (channel_sample(&c, time_s, when.near_s, value.data()))
+            fail(where, text("a rotation passes through zero at %g s: it has no direction there", time_s));
+        if (c.path == MODEL_PATH_ROTATION)
+            quat_align(value.data(), before.data());
+        for (size_t i = 0; i < c.width; ++i)
+            out[frame * stride + i] = to_float(value[i], where + text(" at %g s", time_s));
+        before = value;
+    }
+}
+
+static float *values_of(raw_clip &clip, const track &t, size_t &stride)
+{
+    stride = size_t{clip.joint_count} * t.channel->width;
+    float *all = t.channel->path == MODEL_PATH_ROTATION ? clip.rotations :
+                 t.channel->path == MODEL_PATH_TRANSLATION ? clip.translations : clip.scales;
+    return all + size_t{t.joint} * t.channel->width;
+}
+
+static void fill_joints(const set_job &job, const std::vector<track> &tracks, const timing &when, raw_clip &clip,
+                        const std::string &where)
+{
+    bool moves = std::any_of(tracks.begin(), tracks.end(), [](const track &t) { return t.joint != MODEL_NONE; });
+    check_memory(raw_clip_alloc(&clip, when.frame_count, moves ? job.set->skeleton.joint_count : 0));
+    fill_bind_pose(job.set->skeleton, clip);
+    for (const track &t : tracks) {
+        size_t stride = 0;
+        if (t.joint == MODEL_NONE)
+            continue;
+        float *out = values_of(clip, t, stride);
+        sample_track(t, when, out, stride, where + " node '" + printable(job.m->nodes[t.channel->node].name) + "'");
+    }
+}
+
+static void fill_weights(const set_job &job, const track &t, const timing &when, raw_clip &clip, const std::string &where)
+{
+    const uint32_t node = t.channel->node, width = t.channel->width;
+    raw_floats &floats = clip.floats[clip.float_count++];
+    check_memory(raw_floats_alloc(&floats, clip.frame_count, width));
+    floats.node = node;
+    floats.name = copy_string(job.m->nodes[node].name);
+    floats.reach = zeros<float>(width);
+    std::vector<double> reach = reach_of(job, node, &clip);
+    std::string place = where + " weights of node '" + printable(floats.name) + "'";
+    for (uint32_t i = 0; i < width; ++i)
+        floats.reach[i] = to_float(reach[i], place);
+    sample_track(t, when, floats.values, width, place);
+}
+
+static void copy_events(const model_clip &from, raw_clip &clip)
+{
+    for (uint32_t i = 0; i < from.event_count; ++i) {
+        raw_event event = {from.events[i].name, std::fmin(from.events[i].time_s, raw_clip_duration_s(&clip)), {0},
+                           from.events[i].weight_min, from.events[i].is_marker};
+        memcpy(event.payload, from.events[i].payload, sizeof event.payload);
+        check_memory(raw_clip_add_event(&clip, &event));
+    }
+}
+
+/* --- clips --- */
+
+static void warn_of_error(const set_job &job, const raw_clip &clip, double tolerance_cm, const std::string &where)
+{
+    const double usual_hz = 119.0; /* linear keys of a usual rate are taken as they are, without a word */
+    if (clip.source_error_cm > tolerance_cm && clip.sample_rate_hz >= usual_hz)
+        check_memory(model_warn(job.m, "%s: sampled at %g Hz it is up to %.3g cm off its curves between frames", where.c_str(),
+                                clip.sample_rate_hz, clip.source_error_cm));
+}
+
+static void make_clip(const set_job &job, const model_clip &from, const std::vector<track> &tracks, double sample_rate_hz,
+                      uint64_t &bytes_left)
+{
+    std::string where = "animation '" + printable(from.name) + "'";
+    raw_clip &clip = job.set->clips[job.set->clip_count++]; /* counted first, so that it is freed when sampling fails */
+    double tolerance_cm = tolerance_of(job, tracks);
+    uint64_t per_frame = frame_bytes(job, tracks), frames_max = std::min<uint64_t>(bytes_left / per_frame, RAW_FRAMES_MAX);
+    timing when = choose_timing(tracks, static_cast<double>(from.duration_s), sample_rate_hz, tolerance_cm, frames_max, where);
+    bytes_left -= std::min(bytes_left, when.frame_count * per_frame);
+    clip.name = copy_string(from.name);
+    clip.sample_rate_hz = when.sample_rate_hz;
+    clip.loop = from.loop;
+    clip.source_error_cm = when.error_cm;
+    fill_joints(job, tracks, when, clip, where);
+    clip.floats = zeros<raw_floats>(tracks.size());
+    for (const track &t : tracks)
+        if (t.joint == MODEL_NONE)
+            fill_weights(job, t, when, clip, where);
+    warn_of_error(job, clip, tolerance_cm, where);
+}
+
+static void make_clips(set_job &job, double sample_rate_hz, std::vector<bool> &used, uint64_t &bytes_left)
+{
+    for (uint32_t c = 0; c < job.m->clip_count; ++c) {
+        const model_clip &from = job.m->clips[c];
+        std::vector<track> tracks = find_tracks(job, from);
+        if (tracks.empty())
+            continue;
+        make_clip(job, from, tracks, sample_rate_hz, bytes_left);
+        if (!used[c]) /* in several sets a key would be delivered several times */
+            copy_events(from, job.set->clips[job.set->clip_count - 1]);
+        used[c] = true;
+    }
+}
+
+/* --- sets --- */
+
+static void make_set(const model &m, const skeleton_plan &plan, model_clips &made)
+{
+    raw_set *set = raw_set_new(static_cast<uint32_t>(plan.nodes.size()), m.clip_count);
+    if (!set)
+        throw std::bad_alloc();
+    made.sets[made.set_count++] = set;
+    set->clip_count = 0;
+    build_skeleton(m, plan, set->skeleton);
+}
+
+static void bind_skins(const model &m, const std::vector<skeleton_plan> &plans, model_clips &made)
+{
+    for (uint32_t p = 0; p < plans.size(); ++p)
+        for (uint32_t s : plans[p].skins) {
+            made.skins[s].set = p;
+            made.skins[s].joints = zeros<uint32_t>(m.skins[s].joint_count);
+            for (uint32_t j = 0; j < m.skins[s].joint_count; ++j)
+                made.skins[s].joints[j] = joint_of(plans[p], m.skins[s].joints[j]);
+        }
+}
+
+static void bind_nodes(const model &m, const std::vector<skeleton_plan> &plans, model_clips &made)
+{
+    std::vector<node_joint> movers = find_movers(m, plans);
+    made.nodes = zeros<node_joint>(m.node_count);
+    std::copy(movers.begin(), movers.end(), made.nodes);
+}
+
+static clips_pointer make_sets(const model &m, const std::vector<skeleton_plan> &plans)
+{
+    clips_pointer made(zeros<model_clips>(1));
+    made->sets = zeros<raw_set *>(plans.size());
+    made->skins = zeros<clip_skin>(m.skin_count);
+    made->skin_count = m.skin_count;
+    for (const skeleton_plan &plan : plans)
+        make_set(m, plan, *made);
+    bind_skins(m, plans, *made);
+    bind_nodes(m, plans, *made);
+    return made;
+}
+
+static model_clips *make_model_clips(model &m, double sample_rate_hz)
+{
+    std::vector<skeleton_plan> plans = plan_skeletons(m);
+    clips_pointer made = make_sets(m, plans);
+    std::vector<bool> used(m.clip_count, false);
+    uint64_t bytes_left = RAW_BYTES_MAX;
+    for (uint32_t p = 0; p < plans.size(); ++p) {
+        set_job job = {&m, &plans[p], made.get(), p, made->sets[p], {}, {}};
+        find_levers(job);
+        make_clips(job, sample_rate_hz, used, bytes_left);
+    }
+    for (uint32_t c = 0; c < m.clip_count; ++c)
+        if (!used[c])
+            check_memory(model_warn(&m, "animation '%s' was skipped: it animates nothing that the pack holds", printable(m.clips[c].name).c_str()));
+    return made.release();
+}
+
+} // namespace gltf
+
+extern "C" int clips_from_model(model *m, const sample_options *options, model_clips **out, model_error *error)
+{
+    double sample_rate_hz = options ? options->sample_rate_hz : 0.0;
+    *out = nullptr;
+    if (!(sample_rate_hz >= 0.0 && sample_rate_hz <= 1e6))
+        return model_fail(error, "", "a sample rate of %g Hz is not possible", sample_rate_hz);
+    try {
+        *out = gltf::make_model_clips(*m, sample_rate_hz);
+        return 0;
+    } catch (const gltf::failure &reason) {
+        return model_fail(error, reason.where.c_str(), "%s", reason.what.c_str());
+    } catch (const std::exception &) {
+        return model_fail(error, "", "there is not enough memory for these animations");
+    }
+}
+
+extern "C" void model_clips_free(model_clips *made)
+{
+    if (!made)
+        return;
+    for (uint32_t i = 0; made->sets && i < made->set_count; ++i)
+        raw_set_free(made->sets[i]);
+    for (uint32_t i = 0; made->skins && i < made->skin_count; ++i)
+        free(made->skins[i].joints);
+    free(made->sets);
+    free(made->skins);
+    free(made->nodes);
+    free(made);
+}

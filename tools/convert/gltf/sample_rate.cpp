@@ -1,0 +1,209 @@
+/* clip_rate.cpp: how many frames a clip needs.
+ *
+ * Frames are played with linear interpolation at a constant sample rate; the source's curves need not be linear, and
+ * its keys lie at any time. So sample rates are tried from the keys' own upwards, until the played frames stay within
+ * a tolerance of the curves. */
+#include "clips_internal.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "convert/clips/channel_sample.h"
+#include "convert/base/quat.h"
+
+namespace gltf {
+
+static const double rate_max_hz = 120.0;       /* that is chosen; keys on a denser grid keep theirs */
+static const double dense_rate_min_hz = 15.0;  /* linear keys of which are taken as they are */
+static const double sparse_rate_max_hz = 60.0; /* of a grid that most frames have no key on */
+static const double rounding_s = 1e-6;         /* of key times that are floats */
+
+double frame_time_s(const timing &t, uint32_t frame)
+{
+    return static_cast<double>(frame) / t.sample_rate_hz;
+}
+
+static timing timing_at(double duration_s, double sample_rate_hz, uint64_t frames_max, const std::string &where)
+{
+    double steps = std::fmax(std::floor(duration_s * sample_rate_hz + 0.5), 1.0);
+    if (!(steps + 1.0 <= static_cast<double>(frames_max)))
+        fail(where, text("it lasts %g s: at %g Hz that is more than %llu frames, which is the limit; ask for a lower sample rate",
+                         duration_s, sample_rate_hz, static_cast<unsigned long long>(frames_max)));
+    double exact_hz = steps / duration_s;
+    /* the last key's time is a rounded float */
+    bool whole = std::fabs(exact_hz - sample_rate_hz) <= 1e-6 * sample_rate_hz;
+    return {whole ? sample_rate_hz : exact_hz, static_cast<uint32_t>(steps) + 1, 0.0, 0.0};
+}
+
+/* --- the rate of the keys --- */
+
+static std::vector<double> key_times(const std::vector<track> &tracks)
+{
+    std::vector<double> times;
+    for (const track &t : tracks)
+        times.insert(times.end(), t.channel->times, t.channel->times + t.channel->key_count);
+    std::sort(times.begin(), times.end());
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+    return times;
+}
+
+static bool on_grid(const std::vector<double> &times, double sample_rate_hz)
+{
+    for (double time : times) {
+        double frame = time * sample_rate_hz;
+        if (std::fabs(frame - std::floor(frame + 0.5)) > 2e-3 + 1.2e-7 * frame)
+            return false;
+    }
+    return true;
+}
+
+static bool worth_its_frames(const std::vector<double> &times, double sample_rate_hz)
+{
+    return sample_rate_hz <= sparse_rate_max_hz || static_cast<double>(times.size()) * 2.0 > times.back() * sample_rate_hz;
+}
+
+/* Linear keys of a usual rate are frames already: what playing makes between them is as good. */
+static bool are_frames(const std::vector<track> &tracks, double grid_hz)
+{
+    for (const track &t : tracks)
+        if (t.channel->interpolation != MODEL_LINEAR && t.channel->key_count > 1)
+            return false;
+    return grid_hz >= dense_rate_min_hz;
+}
+
+/* The coarsest grid that all keys lie on: whole rates, those of television, then any. 0 where there is none. */
+static double grid_rate(const std::vector<double> &times)
+{
+    static const double television_hz[] = {24.0, 30.0, 60.0, 120.0};
+    for (double rate = 1.0; rate <= rate_max_hz; rate += 1.0)
+        if (on_grid(times, rate))
+            return worth_its_frames(times, rate) ? rate : 0.0;
+    for (double rate : television_hz)
+        if (on_grid(times, rate / 1.001) && worth_its_frames(times, rate))
+            return rate / 1.001;
+    double uniform = static_cast<double>(times.size() - 1) / (times.back() - times.front());
+    return times.size() > 2 && on_grid(times, uniform) ? uniform : 0.0;
+}
+
+/* Half of the steps from key to key are no longer than this rate's. */
+static double median_rate(const std::vector<double> &times)
+{
+    std::vector<double> steps;
+    for (size_t i = 1; i < times.size(); ++i)
+        steps.push_back(times[i] - times[i - 1]);
+    std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
+    return 1.0 / steps[steps.size() / 2];
+}
+
+static std::vector<double> rates_to_try(const std::vector<track> &tracks, const std::vector<double> &times)
+{
+    std::vector<double> rates;
+    double grid = grid_rate(times);
+    if (grid > 0.0) {
+        rates.push_back(grid);
+        if (are_frames(tracks, grid))
+            return rates;
+        for (double factor : {2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 20.0, 24.0, 30.0, 40.0, 60.0, 120.0})
+            if (grid * factor <= rate_max_hz * 1.001)
+                rates.push_back(grid * factor);
+        return rates;
+    }
+    rates = {30.0, 60.0, rate_max_hz};
+    if (times.size() > 2)
+        rates.push_back(std::fmin(std::fmax(median_rate(times), 10.0), rate_max_hz));
+    std::sort(rates.begin(), rates.end());
+    return rates;
+}
+
+/* --- the error of a rate --- */
+
+static void sample(const track &t, double time_s, double near_s, const std::string &where, std::vector<double> &out)
+{
+    out.resize(t.channel->width);
+    if (channel_sample(t.channel, time_s, near_s, out.data()))
+        fail(where, text("a rotation passes through zero at %g s: it has no direction there", time_s));
+}
+
+static double difference_cm(const track &t, const std::vector<double> &a, const std::vector<double> &b)
+{
+    if (t.channel->path == MODEL_PATH_ROTATION)
+        return quat_angle(a.data(), b.data()) * t.lever_cm;
+    double sum = 0.0;
+    for (size_t i = 0; i < a.size(); ++i) {
+        double d = std::fabs(a[i] - b[i]) * (t.reach.empty() ? 1.0 : t.reach[i]);
+        sum += t.reach.empty() ? d * d : d; /* a distance; or weights, which may all push the same way */
+    }
+    return t.reach.empty() ? std::sqrt(sum) * t.lever_cm : sum;
+}
+
+static std::vector<double> played(const track &t, const std::vector<double> &a, const std::vector<double> &b, double at)
+{
+    std::vector<double> out(a.size());
+    if (t.channel->path == MODEL_PATH_ROTATION)
+        quat_nlerp(a.data(), b.data(), at, out.data());
+    else
+        for (size_t i = 0; i < a.size(); ++i)
+            out[i] = a[i] + (b[i] - a[i]) * at;
+    return out;
+}
+
+/* Where between two frames to look: at quarters, and at the keys that lie there. */
+static std::vector<double> places_between(const model_channel &c, double from_s, double to_s, double near_s)
+{
+    std::vector<double> places = {0.25, 0.5, 0.75};
+    const float *key = std::upper_bound(c.times, c.times + c.key_count, static_cast<float>(from_s + near_s));
+    for (; key < c.times + c.key_count && static_cast<double>(*key) < to_s - near_s; ++key)
+        if (static_cast<double>(*key) > from_s)
+            places.push_back((static_cast<double>(*key) - from_s) / (to_s - from_s));
+    return places;
+}
+
+/* Stops above the limit. */
+static double track_error(const track &track, const timing &t, double limit_cm, const std::string &where)
+{
+    std::vector<double> a, b, curve;
+    double worst = 0.0;
+    sample(track, 0.0, t.near_s, where, b);
+    for (uint32_t frame = 1; frame < t.frame_count && worst <= limit_cm; ++frame) {
+        double from = frame_time_s(t, frame - 1), to = frame_time_s(t, frame);
+        a.swap(b);
+        sample(track, to, t.near_s, where, b);
+        for (double at : places_between(*track.channel, from, to, t.near_s)) {
+            sample(track, from + (to - from) * at, 0.0, where, curve);
+            worst = std::fmax(worst, difference_cm(track, played(track, a, b, at), curve));
+        }
+    }
+    return worst;
+}
+
+static double error_of(const std::vector<track> &tracks, const timing &t, double limit_cm, const std::string &where)
+{
+    double worst = 0.0;
+    for (const track &track : tracks)
+        if (track.channel->key_count > 1 && worst <= limit_cm)
+            worst = std::fmax(worst, track_error(track, t, limit_cm, where));
+    return worst;
+}
+
+timing choose_timing(const std::vector<track> &tracks, double duration_s, double sample_rate_hz, double tolerance_cm,
+                     uint64_t frames_max, const std::string &where)
+{
+    const double no_limit = std::numeric_limits<double>::infinity();
+    if (!(duration_s > 0.0))
+        return {sample_rate_hz > 0.0 ? sample_rate_hz : 30.0, 1, 0.0, 0.0};
+    std::vector<double> times = key_times(tracks);
+    std::vector<double> rates = sample_rate_hz > 0.0 ? std::vector<double>{sample_rate_hz} : rates_to_try(tracks, times);
+    timing t = {0.0, 0, 0.0, 0.0};
+    for (size_t i = 0; i < rates.size(); ++i) {
+        bool last = i + 1 == rates.size();
+        t = timing_at(duration_s, rates[i], frames_max, where);
+        t.near_s = on_grid(times, t.sample_rate_hz) ? 2.5e-3 / t.sample_rate_hz : rounding_s;
+        t.error_cm = error_of(tracks, t, last ? no_limit : tolerance_cm, where);
+        if (t.error_cm <= tolerance_cm)
+            break;
+    }
+    return t;
+}
+
+} // namespace gltf

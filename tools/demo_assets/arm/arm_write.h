@@ -1,0 +1,15 @@
+/* Every way to bend an arm, side by side, as a glTF 2.0 binary. */
+#ifndef ARM_WRITE_H
+#define ARM_WRITE_H
+
+#include "shared/buffer.h"
+
+/* What went into the file, for the summary. */
+typedef struct {
+    int meshes, vertices, triangles, joints, animations;
+} ArmCensus;
+
+/* The buffer receives the file. */
+ArmCensus arm_write(Buffer *file);
+
+#endif

@@ -1,0 +1,91 @@
+/* demo_assets OUT.glb: models a Noh mask and writes it as a glTF binary.
+ * demo_assets --puppet OUT.glb: the same mask, worn by a puppet that moves.
+ * demo_assets --arm OUT.glb: arms in parts and in one piece, bent and twisted by every kind of skinning. */
+#include "mask/gltf_write.h"
+#include "shared/grab.h"
+#include "arm/arm_write.h"
+#include "puppet/puppet_write.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Writes beside the file first, so that a failure never leaves half of one. */
+static int save(const char *path, const Buffer *file)
+{
+    int length = (int)strlen(path) + 5;
+    char *beside = grab(NULL, length, 1);
+    snprintf(beside, (size_t)length, "%s.tmp", path);
+    FILE *out = fopen(beside, "wb");
+    int good = out && fwrite(file->bytes, 1, (size_t)file->count, out) == (size_t)file->count;
+    if (out && fclose(out)) {
+        good = 0;
+    }
+    if (good && rename(beside, path)) {
+        good = 0;
+    }
+    if (!good) {
+        fprintf(stderr, "demo_assets: cannot write %s\n", path);
+        remove(beside);
+    }
+    free(beside);
+    return good;
+}
+
+static int make_mask(const char *path)
+{
+    Mask mask;
+    Buffer file = { 0 };
+    mask_build(&mask);
+    Census census = gltf_write(&file, &mask);
+    int good = save(path, &file);
+    if (good) {
+        printf("%s: %d vertices, %d triangles, %d targets, %d animations, %d bytes\n", path, census.vertices,
+               census.triangles, census.targets, census.animations, file.count);
+    }
+    buffer_free(&file);
+    mask_free(&mask);
+    return good;
+}
+
+static int make_puppet(const char *path)
+{
+    Buffer file = { 0 };
+    PuppetCensus census = puppet_write(&file);
+    int good = save(path, &file);
+    if (good) {
+        printf("%s: %d and %d vertices (body and mask), %d triangles, %d joints, %d animations, %d bytes\n", path,
+               census.body_vertices, census.mask_vertices, census.triangles, census.joints, census.animations,
+               file.count);
+    }
+    buffer_free(&file);
+    return good;
+}
+
+static int make_arm(const char *path)
+{
+    Buffer file = { 0 };
+    ArmCensus census = arm_write(&file);
+    int good = save(path, &file);
+    if (good) {
+        printf("%s: %d meshes, %d vertices, %d triangles, %d joints, %d animations, %d bytes\n", path, census.meshes,
+               census.vertices, census.triangles, census.joints, census.animations, file.count);
+    }
+    buffer_free(&file);
+    return good;
+}
+
+int main(int argc, char **argv)
+{
+    if (argc == 2 && argv[1][0] != '-') {
+        return make_mask(argv[1]) ? 0 : 1;
+    }
+    if (argc == 3 && !strcmp(argv[1], "--puppet")) {
+        return make_puppet(argv[2]) ? 0 : 1;
+    }
+    if (argc == 3 && !strcmp(argv[1], "--arm")) {
+        return make_arm(argv[2]) ? 0 : 1;
+    }
+    fprintf(stderr, "usage: demo_assets OUT.glb\n       demo_assets --puppet OUT.glb\n       demo_assets --arm OUT.glb\n");
+    return 2;
+}

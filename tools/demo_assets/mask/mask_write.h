@@ -1,0 +1,21 @@
+/* The mask's mesh and materials within a glTF file. */
+#ifndef MASK_MASK_WRITE_H
+#define MASK_MASK_WRITE_H
+
+#include "mask.h"
+#include "shared/writer.h"
+
+/* Where the mask is worn: it lies about `origin`, and two joints of a skin hold it. */
+typedef struct {
+    V3 origin;
+    int head, jaw;
+} MaskWearer;
+
+/* Prints a mesh object with all targets. Its primitives use the materials 0 to PART_COUNT - 1.
+ * wearer: NULL for a mask by itself, without a skin. */
+void mask_mesh_write(Writer *w, Buffer *json, const Mask *mask, const MaskWearer *wearer);
+
+/* Prints PART_COUNT material objects, with commas between them. */
+void mask_materials_write(Buffer *json);
+
+#endif

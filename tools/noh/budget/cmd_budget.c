@@ -1,0 +1,201 @@
+/* cmd_budget.c: bytes before a load. The same sums that the load will make; `noh verify`
+ * holds one against the other. */
+#include <stdio.h>
+#include <string.h>
+
+#include "level_costs.h"
+#include "gpu/gpu_args.h"
+#include "cli/json.h"
+#include "cli/message.h"
+#include "cli/options.h"
+#include "cli/verbs.h"
+
+typedef struct budget_args {
+    const char *pack, *anim, *path, *accumulate, *driver;
+    double instances, lod;
+    uint32_t level;
+    int as_json, nominal;
+    load_options load;
+} budget_args;
+
+static void print_levels(const level_costs *c)
+{
+    if (c->count > 1) {
+        printf("%-10s %10s %10s %10s %10s %12s %12s\n", "level", "vertices", "triangles", "texels", "pairs", "CPU bytes", "GPU bytes, from it on");
+    }
+    for (uint32_t k = 0; k < c->count && c->count > 1; k++) {
+        const level_cost *l = &c->levels[k];
+        printf("  %-8u %10llu %10llu %10llu %10llu %12llu %12llu\n", k, (unsigned long long)l->vertices, (unsigned long long)l->triangles,
+               (unsigned long long)l->texels, (unsigned long long)l->pairs, (unsigned long long)l->cpu_bytes, (unsigned long long)l->gpu_bytes);
+    }
+}
+
+static void json_levels(json *j, const level_costs *c)
+{
+    json_open(j, "levels", '[');
+    for (uint32_t k = 0; k < c->count; k++) {
+        const level_cost *l = &c->levels[k];
+        json_open(j, NULL, '{');
+        json_integer(j, "vertices", l->vertices);
+        json_integer(j, "triangles", l->triangles);
+        json_integer(j, "texels", l->texels);
+        json_integer(j, "pairs", l->pairs);
+        json_integer(j, "cpu_bytes", l->cpu_bytes);
+        json_integer(j, "gpu_bytes", l->gpu_bytes);
+        json_close(j, '}');
+    }
+    json_close(j, ']');
+}
+
+/* What the bytes of "clips" follow from. */
+typedef struct segments {
+    uint32_t held, all, instances;
+} segments;
+
+static void print_budget(const pack_file *file, const load_budget *b, const segments *clips, const char *device)
+{
+    printf("%-32s %12s %12s\n", file->path, "CPU bytes", "GPU bytes");
+    for (uint32_t i = 0; i < b->part_count; i++) {
+        printf("  %-30s %12llu %12llu\n", b->parts[i].name, (unsigned long long)b->parts[i].cpu_bytes,
+               (unsigned long long)b->parts[i].gpu_bytes);
+    }
+    printf("  %-30s %12llu %12llu\n", "sum", (unsigned long long)b->cpu_bytes, (unsigned long long)b->gpu_bytes);
+    printf("  %-30s %12llu %12s  read where it lies\n", "the pack itself", (unsigned long long)b->pack_bytes, "");
+    printf("  %-30s %12u %12s  at most, for any call\n", "stack", NOH_STACK_BYTES, "");
+    if (clips->all) {
+        printf("clips: %u of %u decoded segments are held at once, enough for %u instance%s that cross-fade%s\n", clips->held, clips->all,
+               clips->instances, clips->instances == 1u ? "" : "s", clips->instances == 1u ? "s" : "");
+    }
+    if (!b->plan.atlas_width) {
+        printf("%s\n", b->plan.reason);
+        return;
+    }
+    printf("%s-%s on %s (%s); accumulators %u x %u x 3\n", noh_morph_path_name(b->plan.path), noh_accumulate_name(b->plan.accumulate),
+           device, b->plan.reason, b->plan.atlas_width, b->plan.atlas_height);
+}
+
+static int json_budget(const load_budget *b, const level_costs *levels, const segments *clips, const char *device)
+{
+    json j = json_begin();
+    json_integer(&j, "cpu_bytes", b->cpu_bytes);
+    json_integer(&j, "gpu_bytes", b->gpu_bytes);
+    json_integer(&j, "pack_bytes", b->pack_bytes);
+    json_integer(&j, "stack_bytes", NOH_STACK_BYTES);
+    json_text(&j, "path", noh_morph_path_name(b->plan.path));
+    json_text(&j, "accumulate", noh_accumulate_name(b->plan.accumulate));
+    json_text(&j, "reason", b->plan.reason);
+    json_text(&j, "device", device);
+    json_integer(&j, "instances", clips->instances);
+    json_integer(&j, "clip_segments_held", clips->held);
+    json_integer(&j, "clip_segments", clips->all);
+    json_open(&j, "parts", '[');
+    for (uint32_t i = 0; i < b->part_count; i++) {
+        json_open(&j, NULL, '{');
+        json_text(&j, "name", b->parts[i].name);
+        json_integer(&j, "cpu_bytes", b->parts[i].cpu_bytes);
+        json_integer(&j, "gpu_bytes", b->parts[i].gpu_bytes);
+        json_close(&j, '}');
+    }
+    json_close(&j, ']');
+    json_levels(&j, levels);
+    return json_end(&j);
+}
+
+/* The capabilities of the driver that a load would meet, or of a nominal device: also for clips alone, which draw nothing. */
+static int find_caps(const budget_args *a, const scene *s, noh_gl_caps *caps)
+{
+    gpu g;
+    int status;
+    if (a->nominal || !s->item_count) {
+        *caps = nominal_caps();
+        return 0;
+    }
+    status = gpu_open(&g, a->driver);
+    if (!status) {
+        *caps = g.caps;
+        gpu_close(&g);
+    }
+    return status;
+}
+
+static int budget_of(const budget_args *a, const pack_file *file)
+{
+    noh_gl_caps caps;
+    level_costs levels;
+    segments clips = { 0, 0, a->load.instances ? a->load.instances : 1u };
+    load_budget b;
+    scene s;
+    int status = scene_init(&s, file);
+    if (status) {
+        return status;
+    }
+    memset(&b, 0, sizeof b);
+    status = find_caps(a, &s, &caps);
+    if (!status) status = scene_set_level(&s, file, a->level);
+    if (!status) status = scene_open_anim(&s, file, a->anim);
+    if (!status) status = load_budget_make(&b, file, &s, &caps, &a->load);
+    if (!status) status = level_costs_find(&levels, file, &s, &caps, &a->load);
+    if (!status) {
+        scene_measure_segments(&s, file, clips.instances, &clips.held, &clips.all);
+        if (a->as_json) {
+            status = json_budget(&b, &levels, &clips, caps.renderer);
+        } else {
+            print_budget(file, &b, &clips, caps.renderer);
+            print_levels(&levels);
+        }
+    }
+    load_budget_free(&b);
+    scene_free(&s);
+    return status;
+}
+
+static int check_args(budget_args *a)
+{
+    int status = parse_path(a->path, &a->load.path);
+    if (!status) status = parse_accumulate(a->accumulate, &a->load.accumulate);
+    if (!status) status = parse_instances(a->instances, &a->load.instances);
+    if (!status) status = parse_level(a->lod, &a->level);
+    return status;
+}
+
+static int run(void *args)
+{
+    budget_args *a = args;
+    pack_file file;
+    int status = check_args(a);
+    if (!status) {
+        status = pack_file_open(&file, a->pack);
+        if (!status) {
+            status = budget_of(a, &file);
+            pack_file_close(&file);
+        }
+    }
+    return status;
+}
+
+static budget_args arguments;
+
+static const option options[] = {
+    OPTION_ANIM(budget_args, anim, .needs = NULL),
+    OPTION_INSTANCES(budget_args, instances, "1", .what = "how many copies of the scene, 1 to 65536"),
+    OPTION_PATH(budget_args, path, .initial = "auto"),
+    OPTION_ACCUMULATE(budget_args, accumulate, .initial = "auto"),
+    OPTION_LOD(budget_args, lod, .needs = NULL),
+    OPTION_DRIVER(budget_args, driver, .initial = "egl", .excludes = "--nominal"),
+    { .name = "--nominal", .kind = OPTION_FLAG, .at = offsetof(budget_args, nominal),
+      .what = "without a driver: for a GLES 3.2 device on which everything works" },
+    OPTION_JSON(budget_args, as_json),
+};
+
+const verb verb_budget = {
+    .name = "budget",
+    .files = "PACK",
+    .what = "bytes before a load, CPU and GPU, by part",
+    .example = "face.noh\nface.noh --instances 100 --path mrt --nominal --json",
+    .options = options,
+    .option_count = sizeof options / sizeof options[0],
+    .file_max = 1,
+    .files_at = offsetof(budget_args, pack),
+    .args = &arguments,
+    .run = run,
+};

@@ -1,0 +1,202 @@
+/* cmd_build.c: glTF, .bvh and .rcl in, one pack out: the model of the first file that has meshes, the clips of all. */
+#define _POSIX_C_SOURCE 200809L /* isatty */
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/args.h"
+#include "convert/convert.h"
+#include "cli/message.h"
+#include "pack/format.h"
+#include "platform.h"
+#include "cli/report_stream.h"
+#include "cli/verbs.h"
+
+#define INPUTS_MAX 64
+
+typedef struct build_args {
+    const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *lod;
+    int input_count, quiet, loop, mask, keep_parts, lod_fast;
+    double error_um, rate, error_cm, shell_cm, unit_cm, influences, palette;
+    option_list dual_quaternion, two_streams, clip_errors, joint_errors;
+} build_args;
+
+/* NAME=CM. Whether something has that name is for the converter to say. */
+static int check_errors(const char *name, const option_list *list)
+{
+    for (int i = 0; i < list->count; i++) {
+        const char *equals = strrchr(list->items[i], '=');
+        double value;
+        if (!equals || equals == list->items[i] || tool_number(equals + 1, &value) || value <= 0.0) {
+            return tool_usage("%s wants NAME=CM, a number over 0, not '%s'", name, list->items[i]);
+        }
+    }
+    return 0;
+}
+
+static int set_clip(const build_args *a, convert_options *o)
+{
+    if (a->rate < 0.0 || a->rate > 1000.0 || a->error_cm <= 0.0 || a->shell_cm <= 0.0 || a->unit_cm <= 0.0) {
+        return tool_usage("--rate wants up to 1000 Hz; --error-cm, --shell-cm and --unit-cm want numbers over 0");
+    }
+    if (a->only && strcmp(a->only, "mesh") != 0 && strcmp(a->only, "anim") != 0) {
+        return tool_usage("--only wants mesh or anim, not '%s'", a->only);
+    }
+    o->clip.sample_rate_hz = a->rate;
+    o->clip.unit_cm = a->unit_cm;
+    o->clip.check_loops = a->loop;
+    o->clip.clip.error_cm = a->error_cm;
+    o->clip.clip.shell_cm = a->shell_cm;
+    o->clip.clip.open_loop = a->mask;
+    o->clip.clip_errors = (named_errors){ a->clip_errors.items, (uint32_t)a->clip_errors.count };
+    o->clip.joint_errors = (named_errors){ a->joint_errors.items, (uint32_t)a->joint_errors.count };
+    o->only = !a->only ? CONVERT_ALL : a->only[0] == 'm' ? CONVERT_MESH : CONVERT_CLIPS;
+    o->events = a->events;
+    return 0;
+}
+
+static int set_skin(const build_args *a, convert_options *o)
+{
+    if (a->influences < 1 || a->influences > MODEL_INFLUENCES_MAX || a->influences != (double)(uint32_t)a->influences) {
+        return tool_usage("--influences wants a whole number from 1 to %u", MODEL_INFLUENCES_MAX);
+    }
+    if (a->palette < 4 || a->palette > NOH_PALETTE_JOINTS_MAX || a->palette != (double)(uint32_t)a->palette) {
+        return tool_usage("--palette wants a whole number of joints from 4 to %u", NOH_PALETTE_JOINTS_MAX);
+    }
+    o->skin.influences = (uint32_t)a->influences;
+    o->skin.palette = (uint32_t)a->palette;
+    o->skin.keep_parts = a->keep_parts;
+    o->two_streams = a->two_streams.items;
+    o->two_stream_count = (uint32_t)a->two_streams.count;
+    o->skin.dual_quaternion = a->dual_quaternion.items;
+    o->skin.dual_quaternion_count = (uint32_t)a->dual_quaternion.count;
+    return 0;
+}
+
+static int set_lod(const build_args *a, convert_options *o)
+{
+    o->lod.mode = a->lod_fast ? LOD_FAST : LOD_QUALITY;
+    return a->lod ? parse_levels(a->lod, &o->lod.level_count, &o->lod.by_error) : 0;
+}
+
+static int set_rects(const build_args *a, convert_options *o)
+{
+    double rects;
+    if (strcmp(a->rects, "auto") == 0) {
+        return 0;
+    }
+    if (tool_number(a->rects, &rects) || rects < 1 || rects > 65535 || rects != (double)(uint32_t)rects) {
+        return tool_usage("--rects wants auto or a whole number from 1 to 65535, not '%s'", a->rects);
+    }
+    o->morph.rects = (uint32_t)rects;
+    return 0;
+}
+
+static int set_options(const build_args *a, convert_options *o)
+{
+    int status;
+    if (a->error_um <= 0.0 || a->error_um > 1e6) {
+        return tool_usage("--error-um wants a number over 0 and up to 1000000");
+    }
+    o->morph.error_um = (float)a->error_um;
+    status = set_clip(a, o);
+    if (!status) status = check_errors("--clip-error", &a->clip_errors);
+    if (!status) status = check_errors("--joint-error", &a->joint_errors);
+    if (!status) status = set_skin(a, o);
+    if (!status) status = set_lod(a, o);
+    if (!status) status = set_rects(a, o);
+    return status;
+}
+
+static int run(void *args)
+{
+    const build_args *a = args;
+    convert_options o;
+    convert_failure failure;
+    noh_error error = { NOH_OK, "", 0, 0 };
+    byte_buffer pack = { NULL, 0, 0, 0 };
+    FILE *report = a->quiet ? NULL : report_stream(a->output);
+    int status;
+    memset(&o, 0, sizeof o);
+    status = set_options(a, &o);
+    if (status) {
+        return status;
+    }
+    o.report = report;
+    o.progress = !a->quiet && isatty(STDERR_FILENO) ? stderr : NULL;
+    if (convert_files(a->inputs, a->input_count, &o, &pack, &failure)) {
+        return failure.error.where[0] ? tool_fail(failure.file, "%s (%s)", failure.error.what, failure.error.where)
+                                      : tool_fail(failure.file, "%s", failure.error.what);
+    }
+    if (noh_file_write(a->output, pack.bytes, pack.count, &error)) {
+        status = tool_fail(a->output, "cannot write: %s", error.what);
+    } else if (report) {
+        fprintf(report, "%s: %zu bytes\n", a->output, pack.count);
+    }
+    buffer_free(&pack);
+    return status;
+}
+
+static build_args arguments;
+
+static const option options[] = {
+    { .name = "-o", .kind = OPTION_OUTPUT, .at = offsetof(build_args, output), .required = 1, .value = "OUT.noh",
+      .what = "the pack", .example = "face.noh" },
+    { .name = "--only", .kind = OPTION_TEXT, .at = offsetof(build_args, only), .value = "mesh|anim",
+      .what = "write only meshes and skeletons, or only clips: a pack of clips is played with --anim" },
+    { .name = "--quiet", .kind = OPTION_FLAG, .at = offsetof(build_args, quiet), .what = "no report" },
+    { .name = "--error-um", .kind = OPTION_NUMBER, .at = offsetof(build_args, error_um), .value = "UM", .initial = "10",
+      .what = "largest error of a target's positions, micrometres, over 0, at most 1000000", .example = "2", .excludes = "--only=anim" },
+    { .name = "--rects", .kind = OPTION_TEXT, .at = offsetof(build_args, rects), .value = "auto|N", .initial = "auto",
+      .what = "rectangles of a target, 1 to 65535; auto: the cheapest to draw", .example = "4", .excludes = "--only=anim" },
+    { .name = "--lod", .kind = OPTION_TEXT, .at = offsetof(build_args, lod), .value = "auto|N",
+      .what = "LOD levels with the full mesh, 1 to 8; auto: up to five, by error; default: the full mesh alone", .example = "4",
+      .excludes = "--only=anim" },
+    { .name = "--lod-fast", .kind = OPTION_FLAG, .at = offsetof(build_args, lod_fast),
+      .what = "simplify in seconds, with larger errors", .needs = "--lod" },
+    { .name = "--influences", .kind = OPTION_NUMBER, .at = offsetof(build_args, influences), .value = "N", .initial = "8",
+      .what = "most joints of a vertex, 1 to 8: the heaviest stay", .example = "4", .excludes = "--only=anim" },
+    { .name = "--palette", .kind = OPTION_NUMBER, .at = offsetof(build_args, palette), .value = "N", .initial = "256",
+      .what = "most joints of a draw, 4 to 256: a mesh with more is split", .example = "64", .excludes = "--only=anim" },
+    { .name = "--dual-quaternion", .kind = OPTION_LIST, .at = offsetof(build_args, dual_quaternion), .value = "MESH|all",
+      .what = "skin this mesh by dual quaternions; may repeat", .example = "arm", .excludes = "--only=anim" },
+    { .name = "--keep-parts", .kind = OPTION_FLAG, .at = offsetof(build_args, keep_parts),
+      .what = "keep rigid meshes below joints apart instead of joining them to one skinned mesh", .excludes = "--only=anim" },
+    { .name = "--two-stream", .kind = OPTION_LIST, .at = offsetof(build_args, two_streams), .value = "SOURCE=TARGET",
+      .what = "make the second mesh a target of the first: same triangles, same vertices in the same order; may repeat",
+      .example = "arm=arm_bent", .excludes = "--only=anim" },
+    { .name = "--rate", .kind = OPTION_NUMBER, .at = offsetof(build_args, rate), .value = "HZ", .initial = "0",
+      .what = "sample rate of clips, Hz, at most 1000; 0: the file's own", .example = "30", .excludes = "--only=mesh" },
+    { .name = "--error-cm", .kind = OPTION_NUMBER, .at = offsetof(build_args, error_cm), .value = "CM", .initial = "0.01",
+      .what = "largest error of clips at the shell, centimetres, over 0", .example = "0.02", .excludes = "--only=mesh" },
+    { .name = "--shell-cm", .kind = OPTION_NUMBER, .at = offsetof(build_args, shell_cm), .value = "CM", .initial = "3",
+      .what = "distance from a joint at which its error is measured, centimetres, over 0", .example = "6", .excludes = "--only=mesh" },
+    { .name = "--clip-error", .kind = OPTION_LIST, .at = offsetof(build_args, clip_errors), .value = "CLIP=CM",
+      .what = "--error-cm of one clip; may repeat", .example = "walk=0.1", .excludes = "--only=mesh" },
+    { .name = "--joint-error", .kind = OPTION_LIST, .at = offsetof(build_args, joint_errors), .value = "JOINT=CM",
+      .what = "--error-cm of one joint; may repeat", .example = "hand_l=0.005", .excludes = "--only=mesh" },
+    { .name = "--loop", .kind = OPTION_FLAG, .at = offsetof(build_args, loop),
+      .what = "mark every clip as a loop, and report how far each is from closing", .excludes = "--only=mesh" },
+    { .name = "--for-masks", .kind = OPTION_FLAG, .at = offsetof(build_args, mask),
+      .what = "no joint makes up for the error of its parents: for clips that are played through masks", .excludes = "--only=mesh" },
+    { .name = "--events", .kind = OPTION_INPUT, .at = offsetof(build_args, events), .value = "FILE",
+      .what = "callback keys and sync markers, a text file (noh help FORMATS)", .example = "keys.txt", .excludes = "--only=mesh" },
+    { .name = "--unit-cm", .kind = OPTION_NUMBER, .at = offsetof(build_args, unit_cm), .value = "CM", .initial = "1",
+      .what = "centimetres per unit of .bvh files, over 0", .example = "2.54" },
+};
+
+const verb verb_build = {
+    .name = "build",
+    .files = "IN...",
+    .what = "convert .gltf, .glb, .bvh and .rcl to a pack: the first model, the clips of all",
+    .example = "head.glb -o head.noh --lod 4\nbody.glb walk.bvh run.bvh -o body.noh --events keys.txt\nwalk.bvh -o walk.noh --error-cm 0.02 --clip-error walk=0.1",
+    .options = options,
+    .option_count = sizeof options / sizeof options[0],
+    .file_max = INPUTS_MAX,
+    .files_at = offsetof(build_args, inputs),
+    .file_count_at = offsetof(build_args, input_count),
+    .args = &arguments,
+    .run = run,
+};

@@ -1,0 +1,10 @@
+/* nearest.h: what a misspelt name may have meant. */
+#ifndef NOH_NOH_CLI_NEAREST_H
+#define NOH_NOH_CLI_NEAREST_H
+
+#include <stddef.h>
+
+/* The candidate nearest to `name` by edit distance, or NULL when none is near. */
+const char *nearest_name(const char *name, const char *const *candidates, size_t count);
+
+#endif

@@ -1,0 +1,17 @@
+/* verbs.h: what `noh` can do. Each verb has its own file, cmd_VERB.c, with the table of its options. */
+#ifndef NOH_NOH_CLI_VERBS_H
+#define NOH_NOH_CLI_VERBS_H
+
+#include "args.h"
+
+#define VERB_COUNT 12
+
+extern const verb verb_build, verb_info, verb_clip, verb_budget, verb_render, verb_sheet, verb_zoom, verb_dump, verb_verify,
+    verb_view, verb_crowd, verb_bench;
+
+/* In the order of the help. */
+const verb *verb_at(int index);
+/* NULL where there is none of that name. */
+const verb *verb_find(const char *name);
+
+#endif

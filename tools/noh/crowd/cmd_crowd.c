@@ -1,0 +1,173 @@
+/* cmd_crowd.c: a crowd drawn, and what it took. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "crowd.h"
+#include "gpu/canvas.h"
+#include "gpu/gpu_args.h"
+#include "cli/message.h"
+#include "file/png_file.h"
+#include "cli/options.h"
+#include "cli/report_stream.h"
+#include "cli/verbs.h"
+
+#define FRAME_TICKS 800u /* 60 frames a second */
+
+typedef struct crowd_args {
+    const char *pack, *output, *debug, *driver;
+    double pixels, instances, time_s;
+    uint32_t size[2];
+    int plain;
+    crowd_options options;
+} crowd_args;
+
+static int check_args(crowd_args *a)
+{
+    int status = parse_instances(a->instances, &a->options.count);
+    if (!status && !(a->pixels > 0.0 && a->pixels <= 1e6)) {
+        status = tool_usage("--pixels wants a number above 0");
+    }
+    if (!status && !(a->time_s >= 0.0 && a->time_s <= 3600.0)) {
+        status = tool_usage("--time wants seconds, 0 to 3600");
+    }
+    if (!status && a->debug && strcmp(a->debug, "lod") != 0) {
+        status = tool_usage("--debug wants lod, not '%s'", a->debug);
+    }
+    a->options.view = a->debug ? NOH_VIEW_LOD : NOH_VIEW_LIT;
+    a->options.pixels = (float)a->pixels;
+    a->options.plain = a->plain;
+    a->options.width = a->size[0];
+    a->options.height = a->size[1];
+    return status;
+}
+
+/* What was drawn, to be told once the picture is written. */
+typedef struct crowd_drawn {
+    crowd_stats stats;
+    uint32_t level_count;
+    uint64_t cpu_planned, gpu_planned, gpu_used;
+} crowd_drawn;
+
+static void print_crowd(const crowd_drawn *d, const crowd_args *a)
+{
+    FILE *out = report_stream(a->output);
+    fprintf(out, "%s: %u bodies, %u seen", a->output, a->options.count, d->stats.seen);
+    for (uint32_t k = 0; k < d->level_count && !a->plain; k++) {
+        fprintf(out, "%s %u", k ? "," : "; by level", d->stats.levels[k]);
+    }
+    fprintf(out, "; %u fade\n%llu bytes CPU, %llu GPU; planned %llu and %llu\n", d->stats.fading, (unsigned long long)d->cpu_planned,
+            (unsigned long long)d->gpu_used, (unsigned long long)d->cpu_planned, (unsigned long long)d->gpu_planned);
+}
+
+static void take_drawn(const crowd *c, crowd_drawn *d)
+{
+    d->stats = c->stats;
+    d->level_count = c->plan->level_count;
+    d->cpu_planned = c->plan->cpu_bytes;
+    d->gpu_planned = c->plan->gpu_bytes;
+    d->gpu_used = noh_gl_ledger_bytes(&c->ledger);
+}
+
+/* Frame after frame up to the time, as a game comes there. */
+static int draw(crowd *c, const crowd_args *a, uint8_t *rgba)
+{
+    const crowd_camera camera = crowd_camera_start(c);
+    canvas target;
+    int status = canvas_open(&target, c->g, a->size[0], a->size[1]);
+    if (status) {
+        return status;
+    }
+    for (uint32_t frame = 0; frame <= (uint32_t)(a->time_s * NOH_TICKS_PER_SECOND / FRAME_TICKS); frame++) {
+        crowd_step(c, FRAME_TICKS);
+        crowd_look(c, &camera);
+        crowd_show(c);
+    }
+    crowd_send(c);
+    canvas_begin(&target);
+    crowd_draw(c, &camera);
+    status = canvas_read(&target, rgba);
+    canvas_close(&target);
+    return status;
+}
+
+static int open_and_draw(gpu *g, const pack_file *file, const crowd_args *a, uint8_t *rgba, crowd_drawn *d)
+{
+    static crowd_plan plan;
+    crowd c;
+    void *memory;
+    int status = crowd_plan_make(&plan, file, &g->caps, &a->options);
+    if (status) {
+        return status;
+    }
+    memory = malloc((size_t)plan.cpu_bytes);
+    status = memory ? crowd_open(&c, &plan, memory, (size_t)plan.cpu_bytes, g, file) : tool_fail(file->path, "out of memory");
+    if (!status) {
+        status = draw(&c, a, rgba);
+        take_drawn(&c, d);
+        crowd_close(&c);
+    }
+    free(memory);
+    return status;
+}
+
+static int draw_pack(const pack_file *file, const crowd_args *a)
+{
+    crowd_drawn d;
+    gpu g;
+    uint8_t *rgba = malloc((size_t)a->size[0] * a->size[1] * 4);
+    int status = rgba ? gpu_open(&g, a->driver) : tool_fail(a->pack, "out of memory");
+    if (!status) {
+        status = open_and_draw(&g, file, a, rgba, &d);
+        gpu_close(&g);
+    }
+    if (!status) status = tool_write_png(a->output, a->size[0], a->size[1], rgba);
+    if (!status) print_crowd(&d, a);
+    free(rgba);
+    return status;
+}
+
+static int run(void *args)
+{
+    crowd_args *a = args;
+    pack_file file;
+    int status = check_args(a);
+    if (!status) status = pack_file_open(&file, a->pack);
+    if (!status) {
+        status = draw_pack(&file, a);
+        pack_file_close(&file);
+    }
+    return status;
+}
+
+static crowd_args arguments;
+
+static const option options[] = {
+    { .name = "-o", .kind = OPTION_OUTPUT, .at = offsetof(crowd_args, output), .required = 1, .value = "OUT.png",
+      .what = "the picture", .example = "crowd.png" },
+    OPTION_INSTANCES(crowd_args, instances, "1000", .what = "how many bodies, 1 to 65536"),
+    { .name = "--pixels", .kind = OPTION_NUMBER, .at = offsetof(crowd_args, pixels), .value = "N", .initial = "1",
+      .what = "the largest error on screen that levels may have, pixels, over 0", .example = "4", .excludes = "--plain" },
+    { .name = "--time", .kind = OPTION_NUMBER, .at = offsetof(crowd_args, time_s), .value = "S", .initial = "2",
+      .what = "when the picture is taken, seconds, 0 to 3600; every frame up to then is run", .example = "0.5" },
+    { .name = "--plain", .kind = OPTION_FLAG, .at = offsetof(crowd_args, plain),
+      .what = "without LOD: every body at the full mesh, posed in every frame" },
+    { .name = "--debug", .kind = OPTION_TEXT, .at = offsetof(crowd_args, debug), .value = "lod",
+      .what = "colour each body by its LOD level" },
+    { .name = "--size", .kind = OPTION_SIZE, .at = offsetof(crowd_args, size), .value = "WxH", .initial = "1280x720",
+      .what = "size of the picture, pixels, 1 to 8192 each", .example = "1920x1080" },
+    OPTION_DRIVER(crowd_args, driver, .initial = "egl"),
+};
+
+const verb verb_crowd = {
+    .name = "crowd",
+    .files = "PACK",
+    .what = "a crowd of the skinned mesh of a pack, each body as detailed as its pixels want it",
+    .example = "body.noh -o crowd.png\nbody.noh -o crowd.png --instances 200 --pixels 4 --debug lod",
+    .options = options,
+    .option_count = sizeof options / sizeof options[0],
+    .file_max = 1,
+    .files_at = offsetof(crowd_args, pack),
+    .args = &arguments,
+    .run = run,
+};

@@ -1,0 +1,178 @@
+#include "camera.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/message.h"
+
+static void grow(bounds *b, const double p[3])
+{
+    for (int c = 0; c < 3; c++) {
+        b->low[c] = fmin(b->low[c], p[c]);
+        b->high[c] = fmax(b->high[c], p[c]);
+    }
+}
+
+bounds bounds_union(bounds a, bounds b)
+{
+    grow(&a, b.low);
+    grow(&a, b.high);
+    return a;
+}
+
+static void grow_item(bounds *b, const scene *s, const pack_file *file, uint32_t item, int face)
+{
+    const noh_mesh *mesh = &s->meshes[s->items[item].mesh];
+    const float *world = scene_world(s, file, item);
+    uint32_t count = mesh->header->vertex_count;
+    noh_vertex *vertices = malloc(sizeof *vertices * (count + 1u));
+    if (!vertices || scene_deform(s, item, count, vertices)) {
+        free(vertices);
+        return;
+    }
+    for (uint32_t v = 0; v < count; v++) {
+        const float *p = vertices[v].position;
+        double placed[3];
+        if (face && noh_mesh_accumulation_texel(mesh, v) >= mesh->header->touched_count) {
+            continue;
+        }
+        for (int r = 0; r < 3; r++) {
+            const float *row = world + 4 * r;
+            placed[r] = (double)row[0] * p[0] + (double)row[1] * p[1] + (double)row[2] * p[2] + (double)row[3];
+        }
+        grow(b, placed);
+    }
+    free(vertices);
+}
+
+bounds scene_bounds(const scene *s, const pack_file *file, int face)
+{
+    bounds b = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
+    for (uint32_t i = 0; i < s->item_count; i++) {
+        grow_item(&b, s, file, i, face);
+    }
+    if (b.low[0] > b.high[0]) { /* no targets: the face is everything */
+        if (face) {
+            return scene_bounds(s, file, 0);
+        }
+        memset(&b, 0, sizeof b);
+    }
+    return b;
+}
+
+/* Column-major product of a 4x4 projection and a 4x4 view. */
+static void multiply(const double a[16], const double b[16], float out[16])
+{
+    for (int column = 0; column < 4; column++) {
+        for (int row = 0; row < 4; row++) {
+            double sum = 0.0;
+            for (int k = 0; k < 4; k++) {
+                sum += a[4 * k + row] * b[4 * column + k];
+            }
+            out[4 * column + row] = (float)sum;
+        }
+    }
+}
+
+void orbit_axes(const orbit *o, double right[3], double up[3], double back[3])
+{
+    double ca = cos(o->azimuth), sa = sin(o->azimuth), ce = cos(o->elevation), se = sin(o->elevation);
+    const double r[3] = { ca, 0.0, -sa }, u[3] = { -sa * se, ce, -ca * se }, b[3] = { sa * ce, se, ca * ce };
+    memcpy(right, r, sizeof r);
+    memcpy(up, u, sizeof u);
+    memcpy(back, b, sizeof b);
+}
+
+void orbit_camera(const orbit *o, noh_gl_camera *camera)
+{
+    double right[3], up[3], back[3], view[16] = { 0 }, projection[16] = { 0 };
+    double near = fmax(o->distance - 2.0 * o->radius, o->distance * 0.02), far = o->distance + 2.0 * o->radius;
+    double f = 1.0 / tan(ORBIT_VIEW_RAD / 2.0), key_length = 0.0;
+    orbit_axes(o, right, up, back);
+    for (int c = 0; c < 3; c++) {
+        double eye = o->center[c] + back[c] * o->distance;
+        camera->eye[c] = (float)eye;
+        view[4 * c] = right[c];
+        view[4 * c + 1] = up[c];
+        view[4 * c + 2] = back[c];
+        view[12] -= right[c] * eye;
+        view[13] -= up[c] * eye;
+        view[14] -= back[c] * eye;
+    }
+    view[15] = 1.0;
+    projection[0] = f / o->aspect;
+    projection[5] = f;
+    projection[10] = -(far + near) / (far - near);
+    projection[11] = -1.0;
+    projection[14] = -2.0 * far * near / (far - near);
+    multiply(projection, view, camera->view_projection);
+    for (int c = 0; c < 3; c++) { /* over the viewer's left shoulder */
+        double key = -0.45 * right[c] + 0.62 * up[c] + 0.64 * back[c];
+        camera->key[c] = (float)key;
+        key_length += key * key;
+    }
+    for (int c = 0; c < 3; c++) {
+        camera->key[c] = (float)((double)camera->key[c] / sqrt(key_length));
+    }
+}
+
+int view_wants_face(const view_options *o)
+{
+    return o->camera && strcmp(o->camera, "face") == 0;
+}
+
+/* "AZ,EL,DIST": three numbers; the distance may be left out. */
+static int parse_orbit(const char *text, orbit *o)
+{
+    char buffer[128], *part[3] = { buffer, NULL, NULL };
+    double values[3] = { 0.0, 0.0, 0.0 };
+    int count = 1;
+    if (strlen(text) >= sizeof buffer) {
+        return 1;
+    }
+    strcpy(buffer, text);
+    for (char *c = buffer; *c; c++) {
+        if (*c == ',') {
+            if (count == 3) {
+                return 1;
+            }
+            *c = 0;
+            part[count++] = c + 1;
+        }
+    }
+    for (int i = 0; i < count; i++) {
+        if (tool_number(part[i], &values[i])) {
+            return 1;
+        }
+    }
+    o->azimuth = values[0] * 3.14159265358979 / 180.0;
+    o->elevation = values[1] * 3.14159265358979 / 180.0;
+    o->distance = count == 3 ? values[2] : o->distance;
+    return count < 2 || fabs(values[1]) > 89.9 || o->distance <= 0.0;
+}
+
+orbit orbit_fit(const bounds *box, double aspect)
+{
+    orbit at = { 0.0, 0.05, 0.0, { 0.0, 0.0, 0.0 }, 0.0, aspect };
+    double half[3], need;
+    for (int c = 0; c < 3; c++) {
+        at.center[c] = (box->low[c] + box->high[c]) / 2.0;
+        half[c] = (box->high[c] - box->low[c]) / 2.0;
+    }
+    at.radius = fmax(sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]), 1e-6);
+    need = fmax(half[1], fmax(half[0], half[2] * 0.7) / at.aspect) * 1.05;
+    at.distance = fmax(need / tan(ORBIT_VIEW_RAD / 2.0) + half[2], at.radius * 1.02);
+    return at;
+}
+
+int view_camera(const view_options *o, const bounds *box, noh_gl_camera *camera)
+{
+    orbit at = orbit_fit(box, (double)o->width / (double)o->height);
+    if (o->camera && strcmp(o->camera, "face") != 0 && strcmp(o->camera, "body") != 0 && parse_orbit(o->camera, &at)) {
+        return tool_usage("--camera wants face, body or AZIMUTH,ELEVATION[,DISTANCE] (degrees; elevation within 89; over 0), not '%s'",
+                          o->camera);
+    }
+    orbit_camera(&at, camera);
+    return 0;
+}

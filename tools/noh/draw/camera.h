@@ -1,0 +1,42 @@
+/* camera.h: what a picture frames, and from where. */
+#ifndef NOH_NOH_DRAW_CAMERA_H
+#define NOH_NOH_DRAW_CAMERA_H
+
+#include "noh_gl.h"
+#include "scene/scene.h"
+
+typedef struct bounds {
+    double low[3], high[3];
+} bounds;
+
+/* The world bounds of the scene at its weights; with `face` only of vertices that targets move. */
+bounds scene_bounds(const scene *s, const pack_file *file, int face);
+bounds bounds_union(bounds a, bounds b);
+
+typedef struct view_options {
+    const char *camera; /* "face", "body" or "AZ,EL,DIST" in degrees and model units; NULL: body */
+    uint32_t width, height;
+} view_options;
+
+#define ORBIT_VIEW_RAD 0.5235987755982988 /* the height of the view: 30 degrees */
+
+/* A camera that orbits a centre. Angles in radians, lengths in model units. */
+typedef struct orbit {
+    double azimuth, elevation, distance;
+    double center[3], radius; /* what it looks at; radius of what lies between the near and the far plane */
+    double aspect;            /* width over height */
+} orbit;
+
+/* An orbit from the front that frames the box. */
+orbit orbit_fit(const bounds *box, double aspect);
+/* Its unit axes in the world; `back` points from the centre to the eye. */
+void orbit_axes(const orbit *o, double right[3], double up[3], double back[3]);
+/* A perspective camera, lit from over the left shoulder. */
+void orbit_camera(const orbit *o, noh_gl_camera *camera);
+
+/* The camera that the options ask for, framing the box. 0, or EXIT_USAGE after printing. */
+int view_camera(const view_options *o, const bounds *box, noh_gl_camera *camera);
+/* 1 when the option asks for the face. */
+int view_wants_face(const view_options *o);
+
+#endif

@@ -1,0 +1,78 @@
+/* load.h: a pack on the GPU: its meshes, textures, accumulators and renderer. load_open takes exactly the bytes that
+ * load_budget_make predicts. */
+#ifndef NOH_NOH_DRAW_LOAD_H
+#define NOH_NOH_DRAW_LOAD_H
+
+#include "gpu/gpu.h"
+#include "scene/scene.h"
+
+typedef struct load_part {
+    char name[96];
+    uint64_t cpu_bytes, gpu_bytes;
+} load_part;
+
+typedef struct load_budget {
+    noh_gl_morph_plan plan;
+    noh_gl_skin_plan skin_plan; /* mode AUTO: nothing is skinned */
+    load_part *parts;
+    uint32_t part_count;
+    uint64_t cpu_bytes, gpu_bytes, pack_bytes; /* pack_bytes: with that of --anim */
+} load_budget;
+
+typedef struct load_options {
+    noh_morph_path path;
+    noh_accumulate accumulate;
+    uint32_t instances; /* of the whole scene; 0: 1 */
+    noh_debug_view view;
+    int fades;          /* 1: levels set by load_set_detail fade into each other; 0: they change at once */
+} load_options;
+
+/* Of clips alone, the clips, with a plan that says nothing but its reason. Prints an error and returns an exit code; 0 on
+ * success. */
+int load_budget_make(load_budget *b, const pack_file *file, const scene *s, const noh_gl_caps *caps, const load_options *o);
+void load_budget_free(load_budget *b);
+
+/* How an item is drawn: in one part, or in two while one level fades into another. */
+typedef struct load_lod {
+    noh_gl_lod parts[2];
+    uint32_t part_count;
+} load_lod;
+
+typedef struct load {
+    gpu *g;
+    const pack_file *file;
+    const scene *scene;
+    noh_gl_mesh *meshes;       /* [mesh_count] */
+    noh_gl_texture *pictures;  /* [texture_count] */
+    noh_gl_renderer renderer;
+    gpu_morph morph;
+    gpu_skin skin;
+    float *matrices;           /* [joints of the largest skin][12] */
+    size_t matrix_bytes;
+    uint32_t *item_instances;  /* [item_count]: the morph instance of each item of the first copy of the scene */
+    load_lod *lods;      /* [item_count]: the finest loaded level until load_set_detail */
+} load;
+
+int load_open(load *l, gpu *g, const pack_file *file, const scene *s, const load_options *o);
+void load_close(load *l);
+
+/* Make everything again after g's context was lost and g->gl was filled for a new one. After an error close it. */
+int load_restore(load *l);
+
+/* Upload the scene's weights and palettes, and accumulate. */
+int load_update(load *l, noh_gl_morph_stats *stats);
+
+/* From now on draw an item at the chosen mesh level (noh_lod_choose), or at both while they fade, and accumulate for the
+ * finer one. Call it before load_update. Leaving out influences, joints and targets is up to the caller. */
+void load_set_lod(load *l, uint32_t item, const noh_lod *lod, int64_t clock);
+
+/* Draw every item: opaque, then blended. The framebuffer and viewport are the caller's. */
+void load_draw(load *l, const noh_gl_camera *camera);
+
+/* The binding of an item's palette: out, or NULL for a rigid item. */
+const noh_gl_skin_binding *load_skin_binding(const load *l, uint32_t item, noh_gl_skin_binding *out);
+
+/* Capabilities to assume without a driver: a GLES 3.2 device with every feature, and textures as large as ES 3.0 demands. */
+noh_gl_caps nominal_caps(void);
+
+#endif

@@ -1,0 +1,22 @@
+/* pack_file.h: a pack mapped from a file. */
+#ifndef NOH_NOH_FILE_PACK_FILE_H
+#define NOH_NOH_FILE_PACK_FILE_H
+
+#include "noh.h"
+#include "platform.h"
+
+typedef struct pack_file {
+    const char *path;
+    noh_file file;
+    noh_pack pack;
+} pack_file;
+
+/* Map and open a pack; prints the error and returns an exit code, 0 on success. */
+int pack_file_open(pack_file *file, const char *path);
+void pack_file_close(pack_file *file);
+
+/* Read the header of the pack's n-th clip; prints an error about a broken one and returns an exit code. */
+int tool_clip_info(const pack_file *file, uint32_t index, noh_pack_clip *clip, noh_clip_info *info);
+double tool_clip_seconds(const noh_clip_info *info);
+
+#endif

@@ -1,0 +1,41 @@
+/* gpu.h: a GL context for the verbs that draw, and the library's objects with their memory. */
+#ifndef NOH_NOH_GPU_GPU_H
+#define NOH_NOH_GPU_GPU_H
+
+#include "noh_gl.h"
+#include "platform.h"
+
+typedef struct gpu {
+    const noh_platform *platform;
+    noh_platform_context *context;
+    noh_gl_api gl;
+    noh_gl_caps caps;
+    noh_gl_ledger ledger; /* what the library's objects use */
+} gpu;
+
+/* Make a context of that driver ("egl" when NULL) and probe it. Prints why not; 0 on success. */
+int gpu_open(gpu *g, const char *driver);
+void gpu_close(gpu *g);
+
+/* One noh_gl_morph with its memory. */
+typedef struct gpu_morph {
+    void *memory;
+    size_t bytes;
+    noh_gl_morph *morph;
+} gpu_morph;
+
+/* Prints an error about `subject` and returns an exit code; 0 on success. */
+int gpu_morph_open(gpu_morph *m, gpu *g, const noh_gl_morph_desc *desc, const char *subject);
+void gpu_morph_close(gpu_morph *m);
+
+/* One noh_gl_skin with its memory; skin NULL: nothing is skinned. */
+typedef struct gpu_skin {
+    void *memory;
+    size_t bytes;
+    noh_gl_skin *skin;
+} gpu_skin;
+
+int gpu_skin_open(gpu_skin *s, gpu *g, const noh_gl_skin_desc *desc, const char *subject);
+void gpu_skin_close(gpu_skin *s);
+
+#endif

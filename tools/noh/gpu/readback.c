@@ -1,0 +1,145 @@
+/* readback.c: accumulated layers as bits, through RGBA32UI targets, which core ES 3.0 can always
+ * render and read: no format conversion stands between the test and the value. */
+#include "readback.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "gl/gl_program.h"
+#include "gpu.h"
+#include "tool_shaders.gen.h"
+#include "cli/message.h"
+
+typedef struct bit_target {
+    GLuint framebuffer, renderbuffers[3];
+    uint32_t width, height;
+} bit_target;
+
+static int target_open(const noh_gl_api *gl, bit_target *t, uint32_t width, uint32_t height)
+{
+    static const GLenum attachments[3] = { GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2 };
+    t->width = width;
+    t->height = height;
+    gl->GenFramebuffers(1, &t->framebuffer);
+    gl->GenRenderbuffers(3, t->renderbuffers);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, t->framebuffer);
+    for (unsigned i = 0; i < 3; i++) {
+        gl->BindRenderbuffer(GL_RENDERBUFFER, t->renderbuffers[i]);
+        gl->RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA32UI, (GLsizei)width, (GLsizei)height);
+        gl->FramebufferRenderbuffer(GL_FRAMEBUFFER, attachments[i], GL_RENDERBUFFER, t->renderbuffers[i]);
+    }
+    gl->DrawBuffers(3, attachments);
+    gl->Viewport(0, 0, (GLsizei)width, (GLsizei)height);
+    gl->Disable(GL_DEPTH_TEST);
+    gl->Disable(GL_CULL_FACE);
+    gl->Disable(GL_BLEND);
+    return gl->CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE;
+}
+
+/* Read the i-th attachment's rgb of the first `count` pixels into out[count][3]. */
+static int target_read(const noh_gl_api *gl, const bit_target *t, unsigned i, size_t count, float *out)
+{
+    uint32_t *pixels = malloc((size_t)t->width * t->height * 16u);
+    if (!pixels) {
+        return 1;
+    }
+    gl->ReadBuffer(GL_COLOR_ATTACHMENT0 + i);
+    gl->PixelStorei(GL_PACK_ALIGNMENT, 4);
+    gl->ReadPixels(0, 0, (GLsizei)t->width, (GLsizei)t->height, GL_RGBA_INTEGER, GL_UNSIGNED_INT, pixels);
+    for (size_t p = 0; p < count; p++) {
+        memcpy(out + 3 * p, pixels + 4 * p, 12);
+    }
+    free(pixels);
+    return 0;
+}
+
+static void target_close(const noh_gl_api *gl, bit_target *t)
+{
+    gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
+    gl->BindRenderbuffer(GL_RENDERBUFFER, 0);
+    gl->DeleteFramebuffers(1, &t->framebuffer);
+    gl->DeleteRenderbuffers(3, t->renderbuffers);
+}
+
+static int create_program(gpu *g, const noh_gl_source *vertex, const noh_gl_source *fragment, int is_uint, GLuint *program)
+{
+    static const char *const samplers[] = { "u_layers" };
+    noh_gl_program_desc desc;
+    noh_error error = { NOH_OK, "", 0, 0 };
+    char log[4096] = "";
+    memset(&desc, 0, sizeof desc);
+    desc.name = "readback";
+    desc.vertex = vertex;
+    desc.fragment = fragment;
+    desc.defines = is_uint ? "#define LAYERS_UINT\n" : NULL;
+    desc.samplers = samplers;
+    desc.sampler_count = 1;
+    if (noh_gl_program_create(&g->gl, &desc, program, log, sizeof log, &error)) {
+        fputs(log, stderr);
+        return tool_fail_error("readback", &error);
+    }
+    return 0;
+}
+
+int readback_open(readback *r, gpu *g, int is_uint)
+{
+    int status;
+    memset(r, 0, sizeof *r);
+    r->g = g;
+    r->is_uint = is_uint;
+    status = create_program(g, &noh_shader_full_screen_vert, &noh_shader_read_layers_frag, is_uint, &r->layers_program);
+    g->gl.GenVertexArrays(1, &r->vertex_array);
+    return status;
+}
+
+void readback_close(readback *r)
+{
+    noh_gl_program_delete(&r->g->gl, NULL, &r->layers_program);
+    noh_gl_variant_delete(&r->g->gl, NULL, &r->variant);
+    r->g->gl.DeleteVertexArrays(1, &r->vertex_array);
+}
+
+static void use(readback *r, GLuint program, const noh_gl_morph_binding *b)
+{
+    const noh_gl_api *gl = &r->g->gl;
+    gl->UseProgram(program);
+    gl->Uniform4i(gl->GetUniformLocation(program, "u_morph"), b->tile_x, b->tile_y, b->width_log2, b->touched);
+    gl->ActiveTexture(GL_TEXTURE0);
+    gl->BindTexture(GL_TEXTURE_2D_ARRAY, b->texture);
+}
+
+static int finish(readback *r, bit_target *t, int status)
+{
+    const noh_gl_api *gl = &r->g->gl;
+    GLenum error = gl->GetError();
+    gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
+    gl->BindVertexArray(0);
+    gl->UseProgram(0);
+    target_close(gl, t);
+    if (status) {
+        return tool_fail("readback", "out of memory, or the driver refuses an RGBA32UI target");
+    }
+    return error ? tool_fail("readback", "GL error 0x%x", error) : 0;
+}
+
+int readback_layers(readback *r, const noh_mesh *mesh, const noh_gl_morph_binding *binding, float *out)
+{
+    uint32_t width = 1u << mesh->header->morph_width_log2, height = mesh->header->morph_height;
+    size_t texels = (size_t)width * height;
+    bit_target t;
+    int status;
+    if (!texels) {
+        return 0;
+    }
+    status = target_open(&r->g->gl, &t, width, height);
+    if (!status) {
+        use(r, r->layers_program, binding);
+        r->g->gl.BindVertexArray(r->vertex_array);
+        r->g->gl.DrawArrays(GL_TRIANGLES, 0, 3);
+        for (unsigned i = 0; i < 3 && !status; i++) {
+            status = target_read(&r->g->gl, &t, i, texels, out + 3 * texels * i);
+        }
+    }
+    return finish(r, &t, status);
+}

@@ -1,0 +1,40 @@
+/* readback.h: what the GPU made, read back. */
+#ifndef NOH_NOH_GPU_READBACK_H
+#define NOH_NOH_GPU_READBACK_H
+
+#include "gpu.h"
+
+/* Programs and a target that read results back; not counted in the ledger. */
+typedef struct readback {
+    gpu *g;
+    int is_uint;
+    GLuint layers_program, vertex_array;
+    noh_gl_variant variant; /* what read vertices last */
+} readback;
+
+int readback_open(readback *r, gpu *g, int is_uint);
+void readback_close(readback *r);
+
+/* An instance's accumulated deltas, as the vertex shader fetches them:
+ * out[3][morph_height << morph_width_log2][3]. */
+int readback_layers(readback *r, const noh_mesh *mesh, const noh_gl_morph_binding *binding, float *out);
+
+/* A vertex as mesh.vert leaves it, before the camera. */
+typedef struct readback_vertex {
+    float position[3]; /* morphed and skinned, model space */
+    float normal[3];   /* in the world, as below */
+    float tangent[4];  /* with handedness */
+    float world[3];
+} readback_vertex;
+
+/* Every vertex of a mesh with these bindings (NULL: rest pose, bind pose), each by its own palette: out[vertex_count].
+ * crowd: 0 draws one mesh in an identity world; else so many instances in one draw from the one that skin binds, each in
+ * its own world, and out is [crowd][vertex_count]. Prints why not; 0 on success. */
+int readback_skinned(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph, const noh_gl_skin_binding *skin,
+                     uint32_t crowd, readback_vertex *out);
+
+/* Every vertex as drawn in the bind pose: positions, normals, tangents, each [vertex_count][3]. */
+int readback_vertices(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_binding *binding, float *positions,
+                      float *normals, float *tangents);
+
+#endif

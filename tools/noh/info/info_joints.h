@@ -1,0 +1,14 @@
+/* info_joints.h: what `noh info` says of joint levels, and the errors of fewer joints and lower update rates. */
+#ifndef NOH_NOH_INFO_INFO_JOINTS_H
+#define NOH_NOH_INFO_INFO_JOINTS_H
+
+#include "cli/json.h"
+#include "noh.h"
+
+/* Print the end of a skeleton's line, and the lines below a clip's; or add members to the open object. */
+void info_print_levels(const noh_pack *pack, uint32_t skeleton);
+void info_json_levels(json *j, const noh_pack *pack, uint32_t skeleton);
+void info_print_errors(const noh_pack *pack, const noh_pack_clip *clip);
+void info_json_errors(json *j, const noh_pack *pack, const noh_pack_clip *clip);
+
+#endif

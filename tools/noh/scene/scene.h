@@ -1,0 +1,101 @@
+/* scene.h: what a pack shows: its meshes and skeletons in a pose, by weights and clips.
+ *
+ *   scene.c         nodes, meshes, LOD levels, weights
+ *   scene_play.c    clips
+ *   scene_pair.c    two clips at once
+ *   scene_deform.c  vertices on the CPU */
+#ifndef NOH_NOH_SCENE_SCENE_H
+#define NOH_NOH_SCENE_SCENE_H
+
+#include "cli/args.h"
+#include "file/pack_file.h"
+
+/* Plays clips on one skeleton of the pack, or on weights alone in a pack without skeletons: a clip set, a controller for each
+ * copy of the scene, and room for one pose at a time. */
+typedef struct scene_player {
+    noh_skeleton skeleton;       /* joint_count 0: none */
+    float *joint_matrices;       /* [joint_count][12] in model space, see local_to_model.h; the bind pose until a clip is set */
+    noh_clip_bank *set;         /* NULL: not opened yet, or no clip fits */
+    noh_controller **controllers; /* [controller_count] */
+    uint32_t controller_count;
+    noh_pose_scratch scratch;
+    void *set_memory, *scratch_memory;
+    noh_transform *pose;         /* [joint_count] */
+    float *floats;               /* [set->clips.float_count] */
+    uint64_t set_bytes, controller_bytes, pose_bytes; /* taken */
+} scene_player;
+
+/* One drawn mesh: a node that has one, with its weights. */
+typedef struct scene_item {
+    uint32_t node; /* index, or NOH_NONE when the pack has no nodes */
+    uint32_t mesh;
+    float *weights; /* [target_count of the mesh] */
+} scene_item;
+
+typedef struct scene {
+    noh_mesh *meshes;   /* [pack->mesh_count] */
+    scene_item *items;
+    uint32_t item_count;
+    const pack_file *anim;    /* whose clips are played: the pack's own, or that of --anim */
+    pack_file anim_file;      /* --anim */
+    scene_player *players;    /* [player_count] one for each skeleton of the pack, at least one */
+    uint32_t player_count;
+    noh_skeleton skeleton;    /* of the first one */
+    const float *joint_matrices;
+} scene;
+
+/* Every node with a mesh (or every mesh, in a pack without nodes) at its default weights, every skeleton in its bind pose.
+ * The pack must stay where it is while the scene is used. */
+int scene_init(scene *s, const pack_file *file);
+void scene_free(scene *s);
+/* Take every mesh at an LOD level, or at its coarsest; an error where no mesh has that many. */
+int scene_set_level(scene *s, const pack_file *file, uint32_t level);
+uint32_t scene_level_count(const scene *s, const pack_file *file);
+/* Free what scene_open_players made; the skeleton stays. */
+void scene_close_player(scene_player *p);
+/* Take the clips from another pack (NULL: from the same one). Before any is played. */
+int scene_open_anim(scene *s, const pack_file *file, const char *path);
+/* Open the clips and `controllers` controllers for each player. scene_set_clips does so for one. */
+int scene_open_players(scene *s, const pack_file *file, uint32_t controllers);
+/* The bytes that scene_open_players will take, added to *clips, *controller_bytes and *poses. */
+int scene_measure_players(const scene *s, const pack_file *file, uint32_t controllers, uint64_t *clips, uint64_t *controller_bytes,
+                          uint64_t *poses);
+/* How many decoded segments the clips then hold at once, of how many in all. */
+void scene_measure_segments(const scene *s, const pack_file *file, uint32_t controllers, uint32_t *held, uint32_t *all);
+/* Weights and joint matrices of clips at a time, together; unknown names are an error that suggests the nearest. */
+int scene_set_clips(scene *s, const pack_file *file, const option_list *names, double time_s);
+/* Reset a player's first controller; pose it into the player's matrices and the scene's weights. */
+int scene_reset_player(scene_player *p);
+void scene_pose_player(scene *s, scene_player *p);
+
+typedef enum scene_mix { SCENE_MIX_BLEND, SCENE_MIX_FADE, SCENE_MIX_INERTIA } scene_mix;
+
+/* Two clips of one skeleton at once. */
+typedef struct scene_pair {
+    const char *from, *to;
+    scene_mix mix;
+    double weight; /* BLEND: of `to`, 0..1 */
+    double lead_s; /* FADE, INERTIA: how long `from` plays alone */
+    double over_s; /* and how long the transition takes */
+} scene_pair;
+
+/* time: the phase of both, 0..1, of a blend; else seconds from the start of `from`. */
+int scene_set_pair(scene *s, const pack_file *file, const scene_pair *pair, double time);
+/* A clip's length; an error likewise. */
+int scene_clip_seconds(scene *s, const pack_file *file, const char *clip_name, double *seconds);
+/* The palette of a skin in the scene's pose: matrices[the skin's joint_count][12]. */
+void scene_skin_matrices(const scene *s, const noh_skin *skin, float *matrices);
+/* The first `count` vertices of an item, morphed and skinned on the CPU, before its node's transform (scene_world).
+ * Prints an error and returns an exit code; 0 on success. */
+int scene_deform(const scene *s, uint32_t item, uint32_t count, noh_vertex *vertices);
+/* NAME=VALUE for every mesh that has such a target; suggests the nearest name otherwise. */
+int scene_set_weights(scene *s, const pack_file *file, const option_list *assignments);
+/* 0 when some mesh has the target; prints an error with the nearest name otherwise. */
+int scene_check_target(const scene *s, const pack_file *file, const char *name);
+/* "no clip named 'wlak' (did you mean 'walk'?)"; returns an exit code. */
+int scene_fail_unknown(const pack_file *file, const char *kind, const char *name, const char *const *names, size_t count);
+
+/* The item's world matrix, 3 rows of 4. */
+const float *scene_world(const scene *s, const pack_file *file, uint32_t item);
+
+#endif

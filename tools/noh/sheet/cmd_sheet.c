@@ -1,0 +1,257 @@
+/* cmd_sheet.c: a contact sheet. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "sheet_lods.h"
+#include "sheet_tiles.h"
+#include "draw/drawing.h"
+#include "gpu/gpu_args.h"
+#include "draw/label.h"
+#include "cli/message.h"
+#include "file/png_file.h"
+#include "cli/options.h"
+#include "cli/verbs.h"
+
+#define SHEET_PIXELS_MAX 16384u /* high */
+
+typedef struct sheet {
+    sheet_tiles tiles;
+    uint32_t tile_count, columns, rows, tile; /* tile: pixels */
+    int show_bones, lods;
+    bounds box; /* of all tiles, relative to the anchor */
+    uint8_t *rgba;
+    const char *pack, *output, *driver, *camera;
+    load_options load;
+} sheet;
+
+typedef struct sheet_args {
+    const char *path, *accumulate, *transition;
+    double tile, tiles, columns;
+    sheet s;
+} sheet_args;
+
+static void place_tile(sheet *s, uint32_t tile, const uint8_t *rgba)
+{
+    char label[128];
+    size_t row = (size_t)s->columns * s->tile * 4;
+    uint8_t *to = s->rgba + (size_t)(tile / s->columns) * s->tile * row + (size_t)(tile % s->columns) * s->tile * 4;
+    for (uint32_t y = 0; y < s->tile; y++) {
+        memcpy(to + y * row, rgba + (size_t)y * s->tile * 4, (size_t)s->tile * 4);
+    }
+    sheet_tiles_label(&s->tiles, tile, label, sizeof label);
+    draw_text(s->rgba, s->columns * s->tile, s->rows * s->tile, (int)(tile % s->columns * s->tile) + 6,
+              (int)(tile / s->columns * s->tile) + 6, 1, label);
+}
+
+/* The camera follows the first joint over the ground, so that a walk stays in its tile. */
+static void anchor_of(const scene *s, double anchor[3])
+{
+    anchor[0] = s->skeleton.joint_count ? (double)s->joint_matrices[3] : 0.0;
+    anchor[1] = 0.0;
+    anchor[2] = s->skeleton.joint_count ? (double)s->joint_matrices[11] : 0.0;
+}
+
+static bounds move_box(bounds box, const double by[3], double sign)
+{
+    for (int c = 0; c < 3; c++) {
+        box.low[c] += sign * by[c];
+        box.high[c] += sign * by[c];
+    }
+    return box;
+}
+
+/* One box for all tiles, relative to the anchor, from at most 40 of the poses. */
+static int measure_tiles(sheet *s, int face)
+{
+    const scene *posed = &s->tiles.posed;
+    int status = 0;
+    for (uint32_t tile = 0; tile < s->tile_count && !status; tile += 1 + s->tile_count / 40) {
+        double anchor[3];
+        bounds box;
+        status = sheet_tiles_pose(&s->tiles, tile);
+        anchor_of(posed, anchor);
+        box = move_box(stage_bounds(posed, s->tiles.file, face, s->show_bones), anchor, -1.0);
+        s->box = tile ? bounds_union(s->box, box) : box;
+    }
+    return status;
+}
+
+static int tile_camera(const sheet *s, noh_gl_camera *camera)
+{
+    const view_options o = { s->camera, s->tile, s->tile };
+    double anchor[3];
+    bounds box;
+    anchor_of(&s->tiles.posed, anchor);
+    box = move_box(s->box, anchor, 1.0);
+    return view_camera(&o, &box, camera);
+}
+
+static int draw_tiles(sheet *s, stage *st)
+{
+    uint8_t *rgba = malloc((size_t)s->tile * s->tile * 4);
+    int status = rgba ? 0 : tool_fail(s->pack, "out of memory");
+    for (uint32_t tile = 0; tile < s->tile_count && !status; tile++) {
+        noh_gl_camera camera;
+        status = sheet_tiles_pose(&s->tiles, tile);
+        if (!status) status = tile_camera(s, &camera);
+        if (!status) status = stage_draw(st, &camera, rgba);
+        if (!status) place_tile(s, tile, rgba);
+    }
+    free(rgba);
+    return status;
+}
+
+static int draw_sheet(sheet *s)
+{
+    gpu g;
+    stage st;
+    const view_options o = { s->camera, s->tile, s->tile };
+    int status = measure_tiles(s, view_wants_face(&o));
+    if (!status) status = gpu_open(&g, s->driver);
+    if (status) {
+        return status;
+    }
+    status = stage_open(&st, &g, s->tiles.file, &s->tiles.posed, &s->load, s->show_bones, s->tile, s->tile);
+    if (!status) {
+        status = draw_tiles(s, &st);
+        stage_close(&st);
+    }
+    gpu_close(&g);
+    return status;
+}
+
+/* Empty tiles have the colour of the canvas's background. */
+static int make_picture(sheet *s)
+{
+    static const uint8_t background[4] = { CANVAS_BACKGROUND_SRGB, 255 };
+    size_t pixels = (size_t)s->columns * s->tile * s->rows * s->tile;
+    s->rgba = malloc(pixels * 4);
+    for (size_t i = 0; s->rgba && i < pixels; i++) {
+        memcpy(s->rgba + 4 * i, background, 4);
+    }
+    return s->rgba ? 0 : tool_fail(s->pack, "out of memory");
+}
+
+static int lay_out(sheet *s)
+{
+    s->tile_count = sheet_tiles_count(&s->tiles);
+    if (sheet_tiles_columns(&s->tiles)) {
+        s->columns = sheet_tiles_columns(&s->tiles);
+    } else if (!s->columns) {
+        s->columns = (uint32_t)ceil(sqrt((double)s->tile_count * 1.4));
+    }
+    s->columns = s->columns > s->tile_count ? s->tile_count : s->columns;
+    s->rows = (s->tile_count + s->columns - 1) / s->columns;
+    if ((uint64_t)s->tile * s->rows > SHEET_PIXELS_MAX) {
+        s->tile = 96; /* hundreds of targets */
+    }
+    return make_picture(s);
+}
+
+static int make_sheet(sheet *s, const pack_file *file)
+{
+    int status = sheet_tiles_open(&s->tiles, file);
+    if (!status) {
+        s->show_bones = stage_shows_bones(&s->tiles.rest, file, s->show_bones);
+        status = s->show_bones < 0 ? EXIT_FAILED : lay_out(s);
+    }
+    if (!status) status = draw_sheet(s);
+    if (!status) status = tool_write_png(s->output, s->columns * s->tile, s->rows * s->tile, s->rgba);
+    free(s->rgba);
+    sheet_tiles_close(&s->tiles);
+    return status;
+}
+
+static int check_clips(const sheet_tiles *t, const char *transition)
+{
+    if (strcmp(transition, "fade") != 0 && strcmp(transition, "inertia") != 0) {
+        return tool_usage("--transition wants fade or inertia, not '%s'", transition);
+    }
+    return t->over_s > 0.0 && t->over_s <= 60.0 ? 0 : tool_usage("--over wants up to 60 seconds");
+}
+
+static int check_args(sheet_args *a)
+{
+    sheet *s = &a->s;
+    int status = parse_path(a->path, &s->load.path);
+    if (!status) status = parse_accumulate(a->accumulate, &s->load.accumulate);
+    if (!status && !(a->tile >= 16.0 && a->tile <= 1024.0 && a->tiles >= 1.0 && a->tiles <= 1024.0 && a->columns >= 0.0 && a->columns <= 64.0)) {
+        status = tool_usage("sheet wants a --tile of 16 to 1024 pixels, 1 to 1024 --tiles and up to 64 --columns");
+    }
+    if (!status) status = check_clips(&s->tiles, a->transition);
+    s->tiles.inertia = strcmp(a->transition, "inertia") == 0;
+    s->tile = (uint32_t)a->tile;
+    s->tiles.clip_tiles = (uint32_t)a->tiles;
+    s->columns = (uint32_t)a->columns;
+    return status;
+}
+
+static int make_lods(const sheet *s, const pack_file *file)
+{
+    const sheet_lods o = { file, s->output, s->camera, s->driver, s->load, &s->tiles.only, s->tile };
+    return sheet_lods_write(&o);
+}
+
+static int run(void *args)
+{
+    sheet_args *a = args;
+    pack_file file;
+    int status = check_args(a);
+    if (!status) {
+        status = pack_file_open(&file, a->s.pack);
+        if (!status) {
+            status = a->s.lods ? make_lods(&a->s, &file) : make_sheet(&a->s, &file);
+            pack_file_close(&file);
+        }
+    }
+    return status;
+}
+
+static sheet_args arguments;
+
+static const option options[] = {
+    { .name = "-o", .kind = OPTION_OUTPUT, .at = offsetof(sheet_args, s.output), .required = 1, .value = "OUT.png",
+      .what = "the picture", .example = "sheet.png" },
+    { .name = "--target", .kind = OPTION_LIST, .at = offsetof(sheet_args, s.tiles.only), .value = "NAME[=V]",
+      .what = "a tile of this target alone, at weight V or 1; may repeat; with --lods a row of several: NAME[=V],NAME[=V]...",
+      .example = "smile=0.5", .excludes = "--clip --bones" },
+    { .name = "--clip", .kind = OPTION_LIST, .at = offsetof(sheet_args, s.tiles.clips), .value = "NAME",
+      .what = "show this clip in time; repeat it to play others along with the first", .example = "walk", .excludes = "--lods" },
+    OPTION_ANIM(sheet_args, s.tiles.anim, .needs = "--clip"),
+    { .name = "--tiles", .kind = OPTION_NUMBER, .at = offsetof(sheet_args, tiles), .value = "N", .initial = "24",
+      .what = "times of the clip that are shown, 1 to 1024", .example = "12", .needs = "--clip" },
+    { .name = "--blend", .kind = OPTION_TEXT, .at = offsetof(sheet_args, s.tiles.blend), .value = "CLIP",
+      .what = "blend the clip with this one, in step: five rows of weights from 0 to 1", .example = "run", .needs = "--clip", .excludes = "--to" },
+    { .name = "--to", .kind = OPTION_TEXT, .at = offsetof(sheet_args, s.tiles.to), .value = "CLIP",
+      .what = "a transition from the clip to this one", .example = "bow", .needs = "--clip" },
+    { .name = "--transition", .kind = OPTION_TEXT, .at = offsetof(sheet_args, transition), .value = "fade|inertia", .initial = "fade",
+      .what = "a cross-fade, or inertialization", .needs = "--to" },
+    { .name = "--over", .kind = OPTION_NUMBER, .at = offsetof(sheet_args, s.tiles.over_s), .value = "S", .initial = "0.3",
+      .what = "how long the transition takes, seconds, over 0, at most 60", .example = "0.5", .needs = "--to" },
+    { .name = "--lods", .kind = OPTION_FLAG, .at = offsetof(sheet_args, s.lods),
+      .what = "a column for each LOD level: at rest, with each --target (default: smiles), and as small as it is used", .excludes = "--bones" },
+    { .name = "--bones", .kind = OPTION_FLAG, .at = offsetof(sheet_args, s.show_bones),
+      .what = "draw the skeletons in place of the meshes" },
+    { .name = "--tile", .kind = OPTION_NUMBER, .at = offsetof(sheet_args, tile), .value = "N", .initial = "192",
+      .what = "side of a tile, pixels, 16 to 1024", .example = "256" },
+    { .name = "--columns", .kind = OPTION_NUMBER, .at = offsetof(sheet_args, columns), .value = "N",
+      .what = "tiles in a row, 1 to 64; default: nearly square", .example = "8", .excludes = "--lods --blend" },
+    OPTION_CAMERA(sheet_args, s.camera, "face"),
+    OPTION_PATH(sheet_args, path, .initial = "auto", .excludes = "--bones"),
+    OPTION_ACCUMULATE(sheet_args, accumulate, .initial = "auto", .excludes = "--bones"),
+    OPTION_DRIVER(sheet_args, s.driver, .initial = "egl"),
+};
+
+const verb verb_sheet = {
+    .name = "sheet",
+    .files = "PACK",
+    .what = "a contact sheet: every target at full weight, a clip in time, or the LOD levels",
+    .example = "face.noh -o targets.png\nbody.noh -o walk.png --clip walk --tiles 12 --camera body\nbody.noh -o bow.png --clip walk --to bow --transition inertia\nface.noh -o lods.png --lods --target smile --target jawOpen=0.6,smile",
+    .options = options,
+    .option_count = sizeof options / sizeof options[0],
+    .file_max = 1,
+    .files_at = offsetof(sheet_args, s.pack),
+    .args = &arguments,
+    .run = run,
+};

@@ -1,0 +1,227 @@
+#include "sheet_lods.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "draw/label.h"
+#include "cli/message.h"
+#include "file/png_file.h"
+
+#define USE_PIXELS 1.0 /* of error, at the size at which a level is used */
+
+typedef struct grid {
+    const sheet_lods *o;
+    scene scene;
+    gpu gpu;
+    uint32_t columns, rows; /* rows: rest, faces, size of use */
+    noh_gl_camera camera;
+    double tile_pixels_per_unit;
+    uint8_t *rgba, *cell;
+} grid;
+
+/* ---- faces ---- */
+
+static int apply_part(grid *g, const char *part, size_t length)
+{
+    static option_list one;
+    char text[NOH_NAME_BYTES_MAX + 32];
+    if (length >= sizeof text - 3) {
+        return tool_usage("--target wants NAME[=V][,NAME[=V]]...");
+    }
+    snprintf(text, sizeof text, "%.*s%s", (int)length, part, memchr(part, '=', length) ? "" : "=1");
+    one.count = 1;
+    one.items[0] = text;
+    return scene_set_weights(&g->scene, g->o->file, &one);
+}
+
+static int apply_named(grid *g, const char *face)
+{
+    int status = 0;
+    while (*face && !status) {
+        const size_t length = strcspn(face, ",");
+        status = apply_part(g, face, length);
+        face += length + (face[length] == ',');
+    }
+    return status;
+}
+
+static void apply_smile(grid *g)
+{
+    for (uint32_t i = 0; i < g->scene.item_count; i++) {
+        const noh_mesh *mesh = &g->scene.meshes[g->scene.items[i].mesh];
+        for (uint32_t t = 0; t < mesh->header->target_count; t++) {
+            const char *name = noh_pack_string(mesh->pack, mesh->targets[t].name);
+            if (strstr(name, "smile") || strstr(name, "Smile")) {
+                g->scene.items[i].weights[t] = 1.0f;
+            }
+        }
+    }
+}
+
+static uint32_t face_count(const sheet_lods *o) { return o->faces->count ? (uint32_t)o->faces->count : 1u; }
+
+/* The weights of a row, in place of those of the row before. */
+static int apply_row(grid *g, uint32_t row)
+{
+    for (uint32_t i = 0; i < g->scene.item_count; i++) {
+        memset(g->scene.items[i].weights, 0, sizeof(float) * g->scene.meshes[g->scene.items[i].mesh].header->target_count);
+    }
+    if (row == 0 || row + 1 == g->rows) {
+        return 0;
+    }
+    if (g->o->faces->count) {
+        return apply_named(g, g->o->faces->items[row - 1]);
+    }
+    apply_smile(g);
+    return 0;
+}
+
+/* ---- sizes ---- */
+
+/* Pixels of a tile per unit of length, at the centre of the view. */
+static double pixels_per_unit(const noh_gl_camera *camera, const bounds *box, uint32_t tile)
+{
+    const float *m = camera->view_projection;
+    double c[3], w = (double)m[15], up = 0.0;
+    for (int i = 0; i < 3; i++) {
+        c[i] = (box->low[i] + box->high[i]) / 2.0;
+        w += (double)m[4 * i + 3] * c[i];
+        up += (double)m[4 * i + 1] * (double)m[4 * i + 1];
+    }
+    return sqrt(up) / w * tile / 2.0;
+}
+
+/* The largest error of any mesh, world units. */
+static double level_error(const grid *g)
+{
+    double worst = 0.0;
+    for (uint32_t i = 0; i < g->o->file->pack.mesh_count; i++) {
+        const noh_mesh_header *h = g->scene.meshes[i].header;
+        const float errors[4] = { h->level_error_rest, h->level_error_targets, h->level_error_pairs, h->level_error_clip };
+        for (int k = 0; k < 4; k++) {
+            worst = fmax(worst, (double)errors[k] * (double)h->world_scale);
+        }
+    }
+    return worst;
+}
+
+static uint32_t size_of_use(const grid *g)
+{
+    const double error = level_error(g) * g->tile_pixels_per_unit, tile = g->o->tile;
+    const double size = error > 0.0 ? tile * USE_PIXELS / error : tile;
+    return (uint32_t)fmax(4.0, fmin(tile, size));
+}
+
+/* ---- cells ---- */
+
+static void place(grid *g, uint32_t column, uint32_t row, uint32_t size, const char *label)
+{
+    const uint32_t tile = g->o->tile, width = g->columns * tile, left = column * tile + (tile - size) / 2, top = row * tile + (tile - size) / 2;
+    for (uint32_t y = 0; y < size; y++) {
+        memcpy(g->rgba + 4 * ((size_t)(top + y) * width + left), g->cell + 4 * (size_t)y * size, 4 * (size_t)size);
+    }
+    draw_text(g->rgba, width, g->rows * tile, (int)(column * tile) + 6, (int)(row * tile) + 6, 1, label);
+}
+
+static void label_cell(const grid *g, uint32_t column, uint32_t row, uint32_t size, char *label, size_t bytes)
+{
+    uint32_t triangles = 0;
+    for (uint32_t i = 0; i < g->scene.item_count; i++) {
+        triangles += g->scene.meshes[g->scene.items[i].mesh].header->index_count / 3;
+    }
+    if (row == 0) {
+        snprintf(label, bytes, "level %u: %u triangles, %.2f mm", column, triangles, 1e3 * level_error(g));
+    } else if (row + 1 == g->rows) {
+        snprintf(label, bytes, "used up to %u pixels", size);
+    } else {
+        snprintf(label, bytes, "%s", g->o->faces->count ? g->o->faces->items[row - 1] : "smile");
+    }
+}
+
+static int draw_cell(grid *g, stage *st, uint32_t column, uint32_t row, uint32_t size)
+{
+    char label[160];
+    int status = apply_row(g, row);
+    if (!status) status = stage_draw(st, &g->camera, g->cell);
+    if (!status) {
+        label_cell(g, column, row, size, label, sizeof label);
+        place(g, column, row, size, label);
+    }
+    return status;
+}
+
+/* Some rows of a level, at one size. */
+static int draw_rows(grid *g, uint32_t column, uint32_t first, uint32_t end, uint32_t size)
+{
+    stage st;
+    int status = stage_open(&st, &g->gpu, g->o->file, &g->scene, &g->o->load, 0, size, size);
+    if (status) {
+        return status;
+    }
+    for (uint32_t row = first; row < end && !status; row++) {
+        status = draw_cell(g, &st, column, row, size);
+    }
+    stage_close(&st);
+    return status;
+}
+
+static int draw_level(grid *g, uint32_t level)
+{
+    int status = scene_set_level(&g->scene, g->o->file, level);
+    if (!status) status = draw_rows(g, level, 0, g->rows - 1, g->o->tile);
+    if (!status) status = draw_rows(g, level, g->rows - 1, g->rows, size_of_use(g));
+    return status;
+}
+
+/* ---- all of it ---- */
+
+static int make_picture(grid *g)
+{
+    static const uint8_t background[4] = { CANVAS_BACKGROUND_SRGB, 255 };
+    const size_t cell = (size_t)g->o->tile * g->o->tile, pixels = cell * g->columns * g->rows;
+    g->rgba = malloc(pixels * 4);
+    g->cell = malloc(cell * 4);
+    for (size_t i = 0; g->rgba && i < pixels; i++) {
+        memcpy(g->rgba + 4 * i, background, 4);
+    }
+    return g->rgba && g->cell ? 0 : tool_fail(g->o->output, "out of memory");
+}
+
+static int draw_all(grid *g)
+{
+    const sheet_lods *o = g->o;
+    const view_options view = { o->camera, o->tile, o->tile };
+    const bounds box = scene_bounds(&g->scene, o->file, view_wants_face(&view));
+    int status = view_camera(&view, &box, &g->camera);
+    g->columns = scene_level_count(&g->scene, o->file);
+    g->rows = 2 + face_count(o);
+    g->tile_pixels_per_unit = pixels_per_unit(&g->camera, &box, o->tile);
+    if (!status) status = make_picture(g);
+    for (uint32_t level = 0; level < g->columns && !status; level++) {
+        status = draw_level(g, level);
+    }
+    return status ? status : tool_write_png(o->output, g->columns * o->tile, g->rows * o->tile, g->rgba);
+}
+
+int sheet_lods_write(const sheet_lods *s)
+{
+    grid g;
+    int status;
+    memset(&g, 0, sizeof g);
+    g.o = s;
+    status = scene_init(&g.scene, s->file);
+    if (status) {
+        return status;
+    }
+    status = gpu_open(&g.gpu, s->driver);
+    if (!status) {
+        status = draw_all(&g);
+        gpu_close(&g.gpu);
+    }
+    scene_free(&g.scene);
+    free(g.rgba);
+    free(g.cell);
+    return status;
+}

@@ -1,0 +1,42 @@
+/* sheet_tiles.h: what the tiles of a contact sheet show: targets, a clip in time, two clips blended,
+ * a transition from one to another. */
+#ifndef NOH_NOH_SHEET_SHEET_TILES_H
+#define NOH_NOH_SHEET_SHEET_TILES_H
+
+#include "scene/scene.h"
+
+#define SHEET_BLEND_ROWS 5u /* weights 0, 1/4, 1/2, 3/4, 1 */
+
+/* What one tile shows. */
+typedef struct sheet_target {
+    char name[NOH_NAME_BYTES_MAX];
+    double weight;
+} sheet_target;
+
+typedef struct sheet_tiles {
+    const pack_file *file;
+    scene rest, posed;
+    option_list clips;   /* the first sets the time, the others play along */
+    const char *clip, *blend, *to, *anim; /* clip names; NULL: none */
+    int inertia;         /* the transition to `to`: 1 inertialization, 0 a cross-fade */
+    double over_s;       /* its duration */
+    double clip_seconds;
+    uint32_t clip_tiles; /* columns in time */
+    option_list only;    /* NAME or NAME=WEIGHT: targets to show instead of all */
+    sheet_target *targets; /* [target_count] */
+    uint32_t target_count;
+} sheet_tiles;
+
+/* Open the scene and find what was asked for. Prints an error and returns an exit code; 0 on success. */
+int sheet_tiles_open(sheet_tiles *t, const pack_file *file);
+void sheet_tiles_close(sheet_tiles *t);
+
+/* The number of tiles; and of columns, where the content dictates it (else 0). */
+uint32_t sheet_tiles_count(const sheet_tiles *t);
+uint32_t sheet_tiles_columns(const sheet_tiles *t);
+
+/* Put t->posed into a tile's pose. */
+int sheet_tiles_pose(sheet_tiles *t, uint32_t tile);
+void sheet_tiles_label(const sheet_tiles *t, uint32_t tile, char *text, size_t bytes);
+
+#endif

@@ -1,0 +1,312 @@
+/* verify_paths.c: the same random weights on every path that the driver has, and on the CPU. Sums of one vertex's deltas are
+ * taken in the pack's order everywhere, so that f32 accumulators are equal bit for bit; where half floats are blended, the
+ * CPU models the driver's rounding if the probe could name it. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/message.h"
+#include "gpu/readback.h"
+#include "verify.h"
+#include "verify_skin.h"
+
+#define ROUNDS 4 /* sets of random weights per path */
+
+/* xorshift64*: the same weights on every machine. */
+static double random_unit(uint64_t *state)
+{
+    *state ^= *state >> 12;
+    *state ^= *state << 25;
+    *state ^= *state >> 27;
+    return (double)((*state * 2685821657736338717ull) >> 40) / 16777216.0;
+}
+
+/* Weights from -1 to 2; in some rounds most are zero, as in real use. */
+static void random_weights(uint64_t *state, int round, float *weights, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        double skip = random_unit(state), value = random_unit(state) * 3.0 - 1.0;
+        weights[i] = (round & 1) && skip < 0.6 ? 0.0f : (float)value;
+    }
+}
+
+/* The exact model of what this path and format leave, or 0 when the driver's rounding is unknown. */
+static int reference(const verify_job *job, const noh_gl_morph_plan *plan, const noh_mesh *mesh, const float *weights,
+                     const noh_morph_layers *layers)
+{
+    if (plan->accumulate != NOH_ACCUMULATE_F16) {
+        noh_morph_accumulate_scalar(mesh, weights, layers);
+        return plan->path == NOH_MORPH_GATHER || plan->path == NOH_MORPH_CPU || job->g.caps.blend_f32_exact;
+    }
+    if (plan->path == NOH_MORPH_CPU || plan->path == NOH_MORPH_GATHER) {
+        noh_half_mode mode = plan->path == NOH_MORPH_CPU ? NOH_HALF_RNE : job->g.caps.f16_store_mode;
+        noh_morph_accumulate_scalar(mesh, weights, layers);
+        noh_morph_round_f16(mesh, mode, layers);
+        return mode != NOH_HALF_UNKNOWN;
+    }
+    noh_morph_accumulate_f16(mesh, weights, job->g.caps.f16_blend_mode, layers);
+    return job->g.caps.f16_blend_mode != NOH_HALF_UNKNOWN;
+}
+
+static void compare_layers(verify_row *row, const noh_mesh *mesh, const float *got, const float *expected)
+{
+    size_t texels = (size_t)mesh->header->morph_height << mesh->header->morph_width_log2;
+    for (size_t layer = 0; layer < 3; layer++) {
+        for (size_t i = 0; i < 3 * (size_t)mesh->header->touched_count; i++) {
+            size_t at = layer * texels * 3 + i;
+            row->values += 1;
+            row->differing += got[at] != expected[at]; /* -0 equals 0; a NaN differs from all */
+        }
+    }
+}
+
+/* f16 against exact: how far from f32 the positions are, in micrometres. */
+static void measure_f16(verify_row *row, const noh_mesh *mesh, const float *got, const float *exact)
+{
+    for (size_t v = 0; v < mesh->header->touched_count; v++) {
+        double square = 0.0;
+        for (size_t c = 0; c < 3; c++) {
+            double d = (double)got[3 * v + c] - (double)exact[3 * v + c];
+            square += d * d;
+        }
+        row->max_error_um = fmax(row->max_error_um, 1e6 * (double)mesh->header->world_scale * sqrt(square));
+    }
+}
+
+/* The fetched vertices: position is one exact sum; directions are compared within what a
+ * GPU's normalize may differ. */
+static void compare_vertices(verify_row *row, const noh_mesh *mesh, const noh_morph_layers *layers, const float *positions,
+                             const float *normals)
+{
+    for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
+        noh_vertex expected;
+        noh_morph_vertex(mesh, layers, v, &expected);
+        for (size_t c = 0; c < 3; c++) {
+            row->vertex_values += 1;
+            row->vertex_differing += positions[3 * v + c] != expected.position[c];
+            row->max_normal_error = fmax(row->max_normal_error, fabs((double)normals[3 * v + c] - (double)expected.normal[c]));
+        }
+    }
+}
+
+typedef struct verify_buffers {
+    float *weights, *got, *positions, *normals, *tangents;
+    void *expected, *exact;
+} verify_buffers;
+
+static int buffers_open(verify_buffers *b, const noh_mesh *mesh)
+{
+    size_t layers = noh_morph_layers_size(mesh) + 16, vertices = (size_t)mesh->header->vertex_count * 12;
+    b->weights = calloc(mesh->header->target_count + 1u, sizeof *b->weights);
+    b->got = malloc(layers);
+    b->expected = malloc(layers);
+    b->exact = malloc(layers);
+    b->positions = malloc(vertices);
+    b->normals = malloc(vertices);
+    b->tangents = malloc(vertices);
+    return !b->weights || !b->got || !b->expected || !b->exact || !b->positions || !b->normals || !b->tangents;
+}
+
+static void buffers_close(verify_buffers *b)
+{
+    free(b->weights);
+    free(b->got);
+    free(b->expected);
+    free(b->exact);
+    free(b->positions);
+    free(b->normals);
+    free(b->tangents);
+}
+
+/* One mesh, one path: several sets of weights. */
+static int verify_mesh(verify_job *job, gpu_morph *m, readback *r, uint32_t mesh_index, const noh_gl_mesh *gl_mesh, verify_row *row)
+{
+    const noh_mesh *mesh = &job->scene.meshes[mesh_index];
+    const noh_gl_morph_plan *plan = noh_gl_morph_plan_of(m->morph);
+    uint32_t instance = noh_gl_morph_instance(m->morph, mesh_index, 0);
+    size_t bytes = noh_morph_layers_size(mesh);
+    noh_gl_morph_binding binding = noh_gl_morph_binding_of(m->morph, instance);
+    verify_buffers b;
+    int status = buffers_open(&b, mesh) ? tool_fail(job->file.path, "out of memory") : 0;
+    for (int round = 0; round < ROUNDS && !status; round++) {
+        noh_morph_layers expected, exact;
+        random_weights(&job->state, round, b.weights, mesh->header->target_count);
+        noh_morph_layers_init(b.expected, bytes + 16, mesh, &expected, NULL);
+        noh_morph_layers_init(b.exact, bytes + 16, mesh, &exact, NULL);
+        row->exact &= reference(job, plan, mesh, b.weights, &expected);
+        noh_morph_accumulate_scalar(mesh, b.weights, &exact);
+        noh_gl_morph_set_weights(m->morph, instance, b.weights, NULL);
+        noh_gl_morph_update(m->morph, NULL);
+        status = readback_layers(r, mesh, &binding, b.got);
+        if (!status) {
+            status = readback_vertices(r, gl_mesh, &binding, b.positions, b.normals, b.tangents);
+        }
+        if (!status) {
+            compare_layers(row, mesh, b.got, b.expected);
+            compare_vertices(row, mesh, &expected, b.positions, b.normals);
+            measure_f16(row, mesh, b.got, b.exact);
+        }
+    }
+    buffers_close(&b);
+    return status;
+}
+
+static void set_bound(verify_job *job, verify_row *row, int half)
+{
+    for (uint32_t i = 0; half && i < job->file.pack.mesh_count; i++) {
+        const noh_mesh_header *h = job->scene.meshes[i].header;
+        row->bound_um = fmax(row->bound_um, 1e6 * (double)h->world_scale * (double)h->f16_position_bound);
+    }
+}
+
+/* The block that init takes: one byte less is refused and leaves it untouched. Returns the
+ * bytes that suffice, or 0 when a smaller block was accepted or written to. */
+static uint64_t least_block(verify_job *job, const noh_gl_morph_desc *desc, uint64_t predicted)
+{
+    noh_gl_morph *morph = NULL;
+    noh_error error = { NOH_OK, "", 0, 0 };
+    uint8_t *memory = malloc((size_t)predicted + 64);
+    int ok = memory != NULL;
+    if (ok) {
+        memset(memory, 0xa5, (size_t)predicted + 64);
+        ok = noh_gl_morph_init(memory, (size_t)predicted - 1, &(noh_gl_device){ &job->g.gl, &job->g.caps, &job->g.ledger, NULL, 0 }, desc,
+                               &morph, &error) == NOH_ERR_MEMORY && error.need == predicted;
+        for (size_t i = 0; i < (size_t)predicted + 64; i++) {
+            ok &= memory[i] == 0xa5;
+        }
+    }
+    free(memory);
+    return ok ? predicted : 0;
+}
+
+static int verify_path(verify_job *job, noh_morph_path path, noh_accumulate accumulate, const noh_gl_mesh *gl_meshes)
+{
+    verify_row *row = &job->rows[job->row_count++];
+    noh_gl_morph_desc desc;
+    noh_gl_morph_plan plan;
+    noh_error error = { NOH_OK, "", 0, 0 };
+    gpu_morph m;
+    readback r;
+    uint64_t before;
+    int status;
+    memset(row, 0, sizeof *row);
+    memset(&desc, 0, sizeof desc);
+    row->path = noh_morph_path_name(path);
+    row->accumulate = noh_accumulate_name(accumulate);
+    desc.meshes = job->scene.meshes;
+    desc.mesh_count = job->file.pack.mesh_count;
+    desc.path = path;
+    desc.accumulate = accumulate;
+    if (noh_gl_morph_plan_make(&desc, &job->g.caps, &plan, &error)) {
+        row->reason = error.what;
+        return 0;
+    }
+    row->available = row->exact = 1;
+    row->reason = plan.reason;
+    row->cpu_predicted = plan.cpu_bytes;
+    row->gpu_predicted = plan.gpu_bytes;
+    set_bound(job, row, accumulate == NOH_ACCUMULATE_F16);
+    row->cpu_used = least_block(job, &desc, plan.cpu_bytes);
+    before = noh_gl_ledger_bytes(&job->g.ledger);
+    status = gpu_morph_open(&m, &job->g, &desc, job->file.path);
+    if (status) {
+        return status;
+    }
+    row->gpu_used = noh_gl_ledger_bytes(&job->g.ledger) - before;
+    status = readback_open(&r, &job->g, plan.layer_format == GL_RGBA32UI);
+    for (uint32_t i = 0; i < desc.mesh_count && !status; i++) {
+        status = verify_mesh(job, &m, &r, i, &gl_meshes[i], row);
+    }
+    readback_close(&r);
+    gpu_morph_close(&m);
+    job->failed |= status || verify_row_failed(row);
+    return status;
+}
+
+/* The SIMD build against plain C, on the same weights. */
+static int verify_simd(verify_job *job)
+{
+    verify_row *row = &job->rows[job->row_count++];
+    int status = 0;
+    memset(row, 0, sizeof *row);
+    row->path = "cpu-simd";
+    row->accumulate = "f32";
+    row->reason = noh_morph_simd();
+    row->available = row->exact = 1;
+    for (uint32_t i = 0; i < job->file.pack.mesh_count && !status; i++) {
+        const noh_mesh *mesh = &job->scene.meshes[i];
+        size_t bytes = noh_morph_layers_size(mesh);
+        verify_buffers b;
+        status = buffers_open(&b, mesh) ? tool_fail(job->file.path, "out of memory") : 0;
+        for (int round = 0; round < ROUNDS && !status; round++) {
+            noh_morph_layers expected, got;
+            random_weights(&job->state, round, b.weights, mesh->header->target_count);
+            noh_morph_layers_init(b.expected, bytes + 16, mesh, &expected, NULL);
+            noh_morph_layers_init(b.got, bytes + 16, mesh, &got, NULL);
+            noh_morph_accumulate_scalar(mesh, b.weights, &expected);
+            noh_morph_accumulate(mesh, b.weights, &got);
+            compare_layers(row, mesh, b.got, (float *)b.expected);
+        }
+        buffers_close(&b);
+    }
+    job->failed |= status || verify_row_failed(row);
+    return status;
+}
+
+/* Palettes in a uniform block, in a texture: skinned vertices within their bound of the CPU's. */
+static int verify_skins(verify_job *job, const noh_gl_mesh *gl_meshes)
+{
+    static const char *const names[] = { "", "skin/block", "skin/tex" };
+    int status = 0;
+    for (int mode = NOH_PALETTE_UNIFORM; mode <= NOH_PALETTE_TEXTURE && !status; mode++) {
+        verify_row *row = &job->rows[job->row_count++];
+        verify_skin skin;
+        memset(row, 0, sizeof *row);
+        skin.bound_scale = job->bound_scale;
+        status = verify_skin_run(&job->g, &job->file, &job->scene, gl_meshes, (noh_palette_mode)mode, &job->state, &skin);
+        row->path = names[mode];
+        row->accumulate = "f32";
+        row->reason = "skinned vertices";
+        row->available = row->exact = 1;
+        row->vertex_values = skin.values;
+        row->max_error_um = skin.error_um;
+        row->bound_um = skin.bound_um;
+        row->max_normal_error = skin.normal_error;
+        row->cpu_predicted = row->cpu_used = skin.cpu_predicted;
+        row->gpu_predicted = skin.gpu_predicted;
+        row->gpu_used = skin.gpu_used;
+        job->failed |= status || verify_row_failed(row);
+    }
+    return status;
+}
+
+int verify_paths(verify_job *job)
+{
+    static const noh_morph_path paths[] = { NOH_MORPH_LAYERED, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER, NOH_MORPH_GATHER, NOH_MORPH_CPU };
+    uint32_t count = job->file.pack.mesh_count;
+    noh_gl_mesh *gl_meshes = calloc(count + 1u, sizeof *gl_meshes);
+    noh_error error = { NOH_OK, "", 0, 0 };
+    int status = gl_meshes ? 0 : tool_fail(job->file.path, "out of memory");
+    for (uint32_t i = 0; i < count && !status; i++) {
+        if (noh_gl_mesh_create(&job->g.gl, &job->g.ledger, &job->scene.meshes[i], &gl_meshes[i], &error)) {
+            status = tool_fail_error(job->file.path, &error);
+        }
+    }
+    if (!status) {
+        status = verify_simd(job);
+    }
+    for (int a = NOH_ACCUMULATE_F32; a <= NOH_ACCUMULATE_F16 && !status; a++) {
+        for (size_t p = 0; p < sizeof paths / sizeof paths[0] && !status; p++) {
+            status = verify_path(job, paths[p], (noh_accumulate)a, gl_meshes);
+        }
+    }
+    if (!status && verify_skin_wanted(&job->scene, &job->file.pack)) {
+        status = verify_skins(job, gl_meshes);
+    }
+    for (uint32_t i = 0; gl_meshes && i < count; i++) {
+        noh_gl_mesh_delete(&job->g.gl, &job->g.ledger, &gl_meshes[i]);
+    }
+    free(gl_meshes);
+    verify_check_memory(job, noh_gl_ledger_bytes(&job->g.ledger) == 0, "GPU memory was not given back");
+    return status;
+}

@@ -1,0 +1,85 @@
+/* cmd_view.c: a pack or a model in a window. What shows it is in view/, or in view_without.c where libraries are missing. */
+#include <string.h>
+
+#include "view/view_window.h"
+#include "gpu/gpu_args.h"
+#include "cli/message.h"
+#include "cli/options.h"
+#include "cli/verbs.h"
+
+typedef struct view_args {
+    const char *path, *accumulate, *driver, *lod;
+    double frames;
+    uint32_t size[2];
+    view_run run;
+} view_args;
+
+static int check_args(view_args *a)
+{
+    int status = parse_path(a->path, &a->run.desc.load.path);
+    if (!status) status = parse_accumulate(a->accumulate, &a->run.desc.load.accumulate);
+    if (!status && a->lod) status = parse_levels(a->lod, &a->run.desc.lod.level_count, &a->run.desc.lod.by_error);
+    if (status) {
+        return status;
+    }
+    if (a->frames < 0.0 || a->frames > 1e6 || a->frames != (double)(uint32_t)a->frames) {
+        return tool_usage("--frames wants a whole number up to 1000000");
+    }
+    if (a->run.screenshot && a->frames < 1.0) {
+        return tool_usage("--screenshot wants --frames N, after which it is taken");
+    }
+    if (strcmp(a->driver, "egl") != 0 && strcmp(a->driver, "native") != 0) {
+        return tool_usage("--driver wants egl or native, not '%s'", a->driver);
+    }
+    return 0;
+}
+
+static int run(void *args)
+{
+    view_args *a = args;
+    int status = check_args(a);
+    if (status) {
+        return status;
+    }
+    a->run.frames = (uint32_t)a->frames;
+    a->run.native = a->driver[0] == 'n';
+    a->run.desc.lod.mode = LOD_FAST; /* conversion stays quick */
+    a->run.desc.width = a->size[0];
+    a->run.desc.height = a->size[1];
+    return view_window_run(&a->run);
+}
+
+static view_args arguments;
+
+static const option options[] = {
+    OPTION_ANIM(view_args, run.desc.anim, .needs = NULL),
+    { .name = "--clip", .kind = OPTION_TEXT, .at = offsetof(view_args, run.clip), .value = "NAME",
+      .what = "play this clip from the start", .example = "walk" },
+    { .name = "--bones", .kind = OPTION_FLAG, .at = offsetof(view_args, run.desc.show_bones),
+      .what = "draw the skeletons in place of the meshes" },
+    { .name = "--lod", .kind = OPTION_TEXT, .at = offsetof(view_args, lod), .value = "auto|N",
+      .what = "LOD levels that a model is converted with, 1 to 8 with the full mesh; auto: up to five, by error", .example = "4" },
+    OPTION_PATH(view_args, path, .initial = "auto"),
+    OPTION_ACCUMULATE(view_args, accumulate, .initial = "auto"),
+    { .name = "--driver", .kind = OPTION_TEXT, .at = offsetof(view_args, driver), .value = "egl|native", .initial = "egl",
+      .what = "how the window gets its GL context" },
+    { .name = "--size", .kind = OPTION_SIZE, .at = offsetof(view_args, size), .value = "WxH", .initial = "1280x800",
+      .what = "size of the window, points, 1 to 8192 each", .example = "1600x900" },
+    { .name = "--frames", .kind = OPTION_NUMBER, .at = offsetof(view_args, frames), .value = "N",
+      .what = "draw so many frames, each 1/60 s of the clips, and end; default: until the window is closed", .example = "60" },
+    { .name = "--screenshot", .kind = OPTION_OUTPUT, .at = offsetof(view_args, run.screenshot), .value = "OUT.png",
+      .what = "a picture of the last of --frames", .example = "window.png" },
+};
+
+const verb verb_view = {
+    .name = "view",
+    .files = "PACK|MODEL",
+    .what = "a window: sliders, clips, events, memory and times; shows files that are dropped on it",
+    .example = "head.glb\nbody.noh --clip walk\nbody.noh --frames 60 --screenshot window.png",
+    .options = options,
+    .option_count = sizeof options / sizeof options[0],
+    .file_max = 1,
+    .files_at = offsetof(view_args, run.desc.path),
+    .args = &arguments,
+    .run = run,
+};
