@@ -22,26 +22,27 @@
 #define ANGLE_DEVICE_SWIFTSHADER 0x3487
 
 #define EGL_HINT "to install on Debian: libegl1 libgles2 libegl-mesa0 libgl1-mesa-dri\n"
-#define ANGLE_HINT "NOH_ANGLE must name the folder that holds ANGLE's libEGL.so and libGLESv2.so (tools/angle.sh makes one)\n"
+#define ANGLE_HINT \
+    "NOH_ANGLE must name the folder that holds ANGLE's libEGL.so and libGLESv2.so (tools/angle.sh makes one)\n"
 #define DEVICES_MAX 16
 
 /* X(field, the name in its PFNEGL...PROC type) */
-#define EGL_FUNCTIONS(X)                         \
-    X(GetError, GETERROR)                        \
-    X(GetDisplay, GETDISPLAY)                    \
-    X(Initialize, INITIALIZE)                    \
-    X(Terminate, TERMINATE)                      \
-    X(QueryString, QUERYSTRING)                  \
-    X(BindAPI, BINDAPI)                          \
-    X(ChooseConfig, CHOOSECONFIG)                \
-    X(CreateContext, CREATECONTEXT)              \
-    X(DestroyContext, DESTROYCONTEXT)            \
+#define EGL_FUNCTIONS(X)                          \
+    X(GetError, GETERROR)                         \
+    X(GetDisplay, GETDISPLAY)                     \
+    X(Initialize, INITIALIZE)                     \
+    X(Terminate, TERMINATE)                       \
+    X(QueryString, QUERYSTRING)                   \
+    X(BindAPI, BINDAPI)                           \
+    X(ChooseConfig, CHOOSECONFIG)                 \
+    X(CreateContext, CREATECONTEXT)               \
+    X(DestroyContext, DESTROYCONTEXT)             \
     X(CreatePbufferSurface, CREATEPBUFFERSURFACE) \
-    X(CreateWindowSurface, CREATEWINDOWSURFACE)  \
-    X(QuerySurface, QUERYSURFACE)                \
-    X(SwapBuffers, SWAPBUFFERS)                  \
-    X(DestroySurface, DESTROYSURFACE)            \
-    X(MakeCurrent, MAKECURRENT)                  \
+    X(CreateWindowSurface, CREATEWINDOWSURFACE)   \
+    X(QuerySurface, QUERYSURFACE)                 \
+    X(SwapBuffers, SWAPBUFFERS)                   \
+    X(DestroySurface, DESTROYSURFACE)             \
+    X(MakeCurrent, MAKECURRENT)                   \
     X(GetProcAddress, GETPROCADDRESS)
 
 typedef struct egl_api {
@@ -91,21 +92,33 @@ static int lists(const char *extensions, const char *name)
 static EGLContext create_context(const egl_api *egl, EGLDisplay display, EGLConfig config, int highest)
 {
     for (int version = highest; version >= 300; version -= 10) {
-        const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, version / 100, EGL_CONTEXT_MINOR_VERSION,
-                                     version / 10 % 10, EGL_NONE};
+        const EGLint attributes[] = { EGL_CONTEXT_MAJOR_VERSION, version / 100, EGL_CONTEXT_MINOR_VERSION,
+                                      version / 10 % 10, EGL_NONE };
         EGLContext context = egl->CreateContext(display, config, EGL_NO_CONTEXT, attributes);
         if (context != EGL_NO_CONTEXT) return context;
     }
     /* EGL 1.4 without EGL_KHR_create_context knows only the major version. */
-    const EGLint attributes[] = {EGL_CONTEXT_CLIENT_VERSION, 3, EGL_NONE};
+    const EGLint attributes[] = { EGL_CONTEXT_CLIENT_VERSION, 3, EGL_NONE };
     return egl->CreateContext(display, config, EGL_NO_CONTEXT, attributes);
 }
 
 static int choose_config(const attempt *at, EGLDisplay display, EGLint surface_type, EGLConfig *config)
 {
-    const EGLint attributes[] = {EGL_SURFACE_TYPE, surface_type, EGL_RENDERABLE_TYPE, EGL_OPENGL_ES3_BIT,
-                                 EGL_RED_SIZE, 8, EGL_GREEN_SIZE, 8, EGL_BLUE_SIZE, 8, EGL_ALPHA_SIZE, 8,
-                                 EGL_SAMPLES, at->desc->samples, EGL_NONE};
+    const EGLint attributes[] = { EGL_SURFACE_TYPE,
+                                  surface_type,
+                                  EGL_RENDERABLE_TYPE,
+                                  EGL_OPENGL_ES3_BIT,
+                                  EGL_RED_SIZE,
+                                  8,
+                                  EGL_GREEN_SIZE,
+                                  8,
+                                  EGL_BLUE_SIZE,
+                                  8,
+                                  EGL_ALPHA_SIZE,
+                                  8,
+                                  EGL_SAMPLES,
+                                  at->desc->samples,
+                                  EGL_NONE };
     EGLint count = 0;
     return at->egl.ChooseConfig(display, attributes, config, 1, &count) && count > 0;
 }
@@ -121,7 +134,7 @@ static EGLSurface create_pbuffer(const attempt *at, EGLDisplay display, EGLConfi
 {
     EGLint width = at->desc->width ? (EGLint)at->desc->width : 1;
     EGLint height = at->desc->height ? (EGLint)at->desc->height : 1;
-    const EGLint attributes[] = {EGL_WIDTH, width, EGL_HEIGHT, height, EGL_NONE};
+    const EGLint attributes[] = { EGL_WIDTH, width, EGL_HEIGHT, height, EGL_NONE };
     return at->egl.CreatePbufferSurface(display, config, attributes);
 }
 
@@ -132,11 +145,12 @@ typedef struct surface_kind {
     const char *no_config, *no_current;
 } surface_kind;
 
-static const surface_kind no_surface = {0, NULL, "no config for OpenGL ES 3", "cannot make current without a surface"};
-static const surface_kind pbuffer = {EGL_PBUFFER_BIT, create_pbuffer, "no pbuffer config for OpenGL ES 3",
-                                     "cannot make current with a pbuffer"};
-static const surface_kind window = {EGL_WINDOW_BIT, create_window, "no window config for OpenGL ES 3",
-                                    "cannot make current with the window"};
+static const surface_kind no_surface = { 0, NULL, "no config for OpenGL ES 3",
+                                         "cannot make current without a surface" };
+static const surface_kind pbuffer = { EGL_PBUFFER_BIT, create_pbuffer, "no pbuffer config for OpenGL ES 3",
+                                      "cannot make current with a pbuffer" };
+static const surface_kind window = { EGL_WINDOW_BIT, create_window, "no window config for OpenGL ES 3",
+                                     "cannot make current with the window" };
 
 static int make_context(attempt *at, EGLDisplay display, const char *way, const surface_kind *kind)
 {
@@ -155,7 +169,7 @@ static int make_context(attempt *at, EGLDisplay display, const char *way, const 
     EGLSurface surface = kind->create ? kind->create(at, display, config) : EGL_NO_SURFACE;
     int usable = !kind->create || surface != EGL_NO_SURFACE;
     if (usable && egl->MakeCurrent(display, surface, surface, context)) {
-        *at->made = (noh_platform_context){at->egl, display, context, surface};
+        *at->made = (noh_platform_context){ at->egl, display, context, surface };
         return 1;
     }
     say(at, way, kind->no_current);
@@ -238,8 +252,8 @@ static int try_system(attempt *at)
 static int try_angle(attempt *at)
 {
     const char *way = "ANGLE on SwiftShader";
-    static const EGLint attributes[] = {ANGLE_PLATFORM_TYPE, ANGLE_TYPE_VULKAN, ANGLE_DEVICE_TYPE,
-                                        ANGLE_DEVICE_SWIFTSHADER, EGL_NONE};
+    static const EGLint attributes[] = { ANGLE_PLATFORM_TYPE, ANGLE_TYPE_VULKAN, ANGLE_DEVICE_TYPE,
+                                         ANGLE_DEVICE_SWIFTSHADER, EGL_NONE };
     PFNEGLGETPLATFORMDISPLAYEXTPROC get = platform_display(&at->egl);
     if (!get) {
         say(at, way, "no eglGetPlatformDisplayEXT");
@@ -255,7 +269,7 @@ static int load_egl(attempt *at, const char *path)
     void *library = noh_library_open(path, at->message, at->message_bytes);
     if (!library) return 0;
     const char *missing = NULL;
-#define EGL_TAKE(field, TYPE)                                                     \
+#define EGL_TAKE(field, TYPE)                                                    \
     at->egl.field = (PFNEGL##TYPE##PROC)noh_library_proc(library, "egl" #field); \
     if (!missing && !at->egl.field) missing = "egl" #field;
     EGL_FUNCTIONS(EGL_TAKE)
@@ -296,8 +310,9 @@ static noh_result create_with(const noh_platform_desc *desc, noh_platform_contex
     if (message_bytes) message[0] = 0;
     noh_platform_context *context = calloc(1, sizeof *context);
     if (!context) return NOH_ERR_MEMORY;
-    attempt at = {.desc = desc ? desc : &defaults, .message = message, .message_bytes = message_bytes,
-                  .made = context};
+    attempt at = {
+        .desc = desc ? desc : &defaults, .message = message, .message_bytes = message_bytes, .made = context
+    };
     if (load(&at) && make(&at)) {
         if (message_bytes) message[0] = 0;
         *out = context;
@@ -343,7 +358,7 @@ static noh_result present(noh_platform_context *context)
 
 static void size(noh_platform_context *context, uint32_t *width, uint32_t *height)
 {
-    EGLint side[2] = {0, 0};
+    EGLint side[2] = { 0, 0 };
     if (context->surface != EGL_NO_SURFACE) {
         context->egl.QuerySurface(context->display, context->surface, EGL_WIDTH, &side[0]);
         context->egl.QuerySurface(context->display, context->surface, EGL_HEIGHT, &side[1]);
@@ -364,9 +379,12 @@ static void destroy(noh_platform_context *context)
 }
 
 const noh_platform noh_platform_egl = {
-    "egl", "the system's EGL (Mesa or a vendor's driver), headless or in your window", create_system, make_current, get_proc,
-    present, size, destroy
+    "egl",         "the system's EGL (Mesa or a vendor's driver), headless or in your window",
+    create_system, make_current,
+    get_proc,      present,
+    size,          destroy
 };
-const noh_platform noh_platform_angle = {
-    "angle", "ANGLE on SwiftShader, from a Chromium installation", create_angle, make_current, get_proc, present, size, destroy
-};
+const noh_platform noh_platform_angle = { "angle",      "ANGLE on SwiftShader, from a Chromium installation",
+                                          create_angle, make_current,
+                                          get_proc,     present,
+                                          size,         destroy };

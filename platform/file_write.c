@@ -1,7 +1,8 @@
 /* file_write.c: whole files out.
  *
  * Replacing a file by rename is atomic, but it replaces the directory entry: a symbolic link would become a file, and a
- * device node would be lost. So links are followed by hand first, and what is not a regular file is written in place. */
+ * device node would be lost. So links are followed by hand first, and what is not a regular file is written in place.
+ */
 #define _POSIX_C_SOURCE 200809L
 
 #include "platform.h"

@@ -19,16 +19,16 @@ typedef struct glfw_window glfw_window;
 typedef struct glfw_monitor glfw_monitor;
 
 /* X(field, result, parameters) */
-#define GLFW_FUNCTIONS(X)                                                                              \
-    X(Init, int, (void))                                                                               \
-    X(WindowHint, void, (int hint, int value))                                                         \
+#define GLFW_FUNCTIONS(X)                                                                                     \
+    X(Init, int, (void))                                                                                      \
+    X(WindowHint, void, (int hint, int value))                                                                \
     X(CreateWindow, glfw_window *, (int width, int height, const char *title, glfw_monitor *, glfw_window *)) \
-    X(DestroyWindow, void, (glfw_window *))                                                            \
-    X(MakeContextCurrent, void, (glfw_window *))                                                       \
-    X(GetCurrentContext, glfw_window *, (void))                                                        \
-    X(GetProcAddress, noh_gl_proc, (const char *name))                                                 \
-    X(GetFramebufferSize, void, (glfw_window *, int *width, int *height))                              \
-    X(SwapBuffers, void, (glfw_window *))                                                              \
+    X(DestroyWindow, void, (glfw_window *))                                                                   \
+    X(MakeContextCurrent, void, (glfw_window *))                                                              \
+    X(GetCurrentContext, glfw_window *, (void))                                                               \
+    X(GetProcAddress, noh_gl_proc, (const char *name))                                                        \
+    X(GetFramebufferSize, void, (glfw_window *, int *width, int *height))                                     \
+    X(SwapBuffers, void, (glfw_window *))                                                                     \
     X(GetError, int, (const char **description))
 
 struct noh_platform_context {
@@ -43,8 +43,8 @@ static int load(noh_platform_context *to, char *message, size_t message_bytes)
     void *library = noh_library_open("libglfw.so.3", message, message_bytes);
     const char *missing = NULL;
     if (!library) return 0;
-#define GLFW_TAKE(field, result, parameters)                                           \
-    to->field = (result(*) parameters)noh_library_proc(library, "glfw" #field);        \
+#define GLFW_TAKE(field, result, parameters)                                    \
+    to->field = (result(*) parameters)noh_library_proc(library, "glfw" #field); \
     if (!missing && !to->field) missing = "glfw" #field;
     GLFW_FUNCTIONS(GLFW_TAKE)
 #undef GLFW_TAKE
@@ -74,7 +74,7 @@ static glfw_window *open_window(const noh_platform_context *c, const noh_platfor
 /* EGL first, which gives the version that was asked for; then GLX or WGL. */
 static int open_any(noh_platform_context *c, const noh_platform_desc *desc, char *message, size_t message_bytes)
 {
-    static const int apis[] = {GLFW_EGL_CONTEXT_API, GLFW_NATIVE_CONTEXT_API};
+    static const int apis[] = { GLFW_EGL_CONTEXT_API, GLFW_NATIVE_CONTEXT_API };
     if (!c->Init()) {
         say(c, "glfwInit", message, message_bytes);
         return 0;
@@ -115,7 +115,8 @@ static noh_result create(const noh_platform_desc *desc, noh_platform_context **o
         *out = context;
         return NOH_OK;
     }
-    noh_message_add(message, message_bytes, "to install on Debian: libglfw3; it needs a display (DISPLAY, or xvfb-run)\n");
+    noh_message_add(message, message_bytes,
+                    "to install on Debian: libglfw3; it needs a display (DISPLAY, or xvfb-run)\n");
     destroy(context);
     return NOH_ERR_UNSUPPORTED;
 }

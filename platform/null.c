@@ -14,7 +14,11 @@ static const char *const call_names[NULL_CALL_COUNT] = {
 #define NULL_NAME(field, TYPE) "gl" #field,
     NULL_CALLS(NULL_NAME)
 #undef NULL_NAME
-    "glFramebufferTexture", "glObjectLabel", "glPushDebugGroup", "glPopDebugGroup", "glDebugMessageCallback",
+        "glFramebufferTexture",
+    "glObjectLabel",
+    "glPushDebugGroup",
+    "glPopDebugGroup",
+    "glDebugMessageCallback",
     "glDebugMessageControl"
 };
 
@@ -133,8 +137,8 @@ static noh_gl_proc find(const null_entry *entries, const char *name)
 static noh_gl_proc get_proc(void *user, const char *name)
 {
     (void)user;
-    static const null_entry *const tables[] = {noh_null_object_functions, noh_null_program_functions, noh_null_draw_functions,
-                                               noh_null_state_functions};
+    static const null_entry *const tables[] = { noh_null_object_functions, noh_null_program_functions,
+                                                noh_null_draw_functions, noh_null_state_functions };
     noh_gl_proc proc = NULL;
     for (size_t i = 0; i < sizeof tables / sizeof *tables && !proc; i++) proc = find(tables[i], name);
     return proc;
@@ -158,6 +162,7 @@ static void destroy(noh_platform_context *context)
     free(context);
 }
 
-const noh_platform noh_platform_null = {
-    "null", "no GL: calls are counted and checked, nothing is drawn", create, make_current, get_proc, present, size, destroy
-};
+const noh_platform noh_platform_null = { "null",   "no GL: calls are counted and checked, nothing is drawn",
+                                         create,   make_current,
+                                         get_proc, present,
+                                         size,     destroy };

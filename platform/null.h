@@ -31,16 +31,16 @@ typedef enum noh_null_kind {
 #define NOH_NULL_KINDS 7
 
 typedef struct noh_null_report {
-    uint64_t calls;        /* since noh_null_count_anew, as the next three */
-    uint32_t draws;        /* glDraw* */
-    uint32_t outside;      /* draws and clears outside every debug group */
-    uint32_t allocations;  /* calls that make an object or its storage: a steady frame has none */
-    uint32_t violations;   /* since the context was made */
-    char first[160];       /* the first violation: "glDrawElements: no program in use"; "" for none */
+    uint64_t calls;                /* since noh_null_count_anew, as the next three */
+    uint32_t draws;                /* glDraw* */
+    uint32_t outside;              /* draws and clears outside every debug group */
+    uint32_t allocations;          /* calls that make an object or its storage: a steady frame has none */
+    uint32_t violations;           /* since the context was made */
+    char first[160];               /* the first violation: "glDrawElements: no program in use"; "" for none */
     uint32_t live[NOH_NULL_KINDS]; /* objects that were made and not deleted */
-    uint32_t unlabelled;   /* of them, those without a debug label */
-    uint64_t bytes;        /* storage of buffers, textures and renderbuffers that live */
-    uint32_t groups;       /* debug groups that are open */
+    uint32_t unlabelled;           /* of them, those without a debug label */
+    uint64_t bytes;                /* storage of buffers, textures and renderbuffers that live */
+    uint32_t groups;               /* debug groups that are open */
 } noh_null_report;
 
 void noh_null_report_of(const noh_platform_context *context, noh_null_report *report);

@@ -45,7 +45,8 @@ static void attach(int call, GLenum target, GLenum at, GLuint name, int is_textu
     const null_object *object = NULL;
     if (name) object = noh_null_object(call, is_texture ? NOH_NULL_TEXTURE : NOH_NULL_RENDERBUFFER, name);
     if (object && !object->ready) noh_null_wrong(call, "what is attached has no storage");
-    if (object && is_texture && layer >= (object->layers ? object->layers : 1)) noh_null_wrong(call, "no layer %d", layer);
+    if (object && is_texture && layer >= (object->layers ? object->layers : 1))
+        noh_null_wrong(call, "no layer %d", layer);
     if (index >= NULL_ATTACHMENTS) {
         noh_null_wrong(call, "the null platform has no attachment 0x%x", (unsigned)at);
     } else if (f) {
@@ -108,7 +109,8 @@ static void check_read(int call)
     if (!noh_null_complete(c, c->read_framebuffer)) noh_null_wrong(call, "the read framebuffer is not complete");
 }
 
-static void GL_APIENTRY null_ReadPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, void *pixels)
+static void GL_APIENTRY null_ReadPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type,
+                                        void *pixels)
 {
     (void)x;
     (void)y;
@@ -125,8 +127,8 @@ static void check_target(int call)
     c->outside += c->groups == 0;
 }
 
-static void GL_APIENTRY null_BlitFramebuffer(GLint x0, GLint y0, GLint x1, GLint y1, GLint u0, GLint v0, GLint u1, GLint v1,
-                                             GLbitfield mask, GLenum filter)
+static void GL_APIENTRY null_BlitFramebuffer(GLint x0, GLint y0, GLint x1, GLint y1, GLint u0, GLint v0, GLint u1,
+                                             GLint v1, GLbitfield mask, GLenum filter)
 {
     (void)x0, (void)y0, (void)x1, (void)y1, (void)u0, (void)v0, (void)u1, (void)v1, (void)mask, (void)filter;
     check_read(NULL_BlitFramebuffer);
@@ -206,7 +208,8 @@ static void GL_APIENTRY null_VertexAttribPointer(GLuint index, GLint components,
     set_pointer(NULL_VertexAttribPointer, index, components, type, stride, offset);
 }
 
-static void GL_APIENTRY null_VertexAttribIPointer(GLuint index, GLint components, GLenum type, GLsizei stride, const void *offset)
+static void GL_APIENTRY null_VertexAttribIPointer(GLuint index, GLint components, GLenum type, GLsizei stride,
+                                                  const void *offset)
 {
     set_pointer(NULL_VertexAttribIPointer, index, components, type, stride, offset);
 }
@@ -248,8 +251,10 @@ static const null_object *check_draw(int call, GLsizei vertices, GLsizei instanc
     check_target(call);
     c->draws++;
     if (vertices < 0 || instances < 1) noh_null_wrong(call, "%d vertices, %d instances", vertices, instances);
-    if (c->program == 0) noh_null_wrong(call, "no program in use");
-    else noh_null_object(call, NOH_NULL_PROGRAM, c->program);
+    if (c->program == 0)
+        noh_null_wrong(call, "no program in use");
+    else
+        noh_null_object(call, NOH_NULL_PROGRAM, c->program);
     check_feedback(call, c);
     if (c->vertex_array == 0) {
         noh_null_wrong(call, "no vertex array is bound");
@@ -294,18 +299,33 @@ static void GL_APIENTRY null_DrawElements(GLenum mode, GLsizei count, GLenum typ
     draw_elements(NULL_DrawElements, count, type, offset, 1);
 }
 
-static void GL_APIENTRY null_DrawElementsInstanced(GLenum mode, GLsizei count, GLenum type, const void *offset, GLsizei instances)
+static void GL_APIENTRY null_DrawElementsInstanced(GLenum mode, GLsizei count, GLenum type, const void *offset,
+                                                   GLsizei instances)
 {
     (void)mode;
     draw_elements(NULL_DrawElementsInstanced, count, type, offset, instances);
 }
 
-const null_entry noh_null_draw_functions[] = {
-    NULL_ENTRY(BindFramebuffer), NULL_ENTRY(FramebufferTexture2D), NULL_ENTRY(FramebufferTextureLayer),
-    NULL_ENTRY(FramebufferTexture), NULL_ENTRY(FramebufferRenderbuffer), NULL_ENTRY(CheckFramebufferStatus),
-    NULL_ENTRY(DrawBuffers), NULL_ENTRY(ReadBuffer), NULL_ENTRY(ReadPixels), NULL_ENTRY(BlitFramebuffer), NULL_ENTRY(Clear),
-    NULL_ENTRY(ClearBufferfv), NULL_ENTRY(BindVertexArray), NULL_ENTRY(EnableVertexAttribArray),
-    NULL_ENTRY(DisableVertexAttribArray), NULL_ENTRY(VertexAttribDivisor), NULL_ENTRY(VertexAttribPointer),
-    NULL_ENTRY(VertexAttribIPointer), NULL_ENTRY(DrawArrays), NULL_ENTRY(DrawArraysInstanced), NULL_ENTRY(DrawElements),
-    NULL_ENTRY(DrawElementsInstanced), {NULL, NULL}
-};
+const null_entry noh_null_draw_functions[] = { NULL_ENTRY(BindFramebuffer),
+                                               NULL_ENTRY(FramebufferTexture2D),
+                                               NULL_ENTRY(FramebufferTextureLayer),
+                                               NULL_ENTRY(FramebufferTexture),
+                                               NULL_ENTRY(FramebufferRenderbuffer),
+                                               NULL_ENTRY(CheckFramebufferStatus),
+                                               NULL_ENTRY(DrawBuffers),
+                                               NULL_ENTRY(ReadBuffer),
+                                               NULL_ENTRY(ReadPixels),
+                                               NULL_ENTRY(BlitFramebuffer),
+                                               NULL_ENTRY(Clear),
+                                               NULL_ENTRY(ClearBufferfv),
+                                               NULL_ENTRY(BindVertexArray),
+                                               NULL_ENTRY(EnableVertexAttribArray),
+                                               NULL_ENTRY(DisableVertexAttribArray),
+                                               NULL_ENTRY(VertexAttribDivisor),
+                                               NULL_ENTRY(VertexAttribPointer),
+                                               NULL_ENTRY(VertexAttribIPointer),
+                                               NULL_ENTRY(DrawArrays),
+                                               NULL_ENTRY(DrawArraysInstanced),
+                                               NULL_ENTRY(DrawElements),
+                                               NULL_ENTRY(DrawElementsInstanced),
+                                               { NULL, NULL } };

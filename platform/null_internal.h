@@ -24,15 +24,15 @@ typedef struct null_attachment {
 /* An object of any kind. What a kind has no use for stays zero. */
 typedef struct null_object {
     int alive, labelled;
-    int bound;    /* once at least: before, the name has no object */
-    int ready;    /* has storage; compiled; linked */
-    GLenum type;  /* texture target or shader stage */
+    int bound;   /* once at least: before, the name has no object */
+    int ready;   /* has storage; compiled; linked */
+    GLenum type; /* texture target or shader stage */
     uint64_t bytes;
     GLsizei width, height, layers, levels;
-    GLuint elements;                            /* vertex array */
+    GLuint elements; /* vertex array */
     null_attribute attributes[NULL_ATTRIBUTES];
     null_attachment attachments[NULL_ATTACHMENTS]; /* framebuffer */
-    unsigned stages; /* program: 1 vertex, 2 fragment, 4 geometry */
+    unsigned stages;                               /* program: 1 vertex, 2 fragment, 4 geometry */
 } null_object;
 
 typedef enum null_buffer_slot { NULL_ARRAY, NULL_UNIFORM, NULL_FEEDBACK, NULL_BUFFER_SLOTS } null_buffer_slot;
@@ -47,7 +47,7 @@ enum {
 #define NULL_CALL(field, TYPE) NULL_##field,
     NULL_CALLS(NULL_CALL)
 #undef NULL_CALL
-    NULL_FramebufferTexture,
+        NULL_FramebufferTexture,
     NULL_ObjectLabel,
     NULL_PushDebugGroup,
     NULL_PopDebugGroup,
@@ -61,10 +61,10 @@ struct noh_platform_context {
     uint32_t counts[NULL_CALL_COUNT];
     uint32_t draws, outside, allocations, violations;
     char first[160];
-    int refused_call;         /* -1: none */
-    uint32_t refused_in;      /* calls of it until the one that fails */
+    int refused_call;    /* -1: none */
+    uint32_t refused_in; /* calls of it until the one that fails */
     GLenum refused_error;
-    int refusing, refused;    /* the call that runs now fails; it has come */
+    int refusing, refused; /* the call that runs now fails; it has come */
     GLenum error;
     uint32_t groups;
     GLint viewport[4];
@@ -118,6 +118,9 @@ typedef struct null_entry {
 extern const null_entry noh_null_object_functions[], noh_null_program_functions[], noh_null_draw_functions[],
     noh_null_state_functions[];
 
-#define NULL_ENTRY(field) {"gl" #field, (noh_gl_proc)null_##field}
+#define NULL_ENTRY(field)                      \
+    {                                          \
+        "gl" #field, (noh_gl_proc)null_##field \
+    }
 
 #endif

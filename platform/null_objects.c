@@ -7,8 +7,8 @@
 
 /* --- names --- */
 
-static const char *const kind_names[NOH_NULL_KINDS] = {"buffer",       "texture", "renderbuffer", "framebuffer",
-                                                       "vertex array", "program", "shader"};
+static const char *const kind_names[NOH_NULL_KINDS] = { "buffer",       "texture", "renderbuffer", "framebuffer",
+                                                        "vertex array", "program", "shader" };
 
 null_object *noh_null_object(int call, noh_null_kind kind, GLuint name)
 {
@@ -61,10 +61,10 @@ static void forget(GLuint *binding, GLsizei count, const GLuint *names)
     }
 }
 
-#define NAMES(Kind, KIND)                                                                                        \
-    static void GL_APIENTRY null_Gen##Kind(GLsizei count, GLuint *names)                                         \
-    {                                                                                                            \
-        generate(NULL_Gen##Kind, KIND, count, names);                                                            \
+#define NAMES(Kind, KIND)                                                \
+    static void GL_APIENTRY null_Gen##Kind(GLsizei count, GLuint *names) \
+    {                                                                    \
+        generate(NULL_Gen##Kind, KIND, count, names);                    \
     }
 NAMES(Buffers, NOH_NULL_BUFFER)
 NAMES(Textures, NOH_NULL_TEXTURE)
@@ -108,14 +108,15 @@ static void GL_APIENTRY null_DeleteVertexArrays(GLsizei count, const GLuint *nam
 
 static void GL_APIENTRY null_ObjectLabel(GLenum identifier, GLuint name, GLsizei length, const GLchar *label)
 {
-    static const GLenum identifiers[NOH_NULL_KINDS] = {GL_BUFFER,       GL_TEXTURE, GL_RENDERBUFFER, GL_FRAMEBUFFER,
-                                                       GL_VERTEX_ARRAY, GL_PROGRAM, GL_SHADER};
+    static const GLenum identifiers[NOH_NULL_KINDS] = { GL_BUFFER,       GL_TEXTURE, GL_RENDERBUFFER, GL_FRAMEBUFFER,
+                                                        GL_VERTEX_ARRAY, GL_PROGRAM, GL_SHADER };
     (void)length;
     noh_null_count(NULL_ObjectLabel);
     for (int kind = 0; kind < NOH_NULL_KINDS; kind++) {
         if (identifiers[kind] != identifier) continue;
         null_object *object = noh_null_object(NULL_ObjectLabel, (noh_null_kind)kind, name);
-        if (object && !object->bound) noh_null_wrong(NULL_ObjectLabel, "%s %u is not bound yet", kind_names[kind], (unsigned)name);
+        if (object && !object->bound)
+            noh_null_wrong(NULL_ObjectLabel, "%s %u is not bound yet", kind_names[kind], (unsigned)name);
         if (object) object->labelled = label && label[0];
         return;
     }
@@ -167,14 +168,15 @@ static void GL_APIENTRY null_BindBufferBase(GLenum target, GLuint index, GLuint 
     bind_buffer(NULL_BindBufferBase, target, name);
 }
 
-static void GL_APIENTRY null_BindBufferRange(GLenum target, GLuint index, GLuint name, GLintptr offset, GLsizeiptr bytes)
+static void GL_APIENTRY null_BindBufferRange(GLenum target, GLuint index, GLuint name, GLintptr offset,
+                                             GLsizeiptr bytes)
 {
     (void)index;
     bind_buffer(NULL_BindBufferRange, target, name);
     const null_object *object = name ? noh_null_buffer_at(NULL_BindBufferRange, target) : NULL;
     if (object && (offset < 0 || bytes <= 0 || (uint64_t)offset + (uint64_t)bytes > object->bytes)) {
-        noh_null_wrong(NULL_BindBufferRange, "bytes %ld to %ld of a buffer of %lu", (long)offset, (long)(offset + bytes),
-                       (unsigned long)object->bytes);
+        noh_null_wrong(NULL_BindBufferRange, "bytes %ld to %ld of a buffer of %lu", (long)offset,
+                       (long)(offset + bytes), (unsigned long)object->bytes);
     }
 }
 
@@ -227,8 +229,10 @@ null_object *noh_null_texture_at(int call, GLenum target)
 static void GL_APIENTRY null_ActiveTexture(GLenum unit)
 {
     noh_platform_context *c = noh_null_count(NULL_ActiveTexture);
-    if (unit < GL_TEXTURE0 || unit >= GL_TEXTURE0 + NULL_UNITS) noh_null_wrong(NULL_ActiveTexture, "no such unit");
-    else c->unit = unit - GL_TEXTURE0;
+    if (unit < GL_TEXTURE0 || unit >= GL_TEXTURE0 + NULL_UNITS)
+        noh_null_wrong(NULL_ActiveTexture, "no such unit");
+    else
+        c->unit = unit - GL_TEXTURE0;
 }
 
 static void GL_APIENTRY null_BindTexture(GLenum target, GLuint name)
@@ -236,7 +240,8 @@ static void GL_APIENTRY null_BindTexture(GLenum target, GLuint name)
     noh_null_count(NULL_BindTexture);
     GLuint *binding = texture_binding(NULL_BindTexture, target);
     null_object *object = name ? noh_null_object(NULL_BindTexture, NOH_NULL_TEXTURE, name) : NULL;
-    if (object && object->bound && object->type != target) noh_null_wrong(NULL_BindTexture, "the texture has another target");
+    if (object && object->bound && object->type != target)
+        noh_null_wrong(NULL_BindTexture, "the texture has another target");
     if (object) {
         object->bound = 1;
         object->type = target;
@@ -268,13 +273,14 @@ static void set_storage(int call, GLenum target, GLenum format, const GLsizei si
 
 static void GL_APIENTRY null_TexStorage2D(GLenum target, GLsizei levels, GLenum format, GLsizei width, GLsizei height)
 {
-    const GLsizei size[3] = {width, height, 0};
+    const GLsizei size[3] = { width, height, 0 };
     set_storage(NULL_TexStorage2D, target, format, size, levels);
 }
 
-static void GL_APIENTRY null_TexStorage3D(GLenum target, GLsizei levels, GLenum format, GLsizei width, GLsizei height, GLsizei depth)
+static void GL_APIENTRY null_TexStorage3D(GLenum target, GLsizei levels, GLenum format, GLsizei width, GLsizei height,
+                                          GLsizei depth)
 {
-    const GLsizei size[3] = {width, height, depth};
+    const GLsizei size[3] = { width, height, depth };
     set_storage(NULL_TexStorage3D, target, format, size, levels);
 }
 
@@ -304,8 +310,8 @@ static void check_update(int call, GLenum target, GLint level, const GLint at[3]
 static void GL_APIENTRY null_TexSubImage2D(GLenum target, GLint level, GLint x, GLint y, GLsizei width, GLsizei height,
                                            GLenum format, GLenum type, const void *pixels)
 {
-    const GLint at[3] = {x, y, 0};
-    const GLsizei count[3] = {width, height, 1};
+    const GLint at[3] = { x, y, 0 };
+    const GLsizei count[3] = { width, height, 1 };
     (void)format;
     (void)type;
     (void)pixels;
@@ -313,10 +319,11 @@ static void GL_APIENTRY null_TexSubImage2D(GLenum target, GLint level, GLint x, 
 }
 
 static void GL_APIENTRY null_TexSubImage3D(GLenum target, GLint level, GLint x, GLint y, GLint z, GLsizei width,
-                                           GLsizei height, GLsizei depth, GLenum format, GLenum type, const void *pixels)
+                                           GLsizei height, GLsizei depth, GLenum format, GLenum type,
+                                           const void *pixels)
 {
-    const GLint at[3] = {x, y, z};
-    const GLsizei count[3] = {width, height, depth};
+    const GLint at[3] = { x, y, z };
+    const GLsizei count[3] = { width, height, depth };
     (void)format;
     (void)type;
     (void)pixels;
@@ -365,20 +372,38 @@ static void GL_APIENTRY null_RenderbufferStorage(GLenum target, GLenum format, G
     set_renderbuffer(NULL_RenderbufferStorage, 0, format, width, height);
 }
 
-static void GL_APIENTRY null_RenderbufferStorageMultisample(GLenum target, GLsizei samples, GLenum format, GLsizei width,
-                                                            GLsizei height)
+static void GL_APIENTRY null_RenderbufferStorageMultisample(GLenum target, GLsizei samples, GLenum format,
+                                                            GLsizei width, GLsizei height)
 {
     (void)target;
     set_renderbuffer(NULL_RenderbufferStorageMultisample, samples, format, width, height);
 }
 
-const null_entry noh_null_object_functions[] = {
-    NULL_ENTRY(GenBuffers), NULL_ENTRY(GenTextures), NULL_ENTRY(GenRenderbuffers), NULL_ENTRY(GenFramebuffers),
-    NULL_ENTRY(GenVertexArrays), NULL_ENTRY(DeleteBuffers), NULL_ENTRY(DeleteTextures), NULL_ENTRY(DeleteRenderbuffers),
-    NULL_ENTRY(DeleteFramebuffers), NULL_ENTRY(DeleteVertexArrays), NULL_ENTRY(ObjectLabel), NULL_ENTRY(BindBuffer),
-    NULL_ENTRY(BindBufferBase), NULL_ENTRY(BindBufferRange), NULL_ENTRY(BufferData), NULL_ENTRY(BufferSubData),
-    NULL_ENTRY(ActiveTexture), NULL_ENTRY(BindTexture), NULL_ENTRY(TexStorage2D), NULL_ENTRY(TexStorage3D),
-    NULL_ENTRY(TexSubImage2D), NULL_ENTRY(TexSubImage3D), NULL_ENTRY(TexParameteri), NULL_ENTRY(GenerateMipmap),
-    NULL_ENTRY(BindRenderbuffer), NULL_ENTRY(RenderbufferStorage), NULL_ENTRY(RenderbufferStorageMultisample),
-    {NULL, NULL}
-};
+const null_entry noh_null_object_functions[] = { NULL_ENTRY(GenBuffers),
+                                                 NULL_ENTRY(GenTextures),
+                                                 NULL_ENTRY(GenRenderbuffers),
+                                                 NULL_ENTRY(GenFramebuffers),
+                                                 NULL_ENTRY(GenVertexArrays),
+                                                 NULL_ENTRY(DeleteBuffers),
+                                                 NULL_ENTRY(DeleteTextures),
+                                                 NULL_ENTRY(DeleteRenderbuffers),
+                                                 NULL_ENTRY(DeleteFramebuffers),
+                                                 NULL_ENTRY(DeleteVertexArrays),
+                                                 NULL_ENTRY(ObjectLabel),
+                                                 NULL_ENTRY(BindBuffer),
+                                                 NULL_ENTRY(BindBufferBase),
+                                                 NULL_ENTRY(BindBufferRange),
+                                                 NULL_ENTRY(BufferData),
+                                                 NULL_ENTRY(BufferSubData),
+                                                 NULL_ENTRY(ActiveTexture),
+                                                 NULL_ENTRY(BindTexture),
+                                                 NULL_ENTRY(TexStorage2D),
+                                                 NULL_ENTRY(TexStorage3D),
+                                                 NULL_ENTRY(TexSubImage2D),
+                                                 NULL_ENTRY(TexSubImage3D),
+                                                 NULL_ENTRY(TexParameteri),
+                                                 NULL_ENTRY(GenerateMipmap),
+                                                 NULL_ENTRY(BindRenderbuffer),
+                                                 NULL_ENTRY(RenderbufferStorage),
+                                                 NULL_ENTRY(RenderbufferStorageMultisample),
+                                                 { NULL, NULL } };

@@ -22,7 +22,8 @@ static GLuint GL_APIENTRY null_CreateProgram(void)
     return name;
 }
 
-static void GL_APIENTRY null_ShaderSource(GLuint shader, GLsizei count, const GLchar *const *texts, const GLint *lengths)
+static void GL_APIENTRY null_ShaderSource(GLuint shader, GLsizei count, const GLchar *const *texts,
+                                          const GLint *lengths)
 {
     (void)lengths;
     noh_null_count(NULL_ShaderSource);
@@ -57,7 +58,8 @@ static void GL_APIENTRY null_LinkProgram(GLuint program)
 {
     noh_null_count(NULL_LinkProgram);
     null_object *object = noh_null_object(NULL_LinkProgram, NOH_NULL_PROGRAM, program);
-    if (object && (object->stages & 3u) != 3u) noh_null_wrong(NULL_LinkProgram, "a vertex or fragment shader is missing");
+    if (object && (object->stages & 3u) != 3u)
+        noh_null_wrong(NULL_LinkProgram, "a vertex or fragment shader is missing");
     if (object) object->ready = 1;
 }
 
@@ -113,7 +115,8 @@ static void GL_APIENTRY null_GetProgramInfoLog(GLuint program, GLsizei room, GLs
     empty_log(room, length, log);
 }
 
-static void GL_APIENTRY null_TransformFeedbackVaryings(GLuint program, GLsizei count, const GLchar *const *names, GLenum mode)
+static void GL_APIENTRY null_TransformFeedbackVaryings(GLuint program, GLsizei count, const GLchar *const *names,
+                                                       GLenum mode)
 {
     (void)count;
     (void)names;
@@ -166,11 +169,11 @@ static void uniform(int call, GLint location)
     if (location < -1) noh_null_wrong(call, "location %d", location);
 }
 
-#define UNIFORM1(Name, T)                                          \
-    static void GL_APIENTRY null_Uniform##Name(GLint at, T x)      \
-    {                                                              \
-        (void)x;                                                   \
-        uniform(NULL_Uniform##Name, at);                           \
+#define UNIFORM1(Name, T)                                     \
+    static void GL_APIENTRY null_Uniform##Name(GLint at, T x) \
+    {                                                         \
+        (void)x;                                              \
+        uniform(NULL_Uniform##Name, at);                      \
     }
 #define UNIFORM2(Name, T)                                          \
     static void GL_APIENTRY null_Uniform##Name(GLint at, T x, T y) \
@@ -224,14 +227,42 @@ UNIFORMV(4fv, GLfloat)
 UNIFORM_MATRIX(3fv)
 UNIFORM_MATRIX(4fv)
 
-const null_entry noh_null_program_functions[] = {
-    NULL_ENTRY(CreateShader), NULL_ENTRY(CreateProgram), NULL_ENTRY(ShaderSource), NULL_ENTRY(CompileShader),
-    NULL_ENTRY(AttachShader), NULL_ENTRY(LinkProgram), NULL_ENTRY(UseProgram), NULL_ENTRY(DeleteShader),
-    NULL_ENTRY(DeleteProgram), NULL_ENTRY(GetShaderiv), NULL_ENTRY(GetProgramiv), NULL_ENTRY(GetShaderInfoLog),
-    NULL_ENTRY(GetProgramInfoLog), NULL_ENTRY(TransformFeedbackVaryings), NULL_ENTRY(GetUniformLocation),
-    NULL_ENTRY(GetAttribLocation), NULL_ENTRY(GetUniformBlockIndex), NULL_ENTRY(UniformBlockBinding), NULL_ENTRY(Uniform1i),
-    NULL_ENTRY(Uniform1ui), NULL_ENTRY(Uniform1f), NULL_ENTRY(Uniform2i), NULL_ENTRY(Uniform2ui), NULL_ENTRY(Uniform2f),
-    NULL_ENTRY(Uniform3i), NULL_ENTRY(Uniform3f), NULL_ENTRY(Uniform4i), NULL_ENTRY(Uniform4ui), NULL_ENTRY(Uniform4f),
-    NULL_ENTRY(Uniform1iv), NULL_ENTRY(Uniform1uiv), NULL_ENTRY(Uniform1fv), NULL_ENTRY(Uniform3fv), NULL_ENTRY(Uniform4iv),
-    NULL_ENTRY(Uniform4uiv), NULL_ENTRY(Uniform4fv), NULL_ENTRY(UniformMatrix3fv), NULL_ENTRY(UniformMatrix4fv), {NULL, NULL}
-};
+const null_entry noh_null_program_functions[] = { NULL_ENTRY(CreateShader),
+                                                  NULL_ENTRY(CreateProgram),
+                                                  NULL_ENTRY(ShaderSource),
+                                                  NULL_ENTRY(CompileShader),
+                                                  NULL_ENTRY(AttachShader),
+                                                  NULL_ENTRY(LinkProgram),
+                                                  NULL_ENTRY(UseProgram),
+                                                  NULL_ENTRY(DeleteShader),
+                                                  NULL_ENTRY(DeleteProgram),
+                                                  NULL_ENTRY(GetShaderiv),
+                                                  NULL_ENTRY(GetProgramiv),
+                                                  NULL_ENTRY(GetShaderInfoLog),
+                                                  NULL_ENTRY(GetProgramInfoLog),
+                                                  NULL_ENTRY(TransformFeedbackVaryings),
+                                                  NULL_ENTRY(GetUniformLocation),
+                                                  NULL_ENTRY(GetAttribLocation),
+                                                  NULL_ENTRY(GetUniformBlockIndex),
+                                                  NULL_ENTRY(UniformBlockBinding),
+                                                  NULL_ENTRY(Uniform1i),
+                                                  NULL_ENTRY(Uniform1ui),
+                                                  NULL_ENTRY(Uniform1f),
+                                                  NULL_ENTRY(Uniform2i),
+                                                  NULL_ENTRY(Uniform2ui),
+                                                  NULL_ENTRY(Uniform2f),
+                                                  NULL_ENTRY(Uniform3i),
+                                                  NULL_ENTRY(Uniform3f),
+                                                  NULL_ENTRY(Uniform4i),
+                                                  NULL_ENTRY(Uniform4ui),
+                                                  NULL_ENTRY(Uniform4f),
+                                                  NULL_ENTRY(Uniform1iv),
+                                                  NULL_ENTRY(Uniform1uiv),
+                                                  NULL_ENTRY(Uniform1fv),
+                                                  NULL_ENTRY(Uniform3fv),
+                                                  NULL_ENTRY(Uniform4iv),
+                                                  NULL_ENTRY(Uniform4uiv),
+                                                  NULL_ENTRY(Uniform4fv),
+                                                  NULL_ENTRY(UniformMatrix3fv),
+                                                  NULL_ENTRY(UniformMatrix4fv),
+                                                  { NULL, NULL } };

@@ -5,17 +5,17 @@
 
 /* --- state that changes nothing here --- */
 
-#define STATE1(Name, T)                                \
-    static void GL_APIENTRY null_##Name(T a)           \
-    {                                                  \
-        (void)a;                                       \
-        noh_null_count(NULL_##Name);                   \
+#define STATE1(Name, T)                      \
+    static void GL_APIENTRY null_##Name(T a) \
+    {                                        \
+        (void)a;                             \
+        noh_null_count(NULL_##Name);         \
     }
-#define STATE2(Name, T)                                \
-    static void GL_APIENTRY null_##Name(T a, T b)      \
-    {                                                  \
-        (void)a, (void)b;                              \
-        noh_null_count(NULL_##Name);                   \
+#define STATE2(Name, T)                           \
+    static void GL_APIENTRY null_##Name(T a, T b) \
+    {                                             \
+        (void)a, (void)b;                         \
+        noh_null_count(NULL_##Name);              \
     }
 STATE1(Enable, GLenum)
 STATE1(Disable, GLenum)
@@ -66,7 +66,7 @@ static void GL_APIENTRY null_VertexAttribI4i(GLuint index, GLint x, GLint y, GLi
 static void GL_APIENTRY null_Viewport(GLint x, GLint y, GLsizei width, GLsizei height)
 {
     noh_platform_context *c = noh_null_count(NULL_Viewport);
-    const GLint viewport[4] = {x, y, width, height};
+    const GLint viewport[4] = { x, y, width, height };
     if (width < 0 || height < 0) noh_null_wrong(NULL_Viewport, "%d x %d", width, height);
     memcpy(c->viewport, viewport, sizeof viewport);
 }
@@ -120,12 +120,18 @@ static void GL_APIENTRY null_GetIntegerv(GLenum what, GLint *value)
     static const struct {
         GLenum what;
         GLint value;
-    } answers[] = {
-        {GL_MAJOR_VERSION, 3}, {GL_MINOR_VERSION, 2}, {GL_NUM_EXTENSIONS, 0}, {GL_MAX_TEXTURE_SIZE, 2048},
-        {GL_MAX_ARRAY_TEXTURE_LAYERS, 256}, {GL_MAX_DRAW_BUFFERS, 4}, {GL_MAX_COLOR_ATTACHMENTS, 4}, {GL_MAX_SAMPLES, 4},
-        {GL_MAX_VERTEX_TEXTURE_IMAGE_UNITS, 16}, {GL_MAX_VERTEX_ATTRIBS, NULL_ATTRIBUTES},
-        {GL_MAX_UNIFORM_BLOCK_SIZE, 16384}, {GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT, 256}
-    };
+    } answers[] = { { GL_MAJOR_VERSION, 3 },
+                    { GL_MINOR_VERSION, 2 },
+                    { GL_NUM_EXTENSIONS, 0 },
+                    { GL_MAX_TEXTURE_SIZE, 2048 },
+                    { GL_MAX_ARRAY_TEXTURE_LAYERS, 256 },
+                    { GL_MAX_DRAW_BUFFERS, 4 },
+                    { GL_MAX_COLOR_ATTACHMENTS, 4 },
+                    { GL_MAX_SAMPLES, 4 },
+                    { GL_MAX_VERTEX_TEXTURE_IMAGE_UNITS, 16 },
+                    { GL_MAX_VERTEX_ATTRIBS, NULL_ATTRIBUTES },
+                    { GL_MAX_UNIFORM_BLOCK_SIZE, 16384 },
+                    { GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT, 256 } };
     const noh_platform_context *c = noh_null_count(NULL_GetIntegerv);
     if (what == GL_VIEWPORT) {
         memcpy(value, c->viewport, sizeof c->viewport);
@@ -153,8 +159,10 @@ static void GL_APIENTRY null_PushDebugGroup(GLenum source, GLuint id, GLsizei le
 static void GL_APIENTRY null_PopDebugGroup(void)
 {
     noh_platform_context *c = noh_null_count(NULL_PopDebugGroup);
-    if (c->groups == 0) noh_null_wrong(NULL_PopDebugGroup, "no group is open");
-    else c->groups--;
+    if (c->groups == 0)
+        noh_null_wrong(NULL_PopDebugGroup, "no group is open");
+    else
+        c->groups--;
 }
 
 static void GL_APIENTRY null_DebugMessageCallback(GLDEBUGPROC callback, const void *user)
@@ -163,18 +171,38 @@ static void GL_APIENTRY null_DebugMessageCallback(GLDEBUGPROC callback, const vo
     noh_null_count(NULL_DebugMessageCallback);
 }
 
-static void GL_APIENTRY null_DebugMessageControl(GLenum source, GLenum type, GLenum severity, GLsizei count, const GLuint *ids,
-                                                 GLboolean enabled)
+static void GL_APIENTRY null_DebugMessageControl(GLenum source, GLenum type, GLenum severity, GLsizei count,
+                                                 const GLuint *ids, GLboolean enabled)
 {
     (void)source, (void)type, (void)severity, (void)count, (void)ids, (void)enabled;
     noh_null_count(NULL_DebugMessageControl);
 }
 
-const null_entry noh_null_state_functions[] = {
-    NULL_ENTRY(Enable), NULL_ENTRY(Disable), NULL_ENTRY(BlendEquation), NULL_ENTRY(DepthFunc), NULL_ENTRY(DepthMask),
-    NULL_ENTRY(CullFace), NULL_ENTRY(FrontFace), NULL_ENTRY(BlendFunc), NULL_ENTRY(PolygonOffset), NULL_ENTRY(BlendFuncSeparate),
-    NULL_ENTRY(ColorMask), NULL_ENTRY(ClearColor), NULL_ENTRY(PixelStorei), NULL_ENTRY(VertexAttrib4f),
-    NULL_ENTRY(VertexAttribI4i), NULL_ENTRY(Viewport), NULL_ENTRY(Scissor), NULL_ENTRY(Flush), NULL_ENTRY(Finish),
-    NULL_ENTRY(GetError), NULL_ENTRY(GetString), NULL_ENTRY(GetStringi), NULL_ENTRY(GetIntegerv), NULL_ENTRY(PushDebugGroup),
-    NULL_ENTRY(PopDebugGroup), NULL_ENTRY(DebugMessageCallback), NULL_ENTRY(DebugMessageControl), {NULL, NULL}
-};
+const null_entry noh_null_state_functions[] = { NULL_ENTRY(Enable),
+                                                NULL_ENTRY(Disable),
+                                                NULL_ENTRY(BlendEquation),
+                                                NULL_ENTRY(DepthFunc),
+                                                NULL_ENTRY(DepthMask),
+                                                NULL_ENTRY(CullFace),
+                                                NULL_ENTRY(FrontFace),
+                                                NULL_ENTRY(BlendFunc),
+                                                NULL_ENTRY(PolygonOffset),
+                                                NULL_ENTRY(BlendFuncSeparate),
+                                                NULL_ENTRY(ColorMask),
+                                                NULL_ENTRY(ClearColor),
+                                                NULL_ENTRY(PixelStorei),
+                                                NULL_ENTRY(VertexAttrib4f),
+                                                NULL_ENTRY(VertexAttribI4i),
+                                                NULL_ENTRY(Viewport),
+                                                NULL_ENTRY(Scissor),
+                                                NULL_ENTRY(Flush),
+                                                NULL_ENTRY(Finish),
+                                                NULL_ENTRY(GetError),
+                                                NULL_ENTRY(GetString),
+                                                NULL_ENTRY(GetStringi),
+                                                NULL_ENTRY(GetIntegerv),
+                                                NULL_ENTRY(PushDebugGroup),
+                                                NULL_ENTRY(PopDebugGroup),
+                                                NULL_ENTRY(DebugMessageCallback),
+                                                NULL_ENTRY(DebugMessageControl),
+                                                { NULL, NULL } };

@@ -47,11 +47,20 @@ static int load(noh_platform_context *to, char *message, size_t message_bytes)
 
 static void *create_core(const noh_platform_context *to)
 {
-    static const int versions[] = {45, 43, 33};
+    static const int versions[] = { 45, 43, 33 };
     for (size_t i = 0; i < sizeof versions / sizeof *versions; i++) {
-        const int attributes[] = {OSMESA_FORMAT, GL_RGBA, OSMESA_DEPTH_BITS, 24, OSMESA_PROFILE, OSMESA_CORE_PROFILE,
-                                  OSMESA_CONTEXT_MAJOR_VERSION, versions[i] / 10, OSMESA_CONTEXT_MINOR_VERSION,
-                                  versions[i] % 10, 0, 0};
+        const int attributes[] = { OSMESA_FORMAT,
+                                   GL_RGBA,
+                                   OSMESA_DEPTH_BITS,
+                                   24,
+                                   OSMESA_PROFILE,
+                                   OSMESA_CORE_PROFILE,
+                                   OSMESA_CONTEXT_MAJOR_VERSION,
+                                   versions[i] / 10,
+                                   OSMESA_CONTEXT_MINOR_VERSION,
+                                   versions[i] % 10,
+                                   0,
+                                   0 };
         void *context = to->create(attributes, NULL);
         if (context) return context;
     }
@@ -92,15 +101,16 @@ static noh_result fill(noh_platform_context *to, const noh_platform_desc *desc, 
     return NOH_ERR_UNSUPPORTED;
 }
 
-static noh_result create(const noh_platform_desc *desc, noh_platform_context **out, char *message,
-                         size_t message_bytes)
+static noh_result create(const noh_platform_desc *desc, noh_platform_context **out, char *message, size_t message_bytes)
 {
     if (message_bytes) message[0] = 0;
     noh_platform_context *context = calloc(1, sizeof *context);
     if (!context) return NOH_ERR_MEMORY;
     noh_result result = fill(context, desc, message, message_bytes);
-    if (result == NOH_OK) *out = context;
-    else destroy(context);
+    if (result == NOH_OK)
+        *out = context;
+    else
+        destroy(context);
     return result;
 }
 
@@ -125,7 +135,7 @@ static void size(noh_platform_context *context, uint32_t *width, uint32_t *heigh
     *height = (uint32_t)context->height;
 }
 
-const noh_platform noh_platform_osmesa = {
-    "osmesa", "Mesa's software renderer without a window system, desktop GL", create, make_current, get_proc, present, size,
-    destroy
-};
+const noh_platform noh_platform_osmesa = { "osmesa", "Mesa's software renderer without a window system, desktop GL",
+                                           create,   make_current,
+                                           get_proc, present,
+                                           size,     destroy };

@@ -4,8 +4,8 @@
 
 #include <string.h>
 
-static const noh_platform *const platforms[] = {&noh_platform_egl, &noh_platform_angle, &noh_platform_osmesa,
-                                              &noh_platform_glfw, &noh_platform_null};
+static const noh_platform *const platforms[] = { &noh_platform_egl, &noh_platform_angle, &noh_platform_osmesa,
+                                                 &noh_platform_glfw, &noh_platform_null };
 
 const noh_platform *noh_platform_find(const char *name)
 {

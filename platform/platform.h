@@ -75,10 +75,10 @@ typedef struct noh_file {
 noh_result noh_file_map(const char *path, noh_file *out, noh_error *error);
 void noh_file_unmap(noh_file *file);
 
-/* Write a whole file or change nothing: the bytes go to a new file in the same folder, which then takes the name, so that
- * a reader sees the old file or the new one. A symbolic link stays: its target is written. A device, a FIFO and this
- * process's own standard output (/dev/stdout) cannot be replaced and are written to directly.
- * errors  NOH_ERR_DATA the system refuses; `what` its own words, `where` its errno */
+/* Write a whole file or change nothing: the bytes go to a new file in the same folder, which then takes the name, so
+ * that a reader sees the old file or the new one. A symbolic link stays: its target is written. A device, a FIFO and
+ * this process's own standard output (/dev/stdout) cannot be replaced and are written to directly. errors  NOH_ERR_DATA
+ * the system refuses; `what` its own words, `where` its errno */
 noh_result noh_file_write(const char *path, const void *data, size_t bytes, noh_error *error);
 
 /* Nanoseconds of a steady clock, from any start. */

@@ -12,9 +12,9 @@
 
 typedef struct system_context system_context;
 system_context *system_context_open(int es_version, unsigned width, unsigned height, int samples, const char **why_not);
-int system_context_bind(system_context *context);  /* 0: refused */
+int system_context_bind(system_context *context); /* 0: refused */
 void *system_context_window(system_context *context);
-int system_window_swap(void *window);              /* 0: the surface or the context is gone */
+int system_window_swap(void *window); /* 0: the surface or the context is gone */
 void system_window_size(void *window, unsigned *width, unsigned *height);
 noh_gl_proc system_gl_lookup(const char *name);
 void system_context_close(system_context *context);
@@ -47,7 +47,8 @@ static noh_result create(const noh_platform_desc *desc, noh_platform_context **o
     for (int version = d->es_version ? d->es_version : 320; version >= 300 && !c->context; version -= 10) {
         const char *why_not = "";
         c->context = system_context_open(version, d->width, d->height, d->samples, &why_not);
-        if (!c->context) noh_message_add(message, message_bytes, "OpenGL ES %d.%d: %s\n", version / 100, version / 10 % 10, why_not);
+        if (!c->context)
+            noh_message_add(message, message_bytes, "OpenGL ES %d.%d: %s\n", version / 100, version / 10 % 10, why_not);
     }
     if (c->context && make_current(c) == NOH_OK) {
         if (message_bytes) message[0] = 0;
@@ -92,8 +93,9 @@ static void destroy(noh_platform_context *c)
 }
 
 extern const noh_platform noh_platform_template;
-const noh_platform noh_platform_template = {"template", "what your system is", create, make_current, get_proc, present, size,
-                                            destroy};
+const noh_platform noh_platform_template = {
+    "template", "what your system is", create, make_current, get_proc, present, size, destroy
+};
 
 /* ---- files and clocks: these take the place of file.c ---- */
 
@@ -114,7 +116,7 @@ void noh_file_unmap(noh_file *file)
     union {
         const void *in;
         void *out;
-    } view = {file->data};
+    } view = { file->data };
     if (view.in) system_file_release(view.out, file->bytes);
     file->data = NULL;
     file->bytes = 0;

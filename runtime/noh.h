@@ -14,20 +14,22 @@
  *
  * Names. noh_noun_verb() is a function, noh_noun a type, NOH_NOUN a constant. A desc is a struct of settings in which
  * zero means the documented default. x_count counts, x_bytes counts bytes, x_max is a limit. Times end in their unit:
- * ticks, seconds. Matrices are 3 rows of 4 floats that multiply columns, quaternions x y z w, triangles counter-clockwise.
+ * ticks, seconds. Matrices are 3 rows of 4 floats that multiply columns, quaternions x y z w, triangles
+ * counter-clockwise.
  *
- * Errors. What can fail returns a noh_result, NOH_OK (0) or an error, and leaves its outputs untouched on error. The last
- * parameter is then a noh_error, which may be NULL: `what` is a sentence and never NULL after a failure, `where` the
- * byte or index at fault, `need` the size or count that was wanted; 0 where that means nothing. Bad data, short memory
- * and a missing capability are errors. A caller's bug (a NULL, an index past its count) is an assert: see base/assert.h.
+ * Errors. What can fail returns a noh_result, NOH_OK (0) or an error, and leaves its outputs untouched on error. The
+ * last parameter is then a noh_error, which may be NULL: `what` is a sentence and never NULL after a failure, `where`
+ * the byte or index at fault, `need` the size or count that was wanted; 0 where that means nothing. Bad data, short
+ * memory and a missing capability are errors. A caller's bug (a NULL, an index past its count) is an assert: see
+ * base/assert.h.
  *
  * Not found. A function that finds by name returns an index, or NOH_NONE. A function that returns a noh_result returns
  * NOH_ERR_NOT_FOUND.
  *
  * Inits. NULL or misaligned memory is NOH_ERR_ARG, too little is NOH_ERR_MEMORY; `need` is always the bytes needed.
  *
- * Threads. What is opened from bytes (packs, meshes, skins, skeletons, clips) and every desc is read-only: any number of
- * threads may share it. What an init made is for one thread at a time, each object for itself: two characters may be
+ * Threads. What is opened from bytes (packs, meshes, skins, skeletons, clips) and every desc is read-only: any number
+ * of threads may share it. What an init made is for one thread at a time, each object for itself: two characters may be
  * posed on two threads. A clip cache is changed by whoever samples from it; its header says how threads share one.
  * Functions without an object (base/, deform/) keep no state. GL objects belong to the thread of the GL context. The
  * library takes no lock. Each header says in a line "Threads:" what differs. */
@@ -36,54 +38,54 @@
 
 /* ---- what a game calls first ---- */
 
-#include "base/version.h"             /* which noh this is */
-#include "base/result.h"              /* noh_result, noh_error */
-#include "base/limits.h"              /* every limit, in one place */
-#include "pack/pack.h"                /* open a pack; pack/format.h has its bytes */
-#include "mesh/mesh.h"                /* its meshes and skins: vertices, triangles, targets, LOD levels */
+#include "base/version.h"           /* which noh this is */
+#include "base/result.h"            /* noh_result, noh_error */
+#include "base/limits.h"            /* every limit, in one place */
+#include "pack/pack.h"              /* open a pack; pack/format.h has its bytes */
+#include "mesh/mesh.h"              /* its meshes and skins: vertices, triangles, targets, LOD levels */
 #include "clip/pack_clip.h"         /* its skeletons and clips */
-#include "bank/clip_bank.h"          /* a pack's clips, ready to be played */
-#include "character/character.h"      /* one character: a controller, what it shows, how finely */
-#include "character/skin_palette.h"   /* what it shows, as matrices of any skin */
-#include "anim/controller.h"          /* tracks: start, fade, seek, callback keys */
-#include "anim/controller_pose.h"     /* poses of a controller */
-#include "pose/local_to_model.h"      /* poses to matrices and palettes */
-#include "deform/morph.h"             /* targets on the CPU: the reference and the fallback */
-#include "deform/skin.h"              /* skins on the CPU, likewise */
-#include "deform/bounds.h"            /* a box round what is deformed */
-#include "deform/pick.h"              /* a ray against what is deformed */
+#include "bank/clip_bank.h"         /* a pack's clips, ready to be played */
+#include "character/character.h"    /* one character: a controller, what it shows, how finely */
+#include "character/skin_palette.h" /* what it shows, as matrices of any skin */
+#include "anim/controller.h"        /* tracks: start, fade, seek, callback keys */
+#include "anim/controller_pose.h"   /* poses of a controller */
+#include "pose/local_to_model.h"    /* poses to matrices and palettes */
+#include "deform/morph.h"           /* targets on the CPU: the reference and the fallback */
+#include "deform/skin.h"            /* skins on the CPU, likewise */
+#include "deform/bounds.h"          /* a box round what is deformed */
+#include "deform/pick.h"            /* a ray against what is deformed */
 
 /* ---- more ways to move ---- */
 
-#include "graph/graph.h"               /* an animation graph over a controller */
-#include "anim/mask.h"                /* joints that a clip moves */
-#include "anim/root_motion.h"         /* root displacement of clips */
-#include "anim/event_queue.h"         /* callback keys collected, to be read later */
-#include "anim/ping_pong.h"           /* a weight that swings */
-#include "deform/dual_quaternion.h"   /* skins that keep their volume where joints twist */
+#include "graph/graph.h"            /* an animation graph over a controller */
+#include "anim/mask.h"              /* joints that a clip moves */
+#include "anim/root_motion.h"       /* root displacement of clips */
+#include "anim/event_queue.h"       /* callback keys collected, to be read later */
+#include "anim/ping_pong.h"         /* a weight that swings */
+#include "deform/dual_quaternion.h" /* skins that keep their volume where joints twist */
 
 /* ---- crowds: what is drawn and posed, how finely, how often ---- */
 
-#include "character/bounds.h"         /* where a character is */
-#include "character/lod.h"         /* LOD levels chosen by an error in pixels */
-#include "character/lod_pack.h"    /* the same, filled in from a pack */
-#include "character/lod_pools.h"    /* memory by LOD level, shared out among instances */
-#include "character/scheduler.h"      /* which characters are posed in a frame, within a budget */
-#include "character/time_lod.h"       /* posing less often than once a frame */
+#include "character/bounds.h"          /* where a character is */
+#include "character/lod.h"             /* LOD levels chosen by an error in pixels */
+#include "character/lod_pack.h"        /* the same, filled in from a pack */
+#include "character/lod_pools.h"       /* memory by LOD level, shared out among instances */
+#include "character/scheduler.h"       /* which characters are posed in a frame, within a budget */
+#include "character/time_lod.h"        /* posing less often than once a frame */
 #include "character/time_lod_points.h" /* what that moves vertices by */
-#include "character/joint_lod.h"      /* what posing fewer joints costs */
+#include "character/joint_lod.h"       /* what posing fewer joints costs */
 
 /* ---- parts, for tools and engines of your own ---- */
 
-#include "base/arena.h"               /* carve a block */
-#include "base/half.h"                /* 16-bit floats */
-#include "base/hash.h"                /* FNV-1a, CRC-32C */
-#include "base/quat.h"                /* quaternions */
-#include "base/trig.h"                /* trigonometry without libm, the same bits everywhere */
-#include "pose/blend.h"               /* poses mixed and added */
-#include "clip/clip_cache.h"          /* decoded frames in a fixed block, and samples of them */
-#include "clip/clip_view.h"           /* a thread's own view of a clip cache */
-#include "clip/clip_codec.h"          /* one compressed clip */
+#include "base/arena.h"      /* carve a block */
+#include "base/half.h"       /* 16-bit floats */
+#include "base/hash.h"       /* FNV-1a, CRC-32C */
+#include "base/quat.h"       /* quaternions */
+#include "base/trig.h"       /* trigonometry without libm, the same bits everywhere */
+#include "pose/blend.h"      /* poses mixed and added */
+#include "clip/clip_cache.h" /* decoded frames in a fixed block, and samples of them */
+#include "clip/clip_view.h"  /* a thread's own view of a clip cache */
+#include "clip/clip_codec.h" /* one compressed clip */
 
 /* Glossary: one word for one thing, in names, documents, the command line and messages.
  *

@@ -17,19 +17,19 @@
 
 /* ---- what a game calls first ---- */
 
-#include "gl/gl_api.h"      /* the functions that noh calls */
-#include "gl/gl_caps.h"     /* what this GPU can really do, found by trying */
-#include "gl/gl_morph.h"    /* targets of many instances accumulated on the GPU */
-#include "gl/gl_skin.h"     /* palettes of many instances on the GPU */
-#include "gl/gl_draw.h"     /* meshes on the GPU, and a plain renderer */
+#include "gl/gl_api.h"         /* the functions that noh calls */
+#include "gl/gl_caps.h"        /* what this GPU can really do, found by trying */
+#include "gl/gl_morph.h"       /* targets of many instances accumulated on the GPU */
+#include "gl/gl_skin.h"        /* palettes of many instances on the GPU */
+#include "gl/gl_draw.h"        /* meshes on the GPU, and a plain renderer */
 #include "gl/gl_shader_text.h" /* the library's GLSL, for your own shaders */
 
 /* ---- when something is lost or slow ---- */
 
-#include "gl/gl_lost.h"     /* a lost context */
-#include "gl/gl_debug.h"    /* names that RenderDoc and apitrace show */
-#include "gl/gl_quirks.h"   /* what a renderer's name tells and a probe cannot */
-#include "gl/gl_timer.h"    /* GPU time */
+#include "gl/gl_lost.h"   /* a lost context */
+#include "gl/gl_debug.h"  /* names that RenderDoc and apitrace show */
+#include "gl/gl_quirks.h" /* what a renderer's name tells and a probe cannot */
+#include "gl/gl_timer.h"  /* GPU time */
 
 /* ---- parts, for renderers of your own ---- */
 

@@ -30,14 +30,14 @@ static const struct {
     const char *name;
     noh_gl_proc proc;
 } functions[] = {
-#define WEB_FUNCTION(field, TYPE) {"gl" #field, (noh_gl_proc)gl##field},
+#define WEB_FUNCTION(field, TYPE) { "gl" #field, (noh_gl_proc)gl##field },
     NOH_GL_REQUIRED(WEB_FUNCTION)
 #undef WEB_FUNCTION
 };
 
 void noh_web_enable_extensions(noh_platform_context *context)
 {
-    static const char *const wanted[] = {"EXT_color_buffer_float", "EXT_color_buffer_half_float", "EXT_float_blend"};
+    static const char *const wanted[] = { "EXT_color_buffer_float", "EXT_color_buffer_half_float", "EXT_float_blend" };
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
         emscripten_webgl_enable_extension(context->handle, wanted[i]);
     }
@@ -96,4 +96,6 @@ static void destroy(noh_platform_context *context)
     if (context) emscripten_webgl_destroy_context(context->handle);
 }
 
-const noh_platform noh_platform_web = {"web", "WebGL 2 on the page's canvas", create, make_current, get_proc, present, size, destroy};
+const noh_platform noh_platform_web = {
+    "web", "WebGL 2 on the page's canvas", create, make_current, get_proc, present, size, destroy
+};

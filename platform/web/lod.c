@@ -28,8 +28,8 @@ static float depth_of(const web_scene *scene, const web_item *item, const float 
     return noh_lod_depth(camera->view_projection, web_scene_world(scene, item), box);
 }
 
-void web_lod_choose(web_lod *d, const web_scene *scene, uint32_t item, const float *matrices, const noh_gl_camera *camera,
-                       uint32_t height)
+void web_lod_choose(web_lod *d, const web_scene *scene, uint32_t item, const float *matrices,
+                    const noh_gl_camera *camera, uint32_t height)
 {
     const noh_lod_table *table = &d->tables[scene->items[item].mesh];
     noh_lod *state = &d->states[item];

@@ -11,10 +11,10 @@ typedef struct web_lod {
     noh_lod_table tables[WEB_MESHES_MAX];
     noh_lod states[WEB_ITEMS_MAX];
     float kept[NOH_TARGETS_MAX], radius_m[NOH_TARGETS_MAX]; /* of the item at hand */
-    uint32_t level_count; /* the most that any mesh has */
-    int level;            /* that is shown, 0 the full mesh; WEB_DETAIL_AUTO: what the settings allow */
+    uint32_t level_count;                                   /* the most that any mesh has */
+    int level; /* that is shown, 0 the full mesh; WEB_DETAIL_AUTO: what the settings allow */
     noh_lod_settings settings;
-    int64_t clock;        /* ticks, for fades */
+    int64_t clock; /* ticks, for fades */
 } web_lod;
 
 /* Of a scene that was listed. Packs without levels are always shown in full. */
@@ -22,8 +22,8 @@ void web_lod_open(web_lod *lod, const web_scene *scene);
 
 /* Choose an item's level in its current pose. Call before web_detail_weights.
  * shapes  matrices[joints of its skin][12], NULL: rigid; height of the canvas in pixels */
-void web_lod_choose(web_lod *lod, const web_scene *scene, uint32_t item, const float *matrices, const noh_gl_camera *camera,
-                       uint32_t height);
+void web_lod_choose(web_lod *lod, const web_scene *scene, uint32_t item, const float *matrices,
+                    const noh_gl_camera *camera, uint32_t height);
 
 /* The item's weights, 0 for targets too small to be seen; valid until the next call. */
 const float *web_lod_weights(web_lod *lod, const web_scene *scene, uint32_t item);

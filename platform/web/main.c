@@ -71,7 +71,8 @@ static noh_result load_meshes(void)
     }
     end_part("meshes");
     if (!result && pack->texture_count > PICTURES_MAX) {
-        return noh_fail(&web.error, NOH_ERR_LIMIT, "more textures than the page has room for", pack->texture_count, PICTURES_MAX);
+        return noh_fail(&web.error, NOH_ERR_LIMIT, "more textures than the page has room for", pack->texture_count,
+                        PICTURES_MAX);
     }
     for (uint32_t i = 0; i < pack->texture_count && !result; i++) {
         noh_texture texture;
@@ -96,8 +97,8 @@ static noh_result load_morph(noh_morph_path path)
         size_t bytes = (size_t)plan.cpu_bytes;
         void *block = noh_arena_carve(&web.arena, bytes, 16);
         result = noh_gl_morph_init(block, block ? bytes : 0,
-                                   &(noh_gl_device){ &web.gl, &web.caps, &web.ledger, NULL, 0 }, &desc,
-                                   &web.morph, &web.error);
+                                   &(noh_gl_device){ &web.gl, &web.caps, &web.ledger, NULL, 0 }, &desc, &web.morph,
+                                   &web.error);
     }
     for (uint32_t i = 0; i < web.scene.item_count && !result; i++) {
         web_item *item = &web.scene.items[i];
@@ -123,8 +124,8 @@ static noh_result load_skin(void)
         size_t bytes = (size_t)plan.cpu_bytes;
         void *block = noh_arena_carve(&web.arena, bytes, 16);
         result = noh_gl_skin_init(block, block ? bytes : 0,
-                                  &(noh_gl_device){ &web.gl, &web.caps, &web.ledger, NULL, 0 }, &desc,
-                                  &web.skin, &web.error);
+                                  &(noh_gl_device){ &web.gl, &web.caps, &web.ledger, NULL, 0 }, &desc, &web.skin,
+                                  &web.error);
     }
     end_part("palettes");
     return result;
@@ -216,32 +217,96 @@ EMSCRIPTEN_KEEPALIVE int web_restore(void)
 
 /* ---- what the page asks ---- */
 
-EMSCRIPTEN_KEEPALIVE const char *web_error(void) { return web.error.what; }
-EMSCRIPTEN_KEEPALIVE const char *web_renderer(void) { return web.caps.renderer; }
-EMSCRIPTEN_KEEPALIVE const char *web_path(void) { return noh_morph_path_name(noh_gl_morph_plan_of(web.morph)->path); }
-EMSCRIPTEN_KEEPALIVE uint32_t web_pack_room(void) { return sizeof pack_bytes; }
-EMSCRIPTEN_KEEPALIVE uint32_t web_memory_room(void) { return sizeof memory; }
-EMSCRIPTEN_KEEPALIVE uint32_t web_gpu_bytes(void) { return (uint32_t)noh_gl_ledger_bytes(&web.ledger); }
-EMSCRIPTEN_KEEPALIVE uint32_t web_part_count(void) { return web.part_count; }
-EMSCRIPTEN_KEEPALIVE const char *web_part_name(uint32_t i) { return web.parts[i].name; }
-EMSCRIPTEN_KEEPALIVE uint32_t web_part_cpu_bytes(uint32_t i) { return web.parts[i].cpu_bytes; }
-EMSCRIPTEN_KEEPALIVE uint32_t web_part_gpu_bytes(uint32_t i) { return web.parts[i].gpu_bytes; }
+EMSCRIPTEN_KEEPALIVE const char *web_error(void)
+{
+    return web.error.what;
+}
+EMSCRIPTEN_KEEPALIVE const char *web_renderer(void)
+{
+    return web.caps.renderer;
+}
+EMSCRIPTEN_KEEPALIVE const char *web_path(void)
+{
+    return noh_morph_path_name(noh_gl_morph_plan_of(web.morph)->path);
+}
+EMSCRIPTEN_KEEPALIVE uint32_t web_pack_room(void)
+{
+    return sizeof pack_bytes;
+}
+EMSCRIPTEN_KEEPALIVE uint32_t web_memory_room(void)
+{
+    return sizeof memory;
+}
+EMSCRIPTEN_KEEPALIVE uint32_t web_gpu_bytes(void)
+{
+    return (uint32_t)noh_gl_ledger_bytes(&web.ledger);
+}
+EMSCRIPTEN_KEEPALIVE uint32_t web_part_count(void)
+{
+    return web.part_count;
+}
+EMSCRIPTEN_KEEPALIVE const char *web_part_name(uint32_t i)
+{
+    return web.parts[i].name;
+}
+EMSCRIPTEN_KEEPALIVE uint32_t web_part_cpu_bytes(uint32_t i)
+{
+    return web.parts[i].cpu_bytes;
+}
+EMSCRIPTEN_KEEPALIVE uint32_t web_part_gpu_bytes(uint32_t i)
+{
+    return web.parts[i].gpu_bytes;
+}
 
-EMSCRIPTEN_KEEPALIVE uint32_t web_target_count(void) { return web.scene.name_count; }
-EMSCRIPTEN_KEEPALIVE const char *web_target_name(uint32_t i) { return web.scene.names[i]; }
-EMSCRIPTEN_KEEPALIVE float web_weight(uint32_t target) { return web_scene_weight(&web.scene, target); }
-EMSCRIPTEN_KEEPALIVE void web_set_weight(uint32_t target, float weight) { web_scene_set_weight(&web.scene, target, weight); }
+EMSCRIPTEN_KEEPALIVE uint32_t web_target_count(void)
+{
+    return web.scene.name_count;
+}
+EMSCRIPTEN_KEEPALIVE const char *web_target_name(uint32_t i)
+{
+    return web.scene.names[i];
+}
+EMSCRIPTEN_KEEPALIVE float web_weight(uint32_t target)
+{
+    return web_scene_weight(&web.scene, target);
+}
+EMSCRIPTEN_KEEPALIVE void web_set_weight(uint32_t target, float weight)
+{
+    web_scene_set_weight(&web.scene, target, weight);
+}
 
-EMSCRIPTEN_KEEPALIVE uint32_t web_clip_count(void) { return web.scene.pack.clip_count; }
-EMSCRIPTEN_KEEPALIVE double web_clip_seconds(uint32_t i) { return web_clip_seconds(&web.clip, i); }
-EMSCRIPTEN_KEEPALIVE double web_time(void) { return web_clip_time(&web.clip); }
-EMSCRIPTEN_KEEPALIVE void web_set_speed(float speed) { web_clip_bank_speed(&web.clip, speed); }
-EMSCRIPTEN_KEEPALIVE void web_step(double seconds) { web_clip_step(&web.clip, seconds); }
+EMSCRIPTEN_KEEPALIVE uint32_t web_clip_count(void)
+{
+    return web.scene.pack.clip_count;
+}
+EMSCRIPTEN_KEEPALIVE double web_clip_seconds(uint32_t i)
+{
+    return web_clip_seconds(&web.clip, i);
+}
+EMSCRIPTEN_KEEPALIVE double web_time(void)
+{
+    return web_clip_time(&web.clip);
+}
+EMSCRIPTEN_KEEPALIVE void web_set_speed(float speed)
+{
+    web_clip_bank_speed(&web.clip, speed);
+}
+EMSCRIPTEN_KEEPALIVE void web_step(double seconds)
+{
+    web_clip_step(&web.clip, seconds);
+}
 
-EMSCRIPTEN_KEEPALIVE uint32_t web_level_count(void) { return web.lod.level_count; }
+EMSCRIPTEN_KEEPALIVE uint32_t web_level_count(void)
+{
+    return web.lod.level_count;
+}
 /* A LOD level, or -1: what one pixel of error allows. */
-EMSCRIPTEN_KEEPALIVE void web_set_lod(int level) { web.lod.level = level; }
-/* Of the frame that was drawn: the finest level of any item, the largest error that noh claims, whether a level fades. */
+EMSCRIPTEN_KEEPALIVE void web_set_lod(int level)
+{
+    web.lod.level = level;
+}
+/* Of the frame that was drawn: the finest level of any item, the largest error that noh claims, whether a level fades.
+ */
 EMSCRIPTEN_KEEPALIVE uint32_t web_level(void)
 {
     uint32_t finest = NOH_LOD_LEVELS_MAX;
@@ -288,10 +353,16 @@ EMSCRIPTEN_KEEPALIVE float *web_measure(void)
 }
 
 /* A noh_gl_camera, to be written. */
-EMSCRIPTEN_KEEPALIVE float *web_camera(void) { return web.camera.view_projection; }
+EMSCRIPTEN_KEEPALIVE float *web_camera(void)
+{
+    return web.camera.view_projection;
+}
 
 /* Draw without morphs, as if there were none: what the benchmark compares with. */
-EMSCRIPTEN_KEEPALIVE void web_set_at_rest(int at_rest) { web.at_rest = at_rest; }
+EMSCRIPTEN_KEEPALIVE void web_set_at_rest(int at_rest)
+{
+    web.at_rest = at_rest;
+}
 
 static noh_result update(void)
 {
@@ -302,7 +373,8 @@ static noh_result update(void)
         const float *matrices = web_clip_matrices(&web.clip, item) ? web.clip.matrices : NULL;
         web_lod_choose(&web.lod, &web.scene, i, matrices, &web.camera, height);
         noh_gl_morph_set_lod(web.morph, item->instance, noh_lod_drawn(&web.lod.states[i], web.lod.clock));
-        noh_result result = noh_gl_morph_set_weights(web.morph, item->instance, web_lod_weights(&web.lod, &web.scene, i), &web.error);
+        noh_result result = noh_gl_morph_set_weights(web.morph, item->instance,
+                                                     web_lod_weights(&web.lod, &web.scene, i), &web.error);
         if (result) return result;
         if (matrices) noh_gl_skin_set_matrices(web.skin, item->instance, matrices);
     }
@@ -321,15 +393,15 @@ static void draw_item(uint32_t index, int pass)
     int is_skinned = web.scene.meshes[item->mesh].header->skin != NOH_NONE;
     if (is_skinned) skin = noh_gl_skin_binding_of(web.skin, item->instance);
     for (uint32_t k = 0; k < part_count; k++) {
-        const noh_gl_lod lod = {parts[k].level, parts[k].from, parts[k].to};
-        noh_gl_draw_mesh(&web.renderer, &web.meshes[item->mesh], web_scene_world(&web.scene, item), web.at_rest ? NULL : &morph,
-                         is_skinned ? &skin : NULL, &lod, web.pictures, pass);
+        const noh_gl_lod lod = { parts[k].level, parts[k].from, parts[k].to };
+        noh_gl_draw_mesh(&web.renderer, &web.meshes[item->mesh], web_scene_world(&web.scene, item),
+                         web.at_rest ? NULL : &morph, is_skinned ? &skin : NULL, &lod, web.pictures, pass);
     }
 }
 
 static void begin_frame(void)
 {
-    static const float background[4] = {0.3035f, 0.3094f, 0.3227f, 1.0f}, far = 1.0f;
+    static const float background[4] = { 0.3035f, 0.3094f, 0.3227f, 1.0f }, far = 1.0f;
     uint32_t width, height;
     noh_platform_web.size(web.context, &width, &height);
     web.gl.BindFramebuffer(GL_FRAMEBUFFER, 0);

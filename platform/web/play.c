@@ -8,7 +8,8 @@
 
 static noh_result fail_memory(const noh_arena *arena, noh_error *error)
 {
-    return noh_fail(error, NOH_ERR_MEMORY, "less memory than the pack needs: build the page for this pack", 0, arena->used);
+    return noh_fail(error, NOH_ERR_MEMORY, "less memory than the pack needs: build the page for this pack", 0,
+                    arena->used);
 }
 
 /* ---- opening ---- */
@@ -32,7 +33,8 @@ static noh_controller_desc controller_desc(const web_player *p)
 }
 
 /* No clip for this skeleton is no error: it stands in its bind pose. */
-static noh_result open_clips(const web_clip *m, uint32_t player, noh_arena *arena, noh_clip_bank **set, noh_error *error)
+static noh_result open_clips(const web_clip *m, uint32_t player, noh_arena *arena, noh_clip_bank **set,
+                             noh_error *error)
 {
     const noh_clip_bank_desc desc = set_desc(m, player);
     const size_t bytes = m->scene->pack.clip_count ? noh_clip_bank_size(&desc, error) : 0;
@@ -72,7 +74,8 @@ noh_result web_clip_open_controllers(web_clip *m, noh_arena *arena, noh_error *e
             const noh_controller_desc desc = controller_desc(p);
             const size_t bytes = noh_controller_size(&desc);
             void *memory = noh_arena_carve(arena, bytes, BLOCK);
-            result = memory ? noh_controller_init(memory, bytes, &desc, &p->controller, error) : fail_memory(arena, error);
+            result = memory ? noh_controller_init(memory, bytes, &desc, &p->controller, error)
+                            : fail_memory(arena, error);
         }
     }
     return result;
@@ -93,7 +96,8 @@ static noh_result open_pose(web_player *p, noh_arena *arena, noh_error *error)
 static noh_result open_still(web_clip *m, web_player *p, noh_error *error)
 {
     if (p->skeleton.joint_count > WEB_STILL_JOINTS_MAX - m->still_count) {
-        return noh_fail(error, NOH_ERR_LIMIT, "more joints that no clip moves than the page has room for", 0, p->skeleton.joint_count);
+        return noh_fail(error, NOH_ERR_LIMIT, "more joints that no clip moves than the page has room for", 0,
+                        p->skeleton.joint_count);
     }
     p->model = m->still[m->still_count];
     m->still_count += p->skeleton.joint_count;
@@ -118,7 +122,8 @@ noh_result web_clip_open_matrices(web_clip *m, noh_arena *arena, noh_error *erro
     uint32_t most = 0;
     for (uint32_t i = 0; i < m->scene->item_count; i++) {
         noh_skin skin;
-        if (noh_pack_skin_at(&m->scene->pack, m->scene->meshes[m->scene->items[i].mesh].header->skin, &skin, NULL) == NOH_OK) {
+        if (noh_pack_skin_at(&m->scene->pack, m->scene->meshes[m->scene->items[i].mesh].header->skin, &skin, NULL) ==
+            NOH_OK) {
             most = skin.header->joint_count > most ? skin.header->joint_count : most;
         }
     }
@@ -158,7 +163,9 @@ static void move_weights(const web_clip *m, const web_player *p, int to_pose)
         const uint32_t g = noh_clip_bank_node_group(p->set, item->node);
         if (g == NOH_NONE || !noh_clip_bank_moves(p->set, clip, g)) continue;
         web_scene_reset(m->scene, item);
-        if (to_pose) memcpy(m->scene->weights + item->first_weight, p->floats + p->set->groups[g].first, p->set->groups[g].width * sizeof(float));
+        if (to_pose)
+            memcpy(m->scene->weights + item->first_weight, p->floats + p->set->groups[g].first,
+                   p->set->groups[g].width * sizeof(float));
     }
 }
 
@@ -190,7 +197,8 @@ static noh_result restart(const web_clip *m, web_player *p, double time_s, noh_e
 {
     const noh_controller_desc desc = controller_desc(p);
     uint32_t clip;
-    noh_result result = noh_controller_init(p->controller, noh_controller_bytes(p->controller), &desc, &p->controller, error);
+    noh_result result = noh_controller_init(p->controller, noh_controller_bytes(p->controller), &desc, &p->controller,
+                                            error);
     return !result && has_clip(p, m->clip, &clip) ? start(m, p, clip, time_s, error) : result;
 }
 
@@ -201,10 +209,11 @@ static noh_result go_over(const web_clip *m, web_player *p, double time_s, doubl
     noh_result result = noh_controller_inertia_capture(p->controller, set, &p->scratch, error);
     if (!result) {
         result = has_clip(p, m->clip, &clip) ? start(m, p, clip, time_s, error)
-                                                 : noh_controller_set_mode(p->controller, 0, NOH_TRACK_OFF);
+                                             : noh_controller_set_mode(p->controller, 0, NOH_TRACK_OFF);
     }
     if (!result) {
-        result = noh_controller_inertia_begin(p->controller, set, &p->scratch, (uint32_t)noh_ticks_from_seconds(transition_s), error);
+        result = noh_controller_inertia_begin(p->controller, set, &p->scratch,
+                                              (uint32_t)noh_ticks_from_seconds(transition_s), error);
     }
     return result;
 }
@@ -227,7 +236,8 @@ void web_clip_bank_speed(web_clip *m, float speed)
 {
     m->speed = speed;
     for (uint32_t i = 0; i < m->player_count; i++) {
-        if (m->players[i].set) (void)noh_controller_set_speed(m->players[i].controller, 0, (int32_t)(speed * (float)NOH_SPEED_ONE));
+        if (m->players[i].set)
+            (void)noh_controller_set_speed(m->players[i].controller, 0, (int32_t)(speed * (float)NOH_SPEED_ONE));
     }
 }
 

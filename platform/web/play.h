@@ -8,23 +8,24 @@
 #define WEB_STILL_JOINTS_MAX 256u
 
 typedef struct web_player {
-    noh_skeleton skeleton;      /* joint_count 0: none, only weights are moved */
-    noh_clip_bank *set;        /* NULL: no clip fits */
+    noh_skeleton skeleton; /* joint_count 0: none, only weights are moved */
+    noh_clip_bank *set;    /* NULL: no clip fits */
     noh_controller *controller;
     noh_pose_scratch scratch;
-    noh_transform *pose;        /* [joint_count] */
-    float *floats;              /* [set->clips.float_count] */
-    float *model;               /* [joint_count][12] model space */
+    noh_transform *pose; /* [joint_count] */
+    float *floats;       /* [set->clips.float_count] */
+    float *model;        /* [joint_count][12] model space */
 } web_player;
 
 typedef struct web_clip {
     web_scene *scene;
     web_player players[WEB_PLAYERS_MAX];
     uint32_t player_count;
-    uint32_t clip;              /* that plays: its index in the pack; NOH_NONE: none does */
+    uint32_t clip; /* that plays: its index in the pack; NOH_NONE: none does */
     float speed;
-    float *matrices;            /* [joints of the largest skin][12]; NULL: nothing is skinned */
-    float still[WEB_STILL_JOINTS_MAX][12]; /* the joints of skeletons that no clip moves: `noh budget` does not count them */
+    float *matrices; /* [joints of the largest skin][12]; NULL: nothing is skinned */
+    float still[WEB_STILL_JOINTS_MAX]
+               [12]; /* the joints of skeletons that no clip moves: `noh budget` does not count them */
     uint32_t still_count;
 } web_clip;
 
@@ -41,8 +42,8 @@ noh_result web_clip_open_matrices(web_clip *clip, noh_arena *arena, noh_error *e
 /* The seconds of the pack's n-th clip; negative where it moves nothing here. */
 double web_clip_seconds(const web_clip *clip, uint32_t clip);
 
-/* Play a clip in a loop, from a time in seconds; NOH_NONE: stop, in the bind pose. A transition in seconds blends from the
- * previous clip by inertialisation. */
+/* Play a clip in a loop, from a time in seconds; NOH_NONE: stop, in the bind pose. A transition in seconds blends from
+ * the previous clip by inertialisation. */
 noh_result web_clip_play(web_clip *clip, uint32_t clip, double time_s, double transition_s, noh_error *error);
 void web_clip_bank_speed(web_clip *clip, float speed);
 

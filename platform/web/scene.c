@@ -43,7 +43,8 @@ noh_result web_scene_list(web_scene *scene, noh_error *error)
     const noh_pack *pack = &scene->pack;
     noh_result result = NOH_OK;
     if (pack->mesh_count > WEB_MESHES_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "more meshes than the page has room for", pack->mesh_count, WEB_MESHES_MAX);
+        return noh_fail(error, NOH_ERR_LIMIT, "more meshes than the page has room for", pack->mesh_count,
+                        WEB_MESHES_MAX);
     }
     for (uint32_t i = 0; i < pack->mesh_count; i++) {
         noh_pack_mesh_at(pack, i, &scene->meshes[i], NULL);
@@ -61,7 +62,7 @@ noh_result web_scene_list(web_scene *scene, noh_error *error)
 
 const float *web_scene_world(const web_scene *scene, const web_item *item)
 {
-    static const float identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    static const float identity[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
     return item->node == NOH_NONE ? identity : scene->pack.nodes[item->node].world;
 }
 

@@ -48,8 +48,10 @@ static const char *bad_value(const noh_change_desc *d)
 {
     float weight_max = d->kind == NOH_CHANGE_PRIORITY ? 1.0f : NOH_WEIGHT_MAX;
     if (d->speed > NOH_SPEED_MAX || d->speed < -NOH_SPEED_MAX) return "speed is past NOH_SPEED_MAX";
-    if (!(d->weight >= 0.0f && d->weight <= weight_max)) return "weight is not in 0..NOH_WEIGHT_MAX, or 0..1 for PRIORITY";
-    if (d->position_ticks > ((int64_t)1 << 44) || d->position_ticks < -((int64_t)1 << 44)) return "position_ticks is past 2^44";
+    if (!(d->weight >= 0.0f && d->weight <= weight_max))
+        return "weight is not in 0..NOH_WEIGHT_MAX, or 0..1 for PRIORITY";
+    if (d->position_ticks > ((int64_t)1 << 44) || d->position_ticks < -((int64_t)1 << 44))
+        return "position_ticks is past 2^44";
     if ((unsigned)d->mode > NOH_TRACK_ON) return "mode is not a noh_track_mode";
     return NULL;
 }
@@ -58,7 +60,8 @@ static const char *bad_change(const noh_change_target *target, uint32_t track_co
 {
     if ((unsigned)d->kind > NOH_CHANGE_PRIORITY) return "kind is not a noh_change_kind";
     if (d->kind != NOH_CHANGE_PRIORITY && d->track >= track_count) return "track is not below track_count";
-    if (d->kind == NOH_CHANGE_POSITION && target->tracks[d->track].sync_group) return "track is synchronised: its group moves it";
+    if (d->kind == NOH_CHANGE_POSITION && target->tracks[d->track].sync_group)
+        return "track is synchronised: its group moves it";
     if ((unsigned)d->curve > NOH_CURVE_SMOOTHSTEP) return "curve is not a noh_curve";
     if (d->kind == NOH_CHANGE_MODE && d->duration_ticks) return "duration_ticks must be 0 for MODE";
     return bad_value(d);
@@ -90,7 +93,8 @@ static noh_change *slot(noh_change *table, uint32_t count, const noh_change *c)
     return free_one;
 }
 
-static noh_result add(noh_change *table, uint32_t count, noh_change_target *target, const noh_change *c, noh_error *error)
+static noh_result add(noh_change *table, uint32_t count, noh_change_target *target, const noh_change *c,
+                      noh_error *error)
 {
     noh_change *place = slot(table, count, c);
     if (!place) {
@@ -123,7 +127,8 @@ noh_result noh_changes_add(noh_change *table, uint32_t count, noh_change_target 
     return add(table, count, target, &c, error);
 }
 
-noh_result noh_changes_jump(noh_change *table, uint32_t count, noh_change_target *target, uint32_t track, int64_t position, noh_error *error)
+noh_result noh_changes_jump(noh_change *table, uint32_t count, noh_change_target *target, uint32_t track,
+                            int64_t position, noh_error *error)
 {
     noh_change c;
     NOH_ASSERT(table && target && target->tracks);
@@ -256,8 +261,8 @@ void noh_changes_update(noh_change *table, uint32_t count, noh_change_target *ta
 
 /* ---- rates ---- */
 
-/* A stretch of whole ticks in which a change is constant. A change shorter than NOH_CHANGE_SLICES ticks has empty slices;
- * their part of the curve goes to the next one that is not empty. */
+/* A stretch of whole ticks in which a change is constant. A change shorter than NOH_CHANGE_SLICES ticks has empty
+ * slices; their part of the curve goes to the next one that is not empty. */
 typedef struct slice {
     int64_t begin, end;   /* ticks after the change's start */
     int64_t first, after; /* the part of the curve, in slices */
@@ -280,8 +285,8 @@ static slice slice_at(const noh_change *c, int64_t elapsed)
     return s;
 }
 
-/* The speed of one slice: the curve's value in its middle, which is also its mean over the slice for a linear curve, and
- * within 1/64^2 of it for the smoothstep. Returns up to when it holds. */
+/* The speed of one slice: the curve's value in its middle, which is also its mean over the slice for a linear curve,
+ * and within 1/64^2 of it for the smoothstep. Returns up to when it holds. */
 static int64_t speed_rate(const noh_change *c, int64_t elapsed, int32_t *speed)
 {
     slice s = slice_at(c, elapsed);
@@ -290,14 +295,15 @@ static int64_t speed_rate(const noh_change *c, int64_t elapsed, int32_t *speed)
     return s.end;
 }
 
-/* The speed of a travel. The distance of each slice is cut into whole steps of one tick, in two sizes that differ by one,
- * the longer ones last (as Bresenham's line would, but in two runs), so that each slice ends exactly where the curve says.
- * Returns up to when the speed holds. */
+/* The speed of a travel. The distance of each slice is cut into whole steps of one tick, in two sizes that differ by
+ * one, the longer ones last (as Bresenham's line would, but in two runs), so that each slice ends exactly where the
+ * curve says. Returns up to when the speed holds. */
 static int64_t position_rate(const noh_change *c, int64_t elapsed, int64_t *rate)
 {
     slice s = slice_at(c, elapsed);
     int64_t way = c->to - c->from, ticks = s.end - s.begin;
-    int64_t slice_way = scaled(way, curve_fixed(c->curve, 2 * s.after)) - scaled(way, curve_fixed(c->curve, 2 * s.first));
+    int64_t slice_way = scaled(way, curve_fixed(c->curve, 2 * s.after)) -
+                        scaled(way, curve_fixed(c->curve, 2 * s.first));
     int64_t step = noh_floor_div(slice_way, ticks), rest = slice_way - step * ticks;
     int64_t turn = s.end - rest; /* from here on one more per tick */
     *rate = elapsed < turn ? step : step + 1;
@@ -329,7 +335,8 @@ static int64_t position_rates(const noh_change *table, uint32_t count, const noh
 {
     for (uint32_t i = 0; i < count; i++) {
         if (runs(&table[i], NOH_CHANGE_POSITION)) {
-            int64_t held = position_rate(&table[i], target->clock - table[i].start, &target->tracks[table[i].track].rate);
+            int64_t held = position_rate(&table[i], target->clock - table[i].start,
+                                         &target->tracks[table[i].track].rate);
             end = sooner(end, noh_clock_add(table[i].start, held));
         }
     }
@@ -349,7 +356,8 @@ static int64_t next_change(const noh_change *table, uint32_t count, int64_t end)
     return end;
 }
 
-int64_t noh_changes_speeds(const noh_change *table, uint32_t count, const noh_change_target *target, uint32_t track_count, int64_t end)
+int64_t noh_changes_speeds(const noh_change *table, uint32_t count, const noh_change_target *target,
+                           uint32_t track_count, int64_t end)
 {
     NOH_ASSERT(target && (table || !count) && end >= target->clock);
     end = speed_rates(table, count, target, next_change(table, count, end));

@@ -2,7 +2,8 @@
 
 static const char *bad_count(const noh_clip_set *set)
 {
-    if (set->clip_count == 0 || set->clip_count > NOH_CLIPS_MAX) return "clip_count of a set is 0, or above NOH_CLIPS_MAX";
+    if (set->clip_count == 0 || set->clip_count > NOH_CLIPS_MAX)
+        return "clip_count of a set is 0, or above NOH_CLIPS_MAX";
     if (set->joint_count > NOH_JOINTS_MAX) return "joint_count of a set is above NOH_JOINTS_MAX";
     if (set->joint_count == 0 && set->float_count == 0) return "joint_count and float_count of a set are both 0";
     if (set->float_count > NOH_FLOATS_MAX) return "float_count of a set is above NOH_FLOATS_MAX";

@@ -5,8 +5,8 @@
  * noh_clip_set.sample for them. One set serves any number of instances.
  *
  * Threads: a set is read only while instances use it, so any number of threads may share one whose `sample` may run on
- * several threads. Where it may not, each thread hands a copy of its own with another `user` to the calls; for clips out
- * of packs noh_clip_bank_view is that copy. */
+ * several threads. Where it may not, each thread hands a copy of its own with another `user` to the calls; for clips
+ * out of packs noh_clip_bank_view is that copy. */
 #ifndef NOH_ANIM_CLIP_SET_H
 #define NOH_ANIM_CLIP_SET_H
 
@@ -21,10 +21,10 @@ extern "C" {
 
 /* A callback key. */
 typedef struct noh_event_key {
-    uint32_t tick;       /* 0..duration of its clip */
-    uint32_t name_hash;  /* noh_hash_name of its name */
+    uint32_t tick;      /* 0..duration of its clip */
+    uint32_t name_hash; /* noh_hash_name of its name */
     uint8_t payload[8];
-    float weight_min;    /* fires only while its track weighs at least this much; 0: always */
+    float weight_min; /* fires only while its track weighs at least this much; 0: always */
 } noh_event_key;
 
 /* A place that the clips of one sync group share: a foot on the ground. */
@@ -33,16 +33,16 @@ typedef struct noh_marker {
     uint32_t id;
 } noh_marker;
 
-#define NOH_CLIP_ADDITIVE 1u  /* its poses are differences already: see noh_pose_difference */
+#define NOH_CLIP_ADDITIVE 1u    /* its poses are differences already: see noh_pose_difference */
 #define NOH_CLIP_FLOATS_ONLY 2u /* animates floats only: joints are left to the other tracks */
 #define NOH_CLIP_JOINTS_ONLY 4u /* animates joints only: a walk leaves the face to the track that speaks */
 #define NOH_CLIP_FLAGS (NOH_CLIP_ADDITIVE | NOH_CLIP_FLOATS_ONLY | NOH_CLIP_JOINTS_ONLY)
 
 typedef struct noh_clip_entry {
     uint32_t name_hash;
-    uint32_t duration_ticks; /* 0..NOH_DURATION_MAX */
-    uint32_t loop;  /* noh_loop, not NOH_LOOP_OF_CLIP */
-    uint32_t flags; /* NOH_CLIP_* */
+    uint32_t duration_ticks;             /* 0..NOH_DURATION_MAX */
+    uint32_t loop;                       /* noh_loop, not NOH_LOOP_OF_CLIP */
+    uint32_t flags;                      /* NOH_CLIP_* */
     uint32_t first_event, event_count;   /* in the set's events, in tick order */
     uint32_t first_marker, marker_count; /* in the set's markers */
 } noh_clip_entry;
@@ -52,25 +52,25 @@ struct noh_root_track;
 
 /* Sample a clip: fill pose[joint_count] with its first joints and floats[float_count].
  * ranges  clip_tick 0..duration */
-typedef void (*noh_clip_sample_fn)(void *user, uint32_t clip, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose,
-                                  uint32_t float_count, float *floats);
+typedef void (*noh_clip_sample_fn)(void *user, uint32_t clip, uint32_t clip_tick, uint32_t joint_count,
+                                   noh_transform *pose, uint32_t float_count, float *floats);
 
 /* The clips of one skeleton, and what they are blended with. Borrowed; constant while instances use it. */
 typedef struct noh_clip_set {
-    uint32_t clip_count; /* 1..NOH_CLIPS_MAX */
-    uint32_t joint_count;  /* 0..NOH_JOINTS_MAX; 0 needs floats, and takes no roots */
-    uint32_t float_count;  /* 0..NOH_FLOATS_MAX: morph weights and named floats */
-    uint32_t mask_count;   /* 0..NOH_MASKS_MAX */
+    uint32_t clip_count;  /* 1..NOH_CLIPS_MAX */
+    uint32_t joint_count; /* 0..NOH_JOINTS_MAX; 0 needs floats, and takes no roots */
+    uint32_t float_count; /* 0..NOH_FLOATS_MAX: morph weights and named floats */
+    uint32_t mask_count;  /* 0..NOH_MASKS_MAX */
     uint32_t event_count, marker_count;
-    const noh_clip_entry *clips;              /* [clip_count] */
-    const noh_event_key *events;            /* [event_count]; may be NULL where that is 0 */
-    const noh_marker *markers;              /* [marker_count]; may be NULL where that is 0 */
-    const noh_transform *bind_pose;         /* [joint_count]; never NULL */
-    const float *float_defaults;            /* [float_count]; NULL: all 0 */
-    const uint8_t *masks;                   /* [mask_count][joint_count + float_count], 255 = full weight */
-    const struct noh_root_track *roots;     /* [clip_count]; NULL: the root joint moves in its pose */
+    const noh_clip_entry *clips;        /* [clip_count] */
+    const noh_event_key *events;        /* [event_count]; may be NULL where that is 0 */
+    const noh_marker *markers;          /* [marker_count]; may be NULL where that is 0 */
+    const noh_transform *bind_pose;     /* [joint_count]; never NULL */
+    const float *float_defaults;        /* [float_count]; NULL: all 0 */
+    const uint8_t *masks;               /* [mask_count][joint_count + float_count], 255 = full weight */
+    const struct noh_root_track *roots; /* [clip_count]; NULL: the root joint moves in its pose */
     noh_clip_sample_fn sample;
-    void *user;                             /* for sample */
+    void *user; /* for sample */
 } noh_clip_set;
 
 /* Check a set once, before instances are made of it.

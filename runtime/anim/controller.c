@@ -11,7 +11,7 @@
 #define IS_SET_OF(c, set) ((set) && (set)->clip_count == (c)->clip_count && (set)->joint_count == (c)->joint_count)
 
 /* private flags, above the public ones */
-#define STEPPING 64u     /* inside noh_controller_step */
+#define STEPPING 64u      /* inside noh_controller_step */
 #define SYNC_TOUCHED 128u /* the sync groups need new speeds before the next grid tick */
 
 /* ---- memory ---- */
@@ -32,8 +32,10 @@ static uint32_t change_count_of(const noh_controller_desc *d)
 
 static const char *bad_desc(const noh_controller_desc *d)
 {
-    if (!d->set || d->set->joint_count > NOH_JOINTS_MAX || d->set->float_count > NOH_FLOATS_MAX) return "set: NULL, or without joints and floats, or over NOH_JOINTS_MAX or NOH_FLOATS_MAX";
-    if (d->set->joint_count == 0 && d->set->float_count == 0) return "set: NULL, or without joints and floats, or over NOH_JOINTS_MAX or NOH_FLOATS_MAX";
+    if (!d->set || d->set->joint_count > NOH_JOINTS_MAX || d->set->float_count > NOH_FLOATS_MAX)
+        return "set: NULL, or without joints and floats, or over NOH_JOINTS_MAX or NOH_FLOATS_MAX";
+    if (d->set->joint_count == 0 && d->set->float_count == 0)
+        return "set: NULL, or without joints and floats, or over NOH_JOINTS_MAX or NOH_FLOATS_MAX";
     if (d->track_count > NOH_TRACKS_MAX) return "track_count is above NOH_TRACKS_MAX";
     if (d->change_count > NOH_CHANGES_MAX) return "change_count is above NOH_CHANGES_MAX";
     if (d->flags & ~NOH_CONTROLLER_INERTIAL) return "flags has bits other than NOH_CONTROLLER_INERTIAL";
@@ -85,7 +87,8 @@ static void fill_head(noh_controller *c, const noh_controller_desc *d, layout l)
     c->flags = (uint8_t)d->flags;
 }
 
-noh_result noh_controller_init(void *memory, size_t bytes, const noh_controller_desc *desc, noh_controller **controller, noh_error *error)
+noh_result noh_controller_init(void *memory, size_t bytes, const noh_controller_desc *desc, noh_controller **controller,
+                               noh_error *error)
 {
     const char *what = bad_desc(desc);
     noh_arena arena;
@@ -158,15 +161,16 @@ static int sync_fits(const noh_controller *c, const noh_clip_set *set, uint32_t 
 {
     for (uint32_t i = 0; i < c->track_count; i++) {
         const noh_track *other = noh_controller_track(c, i);
-        if (i != track && other->sync_group == joining->sync_group && other->mode != NOH_TRACK_OFF
-            && !noh_sync_fits(set, &set->clips[other->clip], &set->clips[joining->clip])) {
+        if (i != track && other->sync_group == joining->sync_group && other->mode != NOH_TRACK_OFF &&
+            !noh_sync_fits(set, &set->clips[other->clip], &set->clips[joining->clip])) {
             return 0;
         }
     }
     return 1;
 }
 
-noh_result noh_controller_start(noh_controller *c, const noh_clip_set *set, uint32_t track, const noh_track_desc *desc, noh_error *error)
+noh_result noh_controller_start(noh_controller *c, const noh_clip_set *set, uint32_t track, const noh_track_desc *desc,
+                                noh_error *error)
 {
     noh_track started;
     noh_track *tracks = noh_controller_tracks(c);
@@ -218,14 +222,17 @@ static int64_t seek_position(const noh_track *t, const noh_clip_entry *m, int64_
     return noh_position_of(legs * (int64_t)m->duration_ticks + tick);
 }
 
-noh_result noh_controller_seek(noh_controller *c, const noh_clip_set *set, uint32_t track, int64_t tick, noh_seek policy, noh_error *error)
+noh_result noh_controller_seek(noh_controller *c, const noh_clip_set *set, uint32_t track, int64_t tick,
+                               noh_seek policy, noh_error *error)
 {
     noh_track *t;
     const noh_clip_entry *m;
     int64_t position;
     NOH_ASSERT(c && IS_SET_OF(c, set));
-    if (track >= c->track_count) return noh_fail(error, NOH_ERR_ARG, "track is not below track_count", track, c->track_count);
-    if (tick > (int64_t)1 << 43 || tick < -((int64_t)1 << 43)) return noh_fail(error, NOH_ERR_ARG, "tick is past 2^43", track, 0);
+    if (track >= c->track_count)
+        return noh_fail(error, NOH_ERR_ARG, "track is not below track_count", track, c->track_count);
+    if (tick > (int64_t)1 << 43 || tick < -((int64_t)1 << 43))
+        return noh_fail(error, NOH_ERR_ARG, "tick is past 2^43", track, 0);
     if ((unsigned)policy > NOH_SEEK_FIRE) return noh_fail(error, NOH_ERR_ARG, "policy is not a noh_seek", track, 0);
     t = &noh_controller_tracks(c)[track];
     m = &set->clips[t->clip];
@@ -306,7 +313,8 @@ noh_result noh_controller_set_lod(noh_controller *c, uint32_t lod, uint32_t join
 
 /* ---- changes ---- */
 
-noh_result noh_controller_change(noh_controller *c, const noh_clip_set *set, const noh_change_desc *desc, noh_error *error)
+noh_result noh_controller_change(noh_controller *c, const noh_clip_set *set, const noh_change_desc *desc,
+                                 noh_error *error)
 {
     noh_change_target target = target_of(c, set);
     noh_result result = noh_changes_add(changes_of(c), c->change_count, &target, c->track_count, desc, error);
@@ -325,13 +333,16 @@ static uint32_t free_changes(noh_controller *c)
     return count;
 }
 
-noh_result noh_controller_cross_fade(noh_controller *c, const noh_clip_set *set, uint32_t from, uint32_t to, float weight,
-                                     uint32_t duration_ticks, noh_curve curve, noh_error *error)
+noh_result noh_controller_cross_fade(noh_controller *c, const noh_clip_set *set, uint32_t from, uint32_t to,
+                                     float weight, uint32_t duration_ticks, noh_curve curve, noh_error *error)
 {
     noh_change_desc d;
     NOH_ASSERT(c && IS_SET_OF(c, set));
-    if (from >= c->track_count || to >= c->track_count || from == to) return noh_fail(error, NOH_ERR_ARG, "track: from and to must be two tracks of the controller", from, c->track_count);
-    if (!(weight >= 0.0f && weight <= NOH_WEIGHT_MAX)) return noh_fail(error, NOH_ERR_ARG, "weight is not in 0..NOH_WEIGHT_MAX", to, 0);
+    if (from >= c->track_count || to >= c->track_count || from == to)
+        return noh_fail(error, NOH_ERR_ARG, "track: from and to must be two tracks of the controller", from,
+                        c->track_count);
+    if (!(weight >= 0.0f && weight <= NOH_WEIGHT_MAX))
+        return noh_fail(error, NOH_ERR_ARG, "weight is not in 0..NOH_WEIGHT_MAX", to, 0);
     if ((unsigned)curve > NOH_CURVE_SMOOTHSTEP) return noh_fail(error, NOH_ERR_ARG, "curve is not a noh_curve", to, 0);
     if (free_changes(c) < 3) return noh_fail(error, NOH_ERR_LIMIT, "the table of changes is full", c->change_count, 3);
     memset(&d, 0, sizeof d);
@@ -438,8 +449,8 @@ static void advance(noh_controller *c, const noh_clip_set *set, int64_t clock, d
     for (uint32_t i = 0; i < count; i++) {
         const noh_clip_entry *m = &set->clips[list[i].clip];
         d->from = &list[i];
-        d->passed += noh_events_pass(set->events + m->first_event, m->event_count, &list[i].passage, NOH_STEP_EVENTS_MAX - d->passed,
-                                     deliver_key, d);
+        d->passed += noh_events_pass(set->events + m->first_event, m->event_count, &list[i].passage,
+                                     NOH_STEP_EVENTS_MAX - d->passed, deliver_key, d);
     }
 }
 
@@ -480,10 +491,10 @@ static int64_t next_event(const noh_controller *c, const noh_clip_set *set, int6
     return end;
 }
 
-/* A step goes from one tick at which anything happens to the next: a change begins or ends or enters a new slice, a sync
- * group gets new speeds, a key is passed. In between every track moves at a constant speed, so its position is one
- * multiplication, exact in integers. That is why the events, and the state afterwards, are the same however time is cut:
- * the ticks at which something happens depend on the clock alone, never on where a step ends. */
+/* A step goes from one tick at which anything happens to the next: a change begins or ends or enters a new slice, a
+ * sync group gets new speeds, a key is passed. In between every track moves at a constant speed, so its position is one
+ * multiplication, exact in integers. That is why the events, and the state afterwards, are the same however time is
+ * cut: the ticks at which something happens depend on the clock alone, never on where a step ends. */
 uint32_t noh_controller_step(noh_controller *c, const noh_clip_set *set, uint32_t ticks, noh_event_fn fn, void *user)
 {
     int64_t end = noh_clock_add(c->clock, ticks);

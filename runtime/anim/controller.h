@@ -9,12 +9,12 @@
  *   - keys are delivered in the order of (tick at which they are passed, track, direction of play, index), each exactly
  *     once (events.h has the definition). The tick of an event is the first by whose end its key has been passed;
  *   - the callback may change the controller. While it runs the controller stands at the event's tick, and the change
- *     holds from there on, within the same step: a track started by an event at tick n is at its start position at n, and
- *     its own keys fire from n + 1 on. Keys of other tracks passed by the same tick n are still delivered, with the
+ *     holds from there on, within the same step: a track started by an event at tick n is at its start position at n,
+ * and its own keys fire from n + 1 on. Keys of other tracks passed by the same tick n are still delivered, with the
  *     weights that their tracks had at n. The callback may call everything but noh_controller_step (which then does
  *     nothing);
- *   - a key's weight_min is compared with the track's weight at the tick of the event, with all changes up to that tick,
- *     those due at it included.
+ *   - a key's weight_min is compared with the track's weight at the tick of the event, with all changes up to that
+ * tick, those due at it included.
  *
  * source  D3DX's animation controller as in C. Granberg, "Character Animation with Direct3D", Charles River Media 2009,
  *         chapters 4 and 5, with keys in ticks rather than seconds and no state shared by clones
@@ -31,24 +31,25 @@
 extern "C" {
 #endif
 
-#define NOH_CONTROLLER_INERTIAL 1u /* room for a pose of offsets: 48 bytes per joint, 8 per float (inertial.h) */
+#define NOH_CONTROLLER_INERTIAL 1u   /* room for a pose of offsets: 48 bytes per joint, 8 per float (inertial.h) */
 #define NOH_CONTROLLER_EVENTS_CUT 2u /* set by a step that came to NOH_STEP_EVENTS_MAX keys and handed out no more */
 
-/* Bytes: 80, 48 per track, 32 per change; with room for inertia 48 per joint and 8 per float. With the default number of
- * changes that is at most 64 per joint and 64 per track for any skeleton with 9 joints more than tracks. */
+/* Bytes: 80, 48 per track, 32 per change; with room for inertia 48 per joint and 8 per float. With the default number
+ * of changes that is at most 64 per joint and 64 per track for any skeleton with 9 joints more than tracks. */
 typedef struct noh_controller_desc {
     const noh_clip_set *set; /* checked with noh_clip_set_check; required */
     uint32_t track_count;    /* default (0) 4; at most NOH_TRACKS_MAX */
-    uint32_t change_count;   /* changes waiting or running at one time; default (0) track_count + 2; at most NOH_CHANGES_MAX */
-    uint32_t flags;          /* NOH_CONTROLLER_INERTIAL */
+    /* changes waiting or running at one time; default (0) track_count + 2; at most NOH_CHANGES_MAX */
+    uint32_t change_count;
+    uint32_t flags; /* NOH_CONTROLLER_INERTIAL */
 } noh_controller_desc;
 
 /* The head of the block; tables follow at byte offsets from it. Reading the fields is fine; change them by calls. */
 typedef struct noh_controller {
-    int64_t clock;              /* ticks since init */
-    int64_t inertia_start;      /* clock at which the offsets of a transition began to decay */
-    uint32_t inertia_ticks;     /* for how long they decay; 0: there are none */
-    uint32_t bytes;             /* of the whole block */
+    int64_t clock;          /* ticks since init */
+    int64_t inertia_start;  /* clock at which the offsets of a transition began to decay */
+    uint32_t inertia_ticks; /* for how long they decay; 0: there are none */
+    uint32_t bytes;         /* of the whole block */
     uint32_t clip_count, joint_count, float_count, mask_count; /* of its set */
     uint32_t track_count, change_count;
     uint32_t tracks_offset, changes_offset, inertia_offset, inertia_floats_offset; /* inertia: 0 without room for it */
@@ -56,8 +57,8 @@ typedef struct noh_controller {
     uint32_t lod_joint_count;   /* joints that are sampled; the others keep the bind pose */
     uint32_t events_high_water; /* the most events that one step has delivered */
     uint16_t changes_high_water;
-    uint8_t lod;                /* tracks with lod_levels of 1..lod are not sampled */
-    uint8_t flags;              /* NOH_CONTROLLER_*, and two private ones */
+    uint8_t lod;   /* tracks with lod_levels of 1..lod are not sampled */
+    uint8_t flags; /* NOH_CONTROLLER_*, and two private ones */
 } noh_controller;
 
 /* A callback key that play has passed. */
@@ -66,9 +67,9 @@ typedef struct noh_event {
     int64_t clock;            /* of the controller, ticks */
     int64_t position_tick;    /* of the key on its track, unwrapped */
     uint32_t track, clip;
-    uint32_t index;           /* of the key in its clip */
-    float weight;             /* of the track at that tick */
-    int backward;             /* 1: passed in backward play */
+    uint32_t index; /* of the key in its clip */
+    float weight;   /* of the track at that tick */
+    int backward;   /* 1: passed in backward play */
 } noh_event;
 
 typedef void (*noh_event_fn)(void *user, const noh_event *event);
@@ -80,36 +81,38 @@ size_t noh_controller_size(const noh_controller_desc *desc);
 
 /* Make a controller in memory[bytes]: all tracks off, clock 0.
  * errors  ARG a field of the desc, or memory NULL or not 16-byte aligned; MEMORY too small; need: the exact bytes */
-noh_result noh_controller_init(void *memory, size_t bytes, const noh_controller_desc *desc, noh_controller **controller, noh_error *error);
+noh_result noh_controller_init(void *memory, size_t bytes, const noh_controller_desc *desc, noh_controller **controller,
+                               noh_error *error);
 
 /* How many bytes to copy to clone or save it. The copy must be 16-byte aligned too. */
 size_t noh_controller_bytes(const noh_controller *c);
 
-/* Check a block from outside, such as a saved game, before any other call: with a block that passes no call overruns its
- * memory, overflows or hangs. The offsets of a transition are not looked at, so a pose may still be nonsense.
+/* Check a block from outside, such as a saved game, before any other call: with a block that passes no call overruns
+ * its memory, overflows or hangs. The offsets of a transition are not looked at, so a pose may still be nonsense.
  * errors  ARG memory NULL or not 16-byte aligned; DATA not a controller for this set (where: the track or change) */
 noh_result noh_controller_check(const void *memory, size_t bytes, const noh_clip_set *set, noh_error *error);
 
 /* ---- tracks ---- */
 
-noh_track *noh_controller_tracks(noh_controller *c);             /* [track_count] */
+noh_track *noh_controller_tracks(noh_controller *c); /* [track_count] */
 const noh_track *noh_controller_track(const noh_controller *c, uint32_t track);
 
 /* Start a clip on a track, ending what played there and its changes. A track that joins a sync group is moved to the
  * group's phase.
  * errors  ARG names the field; the track then stays as it was */
-noh_result noh_controller_start(noh_controller *c, const noh_clip_set *set, uint32_t track, const noh_track_desc *desc, noh_error *error);
+noh_result noh_controller_start(noh_controller *c, const noh_clip_set *set, uint32_t track, const noh_track_desc *desc,
+                                noh_error *error);
 
 typedef enum noh_seek {
     NOH_SEEK_SKIP = 0, /* jumps without firing callbacks; keys at the target fire when play moves on */
-    NOH_SEEK_FIRE      /* travels to the target within the next tick, forwards or backwards, and fires the keys on the way */
+    NOH_SEEK_FIRE /* travels to the target within the next tick, forwards or backwards, and fires the keys on the way */
 } noh_seek;
 
-/* Send a track to a tick of its present pass (ping-pong: cycle of two legs); ticks below 0 and past the duration lie in the
- * passes before and after. Its sync group follows.
- * errors  ARG track, position or policy; FIRE on a synchronised track; LIMIT FIRE
- *         needs a free change */
-noh_result noh_controller_seek(noh_controller *c, const noh_clip_set *set, uint32_t track, int64_t tick, noh_seek policy, noh_error *error);
+/* Send a track to a tick of its present pass (ping-pong: cycle of two legs); ticks below 0 and past the duration lie in
+ * the passes before and after. Its sync group follows. errors  ARG track, position or policy; FIRE on a synchronised
+ * track; LIMIT FIRE needs a free change */
+noh_result noh_controller_seek(noh_controller *c, const noh_clip_set *set, uint32_t track, int64_t tick,
+                               noh_seek policy, noh_error *error);
 
 /* These take effect at once, and end a running change of the same kind. ARG: out of range, see noh_track_desc. */
 noh_result noh_controller_set_speed(noh_controller *c, uint32_t track, int32_t speed);
@@ -124,12 +127,13 @@ noh_result noh_controller_set_lod(noh_controller *c, uint32_t lod, uint32_t join
 
 /* Start a change over time, now or later (changes.h).
  * errors  ARG a field of the desc; LIMIT the table of changes is full */
-noh_result noh_controller_change(noh_controller *c, const noh_clip_set *set, const noh_change_desc *desc, noh_error *error);
+noh_result noh_controller_change(noh_controller *c, const noh_clip_set *set, const noh_change_desc *desc,
+                                 noh_error *error);
 
 /* Fade one track out to 0, then switch it off, and fade another in to `weight` over the same time. Takes three changes.
  * errors  as noh_controller_change; then nothing is changed */
-noh_result noh_controller_cross_fade(noh_controller *c, const noh_clip_set *set, uint32_t from, uint32_t to, float weight,
-                                     uint32_t duration_ticks, noh_curve curve, noh_error *error);
+noh_result noh_controller_cross_fade(noh_controller *c, const noh_clip_set *set, uint32_t from, uint32_t to,
+                                     float weight, uint32_t duration_ticks, noh_curve curve, noh_error *error);
 
 /* Move time on. fn may be NULL. Returns how many events were delivered.
  * A step looks at NOH_STEP_EVENTS_MAX keys at most. Keys after that are passed without being delivered, and

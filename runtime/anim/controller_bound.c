@@ -58,8 +58,8 @@ static void interval_range(const noh_clip_set *set, const noh_clip_entry *m, uin
     }
 }
 
-/* A synchronised track moves at most at the phase speed of its group's fastest member, through its own longest interval;
- * and the group may turn round whenever it gets new speeds. */
+/* A synchronised track moves at most at the phase speed of its group's fastest member, through its own longest
+ * interval; and the group may turn round whenever it gets new speeds. */
 static reach sync_reach(const noh_controller *c, const noh_clip_set *set, uint32_t track, uint32_t ticks)
 {
     const noh_track *t = noh_controller_track(c, track);
@@ -77,7 +77,8 @@ static reach sync_reach(const noh_controller *c, const noh_clip_set *set, uint32
     }
     interval_range(set, &set->clips[t->clip], &shortest, &longest);
     r.runs = (uint64_t)ticks / NOH_SYNC_TICKS + c->change_count + 2u;
-    r.travel = plus(fastest * longest > UINT64_MAX / ((uint64_t)ticks + 1u) ? UINT64_MAX : fastest * longest * ticks, 2u * 65536u);
+    r.travel = plus(fastest * longest > UINT64_MAX / ((uint64_t)ticks + 1u) ? UINT64_MAX : fastest * longest * ticks,
+                    2u * 65536u);
     return r;
 }
 

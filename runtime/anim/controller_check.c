@@ -4,8 +4,8 @@
 #include "anim/controller.h"
 #include "base/arena.h"
 
-/* Bounds that every step keeps. Positions are rebased past NOH_POSITION_MAX; a synchronised track's rate is the mean speed
- * of its group, in intervals per tick (at most 256), times an interval of its own (at most 2^28 ticks). */
+/* Bounds that every step keeps. Positions are rebased past NOH_POSITION_MAX; a synchronised track's rate is the mean
+ * speed of its group, in intervals per tick (at most 256), times an interval of its own (at most 2^28 ticks). */
 #define SYNC_RATE_MAX ((int64_t)1 << 53)
 #define RATE_MAX ((int64_t)1 << 61)
 
@@ -24,15 +24,19 @@ static const char *bad_head(const noh_controller *c, size_t bytes, const noh_cli
     d.track_count = c->track_count;
     d.change_count = c->change_count;
     d.flags = inertial ? NOH_CONTROLLER_INERTIAL : 0u;
-    if (c->track_count == 0 || c->change_count == 0 || noh_controller_size(&d) == 0) return "controller: impossible counts";
-    if (c->clip_count != set->clip_count || c->joint_count != set->joint_count || c->float_count != set->float_count
-        || c->mask_count != set->mask_count) return "controller: made for another set";
+    if (c->track_count == 0 || c->change_count == 0 || noh_controller_size(&d) == 0)
+        return "controller: impossible counts";
+    if (c->clip_count != set->clip_count || c->joint_count != set->joint_count || c->float_count != set->float_count ||
+        c->mask_count != set->mask_count)
+        return "controller: made for another set";
     if (c->bytes != noh_controller_size(&d) || c->bytes > bytes) return "controller: its bytes do not suit its counts";
     if (c->tracks_offset != tracks || c->changes_offset != changes) return "controller: bad offset of a table";
     if (inertial ? c->inertia_offset != inertia || c->inertia_floats_offset != inertia + 48u * (uint64_t)c->joint_count
-                 : c->inertia_offset || c->inertia_floats_offset || c->inertia_ticks) return "controller: bad offset of inertia";
+                 : c->inertia_offset || c->inertia_floats_offset || c->inertia_ticks)
+        return "controller: bad offset of inertia";
     if (!(c->priority_blend >= 0.0f && c->priority_blend <= 1.0f)) return "controller: priority_blend is not in 0..1";
-    if (c->lod_joint_count > c->joint_count || (c->joint_count && !c->lod_joint_count)) return "controller: bad lod_joint_count";
+    if (c->lod_joint_count > c->joint_count || (c->joint_count && !c->lod_joint_count))
+        return "controller: bad lod_joint_count";
     return NULL;
 }
 
@@ -41,10 +45,12 @@ static const char *bad_track(const noh_clip_set *set, const noh_track *t)
     int64_t most = NOH_POSITION_MAX, least = -NOH_POSITION_MAX;
     if (t->clip >= set->clip_count) return "track: clip is not a clip of the set";
     if (t->mask > set->mask_count) return "track: mask is above mask_count of the set";
-    if (t->loop > NOH_LOOP_PING_PONG || t->mode > NOH_TRACK_ON || t->group > NOH_GROUP_HIGH) return "track: bad loop, mode or group";
+    if (t->loop > NOH_LOOP_PING_PONG || t->mode > NOH_TRACK_ON || t->group > NOH_GROUP_HIGH)
+        return "track: bad loop, mode or group";
     if (t->sync_group > NOH_SYNC_GROUPS_MAX) return "track: sync_group is above NOH_SYNC_GROUPS_MAX";
-    if (t->sync_group && (t->loop != NOH_LOOP_REPEAT || set->clips[t->clip].duration_ticks < NOH_SYNC_DURATION_MIN
-                          || set->clips[t->clip].duration_ticks > NOH_SYNC_DURATION_MAX)) return "track: cannot be synchronised";
+    if (t->sync_group && (t->loop != NOH_LOOP_REPEAT || set->clips[t->clip].duration_ticks < NOH_SYNC_DURATION_MIN ||
+                          set->clips[t->clip].duration_ticks > NOH_SYNC_DURATION_MAX))
+        return "track: cannot be synchronised";
     if (!(t->weight >= 0.0f && t->weight <= NOH_WEIGHT_MAX)) return "track: weight is not in 0..NOH_WEIGHT_MAX";
     if (!is_within(t->speed, NOH_SPEED_MAX)) return "track: speed is past NOH_SPEED_MAX";
     if (!is_within(t->rate, t->sync_group ? SYNC_RATE_MAX : RATE_MAX)) return "track: its rate is out of range";
@@ -72,17 +78,28 @@ static const char *bad_change(const noh_controller *c, const noh_change *change)
     if (change->state == NOH_CHANGE_FREE) return NULL;
     if (change->kind > NOH_CHANGE_PRIORITY || change->curve > NOH_CURVE_JUMP) return "change: bad kind or curve";
     if (change->track >= c->track_count) return "change: track is not below track_count";
-    if (change->state == NOH_CHANGE_WAITING && change->start <= c->clock) return "change: waits for a tick that is past";
-    if (change->state == NOH_CHANGE_RUNNING && (change->start > c->clock || change->start < c->clock - (int64_t)change->duration)) {
+    if (change->state == NOH_CHANGE_WAITING && change->start <= c->clock)
+        return "change: waits for a tick that is past";
+    if (change->state == NOH_CHANGE_RUNNING &&
+        (change->start > c->clock || change->start < c->clock - (int64_t)change->duration)) {
         return "change: runs outside of its duration";
     }
-    if (change->state == NOH_CHANGE_RUNNING && change->start == c->clock - (int64_t)change->duration) return "change: runs though it is over";
+    if (change->state == NOH_CHANGE_RUNNING && change->start == c->clock - (int64_t)change->duration)
+        return "change: runs though it is over";
     switch (change->kind) {
-    case NOH_CHANGE_SPEED: return is_within(change->to, NOH_SPEED_MAX) && is_within(change->from, NOH_SPEED_MAX) ? NULL : "change: bad speed";
+    case NOH_CHANGE_SPEED:
+        return is_within(change->to, NOH_SPEED_MAX) && is_within(change->from, NOH_SPEED_MAX) ? NULL
+                                                                                              : "change: bad speed";
     case NOH_CHANGE_POSITION:
-        return is_within(change->to, 2 * NOH_POSITION_MAX) && is_within(change->from, 2 * NOH_POSITION_MAX) ? NULL : "change: bad position";
-    case NOH_CHANGE_MODE: return change->to >= 0 && change->to <= NOH_TRACK_ON && !change->duration ? NULL : "change: bad mode";
-    default: return is_weight(change, change->to) && (change->state == NOH_CHANGE_WAITING || is_weight(change, change->from)) ? NULL : "change: bad weight";
+        return is_within(change->to, 2 * NOH_POSITION_MAX) && is_within(change->from, 2 * NOH_POSITION_MAX)
+                   ? NULL
+                   : "change: bad position";
+    case NOH_CHANGE_MODE:
+        return change->to >= 0 && change->to <= NOH_TRACK_ON && !change->duration ? NULL : "change: bad mode";
+    default:
+        return is_weight(change, change->to) && (change->state == NOH_CHANGE_WAITING || is_weight(change, change->from))
+                   ? NULL
+                   : "change: bad weight";
     }
 }
 

@@ -45,7 +45,8 @@ size_t noh_pose_scratch_size(const noh_clip_set *set, int inertial)
     return arena.used;
 }
 
-noh_result noh_pose_scratch_init(void *memory, size_t bytes, const noh_clip_set *set, int inertial, noh_pose_scratch *scratch, noh_error *error)
+noh_result noh_pose_scratch_init(void *memory, size_t bytes, const noh_clip_set *set, int inertial,
+                                 noh_pose_scratch *scratch, noh_error *error)
 {
     noh_arena arena;
     noh_result result = noh_arena_open(&arena, memory, bytes, noh_pose_scratch_size(set, inertial), error);
@@ -93,8 +94,9 @@ static uint32_t sum_group(const view *v, noh_track_group group)
         if (t->group == group && !(t->flags & NOH_TRACK_ADDITIVE) && is_sampled(v->c, t)) {
             const uint32_t flags = v->set->clips[t->clip].flags;
             sample_at(v, t->clip, clip_tick(v, t), s->sample, s->float_sample);
-            noh_blend_add(&s->blend, flags & NOH_CLIP_FLOATS_ONLY ? NULL : s->sample, flags & NOH_CLIP_JOINTS_ONLY ? NULL : s->float_sample,
-                          t->weight, noh_clip_set_mask(v->set, t->mask));
+            noh_blend_add(&s->blend, flags & NOH_CLIP_FLOATS_ONLY ? NULL : s->sample,
+                          flags & NOH_CLIP_JOINTS_ONLY ? NULL : s->float_sample, t->weight,
+                          noh_clip_set_mask(v->set, t->mask));
             count++;
         }
     }
@@ -187,14 +189,16 @@ void noh_controller_inertia_add(const noh_controller *c, int64_t ago, noh_transf
     float duration_s = (float)c->inertia_ticks / (float)NOH_TICKS_PER_SECOND;
     NOH_ASSERT(c && (!c->inertia_ticks || c->inertia_offset));
     if (c->inertia_ticks && elapsed < (int64_t)c->inertia_ticks) {
-        noh_inertia_apply(c->lod_joint_count, (const noh_inertia_joint *)at(c, c->inertia_offset), elapsed_s, duration_s, pose);
-        noh_inertia_apply_floats(c->float_count, (const noh_inertia_float *)at(c, c->inertia_floats_offset), elapsed_s, duration_s, floats);
+        noh_inertia_apply(c->lod_joint_count, (const noh_inertia_joint *)at(c, c->inertia_offset), elapsed_s,
+                          duration_s, pose);
+        noh_inertia_apply_floats(c->float_count, (const noh_inertia_float *)at(c, c->inertia_floats_offset), elapsed_s,
+                                 duration_s, floats);
     }
 }
 
 /* The pose some ticks ago, with or without the rest of a transition. */
-static void evaluate(const noh_controller *c, const noh_clip_set *set, noh_pose_scratch *scratch, int64_t ago, int inertia,
-                     noh_transform *pose, float *floats)
+static void evaluate(const noh_controller *c, const noh_clip_set *set, noh_pose_scratch *scratch, int64_t ago,
+                     int inertia, noh_transform *pose, float *floats)
 {
     view v = { NULL, NULL, NULL, 0 };
     const noh_track *only;
@@ -222,7 +226,8 @@ static void evaluate(const noh_controller *c, const noh_clip_set *set, noh_pose_
     }
 }
 
-void noh_controller_pose(const noh_controller *c, const noh_clip_set *set, noh_pose_scratch *scratch, noh_transform *pose, float *floats)
+void noh_controller_pose(const noh_controller *c, const noh_clip_set *set, noh_pose_scratch *scratch,
+                         noh_transform *pose, float *floats)
 {
     NOH_ASSERT(c && set && scratch && (!set->joint_count || pose) && (!set->float_count || floats));
     NOH_VALIDATE(noh_controller_check(c, c->bytes, set, NULL) == NOH_OK);
@@ -238,7 +243,8 @@ static const char *bad_transition(const noh_controller *c, const noh_pose_scratc
     return NULL;
 }
 
-noh_result noh_controller_inertia_capture(const noh_controller *c, const noh_clip_set *set, noh_pose_scratch *scratch, noh_error *error)
+noh_result noh_controller_inertia_capture(const noh_controller *c, const noh_clip_set *set, noh_pose_scratch *scratch,
+                                          noh_error *error)
 {
     const char *what = bad_transition(c, scratch);
     NOH_ASSERT(c && set && scratch);
@@ -255,16 +261,17 @@ void noh_controller_inertia_store(noh_controller *c, const noh_pose_scratch *scr
     uint8_t *base = (uint8_t *)c;
     float before_s = (float)NOH_INERTIA_BEFORE_TICKS / (float)NOH_TICKS_PER_SECOND;
     NOH_ASSERT(c && scratch && c->inertia_offset && scratch->captured[0] && duration_ticks);
-    noh_inertia_begin(c->joint_count, scratch->captured[0], scratch->captured[1], scratch->captured[2], scratch->captured[3], before_s,
-                      (noh_inertia_joint *)(void *)(base + c->inertia_offset));
-    noh_inertia_begin_floats(c->float_count, scratch->float_captured[0], scratch->float_captured[1], scratch->float_captured[2],
-                             scratch->float_captured[3], before_s, (noh_inertia_float *)(void *)(base + c->inertia_floats_offset));
+    noh_inertia_begin(c->joint_count, scratch->captured[0], scratch->captured[1], scratch->captured[2],
+                      scratch->captured[3], before_s, (noh_inertia_joint *)(void *)(base + c->inertia_offset));
+    noh_inertia_begin_floats(c->float_count, scratch->float_captured[0], scratch->float_captured[1],
+                             scratch->float_captured[2], scratch->float_captured[3], before_s,
+                             (noh_inertia_float *)(void *)(base + c->inertia_floats_offset));
     c->inertia_start = c->clock;
     c->inertia_ticks = duration_ticks;
 }
 
-noh_result noh_controller_inertia_begin(noh_controller *c, const noh_clip_set *set, noh_pose_scratch *scratch, uint32_t duration_ticks,
-                                        noh_error *error)
+noh_result noh_controller_inertia_begin(noh_controller *c, const noh_clip_set *set, noh_pose_scratch *scratch,
+                                        uint32_t duration_ticks, noh_error *error)
 {
     const char *what = bad_transition(c, scratch);
     NOH_ASSERT(c && set && scratch);
@@ -280,8 +287,8 @@ noh_result noh_controller_inertia_begin(noh_controller *c, const noh_clip_set *s
 
 /* ---- root motion ---- */
 
-/* A weighted sum of displacements. Turns count as angles of -1/2 to 1/2 turn. `total` is the unmasked weight of the tracks that
- * take part: `weight` over it is the mean mask, by which a high group covers the low one. */
+/* A weighted sum of displacements. Turns count as angles of -1/2 to 1/2 turn. `total` is the unmasked weight of the
+ * tracks that take part: `weight` over it is the mean mask, by which a high group covers the low one. */
 typedef struct root_sum {
     double translation[3], turn, weight, total;
 } root_sum;

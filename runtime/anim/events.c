@@ -31,8 +31,9 @@ static span passage_span(const noh_passage *p)
     return s;
 }
 
-/* A leg is one traversal of the clip: a pass, or half of a ping-pong cycle. Find those that meet the span. The tick between
- * two legs belongs to both, since keys at tick 0 and at tick `duration` both occur there in a repeating clip. */
+/* A leg is one traversal of the clip: a pass, or half of a ping-pong cycle. Find those that meet the span. The tick
+ * between two legs belongs to both, since keys at tick 0 and at tick `duration` both occur there in a repeating clip.
+ */
 static legs passage_legs(const noh_passage *p, span s)
 {
     int64_t d = (int64_t)p->duration_ticks;
@@ -120,8 +121,8 @@ int noh_events_first(const noh_event_key *keys, uint32_t count, const noh_passag
     return 0;
 }
 
-static uint32_t pass_ascending(const noh_event_key *keys, uint32_t begin, uint32_t end, const leg *g, uint32_t limit, noh_key_fn fn,
-                               void *user)
+static uint32_t pass_ascending(const noh_event_key *keys, uint32_t begin, uint32_t end, const leg *g, uint32_t limit,
+                               noh_key_fn fn, void *user)
 {
     uint32_t i = begin;
     for (; i < end && i - begin < limit; i++) {
@@ -130,8 +131,8 @@ static uint32_t pass_ascending(const noh_event_key *keys, uint32_t begin, uint32
     return i - begin;
 }
 
-static uint32_t pass_descending(const noh_event_key *keys, uint32_t begin, uint32_t end, const leg *g, uint32_t limit, noh_key_fn fn,
-                                void *user)
+static uint32_t pass_descending(const noh_event_key *keys, uint32_t begin, uint32_t end, const leg *g, uint32_t limit,
+                                noh_key_fn fn, void *user)
 {
     uint32_t passed = 0;
     while (end > begin && passed < limit) {
@@ -145,7 +146,8 @@ static uint32_t pass_descending(const noh_event_key *keys, uint32_t begin, uint3
     return passed;
 }
 
-uint32_t noh_events_pass(const noh_event_key *keys, uint32_t count, const noh_passage *passage, uint32_t limit, noh_key_fn fn, void *user)
+uint32_t noh_events_pass(const noh_event_key *keys, uint32_t count, const noh_passage *passage, uint32_t limit,
+                         noh_key_fn fn, void *user)
 {
     uint32_t passed = 0;
     span s = passage_span(passage);
@@ -175,7 +177,8 @@ uint32_t noh_events_max(uint32_t key_count, uint32_t duration_ticks, noh_loop lo
     return most > UINT32_MAX ? UINT32_MAX : (uint32_t)most;
 }
 
-uint32_t noh_clip_set_events_max(const noh_clip_set *set, uint32_t track_count, uint32_t speed_max, uint32_t step_ticks_max)
+uint32_t noh_clip_set_events_max(const noh_clip_set *set, uint32_t track_count, uint32_t speed_max,
+                                 uint32_t step_ticks_max)
 {
     uint64_t travel = (uint64_t)speed_max * step_ticks_max, most = 0;
     NOH_ASSERT(set);

@@ -8,12 +8,12 @@
  *   (a, b] forwards,  [b, a) backwards:
  * the end is passed, the start is not, for it was passed on arrival. Stretches therefore join: a..b and b..c in one
  * direction pass what a..c passes. Where play was placed (started, sought) it has not arrived, so its first move also
- * passes the keys exactly there. On the seam of a repeating clip those are the keys of the pass that play enters: forwards
- * the keys at tick 0, backwards the keys at tick `duration`.
- * Order: in the direction of play; at one tick by index; at the seam pass after pass.
+ * passes the keys exactly there. On the seam of a repeating clip those are the keys of the pass that play enters:
+ * forwards the keys at tick 0, backwards the keys at tick `duration`. Order: in the direction of play; at one tick by
+ * index; at the seam pass after pass.
  *
- * source  callback keys as in Granberg 2009, chapter 5, which gives their times in seconds where the API wants ticks, and
- *         loses keys in compressed clips and at the seam of a loop
+ * source  callback keys as in Granberg 2009, chapter 5, which gives their times in seconds where the API wants ticks,
+ * and loses keys in compressed clips and at the seam of a loop
  *
  * Threads: pure functions; any thread. */
 #ifndef NOH_ANIM_EVENTS_H
@@ -27,11 +27,11 @@ extern "C" {
 
 /* A stretch of play in one direction. */
 typedef struct noh_passage {
-    int64_t from, to;        /* positions */
+    int64_t from, to; /* positions */
     uint32_t duration_ticks;
-    uint8_t loop;            /* noh_loop; for ONCE from and to lie in the clip */
+    uint8_t loop; /* noh_loop; for ONCE from and to lie in the clip */
     uint8_t backward;
-    uint8_t placed;          /* play was placed at `from` and has not moved since */
+    uint8_t placed; /* play was placed at `from` and has not moved since */
 } noh_passage;
 
 /* Called for each occurrence: the index of the key, and the tick of the unwrapped position. */
@@ -43,7 +43,8 @@ int noh_events_first(const noh_event_key *keys, uint32_t count, const noh_passag
 
 /* Call fn for the occurrences of a passage, in order, at most `limit` of them.
  * returns  how many; if that is `limit` there may be more */
-uint32_t noh_events_pass(const noh_event_key *keys, uint32_t count, const noh_passage *passage, uint32_t limit, noh_key_fn fn, void *user);
+uint32_t noh_events_pass(const noh_event_key *keys, uint32_t count, const noh_passage *passage, uint32_t limit,
+                         noh_key_fn fn, void *user);
 
 /* The most occurrences that a given travel can pass.
  * units   travel: the sum of all movement, 1/65,536 ticks; runs: into how many stretches of one direction it falls, at
@@ -51,10 +52,11 @@ uint32_t noh_events_pass(const noh_event_key *keys, uint32_t count, const noh_pa
  * ranges  saturates at UINT32_MAX */
 uint32_t noh_events_max(uint32_t key_count, uint32_t duration_ticks, noh_loop loop, uint64_t travel, uint32_t runs);
 
-/* The most that one step can deliver with every track on the worst clip of a set: known before anything plays, for budgets
- * and queues. One change of direction within the step is allowed for.
- * ranges  |speed| <= speed_max (1/65,536), step <= step_ticks_max; saturates at NOH_STEP_EVENTS_MAX */
-uint32_t noh_clip_set_events_max(const noh_clip_set *set, uint32_t track_count, uint32_t speed_max, uint32_t step_ticks_max);
+/* The most that one step can deliver with every track on the worst clip of a set: known before anything plays, for
+ * budgets and queues. One change of direction within the step is allowed for. ranges  |speed| <= speed_max (1/65,536),
+ * step <= step_ticks_max; saturates at NOH_STEP_EVENTS_MAX */
+uint32_t noh_clip_set_events_max(const noh_clip_set *set, uint32_t track_count, uint32_t speed_max,
+                                 uint32_t step_ticks_max);
 
 #ifdef __cplusplus
 }

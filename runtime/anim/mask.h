@@ -1,7 +1,7 @@
 /* mask.h: weights per joint and per float, a byte each (track masks: Granberg 2009, chapter 16).
  *
- * 255 = full weight, 0 = left out. A mask of a set is uint8_t[joint_count + float_count]; these functions fill one in memory
- * of the caller's, at load time.
+ * 255 = full weight, 0 = left out. A mask of a set is uint8_t[joint_count + float_count]; these functions fill one in
+ * memory of the caller's, at load time.
  *
  * Threads: pure functions of their arguments; any thread. */
 #ifndef NOH_ANIM_MASK_H

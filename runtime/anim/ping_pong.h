@@ -1,6 +1,7 @@
 /* ping_pong.h: weights as functions of time: a ramp, and to and fro.
  *
- * Times are 64-bit ticks of the caller's own counter: nothing wraps, nothing drifts, and no phase comes twice in a cycle.
+ * Times are 64-bit ticks of the caller's own counter: nothing wraps, nothing drifts, and no phase comes twice in a
+ * cycle.
  *
  * Threads: pure functions; any thread. */
 #ifndef NOH_ANIM_PING_PONG_H

@@ -12,19 +12,35 @@ static void ground_axes(uint32_t up, uint32_t *a, uint32_t *b)
     *b = (up + 2u) % 3u;
 }
 
-/* Sine and cosine in double, because the displacement of a million passes needs more than 24 bits, and without libm, so that
- * all machines get the same bits. Taylor series to x^17 in Horner form; |x| <= pi/4, error below 1e-16. */
+/* Sine and cosine in double, because the displacement of a million passes needs more than 24 bits, and without libm, so
+ * that all machines get the same bits. Taylor series to x^17 in Horner form; |x| <= pi/4, error below 1e-16. */
 static void sin_cos_double(double x, double *sine, double *cosine)
 {
     double y = x * x;
-    *sine = x * (1.0 - y / 6.0 * (1.0 - y / 20.0 * (1.0 - y / 42.0 * (1.0 - y / 72.0 * (1.0 - y / 110.0
-        * (1.0 - y / 156.0 * (1.0 - y / 210.0 * (1.0 - y / 272.0))))))));
-    *cosine = 1.0 - y / 2.0 * (1.0 - y / 12.0 * (1.0 - y / 30.0 * (1.0 - y / 56.0 * (1.0 - y / 90.0
-        * (1.0 - y / 132.0 * (1.0 - y / 182.0 * (1.0 - y / 240.0 * (1.0 - y / 306.0))))))));
+    *sine = x *
+            (1.0 -
+             y / 6.0 *
+                 (1.0 -
+                  y / 20.0 *
+                      (1.0 -
+                       y / 42.0 *
+                           (1.0 - y / 72.0 *
+                                      (1.0 - y / 110.0 * (1.0 - y / 156.0 * (1.0 - y / 210.0 * (1.0 - y / 272.0))))))));
+    *cosine = 1.0 -
+              y / 2.0 *
+                  (1.0 -
+                   y / 12.0 *
+                       (1.0 -
+                        y / 30.0 *
+                            (1.0 -
+                             y / 56.0 *
+                                 (1.0 -
+                                  y / 90.0 *
+                                      (1.0 - y / 132.0 * (1.0 - y / 182.0 * (1.0 - y / 240.0 * (1.0 - y / 306.0))))))));
 }
 
-/* Sine and cosine of `half_turns` times 2^-33 turns, which wraps at 2^33. The nearest quarter turn is split off as an integer,
- * so the series sees at most an eighth. */
+/* Sine and cosine of `half_turns` times 2^-33 turns, which wraps at 2^33. The nearest quarter turn is split off as an
+ * integer, so the series sees at most an eighth. */
 static void sin_cos_half(uint64_t half_turns, double *sine, double *cosine)
 {
     uint64_t wrapped = half_turns & (((uint64_t)1 << 33) - 1u);
@@ -33,10 +49,22 @@ static void sin_cos_half(uint64_t half_turns, double *sine, double *cosine)
     double s, c;
     sin_cos_double(rest, &s, &c);
     switch (quarters & 3u) {
-    case 0: *sine = s; *cosine = c; break;
-    case 1: *sine = c; *cosine = -s; break;
-    case 2: *sine = -s; *cosine = -c; break;
-    default: *sine = -c; *cosine = s; break;
+    case 0:
+        *sine = s;
+        *cosine = c;
+        break;
+    case 1:
+        *sine = c;
+        *cosine = -s;
+        break;
+    case 2:
+        *sine = -s;
+        *cosine = -c;
+        break;
+    default:
+        *sine = -c;
+        *cosine = s;
+        break;
     }
 }
 
@@ -90,9 +118,11 @@ void noh_root_remove(uint32_t axes, uint32_t up, noh_transform *root)
     noh_quat_mul(back, root->rotation, root->rotation);
 }
 
-void noh_root_sample_rest(const noh_clip_set *set, uint32_t clip, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose, float *floats)
+void noh_root_sample_rest(const noh_clip_set *set, uint32_t clip, uint32_t clip_tick, uint32_t joint_count,
+                          noh_transform *pose, float *floats)
 {
-    NOH_ASSERT(set && clip < set->clip_count && clip_tick <= set->clips[clip].duration_ticks && joint_count <= set->joint_count);
+    NOH_ASSERT(set && clip < set->clip_count && clip_tick <= set->clips[clip].duration_ticks &&
+               joint_count <= set->joint_count);
     set->sample(set->user, clip, clip_tick, joint_count, pose, set->float_count, floats);
     if (set->roots && set->roots[clip].axes) {
         noh_root_remove(set->roots[clip].axes, set->roots[clip].up, &pose[0]);
@@ -124,8 +154,8 @@ noh_root_pose noh_root_inverse(uint32_t up, const noh_root_pose *a)
 }
 
 /* L^n turns by n * turn and translates by the sum of d turned by k * turn for k = 0..n-1. That is a geometric series of
- * rotations: d turned by (n-1)/2 * turn, times sin(n turn / 2) / sin(turn / 2). Along the up axis, and without a turn, it
- * is n d. Turns are integers modulo 2^32, half turns modulo 2^33, so no angle loses bits however large n is. */
+ * rotations: d turned by (n-1)/2 * turn, times sin(n turn / 2) / sin(turn / 2). Along the up axis, and without a turn,
+ * it is n d. Turns are integers modulo 2^32, half turns modulo 2^33, so no angle loses bits however large n is. */
 noh_root_pose noh_root_power(uint32_t up, const noh_root_pose *a, int64_t n)
 {
     noh_root_pose base = n < 0 ? noh_root_inverse(up, a) : *a, out;
@@ -160,12 +190,14 @@ static noh_root_pose sample_root(const noh_clip_set *set, uint32_t clip, uint32_
     return noh_root_extract(axes, up, &root);
 }
 
-noh_result noh_root_track_measure(const noh_clip_set *set, uint32_t clip, uint32_t axes, uint32_t up, noh_root_track *track, noh_error *error)
+noh_result noh_root_track_measure(const noh_clip_set *set, uint32_t clip, uint32_t axes, uint32_t up,
+                                  noh_root_track *track, noh_error *error)
 {
     noh_root_track t;
     noh_root_pose back;
     NOH_ASSERT(set && track);
-    if (clip >= set->clip_count) return noh_fail(error, NOH_ERR_ARG, "clip is not a clip of the set", clip, set->clip_count);
+    if (clip >= set->clip_count)
+        return noh_fail(error, NOH_ERR_ARG, "clip is not a clip of the set", clip, set->clip_count);
     if (axes > 15u) return noh_fail(error, NOH_ERR_ARG, "axes has bits other than NOH_ROOT_*", clip, 0);
     if (up > 2u) return noh_fail(error, NOH_ERR_ARG, "up is not 0, 1 or 2", clip, 0);
     memset(&t, 0, sizeof t);
@@ -181,12 +213,14 @@ noh_result noh_root_track_measure(const noh_clip_set *set, uint32_t clip, uint32
     return NOH_OK;
 }
 
-noh_root_pose noh_root_between(const noh_clip_set *set, const noh_root_track *track, uint32_t clip, noh_loop loop, int64_t from, int64_t to)
+noh_root_pose noh_root_between(const noh_clip_set *set, const noh_root_track *track, uint32_t clip, noh_loop loop,
+                               int64_t from, int64_t to)
 {
     uint32_t duration = set->clips[clip].duration_ticks, up = track->up;
     NOH_ASSERT(set && track && clip < set->clip_count);
     /* passes count only where they do not lead back */
-    int64_t passes = loop == NOH_LOOP_REPEAT ? noh_time_legs(to, duration, loop) - noh_time_legs(from, duration, loop) : 0;
+    int64_t passes = loop == NOH_LOOP_REPEAT ? noh_time_legs(to, duration, loop) - noh_time_legs(from, duration, loop)
+                                             : 0;
     noh_root_pose a = sample_root(set, clip, track->axes, up, (uint32_t)(noh_time_clip(from, duration, loop) / 65536));
     noh_root_pose b = sample_root(set, clip, track->axes, up, (uint32_t)(noh_time_clip(to, duration, loop) / 65536));
     noh_root_pose back = noh_root_inverse(up, &a), step, start_back;
@@ -202,7 +236,8 @@ noh_root_pose noh_root_between(const noh_clip_set *set, const noh_root_track *tr
     return noh_root_compose(up, &back, &b);
 }
 
-noh_root_pose noh_root_at(const noh_clip_set *set, const noh_root_track *track, uint32_t clip, noh_loop loop, int64_t position)
+noh_root_pose noh_root_at(const noh_clip_set *set, const noh_root_track *track, uint32_t clip, noh_loop loop,
+                          int64_t position)
 {
     return noh_root_between(set, track, clip, loop, 0, position);
 }

@@ -1,11 +1,10 @@
 /* root_motion.h: root displacement, extracted from the pose.
  *
- * Of the root joint's transform a chosen part E (some axes of the translation, and the heading: the twist about the up axis)
- * moves the character in the world; the rest stays in its pose, so that world * E * rest is where the root was. From
- * position a to b of a clip the character moves by
- *   inverse(E(a)) * E(b)                                     within one pass
- *   inverse(E(a)) * E(end) * L^(n-1) * inverse(E(0)) * E(b)  across n seams,  L = inverse(E(0)) * E(end)
- * L^n has a closed form, so a million passes are as exact as one: headings are 32-bit fractions of a turn, which add without
+ * Of the root joint's transform a chosen part E (some axes of the translation, and the heading: the twist about the up
+ * axis) moves the character in the world; the rest stays in its pose, so that world * E * rest is where the root was.
+ * From position a to b of a clip the character moves by inverse(E(a)) * E(b)                                     within
+ * one pass inverse(E(a)) * E(end) * L^(n-1) * inverse(E(0)) * E(b)  across n seams,  L = inverse(E(0)) * E(end) L^n has
+ * a closed form, so a million passes are as exact as one: headings are 32-bit fractions of a turn, which add without
  * rounding, and the sum of the n displacements is a geometric series of rotations.
  *   noh_root_at       displacement since the start of a clip, after any number of passes
  *   noh_controller_root_motion (controller_pose.h)   displacement by all tracks since the last call, by weight
@@ -37,8 +36,8 @@ typedef struct noh_root_pose {
 
 /* The root motion of one clip. Plain data. */
 typedef struct noh_root_track {
-    uint32_t axes; /* NOH_ROOT_*; 0: none is extracted */
-    uint32_t up;   /* 0, 1, 2: x, y, z */
+    uint32_t axes;                  /* NOH_ROOT_*; 0: none is extracted */
+    uint32_t up;                    /* 0, 1, 2: x, y, z */
     noh_root_pose start, end, loop; /* E(0), E(duration), L */
 } noh_root_track;
 
@@ -48,7 +47,8 @@ void noh_root_remove(uint32_t axes, uint32_t up, noh_transform *root);
 
 /* Sample a clip as it is posed: without its root motion, if the set extracts any.
  * shapes  pose[joint_count], floats[the set's float_count] */
-void noh_root_sample_rest(const noh_clip_set *set, uint32_t clip, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose, float *floats);
+void noh_root_sample_rest(const noh_clip_set *set, uint32_t clip, uint32_t clip_tick, uint32_t joint_count,
+                          noh_transform *pose, float *floats);
 
 /* Displacement a, then b in the frame that a leads to; and the displacement that undoes a. */
 noh_root_pose noh_root_compose(uint32_t up, const noh_root_pose *a, const noh_root_pose *b);
@@ -59,13 +59,16 @@ noh_root_pose noh_root_power(uint32_t up, const noh_root_pose *a, int64_t n);
 
 /* Sample a clip's two ends. Joint 0 is the root.
  * errors  ARG clip, axes, up */
-noh_result noh_root_track_measure(const noh_clip_set *set, uint32_t clip, uint32_t axes, uint32_t up, noh_root_track *track, noh_error *error);
+noh_result noh_root_track_measure(const noh_clip_set *set, uint32_t clip, uint32_t axes, uint32_t up,
+                                  noh_root_track *track, noh_error *error);
 
 /* The displacement from one unwrapped position to another. */
-noh_root_pose noh_root_between(const noh_clip_set *set, const noh_root_track *track, uint32_t clip, noh_loop loop, int64_t from, int64_t to);
+noh_root_pose noh_root_between(const noh_clip_set *set, const noh_root_track *track, uint32_t clip, noh_loop loop,
+                               int64_t from, int64_t to);
 
 /* The displacement from position 0. */
-noh_root_pose noh_root_at(const noh_clip_set *set, const noh_root_track *track, uint32_t clip, noh_loop loop, int64_t position);
+noh_root_pose noh_root_at(const noh_clip_set *set, const noh_root_track *track, uint32_t clip, noh_loop loop,
+                          int64_t position);
 
 #ifdef __cplusplus
 }

@@ -35,7 +35,8 @@ noh_phase noh_sync_phase(const noh_clip_set *set, const noh_clip_entry *clip, in
     noh_phase p;
     NOH_ASSERT(set && clip && clip->duration_ticks > 0);
     if (rest < marker_position(set, clip, 0)) {
-        rest += noh_position_of(clip->duration_ticks); /* before the first marker: in the last interval, across the seam */
+        rest += noh_position_of(
+            clip->duration_ticks); /* before the first marker: in the last interval, across the seam */
     }
     while (n + 1 < count && marker_position(set, clip, n + 1) <= rest) {
         n++;
@@ -119,16 +120,19 @@ static double interval_length(const noh_clip_set *set, const noh_clip_entry *m, 
 }
 
 /* Weighted mean of the group's phase speeds, in intervals per tick; the leader's own where all weights are 0. */
-static double mean_speed(const noh_clip_set *set, const noh_track *tracks, uint32_t track_count, uint32_t leader, noh_phase phase)
+static double mean_speed(const noh_clip_set *set, const noh_track *tracks, uint32_t track_count, uint32_t leader,
+                         noh_phase phase)
 {
     double sum = 0.0, weights = 0.0;
     for (uint32_t i = 0; i < track_count; i++) {
         if (is_member(&tracks[i], tracks[leader].sync_group)) {
-            sum += (double)tracks[i].weight * (double)tracks[i].speed / interval_length(set, clip_of(set, &tracks[i]), phase);
+            sum += (double)tracks[i].weight * (double)tracks[i].speed /
+                   interval_length(set, clip_of(set, &tracks[i]), phase);
             weights += (double)tracks[i].weight;
         }
     }
-    return weights > 0.0 ? sum / weights : (double)tracks[leader].speed / interval_length(set, clip_of(set, &tracks[leader]), phase);
+    return weights > 0.0 ? sum / weights
+                         : (double)tracks[leader].speed / interval_length(set, clip_of(set, &tracks[leader]), phase);
 }
 
 static int64_t rounded(double x)
@@ -136,11 +140,12 @@ static int64_t rounded(double x)
     return (int64_t)(x < 0.0 ? x - 0.5 : x + 0.5);
 }
 
-/* The speed that brings a follower to the leader's phase in `ticks`. Of all positions with that phase (one in each pass) it
- * takes the nearest to where the follower would be after covering as many passes as the leader; that keeps both in the
- * same pass even where an interval is short in one clip and long in the other. A follower never moves against its leader:
- * it would pass keys twice. It waits instead. */
-static void steer(const noh_clip_set *set, noh_track *track, noh_phase goal, double travelled, int64_t leader_speed, int64_t ticks)
+/* The speed that brings a follower to the leader's phase in `ticks`. Of all positions with that phase (one in each
+ * pass) it takes the nearest to where the follower would be after covering as many passes as the leader; that keeps
+ * both in the same pass even where an interval is short in one clip and long in the other. A follower never moves
+ * against its leader: it would pass keys twice. It waits instead. */
+static void steer(const noh_clip_set *set, noh_track *track, noh_phase goal, double travelled, int64_t leader_speed,
+                  int64_t ticks)
 {
     const noh_clip_entry *m = clip_of(set, track);
     int64_t expected = track->position + rounded(travelled * (double)m->duration_ticks * 65536.0);
@@ -149,7 +154,8 @@ static void steer(const noh_clip_set *set, noh_track *track, noh_phase goal, dou
     track->rate = (leader_speed > 0 && rate < 0) || (leader_speed < 0 && rate > 0) || leader_speed == 0 ? 0 : rate;
 }
 
-static void group_rates(const noh_clip_set *set, noh_track *tracks, uint32_t track_count, uint32_t leader, int64_t ticks)
+static void group_rates(const noh_clip_set *set, noh_track *tracks, uint32_t track_count, uint32_t leader,
+                        int64_t ticks)
 {
     noh_track *lead = &tracks[leader];
     const noh_clip_entry *m = clip_of(set, lead);
@@ -158,7 +164,8 @@ static void group_rates(const noh_clip_set *set, noh_track *tracks, uint32_t tra
     goal = noh_sync_phase(set, m, lead->position + lead->rate * ticks);
     for (uint32_t i = 0; i < track_count; i++) {
         if (i != leader && is_member(&tracks[i], lead->sync_group)) {
-            steer(set, &tracks[i], goal, (double)(lead->rate * ticks) / ((double)m->duration_ticks * 65536.0), lead->rate, ticks);
+            steer(set, &tracks[i], goal, (double)(lead->rate * ticks) / ((double)m->duration_ticks * 65536.0),
+                  lead->rate, ticks);
         }
     }
 }

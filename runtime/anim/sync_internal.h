@@ -1,13 +1,13 @@
 /* sync.h: tracks that keep step: by phase, or by markers where their clips have them.
  *
- * The tracks of a sync group share a phase: a marker interval and the fraction of it that has passed. A clip without markers
- * is one interval. The clips of a group must have the same marker ids in the same cyclic order; phase 0 lies at the
- * smallest id, so a walk that starts on the left foot keeps step with a run that starts on the right.
+ * The tracks of a sync group share a phase: a marker interval and the fraction of it that has passed. A clip without
+ * markers is one interval. The clips of a group must have the same marker ids in the same cyclic order; phase 0 lies at
+ * the smallest id, so a walk that starts on the left foot keeps step with a run that starts on the right.
  *
- * All tracks of a group move at the weighted mean of their own phase speeds. The heaviest leads; the others are steered to
- * its phase, every NOH_SYNC_TICKS of the controller's clock and whenever the group changes. In between speeds are
- * constant, so events stay exact and independent of the step size; when a marker is passed in between, a follower is off
- * by a part of those 10 milliseconds.
+ * All tracks of a group move at the weighted mean of their own phase speeds. The heaviest leads; the others are steered
+ * to its phase, every NOH_SYNC_TICKS of the controller's clock and whenever the group changes. In between speeds are
+ * constant, so events stay exact and independent of the step size; when a marker is passed in between, a follower is
+ * off by a part of those 10 milliseconds.
  *
  * Threads: as tracks.h. */
 #ifndef NOH_ANIM_SYNC_INTERNAL_H
@@ -30,7 +30,8 @@ int64_t noh_sync_position(const noh_clip_set *set, const noh_clip_entry *clip, n
 /* Whether the markers of two clips match. */
 int noh_sync_fits(const noh_clip_set *set, const noh_clip_entry *a, const noh_clip_entry *b);
 
-/* The leader of a group: the heaviest track that is not off, of equal ones the first; track_count when there is none. */
+/* The leader of a group: the heaviest track that is not off, of equal ones the first; track_count when there is none.
+ */
 uint32_t noh_sync_leader(const noh_track *tracks, uint32_t track_count, uint32_t group);
 
 /* Move a track to the phase of another one, nearest to where it is, without firing callbacks. */

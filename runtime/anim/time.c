@@ -33,7 +33,8 @@ static int64_t advance_saturated(int64_t position, int64_t rate, int64_t ticks)
     if (r > left / t) {
         return back ? INT64_MIN : INT64_MAX;
     }
-    return (int64_t)(back ? (uint64_t)position - r * t : (uint64_t)position + r * t); /* in range, so modulo 2^64 is exact */
+    return (int64_t)(back ? (uint64_t)position - r * t
+                          : (uint64_t)position + r * t); /* in range, so modulo 2^64 is exact */
 }
 
 static int is_small(int64_t x)
@@ -45,7 +46,8 @@ int64_t noh_time_advance(int64_t position, int64_t rate, int64_t ticks, uint32_t
 {
     const int64_t end = noh_position_of(duration_ticks);
     /* two factors below 2^30 move by less than 2^60: from within 2^62 that cannot overflow */
-    const int safe = is_small(rate) && is_small(ticks) && position < 4 * NOH_POSITION_MAX && position > -4 * NOH_POSITION_MAX;
+    const int safe = is_small(rate) && is_small(ticks) && position < 4 * NOH_POSITION_MAX &&
+                     position > -4 * NOH_POSITION_MAX;
     int64_t to = safe ? position + rate * ticks : advance_saturated(position, rate, ticks);
     if (loop == NOH_LOOP_ONCE || end == 0) {
         to = to < 0 ? 0 : to > end ? end : to;

@@ -1,9 +1,9 @@
 /* time.h: time as integers, so that nothing drifts.
  *
  * A tick is 1/48,000 s: one audio sample. A position counts 1/65,536 ticks from the start of a clip's first leg and is
- * never wrapped: a repeating clip at position 2.5 durations is half through its third pass, a ping-pong clip half through
- * its third leg. Play is then one addition per step, exact for any partition of an interval, and every function of a
- * position (pose, events, root motion) is a function of the whole history of passes, in closed form.
+ * never wrapped: a repeating clip at position 2.5 durations is half through its third pass, a ping-pong clip half
+ * through its third leg. Play is then one addition per step, exact for any partition of an interval, and every function
+ * of a position (pose, events, root motion) is a function of the whole history of passes, in closed form.
  *
  *   noh_ticks_from_seconds   ticks of a time in seconds
  *   noh_time_advance         where play is after a number of ticks
@@ -23,16 +23,16 @@ extern "C" {
 #endif
 
 #define NOH_TICKS_PER_SECOND 48000u
-#define NOH_SPEED_ONE 65536        /* speeds are 16.16 fixed point: clip ticks per tick */
+#define NOH_SPEED_ONE 65536 /* speeds are 16.16 fixed point: clip ticks per tick */
 #define NOH_SPEED_MAX (256 * 65536)
-#define NOH_DURATION_MAX 0x7fffffffu /* ticks: 12.4 hours */
+#define NOH_DURATION_MAX 0x7fffffffu        /* ticks: 12.4 hours */
 #define NOH_POSITION_MAX ((int64_t)1 << 60) /* a placed position; 8,000 years are left after it at speed one */
 
 typedef enum noh_loop {
     NOH_LOOP_OF_CLIP = 0, /* in descs only: what the clip says */
-    NOH_LOOP_ONCE,          /* holds its first and last tick */
+    NOH_LOOP_ONCE,        /* holds its first and last tick */
     NOH_LOOP_REPEAT,
-    NOH_LOOP_PING_PONG      /* there and back: two durations make one cycle */
+    NOH_LOOP_PING_PONG /* there and back: two durations make one cycle */
 } noh_loop;
 
 /* Ticks nearest to a time in seconds.

@@ -3,7 +3,8 @@
 static const char *bad_desc(const noh_clip_set *set, const noh_track_desc *d)
 {
     if (d->clip >= set->clip_count) return "clip is not a clip of the set";
-    if (d->position_ticks > ((int64_t)1 << 44) || d->position_ticks < -((int64_t)1 << 44)) return "position_ticks is past 2^44";
+    if (d->position_ticks > ((int64_t)1 << 44) || d->position_ticks < -((int64_t)1 << 44))
+        return "position_ticks is past 2^44";
     if (d->speed > NOH_SPEED_MAX || d->speed < -NOH_SPEED_MAX) return "speed is past NOH_SPEED_MAX";
     if (!(d->weight >= 0.0f && d->weight <= NOH_WEIGHT_MAX)) return "weight is not in 0..NOH_WEIGHT_MAX";
     if ((unsigned)d->loop > NOH_LOOP_PING_PONG) return "loop is not a noh_loop";
@@ -87,8 +88,8 @@ int64_t noh_track_next_event(const noh_track *track, const noh_clip_set *set, in
     }
     way = noh_position_of(at) - track->position;
     way = way < 0 ? -way : way;
-    /* Rounded up: the first tick by which the key has been passed. A key exactly at a placed track's position is passed by
-     * its first move. */
+    /* Rounded up: the first tick by which the key has been passed. A key exactly at a placed track's position is passed
+     * by its first move. */
     return way == 0 ? 1 : noh_ceil_div(way, rate);
 }
 
@@ -102,7 +103,8 @@ int noh_track_ended(const noh_track *track, const noh_clip_entry *clip)
 uint32_t noh_track_clip_tick(const noh_track *track, const noh_clip_entry *clip, int64_t ago)
 {
     noh_loop loop = (noh_loop)track->loop;
-    const int64_t most = ((int64_t)1 << 61) / (ago > 0 ? ago : 1); /* a seek may have gone billions of passes in its tick */
+    const int64_t most = ((int64_t)1 << 61) /
+                         (ago > 0 ? ago : 1); /* a seek may have gone billions of passes in its tick */
     int64_t rate = track->rate > most ? most : track->rate < -most ? -most : track->rate;
     int64_t position = noh_time_advance(track->position, -rate, ago, clip->duration_ticks, loop);
     NOH_ASSERT(track && clip);

@@ -1,5 +1,5 @@
-/* tracks.h: one track of a controller: which clip plays, where in it, how fast, at what weight (Granberg 2009, chapter 5:
- * position, speed and weight of a track; here the position is in integer ticks and cannot drift).
+/* tracks.h: one track of a controller: which clip plays, where in it, how fast, at what weight (Granberg 2009, chapter
+ * 5: position, speed and weight of a track; here the position is in integer ticks and cannot drift).
  *
  * Plain state without pointers. Change it through controller.h, which updates what depends on it.
  *
@@ -21,13 +21,10 @@ typedef enum noh_track_mode {
     NOH_TRACK_ON
 } noh_track_mode;
 
-/* The blend group, the priority of D3DX: the low tracks are blended, the high tracks are blended, and the high result is
- * laid over the low one by the controller's priority blend. (Granberg 2009, chapter 5, takes priority for a distance to the
- * camera; that is `lod_levels`.) */
-typedef enum noh_track_group {
-    NOH_GROUP_LOW = 0,
-    NOH_GROUP_HIGH
-} noh_track_group;
+/* The blend group, the priority of D3DX: the low tracks are blended, the high tracks are blended, and the high result
+ * is laid over the low one by the controller's priority blend. (Granberg 2009, chapter 5, takes priority for a distance
+ * to the camera; that is `lod_levels`.) */
+typedef enum noh_track_group { NOH_GROUP_LOW = 0, NOH_GROUP_HIGH } noh_track_group;
 
 #define NOH_TRACK_SILENT 1u          /* starts at weight 0, to be faded in */
 #define NOH_TRACK_PAUSED 2u          /* starts at speed 0 */
@@ -37,7 +34,7 @@ typedef enum noh_track_group {
 
 /* How a track starts. All zeros play clip 0 from its start. */
 typedef struct noh_track_desc {
-    uint32_t clip;        /* the clip's index in the set; default 0 */
+    uint32_t clip;          /* the clip's index in the set; default 0 */
     int64_t position_ticks; /* default 0; unwrapped, see time.h; |position| <= 2^44 */
     int32_t speed;          /* 1/65,536; default (0) 65536; |speed| <= NOH_SPEED_MAX, negative plays backwards */
     float weight;           /* default (0) 1; 0..NOH_WEIGHT_MAX */
@@ -46,7 +43,8 @@ typedef struct noh_track_desc {
     noh_track_group group;  /* default NOH_GROUP_LOW */
     uint32_t mask;          /* default 0: none; else 1 + index in the set's masks */
     uint32_t lod_levels;    /* sampled while the controller's lod is below this; default (0) always; at most 255 */
-    uint32_t sync_group;    /* default 0: none; 1..NOH_SYNC_GROUPS_MAX; needs NOH_LOOP_REPEAT and a duration of NOH_SYNC_DURATION_MIN..MAX */
+    uint32_t sync_group;    /* default 0: none; 1..NOH_SYNC_GROUPS_MAX; needs NOH_LOOP_REPEAT and a duration of
+                               NOH_SYNC_DURATION_MIN..MAX */
     uint32_t flags;         /* NOH_TRACK_* */
 } noh_track_desc;
 
@@ -54,13 +52,13 @@ typedef struct noh_track_desc {
 typedef struct noh_track {
     int64_t position;      /* 1/65,536 ticks, unwrapped */
     int64_t root_position; /* root motion has been returned up to here */
-    int64_t rate;          /* present speed, 1/65,536 clip ticks per tick: its own, that of a change, or its sync group's */
+    int64_t rate; /* present speed, 1/65,536 clip ticks per tick: its own, that of a change, or its sync group's */
     int32_t speed;
     float weight;
     uint16_t clip;
-    uint8_t mask;          /* 1 + index, 0: none */
+    uint8_t mask; /* 1 + index, 0: none */
     uint8_t loop, mode, group, sync_group, lod_levels, flags;
-    uint8_t placed;        /* 1: has not moved since it was started or sought */
+    uint8_t placed; /* 1: has not moved since it was started or sought */
     uint8_t reserved[6];
 } noh_track;
 

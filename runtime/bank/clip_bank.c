@@ -12,8 +12,9 @@ typedef struct noh_bank_clip bank_clip;
 
 #define TRACKS 2u /* of an instance that play at once, where the desc does not say */
 
-/* A set is made in two passes over the pack. The first counts (clips that fit, their keys, markers and floats, the cache's
- * needs) without memory, out of the packs' bytes alone; the second carves exactly that and fills it in the same order. */
+/* A set is made in two passes over the pack. The first counts (clips that fit, their keys, markers and floats, the
+ * cache's needs) without memory, out of the packs' bytes alone; the second carves exactly that and fills it in the same
+ * order. */
 
 /* What the first pass finds. */
 typedef struct counts {
@@ -59,7 +60,8 @@ static void count_nodes(const noh_bank_binding *b, counts *c)
     }
 }
 
-/* A clip's groups: named floats that no clip before had go behind; weights go to a node of the mesh pack, if it has one. */
+/* A clip's groups: named floats that no clip before had go behind; weights go to a node of the mesh pack, if it has
+ * one. */
 static void count_groups(const noh_bank_binding *b, uint32_t index, const noh_clip_desc *clip, counts *c)
 {
     noh_clip_group_reader reader = noh_clip_groups_of(clip);
@@ -107,10 +109,15 @@ static noh_result count_clip(const noh_bank_binding *b, uint32_t index, counts *
 /* Segments for what plays at once, unless the desc says how many. */
 static uint32_t slots_of(const noh_clip_bank_desc *desc, uint32_t segments)
 {
-    const uint64_t instances = desc->instance_count ? desc->instance_count : 1u, tracks = desc->track_count ? desc->track_count : TRACKS;
+    const uint64_t instances = desc->instance_count ? desc->instance_count : 1u,
+                   tracks = desc->track_count ? desc->track_count : TRACKS;
     const uint64_t plays = NOH_CLIP_CACHE_SEGMENTS_PER_TRACK * instances * tracks;
-    const uint64_t wanted = desc->cached_segment_count ? desc->cached_segment_count : plays < NOH_CLIP_CACHE_SEGMENTS_MAX ? plays : NOH_CLIP_CACHE_SEGMENTS_MAX;
-    return wanted < segments || desc->cached_segment_count == 1u ? (uint32_t)wanted : segments > 1u ? segments : NOH_CLIP_CACHE_SEGMENTS_MIN;
+    const uint64_t wanted = desc->cached_segment_count            ? desc->cached_segment_count
+                            : plays < NOH_CLIP_CACHE_SEGMENTS_MAX ? plays
+                                                                  : NOH_CLIP_CACHE_SEGMENTS_MAX;
+    return wanted < segments || desc->cached_segment_count == 1u ? (uint32_t)wanted
+           : segments > 1u                                       ? segments
+                                                                 : NOH_CLIP_CACHE_SEGMENTS_MIN;
 }
 
 static noh_result count(const noh_clip_bank_desc *desc, const noh_bank_binding *b, counts *c, noh_error *error)
@@ -124,14 +131,17 @@ static noh_result count(const noh_clip_bank_desc *desc, const noh_bank_binding *
         if (r) return r;
     }
     if (c->shape.clip_count == 0) {
-        return noh_fail(error, NOH_ERR_NOT_FOUND,
-                        c->foreign ? "no clip fits: they move another skeleton (names or parents of joints differ); build mesh and clips from one "
-                                     "skeleton"
-                                   : "the pack has no clips",
-                        0, c->foreign);
+        return noh_fail(
+            error, NOH_ERR_NOT_FOUND,
+            c->foreign
+                ? "no clip fits: they move another skeleton (names or parents of joints differ); build mesh and clips from one "
+                  "skeleton"
+                : "the pack has no clips",
+            0, c->foreign);
     }
     if (c->shape.float_count > NOH_FLOATS_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "floats of a clip bank: morph weights of all nodes, and named ones", 0, c->shape.float_count);
+        return noh_fail(error, NOH_ERR_LIMIT, "floats of a clip bank: morph weights of all nodes, and named ones", 0,
+                        c->shape.float_count);
     }
     c->slots = slots_of(desc, c->cache.segment_count);
     c->cache_bytes = noh_clip_cache_needs_size(&c->cache, c->slots, error);
@@ -164,11 +174,13 @@ static noh_result check_desc(const noh_clip_bank_desc *desc, noh_error *error)
     if (desc->root_axes > (NOH_ROOT_GROUND | NOH_ROOT_Y)) {
         return noh_fail(error, NOH_ERR_ARG, "root_axes of a clip bank hold unknown bits", desc->root_axes, 0);
     }
-    if (desc->root_axes && desc->root_up > 2u) return noh_fail(error, NOH_ERR_ARG, "root_up of a clip bank is no axis", desc->root_up, 0);
+    if (desc->root_axes && desc->root_up > 2u)
+        return noh_fail(error, NOH_ERR_ARG, "root_up of a clip bank is no axis", desc->root_up, 0);
     return NOH_OK;
 }
 
-static noh_result measure(const noh_clip_bank_desc *desc, noh_bank_binding *b, counts *c, size_t *bytes, noh_error *error)
+static noh_result measure(const noh_clip_bank_desc *desc, noh_bank_binding *b, counts *c, size_t *bytes,
+                          noh_error *error)
 {
     noh_arena arena = noh_arena_measure();
     parts p;
@@ -223,7 +235,8 @@ static void fill_nodes(const noh_bank_binding *b, parts *p)
         const noh_node *n = &b->mesh->nodes[group->node];
         noh_mesh mesh;
         (void)noh_pack_mesh_at(b->mesh, n->mesh, &mesh, NULL);
-        memcpy(p->defaults + group->first, n->first_weight == NOH_NONE ? mesh.weights : b->mesh->node_weights + n->first_weight,
+        memcpy(p->defaults + group->first,
+               n->first_weight == NOH_NONE ? mesh.weights : b->mesh->node_weights + n->first_weight,
                group->width * sizeof *p->defaults);
         set->clips.float_count = first;
     }
@@ -294,7 +307,8 @@ static void fill_keys(const noh_pack_clip *from, parts *p, noh_clip_entry *to)
 }
 
 /* Everything was measured: opening succeeds. */
-static void fill_clip(const noh_bank_binding *b, uint32_t index, const noh_pack_clip *from, const noh_clip_desc *desc, parts *p)
+static void fill_clip(const noh_bank_binding *b, uint32_t index, const noh_pack_clip *from, const noh_clip_desc *desc,
+                      parts *p)
 {
     const uint32_t m = p->set->clips.clip_count++;
     const size_t bytes = align_up(noh_clip_size(desc, NULL));
@@ -311,7 +325,8 @@ static void fill_clip(const noh_bank_binding *b, uint32_t index, const noh_pack_
     to->loop = clip->info.flags & NOH_CLIP_FLAG_LOOP ? NOH_LOOP_REPEAT : NOH_LOOP_ONCE;
     fill_keys(from, p, to);
     fill_runs(b, clip, p, &p->bound[m]);
-    to->flags = (p->bound[m].joint_count ? 0u : NOH_CLIP_FLOATS_ONLY) | (p->bound[m].float_runs ? 0u : NOH_CLIP_JOINTS_ONLY);
+    to->flags = (p->bound[m].joint_count ? 0u : NOH_CLIP_FLOATS_ONLY) |
+                (p->bound[m].float_runs ? 0u : NOH_CLIP_JOINTS_ONLY);
 }
 
 static void fill(const noh_bank_binding *b, parts *p)
@@ -344,7 +359,8 @@ static void join(const noh_bank_binding *b, const counts *c, parts *p)
     set->clips.clips = p->clips;
     set->clips.events = p->events;
     set->clips.markers = p->markers;
-    set->clips.bind_pose = b->header ? b->skeleton.bind_pose : (const noh_transform *)(const void *)p->clips; /* of no joints */
+    set->clips.bind_pose = b->header ? b->skeleton.bind_pose
+                                     : (const noh_transform *)(const void *)p->clips; /* of no joints */
     set->clips.float_defaults = p->defaults;
     noh_clip_bank_sample_cache(set);
 }
@@ -362,14 +378,16 @@ static noh_result measure_roots(const noh_clip_bank_desc *desc, parts *p, noh_er
 {
     noh_clip_bank *set = p->set;
     for (uint32_t m = 0; m < set->clips.clip_count; m++) {
-        const noh_result r = noh_root_track_measure(&set->clips, m, desc->root_axes, desc->root_up, &p->roots[m], error);
+        const noh_result r = noh_root_track_measure(&set->clips, m, desc->root_axes, desc->root_up, &p->roots[m],
+                                                    error);
         if (r) return r;
     }
     set->clips.roots = p->roots;
     return NOH_OK;
 }
 
-noh_result noh_clip_bank_init(void *memory, size_t bytes, const noh_clip_bank_desc *desc, noh_clip_bank **set, noh_error *error)
+noh_result noh_clip_bank_init(void *memory, size_t bytes, const noh_clip_bank_desc *desc, noh_clip_bank **set,
+                              noh_error *error)
 {
     noh_arena arena;
     noh_error why = { NOH_OK, "", 0, 0 };

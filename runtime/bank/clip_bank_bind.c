@@ -12,7 +12,8 @@ static noh_result bind_skeleton(uint32_t skeleton, noh_bank_binding *b, noh_erro
     }
     b->skeleton_index = skeleton;
     if (noh_pack_skeleton_at(b->mesh, skeleton, &b->skeleton, &b->header, NULL) != NOH_OK) {
-        return noh_fail(error, NOH_ERR_ARG, "skeleton of a clip bank: the mesh pack has fewer", skeleton, b->mesh->skeleton_count);
+        return noh_fail(error, NOH_ERR_ARG, "skeleton of a clip bank: the mesh pack has fewer", skeleton,
+                        b->mesh->skeleton_count);
     }
     return NOH_OK;
 }
@@ -25,14 +26,16 @@ static noh_result check_units(const noh_bank_binding *b, noh_error *error)
         const noh_skeleton_header *h;
         noh_pack_skeleton_at(b->clips, i, &skeleton, &h, NULL);
         if (h->hash == b->header->hash && (h->unit_cm > b->header->unit_cm || h->unit_cm < b->header->unit_cm)) {
-            return noh_fail(error, NOH_ERR_NOT_FOUND, "the clips' skeleton has another unit than the mesh's: build both in one unit, or in one pack",
-                            i, 0);
+            return noh_fail(
+                error, NOH_ERR_NOT_FOUND,
+                "the clips' skeleton has another unit than the mesh's: build both in one unit, or in one pack", i, 0);
         }
     }
     return NOH_OK;
 }
 
-noh_result noh_bank_bind(const noh_pack *clips, const noh_pack *mesh, uint32_t skeleton, noh_bank_binding *b, noh_error *error)
+noh_result noh_bank_bind(const noh_pack *clips, const noh_pack *mesh, uint32_t skeleton, noh_bank_binding *b,
+                         noh_error *error)
 {
     noh_result r;
     memset(b, 0, sizeof *b);

@@ -1,5 +1,5 @@
-/* clip_bank_bind_internal.h (private to anim/): which clips of a pack fit a skeleton and the nodes of a mesh pack. Reads only the
- * packs' bytes, so that sizes are known before there is memory. */
+/* clip_bank_bind_internal.h (private to anim/): which clips of a pack fit a skeleton and the nodes of a mesh pack.
+ * Reads only the packs' bytes, so that sizes are known before there is memory. */
 #ifndef NOH_BANK_CLIP_BANK_BIND_INTERNAL_H
 #define NOH_BANK_CLIP_BANK_BIND_INTERNAL_H
 
@@ -8,14 +8,15 @@
 
 typedef struct noh_bank_binding {
     const noh_pack *clips, *mesh;
-    noh_skeleton skeleton;               /* joint_count 0: none */
-    const noh_skeleton_header *header;   /* NULL: none */
+    noh_skeleton skeleton;             /* joint_count 0: none */
+    const noh_skeleton_header *header; /* NULL: none */
     uint32_t skeleton_index;
 } noh_bank_binding;
 
 /* Bind clips to the skeleton of that index in `mesh`; NOH_NONE, or any in a pack without skeletons: none.
  * errors  ARG skeleton; NOT_FOUND the clips' skeleton has another unit (where: its index in their pack) */
-noh_result noh_bank_bind(const noh_pack *clips, const noh_pack *mesh, uint32_t skeleton, noh_bank_binding *b, noh_error *error);
+noh_result noh_bank_bind(const noh_pack *clips, const noh_pack *mesh, uint32_t skeleton, noh_bank_binding *b,
+                         noh_error *error);
 
 /* The n-th clip of the pack and how it is opened; 0 when it moves another skeleton. */
 int noh_bank_fits(const noh_bank_binding *b, uint32_t index, noh_pack_clip *packed, noh_clip_desc *clip);

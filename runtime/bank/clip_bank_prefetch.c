@@ -1,9 +1,9 @@
 /* clip_bank_ahead.c: which segments a controller will need soon.
  *
  * A track plays in legs: passes of its clip, forwards or (every other one of a ping-pong) backwards. The way from its
- * position to where it will be after `ahead_ticks` is cut at the ends of legs; each piece is one stretch of frames of the
- * clip, and the cache is asked for all segments under it. Three pieces suffice: the rest of this leg, one whole leg, which
- * covers the whole clip, and nothing new after that. */
+ * position to where it will be after `ahead_ticks` is cut at the ends of legs; each piece is one stretch of frames of
+ * the clip, and the cache is asked for all segments under it. Three pieces suffice: the rest of this leg, one whole
+ * leg, which covers the whole clip, and nothing new after that. */
 #include "clip/clip_internal.h"
 #include "bank/clip_bank.h"
 

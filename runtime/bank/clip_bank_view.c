@@ -6,8 +6,8 @@
 
 /* What a clip was sampled into, completed. Joints that the clip does not have, and floats that it does not move, are at
  * rest; its floats go to their places among the set's. */
-static void complete(const noh_clip_bank *set, const struct noh_bank_clip *clip, const float *sampled, uint32_t joint_count,
-                     noh_transform *pose, uint32_t float_count, float *floats)
+static void complete(const noh_clip_bank *set, const struct noh_bank_clip *clip, const float *sampled,
+                     uint32_t joint_count, noh_transform *pose, uint32_t float_count, float *floats)
 {
     if (!clip->joint_count && joint_count) {
         memcpy(pose, set->skeleton.bind_pose, joint_count * sizeof *pose);
@@ -29,28 +29,30 @@ static void check_request(const noh_clip_bank *set, uint32_t index, uint32_t joi
     (void)set, (void)index, (void)joint_count, (void)float_count;
 }
 
-static void sample_cache(void *user, uint32_t index, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose, uint32_t float_count,
-                         float *floats)
+static void sample_cache(void *user, uint32_t index, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose,
+                         uint32_t float_count, float *floats)
 {
     const noh_clip_bank *set = user;
     const struct noh_bank_clip *clip = &set->bound[index];
     const int moves_floats = float_count && clip->float_runs;
     check_request(set, index, joint_count, float_count);
     if (clip->joint_count || moves_floats) {
-        noh_clip_sample(set->cache, index, clip_tick, clip->joint_count ? joint_count : 0u, pose, moves_floats ? set->sampled : NULL);
+        noh_clip_sample(set->cache, index, clip_tick, clip->joint_count ? joint_count : 0u, pose,
+                        moves_floats ? set->sampled : NULL);
     }
     complete(set, clip, set->sampled, joint_count, pose, float_count, floats);
 }
 
-static void sample_view(void *user, uint32_t index, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose, uint32_t float_count,
-                        float *floats)
+static void sample_view(void *user, uint32_t index, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose,
+                        uint32_t float_count, float *floats)
 {
     const noh_clip_bank_view *view = user;
     const struct noh_bank_clip *clip = &view->set->bound[index];
     const int moves_floats = float_count && clip->float_runs;
     check_request(view->set, index, joint_count, float_count);
     if (clip->joint_count || moves_floats) {
-        noh_clip_view_sample(view->samples, index, clip_tick, clip->joint_count ? joint_count : 0u, pose, moves_floats ? view->sampled : NULL);
+        noh_clip_view_sample(view->samples, index, clip_tick, clip->joint_count ? joint_count : 0u, pose,
+                             moves_floats ? view->sampled : NULL);
     }
     complete(view->set, clip, view->sampled, joint_count, pose, float_count, floats);
 }
@@ -63,7 +65,8 @@ void noh_clip_bank_sample_cache(noh_clip_bank *set)
 
 /* ---- views ---- */
 
-static size_t carve(noh_arena *arena, const noh_clip_bank *set, noh_clip_bank_view **view, void **clips, float **sampled)
+static size_t carve(noh_arena *arena, const noh_clip_bank *set, noh_clip_bank_view **view, void **clips,
+                    float **sampled)
 {
     *view = noh_arena_carve(arena, sizeof **view, 16u);
     *clips = noh_arena_carve(arena, noh_clip_view_size(set->cache), 16u);
@@ -80,7 +83,8 @@ size_t noh_clip_bank_view_size(const noh_clip_bank *set)
     return carve(&arena, set, &view, &clips, &sampled);
 }
 
-noh_result noh_clip_bank_view_init(void *memory, size_t bytes, const noh_clip_bank *set, noh_clip_bank_view **view, noh_error *error)
+noh_result noh_clip_bank_view_init(void *memory, size_t bytes, const noh_clip_bank *set, noh_clip_bank_view **view,
+                                   noh_error *error)
 {
     noh_arena arena;
     noh_clip_bank_view *made;

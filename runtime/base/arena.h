@@ -1,8 +1,7 @@
 /* arena.h: carving one block of memory that the caller brought.
  *
- * An arena without a block measures: the code that carves an object also says how many bytes it needs, so the two cannot
- * disagree.
- * Threads: an arena is for one thread at a time. */
+ * An arena without a block measures: the code that carves an object also says how many bytes it needs, so the two
+ * cannot disagree. Threads: an arena is for one thread at a time. */
 #ifndef NOH_BASE_ARENA_H
 #define NOH_BASE_ARENA_H
 
@@ -37,8 +36,8 @@ noh_arena noh_arena_measure(void);
 
 /* Carve bytes at an alignment.
  * ranges   alignment is a power of two, at most NOH_MEMORY_ALIGN
- * returns  NULL when the block is exhausted or the arena measures; `used` counts the bytes all the same, and is SIZE_MAX
- *          after a sum that does not fit a size_t */
+ * returns  NULL when the block is exhausted or the arena measures; `used` counts the bytes all the same, and is
+ * SIZE_MAX after a sum that does not fit a size_t */
 void *noh_arena_carve(noh_arena *arena, size_t bytes, size_t alignment);
 
 #ifdef __cplusplus

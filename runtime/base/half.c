@@ -3,9 +3,9 @@
 #include <string.h>
 
 #define FLOAT_INFINITY 0x7f800000u
-#define FLOAT_HALF_MIN 0x38800000u  /* 2^-14, the smallest normal half */
-#define FLOAT_HALF_REBIAS 0x38000000u /* (127 - 15) << 23 */
-#define FLOAT_RTZ_MAX 0x477fffffu   /* the last float below 65536 */
+#define FLOAT_HALF_MIN 0x38800000u     /* 2^-14, the smallest normal half */
+#define FLOAT_HALF_REBIAS 0x38000000u  /* (127 - 15) << 23 */
+#define FLOAT_RTZ_MAX 0x477fffffu      /* the last float below 65536 */
 #define FLOAT_RNE_INFINITY 0x477ff000u /* 65520, halfway between 65504 and 65536 */
 #define HALF_INFINITY 0x7c00u
 
@@ -33,9 +33,9 @@ static uint32_t half_magnitude(uint32_t magnitude, noh_half_mode mode)
 }
 
 /* A half has 5 bits of exponent (bias 15) and 10 of mantissa, a float 8 (bias 127) and 23. In the normal range both are
- * the same bits but for the bias and 13 mantissa bits, which are rounded off; a carry out of the mantissa increments the
- * exponent, which is the next half. Below 2^-14 the mantissa, its hidden bit made visible, is shifted to the fixed exponent of
- * denormals. What lies above the largest half stops there (RTZ) or becomes infinity (RNE). */
+ * the same bits but for the bias and 13 mantissa bits, which are rounded off; a carry out of the mantissa increments
+ * the exponent, which is the next half. Below 2^-14 the mantissa, its hidden bit made visible, is shifted to the fixed
+ * exponent of denormals. What lies above the largest half stops there (RTZ) or becomes infinity (RNE). */
 uint16_t noh_half_from_float(float value, noh_half_mode mode)
 {
     uint32_t bits;

@@ -12,11 +12,11 @@ uint32_t noh_hash_name(const char *name)
     return hash;
 }
 
-/* crc_nibble[k][n]: what the half byte n leaves when k zero half bytes follow it, for the polynomial 0x82f63b78 (CRC-32C,
- * reflected). A CRC is linear, so the eight half bytes of a word are looked up at once and added: eight loads that do
- * not wait for each other, where half byte by half byte each waits for the last. 512 bytes fit into any cache; the
- * usual tables of bytes take 8 KB ("slicing", Kounavis and Berry, A Systematic Approach to Building High Performance
- * Software-based CRC Generators, 2005). */
+/* crc_nibble[k][n]: what the half byte n leaves when k zero half bytes follow it, for the polynomial 0x82f63b78
+ * (CRC-32C, reflected). A CRC is linear, so the eight half bytes of a word are looked up at once and added: eight loads
+ * that do not wait for each other, where half byte by half byte each waits for the last. 512 bytes fit into any cache;
+ * the usual tables of bytes take 8 KB ("slicing", Kounavis and Berry, A Systematic Approach to Building High
+ * Performance Software-based CRC Generators, 2005). */
 static const uint32_t crc_nibble[8][16] = {
     { 0x00000000u, 0x105ec76fu, 0x20bd8edeu, 0x30e349b1u, 0x417b1dbcu, 0x5125dad3u, 0x61c69362u, 0x7198540du,
       0x82f63b78u, 0x92a8fc17u, 0xa24bb5a6u, 0xb21572c9u, 0xc38d26c4u, 0xd3d3e1abu, 0xe330a81au, 0xf36e6f75u },
@@ -38,8 +38,9 @@ static const uint32_t crc_nibble[8][16] = {
 
 static uint32_t crc_word(uint32_t crc)
 {
-    return crc_nibble[7][crc & 15u] ^ crc_nibble[6][crc >> 4 & 15u] ^ crc_nibble[5][crc >> 8 & 15u] ^ crc_nibble[4][crc >> 12 & 15u] ^
-           crc_nibble[3][crc >> 16 & 15u] ^ crc_nibble[2][crc >> 20 & 15u] ^ crc_nibble[1][crc >> 24 & 15u] ^ crc_nibble[0][crc >> 28];
+    return crc_nibble[7][crc & 15u] ^ crc_nibble[6][crc >> 4 & 15u] ^ crc_nibble[5][crc >> 8 & 15u] ^
+           crc_nibble[4][crc >> 12 & 15u] ^ crc_nibble[3][crc >> 16 & 15u] ^ crc_nibble[2][crc >> 20 & 15u] ^
+           crc_nibble[1][crc >> 24 & 15u] ^ crc_nibble[0][crc >> 28];
 }
 
 uint32_t noh_crc32c(uint32_t crc, const void *bytes, size_t count)

@@ -15,9 +15,8 @@ extern "C" {
  * source  Fowler, Noll, Vo: draft-eastlake-fnv */
 uint32_t noh_hash_name(const char *name);
 
-/* CRC-32C (Castagnoli, reflected 0x82f63b78) of bytes, continued from `crc`; start with 0. It finds every error of up to
- * 32 bits in a row, and every flipped bit.
- * source  RFC 3720, appendix B.4 */
+/* CRC-32C (Castagnoli, reflected 0x82f63b78) of bytes, continued from `crc`; start with 0. It finds every error of up
+ * to 32 bits in a row, and every flipped bit. source  RFC 3720, appendix B.4 */
 uint32_t noh_crc32c(uint32_t crc, const void *bytes, size_t count);
 
 #ifdef __cplusplus

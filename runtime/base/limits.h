@@ -7,83 +7,86 @@
 #ifndef NOH_BASE_LIMITS_H
 #define NOH_BASE_LIMITS_H
 
-#define NOH_NONE 0xffffffffu             /* an index that is none: above every count */
+#define NOH_NONE 0xffffffffu /* an index that is none: above every count */
 
 /* No call of the library uses more stack than this; a check on the compiler's own figures says so. */
 #define NOH_STACK_BYTES 8192u
 
 /* ---- a pack ---- */
 
-#define NOH_PACK_ALIGN 64u               /* chunks start at multiples of this in the file; in memory a pack starts at one of 16 */
+#define NOH_PACK_ALIGN 64u /* chunks start at multiples of this in the file; in memory a pack starts at one of 16 */
 #define NOH_PACK_CHUNKS_MAX 4096u
 #define NOH_PACK_BYTES_MAX 0x7fffffffu
-#define NOH_NAME_BYTES_MAX 256u          /* with the final zero */
+#define NOH_NAME_BYTES_MAX 256u /* with the final zero */
 #define NOH_NODES_MAX 65535u
 #define NOH_MATERIALS_MAX 4096u
-#define NOH_TEXTURE_SIZE_MAX 2048u       /* wider or taller images are shrunk by the converter */
+#define NOH_TEXTURE_SIZE_MAX 2048u /* wider or taller images are shrunk by the converter */
 
 /* ---- a mesh ---- */
 
-#define NOH_VERTICES_MAX (1u << 22)      /* a texture of 2048 x 2048, which every ES 3.0 has */
+#define NOH_VERTICES_MAX (1u << 22) /* a texture of 2048 x 2048, which every ES 3.0 has */
 #define NOH_INDICES_MAX (1u << 26)
 #define NOH_SUBMESHES_MAX 256u
-#define NOH_LOD_LEVELS_MAX 8u                /* LOD levels */
-#define NOH_TARGETS_MAX 1024u            /* the gather list keeps 10 bits for a target */
-#define NOH_DELTA_TEXELS_MAX (1u << 22)        /* delta texels; the gather list keeps 22 bits */
-#define NOH_MORPH_WIDTH_LOG2_MIN 2u      /* of the texture of accumulation texels */
-#define NOH_MORPH_WIDTH_LOG2_MAX 11u     /* ES 3.0 guarantees textures of 2048 */
+#define NOH_LOD_LEVELS_MAX 8u           /* LOD levels */
+#define NOH_TARGETS_MAX 1024u           /* the gather list keeps 10 bits for a target */
+#define NOH_DELTA_TEXELS_MAX (1u << 22) /* delta texels; the gather list keeps 22 bits */
+#define NOH_MORPH_WIDTH_LOG2_MIN 2u     /* of the texture of accumulation texels */
+#define NOH_MORPH_WIDTH_LOG2_MAX 11u    /* ES 3.0 guarantees textures of 2048 */
 #define NOH_MORPH_HEIGHT_MAX 2048u
 #define NOH_MORPH_INSTANCES_MAX 65536u
 
 /* ---- skeletons and skins ---- */
 
-#define NOH_JOINTS_MAX 4096u             /* of a skeleton */
-#define NOH_LOD_LEVELS_MAX 8u          /* LOD levels of a skeleton */
-#define NOH_SKIN_JOINTS_MAX 4096u        /* of a skin */
-#define NOH_PALETTE_JOINTS_MAX 256u      /* a uniform block of 12 KiB; ES 3.0 guarantees 16. Vertices keep 8 bits for a place */
-#define NOH_INFLUENCES_MAX 8u            /* joints that move one vertex */
+#define NOH_JOINTS_MAX 4096u      /* of a skeleton */
+#define NOH_LOD_LEVELS_MAX 8u     /* LOD levels of a skeleton */
+#define NOH_SKIN_JOINTS_MAX 4096u /* of a skin */
+#define NOH_PALETTE_JOINTS_MAX \
+    256u                      /* a uniform block of 12 KiB; ES 3.0 guarantees 16. Vertices keep 8 bits for a place */
+#define NOH_INFLUENCES_MAX 8u /* joints that move one vertex */
 
 /* ---- clips and sets ---- */
 
-#define NOH_CLIP_EVENTS_MAX 65536u     /* callback keys of one clip in a pack */
-#define NOH_CLIP_MARKERS_MAX 4096u     /* sync markers of one clip in a pack */
-#define NOH_CLIPS_MAX 65535u           /* clips of one set */
-#define NOH_FLOATS_MAX 4096u             /* of one set: morph weights of all nodes, and named floats */
-#define NOH_MASKS_MAX 255u               /* of one set */
+#define NOH_CLIP_EVENTS_MAX 65536u /* callback keys of one clip in a pack */
+#define NOH_CLIP_MARKERS_MAX 4096u /* sync markers of one clip in a pack */
+#define NOH_CLIPS_MAX 65535u       /* clips of one set */
+#define NOH_FLOATS_MAX 4096u       /* of one set: morph weights of all nodes, and named floats */
+#define NOH_MASKS_MAX 255u         /* of one set */
 #define NOH_CLIP_CACHE_CLIPS_MAX 4096u
-#define NOH_CLIP_CACHE_SEGMENTS_MIN 2u      /* cached segments; a sample between two segments needs both */
+#define NOH_CLIP_CACHE_SEGMENTS_MIN 2u /* cached segments; a sample between two segments needs both */
 #define NOH_CLIP_CACHE_SEGMENTS_MAX 32768u
 
 /* ---- controllers and graphs ---- */
 
 #define NOH_TRACKS_MAX 64u
-#define NOH_CHANGES_MAX 1024u            /* waiting or running at one time */
-#define NOH_WEIGHT_MAX 1e6f              /* of a track */
-#define NOH_STEP_EVENTS_MAX (1u << 20)   /* callback keys that one step looks at. A track can pass billions (a seek a day away in a clip of
-                                          * 10 ms); a step that comes to this many hands out no more, and only moves time on */
+#define NOH_CHANGES_MAX 1024u /* waiting or running at one time */
+#define NOH_WEIGHT_MAX 1e6f   /* of a track */
+#define NOH_STEP_EVENTS_MAX                                                                                       \
+    (1u << 20) /* callback keys that one step looks at. A track can pass billions (a seek a day away in a clip of \
+                * 10 ms); a step that comes to this many hands out no more, and only moves time on */
 #define NOH_SYNC_GROUPS_MAX 15u
 #define NOH_SYNC_DURATION_MIN 480u       /* ticks, of a clip in a sync group: 10 ms */
 #define NOH_SYNC_DURATION_MAX (1u << 28) /* ticks: 93 minutes */
 #define NOH_GRAPH_NODES_MAX 256u
-#define NOH_GRAPH_CHILDREN_MAX 32u       /* of one node */
+#define NOH_GRAPH_CHILDREN_MAX 32u /* of one node */
 #define NOH_GRAPH_PARAMS_MAX 256u
-#define NOH_GRAPH_BUFFERS_MAX 32u          /* pose buffers */
-#define NOH_BLEND_SPACE_POINTS_MAX 32u         /* of a blend space */
+#define NOH_GRAPH_BUFFERS_MAX 32u      /* pose buffers */
+#define NOH_BLEND_SPACE_POINTS_MAX 32u /* of a blend space */
 #define NOH_BLEND_SPACE_TRIANGLES_MAX (2u * NOH_BLEND_SPACE_POINTS_MAX)
-#define NOH_BLEND_SPACE_COORDINATE_MAX 1e18f   /* of points and thresholds: squares of differences stay finite */
+#define NOH_BLEND_SPACE_COORDINATE_MAX 1e18f /* of points and thresholds: squares of differences stay finite */
 
 /* ---- characters ---- */
 
-#define NOH_LOD_LEVELS_MAX 8u         /* rows of a table of LOD levels */
+#define NOH_LOD_LEVELS_MAX 8u /* rows of a table of LOD levels */
 #define NOH_LOD_POOLS_MAX NOH_LOD_LEVELS_MAX
 #define NOH_LOD_POOL_SLOTS_MAX 65536u
-#define NOH_SCHEDULE_MAX 65536u          /* characters of one scheduler */
+#define NOH_SCHEDULE_MAX 65536u /* characters of one scheduler */
 #define NOH_VISIBILITY_MAX 8.0f
 
 /* ---- GL ---- */
 
-#define NOH_GL_VARIANTS_MAX 64u          /* programs of a renderer: a character of one kind of mesh needs 2 to 8, twice that with fades */
-#define NOH_GL_LABEL_BYTES 96u           /* of an object's name; longer ones are cut. GL takes at least 256 */
-#define NOH_GL_PIECES_MAX 56u            /* of a shader's text; PIECES_MAX in tools/embed is the same number */
+#define NOH_GL_VARIANTS_MAX \
+    64u /* programs of a renderer: a character of one kind of mesh needs 2 to 8, twice that with fades */
+#define NOH_GL_LABEL_BYTES 96u /* of an object's name; longer ones are cut. GL takes at least 256 */
+#define NOH_GL_PIECES_MAX 56u  /* of a shader's text; PIECES_MAX in tools/embed is the same number */
 
 #endif

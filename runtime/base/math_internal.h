@@ -18,8 +18,8 @@
 /* With errno off (-fno-math-errno) gcc and clang turn the builtin into the processor's instruction. With errno on they
  * call sqrtf for what is negative, and where the processor has no such instruction always: there the vector unit does
  * it, or plain C. All give the same bits. */
-#if defined(NOH_GNU) && defined(__NO_MATH_ERRNO__) && !(defined(__i386__) && !defined(__SSE__)) && !defined(__SOFTFP__) && \
-    !(defined(__riscv) && !defined(__riscv_flen)) && !defined(__mips_soft_float)
+#if defined(NOH_GNU) && defined(__NO_MATH_ERRNO__) && !(defined(__i386__) && !defined(__SSE__)) && \
+    !defined(__SOFTFP__) && !(defined(__riscv) && !defined(__riscv_flen)) && !defined(__mips_soft_float)
 #define NOH_SQRT_BUILTIN 1
 #elif defined(NOH_SSE2)
 #include <emmintrin.h>

@@ -69,8 +69,8 @@ void noh_quat_nlerp(const float a[4], const float b[4], float t, float out[4])
     noh_quat_normalize(out);
 }
 
-/* The vector part is the axis times sin(angle / 2), w is cos(angle / 2), and atan2 of both is exact at every angle, where an
- * arccosine loses half the digits near 0. Near 0 the quotient angle / sine is 2. */
+/* The vector part is the axis times sin(angle / 2), w is cos(angle / 2), and atan2 of both is exact at every angle,
+ * where an arccosine loses half the digits near 0. Near 0 the quotient angle / sine is 2. */
 void noh_quat_to_rotation(const float q[4], float rotation[3])
 {
     float sign = q[3] < 0.0f ? -1.0f : 1.0f;

@@ -1,7 +1,7 @@
 /* result.h: how the library reports errors.
  *
- * Bad data, too little memory, a missing capability or a driver's refusal give a noh_result; outputs are then untouched. A
- * caller's bug (a null pointer where none is allowed, an index past a count) is an assert: see assert.h.
+ * Bad data, too little memory, a missing capability or a driver's refusal give a noh_result; outputs are then
+ * untouched. A caller's bug (a null pointer where none is allowed, an index past a count) is an assert: see assert.h.
  * Threads: no state; any thread. */
 #ifndef NOH_BASE_RESULT_H
 #define NOH_BASE_RESULT_H

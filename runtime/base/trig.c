@@ -9,9 +9,9 @@
 #define RADIAN_PER_TURN 1.46291807926715968e-9
 #define ANGLE_MAX 1e6f
 
-/* Every angle is a whole number of quarter turns and a rest within pi/4, and a quarter turn swaps sine and cosine but for
- * signs; so two odd and even polynomials over that range are enough. Their coefficients are Chebyshev
- * fits, which spread the error over the range; the leading one is exactly 1, so that small angles keep their relative error. */
+/* Every angle is a whole number of quarter turns and a rest within pi/4, and a quarter turn swaps sine and cosine but
+ * for signs; so two odd and even polynomials over that range are enough. Their coefficients are Chebyshev fits, which
+ * spread the error over the range; the leading one is exactly 1, so that small angles keep their relative error. */
 static float sin_poly(float x)
 {
     float y = x * x;
@@ -28,10 +28,22 @@ static void rotate_quarters(uint32_t quarters, float x, float *sine, float *cosi
 {
     float s = sin_poly(x), c = cos_poly(x);
     switch (quarters & 3u) {
-    case 0: *sine = s; *cosine = c; break;
-    case 1: *sine = c; *cosine = -s; break;
-    case 2: *sine = -s; *cosine = -c; break;
-    default: *sine = -c; *cosine = s; break;
+    case 0:
+        *sine = s;
+        *cosine = c;
+        break;
+    case 1:
+        *sine = c;
+        *cosine = -s;
+        break;
+    case 2:
+        *sine = -s;
+        *cosine = -c;
+        break;
+    default:
+        *sine = -c;
+        *cosine = s;
+        break;
     }
 }
 
@@ -45,7 +57,8 @@ void noh_sin_cos(float radians, float *sine, float *cosine)
     double quarters = in_range(radians) ? (double)radians / HALF_PI : 0.0;
     /* rounded to the nearest; double keeps the rest exact enough over the whole range */
     int32_t k = (int32_t)(quarters < 0.0 ? quarters - 0.5 : quarters + 0.5);
-    rotate_quarters((uint32_t)k, in_range(radians) ? (float)((double)radians - (double)k * HALF_PI) : 0.0f, sine, cosine);
+    rotate_quarters((uint32_t)k, in_range(radians) ? (float)((double)radians - (double)k * HALF_PI) : 0.0f, sine,
+                    cosine);
 }
 
 void noh_sin_cos_turn(uint32_t turn, float *sine, float *cosine)
@@ -60,7 +73,9 @@ static float atan_unit(float x)
 {
     float z = x > 0.414213562f ? (x - 1.0f) / (x + 1.0f) : x;
     float y = z * z;
-    float a = z + z * y * (-0.333333317612f + y * (0.199995404837f + y * (-0.142639555980f + y * (0.107437314910f + y * -0.0645192820812f))));
+    float a = z + z * y *
+                      (-0.333333317612f +
+                       y * (0.199995404837f + y * (-0.142639555980f + y * (0.107437314910f + y * -0.0645192820812f))));
     return x > 0.414213562f ? a + 0.785398163f : a;
 }
 
@@ -95,8 +110,11 @@ float noh_exp2(float x)
     }
     whole = (int32_t)(clamped < 0.0f ? clamped - 0.5f : clamped + 0.5f);
     f = clamped - (float)whole;
-    part = 1.0f + f * (0.69314718056f + f * (0.240226509223f + f * (0.0555041088391f
-        + f * (0.00961805667852f + f * (0.00133335023862f + f * (0.000154614446986f + f * 1.52973237607e-5f))))));
+    part = 1.0f + f * (0.69314718056f +
+                       f * (0.240226509223f +
+                            f * (0.0555041088391f +
+                                 f * (0.00961805667852f +
+                                      f * (0.00133335023862f + f * (0.000154614446986f + f * 1.52973237607e-5f))))));
     if (whole > 127) { /* 2^128 is no float, 2^128 * part is */
         part *= 2.0f;
         whole = 127;

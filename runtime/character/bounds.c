@@ -4,7 +4,8 @@
 
 #define ROUNDING 1.000002f /* more than the sums and roots below can lose */
 
-/* A ball around a posed joint that contains the vertices of one joint: of this one, or of a descendant that was not posed. */
+/* A ball around a posed joint that contains the vertices of one joint: of this one, or of a descendant that was not
+ * posed. */
 typedef struct ball {
     const float *matrix;
     float radius;
@@ -60,7 +61,8 @@ static float reach_from(const float *centre, ball b)
 
 /* The box is that of all balls. The sphere is centred in the box, not minimal: one more pass over the joints finds the
  * radius that contains every ball, which is at most sqrt(3) times the smallest one. */
-void noh_joint_bounds(const noh_skeleton *skeleton, const float *model, const float *joint_radius_m, uint32_t joint_count, noh_bounds *bounds)
+void noh_joint_bounds(const noh_skeleton *skeleton, const float *model, const float *joint_radius_m,
+                      uint32_t joint_count, noh_bounds *bounds)
 {
     const float far_away = 3e38f;
     NOH_ASSERT(skeleton && model && joint_radius_m && bounds && joint_count <= skeleton->joint_count);
@@ -82,7 +84,9 @@ void noh_joint_bounds(const noh_skeleton *skeleton, const float *model, const fl
         bounds->centre[i] = 0.5f * bounds->low[i] + 0.5f * bounds->high[i];
     }
     for (uint32_t j = 0; j < skeleton->joint_count; j++) {
-        float reach = joint_radius_m[j] >= 0.0f ? reach_from(bounds->centre, ball_of(skeleton, model, joint_radius_m[j], j, joint_count)) : 0.0f;
+        float reach = joint_radius_m[j] >= 0.0f
+                          ? reach_from(bounds->centre, ball_of(skeleton, model, joint_radius_m[j], j, joint_count))
+                          : 0.0f;
         bounds->radius = reach > bounds->radius ? reach : bounds->radius;
     }
 }
@@ -101,7 +105,8 @@ float noh_skeleton_radius(const noh_skeleton *skeleton, const float *joint_radiu
     return radius * ROUNDING;
 }
 
-/* What the targets add to a box: the sum of their boxes, each of which contains 0. A negative weight swaps low and high. */
+/* What the targets add to a box: the sum of their boxes, each of which contains 0. A negative weight swaps low and
+ * high. */
 static void add_targets(const noh_mesh *mesh, const float *weights, float deltas[6])
 {
     for (int i = 0; i < 6; i++) {
@@ -150,6 +155,7 @@ void noh_mesh_add_joint_radii(const noh_mesh *mesh, const float *weights, float 
             box[i] = rest[i] + deltas[i];
         }
         margin = rest[0] <= rest[3] ? farthest_corner(skin.inverse_bind + 12u * j, box) : -1.0f;
-        joint_radius_m[skin.joints[j]] = margin > joint_radius_m[skin.joints[j]] ? margin : joint_radius_m[skin.joints[j]];
+        joint_radius_m[skin.joints[j]] = margin > joint_radius_m[skin.joints[j]] ? margin
+                                                                                 : joint_radius_m[skin.joints[j]];
     }
 }

@@ -4,10 +4,10 @@
  *   noh_skeleton_radius   a radius that no pose exceeds, before there is one
  *   noh_mesh_add_joint_radii          the joint radii that both take, out of a pack's mesh
  *
- * Both contain every vertex. A skinned vertex is a weighted mean of the positions that its joints give it; each of these
- * lies within the joint's radius of the joint; and boxes and spheres are convex, so they contain the mean of points that
- * they contain. A joint's radius is the largest distance, in the bind pose, from the joint to a vertex that it moves,
- * with all morph targets at the weights that they are expected to reach; below 0: the joint moves no vertex.
+ * Both contain every vertex. A skinned vertex is a weighted mean of the positions that its joints give it; each of
+ * these lies within the joint's radius of the joint; and boxes and spheres are convex, so they contain the mean of
+ * points that they contain. A joint's radius is the largest distance, in the bind pose, from the joint to a vertex that
+ * it moves, with all morph targets at the weights that they are expected to reach; below 0: the joint moves no vertex.
  *
  * Threads: pure functions of their arguments; any thread. */
 #ifndef NOH_CHARACTER_BOUNDS_H
@@ -21,7 +21,7 @@ extern "C" {
 #endif
 
 typedef struct noh_bounds {
-    float low[3], high[3];  /* the box; low above high: empty */
+    float low[3], high[3];   /* the box; low above high: empty */
     float centre[3], radius; /* the sphere */
 } noh_bounds;
 
@@ -30,18 +30,19 @@ typedef struct noh_bounds {
  * ranges  joint_count at most the skeleton's: the joints that were posed, all roots among them. The vertices of another
  *         joint are bounded around its nearest posed ancestor, whose radius grows by the bind pose's joint distances
  *         in between. A radius is scaled by the longest axis of its joint's matrix, which must not shear */
-void noh_joint_bounds(const noh_skeleton *skeleton, const float *model, const float *joint_radius_m, uint32_t joint_count, noh_bounds *bounds);
+void noh_joint_bounds(const noh_skeleton *skeleton, const float *model, const float *joint_radius_m,
+                      uint32_t joint_count, noh_bounds *bounds);
 
 /* The largest distance from a root joint to a vertex below it, whatever the rotations: the longest chain of bind
  * translations plus the radius at its end.
  * ranges  poses that keep the bind pose's translations, and scales of 1, below the roots */
 float noh_skeleton_radius(const noh_skeleton *skeleton, const float *joint_radius_m);
 
-/* Grow the joints' radii to contain a mesh: the farthest corner of each joint's box (noh_mesh.joint_boxes), grown by the
- * targets' boxes, in the joint's space. Begin with -1 for every joint and add each mesh that is drawn. A rigid mesh adds
- * nothing. Exact bounds for linear blend skinning; dual quaternions may leave them a little.
- * shapes  weights[target_count]: the weight farthest from 0 that each target is expected to reach, all at once; NULL: 1
- *         each; joint_radius_m[joint_count of the skin's skeleton], in the unit of its joints */
+/* Grow the joints' radii to contain a mesh: the farthest corner of each joint's box (noh_mesh.joint_boxes), grown by
+ * the targets' boxes, in the joint's space. Begin with -1 for every joint and add each mesh that is drawn. A rigid mesh
+ * adds nothing. Exact bounds for linear blend skinning; dual quaternions may leave them a little. shapes
+ * weights[target_count]: the weight farthest from 0 that each target is expected to reach, all at once; NULL: 1 each;
+ * joint_radius_m[joint_count of the skin's skeleton], in the unit of its joints */
 void noh_mesh_add_joint_radii(const noh_mesh *mesh, const float *weights, float *joint_radius_m);
 
 #ifdef __cplusplus

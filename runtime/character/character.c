@@ -56,7 +56,8 @@ static void fill_head(noh_character *ch, const noh_character_desc *d, const layo
     ch->time.clock = d->start_clock;
 }
 
-noh_result noh_character_init(void *memory, size_t bytes, const noh_character_desc *desc, noh_character **character, noh_error *error)
+noh_result noh_character_init(void *memory, size_t bytes, const noh_character_desc *desc, noh_character **character,
+                              noh_error *error)
 {
     size_t controller_bytes = noh_controller_size(&desc->controller);
     noh_controller *controller;
@@ -74,7 +75,8 @@ noh_result noh_character_init(void *memory, size_t bytes, const noh_character_de
         return result;
     }
     memset(memory, 0, l.bytes);
-    result = noh_controller_init((uint8_t *)memory + l.controller, controller_bytes, &desc->controller, &controller, error);
+    result = noh_controller_init((uint8_t *)memory + l.controller, controller_bytes, &desc->controller, &controller,
+                                 error);
     if (result == NOH_OK) {
         fill_head(ch, desc, &l);
         *character = ch;
@@ -109,7 +111,8 @@ size_t noh_character_scratch_size(const noh_character_desc *desc)
     return arena.used;
 }
 
-noh_result noh_character_scratch_init(void *memory, size_t bytes, const noh_character_desc *desc, noh_character_scratch *scratch, noh_error *error)
+noh_result noh_character_scratch_init(void *memory, size_t bytes, const noh_character_desc *desc,
+                                      noh_character_scratch *scratch, noh_error *error)
 {
     size_t need = noh_character_scratch_size(desc), pose_bytes;
     noh_arena arena;
@@ -186,7 +189,8 @@ uint32_t noh_character_step(noh_character *ch, const noh_clip_set *set, uint32_t
     return noh_controller_step(noh_character_controller(ch), set, ticks, fn, user);
 }
 
-noh_due noh_character_look(noh_character *ch, const noh_lod_table *table, const noh_lod_settings *settings, float pixels_per_metre)
+noh_due noh_character_look(noh_character *ch, const noh_lod_table *table, const noh_lod_settings *settings,
+                           float pixels_per_metre)
 {
     noh_controller *c = noh_character_controller(ch);
     int64_t clock = noh_character_clock(ch);
@@ -250,8 +254,8 @@ static void keep_shown(noh_character *ch, uint32_t from, float part)
 void noh_character_update_begin(noh_character *ch, const noh_clip_set *set, noh_character_scratch *scratch)
 {
     const noh_controller *c = controller_of(ch);
-    /* The pose of the next update is found by playing a copy of the controller to that tick without firing callbacks: the
-     * future is known, unless a program changes it. */
+    /* The pose of the next update is found by playing a copy of the controller to that tick without firing callbacks:
+     * the future is known, unless a program changes it. */
     noh_time_update u = noh_time_lod_update(&ch->time);
     int64_t ahead = noh_clock_since(u.pose_clock, noh_character_clock(ch));
     NOH_ASSERT(ch && set && scratch && set->joint_count == ch->joint_count && set->float_count == ch->float_count);
@@ -270,10 +274,12 @@ void noh_character_update_begin(noh_character *ch, const noh_clip_set *set, noh_
     ch->updates++;
 }
 
-/* Matrices of all joints. With inverse bind matrices, a joint that was not sampled takes its parent's skinning matrix: that
- * moves its vertices as if they hung on the parent, which is where the bind pose has them. Without, it takes its place in
- * the bind pose relative to the parent, which comes to the same once a skin's inverse bind matrix is multiplied in. */
-static void make_palette(const noh_skeleton *skeleton, const noh_character_scratch *s, uint32_t joint_count, float *palette)
+/* Matrices of all joints. With inverse bind matrices, a joint that was not sampled takes its parent's skinning matrix:
+ * that moves its vertices as if they hung on the parent, which is where the bind pose has them. Without, it takes its
+ * place in the bind pose relative to the parent, which comes to the same once a skin's inverse bind matrix is
+ * multiplied in. */
+static void make_palette(const noh_skeleton *skeleton, const noh_character_scratch *s, uint32_t joint_count,
+                         float *palette)
 {
     uint32_t count = skeleton->inverse_bind ? s->joint_count : joint_count;
     noh_local_to_model(skeleton, s->local, count, s->model);
@@ -284,7 +290,8 @@ static void make_palette(const noh_skeleton *skeleton, const noh_character_scrat
     }
 }
 
-void noh_character_update_end(noh_character *ch, const noh_skeleton *skeleton, const float *joint_radius_m, noh_character_scratch *scratch)
+void noh_character_update_end(noh_character *ch, const noh_skeleton *skeleton, const float *joint_radius_m,
+                              noh_character_scratch *scratch)
 {
     uint32_t target = scratch->target;
     NOH_ASSERT(ch && skeleton && scratch && target < 2u);
@@ -300,8 +307,8 @@ void noh_character_update_end(noh_character *ch, const noh_skeleton *skeleton, c
     }
 }
 
-void noh_character_update(noh_character *ch, const noh_clip_set *set, const noh_skeleton *skeleton, const float *joint_radius_m,
-                          noh_character_scratch *scratch)
+void noh_character_update(noh_character *ch, const noh_clip_set *set, const noh_skeleton *skeleton,
+                          const float *joint_radius_m, noh_character_scratch *scratch)
 {
     noh_character_update_begin(ch, set, scratch);
     noh_character_update_end(ch, skeleton, joint_radius_m, scratch);

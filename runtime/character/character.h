@@ -1,21 +1,24 @@
 /* character.h: one character: its controller, its LOD levels, and the two poses that it shows a mix of.
  *
- * A character is one block of bytes without pointers: clone, save or move it with one memcpy of noh_character_bytes(ch).
- * Hundreds lie in one array. What they share (the set, the LOD table, the scratch) is passed to every call.
+ * A character is one block of bytes without pointers: clone, save or move it with one memcpy of
+ * noh_character_bytes(ch). Hundreds lie in one array. What they share (the set, the LOD table, the scratch) is passed
+ * to every call.
  *
  * A frame of a game:
  *   noh_character_step(ch, set, ticks, fn, user)              every character, seen or not: clock and callback keys
  *   due = noh_character_look(ch, table, settings, scale)      those in view: chooses LOD levels
  *   noh_character_update(ch, set, skeleton, margins, &scratch)  those that are due: samples, blends, makes matrices
  *   noh_character_skin(ch, skin, matrices)                    those that are drawn: skinning matrices (skin_palette.h)
- * A scheduler can spread updates within a time budget (scheduler.h). Change tracks through noh_character_controller, then
- * call noh_character_wake. After a memcpy, noh_character_set_instance gives the copy its own place in the stagger of updates.
+ * A scheduler can spread updates within a time budget (scheduler.h). Change tracks through noh_character_controller,
+ * then call noh_character_wake. After a memcpy, noh_character_set_instance gives the copy its own place in the stagger
+ * of updates.
  *
  * Bytes: 160 for the head, the controller's (controller.h), and two palettes of 48 per joint with 4 per float, each
  * rounded up to 16. 31 joints, 34 floats and 4 tracks: 3,888; with room for inertia 5,648.
  *
- * One controller per instance, and poses in buffers of its own: C. Granberg, "Character Animation with Direct3D", Charles
- * River Media 2009, chapter 4, where clones of a controller write one shared tree of joints and must be drawn in turn.
+ * One controller per instance, and poses in buffers of its own: C. Granberg, "Character Animation with Direct3D",
+ * Charles River Media 2009, chapter 4, where clones of a controller write one shared tree of joints and must be drawn
+ * in turn.
  *
  * Threads: a character belongs to one thread at a time, and so does a scratch; set, skeleton, table and settings are
  * read-only and shared. Characters may be stepped and looked at on several threads at once, and updated wherever the
@@ -40,15 +43,15 @@ typedef struct noh_character_desc {
 /* The head of the block; the rest follows at byte offsets from it. Reading the fields is fine; change them by calls. */
 typedef struct noh_character {
     int64_t start_clock;
-    uint32_t bytes;                 /* of the whole block */
+    uint32_t bytes; /* of the whole block */
     uint32_t joint_count, float_count;
     uint32_t controller_offset;
     uint32_t palette_offsets[2], float_offsets[2];
-    uint32_t updates;               /* since init */
-    uint32_t multiplied;            /* a bit per palette: it was multiplied by the skeleton's inverse bind matrices */
+    uint32_t updates;    /* since init */
+    uint32_t multiplied; /* a bit per palette: it was multiplied by the skeleton's inverse bind matrices */
     noh_lod lod;
     noh_time_lod time;
-    float spheres[2][4];            /* centre and radius around each of the two poses */
+    float spheres[2][4]; /* centre and radius around each of the two poses */
 } noh_character;
 
 /* Working memory of updates: one for all characters of a set that one thread updates. */
@@ -56,11 +59,11 @@ typedef struct noh_character_scratch {
     noh_pose_scratch pose;
     noh_controller *ahead; /* a copy of the controller, played to the next update */
     size_t ahead_bytes;
-    noh_transform *local;  /* [joint_count] the pose, between noh_character_update_begin and _end */
-    float *floats;         /* [float_count] its floats */
-    uint32_t joint_count;  /* joints that were sampled; the others have the bind pose */
-    uint32_t target;         /* 0 or 1: which of the character's two poses this becomes */
-    float *model;          /* [joint_count][12] model-space matrices, after _end */
+    noh_transform *local; /* [joint_count] the pose, between noh_character_update_begin and _end */
+    float *floats;        /* [float_count] its floats */
+    uint32_t joint_count; /* joints that were sampled; the others have the bind pose */
+    uint32_t target;      /* 0 or 1: which of the character's two poses this becomes */
+    float *model;         /* [joint_count][12] model-space matrices, after _end */
 } noh_character_scratch;
 
 /* ---- memory ---- */
@@ -70,11 +73,13 @@ size_t noh_character_size(const noh_character_desc *desc);
 
 /* Make a character in memory[bytes]: all tracks off, no valid pose.
  * errors  ARG a field of the desc, or memory NULL or not 16-byte aligned; MEMORY too small; need: the exact bytes */
-noh_result noh_character_init(void *memory, size_t bytes, const noh_character_desc *desc, noh_character **character, noh_error *error);
+noh_result noh_character_init(void *memory, size_t bytes, const noh_character_desc *desc, noh_character **character,
+                              noh_error *error);
 
 /* Working memory for characters of this desc, or of one with fewer tracks and changes. errors  as above */
 size_t noh_character_scratch_size(const noh_character_desc *desc);
-noh_result noh_character_scratch_init(void *memory, size_t bytes, const noh_character_desc *desc, noh_character_scratch *scratch, noh_error *error);
+noh_result noh_character_scratch_init(void *memory, size_t bytes, const noh_character_desc *desc,
+                                      noh_character_scratch *scratch, noh_error *error);
 
 /* How many bytes to copy to clone or save it. The copy must be 16-byte aligned too. */
 size_t noh_character_bytes(const noh_character *ch);
@@ -95,7 +100,8 @@ uint32_t noh_character_step(noh_character *ch, const noh_clip_set *set, uint32_t
 /* The character is in view: choose its LOD levels and say whether an update is due. At most once a frame. The
  * controller's lod becomes the mesh level, its sampled joints those of the joint level.
  * units   pixels_per_metre at its nearest point (noh_lod_scale) */
-noh_due noh_character_look(noh_character *ch, const noh_lod_table *table, const noh_lod_settings *settings, float pixels_per_metre);
+noh_due noh_character_look(noh_character *ch, const noh_lod_table *table, const noh_lod_settings *settings,
+                           float pixels_per_metre);
 
 /* Ticks since an update was due, for noh_schedule_offer. */
 uint32_t noh_character_late(const noh_character *ch);
@@ -104,8 +110,8 @@ uint32_t noh_character_late(const noh_character *ch);
 uint32_t noh_character_joint_work(const noh_character *ch);
 
 /* Pose it, for this frame or for the next update: _begin and _end. Not within a callback of noh_character_step. */
-void noh_character_update(noh_character *ch, const noh_clip_set *set, const noh_skeleton *skeleton, const float *joint_radius_m,
-                          noh_character_scratch *scratch);
+void noh_character_update(noh_character *ch, const noh_clip_set *set, const noh_skeleton *skeleton,
+                          const float *joint_radius_m, noh_character_scratch *scratch);
 
 /* First half: the local pose into scratch->local and scratch->floats, where a program may change it (look-at, IK). */
 void noh_character_update_begin(noh_character *ch, const noh_clip_set *set, noh_character_scratch *scratch);
@@ -113,7 +119,8 @@ void noh_character_update_begin(noh_character *ch, const noh_clip_set *set, noh_
 /* Second half: matrices and bounds into the character. Joints that were not sampled move with their parents.
  * shapes  joint_radius_m[joint_count], the joints' radii (bounds.h); NULL: no sphere is kept
  * ranges  the same skeleton in all updates of a character */
-void noh_character_update_end(noh_character *ch, const noh_skeleton *skeleton, const float *joint_radius_m, noh_character_scratch *scratch);
+void noh_character_update_end(noh_character *ch, const noh_skeleton *skeleton, const float *joint_radius_m,
+                              noh_character_scratch *scratch);
 
 /* The first joint_count matrices shown in this frame, once the character was updated, in the skeleton's order: as
  * noh_model_to_palette makes them of the skeleton that update_end was given. They are model-space joint matrices unless
@@ -126,11 +133,12 @@ const float *noh_character_palette(const noh_character *ch, float *mixed, uint32
  * shapes  mixed[float_count of the set] */
 const float *noh_character_floats(const noh_character *ch, float *mixed);
 
-/* A sphere around what is shown in this frame: centre x, y, z and radius, in object space. It needs updates with radii. */
+/* A sphere around what is shown in this frame: centre x, y, z and radius, in object space. It needs updates with radii.
+ */
 void noh_character_sphere(const noh_character *ch, float sphere[4]);
 
-/* Call after changing tracks or weights. An update is due from now on; what is shown moves to the changed pose within half
- * an update period to one. */
+/* Call after changing tracks or weights. An update is due from now on; what is shown moves to the changed pose within
+ * half an update period to one. */
 void noh_character_wake(noh_character *ch);
 
 /* Call when the camera has jumped: LOD levels are chosen afresh, and the character is posed before it is shown. */

@@ -31,8 +31,8 @@ size_t noh_joint_lod_measure_size(const noh_time_probe *probe)
     return arena.used;
 }
 
-/* The largest error of a point with the first `count` joints posed, or `worst` if that is larger. Joints are stored parents
- * first, so one pass over those left out builds their matrices from their parents'. */
+/* The largest error of a point with the first `count` joints posed, or `worst` if that is larger. Joints are stored
+ * parents first, so one pass over those left out builds their matrices from their parents'. */
 static float level_off(const noh_time_probe *p, work *w, uint32_t count, float worst)
 {
     const noh_skeleton *s = p->skeleton;
@@ -62,8 +62,8 @@ static int bad_counts(const noh_skeleton *s, const uint32_t *counts, uint32_t le
     return 0;
 }
 
-noh_result noh_joint_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t clip, const uint32_t *counts,
-                                 uint32_t level_count, float *error_m, noh_error *error)
+noh_result noh_joint_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t clip,
+                                 const uint32_t *counts, uint32_t level_count, float *error_m, noh_error *error)
 {
     const char *what = probe->joint_radius_m ? noh_probe_fault(probe, clip) : "probe: joint_radius_m is NULL";
     noh_arena arena;
@@ -72,7 +72,8 @@ noh_result noh_joint_lod_measure(void *memory, size_t bytes, const noh_time_prob
     noh_result result;
     NOH_ASSERT(probe && counts && error_m);
     if (what || bad_counts(probe->skeleton, counts, level_count)) {
-        return noh_fail(error, NOH_ERR_ARG, what ? what : "counts must fall, and hold all joints that have no parent", clip, 0);
+        return noh_fail(error, NOH_ERR_ARG, what ? what : "counts must fall, and hold all joints that have no parent",
+                        clip, 0);
     }
     result = noh_arena_open(&arena, memory, bytes, noh_joint_lod_measure_size(probe), error);
     if (result) {
@@ -82,7 +83,8 @@ noh_result noh_joint_lod_measure(void *memory, size_t bytes, const noh_time_prob
     memset(error_m, 0, level_count * sizeof *error_m);
     duration = probe->set->clips[clip].duration_ticks;
     for (int64_t tick = 0; tick < (int64_t)duration + (int64_t)STEP_TICKS; tick += STEP_TICKS) {
-        noh_probe_sample(probe, clip, tick < (int64_t)duration ? tick : (int64_t)duration, NULL, w.pose, w.model, w.floats);
+        noh_probe_sample(probe, clip, tick < (int64_t)duration ? tick : (int64_t)duration, NULL, w.pose, w.model,
+                         w.floats);
         for (uint32_t i = 0; i < level_count; i++) {
             error_m[i] = level_off(probe, &w, counts[i], error_m[i]);
         }

@@ -40,12 +40,15 @@ noh_result noh_lod_settings_check(const noh_lod_settings *s, noh_error *error)
     NOH_ASSERT(s);
     if (!(s->pixels >= 0.0f && s->pixels <= 1e6f)) return noh_fail(error, NOH_ERR_ARG, "pixels is not in 0..1e6", 0, 0);
     for (uint32_t i = 0; i < NOH_LOD_KIND_COUNT; i++) {
-        if (!(s->shares[i] >= 0.0f && s->shares[i] <= 1.0f)) return noh_fail(error, NOH_ERR_ARG, "shares are not in 0..1", i, 0);
+        if (!(s->shares[i] >= 0.0f && s->shares[i] <= 1.0f))
+            return noh_fail(error, NOH_ERR_ARG, "shares are not in 0..1", i, 0);
         sum += (double)s->shares[i];
     }
     if (sum > 1.0 + 1e-6) return noh_fail(error, NOH_ERR_ARG, "shares sum to more than 1", 0, 0);
-    if (!(s->hysteresis >= 0.0f && s->hysteresis < 1.0f)) return noh_fail(error, NOH_ERR_ARG, "hysteresis is not in 0..1", 0, 0);
-    if (!(s->lead >= 0.0f && lead_of(s) < hysteresis_of(s))) return noh_fail(error, NOH_ERR_ARG, "lead is not below the hysteresis", 0, 0);
+    if (!(s->hysteresis >= 0.0f && s->hysteresis < 1.0f))
+        return noh_fail(error, NOH_ERR_ARG, "hysteresis is not in 0..1", 0, 0);
+    if (!(s->lead >= 0.0f && lead_of(s) < hysteresis_of(s)))
+        return noh_fail(error, NOH_ERR_ARG, "lead is not below the hysteresis", 0, 0);
     return NOH_OK;
 }
 
@@ -61,11 +64,13 @@ static errors errors_of(const noh_lod_table *t, noh_lod_kind kind)
 {
     errors e = { { 0.0f }, 0, 0 };
     e.first = kind == NOH_LOD_MESH ? t->mesh_level_first : 0;
-    e.count = kind == NOH_LOD_MESH ? t->mesh_level_count : kind == NOH_LOD_JOINTS ? t->joint_level_count : t->influence_level_count;
+    e.count = kind == NOH_LOD_MESH     ? t->mesh_level_count
+              : kind == NOH_LOD_JOINTS ? t->joint_level_count
+                                       : t->influence_level_count;
     for (uint32_t i = 0; i < e.count; i++) {
         e.error_m[i] = kind == NOH_LOD_MESH     ? t->meshes[i].error_m
                        : kind == NOH_LOD_JOINTS ? t->joints[i].error_m
-                                                   : t->influences[i].error_m;
+                                                : t->influences[i].error_m;
     }
     return e;
 }
@@ -79,7 +84,8 @@ static int is_list(const void *levels, uint32_t count)
 static const char *bad_counts(const noh_lod_table *t)
 {
     if (!is_list(t->meshes, t->mesh_level_count)) return "meshes: NULL, or more than NOH_LOD_LEVELS_MAX";
-    if (t->mesh_level_first && t->mesh_level_first >= t->mesh_level_count) return "mesh_level_first is not below mesh_level_count";
+    if (t->mesh_level_first && t->mesh_level_first >= t->mesh_level_count)
+        return "mesh_level_first is not below mesh_level_count";
     if (!is_list(t->joints, t->joint_level_count)) return "joints: NULL, or more than NOH_LOD_LEVELS_MAX";
     if (!is_list(t->influences, t->influence_level_count)) return "influences: NULL, or more than NOH_LOD_LEVELS_MAX";
     return NULL;
@@ -87,12 +93,15 @@ static const char *bad_counts(const noh_lod_table *t)
 
 static const char *bad_level(const noh_lod_table *t, noh_lod_kind kind, uint32_t level)
 {
-    static const char *const what[] = { "error of a mesh level is not finite, negative, or below that of a finer one",
-                                        "error of a joint level is not finite, negative, or below that of a finer one",
-                                        "error of an influence level is not finite, negative, or below that of a finer one" };
+    static const char *const what[] = {
+        "error of a mesh level is not finite, negative, or below that of a finer one",
+        "error of a joint level is not finite, negative, or below that of a finer one",
+        "error of an influence level is not finite, negative, or below that of a finer one"
+    };
     const errors e = errors_of(t, kind);
     if (!(e.error_m[level] >= (level ? e.error_m[level - 1u] : 0.0f) && e.error_m[level] <= 1e30f)) return what[kind];
-    if (kind == NOH_LOD_JOINTS && t->joints[level].joint_count == 0) return "joints of a joint level: there must be at least one";
+    if (kind == NOH_LOD_JOINTS && t->joints[level].joint_count == 0)
+        return "joints of a joint level: there must be at least one";
     if (kind == NOH_LOD_INFLUENCES && t->influences[level].influence_count == 0) {
         return "influences of an influence level: there must be at least one";
     }
@@ -223,7 +232,7 @@ static void forget_levels(noh_lod *d)
 }
 
 void noh_lod_choose(noh_lod *d, const noh_lod_table *t, const noh_lod_settings *s, float pixels_per_metre,
-                       const float *update_error_m, int64_t clock)
+                    const float *update_error_m, int64_t clock)
 {
     double knob_m = knob_metres(s, pixels_per_metre);
     errors mesh = errors_of(t, NOH_LOD_MESH), joints = errors_of(t, NOH_LOD_JOINTS);
@@ -348,14 +357,20 @@ static float cost_of(const float *weights, const float *radius_m, uint32_t i)
 /* Floats of one sign are ordered as their bits are. */
 static float float_of(uint32_t bits)
 {
-    union { uint32_t bits; float value; } u;
+    union {
+        uint32_t bits;
+        float value;
+    } u;
     u.bits = bits;
     return u.value;
 }
 
 static uint32_t bits_of(float value)
 {
-    union { uint32_t bits; float value; } u;
+    union {
+        uint32_t bits;
+        float value;
+    } u;
     u.value = value;
     return u.bits;
 }
@@ -381,11 +396,12 @@ static cut cut_at(const float *weights, const float *radius_m, uint32_t count, f
     return c;
 }
 
-/* Find the largest limit such that all costs up to it fit into the room together, and return its bits. Sorting the costs
- * would need memory; instead this bisects over the limit. Floats that are not negative have the order of their bits, so at
- * most 31 halvings separate any two, and each pass tells the nearest costs on both sides, which lets the search step from
- * cost to cost. The next float above the result is then a cost of which not all fit: noh_lod_targets takes those by
- * index. The search starts between room / (count + 1), which always fits, and the room itself. *sum is that of what fits. */
+/* Find the largest limit such that all costs up to it fit into the room together, and return its bits. Sorting the
+ * costs would need memory; instead this bisects over the limit. Floats that are not negative have the order of their
+ * bits, so at most 31 halvings separate any two, and each pass tells the nearest costs on both sides, which lets the
+ * search step from cost to cost. The next float above the result is then a cost of which not all fit: noh_lod_targets
+ * takes those by index. The search starts between room / (count + 1), which always fits, and the room itself. *sum is
+ * that of what fits. */
 static uint32_t largest_limit(const float *weights, const float *radius_m, uint32_t count, double room, double *sum)
 {
     const float most = room < (double)float_of(LARGEST_BITS) ? (float)room : float_of(LARGEST_BITS);
@@ -406,8 +422,8 @@ static uint32_t largest_limit(const float *weights, const float *radius_m, uint3
     return fits;
 }
 
-uint32_t noh_lod_targets(noh_lod *d, const noh_lod_settings *settings, const float *weights, const float *radius_m, uint32_t count,
-                            float *kept)
+uint32_t noh_lod_targets(noh_lod *d, const noh_lod_settings *settings, const float *weights, const float *radius_m,
+                         uint32_t count, float *kept)
 {
     double room = knob_metres(settings, d->pixels_per_metre) * share_of(settings, NOH_LOD_TARGETS);
     double skipped;

@@ -13,7 +13,7 @@ typedef struct source {
     const uint32_t *levels; /* [level_count] joints */
     uint32_t level_count, skeleton, clip_count, joint_count;
     uint32_t mesh_level_count, target_count;
-    int skinned;            /* there is a mesh, and joints move it */
+    int skinned; /* there is a mesh, and joints move it */
 } source;
 
 /* The carved arrays; NULL while measuring. */
@@ -31,14 +31,16 @@ typedef struct parts {
 static int is_of_skeleton(const source *s, const noh_mesh *mesh)
 {
     noh_skin skin;
-    return mesh->pack->bytes == s->pack->bytes && noh_pack_skin_at(s->pack, mesh->header->skin, &skin, NULL) == NOH_OK && skin.header->skeleton == s->skeleton;
+    return mesh->pack->bytes == s->pack->bytes &&
+           noh_pack_skin_at(s->pack, mesh->header->skin, &skin, NULL) == NOH_OK && skin.header->skeleton == s->skeleton;
 }
 
 /* What is wrong with the desc; NULL: nothing. */
 static const char *resolve(const noh_lod_pack_desc *desc, source *s)
 {
     if (!desc->set) return "set is NULL";
-    if (!desc->set_desc || !desc->set_desc->clips) return "set_desc: NULL, without clips, or not what the set was made by";
+    if (!desc->set_desc || !desc->set_desc->clips)
+        return "set_desc: NULL, without clips, or not what the set was made by";
     s->clips = desc->set_desc->clips;
     s->pack = desc->set_desc->mesh ? desc->set_desc->mesh : s->clips;
     s->skeleton = desc->set_desc->skeleton;
@@ -48,18 +50,22 @@ static const char *resolve(const noh_lod_pack_desc *desc, source *s)
     s->level_count = 0;
     if (s->joint_count) {
         s->levels = noh_pack_joint_levels(s->pack, s->skeleton, &s->level_count);
-        if (!s->levels || s->levels[0] != s->joint_count) return "set_desc: NULL, without clips, or not what the set was made by";
+        if (!s->levels || s->levels[0] != s->joint_count)
+            return "set_desc: NULL, without clips, or not what the set was made by";
     }
     s->mesh_level_count = desc->mesh ? desc->mesh->header->level_count : 0;
     s->target_count = desc->mesh ? desc->mesh->header->target_count : 0;
     s->skinned = desc->mesh && desc->mesh->header->skin != NOH_NONE;
-    return s->skinned && !(s->joint_count && is_of_skeleton(s, desc->mesh)) ? "mesh is not moved by the skeleton of the set" : NULL;
+    return s->skinned && !(s->joint_count && is_of_skeleton(s, desc->mesh))
+               ? "mesh is not moved by the skeleton of the set"
+               : NULL;
 }
 
 static void carve(noh_arena *arena, const source *s, parts *p)
 {
     p->meshes = (noh_lod_mesh *)noh_arena_carve(arena, s->mesh_level_count * sizeof *p->meshes, 4);
-    p->influences = (noh_lod_influences *)noh_arena_carve(arena, s->skinned ? INFLUENCE_LEVELS * sizeof *p->influences : 0, 4);
+    p->influences = (noh_lod_influences *)noh_arena_carve(arena,
+                                                          s->skinned ? INFLUENCE_LEVELS * sizeof *p->influences : 0, 4);
     p->joints = (noh_lod_joints *)noh_arena_carve(arena, s->level_count * sizeof *p->joints, 4);
     p->rates = (float *)noh_arena_carve(arena, s->clip_count * (size_t)NOH_UPDATE_RATE_COUNT * sizeof(float), 4);
     p->margins = (float *)noh_arena_carve(arena, s->skinned ? s->joint_count * sizeof(float) : 0, 4);
@@ -94,7 +100,8 @@ static float to_metres(const source *s, const noh_clip_header *h, float margin)
     return h->error_shell > 0.0f && margin > h->error_shell ? unit_m * (margin / h->error_shell) : unit_m;
 }
 
-/* The error of a clip with this many joints: that of the finest of its own levels that poses no more. -1: there is none. */
+/* The error of a clip with this many joints: that of the finest of its own levels that poses no more. -1: there is
+ * none. */
 static float joint_error(const source *s, const noh_pack_clip *clip, uint32_t joint_count)
 {
     uint32_t level_count;
@@ -108,7 +115,8 @@ static float joint_error(const source *s, const noh_pack_clip *clip, uint32_t jo
 }
 
 /* Raise the errors of the levels to those of a clip; drop the levels that it has no error for. */
-static void add_joint_errors(const source *s, const noh_pack_clip *clip, float metres, noh_lod_joints *levels, uint32_t *level_count)
+static void add_joint_errors(const source *s, const noh_pack_clip *clip, float metres, noh_lod_joints *levels,
+                             uint32_t *level_count)
 {
     for (uint32_t i = 0; i < *level_count; i++) {
         const float error = joint_error(s, clip, levels[i].joint_count) * metres;
@@ -234,7 +242,8 @@ static void fill(const noh_lod_pack_desc *desc, const source *s, parts *p, noh_l
     fill_clips(desc, s, fill_margins(desc, s, p->margins), p, &lod->table);
 }
 
-noh_result noh_lod_pack_init(void *memory, size_t bytes, const noh_lod_pack_desc *desc, noh_lod_pack *lod, noh_error *error)
+noh_result noh_lod_pack_init(void *memory, size_t bytes, const noh_lod_pack_desc *desc, noh_lod_pack *lod,
+                             noh_error *error)
 {
     noh_arena arena;
     noh_result result;

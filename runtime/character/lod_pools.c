@@ -26,7 +26,8 @@ struct noh_lod_pools {
     pool pools[NOH_LOD_POOLS_MAX];
     noh_lod_pools_stats stats;
     place *places;  /* [instance_count] */
-    uint64_t *keys; /* [instance_count] requests: the bits of the priority above, 2^32 - 1 - instance below (lower numbers first) */
+    uint64_t *keys; /* [instance_count] requests: the bits of the priority above, 2^32 - 1 - instance below (lower
+                       numbers first) */
     uint32_t *free; /* [slots] */
 };
 
@@ -37,12 +38,15 @@ NOH_STATIC_ASSERT(sizeof(place) == 8, place);
 static const char *bad_field(const noh_lod_pools_desc *d, uint32_t *slots)
 {
     uint64_t sum = 0;
-    if (d->instance_count == 0 || d->instance_count > NOH_LOD_POOL_SLOTS_MAX) return "instance_count of level pools is not in 1..NOH_LOD_POOL_SLOTS_MAX";
-    if (d->pool_count == 0 || d->pool_count > NOH_LOD_POOLS_MAX) return "pool_count of level pools is not in 1..NOH_LOD_POOLS_MAX";
+    if (d->instance_count == 0 || d->instance_count > NOH_LOD_POOL_SLOTS_MAX)
+        return "instance_count of level pools is not in 1..NOH_LOD_POOL_SLOTS_MAX";
+    if (d->pool_count == 0 || d->pool_count > NOH_LOD_POOLS_MAX)
+        return "pool_count of level pools is not in 1..NOH_LOD_POOLS_MAX";
     if (!d->levels) return "levels of level pools is NULL";
     if (!d->slot_counts) return "slot_counts of level pools is NULL";
     for (uint32_t i = 0; i < d->pool_count; i++) {
-        if (d->levels[i] >= NOH_LOD_LEVELS_MAX || (i && d->levels[i] <= d->levels[i - 1u])) return "levels of level pools do not rise";
+        if (d->levels[i] >= NOH_LOD_LEVELS_MAX || (i && d->levels[i] <= d->levels[i - 1u]))
+            return "levels of level pools do not rise";
         if (d->slot_counts[i] == 0) return "slot_counts of level pools: a pool without slots";
         sum += d->slot_counts[i];
     }
@@ -89,7 +93,8 @@ static void fill_pools(noh_lod_pools *p, const noh_lod_pools_desc *d)
     }
 }
 
-noh_result noh_lod_pools_init(void *memory, size_t bytes, const noh_lod_pools_desc *desc, noh_lod_pools **pools, noh_error *error)
+noh_result noh_lod_pools_init(void *memory, size_t bytes, const noh_lod_pools_desc *desc, noh_lod_pools **pools,
+                              noh_error *error)
 {
     noh_arena arena;
     noh_result result;
@@ -130,7 +135,10 @@ void noh_lod_pools_begin(noh_lod_pools *p)
 /* Floats that are not negative have the order of their bits. */
 static uint64_t key_of(float priority, uint32_t instance)
 {
-    union { float value; uint32_t bits; } u;
+    union {
+        float value;
+        uint32_t bits;
+    } u;
     u.value = priority > 0.0f ? priority : 0.0f;
     return (uint64_t)u.bits << 32 | (UINT32_MAX - instance);
 }
@@ -190,8 +198,8 @@ static void sift(uint64_t *keys, uint32_t at, uint32_t count)
     keys[at] = key;
 }
 
-/* Heap sort, the highest first: the top of the heap, its lowest key, moves to the end again and again. In place, and never
- * worse than n log n. */
+/* Heap sort, the highest first: the top of the heap, its lowest key, moves to the end again and again. In place, and
+ * never worse than n log n. */
 static void sort_keys(uint64_t *keys, uint32_t count)
 {
     for (uint32_t i = count / 2u; i-- > 0;) {
@@ -231,8 +239,8 @@ static int all_fit(const noh_lod_pools *p)
     return 1;
 }
 
-/* The coarsest pool that holds the level and has room, else the next coarser one that has. One of them has, for there are
- * at least as many slots as instances. */
+/* The coarsest pool that holds the level and has room, else the next coarser one that has. One of them has, for there
+ * are at least as many slots as instances. */
 static uint32_t choose_pool(const noh_lod_pools *p, uint32_t level)
 {
     const uint32_t *used = p->stats.used, fit = count_fitting(p, level);

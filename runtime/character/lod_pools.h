@@ -1,9 +1,9 @@
 /* lod_pools.h: GPU memory for morphing, sized by LOD level and shared among instances.
  *
- * The memory that an instance takes on the GPU to be morphed depends on its LOD level. A pool is a number of slots, each
- * for one instance at the pool's level or a coarser one: for 1,000 bodies, 16 near, 64 middle and 920 far slots take a
- * sixth of what 1,000 near ones take. Slot k of pool p can be instance noh_gl_morph_instance(morph, p, k) of a noh_gl_morph
- * whose p-th mesh is the pool's level (noh_mesh_at_lod), with as many instances as the pool has slots.
+ * The memory that an instance takes on the GPU to be morphed depends on its LOD level. A pool is a number of slots,
+ * each for one instance at the pool's level or a coarser one: for 1,000 bodies, 16 near, 64 middle and 920 far slots
+ * take a sixth of what 1,000 near ones take. Slot k of pool p can be instance noh_gl_morph_instance(morph, p, k) of a
+ * noh_gl_morph whose p-th mesh is the pool's level (noh_mesh_at_lod), with as many instances as the pool has slots.
  *
  * A frame of a game:
  *   noh_lod_pools_begin(pools);
@@ -12,12 +12,12 @@
  *   slot = noh_lod_pools_slot(pools, i);       per instance that asked: draw it at slot.level or coarser, and
  *   noh_lod_set_limit(&detail, slot.level);       choose no finer level from the next frame on
  *
- * Sharing: requests are served by falling priority. Each gets the coarsest pool that holds its level; if that is full, the
- * next finer one with room, else the next coarser one, and the instance is drawn at that pool's level. There are at least
- * as many slots as instances, so everyone gets one. An instance keeps its slot while it is given the same pool, and its
- * priority counts a quarter more than a newcomer's, so that two instances at the same distance do not take turns. A level
- * that comes back fades in; an evicted instance switches level at once. `coarser_high_water` tells when pools are too
- * small to avoid that.
+ * Sharing: requests are served by falling priority. Each gets the coarsest pool that holds its level; if that is full,
+ * the next finer one with room, else the next coarser one, and the instance is drawn at that pool's level. There are at
+ * least as many slots as instances, so everyone gets one. An instance keeps its slot while it is given the same pool,
+ * and its priority counts a quarter more than a newcomer's, so that two instances at the same distance do not take
+ * turns. A level that comes back fades in; an evicted instance switches level at once. `coarser_high_water` tells when
+ * pools are too small to avoid that.
  *
  * Threads: pools belong to one thread at a time. */
 #ifndef NOH_CHARACTER_LOD_POOLS_H
@@ -32,10 +32,12 @@ extern "C" {
 #endif
 
 typedef struct noh_lod_pools_desc {
-    uint32_t instance_count;     /* 1..NOH_LOD_POOL_SLOTS_MAX */
-    uint32_t pool_count;         /* 1..NOH_LOD_POOLS_MAX */
-    const uint32_t *levels;      /* [pool_count] the finest LOD level that each pool's slots hold, rising; below NOH_LOD_LEVELS_MAX */
-    const uint32_t *slot_counts; /* [pool_count] each at least 1; their sum at least instance_count, at most NOH_LOD_POOL_SLOTS_MAX */
+    uint32_t instance_count; /* 1..NOH_LOD_POOL_SLOTS_MAX */
+    uint32_t pool_count;     /* 1..NOH_LOD_POOLS_MAX */
+    /* [pool_count] the finest LOD level that each pool's slots hold, rising; below NOH_LOD_LEVELS_MAX */
+    const uint32_t *levels;
+    const uint32_t *slot_counts; /* [pool_count] each at least 1; their sum at least instance_count, at most
+                                    NOH_LOD_POOL_SLOTS_MAX */
 } noh_lod_pools_desc;
 
 /* The slot of an instance. */
@@ -49,8 +51,8 @@ typedef struct noh_lod_pools noh_lod_pools;
 /* Counts of the last frame, and high-water marks. */
 typedef struct noh_lod_pools_stats {
     uint32_t asked;
-    uint32_t coarser;            /* instances that were given a coarser level than they asked for */
-    uint32_t moved;              /* instances with a new slot: their morph layers must be accumulated again */
+    uint32_t coarser; /* instances that were given a coarser level than they asked for */
+    uint32_t moved;   /* instances with a new slot: their morph layers must be accumulated again */
     uint32_t coarser_high_water;
     uint32_t used[NOH_LOD_POOLS_MAX];
     uint32_t used_high_water[NOH_LOD_POOLS_MAX];
@@ -60,15 +62,18 @@ typedef struct noh_lod_pools_stats {
 size_t noh_lod_pools_size(const noh_lod_pools_desc *desc);
 
 /* errors  ARG a field of the desc, or memory NULL or not 16-byte aligned; MEMORY too small; need: the exact bytes */
-noh_result noh_lod_pools_init(void *memory, size_t bytes, const noh_lod_pools_desc *desc, noh_lod_pools **pools, noh_error *error);
+noh_result noh_lod_pools_init(void *memory, size_t bytes, const noh_lod_pools_desc *desc, noh_lod_pools **pools,
+                              noh_error *error);
 
 void noh_lod_pools_begin(noh_lod_pools *pools);
 
 /* Ask for a slot in this frame; each instance at most once. An instance that does not ask gives up its slot.
- * ranges  level: any; past the last pool's it counts as the last pool's. priority at least 0, higher first (NaN is 0) */
+ * ranges  level: any; past the last pool's it counts as the last pool's. priority at least 0, higher first (NaN is 0)
+ */
 void noh_lod_pools_ask(noh_lod_pools *pools, uint32_t instance, uint32_t level, float priority);
 
-/* Give a slot to every instance that asked. If a pool is too small for those that want it, requests are sorted: n log n. */
+/* Give a slot to every instance that asked. If a pool is too small for those that want it, requests are sorted: n log
+ * n. */
 void noh_lod_pools_share(noh_lod_pools *pools);
 
 /* Of an instance that asked in this frame. */

@@ -6,7 +6,8 @@
 
 const char *noh_probe_fault(const noh_time_probe *p, uint32_t clip)
 {
-    if (!p->set || !p->skeleton || p->skeleton->joint_count != p->set->joint_count) return "probe: NULL set or skeleton, or a skeleton of other joints";
+    if (!p->set || !p->skeleton || p->skeleton->joint_count != p->set->joint_count)
+        return "probe: NULL set or skeleton, or a skeleton of other joints";
     if (clip >= p->set->clip_count) return "clip is not a clip of the set";
     return NULL;
 }
@@ -29,11 +30,12 @@ void noh_probe_travel(const noh_time_probe *p, uint32_t clip, noh_transform *pos
     }
 }
 
-void noh_probe_sample(const noh_time_probe *p, uint32_t clip, int64_t tick, const float *travel, noh_transform *pose, float *model,
-                      float *floats)
+void noh_probe_sample(const noh_time_probe *p, uint32_t clip, int64_t tick, const float *travel, noh_transform *pose,
+                      float *model, float *floats)
 {
     const noh_clip_entry *m = &p->set->clips[clip];
-    const int64_t position = noh_position_of(tick), folded = noh_time_clip(position, m->duration_ticks, (noh_loop)m->loop);
+    const int64_t position = noh_position_of(tick),
+                  folded = noh_time_clip(position, m->duration_ticks, (noh_loop)m->loop);
     const float passes = (float)noh_time_legs(position, m->duration_ticks, (noh_loop)m->loop);
     noh_root_sample_rest(p->set, clip, (uint32_t)(folded >> 16), p->set->joint_count, pose, floats);
     noh_local_to_model(p->skeleton, pose, p->set->joint_count, model);

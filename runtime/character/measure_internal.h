@@ -13,11 +13,10 @@ const char *noh_probe_fault(const noh_time_probe *probe, uint32_t clip);
  * shapes  pose[joint_count], floats[float_count] to work in */
 void noh_probe_travel(const noh_time_probe *probe, uint32_t clip, noh_transform *pose, float *floats, float travel[3]);
 
-/* The matrices and floats of a clip at a tick of its own clock, played in its own loop mode, moved by `travel` for every
- * pass completed; NULL: not moved.
- * shapes  pose[joint_count], model[joint_count][12], floats[float_count] */
-void noh_probe_sample(const noh_time_probe *probe, uint32_t clip, int64_t tick, const float *travel, noh_transform *pose, float *model,
-                      float *floats);
+/* The matrices and floats of a clip at a tick of its own clock, played in its own loop mode, moved by `travel` for
+ * every pass completed; NULL: not moved. shapes  pose[joint_count], model[joint_count][12], floats[float_count] */
+void noh_probe_sample(const noh_time_probe *probe, uint32_t clip, int64_t tick, const float *travel,
+                      noh_transform *pose, float *model, float *floats);
 
 /* ---- rates ---- */
 
@@ -34,7 +33,8 @@ typedef struct noh_rate_work {
 } noh_rate_work;
 
 /* The largest error of a mix of the two poses, `part` of the second, or `least` if that is larger. */
-typedef float (*noh_rate_off)(void *user, const noh_time_probe *probe, const noh_rate_work *work, float part, float least);
+typedef float (*noh_rate_off)(void *user, const noh_time_probe *probe, const noh_rate_work *work, float part,
+                              float least);
 
 void noh_rate_carve(noh_arena *arena, const noh_clip_set *set, noh_rate_work *work);
 
@@ -42,12 +42,13 @@ void noh_rate_carve(noh_arena *arena, const noh_clip_set *set, noh_rate_work *wo
 float noh_rate_floats_off(const noh_time_probe *probe, const noh_rate_work *work, float part);
 
 /* error_m[NOH_UPDATE_RATE_COUNT] of a clip, over all periods and ticks that time_lod.h names. */
-void noh_rate_measure(const noh_time_probe *probe, uint32_t clip, noh_rate_off off, void *user, noh_rate_work *work, float *error_m);
+void noh_rate_measure(const noh_time_probe *probe, uint32_t clip, noh_rate_off off, void *user, noh_rate_work *work,
+                      float *error_m);
 
 /* ---- */
 
-/* The largest error of a point within `reach` of a joint whose matrix has this error (mixed minus true): the error of its
- * translation plus reach times the norm of the rest; or `least` if that is larger. */
+/* The largest error of a point within `reach` of a joint whose matrix has this error (mixed minus true): the error of
+ * its translation plus reach times the norm of the rest; or `least` if that is larger. */
 float noh_probe_off(const float difference[12], float reach, float least);
 
 #endif

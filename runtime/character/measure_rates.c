@@ -25,7 +25,8 @@ float noh_rate_floats_off(const noh_time_probe *p, const noh_rate_work *w, float
 {
     float sum = 0.0f;
     for (uint32_t i = 0; p->float_radius_m && i < p->set->float_count; i++) {
-        float from = w->from.floats[i], off = (from + (w->to.floats[i] - from) * part - w->right.floats[i]) * p->float_radius_m[i];
+        float from = w->from.floats[i],
+              off = (from + (w->to.floats[i] - from) * part - w->right.floats[i]) * p->float_radius_m[i];
         sum += off < 0.0f ? -off : off;
     }
     return sum;
@@ -36,9 +37,10 @@ static void sample(const noh_time_probe *p, uint32_t clip, int64_t tick, noh_rat
     noh_probe_sample(p, clip, tick, w->travel, w->pose, out->model, out->floats);
 }
 
-/* From the clip's first tick to where play repeats itself or stands still. At the start of each period and at its end the
- * shown pose is true; in between it is a straight mix, which is compared with the true pose. */
-static float measure(const noh_time_probe *p, uint32_t clip, uint32_t period, noh_rate_off off, void *user, noh_rate_work *w)
+/* From the clip's first tick to where play repeats itself or stands still. At the start of each period and at its end
+ * the shown pose is true; in between it is a straight mix, which is compared with the true pose. */
+static float measure(const noh_time_probe *p, uint32_t clip, uint32_t period, noh_rate_off off, void *user,
+                     noh_rate_work *w)
 {
     const noh_clip_entry *m = &p->set->clips[clip];
     const int64_t end = (int64_t)m->duration_ticks * (m->loop == NOH_LOOP_PING_PONG ? 2 : 1);
@@ -54,7 +56,8 @@ static float measure(const noh_time_probe *p, uint32_t clip, uint32_t period, no
     return worst;
 }
 
-void noh_rate_measure(const noh_time_probe *p, uint32_t clip, noh_rate_off off, void *user, noh_rate_work *w, float *error_m)
+void noh_rate_measure(const noh_time_probe *p, uint32_t clip, noh_rate_off off, void *user, noh_rate_work *w,
+                      float *error_m)
 {
     noh_probe_travel(p, clip, w->pose, w->from.floats, w->travel);
     for (int r = 0; r < NOH_UPDATE_RATE_COUNT; r++) {

@@ -50,7 +50,8 @@ void noh_schedule_spend(noh_schedule *s, uint32_t cost)
     s->spent += cost;
 }
 
-/* A binary heap with the most urgent item on top: building it is linear in the offers, and only what is served is sorted. */
+/* A binary heap with the most urgent item on top: building it is linear in the offers, and only what is served is
+ * sorted. */
 static int before(const noh_schedule_item *a, const noh_schedule_item *b)
 {
     return a->urgency != b->urgency ? a->urgency > b->urgency : a->instance < b->instance;
@@ -151,7 +152,8 @@ uint64_t noh_schedule_wait_max(uint32_t instances, uint64_t budget, uint32_t cos
 
 uint32_t noh_cost_ns(const noh_cost_weights *w, uint32_t joints, uint32_t pairs, uint32_t vertices)
 {
-    double cost = (double)w->per_instance + (double)w->per_joint * joints + (double)w->per_pair * pairs + (double)w->per_vertex * vertices;
+    double cost = (double)w->per_instance + (double)w->per_joint * joints + (double)w->per_pair * pairs +
+                  (double)w->per_vertex * vertices;
     NOH_ASSERT(w);
     if (!(cost > 1.0)) {
         return 1;

@@ -7,17 +7,15 @@
  *   while (noh_schedule_next(s, &i)) update i;
  * An instance off the screen is not offered: it pays only for `step`.
  *
- * The largest (lateness + one frame) * visibility is served first. A frame ends when the budget is spent; it is exceeded
- * by at most one instance, and at least one is served in every frame. Where the budget suffices for all, they are served
- * in the order of the offers, and nothing is sorted.
+ * The largest (lateness + one frame) * visibility is served first. A frame ends when the budget is spent; it is
+ * exceeded by at most one instance, and at least one is served in every frame. Where the budget suffices for all, they
+ * are served in the order of the offers, and nothing is sorted.
  *
- * The wait is bounded. Let V be the range of visibilities (1..NOH_VISIBILITY_MAX), N the number of instances, k the least
- * number that a frame serves, D the longest frame. Suppose an instance has waited W ticks. Whatever was served before it at
- * that time had waited at least (W + D) / V - D itself, since visibility weighs lateness by a factor of at most V. So
- * within the last (W + D) / V - D ticks no instance was served twice, and those ticks held at most (N - 1) / k full frames.
- * Hence
- *   W < V * D * ((N - 1) / k + 2)
- * which noh_schedule_wait_max gives, in frames.
+ * The wait is bounded. Let V be the range of visibilities (1..NOH_VISIBILITY_MAX), N the number of instances, k the
+ * least number that a frame serves, D the longest frame. Suppose an instance has waited W ticks. Whatever was served
+ * before it at that time had waited at least (W + D) / V - D itself, since visibility weighs lateness by a factor of at
+ * most V. So within the last (W + D) / V - D ticks no instance was served twice, and those ticks held at most (N - 1) /
+ * k full frames. Hence W < V * D * ((N - 1) / k + 2) which noh_schedule_wait_max gives, in frames.
  *
  * Threads: a schedule belongs to one thread at a time. */
 #ifndef NOH_CHARACTER_SCHEDULER_H
@@ -37,17 +35,17 @@ typedef struct noh_schedule_item {
 
 /* Counts of the present frame, and high-water marks. */
 typedef struct noh_schedule {
-    uint32_t capacity, count;   /* items that wait in the heap */
+    uint32_t capacity, count; /* items that wait in the heap */
     uint32_t frame_ticks;
     uint32_t offered, served;
-    uint32_t late_ticks;        /* the worst lateness offered, served or not */
+    uint32_t late_ticks; /* the worst lateness offered, served or not */
     uint64_t budget, spent;
-    uint64_t offered_cost; /* of all offers of the frame */
-    uint32_t late_high_water;   /* the worst since init */
+    uint64_t offered_cost;    /* of all offers of the frame */
+    uint32_t late_high_water; /* the worst since init */
     uint32_t offered_high_water;
-    uint32_t lost;              /* offers past the capacity since init; they were ignored */
-    uint32_t order;             /* private: whether the items are a heap yet, or need not be */
-    noh_schedule_item *items;   /* [capacity] */
+    uint32_t lost;            /* offers past the capacity since init; they were ignored */
+    uint32_t order;           /* private: whether the items are a heap yet, or need not be */
+    noh_schedule_item *items; /* [capacity] */
 } noh_schedule;
 
 /* Exact bytes for so many offers in a frame: 16 each; 0 for none or more than NOH_SCHEDULE_MAX. */
@@ -62,15 +60,15 @@ void noh_schedule_begin(noh_schedule *s, uint32_t frame_ticks, uint64_t budget);
 /* Charge the budget for work that is done in this frame in any case. */
 void noh_schedule_spend(noh_schedule *s, uint32_t cost);
 
-/* ranges  visibility 1..NOH_VISIBILITY_MAX on a scale of the caller's (height in pixels over 100, say), clamped (NaN is 1);
- *         each instance at most once in a frame; all offers before the first noh_schedule_next */
+/* ranges  visibility 1..NOH_VISIBILITY_MAX on a scale of the caller's (height in pixels over 100, say), clamped (NaN is
+ * 1); each instance at most once in a frame; all offers before the first noh_schedule_next */
 void noh_schedule_offer(noh_schedule *s, uint32_t instance, uint32_t late_ticks, float visibility, uint32_t cost);
 
 /* The next instance to update; returns 0 when the budget is spent or none is left. Equal urgency: the lower number. */
 int noh_schedule_next(noh_schedule *s, uint32_t *instance);
 
-/* The most frames that an instance waits when up to `instances` are offered, none costs more than cost_max, and nothing is
- * charged with noh_schedule_spend. */
+/* The most frames that an instance waits when up to `instances` are offered, none costs more than cost_max, and nothing
+ * is charged with noh_schedule_spend. */
 uint64_t noh_schedule_wait_max(uint32_t instances, uint64_t budget, uint32_t cost_max);
 
 /* ---- costs ---- */
@@ -78,9 +76,9 @@ uint64_t noh_schedule_wait_max(uint32_t instances, uint64_t budget, uint32_t cos
 /* Costs on the machine at hand, nanoseconds, for a caller that has measured them (`noh bench` prints them). */
 typedef struct noh_cost_weights {
     float per_instance;
-    float per_joint;    /* sampled or blended: joints times tracks */
-    float per_pair;     /* of a morph target and a vertex */
-    float per_vertex;   /* skinned */
+    float per_joint;  /* sampled or blended: joints times tracks */
+    float per_pair;   /* of a morph target and a vertex */
+    float per_vertex; /* skinned */
 } noh_cost_weights;
 
 /* Nanoseconds, rounded up; at least 1, saturating. */

@@ -6,7 +6,8 @@
 #include "character/character_internal.h"
 #include "deform/skin.h"
 
-void noh_pose_skin(const noh_skeleton *skeleton, const noh_skin *skin, const noh_transform *pose, float *model, float *matrices)
+void noh_pose_skin(const noh_skeleton *skeleton, const noh_skin *skin, const noh_transform *pose, float *model,
+                   float *matrices)
 {
     NOH_ASSERT(skeleton && skin && pose && model && matrices && model != matrices);
     noh_local_to_model(skeleton, pose, skeleton->joint_count, model);
@@ -46,8 +47,8 @@ int noh_skin_skeleton(const noh_skin *skin, const noh_skeleton *skeleton, float 
 }
 
 /* A character's two palettes hold either model-space joint matrices or, where the skeleton of its updates had inverse
- * bind matrices, their products with these. Mixing is linear, so it may come before or after that product; here it comes
- * first, joint by joint, and the product follows where it is still to be made. */
+ * bind matrices, their products with these. Mixing is linear, so it may come before or after that product; here it
+ * comes first, joint by joint, and the product follows where it is still to be made. */
 void noh_character_skin(const noh_character *ch, const noh_skin *skin, float *matrices)
 {
     const uint32_t to = ch->time.to_pose;

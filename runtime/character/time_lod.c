@@ -6,7 +6,8 @@
 
 uint32_t noh_update_period(noh_update_rate rate)
 {
-    static const uint32_t periods[NOH_UPDATE_RATE_COUNT] = { 0, NOH_TICKS_PER_SECOND / 30u, NOH_TICKS_PER_SECOND / 15u, NOH_TICKS_PER_SECOND / 8u };
+    static const uint32_t periods[NOH_UPDATE_RATE_COUNT] = { 0, NOH_TICKS_PER_SECOND / 30u, NOH_TICKS_PER_SECOND / 15u,
+                                                             NOH_TICKS_PER_SECOND / 8u };
     NOH_ASSERT((unsigned)rate < NOH_UPDATE_RATE_COUNT);
     return periods[rate];
 }
@@ -22,7 +23,8 @@ void noh_time_lod_init(noh_time_lod *t, uint32_t instance)
 static int64_t next_due(uint32_t instance, int64_t clock, uint32_t period)
 {
     const uint32_t golden = 2654435769u; /* 2^32 over the golden ratio */
-    int64_t phase = (int64_t)(((uint64_t)(instance * golden) * period) >> 32), rest = noh_clock_since(clock, phase) % (int64_t)period;
+    int64_t phase = (int64_t)(((uint64_t)(instance * golden) * period) >> 32),
+            rest = noh_clock_since(clock, phase) % (int64_t)period;
     return noh_clock_add(clock, (int64_t)period - (rest < 0 ? rest + (int64_t)period : rest));
 }
 
@@ -66,8 +68,8 @@ static noh_time_update update_exactly(noh_time_lod *t)
     return u;
 }
 
-/* Where a mix that begins at from_clock ends: at the next of the instance's own ticks, but at most a period away; and at
- * least half a period away after a restart, when source and target may be far apart. */
+/* Where a mix that begins at from_clock ends: at the next of the instance's own ticks, but at most a period away; and
+ * at least half a period away after a restart, when source and target may be far apart. */
 static int64_t interval_end(const noh_time_lod *t, uint32_t period, int restart)
 {
     int64_t longest = noh_clock_add(t->from_clock, period), shortest = noh_clock_add(t->from_clock, period / 2u);
@@ -79,8 +81,11 @@ static int64_t interval_end(const noh_time_lod *t, uint32_t period, int restart)
 static noh_time_update update_ahead(noh_time_lod *t, uint32_t period)
 {
     noh_time_update u = { 0, 1.0f, 0 };
-    int early = t->clock < t->to_clock;                           /* on the way: the mix shown now becomes the source */
-    int held = t->to_clock < noh_clock_add(t->clock, -(int64_t)t->frame_ticks); /* the target has been held for a frame or more: it becomes the source */
+    int early = t->clock < t->to_clock; /* on the way: the mix shown now becomes the source */
+    int held = t->to_clock <
+               noh_clock_add(
+                   t->clock,
+                   -(int64_t)t->frame_ticks); /* the target has been held for a frame or more: it becomes the source */
     if (early) {
         u.keep = noh_time_lod_fraction(t);
     } else {

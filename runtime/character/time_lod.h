@@ -1,22 +1,22 @@
 /* time_lod.h: posing an instance less often than once a frame.
  *
- * An instance holds two poses, source and target, and shows a mix of them. They are not the last two poses: mixing those
- * shows the past (125 ms late at 8 Hz: a walk's feet slide against the ground and the sound of its steps), and
+ * An instance holds two poses, source and target, and shows a mix of them. They are not the last two poses: mixing
+ * those shows the past (125 ms late at 8 Hz: a walk's feet slide against the ground and the sound of its steps), and
  * extrapolating from them costs up to 8 times the error of interpolation and a jump at every update. A controller is a
- * block of bytes: a copy of it can be played ahead without firing callbacks. So an update at tick t poses the instance as
- * it will be at its next update, and until then what is shown moves from the true pose at t to the true pose there: no
- * lag, no jumps, and an error that grows with the square of the update period, measured for each clip by
- * noh_time_lod_measure. What a program changes in between was not foreseen: it is shown from the next update on, or after
- * noh_time_lod_wake from the next frame on, and never as a jump.
+ * block of bytes: a copy of it can be played ahead without firing callbacks. So an update at tick t poses the instance
+ * as it will be at its next update, and until then what is shown moves from the true pose at t to the true pose there:
+ * no lag, no jumps, and an error that grows with the square of the update period, measured for each clip by
+ * noh_time_lod_measure. What a program changes in between was not foreseen: it is shown from the next update on, or
+ * after noh_time_lod_wake from the next frame on, and never as a jump.
  *
- * Poses are mixed as matrices in object space, so every skinned vertex moves in a straight line from one true position to
- * the next. Mixing local transforms would follow arcs, but would need new matrices in every frame, which costs more than
- * sampling does.
+ * Poses are mixed as matrices in object space, so every skinned vertex moves in a straight line from one true position
+ * to the next. Mixing local transforms would follow arcs, but would need new matrices in every frame, which costs more
+ * than sampling does.
  *
  * Callback keys are not affected: controllers are stepped in every frame, seen or not.
  *
- * Updates are staggered: instance n is updated at the fraction n * golden ratio (modulo 1) of the period, so that any run
- * of numbers is spread evenly (H. Weyl, "Ueber die Gleichverteilung von Zahlen mod. Eins", 1916).
+ * Updates are staggered: instance n is updated at the fraction n * golden ratio (modulo 1) of the period, so that any
+ * run of numbers is spread evenly (H. Weyl, "Ueber die Gleichverteilung von Zahlen mod. Eins", 1916).
  *
  * Threads: a noh_time_lod belongs to one thread at a time; measuring may run on any thread that may sample the set. */
 #ifndef NOH_CHARACTER_TIME_LOD_H
@@ -39,9 +39,9 @@ typedef struct noh_time_lod {
     int64_t clock;                /* of the last frame */
     uint32_t frame_ticks;         /* from the frame before it to that one */
     uint32_t instance;
-    uint8_t wanted, running;      /* noh_update_rate: as chosen last, and of the mix that is shown */
-    uint8_t to_pose;              /* target pose, 0 or 1; the other is the source */
-    uint8_t posed;                /* 0: no valid pose yet */
+    uint8_t wanted, running; /* noh_update_rate: as chosen last, and of the mix that is shown */
+    uint8_t to_pose;         /* target pose, 0 or 1; the other is the source */
+    uint8_t posed;           /* 0: no valid pose yet */
     uint8_t reserved[4];
 } noh_time_lod;
 
@@ -69,8 +69,9 @@ uint32_t noh_time_lod_late(const noh_time_lod *t);
 /* The two steps of an update. */
 typedef struct noh_time_update {
     int64_t pose_clock; /* second: pose the instance as it will be at this clock (this frame's, or later) */
-    float keep;         /* first, below 1: replace the pose in the other pose by the mix of both at this fraction, as shown now */
-    uint8_t pose;       /* second: into this pose; the other becomes the source */
+    /* first, below 1: replace the pose in the other pose by the mix of both at this fraction, as shown now */
+    float keep;
+    uint8_t pose; /* second: into this pose; the other becomes the source */
 } noh_time_update;
 
 /* Begin an update; allowed in any frame, due or not. */
@@ -87,30 +88,32 @@ void noh_time_lod_wake(noh_time_lod *t);
 /* What a clip is measured for. All borrowed. */
 typedef struct noh_time_probe {
     const noh_clip_set *set;
-    const noh_skeleton *skeleton;  /* of the set */
-    const float *joint_radius_m;    /* [joint_count] radius of each joint's vertices in the bind pose; below 0: it moves none */
-    const float *float_radius_m;    /* [float_count] the most that each float moves a vertex at weight 1; NULL: floats are left out */
-    int travels;                   /* 1: each pass of a repeating clip begins where joint 0 ended the one before, as if its translation
-                                    * were root motion (for a set that will extract it, but does not yet); 0: it jumps back */
+    const noh_skeleton *skeleton; /* of the set */
+    /* [joint_count] radius of each joint's vertices in the bind pose; below 0: it moves none */
+    const float *joint_radius_m;
+    const float *float_radius_m; /* [float_count] the most that each float moves a vertex at weight 1; NULL: floats are
+                                    left out */
+    int travels; /* 1: each pass of a repeating clip begins where joint 0 ended the one before, as if its translation
+                  * were root motion (for a set that will extract it, but does not yet); 0: it jumps back */
 } noh_time_probe;
 
 /* Bytes of the working memory that measuring takes. */
 size_t noh_time_lod_measure_size(const noh_time_probe *probe);
 
-/* Measure the largest error of a clip, played in its own loop mode, at each update rate: over periods that begin every 400
- * ticks, every 200 ticks within each, for any point within a joint's radius, in object space (without root motion where
- * the set extracts it). For converters and for load time: ten seconds of 31 joints take about 0.1 s.
- * shapes  error_m[NOH_UPDATE_RATE_COUNT]; at the full rate it is 0
- * units   model units, as metres
- * errors  ARG probe, clip, or memory NULL or not 16-byte aligned; MEMORY too small; need: the exact bytes
- * The result is the largest error found, not a proof for all ticks. At each tick it is a bound: a difference of two matrices
- * moves a point by at most its norm, which is overestimated by up to 15 % (the Schatten 8-norm) */
-noh_result noh_time_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t clip, float *error_m, noh_error *error);
+/* Measure the largest error of a clip, played in its own loop mode, at each update rate: over periods that begin every
+ * 400 ticks, every 200 ticks within each, for any point within a joint's radius, in object space (without root motion
+ * where the set extracts it). For converters and for load time: ten seconds of 31 joints take about 0.1 s. shapes
+ * error_m[NOH_UPDATE_RATE_COUNT]; at the full rate it is 0 units   model units, as metres errors  ARG probe, clip, or
+ * memory NULL or not 16-byte aligned; MEMORY too small; need: the exact bytes The result is the largest error found,
+ * not a proof for all ticks. At each tick it is a bound: a difference of two matrices moves a point by at most its
+ * norm, which is overestimated by up to 15 % (the Schatten 8-norm) */
+noh_result noh_time_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t clip, float *error_m,
+                                noh_error *error);
 
-/* The errors of what a controller plays: the largest among its blended tracks plus the weighted sum of its additive ones.
- * The error of a track faster than 1 grows with the square of its playback speed, as interpolation's does where a clip is
- * smooth over an update period.
- * shapes  clip_error_m[clip_count of the set][NOH_UPDATE_RATE_COUNT], error_m[NOH_UPDATE_RATE_COUNT] */
+/* The errors of what a controller plays: the largest among its blended tracks plus the weighted sum of its additive
+ * ones. The error of a track faster than 1 grows with the square of its playback speed, as interpolation's does where a
+ * clip is smooth over an update period. shapes  clip_error_m[clip_count of the set][NOH_UPDATE_RATE_COUNT],
+ * error_m[NOH_UPDATE_RATE_COUNT] */
 void noh_time_lod_error(const noh_controller *c, const float *clip_error_m, float *error_m);
 
 #ifdef __cplusplus

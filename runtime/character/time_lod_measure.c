@@ -26,12 +26,13 @@ static float pose_off(void *user, const noh_time_probe *p, const noh_rate_work *
         }
         worst = p->joint_radius_m[j] >= 0.0f ? noh_probe_off(difference, p->joint_radius_m[j], worst) : worst;
     }
-    /* Where nothing worse was found `least` is returned as it came: subtracting the floats and adding them again would let it
-     * creep up by rounding. */
+    /* Where nothing worse was found `least` is returned as it came: subtracting the floats and adding them again would
+     * let it creep up by rounding. */
     return (worst > enough || floats > least) && worst + floats > least ? worst + floats : least;
 }
 
-noh_result noh_time_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t clip, float *error_m, noh_error *error)
+noh_result noh_time_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t clip, float *error_m,
+                                noh_error *error)
 {
     const char *what = probe->joint_radius_m ? noh_probe_fault(probe, clip) : "probe: joint_radius_m is NULL";
     noh_result result;

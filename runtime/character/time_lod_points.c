@@ -56,7 +56,8 @@ static float pose_off(void *user, const noh_time_probe *p, const noh_rate_work *
     return worst > least ? worst : least;
 }
 
-static const char *bad_argument(const noh_time_probe *p, const noh_time_lod_points *points, uint32_t clip, size_t *where)
+static const char *bad_argument(const noh_time_probe *p, const noh_time_lod_points *points, uint32_t clip,
+                                size_t *where)
 {
     const char *what = noh_probe_fault(p, clip);
     *where = clip;
@@ -65,13 +66,15 @@ static const char *bad_argument(const noh_time_probe *p, const noh_time_lod_poin
     if (!points->holds || !points->point_count || !points->holds_per_point) return "points: none";
     for (size_t i = 0; i < (size_t)points->point_count * points->holds_per_point; i++) {
         *where = i;
-        if (points->holds[i].weight > 0.0f && points->holds[i].joint >= p->set->joint_count) return "points: no such joint";
+        if (points->holds[i].weight > 0.0f && points->holds[i].joint >= p->set->joint_count)
+            return "points: no such joint";
     }
     return NULL;
 }
 
-noh_result noh_time_lod_points_measure(void *memory, size_t bytes, const noh_time_probe *probe, const noh_time_lod_points *points, uint32_t clip,
-                                   float *error_m, noh_error *error)
+noh_result noh_time_lod_points_measure(void *memory, size_t bytes, const noh_time_probe *probe,
+                                       const noh_time_lod_points *points, uint32_t clip, float *error_m,
+                                       noh_error *error)
 {
     size_t where;
     const char *what = bad_argument(probe, points, clip, &where);

@@ -10,9 +10,9 @@
 #include <string.h>
 
 typedef struct noh_bits {
-    uint64_t word;        /* the next bits, lowest first; above `count` the stream's own, or zeros */
+    uint64_t word; /* the next bits, lowest first; above `count` the stream's own, or zeros */
     uint32_t count;
-    size_t at, end;       /* next byte to load, and where the bytes end */
+    size_t at, end; /* next byte to load, and where the bytes end */
     const uint8_t *bytes;
 } noh_bits;
 

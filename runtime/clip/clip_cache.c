@@ -11,8 +11,8 @@ typedef noh_clip_cached cached;
 
 /* ---- sizes ---- */
 
-/* Four classes to each doubling: the number's highest three bits, and where they lie. Entries of a class are as large as
- * its largest segment, so at most a fifth of one is wasted. */
+/* Four classes to each doubling: the number's highest three bits, and where they lie. Entries of a class are as large
+ * as its largest segment, so at most a fifth of one is wasted. */
 static uint32_t size_class(size_t bytes)
 {
     uint32_t shift = 0;
@@ -48,21 +48,26 @@ static uint32_t share_of(const noh_clip_cache_needs *needs, uint32_t size, uint3
 
 static uint32_t capacity_of(const noh_clip_cache_needs *needs, uint32_t cached_segment_count)
 {
-    const uint32_t count = cached_segment_count ? cached_segment_count : NOH_CLIP_CACHE_SEGMENTS_PER_TRACK * needs->clip_count;
+    const uint32_t count = cached_segment_count ? cached_segment_count
+                                                : NOH_CLIP_CACHE_SEGMENTS_PER_TRACK * needs->clip_count;
     return count < needs->segment_count ? count : needs->segment_count;
 }
 
 static noh_result check_counts(const noh_clip_cache_needs *needs, uint32_t cached_segment_count, noh_error *error)
 {
     if (needs->clip_count == 0u || needs->clip_count > NOH_CLIP_CACHE_CLIPS_MAX) {
-        return noh_fail(error, NOH_ERR_ARG, "clip_count of a clip cache: none, or more than NOH_CLIP_CACHE_CLIPS_MAX", 0, needs->clip_count);
+        return noh_fail(error, NOH_ERR_ARG, "clip_count of a clip cache: none, or more than NOH_CLIP_CACHE_CLIPS_MAX",
+                        0, needs->clip_count);
     }
     if (cached_segment_count == 1u) {
-        return noh_fail(error, NOH_ERR_ARG, "cached_segment_count of a clip cache: a sample between two segments needs two entries", 0,
+        return noh_fail(error, NOH_ERR_ARG,
+                        "cached_segment_count of a clip cache: a sample between two segments needs two entries", 0,
                         NOH_CLIP_CACHE_SEGMENTS_MIN);
     }
     if (capacity_of(needs, cached_segment_count) > NOH_CLIP_CACHE_SEGMENTS_MAX) {
-        return noh_fail(error, NOH_ERR_ARG, "cached_segment_count of a clip cache: more entries than NOH_CLIP_CACHE_SEGMENTS_MAX", 0, NOH_CLIP_CACHE_SEGMENTS_MAX);
+        return noh_fail(error, NOH_ERR_ARG,
+                        "cached_segment_count of a clip cache: more entries than NOH_CLIP_CACHE_SEGMENTS_MAX", 0,
+                        NOH_CLIP_CACHE_SEGMENTS_MAX);
     }
     return NOH_OK;
 }
@@ -71,7 +76,9 @@ static noh_result needs_of(const noh_clip_cache_desc *desc, noh_clip_cache_needs
 {
     memset(needs, 0, sizeof *needs);
     if (!desc->clips || desc->clip_count > NOH_CLIP_CACHE_CLIPS_MAX) {
-        return noh_fail(error, NOH_ERR_ARG, desc->clips ? "clip_count of a clip cache: more than NOH_CLIP_CACHE_CLIPS_MAX" : "clips of a clip cache is NULL",
+        return noh_fail(error, NOH_ERR_ARG,
+                        desc->clips ? "clip_count of a clip cache: more than NOH_CLIP_CACHE_CLIPS_MAX"
+                                    : "clips of a clip cache is NULL",
                         0, NOH_CLIP_CACHE_CLIPS_MAX);
     }
     for (uint32_t i = 0; i < desc->clip_count; i++) {
@@ -131,7 +138,8 @@ static uint32_t count_sizes(const noh_clip_cache_needs *needs, uint32_t cached_s
     return count;
 }
 
-static void carve(noh_arena *arena, const noh_clip_cache_needs *needs, uint32_t cached_segment_count, noh_clip_cache *cache, int build)
+static void carve(noh_arena *arena, const noh_clip_cache_needs *needs, uint32_t cached_segment_count,
+                  noh_clip_cache *cache, int build)
 {
     cache->clip_count = needs->clip_count;
     cache->cached_count = capacity_of(needs, cached_segment_count);
@@ -198,13 +206,16 @@ static void add_clips(const noh_clip_cache_desc *desc, noh_clip_cache *cache)
     memset(cache->cached_of, 0xff, segments * sizeof *cache->cached_of);
 }
 
-noh_result noh_clip_cache_init(void *memory, size_t bytes, const noh_clip_cache_desc *desc, noh_clip_cache **out, noh_error *error)
+noh_result noh_clip_cache_init(void *memory, size_t bytes, const noh_clip_cache_desc *desc, noh_clip_cache **out,
+                               noh_error *error)
 {
     noh_arena arena;
     noh_clip_cache_needs needs;
     noh_clip_cache *cache;
     noh_result r = needs_of(desc, &needs, error);
-    if (!r) r = noh_arena_open(&arena, memory, bytes, noh_clip_cache_needs_size(&needs, desc->cached_segment_count, NULL), error);
+    if (!r)
+        r = noh_arena_open(&arena, memory, bytes, noh_clip_cache_needs_size(&needs, desc->cached_segment_count, NULL),
+                           error);
     if (r) return r;
     cache = noh_arena_carve(&arena, sizeof *cache, 16u);
     memset(cache, 0, sizeof *cache);
@@ -252,8 +263,8 @@ static void drop_want(noh_clip_cache *cache, uint32_t s)
 
 /* ---- entries ---- */
 
-/* Move an entry to the end of its size's list. Once in a frame of the game is enough: what was touched in the same frame
- * is equally recent. */
+/* Move an entry to the end of its size's list. Once in a frame of the game is enough: what was touched in the same
+ * frame is equally recent. */
 static void touch(noh_clip_cache *cache, uint32_t s)
 {
     cached *t = &cache->cached[s];
@@ -273,8 +284,8 @@ static void touch(noh_clip_cache *cache, uint32_t s)
     size->newest = (uint16_t)s;
 }
 
-/* The entry to take for a clip's segment, but not `keep`: free, or touched longest ago, of the smallest size that fits and
- * has one that was not touched in this frame. Where all were touched, none, or with `must` the oldest that fits. */
+/* The entry to take for a clip's segment, but not `keep`: free, or touched longest ago, of the smallest size that fits
+ * and has one that was not touched in this frame. Where all were touched, none, or with `must` the oldest that fits. */
 static uint32_t find_room(const noh_clip_cache *cache, uint32_t clip, uint32_t keep, int must)
 {
     uint32_t any = NOH_CLIP_NOT_CACHED;
@@ -302,7 +313,8 @@ static void take(noh_clip_cache *cache, uint32_t s, uint32_t clip, uint32_t segm
     t->clip = clip;
     t->cursor = noh_clip_cursor_at(e->clip, segment);
     t->wanted = 0;
-    t->stamp = cache->stamp - 1u; /* so that touch() moves it, also where it was evicted in the frame that it was touched in */
+    t->stamp = cache->stamp -
+               1u; /* so that touch() moves it, also where it was evicted in the frame that it was touched in */
     cache->cached_of[e->first + segment] = (uint16_t)s;
 }
 
@@ -313,8 +325,8 @@ static uint32_t decode_cached(noh_clip_cache *cache, uint32_t s, uint32_t track_
 }
 
 /* The entry of a segment with at least `tracks` decoded, whatever it takes. A clip's second segment always finds room
- * beside its first (`keep`): a size class with a single entry either has a single segment, or is the last class that got
- * any, and then a larger entry exists, because a cache of several segments has at least two. */
+ * beside its first (`keep`): a size class with a single entry either has a single segment, or is the last class that
+ * got any, and then a larger entry exists, because a cache of several segments has at least two. */
 static uint32_t ready(noh_clip_cache *cache, uint32_t clip, uint32_t segment, uint32_t tracks, uint32_t keep)
 {
     uint32_t s = cache->cached_of[cache->entries[clip].first + segment];
@@ -334,20 +346,25 @@ static uint32_t ready(noh_clip_cache *cache, uint32_t clip, uint32_t segment, ui
 }
 
 #if NOH_ASSERT_LEVEL >= 2
-/* Each size's list holds each of its entries once; what the segments say is what the entries say; who waits is listed. */
+/* Each size's list holds each of its entries once; what the segments say is what the entries say; who waits is listed.
+ */
 static int is_sound(const noh_clip_cache *cache)
 {
     uint32_t first = 0, listed = 0, waiting = 0;
     for (uint32_t k = 0; k < cache->size_count; k++) {
         uint32_t count = 0, before = NOH_CLIP_NOT_CACHED;
-        for (uint32_t s = cache->sizes[k].oldest; s != NOH_CLIP_NOT_CACHED && count <= cache->sizes[k].count; s = cache->cached[s].newer, count++) {
-            if (cache->cached[s].older != before || cache->cached[s].size != k || s < first || s - first >= cache->sizes[k].count) return 0;
+        for (uint32_t s = cache->sizes[k].oldest; s != NOH_CLIP_NOT_CACHED && count <= cache->sizes[k].count;
+             s = cache->cached[s].newer, count++) {
+            if (cache->cached[s].older != before || cache->cached[s].size != k || s < first ||
+                s - first >= cache->sizes[k].count)
+                return 0;
             before = s;
         }
         if (count != cache->sizes[k].count || before != cache->sizes[k].newest) return 0;
         first += count;
     }
-    for (uint32_t s = cache->first_want; s != NOH_CLIP_NOT_CACHED && listed <= cache->cached_count; s = cache->cached[s].after) {
+    for (uint32_t s = cache->first_want; s != NOH_CLIP_NOT_CACHED && listed <= cache->cached_count;
+         s = cache->cached[s].after) {
         listed++;
     }
     for (uint32_t s = 0; s < cache->cached_count; s++) {
@@ -403,7 +420,8 @@ int noh_clip_cache_want(noh_clip_cache *cache, uint32_t clip, int64_t ticks, uin
     return want_segment(cache, clip, segment_of(c, noh_clip_frame_at(c, ticks, &fraction)), tracks_of(c, joint_count));
 }
 
-uint32_t noh_clip_cache_want_frames(noh_clip_cache *cache, uint32_t clip, uint32_t first, uint32_t last, uint32_t joint_count)
+uint32_t noh_clip_cache_want_frames(noh_clip_cache *cache, uint32_t clip, uint32_t first, uint32_t last,
+                                    uint32_t joint_count)
 {
     const noh_clip *c = noh_clip_cache_clip(cache, clip);
     const uint32_t tracks = tracks_of(c, joint_count), end = segment_of(c, last);
@@ -430,7 +448,8 @@ uint32_t noh_clip_cache_work(noh_clip_cache *cache, uint32_t budget)
     return spent;
 }
 
-void noh_clip_sample(noh_clip_cache *cache, uint32_t clip, int64_t ticks, uint32_t joint_count, noh_transform *out, float *floats)
+void noh_clip_sample(noh_clip_cache *cache, uint32_t clip, int64_t ticks, uint32_t joint_count, noh_transform *out,
+                     float *floats)
 {
     const noh_clip_place p = noh_clip_place_of(noh_clip_cache_clip(cache, clip), ticks, joint_count);
     NOH_ASSERT(out || p.joints == 0u);

@@ -31,10 +31,11 @@ extern "C" {
 #define NOH_CLIP_CACHE_SEGMENTS_PER_TRACK 3u
 
 typedef struct noh_clip_cache_desc {
-    const noh_clip *const *clips; /* [clip_count], copied; the clips must outlive the cache */
-    uint32_t clip_count;          /* 1..NOH_CLIP_CACHE_CLIPS_MAX */
-    uint32_t cached_segment_count;          /* segments held at once, 2..NOH_CLIP_CACHE_SEGMENTS_MAX; default (0) NOH_CLIP_CACHE_SEGMENTS_PER_TRACK for
-                                   * each clip: one track plays each. Never more than the clips have */
+    const noh_clip *const *clips;  /* [clip_count], copied; the clips must outlive the cache */
+    uint32_t clip_count;           /* 1..NOH_CLIP_CACHE_CLIPS_MAX */
+    uint32_t cached_segment_count; /* segments held at once, 2..NOH_CLIP_CACHE_SEGMENTS_MAX; default (0)
+                                    * NOH_CLIP_CACHE_SEGMENTS_PER_TRACK for each clip: one track plays each. Never more
+                                    * than the clips have */
 } noh_clip_cache_desc;
 
 typedef struct noh_clip_cache noh_clip_cache;
@@ -42,10 +43,10 @@ typedef struct noh_clip_cache noh_clip_cache;
 /* Counts since init, to size the next build by. */
 typedef struct noh_clip_cache_stats {
     uint64_t samples;
-    uint64_t misses;        /* segments that a sample had to decode, in part or whole */
+    uint64_t misses; /* segments that a sample had to decode, in part or whole */
     uint64_t evictions;
-    uint64_t decoded;       /* track-frames */
-    uint64_t decoded_late;  /* those of misses */
+    uint64_t decoded;      /* track-frames */
+    uint64_t decoded_late; /* those of misses */
 } noh_clip_cache_stats;
 
 /* Exact bytes of a cache; 0 for an impossible desc (the error says why). */
@@ -53,7 +54,8 @@ size_t noh_clip_cache_size(const noh_clip_cache_desc *desc, noh_error *error);
 
 /* Build a cache in memory[bytes], 16-byte aligned.
  * errors  ARG a field of desc, or memory NULL or misaligned; MEMORY need: the bytes */
-noh_result noh_clip_cache_init(void *memory, size_t bytes, const noh_clip_cache_desc *desc, noh_clip_cache **out, noh_error *error);
+noh_result noh_clip_cache_init(void *memory, size_t bytes, const noh_clip_cache_desc *desc, noh_clip_cache **out,
+                               noh_error *error);
 
 /* What the size follows from, clip by clip, for a caller that has measured clips and not opened them yet.
  * Zero it, add each clip, ask. */
@@ -77,7 +79,8 @@ int noh_clip_cache_want(noh_clip_cache *cache, uint32_t clip, int64_t ticks, uin
 
 /* Ask for all segments from one frame to another, in that order: backwards where last < first. Frames are clamped to
  * the clip. Returns how many of the segments found no room. */
-uint32_t noh_clip_cache_want_frames(noh_clip_cache *cache, uint32_t clip, uint32_t first, uint32_t last, uint32_t joint_count);
+uint32_t noh_clip_cache_want_frames(noh_clip_cache *cache, uint32_t clip, uint32_t first, uint32_t last,
+                                    uint32_t joint_count);
 
 /* Decode what was wanted, in the order of asking, until `budget` track-frames are spent (the last track may pass it).
  * Returns what was spent. */
@@ -87,8 +90,10 @@ uint32_t noh_clip_cache_work(noh_clip_cache *cache, uint32_t budget);
  * shapes  out[joint_count], floats[float_count of the clip] (NULL: not wanted)
  * ranges  clip below clip_count; joint_count up to the clip's: only that prefix is decoded and sampled
  * between frames: translations, scales and floats are interpolated linearly, rotations likewise and normalised. At
- *         sample rates whose frames are not a whole number of ticks, rotations are taken within 1/65,000 of a frame of the time */
-void noh_clip_sample(noh_clip_cache *cache, uint32_t clip, int64_t ticks, uint32_t joint_count, noh_transform *out, float *floats);
+ *         sample rates whose frames are not a whole number of ticks, rotations are taken within 1/65,000 of a frame of
+ * the time */
+void noh_clip_sample(noh_clip_cache *cache, uint32_t clip, int64_t ticks, uint32_t joint_count, noh_transform *out,
+                     float *floats);
 
 /* Of the cache itself; what its views sampled is in their own. */
 noh_clip_cache_stats noh_clip_cache_stats_of(const noh_clip_cache *cache);

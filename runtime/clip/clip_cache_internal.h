@@ -29,17 +29,17 @@ typedef struct noh_clip_cached {
 
 typedef struct noh_cached_segment {
     const noh_clip *clip;
-    uint32_t first;         /* of its segments in `cached_of` */
-    uint32_t size;          /* smallest that its segments fit in */
+    uint32_t first; /* of its segments in `cached_of` */
+    uint32_t size;  /* smallest that its segments fit in */
 } noh_cached_segment;
 
 struct noh_clip_cache {
     noh_cached_segment *entries; /* [clip_count] */
-    uint16_t *cached_of;       /* [segments of all clips] */
-    noh_clip_cached *cached;    /* [cached_count] */
-    noh_clip_size_class *sizes;    /* [size_count], largest first */
+    uint16_t *cached_of;         /* [segments of all clips] */
+    noh_clip_cached *cached;     /* [cached_count] */
+    noh_clip_size_class *sizes;  /* [size_count], largest first */
     uint32_t clip_count, cached_count, size_count;
-    uint32_t segment_bytes;  /* of the largest segment of any clip */
+    uint32_t segment_bytes; /* of the largest segment of any clip */
     uint32_t stamp;
     uint16_t first_want, last_want;
     noh_clip_cache_stats stats;
@@ -69,7 +69,8 @@ static inline noh_clip_place noh_clip_place_of(const noh_clip *clip, int64_t tic
 }
 
 /* Blend out of decoded frames. `next`: those of the next segment, read only where the place crosses into it. */
-static inline void noh_clip_blend_place(const noh_clip_place *p, const uint8_t *frames, const uint8_t *next, noh_transform *out, float *floats)
+static inline void noh_clip_blend_place(const noh_clip_place *p, const uint8_t *frames, const uint8_t *next,
+                                        noh_transform *out, float *floats)
 {
     const uint8_t *a = frames + (size_t)p->frame * p->clip->frame_bytes;
     const uint8_t *b = p->crosses ? next : p->fraction > 0.0f ? a + p->clip->frame_bytes : a;
@@ -77,10 +78,11 @@ static inline void noh_clip_blend_place(const noh_clip_place *p, const uint8_t *
 }
 
 /* Decode a segment from where its cursor stands up to a track. Returns track-frames. */
-static inline uint32_t noh_clip_decode_up_to(const noh_clip_cache *cache, const noh_clip *clip, noh_clip_cursor *cursor, uint32_t track_end,
-                                             uint8_t *out)
+static inline uint32_t noh_clip_decode_up_to(const noh_clip_cache *cache, const noh_clip *clip, noh_clip_cursor *cursor,
+                                             uint32_t track_end, uint8_t *out)
 {
-    const uint32_t frames = noh_clip_segment_first(clip, cursor->segment + 1u) - noh_clip_segment_first(clip, cursor->segment);
+    const uint32_t frames = noh_clip_segment_first(clip, cursor->segment + 1u) -
+                            noh_clip_segment_first(clip, cursor->segment);
     const uint32_t before = cursor->track;
     if (track_end > before) {
         noh_clip_decode(clip, &cache->bases[frames], cursor, track_end, out);

@@ -21,10 +21,11 @@ extern "C" {
 #endif
 
 typedef struct noh_clip_desc {
-    const void *bytes;          /* the clip, any alignment; must outlive the noh_clip */
+    const void *bytes; /* the clip, any alignment; must outlive the noh_clip */
     size_t byte_count;
-    const noh_transform *bind;  /* [joint_count] the skeleton's bind pose, the one that the clip was built with; needed by init only */
-    uint32_t joint_count;       /* of the skeleton; must be the clip's; 0 for a clip of floats alone */
+    /* [joint_count] the skeleton's bind pose, the one that the clip was built with; needed by init only */
+    const noh_transform *bind;
+    uint32_t joint_count; /* of the skeleton; must be the clip's; 0 for a clip of floats alone */
 } noh_clip_desc;
 
 typedef struct noh_clip noh_clip;
@@ -32,23 +33,23 @@ typedef struct noh_clip noh_clip;
 /* What a clip says of itself. Distances in centimetres. */
 typedef struct noh_clip_info {
     uint32_t joint_count, frame_count, segment_count, float_count, group_count;
-    uint32_t track_count;       /* animated ones */
+    uint32_t track_count;              /* animated ones */
     uint32_t sample_rate_uhz;          /* sample rate: frames per second, times 10^6 */
-    uint64_t duration_ticks;    /* 1/48,000 s, of frame_count - 1 frames; the last frame is shown at the end */
-    uint32_t flags;             /* NOH_CLIP_FLAG_* */
-    double error_cm, shell_cm;  /* the bound, at the shell, that the clip was built for */
+    uint64_t duration_ticks;           /* 1/48,000 s, of frame_count - 1 frames; the last frame is shown at the end */
+    uint32_t flags;                    /* NOH_CLIP_FLAG_* */
+    double error_cm, shell_cm;         /* the bound, at the shell, that the clip was built for */
     double max_error_cm, rms_error_cm; /* certificate: what was measured, at frames and between */
     uint32_t max_error_joint;
     double max_error_time_s;
     uint32_t segment_frames_max;
-    size_t segment_bytes_max;   /* of the longest segment in the cache */
+    size_t segment_bytes_max; /* of the longest segment in the cache */
 } noh_clip_info;
 
 /* Floats that belong together: the morph weights of a node, or one named float. */
 typedef struct noh_clip_group {
     uint32_t name_hash;
-    uint32_t node;              /* 0xffffffff: none */
-    uint32_t first, width;      /* floats of a sample */
+    uint32_t node;         /* 0xffffffff: none */
+    uint32_t first, width; /* floats of a sample */
 } noh_clip_group;
 
 /* Check a clip completely; what it says of itself and the bytes of its noh_clip.
@@ -60,7 +61,8 @@ size_t noh_clip_size(const noh_clip_desc *desc, noh_error *error);
 
 /* Check the clip completely and expand its header into memory[noh_clip_size()], 16-byte aligned.
  * errors  ARG bytes or bind is NULL, the joints are not the skeleton's (need: the clip's), memory NULL or misaligned;
- *         MEMORY need: the bytes; VERSION need: ours; LIMIT need: what the clip has; DATA where: the byte in the clip */
+ *         MEMORY need: the bytes; VERSION need: ours; LIMIT need: what the clip has; DATA where: the byte in the clip
+ */
 noh_result noh_clip_init(void *memory, size_t bytes, const noh_clip_desc *desc, noh_clip **out, noh_error *error);
 
 void noh_clip_info_of(const noh_clip *clip, noh_clip_info *info);

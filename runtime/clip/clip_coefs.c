@@ -1,9 +1,9 @@
 #include "clip/clip_coefs_internal.h"
 
-/* Most coefficients of a track are 0, 1 or -1 and lie low; how large one is, its neighbours just above in frequency tell
- * well. So the three components of one frequency are one symbol from a table that their neighbours choose, with the low
- * bits, where neighbours are large, kept out of it (Rice coding with an adaptive parameter); clip_coefs.h has the rules.
- * Any bits decode: quotients, shifts and escapes are cut to a width at which nothing overflows. */
+/* Most coefficients of a track are 0, 1 or -1 and lie low; how large one is, its neighbours just above in frequency
+ * tell well. So the three components of one frequency are one symbol from a table that their neighbours choose, with
+ * the low bits, where neighbours are large, kept out of it (Rice coding with an adaptive parameter); clip_coefs.h has
+ * the rules. Any bits decode: quotients, shifts and escapes are cut to a width at which nothing overflows. */
 
 #define MAGNITUDE_MASK ((1u << NOH_CLIP_MAGNITUDE_BITS) - 1u)
 
@@ -72,7 +72,8 @@ static inline uint32_t busy_of(const history h[3])
 
 static inline void read_triple(noh_bits *b, const uint16_t *table, history h[3], int32_t out[4])
 {
-    const uint32_t s0 = noh_clip_shift(history_sum(&h[0])), s1 = noh_clip_shift(history_sum(&h[1])), s2 = noh_clip_shift(history_sum(&h[2]));
+    const uint32_t s0 = noh_clip_shift(history_sum(&h[0])), s1 = noh_clip_shift(history_sum(&h[1])),
+                   s2 = noh_clip_shift(history_sum(&h[2]));
     uint32_t symbol;
     noh_bits_refill(b);
     symbol = noh_clip_symbol(b, table, NOH_CLIP_TRIPLE_BITS);
@@ -92,7 +93,8 @@ static void read_mean(noh_bits *b, uint32_t last, const history h[3], int32_t ou
     for (uint32_t c = 0; c < 3u; c++) {
         uint32_t category, magnitude = 0, negative = 0;
         noh_bits_refill(b);
-        category = noh_clip_symbol(b, noh_clip_dc_table[noh_clip_dc_context(history_sum(&h[c]), last)], NOH_CLIP_DC_BITS);
+        category = noh_clip_symbol(b, noh_clip_dc_table[noh_clip_dc_context(history_sum(&h[c]), last)],
+                                   NOH_CLIP_DC_BITS);
         if (category) {
             magnitude = 1u << (category - 1u) | noh_bits_take(b, category - 1u);
             negative = noh_bits_take(b, 1u);

@@ -7,7 +7,7 @@
 #define ROTATION_NARROW 8u
 #define ROTATION_WIDE 16u
 #define LINEAR_BYTES 12u
-#define LAST_AT_START 4u  /* what contexts take for the track before the first */
+#define LAST_AT_START 4u /* what contexts take for the track before the first */
 
 noh_clip_cursor noh_clip_cursor_at(const noh_clip *clip, uint32_t segment)
 {
@@ -77,8 +77,8 @@ static void read_wild(noh_bits *b, float reference[4])
     }
 }
 
-/* One track of a segment: read its coefficients, bring them to size, turn mixed axes back, and sum the cosines into frames.
- * Rotations become reference times what the components say, linear tracks reference plus it. */
+/* One track of a segment: read its coefficients, bring them to size, turn mixed axes back, and sum the cosines into
+ * frames. Rotations become reference times what the components say, linear tracks reference plus it. */
 static void decode_track(noh_bits *b, const noh_clip *clip, const noh_clip_track *track, const noh_clip_basis *basis,
                          noh_clip_cursor *cursor, uint8_t *out)
 {
@@ -94,22 +94,24 @@ static void decode_track(noh_bits *b, const noh_clip *clip, const noh_clip_track
     last = noh_clip_read_coefs(b, basis->frames, cursor->last_before[class], coefs);
     cursor->last_before[class] = (uint8_t)last;
     cursor->step_before[class] = (int16_t)step;
-    noh_clip_dequantise((const int32_t(*)[4])coefs, last, noh_clip_step(step), track->flags & NOH_CLIP_TRACK_MIX ? track->mix : NULL,
-                        components);
+    noh_clip_dequantise((const int32_t(*)[4])coefs, last, noh_clip_step(step),
+                        track->flags & NOH_CLIP_TRACK_MIX ? track->mix : NULL, components);
     if (class) {
-        noh_clip_synth_rotation(basis, (const float(*)[4])components, last, reference, (clip->info.flags & NOH_CLIP_FLAG_WIDE) != 0u, out,
-                                clip->frame_bytes);
+        noh_clip_synth_rotation(basis, (const float(*)[4])components, last, reference,
+                                (clip->info.flags & NOH_CLIP_FLAG_WIDE) != 0u, out, clip->frame_bytes);
     } else {
         noh_clip_synth_linear(basis, (const float(*)[4])components, last, reference, out, clip->frame_bytes);
     }
 }
 
-void noh_clip_decode(const noh_clip *clip, const noh_clip_basis *basis, noh_clip_cursor *cursor, uint32_t track_end, uint8_t *frames)
+void noh_clip_decode(const noh_clip *clip, const noh_clip_basis *basis, noh_clip_cursor *cursor, uint32_t track_end,
+                     uint8_t *frames)
 {
     const uint32_t rotation_bytes = clip->info.flags & NOH_CLIP_FLAG_WIDE ? ROTATION_WIDE : ROTATION_NARROW;
     noh_bits b = noh_bits_over(clip->bytes, 0, clip->segment_offsets[cursor->segment + 1u]);
     NOH_ASSERT(track_end <= clip->info.track_count && cursor->segment < clip->info.segment_count);
-    NOH_ASSERT(basis->frames == noh_clip_segment_first(clip, cursor->segment + 1u) - noh_clip_segment_first(clip, cursor->segment));
+    NOH_ASSERT(basis->frames ==
+               noh_clip_segment_first(clip, cursor->segment + 1u) - noh_clip_segment_first(clip, cursor->segment));
     noh_bits_seek(&b, cursor->position);
     for (; cursor->track < track_end; cursor->track++) {
         const noh_clip_track *track = &clip->tracks[cursor->track];

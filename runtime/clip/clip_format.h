@@ -59,10 +59,10 @@
 
 #define NOH_CLIP_VERSION 2u /* also counts new tables: clip_tables.c is part of the format */
 
-#define NOH_CLIP_FLAG_WIDE 1u   /* cache rotations as floats: some joint's lever is too long for 16 bits */
-#define NOH_CLIP_FLAG_SCALE 2u  /* some joint's scale is not its bind pose's */
-#define NOH_CLIP_FLAG_LOOP 4u   /* the last frame equals the first */
-#define NOH_CLIP_FLAG_OPEN 8u   /* each joint is coded for itself: joints may be masked or replaced */
+#define NOH_CLIP_FLAG_WIDE 1u  /* cache rotations as floats: some joint's lever is too long for 16 bits */
+#define NOH_CLIP_FLAG_SCALE 2u /* some joint's scale is not its bind pose's */
+#define NOH_CLIP_FLAG_LOOP 4u  /* the last frame equals the first */
+#define NOH_CLIP_FLAG_OPEN 8u  /* each joint is coded for itself: joints may be masked or replaced */
 
 #define NOH_CLIP_JOINTS_MAX 4096u
 #define NOH_CLIP_FLOATS_MAX 4096u
@@ -73,22 +73,22 @@
 #define NOH_CLIP_TICKS_PER_SECOND 48000u
 #define NOH_CLIP_MICRO 1000000u
 
-#define NOH_CLIP_STEP_TOP 16      /* the largest step is 2^16 ... */
-#define NOH_CLIP_STEP_IDS 256u    /* ... and the smallest 2^-47.75 */
-#define NOH_CLIP_STEP_FIRST 112   /* what the first track of a single segment is relative to */
+#define NOH_CLIP_STEP_TOP 16    /* the largest step is 2^16 ... */
+#define NOH_CLIP_STEP_IDS 256u  /* ... and the smallest 2^-47.75 */
+#define NOH_CLIP_STEP_FIRST 112 /* what the first track of a single segment is relative to */
 #define NOH_CLIP_STEP_ESCAPE 31u
 
 #define NOH_CLIP_MODE_BIND 0u
 #define NOH_CLIP_MODE_CONSTANT 1u
 #define NOH_CLIP_MODE_ANIMATED 2u
 
-#define NOH_CLIP_CONSTANT_BITS 11u   /* smallest width of a constant rotation */
+#define NOH_CLIP_CONSTANT_BITS 11u /* smallest width of a constant rotation */
 #define NOH_CLIP_REFERENCE_BITS 8u
 #define NOH_CLIP_WILD_BITS 10u
 #define NOH_CLIP_MIX_BITS 8u
 #define NOH_CLIP_ERROR_ONE 65536u
-#define NOH_CLIP_TIME_PARTS 8u       /* a certificate's time is in eighths of a frame */
+#define NOH_CLIP_TIME_PARTS 8u /* a certificate's time is in eighths of a frame */
 
-#define NOH_CLIP_MAGNITUDE_BITS 23u  /* of a coefficient */
+#define NOH_CLIP_MAGNITUDE_BITS 23u /* of a coefficient */
 
 #endif

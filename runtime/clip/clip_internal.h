@@ -17,11 +17,11 @@ typedef enum noh_clip_kind { NOH_CLIP_FLOATS, NOH_CLIP_TRANSLATION, NOH_CLIP_SCA
 /* An animated track, in the order of the header and of every segment. */
 typedef struct noh_clip_track {
     uint8_t kind, flags;
-    uint16_t target;      /* joint, or first float of the triple */
-    uint16_t entry;        /* among rotations, or among linear tracks (floats included) */
-    int16_t step;         /* id, where the clip has several segments */
+    uint16_t target; /* joint, or first float of the triple */
+    uint16_t entry;  /* among rotations, or among linear tracks (floats included) */
+    int16_t step;    /* id, where the clip has several segments */
     float reference[4];
-    float mix[9];         /* floats: two scales in mix[4] and mix[8] */
+    float mix[9]; /* floats: two scales in mix[4] and mix[8] */
 } noh_clip_track;
 
 /* How many of each come before a joint. */

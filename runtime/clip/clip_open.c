@@ -1,9 +1,10 @@
-/* clip_open.c: the header, checked and expanded. One parser runs twice, first to measure (its pointers are NULL and it only
- * counts), then into the caller's memory, so that size and use cannot disagree.
+/* clip_open.c: the header, checked and expanded. One parser runs twice, first to measure (its pointers are NULL and it
+ * only counts), then into the caller's memory, so that size and use cannot disagree.
  *
- * A clip is untrusted bytes. The header is read to its end with every count held to a limit before it bounds a loop; past
- * the end the bit reader gives zeros, and read_sizes finds that out. The segments' sizes must fill the clip exactly; what
- * is in the segments need not be checked, because any bits decode to some frames, in bounds (clip_decode.h). */
+ * A clip is untrusted bytes. The header is read to its end with every count held to a limit before it bounds a loop;
+ * past the end the bit reader gives zeros, and read_sizes finds that out. The segments' sizes must fill the clip
+ * exactly; what is in the segments need not be checked, because any bits decode to some frames, in bounds
+ * (clip_decode.h). */
 #include <string.h>
 
 #include "base/arena.h"
@@ -51,13 +52,18 @@ static noh_result read_counts(parser *p)
 {
     noh_bits *b = &p->bits;
     noh_clip_info *info = &p->clip->info;
-    if (noh_bits_get(b, 8u) != NOH_CLIP_VERSION) return fail(p, NOH_ERR_VERSION, "the clip is of another format version: build its pack again", NOH_CLIP_VERSION);
+    if (noh_bits_get(b, 8u) != NOH_CLIP_VERSION)
+        return fail(p, NOH_ERR_VERSION, "the clip is of another format version: build its pack again",
+                    NOH_CLIP_VERSION);
     info->flags = noh_bits_get(b, 4u);
     info->joint_count = noh_bits_varint(b);
     info->frame_count = noh_bits_varint(b);
-    if (info->joint_count > NOH_CLIP_JOINTS_MAX) return fail(p, NOH_ERR_LIMIT, "the clip has more joints than NOH_CLIP_JOINTS_MAX", info->joint_count);
-    if (info->joint_count != p->desc->joint_count) return fail(p, NOH_ERR_ARG, "the clip has another number of joints than the skeleton", info->joint_count);
-    if (info->frame_count == 0u || info->frame_count > NOH_CLIP_FRAMES_MAX) return fail(p, NOH_ERR_LIMIT, "the clip has no frames, or more than NOH_CLIP_FRAMES_MAX", info->frame_count);
+    if (info->joint_count > NOH_CLIP_JOINTS_MAX)
+        return fail(p, NOH_ERR_LIMIT, "the clip has more joints than NOH_CLIP_JOINTS_MAX", info->joint_count);
+    if (info->joint_count != p->desc->joint_count)
+        return fail(p, NOH_ERR_ARG, "the clip has another number of joints than the skeleton", info->joint_count);
+    if (info->frame_count == 0u || info->frame_count > NOH_CLIP_FRAMES_MAX)
+        return fail(p, NOH_ERR_LIMIT, "the clip has no frames, or more than NOH_CLIP_FRAMES_MAX", info->frame_count);
     if (noh_bits_get(b, 1u)) {
         const uint32_t hertz = noh_bits_varint(b);
         info->sample_rate_uhz = hertz <= 0xffffffffu / NOH_CLIP_MICRO ? hertz * NOH_CLIP_MICRO : 0u;
@@ -66,9 +72,12 @@ static noh_result read_counts(parser *p)
     }
     if (info->sample_rate_uhz == 0u) return fail(p, NOH_ERR_DATA, "the clip's sample rate is 0 or past 32 bits", 0);
     info->segment_count = noh_bits_varint(b);
-    if (info->segment_count == 0u || info->segment_count > info->frame_count) return fail(p, NOH_ERR_DATA, "the clip has no segments, or more than frames", info->segment_count);
+    if (info->segment_count == 0u || info->segment_count > info->frame_count)
+        return fail(p, NOH_ERR_DATA, "the clip has no segments, or more than frames", info->segment_count);
     info->segment_frames_max = (info->frame_count + info->segment_count - 1u) / info->segment_count;
-    if (info->segment_frames_max > NOH_CLIP_SEGMENT_FRAMES_MAX) return fail(p, NOH_ERR_LIMIT, "a segment of the clip is longer than NOH_CLIP_SEGMENT_FRAMES_MAX", info->segment_frames_max);
+    if (info->segment_frames_max > NOH_CLIP_SEGMENT_FRAMES_MAX)
+        return fail(p, NOH_ERR_LIMIT, "a segment of the clip is longer than NOH_CLIP_SEGMENT_FRAMES_MAX",
+                    info->segment_frames_max);
     p->size_width = info->segment_count > 1u ? noh_bits_get(b, 5u) : 0u;
     return NOH_OK;
 }
@@ -84,7 +93,8 @@ static void read_certificate(parser *p)
     info->rms_error_cm = read_ratio(b) * info->error_cm;
     info->max_error_joint = noh_bits_varint(b);
     info->max_error_time_s = (double)noh_bits_varint(b) * per_frame / (double)NOH_CLIP_TIME_PARTS;
-    info->duration_ticks = (uint64_t)(info->frame_count - 1u) * NOH_CLIP_TICKS_PER_SECOND * NOH_CLIP_MICRO / info->sample_rate_uhz;
+    info->duration_ticks = (uint64_t)(info->frame_count - 1u) * NOH_CLIP_TICKS_PER_SECOND * NOH_CLIP_MICRO /
+                           info->sample_rate_uhz;
 }
 
 static noh_clip_group read_group(noh_bits *b, uint32_t first)
@@ -102,10 +112,12 @@ static noh_result read_groups(parser *p)
     noh_clip_info *info = &p->clip->info;
     info->group_count = noh_bits_varint(&p->bits);
     info->float_count = 0;
-    if (info->group_count > NOH_CLIP_GROUPS_MAX) return fail(p, NOH_ERR_LIMIT, "the clip has more float groups than NOH_CLIP_GROUPS_MAX", info->group_count);
+    if (info->group_count > NOH_CLIP_GROUPS_MAX)
+        return fail(p, NOH_ERR_LIMIT, "the clip has more float groups than NOH_CLIP_GROUPS_MAX", info->group_count);
     for (uint32_t g = 0; g < info->group_count; g++) {
         const noh_clip_group group = read_group(&p->bits, info->float_count);
-        if (group.width > NOH_CLIP_FLOATS_MAX - info->float_count) return fail(p, NOH_ERR_LIMIT, "the clip has more floats than NOH_CLIP_FLOATS_MAX", group.width);
+        if (group.width > NOH_CLIP_FLOATS_MAX - info->float_count)
+            return fail(p, NOH_ERR_LIMIT, "the clip has more floats than NOH_CLIP_FLOATS_MAX", group.width);
         info->float_count += group.width;
         if (p->groups) p->groups[g] = group;
     }
@@ -130,8 +142,8 @@ static noh_result read_floats(parser *p, uint32_t width, float v[3])
     return NOH_OK;
 }
 
-/* Keep a track that was read, or only count it. Rotations are numbered by themselves, and so are linear tracks: in a cached
- * frame each kind lies in a row, which is what makes sampling a loop over neighbours. */
+/* Keep a track that was read, or only count it. Rotations are numbered by themselves, and so are linear tracks: in a
+ * cached frame each kind lies in a row, which is what makes sampling a loop over neighbours. */
 static void add_track(parser *p, const noh_clip_track *track)
 {
     noh_clip *clip = p->clip;
@@ -155,7 +167,8 @@ static void read_scales(parser *p, noh_clip_track *t)
     for (uint32_t i = 0; i < 2u; i++) {
         const int32_t id = (int32_t)noh_bits_get(&p->bits, 8u) - SCALE_BIAS;
         /* 2^(-id / 4), through the steps around size 1 */
-        t->mix[4u + 4u * i] = noh_clip_step((uint32_t)(4 * NOH_CLIP_STEP_TOP + (id < -4 * NOH_CLIP_STEP_TOP ? -4 * NOH_CLIP_STEP_TOP : id)));
+        t->mix[4u + 4u * i] = noh_clip_step(
+            (uint32_t)(4 * NOH_CLIP_STEP_TOP + (id < -4 * NOH_CLIP_STEP_TOP ? -4 * NOH_CLIP_STEP_TOP : id)));
     }
     t->mix[0] = 1.0f;
     t->flags = NOH_CLIP_TRACK_MIX;
@@ -274,9 +287,11 @@ static noh_result read_sizes(parser *p)
     const size_t sizes_bits = (size_t)p->size_width * (info->segment_count > 1u ? info->segment_count : 0u);
     const size_t begin = (noh_bits_position(&p->bits) + sizes_bits + 7u) / 8u;
     size_t at = begin;
-    if (noh_bits_overrun(&p->bits) || begin > p->desc->byte_count) return fail(p, NOH_ERR_DATA, "the clip ends in its header", begin);
+    if (noh_bits_overrun(&p->bits) || begin > p->desc->byte_count)
+        return fail(p, NOH_ERR_DATA, "the clip ends in its header", begin);
     for (uint32_t s = 0; s < info->segment_count; s++) {
-        const size_t bytes = info->segment_count > 1u ? noh_bits_get(&sizes, p->size_width) : p->desc->byte_count - begin;
+        const size_t bytes = info->segment_count > 1u ? noh_bits_get(&sizes, p->size_width)
+                                                      : p->desc->byte_count - begin;
         if (p->offsets) p->offsets[s] = (uint32_t)at;
         if (p->firsts) p->firsts[s] = (uint32_t)((uint64_t)s * info->frame_count / info->segment_count);
         if (bytes > p->desc->byte_count - at) return fail(p, NOH_ERR_DATA, "a segment passes the clip's end", s);
@@ -287,11 +302,11 @@ static noh_result read_sizes(parser *p)
     return at == p->desc->byte_count ? NOH_OK : fail(p, NOH_ERR_DATA, "the clip has bytes after its last segment", at);
 }
 
-/* What the whole weights of two frames add up to: the largest number, up to NOH_CLIP_WEIGHT_MAX, of parts of a frame with
- * every tick and every eighth of a frame among them. At 30 Hz a frame is 1,600 ticks, and 32,000 parts of one hold both.
- * With g = gcd(48,000 Hz, sample rate), both in micro-hertz, a frame is 48,000 / rate ticks, so ticks lie at multiples of
- * 1 / (48,000 / g) frames; doubling that until 8 divides it takes in the eighths. At sample rates where it is too large
- * a time is off by less than 1/65,000 of a frame. */
+/* What the whole weights of two frames add up to: the largest number, up to NOH_CLIP_WEIGHT_MAX, of parts of a frame
+ * with every tick and every eighth of a frame among them. At 30 Hz a frame is 1,600 ticks, and 32,000 parts of one hold
+ * both. With g = gcd(48,000 Hz, sample rate), both in micro-hertz, a frame is 48,000 / rate ticks, so ticks lie at
+ * multiples of 1 / (48,000 / g) frames; doubling that until 8 divides it takes in the eighths. At sample rates where it
+ * is too large a time is off by less than 1/65,000 of a frame. */
 static uint32_t weight_one(uint32_t sample_rate_uhz)
 {
     const uint64_t second = (uint64_t)NOH_CLIP_TICKS_PER_SECOND * NOH_CLIP_MICRO;
@@ -326,7 +341,8 @@ static noh_result parse(parser *p)
     clip->linear_offset = (clip->rotation_count + NOH_CLIP_GROUP - 1u) / NOH_CLIP_GROUP * NOH_CLIP_GROUP *
                           (clip->info.flags & NOH_CLIP_FLAG_WIDE ? ROTATION_WIDE : ROTATION_NARROW);
     clip->weight_one = weight_one(clip->info.sample_rate_uhz);
-    clip->frame_bytes = (clip->linear_offset + clip->linear_count * LINEAR_BYTES + FRAME_ALIGN - 1u) & ~(FRAME_ALIGN - 1u);
+    clip->frame_bytes = (clip->linear_offset + clip->linear_count * LINEAR_BYTES + FRAME_ALIGN - 1u) &
+                        ~(FRAME_ALIGN - 1u);
     clip->segments_per_frame = ((uint64_t)clip->info.segment_count << 32) / clip->info.frame_count;
     clip->info.segment_bytes_max = (size_t)clip->frame_bytes * clip->info.segment_frames_max;
     return NOH_OK;
@@ -354,8 +370,13 @@ static noh_result measure(const noh_clip_desc *desc, noh_clip *clip, parser *p, 
     p->desc = desc;
     p->clip = clip;
     p->error = error;
-    if (!desc->bytes || (desc->joint_count && !desc->bind)) return noh_fail(error, NOH_ERR_ARG, desc->bytes ? "bind of a clip desc is NULL, and joint_count is not 0" : "bytes of a clip desc is NULL", 0, 0);
-    if (desc->byte_count > 0x7fffffffu) return noh_fail(error, NOH_ERR_LIMIT, "byte_count of a clip desc is 2 GiB or more", 0, desc->byte_count);
+    if (!desc->bytes || (desc->joint_count && !desc->bind))
+        return noh_fail(error, NOH_ERR_ARG,
+                        desc->bytes ? "bind of a clip desc is NULL, and joint_count is not 0"
+                                    : "bytes of a clip desc is NULL",
+                        0, 0);
+    if (desc->byte_count > 0x7fffffffu)
+        return noh_fail(error, NOH_ERR_LIMIT, "byte_count of a clip desc is 2 GiB or more", 0, desc->byte_count);
     r = parse(p);
     if (r != NOH_OK) return r;
     (void)noh_arena_carve(&arena, sizeof *clip, 16u);

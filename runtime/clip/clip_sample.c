@@ -25,13 +25,16 @@ static inline float *rotation_at(noh_transform *out, uint32_t offset)
 #include <immintrin.h>
 
 /* Two joints to a register, eight at a time; sums in the order of the scalar twin. */
-NOH_CLIP_INLINE void blend_four(const uint8_t *a, const uint8_t *b, uint32_t r, int wide, const weights *w, __m256 *first, __m256 *second)
+NOH_CLIP_INLINE void blend_four(const uint8_t *a, const uint8_t *b, uint32_t r, int wide, const weights *w,
+                                __m256 *first, __m256 *second)
 {
     if (wide) { /* joints 0 1, then 2 3 */
         const float *p = (const float *)(const void *)a + 4u * r, *q = (const float *)(const void *)b + 4u * r;
         const __m256 to_a = _mm256_set1_ps(w->to_a), to_b = _mm256_set1_ps(w->to_b);
-        const __m256 x = _mm256_add_ps(_mm256_mul_ps(_mm256_loadu_ps(p), to_a), _mm256_mul_ps(_mm256_loadu_ps(q), to_b));
-        const __m256 y = _mm256_add_ps(_mm256_mul_ps(_mm256_loadu_ps(p + 8), to_a), _mm256_mul_ps(_mm256_loadu_ps(q + 8), to_b));
+        const __m256 x = _mm256_add_ps(_mm256_mul_ps(_mm256_loadu_ps(p), to_a),
+                                       _mm256_mul_ps(_mm256_loadu_ps(q), to_b));
+        const __m256 y = _mm256_add_ps(_mm256_mul_ps(_mm256_loadu_ps(p + 8), to_a),
+                                       _mm256_mul_ps(_mm256_loadu_ps(q + 8), to_b));
         *first = _mm256_permute2f128_ps(x, y, 0x20);
         *second = _mm256_permute2f128_ps(x, y, 0x31);
     } else {
@@ -58,15 +61,16 @@ static inline void store_two(__m256 q, noh_transform *out, uint32_t first, uint3
 }
 
 /* Registers hold joints 0 2, 1 3, 4 6, 5 7. Returns how many rotations are done. */
-NOH_CLIP_INLINE uint32_t blend_many(const uint32_t *offsets, const uint8_t *a, const uint8_t *b, const weights *w, uint32_t count, int wide,
-                                    noh_transform *out)
+NOH_CLIP_INLINE uint32_t blend_many(const uint32_t *offsets, const uint8_t *a, const uint8_t *b, const weights *w,
+                                    uint32_t count, int wide, noh_transform *out)
 {
     uint32_t r = 0;
     for (; r + 8u <= count; r += 8u) {
         __m256 q[4], scale;
         blend_four(a, b, r, wide, w, &q[0], &q[1]);
         blend_four(a, b, r + 4u, wide, w, &q[2], &q[3]);
-        scale = sums8(_mm256_mul_ps(q[0], q[0]), _mm256_mul_ps(q[1], q[1]), _mm256_mul_ps(q[2], q[2]), _mm256_mul_ps(q[3], q[3]));
+        scale = sums8(_mm256_mul_ps(q[0], q[0]), _mm256_mul_ps(q[1], q[1]), _mm256_mul_ps(q[2], q[2]),
+                      _mm256_mul_ps(q[3], q[3]));
         scale = _mm256_div_ps(_mm256_set1_ps(1.0f), _mm256_sqrt_ps(_mm256_max_ps(scale, _mm256_set1_ps(TINY))));
         store_two(_mm256_mul_ps(q[0], _mm256_permute_ps(scale, 0x00)), out, offsets[r], offsets[r + 2u]);
         store_two(_mm256_mul_ps(q[1], _mm256_permute_ps(scale, 0x55)), out, offsets[r + 1u], offsets[r + 3u]);
@@ -76,8 +80,8 @@ NOH_CLIP_INLINE uint32_t blend_many(const uint32_t *offsets, const uint8_t *a, c
     return r;
 }
 #else
-NOH_CLIP_INLINE uint32_t blend_many(const uint32_t *offsets, const uint8_t *a, const uint8_t *b, const weights *w, uint32_t count, int wide,
-                                    noh_transform *out)
+NOH_CLIP_INLINE uint32_t blend_many(const uint32_t *offsets, const uint8_t *a, const uint8_t *b, const weights *w,
+                                    uint32_t count, int wide, noh_transform *out)
 {
     (void)offsets;
     (void)a;
@@ -94,7 +98,8 @@ NOH_CLIP_INLINE uint32_t blend_many(const uint32_t *offsets, const uint8_t *a, c
  * loops of four, and their arrays in memory. */
 NOH_CLIP_INLINE void normalise_group(noh_v4 q[NOH_CLIP_GROUP])
 {
-    noh_v4 scale = noh_v4_sums(noh_v4_mul(q[0], q[0]), noh_v4_mul(q[1], q[1]), noh_v4_mul(q[2], q[2]), noh_v4_mul(q[3], q[3]));
+    noh_v4 scale = noh_v4_sums(noh_v4_mul(q[0], q[0]), noh_v4_mul(q[1], q[1]), noh_v4_mul(q[2], q[2]),
+                               noh_v4_mul(q[3], q[3]));
     scale = noh_v4_max(scale, noh_v4_set(TINY));
     scale = noh_v4_div(noh_v4_set(1.0f), noh_v4_sqrt(scale));
     q[0] = noh_v4_mul(q[0], noh_v4_lane(scale, 0));
@@ -109,7 +114,8 @@ NOH_CLIP_INLINE noh_v4 lerp(const float *a, const float *b, noh_v4 to_a, noh_v4 
 }
 
 /* Four neighbours; past the last rotation a frame has room, and whatever lies there is not used. */
-NOH_CLIP_INLINE void blend_group(const uint8_t *a, const uint8_t *b, uint32_t r, int wide, const weights *w, noh_v4 q[NOH_CLIP_GROUP])
+NOH_CLIP_INLINE void blend_group(const uint8_t *a, const uint8_t *b, uint32_t r, int wide, const weights *w,
+                                 noh_v4 q[NOH_CLIP_GROUP])
 {
     if (wide) {
         const float *p = (const float *)(const void *)a + 4u * r, *o = (const float *)(const void *)b + 4u * r;
@@ -127,12 +133,12 @@ NOH_CLIP_INLINE void blend_group(const uint8_t *a, const uint8_t *b, uint32_t r,
     normalise_group(q);
 }
 
-/* Rotations: a weighted sum, normalised. Frames of one segment lie in one hemisphere, and so do the last and first of two
- * neighbours (the encoder negates them where needed), so there is no sign to look at. Cached frames hold rotations as 16-bit
- * integers: they are weighed by whole numbers, exactly, and rounded once to floats, which is why every instruction set
- * gives the same bits. */
-NOH_CLIP_INLINE void blend_rotations(const noh_clip *clip, const uint8_t *a, const uint8_t *b, const weights *w, uint32_t count, int wide,
-                                     noh_transform *out)
+/* Rotations: a weighted sum, normalised. Frames of one segment lie in one hemisphere, and so do the last and first of
+ * two neighbours (the encoder negates them where needed), so there is no sign to look at. Cached frames hold rotations
+ * as 16-bit integers: they are weighed by whole numbers, exactly, and rounded once to floats, which is why every
+ * instruction set gives the same bits. */
+NOH_CLIP_INLINE void blend_rotations(const noh_clip *clip, const uint8_t *a, const uint8_t *b, const weights *w,
+                                     uint32_t count, int wide, noh_transform *out)
 {
     const uint32_t *offsets = clip->rotation_offsets;
     uint32_t r = blend_many(offsets, a, b, w, count, wide, out);
@@ -159,10 +165,11 @@ static inline void blend_linear(const float *a, const float *b, float fraction, 
     }
 }
 
-void noh_clip_blend_frames(const noh_clip *clip, const uint8_t *a, const uint8_t *b, float fraction, uint32_t joints, noh_transform *out,
-                           float *floats)
+void noh_clip_blend_frames(const noh_clip *clip, const uint8_t *a, const uint8_t *b, float fraction, uint32_t joints,
+                           noh_transform *out, float *floats)
 {
-    const float *la = (const float *)(const void *)(a + clip->linear_offset), *lb = (const float *)(const void *)(b + clip->linear_offset);
+    const float *la = (const float *)(const void *)(a + clip->linear_offset),
+                *lb = (const float *)(const void *)(b + clip->linear_offset);
     const noh_clip_prefix *prefix = &clip->prefixes[joints];
     const int32_t whole_b = (int32_t)(fraction * (float)clip->weight_one + 0.5f);
     const weights w = { (int32_t)clip->weight_one - whole_b, whole_b, 1.0f - fraction, fraction };

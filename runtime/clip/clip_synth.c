@@ -46,7 +46,8 @@ void noh_clip_basis_build(uint32_t frames, float *rows)
     }
 }
 
-/* Four steps to each factor of two: the exponent is written into the float's bits, the rest is a table of 2^(-i / 4). */
+/* Four steps to each factor of two: the exponent is written into the float's bits, the rest is a table of 2^(-i / 4).
+ */
 float noh_clip_step(uint32_t id)
 {
     static const float parts[4] = { 1.0f, 0.84089642f, 0.70710678f, 0.59460356f };
@@ -57,8 +58,9 @@ float noh_clip_step(uint32_t id)
     return power * parts[id % 4u];
 }
 
-/* "Smallest three": the largest component of a unit quaternion is left out and made positive; none of the others is above
- * sqrt(1/2), and they say what the largest was. Codes that are no unit quaternion (a broken clip) are scaled to one. */
+/* "Smallest three": the largest component of a unit quaternion is left out and made positive; none of the others is
+ * above sqrt(1/2), and they say what the largest was. Codes that are no unit quaternion (a broken clip) are scaled to
+ * one. */
 void noh_clip_quat_expand(const uint32_t codes[3], uint32_t left_out, uint32_t width, float q[4])
 {
     const uint32_t mid = (1u << (width - 1u)) - 1u;
@@ -127,14 +129,15 @@ void noh_clip_dequantise(const int32_t (*coefs)[4], uint32_t last, float step, c
     }
 }
 
-/* Four frames of three components, and the four that mirror them. Basis row k is even about the middle of the segment for
- * even k and odd for odd k, so one sum over even frequencies and one over odd ones give two frames: their sum is the
- * frame in the first half, their difference its mirror in the second. That halves the products. */
+/* Four frames of three components, and the four that mirror them. Basis row k is even about the middle of the segment
+ * for even k and odd for odd k, so one sum over even frequencies and one over odd ones give two frames: their sum is
+ * the frame in the first half, their difference its mirror in the second. That halves the products. */
 typedef struct quad {
     noh_v4 front[3], back[3];
 } quad;
 
-static inline void transform_quad(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last, uint32_t first, quad *out)
+static inline void transform_quad(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last, uint32_t first,
+                                  quad *out)
 {
     const float *row = basis->rows + first;
     const uint32_t half = basis->half;
@@ -163,8 +166,8 @@ static inline void transform_quad(const noh_clip_basis *basis, const float (*coe
     }
 }
 
-/* reference * rodrigues(u), times 32767; then transposed: q[i] is frame i. With v = u / 4 a modified Rodrigues vector is
- * the unit quaternion (2 v, 1 - |v|^2) / (1 + |v|^2): no sine, no square root. */
+/* reference * rodrigues(u), times 32767; then transposed: q[i] is frame i. With v = u / 4 a modified Rodrigues vector
+ * is the unit quaternion (2 v, 1 - |v|^2) / (1 + |v|^2): no sine, no square root. */
 static inline void rotate_quad(const noh_v4 u[3], const noh_v4 r[4], noh_v4 q[4])
 {
     const noh_v4 quarter = noh_v4_set(0.25f), one = noh_v4_set(1.0f);
@@ -181,7 +184,8 @@ static inline void rotate_quad(const noh_v4 u[3], const noh_v4 r[4], noh_v4 q[4]
     q[1] = SUM(noh_v4_mul(r[3], b), noh_v4_mul(r[1], d), noh_v4_mul(r[2], a), noh_v4_mul(r[0], c));
     q[2] = SUM(noh_v4_mul(r[3], c), noh_v4_mul(r[2], d), noh_v4_mul(r[0], b), noh_v4_mul(r[1], a));
 #undef SUM
-    q[3] = noh_v4_sub(noh_v4_sub(noh_v4_mul(r[3], d), noh_v4_mul(r[0], a)), noh_v4_add(noh_v4_mul(r[1], b), noh_v4_mul(r[2], c)));
+    q[3] = noh_v4_sub(noh_v4_sub(noh_v4_mul(r[3], d), noh_v4_mul(r[0], a)),
+                      noh_v4_add(noh_v4_mul(r[1], b), noh_v4_mul(r[2], c)));
     noh_v4_transpose(q);
 }
 
@@ -194,8 +198,8 @@ static inline void store_quat(uint8_t *out, noh_v4 q, int wide)
     }
 }
 
-static inline void synth_rotation(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last, const float reference[4], int wide,
-                                  uint8_t *out, size_t stride)
+static inline void synth_rotation(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last,
+                                  const float reference[4], int wide, uint8_t *out, size_t stride)
 {
     const uint32_t frames = basis->frames, middle = (frames + 1u) / 2u;
     noh_v4 r[4], front[4], back[4];
@@ -215,8 +219,8 @@ static inline void synth_rotation(const noh_clip_basis *basis, const float (*coe
     }
 }
 
-void noh_clip_synth_rotation(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last, const float reference[4], int wide,
-                             uint8_t *out, size_t stride)
+void noh_clip_synth_rotation(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last,
+                             const float reference[4], int wide, uint8_t *out, size_t stride)
 {
     if (wide) {
         synth_rotation(basis, coefs, last, reference, 1, out, stride);
@@ -225,8 +229,8 @@ void noh_clip_synth_rotation(const noh_clip_basis *basis, const float (*coefs)[4
     }
 }
 
-void noh_clip_synth_linear(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last, const float reference[3], uint8_t *out,
-                           size_t stride)
+void noh_clip_synth_linear(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last,
+                           const float reference[3], uint8_t *out, size_t stride)
 {
     const uint32_t frames = basis->frames, middle = (frames + 1u) / 2u;
     for (uint32_t f = 0; f < middle; f += 4u) {

@@ -25,8 +25,14 @@ typedef struct noh_clip_basis {
 } noh_clip_basis;
 
 /* floats of a basis */
-static inline uint32_t noh_clip_basis_half(uint32_t frames) { return ((frames + 1u) / 2u + 3u) & ~3u; }
-static inline uint32_t noh_clip_basis_count(uint32_t frames) { return frames * noh_clip_basis_half(frames); }
+static inline uint32_t noh_clip_basis_half(uint32_t frames)
+{
+    return ((frames + 1u) / 2u + 3u) & ~3u;
+}
+static inline uint32_t noh_clip_basis_count(uint32_t frames)
+{
+    return frames * noh_clip_basis_half(frames);
+}
 
 /* Fill rows[noh_clip_basis_count(frames)]; frames 1..NOH_CLIP_SEGMENT_FRAMES_MAX. */
 void noh_clip_basis_build(uint32_t frames, float *rows);
@@ -49,12 +55,12 @@ void noh_clip_dequantise(const int32_t (*coefs)[4], uint32_t last, float step, c
 /* Frames of a rotation track: reference * rodrigues(components).
  * shapes  coefs[last][4]; frame f goes to out + f * stride, 4 int16 (times 32767) or 4 floats
  * source  Shuster, "A survey of attitude representations", 1993, section on modified Rodrigues parameters */
-void noh_clip_synth_rotation(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last, const float reference[4], int wide,
-                             uint8_t *out, size_t stride);
+void noh_clip_synth_rotation(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last,
+                             const float reference[4], int wide, uint8_t *out, size_t stride);
 
 /* Frames of a linear track: reference + components; 3 floats each. */
-void noh_clip_synth_linear(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last, const float reference[3], uint8_t *out,
-                           size_t stride);
+void noh_clip_synth_linear(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last,
+                           const float reference[3], uint8_t *out, size_t stride);
 
 /* Store one frame of a raw rotation as the cache keeps it; not-a-numbers become zeros. */
 void noh_clip_store_rotation(const float q[4], int wide, uint8_t *out);

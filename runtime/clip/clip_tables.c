@@ -27,6 +27,7 @@
 /* cmu_martial_03.rcl */
 /* cmu_salsa_01.rcl */
 
+/* clang-format off */
 const uint16_t noh_clip_triple_table[NOH_CLIP_TRIPLE_CONTEXTS][1u << NOH_CLIP_TRIPLE_BITS] = {
     {
         1, 19, 1, 85, 1, 68, 1, 103, 1, 19, 1, 38, 1, 260, 1, 505,
@@ -335,7 +336,9 @@ const uint16_t noh_clip_triple_table[NOH_CLIP_TRIPLE_CONTEXTS][1u << NOH_CLIP_TR
         18, 52, 67, 135, 18, 277, 259, 856, 18, 84, 67, 519, 18, 1013, 259, 937,
     },
 };
+/* clang-format on */
 
+/* clang-format off */
 const uint16_t noh_clip_last_table[NOH_CLIP_LAST_CONTEXTS][1u << NOH_CLIP_LAST_BITS] = {
     {
         386, 372, 355, 230, 386, 293, 212, 536, 386, 165, 355, 40, 386, 341, 324, 792,
@@ -464,7 +467,9 @@ const uint16_t noh_clip_last_table[NOH_CLIP_LAST_CONTEXTS][1u << NOH_CLIP_LAST_B
         386, 293, 371, 151, 386, 198, 340, 776, 386, 325, 371, 504, 386, 438, 356, 1032,
     },
 };
+/* clang-format on */
 
+/* clang-format off */
 const uint16_t noh_clip_dc_table[NOH_CLIP_DC_CONTEXTS][1u << NOH_CLIP_DC_BITS] = {
     {
         1, 19, 1, 52, 1, 35, 1, 101, 1, 19, 1, 69, 1, 35, 1, 167,
@@ -557,7 +562,9 @@ const uint16_t noh_clip_dc_table[NOH_CLIP_DC_CONTEXTS][1u << NOH_CLIP_DC_BITS] =
         1, 18, 1, 53, 1, 18, 1, 150, 1, 18, 1, 101, 1, 18, 1, 376,
     },
 };
+/* clang-format on */
 
+/* clang-format off */
 const uint16_t noh_clip_step_table[NOH_CLIP_STEP_CONTEXTS][1u << NOH_CLIP_STEP_BITS] = {
     {
         1, 19, 1, 52, 1, 35, 1, 86, 1, 19, 1, 68, 1, 35, 1, 264,
@@ -596,3 +603,4 @@ const uint16_t noh_clip_step_table[NOH_CLIP_STEP_CONTEXTS][1u << NOH_CLIP_STEP_B
         3, 100, 20, 181, 35, 500, 68, 231, 3, 132, 52, 277, 35, 149, 84, 488,
     },
 };
+/* clang-format on */

@@ -29,20 +29,51 @@
 
 #if defined(NOH_VEC_SSE)
 typedef __m128 noh_v4;
-static inline noh_v4 noh_v4_load(const float *p) { return _mm_loadu_ps(p); }
-static inline void noh_v4_store(float *p, noh_v4 v) { _mm_storeu_ps(p, v); }
-static inline noh_v4 noh_v4_set(float x) { return _mm_set1_ps(x); }
-static inline noh_v4 noh_v4_add(noh_v4 a, noh_v4 b) { return _mm_add_ps(a, b); }
-static inline noh_v4 noh_v4_sub(noh_v4 a, noh_v4 b) { return _mm_sub_ps(a, b); }
-static inline noh_v4 noh_v4_mul(noh_v4 a, noh_v4 b) { return _mm_mul_ps(a, b); }
-static inline noh_v4 noh_v4_div(noh_v4 a, noh_v4 b) { return _mm_div_ps(a, b); }
-static inline noh_v4 noh_v4_sqrt(noh_v4 a) { return _mm_sqrt_ps(a); }
-static inline noh_v4 noh_v4_max(noh_v4 a, noh_v4 b) { return _mm_max_ps(a, b); } /* a > b ? a : b */
+static inline noh_v4 noh_v4_load(const float *p)
+{
+    return _mm_loadu_ps(p);
+}
+static inline void noh_v4_store(float *p, noh_v4 v)
+{
+    _mm_storeu_ps(p, v);
+}
+static inline noh_v4 noh_v4_set(float x)
+{
+    return _mm_set1_ps(x);
+}
+static inline noh_v4 noh_v4_add(noh_v4 a, noh_v4 b)
+{
+    return _mm_add_ps(a, b);
+}
+static inline noh_v4 noh_v4_sub(noh_v4 a, noh_v4 b)
+{
+    return _mm_sub_ps(a, b);
+}
+static inline noh_v4 noh_v4_mul(noh_v4 a, noh_v4 b)
+{
+    return _mm_mul_ps(a, b);
+}
+static inline noh_v4 noh_v4_div(noh_v4 a, noh_v4 b)
+{
+    return _mm_div_ps(a, b);
+}
+static inline noh_v4 noh_v4_sqrt(noh_v4 a)
+{
+    return _mm_sqrt_ps(a);
+}
+static inline noh_v4 noh_v4_max(noh_v4 a, noh_v4 b)
+{
+    return _mm_max_ps(a, b);
+} /* a > b ? a : b */
 typedef __m128i noh_weights;
-static inline noh_weights noh_weights_set(int32_t to_a, int32_t to_b) { return _mm_set1_epi32((int32_t)((uint32_t)to_b << 16 | (uint32_t)to_a)); }
+static inline noh_weights noh_weights_set(int32_t to_a, int32_t to_b)
+{
+    return _mm_set1_epi32((int32_t)((uint32_t)to_b << 16 | (uint32_t)to_a));
+}
 static inline void noh_v4_blend_i16(const int16_t *a, const int16_t *b, noh_weights w, noh_v4 *first, noh_v4 *second)
 {
-    const __m128i p = _mm_load_si128((const __m128i *)(const void *)a), q = _mm_load_si128((const __m128i *)(const void *)b);
+    const __m128i p = _mm_load_si128((const __m128i *)(const void *)a),
+                  q = _mm_load_si128((const __m128i *)(const void *)b);
     *first = _mm_cvtepi32_ps(_mm_madd_epi16(_mm_unpacklo_epi16(p, q), w));
     *second = _mm_cvtepi32_ps(_mm_madd_epi16(_mm_unpackhi_epi16(p, q), w));
 }
@@ -74,17 +105,50 @@ static inline noh_v4 noh_v4_lane(noh_v4 v, int lane)
 }
 #elif defined(NOH_VEC_NEON)
 typedef float32x4_t noh_v4;
-static inline noh_v4 noh_v4_load(const float *p) { return vld1q_f32(p); }
-static inline void noh_v4_store(float *p, noh_v4 v) { vst1q_f32(p, v); }
-static inline noh_v4 noh_v4_set(float x) { return vdupq_n_f32(x); }
-static inline noh_v4 noh_v4_add(noh_v4 a, noh_v4 b) { return vaddq_f32(a, b); }
-static inline noh_v4 noh_v4_sub(noh_v4 a, noh_v4 b) { return vsubq_f32(a, b); }
-static inline noh_v4 noh_v4_mul(noh_v4 a, noh_v4 b) { return vmulq_f32(a, b); }
-static inline noh_v4 noh_v4_div(noh_v4 a, noh_v4 b) { return vdivq_f32(a, b); }
-static inline noh_v4 noh_v4_sqrt(noh_v4 a) { return vsqrtq_f32(a); }
-static inline noh_v4 noh_v4_max(noh_v4 a, noh_v4 b) { return vbslq_f32(vcgtq_f32(a, b), a, b); }
-typedef struct noh_weights { int16_t to_a, to_b; } noh_weights;
-static inline noh_weights noh_weights_set(int32_t to_a, int32_t to_b) { const noh_weights w = { (int16_t)to_a, (int16_t)to_b }; return w; }
+static inline noh_v4 noh_v4_load(const float *p)
+{
+    return vld1q_f32(p);
+}
+static inline void noh_v4_store(float *p, noh_v4 v)
+{
+    vst1q_f32(p, v);
+}
+static inline noh_v4 noh_v4_set(float x)
+{
+    return vdupq_n_f32(x);
+}
+static inline noh_v4 noh_v4_add(noh_v4 a, noh_v4 b)
+{
+    return vaddq_f32(a, b);
+}
+static inline noh_v4 noh_v4_sub(noh_v4 a, noh_v4 b)
+{
+    return vsubq_f32(a, b);
+}
+static inline noh_v4 noh_v4_mul(noh_v4 a, noh_v4 b)
+{
+    return vmulq_f32(a, b);
+}
+static inline noh_v4 noh_v4_div(noh_v4 a, noh_v4 b)
+{
+    return vdivq_f32(a, b);
+}
+static inline noh_v4 noh_v4_sqrt(noh_v4 a)
+{
+    return vsqrtq_f32(a);
+}
+static inline noh_v4 noh_v4_max(noh_v4 a, noh_v4 b)
+{
+    return vbslq_f32(vcgtq_f32(a, b), a, b);
+}
+typedef struct noh_weights {
+    int16_t to_a, to_b;
+} noh_weights;
+static inline noh_weights noh_weights_set(int32_t to_a, int32_t to_b)
+{
+    const noh_weights w = { (int16_t)to_a, (int16_t)to_b };
+    return w;
+}
 static inline void noh_v4_blend_i16(const int16_t *a, const int16_t *b, noh_weights w, noh_v4 *first, noh_v4 *second)
 {
     const int16x8_t p = vld1q_s16(a), q = vld1q_s16(b);
@@ -103,7 +167,8 @@ static inline void noh_v4_transpose(noh_v4 v[4])
 static inline noh_v4 noh_v4_sums(noh_v4 a, noh_v4 b, noh_v4 c, noh_v4 d)
 {
     const noh_v4 ab = vaddq_f32(vzip1q_f32(a, b), vzip2q_f32(a, b)), cd = vaddq_f32(vzip1q_f32(c, d), vzip2q_f32(c, d));
-    return vaddq_f32(vcombine_f32(vget_low_f32(ab), vget_low_f32(cd)), vcombine_f32(vget_high_f32(ab), vget_high_f32(cd)));
+    return vaddq_f32(vcombine_f32(vget_low_f32(ab), vget_low_f32(cd)),
+                     vcombine_f32(vget_high_f32(ab), vget_high_f32(cd)));
 }
 static inline void noh_v4_store_i16(int16_t *p, noh_v4 v)
 {
@@ -120,20 +185,68 @@ static inline noh_v4 noh_v4_lane(noh_v4 v, int lane)
     }
 }
 #else
-typedef struct noh_v4 { float f[4]; } noh_v4;
+typedef struct noh_v4 {
+    float f[4];
+} noh_v4;
 /* Written out: at -O2 compilers keep loops of four. */
-static inline noh_v4 noh_v4_load(const float *p) { noh_v4 r; memcpy(r.f, p, sizeof r.f); return r; }
-static inline void noh_v4_store(float *p, noh_v4 v) { memcpy(p, v.f, sizeof v.f); }
-static inline noh_v4 noh_v4_set(float x) { const noh_v4 r = { { x, x, x, x } }; return r; }
-static inline noh_v4 noh_v4_add(noh_v4 a, noh_v4 b) { const noh_v4 r = { { a.f[0] + b.f[0], a.f[1] + b.f[1], a.f[2] + b.f[2], a.f[3] + b.f[3] } }; return r; }
-static inline noh_v4 noh_v4_sub(noh_v4 a, noh_v4 b) { const noh_v4 r = { { a.f[0] - b.f[0], a.f[1] - b.f[1], a.f[2] - b.f[2], a.f[3] - b.f[3] } }; return r; }
-static inline noh_v4 noh_v4_mul(noh_v4 a, noh_v4 b) { const noh_v4 r = { { a.f[0] * b.f[0], a.f[1] * b.f[1], a.f[2] * b.f[2], a.f[3] * b.f[3] } }; return r; }
-static inline noh_v4 noh_v4_div(noh_v4 a, noh_v4 b) { const noh_v4 r = { { a.f[0] / b.f[0], a.f[1] / b.f[1], a.f[2] / b.f[2], a.f[3] / b.f[3] } }; return r; }
-static inline noh_v4 noh_v4_sqrt(noh_v4 a) { const noh_v4 r = { { noh_sqrt(a.f[0]), noh_sqrt(a.f[1]), noh_sqrt(a.f[2]), noh_sqrt(a.f[3]) } }; return r; }
-static inline float noh_v4_larger(float a, float b) { return a > b ? a : b; }
-static inline noh_v4 noh_v4_max(noh_v4 a, noh_v4 b) { const noh_v4 r = { { noh_v4_larger(a.f[0], b.f[0]), noh_v4_larger(a.f[1], b.f[1]), noh_v4_larger(a.f[2], b.f[2]), noh_v4_larger(a.f[3], b.f[3]) } }; return r; }
-typedef struct noh_weights { int32_t to_a, to_b; } noh_weights;
-static inline noh_weights noh_weights_set(int32_t to_a, int32_t to_b) { const noh_weights w = { to_a, to_b }; return w; }
+static inline noh_v4 noh_v4_load(const float *p)
+{
+    noh_v4 r;
+    memcpy(r.f, p, sizeof r.f);
+    return r;
+}
+static inline void noh_v4_store(float *p, noh_v4 v)
+{
+    memcpy(p, v.f, sizeof v.f);
+}
+static inline noh_v4 noh_v4_set(float x)
+{
+    const noh_v4 r = { { x, x, x, x } };
+    return r;
+}
+static inline noh_v4 noh_v4_add(noh_v4 a, noh_v4 b)
+{
+    const noh_v4 r = { { a.f[0] + b.f[0], a.f[1] + b.f[1], a.f[2] + b.f[2], a.f[3] + b.f[3] } };
+    return r;
+}
+static inline noh_v4 noh_v4_sub(noh_v4 a, noh_v4 b)
+{
+    const noh_v4 r = { { a.f[0] - b.f[0], a.f[1] - b.f[1], a.f[2] - b.f[2], a.f[3] - b.f[3] } };
+    return r;
+}
+static inline noh_v4 noh_v4_mul(noh_v4 a, noh_v4 b)
+{
+    const noh_v4 r = { { a.f[0] * b.f[0], a.f[1] * b.f[1], a.f[2] * b.f[2], a.f[3] * b.f[3] } };
+    return r;
+}
+static inline noh_v4 noh_v4_div(noh_v4 a, noh_v4 b)
+{
+    const noh_v4 r = { { a.f[0] / b.f[0], a.f[1] / b.f[1], a.f[2] / b.f[2], a.f[3] / b.f[3] } };
+    return r;
+}
+static inline noh_v4 noh_v4_sqrt(noh_v4 a)
+{
+    const noh_v4 r = { { noh_sqrt(a.f[0]), noh_sqrt(a.f[1]), noh_sqrt(a.f[2]), noh_sqrt(a.f[3]) } };
+    return r;
+}
+static inline float noh_v4_larger(float a, float b)
+{
+    return a > b ? a : b;
+}
+static inline noh_v4 noh_v4_max(noh_v4 a, noh_v4 b)
+{
+    const noh_v4 r = { { noh_v4_larger(a.f[0], b.f[0]), noh_v4_larger(a.f[1], b.f[1]), noh_v4_larger(a.f[2], b.f[2]),
+                         noh_v4_larger(a.f[3], b.f[3]) } };
+    return r;
+}
+typedef struct noh_weights {
+    int32_t to_a, to_b;
+} noh_weights;
+static inline noh_weights noh_weights_set(int32_t to_a, int32_t to_b)
+{
+    const noh_weights w = { to_a, to_b };
+    return w;
+}
 static inline noh_v4 noh_v4_blend_four(const int16_t *a, const int16_t *b, noh_weights w)
 {
     const noh_v4 r = { { (float)(a[0] * w.to_a + b[0] * w.to_b), (float)(a[1] * w.to_a + b[1] * w.to_b),
@@ -155,7 +268,10 @@ static inline void noh_v4_transpose(noh_v4 v[4])
         }
     }
 }
-static inline float noh_v4_sum(noh_v4 v) { return (v.f[0] + v.f[2]) + (v.f[1] + v.f[3]); }
+static inline float noh_v4_sum(noh_v4 v)
+{
+    return (v.f[0] + v.f[2]) + (v.f[1] + v.f[3]);
+}
 static inline noh_v4 noh_v4_sums(noh_v4 a, noh_v4 b, noh_v4 c, noh_v4 d)
 {
     noh_v4 r;
@@ -172,7 +288,10 @@ static inline void noh_v4_store_i16(int16_t *p, noh_v4 v)
         p[i] = (int16_t)(r > 32767 ? 32767 : r);
     }
 }
-static inline noh_v4 noh_v4_lane(noh_v4 v, int lane) { return noh_v4_set(v.f[lane]); }
+static inline noh_v4 noh_v4_lane(noh_v4 v, int lane)
+{
+    return noh_v4_set(v.f[lane]);
+}
 #endif
 
 #endif

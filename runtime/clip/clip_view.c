@@ -5,8 +5,8 @@
 #include "clip/clip_cache_internal.h"
 #include "base/arena.h"
 
-/* A segment of the view's own. It keeps what it holds from one sample to the next: a clip that plays on without anybody's
- * wanting it is decoded once a segment, not once a sample. */
+/* A segment of the view's own. It keeps what it holds from one sample to the next: a clip that plays on without
+ * anybody's wanting it is decoded once a segment, not once a sample. */
 typedef struct spill {
     noh_clip_cursor cursor;
     uint8_t *frames;
@@ -53,7 +53,8 @@ size_t noh_clip_view_needs_size(const noh_clip_cache_needs *needs)
     return size_of(size ? needs->size_bytes[size - 1u] : 0u);
 }
 
-noh_result noh_clip_view_init(void *memory, size_t bytes, const noh_clip_cache *cache, noh_clip_view **out, noh_error *error)
+noh_result noh_clip_view_init(void *memory, size_t bytes, const noh_clip_cache *cache, noh_clip_view **out,
+                              noh_error *error)
 {
     noh_arena arena;
     noh_clip_view *view;
@@ -108,7 +109,8 @@ static const uint8_t *frames_of(noh_clip_view *view, uint32_t clip, uint32_t seg
     return s->frames;
 }
 
-void noh_clip_view_sample(noh_clip_view *view, uint32_t clip, int64_t ticks, uint32_t joint_count, noh_transform *out, float *floats)
+void noh_clip_view_sample(noh_clip_view *view, uint32_t clip, int64_t ticks, uint32_t joint_count, noh_transform *out,
+                          float *floats)
 {
     const noh_clip_place p = noh_clip_place_of(noh_clip_cache_clip(view->cache, clip), ticks, joint_count);
     const uint8_t *frames = frames_of(view, clip, p.segment, p.tracks);

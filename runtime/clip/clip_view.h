@@ -6,9 +6,9 @@
  *   noh_clip_view_sample(view, ...)                any number of threads, each with its own view
  * and once these are done, the next frame begins.
  *
- * Threads: a view belongs to one thread at a time. While views sample, nothing may change their cache (clip_cache.h says
- * which calls do); there is no lock and nothing atomic inside, the caller orders the two phases (a join, a barrier, a
- * job counter). */
+ * Threads: a view belongs to one thread at a time. While views sample, nothing may change their cache (clip_cache.h
+ * says which calls do); there is no lock and nothing atomic inside, the caller orders the two phases (a join, a
+ * barrier, a job counter). */
 #ifndef NOH_CLIP_CLIP_VIEW_H
 #define NOH_CLIP_CLIP_VIEW_H
 
@@ -26,10 +26,12 @@ size_t noh_clip_view_needs_size(const noh_clip_cache_needs *needs); /* before th
 
 /* Make a view in memory[bytes], 16-byte aligned. The cache must outlive it.
  * errors  ARG memory NULL or misaligned; MEMORY need: the bytes */
-noh_result noh_clip_view_init(void *memory, size_t bytes, const noh_clip_cache *cache, noh_clip_view **out, noh_error *error);
+noh_result noh_clip_view_init(void *memory, size_t bytes, const noh_clip_cache *cache, noh_clip_view **out,
+                              noh_error *error);
 
 /* As noh_clip_sample, to the bit. */
-void noh_clip_view_sample(noh_clip_view *view, uint32_t clip, int64_t ticks, uint32_t joint_count, noh_transform *out, float *floats);
+void noh_clip_view_sample(noh_clip_view *view, uint32_t clip, int64_t ticks, uint32_t joint_count, noh_transform *out,
+                          float *floats);
 
 /* What this view sampled and had to decode (evictions stays 0). */
 noh_clip_cache_stats noh_clip_view_stats_of(const noh_clip_view *view);

@@ -5,16 +5,17 @@
 NOH_STATIC_ASSERT(sizeof(noh_transform) == 40, transform_is_packed);
 NOH_STATIC_ASSERT(NOH_PACK_JOINT_ROOT == NOH_JOINT_ROOT, joint_roots_agree);
 
-noh_result noh_pack_skeleton_at(const noh_pack *pack, uint32_t index, noh_skeleton *skeleton, const noh_skeleton_header **header,
-                                noh_error *error)
+noh_result noh_pack_skeleton_at(const noh_pack *pack, uint32_t index, noh_skeleton *skeleton,
+                                const noh_skeleton_header **header, noh_error *error)
 {
     const uint8_t *chunk;
     const noh_skeleton_header *h;
     NOH_ASSERT(pack && skeleton);
     if (index >= pack->skeleton_count) {
         return noh_fail(error, NOH_ERR_NOT_FOUND,
-                        pack->skeleton_count ? "skeleton index is past the pack's last skeleton" : "pack holds no skeleton", index,
-                        pack->skeleton_count);
+                        pack->skeleton_count ? "skeleton index is past the pack's last skeleton"
+                                             : "pack holds no skeleton",
+                        index, pack->skeleton_count);
     }
     chunk = pack->bytes + pack->chunks[pack->first_skeleton + index].offset;
     h = (const noh_skeleton_header *)(const void *)chunk;
@@ -55,7 +56,8 @@ noh_result noh_pack_clip_at(const noh_pack *pack, uint32_t index, noh_pack_clip 
     const uint8_t *chunk;
     NOH_ASSERT(pack && clip);
     if (index >= pack->clip_count) {
-        return noh_fail(error, NOH_ERR_NOT_FOUND, pack->clip_count ? "clip index is past the pack's last clip" : "pack holds no clip", index,
+        return noh_fail(error, NOH_ERR_NOT_FOUND,
+                        pack->clip_count ? "clip index is past the pack's last clip" : "pack holds no clip", index,
                         pack->clip_count);
     }
     chunk = pack->bytes + pack->chunks[pack->first_clip + index].offset;
@@ -69,17 +71,19 @@ noh_result noh_pack_clip_at(const noh_pack *pack, uint32_t index, noh_pack_clip 
 }
 
 noh_result noh_pack_bind_clip(const noh_pack *pack, const noh_pack_clip *clip, noh_skeleton *skeleton, uint32_t *index,
-                                noh_error *error)
+                              noh_error *error)
 {
     for (uint32_t i = 0; i < pack->skeleton_count; i++) {
         const noh_skeleton_header *h;
-        if (noh_pack_skeleton_at(pack, i, skeleton, &h, NULL) == NOH_OK && h->hash == clip->header->skeleton_hash && h->joint_count == clip->header->joint_count) {
+        if (noh_pack_skeleton_at(pack, i, skeleton, &h, NULL) == NOH_OK && h->hash == clip->header->skeleton_hash &&
+            h->joint_count == clip->header->joint_count) {
             if (index) {
                 *index = i;
             }
             return NOH_OK;
         }
     }
-    return noh_fail(error, NOH_ERR_NOT_FOUND, "the clip was built for another skeleton: names or parents of its joints differ",
+    return noh_fail(error, NOH_ERR_NOT_FOUND,
+                    "the clip was built for another skeleton: names or parents of its joints differ",
                     clip->header->skeleton_hash, 0);
 }

@@ -17,14 +17,14 @@ typedef struct noh_pack_clip {
     const noh_clip_header *header;
     const noh_clip_event *events;   /* [header->event_count], in time order */
     const noh_clip_marker *markers; /* [header->marker_count], in time order */
-    const uint8_t *bytes;             /* [header->clip_bytes] */
-    const float *joint_errors;        /* [header->joint_error_count], for the levels of header->skeleton, in its unit */
+    const uint8_t *bytes;           /* [header->clip_bytes] */
+    const float *joint_errors;      /* [header->joint_error_count], for the levels of header->skeleton, in its unit */
 } noh_pack_clip;
 
 /* The n-th skeleton; header (NULL: not wanted) receives its hash and unit.
  * errors  NOT_FOUND  past skeleton_count (where: the index, need: the count) */
-noh_result noh_pack_skeleton_at(const noh_pack *pack, uint32_t index, noh_skeleton *skeleton, const noh_skeleton_header **header,
-                                noh_error *error);
+noh_result noh_pack_skeleton_at(const noh_pack *pack, uint32_t index, noh_skeleton *skeleton,
+                                const noh_skeleton_header **header, noh_error *error);
 
 /* The name of a joint; "" where there is no such skeleton or joint. */
 const char *noh_pack_joint_name(const noh_pack *pack, uint32_t skeleton, uint32_t joint);
@@ -41,7 +41,7 @@ noh_result noh_pack_clip_at(const noh_pack *pack, uint32_t index, noh_pack_clip 
 /* The skeleton in `pack` that a clip of another pack was built for, by hash, and its index (NULL: not wanted).
  * errors  NOT_FOUND no skeleton there has the same joints: names and parents (where: the hash) */
 noh_result noh_pack_bind_clip(const noh_pack *pack, const noh_pack_clip *clip, noh_skeleton *skeleton, uint32_t *index,
-                                noh_error *error);
+                              noh_error *error);
 
 #ifdef __cplusplus
 }

@@ -29,8 +29,8 @@ void noh_box_unite(const float a[6], const float b[6], float out[6])
     }
 }
 
-/* The box of the sum of weighted differences: interval arithmetic per axis, since each target's difference lies in its box
- * whatever the vertex. A negative weight swaps the ends of an interval. */
+/* The box of the sum of weighted differences: interval arithmetic per axis, since each target's difference lies in its
+ * box whatever the vertex. A negative weight swaps the ends of an interval. */
 static void delta_box(const noh_mesh *mesh, const float *weights, float box[6])
 {
     memset(box, 0, 6 * sizeof *box);
@@ -49,8 +49,8 @@ static void delta_box(const noh_mesh *mesh, const float *weights, float box[6])
     }
 }
 
-/* The box of a moved box (Arvo, Graphics Gems, 1990): its centre moves as a point, its half size by the absolute values of
- * the matrix, because each axis of the result is largest in the corner where all terms are. */
+/* The box of a moved box (Arvo, Graphics Gems, 1990): its centre moves as a point, its half size by the absolute values
+ * of the matrix, because each axis of the result is largest in the corner where all terms are. */
 static void move_box(const float m[12], const float box[6], float out[6])
 {
     for (int r = 0; r < 3; r++) {

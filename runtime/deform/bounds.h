@@ -1,9 +1,9 @@
 /* bounds.h: a box around a deformed mesh, without looking at its vertices.
  *
  * The pack holds for each joint the box of the bind positions that it moves, and for each target the box of its
- * differences. A vertex moved by several joints lies within the hull of where each of them alone would put it, so the union
- * of the joints' boxes, grown by the weighted boxes of the targets and moved by the joints, contains every vertex. A little
- * is added for the rounding of the vertices' own arithmetic.
+ * differences. A vertex moved by several joints lies within the hull of where each of them alone would put it, so the
+ * union of the joints' boxes, grown by the weighted boxes of the targets and moved by the joints, contains every
+ * vertex. A little is added for the rounding of the vertices' own arithmetic.
  *
  * Dual quaternions leave that hull: joints that turn against each other put a vertex on an arc. Its points are at most
  * 0.62 times as far from the hull as the joints put the vertex apart (Jung's theorem, for turns of up to 180 degrees

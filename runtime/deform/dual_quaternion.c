@@ -6,18 +6,20 @@
 #include "base/quat.h"
 #include "deform/skin_blend_internal.h"
 
-#define POLAR_STEPS 24 /* axes of 1000 : 1 need 14: each step halves the ratio until it is small, then doubles the digits */
+#define POLAR_STEPS \
+    24 /* axes of 1000 : 1 need 14: each step halves the ratio until it is small, then doubles the digits */
 
 /* ---- polar decomposition ---- */
 
 /* R of the polar decomposition A = R H by Newton's iteration R <- (R + R^-T) / 2 (Higham, Computing the polar
  * decomposition, 1986). In terms of the singular values of R, each becomes the mean of itself and its reciprocal while
- * the directions stay: all go to 1, quadratically once they are near. A is first brought to about unit size, which saves
- * the steps that would only halve large values. m: 3 rows of 4, the fourth column is unused. Returns 0 where A has no
- * inverse. */
+ * the directions stay: all go to 1, quadratically once they are near. A is first brought to about unit size, which
+ * saves the steps that would only halve large values. m: 3 rows of 4, the fourth column is unused. Returns 0 where A
+ * has no inverse. */
 static int polar_rotation(const float a[12], float m[12])
 {
-    float size = noh_sqrt((noh_dot3(a, a) + noh_dot3(a + 4, a + 4) + noh_dot3(a + 8, a + 8)) / 3.0f), c[9], change = 1.0f;
+    float size = noh_sqrt((noh_dot3(a, a) + noh_dot3(a + 4, a + 4) + noh_dot3(a + 8, a + 8)) / 3.0f), c[9],
+          change = 1.0f;
     if (!(size > 1e-18f)) {
         return 0;
     }
@@ -47,8 +49,11 @@ static void rotation_quaternion(const float m[12], float q[4])
 {
     const float squares[4] = { 1.0f + m[0] - m[5] - m[10], 1.0f - m[0] + m[5] - m[10], 1.0f - m[0] - m[5] + m[10],
                                1.0f + m[0] + m[5] + m[10] };
-    const float xy = m[1] + m[4], xz = m[2] + m[8], yz = m[6] + m[9], xw = m[9] - m[6], yw = m[2] - m[8], zw = m[4] - m[1];
-    const float rows[4][4] = { { squares[0], xy, xz, xw }, { xy, squares[1], yz, yw }, { xz, yz, squares[2], zw }, { xw, yw, zw, squares[3] } };
+    const float xy = m[1] + m[4], xz = m[2] + m[8], yz = m[6] + m[9], xw = m[9] - m[6], yw = m[2] - m[8],
+                zw = m[4] - m[1];
+    const float rows[4][4] = {
+        { squares[0], xy, xz, xw }, { xy, squares[1], yz, yw }, { xz, yz, squares[2], zw }, { xw, yw, zw, squares[3] }
+    };
     int largest = 3;
     for (int i = 0; i < 3; i++) {
         largest = squares[i] > squares[largest] ? i : largest;
@@ -96,9 +101,9 @@ static void add_scaled(float *sum, const float *values, float factor, int count)
     }
 }
 
-/* The weighted sums of one vertex's joints, with the rotation part unit. r and -r are one rotation: those on the far side of
- * the strongest joint's are negated, or the blend would go the long way round. |r| is at least that joint's weight: no
- * division by 0. */
+/* The weighted sums of one vertex's joints, with the rotation part unit. r and -r are one rotation: those on the far
+ * side of the strongest joint's are negated, or the blend would go the long way round. |r| is at least that joint's
+ * weight: no division by 0. */
 static void blend(const noh_dual_quaternion *joints, const uint32_t *places, const float *weights, uint32_t count,
                   noh_dual_quaternion *sum)
 {
@@ -134,8 +139,8 @@ static void move(const noh_dual_quaternion *q, noh_vertex *vertex)
     }
 }
 
-void noh_skin_vertex_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers, uint32_t index,
-                          noh_vertex *out)
+void noh_skin_vertex_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers,
+                          uint32_t index, noh_vertex *out)
 {
     uint32_t places[NOH_INFLUENCES_MAX];
     float weights[NOH_INFLUENCES_MAX];
@@ -151,8 +156,8 @@ void noh_skin_vertex_dual(const noh_mesh *mesh, const noh_dual_quaternion *joint
     move(&sum, out);
 }
 
-void noh_skin_position_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers, uint32_t index,
-                            float out[3])
+void noh_skin_position_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers,
+                            uint32_t index, float out[3])
 {
     noh_vertex vertex;
     noh_skin_vertex_dual(mesh, joints, layers, index, &vertex);

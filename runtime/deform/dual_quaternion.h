@@ -31,7 +31,7 @@ extern "C" {
 
 /* One joint: 2 x 4 floats of rigid clip and the stretch. */
 typedef struct noh_dual_quaternion {
-    float real[4];    /* xyzw, unit */
+    float real[4]; /* xyzw, unit */
     float dual[4];
     float stretch[9]; /* [3][3] rows, symmetric */
 } noh_dual_quaternion;
@@ -45,12 +45,12 @@ void noh_dual_quaternion_from_matrix(const float matrix[12], noh_dual_quaternion
 void noh_skin_dual_quaternions(const float *matrices, uint32_t count, noh_dual_quaternion *out);
 
 /* One vertex as drawn, in model space. shapes: joints[skin's joint_count]; layers NULL: no morph targets. */
-void noh_skin_vertex_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers, uint32_t index,
-                          noh_vertex *out);
+void noh_skin_vertex_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers,
+                          uint32_t index, noh_vertex *out);
 
 /* Only its position, in the same bits. */
-void noh_skin_position_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers, uint32_t index,
-                            float out[3]);
+void noh_skin_position_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers,
+                            uint32_t index, float out[3]);
 
 /* As noh_skin_vertices. */
 void noh_skin_vertices_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers,

@@ -14,17 +14,50 @@
 #include <immintrin.h>
 #define NOH_LANES 8
 typedef __m256 lanes;
-static inline lanes lanes_set(float v) { return _mm256_set1_ps(v); }
-static inline lanes lanes_add(lanes a, lanes b) { return _mm256_add_ps(a, b); }
-static inline lanes lanes_sub(lanes a, lanes b) { return _mm256_sub_ps(a, b); }
-static inline lanes lanes_mul(lanes a, lanes b) { return _mm256_mul_ps(a, b); }
-static inline lanes lanes_div(lanes a, lanes b) { return _mm256_div_ps(a, b); }
-static inline lanes lanes_sqrt(lanes a) { return _mm256_sqrt_ps(a); }
-static inline lanes lanes_less(lanes a, lanes b) { return _mm256_cmp_ps(a, b, _CMP_LT_OQ); }
-static inline lanes lanes_choose(lanes mask, lanes yes, lanes no) { return _mm256_blendv_ps(no, yes, mask); }
-static inline int lanes_any(lanes mask) { return _mm256_movemask_ps(mask) != 0; }
-static inline lanes lanes_negate(lanes a) { return _mm256_xor_ps(a, _mm256_set1_ps(-0.0f)); }
-static inline lanes lanes_abs(lanes a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0f), a); }
+static inline lanes lanes_set(float v)
+{
+    return _mm256_set1_ps(v);
+}
+static inline lanes lanes_add(lanes a, lanes b)
+{
+    return _mm256_add_ps(a, b);
+}
+static inline lanes lanes_sub(lanes a, lanes b)
+{
+    return _mm256_sub_ps(a, b);
+}
+static inline lanes lanes_mul(lanes a, lanes b)
+{
+    return _mm256_mul_ps(a, b);
+}
+static inline lanes lanes_div(lanes a, lanes b)
+{
+    return _mm256_div_ps(a, b);
+}
+static inline lanes lanes_sqrt(lanes a)
+{
+    return _mm256_sqrt_ps(a);
+}
+static inline lanes lanes_less(lanes a, lanes b)
+{
+    return _mm256_cmp_ps(a, b, _CMP_LT_OQ);
+}
+static inline lanes lanes_choose(lanes mask, lanes yes, lanes no)
+{
+    return _mm256_blendv_ps(no, yes, mask);
+}
+static inline int lanes_any(lanes mask)
+{
+    return _mm256_movemask_ps(mask) != 0;
+}
+static inline lanes lanes_negate(lanes a)
+{
+    return _mm256_xor_ps(a, _mm256_set1_ps(-0.0f));
+}
+static inline lanes lanes_abs(lanes a)
+{
+    return _mm256_andnot_ps(_mm256_set1_ps(-0.0f), a);
+}
 static inline lanes lanes_field(lanes bits, int left, int right)
 {
     __m256i w = _mm256_sll_epi32(_mm256_castps_si256(bits), _mm_cvtsi32_si128(left));
@@ -45,7 +78,8 @@ static inline void lanes_columns(const float *rows, size_t stride, lanes out[4])
     lanes pairs[4];
     NOH_UNROLL
     for (size_t i = 0; i < 4; i++) {
-        pairs[i] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(rows + i * stride)), _mm_loadu_ps(rows + (i + 4) * stride), 1);
+        pairs[i] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(rows + i * stride)),
+                                        _mm_loadu_ps(rows + (i + 4) * stride), 1);
     }
     lanes_turn(pairs, out);
 }
@@ -68,19 +102,58 @@ static inline void lanes_rows(const lanes columns[4], float *rows, size_t stride
 #include <emmintrin.h>
 #define NOH_LANES 4
 typedef __m128 lanes;
-static inline lanes lanes_load(const float *v) { return _mm_loadu_ps(v); }
-static inline void lanes_store(float *to, lanes v) { _mm_storeu_ps(to, v); }
-static inline lanes lanes_set(float v) { return _mm_set1_ps(v); }
-static inline lanes lanes_add(lanes a, lanes b) { return _mm_add_ps(a, b); }
-static inline lanes lanes_sub(lanes a, lanes b) { return _mm_sub_ps(a, b); }
-static inline lanes lanes_mul(lanes a, lanes b) { return _mm_mul_ps(a, b); }
-static inline lanes lanes_div(lanes a, lanes b) { return _mm_div_ps(a, b); }
-static inline lanes lanes_sqrt(lanes a) { return _mm_sqrt_ps(a); }
-static inline lanes lanes_less(lanes a, lanes b) { return _mm_cmplt_ps(a, b); }
-static inline lanes lanes_choose(lanes mask, lanes yes, lanes no) { return _mm_or_ps(_mm_and_ps(mask, yes), _mm_andnot_ps(mask, no)); }
-static inline int lanes_any(lanes mask) { return _mm_movemask_ps(mask) != 0; }
-static inline lanes lanes_negate(lanes a) { return _mm_xor_ps(a, _mm_set1_ps(-0.0f)); }
-static inline lanes lanes_abs(lanes a) { return _mm_andnot_ps(_mm_set1_ps(-0.0f), a); }
+static inline lanes lanes_load(const float *v)
+{
+    return _mm_loadu_ps(v);
+}
+static inline void lanes_store(float *to, lanes v)
+{
+    _mm_storeu_ps(to, v);
+}
+static inline lanes lanes_set(float v)
+{
+    return _mm_set1_ps(v);
+}
+static inline lanes lanes_add(lanes a, lanes b)
+{
+    return _mm_add_ps(a, b);
+}
+static inline lanes lanes_sub(lanes a, lanes b)
+{
+    return _mm_sub_ps(a, b);
+}
+static inline lanes lanes_mul(lanes a, lanes b)
+{
+    return _mm_mul_ps(a, b);
+}
+static inline lanes lanes_div(lanes a, lanes b)
+{
+    return _mm_div_ps(a, b);
+}
+static inline lanes lanes_sqrt(lanes a)
+{
+    return _mm_sqrt_ps(a);
+}
+static inline lanes lanes_less(lanes a, lanes b)
+{
+    return _mm_cmplt_ps(a, b);
+}
+static inline lanes lanes_choose(lanes mask, lanes yes, lanes no)
+{
+    return _mm_or_ps(_mm_and_ps(mask, yes), _mm_andnot_ps(mask, no));
+}
+static inline int lanes_any(lanes mask)
+{
+    return _mm_movemask_ps(mask) != 0;
+}
+static inline lanes lanes_negate(lanes a)
+{
+    return _mm_xor_ps(a, _mm_set1_ps(-0.0f));
+}
+static inline lanes lanes_abs(lanes a)
+{
+    return _mm_andnot_ps(_mm_set1_ps(-0.0f), a);
+}
 static inline lanes lanes_field(lanes bits, int left, int right)
 {
     __m128i w = _mm_sll_epi32(_mm_castps_si128(bits), _mm_cvtsi32_si128(left));
@@ -108,19 +181,58 @@ static inline void lanes_rows(const lanes columns[4], float *rows, size_t stride
 #include <arm_neon.h>
 #define NOH_LANES 4
 typedef float32x4_t lanes;
-static inline lanes lanes_load(const float *v) { return vld1q_f32(v); }
-static inline void lanes_store(float *to, lanes v) { vst1q_f32(to, v); }
-static inline lanes lanes_set(float v) { return vdupq_n_f32(v); }
-static inline lanes lanes_add(lanes a, lanes b) { return vaddq_f32(a, b); }
-static inline lanes lanes_sub(lanes a, lanes b) { return vsubq_f32(a, b); }
-static inline lanes lanes_mul(lanes a, lanes b) { return vmulq_f32(a, b); }
-static inline lanes lanes_div(lanes a, lanes b) { return vdivq_f32(a, b); }
-static inline lanes lanes_sqrt(lanes a) { return vsqrtq_f32(a); }
-static inline lanes lanes_less(lanes a, lanes b) { return vreinterpretq_f32_u32(vcltq_f32(a, b)); }
-static inline lanes lanes_choose(lanes mask, lanes yes, lanes no) { return vbslq_f32(vreinterpretq_u32_f32(mask), yes, no); }
-static inline int lanes_any(lanes mask) { return vmaxvq_u32(vreinterpretq_u32_f32(mask)) != 0; }
-static inline lanes lanes_negate(lanes a) { return vnegq_f32(a); }
-static inline lanes lanes_abs(lanes a) { return vabsq_f32(a); }
+static inline lanes lanes_load(const float *v)
+{
+    return vld1q_f32(v);
+}
+static inline void lanes_store(float *to, lanes v)
+{
+    vst1q_f32(to, v);
+}
+static inline lanes lanes_set(float v)
+{
+    return vdupq_n_f32(v);
+}
+static inline lanes lanes_add(lanes a, lanes b)
+{
+    return vaddq_f32(a, b);
+}
+static inline lanes lanes_sub(lanes a, lanes b)
+{
+    return vsubq_f32(a, b);
+}
+static inline lanes lanes_mul(lanes a, lanes b)
+{
+    return vmulq_f32(a, b);
+}
+static inline lanes lanes_div(lanes a, lanes b)
+{
+    return vdivq_f32(a, b);
+}
+static inline lanes lanes_sqrt(lanes a)
+{
+    return vsqrtq_f32(a);
+}
+static inline lanes lanes_less(lanes a, lanes b)
+{
+    return vreinterpretq_f32_u32(vcltq_f32(a, b));
+}
+static inline lanes lanes_choose(lanes mask, lanes yes, lanes no)
+{
+    return vbslq_f32(vreinterpretq_u32_f32(mask), yes, no);
+}
+static inline int lanes_any(lanes mask)
+{
+    return vmaxvq_u32(vreinterpretq_u32_f32(mask)) != 0;
+}
+static inline lanes lanes_negate(lanes a)
+{
+    return vnegq_f32(a);
+}
+static inline lanes lanes_abs(lanes a)
+{
+    return vabsq_f32(a);
+}
 static inline lanes lanes_field(lanes bits, int left, int right)
 {
     int32x4_t w = vshlq_s32(vreinterpretq_s32_f32(bits), vdupq_n_s32(left));
@@ -156,17 +268,50 @@ static inline void lanes_rows(const lanes columns[4], float *rows, size_t stride
 #else
 #define NOH_LANES 1
 typedef float lanes;
-static inline lanes lanes_set(float v) { return v; }
-static inline lanes lanes_add(lanes a, lanes b) { return a + b; }
-static inline lanes lanes_sub(lanes a, lanes b) { return a - b; }
-static inline lanes lanes_mul(lanes a, lanes b) { return a * b; }
-static inline lanes lanes_div(lanes a, lanes b) { return a / b; }
-static inline lanes lanes_sqrt(lanes a) { return noh_sqrt(a); }
-static inline lanes lanes_less(lanes a, lanes b) { return a < b ? 1.0f : 0.0f; }
-static inline lanes lanes_choose(lanes mask, lanes yes, lanes no) { return mask != 0.0f ? yes : no; }
-static inline int lanes_any(lanes mask) { return mask != 0.0f; }
-static inline lanes lanes_negate(lanes a) { return -a; }
-static inline lanes lanes_abs(lanes a) { return a < 0.0f ? -a : a; }
+static inline lanes lanes_set(float v)
+{
+    return v;
+}
+static inline lanes lanes_add(lanes a, lanes b)
+{
+    return a + b;
+}
+static inline lanes lanes_sub(lanes a, lanes b)
+{
+    return a - b;
+}
+static inline lanes lanes_mul(lanes a, lanes b)
+{
+    return a * b;
+}
+static inline lanes lanes_div(lanes a, lanes b)
+{
+    return a / b;
+}
+static inline lanes lanes_sqrt(lanes a)
+{
+    return noh_sqrt(a);
+}
+static inline lanes lanes_less(lanes a, lanes b)
+{
+    return a < b ? 1.0f : 0.0f;
+}
+static inline lanes lanes_choose(lanes mask, lanes yes, lanes no)
+{
+    return mask != 0.0f ? yes : no;
+}
+static inline int lanes_any(lanes mask)
+{
+    return mask != 0.0f;
+}
+static inline lanes lanes_negate(lanes a)
+{
+    return -a;
+}
+static inline lanes lanes_abs(lanes a)
+{
+    return a < 0.0f ? -a : a;
+}
 static inline lanes lanes_field(lanes bits, int left, int right)
 {
     uint32_t word;

@@ -11,9 +11,10 @@ static noh_field make_field(unsigned before, unsigned bits, float weight)
     return f;
 }
 
-/* A delta texel is three words, one for each axis; each word holds the position, the normal and the tangent difference of
- * that axis as two's complement integers, from the top bit down. Shifted left to the top and then right arithmetically, a
- * field is its integer; scale and weight make one factor, as on the GPU, so that CPU and GPU round the same products. */
+/* A delta texel is three words, one for each axis; each word holds the position, the normal and the tangent difference
+ * of that axis as two's complement integers, from the top bit down. Shifted left to the top and then right
+ * arithmetically, a field is its integer; scale and weight make one factor, as on the GPU, so that CPU and GPU round
+ * the same products. */
 static void target_fields(const noh_target *t, float weight, noh_field f[3])
 {
     f[0] = make_field(0, t->position_bits, t->position_scale * weight);
@@ -29,9 +30,10 @@ static void run_simd(const uint32_t *words, size_t count, const noh_field f[3], 
 }
 
 /* Every row of every rectangle of one target. The delta texels of a target lie in the order of its rectangles, row by
- * row, so that a row is one run of words in the pack and one run of floats in each layer: the inner loop only streams. */
-static void accumulate_target(const noh_mesh *mesh, const noh_target *t, const noh_field f[3], const noh_morph_layers *layers,
-                              run_function run)
+ * row, so that a row is one run of words in the pack and one run of floats in each layer: the inner loop only streams.
+ */
+static void accumulate_target(const noh_mesh *mesh, const noh_target *t, const noh_field f[3],
+                              const noh_morph_layers *layers, run_function run)
 {
     const noh_rect *rect = mesh->rects + t->first_rect;
     const uint32_t *words = mesh->texels + 3u * (size_t)t->first_texel;
@@ -97,7 +99,8 @@ size_t noh_morph_layers_size(const noh_mesh *mesh)
     return layer_texels(mesh) * 9u * sizeof(float);
 }
 
-noh_result noh_morph_layers_init(void *memory, size_t bytes, const noh_mesh *mesh, noh_morph_layers *layers, noh_error *error)
+noh_result noh_morph_layers_init(void *memory, size_t bytes, const noh_mesh *mesh, noh_morph_layers *layers,
+                                 noh_error *error)
 {
     const size_t floats = layer_texels(mesh) * 3u, need = noh_morph_layers_size(mesh);
     NOH_ASSERT(layers);
@@ -155,7 +158,8 @@ static void run_f16_rtz(const uint32_t *words, size_t count, const noh_field f[3
     }
 }
 
-void noh_morph_accumulate_f16(const noh_mesh *mesh, const float *weights, noh_half_mode mode, const noh_morph_layers *layers)
+void noh_morph_accumulate_f16(const noh_mesh *mesh, const float *weights, noh_half_mode mode,
+                              const noh_morph_layers *layers)
 {
     accumulate(mesh, weights, layers, mode == NOH_HALF_RTZ ? run_f16_rtz : run_f16_rne);
 }

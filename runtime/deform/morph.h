@@ -1,16 +1,15 @@
-/* morph.h: morph targets accumulated on the CPU: the reference for every GPU path, the fallback where there is none, and
- * the surface that picking sees.
+/* morph.h: morph targets accumulated on the CPU: the reference for every GPU path, the fallback where there is none,
+ * and the surface that picking sees.
  *
  * Only differences are accumulated, in three layers (position, normal, tangent), one accumulation texel for each vertex
  * that any target moves. For each target, in index order, and each of its delta texels:
  *   layer += weight * delta
- * with one product and one sum per value, never fused. The SIMD path is chosen when the library is compiled (AVX2, SSE2,
- * NEON, else scalar); each gives the scalar bits.
- * source  Microsoft, SparseMorphTargets (DirectX SDK): additive blending of sparse rectangles into three render
- *         targets. There the accumulator begins as the mesh; here it begins at 0, so that half floats round the small
- *         differences and not the coordinates. Loops over targets outside and moved vertices inside, weights by target:
- *         Granberg, Character Animation with Direct3D, 2009, chapter 8 (whose listing indexes weights by vertex)
- * Threads: no state; any thread, each with layers of its own. */
+ * with one product and one sum per value, never fused. The SIMD path is chosen when the library is compiled (AVX2,
+ * SSE2, NEON, else scalar); each gives the scalar bits. source  Microsoft, SparseMorphTargets (DirectX SDK): additive
+ * blending of sparse rectangles into three render targets. There the accumulator begins as the mesh; here it begins at
+ * 0, so that half floats round the small differences and not the coordinates. Loops over targets outside and moved
+ * vertices inside, weights by target: Granberg, Character Animation with Direct3D, 2009, chapter 8 (whose listing
+ * indexes weights by vertex) Threads: no state; any thread, each with layers of its own. */
 #ifndef NOH_DEFORM_MORPH_H
 #define NOH_DEFORM_MORPH_H
 
@@ -31,10 +30,11 @@ typedef struct noh_morph_layers {
 /* Exact bytes of the layers of a mesh; 0 for a mesh that no target moves. */
 size_t noh_morph_layers_size(const noh_mesh *mesh);
 
-/* Place the layers in memory[bytes], aligned to NOH_MEMORY_ALIGN, and clear them. A mesh without accumulation texels needs
- * none: memory may then be NULL.
- * errors  ARG memory is NULL or misaligned; MEMORY it is too small; need: the bytes */
-noh_result noh_morph_layers_init(void *memory, size_t bytes, const noh_mesh *mesh, noh_morph_layers *layers, noh_error *error);
+/* Place the layers in memory[bytes], aligned to NOH_MEMORY_ALIGN, and clear them. A mesh without accumulation texels
+ * needs none: memory may then be NULL. errors  ARG memory is NULL or misaligned; MEMORY it is too small; need: the
+ * bytes */
+noh_result noh_morph_layers_init(void *memory, size_t bytes, const noh_mesh *mesh, noh_morph_layers *layers,
+                                 noh_error *error);
 
 /* Accumulate all targets whose weight is not zero into cleared layers.
  * shapes  weights[target_count]
@@ -45,7 +45,8 @@ void noh_morph_accumulate(const noh_mesh *mesh, const float *weights, const noh_
 void noh_morph_accumulate_scalar(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers);
 
 /* The contents of a half-float accumulator that a GPU blends into: the sum is rounded to half after each target. */
-void noh_morph_accumulate_f16(const noh_mesh *mesh, const float *weights, noh_half_mode mode, const noh_morph_layers *layers);
+void noh_morph_accumulate_f16(const noh_mesh *mesh, const float *weights, noh_half_mode mode,
+                              const noh_morph_layers *layers);
 
 /* Round finished layers to half once: the gather path's half-float result. */
 void noh_morph_round_f16(const noh_mesh *mesh, noh_half_mode mode, const noh_morph_layers *layers);
@@ -53,8 +54,8 @@ void noh_morph_round_f16(const noh_mesh *mesh, noh_half_mode mode, const noh_mor
 /* "scalar", "sse2", "avx2" or "neon": what noh_morph_accumulate was compiled to. */
 const char *noh_morph_simd(void);
 
-/* The vertex as drawn: position, normal and tangent of the bind pose plus their differences. The normal is made unit, the
- * tangent orthogonal to it and unit; its handedness stays. A direction that vanishes becomes the bind pose's.
+/* The vertex as drawn: position, normal and tangent of the bind pose plus their differences. The normal is made unit,
+ * the tangent orthogonal to it and unit; its handedness stays. A direction that vanishes becomes the bind pose's.
  * ranges  index below vertex_count */
 void noh_morph_vertex(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t index, noh_vertex *out);
 

@@ -93,7 +93,8 @@ static inline void noh_add_step(const uint32_t *words, noh_field f, float *layer
 {
     __m256i q = _mm256_loadu_si256((const __m256i *)(const void *)words);
     q = _mm256_sra_epi32(_mm256_sll_epi32(q, _mm_cvtsi32_si128((int)f.left)), _mm_cvtsi32_si128((int)f.right));
-    _mm256_storeu_ps(layer, _mm256_add_ps(_mm256_loadu_ps(layer), _mm256_mul_ps(_mm256_cvtepi32_ps(q), _mm256_set1_ps(f.weight))));
+    _mm256_storeu_ps(
+        layer, _mm256_add_ps(_mm256_loadu_ps(layer), _mm256_mul_ps(_mm256_cvtepi32_ps(q), _mm256_set1_ps(f.weight))));
 }
 #elif defined(NOH_SSE2)
 #define NOH_MORPH_STEP 4u

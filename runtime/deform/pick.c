@@ -100,9 +100,10 @@ static int boxes_meet(const float a[6], const float b[6])
     return a[0] <= b[3] && b[0] <= a[3] && a[1] <= b[4] && b[1] <= a[4] && a[2] <= b[5] && b[2] <= a[5];
 }
 
-/* For each joint the box of where its vertices may be. A vertex lies within the hull of where each of its joints would put
- * it, and each of its joints has it in its box of the bind pose, so only joints whose boxes meet there can share one: the
- * union of their moved boxes holds it. Conservative, so no hit is lost; it is made once and spares most triangles. */
+/* For each joint the box of where its vertices may be. A vertex lies within the hull of where each of its joints would
+ * put it, and each of its joints has it in its box of the bind pose, so only joints whose boxes meet there can share
+ * one: the union of their moved boxes holds it. Conservative, so no hit is lost; it is made once and spares most
+ * triangles. */
 static void neighbourhoods(const noh_mesh *mesh, uint32_t count, const float *boxes, float *out)
 {
     for (size_t j = 0; j < count; j++) {
@@ -171,8 +172,7 @@ static uint32_t joint_at(const noh_mesh *mesh, const uint32_t vertices[3], const
         float weights[NOH_INFLUENCES_MAX];
         influences = noh_mesh_influences(mesh, vertices[c], places, weights);
         for (uint32_t i = 0; i < influences; i++) {
-            for (k = 0; k < count && joints[k] != places[i]; k++) {
-            }
+            for (k = 0; k < count && joints[k] != places[i]; k++) {}
             if (k == count) {
                 joints[count] = places[i];
                 sums[count++] = 0.0f;
@@ -233,8 +233,8 @@ static int may_hit(const noh_pick_surface *s, const ray *r, float *boxes, uint32
     return 1;
 }
 
-noh_result noh_pick(const noh_pick_surface *surface, const float origin[3], const float direction[3], float distance_max, void *scratch,
-                    size_t scratch_bytes, noh_pick_hit *hit, noh_error *error)
+noh_result noh_pick(const noh_pick_surface *surface, const float origin[3], const float direction[3],
+                    float distance_max, void *scratch, size_t scratch_bytes, noh_pick_hit *hit, noh_error *error)
 {
     const uint32_t count = joint_count(surface->mesh);
     const size_t need = noh_pick_scratch_size(surface->mesh);

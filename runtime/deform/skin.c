@@ -18,8 +18,16 @@ void NOH_SKIN_VERTICES(const noh_mesh *mesh, const float *matrices, const noh_mo
 void NOH_SKIN_VERTICES(const noh_mesh *mesh, const float *matrices, const noh_morph_layers *layers, uint32_t first,
                        uint32_t count, float *positions, float *normals, float *tangents)
 {
-    skin_job job = { mesh, matrices, layers, positions, normals, tangents, (mesh->header->flags & NOH_MESH_TANGENTS) != 0,
-                     mesh->header->palette_count > 1, (mesh->header->flags & NOH_MESH_TEXELS) != 0, { NULL } };
+    skin_job job = { mesh,
+                     matrices,
+                     layers,
+                     positions,
+                     normals,
+                     tangents,
+                     (mesh->header->flags & NOH_MESH_TANGENTS) != 0,
+                     mesh->header->palette_count > 1,
+                     (mesh->header->flags & NOH_MESH_TEXELS) != 0,
+                     { NULL } };
     NOH_ASSERT(matrices && mesh->header->skin != NOH_NONE);
     NOH_ASSERT(first <= mesh->header->vertex_count && count <= mesh->header->vertex_count - first);
     for (uint32_t j = 0; !job.split && j < mesh->palettes[0].joint_count; j++) {
@@ -93,7 +101,8 @@ static void blend_matrix(const noh_mesh *mesh, const float *matrices, uint32_t i
     }
 }
 
-void noh_skin_vertex(const noh_mesh *mesh, const float *matrices, const noh_morph_layers *layers, uint32_t index, noh_vertex *out)
+void noh_skin_vertex(const noh_mesh *mesh, const float *matrices, const noh_morph_layers *layers, uint32_t index,
+                     noh_vertex *out)
 {
     float m[12];
     blend_matrix(mesh, matrices, index, m);
@@ -106,7 +115,8 @@ void noh_skin_vertex(const noh_mesh *mesh, const float *matrices, const noh_morp
     noh_skin_apply(m, out);
 }
 
-void noh_skin_position(const noh_mesh *mesh, const float *matrices, const noh_morph_layers *layers, uint32_t index, float out[3])
+void noh_skin_position(const noh_mesh *mesh, const float *matrices, const noh_morph_layers *layers, uint32_t index,
+                       float out[3])
 {
     float m[12], p[3];
     blend_matrix(mesh, matrices, index, m);

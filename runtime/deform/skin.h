@@ -9,10 +9,9 @@
  * s C is the inverse transpose times the absolute determinant: normals stay orthogonal to the surface under any scale,
  * and unlike the inverse the cofactors exist where an axis has no length.
  *
- * Meshes with NOH_MESH_DUAL_QUATERNION are drawn by dual_quaternion.h instead. The SIMD path is chosen when the library is
- * compiled; each gives the bits of noh_skin_vertex.
- * source  Granberg, Character Animation with Direct3D, 2009, chapters 3 and 8 (whose shader moves normals by M itself);
- *         the weight that is implied: Direct3D 9, Geometry Blending
+ * Meshes with NOH_MESH_DUAL_QUATERNION are drawn by dual_quaternion.h instead. The SIMD path is chosen when the library
+ * is compiled; each gives the bits of noh_skin_vertex. source  Granberg, Character Animation with Direct3D, 2009,
+ * chapters 3 and 8 (whose shader moves normals by M itself); the weight that is implied: Direct3D 9, Geometry Blending
  * Threads: no state; any thread. */
 #ifndef NOH_DEFORM_SKIN_H
 #define NOH_DEFORM_SKIN_H
@@ -23,16 +22,18 @@
 extern "C" {
 #endif
 
-/* The matrices that move the vertices of a skin's meshes, made once per instance and frame: model[joint] * inverse bind.
- * shapes  model[the skeleton's joint_count][12] (noh_local_to_model), matrices[skin's joint_count][12] */
+/* The matrices that move the vertices of a skin's meshes, made once per instance and frame: model[joint] * inverse
+ * bind. shapes  model[the skeleton's joint_count][12] (noh_local_to_model), matrices[skin's joint_count][12] */
 void noh_skin_matrices(const noh_skin *skin, const float *model, float *matrices);
 
 /* One vertex as drawn, in model space. layers NULL: no morph targets.
  * ranges  index below vertex_count, of a skinned mesh */
-void noh_skin_vertex(const noh_mesh *mesh, const float *matrices, const noh_morph_layers *layers, uint32_t index, noh_vertex *out);
+void noh_skin_vertex(const noh_mesh *mesh, const float *matrices, const noh_morph_layers *layers, uint32_t index,
+                     noh_vertex *out);
 
 /* Only its position, in the same bits. */
-void noh_skin_position(const noh_mesh *mesh, const float *matrices, const noh_morph_layers *layers, uint32_t index, float out[3]);
+void noh_skin_position(const noh_mesh *mesh, const float *matrices, const noh_morph_layers *layers, uint32_t index,
+                       float out[3]);
 
 /* Vertices first..first+count-1 of a skinned mesh, in model space.
  * shapes  matrices[skin's joint_count][12]; positions[count][3], normals[count][3] unit, tangents[count][4] unit

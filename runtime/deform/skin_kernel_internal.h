@@ -16,7 +16,7 @@
 typedef struct skin_job {
     const noh_mesh *mesh;
     const float *matrices;
-    const noh_morph_layers *layers; /* or NULL */
+    const noh_morph_layers *layers;        /* or NULL */
     float *positions, *normals, *tangents; /* or NULL */
     int has_tangents;
     int split;  /* into several palettes */
@@ -76,7 +76,8 @@ static inline void unpack_weights(const uint32_t *bits, uint32_t count, float *w
     uint32_t rest = NOH_WEIGHT_ONE;
     NOH_UNROLL
     for (uint32_t i = 1; i < count; i++) {
-        uint32_t bit = i == 1 ? 0 : 22u + 21u * (i - 2u), size = i == 1 ? 22u : 21u, weight = bits[bit / 32u] >> bit % 32u;
+        uint32_t bit = i == 1 ? 0 : 22u + 21u * (i - 2u), size = i == 1 ? 22u : 21u,
+                 weight = bits[bit / 32u] >> bit % 32u;
         if (bit % 32u + size > 32u) {
             weight |= bits[bit / 32u + 1u] << (32u - bit % 32u);
         }
@@ -120,7 +121,8 @@ static inline void blend_vertex(const skin_job *job, uint32_t vertex, uint32_t c
 }
 
 /* Lanes past `count` repeat the last vertex. */
-static inline void blend_block_of(const skin_job *job, uint32_t first, uint32_t count, uint32_t influences, float m[NOH_LANES][12])
+static inline void blend_block_of(const skin_job *job, uint32_t first, uint32_t count, uint32_t influences,
+                                  float m[NOH_LANES][12])
 {
     for (uint32_t i = 0; i < NOH_LANES; i++) {
         blend_vertex(job, first + (i < count ? i : count - 1u), influences, m[i]);
@@ -301,8 +303,8 @@ static inline void store_block(const lanes v[3], lanes last, uint32_t floats, ui
 }
 
 /* A block as noh_skin_apply moves its vertices, to elements at..at+count-1 of the outputs. */
-static inline void move_block(const skin_job *job, float matrices[NOH_LANES][12], lanes p[3], lanes n[3], lanes t[3], lanes hand,
-                              uint32_t at, uint32_t count, int direct)
+static inline void move_block(const skin_job *job, float matrices[NOH_LANES][12], lanes p[3], lanes n[3], lanes t[3],
+                              lanes hand, uint32_t at, uint32_t count, int direct)
 {
     lanes m[3][4], c[3][3], moved[3], sign;
     NOH_UNROLL

@@ -93,7 +93,8 @@ static noh_result read_version(noh_gl_api *api, noh_error *error)
     api->version = major * 100 + minor * 10;
     /* ES 2.0 does not know GL_MAJOR_VERSION and leaves zeros. */
     if (noh_gl_error_take(api) != GL_NO_ERROR || api->version < 300) {
-        return noh_fail(error, NOH_ERR_UNSUPPORTED, "the context is older than OpenGL ES 3.0", (uint64_t)api->version, 300);
+        return noh_fail(error, NOH_ERR_UNSUPPORTED, "the context is older than OpenGL ES 3.0", (uint64_t)api->version,
+                        300);
     }
     return NOH_OK;
 }

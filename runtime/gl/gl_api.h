@@ -30,189 +30,189 @@ extern "C" {
  * a context that lacks one. tests/check_gl_calls.sh compares the list with the calls
  * in runtime/; platform/README.md prints it for porters.
  * X(field, the name as Khronos spells it in its PFNGL...PROC type) */
-#define NOH_GL_REQUIRED(X)                                         \
-    /* state */                                                    \
-    X(Enable, ENABLE)                                              \
-    X(Disable, DISABLE)                                            \
-    X(BlendFunc, BLENDFUNC)                                        \
-    X(BlendFuncSeparate, BLENDFUNCSEPARATE)                        \
-    X(BlendEquation, BLENDEQUATION)                                \
-    X(Viewport, VIEWPORT)                                          \
-    X(Scissor, SCISSOR)                                            \
-    X(DepthFunc, DEPTHFUNC)                                        \
-    X(DepthMask, DEPTHMASK)                                        \
-    X(FrontFace, FRONTFACE)                                        \
-    X(ClearBufferfv, CLEARBUFFERFV)                                \
-    /* questions */                                                \
-    X(GetError, GETERROR)                                          \
-    X(GetString, GETSTRING)                                        \
-    X(GetStringi, GETSTRINGI)                                      \
-    X(GetIntegerv, GETINTEGERV)                                    \
-    /* shaders and programs */                                     \
-    X(CreateShader, CREATESHADER)                                  \
-    X(ShaderSource, SHADERSOURCE)                                  \
-    X(CompileShader, COMPILESHADER)                                \
-    X(GetShaderiv, GETSHADERIV)                                    \
-    X(GetShaderInfoLog, GETSHADERINFOLOG)                          \
-    X(DeleteShader, DELETESHADER)                                  \
-    X(CreateProgram, CREATEPROGRAM)                                \
-    X(AttachShader, ATTACHSHADER)                                  \
-    X(LinkProgram, LINKPROGRAM)                                    \
-    X(GetProgramiv, GETPROGRAMIV)                                  \
-    X(GetProgramInfoLog, GETPROGRAMINFOLOG)                        \
-    X(UseProgram, USEPROGRAM)                                      \
-    X(DeleteProgram, DELETEPROGRAM)                                \
-    X(GetAttribLocation, GETATTRIBLOCATION)                        \
-    X(GetUniformLocation, GETUNIFORMLOCATION)                      \
-    X(GetUniformBlockIndex, GETUNIFORMBLOCKINDEX)                  \
-    X(UniformBlockBinding, UNIFORMBLOCKBINDING)                    \
-    X(Uniform1i, UNIFORM1I)                                        \
-    X(Uniform3i, UNIFORM3I)                                        \
-    X(Uniform4i, UNIFORM4I)                                        \
-    X(Uniform2f, UNIFORM2F)                                        \
-    X(Uniform3f, UNIFORM3F)                                        \
-    X(Uniform4f, UNIFORM4F)                                        \
-    X(Uniform3fv, UNIFORM3FV)                                      \
-    X(Uniform4fv, UNIFORM4FV)                                      \
-    X(UniformMatrix4fv, UNIFORMMATRIX4FV)                          \
-    /* buffers */                                                  \
-    X(GenBuffers, GENBUFFERS)                                      \
-    X(DeleteBuffers, DELETEBUFFERS)                                \
-    X(BindBuffer, BINDBUFFER)                                      \
-    X(BindBufferBase, BINDBUFFERBASE)                              \
-    X(BindBufferRange, BINDBUFFERRANGE)                            \
-    X(BufferData, BUFFERDATA)                                      \
-    X(BufferSubData, BUFFERSUBDATA)                                \
-    /* vertices */                                                 \
-    X(GenVertexArrays, GENVERTEXARRAYS)                            \
-    X(DeleteVertexArrays, DELETEVERTEXARRAYS)                      \
-    X(BindVertexArray, BINDVERTEXARRAY)                            \
-    X(EnableVertexAttribArray, ENABLEVERTEXATTRIBARRAY)            \
-    X(VertexAttribPointer, VERTEXATTRIBPOINTER)                    \
-    X(VertexAttribIPointer, VERTEXATTRIBIPOINTER)                  \
-    X(VertexAttribDivisor, VERTEXATTRIBDIVISOR)                    \
-    X(VertexAttrib4f, VERTEXATTRIB4F)                              \
-    X(VertexAttribI4i, VERTEXATTRIBI4I)                            \
-    /* textures */                                                 \
-    X(GenTextures, GENTEXTURES)                                    \
-    X(DeleteTextures, DELETETEXTURES)                              \
-    X(ActiveTexture, ACTIVETEXTURE)                                \
-    X(BindTexture, BINDTEXTURE)                                    \
-    X(TexStorage2D, TEXSTORAGE2D)                                  \
-    X(TexStorage3D, TEXSTORAGE3D)                                  \
-    X(TexSubImage2D, TEXSUBIMAGE2D)                                \
-    X(TexSubImage3D, TEXSUBIMAGE3D)                                \
-    X(TexParameteri, TEXPARAMETERI)                                \
-    X(GenerateMipmap, GENERATEMIPMAP)                              \
-    X(PixelStorei, PIXELSTOREI)                                    \
-    /* framebuffers */                                             \
-    X(GenFramebuffers, GENFRAMEBUFFERS)                            \
-    X(DeleteFramebuffers, DELETEFRAMEBUFFERS)                      \
-    X(BindFramebuffer, BINDFRAMEBUFFER)                            \
-    X(FramebufferTextureLayer, FRAMEBUFFERTEXTURELAYER)            \
-    X(CheckFramebufferStatus, CHECKFRAMEBUFFERSTATUS)              \
-    X(DrawBuffers, DRAWBUFFERS)                                    \
-    X(ReadBuffer, READBUFFER)                                      \
-    X(ReadPixels, READPIXELS)                                      \
-    X(GenRenderbuffers, GENRENDERBUFFERS)                          \
-    X(DeleteRenderbuffers, DELETERENDERBUFFERS)                    \
-    X(BindRenderbuffer, BINDRENDERBUFFER)                          \
+#define NOH_GL_REQUIRED(X)                                            \
+    /* state */                                                       \
+    X(Enable, ENABLE)                                                 \
+    X(Disable, DISABLE)                                               \
+    X(BlendFunc, BLENDFUNC)                                           \
+    X(BlendFuncSeparate, BLENDFUNCSEPARATE)                           \
+    X(BlendEquation, BLENDEQUATION)                                   \
+    X(Viewport, VIEWPORT)                                             \
+    X(Scissor, SCISSOR)                                               \
+    X(DepthFunc, DEPTHFUNC)                                           \
+    X(DepthMask, DEPTHMASK)                                           \
+    X(FrontFace, FRONTFACE)                                           \
+    X(ClearBufferfv, CLEARBUFFERFV)                                   \
+    /* questions */                                                   \
+    X(GetError, GETERROR)                                             \
+    X(GetString, GETSTRING)                                           \
+    X(GetStringi, GETSTRINGI)                                         \
+    X(GetIntegerv, GETINTEGERV)                                       \
+    /* shaders and programs */                                        \
+    X(CreateShader, CREATESHADER)                                     \
+    X(ShaderSource, SHADERSOURCE)                                     \
+    X(CompileShader, COMPILESHADER)                                   \
+    X(GetShaderiv, GETSHADERIV)                                       \
+    X(GetShaderInfoLog, GETSHADERINFOLOG)                             \
+    X(DeleteShader, DELETESHADER)                                     \
+    X(CreateProgram, CREATEPROGRAM)                                   \
+    X(AttachShader, ATTACHSHADER)                                     \
+    X(LinkProgram, LINKPROGRAM)                                       \
+    X(GetProgramiv, GETPROGRAMIV)                                     \
+    X(GetProgramInfoLog, GETPROGRAMINFOLOG)                           \
+    X(UseProgram, USEPROGRAM)                                         \
+    X(DeleteProgram, DELETEPROGRAM)                                   \
+    X(GetAttribLocation, GETATTRIBLOCATION)                           \
+    X(GetUniformLocation, GETUNIFORMLOCATION)                         \
+    X(GetUniformBlockIndex, GETUNIFORMBLOCKINDEX)                     \
+    X(UniformBlockBinding, UNIFORMBLOCKBINDING)                       \
+    X(Uniform1i, UNIFORM1I)                                           \
+    X(Uniform3i, UNIFORM3I)                                           \
+    X(Uniform4i, UNIFORM4I)                                           \
+    X(Uniform2f, UNIFORM2F)                                           \
+    X(Uniform3f, UNIFORM3F)                                           \
+    X(Uniform4f, UNIFORM4F)                                           \
+    X(Uniform3fv, UNIFORM3FV)                                         \
+    X(Uniform4fv, UNIFORM4FV)                                         \
+    X(UniformMatrix4fv, UNIFORMMATRIX4FV)                             \
+    /* buffers */                                                     \
+    X(GenBuffers, GENBUFFERS)                                         \
+    X(DeleteBuffers, DELETEBUFFERS)                                   \
+    X(BindBuffer, BINDBUFFER)                                         \
+    X(BindBufferBase, BINDBUFFERBASE)                                 \
+    X(BindBufferRange, BINDBUFFERRANGE)                               \
+    X(BufferData, BUFFERDATA)                                         \
+    X(BufferSubData, BUFFERSUBDATA)                                   \
+    /* vertices */                                                    \
+    X(GenVertexArrays, GENVERTEXARRAYS)                               \
+    X(DeleteVertexArrays, DELETEVERTEXARRAYS)                         \
+    X(BindVertexArray, BINDVERTEXARRAY)                               \
+    X(EnableVertexAttribArray, ENABLEVERTEXATTRIBARRAY)               \
+    X(VertexAttribPointer, VERTEXATTRIBPOINTER)                       \
+    X(VertexAttribIPointer, VERTEXATTRIBIPOINTER)                     \
+    X(VertexAttribDivisor, VERTEXATTRIBDIVISOR)                       \
+    X(VertexAttrib4f, VERTEXATTRIB4F)                                 \
+    X(VertexAttribI4i, VERTEXATTRIBI4I)                               \
+    /* textures */                                                    \
+    X(GenTextures, GENTEXTURES)                                       \
+    X(DeleteTextures, DELETETEXTURES)                                 \
+    X(ActiveTexture, ACTIVETEXTURE)                                   \
+    X(BindTexture, BINDTEXTURE)                                       \
+    X(TexStorage2D, TEXSTORAGE2D)                                     \
+    X(TexStorage3D, TEXSTORAGE3D)                                     \
+    X(TexSubImage2D, TEXSUBIMAGE2D)                                   \
+    X(TexSubImage3D, TEXSUBIMAGE3D)                                   \
+    X(TexParameteri, TEXPARAMETERI)                                   \
+    X(GenerateMipmap, GENERATEMIPMAP)                                 \
+    X(PixelStorei, PIXELSTOREI)                                       \
+    /* framebuffers */                                                \
+    X(GenFramebuffers, GENFRAMEBUFFERS)                               \
+    X(DeleteFramebuffers, DELETEFRAMEBUFFERS)                         \
+    X(BindFramebuffer, BINDFRAMEBUFFER)                               \
+    X(FramebufferTextureLayer, FRAMEBUFFERTEXTURELAYER)               \
+    X(CheckFramebufferStatus, CHECKFRAMEBUFFERSTATUS)                 \
+    X(DrawBuffers, DRAWBUFFERS)                                       \
+    X(ReadBuffer, READBUFFER)                                         \
+    X(ReadPixels, READPIXELS)                                         \
+    X(GenRenderbuffers, GENRENDERBUFFERS)                             \
+    X(DeleteRenderbuffers, DELETERENDERBUFFERS)                       \
+    X(BindRenderbuffer, BINDRENDERBUFFER)                             \
     X(RenderbufferStorageMultisample, RENDERBUFFERSTORAGEMULTISAMPLE) \
-    /* draws */                                                    \
-    X(DrawElements, DRAWELEMENTS)                                  \
-    X(DrawElementsInstanced, DRAWELEMENTSINSTANCED)                \
-    X(DrawArraysInstanced, DRAWARRAYSINSTANCED)                    \
-    /* transform feedback */                                       \
+    /* draws */                                                       \
+    X(DrawElements, DRAWELEMENTS)                                     \
+    X(DrawElementsInstanced, DRAWELEMENTSINSTANCED)                   \
+    X(DrawArraysInstanced, DRAWARRAYSINSTANCED)                       \
+    /* transform feedback */                                          \
     X(TransformFeedbackVaryings, TRANSFORMFEEDBACKVARYINGS)
 
 /* More of ES 3.0 that a renderer is likely to need: NULL where the lookup does not
  * know it. The library never calls these. */
-#define NOH_GL_EXTRA(X)                                            \
-    /* state */                                                    \
-    X(IsEnabled, ISENABLED)                                        \
-    X(PolygonOffset, POLYGONOFFSET)                                \
-    X(CullFace, CULLFACE)                                          \
-    X(ColorMask, COLORMASK)                                        \
-    X(ClearColor, CLEARCOLOR)                                      \
-    X(ClearDepthf, CLEARDEPTHF)                                    \
-    X(Clear, CLEAR)                                                \
-    X(ClearBufferuiv, CLEARBUFFERUIV)                              \
-    X(ClearBufferiv, CLEARBUFFERIV)                                \
-    X(ClearBufferfi, CLEARBUFFERFI)                                \
-    X(Flush, FLUSH)                                                \
-    X(Finish, FINISH)                                              \
-    /* questions */                                                \
-    X(GetInteger64v, GETINTEGER64V)                                \
-    X(GetFloatv, GETFLOATV)                                        \
-    /* shaders and programs */                                     \
-    X(DetachShader, DETACHSHADER)                                  \
-    X(BindAttribLocation, BINDATTRIBLOCATION)                      \
-    X(GetActiveUniformBlockiv, GETACTIVEUNIFORMBLOCKIV)            \
-    X(Uniform2i, UNIFORM2I)                                        \
-    X(Uniform1iv, UNIFORM1IV)                                      \
-    X(Uniform4iv, UNIFORM4IV)                                      \
-    X(Uniform1ui, UNIFORM1UI)                                      \
-    X(Uniform2ui, UNIFORM2UI)                                      \
-    X(Uniform4ui, UNIFORM4UI)                                      \
-    X(Uniform1uiv, UNIFORM1UIV)                                    \
-    X(Uniform4uiv, UNIFORM4UIV)                                    \
-    X(Uniform1f, UNIFORM1F)                                        \
-    X(Uniform1fv, UNIFORM1FV)                                      \
-    X(UniformMatrix3fv, UNIFORMMATRIX3FV)                          \
-    /* buffers */                                                  \
-    X(CopyBufferSubData, COPYBUFFERSUBDATA)                        \
-    X(MapBufferRange, MAPBUFFERRANGE)                              \
-    X(FlushMappedBufferRange, FLUSHMAPPEDBUFFERRANGE)              \
-    X(UnmapBuffer, UNMAPBUFFER)                                    \
-    /* vertices */                                                 \
-    X(DisableVertexAttribArray, DISABLEVERTEXATTRIBARRAY)          \
-    X(VertexAttrib4fv, VERTEXATTRIB4FV)                            \
-    /* textures */                                                 \
-    X(CopyTexSubImage3D, COPYTEXSUBIMAGE3D)                        \
-    X(GenSamplers, GENSAMPLERS)                                    \
-    X(DeleteSamplers, DELETESAMPLERS)                              \
-    X(BindSampler, BINDSAMPLER)                                    \
-    X(SamplerParameteri, SAMPLERPARAMETERI)                        \
-    /* framebuffers */                                             \
-    X(FramebufferTexture2D, FRAMEBUFFERTEXTURE2D)                  \
-    X(FramebufferRenderbuffer, FRAMEBUFFERRENDERBUFFER)            \
-    X(BlitFramebuffer, BLITFRAMEBUFFER)                            \
-    X(InvalidateFramebuffer, INVALIDATEFRAMEBUFFER)                \
-    X(RenderbufferStorage, RENDERBUFFERSTORAGE)                    \
-    X(GetInternalformativ, GETINTERNALFORMATIV)                    \
-    /* draws */                                                    \
-    X(DrawArrays, DRAWARRAYS)                                      \
-    X(DrawRangeElements, DRAWRANGEELEMENTS)                        \
-    /* transform feedback */                                       \
-    X(BeginTransformFeedback, BEGINTRANSFORMFEEDBACK)              \
-    X(EndTransformFeedback, ENDTRANSFORMFEEDBACK)                  \
-    /* fences and queries */                                       \
-    X(FenceSync, FENCESYNC)                                        \
-    X(ClientWaitSync, CLIENTWAITSYNC)                              \
-    X(DeleteSync, DELETESYNC)                                      \
-    X(GenQueries, GENQUERIES)                                      \
-    X(DeleteQueries, DELETEQUERIES)                                \
-    X(BeginQuery, BEGINQUERY)                                      \
-    X(EndQuery, ENDQUERY)                                          \
+#define NOH_GL_EXTRA(X)                                   \
+    /* state */                                           \
+    X(IsEnabled, ISENABLED)                               \
+    X(PolygonOffset, POLYGONOFFSET)                       \
+    X(CullFace, CULLFACE)                                 \
+    X(ColorMask, COLORMASK)                               \
+    X(ClearColor, CLEARCOLOR)                             \
+    X(ClearDepthf, CLEARDEPTHF)                           \
+    X(Clear, CLEAR)                                       \
+    X(ClearBufferuiv, CLEARBUFFERUIV)                     \
+    X(ClearBufferiv, CLEARBUFFERIV)                       \
+    X(ClearBufferfi, CLEARBUFFERFI)                       \
+    X(Flush, FLUSH)                                       \
+    X(Finish, FINISH)                                     \
+    /* questions */                                       \
+    X(GetInteger64v, GETINTEGER64V)                       \
+    X(GetFloatv, GETFLOATV)                               \
+    /* shaders and programs */                            \
+    X(DetachShader, DETACHSHADER)                         \
+    X(BindAttribLocation, BINDATTRIBLOCATION)             \
+    X(GetActiveUniformBlockiv, GETACTIVEUNIFORMBLOCKIV)   \
+    X(Uniform2i, UNIFORM2I)                               \
+    X(Uniform1iv, UNIFORM1IV)                             \
+    X(Uniform4iv, UNIFORM4IV)                             \
+    X(Uniform1ui, UNIFORM1UI)                             \
+    X(Uniform2ui, UNIFORM2UI)                             \
+    X(Uniform4ui, UNIFORM4UI)                             \
+    X(Uniform1uiv, UNIFORM1UIV)                           \
+    X(Uniform4uiv, UNIFORM4UIV)                           \
+    X(Uniform1f, UNIFORM1F)                               \
+    X(Uniform1fv, UNIFORM1FV)                             \
+    X(UniformMatrix3fv, UNIFORMMATRIX3FV)                 \
+    /* buffers */                                         \
+    X(CopyBufferSubData, COPYBUFFERSUBDATA)               \
+    X(MapBufferRange, MAPBUFFERRANGE)                     \
+    X(FlushMappedBufferRange, FLUSHMAPPEDBUFFERRANGE)     \
+    X(UnmapBuffer, UNMAPBUFFER)                           \
+    /* vertices */                                        \
+    X(DisableVertexAttribArray, DISABLEVERTEXATTRIBARRAY) \
+    X(VertexAttrib4fv, VERTEXATTRIB4FV)                   \
+    /* textures */                                        \
+    X(CopyTexSubImage3D, COPYTEXSUBIMAGE3D)               \
+    X(GenSamplers, GENSAMPLERS)                           \
+    X(DeleteSamplers, DELETESAMPLERS)                     \
+    X(BindSampler, BINDSAMPLER)                           \
+    X(SamplerParameteri, SAMPLERPARAMETERI)               \
+    /* framebuffers */                                    \
+    X(FramebufferTexture2D, FRAMEBUFFERTEXTURE2D)         \
+    X(FramebufferRenderbuffer, FRAMEBUFFERRENDERBUFFER)   \
+    X(BlitFramebuffer, BLITFRAMEBUFFER)                   \
+    X(InvalidateFramebuffer, INVALIDATEFRAMEBUFFER)       \
+    X(RenderbufferStorage, RENDERBUFFERSTORAGE)           \
+    X(GetInternalformativ, GETINTERNALFORMATIV)           \
+    /* draws */                                           \
+    X(DrawArrays, DRAWARRAYS)                             \
+    X(DrawRangeElements, DRAWRANGEELEMENTS)               \
+    /* transform feedback */                              \
+    X(BeginTransformFeedback, BEGINTRANSFORMFEEDBACK)     \
+    X(EndTransformFeedback, ENDTRANSFORMFEEDBACK)         \
+    /* fences and queries */                              \
+    X(FenceSync, FENCESYNC)                               \
+    X(ClientWaitSync, CLIENTWAITSYNC)                     \
+    X(DeleteSync, DELETESYNC)                             \
+    X(GenQueries, GENQUERIES)                             \
+    X(DeleteQueries, DELETEQUERIES)                       \
+    X(BeginQuery, BEGINQUERY)                             \
+    X(EndQuery, ENDQUERY)                                 \
     X(GetQueryObjectuiv, GETQUERYOBJECTUIV)
 
 /* Functions that a context may lack. One that is not NULL may be called: the loader
  * checks the version and the extension strings, because most lookups return a stub
  * for any name. A field does not tell whether the function is core, KHR, EXT or OES.
  * X(field, type, name without suffix, group) */
-#define NOH_GL_OPTIONAL(X)                                                                        \
-    X(FramebufferTexture, FRAMEBUFFERTEXTURE, "glFramebufferTexture", NOH_GL_GROUP_GEOMETRY)      \
-    X(ObjectLabel, OBJECTLABEL, "glObjectLabel", NOH_GL_GROUP_DEBUG)                              \
-    X(PushDebugGroup, PUSHDEBUGGROUP, "glPushDebugGroup", NOH_GL_GROUP_DEBUG)                     \
-    X(PopDebugGroup, POPDEBUGGROUP, "glPopDebugGroup", NOH_GL_GROUP_DEBUG)                        \
-    X(DebugMessageCallback, DEBUGMESSAGECALLBACK, "glDebugMessageCallback", NOH_GL_GROUP_DEBUG)   \
-    X(DebugMessageControl, DEBUGMESSAGECONTROL, "glDebugMessageControl", NOH_GL_GROUP_DEBUG)      \
-    X(TimeGenQueries, GENQUERIESEXT, "glGenQueries", NOH_GL_GROUP_TIMER)                          \
-    X(TimeDeleteQueries, DELETEQUERIESEXT, "glDeleteQueries", NOH_GL_GROUP_TIMER)                 \
-    X(TimeBeginQuery, BEGINQUERYEXT, "glBeginQuery", NOH_GL_GROUP_TIMER)                          \
-    X(TimeEndQuery, ENDQUERYEXT, "glEndQuery", NOH_GL_GROUP_TIMER)                                \
-    X(TimeGetQueryiv, GETQUERYIVEXT, "glGetQueryiv", NOH_GL_GROUP_TIMER)                          \
-    X(TimeGetQueryObjectuiv, GETQUERYOBJECTUIVEXT, "glGetQueryObjectuiv", NOH_GL_GROUP_TIMER)     \
+#define NOH_GL_OPTIONAL(X)                                                                      \
+    X(FramebufferTexture, FRAMEBUFFERTEXTURE, "glFramebufferTexture", NOH_GL_GROUP_GEOMETRY)    \
+    X(ObjectLabel, OBJECTLABEL, "glObjectLabel", NOH_GL_GROUP_DEBUG)                            \
+    X(PushDebugGroup, PUSHDEBUGGROUP, "glPushDebugGroup", NOH_GL_GROUP_DEBUG)                   \
+    X(PopDebugGroup, POPDEBUGGROUP, "glPopDebugGroup", NOH_GL_GROUP_DEBUG)                      \
+    X(DebugMessageCallback, DEBUGMESSAGECALLBACK, "glDebugMessageCallback", NOH_GL_GROUP_DEBUG) \
+    X(DebugMessageControl, DEBUGMESSAGECONTROL, "glDebugMessageControl", NOH_GL_GROUP_DEBUG)    \
+    X(TimeGenQueries, GENQUERIESEXT, "glGenQueries", NOH_GL_GROUP_TIMER)                        \
+    X(TimeDeleteQueries, DELETEQUERIESEXT, "glDeleteQueries", NOH_GL_GROUP_TIMER)               \
+    X(TimeBeginQuery, BEGINQUERYEXT, "glBeginQuery", NOH_GL_GROUP_TIMER)                        \
+    X(TimeEndQuery, ENDQUERYEXT, "glEndQuery", NOH_GL_GROUP_TIMER)                              \
+    X(TimeGetQueryiv, GETQUERYIVEXT, "glGetQueryiv", NOH_GL_GROUP_TIMER)                        \
+    X(TimeGetQueryObjectuiv, GETQUERYOBJECTUIVEXT, "glGetQueryObjectuiv", NOH_GL_GROUP_TIMER)   \
     X(TimeGetQueryObjectui64v, GETQUERYOBJECTUI64VEXT, "glGetQueryObjectui64v", NOH_GL_GROUP_TIMER)
 
 typedef struct noh_gl_api {

@@ -85,7 +85,7 @@ static void attach(const probe *p, GLuint texture, uint32_t attachment, uint32_t
 /* Attach the three layers as draw buffers. 0 where the driver refuses. */
 static int attach_layers(const probe *p, GLuint texture)
 {
-    static const GLenum buffers[LAYERS] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2};
+    static const GLenum buffers[LAYERS] = { GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2 };
     p->api->BindFramebuffer(GL_FRAMEBUFFER, p->framebuffer);
     for (uint32_t i = 0; i < LAYERS; i++) attach(p, texture, i, i);
     p->api->DrawBuffers(LAYERS, buffers);
@@ -130,9 +130,9 @@ static int draw_and_read(const probe *p, GLint first_row, GLsizei rows, float pi
 
 /* --- comparing ---
  *
- * What lies in a target is compared with three models of it: exact float32 sums, and halves that were rounded toward zero
- * or to nearest after each pass. The values are chosen so that the two roundings differ, ties included; the model that
- * matches every bit is how this driver rounds. If none does, a half-float result is only held to a bound. */
+ * What lies in a target is compared with three models of it: exact float32 sums, and halves that were rounded toward
+ * zero or to nearest after each pass. The values are chosen so that the two roundings differ, ties included; the model
+ * that matches every bit is how this driver rounds. If none does, a half-float result is only held to a bound. */
 
 /* The models of what lies in the target after some passes, one per rounding. */
 typedef struct models {
@@ -163,7 +163,7 @@ static void advance(models *m, uint32_t pass)
  * below 4, flushed denormals included, but far from a pass that did not arrive. */
 static comparison compare(const models *m, float pixels[LAYERS][FLOATS])
 {
-    comparison out = {1, 1, 1, 1};
+    comparison out = { 1, 1, 1, 1 };
     for (uint32_t layer = 0; layer < LAYERS; layer++) {
         for (uint32_t i = 0; i < FLOATS; i++) {
             float got = pixels[layer][i];
@@ -205,7 +205,7 @@ static void probe_blend(const probe *p, models *m, float_result *out)
 
 static void probe_store(const probe *p, models *m, float_result *out)
 {
-    static const GLfloat clear[4] = {7.0f, 7.0f, 7.0f, 7.0f};
+    static const GLfloat clear[4] = { 7.0f, 7.0f, 7.0f, 7.0f };
     float pixels[LAYERS][FLOATS];
     for (GLint i = 0; i < LAYERS; i++) p->api->ClearBufferfv(GL_COLOR, i, clear);
     int drawn = draw_and_read(p, 0, 1, pixels);
@@ -262,7 +262,7 @@ static int probe_u32(const probe *p)
 /* Layers through a geometry shader, in RGBA8: whether floats render is asked apart. */
 static int draw_layers(const probe *p, GLuint program, GLuint texture)
 {
-    static const GLfloat clear[4] = {1.0f, 1.0f, 1.0f, 1.0f};
+    static const GLfloat clear[4] = { 1.0f, 1.0f, 1.0f, 1.0f };
     static const GLenum buffer = GL_COLOR_ATTACHMENT0;
     const noh_gl_api *gl = p->api;
     gl->BindFramebuffer(GL_FRAMEBUFFER, p->framebuffer);
@@ -397,7 +397,7 @@ const char *noh_gl_geometry_defines(const noh_gl_api *api)
 
 static noh_result make_programs(probe *p, noh_error *error)
 {
-    static const char *const samplers[] = {"values"};
+    static const char *const samplers[] = { "values" };
     noh_gl_program_desc desc;
     memset(&desc, 0, sizeof desc);
     desc.name = "noh probe";
@@ -480,7 +480,7 @@ noh_result noh_gl_caps_probe(const noh_gl_api *api, noh_gl_caps *out, noh_error 
     if (!out) return noh_fail(error, NOH_ERR_ARG, "the struct for the capabilities is NULL", 0, 0);
     noh_gl_caps caps;
     probe p;
-    GLint viewport[4] = {0, 0, 0, 0};
+    GLint viewport[4] = { 0, 0, 0, 0 };
     memset(&caps, 0, sizeof caps);
     memset(&p, 0, sizeof p);
     p.api = api;

@@ -21,12 +21,12 @@ extern "C" {
 #endif
 
 typedef struct noh_gl_caps {
-    int version;             /* major * 100 + minor * 10 */
-    int is_es;               /* 0: desktop GL */
-    char vendor[64];         /* cut to fit */
+    int version;     /* major * 100 + minor * 10 */
+    int is_es;       /* 0: desktop GL */
+    char vendor[64]; /* cut to fit */
     char renderer[128];
     char version_text[128];
-    uint64_t renderer_hash;  /* FNV-1a 64 of the three whole texts: a key for calibrations kept between runs */
+    uint64_t renderer_hash; /* FNV-1a 64 of the three whole texts: a key for calibrations kept between runs */
 
     uint32_t texture_size_max;
     uint32_t array_layers_max;
@@ -39,15 +39,15 @@ typedef struct noh_gl_caps {
     uint32_t uniform_offset_align; /* bytes, for glBindBufferRange */
 
     /* 1 or 0. All but layered draw into three layers of one array texture at once. */
-    int mrt3;        /* three layers of one array texture as draw buffers, in some format */
-    int render_f32;  /* RGBA32F arrives, bit for bit */
-    int render_f16;  /* RGBA16F arrives, within a half's precision */
-    int render_u32;  /* RGBA32UI arrives; ES 3.0 promises it */
-    int blend_f32;   /* ONE, ONE into RGBA32F adds */
-    int blend_f16;   /* the same into RGBA16F */
+    int mrt3;            /* three layers of one array texture as draw buffers, in some format */
+    int render_f32;      /* RGBA32F arrives, bit for bit */
+    int render_f16;      /* RGBA16F arrives, within a half's precision */
+    int render_u32;      /* RGBA32UI arrives; ES 3.0 promises it */
+    int blend_f32;       /* ONE, ONE into RGBA32F adds */
+    int blend_f16;       /* the same into RGBA16F */
     int blend_f32_exact; /* and gives the bits of C's float addition */
-    int layered;     /* a geometry shader's gl_Layer reaches three layers of a layered framebuffer */
-    int timer_query; /* EXT_disjoint_timer_query, or desktop GL's */
+    int layered;         /* a geometry shader's gl_Layer reaches three layers of a layered framebuffer */
+    int timer_query;     /* EXT_disjoint_timer_query, or desktop GL's */
 
     /* How a fragment's float becomes a half. UNKNOWN: not as either model, so
      * results can only be compared within a bound. */

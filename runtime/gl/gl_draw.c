@@ -64,7 +64,8 @@ static const noh_material *material_of(const noh_gl_mesh *mesh, const noh_submes
     return submesh->material == NOH_NONE ? &plain : &mesh->mesh.pack->materials[submesh->material];
 }
 
-static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m, const noh_gl_texture *pictures)
+static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m,
+                         const noh_gl_texture *pictures)
 {
     GLuint texture = m->base_color_texture == NOH_NONE ? r->white.name : pictures[m->base_color_texture].name;
     NOH_ASSERT(texture); /* a picture that was not made */
@@ -85,8 +86,8 @@ static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, cons
 static const noh_gl_lod whole = { 0, 0.0f, 1.0f };
 
 /* NULL where the renderer's desc had no such draw, or no pixel is to be drawn. */
-static const noh_gl_variant *variant_of(const noh_gl_renderer *r, const noh_gl_mesh *mesh, const noh_gl_skin_binding *skin, int crowd,
-                                        const noh_gl_lod *lod)
+static const noh_gl_variant *variant_of(const noh_gl_renderer *r, const noh_gl_mesh *mesh,
+                                        const noh_gl_skin_binding *skin, int crowd, const noh_gl_lod *lod)
 {
     noh_gl_variant_key key = noh_gl_variant_key_of(&mesh->mesh, skin, crowd, r->layers_uint, r->view);
     const noh_gl_variant *v;
@@ -96,7 +97,8 @@ static const noh_gl_variant *variant_of(const noh_gl_renderer *r, const noh_gl_m
     return lod->from < lod->to ? v : NULL;
 }
 
-static void draw_submesh(const noh_gl_renderer *r, const noh_gl_mesh *mesh, const noh_submesh *s, size_t level_first, uint32_t count)
+static void draw_submesh(const noh_gl_renderer *r, const noh_gl_mesh *mesh, const noh_submesh *s, size_t level_first,
+                         uint32_t count)
 {
     const void *first = (const void *)(level_first + (uintptr_t)s->first_index * mesh->mesh.header->index_bytes);
     if (count == 1u) {

@@ -11,15 +11,13 @@ static void GL_APIENTRY ignore_name(GLuint name)
     (void)name;
 }
 
-static const noh_gl_api lost = {
-    .DeleteBuffers = ignore_names,
-    .DeleteTextures = ignore_names,
-    .DeleteRenderbuffers = ignore_names,
-    .DeleteFramebuffers = ignore_names,
-    .DeleteVertexArrays = ignore_names,
-    .DeleteShader = ignore_name,
-    .DeleteProgram = ignore_name
-};
+static const noh_gl_api lost = { .DeleteBuffers = ignore_names,
+                                 .DeleteTextures = ignore_names,
+                                 .DeleteRenderbuffers = ignore_names,
+                                 .DeleteFramebuffers = ignore_names,
+                                 .DeleteVertexArrays = ignore_names,
+                                 .DeleteShader = ignore_name,
+                                 .DeleteProgram = ignore_name };
 
 const noh_gl_api *noh_gl_lost_api(void)
 {

@@ -7,6 +7,7 @@ typedef struct texel_size {
     uint32_t bytes;
 } texel_size;
 
+/* clang-format off */
 static const texel_size texel_sizes[] = {
     {GL_R8, 1}, {GL_R8_SNORM, 1}, {GL_R8UI, 1}, {GL_R8I, 1},
     {GL_RG8, 2}, {GL_RG8_SNORM, 2}, {GL_RG8UI, 2}, {GL_RG8I, 2},
@@ -21,6 +22,7 @@ static const texel_size texel_sizes[] = {
     {GL_DEPTH_COMPONENT16, 2}, {GL_DEPTH_COMPONENT24, 4}, {GL_DEPTH_COMPONENT32F, 4},
     {GL_DEPTH24_STENCIL8, 4}, {GL_DEPTH32F_STENCIL8, 8}, {GL_STENCIL_INDEX8, 1}
 };
+/* clang-format on */
 
 uint32_t noh_gl_texel_bytes(GLenum format)
 {
@@ -73,7 +75,9 @@ noh_result noh_gl_buffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, GL
 {
     NOH_ASSERT(api && ledger && out);
     if (bytes == 0) return noh_fail(error, NOH_ERR_ARG, "a buffer has no bytes", 0, 0);
-    if (bytes > (uint64_t)PTRDIFF_MAX) return noh_fail(error, NOH_ERR_LIMIT, "a buffer is larger than the address space", (uint64_t)PTRDIFF_MAX, bytes);
+    if (bytes > (uint64_t)PTRDIFF_MAX)
+        return noh_fail(error, NOH_ERR_LIMIT, "a buffer is larger than the address space", (uint64_t)PTRDIFF_MAX,
+                        bytes);
     noh_gl_error_take(api);
     GLuint name = 0;
     api->GenBuffers(1, &name);
@@ -121,7 +125,9 @@ noh_result noh_gl_texture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
 {
     NOH_ASSERT(api && ledger && desc && out);
     uint64_t bytes = noh_gl_texture_bytes(desc);
-    if (bytes == 0) return noh_fail(error, NOH_ERR_ARG, "a texture desc has an unknown format, no size, or more levels than its size has", 0, 0);
+    if (bytes == 0)
+        return noh_fail(error, NOH_ERR_ARG,
+                        "a texture desc has an unknown format, no size, or more levels than its size has", 0, 0);
     GLenum target = desc->layers ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
     GLsizei width = (GLsizei)desc->width, height = (GLsizei)desc->height;
     GLsizei levels = desc->levels ? (GLsizei)desc->levels : 1;
@@ -167,7 +173,8 @@ noh_result noh_gl_renderbuffer_create(const noh_gl_api *api, noh_gl_ledger *ledg
 {
     NOH_ASSERT(api && ledger && out);
     uint64_t bytes = noh_gl_renderbuffer_bytes(format, width, height, samples);
-    if (bytes == 0) return noh_fail(error, NOH_ERR_ARG, "a renderbuffer has an unknown format, no size, or too many samples", 0, 0);
+    if (bytes == 0)
+        return noh_fail(error, NOH_ERR_ARG, "a renderbuffer has an unknown format, no size, or too many samples", 0, 0);
     noh_gl_error_take(api);
     GLuint name = 0;
     api->GenRenderbuffers(1, &name);
@@ -206,7 +213,8 @@ noh_result noh_gl_framebuffer_create(const noh_gl_api *api, noh_gl_ledger *ledge
     GLuint name = 0;
     api->GenFramebuffers(1, &name);
     noh_result result = noh_gl_error_check(api, "the driver refuses a framebuffer", 0, error);
-    if (result == NOH_OK && !name) result = noh_fail(error, NOH_ERR_GL, "the driver gives no name for a framebuffer", 0, 0);
+    if (result == NOH_OK && !name)
+        result = noh_fail(error, NOH_ERR_GL, "the driver gives no name for a framebuffer", 0, 0);
     if (result != NOH_OK) {
         if (name) api->DeleteFramebuffers(1, &name);
         return result;

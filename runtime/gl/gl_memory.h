@@ -77,7 +77,7 @@ typedef struct noh_gl_device {
     const noh_gl_api *api;
     const noh_gl_caps *caps; /* noh_gl_morph_init and noh_gl_skin_init read it; NULL elsewhere */
     noh_gl_ledger *ledger;
-    char *log;               /* [log_bytes], as in noh_gl_program_create: why a shader does not compile; NULL: not kept */
+    char *log; /* [log_bytes], as in noh_gl_program_create: why a shader does not compile; NULL: not kept */
     size_t log_bytes;
 } noh_gl_device;
 

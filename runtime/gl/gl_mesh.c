@@ -43,8 +43,8 @@ uint64_t noh_gl_mesh_bytes(const noh_mesh *mesh)
     return position_bytes(mesh) + attribute_bytes(mesh) + influence_bytes(mesh) + index_bytes(mesh);
 }
 
-static void set_attribute(const noh_gl_api *gl, GLuint location, GLint size, GLenum type, GLboolean normalized, uint32_t stride,
-                          int offset)
+static void set_attribute(const noh_gl_api *gl, GLuint location, GLint size, GLenum type, GLboolean normalized,
+                          uint32_t stride, int offset)
 {
     if (offset >= 0) {
         gl->EnableVertexAttribArray(location);
@@ -126,20 +126,20 @@ noh_result noh_gl_mesh_create(const noh_gl_api *api, noh_gl_ledger *ledger, cons
     api->BindVertexArray(0);
     result = noh_gl_error_check(api, "the driver refuses to unbind a vertex array", 0, error);
     if (!result) {
-        result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, position_bytes(mesh), mesh->positions, GL_STATIC_DRAW,
-                                      &m.positions, error);
+        result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, position_bytes(mesh), mesh->positions,
+                                      GL_STATIC_DRAW, &m.positions, error);
     }
     if (!result) {
-        result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, attribute_bytes(mesh), mesh->attributes, GL_STATIC_DRAW,
-                                      &m.attributes, error);
+        result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, attribute_bytes(mesh), mesh->attributes,
+                                      GL_STATIC_DRAW, &m.attributes, error);
     }
     if (!result && influence_bytes(mesh)) {
-        result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, influence_bytes(mesh), mesh->influences, GL_STATIC_DRAW,
-                                      &m.influences, error);
+        result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, influence_bytes(mesh), mesh->influences,
+                                      GL_STATIC_DRAW, &m.influences, error);
     }
     if (!result) {
-        result = noh_gl_buffer_create(api, ledger, GL_ELEMENT_ARRAY_BUFFER, index_bytes(mesh), indices, GL_STATIC_DRAW, &m.indices,
-                                      error);
+        result = noh_gl_buffer_create(api, ledger, GL_ELEMENT_ARRAY_BUFFER, index_bytes(mesh), indices, GL_STATIC_DRAW,
+                                      &m.indices, error);
     }
     if (result) {
         noh_gl_mesh_delete(api, ledger, &m);
@@ -189,7 +189,8 @@ void noh_gl_mesh_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mes
 static noh_gl_texture_desc picture_desc(const noh_texture *texture)
 {
     noh_gl_texture_desc desc = { GL_SRGB8_ALPHA8, 0, 0, 0, 1, GL_LINEAR, 0 };
-    uint32_t longer = texture->header->width > texture->header->height ? texture->header->width : texture->header->height;
+    uint32_t longer = texture->header->width > texture->header->height ? texture->header->width
+                                                                       : texture->header->height;
     desc.width = texture->header->width;
     desc.height = texture->header->height;
     while (longer >>= 1) {
@@ -228,7 +229,8 @@ noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
     api->BindTexture(GL_TEXTURE_2D, picture.name);
     noh_gl_label(api, GL_TEXTURE, picture.name, "texture", texture->name);
     api->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    api->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, (GLsizei)desc.width, (GLsizei)desc.height, GL_RGBA, GL_UNSIGNED_BYTE, texture->pixels);
+    api->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, (GLsizei)desc.width, (GLsizei)desc.height, GL_RGBA, GL_UNSIGNED_BYTE,
+                       texture->pixels);
     if (desc.levels > 1) {
         api->GenerateMipmap(GL_TEXTURE_2D);
     }

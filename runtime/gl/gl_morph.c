@@ -22,10 +22,13 @@ static noh_result create_layers(noh_gl_morph *m, noh_error *error)
 /* What every path has; the vertex array, program and framebuffers are labelled where they are made. */
 static void label_objects(const noh_gl_morph *m)
 {
-    const struct { GLuint name; const char *what; } textures[] = {
-        { m->layers.name, "morph layers" }, { m->deltas.texture.name, "morph deltas" },
-        { m->rects.texture.name, "morph table" }, { m->record_table.texture.name, "morph records" }
-    };
+    const struct {
+        GLuint name;
+        const char *what;
+    } textures[] = { { m->layers.name, "morph layers" },
+                     { m->deltas.texture.name, "morph deltas" },
+                     { m->rects.texture.name, "morph table" },
+                     { m->record_table.texture.name, "morph records" } };
     for (unsigned i = 0; i < sizeof textures / sizeof textures[0]; i++) {
         if (textures[i].name) {
             noh_gl_label(m->gl, GL_TEXTURE, textures[i].name, textures[i].what, NULL);
@@ -46,7 +49,8 @@ static noh_result make_gl_objects(noh_gl_morph *m, char *log, size_t log_bytes, 
     }
     if (!result) {
         label_objects(m);
-        result = noh_gl_error_check(m->gl, "the driver refuses a call that makes the accumulator", m->plan.gpu_bytes, error);
+        result = noh_gl_error_check(m->gl, "the driver refuses a call that makes the accumulator", m->plan.gpu_bytes,
+                                    error);
     }
     return result;
 }
@@ -84,7 +88,8 @@ static void mark_all_dirty(noh_gl_morph *m)
 }
 
 /* Everything but the GL objects. */
-static noh_gl_morph *build(noh_arena arena, const noh_gl_device *device, const noh_gl_morph_desc *desc, noh_gl_morph_plan plan)
+static noh_gl_morph *build(noh_arena arena, const noh_gl_device *device, const noh_gl_morph_desc *desc,
+                           noh_gl_morph_plan plan)
 {
     noh_gl_morph *m = (noh_gl_morph *)noh_arena_carve(&arena, sizeof *m, 16);
     memset(m, 0, sizeof *m);
@@ -117,7 +122,8 @@ noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_device *de
     NOH_ASSERT(device && device->api && device->caps && device->ledger && desc && morph);
     result = noh_gl_morph_plan_make(desc, device->caps, &plan, error);
     if (!result && plan.cpu_bytes > SIZE_MAX) {
-        result = noh_fail(error, NOH_ERR_LIMIT, "the accumulator needs more memory than this processor addresses", 0, plan.cpu_bytes);
+        result = noh_fail(error, NOH_ERR_LIMIT, "the accumulator needs more memory than this processor addresses", 0,
+                          plan.cpu_bytes);
     }
     if (!result) result = noh_arena_open(&arena, memory, bytes, (size_t)plan.cpu_bytes, error);
     if (result) {

@@ -55,7 +55,7 @@ typedef enum noh_morph_path {
 typedef enum noh_accumulate {
     NOH_ACCUMULATE_AUTO = 0, /* f32 */
     NOH_ACCUMULATE_F32,
-    NOH_ACCUMULATE_F16       /* half the memory; error within the mesh's f16_position_bound */
+    NOH_ACCUMULATE_F16 /* half the memory; error within the mesh's f16_position_bound */
 } noh_accumulate;
 
 /* "auto", "layered", "mrt", "per-layer", "gather", "cpu", "blend"; "auto", "f32", "f16". */
@@ -63,8 +63,9 @@ const char *noh_morph_path_name(noh_morph_path path);
 const char *noh_accumulate_name(noh_accumulate accumulate);
 
 typedef struct noh_gl_morph_desc {
-    const noh_mesh *meshes;          /* [mesh_count]; copied, the packs must stay. May hold several LOD levels of one mesh, each with
-                                      * tiles of its own size: a few instances near, many far. They share the finest one's tables */
+    /* [mesh_count]; copied, the packs must stay. May hold several LOD levels of one mesh, each with tiles of its own
+     * size: a few instances near, many far. They share the finest one's tables */
+    const noh_mesh *meshes;
     uint32_t mesh_count;
     const uint32_t *instance_counts; /* [mesh_count]; NULL: one of each. 1..NOH_MORPH_INSTANCES_MAX in all */
     noh_morph_path path;             /* 0: the cheapest that the capabilities allow; or a policy, or one path */
@@ -74,36 +75,36 @@ typedef struct noh_gl_morph_desc {
 
 /* The resolved plan on a GPU with these capabilities. All bytes are exact. */
 typedef struct noh_gl_morph_plan {
-    noh_morph_path path;         /* never AUTO or BLEND */
-    noh_accumulate accumulate;   /* never AUTO */
-    const char *reason;          /* why this path, in words; a string constant */
-    GLenum layer_format;         /* RGBA32F, RGBA16F, RGBA32UI (float bits), RGB32F or RGB16F */
+    noh_morph_path path;       /* never AUTO or BLEND */
+    noh_accumulate accumulate; /* never AUTO */
+    const char *reason;        /* why this path, in words; a string constant */
+    GLenum layer_format;       /* RGBA32F, RGBA16F, RGBA32UI (float bits), RGB32F or RGB16F */
     uint32_t atlas_width, atlas_height;
     uint32_t instance_count, weight_count;
     uint32_t rect_count, texel_count, pair_count; /* in the tables, which levels of one mesh share */
-    uint64_t cpu_bytes;          /* the block that noh_gl_morph_init needs */
-    uint64_t delta_bytes;        /* GPU: delta texels, or the gather entries */
-    uint64_t table_bytes;        /* GPU: rectangles, or the gather list starts */
-    uint64_t stream_bytes;       /* GPU: what is sent at each update */
-    uint64_t layer_bytes;        /* GPU: the accumulators */
-    uint64_t gpu_bytes;          /* the sum of these four */
+    uint64_t cpu_bytes;                           /* the block that noh_gl_morph_init needs */
+    uint64_t delta_bytes;                         /* GPU: delta texels, or the gather entries */
+    uint64_t table_bytes;                         /* GPU: rectangles, or the gather list starts */
+    uint64_t stream_bytes;                        /* GPU: what is sent at each update */
+    uint64_t layer_bytes;                         /* GPU: the accumulators */
+    uint64_t gpu_bytes;                           /* the sum of these four */
 } noh_gl_morph_plan;
 
 typedef struct noh_gl_morph noh_gl_morph;
 
 /* What one update did. */
 typedef struct noh_gl_morph_stats {
-    uint32_t instances;   /* accumulated again */
-    uint32_t draws;       /* accumulation draws; clears are not draws */
-    uint32_t targets;     /* active (instance, target) pairs */
+    uint32_t instances; /* accumulated again */
+    uint32_t draws;     /* accumulation draws; clears are not draws */
+    uint32_t targets;   /* active (instance, target) pairs */
     uint32_t rects, texels, pairs;
 } noh_gl_morph_stats;
 
 /* Where an instance's deltas are. The same numbers go into u_morph of
  * common_layers.glsl: tile x, tile y, width log2, touched vertices. */
 typedef struct noh_gl_morph_binding {
-    GLuint texture;      /* GL_TEXTURE_2D_ARRAY of three layers */
-    int is_uint;         /* 1: the float's bits in RGBA32UI: build your shader with LAYERS_UINT */
+    GLuint texture; /* GL_TEXTURE_2D_ARRAY of three layers */
+    int is_uint;    /* 1: the float's bits in RGBA32UI: build your shader with LAYERS_UINT */
     int32_t tile_x, tile_y, width_log2, touched;
 } noh_gl_morph_binding;
 
@@ -113,11 +114,10 @@ typedef struct noh_gl_morph_binding {
 noh_result noh_gl_morph_plan_make(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan,
                                   noh_error *error);
 
-/* Build in memory[bytes], which is aligned to NOH_MEMORY_ALIGN and at least plan.cpu_bytes long, and make the GL objects,
- * counted in the device's ledger. All instances start at weight 0.
- * errors  as noh_gl_morph_plan_make; ARG memory is NULL or misaligned, MEMORY it is too small (`need`: plan.cpu_bytes),
- *         nothing is then touched; GL, MEMORY the driver refused an object; DATA a shader does not compile or link. On
- *         error no GL object is left */
+/* Build in memory[bytes], which is aligned to NOH_MEMORY_ALIGN and at least plan.cpu_bytes long, and make the GL
+ * objects, counted in the device's ledger. All instances start at weight 0. errors  as noh_gl_morph_plan_make; ARG
+ * memory is NULL or misaligned, MEMORY it is too small (`need`: plan.cpu_bytes), nothing is then touched; GL, MEMORY
+ * the driver refused an object; DATA a shader does not compile or link. On error no GL object is left */
 noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_device *device, const noh_gl_morph_desc *desc,
                              noh_gl_morph **morph, noh_error *error);
 
@@ -138,12 +138,11 @@ uint32_t noh_gl_morph_instance(const noh_gl_morph *morph, uint32_t mesh, uint32_
  * errors  ARG a weight is not finite, `where` is its index; nothing is then changed */
 noh_result noh_gl_morph_set_weights(noh_gl_morph *morph, uint32_t instance, const float *weights, noh_error *error);
 
-/* Accumulate only what an LOD level of an instance's mesh needs. Draw the instance at this level or a coarser one; while
- * two levels fade, pass the finer. The level's accumulation texels have the same bits as at level 0, except that targets
- * without rectangles in the level do not move it. The instance's binding stays the same.
- * ranges  level 0 is the full mesh; clamped to the levels that the mesh of the desc has
- * A finer level is accumulated by the next update. A coarser one costs nothing and takes effect when the weights next
- * change. */
+/* Accumulate only what an LOD level of an instance's mesh needs. Draw the instance at this level or a coarser one;
+ * while two levels fade, pass the finer. The level's accumulation texels have the same bits as at level 0, except that
+ * targets without rectangles in the level do not move it. The instance's binding stays the same. ranges  level 0 is the
+ * full mesh; clamped to the levels that the mesh of the desc has A finer level is accumulated by the next update. A
+ * coarser one costs nothing and takes effect when the weights next change. */
 void noh_gl_morph_set_lod(noh_gl_morph *morph, uint32_t instance, uint32_t level);
 
 /* Accumulate the instances whose weights or level changed. stats may be NULL.

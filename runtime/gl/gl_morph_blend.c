@@ -3,10 +3,11 @@
  * Each rectangle of an active target is drawn as a quad over the instance's tile, with blending ONE, ONE. The fragment
  * decodes the delta texel under it and multiplies it by weight and scale; alpha plays no part, so weights below 0 and
  * above 1 work. All quads of all instances are one instanced draw. Blending keeps the order in which primitives were
- * submitted (OpenGL ES 3.2, 2.1), so sums are made target by target as on the CPU and have its bits wherever the blender
- * adds in float32. Targets drawn additively, each cut to what it changes, and a geometry shader that sends a triangle to
- * three layers are those of Microsoft's SparseMorphTargets sample (DirectX SDK); that sample blends by source alpha and
- * starts from the base mesh. Here only deltas are summed, which costs half floats no precision of the base. */
+ * submitted (OpenGL ES 3.2, 2.1), so sums are made target by target as on the CPU and have its bits wherever the
+ * blender adds in float32. Targets drawn additively, each cut to what it changes, and a geometry shader that sends a
+ * triangle to three layers are those of Microsoft's SparseMorphTargets sample (DirectX SDK); that sample blends by
+ * source alpha and starts from the base mesh. Here only deltas are summed, which costs half floats no precision of the
+ * base. */
 #include <string.h>
 
 #include "gl/gl_debug.h"
@@ -87,7 +88,8 @@ static void upload_texels(noh_gl_morph *m, const noh_gl_morph_mesh *mesh)
     uint32_t sent = mesh->first_texel;
     for (uint32_t t = 0; t < mesh->mesh.header->target_count; t++) {
         const noh_target *target = &mesh->mesh.targets[t];
-        noh_gl_table_upload(m->gl, &m->deltas, sent, target->texel_count, mesh->mesh.texels + 3u * (size_t)target->first_texel);
+        noh_gl_table_upload(m->gl, &m->deltas, sent, target->texel_count,
+                            mesh->mesh.texels + 3u * (size_t)target->first_texel);
         sent += target->texel_count;
     }
 }
@@ -105,7 +107,8 @@ static noh_result create_tables(noh_gl_morph *m, noh_error *error)
             upload_rects(m, mesh);
         }
     }
-    return result ? result : noh_gl_error_check(m->gl, "the driver refuses the delta texels", m->plan.delta_bytes, error);
+    return result ? result
+                  : noh_gl_error_check(m->gl, "the driver refuses the delta texels", m->plan.delta_bytes, error);
 }
 
 noh_result noh_gl_morph_init_blend(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
@@ -125,7 +128,8 @@ noh_result noh_gl_morph_init_blend(noh_gl_morph *m, char *log, size_t log_bytes,
 
 /* ---- updating ---- */
 
-static void put_rect_records(noh_gl_morph *m, uint32_t first_rect, uint32_t rect_count, uint32_t record, uint32_t *count)
+static void put_rect_records(noh_gl_morph *m, uint32_t first_rect, uint32_t rect_count, uint32_t record,
+                             uint32_t *count)
 {
     if (m->wide) {
         uint32_t *to = (uint32_t *)m->staging + 2u * (size_t)*count;
@@ -145,7 +149,8 @@ static void put_rect_records(noh_gl_morph *m, uint32_t first_rect, uint32_t rect
 
 /* The active targets of one instance, in index order: the order of the sums is part of the result. The table may belong
  * to a finer LOD level, so the first rectangle of each target is counted by that level's numbers. */
-static void list_instance(noh_gl_morph *m, uint32_t instance, uint32_t *slot_count, uint32_t *rect_records, noh_gl_morph_stats *stats)
+static void list_instance(noh_gl_morph *m, uint32_t instance, uint32_t *slot_count, uint32_t *rect_records,
+                          noh_gl_morph_stats *stats)
 {
     const noh_mesh mesh = noh_gl_morph_view(m, instance);
     const noh_gl_morph_mesh *tables = noh_gl_morph_tables(m, instance);

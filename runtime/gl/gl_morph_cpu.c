@@ -4,7 +4,8 @@
 
 #include "gl/gl_morph_internal.h"
 
-/* Floats to halves in place: half i ends at byte 2 i + 2, before float i + 1 begins, so no unread float is overwritten. */
+/* Floats to halves in place: half i ends at byte 2 i + 2, before float i + 1 begins, so no unread float is overwritten.
+ */
 static void narrow_to_half(void *floats, size_t count)
 {
     uint8_t *bytes = (uint8_t *)floats;

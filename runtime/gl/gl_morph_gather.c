@@ -56,9 +56,9 @@ static void count_pair(void *context, uint32_t vertex, uint32_t target, const ui
 }
 
 typedef struct chunk_filler {
-    uint32_t *cursors;        /* [touched] next entry of each vertex */
-    uint32_t first;           /* entry that the chunk begins with */
-    uint32_t (*entries)[4];   /* [NOH_GATHER_CHUNK] */
+    uint32_t *cursors;      /* [touched] next entry of each vertex */
+    uint32_t first;         /* entry that the chunk begins with */
+    uint32_t (*entries)[4]; /* [NOH_GATHER_CHUNK] */
 } chunk_filler;
 
 static void fill_pair(void *context, uint32_t vertex, uint32_t target, const uint32_t words[3])
@@ -71,10 +71,10 @@ static void fill_pair(void *context, uint32_t vertex, uint32_t target, const uin
     }
 }
 
-/* Lists by vertex out of rectangles by target: a counting sort in fixed memory. The first walk over the mesh counts each
- * vertex's entries, and the running sum gives the starts. A second array of cursors then gives each delta its place; but
- * only NOH_GATHER_CHUNK entries fit in the staging memory, so the walk is repeated once per chunk and keeps the entries
- * that fall into it. Targets are visited in index order, so each list is in target order. */
+/* Lists by vertex out of rectangles by target: a counting sort in fixed memory. The first walk over the mesh counts
+ * each vertex's entries, and the running sum gives the starts. A second array of cursors then gives each delta its
+ * place; but only NOH_GATHER_CHUNK entries fit in the staging memory, so the walk is repeated once per chunk and keeps
+ * the entries that fall into it. Targets are visited in index order, so each list is in target order. */
 static void upload_lists(noh_gl_morph *m, const noh_gl_morph_mesh *mesh)
 {
     uint32_t touched = mesh->mesh.header->touched_count, pairs = mesh->mesh.header->pair_count;
@@ -114,7 +114,8 @@ static noh_result create_tables(noh_gl_morph *m, noh_error *error)
             upload_lists(m, &m->meshes[i]);
         }
     }
-    return result ? result : noh_gl_error_check(m->gl, "the driver refuses the delta texels", m->plan.delta_bytes, error);
+    return result ? result
+                  : noh_gl_error_check(m->gl, "the driver refuses the delta texels", m->plan.delta_bytes, error);
 }
 
 noh_result noh_gl_morph_init_gather(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
@@ -139,7 +140,8 @@ static void list_instance(noh_gl_morph *m, uint32_t instance, uint32_t *tile, no
     for (uint32_t t = 0; t < h->target_count; t++) {
         const noh_target *target = &mesh.targets[t];
         const float weight = target->rect_count ? m->weights[first + t] : 0.0f;
-        noh_gl_morph_put_record(m->records + 4u * (size_t)(first + t), target, weight, noh_gl_morph_target_bits(target));
+        noh_gl_morph_put_record(m->records + 4u * (size_t)(first + t), target, weight,
+                                noh_gl_morph_target_bits(target));
         stats->targets += weight != 0.0f;
     }
     noh_gl_morph_tile(m, instance, &x, &y);

@@ -9,20 +9,20 @@
 
 #define NOH_GATHER_CHUNK 2048u /* gather entries that are built at once at load: 32 KiB */
 
-#define NOH_RECT_CHUNK 256u    /* rectangles that are sent at once at load */
+#define NOH_RECT_CHUNK 256u /* rectangles that are sent at once at load */
 
 /* One mesh of the set. Its instances' tiles fill a band of the atlas, row by row. */
 typedef struct noh_gl_morph_mesh {
     noh_mesh mesh;
     uint32_t instance_count, first_instance;
-    uint32_t first_weight;  /* into weights */
+    uint32_t first_weight; /* into weights */
     uint32_t columns, band_y;
-    uint32_t owner;         /* the mesh of the set whose part of the tables this one uses: itself, or a finer level */
+    uint32_t owner; /* the mesh of the set whose part of the tables this one uses: itself, or a finer level */
     /* of an owner, where its part begins */
-    uint32_t first_rect;    /* into the rect table (blended paths) */
-    uint32_t first_texel;   /* into the delta table */
-    uint32_t first_start;   /* into the starts table (gather) */
-    uint32_t first_pair;    /* into the entry table (gather) */
+    uint32_t first_rect;  /* into the rect table (blended paths) */
+    uint32_t first_texel; /* into the delta table */
+    uint32_t first_start; /* into the starts table (gather) */
+    uint32_t first_pair;  /* into the entry table (gather) */
 } noh_gl_morph_mesh;
 
 struct noh_gl_morph {
@@ -30,22 +30,22 @@ struct noh_gl_morph {
     noh_gl_ledger *ledger;
     noh_gl_morph_plan plan;
     uint32_t mesh_count;
-    noh_gl_morph_mesh *meshes;  /* [mesh_count] */
-    uint32_t *instance_mesh;    /* [instance_count] */
-    uint8_t *dirty;             /* [instance_count] */
-    uint8_t *levels;            /* [instance_count], that are accumulated; none is finer than its mesh */
+    noh_gl_morph_mesh *meshes; /* [mesh_count] */
+    uint32_t *instance_mesh;   /* [instance_count] */
+    uint8_t *dirty;            /* [instance_count] */
+    uint8_t *levels;           /* [instance_count], that are accumulated; none is finer than its mesh */
     uint32_t dirty_count;
-    float *weights;             /* [weight_count], instance after instance */
-    uint32_t *records;            /* [weight_count][4] staging of the record table */
-    void *staging;              /* rect records, gather tiles, or the CPU's layers; at load, gather's chunk */
+    float *weights;    /* [weight_count], instance after instance */
+    uint32_t *records; /* [weight_count][4] staging of the record table */
+    void *staging;     /* rect records, gather tiles, or the CPU's layers; at load, gather's chunk */
     size_t staging_bytes;
-    int wide;                   /* a rect record (rectangle, record) is 2 x 32 bits, not 2 x 16 */
+    int wide; /* a rect record (rectangle, record) is 2 x 32 bits, not 2 x 16 */
 
     noh_gl_texture layers;
-    noh_gl_table deltas;        /* delta texels, or gather entries */
-    noh_gl_table rects;         /* rectangles, or gather starts */
+    noh_gl_table deltas; /* delta texels, or gather entries */
+    noh_gl_table rects;  /* rectangles, or gather starts */
     noh_gl_table record_table;
-    noh_gl_buffer stream;       /* rect records or gather tiles */
+    noh_gl_buffer stream; /* rect records or gather tiles */
     GLuint vertex_array, program;
     GLuint framebuffers[3];
     GLint u_layer;
@@ -56,7 +56,8 @@ noh_result noh_gl_morph_layout(const noh_gl_morph_desc *desc, uint32_t texture_s
                                noh_gl_morph_plan *plan, noh_error *error);
 
 /* Carve everything from an arena (or measure it). `m` NULL only measures. */
-void noh_gl_morph_carve(noh_arena *arena, const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan, noh_gl_morph *m);
+void noh_gl_morph_carve(noh_arena *arena, const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan,
+                        noh_gl_morph *m);
 
 /* 1 when rect records need 32 bits. */
 int noh_gl_morph_wide(const noh_gl_morph_plan *plan);

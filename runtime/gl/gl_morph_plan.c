@@ -4,7 +4,8 @@
 #include "gl/gl_morph_internal.h"
 #include "gl/gl_quirks.h"
 
-static const char *const path_names[NOH_MORPH_PATH_COUNT] = { "auto", "layered", "mrt", "per-layer", "gather", "cpu", "blend" };
+static const char *const path_names[NOH_MORPH_PATH_COUNT] = { "auto",   "layered", "mrt",  "per-layer",
+                                                              "gather", "cpu",     "blend" };
 
 const char *noh_morph_path_name(noh_morph_path path)
 {
@@ -30,7 +31,9 @@ static const char *missing(noh_morph_path path, noh_accumulate accumulate, const
             return "gather needs three draw buffers into one texture array";
         }
         if (half) {
-            return caps->render_f16 ? NULL : "gather in f16 needs renderable RGBA16F (EXT_color_buffer_half_float or EXT_color_buffer_float)";
+            return caps->render_f16
+                       ? NULL
+                       : "gather in f16 needs renderable RGBA16F (EXT_color_buffer_half_float or EXT_color_buffer_float)";
         }
         return caps->render_f32 || caps->render_u32 ? NULL : "gather needs renderable RGBA32F or RGBA32UI";
     }
@@ -47,11 +50,12 @@ static const char *missing(noh_morph_path path, noh_accumulate accumulate, const
     return NULL;
 }
 
-/* The cheapest path on a GPU. Costs are in blended texels: mrt blends every texel of the active targets, and a rectangle
- * costs as much as 4 texels of vertex work; gather makes two dependent fetches per entry and reads all entries, active or
- * not. The ratios were measured by `noh bench` (runtime/README.md). Layered and per-layer are never cheaper than mrt. */
-static noh_morph_path cheapest_on_gpu(const noh_gl_morph_plan *plan, float active, noh_accumulate accumulate, const noh_gl_caps *caps,
-                                      const char **reason)
+/* The cheapest path on a GPU. Costs are in blended texels: mrt blends every texel of the active targets, and a
+ * rectangle costs as much as 4 texels of vertex work; gather makes two dependent fetches per entry and reads all
+ * entries, active or not. The ratios were measured by `noh bench` (runtime/README.md). Layered and per-layer are never
+ * cheaper than mrt. */
+static noh_morph_path cheapest_on_gpu(const noh_gl_morph_plan *plan, float active, noh_accumulate accumulate,
+                                      const noh_gl_caps *caps, const char **reason)
 {
     float mrt = active * ((float)plan->texel_count + 4.0f * (float)plan->rect_count);
     float gather = 1.25f * (float)plan->pair_count;
@@ -90,7 +94,8 @@ static noh_morph_path blending_path(noh_accumulate accumulate, const noh_gl_caps
     return NOH_MORPH_PER_LAYER;
 }
 
-static noh_result choose_path(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan, noh_error *error)
+static noh_result choose_path(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan,
+                              noh_error *error)
 {
     const char *lacking;
     plan->accumulate = desc->accumulate == NOH_ACCUMULATE_F16 ? NOH_ACCUMULATE_F16 : NOH_ACCUMULATE_F32;
@@ -140,7 +145,8 @@ static noh_result check_desc(const noh_gl_morph_desc *desc, noh_error *error)
     }
     if ((unsigned)desc->path >= NOH_MORPH_PATH_COUNT || (unsigned)desc->accumulate > NOH_ACCUMULATE_F16 ||
         !(desc->expected_active >= 0.0f && desc->expected_active <= 1.0f)) {
-        return noh_fail(error, NOH_ERR_ARG, "morph desc has an unknown path or accumulate, or expected_active outside 0..1", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG,
+                        "morph desc has an unknown path or accumulate, or expected_active outside 0..1", 0, 0);
     }
     for (uint32_t i = 0; i < desc->mesh_count; i++) {
         instances += desc->instance_counts ? desc->instance_counts[i] : 1u;
@@ -156,8 +162,8 @@ uint32_t noh_gl_morph_pitch(const noh_mesh_header *header)
     return (header->morph_height + 3u) & ~3u;
 }
 
-/* Stack the meshes' bands in an atlas of this width: a mesh's tiles fill rows of as many as fit side by side. Returns the
- * height, which may be more than a texture has. */
+/* Stack the meshes' bands in an atlas of this width: a mesh's tiles fill rows of as many as fit side by side. Returns
+ * the height, which may be more than a texture has. */
 static uint64_t stack_bands(const noh_gl_morph_desc *desc, uint32_t atlas_width, noh_gl_morph_mesh *meshes)
 {
     uint64_t y = 0;
@@ -175,8 +181,9 @@ static uint64_t stack_bands(const noh_gl_morph_desc *desc, uint32_t atlas_width,
     return y;
 }
 
-/* Choose the atlas: the narrowest width, a power of two, at which the bands are not higher than a texture may be. Widths up
- * to 2048 are tried with heights up to 2048, which every ES 3.0 has, and only then the larger ones of this GPU. */
+/* Choose the atlas: the narrowest width, a power of two, at which the bands are not higher than a texture may be.
+ * Widths up to 2048 are tried with heights up to 2048, which every ES 3.0 has, and only then the larger ones of this
+ * GPU. */
 static noh_result place_tiles(const noh_gl_morph_desc *desc, uint32_t texture_size_max, noh_gl_morph_mesh *meshes,
                               noh_gl_morph_plan *plan, noh_error *error)
 {
@@ -203,7 +210,8 @@ static noh_result place_tiles(const noh_gl_morph_desc *desc, uint32_t texture_si
         }
     }
     if (width > texture_size_max || height > 0xffffu) {
-        return noh_fail(error, NOH_ERR_LIMIT, "the instances' tiles do not fit a texture of this GPU", texture_size_max, height);
+        return noh_fail(error, NOH_ERR_LIMIT, "the instances' tiles do not fit a texture of this GPU", texture_size_max,
+                        height);
     }
     stack_bands(desc, width, meshes);
     plan->atlas_width = width;
@@ -211,9 +219,9 @@ static noh_result place_tiles(const noh_gl_morph_desc *desc, uint32_t texture_si
     return NOH_OK;
 }
 
-/* The mesh of the set whose tables a mesh uses: the finest LOD level of the same mesh in the set, the first one of equals.
- * This works because a level's rectangles, target by target, and its lists, vertex by vertex, are a prefix of those of
- * every finer level. */
+/* The mesh of the set whose tables a mesh uses: the finest LOD level of the same mesh in the set, the first one of
+ * equals. This works because a level's rectangles, target by target, and its lists, vertex by vertex, are a prefix of
+ * those of every finer level. */
 static uint32_t owner_of(const noh_gl_morph_desc *desc, uint32_t index)
 {
     uint32_t owner = index;
@@ -274,8 +282,8 @@ noh_result noh_gl_morph_layout(const noh_gl_morph_desc *desc, uint32_t texture_s
         plan->instance_count += count;
         weights += (uint64_t)count * h->target_count;
     }
-    if (weights > NOH_GL_TABLE_TEXELS_MAX || sums.rects > NOH_GL_TABLE_TEXELS_MAX || sums.texels > NOH_GL_TABLE_TEXELS_MAX ||
-        sums.starts > NOH_GL_TABLE_TEXELS_MAX) {
+    if (weights > NOH_GL_TABLE_TEXELS_MAX || sums.rects > NOH_GL_TABLE_TEXELS_MAX ||
+        sums.texels > NOH_GL_TABLE_TEXELS_MAX || sums.starts > NOH_GL_TABLE_TEXELS_MAX) {
         return noh_fail(error, NOH_ERR_LIMIT, "more weights, rectangles or delta texels than a table texture holds",
                         NOH_GL_TABLE_TEXELS_MAX, weights > sums.texels ? weights : sums.texels);
     }
@@ -337,7 +345,9 @@ void noh_gl_morph_carve(noh_arena *arena, const noh_gl_morph_desc *desc, const n
     noh_gl_morph *to = m ? m : &dummy;
     memset(&dummy, 0, sizeof dummy);
     to->meshes = (noh_gl_morph_mesh *)noh_arena_carve(arena, sizeof *to->meshes * desc->mesh_count, 16);
-    to->records = plan->path == NOH_MORPH_CPU ? NULL : (uint32_t *)noh_arena_carve(arena, 16u * (size_t)plan->weight_count, 16);
+    to->records = plan->path == NOH_MORPH_CPU
+                      ? NULL
+                      : (uint32_t *)noh_arena_carve(arena, 16u * (size_t)plan->weight_count, 16);
     to->staging_bytes = staging_size(desc, plan);
     to->staging = noh_arena_carve(arena, to->staging_bytes, 16);
     to->weights = (float *)noh_arena_carve(arena, 4u * (size_t)plan->weight_count, 4);

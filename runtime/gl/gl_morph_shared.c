@@ -1,5 +1,5 @@
-/* gl_morph_shared.c: what the paths share: tiles, weights for the shaders, framebuffers, the instanced vertex stream, and
- * the GL state around a draw. */
+/* gl_morph_shared.c: what the paths share: tiles, weights for the shaders, framebuffers, the instanced vertex stream,
+ * and the GL state around a draw. */
 #include <string.h>
 
 #include "gl/gl_debug.h"
@@ -37,7 +37,8 @@ uint32_t noh_gl_morph_first_weight(const noh_gl_morph *m, uint32_t instance)
 void noh_gl_morph_put_record(uint32_t record[4], const noh_target *target, float weight, uint32_t last)
 {
     /* the same products as the CPU reference, so that both round alike */
-    const float scaled[3] = { target->position_scale * weight, target->normal_scale * weight, target->tangent_scale * weight };
+    const float scaled[3] = { target->position_scale * weight, target->normal_scale * weight,
+                              target->tangent_scale * weight };
     memcpy(record, scaled, sizeof scaled);
     record[3] = last;
 }
@@ -92,7 +93,8 @@ noh_result noh_gl_morph_stream(noh_gl_morph *m, const char *attribute, GLint com
 {
     uint64_t bytes = m->plan.stream_bytes - m->record_table.texture.bytes;
     GLuint location;
-    noh_result result = noh_gl_buffer_create(m->gl, m->ledger, GL_ARRAY_BUFFER, bytes, NULL, GL_STREAM_DRAW, &m->stream, error);
+    noh_result result = noh_gl_buffer_create(m->gl, m->ledger, GL_ARRAY_BUFFER, bytes, NULL, GL_STREAM_DRAW, &m->stream,
+                                             error);
     if (result) {
         return result;
     }

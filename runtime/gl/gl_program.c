@@ -39,7 +39,8 @@ static GLsizei log_rest(const log_text *log)
 static const char *check_source(const noh_gl_source *source)
 {
     if (!source->version || !source->pieces) return "a shader stage has no text";
-    if (source->piece_count == 0 || source->piece_count > NOH_GL_PIECES_MAX) return "a shader stage has no pieces, or more than NOH_GL_PIECES_MAX";
+    if (source->piece_count == 0 || source->piece_count > NOH_GL_PIECES_MAX)
+        return "a shader stage has no pieces, or more than NOH_GL_PIECES_MAX";
     return NULL;
 }
 
@@ -53,14 +54,14 @@ static const char *check_desc(const noh_gl_program_desc *desc)
     return what;
 }
 
-static noh_result compile(const noh_gl_api *api, const noh_gl_program_desc *desc, int stage, GLuint *out,
-                          log_text *log, noh_error *error)
+static noh_result compile(const noh_gl_api *api, const noh_gl_program_desc *desc, int stage, GLuint *out, log_text *log,
+                          noh_error *error)
 {
-    static const char *const failed[] = {"the vertex shader does not compile", "the geometry shader does not compile",
-                                         "the fragment shader does not compile"};
-    static const char *const names[] = {"vertex", "geometry", "fragment"};
-    static const GLenum types[] = {GL_VERTEX_SHADER, GL_GEOMETRY_SHADER, GL_FRAGMENT_SHADER};
-    const noh_gl_source *const sources[] = {desc->vertex, desc->geometry, desc->fragment};
+    static const char *const failed[] = { "the vertex shader does not compile", "the geometry shader does not compile",
+                                          "the fragment shader does not compile" };
+    static const char *const names[] = { "vertex", "geometry", "fragment" };
+    static const GLenum types[] = { GL_VERTEX_SHADER, GL_GEOMETRY_SHADER, GL_FRAGMENT_SHADER };
+    const noh_gl_source *const sources[] = { desc->vertex, desc->geometry, desc->fragment };
     const noh_gl_source *source = sources[stage];
     const GLchar *strings[NOH_GL_PIECES_MAX + 3];
     GLsizei count = 0;
@@ -86,7 +87,7 @@ static noh_result compile(const noh_gl_api *api, const noh_gl_program_desc *desc
 }
 
 static noh_result link_program(const noh_gl_api *api, const noh_gl_program_desc *desc, GLuint program, log_text *log,
-                       noh_error *error)
+                               noh_error *error)
 {
     if (desc->varying_count) {
         GLenum mode = desc->varying_mode ? desc->varying_mode : GL_INTERLEAVED_ATTRIBS;
@@ -136,7 +137,7 @@ noh_result noh_gl_program_create(const noh_gl_api *api, const noh_gl_program_des
                                  size_t log_bytes, noh_error *error)
 {
     NOH_ASSERT(api && desc && program);
-    log_text words = {log, log ? log_bytes : 0, 0};
+    log_text words = { log, log ? log_bytes : 0, 0 };
     if (words.room) log[0] = 0;
     const char *wrong = check_desc(desc);
     if (wrong) return noh_fail(error, NOH_ERR_ARG, wrong, 0, 0);

@@ -32,19 +32,19 @@ typedef struct noh_gl_program_desc {
     const noh_gl_source *fragment; /* required */
     const char *version;           /* instead of each source's own #version line, with its newline; NULL: its own.
                                     * ES wants the same version in all stages of a program */
-    const char *defines;           /* whole lines put right after #version in every stage: #extension, #define; NULL: none */
-    const char *geometry_defines;  /* more such lines, in the geometry stage only; NULL: none */
+    const char *defines; /* whole lines put right after #version in every stage: #extension, #define; NULL: none */
+    const char *geometry_defines; /* more such lines, in the geometry stage only; NULL: none */
 
-    const char *const *samplers;   /* sampler i reads texture unit i. A name that the linker dropped is skipped */
-    uint32_t sampler_count;        /* default 0 */
-    const char *const *blocks;     /* uniform block i is fed from binding i; dropped names are skipped */
-    uint32_t block_count;          /* default 0 */
+    const char *const *samplers; /* sampler i reads texture unit i. A name that the linker dropped is skipped */
+    uint32_t sampler_count;      /* default 0 */
+    const char *const *blocks;   /* uniform block i is fed from binding i; dropped names are skipped */
+    uint32_t block_count;        /* default 0 */
 
-    const char *const *varyings;   /* transform feedback outputs of the vertex stage */
-    uint32_t varying_count;        /* default 0: no transform feedback */
-    GLenum varying_mode;           /* 0: GL_INTERLEAVED_ATTRIBS */
+    const char *const *varyings; /* transform feedback outputs of the vertex stage */
+    uint32_t varying_count;      /* default 0: no transform feedback */
+    GLenum varying_mode;         /* 0: GL_INTERLEAVED_ATTRIBS */
 
-    noh_gl_ledger *ledger;         /* counts the program; NULL: not counted */
+    noh_gl_ledger *ledger; /* counts the program; NULL: not counted */
 } noh_gl_program_desc;
 
 /* Compile, link and label one program. Leaves program 0 in use.

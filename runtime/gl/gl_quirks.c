@@ -3,11 +3,13 @@
 #define SOFTWARE_REASON "cpu: this GL is rasterised in software, so SIMD on the CPU is the least work"
 
 static const noh_gl_quirk quirks[] = {
-    { "llvmpipe", NOH_QUIRK_SOFTWARE, SOFTWARE_REASON, "noh bench, Mesa 22.3.6: runtime/README.md; also names zink on lavapipe" },
+    { "llvmpipe", NOH_QUIRK_SOFTWARE, SOFTWARE_REASON,
+      "noh bench, Mesa 22.3.6: runtime/README.md; also names zink on lavapipe" },
     { "softpipe", NOH_QUIRK_SOFTWARE, SOFTWARE_REASON, "Mesa's other software rasteriser" },
     { "swrast", NOH_QUIRK_SOFTWARE, SOFTWARE_REASON, "Mesa's classic software rasteriser, up to 21.3" },
     { "SwiftShader", NOH_QUIRK_SOFTWARE, SOFTWARE_REASON, "what browsers fall back to; gfx-rs/gfx#2962" },
-    { "Microsoft Basic Render", NOH_QUIRK_SOFTWARE, SOFTWARE_REASON, "Direct3D's WARP under ANGLE; simdsoft/x-studio#602" },
+    { "Microsoft Basic Render", NOH_QUIRK_SOFTWARE, SOFTWARE_REASON,
+      "Direct3D's WARP under ANGLE; simdsoft/x-studio#602" },
     { "Mali", NOH_QUIRK_BLEND_DEAR,
       "gather: this GPU's vendor advises against blending into float framebuffers; sums in registers need none",
       "Arm GPU Best Practices Developer Guide (101897), Fragment shading, Blending" },

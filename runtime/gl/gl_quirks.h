@@ -18,16 +18,16 @@ extern "C" {
 #endif
 
 typedef enum noh_quirk {
-    NOH_QUIRK_SOFTWARE,    /* rasterised on the CPU: auto takes the path cpu */
-    NOH_QUIRK_BLEND_DEAR,  /* float blending is slow: auto takes gather, however few targets are expected */
-    NOH_QUIRK_HALF_UNSURE  /* the probe's half-float modes become NOH_HALF_UNKNOWN */
+    NOH_QUIRK_SOFTWARE,   /* rasterised on the CPU: auto takes the path cpu */
+    NOH_QUIRK_BLEND_DEAR, /* float blending is slow: auto takes gather, however few targets are expected */
+    NOH_QUIRK_HALF_UNSURE /* the probe's half-float modes become NOH_HALF_UNKNOWN */
 } noh_quirk;
 
 typedef struct noh_gl_quirk {
     const char *renderer; /* a part of GL_RENDERER */
     noh_quirk quirk;
     const char *reason;
-    const char *source;   /* who says so: a document, an issue, or how it was measured */
+    const char *source; /* who says so: a document, an issue, or how it was measured */
 } noh_gl_quirk;
 
 /* NULL where the renderer has no such quirk. */

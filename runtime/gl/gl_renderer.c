@@ -28,7 +28,8 @@ static noh_result want_one(noh_gl_renderer *r, noh_gl_variant_key key, noh_error
         return NOH_OK;
     }
     if (r->variant_count == NOH_GL_VARIANTS_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "the meshes need more shader variants than the limit", NOH_GL_VARIANTS_MAX, 0);
+        return noh_fail(error, NOH_ERR_LIMIT, "the meshes need more shader variants than the limit",
+                        NOH_GL_VARIANTS_MAX, 0);
     }
     key.encode_srgb = (uint8_t)r->encode_srgb;
     r->variants[r->variant_count++].key = key;
@@ -47,7 +48,8 @@ static noh_result want(noh_gl_renderer *r, noh_gl_variant_key key, noh_error *er
 }
 
 /* Without joints; with all of its influences; and with each lower number. */
-static noh_result want_mesh(noh_gl_renderer *r, const noh_gl_renderer_desc *desc, const noh_mesh *mesh, noh_error *error)
+static noh_result want_mesh(noh_gl_renderer *r, const noh_gl_renderer_desc *desc, const noh_mesh *mesh,
+                            noh_error *error)
 {
     noh_gl_skin_binding skin = { NOH_PALETTE_AUTO, 0, 0, 0, 0, 0, 0 };
     uint32_t least = desc->fewer_influences ? 1u : NOH_INFLUENCES_MAX;

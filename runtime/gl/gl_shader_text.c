@@ -16,12 +16,12 @@ static int same(const char *a, const char *b)
 
 const char *noh_gl_shader_text(const char *name)
 {
-    static const struct { const char *name, *text; } texts[] = {
-        { "common_layers.glsl", noh_shader_common_layers_glsl },
-        { "common_attributes.glsl", noh_shader_common_attributes_glsl },
-        { "common_skin.glsl", noh_shader_common_skin_glsl },
-        { "common_fade.glsl", noh_shader_common_fade_glsl }
-    };
+    static const struct {
+        const char *name, *text;
+    } texts[] = { { "common_layers.glsl", noh_shader_common_layers_glsl },
+                  { "common_attributes.glsl", noh_shader_common_attributes_glsl },
+                  { "common_skin.glsl", noh_shader_common_skin_glsl },
+                  { "common_fade.glsl", noh_shader_common_fade_glsl } };
     NOH_ASSERT(name);
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
         if (same(name, texts[i].name)) {

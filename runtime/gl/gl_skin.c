@@ -56,8 +56,8 @@ static void dual_rows(const float matrix[12], float rows[16])
 }
 
 /* Gather a palette's joints. stride: floats from a joint's matrix to the next; 0: one for all. */
-static void put_palette(noh_gl_skin *skin, const noh_mesh *mesh, const noh_palette *palette, uint32_t row, const float *matrices,
-                        uint32_t stride)
+static void put_palette(noh_gl_skin *skin, const noh_mesh *mesh, const noh_palette *palette, uint32_t row,
+                        const float *matrices, uint32_t stride)
 {
     const uint16_t *joints = mesh->palette_joints + palette->first_joint;
     uint32_t joint_rows = noh_gl_joint_rows(mesh);
@@ -77,7 +77,8 @@ static void put_palettes(noh_gl_skin *skin, uint32_t instance, const float *matr
     const noh_gl_skin_mesh *m = mesh_of(skin, instance);
     noh_gl_skin_binding binding = noh_gl_skin_binding_of(skin, instance);
     for (uint32_t i = 0; i < m->mesh.header->palette_count; i++) {
-        put_palette(skin, &m->mesh, &m->mesh.palettes[i], binding.first + noh_gl_palette_row(&binding, &m->mesh, i), matrices, stride);
+        put_palette(skin, &m->mesh, &m->mesh.palettes[i], binding.first + noh_gl_palette_row(&binding, &m->mesh, i),
+                    matrices, stride);
     }
 }
 
@@ -105,16 +106,17 @@ float noh_gl_normal_rows(const float w[12], float rows[12])
     return determinant;
 }
 
-/* The tile goes in as floats: its numbers are below 2^24 and so exact. Integer bits would be denormal floats, which GPUs
- * flush to zero. */
+/* The tile goes in as floats: its numbers are below 2^24 and so exact. Integer bits would be denormal floats, which
+ * GPUs flush to zero. */
 noh_result noh_gl_skin_set_place(noh_gl_skin *skin, uint32_t instance, const float world[12],
-                             const noh_gl_morph_binding *morph, noh_error *error)
+                                 const noh_gl_morph_binding *morph, noh_error *error)
 {
     uint32_t row = first_row(mesh_of(skin, instance), instance);
     float normal[12], tile[4] = { 0.0f, 0.0f, 0.0f, 0.0f };
     NOH_ASSERT(world);
     if (skin->plan.mode != NOH_PALETTE_TEXTURE) {
-        return noh_fail(error, NOH_ERR_UNSUPPORTED, "palettes are in a uniform buffer: crowds want NOH_PALETTE_TEXTURE", instance, 0);
+        return noh_fail(error, NOH_ERR_UNSUPPORTED, "palettes are in a uniform buffer: crowds want NOH_PALETTE_TEXTURE",
+                        instance, 0);
     }
     if (noh_gl_normal_rows(world, normal) < 0.0f) {
         return noh_fail(error, NOH_ERR_ARG, "an instance of a crowd is mirrored: draw it alone", instance, 0);
@@ -134,8 +136,8 @@ noh_result noh_gl_skin_set_place(noh_gl_skin *skin, uint32_t instance, const flo
 
 static noh_result create_buffer(noh_gl_skin *skin, noh_error *error)
 {
-    noh_result result = noh_gl_buffer_create(skin->gl, skin->ledger, GL_UNIFORM_BUFFER, skin->plan.gpu_bytes, NULL, GL_DYNAMIC_DRAW,
-                                             &skin->buffer, error);
+    noh_result result = noh_gl_buffer_create(skin->gl, skin->ledger, GL_UNIFORM_BUFFER, skin->plan.gpu_bytes, NULL,
+                                             GL_DYNAMIC_DRAW, &skin->buffer, error);
     if (!result) {
         noh_gl_label(skin->gl, GL_BUFFER, skin->buffer.name, "palettes", NULL);
     }
@@ -199,7 +201,8 @@ noh_result noh_gl_skin_init(void *memory, size_t bytes, const noh_gl_device *dev
     NOH_ASSERT(device && device->api && device->caps && device->ledger && desc && skin);
     result = noh_gl_skin_plan_make(desc, device->caps, &plan, error);
     if (!result && plan.cpu_bytes > SIZE_MAX) {
-        result = noh_fail(error, NOH_ERR_LIMIT, "the palettes need more memory than this processor addresses", 0, plan.cpu_bytes);
+        result = noh_fail(error, NOH_ERR_LIMIT, "the palettes need more memory than this processor addresses", 0,
+                          plan.cpu_bytes);
     }
     if (!result) result = noh_arena_open(&arena, memory, bytes, (size_t)plan.cpu_bytes, error);
     if (result) {
@@ -281,7 +284,8 @@ void noh_gl_skin_update(noh_gl_skin *skin)
     }
     if (skin->plan.mode == NOH_PALETTE_UNIFORM) {
         gl->BindBuffer(GL_UNIFORM_BUFFER, skin->buffer.name);
-        gl->BufferSubData(GL_UNIFORM_BUFFER, (GLintptr)first * 16, (GLsizeiptr)(end - first) * 16, skin->rows + 4u * (size_t)first);
+        gl->BufferSubData(GL_UNIFORM_BUFFER, (GLintptr)first * 16, (GLsizeiptr)(end - first) * 16,
+                          skin->rows + 4u * (size_t)first);
         gl->BindBuffer(GL_UNIFORM_BUFFER, 0);
     } else {
         uint32_t y = first >> skin->width_log2, height = ((end - 1u) >> skin->width_log2) + 1u - y;

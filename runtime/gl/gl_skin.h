@@ -42,7 +42,7 @@ typedef enum noh_palette_mode {
 const char *noh_palette_mode_name(noh_palette_mode mode);
 
 typedef struct noh_gl_skin_desc {
-    const noh_mesh *meshes;          /* [mesh_count]; copied, the packs must stay. Rigid ones take no palette */
+    const noh_mesh *meshes; /* [mesh_count]; copied, the packs must stay. Rigid ones take no palette */
     uint32_t mesh_count;
     const uint32_t *instance_counts; /* [mesh_count]; NULL: one of each. 1..NOH_MORPH_INSTANCES_MAX in all */
     noh_palette_mode mode;           /* 0: auto */
@@ -50,8 +50,8 @@ typedef struct noh_gl_skin_desc {
 
 /* The resolved plan on a GPU with these capabilities. All bytes are exact. */
 typedef struct noh_gl_skin_plan {
-    noh_palette_mode mode;  /* never AUTO */
-    const char *reason;     /* why this mode, in words; a string constant */
+    noh_palette_mode mode; /* never AUTO */
+    const char *reason;    /* why this mode, in words; a string constant */
     uint32_t instance_count;
     uint32_t texel_count;   /* rows of four floats, gaps between palettes included */
     uint32_t width, height; /* of the texture; 0 in a uniform buffer */
@@ -78,10 +78,10 @@ typedef struct noh_gl_skin_binding {
 noh_result noh_gl_skin_plan_make(const noh_gl_skin_desc *desc, const noh_gl_caps *caps, noh_gl_skin_plan *plan,
                                  noh_error *error);
 
-/* Build in memory[bytes], which is aligned to NOH_MEMORY_ALIGN and at least plan.cpu_bytes long, and make the GL object,
- * counted in the device's ledger. All joints start as the identity: the bind pose.
- * errors  as noh_gl_skin_plan_make; ARG memory is NULL or misaligned, MEMORY it is too small (`need`: plan.cpu_bytes),
- *         nothing is then touched; GL, MEMORY the driver refused the object. On error no GL object is left */
+/* Build in memory[bytes], which is aligned to NOH_MEMORY_ALIGN and at least plan.cpu_bytes long, and make the GL
+ * object, counted in the device's ledger. All joints start as the identity: the bind pose. errors  as
+ * noh_gl_skin_plan_make; ARG memory is NULL or misaligned, MEMORY it is too small (`need`: plan.cpu_bytes), nothing is
+ * then touched; GL, MEMORY the driver refused the object. On error no GL object is left */
 noh_result noh_gl_skin_init(void *memory, size_t bytes, const noh_gl_device *device, const noh_gl_skin_desc *desc,
                             noh_gl_skin **skin, noh_error *error);
 
@@ -106,7 +106,7 @@ void noh_gl_skin_set_matrices(noh_gl_skin *skin, uint32_t instance, const float 
  * errors   UNSUPPORTED palettes are in a uniform buffer, which cannot draw crowds; ARG `world` mirrors: the
  *          triangles of one draw cannot face both ways, so draw that instance alone. `where` is the instance */
 noh_result noh_gl_skin_set_place(noh_gl_skin *skin, uint32_t instance, const float world[12],
-                             const noh_gl_morph_binding *morph, noh_error *error);
+                                 const noh_gl_morph_binding *morph, noh_error *error);
 
 /* Send the span of what changed since the last update, in one call. Nothing is touched when nothing
  * changed; else texture unit 0 and the uniform buffer binding are left at 0.
@@ -124,9 +124,9 @@ uint32_t noh_gl_palette_row(const noh_gl_skin_binding *binding, const noh_mesh *
 uint32_t noh_gl_joint_rows(const noh_mesh *mesh);
 
 /* Rows that transform normals: the inverse transpose of a placement's 3 x 3 part, up to a positive factor. They are its
- * cofactors times the sign of its determinant, so nothing is divided and normals of a mirrored node still point outwards.
- * Transforming normals by the matrix itself is right for rotations and uniform scales only. Returns the determinant.
- * source  Turkowski, "Properties of Surface-Normal Transformations", Graphics Gems (1990) */
+ * cofactors times the sign of its determinant, so nothing is divided and normals of a mirrored node still point
+ * outwards. Transforming normals by the matrix itself is right for rotations and uniform scales only. Returns the
+ * determinant. source  Turkowski, "Properties of Surface-Normal Transformations", Graphics Gems (1990) */
 float noh_gl_normal_rows(const float world[12], float rows[12]);
 
 #ifdef __cplusplus

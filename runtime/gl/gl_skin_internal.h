@@ -32,7 +32,8 @@ struct noh_gl_skin {
 uint32_t noh_gl_skin_align(const noh_gl_skin_plan *plan, const noh_gl_caps *caps);
 
 /* Walk the set as init will; returns the rows. `meshes` may be NULL. */
-uint64_t noh_gl_skin_layout(const noh_gl_skin_desc *desc, noh_palette_mode mode, uint32_t align, noh_gl_skin_mesh *meshes);
+uint64_t noh_gl_skin_layout(const noh_gl_skin_desc *desc, noh_palette_mode mode, uint32_t align,
+                            noh_gl_skin_mesh *meshes);
 
 /* Carve everything behind the struct itself from an arena (or measure it). `skin` NULL only measures. */
 void noh_gl_skin_carve(noh_arena *arena, uint32_t mesh_count, const noh_gl_skin_plan *plan, noh_gl_skin *skin);

@@ -54,7 +54,8 @@ static uint32_t block_bytes(const noh_gl_skin_desc *desc)
     return 16u * rows * NOH_PALETTE_JOINTS_MAX;
 }
 
-static noh_result choose_mode(const noh_gl_skin_desc *desc, const noh_gl_caps *caps, noh_gl_skin_plan *plan, noh_error *error)
+static noh_result choose_mode(const noh_gl_skin_desc *desc, const noh_gl_caps *caps, noh_gl_skin_plan *plan,
+                              noh_error *error)
 {
     uint32_t block = block_bytes(desc);
     int fits = caps->uniform_block_bytes_max >= block, several = 0;
@@ -62,8 +63,8 @@ static noh_result choose_mode(const noh_gl_skin_desc *desc, const noh_gl_caps *c
         several |= count_of(desc, i) > 1u;
     }
     if (desc->mode == NOH_PALETTE_UNIFORM && !fits) {
-        return noh_fail(error, NOH_ERR_UNSUPPORTED, "uniform blocks here are smaller than a palette", caps->uniform_block_bytes_max,
-                        block);
+        return noh_fail(error, NOH_ERR_UNSUPPORTED, "uniform blocks here are smaller than a palette",
+                        caps->uniform_block_bytes_max, block);
     }
     plan->mode = desc->mode ? desc->mode : several || !fits ? NOH_PALETTE_TEXTURE : NOH_PALETTE_UNIFORM;
     plan->reason = desc->mode ? "asked for"
@@ -79,8 +80,8 @@ uint32_t noh_gl_skin_align(const noh_gl_skin_plan *plan, const noh_gl_caps *caps
     return plan->mode == NOH_PALETTE_TEXTURE ? 1u : (bytes + 15u) / 16u;
 }
 
-/* The narrowest texture that holds the rows and is not higher than textures may be: up to 2048 x 2048, which every ES 3.0
- * has, then up to the limits of this GPU. */
+/* The narrowest texture that holds the rows and is not higher than textures may be: up to 2048 x 2048, which every
+ * ES 3.0 has, then up to the limits of this GPU. */
 static noh_result shape_texture(uint64_t rows, uint32_t side_max, noh_gl_skin_plan *plan, noh_error *error)
 {
     uint32_t log2 = WIDTH_LOG2_MIN;
@@ -90,7 +91,8 @@ static noh_result shape_texture(uint64_t rows, uint32_t side_max, noh_gl_skin_pl
         height = (rows + (1u << log2) - 1u) >> log2;
     }
     if (height > side_max) {
-        return noh_fail(error, NOH_ERR_LIMIT, "the instances' palettes do not fit a texture of this GPU", side_max, height);
+        return noh_fail(error, NOH_ERR_LIMIT, "the instances' palettes do not fit a texture of this GPU", side_max,
+                        height);
     }
     plan->width = 1u << log2;
     plan->height = height ? (uint32_t)height : 1u;
@@ -102,19 +104,22 @@ uint32_t noh_gl_palette_row(const noh_gl_skin_binding *binding, const noh_mesh *
     uint32_t row = binding->mode == NOH_PALETTE_TEXTURE ? NOH_CROWD_ROWS : 0;
     NOH_ASSERT(binding->align && palette <= mesh->header->palette_count);
     for (uint32_t i = 0; i < palette; i++) {
-        row += (noh_gl_joint_rows(mesh) * mesh->palettes[i].joint_count + binding->align - 1u) / binding->align * binding->align;
+        row += (noh_gl_joint_rows(mesh) * mesh->palettes[i].joint_count + binding->align - 1u) / binding->align *
+               binding->align;
     }
     return row;
 }
 
 /* Walk the set as init will. `meshes` may be NULL. */
-uint64_t noh_gl_skin_layout(const noh_gl_skin_desc *desc, noh_palette_mode mode, uint32_t align, noh_gl_skin_mesh *meshes)
+uint64_t noh_gl_skin_layout(const noh_gl_skin_desc *desc, noh_palette_mode mode, uint32_t align,
+                            noh_gl_skin_mesh *meshes)
 {
     const noh_gl_skin_binding shape = { mode, 0, 0, 0, 0, align, 0 };
     uint64_t row = 0;
     uint32_t instance = 0;
     for (uint32_t i = 0; i < desc->mesh_count; i++) {
-        uint32_t count = count_of(desc, i), stride = noh_gl_palette_row(&shape, &desc->meshes[i], desc->meshes[i].header->palette_count);
+        uint32_t count = count_of(desc, i),
+                 stride = noh_gl_palette_row(&shape, &desc->meshes[i], desc->meshes[i].header->palette_count);
         if (meshes) {
             meshes[i].mesh = desc->meshes[i];
             meshes[i].instance_count = count;
@@ -169,7 +174,8 @@ noh_result noh_gl_skin_plan_make(const noh_gl_skin_desc *desc, const noh_gl_caps
     }
     rows = noh_gl_skin_layout(desc, p.mode, noh_gl_skin_align(&p, caps), NULL);
     if (rows > NOH_SKIN_ROWS_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "the instances' palettes have more rows than the limit", NOH_SKIN_ROWS_MAX, rows);
+        return noh_fail(error, NOH_ERR_LIMIT, "the instances' palettes have more rows than the limit",
+                        NOH_SKIN_ROWS_MAX, rows);
     }
     if (p.mode == NOH_PALETTE_TEXTURE) {
         result = shape_texture(rows, caps->texture_size_max, &p, error);

@@ -46,7 +46,9 @@ noh_result noh_gl_table_create(const noh_gl_api *api, noh_gl_ledger *ledger, GLe
         return result;
     }
     table.format = format;
-    table.transfer_format = format == GL_R32UI ? GL_RED_INTEGER : format == GL_RGB32UI ? GL_RGB_INTEGER : GL_RGBA_INTEGER;
+    table.transfer_format = format == GL_R32UI     ? GL_RED_INTEGER
+                            : format == GL_RGB32UI ? GL_RGB_INTEGER
+                                                   : GL_RGBA_INTEGER;
     table.transfer_type = GL_UNSIGNED_INT;
     table.texel_bytes = noh_gl_texel_bytes(format);
     *out = table;
@@ -57,13 +59,15 @@ static void upload_block(const noh_gl_api *api, const noh_gl_table *t, uint32_t 
                          const uint8_t *data)
 {
     if (w && h) {
-        api->TexSubImage2D(GL_TEXTURE_2D, 0, (GLint)x, (GLint)y, (GLsizei)w, (GLsizei)h, t->transfer_format, t->transfer_type, data);
+        api->TexSubImage2D(GL_TEXTURE_2D, 0, (GLint)x, (GLint)y, (GLsizei)w, (GLsizei)h, t->transfer_format,
+                           t->transfer_type, data);
     }
 }
 
 /* Texels first to first + count - 1 are the rest of one row, whole rows, and the beginning of a last row: at most three
  * rectangles. */
-void noh_gl_table_upload(const noh_gl_api *api, const noh_gl_table *table, uint32_t first, uint32_t count, const void *data)
+void noh_gl_table_upload(const noh_gl_api *api, const noh_gl_table *table, uint32_t first, uint32_t count,
+                         const void *data)
 {
     uint32_t width = 1u << table->width_log2, x = first & (width - 1u), y = first >> table->width_log2;
     uint32_t head = x ? (count < width - x ? count : width - x) : 0; /* the rest of a row that is begun */

@@ -29,6 +29,7 @@ noh_result noh_gl_table_create(const noh_gl_api *api, noh_gl_ledger *ledger, GLe
                                noh_gl_table *out, noh_error *error);
 
 /* Fill texels first..first+count-1 from tightly packed data. Leaves the texture bound at unit 0. */
-void noh_gl_table_upload(const noh_gl_api *api, const noh_gl_table *table, uint32_t first, uint32_t count, const void *data);
+void noh_gl_table_upload(const noh_gl_api *api, const noh_gl_table *table, uint32_t first, uint32_t count,
+                         const void *data);
 
 #endif

@@ -48,7 +48,8 @@ void noh_gl_timer_end(noh_gl_timer *timer, const noh_gl_api *api)
 
 noh_result noh_gl_timer_poll(noh_gl_timer *timer, const noh_gl_api *api, uint64_t *elapsed_ns)
 {
-    NOH_ASSERT(timer && api && elapsed_ns && timer->flying <= NOH_GL_TIMER_FLIGHT && timer->oldest < NOH_GL_TIMER_FLIGHT);
+    NOH_ASSERT(timer && api && elapsed_ns && timer->flying <= NOH_GL_TIMER_FLIGHT &&
+               timer->oldest < NOH_GL_TIMER_FLIGHT);
     if (!timer->available) return NOH_ERR_UNSUPPORTED;
     if (timer->flying == 0) return NOH_ERR_NOT_FOUND;
     GLuint query = timer->queries[timer->oldest];

@@ -23,10 +23,10 @@ extern "C" {
 
 typedef struct noh_gl_timer {
     GLuint queries[NOH_GL_TIMER_FLIGHT];
-    uint32_t oldest;  /* index into queries of the oldest in flight */
-    uint32_t flying;  /* ended and not polled */
-    int available;    /* 0: the context cannot time */
-    int open;         /* between begin and end */
+    uint32_t oldest; /* index into queries of the oldest in flight */
+    uint32_t flying; /* ended and not polled */
+    int available;   /* 0: the context cannot time */
+    int open;        /* between begin and end */
 } noh_gl_timer;
 
 /* Never fails. `available` is 0 without timer queries, and where the driver refuses to make them: the timer then

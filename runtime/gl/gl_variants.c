@@ -15,8 +15,8 @@ static uint8_t drawn_of(uint32_t stored, uint32_t limit)
     return (uint8_t)drawn;
 }
 
-noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin_binding *skin, int crowd, int layers_uint,
-                                         noh_debug_view view)
+noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin_binding *skin, int crowd,
+                                         int layers_uint, noh_debug_view view)
 {
     const noh_mesh_header *h = mesh->header;
     noh_gl_variant_key key = { 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 };
@@ -60,12 +60,16 @@ static size_t put_digit(char *text, size_t at, const char *name, unsigned digit)
 void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYTES])
 {
     NOH_ASSERT(text && key.influences <= 8u && key.drawn <= key.influences && key.view <= NOH_VIEW_LOD);
-    const struct { int on; const char *line; } flags[] = {
-        { key.texture, "#define PALETTE_TEXTURE\n" }, { key.dual_quaternion, "#define DUAL_QUATERNION\n" },
-        { key.texels, "#define MORPH_TEXELS\n" },     { key.crowd, "#define CROWD\n" },
-        { key.layers_uint, "#define LAYERS_UINT\n" }, { key.encode_srgb, "#define ENCODE_SRGB\n" },
-        { key.fade, "#define FADE\n" }
-    };
+    const struct {
+        int on;
+        const char *line;
+    } flags[] = { { key.texture, "#define PALETTE_TEXTURE\n" },
+                  { key.dual_quaternion, "#define DUAL_QUATERNION\n" },
+                  { key.texels, "#define MORPH_TEXELS\n" },
+                  { key.crowd, "#define CROWD\n" },
+                  { key.layers_uint, "#define LAYERS_UINT\n" },
+                  { key.encode_srgb, "#define ENCODE_SRGB\n" },
+                  { key.fade, "#define FADE\n" } };
     size_t at = put_digit(text, 0, "#define INFLUENCES ", key.influences);
     at = put_digit(text, at, "#define DRAWN ", key.drawn);
     at = put_digit(text, at, "#define DEBUG_VIEW ", key.view);
@@ -78,12 +82,22 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
 
 static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
 {
-    const struct { const char *name; GLint *at; } uniforms[] = {
-        { "u_view_projection", &v->u_view_projection }, { "u_world", &v->u_world }, { "u_normal", &v->u_normal },
-        { "u_uv", &v->u_uv }, { "u_morph", &v->u_morph }, { "u_skin", &v->u_skin }, { "u_camera", &v->u_camera },
-        { "u_key", &v->u_key }, { "u_base_color", &v->u_base_color }, { "u_material", &v->u_material },
-        { "u_bounds_min", &v->u_bounds_min }, { "u_bounds_size", &v->u_bounds_size }, { "u_lod", &v->u_lod }
-    };
+    const struct {
+        const char *name;
+        GLint *at;
+    } uniforms[] = { { "u_view_projection", &v->u_view_projection },
+                     { "u_world", &v->u_world },
+                     { "u_normal", &v->u_normal },
+                     { "u_uv", &v->u_uv },
+                     { "u_morph", &v->u_morph },
+                     { "u_skin", &v->u_skin },
+                     { "u_camera", &v->u_camera },
+                     { "u_key", &v->u_key },
+                     { "u_base_color", &v->u_base_color },
+                     { "u_material", &v->u_material },
+                     { "u_bounds_min", &v->u_bounds_min },
+                     { "u_bounds_size", &v->u_bounds_size },
+                     { "u_lod", &v->u_lod } };
     for (size_t i = 0; i < sizeof uniforms / sizeof uniforms[0]; i++) {
         *uniforms[i].at = gl->GetUniformLocation(v->program, uniforms[i].name);
     }

@@ -29,23 +29,23 @@ typedef enum noh_debug_view {
 } noh_debug_view;
 
 typedef struct noh_gl_variant_key {
-    uint8_t influences;      /* stored per vertex: 0 (also: the bind pose), 1, 2, 4, 8 */
-    uint8_t drawn;           /* of these: 1, 2, 4, 8; 0 where influences is */
-    uint8_t texture;         /* 1: palettes from a texture, or a crowd */
+    uint8_t influences; /* stored per vertex: 0 (also: the bind pose), 1, 2, 4, 8 */
+    uint8_t drawn;      /* of these: 1, 2, 4, 8; 0 where influences is */
+    uint8_t texture;    /* 1: palettes from a texture, or a crowd */
     uint8_t dual_quaternion;
-    uint8_t texels;          /* the mesh has NOH_MESH_TEXELS */
+    uint8_t texels; /* the mesh has NOH_MESH_TEXELS */
     uint8_t crowd;
-    uint8_t layers_uint;     /* as in noh_gl_morph_binding.is_uint */
-    uint8_t view;            /* noh_debug_view */
-    uint8_t fade;            /* draws only some pixels: noh_gl_lod */
-    uint8_t encode_srgb;     /* as in noh_gl_renderer_desc */
+    uint8_t layers_uint; /* as in noh_gl_morph_binding.is_uint */
+    uint8_t view;        /* noh_debug_view */
+    uint8_t fade;        /* draws only some pixels: noh_gl_lod */
+    uint8_t encode_srgb; /* as in noh_gl_renderer_desc */
 } noh_gl_variant_key;
 
 typedef struct noh_gl_variant {
     noh_gl_variant_key key;
     GLuint program;
-    GLint u_view_projection, u_world, u_normal, u_uv, u_morph, u_skin, u_camera, u_key, u_base_color, u_material, u_bounds_min,
-        u_bounds_size, u_lod;
+    GLint u_view_projection, u_world, u_normal, u_uv, u_morph, u_skin, u_camera, u_key, u_base_color, u_material,
+        u_bounds_min, u_bounds_size, u_lod;
 } noh_gl_variant;
 
 /* Texture units of mesh.vert and mesh.frag; the uniform block binding is 0. */
@@ -54,8 +54,8 @@ typedef struct noh_gl_variant {
 #define NOH_UNIT_PALETTES 2u
 
 /* skin NULL: the bind pose. crowd: skin is then not NULL, and in a texture. */
-noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin_binding *skin, int crowd, int layers_uint,
-                                         noh_debug_view view);
+noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin_binding *skin, int crowd,
+                                         int layers_uint, noh_debug_view view);
 
 #define NOH_GL_DEFINES_BYTES 256u
 

@@ -33,8 +33,8 @@ typedef struct nearest_edge {
 /* Keep an edge if it is nearer to (x, y); of equally near ones the shorter. */
 static void try_edge(const noh_blend_space_2d *s, uint32_t a, uint32_t b, float x, float y, nearest_edge *best)
 {
-    float ex = s->points[2u * b ] - s->points[2u * a ], ey = s->points[2u * b + 1u] - s->points[2u * a + 1u];
-    float px = x - s->points[2u * a ], py = y - s->points[2u * a + 1u];
+    float ex = s->points[2u * b] - s->points[2u * a], ey = s->points[2u * b + 1u] - s->points[2u * a + 1u];
+    float px = x - s->points[2u * a], py = y - s->points[2u * a + 1u];
     float length = ex * ex + ey * ey, t = length > 0.0f ? (px * ex + py * ey) / length : 0.0f;
     float dx, dy, distance;
     t = t > 0.0f ? (t < 1.0f ? t : 1.0f) : 0.0f;
@@ -95,7 +95,8 @@ static float clamped(float x)
 void noh_blend_space_2d_weights(const noh_blend_space_2d *space, float x, float y, float *weights)
 {
     float px = clamped(x), py = clamped(y);
-    NOH_ASSERT(space && space->points && weights && space->point_count > 0 && space->point_count <= NOH_BLEND_SPACE_POINTS_MAX);
+    NOH_ASSERT(space && space->points && weights && space->point_count > 0 &&
+               space->point_count <= NOH_BLEND_SPACE_POINTS_MAX);
     memset(weights, 0, space->point_count * sizeof *weights);
     for (uint32_t i = 0; i < space->triangle_count; i++) {
         if (triangle_weights(space, space->triangles + 3u * i, px, py, weights)) {
@@ -110,8 +111,8 @@ void noh_blend_space_2d_weights(const noh_blend_space_2d *space, float x, float 
 typedef struct mesh {
     uint32_t count, triangle_count;
     int64_t x[NOH_BLEND_SPACE_POINTS_MAX], y[NOH_BLEND_SPACE_POINTS_MAX]; /* 0..4096 */
-    uint8_t order[NOH_BLEND_SPACE_POINTS_MAX];                      /* by x, then y */
-    uint8_t hull[NOH_BLEND_SPACE_POINTS_MAX + 1u];                  /* counter-clockwise */
+    uint8_t order[NOH_BLEND_SPACE_POINTS_MAX];                            /* by x, then y */
+    uint8_t hull[NOH_BLEND_SPACE_POINTS_MAX + 1u];                        /* counter-clockwise */
     uint32_t hull_count;
     uint8_t *triangles;
 } mesh;
@@ -128,7 +129,8 @@ static int64_t in_circle(const mesh *m, uint32_t a, uint32_t b, uint32_t c, uint
     int64_t ax = m->x[a] - m->x[d], ay = m->y[a] - m->y[d];
     int64_t bx = m->x[b] - m->x[d], by = m->y[b] - m->y[d];
     int64_t cx = m->x[c] - m->x[d], cy = m->y[c] - m->y[d];
-    return (ax * ax + ay * ay) * (bx * cy - by * cx) - (bx * bx + by * by) * (ax * cy - ay * cx) + (cx * cx + cy * cy) * (ax * by - ay * bx);
+    return (ax * ax + ay * ay) * (bx * cy - by * cx) - (bx * bx + by * by) * (ax * cy - ay * cx) +
+           (cx * cx + cy * cy) * (ax * by - ay * bx);
 }
 
 static void add_triangle(mesh *m, uint32_t a, uint32_t b, uint32_t c)
@@ -178,8 +180,8 @@ static void sort_points(mesh *m)
     }
 }
 
-/* The first triangles of the sweep: a fan from the first point that is off the line through those before it to all of them.
- * Returns the number of points used; count when all are on one line. */
+/* The first triangles of the sweep: a fan from the first point that is off the line through those before it to all of
+ * them. Returns the number of points used; count when all are on one line. */
 static uint32_t first_fan(mesh *m)
 {
     uint32_t k = 2, tip;
@@ -201,8 +203,8 @@ static uint32_t first_fan(mesh *m)
     return k + 1;
 }
 
-/* Join a point to every hull edge that it sees. Points come in order of x, so each lies outside the hull of those before
- * it, and the edges that it sees are neighbours: they leave the hull and two new edges take their place. */
+/* Join a point to every hull edge that it sees. Points come in order of x, so each lies outside the hull of those
+ * before it, and the edges that it sees are neighbours: they leave the hull and two new edges take their place. */
 static void add_point(mesh *m, uint32_t p)
 {
     uint8_t hull[NOH_BLEND_SPACE_POINTS_MAX + 1u];
@@ -224,7 +226,8 @@ static void add_point(mesh *m, uint32_t p)
     m->hull_count = count;
 }
 
-/* Flip the edge that two triangles share if it is not Delaunay: if the fourth point lies inside the circle of the other three. */
+/* Flip the edge that two triangles share if it is not Delaunay: if the fourth point lies inside the circle of the other
+ * three. */
 static int flip(mesh *m, uint8_t *s, uint8_t *t)
 {
     for (uint32_t i = 0; i < 3; i++) {
@@ -242,8 +245,8 @@ static int flip(mesh *m, uint8_t *s, uint8_t *t)
 
 static void flip_all(mesh *m)
 {
-    /* Lawson's algorithm (1977). Lift each point to the height x^2 + y^2: every flip lowers the surface of lifted triangles,
-     * so no triangulation comes twice and this ends; n^2 passes are far more than it takes. */
+    /* Lawson's algorithm (1977). Lift each point to the height x^2 + y^2: every flip lowers the surface of lifted
+     * triangles, so no triangulation comes twice and this ends; n^2 passes are far more than it takes. */
     uint32_t passes = m->count * m->count, flips = 1;
     while (flips && passes--) {
         flips = 0;
@@ -280,13 +283,15 @@ static noh_result check_apart(const mesh *m, noh_error *error)
     return NOH_OK;
 }
 
-noh_result noh_blend_space_2d_triangulate(uint32_t count, const float *points, uint8_t *triangles, uint32_t *triangle_count, noh_error *error)
+noh_result noh_blend_space_2d_triangulate(uint32_t count, const float *points, uint8_t *triangles,
+                                          uint32_t *triangle_count, noh_error *error)
 {
     mesh m;
     noh_result result;
     NOH_ASSERT(points && triangles && triangle_count);
     if (count == 0 || count > NOH_BLEND_SPACE_POINTS_MAX) {
-        return noh_fail(error, NOH_ERR_ARG, "count is not in 1..NOH_BLEND_SPACE_POINTS_MAX", count, NOH_BLEND_SPACE_POINTS_MAX);
+        return noh_fail(error, NOH_ERR_ARG, "count is not in 1..NOH_BLEND_SPACE_POINTS_MAX", count,
+                        NOH_BLEND_SPACE_POINTS_MAX);
     }
     memset(&m, 0, sizeof m);
     m.count = count;

@@ -92,7 +92,8 @@ static void weigh_tracks(noh_graph_state *s, const noh_graph *g)
 }
 
 /* Reset a subtree: clips to their starts, machines to their first states. */
-static noh_result start_subtree(noh_graph_state *s, const noh_graph *g, const noh_clip_set *set, uint32_t node, noh_error *error)
+static noh_result start_subtree(noh_graph_state *s, const noh_graph *g, const noh_clip_set *set, uint32_t node,
+                                noh_error *error)
 {
     noh_result result = NOH_OK;
     for (uint32_t i = noh_graph_first_of(g, node); i <= node && result == NOH_OK; i++) {
@@ -127,8 +128,8 @@ static void fill_state(noh_graph_state *s, const noh_graph *g, layout l)
     }
 }
 
-noh_result noh_graph_state_init(void *memory, size_t bytes, const noh_graph *graph, const noh_clip_set *set, noh_graph_state **state,
-                                noh_error *error)
+noh_result noh_graph_state_init(void *memory, size_t bytes, const noh_graph *graph, const noh_clip_set *set,
+                                noh_graph_state **state, noh_error *error)
 {
     noh_result result = noh_graph_check(graph, set, error);
     noh_controller_desc d;
@@ -190,20 +191,23 @@ static int is_ending(noh_graph_state *s, const noh_graph *g, const noh_clip_set 
     return t->loop == NOH_LOOP_ONCE && (left < 0 ? -left : left) <= speed * (int64_t)ticks;
 }
 
-static int holds(noh_graph_state *s, const noh_graph *g, const noh_clip_set *set, const noh_graph_node *node, const noh_graph_transition *t)
+static int holds(noh_graph_state *s, const noh_graph *g, const noh_clip_set *set, const noh_graph_node *node,
+                 const noh_graph_transition *t)
 {
     const noh_machine *m = &machines_of(s)[node->index];
     if (m->current == t->to || (t->from != NOH_GRAPH_NONE && t->from != m->current)) {
         return 0;
     }
     switch (t->condition) {
-    case NOH_WHEN_ABOVE: case NOH_WHEN_TRIGGERED: return params_of(s)[t->param] > t->threshold;
+    case NOH_WHEN_ABOVE:
+    case NOH_WHEN_TRIGGERED: return params_of(s)[t->param] > t->threshold;
     case NOH_WHEN_BELOW: return params_of(s)[t->param] < t->threshold;
     default: return is_ending(s, g, set, g->children[node->first_child + m->current], t->duration_ticks);
     }
 }
 
-static void take(noh_graph_state *s, const noh_graph *g, const noh_clip_set *set, const noh_graph_node *node, const noh_graph_transition *t)
+static void take(noh_graph_state *s, const noh_graph *g, const noh_clip_set *set, const noh_graph_node *node,
+                 const noh_graph_transition *t)
 {
     noh_machine *m = &machines_of(s)[node->index];
     if (!(t->flags & NOH_TRANSITION_KEEP)) {
@@ -278,7 +282,8 @@ static void run_fades(noh_graph_state *s, uint32_t ticks)
     }
 }
 
-uint32_t noh_graph_step(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, uint32_t ticks, noh_event_fn fn, void *user)
+uint32_t noh_graph_step(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, uint32_t ticks,
+                        noh_event_fn fn, void *user)
 {
     NOH_ASSERT(state && graph && set);
     NOH_VALIDATE(noh_graph_check(graph, set, NULL) == NOH_OK);

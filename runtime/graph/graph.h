@@ -1,8 +1,8 @@
 /* graph.h: an animation graph in a fixed array.
  *
- * Nodes are stored in post-order: each node directly after the subtrees of its children; the last one gives the pose. They
- * are evaluated in stored order, without recursion, with as many pose buffers as the deepest chain needs, which is known
- * beforehand. Nodes of weight 0 are not sampled.
+ * Nodes are stored in post-order: each node directly after the subtrees of its children; the last one gives the pose.
+ * They are evaluated in stored order, without recursion, with as many pose buffers as the deepest chain needs, which is
+ * known beforehand. Nodes of weight 0 are not sampled.
  *
  *   CLIP      a clip; each is one track of a controller inside, so time, events and sync groups are the controller's
  *   BLEND     a * (1 - t) + b * t
@@ -12,11 +12,11 @@
  *   SPACE_1D, SPACE_2D   see blend_space.h
  *   MACHINE   one of the children at a time; transitions cross-fade, or switch at once and let the difference decay
  *             (inertial.h)
- * t, x and y are parameters of the instance, or constants. A clip that animates no joints, or no floats, leaves them to the
- * other children of a node.
+ * t, x and y are parameters of the instance, or constants. A clip that animates no joints, or no floats, leaves them to
+ * the other children of a node.
  *
- * An instance is one block without pointers: cloning it is one memcpy. Weights and transitions are decided at the start of a
- * step; within the step everything is the controller's, events included.
+ * An instance is one block without pointers: cloning it is one memcpy. Weights and transitions are decided at the start
+ * of a step; within the step everything is the controller's, events included.
  *
  * source  animation trees: Granberg 2009, chapter 16
  *
@@ -49,9 +49,10 @@ typedef struct noh_graph_node {
     uint16_t first_child, child_count; /* in the graph's children */
     uint16_t param;                    /* t or x; NOH_GRAPH_NONE: `value` */
     uint16_t param_y;                  /* SPACE_2D */
-    uint16_t first_item, item_count;   /* SPACE_1D: its thresholds, one per child; SPACE_2D: its space; MACHINE: its transitions */
-    uint16_t mask;                     /* MASK: 1 + index in the set's masks */
-    uint16_t index;                     /* CLIP, MACHINE: its number among the nodes of its kind, in stored order */
+    uint16_t first_item,
+        item_count; /* SPACE_1D: its thresholds, one per child; SPACE_2D: its space; MACHINE: its transitions */
+    uint16_t mask;  /* MASK: 1 + index in the set's masks */
+    uint16_t index; /* CLIP, MACHINE: its number among the nodes of its kind, in stored order */
     uint16_t reserved;
     float value;
 } noh_graph_node;
@@ -64,13 +65,13 @@ typedef enum noh_condition {
 } noh_condition;
 
 #define NOH_TRANSITION_INERTIAL 1u /* switch at once; the difference decays over the duration */
-#define NOH_TRANSITION_KEEP 2u     /* the state's clips continue where they stopped; else they start from the beginning */
+#define NOH_TRANSITION_KEEP 2u /* the state's clips continue where they stopped; else they start from the beginning */
 
 /* Tested in stored order; the first whose condition holds is taken. While a cross-fade runs, none is. */
 typedef struct noh_graph_transition {
-    uint16_t from, to;       /* children of the machine; from NOH_GRAPH_NONE: any but `to` */
-    uint16_t condition;      /* noh_condition */
-    uint16_t param;          /* not used by ENDING */
+    uint16_t from, to;  /* children of the machine; from NOH_GRAPH_NONE: any but `to` */
+    uint16_t condition; /* noh_condition */
+    uint16_t param;     /* not used by ENDING */
     float threshold;
     uint32_t duration_ticks; /* 0: at once, and not inertial */
     uint16_t curve;          /* noh_curve, of a cross-fade */
@@ -79,14 +80,15 @@ typedef struct noh_graph_transition {
 
 /* Shared by all instances; borrowed and constant. */
 typedef struct noh_graph {
-    uint32_t node_count, child_count, clip_count, machine_count, transition_count, threshold_count, space_count, param_count;
+    uint32_t node_count, child_count, clip_count, machine_count, transition_count, threshold_count, space_count,
+        param_count;
     const noh_graph_node *nodes;
-    const uint16_t *children;                /* node indices */
-    const noh_track_desc *clips;             /* [clip_count]; clip, position, speed, loop, sync group and PAUSED are used */
+    const uint16_t *children;    /* node indices */
+    const noh_track_desc *clips; /* [clip_count]; clip, position, speed, loop, sync group and PAUSED are used */
     const noh_graph_transition *transitions;
     const float *thresholds;
     const noh_blend_space_2d *spaces;
-    const float *param_defaults;             /* [param_count]; NULL: all 0 */
+    const float *param_defaults; /* [param_count]; NULL: all 0 */
 } noh_graph;
 
 /* 16 bytes. */
@@ -94,7 +96,7 @@ typedef struct noh_machine {
     uint16_t current, previous; /* previous: NOH_GRAPH_NONE when no transition runs */
     uint32_t elapsed, duration; /* of a cross-fade, ticks */
     uint8_t curve;
-    uint8_t switched;           /* 1: an inertial transition begins with the next pose */
+    uint8_t switched; /* 1: an inertial transition begins with the next pose */
     uint8_t reserved[2];
 } noh_machine;
 
@@ -115,11 +117,11 @@ uint32_t noh_graph_buffers(const noh_graph *graph);
 
 /* ---- instances ---- */
 
-/* errors of init  those of noh_graph_check; ARG memory NULL or not 16-byte aligned, or a clip's desc; MEMORY too small; need:
- * the exact bytes */
+/* errors of init  those of noh_graph_check; ARG memory NULL or not 16-byte aligned, or a clip's desc; MEMORY too small;
+ * need: the exact bytes */
 size_t noh_graph_state_size(const noh_graph *graph, const noh_clip_set *set);
-noh_result noh_graph_state_init(void *memory, size_t bytes, const noh_graph *graph, const noh_clip_set *set, noh_graph_state **state,
-                                noh_error *error);
+noh_result noh_graph_state_init(void *memory, size_t bytes, const noh_graph *graph, const noh_clip_set *set,
+                                noh_graph_state **state, noh_error *error);
 
 /* The controller inside, with one track per clip node. */
 noh_controller *noh_graph_controller(noh_graph_state *state);
@@ -131,9 +133,10 @@ float noh_graph_param(const noh_graph_state *state, uint32_t param);
 /* The state of a machine, counted among machines: the child that it is in or fades to. */
 uint32_t noh_graph_machine_state(const noh_graph_state *state, uint32_t machine);
 
-/* Take transitions, find weights, move time on. Returns the number of events delivered. The callback may set parameters;
- * changes that it makes to the tracks inside last until the next step. */
-uint32_t noh_graph_step(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, uint32_t ticks, noh_event_fn fn, void *user);
+/* Take transitions, find weights, move time on. Returns the number of events delivered. The callback may set
+ * parameters; changes that it makes to the tracks inside last until the next step. */
+uint32_t noh_graph_step(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, uint32_t ticks,
+                        noh_event_fn fn, void *user);
 
 /* ---- poses ---- */
 
@@ -144,12 +147,14 @@ typedef struct noh_graph_scratch {
 } noh_graph_scratch;
 
 size_t noh_graph_scratch_size(const noh_graph *graph, const noh_clip_set *set);
-noh_result noh_graph_scratch_init(void *memory, size_t bytes, const noh_graph *graph, const noh_clip_set *set, noh_graph_scratch *scratch, noh_error *error);
+noh_result noh_graph_scratch_init(void *memory, size_t bytes, const noh_graph *graph, const noh_clip_set *set,
+                                  noh_graph_scratch *scratch, noh_error *error);
 
 /* The present pose. It begins the inertial transitions of the last step; without a call between two steps they switch
  * without inertia.
  * shapes  pose[joint_count], floats[float_count] of the set */
-void noh_graph_pose(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, noh_graph_scratch *scratch, noh_transform *pose, float *floats);
+void noh_graph_pose(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, noh_graph_scratch *scratch,
+                    noh_transform *pose, float *floats);
 
 #ifdef __cplusplus
 }

@@ -48,7 +48,8 @@ static const char *bad_clip(const noh_graph *g, const noh_clip_set *set, const n
     noh_track unused;
     memset(&unused, 0, sizeof unused);
     if (n->index >= g->clip_count) return "clip index is not below clip_count";
-    return noh_track_start(&unused, set, &g->clips[n->index], NULL) == NOH_OK ? NULL : "clip desc: noh_track_start refuses it";
+    return noh_track_start(&unused, set, &g->clips[n->index], NULL) == NOH_OK ? NULL
+                                                                              : "clip desc: noh_track_start refuses it";
 }
 
 static const char *bad_space_1d(const noh_graph *g, const noh_graph_node *n)
@@ -56,7 +57,8 @@ static const char *bad_space_1d(const noh_graph *g, const noh_graph_node *n)
     if (!in_range(n->first_item, n->child_count, g->threshold_count)) return "threshold range is past threshold_count";
     for (uint32_t i = 0; i < n->child_count; i++) {
         const float *t = g->thresholds + n->first_item + i;
-        if (!is_coordinate(t[0]) || (i > 0 && !(t[0] > t[-1]))) return "threshold order: each must be above the one before, and within NOH_BLEND_SPACE_COORDINATE_MAX";
+        if (!is_coordinate(t[0]) || (i > 0 && !(t[0] > t[-1])))
+            return "threshold order: each must be above the one before, and within NOH_BLEND_SPACE_COORDINATE_MAX";
     }
     return NULL;
 }
@@ -68,26 +70,33 @@ static const char *bad_space_2d(const noh_graph *g, const noh_graph_node *n)
     s = &g->spaces[n->first_item];
     if (bad_param(g, n->param_y)) return "param_y is not below param_count";
     if (s->point_count != n->child_count || !s->points) return "space points: NULL, or not one for each child";
-    if (s->triangle_count > NOH_BLEND_SPACE_TRIANGLES_MAX || (s->triangle_count && !s->triangles)) return "space triangles: NULL, or more than NOH_BLEND_SPACE_TRIANGLES_MAX";
+    if (s->triangle_count > NOH_BLEND_SPACE_TRIANGLES_MAX || (s->triangle_count && !s->triangles))
+        return "space triangles: NULL, or more than NOH_BLEND_SPACE_TRIANGLES_MAX";
     for (uint32_t i = 0; i < s->point_count; i++) {
-        if (!is_coordinate(s->points[2u * i]) || !is_coordinate(s->points[2u * i + 1u])) return "space point is not finite or past NOH_BLEND_SPACE_COORDINATE_MAX";
+        if (!is_coordinate(s->points[2u * i]) || !is_coordinate(s->points[2u * i + 1u]))
+            return "space point is not finite or past NOH_BLEND_SPACE_COORDINATE_MAX";
     }
     for (uint32_t i = 0; i < s->triangle_count; i++) {
         const uint8_t *t = s->triangles + 3u * i;
-        if (t[0] >= s->point_count || t[1] >= s->point_count || t[2] >= s->point_count) return "space triangle names a point that does not exist";
+        if (t[0] >= s->point_count || t[1] >= s->point_count || t[2] >= s->point_count)
+            return "space triangle names a point that does not exist";
     }
     return NULL;
 }
 
 static const char *bad_transition(const noh_graph *g, const noh_graph_node *n, const noh_graph_transition *t)
 {
-    if (t->to >= n->child_count || (t->from != NOH_GRAPH_NONE && t->from >= n->child_count) || t->from == t->to) return "transition states: `from` and `to` must be two children of the machine";
+    if (t->to >= n->child_count || (t->from != NOH_GRAPH_NONE && t->from >= n->child_count) || t->from == t->to)
+        return "transition states: `from` and `to` must be two children of the machine";
     if (t->condition > NOH_WHEN_ENDING) return "transition condition is not a noh_condition";
-    if (t->condition != NOH_WHEN_ENDING && t->param >= g->param_count) return "transition param is not below param_count";
+    if (t->condition != NOH_WHEN_ENDING && t->param >= g->param_count)
+        return "transition param is not below param_count";
     if (!is_finite(t->threshold)) return "transition threshold is not finite";
     if (t->curve > NOH_CURVE_SMOOTHSTEP) return "transition curve is not a noh_curve";
-    if (t->flags & ~(NOH_TRANSITION_INERTIAL | NOH_TRANSITION_KEEP)) return "transition flags has bits other than NOH_TRANSITION_*";
-    if ((t->flags & NOH_TRANSITION_INERTIAL) && t->duration_ticks == 0) return "transition duration is 0 though it is inertial";
+    if (t->flags & ~(NOH_TRANSITION_INERTIAL | NOH_TRANSITION_KEEP))
+        return "transition flags has bits other than NOH_TRANSITION_*";
+    if ((t->flags & NOH_TRANSITION_INERTIAL) && t->duration_ticks == 0)
+        return "transition duration is 0 though it is inertial";
     return NULL;
 }
 
@@ -95,7 +104,8 @@ static const char *bad_machine(const noh_graph *g, const noh_graph_node *n)
 {
     const char *what = NULL;
     if (n->index >= g->machine_count) return "machine index is not below machine_count";
-    if (!in_range(n->first_item, n->item_count, g->transition_count)) return "transition range is past transition_count";
+    if (!in_range(n->first_item, n->item_count, g->transition_count))
+        return "transition range is past transition_count";
     for (uint32_t i = 0; i < n->item_count && !what; i++) {
         what = bad_transition(g, n, &g->transitions[n->first_item + i]);
     }
@@ -106,8 +116,10 @@ static const char *bad_children(const noh_graph *g, const noh_graph_node *n)
 {
     int pair = n->kind == NOH_NODE_BLEND || n->kind == NOH_NODE_ADD || n->kind == NOH_NODE_MASK;
     if (n->kind > NOH_NODE_MACHINE) return "kind is not a noh_node_kind";
-    if (n->kind == NOH_NODE_CLIP ? n->child_count != 0 : n->child_count == 0) return "child_count does not suit the kind";
-    if (n->child_count > NOH_GRAPH_CHILDREN_MAX || (pair && n->child_count != 2)) return "child_count does not suit the kind";
+    if (n->kind == NOH_NODE_CLIP ? n->child_count != 0 : n->child_count == 0)
+        return "child_count does not suit the kind";
+    if (n->child_count > NOH_GRAPH_CHILDREN_MAX || (pair && n->child_count != 2))
+        return "child_count does not suit the kind";
     return in_range(n->first_child, n->child_count, g->child_count) ? NULL : "child range is past child_count";
 }
 
@@ -116,10 +128,12 @@ static const char *bad_node(const noh_graph *g, const noh_clip_set *set, const n
     const char *what = bad_children(g, n);
     if (what) return what;
     if (!is_finite(n->value)) return "value is not finite";
-    if (n->kind != NOH_NODE_CLIP && n->kind != NOH_NODE_MACHINE && bad_param(g, n->param)) return "param is not below param_count";
+    if (n->kind != NOH_NODE_CLIP && n->kind != NOH_NODE_MACHINE && bad_param(g, n->param))
+        return "param is not below param_count";
     switch (n->kind) {
     case NOH_NODE_CLIP: return bad_clip(g, set, n);
-    case NOH_NODE_MASK: return n->mask == 0 || n->mask > set->mask_count ? "mask is not in 1..mask_count of the set" : NULL;
+    case NOH_NODE_MASK:
+        return n->mask == 0 || n->mask > set->mask_count ? "mask is not in 1..mask_count of the set" : NULL;
     case NOH_NODE_SPACE_1D: return bad_space_1d(g, n);
     case NOH_NODE_SPACE_2D: return bad_space_2d(g, n);
     case NOH_NODE_MACHINE: return bad_machine(g, n);
@@ -127,9 +141,9 @@ static const char *bad_node(const noh_graph *g, const noh_clip_set *set, const n
     }
 }
 
-/* Post-order, checked with a stack of finished subtrees as in a postfix calculator: a node's children must be the topmost
- * ones, in order, and are replaced by the node. One subtree, the whole graph, remains. That every node has one parent
- * follows, and that the graph has no cycle. */
+/* Post-order, checked with a stack of finished subtrees as in a postfix calculator: a node's children must be the
+ * topmost ones, in order, and are replaced by the node. One subtree, the whole graph, remains. That every node has one
+ * parent follows, and that the graph has no cycle. */
 static const char *bad_order(const noh_graph *g, uint32_t *where)
 {
     uint16_t done[NOH_GRAPH_NODES_MAX];
@@ -140,7 +154,8 @@ static const char *bad_order(const noh_graph *g, uint32_t *where)
         if (n->child_count > count) return "children first: a node must follow its children directly";
         count -= n->child_count;
         for (uint32_t k = 0; k < n->child_count; k++) {
-            if (g->children[n->first_child + k] != done[count + k]) return "children first: a node must follow its children directly";
+            if (g->children[n->first_child + k] != done[count + k])
+                return "children first: a node must follow its children directly";
         }
         done[count++] = (uint16_t)i;
     }
@@ -155,9 +170,12 @@ static const char *bad_indices(const noh_graph *g, uint32_t *where)
         const noh_graph_node *n = &g->nodes[i];
         *where = i;
         if (n->kind == NOH_NODE_CLIP && n->index != clips++) return "clip index: each clip counts those before it";
-        if (n->kind == NOH_NODE_MACHINE && n->index != machines++) return "machine index: each machine counts those before it";
+        if (n->kind == NOH_NODE_MACHINE && n->index != machines++)
+            return "machine index: each machine counts those before it";
     }
-    return clips != g->clip_count ? "clip_count is not in 1..NOH_TRACKS_MAX" : machines != g->machine_count ? "machine_count is above node_count" : NULL;
+    return clips != g->clip_count         ? "clip_count is not in 1..NOH_TRACKS_MAX"
+           : machines != g->machine_count ? "machine_count is above node_count"
+                                          : NULL;
 }
 
 noh_result noh_graph_check(const noh_graph *graph, const noh_clip_set *set, noh_error *error)
@@ -175,7 +193,8 @@ noh_result noh_graph_check(const noh_graph *graph, const noh_clip_set *set, noh_
     what = what ? what : bad_order(graph, &where);
     what = what ? what : bad_indices(graph, &where);
     if (!what && noh_graph_buffers(graph) > NOH_GRAPH_BUFFERS_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "pose buffers: evaluating takes more than NOH_GRAPH_BUFFERS_MAX", 0, noh_graph_buffers(graph));
+        return noh_fail(error, NOH_ERR_LIMIT, "pose buffers: evaluating takes more than NOH_GRAPH_BUFFERS_MAX", 0,
+                        noh_graph_buffers(graph));
     }
     return what ? noh_fail(error, NOH_ERR_DATA, what, where, 0) : NOH_OK;
 }
@@ -195,8 +214,8 @@ uint32_t noh_graph_buffers(const noh_graph *graph)
         const noh_graph_node *n = &graph->nodes[i];
         need[i] = 1;
         for (uint32_t k = 0; k < n->child_count; k++) {
-            /* While a child is evaluated, the buffers of its elder siblings wait, at most one less than can have weight: the
-             * numbering of Sethi and Ullman (1970) for registers, with a fixed order of children. */
+            /* While a child is evaluated, the buffers of its elder siblings wait, at most one less than can have
+             * weight: the numbering of Sethi and Ullman (1970) for registers, with a fixed order of children. */
             uint32_t waiting = k < live_children(n) - 1 ? k : live_children(n) - 1;
             uint32_t depth = need[graph->children[n->first_child + k]] + waiting;
             need[i] = (uint16_t)(depth > need[i] ? depth : need[i]);

@@ -37,7 +37,8 @@ size_t noh_graph_scratch_size(const noh_graph *graph, const noh_clip_set *set)
     return arena.used;
 }
 
-noh_result noh_graph_scratch_init(void *memory, size_t bytes, const noh_graph *graph, const noh_clip_set *set, noh_graph_scratch *scratch, noh_error *error)
+noh_result noh_graph_scratch_init(void *memory, size_t bytes, const noh_graph *graph, const noh_clip_set *set,
+                                  noh_graph_scratch *scratch, noh_error *error)
 {
     size_t pose_need = noh_pose_scratch_size(set, is_inertial(graph));
     noh_arena arena;
@@ -47,7 +48,8 @@ noh_result noh_graph_scratch_init(void *memory, size_t bytes, const noh_graph *g
         return result;
     }
     memset(scratch, 0, sizeof *scratch);
-    result = noh_pose_scratch_init(noh_arena_carve(&arena, pose_need, 16), pose_need, set, is_inertial(graph), &scratch->pose, error);
+    result = noh_pose_scratch_init(noh_arena_carve(&arena, pose_need, 16), pose_need, set, is_inertial(graph),
+                                   &scratch->pose, error);
     for (uint32_t i = 0; i < noh_graph_buffers(graph); i++) {
         scratch->poses[i] = (noh_transform *)noh_arena_carve(&arena, pose_bytes(set), 4);
         scratch->float_poses[i] = (float *)noh_arena_carve(&arena, set->float_count * sizeof(float), 4);
@@ -63,10 +65,11 @@ typedef struct evaluation {
     const noh_controller *c;
     noh_graph_scratch *scratch;
     int64_t ago;
-    uint32_t taken;                       /* a bit per buffer */
+    uint32_t taken; /* a bit per buffer */
     float weights[NOH_GRAPH_NODES_MAX];
-    uint8_t buffer[NOH_GRAPH_NODES_MAX];    /* where a node's pose lies, or NO_BUFFER */
-    uint8_t lacks[NOH_GRAPH_BUFFERS_MAX];   /* NOH_CLIP_FLOATS_ONLY, NO_FLOATS: what nothing animates in a buffer's pose */
+    uint8_t buffer[NOH_GRAPH_NODES_MAX]; /* where a node's pose lies, or NO_BUFFER */
+    /* NOH_CLIP_FLOATS_ONLY, NO_FLOATS: what nothing animates in a buffer's pose */
+    uint8_t lacks[NOH_GRAPH_BUFFERS_MAX];
 } evaluation;
 
 static uint8_t take_buffer(evaluation *e)
@@ -88,8 +91,8 @@ static void evaluate_clip(evaluation *e, uint32_t i)
 {
     const noh_track *t = noh_controller_track(e->c, e->view.graph->nodes[i].index);
     uint8_t buffer = take_buffer(e);
-    noh_root_sample_rest(e->set, t->clip, noh_track_clip_tick(t, &e->set->clips[t->clip], e->ago), e->c->lod_joint_count,
-                         e->scratch->poses[buffer], e->scratch->float_poses[buffer]);
+    noh_root_sample_rest(e->set, t->clip, noh_track_clip_tick(t, &e->set->clips[t->clip], e->ago),
+                         e->c->lod_joint_count, e->scratch->poses[buffer], e->scratch->float_poses[buffer]);
     e->buffer[i] = buffer;
     e->lacks[buffer] = (uint8_t)(e->set->clips[t->clip].flags & LACKS);
 }
@@ -129,11 +132,13 @@ static void sum_parts(evaluation *e, const parts *p)
     for (uint32_t k = 0; k < p->count; k++) {
         uint8_t buffer = p->buffers[k];
         noh_blend_add(b, e->lacks[buffer] & NOH_CLIP_FLOATS_ONLY ? NULL : e->scratch->poses[buffer],
-                      e->lacks[buffer] & NOH_CLIP_JOINTS_ONLY ? NULL : e->scratch->float_poses[buffer], p->weights[k], everywhere);
+                      e->lacks[buffer] & NOH_CLIP_JOINTS_ONLY ? NULL : e->scratch->float_poses[buffer], p->weights[k],
+                      everywhere);
         lacks = (uint8_t)(lacks & e->lacks[buffer]);
     }
     e->lacks[p->buffers[0]] = lacks;
-    noh_blend_finish(b, e->set->bind_pose, e->set->float_defaults, e->scratch->poses[p->buffers[0]], e->scratch->float_poses[p->buffers[0]]);
+    noh_blend_finish(b, e->set->bind_pose, e->set->float_defaults, e->scratch->poses[p->buffers[0]],
+                     e->scratch->float_poses[p->buffers[0]]);
 }
 
 /* Whether a subtree's clips are differences already; its first clip decides for all. */
@@ -173,7 +178,8 @@ static void mask_part(evaluation *e, const noh_graph_node *node, const parts *p)
         noh_pose_mix(e->c->lod_joint_count, base, e->scratch->poses[p->buffers[1]], p->weights[1], mask.joints, base);
     }
     if (!(e->lacks[p->buffers[1]] & NOH_CLIP_JOINTS_ONLY)) {
-        noh_floats_mix(e->set->float_count, float_base, e->scratch->float_poses[p->buffers[1]], p->weights[1], mask.floats, float_base);
+        noh_floats_mix(e->set->float_count, float_base, e->scratch->float_poses[p->buffers[1]], p->weights[1],
+                       mask.floats, float_base);
     }
     e->lacks[p->buffers[0]] &= e->lacks[p->buffers[1]];
 }
@@ -195,8 +201,8 @@ static void evaluate_node(evaluation *e, uint32_t i)
     e->buffer[i] = p.count ? p.buffers[0] : (uint8_t)NO_BUFFER;
 }
 
-static void evaluate(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, noh_graph_scratch *scratch, int before, int64_t ago,
-                     noh_transform *pose, float *floats)
+static void evaluate(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set,
+                     noh_graph_scratch *scratch, int before, int64_t ago, noh_transform *pose, float *floats)
 {
     evaluation e;
     uint8_t active[NOH_GRAPH_NODES_MAX], buffer;
@@ -232,7 +238,8 @@ static void evaluate(noh_graph_state *state, const noh_graph *graph, const noh_c
 
 /* ---- transitions by inertia ---- */
 
-static void begin_inertia(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, noh_graph_scratch *scratch)
+static void begin_inertia(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set,
+                          noh_graph_scratch *scratch)
 {
     noh_controller *c = noh_graph_controller(state);
     noh_pose_scratch *p = &scratch->pose;
@@ -254,7 +261,8 @@ static void begin_inertia(noh_graph_state *state, const noh_graph *graph, const 
     state->inertia_ticks = 0;
 }
 
-void noh_graph_pose(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, noh_graph_scratch *scratch, noh_transform *pose, float *floats)
+void noh_graph_pose(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, noh_graph_scratch *scratch,
+                    noh_transform *pose, float *floats)
 {
     NOH_ASSERT(state && graph && set && scratch && (!set->joint_count || pose) && (!set->float_count || floats));
     NOH_VALIDATE(noh_graph_check(graph, set, NULL) == NOH_OK);

@@ -47,13 +47,17 @@ void noh_graph_child_weights(const noh_graph_view *view, const noh_graph_node *n
         local[0] = 1.0f - held(t);
         local[1] = held(t);
         break;
-    case NOH_NODE_ADD: case NOH_NODE_MASK:
+    case NOH_NODE_ADD:
+    case NOH_NODE_MASK:
         local[0] = 1.0f;
         local[1] = held(t);
         break;
-    case NOH_NODE_SPACE_1D: noh_blend_space_1d_weights(node->child_count, g->thresholds + node->first_item, t, local); break;
+    case NOH_NODE_SPACE_1D:
+        noh_blend_space_1d_weights(node->child_count, g->thresholds + node->first_item, t, local);
+        break;
     case NOH_NODE_SPACE_2D:
-        noh_blend_space_2d_weights(&g->spaces[node->first_item], t, node->param_y == NOH_GRAPH_NONE ? 0.0f : view->params[node->param_y], local);
+        noh_blend_space_2d_weights(&g->spaces[node->first_item], t,
+                                   node->param_y == NOH_GRAPH_NONE ? 0.0f : view->params[node->param_y], local);
         break;
     case NOH_NODE_MACHINE: machine_weights(view, node, local); break;
     default: break;
@@ -71,7 +75,8 @@ static int lets_live(const noh_graph_view *view, const noh_graph_node *node, uin
     return child == m->current || child == m->previous;
 }
 
-/* A product that is 0 only where a factor is: an underflow would leave a node unsampled whose parent expects its pose. */
+/* A product that is 0 only where a factor is: an underflow would leave a node unsampled whose parent expects its pose.
+ */
 static float product(float a, float b)
 {
     float p = a * b;

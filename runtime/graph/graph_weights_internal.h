@@ -20,8 +20,8 @@ float noh_graph_amount(const noh_graph_view *view, const noh_graph_node *node);
 /* The weight of each child in its node. ADD and MASK: 1 and t. shapes  local[child_count] */
 void noh_graph_child_weights(const noh_graph_view *view, const noh_graph_node *node, float *local);
 
-/* The products of these weights from the root down, and which nodes are in play: not in a state that its machine is not in.
- * shapes  weights[node_count], active[node_count] */
+/* The products of these weights from the root down, and which nodes are in play: not in a state that its machine is not
+ * in. shapes  weights[node_count], active[node_count] */
 void noh_graph_weights(const noh_graph_view *view, float *weights, uint8_t *active);
 
 /* The first node of a subtree; it is a clip. */

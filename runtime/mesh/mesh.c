@@ -30,7 +30,8 @@ noh_result noh_pack_mesh_at(const noh_pack *pack, uint32_t index, noh_mesh *mesh
 {
     NOH_ASSERT(pack && mesh);
     if (index >= pack->mesh_count) {
-        return noh_fail(error, NOH_ERR_NOT_FOUND, pack->mesh_count ? "mesh index is past the pack's last mesh" : "pack holds no mesh", index,
+        return noh_fail(error, NOH_ERR_NOT_FOUND,
+                        pack->mesh_count ? "mesh index is past the pack's last mesh" : "pack holds no mesh", index,
                         pack->mesh_count);
     }
     mesh->pack = pack;
@@ -53,7 +54,8 @@ noh_result noh_pack_skin_at(const noh_pack *pack, uint32_t index, noh_skin *skin
     const uint8_t *chunk;
     NOH_ASSERT(pack && skin);
     if (index >= pack->skin_count) {
-        return noh_fail(error, NOH_ERR_NOT_FOUND, index == NOH_NONE ? "a rigid mesh has no skin" : "skin index is past the pack's last skin",
+        return noh_fail(error, NOH_ERR_NOT_FOUND,
+                        index == NOH_NONE ? "a rigid mesh has no skin" : "skin index is past the pack's last skin",
                         index, pack->skin_count);
     }
     chunk = pack->bytes + pack->chunks[pack->first_skin + index].offset;
@@ -78,7 +80,8 @@ uint32_t noh_mesh_find_target(const noh_mesh *mesh, const char *name)
     const uint32_t hash = noh_hash_name(name);
     NOH_ASSERT(mesh && mesh->header);
     for (uint32_t i = 0; i < mesh->header->target_count; i++) {
-        if (mesh->targets[i].name_hash == hash && names_equal(noh_pack_string(mesh->pack, mesh->targets[i].name), name)) {
+        if (mesh->targets[i].name_hash == hash &&
+            names_equal(noh_pack_string(mesh->pack, mesh->targets[i].name), name)) {
             return i;
         }
     }
@@ -135,8 +138,8 @@ uint32_t noh_mesh_palette(const noh_mesh *mesh, uint32_t vertex)
     return texel_word(mesh, vertex) >> NOH_TEXEL_VERTEX_BITS;
 }
 
-/* The n-th stored weight (the first is n = 1), in units of 1 / NOH_WEIGHT_ONE: the second heaviest, at most a half, in 22 bits,
- * the others, at most a third, in 21. */
+/* The n-th stored weight (the first is n = 1), in units of 1 / NOH_WEIGHT_ONE: the second heaviest, at most a half, in
+ * 22 bits, the others, at most a third, in 21. */
 static uint32_t stored_weight(const uint32_t *words, uint32_t n)
 {
     uint32_t bit = n == 1 ? 0 : 22u + 21u * (n - 2u), size = n == 1 ? 22u : 21u;
@@ -165,10 +168,10 @@ uint32_t noh_mesh_influences(const noh_mesh *mesh, uint32_t vertex, uint32_t joi
     return count;
 }
 
-/* Decode an octahedral direction from x and y in -1..1. The sphere is projected on the octahedron |x| + |y| + |z| = 1; its
- * upper half lies in the square as it is, the lower half is folded outwards over the four edges. So z is what x and y leave
- * of 1, and where it is negative x and y are folded back by it.
- * source  Meyer, Suessmuth, Sussner, Stamminger, Greiner: On floating-point normal vectors, 2010 */
+/* Decode an octahedral direction from x and y in -1..1. The sphere is projected on the octahedron |x| + |y| + |z| = 1;
+ * its upper half lies in the square as it is, the lower half is folded outwards over the four edges. So z is what x and
+ * y leave of 1, and where it is negative x and y are folded back by it. source  Meyer, Suessmuth, Sussner, Stamminger,
+ * Greiner: On floating-point normal vectors, 2010 */
 static void unfold(float x, float y, float out[3])
 {
     float z = 1.0f - (x < 0.0f ? -x : x) - (y < 0.0f ? -y : y);
@@ -188,7 +191,8 @@ static int32_t high_half(uint32_t word)
     return (int32_t)word >> 16;
 }
 
-/* Stored as square roots, close to how the eye tells shades apart: 8 bits then show no steps, and decoding is a product. */
+/* Stored as square roots, close to how the eye tells shades apart: 8 bits then show no steps, and decoding is a
+ * product. */
 static void decode_color(const uint8_t *bytes, float color[4])
 {
     for (int c = 0; c < 3; c++) {
@@ -217,7 +221,8 @@ void noh_mesh_vertex(const noh_mesh *mesh, uint32_t index, noh_vertex *out)
     static const float up[3] = { 0.0f, 0.0f, 1.0f };
     const noh_mesh_header *h = mesh->header;
     const uint8_t *record = mesh->attributes + (size_t)index * h->attribute_stride;
-    const int tangent = noh_mesh_tangent_offset(mesh), uv = noh_mesh_uv_offset(mesh), color = noh_mesh_color_offset(mesh);
+    const int tangent = noh_mesh_tangent_offset(mesh), uv = noh_mesh_uv_offset(mesh),
+              color = noh_mesh_color_offset(mesh);
     NOH_ASSERT(index < h->vertex_count && out);
     memset(out, 0, sizeof *out);
     memcpy(out->position, mesh->positions + 3u * (size_t)index, sizeof out->position);

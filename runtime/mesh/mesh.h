@@ -14,27 +14,27 @@ typedef struct noh_mesh {
     const noh_pack *pack;
     const char *name;
     const noh_mesh_header *header;
-    const float *positions;      /* [vertex_count][3], model units */
-    const uint8_t *attributes;   /* [vertex_count][attribute_stride] */
-    const void *indices;         /* uint16_t or uint32_t [index_count] */
+    const float *positions;    /* [vertex_count][3], model units */
+    const uint8_t *attributes; /* [vertex_count][attribute_stride] */
+    const void *indices;       /* uint16_t or uint32_t [index_count] */
     const noh_submesh *submeshes;
     const noh_target *targets;
-    const float *weights;        /* [target_count], default weights */
+    const float *weights; /* [target_count], default weights */
     const noh_rect *rects;
-    const uint32_t *texels;      /* [texel_count][3] */
-    const float *target_boxes;   /* [target_count][6] */
-    const uint32_t *influences;  /* [vertex_count][NOH_INFLUENCE_WORDS(influence_count)] */
+    const uint32_t *texels;     /* [texel_count][3] */
+    const float *target_boxes;  /* [target_count][6] */
+    const uint32_t *influences; /* [vertex_count][NOH_INFLUENCE_WORDS(influence_count)] */
     const noh_palette *palettes;
     const uint16_t *palette_joints;
-    const float *joint_boxes;    /* [the skin's joint_count][6] */
+    const float *joint_boxes; /* [the skin's joint_count][6] */
 } noh_mesh;
 
 /* The joints that move a mesh. A view likewise. */
 typedef struct noh_skin {
     const char *name;
     const noh_skin_header *header;
-    const uint16_t *joints;      /* [joint_count], joints of skeleton header->skeleton */
-    const float *inverse_bind;   /* [joint_count][12] */
+    const uint16_t *joints;    /* [joint_count], joints of skeleton header->skeleton */
+    const float *inverse_bind; /* [joint_count][12] */
 } noh_skin;
 
 /* One vertex, decoded. */
@@ -43,16 +43,16 @@ typedef struct noh_vertex {
     float normal[3];
     float tangent[4]; /* w: handedness; (0,0,0,0) without tangents */
     float uv[2];
-    float color[4];   /* linear; white without colours */
+    float color[4]; /* linear; white without colours */
 } noh_vertex;
 
 /* The n-th mesh, its full level.
  * errors  NOT_FOUND  past mesh_count (where: the index, need: the count); *mesh is untouched */
 noh_result noh_pack_mesh_at(const noh_pack *pack, uint32_t index, noh_mesh *mesh, noh_error *error);
 
-/* The same mesh at a LOD level: 0 is the full one, past the last it is the coarsest. Levels are absolute, whichever level
- * `mesh` is at. The result is a mesh like any other: what is made from it (layers, skinned vertices, GL buffers) has that
- * level's size and can show every coarser level too. */
+/* The same mesh at a LOD level: 0 is the full one, past the last it is the coarsest. Levels are absolute, whichever
+ * level `mesh` is at. The result is a mesh like any other: what is made from it (layers, skinned vertices, GL buffers)
+ * has that level's size and can show every coarser level too. */
 noh_mesh noh_mesh_at_lod(const noh_mesh *mesh, uint32_t level);
 
 /* The n-th skin; a mesh names its own in header->skin.
@@ -66,8 +66,8 @@ uint32_t noh_mesh_find_target(const noh_mesh *mesh, const char *name);
  * ranges  index below vertex_count */
 void noh_mesh_vertex(const noh_mesh *mesh, uint32_t index, noh_vertex *out);
 
-/* Its normal and tangent unnormalised: of lengths from 0.57 to 1, for a caller that normalises later. Without tangents the
- * tangent is 0. */
+/* Its normal and tangent unnormalised: of lengths from 0.57 to 1, for a caller that normalises later. Without tangents
+ * the tangent is 0. */
 void noh_mesh_directions(const noh_mesh *mesh, uint32_t index, float normal[3], float tangent[3]);
 
 /* Byte offset of an attribute in a vertex's record, or -1 where the mesh has none. */
@@ -75,8 +75,8 @@ int noh_mesh_tangent_offset(const noh_mesh *mesh);
 int noh_mesh_uv_offset(const noh_mesh *mesh);
 int noh_mesh_color_offset(const noh_mesh *mesh);
 
-/* A vertex's accumulation texel: it has none where that is header->touched_count or more. And its palette: 0 unless the mesh
- * is split into several. */
+/* A vertex's accumulation texel: it has none where that is header->touched_count or more. And its palette: 0 unless the
+ * mesh is split into several. */
 uint32_t noh_mesh_accumulation_texel(const noh_mesh *mesh, uint32_t vertex);
 uint32_t noh_mesh_palette(const noh_mesh *mesh, uint32_t vertex);
 

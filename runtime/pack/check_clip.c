@@ -32,12 +32,14 @@ static noh_result check_levels(const noh_check *check, const noh_skeleton_header
     const uint32_t *counts = (const uint32_t *)(const void *)(check->bytes + h->levels_offset);
     for (uint32_t i = 0; i < h->level_count; i++) {
         if (!counts[i] || (i ? counts[i] >= counts[i - 1] : counts[i] != h->joint_count)) {
-            return noh_check_fail(check, "joint levels do not begin with all joints, or do not fall", h->levels_offset + 4ull * i);
+            return noh_check_fail(check, "joint levels do not begin with all joints, or do not fall",
+                                  h->levels_offset + 4ull * i);
         }
     }
     for (uint32_t j = counts[h->level_count - 1]; j < h->joint_count; j++) {
         if (parents[j] == NOH_PACK_JOINT_ROOT) {
-            return noh_check_fail(check, "joint level leaves out a joint that has no parent", h->parents_offset + 2ull * j);
+            return noh_check_fail(check, "joint level leaves out a joint that has no parent",
+                                  h->parents_offset + 2ull * j);
         }
     }
     return NOH_OK;
@@ -51,13 +53,15 @@ noh_result noh_check_skeleton(noh_check *check)
         return result;
     }
     if (!h->joint_count || h->joint_count > NOH_JOINTS_MAX) {
-        return noh_check_fail(check, "joint count is zero or over the limit", offsetof(noh_skeleton_header, joint_count));
+        return noh_check_fail(check, "joint count is zero or over the limit",
+                              offsetof(noh_skeleton_header, joint_count));
     }
     if (!(h->unit_cm > 0.0f) || !noh_float_finite(h->unit_cm)) {
         return noh_check_fail(check, "unit of a skeleton is not a length", offsetof(noh_skeleton_header, unit_cm));
     }
     if (!h->level_count || h->level_count > NOH_LOD_LEVELS_MAX) {
-        return noh_check_fail(check, "count of joint levels is zero or over the limit", offsetof(noh_skeleton_header, level_count));
+        return noh_check_fail(check, "count of joint levels is zero or over the limit",
+                              offsetof(noh_skeleton_header, level_count));
     }
     result = noh_check_array(check, h->parents_offset, h->joint_count, 2);
     if (!result) result = noh_check_array(check, h->bind_offset, h->joint_count, 40);
@@ -77,7 +81,8 @@ static noh_result check_events(const noh_check *check, const noh_clip_header *h)
         if (result) {
             return result;
         }
-        if ((i && events[i].tick < events[i - 1].tick) || !noh_float_finite(events[i].weight_min) || events[i].weight_min < 0.0f) {
+        if ((i && events[i].tick < events[i - 1].tick) || !noh_float_finite(events[i].weight_min) ||
+            events[i].weight_min < 0.0f) {
             return noh_check_fail(check, "callback keys are not in time order, or a weight is not 0 or more", at);
         }
     }
@@ -107,17 +112,21 @@ static noh_result check_binding(const noh_check *check, const noh_clip_header *h
     if (h->joint_count == 0) {
         return h->skeleton_hash == 0 && h->skeleton == NOH_NONE && h->joint_error_count == 0
                    ? NOH_OK
-                   : noh_check_fail(check, "clip without joints names a skeleton, or has joint errors", offsetof(noh_clip_header, joint_count));
+                   : noh_check_fail(check, "clip without joints names a skeleton, or has joint errors",
+                                    offsetof(noh_clip_header, joint_count));
     }
     if (h->skeleton >= pack->skeleton_count) {
         return noh_check_fail(check, "clip names a skeleton that is not there", offsetof(noh_clip_header, skeleton));
     }
-    skeleton = (const noh_skeleton_header *)(const void *)(pack->bytes + pack->chunks[pack->first_skeleton + h->skeleton].offset);
+    skeleton = (const noh_skeleton_header *)(const void *)(pack->bytes +
+                                                           pack->chunks[pack->first_skeleton + h->skeleton].offset);
     if (skeleton->joint_count != h->joint_count || skeleton->hash != h->skeleton_hash) {
-        return noh_check_fail(check, "clip's joint count or hash is not its skeleton's", offsetof(noh_clip_header, skeleton_hash));
+        return noh_check_fail(check, "clip's joint count or hash is not its skeleton's",
+                              offsetof(noh_clip_header, skeleton_hash));
     }
     if (skeleton->level_count != h->joint_error_count) {
-        return noh_check_fail(check, "clip's joint errors are not of its skeleton's levels", offsetof(noh_clip_header, joint_error_count));
+        return noh_check_fail(check, "clip's joint errors are not of its skeleton's levels",
+                              offsetof(noh_clip_header, joint_error_count));
     }
     return NOH_OK;
 }
@@ -136,10 +145,14 @@ static noh_result check_errors(const noh_check *check, const float *errors, uint
 static noh_result check_clip_errors(const noh_check *check, const noh_clip_header *h)
 {
     const float *joint_errors = (const float *)(const void *)(check->bytes + h->joint_errors_offset);
-    noh_result result = check_errors(check, joint_errors, h->joint_error_count, "joint errors do not begin with 0, or fall, or are not finite");
-    if (!result) result = check_errors(check, h->update_rate_error, NOH_CLIP_UPDATE_RATES, "rate errors do not begin with 0, or fall, or are not finite");
+    noh_result result = check_errors(check, joint_errors, h->joint_error_count,
+                                     "joint errors do not begin with 0, or fall, or are not finite");
+    if (!result)
+        result = check_errors(check, h->update_rate_error, NOH_CLIP_UPDATE_RATES,
+                              "rate errors do not begin with 0, or fall, or are not finite");
     if (!result && (!noh_float_finite(h->error_shell) || h->error_shell < 0.0f)) {
-        result = noh_check_fail(check, "the shell of a clip's errors is not a length", offsetof(noh_clip_header, error_shell));
+        result = noh_check_fail(check, "the shell of a clip's errors is not a length",
+                                offsetof(noh_clip_header, error_shell));
     }
     return result;
 }

@@ -1,19 +1,19 @@
 /* check.h (private to pack/): the checkers of the chunks, one per type.
  *
- * Each sees only the bytes of its own chunk and the pack as far as it has been opened: chunks come in an order in which none
- * refers to a later one. Files call each other in one direction: check_mesh.c calls check_level.c and check_skin.c, and all
- * three call check_mesh_part.c and check.c. */
+ * Each sees only the bytes of its own chunk and the pack as far as it has been opened: chunks come in an order in which
+ * none refers to a later one. Files call each other in one direction: check_mesh.c calls check_level.c and
+ * check_skin.c, and all three call check_mesh_part.c and check.c. */
 #ifndef NOH_PACK_CHECK_INTERNAL_H
 #define NOH_PACK_CHECK_INTERNAL_H
 
 #include "pack/pack.h"
 
 typedef struct noh_check {
-    const noh_pack *pack;  /* what the chunks before this one hold */
-    const uint8_t *bytes;  /* of this chunk */
+    const noh_pack *pack; /* what the chunks before this one hold */
+    const uint8_t *bytes; /* of this chunk */
     uint32_t count;
     uint32_t file_offset;
-    uint32_t cursor;       /* where the next array has to begin */
+    uint32_t cursor; /* where the next array has to begin */
     noh_error *error;
 } noh_check;
 
@@ -47,8 +47,8 @@ noh_result noh_check_submeshes(const noh_check *check, const noh_mesh_header *h)
 noh_result noh_check_draws(const noh_check *check, const noh_mesh_header *h);
 noh_result noh_check_rects(const noh_check *check, const noh_mesh_header *h, const noh_target *t);
 
-/* The headers of a mesh's coarser levels, which follow that of the full one: present, and equal in all that levels share.
- * Comes before the arrays. */
+/* The headers of a mesh's coarser levels, which follow that of the full one: present, and equal in all that levels
+ * share. Comes before the arrays. */
 noh_result noh_check_level_headers(noh_check *check, const noh_mesh_header *h);
 
 /* Sums over all levels of a mesh, of the arrays that each level has a part of. */

@@ -28,9 +28,10 @@ static noh_mesh_header as_full(const noh_mesh_header *l, const noh_mesh_header *
 
 static int counts_rise(const noh_mesh_header *l, const noh_mesh_header *finer)
 {
-    return !l->vertex_count || l->vertex_count > finer->vertex_count || l->index_count > finer->index_count || l->index_count % 3 ||
-           !l->submesh_count || l->submesh_count > NOH_SUBMESHES_MAX || l->touched_count > finer->touched_count ||
-           l->rect_count > finer->rect_count || l->texel_count > finer->texel_count || l->pair_count > finer->pair_count;
+    return !l->vertex_count || l->vertex_count > finer->vertex_count || l->index_count > finer->index_count ||
+           l->index_count % 3 || !l->submesh_count || l->submesh_count > NOH_SUBMESHES_MAX ||
+           l->touched_count > finer->touched_count || l->rect_count > finer->rect_count ||
+           l->texel_count > finer->texel_count || l->pair_count > finer->pair_count;
 }
 
 static noh_result check_errors(const noh_check *check, const noh_mesh_header *l, const noh_mesh_header *finer)
@@ -39,7 +40,9 @@ static noh_result check_errors(const noh_check *check, const noh_mesh_header *l,
     noh_result result = noh_check_floats(check, mine, 6, "level's error is not finite");
     for (unsigned i = 0; !result && i < 6; i++) {
         if (mine[i] < before[i]) {
-            result = noh_check_fail(check, "level's error is below that of the finer level", (uint64_t)l->level * sizeof *l + offsetof(noh_mesh_header, level_error_rest) + 4u * i);
+            result = noh_check_fail(check, "level's error is below that of the finer level",
+                                    (uint64_t)l->level * sizeof *l + offsetof(noh_mesh_header, level_error_rest) +
+                                        4u * i);
         }
     }
     return result;
@@ -49,13 +52,16 @@ static noh_result check_full_errors(const noh_check *check, const noh_mesh_heade
 {
     const float *errors = &h->level_error_rest;
     for (unsigned i = 0; i < 3; i++) {
-        if (!(h->influence_errors[i] >= (i ? h->influence_errors[i - 1] : 0.0f)) || !noh_float_finite(h->influence_errors[i])) {
-            return noh_check_fail(check, "error of fewer influences is not finite, or falls", offsetof(noh_mesh_header, influence_errors) + 4u * i);
+        if (!(h->influence_errors[i] >= (i ? h->influence_errors[i - 1] : 0.0f)) ||
+            !noh_float_finite(h->influence_errors[i])) {
+            return noh_check_fail(check, "error of fewer influences is not finite, or falls",
+                                  offsetof(noh_mesh_header, influence_errors) + 4u * i);
         }
     }
     for (unsigned i = 0; i < 6; i++) {
         if (!(errors[i] == 0.0f)) {
-            return noh_check_fail(check, "full mesh has the error of a level", offsetof(noh_mesh_header, level_error_rest) + 4u * i);
+            return noh_check_fail(check, "full mesh has the error of a level",
+                                  offsetof(noh_mesh_header, level_error_rest) + 4u * i);
         }
     }
     return NOH_OK;
@@ -68,7 +74,8 @@ noh_result noh_check_level_headers(noh_check *check, const noh_mesh_header *h)
     for (uint32_t k = 1; !result && k < h->level_count; k++) {
         const noh_mesh_header same = as_full(&h[k], h);
         if (h[k].level != k || memcmp(&same, h, sizeof same) != 0) {
-            return noh_check_fail(check, "LOD level is out of order, or differs in what all levels share", (uint64_t)k * sizeof *h);
+            return noh_check_fail(check, "LOD level is out of order, or differs in what all levels share",
+                                  (uint64_t)k * sizeof *h);
         }
         if (counts_rise(&h[k], &h[k - 1])) {
             return noh_check_fail(check, "LOD level has more of something than the finer one", (uint64_t)k * sizeof *h);
@@ -101,13 +108,15 @@ static noh_result check_texels(const noh_check *check, const noh_mesh_header *h,
 {
     if (!(l->flags & NOH_MESH_TEXELS)) {
         const uint32_t least = l->vertex_count < h->touched_count ? l->vertex_count : h->touched_count;
-        return l->touched_count < least ? noh_check_fail(check, "LOD level lacks texels of its vertices", (uint64_t)l->level * sizeof *l)
-                                        : NOH_OK;
+        return l->touched_count < least
+                   ? noh_check_fail(check, "LOD level lacks texels of its vertices", (uint64_t)l->level * sizeof *l)
+                   : NOH_OK;
     }
     for (uint32_t v = 0; v < l->vertex_count; v++) {
         const uint32_t word = noh_check_texel_word(check, l, v), texel = word & NOH_TEXEL_NONE;
         if (!texel_is_right(l, v, texel) || (l->skin == NOH_NONE && word != texel)) {
-            return noh_check_fail(check, "vertex shares the texel of a later vertex, or one that its level does not have",
+            return noh_check_fail(check,
+                                  "vertex shares the texel of a later vertex, or one that its level does not have",
                                   l->attributes_offset + (uint64_t)v * l->attribute_stride);
         }
     }
@@ -164,7 +173,8 @@ static noh_result check_offsets(const noh_check *check, const noh_mesh_header *l
                        l->submeshes_offset == finer->submeshes_offset + finer->submesh_count * sizeof(noh_submesh) &&
                        l->targets_offset == finer->targets_offset + finer->target_count * sizeof(noh_target);
     return follow ? NOH_OK
-                  : noh_check_fail(check, "level's indices, submeshes or targets do not follow the finer level's", (uint64_t)l->level * sizeof *l);
+                  : noh_check_fail(check, "level's indices, submeshes or targets do not follow the finer level's",
+                                   (uint64_t)l->level * sizeof *l);
 }
 
 noh_result noh_check_levels(const noh_check *check, const noh_mesh_header *h)

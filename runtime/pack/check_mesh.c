@@ -18,19 +18,23 @@ static noh_result check_limits(const noh_check *check, const noh_mesh_header *h)
         return noh_check_fail(check, "vertex count is zero or over the limit", offsetof(noh_mesh_header, vertex_count));
     }
     if (h->level) {
-        return noh_check_fail(check, "mesh does not begin with the full one of its levels", offsetof(noh_mesh_header, level));
+        return noh_check_fail(check, "mesh does not begin with the full one of its levels",
+                              offsetof(noh_mesh_header, level));
     }
     if (!h->level_count || h->level_count > NOH_LOD_LEVELS_MAX) {
         return noh_check_fail(check, "mesh has no level or too many", offsetof(noh_mesh_header, level_count));
     }
     if (h->index_count > NOH_INDICES_MAX || h->index_count % 3) {
-        return noh_check_fail(check, "index count is over the limit or not a multiple of three", offsetof(noh_mesh_header, index_count));
+        return noh_check_fail(check, "index count is over the limit or not a multiple of three",
+                              offsetof(noh_mesh_header, index_count));
     }
     if ((h->index_bytes != 2 && h->index_bytes != 4) || (h->index_bytes == 2 && h->vertex_count > 65536u)) {
-        return noh_check_fail(check, "indices are neither 2 nor 4 bytes, or 2 for too many vertices", offsetof(noh_mesh_header, index_bytes));
+        return noh_check_fail(check, "indices are neither 2 nor 4 bytes, or 2 for too many vertices",
+                              offsetof(noh_mesh_header, index_bytes));
     }
     if (h->submesh_count == 0 || h->submesh_count > NOH_SUBMESHES_MAX) {
-        return noh_check_fail(check, "submesh count is zero or over the limit", offsetof(noh_mesh_header, submesh_count));
+        return noh_check_fail(check, "submesh count is zero or over the limit",
+                              offsetof(noh_mesh_header, submesh_count));
     }
     if (h->target_count > NOH_TARGETS_MAX) {
         return noh_check_fail(check, "target count is over the limit", offsetof(noh_mesh_header, target_count));
@@ -39,7 +43,8 @@ static noh_result check_limits(const noh_check *check, const noh_mesh_header *h)
         return noh_check_fail(check, "delta texel count is over the limit", offsetof(noh_mesh_header, texel_count));
     }
     if (h->rect_count > h->texel_count) {
-        return noh_check_fail(check, "rectangle count is over its limit: there are fewer delta texels", offsetof(noh_mesh_header, rect_count));
+        return noh_check_fail(check, "rectangle count is over its limit: there are fewer delta texels",
+                              offsetof(noh_mesh_header, rect_count));
     }
     if (h->flags & ~(NOH_MESH_TANGENTS | NOH_MESH_UVS | NOH_MESH_COLORS | NOH_MESH_DUAL_QUATERNION | NOH_MESH_TEXELS)) {
         return noh_check_fail(check, "unknown mesh flags", offsetof(noh_mesh_header, flags));
@@ -56,23 +61,27 @@ static noh_result check_skin_counts(const noh_check *check, const noh_mesh_heade
     const int split = h->palette_count > 1;
     if (h->skin == NOH_NONE) {
         return n || h->palette_count || h->palette_joint_count || (h->flags & NOH_MESH_DUAL_QUATERNION)
-                   ? noh_check_fail(check, "rigid mesh has influences, palettes or a skin's flags", offsetof(noh_mesh_header, skin))
+                   ? noh_check_fail(check, "rigid mesh has influences, palettes or a skin's flags",
+                                    offsetof(noh_mesh_header, skin))
                    : NOH_OK;
     }
     if (h->skin >= check->pack->skin_count) {
         return noh_check_fail(check, "mesh names a skin that is not there", offsetof(noh_mesh_header, skin));
     }
     if (n != 1 && n != 2 && n != 4 && n != 8) {
-        return noh_check_fail(check, "skinned mesh has neither 1, 2, 4 nor 8 influences a vertex", offsetof(noh_mesh_header, influence_count));
+        return noh_check_fail(check, "skinned mesh has neither 1, 2, 4 nor 8 influences a vertex",
+                              offsetof(noh_mesh_header, influence_count));
     }
     if (!h->palette_count || h->palette_count > NOH_SUBMESHES_MAX) {
-        return noh_check_fail(check, "palette count is zero or over the limit", offsetof(noh_mesh_header, palette_count));
+        return noh_check_fail(check, "palette count is zero or over the limit",
+                              offsetof(noh_mesh_header, palette_count));
     }
     if (h->palette_joint_count > h->palette_count * NOH_PALETTE_JOINTS_MAX) {
         return noh_check_fail(check, "palettes have too many joints", offsetof(noh_mesh_header, palette_joint_count));
     }
     if (split && !(h->flags & NOH_MESH_TEXELS)) {
-        return noh_check_fail(check, "mesh is split into palettes without texel references", offsetof(noh_mesh_header, flags));
+        return noh_check_fail(check, "mesh is split into palettes without texel references",
+                              offsetof(noh_mesh_header, flags));
     }
     return NOH_OK;
 }
@@ -102,23 +111,26 @@ static uint32_t stride_of(uint32_t flags)
 static noh_result check_arrays(noh_check *check, const noh_mesh_header *h)
 {
     const noh_level_sums sums = noh_check_level_sums(h);
-    const struct { uint32_t offset; uint64_t count; uint32_t stride; } arrays[13] = {
-        { h->positions_offset, h->vertex_count, 12 },
-        { h->attributes_offset, h->vertex_count, h->attribute_stride },
-        { h->indices_offset, sums.indices, h->index_bytes },
-        { h->submeshes_offset, sums.submeshes, sizeof(noh_submesh) },
-        { h->targets_offset, (uint64_t)h->target_count * h->level_count, sizeof(noh_target) },
-        { h->weights_offset, h->target_count, 4 },
-        { h->rects_offset, h->rect_count, sizeof(noh_rect) },
-        { h->texels_offset, h->texel_count, 12 },
-        { h->target_boxes_offset, h->target_count, 24 },
-        { h->influences_offset, h->vertex_count, 4u * NOH_INFLUENCE_WORDS(h->influence_count) },
-        { h->palettes_offset, h->palette_count, sizeof(noh_palette) },
-        { h->palette_joints_offset, h->palette_joint_count, 2 },
-        { h->joint_boxes_offset, noh_check_skin_joints(check->pack, h->skin), 24 }
-    };
+    const struct {
+        uint32_t offset;
+        uint64_t count;
+        uint32_t stride;
+    } arrays[13] = { { h->positions_offset, h->vertex_count, 12 },
+                     { h->attributes_offset, h->vertex_count, h->attribute_stride },
+                     { h->indices_offset, sums.indices, h->index_bytes },
+                     { h->submeshes_offset, sums.submeshes, sizeof(noh_submesh) },
+                     { h->targets_offset, (uint64_t)h->target_count * h->level_count, sizeof(noh_target) },
+                     { h->weights_offset, h->target_count, 4 },
+                     { h->rects_offset, h->rect_count, sizeof(noh_rect) },
+                     { h->texels_offset, h->texel_count, 12 },
+                     { h->target_boxes_offset, h->target_count, 24 },
+                     { h->influences_offset, h->vertex_count, 4u * NOH_INFLUENCE_WORDS(h->influence_count) },
+                     { h->palettes_offset, h->palette_count, sizeof(noh_palette) },
+                     { h->palette_joints_offset, h->palette_joint_count, 2 },
+                     { h->joint_boxes_offset, noh_check_skin_joints(check->pack, h->skin), 24 } };
     if (h->attribute_stride != stride_of(h->flags)) {
-        return noh_check_fail(check, "attribute stride does not fit the mesh flags", offsetof(noh_mesh_header, attribute_stride));
+        return noh_check_fail(check, "attribute stride does not fit the mesh flags",
+                              offsetof(noh_mesh_header, attribute_stride));
     }
     for (unsigned i = 0; i < sizeof arrays / sizeof arrays[0]; i++) {
         noh_result result = noh_check_array(check, arrays[i].offset, arrays[i].count, arrays[i].stride);
@@ -141,7 +153,8 @@ static noh_result check_target_head(const noh_check *check, const noh_mesh_heade
         return noh_check_fail(check, "target's rectangles or texels lie outside the mesh's", at);
     }
     if (!t->position_bits || !t->normal_bits || !t->tangent_bits || t->position_bits > 24 || t->normal_bits > 24 ||
-        t->tangent_bits > 24 || t->position_bits + t->normal_bits + t->tangent_bits > 32 || t->reserved0 || t->reserved1) {
+        t->tangent_bits > 24 || t->position_bits + t->normal_bits + t->tangent_bits > 32 || t->reserved0 ||
+        t->reserved1) {
         return noh_check_fail(check, "target's bit widths are impossible", at + offsetof(noh_target, position_bits));
     }
     if (t->position_scale < 0.0f || t->normal_scale < 0.0f || t->tangent_scale < 0.0f || t->radius < 0.0f) {

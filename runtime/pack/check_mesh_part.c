@@ -10,17 +10,21 @@ noh_result noh_check_texture_shape(const noh_check *check, const noh_mesh_header
     const uint64_t at = (uint64_t)h->level * sizeof *h;
     uint64_t texels;
     if (h->touched_count > h->vertex_count) {
-        return noh_check_fail(check, "more touched vertices than vertices", at + offsetof(noh_mesh_header, touched_count));
+        return noh_check_fail(check, "more touched vertices than vertices",
+                              at + offsetof(noh_mesh_header, touched_count));
     }
     if (h->morph_width_log2 < NOH_MORPH_WIDTH_LOG2_MIN || h->morph_width_log2 > NOH_MORPH_WIDTH_LOG2_MAX) {
-        return noh_check_fail(check, "width of the accumulation texture is outside its limits", at + offsetof(noh_mesh_header, morph_width_log2));
+        return noh_check_fail(check, "width of the accumulation texture is outside its limits",
+                              at + offsetof(noh_mesh_header, morph_width_log2));
     }
     if (h->morph_height > NOH_MORPH_HEIGHT_MAX) {
-        return noh_check_fail(check, "height of the accumulation texture is over its limits", at + offsetof(noh_mesh_header, morph_height));
+        return noh_check_fail(check, "height of the accumulation texture is over its limits",
+                              at + offsetof(noh_mesh_header, morph_height));
     }
     texels = (uint64_t)h->morph_height << h->morph_width_log2;
     if (texels < h->touched_count || texels - h->touched_count >= (1u << h->morph_width_log2)) {
-        return noh_check_fail(check, "accumulation texture does not fit the touched vertices", at + offsetof(noh_mesh_header, morph_height));
+        return noh_check_fail(check, "accumulation texture does not fit the touched vertices",
+                              at + offsetof(noh_mesh_header, morph_height));
     }
     return NOH_OK;
 }
@@ -32,7 +36,8 @@ noh_result noh_check_indices(const noh_check *check, const noh_mesh_header *h)
         uint32_t index = h->index_bytes == 2 ? ((const uint16_t *)(const void *)indices)[i]
                                              : ((const uint32_t *)(const void *)indices)[i];
         if (index >= h->vertex_count) {
-            return noh_check_fail(check, "index past the last vertex", h->indices_offset + (uint64_t)i * h->index_bytes);
+            return noh_check_fail(check, "index past the last vertex",
+                                  h->indices_offset + (uint64_t)i * h->index_bytes);
         }
     }
     return NOH_OK;
@@ -66,8 +71,10 @@ noh_result noh_check_submeshes(const noh_check *check, const noh_mesh_header *h)
 static noh_result check_rect(const noh_check *check, const noh_mesh_header *h, const noh_rect *r, uint32_t first_texel,
                              uint32_t *pairs, uint64_t at)
 {
-    const uint32_t *texel = (const uint32_t *)(const void *)(check->bytes + h->texels_offset) + 3u * (size_t)first_texel;
-    if (!r->w || !r->h || (uint32_t)r->x + r->w > (1u << h->morph_width_log2) || (uint32_t)r->y + r->h > h->morph_height) {
+    const uint32_t *texel = (const uint32_t *)(const void *)(check->bytes + h->texels_offset) +
+                            3u * (size_t)first_texel;
+    if (!r->w || !r->h || (uint32_t)r->x + r->w > (1u << h->morph_width_log2) ||
+        (uint32_t)r->y + r->h > h->morph_height) {
         return noh_check_fail(check, "rectangle lies outside the accumulation texture", at);
     }
     for (uint32_t y = r->y; y < (uint32_t)r->y + r->h; y++) {
@@ -124,7 +131,8 @@ noh_result noh_check_draws(const noh_check *check, const noh_mesh_header *h)
         }
         for (uint32_t i = 0; h->palette_count > 1 && i < submeshes[s].index_count; i++) {
             size_t k = (size_t)submeshes[s].first_index + i;
-            uint32_t v = h->index_bytes == 2 ? ((const uint16_t *)(const void *)indices)[k] : ((const uint32_t *)(const void *)indices)[k];
+            uint32_t v = h->index_bytes == 2 ? ((const uint16_t *)(const void *)indices)[k]
+                                             : ((const uint32_t *)(const void *)indices)[k];
             if (noh_check_texel_word(check, h, v) >> NOH_TEXEL_VERTEX_BITS != submeshes[s].palette) {
                 return noh_check_fail(check, "submesh draws a vertex of another palette", at);
             }

@@ -13,8 +13,10 @@ noh_result noh_check_texture(noh_check *check)
     if (!h->width || !h->height || h->width > NOH_TEXTURE_SIZE_MAX || h->height > NOH_TEXTURE_SIZE_MAX) {
         return noh_check_fail(check, "texture size is zero or over the limit", offsetof(noh_texture_header, width));
     }
-    if (h->wrap_s > NOH_WRAP_MIRROR || h->wrap_t > NOH_WRAP_MIRROR || h->nearest > 1 || h->reserved[0] || h->reserved[1]) {
-        return noh_check_fail(check, "unknown texture sampling, or a reserved field is not zero", offsetof(noh_texture_header, wrap_s));
+    if (h->wrap_s > NOH_WRAP_MIRROR || h->wrap_t > NOH_WRAP_MIRROR || h->nearest > 1 || h->reserved[0] ||
+        h->reserved[1]) {
+        return noh_check_fail(check, "unknown texture sampling, or a reserved field is not zero",
+                              offsetof(noh_texture_header, wrap_s));
     }
     result = noh_check_array(check, h->pixels_offset, (uint64_t)h->width * h->height, 4);
     return result ? result : noh_check_end(check);
@@ -37,10 +39,12 @@ noh_result noh_check_materials(noh_check *check)
             return result;
         }
         if (m[i].base_color_texture != NOH_NONE && m[i].base_color_texture >= check->pack->texture_count) {
-            return noh_check_fail(check, "material names a texture that is not there", at + offsetof(noh_material, base_color_texture));
+            return noh_check_fail(check, "material names a texture that is not there",
+                                  at + offsetof(noh_material, base_color_texture));
         }
         if (m[i].flags & ~15u || m[i].reserved) {
-            return noh_check_fail(check, "unknown material flags, or a reserved field is not zero", at + offsetof(noh_material, flags));
+            return noh_check_fail(check, "unknown material flags, or a reserved field is not zero",
+                                  at + offsetof(noh_material, flags));
         }
     }
     return NOH_OK;
@@ -93,8 +97,8 @@ noh_result noh_check_nodes(noh_check *check)
         result = check_node(check, h, (const noh_node *)(const void *)(check->bytes + h->nodes_offset) + i, i);
     }
     if (!result) {
-        result = noh_check_floats(check, (const float *)(const void *)(check->bytes + h->weights_offset), h->weight_count,
-                                  "node weight is not finite");
+        result = noh_check_floats(check, (const float *)(const void *)(check->bytes + h->weights_offset),
+                                  h->weight_count, "node weight is not finite");
     }
     return result;
 }

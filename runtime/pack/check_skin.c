@@ -38,11 +38,12 @@ noh_result noh_check_skin(noh_check *check)
     joints = (const uint16_t *)(const void *)(check->bytes + h->joints_offset);
     for (uint32_t j = 0; j < h->joint_count; j++) {
         if (joints[j] >= skeleton_joints(check->pack, h->skeleton)) {
-            return noh_check_fail(check, "skin names a joint that its skeleton does not have", h->joints_offset + 2ull * j);
+            return noh_check_fail(check, "skin names a joint that its skeleton does not have",
+                                  h->joints_offset + 2ull * j);
         }
     }
-    return noh_check_floats(check, (const float *)(const void *)(check->bytes + h->inverse_bind_offset), h->joint_count * 12u,
-                            "inverse bind matrix is not finite");
+    return noh_check_floats(check, (const float *)(const void *)(check->bytes + h->inverse_bind_offset),
+                            h->joint_count * 12u, "inverse bind matrix is not finite");
 }
 
 /* ---- meshes ---- */
@@ -67,7 +68,8 @@ static noh_result check_palettes(const noh_check *check, const noh_mesh_header *
     }
     for (uint32_t j = 0; j < next; j++) {
         if (joints[j] >= joint_count) {
-            return noh_check_fail(check, "palette names a joint that its skin does not have", h->palette_joints_offset + 2ull * j);
+            return noh_check_fail(check, "palette names a joint that its skin does not have",
+                                  h->palette_joints_offset + 2ull * j);
         }
     }
     return NOH_OK;
@@ -84,7 +86,8 @@ static uint32_t take_bits(const uint32_t *words, uint32_t bit, uint32_t count)
 }
 
 /* Places in the palette, weights that leave something for the first, and no bit that means nothing. */
-static noh_result check_record(const noh_check *check, const uint32_t *words, uint32_t count, uint32_t places, uint64_t at)
+static noh_result check_record(const noh_check *check, const uint32_t *words, uint32_t count, uint32_t places,
+                               uint64_t at)
 {
     uint32_t joint_words = count == 8u ? 2u : 1u, bit = 0, end = 32u * (NOH_INFLUENCE_WORDS(count) - joint_words);
     uint32_t first = words[0] & 255u;
@@ -120,7 +123,8 @@ static noh_result check_vertices(const noh_check *check, const noh_mesh_header *
         uint32_t palette = noh_check_texel_word(check, h, v) >> NOH_TEXEL_VERTEX_BITS;
         noh_result result;
         if (palette >= h->palette_count) {
-            return noh_check_fail(check, "vertex's palette is not there", h->attributes_offset + (uint64_t)v * h->attribute_stride);
+            return noh_check_fail(check, "vertex's palette is not there",
+                                  h->attributes_offset + (uint64_t)v * h->attribute_stride);
         }
         result = check_record(check, words + (size_t)v * stride, h->influence_count, palettes[palette].joint_count,
                               h->influences_offset + 4ull * v * stride);

@@ -1,10 +1,10 @@
 /* format.h: the bytes of a .noh pack, little-endian, read where they lie.
  *
- * A pack is a header, a chunk table and the chunks. Every chunk begins at the next multiple of 64 after the one before it,
- * and every array inside a chunk at the next multiple of 16 after the array before it. Offsets therefore follow from the
- * counts; the file carries them all the same, so that readers are simple, and noh_pack_open demands that both agree.
- * Padding and reserved fields are zero. Names are offsets into the string chunk. There are no pointers, nothing to patch.
- * Threads: constant data; any thread. */
+ * A pack is a header, a chunk table and the chunks. Every chunk begins at the next multiple of 64 after the one before
+ * it, and every array inside a chunk at the next multiple of 16 after the array before it. Offsets therefore follow
+ * from the counts; the file carries them all the same, so that readers are simple, and noh_pack_open demands that both
+ * agree. Padding and reserved fields are zero. Names are offsets into the string chunk. There are no pointers, nothing
+ * to patch. Threads: constant data; any thread. */
 #ifndef NOH_PACK_FORMAT_H
 #define NOH_PACK_FORMAT_H
 
@@ -31,10 +31,11 @@ extern "C" {
 typedef struct noh_pack_header {
     uint32_t magic;
     uint32_t version;
-    uint32_t byte_count;  /* of the whole file, a multiple of 64 */
+    uint32_t byte_count; /* of the whole file, a multiple of 64 */
     uint32_t chunk_count;
-    uint32_t crc;         /* CRC-32C of the header (this field as 0) and the chunk table */
-    uint32_t library_version; /* NOH_VERSION_NUMBER of the noh that wrote it, for reports: any value opens; 0: before 0.2.0 */
+    uint32_t crc;             /* CRC-32C of the header (this field as 0) and the chunk table */
+    uint32_t library_version; /* NOH_VERSION_NUMBER of the noh that wrote it, for reports: any value opens; 0: before
+                                 0.2.0 */
     uint32_t reserved[10];
 } noh_pack_header;
 
@@ -56,8 +57,9 @@ typedef struct noh_pack_chunk {
 #define NOH_MESH_UVS 2u
 #define NOH_MESH_COLORS 4u
 #define NOH_MESH_DUAL_QUATERNION 8u /* skinned by dual quaternions, else by matrices */
-#define NOH_MESH_TEXELS 16u         /* a texel reference per vertex: split into several palettes, or LOD levels cut
-                                     * through moved and unmoved vertices */
+#define NOH_MESH_TEXELS                                                                 \
+    16u /* a texel reference per vertex: split into several palettes, or LOD levels cut \
+         * through moved and unmoved vertices */
 
 /* Attribute record, interleaved, 4 bytes each and in this order; those whose
  * flag is not set are absent:
@@ -66,64 +68,69 @@ typedef struct noh_pack_chunk {
  *   uv       unorm 16:16, uv = uv_offset + uv_scale * value (UVS)
  *   color    unorm 8:8:8:8, linear rgb with a square-root curve, alpha straight (COLORS)
  *   texel    low 22 bits the vertex's accumulation texel, above them its palette (TEXELS). Without levels: the vertex
- *            whose texel it shares, which has one if it is below touched_count; with levels: the texel, or NOH_TEXEL_NONE */
+ *            whose texel it shares, which has one if it is below touched_count; with levels: the texel, or
+ * NOH_TEXEL_NONE */
 #define NOH_TEXEL_VERTEX_BITS 22u
 #define NOH_TEXEL_NONE ((1u << NOH_TEXEL_VERTEX_BITS) - 1u)
 
-/* The header of the full mesh is followed by those of its coarser LOD levels, each a mesh of its own. A level's vertices,
- * delta texels and, target by target, rectangles are the first ones of the finer level's arrays, which it shares; its
- * indices, submeshes and targets follow the finer level's. So a level can be used, and loaded, as if there were no finer
- * one. */
+/* The header of the full mesh is followed by those of its coarser LOD levels, each a mesh of its own. A level's
+ * vertices, delta texels and, target by target, rectangles are the first ones of the finer level's arrays, which it
+ * shares; its indices, submeshes and targets follow the finer level's. So a level can be used, and loaded, as if there
+ * were no finer one. */
 typedef struct noh_mesh_header {
-    uint32_t flags;            /* NOH_MESH_* */
+    uint32_t flags; /* NOH_MESH_* */
     uint32_t vertex_count;
     uint32_t index_count;
-    uint32_t index_bytes;      /* 2 or 4 */
+    uint32_t index_bytes; /* 2 or 4 */
     uint32_t submesh_count;
     uint32_t target_count;
     uint32_t rect_count;
     uint32_t texel_count;
-    uint32_t pair_count;       /* vertices moved by targets: delta texels that are not zero */
-    uint32_t source_pair_count;/* what the asset had, for reports */
-    uint32_t touched_count;    /* accumulation texels; without texel references vertices 0..touched_count-1 have one */
-    uint32_t morph_width_log2; /* texel t: x = t & (width - 1), y = t >> width_log2 */
+    uint32_t pair_count;        /* vertices moved by targets: delta texels that are not zero */
+    uint32_t source_pair_count; /* what the asset had, for reports */
+    uint32_t touched_count;     /* accumulation texels; without texel references vertices 0..touched_count-1 have one */
+    uint32_t morph_width_log2;  /* texel t: x = t & (width - 1), y = t >> width_log2 */
     uint32_t morph_height;
     uint32_t attribute_stride;
-    uint32_t positions_offset;  /* float[vertex_count][3] */
-    uint32_t attributes_offset; /* uint8_t[vertex_count][attribute_stride] */
-    uint32_t indices_offset;    /* uint16_t or uint32_t [index_count], triangles */
-    uint32_t submeshes_offset;  /* noh_submesh[submesh_count] */
-    uint32_t targets_offset;    /* noh_target[target_count] */
-    uint32_t weights_offset;    /* float[target_count], the asset's default weights */
-    uint32_t rects_offset;      /* noh_rect[rect_count], in target order */
-    uint32_t texels_offset;     /* uint32_t[texel_count][3], in rectangle order, row by row */
+    uint32_t positions_offset;          /* float[vertex_count][3] */
+    uint32_t attributes_offset;         /* uint8_t[vertex_count][attribute_stride] */
+    uint32_t indices_offset;            /* uint16_t or uint32_t [index_count], triangles */
+    uint32_t submeshes_offset;          /* noh_submesh[submesh_count] */
+    uint32_t targets_offset;            /* noh_target[target_count] */
+    uint32_t weights_offset;            /* float[target_count], the asset's default weights */
+    uint32_t rects_offset;              /* noh_rect[rect_count], in target order */
+    uint32_t texels_offset;             /* uint32_t[texel_count][3], in rectangle order, row by row */
     float bounds_min[3], bounds_max[3]; /* of the rest positions */
     float uv_offset[2], uv_scale[2];
-    float f16_position_bound;   /* largest error of a half-float accumulator, model units, all |weights| <= 2 */
-    float f16_direction_bound;  /* the same for normals and tangents, per component */
-    float world_scale;          /* world units (metres) per model unit: the largest scale of the nodes that draw it */
-    uint32_t texels_one_rect;   /* for reports: one rectangle per target, the asset's vertex order */
-    uint32_t target_boxes_offset; /* float[target_count][6]: smallest and largest x, y, z of its position deltas and of 0 */
+    float f16_position_bound;  /* largest error of a half-float accumulator, model units, all |weights| <= 2 */
+    float f16_direction_bound; /* the same for normals and tangents, per component */
+    float world_scale;         /* world units (metres) per model unit: the largest scale of the nodes that draw it */
+    uint32_t texels_one_rect;  /* for reports: one rectangle per target, the asset's vertex order */
+    /* float[target_count][6]: smallest and largest x, y, z of its position deltas and of 0 */
+    uint32_t target_boxes_offset;
     uint32_t skin;              /* the n-th skin chunk, or NOH_NONE: a rigid mesh, and all below is 0 */
     uint32_t influence_count;   /* joints per vertex: 0, 1, 2, 4 or 8 */
     uint32_t influences_offset; /* uint32_t[vertex_count][NOH_INFLUENCE_WORDS] */
-    uint32_t palette_count;     /* 1, or more where one palette cannot hold all joints: the mesh is split, triangle by triangle */
+    uint32_t palette_count;     /* 1, or more where one palette cannot hold all joints: the mesh is split, triangle by
+                                   triangle */
     uint32_t palettes_offset;   /* noh_palette[palette_count] */
     uint32_t palette_joint_count;
     uint32_t palette_joints_offset; /* uint16_t[palette_joint_count], places in the skin's joints */
-    uint32_t joint_boxes_offset; /* float[the skin's joint_count][6]: smallest and largest x, y, z of the rest positions of the
-                                  * vertices that this joint moves; the smallest above the largest where it moves none */
-    uint32_t level;               /* 0: the full mesh; the others follow it in the chunk */
-    uint32_t level_count;         /* 1..NOH_LOD_LEVELS_MAX, of the mesh: in all its levels the same */
-    float level_error_rest;       /* certified: the largest distance between this level's surface and the full one, both ways, model
-                                   * units; all 0 in the full mesh. At rest, */
-    float level_error_rest_p99;   /* nearer than this for 99 % of the area; */
-    float level_error_targets;    /* with each target alone at weight 1, */
-    float level_error_pairs;      /* with the targets for left and right together, */
+    /* float[the skin's joint_count][6]: smallest and largest x, y, z of the rest positions of the vertices that this
+     * joint moves; the smallest above the largest where it moves none */
+    uint32_t joint_boxes_offset;
+    uint32_t level;         /* 0: the full mesh; the others follow it in the chunk */
+    uint32_t level_count;   /* 1..NOH_LOD_LEVELS_MAX, of the mesh: in all its levels the same */
+    float level_error_rest; /* certified: the largest distance between this level's surface and the full one, both ways,
+                             * model units; all 0 in the full mesh. At rest, */
+    float level_error_rest_p99; /* nearer than this for 99 % of the area; */
+    float level_error_targets;  /* with each target alone at weight 1, */
+    float level_error_pairs;    /* with the targets for left and right together, */
     float level_error_clip;     /* over frames of the clips that the pack was built with */
-    float level_skipped;          /* what the targets that have no rectangles in this level alone move at most, all at weight 1 */
-    float influence_errors[3];    /* how far a vertex is off at most over those frames where only its 4, 2, 1 heaviest joints move it,
-                                   * model units; with levels, else 0 */
+    /* what the targets that have no rectangles in this level alone move at most, all at weight 1 */
+    float level_skipped;
+    float influence_errors[3]; /* how far a vertex is off at most over those frames where only its 4, 2, 1 heaviest
+                                * joints move it, model units; with levels, else 0 */
     uint32_t reserved[8];
 } noh_mesh_header;
 
@@ -150,7 +157,7 @@ typedef struct noh_submesh {
     uint32_t first_index, index_count;
     uint32_t material; /* into the material chunk, or NOH_NONE */
     uint32_t first_vertex, vertex_count;
-    uint32_t palette;  /* 0 in a rigid mesh */
+    uint32_t palette; /* 0 in a rigid mesh */
 } noh_submesh;
 
 /* One morph target. A delta texel is three words, word i for axis i: from the
@@ -163,8 +170,8 @@ typedef struct noh_target {
     uint32_t pair_count;
     uint8_t position_bits, normal_bits, tangent_bits, reserved0;
     float position_scale, normal_scale, tangent_scale;
-    float radius;  /* model units, at weight 1 */
-    float position_error;    /* largest error at weight 1, model units: certified by the converter */
+    float radius;                      /* model units, at weight 1 */
+    float position_error;              /* largest error at weight 1, model units: certified by the converter */
     float normal_error, tangent_error; /* per component */
     uint32_t reserved1;
 } noh_target;
@@ -186,12 +193,12 @@ typedef struct noh_nodes_header {
 
 typedef struct noh_node {
     uint32_t name, name_hash;
-    uint32_t parent;        /* a lower index or NOH_NONE */
-    uint32_t mesh;          /* the n-th mesh chunk, or NOH_NONE */
+    uint32_t parent;                             /* a lower index or NOH_NONE */
+    uint32_t mesh;                               /* the n-th mesh chunk, or NOH_NONE */
     float translation[3], rotation[4], scale[3]; /* local */
-    float world[12];        /* 3 rows of 4: world position = rows * (x, y, z, 1); of a skinned mesh's node the
-                             * identity: the joints place it, and their model space is the world */
-    uint32_t first_weight;  /* this node's default weights, or NOH_NONE: the mesh's hold */
+    float world[12];       /* 3 rows of 4: world position = rows * (x, y, z, 1); of a skinned mesh's node the
+                            * identity: the joints place it, and their model space is the world */
+    uint32_t first_weight; /* this node's default weights, or NOH_NONE: the mesh's hold */
     uint32_t flags;
 } noh_node;
 
@@ -247,9 +254,10 @@ typedef struct noh_skeleton_header {
 /* A joint of a skeleton may be there several times, with different inverse bind matrices. */
 typedef struct noh_skin_header {
     uint32_t joint_count;
-    uint32_t skeleton;            /* the n-th skeleton chunk */
-    uint32_t joints_offset;       /* uint16_t[joint_count], joints of that skeleton */
-    uint32_t inverse_bind_offset; /* float[joint_count][12], rows as in noh_node.world: from mesh space to joint space */
+    uint32_t skeleton;      /* the n-th skeleton chunk */
+    uint32_t joints_offset; /* uint16_t[joint_count], joints of that skeleton */
+    /* float[joint_count][12], rows as in noh_node.world: from mesh space to joint space */
+    uint32_t inverse_bind_offset;
 } noh_skin_header;
 
 /* ---- CHUNK_CLIP: header, callback keys and sync markers in time order, what leaving out joints costs, then
@@ -259,34 +267,36 @@ typedef struct noh_skin_header {
 #define NOH_CLIP_UPDATE_RATES 4u /* every frame, 30, 15 and 8 Hz: noh_update_rate of character/lod.h */
 
 typedef struct noh_clip_header {
-    uint32_t skeleton_hash;  /* 0 without joints */
-    uint32_t skeleton;       /* of this pack: the one that the clip was built with; NOH_NONE without joints */
-    uint32_t joint_count;    /* 0: animates floats only */
-    uint32_t raw_bytes;      /* 40 per joint and frame, 4 per float: what it would be uncompressed */
+    uint32_t skeleton_hash; /* 0 without joints */
+    uint32_t skeleton;      /* of this pack: the one that the clip was built with; NOH_NONE without joints */
+    uint32_t joint_count;   /* 0: animates floats only */
+    uint32_t raw_bytes;     /* 40 per joint and frame, 4 per float: what it would be uncompressed */
     uint32_t event_count;
-    uint32_t events_offset;  /* noh_clip_event[event_count] */
+    uint32_t events_offset; /* noh_clip_event[event_count] */
     uint32_t marker_count;
-    uint32_t markers_offset; /* noh_clip_marker[marker_count] */
+    uint32_t markers_offset;      /* noh_clip_marker[marker_count] */
     uint32_t joint_error_count;   /* levels of its skeleton; 0 without joints */
-    uint32_t joint_errors_offset; /* float[joint_error_count]: the farthest that a point is off when only the joints of a level
-                                   * are sampled and the others go where their parents go; of level 0 it is 0; not falling */
+    uint32_t joint_errors_offset; /* float[joint_error_count]: the farthest that a point is off when only the joints of
+                                   * a level are sampled and the others go where their parents go; of level 0 it is 0;
+                                   * not falling */
     uint32_t clip_bytes;
     uint32_t clip_offset;
-    float update_rate_error[NOH_CLIP_UPDATE_RATES]; /* of a probe that travels: a loop goes on from where it came, as with root motion, its leap
-                                         * back is not counted; the first is 0; not falling */
-    float error_shell;       /* 0: the errors hold for the meshes that the clip was built with. joint_errors are bounds, for all that
-                              * is as near to a joint as the farthest vertex that it moves with a weight of 0.05 or more
-                              * (noh_joint_lod_measure). rate_error is exact for some hundred vertices, the farthest of each joint
-                              * among them, and no bound on what lies between these (noh_time_lod_points_measure).
-                              * Else there were none: both are bounds for points at this distance from each joint (--shell-cm), in the
-                              * skeleton's unit (noh_joint_lod_measure, noh_time_lod_measure) */
+    float update_rate_error[NOH_CLIP_UPDATE_RATES]; /* of a probe that travels: a loop goes on from where it came, as
+                                                     * with root motion, its leap back is not counted; the first is 0;
+                                                     * not falling */
+    float error_shell; /* 0: the errors hold for the meshes that the clip was built with. joint_errors are bounds, for
+                        * all that is as near to a joint as the farthest vertex that it moves with a weight of 0.05 or
+                        * more (noh_joint_lod_measure). rate_error is exact for some hundred vertices, the farthest of
+                        * each joint among them, and no bound on what lies between these (noh_time_lod_points_measure).
+                        * Else there were none: both are bounds for points at this distance from each joint
+                        * (--shell-cm), in the skeleton's unit (noh_joint_lod_measure, noh_time_lod_measure) */
 } noh_clip_header;
 
 typedef struct noh_clip_event {
-    uint32_t tick;           /* 1/48,000 s */
+    uint32_t tick; /* 1/48,000 s */
     uint32_t name, name_hash;
     uint8_t payload[8];
-    float weight_min;        /* below it the key does not fire */
+    float weight_min; /* below it the key does not fire */
 } noh_clip_event;
 
 /* A place that clips share which keep step: a foot on the ground (anim/sync_internal.h). */

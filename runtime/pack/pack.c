@@ -36,18 +36,21 @@ static noh_result check_header(const uint8_t *bytes, size_t byte_count, noh_erro
         return noh_fail(error, NOH_ERR_DATA, "not a .noh pack (the first four bytes are not NOHP)", 0, 0);
     }
     if (h.version != NOH_PACK_VERSION) {
-        return noh_fail(error, NOH_ERR_VERSION, "pack has another format version: build it again with this noh", offsetof(noh_pack_header, version),
-                        NOH_PACK_VERSION);
+        return noh_fail(error, NOH_ERR_VERSION, "pack has another format version: build it again with this noh",
+                        offsetof(noh_pack_header, version), NOH_PACK_VERSION);
     }
     if (h.byte_count != byte_count) {
-        return noh_fail(error, NOH_ERR_DATA, "file length differs from what its header says: it is cut or has extra bytes", offsetof(noh_pack_header, byte_count),
-                        h.byte_count);
+        return noh_fail(error, NOH_ERR_DATA,
+                        "file length differs from what its header says: it is cut or has extra bytes",
+                        offsetof(noh_pack_header, byte_count), h.byte_count);
     }
     if (byte_count > NOH_PACK_BYTES_MAX || h.chunk_count == 0 || h.chunk_count > NOH_PACK_CHUNKS_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "pack has no chunks, or more bytes or chunks than the limit", offsetof(noh_pack_header, chunk_count), h.chunk_count);
+        return noh_fail(error, NOH_ERR_LIMIT, "pack has no chunks, or more bytes or chunks than the limit",
+                        offsetof(noh_pack_header, chunk_count), h.chunk_count);
     }
     if (sizeof h + (uint64_t)h.chunk_count * sizeof(noh_pack_chunk) > byte_count) {
-        return noh_fail(error, NOH_ERR_DATA, "chunk table reaches past the end of the file", offsetof(noh_pack_header, chunk_count), 0);
+        return noh_fail(error, NOH_ERR_DATA, "chunk table reaches past the end of the file",
+                        offsetof(noh_pack_header, chunk_count), 0);
     }
     return NOH_OK;
 }
@@ -62,18 +65,20 @@ static noh_result check_table_crc(const uint8_t *bytes, noh_error *error)
     crc = noh_crc32c(0, &h, sizeof h);
     crc = noh_crc32c(crc, bytes + sizeof h, (size_t)h.chunk_count * sizeof(noh_pack_chunk));
     if (crc != stored) {
-        return noh_fail(error, NOH_ERR_DATA, "header or chunk table is damaged (its checksum differs)", offsetof(noh_pack_header, crc), 0);
+        return noh_fail(error, NOH_ERR_DATA, "header or chunk table is damaged (its checksum differs)",
+                        offsetof(noh_pack_header, crc), 0);
     }
     for (unsigned i = 0; i < sizeof h.reserved / sizeof h.reserved[0]; i++) {
         if (h.reserved[i]) {
-            return noh_fail(error, NOH_ERR_DATA, "reserved header field is not zero", offsetof(noh_pack_header, reserved) + 4ull * i, 0);
+            return noh_fail(error, NOH_ERR_DATA, "reserved header field is not zero",
+                            offsetof(noh_pack_header, reserved) + 4ull * i, 0);
         }
     }
     return NOH_OK;
 }
 
-/* A chunk begins at the next multiple of 64 after the one before it, with zero padding between: every byte of the file then
- * belongs to the header, the table, one chunk or padding, and all of them are checked. */
+/* A chunk begins at the next multiple of 64 after the one before it, with zero padding between: every byte of the file
+ * then belongs to the header, the table, one chunk or padding, and all of them are checked. */
 static noh_result check_place(const noh_pack *pack, uint32_t index, uint64_t *cursor, noh_error *error)
 {
     const noh_pack_chunk *c = &pack->chunks[index];
@@ -129,9 +134,7 @@ static noh_result open_chunk(noh_pack *pack, uint32_t index, noh_error *error)
     noh_check check = { pack, pack->bytes + c->offset, c->bytes, c->offset, 0, error };
     noh_result result = NOH_OK;
     switch (c->type) {
-    case NOH_CHUNK_STRINGS:
-        result = open_strings(pack, c, error);
-        break;
+    case NOH_CHUNK_STRINGS: result = open_strings(pack, c, error); break;
     case NOH_CHUNK_TEXTURE:
         result = noh_check_texture(&check);
         count_chunk(&pack->texture_count, &pack->first_texture, index);
@@ -254,7 +257,8 @@ noh_result noh_pack_texture_at(const noh_pack *pack, uint32_t index, noh_texture
     const uint8_t *chunk;
     NOH_ASSERT(pack && texture);
     if (index >= pack->texture_count) {
-        return noh_fail(error, NOH_ERR_NOT_FOUND, pack->texture_count ? "texture index is past the pack's last texture" : "pack holds no texture",
+        return noh_fail(error, NOH_ERR_NOT_FOUND,
+                        pack->texture_count ? "texture index is past the pack's last texture" : "pack holds no texture",
                         index, pack->texture_count);
     }
     chunk = pack->bytes + pack->chunks[pack->first_texture + index].offset;

@@ -23,8 +23,8 @@ void noh_blend_begin(noh_blend *blend)
 }
 
 /* Coverage needs two things of every joint: whether the pose below has any weight there, and the unmasked weight of the
- * poses that take part above. One array holds both. Where nothing lies below, the total begins so far under zero that no
- * sum of weights can lift it out (NOH_TRACKS_MAX times NOH_WEIGHT_MAX is 6.4e7). */
+ * poses that take part above. One array holds both. Where nothing lies below, the total begins so far under zero that
+ * no sum of weights can lift it out (NOH_TRACKS_MAX times NOH_WEIGHT_MAX is 6.4e7). */
 #define NOTHING_BELOW (-1e30f)
 
 static void begin_totals(const float *below, uint32_t count, float *totals)
@@ -43,8 +43,9 @@ void noh_blend_begin_over(noh_blend *blend)
     blend->covers = 1;
 }
 
-/* Adding unit quaternions and normalising the sum is normalised linear interpolation for any number of poses. Each is added
- * with the sign that makes its dot product with the sum so far at least 0, so the length of the sum never falls. */
+/* Adding unit quaternions and normalising the sum is normalised linear interpolation for any number of poses. Each is
+ * added with the sign that makes its dot product with the sum so far at least 0, so the length of the sum never falls.
+ */
 static void add_joint(noh_transform *sum, const noh_transform *joint, float weight)
 {
     float turn = noh_quat_dot(sum->rotation, joint->rotation) < 0.0f ? -weight : weight;
@@ -95,7 +96,8 @@ static void divide_joint(const noh_transform *sum, float weight, noh_transform *
     *out = t;
 }
 
-void noh_blend_finish(const noh_blend *blend, const noh_transform *bind_pose, const float *defaults, noh_transform *pose, float *floats)
+void noh_blend_finish(const noh_blend *blend, const noh_transform *bind_pose, const float *defaults,
+                      noh_transform *pose, float *floats)
 {
     NOH_ASSERT(blend && (!blend->joint_count || (bind_pose && pose)) && (!blend->float_count || floats));
     for (uint32_t i = 0; i < blend->joint_count; i++) {
@@ -146,7 +148,8 @@ void noh_blend_cover(const noh_blend *blend, float amount, noh_transform *pose, 
     }
 }
 
-void noh_pose_mix(uint32_t joint_count, const noh_transform *a, const noh_transform *b, float t, const uint8_t *mask, noh_transform *out)
+void noh_pose_mix(uint32_t joint_count, const noh_transform *a, const noh_transform *b, float t, const uint8_t *mask,
+                  noh_transform *out)
 {
     NOH_ASSERT(!joint_count || (a && b && out));
     for (uint32_t i = 0; i < joint_count; i++) {
@@ -163,7 +166,8 @@ void noh_floats_mix(uint32_t count, const float *a, const float *b, float t, con
     }
 }
 
-void noh_pose_difference(uint32_t joint_count, const noh_transform *reference, const noh_transform *pose, noh_transform *out)
+void noh_pose_difference(uint32_t joint_count, const noh_transform *reference, const noh_transform *pose,
+                         noh_transform *out)
 {
     NOH_ASSERT(!joint_count || (reference && pose && out));
     NOH_ASSERT(reference != out);
@@ -179,7 +183,8 @@ void noh_pose_difference(uint32_t joint_count, const noh_transform *reference, c
     }
 }
 
-void noh_pose_add(uint32_t joint_count, const noh_transform *difference, float weight, const uint8_t *mask, noh_transform *pose)
+void noh_pose_add(uint32_t joint_count, const noh_transform *difference, float weight, const uint8_t *mask,
+                  noh_transform *pose)
 {
     static const float identity[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
     NOH_ASSERT(!joint_count || (difference && pose));

@@ -3,9 +3,10 @@
 #include "base/math_internal.h"
 #include "base/quat.h"
 
-/* The quintic x(t) with x(0) = x0, x'(0) = v0, x''(0) = a0 and x = x' = x'' = 0 at t1. The initial acceleration a0 is the
- * one that makes the jerk vanish at t1, held at or above 0 so that the offset does not first accelerate outwards. Where v0
- * is so fast that the curve would cross zero before the duration, t1 is brought forward to -5 x0 / v0. (Bollo 2018.) */
+/* The quintic x(t) with x(0) = x0, x'(0) = v0, x''(0) = a0 and x = x' = x'' = 0 at t1. The initial acceleration a0 is
+ * the one that makes the jerk vanish at t1, held at or above 0 so that the offset does not first accelerate outwards.
+ * Where v0 is so fast that the curve would cross zero before the duration, t1 is brought forward to -5 x0 / v0. (Bollo
+ * 2018.) */
 float noh_inertia_decay(float x0, float v0, float t, float duration)
 {
     float t1 = duration, a0, c3, c4, c5, t1_2, x;
@@ -31,7 +32,8 @@ float noh_inertia_decay(float x0, float v0, float t, float duration)
     return x < 0.0f ? 0.0f : x > x0 ? x0 : x; /* only by rounding */
 }
 
-/* The speed of an offset along itself, held at or below 0: an offset that is growing stops at once instead of overshooting. */
+/* The speed of an offset along itself, held at or below 0: an offset that is growing stops at once instead of
+ * overshooting. */
 static float speed_along(const float offset[3], const float before[3], float delta_s)
 {
     float length = noh_sqrt(noh_dot3(offset, offset));
@@ -56,7 +58,8 @@ static void rotation_between(const noh_transform *a, const noh_transform *b, flo
 }
 
 void noh_inertia_begin(uint32_t joint_count, const noh_transform *source, const noh_transform *source_before,
-                       const noh_transform *target, const noh_transform *target_before, float delta_s, noh_inertia_joint *out)
+                       const noh_transform *target, const noh_transform *target_before, float delta_s,
+                       noh_inertia_joint *out)
 {
     NOH_ASSERT(delta_s > 0.0f && (!joint_count || (source && source_before && target && target_before && out)));
     for (uint32_t i = 0; i < joint_count; i++) {
@@ -102,7 +105,8 @@ static void turn_by_share(const float rotation[3], float share, float q[4])
     noh_quat_mul(turn, q, q);
 }
 
-void noh_inertia_apply(uint32_t joint_count, const noh_inertia_joint *joints, float elapsed_s, float duration_s, noh_transform *pose)
+void noh_inertia_apply(uint32_t joint_count, const noh_inertia_joint *joints, float elapsed_s, float duration_s,
+                       noh_transform *pose)
 {
     NOH_ASSERT(!joint_count || (joints && pose));
     for (uint32_t j = 0; j < joint_count; j++) {
@@ -120,7 +124,8 @@ void noh_inertia_apply(uint32_t joint_count, const noh_inertia_joint *joints, fl
     }
 }
 
-void noh_inertia_apply_floats(uint32_t count, const noh_inertia_float *offsets, float elapsed_s, float duration_s, float *floats)
+void noh_inertia_apply_floats(uint32_t count, const noh_inertia_float *offsets, float elapsed_s, float duration_s,
+                              float *floats)
 {
     NOH_ASSERT(!count || (offsets && floats));
     for (uint32_t i = 0; i < count; i++) {

@@ -29,7 +29,8 @@ void noh_matrix_multiply(const float a[12], const float b[12], float out[12])
         for (int c = 0; c < 3; c++) {
             m[r + c] = a[r] * b[c] + a[r + 1] * b[4 + c] + a[r + 2] * b[8 + c];
         }
-        m[r + 3] = a[r] * b[3] + a[r + 1] * b[7] + a[r + 2] * b[11] + a[r + 3]; /* added in place it would wait for the others */
+        m[r + 3] = a[r] * b[3] + a[r + 1] * b[7] + a[r + 2] * b[11] +
+                   a[r + 3]; /* added in place it would wait for the others */
     }
     memcpy(out, m, sizeof m);
 }

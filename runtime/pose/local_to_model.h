@@ -1,9 +1,9 @@
 /* local_to_model.h: from a pose to matrices.
  *
- * A matrix is 3 rows of 4, row by row: position = rows * (x, y, z, 1), as in noh_node.world and as a palette in a uniform
- * buffer or texture takes it, 48 bytes a joint. Column vectors: model = parent's model * local.
- * source  C. Granberg, "Character Animation with Direct3D", 2009, chapter 3
- * Threads: functions of their arguments, callable from anywhere. */
+ * A matrix is 3 rows of 4, row by row: position = rows * (x, y, z, 1), as in noh_node.world and as a palette in a
+ * uniform buffer or texture takes it, 48 bytes a joint. Column vectors: model = parent's model * local. source  C.
+ * Granberg, "Character Animation with Direct3D", 2009, chapter 3 Threads: functions of their arguments, callable from
+ * anywhere. */
 #ifndef NOH_POSE_LOCAL_TO_MODEL_H
 #define NOH_POSE_LOCAL_TO_MODEL_H
 

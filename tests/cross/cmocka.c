@@ -68,7 +68,8 @@ void cross_memory(const void *a, const void *b, size_t bytes, const char *file, 
 {
     const unsigned char *x = a, *y = b;
     for (size_t i = 0; i < bytes; i++) {
-        if (x[i] != y[i]) cross_fail(file, line, "byte %lu of %lu is %u, not %u", (unsigned long)i, (unsigned long)bytes, x[i], y[i]);
+        if (x[i] != y[i])
+            cross_fail(file, line, "byte %lu of %lu is %u, not %u", (unsigned long)i, (unsigned long)bytes, x[i], y[i]);
     }
 }
 
@@ -94,7 +95,8 @@ int cross_run(const struct CMUnitTest *tests, size_t count, cross_fixture set_up
         if (filter && strcmp(filter, tests[i].name) != 0) continue;
         int result = run_one(&tests[i]);
         failures += result == FAILED;
-        printf("%sok %d - %s%s\n", result == FAILED ? "not " : "", ++told, tests[i].name, result == SKIPPED ? " # SKIP" : "");
+        printf("%sok %d - %s%s\n", result == FAILED ? "not " : "", ++told, tests[i].name,
+               result == SKIPPED ? " # SKIP" : "");
     }
     if (tear_down && tear_down(&state)) failures++;
     printf("1..%d\n", told);

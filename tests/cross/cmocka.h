@@ -13,7 +13,10 @@ struct CMUnitTest {
     void *initial_state;
 };
 
-#define cmocka_unit_test(function) { #function, function, NULL, NULL, NULL }
+#define cmocka_unit_test(function)            \
+    {                                         \
+#function, function, NULL, NULL, NULL \
+    }
 #define cmocka_run_group_tests(tests, set_up, tear_down) \
     cross_run((tests), sizeof(tests) / sizeof(tests)[0], (set_up), (tear_down))
 #define cmocka_run_group_tests_name(name, tests, set_up, tear_down) cmocka_run_group_tests(tests, set_up, tear_down)
@@ -43,12 +46,14 @@ void cross_memory(const void *a, const void *b, size_t bytes, const char *file, 
 #define assert_ptr_equal(a, b) cross_same((const void *)(a) == (const void *)(b), #a " is " #b, __FILE__, __LINE__)
 #define assert_int_equal(a, b) cross_integers((uint64_t)(a), (uint64_t)(b), 1, #a " is " #b, __FILE__, __LINE__)
 #define assert_int_not_equal(a, b) cross_integers((uint64_t)(a), (uint64_t)(b), 0, #a " is not " #b, __FILE__, __LINE__)
-#define assert_in_range(x, low, high)                                                                 \
-    cross_same((uint64_t)(x) >= (uint64_t)(low) && (uint64_t)(x) <= (uint64_t)(high), #x " in range", \
-               __FILE__, __LINE__)
+#define assert_in_range(x, low, high)                                                                           \
+    cross_same((uint64_t)(x) >= (uint64_t)(low) && (uint64_t)(x) <= (uint64_t)(high), #x " in range", __FILE__, \
+               __LINE__)
 #define assert_string_equal(a, b) cross_texts((a), (b), __FILE__, __LINE__)
 #define assert_memory_equal(a, b, bytes) cross_memory((a), (b), (bytes), __FILE__, __LINE__)
-#define assert_memory_not_equal(a, b, bytes) cross_same(memcmp((a), (b), (bytes)) != 0, #a " is not " #b, __FILE__, __LINE__)
-#define assert_float_equal(a, b, epsilon) cross_same(fabs((double)(a) - (double)(b)) <= (double)(epsilon), #a " is " #b, __FILE__, __LINE__)
+#define assert_memory_not_equal(a, b, bytes) \
+    cross_same(memcmp((a), (b), (bytes)) != 0, #a " is not " #b, __FILE__, __LINE__)
+#define assert_float_equal(a, b, epsilon) \
+    cross_same(fabs((double)(a) - (double)(b)) <= (double)(epsilon), #a " is " #b, __FILE__, __LINE__)
 
 #endif

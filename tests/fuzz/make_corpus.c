@@ -141,15 +141,16 @@ static void clips(void **state)
 
 static void corpus(void **state)
 {
-    static const struct { const char *name; test_model_desc desc; } seeds[] = {
-        { "bare", { 1, 2, 0, 0, 1 } },
-        { "targets", { 1, 4, 3, 0, 2 } },
-        { "attributes", { 1, 4, 2, TEST_TANGENTS | TEST_UVS | TEST_COLORS, 3 } },
-        { "scene", { 1, 4, 3, TEST_TANGENTS | TEST_UVS | TEST_COLORS | TEST_SCENE, 4 } },
-        { "scene_without_targets", { 1, 3, 0, TEST_SCENE, 5 } },
-        { "two_meshes", { 2, 3, 2, TEST_SCENE, 6 } },
-        { "many_targets", { 1, 5, 20, TEST_COLORS, 7 } }
-    };
+    static const struct {
+        const char *name;
+        test_model_desc desc;
+    } seeds[] = { { "bare", { 1, 2, 0, 0, 1 } },
+                  { "targets", { 1, 4, 3, 0, 2 } },
+                  { "attributes", { 1, 4, 2, TEST_TANGENTS | TEST_UVS | TEST_COLORS, 3 } },
+                  { "scene", { 1, 4, 3, TEST_TANGENTS | TEST_UVS | TEST_COLORS | TEST_SCENE, 4 } },
+                  { "scene_without_targets", { 1, 3, 0, TEST_SCENE, 5 } },
+                  { "two_meshes", { 2, 3, 2, TEST_SCENE, 6 } },
+                  { "many_targets", { 1, 5, 20, TEST_COLORS, 7 } } };
     const lod_face face = { 8, 7, 2, 0, 0 }, all_touched = { 6, 6, 2, 0, 1 };
     const skin_cylinder tube = { 4, 12, 8, 2, 2, 0, 2.0f, 0.5f };
     (void)state;

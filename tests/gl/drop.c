@@ -42,8 +42,8 @@ static void send(const drop *d, const char *type, long a, long b, long c, long e
 static void answer(const drop *d, const XSelectionRequestEvent *request)
 {
     XEvent event;
-    XChangeProperty(d->display, request->requestor, request->property, d->uri_list, 8, PropModeReplace, (const unsigned char *)d->text,
-                    (int)strlen(d->text));
+    XChangeProperty(d->display, request->requestor, request->property, d->uri_list, 8, PropModeReplace,
+                    (const unsigned char *)d->text, (int)strlen(d->text));
     memset(&event, 0, sizeof event);
     event.xselection.type = SelectionNotify;
     event.xselection.requestor = request->requestor;

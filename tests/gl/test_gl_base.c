@@ -76,13 +76,14 @@ static double half_rounded(float value, noh_half_mode mode)
 
 static void check_half(uint32_t bits)
 {
-    static const noh_half_mode modes[] = {NOH_HALF_RTZ, NOH_HALF_RNE};
+    static const noh_half_mode modes[] = { NOH_HALF_RTZ, NOH_HALF_RNE };
     float value = float_of(bits);
     if (value != value || isinf(value)) return;
     for (int i = 0; i < 2; i++) {
         uint16_t half = noh_half_from_float(value, modes[i]);
         double want = half_rounded(value, modes[i]);
-        double got = (half & 0x7fff) == 0x7c00 ? (half & 0x8000 ? -(double)INFINITY : (double)INFINITY) : half_value(half);
+        double got = (half & 0x7fff) == 0x7c00 ? (half & 0x8000 ? -(double)INFINITY : (double)INFINITY)
+                                               : half_value(half);
         int sign_kept = (half >> 15) == (bits >> 31);
         if (got != want || !sign_kept) {
             print_error("float 0x%08x mode %d: half 0x%04x is %g, not %g\n", bits, (int)modes[i], half, got, want);
@@ -111,9 +112,10 @@ static void half_midpoints(void **state)
     for (uint32_t half = 0; half < 0x7c00; half++) {
         /* Below and above every boundary between two halves, and on it. */
         uint32_t low = bits_of(noh_half_to_float((uint16_t)half));
-        double middle = 0.5 * (half_value((uint16_t)half) + (half == 0x7bff ? 65536.0 : half_value((uint16_t)(half + 1))));
+        double middle = 0.5 *
+                        (half_value((uint16_t)half) + (half == 0x7bff ? 65536.0 : half_value((uint16_t)(half + 1))));
         uint32_t tie = bits_of((float)middle);
-        const uint32_t around[] = {low ? low - 1 : 0, low, low + 1, tie - 1, tie, tie + 1};
+        const uint32_t around[] = { low ? low - 1 : 0, low, low + 1, tie - 1, tie, tie + 1 };
         for (size_t i = 0; i < sizeof around / sizeof *around; i++) {
             check_half(around[i]);
             check_half(around[i] | 0x80000000u);
@@ -139,7 +141,7 @@ static void half_sweep(void **state)
 static void half_specials(void **state)
 {
     (void)state;
-    static const noh_half_mode modes[] = {NOH_HALF_RTZ, NOH_HALF_RNE};
+    static const noh_half_mode modes[] = { NOH_HALF_RTZ, NOH_HALF_RNE };
     for (int i = 0; i < 2; i++) {
         assert_int_equal(noh_half_from_float(float_of(0x7f800000u), modes[i]), 0x7c00);
         assert_int_equal(noh_half_from_float(float_of(0xff800000u), modes[i]), 0xfc00);
@@ -183,7 +185,7 @@ static void GL_APIENTRY count_debug(GLenum source, GLenum type, GLuint id, GLenu
 
 static int open_context(context *c, const char *driver)
 {
-    noh_error error = {NOH_OK, NULL, 0, 0};
+    noh_error error = { NOH_OK, NULL, 0, 0 };
     memset(c, 0, sizeof *c);
     c->platform = noh_platform_find(driver);
     if (!c->platform) return 0;
@@ -261,12 +263,12 @@ static void api_names_what_is_missing(void **state)
 {
     (void)state;
     context *c = need_context();
-    static const char *const names[] = {"glEnable", "glTexStorage3D", "glVertexAttribDivisor", "glGetError"};
+    static const char *const names[] = { "glEnable", "glTexStorage3D", "glVertexAttribDivisor", "glGetError" };
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        refusing r = {c, names[i]};
+        refusing r = { c, names[i] };
         noh_gl_api table;
         noh_gl_api before;
-        noh_error error = {NOH_OK, NULL, 0, 0};
+        noh_error error = { NOH_OK, NULL, 0, 0 };
         memset(&table, 0x5a, sizeof table);
         before = table;
         assert_int_equal(noh_gl_api_load(&table, get_but_one, &r, &error), NOH_ERR_UNSUPPORTED);
@@ -281,7 +283,7 @@ static void api_takes_optional_ones_or_not(void **state)
     (void)state;
     context *c = need_context();
     const char *name = c->gl.version >= 320 ? "glFramebufferTexture" : "glFramebufferTextureEXT";
-    refusing r = {c, name};
+    refusing r = { c, name };
     noh_gl_api table;
     assert_int_equal(noh_gl_api_load(&table, get_but_one, &r, NULL), NOH_OK);
     assert_true(table.FramebufferTexture == NULL);
@@ -360,9 +362,10 @@ static void caps_leave_the_state_alone(void **state)
 {
     (void)state;
     context *c = need_context();
-    static const GLenum bindings[] = {GL_DRAW_FRAMEBUFFER_BINDING, GL_READ_FRAMEBUFFER_BINDING, GL_CURRENT_PROGRAM,
-                                      GL_VERTEX_ARRAY_BINDING, GL_TEXTURE_BINDING_2D, GL_TEXTURE_BINDING_2D_ARRAY,
-                                      GL_ARRAY_BUFFER_BINDING};
+    static const GLenum bindings[] = { GL_DRAW_FRAMEBUFFER_BINDING, GL_READ_FRAMEBUFFER_BINDING,
+                                       GL_CURRENT_PROGRAM,          GL_VERTEX_ARRAY_BINDING,
+                                       GL_TEXTURE_BINDING_2D,       GL_TEXTURE_BINDING_2D_ARRAY,
+                                       GL_ARRAY_BUFFER_BINDING };
     GLint viewport[4], value;
     noh_gl_caps again;
     c->gl.Viewport(3, 5, 70, 90);
@@ -659,8 +662,8 @@ static void on_angle(void **state)
 
 /* --- programs --- */
 
-static const char *const broken_pieces[] = {"#line 1 0\n", "void main() {\n    wrong;\n}\n"};
-static const noh_gl_source broken = {"#version 300 es\n", broken_pieces, 2};
+static const char *const broken_pieces[] = { "#line 1 0\n", "void main() {\n    wrong;\n}\n" };
+static const noh_gl_source broken = { "#version 300 es\n", broken_pieces, 2 };
 
 static noh_gl_program_desc good_desc(void)
 {
@@ -697,7 +700,7 @@ static void program_says_what_is_wrong(void **state)
 {
     (void)state;
     context *c = need_context();
-    noh_error error = {NOH_OK, NULL, 0, 0};
+    noh_error error = { NOH_OK, NULL, 0, 0 };
     noh_gl_program_desc desc = good_desc();
     char log[1024];
     GLuint program = 12345;
@@ -734,14 +737,15 @@ static void program_says_what_is_wrong(void **state)
 static const char *const blocks_pieces[] = {
     "precision highp float;\n",
     "layout(std140) uniform first { vec4 a; };\nlayout(std140) uniform second { vec4 b; };\n",
-    "#ifndef SCALE\n#error no SCALE\n#endif\nout vec4 sum;\nvoid main() { sum = (a + b) * SCALE; }\n"};
-static const noh_gl_source blocks_source = {"#version 300 es\n", blocks_pieces, 3};
+    "#ifndef SCALE\n#error no SCALE\n#endif\nout vec4 sum;\nvoid main() { sum = (a + b) * SCALE; }\n"
+};
+static const noh_gl_source blocks_source = { "#version 300 es\n", blocks_pieces, 3 };
 
 static void program_takes_defines_and_binds_blocks(void **state)
 {
     (void)state;
     context *c = need_context();
-    static const char *const blocks[] = {"absent", "second", "first"};
+    static const char *const blocks[] = { "absent", "second", "first" };
     noh_gl_program_desc desc = good_desc();
     GLuint program = 0;
     desc.fragment = &blocks_source;
@@ -760,16 +764,17 @@ static void program_takes_defines_and_binds_blocks(void **state)
     expect_no_errors(c);
 }
 
-static const char *const feedback_pieces[] = {"flat out highp int doubled;\n",
-                                              "void main() { doubled = gl_VertexID * 2; gl_Position = vec4(0.0); }\n"};
-static const noh_gl_source feedback_source = {"#version 300 es\n", feedback_pieces, 2};
+static const char *const feedback_pieces[] = {
+    "flat out highp int doubled;\n", "void main() { doubled = gl_VertexID * 2; gl_Position = vec4(0.0); }\n"
+};
+static const noh_gl_source feedback_source = { "#version 300 es\n", feedback_pieces, 2 };
 
 static void program_feeds_back(void **state)
 {
     (void)state;
     context *c = need_context();
     const noh_gl_api *gl = &c->gl;
-    static const char *const varyings[] = {"doubled"};
+    static const char *const varyings[] = { "doubled" };
     noh_gl_program_desc desc = good_desc();
     noh_gl_ledger ledger;
     noh_gl_buffer buffer;
@@ -781,7 +786,8 @@ static void program_feeds_back(void **state)
     desc.varyings = varyings;
     desc.varying_count = 1;
     assert_int_equal(noh_gl_program_create(gl, &desc, &program, NULL, 0, NULL), NOH_OK);
-    assert_int_equal(noh_gl_buffer_create(gl, &ledger, GL_ARRAY_BUFFER, 16, NULL, GL_STREAM_READ, &buffer, NULL), NOH_OK);
+    assert_int_equal(noh_gl_buffer_create(gl, &ledger, GL_ARRAY_BUFFER, 16, NULL, GL_STREAM_READ, &buffer, NULL),
+                     NOH_OK);
     gl->GenVertexArrays(1, &array);
     gl->BindVertexArray(array);
     gl->UseProgram(program);
@@ -849,8 +855,9 @@ static void ledger_balances(void **state)
     GLuint framebuffer = 0;
     memset(&ledger, 0, sizeof ledger);
     memset(&zero, 0, sizeof zero);
-    noh_gl_texture_desc desc = {GL_RGBA8, 16, 16, 0, 5, GL_LINEAR, GL_REPEAT};
-    assert_int_equal(noh_gl_buffer_create(gl, &ledger, GL_ARRAY_BUFFER, 1000, NULL, GL_STATIC_DRAW, &buffer, NULL), NOH_OK);
+    noh_gl_texture_desc desc = { GL_RGBA8, 16, 16, 0, 5, GL_LINEAR, GL_REPEAT };
+    assert_int_equal(noh_gl_buffer_create(gl, &ledger, GL_ARRAY_BUFFER, 1000, NULL, GL_STATIC_DRAW, &buffer, NULL),
+                     NOH_OK);
     assert_int_equal(noh_gl_texture_create(gl, &ledger, &desc, &flat, NULL), NOH_OK);
     assert_int_equal(flat.target, GL_TEXTURE_2D);
     desc.layers = 3;
@@ -883,13 +890,16 @@ static void refused_objects_leave_nothing(void **state)
     noh_gl_buffer buffer;
     noh_gl_texture texture;
     noh_gl_renderbuffer renderbuffer;
-    noh_error error = {NOH_OK, NULL, 0, 0};
+    noh_error error = { NOH_OK, NULL, 0, 0 };
     memset(&ledger, 0, sizeof ledger);
     memset(&zero, 0, sizeof zero);
-    noh_gl_texture_desc desc = {GL_RGBA8, 16, 0, 0, 0, 0, 0};
+    noh_gl_texture_desc desc = { GL_RGBA8, 16, 0, 0, 0, 0, 0 };
     assert_int_equal(noh_gl_texture_create(gl, &ledger, &desc, &texture, &error), NOH_ERR_ARG);
-    assert_int_equal(noh_gl_buffer_create(gl, &ledger, GL_ARRAY_BUFFER, 0, NULL, GL_STATIC_DRAW, &buffer, &error), NOH_ERR_ARG);
-    assert_int_equal(noh_gl_buffer_create(gl, &ledger, GL_ARRAY_BUFFER, UINT64_MAX, NULL, GL_STATIC_DRAW, &buffer, &error), NOH_ERR_LIMIT);
+    assert_int_equal(noh_gl_buffer_create(gl, &ledger, GL_ARRAY_BUFFER, 0, NULL, GL_STATIC_DRAW, &buffer, &error),
+                     NOH_ERR_ARG);
+    assert_int_equal(
+        noh_gl_buffer_create(gl, &ledger, GL_ARRAY_BUFFER, UINT64_MAX, NULL, GL_STATIC_DRAW, &buffer, &error),
+        NOH_ERR_LIMIT);
     assert_int_equal(noh_gl_renderbuffer_create(gl, &ledger, GL_RGBA8, 0, 0, 0, &renderbuffer, &error), NOH_ERR_ARG);
     assert_int_equal(c->debug_errors, 0);
     /* The driver's own refusals. */
@@ -899,7 +909,8 @@ static void refused_objects_leave_nothing(void **state)
         assert_int_equal(noh_gl_texture_create(gl, &ledger, &desc, &texture, &error), NOH_ERR_GL);
         assert_int_equal(error.where, GL_INVALID_VALUE);
     }
-    noh_result huge = noh_gl_buffer_create(gl, &ledger, GL_ARRAY_BUFFER, (uint64_t)1 << 50, NULL, GL_STATIC_DRAW, &buffer, &error);
+    noh_result huge = noh_gl_buffer_create(gl, &ledger, GL_ARRAY_BUFFER, (uint64_t)1 << 50, NULL, GL_STATIC_DRAW,
+                                           &buffer, &error);
     assert_int_equal(huge, NOH_ERR_MEMORY);
     assert_true(error.need == (uint64_t)1 << 50);
     assert_memory_equal(&ledger, &zero, sizeof ledger);
@@ -927,7 +938,8 @@ static void timer_tells_or_says_that_it_cannot(void **state)
     }
     c->gl.Finish();
     unsigned told = 0;
-    for (unsigned i = 0; i < 1000 && timer.available; i++) told += noh_gl_timer_poll(&timer, &c->gl, &elapsed) == NOH_OK;
+    for (unsigned i = 0; i < 1000 && timer.available; i++)
+        told += noh_gl_timer_poll(&timer, &c->gl, &elapsed) == NOH_OK;
     assert_int_equal(told, timer.available ? NOH_GL_TIMER_FLIGHT : 0);
     noh_gl_timer_begin(&timer, &c->gl);
     noh_gl_timer_delete(&timer, &c->gl); /* while open */
@@ -955,7 +967,7 @@ static void timer_without_queries(void **state)
 static void platforms_by_name(void **state)
 {
     (void)state;
-    static const char *const names[] = {"egl", "angle", "osmesa", "glfw", "null"};
+    static const char *const names[] = { "egl", "angle", "osmesa", "glfw", "null" };
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         assert_non_null(noh_platform_find(names[i]));
         assert_string_equal(noh_platform_find(names[i])->name, names[i]);
@@ -1010,8 +1022,8 @@ static void files(void **state)
     (void)state;
     char folder[] = "/tmp/noh_gl_base_XXXXXX";
     char path[128];
-    noh_file file = {NULL, 0};
-    noh_error error = {NOH_OK, NULL, 0, 0};
+    noh_file file = { NULL, 0 };
+    noh_error error = { NOH_OK, NULL, 0, 0 };
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/file", folder);
     assert_int_equal(noh_file_map(path, &file, &error), NOH_ERR_NOT_FOUND);

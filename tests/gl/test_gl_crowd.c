@@ -1,5 +1,5 @@
-/* The crowd of tools/noh/crowd/crowd.h, with and without LOD: sixty tubes that bend, bulge and tell of it, while the camera
- * goes in among them and back. */
+/* The crowd of tools/noh/crowd/crowd.h, with and without LOD: sixty tubes that bend, bulge and tell of it, while the
+ * camera goes in among them and back. */
 #include "support/gl_fixture.h"
 #include "support/level_fixture.h"
 #include "support/skin_asset.h"
@@ -250,9 +250,10 @@ static uint8_t *picture(stand *s, uint32_t frame)
 /* ---- what holds in every frame ---- */
 
 typedef struct watch {
-    uint32_t waits[BODIES];  /* frames in which a body has wanted a finer level than it shows, for want of its frame of notice */
+    uint32_t waits[BODIES]; /* frames in which a body has wanted a finer level than it shows, for want of its frame of
+                               notice */
     uint32_t coarser, finer, fades, seen_max, seen_min, by_level[LEVELS];
-    uint64_t aside;          /* the most that could not wait, after the first frame */
+    uint64_t aside; /* the most that could not wait, after the first frame */
 } watch;
 
 /* No two bodies in one slot, nor more in a pool than it has. */
@@ -265,7 +266,8 @@ static void expect_slots(const crowd *c)
         if (b->seen) {
             assert_true(b->slot.pool < c->plan->pool_count && b->slot.slot < c->plan->slots[b->slot.pool]);
             assert_true(!taken[b->slot.pool][b->slot.slot]);
-            assert_true(b->level >= c->plan->pool_levels[b->slot.pool] && b->level_before >= c->plan->pool_levels[b->slot.pool]);
+            assert_true(b->level >= c->plan->pool_levels[b->slot.pool] &&
+                        b->level_before >= c->plan->pool_levels[b->slot.pool]);
             taken[b->slot.pool][b->slot.slot] = 1;
         }
     }
@@ -297,7 +299,8 @@ static void expect_order(const crowd *c)
     for (uint32_t k = 0; k < c->stats.seen; k++) {
         const crowd_body *b = &c->bodies[c->order[k]];
         const noh_lod *d = &crowd_character(c, c->order[k])->lod;
-        const uint32_t run = b->level == b->level_before ? b->level * caps + d->influences : c->plan->level_count * caps;
+        const uint32_t run = b->level == b->level_before ? b->level * caps + d->influences
+                                                         : c->plan->level_count * caps;
         assert_true(b->seen && b->place == k && run >= before && k >= c->runs[run]);
         before = run;
     }
@@ -309,8 +312,10 @@ static void watch_frame(const stand *s, uint32_t frame, watch *w)
     expect_slots(c);
     expect_order(c);
     for (uint32_t i = 0; i < BODIES; i++) {
-        if (c->bodies[i].seen) expect_level(c, i, w);
-        else w->waits[i] = 0;
+        if (c->bodies[i].seen)
+            expect_level(c, i, w);
+        else
+            w->waits[i] = 0;
     }
     w->seen_max = c->stats.seen > w->seen_max ? c->stats.seen : w->seen_max;
     w->seen_min = frame && c->stats.seen >= w->seen_min ? w->seen_min : c->stats.seen;
@@ -371,7 +376,8 @@ static void a_crowd_with_lod_keeps_its_word(void **state)
         run_watched(&with, frame, &w);
         run_frame(&without, frame);
         watch_frame(&with, frame, &w);
-        assert_true(with.crowd.events.count == without.crowd.events.count && with.crowd.events.sum == without.crowd.events.sum);
+        assert_true(with.crowd.events.count == without.crowd.events.count &&
+                    with.crowd.events.sum == without.crowd.events.sum);
         if (frame % 50u == 49u) {
             worst = fmax(worst, compare_pictures(picture(&with, frame), picture(&without, frame)));
             expect_kept(&with);
@@ -379,11 +385,14 @@ static void a_crowd_with_lod_keeps_its_word(void **state)
     }
     assert_true(o.budget_ns > w.aside + cost_max);
     wait = noh_schedule_wait_max(BODIES, o.budget_ns - w.aside, cost_max);
-    print_message("%u to %u seen; levels %u %u %u, %u fading, %u times none finer was left; %llu events; at most %u ticks late of %llu; "
-                  "pictures differ by %.2f\n",
-                  w.seen_min, w.seen_max, w.by_level[0], w.by_level[1], w.by_level[2], w.fades, w.coarser,
-                  (unsigned long long)with.crowd.events.count, with.crowd.schedule.late_high_water, (unsigned long long)wait * FRAME, worst);
-    assert_true(wait < FRAMES && with.crowd.schedule.late_high_water > 0 && with.crowd.schedule.late_high_water <= wait * FRAME);
+    print_message(
+        "%u to %u seen; levels %u %u %u, %u fading, %u times none finer was left; %llu events; at most %u ticks late of %llu; "
+        "pictures differ by %.2f\n",
+        w.seen_min, w.seen_max, w.by_level[0], w.by_level[1], w.by_level[2], w.fades, w.coarser,
+        (unsigned long long)with.crowd.events.count, with.crowd.schedule.late_high_water,
+        (unsigned long long)wait * FRAME, worst);
+    assert_true(wait < FRAMES && with.crowd.schedule.late_high_water > 0 &&
+                with.crowd.schedule.late_high_water <= wait * FRAME);
     assert_int_equal(with.crowd.schedule.lost, 0);
     assert_true(with.crowd.events.count > 100 && w.seen_min < w.seen_max);
     assert_true(w.by_level[0] && w.by_level[1] && w.by_level[2] && w.fades && w.coarser);
@@ -443,8 +452,8 @@ static void far_bodies_hang_on_fewer_joints(void **state)
         }
         assert_true(with.crowd.events.sum == without.crowd.events.sum);
     }
-    print_message("%u times fewer joints, %u times fewer a vertex; pictures differ by %.2f\n", fewer_joints, fewer_influences,
-                  compare_pictures(picture(&with, 11), picture(&without, 11)));
+    print_message("%u times fewer joints, %u times fewer a vertex; pictures differ by %.2f\n", fewer_joints,
+                  fewer_influences, compare_pictures(picture(&with, 11), picture(&without, 11)));
     assert_true(fewer_joints && fewer_influences);
     expect_kept(&with);
     stand_close(&with);

@@ -1,4 +1,5 @@
-/* Tests of runtime/gl/gl_draw.c and mesh.frag: what a material, a texture, colours and a mirrored world make of a pixel. */
+/* Tests of runtime/gl/gl_draw.c and mesh.frag: what a material, a texture, colours and a mirrored world make of a
+ * pixel. */
 #include "support/gl_fixture.h"
 
 #include "support/lit_quad.h"
@@ -21,7 +22,8 @@ static void expect_lit(const lit_quad *q, const uint8_t *rgba)
 
 static void expect_color(const uint8_t *pixel, double r, double g, double b)
 {
-    assert_true(fabs((double)pixel[0] - r) < LIT_QUAD_CLOSE && fabs((double)pixel[1] - g) < LIT_QUAD_CLOSE && fabs((double)pixel[2] - b) < LIT_QUAD_CLOSE);
+    assert_true(fabs((double)pixel[0] - r) < LIT_QUAD_CLOSE && fabs((double)pixel[1] - g) < LIT_QUAD_CLOSE &&
+                fabs((double)pixel[2] - b) < LIT_QUAD_CLOSE);
 }
 
 static int draws_nothing(const uint8_t *rgba)
@@ -153,7 +155,8 @@ static void vertex_colors_multiply_the_base(void **state)
         color[i] = one[i % 4];
     }
     rgba = drawn(&q, NOH_DRAW_OPAQUE);
-    expect_color(lit_quad_at(rgba, LIT_QUAD_SIDE / 2u), lit_quad_encoded(0.25 * 0.8), lit_quad_encoded(0.6), lit_quad_encoded(0.5 * 0.4));
+    expect_color(lit_quad_at(rgba, LIT_QUAD_SIDE / 2u), lit_quad_encoded(0.25 * 0.8), lit_quad_encoded(0.6),
+                 lit_quad_encoded(0.5 * 0.4));
     free(rgba);
     q.alpha = MODEL_ALPHA_MASK;
     for (int below = 0; below < 2; below++) { /* alpha too: 0.75 of 1 against the cutoff */
@@ -178,7 +181,8 @@ static void blended_materials_have_a_pass_of_their_own(void **state)
     assert_true(draws_nothing(rgba));
     free(rgba);
     rgba = drawn(&q, NOH_DRAW_BLENDED);
-    expect_color(lit_quad_at(rgba, 5), lit_quad_encoded(0.25 * 0.8 + 0.75 * background[0]), lit_quad_encoded(0.25 * 0.6 + 0.75 * background[1]),
+    expect_color(lit_quad_at(rgba, 5), lit_quad_encoded(0.25 * 0.8 + 0.75 * background[0]),
+                 lit_quad_encoded(0.25 * 0.6 + 0.75 * background[1]),
                  lit_quad_encoded(0.25 * 0.4 + 0.75 * background[2]));
     free(rgba);
     q.alpha = MODEL_ALPHA_OPAQUE;

@@ -57,7 +57,8 @@ static float largest(const float *values, size_t count)
 }
 
 /* A tile of one instance lies at (0, 0) and is narrower than the picture. */
-static void expect_layer(const uint8_t *rgba, uint32_t side, const noh_mesh *mesh, const float *deltas, float gain, int layer)
+static void expect_layer(const uint8_t *rgba, uint32_t side, const noh_mesh *mesh, const float *deltas, float gain,
+                         int layer)
 {
     const uint32_t log2 = mesh->header->morph_width_log2;
     double spread = 0.0;
@@ -67,7 +68,8 @@ static void expect_layer(const uint8_t *rgba, uint32_t side, const noh_mesh *mes
         for (uint32_t c = 0; c < 3; c++) {
             const double want = 255.0 * fmin(fmax(0.5 + (double)gain * (double)deltas[3u * v + c], 0.0), 1.0);
             const uint8_t got = rgba[4u * ((size_t)y * side + x) + c];
-            if (fabs((double)got - want) > 1.0) fail_msg("layer %d, vertex %u, axis %u: %u, not %.1f", layer, v, c, got, want);
+            if (fabs((double)got - want) > 1.0)
+                fail_msg("layer %d, vertex %u, axis %u: %u, not %.1f", layer, v, c, got, want);
             spread = fmax(spread, fabs(want - 127.5));
         }
     }
@@ -130,7 +132,8 @@ static void integer_layers_are_shown(void **state)
 
 int main(int argument_count, char **arguments)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(each_layer_is_shown), cmocka_unit_test(integer_layers_are_shown) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(each_layer_is_shown),
+                                        cmocka_unit_test(integer_layers_are_shown) };
     if (argument_count > 1) cmocka_set_test_filter(arguments[1]);
     return cmocka_run_group_tests(tests, NULL, fixture_tear_down);
 }

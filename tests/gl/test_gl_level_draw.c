@@ -27,7 +27,8 @@ typedef struct side {
 } side;
 
 static const uint32_t copies = COPIES;
-static const float worlds[COPIES][12] = { { 1, 0, 0, -0.5f, 0, 1, 0, 0, 0, 0, 1, 0 }, { 0, 0, 1, 0.6f, 0, 1, 0, 0.2f, -1, 0, 0, -0.4f } };
+static const float worlds[COPIES][12] = { { 1, 0, 0, -0.5f, 0, 1, 0, 0, 0, 0, 1, 0 },
+                                          { 0, 0, 1, 0.6f, 0, 1, 0, 0.2f, -1, 0, 0, -0.4f } };
 
 static uint8_t *tube_bytes;
 static noh_pack tube;
@@ -81,8 +82,8 @@ static void side_open(side *s, const noh_mesh *mesh)
     assert_int_equal(noh_gl_skin_plan_make(&desc, &g->caps, &s->plan, NULL), NOH_OK);
     s->memory = test_aligned(NULL, (size_t)s->plan.cpu_bytes);
     assert_int_equal(noh_gl_skin_init(s->memory, (size_t)s->plan.cpu_bytes,
-                                      &(noh_gl_device){ &g->gl, &g->caps, &s->ledger, NULL, 0 }, &desc,
-                                      &s->skin, NULL), NOH_OK);
+                                      &(noh_gl_device){ &g->gl, &g->caps, &s->ledger, NULL, 0 }, &desc, &s->skin, NULL),
+                     NOH_OK);
     set_weights(s);
     pose(s);
 }
@@ -130,7 +131,8 @@ static void open_split(uint32_t palette)
     model_free(m);
     fixture_levels_open(&levels, &tube, LEVELS, 0.12f);
     mesh = test_mesh(&levels.pack, 0);
-    assert_true(mesh.header[1].index_count < mesh.header[0].index_count && mesh.header[2].index_count < mesh.header[1].index_count);
+    assert_true(mesh.header[1].index_count < mesh.header[0].index_count &&
+                mesh.header[2].index_count < mesh.header[1].index_count);
     side_open(&with, &mesh);
     mesh = test_mesh(&tube, 0);
     side_open(&without, &mesh);
@@ -151,7 +153,8 @@ static int tear_down(void **state)
 
 typedef enum draw_kind { RIGID, SKINNED, FEWER, CROWD } draw_kind;
 
-static void draw(const noh_gl_renderer *r, const side *s, const noh_gl_mesh *gl, draw_kind kind, const noh_gl_lod *drawn)
+static void draw(const noh_gl_renderer *r, const side *s, const noh_gl_mesh *gl, draw_kind kind,
+                 const noh_gl_lod *drawn)
 {
     for (uint32_t i = 0; i < (kind == CROWD ? 1u : COPIES); i++) {
         noh_gl_morph_binding morph = noh_gl_morph_binding_of(s->morph.morph, i);
@@ -177,9 +180,12 @@ static noh_gl_renderer_desc renderer_desc(const noh_mesh *meshes, uint32_t count
 }
 
 /* One side's copies, drawn once for each detail (NULL: of none), into one frame. */
-static uint8_t *picture(const side *s, const noh_gl_mesh *gl, draw_kind kind, const noh_gl_lod *lods, uint32_t count, noh_debug_view view)
+static uint8_t *picture(const side *s, const noh_gl_mesh *gl, draw_kind kind, const noh_gl_lod *lods, uint32_t count,
+                        noh_debug_view view)
 {
-    static const noh_gl_camera camera = { { 0.8f, 0, 0, 0, 0, 0.8f, 0, 0, 0, 0, -0.3f, 0, 0, -0.8f, 0, 1 }, { 0, 0.8f, 9 }, { 0.6f, 0, 0.8f } };
+    static const noh_gl_camera camera = { { 0.8f, 0, 0, 0, 0, 0.8f, 0, 0, 0, 0, -0.3f, 0, 0, -0.8f, 0, 1 },
+                                          { 0, 0.8f, 9 },
+                                          { 0.6f, 0, 0.8f } };
     const noh_gl_api *api = &fixture_gpu()->gl;
     noh_gl_renderer_desc desc = renderer_desc(&s->mesh, 1);
     noh_gl_renderer renderer;
@@ -188,8 +194,9 @@ static uint8_t *picture(const side *s, const noh_gl_mesh *gl, draw_kind kind, co
     fixture_frame f;
     fixture_frame_open(&f, SIDE);
     desc.view = view;
-    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ api, NULL, &f.ledger, log, sizeof log }, &desc,
-                                            &renderer, NULL), NOH_OK);
+    assert_int_equal(
+        noh_gl_renderer_create(&(noh_gl_device){ api, NULL, &f.ledger, log, sizeof log }, &desc, &renderer, NULL),
+        NOH_OK);
     noh_gl_draw_begin(&renderer, &camera);
     for (uint32_t i = 0; i < (lods ? count : 1u); i++) {
         draw(&renderer, s, gl, kind, lods ? &lods[i] : NULL);
@@ -300,7 +307,8 @@ static void no_lod_is_the_finest(void **state)
     open_both();
     same_picture(picture(&with, &with.gl, SKINNED, NULL, 0, NOH_VIEW_LIT), picture_of_level(SKINNED, 0));
     same_picture(picture(&with, &with.gl, CROWD, NULL, 0, NOH_VIEW_LIT), picture_of_level(CROWD, 0));
-    same_picture(picture_of_level(SKINNED, 1000), picture_of_level(SKINNED, LEVELS - 1u)); /* and past the last the coarsest */
+    same_picture(picture_of_level(SKINNED, 1000),
+                 picture_of_level(SKINNED, LEVELS - 1u)); /* and past the last the coarsest */
 }
 
 /* Made of level 1: what is finer takes no memory, and draws as level 1. */
@@ -322,7 +330,8 @@ static void finer_levels_can_stay_away(void **state)
     assert_int_equal(noh_gl_mesh_create(&fixture_gpu()->gl, &ledger, &view, &gl, NULL), NOH_OK);
     assert_true(noh_gl_ledger_bytes(&ledger) == noh_gl_mesh_bytes(&view));
     assert_int_equal(noh_gl_mesh_bytes(&with.mesh) - noh_gl_mesh_bytes(&view),
-                     (with.mesh.header->vertex_count - view.header->vertex_count) * (12u + with.mesh.header->attribute_stride + 12u) +
+                     (with.mesh.header->vertex_count - view.header->vertex_count) *
+                             (12u + with.mesh.header->attribute_stride + 12u) +
                          with.mesh.header->index_count * with.mesh.header->index_bytes);
     assert_int_equal(noh_gl_mesh_lod(&gl, 0, &first).header->level, 1);
     assert_int_equal(first, 0);
@@ -362,7 +371,8 @@ static void check_fade(draw_kind kind, float f)
         const int is_in = noise(i % SIDE, i / SIDE) < f;
         const uint8_t *expected = is_in ? in : out;
         if (memcmp(got + 4u * i, expected + 4u * i, 4) != 0) {
-            fail_msg("fade %g: pixel %u, %u is not that of the level that %s", (double)f, i % SIDE, i / SIDE, is_in ? "comes" : "goes");
+            fail_msg("fade %g: pixel %u, %u is not that of the level that %s", (double)f, i % SIDE, i / SIDE,
+                     is_in ? "comes" : "goes");
         }
         from_in += is_in && covered(in, i);
         from_out += !is_in && covered(out, i);
@@ -437,11 +447,11 @@ static void only_renderers_that_fade_pay_for_it(void **state)
     desc = renderer_desc(&with.mesh, 1);
     key = noh_gl_variant_key_of(&with.mesh, NULL, 0, 0, NOH_VIEW_LIT);
     memset(&ledger, 0, sizeof ledger);
-    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ gl, NULL, &ledger, log, sizeof log }, &desc,
-                                            &fading, NULL), NOH_OK);
+    assert_int_equal(
+        noh_gl_renderer_create(&(noh_gl_device){ gl, NULL, &ledger, log, sizeof log }, &desc, &fading, NULL), NOH_OK);
     desc.fades = 0;
-    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ gl, NULL, &ledger, log, sizeof log }, &desc,
-                                            &plain, NULL), NOH_OK);
+    assert_int_equal(
+        noh_gl_renderer_create(&(noh_gl_device){ gl, NULL, &ledger, log, sizeof log }, &desc, &plain, NULL), NOH_OK);
     assert_int_equal(fading.variant_count, 2u * plain.variant_count);
     assert_non_null(noh_gl_renderer_variant(&plain, key));
     key.fade = 1;

@@ -107,7 +107,8 @@ static void expect_prefix(const float *coarse, const noh_mesh_header *c, const f
 {
     for (size_t layer = 0; layer < 3; layer++) {
         const size_t row = (size_t)3 << c->morph_width_log2;
-        test_same_floats(coarse + layer * c->morph_height * row, fine + layer * f->morph_height * row, 3u * c->touched_count, "a prefix");
+        test_same_floats(coarse + layer * c->morph_height * row, fine + layer * f->morph_height * row,
+                         3u * c->touched_count, "a prefix");
     }
 }
 
@@ -286,7 +287,8 @@ static void check_pools(fixture_morph *m)
 static void levels_of_a_mesh_share_their_tables(void **state)
 {
     const noh_mesh all[3] = { noh_mesh_at_lod(&meshes[2], 2), meshes[2], noh_mesh_at_lod(&meshes[2], 1) };
-    const noh_mesh coarse[3] = { noh_mesh_at_lod(&meshes[2], 2), noh_mesh_at_lod(&meshes[2], 1), noh_mesh_at_lod(&meshes[2], 1) };
+    const noh_mesh coarse[3] = { noh_mesh_at_lod(&meshes[2], 2), noh_mesh_at_lod(&meshes[2], 1),
+                                 noh_mesh_at_lod(&meshes[2], 1) };
     const uint32_t counts[3] = { 20, 2, 5 };
     (void)state;
     in_every_way(all, counts, 3, check_pools);
@@ -297,8 +299,8 @@ static void levels_of_a_mesh_share_their_tables(void **state)
 /* Beside other meshes, whose tables follow. */
 static void pools_stand_beside_other_meshes(void **state)
 {
-    const noh_mesh views[5] = { noh_mesh_at_lod(&meshes[0], 1), meshes[FIXTURE_BARE], noh_mesh_at_lod(&meshes[2], 2), meshes[0],
-                                noh_mesh_at_lod(&meshes[2], 1) };
+    const noh_mesh views[5] = { noh_mesh_at_lod(&meshes[0], 1), meshes[FIXTURE_BARE], noh_mesh_at_lod(&meshes[2], 2),
+                                meshes[0], noh_mesh_at_lod(&meshes[2], 1) };
     const uint32_t counts[5] = { 3, 1, 7, 2, 2 };
     (void)state;
     in_every_way(views, counts, 5, check_random_levels);

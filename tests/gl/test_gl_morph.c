@@ -533,11 +533,16 @@ typedef struct lacking {
 
 static void clear_cap(noh_gl_caps *caps, const char *field)
 {
-    const struct { const char *name; int *flag; } flags[] = {
-        { "mrt3", &caps->mrt3 }, { "layered", &caps->layered }, { "blend_f32", &caps->blend_f32 },
-        { "blend_f16", &caps->blend_f16 }, { "render_f16", &caps->render_f16 }, { "render_f32", &caps->render_f32 },
-        { "render_u32", &caps->render_u32 }
-    };
+    const struct {
+        const char *name;
+        int *flag;
+    } flags[] = { { "mrt3", &caps->mrt3 },
+                  { "layered", &caps->layered },
+                  { "blend_f32", &caps->blend_f32 },
+                  { "blend_f16", &caps->blend_f16 },
+                  { "render_f16", &caps->render_f16 },
+                  { "render_f32", &caps->render_f32 },
+                  { "render_u32", &caps->render_u32 } };
     for (size_t i = 0; i < TEST_COUNT(flags); i++) {
         if (strstr(field, flags[i].name)) {
             *flags[i].flag = 0;
@@ -547,19 +552,18 @@ static void clear_cap(noh_gl_caps *caps, const char *field)
 
 static void forced_paths_name_what_is_missing(void **state)
 {
-    static const lacking cases[] = {
-        { NOH_MORPH_LAYERED, NOH_ACCUMULATE_F32, "layered", "EXT_geometry_shader" },
-        { NOH_MORPH_LAYERED, NOH_ACCUMULATE_F32, "blend_f32", "EXT_float_blend" },
-        { NOH_MORPH_LAYERED, NOH_ACCUMULATE_F16, "blend_f16", "EXT_color_buffer_half_float" },
-        { NOH_MORPH_MRT, NOH_ACCUMULATE_F32, "blend_f32", "EXT_float_blend" },
-        { NOH_MORPH_MRT, NOH_ACCUMULATE_F16, "blend_f16", "RGBA16F" },
-        { NOH_MORPH_MRT, NOH_ACCUMULATE_F32, "mrt3", "three draw buffers" },
-        { NOH_MORPH_PER_LAYER, NOH_ACCUMULATE_F32, "blend_f32", "RGBA32F" },
-        { NOH_MORPH_PER_LAYER, NOH_ACCUMULATE_F16, "blend_f16", "RGBA16F" },
-        { NOH_MORPH_GATHER, NOH_ACCUMULATE_F32, "mrt3", "three draw buffers" },
-        { NOH_MORPH_GATHER, NOH_ACCUMULATE_F16, "render_f16", "RGBA16F" },
-        { NOH_MORPH_GATHER, NOH_ACCUMULATE_F32, "render_f32 render_u32", "RGBA32UI" }
-    };
+    static const lacking cases[] = { { NOH_MORPH_LAYERED, NOH_ACCUMULATE_F32, "layered", "EXT_geometry_shader" },
+                                     { NOH_MORPH_LAYERED, NOH_ACCUMULATE_F32, "blend_f32", "EXT_float_blend" },
+                                     { NOH_MORPH_LAYERED, NOH_ACCUMULATE_F16, "blend_f16",
+                                       "EXT_color_buffer_half_float" },
+                                     { NOH_MORPH_MRT, NOH_ACCUMULATE_F32, "blend_f32", "EXT_float_blend" },
+                                     { NOH_MORPH_MRT, NOH_ACCUMULATE_F16, "blend_f16", "RGBA16F" },
+                                     { NOH_MORPH_MRT, NOH_ACCUMULATE_F32, "mrt3", "three draw buffers" },
+                                     { NOH_MORPH_PER_LAYER, NOH_ACCUMULATE_F32, "blend_f32", "RGBA32F" },
+                                     { NOH_MORPH_PER_LAYER, NOH_ACCUMULATE_F16, "blend_f16", "RGBA16F" },
+                                     { NOH_MORPH_GATHER, NOH_ACCUMULATE_F32, "mrt3", "three draw buffers" },
+                                     { NOH_MORPH_GATHER, NOH_ACCUMULATE_F16, "render_f16", "RGBA16F" },
+                                     { NOH_MORPH_GATHER, NOH_ACCUMULATE_F32, "render_f32 render_u32", "RGBA32UI" } };
     gpu *g = fixture_gpu();
     (void)state;
     for (size_t i = 0; i < TEST_COUNT(cases); i++) {
@@ -570,16 +574,18 @@ static void forced_paths_name_what_is_missing(void **state)
         noh_error error = { NOH_OK, "", 0, 0 };
         noh_gl_morph *morph = NULL;
         uint8_t memory[16];
-        caps.mrt3 = caps.layered = caps.blend_f32 = caps.blend_f16 = caps.render_f16 = caps.render_f32 = caps.render_u32 = 1;
+        caps.mrt3 = caps.layered = caps.blend_f32 = caps.blend_f16 = caps.render_f16 = caps.render_f32 =
+            caps.render_u32 = 1;
         assert_int_equal(noh_gl_morph_plan_make(&desc, &caps, &plan, NULL), NOH_OK);
         clear_cap(&caps, cases[i].field);
         assert_int_equal(noh_gl_morph_plan_make(&desc, &caps, &plan, &error), NOH_ERR_UNSUPPORTED);
         if (!strstr(error.what, cases[i].word)) {
-            fail_msg("%s without %s: '%s' does not name %s", fixture_way_name(way), cases[i].field, error.what, cases[i].word);
+            fail_msg("%s without %s: '%s' does not name %s", fixture_way_name(way), cases[i].field, error.what,
+                     cases[i].word);
         }
         assert_int_equal(noh_gl_morph_init(memory, sizeof memory,
-                                           &(noh_gl_device){ &g->gl, &caps, &g->ledger, NULL, 0 }, &desc,
-                                           &morph, &error),
+                                           &(noh_gl_device){ &g->gl, &caps, &g->ledger, NULL, 0 }, &desc, &morph,
+                                           &error),
                          NOH_ERR_UNSUPPORTED);
         assert_null(morph);
     }
@@ -640,11 +646,16 @@ static void automatic_falls_to_the_next_path(void **state)
  * software too; each time every sum is the CPU's, bit for bit. Where nothing blends it is refused, by name. */
 static void blending_is_layered_or_per_layer(void **state)
 {
-    static const struct { const char *cleared; noh_accumulate accumulate; noh_morph_path path; } cases[] = {
-        { "", NOH_ACCUMULATE_F32, NOH_MORPH_LAYERED },          { "", NOH_ACCUMULATE_F16, NOH_MORPH_LAYERED },
-        { "layered", NOH_ACCUMULATE_F32, NOH_MORPH_PER_LAYER }, { "layered", NOH_ACCUMULATE_F16, NOH_MORPH_PER_LAYER },
-        { "mrt3", NOH_ACCUMULATE_F32, NOH_MORPH_LAYERED },      { "mrt3 layered render_u32", NOH_ACCUMULATE_F32, NOH_MORPH_PER_LAYER }
-    };
+    static const struct {
+        const char *cleared;
+        noh_accumulate accumulate;
+        noh_morph_path path;
+    } cases[] = { { "", NOH_ACCUMULATE_F32, NOH_MORPH_LAYERED },
+                  { "", NOH_ACCUMULATE_F16, NOH_MORPH_LAYERED },
+                  { "layered", NOH_ACCUMULATE_F32, NOH_MORPH_PER_LAYER },
+                  { "layered", NOH_ACCUMULATE_F16, NOH_MORPH_PER_LAYER },
+                  { "mrt3", NOH_ACCUMULATE_F32, NOH_MORPH_LAYERED },
+                  { "mrt3 layered render_u32", NOH_ACCUMULATE_F32, NOH_MORPH_PER_LAYER } };
     gpu *g = fixture_gpu();
     test_random r = test_random_from(74);
     const fixture_way blend = { NOH_MORPH_BLEND, NOH_ACCUMULATE_F32 };
@@ -704,8 +715,10 @@ static void automatic_weighs_blending_against_lists(void **state)
 
 static void automatic_takes_the_cpu_on_a_software_rasteriser(void **state)
 {
-    static const char *const names[] = { "llvmpipe (LLVM 15.0.6, 256 bits)", "softpipe", "ANGLE (Google, Vulkan 1.3.0 (SwiftShader Device))",
-                                         "ANGLE (Microsoft, Microsoft Basic Render Driver Direct3D11 vs_5_0 ps_5_0)", "swrast" };
+    static const char *const names[] = { "llvmpipe (LLVM 15.0.6, 256 bits)", "softpipe",
+                                         "ANGLE (Google, Vulkan 1.3.0 (SwiftShader Device))",
+                                         "ANGLE (Microsoft, Microsoft Basic Render Driver Direct3D11 vs_5_0 ps_5_0)",
+                                         "swrast" };
     const fixture_way way = { NOH_MORPH_AUTO, NOH_ACCUMULATE_AUTO };
     noh_gl_morph_desc desc = desc_of(way);
     noh_gl_caps caps = fixture_gpu()->caps;

@@ -151,8 +151,8 @@ static void open_stage(stage *st)
     assert_int_equal(noh_gl_skin_plan_make(&skin, &st->g->caps, &plan, NULL), NOH_OK);
     st->memory = test_aligned(NULL, (size_t)plan.cpu_bytes);
     assert_int_equal(noh_gl_skin_init(st->memory, (size_t)plan.cpu_bytes,
-                                      &(noh_gl_device){ &st->g->gl, &st->g->caps, &st->ledger, NULL, 0 },
-                                      &skin, &st->skin, NULL),
+                                      &(noh_gl_device){ &st->g->gl, &st->g->caps, &st->ledger, NULL, 0 }, &skin,
+                                      &st->skin, NULL),
                      NOH_OK);
 }
 
@@ -228,11 +228,13 @@ static noh_gl_camera camera_at(const corner t[3], double point[3])
 /* The normal there: summed by the shares, then made unit. */
 static void normal_at(const corner t[3], double n[3])
 {
-    for (int c = 0; c < 3; c++) n[c] = shares[0] * t[0].normal[c] + shares[1] * t[1].normal[c] + shares[2] * t[2].normal[c];
+    for (int c = 0; c < 3; c++)
+        n[c] = shares[0] * t[0].normal[c] + shares[1] * t[1].normal[c] + shares[2] * t[2].normal[c];
     unit(n);
 }
 
-static void middle_pixel(stage *st, noh_debug_view view, const float world[12], int crowd, const noh_gl_camera *camera, uint8_t rgb[3])
+static void middle_pixel(stage *st, noh_debug_view view, const float world[12], int crowd, const noh_gl_camera *camera,
+                         uint8_t rgb[3])
 {
     noh_gl_renderer_desc desc;
     noh_gl_renderer renderer;
@@ -245,14 +247,16 @@ static void middle_pixel(stage *st, noh_debug_view view, const float world[12], 
     desc.mesh_count = 1;
     desc.palettes = NOH_PALETTE_TEXTURE;
     desc.crowds = 1;
-    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &st->g->gl, NULL, &st->ledger, log, sizeof log },
-                                            &desc, &renderer, NULL), NOH_OK);
+    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &st->g->gl, NULL, &st->ledger, log, sizeof log }, &desc,
+                                            &renderer, NULL),
+                     NOH_OK);
     fixture_frame_open(&frame, SIDE);
     noh_gl_draw_begin(&renderer, camera);
     if (crowd) {
         noh_gl_skin_binding first = noh_gl_skin_binding_of(st->skin, 0);
         static const float away[12] = { 1, 0, 0, 900, 0, 1, 0, 900, 0, 0, 1, 900 };
-        for (uint32_t k = 0; k < 3; k++) assert_int_equal(noh_gl_skin_set_place(st->skin, k, k == 1 ? world : away, NULL, NULL), NOH_OK);
+        for (uint32_t k = 0; k < 3; k++)
+            assert_int_equal(noh_gl_skin_set_place(st->skin, k, k == 1 ? world : away, NULL, NULL), NOH_OK);
         noh_gl_skin_update(st->skin);
         noh_gl_draw_crowd(&renderer, &st->gl_mesh, NULL, &first, 3, NULL, NULL, NOH_DRAW_OPAQUE);
     } else {
@@ -271,7 +275,8 @@ static void expect_rgb(const uint8_t got[3], const double expected[3], const cha
 {
     for (int c = 0; c < 3; c++) {
         const double want = 255.0 * fmin(fmax(expected[c], 0.0), 1.0);
-        if (fabs((double)got[c] - want) > 1.5) fail_msg("%s %d, channel %d: %u, not %.1f", what, round, c, (unsigned)got[c], want);
+        if (fabs((double)got[c] - want) > 1.5)
+            fail_msg("%s %d, channel %d: %u, not %.1f", what, round, c, (unsigned)got[c], want);
     }
 }
 
@@ -322,7 +327,8 @@ static double at_least(double x, double least)
  * Schlick's Fresnel term and visibility, a rim. */
 static void shaded(const double n[3], const double point[3], const noh_gl_camera *camera, double color[3])
 {
-    static const double key_color[3] = { 1.02, 0.98, 0.92 }, ground[3] = { 0.23, 0.20, 0.18 }, zenith[3] = { 0.50, 0.54, 0.60 };
+    static const double key_color[3] = { 1.02, 0.98, 0.92 }, ground[3] = { 0.23, 0.20, 0.18 },
+                        zenith[3] = { 0.50, 0.54, 0.60 };
     const double rough = (double)ROUGHNESS, metal = (double)METALLIC, a = rough * rough, k = 0.5 * a;
     double key[3], view[3], half[3], nl, nv, nh, hv, wrapped, d, specular;
     for (int c = 0; c < 3; c++) {

@@ -47,11 +47,16 @@ static GLuint compile(const noh_gl_api *gl, GLenum stage, const char *const *tex
 static GLuint own_program(const noh_gl_api *gl, noh_gl_variant_key key)
 {
     static const char *const varyings[] = { "v_position", "v_normal" };
-    static const char fragment_text[] = "#version 300 es\nprecision mediump float;\nout vec4 c;\nvoid main() { c = vec4(1.0); }\n";
+    static const char fragment_text[] =
+        "#version 300 es\nprecision mediump float;\nout vec4 c;\nvoid main() { c = vec4(1.0); }\n";
     char defines[NOH_GL_DEFINES_BYTES], *own = example("shaders_es/README.md");
-    const char *vertex[] = { "#version 300 es\n", defines, "precision highp float;\nprecision highp int;\n",
-                             noh_gl_shader_text("common_layers.glsl"), noh_gl_shader_text("common_attributes.glsl"),
-                             noh_gl_shader_text("common_skin.glsl"), own };
+    const char *vertex[] = { "#version 300 es\n",
+                             defines,
+                             "precision highp float;\nprecision highp int;\n",
+                             noh_gl_shader_text("common_layers.glsl"),
+                             noh_gl_shader_text("common_attributes.glsl"),
+                             noh_gl_shader_text("common_skin.glsl"),
+                             own };
     const char *fragment[] = { fragment_text };
     GLuint shaders[2], program = gl->CreateProgram(), block;
     GLint ok = 0;
@@ -119,8 +124,8 @@ static void open_skin(stage *st, noh_palette_mode mode)
     assert_int_equal(noh_gl_skin_plan_make(&desc, &st->g->caps, &plan, NULL), NOH_OK);
     st->memory = test_aligned(NULL, (size_t)plan.cpu_bytes);
     assert_int_equal(noh_gl_skin_init(st->memory, (size_t)plan.cpu_bytes,
-                                      &(noh_gl_device){ &st->g->gl, &st->g->caps, &st->ledger, NULL, 0 },
-                                      &desc, &st->skin, NULL),
+                                      &(noh_gl_device){ &st->g->gl, &st->g->caps, &st->ledger, NULL, 0 }, &desc,
+                                      &st->skin, NULL),
                      NOH_OK);
     noh_gl_skin_set_matrices(st->skin, 0, st->matrices);
     noh_gl_skin_update(st->skin);
@@ -182,7 +187,8 @@ static float *draw(const stage *st)
     own.program = own_program(gl, own.key);
     own.u_skin = gl->GetUniformLocation(own.program, "u_skin");
     gl->UniformMatrix4fv(gl->GetUniformLocation(own.program, "u_view_projection"), 1, GL_FALSE, identity);
-    gl->Uniform4i(gl->GetUniformLocation(own.program, "u_morph"), morph.tile_x, morph.tile_y, morph.width_log2, morph.touched);
+    gl->Uniform4i(gl->GetUniformLocation(own.program, "u_morph"), morph.tile_x, morph.tile_y, morph.width_log2,
+                  morph.touched);
     gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_LAYERS);
     gl->BindTexture(GL_TEXTURE_2D_ARRAY, morph.texture);
     gl->GenBuffers(1, &buffer);
@@ -269,7 +275,8 @@ static void it_skins_by_a_texture(void **state)
 
 static void other_names_have_no_text(void **state)
 {
-    static const char *const names[] = { "common_layers.glsl", "common_attributes.glsl", "common_skin.glsl", "common_fade.glsl" };
+    static const char *const names[] = { "common_layers.glsl", "common_attributes.glsl", "common_skin.glsl",
+                                         "common_fade.glsl" };
     (void)state;
     for (size_t i = 0; i < TEST_COUNT(names); i++) {
         const char *text = noh_gl_shader_text(names[i]);
@@ -285,8 +292,10 @@ static void other_names_have_no_text(void **state)
 int main(int argument_count, char **arguments)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(it_morphs),          cmocka_unit_test(it_morphs_with_integer_layers),
-        cmocka_unit_test(it_skins_by_a_block), cmocka_unit_test(it_skins_by_a_texture),
+        cmocka_unit_test(it_morphs),
+        cmocka_unit_test(it_morphs_with_integer_layers),
+        cmocka_unit_test(it_skins_by_a_block),
+        cmocka_unit_test(it_skins_by_a_texture),
         cmocka_unit_test(other_names_have_no_text),
     };
     if (argument_count > 1) cmocka_set_test_filter(arguments[1]);

@@ -53,7 +53,8 @@ typedef struct create_case {
 static noh_result make_buffer(maker *m, noh_error *error)
 {
     static const uint8_t bytes[64];
-    return noh_gl_buffer_create(&m->g.gl, &m->g.ledger, GL_ARRAY_BUFFER, sizeof bytes, bytes, GL_STATIC_DRAW, &m->made.buffer, error);
+    return noh_gl_buffer_create(&m->g.gl, &m->g.ledger, GL_ARRAY_BUFFER, sizeof bytes, bytes, GL_STATIC_DRAW,
+                                &m->made.buffer, error);
 }
 
 static void unmake_buffer(maker *m)
@@ -116,8 +117,8 @@ static noh_result make_renderer(maker *m, noh_error *error)
     desc.meshes = m->meshes;
     desc.mesh_count = 2;
     desc.fades = 1;
-    return noh_gl_renderer_create(&(noh_gl_device){ &m->g.gl, NULL, &m->g.ledger, NULL, 0 }, &desc,
-                                  &m->made.renderer, error);
+    return noh_gl_renderer_create(&(noh_gl_device){ &m->g.gl, NULL, &m->g.ledger, NULL, 0 }, &desc, &m->made.renderer,
+                                  error);
 }
 
 static void unmake_renderer(maker *m)
@@ -148,9 +149,8 @@ static noh_result make_morph(maker *m, noh_error *error)
     desc.instance_counts = counts;
     desc.path = m->path;
     desc.accumulate = m->accumulate;
-    return noh_gl_morph_init(m->room, sizeof m->room,
-                             &(noh_gl_device){ &m->g.gl, &m->g.caps, &m->g.ledger, NULL, 0 }, &desc,
-                             &m->made.morph, error);
+    return noh_gl_morph_init(m->room, sizeof m->room, &(noh_gl_device){ &m->g.gl, &m->g.caps, &m->g.ledger, NULL, 0 },
+                             &desc, &m->made.morph, error);
 }
 
 static void unmake_morph(maker *m)
@@ -165,9 +165,8 @@ static noh_result make_skin(maker *m, noh_error *error)
     desc.meshes = m->skinned;
     desc.mesh_count = 2;
     desc.mode = m->mode;
-    return noh_gl_skin_init(m->room, sizeof m->room,
-                            &(noh_gl_device){ &m->g.gl, &m->g.caps, &m->g.ledger, NULL, 0 }, &desc,
-                            &m->made.skin, error);
+    return noh_gl_skin_init(m->room, sizeof m->room, &(noh_gl_device){ &m->g.gl, &m->g.caps, &m->g.ledger, NULL, 0 },
+                            &desc, &m->made.skin, error);
 }
 
 static void unmake_skin(maker *m)
@@ -204,7 +203,11 @@ static noh_result restore_skin(maker *m, noh_error *error)
     return noh_gl_skin_restore(m->made.skin, error);
 }
 
-#define MORPH(path, format) { "morph " #path " " #format, make_morph, unmake_morph, restore_morph, NOH_MORPH_##path, NOH_ACCUMULATE_##format, 0 }
+#define MORPH(path, format)                                                                    \
+    {                                                                                          \
+        "morph " #path " " #format, make_morph, unmake_morph, restore_morph, NOH_MORPH_##path, \
+            NOH_ACCUMULATE_##format, 0                                                         \
+    }
 static const create_case cases[] = {
     { "buffer", make_buffer, unmake_buffer, NULL, 0, 0, 0 },
     { "texture", make_texture, unmake_texture, NULL, 0, 0, 0 },
@@ -216,8 +219,16 @@ static const create_case cases[] = {
     { "variant", make_variant, unmake_variant, NULL, 0, 0, 0 },
     { "skin uniform", make_skin, unmake_skin, restore_skin, 0, 0, NOH_PALETTE_UNIFORM },
     { "skin texture", make_skin, unmake_skin, restore_skin, 0, 0, NOH_PALETTE_TEXTURE },
-    MORPH(LAYERED, F32), MORPH(LAYERED, F16), MORPH(MRT, F32), MORPH(MRT, F16), MORPH(PER_LAYER, F32),
-    MORPH(PER_LAYER, F16), MORPH(GATHER, F32), MORPH(GATHER, F16), MORPH(CPU, F32), MORPH(CPU, F16)
+    MORPH(LAYERED, F32),
+    MORPH(LAYERED, F16),
+    MORPH(MRT, F32),
+    MORPH(MRT, F16),
+    MORPH(PER_LAYER, F32),
+    MORPH(PER_LAYER, F16),
+    MORPH(GATHER, F32),
+    MORPH(GATHER, F16),
+    MORPH(CPU, F32),
+    MORPH(CPU, F16)
 };
 
 /* ---- the platform ---- */
@@ -247,9 +258,11 @@ static void expect_nothing(maker *m, const char *name, const char *function, uin
     memset(&nothing, 0, sizeof nothing);
     noh_null_report_of(m->g.context, &report);
     for (int kind = 0; kind < NOH_NULL_KINDS; kind++) {
-        if (report.live[kind]) fail_msg("%s, %s %u: %u objects of kind %d are left", name, function, k, report.live[kind], kind);
+        if (report.live[kind])
+            fail_msg("%s, %s %u: %u objects of kind %d are left", name, function, k, report.live[kind], kind);
     }
-    if (memcmp(&m->g.ledger, &nothing, sizeof nothing) != 0) fail_msg("%s, %s %u: the ledger still counts", name, function, k);
+    if (memcmp(&m->g.ledger, &nothing, sizeof nothing) != 0)
+        fail_msg("%s, %s %u: the ledger still counts", name, function, k);
 }
 
 /* One refusal after the other until none comes; returns how many there were. */
@@ -271,7 +284,8 @@ static uint32_t refuse_each(const create_case *c, maker *m, const char *function
         }
         if (!result) fail_msg("%s says OK though call %u of %s was refused", c->name, k, function);
         if (result != expected || error.where != code || !error.what) {
-            fail_msg("%s, call %u of %s: result %d, where 0x%x", c->name, k, function, (int)result, (unsigned)error.where);
+            fail_msg("%s, call %u of %s: result %d, where 0x%x", c->name, k, function, (int)result,
+                     (unsigned)error.where);
         }
         expect_nothing(m, c->name, function, k);
         assert_int_equal(c->make(m, &error), NOH_OK); /* a second attempt succeeds */
@@ -321,7 +335,8 @@ static const char *const functions[] = {
 #define NAME(field, TYPE) "gl" #field,
     NOH_GL_REQUIRED(NAME)
 #undef NAME
-    "glFramebufferTexture", "glObjectLabel", "glPushDebugGroup", "glPopDebugGroup"
+        "glFramebufferTexture",
+    "glObjectLabel", "glPushDebugGroup", "glPopDebugGroup"
 };
 
 /* The call that asks for errors raises none, and nothing is deleted or read before an object is complete. */
@@ -348,12 +363,15 @@ static void no_create_hides_a_refusal(void **state)
             m->mode = cases[i].mode;
             maker_open(m);
             refusals += refuse_each(&cases[i], m, functions[f], f % 2 ? GL_OUT_OF_MEMORY : GL_INVALID_VALUE);
-            if (cases[i].restore) restored += refuse_each_restore(&cases[i], m, functions[f], f % 2 ? GL_OUT_OF_MEMORY : GL_INVALID_VALUE);
+            if (cases[i].restore)
+                restored += refuse_each_restore(&cases[i], m, functions[f],
+                                                f % 2 ? GL_OUT_OF_MEMORY : GL_INVALID_VALUE);
             gpu_close(&m->g);
             free(m);
         }
     }
-    print_message("# %u refused calls in %u creates, %u in their restores\n", refusals, (unsigned)TEST_COUNT(cases), restored);
+    print_message("# %u refused calls in %u creates, %u in their restores\n", refusals, (unsigned)TEST_COUNT(cases),
+                  restored);
     assert_true(restored > 500);
     assert_true(refusals > 500);
     free(bytes);

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const assets[] = { "hero/body.glb", "hero/body_8inf.glb", "hero/body_quantized.glb", "khronos/Fox.glb",
-                                      "khronos/RobotExpressive.glb", "khronos/SimpleSkin.gltf" };
+static const char *const assets[] = { "hero/body.glb",   "hero/body_8inf.glb",          "hero/body_quantized.glb",
+                                      "khronos/Fox.glb", "khronos/RobotExpressive.glb", "khronos/SimpleSkin.gltf" };
 static const char *const every_mesh[] = { "all" };
 
 static fixture_skin_desc desc_of(const char *asset, noh_palette_mode mode)
@@ -70,7 +70,8 @@ static void every_number_of_influences_equals_the_cpu(void **state)
     for (size_t i = 0; i < TEST_COUNT(stored); i++) {
         fixture_skin_desc desc = desc_of("hero/body_8inf.glb", NOH_PALETTE_UNIFORM);
         desc.options.influences = stored[i];
-        assert_int_equal(test_mesh(fixture_skinned_pack(desc.asset, &desc.options), 0).header->influence_count, stored[i]);
+        assert_int_equal(test_mesh(fixture_skinned_pack(desc.asset, &desc.options), 0).header->influence_count,
+                         stored[i]);
         check_poses(&desc);
     }
 }
@@ -115,7 +116,8 @@ static void expect_one_point(const fixture_skin *f)
 
 static void mirrors_and_lost_axes(void **state)
 {
-    static const float scales[][3] = { { -1, 1, 1 }, { -1, -1, -1 }, { 0, 1, 1 }, { 1, 2, 0.25f } }, none[3] = { 0, 0, 0 };
+    static const float scales[][3] = { { -1, 1, 1 }, { -1, -1, -1 }, { 0, 1, 1 }, { 1, 2, 0.25f } },
+                       none[3] = { 0, 0, 0 };
     (void)state;
     for (uint32_t dual = 0; dual < 2; dual++) {
         fixture_skin_desc desc = desc_of("khronos/Fox.glb", NOH_PALETTE_TEXTURE);
@@ -230,8 +232,8 @@ static void a_crowd_stands_where_it_was_placed(void **state)
     fixture_skin_close(&f);
 }
 
-/* Instances that are scaled by another factor along each axis: their normals stand on the scaled surface, which those moved
- * by the matrix itself do not. */
+/* Instances that are scaled by another factor along each axis: their normals stand on the scaled surface, which those
+ * moved by the matrix itself do not. */
 static void a_crowd_s_normals_go_by_the_inverse_transpose(void **state)
 {
     fixture_skin_desc desc = desc_of("khronos/Fox.glb", NOH_PALETTE_TEXTURE);
@@ -307,7 +309,9 @@ static void fewer(const noh_mesh *mesh, const float *matrices, uint32_t vertex, 
 
 static void influences_can_be_capped(void **state)
 {
-    static const uint32_t caps[][2] = { { 1, 1 }, { 2, 2 }, { 3, 2 }, { 4, 4 }, { 7, 4 }, { 8, 8 } }; /* asked for, drawn */
+    static const uint32_t caps[][2] = {
+        { 1, 1 }, { 2, 2 }, { 3, 2 }, { 4, 4 }, { 7, 4 }, { 8, 8 }
+    }; /* asked for, drawn */
     fixture_skin_desc desc = desc_of("hero/body_8inf.glb", NOH_PALETTE_TEXTURE);
     fixture_skin f;
     test_random r = { 75 };
@@ -349,7 +353,8 @@ static void draw_all(const fixture_skin *f, const noh_gl_renderer *renderer, dra
             if (kind == CROWD) {
                 noh_gl_draw_crowd(renderer, &f->gl_meshes[i], &morph, &skin, f->copies, NULL, NULL, pass);
             } else {
-                noh_gl_draw_mesh(renderer, &f->gl_meshes[i], world, &morph, kind == BIND_POSE ? NULL : &skin, NULL, NULL, pass);
+                noh_gl_draw_mesh(renderer, &f->gl_meshes[i], world, &morph, kind == BIND_POSE ? NULL : &skin, NULL,
+                                 NULL, pass);
             }
         }
     }
@@ -369,7 +374,9 @@ static void place_all(const fixture_skin *f)
 /* From the front; rgba[SIDE][SIDE][4], to be freed. */
 static uint8_t *picture(const fixture_skin *f, draw_kind kind)
 {
-    static const noh_gl_camera camera = { { 0.9f, 0, 0, 0, 0, 0.9f, 0, 0, 0, 0, -0.3f, 0, 0, -0.75f, 0, 1 }, { 0, 0.8f, 9 }, { 0.6f, 0, 0.8f } };
+    static const noh_gl_camera camera = { { 0.9f, 0, 0, 0, 0, 0.9f, 0, 0, 0, 0, -0.3f, 0, 0, -0.75f, 0, 1 },
+                                          { 0, 0.8f, 9 },
+                                          { 0.6f, 0, 0.8f } };
     const noh_gl_api *gl = &fixture_gpu()->gl;
     noh_gl_renderer_desc desc;
     noh_gl_renderer renderer;
@@ -382,8 +389,9 @@ static uint8_t *picture(const fixture_skin *f, draw_kind kind)
     desc.mesh_count = f->mesh_count;
     desc.palettes = f->plan.mode;
     desc.crowds = kind == CROWD;
-    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ gl, NULL, &t.ledger, log, sizeof log }, &desc,
-                                            &renderer, NULL), NOH_OK);
+    assert_int_equal(
+        noh_gl_renderer_create(&(noh_gl_device){ gl, NULL, &t.ledger, log, sizeof log }, &desc, &renderer, NULL),
+        NOH_OK);
     noh_gl_draw_begin(&renderer, &camera);
     for (int pass = NOH_DRAW_OPAQUE; pass <= NOH_DRAW_BLENDED; pass++) {
         draw_all(f, &renderer, kind, pass);
@@ -479,8 +487,8 @@ static void a_crowd_looks_like_its_instances(void **state)
 
 static void draws_leave_the_state_that_they_say(void **state)
 {
-    static const GLenum bindings[] = { GL_CURRENT_PROGRAM, GL_VERTEX_ARRAY_BINDING, GL_UNIFORM_BUFFER_BINDING, GL_TEXTURE_BINDING_2D,
-                                       GL_TEXTURE_BINDING_2D_ARRAY };
+    static const GLenum bindings[] = { GL_CURRENT_PROGRAM, GL_VERTEX_ARRAY_BINDING, GL_UNIFORM_BUFFER_BINDING,
+                                       GL_TEXTURE_BINDING_2D, GL_TEXTURE_BINDING_2D_ARRAY };
     (void)state;
     for (int mode = NOH_PALETTE_UNIFORM; mode <= NOH_PALETTE_TEXTURE; mode++) {
         fixture_skin_desc desc = desc_of("khronos/SimpleSkin.gltf", (noh_palette_mode)mode);
@@ -636,19 +644,19 @@ static void memory_is_exact(void **state)
         bytes = (size_t)plan.cpu_bytes;
         memory = test_aligned(NULL, bytes + 64);
         memset(memory, 0xa5, bytes + 64);
-        assert_int_equal(noh_gl_skin_init(memory, bytes - 1,
-                                          &(noh_gl_device){ &g->gl, &g->caps, &ledger, NULL, 0 }, &desc, &skin,
-                                          &error), NOH_ERR_MEMORY);
+        assert_int_equal(noh_gl_skin_init(memory, bytes - 1, &(noh_gl_device){ &g->gl, &g->caps, &ledger, NULL, 0 },
+                                          &desc, &skin, &error),
+                         NOH_ERR_MEMORY);
         assert_int_equal(error.need, bytes);
         for (size_t i = 0; i < bytes + 64; i++) {
             assert_int_equal(memory[i], 0xa5);
         }
-        assert_int_equal(noh_gl_skin_init(memory + 1, bytes,
-                                          &(noh_gl_device){ &g->gl, &g->caps, &ledger, NULL, 0 }, &desc, &skin,
-                                          &error), NOH_ERR_ARG);
-        assert_int_equal(noh_gl_skin_init(memory, bytes,
-                                          &(noh_gl_device){ &g->gl, &g->caps, &ledger, NULL, 0 }, &desc, &skin,
-                                          &error), NOH_OK);
+        assert_int_equal(noh_gl_skin_init(memory + 1, bytes, &(noh_gl_device){ &g->gl, &g->caps, &ledger, NULL, 0 },
+                                          &desc, &skin, &error),
+                         NOH_ERR_ARG);
+        assert_int_equal(noh_gl_skin_init(memory, bytes, &(noh_gl_device){ &g->gl, &g->caps, &ledger, NULL, 0 }, &desc,
+                                          &skin, &error),
+                         NOH_OK);
         assert_true(noh_gl_ledger_bytes(&ledger) == plan.gpu_bytes);
         noh_gl_skin_update(skin);
         assert_true(noh_gl_ledger_bytes(&ledger) == plan.gpu_bytes);
@@ -679,8 +687,8 @@ static void GL_APIENTRY note_buffer(GLenum target, GLintptr offset, GLsizeiptr s
     sent.bytes = size;
 }
 
-static void GL_APIENTRY note_texture(GLenum target, GLint level, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format,
-                                     GLenum type, const void *data)
+static void GL_APIENTRY note_texture(GLenum target, GLint level, GLint x, GLint y, GLsizei width, GLsizei height,
+                                     GLenum format, GLenum type, const void *data)
 {
     (void)target;
     (void)level;
@@ -693,8 +701,8 @@ static void GL_APIENTRY note_texture(GLenum target, GLint level, GLint x, GLint 
     sent.bytes = width * height * 16;
 }
 
-static noh_gl_skin *noted_skin(noh_gl_api *api, noh_gl_ledger *ledger, made_meshes *m, noh_palette_mode mode, void **memory,
-                               noh_gl_skin_plan *plan)
+static noh_gl_skin *noted_skin(noh_gl_api *api, noh_gl_ledger *ledger, made_meshes *m, noh_palette_mode mode,
+                               void **memory, noh_gl_skin_plan *plan)
 {
     gpu *g = fixture_gpu();
     noh_gl_skin_desc desc;
@@ -709,7 +717,8 @@ static noh_gl_skin *noted_skin(noh_gl_api *api, noh_gl_ledger *ledger, made_mesh
     assert_int_equal(noh_gl_skin_plan_make(&desc, &g->caps, plan, NULL), NOH_OK);
     *memory = test_aligned(NULL, (size_t)plan->cpu_bytes);
     assert_int_equal(noh_gl_skin_init(*memory, (size_t)plan->cpu_bytes,
-                                      &(noh_gl_device){ api, &g->caps, ledger, NULL, 0 }, &desc, &skin, NULL), NOH_OK);
+                                      &(noh_gl_device){ api, &g->caps, ledger, NULL, 0 }, &desc, &skin, NULL),
+                     NOH_OK);
     return skin;
 }
 
@@ -783,7 +792,8 @@ static void only_changes_are_sent(void **state)
     matrices[1][3] = 7.0f; /* the second of the first palette, the first of the second */
     noh_gl_skin_set_matrices(skin, 0, matrices[0]);
     noh_gl_skin_update(skin);
-    expect_sent(1, 16u * 3u, 16u * noh_gl_palette_row(&binding, &m.meshes[0], 1)); /* rows 3 to 5, and to the next's 0 to 2 */
+    expect_sent(1, 16u * 3u,
+                16u * noh_gl_palette_row(&binding, &m.meshes[0], 1)); /* rows 3 to 5, and to the next's 0 to 2 */
     noh_gl_skin_delete(skin);
     free(memory);
 
@@ -804,7 +814,8 @@ static void only_changes_are_sent(void **state)
 
 static void places_are_refused_where_they_cannot_be(void **state)
 {
-    static const float mirror[12] = { -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 }, identity[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
+    static const float mirror[12] = { -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 },
+                       identity[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
     noh_gl_api api;
     noh_gl_ledger ledger;
     noh_gl_skin_plan plan;
@@ -844,13 +855,15 @@ static void renderers_make_what_they_were_told_of(void **state)
     desc.meshes = m.meshes;
     desc.mesh_count = MADE;
     desc.crowds = 1;
-    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, log, sizeof log }, &desc,
-                                            &r, &error), NOH_ERR_ARG);
+    assert_int_equal(
+        noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, log, sizeof log }, &desc, &r, &error),
+        NOH_ERR_ARG);
     desc.palettes = NOH_PALETTE_TEXTURE;
     desc.fewer_influences = 1;
-    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, log, sizeof log }, &desc,
-                                            &r, &error), NOH_OK);
-    assert_int_equal(r.variant_count, 14); /* rigid, and 4, 2, 1 by matrices and by dual quaternions; alone and in crowds */
+    assert_int_equal(
+        noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, log, sizeof log }, &desc, &r, &error), NOH_OK);
+    assert_int_equal(r.variant_count,
+                     14); /* rigid, and 4, 2, 1 by matrices and by dual quaternions; alone and in crowds */
     assert_int_equal(ledger.programs, 14);
     assert_true(noh_gl_ledger_bytes(&ledger) == NOH_GL_RENDERER_BYTES);
     skin.influences = 3;
@@ -884,8 +897,8 @@ static void rigid_variants_have_no_palettes(void **state)
     desc.mesh_count = 1;
     desc.palettes = NOH_PALETTE_UNIFORM;
     desc.encode_srgb = 1;
-    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, log, sizeof log }, &desc,
-                                            &r, &error), NOH_OK);
+    assert_int_equal(
+        noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, log, sizeof log }, &desc, &r, &error), NOH_OK);
     rigid = noh_gl_renderer_variant(&r, noh_gl_variant_key_of(&m.meshes[0], NULL, 0, 0, NOH_VIEW_LIT));
     skinned = noh_gl_renderer_variant(&r, noh_gl_variant_key_of(&m.meshes[0], &skin, 0, 0, NOH_VIEW_LIT));
     assert_true(rigid->key.encode_srgb && skinned->key.encode_srgb);
@@ -895,26 +908,24 @@ static void rigid_variants_have_no_palettes(void **state)
     fixture_expect_no_errors();
 }
 
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(every_asset_equals_the_cpu),
-    cmocka_unit_test(every_number_of_influences_equals_the_cpu),
-    cmocka_unit_test(dual_quaternions_equal_the_cpu),
-    cmocka_unit_test(mirrors_and_lost_axes),
-    cmocka_unit_test(uniform_texture_and_crowd_give_the_same_bits),
-    cmocka_unit_test(a_crowd_stands_where_it_was_placed),
-    cmocka_unit_test(a_crowd_s_normals_go_by_the_inverse_transpose),
-    cmocka_unit_test(influences_can_be_capped),
-    cmocka_unit_test(small_palettes_give_the_same_picture),
-    cmocka_unit_test(a_crowd_looks_like_its_instances),
-    cmocka_unit_test(draws_leave_the_state_that_they_say),
-    cmocka_unit_test(without_joints_stands_the_bind_pose),
-    cmocka_unit_test(plans_choose_and_refuse),
-    cmocka_unit_test(memory_is_exact),
-    cmocka_unit_test(changes_in_any_order_are_sent),
-    cmocka_unit_test(only_changes_are_sent),
-    cmocka_unit_test(places_are_refused_where_they_cannot_be),
-    cmocka_unit_test(renderers_make_what_they_were_told_of),
-    cmocka_unit_test(rigid_variants_have_no_palettes)
-};
+static const struct CMUnitTest tests[] = { cmocka_unit_test(every_asset_equals_the_cpu),
+                                           cmocka_unit_test(every_number_of_influences_equals_the_cpu),
+                                           cmocka_unit_test(dual_quaternions_equal_the_cpu),
+                                           cmocka_unit_test(mirrors_and_lost_axes),
+                                           cmocka_unit_test(uniform_texture_and_crowd_give_the_same_bits),
+                                           cmocka_unit_test(a_crowd_stands_where_it_was_placed),
+                                           cmocka_unit_test(a_crowd_s_normals_go_by_the_inverse_transpose),
+                                           cmocka_unit_test(influences_can_be_capped),
+                                           cmocka_unit_test(small_palettes_give_the_same_picture),
+                                           cmocka_unit_test(a_crowd_looks_like_its_instances),
+                                           cmocka_unit_test(draws_leave_the_state_that_they_say),
+                                           cmocka_unit_test(without_joints_stands_the_bind_pose),
+                                           cmocka_unit_test(plans_choose_and_refuse),
+                                           cmocka_unit_test(memory_is_exact),
+                                           cmocka_unit_test(changes_in_any_order_are_sent),
+                                           cmocka_unit_test(only_changes_are_sent),
+                                           cmocka_unit_test(places_are_refused_where_they_cannot_be),
+                                           cmocka_unit_test(renderers_make_what_they_were_told_of),
+                                           cmocka_unit_test(rigid_variants_have_no_palettes) };
 
 TEST_MAIN(tests, NULL, fixture_tear_down)

@@ -43,7 +43,10 @@ static void open_mask(void)
 }
 
 /* Of the full mesh's. */
-static double share(uint32_t count, uint32_t full) { return (double)count / (double)full; }
+static double share(uint32_t count, uint32_t full)
+{
+    return (double)count / (double)full;
+}
 
 static void a_level_draws_all_its_vertices_and_no_other(void **state)
 {
@@ -99,9 +102,11 @@ static void its_cost_falls_as_its_vertices_do(void **state)
     for (uint32_t k = 1; k < LEVELS; k++) {
         const noh_mesh_header *full = mask.header, *h = noh_mesh_at_lod(&mask, k).header;
         const noh_gl_morph_stats stats = accumulate(k, 0.05f + 0.1f * (float)k);
-        const double vertices = share(h->vertex_count, full->vertex_count), accumulator = share(h->touched_count, full->touched_count);
+        const double vertices = share(h->vertex_count, full->vertex_count),
+                     accumulator = share(h->touched_count, full->touched_count);
         const double deltas = share(stats.texels, full->texel_count);
-        print_message("# level %u: vertices %.3f, accumulation texels %.3f, delta texels %.3f of the full mesh's\n", k, vertices, accumulator, deltas);
+        print_message("# level %u: vertices %.3f, accumulation texels %.3f, delta texels %.3f of the full mesh's\n", k,
+                      vertices, accumulator, deltas);
         assert_true(accumulator <= 1.1 * vertices);
         assert_true(deltas <= 1.1 * vertices);
     }

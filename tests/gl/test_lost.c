@@ -76,8 +76,8 @@ static void draw(stage *st, const noh_gl_camera *camera, uint32_t level)
     for (int pass = NOH_DRAW_OPAQUE; pass <= NOH_DRAW_BLENDED; pass++) {
         for (uint32_t i = 0; i < st->s.item_count; i++) {
             noh_gl_morph_binding morph = noh_gl_morph_binding_of(st->l.morph.morph, st->l.item_instances[i]);
-            noh_gl_draw_mesh(&st->l.renderer, &st->l.meshes[st->s.items[i].mesh], scene_world(&st->s, &st->file, i), &morph, NULL, &drawn,
-                             st->l.pictures, pass);
+            noh_gl_draw_mesh(&st->l.renderer, &st->l.meshes[st->s.items[i].mesh], scene_world(&st->s, &st->file, i),
+                             &morph, NULL, &drawn, st->l.pictures, pass);
         }
     }
     noh_gl_draw_end(&st->l.renderer);
@@ -184,7 +184,8 @@ static void levels_come_back(void **state)
     (void)state;
     for (int i = 0; i < FIXTURE_WAYS; i += 2) {
         open_stage_of(&st, "egl", fixture_ways[i], 0, 3);
-        for (uint32_t k = 0; k < st.s.item_count; k++) noh_gl_morph_set_lod(st.l.morph.morph, st.l.item_instances[k], 1);
+        for (uint32_t k = 0; k < st.s.item_count; k++)
+            noh_gl_morph_set_lod(st.l.morph.morph, st.l.item_instances[k], 1);
         uint8_t *before = picture_of_level(&st, 1), *coarser = picture_of_level(&st, 2);
         noh_gl_ledger ledger = st.g.ledger;
         noh_gl_morph_stats stats;
@@ -229,7 +230,8 @@ static void nothing_old_is_called(void **state)
 /* A context that cannot take the accumulator back: the object holds nothing and can be tried again. */
 static PFNGLTEXSTORAGE3DPROC real_storage;
 
-static void GL_APIENTRY no_storage(GLenum target, GLsizei levels, GLenum format, GLsizei width, GLsizei height, GLsizei depth)
+static void GL_APIENTRY no_storage(GLenum target, GLsizei levels, GLenum format, GLsizei width, GLsizei height,
+                                   GLsizei depth)
 {
     (void)depth;
     real_storage(target, levels, format, width, height, -1);

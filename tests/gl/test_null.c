@@ -35,7 +35,8 @@ static void expect_clean(const gpu *g)
     noh_null_report report = report_of(g);
     if (report.violations) fail_msg("%u violations, the first: %s", (unsigned)report.violations, report.first);
     assert_int_equal(report.groups, 0);
-    assert_int_equal(noh_null_calls_of(g->context, "glPushDebugGroup"), noh_null_calls_of(g->context, "glPopDebugGroup"));
+    assert_int_equal(noh_null_calls_of(g->context, "glPushDebugGroup"),
+                     noh_null_calls_of(g->context, "glPopDebugGroup"));
 }
 
 static void expect_nothing_lives(const gpu *g)
@@ -66,7 +67,7 @@ static void the_probe_calls_in_order(void **state)
 typedef struct way {
     noh_morph_path path;
     noh_accumulate accumulate;
-    int uint_layers; /* without renderable floats */
+    int uint_layers;   /* without renderable floats */
     int no_extensions; /* neither debug functions nor geometry shaders */
 } way;
 
@@ -105,8 +106,8 @@ static void steady_frames(gpu *g, load *l, scene *s, const char *name)
     noh_null_count_anew(g->context);
     frame(l, s, 9, 2);
     still = report_of(g).calls;
-    print_message("# %s: %lu GL calls in a frame in which all weights change, %lu where none does\n", name, (unsigned long)most,
-                  (unsigned long)still);
+    print_message("# %s: %lu GL calls in a frame in which all weights change, %lu where none does\n", name,
+                  (unsigned long)most, (unsigned long)still);
     assert_true(most < 600);
     assert_true(still < most);
 }
@@ -179,13 +180,15 @@ static void draw_levels(load *l, const scene *s, const noh_gl_renderer *r, uint3
 {
     noh_gl_camera camera;
     memset(&camera, 0, sizeof camera);
-    for (uint32_t i = 0; i < s->item_count; i++) noh_gl_morph_set_lod(l->morph.morph, l->item_instances[i], (number + i) % 4u);
+    for (uint32_t i = 0; i < s->item_count; i++)
+        noh_gl_morph_set_lod(l->morph.morph, l->item_instances[i], (number + i) % 4u);
     assert_int_equal(load_update(l, NULL), 0);
     noh_gl_draw_begin(r, &camera);
     for (uint32_t i = 0; i < 2u * s->item_count; i++) {
         const noh_gl_lod part = { (number + i) % 4u, i % 2u ? 0.4f : 0.0f, i % 2u ? 1.0f : 0.4f };
         noh_gl_morph_binding morph = noh_gl_morph_binding_of(l->morph.morph, l->item_instances[i / 2u]);
-        noh_gl_draw_mesh(r, &l->meshes[s->items[i / 2u].mesh], scene_world(s, l->file, i / 2u), &morph, NULL, &part, l->pictures, NOH_DRAW_OPAQUE);
+        noh_gl_draw_mesh(r, &l->meshes[s->items[i / 2u].mesh], scene_world(s, l->file, i / 2u), &morph, NULL, &part,
+                         l->pictures, NOH_DRAW_OPAQUE);
     }
     noh_gl_draw_end(r);
 }
@@ -209,8 +212,8 @@ static void load_and_draw_levels(const pack_file *file, noh_morph_path path)
     desc.meshes = s.meshes;
     desc.mesh_count = file->pack.mesh_count;
     desc.fades = 1;
-    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &g.gl, NULL, &g.ledger, NULL, 0 }, &desc,
-                                            &renderer, NULL), NOH_OK);
+    assert_int_equal(
+        noh_gl_renderer_create(&(noh_gl_device){ &g.gl, NULL, &g.ledger, NULL, 0 }, &desc, &renderer, NULL), NOH_OK);
     assert_int_equal(report_of(&g).unlabelled, 0);
     for (uint32_t number = 0; number < 8; number++) {
         set_weights(&s, number, 2);

@@ -71,8 +71,8 @@ static double brightness(stage *st, int reset_light)
         gl->UseProgram(st->l.renderer.variants[i].program);
         gl->Uniform3f(st->l.renderer.variants[i].u_key, 0.0f, 0.0f, 0.0f);
     }
-    noh_gl_draw_mesh(&st->l.renderer, &st->l.meshes[0], scene_world(&st->s, &st->file, 0), &morph, NULL, NULL, st->l.pictures,
-                     NOH_DRAW_OPAQUE);
+    noh_gl_draw_mesh(&st->l.renderer, &st->l.meshes[0], scene_world(&st->s, &st->file, 0), &morph, NULL, NULL,
+                     st->l.pictures, NOH_DRAW_OPAQUE);
     noh_gl_draw_end(&st->l.renderer);
     assert_int_equal(canvas_read(&st->c, rgba), 0);
     for (size_t i = 0; i < (size_t)SIDE * SIDE; i++) {
@@ -125,8 +125,9 @@ static void light_and_normal_in_one_space(void **state)
             not_held = fmax(not_held, fabs(wrong[3][i] - right[i]));
         }
     }
-    print_message("off by %.2f; normals by the matrix %.0f, by nothing %.0f, not unit %.0f, light not held %.0f (of 255)\n", off, by_matrix,
-                  by_nothing, not_unit, not_held);
+    print_message(
+        "off by %.2f; normals by the matrix %.0f, by nothing %.0f, not unit %.0f, light not held %.0f (of 255)\n", off,
+        by_matrix, by_nothing, not_unit, not_held);
     assert_true(off < LIT_QUAD_CLOSE);
     assert_true(by_matrix > 10.0 && by_nothing > 10.0 && not_unit > 10.0 && not_held > 10.0);
     fixture_expect_no_errors();
@@ -183,9 +184,12 @@ static void each_mesh_has_its_own_stride(void **state)
 static void a_failed_shader_is_an_error_without_a_message(void **state)
 {
     static const char *const bad[] = { "void main() { this is no shader }\n" };
-    static const char *const flat[] = { "in vec3 v_there;\nprecision mediump float;\nout vec4 c;\nvoid main() { c = vec4(v_there, 1.0); }\n" };
+    static const char *const flat[] = {
+        "in vec3 v_there;\nprecision mediump float;\nout vec4 c;\nvoid main() { c = vec4(v_there, 1.0); }\n"
+    };
     static const char *const alone[] = { "void main() { gl_Position = vec4(0.0); }\n" };
-    static const char *const what[] = { "the vertex shader does not compile", "the fragment shader does not compile", "the program does not link" };
+    static const char *const what[] = { "the vertex shader does not compile", "the fragment shader does not compile",
+                                        "the program does not link" };
     gpu *g = fixture_gpu();
     (void)state;
     for (int i = 0; i < 3; i++) {
@@ -229,10 +233,8 @@ static void influences_go_with_the_draw(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(defaults_come_first),
-        cmocka_unit_test(light_and_normal_in_one_space),
-        cmocka_unit_test(each_mesh_has_its_own_stride),
-        cmocka_unit_test(a_failed_shader_is_an_error_without_a_message),
+        cmocka_unit_test(defaults_come_first),          cmocka_unit_test(light_and_normal_in_one_space),
+        cmocka_unit_test(each_mesh_has_its_own_stride), cmocka_unit_test(a_failed_shader_is_an_error_without_a_message),
         cmocka_unit_test(influences_go_with_the_draw),
     };
     return cmocka_run_group_tests(tests, NULL, fixture_tear_down);

@@ -25,9 +25,11 @@ static int open_xlib(xlib *x)
     if (!library) return 0;
     void *(*open)(const char *) = (void *(*)(const char *))noh_library_proc(library, "XOpenDisplay");
     unsigned long (*root)(void *) = (unsigned long (*)(void *))noh_library_proc(library, "XDefaultRootWindow");
-    unsigned long (*create)(void *, unsigned long, int, int, unsigned, unsigned, unsigned, unsigned long, unsigned long) =
-        (unsigned long (*)(void *, unsigned long, int, int, unsigned, unsigned, unsigned, unsigned long, unsigned long))
-            noh_library_proc(library, "XCreateSimpleWindow");
+    unsigned long (*create)(void *, unsigned long, int, int, unsigned, unsigned, unsigned, unsigned long,
+                            unsigned long) = (unsigned long (*)(void *, unsigned long, int, int, unsigned, unsigned,
+                                                                unsigned, unsigned long,
+                                                                unsigned long))noh_library_proc(library,
+                                                                                                "XCreateSimpleWindow");
     int (*map)(void *, unsigned long) = (int (*)(void *, unsigned long))noh_library_proc(library, "XMapWindow");
     x->resize = (void (*)(void *, unsigned long, unsigned, unsigned))noh_library_proc(library, "XResizeWindow");
     x->sync = (int (*)(void *, int))noh_library_proc(library, "XSync");
@@ -63,7 +65,8 @@ static int draw_and_show(const noh_platform *p, noh_platform_context *c, const n
     gl->ClearColor(1.0f, 0.0f, 1.0f, 1.0f);
     gl->Clear(GL_COLOR_BUFFER_BIT);
     gl->ReadPixels((GLint)WIDTH - 1, (GLint)HEIGHT - 1, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel);
-    if (pixel[0] != 255 || pixel[1] != 0 || pixel[2] != 255) return fail("the default framebuffer does not hold what was cleared");
+    if (pixel[0] != 255 || pixel[1] != 0 || pixel[2] != 255)
+        return fail("the default framebuffer does not hold what was cleared");
     if (p->present(c)) return fail("present fails");
     if (gl->GetError() != GL_NO_ERROR) return fail("a GL error is left");
     return 0;

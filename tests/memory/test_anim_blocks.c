@@ -1,5 +1,6 @@
-/* Every object of anim/ and character/ opens its block in the same way: NULL and misaligned memory are ARG, one byte too
- * few is MEMORY, `need` is the exact bytes each time, nothing is touched on an error, and nothing past the end ever. */
+/* Every object of anim/ and character/ opens its block in the same way: NULL and misaligned memory are ARG, one byte
+ * too few is MEMORY, `need` is the exact bytes each time, nothing is touched on an error, and nothing past the end
+ * ever. */
 #include "support/support.h"
 
 #include <stdlib.h>
@@ -139,8 +140,9 @@ static void refuse(const blocks *b, init_fn init, void *memory, size_t bytes, no
 
 static void every_block_opens_in_the_same_way(void **state)
 {
-    static const init_fn inits[] = { controller, pose_scratch, event_queue, graph_state, graph_scratch, character, character_scratch,
-                                     lod_pools, schedule, joint_measure, time_measure, points_measure };
+    static const init_fn inits[] = { controller,    pose_scratch,  event_queue,       graph_state,
+                                     graph_scratch, character,     character_scratch, lod_pools,
+                                     schedule,      joint_measure, time_measure,      points_measure };
     (void)state;
     for (size_t i = 0; i < sizeof inits / sizeof *inits; i++) {
         blocks b;
@@ -156,7 +158,8 @@ static void every_block_opens_in_the_same_way(void **state)
         refuse(&b, inits[i], NULL, need, NOH_ERR_ARG, need);
         refuse(&b, inits[i], memory, need - 1u, NOH_ERR_MEMORY, need);
         refuse(&b, inits[i], memory, 0, NOH_ERR_MEMORY, need);
-        for (size_t shift = 1; shift < NOH_MEMORY_ALIGN; shift++) refuse(&b, inits[i], memory + shift, need, NOH_ERR_ARG, need);
+        for (size_t shift = 1; shift < NOH_MEMORY_ALIGN; shift++)
+            refuse(&b, inits[i], memory + shift, need, NOH_ERR_ARG, need);
         assert_true(untouched(memory, need + CANARY));
         assert_int_equal(inits[i](&b, memory, need, NULL), NOH_OK);
         assert_true(untouched(memory + need, CANARY));

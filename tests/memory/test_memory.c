@@ -163,7 +163,8 @@ static void misaligned_layers_are_refused(void **state)
     g = guarded_new(noh_morph_layers_size(&f.meshes[0]) + NOH_MEMORY_ALIGN);
     for (size_t shift = 1; shift < NOH_MEMORY_ALIGN; shift++) {
         noh_error error = { NOH_OK, NULL, 0, 0 };
-        assert_int_equal(noh_morph_layers_init(g.block + shift, g.bytes - shift, &f.meshes[0], &layers, &error), NOH_ERR_ARG);
+        assert_int_equal(noh_morph_layers_init(g.block + shift, g.bytes - shift, &f.meshes[0], &layers, &error),
+                         NOH_ERR_ARG);
         assert_int_equal(error.need, noh_morph_layers_size(&f.meshes[0]));
     }
     expect_untouched(&g);
@@ -228,8 +229,7 @@ static void expect_one_byte_less_refused(const gpu *g, const noh_gl_morph_desc *
     memset(&ledger, 0, sizeof ledger);
     before = ledger;
     assert_int_equal(noh_gl_morph_init(block.block, block.bytes - 1,
-                                       &(noh_gl_device){ &g->gl, &g->caps, &ledger, NULL, 0 }, desc, &morph,
-                                       &error),
+                                       &(noh_gl_device){ &g->gl, &g->caps, &ledger, NULL, 0 }, desc, &morph, &error),
                      NOH_ERR_MEMORY);
     assert_int_equal(error.need, plan->cpu_bytes);
     assert_null(morph);
@@ -246,7 +246,8 @@ static void set_all_and_update(noh_gl_morph *morph, const noh_gl_morph_desc *des
         for (uint32_t k = 0; k < count; k++) {
             float weights[NOH_TARGETS_MAX];
             test_random_weights(&r, weights, desc->meshes[i].header->target_count);
-            assert_int_equal(noh_gl_morph_set_weights(morph, noh_gl_morph_instance(morph, i, k), weights, NULL), NOH_OK);
+            assert_int_equal(noh_gl_morph_set_weights(morph, noh_gl_morph_instance(morph, i, k), weights, NULL),
+                             NOH_OK);
         }
     }
     noh_gl_morph_update(morph, NULL);
@@ -259,9 +260,9 @@ static void expect_exact_size_works(const gpu *g, const noh_gl_morph_desc *desc,
     noh_gl_ledger ledger;
     noh_gl_morph *morph = NULL;
     memset(&ledger, 0, sizeof ledger);
-    assert_int_equal(noh_gl_morph_init(block.block, block.bytes,
-                                       &(noh_gl_device){ &g->gl, &g->caps, &ledger, NULL, 0 }, desc, &morph,
-                                       NULL), NOH_OK);
+    assert_int_equal(noh_gl_morph_init(block.block, block.bytes, &(noh_gl_device){ &g->gl, &g->caps, &ledger, NULL, 0 },
+                                       desc, &morph, NULL),
+                     NOH_OK);
     assert_int_equal(noh_gl_ledger_bytes(&ledger), plan->gpu_bytes);
     assert_int_equal(plan->gpu_bytes, plan->delta_bytes + plan->table_bytes + plan->stream_bytes + plan->layer_bytes);
     for (uint64_t seed = 1; seed <= 3; seed++) {
@@ -323,12 +324,13 @@ static void misaligned_or_no_memory_is_refused(void **state)
     block = guarded_new((size_t)plan.cpu_bytes + 16);
     for (size_t shift = 1; shift < 16; shift++) {
         assert_int_equal(noh_gl_morph_init(block.block + shift, (size_t)plan.cpu_bytes,
-                                           &(noh_gl_device){ &g->gl, &g->caps, &g->ledger, NULL, 0 }, &desc,
-                                           &morph, NULL), NOH_ERR_ARG);
+                                           &(noh_gl_device){ &g->gl, &g->caps, &g->ledger, NULL, 0 }, &desc, &morph,
+                                           NULL),
+                         NOH_ERR_ARG);
     }
-    assert_int_equal(noh_gl_morph_init(NULL, 1u << 30,
-                                       &(noh_gl_device){ &g->gl, &g->caps, &g->ledger, NULL, 0 }, &desc,
-                                       &morph, NULL), NOH_ERR_ARG);
+    assert_int_equal(noh_gl_morph_init(NULL, 1u << 30, &(noh_gl_device){ &g->gl, &g->caps, &g->ledger, NULL, 0 }, &desc,
+                                       &morph, NULL),
+                     NOH_ERR_ARG);
     expect_untouched(&block);
     guarded_free(&block);
     fixture_meshes_close(&f);
@@ -374,7 +376,8 @@ static noh_gl_caps imagined_caps(void)
     noh_gl_caps caps;
     memset(&caps, 0, sizeof caps);
     caps.texture_size_max = 4096;
-    caps.mrt3 = caps.render_f32 = caps.render_f16 = caps.render_u32 = caps.blend_f32 = caps.blend_f16 = caps.layered = 1;
+    caps.mrt3 = caps.render_f32 = caps.render_f16 = caps.render_u32 = caps.blend_f32 = caps.blend_f16 = caps.layered =
+        1;
     return caps;
 }
 
@@ -416,7 +419,8 @@ static void instance_counts_have_a_limit(void **state)
 {
     const noh_gl_caps caps = imagined_caps();
     const fixture_way automatic = { NOH_MORPH_AUTO, NOH_ACCUMULATE_AUTO };
-    const uint32_t none[] = { 0, 0, 0 }, many[] = { 1, NOH_MORPH_INSTANCES_MAX, 0 }, wrap[] = { 0xffffffffu, 0xffffffffu, 3 };
+    const uint32_t none[] = { 0, 0, 0 }, many[] = { 1, NOH_MORPH_INSTANCES_MAX, 0 },
+                   wrap[] = { 0xffffffffu, 0xffffffffu, 3 };
     fixture_meshes f;
     noh_gl_morph_desc desc;
     (void)state;
@@ -453,7 +457,8 @@ static void tiles_have_to_fit_a_texture(void **state)
         count++;
     }
     /* tiles may lie a little apart, but not by a whole tile */
-    assert_in_range(count, columns * (64u / (f.meshes[0].header->morph_height + 3u)), columns * (64u / f.meshes[0].header->morph_height) + 1u);
+    assert_in_range(count, columns * (64u / (f.meshes[0].header->morph_height + 3u)),
+                    columns * (64u / f.meshes[0].header->morph_height) + 1u);
     expect_plan(&desc, &caps, NOH_ERR_LIMIT, "do not fit");
     fixture_meshes_close(&f);
 }
@@ -520,7 +525,8 @@ static void expect_exact_view(const noh_clip_bank *set, size_t bytes)
     for (uint32_t m = 0; m < set->clips.clip_count; m++) {
         const uint32_t duration = set->clips.clips[m].duration_ticks;
         for (uint32_t i = 0; i <= 100; i++) {
-            view->clips.sample(view->clips.user, m, duration / 100u * i, set->clips.joint_count, pose, set->clips.float_count, floats);
+            view->clips.sample(view->clips.user, m, duration / 100u * i, set->clips.joint_count, pose,
+                               set->clips.float_count, floats);
         }
     }
     expect_canaries(&g);
@@ -622,8 +628,8 @@ static void pictures_and_the_renderer_take_what_they_say(void **state)
     assert_int_equal(noh_pack_texture_at(&pack, 0, &texture, NULL), NOH_OK);
     assert_int_equal(noh_gl_picture_create(&g->gl, &ledger, &texture, &picture, NULL), NOH_OK);
     assert_int_equal(noh_gl_ledger_bytes(&ledger), noh_gl_picture_bytes(&texture));
-    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, NULL, 0 }, &desc,
-                                            &renderer, NULL), NOH_OK);
+    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, NULL, 0 }, &desc, &renderer, NULL),
+                     NOH_OK);
     assert_int_equal(noh_gl_ledger_bytes(&ledger), noh_gl_picture_bytes(&texture) + NOH_GL_RENDERER_BYTES);
     noh_gl_renderer_delete(&renderer);
     noh_gl_texture_delete(&g->gl, &ledger, &picture);

@@ -15,7 +15,10 @@
 static void put_skeleton(FILE *f, const char *names)
 {
     const size_t count = strlen(names);
-    fprintf(f, "HIERARCHY\nROOT %c\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n", names[0]);
+    fprintf(
+        f,
+        "HIERARCHY\nROOT %c\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n",
+        names[0]);
     for (size_t j = 1; j < count; j++) {
         fprintf(f, "JOINT %c\n{\nOFFSET 0 10 0\nCHANNELS 3 Zrotation Xrotation Yrotation\n", names[j]);
     }
@@ -129,7 +132,8 @@ void clip_player_open(clip_player *p, noh_clip_bank *set)
     p->pose = test_zeros(sizeof *p->pose * set->clips.joint_count);
     p->floats = test_zeros(sizeof *p->floats * set->clips.float_count);
     assert_int_equal(noh_controller_init(p->memory, bytes, &desc, &p->c, NULL), NOH_OK);
-    assert_int_equal(noh_pose_scratch_init(p->scratch_memory, scratch_bytes, &set->clips, 0, &p->scratch, NULL), NOH_OK);
+    assert_int_equal(noh_pose_scratch_init(p->scratch_memory, scratch_bytes, &set->clips, 0, &p->scratch, NULL),
+                     NOH_OK);
 }
 
 void clip_player_close(clip_player *p)

@@ -23,7 +23,9 @@ typedef struct fixture {
 
 /* ---- clip ---- */
 
-typedef struct fixture_rng { uint32_t state; } fixture_rng;
+typedef struct fixture_rng {
+    uint32_t state;
+} fixture_rng;
 
 static inline double fixture_random(fixture_rng *r)
 {
@@ -40,12 +42,22 @@ static inline void fixture_axis_angle(float q[4], double x, double y, double z, 
     q[3] = (float)cos(angle / 2.0);
 }
 
-static inline float *fixture_rotation(raw_clip *c, uint32_t frame, uint32_t joint) { return c->rotations + ((size_t)frame * c->joint_count + joint) * 4u; }
-static inline float *fixture_translation(raw_clip *c, uint32_t frame, uint32_t joint) { return c->translations + ((size_t)frame * c->joint_count + joint) * 3u; }
-static inline float *fixture_scale(raw_clip *c, uint32_t frame, uint32_t joint) { return c->scales + ((size_t)frame * c->joint_count + joint) * 3u; }
+static inline float *fixture_rotation(raw_clip *c, uint32_t frame, uint32_t joint)
+{
+    return c->rotations + ((size_t)frame * c->joint_count + joint) * 4u;
+}
+static inline float *fixture_translation(raw_clip *c, uint32_t frame, uint32_t joint)
+{
+    return c->translations + ((size_t)frame * c->joint_count + joint) * 3u;
+}
+static inline float *fixture_scale(raw_clip *c, uint32_t frame, uint32_t joint)
+{
+    return c->scales + ((size_t)frame * c->joint_count + joint) * 3u;
+}
 
 /* A chain or tree (branch > 1) of joints `bone` apart, standing still in its bind pose. */
-static inline raw_set *fixture_still(uint32_t joints, uint32_t frames, uint32_t branch, float bone, double sample_rate_hz)
+static inline raw_set *fixture_still(uint32_t joints, uint32_t frames, uint32_t branch, float bone,
+                                     double sample_rate_hz)
 {
     raw_set *set = raw_set_new(joints, 1);
     raw_clip *c;
@@ -70,16 +82,19 @@ static inline raw_set *fixture_still(uint32_t joints, uint32_t frames, uint32_t 
 }
 
 /* Every joint swings about an axis of its own, `swing` radians wide; joint 0 walks. */
-static inline raw_set *fixture_swing(uint32_t joints, uint32_t frames, uint32_t branch, float bone, double swing, double walk)
+static inline raw_set *fixture_swing(uint32_t joints, uint32_t frames, uint32_t branch, float bone, double swing,
+                                     double walk)
 {
     raw_set *set = fixture_still(joints, frames, branch, bone, 30.0);
     fixture_rng r = { 7 };
     for (uint32_t j = 0; set && j < joints; j++) {
-        const double x = fixture_random(&r) - 0.5, y = fixture_random(&r) - 0.5, z = fixture_random(&r) - 0.5, phase = 6.0 * fixture_random(&r);
+        const double x = fixture_random(&r) - 0.5, y = fixture_random(&r) - 0.5, z = fixture_random(&r) - 0.5,
+                     phase = 6.0 * fixture_random(&r);
         const double speed = 0.05 + 0.15 * fixture_random(&r);
         for (uint32_t f = 0; f < frames; f++) {
             raw_clip *c = &set->clips[0];
-            fixture_axis_angle(fixture_rotation(c, f, j), x, y, z, swing * sin(speed * (double)f + phase) + 0.2 * swing * sin(3.1 * speed * (double)f));
+            fixture_axis_angle(fixture_rotation(c, f, j), x, y, z,
+                               swing * sin(speed * (double)f + phase) + 0.2 * swing * sin(3.1 * speed * (double)f));
             if (j == 0) {
                 fixture_translation(c, f, 0)[0] += (float)(walk * (double)f);
                 fixture_translation(c, f, 0)[1] += (float)(0.03 * walk * sin(0.7 * (double)f));

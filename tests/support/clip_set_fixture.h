@@ -48,7 +48,8 @@ static inline void scene_joint(uint32_t clip, double s, uint32_t joint, noh_tran
     }
 }
 
-static inline void scene_sample(void *user, uint32_t clip, uint32_t tick, uint32_t joints, noh_transform *pose, uint32_t floats, float *values)
+static inline void scene_sample(void *user, uint32_t clip, uint32_t tick, uint32_t joints, noh_transform *pose,
+                                uint32_t floats, float *values)
 {
     scene *s = user;
     uint32_t duration = s->clips[clip].duration_ticks;
@@ -62,7 +63,8 @@ static inline void scene_sample(void *user, uint32_t clip, uint32_t tick, uint32
 static inline void scene_open(scene *s)
 {
     static const uint32_t durations[CLIPS] = { 48000, 30000, 24000, 96000, 36000, 0 };
-    static const uint32_t loops[CLIPS] = { NOH_LOOP_REPEAT, NOH_LOOP_REPEAT, NOH_LOOP_PING_PONG, NOH_LOOP_REPEAT, NOH_LOOP_ONCE, NOH_LOOP_ONCE };
+    static const uint32_t loops[CLIPS] = { NOH_LOOP_REPEAT, NOH_LOOP_REPEAT, NOH_LOOP_PING_PONG,
+                                           NOH_LOOP_REPEAT, NOH_LOOP_ONCE,   NOH_LOOP_ONCE };
     memset(s, 0, sizeof *s);
     for (uint32_t m = 0; m < CLIPS; m++) {
         s->clips[m].name_hash = 100u + m;

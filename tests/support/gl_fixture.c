@@ -113,8 +113,7 @@ void fixture_morph_open(fixture_morph *m, const noh_gl_morph_desc *desc, const n
     }
     m->memory = test_aligned(NULL, (size_t)m->plan.cpu_bytes);
     if (noh_gl_morph_init(m->memory, (size_t)m->plan.cpu_bytes,
-                          &(noh_gl_device){ &g->gl, &m->caps, &m->ledger, log, sizeof log }, desc, &m->morph,
-                          &error)) {
+                          &(noh_gl_device){ &g->gl, &m->caps, &m->ledger, log, sizeof log }, desc, &m->morph, &error)) {
         fail_msg("init: %s\n%s", error.what, log);
     }
     m->weights = test_zeros(sizeof *m->weights * m->plan.instance_count);
@@ -178,7 +177,9 @@ float *fixture_reference(const fixture_morph *m, uint32_t instance, int *exact)
     const noh_mesh view = fixture_view_of(m, instance), *mesh = &view;
     noh_morph_layers layers = test_layers(mesh);
     int blended = m->plan.path != NOH_MORPH_CPU && m->plan.path != NOH_MORPH_GATHER;
-    noh_half_mode mode = blended ? m->caps.f16_blend_mode : m->plan.path == NOH_MORPH_CPU ? NOH_HALF_RNE : m->caps.f16_store_mode;
+    noh_half_mode mode = blended                         ? m->caps.f16_blend_mode
+                         : m->plan.path == NOH_MORPH_CPU ? NOH_HALF_RNE
+                                                         : m->caps.f16_store_mode;
     float *block = layers.position; /* never NULL, even for no texels */
     if (m->plan.accumulate == NOH_ACCUMULATE_F32) {
         noh_morph_accumulate_scalar(mesh, m->weights[instance], &layers);
@@ -194,7 +195,8 @@ float *fixture_reference(const fixture_morph *m, uint32_t instance, int *exact)
     return block;
 }
 
-static void compare_layers(const fixture_morph *m, uint32_t instance, const float *got, const float *expected, int exact)
+static void compare_layers(const fixture_morph *m, uint32_t instance, const float *got, const float *expected,
+                           int exact)
 {
     const noh_mesh view = fixture_view_of(m, instance), *mesh = &view;
     size_t texels = (size_t)mesh->header->morph_height << mesh->header->morph_width_log2;
@@ -249,7 +251,8 @@ void fixture_frame_open(fixture_frame *f, uint32_t side)
     memset(f, 0, sizeof *f);
     f->side = side;
     assert_int_equal(noh_gl_renderbuffer_create(gl, &f->ledger, GL_RGBA8, side, side, 0, &f->color, NULL), NOH_OK);
-    assert_int_equal(noh_gl_renderbuffer_create(gl, &f->ledger, GL_DEPTH_COMPONENT24, side, side, 0, &f->depth, NULL), NOH_OK);
+    assert_int_equal(noh_gl_renderbuffer_create(gl, &f->ledger, GL_DEPTH_COMPONENT24, side, side, 0, &f->depth, NULL),
+                     NOH_OK);
     assert_int_equal(noh_gl_framebuffer_create(gl, &f->ledger, &f->framebuffer, NULL), NOH_OK);
     gl->BindFramebuffer(GL_FRAMEBUFFER, f->framebuffer);
     gl->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, f->color.name);

@@ -46,7 +46,7 @@ typedef struct fixture_morph {
     noh_gl_morph *morph;
     noh_gl_ledger ledger;
     const noh_gl_morph_desc *desc;
-    float **weights; /* [instance], what was set last */
+    float **weights;  /* [instance], what was set last */
     uint32_t *levels; /* [instance], likewise */
 } fixture_morph;
 void fixture_morph_open(fixture_morph *m, const noh_gl_morph_desc *desc, const noh_gl_caps *caps);

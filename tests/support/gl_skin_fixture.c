@@ -215,7 +215,8 @@ noh_vertex *fixture_skin_reference(const fixture_skin *f, uint32_t instance)
     return vertices;
 }
 
-readback_vertex *fixture_skin_read(const fixture_skin *f, uint32_t mesh, uint32_t copy, uint32_t influences, uint32_t crowd)
+readback_vertex *fixture_skin_read(const fixture_skin *f, uint32_t mesh, uint32_t copy, uint32_t influences,
+                                   uint32_t crowd)
 {
     uint32_t instance = noh_gl_skin_instance(f->skin, mesh, copy);
     noh_gl_morph_binding morph = noh_gl_morph_binding_of(f->morph.morph, instance);

@@ -13,7 +13,7 @@ const noh_pack *fixture_skinned_pack(const char *asset, const skin_options *opti
 typedef struct fixture_skin_desc {
     const char *asset;
     skin_options options;
-    uint32_t copies;        /* instances of each mesh; 0: 1 */
+    uint32_t copies; /* instances of each mesh; 0: 1 */
     noh_palette_mode mode;
 } fixture_skin_desc;
 
@@ -28,8 +28,8 @@ typedef struct fixture_skin {
     void *memory;
     noh_gl_skin_plan plan;
     noh_gl_skin *skin;
-    noh_gl_ledger ledger;   /* of skin and meshes; morph has its own */
-    float **matrices;       /* [instance], what was set last; NULL for rigid meshes */
+    noh_gl_ledger ledger; /* of skin and meshes; morph has its own */
+    float **matrices;     /* [instance], what was set last; NULL for rigid meshes */
 } fixture_skin;
 void fixture_skin_open(fixture_skin *f, const fixture_skin_desc *desc);
 void fixture_skin_close(fixture_skin *f);
@@ -42,7 +42,8 @@ noh_vertex *fixture_skin_reference(const fixture_skin *f, uint32_t instance);
 
 /* What the GPU makes of it, each vertex through the shader that draws: [crowd, at least 1][vertex_count], to be freed.
  * influences: as in noh_gl_skin_binding. crowd: as in readback_skinned. */
-readback_vertex *fixture_skin_read(const fixture_skin *f, uint32_t mesh, uint32_t copy, uint32_t influences, uint32_t crowd);
+readback_vertex *fixture_skin_read(const fixture_skin *f, uint32_t mesh, uint32_t copy, uint32_t influences,
+                                   uint32_t crowd);
 
 /* The largest distance of positions, and the diagonal of the reference's box. */
 typedef struct fixture_error {

@@ -352,15 +352,21 @@ static double component_at(const uint8_t *at, int component, int normalized)
     if (!normalized) {
         return (double)i;
     }
-    return component == 5120 ? fmax(i / 127.0, -1.0) : component == 5121 ? i / 255.0 : component == 5122 ? fmax(i / 32767.0, -1.0) : i / 65535.0;
+    return component == 5120   ? fmax(i / 127.0, -1.0)
+           : component == 5121 ? i / 255.0
+           : component == 5122 ? fmax(i / 32767.0, -1.0)
+                               : i / 65535.0;
 }
 
 static void read_sparse(const oracle *o, uint32_t accessor, uint32_t components, double *out)
 {
-    uint32_t sparse = member(o, accessor, "sparse"), indices = member(o, sparse, "indices"), values = member(o, sparse, "values");
+    uint32_t sparse = member(o, accessor, "sparse"), indices = member(o, sparse, "indices"),
+             values = member(o, sparse, "values");
     int component = (int)number(o, accessor, "componentType", 0), normalized = is_true(o, accessor, "normalized");
-    size_t size = component_bytes(component), stride = size * components, unused = 0, count = (size_t)number(o, sparse, "count", 0);
-    const uint8_t *index = view_at(o, indices, "bufferView", &unused), *from = view_at(o, values, "bufferView", &stride);
+    size_t size = component_bytes(component), stride = size * components, unused = 0,
+           count = (size_t)number(o, sparse, "count", 0);
+    const uint8_t *index = view_at(o, indices, "bufferView", &unused),
+                  *from = view_at(o, values, "bufferView", &stride);
     for (size_t i = 0; i < count; i++) {
         uint32_t at = index_at(index, i, (int)number(o, indices, "componentType", 0));
         for (uint32_t c = 0; c < components; c++) {
@@ -519,12 +525,14 @@ int oracle_channel_node(const oracle *o, uint32_t animation, uint32_t channel)
 double oracle_channel_end(const oracle *o, uint32_t animation, uint32_t channel)
 {
     uint32_t count;
-    const double *times = read_accessor(o, (uint32_t)number(o, sampler_at(o, animation, channel), "input", 0), 1, &count);
+    const double *times = read_accessor(o, (uint32_t)number(o, sampler_at(o, animation, channel), "input", 0), 1,
+                                        &count);
     return times[count - 1];
 }
 
 /* Keys k and k + 1 around the time, s between them; values[key][3][width] for splines. */
-static double interpolate(const double *values, uint32_t width, uint32_t i, uint32_t k, double s, double span, char kind)
+static double interpolate(const double *values, uint32_t width, uint32_t i, uint32_t k, double s, double span,
+                          char kind)
 {
     uint32_t stride = kind == 'C' ? 3 * width : width;
     const double *a = values + k * stride + i, *b = a + stride;
@@ -541,7 +549,8 @@ static double interpolate(const double *values, uint32_t width, uint32_t i, uint
 void oracle_sample(const oracle *o, uint32_t animation, uint32_t channel, double time, double *weights)
 {
     uint32_t sampler = sampler_at(o, animation, channel), keys, values, k = 0;
-    uint32_t width = oracle_target_count(o, (uint32_t)oracle_node_mesh(o, (uint32_t)oracle_channel_node(o, animation, channel)));
+    uint32_t width = oracle_target_count(
+        o, (uint32_t)oracle_node_mesh(o, (uint32_t)oracle_channel_node(o, animation, channel)));
     const char *kind = text(o, sampler, "interpolation");
     const double *times = read_accessor(o, (uint32_t)number(o, sampler, "input", 0), 1, &keys);
     const double *data = read_accessor(o, (uint32_t)number(o, sampler, "output", 0), 1, &values);
@@ -588,7 +597,8 @@ static void normalize4(double *q)
 }
 
 /* Appendix C of the specification, for width 3 or 4. */
-static void sample_transform(const oracle *o, uint32_t animation, uint32_t channel, double time, uint32_t width, double *out)
+static void sample_transform(const oracle *o, uint32_t animation, uint32_t channel, double time, uint32_t width,
+                             double *out)
 {
     uint32_t sampler = sampler_at(o, animation, channel), keys, values, k = 0;
     const char *kind = text(o, sampler, "interpolation");
@@ -639,7 +649,10 @@ void oracle_pose(const oracle *o, int animation, double time, double *locals)
         const char *path = text(o, target, "path");
         double *to = locals + 10 * (size_t)number(o, target, "node", 0);
         if (path[0] != 'w') {
-            sample_transform(o, (uint32_t)animation, c, time, path[0] == 'r' ? 4 : 3, to + (path[0] == 'r' ? 0 : path[0] == 't' ? 4 : 7));
+            sample_transform(o, (uint32_t)animation, c, time, path[0] == 'r' ? 4 : 3,
+                             to + (path[0] == 'r'   ? 0
+                                   : path[0] == 't' ? 4
+                                                    : 7));
         }
     }
 }
@@ -647,8 +660,9 @@ void oracle_pose(const oracle *o, int animation, double time, double *locals)
 static void local_matrix(const double *l, double *m)
 {
     double x = l[0], y = l[1], z = l[2], w = l[3];
-    const double r[9] = { 1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w),     2 * (x * y - z * w), 1 - 2 * (x * x + z * z),
-                          2 * (y * z + x * w),     2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y) };
+    const double r[9] = { 1 - 2 * (y * y + z * z), 2 * (x * y + z * w),     2 * (x * z - y * w),
+                          2 * (x * y - z * w),     1 - 2 * (x * x + z * z), 2 * (y * z + x * w),
+                          2 * (x * z + y * w),     2 * (y * z - x * w),     1 - 2 * (x * x + y * y) };
     for (int i = 0; i < 16; i++) {
         m[i] = i % 4 == 3 ? (i == 15) : i < 12 ? r[i / 4 * 3 + i % 4] * l[7 + i / 4] : l[4 + i - 12];
     }
@@ -658,7 +672,8 @@ static void multiply(const double *a, const double *b, double *out)
 {
     double m[16];
     for (int i = 0; i < 16; i++) {
-        m[i] = a[i % 4] * b[i / 4 * 4] + a[4 + i % 4] * b[i / 4 * 4 + 1] + a[8 + i % 4] * b[i / 4 * 4 + 2] + a[12 + i % 4] * b[i / 4 * 4 + 3];
+        m[i] = a[i % 4] * b[i / 4 * 4] + a[4 + i % 4] * b[i / 4 * 4 + 1] + a[8 + i % 4] * b[i / 4 * 4 + 2] +
+               a[12 + i % 4] * b[i / 4 * 4 + 3];
     }
     memcpy(out, m, sizeof m);
 }
@@ -695,7 +710,9 @@ int oracle_node_skin(const oracle *o, uint32_t node)
 static double *joint_matrices(const oracle *o, uint32_t skin, const double *worlds)
 {
     uint32_t s = top(o, "skins", skin), joints = member(o, s, "joints"), count = length(o, joints), unused;
-    const double *binds = member(o, s, "inverseBindMatrices") ? read_accessor(o, (uint32_t)number(o, s, "inverseBindMatrices", 0), 16, &unused) : NULL;
+    const double *binds = member(o, s, "inverseBindMatrices")
+                              ? read_accessor(o, (uint32_t)number(o, s, "inverseBindMatrices", 0), 16, &unused)
+                              : NULL;
     double *out = test_zeros(sizeof *out * 16 * count);
     for (uint32_t j = 0; j < count; j++) {
         const double *world = worlds + 16 * (size_t)o->values[element(o, joints, j)].number;
@@ -740,7 +757,8 @@ static void skin_points(const oracle *o, uint32_t attributes, uint32_t count, co
     free(sums);
 }
 
-void oracle_drawn(const oracle *o, uint32_t node, uint32_t primitive, const double *worlds, const double *weights, double *out)
+void oracle_drawn(const oracle *o, uint32_t node, uint32_t primitive, const double *worlds, const double *weights,
+                  double *out)
 {
     uint32_t mesh = (uint32_t)oracle_node_mesh(o, node), count = oracle_vertex_count(o, mesh, primitive);
     int skin = oracle_node_skin(o, node);

@@ -49,6 +49,7 @@ void oracle_worlds(const oracle *o, const double *locals, double *worlds);
 int oracle_node_skin(const oracle *o, uint32_t node); /* or -1 */
 /* The positions of a primitive as the node draws it in the world: morphed, then skinned (the weights made to sum to
  * 1) or moved by the node: out[vertex_count][3]. */
-void oracle_drawn(const oracle *o, uint32_t node, uint32_t primitive, const double *worlds, const double *weights, double *out);
+void oracle_drawn(const oracle *o, uint32_t node, uint32_t primitive, const double *worlds, const double *weights,
+                  double *out);
 
 #endif

@@ -13,15 +13,15 @@
 typedef struct maker {
     const noh_mesh *mesh;
     uint32_t level_count;
-    uint32_t *indices[NOH_LOD_LEVELS_MAX];      /* [index_count] */
+    uint32_t *indices[NOH_LOD_LEVELS_MAX]; /* [index_count] */
     uint32_t index_count[NOH_LOD_LEVELS_MAX];
     noh_submesh *submeshes[NOH_LOD_LEVELS_MAX]; /* [submesh_count] */
-    uint32_t *order, *place;                /* new to old, old to new */
+    uint32_t *order, *place;                    /* new to old, old to new */
     uint32_t vertex_count[NOH_LOD_LEVELS_MAX];
-    uint32_t *texel;                        /* old texel to new */
+    uint32_t *texel; /* old texel to new */
     uint32_t touched_count[NOH_LOD_LEVELS_MAX];
-    uint32_t (*words)[3];                   /* one target's deltas, by new texel */
-    noh_target *targets[NOH_LOD_LEVELS_MAX];    /* [target_count] */
+    uint32_t (*words)[3];                    /* one target's deltas, by new texel */
+    noh_target *targets[NOH_LOD_LEVELS_MAX]; /* [target_count] */
     byte_buffer rects, texels;
 } maker;
 
@@ -155,7 +155,8 @@ static void put_runs(maker *m, uint32_t from, uint32_t to, noh_target *t)
     const uint32_t log2 = m->mesh->header->morph_width_log2, width = 1u << log2;
     for (uint32_t i = from; i < to;) {
         uint32_t end = i;
-        while (end < to && end >> log2 == i >> log2 && (moves(m, end) || (end > i && end + 1 < to && moves(m, end + 1)))) {
+        while (end < to && end >> log2 == i >> log2 &&
+               (moves(m, end) || (end > i && end + 1 < to && moves(m, end + 1)))) {
             t->pair_count += (uint32_t)moves(m, end);
             end++;
         }
@@ -238,7 +239,9 @@ static void put_vertices(const maker *m, noh_mesh_header *h, byte_buffer *out)
     for (uint32_t v = 0; v < old->vertex_count; v++) {
         const uint32_t texel = noh_mesh_accumulation_texel(m->mesh, m->order[v]);
         const uint32_t word = texel < old->touched_count ? m->texel[texel] : NOH_TEXEL_NONE;
-        const uint32_t palette = old->palette_count > 1 ? noh_mesh_palette(m->mesh, m->order[v]) << NOH_TEXEL_VERTEX_BITS : 0;
+        const uint32_t palette = old->palette_count > 1
+                                     ? noh_mesh_palette(m->mesh, m->order[v]) << NOH_TEXEL_VERTEX_BITS
+                                     : 0;
         const uint32_t kept = word | palette;
         buffer_append(out, m->mesh->attributes + (size_t)old->attribute_stride * m->order[v], h->attribute_stride - 4u);
         buffer_append(out, &kept, 4);

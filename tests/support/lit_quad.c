@@ -10,8 +10,8 @@
 #include "draw/camera.h"
 #include "gpu/canvas.h"
 
-/* Half a turn about y with a scale that differs by axis; the camera looks along +z, and from x and y the scales are taken
- * out again, so that the quad fills the picture. */
+/* Half a turn about y with a scale that differs by axis; the camera looks along +z, and from x and y the scales are
+ * taken out again, so that the quad fills the picture. */
 lit_quad lit_quad_of(void)
 {
     const float scale[3] = { 0.5f, 2.0f, 1.0f }, key[3] = { 0.95f, -0.2f, -0.24f };
@@ -123,7 +123,9 @@ static void draw(gpu *g, const lit_quad *q, const noh_pack *pack, noh_gl_ledger 
         assert_int_equal(noh_gl_picture_create(&g->gl, ledger, &texture, &pictures[i], NULL), NOH_OK);
     }
     assert_int_equal(noh_gl_mesh_create(&g->gl, ledger, &mesh, &drawn, NULL), NOH_OK);
-    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, ledger, log, sizeof log }, &desc, &renderer, NULL), NOH_OK);
+    assert_int_equal(
+        noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, ledger, log, sizeof log }, &desc, &renderer, NULL),
+        NOH_OK);
     noh_gl_draw_begin(&renderer, &q->camera);
     noh_gl_draw_mesh(&renderer, &drawn, q->world, NULL, NULL, NULL, pictures, pass);
     noh_gl_draw_end(&renderer);
@@ -225,7 +227,8 @@ static cosines cosines_of(const lit_quad *q, const double n[3], const double at[
 
 static double shade(const lit_quad *q, const cosines *c, int i)
 {
-    static const double warm[3] = { 1.02, 0.98, 0.92 }, ground[3] = { 0.23, 0.20, 0.18 }, above[3] = { 0.50, 0.54, 0.60 };
+    static const double warm[3] = { 1.02, 0.98, 0.92 }, ground[3] = { 0.23, 0.20, 0.18 },
+                        above[3] = { 0.50, 0.54, 0.60 };
     const double albedo = (double)q->base[i], metallic = (double)q->metallic, rough = (double)q->roughness;
     const double f0 = 0.04 + (albedo - 0.04) * metallic, sky = ground[i] + (above[i] - ground[i]) * c->up;
     double color = albedo * (1.0 - metallic) * (warm[i] * c->wrapped * fabs(c->wrapped) + 0.62 * sky);
@@ -238,14 +241,17 @@ void lit_quad_pixel(const lit_quad *q, uint32_t column, lit_quad_normals by, int
 {
     const float screen = (2.0f * (float)column + 1.0f) / (float)LIT_QUAD_SIDE - 1.0f;
     const float x = screen / (q->camera.view_projection[0] * q->world[0]);
-    const double at[3] = { (double)(q->world[0] * x), 0.0, 0.0 }, determinant = (double)(q->world[0] * q->world[5] * q->world[10]);
+    const double at[3] = { (double)(q->world[0] * x), 0.0, 0.0 },
+                 determinant = (double)(q->world[0] * q->world[5] * q->world[10]);
     float normal[3];
     double n[3];
     cosines c;
     quad_normal(x, normal);
     for (int i = 0; i < 3; i++) { /* NOT_UNIT: by the cofactors, as long as they leave it */
         const double axis = (double)q->world[5 * i];
-        n[i] = (double)normal[i] * (by == NORMALS_BY_MATRIX ? axis : by == NORMALS_BY_NOTHING ? 1.0 : fabs(determinant) / axis);
+        n[i] = (double)normal[i] * (by == NORMALS_BY_MATRIX    ? axis
+                                    : by == NORMALS_BY_NOTHING ? 1.0
+                                                               : fabs(determinant) / axis);
     }
     for (int i = 0; q->world[10] > 0.0f && i < 3; i++) { /* seen from behind: its other side's */
         n[i] = -n[i];

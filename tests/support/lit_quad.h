@@ -1,15 +1,16 @@
 /* lit_quad.h: one quad drawn by the plain renderer, and what its pixels have to be, in closed form.
  *
- * The quad fills a square picture. Its normals differ much from corner to corner, so that one that is not made unit again
- * shows; it is turned half round and scaled by another factor along each axis, so that one that is turned wrongly shows. */
+ * The quad fills a square picture. Its normals differ much from corner to corner, so that one that is not made unit
+ * again shows; it is turned half round and scaled by another factor along each axis, so that one that is turned wrongly
+ * shows. */
 #ifndef NOH_TESTS_SUPPORT_LIT_QUAD_H
 #define NOH_TESTS_SUPPORT_LIT_QUAD_H
 
 #include "gpu/gpu.h"
 #include "convert/model/model.h"
 
-#define LIT_QUAD_SIDE 33u   /* pixels of the picture's side */
-#define LIT_QUAD_CLOSE 1.5  /* of 255: what rounding may leave between a pixel and its closed form */
+#define LIT_QUAD_SIDE 33u  /* pixels of the picture's side */
+#define LIT_QUAD_CLOSE 1.5 /* of 255: what rounding may leave between a pixel and its closed form */
 
 typedef struct lit_quad {
     float world[12];
@@ -17,9 +18,10 @@ typedef struct lit_quad {
     float base[4], metallic, roughness, cutoff;
     model_alpha alpha;
     int double_sided, unlit;
-    const float *uv;     /* [4][2] or NULL; corners at (-1, -1), (1, -1), (-1, 1), (1, 1) */
-    const float *color;  /* [4][4] or NULL */
-    const uint8_t *picture; /* [2][4]: a texture of two texels beside each other, the second of the pack's two; or NULL */
+    const float *uv;    /* [4][2] or NULL; corners at (-1, -1), (1, -1), (-1, 1), (1, 1) */
+    const float *color; /* [4][4] or NULL */
+    /* [2][4]: a texture of two texels beside each other, the second of the pack's two; or NULL */
+    const uint8_t *picture;
 } lit_quad;
 
 /* Opaque, half metal, without UVs, colours and texture. */
@@ -35,7 +37,12 @@ const uint8_t *lit_quad_at(const uint8_t *rgba, uint32_t column);
 int lit_quad_is_background(const uint8_t *pixel);
 
 /* How normals come to the light; only the first is right. */
-typedef enum lit_quad_normals { NORMALS_BY_INVERSE_TRANSPOSE, NORMALS_BY_MATRIX, NORMALS_BY_NOTHING, NORMALS_NOT_UNIT } lit_quad_normals;
+typedef enum lit_quad_normals {
+    NORMALS_BY_INVERSE_TRANSPOSE,
+    NORMALS_BY_MATRIX,
+    NORMALS_BY_NOTHING,
+    NORMALS_NOT_UNIT
+} lit_quad_normals;
 
 /* mesh.frag's light on a column of the middle row, in sRGB 0..255. world has to be diagonal.
  * held: what faces away from the light takes none; 0: as the source has it */

@@ -24,6 +24,7 @@ typedef struct face_target {
     double at[3], reach, height;
 } face_target;
 
+/* clang-format off */
 static const face_target face_targets[LOD_FACE_TARGETS] = {
     { "smileLeft", { 0.5, -0.3, 0.8 }, 0.6, 0.2 },   { "smileRight", { -0.5, -0.3, 0.8 }, 0.6, 0.2 },
     { "blink.l", { 0.4, 0.3, 0.85 }, 0.35, -0.1 },   { "blink.r", { -0.4, 0.3, 0.85 }, 0.35, -0.1 },
@@ -32,6 +33,7 @@ static const face_target face_targets[LOD_FACE_TARGETS] = {
     { "cheekPuffRight", { -0.7, -0.1, 0.7 }, 0.5, 0.25 }, { "sneerL", { 0.2, 0.1, 0.97 }, 0.3, 0.1 },
     { "sneerR", { -0.2, 0.1, 0.97 }, 0.3, 0.1 },     { "pucker", { 0.0, -0.3, 0.95 }, 0.45, 0.15 }
 };
+/* clang-format on */
 
 static void allocate_face(model_mesh *mesh, const lod_face *face)
 {
@@ -55,7 +57,8 @@ static void add_ball(model_mesh *mesh, uint32_t first, uint32_t columns, uint32_
 {
     for (uint32_t i = 0; i < (columns + 1u) * (rows + 1u); i++) {
         const uint32_t x = i % (columns + 1u), y = i / (columns + 1u), v = first + i;
-        const double turn = 2.0 * PI * (x % columns) / columns, fall = PI * y / rows, around = y % rows ? sin(fall) : 0.0;
+        const double turn = 2.0 * PI * (x % columns) / columns, fall = PI * y / rows,
+                     around = y % rows ? sin(fall) : 0.0;
         const double n[3] = { around * sin(turn), cos(fall), around * cos(turn) };
         const double grown = radius * (1.0 + bumps * sin(7.0 * n[0] + 1.0) * sin(6.0 * n[1]) * cos(5.0 * n[2]));
         for (uint32_t c = 0; c < 3u; c++) {

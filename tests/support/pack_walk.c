@@ -84,7 +84,8 @@ static void walk_textures(walk *w)
     for (uint32_t i = 0; i < w->pack->material_count; i++) {
         const noh_material *m = &w->pack->materials[i];
         eat_name(w, noh_pack_string(w->pack, m->name));
-        if (m->base_color_texture != NOH_NONE && noh_pack_texture_at(w->pack, m->base_color_texture, &t, NULL) != NOH_OK) {
+        if (m->base_color_texture != NOH_NONE &&
+            noh_pack_texture_at(w->pack, m->base_color_texture, &t, NULL) != NOH_OK) {
             abort(); /* the checker promised that it is there */
         }
     }
@@ -231,7 +232,8 @@ static void walk_plans(walk *w, const noh_mesh *meshes, uint32_t count)
     memset(&caps, 0, sizeof caps);
     memset(&desc, 0, sizeof desc);
     caps.texture_size_max = 4096;
-    caps.mrt3 = caps.render_f32 = caps.render_f16 = caps.render_u32 = caps.blend_f32 = caps.blend_f16 = caps.layered = 1;
+    caps.mrt3 = caps.render_f32 = caps.render_f16 = caps.render_u32 = caps.blend_f32 = caps.blend_f16 = caps.layered =
+        1;
     desc.meshes = meshes;
     desc.mesh_count = count;
     for (int i = 0; i < NOH_MORPH_PATH_COUNT * 2; i++) {
@@ -246,7 +248,8 @@ static void walk_plans(walk *w, const noh_mesh *meshes, uint32_t count)
 
 static void walk_level(walk *w, const noh_mesh *level)
 {
-    static const accumulate_function ways[] = { noh_morph_accumulate, noh_morph_accumulate_scalar, accumulate_rne, accumulate_rtz };
+    static const accumulate_function ways[] = { noh_morph_accumulate, noh_morph_accumulate_scalar, accumulate_rne,
+                                                accumulate_rtz };
     walk_vertices(w, level);
     walk_targets(w, level);
     walk_influences(w, level);

@@ -30,7 +30,8 @@ static inline void raw_play_frame(const raw_clip *c, uint32_t frame, uint32_t co
     }
 }
 
-static inline void raw_play_sample(void *user, uint32_t clip, uint32_t tick, uint32_t joints, noh_transform *pose, uint32_t floats, float *values)
+static inline void raw_play_sample(void *user, uint32_t clip, uint32_t tick, uint32_t joints, noh_transform *pose,
+                                   uint32_t floats, float *values)
 {
     const raw_clip *c = &((raw_play *)user)->raw->clips[0];
     double at = (double)tick / 48000.0 * c->sample_rate_hz;

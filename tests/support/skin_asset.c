@@ -68,7 +68,8 @@ static skin_source *sources_of(const oracle *o, const model *before, const model
     return out;
 }
 
-static uint8_t *pack_of(model *m, const skin_options *options, float error_um, int clips, size_t *count, uint32_t **orders)
+static uint8_t *pack_of(model *m, const skin_options *options, float error_um, int clips, size_t *count,
+                        uint32_t **orders)
 {
     static const skin_options none;
     model_clips *made;
@@ -154,7 +155,8 @@ static void measure(skin_asset *a)
     oracle_worlds(a->o, locals, worlds);
     for (uint32_t i = 0; i < a->pack.mesh_count; i++) {
         noh_mesh mesh = test_mesh(&a->pack, i);
-        double *weights = test_zeros(sizeof *weights * (mesh.header->target_count + 1u)), *out = test_zeros(sizeof *out * 3 * mesh.header->vertex_count);
+        double *weights = test_zeros(sizeof *weights * (mesh.header->target_count + 1u)),
+               *out = test_zeros(sizeof *out * 3 * mesh.header->vertex_count);
         skin_asset_expected(a, i, worlds, weights, out);
         for (size_t k = 0; k < 3 * (size_t)mesh.header->vertex_count; k++) {
             low[k % 3] = fmin(low[k % 3], out[k]);
@@ -163,7 +165,8 @@ static void measure(skin_asset *a)
         free(out);
         free(weights);
     }
-    a->size = sqrt((high[0] - low[0]) * (high[0] - low[0]) + (high[1] - low[1]) * (high[1] - low[1]) + (high[2] - low[2]) * (high[2] - low[2]));
+    a->size = sqrt((high[0] - low[0]) * (high[0] - low[0]) + (high[1] - low[1]) * (high[1] - low[1]) +
+                   (high[2] - low[2]) * (high[2] - low[2]));
     free(locals);
     free(worlds);
 }
@@ -202,7 +205,8 @@ void skin_asset_expected(const skin_asset *a, uint32_t mesh, const double *world
         }
         node = first->node;
         primitive = first->primitive;
-        drawn = test_zeros(sizeof *drawn * 3 * oracle_vertex_count(a->o, (uint32_t)oracle_node_mesh(a->o, node), primitive));
+        drawn = test_zeros(sizeof *drawn * 3 *
+                           oracle_vertex_count(a->o, (uint32_t)oracle_node_mesh(a->o, node), primitive));
         oracle_drawn(a->o, node, primitive, worlds, weights, drawn);
         for (uint32_t v = start; v < m.header->vertex_count; v++) {
             const skin_source *s = &a->sources[mesh][noh_mesh_accumulation_texel(&m, v)];
@@ -282,7 +286,8 @@ static void cylinder_vertex(const skin_cylinder *c, model_mesh *m, uint32_t v)
 {
     float turn = 6.2831853f * (float)(v % c->around) / (float)c->around, x = cosf(turn), z = sinf(turn);
     float height = c->length * (float)(v / c->around) / (float)(c->rings - 1u);
-    const float p[3] = { c->radius * x, height, c->radius * z }, n[3] = { x, 0.0f, z }, t[4] = { z, 0.0f, -x, v % 3 ? 1.0f : -1.0f };
+    const float p[3] = { c->radius * x, height, c->radius * z }, n[3] = { x, 0.0f, z },
+                t[4] = { z, 0.0f, -x, v % 3 ? 1.0f : -1.0f };
     memcpy(m->position + 3 * v, p, sizeof p);
     memcpy(m->normal + 3 * v, n, sizeof n);
     if (m->tangent) {

@@ -144,7 +144,8 @@ static void unit3(float v[3])
 
 static void fill_vertex(model_mesh *m, uint32_t v, uint32_t side, test_random *r)
 {
-    float n[3] = { test_random_float(r, -1.0f, 1.0f), test_random_float(r, -1.0f, 1.0f), test_random_float(r, 0.1f, 1.0f) };
+    float n[3] = { test_random_float(r, -1.0f, 1.0f), test_random_float(r, -1.0f, 1.0f),
+                   test_random_float(r, 0.1f, 1.0f) };
     unit3(n);
     m->position[3 * v] = (float)(v % side);
     m->position[3 * v + 1] = (float)(v / side);
@@ -363,7 +364,8 @@ static void encode_clip(model *m, model_clips **made, encoded_clips *encoded)
     model_error error;
     clips_settings settings;
     memset(&settings, 0, sizeof settings);
-    if (clips_from_model(m, NULL, made, &error) || clips_encode((*made)->sets, (*made)->set_count, &settings, encoded, &error)) {
+    if (clips_from_model(m, NULL, made, &error) ||
+        clips_encode((*made)->sets, (*made)->set_count, &settings, encoded, &error)) {
         fail_msg("%s (%s)", error.what, error.where);
     }
 }

@@ -18,13 +18,13 @@
 #include "convert/pack/pack_write.h"
 #include "noh.h"
 
-#define TEST_MAIN(tests, set_up, tear_down)                                          \
-    int main(int argument_count, char **arguments)                                   \
-    {                                                                                \
-        if (argument_count > 1) {                                                    \
-            cmocka_set_test_filter(arguments[1]);                                    \
-        }                                                                            \
-        return cmocka_run_group_tests((tests), (set_up), (tear_down));               \
+#define TEST_MAIN(tests, set_up, tear_down)                            \
+    int main(int argument_count, char **arguments)                     \
+    {                                                                  \
+        if (argument_count > 1) {                                      \
+            cmocka_set_test_filter(arguments[1]);                      \
+        }                                                              \
+        return cmocka_run_group_tests((tests), (set_up), (tear_down)); \
     }
 
 /* Print "SKIP: reason" and leave the test. */

@@ -76,7 +76,8 @@ static int find_input(const char *name)
         snprintf(path, sizeof path, "%s/%s", folders[i], name);
         text = read_file(path);
         if (!text) continue;
-        if (input_count == FILES_MAX || strlen(name) >= sizeof inputs[0].name) fail("%s: too many files, or too long a name", name);
+        if (input_count == FILES_MAX || strlen(name) >= sizeof inputs[0].name)
+            fail("%s: too many files, or too long a name", name);
         strcpy(inputs[input_count].name, name);
         inputs[input_count].text = text;
         return input_count++;
@@ -174,8 +175,9 @@ static int occurs(const char *text, const char *name)
 
 static void add_name(token t)
 {
-    static const char *const keywords[] = { "static", "const", "void", "int", "char", "float", "double", "struct", "enum", "union",
-                                            "typedef", "unsigned", "signed", "long", "short", "inline", "extern", "sizeof", "defined" };
+    static const char *const keywords[] = { "static", "const",  "void",   "int",     "char",     "float",  "double",
+                                            "struct", "enum",   "union",  "typedef", "unsigned", "signed", "long",
+                                            "short",  "inline", "extern", "sizeof",  "defined" };
     char name[NAME_MAX_CHARS];
     if (t.chars >= sizeof name) fail("too long a name: %.*s", (int)t.chars, t.at);
     memcpy(name, t.at, t.chars);
@@ -192,9 +194,9 @@ static void add_name(token t)
 /* Where a scan of declarations stands. */
 typedef struct {
     int braces, parens;
-    int in_enum;       /* its enumerators are file-scope names too */
-    int in_value;      /* between = and the ; or , that ends it */
-    int in_assert;     /* NOH_STATIC_ASSERT(condition, name) declares its last word */
+    int in_enum;   /* its enumerators are file-scope names too */
+    int in_value;  /* between = and the ; or , that ends it */
+    int in_assert; /* NOH_STATIC_ASSERT(condition, name) declares its last word */
     token before, before_that, last_name;
 } scan;
 
@@ -230,7 +232,8 @@ static void collect_names(const char *text)
             if (is_outside && !s.parens && token_is(t, "enum")) s.in_enum = 1;
             if (is_outside && !s.parens && token_is(t, "NOH_STATIC_ASSERT")) s.in_assert = 1;
             if (is_outside && !s.parens && strchr("([=;,{", sign)) add_name(t);
-            if (is_outside && s.parens == 1 && token_is(s.before, "*") && token_is(s.before_that, "(") && sign == ')') add_name(t);
+            if (is_outside && s.parens == 1 && token_is(s.before, "*") && token_is(s.before_that, "(") && sign == ')')
+                add_name(t);
             if (s.in_enum && s.braces == 1 && strchr(",=}", sign)) add_name(t);
             s.last_name = t;
         }
@@ -274,7 +277,8 @@ static int is_struct(token t)
 
 static void move_on(place *p, token t)
 {
-    if (t.kind == TOKEN_SIGN && *t.at == '{' && (p->struct_braces || is_struct(p->before) || is_struct(p->before_that))) p->struct_braces++;
+    if (t.kind == TOKEN_SIGN && *t.at == '{' && (p->struct_braces || is_struct(p->before) || is_struct(p->before_that)))
+        p->struct_braces++;
     if (t.kind == TOKEN_SIGN && *t.at == '}' && p->struct_braces) p->struct_braces--;
     p->before_that = p->before;
     p->before = t;
@@ -340,15 +344,19 @@ static void write_lines(FILE *out, int index, int depth)
         int header = included_name(line, name, sizeof name) ? find_input(name) : -1;
         if (*end) end++;
         if (header >= 0) {
-            if (in->is_source) write_renamed(out, run, (size_t)(line - run), in->name);
-            else fwrite(run, 1, (size_t)(line - run), out);
+            if (in->is_source)
+                write_renamed(out, run, (size_t)(line - run), in->name);
+            else
+                fwrite(run, 1, (size_t)(line - run), out);
             write_file(out, header, depth + 1);
             run = end;
         }
         line = end;
     }
-    if (in->is_source) write_renamed(out, run, (size_t)(line - run), in->name);
-    else fwrite(run, 1, (size_t)(line - run), out);
+    if (in->is_source)
+        write_renamed(out, run, (size_t)(line - run), in->name);
+    else
+        fwrite(run, 1, (size_t)(line - run), out);
 }
 
 static void write_undefs(FILE *out, const char *file, const char *text)
@@ -440,10 +448,14 @@ int main(int argc, char **argv)
     int count = 0;
     FILE *out;
     for (int i = 1; i < argc; i++) {
-        if (!strcmp(argv[i], "-o") && i + 1 < argc) folder = argv[++i];
-        else if (!strcmp(argv[i], "-I") && i + 1 < argc && folder_count < FOLDERS_MAX) folders[folder_count++] = argv[++i];
-        else if (count < FILES_MAX && (sources[count] = find_input(argv[i])) >= 0) count++;
-        else fail("%s: not a file of the -I folders", argv[i]);
+        if (!strcmp(argv[i], "-o") && i + 1 < argc)
+            folder = argv[++i];
+        else if (!strcmp(argv[i], "-I") && i + 1 < argc && folder_count < FOLDERS_MAX)
+            folders[folder_count++] = argv[++i];
+        else if (count < FILES_MAX && (sources[count] = find_input(argv[i])) >= 0)
+            count++;
+        else
+            fail("%s: not a file of the -I folders", argv[i]);
     }
     if (!folder || !count) fail("usage: amalgam -o FOLDER -I FOLDER... FILE.c...");
     /* This reads every header before the first name is looked up. */
@@ -452,10 +464,12 @@ int main(int argc, char **argv)
 
     write_headers(folder);
     out = open_output(folder, "noh.c");
-    fputs("/* noh.c: the library in one file. Compile it with -ffp-contract=off -fno-math-errno, so that results have the same bits\n"
-          " * everywhere, and with -ffunction-sections -fdata-sections, so that the linker's --gc-sections drops what a program\n"
-          " * does not call. NOH_WITHOUT_GL leaves out what needs GL ES headers. */\n"
-          "#ifdef NOH_WITHOUT_GL\n#include \"noh.h\"\n#else\n#include \"noh_gl.h\"\n#endif\n\n", out);
+    fputs(
+        "/* noh.c: the library in one file. Compile it with -ffp-contract=off -fno-math-errno, so that results have the same bits\n"
+        " * everywhere, and with -ffunction-sections -fdata-sections, so that the linker's --gc-sections drops what a program\n"
+        " * does not call. NOH_WITHOUT_GL leaves out what needs GL ES headers. */\n"
+        "#ifdef NOH_WITHOUT_GL\n#include \"noh.h\"\n#else\n#include \"noh_gl.h\"\n#endif\n\n",
+        out);
     write_sources(out, 0, sources, count);
     fputs("#ifndef NOH_WITHOUT_GL\n\n", out);
     write_sources(out, 1, sources, count);

@@ -54,7 +54,8 @@ static void code_lengths(const double *weights, uint32_t count, uint32_t limit, 
         for (; 2u * pairs + 1u < size; pairs++) {
             packed[pairs] = list[2u * pairs];
             packed[pairs].weight += list[2u * pairs + 1u].weight;
-            for (uint32_t i = 0; i < count; i++) packed[pairs].counts[i] = (uint8_t)(packed[pairs].counts[i] + list[2u * pairs + 1u].counts[i]);
+            for (uint32_t i = 0; i < count; i++)
+                packed[pairs].counts[i] = (uint8_t)(packed[pairs].counts[i] + list[2u * pairs + 1u].counts[i]);
         }
         memcpy(list, packed, pairs * sizeof *list);
         for (uint32_t i = 0; i < count; i++) {
@@ -93,20 +94,24 @@ static void print_table(const double *weights, uint32_t symbols, uint32_t bits)
         }
     }
     printf("    {\n");
-    for (uint32_t i = 0; i < 1u << bits; i++) printf("%s%u,%s", i % 16u ? " " : "        ", (unsigned)table[i], i % 16u == 15u ? "\n" : "");
+    for (uint32_t i = 0; i < 1u << bits; i++)
+        printf("%s%u,%s", i % 16u ? " " : "        ", (unsigned)table[i], i % 16u == 15u ? "\n" : "");
     printf("    },\n");
 }
 
 static void print_all(const totals *t)
 {
     printf("const uint16_t noh_clip_triple_table[NOH_CLIP_TRIPLE_CONTEXTS][1u << NOH_CLIP_TRIPLE_BITS] = {\n");
-    for (uint32_t i = 0; i < NOH_CLIP_TRIPLE_CONTEXTS; i++) print_table(t->triple[i], NOH_CLIP_TRIPLE_SYMBOLS, NOH_CLIP_TRIPLE_BITS);
+    for (uint32_t i = 0; i < NOH_CLIP_TRIPLE_CONTEXTS; i++)
+        print_table(t->triple[i], NOH_CLIP_TRIPLE_SYMBOLS, NOH_CLIP_TRIPLE_BITS);
     printf("};\n\nconst uint16_t noh_clip_last_table[NOH_CLIP_LAST_CONTEXTS][1u << NOH_CLIP_LAST_BITS] = {\n");
-    for (uint32_t i = 0; i < NOH_CLIP_LAST_CONTEXTS; i++) print_table(t->last[i], NOH_CLIP_LAST_SYMBOLS, NOH_CLIP_LAST_BITS);
+    for (uint32_t i = 0; i < NOH_CLIP_LAST_CONTEXTS; i++)
+        print_table(t->last[i], NOH_CLIP_LAST_SYMBOLS, NOH_CLIP_LAST_BITS);
     printf("};\n\nconst uint16_t noh_clip_dc_table[NOH_CLIP_DC_CONTEXTS][1u << NOH_CLIP_DC_BITS] = {\n");
     for (uint32_t i = 0; i < NOH_CLIP_DC_CONTEXTS; i++) print_table(t->dc[i], NOH_CLIP_DC_SYMBOLS, NOH_CLIP_DC_BITS);
     printf("};\n\nconst uint16_t noh_clip_step_table[NOH_CLIP_STEP_CONTEXTS][1u << NOH_CLIP_STEP_BITS] = {\n");
-    for (uint32_t i = 0; i < NOH_CLIP_STEP_CONTEXTS; i++) print_table(t->step[i], NOH_CLIP_STEP_SYMBOLS, NOH_CLIP_STEP_BITS);
+    for (uint32_t i = 0; i < NOH_CLIP_STEP_CONTEXTS; i++)
+        print_table(t->step[i], NOH_CLIP_STEP_SYMBOLS, NOH_CLIP_STEP_BITS);
     printf("};\n");
 }
 
@@ -163,10 +168,12 @@ static int count_file(const char *path, totals *t)
         fprintf(stderr, "%s: %s\n", path, error.what);
         return 1;
     }
-    failed = count_clip(&set->skeleton, set->clips, 0.01, 3.0, t) || count_clip(&set->skeleton, set->clips, 0.1, 10.0, t);
+    failed = count_clip(&set->skeleton, set->clips, 0.01, 3.0, t) ||
+             count_clip(&set->skeleton, set->clips, 0.1, 10.0, t);
     if (set->clips[0].sample_rate_hz > FAST_HZ) {
         decimate(set->clips, DECIMATE);
-        failed = failed || count_clip(&set->skeleton, set->clips, 0.01, 3.0, t) || count_clip(&set->skeleton, set->clips, 0.1, 10.0, t);
+        failed = failed || count_clip(&set->skeleton, set->clips, 0.01, 3.0, t) ||
+                 count_clip(&set->skeleton, set->clips, 0.1, 10.0, t);
     }
     raw_set_free(set);
     return failed;
@@ -177,7 +184,8 @@ int main(int argc, char **argv)
     static totals t;
     int failed = 0;
     for (int i = 1; i < argc; i++) failed |= count_file(argv[i], &t);
-    printf("/* Made by tools/clip_tables; do not edit.%s */\n#include \"clip/clip_coefs_internal.h\"\n\n", argc > 1 ? " From:" : " Flat codes.");
+    printf("/* Made by tools/clip_tables; do not edit.%s */\n#include \"clip/clip_coefs_internal.h\"\n\n",
+           argc > 1 ? " From:" : " Flat codes.");
     for (int i = 1; i < argc; i++) {
         const char *name = strrchr(argv[i], '/');
         printf("/* %s */\n", name ? name + 1 : argv[i]);

@@ -36,8 +36,8 @@ static int apply_events(const convert_options *options, source *s, model_error *
 /* What becomes of the meshes of a model. */
 typedef struct encoded {
     uint32_t count;
-    mesh_levels *levels;       /* [count] */
-    morph_encoding **morphs;   /* [count] */
+    mesh_levels *levels;     /* [count] */
+    morph_encoding **morphs; /* [count] */
 } encoded;
 
 static int encoded_make(uint32_t count, encoded *e)
@@ -72,7 +72,8 @@ static int encode_mesh(const model *m, uint32_t index, const convert_options *op
     const float scale = model_mesh_scale(m, index);
     float skip_radius[NOH_LOD_LEVELS_MAX];
     morph_options morph = options->morph;
-    morph.error_um = (morph.error_um > 0.0f ? morph.error_um : 10.0f) / scale; /* asked for in the world, kept in the mesh */
+    morph.error_um = (morph.error_um > 0.0f ? morph.error_um : 10.0f) /
+                     scale; /* asked for in the world, kept in the mesh */
     say(options, "LOD levels", m, index);
     if (mesh_levels_make(m, index, &options->lod, &e->levels[index], error)) {
         return 1;
@@ -112,8 +113,9 @@ static int check_own_pack(byte_buffer *out, FILE *report, model_error *error)
     noh_pack pack;
     noh_error refusal = { NOH_OK, "", 0, 0 };
     if (noh_pack_open(out->bytes, out->count, &pack, &refusal)) {
-        snprintf(error->what, sizeof error->what, "the pack that was built does not open: %s (byte %llu); this is a bug of noh",
-                 refusal.what, (unsigned long long)refusal.where);
+        snprintf(error->what, sizeof error->what,
+                 "the pack that was built does not open: %s (byte %llu); this is a bug of noh", refusal.what,
+                 (unsigned long long)refusal.where);
         error->where[0] = 0;
         buffer_free(out);
         return 1;
@@ -158,7 +160,8 @@ static int convert_source(const source *s, const convert_options *options, byte_
     failed = pack_check_model(m, error) || encode_meshes(m, options, &meshes, error);
     if (!failed) {
         failed = clips_encode(s->sets, s->set_count, &settings, &made, error) ||
-                 pack_write(m, meshes.levels, meshes.morphs, &made, out, error) || check_own_pack(out, options->report, error);
+                 pack_write(m, meshes.levels, meshes.morphs, &made, out, error) ||
+                 check_own_pack(out, options->report, error);
         clips_free(&made);
     }
     encoded_free(&meshes);
@@ -176,9 +179,11 @@ static int base_of(const source *all, int count)
     return 0;
 }
 
-static int read_all(const char *const *inputs, int count, const convert_options *options, source *all, convert_failure *failure)
+static int read_all(const char *const *inputs, int count, const convert_options *options, source *all,
+                    convert_failure *failure)
 {
-    source_options reading = { options->clip.sample_rate_hz, options->clip.unit_cm, options->skin, options->two_streams, options->two_stream_count };
+    source_options reading = { options->clip.sample_rate_hz, options->clip.unit_cm, options->skin, options->two_streams,
+                               options->two_stream_count };
     reading.skin.report = options->report;
     for (int i = 0; i < count; i++) {
         failure->file = inputs[i];
@@ -214,8 +219,10 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
     failed = read_all(inputs, input_count, options, all, failure);
     if (!failed) {
         base = base_of(all, input_count);
-        failed = join_all(inputs, input_count, base, all, failure) || apply_events(options, &all[base], &failure->error);
-        failed = failed || (joint_order_sets(all[base].sets, all[base].set_count, all[base].m) && out_of_memory(&failure->error));
+        failed = join_all(inputs, input_count, base, all, failure) ||
+                 apply_events(options, &all[base], &failure->error);
+        failed = failed ||
+                 (joint_order_sets(all[base].sets, all[base].set_count, all[base].m) && out_of_memory(&failure->error));
         failed = failed || convert_source(&all[base], options, out, &failure->error);
     }
     for (int i = 0; i < input_count; i++) {

@@ -12,7 +12,7 @@
 typedef enum convert_only { CONVERT_ALL, CONVERT_MESH, CONVERT_CLIPS } convert_only;
 
 typedef struct convert_options {
-    morph_options morph;  /* but rank and level_count */
+    morph_options morph; /* but rank and level_count */
     lod_settings lod;
     clips_settings clip;
     skin_options skin;
@@ -20,8 +20,8 @@ typedef struct convert_options {
     uint32_t two_stream_count;
     convert_only only;
     const char *events; /* a text file of callback keys; NULL: none */
-    FILE *report;   /* NULL: quiet */
-    FILE *progress; /* a terminal, for progress; NULL: none */
+    FILE *report;       /* NULL: quiet */
+    FILE *progress;     /* a terminal, for progress; NULL: none */
 } convert_options;
 
 typedef struct convert_failure {

@@ -11,13 +11,14 @@ static double ratio(double a, double b)
 static void report_peers(FILE *out, const model_mesh *m, const morph_encoding *e, double ours)
 {
     double dense = (double)m->vertex_count * m->target_count, pairs = e->source_pairs;
-    const struct { const char *name; double bytes; } peers[] = {
-        { "three.js, RGBA32F position and normal of every vertex", dense * 32.0 },
-        { "Filament, RGBA32F position and RGBA16I frame of every vertex", dense * 24.0 },
-        { "PlayCanvas, RGBA16F of every touched vertex", (double)e->touched_count * m->target_count * 16.0 },
-        { "Unity, index and nine floats per pair", pairs * 40.0 },
-        { "one rectangle per target in the asset's order, 24 bytes", (double)e->texels_one_rect * 24.0 }
-    };
+    const struct {
+        const char *name;
+        double bytes;
+    } peers[] = { { "three.js, RGBA32F position and normal of every vertex", dense * 32.0 },
+                  { "Filament, RGBA32F position and RGBA16I frame of every vertex", dense * 24.0 },
+                  { "PlayCanvas, RGBA16F of every touched vertex", (double)e->touched_count * m->target_count * 16.0 },
+                  { "Unity, index and nine floats per pair", pairs * 40.0 },
+                  { "one rectangle per target in the asset's order, 24 bytes", (double)e->texels_one_rect * 24.0 } };
     for (size_t i = 0; i < sizeof peers / sizeof peers[0]; i++) {
         fprintf(out, "    %10.0f bytes, %5.1f x  %s\n", peers[i].bytes, ratio(peers[i].bytes, ours), peers[i].name);
     }
@@ -39,21 +40,24 @@ static const morph_target *worst_target(const morph_encoding *e, uint32_t *index
 
 void convert_report_mesh(FILE *out, const model_mesh *m, const morph_encoding *e, float scale, float error_um)
 {
-    double bytes = 12.0 * e->texel_count + sizeof(noh_rect) * (double)e->rect_count + sizeof(noh_target) * (double)e->target_count;
+    double bytes = 12.0 * e->texel_count + sizeof(noh_rect) * (double)e->rect_count +
+                   sizeof(noh_target) * (double)e->target_count;
     uint32_t index = 0;
     const morph_target *worst;
-    fprintf(out, "mesh '%s': %u vertices, %u triangles, %u submeshes, %u targets\n", m->name, m->vertex_count, m->index_count / 3,
-            m->submesh_count, m->target_count);
+    fprintf(out, "mesh '%s': %u vertices, %u triangles, %u submeshes, %u targets\n", m->name, m->vertex_count,
+            m->index_count / 3, m->submesh_count, m->target_count);
     if (!m->target_count) {
         return;
     }
     worst = worst_target(e, &index);
-    fprintf(out, "  %u of %u vertices touched, in %u x %u texels\n", e->touched_count, m->vertex_count, 1u << e->width_log2, e->height);
-    fprintf(out, "  %u pairs (%u in the source) in %u rectangles of %u texels: %.3f texels blended per vertex touched\n",
+    fprintf(out, "  %u of %u vertices touched, in %u x %u texels\n", e->touched_count, m->vertex_count,
+            1u << e->width_log2, e->height);
+    fprintf(out,
+            "  %u pairs (%u in the source) in %u rectangles of %u texels: %.3f texels blended per vertex touched\n",
             e->pair_count, e->source_pairs, e->rect_count, e->texel_count, ratio(e->texel_count, e->pair_count));
-    fprintf(out, "  %.0f bytes, %.2f per pair; largest position error %.2f um in '%s' (%u bits, %.1f um asked)\n", bytes,
-            ratio(bytes, e->pair_count), 1e6 * (double)(scale * worst->position_error), m->targets[index].name, worst->position_bits,
-            (double)error_um);
+    fprintf(out, "  %.0f bytes, %.2f per pair; largest position error %.2f um in '%s' (%u bits, %.1f um asked)\n",
+            bytes, ratio(bytes, e->pair_count), 1e6 * (double)(scale * worst->position_error), m->targets[index].name,
+            worst->position_bits, (double)error_um);
     report_peers(out, m, e, bytes);
 }
 
@@ -62,9 +66,11 @@ void convert_report_lods(FILE *out, const model_mesh *mesh, const mesh_levels *l
     for (uint32_t k = 1; k < levels->count; k++) {
         const lod_errors *e = &levels->errors[k];
         const uint32_t triangles = levels->built->levels[levels->which[k]].index_count / 3;
-        fprintf(out, "  level %u: %u triangles (%.1f %%), off by at most %.2f mm at rest (99 %%: %.2f), %.2f with one target, %.2f with left and right",
-                k, triangles, 300.0 * triangles / (double)mesh->index_count, 1e3 * (double)(scale * e->rest), 1e3 * (double)(scale * e->rest_p99),
-                1e3 * (double)(scale * e->targets), 1e3 * (double)(scale * e->pairs));
+        fprintf(
+            out,
+            "  level %u: %u triangles (%.1f %%), off by at most %.2f mm at rest (99 %%: %.2f), %.2f with one target, %.2f with left and right",
+            k, triangles, 300.0 * triangles / (double)mesh->index_count, 1e3 * (double)(scale * e->rest),
+            1e3 * (double)(scale * e->rest_p99), 1e3 * (double)(scale * e->targets), 1e3 * (double)(scale * e->pairs));
         if (e->clip > 0.0f) {
             fprintf(out, ", %.2f in motion", 1e3 * (double)(scale * e->clip));
         }
@@ -89,8 +95,8 @@ void convert_report_skins(FILE *out, const noh_pack *pack)
             followed += mesh.joint_boxes[6 * j] <= mesh.joint_boxes[6 * j + 3];
         }
         fprintf(out, "mesh '%s' follows %u joints of skin '%s', %u a vertex, by %s: %u palette%s", mesh.name, followed,
-                skin.name, h->influence_count, h->flags & NOH_MESH_DUAL_QUATERNION ? "dual quaternions" : "matrices", h->palette_count,
-                h->palette_count == 1 ? "" : "s");
+                skin.name, h->influence_count, h->flags & NOH_MESH_DUAL_QUATERNION ? "dual quaternions" : "matrices",
+                h->palette_count, h->palette_count == 1 ? "" : "s");
         if (h->palette_count > 1) {
             fprintf(out, ": split into %u parts", h->submesh_count);
             if (h->level_count == 1) {

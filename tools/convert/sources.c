@@ -111,21 +111,26 @@ static const char *joint_name(const raw_skeleton *s, uint32_t joint)
     return joint == MODEL_NONE ? "none" : s->joints[joint].name ? s->joints[joint].name : "";
 }
 
-static int fail_skeletons(const raw_skeleton *base, const char *base_path, const raw_skeleton *other, model_error *error)
+static int fail_skeletons(const raw_skeleton *base, const char *base_path, const raw_skeleton *other,
+                          model_error *error)
 {
     uint32_t least = base->joint_count < other->joint_count ? base->joint_count : other->joint_count;
     for (uint32_t j = 0; j < least; j++) {
         const char *here = joint_name(other, j), *there = joint_name(base, j);
         if (strcmp(here, there) != 0) {
-            return model_fail(error, "", "its skeleton is not that of %.80s: joint %u is '%.40s' here and '%.40s' there", base_path, j, here, there);
+            return model_fail(error, "",
+                              "its skeleton is not that of %.80s: joint %u is '%.40s' here and '%.40s' there",
+                              base_path, j, here, there);
         }
         if (other->joints[j].parent != base->joints[j].parent) {
-            return model_fail(error, "", "its skeleton is not that of %.80s: the parent of joint '%.30s' is '%.30s' here and '%.30s' there", base_path,
-                              here, joint_name(other, other->joints[j].parent), joint_name(base, base->joints[j].parent));
+            return model_fail(
+                error, "",
+                "its skeleton is not that of %.80s: the parent of joint '%.30s' is '%.30s' here and '%.30s' there",
+                base_path, here, joint_name(other, other->joints[j].parent), joint_name(base, base->joints[j].parent));
         }
     }
-    return model_fail(error, "", "its skeleton is not that of %.80s: it has %u joints here and %u there", base_path, other->joint_count,
-                      base->joint_count);
+    return model_fail(error, "", "its skeleton is not that of %.80s: it has %u joints here and %u there", base_path,
+                      other->joint_count, base->joint_count);
 }
 
 /* The base's set that clips of joints go to. */
@@ -166,7 +171,8 @@ static uint32_t find_node(const model *m, const raw_floats *floats)
 {
     for (uint32_t n = 0; n < m->node_count; n++) {
         const model_node *node = &m->nodes[n];
-        if (node->mesh != MODEL_NONE && m->meshes[node->mesh].target_count == floats->width && strcmp(node->name, floats->name) == 0) {
+        if (node->mesh != MODEL_NONE && m->meshes[node->mesh].target_count == floats->width &&
+            strcmp(node->name, floats->name) == 0) {
             return n;
         }
     }
@@ -181,8 +187,9 @@ static int bind_weights(source *base, const char *base_path, raw_clip *clip, mod
         raw_floats floats = clip->floats[i];
         uint32_t node = floats.node == MODEL_NONE ? MODEL_NONE : find_node(base->m, &floats);
         if (floats.node != MODEL_NONE && node == MODEL_NONE) {
-            int failed = model_warn(base->m, "clip '%s': %s has no node '%s' with %u targets: its weights were left out", clip->name, base_path,
-                                    floats.name, floats.width);
+            int failed = model_warn(base->m,
+                                    "clip '%s': %s has no node '%s' with %u targets: its weights were left out",
+                                    clip->name, base_path, floats.name, floats.width);
             free(floats.name);
             free(floats.values);
             free(floats.reach);
@@ -243,8 +250,8 @@ static int move_clip(raw_clip *clip, raw_set *to, model_error *error)
     return 0;
 }
 
-static int join_clip(source *base, const char *base_path, const raw_set *from, raw_clip *clip, const char *path, uint32_t *joined,
-                     model_error *error)
+static int join_clip(source *base, const char *base_path, const raw_set *from, raw_clip *clip, const char *path,
+                     uint32_t *joined, model_error *error)
 {
     raw_set *to = NULL;
     if (clip->joint_count ? find_set(base, base_path, from, &to, error) : any_set(base, &to, error)) {
@@ -254,7 +261,8 @@ static int join_clip(source *base, const char *base_path, const raw_set *from, r
         return 1;
     }
     if (has_clip(to, clip->name)) {
-        return model_fail(error, "", "two clips would be called '%.150s': build them from files of different names", clip->name);
+        return model_fail(error, "", "two clips would be called '%.150s': build them from files of different names",
+                          clip->name);
     }
     if (clip->joint_count == 0 && clip->float_count == 0) {
         return 0; /* nothing of it was kept */
@@ -277,7 +285,9 @@ int source_join(source *base, const char *base_path, source *other, const char *
     if (joined == 0) {
         return model_fail(error, "", "it has no clips to add to %.150s", base_path);
     }
-    if (other->m->mesh_count && model_warn(base->m, "%s: of this file only the clips were taken: the meshes are those of %s", other_path, base_path)) {
+    if (other->m->mesh_count &&
+        model_warn(base->m, "%s: of this file only the clips were taken: the meshes are those of %s", other_path,
+                   base_path)) {
         return out_of_memory(error);
     }
     return 0;

@@ -10,16 +10,16 @@
 #include "convert/skin/skins.h"
 
 typedef struct source {
-    model *m;        /* of a glTF file; an empty one otherwise */
-    model_clips *made;    /* of a glTF file */
-    raw_set *single; /* of a .bvh or .rcl; or clips that were added to a glTF file without any of its own */
-    raw_set **sets;  /* [set_count] those of `made`, or `single` */
+    model *m;          /* of a glTF file; an empty one otherwise */
+    model_clips *made; /* of a glTF file */
+    raw_set *single;   /* of a .bvh or .rcl; or clips that were added to a glTF file without any of its own */
+    raw_set **sets;    /* [set_count] those of `made`, or `single` */
     uint32_t set_count;
 } source;
 
 typedef struct source_options {
-    double sample_rate_hz;                 /* 0: as the file has it */
-    double unit_cm;                 /* of .bvh */
+    double sample_rate_hz; /* 0: as the file has it */
+    double unit_cm;        /* of .bvh */
     skin_options skin;
     const char *const *two_streams; /* [two_stream_count] "SOURCE=TARGET", see two_stream.h */
     uint32_t two_stream_count;

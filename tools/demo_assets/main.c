@@ -86,6 +86,7 @@ int main(int argc, char **argv)
     if (argc == 3 && !strcmp(argv[1], "--arm")) {
         return make_arm(argv[2]) ? 0 : 1;
     }
-    fprintf(stderr, "usage: demo_assets OUT.glb\n       demo_assets --puppet OUT.glb\n       demo_assets --arm OUT.glb\n");
+    fprintf(stderr,
+            "usage: demo_assets OUT.glb\n       demo_assets --puppet OUT.glb\n       demo_assets --arm OUT.glb\n");
     return 2;
 }

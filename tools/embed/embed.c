@@ -30,12 +30,12 @@
 #include <string.h>
 #include <unistd.h>
 
-#define INPUTS_MAX 256     /* FILEs in one run */
-#define INCLUDES_MAX 64    /* files in one flattened source */
-#define DEPTH_MAX 16       /* #include nesting */
+#define INPUTS_MAX 256  /* FILEs in one run */
+#define INCLUDES_MAX 64 /* files in one flattened source */
+#define DEPTH_MAX 16    /* #include nesting */
 #define DEFINES_MAX 256
-#define PIECES_MAX 56      /* keep in step with NOH_GL_PIECES_MAX in gl_program.h */
-#define PIECE_CHARS 4000   /* C99 promises string literals of 4095 characters */
+#define PIECES_MAX 56    /* keep in step with NOH_GL_PIECES_MAX in gl_program.h */
+#define PIECE_CHARS 4000 /* C99 promises string literals of 4095 characters */
 
 typedef struct text {
     char *data;
@@ -57,9 +57,9 @@ typedef struct flattened {
     size_t file_count;
     size_t stack[DEPTH_MAX]; /* indices into files: the chain of includes */
     size_t depth;
-    int is_snippet;          /* a .glsl file */
-    size_t at_file;          /* where the compiler believes to be in the text so far: the next line is line */
-    unsigned at_line;        /* at_line of files[at_file]; 0: anywhere else */
+    int is_snippet;   /* a .glsl file */
+    size_t at_file;   /* where the compiler believes to be in the text so far: the next line is line */
+    unsigned at_line; /* at_line of files[at_file]; 0: anywhere else */
 } flattened;
 
 typedef struct job {
@@ -86,8 +86,10 @@ static void fail(const char *path, unsigned line, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    if (line) fprintf(stderr, "embed: %s:%u: ", path, line);
-    else fprintf(stderr, "embed: %s: ", path);
+    if (line)
+        fprintf(stderr, "embed: %s:%u: ", path, line);
+    else
+        fprintf(stderr, "embed: %s: ", path);
     vfprintf(stderr, format, arguments);
     fputc('\n', stderr);
     va_end(arguments);
@@ -141,10 +143,10 @@ static void appendf(text *out, const char *format, ...)
 
 static source read_source(const char *path, const char *from, unsigned from_line)
 {
-    source out = {path, NULL, 0};
+    source out = { path, NULL, 0 };
     FILE *file = fopen(path, "rb");
     if (!file) fail(from, from_line, "cannot open %s: %s", path, strerror(errno));
-    text content = {NULL, 0, 0};
+    text content = { NULL, 0, 0 };
     append(&content, "", 0);
     char block[4096];
     size_t got;
@@ -197,8 +199,8 @@ static int scan_comments(const char *line, int in_comment, int *has_code)
     return in_comment;
 }
 
-/* Append what is left of a line without comments, its first and last blanks, and more than one blank in a row. A comment
- * counts as a blank. Returns whether a block comment is open at the end. */
+/* Append what is left of a line without comments, its first and last blanks, and more than one blank in a row. A
+ * comment counts as a blank. Returns whether a block comment is open at the end. */
 static int append_code(text *out, const char *line, int in_comment)
 {
     size_t start = out->bytes;
@@ -228,7 +230,7 @@ static int append_code(text *out, const char *line, int in_comment)
 static void write_line(flattened *out, const char *path, unsigned line, const char *content, int in_comment)
 {
     const size_t file = out->stack[out->depth - 1];
-    text code = {NULL, 0, 0};
+    text code = { NULL, 0, 0 };
     int open = append_code(&code, content, in_comment);
     if (code.bytes) {
         if (open && code.data[0] == '#') fail(path, line, "a comment in a directive does not end in its line");
@@ -348,10 +350,14 @@ static void flatten(flattened *out, const char *path, const char *from, unsigned
 static void append_escaped(text *out, char c)
 {
     unsigned char u = (unsigned char)c;
-    if (c == '\n') append(out, "\\n", 2);
-    else if (c == '"' || c == '\\' || c == '?') appendf(out, "\\%c", c);
-    else if (u < 32 || u > 126) appendf(out, "\\%03o", u);
-    else append(out, &c, 1);
+    if (c == '\n')
+        append(out, "\\n", 2);
+    else if (c == '"' || c == '\\' || c == '?')
+        appendf(out, "\\%c", c);
+    else if (u < 32 || u > 126)
+        appendf(out, "\\%03o", u);
+    else
+        append(out, &c, 1);
 }
 
 /* Where the piece that starts at `start` ends: after a line where possible. */
@@ -470,7 +476,7 @@ static void finish(size_t slot, const char *goal)
 
 static text deps_text(const job *work, const char *out_h)
 {
-    text deps = {NULL, 0, 0};
+    text deps = { NULL, 0, 0 };
     append_make_path(&deps, work->out_c);
     append(&deps, " ", 1);
     append_make_path(&deps, out_h);
@@ -524,9 +530,12 @@ static void parse(job *work, int count, char **arguments)
         if (takes_value && i + 1 == count) usage("a flag lacks its value");
         if (takes_value) {
             const char *value = arguments[++i];
-            if (argument[1] == 'o') work->out_c = value;
-            else if (argument[1] == 'd') work->deps = value;
-            else if (work->define_count == DEFINES_MAX) usage("too many -D");
+            if (argument[1] == 'o')
+                work->out_c = value;
+            else if (argument[1] == 'd')
+                work->deps = value;
+            else if (work->define_count == DEFINES_MAX)
+                usage("too many -D");
             else {
                 check_define(value);
                 work->defines[work->define_count++] = value;
@@ -550,7 +559,8 @@ static void embed_file(job *work, const char *path, char names[][128], size_t in
     name_source(out, path);
     out->is_snippet = strlen(path) > 5 && strcmp(path + strlen(path) - 5, ".glsl") == 0;
     for (size_t i = 0; i < index; i++) {
-        if (strcmp(names[i], out->name) == 0) fail(path, 0, "gives the same name as %s: %s", work->inputs[i], out->name);
+        if (strcmp(names[i], out->name) == 0)
+            fail(path, 0, "gives the same name as %s: %s", work->inputs[i], out->name);
     }
     memcpy(names[index], out->name, sizeof out->name);
     for (size_t i = 0; i < work->define_count && !out->is_snippet; i++) {
@@ -564,8 +574,10 @@ static void embed_file(job *work, const char *path, char names[][128], size_t in
     flatten(out, path, path, 0);
     if (!out->version[0] && !out->is_snippet) fail(path, 1, "no #version line");
     if (!out->body.bytes) append(&out->body, "\n", 1); /* C has no empty arrays */
-    if (out->is_snippet) write_snippet(work, out);
-    else write_source(work, out);
+    if (out->is_snippet)
+        write_snippet(work, out);
+    else
+        write_source(work, out);
     note_prerequisites(work, out);
     for (size_t i = 0; i < out->file_count; i++) free(out->files[i]);
     free(out->body.data);

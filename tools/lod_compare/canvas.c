@@ -44,7 +44,10 @@ static uint8_t to_byte(float linear)
     return (uint8_t)(x * 255.0f + 0.5f);
 }
 
-static float edge(const corner *a, const corner *b, float x, float y) { return (b->x - a->x) * (y - a->y) - (b->y - a->y) * (x - a->x); }
+static float edge(const corner *a, const corner *b, float x, float y)
+{
+    return (b->x - a->x) * (y - a->y) - (b->y - a->y) * (x - a->x);
+}
 
 static void fill_pixel(canvas *c, uint32_t column, uint32_t row, const corner *p, const float *weight, uint32_t submesh)
 {
@@ -56,11 +59,15 @@ static void fill_pixel(canvas *c, uint32_t column, uint32_t row, const corner *p
     c->depth[at] = depth;
     c->submesh[at] = (uint8_t)submesh;
     for (uint32_t k = 0; k < 3u; k++) {
-        c->rgb[at * 3u + k] = to_byte(weight[0] * p[0].color[k] + weight[1] * p[1].color[k] + weight[2] * p[2].color[k]);
+        c->rgb[at * 3u + k] = to_byte(weight[0] * p[0].color[k] + weight[1] * p[1].color[k] +
+                                      weight[2] * p[2].color[k]);
     }
 }
 
-static uint32_t clamped(float x, uint32_t limit) { return x <= 0.0f ? 0u : x >= (float)limit ? limit : (uint32_t)x; }
+static uint32_t clamped(float x, uint32_t limit)
+{
+    return x <= 0.0f ? 0u : x >= (float)limit ? limit : (uint32_t)x;
+}
 
 static void fill_triangle(canvas *c, const corner *p, uint32_t submesh)
 {
@@ -85,9 +92,11 @@ static void fill_triangle(canvas *c, const corner *p, uint32_t submesh)
 static void shade(const model_mesh *mesh, const model_material *material, uint32_t v, const float *normal, float *out)
 {
     const float *n = normal + (size_t)v * 3u;
-    float key = 0.45f * n[0] + 0.55f * n[1] + 0.7f * n[2], fill = 0.5f + 0.5f * n[1], light = 0.2f * fill + (key > 0.0f ? 0.75f * key : 0.0f);
+    float key = 0.45f * n[0] + 0.55f * n[1] + 0.7f * n[2], fill = 0.5f + 0.5f * n[1],
+          light = 0.2f * fill + (key > 0.0f ? 0.75f * key : 0.0f);
     for (uint32_t k = 0; k < 3u; k++) {
-        out[k] = light * (mesh->color ? mesh->color[(size_t)v * 4u + k] : 1.0f) * (material ? material->base_color[k] : 0.8f);
+        out[k] = light * (mesh->color ? mesh->color[(size_t)v * 4u + k] : 1.0f) *
+                 (material ? material->base_color[k] : 0.8f);
     }
 }
 
@@ -115,10 +124,13 @@ static void draw_triangle(canvas *c, const drawing *d, const uint32_t *vertices)
     }
 }
 
-void canvas_draw(canvas *c, const model *m, const model_mesh *mesh, const lod_level *level, const float *position, const float *normal)
+void canvas_draw(canvas *c, const model *m, const model_mesh *mesh, const lod_level *level, const float *position,
+                 const float *normal)
 {
     for (uint32_t s = 0; s < mesh->submesh_count; s++) {
-        const model_material *material = mesh->submeshes[s].material == MODEL_NONE ? NULL : &m->materials[mesh->submeshes[s].material];
+        const model_material *material = mesh->submeshes[s].material == MODEL_NONE
+                                             ? NULL
+                                             : &m->materials[mesh->submeshes[s].material];
         drawing d = { mesh, material, position, normal, s };
         if (material && material->alpha == MODEL_ALPHA_BLEND) {
             continue;
@@ -144,7 +156,8 @@ void canvas_paste(const canvas *c, uint32_t shrink, uint8_t *sheet, uint32_t she
         for (uint32_t i = 0; i < c->width / shrink * 3u; i++) {
             uint32_t sum = 0;
             for (uint32_t k = 0; k < shrink * shrink; k++) {
-                sum += c->rgb[((size_t)(row * shrink + k / shrink) * c->width + i / 3u * shrink + k % shrink) * 3u + i % 3u];
+                sum += c->rgb[((size_t)(row * shrink + k / shrink) * c->width + i / 3u * shrink + k % shrink) * 3u +
+                              i % 3u];
             }
             sheet[((size_t)(y + row) * sheet_width + x) * 3u + i] = (uint8_t)(sum / (shrink * shrink));
         }

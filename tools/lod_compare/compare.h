@@ -49,14 +49,15 @@ typedef struct canvas {
     uint32_t width, height;
     float left, top, pixel; /* in the mesh's lengths; looking along -Z */
     float *depth;
-    uint8_t *submesh;       /* 255: nothing */
+    uint8_t *submesh; /* 255: nothing */
     uint8_t *rgb;
 } canvas;
 
 canvas canvas_new(float left, float bottom, float right, float top, float pixel);
 void canvas_free(canvas *c);
 /* Draw a level: triangles that face the camera or whose material has two sides, not the blended ones. */
-void canvas_draw(canvas *c, const model *m, const model_mesh *mesh, const lod_level *level, const float *position, const float *normal);
+void canvas_draw(canvas *c, const model *m, const model_mesh *mesh, const lod_level *level, const float *position,
+                 const float *normal);
 /* Pixels in which a submesh is in front. */
 uint32_t canvas_count(const canvas *c, uint32_t submesh);
 /* Copy a smaller picture, `shrink` pixels made one, into a sheet of RGB. */
@@ -66,10 +67,11 @@ void canvas_paste(const canvas *c, uint32_t shrink, uint8_t *sheet, uint32_t she
 
 /* Of one level: lengths in millimetres, areas in square millimetres. */
 typedef struct figures {
-    uint32_t triangles, main_triangles;       /* of all submeshes; of the largest one */
-    float targets, mixes, frames, rest_p99;   /* of the largest submesh: the largest distances */
-    float others;                             /* of all other submeshes, in any of those poses */
-    float eyes_open, eyes_shut, teeth, teeth_skin; /* seen from the front; teeth_skin: with all but the skin at full detail */
+    uint32_t triangles, main_triangles;     /* of all submeshes; of the largest one */
+    float targets, mixes, frames, rest_p99; /* of the largest submesh: the largest distances */
+    float others;                           /* of all other submeshes, in any of those poses */
+    float eyes_open, eyes_shut, teeth,
+        teeth_skin; /* seen from the front; teeth_skin: with all but the skin at full detail */
     faults faults;
 } figures;
 
@@ -80,7 +82,8 @@ void figures_print(const lod *l, const figures *ours, const figures *peer);
 
 /* A sheet of the levels, ours above the peer's, each as small as it is used: one pixel for its largest error.
  * pixel_mm [level_count]. Returns 0 where the picture could not be written. */
-int pictures_write(const model *m, const model_mesh *mesh, const lod *ours, const lod *peer, const float *pixel_mm, const char *path);
+int pictures_write(const model *m, const model_mesh *mesh, const lod *ours, const lod *peer, const float *pixel_mm,
+                   const char *path);
 
 /* The submesh of a material; MODEL_NONE where there is none. */
 uint32_t find_submesh(const model *m, const model_mesh *mesh, const char *material);

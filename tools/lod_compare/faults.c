@@ -17,7 +17,8 @@ static uint32_t root(uint32_t *parent, uint32_t v)
 
 static int uv_sign(const model_mesh *mesh, const uint32_t *corner)
 {
-    const float *a = mesh->uv + (size_t)corner[0] * 2u, *b = mesh->uv + (size_t)corner[1] * 2u, *c = mesh->uv + (size_t)corner[2] * 2u;
+    const float *a = mesh->uv + (size_t)corner[0] * 2u, *b = mesh->uv + (size_t)corner[1] * 2u,
+                *c = mesh->uv + (size_t)corner[2] * 2u;
     double area = ((double)b[0] - a[0]) * ((double)c[1] - a[1]) - ((double)b[1] - a[1]) * ((double)c[0] - a[0]);
     return (area > 0.0) - (area < 0.0);
 }

@@ -34,7 +34,8 @@ void *compare_zeros(size_t count, size_t bytes)
 uint32_t find_submesh(const model *m, const model_mesh *mesh, const char *material)
 {
     for (uint32_t s = 0; s < mesh->submesh_count; s++) {
-        if (mesh->submeshes[s].material != MODEL_NONE && !strcmp(m->materials[mesh->submeshes[s].material].name, material)) {
+        if (mesh->submeshes[s].material != MODEL_NONE &&
+            !strcmp(m->materials[mesh->submeshes[s].material].name, material)) {
             return s;
         }
     }

@@ -11,8 +11,9 @@ static void simplify(const model_mesh *mesh, const lod_level *ours, lod_level *o
     out->submesh_count = out->submesh_first + mesh->submesh_count;
     for (uint32_t i = 0; i < mesh->submesh_count; i++) {
         const model_submesh *sub = &mesh->submeshes[i];
-        size_t count = meshopt_simplify(out->indices + at, mesh->indices + sub->first_index, sub->index_count, mesh->position,
-                                        mesh->vertex_count, 3u * sizeof(float), ours->submesh_count[i], 1.0f, 0, NULL);
+        size_t count = meshopt_simplify(out->indices + at, mesh->indices + sub->first_index, sub->index_count,
+                                        mesh->position, mesh->vertex_count, 3u * sizeof(float), ours->submesh_count[i],
+                                        1.0f, 0, NULL);
         out->submesh_first[i] = at;
         out->submesh_count[i] = (uint32_t)count;
         at += (uint32_t)count;

@@ -5,11 +5,14 @@
 
 #include "compare.h"
 
-#define SAMPLES 3u          /* a pixel is the mean of 3 x 3 */
+#define SAMPLES 3u /* a pixel is the mean of 3 x 3 */
 #define LEAST_PIXEL 0.0006f
 #define GAP 4u
 
-static void no_weights(const model_mesh *mesh, float *weights) { memset(weights, 0, mesh->target_count * sizeof *weights); }
+static void no_weights(const model_mesh *mesh, float *weights)
+{
+    memset(weights, 0, mesh->target_count * sizeof *weights);
+}
 
 static void face_weights(const model_mesh *mesh, uint32_t face, float *weights)
 {
@@ -30,10 +33,13 @@ static void picture_box(const model *m, const model_mesh *mesh, float *box)
     box[3] += eyes == MODEL_NONE ? 0.0f : 0.07f;
 }
 
-static uint32_t pixels(float length, float pixel) { return (uint32_t)(length / pixel) + GAP; }
+static uint32_t pixels(float length, float pixel)
+{
+    return (uint32_t)(length / pixel) + GAP;
+}
 
-static void put(const model *m, const model_mesh *mesh, const lod_level *level, uint32_t face, float pixel, uint8_t *sheet,
-                uint32_t width, uint32_t x, uint32_t y)
+static void put(const model *m, const model_mesh *mesh, const lod_level *level, uint32_t face, float pixel,
+                uint8_t *sheet, uint32_t width, uint32_t x, uint32_t y)
 {
     float *weights = compare_zeros(mesh->target_count, sizeof *weights), box[4];
     float *position = compare_zeros((size_t)mesh->vertex_count * 3u, sizeof *position);
@@ -51,7 +57,8 @@ static void put(const model *m, const model_mesh *mesh, const lod_level *level, 
     free(weights);
 }
 
-int pictures_write(const model *m, const model_mesh *mesh, const lod *ours, const lod *peer, const float *pixel_mm, const char *path)
+int pictures_write(const model *m, const model_mesh *mesh, const lod *ours, const lod *peer, const float *pixel_mm,
+                   const char *path)
 {
     float box[4], pixel[LOD_LEVELS_MAX];
     uint32_t width = 0, height, x = 0;

@@ -7,7 +7,10 @@
 
 #define SEEN_PIXEL 0.0002f /* of the z-buffer that counts what is seen: 0.2 mm */
 
-static void raise_to(float *to, float value) { *to = value > *to ? value : *to; }
+static void raise_to(float *to, float value)
+{
+    *to = value > *to ? value : *to;
+}
 
 static uint32_t main_submesh(const model_mesh *mesh)
 {
@@ -20,7 +23,8 @@ static uint32_t main_submesh(const model_mesh *mesh)
 
 static void measure(const model_mesh *mesh, const lod_level *level, const shapes *unseen, figures *out)
 {
-    uint32_t poses = unseen->mix_count + unseen->frame_count, first_mix = 1u + mesh->target_count, row = first_mix + poses;
+    uint32_t poses = unseen->mix_count + unseen->frame_count, first_mix = 1u + mesh->target_count,
+             row = first_mix + poses;
     uint32_t largest = main_submesh(mesh);
     lod_distance *d = compare_zeros((size_t)mesh->submesh_count * row, sizeof *d);
     model_error error = { "", "" };
@@ -31,15 +35,19 @@ static void measure(const model_mesh *mesh, const lod_level *level, const shapes
     for (uint32_t i = 0; i < mesh->submesh_count * row; i++) {
         uint32_t pose = i % row;
         float mm = d[i].max * 1000.0f;
-        raise_to(i / row != largest ? &out->others : pose < first_mix ? &out->targets :
-                 pose < first_mix + unseen->mix_count ? &out->mixes : &out->frames, mm);
+        raise_to(i / row != largest                     ? &out->others
+                 : pose < first_mix                     ? &out->targets
+                 : pose < first_mix + unseen->mix_count ? &out->mixes
+                                                        : &out->frames,
+                 mm);
     }
     out->rest_p99 = d[(size_t)largest * row].p99 * 1000.0f;
     free(d);
 }
 
 /* Square millimetres of two submeshes that the camera sees; -1 where the mesh does not have the first. */
-static float seen(const model *m, const model_mesh *mesh, const lod_level *level, const char *name, const char *other, const float *weights)
+static float seen(const model *m, const model_mesh *mesh, const lod_level *level, const char *name, const char *other,
+                  const float *weights)
 {
     uint32_t s = find_submesh(m, mesh, name), t = find_submesh(m, mesh, other), count;
     float *position, box[4];
@@ -69,7 +77,8 @@ static lod_level with_full_parts(const model_mesh *mesh, const lod_level *level)
     memcpy(mixed.indices, mesh->indices, mesh->index_count * sizeof *mixed.indices);
     memcpy(mixed.indices + mesh->index_count, level->indices, level->index_count * sizeof *mixed.indices);
     for (uint32_t s = 0; s < n; s++) {
-        mixed.submesh_first[s] = s == skin ? mesh->index_count + level->submesh_first[s] : mesh->submeshes[s].first_index;
+        mixed.submesh_first[s] = s == skin ? mesh->index_count + level->submesh_first[s]
+                                           : mesh->submeshes[s].first_index;
         mixed.submesh_count[s] = s == skin ? level->submesh_count[s] : mesh->submeshes[s].index_count;
     }
     return mixed;
@@ -114,14 +123,17 @@ static void print_row(const char *name, const char *unit, float ours, float peer
     putchar('\n');
 }
 
-static float larger(float a, float b) { return a > b ? a : b; }
+static float larger(float a, float b)
+{
+    return a > b ? a : b;
+}
 
 void figures_print(const lod *l, const figures *ours, const figures *peer)
 {
     for (uint32_t i = 1; i < l->level_count; i++) {
         const figures *a = &ours[i], *b = &peer[i], *full = &ours[0];
-        printf(" level %u: %u triangles (meshoptimizer %u), of the skin %u (%u); %u vertices\n", i, a->triangles, b->triangles,
-               a->main_triangles, b->main_triangles, l->levels[i].vertex_count);
+        printf(" level %u: %u triangles (meshoptimizer %u), of the skin %u (%u); %u vertices\n", i, a->triangles,
+               b->triangles, a->main_triangles, b->main_triangles, l->levels[i].vertex_count);
         printf("  %-34s %-4s %9s %9s   meshoptimizer over ours\n", "", "", "ours", "meshopt");
         print_row("skin, targets", "mm", a->targets, b->targets, -1.0f);
         print_row("skin, unseen mixes", "mm", a->mixes, b->mixes, -1.0f);
@@ -135,7 +147,8 @@ void figures_print(const lod *l, const figures *ours, const figures *peer)
         print_row("eyes seen shut", "mm2", a->eyes_shut, b->eyes_shut, full->eyes_shut);
         print_row("teeth and tongue, mouth open", "mm2", a->teeth, b->teeth, full->teeth);
         print_row("the same, only the skin simplified", "mm2", a->teeth_skin, b->teeth_skin, full->teeth_skin);
-        printf("  UV flips %u (%u), full mesh %u; non-manifold edges %u (%u), full mesh %u\n", a->faults.uv_flips, b->faults.uv_flips,
-               full->faults.uv_flips, a->faults.non_manifold, b->faults.non_manifold, full->faults.non_manifold);
+        printf("  UV flips %u (%u), full mesh %u; non-manifold edges %u (%u), full mesh %u\n", a->faults.uv_flips,
+               b->faults.uv_flips, full->faults.uv_flips, a->faults.non_manifold, b->faults.non_manifold,
+               full->faults.non_manifold);
     }
 }

@@ -13,7 +13,8 @@
 /* The names of enum noh_result, without their prefix. */
 static const char *result_name(const tool_error *e)
 {
-    static const char *const names[] = { "failed", "arg", "memory", "data", "version", "limit", "not_found", "unsupported", "gl" };
+    static const char *const names[] = { "failed", "arg",       "memory",      "data", "version",
+                                         "limit",  "not_found", "unsupported", "gl" };
     if (e->status == EXIT_USAGE) {
         return "usage";
     }
@@ -72,7 +73,8 @@ static int unknown_verb(const char *name)
         names[i] = verb_at(i)->name;
     }
     near = nearest_name(name, names, VERB_COUNT);
-    return near ? tool_usage("there is no verb '%s' (did you mean '%s'?)", name, near) : tool_usage("there is no verb '%s'", name);
+    return near ? tool_usage("there is no verb '%s' (did you mean '%s'?)", name, near)
+                : tool_usage("there is no verb '%s'", name);
 }
 
 static int run(int argc, char **argv)

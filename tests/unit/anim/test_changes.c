@@ -62,7 +62,8 @@ static void curves_at_known_places(void **state)
         assert_true(noh_curve_at((noh_curve)curve, -1.0f) == 0.0f && noh_curve_at((noh_curve)curve, 0.5f) == 0.5f);
         assert_true(noh_curve_at((noh_curve)curve, 1.0f) == 1.0f && noh_curve_at((noh_curve)curve, 2.0f) == 1.0f);
     }
-    assert_true(noh_curve_at(NOH_CURVE_LINEAR, 0.25f) == 0.25f && noh_curve_at(NOH_CURVE_SMOOTHSTEP, 0.25f) == 0.15625f);
+    assert_true(noh_curve_at(NOH_CURVE_LINEAR, 0.25f) == 0.25f &&
+                noh_curve_at(NOH_CURVE_SMOOTHSTEP, 0.25f) == 0.15625f);
 }
 
 /* A change that begins takes over from one that runs: the older one may not end it later. */

@@ -8,7 +8,8 @@
 
 #include "anim/controller_pose.h"
 
-static void rest(void *user, uint32_t clip, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose, uint32_t float_count, float *floats)
+static void rest(void *user, uint32_t clip, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose,
+                 uint32_t float_count, float *floats)
 {
     (void)user, (void)clip, (void)clip_tick;
     memset(pose, 0, joint_count * sizeof *pose);

@@ -29,7 +29,8 @@ static void stage_open(stage *g, uint32_t tracks, uint32_t flags)
     d.track_count = tracks;
     d.flags = flags;
     assert_int_equal(noh_controller_init(g->memory, sizeof g->memory, &d, &g->c, NULL), NOH_OK);
-    assert_int_equal(noh_pose_scratch_init(g->scratch_memory, sizeof g->scratch_memory, &g->s.set, 1, &g->scratch, NULL), NOH_OK);
+    assert_int_equal(
+        noh_pose_scratch_init(g->scratch_memory, sizeof g->scratch_memory, &g->s.set, 1, &g->scratch, NULL), NOH_OK);
 }
 
 static void start(stage *g, uint32_t track, noh_track_desc d)
@@ -37,9 +38,15 @@ static void start(stage *g, uint32_t track, noh_track_desc d)
     assert_int_equal(noh_controller_start(g->c, &g->s.set, track, &d, NULL), NOH_OK);
 }
 
-static void step(stage *g, uint32_t ticks) { (void)noh_controller_step(g->c, &g->s.set, ticks, NULL, NULL); }
+static void step(stage *g, uint32_t ticks)
+{
+    (void)noh_controller_step(g->c, &g->s.set, ticks, NULL, NULL);
+}
 
-static void take_pose(stage *g) { noh_controller_pose(g->c, &g->s.set, &g->scratch, g->pose, g->floats); }
+static void take_pose(stage *g)
+{
+    noh_controller_pose(g->c, &g->s.set, &g->scratch, g->pose, g->floats);
+}
 
 /* ---- set, descs, memory ---- */
 
@@ -56,30 +63,54 @@ static void test_set_fields_broken_in_turn(void **state)
     scene s;
     (void)state;
     scene_open(&s);
-    s.set.clip_count = 0; bad_set(&s, NOH_ERR_ARG, "clip_count");
-    s.set.joint_count = s.set.float_count = 0; bad_set(&s, NOH_ERR_ARG, "joint_count");
-    s.set.joint_count = 0, s.set.roots = s.roots; bad_set(&s, NOH_ERR_ARG, "roots");
-    s.set.joint_count = NOH_JOINTS_MAX + 1u; bad_set(&s, NOH_ERR_ARG, "joint_count");
-    s.set.float_count = NOH_FLOATS_MAX + 1u; bad_set(&s, NOH_ERR_ARG, "float_count");
-    s.set.mask_count = NOH_MASKS_MAX + 1u; bad_set(&s, NOH_ERR_ARG, "mask_count");
-    s.set.clips = NULL; bad_set(&s, NOH_ERR_ARG, "clips");
-    s.set.events = NULL; bad_set(&s, NOH_ERR_ARG, "events");
-    s.set.markers = NULL; bad_set(&s, NOH_ERR_ARG, "markers");
-    s.set.bind_pose = NULL; bad_set(&s, NOH_ERR_ARG, "bind_pose");
-    s.set.masks = NULL; bad_set(&s, NOH_ERR_ARG, "masks");
-    s.set.sample = NULL; bad_set(&s, NOH_ERR_ARG, "sample");
-    s.clips[1].loop = 0; bad_set(&s, NOH_ERR_DATA, "loop");
-    s.clips[1].loop = 4; bad_set(&s, NOH_ERR_DATA, "loop");
-    s.clips[1].duration_ticks = 0x80000000u; bad_set(&s, NOH_ERR_DATA, "duration_ticks");
-    s.clips[1].flags = 8; bad_set(&s, NOH_ERR_DATA, "clip flags");
-    s.clips[1].first_event = 9; bad_set(&s, NOH_ERR_DATA, "event range");
-    s.clips[1].first_event = 1, s.clips[1].event_count = 0xffffffffu; bad_set(&s, NOH_ERR_DATA, "event range");
-    s.clips[1].event_count = 1, s.events[0].tick = 30001; bad_set(&s, NOH_ERR_DATA, "event tick past the duration");
-    s.clips[1].event_count = 2, s.events[0].tick = 5; bad_set(&s, NOH_ERR_DATA, "event order");
-    s.clips[1].event_count = 1, s.events[0].weight_min = NAN; bad_set(&s, NOH_ERR_DATA, "event weight_min");
-    s.clips[1].first_marker = 5; bad_set(&s, NOH_ERR_DATA, "marker range");
-    s.markers[3].tick = 30000; bad_set(&s, NOH_ERR_DATA, "marker tick past the duration");
-    s.markers[3].tick = 2000; bad_set(&s, NOH_ERR_DATA, "marker order");
+    s.set.clip_count = 0;
+    bad_set(&s, NOH_ERR_ARG, "clip_count");
+    s.set.joint_count = s.set.float_count = 0;
+    bad_set(&s, NOH_ERR_ARG, "joint_count");
+    s.set.joint_count = 0, s.set.roots = s.roots;
+    bad_set(&s, NOH_ERR_ARG, "roots");
+    s.set.joint_count = NOH_JOINTS_MAX + 1u;
+    bad_set(&s, NOH_ERR_ARG, "joint_count");
+    s.set.float_count = NOH_FLOATS_MAX + 1u;
+    bad_set(&s, NOH_ERR_ARG, "float_count");
+    s.set.mask_count = NOH_MASKS_MAX + 1u;
+    bad_set(&s, NOH_ERR_ARG, "mask_count");
+    s.set.clips = NULL;
+    bad_set(&s, NOH_ERR_ARG, "clips");
+    s.set.events = NULL;
+    bad_set(&s, NOH_ERR_ARG, "events");
+    s.set.markers = NULL;
+    bad_set(&s, NOH_ERR_ARG, "markers");
+    s.set.bind_pose = NULL;
+    bad_set(&s, NOH_ERR_ARG, "bind_pose");
+    s.set.masks = NULL;
+    bad_set(&s, NOH_ERR_ARG, "masks");
+    s.set.sample = NULL;
+    bad_set(&s, NOH_ERR_ARG, "sample");
+    s.clips[1].loop = 0;
+    bad_set(&s, NOH_ERR_DATA, "loop");
+    s.clips[1].loop = 4;
+    bad_set(&s, NOH_ERR_DATA, "loop");
+    s.clips[1].duration_ticks = 0x80000000u;
+    bad_set(&s, NOH_ERR_DATA, "duration_ticks");
+    s.clips[1].flags = 8;
+    bad_set(&s, NOH_ERR_DATA, "clip flags");
+    s.clips[1].first_event = 9;
+    bad_set(&s, NOH_ERR_DATA, "event range");
+    s.clips[1].first_event = 1, s.clips[1].event_count = 0xffffffffu;
+    bad_set(&s, NOH_ERR_DATA, "event range");
+    s.clips[1].event_count = 1, s.events[0].tick = 30001;
+    bad_set(&s, NOH_ERR_DATA, "event tick past the duration");
+    s.clips[1].event_count = 2, s.events[0].tick = 5;
+    bad_set(&s, NOH_ERR_DATA, "event order");
+    s.clips[1].event_count = 1, s.events[0].weight_min = NAN;
+    bad_set(&s, NOH_ERR_DATA, "event weight_min");
+    s.clips[1].first_marker = 5;
+    bad_set(&s, NOH_ERR_DATA, "marker range");
+    s.markers[3].tick = 30000;
+    bad_set(&s, NOH_ERR_DATA, "marker tick past the duration");
+    s.markers[3].tick = 2000;
+    bad_set(&s, NOH_ERR_DATA, "marker order");
     assert_int_equal(noh_clip_set_find(&s.set, 103), 3);
     assert_int_equal(noh_clip_set_find(&s.set, 99), NOH_NONE);
 }
@@ -104,11 +135,16 @@ static void test_controller_desc_fields_broken_in_turn(void **state)
     memset(&fine, 0, sizeof fine);
     fine.set = &s.set;
     assert_true(noh_controller_size(&fine) > 0);
-    d = fine, d.set = NULL; bad_controller(d, "set");
-    d = fine, d.track_count = NOH_TRACKS_MAX + 1u; bad_controller(d, "track_count");
-    d = fine, d.change_count = NOH_CHANGES_MAX + 1u; bad_controller(d, "change_count");
-    d = fine, d.flags = 8; bad_controller(d, "flags");
-    s.set.joint_count = s.set.float_count = 0; bad_controller(fine, "set");
+    d = fine, d.set = NULL;
+    bad_controller(d, "set");
+    d = fine, d.track_count = NOH_TRACKS_MAX + 1u;
+    bad_controller(d, "track_count");
+    d = fine, d.change_count = NOH_CHANGES_MAX + 1u;
+    bad_controller(d, "change_count");
+    d = fine, d.flags = 8;
+    bad_controller(d, "flags");
+    s.set.joint_count = s.set.float_count = 0;
+    bad_controller(fine, "set");
 }
 
 static void test_memory_is_exact(void **state)
@@ -179,11 +215,12 @@ static void test_state_is_small(void **state)
             without = noh_controller_size(&d);
             d.flags = NOH_CONTROLLER_INERTIAL;
             with = noh_controller_size(&d);
-            print_message("%4u joints, %u tracks: %lu bytes, %lu without room for inertia; allowed %u\n", joints[j], tracks[t], (unsigned long)with,
-                          (unsigned long)without, 64u * (joints[j] + tracks[t]));
+            print_message("%4u joints, %u tracks: %lu bytes, %lu without room for inertia; allowed %u\n", joints[j],
+                          tracks[t], (unsigned long)with, (unsigned long)without, 64u * (joints[j] + tracks[t]));
             assert_true(with <= 64u * (joints[j] + tracks[t]));
             assert_int_equal(with - without, 48u * joints[j]);
-            assert_int_equal(without, sizeof(noh_controller) + tracks[t] * (sizeof(noh_track) + sizeof(noh_change)) + 2u * sizeof(noh_change));
+            assert_int_equal(without, sizeof(noh_controller) + tracks[t] * (sizeof(noh_track) + sizeof(noh_change)) +
+                                          2u * sizeof(noh_change));
         }
     }
 }
@@ -205,20 +242,34 @@ static void test_track_desc_fields_broken_in_turn(void **state)
     (void)state;
     stage_open(&g, 0, 0);
     start(&g, 1, track_of(0, 0.0f));
-    d = track_of(CLIPS, 1.0f); bad_start(&g, d, "clip");
-    d = track_of(0, 1.0f), d.position_ticks = ((int64_t)1 << 44) + 1; bad_start(&g, d, "position_ticks");
-    d = track_of(0, 1.0f), d.speed = NOH_SPEED_MAX + 1; bad_start(&g, d, "speed");
-    d = track_of(0, -1.0f); bad_start(&g, d, "weight");
-    d = track_of(0, NAN); bad_start(&g, d, "weight");
-    d = track_of(0, INFINITY); bad_start(&g, d, "weight");
-    d = track_of(0, 1.0f), d.loop = (noh_loop)4; bad_start(&g, d, "loop");
-    d = track_of(0, 1.0f), d.mode = (noh_track_mode)3; bad_start(&g, d, "mode");
-    d = track_of(0, 1.0f), d.group = (noh_track_group)2; bad_start(&g, d, "group");
-    d = track_of(0, 1.0f), d.mask = MASKS + 1u; bad_start(&g, d, "mask");
-    d = track_of(0, 1.0f), d.lod_levels = 256; bad_start(&g, d, "lod_levels");
-    d = track_of(0, 1.0f), d.sync_group = NOH_SYNC_GROUPS_MAX + 1u; bad_start(&g, d, "sync_group");
-    d = track_of(WAVE, 1.0f), d.sync_group = 1; bad_start(&g, d, "sync_group"); /* does not repeat */
-    d = track_of(0, 1.0f), d.flags = 16; bad_start(&g, d, "flags");
+    d = track_of(CLIPS, 1.0f);
+    bad_start(&g, d, "clip");
+    d = track_of(0, 1.0f), d.position_ticks = ((int64_t)1 << 44) + 1;
+    bad_start(&g, d, "position_ticks");
+    d = track_of(0, 1.0f), d.speed = NOH_SPEED_MAX + 1;
+    bad_start(&g, d, "speed");
+    d = track_of(0, -1.0f);
+    bad_start(&g, d, "weight");
+    d = track_of(0, NAN);
+    bad_start(&g, d, "weight");
+    d = track_of(0, INFINITY);
+    bad_start(&g, d, "weight");
+    d = track_of(0, 1.0f), d.loop = (noh_loop)4;
+    bad_start(&g, d, "loop");
+    d = track_of(0, 1.0f), d.mode = (noh_track_mode)3;
+    bad_start(&g, d, "mode");
+    d = track_of(0, 1.0f), d.group = (noh_track_group)2;
+    bad_start(&g, d, "group");
+    d = track_of(0, 1.0f), d.mask = MASKS + 1u;
+    bad_start(&g, d, "mask");
+    d = track_of(0, 1.0f), d.lod_levels = 256;
+    bad_start(&g, d, "lod_levels");
+    d = track_of(0, 1.0f), d.sync_group = NOH_SYNC_GROUPS_MAX + 1u;
+    bad_start(&g, d, "sync_group");
+    d = track_of(WAVE, 1.0f), d.sync_group = 1;
+    bad_start(&g, d, "sync_group"); /* does not repeat */
+    d = track_of(0, 1.0f), d.flags = 16;
+    bad_start(&g, d, "flags");
     d = track_of(0, 1.0f);
     assert_int_equal(noh_controller_start(g.c, &g.s.set, 4, &d, &error), NOH_ERR_ARG);
     assert_int_equal(strncmp(error.what, "track", strlen("track")), 0);
@@ -305,7 +356,10 @@ static noh_change_desc change_of(noh_change_kind kind, uint32_t duration)
     return d;
 }
 
-static void change(stage *g, noh_change_desc d) { assert_int_equal(noh_controller_change(g->c, &g->s.set, &d, NULL), NOH_OK); }
+static void change(stage *g, noh_change_desc d)
+{
+    assert_int_equal(noh_controller_change(g->c, &g->s.set, &d, NULL), NOH_OK);
+}
 
 static void bad_change(stage *g, noh_change_desc d, const char *what)
 {
@@ -321,15 +375,24 @@ static void test_change_fields_broken_in_turn(void **state)
     noh_error error;
     (void)state;
     stage_open(&g, 2, 0);
-    d = change_of((noh_change_kind)5, 0); bad_change(&g, d, "kind");
-    d = change_of(NOH_CHANGE_SPEED, 0), d.track = 2; bad_change(&g, d, "track");
-    d = change_of(NOH_CHANGE_SPEED, 0), d.curve = (noh_curve)2; bad_change(&g, d, "curve");
-    d = change_of(NOH_CHANGE_SPEED, 0), d.speed = -NOH_SPEED_MAX - 1; bad_change(&g, d, "speed");
-    d = change_of(NOH_CHANGE_WEIGHT, 0), d.weight = NAN; bad_change(&g, d, "weight");
-    d = change_of(NOH_CHANGE_PRIORITY, 0), d.weight = 1.5f; bad_change(&g, d, "weight");
-    d = change_of(NOH_CHANGE_POSITION, 0), d.position_ticks = (int64_t)1 << 45; bad_change(&g, d, "position_ticks");
-    d = change_of(NOH_CHANGE_MODE, 0), d.mode = (noh_track_mode)3; bad_change(&g, d, "mode");
-    d = change_of(NOH_CHANGE_MODE, 5); bad_change(&g, d, "duration_ticks");
+    d = change_of((noh_change_kind)5, 0);
+    bad_change(&g, d, "kind");
+    d = change_of(NOH_CHANGE_SPEED, 0), d.track = 2;
+    bad_change(&g, d, "track");
+    d = change_of(NOH_CHANGE_SPEED, 0), d.curve = (noh_curve)2;
+    bad_change(&g, d, "curve");
+    d = change_of(NOH_CHANGE_SPEED, 0), d.speed = -NOH_SPEED_MAX - 1;
+    bad_change(&g, d, "speed");
+    d = change_of(NOH_CHANGE_WEIGHT, 0), d.weight = NAN;
+    bad_change(&g, d, "weight");
+    d = change_of(NOH_CHANGE_PRIORITY, 0), d.weight = 1.5f;
+    bad_change(&g, d, "weight");
+    d = change_of(NOH_CHANGE_POSITION, 0), d.position_ticks = (int64_t)1 << 45;
+    bad_change(&g, d, "position_ticks");
+    d = change_of(NOH_CHANGE_MODE, 0), d.mode = (noh_track_mode)3;
+    bad_change(&g, d, "mode");
+    d = change_of(NOH_CHANGE_MODE, 5);
+    bad_change(&g, d, "duration_ticks");
     for (uint32_t i = 0; i < 4; i++) {
         d = change_of(NOH_CHANGE_SPEED, 5), d.delay_ticks = 10u + i;
         change(&g, d);
@@ -391,7 +454,8 @@ static void test_speed_change_travels_the_integral(void **state)
             step(&g, durations[i]);
             way = (double)noh_controller_track(g.c, 0)->position / 65536.0;
             /* exact where slices are equal; a tick of both speeds' difference in 64 slices where not */
-            assert_true(fabs(way + (double)durations[i]) <= (durations[i] % 64u ? 2.0 + 1e-3 * durations[i] / 64.0 : 1e-4 * durations[i]));
+            assert_true(fabs(way + (double)durations[i]) <=
+                        (durations[i] % 64u ? 2.0 + 1e-3 * durations[i] / 64.0 : 1e-4 * durations[i]));
             assert_int_equal(noh_controller_track(g.c, 0)->speed, -3 * NOH_SPEED_ONE);
         }
     }
@@ -413,7 +477,8 @@ static void test_position_change_arrives_exactly(void **state)
             change(&g, d);
             if (durations[i] == 1000) {
                 step(&g, 500);
-                assert_true(llabs(noh_controller_track(g.c, 0)->position - noh_position_of((77 - 1234567) / 2)) < 1300 * 65536);
+                assert_true(llabs(noh_controller_track(g.c, 0)->position - noh_position_of((77 - 1234567) / 2)) <
+                            1300 * 65536);
                 step(&g, 500);
             } else {
                 step(&g, durations[i]);
@@ -484,8 +549,10 @@ static void test_sync_by_markers_and_by_phase(void **state)
         noh_controller_set_weight(g.c, 0, 0.0f); /* the run alone: its own speed */
         before = noh_controller_track(g.c, 1)->position;
         step(&g, 48000);
-        assert_true(llabs(noh_controller_track(g.c, 1)->position - before - noh_position_of(48000)) < noh_position_of(2));
-        assert_int_equal(noh_controller_seek(g.c, &g.s.set, 1, 7000, NOH_SEEK_SKIP, NULL), NOH_OK); /* the group goes along */
+        assert_true(llabs(noh_controller_track(g.c, 1)->position - before - noh_position_of(48000)) <
+                    noh_position_of(2));
+        assert_int_equal(noh_controller_seek(g.c, &g.s.set, 1, 7000, NOH_SEEK_SKIP, NULL),
+                         NOH_OK); /* the group goes along */
         assert_true(phases_apart(&g, 0, 1) < 1e-6);
     }
 }
@@ -776,7 +843,8 @@ static void test_additive_tracks(void **state)
         assert_true(pose_apart(g.pose, want, JOINTS) < 2e-6);
         for (uint32_t i = 0; i < FLOATS; i++) {
             float from = reference == 0 ? g.s.defaults[i] : reference == 1 ? first_floats[i] : 0.0f;
-            assert_true(fabsf(g.floats[i] - (base_floats[i] + 0.6f * 128.0f / 255.0f * (lean_floats[i] - from))) < 1e-6f);
+            assert_true(fabsf(g.floats[i] - (base_floats[i] + 0.6f * 128.0f / 255.0f * (lean_floats[i] - from))) <
+                        1e-6f);
         }
     }
 }
@@ -845,7 +913,8 @@ static void test_decay(void **state)
             before = x;
         }
         /* it starts with its speed and ends without any */
-        assert_true(fabsf((noh_inertia_decay(1.0f, v0, 1e-3f, 0.3f) - 1.0f) / 1e-3f - v0) < 0.8f + 0.03f * fabsf(v0) * fabsf(v0));
+        assert_true(fabsf((noh_inertia_decay(1.0f, v0, 1e-3f, 0.3f) - 1.0f) / 1e-3f - v0) <
+                    0.8f + 0.03f * fabsf(v0) * fabsf(v0));
         assert_true(noh_inertia_decay(1.0f, v0, 0.299f, 0.3f) < 1e-4f);
     }
     assert_true(noh_inertia_decay(1.0f, 0.0f, 0.0f, 0.3f) == 1.0f);
@@ -941,7 +1010,8 @@ static void test_transition_within_a_transition(void **state)
     stage_open(&g, 2, 0);
     assert_int_equal(noh_controller_inertia_capture(g.c, &g.s.set, &g.scratch, &error), NOH_ERR_ARG);
     stage_open(&g, 2, NOH_CONTROLLER_INERTIAL);
-    assert_int_equal(noh_pose_scratch_init(g.scratch_memory, sizeof g.scratch_memory, &g.s.set, 0, &g.scratch, NULL), NOH_OK);
+    assert_int_equal(noh_pose_scratch_init(g.scratch_memory, sizeof g.scratch_memory, &g.s.set, 0, &g.scratch, NULL),
+                     NOH_OK);
     assert_int_equal(noh_controller_inertia_capture(g.c, &g.s.set, &g.scratch, &error), NOH_ERR_ARG);
 }
 
@@ -1022,14 +1092,16 @@ static void test_damaged_blocks_do_no_harm(void **state)
             take_pose(&g);
             (void)noh_controller_events_max(g.c, &g.s.set, 10000);
             (void)noh_controller_inertia_capture(g.c, &g.s.set, &g.scratch, NULL);
-            if (noh_controller_check(g.memory, sizeof g.memory, &g.s.set, &error) != NOH_OK) fail_msg("round %d: %s (%u)", round, error.what, (unsigned)error.where);
+            if (noh_controller_check(g.memory, sizeof g.memory, &g.s.set, &error) != NOH_OK)
+                fail_msg("round %d: %s (%u)", round, error.what, (unsigned)error.where);
         }
     }
     print_message("%u damaged blocks refused, %u played\n", refused, taken);
     assert_true(refused > 1000 && taken > 1000);
 }
 
-/* A seek that fires goes any distance in one tick; what was shown 10 ms before it is still asked for by a transition. */
+/* A seek that fires goes any distance in one tick; what was shown 10 ms before it is still asked for by a transition.
+ */
 static void test_a_pose_before_a_far_seek(void **state)
 {
     stage g;

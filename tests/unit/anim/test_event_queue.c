@@ -31,7 +31,10 @@ static void push(noh_event_queue *q, int64_t tick)
 
 static void events_come_out_in_the_order_of_pushing(void **state)
 {
-    union { uint64_t align[2]; box b; } memory __attribute__((aligned(16)));
+    union {
+        uint64_t align[2];
+        box b;
+    } memory __attribute__((aligned(16)));
     noh_event_queue q;
     (void)state;
     assert_int_equal(noh_event_queue_init(&memory, noh_event_queue_size(CAPACITY), CAPACITY, &q, NULL), NOH_OK);
@@ -42,11 +45,14 @@ static void events_come_out_in_the_order_of_pushing(void **state)
     assert_true(q.events[0].clock == 5 && q.events[1].clock == 2);
 }
 
-/* What finds no room is counted and leaves the others, and what lies behind the memory, alone. The counts of lost events
- * and of the most at once outlive a clear: they say whether the queue was large enough. */
+/* What finds no room is counted and leaves the others, and what lies behind the memory, alone. The counts of lost
+ * events and of the most at once outlive a clear: they say whether the queue was large enough. */
 static void what_finds_no_room_is_counted(void **state)
 {
-    union { uint64_t align[2]; box b; } memory __attribute__((aligned(16)));
+    union {
+        uint64_t align[2];
+        box b;
+    } memory __attribute__((aligned(16)));
     noh_event_queue q;
     noh_event behind;
     (void)state;
@@ -65,7 +71,10 @@ static void what_finds_no_room_is_counted(void **state)
 
 static void impossible_queues_are_refused(void **state)
 {
-    union { uint64_t align[2]; box b; } memory __attribute__((aligned(16)));
+    union {
+        uint64_t align[2];
+        box b;
+    } memory __attribute__((aligned(16)));
     noh_event_queue q;
     noh_error error;
     const size_t need = noh_event_queue_size(CAPACITY);

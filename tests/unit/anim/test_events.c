@@ -16,7 +16,9 @@
 #define SEED 20240611u
 #define STEPS_WANTED 1000000u
 
-typedef struct rng { uint32_t state; } rng;
+typedef struct rng {
+    uint32_t state;
+} rng;
 
 static uint32_t next(rng *r)
 {
@@ -24,8 +26,14 @@ static uint32_t next(rng *r)
     return r->state >> 8;
 }
 
-static uint32_t below(rng *r, uint32_t n) { return next(r) % n; }
-static int64_t between(rng *r, int64_t low, int64_t high) { return low + (int64_t)below(r, (uint32_t)(high - low + 1)); }
+static uint32_t below(rng *r, uint32_t n)
+{
+    return next(r) % n;
+}
+static int64_t between(rng *r, int64_t low, int64_t high)
+{
+    return low + (int64_t)below(r, (uint32_t)(high - low + 1));
+}
 
 /* ---- sets of random clips ---- */
 
@@ -40,7 +48,8 @@ typedef struct fixture {
     noh_transform bind;
 } fixture;
 
-static void no_sample(void *user, uint32_t clip, uint32_t tick, uint32_t joints, noh_transform *pose, uint32_t floats, float *values)
+static void no_sample(void *user, uint32_t clip, uint32_t tick, uint32_t joints, noh_transform *pose, uint32_t floats,
+                      float *values)
 {
     (void)user, (void)clip, (void)tick, (void)joints, (void)pose, (void)floats, (void)values;
 }
@@ -91,8 +100,14 @@ static void random_set(rng *r, fixture *f, uint32_t duration_max)
 
 /* ---- the oracle: the definition in events.h, tick by tick and key by key ---- */
 
-static int64_t modulo(int64_t a, int64_t b) { return ((a % b) + b) % b; }
-static int64_t floor_of(int64_t a, int64_t b) { return (a - modulo(a, b)) / b; }
+static int64_t modulo(int64_t a, int64_t b)
+{
+    return ((a % b) + b) % b;
+}
+static int64_t floor_of(int64_t a, int64_t b)
+{
+    return (a - modulo(a, b)) / b;
+}
 
 /* Whether a key of tick t happens at tick u, and in which pass. */
 static int happens(noh_loop loop, int64_t d, int64_t t, int64_t u, int64_t *pass)
@@ -127,15 +142,17 @@ static void push(list *l, happening h)
 static int same_lists(const list *a, const list *b)
 {
     uint32_t same = 0;
-    while (same < a->count && same < b->count && a->items[same].clock == b->items[same].clock && a->items[same].u == b->items[same].u
-           && a->items[same].track == b->items[same].track && a->items[same].index == b->items[same].index) {
+    while (same < a->count && same < b->count && a->items[same].clock == b->items[same].clock &&
+           a->items[same].u == b->items[same].u && a->items[same].track == b->items[same].track &&
+           a->items[same].index == b->items[same].index) {
         same++;
     }
     return same == a->count && same == b->count;
 }
 
 /* The keys that happen at tick u, in order, if that tick is passed from `from` to `to`. */
-static void oracle_tick(const noh_event_key *keys, uint32_t count, const noh_passage *p, int64_t u, noh_key_fn fn, void *user)
+static void oracle_tick(const noh_event_key *keys, uint32_t count, const noh_passage *p, int64_t u, noh_key_fn fn,
+                        void *user)
 {
     int64_t d = (int64_t)p->duration_ticks, at = u * 65536, pass, from_pass, passes[2] = { 0, 0 };
     int passed = p->backward ? at >= p->to && at < p->from : at > p->from && at <= p->to;
@@ -196,14 +213,16 @@ static noh_passage random_passage(rng *r, const noh_clip_entry *m)
 }
 
 /* A passage cut in two at random gives the list of the whole. */
-static void passages_join(rng *r, const noh_event_key *keys, uint32_t count, const noh_passage *whole, const list *wanted)
+static void passages_join(rng *r, const noh_event_key *keys, uint32_t count, const noh_passage *whole,
+                          const list *wanted)
 {
     int64_t low = whole->from < whole->to ? whole->from : whole->to, high = whole->from + whole->to - low;
     noh_passage first = *whole, second = *whole;
     list parts = { NULL, 0, 0 };
     if (high > low) {
         first.to = second.from = low + (int64_t)(((uint64_t)next(r) << 16) % (uint64_t)(high - low));
-        if (below(r, 2) && floor_of(first.to, 65536) * 65536 >= low) first.to = second.from = floor_of(first.to, 65536) * 65536;
+        if (below(r, 2) && floor_of(first.to, 65536) * 65536 >= low)
+            first.to = second.from = floor_of(first.to, 65536) * 65536;
     }
     if (first.to != first.from) second.placed = 0;
     if (high > low && first.to == first.from) first.placed = 0; /* nothing moved: still placed in the second */
@@ -230,7 +249,8 @@ static void test_passages_against_the_definition(void **state)
         oracle_pass(f.keys, m->event_count, &p, collect, &wanted);
         noh_events_pass(f.keys, m->event_count, &p, UINT32_MAX, collect, &got);
         if (!same_lists(&wanted, &got)) {
-            print_message("round %d: from %ld to %ld d %u loop %u placed %u\n", round, (long)p.from, (long)p.to, p.duration_ticks, p.loop, p.placed);
+            print_message("round %d: from %ld to %ld d %u loop %u placed %u\n", round, (long)p.from, (long)p.to,
+                          p.duration_ticks, p.loop, p.placed);
         }
         assert_true(same_lists(&wanted, &got));
         any = noh_events_first(f.keys, m->event_count, &p, &first);
@@ -310,7 +330,8 @@ static void sim_act(sim *s, const noh_event_key *key)
     const noh_clip_entry *m = &s->f->clips[t->clip];
     int64_t d = (int64_t)m->duration_ticks, cycle = t->loop == NOH_LOOP_PING_PONG ? 2 * d : d;
     switch (a.kind) {
-    case 0: case 1:
+    case 0:
+    case 1:
         t->clip = a.clip;
         t->loop = s->f->clips[a.clip].loop;
         t->speed = a.speed;
@@ -320,7 +341,11 @@ static void sim_act(sim *s, const noh_event_key *key)
         break;
     case 2: t->weight = a.weight; break;
     case 3: t->speed = a.speed; break;
-    case 4: sim_place(t, m, t->loop == NOH_LOOP_ONCE || d == 0 ? a.tick * 65536 : (floor_of(t->position, cycle * 65536) * cycle + a.tick) * 65536); break;
+    case 4:
+        sim_place(t, m,
+                  t->loop == NOH_LOOP_ONCE || d == 0 ? a.tick * 65536
+                                                     : (floor_of(t->position, cycle * 65536) * cycle + a.tick) * 65536);
+        break;
     case 5: t->on = !t->on; break;
     default: break;
     }
@@ -368,7 +393,9 @@ static void sim_tick(sim *s)
         sinks[i].weight = t->weight;
     }
     for (uint32_t i = 0; i < TRACKS; i++) {
-        if (moved[i]) oracle_pass(s->f->keys + sinks[i].clip * KEYS, s->f->clips[sinks[i].clip].event_count, &p[i], sim_key, &sinks[i]);
+        if (moved[i])
+            oracle_pass(s->f->keys + sinks[i].clip * KEYS, s->f->clips[sinks[i].clip].event_count, &p[i], sim_key,
+                        &sinks[i]);
     }
 }
 
@@ -397,10 +424,13 @@ static void play_event(void *user, const noh_event *e)
     d.weight = a.weight;
     d.position_ticks = a.tick;
     switch (a.kind) {
-    case 0: case 1: assert_int_equal(noh_controller_start(p->c, &p->f->set, a.track, &d, NULL), NOH_OK); break;
+    case 0:
+    case 1: assert_int_equal(noh_controller_start(p->c, &p->f->set, a.track, &d, NULL), NOH_OK); break;
     case 2: assert_int_equal(noh_controller_set_weight(p->c, a.track, a.weight), NOH_OK); break;
     case 3: assert_int_equal(noh_controller_set_speed(p->c, a.track, a.speed), NOH_OK); break;
-    case 4: assert_int_equal(noh_controller_seek(p->c, &p->f->set, a.track, a.tick, NOH_SEEK_SKIP, NULL), NOH_OK); break;
+    case 4:
+        assert_int_equal(noh_controller_seek(p->c, &p->f->set, a.track, a.tick, NOH_SEEK_SKIP, NULL), NOH_OK);
+        break;
     case 5: {
         int off = noh_controller_track(p->c, a.track)->mode == NOH_TRACK_OFF;
         assert_int_equal(noh_controller_set_mode(p->c, a.track, off ? NOH_TRACK_ON : NOH_TRACK_OFF), NOH_OK);
@@ -449,7 +479,8 @@ static uint32_t partition_step(rng *r, uint32_t style)
     }
 }
 
-static uint64_t play_partition(const fixture *f, uint32_t seed, uint32_t style, uint32_t ticks, int actions, play *p, void *memory, size_t bytes)
+static uint64_t play_partition(const fixture *f, uint32_t seed, uint32_t style, uint32_t ticks, int actions, play *p,
+                               void *memory, size_t bytes)
 {
     noh_controller_desc d;
     rng r = { seed ^ (style * 77777u) };
@@ -497,9 +528,12 @@ static void test_every_partition_gives_the_oracles_list(void **state)
         for (uint32_t style = 0; style < 4; style++) {
             play p;
             steps += play_partition(&f, seed, style, ticks, actions, &p, memory, sizeof memory);
-            if (!same_lists(&s.out, &p.out)) print_message("case %u seed %u style %u: %u against %u\n", cases, seed, style, s.out.count, p.out.count);
+            if (!same_lists(&s.out, &p.out))
+                print_message("case %u seed %u style %u: %u against %u\n", cases, seed, style, s.out.count,
+                              p.out.count);
             assert_true(same_lists(&s.out, &p.out));
-            for (uint32_t i = 0; i < TRACKS; i++) assert_int_equal(noh_controller_track(p.c, i)->position, s.tracks[i].position);
+            for (uint32_t i = 0; i < TRACKS; i++)
+                assert_int_equal(noh_controller_track(p.c, i)->position, s.tracks[i].position);
             free(p.out.items);
         }
         events += s.out.count;
@@ -507,8 +541,8 @@ static void test_every_partition_gives_the_oracles_list(void **state)
         cases++;
         free(s.out.items);
     }
-    print_message("%u cases, %lu steps, %lu events in each partition's list; loop modes %u %u %u\n", cases, (unsigned long)steps,
-                  (unsigned long)events, per_loop[1], per_loop[2], per_loop[3]);
+    print_message("%u cases, %lu steps, %lu events in each partition's list; loop modes %u %u %u\n", cases,
+                  (unsigned long)steps, (unsigned long)events, per_loop[1], per_loop[2], per_loop[3]);
     assert_true(per_loop[1] && per_loop[2] && per_loop[3] && events > 20000);
 }
 
@@ -532,7 +566,8 @@ static void add_changes(rng *r, const fixture *f, noh_controller *c)
     }
 }
 
-static uint64_t play_changes(const fixture *f, uint32_t seed, uint32_t style, uint32_t ticks, int sync, play *p, void *memory, size_t bytes)
+static uint64_t play_changes(const fixture *f, uint32_t seed, uint32_t style, uint32_t ticks, int sync, play *p,
+                             void *memory, size_t bytes)
 {
     noh_controller_desc d;
     rng r = { seed }, cut = { seed ^ (style * 77777u) };
@@ -594,7 +629,8 @@ static void compare_changes(rng *r, int sync, uint64_t *steps, uint64_t *events)
     for (uint32_t style = 1; style < 4; style++) {
         play p;
         *steps += play_changes(&f, seed, style, ticks, sync, &p, memory, sizeof memory);
-        if (!same_lists(&one.out, &p.out)) print_message("seed %u style %u sync %d: %u against %u\n", seed, style, sync, one.out.count, p.out.count);
+        if (!same_lists(&one.out, &p.out))
+            print_message("seed %u style %u sync %d: %u against %u\n", seed, style, sync, one.out.count, p.out.count);
         assert_true(same_lists(&one.out, &p.out));
         for (uint32_t i = 0; i < TRACKS; i++) {
             assert_int_equal(noh_controller_track(p.c, i)->position, last[i].position);
@@ -664,7 +700,10 @@ static void expect(one_clip *o, uint32_t ticks, const char *indices)
     assert_string_equal(got, indices);
 }
 
-static void one_close(one_clip *o) { free(o->p.out.items); }
+static void one_close(one_clip *o)
+{
+    free(o->p.out.items);
+}
 
 static void test_start_end_seam_and_turn(void **state)
 {
@@ -677,16 +716,18 @@ static void test_start_end_seam_and_turn(void **state)
     expect(&o, 1, "0");
     expect(&o, 3, "");
     expect(&o, 1, "12");
-    expect(&o, 5, "30");  /* the end, then the next start */
+    expect(&o, 5, "30"); /* the end, then the next start */
     expect(&o, 20, "12301230");
     one_start(&o, 10, -NOH_SPEED_ONE);
     expect(&o, 1, "3");
-    expect(&o, 4, "12");   /* backwards, equal ticks keep their order */
+    expect(&o, 4, "12"); /* backwards, equal ticks keep their order */
     expect(&o, 5, "03");
     one_close(&o);
     one_open(&o, 10, NOH_LOOP_PING_PONG, ticks, 4);
     one_start(&o, 0, NOH_SPEED_ONE);
-    expect(&o, 40, "0123120" "123120");
+    expect(&o, 40,
+           "0123120"
+           "123120");
     one_close(&o);
     one_open(&o, 10, NOH_LOOP_ONCE, ticks, 4);
     one_start(&o, 0, NOH_SPEED_ONE);
@@ -826,7 +867,8 @@ static void test_a_step_is_bounded(void **state)
         assert_int_equal(noh_controller_step(o.c, &o.f.set, UINT32_MAX, NULL, NULL), NOH_STEP_EVENTS_MAX);
         assert_int_equal(o.c->clock, UINT32_MAX);
         assert_true(o.c->flags & NOH_CONTROLLER_EVENTS_CUT);
-        assert_int_equal(noh_controller_step(o.c, &o.f.set, 2, NULL, NULL), 3 * 2 * 256); /* and the next step is whole again */
+        assert_int_equal(noh_controller_step(o.c, &o.f.set, 2, NULL, NULL),
+                         3 * 2 * 256); /* and the next step is whole again */
         assert_false(o.c->flags & NOH_CONTROLLER_EVENTS_CUT);
         one_start(&o, 0, NOH_SPEED_ONE);
         assert_int_equal(noh_controller_seek(o.c, &o.f.set, 0, way * ((int64_t)1 << 43), NOH_SEEK_FIRE, NULL), NOH_OK);
@@ -957,8 +999,8 @@ static void test_bounds_saturate(void **state)
     assert_int_equal(noh_events_max(5, 0, NOH_LOOP_REPEAT, UINT64_MAX, 1), 5);
 }
 
-/* Near a turn a clip that goes to and fro passes a key twice in a few ticks, and twice again where the speed changes its
- * sign in the same step: four times in a way far shorter than the clip. The bound of a step counts both ways. */
+/* Near a turn a clip that goes to and fro passes a key twice in a few ticks, and twice again where the speed changes
+ * its sign in the same step: four times in a way far shorter than the clip. The bound of a step counts both ways. */
 static void a_bound_holds_for_a_turn_within_the_step(void **state)
 {
     static const uint32_t ticks[] = { 998 };

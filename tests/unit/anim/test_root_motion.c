@@ -19,7 +19,8 @@ typedef struct walk {
     double turn, step, start_turn;
 } walk;
 
-static void walk_sample(void *user, uint32_t clip, uint32_t tick, uint32_t joints, noh_transform *pose, uint32_t floats, float *values)
+static void walk_sample(void *user, uint32_t clip, uint32_t tick, uint32_t joints, noh_transform *pose, uint32_t floats,
+                        float *values)
 {
     walk *w = user;
     double s = (double)tick / (double)w->clip[clip].duration_ticks, heading = w->start_turn + w->turn * s;
@@ -53,7 +54,8 @@ static void walk_open(walk *w, double turn, double step, uint32_t duration, uint
     w->set.sample = walk_sample;
     w->set.user = w;
     assert_int_equal(noh_clip_set_check(&w->set, NULL), NOH_OK);
-    for (uint32_t m = 0; m < 2; m++) assert_int_equal(noh_root_track_measure(&w->set, m, axes, 1, &w->roots[m], NULL), NOH_OK);
+    for (uint32_t m = 0; m < 2; m++)
+        assert_int_equal(noh_root_track_measure(&w->set, m, axes, 1, &w->roots[m], NULL), NOH_OK);
     w->set.roots = w->roots;
 }
 
@@ -104,7 +106,8 @@ static void test_group_laws(void **state)
 {
     (void)state;
     for (uint32_t up = 0; up < 3; up++) {
-        noh_root_pose a = { { 0.3, -1.0, 2.0 }, 0x13572468u, 0 }, b = { { -4.0, 0.5, 0.25 }, 0xc0ffee00u, 0 }, inverse, x, y, none = { { 0, 0, 0 }, 0, 0 };
+        noh_root_pose a = { { 0.3, -1.0, 2.0 }, 0x13572468u, 0 }, b = { { -4.0, 0.5, 0.25 }, 0xc0ffee00u, 0 }, inverse,
+                      x, y, none = { { 0, 0, 0 }, 0, 0 };
         inverse = noh_root_inverse(up, &a);
         x = noh_root_compose(up, &a, &inverse);
         assert_true(root_apart(&x, &none) < 1e-14);
@@ -224,7 +227,8 @@ static void test_steps_add_up(void **state)
             steps++;
         }
         want = noh_root_at(&w.set, &w.roots[0], 0, NOH_LOOP_REPEAT, end);
-        print_message("%u steps over 100000 passes: %.2g off, %.6g away\n", steps, root_apart(&world, &want), fabs(want.translation[0]) + fabs(want.translation[2]));
+        print_message("%u steps over 100000 passes: %.2g off, %.6g away\n", steps, root_apart(&world, &want),
+                      fabs(want.translation[0]) + fabs(want.translation[2]));
         assert_int_equal(world.turn, want.turn);
         assert_true(root_apart(&world, &want) < 2e-8);
     }
@@ -240,7 +244,8 @@ static void sums_of_moves_do_not_drift(void **state)
     (void)state;
     walk_open(&w, 0.7, 1.3, 48000, NOH_ROOT_GROUND);
     for (uint32_t i = 0; i < 60u * 20000u; i++) {
-        noh_root_pose move = noh_root_between(&w.set, &w.roots[0], 0, NOH_LOOP_REPEAT, position, position + noh_position_of(800));
+        noh_root_pose move = noh_root_between(&w.set, &w.roots[0], 0, NOH_LOOP_REPEAT, position,
+                                              position + noh_position_of(800));
         float s, c;
         noh_sin_cos(heading, &s, &c);
         x += c * (float)move.translation[0] + s * (float)move.translation[2];
@@ -251,7 +256,8 @@ static void sums_of_moves_do_not_drift(void **state)
     }
     want = noh_root_at(&w.set, &w.roots[0], 0, NOH_LOOP_REPEAT, position);
     print_message("20000 passes: %.3g off in floats, %.3g composed\n",
-                  fabs((double)x - want.translation[0]) + fabs((double)z - want.translation[2]), root_apart(&composed, &want));
+                  fabs((double)x - want.translation[0]) + fabs((double)z - want.translation[2]),
+                  root_apart(&composed, &want));
     assert_int_equal(composed.turn, want.turn);
     assert_true(root_apart(&composed, &want) < 1e-6);
     assert_true(fabs((double)x - want.translation[0]) + fabs((double)z - want.translation[2]) > 1e-3);
@@ -294,7 +300,10 @@ static void stage_open(stage *g, uint32_t axes)
     stage_controller(g);
 }
 
-static void start(stage *g, uint32_t track, noh_track_desc d) { assert_int_equal(noh_controller_start(g->c, &g->w.set, track, &d, NULL), NOH_OK); }
+static void start(stage *g, uint32_t track, noh_track_desc d)
+{
+    assert_int_equal(noh_controller_start(g->c, &g->w.set, track, &d, NULL), NOH_OK);
+}
 
 static void test_one_track_moves_as_its_clip(void **state)
 {
@@ -363,7 +372,8 @@ static void test_moves_are_blended_by_weight_and_group(void **state)
     assert_true(root_apart(&got, &want) < 1e-12);
 }
 
-/* A clip of floats alone, or one whose mask leaves the root out, takes no part: the walk goes as far as it does alone. */
+/* A clip of floats alone, or one whose mask leaves the root out, takes no part: the walk goes as far as it does alone.
+ */
 static void test_what_moves_no_joints_does_not_hold_the_root(void **state)
 {
     static const uint8_t no_joints[1] = { 0 };
@@ -392,7 +402,8 @@ static void test_what_moves_no_joints_does_not_hold_the_root(void **state)
             start(&g, 2, bow);
             noh_controller_step(g.c, &g.w.set, 3000, NULL, NULL);
             got = noh_controller_root_motion(g.c, &g.w.set);
-            alone = noh_root_between(&g.w.set, &g.w.roots[0], 0, NOH_LOOP_REPEAT, noh_position_of(6000), noh_position_of(9000));
+            alone = noh_root_between(&g.w.set, &g.w.roots[0], 0, NOH_LOOP_REPEAT, noh_position_of(6000),
+                                     noh_position_of(9000));
             assert_true(root_apart(&got, &alone) < 1e-12);
         }
     }
@@ -447,7 +458,8 @@ static void opposite_turns_are_averaged_as_angles(void **state)
         a = noh_root_between(&g.w.set, &g.w.roots[0], 0, NOH_LOOP_REPEAT, 0, noh_position_of(3000));
         b = noh_root_between(&g.w.set, &g.w.roots[0], 0, NOH_LOOP_REPEAT, 0, noh_position_of(-3000));
         assert_true((int32_t)a.turn > 0 && (int32_t)b.turn < 0);
-        mean = backward ? 0.25 * (double)(int32_t)a.turn + 0.75 * (double)(int32_t)b.turn : (2.0 * (double)(int32_t)a.turn + (double)(int32_t)b.turn) / 3.0;
+        mean = backward ? 0.25 * (double)(int32_t)a.turn + 0.75 * (double)(int32_t)b.turn
+                        : (2.0 * (double)(int32_t)a.turn + (double)(int32_t)b.turn) / 3.0;
         got = noh_controller_root_motion(g.c, &g.w.set);
         assert_true(backward ? mean < 0.0 : mean > 0.0);
         assert_true(fabs((double)(int32_t)got.turn - mean) <= 0.5001);

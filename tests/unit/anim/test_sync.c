@@ -155,7 +155,7 @@ static void a_group_moves_at_its_weighted_mean(void **state)
     mean = (3.0 / 48000.0 + 1.0 / 30000.0) / 4.0;
     assert_true(fabs((double)t[0].rate - mean * 48000.0 * 65536.0) <= 0.5);
     assert_true(fabs((double)t[1].rate - mean * 30000.0 * 65536.0) <= 1.5);
-    assert_int_equal(t[2].rate, 77); /* who is off neither weighs nor moves */
+    assert_int_equal(t[2].rate, 77);  /* who is off neither weighs nor moves */
     t[0].weight = t[1].weight = 0.0f; /* nobody weighs anything: the leader's own speed */
     noh_sync_speeds(&s.set, t, 3, 480);
     assert_int_equal(t[0].rate, NOH_SPEED_ONE);

@@ -11,7 +11,8 @@
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define SLACK 16384.0L /* long double may have 53 bits */
 
-static const int64_t positions[] = { INT64_MIN, INT64_MIN + 1, -((int64_t)1 << 62), -65536, -1, 0, 1, 65536, (int64_t)1 << 62, INT64_MAX - 1, INT64_MAX };
+static const int64_t positions[] = { INT64_MIN, INT64_MIN + 1, -((int64_t)1 << 62), -65536,        -1,       0,
+                                     1,         65536,         (int64_t)1 << 62,    INT64_MAX - 1, INT64_MAX };
 static const uint32_t durations[] = { 0, 1, 2, 3, 48000, 999983, NOH_DURATION_MAX };
 
 /* In the clip for every position, and a whole number of cycles from what it was. */
@@ -31,8 +32,9 @@ static void every_position_lies_in_its_clip(void **state)
             }
         }
     }
-    assert_int_equal(noh_time_clip(INT64_MIN, 3, NOH_LOOP_REPEAT), 65536); /* 2^63 = 2^47 ticks, 2 more than a multiple of 3 */
-    assert_int_equal(noh_time_clip(INT64_MIN, 1, NOH_LOOP_PING_PONG), 0);  /* an even number of legs back */
+    assert_int_equal(noh_time_clip(INT64_MIN, 3, NOH_LOOP_REPEAT),
+                     65536); /* 2^63 = 2^47 ticks, 2 more than a multiple of 3 */
+    assert_int_equal(noh_time_clip(INT64_MIN, 1, NOH_LOOP_PING_PONG), 0); /* an even number of legs back */
     assert_int_equal(noh_time_clip(INT64_MIN + 65536, 1, NOH_LOOP_PING_PONG), 65536);
 }
 
@@ -81,7 +83,8 @@ static void rebasing_keeps_the_place(void **state)
         for (size_t d = 0; d < COUNT(durations); d++) {
             for (int loop = NOH_LOOP_ONCE; loop <= NOH_LOOP_PING_PONG; loop++) {
                 const int64_t less = positions[p] - noh_time_rebase(positions[p], durations[d], (noh_loop)loop);
-                assert_int_equal(noh_time_clip(less, durations[d], (noh_loop)loop), noh_time_clip(positions[p], durations[d], (noh_loop)loop));
+                assert_int_equal(noh_time_clip(less, durations[d], (noh_loop)loop),
+                                 noh_time_clip(positions[p], durations[d], (noh_loop)loop));
             }
         }
     }
@@ -99,10 +102,8 @@ static void seconds_become_the_nearest_tick(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(every_position_lies_in_its_clip),
-    cmocka_unit_test(advancing_never_overflows),
-    cmocka_unit_test(positions_of_ticks_are_held),
-    cmocka_unit_test(rebasing_keeps_the_place),
+    cmocka_unit_test(every_position_lies_in_its_clip), cmocka_unit_test(advancing_never_overflows),
+    cmocka_unit_test(positions_of_ticks_are_held),     cmocka_unit_test(rebasing_keeps_the_place),
     cmocka_unit_test(seconds_become_the_nearest_tick),
 };
 

@@ -20,11 +20,15 @@ static noh_track started(const scene *s, noh_track_desc d)
 /* Each loop mode at, before and behind its edges: clip position and leg, in ticks. */
 static void clips_fold_positions(void **state)
 {
-    static const struct { noh_loop loop; int64_t at, clip, leg; } rows[] = {
-        { NOH_LOOP_ONCE, -5, 0, 0 }, { NOH_LOOP_ONCE, 40, 40, 0 }, { NOH_LOOP_ONCE, 100, 100, 0 }, { NOH_LOOP_ONCE, 130, 100, 0 },
-        { NOH_LOOP_REPEAT, 0, 0, 0 }, { NOH_LOOP_REPEAT, 100, 0, 1 }, { NOH_LOOP_REPEAT, 130, 30, 1 }, { NOH_LOOP_REPEAT, -30, 70, -1 },
-        { NOH_LOOP_PING_PONG, 100, 100, 1 }, { NOH_LOOP_PING_PONG, 130, 70, 1 }, { NOH_LOOP_PING_PONG, 200, 0, 2 },
-        { NOH_LOOP_PING_PONG, 230, 30, 2 }, { NOH_LOOP_PING_PONG, -30, 30, -1 }, { NOH_LOOP_PING_PONG, -130, 70, -2 },
+    static const struct {
+        noh_loop loop;
+        int64_t at, clip, leg;
+    } rows[] = {
+        { NOH_LOOP_ONCE, -5, 0, 0 },         { NOH_LOOP_ONCE, 40, 40, 0 },         { NOH_LOOP_ONCE, 100, 100, 0 },
+        { NOH_LOOP_ONCE, 130, 100, 0 },      { NOH_LOOP_REPEAT, 0, 0, 0 },         { NOH_LOOP_REPEAT, 100, 0, 1 },
+        { NOH_LOOP_REPEAT, 130, 30, 1 },     { NOH_LOOP_REPEAT, -30, 70, -1 },     { NOH_LOOP_PING_PONG, 100, 100, 1 },
+        { NOH_LOOP_PING_PONG, 130, 70, 1 },  { NOH_LOOP_PING_PONG, 200, 0, 2 },    { NOH_LOOP_PING_PONG, 230, 30, 2 },
+        { NOH_LOOP_PING_PONG, -30, 30, -1 }, { NOH_LOOP_PING_PONG, -130, 70, -2 },
     };
     (void)state;
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
@@ -32,23 +36,27 @@ static void clips_fold_positions(void **state)
         assert_int_equal(noh_time_legs(noh_position_of(rows[i].at), 100, rows[i].loop), rows[i].leg);
     }
     assert_int_equal(noh_time_clip(noh_position_of(7), 0, NOH_LOOP_REPEAT), 0); /* a pose: no duration */
-    assert_int_equal(noh_time_advance(noh_position_of(90), 2 * NOH_SPEED_ONE, 10, 100, NOH_LOOP_ONCE), noh_position_of(100));
+    assert_int_equal(noh_time_advance(noh_position_of(90), 2 * NOH_SPEED_ONE, 10, 100, NOH_LOOP_ONCE),
+                     noh_position_of(100));
     assert_int_equal(noh_time_advance(noh_position_of(9), -NOH_SPEED_ONE, 10, 100, NOH_LOOP_ONCE), 0);
-    assert_int_equal(noh_time_advance(noh_position_of(9), -NOH_SPEED_ONE, 10, 100, NOH_LOOP_REPEAT), noh_position_of(-1));
+    assert_int_equal(noh_time_advance(noh_position_of(9), -NOH_SPEED_ONE, 10, 100, NOH_LOOP_REPEAT),
+                     noh_position_of(-1));
 }
 
-/* A huge position is brought near 0 by whole cycles of two durations: neither the place nor the direction of a clip that
- * goes to and fro may change, in odd passes as in even ones. */
+/* A huge position is brought near 0 by whole cycles of two durations: neither the place nor the direction of a clip
+ * that goes to and fro may change, in odd passes as in even ones. */
 static void rebasing_keeps_place_and_direction(void **state)
 {
     const int64_t d = noh_position_of(100);
     (void)state;
     for (int64_t k = 0; k < 4; k++) {
         for (int sign = -1; sign <= 1; sign += 2) {
-            const int64_t p = sign * (NOH_POSITION_MAX / d * d + (k + 2) * d + 777), less = p - noh_time_rebase(p, 100, NOH_LOOP_PING_PONG);
+            const int64_t p = sign * (NOH_POSITION_MAX / d * d + (k + 2) * d + 777),
+                          less = p - noh_time_rebase(p, 100, NOH_LOOP_PING_PONG);
             assert_true(less > -2 * d && less < 2 * d);
             assert_int_equal(noh_time_clip(p, 100, NOH_LOOP_PING_PONG), noh_time_clip(less, 100, NOH_LOOP_PING_PONG));
-            assert_int_equal(noh_time_legs(p, 100, NOH_LOOP_PING_PONG) & 1, noh_time_legs(less, 100, NOH_LOOP_PING_PONG) & 1);
+            assert_int_equal(noh_time_legs(p, 100, NOH_LOOP_PING_PONG) & 1,
+                             noh_time_legs(less, 100, NOH_LOOP_PING_PONG) & 1);
         }
     }
     assert_int_equal(noh_time_rebase(NOH_POSITION_MAX, 100, NOH_LOOP_REPEAT), 0);
@@ -117,7 +125,9 @@ static void descs_have_defaults(void **state)
     t = started(&s, (noh_track_desc){ .clip = WAVE });
     assert_true(t.weight == 1.0f && t.speed == NOH_SPEED_ONE && t.mode == NOH_TRACK_ON && t.loop == NOH_LOOP_PING_PONG);
     assert_true(t.placed && t.position == 0 && t.root_position == 0);
-    t = started(&s, (noh_track_desc){ .clip = JUMP, .flags = NOH_TRACK_SILENT | NOH_TRACK_PAUSED | NOH_TRACK_ADDITIVE, .position_ticks = 99999 });
+    t = started(&s, (noh_track_desc){ .clip = JUMP,
+                                      .flags = NOH_TRACK_SILENT | NOH_TRACK_PAUSED | NOH_TRACK_ADDITIVE,
+                                      .position_ticks = 99999 });
     assert_true(t.weight == 0.0f && t.speed == 0 && t.rate == 0 && t.flags == NOH_TRACK_ADDITIVE);
     assert_int_equal(t.position, noh_position_of(36000)); /* held at the end of a clip that plays once */
 }
@@ -125,7 +135,8 @@ static void descs_have_defaults(void **state)
 static void ramps_end_and_ping_pong_goes_on(void **state)
 {
     (void)state;
-    assert_true(noh_ramp(0, 10) == 0.0f && noh_ramp(5, 10) == 0.5f && noh_ramp(11, 10) == 1.0f && noh_ramp(0, 0) == 1.0f);
+    assert_true(noh_ramp(0, 10) == 0.0f && noh_ramp(5, 10) == 0.5f && noh_ramp(11, 10) == 1.0f &&
+                noh_ramp(0, 0) == 1.0f);
     for (int64_t t = -30; t < 30; t++) {
         const int64_t phase = (t + 300) % 20;
         assert_true(noh_ping_pong(t, 10) == (float)(phase <= 10 ? phase : 20 - phase) / 10.0f);

@@ -22,8 +22,9 @@ static noh_pack pack;
 
 static int set_up(void **state)
 {
-    static const char keys[] = "walk 0.5 left marker\nwalk 0 begin 3\nwalk 1.0 step 7\nwalk 1.5 right marker\nwalk 8 end\n"
-                               "turn 0.1 right marker\nturn 0.6 left marker\n";
+    static const char keys[] =
+        "walk 0.5 left marker\nwalk 0 begin 3\nwalk 1.0 step 7\nwalk 1.5 right marker\nwalk 8 end\n"
+        "turn 0.1 right marker\nturn 0.6 left marker\n";
     const char *inputs[2];
     convert_options options;
     (void)state;
@@ -138,7 +139,8 @@ static void a_key_s_smallest_weight_is_kept(void **state)
     for (uint32_t i = 0; i <= 3; i++) { /* 0.2, 0.45, 0.7, 0.95: heavy enough for i of the keys */
         clip_start(&player, walk, NOH_LOOP_ONCE, 0, 0);
         assert_int_equal(noh_controller_set_weight(player.c, 0, 0.2f + 0.25f * (float)i), NOH_OK);
-        assert_int_equal(noh_controller_step(player.c, &set->clips, set->clips.clips[walk].duration_ticks + 1u, NULL, NULL), i);
+        assert_int_equal(
+            noh_controller_step(player.c, &set->clips, set->clips.clips[walk].duration_ticks + 1u, NULL, NULL), i);
     }
     clip_player_close(&player);
     free(set);
@@ -406,7 +408,8 @@ static uint64_t play_a_minute(noh_loop loop, int32_t speed, uint32_t ahead_ticks
 
 static void nothing_is_decoded_late(void **state)
 {
-    static const int32_t speeds[] = { NOH_SPEED_ONE, -NOH_SPEED_ONE, 5 * NOH_SPEED_ONE / 2, -5 * NOH_SPEED_ONE / 2, NOH_SPEED_ONE / 7 };
+    static const int32_t speeds[] = { NOH_SPEED_ONE, -NOH_SPEED_ONE, 5 * NOH_SPEED_ONE / 2, -5 * NOH_SPEED_ONE / 2,
+                                      NOH_SPEED_ONE / 7 };
     (void)state;
     for (int loop = NOH_LOOP_REPEAT; loop <= NOH_LOOP_PING_PONG; loop++) {
         for (size_t i = 0; i < TEST_COUNT(speeds); i++) {
@@ -485,8 +488,8 @@ static void a_hundred_controllers_share_a_set(void **state)
     clip_player_open(&one, single);
     for (uint32_t i = 0; i < 100; i++) {
         clip_player_open(&crowd[i], set);
-        clip_start(&crowd[i], i % 2, (noh_loop)(NOH_LOOP_REPEAT + i % 2), (int32_t)(i % 3 ? NOH_SPEED_ONE : -NOH_SPEED_ONE),
-                     (int64_t)test_random_below(&r, 90000));
+        clip_start(&crowd[i], i % 2, (noh_loop)(NOH_LOOP_REPEAT + i % 2),
+                   (int32_t)(i % 3 ? NOH_SPEED_ONE : -NOH_SPEED_ONE), (int64_t)test_random_below(&r, 90000));
     }
     for (int frame = 0; frame < 60; frame++) {
         noh_clip_cache_begin_frame(set->cache);
@@ -594,7 +597,8 @@ static void expect_error(const noh_clip_bank_desc *desc, noh_result result, cons
 
 static void another_skeleton_or_unit_is_refused(void **state)
 {
-    const char *other = clip_bvh("walk", "abcdefghix", CLIP_PASS_FRAMES), *same = clip_bvh("turn", NAMES, CLIP_PASS_FRAMES);
+    const char *other = clip_bvh("walk", "abcdefghix", CLIP_PASS_FRAMES),
+               *same = clip_bvh("turn", NAMES, CLIP_PASS_FRAMES);
     convert_options options;
     size_t count;
     uint8_t *made;

@@ -1,5 +1,5 @@
-/* test_threads.c: controllers of one clip set posed by four threads at once, each through its own view: the same bits as one
- * thread, and (tests/tsan.sh) no race. */
+/* test_threads.c: controllers of one clip set posed by four threads at once, each through its own view: the same bits
+ * as one thread, and (tests/tsan.sh) no race. */
 #define _POSIX_C_SOURCE 200112L
 #include "support/set_fixture.h"
 
@@ -10,9 +10,9 @@
 #define FRAMES 40u
 #define JOINTS 12u
 #define CLIPS 5u
-#define STEP 800u          /* 60 Hz */
+#define STEP 800u /* 60 Hz */
 #define AHEAD 9600u
-#define HALF_ENOUGH 400u   /* track-frames in a frame: some segments are decoded ahead, some late */
+#define HALF_ENOUGH 400u /* track-frames in a frame: some segments are decoded ahead, some late */
 
 typedef struct instance {
     noh_controller *c;
@@ -37,7 +37,7 @@ typedef struct crowd {
 typedef struct worker {
     crowd *crowd;
     uint32_t index, thread_count;
-    noh_clip_bank_view *view;   /* NULL: poses through the set itself */
+    noh_clip_bank_view *view; /* NULL: poses through the set itself */
     noh_pose_scratch scratch;
     void *view_memory, *scratch_memory;
 } worker;
@@ -81,7 +81,8 @@ static void start_tracks(instance *in, const noh_clip_set *set, uint32_t number,
         memset(&desc, 0, sizeof desc);
         desc.clip = test_random_below(r, CLIPS);
         desc.position_ticks = test_random_below(r, 300000);
-        desc.speed = (int32_t)(NOH_SPEED_ONE / 2 + (int32_t)test_random_below(r, 2 * NOH_SPEED_ONE)) * (number % 3u ? 1 : -1);
+        desc.speed = (int32_t)(NOH_SPEED_ONE / 2 + (int32_t)test_random_below(r, 2 * NOH_SPEED_ONE)) *
+                     (number % 3u ? 1 : -1);
         desc.weight = t ? 0.6f : 0.0f;
         desc.loop = number % 2u ? NOH_LOOP_REPEAT : NOH_LOOP_PING_PONG;
         desc.group = t ? NOH_GROUP_HIGH : NOH_GROUP_LOW;
@@ -248,7 +249,8 @@ static void expect_same(const crowd *a, const crowd *b)
 {
     for (uint32_t i = 0; i < FRAMES * INSTANCES; i++) {
         const result *x = &a->results[i], *y = &b->results[i];
-        if (memcmp(x->pose, y->pose, sizeof x->pose) || memcmp(x->floats, y->floats, a->set->clips.float_count * sizeof *x->floats) ||
+        if (memcmp(x->pose, y->pose, sizeof x->pose) ||
+            memcmp(x->floats, y->floats, a->set->clips.float_count * sizeof *x->floats) ||
             memcmp(&x->root, &y->root, sizeof x->root)) {
             fail_msg("instance %u differs in frame %u", (unsigned)(i % INSTANCES), (unsigned)(i / INSTANCES));
         }
@@ -295,10 +297,12 @@ static void a_view_only_reads(void **state)
     view_memory = test_aligned(NULL, noh_clip_bank_view_size(set));
     assert_int_equal(noh_clip_bank_view_init(view_memory, noh_clip_bank_view_size(set), set, &view, NULL), NOH_OK);
     for (int i = 0; i < 2000; i++) {
-        const uint32_t clip = test_random_below(&r, CLIPS), tick = test_random_below(&r, set->clips.clips[clip].duration_ticks + 1u);
+        const uint32_t clip = test_random_below(&r, CLIPS),
+                       tick = test_random_below(&r, set->clips.clips[clip].duration_ticks + 1u);
         const uint32_t joints = test_random_below(&r, JOINTS + 1u);
         noh_clip_cache_begin_frame(set->cache);
-        (void)noh_clip_cache_want(set->cache, clip, (int64_t)tick - (int64_t)test_random_below(&r, 20000), test_random_below(&r, JOINTS + 1u));
+        (void)noh_clip_cache_want(set->cache, clip, (int64_t)tick - (int64_t)test_random_below(&r, 20000),
+                                  test_random_below(&r, JOINTS + 1u));
         (void)noh_clip_cache_work(set->cache, test_random_below(&r, 300));
         copy = test_aligned(memory, bytes);
         memset(pose, 0x55, sizeof pose);

@@ -1,5 +1,5 @@
-/* test_errors.c: every function that takes a noh_error fills it when it fails: its result, and a sentence. Each row of the
- * table is one call that has to fail. */
+/* test_errors.c: every function that takes a noh_error fills it when it fails: its result, and a sentence. Each row of
+ * the table is one call that has to fail. */
 #include "support/support.h"
 
 #include <stdlib.h>
@@ -32,20 +32,64 @@ static noh_result of_size(size_t size, const noh_error *error)
 }
 
 #define DESC(type) \
-    type desc; \
+    type desc;     \
     memset(&desc, 0, sizeof desc)
 
-static noh_result arena_null(noh_error *e) { noh_arena a; return noh_arena_open(&a, NULL, 64, 16, e); }
-static noh_result arena_misaligned(noh_error *e) { noh_arena a; return noh_arena_open(&a, s.bytes + 4, 64, 16, e); }
-static noh_result arena_small(noh_error *e) { noh_arena a; return noh_arena_open(&a, s.bytes, 15, 16, e); }
-static noh_result open_null(noh_error *e) { noh_pack p; return noh_pack_open(NULL, 0, &p, e); }
-static noh_result open_cut(noh_error *e) { noh_pack p; return noh_pack_open(s.bytes, s.count - 64, &p, e); }
-static noh_result pack_mesh(noh_error *e) { noh_mesh m; return noh_pack_mesh_at(&s.pack, 1, &m, e); }
-static noh_result pack_skin(noh_error *e) { noh_skin k; return noh_pack_skin_at(&s.pack, 0, &k, e); }
-static noh_result pack_rigid(noh_error *e) { noh_skin k; return noh_pack_skin_at(&s.pack, NOH_NONE, &k, e); }
-static noh_result pack_texture(noh_error *e) { noh_texture t; return noh_pack_texture_at(&s.pack, 0, &t, e); }
-static noh_result pack_skeleton(noh_error *e) { noh_skeleton k; return noh_pack_skeleton_at(&s.pack, 0, &k, NULL, e); }
-static noh_result pack_clip(noh_error *e) { noh_pack_clip m; return noh_pack_clip_at(&s.pack, 0, &m, e); }
+static noh_result arena_null(noh_error *e)
+{
+    noh_arena a;
+    return noh_arena_open(&a, NULL, 64, 16, e);
+}
+static noh_result arena_misaligned(noh_error *e)
+{
+    noh_arena a;
+    return noh_arena_open(&a, s.bytes + 4, 64, 16, e);
+}
+static noh_result arena_small(noh_error *e)
+{
+    noh_arena a;
+    return noh_arena_open(&a, s.bytes, 15, 16, e);
+}
+static noh_result open_null(noh_error *e)
+{
+    noh_pack p;
+    return noh_pack_open(NULL, 0, &p, e);
+}
+static noh_result open_cut(noh_error *e)
+{
+    noh_pack p;
+    return noh_pack_open(s.bytes, s.count - 64, &p, e);
+}
+static noh_result pack_mesh(noh_error *e)
+{
+    noh_mesh m;
+    return noh_pack_mesh_at(&s.pack, 1, &m, e);
+}
+static noh_result pack_skin(noh_error *e)
+{
+    noh_skin k;
+    return noh_pack_skin_at(&s.pack, 0, &k, e);
+}
+static noh_result pack_rigid(noh_error *e)
+{
+    noh_skin k;
+    return noh_pack_skin_at(&s.pack, NOH_NONE, &k, e);
+}
+static noh_result pack_texture(noh_error *e)
+{
+    noh_texture t;
+    return noh_pack_texture_at(&s.pack, 0, &t, e);
+}
+static noh_result pack_skeleton(noh_error *e)
+{
+    noh_skeleton k;
+    return noh_pack_skeleton_at(&s.pack, 0, &k, NULL, e);
+}
+static noh_result pack_clip(noh_error *e)
+{
+    noh_pack_clip m;
+    return noh_pack_clip_at(&s.pack, 0, &m, e);
+}
 
 static noh_result bind_clip(noh_error *e)
 {
@@ -58,8 +102,16 @@ static noh_result bind_clip(noh_error *e)
     return noh_pack_bind_clip(&s.pack, &clip, &skeleton, NULL, e);
 }
 
-static noh_result layers_null(noh_error *e) { noh_morph_layers l; return noh_morph_layers_init(NULL, 0, &s.mesh, &l, e); }
-static noh_result layers_small(noh_error *e) { noh_morph_layers l; return noh_morph_layers_init(s.bytes, 1, &s.mesh, &l, e); }
+static noh_result layers_null(noh_error *e)
+{
+    noh_morph_layers l;
+    return noh_morph_layers_init(NULL, 0, &s.mesh, &l, e);
+}
+static noh_result layers_small(noh_error *e)
+{
+    noh_morph_layers l;
+    return noh_morph_layers_init(s.bytes, 1, &s.mesh, &l, e);
+}
 
 static noh_result pick_along(const float direction[3], noh_error *e)
 {
@@ -69,23 +121,95 @@ static noh_result pick_along(const float direction[3], noh_error *e)
     return noh_pick(&surface, origin, direction, 1.0f, NULL, 0, &hit, e);
 }
 
-static noh_result pick_nowhere(noh_error *e) { return pick_along(s.zero, e); }
-static noh_result pick_nothing(noh_error *e) { const float d[3] = { 1.0f, 0.0f, 0.0f }; return pick_along(d, e); }
+static noh_result pick_nowhere(noh_error *e)
+{
+    return pick_along(s.zero, e);
+}
+static noh_result pick_nothing(noh_error *e)
+{
+    const float d[3] = { 1.0f, 0.0f, 0.0f };
+    return pick_along(d, e);
+}
 
-static noh_result clip_measure(noh_error *e) { DESC(noh_clip_desc); desc.bytes = s.memory.bytes; return noh_clip_measure(&desc, NULL, NULL, e); }
-static noh_result clip_size(noh_error *e) { DESC(noh_clip_desc); desc.bytes = s.memory.bytes; return of_size(noh_clip_size(&desc, e), e); }
-static noh_result clip_init(noh_error *e) { noh_clip *c; DESC(noh_clip_desc); desc.bytes = s.memory.bytes; return noh_clip_init(s.memory.bytes, 64, &desc, &c, e); }
-static noh_result cache_size(noh_error *e) { DESC(noh_clip_cache_desc); return of_size(noh_clip_cache_size(&desc, e), e); }
-static noh_result cache_init(noh_error *e) { noh_clip_cache *c; DESC(noh_clip_cache_desc); return noh_clip_cache_init(s.memory.bytes, 64, &desc, &c, e); }
-static noh_result set_size(noh_error *e) { DESC(noh_clip_bank_desc); return of_size(noh_clip_bank_size(&desc, e), e); }
-static noh_result set_init(noh_error *e) { noh_clip_bank *m; DESC(noh_clip_bank_desc); return noh_clip_bank_init(s.memory.bytes, 64, &desc, &m, e); }
-static noh_result clip_set_check(noh_error *e) { DESC(noh_clip_set); return noh_clip_set_check(&desc, e); }
-static noh_result skeleton_check(noh_error *e) { DESC(noh_skeleton); return noh_skeleton_check(&desc, e); }
-static noh_result queue_init(noh_error *e) { noh_event_queue q; return noh_event_queue_init(NULL, 0, 4, &q, e); }
-static noh_result schedule_init(noh_error *e) { noh_schedule q; return noh_schedule_init(NULL, 0, 4, &q, e); }
-static noh_result settings_check(noh_error *e) { DESC(noh_lod_settings); desc.pixels = -1.0f; return noh_lod_settings_check(&desc, e); }
-static noh_result table_check(noh_error *e) { DESC(noh_lod_table); desc.mesh_level_count = NOH_LOD_LEVELS_MAX + 1u; return noh_lod_table_check(&desc, e); }
-static noh_result pools_init(noh_error *e) { noh_lod_pools *p; DESC(noh_lod_pools_desc); return noh_lod_pools_init(s.memory.bytes, 64, &desc, &p, e); }
+static noh_result clip_measure(noh_error *e)
+{
+    DESC(noh_clip_desc);
+    desc.bytes = s.memory.bytes;
+    return noh_clip_measure(&desc, NULL, NULL, e);
+}
+static noh_result clip_size(noh_error *e)
+{
+    DESC(noh_clip_desc);
+    desc.bytes = s.memory.bytes;
+    return of_size(noh_clip_size(&desc, e), e);
+}
+static noh_result clip_init(noh_error *e)
+{
+    noh_clip *c;
+    DESC(noh_clip_desc);
+    desc.bytes = s.memory.bytes;
+    return noh_clip_init(s.memory.bytes, 64, &desc, &c, e);
+}
+static noh_result cache_size(noh_error *e)
+{
+    DESC(noh_clip_cache_desc);
+    return of_size(noh_clip_cache_size(&desc, e), e);
+}
+static noh_result cache_init(noh_error *e)
+{
+    noh_clip_cache *c;
+    DESC(noh_clip_cache_desc);
+    return noh_clip_cache_init(s.memory.bytes, 64, &desc, &c, e);
+}
+static noh_result set_size(noh_error *e)
+{
+    DESC(noh_clip_bank_desc);
+    return of_size(noh_clip_bank_size(&desc, e), e);
+}
+static noh_result set_init(noh_error *e)
+{
+    noh_clip_bank *m;
+    DESC(noh_clip_bank_desc);
+    return noh_clip_bank_init(s.memory.bytes, 64, &desc, &m, e);
+}
+static noh_result clip_set_check(noh_error *e)
+{
+    DESC(noh_clip_set);
+    return noh_clip_set_check(&desc, e);
+}
+static noh_result skeleton_check(noh_error *e)
+{
+    DESC(noh_skeleton);
+    return noh_skeleton_check(&desc, e);
+}
+static noh_result queue_init(noh_error *e)
+{
+    noh_event_queue q;
+    return noh_event_queue_init(NULL, 0, 4, &q, e);
+}
+static noh_result schedule_init(noh_error *e)
+{
+    noh_schedule q;
+    return noh_schedule_init(NULL, 0, 4, &q, e);
+}
+static noh_result settings_check(noh_error *e)
+{
+    DESC(noh_lod_settings);
+    desc.pixels = -1.0f;
+    return noh_lod_settings_check(&desc, e);
+}
+static noh_result table_check(noh_error *e)
+{
+    DESC(noh_lod_table);
+    desc.mesh_level_count = NOH_LOD_LEVELS_MAX + 1u;
+    return noh_lod_table_check(&desc, e);
+}
+static noh_result pools_init(noh_error *e)
+{
+    noh_lod_pools *p;
+    DESC(noh_lod_pools_desc);
+    return noh_lod_pools_init(s.memory.bytes, 64, &desc, &p, e);
+}
 
 static noh_result triangulate(noh_error *e)
 {
@@ -94,13 +218,17 @@ static noh_result triangulate(noh_error *e)
     return noh_blend_space_2d_triangulate(2, s.zero, triangles, &count, e);
 }
 
-#define CALLS(X) \
-    X(arena_null, ARG) X(arena_misaligned, ARG) X(arena_small, MEMORY) X(open_null, ARG) X(open_cut, DATA) X(pack_mesh, NOT_FOUND) \
-    X(pack_skin, NOT_FOUND) X(pack_rigid, NOT_FOUND) X(pack_texture, NOT_FOUND) X(pack_skeleton, NOT_FOUND) X(pack_clip, NOT_FOUND) \
-    X(bind_clip, NOT_FOUND) X(layers_null, ARG) X(layers_small, MEMORY) X(pick_nowhere, ARG) X(pick_nothing, NOT_FOUND) \
-    X(clip_measure, OK) X(clip_size, OK) X(clip_init, OK) X(cache_size, OK) X(cache_init, OK) X(set_size, OK) X(set_init, OK) \
-    X(clip_set_check, OK) X(skeleton_check, OK) X(queue_init, OK) X(schedule_init, OK) X(settings_check, OK) X(table_check, OK) \
-    X(pools_init, OK) X(triangulate, OK)
+#define CALLS(X)                                                                                                  \
+    X(arena_null, ARG)                                                                                            \
+    X(arena_misaligned, ARG)                                                                                      \
+    X(arena_small, MEMORY)                                                                                        \
+    X(open_null, ARG) X(open_cut, DATA) X(pack_mesh, NOT_FOUND) X(pack_skin, NOT_FOUND) X(pack_rigid, NOT_FOUND)  \
+        X(pack_texture, NOT_FOUND) X(pack_skeleton, NOT_FOUND) X(pack_clip, NOT_FOUND) X(bind_clip, NOT_FOUND)    \
+            X(layers_null, ARG) X(layers_small, MEMORY) X(pick_nowhere, ARG) X(pick_nothing, NOT_FOUND)           \
+                X(clip_measure, OK) X(clip_size, OK) X(clip_init, OK) X(cache_size, OK) X(cache_init, OK)         \
+                    X(set_size, OK) X(set_init, OK) X(clip_set_check, OK) X(skeleton_check, OK) X(queue_init, OK) \
+                        X(schedule_init, OK) X(settings_check, OK) X(table_check, OK) X(pools_init, OK)           \
+                            X(triangulate, OK)
 
 /* expected OK: any error. */
 static void expect_failure(const char *name, noh_result (*call)(noh_error *), noh_result expected)
@@ -111,7 +239,8 @@ static void expect_failure(const char *name, noh_result (*call)(noh_error *), no
         fail_msg("%s: %s, expected %s", name, noh_result_text(result), noh_result_text(expected));
     }
     if (error.result != result || !error.what || !error.what[0]) {
-        fail_msg("%s: result %d, error %d, '%s'", name, (int)result, (int)error.result, error.what ? error.what : "(null)");
+        fail_msg("%s: result %d, error %d, '%s'", name, (int)result, (int)error.result,
+                 error.what ? error.what : "(null)");
     }
     if (call != clip_size && call != cache_size && call != set_size) { /* these tell failure by the error */
         assert_int_equal(call(NULL), result);

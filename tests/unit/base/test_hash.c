@@ -29,7 +29,8 @@ static void crc32c_of_the_iscsi_examples(void **state)
     assert_int_equal(noh_crc32c(0, bytes, 32), 0x113fdb5cu);
 }
 
-/* Against the definition, a bit at a time: every length and alignment around the words that the library takes at once. */
+/* Against the definition, a bit at a time: every length and alignment around the words that the library takes at once.
+ */
 static void crc32c_of_every_length_and_alignment(void **state)
 {
     uint8_t bytes[80];

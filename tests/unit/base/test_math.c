@@ -82,8 +82,8 @@ static void plain_counts_of_zeros_are_the_processor_s(void **state)
     }
 }
 
-/* Halfway between rotations that are far apart a plain mixture has 0.7 of the length or less: skinned by it a limb shrinks.
- * The result is also between the two: at equal angles from both at t = 1/2. */
+/* Halfway between rotations that are far apart a plain mixture has 0.7 of the length or less: skinned by it a limb
+ * shrinks. The result is also between the two: at equal angles from both at t = 1/2. */
 static void nlerp_is_unit(void **state)
 {
     test_random r = test_random_from(9);

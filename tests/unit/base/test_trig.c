@@ -12,7 +12,10 @@
 
 #define PI 3.14159265358979323846
 
-static double worse(double worst, double error) { return fabs(error) > worst ? fabs(error) : worst; }
+static double worse(double worst, double error)
+{
+    return fabs(error) > worst ? fabs(error) : worst;
+}
 
 static void test_sin_cos(void **state)
 {
@@ -32,7 +35,8 @@ static void test_sin_cos(void **state)
     for (uint32_t i = 0; i < 4000000u; i++) {
         uint32_t turn = i * 1073u;
         noh_sin_cos_turn(turn, &s, &c);
-        turns = worse(worse(turns, (double)s - sin((double)turn * PI / 2147483648.0)), (double)c - cos((double)turn * PI / 2147483648.0));
+        turns = worse(worse(turns, (double)s - sin((double)turn * PI / 2147483648.0)),
+                      (double)c - cos((double)turn * PI / 2147483648.0));
         turn = i + 1u;
         noh_sin_cos_turn(turn, &s, &c);
         small = worse(small, (double)s / sin((double)turn * PI / 2147483648.0) - 1.0);
@@ -101,7 +105,8 @@ static void test_quaternions(void **state)
 {
     (void)state;
     for (int i = 1; i < 5000; i++) {
-        float v[3] = { (float)sin(i * 1.7), (float)sin(i * 2.3 + 1.0), (float)cos(i * 0.9) }, q[4], p[4], back[3], turned[3];
+        float v[3] = { (float)sin(i * 1.7), (float)sin(i * 2.3 + 1.0), (float)cos(i * 0.9) }, q[4], p[4], back[3],
+              turned[3];
         float length = sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]), scale = (float)(i % 314) * 0.01f / length;
         double angle = (double)scale * (double)length, axis[3], dot = 0.0;
         for (int k = 0; k < 3; k++) {

@@ -28,13 +28,15 @@ static void bounds_hold_every_skinned_vertex(void **state)
         noh_joint_bounds(&s.skeleton, matrices, margin, count, &b);
         for (int v = 0; v < 200; v++) {
             uint32_t j = test_random_below(&r, JOINTS), at = j;
-            float direction[3] = { test_random_float(&r, -1, 1), test_random_float(&r, -1, 1), test_random_float(&r, -1, 1) };
+            float direction[3] = { test_random_float(&r, -1, 1), test_random_float(&r, -1, 1),
+                                   test_random_float(&r, -1, 1) };
             float p[3], out[3], far2 = 0.0f;
             noh_normalize3(direction, (const float[3]){ 1, 0, 0 });
             if (margin[j] < 0.0f) continue;
             while (at >= count) at = s.parents[at];
-            for (int i = 0; i < 3; i++) p[i] = bind[12 * j + 4u * (uint32_t)i + 3] + direction[i] * margin[j]; /* in the bind pose */
-            for (int i = 0; i < 3; i++) p[i] -= bind[12 * at + 4u * (uint32_t)i + 3];                          /* to the joint that carries it */
+            for (int i = 0; i < 3; i++)
+                p[i] = bind[12 * j + 4u * (uint32_t)i + 3] + direction[i] * margin[j]; /* in the bind pose */
+            for (int i = 0; i < 3; i++) p[i] -= bind[12 * at + 4u * (uint32_t)i + 3]; /* to the joint that carries it */
             for (uint32_t i = 0; i < 3; i++) {
                 const float *m = matrices + 12 * at + 4 * i;
                 out[i] = m[0] * p[0] + m[1] * p[1] + m[2] * p[2] + m[3];

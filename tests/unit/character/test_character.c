@@ -46,7 +46,8 @@ static void measure_errors(stage *g)
     probe.joint_radius_m = g->margin;
     memory = test_aligned(NULL, noh_time_lod_measure_size(&probe));
     for (uint32_t m = 0; m < CLIPS; m++) {
-        assert_int_equal(noh_time_lod_measure(memory, noh_time_lod_measure_size(&probe), &probe, m, errors[m], NULL), NOH_OK);
+        assert_int_equal(noh_time_lod_measure(memory, noh_time_lod_measure_size(&probe), &probe, m, errors[m], NULL),
+                         NOH_OK);
     }
     free(memory);
 }
@@ -72,7 +73,9 @@ static void stage_open(stage *g)
     g->memory = test_aligned(NULL, g->size);
     assert_int_equal(noh_character_init(g->memory, g->size, &g->desc, &g->ch, NULL), NOH_OK);
     g->scratch_memory = test_aligned(NULL, noh_character_scratch_size(&g->desc));
-    assert_int_equal(noh_character_scratch_init(g->scratch_memory, noh_character_scratch_size(&g->desc), &g->desc, &g->scratch, NULL), NOH_OK);
+    assert_int_equal(noh_character_scratch_init(g->scratch_memory, noh_character_scratch_size(&g->desc), &g->desc,
+                                                &g->scratch, NULL),
+                     NOH_OK);
 }
 
 static void stage_close(stage *g)
@@ -93,7 +96,10 @@ static void update(stage *g, noh_character *ch)
 }
 
 /* The scale at which a rate is allowed, as long as `off` metres are a pixel. */
-static float scale_for(float off) { return 0.98f / off; }
+static float scale_for(float off)
+{
+    return 0.98f / off;
+}
 
 /* What the controller's own pose comes to. */
 static void true_palette(stage *g, noh_character *ch, float *palette, float *floats)
@@ -258,7 +264,8 @@ static void at_low_rates_the_error_is_as_measured(void **state)
             play(&g, g.ch, 0, track_of(clip, 1.0f));
             for (int frame = 0; frame < 1200; frame++) {
                 noh_character_step(g.ch, &g.s.set, FRAME, NULL, NULL);
-                if (noh_character_look(g.ch, &g.table, &g.settings, scale_for(errors[clip][rate])) != NOH_DUE_NOT) update(&g, g.ch);
+                if (noh_character_look(g.ch, &g.table, &g.settings, scale_for(errors[clip][rate])) != NOH_DUE_NOT)
+                    update(&g, g.ch);
                 assert_int_equal(g.ch->lod.rate, rate);
                 take_palette(g.ch, shown);
                 true_palette(&g, g.ch, truth, floats);
@@ -322,11 +329,14 @@ static void cross_fades_are_off_a_little_more(void **state)
             d.flags = NOH_TRACK_SILENT;
             play(&g, g.ch, to, d);
             assert_int_equal(noh_controller_cross_fade(noh_character_controller(g.ch), &g.s.set, 1u - to, to, 1.0f,
-                                                       12000 + test_random_below(&r, 48000), NOH_CURVE_SMOOTHSTEP, NULL), NOH_OK);
+                                                       12000 + test_random_below(&r, 48000), NOH_CURVE_SMOOTHSTEP,
+                                                       NULL),
+                             NOH_OK);
             woken = noh_character_clock(g.ch);
         }
         noh_character_step(g.ch, &g.s.set, FRAME, NULL, NULL);
-        if (noh_character_look(g.ch, &g.table, &g.settings, scale_for((float)measured)) != NOH_DUE_NOT) update(&g, g.ch);
+        if (noh_character_look(g.ch, &g.table, &g.settings, scale_for((float)measured)) != NOH_DUE_NOT)
+            update(&g, g.ch);
         take_palette(g.ch, shown);
         true_palette(&g, g.ch, truth, floats);
         if (noh_character_clock(g.ch) - woken > 3200 + FRAME) worst = fmax(worst, palettes_apart(&g, shown, truth));
@@ -399,8 +409,8 @@ static void dropped_joints_follow_their_parents(void **state)
     stage_close(&g);
 }
 
-/* Of a skin: what a vertex of its k-th entry is moved by, in every frame, mixed or not, whatever skeleton the character was
- * updated with. `pair` characters play the same: one with the skeleton of the pack, one with the skin's own. */
+/* Of a skin: what a vertex of its k-th entry is moved by, in every frame, mixed or not, whatever skeleton the character
+ * was updated with. `pair` characters play the same: one with the skeleton of the pack, one with the skin's own. */
 static void skins_of_all_packs_are_posed(stage *g, const noh_skin *skin, int has_matrices)
 {
     stage own;
@@ -426,7 +436,8 @@ static void skins_of_all_packs_are_posed(stage *g, const noh_skin *skin, int has
         for (uint32_t i = 0; i < skin->header->joint_count * 12u; i++) assert_true(fabsf(a[i] - b[i]) < 4e-6f);
         mixes += noh_time_lod_fraction(&g->ch->time) < 1.0f;
         if (frame < 5) {
-            noh_controller_pose(noh_character_controller(g->ch), &g->s.set, &g->scratch.pose, g->scratch.local, g->scratch.floats);
+            noh_controller_pose(noh_character_controller(g->ch), &g->s.set, &g->scratch.pose, g->scratch.local,
+                                g->scratch.floats);
             noh_pose_skin(&g->s.skeleton, skin, g->scratch.local, joints_model, b);
             assert_memory_equal(a, b, skin->header->joint_count * 48u);
         }
@@ -528,7 +539,10 @@ static void change_tracks(noh_controller *c, const noh_clip_set *set, uint32_t k
     switch (kind % 4) {
     case 0: (void)noh_controller_set_speed(c, number % 3, (int32_t)(number % 200000) - 60000); break;
     case 1: (void)noh_controller_start(c, set, number % 3, &d, NULL); break;
-    case 2: (void)noh_controller_cross_fade(c, set, number % 3, (number + 1) % 3, 1.0f, 1 + number % 30000, NOH_CURVE_LINEAR, NULL); break;
+    case 2:
+        (void)noh_controller_cross_fade(c, set, number % 3, (number + 1) % 3, 1.0f, 1 + number % 30000,
+                                        NOH_CURVE_LINEAR, NULL);
+        break;
     default: (void)noh_controller_seek(c, set, number % 3, (int64_t)(number % 48000), NOH_SEEK_SKIP, NULL); break;
     }
 }
@@ -547,7 +561,9 @@ static void keys_fire_the_same_with_and_without_lod(void **state)
     stage_open(&g);
     put_keys(&g.s);
     plain_memory = test_aligned(NULL, noh_controller_size(&g.desc.controller));
-    assert_int_equal(noh_controller_init(plain_memory, noh_controller_size(&g.desc.controller), &g.desc.controller, &plain, NULL), NOH_OK);
+    assert_int_equal(
+        noh_controller_init(plain_memory, noh_controller_size(&g.desc.controller), &g.desc.controller, &plain, NULL),
+        NOH_OK);
     for (int frame = 0; frame < 60000; frame++) {
         uint32_t ticks = 300 + test_random_below(&r, 1200);
         if (test_random_below(&r, 40) == 0) {
@@ -561,7 +577,8 @@ static void keys_fire_the_same_with_and_without_lod(void **state)
         noh_character_step(g.ch, &g.s.set, ticks, note, &with);
         waiting += ticks;
         if (frame / 100 % 4) { /* seen */
-            noh_due due = noh_character_look(g.ch, &g.table, &g.settings, powf(10.0f, test_random_float(&r, -2.0f, 4.0f)));
+            noh_due due = noh_character_look(g.ch, &g.table, &g.settings,
+                                             powf(10.0f, test_random_float(&r, -2.0f, 4.0f)));
             rates |= 1u << g.ch->lod.rate;
             if (due == NOH_DUE_AT_ONCE || (due == NOH_DUE && test_random_below(&r, 3))) update(&g, g.ch);
         }
@@ -640,16 +657,19 @@ static void a_crowd_keeps_its_budget(void **state)
                 update(&g, ch);
                 noh_schedule_spend(&schedule, 1);
             } else if (due == NOH_DUE) {
-                noh_schedule_offer(&schedule, i, noh_character_late(ch), i % 4 ? 1.0f : test_random_float(&r, 1.0f, 4.0f), 1);
+                noh_schedule_offer(&schedule, i, noh_character_late(ch),
+                                   i % 4 ? 1.0f : test_random_float(&r, 1.0f, 4.0f), 1);
             }
         }
         assert_true(frame > 0 || schedule.spent == CROWD);
-        while (noh_schedule_next(&schedule, &instance)) update(&g, (noh_character *)(void *)(array + instance * g.size));
+        while (noh_schedule_next(&schedule, &instance))
+            update(&g, (noh_character *)(void *)(array + instance * g.size));
         assert_true(frame == 0 || schedule.spent <= 120);
         if (frame > 30) worst_late = schedule.late_ticks > worst_late ? schedule.late_ticks : worst_late;
         updates += schedule.served;
     }
-    print_message("%.1f updates a frame of at most 120, at worst %u ticks late\n", (double)updates / FRAMES, worst_late);
+    print_message("%.1f updates a frame of at most 120, at worst %u ticks late\n", (double)updates / FRAMES,
+                  worst_late);
     assert_true(worst_late < FRAME); /* those who are due are served in the same frame */
     assert_int_equal(schedule.lost, 0);
     free(array), free(schedule_memory);

@@ -140,7 +140,8 @@ static void fresh_choice_is_monotone_and_within_the_knob(void **state)
         noh_lod d;
         memset(&d, 0, sizeof d);
         noh_lod_choose(&d, &t, &s, scale, rates, 0);
-        assert_true(d.mesh >= last.mesh && d.joints >= last.joints && d.influences >= last.influences && d.rate >= last.rate);
+        assert_true(d.mesh >= last.mesh && d.joints >= last.joints && d.influences >= last.influences &&
+                    d.rate >= last.rate);
         assert_int_equal(d.mesh, d.mesh_before);
         assert_int_equal(d.fade_ticks, 0);
         expect_within_shares(&d, scale, 1.0f, 1);
@@ -234,7 +235,8 @@ static void random_walks_keep_every_promise(void **state)
     (void)state;
     for (int walk = 0; walk < 60; walk++) {
         float scale = powf(10.0f, test_random_float(&r, 0.0f, 4.0f)), speed = 0.0f, changed_at = 0.0f;
-        const float step = powf(1.0f / 0.85f, 1.0f / 17.0f) - 1.0f; /* less than the lead in the 15 frames of a fade, and one */
+        const float step = powf(1.0f / 0.85f, 1.0f / 17.0f) -
+                           1.0f; /* less than the lead in the 15 frames of a fade, and one */
         int64_t last_change = -1000000;
         uint8_t came_from = LEVELS;
         noh_lod d;
@@ -245,7 +247,8 @@ static void random_walks_keep_every_promise(void **state)
             expect_within_shares(&d, scale, 1.0f, 1);
             if (frame && d.mesh != before.mesh) {
                 assert_true(frame * FRAME - last_change >= 12000);
-                if (d.mesh == came_from) assert_true(fmaxf(scale / changed_at, changed_at / scale) > 1.2f); /* 0.85 over 0.7 */
+                if (d.mesh == came_from)
+                    assert_true(fmaxf(scale / changed_at, changed_at / scale) > 1.2f); /* 0.85 over 0.7 */
                 returns += d.mesh == came_from;
                 came_from = before.mesh;
                 last_change = frame * FRAME;
@@ -314,7 +317,8 @@ static void a_limit_holds_finer_levels_back(void **state)
     assert_true(d.fade_ticks > 0);
 }
 
-/* A limit that comes when a finer level is shown: to the nearest that may be, with a fade, and on when less is wanted. */
+/* A limit that comes when a finer level is shown: to the nearest that may be, with a fade, and on when less is wanted.
+ */
 static void a_limit_sends_away_what_is_too_fine(void **state)
 {
     noh_lod_table t = table_of();
@@ -438,7 +442,8 @@ static void parts_of_a_fade_are_all_pixels(void **state)
                 assert_int_equal(count, 2);
                 assert_int_equal(parts[0].level, d.mesh);
                 assert_int_equal(parts[1].level, d.mesh_before);
-                assert_true(parts[0].from == 0.0f && parts[0].to == fade && parts[1].from == fade && parts[1].to == 1.0f);
+                assert_true(parts[0].from == 0.0f && parts[0].to == fade && parts[1].from == fade &&
+                            parts[1].to == 1.0f);
             }
             assert_int_equal(drawn, clock == 1400 ? d.mesh : d.mesh < d.mesh_before ? d.mesh : d.mesh_before);
         }
@@ -460,7 +465,8 @@ static void a_fixed_level_has_no_say_afterwards(void **state)
         assert_int_equal(noh_lod_drawn(&d, 123), parts[0].level);
         assert_true(d.error_m == meshes[parts[0].level].error_m && noh_lod_error_pixels(&d) == 7.0f * d.error_m);
         memset(&fresh, 0, sizeof fresh);
-        noh_lod_choose(&d, &t, &s, 40.0f, rates, 500); /* where hysteresis holds a coarser level that is there already */
+        noh_lod_choose(&d, &t, &s, 40.0f, rates,
+                       500); /* where hysteresis holds a coarser level that is there already */
         noh_lod_choose(&fresh, &t, &s, 40.0f, rates, 500);
         assert_memory_equal(&d, &fresh, sizeof d);
     }
@@ -476,7 +482,8 @@ static void depth_is_that_of_the_nearest_corner(void **state)
         double nearest = 1e30;
         for (int i = 0; i < 16; i++) m[i] = test_random_float(&r, -2.0f, 2.0f);
         for (int i = 0; i < 12; i++) world[i] = test_random_float(&r, -3.0f, 3.0f);
-        for (int i = 0; i < 3; i++) box[i] = test_random_float(&r, -1.0f, 0.0f), box[3 + i] = test_random_float(&r, 0.0f, 1.0f);
+        for (int i = 0; i < 3; i++)
+            box[i] = test_random_float(&r, -1.0f, 0.0f), box[3 + i] = test_random_float(&r, 0.0f, 1.0f);
         for (int corner = 0; corner < 8; corner++) {
             double depth = (double)m[15];
             for (int row = 0; row < 3; row++) {
@@ -505,7 +512,8 @@ static void skipped_targets_are_the_smallest_and_bounded(void **state)
         d.pixels_per_metre = powf(10.0f, test_random_float(&r, -1.0f, 5.0f));
         room = (double)shares[NOH_LOD_TARGETS] / (double)d.pixels_per_metre;
         test_random_weights(&r, weights, TARGETS);
-        for (uint32_t i = 0; i < TARGETS; i++) reach[i] = round % 3 ? test_random_float(&r, 0.0f, 0.03f) : 0.004f * (float)(1u + i % 2u);
+        for (uint32_t i = 0; i < TARGETS; i++)
+            reach[i] = round % 3 ? test_random_float(&r, 0.0f, 0.03f) : 0.004f * (float)(1u + i % 2u);
         told = noh_lod_targets(&d, &s, weights, reach, TARGETS, kept);
         for (uint32_t i = 0; i < TARGETS; i++) {
             float cost = fabsf(weights[i] * reach[i]);
@@ -544,8 +552,8 @@ static void fades_follow_the_smoothstep(void **state)
     assert_int_equal(d.fade_ticks, 12000); /* a quarter of a second where nothing is asked for */
 }
 
-/* What is off in pixels is the sum of all kinds, the targets left out among them; while a level fades the coarser of the two
- * counts, whichever comes. */
+/* What is off in pixels is the sum of all kinds, the targets left out among them; while a level fades the coarser of
+ * the two counts, whichever comes. */
 static void errors_of_all_kinds_add_up(void **state)
 {
     const float weights[2] = { 0.5f, 1.0f }, reach[2] = { 0.002f, 1.0f };
@@ -560,7 +568,8 @@ static void errors_of_all_kinds_add_up(void **state)
     assert_int_equal(d.mesh, 3);
     assert_int_equal(noh_lod_targets(&d, &s, weights, reach, 2, kept), 1);
     assert_true(d.skipped_m == 0.001f);
-    assert_true(fabsf(d.error_m - (meshes[3].error_m + joints[d.joints].error_m + influences[d.influences].error_m + rates[d.rate] + t.clip_error_m)) < 1e-7f);
+    assert_true(fabsf(d.error_m - (meshes[3].error_m + joints[d.joints].error_m + influences[d.influences].error_m +
+                                   rates[d.rate] + t.clip_error_m)) < 1e-7f);
     assert_true(noh_lod_error_pixels(&d) == (d.error_m + d.skipped_m) * 15.0f);
     noh_lod_choose(&d, &t, &s, 1e5f, rates, 100); /* near at once: level 3 is still drawn while it fades */
     assert_true(d.mesh == 0 && d.mesh_before == 3);

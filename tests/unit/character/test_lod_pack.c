@@ -69,7 +69,8 @@ static void open_table(table *t, forge change)
     if (change) {
         uint8_t *chunk = t->clips_bytes + t->pack.chunks[t->pack.first_skeleton + FOUR].offset;
         noh_skeleton_header *skeleton = (noh_skeleton_header *)(void *)chunk;
-        change(skeleton, (uint32_t *)(void *)(chunk + skeleton->levels_offset), first_clip_of(t->clips_bytes, &t->pack, FOUR));
+        change(skeleton, (uint32_t *)(void *)(chunk + skeleton->levels_offset),
+               first_clip_of(t->clips_bytes, &t->pack, FOUR));
         pack_repair(t->clips_bytes, good_count);
     }
     t->clips = test_open(t->clips_bytes, good_count);
@@ -125,7 +126,8 @@ static void levels_have_the_worst_error_of_all_clips(void **state)
     for (uint32_t m = 0; m < t.set->clips.clip_count; m++) {
         const noh_pack_clip clip = clip_of(&t, m);
         for (uint32_t r = 0; r < NOH_UPDATE_RATE_COUNT; r++) {
-            assert_true(fabsf(t.made.table.update_error_m[NOH_UPDATE_RATE_COUNT * m + r] - clip.header->update_rate_error[r]) < 1e-6f); /* in metres already */
+            assert_true(fabsf(t.made.table.update_error_m[NOH_UPDATE_RATE_COUNT * m + r] -
+                              clip.header->update_rate_error[r]) < 1e-6f); /* in metres already */
         }
         for (uint32_t i = 0; i < clip.header->joint_error_count; i++) worst[i] = fmaxf(worst[i], clip.joint_errors[i]);
         moves += clip.header->joint_count != 0;
@@ -222,7 +224,8 @@ static void errors_of_a_shell_grow_with_the_mesh(void **state)
     assert_true(margin > 0.06f);
     for (uint32_t i = 0; i < 3; i++) {
         const float error = seen.made.table.joints[i].error_m;
-        assert_true(fabsf(unseen.made.table.joints[i].error_m - error * margin / 0.03f) <= 1e-5f * error * margin / 0.03f);
+        assert_true(fabsf(unseen.made.table.joints[i].error_m - error * margin / 0.03f) <=
+                    1e-5f * error * margin / 0.03f);
         assert_true(no_mesh.made.table.joints[i].error_m == error);
     }
     close_table(&seen);
@@ -265,7 +268,8 @@ static noh_mesh_header *header_of(fixture_levels *f, uint32_t mesh)
     return (noh_mesh_header *)(void *)(f->bytes + f->pack.chunks[f->pack.first_mesh + mesh].offset);
 }
 
-/* A level has one number everywhere. Loaded from level 1 on: the coarsest is still 2, the finest that is chosen is 1. */
+/* A level has one number everywhere. Loaded from level 1 on: the coarsest is still 2, the finest that is chosen is 1.
+ */
 static void loaded_from_level_1(table *t, const noh_mesh_header *h)
 {
     noh_lod_settings settings;
@@ -357,8 +361,9 @@ static void a_byte_too_few_is_refused(void **state)
     t.desc.set = &counts;
     assert_int_equal(noh_lod_pack_size(&t.desc), t.bytes);
     t.desc.set = t.set;
-    assert_int_equal(t.bytes, sizeof(noh_lod_mesh) + 4 * sizeof(noh_lod_influences) + 3 * sizeof(noh_lod_joints) + t.set->clips.clip_count * NOH_UPDATE_RATE_COUNT * sizeof(float) +
-                     (4 + t.mesh.header->target_count) * sizeof(float));
+    assert_int_equal(t.bytes, sizeof(noh_lod_mesh) + 4 * sizeof(noh_lod_influences) + 3 * sizeof(noh_lod_joints) +
+                                  t.set->clips.clip_count * NOH_UPDATE_RATE_COUNT * sizeof(float) +
+                                  (4 + t.mesh.header->target_count) * sizeof(float));
     block = test_aligned(NULL, t.bytes + 64);
     memset(block, 0xa5, t.bytes + 64);
     assert_int_equal(noh_lod_pack_init(block, t.bytes - 1, &t.desc, &t.made, &error), NOH_ERR_MEMORY);
@@ -463,7 +468,8 @@ static void margins_hold_all_vertices_of_all_weights(void **state)
     noh_skeleton skeleton;
     noh_mesh mesh;
     (void)state;
-    for (uint32_t v = 0; v < m->meshes[0].vertex_count; v++) m->meshes[0].targets[0].position[3 * v] = 0.05f; /* all to one side */
+    for (uint32_t v = 0; v < m->meshes[0].vertex_count; v++)
+        m->meshes[0].targets[0].position[3 * v] = 0.05f; /* all to one side */
     bytes = skin_pack_of(m, NULL, 10.0f, &count, NULL);
     pack = test_open(bytes, count);
     assert_int_equal(noh_pack_mesh_at(&pack, 0, &mesh, NULL), NOH_OK);
@@ -475,7 +481,8 @@ static void margins_hold_all_vertices_of_all_weights(void **state)
     noh_mesh_add_joint_radii(&mesh, none, margins);
     for (uint32_t j = 0; j < n; j++) {
         assert_true((margins[j] < 0.0f) == (rest[j] < 0.0));
-        assert_true((double)margins[j] >= rest[j] && (rest[j] < 0.0 || (double)margins[j] <= 1.8 * rest[j])); /* a corner of a box */
+        assert_true((double)margins[j] >= rest[j] &&
+                    (rest[j] < 0.0 || (double)margins[j] <= 1.8 * rest[j])); /* a corner of a box */
     }
     noh_mesh_add_joint_radii(&mesh, most, margins);
     for (int round = 0; round < 50; round++) {
@@ -497,7 +504,8 @@ static void margins_hold_all_vertices_of_all_weights(void **state)
 }
 
 /* Where the joints put a vertex. */
-static void skinned_vertex(const noh_mesh *mesh, const noh_skin *skin, const float *joint_matrices, uint32_t vertex, double out[3])
+static void skinned_vertex(const noh_mesh *mesh, const noh_skin *skin, const float *joint_matrices, uint32_t vertex,
+                           double out[3])
 {
     const float *p = mesh->positions + 3u * (size_t)vertex;
     uint32_t joints[NOH_INFLUENCES_MAX], count;
@@ -505,7 +513,8 @@ static void skinned_vertex(const noh_mesh *mesh, const noh_skin *skin, const flo
     count = noh_mesh_influences(mesh, vertex, joints, weights);
     out[0] = out[1] = out[2] = 0.0;
     for (uint32_t i = 0; i < count; i++) {
-        noh_matrix_multiply(joint_matrices + 12u * (size_t)skin->joints[joints[i]], skin->inverse_bind + 12u * (size_t)joints[i], matrix);
+        noh_matrix_multiply(joint_matrices + 12u * (size_t)skin->joints[joints[i]],
+                            skin->inverse_bind + 12u * (size_t)joints[i], matrix);
         for (int r = 0; r < 3; r++) {
             double at = (double)matrix[4 * r + 3];
             for (int c = 0; c < 3; c++) at += (double)matrix[4 * r + c] * (double)p[c];
@@ -530,14 +539,16 @@ static void a_posed_arm_is_in_its_sphere(void **state)
         t.set->clips.sample(t.set->clips.user, 0, tick, 4, pose, 0, NULL);
         noh_local_to_model(&t.set->skeleton, pose, 4, matrices);
         for (uint32_t i = 0; i < 3; i++) {
-            noh_joint_bounds(&t.set->skeleton, matrices, t.made.joint_radius_m, t.made.table.joints[i].joint_count, &bounds[i]);
+            noh_joint_bounds(&t.set->skeleton, matrices, t.made.joint_radius_m, t.made.table.joints[i].joint_count,
+                             &bounds[i]);
         }
         for (uint32_t v = 0; v < t.mesh.header->vertex_count; v++) {
             double at[3];
             skinned_vertex(&t.mesh, &skin, matrices, v, at);
             for (uint32_t i = 0; i < 3; i++) {
                 double square = 0.0;
-                for (int k = 0; k < 3; k++) square += (at[k] - (double)bounds[i].centre[k]) * (at[k] - (double)bounds[i].centre[k]);
+                for (int k = 0; k < 3; k++)
+                    square += (at[k] - (double)bounds[i].centre[k]) * (at[k] - (double)bounds[i].centre[k]);
                 assert_true(sqrt(square) <= (double)bounds[i].radius);
             }
         }
@@ -547,13 +558,16 @@ static void a_posed_arm_is_in_its_sphere(void **state)
 
 int main(int argument_count, char **arguments)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(levels_have_the_worst_error_of_all_clips), cmocka_unit_test(lod_is_chosen_by_it),
-        cmocka_unit_test(centimetres_become_metres), cmocka_unit_test(errors_of_a_shell_grow_with_the_mesh),
-        cmocka_unit_test(levels_that_no_clip_vouches_for_are_left_out), cmocka_unit_test(levels_come_from_the_mesh), cmocka_unit_test(a_byte_too_few_is_refused),
-        cmocka_unit_test(bad_descs_are_named), cmocka_unit_test(margins_hold_all_vertices_of_all_weights),
-        cmocka_unit_test(a_posed_arm_is_in_its_sphere)
-    };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(levels_have_the_worst_error_of_all_clips),
+                                        cmocka_unit_test(lod_is_chosen_by_it),
+                                        cmocka_unit_test(centimetres_become_metres),
+                                        cmocka_unit_test(errors_of_a_shell_grow_with_the_mesh),
+                                        cmocka_unit_test(levels_that_no_clip_vouches_for_are_left_out),
+                                        cmocka_unit_test(levels_come_from_the_mesh),
+                                        cmocka_unit_test(a_byte_too_few_is_refused),
+                                        cmocka_unit_test(bad_descs_are_named),
+                                        cmocka_unit_test(margins_hold_all_vertices_of_all_weights),
+                                        cmocka_unit_test(a_posed_arm_is_in_its_sphere) };
     if (argument_count > 1) {
         cmocka_set_test_filter(arguments[1]);
     }

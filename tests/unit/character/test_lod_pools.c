@@ -35,7 +35,8 @@ static void bad(noh_lod_pools_desc d, const char *what)
 
 static void descs_are_checked(void **state)
 {
-    static const uint32_t falling[3] = { 1, 1, 2 }, high[3] = { 0, 1, 8 }, none[3] = { 30, 0, 30 }, few[3] = { 4, 16, 39 };
+    static const uint32_t falling[3] = { 1, 1, 2 }, high[3] = { 0, 1, 8 }, none[3] = { 30, 0, 30 },
+                          few[3] = { 4, 16, 39 };
     static const uint32_t many[3] = { 4, 16, 65517 };
     noh_lod_pools_desc d = three;
     (void)state;
@@ -236,7 +237,8 @@ static void odd_priorities_come_last(void **state)
         wishes[i] = w;
     }
     ask_all(p, wishes);
-    for (uint32_t i = 0; i < 5; i++) assert_int_equal(noh_lod_pools_slot(p, i).level, i == 2 ? 1u : 0u); /* of three equal ones the last */
+    for (uint32_t i = 0; i < 5; i++)
+        assert_int_equal(noh_lod_pools_slot(p, i).level, i == 2 ? 1u : 0u); /* of three equal ones the last */
     assert_int_equal(noh_lod_pools_stats_of(p)->used_high_water[0], 4);
     free(p);
 }

@@ -153,7 +153,8 @@ static void run_frame(crowd *c, uint32_t count, uint32_t period, uint64_t budget
     uint32_t instance, largest = 0;
     noh_schedule_begin(&c->s, FRAME, budget);
     for (uint32_t i = 0; i < count; i++) {
-        if (c->due[i] <= clock) noh_schedule_offer(&c->s, i, (uint32_t)(clock - c->due[i]), c->visibility[i], c->cost[i]);
+        if (c->due[i] <= clock)
+            noh_schedule_offer(&c->s, i, (uint32_t)(clock - c->due[i]), c->visibility[i], c->cost[i]);
     }
     while (noh_schedule_next(&c->s, &instance)) {
         c->due[instance] = clock + 1 + period;
@@ -172,7 +173,8 @@ static void nobody_waits_longer_than_stated(void **state)
     (void)state;
     for (int round = 0; round < 60; round++) {
         uint32_t count = 2u + test_random_below(&r, CROWD - 2u), cost_max = 1u + test_random_below(&r, 50), longest = 0;
-        uint64_t budget = 1u + test_random_below(&r, cost_max * 20u), bound = noh_schedule_wait_max(count, budget, cost_max);
+        uint64_t budget = 1u + test_random_below(&r, cost_max * 20u),
+                 bound = noh_schedule_wait_max(count, budget, cost_max);
         uint32_t period = (uint32_t)round % 3u * 1600u;
         crowd c;
         crowd_open(&c, CROWD);
@@ -236,7 +238,8 @@ static void costs_add_up(void **state)
     assert_int_equal(noh_cost_ns(&w, 0, 0, 1000000), UINT32_MAX);
     assert_int_equal(noh_schedule_wait_max(0, 10, 1), 16);
     assert_int_equal(noh_schedule_wait_max(101, 20, 2), 8 * (10 + 2));
-    assert_int_equal(noh_schedule_wait_max(12, 9, 3), 8 * (4 + 2)); /* eleven others, three a frame: the last is served in the fourth */
+    assert_int_equal(noh_schedule_wait_max(12, 9, 3),
+                     8 * (4 + 2)); /* eleven others, three a frame: the last is served in the fourth */
 }
 
 int main(int argc, char **argv)

@@ -14,7 +14,7 @@
 #define CROWD 1000u
 
 typedef struct load {
-    double mean, worst;  /* a frame */
+    double mean, worst; /* a frame */
     double per_second;
 } load;
 
@@ -55,14 +55,19 @@ static void updates_are_spread_evenly(void **state)
     (void)state;
     for (int kind = 0; kind <= 5; kind++) {
         for (uint32_t i = 0; i < CROWD; i++) {
-            float distance = 100.0f * sqrtf(test_random_float(&r, 0.0f, 1.0f)); /* kind 4: strewn over a disc; 5: in rows */
+            float distance = 100.0f *
+                             sqrtf(test_random_float(&r, 0.0f, 1.0f)); /* kind 4: strewn over a disc; 5: in rows */
             distance = kind == 5 ? 0.1f * (float)i : distance;
-            rates[i] = (uint8_t)(kind <= 3 ? kind : distance < 15.0f ? 0 : distance < 30.0f ? 1 : distance < 60.0f ? 2 : 3);
+            rates[i] = (uint8_t)(kind <= 3          ? kind
+                                 : distance < 15.0f ? 0
+                                 : distance < 30.0f ? 1
+                                 : distance < 60.0f ? 2
+                                                    : 3);
         }
         for (uint32_t f = 0; f < 3; f++) {
             load l = run_crowd(rates, frame_ticks[f], 0);
-            print_message("crowd %d, frames of %u ticks: %.1f updates, at worst %.3f of the mean\n", kind, frame_ticks[f], l.mean,
-                          l.worst / l.mean);
+            print_message("crowd %d, frames of %u ticks: %.1f updates, at worst %.3f of the mean\n", kind,
+                          frame_ticks[f], l.mean, l.worst / l.mean);
             assert_true(l.worst <= 1.2 * l.mean);
         }
     }
@@ -88,7 +93,10 @@ typedef struct line {
     double value[2];
 } line;
 
-static double wave(double tick, double kind) { return sin(tick / 7000.0 + kind) + 0.3 * sin(tick / 3100.0 + 2.0 * kind); }
+static double wave(double tick, double kind)
+{
+    return sin(tick / 7000.0 + kind) + 0.3 * sin(tick / 3100.0 + 2.0 * kind);
+}
 #define WAVE_SPEED (1.0 / 7000.0 + 0.3 / 3100.0)
 #define WAVE_BEND (1.0 / (7000.0 * 7000.0) + 0.3 / (3100.0 * 3100.0))
 
@@ -129,13 +137,16 @@ static void on_time_the_error_is_that_of_straight_lines(void **state)
         now = shown(&l);
         error = fabs(now - wave((double)clock, 0.0));
         /* what a refined interval began with was as far off as the coarser rate may be */
-        period = noh_update_period((noh_update_rate)l.t.running) < period ? period : noh_update_period((noh_update_rate)l.t.running);
+        period = noh_update_period((noh_update_rate)l.t.running) < period
+                     ? period
+                     : noh_update_period((noh_update_rate)l.t.running);
         assert_true(error <= WAVE_BEND * (double)period * (double)period / 8.0 + 1e-6);
         if (l.t.to_clock - l.t.from_clock == (int64_t)noh_update_period((noh_update_rate)l.t.running)) {
             worst[l.t.running] = fmax(worst[l.t.running], error);
             period = noh_update_period((noh_update_rate)l.t.running);
         }
-        if (frame) assert_true(fabs(now - last) <= WAVE_SPEED * (double)ticks * 1.01 + WAVE_BEND * 6000.0 * 6000.0 / 4.0);
+        if (frame)
+            assert_true(fabs(now - last) <= WAVE_SPEED * (double)ticks * 1.01 + WAVE_BEND * 6000.0 * 6000.0 / 4.0);
         last = now;
     }
     print_message("largest errors at full rate, 30, 15, 8 Hz: %g %g %g %g\n", worst[0], worst[1], worst[2], worst[3]);
@@ -167,7 +178,8 @@ static void late_updates_and_changes_never_jump(void **state)
         if (noh_time_lod_due(&l.t) != NOH_DUE_NOT && (!late || test_random_below(&r, 20) == 0)) update(&l, kind);
         assert_true(noh_time_lod_due(&l.t) == NOH_DUE_NOT || noh_time_lod_late(&l.t) <= clock);
         assert_true(fabs(shown(&l) - last) <= 2.6 * 800.0 / 3000.0 + 1e-6);
-        assert_true(fabs(shown(&l) - last) <= WAVE_SPEED * 800.0 * 1.01 || late || frame % 500 < 20 || clock - changed <= 13000);
+        assert_true(fabs(shown(&l) - last) <= WAVE_SPEED * 800.0 * 1.01 || late || frame % 500 < 20 ||
+                    clock - changed <= 13000);
         last = shown(&l);
         if (!late && frame % 500 > 20 && clock - changed > 13000) {
             assert_true(fabs(last - wave((double)clock, kind)) <= WAVE_BEND * 6000.0 * 6000.0 / 8.0 + 1e-6);
@@ -225,7 +237,9 @@ static void a_finer_rate_begins_at_once(void **state)
 /* Clocks that jump between the ends of their range: nothing overflows, what is shown stays between two poses. */
 static void clocks_at_the_ends(void **state)
 {
-    static const int64_t clocks[] = { 0, INT64_MAX - 3000, INT64_MAX - 2200, INT64_MAX - 800, INT64_MAX, INT64_MAX, INT64_MIN, INT64_MIN + 800, -1, INT64_MAX };
+    static const int64_t clocks[] = { 0,         INT64_MAX - 3000, INT64_MAX - 2200, INT64_MAX - 800,
+                                      INT64_MAX, INT64_MAX,        INT64_MIN,        INT64_MIN + 800,
+                                      -1,        INT64_MAX };
     (void)state;
     for (uint32_t instance = 0; instance < 50; instance++) {
         noh_time_lod t;
@@ -270,7 +284,8 @@ typedef struct turning {
     noh_time_probe probe;
 } turning;
 
-static void sample_turning(void *user, uint32_t clip, uint32_t tick, uint32_t joints, noh_transform *pose, uint32_t floats, float *values)
+static void sample_turning(void *user, uint32_t clip, uint32_t tick, uint32_t joints, noh_transform *pose,
+                           uint32_t floats, float *values)
 {
     const turning *t = user;
     double part = (double)tick / (double)t->clip.duration_ticks;
@@ -324,17 +339,21 @@ static void a_turn_is_off_by_its_arrow(void **state)
     t.probe.float_radius_m = &t.scalar_radius;
     assert_int_equal(noh_time_lod_measure(memory, sizeof memory, &t.probe, 0, errors, NULL), NOH_OK);
     for (int r = 1; r < NOH_UPDATE_RATE_COUNT; r++) {
-        double h = noh_update_period((noh_update_rate)r) / 96000.0, inside = 0.01 * h * h / 4.0, at_the_end = 0.01 * 2.0 * h;
+        double h = noh_update_period((noh_update_rate)r) / 96000.0, inside = 0.01 * h * h / 4.0,
+               at_the_end = 0.01 * 2.0 * h;
         assert_true(errors[r] >= inside * 0.999 && errors[r] <= at_the_end); /* where it stops it has a corner */
     }
 }
 
-/* A point is off by its own arrow: of what stands on the axis nothing is, and a point that two joints hold is between. */
+/* A point is off by its own arrow: of what stands on the axis nothing is, and a point that two joints hold is between.
+ */
 static void points_are_off_by_their_own_arrows(void **state)
 {
     ALIGNED uint8_t memory[1024];
-    const noh_time_hold out = { 0, 1.0f, { 0.3f, 0.4f, 7.0f } }, none = { 5, 0.0f, { 0.0f, 0.0f, 0.0f } }, axis = { 0, 1.0f, { 0.0f, 0.0f, 7.0f } };
-    const noh_time_hold wrong = { 5, 1.0f, { 0.0f, 0.0f, 0.0f } }, half = { 0, 0.5f, { 0.3f, 0.4f, 7.0f } }, other_half = { 0, 0.5f, { 0.0f, 0.0f, 7.0f } };
+    const noh_time_hold out = { 0, 1.0f, { 0.3f, 0.4f, 7.0f } }, none = { 5, 0.0f, { 0.0f, 0.0f, 0.0f } },
+                        axis = { 0, 1.0f, { 0.0f, 0.0f, 7.0f } };
+    const noh_time_hold wrong = { 5, 1.0f, { 0.0f, 0.0f, 0.0f } }, half = { 0, 0.5f, { 0.3f, 0.4f, 7.0f } },
+                        other_half = { 0, 0.5f, { 0.0f, 0.0f, 7.0f } };
     const noh_time_hold holds[6] = { axis, none, out, none, half, other_half };
     noh_time_lod_points points = { holds + 2, 1, 2 };
     float errors[NOH_UPDATE_RATE_COUNT], halves[NOH_UPDATE_RATE_COUNT];
@@ -358,23 +377,27 @@ static void points_are_off_by_their_own_arrows(void **state)
     assert_int_equal(noh_time_lod_points_measure(memory, sizeof memory, &t.probe, &points, 0, halves, NULL), NOH_OK);
     assert_memory_equal(halves, errors, sizeof errors);
     points.point_count = 0;
-    assert_int_equal(noh_time_lod_points_measure(memory, sizeof memory, &t.probe, &points, 0, errors, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_time_lod_points_measure(memory, sizeof memory, &t.probe, &points, 0, errors, &error),
+                     NOH_ERR_ARG);
     assert_int_equal(strncmp(error.what, "points", strlen("points")), 0);
     points.point_count = 1;
     points.holds = &wrong;
     points.holds_per_point = 1;
-    assert_int_equal(noh_time_lod_points_measure(memory, sizeof memory, &t.probe, &points, 0, errors, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_time_lod_points_measure(memory, sizeof memory, &t.probe, &points, 0, errors, &error),
+                     NOH_ERR_ARG);
     assert_int_equal(strncmp(error.what, "points: no such joint", strlen("points: no such joint")), 0);
 }
 
-static void sample_walk(void *user, uint32_t clip, uint32_t tick, uint32_t joints, noh_transform *pose, uint32_t floats, float *values)
+static void sample_walk(void *user, uint32_t clip, uint32_t tick, uint32_t joints, noh_transform *pose, uint32_t floats,
+                        float *values)
 {
     const turning *t = user;
     sample_turning(user, clip, tick, joints, pose, floats, values);
     pose[0].translation[0] = 3.0f * (float)tick / (float)t->clip.duration_ticks;
 }
 
-/* A loop that walks as it turns has the errors of one that turns in its place, when the probe says that it travels; else its leap's. */
+/* A loop that walks as it turns has the errors of one that turns in its place, when the probe says that it travels;
+ * else its leap's. */
 static void points_go_with_a_loop_that_travels(void **state)
 {
     ALIGNED uint8_t memory[1024];
@@ -552,18 +575,22 @@ static void real_clips_stay_within_what_was_measured(void **state)
         played x;
         played_open(&x, test_asset(names[n]));
         for (uint32_t round = 0; round < 3000; round++) {
-            uint32_t rate = 1u + round % 3u, period = noh_update_period((noh_update_rate)rate), at = test_random_below(&r, period + 1u);
+            uint32_t rate = 1u + round % 3u, period = noh_update_period((noh_update_rate)rate),
+                     at = test_random_below(&r, period + 1u);
             uint32_t start = test_random_below(&r, x.p.clip.duration_ticks - period);
-            float direction[3] = { test_random_float(&r, -1, 1), test_random_float(&r, -1, 1), test_random_float(&r, -1, 1) };
+            float direction[3] = { test_random_float(&r, -1, 1), test_random_float(&r, -1, 1),
+                                   test_random_float(&r, -1, 1) };
             noh_normalize3(direction, (const float[3]){ 1.0f, 0.0f, 0.0f });
             matrices_at(&x, start, x.from);
             matrices_at(&x, start + period, x.to);
             matrices_at(&x, start + at, x.right);
             worst[rate] = fmaxf(worst[rate], farthest_off(&x, direction, (float)at / (float)period));
         }
-        print_message("%s: 30, 15, 8 Hz: measured %.3f %.3f %.3f cm, found at random %.3f %.3f %.3f\n", names[n], (double)x.errors[1],
-                      (double)x.errors[2], (double)x.errors[3], (double)worst[1], (double)worst[2], (double)worst[3]);
-        for (int i = 1; i < NOH_UPDATE_RATE_COUNT; i++) assert_true(worst[i] <= x.errors[i] && worst[i] > 0.2f * x.errors[i]);
+        print_message("%s: 30, 15, 8 Hz: measured %.3f %.3f %.3f cm, found at random %.3f %.3f %.3f\n", names[n],
+                      (double)x.errors[1], (double)x.errors[2], (double)x.errors[3], (double)worst[1], (double)worst[2],
+                      (double)worst[3]);
+        for (int i = 1; i < NOH_UPDATE_RATE_COUNT; i++)
+            assert_true(worst[i] <= x.errors[i] && worst[i] > 0.2f * x.errors[i]);
         assert_true(x.errors[1] < x.errors[2] && x.errors[2] < x.errors[3]);
         played_close(&x);
     }
@@ -581,7 +608,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(frames_longer_than_a_period_are_exact),
         cmocka_unit_test(clocks_at_the_ends),
         cmocka_unit_test(a_turn_is_off_by_its_arrow),
-        cmocka_unit_test(points_are_off_by_their_own_arrows), cmocka_unit_test(points_go_with_a_loop_that_travels),
+        cmocka_unit_test(points_are_off_by_their_own_arrows),
+        cmocka_unit_test(points_go_with_a_loop_that_travels),
         cmocka_unit_test(measuring_wants_its_fields_and_its_memory),
         cmocka_unit_test(errors_of_what_plays),
         cmocka_unit_test(waking_does_not_forgive_lateness),

@@ -110,16 +110,18 @@ static void room_for_what_plays_decodes_nothing_late(void **state)
         desc.cached_segment_count = 0;
         assert_int_equal(noh_clip_bank_measure(&desc, &needs, NULL), NOH_OK);
         late = play_a_while(&desc, count, &missing);
-        print_message("%u instances: room for %u of %u segments, %zu bytes: %llu track-frames late\n", (unsigned)count, (unsigned)needs.cached_segment_count,
-                      (unsigned)needs.segment_count, needs.bytes, (unsigned long long)late);
+        print_message("%u instances: room for %u of %u segments, %zu bytes: %llu track-frames late\n", (unsigned)count,
+                      (unsigned)needs.cached_segment_count, (unsigned)needs.segment_count, needs.bytes,
+                      (unsigned long long)late);
         assert_int_equal(late, 0);
         assert_int_equal(missing, 0);
     }
     desc.cached_segment_count = 2u * CLIPS; /* two for each clip, whoever plays them */
     assert_int_equal(noh_clip_bank_measure(&desc, &needs, NULL), NOH_OK);
     late = play_a_while(&desc, INSTANCES, &missing);
-    print_message("%u instances: room for %u of %u segments, %zu bytes: %llu track-frames late\n", INSTANCES, (unsigned)needs.cached_segment_count,
-                  (unsigned)needs.segment_count, needs.bytes, (unsigned long long)late);
+    print_message("%u instances: room for %u of %u segments, %zu bytes: %llu track-frames late\n", INSTANCES,
+                  (unsigned)needs.cached_segment_count, (unsigned)needs.segment_count, needs.bytes,
+                  (unsigned long long)late);
     assert_true(late > 10000u); /* else this shows nothing */
     assert_true(missing > 0u);
 }
@@ -188,7 +190,8 @@ static void expect_sound(const noh_clip_cache *cache)
     uint32_t first = 0, waiting = 0, listed = 0;
     for (uint32_t k = 0; k < cache->size_count; k++) {
         uint32_t count = 0, before = NOH_CLIP_NOT_CACHED;
-        for (uint32_t s = cache->sizes[k].oldest; s != NOH_CLIP_NOT_CACHED; before = s, s = cache->cached[s].newer, count++) {
+        for (uint32_t s = cache->sizes[k].oldest; s != NOH_CLIP_NOT_CACHED;
+             before = s, s = cache->cached[s].newer, count++) {
             assert_int_equal(cache->cached[s].older, before);
             assert_int_equal(cache->cached[s].size, k);
             assert_in_range(s, first, first + cache->sizes[k].count - 1u);
@@ -226,7 +229,10 @@ static void any_use_leaves_the_lists_whole(void **state)
             switch (test_random_below(&r, 5)) {
             case 0: noh_clip_cache_begin_frame(set->cache); break;
             case 1: (void)noh_clip_cache_want(set->cache, clip, tick, joints); break;
-            case 2: (void)noh_clip_cache_want_frames(set->cache, clip, test_random_below(&r, 600), test_random_below(&r, 600), joints); break;
+            case 2:
+                (void)noh_clip_cache_want_frames(set->cache, clip, test_random_below(&r, 600),
+                                                 test_random_below(&r, 600), joints);
+                break;
             case 3: (void)noh_clip_cache_work(set->cache, test_random_below(&r, 200)); break;
             default: noh_clip_sample(set->cache, clip, tick, joints, pose, floats); break;
             }
@@ -274,7 +280,8 @@ static void wants_are_met_in_order(void **state)
         assert_int_equal(noh_clip_cache_want(cache, 3, tick_of(cache, 3, s), JOINTS), 1);
     }
     noh_clip_cache_begin_frame(cache);
-    assert_int_equal(noh_clip_cache_want(cache, 3, tick_of(cache, 3, 9), JOINTS), 1); /* evicts segment 3, which waits */
+    assert_int_equal(noh_clip_cache_want(cache, 3, tick_of(cache, 3, 9), JOINTS),
+                     1); /* evicts segment 3, which waits */
     (void)noh_clip_cache_work(cache, 1);
     assert_true(cache->cached[cache->cached_of[cache->entries[3].first + 2u]].cursor.track > 0u);
     assert_int_equal(cache->cached[cache->cached_of[cache->entries[3].first + 1u]].cursor.track, 0);

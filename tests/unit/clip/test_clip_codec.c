@@ -14,8 +14,8 @@
 
 #define JOINTS_MAX 1100u
 #define SINGLE 3e-7      /* what single precision adds to a pose, of its distance from the origin */
-#define BETWEEN_PARTS 5u  /* of a frame: not where the encoder looks */
-#define ROUNDING 1.0001 /* of the bound: time as a float, and single precision in a pose */
+#define BETWEEN_PARTS 5u /* of a frame: not where the encoder looks */
+#define ROUNDING 1.0001  /* of the bound: time as a float, and single precision in a pose */
 
 /* NOH_CLIP_DENSE=64: check all real clips, also at their full rate, at so many times a frame. */
 static uint32_t dense_parts(void)
@@ -26,7 +26,9 @@ static uint32_t dense_parts(void)
 
 /* ---- an evaluator of its own ---- */
 
-typedef struct matrix { double m[12]; } matrix; /* rows of 4: linear part and position */
+typedef struct matrix {
+    double m[12];
+} matrix; /* rows of 4: linear part and position */
 
 static matrix local_matrix(const double q[4], const double t[3], const double s[3])
 {
@@ -34,7 +36,8 @@ static matrix local_matrix(const double q[4], const double t[3], const double s[
     const double x = q[0], y = q[1], z = q[2], w = q[3];
     const matrix r = { { (1 - k * (y * y + z * z)) * s[0], k * (x * y - z * w) * s[1], k * (x * z + y * w) * s[2], t[0],
                          k * (x * y + z * w) * s[0], (1 - k * (x * x + z * z)) * s[1], k * (y * z - x * w) * s[2], t[1],
-                         k * (x * z - y * w) * s[0], k * (y * z + x * w) * s[1], (1 - k * (x * x + y * y)) * s[2], t[2] } };
+                         k * (x * z - y * w) * s[0], k * (y * z + x * w) * s[1], (1 - k * (x * x + y * y)) * s[2],
+                         t[2] } };
     return r;
 }
 
@@ -43,7 +46,8 @@ static matrix product(const matrix *a, const matrix *b)
     matrix r;
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 4; k++) {
-            r.m[4 * i + k] = a->m[4 * i] * b->m[k] + a->m[4 * i + 1] * b->m[4 + k] + a->m[4 * i + 2] * b->m[8 + k] + (k == 3 ? a->m[4 * i + 3] : 0.0);
+            r.m[4 * i + k] = a->m[4 * i] * b->m[k] + a->m[4 * i + 1] * b->m[4 + k] + a->m[4 * i + 2] * b->m[8 + k] +
+                             (k == 3 ? a->m[4 * i + 3] : 0.0);
         }
     }
     return r;
@@ -62,11 +66,14 @@ static matrix raw_local(raw_clip *c, uint32_t frame, double fraction, uint32_t j
         dot += (double)qa[i] * (double)qb[i];
     }
     for (int i = 0; i < 4; i++) {
-        q[i] = (1.0 - fraction) * (double)qa[i] / sqrt(a) + fraction * (dot < 0.0 ? -1.0 : 1.0) * (double)qb[i] / sqrt(b);
+        q[i] = (1.0 - fraction) * (double)qa[i] / sqrt(a) +
+               fraction * (dot < 0.0 ? -1.0 : 1.0) * (double)qb[i] / sqrt(b);
     }
     for (int i = 0; i < 3; i++) {
-        t[i] = (1.0 - fraction) * (double)fixture_translation(c, frame, j)[i] + fraction * (double)fixture_translation(c, next, j)[i];
-        s[i] = (1.0 - fraction) * (double)fixture_scale(c, frame, j)[i] + fraction * (double)fixture_scale(c, next, j)[i];
+        t[i] = (1.0 - fraction) * (double)fixture_translation(c, frame, j)[i] +
+               fraction * (double)fixture_translation(c, next, j)[i];
+        s[i] = (1.0 - fraction) * (double)fixture_scale(c, frame, j)[i] +
+               fraction * (double)fixture_scale(c, next, j)[i];
     }
     return local_matrix(q, t, s);
 }
@@ -112,7 +119,8 @@ static double error_at(fixture *x, uint64_t ticks, double shell_cm)
     raw_clip *c = &x->set->clips[0];
     const double unit = x->set->skeleton.unit_cm;
     const uint64_t position = ticks * x->sample_rate_uhz, frame_units = 48000000000u;
-    const uint32_t last = c->frame_count - 1u, frame = position / frame_units < last ? (uint32_t)(position / frame_units) : last;
+    const uint32_t last = c->frame_count - 1u,
+                   frame = position / frame_units < last ? (uint32_t)(position / frame_units) : last;
     const double fraction = frame < last ? (double)(position % frame_units) / (double)frame_units : 0.0;
     double worst = 0.0;
     noh_clip_sample(x->cache, 0, (int64_t)ticks, c->joint_count, pose, NULL);
@@ -157,9 +165,12 @@ static void holds(raw_set *set, const clip_options *options, const char *name)
     if (failed) fail_msg("%s: %s", name, failed);
     reach_cm = 0.0;
     worst = largest_error(&x, o.shell_cm);
-    if (dense_parts()) print_message("%s at %.4g Hz, %g cm: %.6f of the bound\n", name, set->clips[0].sample_rate_hz, o.error_cm, worst / o.error_cm);
+    if (dense_parts())
+        print_message("%s at %.4g Hz, %g cm: %.6f of the bound\n", name, set->clips[0].sample_rate_hz, o.error_cm,
+                      worst / o.error_cm);
     if (!(worst <= o.error_cm * ROUNDING)) fail_msg("%s: error %.6f cm above %.6f", name, worst, o.error_cm);
-    if (!(worst <= x.report.max_error_cm * 1.02 + 1e-5 + SINGLE * reach_cm)) fail_msg("%s: error %.6f cm, certificate %.6f", name, worst, x.report.max_error_cm);
+    if (!(worst <= x.report.max_error_cm * 1.02 + 1e-5 + SINGLE * reach_cm))
+        fail_msg("%s: error %.6f cm, certificate %.6f", name, worst, x.report.max_error_cm);
     fixture_free(&x);
 }
 
@@ -283,9 +294,10 @@ static void bounds_hold_for_noise(void **state)
     (void)state;
     for (uint32_t f = 0; f < 60u; f++) {
         for (uint32_t j = 0; j < 8u; j++) {
-            fixture_axis_angle(fixture_rotation(&set->clips[0], f, j), fixture_random(&r) - 0.5, fixture_random(&r) - 0.5,
-                               fixture_random(&r) - 0.5, 6.0 * fixture_random(&r));
-            for (int i = 0; i < 3; i++) fixture_translation(&set->clips[0], f, j)[i] = (float)(30.0 * fixture_random(&r));
+            fixture_axis_angle(fixture_rotation(&set->clips[0], f, j), fixture_random(&r) - 0.5,
+                               fixture_random(&r) - 0.5, fixture_random(&r) - 0.5, 6.0 * fixture_random(&r));
+            for (int i = 0; i < 3; i++)
+                fixture_translation(&set->clips[0], f, j)[i] = (float)(30.0 * fixture_random(&r));
         }
     }
     holds(set, NULL, "noise");
@@ -356,7 +368,8 @@ static raw_set *with_floats(uint32_t joints, uint32_t frames, uint32_t width)
         assert_int_equal(raw_floats_alloc(group, frames, g ? 1u : width), 0);
         for (uint32_t f = 0; f < frames; f++) {
             for (uint32_t i = 0; i < group->width; i++) {
-                group->values[f * group->width + i] = (float)(0.5 + 0.5 * sin(0.1 * (double)f * (double)(1u + i % 5u) + (double)i));
+                group->values[f * group->width + i] = (float)(0.5 + 0.5 * sin(0.1 * (double)f * (double)(1u + i % 5u) +
+                                                                              (double)i));
             }
         }
     }
@@ -382,7 +395,8 @@ static void floats_keep_within_their_reach(void **state)
             const raw_floats *g = x.set->clips[0].floats;
             noh_clip_sample(x.cache, 0, (int64_t)f * 1600, joints[k], pose, values);
             for (uint32_t i = 0; i < 34u; i++) {
-                assert_true(fabs((double)values[i] - (double)g[0].values[f * 34u + i]) * (double)g[0].reach[i] <= 0.01 * ROUNDING);
+                assert_true(fabs((double)values[i] - (double)g[0].values[f * 34u + i]) * (double)g[0].reach[i] <=
+                            0.01 * ROUNDING);
             }
             assert_true(fabs((double)values[34] - (double)g[1].values[f]) <= 0.001 * ROUNDING);
         }
@@ -439,7 +453,8 @@ static void any_order_gives_the_same_bits(void **state)
         const int i = (int)(fixture_random(&r) * TIMES);
         fixture *which = k % 2 ? &x : &y;
         noh_clip_cache_begin_frame(which->cache);
-        noh_clip_cache_want(which->cache, 0, (int64_t)(fixture_random(&r) * 280000.0), (uint32_t)(fixture_random(&r) * (POSE + 1u)));
+        noh_clip_cache_want(which->cache, 0, (int64_t)(fixture_random(&r) * 280000.0),
+                            (uint32_t)(fixture_random(&r) * (POSE + 1u)));
         noh_clip_cache_work(which->cache, (uint32_t)(fixture_random(&r) * 300.0));
         sample_into(which->cache, i * 565 - 100, POSE, other);
         assert_memory_equal(other, forward[i], sizeof other);
@@ -610,7 +625,8 @@ static void survive(fixture *x)
     noh_clip_info_of(x->clip, &info);
     if (info.float_count <= 4096u) {
         for (uint32_t i = 0; i < 40u; i++) {
-            noh_clip_sample(x->cache, 0, (int64_t)(info.duration_ticks * i / 39u), x->set->clips[0].joint_count, pose, floats);
+            noh_clip_sample(x->cache, 0, (int64_t)(info.duration_ticks * i / 39u), x->set->clips[0].joint_count, pose,
+                            floats);
         }
     }
 }
@@ -690,12 +706,14 @@ static void decimate(raw_clip *c, uint32_t n)
 }
 
 static const char *const real_clips[] = { "CesiumMan", "Fox__Run", "Fox__Survey", "Knight__1H_Melee_Attack_Chop",
-    "Knight__2H_Melee_Attack_Spin", "Knight__Death_B", "Knight__Idle", "Knight__Lie_StandUp", "RobotExpressive__Dance",
-    "RobotExpressive__Wave", "ad_zombie", "cmu_01_01", "cmu_salsa_01", "cmu_martial_03",
-    /* from here on when dense only */
-    "Fox__Walk", "Knight__Cheer", "Knight__Jump_Full_Long", "Knight__Running_A", "Knight__Spellcast_Long",
-    "Knight__Unarmed_Melee_Attack_Kick", "Knight__Walking_A", "Knight__Walking_Backwards", "RobotExpressive__Walking", "cmu_01_03",
-    "cmu_indian_04" };
+                                          "Knight__2H_Melee_Attack_Spin", "Knight__Death_B", "Knight__Idle",
+                                          "Knight__Lie_StandUp", "RobotExpressive__Dance", "RobotExpressive__Wave",
+                                          "ad_zombie", "cmu_01_01", "cmu_salsa_01", "cmu_martial_03",
+                                          /* from here on when dense only */
+                                          "Fox__Walk", "Knight__Cheer", "Knight__Jump_Full_Long", "Knight__Running_A",
+                                          "Knight__Spellcast_Long", "Knight__Unarmed_Melee_Attack_Kick",
+                                          "Knight__Walking_A", "Knight__Walking_Backwards", "RobotExpressive__Walking",
+                                          "cmu_01_03", "cmu_indian_04" };
 #define REAL_CLIPS (sizeof real_clips / sizeof *real_clips)
 #define REAL_CLIPS_QUICK 14u
 

@@ -22,18 +22,18 @@
 #undef noh_clip_synth_linear
 #undef noh_clip_store_rotation
 
-void noh_clip_blend_frames(const noh_clip *clip, const uint8_t *a, const uint8_t *b, float fraction, uint32_t joints, noh_transform *out,
-                           float *floats);
-void noh_clip_blend_frames_avx2(const noh_clip *clip, const uint8_t *a, const uint8_t *b, float fraction, uint32_t joints,
-                                noh_transform *out, float *floats);
-void noh_clip_synth_rotation(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last, const float reference[4], int wide,
-                             uint8_t *out, size_t stride);
-void noh_clip_synth_linear(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last, const float reference[3], uint8_t *out,
-                           size_t stride);
+void noh_clip_blend_frames(const noh_clip *clip, const uint8_t *a, const uint8_t *b, float fraction, uint32_t joints,
+                           noh_transform *out, float *floats);
+void noh_clip_blend_frames_avx2(const noh_clip *clip, const uint8_t *a, const uint8_t *b, float fraction,
+                                uint32_t joints, noh_transform *out, float *floats);
+void noh_clip_synth_rotation(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last,
+                             const float reference[4], int wide, uint8_t *out, size_t stride);
+void noh_clip_synth_linear(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last,
+                           const float reference[3], uint8_t *out, size_t stride);
 void noh_clip_store_rotation(const float q[4], int wide, uint8_t *out);
 
-typedef void (*blend)(const noh_clip *clip, const uint8_t *a, const uint8_t *b, float fraction, uint32_t joints, noh_transform *out,
-                      float *floats);
+typedef void (*blend)(const noh_clip *clip, const uint8_t *a, const uint8_t *b, float fraction, uint32_t joints,
+                      noh_transform *out, float *floats);
 
 #define JOINTS 41u
 #define LINEARS 7u
@@ -97,7 +97,8 @@ static void fill_frame(uint8_t *frame, const noh_clip *clip, int wide, uint32_t 
     static const int16_t extremes[4] = { 0, 32767, -32767, -32768 };
     memset(frame, 0, FRAME_BYTES);
     for (uint32_t i = 0; i < 4u * clip->rotation_count; i++) {
-        const int16_t v = next_random(state) % 16u ? (int16_t)(int32_t)random_float(state, 32767.0f) : extremes[next_random(state) % 4u];
+        const int16_t v = next_random(state) % 16u ? (int16_t)(int32_t)random_float(state, 32767.0f)
+                                                   : extremes[next_random(state) % 4u];
         const float f = (float)v / 32767.0f;
         memcpy(frame + (wide ? 4u : 2u) * i, wide ? (const void *)&f : (const void *)&v, wide ? 4u : 2u);
     }
@@ -165,7 +166,8 @@ static void frames_are_the_scalar_twins(void **state)
             float coefs[NOH_CLIP_SEGMENT_FRAMES_MAX][4], reference[4];
             uint8_t here[NOH_CLIP_SEGMENT_FRAMES_MAX * STRIDE], there[sizeof here];
             const uint32_t last = next_random(&seed) % (frames + 1u), size = next_random(&seed) % 3u;
-            for (uint32_t k = 0; k < frames * 4u; k++) coefs[k / 4u][k % 4u] = random_float(&seed, size == 2u ? 1e9f : 1.0f);
+            for (uint32_t k = 0; k < frames * 4u; k++)
+                coefs[k / 4u][k % 4u] = random_float(&seed, size == 2u ? 1e9f : 1.0f);
             for (uint32_t k = 0; k < 4u; k++) reference[k] = random_float(&seed, 0.5f);
             for (int kind = 0; kind < 3; kind++) {
                 memset(here, 0, sizeof here);
@@ -190,7 +192,8 @@ static void raw_rotations_are_the_scalar_twins(void **state)
     (void)state;
     for (uint32_t i = 0; i < TRIES; i++) {
         float q[4];
-        for (uint32_t k = 0; k < 4u; k++) q[k] = next_random(&seed) % 3u ? random_float(&seed, 1.0f) : odd[next_random(&seed) % 8u];
+        for (uint32_t k = 0; k < 4u; k++)
+            q[k] = next_random(&seed) % 3u ? random_float(&seed, 1.0f) : odd[next_random(&seed) % 8u];
         for (int wide = 0; wide < 2; wide++) {
             uint8_t here[16] = { 0 }, there[16] = { 0 };
             noh_clip_store_rotation(q, wide, here);

@@ -42,7 +42,9 @@ static int set_up(void **state)
     (void)state;
     weights = test_pack_of(m, &weights_count, NULL);
     model_free(m);
-    return build(bvh, "walk 0.05 step_left 7 min=0.5\nwalk 0.1 step_right\nwalk 0 left marker\nwalk 0.09 right marker\n", &good, &failure);
+    return build(bvh,
+                 "walk 0.05 step_left 7 min=0.5\nwalk 0.1 step_right\nwalk 0 left marker\nwalk 0.09 right marker\n",
+                 &good, &failure);
 }
 
 static int tear_down(void **state)
@@ -98,7 +100,8 @@ static void note_key(void *user, const noh_event *event)
 {
     fired_list *list = user;
     assert_true(list->count < TEST_COUNT(list->items));
-    list->items[list->count++] = (fired_key){ event->clock, event->key->name_hash, event->key->payload[0], event->key->weight_min };
+    list->items[list->count++] = (fired_key){ event->clock, event->key->name_hash, event->key->payload[0],
+                                              event->key->weight_min };
 }
 
 /* Repeats the pack's clip at its own speed, a millisecond a step. */
@@ -138,7 +141,8 @@ static void keys_survive_compression(void **state)
 }
 
 /* The source stores a key's time in seconds in a field that counts ticks, so every key of the first second is in the
- * first tick (the same chapter). Keys at 0.05 s and 0.1 s fire at these times of the clock: 48,000 ticks are a second. */
+ * first tick (the same chapter). Keys at 0.05 s and 0.1 s fire at these times of the clock: 48,000 ticks are a second.
+ */
 static void key_times_are_ticks(void **state)
 {
     fired_list list;
@@ -171,7 +175,8 @@ static void levels_and_errors_are_there(void **state)
     /* 3 cm from the knee a turn by 25 degrees moves a point by 3 * 2 sin(12.5 degrees) = 1.2987 */
     assert_true(clip.joint_errors[1] > 1.2986f && clip.joint_errors[1] < 1.2987f * 1.15f);
     assert_true(clip.header->error_shell == 3.0f);
-    assert_true(clip.header->update_rate_error[0] == 0.0f && clip.header->update_rate_error[3] >= clip.header->update_rate_error[1]);
+    assert_true(clip.header->update_rate_error[0] == 0.0f &&
+                clip.header->update_rate_error[3] >= clip.header->update_rate_error[1]);
     assert_true(clip.header->update_rate_error[3] > 0.0f);
 }
 
@@ -391,12 +396,15 @@ static void lies_about_lod_are_named(void **state)
 
 int main(int argument_count, char **arguments)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pack_holds_skeleton_clip_and_keys), cmocka_unit_test(keys_survive_compression),
-        cmocka_unit_test(key_times_are_ticks), cmocka_unit_test(levels_and_errors_are_there), cmocka_unit_test(another_skeleton_is_refused_by_name),
-        cmocka_unit_test(every_truncation_and_flip_is_refused), cmocka_unit_test(repaired_flips_stay_in_bounds),
-        cmocka_unit_test(lies_are_named), cmocka_unit_test(lies_about_lod_are_named)
-    };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(pack_holds_skeleton_clip_and_keys),
+                                        cmocka_unit_test(keys_survive_compression),
+                                        cmocka_unit_test(key_times_are_ticks),
+                                        cmocka_unit_test(levels_and_errors_are_there),
+                                        cmocka_unit_test(another_skeleton_is_refused_by_name),
+                                        cmocka_unit_test(every_truncation_and_flip_is_refused),
+                                        cmocka_unit_test(repaired_flips_stay_in_bounds),
+                                        cmocka_unit_test(lies_are_named),
+                                        cmocka_unit_test(lies_about_lod_are_named) };
     if (argument_count > 1) {
         cmocka_set_test_filter(arguments[1]);
     }

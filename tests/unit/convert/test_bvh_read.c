@@ -14,9 +14,8 @@
 static raw_set *load_path(const char *path, const bvh_options *options)
 {
     raw_set *set = NULL;
-    model_error error = {"", ""};
-    if (bvh_read(path, options, &set, &error))
-        fail_msg("%s refused: %s (%s)", path, error.what, error.where);
+    model_error error = { "", "" };
+    if (bvh_read(path, options, &set, &error)) fail_msg("%s refused: %s (%s)", path, error.what, error.where);
     return set;
 }
 
@@ -35,7 +34,7 @@ static raw_set *load(const char *text)
 static void refused(const char *text, const char *what, const char *where)
 {
     raw_set *set = (raw_set *)1;
-    model_error error = {"", ""};
+    model_error error = { "", "" };
     assert_int_equal(bvh_read(save(text), NULL, &set, &error), 1);
     assert_null(set);
     if (!strstr(error.what, what) || strcmp(error.where, where) != 0)
@@ -64,7 +63,7 @@ static void product(const double *a, const double *b, double *out)
 /* order: axes, the first outermost */
 static void euler_matrix(const int *order, const double *degrees, double *out)
 {
-    double next[9], sum[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    double next[9], sum[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
     for (int i = 0; i < 3; ++i) {
         double turn[9];
         axis_matrix(order[i], degrees[i], turn);
@@ -77,9 +76,9 @@ static void euler_matrix(const int *order, const double *degrees, double *out)
 static void assert_rotation(const float *q, const double *m, double tolerance)
 {
     const double x = (double)q[0], y = (double)q[1], z = (double)q[2], w = (double)q[3];
-    const double got[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w),
-                           2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
-                           2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)};
+    const double got[9] = { 1 - 2 * (y * y + z * z), 2 * (x * y - z * w),     2 * (x * z + y * w),
+                            2 * (x * y + z * w),     1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
+                            2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y) };
     assert_true(fabs(x * x + y * y + z * z + w * w - 1.0) < 1e-6);
     for (int i = 0; i < 9; ++i)
         if (!(fabs(got[i] - m[i]) <= tolerance))
@@ -93,10 +92,11 @@ static void assert_rotation(const float *q, const double *m, double tolerance)
 static void a_small_skeleton(void **state)
 {
     (void)state;
-    raw_set *set = load("HIERARCHY\nROOT Hips\n{\n OFFSET 1 2 3\n CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n"
-                        " JOINT Left Leg\n {\n  OFFSET 0 -10 0.5\n  CHANNELS 3 Zrotation Yrotation Xrotation\n"
-                        "  End Site\n  {\n   OFFSET 0 -4 0\n  }\n }\n}\n"
-                        MOTION_OF_2 "10 20 30 0 0 0 0 0 0\n11 20 30 90 0 0 0 0 180\n");
+    raw_set *set = load(
+        "HIERARCHY\nROOT Hips\n{\n OFFSET 1 2 3\n CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n"
+        " JOINT Left Leg\n {\n  OFFSET 0 -10 0.5\n  CHANNELS 3 Zrotation Yrotation Xrotation\n"
+        "  End Site\n  {\n   OFFSET 0 -4 0\n  }\n }\n}\n" MOTION_OF_2
+        "10 20 30 0 0 0 0 0 0\n11 20 30 90 0 0 0 0 180\n");
     const raw_skeleton *s = &set->skeleton;
     const raw_clip *c = &set->clips[0];
     assert_int_equal(s->joint_count, 2);
@@ -105,7 +105,8 @@ static void a_small_skeleton(void **state)
     assert_string_equal(s->joints[1].name, "Left Leg");
     assert_int_equal(s->joints[0].parent, MODEL_NONE);
     assert_int_equal(s->joints[1].parent, 0);
-    assert_true(s->joints[0].translation[1] == 2.0f && s->joints[0].rotation[3] == 1.0f && s->joints[0].scale[2] == 1.0f);
+    assert_true(s->joints[0].translation[1] == 2.0f && s->joints[0].rotation[3] == 1.0f &&
+                s->joints[0].scale[2] == 1.0f);
     assert_true(s->joints[1].end[1] == -4.0f && s->joints[0].end[1] == 0.0f);
     assert_true(s->unit_cm == 1.0);
     assert_string_equal(c->name, "clip");
@@ -122,14 +123,15 @@ static void a_small_skeleton(void **state)
 static void any_order_of_rotations(void **state)
 {
     (void)state;
-    static const int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
-    const double degrees[3] = {33.25, -71.5, 140.125};
+    static const int orders[6][3] = { { 0, 1, 2 }, { 0, 2, 1 }, { 1, 0, 2 }, { 1, 2, 0 }, { 2, 0, 1 }, { 2, 1, 0 } };
+    const double degrees[3] = { 33.25, -71.5, 140.125 };
     for (int i = 0; i < 6; ++i) {
         char text[512];
         double expected[9];
-        snprintf(text, sizeof text, "HIERARCHY ROOT r { OFFSET 0 0 0 CHANNELS 3 %crotation %crotation %crotation } MOTION\n"
-                 "Frames: 1\nFrame Time: 1\n%g %g %g\n", 'X' + orders[i][0], 'X' + orders[i][1], 'X' + orders[i][2],
-                 degrees[0], degrees[1], degrees[2]);
+        snprintf(text, sizeof text,
+                 "HIERARCHY ROOT r { OFFSET 0 0 0 CHANNELS 3 %crotation %crotation %crotation } MOTION\n"
+                 "Frames: 1\nFrame Time: 1\n%g %g %g\n",
+                 'X' + orders[i][0], 'X' + orders[i][1], 'X' + orders[i][2], degrees[0], degrees[1], degrees[2]);
         raw_set *set = load(text);
         euler_matrix(orders[i], degrees, expected);
         assert_rotation(set->clips[0].rotations, expected, 3e-7);
@@ -140,10 +142,11 @@ static void any_order_of_rotations(void **state)
 static void positions_between_rotations_on_any_joint(void **state)
 {
     (void)state;
-    raw_set *set = load("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\nJOINT b\n{\nOFFSET 1 2 3\n"
-                        "CHANNELS 4 Zrotation Yposition Xrotation Xposition\n}\n}\nMOTION\nFrames: 1\nFrame Time: 1\n30 7 40 -5\n");
-    const int order[3] = {2, 0, 1};
-    const double degrees[3] = {30, 40, 0};
+    raw_set *set = load(
+        "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\nJOINT b\n{\nOFFSET 1 2 3\n"
+        "CHANNELS 4 Zrotation Yposition Xrotation Xposition\n}\n}\nMOTION\nFrames: 1\nFrame Time: 1\n30 7 40 -5\n");
+    const int order[3] = { 2, 0, 1 };
+    const double degrees[3] = { 30, 40, 0 };
     double expected[9];
     euler_matrix(order, degrees, expected);
     assert_rotation(set->clips[0].rotations + 4, expected, 3e-7);
@@ -155,9 +158,10 @@ static void positions_between_rotations_on_any_joint(void **state)
 static void several_roots(void **state)
 {
     (void)state;
-    raw_set *set = load("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xposition\n}\nROOT b\n{\nOFFSET 0 1 0\nCHANNELS 1 Xposition\n"
-                        "JOINT c\n{\nOFFSET 1 1 1\nCHANNELS 1 Xposition\nEnd Site\n{\nOFFSET 1 0 0\n}\nEnd Site\n{\nOFFSET 0 2 0\n}\n}\n}\n"
-                        "MOTION\nFrames: 1\nFrame Time: 1\n1 2 3\n");
+    raw_set *set = load(
+        "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xposition\n}\nROOT b\n{\nOFFSET 0 1 0\nCHANNELS 1 Xposition\n"
+        "JOINT c\n{\nOFFSET 1 1 1\nCHANNELS 1 Xposition\nEnd Site\n{\nOFFSET 1 0 0\n}\nEnd Site\n{\nOFFSET 0 2 0\n}\n}\n}\n"
+        "MOTION\nFrames: 1\nFrame Time: 1\n1 2 3\n");
     assert_int_equal(set->skeleton.joint_count, 3);
     assert_int_equal(set->skeleton.joints[1].parent, MODEL_NONE);
     assert_int_equal(set->skeleton.joints[2].parent, 1);
@@ -169,9 +173,11 @@ static void several_roots(void **state)
 static void end_sites_as_joints(void **state)
 {
     (void)state;
-    const bvh_options options = {2.54, 1};
-    raw_set *set = load_path(save("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xposition\nEnd Site\n{\nOFFSET 1 2 3\n}\n}\n"
-                                  "MOTION\nFrames: 1\nFrame Time: 1\n1\n"), &options);
+    const bvh_options options = { 2.54, 1 };
+    raw_set *set = load_path(
+        save("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xposition\nEnd Site\n{\nOFFSET 1 2 3\n}\n}\n"
+             "MOTION\nFrames: 1\nFrame Time: 1\n1\n"),
+        &options);
     assert_true(set->skeleton.unit_cm == 2.54);
     assert_int_equal(set->skeleton.joint_count, 2);
     assert_string_equal(set->skeleton.joints[1].name, "a_end");
@@ -183,8 +189,9 @@ static void end_sites_as_joints(void **state)
 static void other_spellings(void **state)
 {
     (void)state;
-    raw_set *set = load("\xef\xbb\xbfhierarchy\r\nroot\tThe  Hips of:{x} {\r\n\toffset\t0\t0 0\r\n\tchannels 1\r\n\tXPOSITION\r\n\t}\r\n\r\n"
-                        "Motion\r\nFRAMES :2\r\nFrame  Time :\t1e-2\r\n\r\n  +1.5e1\t\r\n.5\r\n\r\n");
+    raw_set *set = load(
+        "\xef\xbb\xbfhierarchy\r\nroot\tThe  Hips of:{x} {\r\n\toffset\t0\t0 0\r\n\tchannels 1\r\n\tXPOSITION\r\n\t}\r\n\r\n"
+        "Motion\r\nFRAMES :2\r\nFrame  Time :\t1e-2\r\n\r\n  +1.5e1\t\r\n.5\r\n\r\n");
     assert_string_equal(set->skeleton.joints[0].name, "The  Hips of:{x}");
     assert_true(set->clips[0].sample_rate_hz == 100.0);
     assert_true(set->clips[0].translations[0] == 15.0f && set->clips[0].translations[3] == 0.5f);
@@ -195,7 +202,9 @@ static void signs_do_not_jump(void **state)
 {
     (void)state;
     char *text = test_zeros(65536);
-    strcpy(text, "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\n}\nMOTION\nFrames: 400\nFrame Time: 0.01\n");
+    strcpy(
+        text,
+        "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\n}\nMOTION\nFrames: 400\nFrame Time: 0.01\n");
     for (int i = 0; i < 400; ++i) {
         char line[64];
         snprintf(line, sizeof line, "%d %d %d\n", (i * 7) % 360 - 180, (i * 3) % 360, i * -5);
@@ -213,7 +222,9 @@ static void signs_do_not_jump(void **state)
 static void rate_is(const char *time, double sample_rate_hz)
 {
     char text[256];
-    snprintf(text, sizeof text, "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xposition\n}\nMOTION\nFrames: 1\nFrame Time: %s\n1\n", time);
+    snprintf(text, sizeof text,
+             "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xposition\n}\nMOTION\nFrames: 1\nFrame Time: %s\n1\n",
+             time);
     raw_set *set = load(text);
     if (!(fabs(set->clips[0].sample_rate_hz - sample_rate_hz) <= 1e-9 * sample_rate_hz))
         fail_msg("frame time %s gave %.9g Hz, not %.9g", time, set->clips[0].sample_rate_hz, sample_rate_hz);
@@ -236,7 +247,8 @@ static void whole_rates_are_recognised(void **state)
 
 /* --- what is refused --- */
 
-#define HEAD "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition Zrotation\n}\nMOTION\n" /* lines 1 to 7 */
+#define HEAD \
+    "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition Zrotation\n}\nMOTION\n" /* lines 1 to 7 */
 #define CLIP_2 "Frames: 2\nFrame Time: 0.01\n"
 
 static void bad_frames_are_refused(void **state)
@@ -288,14 +300,18 @@ static void bad_hierarchies_are_refused(void **state)
     refused("HIERARCHY\nROOT a\n{\nOFFSET 0 0 1e39\n", "too large", "line 4");
     refused("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\n}\nMOTION\n", "joint 'a' has no CHANNELS", "line 5");
     refused("HIERARCHY\nROOT a\n{\nCHANNELS 1 Xposition\n}\nMOTION\n", "joint 'a' has no OFFSET", "line 5");
-    refused("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 3 Xrotation Yrotation\nJOINT b\n", "'JOINT' is not a channel", "line 6");
+    refused("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 3 Xrotation Yrotation\nJOINT b\n", "'JOINT' is not a channel",
+            "line 6");
     refused("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xscale\n}\n", "'Xscale' is not a channel", "line 5");
-    refused("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 2 Xrotation xrotation\n}\n", "the channel xrotation twice", "line 5");
+    refused("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 2 Xrotation xrotation\n}\n", "the channel xrotation twice",
+            "line 5");
     refused("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 7 Xrotation\n}\n", "the limit is 6", "line 5");
-    refused("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation Yrotation\n}\n", "'Yrotation' is not known", "line 5");
+    refused("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation Yrotation\n}\n", "'Yrotation' is not known",
+            "line 5");
     refused("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nOFFSET 0 0 0\n}\n", "two OFFSETs", "line 5");
     refused("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\nCHANNELS 0\n}\n", "two lists of CHANNELS", "line 6");
-    refused("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\n}\nMOTION\nFrames: 1\nFrame Time: 1\n\n", "no joint has a channel", "line 8");
+    refused("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\n}\nMOTION\nFrames: 1\nFrame Time: 1\n\n",
+            "no joint has a channel", "line 8");
     refused("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\nEnd Site\n{\n}\n}\n", "expected OFFSET", "line 8");
     refused("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nEnd Site\n{\nOFFSET 1 2 3\nJOINT b\n", "expected }", "line 8");
     refused("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\n", "the file ends inside joint 'a'", "line 6");
@@ -308,8 +324,7 @@ static char *chain_of(uint32_t joints)
     at += sprintf(at, "HIERARCHY\n");
     for (uint32_t j = 0; j < joints; ++j)
         at += sprintf(at, "%s j%u\n{\nOFFSET 0 0 0\nCHANNELS %s\n", j ? "JOINT" : "ROOT", j, j ? "0" : "1 Xposition");
-    for (uint32_t j = 0; j < joints; ++j)
-        at += sprintf(at, "}\n");
+    for (uint32_t j = 0; j < joints; ++j) at += sprintf(at, "}\n");
     sprintf(at, "MOTION\nFrames: 1\nFrame Time: 1\n5\n");
     return text;
 }
@@ -351,9 +366,10 @@ static void every_truncation_is_refused(void **state)
     (void)state;
     const char *text = HEAD CLIP_2 "1 2 3\n4 5 67";
     char cut[256];
-    for (size_t length = 0; length + 1 < strlen(text); ++length) { /* without "67" a number is missing, without "7" none is */
+    for (size_t length = 0; length + 1 < strlen(text);
+         ++length) { /* without "67" a number is missing, without "7" none is */
         raw_set *set = NULL;
-        model_error error = {"", ""};
+        model_error error = { "", "" };
         memcpy(cut, text, length);
         cut[length] = '\0';
         assert_int_equal(bvh_read(save(cut), NULL, &set, &error), 1);
@@ -365,8 +381,8 @@ static void bad_units_are_refused(void **state)
 {
     (void)state;
     raw_set *set = NULL;
-    model_error error = {"", ""};
-    const bvh_options options = {-1.0, 0};
+    model_error error = { "", "" };
+    const bvh_options options = { -1.0, 0 };
     assert_int_equal(bvh_read(save(HEAD CLIP_2), &options, &set, &error), 1);
     assert_non_null(strstr(error.what, "unit of -1 cm"));
     assert_int_equal(bvh_read(test_path("none.bvh"), NULL, &set, &error), 1);
@@ -390,10 +406,9 @@ static void mutations_never_crash(void **state)
         for (uint32_t n = 1 + test_random_below(&r, 4); n > 0; --n)
             changed[test_random_below(&r, (uint32_t)length)] = bytes[test_random_below(&r, sizeof bytes - 1)];
         raw_set *set = NULL;
-        model_error error = {"", ""};
+        model_error error = { "", "" };
         test_write_file(test_path("mutated.bvh"), changed, length);
-        if (!bvh_read(test_path("mutated.bvh"), NULL, &set, &error))
-            ++accepted;
+        if (!bvh_read(test_path("mutated.bvh"), NULL, &set, &error)) ++accepted;
         raw_set_free(set);
     }
     assert_true(accepted > 0 && accepted < rounds);
@@ -405,13 +420,11 @@ static void mutations_never_crash(void **state)
 static void compare_with_rcl(const char *bvh, const char *rcl, double unit_cm)
 {
     struct stat status;
-    if (stat(bvh, &status) != 0)
-        test_skip("no %s (Debian: assimp-testmodels)", bvh);
-    const bvh_options options = {unit_cm, 0};
+    if (stat(bvh, &status) != 0) test_skip("no %s (Debian: assimp-testmodels)", bvh);
+    const bvh_options options = { unit_cm, 0 };
     raw_set *a = load_path(bvh, &options), *b = NULL;
-    model_error error = {"", ""};
-    if (rcl_read(test_asset(rcl), &b, &error))
-        fail_msg("%s (%s)", error.what, error.where);
+    model_error error = { "", "" };
+    if (rcl_read(test_asset(rcl), &b, &error)) fail_msg("%s (%s)", error.what, error.where);
     const raw_clip *ca = &a->clips[0], *cb = &b->clips[0];
     assert_int_equal(raw_skeleton_hash(&a->skeleton), raw_skeleton_hash(&b->skeleton));
     assert_int_equal(ca->frame_count, cb->frame_count);
@@ -419,14 +432,16 @@ static void compare_with_rcl(const char *bvh, const char *rcl, double unit_cm)
     double worst_turn = 0.0, worst_cm = 0.0;
     for (size_t i = 0; i < (size_t)ca->frame_count * ca->joint_count; ++i) {
         double dot = 0.0;
+        for (size_t k = 0; k < 4; ++k) dot += (double)ca->rotations[i * 4 + k] * (double)cb->rotations[i * 4 + k];
         for (size_t k = 0; k < 4; ++k)
-            dot += (double)ca->rotations[i * 4 + k] * (double)cb->rotations[i * 4 + k];
-        for (size_t k = 0; k < 4; ++k)
-            worst_turn = fmax(worst_turn, fabs((double)ca->rotations[i * 4 + k] - copysign(1.0, dot) * (double)cb->rotations[i * 4 + k]));
+            worst_turn = fmax(worst_turn, fabs((double)ca->rotations[i * 4 + k] -
+                                               copysign(1.0, dot) * (double)cb->rotations[i * 4 + k]));
         for (size_t k = 0; k < 3; ++k)
-            worst_cm = fmax(worst_cm, fabs((double)ca->translations[i * 3 + k] * unit_cm - (double)cb->translations[i * 3 + k]));
+            worst_cm = fmax(worst_cm,
+                            fabs((double)ca->translations[i * 3 + k] * unit_cm - (double)cb->translations[i * 3 + k]));
     }
-    print_message("%s: %u frames, largest difference %.3g of a quaternion, %.3g cm\n", rcl, ca->frame_count, worst_turn, worst_cm);
+    print_message("%s: %u frames, largest difference %.3g of a quaternion, %.3g cm\n", rcl, ca->frame_count, worst_turn,
+                  worst_cm);
     assert_true(worst_turn < 1e-6 && worst_cm < 1e-3);
     raw_set_free(a);
     raw_set_free(b);

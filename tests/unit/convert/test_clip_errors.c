@@ -59,7 +59,8 @@ static void close_clip(opened *o)
 /* out = a * translation * rotation * scale of t; 3 rows of 4. */
 static void append(const double *a, const noh_transform *t, double *out)
 {
-    const double x = (double)t->rotation[0], y = (double)t->rotation[1], z = (double)t->rotation[2], w = (double)t->rotation[3];
+    const double x = (double)t->rotation[0], y = (double)t->rotation[1], z = (double)t->rotation[2],
+                 w = (double)t->rotation[3];
     const double n = 2.0 / (x * x + y * y + z * z + w * w);
     const double turn[3][3] = { { 1 - n * (y * y + z * z), n * (x * y - w * z), n * (x * z + w * y) },
                                 { n * (x * y + w * z), 1 - n * (x * x + z * z), n * (y * z - w * x) },
@@ -89,7 +90,8 @@ static double farthest(const double *a, const double *b, double reach)
 {
     double worst = 0.0;
     for (int i = 0; i < 27; i++) {
-        double p[3] = { i % 3 - 1.0, i / 3 % 3 - 1.0, i / 9 - 1.0 }, length = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]), square = 0.0;
+        double p[3] = { i % 3 - 1.0, i / 3 % 3 - 1.0, i / 9 - 1.0 },
+               length = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]), square = 0.0;
         for (int r = 0; r < 3; r++) {
             double off = a[4 * r + 3] - b[4 * r + 3];
             for (int c = 0; c < 3; c++) off += (a[4 * r + c] - b[4 * r + c]) * p[c] / fmax(length, 1.0) * reach;
@@ -106,7 +108,8 @@ static double level_off(const opened *o, uint32_t clip, uint32_t count, const fl
     const noh_skeleton *s = &o->set->skeleton;
     noh_transform *pose = test_zeros(s->joint_count * sizeof *pose);
     float *floats = test_zeros((o->set->clips.float_count + 1u) * sizeof *floats);
-    double *whole = test_zeros(12u * s->joint_count * sizeof *whole), *less = test_zeros(12u * s->joint_count * sizeof *less), worst = 0.0;
+    double *whole = test_zeros(12u * s->joint_count * sizeof *whole),
+           *less = test_zeros(12u * s->joint_count * sizeof *less), worst = 0.0;
     for (uint32_t tick = 0; tick <= o->set->clips.clips[clip].duration_ticks; tick += step) {
         o->set->clips.sample(o->set->clips.user, clip, tick, s->joint_count, pose, o->set->clips.float_count, floats);
         model_of(s, pose, s->joint_count, whole);
@@ -134,14 +137,16 @@ static float *reach_of(const model *m, const model_clips *made, const noh_pack *
         const model_skin *skin = m->nodes[n].skin == MODEL_NONE ? NULL : &m->skins[m->nodes[n].skin];
         for (size_t i = 0; mesh && skin && i < (size_t)mesh->vertex_count * MODEL_INFLUENCES_MAX; i++) {
             const uint32_t place = mesh->joints[i];
-            const float *bind = skin->inverse_bind + 16u * (size_t)place, *at = mesh->position + 3 * (i / MODEL_INFLUENCES_MAX);
+            const float *bind = skin->inverse_bind + 16u * (size_t)place,
+                        *at = mesh->position + 3 * (i / MODEL_INFLUENCES_MAX);
             const char *name = made->sets[0]->skeleton.joints[made->skins[m->nodes[n].skin].joints[place]].name;
             double square = 0.0;
             uint32_t j = 0;
             if (mesh->joint_weights[i] < 0.05f) continue;
             while (strcmp(noh_pack_joint_name(pack, 0, j), name) != 0) j++;
             for (int r = 0; r < 3; r++) {
-                double x = (double)(bind[r] * at[0]) + (double)(bind[4 + r] * at[1]) + (double)(bind[8 + r] * at[2]) + (double)bind[12 + r];
+                double x = (double)(bind[r] * at[0]) + (double)(bind[4 + r] * at[1]) + (double)(bind[8 + r] * at[2]) +
+                           (double)bind[12 + r];
                 square += x * x;
             }
             reach[j] = fmaxf(reach[j], (float)sqrt(square));
@@ -176,14 +181,16 @@ static void a_puppets_joint_errors_are_those_of_its_vertices(void **state)
         noh_pack_clip from;
         assert_int_equal(noh_pack_clip_at(&o.pack, o.set->pack_clips[clip], &from, NULL), NOH_OK);
         assert_true(from.header->error_shell == 0.0f);
-        assert_true(from.header->update_rate_error[1] > 0.0f && from.header->update_rate_error[1] < 0.05f); /* no walk's leap back among them */
+        assert_true(from.header->update_rate_error[1] > 0.0f &&
+                    from.header->update_rate_error[1] < 0.05f); /* no walk's leap back among them */
         for (uint32_t i = 1; i < level_count; i++) {
             const double stored = (double)from.joint_errors[i], coarse = level_off(&o, clip, levels[i], reach, 800);
             print_message("%s, %u joints: %.4f m stored, %.4f found\n", from.name, levels[i], stored, coarse);
             assert_true(coarse <= stored * 1.0001 + 1e-6);
             assert_true(coarse >= 0.8 * stored);
         }
-        assert_true(level_off(&o, clip, levels[level_count - 1], reach, 1234) <= 1.001 * (double)from.joint_errors[level_count - 1] + 1e-4);
+        assert_true(level_off(&o, clip, levels[level_count - 1], reach, 1234) <=
+                    1.001 * (double)from.joint_errors[level_count - 1] + 1e-4);
     }
     free(reach);
     close_clip(&o);
@@ -195,8 +202,8 @@ static void a_puppets_joint_errors_are_those_of_its_vertices(void **state)
 
 #define GRID 200u /* ticks */
 
-/* Where all joints are every GRID ticks of a clip, and for the longest period on: [count][joint_count][12]. A loop goes on from
- * where it came. */
+/* Where all joints are every GRID ticks of a clip, and for the longest period on: [count][joint_count][12]. A loop goes
+ * on from where it came. */
 static double *course_of(const opened *o, uint32_t clip, uint32_t *count)
 {
     const noh_skeleton *s = &o->set->skeleton;
@@ -207,16 +214,20 @@ static double *course_of(const opened *o, uint32_t clip, uint32_t *count)
     *count = (m->duration_ticks + 400u + 6000u) / GRID + 1u;
     course = test_zeros((size_t)*count * s->joint_count * 12u * sizeof *course);
     for (uint32_t i = 0; i < 2; i++) {
-        o->set->clips.sample(o->set->clips.user, clip, i * m->duration_ticks, s->joint_count, pose, o->set->clips.float_count, floats);
+        o->set->clips.sample(o->set->clips.user, clip, i * m->duration_ticks, s->joint_count, pose,
+                             o->set->clips.float_count, floats);
         memcpy(ends[i], pose[0].translation, sizeof ends[i]);
     }
     for (uint32_t i = 0; i < *count; i++) {
         const uint32_t tick = i * GRID, passes = m->loop == NOH_LOOP_REPEAT ? tick / m->duration_ticks : 0;
-        const uint32_t at = m->loop == NOH_LOOP_REPEAT ? tick % m->duration_ticks : tick < m->duration_ticks ? tick : m->duration_ticks;
+        const uint32_t at = m->loop == NOH_LOOP_REPEAT ? tick % m->duration_ticks
+                            : tick < m->duration_ticks ? tick
+                                                       : m->duration_ticks;
         double *models = course + (size_t)i * s->joint_count * 12u;
         o->set->clips.sample(o->set->clips.user, clip, at, s->joint_count, pose, o->set->clips.float_count, floats);
         model_of(s, pose, s->joint_count, models);
-        for (uint32_t k = 0; k < 3u * s->joint_count; k++) models[4u * k + 3u] += passes * (double)(ends[1][k % 3u] - ends[0][k % 3u]);
+        for (uint32_t k = 0; k < 3u * s->joint_count; k++)
+            models[4u * k + 3u] += passes * (double)(ends[1][k % 3u] - ends[0][k % 3u]);
     }
     free(pose);
     free(floats);
@@ -224,8 +235,8 @@ static double *course_of(const opened *o, uint32_t clip, uint32_t *count)
 }
 
 /* Where a vertex is at each of these: way[count][3]; and how far it is from the joints that move it by 0.05 or more. */
-static void way_of(const noh_mesh *mesh, const noh_skin *skin, uint32_t vertex, const double *course, uint32_t count, uint32_t joint_count,
-                   double *way, float *reach)
+static void way_of(const noh_mesh *mesh, const noh_skin *skin, uint32_t vertex, const double *course, uint32_t count,
+                   uint32_t joint_count, double *way, float *reach)
 {
     uint32_t joints[NOH_INFLUENCES_MAX];
     float weights[NOH_INFLUENCES_MAX];
@@ -273,7 +284,8 @@ static double way_off(const double *way, uint32_t duration, uint32_t period)
 }
 
 /* Of all vertices that the set's skeleton moves; and how far they are from their joints. */
-static void worst_of_all(const opened *o, uint32_t skeleton, uint32_t clip, double worst[NOH_UPDATE_RATE_COUNT], float *reach)
+static void worst_of_all(const opened *o, uint32_t skeleton, uint32_t clip, double worst[NOH_UPDATE_RATE_COUNT],
+                         float *reach)
 {
     const uint32_t joint_count = o->set->skeleton.joint_count;
     uint32_t count;
@@ -284,11 +296,13 @@ static void worst_of_all(const opened *o, uint32_t skeleton, uint32_t clip, doub
         noh_mesh mesh;
         noh_skin skin;
         noh_pack_mesh_at(&o->pack, i, &mesh, NULL);
-        if (noh_pack_skin_at(&o->pack, mesh.header->skin, &skin, NULL) != NOH_OK || skin.header->skeleton != skeleton) continue;
+        if (noh_pack_skin_at(&o->pack, mesh.header->skin, &skin, NULL) != NOH_OK || skin.header->skeleton != skeleton)
+            continue;
         for (uint32_t v = 0; v < mesh.header->vertex_count; v++) {
             way_of(&mesh, &skin, v, course, count, joint_count, way, reach);
             for (int r = 1; r < NOH_UPDATE_RATE_COUNT; r++) {
-                worst[r] = fmax(worst[r], way_off(way, o->set->clips.clips[clip].duration_ticks, noh_update_period((noh_update_rate)r)));
+                worst[r] = fmax(worst[r], way_off(way, o->set->clips.clips[clip].duration_ticks,
+                                                  noh_update_period((noh_update_rate)r)));
             }
         }
     }
@@ -312,11 +326,13 @@ static void expect_rates(const opened *o, uint32_t skeleton)
         memset(&probe, 0, sizeof probe);
         probe.set = &o->set->clips, probe.skeleton = &o->set->skeleton, probe.joint_radius_m = reach, probe.travels = 1;
         memory = test_aligned(NULL, noh_time_lod_measure_size(&probe));
-        assert_int_equal(noh_time_lod_measure(memory, noh_time_lod_measure_size(&probe), &probe, clip, bound, NULL), NOH_OK);
+        assert_int_equal(noh_time_lod_measure(memory, noh_time_lod_measure_size(&probe), &probe, clip, bound, NULL),
+                         NOH_OK);
         free(memory);
         for (int r = 1; r < NOH_UPDATE_RATE_COUNT; r++) {
             const double stored = (double)from.header->update_rate_error[r];
-            print_message("%s, rate %d: %.5f m stored, %.5f the worst vertex, %.5f the bound\n", from.name, r, stored, worst[r], (double)bound[r]);
+            print_message("%s, rate %d: %.5f m stored, %.5f the worst vertex, %.5f the bound\n", from.name, r, stored,
+                          worst[r], (double)bound[r]);
             assert_true(worst[r] > 0.0 && stored >= 0.9 * worst[r]);
             assert_true(stored <= worst[r] * 1.001 + 1e-6 && stored <= (double)bound[r]);
         }
@@ -342,7 +358,9 @@ static void rates_are_those_of_the_worst_vertex(void **state)
 static void only_what_a_joint_moves_counts(void **state)
 {
     float positions[9] = { 0.0f, 0.5f, 0.0f, 0.0f, 1.25f, 0.0f, 0.0f, 4.0f, 0.0f }, weights[24] = { 0.0f }, reach[3];
-    float binds[32] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1 };
+    float binds[32] = {
+        1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1
+    };
     uint16_t joints[24] = { 0 };
     uint32_t places[2] = { 0, 2 };
     model_skin skin;
@@ -354,7 +372,8 @@ static void only_what_a_joint_moves_counts(void **state)
     memset(&mesh, 0, sizeof mesh);
     memset(&m, 0, sizeof m);
     skin.joint_count = 2, skin.inverse_bind = binds, skin.skeleton_joints = places;
-    mesh.vertex_count = 3, mesh.position = positions, mesh.joints = joints, mesh.joint_weights = weights, mesh.bound = 1;
+    mesh.vertex_count = 3, mesh.position = positions, mesh.joints = joints, mesh.joint_weights = weights,
+    mesh.bound = 1;
     m.mesh_count = m.skin_count = 1, m.meshes = &mesh, m.skins = &skin;
     weights[0] = 1.0f;
     joints[8] = 0, weights[8] = 0.95f, joints[9] = 1, weights[9] = 0.05f;
@@ -366,7 +385,8 @@ static void only_what_a_joint_moves_counts(void **state)
     assert_int_equal(joint_radius(NULL, 0, 3, reach), 0);
     assert_int_equal(joint_points_choose(&m, 0, 3, &chosen), 0);
     assert_true(chosen.points.point_count == 3 && chosen.points.holds_per_point == 2);
-    assert_true(chosen.holds[0].joint == 0 && chosen.holds[0].weight == 0.96f && chosen.holds[0].place[1] == 4.0f); /* the farthest of the first */
+    assert_true(chosen.holds[0].joint == 0 && chosen.holds[0].weight == 0.96f &&
+                chosen.holds[0].place[1] == 4.0f); /* the farthest of the first */
     assert_true(chosen.holds[1].joint == 2 && chosen.holds[1].weight == 0.04f && chosen.holds[1].place[1] == 3.0f);
     joint_points_free(&chosen);
     assert_int_equal(joint_points_choose(&m, 1, 3, &chosen), 0);
@@ -413,7 +433,8 @@ static void a_chains_errors_are_what_the_library_measures(void **state)
     for (uint32_t i = 1; i < level_count; i++) {
         const double found = level_off(&o, 0, levels[i], reach, 400);
         assert_true(found <= (double)joints[i] * 1.0001);
-        assert_true(joints[i] == joints[i - 1] || found >= 0.8 * (double)joints[i]); /* equal: it is not said to be better */
+        assert_true(joints[i] == joints[i - 1] ||
+                    found >= 0.8 * (double)joints[i]); /* equal: it is not said to be better */
     }
     free(memory);
     close_clip(&o);
@@ -484,12 +505,12 @@ static void bad_arguments_are_named(void **state)
 
 int main(int argument_count, char **arguments)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_puppets_joint_errors_are_those_of_its_vertices), cmocka_unit_test(rates_are_those_of_the_worst_vertex),
-        cmocka_unit_test(only_what_a_joint_moves_counts),
-        cmocka_unit_test(a_chains_errors_are_what_the_library_measures),
-        cmocka_unit_test(a_travelling_loop_has_the_errors_of_its_pass), cmocka_unit_test(bad_arguments_are_named)
-    };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(a_puppets_joint_errors_are_those_of_its_vertices),
+                                        cmocka_unit_test(rates_are_those_of_the_worst_vertex),
+                                        cmocka_unit_test(only_what_a_joint_moves_counts),
+                                        cmocka_unit_test(a_chains_errors_are_what_the_library_measures),
+                                        cmocka_unit_test(a_travelling_loop_has_the_errors_of_its_pass),
+                                        cmocka_unit_test(bad_arguments_are_named) };
     if (argument_count > 1) {
         cmocka_set_test_filter(arguments[1]);
     }

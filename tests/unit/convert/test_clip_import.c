@@ -36,7 +36,8 @@ static scene *scene_new(const char *nodes)
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 4)))
 #endif
-static void append(char *text, size_t capacity, const char *format, ...)
+static void
+append(char *text, size_t capacity, const char *format, ...)
 {
     size_t used = strlen(text);
     va_list arguments;
@@ -52,39 +53,42 @@ static int add_floats(scene *s, const float *values, size_t count, const char *t
     const char *comma = s->accessor_count ? "," : "";
     assert_true(s->count + count <= TEST_COUNT(s->numbers));
     APPEND(s->views, "%s{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu}", comma, s->count * 4, count * 4);
-    APPEND(s->accessors, "%s{\"bufferView\":%d,\"componentType\":5126,\"count\":%zu,\"type\":\"%s\"}", comma, s->accessor_count,
-           count / width, type);
+    APPEND(s->accessors, "%s{\"bufferView\":%d,\"componentType\":5126,\"count\":%zu,\"type\":\"%s\"}", comma,
+           s->accessor_count, count / width, type);
     memcpy(s->numbers + s->count, values, count * sizeof *values);
     s->count += count;
     return s->accessor_count++;
 }
 
 /* width 1 (weights), 3 or 4; values: floats in all */
-static void add_channel(scene *s, int node, const char *path, const char *interpolation, const float *times, size_t keys,
-                        const float *values, size_t value_count, size_t width)
+static void add_channel(scene *s, int node, const char *path, const char *interpolation, const float *times,
+                        size_t keys, const float *values, size_t value_count, size_t width)
 {
-    static const char *const types[5] = {"", "SCALAR", "", "VEC3", "VEC4"};
-    int input = add_floats(s, times, keys, "SCALAR", 1), output = add_floats(s, values, value_count, types[width], width);
+    static const char *const types[5] = { "", "SCALAR", "", "VEC3", "VEC4" };
+    int input = add_floats(s, times, keys, "SCALAR", 1),
+        output = add_floats(s, values, value_count, types[width], width);
     const char *comma = s->sampler_count ? "," : "";
     APPEND(s->samplers, "%s{\"input\":%d,\"output\":%d,\"interpolation\":\"%s\"}", comma, input, output, interpolation);
-    APPEND(s->channels, "%s{\"sampler\":%d,\"target\":{\"node\":%d,\"path\":\"%s\"}}", comma, s->sampler_count, node, path);
+    APPEND(s->channels, "%s{\"sampler\":%d,\"target\":{\"node\":%d,\"path\":\"%s\"}}", comma, s->sampler_count, node,
+           path);
     ++s->sampler_count;
 }
 
-static void add_turn(scene *s, int node, const char *interpolation, const float *times, size_t keys, const float *values, size_t count)
+static void add_turn(scene *s, int node, const char *interpolation, const float *times, size_t keys,
+                     const float *values, size_t count)
 {
     add_channel(s, node, "rotation", interpolation, times, keys, values, count, 4);
 }
 
-static void add_move(scene *s, int node, const char *interpolation, const float *times, size_t keys, const float *values, size_t count)
+static void add_move(scene *s, int node, const char *interpolation, const float *times, size_t keys,
+                     const float *values, size_t count)
 {
     add_channel(s, node, "translation", interpolation, times, keys, values, count, 3);
 }
 
 static void write_array(FILE *out, const char *name, const char *contents)
 {
-    if (contents && contents[0])
-        fprintf(out, ",\"%s\":[%s]", name, contents);
+    if (contents && contents[0]) fprintf(out, ",\"%s\":[%s]", name, contents);
 }
 
 static void save(scene *s)
@@ -94,16 +98,15 @@ static void save(scene *s)
     FILE *out = fopen(file_path, "wb");
     assert_non_null(out);
     fprintf(out, "{\"asset\":{\"version\":\"2.0\"}");
-    if (s->count)
-        fprintf(out, ",\"buffers\":[{\"uri\":\"scene.bin\",\"byteLength\":%zu}]", s->count * 4);
+    if (s->count) fprintf(out, ",\"buffers\":[{\"uri\":\"scene.bin\",\"byteLength\":%zu}]", s->count * 4);
     write_array(out, "bufferViews", s->views);
     write_array(out, "accessors", s->accessors);
     write_array(out, "nodes", s->nodes);
     write_array(out, "skins", s->skins);
     write_array(out, "meshes", s->meshes);
     if (s->channels[0])
-        fprintf(out, ",\"animations\":[{\"name\":\"act\",\"samplers\":[%s],\"channels\":[%s]%s}]", s->samplers, s->channels,
-                s->animation_rest ? s->animation_rest : "");
+        fprintf(out, ",\"animations\":[{\"name\":\"act\",\"samplers\":[%s],\"channels\":[%s]%s}]", s->samplers,
+                s->channels, s->animation_rest ? s->animation_rest : "");
     fprintf(out, "%s}", s->rest ? s->rest : "");
     fclose(out);
     free(s);
@@ -118,9 +121,9 @@ typedef struct loaded {
 
 static loaded load_file(double sample_rate_hz)
 {
-    loaded l = {NULL, NULL};
-    model_error error = {"", ""};
-    const sample_options options = {sample_rate_hz};
+    loaded l = { NULL, NULL };
+    model_error error = { "", "" };
+    const sample_options options = { sample_rate_hz };
     if (model_read_gltf(file_path, &l.m, &error) || clips_from_model(l.m, &options, &l.made, &error))
         fail_msg("refused: %s (%s)", error.what, error.where);
     return l;
@@ -140,9 +143,9 @@ static void loaded_free(loaded *l)
 
 static void refused(scene *s, double sample_rate_hz, const char *what, const char *where)
 {
-    loaded l = {NULL, NULL};
-    model_error error = {"", ""};
-    const sample_options options = {sample_rate_hz};
+    loaded l = { NULL, NULL };
+    model_error error = { "", "" };
+    const sample_options options = { sample_rate_hz };
     save(s);
     int failed = model_read_gltf(file_path, &l.m, &error) || clips_from_model(l.m, &options, &l.made, &error);
     assert_int_equal(failed, 1);
@@ -162,8 +165,7 @@ static const raw_clip *only_clip(const loaded *l)
 static int has_warning(const model *m, const char *text)
 {
     for (uint32_t i = 0; i < m->warning_count; ++i)
-        if (strstr(m->warnings[i], text))
-            return 1;
+        if (strstr(m->warnings[i], text)) return 1;
     return 0;
 }
 
@@ -176,8 +178,7 @@ typedef struct node_pose {
 static void unit(double *q)
 {
     double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    for (int i = 0; i < 4; ++i)
-        q[i] /= length;
+    for (int i = 0; i < 4; ++i) q[i] /= length;
 }
 
 static void slerp(const double *a, const double *b, double t, double *out)
@@ -186,8 +187,7 @@ static void slerp(const double *a, const double *b, double t, double *out)
     double angle = acos(fmin(fabs(dot), 1.0));
     double wa = angle < 1e-6 ? 1.0 - t : sin(angle * (1.0 - t)) / sin(angle);
     double wb = angle < 1e-6 ? t : sin(angle * t) / sin(angle);
-    for (int i = 0; i < 4; ++i)
-        out[i] = wa * a[i] + sign * wb * b[i];
+    for (int i = 0; i < 4; ++i) out[i] = wa * a[i] + sign * wb * b[i];
     unit(out);
 }
 
@@ -195,8 +195,7 @@ static void slerp(const double *a, const double *b, double t, double *out)
 static void oracle_channel(const model_channel *c, double t, double *out)
 {
     uint32_t k = 0, w = c->width, cubic = c->interpolation == MODEL_CUBICSPLINE;
-    while (k + 1 < c->key_count && (double)c->times[k + 1] <= t)
-        ++k;
+    while (k + 1 < c->key_count && (double)c->times[k + 1] <= t) ++k;
     const float *v = c->values + (size_t)k * w * (cubic ? 3 : 1) + (cubic ? w : 0);
     const float *next = v + (cubic ? 3 * w : w);
     double td = k + 1 < c->key_count ? (double)c->times[k + 1] - (double)c->times[k] : 1.0;
@@ -209,8 +208,7 @@ static void oracle_channel(const model_channel *c, double t, double *out)
             out[i] = (2 * u * u * u - 3 * u * u + 1) * a + td * (u * u * u - 2 * u * u + u) * (double)v[w + i] +
                      (3 * u * u - 2 * u * u * u) * b + td * (u * u * u - u * u) * (double)(next - w)[i];
     }
-    if (c->path != MODEL_PATH_ROTATION)
-        return;
+    if (c->path != MODEL_PATH_ROTATION) return;
     if (!cubic && u > 0.0) {
         double a[4], b[4];
         for (int i = 0; i < 4; ++i) {
@@ -228,8 +226,7 @@ static node_pose oracle_node(const model *m, const model_clip *clip, uint32_t no
 {
     const model_node *n = &m->nodes[node];
     node_pose pose;
-    for (int i = 0; i < 4; ++i)
-        pose.rotation[i] = (double)n->rotation[i];
+    for (int i = 0; i < 4; ++i) pose.rotation[i] = (double)n->rotation[i];
     for (int i = 0; i < 3; ++i) {
         pose.translation[i] = (double)n->translation[i];
         pose.scale[i] = (double)n->scale[i];
@@ -237,8 +234,10 @@ static node_pose oracle_node(const model *m, const model_clip *clip, uint32_t no
     for (uint32_t i = 0; i < clip->channel_count; ++i) {
         const model_channel *c = &clip->channels[i];
         if (c->node == node && c->path != MODEL_PATH_WEIGHTS)
-            oracle_channel(c, t, c->path == MODEL_PATH_ROTATION ? pose.rotation :
-                                 c->path == MODEL_PATH_TRANSLATION ? pose.translation : pose.scale);
+            oracle_channel(c, t,
+                           c->path == MODEL_PATH_ROTATION      ? pose.rotation
+                           : c->path == MODEL_PATH_TRANSLATION ? pose.translation
+                                                               : pose.scale);
     }
     return pose;
 }
@@ -251,10 +250,9 @@ static void oracle_pose(const model *m, const model_clip *clip, double t, double
         const double *q = p.rotation;
         double local[12];
         for (int c = 0; c < 3; ++c) {
-            double v[3] = {0, 0, 0}, u[3], w[3];
+            double v[3] = { 0, 0, 0 }, u[3], w[3];
             v[c] = p.scale[c];
-            for (int i = 0; i < 3; ++i)
-                u[i] = 2 * (q[(i + 1) % 3] * v[(i + 2) % 3] - q[(i + 2) % 3] * v[(i + 1) % 3]);
+            for (int i = 0; i < 3; ++i) u[i] = 2 * (q[(i + 1) % 3] * v[(i + 2) % 3] - q[(i + 2) % 3] * v[(i + 1) % 3]);
             for (int i = 0; i < 3; ++i)
                 w[i] = v[i] + q[3] * u[i] + q[(i + 1) % 3] * u[(i + 2) % 3] - q[(i + 2) % 3] * u[(i + 1) % 3];
             memcpy(local + c * 3, w, sizeof w);
@@ -264,7 +262,8 @@ static void oracle_pose(const model *m, const model_clip *clip, double t, double
         memcpy(world, local, sizeof local);
         for (int i = 0; m->nodes[n].parent != MODEL_NONE && i < 12; ++i) {
             const double *up = out + (size_t)m->nodes[n].parent * 12, *column = local + i / 3 * 3;
-            world[i] = up[i % 3] * column[0] + up[3 + i % 3] * column[1] + up[6 + i % 3] * column[2] + (i >= 9 ? up[9 + i % 3] : 0.0);
+            world[i] = up[i % 3] * column[0] + up[3 + i % 3] * column[1] + up[6 + i % 3] * column[2] +
+                       (i >= 9 ? up[9 + i % 3] : 0.0);
         }
     }
 }
@@ -272,8 +271,7 @@ static void oracle_pose(const model *m, const model_clip *clip, double t, double
 static const model_clip *source_of(const model *m, const raw_clip *clip)
 {
     for (uint32_t i = 0; i < m->clip_count; ++i)
-        if (strcmp(m->clips[i].name, clip->name) == 0)
-            return &m->clips[i];
+        if (strcmp(m->clips[i].name, clip->name) == 0) return &m->clips[i];
     fail_msg("clip '%s' has no source", clip->name);
     return NULL;
 }
@@ -305,8 +303,7 @@ static double weights_against_oracle(const model *m, const raw_clip *clip)
     for (uint32_t g = 0; g < clip->float_count; ++g)
         for (uint32_t i = 0; i < source->channel_count; ++i) {
             const model_channel *c = &source->channels[i];
-            if (c->path != MODEL_PATH_WEIGHTS || c->node != clip->floats[g].node)
-                continue;
+            if (c->path != MODEL_PATH_WEIGHTS || c->node != clip->floats[g].node) continue;
             assert_int_equal(clip->floats[g].width, c->width);
             for (uint32_t f = 0; f < clip->frame_count; ++f) {
                 oracle_channel(c, (double)f / clip->sample_rate_hz, expected);
@@ -319,13 +316,14 @@ static double weights_against_oracle(const model *m, const raw_clip *clip)
 
 /* --- which nodes are joints --- */
 
-static const float two_times[2] = {0, 1};
-static const float two_moves[6] = {0, 0, 0, 1, 0, 0};
+static const float two_times[2] = { 0, 1 };
+static const float two_moves[6] = { 0, 0, 0, 1, 0, 0 };
 
 /* 0 turned > 1 identity > 2 joint > 3 identity > 4 joint > 5 bare; 6 apart */
-#define TREE "{\"name\":\"turned\",\"children\":[1],\"rotation\":[0,0,0.6,0.8]},{\"name\":\"plain\",\"children\":[2]}," \
-             "{\"name\":\"hip\",\"children\":[3],\"translation\":[0,1,0]},{\"name\":\"between\",\"children\":[4]}," \
-             "{\"name\":\"knee\",\"children\":[5],\"translation\":[0,-1,0],\"scale\":[1,2,1]},{\"name\":\"bare\"},{\"name\":\"apart\"}"
+#define TREE                                                                                                   \
+    "{\"name\":\"turned\",\"children\":[1],\"rotation\":[0,0,0.6,0.8]},{\"name\":\"plain\",\"children\":[2]}," \
+    "{\"name\":\"hip\",\"children\":[3],\"translation\":[0,1,0]},{\"name\":\"between\",\"children\":[4]},"     \
+    "{\"name\":\"knee\",\"children\":[5],\"translation\":[0,-1,0],\"scale\":[1,2,1]},{\"name\":\"bare\"},{\"name\":\"apart\"}"
 
 static void only_what_moves_or_transforms_is_a_joint(void **state)
 {
@@ -345,14 +343,14 @@ static void only_what_moves_or_transforms_is_a_joint(void **state)
     assert_int_equal(k->joints[0].parent, MODEL_NONE);
     assert_int_equal(k->joints[1].parent, 0);
     assert_int_equal(k->joints[2].parent, 1);
-    assert_true(k->joints[2].scale[1] == 2.0f && k->joints[2].translation[1] == -1.0f && k->joints[0].rotation[2] == 0.6f);
+    assert_true(k->joints[2].scale[1] == 2.0f && k->joints[2].translation[1] == -1.0f &&
+                k->joints[0].rotation[2] == 0.6f);
     assert_int_equal(l.made->skins[0].set, 0);
     assert_int_equal(l.made->skins[0].joints[0], 2);
     assert_int_equal(l.made->skins[0].joints[1], 1);
     /* who moves whom */
-    static const uint32_t movers[7] = {0, 0, 1, 1, 2, 2, MODEL_NONE};
-    for (uint32_t n = 0; n < 7; ++n)
-        assert_int_equal(l.made->nodes[n].joint, movers[n]);
+    static const uint32_t movers[7] = { 0, 0, 1, 1, 2, 2, MODEL_NONE };
+    for (uint32_t n = 0; n < 7; ++n) assert_int_equal(l.made->nodes[n].joint, movers[n]);
     assert_int_equal(l.made->nodes[6].set, MODEL_NONE);
     assert_true(frames_against_oracle(l.m, l.made->sets[0], only_clip(&l)) < 1e-7);
     loaded_free(&l);
@@ -369,10 +367,9 @@ static void animated_nodes_around_joints_are_joints(void **state)
     loaded l = load(s, 0.0);
     assert_int_equal(l.made->set_count, 2);
     const raw_skeleton *k = &l.made->sets[0]->skeleton;
-    static const char *const names[5] = {"turned", "plain", "hip", "knee", "bare"};
+    static const char *const names[5] = { "turned", "plain", "hip", "knee", "bare" };
     assert_int_equal(k->joint_count, 5);
-    for (int i = 0; i < 5; ++i)
-        assert_string_equal(k->joints[i].name, names[i]);
+    for (int i = 0; i < 5; ++i) assert_string_equal(k->joints[i].name, names[i]);
     assert_int_equal(l.made->sets[1]->skeleton.joint_count, 1);
     assert_string_equal(l.made->sets[1]->skeleton.joints[0].name, "apart");
     assert_int_equal(l.made->nodes[6].set, 1);
@@ -386,11 +383,12 @@ static void animated_nodes_around_joints_are_joints(void **state)
 static void animations_without_skins(void **state)
 {
     (void)state;
-    scene *s = scene_new("{\"name\":\"base\",\"children\":[1],\"scale\":[2,2,2]},{\"name\":\"crane\",\"children\":[2]},"
-                         "{\"name\":\"hook\",\"matrix\":[0,1,0,0,-1,0,0,0,0,0,1,0,1,2,3,1],\"children\":[3]},{\"name\":\"load\"}");
-    const float turns[8] = {0, 0, 0, 1, 0, 0, 0.6f, 0.8f};
+    scene *s = scene_new(
+        "{\"name\":\"base\",\"children\":[1],\"scale\":[2,2,2]},{\"name\":\"crane\",\"children\":[2]},"
+        "{\"name\":\"hook\",\"matrix\":[0,1,0,0,-1,0,0,0,0,0,1,0,1,2,3,1],\"children\":[3]},{\"name\":\"load\"}");
+    const float turns[8] = { 0, 0, 0, 1, 0, 0, 0.6f, 0.8f };
     add_turn(s, 1, "LINEAR", two_times, 2, turns, 8);
-    add_channel(s, 3, "scale", "LINEAR", two_times, 2, (const float[6]){1, 1, 1, 1, 3, 0.5f}, 6, 3);
+    add_channel(s, 3, "scale", "LINEAR", two_times, 2, (const float[6]){ 1, 1, 1, 1, 3, 0.5f }, 6, 3);
     loaded l = load(s, 0.0);
     assert_int_equal(l.made->sets[0]->skeleton.joint_count, 4);
     assert_true(frames_against_oracle(l.m, l.made->sets[0], only_clip(&l)) < 1e-6);
@@ -399,14 +397,16 @@ static void animations_without_skins(void **state)
 
 static uint32_t sets_of(const char *skins)
 {
-    scene *s = scene_new("{\"children\":[1,2]},{\"children\":[3],\"translation\":[1,0,0]},{\"translation\":[1,0,0]},{\"translation\":[1,0,0]}");
+    scene *s = scene_new(
+        "{\"children\":[1,2]},{\"children\":[3],\"translation\":[1,0,0]},{\"translation\":[1,0,0]},{\"translation\":[1,0,0]}");
     s->skins = skins;
     add_move(s, 0, "LINEAR", two_times, 2, two_moves, 6);
     loaded l = load(s, 0.0);
     uint32_t count = l.made->set_count;
     for (uint32_t i = 0; i < l.m->skin_count; ++i)
         for (uint32_t j = 0; j < l.m->skins[i].joint_count; ++j)
-            assert_int_equal(l.made->sets[l.made->skins[i].set]->skeleton.joints[l.made->skins[i].joints[j]].node, l.m->skins[i].joints[j]);
+            assert_int_equal(l.made->sets[l.made->skins[i].set]->skeleton.joints[l.made->skins[i].joints[j]].node,
+                             l.m->skins[i].joints[j]);
     loaded_free(&l);
     return count;
 }
@@ -416,7 +416,7 @@ static void skins_share_skeletons(void **state)
     (void)state;
     assert_int_equal(sets_of("{\"joints\":[1,2]},{\"joints\":[2,3]}"), 1); /* a node in both */
     assert_int_equal(sets_of("{\"joints\":[3]},{\"joints\":[1]}"), 1);     /* one below the other */
-    assert_int_equal(sets_of("{\"joints\":[1,3]},{\"joints\":[2]}"), 2);   /* only a node above in common: both hold it */
+    assert_int_equal(sets_of("{\"joints\":[1,3]},{\"joints\":[2]}"), 2); /* only a node above in common: both hold it */
     assert_int_equal(sets_of("{\"joints\":[1]},{\"joints\":[2]},{\"joints\":[3,2]}"), 1);
 }
 
@@ -432,10 +432,12 @@ static scene *with_binds(const float *matrices, size_t count)
 static void inverse_bind_matrices(void **state)
 {
     (void)state;
-    float binds[32] = {0.01f, 0, 0, 0, 0, 0.01f, 0, 0, 0, 0, -0.01f, 0, 4, 5, 6, 1.00001f, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    float binds[32] = { 0.01f, 0, 0, 0, 0, 0.01f, 0, 0, 0, 0, -0.01f, 0, 4, 5, 6, 1.00001f,
+                        1,     0, 0, 0, 0, 1,     0, 0, 0, 0, 1,      0, 0, 0, 0, 1 };
     loaded l = load(with_binds(binds, 2), 0.0);
     assert_int_equal(l.m->skin_count, 1);
-    assert_true(l.m->skins[0].inverse_bind[12] == 4.0f && l.m->skins[0].inverse_bind[15] == 1.0f && l.m->skins[0].inverse_bind[16] == 1.0f);
+    assert_true(l.m->skins[0].inverse_bind[12] == 4.0f && l.m->skins[0].inverse_bind[15] == 1.0f &&
+                l.m->skins[0].inverse_bind[16] == 1.0f);
     loaded_free(&l);
     refused(with_binds(binds, 1), 0.0, "2 joints but 1 inverse bind matrices", "skin 0");
     binds[5] = 0.0f;
@@ -453,8 +455,7 @@ static void inverse_bind_matrices(void **state)
     add_move(s, 0, "LINEAR", two_times, 2, two_moves, 6);
     s->skins = "{\"joints\":[0,1]}";
     l = load(s, 0.0);
-    for (size_t i = 0; i < 32; ++i)
-        assert_true(l.m->skins[0].inverse_bind[i] == (i % 16 % 5 == 0 ? 1.0f : 0.0f));
+    for (size_t i = 0; i < 32; ++i) assert_true(l.m->skins[0].inverse_bind[i] == (i % 16 % 5 == 0 ? 1.0f : 0.0f));
     loaded_free(&l);
 }
 
@@ -508,8 +509,8 @@ static void joint_limit(void **state)
 /* --- sampling --- */
 
 /* Keys that need normalising, a change of sign, and a half turn. */
-static const float turn_times[4] = {0, 0.25f, 0.5f, 1.5f};
-static const float turn_keys[16] = {0, 0, 0, 2, 0, 0, -0.6f, -0.8f, 0.7f, 0, 0.1f, 0.7f, 0, 1, 0, 1e-3f};
+static const float turn_times[4] = { 0, 0.25f, 0.5f, 1.5f };
+static const float turn_keys[16] = { 0, 0, 0, 2, 0, 0, -0.6f, -0.8f, 0.7f, 0, 0.1f, 0.7f, 0, 1, 0, 1e-3f };
 
 static void linear_turns_are_spherical(void **state)
 {
@@ -523,8 +524,7 @@ static void linear_turns_are_spherical(void **state)
     for (size_t f = 0; f < 151; ++f) {
         const float *q = clip->rotations + f * 4;
         assert_true(fabsf(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1.0f) < 3e-7f);
-        if (f > 0)
-            assert_true(q[0] * q[-4] + q[1] * q[-3] + q[2] * q[-2] + q[3] * q[-1] > 0.9f);
+        if (f > 0) assert_true(q[0] * q[-4] + q[1] * q[-3] + q[2] * q[-2] + q[3] * q[-1] > 0.9f);
     }
     loaded_free(&l);
 }
@@ -532,10 +532,11 @@ static void linear_turns_are_spherical(void **state)
 static void splines_are_normalised(void **state)
 {
     (void)state;
-    const float times[3] = {0.5f, 1.0f, 2.0f};
-    const float turns[36] = {0, 0, 0, 0, 0, 0, 0, 1, 0.5f, 1, 0, 0, /**/ 0, 2, 0, 0, 0, 0.7f, 0, 0.7f, 1, 0, 0, 0,
-                             /**/ 0, 0, -1, 0, 0, 0.7f, 0.7f, 0, 0, 0, 0, 0};
-    const float moves[27] = {0, 0, 0, 1, 2, 3, 4, 0, 0, 0, 5, 0, 0, 2, 0, 0, -5, 0, 1, 1, 1, 3, 3, 3, 0, 0, 0};
+    const float times[3] = { 0.5f, 1.0f, 2.0f };
+    const float turns[36] = { 0,      0, 0,  0, 0, 0,    0,    1,    0.5f, 1, 0, 0,
+                              /**/ 0, 2, 0,  0, 0, 0.7f, 0,    0.7f, 1,    0, 0, 0,
+                              /**/ 0, 0, -1, 0, 0, 0.7f, 0.7f, 0,    0,    0, 0, 0 };
+    const float moves[27] = { 0, 0, 0, 1, 2, 3, 4, 0, 0, 0, 5, 0, 0, 2, 0, 0, -5, 0, 1, 1, 1, 3, 3, 3, 0, 0, 0 };
     scene *s = scene_new("{}");
     add_turn(s, 0, "CUBICSPLINE", times, 3, turns, 36);
     add_move(s, 0, "CUBICSPLINE", times, 3, moves, 27);
@@ -550,26 +551,25 @@ static void splines_are_normalised(void **state)
 static void steps_hold(void **state)
 {
     (void)state;
-    const float times[3] = {0, 0.5f, 1};
-    const float moves[9] = {0, 0, 0, 1, 0, 0, 3, 0, 0};
+    const float times[3] = { 0, 0.5f, 1 };
+    const float moves[9] = { 0, 0, 0, 1, 0, 0, 3, 0, 0 };
     scene *s = scene_new("{}");
     add_move(s, 0, "STEP", times, 3, moves, 9);
     loaded l = load(s, 20.0);
     const raw_clip *clip = only_clip(&l);
     assert_int_equal(clip->frame_count, 21);
-    for (size_t f = 0; f < 21; ++f)
-        assert_true(clip->translations[f * 3] == (f < 10 ? 0.0f : f < 20 ? 1.0f : 3.0f));
+    for (size_t f = 0; f < 21; ++f) assert_true(clip->translations[f * 3] == (f < 10 ? 0.0f : f < 20 ? 1.0f : 3.0f));
     loaded_free(&l);
 }
 
 static void zero_rotations_are_refused(void **state)
 {
     (void)state;
-    const float keys[8] = {0, 0, 0, 1, 0, 0, 0, 0};
+    const float keys[8] = { 0, 0, 0, 1, 0, 0, 0, 0 };
     scene *s = scene_new("{\"name\":\"n\"}");
     add_turn(s, 0, "LINEAR", two_times, 2, keys, 8);
     refused(s, 0.0, "quaternion without length", "animation 'act' channel 0 output (accessor 1), element 1");
-    const float spline[24] = {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1, 0, 0, 0, 0};
+    const float spline[24] = { 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1, 0, 0, 0, 0 };
     s = scene_new("{\"name\":\"n\"}");
     add_turn(s, 0, "CUBICSPLINE", two_times, 2, spline, 24);
     refused(s, 2.0, "passes through zero at 0.5 s", "animation 'act'");
@@ -578,8 +578,8 @@ static void zero_rotations_are_refused(void **state)
 static void nan_and_backward_keys_are_refused(void **state)
 {
     (void)state;
-    const float backward[2] = {1, 0.5f}, twice[2] = {1, 1};
-    float moves[6] = {0, 0, 0, 1, 0, 0};
+    const float backward[2] = { 1, 0.5f }, twice[2] = { 1, 1 };
+    float moves[6] = { 0, 0, 0, 1, 0, 0 };
     scene *s = scene_new("{}");
     add_move(s, 0, "LINEAR", backward, 2, moves, 6);
     refused(s, 0.0, "does not increase", "element 1");
@@ -612,7 +612,7 @@ static void missing_targets_are_a_warning(void **state)
 /* A turn about z with keys at i / rate, a little each. */
 static scene *turning(size_t keys, double sample_rate_hz, double degrees_per_key, double offset_s)
 {
-    float times[256], values[1024] = {0};
+    float times[256], values[1024] = { 0 };
     assert_true(keys <= 256);
     for (size_t i = 0; i < keys; ++i) {
         times[i] = (float)((double)i / sample_rate_hz + (i ? offset_s : 0.0));
@@ -629,7 +629,8 @@ static void rate_is(scene *s, double asked_hz, double sample_rate_hz, uint32_t f
     loaded l = load(s, asked_hz);
     const raw_clip *clip = only_clip(&l);
     if (fabs(clip->sample_rate_hz - sample_rate_hz) > 1e-6 * sample_rate_hz || clip->frame_count != frames)
-        fail_msg("%u frames at %.9g Hz, not %u at %.9g", clip->frame_count, clip->sample_rate_hz, frames, sample_rate_hz);
+        fail_msg("%u frames at %.9g Hz, not %u at %.9g", clip->frame_count, clip->sample_rate_hz, frames,
+                 sample_rate_hz);
     assert_true(fabs(raw_clip_duration_s(clip) - (double)l.m->clips[0].duration_s) <= 2e-6 * raw_clip_duration_s(clip));
     assert_true(frames_against_oracle(l.m, l.made->sets[0], clip) < 1e-5); /* snapped to keys whose times are floats */
     loaded_free(&l);
@@ -638,9 +639,10 @@ static void rate_is(scene *s, double asked_hz, double sample_rate_hz, uint32_t f
 static void key_rates_are_found(void **state)
 {
     (void)state;
-    static const double rates[] = {15.0, 24.0, 25.0, 30.0, 60.0, 90.0, 120.0, 23.976023976, 29.97002997, 20.71, 240.0};
-    for (size_t i = 0; i < TEST_COUNT(rates); ++i)
-        rate_is(turning(200, rates[i], 10.0, 0.0), 0.0, rates[i], 200);
+    static const double rates[] = {
+        15.0, 24.0, 25.0, 30.0, 60.0, 90.0, 120.0, 23.976023976, 29.97002997, 20.71, 240.0
+    };
+    for (size_t i = 0; i < TEST_COUNT(rates); ++i) rate_is(turning(200, rates[i], 10.0, 0.0), 0.0, rates[i], 200);
     rate_is(turning(1, 30.0, 10.0, 0.0), 0.0, 30.0, 1);
     rate_is(turning(2, 0.5, 0.0, 0.0), 0.0, 1.0, 3); /* nothing turns: the lowest */
 }
@@ -651,8 +653,7 @@ static void keys_are_taken_as_they_are(void **state)
     loaded l = load(turning(100, 30.0, 7.0, 0.0), 0.0);
     const raw_clip *clip = only_clip(&l);
     const model_channel *c = &l.m->clips[0].channels[0];
-    for (size_t i = 0; i < 400; ++i)
-        assert_true(fabsf(fabsf(clip->rotations[i]) - fabsf(c->values[i])) <= 6e-8f);
+    for (size_t i = 0; i < 400; ++i) assert_true(fabsf(fabsf(clip->rotations[i]) - fabsf(c->values[i])) <= 6e-8f);
     loaded_free(&l);
 }
 
@@ -661,10 +662,11 @@ static void rates_rise_where_playing_strays(void **state)
     (void)state;
     loaded l = load(turning(9, 2.0, 80.0, 0.0), 0.0); /* 2 keys a second, far apart */
     const raw_clip *clip = only_clip(&l);
-    assert_true(clip->sample_rate_hz > 4.0 && clip->sample_rate_hz <= 40.0 && fabs(fmod(clip->sample_rate_hz, 2.0)) < 1e-9);
+    assert_true(clip->sample_rate_hz > 4.0 && clip->sample_rate_hz <= 40.0 &&
+                fabs(fmod(clip->sample_rate_hz, 2.0)) < 1e-9);
     assert_true(clip->source_error_cm > 0.0 && clip->source_error_cm <= 3.0 * 1e-3);
     loaded_free(&l);
-    const float moves[6] = {0, 0, 0, 1, 0, 0};
+    const float moves[6] = { 0, 0, 0, 1, 0, 0 };
     scene *s = scene_new("{}");
     add_move(s, 0, "STEP", two_times, 2, moves, 6);
     l = load(s, 0.0); /* no rate makes a step of a ramp: the highest is taken, and said */
@@ -676,8 +678,8 @@ static void rates_rise_where_playing_strays(void **state)
 static void keys_off_any_grid(void **state)
 {
     (void)state;
-    const float times[5] = {0, 0.1003f, 0.2719f, 0.5551f, 0.9137f};
-    const float moves[15] = {0, 0, 0, 0, 0.0002f, 0, 0, 0.001f, 0, 0, 0.0015f, 0, 1, 0.0015f, 0};
+    const float times[5] = { 0, 0.1003f, 0.2719f, 0.5551f, 0.9137f };
+    const float moves[15] = { 0, 0, 0, 0, 0.0002f, 0, 0, 0.001f, 0, 0, 0.0015f, 0, 1, 0.0015f, 0 };
     scene *s = scene_new("{}");
     add_move(s, 0, "LINEAR", times, 5, moves, 15);
     loaded l = load(s, 0.0);
@@ -713,7 +715,8 @@ static void impossible_rates_are_refused(void **state)
 
 static scene *morphing(const char *nodes)
 {
-    const float base[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0}, up[9] = {0, 0, 0, 0, 0, 0.02f, 0.03f, 0, 0.04f}, none[9] = {0};
+    const float base[9] = { 0, 0, 0, 1, 0, 0, 0, 1, 0 }, up[9] = { 0, 0, 0, 0, 0, 0.02f, 0.03f, 0, 0.04f },
+                none[9] = { 0 };
     scene *s = scene_new(nodes);
     add_floats(s, base, 9, "VEC3", 3);
     add_floats(s, up, 9, "VEC3", 3);
@@ -722,22 +725,24 @@ static scene *morphing(const char *nodes)
     return s;
 }
 
-#define SKINNED "{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"JOINTS_0\":3,\"WEIGHTS_0\":4},\"targets\":[{\"POSITION\":1},{\"POSITION\":2}]}]}"
+#define SKINNED \
+    "{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"JOINTS_0\":3,\"WEIGHTS_0\":4},\"targets\":[{\"POSITION\":1},{\"POSITION\":2}]}]}"
 
 /* The same, following the first joint of a skin. */
 static scene *skinned_morphing(const char *nodes)
 {
-    const float weights[12] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+    const float weights[12] = { 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0 };
     scene *s = morphing(nodes);
     APPEND(s->views, ",{\"buffer\":0,\"byteOffset\":72,\"byteLength\":12}"); /* zeros of the second target */
-    APPEND(s->accessors, ",{\"bufferView\":%d,\"componentType\":5121,\"count\":3,\"type\":\"VEC4\"}", s->accessor_count++);
+    APPEND(s->accessors, ",{\"bufferView\":%d,\"componentType\":5121,\"count\":3,\"type\":\"VEC4\"}",
+           s->accessor_count++);
     add_floats(s, weights, 12, "VEC4", 4);
     s->meshes = SKINNED;
     return s;
 }
 
-static const float weight_times[3] = {0, 0.5f, 1};
-static const float weight_values[6] = {0, 1, 0.5f, 0, 1, 0.25f};
+static const float weight_times[3] = { 0, 0.5f, 1 };
+static const float weight_values[6] = { 0, 1, 0.5f, 0, 1, 0.25f };
 
 static const raw_floats *only_floats(const loaded *l)
 {
@@ -758,7 +763,7 @@ static void weights_alone_make_clips_without_joints(void **state)
     assert_string_equal(f->name, "face");
     assert_int_equal(f->node, 0);
     assert_int_equal(f->width, 2);
-    const float expected[10] = {0, 1, 0.25f, 0.5f, 0.5f, 0, 0.75f, 0.125f, 1, 0.25f};
+    const float expected[10] = { 0, 1, 0.25f, 0.5f, 0.5f, 0, 0.75f, 0.125f, 1, 0.25f };
     assert_memory_equal(f->values, expected, sizeof expected);
     assert_true(fabsf(f->reach[0] - 15.0f) < 1e-5f && f->reach[1] == 0.0f); /* 5 cm, three times as large */
     loaded_free(&l);
@@ -767,8 +772,9 @@ static void weights_alone_make_clips_without_joints(void **state)
 static void weights_below_a_growing_joint(void **state)
 {
     (void)state;
-    const float sizes[6] = {1, 1, 1, 4, 4, 4};
-    scene *s = morphing("{\"name\":\"root\",\"children\":[1]},{\"name\":\"still\",\"scale\":[2,2,2],\"rotation\":[0,0,0.6,0.8],\"children\":[2]},{\"name\":\"face\",\"mesh\":0}");
+    const float sizes[6] = { 1, 1, 1, 4, 4, 4 };
+    scene *s = morphing(
+        "{\"name\":\"root\",\"children\":[1]},{\"name\":\"still\",\"scale\":[2,2,2],\"rotation\":[0,0,0.6,0.8],\"children\":[2]},{\"name\":\"face\",\"mesh\":0}");
     add_channel(s, 2, "weights", "LINEAR", weight_times, 3, weight_values, 6, 1);
     add_channel(s, 0, "scale", "LINEAR", two_times, 2, sizes, 6, 3);
     loaded l = load(s, 4.0);
@@ -780,8 +786,9 @@ static void weights_below_a_growing_joint(void **state)
 static void weights_of_a_skinned_mesh(void **state)
 {
     (void)state;
-    const float binds[16] = {0.5f, 0, 0, 0, 0, 0.5f, 0, 0, 0, 0, 0.5f, 0, 0, 0, 0, 1};
-    scene *s = skinned_morphing("{\"name\":\"face\",\"mesh\":0,\"skin\":0,\"scale\":[100,100,100]},{\"name\":\"joint\",\"scale\":[6,6,6]}");
+    const float binds[16] = { 0.5f, 0, 0, 0, 0, 0.5f, 0, 0, 0, 0, 0.5f, 0, 0, 0, 0, 1 };
+    scene *s = skinned_morphing(
+        "{\"name\":\"face\",\"mesh\":0,\"skin\":0,\"scale\":[100,100,100]},{\"name\":\"joint\",\"scale\":[6,6,6]}");
     s->skins = "{\"joints\":[1],\"inverseBindMatrices\":5}";
     add_floats(s, binds, 16, "MAT4", 16);
     add_channel(s, 0, "weights", "LINEAR", weight_times, 3, weight_values, 6, 1);
@@ -811,10 +818,11 @@ static void keys_in_extras(void **state)
 {
     (void)state;
     scene *s = scene_new(TREE);
-    s->animation_rest = ",\"extras\":{\"fps\":30,\"loop\":true,\"events\":[{\"time\":0.75,\"name\":\"late\",\"payload\":-2,\"weightMin\":0.5},"
-                        "{\"time\":0,\"name\":\"early\",\"payload\":\"0x1122334455667788\"},{\"time\":1.00001,\"name\":\"end\",\"payload\":2.5},"
-                        "{\"time\":0.5},{\"name\":\"when\"},{\"time\":3,\"name\":\"x\"},{\"time\":0,\"name\":\"y\",\"payload\":\"z\"},7,"
-                        "{\"time\":0,\"name\":\"w\",\"weightMin\":-1}]}";
+    s->animation_rest =
+        ",\"extras\":{\"fps\":30,\"loop\":true,\"events\":[{\"time\":0.75,\"name\":\"late\",\"payload\":-2,\"weightMin\":0.5},"
+        "{\"time\":0,\"name\":\"early\",\"payload\":\"0x1122334455667788\"},{\"time\":1.00001,\"name\":\"end\",\"payload\":2.5},"
+        "{\"time\":0.5},{\"name\":\"when\"},{\"time\":3,\"name\":\"x\"},{\"time\":0,\"name\":\"y\",\"payload\":\"z\"},7,"
+        "{\"time\":0,\"name\":\"w\",\"weightMin\":-1}]}";
     add_move(s, 2, "LINEAR", two_times, 2, two_moves, 6);
     loaded l = load(s, 0.0);
     const raw_clip *clip = only_clip(&l);
@@ -823,18 +831,20 @@ static void keys_in_extras(void **state)
     assert_string_equal(clip->events[0].name, "early");
     assert_string_equal(clip->events[1].name, "late");
     assert_string_equal(clip->events[2].name, "end");
-    const uint8_t early[8] = {0x88, 0x77, 0x66, 0x55, 0x44, 0x33, 0x22, 0x11}, late[8] = {0xfe, 255, 255, 255, 255, 255, 255, 255};
+    const uint8_t early[8] = { 0x88, 0x77, 0x66, 0x55, 0x44, 0x33, 0x22, 0x11 },
+                  late[8] = { 0xfe, 255, 255, 255, 255, 255, 255, 255 };
     assert_memory_equal(clip->events[0].payload, early, 8);
     assert_memory_equal(clip->events[1].payload, late, 8);
     assert_true(clip->events[1].weight_min == 0.5f && clip->events[1].time_s == 0.75 && clip->events[2].time_s == 1.0);
     double real;
     memcpy(&real, clip->events[2].payload, 8);
     assert_true(real == 2.5);
-    static const char *const reasons[6] = {"event 3 was skipped: it has no name", "event 4 was skipped: it has no time",
-        "event 5 was skipped: its time", "event 6 was skipped: its payload", "it has no name (and 1 more like it)",
-        "event 8 was skipped: its weightMin"};
-    for (int i = 0; i < 6; ++i)
-        assert_true(has_warning(l.m, reasons[i]));
+    static const char *const reasons[6] = {
+        "event 3 was skipped: it has no name", "event 4 was skipped: it has no time",
+        "event 5 was skipped: its time",       "event 6 was skipped: its payload",
+        "it has no name (and 1 more like it)", "event 8 was skipped: its weightMin"
+    };
+    for (int i = 0; i < 6; ++i) assert_true(has_warning(l.m, reasons[i]));
     loaded_free(&l);
 }
 
@@ -842,8 +852,9 @@ static void markers_in_extras(void **state)
 {
     (void)state;
     scene *s = scene_new(TREE);
-    s->animation_rest = ",\"extras\":{\"events\":[{\"time\":0.75,\"name\":\"left\",\"marker\":true},{\"time\":0.25,\"name\":\"step\",\"marker\":false},"
-                        "{\"time\":0,\"name\":\"x\",\"marker\":1},{\"time\":0,\"name\":\"y\",\"marker\":true,\"payload\":1}]}";
+    s->animation_rest =
+        ",\"extras\":{\"events\":[{\"time\":0.75,\"name\":\"left\",\"marker\":true},{\"time\":0.25,\"name\":\"step\",\"marker\":false},"
+        "{\"time\":0,\"name\":\"x\",\"marker\":1},{\"time\":0,\"name\":\"y\",\"marker\":true,\"payload\":1}]}";
     add_move(s, 2, "LINEAR", two_times, 2, two_moves, 6);
     loaded l = load(s, 0.0);
     const raw_clip *clip = only_clip(&l);
@@ -877,7 +888,7 @@ static void keys_of_several_sets_come_once(void **state)
 static void asset_against_oracle(const char *name, uint32_t joints)
 {
     snprintf(file_path, sizeof file_path, "%s", test_asset(name));
-    static const double rates[3] = {0.0, 60.0, 37.0};
+    static const double rates[3] = { 0.0, 60.0, 37.0 };
     for (size_t r = 0; r < TEST_COUNT(rates); ++r) {
         loaded l = load_file(rates[r]);
         double pose = 0.0, weights = 0.0;
@@ -887,13 +898,13 @@ static void asset_against_oracle(const char *name, uint32_t joints)
         assert_int_equal(set->skeleton.joint_count, joints);
         assert_int_equal(set->clip_count, l.m->clip_count);
         for (uint32_t c = 0; c < set->clip_count; ++c) {
-            if (set->clips[c].joint_count > 0)
-                pose = fmax(pose, frames_against_oracle(l.m, set, &set->clips[c]));
+            if (set->clips[c].joint_count > 0) pose = fmax(pose, frames_against_oracle(l.m, set, &set->clips[c]));
             weights = fmax(weights, weights_against_oracle(l.m, &set->clips[c]));
             frames += set->clips[c].frame_count;
         }
-        print_message("%s at %g Hz: %u clips, %u frames; poses within %.2g of the skeleton's size, weights within %.2g\n", name,
-                      rates[r], set->clip_count, frames, pose, weights);
+        print_message(
+            "%s at %g Hz: %u clips, %u frames; poses within %.2g of the skeleton's size, weights within %.2g\n", name,
+            rates[r], set->clip_count, frames, pose, weights);
         assert_true(pose < 1e-5 && weights < 1e-4);
         loaded_free(&l);
     }
@@ -938,15 +949,16 @@ static void real_body_plays_as_promised(void **state)
         const model_clip *source = source_of(l.m, clip);
         double worst = 0.0;
         for (uint32_t i = 0; i < 20000 && clip->joint_count > 0; ++i) {
-            uint32_t frame = test_random_below(&random, clip->frame_count - 1), j = test_random_below(&random, clip->joint_count);
+            uint32_t frame = test_random_below(&random, clip->frame_count - 1),
+                     j = test_random_below(&random, clip->joint_count);
             double part = (double)test_random_float(&random, 0.0f, 1.0f), q[4], dot = 0.0;
-            const float *a = clip->rotations + ((size_t)frame * clip->joint_count + j) * 4, *b = a + clip->joint_count * 4;
-            node_pose p = oracle_node(l.m, source, set->skeleton.joints[j].node, ((double)frame + part) / clip->sample_rate_hz);
-            for (int k = 0; k < 4; ++k)
-                q[k] = (double)a[k] + ((double)b[k] - (double)a[k]) * part;
+            const float *a = clip->rotations + ((size_t)frame * clip->joint_count + j) * 4,
+                        *b = a + clip->joint_count * 4;
+            node_pose p = oracle_node(l.m, source, set->skeleton.joints[j].node,
+                                      ((double)frame + part) / clip->sample_rate_hz);
+            for (int k = 0; k < 4; ++k) q[k] = (double)a[k] + ((double)b[k] - (double)a[k]) * part;
             unit(q);
-            for (int k = 0; k < 4; ++k)
-                dot += q[k] * p.rotation[k];
+            for (int k = 0; k < 4; ++k) dot += q[k] * p.rotation[k];
             worst = fmax(worst, 2.0 * acos(fmin(fabs(dot), 1.0)) * fmax(lever[j], 3.0));
         }
         if (worst > clip->source_error_cm * 1.15 + 1e-4) /* it looked at quarters; the worst is at 0.211 */
@@ -961,33 +973,33 @@ static void real_body_plays_as_promised(void **state)
 static void compare_with_rcl(const char *gltf, const char *clip_name, const char *rcl)
 {
     raw_set *other = NULL;
-    model_error error = {"", ""};
+    model_error error = { "", "" };
     snprintf(file_path, sizeof file_path, "%s", test_asset(gltf));
     assert_int_equal(rcl_read(test_asset(rcl), &other, &error), 0);
     loaded l = load_file(other->clips[0].sample_rate_hz);
     const raw_set *set = l.made->sets[0];
     const raw_clip *a = NULL, *b = &other->clips[0];
     for (uint32_t c = 0; c < set->clip_count; ++c)
-        if (strcmp(set->clips[c].name, clip_name) == 0)
-            a = &set->clips[c];
+        if (strcmp(set->clips[c].name, clip_name) == 0) a = &set->clips[c];
     assert_non_null(a);
     assert_int_equal(a->frame_count, b->frame_count);
-    assert_int_equal(a->joint_count + 1, b->joint_count); /* it kept a root that is an identity; the order is the same */
+    assert_int_equal(a->joint_count + 1,
+                     b->joint_count); /* it kept a root that is an identity; the order is the same */
     double worst_turn = 0.0;
     for (uint32_t j = 0; j < a->joint_count; ++j) {
         const uint32_t k = j + 1, parent = set->skeleton.joints[j].parent;
         assert_int_equal(other->skeleton.joints[k].parent, parent == MODEL_NONE ? 0 : parent + 1);
         for (size_t f = 0; f < a->frame_count; ++f) {
-            const float *p = a->rotations + (f * a->joint_count + j) * 4, *q = b->rotations + (f * b->joint_count + k) * 4;
+            const float *p = a->rotations + (f * a->joint_count + j) * 4,
+                        *q = b->rotations + (f * b->joint_count + k) * 4;
             double dot = 0.0, apart = 0.0;
-            for (int i = 0; i < 4; ++i)
-                dot += (double)p[i] * (double)q[i];
-            for (int i = 0; i < 4; ++i)
-                apart = fmax(apart, fabs((double)p[i] - copysign(1.0, dot) * (double)q[i]));
+            for (int i = 0; i < 4; ++i) dot += (double)p[i] * (double)q[i];
+            for (int i = 0; i < 4; ++i) apart = fmax(apart, fabs((double)p[i] - copysign(1.0, dot) * (double)q[i]));
             worst_turn = fmax(worst_turn, apart);
         }
     }
-    print_message("%s: %u joints, %u frames, quaternions within %.2g\n", rcl, a->joint_count, a->frame_count, worst_turn);
+    print_message("%s: %u joints, %u frames, quaternions within %.2g\n", rcl, a->joint_count, a->frame_count,
+                  worst_turn);
     assert_true(worst_turn < 2e-5);
     raw_set_free(other);
     loaded_free(&l);

@@ -20,16 +20,15 @@ static const char *save(const char *text)
 static event_list *load(const char *text)
 {
     event_list *list = NULL;
-    model_error error = {"", ""};
-    if (events_read(save(text), &list, &error))
-        fail_msg("refused: %s (%s)", error.what, error.where);
+    model_error error = { "", "" };
+    if (events_read(save(text), &list, &error)) fail_msg("refused: %s (%s)", error.what, error.where);
     return list;
 }
 
 static void refused(const char *text, const char *what, const char *where)
 {
     event_list *list = (event_list *)1;
-    model_error error = {"", ""};
+    model_error error = { "", "" };
     assert_int_equal(events_read(save(text), &list, &error), 1);
     assert_null(list);
     if (!strstr(error.what, what) || strcmp(error.where, where) != 0)
@@ -39,17 +38,17 @@ static void refused(const char *text, const char *what, const char *where)
 static uint64_t payload_of(const event_list *list, uint32_t i)
 {
     uint64_t bits = 0;
-    for (int k = 7; k >= 0; --k)
-        bits = bits << 8 | list->entries[i].event.payload[k];
+    for (int k = 7; k >= 0; --k) bits = bits << 8 | list->entries[i].event.payload[k];
     return bits;
 }
 
 static void all_forms(void **state)
 {
     (void)state;
-    event_list *list = load("# steps of the walk\n\nwalk 0.5 step_left\r\n  walk\t1.0 step_right 7 min=0.25 # the heavy one\n"
-                            "\"a long walk\" 0 \"bell rings\" 0xDEADbeef\nrun 2 x min=1 -3\nrun 2 y 0xffffffffffffffff\nrun 2 z 1.5\nrun 2.5e-1 w 18446744073709551615\n"
-                            "run 0 x#1 #comment to the end");
+    event_list *list = load(
+        "# steps of the walk\n\nwalk 0.5 step_left\r\n  walk\t1.0 step_right 7 min=0.25 # the heavy one\n"
+        "\"a long walk\" 0 \"bell rings\" 0xDEADbeef\nrun 2 x min=1 -3\nrun 2 y 0xffffffffffffffff\nrun 2 z 1.5\nrun 2.5e-1 w 18446744073709551615\n"
+        "run 0 x#1 #comment to the end");
     assert_int_equal(list->count, 8);
     assert_string_equal(list->entries[0].clip, "walk");
     assert_string_equal(list->entries[0].event.name, "step_left");
@@ -127,14 +126,13 @@ static raw_set *set_with_clips(void)
 static void keys_go_to_their_clips_in_order(void **state)
 {
     (void)state;
-    model_error error = {"", ""};
+    model_error error = { "", "" };
     event_list *list = load("walk 0.9 c\nwalk 0.1 a\nrun 1.00005 end 5\nwalk 0.1 b\nwalk 0 first\n");
-    raw_set *sets[2] = {set_with_clips(), set_with_clips()};
+    raw_set *sets[2] = { set_with_clips(), set_with_clips() };
     assert_int_equal(events_apply(list, sets, 2, &error), 0);
-    static const char *const order[4] = {"first", "a", "b", "c"};
+    static const char *const order[4] = { "first", "a", "b", "c" };
     assert_int_equal(sets[0]->clips[0].event_count, 4);
-    for (int i = 0; i < 4; ++i)
-        assert_string_equal(sets[0]->clips[0].events[i].name, order[i]);
+    for (int i = 0; i < 4; ++i) assert_string_equal(sets[0]->clips[0].events[i].name, order[i]);
     assert_true(sets[0]->clips[1].events[0].time_s == 1.0); /* rounded past the end: moved to it */
     assert_int_equal(sets[0]->clips[1].events[0].payload[0], 5);
     assert_int_equal(sets[1]->clips[0].event_count, 0); /* once, though two sets have the clip */
@@ -145,7 +143,7 @@ static void keys_go_to_their_clips_in_order(void **state)
 
 static void apply_refused(const char *text, const char *what, const char *where)
 {
-    model_error error = {"", ""};
+    model_error error = { "", "" };
     event_list *list = load(text);
     raw_set *set = set_with_clips();
     assert_int_equal(events_apply(list, &set, 1, &error), 1);
@@ -178,7 +176,7 @@ static void mutations_never_crash(void **state)
         for (uint32_t n = 1 + test_random_below(&r, 4); n > 0; --n)
             changed[test_random_below(&r, (uint32_t)length)] = bytes[test_random_below(&r, sizeof bytes - 1)];
         event_list *list = NULL;
-        model_error error = {"", ""};
+        model_error error = { "", "" };
         test_write_file(test_path("mutated.txt"), changed, length);
         accepted += !events_read(test_path("mutated.txt"), &list, &error);
         events_free(list);

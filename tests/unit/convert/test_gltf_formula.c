@@ -20,7 +20,7 @@ typedef struct asset {
     uint8_t *bytes;
     uint32_t **orders; /* per mesh of the pack */
     noh_pack pack;
-    model_clips *made;          /* the clips' frames before they were encoded */
+    model_clips *made;    /* the clips' frames before they were encoded */
     noh_clip_bank **sets; /* [set_count] one for each skeleton of the pack, at least one; NULL where nothing fits */
     uint32_t set_count;
     uint64_t compared; /* vertices */
@@ -161,7 +161,8 @@ static void check_pack(const asset *a, uint32_t index, const float *weights, con
             p[c] = (double)vertex.position[c];
         }
         if (!(distance(p, expected + 3u * (size_t)a->orders[index][v]) <= bound)) {
-            fail_msg("pack: vertex %u is off by %g, bound %g", v, distance(p, expected + 3u * (size_t)a->orders[index][v]), bound);
+            fail_msg("pack: vertex %u is off by %g, bound %g", v,
+                     distance(p, expected + 3u * (size_t)a->orders[index][v]), bound);
         }
     }
     free(layers.position);
@@ -244,7 +245,8 @@ static const model_channel *model_channel_of(const asset *a, const char *clip, u
     for (uint32_t i = 0; i < a->m->clip_count; i++) {
         for (uint32_t c = 0; c < a->m->clips[i].channel_count; c++) {
             const model_channel *channel = &a->m->clips[i].channels[c];
-            if (strcmp(a->m->clips[i].name, clip) == 0 && channel->path == MODEL_PATH_WEIGHTS && channel->node == node) {
+            if (strcmp(a->m->clips[i].name, clip) == 0 && channel->path == MODEL_PATH_WEIGHTS &&
+                channel->node == node) {
                 return channel;
             }
         }
@@ -287,8 +289,11 @@ static int sample_set(noh_clip_bank *set, const char *clip, uint32_t node, doubl
             noh_transform *pose = test_zeros(sizeof *pose * set->clips.joint_count);
             float *floats = test_zeros(sizeof *floats * set->clips.float_count);
             const int64_t tick = noh_ticks_from_seconds(time), end = set->clips.clips[clip_index].duration_ticks;
-            set->clips.sample(set->clips.user, clip_index, (uint32_t)(tick < 0 ? 0 : tick > end ? end : tick), set->clips.joint_count, pose,
-                             set->clips.float_count, floats);
+            set->clips.sample(set->clips.user, clip_index,
+                              (uint32_t)(tick < 0     ? 0
+                                         : tick > end ? end
+                                                      : tick),
+                              set->clips.joint_count, pose, set->clips.float_count, floats);
             memcpy(weights, floats + set->groups[g].first, set->groups[g].width * sizeof *weights);
             free(pose);
             free(floats);
@@ -329,7 +334,8 @@ static double play_frames(const raw_clip *clip, const raw_floats *frames, double
 {
     const double at = fmin(fmax(time * clip->sample_rate_hz, 0.0), (double)(clip->frame_count - 1)), first = floor(at);
     const size_t k = (size_t)first, next = k + 1 < clip->frame_count ? k + 1 : k;
-    const double a = (double)frames->values[k * frames->width + i], b = (double)frames->values[next * frames->width + i];
+    const double a = (double)frames->values[k * frames->width + i],
+                 b = (double)frames->values[next * frames->width + i];
     return a + (b - a) * (at - first);
 }
 
@@ -348,16 +354,19 @@ static int near_a_step(const model_channel *c, const raw_clip *clip, double time
 #define TICK_S (0.5 / 48000.0) /* times are whole ticks */
 
 /* The pack within the bound of its frames, and the frames within what they say of the curves. */
-static void check_weights(const asset *a, const char *clip, const model_channel *channel, double time, const float *packed, const double *curve)
+static void check_weights(const asset *a, const char *clip, const model_channel *channel, double time,
+                          const float *packed, const double *curve)
 {
     const raw_clip *made = NULL;
     const raw_floats *frames = frames_of(a, clip, channel->node, &made);
     double strays = 0.0;
     for (uint32_t t = 0; t < frames->width; t++) {
         const double played = play_frames(made, frames, time, t), reach = (double)frames->reach[t];
-        const double speed = fabs(play_frames(made, frames, time + TICK_S, t) - play_frames(made, frames, time - TICK_S, t));
+        const double speed = fabs(play_frames(made, frames, time + TICK_S, t) -
+                                  play_frames(made, frames, time - TICK_S, t));
         if (!(fabs((double)packed[t] - played) <= fmin(1.0, BOUND_CM / fmax(reach, 1e-6)) + speed + 1e-6)) {
-            fail_msg("'%s' at %g s, weight %u: %.9g, not %.9g, reach %g cm", clip, time, t, (double)packed[t], played, reach);
+            fail_msg("'%s' at %g s, weight %u: %.9g, not %.9g, reach %g cm", clip, time, t, (double)packed[t], played,
+                     reach);
         }
         strays += fabs(played - curve[t]) * reach;
     }
@@ -438,32 +447,31 @@ static void the_mask(void **state)
     check_file("mask.glb", path, 6);
 }
 
-#define ASSETS(X) \
-    X(animated_morph_cube, "khronos/AnimatedMorphCube/glTF/AnimatedMorphCube.gltf", 1) \
+#define ASSETS(X)                                                                            \
+    X(animated_morph_cube, "khronos/AnimatedMorphCube/glTF/AnimatedMorphCube.gltf", 1)       \
     X(animated_morph_sphere, "khronos/AnimatedMorphSphere/glTF/AnimatedMorphSphere.gltf", 1) \
     X(morph_primitives_test, "khronos/MorphPrimitivesTest/glTF/MorphPrimitivesTest.gltf", 0) \
-    X(morph_stress_test, "khronos/MorphStressTest.glb", 3) \
-    X(simple_morph, "khronos/SimpleMorph/glTF/SimpleMorph.gltf", 1) \
-    X(simple_sparse_accessor, "khronos/SimpleSparseAccessor.gltf", 0) \
-    X(three_vrm_cube, "khronos/three-vrm-cube/cube.gltf", 0) \
-    X(robot_expressive, "khronos/RobotExpressive.glb", 42) \
-    X(head_with_sparse_targets, "hero/head_sparse.glb", 5) \
-    X(head, "hero/head.glb", 5) \
+    X(morph_stress_test, "khronos/MorphStressTest.glb", 3)                                   \
+    X(simple_morph, "khronos/SimpleMorph/glTF/SimpleMorph.gltf", 1)                          \
+    X(simple_sparse_accessor, "khronos/SimpleSparseAccessor.gltf", 0)                        \
+    X(three_vrm_cube, "khronos/three-vrm-cube/cube.gltf", 0)                                 \
+    X(robot_expressive, "khronos/RobotExpressive.glb", 42)                                   \
+    X(head_with_sparse_targets, "hero/head_sparse.glb", 5)                                   \
+    X(head, "hero/head.glb", 5)                                                              \
     X(body, "hero/body.glb", 3)
 
-#define X(name, path, channels)     \
-    static void name(void **state)  \
-    {                               \
-        (void)state;                \
+#define X(name, path, channels)      \
+    static void name(void **state)   \
+    {                                \
+        (void)state;                 \
         check_asset(path, channels); \
     }
 ASSETS(X)
 #undef X
 
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(the_mask),
+static const struct CMUnitTest tests[] = { cmocka_unit_test(the_mask),
 #define X(name, path, channels) cmocka_unit_test(name),
-    ASSETS(X)
+                                           ASSETS(X)
 #undef X
 };
 

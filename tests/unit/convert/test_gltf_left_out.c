@@ -10,7 +10,8 @@
 
 #include "convert/convert.h"
 
-#define PIXEL "\"data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8z8DwHwAFAAH/e+m+7wAAAABJRU5ErkJggg==\""
+#define PIXEL \
+    "\"data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8z8DwHwAFAAH/e+m+7wAAAABJRU5ErkJggg==\""
 
 /* A triangle with UVs (accessor 1), which may be read as any attribute of two floats; `primitive` and `rest` are JSON
  * from their comma on. */
@@ -18,13 +19,14 @@ static const char *save(const char *attributes, const char *primitive, const cha
 {
     static char json[8192];
     const float data[15] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1 };
-    int used = snprintf(json, sizeof json,
-                        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"left_out.bin\",\"byteLength\":60}],"
-                        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,\"byteLength\":24}],"
-                        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"
-                        "{\"bufferView\":1,\"componentType\":5126,\"count\":3,\"type\":\"VEC2\"}],"
-                        "\"meshes\":[{\"name\":\"m\",\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":1%s}%s}]}]%s}",
-                        attributes, primitive, rest);
+    int used = snprintf(
+        json, sizeof json,
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"left_out.bin\",\"byteLength\":60}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,\"byteLength\":24}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"
+        "{\"bufferView\":1,\"componentType\":5126,\"count\":3,\"type\":\"VEC2\"}],"
+        "\"meshes\":[{\"name\":\"m\",\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":1%s}%s}]}]%s}",
+        attributes, primitive, rest);
     assert_true(used > 0 && (size_t)used < sizeof json);
     test_write_file(test_path("left_out.bin"), data, sizeof data);
     test_write_file(test_path("left_out.gltf"), json, (size_t)used);
@@ -42,7 +44,8 @@ static model *load(const char *attributes, const char *primitive, const char *re
 }
 
 /* These warnings and no others, in any order. */
-static void expect(const char *attributes, const char *primitive, const char *rest, const char *const *warnings, uint32_t count)
+static void expect(const char *attributes, const char *primitive, const char *rest, const char *const *warnings,
+                   uint32_t count)
 {
     model *m = load(attributes, primitive, rest);
     for (uint32_t i = 0; i < count; i++) {
@@ -58,10 +61,10 @@ static void expect(const char *attributes, const char *primitive, const char *re
     assert_int_equal(m->warning_count, count);
     model_free(m);
 }
-#define EXPECT(attributes, primitive, rest, ...)                                                  \
-    do {                                                                                          \
-        static const char *const warnings[] = { __VA_ARGS__ };                                    \
-        expect(attributes, primitive, rest, warnings, sizeof warnings / sizeof warnings[0]);      \
+#define EXPECT(attributes, primitive, rest, ...)                                             \
+    do {                                                                                     \
+        static const char *const warnings[] = { __VA_ARGS__ };                               \
+        expect(attributes, primitive, rest, warnings, sizeof warnings / sizeof warnings[0]); \
     } while (0)
 
 #define ONE_TEXTURE ",\"textures\":[{\"source\":0}],\"images\":[{\"uri\":" PIXEL "}]"
@@ -69,59 +72,70 @@ static void expect(const char *attributes, const char *primitive, const char *re
 static void a_file_that_is_read_whole_is_silent(void **state)
 {
     (void)state;
-    expect("", ",\"material\":0",
-           ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}},\"extensions\":{\"KHR_materials_unlit\":{}},"
-           "\"emissiveFactor\":[0,0,0]}],\"extensionsUsed\":[\"KHR_materials_unlit\"],"
-           "\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0]}]" ONE_TEXTURE, NULL, 0);
+    expect(
+        "", ",\"material\":0",
+        ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}},\"extensions\":{\"KHR_materials_unlit\":{}},"
+        "\"emissiveFactor\":[0,0,0]}],\"extensionsUsed\":[\"KHR_materials_unlit\"],"
+        "\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0]}]" ONE_TEXTURE,
+        NULL, 0);
 }
 
 static void textures_of_a_material(void **state)
 {
     (void)state;
-    EXPECT("", ",\"material\":1",
-           ",\"materials\":[{\"name\":\"skin\",\"normalTexture\":{\"index\":0},\"occlusionTexture\":{\"index\":0},"
-           "\"emissiveTexture\":{\"index\":0},\"emissiveFactor\":[1,1,1],"
-           "\"pbrMetallicRoughness\":{\"metallicRoughnessTexture\":{\"index\":0}}},"
-           "{\"name\":\"cloth\",\"normalTexture\":{\"index\":0}},{\"normalTexture\":{\"index\":0},\"emissiveFactor\":[0,0.5,0]}]" ONE_TEXTURE,
-           "material 'skin': the normal texture was left out (and 2 more like it)", "material 'skin': the occlusion texture was left out",
-           "material 'skin': the emissive texture was left out", "material 'skin': the metallic-roughness texture was left out",
-           "material 'material_2': the emissive colour was left out");
+    EXPECT(
+        "", ",\"material\":1",
+        ",\"materials\":[{\"name\":\"skin\",\"normalTexture\":{\"index\":0},\"occlusionTexture\":{\"index\":0},"
+        "\"emissiveTexture\":{\"index\":0},\"emissiveFactor\":[1,1,1],"
+        "\"pbrMetallicRoughness\":{\"metallicRoughnessTexture\":{\"index\":0}}},"
+        "{\"name\":\"cloth\",\"normalTexture\":{\"index\":0}},{\"normalTexture\":{\"index\":0},\"emissiveFactor\":[0,0.5,0]}]" ONE_TEXTURE,
+        "material 'skin': the normal texture was left out (and 2 more like it)",
+        "material 'skin': the occlusion texture was left out", "material 'skin': the emissive texture was left out",
+        "material 'skin': the metallic-roughness texture was left out",
+        "material 'material_2': the emissive colour was left out");
 }
 
 /* An extension is named once, with what carries it first, whether "extensionsUsed" lists it or not. */
 static void extensions(void **state)
 {
     (void)state;
-    EXPECT("", "",
-           ",\"materials\":[{\"name\":\"glass\",\"extensions\":{\"KHR_materials_transmission\":{},\"KHR_materials_ior\":{}}},"
-           "{\"name\":\"ice\",\"extensions\":{\"KHR_materials_ior\":{\"extensions\":{\"IGNORED\":{}}}}}],"
-           "\"nodes\":[{\"mesh\":0},{\"name\":\"sun\",\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}},"
-           "\"extras\":{\"extensions\":{\"NOT_ONE\":{}}}}],\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"point\"}]}},"
-           "\"extensionsUsed\":[\"KHR_materials_ior\",\"KHR_lights_punctual\",\"EXT_nowhere\"]",
-           "material 'glass': the extension KHR_materials_transmission is not supported and was ignored",
-           "material 'glass': the extension KHR_materials_ior is not supported and was ignored (and 1 more like it)",
-           "node 'sun': the extension KHR_lights_punctual is not supported and was ignored",
-           "the extension EXT_nowhere is not supported and was ignored");
+    EXPECT(
+        "", "",
+        ",\"materials\":[{\"name\":\"glass\",\"extensions\":{\"KHR_materials_transmission\":{},\"KHR_materials_ior\":{}}},"
+        "{\"name\":\"ice\",\"extensions\":{\"KHR_materials_ior\":{\"extensions\":{\"IGNORED\":{}}}}}],"
+        "\"nodes\":[{\"mesh\":0},{\"name\":\"sun\",\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}},"
+        "\"extras\":{\"extensions\":{\"NOT_ONE\":{}}}}],\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"point\"}]}},"
+        "\"extensionsUsed\":[\"KHR_materials_ior\",\"KHR_lights_punctual\",\"EXT_nowhere\"]",
+        "material 'glass': the extension KHR_materials_transmission is not supported and was ignored",
+        "material 'glass': the extension KHR_materials_ior is not supported and was ignored (and 1 more like it)",
+        "node 'sun': the extension KHR_lights_punctual is not supported and was ignored",
+        "the extension EXT_nowhere is not supported and was ignored");
 }
 
 static void further_uvs_and_colours(void **state)
 {
     (void)state;
-    EXPECT(",\"TEXCOORD_1\":1,\"COLOR_1\":0,\"_HEAT\":0", "", "", "mesh 'm' primitive 0: the attribute TEXCOORD_1 was left out",
-           "mesh 'm' primitive 0: the attribute COLOR_1 was left out", "mesh 'm' primitive 0: the attribute _HEAT was left out");
+    EXPECT(",\"TEXCOORD_1\":1,\"COLOR_1\":0,\"_HEAT\":0", "", "",
+           "mesh 'm' primitive 0: the attribute TEXCOORD_1 was left out",
+           "mesh 'm' primitive 0: the attribute COLOR_1 was left out",
+           "mesh 'm' primitive 0: the attribute _HEAT was left out");
     /* the set that the texture uses is the one that is kept */
-    EXPECT(",\"TEXCOORD_1\":1", ",\"material\":0",
-           ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"texCoord\":1}}}]" ONE_TEXTURE,
-           "mesh 'm' primitive 0: the attribute TEXCOORD_0 was left out");
-    EXPECT("", ",\"material\":0", ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"texCoord\":3}}}]" ONE_TEXTURE,
-           "mesh 'm' primitive 0: it lacks the UV set that its texture uses; TEXCOORD_0 was taken");
+    EXPECT(
+        ",\"TEXCOORD_1\":1", ",\"material\":0",
+        ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"texCoord\":1}}}]" ONE_TEXTURE,
+        "mesh 'm' primitive 0: the attribute TEXCOORD_0 was left out");
+    EXPECT(
+        "", ",\"material\":0",
+        ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"texCoord\":3}}}]" ONE_TEXTURE,
+        "mesh 'm' primitive 0: it lacks the UV set that its texture uses; TEXCOORD_0 was taken");
 }
 
 static void samplers(void **state)
 {
     (void)state;
     const char *rest = ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}],"
-                       "\"textures\":[{\"source\":0,\"sampler\":0}],\"images\":[{\"uri\":" PIXEL "}],\"samplers\":[{%s}]";
+                       "\"textures\":[{\"source\":0,\"sampler\":0}],\"images\":[{\"uri\":" PIXEL
+                       "}],\"samplers\":[{%s}]";
     char json[1024];
     snprintf(json, sizeof json, rest, "\"magFilter\":9729,\"minFilter\":9728");
     EXPECT("", ",\"material\":0", json, "sampler 0: 'minFilter' was ignored: a pack filters as 'magFilter' says");
@@ -147,7 +161,9 @@ static void many_are_one(void **state)
     (void)state;
     char json[4096];
     size_t used = 0;
-    used += (size_t)snprintf(json, sizeof json, ",\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":1,\"znear\":1}}],\"nodes\":[{\"mesh\":0}");
+    used += (size_t)snprintf(
+        json, sizeof json,
+        ",\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":1,\"znear\":1}}],\"nodes\":[{\"mesh\":0}");
     for (int i = 0; i < 100; i++) {
         used += (size_t)snprintf(json + used, sizeof json - used, ",{\"extensions\":{\"X\":{}}}");
     }
@@ -163,7 +179,8 @@ static void warnings_go_to_the_report(void **state)
     char *said = NULL;
     size_t length = 0;
     byte_buffer packs[2];
-    const char *path = save("", ",\"material\":0", ",\"materials\":[{\"name\":\"skin\",\"normalTexture\":{\"index\":0}}]" ONE_TEXTURE);
+    const char *path = save("", ",\"material\":0",
+                            ",\"materials\":[{\"name\":\"skin\",\"normalTexture\":{\"index\":0}}]" ONE_TEXTURE);
     for (int quiet = 0; quiet < 2; quiet++) {
         convert_options options;
         convert_failure failure;

@@ -37,7 +37,8 @@ static char file_path[128];
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 4)))
 #endif
-static void append(char *text, size_t capacity, const char *format, ...)
+static void
+append(char *text, size_t capacity, const char *format, ...)
 {
     size_t used = strlen(text);
     va_list arguments;
@@ -59,8 +60,7 @@ static size_t add_bytes(scene *s, const void *data, size_t bytes)
 {
     size_t offset = (s->size + 3) / 4 * 4;
     assert_true(offset + bytes <= sizeof s->bytes);
-    if (bytes)
-        memcpy(s->bytes + offset, data, bytes);
+    if (bytes) memcpy(s->bytes + offset, data, bytes);
     s->size = offset + bytes;
     return offset;
 }
@@ -70,8 +70,7 @@ static int add_view(scene *s, const void *data, size_t bytes, int stride)
 {
     size_t offset = add_bytes(s, data, bytes);
     APPEND(s->views, "%s{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu", s->view_count ? "," : "", offset, bytes);
-    if (stride)
-        APPEND(s->views, ",\"byteStride\":%d", stride);
+    if (stride) APPEND(s->views, ",\"byteStride\":%d", stride);
     APPEND(s->views, "}");
     return s->view_count++;
 }
@@ -99,16 +98,14 @@ static void write_base64(FILE *out, const unsigned char *bytes, size_t count)
         unsigned long word = (unsigned long)bytes[i] << 16;
         word |= i + 1 < count ? (unsigned long)bytes[i + 1] << 8 : 0;
         word |= i + 2 < count ? (unsigned long)bytes[i + 2] : 0;
-        for (size_t k = 0; k < 4; ++k)
-            fputc(i + k > count ? '=' : base64_digits[(word >> (18 - 6 * k)) & 63], out);
+        for (size_t k = 0; k < 4; ++k) fputc(i + k > count ? '=' : base64_digits[(word >> (18 - 6 * k)) & 63], out);
     }
 }
 
 static void write_json(const scene *s, FILE *out, int embed)
 {
     fprintf(out, "{\"asset\":{\"version\":\"2.0\"}");
-    if (s->quantized)
-        fprintf(out, ",\"extensionsUsed\":[\"KHR_mesh_quantization\"]");
+    if (s->quantized) fprintf(out, ",\"extensionsUsed\":[\"KHR_mesh_quantization\"]");
     if (s->size) {
         fprintf(out, ",\"buffers\":[{\"byteLength\":%zu", s->size);
         if (embed) {
@@ -118,10 +115,8 @@ static void write_json(const scene *s, FILE *out, int embed)
         }
         fprintf(out, "}%s]", s->buffer_rest);
     }
-    if (s->view_count)
-        fprintf(out, ",\"bufferViews\":[%s]", s->views);
-    if (s->accessor_count)
-        fprintf(out, ",\"accessors\":[%s]", s->accessors);
+    if (s->view_count) fprintf(out, ",\"bufferViews\":[%s]", s->views);
+    if (s->accessor_count) fprintf(out, ",\"accessors\":[%s]", s->accessors);
     if (s->primitives[0])
         fprintf(out, ",\"meshes\":[{\"name\":\"m\",\"primitives\":[%s]%s}]", s->primitives, s->mesh_rest);
     fprintf(out, "%s}", s->rest);
@@ -147,14 +142,12 @@ static void save_gltf(const scene *s)
 
 static void write_u32(FILE *out, size_t value)
 {
-    for (int i = 0; i < 4; ++i)
-        fputc((int)(value >> (8 * i) & 255), out);
+    for (int i = 0; i < 4; ++i) fputc((int)(value >> (8 * i) & 255), out);
 }
 
 static void pad(FILE *out, size_t bytes, int with)
 {
-    for (size_t i = bytes; i % 4; ++i)
-        fputc(with, out);
+    for (size_t i = bytes; i % 4; ++i) fputc(with, out);
 }
 
 /* The JSON is written to a file of its own first, to know its length. */
@@ -191,9 +184,8 @@ static void save_glb(const scene *s)
 static model *load_file(void)
 {
     model *m = NULL;
-    model_error error = {"", ""};
-    if (model_read_gltf(file_path, &m, &error))
-        fail_msg("refused: %s (%s)", error.what, error.where);
+    model_error error = { "", "" };
+    if (model_read_gltf(file_path, &m, &error)) fail_msg("refused: %s (%s)", error.what, error.where);
     assert_non_null(m);
     return m;
 }
@@ -209,7 +201,7 @@ static model *load(scene *s)
 static void file_refused(const char *what, const char *where)
 {
     model *m = (model *)(void *)file_path;
-    model_error error = {"", ""};
+    model_error error = { "", "" };
     assert_int_equal(model_read_gltf(file_path, &m, &error), 1);
     assert_null(m);
     if (!strstr(error.what, what) || !strstr(error.where, where))
@@ -233,14 +225,13 @@ static void assert_floats(const float *actual, const float *expected, size_t cou
 static int has_warning(const model *m, const char *text)
 {
     for (uint32_t i = 0; i < m->warning_count; ++i)
-        if (strstr(m->warnings[i], text))
-            return 1;
+        if (strstr(m->warnings[i], text)) return 1;
     return 0;
 }
 
 /* --- scenes to start from --- */
 
-static const float triangle_positions[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+static const float triangle_positions[9] = { 0, 0, 0, 1, 0, 0, 0, 1, 0 };
 
 /* A triangle in the xy plane: accessor 0. `more` goes into the primitive, from its comma on. */
 static scene *triangle(const char *more_attributes, const char *more)
@@ -254,8 +245,8 @@ static scene *triangle(const char *more_attributes, const char *more)
 /* A triangle that follows the first joint. */
 static scene *skinned_triangle(void)
 {
-    static const uint8_t joints[12] = {0};
-    static const float weights[12] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+    static const uint8_t joints[12] = { 0 };
+    static const float weights[12] = { 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0 };
     scene *s = triangle(",\"JOINTS_0\":1,\"WEIGHTS_0\":2", "");
     add_array(s, joints, sizeof joints, U8, 3, "VEC4");
     add_array(s, weights, sizeof weights, F32, 3, "VEC4");
@@ -270,7 +261,7 @@ static scene *morphing(const float *deltas, const char *more)
     return s;
 }
 
-static const float up_deltas[9] = {0, 0, 0, 0, 0, 1, 0, 0, 0};
+static const float up_deltas[9] = { 0, 0, 0, 0, 0, 1, 0, 0, 0 };
 #define ONE_TARGET ",\"targets\":[{\"POSITION\":1}]"
 
 /* --- encodings --- */
@@ -283,8 +274,7 @@ static void triangle_without_indices(void **state)
     assert_int_equal(m->meshes[0].vertex_count, 3);
     assert_int_equal(m->meshes[0].index_count, 3);
     assert_floats(m->meshes[0].position, triangle_positions, 9);
-    for (uint32_t i = 0; i < 3; ++i)
-        assert_int_equal(m->meshes[0].indices[i], i);
+    for (uint32_t i = 0; i < 3; ++i) assert_int_equal(m->meshes[0].indices[i], i);
     assert_string_equal(m->meshes[0].name, "m");
     model_free(m);
 }
@@ -294,7 +284,7 @@ static void check_indices(const void *data, size_t bytes, int component)
     scene *s = triangle("", ",\"indices\":1");
     add_array(s, data, bytes, component, 3, "SCALAR");
     model *m = load(s);
-    const uint32_t expected[3] = {2, 0, 1};
+    const uint32_t expected[3] = { 2, 0, 1 };
     assert_memory_equal(m->meshes[0].indices, expected, sizeof expected);
     model_free(m);
 }
@@ -302,9 +292,9 @@ static void check_indices(const void *data, size_t bytes, int component)
 static void indices_of_every_size(void **state)
 {
     (void)state;
-    const uint8_t u8[3] = {2, 0, 1};
-    const uint16_t u16[3] = {2, 0, 1};
-    const uint32_t u32[3] = {2, 0, 1};
+    const uint8_t u8[3] = { 2, 0, 1 };
+    const uint16_t u16[3] = { 2, 0, 1 };
+    const uint32_t u32[3] = { 2, 0, 1 };
     check_indices(u8, sizeof u8, U8);
     check_indices(u16, sizeof u16, U16);
     check_indices(u32, sizeof u32, U32);
@@ -330,9 +320,9 @@ static void buffer_in_a_file_beside(void **state)
     fwrite(triangle_positions, 1, sizeof triangle_positions, out);
     fclose(out);
     write_text("test.gltf", "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,\"uri\":\"a%20b.bin\"}],"
-               "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
-               "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
-               "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}");
+                            "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
+                            "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
+                            "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}");
     model *m = load_file();
     assert_floats(m->meshes[0].position, triangle_positions, 9);
     assert_string_equal(m->meshes[0].name, "mesh_0");
@@ -342,14 +332,14 @@ static void buffer_in_a_file_beside(void **state)
 static void interleaved_attributes(void **state)
 {
     (void)state;
-    const float data[15] = {0, 0, 0, 0.5f, 0.25f, 1, 0, 0, 1, 0.25f, 0, 1, 0, 0, 1};
+    const float data[15] = { 0, 0, 0, 0.5f, 0.25f, 1, 0, 0, 1, 0.25f, 0, 1, 0, 0, 1 };
     scene *s = scene_new();
     add_view(s, data, sizeof data, 20);
     add_accessor(s, F32, 3, "VEC3", ",\"bufferView\":0");
     add_accessor(s, F32, 3, "VEC2", ",\"bufferView\":0,\"byteOffset\":12");
     APPEND(s->primitives, "{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":1}}");
     model *m = load(s);
-    const float uv[6] = {0.5f, 0.25f, 1, 0.25f, 0, 1};
+    const float uv[6] = { 0.5f, 0.25f, 1, 0.25f, 0, 1 };
     assert_floats(m->meshes[0].position, triangle_positions, 9);
     assert_floats(m->meshes[0].uv, uv, 6);
     model_free(m);
@@ -358,15 +348,16 @@ static void interleaved_attributes(void **state)
 /* Accessor 1 is sparse: element 1 becomes (0 0 1). base: JSON from its comma on, or empty */
 static model *load_sparse(const char *base_of_target, const float *base)
 {
-    const uint16_t index[1] = {1};
-    const float value[3] = {0, 0, 1};
+    const uint16_t index[1] = { 1 };
+    const float value[3] = { 0, 0, 1 };
     char rest[256];
     scene *s = triangle("", ONE_TARGET);
     int indices = add_view(s, index, sizeof index, 0), values = add_view(s, value, sizeof value, 0);
-    if (base)
-        add_view(s, base, 9 * sizeof *base, 0);
-    snprintf(rest, sizeof rest, "%s,\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":%d,\"componentType\":5123},"
-             "\"values\":{\"bufferView\":%d}}", base_of_target, indices, values);
+    if (base) add_view(s, base, 9 * sizeof *base, 0);
+    snprintf(rest, sizeof rest,
+             "%s,\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":%d,\"componentType\":5123},"
+             "\"values\":{\"bufferView\":%d}}",
+             base_of_target, indices, values);
     add_accessor(s, F32, 3, "VEC3", rest);
     return load(s);
 }
@@ -374,7 +365,7 @@ static model *load_sparse(const char *base_of_target, const float *base)
 static void sparse_with_a_base(void **state)
 {
     (void)state;
-    const float base[9] = {1, 2, 3, 4, 5, 6, 7, 8, 9}, expected[9] = {1, 2, 3, 0, 0, 1, 7, 8, 9};
+    const float base[9] = { 1, 2, 3, 4, 5, 6, 7, 8, 9 }, expected[9] = { 1, 2, 3, 0, 0, 1, 7, 8, 9 };
     model *m = load_sparse(",\"bufferView\":3", base);
     assert_floats(m->meshes[0].targets[0].position, expected, 9);
     model_free(m);
@@ -391,7 +382,7 @@ static void sparse_without_a_base(void **state)
 static void accessor_without_bytes_is_zero(void **state)
 {
     (void)state;
-    const float zeros[9] = {0};
+    const float zeros[9] = { 0 };
     scene *s = triangle("", ONE_TARGET);
     add_accessor(s, F32, 3, "VEC3", "");
     model *m = load(s);
@@ -418,16 +409,17 @@ static void check_quantized(int component, int normalized, const void *data, siz
 static void quantized_positions(void **state)
 {
     (void)state;
-    const int8_t i8[12] = {-128, 0, 127, 0, 1, 0, 0, 0, 0, 2, 0, 0};
-    const uint8_t u8[12] = {0, 51, 255, 0, 1, 0, 0, 0, 0, 2, 0, 0};
-    const int16_t i16[12] = {-32768, 0, 32767, 0, 1, 0, 0, 0, 0, 2, 0, 0};
-    const uint16_t u16[12] = {0, 13107, 65535, 0, 1, 0, 0, 0, 0, 2, 0, 0};
-    const float plain_i8[9] = {-128, 0, 127, 1, 0, 0, 0, 2, 0}, plain_u8[9] = {0, 51, 255, 1, 0, 0, 0, 2, 0};
-    const float plain_i16[9] = {-32768, 0, 32767, 1, 0, 0, 0, 2, 0}, plain_u16[9] = {0, 13107, 65535, 1, 0, 0, 0, 2, 0};
-    const float n_i8[9] = {-1, 0, 1, 1 / 127.0f, 0, 0, 0, 2 / 127.0f, 0};
-    const float n_u8[9] = {0, 0.2f, 1, 1 / 255.0f, 0, 0, 0, 2 / 255.0f, 0};
-    const float n_i16[9] = {-1, 0, 1, 1 / 32767.0f, 0, 0, 0, 2 / 32767.0f, 0};
-    const float n_u16[9] = {0, 0.2f, 1, 1 / 65535.0f, 0, 0, 0, 2 / 65535.0f, 0};
+    const int8_t i8[12] = { -128, 0, 127, 0, 1, 0, 0, 0, 0, 2, 0, 0 };
+    const uint8_t u8[12] = { 0, 51, 255, 0, 1, 0, 0, 0, 0, 2, 0, 0 };
+    const int16_t i16[12] = { -32768, 0, 32767, 0, 1, 0, 0, 0, 0, 2, 0, 0 };
+    const uint16_t u16[12] = { 0, 13107, 65535, 0, 1, 0, 0, 0, 0, 2, 0, 0 };
+    const float plain_i8[9] = { -128, 0, 127, 1, 0, 0, 0, 2, 0 }, plain_u8[9] = { 0, 51, 255, 1, 0, 0, 0, 2, 0 };
+    const float plain_i16[9] = { -32768, 0, 32767, 1, 0, 0, 0, 2, 0 },
+                plain_u16[9] = { 0, 13107, 65535, 1, 0, 0, 0, 2, 0 };
+    const float n_i8[9] = { -1, 0, 1, 1 / 127.0f, 0, 0, 0, 2 / 127.0f, 0 };
+    const float n_u8[9] = { 0, 0.2f, 1, 1 / 255.0f, 0, 0, 0, 2 / 255.0f, 0 };
+    const float n_i16[9] = { -1, 0, 1, 1 / 32767.0f, 0, 0, 0, 2 / 32767.0f, 0 };
+    const float n_u16[9] = { 0, 0.2f, 1, 1 / 65535.0f, 0, 0, 0, 2 / 65535.0f, 0 };
     check_quantized(I8, 0, i8, sizeof i8, 4, plain_i8);
     check_quantized(I8, 1, i8, sizeof i8, 4, n_i8);
     check_quantized(U8, 0, u8, sizeof u8, 4, plain_u8);
@@ -441,9 +433,10 @@ static void quantized_positions(void **state)
 static void quantized_attributes_and_deltas(void **state)
 {
     (void)state;
-    const int8_t normal[12] = {0, 0, 127, 0, 0, 0, 127, 0, 0, 0, 127, 0}, tangent[12] = {127, 0, 0, -127, 127, 0, 0, -127, 127, 0, 0, -127};
-    const int16_t delta[12] = {0, 0, 0, 0, 0, 0, 32767, 0, 0, 0, 0, 0};
-    const uint16_t uv[6] = {0, 0, 65535, 0, 0, 65535};
+    const int8_t normal[12] = { 0, 0, 127, 0, 0, 0, 127, 0, 0, 0, 127, 0 },
+                 tangent[12] = { 127, 0, 0, -127, 127, 0, 0, -127, 127, 0, 0, -127 };
+    const int16_t delta[12] = { 0, 0, 0, 0, 0, 0, 32767, 0, 0, 0, 0, 0 };
+    const uint16_t uv[6] = { 0, 0, 65535, 0, 0, 65535 };
     scene *s = triangle(",\"NORMAL\":1,\"TANGENT\":2,\"TEXCOORD_0\":3", ",\"targets\":[{\"POSITION\":4,\"NORMAL\":5}]");
     s->quantized = 1;
     char rest[64];
@@ -458,8 +451,8 @@ static void quantized_attributes_and_deltas(void **state)
     add_accessor(s, I16, 3, "VEC3", rest);
     add_accessor(s, I16, 3, "VEC3", rest);
     model *m = load(s);
-    const float normals[9] = {0, 0, 1, 0, 0, 1, 0, 0, 1}, tangents[12] = {1, 0, 0, -1, 1, 0, 0, -1, 1, 0, 0, -1};
-    const float uvs[6] = {0, 0, 1, 0, 0, 1};
+    const float normals[9] = { 0, 0, 1, 0, 0, 1, 0, 0, 1 }, tangents[12] = { 1, 0, 0, -1, 1, 0, 0, -1, 1, 0, 0, -1 };
+    const float uvs[6] = { 0, 0, 1, 0, 0, 1 };
     assert_floats(m->meshes[0].normal, normals, 9);
     assert_floats(m->meshes[0].tangent, tangents, 12);
     assert_floats(m->meshes[0].uv, uvs, 6);
@@ -478,11 +471,11 @@ static int add_compressed_view(scene *s, const unsigned char *data, size_t bytes
     snprintf(s->buffer_rest, sizeof s->buffer_rest,
              ",{\"byteLength\":4096,\"extensions\":{\"EXT_meshopt_compression\":{\"fallback\":true}}}");
     APPEND(s->views, "%s{\"buffer\":1,\"byteLength\":%zu,", s->view_count ? "," : "", count * stride);
-    if (strcmp(mode, "ATTRIBUTES") == 0)
-        APPEND(s->views, "\"byteStride\":%zu,", stride);
-    APPEND(s->views, "\"extensions\":{\"EXT_meshopt_compression\":{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu,"
-           "\"byteStride\":%zu,\"count\":%zu,\"mode\":\"%s\",\"filter\":\"%s\"}}}", offset, bytes, stride, count, mode,
-           filter);
+    if (strcmp(mode, "ATTRIBUTES") == 0) APPEND(s->views, "\"byteStride\":%zu,", stride);
+    APPEND(s->views,
+           "\"extensions\":{\"EXT_meshopt_compression\":{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu,"
+           "\"byteStride\":%zu,\"count\":%zu,\"mode\":\"%s\",\"filter\":\"%s\"}}}",
+           offset, bytes, stride, count, mode, filter);
     return s->view_count++;
 }
 
@@ -507,7 +500,7 @@ static scene *compressed_triangle(const char *more_attributes, const char *more)
 static void meshopt_attributes_and_triangles(void **state)
 {
     (void)state;
-    const unsigned int index[3] = {0, 1, 2};
+    const unsigned int index[3] = { 0, 1, 2 };
     unsigned char packed[256];
     scene *s = compressed_triangle("", ",\"indices\":1");
     size_t bytes = meshopt_encodeIndexBuffer(packed, sizeof packed, index, 3);
@@ -522,7 +515,7 @@ static void meshopt_attributes_and_triangles(void **state)
 static void meshopt_index_sequence(void **state)
 {
     (void)state;
-    const unsigned int index[3] = {2, 0, 1};
+    const unsigned int index[3] = { 2, 0, 1 };
     unsigned char packed[256];
     scene *s = compressed_triangle("", ",\"indices\":1");
     size_t bytes = meshopt_encodeIndexSequence(packed, sizeof packed, index, 3);
@@ -536,8 +529,8 @@ static void meshopt_index_sequence(void **state)
 static void meshopt_octahedral_and_exponential(void **state)
 {
     (void)state;
-    const float normal[12] = {0, 0, 1, 0, 0, 0.6f, 0.8f, 0, 1, 0, 0, 0}, uv[6] = {0.5f, 0.25f, 1, 0.25f, 0, 1};
-    const float expected[9] = {0, 0, 1, 0, 0.6f, 0.8f, 1, 0, 0};
+    const float normal[12] = { 0, 0, 1, 0, 0, 0.6f, 0.8f, 0, 1, 0, 0, 0 }, uv[6] = { 0.5f, 0.25f, 1, 0.25f, 0, 1 };
+    const float expected[9] = { 0, 0, 1, 0, 0.6f, 0.8f, 1, 0, 0 };
     int16_t oct[12];
     uint32_t exponential[6];
     scene *s = compressed_triangle(",\"NORMAL\":1,\"TEXCOORD_0\":2", "");
@@ -549,8 +542,7 @@ static void meshopt_octahedral_and_exponential(void **state)
     add_compressed(s, exponential, 3, 8, "EXPONENTIAL");
     add_accessor(s, F32, 3, "VEC2", ",\"bufferView\":2");
     model *m = load(s);
-    for (size_t i = 0; i < 9; ++i)
-        assert_true(fabs((double)m->meshes[0].normal[i] - (double)expected[i]) < 1e-4);
+    for (size_t i = 0; i < 9; ++i) assert_true(fabs((double)m->meshes[0].normal[i] - (double)expected[i]) < 1e-4);
     assert_floats(m->meshes[0].uv, uv, 6);
     model_free(m);
 }
@@ -558,7 +550,7 @@ static void meshopt_octahedral_and_exponential(void **state)
 static void meshopt_quaternion(void **state)
 {
     (void)state;
-    const float rotation[8] = {0, 0, 0, 1, 0.6f, 0, 0, 0.8f}, times[2] = {0, 1};
+    const float rotation[8] = { 0, 0, 0, 1, 0.6f, 0, 0, 0.8f }, times[2] = { 0, 1 };
     int16_t quat[8];
     scene *s = compressed_triangle("", "");
     add_array(s, times, sizeof times, F32, 2, "SCALAR");
@@ -566,7 +558,7 @@ static void meshopt_quaternion(void **state)
     add_compressed(s, quat, 2, 8, "QUATERNION");
     add_accessor(s, I16, 2, "VEC4", ",\"normalized\":true,\"bufferView\":2");
     APPEND(s->rest, ",\"nodes\":[{\"mesh\":0}],\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":"
-           "{\"node\":0,\"path\":\"rotation\"}}],\"samplers\":[{\"input\":1,\"output\":2}]}]");
+                    "{\"node\":0,\"path\":\"rotation\"}}],\"samplers\":[{\"input\":1,\"output\":2}]}]");
     model *m = load(s);
     for (size_t i = 0; i < 8; ++i)
         assert_true(fabs((double)m->clips[0].channels[0].values[i] - (double)rotation[i]) < 1e-3);
@@ -576,7 +568,7 @@ static void meshopt_quaternion(void **state)
 static void meshopt_damage_is_refused(void **state)
 {
     (void)state;
-    const unsigned char junk[40] = {0x55};
+    const unsigned char junk[40] = { 0x55 };
     scene *s = triangle("", ",\"indices\":1");
     add_compressed_view(s, junk, sizeof junk, 3, 2, "TRIANGLES", "NONE");
     add_accessor(s, U16, 3, "SCALAR", ",\"bufferView\":1");
@@ -586,7 +578,7 @@ static void meshopt_damage_is_refused(void **state)
 static void meshopt_impossible_sizes_are_refused(void **state)
 {
     (void)state;
-    const unsigned char junk[40] = {0xa0};
+    const unsigned char junk[40] = { 0xa0 };
     scene *s = triangle("", ",\"indices\":1");
     add_compressed_view(s, junk, sizeof junk, 30000, 2, "TRIANGLES", "NONE");
     add_accessor(s, U16, 3, "SCALAR", ",\"bufferView\":1");
@@ -605,7 +597,7 @@ static void meshopt_impossible_sizes_are_refused(void **state)
 
 static void check_unrolled(int mode, const uint32_t *expected)
 {
-    const float square[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+    const float square[12] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0 };
     scene *s = scene_new();
     add_array(s, square, sizeof square, F32, 4, "VEC3");
     APPEND(s->primitives, "{\"attributes\":{\"POSITION\":0},\"mode\":%d}", mode);
@@ -618,7 +610,7 @@ static void check_unrolled(int mode, const uint32_t *expected)
 static void strips_and_fans(void **state)
 {
     (void)state;
-    const uint32_t strip[6] = {0, 1, 2, 1, 3, 2}, fan[6] = {1, 2, 0, 2, 3, 0};
+    const uint32_t strip[6] = { 0, 1, 2, 1, 3, 2 }, fan[6] = { 1, 2, 0, 2, 3, 0 };
     check_unrolled(5, strip);
     check_unrolled(6, fan);
 }
@@ -630,15 +622,16 @@ static void points_and_lines_are_skipped(void **state)
     APPEND(s->primitives, ",{\"attributes\":{\"POSITION\":0},\"mode\":1},{\"attributes\":{\"POSITION\":0}}");
     model *m = load(s);
     assert_int_equal(m->meshes[0].submesh_count, 1);
-    assert_true(has_warning(m, "mesh 'm' primitive 0 was skipped: it holds points or lines, not triangles (and 1 more like it)"));
+    assert_true(has_warning(
+        m, "mesh 'm' primitive 0 was skipped: it holds points or lines, not triangles (and 1 more like it)"));
     model_free(m);
 }
 
 static void primitives_are_concatenated(void **state)
 {
     (void)state;
-    const float uv[6] = {0, 0, 1, 0, 0, 1};
-    const uint8_t color[12] = {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 51};
+    const float uv[6] = { 0, 0, 1, 0, 0, 1 };
+    const uint8_t color[12] = { 255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 51 };
     scene *s = triangle("", ",\"material\":1");
     add_array(s, uv, sizeof uv, F32, 3, "VEC2");
     char rest[64];
@@ -648,7 +641,7 @@ static void primitives_are_concatenated(void **state)
     APPEND(s->rest, ",\"materials\":[{\"name\":\"a\"},{\"name\":\"b\"}]");
     model *m = load(s);
     const model_mesh *mesh = &m->meshes[0];
-    const float white[4] = {1, 1, 1, 1}, zero[2] = {0, 0}, blue[4] = {0, 0, 1, 0.2f};
+    const float white[4] = { 1, 1, 1, 1 }, zero[2] = { 0, 0 }, blue[4] = { 0, 0, 1, 0.2f };
     assert_int_equal(mesh->vertex_count, 6);
     assert_int_equal(mesh->submeshes[0].material, 1);
     assert_int_equal(mesh->submeshes[1].material, 0);
@@ -665,10 +658,11 @@ static void primitives_are_concatenated(void **state)
 static void target_names_are_made_unique(void **state)
 {
     (void)state;
-    scene *s = morphing(up_deltas, ",\"targets\":[{\"POSITION\":1},{\"POSITION\":1},{\"POSITION\":1},{\"POSITION\":1}]");
+    scene *s = morphing(up_deltas,
+                        ",\"targets\":[{\"POSITION\":1},{\"POSITION\":1},{\"POSITION\":1},{\"POSITION\":1}]");
     APPEND(s->mesh_rest, ",\"extras\":{\"targetNames\":[\"smile\",\"\",\"smile\"]},\"weights\":[0,0.5,0,1]");
     model *m = load(s);
-    const float weights[4] = {0, 0.5f, 0, 1};
+    const float weights[4] = { 0, 0.5f, 0, 1 };
     assert_string_equal(m->meshes[0].targets[0].name, "smile");
     assert_string_equal(m->meshes[0].targets[1].name, "target_1");
     assert_string_equal(m->meshes[0].targets[2].name, "smile_2");
@@ -698,7 +692,7 @@ static void check_unit(const float *v)
 static void normals_of_a_triangle(void **state)
 {
     (void)state;
-    const float up[9] = {0, 0, 1, 0, 0, 1, 0, 0, 1};
+    const float up[9] = { 0, 0, 1, 0, 0, 1, 0, 0, 1 };
     model *m = load(triangle("", ""));
     assert_floats(m->meshes[0].normal, up, 9);
     model_free(m);
@@ -707,7 +701,7 @@ static void normals_of_a_triangle(void **state)
 /* Two triangles with no common vertex that meet at the y axis, the second bent by (x z). */
 static model *load_fold(float x, float z)
 {
-    const float positions[18] = {0, 0, 0, 0, 1, 0, -1, 0, 0, 0, 1, 0, 0, 0, 0, x, 0, z};
+    const float positions[18] = { 0, 0, 0, 0, 1, 0, -1, 0, 0, 0, 1, 0, 0, 0, 0, x, 0, z };
     scene *s = scene_new();
     add_array(s, positions, sizeof positions, F32, 6, "VEC3");
     APPEND(s->primitives, "{\"attributes\":{\"POSITION\":0}}");
@@ -719,12 +713,11 @@ static void normals_below_the_crease_angle_are_smooth(void **state)
     (void)state;
     model *m = load_fold(0.8f, -0.6f);
     const float *n = m->meshes[0].normal;
-    assert_floats(n, n + 12, 3);     /* both ends of the edge are shared */
+    assert_floats(n, n + 12, 3); /* both ends of the edge are shared */
     assert_floats(n + 3, n + 9, 3);
     assert_true(n[0] > 0.1f && n[2] > 0.5f);
     assert_true(n[6] == 0.0f && n[8] == 1.0f); /* the far corners keep their own */
-    for (size_t v = 0; v < 6; ++v)
-        check_unit(n + v * 3);
+    for (size_t v = 0; v < 6; ++v) check_unit(n + v * 3);
     model_free(m);
 }
 
@@ -732,7 +725,7 @@ static void normals_above_the_crease_angle_are_hard(void **state)
 {
     (void)state;
     model *m = load_fold(0.0f, -1.0f);
-    const float first[3] = {0, 0, 1}, second[3] = {1, 0, 0};
+    const float first[3] = { 0, 0, 1 }, second[3] = { 1, 0, 0 };
     assert_floats(m->meshes[0].normal, first, 3);
     assert_floats(m->meshes[0].normal + 9, second, 3);
     model_free(m);
@@ -741,8 +734,8 @@ static void normals_above_the_crease_angle_are_hard(void **state)
 static void normals_of_an_indexed_edge_are_shared(void **state)
 {
     (void)state;
-    const float positions[12] = {0, 0, 0, 0, 1, 0, -1, 0, 0, 0, 0, -1};
-    const uint16_t index[6] = {0, 1, 2, 1, 0, 3};
+    const float positions[12] = { 0, 0, 0, 0, 1, 0, -1, 0, 0, 0, 0, -1 };
+    const uint16_t index[6] = { 0, 1, 2, 1, 0, 3 };
     scene *s = scene_new();
     add_array(s, positions, sizeof positions, F32, 4, "VEC3");
     add_array(s, index, sizeof index, U16, 6, "SCALAR");
@@ -756,8 +749,8 @@ static void normals_of_an_indexed_edge_are_shared(void **state)
 static void degenerate_triangles_are_kept(void **state)
 {
     (void)state;
-    const uint16_t index[6] = {0, 1, 2, 1, 1, 2};
-    const float up[3] = {0, 0, 1};
+    const uint16_t index[6] = { 0, 1, 2, 1, 1, 2 };
+    const float up[3] = { 0, 0, 1 };
     scene *s = triangle("", ",\"indices\":1");
     add_array(s, index, sizeof index, U16, 6, "SCALAR");
     model *m = load(s);
@@ -769,20 +762,19 @@ static void degenerate_triangles_are_kept(void **state)
 static void normals_of_all_degenerate_triangles_are_unit(void **state)
 {
     (void)state;
-    const uint16_t index[3] = {1, 1, 2};
+    const uint16_t index[3] = { 1, 1, 2 };
     scene *s = triangle("", ",\"indices\":1");
     add_array(s, index, sizeof index, U16, 3, "SCALAR");
     model *m = load(s);
-    for (size_t v = 0; v < 3; ++v)
-        check_unit(m->meshes[0].normal + v * 3);
+    for (size_t v = 0; v < 3; ++v) check_unit(m->meshes[0].normal + v * 3);
     model_free(m);
 }
 
 static void file_normals_of_other_length(void **state)
 {
     (void)state;
-    const float normals[9] = {0, 0, 4, 0, 0, 0, 0, 0.001f, 0.9999f}, delta[9] = {2, 0, 0, 0, 0, 0, 0, 0, 0};
-    const float scaled[3] = {0, 0, 1}, scaled_delta[3] = {0.5f, 0, 0};
+    const float normals[9] = { 0, 0, 4, 0, 0, 0, 0, 0.001f, 0.9999f }, delta[9] = { 2, 0, 0, 0, 0, 0, 0, 0, 0 };
+    const float scaled[3] = { 0, 0, 1 }, scaled_delta[3] = { 0.5f, 0, 0 };
     scene *s = triangle(",\"NORMAL\":1", ",\"targets\":[{\"NORMAL\":2}]");
     add_array(s, normals, sizeof normals, F32, 3, "VEC3");
     add_array(s, delta, sizeof delta, F32, 3, "VEC3");
@@ -817,9 +809,9 @@ static void target_normals_from_the_morphed_mesh(void **state)
 static void target_normals_are_zero_where_nothing_changes(void **state)
 {
     (void)state;
-    const float positions[18] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 0, 0.3f, 6, 0.1f, 0, 5, 1, 0};
-    const float deltas[18] = {0, 0, 0, 0, 0, 1};
-    const float zeros[9] = {0};
+    const float positions[18] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 0, 0.3f, 6, 0.1f, 0, 5, 1, 0 };
+    const float deltas[18] = { 0, 0, 0, 0, 0, 1 };
+    const float zeros[9] = { 0 };
     scene *s = scene_new();
     add_array(s, positions, sizeof positions, F32, 6, "VEC3");
     add_array(s, deltas, sizeof deltas, F32, 6, "VEC3");
@@ -833,7 +825,7 @@ static void target_normals_are_zero_where_nothing_changes(void **state)
 static void target_normals_of_a_moved_triangle_are_snapped_to_zero(void **state)
 {
     (void)state;
-    const float deltas[9] = {0.1f, 0.2f, 0.3f, 0.1f, 0.2f, 0.3f, 0.1f, 0.2f, 0.3f}, zeros[9] = {0};
+    const float deltas[9] = { 0.1f, 0.2f, 0.3f, 0.1f, 0.2f, 0.3f, 0.1f, 0.2f, 0.3f }, zeros[9] = { 0 };
     model *m = load(morphing(deltas, ONE_TARGET));
     assert_memory_equal(m->meshes[0].targets[0].normal, zeros, sizeof zeros);
     model_free(m);
@@ -842,7 +834,7 @@ static void target_normals_of_a_moved_triangle_are_snapped_to_zero(void **state)
 static void target_normals_of_the_file_are_kept(void **state)
 {
     (void)state;
-    const float normals[9] = {0, 0, 1, 0, 0, 1, 0, 0, 1}, delta[9] = {0.125f, 0, 0, 0, 0, 0, 0, 0, -0.5f};
+    const float normals[9] = { 0, 0, 1, 0, 0, 1, 0, 0, 1 }, delta[9] = { 0.125f, 0, 0, 0, 0, 0, 0, 0, -0.5f };
     scene *s = triangle(",\"NORMAL\":1", ",\"targets\":[{\"POSITION\":0,\"NORMAL\":2}]");
     add_array(s, normals, sizeof normals, F32, 3, "VEC3");
     add_array(s, delta, sizeof delta, F32, 3, "VEC3");
@@ -855,7 +847,7 @@ static void target_normals_of_the_file_are_kept(void **state)
 static void target_normals_without_a_base_are_ignored(void **state)
 {
     (void)state;
-    const float zeros[9] = {0};
+    const float zeros[9] = { 0 };
     model *m = load(morphing(up_deltas, ",\"targets\":[{\"NORMAL\":1}]"));
     assert_memory_equal(m->meshes[0].targets[0].normal, zeros, sizeof zeros);
     assert_false(m->meshes[0].targets[0].has_normal);
@@ -867,14 +859,14 @@ static void targets_of_each_primitive(void **state)
 {
     (void)state;
     /* the first primitive gives POSITION, the second NORMAL only */
-    const float normals[9] = {0, 0, 1, 0, 0, 1, 0, 0, 1};
+    const float normals[9] = { 0, 0, 1, 0, 0, 1, 0, 0, 1 };
     scene *s = triangle("", ",\"targets\":[{\"POSITION\":2}]");
     add_array(s, normals, sizeof normals, F32, 3, "VEC3");
     add_array(s, up_deltas, sizeof up_deltas, F32, 3, "VEC3");
     APPEND(s->primitives, ",{\"attributes\":{\"POSITION\":0,\"NORMAL\":1},\"targets\":[{\"NORMAL\":2}]}");
     model *m = load(s);
     const model_target *t = &m->meshes[0].targets[0];
-    const float zeros[9] = {0};
+    const float zeros[9] = { 0 };
     assert_memory_equal(t->position, up_deltas, sizeof up_deltas);
     assert_memory_equal(t->position + 9, zeros, sizeof zeros);
     assert_true(t->normal[0] < -0.1f);
@@ -886,7 +878,7 @@ static void targets_of_each_primitive(void **state)
 static void negative_zero_deltas_become_zero(void **state)
 {
     (void)state;
-    const float deltas[9] = {-0.0f, 0, 0, 0, -0.0f, 1, 0, 0, 0};
+    const float deltas[9] = { -0.0f, 0, 0, 0, -0.0f, 1, 0, 0, 0 };
     model *m = load(morphing(deltas, ONE_TARGET));
     assert_memory_equal(m->meshes[0].targets[0].position, up_deltas, sizeof up_deltas);
     model_free(m);
@@ -906,15 +898,13 @@ static void tangents_follow_u(void **state)
 {
     (void)state;
     /* in glTF v runs down: with v along y the bitangent is -y, so w is -1 */
-    const float along[6] = {0, 0, 1, 0, 0, 1}, mirrored[6] = {1, 0, 0, 0, 1, 1};
-    const float expected[4] = {1, 0, 0, -1}, expected_mirrored[4] = {-1, 0, 0, 1};
+    const float along[6] = { 0, 0, 1, 0, 0, 1 }, mirrored[6] = { 1, 0, 0, 0, 1, 1 };
+    const float expected[4] = { 1, 0, 0, -1 }, expected_mirrored[4] = { -1, 0, 0, 1 };
     model *m = load_with_uvs(along, "");
-    for (size_t v = 0; v < 3; ++v)
-        assert_floats(m->meshes[0].tangent + v * 4, expected, 4);
+    for (size_t v = 0; v < 3; ++v) assert_floats(m->meshes[0].tangent + v * 4, expected, 4);
     model_free(m);
     m = load_with_uvs(mirrored, "");
-    for (size_t v = 0; v < 3; ++v)
-        assert_floats(m->meshes[0].tangent + v * 4, expected_mirrored, 4);
+    for (size_t v = 0; v < 3; ++v) assert_floats(m->meshes[0].tangent + v * 4, expected_mirrored, 4);
     model_free(m);
 }
 
@@ -923,7 +913,8 @@ static void check_right_angles(const model_mesh *mesh)
     for (size_t v = 0; v < mesh->vertex_count; ++v) {
         const float *t = mesh->tangent + v * 4, *n = mesh->normal + v * 3;
         check_unit(t);
-        assert_true(fabs((double)t[0] * (double)n[0] + (double)t[1] * (double)n[1] + (double)t[2] * (double)n[2]) < 1e-6);
+        assert_true(fabs((double)t[0] * (double)n[0] + (double)t[1] * (double)n[1] + (double)t[2] * (double)n[2]) <
+                    1e-6);
         assert_true(t[3] == 1.0f || t[3] == -1.0f);
     }
 }
@@ -931,11 +922,10 @@ static void check_right_angles(const model_mesh *mesh)
 static void tangents_without_usable_uvs(void **state)
 {
     (void)state;
-    const float flat[6] = {0.5f, 0.5f, 0.5f, 0.5f, 0.5f, 0.5f};
+    const float flat[6] = { 0.5f, 0.5f, 0.5f, 0.5f, 0.5f, 0.5f };
     model *m = load_with_uvs(flat, ",\"targets\":[{\"POSITION\":2}]");
     check_right_angles(&m->meshes[0]);
-    for (size_t i = 0; i < 9; ++i)
-        assert_true(isfinite(m->meshes[0].targets[0].tangent[i]));
+    for (size_t i = 0; i < 9; ++i) assert_true(isfinite(m->meshes[0].targets[0].tangent[i]));
     model_free(m);
 }
 
@@ -943,17 +933,17 @@ static void tangents_where_uvs_are_mirrored(void **state)
 {
     (void)state;
     /* two triangles share vertices 0 and 1; v is mirrored at the shared edge, and the second corner is narrower */
-    const float positions[12] = {0, 0, 0, 0, 1, 0, -2, 0, 0, 0.2f, 0, 0}, uv[8] = {0, 0, 0, 1, -2, 0, -0.2f, 0};
-    const uint16_t index[6] = {0, 1, 2, 1, 0, 3};
+    const float positions[12] = { 0, 0, 0, 0, 1, 0, -2, 0, 0, 0.2f, 0, 0 }, uv[8] = { 0, 0, 0, 1, -2, 0, -0.2f, 0 };
+    const uint16_t index[6] = { 0, 1, 2, 1, 0, 3 };
     scene *s = scene_new();
     add_array(s, positions, sizeof positions, F32, 4, "VEC3");
     add_array(s, index, sizeof index, U16, 6, "SCALAR");
     add_array(s, uv, sizeof uv, F32, 4, "VEC2");
     APPEND(s->primitives, "{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":2},\"indices\":1}");
     model *m = load(s);
-    const float wide[4] = {1, 0, 0, -1}, narrow[4] = {-1, 0, 0, 1};
+    const float wide[4] = { 1, 0, 0, -1 }, narrow[4] = { -1, 0, 0, 1 };
     check_right_angles(&m->meshes[0]);
-    assert_floats(m->meshes[0].tangent + 4, wide, 4);   /* vertex 1: the wider corner wins */
+    assert_floats(m->meshes[0].tangent + 4, wide, 4); /* vertex 1: the wider corner wins */
     assert_floats(m->meshes[0].tangent + 12, narrow, 4);
     model_free(m);
 }
@@ -961,7 +951,7 @@ static void tangents_where_uvs_are_mirrored(void **state)
 static void target_tangents_from_the_morphed_mesh(void **state)
 {
     (void)state;
-    const float along[6] = {0, 0, 1, 0, 0, 1};
+    const float along[6] = { 0, 0, 1, 0, 0, 1 };
     const double half = sqrt(0.5);
     model *m = load_with_uvs(along, ",\"targets\":[{\"POSITION\":2}]");
     const model_target *t = &m->meshes[0].targets[0];
@@ -988,9 +978,11 @@ static void nodes_parents_first(void **state)
 {
     (void)state;
     scene *s = triangle("", "");
-    APPEND(s->rest, ",\"scene\":0,\"scenes\":[{\"nodes\":[2]}],\"nodes\":["
-           "{\"name\":\"child\",\"mesh\":0,\"translation\":[1,0,0]},{\"name\":\"elsewhere\"},"
-           "{\"name\":\"root\",\"children\":[0],\"scale\":[2,2,2],\"rotation\":[0,0,0.7071067811865476,0.7071067811865476]}]");
+    APPEND(
+        s->rest,
+        ",\"scene\":0,\"scenes\":[{\"nodes\":[2]}],\"nodes\":["
+        "{\"name\":\"child\",\"mesh\":0,\"translation\":[1,0,0]},{\"name\":\"elsewhere\"},"
+        "{\"name\":\"root\",\"children\":[0],\"scale\":[2,2,2],\"rotation\":[0,0,0.7071067811865476,0.7071067811865476]}]");
     model *m = load(s);
     assert_int_equal(m->node_count, 2);
     assert_string_equal(m->nodes[0].name, "root");
@@ -1007,12 +999,14 @@ static void nodes_parents_first(void **state)
 static void skinned_mesh_is_as_large_as_its_joints_make_it(void **state)
 {
     (void)state;
-    const char *rest = ",\"nodes\":[{\"mesh\":0,\"skin\":0,\"scale\":[9,9,9]},{\"translation\":[0,2,0],\"scale\":[3,3,3]},"
-                       "{\"scale\":[50,50,50]}],\"skins\":[{\"joints\":[1,2]}]";
+    const char *rest =
+        ",\"nodes\":[{\"mesh\":0,\"skin\":0,\"scale\":[9,9,9]},{\"translation\":[0,2,0],\"scale\":[3,3,3]},"
+        "{\"scale\":[50,50,50]}],\"skins\":[{\"joints\":[1,2]}]";
     scene *s = triangle("", "");
     APPEND(s->rest, "%s", rest);
     model *m = load(s);
-    assert_true(m->nodes[0].skin == MODEL_NONE && m->warning_count == 1); /* a skin has nothing to move in a rigid mesh */
+    assert_true(m->nodes[0].skin == MODEL_NONE &&
+                m->warning_count == 1); /* a skin has nothing to move in a rigid mesh */
     assert_non_null(strstr(m->warnings[0], "node_0"));
     assert_true(fabsf(model_mesh_scale(m, 0) - 9.0f) < 1e-6f);
     model_free(m);
@@ -1028,9 +1022,11 @@ static void bad_skins_are_refused(void **state)
 {
     (void)state;
     static const char *const rests[][2] = {
-        {",\"nodes\":[{\"mesh\":0,\"skin\":0}]", "skin 0 does not exist"},
-        {",\"nodes\":[{\"mesh\":0,\"skin\":0}],\"skins\":[{\"joints\":[7]}]", "joint node 7 does not exist"},
-        {",\"nodes\":[{\"mesh\":0,\"skin\":0}],\"skins\":[{\"joints\":[0],\"inverseBindMatrices\":0}]", "needs a matrix"}};
+        { ",\"nodes\":[{\"mesh\":0,\"skin\":0}]", "skin 0 does not exist" },
+        { ",\"nodes\":[{\"mesh\":0,\"skin\":0}],\"skins\":[{\"joints\":[7]}]", "joint node 7 does not exist" },
+        { ",\"nodes\":[{\"mesh\":0,\"skin\":0}],\"skins\":[{\"joints\":[0],\"inverseBindMatrices\":0}]",
+          "needs a matrix" }
+    };
     for (size_t i = 0; i < sizeof rests / sizeof rests[0]; i++) {
         scene *s = triangle("", "");
         APPEND(s->rest, "%s", rests[i][0]);
@@ -1042,11 +1038,11 @@ static void matrices_are_decomposed(void **state)
 {
     (void)state;
     /* 120 degrees about (1 1 1), scale 2 3 -4 */
-    const float translation[3] = {5, 6, 7}, rotation[4] = {0.5f, 0.5f, 0.5f, 0.5f};
+    const float translation[3] = { 5, 6, 7 }, rotation[4] = { 0.5f, 0.5f, 0.5f, 0.5f };
     scene *s = triangle("", "");
     APPEND(s->rest, ",\"nodes\":[{\"matrix\":[0,2,0,0,0,0,3,0,4,0,0,0,5,6,7,1]}]");
     model *m = load(s);
-    const float scale[3] = {2, 3, 4};
+    const float scale[3] = { 2, 3, 4 };
     assert_floats(m->nodes[0].translation, translation, 3);
     assert_floats(m->nodes[0].rotation, rotation, 4);
     assert_floats(m->nodes[0].scale, scale, 3);
@@ -1060,9 +1056,9 @@ static void skewed_and_mirrored_matrices(void **state)
     (void)state;
     scene *s = triangle("", "");
     APPEND(s->rest, ",\"nodes\":[{\"name\":\"mirror\",\"matrix\":[-2,0,0,0,0,2,0,0,0,0,2,0,0,0,0,1]},"
-           "{\"name\":\"skew\",\"matrix\":[1,0,0,0,1,1,0,0,0,0,1,0,0,0,0,1]}]");
+                    "{\"name\":\"skew\",\"matrix\":[1,0,0,0,1,1,0,0,0,0,1,0,0,0,0,1]}]");
     model *m = load(s);
-    const float scale[3] = {-2, 2, 2};
+    const float scale[3] = { -2, 2, 2 };
     assert_floats(m->nodes[0].scale, scale, 3);
     assert_false(has_warning(m, "node 'mirror'"));
     assert_true(has_warning(m, "node 'skew': the matrix is skewed"));
@@ -1091,12 +1087,14 @@ static scene *animated(const float *times, const void *values, size_t value_byte
     add_array(s, times, 2 * sizeof *times, F32, 2, "SCALAR");
     snprintf(rest, sizeof rest, ",\"bufferView\":%d%s", add_view(s, values, value_bytes, 0), value_accessor);
     add_accessor(s, value_component, value_count, "SCALAR", rest);
-    APPEND(s->rest, ",\"nodes\":[{\"name\":\"n\",\"mesh\":0},{\"name\":\"bare\"}],\"animations\":[{\"name\":\"a\",\"channels\":"
-           "[{\"sampler\":0,\"target\":{%s}}],\"samplers\":[{\"input\":2,\"output\":3%s}]}]", target, sampler_rest);
+    APPEND(s->rest,
+           ",\"nodes\":[{\"name\":\"n\",\"mesh\":0},{\"name\":\"bare\"}],\"animations\":[{\"name\":\"a\",\"channels\":"
+           "[{\"sampler\":0,\"target\":{%s}}],\"samplers\":[{\"input\":2,\"output\":3%s}]}]",
+           target, sampler_rest);
     return s;
 }
 
-static const float two_times[2] = {0.5f, 2.0f}, two_values[2] = {0, 1};
+static const float two_times[2] = { 0.5f, 2.0f }, two_values[2] = { 0, 1 };
 #define WEIGHTS_OF_N "\"node\":0,\"path\":\"weights\""
 
 static void animation_linear(void **state)
@@ -1119,7 +1117,7 @@ static void animation_linear(void **state)
 static void animation_of_normalised_bytes(void **state)
 {
     (void)state;
-    const uint8_t bytes[2] = {0, 255};
+    const uint8_t bytes[2] = { 0, 255 };
     model *m = load(animated(two_times, bytes, sizeof bytes, ",\"normalized\":true", U8, 2,
                              ",\"interpolation\":\"STEP\"", WEIGHTS_OF_N));
     assert_int_equal(m->clips[0].channels[0].interpolation, MODEL_STEP);
@@ -1130,9 +1128,9 @@ static void animation_of_normalised_bytes(void **state)
 static void animation_cubic(void **state)
 {
     (void)state;
-    const float values[6] = {0, 0.5f, 1, -1, 2, 0};
-    model *m = load(animated(two_times, values, sizeof values, "", F32, 6, ",\"interpolation\":\"CUBICSPLINE\"",
-                             WEIGHTS_OF_N));
+    const float values[6] = { 0, 0.5f, 1, -1, 2, 0 };
+    model *m = load(
+        animated(two_times, values, sizeof values, "", F32, 6, ",\"interpolation\":\"CUBICSPLINE\"", WEIGHTS_OF_N));
     assert_int_equal(m->clips[0].channels[0].interpolation, MODEL_CUBICSPLINE);
     assert_floats(m->clips[0].channels[0].values, values, 6);
     model_free(m);
@@ -1150,12 +1148,12 @@ static void animation_without_a_target_is_skipped(void **state)
 static void animation_without_meshes(void **state)
 {
     (void)state;
-    const float times[2] = {0, 1}, moves[6] = {0, 0, 0, 1, 2, 3};
+    const float times[2] = { 0, 1 }, moves[6] = { 0, 0, 0, 1, 2, 3 };
     scene *s = scene_new();
     add_array(s, times, sizeof times, F32, 2, "SCALAR");
     add_array(s, moves, sizeof moves, F32, 2, "VEC3");
     APPEND(s->rest, ",\"nodes\":[{}],\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,\"path\":"
-           "\"translation\"}}],\"samplers\":[{\"input\":0,\"output\":1}]}]");
+                    "\"translation\"}}],\"samplers\":[{\"input\":0,\"output\":1}]}]");
     model *m = load(s);
     assert_int_equal(m->mesh_count, 0);
     assert_int_equal(m->clips[0].channels[0].width, 3);
@@ -1166,7 +1164,7 @@ static void animation_without_meshes(void **state)
 static void bad_animations_are_refused(void **state)
 {
     (void)state;
-    const float backwards[2] = {2, 0.5f}, before_zero[2] = {-1, 0}, endless[2] = {0, INFINITY};
+    const float backwards[2] = { 2, 0.5f }, before_zero[2] = { -1, 0 }, endless[2] = { 0, INFINITY };
     const char *target = WEIGHTS_OF_N;
     size_t bytes = sizeof two_values;
     refused(animated(backwards, two_values, bytes, "", F32, 2, "", target), "does not increase",
@@ -1191,29 +1189,30 @@ static void weights_of_a_mesh_without_targets_are_refused(void **state)
     scene *s = triangle("", "");
     add_array(s, two_times, sizeof two_times, F32, 2, "SCALAR");
     add_array(s, two_values, sizeof two_values, F32, 2, "SCALAR");
-    APPEND(s->rest, ",\"nodes\":[{\"mesh\":0}],\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{"
-           WEIGHTS_OF_N "}}],\"samplers\":[{\"input\":1,\"output\":2}]}]");
+    APPEND(s->rest, ",\"nodes\":[{\"mesh\":0}],\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{" WEIGHTS_OF_N
+                    "}}],\"samplers\":[{\"input\":1,\"output\":2}]}]");
     refused(s, "mesh 'm' has no morph targets", "animation 'animation_0' channel 0");
 }
 
 /* --- materials --- */
 
-static const char png_2x1[] = 
-    "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAYAAAD0In+KAAAAEUlEQVR42mP4z8Dwn6HhvwMAELoDvjp5v74AAAAA"
-    "SUVORK5CYII="; /* red, and a blue of alpha 64 */
+static const char png_2x1[] = "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAYAAAD0In+KAAAAEUlEQVR42mP4z8Dwn6HhvwMAELoDvjp5v74AAAAA"
+                              "SUVORK5CYII="; /* red, and a blue of alpha 64 */
 
 static void materials_and_textures(void **state)
 {
     (void)state;
     scene *s = triangle("", ",\"material\":0");
-    APPEND(s->rest, ",\"materials\":[{\"name\":\"skin\",\"alphaMode\":\"MASK\",\"alphaCutoff\":0.25,\"doubleSided\":true,"
+    APPEND(s->rest,
+           ",\"materials\":[{\"name\":\"skin\",\"alphaMode\":\"MASK\",\"alphaCutoff\":0.25,\"doubleSided\":true,"
            "\"extensions\":{\"KHR_materials_unlit\":{}},\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,0.5,0.25,1],"
            "\"metallicFactor\":0,\"baseColorTexture\":{\"index\":0}}},{}],\"textures\":[{\"source\":0,\"sampler\":0}],"
            "\"samplers\":[{\"wrapS\":33071,\"minFilter\":9987}],\"images\":[{\"name\":\"i\",\"uri\":"
-           "\"data:image/png;base64,%s\"}]", png_2x1);
+           "\"data:image/png;base64,%s\"}]",
+           png_2x1);
     model *m = load(s);
-    const uint8_t pixels[8] = {255, 0, 0, 255, 0, 128, 255, 64};
-    const float factor[4] = {1, 0.5f, 0.25f, 1};
+    const uint8_t pixels[8] = { 255, 0, 0, 255, 0, 128, 255, 64 };
+    const float factor[4] = { 1, 0.5f, 0.25f, 1 };
     const model_material *a = &m->materials[0], *b = &m->materials[1];
     assert_string_equal(a->name, "skin");
     assert_floats(a->base_color, factor, 4);
@@ -1233,13 +1232,14 @@ static void materials_and_textures(void **state)
 static void check_left_out_texture(const char *image, const char *reason)
 {
     scene *s = triangle("", ",\"material\":0");
-    APPEND(s->rest, ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}],"
-           "\"textures\":[{\"source\":0}],\"images\":[%s]", image);
+    APPEND(s->rest,
+           ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}],"
+           "\"textures\":[{\"source\":0}],\"images\":[%s]",
+           image);
     model *m = load(s);
     assert_int_equal(m->materials[0].base_color_texture, MODEL_NONE);
     assert_int_equal(m->texture_count, 0);
-    if (!has_warning(m, reason))
-        fail_msg("no warning about '%s'", reason);
+    if (!has_warning(m, reason)) fail_msg("no warning about '%s'", reason);
     model_free(m);
 }
 
@@ -1257,12 +1257,12 @@ static void bad_images_are_warnings(void **state)
 static void texture_transform_is_baked(void **state)
 {
     (void)state;
-    const float uv[6] = {0, 0, 1, 0, 0, 1}, expected[6] = {0.5f, 0.25f, 2.5f, 0.25f, 0.5f, 3.25f};
+    const float uv[6] = { 0, 0, 1, 0, 0, 1 }, expected[6] = { 0.5f, 0.25f, 2.5f, 0.25f, 0.5f, 3.25f };
     scene *s = triangle(",\"TEXCOORD_0\":1", ",\"material\":0");
     add_array(s, uv, sizeof uv, F32, 3, "VEC2");
     APPEND(s->rest, ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"extensions\":{"
-           "\"KHR_texture_transform\":{\"offset\":[0.5,0.25],\"scale\":[2,3],\"rotation\":1}}}}}],"
-           "\"textures\":[{}]");
+                    "\"KHR_texture_transform\":{\"offset\":[0.5,0.25],\"scale\":[2,3],\"rotation\":1}}}}}],"
+                    "\"textures\":[{}]");
     model *m = load(s);
     assert_floats(m->meshes[0].uv, expected, 6);
     assert_true(has_warning(m, "rotation of KHR_texture_transform is not supported"));
@@ -1301,8 +1301,7 @@ static void deep_json_is_refused(void **state)
 {
     (void)state;
     char json[3000] = "{\"asset\":{\"version\":\"2.0\"},\"extras\":";
-    for (int i = 0; i < 1000; ++i)
-        APPEND(json, "[");
+    for (int i = 0; i < 1000; ++i) APPEND(json, "[");
     write_text("test.gltf", json);
     file_refused("nested deeper", "JSON byte");
 }
@@ -1348,7 +1347,7 @@ static void every_truncation_of_a_glb_is_refused(void **state)
 static void indices_out_of_range_are_refused(void **state)
 {
     (void)state;
-    const uint16_t index[3] = {0, 1, 3};
+    const uint16_t index[3] = { 0, 1, 3 };
     scene *s = triangle("", ",\"indices\":1");
     add_array(s, index, sizeof index, U16, 3, "SCALAR");
     refused(s, "the index 3 is out of range: the primitive has 3 vertices",
@@ -1358,7 +1357,7 @@ static void indices_out_of_range_are_refused(void **state)
 static void half_a_triangle_is_refused(void **state)
 {
     (void)state;
-    const uint16_t index[4] = {0, 1, 2, 0};
+    const uint16_t index[4] = { 0, 1, 2, 0 };
     scene *s = triangle("", ",\"indices\":1");
     add_array(s, index, sizeof index, U16, 4, "SCALAR");
     refused(s, "4 corners are not whole triangles", "mesh 'm' primitive 0");
@@ -1367,7 +1366,7 @@ static void half_a_triangle_is_refused(void **state)
 static void wrong_types_are_refused(void **state)
 {
     (void)state;
-    const float values[12] = {0};
+    const float values[12] = { 0 };
     scene *s = triangle(",\"NORMAL\":1", "");
     add_array(s, values, 24, F32, 3, "VEC2");
     refused(s, "type is VEC2, but this needs VEC3", "mesh 'm' primitive 0 NORMAL (accessor 1)");
@@ -1388,7 +1387,7 @@ static void wrong_types_are_refused(void **state)
 static void accessors_outside_their_bytes_are_refused(void **state)
 {
     (void)state;
-    const float values[9] = {0};
+    const float values[9] = { 0 };
     scene *s = triangle(",\"NORMAL\":1", "");
     add_array(s, values, 35, F32, 3, "VEC3");
     refused(s, "it needs 36 bytes of its buffer view, which has 35", "NORMAL (accessor 1)");
@@ -1422,7 +1421,8 @@ static void giant_counts_are_refused(void **state)
     add_accessor(s, U8, 2000000000, "SCALAR", ",\"bufferView\":1");
     refused(s, "it needs 2000000000 bytes", "indices (accessor 1)");
     s = triangle("", ",\"indices\":1");
-    add_accessor(s, U8, 20000000, "SCALAR", ",\"bufferView\":-1,\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":0,"
+    add_accessor(s, U8, 20000000, "SCALAR",
+                 ",\"bufferView\":-1,\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":0,"
                  "\"componentType\":5121},\"values\":{\"bufferView\":0}}");
     refused(s, "", "");
 }
@@ -1430,7 +1430,8 @@ static void giant_counts_are_refused(void **state)
 static void missing_buffers_are_refused(void **state)
 {
     (void)state;
-    static const char format[] = "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":%s}],"
+    static const char format[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":%s}],"
         "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,"
         "\"count\":3,\"type\":\"VEC3\"}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}";
     char json[1024];
@@ -1451,7 +1452,7 @@ static void missing_buffers_are_refused(void **state)
 static void numbers_that_are_not_finite_are_refused(void **state)
 {
     (void)state;
-    float values[9] = {0, 0, 0, 0, NAN, 0, 0, 0, 0};
+    float values[9] = { 0, 0, 0, 0, NAN, 0, 0, 0, 0 };
     scene *s = scene_new();
     add_array(s, values, sizeof values, F32, 3, "VEC3");
     APPEND(s->primitives, "{\"attributes\":{\"POSITION\":0}}");
@@ -1497,13 +1498,15 @@ static void zero_vertices_are_refused(void **state)
 
 static void check_sparse_indices(uint16_t first, uint16_t second, const char *what, const char *where)
 {
-    const uint16_t index[2] = {first, second};
-    const float value[6] = {0};
+    const uint16_t index[2] = { first, second };
+    const float value[6] = { 0 };
     char rest[256];
     scene *s = triangle("", ONE_TARGET);
     int indices = add_view(s, index, sizeof index, 0), values = add_view(s, value, sizeof value, 0);
-    snprintf(rest, sizeof rest, ",\"sparse\":{\"count\":2,\"indices\":{\"bufferView\":%d,\"componentType\":5123},"
-             "\"values\":{\"bufferView\":%d}}", indices, values);
+    snprintf(rest, sizeof rest,
+             ",\"sparse\":{\"count\":2,\"indices\":{\"bufferView\":%d,\"componentType\":5123},"
+             "\"values\":{\"bufferView\":%d}}",
+             indices, values);
     add_accessor(s, F32, 3, "VEC3", rest);
     refused(s, what, where);
 }
@@ -1520,14 +1523,15 @@ static void bad_nodes_are_refused(void **state)
 {
     (void)state;
     static const char *const cases[][3] = {
-        {"{\"children\":[1]},{\"children\":[0]}", "own ancestors", "nodes"},
-        {"{\"children\":[2]},{\"children\":[2]},{\"name\":\"c\"}", "two parents", "node 'c'"},
-        {"{\"name\":\"p\",\"children\":[5]}", "node 5 does not exist", "node 'p' children"},
-        {"{\"name\":\"p\",\"mesh\":4}", "mesh 4 does not exist", "node 'p'"},
-        {"{\"name\":\"p\",\"rotation\":[0,1]}", "'rotation' has 2 numbers; it needs 4", "node 'p'"},
-        {"{\"name\":\"p\",\"matrix\":[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1]}", "not affine", "node 'p'"},
-        {"{\"name\":\"p\",\"translation\":[1e300,0,0]}", "too large for a float", "node 'p' translation"},
-        {"{\"name\":\"p\",\"mesh\":\"x\"}", "'mesh' must be a whole number", "/nodes/0/mesh"}};
+        { "{\"children\":[1]},{\"children\":[0]}", "own ancestors", "nodes" },
+        { "{\"children\":[2]},{\"children\":[2]},{\"name\":\"c\"}", "two parents", "node 'c'" },
+        { "{\"name\":\"p\",\"children\":[5]}", "node 5 does not exist", "node 'p' children" },
+        { "{\"name\":\"p\",\"mesh\":4}", "mesh 4 does not exist", "node 'p'" },
+        { "{\"name\":\"p\",\"rotation\":[0,1]}", "'rotation' has 2 numbers; it needs 4", "node 'p'" },
+        { "{\"name\":\"p\",\"matrix\":[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1]}", "not affine", "node 'p'" },
+        { "{\"name\":\"p\",\"translation\":[1e300,0,0]}", "too large for a float", "node 'p' translation" },
+        { "{\"name\":\"p\",\"mesh\":\"x\"}", "'mesh' must be a whole number", "/nodes/0/mesh" }
+    };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
         scene *s = triangle("", "");
         APPEND(s->rest, ",\"nodes\":[%s]", cases[i][0]);
@@ -1619,20 +1623,26 @@ static void compressed_head_has_the_same_shape(void **state)
 static void all_assets_load(void **state)
 {
     (void)state;
-    static const char *const names[] = {
-        "hero/body.glb", "hero/body_8inf.glb", "hero/body_quantized.glb", "hero/identity.glb", "khronos/Fox.glb",
-        "khronos/MorphStressTest.glb", "khronos/RobotExpressive.glb", "khronos/SimpleSkin.gltf",
-        "khronos/SimpleSparseAccessor.gltf", "khronos/AnimatedMorphCube/glTF/AnimatedMorphCube.gltf",
-        "khronos/AnimatedMorphSphere/glTF/AnimatedMorphSphere.gltf",
-        "khronos/MorphPrimitivesTest/glTF/MorphPrimitivesTest.gltf", "khronos/SimpleMorph/glTF/SimpleMorph.gltf",
-        "khronos/three-vrm-cube/cube.gltf"};
+    static const char *const names[] = { "hero/body.glb",
+                                         "hero/body_8inf.glb",
+                                         "hero/body_quantized.glb",
+                                         "hero/identity.glb",
+                                         "khronos/Fox.glb",
+                                         "khronos/MorphStressTest.glb",
+                                         "khronos/RobotExpressive.glb",
+                                         "khronos/SimpleSkin.gltf",
+                                         "khronos/SimpleSparseAccessor.gltf",
+                                         "khronos/AnimatedMorphCube/glTF/AnimatedMorphCube.gltf",
+                                         "khronos/AnimatedMorphSphere/glTF/AnimatedMorphSphere.gltf",
+                                         "khronos/MorphPrimitivesTest/glTF/MorphPrimitivesTest.gltf",
+                                         "khronos/SimpleMorph/glTF/SimpleMorph.gltf",
+                                         "khronos/three-vrm-cube/cube.gltf" };
     for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
         use_asset(names[i]);
         model *m = load_file();
         assert_true(m->mesh_count > 0);
         for (uint32_t k = 0; k < m->mesh_count; ++k)
-            for (uint32_t v = 0; v < m->meshes[k].vertex_count; ++v)
-                assert_true(isfinite(m->meshes[k].normal[v * 3]));
+            for (uint32_t v = 0; v < m->meshes[k].vertex_count; ++v) assert_true(isfinite(m->meshes[k].normal[v * 3]));
         model_free(m);
     }
 }
@@ -1649,7 +1659,7 @@ static int make_folder(void **state)
 
 static int remove_folder(void **state)
 {
-    static const char *const names[] = {"test.gltf", "test.glb", "json", "a b.bin"};
+    static const char *const names[] = { "test.gltf", "test.glb", "json", "a b.bin" };
     char path[128];
     (void)state;
     for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {

@@ -21,25 +21,30 @@ static const char *save(const skinned *s)
 {
     static char json[8192], attributes[512];
     uint8_t bytes[36 + 36 + 144];
-    const float positions[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const float positions[9] = { 0, 0, 0, 1, 0, 0, 0, 1, 0 };
     memcpy(bytes, positions, 36);
     memcpy(bytes + 36, s->joints, 36);
     memcpy(bytes + 72, s->weights, 144);
     test_write_file(test_path("skinned.bin"), bytes, sizeof bytes);
     int used = snprintf(attributes, sizeof attributes, "\"POSITION\":0");
     for (int i = 0; i < s->sets; ++i)
-        used += snprintf(attributes + used, sizeof attributes - (size_t)used, ",\"JOINTS_%d\":%d,\"WEIGHTS_%d\":%d", i, 1 + i, i, 4 + i);
-    used = snprintf(json, sizeof json, "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"skinned.bin\",\"byteLength\":216}],"
-                    "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,\"byteLength\":36},"
-                    "{\"buffer\":0,\"byteOffset\":72,\"byteLength\":144}],"
-                    "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}");
+        used += snprintf(attributes + used, sizeof attributes - (size_t)used, ",\"JOINTS_%d\":%d,\"WEIGHTS_%d\":%d", i,
+                         1 + i, i, 4 + i);
+    used = snprintf(
+        json, sizeof json,
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"skinned.bin\",\"byteLength\":216}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,\"byteLength\":36},"
+        "{\"buffer\":0,\"byteOffset\":72,\"byteLength\":144}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}");
     for (int i = 0; i < 6; ++i)
-        used += snprintf(json + used, sizeof json - (size_t)used, ",{\"bufferView\":%d,\"byteOffset\":%d,\"componentType\":%d,\"count\":3,\"type\":\"VEC4\"}",
+        used += snprintf(json + used, sizeof json - (size_t)used,
+                         ",{\"bufferView\":%d,\"byteOffset\":%d,\"componentType\":%d,\"count\":3,\"type\":\"VEC4\"}",
                          i < 3 ? 1 : 2, i % 3 * (i < 3 ? 12 : 48), i < 3 ? 5121 : 5126);
-    used += snprintf(json + used, sizeof json - (size_t)used, "],\"meshes\":[{\"name\":\"m\",\"primitives\":[{\"attributes\":{%s}},{\"attributes\":{%s}}]}],"
-                     "\"nodes\":[{\"mesh\":0,\"skin\":0}", attributes, s->attributes ? s->attributes : attributes);
-    for (int i = 0; i < s->joint_count; ++i)
-        used += snprintf(json + used, sizeof json - (size_t)used, ",{}");
+    used += snprintf(json + used, sizeof json - (size_t)used,
+                     "],\"meshes\":[{\"name\":\"m\",\"primitives\":[{\"attributes\":{%s}},{\"attributes\":{%s}}]}],"
+                     "\"nodes\":[{\"mesh\":0,\"skin\":0}",
+                     attributes, s->attributes ? s->attributes : attributes);
+    for (int i = 0; i < s->joint_count; ++i) used += snprintf(json + used, sizeof json - (size_t)used, ",{}");
     used += snprintf(json + used, sizeof json - (size_t)used, "],\"skins\":[{\"joints\":[");
     for (int i = 0; i < s->joint_count; ++i)
         used += snprintf(json + used, sizeof json - (size_t)used, "%s%d", i ? "," : "", i + 1);
@@ -52,7 +57,7 @@ static const char *save(const skinned *s)
 /* Every vertex wholly on joint 1. */
 static skinned simple(int sets)
 {
-    skinned s = {{{{0}}}, {{{0}}}, sets, NULL, 20};
+    skinned s = { { { { 0 } } }, { { { 0 } } }, sets, NULL, 20 };
     for (int v = 0; v < 3; ++v) {
         s.joints[0][v][0] = 1;
         s.weights[0][v][0] = 1.0f;
@@ -63,24 +68,22 @@ static skinned simple(int sets)
 static model *load(const skinned *s)
 {
     model *m = NULL;
-    model_error error = {"", ""};
-    if (model_read_gltf(save(s), &m, &error))
-        fail_msg("refused: %s (%s)", error.what, error.where);
+    model_error error = { "", "" };
+    if (model_read_gltf(save(s), &m, &error)) fail_msg("refused: %s (%s)", error.what, error.where);
     return m;
 }
 
 static int has_warning(const model *m, const char *text)
 {
     int found = 0;
-    for (uint32_t i = 0; i < m->warning_count; ++i)
-        found += strstr(m->warnings[i], text) != NULL;
+    for (uint32_t i = 0; i < m->warning_count; ++i) found += strstr(m->warnings[i], text) != NULL;
     return found;
 }
 
 static void refused(const skinned *s, const char *what, const char *where)
 {
     model *m = NULL;
-    model_error error = {"", ""};
+    model_error error = { "", "" };
     assert_int_equal(model_read_gltf(save(s), &m, &error), 1);
     if (!strstr(error.what, what) || !strstr(error.where, where))
         fail_msg("expected '%s' at '%s', got '%s' at '%s'", what, where, error.what, error.where);
@@ -90,22 +93,22 @@ static void sorted_and_summed(void **state)
 {
     (void)state;
     skinned s = simple(2);
-    const float weights[8] = {0.1f, 0, 0.405f, 0, 0.3f, 0.2f, 0, 0};
-    const uint8_t joints[8] = {3, 200, 7, 0, 19, 4, 0, 255};
+    const float weights[8] = { 0.1f, 0, 0.405f, 0, 0.3f, 0.2f, 0, 0 };
+    const uint8_t joints[8] = { 3, 200, 7, 0, 19, 4, 0, 255 };
     for (int i = 0; i < 8; ++i) {
         s.joints[i / 4][2][i % 4] = joints[i];
         s.weights[i / 4][2][i % 4] = weights[i];
     }
     model *m = load(&s);
     const model_mesh *mesh = &m->meshes[0];
-    const uint16_t expected[8] = {7, 19, 4, 3, 0, 0, 0, 0};
+    const uint16_t expected[8] = { 7, 19, 4, 3, 0, 0, 0, 0 };
     assert_int_equal(mesh->influence_max, 4);
     assert_int_equal(mesh->joint_limit, 20); /* what no weight uses does not count */
     assert_memory_equal(mesh->joints + 2 * 8, expected, sizeof expected);
     float sum = 0.0f;
-    for (size_t i = 0; i < 8; ++i)
-        sum += mesh->joint_weights[16 + i];
-    assert_true(fabsf(sum - 1.0f) < 1e-6f && fabsf(mesh->joint_weights[16] - 0.405f / 1.005f) < 1e-6f && mesh->joint_weights[20] == 0.0f);
+    for (size_t i = 0; i < 8; ++i) sum += mesh->joint_weights[16 + i];
+    assert_true(fabsf(sum - 1.0f) < 1e-6f && fabsf(mesh->joint_weights[16] - 0.405f / 1.005f) < 1e-6f &&
+                mesh->joint_weights[20] == 0.0f);
     assert_int_equal(mesh->joints[0], 1);
     assert_true(mesh->joint_weights[0] == 1.0f && mesh->joint_weights[24] == 1.0f); /* the second primitive too */
     assert_int_equal(m->nodes[0].skin, 0);
@@ -143,16 +146,21 @@ static void weights_are_normalised_with_a_warning(void **state)
     s.weights[0][2][0] = 0.999f; /* as exporters round: not worth a word */
     model *m = load(&s);
     assert_int_equal(m->warning_count, 1);
-    assert_string_equal(m->warnings[0], "mesh 'm': the weights of 2 vertices do not sum to 1 and were divided by their sum, at worst 0.9812");
-    assert_true(fabsf(m->meshes[0].joint_weights[0] - 0.5f / 0.9812f) < 1e-6f && fabsf(m->meshes[0].joint_weights[1] - 0.4812f / 0.9812f) < 1e-6f);
+    assert_string_equal(
+        m->warnings[0],
+        "mesh 'm': the weights of 2 vertices do not sum to 1 and were divided by their sum, at worst 0.9812");
+    assert_true(fabsf(m->meshes[0].joint_weights[0] - 0.5f / 0.9812f) < 1e-6f &&
+                fabsf(m->meshes[0].joint_weights[1] - 0.4812f / 0.9812f) < 1e-6f);
     assert_true(m->meshes[0].joint_weights[16] == 1.0f);
     model_free(m);
     s.weights[0][0][0] = 0.7f; /* above 1 the implied last weight would be negative */
     s.weights[0][0][1] = 0.5f;
     s.weights[0][1][0] = 0.9f;
     m = load(&s);
-    assert_true(has_warning(m, "the weights of 4 vertices do not sum to 1 and were divided by their sum, at worst 1.2"));
-    assert_true(fabsf(m->meshes[0].joint_weights[0] - 0.7f / 1.2f) < 1e-6f && fabsf(m->meshes[0].joint_weights[1] - 0.5f / 1.2f) < 1e-6f);
+    assert_true(
+        has_warning(m, "the weights of 4 vertices do not sum to 1 and were divided by their sum, at worst 1.2"));
+    assert_true(fabsf(m->meshes[0].joint_weights[0] - 0.7f / 1.2f) < 1e-6f &&
+                fabsf(m->meshes[0].joint_weights[1] - 0.5f / 1.2f) < 1e-6f);
     model_free(m);
 }
 
@@ -197,12 +205,14 @@ static void primitives_without_joints_follow_the_first(void **state)
 static void real_meshes(void **state)
 {
     (void)state;
-    static const struct { const char *name; uint32_t influences; } files[] = {
-        {"khronos/SimpleSkin.gltf", 2}, {"khronos/Fox.glb", 4}, {"khronos/RobotExpressive.glb", 4}, {"hero/body.glb", 4},
-        {"hero/body_8inf.glb", 7}, {"hero/body_quantized.glb", 4}};
+    static const struct {
+        const char *name;
+        uint32_t influences;
+    } files[] = { { "khronos/SimpleSkin.gltf", 2 }, { "khronos/Fox.glb", 4 },    { "khronos/RobotExpressive.glb", 4 },
+                  { "hero/body.glb", 4 },           { "hero/body_8inf.glb", 7 }, { "hero/body_quantized.glb", 4 } };
     for (size_t i = 0; i < TEST_COUNT(files); ++i) {
         model *m = NULL;
-        model_error error = {"", ""};
+        model_error error = { "", "" };
         uint32_t most = 0;
         if (model_read_gltf(test_asset(files[i].name), &m, &error))
             fail_msg("%s refused: %s (%s)", files[i].name, error.what, error.where);

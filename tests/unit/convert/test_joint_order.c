@@ -134,7 +134,8 @@ static void nothing_moves_but_places(void **state)
             assert_int_equal(m->skins[1].skeleton_joints[j], place);
             assert_int_equal(m->skins[0].skeleton_joints[j], j);
             for (uint32_t f = 0; f < 4; f++) {
-                assert_memory_equal(before + ((size_t)f * n + j) * 12u, after + ((size_t)f * n + place) * 12u, 12 * sizeof(double));
+                assert_memory_equal(before + ((size_t)f * n + j) * 12u, after + ((size_t)f * n + place) * 12u,
+                                    12 * sizeof(double));
             }
         }
         free(before);
@@ -182,11 +183,15 @@ static raw_set *set_of(const bone *bones, uint32_t count)
     return set;
 }
 
-#define HAND(n) \
-    { "hand", n - 1, 25.0f }, { "f1", n, 9.0f }, { "g1", n + 1, 4.0f }, { "f2", n, 9.001f }, { "g2", n + 3, 4.0f }, { "f3", n, 8.999f }, \
-    { "g3", n + 5, 4.0f }, { "f4", n, 9.0f }, { "g4", n + 7, 4.0f }, { "f5", n, 9.0f }, { "g5", n + 9, 4.0f }
+#define HAND(n)                                                                                                     \
+    { "hand", n - 1, 25.0f }, { "f1", n, 9.0f }, { "g1", n + 1, 4.0f }, { "f2", n, 9.001f }, { "g2", n + 3, 4.0f }, \
+        { "f3", n, 8.999f }, { "g3", n + 5, 4.0f }, { "f4", n, 9.0f }, { "g4", n + 7, 4.0f }, { "f5", n, 9.0f },    \
+    {                                                                                                               \
+        "g5", n + 9, 4.0f                                                                                           \
+    }
 
 /* Hips, three of the spine, two arms with hands of five fingers, neck, head, eyes; two legs. */
+/* clang-format off */
 static const bone body[] = {
     { "hips", -1, 100.0f }, { "spine", 0, 15.0f }, { "spine1", 1, 15.0f }, { "spine2", 2, 15.0f },
     { "clavicle", 3, 12.0f }, { "arm", 4, 15.0f }, { "forearm", 5, 28.0f }, HAND(7),
@@ -195,6 +200,7 @@ static const bone body[] = {
     { "thigh", 0, 10.0f }, { "shin", 36, 42.0f }, { "foot", 37, 42.0f }, { "toe", 38, 15.0f },
     { "thigh", 0, 10.0f }, { "shin", 40, 42.0f }, { "foot", 41, 42.0f }, { "toe", 42, 15.0f }
 };
+/* clang-format on */
 
 /* The joints of a kind, at the start and at the end of a prefix of `count`: how many are in it. */
 static uint32_t kept(const raw_skeleton *s, const char *name, uint32_t count)
@@ -219,7 +225,8 @@ static void levels_drop_fingers_before_limbs(void **state)
         static const double shares[] = { 1.0, 0.6, 0.35, 0.2, 0.1 };
         assert_true(counts[i] < counts[i - 1]);
         print_message("%u of %u joints\n", counts[i], counts[0]);
-        if (level_count == 5) assert_true(fabs(counts[i] - shares[i] * counts[0]) <= fmax(0.3 * shares[i] * counts[0], 1.0));
+        if (level_count == 5)
+            assert_true(fabs(counts[i] - shares[i] * counts[0]) <= fmax(0.3 * shares[i] * counts[0], 1.0));
         /* all fingertips or none, though their bones differ by a hundredth of a millimetre */
         assert_true(kept(&set->skeleton, "g1", counts[i]) == kept(&set->skeleton, "g5", counts[i]));
         assert_true(kept(&set->skeleton, "g2", counts[i]) == kept(&set->skeleton, "g3", counts[i]));
@@ -276,8 +283,9 @@ static void put_bvh_joint(FILE *f, const raw_skeleton *s, uint32_t joint, int de
     const raw_joint *at = &s->joints[joint];
     const double longer = 1.0 + ((double)(joint % 5u) - 2.0) * 1e-5;
     int children = 0;
-    fprintf(f, "%s %s\n{\nOFFSET %.4f %.4f %.4f\nCHANNELS 3 Zrotation Xrotation Yrotation\n", depth ? "JOINT" : "ROOT", at->name,
-            longer * 100.0 * (double)at->translation[0], longer * 100.0 * (double)at->translation[1], longer * 100.0 * (double)at->translation[2]);
+    fprintf(f, "%s %s\n{\nOFFSET %.4f %.4f %.4f\nCHANNELS 3 Zrotation Xrotation Yrotation\n", depth ? "JOINT" : "ROOT",
+            at->name, longer * 100.0 * (double)at->translation[0], longer * 100.0 * (double)at->translation[1],
+            longer * 100.0 * (double)at->translation[2]);
     for (uint32_t j = joint + 1u; j < s->joint_count; j++) {
         if (s->joints[j].parent == joint) {
             put_bvh_joint(f, s, j, depth + 1);
@@ -353,11 +361,11 @@ static void packs_built_apart_agree(void **state)
 
 int main(int argument_count, char **arguments)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_moves_but_places), cmocka_unit_test(ordering_twice_changes_nothing),
-        cmocka_unit_test(levels_drop_fingers_before_limbs), cmocka_unit_test(levels_are_sound_for_any_skeleton),
-        cmocka_unit_test(packs_built_apart_agree)
-    };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(nothing_moves_but_places),
+                                        cmocka_unit_test(ordering_twice_changes_nothing),
+                                        cmocka_unit_test(levels_drop_fingers_before_limbs),
+                                        cmocka_unit_test(levels_are_sound_for_any_skeleton),
+                                        cmocka_unit_test(packs_built_apart_agree) };
     if (argument_count > 1) {
         cmocka_set_test_filter(arguments[1]);
     }

@@ -11,8 +11,8 @@
 #define POINTS 2500u /* random ones on each surface, besides all corners */
 
 /* What random points may find above the certified value, which was measured on a grid of half an edge (lod_certify.c):
- * between its points the distance can be larger, in these meshes by 5 percent, with 40,000 points a surface. Deltas of targets in the
- * pack are quantised besides: their error, twice, is allowed as well. */
+ * between its points the distance can be larger, in these meshes by 5 percent, with 40,000 points a surface. Deltas of
+ * targets in the pack are quantised besides: their error, twice, is allowed as well. */
 #define ABOVE 1.08
 /* Below it: of a correct value random points find nearly all; half is what the value may not miss by. */
 #define BELOW 0.5
@@ -31,7 +31,10 @@ static void minus(const point a, const point b, point out)
     }
 }
 
-static double dot(const point a, const point b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static double dot(const point a, const point b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 static double segment_distance(const point p, const point a, const point b)
 {
@@ -109,7 +112,8 @@ static double area_of(const face *f)
 
 static surface surface_make(const noh_mesh *level, const point *positions, uint32_t material)
 {
-    surface s = { 0, test_zeros(sizeof *s.faces * level->header->index_count), test_zeros(sizeof *s.areas * level->header->index_count) };
+    surface s = { 0, test_zeros(sizeof *s.faces * level->header->index_count),
+                  test_zeros(sizeof *s.areas * level->header->index_count) };
     for (uint32_t n = 0; n < level->header->submesh_count; n++) {
         const noh_submesh *sub = &level->submeshes[n];
         for (uint32_t i = 0; i < sub->index_count && sub->material == material; i += 3u) {
@@ -197,7 +201,8 @@ static measured one_way(const surface *from, const surface *to, test_random *r)
 }
 
 /* Each material against itself, the larger of both ways. */
-static measured apart(const noh_mesh *full, const noh_mesh *level, const point *positions, uint32_t material_count, test_random *r)
+static measured apart(const noh_mesh *full, const noh_mesh *level, const point *positions, uint32_t material_count,
+                      test_random *r)
 {
     measured worst = { 0.0, 0.0 };
     for (uint32_t material = 0; material < material_count; material++) {
@@ -274,8 +279,8 @@ static void check_kind(kind *k, uint32_t levels, double slack, double above, dou
 {
     for (uint32_t i = 1; i < levels; i++) {
         k->found[i] = fmax(k->found[i], k->found[i - 1u]);
-        print_message("# level %u, %s: certified %.6g, found %.6g (%.3f of it)\n", i, k->name, k->certified[i], k->found[i],
-                      k->found[i] / k->certified[i]);
+        print_message("# level %u, %s: certified %.6g, found %.6g (%.3f of it)\n", i, k->name, k->certified[i],
+                      k->found[i], k->found[i] / k->certified[i]);
         if (k->found[i] > above * k->certified[i] + slack || k->found[i] < below * k->certified[i] - slack) {
             fail_msg("level %u, %s: certified %g, found %g", i, k->name, k->certified[i], k->found[i]);
         }
@@ -296,7 +301,8 @@ static void begin(kind *kinds, const noh_mesh *mesh)
     }
 }
 
-static void add_pose(kind *k, const noh_mesh *mesh, const point *positions, uint32_t material_count, test_random *r, kind *p99)
+static void add_pose(kind *k, const noh_mesh *mesh, const point *positions, uint32_t material_count, test_random *r,
+                     kind *p99)
 {
     for (uint32_t i = 1; i < mesh->header->level_count; i++) {
         const noh_mesh level = noh_mesh_at_lod(mesh, i);
@@ -405,13 +411,20 @@ static void check_names(const char *left, const char *right, int expected)
 static void pairs_are_told_by_name(void **state)
 {
     static const char *const pairs[][2] = {
-        { "smileLeft", "smileRight" }, { "eyebrows-left-up", "eyebrows-right-up" }, { "LEFT_EYE", "RIGHT_EYE" }, { "blink_L", "blink_R" },
-        { "sneerL", "sneerR" }, { "blink.l", "blink.r" }, { "cheek.left", "cheek.right" }, { "leftward eyeLeft", "leftward eyeRight" }
+        { "smileLeft", "smileRight" },   { "eyebrows-left-up", "eyebrows-right-up" },
+        { "LEFT_EYE", "RIGHT_EYE" },     { "blink_L", "blink_R" },
+        { "sneerL", "sneerR" },          { "blink.l", "blink.r" },
+        { "cheek.left", "cheek.right" }, { "leftward eyeLeft", "leftward eyeRight" }
     };
-    static const char *const others[][2] = {
-        { "smileLeft", "frownRight" }, { "smileLeft", "smileRightUp" }, { "smileLeft", "smile" }, { "wheel", "wheer" }, { "L", "R" },
-        { "l", "r" }, { "", "" }, { "jaw", "jaw" }, { "blink_L", "blink_r" }
-    };
+    static const char *const others[][2] = { { "smileLeft", "frownRight" },
+                                             { "smileLeft", "smileRightUp" },
+                                             { "smileLeft", "smile" },
+                                             { "wheel", "wheer" },
+                                             { "L", "R" },
+                                             { "l", "r" },
+                                             { "", "" },
+                                             { "jaw", "jaw" },
+                                             { "blink_L", "blink_r" } };
     (void)state;
     for (size_t i = 0; i < TEST_COUNT(pairs); i++) {
         check_names(pairs[i][0], pairs[i][1], 1);

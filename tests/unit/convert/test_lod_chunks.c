@@ -17,14 +17,15 @@ static const float shares[NOH_LOD_LEVELS_MAX] = LOD_SHARES;
 
 typedef struct example {
     const char *name;
-    lod_face face;      /* without columns: the tube */
+    lod_face face; /* without columns: the tube */
     skin_cylinder tube;
     uint32_t palette;
-    int odd;            /* see make_odd */
+    int odd; /* see make_odd */
     model *m;
     lod_pack p;
 } example;
 
+/* clang-format off */
 static example examples[] = {
     { .name = "face", .face = { 34, 27, 12, 1, 0 } },
     { .name = "all touched", .face = { 34, 27, 7, 1, 1 } },
@@ -33,6 +34,7 @@ static example examples[] = {
     { .name = "tube", .tube = { 20, 50, 6, 4, 2, 1, 2.0f, 0.5f } },
     { .name = "split tube", .tube = { 20, 50, 8, 2, 2, 1, 2.0f, 0.5f }, .palette = 6 }
 };
+/* clang-format on */
 enum { FACE, ALL_TOUCHED, WITHOUT_TARGETS, ODD, TUBE, SPLIT_TUBE };
 
 /* A submesh of no triangles, vertices of none, a triangle without an area, and a target that moves nothing. */
@@ -68,8 +70,9 @@ static int set_up(void **state)
         lod_pack_make(e->m, &four_levels, e->palette, &e->p);
         for (uint32_t k = 0; k < e->p.levels[0].count; k++) {
             const noh_mesh_header *h = noh_mesh_at_lod(&e->p.mesh, k).header;
-            print_message("# %s, level %u: %u vertices, %u triangles in %u draws, %u texels in %u rectangles\n", e->name, k, h->vertex_count,
-                          h->index_count / 3u, h->submesh_count, h->texel_count, h->rect_count);
+            print_message("# %s, level %u: %u vertices, %u triangles in %u draws, %u texels in %u rectangles\n",
+                          e->name, k, h->vertex_count, h->index_count / 3u, h->submesh_count, h->texel_count,
+                          h->rect_count);
         }
     }
     return 0;
@@ -105,7 +108,8 @@ static void each_level(void (*check)(const example *e, const noh_mesh *level, co
 static void check_arrays(const example *e, const noh_mesh *level, const noh_mesh *finer)
 {
     const noh_mesh_header *l = level->header, *f = finer->header;
-    assert_true(l->vertex_count < f->vertex_count && l->index_count < f->index_count && l->touched_count <= f->touched_count);
+    assert_true(l->vertex_count < f->vertex_count && l->index_count < f->index_count &&
+                l->touched_count <= f->touched_count);
     assert_ptr_equal(level->positions, finer->positions);
     assert_ptr_equal(level->attributes, finer->attributes);
     assert_ptr_equal(level->influences, finer->influences);
@@ -115,7 +119,8 @@ static void check_arrays(const example *e, const noh_mesh *level, const noh_mesh
     for (uint32_t t = 0; t < l->target_count; t++) {
         const noh_target *a = &level->targets[t], *b = &finer->targets[t];
         assert_true(a->first_rect == b->first_rect && a->first_texel == b->first_texel);
-        assert_true(a->rect_count <= b->rect_count && a->texel_count <= b->texel_count && a->pair_count <= b->pair_count);
+        assert_true(a->rect_count <= b->rect_count && a->texel_count <= b->texel_count &&
+                    a->pair_count <= b->pair_count);
         assert_string_equal(noh_pack_string(&e->p.pack, a->name), e->p.from->targets[t].name);
     }
 }
@@ -143,7 +148,8 @@ static void check_vertices(const example *e, const noh_mesh *level, const noh_me
             assert_memory_equal(joints[0], joints[1], sizeof joints[0]);
             assert_memory_equal(weights[0], weights[1], sizeof weights[0]);
         }
-        assert_true(noh_mesh_accumulation_texel(level, v) < level->header->touched_count || noh_mesh_accumulation_texel(&e->p.mesh, v) >= e->p.mesh.header->touched_count);
+        assert_true(noh_mesh_accumulation_texel(level, v) < level->header->touched_count ||
+                    noh_mesh_accumulation_texel(&e->p.mesh, v) >= e->p.mesh.header->touched_count);
     }
 }
 
@@ -242,7 +248,10 @@ static triangle_list built_triangles(const lod_pack *p, uint32_t level)
     return list;
 }
 
-static int by_corners(const void *a, const void *b) { return memcmp(a, b, sizeof(triangle)); }
+static int by_corners(const void *a, const void *b)
+{
+    return memcmp(a, b, sizeof(triangle));
+}
 
 /* The smallest corner first, its sense kept; then the triangles in an order of their own. */
 static void sort_triangles(triangle_list *list)
@@ -327,9 +336,11 @@ static void accumulate_half(const noh_mesh *mesh, const float *weights, const no
 }
 
 /* The level's texels in all three layers, and nothing behind them. */
-static void compare_layers(const noh_mesh *level, const noh_morph_layers *a, const noh_mesh *full, const noh_morph_layers *b)
+static void compare_layers(const noh_mesh *level, const noh_morph_layers *a, const noh_mesh *full,
+                           const noh_morph_layers *b)
 {
-    const size_t texels = (size_t)level->header->morph_height << level->header->morph_width_log2, touched = level->header->touched_count;
+    const size_t texels = (size_t)level->header->morph_height << level->header->morph_width_log2,
+                 touched = level->header->touched_count;
     const float *got[3] = { a->position, a->normal, a->tangent }, *expected[3] = { b->position, b->normal, b->tangent };
     assert_true(touched <= full->header->touched_count);
     for (int layer = 0; layer < 3; layer++) {
@@ -340,7 +351,8 @@ static void compare_layers(const noh_mesh *level, const noh_morph_layers *a, con
     }
 }
 
-static void compare_morphed(const noh_mesh *level, const noh_morph_layers *a, const noh_mesh *full, const noh_morph_layers *b)
+static void compare_morphed(const noh_mesh *level, const noh_morph_layers *a, const noh_mesh *full,
+                            const noh_morph_layers *b)
 {
     for (uint32_t v = 0; v < level->header->vertex_count; v++) {
         noh_vertex got, expected;
@@ -403,7 +415,8 @@ static void free_guarded(float *values, size_t count)
 }
 
 /* All vertices of a level by random matrices, morphed. dual: NULL, or the same as dual quaternions. */
-static skinned skin_level(const noh_mesh *level, const float *matrices, const noh_dual_quaternion *dual, const float *weights)
+static skinned skin_level(const noh_mesh *level, const float *matrices, const noh_dual_quaternion *dual,
+                          const float *weights)
 {
     const size_t count = level->header->vertex_count;
     skinned s = { guarded(3u * count), guarded(3u * count), guarded(4u * count) };
@@ -425,7 +438,8 @@ static void skinned_free(skinned *s, const noh_mesh *level)
     free_guarded(s->tangent, 4u * (size_t)level->header->vertex_count);
 }
 
-static void compare_skinned(const noh_mesh *full, const float *matrices, const noh_dual_quaternion *dual, const float *weights)
+static void compare_skinned(const noh_mesh *full, const float *matrices, const noh_dual_quaternion *dual,
+                            const float *weights)
 {
     skinned all = skin_level(full, matrices, dual, weights);
     for (uint32_t k = 1; k < full->header->level_count; k++) {
@@ -466,7 +480,8 @@ static void the_split_tube_is_split(void **state)
 {
     const noh_mesh *mesh = &examples[SPLIT_TUBE].p.mesh;
     (void)state;
-    assert_true(mesh->header->palette_count > 1 && mesh->header->vertex_count > examples[SPLIT_TUBE].m->meshes[0].vertex_count);
+    assert_true(mesh->header->palette_count > 1 &&
+                mesh->header->vertex_count > examples[SPLIT_TUBE].m->meshes[0].vertex_count);
     assert_true(noh_mesh_at_lod(mesh, 3).header->submesh_count > 1);
 }
 
@@ -479,9 +494,11 @@ static void texels_fall_with_the_vertices(void **state)
     (void)state;
     for (uint32_t k = 1; k < 4u; k++) {
         const noh_mesh_header *l = noh_mesh_at_lod(full, k).header, *f = full->header;
-        const double vertices = (double)l->vertex_count / f->vertex_count, texels = (double)l->texel_count / f->texel_count;
+        const double vertices = (double)l->vertex_count / f->vertex_count,
+                     texels = (double)l->texel_count / f->texel_count;
         const double pairs = (double)l->pair_count / f->pair_count;
-        print_message("# level %u: %.4f of the vertices, %.4f of the texels, %.4f of the pairs\n", k, vertices, texels, pairs);
+        print_message("# level %u: %.4f of the vertices, %.4f of the texels, %.4f of the pairs\n", k, vertices, texels,
+                      pairs);
         assert_true(fabs(texels - vertices) <= 0.1 * vertices);
         assert_true(fabs(pairs - vertices) <= 0.1 * vertices);
     }

@@ -16,7 +16,9 @@
 
 /* ---- meshes ---- */
 
-typedef struct rng { uint32_t state; } rng;
+typedef struct rng {
+    uint32_t state;
+} rng;
 
 static uint32_t next(rng *r)
 {
@@ -24,7 +26,10 @@ static uint32_t next(rng *r)
     return r->state >> 8;
 }
 
-static float uniform(rng *r, float low, float high) { return low + (high - low) * (float)next(r) / 16777216.0f; }
+static float uniform(rng *r, float low, float high)
+{
+    return low + (high - low) * (float)next(r) / 16777216.0f;
+}
 
 static float *zeros(uint32_t count)
 {
@@ -166,7 +171,10 @@ static void decode_target(const morph_encoding *e, uint32_t t, decoded *d)
     assert_int_equal(at, q->first_texel + q->texel_count);
 }
 
-static double source_value(const float *p, size_t i) { return p ? (double)p[i] : 0.0; }
+static double source_value(const float *p, size_t i)
+{
+    return p ? (double)p[i] : 0.0;
+}
 
 static void check_errors(const model_mesh *m, const morph_target *q, const model_target *s, const decoded *d)
 {
@@ -246,11 +254,11 @@ static void check(const model_mesh *m, const morph_encoding *e)
 
 static int same(const morph_encoding *a, const morph_encoding *b)
 {
-    return a->touched_count == b->touched_count && a->rect_count == b->rect_count && a->texel_count == b->texel_count
-        && !memcmp(a->order, b->order, a->vertex_count * sizeof *a->order)
-        && !memcmp(a->rects, b->rects, a->rect_count * sizeof *a->rects)
-        && !memcmp(a->texels, b->texels, a->texel_count * AXES * sizeof *a->texels)
-        && !memcmp(a->targets, b->targets, a->target_count * sizeof *a->targets);
+    return a->touched_count == b->touched_count && a->rect_count == b->rect_count && a->texel_count == b->texel_count &&
+           !memcmp(a->order, b->order, a->vertex_count * sizeof *a->order) &&
+           !memcmp(a->rects, b->rects, a->rect_count * sizeof *a->rects) &&
+           !memcmp(a->texels, b->texels, a->texel_count * AXES * sizeof *a->texels) &&
+           !memcmp(a->targets, b->targets, a->target_count * sizeof *a->targets);
 }
 
 /* ---- tests ---- */
@@ -265,8 +273,10 @@ static void test_sheet(void **state)
         for (uint32_t t = 0; t < e->target_count; t++) {
             assert_true(e->targets[t].position_error <= ERROR_UM * 1e-6f);
             assert_true(e->targets[t].normal_bits >= 8);
-            if (tangents) assert_true(e->targets[t].tangent_bits >= 6);
-            else assert_true(e->targets[t].tangent_bits == 1 && e->targets[t].tangent_scale == 0.0f);
+            if (tangents)
+                assert_true(e->targets[t].tangent_bits >= 6);
+            else
+                assert_true(e->targets[t].tangent_bits == 1 && e->targets[t].tangent_scale == 0.0f);
         }
         assert_true(e->texel_count * 4u <= e->pair_count * 5u);
         assert_true(e->texels_one_rect >= e->pair_count);
@@ -323,7 +333,8 @@ static void test_rect_limit(void **state)
         check(m, e);
         for (uint32_t t = 0; t < e->target_count; t++) assert_true(e->targets[t].rect_count <= limits[i]);
         if (limits[i] == 1)
-            for (uint32_t t = 0; t < e->target_count; t++) assert_int_equal(e->targets[t].rect_count, e->targets[t].pair_count > 0);
+            for (uint32_t t = 0; t < e->target_count; t++)
+                assert_int_equal(e->targets[t].rect_count, e->targets[t].pair_count > 0);
         morph_encoding_free(e);
     }
     mesh_free(m);
@@ -410,14 +421,17 @@ static void test_random_small(void **state)
     for (uint32_t seed = 0; seed < 60u; seed++) {
         rng r = { seed * 7919u + 1u };
         const uint32_t vertices = 1u + next(&r) % 120u, targets = 1u + next(&r) % 9u, share = 2u + next(&r) % 12u;
-        const morph_options options = { uniform(&r, 1.0f, 500.0f), next(&r) % 4u, uniform(&r, 0.5f, 20.0f), NULL, 0, NULL };
+        const morph_options options = {
+            uniform(&r, 1.0f, 500.0f), next(&r) % 4u, uniform(&r, 0.5f, 20.0f), NULL, 0, NULL
+        };
         model_mesh *m = mesh_new(vertices, targets, (int)(seed & 1u));
         morph_encoding *e;
         for (uint32_t t = 0; t < targets; t++)
             for (uint32_t i = 0; i < vertices * AXES; i++) {
                 if (next(&r) % share == 0u) m->targets[t].position[i] = uniform(&r, -0.02f, 0.02f);
                 if (next(&r) % share == 0u) m->targets[t].normal[i] = uniform(&r, -0.01f, 0.01f);
-                if (m->targets[t].tangent && next(&r) % share == 0u) m->targets[t].tangent[i] = uniform(&r, -2.0f, 2.0f);
+                if (m->targets[t].tangent && next(&r) % share == 0u)
+                    m->targets[t].tangent[i] = uniform(&r, -2.0f, 2.0f);
             }
         e = encode(m, &options);
         check(m, e);
@@ -445,14 +459,14 @@ static void test_bit_layout(void **state)
     model_target *t = &m->targets[0];
     morph_encoding *e;
     (void)state;
-    t->position[0] = 0.0635f;    /* 127 */
-    t->position[1] = -0.0635f;   /* -127 */
-    t->position[2] = -0.0005f;   /* -1 */
+    t->position[0] = 0.0635f;                                             /* 127 */
+    t->position[1] = -0.0635f;                                            /* -127 */
+    t->position[2] = -0.0005f;                                            /* -1 */
     t->position[3] = t->position[4] = t->position[5] = 0.00025f * 0.999f; /* all but half a step on all axes */
     t->normal[3] = 1.0f;
-    t->normal[0] = -1.0f;        /* -2047 */
-    t->tangent[1] = 0.5f;        /* 2047 */
-    t->tangent[2] = -0.5f;       /* -2047 */
+    t->normal[0] = -1.0f;  /* -2047 */
+    t->tangent[1] = 0.5f;  /* 2047 */
+    t->tangent[2] = -0.5f; /* -2047 */
     e = encode(m, &options);
     check(m, e);
     assert_int_equal(e->targets[0].position_bits, 8);

@@ -122,7 +122,8 @@ static void large_pictures_are_halved_until_they_fit(void **state)
 
 static void wrap_modes_and_filters_are_kept(void **state)
 {
-    static const uint32_t gltf[] = { 10497, 33071, 33648, 0 }, packed[] = { NOH_WRAP_REPEAT, NOH_WRAP_CLAMP, NOH_WRAP_MIRROR, NOH_WRAP_REPEAT };
+    static const uint32_t gltf[] = { 10497, 33071, 33648, 0 },
+                          packed[] = { NOH_WRAP_REPEAT, NOH_WRAP_CLAMP, NOH_WRAP_MIRROR, NOH_WRAP_REPEAT };
     (void)state;
     for (size_t i = 0; i < TEST_COUNT(gltf); i++) {
         const test_model_desc desc = { 1, 3, 1, TEST_SCENE, 83 };
@@ -184,10 +185,12 @@ static void targets_say_how_far_they_move(void **state)
             double farthest = 0.0;
             for (size_t v = 0; v < m->meshes[i].vertex_count; v++) {
                 const float *d = m->meshes[i].targets[t].position + 3 * v;
-                farthest = fmax(farthest, sqrt((double)d[0] * (double)d[0] + (double)d[1] * (double)d[1] + (double)d[2] * (double)d[2]));
+                farthest = fmax(farthest, sqrt((double)d[0] * (double)d[0] + (double)d[1] * (double)d[1] +
+                                               (double)d[2] * (double)d[2]));
             }
             assert_true(farthest > 0.0);
-            assert_true((double)mesh.targets[t].radius >= farthest && (double)mesh.targets[t].radius <= farthest * 1.000001);
+            assert_true((double)mesh.targets[t].radius >= farthest &&
+                        (double)mesh.targets[t].radius <= farthest * 1.000001);
         }
     }
     free(bytes);
@@ -195,12 +198,9 @@ static void targets_say_how_far_they_move(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(the_same_model_gives_the_same_bytes),
-    cmocka_unit_test(limits_are_told),
-    cmocka_unit_test(long_names_are_cut_between_characters),
-    cmocka_unit_test(large_pictures_are_halved_until_they_fit),
-    cmocka_unit_test(wrap_modes_and_filters_are_kept),
-    cmocka_unit_test(the_scene_is_kept),
+    cmocka_unit_test(the_same_model_gives_the_same_bytes),   cmocka_unit_test(limits_are_told),
+    cmocka_unit_test(long_names_are_cut_between_characters), cmocka_unit_test(large_pictures_are_halved_until_they_fit),
+    cmocka_unit_test(wrap_modes_and_filters_are_kept),       cmocka_unit_test(the_scene_is_kept),
     cmocka_unit_test(targets_say_how_far_they_move),
 };
 

@@ -43,7 +43,7 @@ static void angles(void **state)
 static void quarters_are_exact(void **state)
 {
     (void)state;
-    static const double sines[4] = {0, 1, 0, -1};
+    static const double sines[4] = { 0, 1, 0, -1 };
     for (int i = -20; i <= 20; ++i) {
         double s, c;
         angle_sin_cos_degrees(90.0 * i, &s, &c);
@@ -58,8 +58,7 @@ static void quarters_are_exact(void **state)
 static void random_unit(test_random *r, double *q)
 {
     do {
-        for (int i = 0; i < 4; ++i)
-            q[i] = (double)test_random_float(r, -1.0f, 1.0f);
+        for (int i = 0; i < 4; ++i) q[i] = (double)test_random_float(r, -1.0f, 1.0f);
     } while (!quat_normalize(q));
 }
 
@@ -70,17 +69,18 @@ static void pair(test_random *r, double angle, double *a, double *b)
     random_unit(r, a);
     axis[3] = 0.0;
     do
-        for (int i = 0; i < 3; ++i)
-            axis[i] = (double)test_random_float(r, -1.0f, 1.0f);
+        for (int i = 0; i < 3; ++i) axis[i] = (double)test_random_float(r, -1.0f, 1.0f);
     while (!quat_normalize(axis));
-    const double turn[4] = {axis[0] * sin(angle / 2), axis[1] * sin(angle / 2), axis[2] * sin(angle / 2), cos(angle / 2)};
+    const double turn[4] = { axis[0] * sin(angle / 2), axis[1] * sin(angle / 2), axis[2] * sin(angle / 2),
+                             cos(angle / 2) };
     quat_multiply(a, turn, b);
 }
 
 static void slerp_of_every_angle(void **state)
 {
     (void)state;
-    static const double sizes[] = {0.0, 1e-12, 1e-9, 1.9e-7, 2.1e-7, 1e-6, 1.9e-5, 2.1e-5, 1e-3, 0.1, 1.0, 2.0, 3.0, 3.1415};
+    static const double sizes[] = { 0.0,    1e-12, 1e-9, 1.9e-7, 2.1e-7, 1e-6, 1.9e-5,
+                                    2.1e-5, 1e-3,  0.1,  1.0,    2.0,    3.0,  3.1415 };
     test_random r = test_random_from(1);
     double worst_angle = 0.0, worst_place = 0.0;
     for (int i = 0; i < 20000; ++i) {
@@ -88,8 +88,7 @@ static void slerp_of_every_angle(void **state)
         double a[4], b[4], middle[4];
         pair(&r, angle, a, b);
         if (i & 1)
-            for (int k = 0; k < 4; ++k)
-                b[k] = -b[k];
+            for (int k = 0; k < 4; ++k) b[k] = -b[k];
         quat_slerp(a, b, t, middle);
         worst_angle = fmax(worst_angle, fabs(quat_angle(a, b) - angle));
         worst_place = fmax(worst_place, fabs(quat_angle(a, middle) - angle * t));
@@ -103,7 +102,7 @@ static void slerp_of_every_angle(void **state)
 static void nothing_has_no_direction(void **state)
 {
     (void)state;
-    double none[4] = {0, 0, 1e-7, 0}, endless[4] = {0, 0, 0, INFINITY}, unknown[4] = {0, (double)NAN, 0, 1};
+    double none[4] = { 0, 0, 1e-7, 0 }, endless[4] = { 0, 0, 0, INFINITY }, unknown[4] = { 0, (double)NAN, 0, 1 };
     assert_false(quat_normalize(none));
     assert_true(none[2] == 1e-7);
     assert_false(quat_normalize(endless));

@@ -27,7 +27,7 @@ static void put(bytes *b, const void *data, size_t count)
 
 static void put_u32(bytes *b, uint32_t value)
 {
-    const uint8_t data[4] = {(uint8_t)value, (uint8_t)(value >> 8), (uint8_t)(value >> 16), (uint8_t)(value >> 24)};
+    const uint8_t data[4] = { (uint8_t)value, (uint8_t)(value >> 8), (uint8_t)(value >> 16), (uint8_t)(value >> 24) };
     put(b, data, sizeof data);
 }
 
@@ -40,8 +40,7 @@ static void put_float(bytes *b, float value)
 
 static void put_floats(bytes *b, const float *values, size_t count)
 {
-    for (size_t i = 0; i < count; ++i)
-        put_float(b, values[i]);
+    for (size_t i = 0; i < count; ++i) put_float(b, values[i]);
 }
 
 static void put_string(bytes *b, const char *text)
@@ -50,17 +49,28 @@ static void put_string(bytes *b, const char *text)
     put(b, text, strlen(text));
 }
 
-static const float rest[10] = {0, 0, 0, 1, 1, 2, 3, 1, 1, 1};
-static const float turned[10] = {0, 0.6f, 0, 0.8f, -4, 5, 0.1f, 1, 2, 1};
+static const float rest[10] = { 0, 0, 0, 1, 1, 2, 3, 1, 1, 1 };
+static const float turned[10] = { 0, 0.6f, 0, 0.8f, -4, 5, 0.1f, 1, 2, 1 };
 
 /* Offsets of fields in the file below. */
-enum { AT_JOINTS = 4, AT_FRAMES = 8, AT_RATE = 12, AT_NAME = 16, AT_ROOT = 24, AT_ROOT_FLAGS = 28, AT_ROOT_NAME = 32,
-       AT_ROOT_BIND = 40, AT_ROOT_FIRST = 80, AT_CHILD = 120, AT_CHILD_FLAGS = 124 };
+enum {
+    AT_JOINTS = 4,
+    AT_FRAMES = 8,
+    AT_RATE = 12,
+    AT_NAME = 16,
+    AT_ROOT = 24,
+    AT_ROOT_FLAGS = 28,
+    AT_ROOT_NAME = 32,
+    AT_ROOT_BIND = 40,
+    AT_ROOT_FIRST = 80,
+    AT_CHILD = 120,
+    AT_CHILD_FLAGS = 124
+};
 
 /* Two joints, two frames: the root turns, the child moves and grows. */
 static bytes small_file(void)
 {
-    bytes b = {{0}, 0};
+    bytes b = { { 0 }, 0 };
     put(&b, "RCL1", 4);
     put_u32(&b, 2);
     put_u32(&b, 2);
@@ -93,16 +103,15 @@ static const char *save(const bytes *b)
 static raw_set *load(const char *path)
 {
     raw_set *set = NULL;
-    model_error error = {"", ""};
-    if (rcl_read(path, &set, &error))
-        fail_msg("%s refused: %s (%s)", path, error.what, error.where);
+    model_error error = { "", "" };
+    if (rcl_read(path, &set, &error)) fail_msg("%s refused: %s (%s)", path, error.what, error.where);
     return set;
 }
 
 static void refused(const bytes *b, const char *what, const char *where)
 {
     raw_set *set = (raw_set *)1;
-    model_error error = {"", ""};
+    model_error error = { "", "" };
     assert_int_equal(rcl_read(save(b), &set, &error), 1);
     assert_null(set);
     if (!strstr(error.what, what) || strcmp(error.where, where) != 0)
@@ -151,7 +160,7 @@ static void same_file(const char *a, const char *b)
 
 static void round_trip(const char *path)
 {
-    model_error error = {"", ""};
+    model_error error = { "", "" };
     raw_set *set = load(path);
     const char *copy = test_path("copy.rcl");
     assert_int_equal(rcl_write(copy, &set->skeleton, &set->clips[0], &error), 0);
@@ -169,7 +178,7 @@ static void small_clip_round_trips(void **state)
 static void metres_become_centimetres(void **state)
 {
     (void)state;
-    model_error error = {"", ""};
+    model_error error = { "", "" };
     bytes b = small_file();
     raw_set *set = load(save(&b));
     set->skeleton.unit_cm = 100.0;
@@ -186,7 +195,7 @@ static void metres_become_centimetres(void **state)
 static void clips_without_joints_are_not_written(void **state)
 {
     (void)state;
-    model_error error = {"", ""};
+    model_error error = { "", "" };
     raw_set *set = raw_set_new(0, 1);
     assert_non_null(set);
     assert_int_equal(rcl_write(test_path("none.rcl"), &set->skeleton, &set->clips[0], &error), 1);
@@ -200,7 +209,7 @@ static void every_truncation_is_refused(void **state)
     bytes b = small_file();
     for (size_t count = 0; count < b.count; ++count) {
         raw_set *set = NULL;
-        model_error error = {"", ""};
+        model_error error = { "", "" };
         test_write_file(test_path("cut.rcl"), b.data, count);
         assert_int_equal(rcl_read(test_path("cut.rcl"), &set, &error), 1);
         assert_null(set);
@@ -211,8 +220,7 @@ static void every_truncation_is_refused(void **state)
 static void with_u32(size_t at, uint32_t value, const char *what, const char *where)
 {
     bytes b = small_file();
-    for (size_t i = 0; i < 4; ++i)
-        b.data[at + i] = (uint8_t)(value >> (8 * i));
+    for (size_t i = 0; i < 4; ++i) b.data[at + i] = (uint8_t)(value >> (8 * i));
     refused(&b, what, where);
 }
 
@@ -245,7 +253,7 @@ static void missing_files_are_refused(void **state)
 {
     (void)state;
     raw_set *set = NULL;
-    model_error error = {"", ""};
+    model_error error = { "", "" };
     assert_int_equal(rcl_read(test_path("nothing here.rcl"), &set, &error), 1);
     assert_non_null(strstr(error.what, "cannot be read"));
 }
@@ -257,10 +265,9 @@ static void hash_is_fnv_of_names_and_parents(void **state)
     (void)state;
     bytes b = small_file();
     raw_set *set = load(save(&b));
-    const uint8_t hashed[] = {2, 0, 0, 0, 'r', 'o', 'o', 't', 0, 255, 255, 255, 255, 0, 0, 0, 0, 0};
+    const uint8_t hashed[] = { 2, 0, 0, 0, 'r', 'o', 'o', 't', 0, 255, 255, 255, 255, 0, 0, 0, 0, 0 };
     uint32_t expected = 2166136261u;
-    for (size_t i = 0; i < sizeof hashed; ++i)
-        expected = (expected ^ hashed[i]) * 16777619u;
+    for (size_t i = 0; i < sizeof hashed; ++i) expected = (expected ^ hashed[i]) * 16777619u;
     assert_int_equal(raw_skeleton_hash(&set->skeleton), expected);
     set->skeleton.joints[1].translation[0] += 1.0f; /* another bind pose binds all the same */
     assert_int_equal(raw_skeleton_hash(&set->skeleton), expected);
@@ -284,8 +291,7 @@ static void all_real_clips_round_trip(void **state)
     int count = 0;
     for (struct dirent *entry = readdir(listing); entry; entry = readdir(listing)) {
         size_t length = strlen(entry->d_name);
-        if (length < 4 || strcmp(entry->d_name + length - 4, ".rcl") != 0)
-            continue;
+        if (length < 4 || strcmp(entry->d_name + length - 4, ".rcl") != 0) continue;
         snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
         round_trip(path);
         ++count;
@@ -296,14 +302,10 @@ static void all_real_clips_round_trip(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(small_clip_is_read),
-    cmocka_unit_test(small_clip_round_trips),
-    cmocka_unit_test(metres_become_centimetres),
-    cmocka_unit_test(clips_without_joints_are_not_written),
-    cmocka_unit_test(every_truncation_is_refused),
-    cmocka_unit_test(bad_fields_are_refused),
-    cmocka_unit_test(missing_files_are_refused),
-    cmocka_unit_test(hash_is_fnv_of_names_and_parents),
+    cmocka_unit_test(small_clip_is_read),          cmocka_unit_test(small_clip_round_trips),
+    cmocka_unit_test(metres_become_centimetres),   cmocka_unit_test(clips_without_joints_are_not_written),
+    cmocka_unit_test(every_truncation_is_refused), cmocka_unit_test(bad_fields_are_refused),
+    cmocka_unit_test(missing_files_are_refused),   cmocka_unit_test(hash_is_fnv_of_names_and_parents),
     cmocka_unit_test(all_real_clips_round_trip),
 };
 

@@ -34,15 +34,15 @@ static raw_set *moving(uint32_t frames, double sample_rate_hz)
     clip->floats[0].reach[0] = 0.5f;
     for (uint32_t f = 0; f < frames; ++f) {
         const double half = (double)f * 5.0 * 3.14159265358979323846 / 180.0;
-        float *q = clip->rotations + (size_t)f * 8, *t = clip->translations + (size_t)f * 6, *s = clip->scales + (size_t)f * 6;
+        float *q = clip->rotations + (size_t)f * 8, *t = clip->translations + (size_t)f * 6,
+              *s = clip->scales + (size_t)f * 6;
         const float sign = f % 2 ? -1.0f : 1.0f; /* the reader's promise broken: to be mended */
         q[2] = sign * (float)sin(half);
         q[3] = sign * (float)cos(half);
         q[7] = 1.0f;
         t[0] = 2.0f * (float)f;
         t[4] = 10.0f;
-        for (int i = 0; i < 6; ++i)
-            s[i] = 1.0f;
+        for (int i = 0; i < 6; ++i) s[i] = 1.0f;
         clip->floats[0].values[f * 2] = (float)f;
         clip->floats[0].values[f * 2 + 1] = -(float)f;
     }
@@ -52,9 +52,8 @@ static raw_set *moving(uint32_t frames, double sample_rate_hz)
 static raw_clip resampled(const raw_clip *clip, double sample_rate_hz)
 {
     raw_clip out;
-    model_error error = {"", ""};
-    if (raw_clip_resample(clip, sample_rate_hz, &out, &error))
-        fail_msg("refused: %s", error.what);
+    model_error error = { "", "" };
+    if (raw_clip_resample(clip, sample_rate_hz, &out, &error)) fail_msg("refused: %s", error.what);
     return out;
 }
 
@@ -86,13 +85,14 @@ static void other_rates_keep_the_length(void **state)
 {
     (void)state;
     raw_set *set = moving(22, 30.0); /* 0.7 s */
-    static const double rates[] = {1.0, 7.0, 24.0, 29.97, 31.0, 60.0, 120.0, 1000.0};
+    static const double rates[] = { 1.0, 7.0, 24.0, 29.97, 31.0, 60.0, 120.0, 1000.0 };
     for (size_t i = 0; i < TEST_COUNT(rates); ++i) {
         raw_clip out = resampled(&set->clips[0], rates[i]);
         assert_int_equal(out.frame_count, (uint32_t)fmax(floor(0.7 * rates[i] + 0.5), 1.0) + 1);
         assert_true(fabs(raw_clip_duration_s(&out) - 0.7) < 1e-12);
         assert_memory_equal(out.translations, set->clips[0].translations, 24);
-        assert_memory_equal(out.translations + (size_t)(out.frame_count - 1) * 6, set->clips[0].translations + 21 * 6, 24);
+        assert_memory_equal(out.translations + (size_t)(out.frame_count - 1) * 6, set->clips[0].translations + 21 * 6,
+                            24);
         raw_clip_clear(&out);
     }
     raw_set_free(set);
@@ -102,7 +102,7 @@ static void keys_are_copied(void **state)
 {
     (void)state;
     raw_set *set = moving(11, 10.0);
-    raw_event event = {(char *)(void *)"step", 0.95, {7}, 0.5f, 0};
+    raw_event event = { (char *)(void *)"step", 0.95, { 7 }, 0.5f, 0 };
     assert_int_equal(raw_clip_add_event(&set->clips[0], &event), 0);
     set->clips[0].loop = 1;
     raw_clip out = resampled(&set->clips[0], 5.0), cut;
@@ -133,7 +133,7 @@ static void impossible_rates_are_refused(void **state)
     (void)state;
     raw_set *set = moving(31, 30.0);
     raw_clip out;
-    model_error error = {"", ""};
+    model_error error = { "", "" };
     assert_int_equal(raw_clip_resample(&set->clips[0], 0.0, &out, &error), 1);
     assert_int_equal(raw_clip_resample(&set->clips[0], -1.0, &out, &error), 1);
     assert_int_equal(raw_clip_resample(&set->clips[0], (double)NAN, &out, &error), 1);
@@ -162,8 +162,7 @@ static void a_full_turn_closes(void **state)
     assert_true(fabs(c.difference_cm - 72.0) < 1e-4);
     assert_true(c.in_place_cm < 1e-4);
     assert_true(c.float_cm == 18.0 && c.float_units == 0.0);
-    for (size_t f = 0; f < 37; ++f)
-        set->clips[0].translations[f * 6] = 0.0f;
+    for (size_t f = 0; f < 37; ++f) set->clips[0].translations[f * 6] = 0.0f;
     c = check(set);
     assert_true(c.difference_cm < 1e-4);
     raw_set_free(set);
@@ -173,8 +172,7 @@ static void half_a_turn_does_not(void **state)
 {
     (void)state;
     raw_set *set = moving(19, 30.0);
-    for (size_t f = 0; f < 19; ++f)
-        set->clips[0].translations[f * 6] = 0.0f;
+    for (size_t f = 0; f < 19; ++f) set->clips[0].translations[f * 6] = 0.0f;
     raw_loop_check c = check(set);
     assert_int_equal(c.joint, 1);
     assert_true(fabs(c.difference_cm - 26.0) < 1e-4); /* the child's point 13 from the root */
@@ -201,14 +199,20 @@ static void growing_shows_at_the_shell(void **state)
 static void real_loops(void **state)
 {
     (void)state;
-    static const struct { const char *name; int closes; } clips[] = {
-        {"clips/Knight__Walking_A.rcl", 1}, {"clips/Fox__Survey.rcl", 1}, {"clips/Knight__Death_B.rcl", 0}, {"clips/cmu_01_01.rcl", 0}};
+    static const struct {
+        const char *name;
+        int closes;
+    } clips[] = { { "clips/Knight__Walking_A.rcl", 1 },
+                  { "clips/Fox__Survey.rcl", 1 },
+                  { "clips/Knight__Death_B.rcl", 0 },
+                  { "clips/cmu_01_01.rcl", 0 } };
     for (size_t i = 0; i < TEST_COUNT(clips); ++i) {
         raw_set *set = NULL;
-        model_error error = {"", ""};
+        model_error error = { "", "" };
         assert_int_equal(rcl_read(test_asset(clips[i].name), &set, &error), 0);
         raw_loop_check c = check(set);
-        print_message("%s: %.4f cm at joint %u, in place %.4f cm\n", clips[i].name, c.difference_cm, c.joint, c.in_place_cm);
+        print_message("%s: %.4f cm at joint %u, in place %.4f cm\n", clips[i].name, c.difference_cm, c.joint,
+                      c.in_place_cm);
         assert_int_equal(c.difference_cm < 0.01, clips[i].closes);
         raw_set_free(set);
     }

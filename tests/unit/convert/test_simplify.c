@@ -11,13 +11,17 @@
 
 /* ---- sheets ---- */
 
-/* side x side vertices, 1 cm apart, in one or two submeshes whose border (at half the width) has both one's vertices. */
+/* side x side vertices, 1 cm apart, in one or two submeshes whose border (at half the width) has both one's vertices.
+ */
 typedef struct sheet {
     model_mesh mesh;
     uint32_t side;
 } sheet;
 
-static uint32_t vertex_at(const sheet *s, uint32_t x, uint32_t y) { return y * s->side + x; }
+static uint32_t vertex_at(const sheet *s, uint32_t x, uint32_t y)
+{
+    return y * s->side + x;
+}
 
 static void place(sheet *s, uint32_t v, uint32_t x, uint32_t y)
 {
@@ -42,7 +46,8 @@ static void fill_submesh(sheet *s, uint32_t index, uint32_t first_x, uint32_t la
     sub->material = MODEL_NONE;
     for (uint32_t y = 0; y + 1u < s->side; y++) {
         for (uint32_t x = first_x; x < last_x; x++) {
-            uint32_t a = used_vertex(s, index, x, y), b = used_vertex(s, index, x + 1u, y), c = used_vertex(s, index, x, y + 1u);
+            uint32_t a = used_vertex(s, index, x, y), b = used_vertex(s, index, x + 1u, y),
+                     c = used_vertex(s, index, x, y + 1u);
             uint32_t d = used_vertex(s, index, x + 1u, y + 1u), *to = s->mesh.indices + s->mesh.index_count;
             to[0] = a;
             to[1] = b;
@@ -102,7 +107,8 @@ static void wrinkle(sheet *s, uint32_t seed)
         s->mesh.position[v * 3u + 2u] = test_random_float(&r, 0.0f, 0.004f);
     }
     for (uint32_t v = s->side * s->side; v < s->mesh.vertex_count; v++) {
-        memcpy(s->mesh.position + v * 3u, s->mesh.position + vertex_at(s, s->side / 2u, v - s->side * s->side) * 3u, 3u * sizeof(float));
+        memcpy(s->mesh.position + v * 3u, s->mesh.position + vertex_at(s, s->side / 2u, v - s->side * s->side) * 3u,
+               3u * sizeof(float));
     }
 }
 
@@ -286,7 +292,8 @@ static void collapses_give_the_level(void **state)
     bump(&s, 0, 0.07f, 0.07f, 0.05f, 0.02f);
     lod *l = build_to(&s.mesh, LOD_QUALITY, 0.3f);
     const lod_level *level = &l->levels[0];
-    uint32_t *to = test_zeros(s.mesh.vertex_count * sizeof *to), *weld = test_zeros(s.mesh.vertex_count * sizeof *weld), at = 0;
+    uint32_t *to = test_zeros(s.mesh.vertex_count * sizeof *to), *weld = test_zeros(s.mesh.vertex_count * sizeof *weld),
+             at = 0;
     assert_int_equal(weld_vertices(&s.mesh, weld), 0);
     for (uint32_t v = 0; v < s.mesh.vertex_count; v++) {
         to[v] = v;
@@ -299,7 +306,8 @@ static void collapses_give_the_level(void **state)
     for (uint32_t i = 0; i < s.mesh.index_count; i += 3u) {
         uint32_t a = to[s.mesh.indices[i]], b = to[s.mesh.indices[i + 1u]], c = to[s.mesh.indices[i + 2u]];
         if (weld[a] != weld[b] && weld[b] != weld[c] && weld[c] != weld[a]) {
-            assert_true(at < level->index_count && level->indices[at] == a && level->indices[at + 1u] == b && level->indices[at + 2u] == c);
+            assert_true(at < level->index_count && level->indices[at] == a && level->indices[at + 1u] == b &&
+                        level->indices[at + 2u] == c);
             at += 3u;
         }
     }
@@ -326,7 +334,8 @@ static void same_bytes_twice(void **state)
         assert_memory_equal(a->collapses, b->collapses, a->collapse_count * sizeof *a->collapses);
         for (uint32_t k = 0; k < a->level_count; k++) {
             assert_int_equal(a->levels[k].index_count, b->levels[k].index_count);
-            assert_memory_equal(a->levels[k].indices, b->levels[k].indices, a->levels[k].index_count * sizeof(uint32_t));
+            assert_memory_equal(a->levels[k].indices, b->levels[k].indices,
+                                a->levels[k].index_count * sizeof(uint32_t));
         }
         lod_free(a);
         lod_free(b);
@@ -662,7 +671,8 @@ static void frames_bend_a_tube(void **state)
     assert_int_equal(model_read_gltf(test_asset("khronos/SimpleSkin.gltf"), &m, &error), 0);
     uint32_t node = lod_skinned_node(m, 0);
     const model_mesh *mesh = &m->meshes[0];
-    float *rest = test_zeros(mesh->vertex_count * 3u * sizeof *rest), *bent = test_zeros(mesh->vertex_count * 3u * sizeof *bent);
+    float *rest = test_zeros(mesh->vertex_count * 3u * sizeof *rest),
+          *bent = test_zeros(mesh->vertex_count * 3u * sizeof *bent);
     assert_int_not_equal(node, MODEL_NONE);
     assert_int_equal(lod_frame_pose(m, node, 0, 0.0, rest), 0);
     assert_int_equal(lod_frame_pose(m, node, 0, 1.0, bent), 0); /* the upper joint has turned by 90 degrees */

@@ -224,16 +224,11 @@ static void the_pack_of_several_files(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(clips_of_one_skeleton_are_joined),
-    cmocka_unit_test(a_name_that_is_taken_gets_the_file_s),
-    cmocka_unit_test(a_name_that_is_taken_twice_is_refused),
-    cmocka_unit_test(the_first_difference_is_told),
-    cmocka_unit_test(translations_come_to_the_base_s_unit),
-    cmocka_unit_test(weights_go_to_nodes_of_the_same_name),
-    cmocka_unit_test(weights_of_unknown_nodes_are_left_out),
-    cmocka_unit_test(weights_come_to_a_model_without_clip),
-    cmocka_unit_test(what_adds_nothing_is_refused),
-    cmocka_unit_test(the_pack_of_several_files),
+    cmocka_unit_test(clips_of_one_skeleton_are_joined),      cmocka_unit_test(a_name_that_is_taken_gets_the_file_s),
+    cmocka_unit_test(a_name_that_is_taken_twice_is_refused), cmocka_unit_test(the_first_difference_is_told),
+    cmocka_unit_test(translations_come_to_the_base_s_unit),  cmocka_unit_test(weights_go_to_nodes_of_the_same_name),
+    cmocka_unit_test(weights_of_unknown_nodes_are_left_out), cmocka_unit_test(weights_come_to_a_model_without_clip),
+    cmocka_unit_test(what_adds_nothing_is_refused),          cmocka_unit_test(the_pack_of_several_files),
 };
 
 TEST_MAIN(tests, NULL, NULL)

@@ -32,7 +32,8 @@ static void the_radius_of_a_target_is_its_longest_delta(void **state)
             const uint32_t found = noh_mesh_find_target(&mesh, source->name);
             const double kept = (double)mesh.targets[found].radius;
             double longest = 0.0;
-            for (uint32_t v = 0; v < m->meshes[i].vertex_count; v++) longest = fmax(longest, length(source->position + 3 * (size_t)v));
+            for (uint32_t v = 0; v < m->meshes[i].vertex_count; v++)
+                longest = fmax(longest, length(source->position + 3 * (size_t)v));
             assert_true(longest > 0.0);
             assert_true(kept >= longest && kept <= longest * (1.0 + 1e-6));
         }

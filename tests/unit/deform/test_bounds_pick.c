@@ -31,7 +31,8 @@ static void pose_mesh(const skin_asset *a, uint32_t index, const double *locals,
     if (p->mesh.header->flags & NOH_MESH_DUAL_QUATERNION) {
         p->dual = test_zeros(sizeof *p->dual * skin.header->joint_count);
         noh_skin_dual_quaternions(p->matrices, skin.header->joint_count, p->dual);
-        noh_skin_vertices_dual(&p->mesh, p->dual, &p->layers, 0, p->mesh.header->vertex_count, p->positions, NULL, NULL);
+        noh_skin_vertices_dual(&p->mesh, p->dual, &p->layers, 0, p->mesh.header->vertex_count, p->positions, NULL,
+                               NULL);
     } else {
         noh_skin_vertices(&p->mesh, p->matrices, &p->layers, 0, p->mesh.header->vertex_count, p->positions, NULL, NULL);
     }
@@ -116,7 +117,8 @@ static void each_pose(const char *name, const char *dual_quaternion, int times, 
     double *locals = test_zeros(sizeof *locals * 10 * oracle_node_count(a->o));
     for (uint32_t clip = 0; clip < oracle_animation_count(a->o); clip++) {
         for (int k = 0; k < times; k++) {
-            oracle_pose(a->o, (int)clip, oracle_animation_end(a->o, clip) * (double)test_random_float(&r, 0.0f, 1.0f), locals);
+            oracle_pose(a->o, (int)clip, oracle_animation_end(a->o, clip) * (double)test_random_float(&r, 0.0f, 1.0f),
+                        locals);
             for (uint32_t m = 0; m < a->pack.mesh_count; m++) {
                 scene_pose p;
                 pose_mesh(a, m, locals, &r, &p);
@@ -142,16 +144,41 @@ static void check_boxes(const char *name, const char *dual_quaternion)
 {
     double worst = 0.0;
     each_pose(name, dual_quaternion, 10, contains_all, &worst);
-    print_message("%s%s: the box's diagonal is at most %.2f of the tightest one's\n", name, dual_quaternion ? " by dual quaternions" : "", worst);
+    print_message("%s%s: the box's diagonal is at most %.2f of the tightest one's\n", name,
+                  dual_quaternion ? " by dual quaternions" : "", worst);
     assert_true(worst > 1.0 && worst < 4.0);
 }
 
-static void boxes_of_body(void **state) { (void)state; check_boxes("hero/body.glb", NULL); }
-static void boxes_of_body_quantized(void **state) { (void)state; check_boxes("hero/body_quantized.glb", NULL); }
-static void boxes_of_body_8inf(void **state) { (void)state; check_boxes("hero/body_8inf.glb", NULL); }
-static void boxes_of_fox(void **state) { (void)state; check_boxes("khronos/Fox.glb", NULL); }
-static void boxes_of_robot(void **state) { (void)state; check_boxes("khronos/RobotExpressive.glb", NULL); }
-static void boxes_of_simple_skin(void **state) { (void)state; check_boxes("khronos/SimpleSkin.gltf", NULL); }
+static void boxes_of_body(void **state)
+{
+    (void)state;
+    check_boxes("hero/body.glb", NULL);
+}
+static void boxes_of_body_quantized(void **state)
+{
+    (void)state;
+    check_boxes("hero/body_quantized.glb", NULL);
+}
+static void boxes_of_body_8inf(void **state)
+{
+    (void)state;
+    check_boxes("hero/body_8inf.glb", NULL);
+}
+static void boxes_of_fox(void **state)
+{
+    (void)state;
+    check_boxes("khronos/Fox.glb", NULL);
+}
+static void boxes_of_robot(void **state)
+{
+    (void)state;
+    check_boxes("khronos/RobotExpressive.glb", NULL);
+}
+static void boxes_of_simple_skin(void **state)
+{
+    (void)state;
+    check_boxes("khronos/SimpleSkin.gltf", NULL);
+}
 static void boxes_by_dual_quaternions(void **state)
 {
     (void)state;
@@ -178,7 +205,8 @@ static void check_arcs(uint32_t other)
     const float pivot = (float)other;
     for (size_t v = 0; v < source->vertex_count; v++) {
         memset(source->joints + MODEL_INFLUENCES_MAX * v, 0, sizeof *source->joints * MODEL_INFLUENCES_MAX);
-        memset(source->joint_weights + MODEL_INFLUENCES_MAX * v, 0, sizeof *source->joint_weights * MODEL_INFLUENCES_MAX);
+        memset(source->joint_weights + MODEL_INFLUENCES_MAX * v, 0,
+               sizeof *source->joint_weights * MODEL_INFLUENCES_MAX);
         source->joints[MODEL_INFLUENCES_MAX * v + 1u] = (uint16_t)other;
         source->joint_weights[MODEL_INFLUENCES_MAX * v] = source->joint_weights[MODEL_INFLUENCES_MAX * v + 1u] = 0.5f;
     }
@@ -189,8 +217,11 @@ static void check_arcs(uint32_t other)
     positions = test_zeros(12u * (size_t)mesh.header->vertex_count);
     for (int degrees = 0; degrees < 180; degrees += 10) {
         const float turn = (float)degrees * 0.0174532925f, cosine = cosf(turn), sine = sinf(turn);
-        const float turned[12] = { cosine, -sine, 0, pivot * sine, sine, cosine, 0, pivot - pivot * cosine, 0, 0, 1, 0 };
-        float matrices[36] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
+        const float turned[12] = {
+            cosine, -sine, 0, pivot * sine, sine, cosine, 0, pivot - pivot * cosine, 0, 0, 1, 0
+        };
+        float matrices[36] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1,
+                               0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
         float box[6], joints[18];
         memcpy(matrices + 12u * other, turned, sizeof turned);
         noh_skin_dual_quaternions(matrices, 3, dual);
@@ -200,8 +231,10 @@ static void check_arcs(uint32_t other)
         noh_skin_joint_boxes(&mesh, matrices, NULL, joints);
         assert_true(noh_box_is_empty(joints + 6u * (3u - other))); /* the joint that moves nothing */
         for (uint32_t v = 0; v < mesh.header->vertex_count; v++) {
-            const float *rest = mesh.positions + 3u * (size_t)v, y = rest[1] - pivot, cx = cosf(0.5f * turn), sx = sinf(0.5f * turn);
-            assert_true(fabsf(positions[3 * v] - (cx * rest[0] - sx * y)) < 1e-5f); /* by halves: half of the turn, about the same line */
+            const float *rest = mesh.positions + 3u * (size_t)v, y = rest[1] - pivot, cx = cosf(0.5f * turn),
+                        sx = sinf(0.5f * turn);
+            assert_true(fabsf(positions[3 * v] - (cx * rest[0] - sx * y)) <
+                        1e-5f); /* by halves: half of the turn, about the same line */
             assert_true(fabsf(positions[3 * v + 1] - (sx * rest[0] + cx * y + pivot)) < 1e-5f);
             largest = fmaxf(largest, fabsf(positions[3 * v]));
         }
@@ -241,7 +274,8 @@ static void boxes_of_rigid_meshes(void **state)
             float p[3];
             noh_morph_position(&mesh, &layers, v, p);
             for (int i = 0; i < 3; i++) {
-                positions[3 * v + (uint32_t)i] = world[4 * i] * p[0] + world[4 * i + 1] * p[1] + world[4 * i + 2] * p[2] + world[4 * i + 3];
+                positions[3 * v + (uint32_t)i] = world[4 * i] * p[0] + world[4 * i + 1] * p[1] +
+                                                 world[4 * i + 2] * p[2] + world[4 * i + 3];
             }
         }
         noh_mesh_box(&mesh, world, weights, box);
@@ -255,7 +289,8 @@ static void boxes_of_rigid_meshes(void **state)
 /* ---- rays ---- */
 
 /* Every triangle, in double precision. Returns the nearest distance, or -1; `second` is the next one behind it. */
-static double brute_force(const noh_mesh *mesh, const float *positions, const float *o, const float *d, uint32_t *triangle, double *margin)
+static double brute_force(const noh_mesh *mesh, const float *positions, const float *o, const float *d,
+                          uint32_t *triangle, double *margin)
 {
     double nearest = -1.0;
     for (uint32_t i = 0; i < mesh->header->index_count; i += 3) {
@@ -309,7 +344,8 @@ static void check_hit(const scene_pose *p, const noh_pick_hit *hit, const float 
     for (int i = 0; i < 3; i++) {
         assert_true(rest[i] == hit->bind_point[i]);
         assert_true(hit->point[i] == o[i] + hit->distance * d[i]);
-        assert_true(fabsf(drawn[i] - hit->point[i]) < 1e-4f * (1.0f + fabsf(hit->point[i]) + fabsf(o[i]) + hit->distance * fabsf(d[i])));
+        assert_true(fabsf(drawn[i] - hit->point[i]) <
+                    1e-4f * (1.0f + fabsf(hit->point[i]) + fabsf(o[i]) + hit->distance * fabsf(d[i])));
     }
     {
         uint32_t joints[NOH_INFLUENCES_MAX], count, known = 0;
@@ -333,7 +369,8 @@ static void rays_agree(const scene_pose *p, test_random *r, void *context)
     uint32_t vertices = p->mesh.header->vertex_count;
     for (int k = 0; k < 12; k++) {
         /* from a point near a vertex, towards near another: most rays hit, and many pass close by */
-        const float *a = p->positions + 3 * (size_t)test_random_below(r, vertices), *b = p->positions + 3 * (size_t)test_random_below(r, vertices);
+        const float *a = p->positions + 3 * (size_t)test_random_below(r, vertices),
+                    *b = p->positions + 3 * (size_t)test_random_below(r, vertices);
         float o[3], d[3], length = 0.0f;
         noh_pick_hit hit;
         noh_result result;
@@ -369,16 +406,36 @@ static void check_rays(const char *name, const char *dual_quaternion)
 {
     ray_counts counts = { 0, 0, 0.0 };
     each_pose(name, dual_quaternion, TIMES, rays_agree, &counts);
-    print_message("%s%s: %u of %u rays hit, all where a search through all triangles does\n", name, dual_quaternion ? " by dual quaternions" : "",
-                  counts.hits, counts.rays);
+    print_message("%s%s: %u of %u rays hit, all where a search through all triangles does\n", name,
+                  dual_quaternion ? " by dual quaternions" : "", counts.hits, counts.rays);
     assert_true(counts.hits > counts.rays / 4);
 }
 
-static void rays_at_body(void **state) { (void)state; check_rays("hero/body.glb", NULL); }
-static void rays_at_body_8inf(void **state) { (void)state; check_rays("hero/body_8inf.glb", NULL); }
-static void rays_at_fox(void **state) { (void)state; check_rays("khronos/Fox.glb", NULL); }
-static void rays_at_robot(void **state) { (void)state; check_rays("khronos/RobotExpressive.glb", NULL); }
-static void rays_by_dual_quaternions(void **state) { (void)state; check_rays("khronos/Fox.glb", "all"); }
+static void rays_at_body(void **state)
+{
+    (void)state;
+    check_rays("hero/body.glb", NULL);
+}
+static void rays_at_body_8inf(void **state)
+{
+    (void)state;
+    check_rays("hero/body_8inf.glb", NULL);
+}
+static void rays_at_fox(void **state)
+{
+    (void)state;
+    check_rays("khronos/Fox.glb", NULL);
+}
+static void rays_at_robot(void **state)
+{
+    (void)state;
+    check_rays("khronos/RobotExpressive.glb", NULL);
+}
+static void rays_by_dual_quaternions(void **state)
+{
+    (void)state;
+    check_rays("khronos/Fox.glb", "all");
+}
 
 /* A rigid mesh is picked too, as it is placed and morphed. */
 static void rays_at_a_rigid_mesh(void **state)
@@ -447,7 +504,8 @@ static void bad_picks_say_why(void **state)
     assert_int_equal(error.result, NOH_ERR_NOT_FOUND);
     assert_non_null(error.what);
     for (size_t shift = 1; shift < NOH_MEMORY_ALIGN; shift++) {
-        assert_int_equal(noh_pick(&surface, o, d, 100.0f, (uint8_t *)scratch + shift, 4 * 48, &hit, &error), NOH_ERR_ARG);
+        assert_int_equal(noh_pick(&surface, o, d, 100.0f, (uint8_t *)scratch + shift, 4 * 48, &hit, &error),
+                         NOH_ERR_ARG);
     }
     assert_int_equal(noh_pick(&surface, o, d, 100.0f, NULL, 4 * 48, &hit, &error), NOH_ERR_ARG);
     assert_int_equal(error.need, 4 * 48);

@@ -1,5 +1,5 @@
-/* Tests of runtime/deform/dual_quaternion.c: matrices taken apart into a rotation, a translation and a stretch. How meshes
- * are skinned by them is in test_skin. */
+/* Tests of runtime/deform/dual_quaternion.c: matrices taken apart into a rotation, a translation and a stretch. How
+ * meshes are skinned by them is in test_skin. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -39,7 +39,9 @@ static void move(const noh_dual_quaternion *d, const float p[3], float out[3])
 
 static void expect_same(const float m[12], double within)
 {
-    static const float points[4][3] = { { 0.0f, 0.0f, 0.0f }, { 1.0f, 0.2f, -0.4f }, { -0.3f, 1.0f, 0.5f }, { 0.1f, -0.6f, 1.0f } };
+    static const float points[4][3] = {
+        { 0.0f, 0.0f, 0.0f }, { 1.0f, 0.2f, -0.4f }, { -0.3f, 1.0f, 0.5f }, { 0.1f, -0.6f, 1.0f }
+    };
     noh_dual_quaternion d;
     float length = 0.0f, across = 0.0f;
     noh_dual_quaternion_from_matrix(m, &d);
@@ -55,13 +57,15 @@ static void expect_same(const float m[12], double within)
         float got[3];
         move(&d, points[k], got);
         for (int r = 0; r < 3; r++) {
-            const float want = m[4 * r] * points[k][0] + m[4 * r + 1] * points[k][1] + m[4 * r + 2] * points[k][2] + m[4 * r + 3];
+            const float want = m[4 * r] * points[k][0] + m[4 * r + 1] * points[k][1] + m[4 * r + 2] * points[k][2] +
+                               m[4 * r + 3];
             assert_true(fabs((double)(got[r] - want)) < within);
         }
     }
 }
 
-static const float axes[6][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 0.6f, 0.8f, 0 }, { 0, -0.6f, 0.8f }, { 0.48f, -0.6f, 0.64f } };
+static const float axes[6][3] = { { 1, 0, 0 },       { 0, 1, 0 },        { 0, 0, 1 },
+                                  { 0.6f, 0.8f, 0 }, { 0, -0.6f, 0.8f }, { 0.48f, -0.6f, 0.64f } };
 static const float offset[3] = { 0.7f, -1.3f, 0.4f }, ones[3] = { 1.0f, 1.0f, 1.0f };
 
 /* At half a turn the quaternion's w is 0: one that is found by dividing by w has no direction left. */
@@ -96,7 +100,9 @@ static void exact_half_turns(void **state)
 /* Axes stretched by as much as 1 to 1,000, and shear, go into the stretch. */
 static void stretches_are_kept(void **state)
 {
-    static const float scales[4][3] = { { 2.0f, 0.5f, 1.0f }, { 1000.0f, 1.0f, 1.0f }, { 0.001f, 1.0f, 0.1f }, { 3.0f, 3.0f, 3.0f } };
+    static const float scales[4][3] = {
+        { 2.0f, 0.5f, 1.0f }, { 1000.0f, 1.0f, 1.0f }, { 0.001f, 1.0f, 0.1f }, { 3.0f, 3.0f, 3.0f }
+    };
     (void)state;
     for (int k = 0; k < 4; k++) {
         const float q[4] = { 0.1f, 0.7f, -0.1f, 0.7f };
@@ -125,10 +131,12 @@ static void mirrors_go_into_the_stretch(void **state)
     }
 }
 
-/* A joint that is scaled to nothing, or to a plane, has no rotation; its numbers are still finite and its translation is kept. */
+/* A joint that is scaled to nothing, or to a plane, has no rotation; its numbers are still finite and its translation
+ * is kept. */
 static void joints_of_no_volume_stay_finite(void **state)
 {
-    static const float flat[12] = { 1, 0, 0, 4, 0, 1, 0, 5, 0, 0, 0, 6 }, nothing[12] = { 0, 0, 0, 4, 0, 0, 0, 5, 0, 0, 0, 6 };
+    static const float flat[12] = { 1, 0, 0, 4, 0, 1, 0, 5, 0, 0, 0, 6 },
+                       nothing[12] = { 0, 0, 0, 4, 0, 0, 0, 5, 0, 0, 0, 6 };
     (void)state;
     expect_same(flat, 1e-5);
     expect_same(nothing, 1e-5);

@@ -34,7 +34,8 @@ static void sheet_open(sheet *s, int folded)
     model_free(m);
 }
 
-static noh_result pick(const sheet *s, float ox, float oy, float oz, float dx, float dy, float dz, float distance_max, noh_pick_hit *hit)
+static noh_result pick(const sheet *s, float ox, float oy, float oz, float dx, float dy, float dz, float distance_max,
+                       noh_pick_hit *hit)
 {
     const float o[3] = { ox, oy, oz }, d[3] = { dx, dy, dz };
     return noh_pick(&s->surface, o, d, distance_max, NULL, 0, hit, NULL);
@@ -51,13 +52,16 @@ static void a_hit_says_where_it_is(void **state)
     assert_int_equal(s.mesh.header->submesh_count, 2);
     for (int k = 0; k < 500; k++) {
         const float at[3] = { test_random_float(&r, 0.01f, 3.99f), test_random_float(&r, 0.01f, 3.99f), 0.0f };
-        const float from[3] = { test_random_float(&r, -2.0f, 6.0f), test_random_float(&r, -2.0f, 6.0f), test_random_float(&r, 1.0f, 4.0f) };
+        const float from[3] = { test_random_float(&r, -2.0f, 6.0f), test_random_float(&r, -2.0f, 6.0f),
+                                test_random_float(&r, 1.0f, 4.0f) };
         noh_pick_hit hit;
         float sum = 0.0f;
-        assert_int_equal(pick(&s, from[0], from[1], from[2], at[0] - from[0], at[1] - from[1], -from[2], 2.0f, &hit), NOH_OK);
+        assert_int_equal(pick(&s, from[0], from[1], from[2], at[0] - from[0], at[1] - from[1], -from[2], 2.0f, &hit),
+                         NOH_OK);
         assert_true(fabsf(hit.distance - 1.0f) < 1e-5f);
         assert_true(3 * hit.triangle >= s.mesh.submeshes[hit.submesh].first_index);
-        assert_true(3 * hit.triangle < s.mesh.submeshes[hit.submesh].first_index + s.mesh.submeshes[hit.submesh].index_count);
+        assert_true(3 * hit.triangle <
+                    s.mesh.submeshes[hit.submesh].first_index + s.mesh.submeshes[hit.submesh].index_count);
         assert_int_equal(hit.joint, NOH_NONE);
         submeshes |= 1u << hit.submesh;
         for (uint32_t i = 0; i < 3; i++) {
@@ -66,7 +70,8 @@ static void a_hit_says_where_it_is(void **state)
                 mixed += hit.barycentric[c] * s.mesh.positions[3 * noh_mesh_index(&s.mesh, 3 * hit.triangle + c) + i];
             }
             assert_true(hit.barycentric[i] > -1e-5f);
-            assert_true(fabsf(mixed - at[i]) < 1e-5f && fabsf(hit.point[i] - at[i]) < 1e-5f && fabsf(hit.bind_point[i] - at[i]) < 1e-5f);
+            assert_true(fabsf(mixed - at[i]) < 1e-5f && fabsf(hit.point[i] - at[i]) < 1e-5f &&
+                        fabsf(hit.bind_point[i] - at[i]) < 1e-5f);
             sum += hit.barycentric[i];
         }
         assert_true(fabsf(sum - 1.0f) < 1e-6f);
@@ -88,7 +93,8 @@ static void a_ray_ends_at_its_distance(void **state)
     assert_int_equal(pick(&s, 1.2f, 1.7f, -3, 0, 0, 1, 3.01f, &hit), NOH_OK); /* both sides count */
     assert_int_equal(pick(&s, -0.003f, 1.7f, 3, 0, 0, -1, 100, &hit), NOH_ERR_NOT_FOUND);
     assert_int_equal(pick(&s, 4.003f, 1.7f, 3, 0, 0, -1, 100, &hit), NOH_ERR_NOT_FOUND);
-    assert_int_equal(pick(&s, -5, 2, 0, 1, 0, 0, 100, &hit), NOH_ERR_NOT_FOUND); /* along the sheet: it has no thickness */
+    assert_int_equal(pick(&s, -5, 2, 0, 1, 0, 0, 100, &hit),
+                     NOH_ERR_NOT_FOUND); /* along the sheet: it has no thickness */
     assert_int_equal(pick(&s, -5, 2, 1, 1, 0, 0, 100, &hit), NOH_ERR_NOT_FOUND);
     free(s.bytes);
 }
@@ -101,9 +107,11 @@ static void no_ray_slips_through_an_edge(void **state)
     (void)state;
     sheet_open(&s, 0);
     for (int k = 0; k < 4000; k++) {
-        const float along = k % 4 ? test_random_float(&r, 0.1f, 3.9f) : (float)(1u + test_random_below(&r, 3)), edge = (float)(1u + test_random_below(&r, 3));
+        const float along = k % 4 ? test_random_float(&r, 0.1f, 3.9f) : (float)(1u + test_random_below(&r, 3)),
+                    edge = (float)(1u + test_random_below(&r, 3));
         const float x = k % 2 ? along : edge, y = k % 2 ? edge : along;
-        const float from[3] = { test_random_float(&r, -9.0f, 9.0f), test_random_float(&r, -9.0f, 9.0f), test_random_float(&r, 0.5f, 9.0f) };
+        const float from[3] = { test_random_float(&r, -9.0f, 9.0f), test_random_float(&r, -9.0f, 9.0f),
+                                test_random_float(&r, 0.5f, 9.0f) };
         noh_pick_hit hit;
         assert_int_equal(pick(&s, from[0], from[1], from[2], x - from[0], y - from[1], -from[2], 2.0f, &hit), NOH_OK);
     }
@@ -124,7 +132,8 @@ static void the_nearest_layer_is_hit(void **state)
         assert_true(fabsf(hit.distance - 2.0f) < 1e-5f && fabsf(hit.point[2] - 1.0f) < 1e-5f);
         assert_int_equal(pick(&s, x, y, -3, 0, 0, 1, 100, &hit), NOH_OK);
         assert_true(fabsf(hit.distance - 3.0f) < 1e-5f && fabsf(hit.point[2]) < 1e-5f);
-        assert_int_equal(pick(&s, x, y, 0.6f, 0, 0, 1, 100, &hit), NOH_OK); /* between them: what lies behind does not count */
+        assert_int_equal(pick(&s, x, y, 0.6f, 0, 0, 1, 100, &hit),
+                         NOH_OK); /* between them: what lies behind does not count */
         assert_true(fabsf(hit.distance - 0.4f) < 1e-5f);
         assert_int_equal(pick(&s, x, y, 0.6f, 0, 0, -1, 100, &hit), NOH_OK);
         assert_true(fabsf(hit.distance - 0.6f) < 1e-5f);
@@ -144,7 +153,8 @@ static void placed_surfaces_are_hit_where_they_stand(void **state)
     assert_int_equal(pick(&s, 10 - 2 * 1.7f, 20 + 2 * 1.2f, 40, 0, 0, -1, 100, &hit), NOH_OK);
     assert_true(fabsf(hit.distance - 10.0f) < 1e-4f);
     assert_true(fabsf(hit.bind_point[0] - 1.2f) < 1e-5f && fabsf(hit.bind_point[1] - 1.7f) < 1e-5f);
-    assert_true(fabsf(hit.point[0] - 6.6f) < 1e-4f && fabsf(hit.point[1] - 22.4f) < 1e-4f && fabsf(hit.point[2] - 30.0f) < 1e-4f);
+    assert_true(fabsf(hit.point[0] - 6.6f) < 1e-4f && fabsf(hit.point[1] - 22.4f) < 1e-4f &&
+                fabsf(hit.point[2] - 30.0f) < 1e-4f);
     free(s.bytes);
 }
 
@@ -170,7 +180,8 @@ static void the_joint_is_that_of_the_point(void **state)
     }
     assert_true(noh_pick_scratch_size(&mesh) <= sizeof scratch);
     for (int k = 0; k < 500; k++) {
-        const float o[3] = { 4, test_random_float(&r, 0.05f, 2.95f), test_random_float(&r, -0.4f, 0.4f) }, d[3] = { -1, 0, 0 };
+        const float o[3] = { 4, test_random_float(&r, 0.05f, 2.95f), test_random_float(&r, -0.4f, 0.4f) },
+                    d[3] = { -1, 0, 0 };
         double sums[4] = { 0, 0, 0, 0 };
         uint32_t best = 0;
         noh_pick_hit hit;
@@ -178,7 +189,8 @@ static void the_joint_is_that_of_the_point(void **state)
         for (uint32_t corner = 0; corner < 3; corner++) {
             uint32_t joints[NOH_INFLUENCES_MAX];
             float weights[NOH_INFLUENCES_MAX];
-            const uint32_t n = noh_mesh_influences(&mesh, noh_mesh_index(&mesh, 3 * hit.triangle + corner), joints, weights);
+            const uint32_t n = noh_mesh_influences(&mesh, noh_mesh_index(&mesh, 3 * hit.triangle + corner), joints,
+                                                   weights);
             for (uint32_t i = 0; i < n; i++) {
                 sums[joints[i]] += (double)hit.barycentric[corner] * (double)weights[i];
             }

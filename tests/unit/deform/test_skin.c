@@ -42,16 +42,20 @@ static void unmake(made *x)
 
 /* ---- SIMD ---- */
 
-typedef void (*skin_function)(const noh_mesh *, const float *, const noh_morph_layers *, uint32_t, uint32_t, float *, float *, float *);
+typedef void (*skin_function)(const noh_mesh *, const float *, const noh_morph_layers *, uint32_t, uint32_t, float *,
+                              float *, float *);
 
 #if defined(__x86_64__)
-void noh_skin_vertices_sse2(const noh_mesh *, const float *, const noh_morph_layers *, uint32_t, uint32_t, float *, float *, float *);
-void noh_skin_vertices_avx2(const noh_mesh *, const float *, const noh_morph_layers *, uint32_t, uint32_t, float *, float *, float *);
+void noh_skin_vertices_sse2(const noh_mesh *, const float *, const noh_morph_layers *, uint32_t, uint32_t, float *,
+                            float *, float *);
+void noh_skin_vertices_avx2(const noh_mesh *, const float *, const noh_morph_layers *, uint32_t, uint32_t, float *,
+                            float *, float *);
 #endif
 
 #define GUARD 8u
 
-static void compare_range(const made *x, skin_function function, const noh_morph_layers *layers, uint32_t first, uint32_t count)
+static void compare_range(const made *x, skin_function function, const noh_morph_layers *layers, uint32_t first,
+                          uint32_t count)
 {
     const uint32_t sizes[3] = { 3, 3, 4 };
     float *out[3], *expected[3];
@@ -73,7 +77,10 @@ static void compare_range(const made *x, skin_function function, const noh_morph
     }
     function(&x->mesh, x->matrices, layers, first, count, out[0], out[1], out[2]);
     for (int k = 0; k < 3; k++) {
-        test_same_floats(out[k], expected[k], (size_t)sizes[k] * count + GUARD, k == 0 ? "positions" : k == 1 ? "normals" : "tangents");
+        test_same_floats(out[k], expected[k], (size_t)sizes[k] * count + GUARD,
+                         k == 0   ? "positions"
+                         : k == 1 ? "normals"
+                                  : "tangents");
         free(out[k]);
         free(expected[k]);
     }
@@ -100,7 +107,8 @@ static void check_simd(const skin_cylinder *c, const skin_options *options, skin
     for (int k = 0; k < 12; k++) {
         uint32_t first = k ? test_random_below(&r, vertices) : 0;
         random_matrices(&x, &r);
-        compare_range(&x, function, k % 2 ? &layers : NULL, first, k < 2 ? vertices - first : test_random_below(&r, vertices - first + 1u));
+        compare_range(&x, function, k % 2 ? &layers : NULL, first,
+                      k < 2 ? vertices - first : test_random_below(&r, vertices - first + 1u));
     }
     free(layers.position);
     unmake(&x);
@@ -234,12 +242,14 @@ static float *sorted_triangles(const noh_mesh *mesh)
     for (uint32_t i = 0; i < count; i += 3) {
         uint32_t start = 0; /* the cache order may turn a triangle round: begin with its smallest corner */
         for (uint32_t k = 1; k < 3; k++) {
-            if (memcmp(mesh->positions + 3u * (size_t)noh_mesh_index(mesh, i + k), mesh->positions + 3u * (size_t)noh_mesh_index(mesh, i + start), 12) < 0) {
+            if (memcmp(mesh->positions + 3u * (size_t)noh_mesh_index(mesh, i + k),
+                       mesh->positions + 3u * (size_t)noh_mesh_index(mesh, i + start), 12) < 0) {
                 start = k;
             }
         }
         for (uint32_t k = 0; k < 3; k++) {
-            memcpy(corners + 3 * (size_t)(i + k), mesh->positions + 3u * (size_t)noh_mesh_index(mesh, i + (start + k) % 3), 12);
+            memcpy(corners + 3 * (size_t)(i + k),
+                   mesh->positions + 3u * (size_t)noh_mesh_index(mesh, i + (start + k) % 3), 12);
         }
     }
     qsort(corners, count / 3, 36, compare_triangles);
@@ -335,7 +345,8 @@ static void normals_stay_at_right_angles(void **state)
                 outward[r] = m[4 * r] * rest.position[0] + m[4 * r + 2] * rest.position[2];
             }
             assert_true(fabs((double)noh_dot3(moved.normal, along)) < 1e-4);
-            assert_true(fabs((double)noh_dot3(moved.normal, moved.tangent)) < 1e-3); /* 16-bit rest vectors, stretched */
+            assert_true(fabs((double)noh_dot3(moved.normal, moved.tangent)) <
+                        1e-3); /* 16-bit rest vectors, stretched */
             assert_true(noh_dot3(moved.normal, outward) > 0.0f);
             assert_true(fabs(length3(moved.normal) - 1.0) < 1e-6 && fabs(length3(moved.tangent) - 1.0) < 1e-6);
             assert_true(moved.tangent[3] == (mirror ? -rest.tangent[3] : rest.tangent[3]));
@@ -357,14 +368,15 @@ static void joints_of_no_size_give_finite_vertices(void **state)
                 x.matrices[12 * j + (uint32_t)i] = i % 5 == 0 && j >= dropped ? 1.0f : 0.0f;
             }
         }
-        noh_skin_vertices(&x.mesh, x.matrices, NULL, 0, x.mesh.header->vertex_count, all, all + 3 * x.mesh.header->vertex_count,
-                          all + 6 * x.mesh.header->vertex_count);
+        noh_skin_vertices(&x.mesh, x.matrices, NULL, 0, x.mesh.header->vertex_count, all,
+                          all + 3 * x.mesh.header->vertex_count, all + 6 * x.mesh.header->vertex_count);
         noh_skin_dual_quaternions(x.matrices, 4, joints);
         for (uint32_t v = 0; v < x.mesh.header->vertex_count; v++) {
             noh_vertex vertex;
             noh_skin_vertex_dual(&x.mesh, joints, NULL, v, &vertex);
             for (int i = 0; i < 3; i++) {
-                assert_true(vertex.position[i] - vertex.position[i] == 0.0f && vertex.normal[i] - vertex.normal[i] == 0.0f);
+                assert_true(vertex.position[i] - vertex.position[i] == 0.0f &&
+                            vertex.normal[i] - vertex.normal[i] == 0.0f);
             }
             assert_true(fabs(length3(vertex.normal) - 1.0) < 1e-5);
         }
@@ -423,7 +435,8 @@ static void a_twisted_tube_keeps_its_radius(void **state)
         noh_skin_dual_quaternions(x.matrices, 2, joints);
         linear = smallest_radius(&x.mesh, x.matrices, NULL);
         dual = smallest_radius(&x.mesh, x.matrices, joints);
-        print_message("%3d degrees: linear %.3f, dual quaternions %.3f of the radius\n", degrees, (double)linear / 0.5, (double)dual / 0.5);
+        print_message("%3d degrees: linear %.3f, dual quaternions %.3f of the radius\n", degrees, (double)linear / 0.5,
+                      (double)dual / 0.5);
         assert_true(fabsf(dual - 0.5f) < 2e-6f);
         assert_true(fabsf(linear - 0.5f * fabsf(cosf((float)degrees * 3.14159265f / 360.0f))) < 1e-2f);
     }
@@ -445,7 +458,8 @@ static void one_joint_is_its_matrix(void **state)
         noh_skin_dual_quaternions(x.matrices, 3, joints);
         for (uint32_t v = 0; v < x.mesh.header->vertex_count; v++) {
             noh_vertex a, b;
-            double size = length3(x.matrices) + length3(x.matrices + 4) + length3(x.matrices + 8) + length3(x.matrices + 12);
+            double size = length3(x.matrices) + length3(x.matrices + 4) + length3(x.matrices + 8) +
+                          length3(x.matrices + 12);
             noh_skin_vertex(&x.mesh, x.matrices, NULL, v, &a);
             noh_skin_vertex_dual(&x.mesh, joints, NULL, v, &b);
             for (int i = 0; i < 3; i++) {

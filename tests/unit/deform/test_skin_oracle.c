@@ -53,8 +53,8 @@ static uint32_t *nodes_of_joints(const skin_asset *a, const noh_skin *skin)
 }
 
 /* sum of w * world * inverse bind * (base + deltas), all from the pack's floats */
-static void formula(const noh_mesh *mesh, const noh_skin *skin, const uint32_t *nodes,
-                    const double *worlds, const noh_morph_layers *layers, uint32_t vertex, double out[3])
+static void formula(const noh_mesh *mesh, const noh_skin *skin, const uint32_t *nodes, const double *worlds,
+                    const noh_morph_layers *layers, uint32_t vertex, double out[3])
 {
     uint32_t joints[NOH_INFLUENCES_MAX], count;
     float weights[NOH_INFLUENCES_MAX];
@@ -71,7 +71,8 @@ static void formula(const noh_mesh *mesh, const noh_skin *skin, const uint32_t *
         const double *w = worlds + 16 * (size_t)nodes[joints[i]];
         double q[3];
         for (int r = 0; r < 3; r++) {
-            q[r] = (double)b[4 * r] * p[0] + (double)b[4 * r + 1] * p[1] + (double)b[4 * r + 2] * p[2] + (double)b[4 * r + 3];
+            q[r] = (double)b[4 * r] * p[0] + (double)b[4 * r + 1] * p[1] + (double)b[4 * r + 2] * p[2] +
+                   (double)b[4 * r + 3];
         }
         for (int r = 0; r < 3; r++) {
             out[r] += (double)weights[i] * (w[r] * q[0] + w[4 + r] * q[1] + w[8 + r] * q[2] + w[12 + r]);
@@ -144,8 +145,8 @@ static void check_asset(const char *name, const skin_options *options, int times
             }
         }
     }
-    print_message("%s: %llu vertices, arithmetic off by %.2g of the box, from the file by %.2g\n", name, (unsigned long long)e.compared,
-                  e.arithmetic, e.whole);
+    print_message("%s: %llu vertices, arithmetic off by %.2g of the box, from the file by %.2g\n", name,
+                  (unsigned long long)e.compared, e.arithmetic, e.whole);
     assert_true(e.compared > 0);
     assert_true(e.arithmetic <= 1e-6);
     assert_true(e.whole <= 1e-6);
@@ -153,12 +154,36 @@ static void check_asset(const char *name, const skin_options *options, int times
     skin_asset_close(&a);
 }
 
-static void body(void **state) { (void)state; check_asset("hero/body.glb", NULL, TIMES); }
-static void body_of_seven_influences(void **state) { (void)state; check_asset("hero/body_8inf.glb", NULL, TIMES); }
-static void body_quantized(void **state) { (void)state; check_asset("hero/body_quantized.glb", NULL, TIMES); }
-static void fox(void **state) { (void)state; check_asset("khronos/Fox.glb", NULL, TIMES); }
-static void robot_joined(void **state) { (void)state; check_asset("khronos/RobotExpressive.glb", NULL, TIMES); }
-static void simple_skin(void **state) { (void)state; check_asset("khronos/SimpleSkin.gltf", NULL, TIMES); }
+static void body(void **state)
+{
+    (void)state;
+    check_asset("hero/body.glb", NULL, TIMES);
+}
+static void body_of_seven_influences(void **state)
+{
+    (void)state;
+    check_asset("hero/body_8inf.glb", NULL, TIMES);
+}
+static void body_quantized(void **state)
+{
+    (void)state;
+    check_asset("hero/body_quantized.glb", NULL, TIMES);
+}
+static void fox(void **state)
+{
+    (void)state;
+    check_asset("khronos/Fox.glb", NULL, TIMES);
+}
+static void robot_joined(void **state)
+{
+    (void)state;
+    check_asset("khronos/RobotExpressive.glb", NULL, TIMES);
+}
+static void simple_skin(void **state)
+{
+    (void)state;
+    check_asset("khronos/SimpleSkin.gltf", NULL, TIMES);
+}
 
 static void robot_in_parts(void **state)
 {
@@ -179,14 +204,10 @@ static void body_split_into_small_palettes(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(body),
-    cmocka_unit_test(body_of_seven_influences),
-    cmocka_unit_test(body_quantized),
-    cmocka_unit_test(fox),
-    cmocka_unit_test(robot_joined),
-    cmocka_unit_test(robot_in_parts),
-    cmocka_unit_test(simple_skin),
-    cmocka_unit_test(body_split_into_small_palettes),
+    cmocka_unit_test(body),           cmocka_unit_test(body_of_seven_influences),
+    cmocka_unit_test(body_quantized), cmocka_unit_test(fox),
+    cmocka_unit_test(robot_joined),   cmocka_unit_test(robot_in_parts),
+    cmocka_unit_test(simple_skin),    cmocka_unit_test(body_split_into_small_palettes),
 };
 
 TEST_MAIN(tests, NULL, NULL)

@@ -62,7 +62,8 @@ static void bend(tube *t, float radians, float sx, float sy)
 
 static double distance(const float *a, const float *b)
 {
-    return sqrt((double)((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2])));
+    return sqrt(
+        (double)((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2])));
 }
 
 /* The weights of a packed vertex before it was packed, and its joints. */
@@ -107,16 +108,17 @@ static void a_vertex_may_follow_many_joints(void **state)
     free_tube(limited);
 }
 
-/* Four rows of constants for each matrix waste one: 16 KiB, the smallest uniform block that ES 3.0 guarantees, then hold
- * 256 joints and nothing beside them. Three rows leave room. The converter fills palettes to that limit and not beyond,
- * and noh_skin_matrices writes three rows of four for a joint, not a float more. */
+/* Four rows of constants for each matrix waste one: 16 KiB, the smallest uniform block that ES 3.0 guarantees, then
+ * hold 256 joints and nothing beside them. Three rows leave room. The converter fills palettes to that limit and not
+ * beyond, and noh_skin_matrices writes three rows of four for a joint, not a float more. */
 static void a_palette_fits_a_uniform_block(void **state)
 {
     const skin_cylinder c = { 4, 400, 300, 2, 0, 0, 40.0f, 0.5f };
     const uint32_t block = 16384, others = 1024, row_bytes = 4u * sizeof(float); /* others: view, lights */
     tube *t = make_tube(&c, NULL);
     const uint32_t joints = t->skin.header->joint_count;
-    float *space = test_zeros(12 * sizeof(float) * t->skeleton.joint_count), *matrices = test_zeros(sizeof(float) * (12u * joints + 1u));
+    float *space = test_zeros(12 * sizeof(float) * t->skeleton.joint_count),
+          *matrices = test_zeros(sizeof(float) * (12u * joints + 1u));
     uint32_t fullest = 0;
     (void)state;
     assert_int_equal(joints, 300);
@@ -141,8 +143,8 @@ static void a_palette_fits_a_uniform_block(void **state)
     free_tube(t);
 }
 
-/* Weights rounded to bytes one by one sum to anything near 255, and are off by up to 1/510. Ours sum to one, and each is
- * the source's to 2^-21. */
+/* Weights rounded to bytes one by one sum to anything near 255, and are off by up to 1/510. Ours sum to one, and each
+ * is the source's to 2^-21. */
 static void quantised_weights_are_the_source_s(void **state)
 {
     const skin_cylinder c = { 3, 60, 8, 4, 0, 0, 4.0f, 0.5f };
@@ -268,7 +270,8 @@ static void morph_then_skin(void **state)
 
 /* ---- picking ---- */
 
-/* A click clones nothing, sees the morphed and posed surface, leaves its outputs alone on a miss, and finds rigid meshes. */
+/* A click clones nothing, sees the morphed and posed surface, leaves its outputs alone on a miss, and finds rigid
+ * meshes. */
 static void picking_sees_the_morphed_and_posed_surface(void **state)
 {
     const skin_cylinder c = { 24, 17, 3, 2, 1, 0, 2.0f, 0.5f };
@@ -287,7 +290,8 @@ static void picking_sees_the_morphed_and_posed_surface(void **state)
     o[1] = at[1];
     assert_int_equal(noh_pick(&plain, o, d, 100.0f, scratch, 36 * sizeof(float), &hit, NULL), NOH_OK);
     assert_int_equal(noh_pick(&smiling, o, d, 100.0f, scratch, 36 * sizeof(float), &other, NULL), NOH_OK);
-    assert_true(hit.distance - other.distance > 0.15f); /* the bulge of 0.2 comes first; a clone of the base misses it */
+    assert_true(hit.distance - other.distance >
+                0.15f); /* the bulge of 0.2 comes first; a clone of the base misses it */
     bend(t, 1.0f, 1, 1);
     memset(&miss, 0x5a, sizeof miss);
     hit = miss;
@@ -356,7 +360,8 @@ static void the_mix_begins_with_the_source(void **state)
         noh_morph_accumulate(&mesh, &s, &layers);
         assert_true(s == 0.25f * (float)k);
         for (uint32_t v = 0; v < mesh.header->vertex_count; v++) {
-            const float *a = source->meshes[0].position + 3 * (size_t)order[v], *b = source->meshes[1].position + 3 * (size_t)order[v];
+            const float *a = source->meshes[0].position + 3 * (size_t)order[v],
+                        *b = source->meshes[1].position + 3 * (size_t)order[v];
             float got[3], mix[3], wrong[3];
             noh_morph_position(&mesh, &layers, v, got);
             for (int i = 0; i < 3; i++) {
@@ -386,7 +391,7 @@ static void ping_pong_never_stalls(void **state)
 {
     const int64_t wrap = (int64_t)1 << 32;
     (void)state;
-    assert_true(source_ping_pong(500) == 0.0f && source_ping_pong(501) == 0.0f); /* a stall */
+    assert_true(source_ping_pong(500) == 0.0f && source_ping_pong(501) == 0.0f);             /* a stall */
     assert_true(fabsf(source_ping_pong(0) - source_ping_pong(0xffffffffu)) > 2.0f / 250.0f); /* a jump */
     for (int64_t t = -2000; t < 4000; t++) {
         float a = noh_ping_pong(t, 250), b = noh_ping_pong(t + 1, 250);
@@ -467,8 +472,8 @@ static void two_streams_must_correspond(void **state)
 
 /* ---- geometry blending ---- */
 
-/* n matrices need n - 1 weights: v = W1 V1 + .. + (1 - W1 - ..) Vn, for 2, 3 and 4, with the weights as they were before
- * they were packed. */
+/* n matrices need n - 1 weights: v = W1 V1 + .. + (1 - W1 - ..) Vn, for 2, 3 and 4, with the weights as they were
+ * before they were packed. */
 static void the_last_weight_is_implied(void **state)
 {
     (void)state;

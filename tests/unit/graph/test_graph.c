@@ -46,7 +46,8 @@ static uint32_t add_clip(rig *r, uint32_t clip, uint32_t sync)
     return node;
 }
 
-static void transition(rig *r, uint32_t i, uint32_t from, uint32_t to, noh_condition when, uint32_t param, float threshold, uint32_t ticks, uint32_t flags)
+static void transition(rig *r, uint32_t i, uint32_t from, uint32_t to, noh_condition when, uint32_t param,
+                       float threshold, uint32_t ticks, uint32_t flags)
 {
     noh_graph_transition *t = &r->transitions[i];
     t->from = (uint16_t)from;
@@ -102,7 +103,8 @@ static void rig_open(rig *r)
     r->space.point_count = 4;
     r->space.points = r->points;
     r->space.triangles = r->triangles;
-    assert_int_equal(noh_blend_space_2d_triangulate(4, r->points, r->triangles, &r->space.triangle_count, NULL), NOH_OK);
+    assert_int_equal(noh_blend_space_2d_triangulate(4, r->points, r->triangles, &r->space.triangle_count, NULL),
+                     NOH_OK);
     r->g.threshold_count = 2;
     r->g.space_count = 1;
     r->g.param_count = PARAMS;
@@ -130,11 +132,19 @@ static void stage_open(stage *g)
     rig_open(&g->r);
     assert_int_equal(noh_graph_check(&g->r.g, &g->r.s.set, NULL), NOH_OK);
     assert_int_equal(noh_graph_state_init(g->memory, sizeof g->memory, &g->r.g, &g->r.s.set, &g->state, NULL), NOH_OK);
-    assert_int_equal(noh_graph_scratch_init(g->scratch_memory, sizeof g->scratch_memory, &g->r.g, &g->r.s.set, &g->scratch, NULL), NOH_OK);
+    assert_int_equal(
+        noh_graph_scratch_init(g->scratch_memory, sizeof g->scratch_memory, &g->r.g, &g->r.s.set, &g->scratch, NULL),
+        NOH_OK);
 }
 
-static void step(stage *g, uint32_t ticks) { (void)noh_graph_step(g->state, &g->r.g, &g->r.s.set, ticks, NULL, NULL); }
-static void param(stage *g, uint32_t p, float value) { assert_int_equal(noh_graph_set_param(g->state, p, value), NOH_OK); }
+static void step(stage *g, uint32_t ticks)
+{
+    (void)noh_graph_step(g->state, &g->r.g, &g->r.s.set, ticks, NULL, NULL);
+}
+static void param(stage *g, uint32_t p, float value)
+{
+    assert_int_equal(noh_graph_set_param(g->state, p, value), NOH_OK);
+}
 
 /* Take the pose; the one before is in `last`. Returns how many clips were sampled. */
 static uint32_t take_pose(stage *g)
@@ -145,7 +155,10 @@ static uint32_t take_pose(stage *g)
     return g->r.s.samples - samples;
 }
 
-static const noh_track *track(stage *g, uint32_t i) { return noh_controller_track(noh_graph_controller(g->state), i); }
+static const noh_track *track(stage *g, uint32_t i)
+{
+    return noh_controller_track(noh_graph_controller(g->state), i);
+}
 
 static void clip_pose(stage *g, uint32_t slot, noh_transform *pose, float *floats)
 {
@@ -169,22 +182,38 @@ static void test_counts_and_pointers_broken_in_turn(void **state)
     rig r;
     (void)state;
     rig_open(&r);
-    r.g.node_count = 0; bad_graph(&r, NOH_ERR_ARG, "node_count");
-    r.g.node_count = NOH_GRAPH_NODES_MAX + 1u; bad_graph(&r, NOH_ERR_ARG, "node_count");
-    r.g.clip_count = 0; bad_graph(&r, NOH_ERR_ARG, "clip_count");
-    r.g.clip_count = NOH_TRACKS_MAX + 1u; bad_graph(&r, NOH_ERR_ARG, "clip_count");
-    r.g.clip_count = CLIP_NODES - 1u; bad_graph(&r, NOH_ERR_DATA, "clip index");
-    r.g.child_count = NOH_GRAPH_NODES_MAX; bad_graph(&r, NOH_ERR_ARG, "child_count");
-    r.g.machine_count = NODES + 1u; bad_graph(&r, NOH_ERR_ARG, "machine_count");
-    r.g.machine_count = 2; bad_graph(&r, NOH_ERR_DATA, "machine_count");
-    r.g.param_count = NOH_GRAPH_PARAMS_MAX + 1u; bad_graph(&r, NOH_ERR_ARG, "param_count");
-    r.g.nodes = NULL; bad_graph(&r, NOH_ERR_ARG, "nodes");
-    r.g.children = NULL; bad_graph(&r, NOH_ERR_ARG, "children");
-    r.g.clips = NULL; bad_graph(&r, NOH_ERR_ARG, "clips");
-    r.g.transitions = NULL; bad_graph(&r, NOH_ERR_ARG, "transitions");
-    r.g.thresholds = NULL; bad_graph(&r, NOH_ERR_ARG, "thresholds");
-    r.g.spaces = NULL; bad_graph(&r, NOH_ERR_ARG, "spaces");
-    r.defaults[2] = NAN; bad_graph(&r, NOH_ERR_ARG, "param_defaults");
+    r.g.node_count = 0;
+    bad_graph(&r, NOH_ERR_ARG, "node_count");
+    r.g.node_count = NOH_GRAPH_NODES_MAX + 1u;
+    bad_graph(&r, NOH_ERR_ARG, "node_count");
+    r.g.clip_count = 0;
+    bad_graph(&r, NOH_ERR_ARG, "clip_count");
+    r.g.clip_count = NOH_TRACKS_MAX + 1u;
+    bad_graph(&r, NOH_ERR_ARG, "clip_count");
+    r.g.clip_count = CLIP_NODES - 1u;
+    bad_graph(&r, NOH_ERR_DATA, "clip index");
+    r.g.child_count = NOH_GRAPH_NODES_MAX;
+    bad_graph(&r, NOH_ERR_ARG, "child_count");
+    r.g.machine_count = NODES + 1u;
+    bad_graph(&r, NOH_ERR_ARG, "machine_count");
+    r.g.machine_count = 2;
+    bad_graph(&r, NOH_ERR_DATA, "machine_count");
+    r.g.param_count = NOH_GRAPH_PARAMS_MAX + 1u;
+    bad_graph(&r, NOH_ERR_ARG, "param_count");
+    r.g.nodes = NULL;
+    bad_graph(&r, NOH_ERR_ARG, "nodes");
+    r.g.children = NULL;
+    bad_graph(&r, NOH_ERR_ARG, "children");
+    r.g.clips = NULL;
+    bad_graph(&r, NOH_ERR_ARG, "clips");
+    r.g.transitions = NULL;
+    bad_graph(&r, NOH_ERR_ARG, "transitions");
+    r.g.thresholds = NULL;
+    bad_graph(&r, NOH_ERR_ARG, "thresholds");
+    r.g.spaces = NULL;
+    bad_graph(&r, NOH_ERR_ARG, "spaces");
+    r.defaults[2] = NAN;
+    bad_graph(&r, NOH_ERR_ARG, "param_defaults");
 }
 
 static void test_node_fields_broken_in_turn(void **state)
@@ -196,41 +225,76 @@ static void test_node_fields_broken_in_turn(void **state)
     assert_int_equal(r.nodes[machine].kind, NOH_NODE_MACHINE);
     assert_int_equal(r.nodes[space2].kind, NOH_NODE_SPACE_2D);
     assert_int_equal(r.nodes[mask].kind, NOH_NODE_MASK);
-    r.nodes[2].kind = 7; bad_graph(&r, NOH_ERR_DATA, "kind");
-    r.nodes[0].child_count = 1; bad_graph(&r, NOH_ERR_DATA, "child_count");
-    r.nodes[mask].child_count = 1; bad_graph(&r, NOH_ERR_DATA, "child_count");
-    r.nodes[machine].child_count = NOH_GRAPH_CHILDREN_MAX + 1u; bad_graph(&r, NOH_ERR_DATA, "child_count");
-    r.nodes[2].first_child = 400; bad_graph(&r, NOH_ERR_DATA, "child range");
-    r.nodes[2].value = INFINITY; bad_graph(&r, NOH_ERR_DATA, "value");
-    r.nodes[2].param = PARAMS; bad_graph(&r, NOH_ERR_DATA, "param");
-    r.nodes[0].index = CLIP_NODES; bad_graph(&r, NOH_ERR_DATA, "clip index");
-    r.nodes[0].index = 1; bad_graph(&r, NOH_ERR_DATA, "clip index");
-    r.clips[4].clip = 99; bad_graph(&r, NOH_ERR_DATA, "clip desc");
-    r.nodes[mask].mask = 0; bad_graph(&r, NOH_ERR_DATA, "mask");
-    r.nodes[mask].mask = MASKS + 1u; bad_graph(&r, NOH_ERR_DATA, "mask");
-    r.nodes[2].first_item = 1; bad_graph(&r, NOH_ERR_DATA, "threshold range");
-    r.thresholds[1] = 0.0f; bad_graph(&r, NOH_ERR_DATA, "threshold order");
-    r.thresholds[0] = NAN; bad_graph(&r, NOH_ERR_DATA, "threshold order");
-    r.nodes[space2].first_item = 1; bad_graph(&r, NOH_ERR_DATA, "space");
-    r.nodes[space2].param_y = PARAMS; bad_graph(&r, NOH_ERR_DATA, "param_y");
-    r.space.point_count = 3; bad_graph(&r, NOH_ERR_DATA, "space points");
-    r.space.triangle_count = NOH_BLEND_SPACE_TRIANGLES_MAX + 1u; bad_graph(&r, NOH_ERR_DATA, "space triangles");
-    r.triangles[4] = 4; bad_graph(&r, NOH_ERR_DATA, "space triangle");
-    r.points[3] = NAN; bad_graph(&r, NOH_ERR_DATA, "space point");
-    r.nodes[machine].index = 1; bad_graph(&r, NOH_ERR_DATA, "machine index");
-    r.nodes[machine].first_item = 1; bad_graph(&r, NOH_ERR_DATA, "transition range");
-    r.transitions[0].to = 4; bad_graph(&r, NOH_ERR_DATA, "transition states");
-    r.transitions[0].from = 4; bad_graph(&r, NOH_ERR_DATA, "transition states");
-    r.transitions[0].from = 1; bad_graph(&r, NOH_ERR_DATA, "transition states");
-    r.transitions[0].condition = 4; bad_graph(&r, NOH_ERR_DATA, "transition condition");
-    r.transitions[0].param = PARAMS; bad_graph(&r, NOH_ERR_DATA, "transition param");
-    r.transitions[0].threshold = NAN; bad_graph(&r, NOH_ERR_DATA, "transition threshold");
-    r.transitions[0].curve = 2; bad_graph(&r, NOH_ERR_DATA, "transition curve");
-    r.transitions[0].flags = 4; bad_graph(&r, NOH_ERR_DATA, "transition flags");
-    r.transitions[2].duration_ticks = 0; bad_graph(&r, NOH_ERR_DATA, "transition duration");
-    r.children[0] = 1; bad_graph(&r, NOH_ERR_DATA, "children first");
-    r.children[0] = 5; bad_graph(&r, NOH_ERR_DATA, "children first");
-    r.g.node_count = NODES - 1u; bad_graph(&r, NOH_ERR_DATA, "more than one root");
+    r.nodes[2].kind = 7;
+    bad_graph(&r, NOH_ERR_DATA, "kind");
+    r.nodes[0].child_count = 1;
+    bad_graph(&r, NOH_ERR_DATA, "child_count");
+    r.nodes[mask].child_count = 1;
+    bad_graph(&r, NOH_ERR_DATA, "child_count");
+    r.nodes[machine].child_count = NOH_GRAPH_CHILDREN_MAX + 1u;
+    bad_graph(&r, NOH_ERR_DATA, "child_count");
+    r.nodes[2].first_child = 400;
+    bad_graph(&r, NOH_ERR_DATA, "child range");
+    r.nodes[2].value = INFINITY;
+    bad_graph(&r, NOH_ERR_DATA, "value");
+    r.nodes[2].param = PARAMS;
+    bad_graph(&r, NOH_ERR_DATA, "param");
+    r.nodes[0].index = CLIP_NODES;
+    bad_graph(&r, NOH_ERR_DATA, "clip index");
+    r.nodes[0].index = 1;
+    bad_graph(&r, NOH_ERR_DATA, "clip index");
+    r.clips[4].clip = 99;
+    bad_graph(&r, NOH_ERR_DATA, "clip desc");
+    r.nodes[mask].mask = 0;
+    bad_graph(&r, NOH_ERR_DATA, "mask");
+    r.nodes[mask].mask = MASKS + 1u;
+    bad_graph(&r, NOH_ERR_DATA, "mask");
+    r.nodes[2].first_item = 1;
+    bad_graph(&r, NOH_ERR_DATA, "threshold range");
+    r.thresholds[1] = 0.0f;
+    bad_graph(&r, NOH_ERR_DATA, "threshold order");
+    r.thresholds[0] = NAN;
+    bad_graph(&r, NOH_ERR_DATA, "threshold order");
+    r.nodes[space2].first_item = 1;
+    bad_graph(&r, NOH_ERR_DATA, "space");
+    r.nodes[space2].param_y = PARAMS;
+    bad_graph(&r, NOH_ERR_DATA, "param_y");
+    r.space.point_count = 3;
+    bad_graph(&r, NOH_ERR_DATA, "space points");
+    r.space.triangle_count = NOH_BLEND_SPACE_TRIANGLES_MAX + 1u;
+    bad_graph(&r, NOH_ERR_DATA, "space triangles");
+    r.triangles[4] = 4;
+    bad_graph(&r, NOH_ERR_DATA, "space triangle");
+    r.points[3] = NAN;
+    bad_graph(&r, NOH_ERR_DATA, "space point");
+    r.nodes[machine].index = 1;
+    bad_graph(&r, NOH_ERR_DATA, "machine index");
+    r.nodes[machine].first_item = 1;
+    bad_graph(&r, NOH_ERR_DATA, "transition range");
+    r.transitions[0].to = 4;
+    bad_graph(&r, NOH_ERR_DATA, "transition states");
+    r.transitions[0].from = 4;
+    bad_graph(&r, NOH_ERR_DATA, "transition states");
+    r.transitions[0].from = 1;
+    bad_graph(&r, NOH_ERR_DATA, "transition states");
+    r.transitions[0].condition = 4;
+    bad_graph(&r, NOH_ERR_DATA, "transition condition");
+    r.transitions[0].param = PARAMS;
+    bad_graph(&r, NOH_ERR_DATA, "transition param");
+    r.transitions[0].threshold = NAN;
+    bad_graph(&r, NOH_ERR_DATA, "transition threshold");
+    r.transitions[0].curve = 2;
+    bad_graph(&r, NOH_ERR_DATA, "transition curve");
+    r.transitions[0].flags = 4;
+    bad_graph(&r, NOH_ERR_DATA, "transition flags");
+    r.transitions[2].duration_ticks = 0;
+    bad_graph(&r, NOH_ERR_DATA, "transition duration");
+    r.children[0] = 1;
+    bad_graph(&r, NOH_ERR_DATA, "children first");
+    r.children[0] = 5;
+    bad_graph(&r, NOH_ERR_DATA, "children first");
+    r.g.node_count = NODES - 1u;
+    bad_graph(&r, NOH_ERR_DATA, "more than one root");
 }
 
 /* Random bytes in the node and child arrays: refused, or run within bounds. */
@@ -250,7 +314,9 @@ static void test_random_graphs_do_no_harm(void **state)
         if (noh_graph_check(&g.r.g, &g.r.s.set, NULL) != NOH_OK) continue;
         fine++;
         assert_int_equal(noh_graph_state_init(g.memory, sizeof g.memory, &g.r.g, &g.r.s.set, &g.state, NULL), NOH_OK);
-        assert_int_equal(noh_graph_scratch_init(g.scratch_memory, sizeof g.scratch_memory, &g.r.g, &g.r.s.set, &g.scratch, NULL), NOH_OK);
+        assert_int_equal(
+            noh_graph_scratch_init(g.scratch_memory, sizeof g.scratch_memory, &g.r.g, &g.r.s.set, &g.scratch, NULL),
+            NOH_OK);
         for (int i = 0; i < 6; i++) {
             if (i < PARAMS) (void)noh_graph_set_param(g.state, (uint32_t)i, 0.4f + (float)(seed >> 24));
             step(&g, 1600);
@@ -270,7 +336,8 @@ static void test_memory_is_exact(void **state)
     stage_open(&g);
     size = noh_graph_state_size(&g.r.g, &g.r.s.set);
     scratch_size = noh_graph_scratch_size(&g.r.g, &g.r.s.set);
-    print_message("graph of %u nodes, %u clips: %lu bytes of state, %u pose buffers\n", NODES, CLIP_NODES, (unsigned long)size, noh_graph_buffers(&g.r.g));
+    print_message("graph of %u nodes, %u clips: %lu bytes of state, %u pose buffers\n", NODES, CLIP_NODES,
+                  (unsigned long)size, noh_graph_buffers(&g.r.g));
     memset(g.memory, 0xa5, sizeof g.memory);
     assert_int_equal(noh_graph_state_init(g.memory, size - 1u, &g.r.g, &g.r.s.set, &s, &error), NOH_ERR_MEMORY);
     assert_int_equal(error.need, size);
@@ -278,11 +345,14 @@ static void test_memory_is_exact(void **state)
     assert_null(s);
     assert_int_equal(g.memory[0], 0xa5);
     assert_int_equal(noh_graph_state_init(g.memory, size, &g.r.g, &g.r.s.set, &g.state, &error), NOH_OK);
-    assert_int_equal(noh_graph_scratch_init(g.scratch_memory, scratch_size - 1u, &g.r.g, &g.r.s.set, &g.scratch, &error), NOH_ERR_MEMORY);
+    assert_int_equal(
+        noh_graph_scratch_init(g.scratch_memory, scratch_size - 1u, &g.r.g, &g.r.s.set, &g.scratch, &error),
+        NOH_ERR_MEMORY);
     assert_int_equal(error.need, scratch_size);
     assert_int_equal(noh_graph_scratch_init(NULL, scratch_size, &g.r.g, &g.r.s.set, &g.scratch, &error), NOH_ERR_ARG);
     memset(g.scratch_memory, 0xa5, sizeof g.scratch_memory);
-    assert_int_equal(noh_graph_scratch_init(g.scratch_memory, scratch_size, &g.r.g, &g.r.s.set, &g.scratch, &error), NOH_OK);
+    assert_int_equal(noh_graph_scratch_init(g.scratch_memory, scratch_size, &g.r.g, &g.r.s.set, &g.scratch, &error),
+                     NOH_OK);
     param(&g, P_LAYERS, 1.0f);
     for (int i = 0; i < 20; i++) {
         step(&g, 1000);
@@ -343,7 +413,7 @@ static void test_cross_fade_and_back_at_the_end(void **state)
     assert_int_equal(noh_graph_machine_state(g.state, 0), 1);
     step(&g, 1); /* decided at the start of a step */
     step(&g, 1);
-    assert_int_equal(noh_graph_machine_state(g.state, 0), 0); /* 9600 ticks before its end */
+    assert_int_equal(noh_graph_machine_state(g.state, 0), 0);     /* 9600 ticks before its end */
     assert_int_equal(track(&g, 0)->position, noh_position_of(1)); /* started anew */
 }
 
@@ -424,7 +494,8 @@ static void test_clips_of_joints_and_of_floats(void **state)
         graph.node_count = 3, graph.child_count = 2, graph.clip_count = 2;
         graph.nodes = nodes, graph.children = children, graph.clips = clips;
         assert_int_equal(noh_graph_state_init(memory, sizeof memory, &graph, &s.set, &it, NULL), NOH_OK);
-        assert_int_equal(noh_graph_scratch_init(scratch_memory, sizeof scratch_memory, &graph, &s.set, &scratch, NULL), NOH_OK);
+        assert_int_equal(noh_graph_scratch_init(scratch_memory, sizeof scratch_memory, &graph, &s.set, &scratch, NULL),
+                         NOH_OK);
         scene_pose(&s, WALK, 0, walk, walk_floats);
         scene_pose(&s, WAVE, 0, face, face_floats);
         noh_graph_pose(it, &graph, &s.set, &scratch, pose, floats);

@@ -23,12 +23,14 @@ static noh_graph_node node_of(noh_node_kind kind, uint32_t first_child, uint32_t
 /* Amounts outside 0..1 are held at its ends, NaN at 0. */
 static void amounts_are_held(void **state)
 {
-    static const float given[] = { -3.0f, 0.0f, 0.25f, 1.0f, 7.0f, NAN }, held[] = { 0.0f, 0.0f, 0.25f, 1.0f, 1.0f, 0.0f };
+    static const float given[] = { -3.0f, 0.0f, 0.25f, 1.0f, 7.0f, NAN },
+                       held[] = { 0.0f, 0.0f, 0.25f, 1.0f, 1.0f, 0.0f };
     const noh_graph graph = { 0 };
     const noh_graph_view view = { &graph, NULL, NULL, 0 };
     (void)state;
     for (size_t i = 0; i < sizeof given / sizeof given[0]; i++) {
-        const noh_graph_node blend = node_of(NOH_NODE_BLEND, 0, 2, given[i]), add = node_of(NOH_NODE_ADD, 0, 2, given[i]);
+        const noh_graph_node blend = node_of(NOH_NODE_BLEND, 0, 2, given[i]),
+                             add = node_of(NOH_NODE_ADD, 0, 2, given[i]);
         float local[2];
         noh_graph_child_weights(&view, &blend, local);
         assert_true(local[0] == 1.0f - held[i] && local[1] == held[i]);
@@ -37,7 +39,8 @@ static void amounts_are_held(void **state)
     }
 }
 
-/* A machine is in one state, or fades along its curve; an inertial switch shows the old state until the pose is taken. */
+/* A machine is in one state, or fades along its curve; an inertial switch shows the old state until the pose is taken.
+ */
 static void machines_fade_along_their_curve(void **state)
 {
     const noh_graph graph = { 0 };
@@ -62,13 +65,14 @@ static void machines_fade_along_their_curve(void **state)
     assert_true(local[1] == 1.0f && local[2] == 0.0f);
 }
 
-/* Weights multiply from the root down. A product that would underflow stays above zero: what a parent asks for has to be
- * sampled. Zero stays zero. */
+/* Weights multiply from the root down. A product that would underflow stays above zero: what a parent asks for has to
+ * be sampled. Zero stays zero. */
 static void products_never_vanish(void **state)
 {
     static const uint16_t children[4] = { 0, 1, 2, 3 };
-    noh_graph_node nodes[5] = { node_of(NOH_NODE_CLIP, 0, 0, 0), node_of(NOH_NODE_CLIP, 0, 0, 0), node_of(NOH_NODE_CLIP, 0, 0, 0),
-                                node_of(NOH_NODE_BLEND, 0, 2, 1e-30f), node_of(NOH_NODE_BLEND, 2, 2, 1e-30f) };
+    noh_graph_node nodes[5] = { node_of(NOH_NODE_CLIP, 0, 0, 0), node_of(NOH_NODE_CLIP, 0, 0, 0),
+                                node_of(NOH_NODE_CLIP, 0, 0, 0), node_of(NOH_NODE_BLEND, 0, 2, 1e-30f),
+                                node_of(NOH_NODE_BLEND, 2, 2, 1e-30f) };
     noh_graph graph;
     noh_graph_view view = { &graph, NULL, NULL, 0 };
     float weights[5];
@@ -91,8 +95,8 @@ static void products_never_vanish(void **state)
 static void machines_shut_the_other_states_out(void **state)
 {
     static const uint16_t children[3] = { 0, 1, 2 };
-    const noh_graph_node nodes[4] = { node_of(NOH_NODE_CLIP, 0, 0, 0), node_of(NOH_NODE_CLIP, 0, 0, 0), node_of(NOH_NODE_CLIP, 0, 0, 0),
-                                      node_of(NOH_NODE_MACHINE, 0, 3, 0) };
+    const noh_graph_node nodes[4] = { node_of(NOH_NODE_CLIP, 0, 0, 0), node_of(NOH_NODE_CLIP, 0, 0, 0),
+                                      node_of(NOH_NODE_CLIP, 0, 0, 0), node_of(NOH_NODE_MACHINE, 0, 3, 0) };
     const noh_machine m = { 2, 0, 10, 100, NOH_CURVE_LINEAR, 0, { 0, 0 } };
     noh_graph graph;
     const noh_graph_view view = { &graph, NULL, &m, 0 };

@@ -166,11 +166,14 @@ static void a_level_costs_less(void **state)
 
 /* ---- skinning ---- */
 
-typedef void (*skin_function)(const noh_mesh *, const float *, const noh_morph_layers *, uint32_t, uint32_t, float *, float *, float *);
+typedef void (*skin_function)(const noh_mesh *, const float *, const noh_morph_layers *, uint32_t, uint32_t, float *,
+                              float *, float *);
 
 #if defined(__x86_64__)
-void noh_skin_vertices_sse2(const noh_mesh *, const float *, const noh_morph_layers *, uint32_t, uint32_t, float *, float *, float *);
-void noh_skin_vertices_avx2(const noh_mesh *, const float *, const noh_morph_layers *, uint32_t, uint32_t, float *, float *, float *);
+void noh_skin_vertices_sse2(const noh_mesh *, const float *, const noh_morph_layers *, uint32_t, uint32_t, float *,
+                            float *, float *);
+void noh_skin_vertices_avx2(const noh_mesh *, const float *, const noh_morph_layers *, uint32_t, uint32_t, float *,
+                            float *, float *);
 #endif
 
 /* Every vertex of a level as noh_skin_vertex has it, and as the full mesh has it. */
@@ -179,7 +182,8 @@ static void check_level(const made *x, uint32_t level, skin_function function, i
     const noh_mesh view = noh_mesh_at_lod(&x->mesh, level);
     const uint32_t count = view.header->vertex_count;
     noh_morph_layers layers = accumulated(&view), full = accumulated(&x->mesh);
-    float *positions = test_zeros(12u * (size_t)count), *normals = test_zeros(12u * (size_t)count), *tangents = test_zeros(16u * (size_t)count);
+    float *positions = test_zeros(12u * (size_t)count), *normals = test_zeros(12u * (size_t)count),
+          *tangents = test_zeros(16u * (size_t)count);
     function(&view, x->matrices, morphed ? &layers : NULL, 0, count, positions, normals, tangents);
     for (uint32_t v = 0; v < count; v++) {
         noh_vertex one, whole;
@@ -234,12 +238,9 @@ static void by_other_instruction_sets_too(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(views_are_found_from_any_level),
-    cmocka_unit_test(the_full_level_is_the_mesh),
-    cmocka_unit_test(a_level_s_sums_are_the_full_one_s),
-    cmocka_unit_test(a_level_costs_less),
-    cmocka_unit_test(levels_are_skinned_as_the_full_mesh),
-    cmocka_unit_test(by_other_instruction_sets_too),
+    cmocka_unit_test(views_are_found_from_any_level),      cmocka_unit_test(the_full_level_is_the_mesh),
+    cmocka_unit_test(a_level_s_sums_are_the_full_one_s),   cmocka_unit_test(a_level_costs_less),
+    cmocka_unit_test(levels_are_skinned_as_the_full_mesh), cmocka_unit_test(by_other_instruction_sets_too),
 };
 
 TEST_MAIN(tests, NULL, NULL)

@@ -22,7 +22,8 @@ static int set_up(void **state)
     source = test_model(&desc);
     for (uint32_t v = 0; v < SIDE * SIDE; v++) { /* all directions, not only up */
         float *n = source->meshes[0].normal + 3 * v, *t = source->meshes[0].tangent + 4 * v;
-        float z = test_random_float(&r, -1.0f, 1.0f), a = test_random_float(&r, -3.15f, 3.15f), ring = sqrtf(1.0f - z * z);
+        float z = test_random_float(&r, -1.0f, 1.0f), a = test_random_float(&r, -3.15f, 3.15f),
+              ring = sqrtf(1.0f - z * z);
         n[0] = ring * cosf(a);
         n[1] = ring * sinf(a);
         n[2] = z;

@@ -55,7 +55,7 @@ static int tear_down(void **state)
 
 /* What a lie may reach for: of the full mesh (0) and of its two coarser levels. */
 typedef struct forged {
-    noh_mesh_header *h;         /* [3] */
+    noh_mesh_header *h; /* [3] */
     uint16_t *indices[3];
     noh_submesh *submeshes[3];
     noh_target *targets[3];
@@ -112,11 +112,11 @@ static uint32_t cut_target(const forged *f, uint32_t k)
 }
 
 /* A field of all headers at once, so that they still agree. */
-#define IN_ALL(statement)                         \
-    do {                                          \
-        for (uint32_t k = 0; k < 3u; k++) {       \
-            statement;                            \
-        }                                         \
+#define IN_ALL(statement)                   \
+    do {                                    \
+        for (uint32_t k = 0; k < 3u; k++) { \
+            statement;                      \
+        }                                   \
     } while (0)
 
 /* Level 1 gets the finer level's rectangle after its own. */
@@ -160,106 +160,110 @@ static void have_more_rectangles(forged *f)
 }
 
 /* name, the lie, a part of the message; in the rigid mesh */
-#define LIES(X)                                                                                                              \
-    X(no_levels, f->h->level_count = 0, "no level or too many")                                                              \
-    X(nine_levels, f->h->level_count = 9, "no level or too many")                                                            \
-    X(begins_with_a_coarse_one, f->h->level = 1, "begin with the full one")                                                  \
-    X(full_mesh_has_an_error, f->h->level_error_rest = 1e-6f, "full mesh has the error")                                     \
-    X(full_mesh_has_an_error_that_is_none, f->h->level_error_clip = NAN, "full mesh has the error")                        \
-    X(full_mesh_skips, f->h->level_skipped = 1.0f, "full mesh has the error")                                                \
-    X(one_level_more, f->h->level_count = 4, "out of order, or differs")                                                     \
-    X(one_level_less, f->h->level_count = 2, "out of order, or differs")                                                     \
-    X(levels_exchanged, (f->h[1].level = 2, f->h[2].level = 1), "out of order")                                              \
-    X(level_twice, f->h[2].level = 1, "out of order")                                                                        \
-    X(other_flags, f->h[1].flags ^= NOH_MESH_UVS, "differs in what all levels share")                                        \
-    X(other_index_bytes, f->h[1].index_bytes = 4, "differs in what all levels share")                                        \
-    X(other_target_count, f->h[2].target_count -= 1, "differs in what all levels share")                                     \
-    X(other_width, f->h[1].morph_width_log2 += 1, "differs in what all levels share")                                        \
-    X(other_stride, f->h[1].attribute_stride += 4, "differs in what all levels share")                                       \
-    X(other_positions, f->h[1].positions_offset += 16, "differs in what all levels share")                                   \
-    X(other_attributes, f->h[1].attributes_offset += 16, "differs in what all levels share")                                 \
-    X(other_weights, f->h[1].weights_offset += 16, "differs in what all levels share")                                       \
-    X(other_rects, f->h[1].rects_offset += 8, "differs in what all levels share")                                            \
-    X(other_texels, f->h[2].texels_offset += 12, "differs in what all levels share")                                         \
-    X(other_bounds, f->h[1].bounds_max[1] *= 0.5f, "differs in what all levels share")                                       \
-    X(other_uvs, f->h[1].uv_scale[0] *= 0.5f, "differs in what all levels share")                                            \
-    X(other_half_bound, f->h[1].f16_position_bound *= 0.5f, "differs in what all levels share")                              \
-    X(other_scale, f->h[1].world_scale *= 2.0f, "differs in what all levels share")                                          \
-    X(other_source_pairs, f->h[1].source_pair_count += 1, "differs in what all levels share")                                \
-    X(other_boxes, f->h[1].target_boxes_offset += 16, "differs in what all levels share")                                    \
-    X(other_skin, f->h[1].skin = 0, "differs in what all levels share")                                                      \
-    X(other_level_count, f->h[1].level_count = 2, "differs in what all levels share")                                        \
-    X(other_reserved, f->h[2].reserved[7] = 1, "differs in what all levels share")                                          \
-    X(falling_influences, f->h[0].influence_errors[0] = 1.0f, "fewer influences")                                            \
-    X(unknown_influences, f->h[0].influence_errors[2] = NAN, "fewer influences")                                             \
-    X(no_vertices, f->h[2].vertex_count = 0, "more of something")                                                            \
-    X(more_vertices, f->h[1].vertex_count = f->h->vertex_count + 1u, "more of something")                                    \
-    X(more_indices, f->h[1].index_count = f->h->index_count + 3u, "more of something")                                       \
-    X(indices_not_triangles, f->h[1].index_count -= 1, "more of something")                                                  \
-    X(no_submeshes, f->h[1].submesh_count = 0, "more of something")                                                          \
-    X(too_many_submeshes, f->h[1].submesh_count = 257, "more of something")                                                  \
-    X(more_touched, f->h[1].touched_count = f->h->touched_count + 1u, "more of something")                                   \
-    X(more_rects, f->h[1].rect_count = f->h->rect_count + 1u, "more of something")                                           \
-    X(more_texels, f->h[1].texel_count = f->h->texel_count + 1u, "more of something")                                        \
-    X(more_pairs, f->h[1].pair_count = f->h->pair_count + 1u, "more of something")                                           \
-    X(more_than_the_finer, f->h[2].vertex_count = f->h[1].vertex_count + 1u, "more of something")                            \
-    X(error_nan, f->h[1].level_error_targets = NAN, "error is not finite")                                                   \
-    X(error_infinite, f->h[2].level_error_pairs = INFINITY, "error is not finite")                                           \
-    X(skipped_nan, f->h[2].level_skipped = NAN, "error is not finite")                                                       \
-    X(error_negative, f->h[1].level_error_clip = -1.0f, "below that of the finer")                                         \
-    X(error_falls, f->h[2].level_error_rest = f->h[1].level_error_rest * 0.5f, "below that of the finer")                    \
-    X(p99_falls, f->h[2].level_error_rest_p99 = 0.0f, "below that of the finer")                                             \
-    X(skipped_falls, f->h[1].level_skipped = 9.0f, "below that of the finer")                                                \
-    X(indices_elsewhere, f->h[1].indices_offset += 6, "do not follow the finer level's")                                     \
-    X(indices_shared, f->h[1].indices_offset = f->h->indices_offset, "do not follow the finer level's")                      \
-    X(submeshes_elsewhere, f->h[2].submeshes_offset -= 24, "do not follow the finer level's")                                \
-    X(targets_elsewhere, f->h[2].targets_offset -= 64, "do not follow the finer level's")                                    \
-    X(fewer_indices, f->h[2].index_count -= 3, "")                                                                           \
-    X(fewer_submeshes, IN_ALL(f->h[k].submesh_count += 1), "")                                                               \
-    X(texture_too_high, f->h[1].morph_height += 1, "does not fit the touched")                                               \
-    X(texture_too_low, f->h[1].morph_height = 0, "does not fit the touched")                                                 \
-    X(touched_without_vertices, (f->h[2].vertex_count = 1), "")                                                              \
-    X(index_outside_its_level, f->indices[2][0] = (uint16_t)f->h[2].vertex_count, "past the last vertex")                    \
-    X(vertex_missing, lose_a_vertex(f), "past the last vertex")                                                              \
-    X(submesh_outside, f->submeshes[1][0].index_count += 3, "submesh indices lie outside")                                   \
-    X(submesh_not_triangles, f->submeshes[2][0].index_count -= 1, "submesh indices lie outside")                             \
-    X(submesh_vertices_outside, f->submeshes[2][0].vertex_count = f->h[2].vertex_count + 1u, "submesh vertices lie outside") \
-    X(submesh_material, f->submeshes[1][0].material = 2, "material that is not there")                                       \
-    X(submesh_palette, f->submeshes[1][0].palette = 1, "palette that is not there")                                          \
-    X(target_other_name, f->targets[1][0].name = f->targets[0][1].name, "target differs from the full mesh's")               \
-    X(target_other_bits, f->targets[2][1].position_bits -= 1, "target differs from the full mesh's")                         \
-    X(target_other_scale, f->targets[1][1].position_scale *= 2.0f, "target differs from the full mesh's")                    \
-    X(target_other_first, f->targets[1][1].first_rect -= 1, "target differs from the full mesh's")                           \
-    X(target_other_texel, f->targets[1][1].first_texel -= 1, "target differs from the full mesh's")                          \
-    X(target_more_rects, have_more_rectangles(f), "more rectangles than the finer level's")                                  \
-    X(target_more_texels, f->targets[1][0].texel_count = f->targets[0][0].texel_count + 1u, "more rectangles than the finer") \
-    X(target_texels_lie, f->targets[1][0].texel_count -= 1, "")                                                              \
-    X(target_pairs_lie, f->targets[1][0].pair_count -= 1, "pair count is wrong")                                             \
-    X(rects_do_not_add_up, f->h[2].rect_count = f->h[1].rect_count, "do not add up to the level's")                          \
-    X(texels_do_not_add_up, f->h[2].texel_count += 1, "do not add up to the level's")                                        \
-    X(pairs_do_not_add_up, f->h[1].pair_count -= 1, "do not add up to the level's")                                          \
-    X(rectangle_of_the_finer, take_a_rectangle(f), "")                                                                       \
-    X(a_row_less, lose_a_row(f), "")                                                                                         \
-    X(texel_of_the_finer, *reference(f, own_vertex(f, 1, 1)) = f->h[1].touched_count, "one that its level does not have")    \
-    X(texel_past_all, *reference(f, own_vertex(f, 0, 1)) = f->h->touched_count, "one that its level does not have")          \
-    X(almost_no_texel, *reference(f, own_vertex(f, 0, 0)) = NOH_TEXEL_NONE - 1u, "one that its level does not have")         \
+#define LIES(X)                                                                                                      \
+    X(no_levels, f->h->level_count = 0, "no level or too many")                                                      \
+    X(nine_levels, f->h->level_count = 9, "no level or too many")                                                    \
+    X(begins_with_a_coarse_one, f->h->level = 1, "begin with the full one")                                          \
+    X(full_mesh_has_an_error, f->h->level_error_rest = 1e-6f, "full mesh has the error")                             \
+    X(full_mesh_has_an_error_that_is_none, f->h->level_error_clip = NAN, "full mesh has the error")                  \
+    X(full_mesh_skips, f->h->level_skipped = 1.0f, "full mesh has the error")                                        \
+    X(one_level_more, f->h->level_count = 4, "out of order, or differs")                                             \
+    X(one_level_less, f->h->level_count = 2, "out of order, or differs")                                             \
+    X(levels_exchanged, (f->h[1].level = 2, f->h[2].level = 1), "out of order")                                      \
+    X(level_twice, f->h[2].level = 1, "out of order")                                                                \
+    X(other_flags, f->h[1].flags ^= NOH_MESH_UVS, "differs in what all levels share")                                \
+    X(other_index_bytes, f->h[1].index_bytes = 4, "differs in what all levels share")                                \
+    X(other_target_count, f->h[2].target_count -= 1, "differs in what all levels share")                             \
+    X(other_width, f->h[1].morph_width_log2 += 1, "differs in what all levels share")                                \
+    X(other_stride, f->h[1].attribute_stride += 4, "differs in what all levels share")                               \
+    X(other_positions, f->h[1].positions_offset += 16, "differs in what all levels share")                           \
+    X(other_attributes, f->h[1].attributes_offset += 16, "differs in what all levels share")                         \
+    X(other_weights, f->h[1].weights_offset += 16, "differs in what all levels share")                               \
+    X(other_rects, f->h[1].rects_offset += 8, "differs in what all levels share")                                    \
+    X(other_texels, f->h[2].texels_offset += 12, "differs in what all levels share")                                 \
+    X(other_bounds, f->h[1].bounds_max[1] *= 0.5f, "differs in what all levels share")                               \
+    X(other_uvs, f->h[1].uv_scale[0] *= 0.5f, "differs in what all levels share")                                    \
+    X(other_half_bound, f->h[1].f16_position_bound *= 0.5f, "differs in what all levels share")                      \
+    X(other_scale, f->h[1].world_scale *= 2.0f, "differs in what all levels share")                                  \
+    X(other_source_pairs, f->h[1].source_pair_count += 1, "differs in what all levels share")                        \
+    X(other_boxes, f->h[1].target_boxes_offset += 16, "differs in what all levels share")                            \
+    X(other_skin, f->h[1].skin = 0, "differs in what all levels share")                                              \
+    X(other_level_count, f->h[1].level_count = 2, "differs in what all levels share")                                \
+    X(other_reserved, f->h[2].reserved[7] = 1, "differs in what all levels share")                                   \
+    X(falling_influences, f->h[0].influence_errors[0] = 1.0f, "fewer influences")                                    \
+    X(unknown_influences, f->h[0].influence_errors[2] = NAN, "fewer influences")                                     \
+    X(no_vertices, f->h[2].vertex_count = 0, "more of something")                                                    \
+    X(more_vertices, f->h[1].vertex_count = f->h->vertex_count + 1u, "more of something")                            \
+    X(more_indices, f->h[1].index_count = f->h->index_count + 3u, "more of something")                               \
+    X(indices_not_triangles, f->h[1].index_count -= 1, "more of something")                                          \
+    X(no_submeshes, f->h[1].submesh_count = 0, "more of something")                                                  \
+    X(too_many_submeshes, f->h[1].submesh_count = 257, "more of something")                                          \
+    X(more_touched, f->h[1].touched_count = f->h->touched_count + 1u, "more of something")                           \
+    X(more_rects, f->h[1].rect_count = f->h->rect_count + 1u, "more of something")                                   \
+    X(more_texels, f->h[1].texel_count = f->h->texel_count + 1u, "more of something")                                \
+    X(more_pairs, f->h[1].pair_count = f->h->pair_count + 1u, "more of something")                                   \
+    X(more_than_the_finer, f->h[2].vertex_count = f->h[1].vertex_count + 1u, "more of something")                    \
+    X(error_nan, f->h[1].level_error_targets = NAN, "error is not finite")                                           \
+    X(error_infinite, f->h[2].level_error_pairs = INFINITY, "error is not finite")                                   \
+    X(skipped_nan, f->h[2].level_skipped = NAN, "error is not finite")                                               \
+    X(error_negative, f->h[1].level_error_clip = -1.0f, "below that of the finer")                                   \
+    X(error_falls, f->h[2].level_error_rest = f->h[1].level_error_rest * 0.5f, "below that of the finer")            \
+    X(p99_falls, f->h[2].level_error_rest_p99 = 0.0f, "below that of the finer")                                     \
+    X(skipped_falls, f->h[1].level_skipped = 9.0f, "below that of the finer")                                        \
+    X(indices_elsewhere, f->h[1].indices_offset += 6, "do not follow the finer level's")                             \
+    X(indices_shared, f->h[1].indices_offset = f->h->indices_offset, "do not follow the finer level's")              \
+    X(submeshes_elsewhere, f->h[2].submeshes_offset -= 24, "do not follow the finer level's")                        \
+    X(targets_elsewhere, f->h[2].targets_offset -= 64, "do not follow the finer level's")                            \
+    X(fewer_indices, f->h[2].index_count -= 3, "")                                                                   \
+    X(fewer_submeshes, IN_ALL(f->h[k].submesh_count += 1), "")                                                       \
+    X(texture_too_high, f->h[1].morph_height += 1, "does not fit the touched")                                       \
+    X(texture_too_low, f->h[1].morph_height = 0, "does not fit the touched")                                         \
+    X(touched_without_vertices, (f->h[2].vertex_count = 1), "")                                                      \
+    X(index_outside_its_level, f->indices[2][0] = (uint16_t)f->h[2].vertex_count, "past the last vertex")            \
+    X(vertex_missing, lose_a_vertex(f), "past the last vertex")                                                      \
+    X(submesh_outside, f->submeshes[1][0].index_count += 3, "submesh indices lie outside")                           \
+    X(submesh_not_triangles, f->submeshes[2][0].index_count -= 1, "submesh indices lie outside")                     \
+    X(submesh_vertices_outside, f->submeshes[2][0].vertex_count = f->h[2].vertex_count + 1u,                         \
+      "submesh vertices lie outside")                                                                                \
+    X(submesh_material, f->submeshes[1][0].material = 2, "material that is not there")                               \
+    X(submesh_palette, f->submeshes[1][0].palette = 1, "palette that is not there")                                  \
+    X(target_other_name, f->targets[1][0].name = f->targets[0][1].name, "target differs from the full mesh's")       \
+    X(target_other_bits, f->targets[2][1].position_bits -= 1, "target differs from the full mesh's")                 \
+    X(target_other_scale, f->targets[1][1].position_scale *= 2.0f, "target differs from the full mesh's")            \
+    X(target_other_first, f->targets[1][1].first_rect -= 1, "target differs from the full mesh's")                   \
+    X(target_other_texel, f->targets[1][1].first_texel -= 1, "target differs from the full mesh's")                  \
+    X(target_more_rects, have_more_rectangles(f), "more rectangles than the finer level's")                          \
+    X(target_more_texels, f->targets[1][0].texel_count = f->targets[0][0].texel_count + 1u,                          \
+      "more rectangles than the finer")                                                                              \
+    X(target_texels_lie, f->targets[1][0].texel_count -= 1, "")                                                      \
+    X(target_pairs_lie, f->targets[1][0].pair_count -= 1, "pair count is wrong")                                     \
+    X(rects_do_not_add_up, f->h[2].rect_count = f->h[1].rect_count, "do not add up to the level's")                  \
+    X(texels_do_not_add_up, f->h[2].texel_count += 1, "do not add up to the level's")                                \
+    X(pairs_do_not_add_up, f->h[1].pair_count -= 1, "do not add up to the level's")                                  \
+    X(rectangle_of_the_finer, take_a_rectangle(f), "")                                                               \
+    X(a_row_less, lose_a_row(f), "")                                                                                 \
+    X(texel_of_the_finer, *reference(f, own_vertex(f, 1, 1)) = f->h[1].touched_count,                                \
+      "one that its level does not have")                                                                            \
+    X(texel_past_all, *reference(f, own_vertex(f, 0, 1)) = f->h->touched_count, "one that its level does not have")  \
+    X(almost_no_texel, *reference(f, own_vertex(f, 0, 0)) = NOH_TEXEL_NONE - 1u, "one that its level does not have") \
     X(rigid_with_a_palette, *reference(f, 0) |= 1u << NOH_TEXEL_VERTEX_BITS, "one that its level does not have")
 
 /* The same in the split mesh, where vertices have palettes. */
-#define SPLIT_LIES(X)                                                                                                        \
-    X(other_influences, f->h[1].influence_count = 4, "differs in what all levels share")                                     \
-    X(other_influence_place, f->h[1].influences_offset += 16, "differs in what all levels share")                            \
-    X(other_palette_count, f->h[2].palette_count = 1, "differs in what all levels share")                                    \
-    X(other_palettes, f->h[1].palettes_offset += 16, "differs in what all levels share")                                     \
-    X(other_palette_joint_count, f->h[1].palette_joint_count -= 1, "differs in what all levels share")                       \
-    X(other_palette_joints, f->h[1].palette_joints_offset += 2, "differs in what all levels share")                          \
-    X(other_joint_boxes, f->h[1].joint_boxes_offset += 16, "differs in what all levels share")                               \
-    X(submesh_of_another_palette, f->submeshes[2][0].palette ^= 1u, "vertex of another palette")                             \
-    X(submesh_of_no_palette, f->submeshes[2][0].palette = 40, "palette that is not there")                                   \
-    X(index_of_another_palette, f->indices[2][0] = f->indices[2][f->submeshes[2][1].first_index], "vertex of another palette") \
-    X(vertex_of_no_palette, *reference(f, 0) |= 0xffc00000u, "vertex of another palette")                                    \
-    X(without_references, IN_ALL(f->h[k].flags &= ~NOH_MESH_TEXELS), "texel references")                                     \
-    X(shared_texel_of_the_finer, *reference(f, 0) = (*reference(f, 0) & ~NOH_TEXEL_NONE) | f->h[2].touched_count,            \
+#define SPLIT_LIES(X)                                                                                             \
+    X(other_influences, f->h[1].influence_count = 4, "differs in what all levels share")                          \
+    X(other_influence_place, f->h[1].influences_offset += 16, "differs in what all levels share")                 \
+    X(other_palette_count, f->h[2].palette_count = 1, "differs in what all levels share")                         \
+    X(other_palettes, f->h[1].palettes_offset += 16, "differs in what all levels share")                          \
+    X(other_palette_joint_count, f->h[1].palette_joint_count -= 1, "differs in what all levels share")            \
+    X(other_palette_joints, f->h[1].palette_joints_offset += 2, "differs in what all levels share")               \
+    X(other_joint_boxes, f->h[1].joint_boxes_offset += 16, "differs in what all levels share")                    \
+    X(submesh_of_another_palette, f->submeshes[2][0].palette ^= 1u, "vertex of another palette")                  \
+    X(submesh_of_no_palette, f->submeshes[2][0].palette = 40, "palette that is not there")                        \
+    X(index_of_another_palette, f->indices[2][0] = f->indices[2][f->submeshes[2][1].first_index],                 \
+      "vertex of another palette")                                                                                \
+    X(vertex_of_no_palette, *reference(f, 0) |= 0xffc00000u, "vertex of another palette")                         \
+    X(without_references, IN_ALL(f->h[k].flags &= ~NOH_MESH_TEXELS), "texel references")                          \
+    X(shared_texel_of_the_finer, *reference(f, 0) = (*reference(f, 0) & ~NOH_TEXEL_NONE) | f->h[2].touched_count, \
       "one that its level does not have")
 
 static void check_refused(const small_pack *good, void (*lie)(forged *f), const char *message)
@@ -279,21 +283,27 @@ static void check_refused(const small_pack *good, void (*lie)(forged *f), const 
     assert_true(error.where <= good->count);
 }
 
-#define X(name, statement, message)                          \
-    static void lie_##name(forged *f) { statement; }         \
-    static void level_##name(void **state)                   \
-    {                                                        \
-        (void)state;                                         \
-        check_refused(&rigid, lie_##name, message);          \
+#define X(name, statement, message)                 \
+    static void lie_##name(forged *f)               \
+    {                                               \
+        statement;                                  \
+    }                                               \
+    static void level_##name(void **state)          \
+    {                                               \
+        (void)state;                                \
+        check_refused(&rigid, lie_##name, message); \
     }
 LIES(X)
 #undef X
-#define X(name, statement, message)                          \
-    static void split_lie_##name(forged *f) { statement; }   \
-    static void split_##name(void **state)                   \
-    {                                                        \
-        (void)state;                                         \
-        check_refused(&split, split_lie_##name, message);    \
+#define X(name, statement, message)                       \
+    static void split_lie_##name(forged *f)               \
+    {                                                     \
+        statement;                                        \
+    }                                                     \
+    static void split_##name(void **state)                \
+    {                                                     \
+        (void)state;                                      \
+        check_refused(&split, split_lie_##name, message); \
     }
 SPLIT_LIES(X)
 #undef X
@@ -398,15 +408,13 @@ static void repaired_flips_stay_in_bounds(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(honest_copies_open),
-    cmocka_unit_test(texels_without_references_are_counted),
-    cmocka_unit_test(every_truncation_and_flip_is_refused),
-    cmocka_unit_test(repaired_flips_stay_in_bounds),
+    cmocka_unit_test(honest_copies_open), cmocka_unit_test(texels_without_references_are_counted),
+    cmocka_unit_test(every_truncation_and_flip_is_refused), cmocka_unit_test(repaired_flips_stay_in_bounds),
 #define X(name, statement, message) cmocka_unit_test(level_##name),
     LIES(X)
 #undef X
 #define X(name, statement, message) cmocka_unit_test(split_##name),
-    SPLIT_LIES(X)
+        SPLIT_LIES(X)
 #undef X
 };
 

@@ -52,14 +52,14 @@ static void past_the_last_is_not_found(void **state)
     noh_skin skin;
     noh_skeleton skeleton;
     (void)state;
-#define MISSING(call, index, count) \
-    do { \
-        noh_error error = { NOH_OK, NULL, 7, 7 }; \
-        assert_int_equal(call, NOH_ERR_NOT_FOUND); \
+#define MISSING(call, index, count)                        \
+    do {                                                   \
+        noh_error error = { NOH_OK, NULL, 7, 7 };          \
+        assert_int_equal(call, NOH_ERR_NOT_FOUND);         \
         assert_int_equal(error.result, NOH_ERR_NOT_FOUND); \
-        assert_non_null(error.what); \
-        assert_int_equal(error.where, index); \
-        assert_int_equal(error.need, count); \
+        assert_non_null(error.what);                       \
+        assert_int_equal(error.where, index);              \
+        assert_int_equal(error.need, count);               \
     } while (0)
     MISSING(noh_pack_mesh_at(&pack, 1, &mesh, &error), 1, 1);
     MISSING(noh_pack_clip_at(&pack, 3, &clip, &error), 3, 3);
@@ -353,147 +353,148 @@ static float nan_value(void)
 #define INFINITE ((float)INFINITY)
 
 /* name, expected result, a word of the message, the lie */
-#define FORGERIES(X) \
-    X(magic, DATA, "NOHP", f->header->magic ^= 1u) \
-    X(version_newer, VERSION, "version", f->header->version += 1) \
-    X(version_zero, VERSION, "version", f->header->version = 0) \
-    X(byte_count_larger, DATA, "length", f->header->byte_count += 64) \
-    X(byte_count_smaller, DATA, "length", f->header->byte_count -= 64) \
-    X(no_chunks, LIMIT, "no chunks", f->header->chunk_count = 0) \
-    X(chunk_count_overflows, LIMIT, "limit", f->header->chunk_count = 0xffffffffu) \
-    X(chunk_count_past_end, DATA, "past the end", f->header->chunk_count = NOH_PACK_CHUNKS_MAX) \
-    X(header_reserved, DATA, "reserved", f->header->reserved[9] = 1) \
-    X(chunk_type_unknown, DATA, "unknown type", f->mesh_at->type ^= 0x20u) \
-    X(chunk_reserved, DATA, "unknown type", f->mesh_at->reserved[1] = 1) \
-    X(chunks_out_of_order, DATA, "out of order", f->clip_at[1].type = NOH_CHUNK_TEXTURE) \
-    X(chunks_swapped, DATA, "begin", swap_chunks(f, 3, 4)) \
-    X(chunk_before_strings, DATA, "out of order", swap_chunks(f, 0, 1)) \
-    X(strings_twice, DATA, "out of order", f->texture_at->type = NOH_CHUNK_STRINGS) \
-    X(materials_twice, DATA, "out of order", f->mesh_at->type = NOH_CHUNK_MATERIALS) \
-    X(nodes_twice, DATA, "out of order", f->clip_at->type = NOH_CHUNK_NODES) \
-    X(chunk_offset_past_end, DATA, "begin", f->mesh_at->offset = (uint32_t)f->count) \
-    X(chunk_offset_far_past_end, DATA, "begin", f->mesh_at->offset = 0xffffffc0u) \
-    X(chunk_offset_inside_the_one_before, DATA, "begin", f->mesh_at->offset -= 64) \
-    X(chunk_offset_misaligned, DATA, "begin", f->mesh_at->offset += 16) \
-    X(chunk_offset_in_header, DATA, "begin", f->strings_at->offset = 0) \
-    X(chunk_bytes_overflow, DATA, "past the end", f->mesh_at->bytes = 0xffffffffu) \
-    X(chunk_bytes_past_end, DATA, "past the end", f->chunks[f->header->chunk_count - 1].bytes += 65) \
-    X(chunk_bytes_one_short, DATA, "", f->mesh_at->bytes -= 1) \
-    X(chunk_bytes_zero, DATA, "", f->mesh_at->bytes = 0) \
-    X(chunks_overlap, DATA, "", f->texture_at->bytes += 64) \
-    X(chunk_name_outside, DATA, "outside the strings", f->mesh_at->name = f->strings_at->bytes) \
-    X(chunk_name_far_outside, DATA, "outside the strings", f->mesh_at->name = 0xffffffffu) \
-    X(chunk_name_hash, DATA, "hash", f->mesh_at->name_hash ^= 1u) \
-    X(strings_not_ended, DATA, "zero", f->strings[f->strings_at->bytes - 1] = 'x') \
-    X(strings_first_not_empty, DATA, "zero", f->strings[0] = 'x') \
-    X(strings_run_together, DATA, "", fill_strings(f)) \
-    X(texture_wide, DATA, "size", f->texture->width = 0xffffffffu) \
-    X(texture_no_rows, DATA, "size", f->texture->height = 0) \
-    X(texture_larger_than_chunk, DATA, "past the end", f->texture->height = 2048) \
-    X(texture_smaller_than_chunk, DATA, "longer", f->texture->height = 1) \
-    X(texture_pixels_elsewhere, DATA, "begin", f->texture->pixels_offset = 0) \
-    X(texture_wrap, DATA, "sampling", f->texture->wrap_s = 3) \
-    X(texture_filter, DATA, "sampling", f->texture->nearest = 2) \
-    X(texture_reserved, DATA, "sampling", f->texture->reserved[0] = 1) \
-    X(material_texture_missing, DATA, "texture", f->materials[0].base_color_texture = 1) \
-    X(material_flags, DATA, "flags", f->materials[0].flags = 16) \
-    X(material_reserved, DATA, "flags", f->materials[0].reserved = 1) \
-    X(material_color_nan, DATA, "not finite", f->materials[0].base_color[2] = nan_value()) \
-    X(material_cutoff_infinite, DATA, "not finite", f->materials[1].alpha_cutoff = INFINITE) \
-    X(material_name, DATA, "outside the strings", f->materials[0].name = 0x10000000u) \
-    X(no_vertices, DATA, "vertex count", f->mesh->vertex_count = 0) \
-    X(vertex_count_overflows, DATA, "vertex count", f->mesh->vertex_count = 0xffffffffu) \
-    X(vertex_count_one_more, DATA, "", f->mesh->vertex_count += 1) \
-    X(index_count_overflows, DATA, "index count", f->mesh->index_count = 0xffffffffu) \
-    X(index_count_not_triangles, DATA, "three", f->mesh->index_count -= 1) \
-    X(index_width, DATA, "2 nor 4", f->mesh->index_bytes = 3) \
-    X(index_width_lies, DATA, "", f->mesh->index_bytes = 4) \
-    X(submesh_count_overflows, DATA, "submesh count", f->mesh->submesh_count = 0xffffffffu) \
-    X(submesh_count_zero, DATA, "submesh count", f->mesh->submesh_count = 0) \
-    X(target_count_overflows, DATA, "limit", f->mesh->target_count = 0xffffffffu) \
-    X(target_count_one_less, DATA, "", f->mesh->target_count -= 1) \
-    X(texel_count_overflows, DATA, "limit", f->mesh->texel_count = 0xffffffffu) \
-    X(rect_count_overflows, DATA, "limit", f->mesh->rect_count = 0xffffffffu) \
-    X(pair_count_lies, DATA, "add up", f->mesh->pair_count += 1) \
-    X(mesh_flags, DATA, "flags", f->mesh->flags |= 8u) \
-    X(mesh_unknown, DATA, "", f->mesh->flags = 0x80000000u) \
-    X(touched_more_than_vertices, DATA, "touched", f->mesh->touched_count = f->mesh->vertex_count + 1) \
-    X(touched_more_than_texels, DATA, "fit", f->mesh->morph_height = 0) \
-    X(rows_that_nothing_touches, DATA, "fit", f->mesh->morph_height += 1) \
-    X(morph_width_small, DATA, "limits", f->mesh->morph_width_log2 = 1) \
-    X(morph_width_large, DATA, "limits", f->mesh->morph_width_log2 = 12) \
-    X(morph_width_shifts_out, DATA, "limits", f->mesh->morph_width_log2 = 40) \
-    X(morph_height_overflows, DATA, "limits", f->mesh->morph_height = 0xffffffffu) \
-    X(attribute_stride, DATA, "stride", f->mesh->attribute_stride = 12) \
-    X(positions_offset, DATA, "begin", f->mesh->positions_offset += 16) \
-    X(arrays_overlap, DATA, "begin", f->mesh->texels_offset = f->mesh->rects_offset) \
-    X(array_past_end, DATA, "begin", f->mesh->indices_offset = 0xfffffff0u) \
-    X(bounds_nan, DATA, "not finite", f->mesh->bounds_min[1] = nan_value()) \
-    X(bounds_infinite, DATA, "not finite", f->mesh->bounds_max[2] = -INFINITE) \
-    X(uv_scale_infinite, DATA, "not finite", f->mesh->uv_scale[1] = INFINITE) \
-    X(f16_bound_nan, DATA, "not finite", f->mesh->f16_direction_bound = nan_value()) \
-    X(world_scale_infinite, DATA, "not finite", f->mesh->world_scale = INFINITE) \
-    X(position_nan, DATA, "position is not finite", f->positions[3] = nan_value()) \
-    X(position_infinite, DATA, "position is not finite", f->positions[47] = INFINITE) \
-    X(index_past_vertices, DATA, "past the last vertex", f->indices[5] = (uint16_t)f->mesh->vertex_count) \
-    X(padding_behind_indices, DATA, "padding", f->indices[f->mesh->index_count] = 1) \
-    X(submesh_past_indices, DATA, "outside the mesh", f->submeshes[1].first_index += 3) \
-    X(submesh_overflows, DATA, "outside the mesh", f->submeshes[1].first_index = 0xfffffffdu) \
-    X(submesh_not_triangles, DATA, "outside the mesh", f->submeshes[0].index_count -= 1) \
+#define FORGERIES(X)                                                                                                 \
+    X(magic, DATA, "NOHP", f->header->magic ^= 1u)                                                                   \
+    X(version_newer, VERSION, "version", f->header->version += 1)                                                    \
+    X(version_zero, VERSION, "version", f->header->version = 0)                                                      \
+    X(byte_count_larger, DATA, "length", f->header->byte_count += 64)                                                \
+    X(byte_count_smaller, DATA, "length", f->header->byte_count -= 64)                                               \
+    X(no_chunks, LIMIT, "no chunks", f->header->chunk_count = 0)                                                     \
+    X(chunk_count_overflows, LIMIT, "limit", f->header->chunk_count = 0xffffffffu)                                   \
+    X(chunk_count_past_end, DATA, "past the end", f->header->chunk_count = NOH_PACK_CHUNKS_MAX)                      \
+    X(header_reserved, DATA, "reserved", f->header->reserved[9] = 1)                                                 \
+    X(chunk_type_unknown, DATA, "unknown type", f->mesh_at->type ^= 0x20u)                                           \
+    X(chunk_reserved, DATA, "unknown type", f->mesh_at->reserved[1] = 1)                                             \
+    X(chunks_out_of_order, DATA, "out of order", f->clip_at[1].type = NOH_CHUNK_TEXTURE)                             \
+    X(chunks_swapped, DATA, "begin", swap_chunks(f, 3, 4))                                                           \
+    X(chunk_before_strings, DATA, "out of order", swap_chunks(f, 0, 1))                                              \
+    X(strings_twice, DATA, "out of order", f->texture_at->type = NOH_CHUNK_STRINGS)                                  \
+    X(materials_twice, DATA, "out of order", f->mesh_at->type = NOH_CHUNK_MATERIALS)                                 \
+    X(nodes_twice, DATA, "out of order", f->clip_at->type = NOH_CHUNK_NODES)                                         \
+    X(chunk_offset_past_end, DATA, "begin", f->mesh_at->offset = (uint32_t)f->count)                                 \
+    X(chunk_offset_far_past_end, DATA, "begin", f->mesh_at->offset = 0xffffffc0u)                                    \
+    X(chunk_offset_inside_the_one_before, DATA, "begin", f->mesh_at->offset -= 64)                                   \
+    X(chunk_offset_misaligned, DATA, "begin", f->mesh_at->offset += 16)                                              \
+    X(chunk_offset_in_header, DATA, "begin", f->strings_at->offset = 0)                                              \
+    X(chunk_bytes_overflow, DATA, "past the end", f->mesh_at->bytes = 0xffffffffu)                                   \
+    X(chunk_bytes_past_end, DATA, "past the end", f->chunks[f->header->chunk_count - 1].bytes += 65)                 \
+    X(chunk_bytes_one_short, DATA, "", f->mesh_at->bytes -= 1)                                                       \
+    X(chunk_bytes_zero, DATA, "", f->mesh_at->bytes = 0)                                                             \
+    X(chunks_overlap, DATA, "", f->texture_at->bytes += 64)                                                          \
+    X(chunk_name_outside, DATA, "outside the strings", f->mesh_at->name = f->strings_at->bytes)                      \
+    X(chunk_name_far_outside, DATA, "outside the strings", f->mesh_at->name = 0xffffffffu)                           \
+    X(chunk_name_hash, DATA, "hash", f->mesh_at->name_hash ^= 1u)                                                    \
+    X(strings_not_ended, DATA, "zero", f->strings[f->strings_at->bytes - 1] = 'x')                                   \
+    X(strings_first_not_empty, DATA, "zero", f->strings[0] = 'x')                                                    \
+    X(strings_run_together, DATA, "", fill_strings(f))                                                               \
+    X(texture_wide, DATA, "size", f->texture->width = 0xffffffffu)                                                   \
+    X(texture_no_rows, DATA, "size", f->texture->height = 0)                                                         \
+    X(texture_larger_than_chunk, DATA, "past the end", f->texture->height = 2048)                                    \
+    X(texture_smaller_than_chunk, DATA, "longer", f->texture->height = 1)                                            \
+    X(texture_pixels_elsewhere, DATA, "begin", f->texture->pixels_offset = 0)                                        \
+    X(texture_wrap, DATA, "sampling", f->texture->wrap_s = 3)                                                        \
+    X(texture_filter, DATA, "sampling", f->texture->nearest = 2)                                                     \
+    X(texture_reserved, DATA, "sampling", f->texture->reserved[0] = 1)                                               \
+    X(material_texture_missing, DATA, "texture", f->materials[0].base_color_texture = 1)                             \
+    X(material_flags, DATA, "flags", f->materials[0].flags = 16)                                                     \
+    X(material_reserved, DATA, "flags", f->materials[0].reserved = 1)                                                \
+    X(material_color_nan, DATA, "not finite", f->materials[0].base_color[2] = nan_value())                           \
+    X(material_cutoff_infinite, DATA, "not finite", f->materials[1].alpha_cutoff = INFINITE)                         \
+    X(material_name, DATA, "outside the strings", f->materials[0].name = 0x10000000u)                                \
+    X(no_vertices, DATA, "vertex count", f->mesh->vertex_count = 0)                                                  \
+    X(vertex_count_overflows, DATA, "vertex count", f->mesh->vertex_count = 0xffffffffu)                             \
+    X(vertex_count_one_more, DATA, "", f->mesh->vertex_count += 1)                                                   \
+    X(index_count_overflows, DATA, "index count", f->mesh->index_count = 0xffffffffu)                                \
+    X(index_count_not_triangles, DATA, "three", f->mesh->index_count -= 1)                                           \
+    X(index_width, DATA, "2 nor 4", f->mesh->index_bytes = 3)                                                        \
+    X(index_width_lies, DATA, "", f->mesh->index_bytes = 4)                                                          \
+    X(submesh_count_overflows, DATA, "submesh count", f->mesh->submesh_count = 0xffffffffu)                          \
+    X(submesh_count_zero, DATA, "submesh count", f->mesh->submesh_count = 0)                                         \
+    X(target_count_overflows, DATA, "limit", f->mesh->target_count = 0xffffffffu)                                    \
+    X(target_count_one_less, DATA, "", f->mesh->target_count -= 1)                                                   \
+    X(texel_count_overflows, DATA, "limit", f->mesh->texel_count = 0xffffffffu)                                      \
+    X(rect_count_overflows, DATA, "limit", f->mesh->rect_count = 0xffffffffu)                                        \
+    X(pair_count_lies, DATA, "add up", f->mesh->pair_count += 1)                                                     \
+    X(mesh_flags, DATA, "flags", f->mesh->flags |= 8u)                                                               \
+    X(mesh_unknown, DATA, "", f->mesh->flags = 0x80000000u)                                                          \
+    X(touched_more_than_vertices, DATA, "touched", f->mesh->touched_count = f->mesh->vertex_count + 1)               \
+    X(touched_more_than_texels, DATA, "fit", f->mesh->morph_height = 0)                                              \
+    X(rows_that_nothing_touches, DATA, "fit", f->mesh->morph_height += 1)                                            \
+    X(morph_width_small, DATA, "limits", f->mesh->morph_width_log2 = 1)                                              \
+    X(morph_width_large, DATA, "limits", f->mesh->morph_width_log2 = 12)                                             \
+    X(morph_width_shifts_out, DATA, "limits", f->mesh->morph_width_log2 = 40)                                        \
+    X(morph_height_overflows, DATA, "limits", f->mesh->morph_height = 0xffffffffu)                                   \
+    X(attribute_stride, DATA, "stride", f->mesh->attribute_stride = 12)                                              \
+    X(positions_offset, DATA, "begin", f->mesh->positions_offset += 16)                                              \
+    X(arrays_overlap, DATA, "begin", f->mesh->texels_offset = f->mesh->rects_offset)                                 \
+    X(array_past_end, DATA, "begin", f->mesh->indices_offset = 0xfffffff0u)                                          \
+    X(bounds_nan, DATA, "not finite", f->mesh->bounds_min[1] = nan_value())                                          \
+    X(bounds_infinite, DATA, "not finite", f->mesh->bounds_max[2] = -INFINITE)                                       \
+    X(uv_scale_infinite, DATA, "not finite", f->mesh->uv_scale[1] = INFINITE)                                        \
+    X(f16_bound_nan, DATA, "not finite", f->mesh->f16_direction_bound = nan_value())                                 \
+    X(world_scale_infinite, DATA, "not finite", f->mesh->world_scale = INFINITE)                                     \
+    X(position_nan, DATA, "position is not finite", f->positions[3] = nan_value())                                   \
+    X(position_infinite, DATA, "position is not finite", f->positions[47] = INFINITE)                                \
+    X(index_past_vertices, DATA, "past the last vertex", f->indices[5] = (uint16_t)f->mesh->vertex_count)            \
+    X(padding_behind_indices, DATA, "padding", f->indices[f->mesh->index_count] = 1)                                 \
+    X(submesh_past_indices, DATA, "outside the mesh", f->submeshes[1].first_index += 3)                              \
+    X(submesh_overflows, DATA, "outside the mesh", f->submeshes[1].first_index = 0xfffffffdu)                        \
+    X(submesh_not_triangles, DATA, "outside the mesh", f->submeshes[0].index_count -= 1)                             \
     X(submesh_past_vertices, DATA, "vertices lie outside", f->submeshes[0].vertex_count = f->mesh->vertex_count + 1) \
-    X(submesh_vertices_overflow, DATA, "vertices lie outside", f->submeshes[0].first_vertex = 0xffffffffu) \
-    X(submesh_material, DATA, "material", f->submeshes[0].material = 2) \
-    X(target_name, DATA, "outside the strings", f->targets[0].name = f->strings_at->bytes) \
-    X(target_name_hash, DATA, "hash", f->targets[1].name_hash ^= 0x80000000u) \
-    X(target_name_inside_another, DATA, "hash", f->targets[0].name += 1) \
-    X(target_first_rect, DATA, "outside the mesh", f->targets[1].first_rect += 1) \
-    X(target_first_texel, DATA, "outside the mesh", f->targets[1].first_texel = 0xffffffffu) \
-    X(target_rect_count, DATA, "outside the mesh", f->targets[0].rect_count = 0xffffffffu) \
-    X(target_texel_count, DATA, "outside the mesh", f->targets[0].texel_count = 0xffffffffu) \
-    X(target_texel_count_one_more, DATA, "", f->targets[0].texel_count += 1) \
-    X(target_pair_count, DATA, "pair count is wrong", f->targets[0].pair_count += 1) \
-    X(target_bits_zero, DATA, "bit widths", f->targets[0].normal_bits = 0) \
-    X(target_bits_too_many, DATA, "bit widths", f->targets[0].position_bits = 24) \
-    X(target_bits_wrap, DATA, "bit widths", f->targets[0].tangent_bits = 255) \
-    X(target_reserved, DATA, "bit widths", f->targets[0].reserved1 = 1) \
-    X(target_scale_nan, DATA, "not finite", f->targets[0].position_scale = nan_value()) \
-    X(target_scale_infinite, DATA, "not finite", f->targets[2].tangent_scale = INFINITE) \
-    X(target_scale_negative, DATA, "negative", f->targets[1].normal_scale = -1.0f) \
-    X(target_error_nan, DATA, "not finite", f->targets[1].position_error = nan_value()) \
-    X(target_displacement_infinite, DATA, "not finite", f->targets[1].radius = INFINITE) \
-    X(default_weight_nan, DATA, "weight is not finite", f->weights[0] = nan_value()) \
-    X(rect_x_outside, DATA, "outside the accumulation", f->rects[0].x = 0xffffu) \
-    X(rect_y_outside, DATA, "outside the accumulation", f->rects[0].y = (uint16_t)f->mesh->morph_height) \
-    X(rect_empty, DATA, "", f->rects[0].w = 0) \
-    X(rect_larger_than_target, DATA, "more texels", f->rects[0].w = f->rects[0].h = 0xffffu) \
-    X(delta_on_no_vertex, DATA, "no vertex", lose_last_touched(f)) \
-    X(texel_zeroed, DATA, "pair count is wrong", memset(f->texels, 0, 12)) \
-    X(node_count_overflows, DATA, "node count", f->nodes_header->node_count = 0xffffffffu) \
-    X(node_count_one_more, DATA, "", f->nodes_header->node_count += 1) \
-    X(node_weight_count_overflows, DATA, "past the end", f->nodes_header->weight_count = 0xffffffffu) \
-    X(node_parent_is_itself, DATA, "parent", f->nodes[1].parent = 1) \
-    X(node_parent_after_child, DATA, "parent", f->nodes[0].parent = 1) \
-    X(node_parent_missing, DATA, "parent", f->nodes[1].parent = 0xfffffffeu) \
-    X(node_mesh_missing, DATA, "mesh that is not there", f->nodes[1].mesh = 1) \
-    X(node_transform_nan, DATA, "not finite", f->nodes[1].rotation[0] = nan_value()) \
-    X(node_world_infinite, DATA, "not finite", f->nodes[0].world[11] = INFINITE) \
-    X(node_weights_outside, DATA, "outside the weights", f->nodes[1].first_weight = 1) \
-    X(node_weights_far_outside, DATA, "outside the weights", f->nodes[1].first_weight = 0xfffffffeu) \
-    X(node_weights_without_mesh, DATA, "outside the weights", f->nodes[0].first_weight = 0) \
-    X(node_flags, DATA, "flags", f->nodes[0].flags = 1) \
-    X(node_name, DATA, "outside the strings", f->nodes[0].name = 0xffffffffu) \
-    X(node_weight_nan, DATA, "weight is not finite", f->node_weights[0] = nan_value()) \
-    X(clip_joints_without_skeleton, DATA, "skeleton that is not there", f->clip->joint_count = 1) \
-    X(clip_skeleton_without_joints, DATA, "names a skeleton", f->clip->skeleton = 0) \
-    X(clip_hash_without_joints, DATA, "names a skeleton", f->clip->skeleton_hash = 1) \
-    X(clip_joint_errors_without_joints, DATA, "joint errors", f->clip->joint_error_count = 1) \
-    X(clip_joint_errors_elsewhere, DATA, "begin", f->clip->joint_errors_offset += 16) \
-    X(clip_update_rate_error_at_full_rate, DATA, "rate errors", f->clip->update_rate_error[0] = 1.0f) \
-    X(clip_update_rate_error_nan, DATA, "rate errors", f->clip->update_rate_error[3] = nan_value()) \
-    X(clip_update_rate_error_falls, DATA, "rate errors", f->clip->update_rate_error[1] = f->clip->update_rate_error[2] + 1.0f) \
-    X(clip_shell_negative, DATA, "shell", f->clip->error_shell = -1.0f) \
-    X(clip_shell_infinite, DATA, "shell", f->clip->error_shell = INFINITE) \
-    X(clip_clip_one_more, DATA, "", f->clip->clip_bytes += 1) \
+    X(submesh_vertices_overflow, DATA, "vertices lie outside", f->submeshes[0].first_vertex = 0xffffffffu)           \
+    X(submesh_material, DATA, "material", f->submeshes[0].material = 2)                                              \
+    X(target_name, DATA, "outside the strings", f->targets[0].name = f->strings_at->bytes)                           \
+    X(target_name_hash, DATA, "hash", f->targets[1].name_hash ^= 0x80000000u)                                        \
+    X(target_name_inside_another, DATA, "hash", f->targets[0].name += 1)                                             \
+    X(target_first_rect, DATA, "outside the mesh", f->targets[1].first_rect += 1)                                    \
+    X(target_first_texel, DATA, "outside the mesh", f->targets[1].first_texel = 0xffffffffu)                         \
+    X(target_rect_count, DATA, "outside the mesh", f->targets[0].rect_count = 0xffffffffu)                           \
+    X(target_texel_count, DATA, "outside the mesh", f->targets[0].texel_count = 0xffffffffu)                         \
+    X(target_texel_count_one_more, DATA, "", f->targets[0].texel_count += 1)                                         \
+    X(target_pair_count, DATA, "pair count is wrong", f->targets[0].pair_count += 1)                                 \
+    X(target_bits_zero, DATA, "bit widths", f->targets[0].normal_bits = 0)                                           \
+    X(target_bits_too_many, DATA, "bit widths", f->targets[0].position_bits = 24)                                    \
+    X(target_bits_wrap, DATA, "bit widths", f->targets[0].tangent_bits = 255)                                        \
+    X(target_reserved, DATA, "bit widths", f->targets[0].reserved1 = 1)                                              \
+    X(target_scale_nan, DATA, "not finite", f->targets[0].position_scale = nan_value())                              \
+    X(target_scale_infinite, DATA, "not finite", f->targets[2].tangent_scale = INFINITE)                             \
+    X(target_scale_negative, DATA, "negative", f->targets[1].normal_scale = -1.0f)                                   \
+    X(target_error_nan, DATA, "not finite", f->targets[1].position_error = nan_value())                              \
+    X(target_displacement_infinite, DATA, "not finite", f->targets[1].radius = INFINITE)                             \
+    X(default_weight_nan, DATA, "weight is not finite", f->weights[0] = nan_value())                                 \
+    X(rect_x_outside, DATA, "outside the accumulation", f->rects[0].x = 0xffffu)                                     \
+    X(rect_y_outside, DATA, "outside the accumulation", f->rects[0].y = (uint16_t)f->mesh->morph_height)             \
+    X(rect_empty, DATA, "", f->rects[0].w = 0)                                                                       \
+    X(rect_larger_than_target, DATA, "more texels", f->rects[0].w = f->rects[0].h = 0xffffu)                         \
+    X(delta_on_no_vertex, DATA, "no vertex", lose_last_touched(f))                                                   \
+    X(texel_zeroed, DATA, "pair count is wrong", memset(f->texels, 0, 12))                                           \
+    X(node_count_overflows, DATA, "node count", f->nodes_header->node_count = 0xffffffffu)                           \
+    X(node_count_one_more, DATA, "", f->nodes_header->node_count += 1)                                               \
+    X(node_weight_count_overflows, DATA, "past the end", f->nodes_header->weight_count = 0xffffffffu)                \
+    X(node_parent_is_itself, DATA, "parent", f->nodes[1].parent = 1)                                                 \
+    X(node_parent_after_child, DATA, "parent", f->nodes[0].parent = 1)                                               \
+    X(node_parent_missing, DATA, "parent", f->nodes[1].parent = 0xfffffffeu)                                         \
+    X(node_mesh_missing, DATA, "mesh that is not there", f->nodes[1].mesh = 1)                                       \
+    X(node_transform_nan, DATA, "not finite", f->nodes[1].rotation[0] = nan_value())                                 \
+    X(node_world_infinite, DATA, "not finite", f->nodes[0].world[11] = INFINITE)                                     \
+    X(node_weights_outside, DATA, "outside the weights", f->nodes[1].first_weight = 1)                               \
+    X(node_weights_far_outside, DATA, "outside the weights", f->nodes[1].first_weight = 0xfffffffeu)                 \
+    X(node_weights_without_mesh, DATA, "outside the weights", f->nodes[0].first_weight = 0)                          \
+    X(node_flags, DATA, "flags", f->nodes[0].flags = 1)                                                              \
+    X(node_name, DATA, "outside the strings", f->nodes[0].name = 0xffffffffu)                                        \
+    X(node_weight_nan, DATA, "weight is not finite", f->node_weights[0] = nan_value())                               \
+    X(clip_joints_without_skeleton, DATA, "skeleton that is not there", f->clip->joint_count = 1)                    \
+    X(clip_skeleton_without_joints, DATA, "names a skeleton", f->clip->skeleton = 0)                                 \
+    X(clip_hash_without_joints, DATA, "names a skeleton", f->clip->skeleton_hash = 1)                                \
+    X(clip_joint_errors_without_joints, DATA, "joint errors", f->clip->joint_error_count = 1)                        \
+    X(clip_joint_errors_elsewhere, DATA, "begin", f->clip->joint_errors_offset += 16)                                \
+    X(clip_update_rate_error_at_full_rate, DATA, "rate errors", f->clip->update_rate_error[0] = 1.0f)                \
+    X(clip_update_rate_error_nan, DATA, "rate errors", f->clip->update_rate_error[3] = nan_value())                  \
+    X(clip_update_rate_error_falls, DATA, "rate errors",                                                             \
+      f->clip->update_rate_error[1] = f->clip->update_rate_error[2] + 1.0f)                                          \
+    X(clip_shell_negative, DATA, "shell", f->clip->error_shell = -1.0f)                                              \
+    X(clip_shell_infinite, DATA, "shell", f->clip->error_shell = INFINITE)                                           \
+    X(clip_clip_one_more, DATA, "", f->clip->clip_bytes += 1)                                                        \
     X(clip_clip_elsewhere, DATA, "begin", f->clip->clip_offset += 16)
 
 typedef struct forgery {
@@ -502,7 +503,11 @@ typedef struct forgery {
     const char *word;
 } forgery;
 
-#define X(name, code, word, statement) static void lie_##name(forged *f) { statement; }
+#define X(name, code, word, statement) \
+    static void lie_##name(forged *f)  \
+    {                                  \
+        statement;                     \
+    }
 FORGERIES(X)
 #undef X
 
@@ -519,7 +524,8 @@ static void forged_pack_is_refused(void **state)
     result = noh_pack_open(f.bytes, f.count, &pack, &error);
     free(f.bytes);
     if (result != expected->result || !strstr(error.what, expected->word)) {
-        fail_msg("result %d (%s), expected %d (...%s...)", (int)result, error.what, (int)expected->result, expected->word);
+        fail_msg("result %d (%s), expected %d (...%s...)", (int)result, error.what, (int)expected->result,
+                 expected->word);
     }
     assert_true(error.where <= f.count);
     if (result == NOH_ERR_VERSION) {
@@ -577,44 +583,44 @@ static void errors_say_where(void **state)
 }
 
 /* Fields whose check is theirs alone: the error names the field's own byte. */
-#define PLACES(X) \
-    X(header->version, += 1) \
-    X(header->byte_count, += 64) \
-    X(header->chunk_count, = 0) \
-    X(header->reserved[9], = 1) \
-    X(texture->width, = 0) \
-    X(texture->wrap_s, = 9) \
-    X(materials[1].base_color_texture, = 7) \
-    X(materials[0].flags, = 16) \
-    X(mesh->flags, = 0x80000000u) \
-    X(mesh->vertex_count, = 0) \
-    X(mesh->index_count, -= 1) \
-    X(mesh->index_bytes, = 3) \
-    X(mesh->submesh_count, = 0) \
-    X(mesh->target_count, = NOH_TARGETS_MAX + 1u) \
-    X(mesh->rect_count, = f.mesh->texel_count + 1u) \
-    X(mesh->texel_count, = NOH_DELTA_TEXELS_MAX + 1u) \
+#define PLACES(X)                                       \
+    X(header->version, += 1)                            \
+    X(header->byte_count, += 64)                        \
+    X(header->chunk_count, = 0)                         \
+    X(header->reserved[9], = 1)                         \
+    X(texture->width, = 0)                              \
+    X(texture->wrap_s, = 9)                             \
+    X(materials[1].base_color_texture, = 7)             \
+    X(materials[0].flags, = 16)                         \
+    X(mesh->flags, = 0x80000000u)                       \
+    X(mesh->vertex_count, = 0)                          \
+    X(mesh->index_count, -= 1)                          \
+    X(mesh->index_bytes, = 3)                           \
+    X(mesh->submesh_count, = 0)                         \
+    X(mesh->target_count, = NOH_TARGETS_MAX + 1u)       \
+    X(mesh->rect_count, = f.mesh->texel_count + 1u)     \
+    X(mesh->texel_count, = NOH_DELTA_TEXELS_MAX + 1u)   \
     X(mesh->touched_count, = f.mesh->vertex_count + 1u) \
-    X(mesh->morph_width_log2, = 1) \
-    X(mesh->morph_height, += 1) \
-    X(mesh->attribute_stride, += 4) \
-    X(mesh->skin, = 0) \
-    X(mesh->level, = 1) \
-    X(mesh->level_count, = NOH_LOD_LEVELS_MAX + 1u) \
-    X(mesh->level_error_rest, = 1.0f) \
-    X(mesh->level_skipped, = 1.0f) \
-    X(mesh->influence_errors[1], = -1.0f) \
-    X(mesh->reserved[0], = 1) \
-    X(targets[1].position_bits, = 0) \
-    X(targets[1].position_scale, = -1.0f) \
-    X(nodes_header->node_count, = NOH_NODES_MAX + 1u) \
-    X(nodes[1].parent, = 1) \
-    X(nodes[1].mesh, = 1) \
-    X(nodes[0].first_weight, = 0) \
-    X(nodes[0].flags, = 1) \
-    X(clip->event_count, = NOH_CLIP_EVENTS_MAX + 1u) \
-    X(clip->marker_count, = NOH_CLIP_MARKERS_MAX + 1u) \
-    X(clip->update_rate_error[0], = 1.0f) \
+    X(mesh->morph_width_log2, = 1)                      \
+    X(mesh->morph_height, += 1)                         \
+    X(mesh->attribute_stride, += 4)                     \
+    X(mesh->skin, = 0)                                  \
+    X(mesh->level, = 1)                                 \
+    X(mesh->level_count, = NOH_LOD_LEVELS_MAX + 1u)     \
+    X(mesh->level_error_rest, = 1.0f)                   \
+    X(mesh->level_skipped, = 1.0f)                      \
+    X(mesh->influence_errors[1], = -1.0f)               \
+    X(mesh->reserved[0], = 1)                           \
+    X(targets[1].position_bits, = 0)                    \
+    X(targets[1].position_scale, = -1.0f)               \
+    X(nodes_header->node_count, = NOH_NODES_MAX + 1u)   \
+    X(nodes[1].parent, = 1)                             \
+    X(nodes[1].mesh, = 1)                               \
+    X(nodes[0].first_weight, = 0)                       \
+    X(nodes[0].flags, = 1)                              \
+    X(clip->event_count, = NOH_CLIP_EVENTS_MAX + 1u)    \
+    X(clip->marker_count, = NOH_CLIP_MARKERS_MAX + 1u)  \
+    X(clip->update_rate_error[0], = 1.0f)               \
     X(clip->error_shell, = -1.0f)
 
 static void a_field_s_error_is_at_the_field(void **state)
@@ -624,15 +630,15 @@ static void a_field_s_error_is_at_the_field(void **state)
     size_t at;
     forged f;
     (void)state;
-#define X(field, lie) \
-    forge(&f); \
-    at = (size_t)((const uint8_t *)&f.field - f.bytes); \
-    f.field lie; \
-    pack_repair(f.bytes, f.count); \
-    assert_int_not_equal(noh_pack_open(f.bytes, f.count, &pack, &error), NOH_OK); \
-    if (error.where != at) { \
+#define X(field, lie)                                                                               \
+    forge(&f);                                                                                      \
+    at = (size_t)((const uint8_t *)&f.field - f.bytes);                                             \
+    f.field lie;                                                                                    \
+    pack_repair(f.bytes, f.count);                                                                  \
+    assert_int_not_equal(noh_pack_open(f.bytes, f.count, &pack, &error), NOH_OK);                   \
+    if (error.where != at) {                                                                        \
         fail_msg("%s: byte %lu, not %zu (%s)", #field, (unsigned long)error.where, at, error.what); \
-    } \
+    }                                                                                               \
     free(f.bytes);
     PLACES(X)
 #undef X
@@ -680,28 +686,27 @@ enum {
 #undef X
 };
 
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(opens_and_walks),
-    cmocka_unit_test(past_the_last_is_not_found),
-    cmocka_unit_test(the_writer_s_version_is_in_the_header),
-    cmocka_unit_test(the_smallest_mesh_opens),
-    cmocka_unit_test(misaligned_memory_is_an_argument_error),
-    cmocka_unit_test(null_is_an_argument_error),
-    cmocka_unit_test(a_failed_open_leaves_the_pack_alone),
-    cmocka_unit_test(every_truncation_is_an_error),
-    cmocka_unit_test(every_truncation_is_an_error_even_if_the_header_agrees),
-    cmocka_unit_test(every_single_bit_flip_is_an_error),
-    cmocka_unit_test(every_flip_with_repaired_checksums_is_safe),
-    cmocka_unit_test(random_damage_with_repaired_checksums_is_safe),
-    cmocka_unit_test(an_honest_copy_opens),
-    cmocka_unit_test(there_is_padding_behind_the_indices),
-    cmocka_unit_test(errors_say_where),
-    cmocka_unit_test(a_field_s_error_is_at_the_field),
-    cmocka_unit_test(padding_has_to_be_zero),
-    cmocka_unit_test(bytes_after_the_last_chunk_are_refused),
+static const struct CMUnitTest tests[] = { cmocka_unit_test(opens_and_walks),
+                                           cmocka_unit_test(past_the_last_is_not_found),
+                                           cmocka_unit_test(the_writer_s_version_is_in_the_header),
+                                           cmocka_unit_test(the_smallest_mesh_opens),
+                                           cmocka_unit_test(misaligned_memory_is_an_argument_error),
+                                           cmocka_unit_test(null_is_an_argument_error),
+                                           cmocka_unit_test(a_failed_open_leaves_the_pack_alone),
+                                           cmocka_unit_test(every_truncation_is_an_error),
+                                           cmocka_unit_test(every_truncation_is_an_error_even_if_the_header_agrees),
+                                           cmocka_unit_test(every_single_bit_flip_is_an_error),
+                                           cmocka_unit_test(every_flip_with_repaired_checksums_is_safe),
+                                           cmocka_unit_test(random_damage_with_repaired_checksums_is_safe),
+                                           cmocka_unit_test(an_honest_copy_opens),
+                                           cmocka_unit_test(there_is_padding_behind_the_indices),
+                                           cmocka_unit_test(errors_say_where),
+                                           cmocka_unit_test(a_field_s_error_is_at_the_field),
+                                           cmocka_unit_test(padding_has_to_be_zero),
+                                           cmocka_unit_test(bytes_after_the_last_chunk_are_refused),
 #define X(name, code, word, statement) \
     { "forged_" #name, forged_pack_is_refused, NULL, NULL, (void *)(uintptr_t)&forgeries[forgery_##name] },
-    FORGERIES(X)
+                                           FORGERIES(X)
 #undef X
 };
 

@@ -1,4 +1,5 @@
-/* test_skin_pack.c: skins in packs: what is written, what a reader refuses, and what the converter makes of odd input. */
+/* test_skin_pack.c: skins in packs: what is written, what a reader refuses, and what the converter makes of odd input.
+ */
 #include "support/skin_asset.h"
 
 #include <math.h>
@@ -71,59 +72,59 @@ static forged reach(uint8_t *bytes)
     return f;
 }
 
-#define LIES(X)                                                                                            \
-    X(skin_without_joints, f->skin->joint_count = 0, "no joints")                                          \
-    X(skin_of_too_many_joints, f->skin->joint_count = 70000, "too many")                                   \
-    X(skin_of_no_skeleton, f->skin->skeleton = 1, "skeleton that is not there")                            \
-    X(skin_joint_outside, f->joints[1] = 6, "joint that its skeleton does not have")                       \
-    X(skin_bind_nan, f->inverse_bind[17] = NAN, "inverse bind matrix is not finite")                       \
-    X(skin_bind_infinite, f->inverse_bind[0] = INFINITY, "inverse bind matrix is not finite")              \
-    X(mesh_of_no_skin, f->mesh->skin = 1, "skin that is not there")                                        \
-    X(rigid_with_influences, f->mesh->skin = NOH_NONE, "rigid mesh has influences")                        \
-    X(three_influences, f->mesh->influence_count = 3, "neither 1, 2, 4 nor 8")                             \
-    X(no_influences, f->mesh->influence_count = 0, "neither 1, 2, 4 nor 8")                                \
-    X(no_palettes, f->mesh->palette_count = 0, "palette count is zero")                                    \
-    X(too_many_palettes, f->mesh->palette_count = 300, "palette count is zero or over")                    \
-    X(too_many_palette_joints, f->mesh->palette_joint_count = 4096, "too many joints")                     \
-    X(split_without_texels, f->mesh->flags &= ~NOH_MESH_TEXELS, "texel references")                        \
-    X(palette_empty, f->palettes[0].joint_count = 0, "palette is empty")                                   \
-    X(palette_too_long, f->palettes[1].joint_count += 1, "palette is empty, too large")                    \
-    X(palettes_apart, f->palettes[1].first_joint += 1, "does not follow the one before it")                \
-    X(palettes_short, f->palettes[f->mesh->palette_count - 1].joint_count -= 1, "do not add up")           \
-    X(palette_joint_outside, f->palette_joints[0] = 6, "joint that its skin does not have")                \
-    X(place_outside, f->influences[0] |= 0xff, "outside its palette")                                      \
-    X(second_place_outside, f->influences[0] |= 0xff00, "outside its palette")                             \
-    X(weightless_joint, f->influences[1] = f->influences[2] = 0, "without a weight")                       \
-    X(weights_above_one, (f->influences[1] = 0xffffffffu, f->influences[2] = 0xffffffffu), "above 1")      \
-    X(later_texel, *f->texels += 1, "texel of a later vertex")                                             \
-    X(no_such_palette, *f->texels |= 0xff400000u, "of another palette")                                    \
-    X(another_palette, *f->texels ^= 0x00400000u, "")                                                      \
-    X(submesh_without_palette, f->submeshes[0].palette = 40, "palette that is not there")                  \
-    X(submesh_of_another_palette, f->submeshes[0].palette = 1, "vertex of another palette")                \
-    X(submeshes_overlap, f->submeshes[1].first_index -= 3, "overlap")                                      \
-    X(joint_box_nan, f->joint_boxes[2] = NAN, "box is not finite")                                         \
-    X(joint_box_inside_out, f->joint_boxes[0] = f->joint_boxes[3] + 1.0f, "inside out")                    \
-    X(target_box_inside_out, f->target_boxes[0] = 9.0f, "inside out")                                      \
+#define LIES(X)                                                                                              \
+    X(skin_without_joints, f->skin->joint_count = 0, "no joints")                                            \
+    X(skin_of_too_many_joints, f->skin->joint_count = 70000, "too many")                                     \
+    X(skin_of_no_skeleton, f->skin->skeleton = 1, "skeleton that is not there")                              \
+    X(skin_joint_outside, f->joints[1] = 6, "joint that its skeleton does not have")                         \
+    X(skin_bind_nan, f->inverse_bind[17] = NAN, "inverse bind matrix is not finite")                         \
+    X(skin_bind_infinite, f->inverse_bind[0] = INFINITY, "inverse bind matrix is not finite")                \
+    X(mesh_of_no_skin, f->mesh->skin = 1, "skin that is not there")                                          \
+    X(rigid_with_influences, f->mesh->skin = NOH_NONE, "rigid mesh has influences")                          \
+    X(three_influences, f->mesh->influence_count = 3, "neither 1, 2, 4 nor 8")                               \
+    X(no_influences, f->mesh->influence_count = 0, "neither 1, 2, 4 nor 8")                                  \
+    X(no_palettes, f->mesh->palette_count = 0, "palette count is zero")                                      \
+    X(too_many_palettes, f->mesh->palette_count = 300, "palette count is zero or over")                      \
+    X(too_many_palette_joints, f->mesh->palette_joint_count = 4096, "too many joints")                       \
+    X(split_without_texels, f->mesh->flags &= ~NOH_MESH_TEXELS, "texel references")                          \
+    X(palette_empty, f->palettes[0].joint_count = 0, "palette is empty")                                     \
+    X(palette_too_long, f->palettes[1].joint_count += 1, "palette is empty, too large")                      \
+    X(palettes_apart, f->palettes[1].first_joint += 1, "does not follow the one before it")                  \
+    X(palettes_short, f->palettes[f->mesh->palette_count - 1].joint_count -= 1, "do not add up")             \
+    X(palette_joint_outside, f->palette_joints[0] = 6, "joint that its skin does not have")                  \
+    X(place_outside, f->influences[0] |= 0xff, "outside its palette")                                        \
+    X(second_place_outside, f->influences[0] |= 0xff00, "outside its palette")                               \
+    X(weightless_joint, f->influences[1] = f->influences[2] = 0, "without a weight")                         \
+    X(weights_above_one, (f->influences[1] = 0xffffffffu, f->influences[2] = 0xffffffffu), "above 1")        \
+    X(later_texel, *f->texels += 1, "texel of a later vertex")                                               \
+    X(no_such_palette, *f->texels |= 0xff400000u, "of another palette")                                      \
+    X(another_palette, *f->texels ^= 0x00400000u, "")                                                        \
+    X(submesh_without_palette, f->submeshes[0].palette = 40, "palette that is not there")                    \
+    X(submesh_of_another_palette, f->submeshes[0].palette = 1, "vertex of another palette")                  \
+    X(submeshes_overlap, f->submeshes[1].first_index -= 3, "overlap")                                        \
+    X(joint_box_nan, f->joint_boxes[2] = NAN, "box is not finite")                                           \
+    X(joint_box_inside_out, f->joint_boxes[0] = f->joint_boxes[3] + 1.0f, "inside out")                      \
+    X(target_box_inside_out, f->target_boxes[0] = 9.0f, "inside out")                                        \
     X(target_box_empty, (f->target_boxes[0] = f->target_boxes[1] = f->target_boxes[2] = 9.0f), "inside out") \
     X(reserved_field, f->mesh->reserved[1] = 1, "reserved")
 
-#define X(name, lie, message)                                                                             \
-    static void forged_##name(void **state)                                                               \
-    {                                                                                                     \
-        size_t count;                                                                                     \
-        uint8_t *bytes = split_pack(&count);                                                              \
-        forged all = reach(bytes), *f = &all;                                                             \
-        noh_pack pack;                                                                                    \
-        noh_error error = { NOH_OK, "", 0, 0 };                                                           \
-        (void)state;                                                                                      \
-        test_open(bytes, count);                                                                          \
-        lie;                                                                                              \
-        pack_repair(bytes, count);                                                                        \
-        assert_int_equal(noh_pack_open(bytes, count, &pack, &error), NOH_ERR_DATA);                       \
-        if (!strstr(error.what, message)) {                                                               \
-            fail_msg("said: %s", error.what);                                                             \
-        }                                                                                                 \
-        free(bytes);                                                                                      \
+#define X(name, lie, message)                                                       \
+    static void forged_##name(void **state)                                         \
+    {                                                                               \
+        size_t count;                                                               \
+        uint8_t *bytes = split_pack(&count);                                        \
+        forged all = reach(bytes), *f = &all;                                       \
+        noh_pack pack;                                                              \
+        noh_error error = { NOH_OK, "", 0, 0 };                                     \
+        (void)state;                                                                \
+        test_open(bytes, count);                                                    \
+        lie;                                                                        \
+        pack_repair(bytes, count);                                                  \
+        assert_int_equal(noh_pack_open(bytes, count, &pack, &error), NOH_ERR_DATA); \
+        if (!strstr(error.what, message)) {                                         \
+            fail_msg("said: %s", error.what);                                       \
+        }                                                                           \
+        free(bytes);                                                                \
     }
 LIES(X)
 #undef X
@@ -375,7 +376,7 @@ static const struct CMUnitTest tests[] = {
 #define X(name, lie, message) cmocka_unit_test(forged_##name),
     LIES(X)
 #undef X
-    cmocka_unit_test(every_truncation_and_flip_is_refused),
+        cmocka_unit_test(every_truncation_and_flip_is_refused),
     cmocka_unit_test(repaired_flips_stay_in_bounds),
     cmocka_unit_test(a_mesh_of_two_skins_is_copied),
     cmocka_unit_test(rigid_parts_become_one_mesh),

@@ -70,8 +70,8 @@ static void test_weighted_sum(void **state)
     }
 }
 
-/* The source's weight, (rand() % 1000) / 1000, never reaches 1, so the first clip alone is never seen. Here the ends of a
- * mix, and a sum of one, show one clip alone, translations and floats to the bit. */
+/* The source's weight, (rand() % 1000) / 1000, never reaches 1, so the first clip alone is never seen. Here the ends of
+ * a mix, and a sum of one, show one clip alone, translations and floats to the bit. */
 static void a_weight_of_one_shows_its_clip_alone(void **state)
 {
     scene s;
@@ -208,7 +208,8 @@ static void a_sum_covers_what_lies_below(void **state)
     }
 }
 
-/* Palette = model * inverse bind: the bind pose's points come first into the joint's space. Turned joints tell the order. */
+/* Palette = model * inverse bind: the bind pose's points come first into the joint's space. Turned joints tell the
+ * order. */
 static void palettes_take_the_bind_pose_away_first(void **state)
 {
     scene s;
@@ -227,7 +228,8 @@ static void palettes_take_the_bind_pose_away_first(void **state)
     for (uint32_t i = 0; i < JOINTS; i++) {
         const float *m = model + 12u * i, *n = inverse + 12u * i, p[3] = { 0.3f, -0.2f, 0.1f };
         float local[3];
-        for (int r = 0; r < 3; r++) local[r] = n[4 * r] * p[0] + n[4 * r + 1] * p[1] + n[4 * r + 2] * p[2] + n[4 * r + 3];
+        for (int r = 0; r < 3; r++)
+            local[r] = n[4 * r] * p[0] + n[4 * r + 1] * p[1] + n[4 * r + 2] * p[2] + n[4 * r + 3];
         for (int r = 0; r < 3; r++) {
             const float *q = palette + 12u * i + 4 * r;
             const float want = m[4 * r] * local[0] + m[4 * r + 1] * local[1] + m[4 * r + 2] * local[2] + m[4 * r + 3];
@@ -256,7 +258,8 @@ static void test_mix_at_the_ends_and_in_place(void **state)
     assert_memory_equal(fa, fb, sizeof fa);
 }
 
-/* Between rotations far apart the sum of two unit quaternions is short: a mix must be a rotation all the same, half way. */
+/* Between rotations far apart the sum of two unit quaternions is short: a mix must be a rotation all the same, half
+ * way. */
 static void test_a_mix_is_unit(void **state)
 {
     static const float a[4] = { 0, 0, 0, 1 };
@@ -301,7 +304,8 @@ static void test_cover(void **state)
     noh_blend_cover(&b.blend, 0.5f, got, got_floats);
     noh_pose_mix(JOINTS, low, poses[RUN], 0.5f, tenths.joints, want);
     assert_true(pose_apart(got + JOINTS / 2u, want + JOINTS / 2u, JOINTS / 2u) < 1e-6);
-    assert_true(pose_apart(got + 1, poses[RUN] + 1, JOINTS / 2u - 1u) < 1e-6); /* nothing below; joint 0 is masked out */
+    assert_true(pose_apart(got + 1, poses[RUN] + 1, JOINTS / 2u - 1u) <
+                1e-6); /* nothing below; joint 0 is masked out */
     assert_true(pose_apart(got, low, 1) < 1e-6);
     assert_true(floats_apart(got_floats, floats[WAVE], FLOATS) < 1e-6);
 }
@@ -409,7 +413,9 @@ static void test_triangulation(void **state)
             }
             if (i < 4) p[2u * i] = (float)(i & 1u), p[2u * i + 1u] = (float)(i >> 1);
             /* every second round many points on lines and circles */
-            else if (round % 2) p[2u * i] = (float)(i % 6u) * 800.0f / 4096.0f, p[2u * i + 1u] = (float)(400u + i / 6u * 512u) / 4096.0f;
+            else if (round % 2)
+                p[2u * i] = (float)(i % 6u) * 800.0f / 4096.0f,
+                       p[2u * i + 1u] = (float)(400u + i / 6u * 512u) / 4096.0f;
         }
         assert_int_equal(noh_blend_space_2d_triangulate(n, p, tri, &count, NULL), NOH_OK);
         space.triangle_count = count;
@@ -424,10 +430,12 @@ static void test_triangulation(void **state)
             assert_true(w[i] > 0.9999f);
         }
         for (int i = 0; i < 50; i++) { /* linear precision inside, and at most three */
-            float x = (float)(i % 7) / 7.0f + 0.05f, y = (float)(i / 7) / 8.0f + 0.03f, mx = 0.0f, my = 0.0f, total = 0.0f;
+            float x = (float)(i % 7) / 7.0f + 0.05f, y = (float)(i / 7) / 8.0f + 0.03f, mx = 0.0f, my = 0.0f,
+                  total = 0.0f;
             int used = 0;
             noh_blend_space_2d_weights(&space, x, y, w);
-            for (uint32_t k = 0; k < n; k++) mx += w[k] * p[2u * k], my += w[k] * p[2u * k + 1u], total += w[k], used += w[k] > 0.0f;
+            for (uint32_t k = 0; k < n; k++)
+                mx += w[k] * p[2u * k], my += w[k] * p[2u * k + 1u], total += w[k], used += w[k] > 0.0f;
             assert_true(used <= 3 && fabsf(total - 1.0f) < 1e-5f && fabsf(mx - x) < 1e-4f && fabsf(my - y) < 1e-4f);
         }
     }
@@ -477,14 +485,18 @@ static void test_space_outside_and_degenerate(void **state)
     assert_int_equal(noh_blend_space_2d_triangulate(2, bad, tri, &space.triangle_count, &error), NOH_ERR_DATA);
     assert_int_equal(error.where, 1);
     assert_int_equal(noh_blend_space_2d_triangulate(0, square, tri, &space.triangle_count, &error), NOH_ERR_ARG);
-    assert_int_equal(noh_blend_space_2d_triangulate(NOH_BLEND_SPACE_POINTS_MAX + 1u, square, tri, &space.triangle_count, &error), NOH_ERR_ARG);
+    assert_int_equal(
+        noh_blend_space_2d_triangulate(NOH_BLEND_SPACE_POINTS_MAX + 1u, square, tri, &space.triangle_count, &error),
+        NOH_ERR_ARG);
 }
 
-/* The largest coordinates that are taken have exact results; what lies past them is refused, and held where it is asked for. */
+/* The largest coordinates that are taken have exact results; what lies past them is refused, and held where it is asked
+ * for. */
 static void test_space_of_huge_coordinates(void **state)
 {
     static const float far_away[] = { 3e38f, -3e38f, 1.1e18f, INFINITY, -INFINITY, NAN };
-    const float most = NOH_BLEND_SPACE_COORDINATE_MAX, ends[2] = { -NOH_BLEND_SPACE_COORDINATE_MAX, NOH_BLEND_SPACE_COORDINATE_MAX };
+    const float most = NOH_BLEND_SPACE_COORDINATE_MAX,
+                ends[2] = { -NOH_BLEND_SPACE_COORDINATE_MAX, NOH_BLEND_SPACE_COORDINATE_MAX };
     const float square[8] = { -most, -most, most, -most, -most, most, most, most };
     uint8_t tri[NOH_BLEND_SPACE_TRIANGLES_MAX * 3u];
     float w[4];
@@ -532,14 +544,22 @@ static void test_skeleton_fields_broken_in_turn(void **state)
     memset(inverse, 0, sizeof inverse);
     s.skeleton.inverse_bind = inverse;
     assert_int_equal(noh_skeleton_check(&s.skeleton, NULL), NOH_OK);
-    k = s.skeleton, k.joint_count = 0; bad_skeleton(&k, NOH_ERR_ARG, "joint_count");
-    k = s.skeleton, k.joint_count = NOH_JOINTS_MAX + 1u; bad_skeleton(&k, NOH_ERR_ARG, "joint_count");
-    k = s.skeleton, k.parents = NULL; bad_skeleton(&k, NOH_ERR_ARG, "parents");
-    k = s.skeleton, k.bind_pose = NULL; bad_skeleton(&k, NOH_ERR_ARG, "bind_pose");
-    s.parents[3] = 3; bad_skeleton(&s.skeleton, NOH_ERR_DATA, "parent does not come first");
-    s.parents[3] = 1, s.bind[2].scale[0] = INFINITY; bad_skeleton(&s.skeleton, NOH_ERR_DATA, "bind pose is not finite");
-    s.bind[2].scale[0] = 1.0f, s.bind[2].rotation[0] = 0.5f; bad_skeleton(&s.skeleton, NOH_ERR_DATA, "bind rotation is not unit");
-    s.bind[2].rotation[0] = 0.0f, inverse[40] = NAN; bad_skeleton(&s.skeleton, NOH_ERR_DATA, "inverse bind matrix is not finite");
+    k = s.skeleton, k.joint_count = 0;
+    bad_skeleton(&k, NOH_ERR_ARG, "joint_count");
+    k = s.skeleton, k.joint_count = NOH_JOINTS_MAX + 1u;
+    bad_skeleton(&k, NOH_ERR_ARG, "joint_count");
+    k = s.skeleton, k.parents = NULL;
+    bad_skeleton(&k, NOH_ERR_ARG, "parents");
+    k = s.skeleton, k.bind_pose = NULL;
+    bad_skeleton(&k, NOH_ERR_ARG, "bind_pose");
+    s.parents[3] = 3;
+    bad_skeleton(&s.skeleton, NOH_ERR_DATA, "parent does not come first");
+    s.parents[3] = 1, s.bind[2].scale[0] = INFINITY;
+    bad_skeleton(&s.skeleton, NOH_ERR_DATA, "bind pose is not finite");
+    s.bind[2].scale[0] = 1.0f, s.bind[2].rotation[0] = 0.5f;
+    bad_skeleton(&s.skeleton, NOH_ERR_DATA, "bind rotation is not unit");
+    s.bind[2].rotation[0] = 0.0f, inverse[40] = NAN;
+    bad_skeleton(&s.skeleton, NOH_ERR_DATA, "inverse bind matrix is not finite");
 }
 
 /* A point of each joint, taken up the chain joint by joint in double. */
@@ -550,7 +570,9 @@ static void climb(const scene *s, const noh_transform *pose, uint32_t joint, dou
         for (int k = 0; k < 4; k++) q[k] = pose[j].rotation[k];
         for (int k = 0; k < 3; k++) v[k] = p[k] * pose[j].scale[k];
         for (int k = 0; k < 3; k++) t[k] = 2.0 * (q[(k + 1) % 3] * v[(k + 2) % 3] - q[(k + 2) % 3] * v[(k + 1) % 3]);
-        for (int k = 0; k < 3; k++) p[k] = v[k] + q[3] * t[k] + q[(k + 1) % 3] * t[(k + 2) % 3] - q[(k + 2) % 3] * t[(k + 1) % 3] + pose[j].translation[k];
+        for (int k = 0; k < 3; k++)
+            p[k] = v[k] + q[3] * t[k] + q[(k + 1) % 3] * t[(k + 2) % 3] - q[(k + 2) % 3] * t[(k + 1) % 3] +
+                   pose[j].translation[k];
     }
 }
 
@@ -570,7 +592,8 @@ static void model_is_parent_times_local(void **state)
         double p[3] = { 0.3, -0.2, 0.1 };
         const float *m = model + 12u * j;
         climb(&s, pose, j, p);
-        for (int r = 0; r < 3; r++) worst = fmax(worst, fabs(p[r] - (0.3 * m[4 * r] - 0.2 * m[4 * r + 1] + 0.1 * m[4 * r + 2] + m[4 * r + 3])));
+        for (int r = 0; r < 3; r++)
+            worst = fmax(worst, fabs(p[r] - (0.3 * m[4 * r] - 0.2 * m[4 * r + 1] + 0.1 * m[4 * r + 2] + m[4 * r + 3])));
     }
     assert_true(worst < 3e-6);
     noh_transform_matrix(&pose[1], swapped);
@@ -597,7 +620,8 @@ static void test_palette(void **state)
     assert_memory_equal(palette, model, sizeof model); /* without inverse bind matrices */
     s.skeleton.inverse_bind = inverse;
     noh_model_to_palette(&s.skeleton, model, JOINTS, model); /* in place */
-    for (uint32_t i = 0; i < JOINTS * 12u; i++) assert_true(fabsf(model[i] - (i % 12u % 5u == 0 ? 1.0f : 0.0f)) < 1e-6f);
+    for (uint32_t i = 0; i < JOINTS * 12u; i++)
+        assert_true(fabsf(model[i] - (i % 12u % 5u == 0 ? 1.0f : 0.0f)) < 1e-6f);
 }
 
 int main(int argc, char **argv)

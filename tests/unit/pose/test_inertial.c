@@ -11,15 +11,16 @@
 #define DURATION 0.4f
 #define BEFORE 0.01f
 
-/* Without speed the quintic of Bollo's talk is 1 - 10 s^3 + 15 s^4 - 6 s^5; at speeds at which it would overshoot it ends
- * at t1 = -5 x0 / v0 and is (1 - t / t1)^5. */
+/* Without speed the quintic of Bollo's talk is 1 - 10 s^3 + 15 s^4 - 6 s^5; at speeds at which it would overshoot it
+ * ends at t1 = -5 x0 / v0 and is (1 - t / t1)^5. */
 static void decay_is_the_quintic(void **state)
 {
     (void)state;
     for (int i = 0; i <= 100; i++) {
         const double s = (double)i / 100.0, still = 2.0 * (1.0 + s * s * s * (-10.0 + s * (15.0 - 6.0 * s)));
         const double fast = 2.0 * pow(1.0 - s, 5.0), t1 = 5.0 * 2.0 / 50.0;
-        assert_true(fabs((double)noh_inertia_decay(2.0f, 0.0f, (float)(s * (double)DURATION), DURATION) - still) < 2e-5);
+        assert_true(fabs((double)noh_inertia_decay(2.0f, 0.0f, (float)(s * (double)DURATION), DURATION) - still) <
+                    2e-5);
         assert_true(fabs((double)noh_inertia_decay(2.0f, -50.0f, (float)(s * t1), DURATION) - fast) < 2e-5);
     }
 }
@@ -57,7 +58,8 @@ static void offsets_and_speeds_are_each_part_s_own(void **state)
     noh_inertia_joint o;
     (void)state;
     noh_inertia_begin(1, &source, &source_before, &target, &target_before, BEFORE, &o);
-    assert_true(fabsf(o.rotation[2] - 0.3f) < 1e-6f && fabsf(o.translation[0] - 2.0f) < 1e-6f && fabsf(o.scale[0] - 0.5f) < 1e-6f);
+    assert_true(fabsf(o.rotation[2] - 0.3f) < 1e-6f && fabsf(o.translation[0] - 2.0f) < 1e-6f &&
+                fabsf(o.scale[0] - 0.5f) < 1e-6f);
     assert_true(fabsf(o.rotation_speed - (0.3f - 0.32f) / BEFORE) < 1e-3f);
     assert_true(fabsf(o.translation_speed - (2.0f - 2.05f) / BEFORE) < 1e-3f);
     assert_true(fabsf(o.scale_speed - (0.5f - 0.53f) / BEFORE) < 1e-3f);
@@ -66,7 +68,8 @@ static void offsets_and_speeds_are_each_part_s_own(void **state)
 /* An offset that grows is stopped, not followed: else it would overshoot what it came from. */
 static void growing_offsets_are_stopped(void **state)
 {
-    const noh_transform target = posed(0.0f, 0.0f, 1.0f), source = posed(0.3f, 2.0f, 1.5f), source_before = posed(0.2f, 1.9f, 1.4f);
+    const noh_transform target = posed(0.0f, 0.0f, 1.0f), source = posed(0.3f, 2.0f, 1.5f),
+                        source_before = posed(0.2f, 1.9f, 1.4f);
     const float offset[2] = { 0.5f, -0.5f }, offset_before[2] = { 0.4f, -0.4f }, none[2] = { 0.0f, 0.0f };
     noh_inertia_joint o;
     noh_inertia_float f[2];
@@ -95,7 +98,8 @@ static void the_pose_starts_at_the_source(void **state)
         noh_inertia_apply(1, &o, t, DURATION, &pose);
         noh_quat_to_rotation(pose.rotation, turn);
         assert_true(fabsf(turn[2] - (0.5f + noh_inertia_decay(0.3f, o.rotation_speed, t, DURATION))) < 1e-5f);
-        assert_true(fabsf(pose.translation[0] - (1.0f + noh_inertia_decay(2.0f, o.translation_speed, t, DURATION))) < 1e-5f);
+        assert_true(fabsf(pose.translation[0] - (1.0f + noh_inertia_decay(2.0f, o.translation_speed, t, DURATION))) <
+                    1e-5f);
         assert_true(fabsf(pose.scale[0] - (1.0f + noh_inertia_decay(0.5f, o.scale_speed, t, DURATION))) < 1e-5f);
     }
     pose = target;

@@ -155,7 +155,8 @@ static void includes_once_with_lines(void **state)
     char output[8192];
     need_tool();
     assert_int_equal(run(output, sizeof output, "mkdir sub sub/deep"), 0);
-    write_text("sub/a.vert", "#version 300 es\nbefore\n  # include \"deep/b.glsl\" // why\nbetween\n#include \"c.glsl\"\nafter\n");
+    write_text("sub/a.vert",
+               "#version 300 es\nbefore\n  # include \"deep/b.glsl\" // why\nbetween\n#include \"c.glsl\"\nafter\n");
     write_text("sub/deep/b.glsl", "b1\n#include \"e.glsl\"\nb3\n");
     write_text("sub/deep/e.glsl", "e\n");
     write_text("sub/c.glsl", "c1\n#include \"deep/e.glsl\"\nc3\n");
@@ -165,8 +166,9 @@ static void includes_once_with_lines(void **state)
                                 "#line 1 1\nb1\n#line 1 2\ne\n#line 3 1\nb3\n#line 4 0\nbetween\n"
                                 "#line 1 3\nc1\n\nc3\n#line 6 0\nafter\n");
     assert_int_equal(run(output, sizeof output, "cat out.d"), 0);
-    assert_string_equal(output, "out.c out.h: \\\n  sub/a.vert \\\n  sub/deep/b.glsl \\\n  sub/deep/e.glsl \\\n  sub/c.glsl\n"
-                                "\nsub/a.vert:\n\nsub/deep/b.glsl:\n\nsub/deep/e.glsl:\n\nsub/c.glsl:\n");
+    assert_string_equal(output,
+                        "out.c out.h: \\\n  sub/a.vert \\\n  sub/deep/b.glsl \\\n  sub/deep/e.glsl \\\n  sub/c.glsl\n"
+                        "\nsub/a.vert:\n\nsub/deep/b.glsl:\n\nsub/deep/e.glsl:\n\nsub/c.glsl:\n");
     assert_int_equal(run(output, sizeof output, "grep -c '/\\* source . : *' out.c; grep '/\\* source' out.c"), 0);
     assert_non_null(strstr(output, "/* source 3: sub/c.glsl */"));
 }
@@ -203,8 +205,10 @@ static void comments_and_indents_go(void **state)
     (void)state;
     char output[8192];
     need_tool();
-    write_text("a.vert", "#version 300 es\n/* about\n   this */\n  #define  F(x)\t(x) /* one */ + 1 // two\n\n\n\tint  a =/*b*/3; /* c\n"
-                         "*/ int b; /**/ int c;//\n\n\n\n\n\n\n\n\n\n\n\n\nlast / 2 /* 3\n // */ * 4\n");
+    write_text(
+        "a.vert",
+        "#version 300 es\n/* about\n   this */\n  #define  F(x)\t(x) /* one */ + 1 // two\n\n\n\tint  a =/*b*/3; /* c\n"
+        "*/ int b; /**/ int c;//\n\n\n\n\n\n\n\n\n\n\n\n\nlast / 2 /* 3\n // */ * 4\n");
     assert_int_equal(run(output, sizeof output, "%s -o out.c a.vert", tool), 0);
     assert_string_equal(output, "");
     read_back("noh_shader_a_vert", output, sizeof output);
@@ -223,9 +227,13 @@ static void snippets(void **state)
     need_tool();
     write_text("piece.glsl", "/* about */\nint a;\n\n  /* b */\n\n\n\n\n\n\n\n\n\nint f() { return 1; }\n");
     write_text("gl/gl_program.h", program_header);
-    write_text("main.c", "#include <stdio.h>\n#include \"out.h\"\nint main(void) { fputs(noh_shader_piece_glsl, stdout); return 0; }\n");
+    write_text(
+        "main.c",
+        "#include <stdio.h>\n#include \"out.h\"\nint main(void) { fputs(noh_shader_piece_glsl, stdout); return 0; }\n");
     assert_int_equal(run(output, sizeof output, "%s -o out.c -D A=1 piece.glsl", tool), 0);
-    assert_int_equal(run(output, sizeof output, "%s -std=c99 -Wall -Wextra -Wpedantic -Werror -I. -o main main.c out.c && ./main", compiler), 0);
+    assert_int_equal(run(output, sizeof output,
+                         "%s -std=c99 -Wall -Wextra -Wpedantic -Werror -I. -o main main.c out.c && ./main", compiler),
+                     0);
     assert_string_equal(output, "int a;\nint f() { return 1; }\n");
     write_text("bad.glsl", "int a;\n#include \"piece.glsl\"\n");
     assert_int_equal(run(output, sizeof output, "%s -o out.c bad.glsl", tool), 1);

@@ -80,9 +80,10 @@ static const char *const clip_names[] = { "idle", "walk", "bow", "look_round", "
 
 static void test_joints(void **state)
 {
-    static const char *const names[] = { "root",  "hips", "spine", "chest", "neck", "head", "jaw" };
-    static const char *const pairs[] = { "shoulder", "upper_arm", "forearm", "hand", "thumb", "thumb_tip", "index",
-                                         "index_tip", "little", "little_tip", "sleeve", "thigh", "shin", "foot", "toes" };
+    static const char *const names[] = { "root", "hips", "spine", "chest", "neck", "head", "jaw" };
+    static const char *const pairs[] = { "shoulder",  "upper_arm", "forearm",   "hand",   "thumb",
+                                         "thumb_tip", "index",     "index_tip", "little", "little_tip",
+                                         "sleeve",    "thigh",     "shin",      "foot",   "toes" };
     (void)state;
     assert_int_equal(puppet->warning_count, 0);
     assert_int_equal(puppet->skin_count, 1);
@@ -411,7 +412,8 @@ static void test_footfalls(void **state)
             const raw_event *event = &clip->events[e];
             int stamp = !strcmp(event->name, "stamp");
             int left = stamp ? event->payload[0] == 0 : !strcmp(event->name, "foot_left");
-            uint32_t foot = joint_named(left ? "foot.L" : "foot.R"), frame = (uint32_t)ceil(event->time_s * 30.0 - 1e-6);
+            uint32_t foot = joint_named(left ? "foot.L" : "foot.R"),
+                     frame = (uint32_t)ceil(event->time_s * 30.0 - 1e-6);
             pose_at(clip, frame, 0, pose);
             assert_true(pose[foot * 12 + 10] < rest + 1e-3);
             pose_at(clip, frame - 5, 0, pose);
@@ -496,16 +498,11 @@ static void test_faces(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_joints),
-    cmocka_unit_test(test_closed_surface),
-    cmocka_unit_test(test_vertices),
-    cmocka_unit_test(test_weights),
-    cmocka_unit_test(test_smooth_weights),
-    cmocka_unit_test(test_mask),
-    cmocka_unit_test(test_loops_close),
-    cmocka_unit_test(test_feet_do_not_slide),
-    cmocka_unit_test(test_footfalls),
-    cmocka_unit_test(test_stays_above_the_floor),
+    cmocka_unit_test(test_joints),         cmocka_unit_test(test_closed_surface),
+    cmocka_unit_test(test_vertices),       cmocka_unit_test(test_weights),
+    cmocka_unit_test(test_smooth_weights), cmocka_unit_test(test_mask),
+    cmocka_unit_test(test_loops_close),    cmocka_unit_test(test_feet_do_not_slide),
+    cmocka_unit_test(test_footfalls),      cmocka_unit_test(test_stays_above_the_floor),
     cmocka_unit_test(test_faces),
 };
 

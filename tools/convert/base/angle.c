@@ -8,16 +8,14 @@
 static double sine_series(double x)
 {
     double x2 = x * x, sum = 1.0;
-    for (int k = 8; k >= 1; --k)
-        sum = 1.0 - sum * x2 / (double)(2 * k * (2 * k + 1));
+    for (int k = 8; k >= 1; --k) sum = 1.0 - sum * x2 / (double)(2 * k * (2 * k + 1));
     return x * sum;
 }
 
 static double cosine_series(double x)
 {
     double x2 = x * x, sum = 1.0;
-    for (int k = 9; k >= 1; --k)
-        sum = 1.0 - sum * x2 / (double)(2 * k * (2 * k - 1));
+    for (int k = 9; k >= 1; --k) sum = 1.0 - sum * x2 / (double)(2 * k * (2 * k - 1));
     return sum;
 }
 
@@ -43,10 +41,8 @@ double angle_arc_tangent(double ratio)
 {
     /* arctan t = 2 arctan(t / (1 + sqrt(1 + t^2))): two halvings bring it below pi/16 */
     double t = ratio;
-    for (int i = 0; i < 2; ++i)
-        t = t / (1.0 + sqrt(1.0 + t * t));
+    for (int i = 0; i < 2; ++i) t = t / (1.0 + sqrt(1.0 + t * t));
     double t2 = t * t, sum = 0.0;
-    for (int k = 12; k >= 0; --k)
-        sum = 1.0 / (double)(2 * k + 1) - t2 * sum;
+    for (int k = 12; k >= 0; --k) sum = 1.0 / (double)(2 * k + 1) - t2 * sum;
     return 4.0 * t * sum;
 }

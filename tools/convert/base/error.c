@@ -8,8 +8,7 @@
 
 int model_fail(model_error *error, const char *where, const char *format, ...)
 {
-    if (!error)
-        return 1;
+    if (!error) return 1;
     va_list arguments;
     va_start(arguments, format);
     (void)vsnprintf(error->what, sizeof error->what, format, arguments);
@@ -20,8 +19,7 @@ int model_fail(model_error *error, const char *where, const char *format, ...)
 
 void *model_zeros(size_t count, size_t element_size)
 {
-    if (element_size == 0 || count > SIZE_MAX / element_size)
-        return NULL;
+    if (element_size == 0 || count > SIZE_MAX / element_size) return NULL;
     return calloc(count ? count : 1, element_size);
 }
 
@@ -29,7 +27,6 @@ char *model_string(const char *text)
 {
     size_t bytes = strlen(text) + 1;
     char *copy = malloc(bytes);
-    if (copy)
-        memcpy(copy, text, bytes);
+    if (copy) memcpy(copy, text, bytes);
     return copy;
 }

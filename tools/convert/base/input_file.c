@@ -15,8 +15,7 @@ char *input_read(const char *path, size_t *bytes, model_error *error)
     }
     char *copy = malloc(file.bytes + 1);
     if (copy) {
-        if (file.bytes)
-            memcpy(copy, file.data, file.bytes);
+        if (file.bytes) memcpy(copy, file.data, file.bytes);
         copy[file.bytes] = '\0';
         *bytes = file.bytes;
     } else {
@@ -30,7 +29,6 @@ char *input_stem(const char *path)
 {
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
     char *stem = model_string(name);
-    if (stem && dot && dot != name)
-        stem[dot - name] = '\0';
+    if (stem && dot && dot != name) stem[dot - name] = '\0';
     return stem;
 }

@@ -21,19 +21,15 @@ void quat_multiply(const double *a, const double *b, double *out)
 int quat_normalize(double *q)
 {
     double length = sqrt(quat_dot(q, q));
-    if (!(length > 1e-6) || !isfinite(length))
-        return 0;
-    for (int i = 0; i < 4; ++i)
-        q[i] /= length;
+    if (!(length > 1e-6) || !isfinite(length)) return 0;
+    for (int i = 0; i < 4; ++i) q[i] /= length;
     return 1;
 }
 
 void quat_align(double *q, const double *to)
 {
-    if (quat_dot(q, to) >= 0.0)
-        return;
-    for (int i = 0; i < 4; ++i)
-        q[i] = -q[i];
+    if (quat_dot(q, to) >= 0.0) return;
+    for (int i = 0; i < 4; ++i) q[i] = -q[i];
 }
 
 /* Half the angle of the rotation from a to b, where their dot product is not negative. */
@@ -57,8 +53,7 @@ double quat_angle(const double *a, const double *b)
 
 static void mix(const double *a, double wa, const double *b, double wb, double *out)
 {
-    for (int i = 0; i < 4; ++i)
-        out[i] = a[i] * wa + b[i] * wb;
+    for (int i = 0; i < 4; ++i) out[i] = a[i] * wa + b[i] * wb;
     (void)quat_normalize(out); /* neighbours on one half of the sphere: never without length */
 }
 

@@ -7,15 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-
 void text_start(text_scan *s, const char *text, size_t size, model_error *error)
 {
     s->at = text;
     s->end = text + size;
     s->line = 1;
     s->error = error;
-    if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0)
-        s->at += 3; /* a byte order mark */
+    if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) s->at += 3; /* a byte order mark */
 }
 
 static int is_blank(char c)
@@ -25,16 +23,14 @@ static int is_blank(char c)
 
 static void skip_blanks(text_scan *s)
 {
-    while (s->at < s->end && is_blank(*s->at))
-        ++s->at;
+    while (s->at < s->end && is_blank(*s->at)) ++s->at;
 }
 
 text_word text_next_on_line(text_scan *s)
 {
     skip_blanks(s);
-    text_word word = {s->at, 0, s->line};
-    while (s->at < s->end && *s->at != '\n' && !is_blank(*s->at))
-        ++s->at;
+    text_word word = { s->at, 0, s->line };
+    while (s->at < s->end && *s->at != '\n' && !is_blank(*s->at)) ++s->at;
     word.size = (size_t)(s->at - word.text);
     return word;
 }
@@ -59,37 +55,31 @@ text_word text_next(text_scan *s)
 text_word text_rest_of_line(text_scan *s)
 {
     skip_blanks(s);
-    text_word word = {s->at, 0, s->line};
-    while (s->at < s->end && *s->at != '\n')
-        ++s->at;
+    text_word word = { s->at, 0, s->line };
+    while (s->at < s->end && *s->at != '\n') ++s->at;
     word.size = (size_t)(s->at - word.text);
-    while (word.size > 0 && is_blank(word.text[word.size - 1]))
-        --word.size;
+    while (word.size > 0 && is_blank(word.text[word.size - 1])) --word.size;
     return word;
 }
 
 int text_is(text_word word, const char *keyword)
 {
-    if (word.size != strlen(keyword))
-        return 0;
+    if (word.size != strlen(keyword)) return 0;
     for (size_t i = 0; i < word.size; ++i)
-        if (tolower((unsigned char)word.text[i]) != tolower((unsigned char)keyword[i]))
-            return 0;
+        if (tolower((unsigned char)word.text[i]) != tolower((unsigned char)keyword[i])) return 0;
     return 1;
 }
 
 static void clean(char *text)
 {
     for (; *text; ++text)
-        if ((unsigned char)*text < 0x20 || *text == 0x7f)
-            *text = '_';
+        if ((unsigned char)*text < 0x20 || *text == 0x7f) *text = '_';
 }
 
 const char *text_show(text_word word, char out[TEXT_SHOWN])
 {
     size_t size = word.size < TEXT_SHOWN ? word.size : TEXT_SHOWN - 1;
-    for (size_t i = 0; i < size; ++i)
-        out[i] = word.text[i] ? word.text[i] : '_';
+    for (size_t i = 0; i < size; ++i) out[i] = word.text[i] ? word.text[i] : '_';
     out[size] = '\0';
     clean(out);
     return out;
@@ -98,10 +88,8 @@ const char *text_show(text_word word, char out[TEXT_SHOWN])
 char *text_copy(text_word word)
 {
     char *copy = malloc(word.size + 1);
-    if (!copy)
-        return NULL;
-    for (size_t i = 0; i < word.size; ++i)
-        copy[i] = word.text[i] ? word.text[i] : '_';
+    if (!copy) return NULL;
+    for (size_t i = 0; i < word.size; ++i) copy[i] = word.text[i] ? word.text[i] : '_';
     copy[word.size] = '\0';
     clean(copy);
     return copy;
@@ -122,23 +110,21 @@ int text_fail(text_scan *s, uint32_t line, const char *format, ...)
 static int is_not_finite(text_word word)
 {
     size_t sign = word.size > 0 && (word.text[0] == '-' || word.text[0] == '+');
-    text_word rest = {word.text + sign, word.size - sign < 3 ? word.size - sign : 3, word.line};
+    text_word rest = { word.text + sign, word.size - sign < 3 ? word.size - sign : 3, word.line };
     return text_is(rest, "nan") || text_is(rest, "inf") || text_is(rest, "1.#");
 }
 
 int text_number(text_scan *s, text_word word, double *out)
 {
     char digits[64], shown[TEXT_SHOWN], *end = digits;
-    if (is_not_finite(word))
-        return text_fail(s, word.line, "the number '%s' is not finite", text_show(word, shown));
+    if (is_not_finite(word)) return text_fail(s, word.line, "the number '%s' is not finite", text_show(word, shown));
     if (word.size > 0 && word.size < sizeof digits) {
         memcpy(digits, word.text, word.size);
         digits[word.size] = '\0';
         if (strspn(digits, "+-.0123456789eE") == word.size) /* no hexadecimal, no local decimal comma */
             *out = strtod(digits, &end);
     }
-    if (end == digits || *end != '\0')
-        return text_fail(s, word.line, "'%s' is not a number", text_show(word, shown));
+    if (end == digits || *end != '\0') return text_fail(s, word.line, "'%s' is not a number", text_show(word, shown));
     return isfinite(*out) ? 0 : text_fail(s, word.line, "the number '%s' is too large", text_show(word, shown));
 }
 

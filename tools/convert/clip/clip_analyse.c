@@ -9,12 +9,12 @@
 
 #include "clip_encoder.h"
 
-#define SAMPLES 50u            /* frames that levers are judged by */
-#define WILD_RAD 2.2           /* a rotation that strays further from its mean brings references along */
+#define SAMPLES 50u  /* frames that levers are judged by */
+#define WILD_RAD 2.2 /* a rotation that strays further from its mean brings references along */
 #define NEAR_BIND_RAD 1.2
-#define WIDE_LEVER 125.0       /* in units of 0.01 cm of bound: longer levers show the 16 bits of the cache */
-#define CONSTANT_PART 0.04     /* of the bound: what the coding of a constant may cost */
-#define MIX_COST_BITS 39.0     /* 27 bits of header, and half again so that it pays */
+#define WIDE_LEVER 125.0   /* in units of 0.01 cm of bound: longer levers show the 16 bits of the cache */
+#define CONSTANT_PART 0.04 /* of the bound: what the coding of a constant may cost */
+#define MIX_COST_BITS 39.0 /* 27 bits of header, and half again so that it pays */
 #define LOOSE 1e300
 
 enum { ROTATION, TRANSLATION, SCALE };
@@ -89,16 +89,23 @@ static void find_modes(encoder *e)
         const double scale = parent_scale(e, j);
         double reach;
         t->bound = e->bound;
-        if (e->options.joint_error_cm && e->options.joint_error_cm[j] > 0.0) t->bound = e->options.joint_error_cm[j] * e->tight / e->unit_cm;
+        if (e->options.joint_error_cm && e->options.joint_error_cm[j] > 0.0)
+            t->bound = e->options.joint_error_cm[j] * e->tight / e->unit_cm;
         reach = lever[j] > e->shell ? lever[j] : e->shell;
         t->lever = reach;
-        t->modes[TRANSLATION] = linear_range(e, j, TRANSLATION, value) * scale > e->drop * t->bound ? NOH_CLIP_MODE_ANIMATED : NOH_CLIP_MODE_CONSTANT;
-        t->modes[SCALE] = linear_range(e, j, SCALE, value) * scale * reach > e->drop * t->bound ? NOH_CLIP_MODE_ANIMATED : NOH_CLIP_MODE_CONSTANT;
-        t->modes[ROTATION] = rotation_range(e, j, value) * reach > e->drop * t->bound ? NOH_CLIP_MODE_ANIMATED : NOH_CLIP_MODE_CONSTANT;
+        t->modes[TRANSLATION] = linear_range(e, j, TRANSLATION, value) * scale > e->drop * t->bound
+                                    ? NOH_CLIP_MODE_ANIMATED
+                                    : NOH_CLIP_MODE_CONSTANT;
+        t->modes[SCALE] = linear_range(e, j, SCALE, value) * scale * reach > e->drop * t->bound
+                              ? NOH_CLIP_MODE_ANIMATED
+                              : NOH_CLIP_MODE_CONSTANT;
+        t->modes[ROTATION] = rotation_range(e, j, value) * reach > e->drop * t->bound ? NOH_CLIP_MODE_ANIMATED
+                                                                                      : NOH_CLIP_MODE_CONSTANT;
         if (t->parent != ENC_NONE && (t->modes[TRANSLATION] != NOH_CLIP_MODE_ANIMATED || e->options.open_loop)) {
             for (uint32_t f = 0; f < e->frame_count; f += stride_of(e)) {
                 double d = space_distance(enc_global(e, f, j)->p, enc_global(e, f, t->parent)->p);
-                if (e->options.open_loop || t->modes[ROTATION] != NOH_CLIP_MODE_ANIMATED) d += reach > e->shell ? reach : 0.0;
+                if (e->options.open_loop || t->modes[ROTATION] != NOH_CLIP_MODE_ANIMATED)
+                    d += reach > e->shell ? reach : 0.0;
                 if (d > lever[t->parent]) lever[t->parent] = d;
             }
         }
@@ -115,7 +122,9 @@ static int carried(const encoder *e, uint32_t carrier, uint32_t joint)
         if (t->modes[TRANSLATION] == NOH_CLIP_MODE_ANIMATED || t->parent == ENC_NONE) return 0;
         joint = t->parent;
         p = &e->joints[joint];
-        if (joint != carrier && (p->modes[ROTATION] == NOH_CLIP_MODE_ANIMATED || p->modes[SCALE] == NOH_CLIP_MODE_ANIMATED)) return 0;
+        if (joint != carrier &&
+            (p->modes[ROTATION] == NOH_CLIP_MODE_ANIMATED || p->modes[SCALE] == NOH_CLIP_MODE_ANIMATED))
+            return 0;
         if (joint < carrier) return 0;
     }
     return 1;
@@ -224,7 +233,8 @@ static float cut_float(double v, uint32_t width)
     memcpy(&word, &f, sizeof word);
     if (width < 32u) {
         const uint32_t low = 32u - width, half = 1u << (low - 1u);
-        if ((word & 0x7f800000u) < 0x7f000000u) word += half; /* to nearest; a carry moves on to the exponent, as it should */
+        if ((word & 0x7f800000u) < 0x7f000000u)
+            word += half; /* to nearest; a carry moves on to the exponent, as it should */
         word &= ~(((uint32_t)1 << low) - 1u);
     }
     memcpy(&f, &word, sizeof f);
@@ -335,7 +345,10 @@ static void linear_reference(encoder *e, enc_track *t, uint32_t joint, int what)
 
 static void joint_tracks(encoder *e, uint32_t joint)
 {
-    static const struct { int what; noh_clip_kind kind; } order[3] = { { TRANSLATION, NOH_CLIP_TRANSLATION }, { SCALE, NOH_CLIP_SCALE }, { ROTATION, NOH_CLIP_ROTATION } };
+    static const struct {
+        int what;
+        noh_clip_kind kind;
+    } order[3] = { { TRANSLATION, NOH_CLIP_TRANSLATION }, { SCALE, NOH_CLIP_SCALE }, { ROTATION, NOH_CLIP_ROTATION } };
     enc_joint *t = &e->joints[joint];
     for (int i = 0; i < 3; i++) {
         const int what = order[i].what;
@@ -410,7 +423,8 @@ static void eigen3(double a[9], double v[9])
 /* A rotation matrix to a quaternion. */
 static void matrix_quat(const double m[9], double q[4])
 {
-    const double w = 1.0 + m[0] + m[4] + m[8], x = 1.0 + m[0] - m[4] - m[8], y = 1.0 - m[0] + m[4] - m[8], z = 1.0 - m[0] - m[4] + m[8];
+    const double w = 1.0 + m[0] + m[4] + m[8], x = 1.0 + m[0] - m[4] - m[8], y = 1.0 - m[0] + m[4] - m[8],
+                 z = 1.0 - m[0] - m[4] + m[8];
     if (w >= x && w >= y && w >= z) {
         q[0] = m[7] - m[5];
         q[1] = m[2] - m[6];
@@ -467,7 +481,8 @@ static void find_mix(encoder *e, enc_track *t)
     }
     for (int i = 0; i < 3; i++) diagonal[i] = c[4 * i];
     eigen3(c, v);
-    for (int i = 0; i < 3; i++) gain += log2(diagonal[i] + floor_square) - log2((c[4 * i] > 0.0 ? c[4 * i] : 0.0) + floor_square);
+    for (int i = 0; i < 3; i++)
+        gain += log2(diagonal[i] + floor_square) - log2((c[4 * i] > 0.0 ? c[4 * i] : 0.0) + floor_square);
     if (gain / 2.0 * (double)e->frame_count <= MIX_COST_BITS) return;
     for (int i = 0; i < 2; i++) { /* the busiest first */
         for (int k = i + 1; k < 3; k++) {
@@ -479,8 +494,10 @@ static void find_mix(encoder *e, enc_track *t)
         }
     }
     for (int i = 0; i < 9; i++) sorted[i] = v[3 * (i / 3) + order[i % 3]];
-    if (sorted[0] * (sorted[4] * sorted[8] - sorted[5] * sorted[7]) - sorted[1] * (sorted[3] * sorted[8] - sorted[5] * sorted[6]) +
-            sorted[2] * (sorted[3] * sorted[7] - sorted[4] * sorted[6]) < 0.0) {
+    if (sorted[0] * (sorted[4] * sorted[8] - sorted[5] * sorted[7]) -
+            sorted[1] * (sorted[3] * sorted[8] - sorted[5] * sorted[6]) +
+            sorted[2] * (sorted[3] * sorted[7] - sorted[4] * sorted[6]) <
+        0.0) {
         for (int i = 0; i < 3; i++) sorted[3 * i + 2] = -sorted[3 * i + 2];
     }
     matrix_quat(sorted, q);
@@ -503,7 +520,8 @@ static int find_depths(encoder *e)
         for (uint32_t j = 0; j < e->joint_count; j++) {
             enc_joint *t = &e->joints[j];
             double all;
-            if (t->parent != ENC_NONE) above[j] = above[t->parent] + (e->joints[t->parent].modes[ROTATION] == NOH_CLIP_MODE_ANIMATED);
+            if (t->parent != ENC_NONE)
+                above[j] = above[t->parent] + (e->joints[t->parent].modes[ROTATION] == NOH_CLIP_MODE_ANIMATED);
             all = (double)above[j] + (double)below[j] - 1.0;
             t->depth = (double)above[j] / (all > 1.0 ? all : 1.0);
         }
@@ -523,7 +541,8 @@ int enc_analyse(encoder *e)
         if (t->modes[ROTATION] == NOH_CLIP_MODE_ANIMATED || t->modes[SCALE] == NOH_CLIP_MODE_ANIMATED) {
             if (find_points(e, j)) return 1;
         }
-        if (t->modes[ROTATION] == NOH_CLIP_MODE_ANIMATED && t->lever * e->bound / t->bound > lever) lever = t->lever * e->bound / t->bound;
+        if (t->modes[ROTATION] == NOH_CLIP_MODE_ANIMATED && t->lever * e->bound / t->bound > lever)
+            lever = t->lever * e->bound / t->bound;
     }
     e->wide = e->level > 0 || lever > WIDE_LEVER * e->bound / 0.01;
     if (find_depths(e)) return 1;

@@ -8,7 +8,7 @@
 typedef struct certifier {
     encoder *e;
     noh_clip *clip;
-    uint8_t *memory, *frames[2];  /* two segments: this and the last */
+    uint8_t *memory, *frames[2]; /* two segments: this and the last */
     noh_transform *pose;
     float *floats;
     space_global *raw, *lossy;
@@ -33,7 +33,8 @@ static int open_blob(certifier *c, const byte_buffer *blob, size_t begin)
     c->raw = enc_alloc(e, e->joint_count, sizeof *c->raw);
     c->lossy = enc_alloc(e, e->joint_count, sizeof *c->lossy);
     if (!c->memory || !c->pose || !c->floats || !c->raw || !c->lossy) return 1;
-    if (noh_clip_init(c->memory, size, &desc, &c->clip, NULL) != NOH_OK) return enc_fail(e, "the decoder refuses what was written");
+    if (noh_clip_init(c->memory, size, &desc, &c->clip, NULL) != NOH_OK)
+        return enc_fail(e, "the decoder refuses what was written");
     for (int i = 0; i < 2; i++) {
         c->frames[i] = enc_alloc(e, c->clip->info.segment_bytes_max, 1);
         if (!c->frames[i]) return 1;
@@ -98,7 +99,8 @@ static void measure_segment(certifier *c, uint32_t s)
     noh_clip_decode(c->clip, &e->bases[segment->count], &cursor, c->clip->info.track_count, frames);
     for (uint32_t f = 0; f < segment->count; f++) {
         const uint8_t *here = frames + f * stride;
-        for (uint32_t part = 1; before && part < ENC_PARTS; part++) measure(c, before, here, segment->first + f - 1u, part);
+        for (uint32_t part = 1; before && part < ENC_PARTS; part++)
+            measure(c, before, here, segment->first + f - 1u, part);
         measure(c, here, here, segment->first + f, 0);
         before = here;
     }
@@ -115,8 +117,8 @@ static void free_certifier(certifier *c)
     free(c->lossy);
 }
 
-int enc_certify(encoder *e, const byte_buffer *blob, size_t begin, double *worst_part, double *max_error, double *rms_error, uint32_t *joint,
-                uint32_t *time_parts)
+int enc_certify(encoder *e, const byte_buffer *blob, size_t begin, double *worst_part, double *max_error,
+                double *rms_error, uint32_t *joint, uint32_t *time_parts)
 {
     certifier c;
     memset(&c, 0, sizeof c);

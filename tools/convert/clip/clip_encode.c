@@ -33,7 +33,7 @@
 #define DEFAULT_FLOAT_ERROR 0.001
 #define DEFAULT_SEGMENT_FRAMES 24u
 #define SEGMENT_FRAMES_MIN 8u
-#define SEGMENT_FRAMES_MAX 40u  /* a single segment may be half as long again */
+#define SEGMENT_FRAMES_MAX 40u /* a single segment may be half as long again */
 #define RAW_JOINT_BYTES 40u
 #define RAW_FLOAT_BYTES 4u
 
@@ -57,7 +57,8 @@ static int set_options(encoder *e, const clip_options *given)
     if (!(o->error_cm >= 1e-6 && o->error_cm <= 400.0)) return enc_fail(e, "error_cm: 0.000001 to 400");
     if (!(o->shell_cm >= 1e-3 && o->shell_cm <= 1e5)) return enc_fail(e, "shell_cm: 0.001 to 100000");
     if (!(o->float_error > 0.0)) return enc_fail(e, "float_error: above 0");
-    if (o->segment_frames < SEGMENT_FRAMES_MIN || o->segment_frames > SEGMENT_FRAMES_MAX) return enc_fail(e, "segment_frames: 8 to 40");
+    if (o->segment_frames < SEGMENT_FRAMES_MIN || o->segment_frames > SEGMENT_FRAMES_MAX)
+        return enc_fail(e, "segment_frames: 8 to 40");
     if (!(e->skeleton->unit_cm > 0.0)) return enc_fail(e, "unit_cm: above 0");
     e->unit_cm = e->skeleton->unit_cm;
     e->bound = o->error_cm * e->tight / e->unit_cm;
@@ -81,7 +82,8 @@ static int new_loop(encoder *e)
     l->errors = enc_alloc(e, (size_t)e->joint_count * (ENC_PARTS + 1), sizeof *l->errors);
     l->errors_before = enc_alloc(e, e->joint_count, sizeof *l->errors);
     l->errors_end = enc_alloc(e, e->joint_count, sizeof *l->errors);
-    return !l->errors || !l->errors_before || !l->errors_end || !l->end || !l->local || !l->global || !l->raw_between || !l->before || !l->scratch;
+    return !l->errors || !l->errors_before || !l->errors_end || !l->end || !l->local || !l->global || !l->raw_between ||
+           !l->before || !l->scratch;
 }
 
 static void free_segments(encoder *e)
@@ -121,7 +123,8 @@ static void free_encoder(encoder *e)
     free(e->tracks);
 }
 
-/* The certificate is stored in the header, and is known only when the clip has been decoded: so the header is written twice. */
+/* The certificate is stored in the header, and is known only when the clip has been decoded: so the header is written
+ * twice. */
 static int write_certified(encoder *e, byte_buffer *out, double *worst_part)
 {
     clip_report *r = &e->report;
@@ -130,7 +133,8 @@ static int write_certified(encoder *e, byte_buffer *out, double *worst_part)
     uint32_t time_parts;
     e->options.histogram = NULL;
     if (enc_write(e, 0.0, 0.0, 0, 0, out)) return 1;
-    if (enc_certify(e, out, begin, worst_part, &r->max_error_cm, &r->rms_error_cm, &r->max_error_joint, &time_parts)) return 1;
+    if (enc_certify(e, out, begin, worst_part, &r->max_error_cm, &r->rms_error_cm, &r->max_error_joint, &time_parts))
+        return 1;
     if (!(*worst_part <= 1.0)) return 0;
     out->count = begin;
     e->options.histogram = histogram;
@@ -169,8 +173,8 @@ static int encode_once(encoder *e, byte_buffer *out, double *worst_part, int *de
     return failed;
 }
 
-int clip_encode(const raw_skeleton *skeleton, const raw_clip *clip, const clip_options *options, byte_buffer *out, clip_report *report,
-                model_error *error)
+int clip_encode(const raw_skeleton *skeleton, const raw_clip *clip, const clip_options *options, byte_buffer *out,
+                clip_report *report, model_error *error)
 {
     double worst_part = 2.0, tight = 1.0;
     int failed = 0, level = 0;

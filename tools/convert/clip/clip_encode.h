@@ -19,34 +19,34 @@ extern "C" {
 #endif
 
 typedef struct clip_options {
-    double error_cm;          /* the bound; 0 = 0.01 */
-    double shell_cm;          /* distance of the virtual points; 0 = 3 */
-    double float_error;       /* bound of floats without a reach, in their own unit; 0 = 0.001 */
+    double error_cm;              /* the bound; 0 = 0.01 */
+    double shell_cm;              /* distance of the virtual points; 0 = 3 */
+    double float_error;           /* bound of floats without a reach, in their own unit; 0 = 0.001 */
     const double *joint_error_cm; /* [joint_count] bounds of single joints, 0 = error_cm; NULL = none */
-    uint32_t segment_frames;  /* wanted length of a segment, 8..40; 0 = 24 */
-    int open_loop;            /* for masking: no joint corrects the error of its parents */
+    uint32_t segment_frames;      /* wanted length of a segment, 8..40; 0 = 24 */
+    int open_loop;                /* for masking: no joint corrects the error of its parents */
     void (*progress)(void *user, uint32_t done, uint32_t of); /* segments; NULL = none */
     void *user;
     struct clip_histogram *histogram; /* NULL, or where symbols are counted, to train the tables */
 } clip_options;
 
 typedef struct clip_report {
-    size_t bytes, raw_bytes;       /* raw: 40 per joint and frame, 4 per float and frame */
+    size_t bytes, raw_bytes; /* raw: 40 per joint and frame, 4 per float and frame */
     size_t header_bytes, segment_table_bytes;
     double max_error_cm, rms_error_cm; /* as decoded */
     uint32_t max_error_joint;
     double max_error_time_s;
-    double max_float_error;        /* of its bound: at most 1 */
+    double max_float_error; /* of its bound: at most 1 */
     uint32_t segment_count, track_count, raw_track_segments;
-    int level;                     /* 0: normal; more: what it took to hold the bound, see clip_encode.c */
+    int level; /* 0: normal; more: what it took to hold the bound, see clip_encode.c */
     int wide;
 } clip_report;
 
 /* Encode a clip. `out` gets the bytes appended; report may be NULL.
  * errors  1 and *error: limits of the format, no memory, values that are no numbers, or a bound
  *         that single precision cannot hold */
-int clip_encode(const raw_skeleton *skeleton, const raw_clip *clip, const clip_options *options, byte_buffer *out, clip_report *report,
-                model_error *error);
+int clip_encode(const raw_skeleton *skeleton, const raw_clip *clip, const clip_options *options, byte_buffer *out,
+                clip_report *report, model_error *error);
 
 #ifdef __cplusplus
 }

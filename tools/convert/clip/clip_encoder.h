@@ -17,9 +17,9 @@
 #include "clip_space.h"
 
 #define ENC_FRAMES_MAX NOH_CLIP_SEGMENT_FRAMES_MAX
-#define ENC_PARTS 8          /* errors are measured at eighths of a frame */
-#define ENC_RIG_MAX 48u      /* points of a joint's rigid descendants that are watched */
-#define ENC_DROP 0.15        /* a track whose effect stays under this part of the bound is constant */
+#define ENC_PARTS 8     /* errors are measured at eighths of a frame */
+#define ENC_RIG_MAX 48u /* points of a joint's rigid descendants that are watched */
+#define ENC_DROP 0.15   /* a track whose effect stays under this part of the bound is constant */
 #define ENC_NONE 0xffffffffu
 
 /* A point that a joint carries rigidly: a descendant's origin. */
@@ -30,42 +30,42 @@ typedef struct enc_point {
 
 typedef struct enc_joint {
     uint32_t parent;
-    uint8_t modes[3];              /* NOH_CLIP_MODE_*: rotation, translation, scale */
-    uint32_t tracks[3];            /* indices, ENC_NONE where not animated */
-    space_local rest;              /* what is not animated, as the decoder has it */
-    uint32_t constant_width;       /* of the rotation */
-    uint32_t constant_codes[4];    /* the last is the index left out */
-    uint32_t linear_width[2];      /* class 0..3 of constant translation and scale */
-    double lever;                  /* units: what an error of its rotation moves that nothing makes up for */
-    double scale_lever;            /* likewise of its scale: everything below it */
-    double bound;                  /* units */
-    double depth;                  /* 0 at the root of its longest chain of turning joints, 1 at the tip */
+    uint8_t modes[3];           /* NOH_CLIP_MODE_*: rotation, translation, scale */
+    uint32_t tracks[3];         /* indices, ENC_NONE where not animated */
+    space_local rest;           /* what is not animated, as the decoder has it */
+    uint32_t constant_width;    /* of the rotation */
+    uint32_t constant_codes[4]; /* the last is the index left out */
+    uint32_t linear_width[2];   /* class 0..3 of constant translation and scale */
+    double lever;               /* units: what an error of its rotation moves that nothing makes up for */
+    double scale_lever;         /* likewise of its scale: everything below it */
+    double bound;               /* units */
+    double depth;               /* 0 at the root of its longest chain of turning joints, 1 at the tip */
     enc_point *points;
     uint32_t point_count;
 } enc_joint;
 
 typedef struct enc_track {
-    noh_clip_track track;          /* as the decoder has it */
+    noh_clip_track track; /* as the decoder has it */
     uint8_t explicit_reference;
     uint32_t reference_codes[4], mix_codes[4];
-    int32_t scale_ids[3];          /* floats: relative steps, id units */
-    double bounds[3];              /* floats */
-    int step_guess;                /* id at which the search starts */
+    int32_t scale_ids[3]; /* floats: relative steps, id units */
+    double bounds[3];     /* floats */
+    int step_guess;       /* id at which the search starts */
 } enc_track;
 
 /* One track of one segment, quantised. */
 typedef struct enc_piece {
     uint8_t raw, last;
     uint8_t step;
-    uint8_t negative;              /* wild: the reference's sign */
+    uint8_t negative; /* wild: the reference's sign */
     uint32_t wild_codes[4];
-    int32_t (*coefs)[4];           /* [last] */
-    float *values;                 /* raw: [frames][4 or 3] */
+    int32_t (*coefs)[4]; /* [last] */
+    float *values;       /* raw: [frames][4 or 3] */
 } enc_piece;
 
 typedef struct enc_segment {
     uint32_t first, count;
-    enc_piece *pieces;             /* [track_count] */
+    enc_piece *pieces; /* [track_count] */
 } enc_segment;
 
 typedef struct enc_tuning {
@@ -77,40 +77,40 @@ typedef struct encoder {
     const raw_skeleton *skeleton;
     const raw_clip *clip;
     clip_options options;
-    enc_tuning tuning;             /* of the attempt in work */
-    const enc_tuning *tunings;     /* [tuning_count] every segment is tried with each; the smallest stays */
+    enc_tuning tuning;         /* of the attempt in work */
+    const enc_tuning *tunings; /* [tuning_count] every segment is tried with each; the smallest stays */
     uint32_t tuning_count;
     model_error *error;
-    double unit_cm, bound, shell;  /* bound and shell in units */
-    double tight;                  /* part of the bound that is aimed at: below 1 where single precision takes the rest */
+    double unit_cm, bound, shell; /* bound and shell in units */
+    double tight; /* part of the bound that is aimed at: below 1 where single precision takes the rest */
     int level, wide, single;
     double drop;
     uint32_t joint_count, frame_count, float_count, group_count;
-    noh_transform *bind;           /* [joint_count] rotations unit */
+    noh_transform *bind; /* [joint_count] rotations unit */
     enc_joint *joints;
-    space_local *local;            /* [frame][joint] raw */
-    space_global *global;          /* [frame][joint] */
-    float *floats;                 /* [frame][float_count] */
-    double *float_bounds;          /* [float_count] */
+    space_local *local;   /* [frame][joint] raw */
+    space_global *global; /* [frame][joint] */
+    float *floats;        /* [frame][float_count] */
+    double *float_bounds; /* [float_count] */
     enc_track *tracks;
     uint32_t track_count, rotation_count;
     enc_segment *segments;
     uint32_t segment_count;
     noh_clip_basis bases[ENC_FRAMES_MAX + 1];
     double *transforms[ENC_FRAMES_MAX + 1]; /* [frames][frames], from the bases */
-    struct enc_loop *loop;         /* clip_segment.c */
+    struct enc_loop *loop;                  /* clip_segment.c */
     clip_report report;
 } encoder;
 
 /* Lossy clip of the segment in work: [joint][frame], and what is measured against it. */
 typedef struct enc_loop {
-    space_local *local;            /* [joint][ENC_FRAMES_MAX] */
+    space_local *local; /* [joint][ENC_FRAMES_MAX] */
     space_global *global;
-    space_global *raw_between;     /* [(frames) * 3][joint]: raw clip between this frame and the last */
-    space_local *before;           /* [joint] last frame of the segment before */
-    space_local *end;              /* [joint] last frame of the best attempt so far */
-    space_global *scratch;         /* [joint] */
-    double *errors;                /* [ENC_PARTS + 1][joint] of one interval, parts of the bound; row 0: the frame before */
+    space_global *raw_between; /* [(frames) * 3][joint]: raw clip between this frame and the last */
+    space_local *before;       /* [joint] last frame of the segment before */
+    space_local *end;          /* [joint] last frame of the best attempt so far */
+    space_global *scratch;     /* [joint] */
+    double *errors;            /* [ENC_PARTS + 1][joint] of one interval, parts of the bound; row 0: the frame before */
     double *errors_before, *errors_end; /* [joint] likewise of the last frames */
     double slack;
     double rho_scale;
@@ -125,9 +125,18 @@ typedef struct clip_histogram {
     uint64_t step[NOH_CLIP_STEP_CONTEXTS][NOH_CLIP_STEP_SYMBOLS];
 } clip_histogram;
 
-static inline space_local *enc_local(const encoder *e, uint32_t frame, uint32_t joint) { return &e->local[(size_t)frame * e->joint_count + joint]; }
-static inline space_global *enc_global(const encoder *e, uint32_t frame, uint32_t joint) { return &e->global[(size_t)frame * e->joint_count + joint]; }
-static inline const space_global *enc_parent(const space_global *pose, uint32_t parent) { return parent == ENC_NONE ? NULL : &pose[parent]; }
+static inline space_local *enc_local(const encoder *e, uint32_t frame, uint32_t joint)
+{
+    return &e->local[(size_t)frame * e->joint_count + joint];
+}
+static inline space_global *enc_global(const encoder *e, uint32_t frame, uint32_t joint)
+{
+    return &e->global[(size_t)frame * e->joint_count + joint];
+}
+static inline const space_global *enc_parent(const space_global *pose, uint32_t parent)
+{
+    return parent == ENC_NONE ? NULL : &pose[parent];
+}
 
 /* Each returns 0, or 1 with e->error filled. */
 int enc_prepare(encoder *e);
@@ -136,14 +145,14 @@ int enc_segment_fit(encoder *e, uint32_t index, double *worst);
 void enc_free_pieces(const encoder *e, enc_piece *pieces);
 int enc_segment_cost(encoder *e, const enc_segment *s, size_t *bytes);
 int enc_write(encoder *e, double max_error, double rms_error, uint32_t joint, uint32_t time_parts, byte_buffer *out);
-int enc_certify(encoder *e, const byte_buffer *blob, size_t begin, double *worst_part, double *max_error, double *rms_error, uint32_t *joint,
-                uint32_t *time_parts);
+int enc_certify(encoder *e, const byte_buffer *blob, size_t begin, double *worst_part, double *max_error,
+                double *rms_error, uint32_t *joint, uint32_t *time_parts);
 
 /* Fit one track. `targets` [frames][3] components, relative to the reference. `check` judges the decoded
  * frames, lane by lane, in units of what is allowed; clip_fit.c. */
 typedef double (*enc_check)(encoder *e, void *user, const uint8_t *frames, double *violations);
-int enc_fit(encoder *e, enc_track *track, enc_piece *piece, uint32_t count, const float reference[4], double (*targets)[3], enc_check check,
-            void *user);
+int enc_fit(encoder *e, enc_track *track, enc_piece *piece, uint32_t count, const float reference[4],
+            double (*targets)[3], enc_check check, void *user);
 
 /* Smallest-three codes of a quaternion (any sign); codes[3] = the index left out. Returns 1 when q was negated. */
 int enc_quat_codes(const double q[4], uint32_t width, uint32_t codes[4]);

@@ -12,13 +12,13 @@
 
 #include "clip_encoder.h"
 
-#define IDS_ABOVE 8          /* larger steps than the guess that are tried: two octaves */
+#define IDS_ABOVE 8 /* larger steps than the guess that are tried: two octaves */
 #define IDS_RAISE 4
-#define HOPELESS 1.8         /* a violation that nudging does not mend */
+#define HOPELESS 1.8 /* a violation that nudging does not mend */
 #define NEARLY 0.97
 #define PUSH 0.5
-#define WORTH_AN_OCTAVE 0.9  /* a finer step that fails too must at least come this much nearer */
-#define FRAME_BYTES 16u      /* of the frames that a check sees */
+#define WORTH_AN_OCTAVE 0.9 /* a finer step that fails too must at least come this much nearer */
+#define FRAME_BYTES 16u     /* of the frames that a check sees */
 
 int enc_quat_codes(const double q[4], uint32_t width, uint32_t codes[4])
 {
@@ -106,7 +106,8 @@ static int try_spectrum(attempt *a, double (*spectrum)[3], int id)
     const int32_t(*coefs)[4] = (const int32_t(*)[4])a->piece->coefs;
     const float(*components)[4] = (const float(*)[4])a->components;
     if (!quantise(a->e, spectrum, a->count, (double)step, a->piece)) return 0;
-    noh_clip_dequantise(coefs, a->piece->last, step, a->track->track.flags & NOH_CLIP_TRACK_MIX ? a->track->track.mix : NULL, a->components);
+    noh_clip_dequantise(coefs, a->piece->last, step,
+                        a->track->track.flags & NOH_CLIP_TRACK_MIX ? a->track->track.mix : NULL, a->components);
     if (a->track->track.kind == NOH_CLIP_ROTATION) {
         noh_clip_synth_rotation(basis, components, a->piece->last, a->reference, a->e->wide, a->frames, FRAME_BYTES);
     } else {
@@ -121,7 +122,8 @@ static void nudge(attempt *a, double (*targets)[3], double (*work)[3], const dou
 {
     const float zero[3] = { 0.0f, 0.0f, 0.0f };
     uint8_t decoded[ENC_FRAMES_MAX * FRAME_BYTES];
-    noh_clip_synth_linear(&a->e->bases[a->count], (const float(*)[4])a->components, a->piece->last, zero, decoded, FRAME_BYTES);
+    noh_clip_synth_linear(&a->e->bases[a->count], (const float(*)[4])a->components, a->piece->last, zero, decoded,
+                          FRAME_BYTES);
     for (uint32_t f = 0; f < a->count; f++) {
         float u[3];
         if (violations[f] <= NEARLY) continue;
@@ -184,8 +186,8 @@ static int search(attempt *a, double (*targets)[3], enc_check check, void *user,
     return 0;
 }
 
-int enc_fit(encoder *e, enc_track *track, enc_piece *piece, uint32_t count, const float reference[4], double (*targets)[3], enc_check check,
-            void *user)
+int enc_fit(encoder *e, enc_track *track, enc_piece *piece, uint32_t count, const float reference[4],
+            double (*targets)[3], enc_check check, void *user)
 {
     double violations[ENC_FRAMES_MAX];
     attempt a;

@@ -33,16 +33,21 @@ static int check(encoder *e)
     const raw_clip *c = e->clip;
     const size_t samples = (size_t)c->frame_count * c->joint_count;
     const double micro = floor(c->sample_rate_hz * (double)NOH_CLIP_MICRO + 0.5);
-    if (c->joint_count && c->joint_count != e->skeleton->joint_count) return enc_fail(e, "clip and skeleton differ in joints");
+    if (c->joint_count && c->joint_count != e->skeleton->joint_count)
+        return enc_fail(e, "clip and skeleton differ in joints");
     if (c->joint_count > NOH_CLIP_JOINTS_MAX) return enc_fail(e, "more joints than the format holds (4096)");
-    if (c->frame_count == 0u || c->frame_count > NOH_CLIP_FRAMES_MAX) return enc_fail(e, "frames: at least 1, at most 1048576");
+    if (c->frame_count == 0u || c->frame_count > NOH_CLIP_FRAMES_MAX)
+        return enc_fail(e, "frames: at least 1, at most 1048576");
     if (!(micro >= 1.0 && micro <= 4294967295.0)) return enc_fail(e, "frames per second: above 0, at most 4294");
-    if (c->float_count > NOH_CLIP_GROUPS_MAX || e->float_count > NOH_CLIP_FLOATS_MAX) return enc_fail(e, "more floats than the format holds (4096 in 1024 groups)");
-    if (samples && !(numbers(c->rotations, samples * 4u) && numbers(c->translations, samples * 3u) && numbers(c->scales, samples * 3u))) {
+    if (c->float_count > NOH_CLIP_GROUPS_MAX || e->float_count > NOH_CLIP_FLOATS_MAX)
+        return enc_fail(e, "more floats than the format holds (4096 in 1024 groups)");
+    if (samples && !(numbers(c->rotations, samples * 4u) && numbers(c->translations, samples * 3u) &&
+                     numbers(c->scales, samples * 3u))) {
         return enc_fail(e, "a value that is not a number");
     }
     for (uint32_t g = 0; g < c->float_count; g++) {
-        if (!numbers(c->floats[g].values, (size_t)c->frame_count * c->floats[g].width)) return enc_fail(e, "a value that is not a number");
+        if (!numbers(c->floats[g].values, (size_t)c->frame_count * c->floats[g].width))
+            return enc_fail(e, "a value that is not a number");
     }
     return 0;
 }
@@ -99,7 +104,8 @@ static int prepare_joints(encoder *e)
         noh_clip_quat_unit(r->rotation, e->bind[j].rotation);
         memcpy(e->bind[j].translation, r->translation, sizeof r->translation);
         memcpy(e->bind[j].scale, r->scale, sizeof r->scale);
-        if (!numbers(r->translation, 3) || !numbers(r->scale, 3)) return enc_fail(e, "a bind pose that is not a number");
+        if (!numbers(r->translation, 3) || !numbers(r->scale, 3))
+            return enc_fail(e, "a bind pose that is not a number");
     }
     for (uint32_t f = 0; f < e->frame_count; f++) {
         space_global *pose = enc_global(e, f, 0);
@@ -161,7 +167,8 @@ int enc_prepare(encoder *e)
     e->group_count = e->clip->float_count;
     e->float_count = 0;
     for (uint32_t g = 0; g < e->clip->float_count; g++) {
-        if (e->clip->floats[g].width > NOH_CLIP_FLOATS_MAX) return enc_fail(e, "more floats than the format holds (4096)");
+        if (e->clip->floats[g].width > NOH_CLIP_FLOATS_MAX)
+            return enc_fail(e, "more floats than the format holds (4096)");
         e->float_count += e->clip->floats[g].width;
     }
     return check(e) || prepare_segments(e) || prepare_floats(e) || prepare_joints(e) || prepare_bases(e);

@@ -16,15 +16,21 @@
 
 #define TRIES 16
 #define SLACK_MIN 0.1
-#define SAFETY 0.9995        /* of the bound, for what single precision does after us */
+#define SAFETY 0.9995 /* of the bound, for what single precision does after us */
 #define BETWEEN (ENC_PARTS - 1)
-#define SPIN_W (-0.7)        /* beyond this the components of a rotation run away: kept raw */
+#define SPIN_W (-0.7) /* beyond this the components of a rotation run away: kept raw */
 #define TRANSLATION_SCALE_MIN 1e-9
 
 enum { ROTATION, TRANSLATION, SCALE };
 
-static space_local *lossy(const encoder *e, uint32_t joint, uint32_t f) { return &e->loop->local[(size_t)joint * ENC_FRAMES_MAX + f]; }
-static space_global *placed(const encoder *e, uint32_t joint, uint32_t f) { return &e->loop->global[(size_t)joint * ENC_FRAMES_MAX + f]; }
+static space_local *lossy(const encoder *e, uint32_t joint, uint32_t f)
+{
+    return &e->loop->local[(size_t)joint * ENC_FRAMES_MAX + f];
+}
+static space_global *placed(const encoder *e, uint32_t joint, uint32_t f)
+{
+    return &e->loop->global[(size_t)joint * ENC_FRAMES_MAX + f];
+}
 
 static const space_global *lossy_parent(const encoder *e, uint32_t joint, uint32_t f)
 {
@@ -37,9 +43,9 @@ typedef struct judged {
     const enc_segment *segment;
     const enc_track *track;
     uint32_t joint;
-    double limit;                      /* linear tracks: units */
-    double limits[ENC_FRAMES_MAX];     /* rotations: of each frame, parts of the bound */
-    double (*targets)[3];              /* linear: absolute values */
+    double limit;                  /* linear tracks: units */
+    double limits[ENC_FRAMES_MAX]; /* rotations: of each frame, parts of the bound */
+    double (*targets)[3];          /* linear: absolute values */
 } judged;
 
 /* ---- rotations ---- */
@@ -50,7 +56,9 @@ static double rotation_violation(const encoder *e, uint32_t joint, uint32_t fram
     const enc_joint *t = &e->joints[joint];
     const space_global *raw = enc_global(e, frame, joint);
     /* the part of the bound that a joint may spend on what it carries: less at the root of long chains */
-    const double rho = (e->tuning.rho_root + (e->tuning.rho_tip - e->tuning.rho_root) * (t->depth < 1.0 ? t->depth : 1.0)) * e->loop->rho_scale;
+    const double rho = (e->tuning.rho_root +
+                        (e->tuning.rho_tip - e->tuning.rho_root) * (t->depth < 1.0 ? t->depth : 1.0)) *
+                       e->loop->rho_scale;
     double v = space_error(raw, g, e->shell) / t->bound;
     for (uint32_t i = 0; i < t->point_count; i++) {
         const enc_point *point = &t->points[i];
@@ -129,9 +137,15 @@ static void correct(const encoder *e, uint32_t joint, uint32_t frame, const doub
     }
     det = a[0] * (a[1] * a[2] - a[5] * a[5]) - a[3] * (a[3] * a[2] - a[5] * a[4]) + a[4] * (a[3] * a[5] - a[1] * a[4]);
     if (!(det > 1e-9 * e->shell * e->shell * e->shell * e->shell * e->shell * e->shell)) return;
-    x[0] = ((a[1] * a[2] - a[5] * a[5]) * b[0] + (a[4] * a[5] - a[3] * a[2]) * b[1] + (a[3] * a[5] - a[4] * a[1]) * b[2]) / det;
-    x[1] = ((a[5] * a[4] - a[3] * a[2]) * b[0] + (a[0] * a[2] - a[4] * a[4]) * b[1] + (a[3] * a[4] - a[0] * a[5]) * b[2]) / det;
-    x[2] = ((a[3] * a[5] - a[1] * a[4]) * b[0] + (a[3] * a[4] - a[0] * a[5]) * b[1] + (a[0] * a[1] - a[3] * a[3]) * b[2]) / det;
+    x[0] = ((a[1] * a[2] - a[5] * a[5]) * b[0] + (a[4] * a[5] - a[3] * a[2]) * b[1] +
+            (a[3] * a[5] - a[4] * a[1]) * b[2]) /
+           det;
+    x[1] = ((a[5] * a[4] - a[3] * a[2]) * b[0] + (a[0] * a[2] - a[4] * a[4]) * b[1] +
+            (a[3] * a[4] - a[0] * a[5]) * b[2]) /
+           det;
+    x[2] = ((a[3] * a[5] - a[1] * a[4]) * b[0] + (a[3] * a[4] - a[0] * a[5]) * b[1] +
+            (a[0] * a[1] - a[3] * a[3]) * b[2]) /
+           det;
     for (int i = 0; i < 3; i++) turn[i] = x[i] / 2.0 * e->tuning.correction;
     turn[3] = 1.0;
     space_unit(turn);
@@ -163,7 +177,8 @@ static void rotation_target(const encoder *e, uint32_t joint, uint32_t frame, ui
     }
 }
 
-static int keep_raw(encoder *e, enc_piece *piece, uint32_t count, uint32_t components, const double *values, uint32_t stride)
+static int keep_raw(encoder *e, enc_piece *piece, uint32_t count, uint32_t components, const double *values,
+                    uint32_t stride)
 {
     piece->raw = 1;
     free(piece->values);
@@ -177,7 +192,8 @@ static int keep_raw(encoder *e, enc_piece *piece, uint32_t count, uint32_t compo
 
 static void wild_reference(const encoder *e, uint32_t joint, const enc_segment *s, enc_piece *piece, float reference[4])
 {
-    piece->negative = (uint8_t)enc_quat_codes(enc_local(e, s->first + s->count / 2u, joint)->q, NOH_CLIP_WILD_BITS, piece->wild_codes);
+    piece->negative = (uint8_t)enc_quat_codes(enc_local(e, s->first + s->count / 2u, joint)->q, NOH_CLIP_WILD_BITS,
+                                              piece->wild_codes);
     enc_quat_value(piece->wild_codes, NOH_CLIP_WILD_BITS, reference);
     for (int i = 0; i < 4 && piece->negative; i++) reference[i] = -reference[i];
 }
@@ -199,7 +215,8 @@ static int raw_rotation(encoder *e, judged *j, enc_piece *piece, double (*q)[4])
     uint8_t frames[ENC_FRAMES_MAX * 16u];
     double violations[ENC_FRAMES_MAX];
     if (keep_raw(e, piece, j->segment->count, 4, q[0], 4)) return 1;
-    for (uint32_t f = 0; f < j->segment->count; f++) noh_clip_store_rotation(piece->values + 4u * f, e->wide, frames + 16u * f);
+    for (uint32_t f = 0; f < j->segment->count; f++)
+        noh_clip_store_rotation(piece->values + 4u * f, e->wide, frames + 16u * f);
     check_rotation(e, j, frames, violations);
     return 0;
 }
@@ -227,7 +244,8 @@ static int fit_rotation(encoder *e, uint32_t joint, const enc_segment *s, enc_tr
     }
     rotation_limits(e, &j, q);
     piece->raw = 0;
-    if (spins || e->loop->all_raw || enc_fit(e, track, piece, s->count, single, u, check_rotation, &j)) return raw_rotation(e, &j, piece, q);
+    if (spins || e->loop->all_raw || enc_fit(e, track, piece, s->count, single, u, check_rotation, &j))
+        return raw_rotation(e, &j, piece, q);
     return 0;
 }
 
@@ -271,7 +289,8 @@ static double check_floats(encoder *e, void *user, const uint8_t *frames, double
 }
 
 /* Code a linear track towards absolute targets; the decoded values come back in `values`. */
-static int fit_linear(encoder *e, judged *j, enc_track *track, enc_piece *piece, double (*targets)[3], double (*values)[3])
+static int fit_linear(encoder *e, judged *j, enc_track *track, enc_piece *piece, double (*targets)[3],
+                      double (*values)[3])
 {
     const uint32_t count = j->segment->count;
     const enc_check check = track->track.kind == NOH_CLIP_FLOATS ? check_floats : check_linear;
@@ -330,7 +349,8 @@ static int fit_translation(encoder *e, uint32_t joint, const enc_segment *s, enc
         space_apply(inverse, d, targets[f]);
     }
     if (e->joints[joint].parent == ENC_NONE) scale = 1.0;
-    j.limit = e->tuning.linear_part * e->joints[joint].bound * e->loop->slack / (scale > TRANSLATION_SCALE_MIN ? scale : TRANSLATION_SCALE_MIN);
+    j.limit = e->tuning.linear_part * e->joints[joint].bound * e->loop->slack /
+              (scale > TRANSLATION_SCALE_MIN ? scale : TRANSLATION_SCALE_MIN);
     if (fit_linear(e, &j, track, piece, targets, values)) return 1;
     for (uint32_t f = 0; f < s->count; f++) memcpy(lossy(e, joint, f)->t, values[f], sizeof values[f]);
     return 0;
@@ -378,10 +398,15 @@ static int fit_joint(encoder *e, uint32_t joint, const enc_segment *s)
     const enc_joint *t = &e->joints[joint];
     for (uint32_t f = 0; f < s->count; f++) *lossy(e, joint, f) = t->rest;
     if (t->tracks[TRANSLATION] != ENC_NONE &&
-        fit_translation(e, joint, s, &e->tracks[t->tracks[TRANSLATION]], &s->pieces[t->tracks[TRANSLATION]])) return 1;
-    for (uint32_t f = 0; f < s->count; f++) space_place(lossy_parent(e, joint, f), lossy(e, joint, f)->t, placed(e, joint, f)->p);
-    if (t->tracks[SCALE] != ENC_NONE && fit_scale(e, joint, s, &e->tracks[t->tracks[SCALE]], &s->pieces[t->tracks[SCALE]])) return 1;
-    if (t->tracks[ROTATION] != ENC_NONE) return fit_rotation(e, joint, s, &e->tracks[t->tracks[ROTATION]], &s->pieces[t->tracks[ROTATION]]);
+        fit_translation(e, joint, s, &e->tracks[t->tracks[TRANSLATION]], &s->pieces[t->tracks[TRANSLATION]]))
+        return 1;
+    for (uint32_t f = 0; f < s->count; f++)
+        space_place(lossy_parent(e, joint, f), lossy(e, joint, f)->t, placed(e, joint, f)->p);
+    if (t->tracks[SCALE] != ENC_NONE &&
+        fit_scale(e, joint, s, &e->tracks[t->tracks[SCALE]], &s->pieces[t->tracks[SCALE]]))
+        return 1;
+    if (t->tracks[ROTATION] != ENC_NONE)
+        return fit_rotation(e, joint, s, &e->tracks[t->tracks[ROTATION]], &s->pieces[t->tracks[ROTATION]]);
     for (uint32_t f = 0; f < s->count; f++) {
         space_turn(lossy_parent(e, joint, f), lossy(e, joint, f)->q, lossy(e, joint, f)->s, placed(e, joint, f));
     }
@@ -396,7 +421,8 @@ static void raw_between(encoder *e, const enc_segment *s)
             space_global *pose = e->loop->raw_between + (size_t)(f * BETWEEN + part) * e->joint_count;
             for (uint32_t j = 0; j < e->joint_count; j++) {
                 space_local l;
-                space_between(enc_local(e, s->first + f - 1u, j), enc_local(e, s->first + f, j), (double)(part + 1u) / ENC_PARTS, &l);
+                space_between(enc_local(e, s->first + f - 1u, j), enc_local(e, s->first + f, j),
+                              (double)(part + 1u) / ENC_PARTS, &l);
                 space_compose(enc_parent(pose, e->joints[j].parent), &l, &pose[j]);
             }
         }
@@ -431,9 +457,11 @@ static double segment_error(const encoder *e, const enc_segment *s)
     for (uint32_t i = 0; i <= ENC_PARTS; i++) rows[i] = e->loop->errors + (size_t)i * e->joint_count;
     if (s->first) memcpy(rows[0], e->loop->errors_before, e->joint_count * sizeof *rows[0]);
     for (uint32_t f = 0; f < s->count; f++) {
-        for (uint32_t part = 0; part < BETWEEN && s->first + f > 0u; part++) errors_between(e, f, part, rows[part + 1u]);
+        for (uint32_t part = 0; part < BETWEEN && s->first + f > 0u; part++)
+            errors_between(e, f, part, rows[part + 1u]);
         for (uint32_t j = 0; j < e->joint_count; j++) {
-            rows[ENC_PARTS][j] = space_error(enc_global(e, s->first + f, j), placed(e, j, f), e->shell) / e->joints[j].bound;
+            rows[ENC_PARTS][j] = space_error(enc_global(e, s->first + f, j), placed(e, j, f), e->shell) /
+                                 e->joints[j].bound;
             if (!(rows[ENC_PARTS][j] <= worst)) worst = rows[ENC_PARTS][j];
             for (uint32_t i = 1; i < ENC_PARTS && s->first + f > 0u; i++) {
                 const double v = peak(rows[i - 1u][j], rows[i][j], rows[i + 1u][j]);

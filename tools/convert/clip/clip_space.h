@@ -116,7 +116,8 @@ static inline void space_turn(const space_global *parent, const double q[4], con
     space_mul(parent->q, q, g->q);
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3; k++) {
-            g->m[3 * i + k] = parent->m[3 * i] * r[k] + parent->m[3 * i + 1] * r[3 + k] + parent->m[3 * i + 2] * r[6 + k];
+            g->m[3 * i + k] = parent->m[3 * i] * r[k] + parent->m[3 * i + 1] * r[3 + k] +
+                              parent->m[3 * i + 2] * r[6 + k];
         }
     }
 }

@@ -88,7 +88,8 @@ static uint32_t rounded(double v)
 
 static uint32_t flags_of(const encoder *e)
 {
-    uint32_t flags = (e->wide ? NOH_CLIP_FLAG_WIDE : 0u) | (e->clip->loop ? NOH_CLIP_FLAG_LOOP : 0u) | (e->options.open_loop ? NOH_CLIP_FLAG_OPEN : 0u);
+    uint32_t flags = (e->wide ? NOH_CLIP_FLAG_WIDE : 0u) | (e->clip->loop ? NOH_CLIP_FLAG_LOOP : 0u) |
+                     (e->options.open_loop ? NOH_CLIP_FLAG_OPEN : 0u);
     for (uint32_t j = 0; j < e->joint_count; j++) {
         if (e->joints[j].modes[2] != NOH_CLIP_MODE_BIND) flags |= NOH_CLIP_FLAG_SCALE;
     }
@@ -152,7 +153,8 @@ static void put_linear(bit_writer *w, const encoder *e, const enc_joint *t, int 
 
 static void put_joint(bit_writer *w, const encoder *e, const enc_joint *t, uint32_t flags)
 {
-    if (t->modes[1] == NOH_CLIP_MODE_BIND && t->modes[2] == NOH_CLIP_MODE_BIND && t->modes[0] != NOH_CLIP_MODE_CONSTANT) {
+    if (t->modes[1] == NOH_CLIP_MODE_BIND && t->modes[2] == NOH_CLIP_MODE_BIND &&
+        t->modes[0] != NOH_CLIP_MODE_CONSTANT) {
         const uint32_t still = t->modes[0] == NOH_CLIP_MODE_BIND;
         put(w, still, still ? 2u : 1u);
     } else {
@@ -279,7 +281,8 @@ int enc_segment_cost(encoder *e, const enc_segment *s, size_t *bytes)
     bit_writer w = { &out, 0, 0 };
     memset(&out, 0, sizeof out);
     e->options.histogram = NULL;
-    for (uint32_t i = 0; i < e->track_count; i++) e->tracks[i].track.step = (int16_t)e->tracks[i].step_guess; /* not known yet: near */
+    for (uint32_t i = 0; i < e->track_count; i++)
+        e->tracks[i].track.step = (int16_t)e->tracks[i].step_guess; /* not known yet: near */
     put_segment(&w, e, s);
     e->options.histogram = histogram;
     e->report.raw_track_segments = raw;
@@ -321,8 +324,8 @@ static int put_segments(encoder *e, byte_buffer *segments, uint32_t *sizes)
     return segments->failed;
 }
 
-static void put_header(bit_writer *w, const encoder *e, double max_error, double rms_error, uint32_t joint, uint32_t time_parts,
-                       const uint32_t *sizes)
+static void put_header(bit_writer *w, const encoder *e, double max_error, double rms_error, uint32_t joint,
+                       uint32_t time_parts, const uint32_t *sizes)
 {
     const uint32_t flags = flags_of(e);
     const double bound_cm = e->options.error_cm;
@@ -344,7 +347,8 @@ static void put_header(bit_writer *w, const encoder *e, double max_error, double
     put_varint(w, joint);
     put_varint(w, time_parts);
     put_groups(w, e);
-    for (uint32_t i = 0; i < e->track_count && e->tracks[i].track.kind == NOH_CLIP_FLOATS; i++) put_track(w, e, &e->tracks[i]);
+    for (uint32_t i = 0; i < e->track_count && e->tracks[i].track.kind == NOH_CLIP_FLOATS; i++)
+        put_track(w, e, &e->tracks[i]);
     for (uint32_t j = 0; j < e->joint_count; j++) put_joint(w, e, &e->joints[j], flags);
     for (uint32_t s = 0; s < e->segment_count && !e->single; s++) put(w, sizes[s], width);
     put_end(w);

@@ -74,7 +74,8 @@ static int check_number(const char *item, const char *option, model_error *error
     return 1;
 }
 
-int named_errors_check(const named_errors *clips, const named_errors *joints, raw_set *const *sets, uint32_t set_count, model_error *error)
+int named_errors_check(const named_errors *clips, const named_errors *joints, raw_set *const *sets, uint32_t set_count,
+                       model_error *error)
 {
     for (uint32_t i = 0; i < clips->count + joints->count; i++) {
         const int of_clip = i < clips->count;
@@ -83,7 +84,8 @@ int named_errors_check(const named_errors *clips, const named_errors *joints, ra
             return 1;
         }
         if (!(of_clip ? has_clip(sets, set_count, item) : has_joint(sets, set_count, item))) {
-            snprintf(error->what, sizeof error->what, "no %s is named '%.*s'", of_clip ? "clip" : "joint", (int)name_length(item), item);
+            snprintf(error->what, sizeof error->what, "no %s is named '%.*s'", of_clip ? "clip" : "joint",
+                     (int)name_length(item), item);
             error->where[0] = 0;
             return 1;
         }

@@ -12,11 +12,13 @@ typedef struct named_errors {
 /* The bound of that name, the last one that is given; 0: none. */
 double named_error(const named_errors *errors, const char *name);
 
-/* Bounds of a skeleton's joints: [joint_count], 0 = none. NULL where no joint is named, or when out of memory (*failed). */
+/* Bounds of a skeleton's joints: [joint_count], 0 = none. NULL where no joint is named, or when out of memory
+ * (*failed). */
 double *named_joint_errors(const named_errors *errors, const raw_skeleton *skeleton, int *failed);
 
 /* Refuse an item that is no "NAME=CM" of a number over 0, or names none of the sets' clips (or joints).
  * 0, or 1 and a filled error. */
-int named_errors_check(const named_errors *clips, const named_errors *joints, raw_set *const *sets, uint32_t set_count, model_error *error);
+int named_errors_check(const named_errors *clips, const named_errors *joints, raw_set *const *sets, uint32_t set_count,
+                       model_error *error);
 
 #endif

@@ -17,18 +17,13 @@ static int expect_label(bvh_file *f, const char *label)
     (void)text_next_line(s);
     const uint32_t line = s->line;
     for (const char *c = label; *c; ++c) {
-        while (*c == ' ' && s->at < s->end && (*s->at == ' ' || *s->at == '\t'))
-            ++s->at;
-        if (*c == ' ')
-            continue;
-        if (s->at == s->end || (*s->at | 0x20) != (*c | 0x20))
-            return text_fail(s, line, "expected '%s:'", label);
+        while (*c == ' ' && s->at < s->end && (*s->at == ' ' || *s->at == '\t')) ++s->at;
+        if (*c == ' ') continue;
+        if (s->at == s->end || (*s->at | 0x20) != (*c | 0x20)) return text_fail(s, line, "expected '%s:'", label);
         ++s->at;
     }
-    while (s->at < s->end && (*s->at == ' ' || *s->at == '\t'))
-        ++s->at;
-    if (s->at == s->end || *s->at != ':')
-        return text_fail(s, line, "expected '%s:'", label);
+    while (s->at < s->end && (*s->at == ' ' || *s->at == '\t')) ++s->at;
+    if (s->at == s->end || *s->at != ':') return text_fail(s, line, "expected '%s:'", label);
     ++s->at;
     return 0;
 }
@@ -46,7 +41,8 @@ static double last_digit_of(text_word word)
 {
     double unit = 1.0;
     const char *point = memchr(word.text, '.', word.size);
-    for (const char *c = point ? point + 1 : word.text + word.size; c < word.text + word.size && *c >= '0' && *c <= '9'; ++c)
+    for (const char *c = point ? point + 1 : word.text + word.size; c < word.text + word.size && *c >= '0' && *c <= '9';
+         ++c)
         unit *= 0.1;
     return unit;
 }
@@ -55,8 +51,7 @@ static double last_digit_of(text_word word)
 static double rate_of(double period_s, double last_digit_s)
 {
     double sample_rate_hz = 1.0 / period_s, whole_hz = floor(sample_rate_hz + 0.5);
-    if (whole_hz >= 1.0 && fabs(1.0 / whole_hz - period_s) <= fmin(last_digit_s, 0.002 * period_s))
-        return whole_hz;
+    if (whole_hz >= 1.0 && fabs(1.0 / whole_hz - period_s) <= fmin(last_digit_s, 0.002 * period_s)) return whole_hz;
     return sample_rate_hz;
 }
 
@@ -64,8 +59,7 @@ static int read_rate(bvh_file *f, double *sample_rate_hz)
 {
     double period_s = 0.0;
     text_word word = text_next_on_line(&f->text);
-    if (text_number(&f->text, word, &period_s) || expect_line_end(f))
-        return 1;
+    if (text_number(&f->text, word, &period_s) || expect_line_end(f)) return 1;
     if (!(period_s >= 1e-6 && period_s <= 1e3))
         return text_fail(&f->text, word.line, "a frame time of %g s is not possible: 0.000001 to 1000 s is", period_s);
     *sample_rate_hz = rate_of(period_s, last_digit_of(word));
@@ -75,10 +69,8 @@ static int read_rate(bvh_file *f, double *sample_rate_hz)
 static int read_frame_count(bvh_file *f, uint32_t *out)
 {
     text_word word = text_next_on_line(&f->text);
-    if (text_count(&f->text, word, RAW_FRAMES_MAX, out) || expect_line_end(f))
-        return 1;
-    if (*out == 0)
-        return text_fail(&f->text, word.line, "there are no frames");
+    if (text_count(&f->text, word, RAW_FRAMES_MAX, out) || expect_line_end(f)) return 1;
+    if (*out == 0) return text_fail(&f->text, word.line, "there are no frames");
     if (f->channel_count == 0)
         return text_fail(&f->text, word.line, "no joint has a channel: there is nothing to animate");
     if ((uint64_t)*out * f->joint_count * RAW_JOINT_BYTES > RAW_BYTES_MAX)
@@ -92,21 +84,22 @@ static int read_values(bvh_file *f, uint32_t frame, double *values)
     for (uint32_t c = 0; c < f->channel_count; ++c) {
         text_word word = text_next_on_line(&f->text);
         if (word.size == 0)
-            return text_fail(&f->text, word.line, "frame %u has %u numbers; the channels need %u", frame, c, f->channel_count);
-        if (text_number(&f->text, word, &values[c]))
-            return 1;
+            return text_fail(&f->text, word.line, "frame %u has %u numbers; the channels need %u", frame, c,
+                             f->channel_count);
+        if (text_number(&f->text, word, &values[c])) return 1;
         if (fabs(values[c]) > (double)FLT_MAX)
             return text_fail(&f->text, word.line, "the number %g is too large", values[c]);
     }
     text_word word = text_next_on_line(&f->text);
-    return word.size == 0 ? 0 : text_fail(&f->text, word.line, "frame %u has more numbers than the %u channels", frame,
-                                          f->channel_count);
+    return word.size == 0 ? 0
+                          : text_fail(&f->text, word.line, "frame %u has more numbers than the %u channels", frame,
+                                      f->channel_count);
 }
 
 /* q = q * (a turn about one axis) */
 static void turn(double *q, int axis, double degrees)
 {
-    double about[4] = {0.0, 0.0, 0.0, 0.0}, product[4];
+    double about[4] = { 0.0, 0.0, 0.0, 0.0 }, product[4];
     angle_sin_cos_degrees(0.5 * degrees, &about[axis], &about[3]);
     quat_multiply(q, about, product);
     memcpy(q, product, sizeof product);
@@ -126,13 +119,12 @@ static void pose_joint(const bvh_file *f, const bvh_joint *joint, const double *
 static void store_joint(raw_clip *clip, uint32_t frame, uint32_t j, double *q, const double *t)
 {
     const size_t at = (size_t)frame * clip->joint_count + j;
-    double before[4] = {0.0, 0.0, 0.0, 1.0};
+    double before[4] = { 0.0, 0.0, 0.0, 1.0 };
     for (int i = 0; frame > 0 && i < 4; ++i)
         before[i] = (double)clip->rotations[(at - clip->joint_count) * 4 + (size_t)i];
     (void)quat_normalize(q);
     quat_align(q, before);
-    for (int i = 0; i < 4; ++i)
-        clip->rotations[at * 4 + (size_t)i] = (float)q[i];
+    for (int i = 0; i < 4; ++i) clip->rotations[at * 4 + (size_t)i] = (float)q[i];
     for (int i = 0; i < 3; ++i) {
         clip->translations[at * 3 + (size_t)i] = (float)t[i];
         clip->scales[at * 3 + (size_t)i] = 1.0f;
@@ -143,10 +135,9 @@ static int read_frame(bvh_file *f, uint32_t frame, double *values)
 {
     if (!text_next_line(&f->text))
         return text_fail(&f->text, f->text.line, "the file ends after %u of %u frames", frame, f->frame_count);
-    if (read_values(f, frame, values))
-        return 1;
+    if (read_values(f, frame, values)) return 1;
     for (uint32_t j = 0; j < f->joint_count; ++j) {
-        double q[4] = {0.0, 0.0, 0.0, 1.0}, t[3];
+        double q[4] = { 0.0, 0.0, 0.0, 1.0 }, t[3];
         pose_joint(f, &f->joints[j], values, q, t);
         store_joint(&f->set->clips[0], frame, j, q, t);
     }
@@ -157,11 +148,9 @@ static int read_frame(bvh_file *f, uint32_t frame, double *values)
  * frame more is left out with a warning. Anything else behind the frames is an error. */
 static int check_end(bvh_file *f, double *values)
 {
-    if (!text_next_line(&f->text))
-        return 0;
+    if (!text_next_line(&f->text)) return 0;
     const uint32_t line = f->text.line;
-    if (read_values(f, f->frame_count, values))
-        return 1;
+    if (read_values(f, f->frame_count, values)) return 1;
     if (text_next_line(&f->text))
         return text_fail(&f->text, line, "more lines follow the %u frames that were announced", f->frame_count);
     f->set->warning = model_string("one frame more follows than was announced; it was left out");
@@ -171,8 +160,7 @@ static int check_end(bvh_file *f, double *values)
 static int read_frames(bvh_file *f, double *values)
 {
     for (uint32_t frame = 0; frame < f->frame_count; ++frame)
-        if (read_frame(f, frame, values))
-            return 1;
+        if (read_frame(f, frame, values)) return 1;
     return check_end(f, values);
 }
 
@@ -191,7 +179,8 @@ int bvh_read_frames(bvh_file *f)
         read_rate(f, &clip->sample_rate_hz))
         return 1;
     double *values = model_zeros(f->channel_count, sizeof *values);
-    int failed = !values || raw_clip_alloc(clip, frames_to_hold(f), f->joint_count) ? bvh_out_of_memory(f) : read_frames(f, values);
+    int failed = !values || raw_clip_alloc(clip, frames_to_hold(f), f->joint_count) ? bvh_out_of_memory(f)
+                                                                                    : read_frames(f, values);
     free(values);
     return failed;
 }

@@ -14,8 +14,7 @@ static int expect(bvh_file *f, const char *keyword, const char *after)
 {
     char shown[TEXT_SHOWN];
     text_word word = text_next(&f->text);
-    if (text_is(word, keyword))
-        return 0;
+    if (text_is(word, keyword)) return 0;
     return text_fail(&f->text, word.line, "expected %s after %s, got '%s'", keyword, after, text_show(word, shown));
 }
 
@@ -23,12 +22,10 @@ static int expect(bvh_file *f, const char *keyword, const char *after)
 
 static void *grown(void *array, uint32_t count, uint32_t *capacity, size_t element_size)
 {
-    if (count < *capacity)
-        return array;
+    if (count < *capacity) return array;
     uint32_t wanted = *capacity ? *capacity * 2 : 64;
     void *larger = realloc(array, wanted * element_size);
-    if (larger)
-        *capacity = wanted;
+    if (larger) *capacity = wanted;
     return larger;
 }
 
@@ -37,8 +34,7 @@ static int add_joint(bvh_file *f, uint32_t parent, uint32_t line)
     if (f->joint_count == RAW_JOINTS_MAX)
         return text_fail(&f->text, line, "the skeleton has more than %u joints, which is the limit", RAW_JOINTS_MAX);
     bvh_joint *larger = grown(f->joints, f->joint_count, &f->joint_capacity, sizeof *f->joints);
-    if (!larger)
-        return bvh_out_of_memory(f);
+    if (!larger) return bvh_out_of_memory(f);
     f->joints = larger;
     memset(&f->joints[f->joint_count], 0, sizeof *f->joints);
     f->joints[f->joint_count].parent = parent;
@@ -50,8 +46,7 @@ static int add_joint(bvh_file *f, uint32_t parent, uint32_t line)
 static int add_channel(bvh_file *f, uint32_t joint, uint8_t kind)
 {
     bvh_channel *larger = grown(f->channels, f->channel_count, &f->channel_capacity, sizeof *f->channels);
-    if (!larger)
-        return bvh_out_of_memory(f);
+    if (!larger) return bvh_out_of_memory(f);
     f->channels = larger;
     f->channels[f->channel_count].joint = joint;
     f->channels[f->channel_count].kind = kind;
@@ -71,12 +66,9 @@ static text_word take_name(bvh_file *f)
 {
     text_word name = text_rest_of_line(&f->text);
     size_t size = 0;
-    while (size < name.size && !(name.text[size] == '{' && (size == 0 || is_blank(name.text[size - 1]))))
-        ++size;
-    if (size < name.size)
-        f->text.at = name.text + size; /* the brace is still to be read */
-    while (size > 0 && is_blank(name.text[size - 1]))
-        --size;
+    while (size < name.size && !(name.text[size] == '{' && (size == 0 || is_blank(name.text[size - 1])))) ++size;
+    if (size < name.size) f->text.at = name.text + size; /* the brace is still to be read */
+    while (size > 0 && is_blank(name.text[size - 1])) --size;
     name.size = size;
     return name;
 }
@@ -85,25 +77,24 @@ static int read_vector(bvh_file *f, double *out)
 {
     for (int i = 0; i < 3; ++i) {
         text_word word = text_next(&f->text);
-        if (text_number(&f->text, word, &out[i]))
-            return 1;
-        if (fabs(out[i]) > (double)FLT_MAX)
-            return text_fail(&f->text, word.line, "the number %g is too large", out[i]);
+        if (text_number(&f->text, word, &out[i])) return 1;
+        if (fabs(out[i]) > (double)FLT_MAX) return text_fail(&f->text, word.line, "the number %g is too large", out[i]);
     }
     return 0;
 }
 
 static int read_offset(bvh_file *f, uint32_t j, uint32_t line)
 {
-    if (f->joints[j].has_offset)
-        return text_fail(&f->text, line, "joint '%.48s' has two OFFSETs", f->joints[j].name);
+    if (f->joints[j].has_offset) return text_fail(&f->text, line, "joint '%.48s' has two OFFSETs", f->joints[j].name);
     f->joints[j].has_offset = 1;
     return read_vector(f, f->joints[j].offset);
 }
 
 static int channel_kind(text_word word, uint8_t *out)
 {
-    static const char *const names[6] = {"Xposition", "Yposition", "Zposition", "Xrotation", "Yrotation", "Zrotation"};
+    static const char *const names[6] = {
+        "Xposition", "Yposition", "Zposition", "Xrotation", "Yrotation", "Zrotation"
+    };
     for (uint8_t kind = 0; kind < 6; ++kind)
         if (text_is(word, names[kind])) {
             *out = kind;
@@ -131,15 +122,12 @@ static int read_channels(bvh_file *f, uint32_t j, uint32_t line)
 {
     uint32_t seen = 0;
     bvh_joint *joint = &f->joints[j];
-    if (joint->has_channels)
-        return text_fail(&f->text, line, "joint '%.48s' has two lists of CHANNELS", joint->name);
+    if (joint->has_channels) return text_fail(&f->text, line, "joint '%.48s' has two lists of CHANNELS", joint->name);
     joint->has_channels = 1;
     joint->first_channel = f->channel_count;
-    if (text_count(&f->text, text_next(&f->text), 6, &joint->channel_count))
-        return 1;
+    if (text_count(&f->text, text_next(&f->text), 6, &joint->channel_count)) return 1;
     for (uint32_t i = 0; i < joint->channel_count; ++i)
-        if (read_channel(f, j, &seen))
-            return 1;
+        if (read_channel(f, j, &seen)) return 1;
     return 0;
 }
 
@@ -147,8 +135,7 @@ static int read_joint_name(bvh_file *f, uint32_t j, const char *kind)
 {
     text_word name = take_name(f);
     bvh_joint *joint = &f->joints[j];
-    if (name.size == 0)
-        return text_fail(&f->text, name.line, "a %s has no name", kind);
+    if (name.size == 0) return text_fail(&f->text, name.line, "a %s has no name", kind);
     joint->name = text_copy(name);
     return joint->name ? expect(f, "{", "the name") : bvh_out_of_memory(f);
 }
@@ -168,8 +155,7 @@ static char *end_name(const char *parent)
 
 static int add_end_joint(bvh_file *f, uint32_t parent, const double *offset, uint32_t line)
 {
-    if (add_joint(f, parent, line))
-        return 1;
+    if (add_joint(f, parent, line)) return 1;
     bvh_joint *joint = &f->joints[f->joint_count - 1];
     memcpy(joint->offset, offset, sizeof joint->offset);
     joint->is_end = joint->has_offset = joint->has_channels = 1;
@@ -186,19 +172,15 @@ static int read_end_site(bvh_file *f, uint32_t parent, uint32_t line)
 {
     double offset[3];
     (void)take_name(f); /* "Site" */
-    if (expect(f, "{", "End Site") || expect(f, "OFFSET", "End Site {") || read_vector(f, offset))
-        return 1;
+    if (expect(f, "{", "End Site") || expect(f, "OFFSET", "End Site {") || read_vector(f, offset)) return 1;
     text_word word = text_next(&f->text);
     uint32_t none;
     if (text_is(word, "CHANNELS")) {
-        if (text_count(&f->text, text_next(&f->text), 0, &none))
-            return 1;
+        if (text_count(&f->text, text_next(&f->text), 0, &none)) return 1;
         word = text_next(&f->text);
     }
-    if (!text_is(word, "}"))
-        return text_fail(&f->text, word.line, "expected } after an end site's offset");
-    if (square(offset) > square(f->joints[parent].end))
-        memcpy(f->joints[parent].end, offset, sizeof offset);
+    if (!text_is(word, "}")) return text_fail(&f->text, word.line, "expected } after an end site's offset");
+    if (square(offset) > square(f->joints[parent].end)) memcpy(f->joints[parent].end, offset, sizeof offset);
     return f->end_joints ? add_end_joint(f, parent, offset, line) : 0;
 }
 
@@ -206,8 +188,7 @@ static int read_end_site(bvh_file *f, uint32_t parent, uint32_t line)
 
 static int open_joint(bvh_file *f, uint32_t *open, uint32_t line, const char *kind)
 {
-    if (add_joint(f, *open, line))
-        return 1;
+    if (add_joint(f, *open, line)) return 1;
     *open = f->joint_count - 1;
     return read_joint_name(f, *open, kind);
 }
@@ -215,10 +196,8 @@ static int open_joint(bvh_file *f, uint32_t *open, uint32_t line, const char *ki
 static int close_joint(bvh_file *f, uint32_t *open, uint32_t line)
 {
     const bvh_joint *joint = &f->joints[*open];
-    if (!joint->has_offset)
-        return text_fail(&f->text, line, "joint '%.48s' has no OFFSET", joint->name);
-    if (!joint->has_channels)
-        return text_fail(&f->text, line, "joint '%.48s' has no CHANNELS", joint->name);
+    if (!joint->has_offset) return text_fail(&f->text, line, "joint '%.48s' has no OFFSET", joint->name);
+    if (!joint->has_channels) return text_fail(&f->text, line, "joint '%.48s' has no CHANNELS", joint->name);
     *open = joint->parent;
     return 0;
 }
@@ -226,16 +205,11 @@ static int close_joint(bvh_file *f, uint32_t *open, uint32_t line)
 static int read_member(bvh_file *f, uint32_t *open, text_word word)
 {
     char shown[TEXT_SHOWN];
-    if (text_is(word, "OFFSET"))
-        return read_offset(f, *open, word.line);
-    if (text_is(word, "CHANNELS"))
-        return read_channels(f, *open, word.line);
-    if (text_is(word, "JOINT"))
-        return open_joint(f, open, word.line, "joint");
-    if (text_is(word, "End"))
-        return read_end_site(f, *open, word.line);
-    if (text_is(word, "}"))
-        return close_joint(f, open, word.line);
+    if (text_is(word, "OFFSET")) return read_offset(f, *open, word.line);
+    if (text_is(word, "CHANNELS")) return read_channels(f, *open, word.line);
+    if (text_is(word, "JOINT")) return open_joint(f, open, word.line, "joint");
+    if (text_is(word, "End")) return read_end_site(f, *open, word.line);
+    if (text_is(word, "}")) return close_joint(f, open, word.line);
     if (word.size == 0)
         return text_fail(&f->text, word.line, "the file ends inside joint '%.48s'", f->joints[*open].name);
     return text_fail(&f->text, word.line, "'%s' is not known inside a joint", text_show(word, shown));
@@ -252,11 +226,9 @@ static int read_hierarchy(bvh_file *f)
     for (;;) {
         word = text_next(&f->text);
         if (open != MODEL_NONE) {
-            if (read_member(f, &open, word))
-                return 1;
+            if (read_member(f, &open, word)) return 1;
         } else if (text_is(word, "ROOT")) {
-            if (open_joint(f, &open, word.line, "root"))
-                return 1;
+            if (open_joint(f, &open, word.line, "root")) return 1;
         } else if (text_is(word, "MOTION")) {
             return f->joint_count ? 0 : text_fail(&f->text, word.line, "there is no ROOT before MOTION");
         } else {
@@ -268,8 +240,7 @@ static int read_hierarchy(bvh_file *f)
 static int build_set(bvh_file *f, const char *path, double unit_cm)
 {
     f->set = raw_set_new(f->joint_count, 1);
-    if (!f->set)
-        return bvh_out_of_memory(f);
+    if (!f->set) return bvh_out_of_memory(f);
     raw_skeleton *skeleton = &f->set->skeleton;
     skeleton->unit_cm = unit_cm;
     skeleton->name = model_string(f->joints[0].name);
@@ -289,23 +260,20 @@ static int build_set(bvh_file *f, const char *path, double unit_cm)
 
 static void close_file(bvh_file *f)
 {
-    for (uint32_t j = 0; j < f->joint_count; ++j)
-        free(f->joints[j].name);
+    for (uint32_t j = 0; j < f->joint_count; ++j) free(f->joints[j].name);
     free(f->joints);
     free(f->channels);
 }
 
 int bvh_read(const char *path, const bvh_options *options, raw_set **out, model_error *error)
 {
-    bvh_file f = {0};
+    bvh_file f = { 0 };
     size_t size = 0;
     double unit_cm = options && options->unit_cm != 0.0 ? options->unit_cm : 1.0;
     *out = NULL;
-    if (!(unit_cm > 0.0 && unit_cm <= 1e9))
-        return model_fail(error, "", "a unit of %g cm is not possible", unit_cm);
+    if (!(unit_cm > 0.0 && unit_cm <= 1e9)) return model_fail(error, "", "a unit of %g cm is not possible", unit_cm);
     char *text = input_read(path, &size, error);
-    if (!text)
-        return 1;
+    if (!text) return 1;
     text_start(&f.text, text, size, error);
     f.end_joints = options && options->end_joints;
     int failed = read_hierarchy(&f) || build_set(&f, path, unit_cm) || bvh_read_frames(&f);

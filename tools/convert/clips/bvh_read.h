@@ -14,8 +14,8 @@ extern "C" {
 #endif
 
 typedef struct bvh_options {
-    double unit_cm;  /* centimetres per unit of the file; 0: 1 */
-    int end_joints;  /* keep end sites as leaf joints named "<parent>_end" */
+    double unit_cm; /* centimetres per unit of the file; 0: 1 */
+    int end_joints; /* keep end sites as leaf joints named "<parent>_end" */
 } bvh_options;
 
 /* One skeleton, one clip named after the file. options may be NULL. Returns 0 and *out,

@@ -32,8 +32,7 @@ static uint32_t key_before(const model_channel *c, double time_s)
 static void copy_key(const model_channel *c, uint32_t key, double *out)
 {
     const float *value = channel_key(c, key);
-    for (uint32_t i = 0; i < c->width; ++i)
-        out[i] = (double)value[i];
+    for (uint32_t i = 0; i < c->width; ++i) out[i] = (double)value[i];
 }
 
 static int take_key(const model_channel *c, uint32_t key, double *out)
@@ -45,8 +44,7 @@ static int take_key(const model_channel *c, uint32_t key, double *out)
 static int slerp_keys(const model_channel *c, uint32_t key, double t, double *out)
 {
     double a[4], b[4];
-    if (take_key(c, key, a) || take_key(c, key + 1, b))
-        return 1;
+    if (take_key(c, key, a) || take_key(c, key + 1, b)) return 1;
     quat_slerp(a, b, t, out);
     return 0;
 }
@@ -54,8 +52,7 @@ static int slerp_keys(const model_channel *c, uint32_t key, double t, double *ou
 static void lerp_keys(const model_channel *c, uint32_t key, double t, double *out)
 {
     const float *a = channel_key(c, key), *b = channel_key(c, key + 1);
-    for (uint32_t i = 0; i < c->width; ++i)
-        out[i] = (double)a[i] + ((double)b[i] - (double)a[i]) * t;
+    for (uint32_t i = 0; i < c->width; ++i) out[i] = (double)a[i] + ((double)b[i] - (double)a[i]) * t;
 }
 
 static int spline_keys(const model_channel *c, uint32_t key, double t, double *out)
@@ -71,10 +68,8 @@ static int spline_keys(const model_channel *c, uint32_t key, double t, double *o
 
 static int between_keys(const model_channel *c, uint32_t key, double t, double *out)
 {
-    if (c->interpolation == MODEL_CUBICSPLINE)
-        return spline_keys(c, key, t, out);
-    if (c->path == MODEL_PATH_ROTATION)
-        return slerp_keys(c, key, t, out);
+    if (c->interpolation == MODEL_CUBICSPLINE) return spline_keys(c, key, t, out);
+    if (c->path == MODEL_PATH_ROTATION) return slerp_keys(c, key, t, out);
     lerp_keys(c, key, t, out);
     return 0;
 }
@@ -83,12 +78,9 @@ int channel_sample(const model_channel *c, double time_s, double snap_s, double 
 {
     const uint32_t key = key_before(c, time_s);
     const double before = (double)c->times[key];
-    if (time_s <= before + snap_s || key + 1 == c->key_count)
-        return take_key(c, key, out);
+    if (time_s <= before + snap_s || key + 1 == c->key_count) return take_key(c, key, out);
     const double after = (double)c->times[key + 1];
-    if (after - time_s <= snap_s)
-        return take_key(c, key + 1, out);
-    if (c->interpolation == MODEL_STEP)
-        return take_key(c, key, out);
+    if (after - time_s <= snap_s) return take_key(c, key + 1, out);
+    if (c->interpolation == MODEL_STEP) return take_key(c, key, out);
     return between_keys(c, key, (time_s - before) / (after - before), out);
 }

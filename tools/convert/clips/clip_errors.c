@@ -27,7 +27,8 @@ typedef struct player {
     noh_time_probe probe;
 } player;
 
-static void sample(void *user, uint32_t entry, uint32_t tick, uint32_t joint_count, noh_transform *pose, uint32_t float_count, float *floats)
+static void sample(void *user, uint32_t entry, uint32_t tick, uint32_t joint_count, noh_transform *pose,
+                   uint32_t float_count, float *floats)
 {
     player *p = user;
     noh_clip_sample(p->cache, entry, tick, joint_count, pose, float_count ? floats : NULL);
@@ -73,7 +74,8 @@ static void fill_set(const raw_clip *raw, double unit_cm, player *p)
     p->entry.loop = info.flags & NOH_CLIP_FLAG_LOOP ? NOH_LOOP_REPEAT : NOH_LOOP_ONCE;
     for (uint32_t g = 0; g < raw->float_count; g++) {
         for (uint32_t i = 0; i < raw->floats[g].width; i++) {
-            p->scalar_radius[count++] = raw->floats[g].reach ? (float)((double)raw->floats[g].reach[i] / unit_cm) : 0.0f;
+            p->scalar_radius[count++] = raw->floats[g].reach ? (float)((double)raw->floats[g].reach[i] / unit_cm)
+                                                             : 0.0f;
         }
     }
     p->set.clip_count = 1;
@@ -90,7 +92,8 @@ static void fill_set(const raw_clip *raw, double unit_cm, player *p)
     p->probe.travels = 1;
 }
 
-static int open_player(const raw_skeleton *s, const raw_clip *raw, const byte_buffer *bytes, const float *reach, double shell, player *p)
+static int open_player(const raw_skeleton *s, const raw_clip *raw, const byte_buffer *bytes, const float *reach,
+                       double shell, player *p)
 {
     const uint32_t joints = raw->joint_count;
     const raw_skeleton none = { NULL, 0, NULL, s->unit_cm };
@@ -150,8 +153,8 @@ static int measure_rates(player *p, const noh_time_lod_points *points, float *ou
                   : noh_time_lod_measure(p->work, p->work_bytes, &p->probe, 0, out, NULL) != NOH_OK;
 }
 
-int clip_errors_measure(const raw_skeleton *skeleton, const raw_clip *raw, const byte_buffer *clip, const error_points *flesh, clip_errors *out,
-                          model_error *error)
+int clip_errors_measure(const raw_skeleton *skeleton, const raw_clip *raw, const byte_buffer *clip,
+                        const error_points *flesh, clip_errors *out, model_error *error)
 {
     const double shell = flesh->shell_cm / skeleton->unit_cm;
     uint32_t counts[NOH_LOD_LEVELS_MAX];
@@ -161,7 +164,8 @@ int clip_errors_measure(const raw_skeleton *skeleton, const raw_clip *raw, const
     if (!failed && raw->joint_count) {
         out->shell = flesh->reach ? 0.0f : (float)shell;
         out->level_count = joint_levels(skeleton, counts);
-        failed = !out->level_count || noh_joint_lod_measure(p.work, p.work_bytes, &p.probe, 0, counts, out->level_count, out->joint, NULL);
+        failed = !out->level_count ||
+                 noh_joint_lod_measure(p.work, p.work_bytes, &p.probe, 0, counts, out->level_count, out->joint, NULL);
     }
     failed = failed || measure_rates(&p, raw->joint_count && flesh->reach ? flesh->points : NULL, out->rate);
     close_player(&p);

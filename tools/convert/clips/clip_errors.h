@@ -12,14 +12,14 @@
 typedef struct clip_errors {
     float joint[NOH_LOD_LEVELS_MAX]; /* [level_count] */
     float rate[NOH_CLIP_UPDATE_RATES];
-    float shell;                       /* 0: of vertices */
-    uint32_t level_count;              /* 0 without joints */
+    float shell;          /* 0: of vertices */
+    uint32_t level_count; /* 0 without joints */
 } clip_errors;
 
 /* Where a clip's error is measured. Borrowed. */
 typedef struct error_points {
-    const float *reach;            /* [joint_count] radius of what each joint moves (joint_radius); NULL: no mesh is bound to the
-                                    * skeleton, points lie `shell_cm` from each joint */
+    const float *reach; /* [joint_count] radius of what each joint moves (joint_radius); NULL: no mesh is bound to the
+                         * skeleton, points lie `shell_cm` from each joint */
     const noh_time_lod_points *points; /* vertices on which update rates are measured; read only with `reach` */
     double shell_cm;
 } error_points;
@@ -27,7 +27,7 @@ typedef struct error_points {
 /* Measure a clip as its decoder plays it.
  * clip     the encoded one, of `raw`
  * errors   1 and *error: out of memory, or errors beyond what a float holds */
-int clip_errors_measure(const raw_skeleton *skeleton, const raw_clip *raw, const byte_buffer *clip, const error_points *flesh, clip_errors *out,
-                          model_error *error);
+int clip_errors_measure(const raw_skeleton *skeleton, const raw_clip *raw, const byte_buffer *clip,
+                        const error_points *flesh, clip_errors *out, model_error *error);
 
 #endif

@@ -6,14 +6,12 @@
 
 static void store(uint64_t bits, uint8_t out[8])
 {
-    for (int i = 0; i < 8; ++i)
-        out[i] = (uint8_t)(bits >> (8 * i));
+    for (int i = 0; i < 8; ++i) out[i] = (uint8_t)(bits >> (8 * i));
 }
 
 static int digit_of(char c)
 {
-    if (c >= '0' && c <= '9')
-        return c - '0';
+    if (c >= '0' && c <= '9') return c - '0';
     c = (char)(c | 0x20);
     return c >= 'a' && c <= 'f' ? c - 'a' + 10 : 99;
 }
@@ -23,8 +21,7 @@ static int parse_whole(const char *text, size_t size, uint64_t base, uint64_t *o
     *out = 0;
     for (size_t i = 0; i < size; ++i) {
         const uint64_t digit = (uint64_t)digit_of(text[i]);
-        if (digit >= base || *out > (UINT64_MAX - digit) / base)
-            return 0;
+        if (digit >= base || *out > (UINT64_MAX - digit) / base) return 0;
         *out = *out * base + digit;
     }
     return size > 0;
@@ -33,13 +30,11 @@ static int parse_whole(const char *text, size_t size, uint64_t base, uint64_t *o
 static int parse_real(const char *text, size_t size, uint64_t *bits)
 {
     char digits[64], *end = digits;
-    if (size == 0 || size >= sizeof digits)
-        return 0;
+    if (size == 0 || size >= sizeof digits) return 0;
     memcpy(digits, text, size);
     digits[size] = '\0';
     /* a whole number that is too large for an integer is no float either */
-    if (strspn(digits, "+-.0123456789eE") != size || !strpbrk(digits, ".eE"))
-        return 0;
+    if (strspn(digits, "+-.0123456789eE") != size || !strpbrk(digits, ".eE")) return 0;
     double value = strtod(digits, &end);
     memcpy(bits, &value, sizeof *bits);
     return end == digits + size && isfinite(value);
@@ -51,11 +46,9 @@ int event_payload(const char *text, size_t size, uint8_t out[8])
     int negative = size > 0 && text[0] == '-';
     size_t sign = size > 0 && (negative || text[0] == '+');
     if (size > 2 && text[0] == '0' && (text[1] | 0x20) == 'x') {
-        if (!parse_whole(text + 2, size - 2, 16, &bits))
-            return 0;
+        if (!parse_whole(text + 2, size - 2, 16, &bits)) return 0;
     } else if (parse_whole(text + sign, size - sign, 10, &bits)) {
-        if (negative && bits > (UINT64_C(1) << 63))
-            return 0;
+        if (negative && bits > (UINT64_C(1) << 63)) return 0;
         bits = negative ? 0 - bits : bits;
     } else if (!parse_real(text, size, &bits)) {
         return 0;

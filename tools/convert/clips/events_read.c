@@ -32,14 +32,11 @@ static int take_word(text_scan *s, text_word *out)
         (void)text_rest_of_line(s);
         out->size = 0;
     }
-    if (out->size == 0 || out->text[0] != '"')
-        return 0;
+    if (out->size == 0 || out->text[0] != '"') return 0;
     before = out->text + 1;
     const char *close = before;
-    while (close < s->end && *close != '"' && *close != '\n')
-        ++close;
-    if (close == s->end || *close != '"')
-        return text_fail(s, out->line, "a quote is not closed");
+    while (close < s->end && *close != '"' && *close != '\n') ++close;
+    if (close == s->end || *close != '"') return text_fail(s, out->line, "a quote is not closed");
     out->text = before;
     out->size = (size_t)(close - before);
     s->at = close + 1;
@@ -48,9 +45,12 @@ static int take_word(text_scan *s, text_word *out)
 
 static int take_needed(text_scan *s, const char *what, text_word *out)
 {
-    if (take_word(s, out))
-        return 1;
-    return out->size > 0 ? 0 : text_fail(s, out->line, "%s is missing: a key is CLIP TIME_S NAME [PAYLOAD] [min=WEIGHT] or CLIP TIME_S NAME marker", what);
+    if (take_word(s, out)) return 1;
+    return out->size > 0
+               ? 0
+               : text_fail(s, out->line,
+                           "%s is missing: a key is CLIP TIME_S NAME [PAYLOAD] [min=WEIGHT] or CLIP TIME_S NAME marker",
+                           what);
 }
 
 /* payload or min=WEIGHT, in any order, each once; or marker, alone */
@@ -61,18 +61,17 @@ static int take_options(text_scan *s, raw_event *event)
     int has_payload = 0, has_minimum = 0;
     while (!take_word(s, &word)) {
         double minimum = 0.0;
-        if (word.size == 0)
-            return 0;
+        if (word.size == 0) return 0;
         if (event->is_marker)
-            return text_fail(s, word.line, "'%s' follows marker: a marker has no payload and no weight", text_show(word, shown));
+            return text_fail(s, word.line, "'%s' follows marker: a marker has no payload and no weight",
+                             text_show(word, shown));
         if (!has_minimum && !has_payload && word.size == 6 && memcmp(word.text, "marker", 6) == 0) {
             event->is_marker = 1;
             continue;
         }
         if (!has_minimum && word.size > 4 && memcmp(word.text, "min=", 4) == 0) {
-            const text_word number = {word.text + 4, word.size - 4, word.line};
-            if (text_number(s, number, &minimum))
-                return 1;
+            const text_word number = { word.text + 4, word.size - 4, word.line };
+            if (text_number(s, number, &minimum)) return 1;
             if (!(minimum >= 0.0 && minimum <= 1e6))
                 return text_fail(s, word.line, "the least weight %g is not possible: it is 0 or more", minimum);
             event->weight_min = (float)minimum;
@@ -80,7 +79,8 @@ static int take_options(text_scan *s, raw_event *event)
         } else if (!has_payload && event_payload(word.text, word.size, event->payload)) {
             has_payload = 1;
         } else {
-            return text_fail(s, word.line, "'%s' is neither a payload (a number), min=WEIGHT nor marker, or one too many",
+            return text_fail(s, word.line,
+                             "'%s' is neither a payload (a number), min=WEIGHT nor marker, or one too many",
                              text_show(word, shown));
         }
     }
@@ -93,8 +93,7 @@ static event_entry *add_entry(events_reader *r)
     if (list->count == r->capacity) {
         uint32_t wanted = r->capacity ? r->capacity * 2 : 64;
         event_entry *larger = realloc(list->entries, wanted * sizeof *larger);
-        if (!larger)
-            return NULL;
+        if (!larger) return NULL;
         list->entries = larger;
         r->capacity = wanted;
     }
@@ -106,21 +105,17 @@ static int read_line(events_reader *r)
 {
     text_scan *s = &r->text;
     text_word clip, time, name;
-    if (take_word(s, &clip))
-        return 1;
-    if (clip.size == 0)
-        return 0; /* a comment */
+    if (take_word(s, &clip)) return 1;
+    if (clip.size == 0) return 0; /* a comment */
     if (r->list->count == RAW_EVENTS_MAX)
         return text_fail(s, clip.line, "there are more than %u keys, which is the limit", RAW_EVENTS_MAX);
     event_entry *entry = add_entry(r);
-    if (!entry)
-        return out_of_memory(s);
+    if (!entry) return out_of_memory(s);
     entry->line = clip.line;
-    if (take_needed(s, "the time", &time) || text_number(s, time, &entry->event.time_s) || take_needed(s, "the name", &name) ||
-        take_options(s, &entry->event))
+    if (take_needed(s, "the time", &time) || text_number(s, time, &entry->event.time_s) ||
+        take_needed(s, "the name", &name) || take_options(s, &entry->event))
         return 1;
-    if (entry->event.time_s < 0.0)
-        return text_fail(s, time.line, "the time %g is negative", entry->event.time_s);
+    if (entry->event.time_s < 0.0) return text_fail(s, time.line, "the time %g is negative", entry->event.time_s);
     entry->clip = text_copy(clip);
     entry->event.name = text_copy(name);
     return entry->clip && entry->event.name ? 0 : out_of_memory(s);
@@ -129,16 +124,14 @@ static int read_line(events_reader *r)
 int events_read(const char *path, event_list **out, model_error *error)
 {
     size_t size = 0;
-    events_reader r = {0};
+    events_reader r = { 0 };
     *out = NULL;
     char *text = input_read(path, &size, error);
-    if (!text)
-        return 1;
+    if (!text) return 1;
     text_start(&r.text, text, size, error);
     r.list = model_zeros(1, sizeof *r.list);
     int failed = r.list ? 0 : out_of_memory(&r.text);
-    while (!failed && text_next_line(&r.text))
-        failed = read_line(&r);
+    while (!failed && text_next_line(&r.text)) failed = read_line(&r);
     if (failed)
         events_free(r.list);
     else
@@ -149,8 +142,7 @@ int events_read(const char *path, event_list **out, model_error *error)
 
 void events_free(event_list *list)
 {
-    if (!list)
-        return;
+    if (!list) return;
     for (uint32_t i = 0; i < list->count; ++i) {
         free(list->entries[i].clip);
         free(list->entries[i].event.name);
@@ -163,8 +155,7 @@ static raw_clip *find_clip(raw_set *const *sets, uint32_t set_count, const char 
 {
     for (uint32_t s = 0; s < set_count; ++s)
         for (uint32_t c = 0; c < sets[s]->clip_count; ++c)
-            if (sets[s]->clips[c].name && strcmp(sets[s]->clips[c].name, name) == 0)
-                return &sets[s]->clips[c];
+            if (sets[s]->clips[c].name && strcmp(sets[s]->clips[c].name, name) == 0) return &sets[s]->clips[c];
     return NULL;
 }
 
@@ -172,23 +163,22 @@ static int apply_entry(const event_entry *entry, raw_set *const *sets, uint32_t 
 {
     raw_event event = entry->event;
     raw_clip *clip = find_clip(sets, set_count, entry->clip);
-    if (!clip)
-        return text_fail(s, entry->line, "there is no clip '%.100s'", entry->clip);
+    if (!clip) return text_fail(s, entry->line, "there is no clip '%.100s'", entry->clip);
     double duration_s = raw_clip_duration_s(clip);
     if (event.time_s > duration_s + TIME_ROUNDING_S)
-        return text_fail(s, entry->line, "the time %g lies behind the end of clip '%.100s' at %g s", event.time_s, entry->clip,
-                         duration_s);
+        return text_fail(s, entry->line, "the time %g lies behind the end of clip '%.100s' at %g s", event.time_s,
+                         entry->clip, duration_s);
     event.time_s = fmin(event.time_s, duration_s);
     if (clip->event_count >= RAW_EVENTS_MAX)
-        return text_fail(s, entry->line, "clip '%.100s' has more than %u keys, which is the limit", entry->clip, RAW_EVENTS_MAX);
+        return text_fail(s, entry->line, "clip '%.100s' has more than %u keys, which is the limit", entry->clip,
+                         RAW_EVENTS_MAX);
     return raw_clip_add_event(clip, &event) ? out_of_memory(s) : 0;
 }
 
 int events_apply(const event_list *list, raw_set *const *sets, uint32_t set_count, model_error *error)
 {
-    text_scan s = {NULL, NULL, 0, error};
+    text_scan s = { NULL, NULL, 0, error };
     for (uint32_t i = 0; i < list->count; ++i)
-        if (apply_entry(&list->entries[i], sets, set_count, &s))
-            return 1;
+        if (apply_entry(&list->entries[i], sets, set_count, &s)) return 1;
     return 0;
 }

@@ -17,7 +17,8 @@ static double length(const float *v)
     return sqrt(x * x + y * y + z * z);
 }
 
-/* With joints at the ends of chains that reach as far as the bones that lead to them, up to `end`. Returns the largest. */
+/* With joints at the ends of chains that reach as far as the bones that lead to them, up to `end`. Returns the largest.
+ */
 static double find_chains(const raw_skeleton *s, double end, double *extents)
 {
     double largest = 0.0;
@@ -158,7 +159,8 @@ int joint_order_sets(raw_set **sets, uint32_t set_count, model *m)
 
 /* ---- levels ---- */
 
-/* How much the extent falls at a place between joints, as a part of what is before it: 0 where it must not be cut there. */
+/* How much the extent falls at a place between joints, as a part of what is before it: 0 where it must not be cut
+ * there. */
 typedef struct cuts {
     double *falls; /* [joint_count]: before each joint */
     uint32_t joint_count;
@@ -178,7 +180,9 @@ static void find_cuts(const raw_skeleton *s, const double *extents, double near,
     for (uint32_t j = s->joint_count; j-- > 0;) {
         const int is_root = s->joints[j].parent == MODEL_NONE;
         above = is_root ? above : fmax(above, extents[j]);
-        c->falls[j] = j < roots || !(c->falls[j] - above > near) ? 0.0 : c->falls[j] == HUGE_VAL ? 1.0 : 1.0 - above / c->falls[j];
+        c->falls[j] = j < roots || !(c->falls[j] - above > near) ? 0.0
+                      : c->falls[j] == HUGE_VAL                  ? 1.0
+                                                                 : 1.0 - above / c->falls[j];
     }
 }
 
@@ -189,7 +193,8 @@ static uint32_t choose_cut(const cuts *c, double share, uint32_t most)
     const double least = wanted - fmax(LESS_PART * wanted, 1.0), greatest = wanted + fmax(MORE_PART * wanted, 1.0);
     uint32_t best = 0;
     for (uint32_t j = 1; j < most; j++) {
-        if ((double)j >= least && (double)j <= greatest && c->falls[j] > 0.0 && (!best || c->falls[j] > c->falls[best])) {
+        if ((double)j >= least && (double)j <= greatest && c->falls[j] > 0.0 &&
+            (!best || c->falls[j] > c->falls[best])) {
             best = j;
         }
     }

@@ -19,8 +19,7 @@ static double axis_difference(const double *a, const double *b, int axis, double
     double largest = 0.0;
     for (int side = -1; side <= 1; side += 2) {
         double d[3];
-        for (int i = 0; i < 3; ++i)
-            d[i] = b[9 + i] - a[9 + i] + side * out * (b[axis * 3 + i] - a[axis * 3 + i]);
+        for (int i = 0; i < 3; ++i) d[i] = b[9 + i] - a[9 + i] + side * out * (b[axis * 3 + i] - a[axis * 3 + i]);
         largest = fmax(largest, length(d));
     }
     return largest;
@@ -29,13 +28,12 @@ static double axis_difference(const double *a, const double *b, int axis, double
 static double joint_difference(const double *a, const double *b, double shell)
 {
     double largest = 0.0;
-    for (int axis = 0; axis < 3; ++axis)
-        largest = fmax(largest, axis_difference(a, b, axis, shell));
+    for (int axis = 0; axis < 3; ++axis) largest = fmax(largest, axis_difference(a, b, axis, shell));
     return largest;
 }
 
-static void compare_joints(const raw_skeleton *skeleton, const double *first, const double *last, double shell_cm, double *worst,
-                           uint32_t *joint)
+static void compare_joints(const raw_skeleton *skeleton, const double *first, const double *last, double shell_cm,
+                           double *worst, uint32_t *joint)
 {
     *worst = 0.0;
     *joint = skeleton->joint_count ? 0 : MODEL_NONE;
@@ -55,14 +53,16 @@ static void compare_joints(const raw_skeleton *skeleton, const double *first, co
 
 static double local_travel_cm(const raw_skeleton *skeleton, const raw_clip *clip, const double *first, uint32_t j)
 {
-    const float *a = clip->translations + (size_t)j * 3, *b = a + (size_t)(clip->frame_count - 1) * clip->joint_count * 3;
-    const double d[3] = {(double)b[0] - (double)a[0], (double)b[1] - (double)a[1], (double)b[2] - (double)a[2]};
+    const float *a = clip->translations + (size_t)j * 3,
+                *b = a + (size_t)(clip->frame_count - 1) * clip->joint_count * 3;
+    const double d[3] = { (double)b[0] - (double)a[0], (double)b[1] - (double)a[1], (double)b[2] - (double)a[2] };
     const uint32_t parent = skeleton->joints[j].parent;
     return length(d) * skeleton->unit_cm * (parent == MODEL_NONE ? 1.0 : length(first + (size_t)parent * 12));
 }
 
 /* The topmost joint of each chain that travels is put back to where it began: in a copy of the last frame. */
-static void put_back(const raw_skeleton *skeleton, const raw_clip *clip, const double *first, uint8_t *below, raw_clip *frame)
+static void put_back(const raw_skeleton *skeleton, const raw_clip *clip, const double *first, uint8_t *below,
+                     raw_clip *frame)
 {
     const size_t joints = clip->joint_count, last = (size_t)(clip->frame_count - 1) * joints;
     memcpy(frame->rotations, clip->rotations + last * 4, joints * 4 * sizeof(float));
@@ -71,18 +71,17 @@ static void put_back(const raw_skeleton *skeleton, const raw_clip *clip, const d
     for (uint32_t j = 0; j < joints; ++j) {
         const uint32_t parent = skeleton->joints[j].parent;
         below[j] = parent != MODEL_NONE && below[parent];
-        if (below[j] || !(local_travel_cm(skeleton, clip, first, j) > TRAVEL_CM))
-            continue;
+        if (below[j] || !(local_travel_cm(skeleton, clip, first, j) > TRAVEL_CM)) continue;
         below[j] = 1;
         memcpy(frame->rotations + (size_t)j * 4, clip->rotations + (size_t)j * 4, 4 * sizeof(float));
         memcpy(frame->translations + (size_t)j * 3, clip->translations + (size_t)j * 3, 3 * sizeof(float));
     }
 }
 
-static int compare_in_place(const raw_skeleton *skeleton, const raw_clip *clip, const double *first, double *pose, double shell_cm,
-                            raw_loop_check *out)
+static int compare_in_place(const raw_skeleton *skeleton, const raw_clip *clip, const double *first, double *pose,
+                            double shell_cm, raw_loop_check *out)
 {
-    raw_clip frame = {0};
+    raw_clip frame = { 0 };
     uint8_t *below = model_zeros(clip->joint_count, 1);
     int failed = !below || raw_clip_alloc(&frame, 1, clip->joint_count);
     if (!failed) {
@@ -116,11 +115,9 @@ int raw_clip_check_loop(const raw_skeleton *skeleton, const raw_clip *clip, doub
     memset(out, 0, sizeof *out);
     out->joint = out->in_place_joint = MODEL_NONE;
     compare_floats(clip, out);
-    if (clip->joint_count == 0)
-        return 0;
+    if (clip->joint_count == 0) return 0;
     double *poses = model_zeros(size * 2, sizeof *poses);
-    if (!poses)
-        return 1;
+    if (!poses) return 1;
     double *first = poses, *last = poses + size;
     raw_pose_object(skeleton, clip, 0, first);
     raw_pose_object(skeleton, clip, clip->frame_count - 1, last);

@@ -9,12 +9,12 @@ extern "C" {
 #endif
 
 typedef struct raw_loop_check {
-    double difference_cm;   /* largest difference of the first and the last frame, in object space */
-    uint32_t joint;         /* where; MODEL_NONE for a clip without joints */
-    double in_place_cm;     /* likewise with the topmost joint that travels put back: how a loop with root motion closes */
+    double difference_cm; /* largest difference of the first and the last frame, in object space */
+    uint32_t joint;       /* where; MODEL_NONE for a clip without joints */
+    double in_place_cm; /* likewise with the topmost joint that travels put back: how a loop with root motion closes */
     uint32_t in_place_joint;
-    double float_cm;        /* of morph weights: the sum over a group, by its radius */
-    double float_units;     /* of scalars without a radius, in their own unit */
+    double float_cm;    /* of morph weights: the sum over a group, by its radius */
+    double float_units; /* of scalars without a radius, in their own unit */
 } raw_loop_check;
 
 /* Compare at six points around each joint, shell_cm from it (3 is usual) in the first

@@ -18,9 +18,9 @@ extern "C" {
 #endif
 
 typedef struct sample_options {
-    double sample_rate_hz; /* 0: the rate of the keys, where they lie on a grid of 15 Hz or more and are linear. Else the
-                     * lowest of the grid's multiples, or of 30, 60 and 120, at which playing the frames strays from
-                     * the curves by at most 1/1000 of the skeleton's size; at most 120 */
+    double sample_rate_hz; /* 0: the rate of the keys, where they lie on a grid of 15 Hz or more and are linear. Else
+                            * the lowest of the grid's multiples, or of 30, 60 and 120, at which playing the frames
+                            * strays from the curves by at most 1/1000 of the skeleton's size; at most 120 */
 } sample_options;
 
 /* The joints of a model's skin in its skeleton. */
@@ -36,8 +36,8 @@ typedef struct node_joint {
 
 typedef struct model_clips {
     uint32_t set_count, skin_count;
-    raw_set **sets;     /* [set_count] */
-    clip_skin *skins; /* [skin_count], as the model's */
+    raw_set **sets;    /* [set_count] */
+    clip_skin *skins;  /* [skin_count], as the model's */
     node_joint *nodes; /* [the model's node_count] */
 } model_clips;
 

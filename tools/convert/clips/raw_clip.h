@@ -11,10 +11,10 @@ extern "C" {
 
 typedef struct raw_joint {
     char *name;
-    uint32_t parent;        /* index, lower than its own, or MODEL_NONE */
+    uint32_t parent;                             /* index, lower than its own, or MODEL_NONE */
     float rotation[4], translation[3], scale[3]; /* bind pose, local to the parent */
-    float end[3];           /* the end site of a BVH leaf joint, local to the joint; zero: not known */
-    uint32_t node;          /* glTF node, or MODEL_NONE */
+    float end[3];  /* the end site of a BVH leaf joint, local to the joint; zero: not known */
+    uint32_t node; /* glTF node, or MODEL_NONE */
 } raw_joint;
 
 /* Joints, parents first. */
@@ -22,16 +22,17 @@ typedef struct raw_skeleton {
     char *name;
     uint32_t joint_count;
     raw_joint *joints;
-    double unit_cm;         /* centimetres per unit: 100 for glTF, 1 for .rcl */
+    double unit_cm; /* centimetres per unit: 100 for glTF, 1 for .rcl */
 } raw_skeleton;
 
 /* Scalar tracks that are sampled together: a node's morph weights, or named scalars. */
 typedef struct raw_floats {
-    char *name;             /* of the node, or of the float */
-    uint32_t node;          /* glTF node for morph weights, else MODEL_NONE */
+    char *name;    /* of the node, or of the float */
+    uint32_t node; /* glTF node for morph weights, else MODEL_NONE */
     uint32_t width;
-    float *values;          /* [frame_count][width] */
-    float *reach;           /* [width] radius in centimetres: how far a value of 1 moves the surface; NULL: errors are in the scalar's own unit */
+    float *values; /* [frame_count][width] */
+    float *reach;  /* [width] radius in centimetres: how far a value of 1 moves the surface; NULL: errors are in the
+                      scalar's own unit */
 } raw_floats;
 
 typedef struct raw_event {
@@ -39,18 +40,18 @@ typedef struct raw_event {
     double time_s;
     uint8_t payload[8];
     float weight_min;
-    uint8_t is_marker;      /* a sync marker: it has a name and a time, and fires nothing */
+    uint8_t is_marker; /* a sync marker: it has a name and a time, and fires nothing */
 } raw_event;
 
 typedef struct raw_clip {
     char *name;
     double sample_rate_hz;
-    uint32_t frame_count;   /* at least 1; the clip lasts (frame_count - 1) / rate_hz seconds */
-    uint32_t joint_count;   /* of its skeleton; 0: animates scalar tracks only */
-    uint8_t loop;           /* marked as a loop: the last frame equals the first */
-    float *rotations;       /* [frame_count][joint_count][4] unit */
-    float *translations;    /* [frame_count][joint_count][3] */
-    float *scales;          /* [frame_count][joint_count][3] */
+    uint32_t frame_count; /* at least 1; the clip lasts (frame_count - 1) / rate_hz seconds */
+    uint32_t joint_count; /* of its skeleton; 0: animates scalar tracks only */
+    uint8_t loop;         /* marked as a loop: the last frame equals the first */
+    float *rotations;     /* [frame_count][joint_count][4] unit */
+    float *translations;  /* [frame_count][joint_count][3] */
+    float *scales;        /* [frame_count][joint_count][3] */
     uint32_t float_count;
     raw_floats *floats;
     uint32_t event_count;
@@ -64,7 +65,7 @@ typedef struct raw_set {
     raw_skeleton skeleton;
     uint32_t clip_count;
     raw_clip *clips;
-    char *warning;          /* a sentence for the user about the file, or NULL */
+    char *warning; /* a sentence for the user about the file, or NULL */
 } raw_set;
 
 #ifdef __cplusplus

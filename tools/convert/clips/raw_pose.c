@@ -11,14 +11,11 @@
 static void local_matrix(const float *rotation, const float *translation, const float *scale, double *out)
 {
     double q[4];
-    for (int i = 0; i < 4; ++i)
-        q[i] = (double)rotation[i];
+    for (int i = 0; i < 4; ++i) q[i] = (double)rotation[i];
     (void)quat_normalize(q); /* as stored it is unit to a float's precision only */
     quat_columns(q, out);
-    for (int i = 0; i < 9; ++i)
-        out[i] *= (double)scale[i / 3];
-    for (int i = 0; i < 3; ++i)
-        out[9 + i] = (double)translation[i];
+    for (int i = 0; i < 9; ++i) out[i] *= (double)scale[i / 3];
+    for (int i = 0; i < 3; ++i) out[9 + i] = (double)translation[i];
 }
 
 static void multiply(const double *a, const double *b, double *out)
@@ -26,8 +23,7 @@ static void multiply(const double *a, const double *b, double *out)
     for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 3; ++row) {
             double sum = column == 3 ? a[9 + row] : 0.0;
-            for (int k = 0; k < 3; ++k)
-                sum += a[k * 3 + row] * b[column * 3 + k];
+            for (int k = 0; k < 3; ++k) sum += a[k * 3 + row] * b[column * 3 + k];
             out[column * 3 + row] = sum;
         }
 }
@@ -51,12 +47,13 @@ void raw_pose_object(const raw_skeleton *skeleton, const raw_clip *clip, uint32_
 
 static double distance(const double *a, const double *b)
 {
-    double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    double d[3] = { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
     return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
 }
 
 /* Raise the reach of a joint and of all above it to what lies at `point`. */
-static void reach_point(const raw_skeleton *skeleton, const double *pose, uint32_t joint, const double *point, double *out)
+static void reach_point(const raw_skeleton *skeleton, const double *pose, uint32_t joint, const double *point,
+                        double *out)
 {
     for (uint32_t j = joint; j != MODEL_NONE; j = skeleton->joints[j].parent)
         out[j] = fmax(out[j], distance(pose + (size_t)j * 12 + 9, point) * skeleton->unit_cm);
@@ -66,19 +63,16 @@ static void end_point(const raw_joint *joint, const double *matrix, double *out)
 {
     for (int row = 0; row < 3; ++row) {
         out[row] = matrix[9 + row];
-        for (int k = 0; k < 3; ++k)
-            out[row] += matrix[k * 3 + row] * (double)joint->end[k];
+        for (int k = 0; k < 3; ++k) out[row] += matrix[k * 3 + row] * (double)joint->end[k];
     }
 }
 
 int raw_skeleton_radius(const raw_skeleton *skeleton, double *out, double *size_cm)
 {
     double *pose = model_zeros(skeleton->joint_count, 12 * sizeof *pose);
-    if (!pose)
-        return 1;
+    if (!pose) return 1;
     raw_pose_object(skeleton, NULL, 0, pose);
-    for (uint32_t j = 0; j < skeleton->joint_count; ++j)
-        out[j] = 0.0;
+    for (uint32_t j = 0; j < skeleton->joint_count; ++j) out[j] = 0.0;
     *size_cm = 0.0;
     for (uint32_t j = 0; j < skeleton->joint_count; ++j) {
         double end[3];
@@ -86,8 +80,7 @@ int raw_skeleton_radius(const raw_skeleton *skeleton, double *out, double *size_
         reach_point(skeleton, pose, j, pose + (size_t)j * 12 + 9, out);
         reach_point(skeleton, pose, j, end, out);
     }
-    for (uint32_t j = 0; j < skeleton->joint_count; ++j)
-        *size_cm = fmax(*size_cm, out[j]);
+    for (uint32_t j = 0; j < skeleton->joint_count; ++j) *size_cm = fmax(*size_cm, out[j]);
     free(pose);
     return 0;
 }

@@ -8,8 +8,7 @@
 int raw_skeleton_alloc(raw_skeleton *skeleton, uint32_t joint_count)
 {
     skeleton->joints = model_zeros(joint_count, sizeof *skeleton->joints);
-    if (!skeleton->joints)
-        return 1;
+    if (!skeleton->joints) return 1;
     skeleton->joint_count = joint_count;
     for (uint32_t j = 0; j < joint_count; ++j) {
         raw_joint *joint = &skeleton->joints[j];
@@ -23,8 +22,7 @@ int raw_skeleton_alloc(raw_skeleton *skeleton, uint32_t joint_count)
 raw_set *raw_set_new(uint32_t joint_count, uint32_t clip_count)
 {
     raw_set *set = model_zeros(1, sizeof *set);
-    if (!set)
-        return NULL;
+    if (!set) return NULL;
     set->skeleton.unit_cm = 1.0;
     set->clips = model_zeros(clip_count, sizeof *set->clips);
     if (!set->clips || raw_skeleton_alloc(&set->skeleton, joint_count)) {
@@ -66,8 +64,7 @@ void raw_clip_clear(raw_clip *clip)
     for (uint32_t i = 0; clip->floats && i < clip->float_count; ++i) {
         raw_floats_clear(&clip->floats[i]);
     }
-    for (uint32_t i = 0; clip->events && i < clip->event_count; ++i)
-        free(clip->events[i].name);
+    for (uint32_t i = 0; clip->events && i < clip->event_count; ++i) free(clip->events[i].name);
     free(clip->name);
     free(clip->rotations);
     free(clip->translations);
@@ -79,10 +76,8 @@ void raw_clip_clear(raw_clip *clip)
 
 void raw_set_clear(raw_set *set)
 {
-    for (uint32_t j = 0; set->skeleton.joints && j < set->skeleton.joint_count; ++j)
-        free(set->skeleton.joints[j].name);
-    for (uint32_t i = 0; set->clips && i < set->clip_count; ++i)
-        raw_clip_clear(&set->clips[i]);
+    for (uint32_t j = 0; set->skeleton.joints && j < set->skeleton.joint_count; ++j) free(set->skeleton.joints[j].name);
+    for (uint32_t i = 0; set->clips && i < set->clip_count; ++i) raw_clip_clear(&set->clips[i]);
     free(set->skeleton.joints);
     free(set->skeleton.name);
     free(set->clips);
@@ -92,8 +87,7 @@ void raw_set_clear(raw_set *set)
 
 void raw_set_free(raw_set *set)
 {
-    if (!set)
-        return;
+    if (!set) return;
     raw_set_clear(set);
     free(set);
 }
@@ -102,11 +96,9 @@ void raw_set_free(raw_set *set)
 static int events_grow(raw_clip *clip)
 {
     uint32_t count = clip->event_count;
-    if (count != 0 && (count & (count - 1)) != 0)
-        return 0;
+    if (count != 0 && (count & (count - 1)) != 0) return 0;
     raw_event *grown = realloc(clip->events, (count ? (size_t)count * 2 : 1) * sizeof *grown);
-    if (!grown)
-        return 1;
+    if (!grown) return 1;
     clip->events = grown;
     return 0;
 }
@@ -120,8 +112,7 @@ int raw_clip_add_event(raw_clip *clip, const raw_event *event)
         return 1;
     }
     uint32_t at = clip->event_count++;
-    for (; at > 0 && clip->events[at - 1].time_s > copy.time_s; --at)
-        clip->events[at] = clip->events[at - 1];
+    for (; at > 0 && clip->events[at - 1].time_s > copy.time_s; --at) clip->events[at] = clip->events[at - 1];
     clip->events[at] = copy;
     return 0;
 }
@@ -138,8 +129,7 @@ static uint32_t hash_byte(uint32_t hash, uint32_t byte)
 
 static uint32_t hash_word(uint32_t hash, uint32_t word)
 {
-    for (uint32_t i = 0; i < 4; ++i)
-        hash = hash_byte(hash, word >> (8 * i));
+    for (uint32_t i = 0; i < 4; ++i) hash = hash_byte(hash, word >> (8 * i));
     return hash;
 }
 
@@ -147,8 +137,7 @@ static uint32_t hash_word(uint32_t hash, uint32_t word)
 static uint32_t hash_string(uint32_t hash, const char *text)
 {
     const char *c = text ? text : "";
-    for (; *c; ++c)
-        hash = hash_byte(hash, (uint8_t)*c);
+    for (; *c; ++c) hash = hash_byte(hash, (uint8_t)*c);
     return hash_byte(hash, 0);
 }
 

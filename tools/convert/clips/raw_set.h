@@ -17,10 +17,10 @@ extern "C" {
 #endif
 
 #define RAW_JOINTS_MAX 4096u
-#define RAW_FRAMES_MAX (1u << 20)              /* 2.4 hours at 120 Hz */
-#define RAW_BYTES_MAX (UINT64_C(1) << 30)      /* of one file's frames */
-#define RAW_EVENTS_MAX 65536u                  /* in one clip */
-#define RAW_JOINT_BYTES (10u * sizeof(float))  /* of one joint in one frame */
+#define RAW_FRAMES_MAX (1u << 20)             /* 2.4 hours at 120 Hz */
+#define RAW_BYTES_MAX (UINT64_C(1) << 30)     /* of one file's frames */
+#define RAW_EVENTS_MAX 65536u                 /* in one clip */
+#define RAW_JOINT_BYTES (10u * sizeof(float)) /* of one joint in one frame */
 
 /* All return NULL, or 1, when out of memory. */
 raw_set *raw_set_new(uint32_t joint_count, uint32_t clip_count);

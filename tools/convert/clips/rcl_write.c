@@ -9,7 +9,7 @@
 
 static void put_u32(byte_buffer *b, uint32_t value)
 {
-    const uint8_t bytes[4] = {(uint8_t)value, (uint8_t)(value >> 8), (uint8_t)(value >> 16), (uint8_t)(value >> 24)};
+    const uint8_t bytes[4] = { (uint8_t)value, (uint8_t)(value >> 8), (uint8_t)(value >> 16), (uint8_t)(value >> 24) };
     buffer_append(b, bytes, sizeof bytes);
 }
 
@@ -27,8 +27,7 @@ static void put_string(byte_buffer *b, const char *text)
 {
     const size_t length = text ? strlen(text) : 0;
     put_u32(b, (uint32_t)length);
-    if (length)
-        buffer_append(b, text, length);
+    if (length) buffer_append(b, text, length);
 }
 
 /* One kind of track of one joint over all frames. */
@@ -36,8 +35,7 @@ static uint32_t moves(const raw_clip *clip, const float *values, size_t width, u
 {
     const float *first = values + joint * width;
     for (size_t frame = 1; frame < clip->frame_count; ++frame)
-        if (memcmp(first, first + frame * clip->joint_count * width, width * sizeof(float)) != 0)
-            return 1;
+        if (memcmp(first, first + frame * clip->joint_count * width, width * sizeof(float)) != 0) return 1;
     return 0;
 }
 
@@ -66,12 +64,9 @@ static void put_frames(byte_buffer *b, const raw_skeleton *skeleton, const raw_c
     const size_t joints = clip->joint_count;
     for (size_t i = 0; i < joints * clip->frame_count; ++i) {
         const uint8_t f = flags[i % joints];
-        if (f & 1)
-            put_floats(b, clip->rotations + i * 4, 4, 1.0);
-        if (f & 2)
-            put_floats(b, clip->translations + i * 3, 3, skeleton->unit_cm);
-        if (f & 4)
-            put_floats(b, clip->scales + i * 3, 3, 1.0);
+        if (f & 1) put_floats(b, clip->rotations + i * 4, 4, 1.0);
+        if (f & 2) put_floats(b, clip->translations + i * 3, 3, skeleton->unit_cm);
+        if (f & 4) put_floats(b, clip->scales + i * 3, 3, 1.0);
     }
 }
 
@@ -93,8 +88,7 @@ static void put_clip(byte_buffer *b, const raw_skeleton *skeleton, const raw_cli
 static int write_bytes(const char *path, const byte_buffer *b, model_error *error)
 {
     noh_error reason;
-    if (b->failed)
-        return model_fail(error, "", "there is not enough memory to write this clip");
+    if (b->failed) return model_fail(error, "", "there is not enough memory to write this clip");
     if (noh_file_write(path, b->bytes, b->count, &reason) != NOH_OK)
         return model_fail(error, "", "the file cannot be written: %s", reason.what);
     return 0;
@@ -102,12 +96,11 @@ static int write_bytes(const char *path, const byte_buffer *b, model_error *erro
 
 int rcl_write(const char *path, const raw_skeleton *skeleton, const raw_clip *clip, model_error *error)
 {
-    byte_buffer b = {0};
+    byte_buffer b = { 0 };
     if (clip->joint_count == 0 || clip->joint_count != skeleton->joint_count)
         return model_fail(error, "", "the clip moves no joints: .rcl holds nothing else");
     uint8_t *flags = model_zeros(clip->joint_count, 1);
-    if (!flags)
-        return model_fail(error, "", "there is not enough memory to write this clip");
+    if (!flags) return model_fail(error, "", "there is not enough memory to write this clip");
     put_clip(&b, skeleton, clip, flags);
     int failed = write_bytes(path, &b, error);
     buffer_free(&b);

@@ -21,8 +21,7 @@ static void mix(const float *values, size_t stride, const place *at, float *out,
         memcpy(out, a, count * sizeof *out);
         return;
     }
-    for (size_t i = 0; i < count; ++i)
-        out[i] = (float)((double)a[i] + ((double)b[i] - (double)a[i]) * at->part);
+    for (size_t i = 0; i < count; ++i) out[i] = (float)((double)a[i] + ((double)b[i] - (double)a[i]) * at->part);
 }
 
 static void mix_rotation(const float *a, const float *b, double part, float *out)
@@ -33,18 +32,15 @@ static void mix_rotation(const float *a, const float *b, double part, float *out
         to[i] = (double)b[i];
     }
     quat_nlerp(from, to, part, between);
-    for (int i = 0; i < 4; ++i)
-        out[i] = (float)between[i];
+    for (int i = 0; i < 4; ++i) out[i] = (float)between[i];
 }
 
 static void mix_rotations(const raw_clip *clip, const place *at, float *out)
 {
     const size_t count = (size_t)clip->joint_count * 4;
     const float *a = clip->rotations + at->frame * count, *b = clip->rotations + at->next * count;
-    if (at->part == 0.0)
-        memcpy(out, a, count * sizeof *out);
-    for (size_t i = 0; at->part != 0.0 && i < count; i += 4)
-        mix_rotation(a + i, b + i, at->part, out + i);
+    if (at->part == 0.0) memcpy(out, a, count * sizeof *out);
+    for (size_t i = 0; at->part != 0.0 && i < count; i += 4) mix_rotation(a + i, b + i, at->part, out + i);
 }
 
 /* A source whose quaternions jump in sign would pass the jump on. */
@@ -55,8 +51,7 @@ static void align_rotations(raw_clip *clip)
         float *q = clip->rotations + i;
         const float *before = q - count;
         if (q[0] * before[0] + q[1] * before[1] + q[2] * before[2] + q[3] * before[3] < 0.0f)
-            for (int k = 0; k < 4; ++k)
-                q[k] = -q[k];
+            for (int k = 0; k < 4; ++k) q[k] = -q[k];
     }
 }
 
@@ -74,14 +69,12 @@ static void fill_frame(const raw_clip *clip, const place *at, size_t frame, raw_
 
 static int copy_floats_shape(const raw_floats *from, uint32_t frame_count, raw_floats *out)
 {
-    if (raw_floats_alloc(out, frame_count, from->width))
-        return 1;
+    if (raw_floats_alloc(out, frame_count, from->width)) return 1;
     out->node = from->node;
     out->name = model_string(from->name ? from->name : "");
     if (from->reach) {
         out->reach = model_zeros(from->width, sizeof(float));
-        if (!out->reach)
-            return 1;
+        if (!out->reach) return 1;
         memcpy(out->reach, from->reach, from->width * sizeof(float));
     }
     return !out->name;
@@ -92,8 +85,7 @@ static int copy_events(const raw_clip *clip, raw_clip *out)
     for (uint32_t i = 0; i < clip->event_count; ++i) {
         raw_event event = clip->events[i];
         event.time_s = fmin(event.time_s, raw_clip_duration_s(out));
-        if (raw_clip_add_event(out, &event))
-            return 1;
+        if (raw_clip_add_event(out, &event)) return 1;
     }
     return 0;
 }
@@ -107,19 +99,18 @@ static int copy_shape(const raw_clip *clip, uint32_t frame_count, double sample_
     out->source_error_cm = clip->source_error_cm;
     out->name = model_string(clip->name ? clip->name : "");
     out->floats = model_zeros(clip->float_count, sizeof *out->floats);
-    if (!out->name || !out->floats || raw_clip_alloc(out, frame_count, clip->joint_count))
-        return 1;
+    if (!out->name || !out->floats || raw_clip_alloc(out, frame_count, clip->joint_count)) return 1;
     for (uint32_t i = 0; i < clip->float_count; ++i) {
         out->float_count = i + 1;
-        if (copy_floats_shape(&clip->floats[i], frame_count, &out->floats[i]))
-            return 1;
+        if (copy_floats_shape(&clip->floats[i], frame_count, &out->floats[i])) return 1;
     }
     return copy_events(clip, out);
 }
 
-/* Frame i of the copy is at i * steps_from / steps_to frames of the source, of which the quotient and rest are exact. */
-static int copy_frames(const raw_clip *clip, uint32_t frame_count, double sample_rate_hz, uint64_t steps_from, uint64_t steps_to,
-                       raw_clip *out, model_error *error)
+/* Frame i of the copy is at i * steps_from / steps_to frames of the source, of which the quotient and rest are exact.
+ */
+static int copy_frames(const raw_clip *clip, uint32_t frame_count, double sample_rate_hz, uint64_t steps_from,
+                       uint64_t steps_to, raw_clip *out, model_error *error)
 {
     if (copy_shape(clip, frame_count, sample_rate_hz, out)) {
         raw_clip_clear(out);
@@ -139,8 +130,7 @@ static int copy_frames(const raw_clip *clip, uint32_t frame_count, double sample
 static uint64_t bytes_per_frame(const raw_clip *clip)
 {
     uint64_t bytes = (uint64_t)clip->joint_count * RAW_JOINT_BYTES + 1;
-    for (uint32_t i = 0; i < clip->float_count; ++i)
-        bytes += (uint64_t)clip->floats[i].width * sizeof(float);
+    for (uint32_t i = 0; i < clip->float_count; ++i) bytes += (uint64_t)clip->floats[i].width * sizeof(float);
     return bytes;
 }
 
@@ -150,18 +140,19 @@ int raw_clip_resample(const raw_clip *clip, double sample_rate_hz, raw_clip *out
     memset(out, 0, sizeof *out);
     if (!(sample_rate_hz > 0.0 && sample_rate_hz <= 1e6))
         return model_fail(error, "", "a sample rate of %g Hz is not possible", sample_rate_hz);
-    if (duration_s == 0.0)
-        return copy_frames(clip, 1, sample_rate_hz, 0, 1, out, error);
+    if (duration_s == 0.0) return copy_frames(clip, 1, sample_rate_hz, 0, 1, out, error);
     if (steps + 1.0 > (double)RAW_FRAMES_MAX || steps * (double)bytes_per_frame(clip) > (double)RAW_BYTES_MAX)
-        return model_fail(error, "", "at %g Hz the clip's %g s are more frames than the limit; ask for a lower sample rate", sample_rate_hz,
-                          duration_s);
-    return copy_frames(clip, (uint32_t)steps + 1, steps / duration_s, clip->frame_count - 1, (uint64_t)steps, out, error);
+        return model_fail(error, "",
+                          "at %g Hz the clip's %g s are more frames than the limit; ask for a lower sample rate",
+                          sample_rate_hz, duration_s);
+    return copy_frames(clip, (uint32_t)steps + 1, steps / duration_s, clip->frame_count - 1, (uint64_t)steps, out,
+                       error);
 }
 
 int raw_clip_decimate(const raw_clip *clip, uint32_t step, raw_clip *out, model_error *error)
 {
     memset(out, 0, sizeof *out);
-    if (step == 0)
-        return model_fail(error, "", "every 0th frame is not possible");
-    return copy_frames(clip, (clip->frame_count - 1) / step + 1, clip->sample_rate_hz / (double)step, step, 1, out, error);
+    if (step == 0) return model_fail(error, "", "every 0th frame is not possible");
+    return copy_frames(clip, (clip->frame_count - 1) / step + 1, clip->sample_rate_hz / (double)step, step, 1, out,
+                       error);
 }

@@ -12,13 +12,14 @@
 #include "convert/clips/model_clips.h"
 #include "convert/clips/raw_set.h"
 
-namespace gltf {
+namespace gltf
+{
 
 /* --- gltf_skeleton.cpp --- */
 
 /* One skeleton to be. */
 struct skeleton_plan {
-    std::vector<uint32_t> nodes;        /* ascending, so parents first: the joints */
+    std::vector<uint32_t> nodes; /* ascending, so parents first: the joints */
     std::vector<uint32_t> skins;
     std::vector<uint32_t> weight_nodes; /* ascending: whose morph weights its clips animate */
 };

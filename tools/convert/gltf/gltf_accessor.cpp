@@ -4,7 +4,8 @@
 #include <cmath>
 #include <cstring>
 
-namespace gltf {
+namespace gltf
+{
 
 /* An accessor without a buffer view needs no bytes in the file, so its count is limited here. */
 static const uint64_t zeros_count_max = 16u << 20;
@@ -12,10 +13,10 @@ static const uint64_t zeros_count_max = 16u << 20;
 /* An accessor that was checked: what to read, and how. */
 struct layout {
     const tinygltf::Accessor *accessor;
-    uint32_t component;      /* one bit */
+    uint32_t component; /* one bit */
     uint32_t components;
-    uint64_t element_size;   /* bytes */
-    std::string where;       /* with "(accessor N)" */
+    uint64_t element_size; /* bytes */
+    std::string where;     /* with "(accessor N)" */
 };
 
 static std::string element_of(const std::string &where, uint64_t element)
@@ -46,8 +47,7 @@ static uint32_t component_bit(int component_type, bool normalized)
 
 static uint64_t component_size(uint32_t component)
 {
-    if (component & (c_i8 | c_i8n | c_u8 | c_u8n))
-        return 1;
+    if (component & (c_i8 | c_i8n | c_u8 | c_u8n)) return 1;
     return component & (c_u32 | c_f32) ? 4 : 2;
 }
 
@@ -79,7 +79,9 @@ static const char *type_name(int type)
 /* tinygltf numbers the vectors by their width. */
 static int type_of_width(uint32_t components)
 {
-    return components == 1 ? TINYGLTF_TYPE_SCALAR : components == 16 ? TINYGLTF_TYPE_MAT4 : static_cast<int>(components);
+    return components == 1    ? TINYGLTF_TYPE_SCALAR
+           : components == 16 ? TINYGLTF_TYPE_MAT4
+                              : static_cast<int>(components);
 }
 
 static layout check_type(const file &f, int index, uint32_t components, uint32_t accepted, const std::string &where)
@@ -94,9 +96,10 @@ static layout check_type(const file &f, int index, uint32_t components, uint32_t
                            type_name(type_of_width(components))));
     if (!(l.component & accepted)) {
         const char *hint = uses_extension(f, "KHR_mesh_quantization")
-                               ? "" : " (is KHR_mesh_quantization missing from extensionsRequired?)";
-        fail(l.where, text("the component type %s%s is not allowed here%s",
-                           l.accessor->normalized ? "normalised " : "", component_name(l.accessor->componentType), hint));
+                               ? ""
+                               : " (is KHR_mesh_quantization missing from extensionsRequired?)";
+        fail(l.where, text("the component type %s%s is not allowed here%s", l.accessor->normalized ? "normalised " : "",
+                           component_name(l.accessor->componentType), hint));
     }
     l.element_size = component_size(l.component) * components;
     return l;
@@ -120,18 +123,17 @@ static void check_fits(const span &view, uint64_t offset, uint64_t stride, uint6
 static span dense_part(file &f, const layout &l)
 {
     const tinygltf::Accessor &a = *l.accessor;
-    if (a.count == 0)
-        fail(l.where, "the accessor has no elements");
+    if (a.count == 0) fail(l.where, "the accessor has no elements");
     if (a.bufferView < 0) {
         if (a.count > zeros_count_max)
             fail(l.where, text("%zu elements without a buffer view; the limit is %llu", a.count,
                                static_cast<unsigned long long>(zeros_count_max)));
-        return {nullptr, 0, 0};
+        return { nullptr, 0, 0 };
     }
     span view = view_bytes(f, a.bufferView, l.where);
     uint64_t stride = view.stride ? view.stride : l.element_size;
     check_fits(view, a.byteOffset, stride, a.count, l.element_size, l.where);
-    return {view.data + a.byteOffset, view.size - a.byteOffset, stride};
+    return { view.data + a.byteOffset, view.size - a.byteOffset, stride };
 }
 
 template <class T> static T load(const uint8_t *bytes_at)
@@ -171,8 +173,8 @@ static void load_element(const layout &l, const uint8_t *at, uint64_t element, f
     for (uint32_t i = 0; i < l.components; ++i) {
         out[i] = load_component(l.component, at + i * component_size(l.component));
         if (!std::isfinite(out[i]))
-            fail(element_of(l.where, element), text("the value is %s: every number must be finite",
-                                                    std::isnan(out[i]) ? "NaN" : "infinite"));
+            fail(element_of(l.where, element),
+                 text("the value is %s: every number must be finite", std::isnan(out[i]) ? "NaN" : "infinite"));
     }
 }
 
@@ -192,10 +194,9 @@ static sparse_part read_sparse(file &f, const layout &l)
     s.count = static_cast<uint64_t>(a.sparse.count);
     s.index_component = component_bit(a.sparse.indices.componentType, false);
     if (!(s.index_component & (c_u8 | c_u16 | c_u32)))
-        fail(l.where + " sparse indices", text("the component type %s is not allowed here",
-                                               component_name(a.sparse.indices.componentType)));
-    if (s.count == 0)
-        return s;
+        fail(l.where + " sparse indices",
+             text("the component type %s is not allowed here", component_name(a.sparse.indices.componentType)));
+    if (s.count == 0) return s;
     uint64_t index_size = component_size(s.index_component);
     /* offsets came through int: above 2^31 they are negative, and fail below as huge */
     uint64_t index_offset = static_cast<uint32_t>(a.sparse.indices.byteOffset);
@@ -226,7 +227,7 @@ static void apply_sparse(file &f, const layout &l, float *out)
     sparse_part s = read_sparse(f, l);
     for (uint64_t i = 0; i < s.count; ++i) {
         uint32_t element = sparse_index(l, s, i);
-        load_element(l, s.values.data + i * l.element_size, element, out + uint64_t{element} * l.components);
+        load_element(l, s.values.data + i * l.element_size, element, out + uint64_t{ element } * l.components);
     }
 }
 
@@ -244,8 +245,7 @@ void read_floats(file &f, int accessor, uint32_t components, uint32_t accepted, 
         else
             memset(out + i * components, 0, components * sizeof(float));
     }
-    if (l.accessor->sparse.isSparse)
-        apply_sparse(f, l, out);
+    if (l.accessor->sparse.isSparse) apply_sparse(f, l, out);
 }
 
 static void check_index(uint32_t index, uint32_t limit, const std::string &where, uint64_t element)
@@ -270,10 +270,8 @@ std::vector<uint32_t> read_indices(file &f, int accessor, uint32_t limit, const 
     std::vector<uint32_t> out(l.accessor->count, 0);
     for (size_t i = 0; dense.data && i < out.size(); ++i)
         out[i] = load_index(l.component, dense.data + i * dense.stride);
-    if (l.accessor->sparse.isSparse)
-        apply_sparse_indices(f, l, out);
-    for (size_t i = 0; i < out.size(); ++i)
-        check_index(out[i], limit, l.where, i);
+    if (l.accessor->sparse.isSparse) apply_sparse_indices(f, l, out);
+    for (size_t i = 0; i < out.size(); ++i) check_index(out[i], limit, l.where, i);
     return out;
 }
 

@@ -3,7 +3,8 @@
 
 #include <set>
 
-namespace gltf {
+namespace gltf
+{
 
 static const tinygltf::AnimationSampler &sampler_at(const tinygltf::Animation &a, int sampler, const std::string &where)
 {
@@ -14,7 +15,7 @@ static const tinygltf::AnimationSampler &sampler_at(const tinygltf::Animation &a
 
 static bool path_of(const std::string &name, model_path &out)
 {
-    static const char *const names[] = {"weights", "translation", "rotation", "scale"};
+    static const char *const names[] = { "weights", "translation", "rotation", "scale" };
     for (int i = 0; i < 4; ++i)
         if (name == names[i]) {
             out = static_cast<model_path>(i);
@@ -25,12 +26,9 @@ static bool path_of(const std::string &name, model_path &out)
 
 static model_interpolation interpolation_of(const std::string &name, const std::string &where)
 {
-    if (name.empty() || name == "LINEAR")
-        return MODEL_LINEAR;
-    if (name == "STEP")
-        return MODEL_STEP;
-    if (name != "CUBICSPLINE")
-        fail(where, "the interpolation '" + printable(name) + "' is unknown");
+    if (name.empty() || name == "LINEAR") return MODEL_LINEAR;
+    if (name == "STEP") return MODEL_STEP;
+    if (name != "CUBICSPLINE") fail(where, "the interpolation '" + printable(name) + "' is unknown");
     return MODEL_CUBICSPLINE;
 }
 
@@ -38,33 +36,28 @@ static model_interpolation interpolation_of(const std::string &name, const std::
 static const char *reason_to_skip(const file &f, const tinygltf::AnimationChannel &c, const std::string &where,
                                   model_path &path, uint32_t &node)
 {
-    if (c.target_node < 0)
-        return "it has no target node";
+    if (c.target_node < 0) return "it has no target node";
     if (static_cast<size_t>(c.target_node) >= f.node_of.size())
         fail(where, text("node %d does not exist: the file has %zu", c.target_node, f.node_of.size()));
     node = f.node_of[static_cast<size_t>(c.target_node)];
-    if (node == MODEL_NONE)
-        return "its target node is not in the default scene";
-    if (!path_of(c.target_path, path))
-        return "its path is unknown";
+    if (node == MODEL_NONE) return "its target node is not in the default scene";
+    if (!path_of(c.target_path, path)) return "its path is unknown";
     /* a mesh that is not kept (points, lines) takes its weights with it */
     int mesh = f.json.nodes[static_cast<size_t>(c.target_node)].mesh;
-    if (path == MODEL_PATH_WEIGHTS && mesh >= 0 && f.out->nodes[node].mesh == MODEL_NONE)
-        return "its mesh was skipped";
+    if (path == MODEL_PATH_WEIGHTS && mesh >= 0 && f.out->nodes[node].mesh == MODEL_NONE) return "its mesh was skipped";
     return nullptr;
 }
 
 static uint32_t width_of(const file &f, const model_channel &c, const std::string &where)
 {
-    if (c.path != MODEL_PATH_WEIGHTS)
-        return c.path == MODEL_PATH_ROTATION ? 4 : 3;
+    if (c.path != MODEL_PATH_WEIGHTS) return c.path == MODEL_PATH_ROTATION ? 4 : 3;
     const model_node &node = f.out->nodes[c.node];
     if (node.mesh == MODEL_NONE)
         fail(where, "weights are animated, but node '" + printable(node.name) + "' has no mesh");
     uint32_t targets = f.out->meshes[node.mesh].target_count;
     if (targets == 0)
-        fail(where, "weights are animated, but mesh '" + printable(f.out->meshes[node.mesh].name) +
-                    "' has no morph targets");
+        fail(where,
+             "weights are animated, but mesh '" + printable(f.out->meshes[node.mesh].name) + "' has no morph targets");
     return targets;
 }
 
@@ -74,8 +67,8 @@ static void check_times(const model_channel &c, const std::string &where)
         if (c.times[i] < 0.0f)
             fail(where + text(", element %u", i), text("the key time %g is negative", static_cast<double>(c.times[i])));
         if (i > 0 && !(c.times[i] > c.times[i - 1]))
-            fail(where + text(", element %u", i), text("the key time %g does not increase",
-                                                       static_cast<double>(c.times[i])));
+            fail(where + text(", element %u", i),
+                 text("the key time %g does not increase", static_cast<double>(c.times[i])));
     }
 }
 
@@ -84,8 +77,8 @@ static void read_times(file &f, int accessor, model_channel &c, const std::strin
     std::string input = where + " input";
     uint64_t count = accessor_at(f, accessor, input).count;
     if (count == 0 || count >= MODEL_NONE)
-        fail(input + text(" (accessor %d)", accessor), text("%llu keys are not possible",
-                                                            static_cast<unsigned long long>(count)));
+        fail(input + text(" (accessor %d)", accessor),
+             text("%llu keys are not possible", static_cast<unsigned long long>(count)));
     c.times = allocate<float>(f, count, input);
     c.key_count = static_cast<uint32_t>(count);
     read_floats(f, accessor, 1, c_f32, count, input, c.times);
@@ -99,17 +92,17 @@ static void check_rotations(const model_channel &c, const std::string &where)
     for (size_t i = 0; i < c.key_count; ++i) {
         const float *q = c.values + (i * per_key + per_key / 2) * 4;
         double square = 0.0;
-        for (int k = 0; k < 4; ++k)
-            square += static_cast<double>(q[k]) * static_cast<double>(q[k]);
+        for (int k = 0; k < 4; ++k) square += static_cast<double>(q[k]) * static_cast<double>(q[k]);
         if (!(square > 1e-6))
-            fail(where + text(", element %zu", i * per_key + per_key / 2), "the rotation is a quaternion without length");
+            fail(where + text(", element %zu", i * per_key + per_key / 2),
+                 "the rotation is a quaternion without length");
     }
 }
 
 static void read_values(file &f, int accessor, model_channel &c, const std::string &where)
 {
     std::string output = where + " output";
-    uint64_t values = uint64_t{c.key_count} * (c.interpolation == MODEL_CUBICSPLINE ? 3 : 1);
+    uint64_t values = uint64_t{ c.key_count } * (c.interpolation == MODEL_CUBICSPLINE ? 3 : 1);
     bool turns_or_morphs = c.path == MODEL_PATH_WEIGHTS || c.path == MODEL_PATH_ROTATION;
     uint32_t accepted = turns_or_morphs ? c_f32 | c_i8n | c_u8n | c_i16n | c_u16n : c_f32;
     /* weights are stored as scalars, one after another */
@@ -123,8 +116,7 @@ static void read_values(file &f, int accessor, model_channel &c, const std::stri
                   static_cast<unsigned long long>(elements), static_cast<unsigned long long>(given)));
     c.values = allocate<float>(f, elements * components, output);
     read_floats(f, accessor, components, accepted, elements, output, c.values);
-    if (c.path == MODEL_PATH_ROTATION)
-        check_rotations(c, output + text(" (accessor %d)", accessor));
+    if (c.path == MODEL_PATH_ROTATION) check_rotations(c, output + text(" (accessor %d)", accessor));
 }
 
 static void read_channel(file &f, const tinygltf::Animation &a, const tinygltf::AnimationChannel &source,
@@ -146,8 +138,7 @@ static void read_channels(file &f, const tinygltf::Animation &a, const std::stri
         model_path path = MODEL_PATH_WEIGHTS;
         uint32_t node = MODEL_NONE;
         const char *reason = reason_to_skip(f, a.channels[i], where, path, node);
-        if (!reason && !taken.insert({node, path}).second)
-            reason = "another channel has the same target";
+        if (!reason && !taken.insert({ node, path }).second) reason = "another channel has the same target";
         if (reason) {
             leave_out(f, where, std::string(" was skipped: ") + reason);
             continue;
@@ -182,8 +173,7 @@ static void read_clip(file &f, size_t index)
 void read_animations(file &f)
 {
     f.out->clips = allocate<model_clip>(f, f.json.animations.size(), "animations");
-    for (size_t i = 0; i < f.json.animations.size(); ++i)
-        read_clip(f, i);
+    for (size_t i = 0; i < f.json.animations.size(); ++i) read_clip(f, i);
 }
 
 } // namespace gltf

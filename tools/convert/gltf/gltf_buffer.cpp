@@ -6,35 +6,37 @@
 #include <filesystem>
 #include <memory>
 
-namespace tinygltf {
+namespace tinygltf
+{
 /* tinygltf defines this one, but its header only declares it for its own use. */
 std::string base64_decode(std::string const &s);
-}
+} // namespace tinygltf
 
-namespace gltf {
+namespace gltf
+{
 
 /* tinygltf counts in int in many places. */
 static const uint64_t file_bytes_max = 0x7fffffff;
 /* All that a glTF refers to, together. */
-static const uint64_t input_bytes_max = uint64_t{4} << 30;
+static const uint64_t input_bytes_max = uint64_t{ 4 } << 30;
 
 struct file_closer {
-    void operator()(FILE *stream) const { fclose(stream); }
+    void operator()(FILE *stream) const
+    {
+        fclose(stream);
+    }
 };
 
 bytes read_whole_file(const std::string &path, const std::string &where)
 {
     std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored))
-        fail(where, "the file does not exist: " + path);
+    if (!std::filesystem::exists(path, ignored)) fail(where, "the file does not exist: " + path);
     if (!std::filesystem::is_regular_file(path, ignored)) /* a device may never end */
         fail(where, "this is not a file: " + path);
     std::unique_ptr<FILE, file_closer> stream(fopen(path.c_str(), "rb"));
     uint64_t size = std::filesystem::file_size(path, ignored);
-    if (!stream || ignored)
-        fail(where, "the file cannot be opened: " + path);
-    if (size > file_bytes_max)
-        fail(where, "the file is larger than 2 GiB, which is the limit: " + path);
+    if (!stream || ignored) fail(where, "the file cannot be opened: " + path);
+    if (size > file_bytes_max) fail(where, "the file is larger than 2 GiB, which is the limit: " + path);
     bytes data(static_cast<size_t>(size));
     if (fread(data.data(), 1, data.size(), stream.get()) != data.size())
         fail(where, "the file cannot be read: " + path);
@@ -43,10 +45,8 @@ bytes read_whole_file(const std::string &path, const std::string &where)
 
 static int hex_digit(char c)
 {
-    if (c >= '0' && c <= '9')
-        return c - '0';
-    if (c >= 'a' && c <= 'f')
-        return c - 'a' + 10;
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
     return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
 }
 
@@ -97,8 +97,9 @@ static void load_buffer(file &f, buffer &b, bool first, const std::string &where
         b.data = read_uri(f, b.uri, where);
     else if (first && f.has_bin)
         b.data.swap(f.bin);
+    /* an error only where it is used */
     else
-        return; /* an error only where it is used */
+        return;
     b.uri = std::string();
     if (b.data.size() < b.byte_length)
         fail(where, text("the buffer has %zu bytes, but 'byteLength' says %llu: the data is truncated", b.data.size(),
@@ -109,8 +110,7 @@ static void load_buffer(file &f, buffer &b, bool first, const std::string &where
 void load_buffers(file &f)
 {
     for (size_t i = 0; i < f.buffers.size(); ++i)
-        if (!f.buffers[i].fallback)
-            load_buffer(f, f.buffers[i], i == 0, text("buffer %zu", i));
+        if (!f.buffers[i].fallback) load_buffer(f, f.buffers[i], i == 0, text("buffer %zu", i));
 }
 
 span buffer_bytes(file &f, int index, uint64_t offset, uint64_t size, const std::string &where)
@@ -119,12 +119,13 @@ span buffer_bytes(file &f, int index, uint64_t offset, uint64_t size, const std:
         fail(where, text("buffer %d does not exist: the file has %zu", index, f.buffers.size()));
     const buffer &b = f.buffers[static_cast<size_t>(index)];
     if (!b.has_data)
-        fail(where, text("buffer %d has no data: it has no 'uri', and is not the first of a .glb with a BIN chunk", index));
+        fail(where,
+             text("buffer %d has no data: it has no 'uri', and is not the first of a .glb with a BIN chunk", index));
     if (size > b.byte_length || offset > b.byte_length - size)
         fail(where, text("bytes %llu to %llu are out of range: buffer %d has %llu",
                          static_cast<unsigned long long>(offset), static_cast<unsigned long long>(offset + size), index,
                          static_cast<unsigned long long>(b.byte_length)));
-    return {b.data.data() + offset, size, 0};
+    return { b.data.data() + offset, size, 0 };
 }
 
 } // namespace gltf

@@ -9,13 +9,17 @@
 #include "convert/clips/channel_sample.h"
 #include "convert/base/quat.h"
 
-namespace gltf {
+namespace gltf
+{
 
-static const double tolerance_part = 1e-3;  /* of the skeleton's size */
-static const double shell_cm = 3.0;         /* around a joint without anything below it */
+static const double tolerance_part = 1e-3; /* of the skeleton's size */
+static const double shell_cm = 3.0;        /* around a joint without anything below it */
 
 struct clip_deleter {
-    void operator()(model_clips *made) const { model_clips_free(made); }
+    void operator()(model_clips *made) const
+    {
+        model_clips_free(made);
+    }
 };
 using clips_pointer = std::unique_ptr<model_clips, clip_deleter>;
 
@@ -33,28 +37,27 @@ struct set_job {
 template <class T> static T *zeros(size_t count)
 {
     T *array = static_cast<T *>(model_zeros(count, sizeof(T)));
-    if (!array)
-        throw std::bad_alloc();
+    if (!array) throw std::bad_alloc();
     return array;
 }
 
 static void check_memory(int failed)
 {
-    if (failed)
-        throw std::bad_alloc();
+    if (failed) throw std::bad_alloc();
 }
 
 /* --- what errors are worth --- */
 
 static double column_length(const double *m)
 {
-    return std::fmax(std::fmax(std::sqrt(vec_dot(m, m)), std::sqrt(vec_dot(m + 3, m + 3))), std::sqrt(vec_dot(m + 6, m + 6)));
+    return std::fmax(std::fmax(std::sqrt(vec_dot(m, m)), std::sqrt(vec_dot(m + 3, m + 3))),
+                     std::sqrt(vec_dot(m + 6, m + 6)));
 }
 
 static void find_levers(set_job &job)
 {
     const raw_skeleton &skeleton = job.set->skeleton;
-    std::vector<double> pose(size_t{skeleton.joint_count} * 12 + 12);
+    std::vector<double> pose(size_t{ skeleton.joint_count } * 12 + 12);
     double size_cm = 0.0;
     job.lever_cm.assign(skeleton.joint_count + 1, 0.0);
     job.parent_scale_cm.assign(skeleton.joint_count + 1, skeleton.unit_cm);
@@ -63,16 +66,14 @@ static void find_levers(set_job &job)
     for (uint32_t j = 0; j < skeleton.joint_count; ++j) {
         job.lever_cm[j] = std::fmax(job.lever_cm[j], shell_cm);
         if (skeleton.joints[j].parent != MODEL_NONE)
-            job.parent_scale_cm[j] = skeleton.unit_cm * column_length(&pose[size_t{skeleton.joints[j].parent} * 12]);
+            job.parent_scale_cm[j] = skeleton.unit_cm * column_length(&pose[size_t{ skeleton.joints[j].parent } * 12]);
     }
 }
 
 static double lever_of(const set_job &job, const model_channel &c, uint32_t joint)
 {
-    if (c.path == MODEL_PATH_TRANSLATION)
-        return job.parent_scale_cm[joint];
-    if (c.path == MODEL_PATH_ROTATION)
-        return job.lever_cm[joint];
+    if (c.path == MODEL_PATH_TRANSLATION) return job.parent_scale_cm[joint];
+    if (c.path == MODEL_PATH_ROTATION) return job.lever_cm[joint];
     const float *s = job.set->skeleton.joints[joint].scale; /* levers hold the bind scale already */
     double largest = static_cast<double>(std::fmax(std::fmax(std::fabs(s[0]), std::fabs(s[1])), std::fabs(s[2])));
     return job.lever_cm[joint] / std::fmax(largest, 1e-3);
@@ -91,8 +92,7 @@ static std::vector<double> reach_of(const set_job &job, uint32_t node, const raw
     uint32_t joint = mover.set == job.index ? mover.joint : MODEL_NONE;
     std::vector<double> reach = target_sizes(job.m->meshes[job.m->nodes[node].mesh]);
     double scale_cm = 100.0 * largest_scale(*job.m, node, skin_joints(job, node), joint, *job.set, clip);
-    for (double &r : reach)
-        r *= scale_cm;
+    for (double &r : reach) r *= scale_cm;
     return reach;
 }
 
@@ -106,9 +106,9 @@ static std::vector<track> find_tracks(const set_job &job, const model_clip &clip
         const model_channel &c = clip.channels[i];
         uint32_t joint = joint_of(*job.plan, c.node);
         if (c.path != MODEL_PATH_WEIGHTS && joint != MODEL_NONE)
-            tracks.push_back({&c, joint, lever_of(job, c, joint), {}});
+            tracks.push_back({ &c, joint, lever_of(job, c, joint), {} });
         if (c.path == MODEL_PATH_WEIGHTS && std::binary_search(weight_nodes.begin(), weight_nodes.end(), c.node))
-            tracks.push_back({&c, MODEL_NONE, 0.0, reach_of(job, c.node, nullptr)});
+            tracks.push_back({ &c, MODEL_NONE, 0.0, reach_of(job, c.node, nullptr) });
     }
     return tracks;
 }
@@ -117,8 +117,7 @@ static double largest_value(const model_channel &c)
 {
     float largest = 0.0f;
     for (uint32_t key = 0; key < c.key_count; ++key)
-        for (uint32_t i = 0; i < c.width; ++i)
-            largest = std::fmax(largest, std::fabs(channel_key(&c, key)[i]));
+        for (uint32_t i = 0; i < c.width; ++i) largest = std::fmax(largest, std::fabs(channel_key(&c, key)[i]));
     return static_cast<double>(largest);
 }
 
@@ -130,8 +129,7 @@ static double tolerance_of(const set_job &job, const std::vector<track> &tracks)
     for (const track &t : tracks) {
         if (t.channel->path == MODEL_PATH_TRANSLATION)
             size_cm = std::fmax(size_cm, largest_value(*t.channel) * t.lever_cm);
-        for (double r : t.reach)
-            size_cm = std::fmax(size_cm, r);
+        for (double r : t.reach) size_cm = std::fmax(size_cm, r);
     }
     return size_cm * tolerance_part;
 }
@@ -144,14 +142,14 @@ static uint64_t frame_bytes(const set_job &job, const std::vector<track> &tracks
         moves = moves || t.joint != MODEL_NONE;
         floats += t.joint == MODEL_NONE ? t.channel->width : 0;
     }
-    return floats * sizeof(float) + (moves ? uint64_t{job.set->skeleton.joint_count} * RAW_JOINT_BYTES : 0);
+    return floats * sizeof(float) + (moves ? uint64_t{ job.set->skeleton.joint_count } * RAW_JOINT_BYTES : 0);
 }
 
 /* --- filling frames --- */
 
 static void fill_bind_pose(const raw_skeleton &skeleton, raw_clip &clip)
 {
-    for (size_t i = 0; i < size_t{clip.frame_count} * clip.joint_count; ++i) {
+    for (size_t i = 0; i < size_t{ clip.frame_count } * clip.joint_count; ++i) {
         const raw_joint &joint = skeleton.joints[i % clip.joint_count];
         std::copy_n(joint.rotation, 4, clip.rotations + i * 4);
         std::copy_n(joint.translation, 3, clip.translations + i * 3);
@@ -164,14 +162,12 @@ static void sample_track(const track &t, const timing &when, float *out, size_t 
 {
     const model_channel &c = *t.channel;
     std::vector<double> value(c.width), before(c.width, 0.0);
-    if (c.path == MODEL_PATH_ROTATION)
-        std::copy_n(out, 4, before.begin()); /* the bind pose */
+    if (c.path == MODEL_PATH_ROTATION) std::copy_n(out, 4, before.begin()); /* the bind pose */
     for (uint32_t frame = 0; frame < when.frame_count; ++frame) {
         double time_s = frame_time_s(when, frame);
         if (channel_sample(&c, time_s, when.near_s, value.data()))
             fail(where, text("a rotation passes through zero at %g s: it has no direction there", time_s));
-        if (c.path == MODEL_PATH_ROTATION)
-            quat_align(value.data(), before.data());
+        if (c.path == MODEL_PATH_ROTATION) quat_align(value.data(), before.data());
         for (size_t i = 0; i < c.width; ++i)
             out[frame * stride + i] = to_float(value[i], where + text(" at %g s", time_s));
         before = value;
@@ -180,10 +176,11 @@ static void sample_track(const track &t, const timing &when, float *out, size_t 
 
 static float *values_of(raw_clip &clip, const track &t, size_t &stride)
 {
-    stride = size_t{clip.joint_count} * t.channel->width;
-    float *all = t.channel->path == MODEL_PATH_ROTATION ? clip.rotations :
-                 t.channel->path == MODEL_PATH_TRANSLATION ? clip.translations : clip.scales;
-    return all + size_t{t.joint} * t.channel->width;
+    stride = size_t{ clip.joint_count } * t.channel->width;
+    float *all = t.channel->path == MODEL_PATH_ROTATION      ? clip.rotations
+                 : t.channel->path == MODEL_PATH_TRANSLATION ? clip.translations
+                                                             : clip.scales;
+    return all + size_t{ t.joint } * t.channel->width;
 }
 
 static void fill_joints(const set_job &job, const std::vector<track> &tracks, const timing &when, raw_clip &clip,
@@ -194,14 +191,14 @@ static void fill_joints(const set_job &job, const std::vector<track> &tracks, co
     fill_bind_pose(job.set->skeleton, clip);
     for (const track &t : tracks) {
         size_t stride = 0;
-        if (t.joint == MODEL_NONE)
-            continue;
+        if (t.joint == MODEL_NONE) continue;
         float *out = values_of(clip, t, stride);
         sample_track(t, when, out, stride, where + " node '" + printable(job.m->nodes[t.channel->node].name) + "'");
     }
 }
 
-static void fill_weights(const set_job &job, const track &t, const timing &when, raw_clip &clip, const std::string &where)
+static void fill_weights(const set_job &job, const track &t, const timing &when, raw_clip &clip,
+                         const std::string &where)
 {
     const uint32_t node = t.channel->node, width = t.channel->width;
     raw_floats &floats = clip.floats[clip.float_count++];
@@ -211,16 +208,18 @@ static void fill_weights(const set_job &job, const track &t, const timing &when,
     floats.reach = zeros<float>(width);
     std::vector<double> reach = reach_of(job, node, &clip);
     std::string place = where + " weights of node '" + printable(floats.name) + "'";
-    for (uint32_t i = 0; i < width; ++i)
-        floats.reach[i] = to_float(reach[i], place);
+    for (uint32_t i = 0; i < width; ++i) floats.reach[i] = to_float(reach[i], place);
     sample_track(t, when, floats.values, width, place);
 }
 
 static void copy_events(const model_clip &from, raw_clip &clip)
 {
     for (uint32_t i = 0; i < from.event_count; ++i) {
-        raw_event event = {from.events[i].name, std::fmin(from.events[i].time_s, raw_clip_duration_s(&clip)), {0},
-                           from.events[i].weight_min, from.events[i].is_marker};
+        raw_event event = { from.events[i].name,
+                            std::fmin(from.events[i].time_s, raw_clip_duration_s(&clip)),
+                            { 0 },
+                            from.events[i].weight_min,
+                            from.events[i].is_marker };
         memcpy(event.payload, from.events[i].payload, sizeof event.payload);
         check_memory(raw_clip_add_event(&clip, &event));
     }
@@ -232,18 +231,20 @@ static void warn_of_error(const set_job &job, const raw_clip &clip, double toler
 {
     const double usual_hz = 119.0; /* linear keys of a usual rate are taken as they are, without a word */
     if (clip.source_error_cm > tolerance_cm && clip.sample_rate_hz >= usual_hz)
-        check_memory(model_warn(job.m, "%s: sampled at %g Hz it is up to %.3g cm off its curves between frames", where.c_str(),
-                                clip.sample_rate_hz, clip.source_error_cm));
+        check_memory(model_warn(job.m, "%s: sampled at %g Hz it is up to %.3g cm off its curves between frames",
+                                where.c_str(), clip.sample_rate_hz, clip.source_error_cm));
 }
 
-static void make_clip(const set_job &job, const model_clip &from, const std::vector<track> &tracks, double sample_rate_hz,
-                      uint64_t &bytes_left)
+static void make_clip(const set_job &job, const model_clip &from, const std::vector<track> &tracks,
+                      double sample_rate_hz, uint64_t &bytes_left)
 {
     std::string where = "animation '" + printable(from.name) + "'";
     raw_clip &clip = job.set->clips[job.set->clip_count++]; /* counted first, so that it is freed when sampling fails */
     double tolerance_cm = tolerance_of(job, tracks);
-    uint64_t per_frame = frame_bytes(job, tracks), frames_max = std::min<uint64_t>(bytes_left / per_frame, RAW_FRAMES_MAX);
-    timing when = choose_timing(tracks, static_cast<double>(from.duration_s), sample_rate_hz, tolerance_cm, frames_max, where);
+    uint64_t per_frame = frame_bytes(job, tracks),
+             frames_max = std::min<uint64_t>(bytes_left / per_frame, RAW_FRAMES_MAX);
+    timing when = choose_timing(tracks, static_cast<double>(from.duration_s), sample_rate_hz, tolerance_cm, frames_max,
+                                where);
     bytes_left -= std::min(bytes_left, when.frame_count * per_frame);
     clip.name = copy_string(from.name);
     clip.sample_rate_hz = when.sample_rate_hz;
@@ -252,8 +253,7 @@ static void make_clip(const set_job &job, const model_clip &from, const std::vec
     fill_joints(job, tracks, when, clip, where);
     clip.floats = zeros<raw_floats>(tracks.size());
     for (const track &t : tracks)
-        if (t.joint == MODEL_NONE)
-            fill_weights(job, t, when, clip, where);
+        if (t.joint == MODEL_NONE) fill_weights(job, t, when, clip, where);
     warn_of_error(job, clip, tolerance_cm, where);
 }
 
@@ -262,8 +262,7 @@ static void make_clips(set_job &job, double sample_rate_hz, std::vector<bool> &u
     for (uint32_t c = 0; c < job.m->clip_count; ++c) {
         const model_clip &from = job.m->clips[c];
         std::vector<track> tracks = find_tracks(job, from);
-        if (tracks.empty())
-            continue;
+        if (tracks.empty()) continue;
         make_clip(job, from, tracks, sample_rate_hz, bytes_left);
         if (!used[c]) /* in several sets a key would be delivered several times */
             copy_events(from, job.set->clips[job.set->clip_count - 1]);
@@ -276,8 +275,7 @@ static void make_clips(set_job &job, double sample_rate_hz, std::vector<bool> &u
 static void make_set(const model &m, const skeleton_plan &plan, model_clips &made)
 {
     raw_set *set = raw_set_new(static_cast<uint32_t>(plan.nodes.size()), m.clip_count);
-    if (!set)
-        throw std::bad_alloc();
+    if (!set) throw std::bad_alloc();
     made.sets[made.set_count++] = set;
     set->clip_count = 0;
     build_skeleton(m, plan, set->skeleton);
@@ -307,8 +305,7 @@ static clips_pointer make_sets(const model &m, const std::vector<skeleton_plan> 
     made->sets = zeros<raw_set *>(plans.size());
     made->skins = zeros<clip_skin>(m.skin_count);
     made->skin_count = m.skin_count;
-    for (const skeleton_plan &plan : plans)
-        make_set(m, plan, *made);
+    for (const skeleton_plan &plan : plans) make_set(m, plan, *made);
     bind_skins(m, plans, *made);
     bind_nodes(m, plans, *made);
     return made;
@@ -321,13 +318,14 @@ static model_clips *make_model_clips(model &m, double sample_rate_hz)
     std::vector<bool> used(m.clip_count, false);
     uint64_t bytes_left = RAW_BYTES_MAX;
     for (uint32_t p = 0; p < plans.size(); ++p) {
-        set_job job = {&m, &plans[p], made.get(), p, made->sets[p], {}, {}};
+        set_job job = { &m, &plans[p], made.get(), p, made->sets[p], {}, {} };
         find_levers(job);
         make_clips(job, sample_rate_hz, used, bytes_left);
     }
     for (uint32_t c = 0; c < m.clip_count; ++c)
         if (!used[c])
-            check_memory(model_warn(&m, "animation '%s' was skipped: it animates nothing that the pack holds", printable(m.clips[c].name).c_str()));
+            check_memory(model_warn(&m, "animation '%s' was skipped: it animates nothing that the pack holds",
+                                    printable(m.clips[c].name).c_str()));
     return made.release();
 }
 
@@ -351,12 +349,9 @@ extern "C" int clips_from_model(model *m, const sample_options *options, model_c
 
 extern "C" void model_clips_free(model_clips *made)
 {
-    if (!made)
-        return;
-    for (uint32_t i = 0; made->sets && i < made->set_count; ++i)
-        raw_set_free(made->sets[i]);
-    for (uint32_t i = 0; made->skins && i < made->skin_count; ++i)
-        free(made->skins[i].joints);
+    if (!made) return;
+    for (uint32_t i = 0; made->sets && i < made->set_count; ++i) raw_set_free(made->sets[i]);
+    for (uint32_t i = 0; made->skins && i < made->skin_count; ++i) free(made->skins[i].joints);
     free(made->sets);
     free(made->skins);
     free(made->nodes);

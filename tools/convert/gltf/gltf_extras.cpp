@@ -17,15 +17,15 @@
 #include "convert/clips/events_read.h"
 #include "convert/clips/raw_set.h"
 
-namespace gltf {
+namespace gltf
+{
 
 static const double time_rounding_s = 1e-4;
 
 static bool number_member(const tinygltf::Value &object, const char *key, double &out)
 {
     const tinygltf::Value &value = object.Get(key);
-    if (!value.IsNumber())
-        return false;
+    if (!value.IsNumber()) return false;
     out = value.GetNumberAsDouble();
     return true;
 }
@@ -49,16 +49,15 @@ static const char *read_key(const tinygltf::Value &key, double duration_s, model
     double weight_min = 0.0;
     if (!key.IsObject() || !key.Get("name").IsString() || key.Get("name").Get<std::string>().empty())
         return "it has no name";
-    if (!number_member(key, "time", out.time_s))
-        return "it has no time";
+    if (!number_member(key, "time", out.time_s)) return "it has no time";
     if (!(out.time_s >= 0.0 && out.time_s <= duration_s + time_rounding_s))
         return "its time is not within the animation";
-    if (key.Has("weightMin") && (!number_member(key, "weightMin", weight_min) || !(weight_min >= 0.0 && weight_min <= 1e6)))
+    if (key.Has("weightMin") &&
+        (!number_member(key, "weightMin", weight_min) || !(weight_min >= 0.0 && weight_min <= 1e6)))
         return "its weightMin is not a number of 0 or more";
     if (key.Has("payload") && !read_payload(key.Get("payload"), out.payload))
         return "its payload is not a number that fits 8 bytes";
-    if (key.Has("marker") && !key.Get("marker").IsBool())
-        return "its marker is neither true nor false";
+    if (key.Has("marker") && !key.Get("marker").IsBool()) return "its marker is neither true nor false";
     out.is_marker = key.Has("marker") && key.Get("marker").Get<bool>();
     if (out.is_marker && (key.Has("payload") || key.Has("weightMin")))
         return "a sync marker has no payload and no weight";
@@ -69,8 +68,7 @@ static const char *read_key(const tinygltf::Value &key, double duration_s, model
 
 static size_t count_to_read(file &f, const tinygltf::Value &keys, const std::string &where)
 {
-    if (keys.ArrayLen() <= RAW_EVENTS_MAX)
-        return keys.ArrayLen();
+    if (keys.ArrayLen() <= RAW_EVENTS_MAX) return keys.ArrayLen();
     warn(f, "%s: only the first %u events were read, which is the limit", where.c_str(), RAW_EVENTS_MAX);
     return RAW_EVENTS_MAX;
 }
@@ -80,8 +78,7 @@ void read_extras(file &f, const tinygltf::Animation &a, const std::string &where
     const tinygltf::Value none;
     out.loop = a.extras.IsObject() && a.extras.Get("loop").IsBool() && a.extras.Get("loop").Get<bool>();
     const tinygltf::Value &keys = a.extras.IsObject() ? a.extras.Get("events") : none;
-    if (!keys.IsArray() || keys.ArrayLen() == 0)
-        return;
+    if (!keys.IsArray() || keys.ArrayLen() == 0) return;
     size_t count = count_to_read(f, keys, where);
     out.events = allocate<model_event>(f, count, where);
     for (size_t i = 0; i < count; ++i) {

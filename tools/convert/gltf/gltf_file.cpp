@@ -6,14 +6,15 @@
 #include <cstdarg>
 #include <cstdio>
 
-namespace gltf {
+namespace gltf
+{
 
 /* A model may be this much larger than its file: sparse targets become dense ones. */
 static const uint64_t expansion_base = 256u << 20, expansion_factor = 256;
 
 void fail(const std::string &where, const std::string &what)
 {
-    throw failure{what, where};
+    throw failure{ what, where };
 }
 
 std::string text(const char *format, ...)
@@ -31,15 +32,15 @@ void charge(file &f, uint64_t count, uint64_t element_size, const std::string &w
     uint64_t limit = expansion_base + expansion_factor * f.input_bytes;
     if (count > limit / element_size || f.output_bytes + count * element_size > limit)
         fail(where, text("the decoded model would need more than %llu MiB, which a file of this size cannot honestly "
-                         "hold", static_cast<unsigned long long>(limit >> 20)));
+                         "hold",
+                         static_cast<unsigned long long>(limit >> 20)));
     f.output_bytes += count * element_size;
 }
 
 char *copy_string(const std::string &string)
 {
     char *copy = model_string(string.c_str());
-    if (!copy)
-        throw std::bad_alloc();
+    if (!copy) throw std::bad_alloc();
     return copy;
 }
 
@@ -51,8 +52,7 @@ std::string printable(const std::string &name)
     while (name.size() > out.size() && !out.empty() && (static_cast<unsigned char>(name[out.size()]) & 0xc0) == 0x80)
         out.pop_back();
     for (char &c : out)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-            c = '?';
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
     return out;
 }
 
@@ -71,8 +71,7 @@ float to_float(double value, const std::string &where)
 void leave_out(file &f, const std::string &where, const std::string &what)
 {
     auto known = f.loss_of.emplace(what, f.losses.size());
-    if (known.second)
-        f.losses.push_back({where, what, 0});
+    if (known.second) f.losses.push_back({ where, what, 0 });
     ++f.losses[known.first->second].count;
 }
 

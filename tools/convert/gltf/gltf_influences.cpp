@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gltf {
+namespace gltf
+{
 
 static const size_t sets_max = 16;
 static const double sum_tolerance = 1e-3; /* of floats; exporters round */
@@ -19,13 +20,13 @@ static size_t count_sets(const tinygltf::Primitive &p, const std::string &where)
 {
     size_t count = 0;
     for (;; ++count) {
-        bool joints = p.attributes.count(text("JOINTS_%zu", count)) > 0, weights = p.attributes.count(text("WEIGHTS_%zu", count)) > 0;
+        bool joints = p.attributes.count(text("JOINTS_%zu", count)) > 0,
+             weights = p.attributes.count(text("WEIGHTS_%zu", count)) > 0;
         if (joints != weights)
-            fail(where, text("it has %s_%zu without %s_%zu", joints ? "JOINTS" : "WEIGHTS", count, joints ? "WEIGHTS" : "JOINTS", count));
-        if (!joints)
-            return count;
-        if (count == sets_max)
-            fail(where, text("it has more than %zu sets of joints and weights", sets_max));
+            fail(where, text("it has %s_%zu without %s_%zu", joints ? "JOINTS" : "WEIGHTS", count,
+                             joints ? "WEIGHTS" : "JOINTS", count));
+        if (!joints) return count;
+        if (count == sets_max) fail(where, text("it has more than %zu sets of joints and weights", sets_max));
     }
 }
 
@@ -35,15 +36,14 @@ bool has_influences(const tinygltf::Primitive &p)
 }
 
 /* [vertex][set][4]; joints below 65536 are exact as floats */
-static std::vector<float> read_sets(file &f, const tinygltf::Primitive &p, const char *name, uint32_t accepted, size_t sets,
-                                    size_t vertex_count, const std::string &where)
+static std::vector<float> read_sets(file &f, const tinygltf::Primitive &p, const char *name, uint32_t accepted,
+                                    size_t sets, size_t vertex_count, const std::string &where)
 {
     std::vector<float> all(vertex_count * sets * 4), one(vertex_count * 4);
     for (size_t s = 0; s < sets; ++s) {
         std::string attribute = text("%s_%zu", name, s);
         read_floats(f, p.attributes.at(attribute), 4, accepted, vertex_count, where + " " + attribute, one.data());
-        for (size_t v = 0; v < vertex_count; ++v)
-            std::copy_n(&one[v * 4], 4, &all[(v * sets + s) * 4]);
+        for (size_t v = 0; v < vertex_count; ++v) std::copy_n(&one[v * 4], 4, &all[(v * sets + s) * 4]);
     }
     return all;
 }
@@ -54,7 +54,9 @@ static double weight_rounding(const file &f, const tinygltf::Primitive &p, size_
     double most = 0.0;
     for (size_t s = 0; s < sets; ++s) {
         int type = accessor_at(f, p.attributes.at(text("WEIGHTS_%zu", s)), "").componentType;
-        double half = type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ? 0.5 / 255.0 : type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ? 0.5 / 65535.0 : 0.0;
+        double half = type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE    ? 0.5 / 255.0
+                      : type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ? 0.5 / 65535.0
+                                                                       : 0.0;
         most = std::max(most, half);
     }
     return most;
@@ -63,25 +65,24 @@ static double weight_rounding(const file &f, const tinygltf::Primitive &p, size_
 static double sum_of(const std::vector<influence> &used)
 {
     double sum = 0.0;
-    for (const influence &i : used)
-        sum += static_cast<double>(i.weight);
+    for (const influence &i : used) sum += static_cast<double>(i.weight);
     return sum;
 }
 
 /* Used influences of one vertex, the strongest first. A vertex without any has no place in any pose: it is refused. */
-static std::vector<influence> sort_influences(const float *joints, const float *weights, size_t count, const std::string &where,
-                                              size_t vertex)
+static std::vector<influence> sort_influences(const float *joints, const float *weights, size_t count,
+                                              const std::string &where, size_t vertex)
 {
     std::vector<influence> used;
     for (size_t i = 0; i < count; ++i) {
         if (weights[i] < 0.0f)
-            fail(where + text(" vertex %zu", vertex), text("the weight %g is negative", static_cast<double>(weights[i])));
-        if (weights[i] > 0.0f)
-            used.push_back({static_cast<uint32_t>(joints[i]), weights[i]});
+            fail(where + text(" vertex %zu", vertex),
+                 text("the weight %g is negative", static_cast<double>(weights[i])));
+        if (weights[i] > 0.0f) used.push_back({ static_cast<uint32_t>(joints[i]), weights[i] });
     }
-    if (used.empty())
-        fail(where + text(" vertex %zu", vertex), "its weights sum to 0: give it at least one joint");
-    std::stable_sort(used.begin(), used.end(), [](const influence &a, const influence &b) { return a.weight > b.weight; });
+    if (used.empty()) fail(where + text(" vertex %zu", vertex), "its weights sum to 0: give it at least one joint");
+    std::stable_sort(used.begin(), used.end(),
+                     [](const influence &a, const influence &b) { return a.weight > b.weight; });
     return used;
 }
 
@@ -91,12 +92,12 @@ static double store_influences(const std::vector<influence> &used, size_t vertex
 {
     size_t count = std::min<size_t>(used.size(), MODEL_INFLUENCES_MAX);
     double kept = 0.0, all = sum_of(used);
-    for (size_t i = 0; i < count; ++i)
-        kept += static_cast<double>(used[i].weight);
+    for (size_t i = 0; i < count; ++i) kept += static_cast<double>(used[i].weight);
     for (size_t i = 0; i < count; ++i) {
         out.joint_limit = std::max(out.joint_limit, used[i].joint + 1);
         out.joints[vertex * MODEL_INFLUENCES_MAX + i] = static_cast<uint16_t>(used[i].joint);
-        out.joint_weights[vertex * MODEL_INFLUENCES_MAX + i] = static_cast<float>(static_cast<double>(used[i].weight) / kept);
+        out.joint_weights[vertex * MODEL_INFLUENCES_MAX + i] = static_cast<float>(static_cast<double>(used[i].weight) /
+                                                                                  kept);
     }
     out.influence_max = std::max(out.influence_max, static_cast<uint32_t>(count));
     return 1.0 - kept / all;
@@ -104,8 +105,8 @@ static double store_influences(const std::vector<influence> &used, size_t vertex
 
 void allocate_influences(file &f, const std::string &where, model_mesh &out)
 {
-    out.joints = allocate<uint16_t>(f, uint64_t{out.vertex_count} * MODEL_INFLUENCES_MAX, where);
-    out.joint_weights = allocate<float>(f, uint64_t{out.vertex_count} * MODEL_INFLUENCES_MAX, where);
+    out.joints = allocate<uint16_t>(f, uint64_t{ out.vertex_count } * MODEL_INFLUENCES_MAX, where);
+    out.joint_weights = allocate<float>(f, uint64_t{ out.vertex_count } * MODEL_INFLUENCES_MAX, where);
 }
 
 /* Beside primitives with joints one without follows the first joint: as if it were drawn with the others. */
@@ -122,15 +123,14 @@ static void note_changes(const std::vector<influence> &used, double lost, double
     double sum = sum_of(used);
     if (!(std::fabs(sum - 1.0) <= sum_tolerance + rounding * static_cast<double>(used.size()))) {
         ++changes.rescaled;
-        if (std::fabs(sum - 1.0) > std::fabs(changes.farthest_sum - 1.0))
-            changes.farthest_sum = sum;
+        if (std::fabs(sum - 1.0) > std::fabs(changes.farthest_sum - 1.0)) changes.farthest_sum = sum;
     }
     changes.truncated += used.size() > MODEL_INFLUENCES_MAX;
     changes.most_lost = std::fmax(changes.most_lost, lost);
 }
 
-void read_influences(file &f, const tinygltf::Primitive &p, const model_submesh &part, const std::string &where, model_mesh &out,
-                     influence_changes &changes)
+void read_influences(file &f, const tinygltf::Primitive &p, const model_submesh &part, const std::string &where,
+                     model_mesh &out, influence_changes &changes)
 {
     size_t sets = count_sets(p, where), count = part.vertex_count;
     if (sets == 0) {
@@ -138,12 +138,13 @@ void read_influences(file &f, const tinygltf::Primitive &p, const model_submesh 
         fill_rigid(part, out);
         return;
     }
-    charge(f, uint64_t{count} * sets, 8 * sizeof(float), where);
+    charge(f, uint64_t{ count } * sets, 8 * sizeof(float), where);
     std::vector<float> joints = read_sets(f, p, "JOINTS", c_u8 | c_u16, sets, count, where);
     std::vector<float> weights = read_sets(f, p, "WEIGHTS", c_f32 | c_u8n | c_u16n, sets, count, where);
     const double rounding = weight_rounding(f, p, sets);
     for (size_t v = 0; v < count; ++v) {
-        const std::vector<influence> used = sort_influences(&joints[v * sets * 4], &weights[v * sets * 4], sets * 4, where, v);
+        const std::vector<influence> used = sort_influences(&joints[v * sets * 4], &weights[v * sets * 4], sets * 4,
+                                                            where, v);
         note_changes(used, store_influences(used, part.first_vertex + v, out), rounding, changes);
     }
 }
@@ -151,17 +152,18 @@ void read_influences(file &f, const tinygltf::Primitive &p, const model_submesh 
 void warn_influence_changes(file &f, const influence_changes &changes, const std::string &where)
 {
     if (changes.rescaled > 0)
-        warn(f, "%s: the weights of %zu vertices do not sum to 1 and were divided by their sum, at worst %.4g", where.c_str(),
-             changes.rescaled, changes.farthest_sum);
+        warn(f, "%s: the weights of %zu vertices do not sum to 1 and were divided by their sum, at worst %.4g",
+             where.c_str(), changes.rescaled, changes.farthest_sum);
     if (changes.truncated > 0)
-        warn(f, "%s: %zu vertices have more than %u joints; the strongest were kept, up to %.2g of the weight was dropped",
+        warn(f,
+             "%s: %zu vertices have more than %u joints; the strongest were kept, up to %.2g of the weight was dropped",
              where.c_str(), changes.truncated, MODEL_INFLUENCES_MAX, changes.most_lost);
 }
 
 /* A mesh names joints by their place in the skin of the node that draws it. */
 void check_influences(const model_mesh &mesh, uint32_t joint_count)
 {
-    for (size_t i = 0; mesh.joint_limit > joint_count && i < size_t{mesh.vertex_count} * MODEL_INFLUENCES_MAX; ++i)
+    for (size_t i = 0; mesh.joint_limit > joint_count && i < size_t{ mesh.vertex_count } * MODEL_INFLUENCES_MAX; ++i)
         if (mesh.joints[i] >= joint_count)
             fail("mesh '" + printable(mesh.name) + "'", text("vertex %zu follows joint %u, but its skin has %u joints",
                                                              i / MODEL_INFLUENCES_MAX, mesh.joints[i], joint_count));

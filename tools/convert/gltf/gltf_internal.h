@@ -34,7 +34,8 @@
 
 #include <tiny_gltf.h>
 
-namespace gltf {
+namespace gltf
+{
 
 using bytes = std::vector<uint8_t>;
 
@@ -78,25 +79,24 @@ struct file {
     tinygltf::Model json;
     std::vector<buffer> buffers;
     std::vector<image> images;
-    bytes bin;                        /* the BIN chunk of a .glb */
+    bytes bin; /* the BIN chunk of a .glb */
     bool has_bin = false;
     std::vector<bytes> decoded_views; /* of EXT_meshopt_compression, empty until used */
     uint64_t input_bytes = 0;         /* of all that was read */
     uint64_t output_bytes = 0;        /* of what the model needs so far */
     ::model *out = nullptr;
-    std::vector<uint32_t> mesh_of;     /* [json.meshes] index into out->meshes or MODEL_NONE */
-    std::vector<uint32_t> node_of;     /* [json.nodes] likewise */
-    std::vector<uint32_t> skin_of;     /* [json.skins] likewise */
-    std::vector<uint32_t> texture_of;  /* [json.textures] likewise */
-    std::vector<left_out> losses;      /* in the order in which they were met */
+    std::vector<uint32_t> mesh_of;         /* [json.meshes] index into out->meshes or MODEL_NONE */
+    std::vector<uint32_t> node_of;         /* [json.nodes] likewise */
+    std::vector<uint32_t> skin_of;         /* [json.skins] likewise */
+    std::vector<uint32_t> texture_of;      /* [json.textures] likewise */
+    std::vector<left_out> losses;          /* in the order in which they were met */
     std::map<std::string, size_t> loss_of; /* what -> its place in losses */
 };
 
 /* --- gltf_file.cpp --- */
 template <class... Arguments> void warn(file &f, const char *format, Arguments... arguments)
 {
-    if (model_warn(f.out, format, arguments...))
-        throw std::bad_alloc();
+    if (model_warn(f.out, format, arguments...)) throw std::bad_alloc();
 }
 /* Something at `where` is left out, or read as something else; `what` continues the sentence (" was skipped: ...",
  * ": the normal texture was left out"). One warning for each `what` is given when the file has been read: it names
@@ -111,8 +111,7 @@ template <class T> T *allocate(file &f, uint64_t count, const std::string &where
 {
     charge(f, count, sizeof(T), where);
     T *array = static_cast<T *>(model_zeros(static_cast<size_t>(count), sizeof(T)));
-    if (!array)
-        throw std::bad_alloc();
+    if (!array) throw std::bad_alloc();
     return array;
 }
 char *copy_string(const std::string &text);
@@ -147,7 +146,16 @@ span view_bytes(file &f, int view, const std::string &where);
 /* --- gltf_accessor.cpp --- */
 /* Component types as bits, so that each use can name what it accepts; _n = normalised. */
 enum component : uint32_t {
-    c_i8 = 1, c_i8n = 2, c_u8 = 4, c_u8n = 8, c_i16 = 16, c_i16n = 32, c_u16 = 64, c_u16n = 128, c_u32 = 256, c_f32 = 512
+    c_i8 = 1,
+    c_i8n = 2,
+    c_u8 = 4,
+    c_u8n = 8,
+    c_i16 = 16,
+    c_i16n = 32,
+    c_u16 = 64,
+    c_u16n = 128,
+    c_u32 = 256,
+    c_f32 = 512
 };
 const tinygltf::Accessor &accessor_at(const file &f, int accessor, const std::string &where);
 /* Read an accessor as floats, all checked to be finite.
@@ -170,14 +178,14 @@ struct influence_changes {
     double most_lost = 0.0;             /* the largest share of a vertex's weight that was dropped */
     double farthest_sum = 1.0;          /* the sum farthest from 1 */
 };
-void read_influences(file &f, const tinygltf::Primitive &p, const model_submesh &part, const std::string &where, model_mesh &out,
-                     influence_changes &changes);
+void read_influences(file &f, const tinygltf::Primitive &p, const model_submesh &part, const std::string &where,
+                     model_mesh &out, influence_changes &changes);
 void warn_influence_changes(file &f, const influence_changes &changes, const std::string &where);
 /* The UV set that a primitive's base colour texture uses ("TEXCOORD_1"), or the first where the primitive lacks it. */
 std::string uv_name(const file &f, const tinygltf::Primitive &p);
 void check_influences(const model_mesh &mesh, uint32_t joint_count);
 void read_nodes(file &f);
-void read_skins(file &f);          /* after read_nodes */
+void read_skins(file &f); /* after read_nodes */
 void read_animations(file &f);
 /* What no reader above looks at: textures other than the base colour's, further UV sets and colours, cameras, nodes
  * outside the scene. */

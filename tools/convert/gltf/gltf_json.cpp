@@ -12,7 +12,8 @@
 
 using nlohmann::json;
 
-namespace gltf {
+namespace gltf
+{
 
 static const size_t depth_max = 64;
 static const uint64_t array_max = 1u << 20; /* elements of a top-level array */
@@ -25,36 +26,34 @@ struct integer_rule {
 };
 static const int64_t int_max = 0x7fffffff, offset_max = 0xffffffff;
 static const integer_rule integer_rules[] = {
-    {"buffer", 0, int_max},        {"bufferView", -1, int_max},   {"byteLength", 0, offset_max},
-    {"byteOffset", 0, offset_max}, {"byteStride", 0, int_max},    {"children", 0, int_max},
-    {"componentType", 0, int_max}, {"count", 0, offset_max},      {"index", 0, int_max},
-    {"indices", -1, int_max},      {"input", 0, int_max},         {"magFilter", 0, int_max},
-    {"material", -1, int_max},     {"mesh", -1, int_max},         {"minFilter", 0, int_max},
-    {"mode", 0, int_max},          {"node", -1, int_max},         {"output", 0, int_max},
-    {"sampler", -1, int_max},      {"scene", -1, int_max},        {"skin", -1, int_max},
-    {"source", -1, int_max},       {"texCoord", 0, int_max},      {"wrapS", 0, int_max},
-    {"wrapT", 0, int_max}};
+    { "buffer", 0, int_max },        { "bufferView", -1, int_max }, { "byteLength", 0, offset_max },
+    { "byteOffset", 0, offset_max }, { "byteStride", 0, int_max },  { "children", 0, int_max },
+    { "componentType", 0, int_max }, { "count", 0, offset_max },    { "index", 0, int_max },
+    { "indices", -1, int_max },      { "input", 0, int_max },       { "magFilter", 0, int_max },
+    { "material", -1, int_max },     { "mesh", -1, int_max },       { "minFilter", 0, int_max },
+    { "mode", 0, int_max },          { "node", -1, int_max },       { "output", 0, int_max },
+    { "sampler", -1, int_max },      { "scene", -1, int_max },      { "skin", -1, int_max },
+    { "source", -1, int_max },       { "texCoord", 0, int_max },    { "wrapS", 0, int_max },
+    { "wrapT", 0, int_max }
+};
 
 /* Extensions that are understood, or that may be ignored where they are not required. */
-static const char *const supported[] = {"KHR_mesh_quantization", "EXT_meshopt_compression", "KHR_texture_transform",
-                                        "KHR_materials_unlit"};
+static const char *const supported[] = { "KHR_mesh_quantization", "EXT_meshopt_compression", "KHR_texture_transform",
+                                         "KHR_materials_unlit" };
 
 bool is_supported(const std::string &name)
 {
     for (const char *known : supported)
-        if (name == known)
-            return true;
+        if (name == known) return true;
     return false;
 }
 
 bool uses_extension(const file &f, const char *name)
 {
     for (const std::string &used : f.json.extensionsUsed)
-        if (used == name)
-            return true;
+        if (used == name) return true;
     for (const std::string &required : f.json.extensionsRequired)
-        if (required == name)
-            return true;
+        if (required == name) return true;
     return false;
 }
 
@@ -71,8 +70,7 @@ static void check_depth(const char *text_begin, size_t size)
     for (size_t i = 0; i < size; ++i) {
         char c = text_begin[i];
         if (in_string) {
-            if (c == '\\')
-                ++i;
+            if (c == '\\') ++i;
             in_string = c != '"';
         } else if (c == '"') {
             in_string = true;
@@ -90,8 +88,7 @@ static json parse_text(const char *text_begin, size_t size)
     check_depth(text_begin, size);
     try {
         json document = json::parse(text_begin, text_begin + size);
-        if (document.is_object())
-            return document;
+        if (document.is_object()) return document;
     } catch (const json::exception &error) {
         /* "[json.exception.parse_error.101] parse error at ...": the part in brackets says nothing to a user */
         const char *message = strstr(error.what(), "] ");
@@ -103,8 +100,7 @@ static json parse_text(const char *text_begin, size_t size)
 static const integer_rule *rule_of(const std::string &key)
 {
     for (const integer_rule &rule : integer_rules)
-        if (key == rule.key)
-            return &rule;
+        if (key == rule.key) return &rule;
     return nullptr;
 }
 
@@ -112,18 +108,15 @@ static void check_integer(json &value, const integer_rule &rule, const std::stri
 {
     if (value.is_number_float()) { /* 3.0 is a whole number to JSON, but not to tinygltf */
         double number = value.get<double>();
-        if (number == std::floor(number) && std::fabs(number) <= 4294967295.0)
-            value = static_cast<int64_t>(number);
+        if (number == std::floor(number) && std::fabs(number) <= 4294967295.0) value = static_cast<int64_t>(number);
     }
-    if (!value.is_number_integer())
-        fail("glTF JSON" + path, text("'%s' must be a whole number", rule.key));
+    if (!value.is_number_integer()) fail("glTF JSON" + path, text("'%s' must be a whole number", rule.key));
     bool huge = value.is_number_unsigned() && value.get<uint64_t>() > static_cast<uint64_t>(rule.maximum);
     int64_t number = huge ? 0 : value.get<int64_t>();
     if (huge || number < rule.minimum || number > rule.maximum)
         fail("glTF JSON" + path, text("'%s' is out of range (%lld to %lld)", rule.key,
                                       static_cast<long long>(rule.minimum), static_cast<long long>(rule.maximum)));
-    if (!value.is_number_unsigned() && number >= 0)
-        value = static_cast<uint64_t>(number);
+    if (!value.is_number_unsigned() && number >= 0) value = static_cast<uint64_t>(number);
 }
 
 static void check_value(json &value, const std::string &key, const std::string &path);
@@ -136,11 +129,9 @@ static bool holds_accessors(const std::string &key)
 /* In "attributes" and "targets" every number is an accessor's index, whatever its key. */
 static void check_member(json &value, const std::string &key, const std::string &parent, const std::string &path)
 {
-    static const integer_rule accessor_rule = {"attribute", 0, int_max};
-    if (key == "extras" || (parent == "extensions" && key != "EXT_meshopt_compression"))
-        return; /* not ours to judge */
-    if (parent == "EXT_meshopt_compression" && key == "mode")
-        return; /* a string there */
+    static const integer_rule accessor_rule = { "attribute", 0, int_max };
+    if (key == "extras" || (parent == "extensions" && key != "EXT_meshopt_compression")) return; /* not ours to judge */
+    if (parent == "EXT_meshopt_compression" && key == "mode") return;                            /* a string there */
     const integer_rule *rule = holds_accessors(parent) ? &accessor_rule : rule_of(key);
     if (rule && !value.is_structured())
         check_integer(value, *rule, path + "/" + printable(key));
@@ -154,7 +145,7 @@ static void check_value(json &value, const std::string &key, const std::string &
         for (auto member = value.begin(); member != value.end(); ++member)
             check_member(member.value(), member.key(), key, path);
     } else if (value.is_array()) {
-        static const integer_rule node_rule = {"nodes", 0, int_max};
+        static const integer_rule node_rule = { "nodes", 0, int_max };
         const integer_rule *rule = key == "nodes" || key == "joints" ? &node_rule : rule_of(key);
         for (size_t i = 0; i < value.size(); ++i) {
             std::string element = path + "/" + std::to_string(i);
@@ -169,20 +160,18 @@ static void check_value(json &value, const std::string &key, const std::string &
 /* Every top-level array must be one, hold objects, and stay small enough for tinygltf's structs. */
 static void check_top_level(const json &document)
 {
-    static const char *const arrays[] = {"accessors", "animations", "bufferViews", "buffers", "cameras", "images",
-                                         "materials", "meshes", "nodes", "samplers", "scenes", "skins", "textures"};
+    static const char *const arrays[] = { "accessors", "animations", "bufferViews", "buffers", "cameras",
+                                          "images",    "materials",  "meshes",      "nodes",   "samplers",
+                                          "scenes",    "skins",      "textures" };
     for (const char *name : arrays) {
         auto found = document.find(name);
-        if (found == document.end())
-            continue;
-        if (!found->is_array())
-            fail("glTF JSON", text("'%s' must be an array", name));
+        if (found == document.end()) continue;
+        if (!found->is_array()) fail("glTF JSON", text("'%s' must be an array", name));
         if (found->size() > array_max)
             fail("glTF JSON", text("'%s' has %zu elements; the limit is %llu", name, found->size(),
                                    static_cast<unsigned long long>(array_max)));
         for (size_t i = 0; i < found->size(); ++i)
-            if (!(*found)[i].is_object())
-                fail(text("glTF JSON/%s/%zu", name, i), "this must be an object");
+            if (!(*found)[i].is_object()) fail(text("glTF JSON/%s/%zu", name, i), "this must be an object");
     }
 }
 
@@ -201,23 +190,22 @@ static void check_asset(const json &document)
     if (version.compare(0, 2, "2.") != 0)
         fail("glTF JSON/asset", "this is glTF version '" + printable(version) + "'; only version 2 is read");
     if (!minimum.empty() && minimum != "2.0")
-        fail("glTF JSON/asset", "this file needs a reader of glTF version '" + printable(minimum) + "'; this one reads 2.0");
+        fail("glTF JSON/asset",
+             "this file needs a reader of glTF version '" + printable(minimum) + "'; this one reads 2.0");
 }
 
 static void check_required(const json &document)
 {
     auto required = document.find("extensionsRequired");
-    if (required == document.end())
-        return;
-    if (!required->is_array())
-        fail("glTF JSON", "'extensionsRequired' must be an array");
+    if (required == document.end()) return;
+    if (!required->is_array()) fail("glTF JSON", "'extensionsRequired' must be an array");
     for (const json &name : *required) {
         std::string extension = name.is_string() ? name.get<std::string>() : "?";
-        if (is_supported(extension))
-            continue;
-        fail("extensionsRequired", "the file needs the extension " + printable(extension) +
-             ", which is not supported: export it without" +
-             (extension == "KHR_draco_mesh_compression" ? " Draco compression (EXT_meshopt_compression is read)" : ""));
+        if (is_supported(extension)) continue;
+        fail("extensionsRequired",
+             "the file needs the extension " + printable(extension) + ", which is not supported: export it without" +
+                 (extension == "KHR_draco_mesh_compression" ? " Draco compression (EXT_meshopt_compression is read)"
+                                                            : ""));
     }
 }
 
@@ -236,11 +224,9 @@ static json take(json &document, const char *key)
 static bool is_fallback(const json &object)
 {
     auto extensions = object.find("extensions");
-    if (extensions == object.end() || !extensions->is_object())
-        return false;
+    if (extensions == object.end() || !extensions->is_object()) return false;
     auto meshopt = extensions->find("EXT_meshopt_compression");
-    if (meshopt == extensions->end() || !meshopt->is_object())
-        return false;
+    if (meshopt == extensions->end() || !meshopt->is_object()) return false;
     auto fallback = meshopt->find("fallback");
     return fallback != meshopt->end() && fallback->is_boolean() && fallback->get<bool>();
 }
@@ -251,8 +237,7 @@ static void take_buffers(file &f, json &document)
     for (size_t i = 0; i < array.size(); ++i) {
         const json &object = array[i];
         auto length = object.find("byteLength");
-        if (length == object.end())
-            fail(text("buffer %zu", i), "'byteLength' is missing");
+        if (length == object.end()) fail(text("buffer %zu", i), "'byteLength' is missing");
         buffer b;
         b.byte_length = length->get<uint64_t>();
         b.has_uri = object.contains("uri");
@@ -266,11 +251,9 @@ static void take_buffers(file &f, json &document)
 static void repair_skins(json &document)
 {
     auto skins = document.find("skins");
-    if (skins == document.end() || !skins->is_array())
-        return;
+    if (skins == document.end() || !skins->is_array()) return;
     for (json &skin : *skins)
-        if (skin.is_object() && !skin.contains("inverseBindMatrices"))
-            skin["inverseBindMatrices"] = -1;
+        if (skin.is_object() && !skin.contains("inverseBindMatrices")) skin["inverseBindMatrices"] = -1;
 }
 
 static void take_images(file &f, json &document)
@@ -290,17 +273,13 @@ static void take_images(file &f, json &document)
 static void mark_untargeted_channels(json &document)
 {
     auto animations = document.find("animations");
-    if (animations == document.end())
-        return;
+    if (animations == document.end()) return;
     for (json &animation : *animations) {
         auto channels = animation.find("channels");
-        if (channels == animation.end() || !channels->is_array())
-            continue;
+        if (channels == animation.end() || !channels->is_array()) continue;
         for (json &channel : *channels) {
-            if (!channel.is_object() || !channel.contains("target") || !channel["target"].is_object())
-                continue;
-            if (!channel["target"].contains("node"))
-                channel["target"]["node"] = -1;
+            if (!channel.is_object() || !channel.contains("target") || !channel["target"].is_object()) continue;
+            if (!channel["target"].contains("node")) channel["target"]["node"] = -1;
         }
     }
 }
@@ -309,23 +288,23 @@ static void mark_untargeted_channels(json &document)
 static void find_extensions(file &f, const json &value, const std::string &where)
 {
     for (auto member = value.begin(); member != value.end(); ++member) {
-        if (!member->is_structured() || (value.is_object() && member.key() == "extras"))
-            continue;
+        if (!member->is_structured() || (value.is_object() && member.key() == "extras")) continue;
         if (value.is_object() && member.key() == "extensions" && member->is_object()) {
             for (auto extension = member->begin(); extension != member->end(); ++extension)
-                if (!is_supported(extension.key()))
-                    leave_out(f, where, ": " + not_supported(extension.key()));
+                if (!is_supported(extension.key())) leave_out(f, where, ": " + not_supported(extension.key()));
             continue; /* what an extension holds is not read either */
         }
         find_extensions(f, *member, where);
     }
 }
 
-static const char *const named_arrays[][2] = {{"materials", "material"}, {"meshes", "mesh"}, {"nodes", "node"},
-                                              {"textures", "texture"},   {"images", "image"}, {"samplers", "sampler"},
-                                              {"cameras", "camera"},     {"scenes", "scene"}, {"animations", "animation"},
-                                              {"skins", "skin"},         {"accessors", "accessor"},
-                                              {"bufferViews", "buffer view"}, {"buffers", "buffer"}};
+static const char *const named_arrays[][2] = { { "materials", "material" },   { "meshes", "mesh" },
+                                               { "nodes", "node" },           { "textures", "texture" },
+                                               { "images", "image" },         { "samplers", "sampler" },
+                                               { "cameras", "camera" },       { "scenes", "scene" },
+                                               { "animations", "animation" }, { "skins", "skin" },
+                                               { "accessors", "accessor" },   { "bufferViews", "buffer view" },
+                                               { "buffers", "buffer" } };
 
 /* After check_top_level: these are arrays. The document's own "extensions" (lists of lights and the like) are used by
  * the objects that are looked at here; an extension that no object carries is named without one. */
@@ -335,7 +314,8 @@ static void find_unsupported(file &f, const json &document)
         auto found = document.find(array[0]);
         for (size_t i = 0; found != document.end() && i < found->size(); ++i) {
             std::string name = printable(string_member((*found)[i], "name"));
-            find_extensions(f, (*found)[i], name.empty() ? text("%s %zu", array[1], i) : array[1] + (" '" + name + "'"));
+            find_extensions(f, (*found)[i],
+                            name.empty() ? text("%s %zu", array[1], i) : array[1] + (" '" + name + "'"));
         }
     }
     auto used = document.find("extensionsUsed");

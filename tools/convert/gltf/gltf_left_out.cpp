@@ -4,7 +4,8 @@
 #include <cstring>
 #include <set>
 
-namespace gltf {
+namespace gltf
+{
 
 /* --- materials --- */
 
@@ -12,12 +13,15 @@ static void find_in_material(file &f, size_t index)
 {
     const tinygltf::Material &m = f.json.materials[index];
     const std::string where = "material '" + printable(name_or(m.name, "material", index)) + "'";
-    const struct { int texture; const char *name; } textures[] = {
-        {m.normalTexture.index, "normal"}, {m.occlusionTexture.index, "occlusion"}, {m.emissiveTexture.index, "emissive"},
-        {m.pbrMetallicRoughness.metallicRoughnessTexture.index, "metallic-roughness"}};
+    const struct {
+        int texture;
+        const char *name;
+    } textures[] = { { m.normalTexture.index, "normal" },
+                     { m.occlusionTexture.index, "occlusion" },
+                     { m.emissiveTexture.index, "emissive" },
+                     { m.pbrMetallicRoughness.metallicRoughnessTexture.index, "metallic-roughness" } };
     for (const auto &t : textures)
-        if (t.texture >= 0)
-            leave_out(f, where, text(": the %s texture was left out", t.name));
+        if (t.texture >= 0) leave_out(f, where, text(": the %s texture was left out", t.name));
     for (double part : m.emissiveFactor)
         if (part > 0.0 && m.emissiveTexture.index < 0) {
             leave_out(f, where, ": the emissive colour was left out");
@@ -35,10 +39,10 @@ static void find_in_samplers(file &f)
             used.insert(f.json.textures[static_cast<size_t>(texture)].sampler);
     }
     for (int index : used) {
-        if (index < 0 || static_cast<size_t>(index) >= f.json.samplers.size())
-            continue;
+        if (index < 0 || static_cast<size_t>(index) >= f.json.samplers.size()) continue;
         const tinygltf::Sampler &s = f.json.samplers[static_cast<size_t>(index)];
-        bool nearest = s.minFilter == TINYGLTF_TEXTURE_FILTER_NEAREST || s.minFilter == TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST ||
+        bool nearest = s.minFilter == TINYGLTF_TEXTURE_FILTER_NEAREST ||
+                       s.minFilter == TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST ||
                        s.minFilter == TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_LINEAR;
         if (s.minFilter != -1 && nearest != (s.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST))
             leave_out(f, text("sampler %d", index), ": 'minFilter' was ignored: a pack filters as 'magFilter' says");
@@ -55,8 +59,8 @@ static bool begins_with(const std::string &name, const char *beginning)
 /* Joints and weights are read whole, in sets of four, or the file is refused. */
 static bool is_read(const std::string &name, const std::string &uv)
 {
-    return name == "POSITION" || name == "NORMAL" || name == "TANGENT" || name == "COLOR_0" || name == uv || begins_with(name, "JOINTS_") ||
-           begins_with(name, "WEIGHTS_");
+    return name == "POSITION" || name == "NORMAL" || name == "TANGENT" || name == "COLOR_0" || name == uv ||
+           begins_with(name, "JOINTS_") || begins_with(name, "WEIGHTS_");
 }
 
 static void find_in_primitive(file &f, const tinygltf::Primitive &p, const std::string &where)
@@ -65,9 +69,9 @@ static void find_in_primitive(file &f, const tinygltf::Primitive &p, const std::
     for (const auto &attribute : p.attributes)
         if (!is_read(attribute.first, uv))
             leave_out(f, where, ": the attribute " + printable(attribute.first) + " was left out");
-    if (p.material < 0 || static_cast<size_t>(p.material) >= f.json.materials.size())
-        return;
-    const tinygltf::TextureInfo &texture = f.json.materials[static_cast<size_t>(p.material)].pbrMetallicRoughness.baseColorTexture;
+    if (p.material < 0 || static_cast<size_t>(p.material) >= f.json.materials.size()) return;
+    const tinygltf::TextureInfo &texture =
+        f.json.materials[static_cast<size_t>(p.material)].pbrMetallicRoughness.baseColorTexture;
     if (texture.index >= 0 && p.attributes.count(uv) == 0)
         leave_out(f, where, text(": its material has a texture, but the primitive has no %s", uv.c_str()));
 }
@@ -77,7 +81,8 @@ static void find_in_primitive(file &f, const tinygltf::Primitive &p, const std::
 static void find_in_scene(file &f)
 {
     for (size_t i = 0; i < f.json.cameras.size(); ++i)
-        leave_out(f, "camera '" + printable(name_or(f.json.cameras[i].name, "camera", i)) + "'", ": cameras are not kept");
+        leave_out(f, "camera '" + printable(name_or(f.json.cameras[i].name, "camera", i)) + "'",
+                  ": cameras are not kept");
     for (size_t i = 0; i < f.json.nodes.size(); ++i)
         if (f.node_of[i] == MODEL_NONE)
             leave_out(f, "node '" + printable(name_or(f.json.nodes[i].name, "node", i)) + "'",
@@ -86,13 +91,13 @@ static void find_in_scene(file &f)
 
 void find_left_out(file &f)
 {
-    for (size_t i = 0; i < f.json.materials.size(); ++i)
-        find_in_material(f, i);
+    for (size_t i = 0; i < f.json.materials.size(); ++i) find_in_material(f, i);
     find_in_samplers(f);
     for (size_t m = 0; m < f.json.meshes.size(); ++m)
         for (size_t i = 0; f.mesh_of[m] != MODEL_NONE && i < f.json.meshes[m].primitives.size(); ++i)
             find_in_primitive(f, f.json.meshes[m].primitives[i],
-                              "mesh '" + printable(name_or(f.json.meshes[m].name, "mesh", m)) + "'" + text(" primitive %zu", i));
+                              "mesh '" + printable(name_or(f.json.meshes[m].name, "mesh", m)) + "'" +
+                                  text(" primitive %zu", i));
     find_in_scene(f);
 }
 

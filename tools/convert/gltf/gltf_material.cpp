@@ -7,7 +7,8 @@
 
 #include <stb/stb_image.h>
 
-namespace gltf {
+namespace gltf
+{
 
 static const uint64_t pixels_max = 64u << 20;
 
@@ -24,15 +25,14 @@ static bytes encoded_image(file &f, const image &source, const std::string &wher
         span s = view_bytes(f, source.view, where);
         return bytes(s.data, s.data + s.size);
     }
-    if (source.uri.empty())
-        fail(where, "it has neither a 'uri' nor a 'bufferView'");
+    if (source.uri.empty()) fail(where, "it has neither a 'uri' nor a 'bufferView'");
     return read_uri(f, source.uri, where);
 }
 
 /* glTF allows these two; the other decoders of stb_image need not see strangers' data. */
 static bool is_png_or_jpeg(const bytes &data)
 {
-    static const uint8_t png[4] = {0x89, 'P', 'N', 'G'}, jpeg[3] = {0xff, 0xd8, 0xff};
+    static const uint8_t png[4] = { 0x89, 'P', 'N', 'G' }, jpeg[3] = { 0xff, 0xd8, 0xff };
     return data.size() > 8 && (memcmp(data.data(), png, 4) == 0 || memcmp(data.data(), jpeg, 3) == 0);
 }
 
@@ -58,21 +58,20 @@ static void store_pixels(file &f, const tinygltf::Image &decoded, model_texture 
     out.height = static_cast<uint32_t>(decoded.height);
     for (uint64_t i = 0; i < channels; ++i) {
         uint16_t value = 0;
-        if (wide)
-            memcpy(&value, &decoded.image[i * 2], sizeof value);
-        out.rgba[i] = wide ? static_cast<uint8_t>((uint32_t{value} * 255 + 32767) / 65535) : decoded.image[i];
+        if (wide) memcpy(&value, &decoded.image[i * 2], sizeof value);
+        out.rgba[i] = wide ? static_cast<uint8_t>((uint32_t{ value } * 255 + 32767) / 65535) : decoded.image[i];
     }
 }
 
 static void decode_image(file &f, const image &source, model_texture &out, const std::string &where)
 {
     bytes data = encoded_image(f, source, where);
-    if (!is_png_or_jpeg(data))
-        fail(where, "it is neither PNG nor JPEG");
+    if (!is_png_or_jpeg(data)) fail(where, "it is neither PNG nor JPEG");
     check_image_size(data, where);
     tinygltf::Image decoded;
     std::string error, warning;
-    if (!tinygltf::LoadImageData(&decoded, 0, &error, &warning, 0, 0, data.data(), static_cast<int>(data.size()), nullptr))
+    if (!tinygltf::LoadImageData(&decoded, 0, &error, &warning, 0, 0, data.data(), static_cast<int>(data.size()),
+                                 nullptr))
         fail(where, "the image data is damaged");
     store_pixels(f, decoded, out, where);
 }
@@ -83,18 +82,17 @@ static uint32_t wrap_of(file &f, int wrap, const std::string &where)
 {
     bool known = wrap == TINYGLTF_TEXTURE_WRAP_REPEAT || wrap == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE ||
                  wrap == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT;
-    if (!known)
-        leave_out(f, where, text(": the wrap mode %d is unknown and was taken as repeat", wrap));
+    if (!known) leave_out(f, where, text(": the wrap mode %d is unknown and was taken as repeat", wrap));
     return static_cast<uint32_t>(known ? wrap : TINYGLTF_TEXTURE_WRAP_REPEAT);
 }
 
 static uint32_t filter_of(file &f, int filter, const std::string &where)
 {
-    bool known = filter == -1 || filter == TINYGLTF_TEXTURE_FILTER_NEAREST || filter == TINYGLTF_TEXTURE_FILTER_LINEAR ||
+    bool known = filter == -1 || filter == TINYGLTF_TEXTURE_FILTER_NEAREST ||
+                 filter == TINYGLTF_TEXTURE_FILTER_LINEAR ||
                  (filter >= TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST &&
                   filter <= TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR);
-    if (!known)
-        leave_out(f, where, text(": the filter %d is unknown and was ignored", filter));
+    if (!known) leave_out(f, where, text(": the filter %d is unknown and was ignored", filter));
     return known && filter != -1 ? static_cast<uint32_t>(filter) : 0;
 }
 
@@ -103,8 +101,7 @@ static void read_sampler(file &f, int index, model_texture &out, const std::stri
     tinygltf::Sampler sampler; /* with glTF's defaults */
     if (index >= 0 && static_cast<size_t>(index) >= f.json.samplers.size())
         fail(where, text("sampler %d does not exist: the file has %zu", index, f.json.samplers.size()));
-    if (index >= 0)
-        sampler = f.json.samplers[static_cast<size_t>(index)];
+    if (index >= 0) sampler = f.json.samplers[static_cast<size_t>(index)];
     out.wrap_s = wrap_of(f, sampler.wrapS, where);
     out.wrap_t = wrap_of(f, sampler.wrapT, where);
     out.mag_filter = filter_of(f, sampler.magFilter, where);
@@ -115,8 +112,7 @@ static void read_texture(file &f, size_t index, model_texture &out)
 {
     const tinygltf::Texture &texture = f.json.textures[index];
     std::string where = text("texture %zu", index);
-    if (texture.source < 0)
-        fail(where, "it has no image that can be read");
+    if (texture.source < 0) fail(where, "it has no image that can be read");
     if (static_cast<size_t>(texture.source) >= f.images.size())
         fail(where, text("image %d does not exist: the file has %zu", texture.source, f.images.size()));
     const image &source = f.images[static_cast<size_t>(texture.source)];
@@ -149,15 +145,12 @@ static uint32_t base_color_texture(file &f, const tinygltf::Material &m, const s
 {
     const uint32_t untried = MODEL_NONE - 1;
     int index = m.pbrMetallicRoughness.baseColorTexture.index;
-    if (index < 0)
-        return MODEL_NONE;
+    if (index < 0) return MODEL_NONE;
     if (static_cast<size_t>(index) >= f.json.textures.size())
         fail(where, text("texture %d does not exist: the file has %zu", index, f.json.textures.size()));
-    if (f.texture_of.empty())
-        f.texture_of.assign(f.json.textures.size(), untried);
+    if (f.texture_of.empty()) f.texture_of.assign(f.json.textures.size(), untried);
     uint32_t &slot = f.texture_of[static_cast<size_t>(index)];
-    if (slot == untried)
-        slot = try_texture(f, static_cast<size_t>(index), where);
+    if (slot == untried) slot = try_texture(f, static_cast<size_t>(index), where);
     return slot;
 }
 
@@ -165,10 +158,8 @@ static uint32_t base_color_texture(file &f, const tinygltf::Material &m, const s
 
 static model_alpha alpha_of(file &f, const std::string &mode, const std::string &where)
 {
-    if (mode == "MASK")
-        return MODEL_ALPHA_MASK;
-    if (mode == "BLEND")
-        return MODEL_ALPHA_BLEND;
+    if (mode == "MASK") return MODEL_ALPHA_MASK;
+    if (mode == "BLEND") return MODEL_ALPHA_BLEND;
     if (mode != "OPAQUE")
         leave_out(f, where, ": the alpha mode '" + printable(mode) + "' is unknown and was taken as OPAQUE");
     return MODEL_ALPHA_OPAQUE;
@@ -180,8 +171,7 @@ static void read_material(file &f, size_t index, model_material &out)
     const tinygltf::PbrMetallicRoughness &pbr = m.pbrMetallicRoughness;
     std::string where = where_of(f, index);
     out.name = copy_string(name_or(m.name, "material", index));
-    for (size_t i = 0; i < 4; ++i)
-        out.base_color[i] = to_float(pbr.baseColorFactor[i], where + " baseColorFactor");
+    for (size_t i = 0; i < 4; ++i) out.base_color[i] = to_float(pbr.baseColorFactor[i], where + " baseColorFactor");
     out.metallic = to_float(pbr.metallicFactor, where + " metallicFactor");
     out.roughness = to_float(pbr.roughnessFactor, where + " roughnessFactor");
     out.alpha = alpha_of(f, m.alphaMode, where);

@@ -4,7 +4,8 @@
 #include <cstring>
 #include <set>
 
-namespace gltf {
+namespace gltf
+{
 
 using attributes = std::map<std::string, int>;
 
@@ -76,8 +77,7 @@ static std::vector<uint32_t> listed_vertices(file &f, const mesh_job &job, const
         return read_indices(f, p.source->indices, p.vertex_count, where_of(job, p) + " indices");
     charge(f, p.vertex_count, sizeof(uint32_t), where_of(job, p));
     std::vector<uint32_t> list(p.vertex_count);
-    for (uint32_t i = 0; i < p.vertex_count; ++i)
-        list[i] = i;
+    for (uint32_t i = 0; i < p.vertex_count; ++i) list[i] = i;
     return list;
 }
 
@@ -110,8 +110,8 @@ static void read_triangles(file &f, const mesh_job &job, part &p)
     if (p.source->mode != TINYGLTF_MODE_TRIANGLES)
         list = unroll(f, list, p.source->mode, where_of(job, p));
     else if (list.size() % 3 != 0)
-        fail(where_of(job, p), text("%zu corners are not whole triangles: the number must be a multiple of 3",
-                                    list.size()));
+        fail(where_of(job, p),
+             text("%zu corners are not whole triangles: the number must be a multiple of 3", list.size()));
     p.indices.swap(list);
 }
 
@@ -141,7 +141,7 @@ static void find_parts(file &f, mesh_job &job)
     uint64_t vertices = 0, indices = 0;
     for (size_t i = 0; i < job.source->primitives.size(); ++i) {
         const tinygltf::Primitive &source = job.source->primitives[i];
-        part p = {&source, i, {}, static_cast<uint32_t>(vertices), 0};
+        part p = { &source, i, {}, static_cast<uint32_t>(vertices), 0 };
         std::string where = where_of(job, p);
         check_mode(source, where);
         if (const char *reason = reason_to_skip(source)) {
@@ -150,8 +150,7 @@ static void find_parts(file &f, mesh_job &job)
         }
         int position = find(source.attributes, "POSITION");
         uint64_t count = accessor_at(f, position, where + " POSITION").count;
-        if (count == 0)
-            fail(where + text(" POSITION (accessor %d)", position), "the primitive has no vertices");
+        if (count == 0) fail(where + text(" POSITION (accessor %d)", position), "the primitive has no vertices");
         check_vertex_total(job, vertices + count, indices);
         charge(f, count, 12 * sizeof(float), where); /* about what its vertices will need */
         p.vertex_count = static_cast<uint32_t>(count);
@@ -174,8 +173,8 @@ static void check_target_counts(const mesh_job &job)
         if (p.source->targets.size() != first.source->targets.size())
             fail(job.where + text(" primitives %zu and %zu", first.number, p.number),
                  text("primitive %zu has %zu morph targets and primitive %zu has %zu: all primitives of a mesh need "
-                      "the same targets", first.number, first.source->targets.size(), p.number,
-                      p.source->targets.size()));
+                      "the same targets",
+                      first.number, first.source->targets.size(), p.number, p.source->targets.size()));
 }
 
 /* --- base attributes --- */
@@ -188,7 +187,7 @@ static const tinygltf::Material *material_of(const file &f, const tinygltf::Prim
 /* The base colour texture's place in a material, and KHR_texture_transform on it. */
 struct uv_use {
     int set = 0;
-    double offset[2] = {0.0, 0.0}, scale[2] = {1.0, 1.0};
+    double offset[2] = { 0.0, 0.0 }, scale[2] = { 1.0, 1.0 };
     bool rotated = false;
 };
 
@@ -196,27 +195,23 @@ static void read_pair(const tinygltf::Value &object, const char *key, double *ou
 {
     const tinygltf::Value &pair = object.Get(key);
     for (int i = 0; pair.IsArray() && pair.ArrayLen() == 2 && i < 2; ++i)
-        if (pair.Get(i).IsNumber())
-            out[i] = pair.Get(i).GetNumberAsDouble();
+        if (pair.Get(i).IsNumber()) out[i] = pair.Get(i).GetNumberAsDouble();
 }
 
 static uv_use uv_use_of(const file &f, const tinygltf::Primitive &p)
 {
     uv_use use;
     const tinygltf::Material *material = material_of(f, p);
-    if (!material || material->pbrMetallicRoughness.baseColorTexture.index < 0)
-        return use;
+    if (!material || material->pbrMetallicRoughness.baseColorTexture.index < 0) return use;
     const tinygltf::TextureInfo &texture = material->pbrMetallicRoughness.baseColorTexture;
     use.set = texture.texCoord;
     auto found = texture.extensions.find("KHR_texture_transform");
-    if (found == texture.extensions.end() || !found->second.IsObject())
-        return use;
+    if (found == texture.extensions.end() || !found->second.IsObject()) return use;
     const tinygltf::Value &transform = found->second;
     read_pair(transform, "offset", use.offset);
     read_pair(transform, "scale", use.scale);
     use.rotated = transform.Get("rotation").IsNumber() && transform.Get("rotation").GetNumberAsDouble() != 0.0;
-    if (transform.Get("texCoord").IsInt())
-        use.set = transform.Get("texCoord").Get<int>();
+    if (transform.Get("texCoord").IsInt()) use.set = transform.Get("texCoord").Get<int>();
     return use;
 }
 
@@ -232,9 +227,8 @@ static void transform_uvs(file &f, const mesh_job &job, const part &p, float *uv
     uv_use use = uv_use_of(f, *p.source);
     if (use.rotated)
         leave_out(f, where_of(job, p), ": the rotation of KHR_texture_transform is not supported and was ignored");
-    if (use.offset[0] == 0.0 && use.offset[1] == 0.0 && use.scale[0] == 1.0 && use.scale[1] == 1.0)
-        return;
-    for (uint64_t i = 0; i < uint64_t{p.vertex_count} * 2; ++i)
+    if (use.offset[0] == 0.0 && use.offset[1] == 0.0 && use.scale[0] == 1.0 && use.scale[1] == 1.0) return;
+    for (uint64_t i = 0; i < uint64_t{ p.vertex_count } * 2; ++i)
         uv[i] = to_float(static_cast<double>(uv[i]) * use.scale[i % 2] + use.offset[i % 2],
                          where_of(job, p) + " KHR_texture_transform");
 }
@@ -242,16 +236,14 @@ static void transform_uvs(file &f, const mesh_job &job, const part &p, float *uv
 static bool any_part_has(const mesh_job &job, const char *name)
 {
     for (const part &p : job.parts)
-        if (has(p.source->attributes, name))
-            return true;
+        if (has(p.source->attributes, name)) return true;
     return false;
 }
 
 static bool any_part_has_uvs(const file &f, const mesh_job &job)
 {
     for (const part &p : job.parts)
-        if (has(p.source->attributes, uv_name(f, *p.source)))
-            return true;
+        if (has(p.source->attributes, uv_name(f, *p.source))) return true;
     return false;
 }
 
@@ -259,14 +251,11 @@ static void allocate_base(file &f, mesh_job &job)
 {
     model_mesh &m = *job.out;
     bool uvs = any_part_has_uvs(f, job);
-    m.position = allocate<float>(f, uint64_t{m.vertex_count} * 3, job.where);
-    m.normal = allocate<float>(f, uint64_t{m.vertex_count} * 3, job.where);
-    if (uvs || any_part_has(job, "TANGENT"))
-        m.tangent = allocate<float>(f, uint64_t{m.vertex_count} * 4, job.where);
-    if (uvs)
-        m.uv = allocate<float>(f, uint64_t{m.vertex_count} * 2, job.where);
-    if (any_part_has(job, "COLOR_0"))
-        m.color = allocate<float>(f, uint64_t{m.vertex_count} * 4, job.where);
+    m.position = allocate<float>(f, uint64_t{ m.vertex_count } * 3, job.where);
+    m.normal = allocate<float>(f, uint64_t{ m.vertex_count } * 3, job.where);
+    if (uvs || any_part_has(job, "TANGENT")) m.tangent = allocate<float>(f, uint64_t{ m.vertex_count } * 4, job.where);
+    if (uvs) m.uv = allocate<float>(f, uint64_t{ m.vertex_count } * 2, job.where);
+    if (any_part_has(job, "COLOR_0")) m.color = allocate<float>(f, uint64_t{ m.vertex_count } * 4, job.where);
     m.indices = allocate<uint32_t>(f, m.index_count, job.where);
     m.submeshes = allocate<model_submesh>(f, m.submesh_count, job.where);
 }
@@ -276,26 +265,22 @@ static void read_color(file &f, const mesh_job &job, const part &p, float *out)
     int index = find(p.source->attributes, "COLOR_0");
     std::string where = where_of(job, p) + " COLOR_0";
     const uint32_t accepted = c_f32 | c_u8n | c_u16n;
-    for (uint64_t i = 0; i < uint64_t{p.vertex_count} * 4; ++i)
-        out[i] = 1.0f;
-    if (index < 0)
-        return;
+    for (uint64_t i = 0; i < uint64_t{ p.vertex_count } * 4; ++i) out[i] = 1.0f;
+    if (index < 0) return;
     if (accessor_at(f, index, where).type == TINYGLTF_TYPE_VEC4) {
         read_floats(f, index, 4, accepted, p.vertex_count, where, out);
         return;
     }
-    std::vector<float> rgb(size_t{p.vertex_count} * 3);
+    std::vector<float> rgb(size_t{ p.vertex_count } * 3);
     read_floats(f, index, 3, accepted, p.vertex_count, where, rgb.data());
-    for (size_t v = 0; v < p.vertex_count; ++v)
-        memcpy(out + v * 4, &rgb[v * 3], 3 * sizeof(float));
+    for (size_t v = 0; v < p.vertex_count; ++v) memcpy(out + v * 4, &rgb[v * 3], 3 * sizeof(float));
 }
 
 static void read_tangent(file &f, const mesh_job &job, const part &p, float *out)
 {
     read_floats(f, find(p.source->attributes, "TANGENT"), 4, accepted_normal(f), p.vertex_count,
                 where_of(job, p) + " TANGENT", out);
-    for (size_t v = 0; v < p.vertex_count; ++v)
-        out[v * 4 + 3] = out[v * 4 + 3] < 0.0f ? -1.0f : 1.0f;
+    for (size_t v = 0; v < p.vertex_count; ++v) out[v * 4 + 3] = out[v * 4 + 3] < 0.0f ? -1.0f : 1.0f;
 }
 
 static void read_base(file &f, mesh_job &job, const part &p, model_submesh &submesh)
@@ -322,8 +307,7 @@ static void read_base(file &f, mesh_job &job, const part &p, model_submesh &subm
         read_floats(f, find(a, uv), 2, accepted_uv(f), p.vertex_count, where + " " + uv, m.uv + first * 2);
         transform_uvs(f, job, p, m.uv + first * 2);
     }
-    if (m.color)
-        read_color(f, job, p, m.color + first * 4);
+    if (m.color) read_color(f, job, p, m.color + first * 4);
 }
 
 static void read_submesh(mesh_job &job, const part &p, uint32_t first_index, model_submesh &out)
@@ -333,16 +317,15 @@ static void read_submesh(mesh_job &job, const part &p, uint32_t first_index, mod
     out.first_vertex = p.first_vertex;
     out.vertex_count = p.vertex_count;
     out.material = p.source->material >= 0 ? static_cast<uint32_t>(p.source->material) : MODEL_NONE;
-    for (size_t i = 0; i < p.indices.size(); ++i)
-        job.out->indices[first_index + i] = p.indices[i] + p.first_vertex;
+    for (size_t i = 0; i < p.indices.size(); ++i) job.out->indices[first_index + i] = p.indices[i] + p.first_vertex;
 }
 
 static void check_materials(const file &f, const mesh_job &job)
 {
     for (const part &p : job.parts)
         if (p.source->material >= 0 && static_cast<size_t>(p.source->material) >= f.json.materials.size())
-            fail(where_of(job, p), text("material %d does not exist: the file has %zu", p.source->material,
-                                        f.json.materials.size()));
+            fail(where_of(job, p),
+                 text("material %d does not exist: the file has %zu", p.source->material, f.json.materials.size()));
 }
 
 /* --- targets --- */
@@ -356,8 +339,7 @@ static bool gives(const part &p, size_t target, const char *name)
 static bool any_part_gives(const mesh_job &job, size_t target, const char *name)
 {
     for (const part &p : job.parts)
-        if (gives(p, target, name))
-            return true;
+        if (gives(p, target, name)) return true;
     return false;
 }
 
@@ -365,23 +347,22 @@ static void allocate_target(file &f, mesh_job &job, size_t t)
 {
     const model_mesh &m = *job.out;
     model_target &target = job.out->targets[t];
-    uint64_t floats = uint64_t{m.vertex_count} * 3;
+    uint64_t floats = uint64_t{ m.vertex_count } * 3;
     target.has_position = any_part_gives(job, t, "POSITION");
     target.has_normal = any_part_gives(job, t, "NORMAL");
     target.has_tangent = any_part_gives(job, t, "TANGENT");
     target.position = allocate<float>(f, floats, job.where);
     target.normal = allocate<float>(f, floats, job.where);
-    if (m.tangent)
-        target.tangent = allocate<float>(f, floats, job.where);
+    if (m.tangent) target.tangent = allocate<float>(f, floats, job.where);
     target.missing = allocate<uint8_t>(f, m.submesh_count, job.where);
 }
 
-static void read_delta(file &f, const part &p, size_t t, const char *name, uint32_t accepted,
-                       const std::string &where, float *deltas)
+static void read_delta(file &f, const part &p, size_t t, const char *name, uint32_t accepted, const std::string &where,
+                       float *deltas)
 {
-    float *out = deltas + size_t{p.first_vertex} * 3;
+    float *out = deltas + size_t{ p.first_vertex } * 3;
     read_floats(f, find(p.source->targets[t], name), 3, accepted, p.vertex_count, where + " " + name, out);
-    for (size_t i = 0; i < size_t{p.vertex_count} * 3; ++i)
+    for (size_t i = 0; i < size_t{ p.vertex_count } * 3; ++i)
         out[i] += 0.0f; /* -0 becomes 0: a dense and a sparse file give the same model */
 }
 
@@ -389,10 +370,10 @@ static void warn_unused_deltas(file &f, const part &p, size_t t, const std::stri
 {
     for (const auto &delta : p.source->targets[t]) {
         bool known = delta.first == "POSITION" || delta.first == "NORMAL" || delta.first == "TANGENT";
-        if (known && gives(p, t, delta.first.c_str()))
-            continue;
-        leave_out(f, where, ": the deltas of " + printable(delta.first) + " were ignored " +
-                                (known ? "because the primitive has no such attribute" : "which cannot be morphed"));
+        if (known && gives(p, t, delta.first.c_str())) continue;
+        leave_out(f, where,
+                  ": the deltas of " + printable(delta.first) + " were ignored " +
+                      (known ? "because the primitive has no such attribute" : "which cannot be morphed"));
     }
 }
 
@@ -401,8 +382,7 @@ static void read_target_part(file &f, mesh_job &job, const part &p, size_t part_
     model_target &target = job.out->targets[t];
     std::string where = where_of(job, p) + text(" target %zu", t);
     warn_unused_deltas(f, p, t, where);
-    if (gives(p, t, "POSITION"))
-        read_delta(f, p, t, "POSITION", accepted_position_delta(f), where, target.position);
+    if (gives(p, t, "POSITION")) read_delta(f, p, t, "POSITION", accepted_position_delta(f), where, target.position);
     if (gives(p, t, "NORMAL"))
         read_delta(f, p, t, "NORMAL", accepted_normal(f), where, target.normal);
     else
@@ -415,8 +395,7 @@ static void read_target_part(file &f, mesh_job &job, const part &p, size_t part_
 
 static const tinygltf::Value *names_in(const tinygltf::Value &extras)
 {
-    if (!extras.IsObject() || !extras.Get("targetNames").IsArray())
-        return nullptr;
+    if (!extras.IsObject() || !extras.Get("targetNames").IsArray()) return nullptr;
     return &extras.Get("targetNames");
 }
 
@@ -425,15 +404,13 @@ static const tinygltf::Value *target_names(const mesh_job &job)
 {
     const tinygltf::Value *names = names_in(job.source->extras);
     for (const part &p : job.parts)
-        if (!names)
-            names = names_in(p.source->extras);
+        if (!names) names = names_in(p.source->extras);
     return names;
 }
 
 static std::string given_name(const tinygltf::Value *names, size_t t)
 {
-    if (!names || t >= names->ArrayLen() || !names->Get(static_cast<int>(t)).IsString())
-        return "";
+    if (!names || t >= names->ArrayLen() || !names->Get(static_cast<int>(t)).IsString()) return "";
     std::string name = names->Get(static_cast<int>(t)).Get<std::string>();
     return name.c_str(); /* up to a NUL: names are C strings from here on */
 }
@@ -441,8 +418,7 @@ static std::string given_name(const tinygltf::Value *names, size_t t)
 static std::string unique_name(const std::set<std::string> &taken, const std::string &name)
 {
     std::string candidate = name;
-    for (size_t n = 2; taken.count(candidate); ++n)
-        candidate = name + "_" + std::to_string(n);
+    for (size_t n = 2; taken.count(candidate); ++n) candidate = name + "_" + std::to_string(n);
     return candidate;
 }
 
@@ -455,7 +431,8 @@ static void name_targets(file &f, mesh_job &job)
     for (uint32_t t = 0; t < job.out->target_count; ++t) {
         std::string wanted = name_or(given_name(names, t), "target", t), name = unique_name(taken, wanted);
         if (name != wanted)
-            leave_out(f, job.where + ": two targets are named '" + printable(wanted) + "'", "; the second got a number behind its name");
+            leave_out(f, job.where + ": two targets are named '" + printable(wanted) + "'",
+                      "; the second got a number behind its name");
         taken.insert(name);
         job.out->targets[t].name = copy_string(name);
     }
@@ -465,11 +442,10 @@ static void read_default_weights(file &f, mesh_job &job)
 {
     const std::vector<double> &weights = job.source->weights;
     if (!weights.empty() && weights.size() != job.out->target_count)
-        fail(job.where, text("the mesh has %zu weights for %u morph targets: there must be one for each", weights.size(),
-                             job.out->target_count));
+        fail(job.where, text("the mesh has %zu weights for %u morph targets: there must be one for each",
+                             weights.size(), job.out->target_count));
     job.out->weights = allocate<float>(f, job.out->target_count, job.where);
-    for (size_t i = 0; i < weights.size(); ++i)
-        job.out->weights[i] = to_float(weights[i], job.where + " weights");
+    for (size_t i = 0; i < weights.size(); ++i) job.out->weights[i] = to_float(weights[i], job.where + " weights");
 }
 
 static void read_targets(file &f, mesh_job &job)
@@ -479,8 +455,7 @@ static void read_targets(file &f, mesh_job &job)
     job.out->target_count = count;
     for (size_t t = 0; t < count; ++t) {
         allocate_target(f, job, t);
-        for (size_t i = 0; i < job.parts.size(); ++i)
-            read_target_part(f, job, job.parts[i], i, t);
+        for (size_t i = 0; i < job.parts.size(); ++i) read_target_part(f, job, job.parts[i], i, t);
     }
     name_targets(f, job);
     read_default_weights(f, job);
@@ -501,10 +476,8 @@ static void count_mesh(mesh_job &job)
 static void read_skinning(file &f, mesh_job &job)
 {
     bool any = false;
-    for (const part &p : job.parts)
-        any = any || has_influences(*p.source);
-    if (!any)
-        return;
+    for (const part &p : job.parts) any = any || has_influences(*p.source);
+    if (!any) return;
     allocate_influences(f, job.where, *job.out);
     influence_changes changes;
     for (size_t i = 0; i < job.parts.size(); ++i)

@@ -6,7 +6,8 @@
 
 #include <meshoptimizer.h>
 
-namespace gltf {
+namespace gltf
+{
 
 /* The densest stream (all attributes equal) packs 64 bytes into one; with some slack. */
 static const uint64_t expansion_max = 256;
@@ -20,8 +21,7 @@ struct stream {
 static uint64_t integer_member(const tinygltf::Value &object, const char *key, bool required, const std::string &where)
 {
     const tinygltf::Value &value = object.Get(key);
-    if (!value.IsInt() && !required)
-        return 0;
+    if (!value.IsInt() && !required) return 0;
     if (!value.IsInt() || value.Get<int>() < 0)
         fail(where, text("EXT_meshopt_compression: '%s' must be a whole number from 0 to 2147483647", key));
     return static_cast<uint64_t>(value.Get<int>());
@@ -51,20 +51,18 @@ static void check_sizes(const stream &s, const std::string &where)
 
 static void check_filter(const stream &s, const std::string &where)
 {
-    if (s.filter == "NONE")
-        return;
-    if (s.mode != "ATTRIBUTES")
-        fail(where, "EXT_meshopt_compression: filters are for attributes only");
+    if (s.filter == "NONE") return;
+    if (s.mode != "ATTRIBUTES") fail(where, "EXT_meshopt_compression: filters are for attributes only");
     bool fits = (s.filter == "OCTAHEDRAL" && (s.stride == 4 || s.stride == 8)) ||
                 (s.filter == "QUATERNION" && s.stride == 8) || s.filter == "EXPONENTIAL";
     if (!fits)
-        fail(where, "EXT_meshopt_compression: filter '" + printable(s.filter) + "' is unknown or does not fit 'byteStride'");
+        fail(where,
+             "EXT_meshopt_compression: filter '" + printable(s.filter) + "' is unknown or does not fit 'byteStride'");
 }
 
 static stream read_stream(file &f, const tinygltf::Value &extension, const std::string &where)
 {
-    if (!extension.IsObject())
-        fail(where, "EXT_meshopt_compression must be an object");
+    if (!extension.IsObject()) fail(where, "EXT_meshopt_compression must be an object");
     stream s;
     uint64_t buffer_index = integer_member(extension, "buffer", true, where);
     uint64_t offset = integer_member(extension, "byteOffset", false, where);
@@ -83,8 +81,7 @@ static int decode(const stream &s, bytes &out)
     size_t source_size = static_cast<size_t>(s.source.size);
     if (s.mode == "ATTRIBUTES")
         return meshopt_decodeVertexBuffer(out.data(), count, stride, s.source.data, source_size);
-    if (s.mode == "TRIANGLES")
-        return meshopt_decodeIndexBuffer(out.data(), count, stride, s.source.data, source_size);
+    if (s.mode == "TRIANGLES") return meshopt_decodeIndexBuffer(out.data(), count, stride, s.source.data, source_size);
     return meshopt_decodeIndexSequence(out.data(), count, stride, s.source.data, source_size);
 }
 
@@ -106,8 +103,7 @@ bytes decode_meshopt(file &f, const tinygltf::Value &extension, const std::strin
     check_filter(s, where);
     charge(f, s.count, s.stride, where);
     bytes out(static_cast<size_t>(s.count * s.stride));
-    if (decode(s, out) != 0)
-        fail(where, "EXT_meshopt_compression: the compressed data is damaged");
+    if (decode(s, out) != 0) fail(where, "EXT_meshopt_compression: the compressed data is damaged");
     apply_filter(s, out);
     return out;
 }

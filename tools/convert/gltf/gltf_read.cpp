@@ -5,7 +5,8 @@
 #include <exception>
 #include <memory>
 
-namespace gltf {
+namespace gltf
+{
 
 static uint32_t read_u32(const bytes &data, size_t offset)
 {
@@ -23,12 +24,12 @@ static chunk read_chunk(const bytes &data, size_t length, size_t offset, const c
     std::string where = text("GLB chunk at byte %zu", offset);
     if (length - offset < 8)
         fail(where, "the file ends inside a chunk header: it is truncated, export or copy it again");
-    chunk c = {offset + 8, read_u32(data, offset)};
+    chunk c = { offset + 8, read_u32(data, offset) };
     if (c.size > length - c.offset)
-        fail(where, text("the chunk says %zu bytes, but only %zu follow: the file is truncated, export or copy it again",
-                         c.size, length - c.offset));
-    if (memcmp(&data[offset + 4], name, 4) != 0)
-        fail(where, text("this chunk must be %.4s", name));
+        fail(where,
+             text("the chunk says %zu bytes, but only %zu follow: the file is truncated, export or copy it again",
+                  c.size, length - c.offset));
+    if (memcmp(&data[offset + 4], name, 4) != 0) fail(where, text("this chunk must be %.4s", name));
     return c;
 }
 
@@ -37,11 +38,11 @@ static size_t glb_length(const bytes &data)
     if (data.size() < 12)
         fail("GLB header", "the file ends inside its header: it is truncated, export or copy it again");
     uint32_t version = read_u32(data, 4), length = read_u32(data, 8);
-    if (version != 2)
-        fail("GLB header", text("this is glTF version %u; only version 2 is read", version));
+    if (version != 2) fail("GLB header", text("this is glTF version %u; only version 2 is read", version));
     if (length > data.size())
         fail("GLB header", text("the header says %u bytes, but the file has %zu: it is truncated, export or copy it "
-                                "again", length, data.size()));
+                                "again",
+                                length, data.size()));
     if (length < 12)
         fail("GLB header", text("the header says %u bytes, which is shorter than the header itself", length));
     return length;
@@ -65,10 +66,8 @@ static void read_glb(file &f, const bytes &data)
 static bool looks_like_json(const bytes &data)
 {
     size_t i = 0;
-    if (data.size() >= 3 && data[0] == 0xef && data[1] == 0xbb && data[2] == 0xbf)
-        i = 3; /* a byte order mark */
-    while (i < data.size() && strchr(" \t\r\n", data[i]) && data[i])
-        ++i;
+    if (data.size() >= 3 && data[0] == 0xef && data[1] == 0xbb && data[2] == 0xbf) i = 3; /* a byte order mark */
+    while (i < data.size() && strchr(" \t\r\n", data[i]) && data[i]) ++i;
     return i < data.size() && data[i] == '{';
 }
 
@@ -102,7 +101,10 @@ static void read_model(file &f)
 }
 
 struct model_deleter {
-    void operator()(::model *m) const { model_free(m); }
+    void operator()(::model *m) const
+    {
+        model_free(m);
+    }
 };
 
 static int refuse(model_error *error, const std::string &where, const std::string &what)
@@ -117,16 +119,14 @@ extern "C" int model_read_gltf(const char *path, model **out, model_error *error
     *out = nullptr;
     try {
         std::unique_ptr<model, gltf::model_deleter> building(model_new());
-        if (!building)
-            throw std::bad_alloc();
+        if (!building) throw std::bad_alloc();
         {
             gltf::file f;
             f.path = path;
             f.out = building.get();
             gltf::read_model(f);
         }
-        if (model_complete(building.get(), error))
-            return 1;
+        if (model_complete(building.get(), error)) return 1;
         *out = building.release();
         return 0;
     } catch (const gltf::failure &reason) {

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <cstring>
 
-namespace gltf {
+namespace gltf
+{
 
 /* A node that is to be read, and the model's index of its parent. */
 struct visit {
@@ -45,8 +46,7 @@ static std::vector<size_t> root_nodes(const file &f)
     std::vector<size_t> roots;
     if (f.json.scenes.empty()) {
         for (size_t i = 0; i < f.json.nodes.size(); ++i)
-            if (!has_parent[i])
-                roots.push_back(i);
+            if (!has_parent[i]) roots.push_back(i);
         return roots;
     }
     size_t scene = f.json.defaultScene < 0 ? 0 : static_cast<size_t>(f.json.defaultScene);
@@ -66,19 +66,16 @@ static std::vector<visit> visit_order(file &f)
 {
     std::vector<size_t> roots = root_nodes(f);
     std::vector<visit> order, open;
-    for (size_t i = roots.size(); i-- > 0;)
-        open.push_back({roots[i], MODEL_NONE});
+    for (size_t i = roots.size(); i-- > 0;) open.push_back({ roots[i], MODEL_NONE });
     while (!open.empty()) {
         visit v = open.back();
         open.pop_back();
-        if (f.node_of[v.node] != MODEL_NONE)
-            fail(where_of(f, v.node), "the node is in the scene twice");
+        if (f.node_of[v.node] != MODEL_NONE) fail(where_of(f, v.node), "the node is in the scene twice");
         uint32_t index = static_cast<uint32_t>(order.size());
         f.node_of[v.node] = index;
         order.push_back(v);
         const std::vector<int> &children = f.json.nodes[v.node].children;
-        for (size_t i = children.size(); i-- > 0;)
-            open.push_back({static_cast<size_t>(children[i]), index});
+        for (size_t i = children.size(); i-- > 0;) open.push_back({ static_cast<size_t>(children[i]), index });
     }
     /* every node has at most one parent, so what no root leads to is a cycle */
     if (f.json.scenes.empty() && order.size() != f.json.nodes.size())
@@ -96,12 +93,9 @@ struct transform {
 static void read_numbers(const std::vector<double> &from, size_t count, const char *name, const std::string &where,
                          double *out)
 {
-    if (from.empty())
-        return;
-    if (from.size() != count)
-        fail(where, text("'%s' has %zu numbers; it needs %zu", name, from.size(), count));
-    for (size_t i = 0; i < count; ++i)
-        out[i] = static_cast<double>(to_float(from[i], where + " " + name));
+    if (from.empty()) return;
+    if (from.size() != count) fail(where, text("'%s' has %zu numbers; it needs %zu", name, from.size(), count));
+    for (size_t i = 0; i < count; ++i) out[i] = static_cast<double>(to_float(from[i], where + " " + name));
 }
 
 static void normalize_rotation(file &f, double *q, const std::string &where)
@@ -112,8 +106,7 @@ static void normalize_rotation(file &f, double *q, const std::string &where)
         q[0] = q[1] = q[2] = 0.0;
         q[3] = length = 1.0;
     }
-    for (int i = 0; i < 4; ++i)
-        q[i] /= length;
+    for (int i = 0; i < 4; ++i) q[i] /= length;
 }
 
 static void matrix_of_rotation(const double *q, double *m) /* [3][3], columns */
@@ -135,8 +128,7 @@ static void compose(transform &t)
     double r[9];
     matrix_of_rotation(t.rotation, r);
     for (int column = 0; column < 3; ++column) {
-        for (int row = 0; row < 3; ++row)
-            t.matrix[column * 4 + row] = r[column * 3 + row] * t.scale[column];
+        for (int row = 0; row < 3; ++row) t.matrix[column * 4 + row] = r[column * 3 + row] * t.scale[column];
         t.matrix[column * 4 + 3] = 0.0;
         t.matrix[12 + column] = t.translation[column];
     }
@@ -146,18 +138,16 @@ static void compose(transform &t)
 /* The largest of w, x, y, z is found first, so that no division is by a small number. */
 static void rotation_of_matrix(const double *m, double *q)
 {
-    double squares[4] = {1.0 + m[0] - m[4] - m[8], 1.0 - m[0] + m[4] - m[8], 1.0 - m[0] - m[4] + m[8],
-                         1.0 + m[0] + m[4] + m[8]}; /* 4 x^2, 4 y^2, 4 z^2, 4 w^2 */
+    double squares[4] = { 1.0 + m[0] - m[4] - m[8], 1.0 - m[0] + m[4] - m[8], 1.0 - m[0] - m[4] + m[8],
+                          1.0 + m[0] + m[4] + m[8] }; /* 4 x^2, 4 y^2, 4 z^2, 4 w^2 */
     int largest = 3;
     for (int i = 0; i < 3; ++i)
-        if (squares[i] > squares[largest])
-            largest = i;
+        if (squares[i] > squares[largest]) largest = i;
     double twice = std::sqrt(squares[largest]), s = 0.5 / twice;
     double xy = (m[1] + m[3]) * s, xz = (m[2] + m[6]) * s, yz = (m[5] + m[7]) * s;
     double xw = (m[5] - m[7]) * s, yw = (m[6] - m[2]) * s, zw = (m[1] - m[3]) * s;
-    const double rows[4][4] = {{0.0, xy, xz, xw}, {xy, 0.0, yz, yw}, {xz, yz, 0.0, zw}, {xw, yw, zw, 0.0}};
-    for (int i = 0; i < 4; ++i)
-        q[i] = i == largest ? 0.5 * twice : rows[largest][i];
+    const double rows[4][4] = { { 0.0, xy, xz, xw }, { xy, 0.0, yz, yw }, { xz, yz, 0.0, zw }, { xw, yw, zw, 0.0 } };
+    for (int i = 0; i < 4; ++i) q[i] = i == largest ? 0.5 * twice : rows[largest][i];
 }
 
 static double column_length(const double *column)
@@ -175,11 +165,9 @@ static void split_scale(transform &t, double *unit)
             unit[c * 3 + r] = t.scale[c] > 0.0 ? t.matrix[c * 4 + r] / t.scale[c] : (r == c ? 1.0 : 0.0);
     }
     vec_cross(unit, unit + 3, cross);
-    if (vec_dot(cross, unit + 6) >= 0.0)
-        return;
+    if (vec_dot(cross, unit + 6) >= 0.0) return;
     t.scale[0] = -t.scale[0];
-    for (int r = 0; r < 3; ++r)
-        unit[r] = -unit[r];
+    for (int r = 0; r < 3; ++r) unit[r] = -unit[r];
 }
 
 static bool differs(const double *a, const double *b, double tolerance)
@@ -195,8 +183,7 @@ static bool differs(const double *a, const double *b, double tolerance)
 static void decompose(file &f, transform &t, const std::string &where)
 {
     double unit[9];
-    for (int i = 0; i < 3; ++i)
-        t.translation[i] = t.matrix[12 + i];
+    for (int i = 0; i < 3; ++i) t.translation[i] = t.matrix[12 + i];
     split_scale(t, unit);
     rotation_of_matrix(unit, t.rotation);
     normalize_rotation(f, t.rotation, where);
@@ -214,7 +201,7 @@ static void check_affine(const double *m, const std::string &where)
 
 static transform read_transform(file &f, const tinygltf::Node &node, const std::string &where)
 {
-    transform t = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 1.0}, {1.0, 1.0, 1.0}, {0.0}};
+    transform t = { { 0.0, 0.0, 0.0 }, { 0.0, 0.0, 0.0, 1.0 }, { 1.0, 1.0, 1.0 }, { 0.0 } };
     if (!node.matrix.empty()) {
         read_numbers(node.matrix, 16, "matrix", where, t.matrix);
         check_affine(t.matrix, where);
@@ -234,16 +221,14 @@ static void multiply(const double *a, const double *b, double *out)
     for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 4; ++row) {
             double sum = 0.0;
-            for (int k = 0; k < 4; ++k)
-                sum += a[k * 4 + row] * b[column * 4 + k];
+            for (int k = 0; k < 4; ++k) sum += a[k * 4 + row] * b[column * 4 + k];
             out[column * 4 + row] = sum;
         }
 }
 
 static void store_transform(file &f, const transform &t, model_node &out, const std::string &where)
 {
-    for (int i = 0; i < 4; ++i)
-        out.rotation[i] = static_cast<float>(t.rotation[i]);
+    for (int i = 0; i < 4; ++i) out.rotation[i] = static_cast<float>(t.rotation[i]);
     for (int i = 0; i < 3; ++i) {
         out.translation[i] = static_cast<float>(t.translation[i]);
         out.scale[i] = to_float(t.scale[i], where + " scale");
@@ -262,8 +247,7 @@ static void store_transform(file &f, const transform &t, model_node &out, const 
 static void read_mesh_of_node(const file &f, const tinygltf::Node &node, model_node &out, const std::string &where)
 {
     out.mesh = MODEL_NONE;
-    if (node.mesh < 0)
-        return;
+    if (node.mesh < 0) return;
     if (static_cast<size_t>(node.mesh) >= f.mesh_of.size())
         fail(where, text("mesh %d does not exist: the file has %zu", node.mesh, f.mesh_of.size()));
     out.mesh = f.mesh_of[static_cast<size_t>(node.mesh)];
@@ -271,8 +255,7 @@ static void read_mesh_of_node(const file &f, const tinygltf::Node &node, model_n
 
 static void read_weights(file &f, const tinygltf::Node &node, model_node &out, const std::string &where)
 {
-    if (node.weights.empty())
-        return;
+    if (node.weights.empty()) return;
     if (out.mesh == MODEL_NONE) {
         leave_out(f, where, " has weights but no mesh; they were ignored");
         return;
@@ -282,8 +265,7 @@ static void read_weights(file &f, const tinygltf::Node &node, model_node &out, c
         fail(where, text("the node has %zu weights, but its mesh '%s' has %u morph targets: there must be one for each",
                          node.weights.size(), printable(mesh.name).c_str(), mesh.target_count));
     out.weights = allocate<float>(f, mesh.target_count, where);
-    for (size_t i = 0; i < node.weights.size(); ++i)
-        out.weights[i] = to_float(node.weights[i], where + " weights");
+    for (size_t i = 0; i < node.weights.size(); ++i) out.weights[i] = to_float(node.weights[i], where + " weights");
 }
 
 static void read_node(file &f, const visit &v, model_node &out)
@@ -304,8 +286,7 @@ void read_nodes(file &f)
     std::vector<visit> order = visit_order(f);
     f.out->nodes = allocate<model_node>(f, order.size(), "nodes");
     f.out->node_count = static_cast<uint32_t>(order.size());
-    for (size_t i = 0; i < order.size(); ++i)
-        read_node(f, order[i], f.out->nodes[i]);
+    for (size_t i = 0; i < order.size(); ++i) read_node(f, order[i], f.out->nodes[i]);
 }
 
 } // namespace gltf

@@ -4,14 +4,15 @@
 #include <cmath>
 #include <cstring>
 
-namespace gltf {
+namespace gltf
+{
 
 /* --- inverse bind matrices --- */
 
 /* Exporters that invert in floats miss the last row by rounding: that is repaired. */
 static void repair_last_row(float *m, const std::string &where)
 {
-    const float expected[4] = {0.0f, 0.0f, 0.0f, 1.0f};
+    const float expected[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
     for (int i = 0; i < 4; ++i) {
         if (!(std::fabs(m[i * 4 + 3] - expected[i]) <= 1e-4f))
             fail(where, "the inverse bind matrix is not affine: its last row must be 0 0 0 1");
@@ -24,8 +25,7 @@ static void check_invertible(const float *m, const std::string &where)
 {
     double columns[3][3], cross[3], size = 1.0;
     for (int c = 0; c < 3; ++c) {
-        for (int r = 0; r < 3; ++r)
-            columns[c][r] = static_cast<double>(m[c * 4 + r]);
+        for (int r = 0; r < 3; ++r) columns[c][r] = static_cast<double>(m[c * 4 + r]);
         size *= std::sqrt(vec_dot(columns[c], columns[c]));
     }
     vec_cross(columns[0], columns[1], cross);
@@ -36,28 +36,28 @@ static void check_invertible(const float *m, const std::string &where)
 static void fill_identities(model_skin &out)
 {
     for (size_t j = 0; j < out.joint_count; ++j)
-        for (size_t i = 0; i < 4; ++i)
-            out.inverse_bind[j * 16 + i * 5] = 1.0f;
+        for (size_t i = 0; i < 4; ++i) out.inverse_bind[j * 16 + i * 5] = 1.0f;
 }
 
 static void read_inverse_binds(file &f, const tinygltf::Skin &skin, const std::string &where, model_skin &out)
 {
-    out.inverse_bind = allocate<float>(f, uint64_t{out.joint_count} * 16, where);
+    out.inverse_bind = allocate<float>(f, uint64_t{ out.joint_count } * 16, where);
     if (skin.inverseBindMatrices < 0) {
         fill_identities(out);
         return;
     }
     uint64_t count = accessor_at(f, skin.inverseBindMatrices, where).count;
     if (count < out.joint_count)
-        fail(where, text("%u joints but %llu inverse bind matrices", out.joint_count, static_cast<unsigned long long>(count)));
+        fail(where,
+             text("%u joints but %llu inverse bind matrices", out.joint_count, static_cast<unsigned long long>(count)));
     charge(f, count, 64, where);
     std::vector<float> matrices(static_cast<size_t>(count) * 16);
     read_floats(f, skin.inverseBindMatrices, 16, c_f32, count, where, matrices.data());
-    memcpy(out.inverse_bind, matrices.data(), size_t{out.joint_count} * 64);
+    memcpy(out.inverse_bind, matrices.data(), size_t{ out.joint_count } * 64);
     for (uint32_t j = 0; j < out.joint_count; ++j) {
         std::string element = where + text(" (accessor %d), element %u", skin.inverseBindMatrices, j);
-        repair_last_row(out.inverse_bind + size_t{j} * 16, element);
-        check_invertible(out.inverse_bind + size_t{j} * 16, element);
+        repair_last_row(out.inverse_bind + size_t{ j } * 16, element);
+        check_invertible(out.inverse_bind + size_t{ j } * 16, element);
     }
 }
 
@@ -65,10 +65,8 @@ static void read_inverse_binds(file &f, const tinygltf::Skin &skin, const std::s
 
 static void check_joints(const file &f, const tinygltf::Skin &skin, const std::string &where)
 {
-    if (skin.joints.empty())
-        fail(where, "the skin has no joints");
-    if (skin.joints.size() >= MODEL_NONE / 16)
-        fail(where, text("%zu joints are too many", skin.joints.size()));
+    if (skin.joints.empty()) fail(where, "the skin has no joints");
+    if (skin.joints.size() >= MODEL_NONE / 16) fail(where, text("%zu joints are too many", skin.joints.size()));
     for (int joint : skin.joints)
         if (joint < 0 || static_cast<size_t>(joint) >= f.json.nodes.size())
             fail(where, text("joint node %d does not exist: the file has %zu nodes", joint, f.json.nodes.size()));
@@ -78,8 +76,7 @@ static void check_joints(const file &f, const tinygltf::Skin &skin, const std::s
 static bool all_in_scene(const file &f, const tinygltf::Skin &skin)
 {
     for (int joint : skin.joints)
-        if (f.node_of[static_cast<size_t>(joint)] == MODEL_NONE)
-            return false;
+        if (f.node_of[static_cast<size_t>(joint)] == MODEL_NONE) return false;
     return true;
 }
 
@@ -89,7 +86,8 @@ static void read_skin(file &f, size_t index)
     std::string where = text("skin %zu", index);
     check_joints(f, skin, where);
     if (!all_in_scene(f, skin)) {
-        leave_out(f, where, " was skipped: a joint of it is not in the default scene; its meshes stay where their nodes are");
+        leave_out(f, where,
+                  " was skipped: a joint of it is not in the default scene; its meshes stay where their nodes are");
         return;
     }
     model_skin &out = f.out->skins[f.out->skin_count]; /* counted first, so that it is freed when reading fails */
@@ -97,8 +95,7 @@ static void read_skin(file &f, size_t index)
     out.name = copy_string(name_or(skin.name, "skin", index));
     out.joint_count = static_cast<uint32_t>(skin.joints.size());
     out.joints = allocate<uint32_t>(f, out.joint_count, where);
-    for (uint32_t j = 0; j < out.joint_count; ++j)
-        out.joints[j] = f.node_of[static_cast<size_t>(skin.joints[j])];
+    for (uint32_t j = 0; j < out.joint_count; ++j) out.joints[j] = f.node_of[static_cast<size_t>(skin.joints[j])];
     read_inverse_binds(f, skin, where, out);
 }
 
@@ -108,7 +105,8 @@ static void bind_node(file &f, size_t node, model_node &out)
 {
     size_t skin = static_cast<size_t>(f.json.nodes[node].skin);
     if (skin >= f.json.skins.size())
-        fail("node '" + printable(out.name) + "'", text("skin %zu does not exist: the file has %zu", skin, f.json.skins.size()));
+        fail("node '" + printable(out.name) + "'",
+             text("skin %zu does not exist: the file has %zu", skin, f.json.skins.size()));
     out.skin = f.skin_of[skin];
 }
 
@@ -117,18 +115,17 @@ static void bind_nodes(file &f)
 {
     for (size_t i = 0; i < f.json.nodes.size(); ++i) {
         uint32_t node = f.node_of[i];
-        if (node == MODEL_NONE || f.json.nodes[i].skin < 0)
-            continue;
+        if (node == MODEL_NONE || f.json.nodes[i].skin < 0) continue;
         model_node &out = f.out->nodes[node];
         bind_node(f, i, out);
-        if (out.skin == MODEL_NONE || out.mesh == MODEL_NONE)
-            continue;
+        if (out.skin == MODEL_NONE || out.mesh == MODEL_NONE) continue;
         if (f.out->meshes[out.mesh].joints) {
             check_influences(f.out->meshes[out.mesh], f.out->skins[out.skin].joint_count);
             continue;
         }
         out.skin = MODEL_NONE;
-        leave_out(f, "node '" + printable(out.name) + "'", " has a skin, but its mesh has no joints; the node alone places it");
+        leave_out(f, "node '" + printable(out.name) + "'",
+                  " has a skin, but its mesh has no joints; the node alone places it");
     }
 }
 
@@ -136,8 +133,7 @@ void read_skins(file &f)
 {
     f.skin_of.assign(f.json.skins.size(), MODEL_NONE);
     f.out->skins = allocate<model_skin>(f, f.json.skins.size(), "skins");
-    for (size_t i = 0; i < f.json.skins.size(); ++i)
-        read_skin(f, i);
+    for (size_t i = 0; i < f.json.skins.size(); ++i) read_skin(f, i);
     bind_nodes(f);
 }
 

@@ -1,19 +1,19 @@
 /* gltf_view.cpp: buffer views: a range of a buffer, or what EXT_meshopt_compression holds. */
 #include "gltf_internal.h"
 
-namespace gltf {
+namespace gltf
+{
 
 /* Decoded once, then kept. */
 static span compressed_view(file &f, size_t index, const tinygltf::Value &extension, const std::string &where)
 {
     const tinygltf::BufferView &view = f.json.bufferViews[index];
     bytes &decoded = f.decoded_views[index];
-    if (decoded.empty())
-        decoded = decode_meshopt(f, extension, where);
+    if (decoded.empty()) decoded = decode_meshopt(f, extension, where);
     if (decoded.size() < view.byteLength)
         fail(where, text("EXT_meshopt_compression decodes to %zu bytes, but 'byteLength' says %zu", decoded.size(),
                          view.byteLength));
-    return {decoded.data(), view.byteLength, view.byteStride};
+    return { decoded.data(), view.byteLength, view.byteStride };
 }
 
 span view_bytes(file &f, int index, const std::string &where)

@@ -12,7 +12,8 @@
 #include "convert/clips/channel_sample.h"
 #include "convert/base/quat.h"
 
-namespace gltf {
+namespace gltf
+{
 
 static const double rate_max_hz = 120.0;       /* that is chosen; keys on a denser grid keep theirs */
 static const double dense_rate_min_hz = 15.0;  /* linear keys of which are taken as they are */
@@ -28,12 +29,15 @@ static timing timing_at(double duration_s, double sample_rate_hz, uint64_t frame
 {
     double steps = std::fmax(std::floor(duration_s * sample_rate_hz + 0.5), 1.0);
     if (!(steps + 1.0 <= static_cast<double>(frames_max)))
-        fail(where, text("it lasts %g s: at %g Hz that is more than %llu frames, which is the limit; ask for a lower sample rate",
-                         duration_s, sample_rate_hz, static_cast<unsigned long long>(frames_max)));
+        fail(
+            where,
+            text(
+                "it lasts %g s: at %g Hz that is more than %llu frames, which is the limit; ask for a lower sample rate",
+                duration_s, sample_rate_hz, static_cast<unsigned long long>(frames_max)));
     double exact_hz = steps / duration_s;
     /* the last key's time is a rounded float */
     bool whole = std::fabs(exact_hz - sample_rate_hz) <= 1e-6 * sample_rate_hz;
-    return {whole ? sample_rate_hz : exact_hz, static_cast<uint32_t>(steps) + 1, 0.0, 0.0};
+    return { whole ? sample_rate_hz : exact_hz, static_cast<uint32_t>(steps) + 1, 0.0, 0.0 };
 }
 
 /* --- the rate of the keys --- */
@@ -41,8 +45,7 @@ static timing timing_at(double duration_s, double sample_rate_hz, uint64_t frame
 static std::vector<double> key_times(const std::vector<track> &tracks)
 {
     std::vector<double> times;
-    for (const track &t : tracks)
-        times.insert(times.end(), t.channel->times, t.channel->times + t.channel->key_count);
+    for (const track &t : tracks) times.insert(times.end(), t.channel->times, t.channel->times + t.channel->key_count);
     std::sort(times.begin(), times.end());
     times.erase(std::unique(times.begin(), times.end()), times.end());
     return times;
@@ -52,36 +55,33 @@ static bool on_grid(const std::vector<double> &times, double sample_rate_hz)
 {
     for (double time : times) {
         double frame = time * sample_rate_hz;
-        if (std::fabs(frame - std::floor(frame + 0.5)) > 2e-3 + 1.2e-7 * frame)
-            return false;
+        if (std::fabs(frame - std::floor(frame + 0.5)) > 2e-3 + 1.2e-7 * frame) return false;
     }
     return true;
 }
 
 static bool worth_its_frames(const std::vector<double> &times, double sample_rate_hz)
 {
-    return sample_rate_hz <= sparse_rate_max_hz || static_cast<double>(times.size()) * 2.0 > times.back() * sample_rate_hz;
+    return sample_rate_hz <= sparse_rate_max_hz ||
+           static_cast<double>(times.size()) * 2.0 > times.back() * sample_rate_hz;
 }
 
 /* Linear keys of a usual rate are frames already: what playing makes between them is as good. */
 static bool are_frames(const std::vector<track> &tracks, double grid_hz)
 {
     for (const track &t : tracks)
-        if (t.channel->interpolation != MODEL_LINEAR && t.channel->key_count > 1)
-            return false;
+        if (t.channel->interpolation != MODEL_LINEAR && t.channel->key_count > 1) return false;
     return grid_hz >= dense_rate_min_hz;
 }
 
 /* The coarsest grid that all keys lie on: whole rates, those of television, then any. 0 where there is none. */
 static double grid_rate(const std::vector<double> &times)
 {
-    static const double television_hz[] = {24.0, 30.0, 60.0, 120.0};
+    static const double television_hz[] = { 24.0, 30.0, 60.0, 120.0 };
     for (double rate = 1.0; rate <= rate_max_hz; rate += 1.0)
-        if (on_grid(times, rate))
-            return worth_its_frames(times, rate) ? rate : 0.0;
+        if (on_grid(times, rate)) return worth_its_frames(times, rate) ? rate : 0.0;
     for (double rate : television_hz)
-        if (on_grid(times, rate / 1.001) && worth_its_frames(times, rate))
-            return rate / 1.001;
+        if (on_grid(times, rate / 1.001) && worth_its_frames(times, rate)) return rate / 1.001;
     double uniform = static_cast<double>(times.size() - 1) / (times.back() - times.front());
     return times.size() > 2 && on_grid(times, uniform) ? uniform : 0.0;
 }
@@ -90,8 +90,7 @@ static double grid_rate(const std::vector<double> &times)
 static double median_rate(const std::vector<double> &times)
 {
     std::vector<double> steps;
-    for (size_t i = 1; i < times.size(); ++i)
-        steps.push_back(times[i] - times[i - 1]);
+    for (size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
     std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
     return 1.0 / steps[steps.size() / 2];
 }
@@ -102,16 +101,13 @@ static std::vector<double> rates_to_try(const std::vector<track> &tracks, const 
     double grid = grid_rate(times);
     if (grid > 0.0) {
         rates.push_back(grid);
-        if (are_frames(tracks, grid))
-            return rates;
-        for (double factor : {2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 20.0, 24.0, 30.0, 40.0, 60.0, 120.0})
-            if (grid * factor <= rate_max_hz * 1.001)
-                rates.push_back(grid * factor);
+        if (are_frames(tracks, grid)) return rates;
+        for (double factor : { 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 20.0, 24.0, 30.0, 40.0, 60.0, 120.0 })
+            if (grid * factor <= rate_max_hz * 1.001) rates.push_back(grid * factor);
         return rates;
     }
-    rates = {30.0, 60.0, rate_max_hz};
-    if (times.size() > 2)
-        rates.push_back(std::fmin(std::fmax(median_rate(times), 10.0), rate_max_hz));
+    rates = { 30.0, 60.0, rate_max_hz };
+    if (times.size() > 2) rates.push_back(std::fmin(std::fmax(median_rate(times), 10.0), rate_max_hz));
     std::sort(rates.begin(), rates.end());
     return rates;
 }
@@ -127,8 +123,7 @@ static void sample(const track &t, double time_s, double near_s, const std::stri
 
 static double difference_cm(const track &t, const std::vector<double> &a, const std::vector<double> &b)
 {
-    if (t.channel->path == MODEL_PATH_ROTATION)
-        return quat_angle(a.data(), b.data()) * t.lever_cm;
+    if (t.channel->path == MODEL_PATH_ROTATION) return quat_angle(a.data(), b.data()) * t.lever_cm;
     double sum = 0.0;
     for (size_t i = 0; i < a.size(); ++i) {
         double d = std::fabs(a[i] - b[i]) * (t.reach.empty() ? 1.0 : t.reach[i]);
@@ -143,15 +138,14 @@ static std::vector<double> played(const track &t, const std::vector<double> &a, 
     if (t.channel->path == MODEL_PATH_ROTATION)
         quat_nlerp(a.data(), b.data(), at, out.data());
     else
-        for (size_t i = 0; i < a.size(); ++i)
-            out[i] = a[i] + (b[i] - a[i]) * at;
+        for (size_t i = 0; i < a.size(); ++i) out[i] = a[i] + (b[i] - a[i]) * at;
     return out;
 }
 
 /* Where between two frames to look: at quarters, and at the keys that lie there. */
 static std::vector<double> places_between(const model_channel &c, double from_s, double to_s, double near_s)
 {
-    std::vector<double> places = {0.25, 0.5, 0.75};
+    std::vector<double> places = { 0.25, 0.5, 0.75 };
     const float *key = std::upper_bound(c.times, c.times + c.key_count, static_cast<float>(from_s + near_s));
     for (; key < c.times + c.key_count && static_cast<double>(*key) < to_s - near_s; ++key)
         if (static_cast<double>(*key) > from_s)
@@ -190,18 +184,17 @@ timing choose_timing(const std::vector<track> &tracks, double duration_s, double
                      uint64_t frames_max, const std::string &where)
 {
     const double no_limit = std::numeric_limits<double>::infinity();
-    if (!(duration_s > 0.0))
-        return {sample_rate_hz > 0.0 ? sample_rate_hz : 30.0, 1, 0.0, 0.0};
+    if (!(duration_s > 0.0)) return { sample_rate_hz > 0.0 ? sample_rate_hz : 30.0, 1, 0.0, 0.0 };
     std::vector<double> times = key_times(tracks);
-    std::vector<double> rates = sample_rate_hz > 0.0 ? std::vector<double>{sample_rate_hz} : rates_to_try(tracks, times);
-    timing t = {0.0, 0, 0.0, 0.0};
+    std::vector<double> rates = sample_rate_hz > 0.0 ? std::vector<double>{ sample_rate_hz }
+                                                     : rates_to_try(tracks, times);
+    timing t = { 0.0, 0, 0.0, 0.0 };
     for (size_t i = 0; i < rates.size(); ++i) {
         bool last = i + 1 == rates.size();
         t = timing_at(duration_s, rates[i], frames_max, where);
         t.near_s = on_grid(times, t.sample_rate_hz) ? 2.5e-3 / t.sample_rate_hz : rounding_s;
         t.error_cm = error_of(tracks, t, last ? no_limit : tolerance_cm, where);
-        if (t.error_cm <= tolerance_cm)
-            break;
+        if (t.error_cm <= tolerance_cm) break;
     }
     return t;
 }

@@ -7,7 +7,8 @@
 
 #include "convert/base/quat.h"
 
-namespace gltf {
+namespace gltf
+{
 
 static double length(const float *v)
 {
@@ -29,7 +30,8 @@ static void multiply(const double *a, const double *b, double *c)
 {
     for (int column = 0; column < 3; ++column)
         for (int row = 0; row < 3; ++row)
-            c[column * 3 + row] = a[row] * b[column * 3] + a[3 + row] * b[column * 3 + 1] + a[6 + row] * b[column * 3 + 2];
+            c[column * 3 + row] = a[row] * b[column * 3] + a[3 + row] * b[column * 3 + 1] +
+                                  a[6 + row] * b[column * 3 + 2];
 }
 
 /* No vector is enlarged more: the largest eigenvalue of M^T M is at most its largest sum of a
@@ -39,8 +41,7 @@ static double norm_bound(const double *m)
     double largest = 0.0;
     for (int i = 0; i < 3; ++i) {
         double sum = 0.0;
-        for (int k = 0; k < 3; ++k)
-            sum += std::fabs(vec_dot(m + i * 3, m + k * 3));
+        for (int k = 0; k < 3; ++k) sum += std::fabs(vec_dot(m + i * 3, m + k * 3));
         largest = std::fmax(largest, sum);
     }
     return std::sqrt(largest);
@@ -52,8 +53,7 @@ static void local_columns(const model_node &node, double *out)
     std::copy_n(node.rotation, 4, q);
     (void)quat_normalize(q);
     quat_columns(q, out);
-    for (int i = 0; i < 9; ++i)
-        out[i] *= static_cast<double>(node.scale[i / 3]);
+    for (int i = 0; i < 9; ++i) out[i] *= static_cast<double>(node.scale[i / 3]);
 }
 
 /* What a joint's matrix is followed by: an inverse bind matrix, or the nodes between. */
@@ -68,14 +68,15 @@ static std::vector<attachment> skin_attachments(const model_skin &skin, const ui
     for (uint32_t j = 0; j < skin.joint_count; ++j) {
         all[j].joint = joints[j];
         for (int i = 0; i < 9; ++i)
-            all[j].columns[i] = static_cast<double>(skin.inverse_bind[size_t{j} * 16 + static_cast<size_t>(i / 3 * 4 + i % 3)]);
+            all[j].columns[i] = static_cast<double>(
+                skin.inverse_bind[size_t{ j } * 16 + static_cast<size_t>(i / 3 * 4 + i % 3)]);
     }
     return all;
 }
 
 static attachment node_attachment(const model &m, uint32_t node, uint32_t joint, const raw_skeleton &skeleton)
 {
-    attachment a = {joint, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    attachment a = { joint, { 1, 0, 0, 0, 1, 0, 0, 0, 1 } };
     uint32_t stop = joint == MODEL_NONE ? MODEL_NONE : skeleton.joints[joint].node;
     for (uint32_t n = node; n != stop && n != MODEL_NONE; n = m.nodes[n].parent) {
         double local[9], product[9];
@@ -93,13 +94,14 @@ static double scale_in_pose(const std::vector<attachment> &attachments, const st
         if (a.joint == MODEL_NONE)
             memcpy(product, a.columns, sizeof product);
         else
-            multiply(&pose[size_t{a.joint} * 12], a.columns, product);
+            multiply(&pose[size_t{ a.joint } * 12], a.columns, product);
         largest = std::fmax(largest, norm_bound(product));
     }
     return largest;
 }
 
-double largest_scale(const model &m, uint32_t node, const uint32_t *skin, uint32_t joint, const raw_set &set, const raw_clip *clip)
+double largest_scale(const model &m, uint32_t node, const uint32_t *skin, uint32_t joint, const raw_set &set,
+                     const raw_clip *clip)
 {
     std::vector<attachment> attachments;
     if (skin)
@@ -107,7 +109,7 @@ double largest_scale(const model &m, uint32_t node, const uint32_t *skin, uint32
     else
         attachments.push_back(node_attachment(m, node, joint, set.skeleton));
     uint32_t frames = clip && clip->joint_count > 0 ? clip->frame_count : 1;
-    std::vector<double> pose(size_t{set.skeleton.joint_count} * 12 + 12);
+    std::vector<double> pose(size_t{ set.skeleton.joint_count } * 12 + 12);
     double largest = 0.0;
     for (uint32_t frame = 0; frame < frames; ++frame) {
         raw_pose_object(&set.skeleton, clip, frame, pose.data());

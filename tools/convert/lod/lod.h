@@ -34,19 +34,19 @@ typedef enum lod_mode {
 /* All zeros is the default. Lengths are in the mesh's own units (metres of the model). */
 typedef struct lod_options {
     lod_mode mode;
-    uint32_t level_count;         /* 0: four, or no more than LOD_LEVELS_MAX */
-    const float *ratios;          /* [level_count] falling shares of the triangles, 0 to 1; NULL: 1, 0.5, 0.25, 0.1 */
-    const float *errors;          /* [level_count] rising: instead of ratios, the largest cost that a level may have */
-    const float *const *poses;    /* [pose_count][vertex_count][3] further shapes, such as frames of clip */
+    uint32_t level_count;      /* 0: four, or no more than LOD_LEVELS_MAX */
+    const float *ratios;       /* [level_count] falling shares of the triangles, 0 to 1; NULL: 1, 0.5, 0.25, 0.1 */
+    const float *errors;       /* [level_count] rising: instead of ratios, the largest cost that a level may have */
+    const float *const *poses; /* [pose_count][vertex_count][3] further shapes, such as frames of clip */
     uint32_t pose_count;
-    uint32_t mix_count;           /* random mixes of targets as poses; 0: 24 */
-    uint64_t mix_seed;            /* 0: a fixed one */
-    float pose_weight;            /* factor on distances in the given poses; 0: 0.4, because a moving body is seen as a whole */
-    float face_weight;            /* factor on distances at vertices that targets move; 0: 1.2 with poses, else 1 */
-    float uv_weight;              /* a UV slide of one length counts as so much of it; 0: 0.1; below 0: none */
-    float color_length;           /* a colour difference of 1 counts as this length, in a small part as three times as much; 0: 0.24 of the
-                                   * mean edge; below 0: none */
-    float skin_length;            /* all skin weight on other joints counts as this length; 0: the mean edge; below 0: none */
+    uint32_t mix_count; /* random mixes of targets as poses; 0: 24 */
+    uint64_t mix_seed;  /* 0: a fixed one */
+    float pose_weight;  /* factor on distances in the given poses; 0: 0.4, because a moving body is seen as a whole */
+    float face_weight;  /* factor on distances at vertices that targets move; 0: 1.2 with poses, else 1 */
+    float uv_weight;    /* a UV slide of one length counts as so much of it; 0: 0.1; below 0: none */
+    float color_length; /* a colour difference of 1 counts as this length, in a small part as three times as much; 0:
+                         * 0.24 of the mean edge; below 0: none */
+    float skin_length;  /* all skin weight on other joints counts as this length; 0: the mean edge; below 0: none */
     void (*progress)(void *user, uint32_t done, uint32_t total); /* now and then, triangles taken away; NULL: none */
     void *user;
 } lod_options;
@@ -56,16 +56,18 @@ typedef struct lod_options {
 typedef struct lod_collapse {
     uint32_t from, to; /* vertices of the mesh */
     uint32_t step;     /* counts the points collapsed, from 0 */
-    float cost;        /* distance of the surface from the full one after this collapse, in the worst pose that the builder saw; never falls along the list */
+    float cost; /* distance of the surface from the full one after this collapse, in the worst pose that the builder
+                   saw; never falls along the list */
 } lod_collapse;
 
 typedef struct lod_level {
-    uint32_t collapse_count;  /* the level is what these first collapses leave */
-    uint32_t vertex_count;    /* that are used; those of no triangle are in no level */
-    uint32_t index_count;     /* of all submeshes */
-    uint32_t *indices;        /* [index_count] vertices of the mesh, the submeshes one after another, triangles in the mesh's order */
+    uint32_t collapse_count; /* the level is what these first collapses leave */
+    uint32_t vertex_count;   /* that are used; those of no triangle are in no level */
+    uint32_t index_count;    /* of all submeshes */
+    uint32_t *indices; /* [index_count] vertices of the mesh, the submeshes one after another, triangles in the mesh's
+                          order */
     uint32_t *submesh_first, *submesh_count; /* [submesh_count] into indices */
-    float cost;               /* the largest of its collapses */
+    float cost;                              /* the largest of its collapses */
 } lod_level;
 
 typedef struct lod {

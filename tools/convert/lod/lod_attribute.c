@@ -43,7 +43,10 @@ static float uv_length(const model_mesh *mesh)
     return picture > 0.0 ? (float)sqrt(surface / picture) : 0.0f;
 }
 
-static float chosen(float option, float standard) { return option < 0.0f ? 0.0f : option > 0.0f ? option : standard; }
+static float chosen(float option, float standard)
+{
+    return option < 0.0f ? 0.0f : option > 0.0f ? option : standard;
+}
 
 int lod_attributes_make(lod_surface *s, const lod_options *o)
 {
@@ -56,7 +59,8 @@ int lod_attributes_make(lod_surface *s, const lod_options *o)
     }
     s->skin_length = mesh->joint_weights ? chosen(o->skin_length, SKIN_EDGES * s->edge) : 0.0f;
     for (size_t v = 0; v < mesh->vertex_count; v++) {
-        float *to = s->attribute + v * LOD_ATTRIBUTES, length = s->minor[s->part[s->point_of[v]]] ? color * MINOR_COLORS : color;
+        float *to = s->attribute + v * LOD_ATTRIBUTES,
+              length = s->minor[s->part[s->point_of[v]]] ? color * MINOR_COLORS : color;
         for (uint32_t k = 0; mesh->uv && k < 2u; k++) {
             to[k] = mesh->uv[v * 2u + k] * uv;
         }
@@ -107,7 +111,8 @@ static int nearest_place(const lod_surface *s, const lod_move *m, const float *a
 }
 
 /* Between attributes first..end-1 at a place of the new surface, and where `mean` weighs an old triangle's corners. */
-static float attribute_error(const lod_surface *s, const place *p, const uint32_t *corners, const float *mean, uint32_t first, uint32_t end)
+static float attribute_error(const lod_surface *s, const place *p, const uint32_t *corners, const float *mean,
+                             uint32_t first, uint32_t end)
 {
     float sum = 0.0f;
     for (uint32_t k = first; k < end; k++) {

@@ -19,8 +19,8 @@
 #include "lod_queue.h"
 #include "convert/model/model_build.h"
 
-#define TESTED 4u            /* candidates of a point that are measured, the best by quadric */
-#define QUADRIC_SHARE 0.3    /* of the quadric in the cost of measured collapses */
+#define TESTED 4u         /* candidates of a point that are measured, the best by quadric */
+#define QUADRIC_SHARE 0.3 /* of the quadric in the cost of measured collapses */
 #define PROGRESS_STEP 256u
 
 #define MINOR_GROWTH 1.5
@@ -31,11 +31,11 @@ typedef struct builder {
     lod_surface surface;
     lod_options options;
     lod_quadric_row *quadrics;
-    lod_track *track;         /* NULL: fast */
+    lod_track *track; /* NULL: fast */
     lod_queue queue;
-    uint32_t *best_to;        /* [vertex_count] the neighbour that a queued point would go to */
-    float *best_length;       /* [vertex_count] that collapse's error as a length */
-    uint8_t *state;           /* [vertex_count] point_state; PARKED points wait for a coarser level */
+    uint32_t *best_to;                    /* [vertex_count] the neighbour that a queued point would go to */
+    float *best_length;                   /* [vertex_count] that collapse's error as a length */
+    uint8_t *state;                       /* [vertex_count] point_state; PARKED points wait for a coarser level */
     uint32_t steps, live, full, coarsest; /* triangles: left, of the mesh, of the last level */
     float cost;
     lod *out;

@@ -15,14 +15,14 @@
 #include "lod_tree.h"
 #include "convert/model/model_build.h"
 
-#define GRID_MAX 24u       /* steps along a triangle's edge */
+#define GRID_MAX 24u /* steps along a triangle's edge */
 #define GRID_LEAST 2u
 #define RANDOM_SEED UINT64_C(0x6365727469667921)
 
 typedef struct sample {
     uint32_t triangle;
     float weight[3];
-    float area;  /* that it stands for; 0 on edges and corners */
+    float area; /* that it stands for; 0 on edges and corners */
 } sample;
 
 /* One way of measuring: samples on `from`, distances to the tree of `to`. */
@@ -70,7 +70,8 @@ static float longest_edge(const float *position, const uint32_t *corner)
 
 static float triangle_area(const float *position, const uint32_t *corner)
 {
-    const float *p = position + (size_t)corner[0] * 3u, *q = position + (size_t)corner[1] * 3u, *r = position + (size_t)corner[2] * 3u;
+    const float *p = position + (size_t)corner[0] * 3u, *q = position + (size_t)corner[1] * 3u,
+                *r = position + (size_t)corner[2] * 3u;
     double a[3], b[3], n[3];
     for (uint32_t k = 0; k < 3u; k++) {
         a[k] = (double)q[k] - p[k];
@@ -136,7 +137,8 @@ static int way_make(way *w, const uint32_t *from, uint32_t from_count, const uin
     }
     w->rest_nearest = w->nearest + count;
     for (uint32_t t = 0; t < from_count; t++) {
-        sample_triangle(w, t, grid_steps(w, position, t, spacing), triangle_area(position, from + (size_t)t * 3u), &random);
+        sample_triangle(w, t, grid_steps(w, position, t, spacing), triangle_area(position, from + (size_t)t * 3u),
+                        &random);
     }
     return 0;
 }
@@ -158,7 +160,8 @@ static void sample_point(const way *w, const sample *s, const float *position, f
 {
     const uint32_t *corner = w->from + (size_t)s->triangle * 3u;
     for (uint32_t k = 0; k < 3u; k++) {
-        at[k] = s->weight[0] * position[(size_t)corner[0] * 3u + k] + s->weight[1] * position[(size_t)corner[1] * 3u + k] +
+        at[k] = s->weight[0] * position[(size_t)corner[0] * 3u + k] +
+                s->weight[1] * position[(size_t)corner[1] * 3u + k] +
                 s->weight[2] * position[(size_t)corner[2] * 3u + k];
     }
 }
@@ -342,7 +345,8 @@ int lod_certify(const model_mesh *mesh, const lod_level *level, const float *con
         const model_submesh *sub = &mesh->submeshes[i];
         if (sub->index_count >= 3u && level->submesh_count[i] >= 3u) {
             failed = certify_submesh(&c, mesh->indices + sub->first_index, sub->index_count / 3u,
-                                     level->indices + level->submesh_first[i], level->submesh_count[i] / 3u, out + i * row);
+                                     level->indices + level->submesh_first[i], level->submesh_count[i] / 3u,
+                                     out + i * row);
         }
     }
     free(c.position);

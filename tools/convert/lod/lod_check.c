@@ -16,8 +16,8 @@ static int check_floats(const float *values, size_t count, const char *what, mod
             return model_fail(error, "", "%s of vertex %zu is not a finite number", what, i / 3u);
         }
         if (fabsf(values[i]) > LARGEST) {
-            return model_fail(error, "", "%s of vertex %zu is %g: LOD levels are made of meshes within %g", what, i / 3u,
-                              (double)values[i], (double)LARGEST);
+            return model_fail(error, "", "%s of vertex %zu is %g: LOD levels are made of meshes within %g", what,
+                              i / 3u, (double)values[i], (double)LARGEST);
         }
     }
     return 0;
@@ -57,13 +57,17 @@ int lod_check_options(lod_options *o, uint32_t target_count, model_error *error)
         return model_fail(error, "", "%u LOD levels: give 1 to %u ratios or errors", o->level_count, LOD_LEVELS_MAX);
     }
     for (uint32_t i = 0; i < o->level_count; i++) {
-        float value = o->errors ? o->errors[i] : o->ratios[i], last = i == 0 ? value : o->errors ? o->errors[i - 1u] : o->ratios[i - 1u];
+        float value = o->errors ? o->errors[i] : o->ratios[i], last = i == 0      ? value
+                                                                      : o->errors ? o->errors[i - 1u]
+                                                                                  : o->ratios[i - 1u];
         if (!(value >= 0.0f) || (!o->errors && value > 1.0f) || (o->errors ? value < last : value > last)) {
-            return model_fail(error, "", "LOD level %u: %g after %g; levels go from fine to coarse", i, (double)value, (double)last);
+            return model_fail(error, "", "LOD level %u: %g after %g; levels go from fine to coarse", i, (double)value,
+                              (double)last);
         }
     }
     if ((uint64_t)target_count + o->mix_count + o->pose_count + 64u > LOD_POSES_MAX) {
-        return model_fail(error, "", "%u targets and %u poses are more than %u", target_count, o->pose_count, LOD_POSES_MAX);
+        return model_fail(error, "", "%u targets and %u poses are more than %u", target_count, o->pose_count,
+                          LOD_POSES_MAX);
     }
     if (!(o->pose_weight > 0.0f)) {
         o->pose_weight = 0.4f;

@@ -16,7 +16,10 @@ typedef struct prepared {
     float normal[3], inverse; /* 1 / |normal|^2, 0 for a triangle without area */
 } prepared;
 
-static float dot(const float *a, const float *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static float dot(const float *a, const float *b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 static void cross(const float *a, const float *b, float *out)
 {
@@ -95,7 +98,8 @@ void lod_distance_triangle(const float *triangle, const float *x, const float *y
 static float edge_barycentric(const prepared *p, uint32_t e, const float *point, float *out)
 {
     const edge *of = &p->edges[e];
-    float d[3] = { point[0] - of->at[0], point[1] - of->at[1], point[2] - of->at[2] }, t = dot(d, of->along) * of->inverse;
+    float d[3] = { point[0] - of->at[0], point[1] - of->at[1], point[2] - of->at[2] },
+          t = dot(d, of->along) * of->inverse;
     t = t < 0.0f ? 0.0f : t > 1.0f ? 1.0f : t;
     for (uint32_t k = 0; k < 3u; k++) {
         d[k] -= t * of->along[k];

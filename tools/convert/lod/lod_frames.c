@@ -77,7 +77,9 @@ static int sample_clip(const model *m, uint32_t clip, double time_s, node_pose *
     for (uint32_t i = 0; i < m->clips[clip].channel_count; i++) {
         const model_channel *c = &m->clips[clip].channels[i];
         node_pose *node = &out[c->node];
-        double *to = c->path == MODEL_PATH_TRANSLATION ? node->translation : c->path == MODEL_PATH_ROTATION ? node->rotation : node->scale;
+        double *to = c->path == MODEL_PATH_TRANSLATION ? node->translation
+                     : c->path == MODEL_PATH_ROTATION  ? node->rotation
+                                                       : node->scale;
         if (c->path != MODEL_PATH_WEIGHTS && channel_sample(c, time_s, SNAP_S, to)) {
             return 1;
         }
@@ -257,7 +259,8 @@ static double difference(const model_skin *skin, const node_pose *a, const node_
 }
 
 /* Lower every moment's distance to that of the pose `taken`. Returns 1 where a rotation has no length. */
-static int near_by(const model *m, const model_skin *skin, moment *list, uint32_t count, const node_pose *taken, node_pose *scratch)
+static int near_by(const model *m, const model_skin *skin, moment *list, uint32_t count, const node_pose *taken,
+                   node_pose *scratch)
 {
     for (uint32_t i = 0; i < count; i++) {
         double d;
@@ -274,7 +277,8 @@ static int choose(const model *m, uint32_t node, moment *list, uint32_t count, u
 {
     const model_skin *skin = &m->skins[m->nodes[node].skin];
     size_t floats = (size_t)m->meshes[m->nodes[node].mesh].vertex_count * 3u;
-    node_pose *taken = model_zeros(m->node_count, sizeof *taken), *scratch = model_zeros(m->node_count, sizeof *scratch);
+    node_pose *taken = model_zeros(m->node_count, sizeof *taken),
+              *scratch = model_zeros(m->node_count, sizeof *scratch);
     int failed = !taken || !scratch;
     for (uint32_t i = 0; i < count; i++) {
         list[i].distance = HUGE_VAL;

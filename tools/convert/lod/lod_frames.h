@@ -15,9 +15,9 @@ extern "C" {
 
 typedef struct lod_frames {
     uint32_t count;
-    float **poses; /* [count][vertex_count][3], lod_options.poses takes it */
-    float cap_error[LOD_CAPS]; /* largest error of a vertex in these frames when only its 4, 2, 1 heaviest joints move it and the
-                                * weights are normalised, as a renderer does that caps influences */
+    float **poses;             /* [count][vertex_count][3], lod_options.poses takes it */
+    float cap_error[LOD_CAPS]; /* largest error of a vertex in these frames when only its 4, 2, 1 heaviest joints move
+                                * it and the weights are normalised, as a renderer does that caps influences */
 } lod_frames;
 
 /* The node that draws a mesh with a skin; MODEL_NONE where there is none. */

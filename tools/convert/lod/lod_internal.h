@@ -8,10 +8,10 @@
 #include "lod.h"
 
 #define LOD_NONE 0xffffffffu
-#define LOD_FAN_MAX 96u       /* triangles around a point; one with more stays */
+#define LOD_FAN_MAX 96u /* triangles around a point; one with more stays */
 #define LOD_RING_MAX (2u * LOD_FAN_MAX)
-#define LOD_ATTRIBUTES 6u     /* u, v, r, g, b, a */
-#define LOD_REST_WEIGHT 1.6f  /* distances at rest count so many times: rest is what is seen most */
+#define LOD_ATTRIBUTES 6u    /* u, v, r, g, b, a */
+#define LOD_REST_WEIGHT 1.6f /* distances at rest count so many times: rest is what is seen most */
 
 /* ---- input: lod_check.c ---- */
 
@@ -23,11 +23,11 @@ int lod_check_options(lod_options *o, uint32_t target_count, model_error *error)
 
 /* Pose 0 is rest; then the targets, the mixes, the caller's. */
 typedef struct lod_poses {
-    uint32_t count, words;  /* words: 64-bit words of a set of poses */
-    uint32_t first_given;   /* the first of the caller's poses */
-    float *weight;          /* [count] what a squared distance counts, before it grows (lod_measure.c) */
-    float *position;        /* [vertex_count][count][3] */
-    uint64_t *moves;        /* [vertex_count][words] the poses in which a vertex is not where it rests */
+    uint32_t count, words; /* words: 64-bit words of a set of poses */
+    uint32_t first_given;  /* the first of the caller's poses */
+    float *weight;         /* [count] what a squared distance counts, before it grows (lod_measure.c) */
+    float *position;       /* [vertex_count][count][3] */
+    uint64_t *moves;       /* [vertex_count][words] the poses in which a vertex is not where it rests */
 } lod_poses;
 
 int lod_poses_make(const model_mesh *mesh, const lod_options *o, lod_poses *out);
@@ -38,7 +38,10 @@ static inline const float *lod_posed(const lod_poses *p, uint32_t vertex, uint32
     return p->position + ((size_t)vertex * p->count + pose) * 3u;
 }
 
-static inline int lod_set_has(const uint64_t *set, uint32_t pose) { return (int)(set[pose / 64u] >> (pose % 64u) & 1u); }
+static inline int lod_set_has(const uint64_t *set, uint32_t pose)
+{
+    return (int)(set[pose / 64u] >> (pose % 64u) & 1u);
+}
 
 /* ---- the surface: lod_surface.c ---- */
 
@@ -46,22 +49,22 @@ typedef struct lod_surface {
     const model_mesh *mesh;
     lod_poses poses;
     uint32_t triangle_count;
-    uint32_t *point_of;           /* [vertex_count] */
-    uint32_t *corner;             /* [triangle_count][3] vertices, as the collapses so far leave them */
-    uint32_t *first, *next;       /* [vertex_count], [3 triangle_count]: the corners at a point, LOD_NONE ends */
-    uint32_t *submesh, *island;   /* [triangle_count]; an island: triangles joined by shared vertices */
-    uint32_t *live;               /* [submesh_count] triangles left */
-    uint8_t *dead;                /* [triangle_count] */
-    uint8_t *locked, *removed;    /* [vertex_count] by point */
-    uint8_t *face;                /* [vertex_count] by point: a target moves it */
-    uint8_t *minor;               /* [submesh_count] a small part, such as teeth */
-    uint32_t *part;               /* [vertex_count] by point: the submesh of one of its triangles */
-    uint64_t *shows;              /* [vertex_count][poses.words] by point: the poses in which a rim opens or closes there */
-    uint32_t *mark;               /* [vertex_count] scratch of the link test */
+    uint32_t *point_of;         /* [vertex_count] */
+    uint32_t *corner;           /* [triangle_count][3] vertices, as the collapses so far leave them */
+    uint32_t *first, *next;     /* [vertex_count], [3 triangle_count]: the corners at a point, LOD_NONE ends */
+    uint32_t *submesh, *island; /* [triangle_count]; an island: triangles joined by shared vertices */
+    uint32_t *live;             /* [submesh_count] triangles left */
+    uint8_t *dead;              /* [triangle_count] */
+    uint8_t *locked, *removed;  /* [vertex_count] by point */
+    uint8_t *face;              /* [vertex_count] by point: a target moves it */
+    uint8_t *minor;             /* [submesh_count] a small part, such as teeth */
+    uint32_t *part;             /* [vertex_count] by point: the submesh of one of its triangles */
+    uint64_t *shows; /* [vertex_count][poses.words] by point: the poses in which a rim opens or closes there */
+    uint32_t *mark;  /* [vertex_count] scratch of the link test */
     uint32_t stamp;
-    float *attribute;             /* [vertex_count][LOD_ATTRIBUTES] as lengths */
+    float *attribute; /* [vertex_count][LOD_ATTRIBUTES] as lengths */
     float skin_length;
-    float edge;                   /* the mean length of an edge at rest */
+    float edge; /* the mean length of an edge at rest */
 } lod_surface;
 
 /* Returns 1 when out of memory. */
@@ -75,26 +78,35 @@ int lod_rims_mark(lod_surface *s);
 typedef struct lod_fan {
     uint32_t point, count, ring_count;
     uint32_t corner[LOD_FAN_MAX];
-    uint32_t ring[LOD_RING_MAX];     /* neighbouring points, in the order met */
-    uint8_t ring_use[LOD_RING_MAX];  /* triangles that share the edge to it */
+    uint32_t ring[LOD_RING_MAX];    /* neighbouring points, in the order met */
+    uint8_t ring_use[LOD_RING_MAX]; /* triangles that share the edge to it */
 } lod_fan;
 
 /* Returns 1 where there are more than LOD_FAN_MAX triangles, or none. */
 int lod_fan_gather(lod_surface *s, uint32_t point, lod_fan *fan);
 
-static inline uint32_t lod_point(const lod_surface *s, uint32_t corner) { return s->point_of[s->corner[corner]]; }
-static inline uint32_t lod_next(uint32_t corner) { return corner % 3u == 2u ? corner - 2u : corner + 1u; }
-static inline uint32_t lod_previous(uint32_t corner) { return corner % 3u ? corner - 1u : corner + 2u; }
+static inline uint32_t lod_point(const lod_surface *s, uint32_t corner)
+{
+    return s->point_of[s->corner[corner]];
+}
+static inline uint32_t lod_next(uint32_t corner)
+{
+    return corner % 3u == 2u ? corner - 2u : corner + 1u;
+}
+static inline uint32_t lod_previous(uint32_t corner)
+{
+    return corner % 3u ? corner - 1u : corner + 2u;
+}
 
 /* ---- one collapse: lod_move.c ---- */
 
 typedef struct lod_move {
-    uint32_t from, to;                       /* points */
+    uint32_t from, to; /* points */
     uint32_t wedge_count;
     uint32_t wedge_from[LOD_FAN_MAX], wedge_to[LOD_FAN_MAX];
     uint32_t kept_count, gone_count;
-    uint32_t kept[LOD_FAN_MAX];              /* corners at `from` of the triangles that stay */
-    uint32_t gone[LOD_FAN_MAX];              /* of those that vanish */
+    uint32_t kept[LOD_FAN_MAX]; /* corners at `from` of the triangles that stay */
+    uint32_t gone[LOD_FAN_MAX]; /* of those that vanish */
 } lod_move;
 
 /* 1 where the collapse keeps topology, seams, borders and orientation; fills *move. */
@@ -128,7 +140,8 @@ int lod_quadric_merge(lod_quadric_row *rows, uint32_t from, uint32_t to);
 
 #define LOD_LANES 8u
 
-/* squared[i] = min(squared[i], squared distance of sample i to the triangle [3][3]); count is a multiple of LOD_LANES. */
+/* squared[i] = min(squared[i], squared distance of sample i to the triangle [3][3]); count is a multiple of LOD_LANES.
+ */
 void lod_distance_triangle(const float *triangle, const float *x, const float *y, const float *z, uint32_t count,
                            float *squared);
 /* One point; barycentric[3] of the nearest place, or NULL. */

@@ -10,12 +10,12 @@
 #define FRAMES_CERTIFIED 28u /* and those that the levels are measured in */
 #define FINEST_ERROR (1.0f / 4000.0f)
 #define ERROR_STEP 4.0f
-#define LEVELS_BY_ERROR 5u    /* the coarsest is off by 1/62 of the diagonal */
-#define LEAST_SAVED 0.95f    /* of the finer level's triangles: a level with more is not worth its bytes */
+#define LEVELS_BY_ERROR 5u /* the coarsest is off by 1/62 of the diagonal */
+#define LEAST_SAVED 0.95f  /* of the finer level's triangles: a level with more is not worth its bytes */
 
 typedef struct pose_list {
-    uint32_t count, pairs;   /* the first so many are pairs of targets */
-    float **poses;           /* [count][vertex_count][3] */
+    uint32_t count, pairs; /* the first so many are pairs of targets */
+    float **poses;         /* [count][vertex_count][3] */
 } pose_list;
 
 /* ---- pairs of targets ---- */
@@ -101,9 +101,15 @@ static int poses_make(const model_mesh *mesh, lod_frames *frames, pose_list *out
     return failed;
 }
 
-static float larger(float a, float b) { return a > b ? a : b; }
+static float larger(float a, float b)
+{
+    return a > b ? a : b;
+}
 
-float lod_worst(const lod_errors *e) { return larger(larger(e->rest, e->targets), larger(e->pairs, e->clip)); }
+float lod_worst(const lod_errors *e)
+{
+    return larger(larger(e->rest, e->targets), larger(e->pairs, e->clip));
+}
 
 /* The worst submesh in each pose, and then the worst pose of each kind. */
 static lod_errors worst(const model_mesh *mesh, const pose_list *poses, const lod_distance *distances)
@@ -134,10 +140,12 @@ static lod_errors at_least(lod_errors e, const lod_errors *finer)
 
 static int certify(const model_mesh *mesh, const pose_list *poses, mesh_levels *out, model_error *error)
 {
-    lod_distance *distances = model_zeros((size_t)mesh->submesh_count * (1u + mesh->target_count + poses->count), sizeof *distances);
+    lod_distance *distances = model_zeros((size_t)mesh->submesh_count * (1u + mesh->target_count + poses->count),
+                                          sizeof *distances);
     int failed = !distances && model_fail(error, "", "out of memory");
     for (uint32_t k = 1; k < out->count && !failed; k++) {
-        failed = lod_certify(mesh, &out->built->levels[out->which[k]], (const float *const *)poses->poses, poses->count, distances, error);
+        failed = lod_certify(mesh, &out->built->levels[out->which[k]], (const float *const *)poses->poses, poses->count,
+                             distances, error);
         if (!failed) {
             out->errors[k] = at_least(worst(mesh, poses, distances), &out->errors[k - 1]);
         }
@@ -162,7 +170,8 @@ static float diagonal(const model_mesh *mesh)
     return sqrtf(high[0] * high[0] + high[1] * high[1] + high[2] * high[2]);
 }
 
-static int build(const model_mesh *mesh, const lod_settings *settings, const lod_frames *frames, mesh_levels *out, model_error *error)
+static int build(const model_mesh *mesh, const lod_settings *settings, const lod_frames *frames, mesh_levels *out,
+                 model_error *error)
 {
     static const float shares[NOH_LOD_LEVELS_MAX] = LOD_SHARES;
     float errors[NOH_LOD_LEVELS_MAX];
@@ -218,8 +227,8 @@ static int make(const model *m, uint32_t index, const lod_settings *settings, me
     failed = failed || build(mesh, settings, &frames, out, error);
     if (!failed) {
         choose_levels(mesh, out);
-        failed = (poses_make(mesh, &frames, &poses) && model_fail(error, "", "out of memory")) || certify(mesh, &poses, out, error) ||
-                 rank_vertices(mesh, out, error);
+        failed = (poses_make(mesh, &frames, &poses) && model_fail(error, "", "out of memory")) ||
+                 certify(mesh, &poses, out, error) || rank_vertices(mesh, out, error);
     }
     poses_free(&poses);
     lod_frames_free(&frames);

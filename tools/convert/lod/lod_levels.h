@@ -12,12 +12,17 @@ extern "C" {
 
 /* All zeros: the full mesh alone. */
 typedef struct lod_settings {
-    uint32_t level_count; /* with the full one, 2 to NOH_LOD_LEVELS_MAX; 0 and 1: no others. The triangles' shares are LOD_SHARES */
-    int by_error;         /* instead: up to four coarser levels whose costs are 1/4000 of the box's diagonal, and four times as much each time */
+    uint32_t level_count; /* with the full one, 2 to NOH_LOD_LEVELS_MAX; 0 and 1: no others. The triangles' shares are
+                             LOD_SHARES */
+    int by_error; /* instead: up to four coarser levels whose costs are 1/4000 of the box's diagonal, and four times as
+                     much each time */
     lod_mode mode;
 } lod_settings;
 
-#define LOD_SHARES { 1.0f, 0.5f, 0.25f, 0.1f, 0.05f, 0.025f, 0.01f, 0.005f }
+#define LOD_SHARES                                            \
+    {                                                         \
+        1.0f, 0.5f, 0.25f, 0.1f, 0.05f, 0.025f, 0.01f, 0.005f \
+    }
 
 /* Certified: the largest distances to the full mesh, in the mesh's own lengths. None is below the finer level's. */
 typedef struct lod_errors {
@@ -29,15 +34,15 @@ float lod_worst(const lod_errors *errors);
 
 /* One level: what mesh_layout draws. */
 typedef struct lod_view {
-    const uint32_t *indices;  /* submeshes one after another */
+    const uint32_t *indices;       /* submeshes one after another */
     const uint32_t *first, *count; /* [submesh_count] into indices */
 } lod_view;
 
 typedef struct mesh_levels {
-    uint32_t count;           /* 1: the full mesh alone, and all below is 0 */
-    lod *built;               /* level k of the mesh is built->levels[which[k]], for k of 1 and more */
+    uint32_t count; /* 1: the full mesh alone, and all below is 0 */
+    lod *built;     /* level k of the mesh is built->levels[which[k]], for k of 1 and more */
     uint32_t which[NOH_LOD_LEVELS_MAX];
-    uint8_t *rank;            /* [vertex_count] the coarsest level that a vertex is in */
+    uint8_t *rank; /* [vertex_count] the coarsest level that a vertex is in */
     lod_errors errors[NOH_LOD_LEVELS_MAX];
     float cap_error[LOD_CAPS]; /* lod_frames.h */
 } mesh_levels;

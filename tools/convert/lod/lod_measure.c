@@ -30,13 +30,15 @@ static float largest_of_rims(const lod_track *t, uint32_t pose)
     for (uint32_t i = 0; i < t->count; i++) {
         uint32_t id = t->sample[i];
         int shows = id < s->mesh->vertex_count && lod_set_has(s->shows + (size_t)id * s->poses.words, pose);
-        float grown = shows ? 1.0f + RIM_GROWTH * sqrtf(t->squared[i]) / s->edge : 1.0f, squared = t->squared[i] * grown * grown;
+        float grown = shows ? 1.0f + RIM_GROWTH * sqrtf(t->squared[i]) / s->edge : 1.0f,
+              squared = t->squared[i] * grown * grown;
         worst = squared > worst ? squared : worst;
     }
     return worst;
 }
 
-static float samples_to_triangles(lod_track *t, const lod_pose_view *v, uint32_t pose, const float *triangles, uint32_t count)
+static float samples_to_triangles(lod_track *t, const lod_pose_view *v, uint32_t pose, const float *triangles,
+                                  uint32_t count)
 {
     lod_track_fill(t->squared, t->padded);
     for (uint32_t i = 0; i < count; i++) {
@@ -49,7 +51,7 @@ static float samples_to_triangles(lod_track *t, const lod_pose_view *v, uint32_t
 /* Where a new triangle is held against the full mesh: on its new edge, from the point that stays, and inside. */
 static const float reverse_weights[REVERSE_SAMPLES][3] = {
     { 0.75f, 0.25f, 0.0f }, { 0.5f, 0.5f, 0.0f }, { 0.25f, 0.75f, 0.0f },
-    { 0.6f, 0.2f, 0.2f }, { 0.2f, 0.6f, 0.2f }, { 0.2f, 0.2f, 0.6f },
+    { 0.6f, 0.2f, 0.2f },   { 0.2f, 0.6f, 0.2f }, { 0.2f, 0.2f, 0.6f },
 };
 
 static float triangles_to_mesh(lod_track *t, const lod_pose_view *v, const float *triangles, uint32_t count)
@@ -57,7 +59,8 @@ static float triangles_to_mesh(lod_track *t, const lod_pose_view *v, const float
     float at[3][REVERSE_MAX], squared[REVERSE_MAX];
     uint32_t samples = count * REVERSE_SAMPLES, padded = (samples + LOD_LANES - 1u) / LOD_LANES * LOD_LANES;
     for (uint32_t i = 0; i < padded; i++) {
-        const float *p = triangles + (i < samples ? i / REVERSE_SAMPLES : 0u) * 9u, *weight = reverse_weights[i % REVERSE_SAMPLES];
+        const float *p = triangles + (i < samples ? i / REVERSE_SAMPLES : 0u) * 9u,
+                    *weight = reverse_weights[i % REVERSE_SAMPLES];
         for (uint32_t k = 0; k < 3u; k++) {
             at[k][i] = weight[0] * p[k] + weight[1] * p[3u + k] + weight[2] * p[6u + k];
         }

@@ -55,7 +55,10 @@ static void cross(const double *a, const double *b, double *out)
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-static double dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static double dot(const double *a, const double *b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 /* The triangle's plane; and where its edges from the point are borders, planes upright on them. */
 static void add_triangle(const lod_surface *s, const lod_fan *fan, uint32_t corner, uint32_t pose, lod_quadric *q)

@@ -72,4 +72,7 @@ void lod_queue_drop(lod_queue *q, uint32_t point)
     }
 }
 
-void lod_queue_take(lod_queue *q) { lod_queue_drop(q, q->heap[0]); }
+void lod_queue_take(lod_queue *q)
+{
+    lod_queue_drop(q, q->heap[0]);
+}

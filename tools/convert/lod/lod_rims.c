@@ -92,7 +92,8 @@ static void compare_pair(lod_surface *s, uint32_t a, uint32_t b, uint32_t pose, 
 }
 
 /* Pairs of one entry with those after it in the cells around. */
-static void compare_near(lod_surface *s, const cell_entry *list, uint32_t count, const cell_entry *at, uint32_t pose, float near)
+static void compare_near(lod_surface *s, const cell_entry *list, uint32_t count, const cell_entry *at, uint32_t pose,
+                         float near)
 {
     for (int32_t i = 0; i < 9; i++) {
         int32_t cell[3] = { at->cell[0] + i / 3 - 1, at->cell[1] + i % 3 - 1, at->cell[2] - 1 }, last = at->cell[2] + 1;

@@ -15,7 +15,8 @@ static int same_skin(const model_mesh *mesh, uint32_t a, uint32_t b)
 {
     size_t bytes = MODEL_INFLUENCES_MAX;
     return !mesh->joint_weights ||
-           (!memcmp(mesh->joint_weights + a * bytes, mesh->joint_weights + b * bytes, bytes * sizeof *mesh->joint_weights) &&
+           (!memcmp(mesh->joint_weights + a * bytes, mesh->joint_weights + b * bytes,
+                    bytes * sizeof *mesh->joint_weights) &&
             !memcmp(mesh->joints + a * bytes, mesh->joints + b * bytes, bytes * sizeof *mesh->joints));
 }
 
@@ -25,7 +26,8 @@ static int same_in_all_poses(const lod_surface *s, uint32_t a, uint32_t b)
     return !memcmp(lod_posed(&s->poses, a, 0), lod_posed(&s->poses, b, 0), row) && same_skin(s->mesh, a, b);
 }
 
-/* Vertices of one place that some pose takes apart cannot be simplified together: each is a point of its own, locked. */
+/* Vertices of one place that some pose takes apart cannot be simplified together: each is a point of its own, locked.
+ */
 static void split_torn_points(lod_surface *s)
 {
     uint32_t count = s->mesh->vertex_count;
@@ -109,7 +111,8 @@ static float mean_edge(const lod_surface *s)
     double sum = 0.0;
     uint32_t count = 0;
     for (uint32_t c = 0; c < s->triangle_count * 3u; c++) {
-        const float *a = lod_posed(&s->poses, lod_point(s, c), 0), *b = lod_posed(&s->poses, lod_point(s, lod_next(c)), 0);
+        const float *a = lod_posed(&s->poses, lod_point(s, c), 0),
+                    *b = lod_posed(&s->poses, lod_point(s, lod_next(c)), 0);
         double d[3] = { (double)b[0] - a[0], (double)b[1] - a[1], (double)b[2] - a[2] };
         if (!s->dead[c / 3u]) {
             sum += sqrt(vec_dot(d, d));

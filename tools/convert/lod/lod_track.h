@@ -16,20 +16,20 @@ typedef struct lod_pose_view {
 
 struct lod_track {
     lod_surface *surface;
-    uint32_t *first, *next;   /* [triangle_count], [vertex_count + triangle_count]: the samples at a triangle */
-    const lod_fan *fan;       /* that is open */
+    uint32_t *first, *next;           /* [triangle_count], [vertex_count + triangle_count]: the samples at a triangle */
+    const lod_fan *fan;               /* that is open */
     uint32_t capacity, count, padded; /* its samples; the last one repeats up to `padded` */
-    uint32_t *sample;         /* [capacity]; the fan's own point is the last one */
-    uint32_t triangle_count;  /* centroids among the samples */
-    uint32_t *triangle;       /* [capacity] whose they are */
+    uint32_t *sample;                 /* [capacity]; the fan's own point is the last one */
+    uint32_t triangle_count;          /* centroids among the samples */
+    uint32_t *triangle;               /* [capacity] whose they are */
     float *squared, *nearest, *worst; /* [capacity] */
-    uint32_t *owner;          /* [capacity] */
-    uint64_t *shows;          /* [words] poses in which one of its samples is a rim that opens or closes */
-    uint64_t *set;            /* [words] poses in which the fan or its samples move */
-    uint32_t *pose;           /* [pose_count] those; the one that decided last comes first */
+    uint32_t *owner;                  /* [capacity] */
+    uint64_t *shows;                  /* [words] poses in which one of its samples is a rim that opens or closes */
+    uint64_t *set;                    /* [words] poses in which the fan or its samples move */
+    uint32_t *pose;                   /* [pose_count] those; the one that decided last comes first */
     uint32_t pose_count, stamp;
-    lod_pose_view *views;         /* [poses.count] */
-    float *block;             /* of all views */
+    lod_pose_view *views; /* [poses.count] */
+    float *block;         /* of all views */
 };
 
 /* What a pose makes of the fan that is open. */

@@ -6,7 +6,8 @@
 
 typedef struct lod_tree_node {
     float low[3], high[3];
-    uint32_t first, count; /* leaf: triangles in `order`; else count is 0 and first is the left child, the right one follows it */
+    uint32_t first,
+        count; /* leaf: triangles in `order`; else count is 0 and first is the left child, the right one follows it */
 } lod_tree_node;
 
 typedef struct lod_tree {

@@ -17,20 +17,17 @@ model *model_new(void)
 static int warnings_grow(model *m)
 {
     uint32_t count = m->warning_count;
-    if (count != 0 && (count & (count - 1)) != 0)
-        return 0;
+    if (count != 0 && (count & (count - 1)) != 0) return 0;
     size_t capacity = count ? (size_t)count * 2 : 1;
     char **grown = realloc(m->warnings, capacity * sizeof *grown);
-    if (!grown)
-        return 1;
+    if (!grown) return 1;
     m->warnings = grown;
     return 0;
 }
 
 int model_warn(model *m, const char *format, ...)
 {
-    if (m->warning_count > MODEL_WARNINGS_MAX)
-        return 0;
+    if (m->warning_count > MODEL_WARNINGS_MAX) return 0;
     char text[512];
     if (m->warning_count == MODEL_WARNINGS_MAX) {
         (void)snprintf(text, sizeof text, "further warnings are not shown");
@@ -60,8 +57,7 @@ static void target_free(model_target *target)
 
 void model_mesh_clear(model_mesh *mesh)
 {
-    for (uint32_t i = 0; mesh->targets && i < mesh->target_count; ++i)
-        target_free(&mesh->targets[i]);
+    for (uint32_t i = 0; mesh->targets && i < mesh->target_count; ++i) target_free(&mesh->targets[i]);
     free(mesh->targets);
     free(mesh->name);
     free(mesh->position);
@@ -92,8 +88,7 @@ static void clip_free(model_clip *clip)
         free(clip->channels[i].times);
         free(clip->channels[i].values);
     }
-    for (uint32_t i = 0; clip->events && i < clip->event_count; ++i)
-        free(clip->events[i].name);
+    for (uint32_t i = 0; clip->events && i < clip->event_count; ++i) free(clip->events[i].name);
     free(clip->channels);
     free(clip->events);
     free(clip->name);
@@ -109,26 +104,20 @@ static void skin_free(model_skin *skin)
 
 void model_free(model *m)
 {
-    if (!m)
-        return;
-    for (uint32_t i = 0; m->meshes && i < m->mesh_count; ++i)
-        model_mesh_clear(&m->meshes[i]);
+    if (!m) return;
+    for (uint32_t i = 0; m->meshes && i < m->mesh_count; ++i) model_mesh_clear(&m->meshes[i]);
     for (uint32_t i = 0; m->nodes && i < m->node_count; ++i) {
         free(m->nodes[i].name);
         free(m->nodes[i].weights);
     }
-    for (uint32_t i = 0; m->skins && i < m->skin_count; ++i)
-        skin_free(&m->skins[i]);
-    for (uint32_t i = 0; m->clips && i < m->clip_count; ++i)
-        clip_free(&m->clips[i]);
-    for (uint32_t i = 0; m->materials && i < m->material_count; ++i)
-        free(m->materials[i].name);
+    for (uint32_t i = 0; m->skins && i < m->skin_count; ++i) skin_free(&m->skins[i]);
+    for (uint32_t i = 0; m->clips && i < m->clip_count; ++i) clip_free(&m->clips[i]);
+    for (uint32_t i = 0; m->materials && i < m->material_count; ++i) free(m->materials[i].name);
     for (uint32_t i = 0; m->textures && i < m->texture_count; ++i) {
         free(m->textures[i].name);
         free(m->textures[i].rgba);
     }
-    for (uint32_t i = 0; i < m->warning_count; ++i)
-        free(m->warnings[i]);
+    for (uint32_t i = 0; i < m->warning_count; ++i) free(m->warnings[i]);
     free(m->meshes);
     free(m->nodes);
     free(m->skins);
@@ -176,7 +165,8 @@ float model_mesh_scale(const model *m, uint32_t mesh)
         const model_node *n = &m->nodes[i];
         if (n->mesh == mesh) {
             int skinned = n->skin != MODEL_NONE && n->skin < m->skin_count && m->meshes[mesh].joints;
-            double square = skinned ? skin_scale_square(m, &m->meshes[mesh], &m->skins[n->skin]) : scale_square(n->world);
+            double square = skinned ? skin_scale_square(m, &m->meshes[mesh], &m->skins[n->skin])
+                                    : scale_square(n->world);
             largest = square > largest ? square : largest;
         }
     }

@@ -21,8 +21,8 @@ extern "C" {
 typedef struct model_texture {
     char *name;
     uint32_t width, height;
-    uint8_t *rgba;             /* [height][width][4], rows top to bottom, as the image file has them */
-    uint32_t wrap_s, wrap_t;   /* glTF enum values: 10497 repeat, 33071 clamp, 33648 mirror */
+    uint8_t *rgba;                   /* [height][width][4], rows top to bottom, as the image file has them */
+    uint32_t wrap_s, wrap_t;         /* glTF enum values: 10497 repeat, 33071 clamp, 33648 mirror */
     uint32_t mag_filter, min_filter; /* glTF enum values, 0 = not given */
 } model_texture;
 
@@ -30,8 +30,8 @@ typedef enum model_alpha { MODEL_ALPHA_OPAQUE, MODEL_ALPHA_MASK, MODEL_ALPHA_BLE
 
 typedef struct model_material {
     char *name;
-    float base_color[4];            /* linear */
-    uint32_t base_color_texture;    /* index into textures or MODEL_NONE */
+    float base_color[4];         /* linear */
+    uint32_t base_color_texture; /* index into textures or MODEL_NONE */
     float metallic, roughness;
     model_alpha alpha;
     float alpha_cutoff;
@@ -45,16 +45,17 @@ typedef struct model_material {
 /* One morph target: dense deltas, zero where the target does not move. */
 typedef struct model_target {
     char *name;
-    float *position; /* [vertex_count][3] */
-    float *normal;   /* [vertex_count][3]; never NULL after model_complete */
-    float *tangent;  /* [vertex_count][3]; NULL where the mesh has no tangents */
+    float *position;                               /* [vertex_count][3] */
+    float *normal;                                 /* [vertex_count][3]; never NULL after model_complete */
+    float *tangent;                                /* [vertex_count][3]; NULL where the mesh has no tangents */
     uint8_t has_position, has_normal, has_tangent; /* what the file itself gave (any primitive) */
-    uint8_t *missing; /* [submesh_count] MODEL_MISSING_* bits: deltas that model_complete has yet to compute; NULL = none */
+    /* [submesh_count] MODEL_MISSING_* bits: deltas that model_complete has yet to compute; NULL = none */
+    uint8_t *missing;
 } model_target;
 
 typedef struct model_submesh {
-    uint32_t first_index, index_count; /* into model_mesh.indices; triangles */
-    uint32_t material;                 /* index or MODEL_NONE */
+    uint32_t first_index, index_count;   /* into model_mesh.indices; triangles */
+    uint32_t material;                   /* index or MODEL_NONE */
     uint32_t first_vertex, vertex_count; /* the vertices of this primitive */
     uint8_t missing;                     /* MODEL_MISSING_* bits; zero once model_complete has run */
 } model_submesh;
@@ -65,55 +66,61 @@ typedef struct model_submesh {
 typedef struct model_mesh {
     char *name;
     uint32_t vertex_count, index_count, submesh_count, target_count;
-    float *position;  /* [vertex_count][3] */
-    float *normal;    /* [vertex_count][3], unit; computed where the file has none */
-    float *tangent;   /* [vertex_count][4], unit + handedness +1/-1; NULL where no primitive has UVs or tangents */
-    float *uv;        /* [vertex_count][2] (TEXCOORD_0, or the set that the base colour texture uses); NULL where no primitive has them */
-    float *color;     /* [vertex_count][4] linear (COLOR_0); NULL where no primitive has them */
+    float *position; /* [vertex_count][3] */
+    float *normal;   /* [vertex_count][3], unit; computed where the file has none */
+    float *tangent;  /* [vertex_count][4], unit + handedness +1/-1; NULL where no primitive has UVs or tangents */
+    float *uv; /* [vertex_count][2] (TEXCOORD_0, or the set that the base colour texture uses); NULL where no primitive
+                  has them */
+    float *color; /* [vertex_count][4] linear (COLOR_0); NULL where no primitive has them */
     uint32_t *indices;
     model_submesh *submeshes;
     model_target *targets;
-    float *weights;   /* [target_count] the mesh's default weights */
+    float *weights;         /* [target_count] the mesh's default weights */
     uint32_t influence_max; /* the most joints that move one vertex; 0: the mesh is not skinned */
     uint32_t joint_limit;   /* above every place in `joints` that is used */
-    uint16_t *joints;       /* [vertex_count][MODEL_INFLUENCES_MAX] places in the skin's joints; NULL where not skinned */
-    float *joint_weights;   /* [vertex_count][MODEL_INFLUENCES_MAX] sum 1, the largest first, zeros last; likewise */
-    uint8_t bound;          /* skins_bind found the skin that moves it */
+    uint16_t *joints;     /* [vertex_count][MODEL_INFLUENCES_MAX] places in the skin's joints; NULL where not skinned */
+    float *joint_weights; /* [vertex_count][MODEL_INFLUENCES_MAX] sum 1, the largest first, zeros last; likewise */
+    uint8_t bound;        /* skins_bind found the skin that moves it */
     uint8_t dual_quaternion; /* skinned by dual quaternions, else by matrices */
-    uint32_t skin;          /* where it is bound */
-    uint32_t palette_limit; /* joints that one draw may use; 0: as many as the format holds */
+    uint32_t skin;           /* where it is bound */
+    uint32_t palette_limit;  /* joints that one draw may use; 0: as many as the format holds */
 } model_mesh;
 
 typedef struct model_node {
     char *name;
-    uint32_t parent;      /* index or MODEL_NONE; parents come first */
-    uint32_t mesh;        /* index or MODEL_NONE */
+    uint32_t parent;                             /* index or MODEL_NONE; parents come first */
+    uint32_t mesh;                               /* index or MODEL_NONE */
     float translation[3], rotation[4], scale[3]; /* local; a matrix is decomposed */
-    double world[16];     /* column-major, from the local matrices in double precision; it does not place a skinned mesh */
-    float *weights;       /* [targets of the mesh] or NULL: the mesh's defaults hold */
-    uint32_t skin;        /* index or MODEL_NONE: also where its skin was left out with a warning */
+    double world[16]; /* column-major, from the local matrices in double precision; it does not place a skinned mesh */
+    float *weights;   /* [targets of the mesh] or NULL: the mesh's defaults hold */
+    uint32_t skin;    /* index or MODEL_NONE: also where its skin was left out with a warning */
 } model_node;
 
 /* The joints that move a mesh. Vertices in the bind pose become joint-local by inverse_bind. */
 typedef struct model_skin {
     char *name;
     uint32_t joint_count;
-    uint32_t *joints;     /* [joint_count] nodes, in the order that the vertices count in */
-    float *inverse_bind;  /* [joint_count][16] affine and invertible; identities where the file has none */
-    uint32_t set;         /* skins_bind: its skeleton, an index into clip.sets */
+    uint32_t *joints;          /* [joint_count] nodes, in the order that the vertices count in */
+    float *inverse_bind;       /* [joint_count][16] affine and invertible; identities where the file has none */
+    uint32_t set;              /* skins_bind: its skeleton, an index into clip.sets */
     uint32_t *skeleton_joints; /* skins_bind: [joint_count] joints of that skeleton; else NULL */
 } model_skin;
 
-typedef enum model_path { MODEL_PATH_WEIGHTS, MODEL_PATH_TRANSLATION, MODEL_PATH_ROTATION, MODEL_PATH_SCALE } model_path;
+typedef enum model_path {
+    MODEL_PATH_WEIGHTS,
+    MODEL_PATH_TRANSLATION,
+    MODEL_PATH_ROTATION,
+    MODEL_PATH_SCALE
+} model_path;
 typedef enum model_interpolation { MODEL_LINEAR, MODEL_STEP, MODEL_CUBICSPLINE } model_interpolation;
 
 typedef struct model_channel {
     uint32_t node;
     model_path path;
     model_interpolation interpolation;
-    uint32_t key_count, width;  /* width: floats per key value (target count for weights, 3 or 4) */
-    float *times;               /* [key_count] seconds, strictly increasing, >= 0 */
-    float *values;              /* [key_count][width], CUBICSPLINE [key_count][3][width]: in-tangent, value, out-tangent */
+    uint32_t key_count, width; /* width: floats per key value (target count for weights, 3 or 4) */
+    float *times;              /* [key_count] seconds, strictly increasing, >= 0 */
+    float *values; /* [key_count][width], CUBICSPLINE [key_count][3][width]: in-tangent, value, out-tangent */
 } model_channel;
 
 /* A callback key. */
@@ -129,10 +136,10 @@ typedef struct model_clip {
     char *name;
     uint32_t channel_count;
     model_channel *channels;
-    float duration_s;           /* the largest key time */
-    uint8_t loop;               /* its author says that it repeats */
+    float duration_s; /* the largest key time */
+    uint8_t loop;     /* its author says that it repeats */
     uint32_t event_count;
-    model_event *events;        /* in the file's order, times within 0 and duration_s */
+    model_event *events; /* in the file's order, times within 0 and duration_s */
 } model_clip;
 
 typedef struct model {
@@ -144,7 +151,7 @@ typedef struct model {
     model_material *materials;
     model_texture *textures;
     uint32_t warning_count;
-    char **warnings;            /* sentences for the user, e.g. what was skipped and why */
+    char **warnings; /* sentences for the user, e.g. what was skipped and why */
 } model;
 
 /* Read a .gltf or .glb file. Returns 0 and *out on success, else 1 and a filled error (*out = NULL).

@@ -28,18 +28,15 @@ typedef struct face {
 static void face_evaluate(const model_mesh *mesh, const float *delta, size_t first_corner, face *out)
 {
     double p[3][3], longest = 0.0;
-    for (size_t k = 0; k < 3; ++k)
-        vec_posed(mesh->position, delta, mesh->indices[first_corner + k], p[k]);
+    for (size_t k = 0; k < 3; ++k) vec_posed(mesh->position, delta, mesh->indices[first_corner + k], p[k]);
     for (size_t k = 0; k < 3; ++k) {
-        for (size_t i = 0; i < 3; ++i)
-            out->edge[k][i] = p[(k + 1) % 3][i] - p[k][i];
+        for (size_t i = 0; i < 3; ++i) out->edge[k][i] = p[(k + 1) % 3][i] - p[k][i];
         double square = vec_dot(out->edge[k], out->edge[k]);
         longest = square > longest ? square : longest;
     }
     vec_cross(out->edge[0], out->edge[1], out->normal);
     double twice_area = sqrt(vec_dot(out->normal, out->normal));
-    if (!(twice_area > SLIVER * longest) || !vec_normalize(out->normal))
-        memset(out->normal, 0, sizeof out->normal);
+    if (!(twice_area > SLIVER * longest) || !vec_normalize(out->normal)) memset(out->normal, 0, sizeof out->normal);
 }
 
 static int face_usable(const face *f)
@@ -50,8 +47,7 @@ static int face_usable(const face *f)
 static double face_corner_angle(const face *f, size_t k)
 {
     double back[3];
-    for (size_t i = 0; i < 3; ++i)
-        back[i] = -f->edge[(k + 2) % 3][i];
+    for (size_t i = 0; i < 3; ++i) back[i] = -f->edge[(k + 2) % 3][i];
     return vec_angle(f->edge[k], back);
 }
 
@@ -79,16 +75,16 @@ static void corner_join(uint32_t *parent, uint32_t a, uint32_t b)
  * two are kept because doubled cards (lashes, leaves) put four on one edge. */
 #define EDGE_FACES 4
 typedef struct edge {
-    uint32_t a, b;               /* welded vertices, a < b; a == b marks a free slot */
-    uint32_t face_count;         /* all that were seen; the ring below holds the latest */
-    uint32_t face[EDGE_FACES];   /* triangle * 3 + k: the edge leaves its corner k */
+    uint32_t a, b;             /* welded vertices, a < b; a == b marks a free slot */
+    uint32_t face_count;       /* all that were seen; the ring below holds the latest */
+    uint32_t face[EDGE_FACES]; /* triangle * 3 + k: the edge leaves its corner k */
 } edge;
 
 typedef struct fan_builder {
     const model_mesh *mesh;
     const uint32_t *weld;
-    uint32_t *parent;  /* [corner_count] */
-    float *normal;     /* [triangle_count][3] of the base pose */
+    uint32_t *parent; /* [corner_count] */
+    float *normal;    /* [triangle_count][3] of the base pose */
     edge *edges;
     size_t edge_slots;
 } fan_builder;
@@ -105,8 +101,7 @@ static edge *edge_find(fan_builder *b, uint32_t v0, uint32_t v1)
             e->b = high;
             return e;
         }
-        if (e->a == low && e->b == high)
-            return e;
+        if (e->a == low && e->b == high) return e;
     }
 }
 
@@ -114,8 +109,7 @@ static int smooth_between(const fan_builder *b, uint32_t triangle_0, uint32_t tr
 {
     const float *n0 = b->normal + (size_t)triangle_0 * 3, *n1 = b->normal + (size_t)triangle_1 * 3;
     double cosine = 0.0;
-    for (int i = 0; i < 3; ++i)
-        cosine += (double)n0[i] * (double)n1[i];
+    for (int i = 0; i < 3; ++i) cosine += (double)n0[i] * (double)n1[i];
     return cosine >= CREASE_COSINE;
 }
 
@@ -138,13 +132,11 @@ static void add_edge(fan_builder *b, uint32_t corner)
 {
     uint32_t next = corner / 3 * 3 + (corner + 1) % 3;
     uint32_t v0 = b->weld[b->mesh->indices[corner]], v1 = b->weld[b->mesh->indices[next]];
-    if (v0 == v1)
-        return;
+    if (v0 == v1) return;
     edge *e = edge_find(b, v0, v1);
     uint32_t kept = e->face_count < EDGE_FACES ? e->face_count : EDGE_FACES;
     for (uint32_t i = 0; i < kept; ++i)
-        if (smooth_between(b, corner / 3, e->face[i] / 3))
-            join_across(b, corner, e->face[i]);
+        if (smooth_between(b, corner / 3, e->face[i] / 3)) join_across(b, corner, e->face[i]);
     e->face[e->face_count % EDGE_FACES] = corner;
     ++e->face_count;
 }
@@ -153,8 +145,7 @@ static void add_edge(fan_builder *b, uint32_t corner)
 static void join_vertices(fan_builder *b, uint32_t *first_corner)
 {
     const model_mesh *mesh = b->mesh;
-    for (uint32_t v = 0; v < mesh->vertex_count; ++v)
-        first_corner[v] = MODEL_NONE;
+    for (uint32_t v = 0; v < mesh->vertex_count; ++v) first_corner[v] = MODEL_NONE;
     for (uint32_t c = 0; c < mesh->index_count; ++c) {
         uint32_t *first = &first_corner[mesh->indices[c]];
         if (*first == MODEL_NONE)
@@ -169,10 +160,8 @@ static void join_smooth_edges(fan_builder *b)
     for (uint32_t c = 0; c + 2 < b->mesh->index_count; c += 3) {
         face f;
         face_evaluate(b->mesh, NULL, c, &f);
-        for (size_t i = 0; i < 3; ++i)
-            b->normal[(size_t)c + i] = (float)f.normal[i];
-        for (uint32_t k = 0; face_usable(&f) && k < 3; ++k)
-            add_edge(b, c + k);
+        for (size_t i = 0; i < 3; ++i) b->normal[(size_t)c + i] = (float)f.normal[i];
+        for (uint32_t k = 0; face_usable(&f) && k < 3; ++k) add_edge(b, c + k);
     }
 }
 
@@ -185,16 +174,14 @@ static void number_fans(fan_builder *b, normal_fans *out)
     }
     /* vertex_fan held each vertex's first corner until here */
     for (uint32_t v = 0; v < b->mesh->vertex_count; ++v)
-        if (out->vertex_fan[v] != MODEL_NONE)
-            out->vertex_fan[v] = out->corner_fan[out->vertex_fan[v]];
+        if (out->vertex_fan[v] != MODEL_NONE) out->vertex_fan[v] = out->corner_fan[out->vertex_fan[v]];
 }
 
 static int builder_allocate(fan_builder *b, normal_fans *out)
 {
     size_t corners = b->mesh->index_count;
     b->edge_slots = 16;
-    while (b->edge_slots < corners * 2)
-        b->edge_slots *= 2;
+    while (b->edge_slots < corners * 2) b->edge_slots *= 2;
     b->parent = model_zeros(corners, sizeof *b->parent);
     b->normal = model_zeros(corners, sizeof *b->normal);
     b->edges = model_zeros(b->edge_slots, sizeof *b->edges);
@@ -206,14 +193,13 @@ static int builder_allocate(fan_builder *b, normal_fans *out)
 
 int normals_build(const model_mesh *mesh, const uint32_t *weld, normal_fans *out)
 {
-    fan_builder b = {0};
+    fan_builder b = { 0 };
     b.mesh = mesh;
     b.weld = weld;
     memset(out, 0, sizeof *out);
     int failed = builder_allocate(&b, out);
     if (!failed) {
-        for (uint32_t c = 0; c < mesh->index_count; ++c)
-            b.parent[c] = c;
+        for (uint32_t c = 0; c < mesh->index_count; ++c) b.parent[c] = c;
         join_vertices(&b, out->vertex_fan);
         join_smooth_edges(&b);
         number_fans(&b, out);
@@ -223,8 +209,7 @@ int normals_build(const model_mesh *mesh, const uint32_t *weld, normal_fans *out
     free(b.parent);
     free(b.normal);
     free(b.edges);
-    if (failed)
-        normals_free(out);
+    if (failed) normals_free(out);
     return failed;
 }
 
@@ -236,27 +221,22 @@ static int wanted(const uint8_t *touched, uint32_t fan)
 static void add_face(normal_fans *fans, const face *f, const uint32_t *fan, const uint8_t *touched)
 {
     for (size_t k = 0; k < 3; ++k) {
-        if (!wanted(touched, fan[k]))
-            continue;
+        if (!wanted(touched, fan[k])) continue;
         double angle = face_corner_angle(f, k);
-        for (size_t i = 0; i < 3; ++i)
-            fans->normal[(size_t)fan[k] * 3 + i] += f->normal[i] * angle;
+        for (size_t i = 0; i < 3; ++i) fans->normal[(size_t)fan[k] * 3 + i] += f->normal[i] * angle;
     }
 }
 
 void normals_evaluate(normal_fans *fans, const model_mesh *mesh, const float *delta, const uint8_t *touched)
 {
     for (uint32_t n = 0; n < fans->fan_count; ++n)
-        if (wanted(touched, n))
-            memset(fans->normal + (size_t)n * 3, 0, 3 * sizeof(double));
+        if (wanted(touched, n)) memset(fans->normal + (size_t)n * 3, 0, 3 * sizeof(double));
     for (uint32_t c = 0; c + 2 < fans->corner_count; c += 3) {
         const uint32_t *fan = fans->corner_fan + c;
-        if (!wanted(touched, fan[0]) && !wanted(touched, fan[1]) && !wanted(touched, fan[2]))
-            continue;
+        if (!wanted(touched, fan[0]) && !wanted(touched, fan[1]) && !wanted(touched, fan[2])) continue;
         face f;
         face_evaluate(mesh, delta, c, &f);
-        if (face_usable(&f))
-            add_face(fans, &f, fan, touched);
+        if (face_usable(&f)) add_face(fans, &f, fan, touched);
     }
     for (uint32_t n = 0; n < fans->fan_count; ++n) {
         double *normal = fans->normal + (size_t)n * 3;

@@ -22,21 +22,19 @@ typedef struct pose {
 typedef struct face_tangent {
     double direction[3]; /* in which u grows, not unit */
     double position[3][3];
-    signed char hand;    /* +1 where the UVs run counter-clockwise, -1 where mirrored, 0 where unusable */
+    signed char hand; /* +1 where the UVs run counter-clockwise, -1 where mirrored, 0 where unusable */
 } face_tangent;
 
 static void uv_difference(const float *uv, uint32_t from, uint32_t to, double *out)
 {
-    for (size_t i = 0; i < 2; ++i)
-        out[i] = (double)uv[(size_t)to * 2 + i] - (double)uv[(size_t)from * 2 + i];
+    for (size_t i = 0; i < 2; ++i) out[i] = (double)uv[(size_t)to * 2 + i] - (double)uv[(size_t)from * 2 + i];
 }
 
 static signed char uv_hand(const double *d1, const double *d2)
 {
     double area = d1[0] * d2[1] - d2[0] * d1[1];
     double edges = sqrt((d1[0] * d1[0] + d1[1] * d1[1]) * (d2[0] * d2[0] + d2[1] * d2[1]));
-    if (!(fabs(area) > UV_SLIVER * edges))
-        return 0;
+    if (!(fabs(area) > UV_SLIVER * edges)) return 0;
     return area > 0.0 ? 1 : -1;
 }
 
@@ -44,28 +42,23 @@ static void face_tangent_evaluate(const pose *p, const uint32_t *v, face_tangent
 {
     double d1[2], d2[2];
     out->hand = 0;
-    if (!p->mesh->uv)
-        return;
+    if (!p->mesh->uv) return;
     uv_difference(p->mesh->uv, v[0], v[1], d1);
     uv_difference(p->mesh->uv, v[0], v[2], d2);
     out->hand = uv_hand(d1, d2);
-    if (!out->hand)
-        return;
-    for (size_t k = 0; k < 3; ++k)
-        vec_posed(p->mesh->position, p->position_delta, v[k], out->position[k]);
+    if (!out->hand) return;
+    for (size_t k = 0; k < 3; ++k) vec_posed(p->mesh->position, p->position_delta, v[k], out->position[k]);
     for (size_t i = 0; i < 3; ++i) {
         double e1 = out->position[1][i] - out->position[0][i], e2 = out->position[2][i] - out->position[0][i];
         out->direction[i] = (d2[1] * e1 - d1[1] * e2) * (double)out->hand;
     }
-    if (!vec_normalize(out->direction))
-        out->hand = 0;
+    if (!vec_normalize(out->direction)) out->hand = 0;
 }
 
 static void posed_normal(const pose *p, uint32_t v, double *out)
 {
     vec_posed(p->mesh->normal, p->normal_delta, v, out);
-    if (vec_normalize(out))
-        return;
+    if (vec_normalize(out)) return;
     vec_posed(p->mesh->normal, NULL, v, out);
     (void)vec_normalize(out);
 }
@@ -83,25 +76,23 @@ static double corner_tangent(const pose *p, const face_tangent *f, const uint32_
     vec_reject(out, normal);
     vec_reject(to_next, normal);
     vec_reject(to_last, normal);
-    if (!vec_normalize(out))
-        return 0.0;
+    if (!vec_normalize(out)) return 0.0;
     double angle = vec_angle(to_next, to_last);
-    for (size_t i = 0; i < 3; ++i)
-        out[i] *= angle;
+    for (size_t i = 0; i < 3; ++i) out[i] *= angle;
     return angle;
 }
 
-typedef struct group_key { uint32_t word[6]; } group_key; /* welded vertex, normal, uv */
+typedef struct group_key {
+    uint32_t word[6];
+} group_key; /* welded vertex, normal, uv */
 
 static group_key key_of(const model_mesh *mesh, const uint32_t *weld, uint32_t v)
 {
     group_key key;
-    float values[5] = {0.0f};
+    float values[5] = { 0.0f };
     memcpy(values, mesh->normal + (size_t)v * 3, 3 * sizeof(float));
-    if (mesh->uv)
-        memcpy(values + 3, mesh->uv + (size_t)v * 2, 2 * sizeof(float));
-    for (size_t i = 0; i < 5; ++i)
-        values[i] += 0.0f; /* -0 and +0 are equal */
+    if (mesh->uv) memcpy(values + 3, mesh->uv + (size_t)v * 2, 2 * sizeof(float));
+    for (size_t i = 0; i < 5; ++i) values[i] += 0.0f; /* -0 and +0 are equal */
     key.word[0] = weld[v];
     memcpy(key.word + 1, values, sizeof values);
     return key;
@@ -121,18 +112,15 @@ static size_t key_hash(const group_key *key)
 static int find_groups(const model_mesh *mesh, const uint32_t *weld, tangent_groups *out)
 {
     size_t slots = 16;
-    while (slots < (size_t)mesh->vertex_count * 2)
-        slots *= 2;
+    while (slots < (size_t)mesh->vertex_count * 2) slots *= 2;
     uint32_t *table = model_zeros(slots, sizeof *table); /* vertex + 1, 0 = free */
-    if (!table)
-        return 1;
+    if (!table) return 1;
     for (uint32_t v = 0; v < mesh->vertex_count; ++v) {
         group_key key = key_of(mesh, weld, v);
         size_t slot = key_hash(&key) & (slots - 1);
         for (; table[slot]; slot = (slot + 1) & (slots - 1)) {
             group_key other = key_of(mesh, weld, table[slot] - 1);
-            if (memcmp(&key, &other, sizeof key) == 0)
-                break;
+            if (memcmp(&key, &other, sizeof key) == 0) break;
         }
         if (table[slot]) {
             out->vertex_group[v] = out->vertex_group[table[slot] - 1];
@@ -148,10 +136,9 @@ static int find_groups(const model_mesh *mesh, const uint32_t *weld, tangent_gro
 /* hand = the side with the larger weight; a tie goes to +1. */
 static int choose_hands(const model_mesh *mesh, tangent_groups *groups)
 {
-    const pose base = {mesh, NULL, NULL};
+    const pose base = { mesh, NULL, NULL };
     double *weight = model_zeros(groups->group_count, sizeof *weight);
-    if (!weight)
-        return 1;
+    if (!weight) return 1;
     for (uint32_t c = 0; c + 2 < mesh->index_count; c += 3) {
         const uint32_t *v = mesh->indices + c;
         face_tangent f;
@@ -161,8 +148,7 @@ static int choose_hands(const model_mesh *mesh, tangent_groups *groups)
             weight[groups->vertex_group[v[k]]] += (double)f.hand * corner_tangent(&base, &f, v, k, unused);
         }
     }
-    for (uint32_t g = 0; g < groups->group_count; ++g)
-        groups->hand[g] = weight[g] < 0.0 ? -1 : 1;
+    for (uint32_t g = 0; g < groups->group_count; ++g) groups->hand[g] = weight[g] < 0.0 ? -1 : 1;
     free(weight);
     return 0;
 }
@@ -177,8 +163,7 @@ int tangents_build(const model_mesh *mesh, const uint32_t *weld, tangent_groups 
         out->hand = model_zeros(out->group_count, sizeof *out->hand);
         failed = !out->sum || !out->hand || choose_hands(mesh, out);
     }
-    if (failed)
-        tangents_free(out);
+    if (failed) tangents_free(out);
     return failed;
 }
 
@@ -194,20 +179,17 @@ static void add_corners(tangent_groups *groups, const pose *p, const uint32_t *v
     for (size_t k = 0; f.hand && k < 3; ++k) {
         uint32_t g = groups->vertex_group[v[k]];
         double add[3];
-        if (!wanted(touched, g) || groups->hand[g] != f.hand || corner_tangent(p, &f, v, k, add) == 0.0)
-            continue;
-        for (size_t i = 0; i < 3; ++i)
-            groups->sum[(size_t)g * 3 + i] += add[i];
+        if (!wanted(touched, g) || groups->hand[g] != f.hand || corner_tangent(p, &f, v, k, add) == 0.0) continue;
+        for (size_t i = 0; i < 3; ++i) groups->sum[(size_t)g * 3 + i] += add[i];
     }
 }
 
 void tangents_evaluate(tangent_groups *groups, const model_mesh *mesh, const float *position_delta,
                        const float *normal_delta, const uint8_t *touched)
 {
-    const pose p = {mesh, position_delta, normal_delta};
+    const pose p = { mesh, position_delta, normal_delta };
     for (uint32_t g = 0; g < groups->group_count; ++g)
-        if (wanted(touched, g))
-            memset(groups->sum + (size_t)g * 3, 0, 3 * sizeof(double));
+        if (wanted(touched, g)) memset(groups->sum + (size_t)g * 3, 0, 3 * sizeof(double));
     for (uint32_t c = 0; c + 2 < mesh->index_count; c += 3) {
         const uint32_t *v = mesh->indices + c, *group = groups->vertex_group;
         if (wanted(touched, group[v[0]]) || wanted(touched, group[v[1]]) || wanted(touched, group[v[2]]))

@@ -16,9 +16,11 @@ static uint32_t find_mesh(const model *m, const char *name, size_t length)
 
 static int same_triangles(const model_mesh *a, const model_mesh *b)
 {
-    int same = a->submesh_count == b->submesh_count && memcmp(a->indices, b->indices, a->index_count * sizeof *a->indices) == 0;
+    int same = a->submesh_count == b->submesh_count &&
+               memcmp(a->indices, b->indices, a->index_count * sizeof *a->indices) == 0;
     for (uint32_t s = 0; same && s < a->submesh_count; s++) {
-        same = a->submeshes[s].first_index == b->submeshes[s].first_index && a->submeshes[s].index_count == b->submeshes[s].index_count;
+        same = a->submeshes[s].first_index == b->submeshes[s].first_index &&
+               a->submeshes[s].index_count == b->submeshes[s].index_count;
     }
     return same;
 }
@@ -26,11 +28,13 @@ static int same_triangles(const model_mesh *a, const model_mesh *b)
 static int check_pair(const model_mesh *a, const model_mesh *b, const char *pair, model_error *error)
 {
     if (a->vertex_count != b->vertex_count || a->index_count != b->index_count) {
-        return model_fail(error, pair, "the meshes have %u and %u vertices, %u and %u indices: they must have the same", a->vertex_count,
-                          b->vertex_count, a->index_count, b->index_count);
+        return model_fail(error, pair, "the meshes have %u and %u vertices, %u and %u indices: they must have the same",
+                          a->vertex_count, b->vertex_count, a->index_count, b->index_count);
     }
     if (!same_triangles(a, b)) {
-        return model_fail(error, pair, "the meshes have different triangles: export both with the same order of vertices, reordered by neither");
+        return model_fail(
+            error, pair,
+            "the meshes have different triangles: export both with the same order of vertices, reordered by neither");
     }
     return b->target_count ? model_fail(error, pair, "the second mesh has morph targets of its own") : 0;
 }
@@ -64,8 +68,9 @@ static int add_target(model_mesh *a, const model_mesh *b)
     t->name = model_string(b->name);
     t->position = difference(a->position, b->position, a->vertex_count, 3);
     t->normal = difference(a->normal, b->normal, a->vertex_count, 3);
-    t->tangent = !a->tangent ? NULL : b->tangent ? difference(a->tangent, b->tangent, a->vertex_count, 4)
-                                                 : model_zeros((size_t)a->vertex_count * 3, sizeof(float));
+    t->tangent = !a->tangent  ? NULL
+                 : b->tangent ? difference(a->tangent, b->tangent, a->vertex_count, 4)
+                              : model_zeros((size_t)a->vertex_count * 3, sizeof(float));
     t->has_position = t->has_normal = 1;
     t->has_tangent = a->tangent && b->tangent;
     return !t->name || !t->position || !t->normal || (a->tangent && !t->tangent);

@@ -6,7 +6,9 @@
 #define WEIGHT_MAX 2.0
 #define HALF_MAX 65504.0
 
-typedef struct bound { double sum, error; } bound;
+typedef struct bound {
+    double sum, error;
+} bound;
 
 static double field(uint32_t word, unsigned before, unsigned bits, float scale)
 {

@@ -114,7 +114,8 @@ static int add_boxes(const band *b, morph_rect_list *list)
     return 0;
 }
 
-int morph_bands(const uint32_t *texels, uint32_t count, uint32_t rows, const morph_cover_options *options, morph_rect_list *list)
+int morph_bands(const uint32_t *texels, uint32_t count, uint32_t rows, const morph_cover_options *options,
+                morph_rect_list *list)
 {
     band b;
     int failed = band_init(&b, options);

@@ -8,8 +8,8 @@
 #include <string.h>
 
 #define WIDTH_LOG2_MAX 10u
-#define RECT_LIMIT 65535u    /* morph_rect is 16-bit */
-#define DELTA_LIMIT 1e30f    /* larger ones are a broken file, and their squares would overflow */
+#define RECT_LIMIT 65535u /* morph_rect is 16-bit */
+#define DELTA_LIMIT 1e30f /* larger ones are a broken file, and their squares would overflow */
 
 typedef struct encoder {
     const model_mesh *mesh;
@@ -28,7 +28,10 @@ static int fail(encoder *c, const char *what, const char *where)
     return 1;
 }
 
-static int no_memory(encoder *c) { return fail(c, "out of memory", "encoding morph targets"); }
+static int no_memory(encoder *c)
+{
+    return fail(c, "out of memory", "encoding morph targets");
+}
 
 /* ---- what comes in ---- */
 
@@ -38,7 +41,8 @@ static int check_deltas(encoder *c, const float *delta, uint32_t t, const char *
     if (!delta) return 0;
     for (size_t i = 0; i < (size_t)c->mesh->vertex_count * MORPH_AXES; i++) {
         if (fabsf(delta[i]) <= DELTA_LIMIT) continue; /* false for a NaN */
-        snprintf(where, sizeof where, "target %u, %s delta of vertex %u", (unsigned)t, part, (unsigned)(i / MORPH_AXES));
+        snprintf(where, sizeof where, "target %u, %s delta of vertex %u", (unsigned)t, part,
+                 (unsigned)(i / MORPH_AXES));
         return fail(c, "morph delta is not finite or larger than 1e30", where);
     }
     return 0;
@@ -47,15 +51,16 @@ static int check_deltas(encoder *c, const float *delta, uint32_t t, const char *
 static int check_input(encoder *c)
 {
     const uint64_t most = (uint64_t)RECT_LIMIT << WIDTH_LOG2_MAX;
-    if (c->mesh->vertex_count > most) return fail(c, "too many vertices for the morph texture (limit 67107840)", "mesh");
+    if (c->mesh->vertex_count > most)
+        return fail(c, "too many vertices for the morph texture (limit 67107840)", "mesh");
     if (!(c->options.error_um > 0.0f) || !(c->options.error_um <= DELTA_LIMIT))
         return fail(c, "the position error must be above zero", "options");
     if (!(c->options.rect_cost_texels > 0.0f) || !(c->options.rect_cost_texels <= DELTA_LIMIT))
         return fail(c, "the cost of a rectangle must be above zero", "options");
     for (uint32_t t = 0; t < c->mesh->target_count; t++) {
         const model_target *s = &c->mesh->targets[t];
-        if (check_deltas(c, s->position, t, "position") || check_deltas(c, s->normal, t, "normal")
-            || check_deltas(c, s->tangent, t, "tangent"))
+        if (check_deltas(c, s->position, t, "position") || check_deltas(c, s->normal, t, "normal") ||
+            check_deltas(c, s->tangent, t, "tangent"))
             return 1;
     }
     return 0;
@@ -90,7 +95,10 @@ static int is_touched(const morph_bits *b, uint32_t row)
     return 0;
 }
 
-static uint32_t rank_of(const encoder *c, uint32_t vertex) { return c->options.rank ? c->options.rank[vertex] : 0u; }
+static uint32_t rank_of(const encoder *c, uint32_t vertex)
+{
+    return c->options.rank ? c->options.rank[vertex] : 0u;
+}
 
 static void take_touched(encoder *c, uint32_t vertex)
 {
@@ -152,9 +160,11 @@ static int make_line(const morph_bits *vertices, float rect_cost, uint32_t *line
 static int order_block(encoder *c, const morph_region *region)
 {
     const float rect_cost = c->options.rect_cost_texels;
-    const morph_bits vertices = { region->count, c->touched.words, c->touched.bits + (size_t)region->first * c->touched.words };
+    const morph_bits vertices = { region->count, c->touched.words,
+                                  c->touched.bits + (size_t)region->first * c->touched.words };
     uint32_t *line = morph_alloc(region->count, sizeof *line), *order = c->e->order + region->first;
-    const int failed = !line || make_line(&vertices, rect_cost, line) || morph_fold_settle(&vertices, region, rect_cost, line);
+    const int failed = !line || make_line(&vertices, rect_cost, line) ||
+                       morph_fold_settle(&vertices, region, rect_cost, line);
     if (!failed) {
         morph_fold_order(line, region, order);
         for (uint32_t i = 0; i < region->count; i++) order[i] = c->touched_index[region->first + order[i]];
@@ -178,7 +188,8 @@ static int order_vertices(encoder *c)
 /* ---- rectangles and texels ---- */
 
 /* Indices, ascending, of what target t moves among `count` from `first`; order == NULL: the source's order. */
-static uint32_t list_texels(const encoder *c, uint32_t t, const uint32_t *order, uint32_t first, uint32_t count, uint32_t *texels)
+static uint32_t list_texels(const encoder *c, uint32_t t, const uint32_t *order, uint32_t first, uint32_t count,
+                            uint32_t *texels)
 {
     uint32_t n = 0;
     for (uint32_t i = first; i < first + count; i++)
@@ -240,7 +251,8 @@ static int cover_all(encoder *c, uint32_t *texels)
 }
 
 /* The texels of a rectangle, in a level's block. What it takes in besides belongs to another level's rectangles. */
-static uint32_t *fill_rect(const encoder *c, uint32_t t, const morph_rect *rect, const morph_region *block, uint32_t *out)
+static uint32_t *fill_rect(const encoder *c, uint32_t t, const morph_rect *rect, const morph_region *block,
+                           uint32_t *out)
 {
     const morph_encoding *e = c->e;
     for (uint32_t i = 0; i < (uint32_t)rect->w * rect->h; i++, out += MORPH_AXES) {

@@ -16,25 +16,28 @@ extern "C" {
 #endif
 
 typedef struct morph_options {
-    float error_um;          /* largest position error of one target at weight 1, micrometres (model unit = metre); 0 = 10 */
-    uint32_t rects;          /* most rectangles per target, in each LOD level; 0 = auto (by cost) */
-    float rect_cost_texels;  /* auto: what one more rectangle costs, in texels; 0 = default */
-    const uint8_t *rank;     /* [vertex_count] the coarsest LOD level that a vertex is in; NULL: all in level 0 alone */
-    uint32_t level_count;    /* 0 = 1 */
-    const float *skip_radius; /* [level_count] rising: the targets that move least are left out of a level for as long as
-                              * what they move, all at weight 1, sums to no more than this; NULL: none is */
+    float error_um; /* largest position error of one target at weight 1, micrometres (model unit = metre); 0 = 10 */
+    uint32_t rects; /* most rectangles per target, in each LOD level; 0 = auto (by cost) */
+    float rect_cost_texels; /* auto: what one more rectangle costs, in texels; 0 = default */
+    const uint8_t *rank;    /* [vertex_count] the coarsest LOD level that a vertex is in; NULL: all in level 0 alone */
+    uint32_t level_count;   /* 0 = 1 */
+    const float *skip_radius; /* [level_count] rising: the targets that move least are left out of a level for as long
+                               * as what they move, all at weight 1, sums to no more than this; NULL: none is */
 } morph_options;
 
-typedef struct morph_rect { uint16_t x, y, w, h; } morph_rect; /* texels of the accumulation texture */
+typedef struct morph_rect {
+    uint16_t x, y, w, h;
+} morph_rect; /* texels of the accumulation texture */
 
 typedef struct morph_target {
     uint32_t first_rect, rect_count;   /* rectangles in drawing order; may be 0 */
     uint32_t first_texel, texel_count; /* the sum of its rectangles' areas */
     uint32_t pair_count;               /* (vertex, target) pairs kept: texels that are not all zero */
-    uint32_t source_pairs;             /* pairs of the source above the 1e-6 x bounding-box diagonal threshold (or normal/tangent > 1e-5) */
+    uint32_t source_pairs; /* pairs of the source above the 1e-6 x bounding-box diagonal threshold (or normal/tangent >
+                              1e-5) */
     uint8_t position_bits, normal_bits, tangent_bits;
     float position_scale, normal_scale, tangent_scale; /* value = integer x scale */
-    float radius;            /* largest |position delta| of the source */
+    float radius;                                      /* largest |position delta| of the source */
     float position_error;              /* largest |decoded - source| over all vertices, dropped ones included */
     float normal_error, tangent_error; /* likewise, per component */
 } morph_target;
@@ -49,16 +52,19 @@ typedef struct morph_part {
  *   two's complement; bits that are left over at the bottom are zero. */
 typedef struct morph_encoding {
     uint32_t vertex_count, target_count;
-    uint32_t touched_count;  /* vertices 0..touched_count-1 of the new order are in the texture; those of coarse levels first */
-    uint32_t *order;         /* [vertex_count] new index -> old index; untouched ones in the source's order */
+    uint32_t touched_count; /* vertices 0..touched_count-1 of the new order are in the texture; those of coarse levels
+                               first */
+    uint32_t *order;        /* [vertex_count] new index -> old index; untouched ones in the source's order */
     uint32_t level_count;
     uint32_t *level_touched; /* [level_count] the first so many texels are the level's */
     morph_part *parts;       /* [level_count][target_count] */
     uint32_t width_log2;     /* texture width = 1 << width_log2; texel of vertex v: (v & (width-1), v >> width_log2) */
     uint32_t height;         /* ceil(touched_count / width) */
     morph_target *targets;
-    uint32_t rect_count;     morph_rect *rects;   /* in target order */
-    uint32_t texel_count;    uint32_t *texels;    /* in rectangle order, row by row */
+    uint32_t rect_count;
+    morph_rect *rects; /* in target order */
+    uint32_t texel_count;
+    uint32_t *texels; /* in rectangle order, row by row */
     uint32_t pair_count, source_pairs;
     uint32_t texels_one_rect; /* for the report: sum of areas with one rectangle per target in the source's order */
 } morph_encoding;

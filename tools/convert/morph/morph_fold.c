@@ -21,19 +21,19 @@
 #define STEPS_MOST 1200000u /* divided by the words of a row */
 #define STAGES 48u
 #define STAGES_WARM 40u
-#define STRETCH_MOST 96u    /* vertices of the longest stretch that a step moves */
+#define STRETCH_MOST 96u /* vertices of the longest stretch that a step moves */
 #define COST_MOST 1000u
 
 typedef struct fold {
     const morph_bits *vertices;
-    uint32_t *line;       /* place -> row of vertices */
+    uint32_t *line; /* place -> row of vertices */
     uint32_t count, words, rect_cost;
     uint32_t columns;
-    uint32_t *first;      /* [columns + 1] column -> place */
-    uint32_t *column;     /* place -> column */
-    uint8_t *starts;      /* column is the first of its strip, or there is a gap before it */
-    uint64_t *used;       /* [columns][words] the targets that move a vertex of a column */
-    uint64_t *saved;      /* [STRETCH_MOST + 1][words] those of a stretch before it was moved */
+    uint32_t *first;  /* [columns + 1] column -> place */
+    uint32_t *column; /* place -> column */
+    uint8_t *starts;  /* column is the first of its strip, or there is a gap before it */
+    uint64_t *used;   /* [columns][words] the targets that move a vertex of a column */
+    uint64_t *saved;  /* [STRETCH_MOST + 1][words] those of a stretch before it was moved */
     morph_random random;
 } fold;
 
@@ -48,11 +48,20 @@ void morph_fold_size(uint32_t touched, uint32_t *width_log2, uint32_t *height)
 
 /* ---- places ---- */
 
-static uint32_t first_strip(const morph_region *r) { return (r->first >> r->width_log2) & ~(MORPH_STRIP_ROWS - 1u); }
+static uint32_t first_strip(const morph_region *r)
+{
+    return (r->first >> r->width_log2) & ~(MORPH_STRIP_ROWS - 1u);
+}
 
-static uint32_t end_row(const morph_region *r) { return ((r->first + r->count - 1u) >> r->width_log2) + 1u; }
+static uint32_t end_row(const morph_region *r)
+{
+    return ((r->first + r->count - 1u) >> r->width_log2) + 1u;
+}
 
-static int has_texel(const morph_region *r, uint32_t texel) { return texel >= r->first && texel - r->first < r->count; }
+static int has_texel(const morph_region *r, uint32_t texel)
+{
+    return texel >= r->first && texel - r->first < r->count;
+}
 
 /* The rows of a strip's column that the region has: its first and its last row may be partly filled. */
 static uint32_t rows_of_column(const morph_region *r, uint32_t y0, uint32_t x)
@@ -134,7 +143,8 @@ static void turn(uint32_t *line, uint32_t low, uint32_t high)
 
 static int same_pattern(const fold *f, uint32_t a, uint32_t b)
 {
-    return memcmp(morph_row(f->vertices, f->line[a]), morph_row(f->vertices, f->line[b]), f->words * sizeof(uint64_t)) == 0;
+    return memcmp(morph_row(f->vertices, f->line[a]), morph_row(f->vertices, f->line[b]),
+                  f->words * sizeof(uint64_t)) == 0;
 }
 
 /* The next place at or after `at`, at most `limit`, where the pattern changes. */

@@ -146,7 +146,8 @@ typedef struct morph_cover_options {
 int morph_rect_append(morph_rect_list *list, const morph_rect *r);
 
 /* Appends the boxes of bands of `rows` texture rows: disjoint, and covering texels[count] (ascending). */
-int morph_bands(const uint32_t *texels, uint32_t count, uint32_t rows, const morph_cover_options *options, morph_rect_list *list);
+int morph_bands(const uint32_t *texels, uint32_t count, uint32_t rows, const morph_cover_options *options,
+                morph_rect_list *list);
 
 /* Appends disjoint rectangles that cover texels[count] (ascending) to *list. */
 int morph_cover(const uint32_t *texels, uint32_t count, const morph_cover_options *options, morph_rect_list *list);

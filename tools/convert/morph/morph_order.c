@@ -19,14 +19,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define REACH_MAX 8u          /* beyond it only the time grows */
-#define REACH_MORE 2u         /* besides its cost a rectangle has ragged ends, empty texels in a column */
-#define NEIGHBOURS 10u        /* nearest patterns of each, the partners tried */
-#define SCAN_MOST 6000u       /* candidates looked at for a nearest pattern: patterns are sorted, so they are the likeliest */
-#define REVERSE_MOST 1000u    /* patterns: longer reversals of big meshes cost more than they bring */
+#define REACH_MAX 8u   /* beyond it only the time grows */
+#define REACH_MORE 2u  /* besides its cost a rectangle has ragged ends, empty texels in a column */
+#define NEIGHBOURS 10u /* nearest patterns of each, the partners tried */
+#define SCAN_MOST                                                                                       \
+    6000u /* candidates looked at for a nearest pattern: patterns are sorted, so they are the likeliest \
+           */
+#define REVERSE_MOST 1000u /* patterns: longer reversals of big meshes cost more than they bring */
 #define STEPS_PER_PATTERN 2000u
-#define STEPS_MOST 2000000u   /* divided by the words of a row */
-#define STAGES 64u            /* temperatures */
+#define STEPS_MOST 2000000u /* divided by the words of a row */
+#define STAGES 64u          /* temperatures */
 
 typedef struct line {
     const morph_patterns *patterns;
@@ -38,7 +40,10 @@ typedef struct line {
     morph_random random;
 } line;
 
-static const uint64_t *pattern_bits(const line *l, uint32_t pattern) { return morph_row(&l->patterns->bits, pattern); }
+static const uint64_t *pattern_bits(const line *l, uint32_t pattern)
+{
+    return morph_row(&l->patterns->bits, pattern);
+}
 
 static uint32_t pattern_size(const line *l, uint32_t pattern)
 {
@@ -107,7 +112,8 @@ static void look_aside(const line *l, uint32_t at, uint32_t step, uint64_t *side
         if (size > l->reach - k) size = l->reach - k;
         for (uint32_t end = k + size; k < end; k++)
             for (uint32_t w = 0; w < l->words; w++)
-                side[k * l->words + w] = (k ? side[(k - 1u) * l->words + w] : 0u) | (ended ? 0u : pattern_bits(l, l->path[at])[w]);
+                side[k * l->words + w] = (k ? side[(k - 1u) * l->words + w] : 0u) |
+                                         (ended ? 0u : pattern_bits(l, l->path[at])[w]);
         at += step;
     }
 }
@@ -115,7 +121,8 @@ static void look_aside(const line *l, uint32_t at, uint32_t step, uint64_t *side
 /* Targets of one word whose gap is at most 0, 1, ... reach - 1, summed: what the two sides save. */
 static uint32_t saved_word(const line *l, const uint64_t *left, const uint64_t *right)
 {
-    const uint64_t far_left = left[(size_t)(l->reach - 1u) * l->words], far_right = right[(size_t)(l->reach - 1u) * l->words];
+    const uint64_t far_left = left[(size_t)(l->reach - 1u) * l->words],
+                   far_right = right[(size_t)(l->reach - 1u) * l->words];
     uint32_t sum = 0;
     if (!(far_left & far_right)) return 0;
     if (left[0] == far_left && right[0] == far_right) return l->reach * morph_popcount(far_left & far_right);
@@ -143,8 +150,8 @@ static int32_t change(line *l, uint32_t low, uint32_t high)
     look_aside(l, low, 1u, l->side[1]);
     look_aside(l, high, (uint32_t)-1, l->side[2]);
     look_aside(l, high + 1u, 1u, l->side[3]);
-    return (int32_t)(saved(l, l->side[0], l->side[1]) + saved(l, l->side[2], l->side[3]))
-         - (int32_t)(saved(l, l->side[0], l->side[2]) + saved(l, l->side[1], l->side[3]));
+    return (int32_t)(saved(l, l->side[0], l->side[1]) + saved(l, l->side[2], l->side[3])) -
+           (int32_t)(saved(l, l->side[0], l->side[2]) + saved(l, l->side[1], l->side[3]));
 }
 
 static void reverse(line *l, uint32_t low, uint32_t high)
@@ -166,8 +173,10 @@ static void try_reversal(line *l, uint32_t odds)
     const uint32_t b = l->neighbour[(size_t)a * l->neighbours + morph_random_below(&l->random, l->neighbours)];
     const uint32_t i = l->place[a], j = l->place[b], after = morph_random32(&l->random) & 1u;
     uint32_t low = i < j ? i : j, high = i < j ? j : i;
-    if (after) low++;
-    else high--;
+    if (after)
+        low++;
+    else
+        high--;
     if (low >= high || high - low > REVERSE_MOST) return;
     if (morph_accepts(&l->random, change(l, low, high), odds)) reverse(l, low, high);
 }

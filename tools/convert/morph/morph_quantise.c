@@ -10,10 +10,10 @@
 #include <string.h>
 
 #define WORD_BITS 32u
-#define PART_BITS_MAX 24u   /* integers stay exact in a float */
+#define PART_BITS_MAX 24u /* integers stay exact in a float */
 #define NORMAL_BITS_MIN 8u
 #define TANGENT_BITS_MIN 6u
-#define EMPTY_BITS 1u       /* of a part that moves nothing */
+#define EMPTY_BITS 1u /* of a part that moves nothing */
 
 /* A pair is dropped when its position would be written as zero anyway (so the vertices of a seam
  * that share a position also share its fate) and no component of its normal and tangent delta is
@@ -104,7 +104,8 @@ static double position_error(const float *delta, uint32_t vertex_count, float sc
     return largest;
 }
 
-static uint32_t choose_position_bits(const float *delta, uint32_t vertex_count, float largest, double error, uint32_t limit)
+static uint32_t choose_position_bits(const float *delta, uint32_t vertex_count, float largest, double error,
+                                     uint32_t limit)
 {
     uint32_t bits = EMPTY_BITS;
     if (largest == 0.0f) return bits;
@@ -115,7 +116,10 @@ static uint32_t choose_position_bits(const float *delta, uint32_t vertex_count, 
     return bits;
 }
 
-static uint32_t at_most(uint32_t x, uint32_t limit) { return x < limit ? x : limit; }
+static uint32_t at_most(uint32_t x, uint32_t limit)
+{
+    return x < limit ? x : limit;
+}
 
 /* What positions leave is the normal's and the tangent's; one that moves nothing takes one bit. */
 static void split_rest(morph_target *q, int has_normal, int has_tangent)
@@ -170,8 +174,8 @@ int morph_quantise_pack(const morph_target *q, const model_target *source, uint3
         words[a] = field(part_of(source->position, vertex, a, q->position_scale, p), p, WORD_BITS - p);
         moves |= words[a];
     }
-    if (!moves && !direction_matters(source->normal, vertex, NEGLIGIBLE)
-        && !direction_matters(source->tangent, vertex, NEGLIGIBLE))
+    if (!moves && !direction_matters(source->normal, vertex, NEGLIGIBLE) &&
+        !direction_matters(source->tangent, vertex, NEGLIGIBLE))
         return 0;
     for (uint32_t a = 0; a < MORPH_AXES; a++) {
         words[a] |= field(part_of(source->normal, vertex, a, q->normal_scale, n), n, WORD_BITS - p - n);
@@ -191,15 +195,19 @@ static double decoded_error(uint32_t word, uint32_t shift, uint32_t bits, float 
 }
 
 /* Errors of one vertex, as decoded from its words; e = { position squared, normal, tangent }. */
-static void vertex_errors(const morph_target *q, const model_target *s, uint32_t vertex, const uint32_t words[3], double e[3])
+static void vertex_errors(const morph_target *q, const model_target *s, uint32_t vertex, const uint32_t words[3],
+                          double e[3])
 {
     const uint32_t p = q->position_bits, n = q->normal_bits, t = q->tangent_bits;
     e[0] = e[1] = e[2] = 0.0;
     for (uint32_t a = 0; a < MORPH_AXES; a++) {
         const size_t i = (size_t)vertex * MORPH_AXES + a;
-        const double ep = decoded_error(words[a], WORD_BITS - p, p, q->position_scale, s->position ? s->position[i] : 0.0f);
-        const double en = decoded_error(words[a], WORD_BITS - p - n, n, q->normal_scale, s->normal ? s->normal[i] : 0.0f);
-        const double et = decoded_error(words[a], WORD_BITS - p - n - t, t, q->tangent_scale, s->tangent ? s->tangent[i] : 0.0f);
+        const double ep = decoded_error(words[a], WORD_BITS - p, p, q->position_scale,
+                                        s->position ? s->position[i] : 0.0f);
+        const double en = decoded_error(words[a], WORD_BITS - p - n, n, q->normal_scale,
+                                        s->normal ? s->normal[i] : 0.0f);
+        const double et = decoded_error(words[a], WORD_BITS - p - n - t, t, q->tangent_scale,
+                                        s->tangent ? s->tangent[i] : 0.0f);
         e[0] += ep * ep;
         if (en > e[1]) e[1] = en;
         if (et > e[2]) e[2] = et;
@@ -236,8 +244,8 @@ static void certify(const model_mesh *mesh, const model_target *s, morph_target 
         for (uint32_t i = 0; i < 3u; i++)
             if (e[i] > worst[i]) worst[i] = e[i];
         if (moved > displacement) displacement = moved;
-        if (moved > threshold || direction_matters(s->normal, v, SOURCE_DIRECTION)
-            || direction_matters(s->tangent, v, SOURCE_DIRECTION))
+        if (moved > threshold || direction_matters(s->normal, v, SOURCE_DIRECTION) ||
+            direction_matters(s->tangent, v, SOURCE_DIRECTION))
             q->source_pairs++;
     }
     q->position_error = float_above(sqrt(worst[0]));

@@ -14,7 +14,9 @@
 #define NOBODY UINT32_MAX
 #define HOPELESS (-1e30)
 
-typedef struct box { uint32_t x0, y0, x1, y1; } box; /* x1, y1: one past */
+typedef struct box {
+    uint32_t x0, y0, x1, y1;
+} box; /* x1, y1: one past */
 
 typedef struct piece {
     box b;
@@ -29,7 +31,10 @@ typedef struct cover {
     double rect_cost;
 } cover;
 
-static uint64_t area(const box *b) { return (uint64_t)(b->x1 - b->x0) * (b->y1 - b->y0); }
+static uint64_t area(const box *b)
+{
+    return (uint64_t)(b->x1 - b->x0) * (b->y1 - b->y0);
+}
 
 static int overlap(const box *a, const box *b)
 {
@@ -162,7 +167,8 @@ static void join_pieces(cover *c, box joined)
 }
 
 /* The boxes of bands, in row order. */
-static int add_bands(cover *c, const uint32_t *texels, uint32_t count, uint32_t rows, const morph_cover_options *options)
+static int add_bands(cover *c, const uint32_t *texels, uint32_t count, uint32_t rows,
+                     const morph_cover_options *options)
 {
     morph_rect_list start = { NULL, 0, 0 };
     int failed = morph_bands(texels, count, rows, options, &start);
@@ -177,7 +183,8 @@ static int add_bands(cover *c, const uint32_t *texels, uint32_t count, uint32_t 
 }
 
 /* As above, and coarser until few enough to be joined where they have to be. */
-static int add_few_bands(cover *c, const uint32_t *texels, uint32_t count, uint32_t rows, const morph_cover_options *options)
+static int add_few_bands(cover *c, const uint32_t *texels, uint32_t count, uint32_t rows,
+                         const morph_cover_options *options)
 {
     morph_cover_options coarse = *options;
     while (!add_bands(c, texels, count, rows, &coarse)) {
@@ -189,7 +196,8 @@ static int add_few_bands(cover *c, const uint32_t *texels, uint32_t count, uint3
 }
 
 /* Joins them as far as that pays or has to be. */
-static int join_bands(cover *c, const uint32_t *texels, uint32_t count, uint32_t rows, const morph_cover_options *options)
+static int join_bands(cover *c, const uint32_t *texels, uint32_t count, uint32_t rows,
+                      const morph_cover_options *options)
 {
     const int failed = add_few_bands(c, texels, count, rows, options);
     if (c->count > PIECES_MOST) return failed;
@@ -226,8 +234,8 @@ static int append(morph_rect_list *list, const cover *c)
 int morph_cover(const uint32_t *texels, uint32_t count, const morph_cover_options *options, morph_rect_list *list)
 {
     cover rows = { NULL, 0, 0, (double)options->rect_cost }, strips = rows;
-    int failed = join_bands(&rows, texels, count, 1u, options)
-              || join_bands(&strips, texels, count, MORPH_STRIP_ROWS, options);
+    int failed = join_bands(&rows, texels, count, 1u, options) ||
+                 join_bands(&strips, texels, count, MORPH_STRIP_ROWS, options);
     failed = failed || append(list, cost(&rows) < cost(&strips) ? &rows : &strips);
     free(rows.pieces);
     free(strips.pieces);

@@ -35,7 +35,8 @@ static int report_loop(const raw_set *set, const raw_clip *clip, const clips_set
         return 1;
     }
     if (s->report) {
-        fprintf(s->report, "  loop: first and last frame differ by %.3f cm, %.3f cm in place\n", loop.difference_cm, loop.in_place_cm);
+        fprintf(s->report, "  loop: first and last frame differ by %.3f cm, %.3f cm in place\n", loop.difference_cm,
+                loop.in_place_cm);
     }
     return 0;
 }
@@ -43,11 +44,12 @@ static int report_loop(const raw_set *set, const raw_clip *clip, const clips_set
 static void report_clip(const clips_settings *s, const raw_set *set, const encoded_clip *c)
 {
     const clip_report *r = &c->report;
-    fprintf(s->report, "clip '%s': %u frames at %.4g Hz, %u joints, %u floats: %zu bytes of %zu (%.1f:1), ", c->raw->name, c->raw->frame_count,
-            c->raw->sample_rate_hz, c->raw->joint_count, float_count(c->raw), r->bytes, r->raw_bytes,
-            (double)r->raw_bytes / (double)(r->bytes ? r->bytes : 1));
+    fprintf(s->report, "clip '%s': %u frames at %.4g Hz, %u joints, %u floats: %zu bytes of %zu (%.1f:1), ",
+            c->raw->name, c->raw->frame_count, c->raw->sample_rate_hz, c->raw->joint_count, float_count(c->raw),
+            r->bytes, r->raw_bytes, (double)r->raw_bytes / (double)(r->bytes ? r->bytes : 1));
     if (c->raw->joint_count) {
-        fprintf(s->report, "error %.4f cm at '%s', %.2f s\n", r->max_error_cm, set->skeleton.joints[r->max_error_joint].name, r->max_error_time_s);
+        fprintf(s->report, "error %.4f cm at '%s', %.2f s\n", r->max_error_cm,
+                set->skeleton.joints[r->max_error_joint].name, r->max_error_time_s);
     } else {
         fprintf(s->report, "error at most %.4f of the bound\n", r->max_float_error);
     }
@@ -59,7 +61,8 @@ static void report_clip(const clips_settings *s, const raw_set *set, const encod
 static uint64_t duration_ticks(const raw_clip *clip)
 {
     uint64_t sample_rate_uhz = (uint64_t)floor(clip->sample_rate_hz * 1e6 + 0.5);
-    return (uint64_t)(clip->frame_count - 1u) * NOH_TICKS_PER_SECOND * 1000000u / (sample_rate_uhz ? sample_rate_uhz : 1u);
+    return (uint64_t)(clip->frame_count - 1u) * NOH_TICKS_PER_SECOND * 1000000u /
+           (sample_rate_uhz ? sample_rate_uhz : 1u);
 }
 
 static uint32_t event_tick(const raw_clip *clip, const raw_event *event)
@@ -95,7 +98,9 @@ static int check_markers(const raw_clip *clip, model_error *error)
             continue;
         }
         if (event_tick(clip, event) >= duration_ticks(clip)) {
-            return fail_marker(clip, event, "lies at the end of its clip, where a loop has begun again: put it at 0, or before the end", error);
+            return fail_marker(
+                clip, event,
+                "lies at the end of its clip, where a loop has begun again: put it at 0, or before the end", error);
         }
         if (before && event_tick(clip, before) == event_tick(clip, event)) {
             return fail_marker(clip, event, "lies where another marker does", error);
@@ -107,7 +112,8 @@ static int check_markers(const raw_clip *clip, model_error *error)
 
 /* ---- encoding ---- */
 
-static int encode_bounded(const raw_set *set, const raw_clip *clip, const clips_settings *s, encoded_clip *out, model_error *error)
+static int encode_bounded(const raw_set *set, const raw_clip *clip, const clips_settings *s, encoded_clip *out,
+                          model_error *error)
 {
     clip_options options = s->clip;
     const double own = named_error(&s->clip_errors, clip->name);
@@ -124,7 +130,8 @@ static int encode_bounded(const raw_set *set, const raw_clip *clip, const clips_
     return failed;
 }
 
-static int encode_clip(const raw_set *set, raw_clip *clip, const error_points *flesh, const clips_settings *s, encoded_clip *out, model_error *error)
+static int encode_clip(const raw_set *set, raw_clip *clip, const error_points *flesh, const clips_settings *s,
+                       encoded_clip *out, model_error *error)
 {
     clip->loop = (uint8_t)(clip->loop || s->check_loops);
     if (s->progress) {
@@ -142,7 +149,8 @@ static int encode_clip(const raw_set *set, raw_clip *clip, const error_points *f
 }
 
 /* reach[joint_count], points: to be filled, and freed, also where it fails. */
-static int open_flesh(const clips_settings *s, uint32_t index, uint32_t joint_count, float *reach, joint_points *points, error_points *flesh)
+static int open_flesh(const clips_settings *s, uint32_t index, uint32_t joint_count, float *reach, joint_points *points,
+                      error_points *flesh)
 {
     memset(points, 0, sizeof *points);
     flesh->shell_cm = shell_cm(s);

@@ -17,25 +17,27 @@ typedef struct encoded_clip {
 } encoded_clip;
 
 typedef struct encoded_clips {
-    raw_set **sets;      /* [set_count]; borrowed */
+    raw_set **sets; /* [set_count]; borrowed */
     uint32_t set_count;
-    encoded_clip *clips;  /* [clip_count] */
+    encoded_clip *clips; /* [clip_count] */
     uint32_t clip_count;
 } encoded_clips;
 
 typedef struct clips_settings {
-    double sample_rate_hz;  /* 0: as the source has it */
-    double unit_cm;  /* of .bvh; 0: 1 */
-    int check_loops; /* mark every clip as a loop, and report the gap between its ends */
-    int skeletons_only; /* no clips: what a mesh pack needs */
+    double sample_rate_hz; /* 0: as the source has it */
+    double unit_cm;        /* of .bvh; 0: 1 */
+    int check_loops;       /* mark every clip as a loop, and report the gap between its ends */
+    int skeletons_only;    /* no clips: what a mesh pack needs */
     clip_options clip;
     named_errors clip_errors, joint_errors; /* over those of `clip` */
-    const model *m; /* bound to the sets: errors of fewer joints and lower update rates are measured on its vertices; NULL: on the shell */
+    const model *m; /* bound to the sets: errors of fewer joints and lower update rates are measured on its vertices;
+                       NULL: on the shell */
     FILE *report, *progress; /* or NULL */
 } clips_settings;
 
 /* Encode every clip. 0, or 1 and a filled error; free in both cases. */
-int clips_encode(raw_set **sets, uint32_t set_count, const clips_settings *settings, encoded_clips *out, model_error *error);
+int clips_encode(raw_set **sets, uint32_t set_count, const clips_settings *settings, encoded_clips *out,
+                 model_error *error);
 void clips_free(encoded_clips *m);
 
 /* Append the bytes of a skeleton chunk, of a clip chunk. */

@@ -100,7 +100,8 @@ static int deal_loose_vertices(layout_job *j, model_error *error)
 {
     for (uint32_t v = 0; v < j->mesh->vertex_count; v++) {
         uint32_t old = j->out->source[v], alone[3] = { old, old, old };
-        if (j->out->palette[v] == MODEL_NONE && palette_deal_triangle(&j->deal, j->mesh, alone, 0, &j->out->palette[v], error)) {
+        if (j->out->palette[v] == MODEL_NONE &&
+            palette_deal_triangle(&j->deal, j->mesh, alone, 0, &j->out->palette[v], error)) {
             return 1;
         }
     }
@@ -176,7 +177,8 @@ static int add_parts(layout_job *j, uint32_t level, model_error *error)
     for (uint32_t s = 0; s < j->mesh->submesh_count; s++) {
         for (uint32_t p = 0; p == 0 || p < j->deal.palette_count; p++) {
             if (j->out->submesh_count - l->first_submesh == j->submesh_capacity) {
-                return model_fail(error, j->mesh->name, "palettes of %u joints cut it into more than %u draws: give --palette more",
+                return model_fail(error, j->mesh->name,
+                                  "palettes of %u joints cut it into more than %u draws: give --palette more",
                                   j->deal.limit, j->submesh_capacity);
             }
             add_part(j, level, s, p);
@@ -294,12 +296,13 @@ static int allocate(layout_job *j)
     j->triangle_palette = model_zeros(m->index_count / 3u, sizeof *j->triangle_palette);
     j->next_copy = model_zeros(most, sizeof *j->next_copy);
     j->positions = model_zeros(most, 3 * sizeof *j->positions);
-    if (!out->source || !out->texel || !out->palette || !out->indices || !out->submeshes || !j->place || !j->triangle_palette ||
-        !j->next_copy || !j->positions) {
+    if (!out->source || !out->texel || !out->palette || !out->indices || !out->submeshes || !j->place ||
+        !j->triangle_palette || !j->next_copy || !j->positions) {
         return 1;
     }
     memset(j->next_copy, 0xff, most * sizeof *j->next_copy);
-    return is_skinned(m) && palette_deal_begin(&j->deal, m->joint_limit, m->palette_limit ? m->palette_limit : NOH_PALETTE_JOINTS_MAX);
+    return is_skinned(m) &&
+           palette_deal_begin(&j->deal, m->joint_limit, m->palette_limit ? m->palette_limit : NOH_PALETTE_JOINTS_MAX);
 }
 
 static void place_vertices(layout_job *j)
@@ -328,7 +331,8 @@ static int make(layout_job *j, model_error *error)
             return 1;
         }
     }
-    if (is_skinned(j->mesh) && (deal_loose_vertices(j, error) || (store_palettes(j) && model_fail(error, "", "out of memory")))) {
+    if (is_skinned(j->mesh) &&
+        (deal_loose_vertices(j, error) || (store_palettes(j) && model_fail(error, "", "out of memory")))) {
         return 1;
     }
     out->levels[0].vertex_count = out->vertex_count;
@@ -340,8 +344,8 @@ static int make(layout_job *j, model_error *error)
     return 0;
 }
 
-int mesh_layout_make(const model_mesh *mesh, const mesh_levels *levels, const morph_encoding *e, const uint8_t *submesh_blends,
-                     mesh_layout *out, model_error *error)
+int mesh_layout_make(const model_mesh *mesh, const mesh_levels *levels, const morph_encoding *e,
+                     const uint8_t *submesh_blends, mesh_layout *out, model_error *error)
 {
     layout_job job;
     int failed;
@@ -354,8 +358,8 @@ int mesh_layout_make(const model_mesh *mesh, const mesh_levels *levels, const mo
     job.out = out;
     failed = make(&job, error);
     if (!failed && out->vertex_count > NOH_VERTICES_MAX) {
-        failed = model_fail(error, mesh->name, "%u vertices after the split into palettes: a mesh holds up to %u", out->vertex_count,
-                            NOH_VERTICES_MAX);
+        failed = model_fail(error, mesh->name, "%u vertices after the split into palettes: a mesh holds up to %u",
+                            out->vertex_count, NOH_VERTICES_MAX);
     }
     palette_deal_free(&job.deal);
     free(job.place);

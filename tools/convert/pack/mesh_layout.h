@@ -21,20 +21,20 @@ typedef struct mesh_layout {
     uint32_t vertex_count, index_count, submesh_count, palette_count, palette_joint_count; /* of all levels */
     uint32_t level_count;
     level_layout levels[NOH_LOD_LEVELS_MAX];
-    int texel_references;     /* vertices are not where their texels are: NOH_MESH_TEXELS */
-    uint32_t *source;         /* [vertex_count] the model's vertex */
-    uint32_t *texel;          /* [vertex_count] as in the pack's texel reference */
-    uint32_t *palette;        /* [vertex_count] */
-    uint32_t *indices;        /* [index_count] each submesh's triangles in an order good for vertex caches and overdraw */
-    noh_submesh *submeshes;   /* [submesh_count] first_index counted from the level's first */
-    noh_palette *palettes;    /* [palette_count] 0 for a rigid mesh */
+    int texel_references;   /* vertices are not where their texels are: NOH_MESH_TEXELS */
+    uint32_t *source;       /* [vertex_count] the model's vertex */
+    uint32_t *texel;        /* [vertex_count] as in the pack's texel reference */
+    uint32_t *palette;      /* [vertex_count] */
+    uint32_t *indices;      /* [index_count] each submesh's triangles in an order good for vertex caches and overdraw */
+    noh_submesh *submeshes; /* [submesh_count] first_index counted from the level's first */
+    noh_palette *palettes;  /* [palette_count] 0 for a rigid mesh */
     uint16_t *palette_joints; /* [palette_joint_count] places in the skin's joints, ascending in each palette */
 } mesh_layout;
 
 /* submesh_blends[the mesh's submesh_count]: 1 where the order of triangles is to be kept. 0, or 1 and a filled
  * error; free in both cases. */
-int mesh_layout_make(const model_mesh *mesh, const mesh_levels *levels, const morph_encoding *e, const uint8_t *submesh_blends,
-                     mesh_layout *out, model_error *error);
+int mesh_layout_make(const model_mesh *mesh, const mesh_levels *levels, const morph_encoding *e,
+                     const uint8_t *submesh_blends, mesh_layout *out, model_error *error);
 void mesh_layout_free(mesh_layout *layout);
 
 #endif

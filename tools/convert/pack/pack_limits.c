@@ -4,7 +4,8 @@
 #include "pack/format.h"
 #include "pack_write.h"
 
-static int over(uint64_t count, uint64_t limit, const char *what, const char *kind, const char *name, model_error *error)
+static int over(uint64_t count, uint64_t limit, const char *what, const char *kind, const char *name,
+                model_error *error)
 {
     if (count <= limit) {
         return 0;

@@ -121,7 +121,8 @@ static uint32_t attribute_record(const model_mesh *m, const mesh_layout *l, uint
     return words;
 }
 
-static void append_vertices(const model_mesh *m, const mesh_layout *l, noh_mesh_header *h, size_t base, byte_buffer *out)
+static void append_vertices(const model_mesh *m, const mesh_layout *l, noh_mesh_header *h, size_t base,
+                            byte_buffer *out)
 {
     buffer_align(out, 16);
     h->positions_offset = (uint32_t)(out->count - base);
@@ -152,7 +153,8 @@ static void append_indices(const mesh_layout *l, noh_mesh_header *h, size_t base
     buffer_append(out, l->submeshes, sizeof *l->submeshes * l->submesh_count);
 }
 
-static noh_target target_of(const model_mesh *m, const morph_encoding *e, uint32_t level, uint32_t t, string_table *strings)
+static noh_target target_of(const model_mesh *m, const morph_encoding *e, uint32_t level, uint32_t t,
+                            string_table *strings)
 {
     const morph_target *from = &e->targets[t];
     const morph_part *part = &e->parts[(size_t)level * e->target_count + t];
@@ -178,8 +180,8 @@ static noh_target target_of(const model_mesh *m, const morph_encoding *e, uint32
     return to;
 }
 
-static void append_targets(const model_mesh *m, const morph_encoding *e, string_table *strings, noh_mesh_header *h, size_t base,
-                           byte_buffer *out)
+static void append_targets(const model_mesh *m, const morph_encoding *e, string_table *strings, noh_mesh_header *h,
+                           size_t base, byte_buffer *out)
 {
     buffer_align(out, 16);
     h->targets_offset = (uint32_t)(out->count - base);
@@ -199,7 +201,8 @@ static void append_targets(const model_mesh *m, const morph_encoding *e, string_
 }
 
 /* Deltas of the source; what the pack decodes to is off by the certified error at most. */
-static void append_target_boxes(const model_mesh *m, const morph_encoding *e, noh_mesh_header *h, size_t base, byte_buffer *out)
+static void append_target_boxes(const model_mesh *m, const morph_encoding *e, noh_mesh_header *h, size_t base,
+                                byte_buffer *out)
 {
     buffer_align(out, 16);
     h->target_boxes_offset = (uint32_t)(out->count - base);
@@ -251,8 +254,8 @@ static void set_skin(const model_mesh *m, const mesh_layout *l, uint32_t skin, n
 }
 
 /* A level's header from the full mesh's, whose offsets are known. */
-static noh_mesh_header level_header(const noh_mesh_header *full, const morph_encoding *e, const mesh_layout *l, const lod_errors *errors,
-                                    uint32_t level)
+static noh_mesh_header level_header(const noh_mesh_header *full, const morph_encoding *e, const mesh_layout *l,
+                                    const lod_errors *errors, uint32_t level)
 {
     const level_layout *own = &l->levels[level];
     noh_mesh_header h = *full;
@@ -281,8 +284,9 @@ static noh_mesh_header level_header(const noh_mesh_header *full, const morph_enc
     return h;
 }
 
-int pack_mesh(const model_mesh *m, const mesh_levels *levels, const morph_encoding *e, const uint8_t *submesh_blends, float world_scale,
-              uint32_t skin, uint32_t skin_joint_count, string_table *strings, byte_buffer *out, model_error *error)
+int pack_mesh(const model_mesh *m, const mesh_levels *levels, const morph_encoding *e, const uint8_t *submesh_blends,
+              float world_scale, uint32_t skin, uint32_t skin_joint_count, string_table *strings, byte_buffer *out,
+              model_error *error)
 {
     size_t base = out->count;
     noh_mesh_header h;

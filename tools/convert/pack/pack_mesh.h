@@ -11,7 +11,8 @@
  * world_scale     model_mesh_scale
  * skin            the n-th skin chunk, or NOH_NONE; skin_joint_count: its joints
  * Returns 0, or 1 and a filled error where the mesh cannot be split into palettes. */
-int pack_mesh(const model_mesh *mesh, const mesh_levels *levels, const morph_encoding *e, const uint8_t *submesh_blends, float world_scale, uint32_t skin,
-              uint32_t skin_joint_count, string_table *strings, byte_buffer *out, model_error *error);
+int pack_mesh(const model_mesh *mesh, const mesh_levels *levels, const morph_encoding *e, const uint8_t *submesh_blends,
+              float world_scale, uint32_t skin, uint32_t skin_joint_count, string_table *strings, byte_buffer *out,
+              model_error *error);
 
 #endif

@@ -13,15 +13,15 @@
 
 typedef struct writer {
     const model *m;
-    const mesh_levels *levels; /* or NULL */
-    const encoded_clips *clips;    /* or NULL */
-    byte_buffer out;      /* header and table first, then the chunks */
+    const mesh_levels *levels;  /* or NULL */
+    const encoded_clips *clips; /* or NULL */
+    byte_buffer out;            /* header and table first, then the chunks */
     string_table strings;
     noh_pack_chunk *chunks;
     uint32_t chunk_count;
     uint32_t *skin_chunks; /* [skin_count] the n-th skin chunk, or NOH_NONE where no mesh is bound to it */
     model_error *error;
-    int refused;           /* a mesh cannot be packed: the error says why */
+    int refused; /* a mesh cannot be packed: the error says why */
 } writer;
 
 static void name_of(string_table *strings, const char *text, uint32_t *name, uint32_t *hash)
@@ -102,7 +102,8 @@ static void write_texture(writer *w, const model_texture *t)
 
 static uint32_t material_flags(const model_material *m)
 {
-    return (m->alpha == MODEL_ALPHA_BLEND ? NOH_MATERIAL_BLEND : 0u) | (m->alpha == MODEL_ALPHA_MASK ? NOH_MATERIAL_MASK : 0u) |
+    return (m->alpha == MODEL_ALPHA_BLEND ? NOH_MATERIAL_BLEND : 0u) |
+           (m->alpha == MODEL_ALPHA_MASK ? NOH_MATERIAL_MASK : 0u) |
            (m->double_sided ? NOH_MATERIAL_DOUBLE_SIDED : 0u) | (m->unlit ? NOH_MATERIAL_UNLIT : 0u);
 }
 
@@ -135,9 +136,10 @@ static void write_mesh(writer *w, uint32_t index, const morph_encoding *e)
         blends[s] = material != MODEL_NONE && w->m->materials[material].alpha == MODEL_ALPHA_BLEND;
     }
     begin_chunk(w, NOH_CHUNK_MESH, mesh->name);
-    w->refused = w->refused || pack_mesh(mesh, w->levels ? &w->levels[index] : &alone, e, blends, model_mesh_scale(w->m, index),
-                                         mesh->bound ? w->skin_chunks[mesh->skin] : NOH_NONE,
-                                         mesh->bound ? w->m->skins[mesh->skin].joint_count : 0, &w->strings, &w->out, w->error);
+    w->refused = w->refused ||
+                 pack_mesh(mesh, w->levels ? &w->levels[index] : &alone, e, blends, model_mesh_scale(w->m, index),
+                           mesh->bound ? w->skin_chunks[mesh->skin] : NOH_NONE,
+                           mesh->bound ? w->m->skins[mesh->skin].joint_count : 0, &w->strings, &w->out, w->error);
     end_chunk(w);
 }
 
@@ -303,8 +305,8 @@ static size_t chunk_capacity(const model *m, const encoded_clips *made)
            (made ? (size_t)made->set_count + made->clip_count : 0);
 }
 
-int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const *encodings, const encoded_clips *made, byte_buffer *out,
-               model_error *error)
+int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const *encodings, const encoded_clips *made,
+               byte_buffer *out, model_error *error)
 {
     writer w;
     int failed;
@@ -314,7 +316,8 @@ int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const 
         }
     }
     if (chunk_capacity(m, made) > NOH_PACK_CHUNKS_MAX) {
-        snprintf(error->what, sizeof error->what, "more than %u meshes, textures, skeletons and clips: build them into several packs",
+        snprintf(error->what, sizeof error->what,
+                 "more than %u meshes, textures, skeletons and clips: build them into several packs",
                  NOH_PACK_CHUNKS_MAX);
         error->where[0] = 0;
         return 1;
@@ -337,7 +340,8 @@ int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const 
     }
     failed = w.refused || !w.chunks || !w.skin_chunks || w.out.failed || w.strings.bytes.failed || assemble(&w, out);
     if (failed && !w.refused) {
-        snprintf(error->what, sizeof error->what, "out of memory, or the pack would be over %u bytes", NOH_PACK_BYTES_MAX);
+        snprintf(error->what, sizeof error->what, "out of memory, or the pack would be over %u bytes",
+                 NOH_PACK_BYTES_MAX);
         error->where[0] = 0;
         buffer_free(out);
     }

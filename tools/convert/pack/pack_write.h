@@ -14,7 +14,7 @@ struct encoded_clips;
 
 /* Build a pack. levels[mesh_count], NULL: none has coarser ones; encodings[mesh_count], none NULL; made NULL: no clip,
  * and no mesh is bound to a skin. 0 on success, else 1 and a filled error. */
-int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const *encodings, const struct encoded_clips *made,
-               byte_buffer *out, model_error *error);
+int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const *encodings,
+               const struct encoded_clips *made, byte_buffer *out, model_error *error);
 
 #endif

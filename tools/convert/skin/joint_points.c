@@ -11,10 +11,10 @@
 #define KINDS (AXES + 1u) /* of a joint: its distance, and along its axes */
 #define NO_VERTEX UINT32_MAX
 
-static const float directions[DIRECTIONS][3] = {
-    { 1, 0, 0 },  { -1, 0, 0 },  { 0, 1, 0 },  { 0, -1, 0 },  { 0, 0, 1 },   { 0, 0, -1 },   { 1, 1, 1 },
-    { 1, 1, -1 }, { 1, -1, 1 },  { 1, -1, -1 }, { -1, 1, 1 }, { -1, 1, -1 }, { -1, -1, 1 }, { -1, -1, -1 }
-};
+static const float directions[DIRECTIONS][3] = { { 1, 0, 0 },   { -1, 0, 0 },  { 0, 1, 0 },  { 0, -1, 0 },
+                                                 { 0, 0, 1 },   { 0, 0, -1 },  { 1, 1, 1 },  { 1, 1, -1 },
+                                                 { 1, -1, 1 },  { 1, -1, -1 }, { -1, 1, 1 }, { -1, 1, -1 },
+                                                 { -1, -1, 1 }, { -1, -1, -1 } };
 
 typedef struct vertex {
     const model_mesh *mesh;
@@ -31,7 +31,7 @@ typedef struct chooser {
     const model *m;
     vertex *vertices;
     uint32_t vertex_count, joint_count;
-    extreme *joints;           /* [joint_count][KINDS] */
+    extreme *joints; /* [joint_count][KINDS] */
     extreme box[DIRECTIONS];
     uint32_t *chosen;
     uint32_t count, limit, hold_count;

@@ -9,7 +9,7 @@
 
 typedef struct joint_points {
     noh_time_lod_points points; /* point_count 0: no mesh is bound to the skeleton */
-    noh_time_hold *holds;   /* its own */
+    noh_time_hold *holds;       /* its own */
 } joint_points;
 
 /* Choose those that move most: of each joint the farthest that it moves, in all and along its axes, weighted; the

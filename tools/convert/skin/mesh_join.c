@@ -75,7 +75,8 @@ static void join_influences(const mesh_part *part, size_t v, model_mesh *out, si
     }
     memcpy(weights, part->mesh->joint_weights + v * MODEL_INFLUENCES_MAX, MODEL_INFLUENCES_MAX * sizeof *weights);
     for (uint32_t i = 0; i < MODEL_INFLUENCES_MAX; i++) {
-        joints[i] = weights[i] > 0.0f ? (uint16_t)part->places[part->mesh->joints[v * MODEL_INFLUENCES_MAX + i]] : joints[0];
+        joints[i] = weights[i] > 0.0f ? (uint16_t)part->places[part->mesh->joints[v * MODEL_INFLUENCES_MAX + i]]
+                                      : joints[0];
     }
 }
 
@@ -98,7 +99,8 @@ static void join_vertex(const mesh_part *part, size_t v, const turn *t, model_me
 }
 
 /* Deltas turn like what they are added to; a normal's is also scaled as the normal was when it was made unit. */
-static void join_target(const model_mesh *from, const model_target *target, size_t v, const turn *t, model_target *out, size_t to)
+static void join_target(const model_mesh *from, const model_target *target, size_t v, const turn *t, model_target *out,
+                        size_t to)
 {
     double turned[3], base[3], length;
     turn_vector(t->place, 4, target->position + 3 * v, turned);
@@ -135,7 +137,8 @@ static void list_submeshes(const mesh_part *parts, uint32_t part_count, model_me
     uint32_t first = 0;
     for (uint32_t p = 0; p < part_count; p++) {
         for (uint32_t s = 0; s < parts[p].mesh->submesh_count; s++) {
-            submesh_of(out, parts[p].mesh->submeshes[s].material)->index_count += parts[p].mesh->submeshes[s].index_count;
+            submesh_of(out, parts[p].mesh->submeshes[s].material)->index_count +=
+                parts[p].mesh->submeshes[s].index_count;
         }
     }
     for (uint32_t s = 0; s < out->submesh_count; s++) {

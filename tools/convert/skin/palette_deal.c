@@ -82,7 +82,8 @@ int palette_deal_triangle(palette_deal *deal, const model_mesh *mesh, const uint
     if (best == MODEL_NONE) {
         snprintf(where, sizeof where, "mesh '%.40s'", mesh->name);
         if (count > deal->limit) {
-            return model_fail(error, where, "a triangle follows %u joints, but a palette may hold %u: give --palette at least %u",
+            return model_fail(error, where,
+                              "a triangle follows %u joints, but a palette may hold %u: give --palette at least %u",
                               count, deal->limit, count);
         }
         if (deal->palette_count == NOH_SUBMESHES_MAX) {

@@ -13,8 +13,8 @@
 typedef struct palette_deal {
     uint32_t joint_count, limit, words; /* words: of one set */
     uint32_t palette_count;
-    uint64_t *sets;                     /* [palette_count][words] */
-    uint32_t *sizes;                    /* [palette_count] */
+    uint64_t *sets;  /* [palette_count][words] */
+    uint32_t *sizes; /* [palette_count] */
 } palette_deal;
 
 /* limit: joints that a palette holds. 1 when out of memory; free in both cases. */

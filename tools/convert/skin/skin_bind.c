@@ -53,7 +53,8 @@ static int is_bound_like(const model_mesh *mesh, const model_node *node)
 /* A mesh is drawn with one skin, or with none: those of which a file wants more are copied. */
 static int bind_meshes(model *m)
 {
-    uint32_t *copied_from = model_zeros((size_t)m->mesh_count + m->node_count, sizeof *copied_from), asset_meshes = m->mesh_count;
+    uint32_t *copied_from = model_zeros((size_t)m->mesh_count + m->node_count, sizeof *copied_from),
+             asset_meshes = m->mesh_count;
     uint8_t *seen = model_zeros(m->mesh_count, 1);
     int failed = !copied_from || !seen;
     for (uint32_t n = 0; !failed && n < m->node_count; n++) {
@@ -103,13 +104,19 @@ static int limit_influences(model *m, model_mesh *mesh, uint32_t limit)
     uint32_t changed = 0;
     double most = 0.0;
     for (size_t v = 0; v < mesh->vertex_count; v++) {
-        double lost = keep_strongest(mesh->joint_weights + v * MODEL_INFLUENCES_MAX, mesh->joints + v * MODEL_INFLUENCES_MAX, limit);
+        double lost = keep_strongest(mesh->joint_weights + v * MODEL_INFLUENCES_MAX,
+                                     mesh->joints + v * MODEL_INFLUENCES_MAX, limit);
         changed += lost > 0.0;
         most = lost > most ? lost : most;
     }
     mesh->influence_max = mesh->influence_max > limit ? limit : mesh->influence_max;
-    return changed ? model_warn(m, "mesh '%.40s': %u vertices have more than %u joints; the strongest were kept, up to %.2g of the "
-                                "weight was dropped", mesh->name, changed, limit, most) : 0;
+    return changed
+               ? model_warn(
+                     m,
+                     "mesh '%.40s': %u vertices have more than %u joints; the strongest were kept, up to %.2g of the "
+                     "weight was dropped",
+                     mesh->name, changed, limit, most)
+               : 0;
 }
 
 /* ---- dual quaternions ---- */

@@ -14,11 +14,11 @@ typedef struct join_job {
     model *m;
     model_clips *made;
     uint32_t set;
-    uint8_t *taken;        /* [node_count] drawn by a mesh made here */
-    uint32_t *nodes;       /* [node_count] of the parts */
+    uint8_t *taken;  /* [node_count] drawn by a mesh made here */
+    uint32_t *nodes; /* [node_count] of the parts */
     uint32_t part_count;
-    mesh_part *parts;      /* [node_count] */
-    model_skin skin;       /* room for all joints of all parts */
+    mesh_part *parts; /* [node_count] */
+    model_skin skin;  /* room for all joints of all parts */
 } join_job;
 
 /* ---- what may be joined ---- */
@@ -62,7 +62,8 @@ static int same_channels(const model_channel *a, const model_channel *b)
         return a == b;
     }
     values = (size_t)a->key_count * a->width * (a->interpolation == MODEL_CUBICSPLINE ? 3u : 1u);
-    return memcmp(a->times, b->times, a->key_count * sizeof *a->times) == 0 && memcmp(a->values, b->values, values * sizeof *a->values) == 0;
+    return memcmp(a->times, b->times, a->key_count * sizeof *a->times) == 0 &&
+           memcmp(a->values, b->values, values * sizeof *a->values) == 0;
 }
 
 /* The same targets, with the same weights at rest and in every clip. */
@@ -321,8 +322,8 @@ static int join_from(join_job *j, uint32_t first, int keep_parts, FILE *report)
         rigid += !j->parts[p].places;
     }
     if (report && !failed && j->part_count > 1) {
-        fprintf(report, "joined %u rigid and %u skinned meshes of skeleton '%s' into one\n", rigid, j->part_count - rigid,
-                j->made->sets[j->set]->skeleton.name);
+        fprintf(report, "joined %u rigid and %u skinned meshes of skeleton '%s' into one\n", rigid,
+                j->part_count - rigid, j->made->sets[j->set]->skeleton.name);
     }
     failed = failed || add_mesh(j);
     end_skin(j);
@@ -365,7 +366,8 @@ static void drop_channels(const join_job *j, model_clip *clip)
     uint32_t kept = 0;
     for (uint32_t i = 0; i < clip->channel_count; i++) {
         model_channel *channel = &clip->channels[i];
-        if (channel->path == MODEL_PATH_WEIGHTS && j->taken[channel->node] && j->m->nodes[channel->node].mesh == MODEL_NONE) {
+        if (channel->path == MODEL_PATH_WEIGHTS && j->taken[channel->node] &&
+            j->m->nodes[channel->node].mesh == MODEL_NONE) {
             free(channel->times);
             free(channel->values);
         } else {

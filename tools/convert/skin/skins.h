@@ -9,17 +9,18 @@
 struct model_clips; /* gltf_clip.h */
 
 typedef struct skin_options {
-    uint32_t influences;    /* the most per vertex, 1 to MODEL_INFLUENCES_MAX; 0: that */
-    uint32_t palette;       /* joints that one draw may use; 0: as many as the format holds */
-    const char *const *dual_quaternion; /* [dual_quaternion_count] names of meshes, or "all": skinned by dual quaternions */
+    uint32_t influences; /* the most per vertex, 1 to MODEL_INFLUENCES_MAX; 0: that */
+    uint32_t palette;    /* joints that one draw may use; 0: as many as the format holds */
+    const char *const
+        *dual_quaternion; /* [dual_quaternion_count] names of meshes, or "all": skinned by dual quaternions */
     uint32_t dual_quaternion_count;
-    int keep_parts;         /* rigid meshes that joints move are not joined into one */
-    FILE *report;           /* NULL: quiet */
+    int keep_parts; /* rigid meshes that joints move are not joined into one */
+    FILE *report;   /* NULL: quiet */
 } skin_options;
 
 /* Bind every skinned mesh of a model to its skin, and every skin to its skeleton. Rigid meshes that a joint moves
- * become skinned ones (skin_rigid.h); a mesh that several skins move, or that is drawn both with and without one, is copied. Weights that are left
- * out are a warning of the model. 0, or 1 and a filled error. */
+ * become skinned ones (skin_rigid.h); a mesh that several skins move, or that is drawn both with and without one, is
+ * copied. Weights that are left out are a warning of the model. 0, or 1 and a filled error. */
 int skins_bind(model *m, struct model_clips *made, const skin_options *options, model_error *error);
 
 #endif

@@ -42,12 +42,14 @@ static int add_mesh(File *file, const char *name, Shape shape, int is_skinned)
     int position = write_vectors(w, shape.position, shape.count, 1);
     int normal = write_vectors(w, shape.normal, shape.count, 0);
     int colour = write_vectors(w, shape.colour, shape.count, 0);
-    buffer_print(&file->meshes, "%s{\"name\":\"%s\",\"primitives\":[{\"attributes\":{\"POSITION\":%d,\"NORMAL\":%d,\"COLOR_0\":%d",
+    buffer_print(&file->meshes,
+                 "%s{\"name\":\"%s\",\"primitives\":[{\"attributes\":{\"POSITION\":%d,\"NORMAL\":%d,\"COLOR_0\":%d",
                  comma(file->census.meshes), name, position, normal, colour);
     if (is_skinned) {
         write_weights(file, &shape);
     }
-    buffer_print(&file->meshes, "},\"indices\":%d,\"material\":0}]}", write_indices(w, shape.indices, shape.index_count));
+    buffer_print(&file->meshes, "},\"indices\":%d,\"material\":0}]}",
+                 write_indices(w, shape.indices, shape.index_count));
     file->census.vertices += shape.count;
     file->census.triangles += shape.index_count / 3;
     shape_free(&shape);
@@ -59,8 +61,8 @@ static int add_mesh(File *file, const char *name, Shape shape, int is_skinned)
 /* child: -1 for none. Returns the node's number. */
 static int add_node(File *file, const char *name, V3 bone, int child)
 {
-    buffer_print(&file->nodes, "%s{\"name\":\"%s\",\"translation\":[%.9g,%.9g,%.9g]", comma(file->node_count), name, bone.x,
-                 bone.y, bone.z);
+    buffer_print(&file->nodes, "%s{\"name\":\"%s\",\"translation\":[%.9g,%.9g,%.9g]", comma(file->node_count), name,
+                 bone.x, bone.y, bone.z);
     if (child >= 0) {
         buffer_print(&file->nodes, ",\"children\":[%d]", child);
     }
@@ -86,7 +88,8 @@ static void add_turn(File *file, int clip, int node, double turn)
     }
     int n = file->channel_count[clip]++, output = write_floats(&file->w, values, 5, "VEC4", 4, TARGET_NONE);
     buffer_print(&file->samplers[clip], "%s{\"input\":%d,\"output\":%d}", comma(n), file->times, output);
-    buffer_print(&file->channels[clip], "%s{\"sampler\":%d,\"target\":{\"node\":%d,\"path\":\"rotation\"}}", comma(n), n, node);
+    buffer_print(&file->channels[clip], "%s{\"sampler\":%d,\"target\":{\"node\":%d,\"path\":\"rotation\"}}", comma(n),
+                 n, node);
 }
 
 /* ---- the arms ---- */

@@ -10,10 +10,10 @@ enum { ARM_COUNT = 4, SEGMENT_COUNT = 2 };
 /* One seamless mesh, held by the joints of its tube. */
 typedef struct {
     const char *name;
-    V3 stand;     /* where its lower end is */
+    V3 stand; /* where its lower end is */
     Tube tube;
-    int clip;     /* which one turns its joints but the first */
-    double turn;  /* radians, each, at the clip's peak */
+    int clip;    /* which one turns its joints but the first */
+    double turn; /* radians, each, at the clip's peak */
     Dye dye;
 } Arm;
 
@@ -22,8 +22,8 @@ const Arm *arm_number(int number);
 /* The same in two rigid parts: the second's node hangs below the first's, and turns about the elbow. */
 typedef struct {
     const char *name;
-    V3 bone;      /* from the node above */
-    Tube tube;    /* about its own node */
+    V3 bone;   /* from the node above */
+    Tube tube; /* about its own node */
     Dye dye;
 } Segment;
 

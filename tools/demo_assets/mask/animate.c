@@ -22,6 +22,7 @@ typedef struct {
     Cue cues[48]; /* ends with a NULL target */
 } Script;
 
+/* clang-format off */
 static const Script scripts[] = {
     { "blink",
       "LINEAR",
@@ -75,6 +76,7 @@ static const Script scripts[] = {
       { 0, 0.8, 1.6, 2.4, 3.2, 4.0 },
       { { 1, "smile", 1 }, { 2, "frown", 1 }, { 3, "anger", 1 }, { 4, "surprise", 1 } } },
 };
+/* clang-format on */
 
 static double *weight_at(Animation *animation, int key, int target)
 {
@@ -103,8 +105,7 @@ static void ease(Animation *animation)
     int targets = target_count();
     for (int key = 1; key + 1 < animation->key_count; key++) {
         for (int target = 0; target < targets; target++) {
-            double last = *weight_at(animation, key - 1, target),
-                   now = *weight_at(animation, key, target);
+            double last = *weight_at(animation, key - 1, target), now = *weight_at(animation, key, target);
             double next = *weight_at(animation, key + 1, target);
             if ((now - last) * (next - now) <= 0) {
                 continue;

@@ -9,8 +9,7 @@
 #include <math.h>
 #include <stddef.h>
 
-static const V3 gofun = { 0.84, 0.765, 0.635 }, ivory = { 0.80, 0.68, 0.49 },
-                blush = { 0.80, 0.52, 0.40 };
+static const V3 gofun = { 0.84, 0.765, 0.635 }, ivory = { 0.80, 0.68, 0.49 }, blush = { 0.80, 0.52, 0.40 };
 static const V3 red = { 0.34, 0.024, 0.018 }, ink = { 0.010, 0.008, 0.007 };
 static const V3 bare_wood = { 0.30, 0.155, 0.065 }, dark_wood = { 0.115, 0.052, 0.022 };
 static const V3 flesh = { 0.36, 0.10, 0.065 };
@@ -44,8 +43,7 @@ static double mayu(double s, double t)
 /* Where handling has worn the paint off the edge. */
 static double wear(double s, double t)
 {
-    double worn =
-        to_rim(s, t) - 0.997 + 0.009 * noise2(s * 150, t * 150) + 0.008 * noise2(s * 47, t * 47);
+    double worn = to_rim(s, t) - 0.997 + 0.009 * noise2(s * 150, t * 150) + 0.008 * noise2(s * 47, t * 47);
     return smooth(-0.010, 0.010, worn);
 }
 
@@ -71,8 +69,7 @@ static V3 lid_colour(V3 base, const Seed *seed)
         double line = 0.0017 * sqrt(width);
         return v3_mix(base, ink, 0.9 * smooth(line + 0.0006, line - 0.0004, from_line));
     }
-    return v3_mix(base, v3(0.25, 0.10, 0.06),
-                  0.6 * smooth(0.0009, 0.0001, -from_line) * sqrt(width));
+    return v3_mix(base, v3(0.25, 0.10, 0.06), 0.6 * smooth(0.0009, 0.0001, -from_line) * sqrt(width));
 }
 
 static V3 skin_colour(const Seed *seed, double open)
@@ -80,8 +77,7 @@ static V3 skin_colour(const Seed *seed, double open)
     double s = seed->s, t = seed->t;
     double mottle = 0.5 + 0.5 * noise2(s * 60, t * 60);
     V3 base = v3_mix(gofun, ivory, 0.25 * mottle + 0.5 * smooth(0.75, 1.0, to_rim(s, t)));
-    double warm = 0.55 * bump2(fabs(s) - 0.038, t + 0.022, 0.030, 0.026) +
-                  0.25 * bump2(s, t + 0.020, 0.016, 0.014) +
+    double warm = 0.55 * bump2(fabs(s) - 0.038, t + 0.022, 0.030, 0.026) + 0.25 * bump2(s, t + 0.020, 0.016, 0.014) +
                   0.30 * bump2(fabs(s) - EYE_X, t - EYE_Y - 0.004, 0.024, 0.014) +
                   0.25 * bump2(s, t + 0.090, 0.022, 0.018);
     base = v3_mix(base, blush, 0.75 * clamp(warm, 0, 1));
@@ -122,8 +118,7 @@ static V3 wood_colour(const Seed *seed, V3 at, double open)
     if (seed->region == ON_RIM) {
         return v3_mix(dark_wood, bare_wood, 0.55 + 0.30 * noise2(at.x * 60, at.y * 22));
     }
-    double rings =
-        sin(at.x * 420 + 5 * noise2(at.x * 40, at.y * 14) + 1.5 * noise2(at.x * 90, at.y * 16));
+    double rings = sin(at.x * 420 + 5 * noise2(at.x * 40, at.y * 14) + 1.5 * noise2(at.x * 90, at.y * 16));
     double grain = 0.5 + 0.35 * rings + 0.15 * noise2(at.x * 1500, at.y * 60);
     V3 base = v3_mix(dark_wood, bare_wood, clamp(grain, 0, 1));
     if (seed->region == ON_BACK) {

@@ -7,8 +7,7 @@
 #define PI 3.14159265358979323846
 
 /* Rings up to 1 cover the front of the ear; the rest turn in behind it. */
-static const double rings[] = { 0.15, 0.30, 0.42, 0.53, 0.63, 0.72, 0.80,
-                                0.88, 0.95, 1.0,  1.03, 1.0,  0.85, 0.45 };
+static const double rings[] = { 0.15, 0.30, 0.42, 0.53, 0.63, 0.72, 0.80, 0.88, 0.95, 1.0, 1.03, 1.0, 0.85, 0.45 };
 enum { RINGS = sizeof rings / sizeof rings[0], FRONT_RINGS = 10, SEGMENTS = 32 };
 
 /* Height of the carving over the disc, at (a, b) in the unit circle; a points
@@ -52,9 +51,7 @@ V3 ear_place(const Seed *seed)
 static uint32_t ear_seed(Model *model, int side, int ring, int segment)
 {
     Seed seed = { .region = ON_EAR, .k = ring, .t = 2 * PI * segment / SEGMENTS, .eye = side };
-    double r = ring < 0             ? 0
-               : ring < FRONT_RINGS ? rings[ring]
-                                    : 1 + 0.05 * (ring - FRONT_RINGS + 1);
+    double r = ring < 0 ? 0 : ring < FRONT_RINGS ? rings[ring] : 1 + 0.05 * (ring - FRONT_RINGS + 1);
     seed.s = r;
     seed.u = 0.5 + side * (0.43 + 0.055 * r * cos(seed.t));
     seed.v = 0.5 - 0.11 * r * sin(seed.t);

@@ -61,8 +61,7 @@ V3 ball_place(const Seed *seed, const Pose *pose)
     double ring = seed->s, around = seed->t;
     V3 d = v3(sin(ring) * cos(around), sin(ring) * sin(around), cos(ring));
     V3 pitched = v3(d.x, d.y * cos(pitch) + d.z * sin(pitch), d.z * cos(pitch) - d.y * sin(pitch));
-    V3 turned = v3(pitched.x * cos(yaw) + pitched.z * sin(yaw), pitched.y,
-                   pitched.z * cos(yaw) - pitched.x * sin(yaw));
+    V3 turned = v3(pitched.x * cos(yaw) + pitched.z * sin(yaw), pitched.y, pitched.z * cos(yaw) - pitched.x * sin(yaw));
     return v3_add(ball_centre(side), v3_scale(turned, BALL_RADIUS));
 }
 

@@ -56,17 +56,16 @@ double outline_width(double t)
 /* How far the upper lid stands above the line where lids meet. */
 static double upper_lid(int side, const Pose *pose)
 {
-    double open = 0.0056 + 0.0042 * pose->wide[side] - 0.0018 * pose->squint[side] +
-                  0.0024 * pose->look_up[side] - 0.0028 * pose->look_down[side];
+    double open = 0.0056 + 0.0042 * pose->wide[side] - 0.0018 * pose->squint[side] + 0.0024 * pose->look_up[side] -
+                  0.0028 * pose->look_down[side];
     return open * (1 - pose->blink[side]);
 }
 
 /* How far the lower lid hangs below that line. */
 static double lower_lid(int side, const Pose *pose)
 {
-    double open = 0.0012 + 0.0014 * pose->wide[side] - 0.0024 * pose->squint[side] -
-                  0.0014 * pose->cheek_squint[side] - 0.0004 * pose->smile[side] +
-                  0.0010 * pose->look_down[side];
+    double open = 0.0012 + 0.0014 * pose->wide[side] - 0.0024 * pose->squint[side] - 0.0014 * pose->cheek_squint[side] -
+                  0.0004 * pose->smile[side] + 0.0010 * pose->look_down[side];
     return open * (1 - pose->blink[side]);
 }
 
@@ -89,8 +88,7 @@ static double half_mouth(int side, double s)
 static double lip_shift(FacePoint point, const Pose *pose)
 {
     double upper = 0.0020 + 0.0030 * pose->funnel + 0.0020 * pose->shrug_upper;
-    double lower =
-        0.0026 + 0.0042 * pose->funnel - 0.0036 * pose->shrug_lower + 0.0030 * pose->tongue_out;
+    double lower = 0.0026 + 0.0042 * pose->funnel - 0.0036 * pose->shrug_lower + 0.0030 * pose->tongue_out;
     double shut = pose->mouth_close + pose->cheek_puff + 0.75 * pose->pucker;
     for (int side = 0; side < SIDES; side++) {
         double half = half_mouth(side, point.s);
@@ -128,30 +126,21 @@ static void drag(V3 *shift, FacePoint point, int side, double pull, Stroke strok
 static void drag_brows(V3 *all, FacePoint point, int side, const Pose *pose)
 {
     V3 own = v3(0, 0, 0), *shift = &own;
-    drag(shift, point, side, pose->brow_inner_up,
-         (Stroke){ 0.014, 0.053, 0.027, 0.040, -0.001, 0.0105, 0.0006 });
-    drag(shift, point, side, pose->brow_outer_up[side],
-         (Stroke){ 0.038, 0.053, 0.027, 0.040, 0, 0.0115, 0 });
-    drag(shift, point, side, pose->brow_down[side],
-         (Stroke){ 0.017, 0.047, 0.034, 0.040, -0.0035, -0.0090, 0.0016 });
+    drag(shift, point, side, pose->brow_inner_up, (Stroke){ 0.014, 0.053, 0.027, 0.040, -0.001, 0.0105, 0.0006 });
+    drag(shift, point, side, pose->brow_outer_up[side], (Stroke){ 0.038, 0.053, 0.027, 0.040, 0, 0.0115, 0 });
+    drag(shift, point, side, pose->brow_down[side], (Stroke){ 0.017, 0.047, 0.034, 0.040, -0.0035, -0.0090, 0.0016 });
     double held = smooth(-0.022, 0.002, hair_past(point.s, point.t));
     *all = v3_add(*all, v3_scale(own, 1 - 0.8 * held));
 }
 
 static void drag_cheeks(V3 *shift, FacePoint point, int side, const Pose *pose)
 {
-    drag(shift, point, side, pose->cheek_squint[side],
-         (Stroke){ 0.036, -0.014, 0.028, 0.022, 0, 0.0062, 0.0046 });
-    drag(shift, point, side, pose->squint[side],
-         (Stroke){ 0.034, -0.006, 0.026, 0.016, 0, 0.0020, 0.0012 });
-    drag(shift, point, side, pose->smile[side],
-         (Stroke){ 0.038, -0.022, 0.025, 0.025, 0.001, 0.0020, 0.0036 });
-    drag(shift, point, side, pose->cheek_puff,
-         (Stroke){ 0.038, -0.046, 0.027, 0.038, 0.0085, 0, 0.0120 });
-    drag(shift, point, side, pose->sneer[side],
-         (Stroke){ 0.014, -0.022, 0.018, 0.020, 0.0020, 0.0064, 0.0008 });
-    drag(shift, point, side, pose->sneer[side],
-         (Stroke){ 0.009, 0.004, 0.010, 0.016, 0, 0.0015, 0.0018 });
+    drag(shift, point, side, pose->cheek_squint[side], (Stroke){ 0.036, -0.014, 0.028, 0.022, 0, 0.0062, 0.0046 });
+    drag(shift, point, side, pose->squint[side], (Stroke){ 0.034, -0.006, 0.026, 0.016, 0, 0.0020, 0.0012 });
+    drag(shift, point, side, pose->smile[side], (Stroke){ 0.038, -0.022, 0.025, 0.025, 0.001, 0.0020, 0.0036 });
+    drag(shift, point, side, pose->cheek_puff, (Stroke){ 0.038, -0.046, 0.027, 0.038, 0.0085, 0, 0.0120 });
+    drag(shift, point, side, pose->sneer[side], (Stroke){ 0.014, -0.022, 0.018, 0.020, 0.0020, 0.0064, 0.0008 });
+    drag(shift, point, side, pose->sneer[side], (Stroke){ 0.009, 0.004, 0.010, 0.016, 0, 0.0015, 0.0018 });
 }
 
 static void drag_mouth(V3 *shift, FacePoint point, int side, const Pose *pose)
@@ -159,16 +148,12 @@ static void drag_mouth(V3 *shift, FacePoint point, int side, const Pose *pose)
     const double x = MOUTH_HALF, y = MOUTH_Y;
     drag(shift, point, side, pose->smile[side],
          (Stroke){ x + 0.010, y + 0.002, 0.034, 0.036, 0.0070, 0.0110, -0.0022 });
-    drag(shift, point, side, pose->frown[side],
-         (Stroke){ x + 0.008, y, 0.033, 0.032, -0.0005, -0.0110, -0.0005 });
+    drag(shift, point, side, pose->frown[side], (Stroke){ x + 0.008, y, 0.033, 0.032, -0.0005, -0.0110, -0.0005 });
     drag(shift, point, side, pose->dimple[side],
          (Stroke){ x + 0.002, y + 0.001, 0.018, 0.016, 0.0035, 0.001, -0.0035 });
-    drag(shift, point, side, pose->stretch[side],
-         (Stroke){ x, y, 0.032, 0.026, 0.0085, -0.0020, -0.0025 });
-    drag(shift, point, side, pose->press[side],
-         (Stroke){ x, y, 0.026, 0.016, 0.0015, 0.0020, -0.0020 });
-    drag(shift, point, side, pose->upper_up[side],
-         (Stroke){ 0.014, -0.043, 0.017, 0.015, 0.0005, 0.0022, 0.0008 });
+    drag(shift, point, side, pose->stretch[side], (Stroke){ x, y, 0.032, 0.026, 0.0085, -0.0020, -0.0025 });
+    drag(shift, point, side, pose->press[side], (Stroke){ x, y, 0.026, 0.016, 0.0015, 0.0020, -0.0020 });
+    drag(shift, point, side, pose->upper_up[side], (Stroke){ 0.014, -0.043, 0.017, 0.015, 0.0005, 0.0022, 0.0008 });
     drag(shift, point, side, 0.5 * (pose->frown[side] + pose->shrug_lower),
          (Stroke){ 0.004, -0.082, 0.024, 0.020, 0, 0.0020, 0.0020 });
 }
@@ -186,14 +171,12 @@ static void drag_whole_mouth(V3 *shift, FacePoint point, const Pose *pose)
     double from_line = point.t - mouth_line(point.s), width = mouth_almond(point.s);
     double red = width * bump(from_line / 0.011);
     if (point.mouth > 0) {
-        shift->y -=
-            pose->roll_upper * (0.0012 * red + 0.0035 * width * bump((from_line - 0.007) / 0.010));
+        shift->y -= pose->roll_upper * (0.0012 * red + 0.0035 * width * bump((from_line - 0.007) / 0.010));
         shift->z -= pose->roll_upper * 0.0036 * red;
         shift->y += pose->shrug_upper * 0.0022 * width * bump((from_line - 0.004) / 0.015);
         shift->z += pose->shrug_upper * 0.0028 * width * bump((from_line - 0.003) / 0.014);
     } else {
-        shift->y +=
-            pose->roll_lower * (0.0014 * red + 0.0040 * width * bump((from_line + 0.008) / 0.011));
+        shift->y += pose->roll_lower * (0.0014 * red + 0.0040 * width * bump((from_line + 0.008) / 0.011));
         shift->z -= pose->roll_lower * 0.0040 * red;
         shift->z += pose->shrug_lower * 0.0032 * width * bump((from_line + 0.004) / 0.014);
         shift->y += pose->shrug_lower * 0.0020 * width * bump((from_line + 0.012) / 0.012);

@@ -33,8 +33,8 @@ static double column_spacing(double x)
 static double row_spacing(double y)
 {
     double edge = fabs(y) / FACE_HALF_HEIGHT;
-    double fine = bump((y - MOUTH_Y) / 0.030) + bump((y - EYE_Y) / 0.030) +
-                  0.42 * bump((y - 0.061) / 0.024) + 0.7 * bump((y + 0.028) / 0.016);
+    double fine = bump((y - MOUTH_Y) / 0.030) + bump((y - EYE_Y) / 0.030) + 0.42 * bump((y - 0.061) / 0.024) +
+                  0.7 * bump((y + 0.028) / 0.016);
     return 1.7 - 1.1 * clamp(fine, 0, 1) - 0.8 * smooth(0.8, 1, edge);
 }
 
@@ -89,9 +89,8 @@ static void axis_snap(Axis *axis, const double *anchors, int anchor_count)
 
 static Axis make_columns(void)
 {
-    static const double anchors[COLUMN_ANCHORS] = { -EYE_X - EYE_HALF, -MOUTH_HALF,
-                                                    -EYE_X + EYE_HALF, EYE_X - EYE_HALF,
-                                                    MOUTH_HALF,        EYE_X + EYE_HALF };
+    static const double anchors[COLUMN_ANCHORS] = { -EYE_X - EYE_HALF, -MOUTH_HALF, -EYE_X + EYE_HALF,
+                                                    EYE_X - EYE_HALF,  MOUTH_HALF,  EYE_X + EYE_HALF };
     Axis axis = { 0 };
     axis_spread(&axis, GRID_COLUMNS, FACE_HALF_WIDTH, column_spacing);
     axis_snap(&axis, anchors, COLUMN_ANCHORS);
@@ -157,9 +156,8 @@ static int between(const Axis *axis, int line, int from, int to)
 
 static int on_eye_slit(const Grid *grid, int i, int j)
 {
-    return j == grid->row.anchor[EYE_ROW] &&
-           (between(&grid->column, i, EYE_RIGHT_OUTER, EYE_RIGHT_INNER) ||
-            between(&grid->column, i, EYE_LEFT_INNER, EYE_LEFT_OUTER));
+    return j == grid->row.anchor[EYE_ROW] && (between(&grid->column, i, EYE_RIGHT_OUTER, EYE_RIGHT_INNER) ||
+                                              between(&grid->column, i, EYE_LEFT_INNER, EYE_LEFT_OUTER));
 }
 
 static int on_mouth_slit(const Grid *grid, int i, int j)
@@ -223,8 +221,7 @@ static void add_faces(Model *model, const Grid *grid)
 
 /* One strip that folds inwards from a slit's edge, `depth` rows deep. The
  * corner columns are shared by both folds of a slit, which closes the ends. */
-static void add_fold(Model *model, const Grid *grid, Region region, int row, int from, int to,
-                     int side, int depth)
+static void add_fold(Model *model, const Grid *grid, Region region, int row, int from, int to, int side, int depth)
 {
     uint32_t before[MAX_LINES], now[MAX_LINES];
     for (int i = from; i <= to; i++) {
@@ -257,12 +254,11 @@ static void add_folds(Model *model, const Grid *grid)
     enum { LID_ROWS = 4, LIP_ROWS = 6 };
     const int *column = grid->column.anchor, *row = grid->row.anchor;
     for (int side = -1; side <= 1; side += 2) {
-        add_fold(model, grid, ON_LID_FOLD, row[EYE_ROW], column[EYE_RIGHT_OUTER],
-                 column[EYE_RIGHT_INNER], side, LID_ROWS);
-        add_fold(model, grid, ON_LID_FOLD, row[EYE_ROW], column[EYE_LEFT_INNER],
-                 column[EYE_LEFT_OUTER], side, LID_ROWS);
-        add_fold(model, grid, ON_LIP_FOLD, row[MOUTH_ROW], column[MOUTH_RIGHT], column[MOUTH_LEFT],
-                 side, LIP_ROWS);
+        add_fold(model, grid, ON_LID_FOLD, row[EYE_ROW], column[EYE_RIGHT_OUTER], column[EYE_RIGHT_INNER], side,
+                 LID_ROWS);
+        add_fold(model, grid, ON_LID_FOLD, row[EYE_ROW], column[EYE_LEFT_INNER], column[EYE_LEFT_OUTER], side,
+                 LID_ROWS);
+        add_fold(model, grid, ON_LIP_FOLD, row[MOUTH_ROW], column[MOUTH_RIGHT], column[MOUTH_LEFT], side, LIP_ROWS);
     }
 }
 

@@ -17,9 +17,8 @@ static double radius(double s, double t)
  * from straight up, and the hairline as a part of the way to the rim. */
 static double hair_line(double angle)
 {
-    static const Key line[] = { { 0.00, 0.872 }, { 0.05, 0.860 }, { 0.14, 0.852 }, { 0.45, 0.858 },
-                                { 0.80, 0.868 }, { 1.15, 0.880 }, { 1.45, 0.900 }, { 1.65, 0.940 },
-                                { 1.85, 1.020 }, { 3.15, 1.200 } };
+    static const Key line[] = { { 0.00, 0.872 }, { 0.05, 0.860 }, { 0.14, 0.852 }, { 0.45, 0.858 }, { 0.80, 0.868 },
+                                { 1.15, 0.880 }, { 1.45, 0.900 }, { 1.65, 0.940 }, { 1.85, 1.020 }, { 3.15, 1.200 } };
     return curve(line, (int)(sizeof line / sizeof *line), angle);
 }
 
@@ -89,9 +88,8 @@ static void stroke_build(Model *model, const Stroke *stroke, int side)
 
 void hair_build(Model *model)
 {
-    static const Stroke strokes[] = { { 0.0, 1.70, 0, 0.0042 }, /* the edge of the hair itself */
-                                      { 0.05, 1.62, 0.0034,
-                                        0.00075 }, /* loose strands, as young women's masks have */
+    static const Stroke strokes[] = { { 0.0, 1.70, 0, 0.0042 },        /* the edge of the hair itself */
+                                      { 0.05, 1.62, 0.0034, 0.00075 }, /* loose strands, as young women's masks have */
                                       { 0.09, 1.40, 0.0058, 0.00060 } };
     for (int side = 0; side < SIDES; side++) {
         for (int i = 0; i < (int)(sizeof strokes / sizeof *strokes); i++) {

@@ -60,8 +60,7 @@ static Deltas find_deltas(const Frame *rest, const Frame *now)
     return d;
 }
 
-static int write_sparse(Writer *w, int vertices, const Deltas *d, const F3 *values, int index_view,
-                        int with_range)
+static int write_sparse(Writer *w, int vertices, const Deltas *d, const F3 *values, int index_view, int with_range)
 {
     int start = view_open(w);
     for (int i = 0; i < d->count; i++) {
@@ -99,8 +98,7 @@ static void write_deltas(Writer *w, Buffer *json, const Deltas *d, int vertices,
     buffer_print(json, "{\"POSITION\":%d,\"NORMAL\":%d,\"TANGENT\":%d}", position, normal, tangent);
 }
 
-static void write_targets(Writer *w, Buffer *json, const Part *part, const Frame *rest,
-                          const int *weld)
+static void write_targets(Writer *w, Buffer *json, const Part *part, const Frame *rest, const int *weld)
 {
     int zeros = write_zeros(w, rest->count);
     for (int target = 0; target < target_count(); target++) {

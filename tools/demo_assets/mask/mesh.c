@@ -73,11 +73,9 @@ typedef struct {
     V3 *normal, *along_u, *along_v;
 } Sums;
 
-static void add_triangle(const Part *part, const int *first, const Frame *frame, Sums sums,
-                         const uint32_t *corner)
+static void add_triangle(const Part *part, const int *first, const Frame *frame, Sums sums, const uint32_t *corner)
 {
-    const Seed *s0 = &part->seeds[corner[0]], *s1 = &part->seeds[corner[1]],
-               *s2 = &part->seeds[corner[2]];
+    const Seed *s0 = &part->seeds[corner[0]], *s1 = &part->seeds[corner[1]], *s2 = &part->seeds[corner[2]];
     V3 p[3];
     for (int i = 0; i < 3; i++) {
         p[i] = frame->position[corner[i]];

@@ -14,10 +14,8 @@ enum { TONGUE_RINGS = 16, TONGUE_SEGMENTS = 16, BAG_RINGS = 9, BAG_SEGMENTS = 28
 static const double lips_z = 0.0272;
 
 /* Upright profile of a tooth: away from the cutting edge, and back. */
-static const double tooth_rise[TOOTH_ROWS] = { 0.0105, 0.0080, 0.0050, 0.0022,
-                                               0.0006, 0,      0.0006, 0.0060 };
-static const double tooth_back[TOOTH_ROWS] = { 0.0016, 0.0004, 0,      0.0002,
-                                               0.0008, 0.0017, 0.0032, 0.0046 };
+static const double tooth_rise[TOOTH_ROWS] = { 0.0105, 0.0080, 0.0050, 0.0022, 0.0006, 0, 0.0006, 0.0060 };
+static const double tooth_back[TOOTH_ROWS] = { 0.0016, 0.0004, 0, 0.0002, 0.0008, 0.0017, 0.0032, 0.0046 };
 
 /* seed->s counts teeth from the middle, seed->k rows from the gum. */
 V3 teeth_place(const Seed *seed, const Pose *pose)
@@ -25,8 +23,7 @@ V3 teeth_place(const Seed *seed, const Pose *pose)
     int row = (int)seed->k, upper = seed->mouth > 0;
     double across = 2 * (seed->s - floor(seed->s)) - 1; /* -1..1 over one tooth */
     double corner = across * across * across * across;
-    double wide = upper ? 0.0238 : 0.0214, deep = upper ? 0.0175 : 0.0155,
-           angle = seed->s / (TEETH / 2) * 1.2;
+    double wide = upper ? 0.0238 : 0.0214, deep = upper ? 0.0175 : 0.0155, angle = seed->s / (TEETH / 2) * 1.2;
     double back = tooth_back[row] + 0.0011 * corner;
     double rise = tooth_rise[row] + (row >= 3 ? 0.0007 * corner * (upper ? 1 : 0.7) : 0);
     double edge = upper ? MOUTH_Y - 0.0012 : MOUTH_Y - 0.0030;
@@ -69,8 +66,7 @@ static V3 tongue_spine(double along, double out)
 {
     V3 rest = v3(0, MOUTH_Y - 0.0088 + 0.0020 * along, lips_z - 0.0330 + 0.0215 * along);
     double droop = smooth(0.45, 1.15, along);
-    V3 shown =
-        v3(0, MOUTH_Y - 0.0052 - 0.0200 * droop, lips_z - 0.0330 + 0.0480 * along - 0.0030 * droop);
+    V3 shown = v3(0, MOUTH_Y - 0.0052 - 0.0200 * droop, lips_z - 0.0330 + 0.0480 * along - 0.0030 * droop);
     return v3_mix(rest, shown, out);
 }
 
@@ -151,9 +147,7 @@ static void bag_build(Model *model)
     uint32_t before[BAG_SEGMENTS], now[BAG_SEGMENTS];
     for (int k = 0; k <= BAG_RINGS; k++) {
         for (int i = 0; i < BAG_SEGMENTS; i++) {
-            Seed seed = { .region = ON_BAG,
-                          .s = PI / 2 * k / BAG_RINGS,
-                          .t = 2 * PI * i / BAG_SEGMENTS };
+            Seed seed = { .region = ON_BAG, .s = PI / 2 * k / BAG_RINGS, .t = 2 * PI * i / BAG_SEGMENTS };
             seed.u = 0.75 + 0.2 * cos(seed.s) * cos(seed.t);
             seed.v = 0.5 - 0.2 * cos(seed.s) * sin(seed.t);
             now[i] = k < BAG_RINGS || i == 0 ? model_seed(model, PART_MOUTH, &seed) : now[0];

@@ -48,8 +48,7 @@ static void draw_triangle(V3 a, V3 b, V3 c)
     for (int row = cell_from(y0, HIGH); row <= cell_from(y1, HIGH); row++) {
         for (int column = cell_from(x0, WIDE); column <= cell_from(x1, WIDE); column++) {
             double x = column + 0.5, y = row + 0.5;
-            double ka = edge_side(b, c, x, y), kb = edge_side(c, a, x, y),
-                   kc = edge_side(a, b, x, y);
+            double ka = edge_side(b, c, x, y), kb = edge_side(c, a, x, y), kc = edge_side(a, b, x, y);
             if (ka < 0 || kb < 0 || kc < 0) {
                 continue;
             }
@@ -137,8 +136,7 @@ void occlusion_bake(const Model *model, const Frame *frames, double *open[PART_C
         const Frame *frame = &frames[part];
         open[part] = grab(NULL, frame->count, (int)sizeof(double));
         for (int i = 0; i < frame->count; i++) {
-            open[part][i] =
-                frame->normal[i].z < -0.3 ? 1 : openness(frame->position[i], frame->normal[i]);
+            open[part][i] = frame->normal[i].z < -0.3 ? 1 : openness(frame->position[i], frame->normal[i]);
         }
         soften(&model->parts[part], open[part]);
     }

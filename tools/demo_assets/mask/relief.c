@@ -48,10 +48,9 @@ static double hill(const Hill *h, double s, double t)
 
 static double nose(double s, double t)
 {
-    static const Key height[] = { { -0.0355, 0 },      { -0.0325, 0.0012 }, { -0.0296, 0.0052 },
-                                  { -0.0264, 0.0099 }, { -0.0228, 0.0122 }, { -0.0180, 0.0127 },
-                                  { -0.0080, 0.0108 }, { 0.0060, 0.0072 },  { 0.0210, 0.0036 },
-                                  { 0.0360, 0 } };
+    static const Key height[] = { { -0.0355, 0 },      { -0.0325, 0.0012 }, { -0.0296, 0.0052 }, { -0.0264, 0.0099 },
+                                  { -0.0228, 0.0122 }, { -0.0180, 0.0127 }, { -0.0080, 0.0108 }, { 0.0060, 0.0072 },
+                                  { 0.0210, 0.0036 },  { 0.0360, 0 } };
     static const Key width[] = { { -0.0320, 0.0150 }, { -0.0220, 0.0170 }, { -0.0110, 0.0146 },
                                  { 0.0060, 0.0124 },  { 0.0200, 0.0126 },  { 0.0360, 0.0180 } };
     /* The tip hangs lower than the wings. */
@@ -76,15 +75,13 @@ static double lips(double s, double t, int side)
     static const Key lower[] = { { 0, -0.0012 },     { 0.0015, 0.0010 },  { 0.0052, 0.0033 },
                                  { 0.0100, 0.0020 }, { 0.0145, -0.0003 }, { 0.0190, 0 } };
     double from_line = fabs(t - mouth_line(s)), wide = bump(s / 0.034);
-    return wide * (side > 0 ? curve(upper, COUNT(upper), from_line)
-                            : curve(lower, COUNT(lower), from_line));
+    return wide * (side > 0 ? curve(upper, COUNT(upper), from_line) : curve(lower, COUNT(lower), from_line));
 }
 
 static double philtrum(double s, double t)
 {
     return -0.0009 * bump2(s, t + 0.0395, 0.0042, 0.0085) +
-           0.0006 * (bump2(s - 0.005, t + 0.040, 0.004, 0.009) +
-                     bump2(s + 0.005, t + 0.040, 0.004, 0.009));
+           0.0006 * (bump2(s - 0.005, t + 0.040, 0.004, 0.009) + bump2(s + 0.005, t + 0.040, 0.004, 0.009));
 }
 
 /* The crease above the upper lid. */
@@ -102,8 +99,7 @@ static double furrow(double s, double t, const Pose *pose)
     if (depth == 0) {
         return 0;
     }
-    double ridge = bump2(s, t - 0.034, 0.0055, 0.018) -
-                   0.8 * bump2(s - 0.008, t - 0.034, 0.004, 0.016) -
+    double ridge = bump2(s, t - 0.034, 0.0055, 0.018) - 0.8 * bump2(s - 0.008, t - 0.034, 0.004, 0.016) -
                    0.8 * bump2(s + 0.008, t - 0.034, 0.004, 0.016);
     return 0.0020 * depth * ridge;
 }
@@ -114,6 +110,5 @@ double relief(FacePoint point, const Pose *pose)
     for (int i = 0; i < COUNT(hills); i++) {
         sum += hill(&hills[i], s, t);
     }
-    return sum + nose(s, t) + lips(s, t, point.mouth) + philtrum(s, t) + lid_crease(s, t) +
-           furrow(s, t, pose);
+    return sum + nose(s, t) + lips(s, t, point.mouth) + philtrum(s, t) + lid_crease(s, t) + furrow(s, t, pose);
 }

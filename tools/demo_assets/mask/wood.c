@@ -22,8 +22,8 @@ V3 rim_place(const Seed *seed, const Pose *pose)
 {
     int row = (int)seed->k;
     V3 at = border_place(seed, pose);
-    V3 out = v3_unit(v3(seed->s / (FACE_HALF_WIDTH * FACE_HALF_WIDTH),
-                        seed->t / (FACE_HALF_HEIGHT * FACE_HALF_HEIGHT), 0));
+    V3 out = v3_unit(
+        v3(seed->s / (FACE_HALF_WIDTH * FACE_HALF_WIDTH), seed->t / (FACE_HALF_HEIGHT * FACE_HALF_HEIGHT), 0));
     at = v3_add(at, v3_scale(out, rim_out[row]));
     at.z -= rim_back[row];
     return at;

@@ -52,10 +52,9 @@ void cage_band(Cage *cage, const int *low, const int *high, int count, Chart cha
         int next = (i + 1) % count;
         double u0 = chart.u + chart.wide * i / count, u1 = chart.u + chart.wide * (i + 1) / count;
         double v0 = chart.v + chart.high * row[0], v1 = chart.v + chart.high * row[1];
-        CageFace face = { { low[i], low[next], high[next], high[i] },
-                          { u0, u1, u1, u0 },
-                          { v0, v0, v1, v1 },
-                          paints[i] };
+        CageFace face = {
+            { low[i], low[next], high[next], high[i] }, { u0, u1, u1, u0 }, { v0, v0, v1, v1 }, paints[i]
+        };
         cage_face(cage, &face);
     }
 }
@@ -99,8 +98,8 @@ void cage_cap(Cage *cage, const int *ring, int side, int first, V3 bulge, Chart 
         for (int column = 0; column < side; column++) {
             double u0 = chart.u + chart.wide * column / side, u1 = u0 + chart.wide / side;
             double v0 = chart.v + chart.high * row / side, v1 = v0 + chart.high / side;
-            CageFace face = { { grid.at[row][column], grid.at[row][column + 1],
-                                grid.at[row + 1][column + 1], grid.at[row + 1][column] },
+            CageFace face = { { grid.at[row][column], grid.at[row][column + 1], grid.at[row + 1][column + 1],
+                                grid.at[row + 1][column] },
                               { u0, u1, u1, u0 },
                               { v0, v0, v1, v1 },
                               paint };

@@ -126,10 +126,10 @@ static double in_turn(double time_s)
 
 static Stance stance(double time_s)
 {
-    static const Key lean[] = { { 0.5, 0 }, { 1.9, 0.10 }, { 2.9, 0.08 }, { 4.6, -0.03 }, { 7.6, -0.05 },
-                                { 8.6, 0.06 }, { 9.9, 0.06 }, { 11.4, -0.04 }, { 14.4, -0.05 }, { 16.2, 0.05 },
-                                { 17.6, 0 } };
-    static const Key nod[] = { { 1.2, 0 }, { 2.2, 0.04 }, { 4.6, -0.06 }, { 8.6, 0.10 }, { 9.9, 0.06 },
+    static const Key lean[] = { { 0.5, 0 },      { 1.9, 0.10 },  { 2.9, 0.08 }, { 4.6, -0.03 },
+                                { 7.6, -0.05 },  { 8.6, 0.06 },  { 9.9, 0.06 }, { 11.4, -0.04 },
+                                { 14.4, -0.05 }, { 16.2, 0.05 }, { 17.6, 0 } };
+    static const Key nod[] = { { 1.2, 0 },      { 2.2, 0.04 },   { 4.6, -0.06 }, { 8.6, 0.10 }, { 9.9, 0.06 },
                                { 11.6, -0.12 }, { 14.4, -0.10 }, { 16.2, 0.10 }, { 17.7, 0 } };
     const Gait gait = make_gait();
     double turning = in_turn(time_s), left = stamp_lift(time_s, LEFT), right = stamp_lift(time_s, RIGHT);
@@ -164,8 +164,9 @@ static void face(double time_s, double *weights)
     static const Key sternness[] = { { 7.6, 0 }, { 8.5, 0.8 }, { 9.8, 0.8 }, { 10.8, 0 } };
     face_add(weights, "smile", glide(smiles, COUNT(smiles), time_s));
     face_add(weights, "anger", glide(sternness, COUNT(sternness), time_s));
-    face_add(weights, "blink", blink_at(time_s, 1.0) + blink_at(time_s, 3.4) + blink_at(time_s, 6.1) +
-                                   blink_at(time_s, 10.4) + blink_at(time_s, 13.0) + blink_at(time_s, 16.4));
+    face_add(weights, "blink",
+             blink_at(time_s, 1.0) + blink_at(time_s, 3.4) + blink_at(time_s, 6.1) + blink_at(time_s, 10.4) +
+                 blink_at(time_s, 13.0) + blink_at(time_s, 16.4));
     face_add(weights, "browInnerUp", 0.5 * smooth(11.2, 12.4, time_s) * smooth(16.4, 15.0, time_s));
 }
 

@@ -8,14 +8,14 @@ enum { STEPS = 180 };
 /* Left, right, and for a moment up. */
 static double yaw(double time_s)
 {
-    static const Key keys[] = { { 0.4, 0 },     { 1.3, 0.95 },  { 2.1, 0.95 }, { 3.3, -0.95 },
-                                { 4.1, -0.95 }, { 5.0, 0.05 },  { 5.8, 0 } };
+    static const Key keys[] = { { 0.4, 0 },     { 1.3, 0.95 }, { 2.1, 0.95 }, { 3.3, -0.95 },
+                                { 4.1, -0.95 }, { 5.0, 0.05 }, { 5.8, 0 } };
     return glide(keys, COUNT(keys), time_s);
 }
 
 static double pitch(double time_s)
 {
-    static const Key keys[] = { { 0.4, 0 },    { 1.3, -0.04 }, { 2.1, 0.02 }, { 2.7, 0.10 }, { 3.3, -0.02 },
+    static const Key keys[] = { { 0.4, 0 },     { 1.3, -0.04 }, { 2.1, 0.02 },  { 2.7, 0.10 }, { 3.3, -0.02 },
                                 { 4.1, -0.06 }, { 4.9, -0.26 }, { 5.3, -0.26 }, { 5.9, 0 } };
     return glide(keys, COUNT(keys), time_s);
 }
@@ -40,7 +40,8 @@ static Stance stance(double time_s)
 /* The eyes are where the head will be. */
 static void face(double time_s, double *weights)
 {
-    double ahead = yaw(time_s + 0.20) - yaw(time_s), left = clamp(2.2 * ahead, 0, 0.9), right = clamp(-2.2 * ahead, 0, 0.9);
+    double ahead = yaw(time_s + 0.20) - yaw(time_s), left = clamp(2.2 * ahead, 0, 0.9),
+           right = clamp(-2.2 * ahead, 0, 0.9);
     double up = clamp(2.5 * (pitch(time_s) - pitch(time_s + 0.20)), 0, 0.7);
     face_add(weights, "eyeLookOutLeft", left);
     face_add(weights, "eyeLookInRight", left);

@@ -23,7 +23,8 @@ static Stance stance(double time_s)
                         .path = path,
                         .apart = 0.092,
                         .count = { 1, 1 },
-                        .steps = { { { 0.06, left_lands_s, 0.014, 0.16 } }, { { 0.76, right_lands_s, 0.014, 0.16 } } } };
+                        .steps = { { { 0.06, left_lands_s, 0.014, 0.16 } },
+                                   { { 0.76, right_lands_s, 0.014, 0.16 } } } };
     /* 1 where the left foot carries, -1 where the right does. */
     double phase = 2 * PI * (time_s - 1.03) / period_s, carries = cos(phase), leads = sin(phase + 0.5);
     Stance s = stance_calm();

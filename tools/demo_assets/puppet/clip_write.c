@@ -18,8 +18,8 @@ static void add_channel(Animation *animation, const double *values, const char *
     int output = write_floats(animation->w, values, scalars ? animation->frames * width : animation->frames, type,
                               scalars ? 1 : width, TARGET_NONE);
     buffer_print(&animation->samplers, "%s{\"input\":%d,\"output\":%d}", n ? ",\n" : "", animation->times, output);
-    buffer_print(&animation->channels, "%s{\"sampler\":%d,\"target\":{\"node\":%d,\"path\":\"%s\"}}", n ? ",\n" : "",
-                 n, node, path);
+    buffer_print(&animation->channels, "%s{\"sampler\":%d,\"target\":{\"node\":%d,\"path\":\"%s\"}}", n ? ",\n" : "", n,
+                 node, path);
 }
 
 /* Signs are chosen so that neighbours lie near each other. */

@@ -7,8 +7,7 @@
 
 const Clip *clip_number(int number)
 {
-    static const Clip *const clips[CLIP_COUNT] = { &clip_idle, &clip_walk, &clip_bow, &clip_look_round,
-                                                   &clip_dance };
+    static const Clip *const clips[CLIP_COUNT] = { &clip_idle, &clip_walk, &clip_bow, &clip_look_round, &clip_dance };
     return clips[number];
 }
 

@@ -15,10 +15,10 @@ typedef struct {
 
 typedef struct {
     const char *name;
-    int steps;                     /* of 1/30 s; it has one frame more */
-    Stance (*stance)(double time_s); /* also a little before the start and after the end */
+    int steps;                                    /* of 1/30 s; it has one frame more */
+    Stance (*stance)(double time_s);              /* also a little before the start and after the end */
     void (*face)(double time_s, double *weights); /* fills zeros: a weight for each of the mask's targets */
-    int (*cues)(Cue *cues);        /* in time order; returns their number, up to CUES_MAX */
+    int (*cues)(Cue *cues);                       /* in time order; returns their number, up to CUES_MAX */
 } Clip;
 
 extern const Clip clip_idle, clip_walk, clip_bow, clip_look_round, clip_dance;

@@ -11,12 +11,14 @@ typedef struct {
     double foot, toes; /* what holds it; the rest is the shin */
 } Slice;
 
+/* clang-format off */
 static const Slice slices[] = {
     { 0.110, -0.012, 0, 0.0370, 0.044, 0.046, 0.60, 0 },   { 0.062, -0.010, 50, 0.0390, 0.052, 0.082, 1, 0 },
     { 0.039, 0.052, 86, 0.0420, 0.046, 0.047, 1, 0 },
     { 0.027, 0.122, 90, 0.0480, 0.030, 0.035, 0.5, 0.5 },  { 0.022, 0.158, 90, 0.0450, 0.023, 0.030, 0, 1 },
     { 0.018, 0.184, 90, 0.0330, 0.016, 0.022, 0, 1 },
 };
+/* clang-format on */
 enum { SLICES = sizeof slices / sizeof *slices };
 
 static V3 slice_place(const Slice *s, int i)

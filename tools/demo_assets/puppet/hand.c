@@ -42,8 +42,7 @@ static const Slice slices[SLICES] = { { 0.012, 0.0300, 0.0185, 0 },
 static void slice_build(Cage *cage, int side, const Palm *palm, int s, int ring[ARM_RING])
 {
     const Slice *slice = &slices[s];
-    Hold hold = hold_mix(hold_one(side_joint(side, FOREARM)), hold_one(side_joint(side, HAND)),
-                         s == 0 ? 0.75 : 1);
+    Hold hold = hold_mix(hold_one(side_joint(side, FOREARM)), hold_one(side_joint(side, HAND)), s == 0 ? 0.75 : 1);
     for (int i = 0; i < 5; i++) {
         double across = 1 - 0.5 * i, arch = 1 - 0.45 * across * across * across * across;
         double wide = slice->to_thumb + slice->half_width * across;
@@ -68,8 +67,8 @@ static const Finger fingers[4] = {
     { RING, { 0.092, -0.0135, 0 }, { 0.998, -0.04, -0.04 }, 0.074, 0.0118, { 0.25, 0.58, 0.1, 0.05 } },
     { LITTLE, { 0.088, -0.0325, 0 }, { 0.994, -0.09, -0.04 }, 0.058, 0.0105, { 0.36, 0.58, 0.1, 0.05 } },
 };
-static const Finger thumb = { THUMB,   { 0.046, 0.052, -0.006 }, { 0.80, 0.58, -0.16 },
-                              0.054,   0.0135,                   { 0.14, 0.61, 0.1, 0.05 } };
+static const Finger thumb = { THUMB,  { 0.046, 0.052, -0.006 }, { 0.80, 0.58, -0.16 }, 0.054,
+                              0.0135, { 0.14, 0.61, 0.1, 0.05 } };
 
 enum { FINGER_RINGS = 4 };
 
@@ -91,8 +90,8 @@ static void finger_build(Cage *cage, int side, const Palm *palm, const Finger *f
         double rows[2] = { (double)r / FINGER_RINGS, (r + 1.0) / FINGER_RINGS };
         V3 middle = v3_add(finger->root, v3_scale(way, along[r] * finger->length));
         double half = finger->radius * size[r];
-        Hold hold = hold_mix(hold_one(side_joint(side, finger->joint)),
-                             hold_one(side_joint(side, finger->joint + 1)), tip[r]);
+        Hold hold = hold_mix(hold_one(side_joint(side, finger->joint)), hold_one(side_joint(side, finger->joint + 1)),
+                             tip[r]);
         hold = hold_mix(hold, hold_one(side_joint(side, HAND)), r == 0 ? 0.45 : 0);
         for (int i = 0; i < 4; i++) {
             double w = i == 0 || i == 3 ? -half : half, t = i < 2 ? half : -half;

@@ -2,7 +2,7 @@
 
 typedef struct {
     const char *name[SIDES]; /* of a joint in the middle: the first */
-    int parent; /* of a side's joint: another of that side, or UP_ plus one of the middle */
+    int parent;              /* of a side's joint: another of that side, or UP_ plus one of the middle */
     V3 place;
 } Joint;
 

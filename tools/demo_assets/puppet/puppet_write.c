@@ -47,7 +47,8 @@ static void write_skin(Writer *w, Buffer *json)
         m[14] = -place.z;
     }
     int accessor = write_floats(w, matrices, JOINT_COUNT, "MAT4", 16, TARGET_NONE);
-    buffer_print(json, "\"skins\":[{\"name\":\"puppet\",\"skeleton\":0,\"inverseBindMatrices\":%d,\"joints\":[", accessor);
+    buffer_print(json, "\"skins\":[{\"name\":\"puppet\",\"skeleton\":0,\"inverseBindMatrices\":%d,\"joints\":[",
+                 accessor);
     for (int joint = 0; joint < JOINT_COUNT; joint++) {
         buffer_print(json, joint ? ",%d" : "%d", joint);
     }

@@ -21,8 +21,8 @@ enum { STATIONS = sizeof stations / sizeof *stations, BARE = STATIONS - 2 };
  * -1 at the bottom over 0 at the arm to 1 at the top. */
 static const struct {
     double out, height;
-} around[ARM_RING] = { { 0, 1 },      { 0.75, 0.80 }, { 1, 0.05 },     { 1, -0.50 },  { 0.75, -0.95 },
-                       { 0, -1.04 },  { -0.75, -0.95 }, { -1, -0.50 }, { -1, 0.05 },  { -0.75, 0.80 } };
+} around[ARM_RING] = { { 0, 1 },     { 0.75, 0.80 },   { 1, 0.05 },   { 1, -0.50 }, { 0.75, -0.95 },
+                       { 0, -1.04 }, { -0.75, -0.95 }, { -1, -0.50 }, { -1, 0.05 }, { -0.75, 0.80 } };
 
 static V3 station_place(const Station *station, int i)
 {
@@ -48,8 +48,7 @@ static Hold station_hold(int side, int station, V3 at)
     if (station < BARE) {
         return cloth_hold(side, at);
     }
-    return hold_mix(hold_one(side_joint(side, FOREARM)), hold_one(side_joint(side, HAND)),
-                    station == BARE ? 0 : 0.35);
+    return hold_mix(hold_one(side_joint(side, FOREARM)), hold_one(side_joint(side, HAND)), station == BARE ? 0 : 0.35);
 }
 
 void sleeve_build(Cage *cage, int side, const int border[ARM_RING], int wrist[ARM_RING])

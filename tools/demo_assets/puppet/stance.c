@@ -10,10 +10,9 @@ typedef struct {
 
 Stance stance_calm(void)
 {
-    Stance stance = { .hips = { 0, -0.024, -0.012 },
-                      .hips_turn = { 0.06, 0, 0 },
-                      .waist = { 0.05, 0, 0 },
-                      .head = { -0.09, 0, 0 } };
+    Stance stance = {
+        .hips = { 0, -0.024, -0.012 }, .hips_turn = { 0.06, 0, 0 }, .waist = { 0.05, 0, 0 }, .head = { -0.09, 0, 0 }
+    };
     HandStance hand = { .wrist = { 0.255, -0.215, 0.195 },
                         .elbow = { 0.85, -0.15, -0.50 },
                         .roll = 0.15,

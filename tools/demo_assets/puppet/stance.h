@@ -14,11 +14,11 @@ typedef struct {
 } FootStance;
 
 typedef struct {
-    V3 wrist; /* in the chest's frame; x counts outwards on both sides */
-    V3 elbow; /* where the elbow points, likewise */
-    double roll;          /* of the hand about its length: above 0 the thumb goes down */
-    double bend;          /* of the wrist: above 0 towards the palm */
-    double curl, thumb;   /* of the fingers: 0 is straight, 1 a fist */
+    V3 wrist;           /* in the chest's frame; x counts outwards on both sides */
+    V3 elbow;           /* where the elbow points, likewise */
+    double roll;        /* of the hand about its length: above 0 the thumb goes down */
+    double bend;        /* of the wrist: above 0 towards the palm */
+    double curl, thumb; /* of the fingers: 0 is straight, 1 a fist */
 } HandStance;
 
 typedef struct {

@@ -125,12 +125,10 @@ static void split_faces(const Cage *cage, const int *edge_of, Cage *fine)
         }
         for (int i = 0; i < 4; i++) {
             int next = (i + 1) % 4, last = (i + 3) % 4;
-            CageFace part = {
-                { face->corner[i], edge_of[4 * f + i], cage->vertex_count + f, edge_of[4 * f + last] },
-                { face->u[i], 0.5 * (face->u[i] + face->u[next]), u, 0.5 * (face->u[i] + face->u[last]) },
-                { face->v[i], 0.5 * (face->v[i] + face->v[next]), v, 0.5 * (face->v[i] + face->v[last]) },
-                face->paint
-            };
+            CageFace part = { { face->corner[i], edge_of[4 * f + i], cage->vertex_count + f, edge_of[4 * f + last] },
+                              { face->u[i], 0.5 * (face->u[i] + face->u[next]), u, 0.5 * (face->u[i] + face->u[last]) },
+                              { face->v[i], 0.5 * (face->v[i] + face->v[next]), v, 0.5 * (face->v[i] + face->v[last]) },
+                              face->paint };
             cage_face(fine, &part);
         }
     }

@@ -14,8 +14,23 @@ typedef struct {
 } Girth;
 
 /* From the hips to the neck. The cage lies outside of the surface by about 3 in 100. */
-enum { HIP_ROW, SEAT_ROW, SASH_LOW, SASH_LOW_EDGE, SASH_HIGH_EDGE, SASH_HIGH, ARMPIT_ROW, BREAST_ROW,
-       ARM_ROW, SHOULDER_ROW, COLLAR_ROW, COLLAR_TOP, COLLAR_INSIDE, NECK_ROW, TORSO_ROWS };
+enum {
+    HIP_ROW,
+    SEAT_ROW,
+    SASH_LOW,
+    SASH_LOW_EDGE,
+    SASH_HIGH_EDGE,
+    SASH_HIGH,
+    ARMPIT_ROW,
+    BREAST_ROW,
+    ARM_ROW,
+    SHOULDER_ROW,
+    COLLAR_ROW,
+    COLLAR_TOP,
+    COLLAR_INSIDE,
+    NECK_ROW,
+    TORSO_ROWS
+};
 
 static const Girth girths[TORSO_ROWS] = {
     { 0.800, 0.190, 0.138, 0.146, -0.005 }, { 0.885, 0.186, 0.132, 0.142, -0.005 },
@@ -127,10 +142,9 @@ static void band_build(Cage *cage, int row, int low[TORSO_RING], int high[TORSO_
         double u0 = chart.u + chart.wide * i / TORSO_RING, u1 = u0 + chart.wide / TORSO_RING;
         double v1 = chart.v + chart.high * (TORSO_ROWS - row) / TORSO_ROWS;
         double v0 = v1 - chart.high / TORSO_ROWS;
-        CageFace face = { { low[i], low[next], high[next], high[i] },
-                          { u0, u1, u1, u0 },
-                          { v1, v1, v0, v0 },
-                          torso_paint(row, i) };
+        CageFace face = {
+            { low[i], low[next], high[next], high[i] }, { u0, u1, u1, u0 }, { v1, v1, v0, v0 }, torso_paint(row, i)
+        };
         if (!is_arm_hole(row, i)) {
             cage_face(cage, &face);
         }

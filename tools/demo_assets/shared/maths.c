@@ -99,8 +99,7 @@ double curve(const Key *keys, int count, double x)
         }
         double width = keys[i + 1].x - keys[i].x, k = (x - keys[i].x) / width;
         double k2 = k * k, k3 = k2 * k;
-        return (2 * k3 - 3 * k2 + 1) * keys[i].y +
-               (k3 - 2 * k2 + k) * width * slope(keys, count, i) +
+        return (2 * k3 - 3 * k2 + 1) * keys[i].y + (k3 - 2 * k2 + k) * width * slope(keys, count, i) +
                (3 * k2 - 2 * k3) * keys[i + 1].y + (k3 - k2) * width * slope(keys, count, i + 1);
     }
     return keys[count - 1].y;
@@ -118,6 +117,6 @@ double noise2(double x, double y)
 {
     int cx = (int)floor(x), cy = (int)floor(y);
     double kx = smooth(0, 1, x - cx), ky = smooth(0, 1, y - cy);
-    return mix(mix(lattice(cx, cy), lattice(cx + 1, cy), kx),
-               mix(lattice(cx, cy + 1), lattice(cx + 1, cy + 1), kx), ky);
+    return mix(mix(lattice(cx, cy), lattice(cx + 1, cy), kx), mix(lattice(cx, cy + 1), lattice(cx + 1, cy + 1), kx),
+               ky);
 }

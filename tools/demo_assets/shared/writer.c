@@ -25,8 +25,8 @@ int view_open(Writer *w)
 
 int view_close(Writer *w, int start, int target)
 {
-    buffer_print(&w->views, "%s{\"buffer\":0,\"byteOffset\":%d,\"byteLength\":%d",
-                 w->view_count ? ",\n" : "", start, w->data.count - start);
+    buffer_print(&w->views, "%s{\"buffer\":0,\"byteOffset\":%d,\"byteLength\":%d", w->view_count ? ",\n" : "", start,
+                 w->data.count - start);
     if (target != TARGET_NONE) {
         buffer_print(&w->views, ",\"target\":%d", target);
     }
@@ -36,8 +36,8 @@ int view_close(Writer *w, int start, int target)
 
 void accessor_begin(Writer *w, int component, int count, const char *type)
 {
-    buffer_print(&w->accessors, "%s{\"componentType\":%d,\"count\":%d,\"type\":\"%s\"",
-                 w->accessor_count ? ",\n" : "", component, count, type);
+    buffer_print(&w->accessors, "%s{\"componentType\":%d,\"count\":%d,\"type\":\"%s\"", w->accessor_count ? ",\n" : "",
+                 component, count, type);
 }
 
 int accessor_end(Writer *w)
@@ -69,8 +69,8 @@ void print_range(Writer *w, const F3 *values, int count, F3 low, F3 high)
             high.z = v.z;
         }
     }
-    buffer_print(&w->accessors, ",\"min\":[%.9g,%.9g,%.9g],\"max\":[%.9g,%.9g,%.9g]", (double)low.x,
-                 (double)low.y, (double)low.z, (double)high.x, (double)high.y, (double)high.z);
+    buffer_print(&w->accessors, ",\"min\":[%.9g,%.9g,%.9g],\"max\":[%.9g,%.9g,%.9g]", (double)low.x, (double)low.y,
+                 (double)low.z, (double)high.x, (double)high.y, (double)high.z);
 }
 
 int write_vectors(Writer *w, const V3 *values, int count, int with_range)

@@ -37,8 +37,8 @@ void print_range(Writer *w, const F3 *values, int count, F3 low, F3 high);
 int write_vectors(Writer *w, const V3 *values, int count, int with_range);
 int write_floats(Writer *w, const double *values, int count, const char *type, int width, int target);
 int write_scalars(Writer *w, const double *values, int count, int with_range); /* ascending, if with a range */
-int write_joints(Writer *w, const int *joints, int count); /* four for each of `count` vertices, below 256 */
-int write_indices(Writer *w, const uint32_t *indices, int count);              /* below 65536 */
+int write_joints(Writer *w, const int *joints, int count);        /* four for each of `count` vertices, below 256 */
+int write_indices(Writer *w, const uint32_t *indices, int count); /* below 65536 */
 
 /* Prints a material object, white and not metallic; the first has no comma before it. */
 void material_write(Buffer *json, int is_first, const char *name, double roughness);

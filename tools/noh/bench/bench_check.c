@@ -1,5 +1,5 @@
-/* bench_check.c: a method is timed only after its vertices matched the CPU reference, so that like is compared with like.
- * Vertices come back through transform feedback. */
+/* bench_check.c: a method is timed only after its vertices matched the CPU reference, so that like is compared with
+ * like. Vertices come back through transform feedback. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -95,12 +95,12 @@ static int check_pose(check *c, const char *pose, int with_normals, const char *
     }
     measure(c, &position_error, &normal_error);
     if (!(position_error <= position_limit)) {
-        return tool_fail(subject, "%s renders something else: %s, a vertex is off by %g (at most %g)", c->method->name, pose,
-                         position_error, position_limit);
+        return tool_fail(subject, "%s renders something else: %s, a vertex is off by %g (at most %g)", c->method->name,
+                         pose, position_error, position_limit);
     }
     if (with_normals && !(normal_error <= normal_limit)) {
-        return tool_fail(subject, "%s renders something else: %s, a normal is off by %g (at most %g)", c->method->name, pose,
-                         normal_error, normal_limit);
+        return tool_fail(subject, "%s renders something else: %s, a normal is off by %g (at most %g)", c->method->name,
+                         pose, normal_error, normal_limit);
     }
     return 0;
 }

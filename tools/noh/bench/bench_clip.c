@@ -16,16 +16,16 @@
 #define CHECK_TIMES 200u
 #define TOLERANCE 1e-3f
 #define TOLERANCE_LENGTH 1e-2f /* keys of odd sample rates lie up to a tick, 1/48,000 s, off their frames */
-#define SEEK_JOINTS 31.0  /* a seek is reported for a skeleton of this size */
+#define SEEK_JOINTS 31.0       /* a seek is reported for a skeleton of this size */
 #define EVERYTHING 0xffffffffu
 
 typedef struct clip_bench {
     const bench_clip_set *set;
-    bench_cache all, alone, two; /* all segments of all clips; what a player needs; the least that works */
+    bench_cache all, alone, two;  /* all segments of all clips; what a player needs; the least that works */
     noh_transform *poses, *other; /* [BENCH_INSTANCES][joints_max] */
     uint32_t clip_of[BENCH_INSTANCES];
     uint64_t phases[BENCH_INSTANCES];
-    const void *volatile seen;   /* keeps the results alive */
+    const void *volatile seen; /* keeps the results alive */
 } clip_bench;
 
 static uint32_t next_random(uint32_t *state)
@@ -56,7 +56,8 @@ static void run_warm_copy(void *self, uint32_t frame)
 {
     clip_bench *b = self;
     const bench_clip *c = &b->set->clips[0];
-    memcpy(b->poses, c->keys + (size_t)(frame % c->info.frame_count) * c->info.joint_count, c->info.joint_count * sizeof *b->poses);
+    memcpy(b->poses, c->keys + (size_t)(frame % c->info.frame_count) * c->info.joint_count,
+           c->info.joint_count * sizeof *b->poses);
     b->seen = b->poses;
 }
 
@@ -99,7 +100,8 @@ static void run_shared(void *self, uint32_t frame)
     noh_clip_cache_begin_frame(b->all.cache);
     for (uint32_t i = 0; i < BENCH_INSTANCES; i++) {
         const bench_clip *c = &b->set->clips[b->clip_of[i]];
-        noh_clip_cache_want(b->all.cache, b->clip_of[i], bench_clip_time(c, frame + 1u, b->phases[i]), c->info.joint_count);
+        noh_clip_cache_want(b->all.cache, b->clip_of[i], bench_clip_time(c, frame + 1u, b->phases[i]),
+                            c->info.joint_count);
     }
     noh_clip_cache_work(b->all.cache, EVERYTHING);
     for (uint32_t i = 0; i < BENCH_INSTANCES; i++) {
@@ -176,7 +178,8 @@ static int check_caches(clip_bench *b)
                 noh_clip_sample(b->two.cache, 0, there, joints, b->poses, NULL);
                 noh_clip_sample(b->all.cache, 0, there, joints, b->other, NULL);
                 if (memcmp(b->poses, b->other, joints * sizeof *b->poses) != 0) {
-                    return tool_fail("bench", "clip '%s' differs after a seek to %.4f s", c->name, (double)there / 48000.0);
+                    return tool_fail("bench", "clip '%s' differs after a seek to %.4f s", c->name,
+                                     (double)there / 48000.0);
                 }
             }
         }
@@ -220,24 +223,31 @@ enum { WARM, WARM_KEYS, WARM_COPY, ALONE, SHARED, SHARED_KEYS, SEEK, SEEK_KEYS, 
 
 static void add_rows(bench_job *job, const clip_bench *b, const bench_cells *cells)
 {
-    const double joints = b->set->clips[0].info.joint_count, crowd = shared_joints(b), seek = 1e-3 * SEEK_JOINTS / joints;
+    const double joints = b->set->clips[0].info.joint_count, crowd = shared_joints(b),
+                 seek = 1e-3 * SEEK_JOINTS / joints;
     double cost[CELLS];
     char name[64];
     for (uint32_t i = 0; i < CELLS; i++) {
         cost[i] = bench_median(cells, i);
     }
-    bench_add_row(&job->rows, "clip/warm", "raw-keys", cost[WARM_KEYS] / joints, cost[WARM] / joints, "ns/joint", cells->rounds);
-    bench_add_row(&job->rows, "clip/warm", "memcpy", cost[WARM_COPY] / joints, cost[WARM] / joints, "ns/joint", cells->rounds);
-    bench_add_row(&job->rows, "clip/alone", "raw-keys", cost[WARM_KEYS] / joints, cost[ALONE] / joints, "ns/joint", cells->rounds);
+    bench_add_row(&job->rows, "clip/warm", "raw-keys", cost[WARM_KEYS] / joints, cost[WARM] / joints, "ns/joint",
+                  cells->rounds);
+    bench_add_row(&job->rows, "clip/warm", "memcpy", cost[WARM_COPY] / joints, cost[WARM] / joints, "ns/joint",
+                  cells->rounds);
+    bench_add_row(&job->rows, "clip/alone", "raw-keys", cost[WARM_KEYS] / joints, cost[ALONE] / joints, "ns/joint",
+                  cells->rounds);
     snprintf(name, sizeof name, "clip/shared-%ux%u", (unsigned)BENCH_INSTANCES, (unsigned)b->set->count);
-    bench_add_row(&job->rows, name, "raw-keys", cost[SHARED_KEYS] / crowd, cost[SHARED] / crowd, "ns/joint", cells->rounds);
-    bench_add_row(&job->rows, "clip/seek", "raw-keys", seek * cost[SEEK_KEYS], seek * cost[SEEK], "us/31", cells->rounds);
+    bench_add_row(&job->rows, name, "raw-keys", cost[SHARED_KEYS] / crowd, cost[SHARED] / crowd, "ns/joint",
+                  cells->rounds);
+    bench_add_row(&job->rows, "clip/seek", "raw-keys", seek * cost[SEEK_KEYS], seek * cost[SEEK], "us/31",
+                  cells->rounds);
 }
 
 static int measure(bench_job *job, clip_bench *b)
 {
-    static void (*const works[CELLS])(void *self, uint32_t frame) = { run_warm, run_warm_keys, run_warm_copy, run_alone,
-                                                                      run_shared, run_shared_keys, run_seek, run_seek_keys };
+    static void (*const works[CELLS])(void *self, uint32_t frame) = { run_warm,  run_warm_keys, run_warm_copy,
+                                                                      run_alone, run_shared,    run_shared_keys,
+                                                                      run_seek,  run_seek_keys };
     bench_cells cells;
     int status = check_caches(b);
     memset(&cells, 0, sizeof cells);

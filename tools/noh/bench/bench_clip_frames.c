@@ -1,8 +1,8 @@
 /* bench_clip_frames.c: row clip/worst-frame: a minute of a hundred instances at 60 Hz.
  *
- * The instances of a clip loop a tenth of a second apart; the cache holds the segments that they cover and few more, so that
- * decoding never ends. Each frame requests the segments needed next and decodes as much as a fixed budget allows. A frame's
- * time is the least of several passes over the same minute, which removes what else the machine did. */
+ * The instances of a clip loop a tenth of a second apart; the cache holds the segments that they cover and few more, so
+ * that decoding never ends. Each frame requests the segments needed next and decodes as much as a fixed budget allows.
+ * A frame's time is the least of several passes over the same minute, which removes what else the machine did. */
 #include <stdlib.h>
 
 #include "bench_clip.h"
@@ -10,17 +10,17 @@
 
 #define MINUTE 3600u
 #define STAGGER_TICKS 4800u
-#define SPARE_SLOTS 3u       /* of a clip: decoded ahead, and a sample between two segments */
-#define BUDGET_PART 1.25     /* of what is decoded on average: room to catch up */
+#define SPARE_SLOTS 3u   /* of a clip: decoded ahead, and a sample between two segments */
+#define BUDGET_PART 1.25 /* of what is decoded on average: room to catch up */
 #define EVERYTHING 0xffffffffu
 
 typedef struct minute {
     const bench_clip_set *set;
     bench_cache cache;
-    noh_transform *poses;     /* [BENCH_INSTANCES][joints_max] */
-    double *best, *times;     /* [MINUTE] nanoseconds; times: a copy to be sorted */
+    noh_transform *poses;            /* [BENCH_INSTANCES][joints_max] */
+    double *best, *times;            /* [MINUTE] nanoseconds; times: a copy to be sorted */
     uint32_t ahead[BENCH_CLIPS_MAX]; /* frames of the game */
-    uint32_t budget;          /* track-frames per frame */
+    uint32_t budget;                 /* track-frames per frame */
 } minute;
 
 static uint64_t segment_ticks(const bench_clip *c)
@@ -54,7 +54,8 @@ static int open_minute(minute *m, const bench_clip_set *set)
     for (uint32_t i = 0; i < set->count; i++) {
         const bench_clip *c = &set->clips[i];
         m->ahead[i] = (uint32_t)(segment_ticks(c) / BENCH_FRAME_TICKS) + 1u;
-        budget += (double)c->info.track_count * c->info.frame_count * BENCH_FRAME_TICKS / (double)(c->info.duration_ticks + 1u);
+        budget += (double)c->info.track_count * c->info.frame_count * BENCH_FRAME_TICKS /
+                  (double)(c->info.duration_ticks + 1u);
     }
     m->budget = (uint32_t)(BUDGET_PART * budget) + 1u;
     return status || (m->poses && m->best && m->times) ? status : tool_fail("bench", "out of memory");
@@ -74,7 +75,8 @@ static void want_all(minute *m, uint32_t frame, int ahead)
         const uint32_t k = i % m->set->count;
         const bench_clip *c = &m->set->clips[k];
         const uint64_t phase = (uint64_t)(i / m->set->count) * STAGGER_TICKS;
-        noh_clip_cache_want(m->cache.cache, k, bench_clip_time(c, frame + (ahead ? m->ahead[k] : 0u), phase), c->info.joint_count);
+        noh_clip_cache_want(m->cache.cache, k, bench_clip_time(c, frame + (ahead ? m->ahead[k] : 0u), phase),
+                            c->info.joint_count);
     }
 }
 
@@ -87,8 +89,8 @@ static void play_frame(minute *m, uint32_t frame)
         const uint32_t k = i % m->set->count;
         const bench_clip *c = &m->set->clips[k];
         const uint64_t phase = (uint64_t)(i / m->set->count) * STAGGER_TICKS;
-        noh_clip_sample(m->cache.cache, k, bench_clip_time(c, frame, phase), c->info.joint_count, m->poses + (size_t)i * m->set->joints_max,
-                        NULL);
+        noh_clip_sample(m->cache.cache, k, bench_clip_time(c, frame, phase), c->info.joint_count,
+                        m->poses + (size_t)i * m->set->joints_max, NULL);
     }
 }
 

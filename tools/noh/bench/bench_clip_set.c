@@ -108,7 +108,8 @@ int bench_clip_set_open(bench_clip_set *set, const bench_job *job)
         }
     }
     for (uint32_t i = 0; i < set->count && !status; i++) {
-        set->joints_max = set->clips[i].info.joint_count > set->joints_max ? set->clips[i].info.joint_count : set->joints_max;
+        set->joints_max = set->clips[i].info.joint_count > set->joints_max ? set->clips[i].info.joint_count
+                                                                           : set->joints_max;
         status = decode_keys(set, i);
     }
     return status;
@@ -159,7 +160,8 @@ int64_t bench_clip_time(const bench_clip *c, uint32_t frame, uint64_t phase)
 }
 
 /* All that plain C offers: no aliases, one division, no branch. */
-static inline void blend_key(const noh_transform *restrict a, const noh_transform *restrict b, float fraction, noh_transform *restrict out)
+static inline void blend_key(const noh_transform *restrict a, const noh_transform *restrict b, float fraction,
+                             noh_transform *restrict out)
 {
     const float *p = a->rotation, *q = b->rotation;
     const float dot = p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3];

@@ -23,9 +23,9 @@ typedef struct cpu_bench {
     void *layer_memory;
     noh_morph_layers layers;
     size_t layer_bytes;
-    float *dense;         /* [target_count][vertex_count][9] */
-    float *sums;          /* [vertex_count][9] */
-    uint8_t *copy;        /* what memcpy writes */
+    float *dense;              /* [target_count][vertex_count][9] */
+    float *sums;               /* [vertex_count][9] */
+    uint8_t *copy;             /* what memcpy writes */
     const void *volatile seen; /* keeps the results alive */
 } cpu_bench;
 
@@ -187,8 +187,8 @@ static uint32_t list_kernels(kernel_entry *k)
     return count;
 }
 
-static void add_rows(bench_job *job, const cpu_bench *b, const bench_cells *cells, const kernel_entry *kernels, uint32_t count,
-                     const char *prefix)
+static void add_rows(bench_job *job, const cpu_bench *b, const bench_cells *cells, const kernel_entry *kernels,
+                     uint32_t count, const char *prefix)
 {
     double pairs = b->weights.pairs > 0.0 ? b->weights.pairs : 1.0;
     double dense = bench_median(cells, count) / pairs, copy = bench_median(cells, count + 1u) / pairs;

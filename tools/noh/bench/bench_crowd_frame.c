@@ -1,8 +1,9 @@
-/* bench_crowd_frame.c: rows crowd/cpu and crowd/gpu: a frame of 1,000 bodies over 100 m (tools/noh/crowd/crowd.h), at several
- * allowed errors in pixels, against the same frame without LOD. None where a pack has no skinned mesh with levels, or no clips.
+/* bench_crowd_frame.c: rows crowd/cpu and crowd/gpu: a frame of 1,000 bodies over 100 m (tools/noh/crowd/crowd.h), at
+ * several allowed errors in pixels, against the same frame without LOD. None where a pack has no skinned mesh with
+ * levels, or no clips.
  *
- * The CPU's part ends with palettes and weights handed to the library; the GPU's is accumulation, upload and draws up to
- * glFinish, into 1280 x 720 pixels of four samples. On a software rasteriser the GPU's part is a whole frame less
+ * The CPU's part ends with palettes and weights handed to the library; the GPU's is accumulation, upload and draws up
+ * to glFinish, into 1280 x 720 pixels of four samples. On a software rasteriser the GPU's part is a whole frame less
  * the CPU's part, in process CPU time. */
 #include <stdio.h>
 #include <stdlib.h>
@@ -95,7 +96,8 @@ static int open_stand(fair *f, uint32_t i)
         status = crowd_open(&s->crowd, &s->plan, s->memory, (size_t)s->plan.cpu_bytes, g, &f->job->files[0]);
         s->is_open = !status;
     }
-    if (!status && (s->crowd.used_bytes != s->plan.cpu_bytes || noh_gl_ledger_bytes(&s->crowd.ledger) != s->plan.gpu_bytes)) {
+    if (!status &&
+        (s->crowd.used_bytes != s->plan.cpu_bytes || noh_gl_ledger_bytes(&s->crowd.ledger) != s->plan.gpu_bytes)) {
         status = tool_fail("bench", "a crowd takes other bytes than were planned");
     }
     return status;
@@ -182,12 +184,14 @@ static void add_rows(fair *f, const char *part, const double *cost, uint32_t rou
         char name[64];
         snprintf(name, sizeof name, "crowd/%s/%g-pixel%s", part, (double)knobs[i], knobs[i] > 1.0f ? "s" : "");
         bench_add_row(&f->job->rows, name, "without-detail", cost[PLAIN] * 1e-6, cost[i] * 1e-6, "ms/frame", rounds);
-        bench_add_row(&f->job->rows, name, "without-detail, unculled", cost[UNCULLED] * 1e-6, cost[i] * 1e-6, "ms/frame", rounds);
+        bench_add_row(&f->job->rows, name, "without-detail, unculled", cost[UNCULLED] * 1e-6, cost[i] * 1e-6,
+                      "ms/frame", rounds);
     }
 }
 
 /* Time one part of all variants; cost[VARIANTS] in nanoseconds. */
-static int measure(fair *f, void (*run)(void *, uint32_t), bench_clock *clock, uint32_t rounds, const char *what, double *cost)
+static int measure(fair *f, void (*run)(void *, uint32_t), bench_clock *clock, uint32_t rounds, const char *what,
+                   double *cost)
 {
     fair_work works[VARIANTS];
     bench_cells cells;

@@ -1,5 +1,6 @@
 /* bench_crowd_pose.c: rows crowd/pose: what 1,000 characters on the first skeleton of a pack cost the CPU, from
- * clocks to palettes, posed at the update rate that pixels need, and in every frame. None where a pack has no opened_clips. */
+ * clocks to palettes, posed at the update rate that pixels need, and in every frame. None where a pack has no
+ * opened_clips. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,11 +11,11 @@
 #define SAMPLE_NS 2e7
 #define CROWD 1000u
 #define CLIPS_MAX 32u
-#define FRAME_TICKS 800u  /* 60 frames a second */
-#define FIELD_M 100.0f    /* radius of the disc over which they are spread evenly */
-#define VIEW_RAD 1.0472f  /* 60 degrees */
+#define FRAME_TICKS 800u /* 60 frames a second */
+#define FIELD_M 100.0f   /* radius of the disc over which they are spread evenly */
+#define VIEW_RAD 1.0472f /* 60 degrees */
 #define VIEW_LINES 720u
-#define FLESH_M 0.06f     /* radius round bones, since there is no mesh to measure */
+#define FLESH_M 0.06f /* radius round bones, since there is no mesh to measure */
 
 typedef struct crowd {
     noh_skeleton skeleton;
@@ -26,9 +27,9 @@ typedef struct crowd {
     noh_clip_cache *cache;
     noh_character_scratch scratch;
     float *radius_m, *rate_errors;
-    size_t bytes;              /* of one character */
-    uint8_t *characters;       /* [CROWD][bytes] */
-    float *palette, *expected; /* [joint_count][12] */
+    size_t bytes;               /* of one character */
+    uint8_t *characters;        /* [CROWD][bytes] */
+    float *palette, *expected;  /* [joint_count][12] */
     const void *volatile shown; /* keeps the results alive */
     float scales[CROWD];
 } crowd;
@@ -85,7 +86,8 @@ static void run_lod(void *self, uint32_t frame)
 
 /* ---- making ---- */
 
-static void sample_clip(void *user, uint32_t clip, uint32_t tick, uint32_t joints, noh_transform *pose, uint32_t floats, float *values)
+static void sample_clip(void *user, uint32_t clip, uint32_t tick, uint32_t joints, noh_transform *pose, uint32_t floats,
+                        float *values)
 {
     (void)floats;
     (void)values;
@@ -134,7 +136,8 @@ static int open_cache(crowd *c)
         noh_clip_info_of(c->opened_clips[i], &info);
         desc.cached_segment_count += info.segment_count;
     }
-    desc.cached_segment_count = desc.cached_segment_count < NOH_CLIP_CACHE_SEGMENTS_MIN ? NOH_CLIP_CACHE_SEGMENTS_MIN : desc.cached_segment_count;
+    desc.cached_segment_count = desc.cached_segment_count < NOH_CLIP_CACHE_SEGMENTS_MIN ? NOH_CLIP_CACHE_SEGMENTS_MIN
+                                                                                        : desc.cached_segment_count;
     bytes = noh_clip_cache_size(&desc, &error);
     c->cache_memory = bytes ? malloc(bytes) : NULL;
     if (!c->cache_memory || noh_clip_cache_init(c->cache_memory, bytes, &desc, &c->cache, &error)) {
@@ -213,7 +216,9 @@ static int make_characters(crowd *c)
             return tool_fail_error("bench", &error);
         }
     }
-    return noh_character_scratch_init(c->scratch_memory, scratch_bytes, &desc, &c->scratch, &error) ? tool_fail_error("bench", &error) : 0;
+    return noh_character_scratch_init(c->scratch_memory, scratch_bytes, &desc, &c->scratch, &error)
+               ? tool_fail_error("bench", &error)
+               : 0;
 }
 
 static int crowd_open(crowd *c, const pack_file *file)
@@ -270,7 +275,8 @@ static int check(crowd_work *w)
     size_t bytes = 48u * (size_t)c->skeleton.joint_count;
     for (uint32_t i = 0; i < CROWD; i++) {
         noh_character *ch = character_of(c, i);
-        noh_controller_pose(noh_character_controller(ch), &c->set, &c->scratch.pose, c->scratch.local, c->scratch.floats);
+        noh_controller_pose(noh_character_controller(ch), &c->set, &c->scratch.pose, c->scratch.local,
+                            c->scratch.floats);
         noh_local_to_model(&c->skeleton, c->scratch.local, c->skeleton.joint_count, c->scratch.model);
         noh_model_to_palette(&c->skeleton, c->scratch.model, c->skeleton.joint_count, c->expected);
         noh_character_look(ch, &w->table, &w->settings, 1e9f);
@@ -290,9 +296,7 @@ typedef struct variant {
 
 static const variant variants[] = {
     { "full-rate", 1.0f, 1 }, /* the baseline */
-    { "crowd/pose/1-pixel", 1.0f, 1 },
-    { "crowd/pose/4-pixels", 4.0f, 1 },
-    { "crowd/pose/16-pixels", 16.0f, 1 },
+    { "crowd/pose/1-pixel", 1.0f, 1 }, { "crowd/pose/4-pixels", 4.0f, 1 }, { "crowd/pose/16-pixels", 16.0f, 1 },
     { "crowd/pose/unseen", 1.0f, 0 },
 };
 #define VARIANTS (sizeof variants / sizeof variants[0])

@@ -45,8 +45,8 @@ typedef struct bench_rows {
 } bench_rows;
 
 /* ours and theirs in the same unit; ours at or below nothing gives an infinite ratio. */
-void bench_add_row(bench_rows *rows, const char *name, const char *baseline, double theirs, double ours, const char *unit,
-                   uint32_t runs);
+void bench_add_row(bench_rows *rows, const char *name, const char *baseline, double theirs, double ours,
+                   const char *unit, uint32_t runs);
 
 /* ---- weights ---- */
 
@@ -69,10 +69,10 @@ void bench_target_deltas(const noh_mesh *mesh, uint32_t target, float *weights, 
 /* ---- time ---- */
 
 typedef struct bench_clock {
-    const noh_gl_api *gl;  /* NULL: nothing to finish */
-    noh_gl_timer gpu;      /* where the GL is hardware */
+    const noh_gl_api *gl; /* NULL: nothing to finish */
+    noh_gl_timer gpu;     /* where the GL is hardware */
     int is_gpu;
-    const char *what;      /* "process CPU time" or "GPU time" */
+    const char *what; /* "process CPU time" or "GPU time" */
 } bench_clock;
 
 /* Process CPU time for a software rasteriser and for no GL at all (g NULL), else GPU timers. */
@@ -126,12 +126,12 @@ void bench_stage_close(bench_stage *s);
 typedef struct bench_method {
     char name[32];
     GLuint programs[BENCH_PASS_COUNT];
-    const noh_gl_mesh *mesh;   /* what is drawn: the same triangles for all */
-    const uint32_t *order;     /* [vertex_count] drawn vertex -> pack vertex, or NULL where they are the same */
+    const noh_gl_mesh *mesh; /* what is drawn: the same triangles for all */
+    const uint32_t *order;   /* [vertex_count] drawn vertex -> pack vertex, or NULL where they are the same */
     int is_baseline;
-    double slack;              /* error allowed to this method on top of the common one, model units */
+    double slack; /* error allowed to this method on top of the common one, model units */
     double normal_slack;
-    int normals_of_one_only;   /* normals agree with a linear sum only while one target is active at weight 1 */
+    int normals_of_one_only; /* normals agree with a linear sum only while one target is active at weight 1 */
     void *self;
     void (*prepare)(void *self, const float *weights); /* once a frame; NULL: nothing to do */
     void (*bind)(void *self, bench_pass pass);         /* textures and uniforms; the program is in use; NULL: none */
@@ -185,7 +185,7 @@ typedef struct bench_memory {
 typedef struct bench_job {
     pack_file files[BENCH_FILES_MAX]; /* the first one's meshes are benched, and the clips of all */
     uint32_t file_count;
-    int has_mesh;           /* a mesh with targets; without, nothing is drawn: mesh, g, gl_clock and slopes are empty */
+    int has_mesh; /* a mesh with targets; without, nothing is drawn: mesh, g, gl_clock and slopes are empty */
     noh_mesh mesh;
     uint32_t mesh_index;
     gpu g;
@@ -197,9 +197,9 @@ typedef struct bench_job {
     uint32_t slope_count;
     bench_memory memories[8];
     uint32_t memory_count;
-    uint64_t crowd_events;  /* events that every crowd got, with LOD and without */
-    int quick;              /* few bodies: for tests */
-    const char *only;       /* the one group of rows to measure; NULL: all */
+    uint64_t crowd_events; /* events that every crowd got, with LOD and without */
+    int quick;             /* few bodies: for tests */
+    const char *only;      /* the one group of rows to measure; NULL: all */
 } bench_job;
 
 int bench_morph(bench_job *job);

@@ -26,7 +26,7 @@ typedef struct loop_method {
     noh_gl_texture first, second; /* texture units 0 and 1 */
     noh_gl_buffer block;          /* Filament's weights */
     const float *weights;
-    float *padded;                /* [targets][4] */
+    float *padded; /* [targets][4] */
     GLint u_weights[BENCH_PASS_COUNT];
     uint32_t target_count;
 } loop_method;
@@ -75,14 +75,15 @@ static int create_array(bench_stage *s, GLenum format, uint32_t width, uint32_t 
     return noh_gl_texture_create(&s->g->gl, &s->g->ledger, &desc, out, &error) ? tool_fail_error("bench", &error) : 0;
 }
 
-static void upload_layer(bench_stage *s, const noh_gl_texture *t, uint32_t width, uint32_t height, uint32_t layer, GLenum format,
-                         GLenum type, const void *texels)
+static void upload_layer(bench_stage *s, const noh_gl_texture *t, uint32_t width, uint32_t height, uint32_t layer,
+                         GLenum format, GLenum type, const void *texels)
 {
     const noh_gl_api *gl = &s->g->gl;
     gl->ActiveTexture(GL_TEXTURE0);
     gl->BindTexture(GL_TEXTURE_2D_ARRAY, t->name);
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, (GLint)layer, (GLsizei)width, (GLsizei)height, 1, format, type, texels);
+    gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, (GLint)layer, (GLsizei)width, (GLsizei)height, 1, format, type,
+                      texels);
 }
 
 /* ---- three.js ---- */
@@ -188,7 +189,8 @@ int bench_open_dense(bench_method *m, bench_stage *s, int hoisted)
     m->bind = bind_dense;
     status = fill_dense(l, width, height);
     if (!status) {
-        snprintf(defines, sizeof defines, "#define BENCH_DENSE\n%s#define TARGETS %u\n", hoisted ? "#define BENCH_HOISTED\n" : "", h->target_count);
+        snprintf(defines, sizeof defines, "#define BENCH_DENSE\n%s#define TARGETS %u\n",
+                 hoisted ? "#define BENCH_HOISTED\n" : "", h->target_count);
         status = bench_programs(s, m, defines);
     }
     if (!status) {
@@ -309,8 +311,8 @@ int bench_open_filament(bench_method *m, bench_stage *s)
     m->normals_of_one_only = 1; /* it blends unit normals, not their differences */
     l->padded = calloc(4u * (size_t)h->target_count + 4u, sizeof *l->padded);
     status = l->padded ? fill_filament(l) : tool_fail("bench", "out of memory");
-    if (!status && noh_gl_buffer_create(&s->g->gl, &s->g->ledger, GL_UNIFORM_BUFFER, 16u * FILAMENT_TARGETS, NULL, GL_DYNAMIC_DRAW,
-                                        &l->block, &error)) {
+    if (!status && noh_gl_buffer_create(&s->g->gl, &s->g->ledger, GL_UNIFORM_BUFFER, 16u * FILAMENT_TARGETS, NULL,
+                                        GL_DYNAMIC_DRAW, &l->block, &error)) {
         status = tool_fail_error("bench", &error);
     }
     if (!status) {

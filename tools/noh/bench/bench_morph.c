@@ -9,7 +9,7 @@
 
 #define SAMPLE_NS 1e7
 #define METHODS_MAX 16 /* one floor, four baselines, ten paths and formats */
-#define FLOOR 0 /* methods[FLOOR] is the mesh that is not morphed */
+#define FLOOR 0        /* methods[FLOOR] is the mesh that is not morphed */
 
 typedef enum work_kind { WORK_ONE_PASS, WORK_THREE_PASS, WORK_FRAME } work_kind;
 
@@ -58,7 +58,8 @@ static int take(morph_job *j, int status)
 
 static int open_methods(morph_job *j)
 {
-    static const noh_morph_path paths[] = { NOH_MORPH_LAYERED, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER, NOH_MORPH_GATHER, NOH_MORPH_CPU };
+    static const noh_morph_path paths[] = { NOH_MORPH_LAYERED, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER, NOH_MORPH_GATHER,
+                                            NOH_MORPH_CPU };
     int status = take(j, bench_open_unmorphed(&j->methods[FLOOR], &j->stage));
     if (!status) status = take(j, bench_open_dense(&j->methods[j->method_count], &j->stage, 0));
     if (!status) status = take(j, bench_open_dense(&j->methods[j->method_count], &j->stage, 1));
@@ -93,7 +94,8 @@ static int measure(morph_job *j, const bench_weights *weights, work_kind kind, c
     status = bench_run_cells(&m->cells, &j->job->gl_clock, j->job->rounds, SAMPLE_NS, what);
     for (int i = 0; i < j->method_count && !status; i++) {
         uint32_t cell = (uint32_t)i;
-        m->cost[i] = 1e-3 * (kind == WORK_FRAME ? bench_median(&m->cells, cell) : bench_median_above(&m->cells, cell, FLOOR));
+        m->cost[i] = 1e-3 *
+                     (kind == WORK_FRAME ? bench_median(&m->cells, cell) : bench_median_above(&m->cells, cell, FLOOR));
     }
     m->runs = m->cells.rounds;
     bench_free_cells(&m->cells);
@@ -108,8 +110,8 @@ static void add_rows(morph_job *j, const measured *m, const char *prefix, int wi
         snprintf(name, sizeof name, "%s/%s", prefix, j->methods[i].name);
         for (int b = with_floor ? FLOOR : FLOOR + 1; b < j->method_count; b++) {
             if (b != i && j->methods[b].is_baseline) {
-                bench_add_row(&j->job->rows, name, b == FLOOR ? "unmorphed" : j->methods[b].name, m->cost[b], m->cost[i], "us",
-                              m->runs);
+                bench_add_row(&j->job->rows, name, b == FLOOR ? "unmorphed" : j->methods[b].name, m->cost[b],
+                              m->cost[i], "us", m->runs);
             }
         }
     }
@@ -130,7 +132,8 @@ static int measure_rows(morph_job *j, const bench_weights *weights, work_kind ki
 static int measure_all(morph_job *j)
 {
     static const char *const names[2][3] = { { "morph/one-pass", "morph/three-pass", "frame" },
-                                             { "morph/4-active/one-pass", "morph/4-active/three-pass", "frame/4-active" } };
+                                             { "morph/4-active/one-pass", "morph/4-active/three-pass",
+                                               "frame/4-active" } };
     int status = 0;
     for (int few = 0; few < 2 && !status; few++) {
         uint32_t targets = j->stage.mesh->header->target_count;

@@ -21,10 +21,10 @@ typedef struct quad_target {
 
 typedef struct quads_method {
     bench_stage *stage;
-    noh_gl_mesh drawn;       /* in the asset's order */
-    uint32_t *order;         /* [vertex_count] drawn vertex -> pack vertex */
+    noh_gl_mesh drawn; /* in the asset's order */
+    uint32_t *order;   /* [vertex_count] drawn vertex -> pack vertex */
     uint32_t width, height;
-    quad_target *targets;    /* [target_count] */
+    quad_target *targets; /* [target_count] */
     uint32_t target_count;
     noh_gl_texture sums;
     GLuint framebuffer, program, vertex_array;
@@ -58,13 +58,14 @@ static int put_back(const quads_method *q, const uint32_t *artist, noh_mesh *out
     }
     for (uint32_t v = 0; v < h->vertex_count; v++) {
         memcpy(positions + 3 * (size_t)v, mesh->positions + 3 * (size_t)q->order[v], 12);
-        memcpy(attributes + (size_t)h->attribute_stride * v, mesh->attributes + (size_t)h->attribute_stride * q->order[v],
-               h->attribute_stride);
+        memcpy(attributes + (size_t)h->attribute_stride * v,
+               mesh->attributes + (size_t)h->attribute_stride * q->order[v], h->attribute_stride);
     }
     for (uint32_t i = 0; i < h->index_count; i++) {
         uint32_t index = noh_mesh_index(mesh, i), moved = artist ? artist[index] : index;
         uint16_t narrow = (uint16_t)moved;
-        memcpy(indices + (size_t)h->index_bytes * i, h->index_bytes == 2 ? (const void *)&narrow : (const void *)&moved, h->index_bytes);
+        memcpy(indices + (size_t)h->index_bytes * i, h->index_bytes == 2 ? (const void *)&narrow : (const void *)&moved,
+               h->index_bytes);
     }
     *out = *mesh;
     out->positions = positions;

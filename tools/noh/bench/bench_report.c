@@ -7,8 +7,8 @@
 #include "bench_job.h"
 #include "cli/json.h"
 
-void bench_add_row(bench_rows *rows, const char *name, const char *baseline, double theirs, double ours, const char *unit,
-                   uint32_t runs)
+void bench_add_row(bench_rows *rows, const char *name, const char *baseline, double theirs, double ours,
+                   const char *unit, uint32_t runs)
 {
     bench_row *row;
     if (rows->count == rows->capacity) {
@@ -85,13 +85,15 @@ static int list_storage(bench_job *job, storage_row rows[STORAGE_MAX])
 static void print_head(const bench_job *job)
 {
     const noh_mesh_header *h = job->mesh.header;
-    printf("%s, mesh '%s': %u vertices, %u targets, %u pairs in %u texels of %u rectangles\n", job->files[0].path, job->mesh.name,
-           h->vertex_count, h->target_count, h->pair_count, h->texel_count, h->rect_count);
+    printf("%s, mesh '%s': %u vertices, %u targets, %u pairs in %u texels of %u rectangles\n", job->files[0].path,
+           job->mesh.name, h->vertex_count, h->target_count, h->pair_count, h->texel_count, h->rect_count);
     printf("%s: %s; LP_NUM_THREADS=%s\n", job->g.caps.renderer, job->g.caps.version_text, getenv("LP_NUM_THREADS"));
-    printf("%s, medians of at most %u interleaved rounds; morph/ rows are costs above the unmorphed mesh with rasterisation discarded\n",
-           job->gl_clock.what, job->rounds);
+    printf(
+        "%s, medians of at most %u interleaved rounds; morph/ rows are costs above the unmorphed mesh with rasterisation discarded\n",
+        job->gl_clock.what, job->rounds);
     printf("quad-per-target: rectangles in %s\n\n",
-           job->artist ? "the asset's own vertex order" : "the pack's vertex order, which is kinder to it (--source ASSET: its own)");
+           job->artist ? "the asset's own vertex order"
+                       : "the pack's vertex order, which is kinder to it (--source ASSET: its own)");
 }
 
 static void print_rows(const bench_rows *rows)
@@ -123,20 +125,21 @@ static void print_storage(bench_job *job)
     int count = list_storage(job, rows);
     printf("\n%-40s %10s %14s %8s\n", "storage of the targets", "bytes", "bytes per pair", "of pack");
     for (int i = 0; i < count; i++) {
-        printf("%-40s %10.0f %14.2f %8.2f\n", rows[i].name, rows[i].bytes, rows[i].per_pair, rows[i].bytes / rows[0].bytes);
+        printf("%-40s %10.0f %14.2f %8.2f\n", rows[i].name, rows[i].bytes, rows[i].per_pair,
+               rows[i].bytes / rows[0].bytes);
     }
 }
 
 static void print_memories(const bench_job *job)
 {
     if (job->memory_count) {
-        printf("\n%-32s %14s %14s %14s %14s  (%llu events in each)\n", "memory", "CPU, planned", "taken", "GPU, planned", "taken",
-               (unsigned long long)job->crowd_events);
+        printf("\n%-32s %14s %14s %14s %14s  (%llu events in each)\n", "memory", "CPU, planned", "taken",
+               "GPU, planned", "taken", (unsigned long long)job->crowd_events);
     }
     for (uint32_t i = 0; i < job->memory_count; i++) {
         const bench_memory *m = &job->memories[i];
-        printf("%-32s %14llu %14llu %14llu %14llu\n", m->name, (unsigned long long)m->planned_cpu, (unsigned long long)m->cpu,
-               (unsigned long long)m->planned_gpu, (unsigned long long)m->gpu);
+        printf("%-32s %14llu %14llu %14llu %14llu\n", m->name, (unsigned long long)m->planned_cpu,
+               (unsigned long long)m->cpu, (unsigned long long)m->planned_gpu, (unsigned long long)m->gpu);
     }
 }
 
@@ -145,7 +148,8 @@ void bench_print(bench_job *job)
     if (job->has_mesh) {
         print_head(job);
     } else {
-        printf("%s: clips; %s, medians of at most %u interleaved rounds\n\n", job->files[0].path, job->cpu_clock.what, job->rounds);
+        printf("%s: clips; %s, medians of at most %u interleaved rounds\n\n", job->files[0].path, job->cpu_clock.what,
+               job->rounds);
     }
     print_rows(&job->rows);
     print_memories(job);

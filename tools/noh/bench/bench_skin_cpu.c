@@ -1,5 +1,5 @@
-/* bench_skin_cpu.c: rows skin/cpu: the kernels against straightforward scalar C, which reads the same pack (plain-scalar) or
- * floats that were unpacked before (plain-floats), and against memcpy of what they write. */
+/* bench_skin_cpu.c: rows skin/cpu: the kernels against straightforward scalar C, which reads the same pack
+ * (plain-scalar) or floats that were unpacked before (plain-floats), and against memcpy of what they write. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,14 +13,14 @@
 
 #if defined(__x86_64__)
 /* runtime/deform/skin.c built again for other instruction sets (Makefile, KERNELS) */
-void noh_skin_vertices_sse2(const noh_mesh *mesh, const float *matrices, const noh_morph_layers *layers, uint32_t first, uint32_t count,
-                            float *positions, float *normals, float *tangents);
-void noh_skin_vertices_avx2(const noh_mesh *mesh, const float *matrices, const noh_morph_layers *layers, uint32_t first, uint32_t count,
-                            float *positions, float *normals, float *tangents);
+void noh_skin_vertices_sse2(const noh_mesh *mesh, const float *matrices, const noh_morph_layers *layers, uint32_t first,
+                            uint32_t count, float *positions, float *normals, float *tangents);
+void noh_skin_vertices_avx2(const noh_mesh *mesh, const float *matrices, const noh_morph_layers *layers, uint32_t first,
+                            uint32_t count, float *positions, float *normals, float *tangents);
 #endif
 
-typedef void (*skin_kernel)(const noh_mesh *mesh, const float *matrices, const noh_morph_layers *layers, uint32_t first, uint32_t count,
-                            float *positions, float *normals, float *tangents);
+typedef void (*skin_kernel)(const noh_mesh *mesh, const float *matrices, const noh_morph_layers *layers, uint32_t first,
+                            uint32_t count, float *positions, float *normals, float *tangents);
 
 typedef struct skin_bench {
     const noh_mesh *mesh;
@@ -72,7 +72,8 @@ static void make_unit(const float *sum, float *out)
 }
 
 /* The textbook formula: every joint transforms position, normal and tangent, and the results are blended. */
-SCALAR_FUNCTION static void move_plainly(skin_bench *b, size_t v, const noh_vertex *in, const uint32_t *joints, const float *weights)
+SCALAR_FUNCTION static void move_plainly(skin_bench *b, size_t v, const noh_vertex *in, const uint32_t *joints,
+                                         const float *weights)
 {
     const size_t vertices = b->mesh->header->vertex_count, count = b->mesh->header->influence_count;
     float p[3] = { 0.0f, 0.0f, 0.0f }, n[3] = { 0.0f, 0.0f, 0.0f }, t[3] = { 0.0f, 0.0f, 0.0f };
@@ -182,7 +183,8 @@ static int skin_check(skin_bench *b, skin_work *kernel, const char *name)
         worst = fmaxf(worst, fabsf(b->out[i] - b->copy[i]));
         largest = fmaxf(largest, fabsf(b->copy[i]));
     }
-    return worst > 1e-5f * largest ? tool_fail("bench", "skin/cpu/%s puts vertices elsewhere than plain-scalar", name) : 0;
+    return worst > 1e-5f * largest ? tool_fail("bench", "skin/cpu/%s puts vertices elsewhere than plain-scalar", name)
+                                   : 0;
 }
 
 /* ---- rows ---- */
@@ -223,7 +225,12 @@ static int measure(bench_job *job, skin_bench *b)
     for (uint32_t k = 0; k < count + 3u && !status; k++) {
         works[k].bench = b;
         works[k].run = k < count ? kernels[k].run : NULL;
-        bench_add_cell(&cells, k < count ? run_kernel : k == count ? run_plain : k == count + 1 ? run_floats : run_memcpy, &works[k]);
+        bench_add_cell(&cells,
+                       k < count        ? run_kernel
+                       : k == count     ? run_plain
+                       : k == count + 1 ? run_floats
+                                        : run_memcpy,
+                       &works[k]);
         status = k < count ? skin_check(b, &works[k], kernels[k].name) : 0;
     }
     status = status ? status : bench_run_cells(&cells, &job->cpu_clock, job->rounds, SAMPLE_NS, "skin/cpu");
@@ -231,9 +238,12 @@ static int measure(bench_job *job, skin_bench *b)
         char name[64];
         double own = bench_median(&cells, k) / vertices;
         snprintf(name, sizeof name, "skin/cpu/%s", kernels[k].name);
-        bench_add_row(&job->rows, name, "plain-scalar", bench_median(&cells, count) / vertices, own, "ns/vertex", cells.rounds);
-        bench_add_row(&job->rows, name, "plain-floats", bench_median(&cells, count + 1u) / vertices, own, "ns/vertex", cells.rounds);
-        bench_add_row(&job->rows, name, "memcpy", bench_median(&cells, count + 2u) / vertices, own, "ns/vertex", cells.rounds);
+        bench_add_row(&job->rows, name, "plain-scalar", bench_median(&cells, count) / vertices, own, "ns/vertex",
+                      cells.rounds);
+        bench_add_row(&job->rows, name, "plain-floats", bench_median(&cells, count + 1u) / vertices, own, "ns/vertex",
+                      cells.rounds);
+        bench_add_row(&job->rows, name, "memcpy", bench_median(&cells, count + 2u) / vertices, own, "ns/vertex",
+                      cells.rounds);
     }
     bench_free_cells(&cells);
     return status;

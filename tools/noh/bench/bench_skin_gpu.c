@@ -103,8 +103,8 @@ static int open_renderer(skin_bench *b, skin_set *s, noh_palette_mode mode)
     desc.palettes = mode;
     desc.crowds = mode == NOH_PALETTE_TEXTURE;
     desc.fewer_influences = 1;
-    if (noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &g->ledger, log, sizeof log }, &desc,
-                               &s->renderer, &error)) {
+    if (noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &g->ledger, log, sizeof log }, &desc, &s->renderer,
+                               &error)) {
         fputs(log, stderr);
         return tool_fail_error("bench", &error);
     }
@@ -124,8 +124,8 @@ static int open_set(skin_bench *b, skin_set *s, noh_palette_mode mode)
         return tool_fail_error("bench", &error);
     }
     s->memory = malloc((size_t)plan.cpu_bytes);
-    if (noh_gl_skin_init(s->memory, (size_t)plan.cpu_bytes,
-                         &(noh_gl_device){ &g->gl, &g->caps, &g->ledger, NULL, 0 }, &desc, &s->skin, &error)) {
+    if (noh_gl_skin_init(s->memory, (size_t)plan.cpu_bytes, &(noh_gl_device){ &g->gl, &g->caps, &g->ledger, NULL, 0 },
+                         &desc, &s->skin, &error)) {
         return tool_fail_error("bench", &error);
     }
     for (uint32_t k = 0; k < INSTANCES; k++) {
@@ -187,15 +187,17 @@ static void draw_pass(const skin_work *w, int pass)
         if (w->crowd) {
             noh_gl_draw_crowd(&w->set->renderer, &b->gl_mesh, NULL, &skin, w->instances, NULL, b->pictures, pass);
         } else {
-            noh_gl_draw_mesh(&w->set->renderer, &b->gl_mesh, world, NULL, w->influences == NOH_NONE ? NULL : &skin, NULL,
-                             b->pictures, pass);
+            noh_gl_draw_mesh(&w->set->renderer, &b->gl_mesh, world, NULL, w->influences == NOH_NONE ? NULL : &skin,
+                             NULL, b->pictures, pass);
         }
     }
 }
 
 static void run_draws(void *self, uint32_t frame)
 {
-    static const noh_gl_camera camera = { { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 }, { 0, 0, 4 }, { 0, 0, 1 } };
+    static const noh_gl_camera camera = { { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 },
+                                          { 0, 0, 4 },
+                                          { 0, 0, 1 } };
     const skin_work *w = (const skin_work *)self;
     const noh_gl_api *gl = &w->bench->job->g.gl;
     (void)frame;
@@ -211,7 +213,9 @@ static void run_draws(void *self, uint32_t frame)
 
 static int measure_crowd(skin_bench *b)
 {
-    skin_work works[3] = { { b, &b->texture, INSTANCES, 0, 1 }, { b, &b->uniform, INSTANCES, 0, 0 }, { b, &b->texture, INSTANCES, 0, 0 } };
+    skin_work works[3] = { { b, &b->texture, INSTANCES, 0, 1 },
+                           { b, &b->uniform, INSTANCES, 0, 0 },
+                           { b, &b->texture, INSTANCES, 0, 0 } };
     static const char *const baselines[3] = { "", "100-draws, uniform blocks", "100-draws, texture" };
     bench_cells cells;
     int status;
@@ -247,9 +251,10 @@ static int measure_influences(skin_bench *b)
     status = bench_run_cells(&cells, &b->job->gl_clock, b->job->rounds, SAMPLE_NS, "skin/gpu/influences");
     for (uint32_t i = 1; i < count && !status; i++) {
         char name[64];
-        snprintf(name, sizeof name, "skin/gpu/%u-influences/%s", works[i].influences, works[i].set == &b->uniform ? "uniform" : "texture");
-        bench_add_row(&b->job->rows, name, "unskinned", bench_median(&cells, 0) / vertices, bench_median(&cells, i) / vertices,
-                      "ns/vertex", cells.rounds);
+        snprintf(name, sizeof name, "skin/gpu/%u-influences/%s", works[i].influences,
+                 works[i].set == &b->uniform ? "uniform" : "texture");
+        bench_add_row(&b->job->rows, name, "unskinned", bench_median(&cells, 0) / vertices,
+                      bench_median(&cells, i) / vertices, "ns/vertex", cells.rounds);
     }
     bench_free_cells(&cells);
     return status;

@@ -23,8 +23,8 @@ static noh_result create_targets(bench_stage *s, noh_error *error)
         g->gl.BindTexture(GL_TEXTURE_2D, s->white.name);
         g->gl.TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, texel);
         g->gl.BindTexture(GL_TEXTURE_2D, 0);
-        result = noh_gl_renderbuffer_create(&g->gl, &g->ledger, GL_DEPTH_COMPONENT24, BENCH_FRAME_SIZE, BENCH_FRAME_SIZE, 0,
-                                            &s->depth, error);
+        result = noh_gl_renderbuffer_create(&g->gl, &g->ledger, GL_DEPTH_COMPONENT24, BENCH_FRAME_SIZE,
+                                            BENCH_FRAME_SIZE, 0, &s->depth, error);
     }
     return result ? result : noh_gl_framebuffer_create(&g->gl, &g->ledger, &s->framebuffer, error);
 }
@@ -38,7 +38,8 @@ static noh_result attach_targets(bench_stage *s, noh_error *error)
     gl->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, s->depth.name);
     status = gl->CheckFramebufferStatus(GL_FRAMEBUFFER);
     gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
-    return status == GL_FRAMEBUFFER_COMPLETE ? NOH_OK : noh_fail(error, NOH_ERR_GL, "the driver refuses the frame", status, 0);
+    return status == GL_FRAMEBUFFER_COMPLETE ? NOH_OK
+                                             : noh_fail(error, NOH_ERR_GL, "the driver refuses the frame", status, 0);
 }
 
 int bench_stage_open(bench_stage *s, gpu *g, const noh_mesh *mesh)
@@ -94,7 +95,8 @@ static void set_constants(const bench_stage *s, GLuint program)
     gl->UniformMatrix4fv(gl->GetUniformLocation(program, "u_view_projection"), 1, GL_FALSE, view);
     gl->Uniform4fv(gl->GetUniformLocation(program, "u_world"), 3, rows);
     gl->Uniform4fv(gl->GetUniformLocation(program, "u_normal"), 3, rows);
-    gl->Uniform4f(gl->GetUniformLocation(program, "u_uv"), h->uv_offset[0], h->uv_offset[1], h->uv_scale[0], h->uv_scale[1]);
+    gl->Uniform4f(gl->GetUniformLocation(program, "u_uv"), h->uv_offset[0], h->uv_offset[1], h->uv_scale[0],
+                  h->uv_scale[1]);
     gl->Uniform3f(gl->GetUniformLocation(program, "u_camera"), 0.0f, 0.0f, 4.0f / scale);
     gl->Uniform3f(gl->GetUniformLocation(program, "u_key"), 0.48f, 0.6f, 0.64f);
     gl->Uniform4f(gl->GetUniformLocation(program, "u_base_color"), 0.8f, 0.7f, 0.6f, 1.0f);
@@ -105,15 +107,19 @@ static void set_constants(const bench_stage *s, GLuint program)
 
 static int create_program(bench_stage *s, bench_method *m, const char *defines, bench_pass pass)
 {
-    static const char *const samplers[3][2] = { { "u_layers", "" }, { "u_targets", "u_positions" }, { "u_sums", "u_frames" } };
+    static const char *const samplers[3][2] = { { "u_layers", "" },
+                                                { "u_targets", "u_positions" },
+                                                { "u_sums", "u_frames" } };
     static const char *const varyings[] = { "v_model", "v_normal" };
     const char *names[2] = { samplers[0][0], NULL };
     noh_gl_program_desc desc;
     noh_error error = { NOH_OK, "", 0, 0 };
     char log[4096] = "", text[256];
     memset(&desc, 0, sizeof desc);
-    names[0] = strstr(defines, "DENSE") ? samplers[1][0] : strstr(defines, "FILAMENT") ? samplers[1][1]
-               : strstr(defines, "QUADS") ? samplers[2][0] : samplers[0][0];
+    names[0] = strstr(defines, "DENSE")      ? samplers[1][0]
+               : strstr(defines, "FILAMENT") ? samplers[1][1]
+               : strstr(defines, "QUADS")    ? samplers[2][0]
+                                             : samplers[0][0];
     names[1] = samplers[2][1];
     snprintf(text, sizeof text, "%s#define DEBUG_VIEW 0\n", defines);
     desc.name = m->name;

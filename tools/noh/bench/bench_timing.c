@@ -1,5 +1,5 @@
-/* bench_timing.c: cells timed in interleaved rounds. Slow disturbances hit all cells of a round alike, and the median drops
- * those that hit only one. */
+/* bench_timing.c: cells timed in interleaved rounds. Slow disturbances hit all cells of a round alike, and the median
+ * drops those that hit only one. */
 #define _POSIX_C_SOURCE 200809L
 
 #include <stdio.h>

@@ -39,8 +39,8 @@ static const struct group {
     int (*run)(bench_job *job);
     int draws; /* wants a mesh with targets */
 } groups[] = {
-    { "morph", bench_morph, 1 },       { "morph-cpu", bench_cpu, 1 },      { "skin-cpu", bench_skin_cpu, 1 },
-    { "skin-gpu", bench_skin_gpu, 1 }, { "heads", bench_crowd, 1 },        { "clip", bench_clip_rows, 0 },
+    { "morph", bench_morph, 1 },       { "morph-cpu", bench_cpu, 1 },     { "skin-cpu", bench_skin_cpu, 1 },
+    { "skin-gpu", bench_skin_gpu, 1 }, { "heads", bench_crowd, 1 },       { "clip", bench_clip_rows, 0 },
     { "pose", bench_crowd_pose, 0 },   { "crowd", bench_crowd_frame, 1 },
 };
 #define GROUPS (sizeof groups / sizeof groups[0])
@@ -55,7 +55,8 @@ static int check_only(const char *only)
         }
     }
     near = nearest_name(only, names, GROUPS);
-    return tool_usage("--only wants a group of rows, not '%s'%s%s%s", only, near ? " (did you mean '" : "", near ? near : "", near ? "'?)" : "");
+    return tool_usage("--only wants a group of rows, not '%s'%s%s%s", only, near ? " (did you mean '" : "",
+                      near ? near : "", near ? "'?)" : "");
 }
 
 static int check_args(const bench_args *a)
@@ -89,8 +90,10 @@ static int bench_all(bench_job *job, const bench_args *a)
         status = tool_fail(a->packs[0], "out of memory");
     }
     if (!status && !job->rows.count) {
-        status = tool_fail(a->packs[0], a->only ? "the pack has nothing for these rows: there is nothing to measure"
-                                                : "no target of any mesh moves anything, and there are no clips: there is nothing to measure");
+        status = tool_fail(
+            a->packs[0],
+            a->only ? "the pack has nothing for these rows: there is nothing to measure"
+                    : "no target of any mesh moves anything, and there are no clips: there is nothing to measure");
     }
     if (!status) {
         status = a->as_json ? bench_print_json(job) : (bench_print(job), 0);
@@ -117,7 +120,8 @@ static int bench_packs(bench_job *job, const bench_args *a)
     if (!job->has_mesh) {
         return bench_all(job, a);
     }
-    setenv("LP_NUM_THREADS", "0", 0); /* llvmpipe draws on this thread, so that work is timed and not the waking of others */
+    setenv("LP_NUM_THREADS", "0",
+           0); /* llvmpipe draws on this thread, so that work is timed and not the waking of others */
     status = gpu_open(&job->g, a->driver);
     if (!status) {
         bench_clock_open(&job->gl_clock, &job->g);
@@ -155,13 +159,29 @@ static int run(void *args)
 static bench_args arguments;
 
 static const option options[] = {
-    { .name = "--only", .kind = OPTION_TEXT, .at = offsetof(bench_args, only), .value = "morph|morph-cpu|skin-cpu|skin-gpu|heads|clip|pose|crowd",
+    { .name = "--only",
+      .kind = OPTION_TEXT,
+      .at = offsetof(bench_args, only),
+      .value = "morph|morph-cpu|skin-cpu|skin-gpu|heads|clip|pose|crowd",
       .what = "one group of rows; default: all that the packs have something for" },
-    { .name = "--source", .kind = OPTION_INPUT, .at = offsetof(bench_args, source), .value = "ASSET",
-      .what = "the model that the first pack was built from, for the baselines that need its vertex order", .example = "head.glb" },
-    { .name = "--rounds", .kind = OPTION_NUMBER, .at = offsetof(bench_args, rounds), .value = "N", .initial = "15",
-      .what = "measurements of each row, 1 to 1000; the median is printed", .example = "31", .excludes = "--quick" },
-    { .name = "--quick", .kind = OPTION_FLAG, .at = offsetof(bench_args, quick), .what = "one short round: to see that it works" },
+    { .name = "--source",
+      .kind = OPTION_INPUT,
+      .at = offsetof(bench_args, source),
+      .value = "ASSET",
+      .what = "the model that the first pack was built from, for the baselines that need its vertex order",
+      .example = "head.glb" },
+    { .name = "--rounds",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(bench_args, rounds),
+      .value = "N",
+      .initial = "15",
+      .what = "measurements of each row, 1 to 1000; the median is printed",
+      .example = "31",
+      .excludes = "--quick" },
+    { .name = "--quick",
+      .kind = OPTION_FLAG,
+      .at = offsetof(bench_args, quick),
+      .what = "one short round: to see that it works" },
     OPTION_DRIVER(bench_args, driver, .initial = "egl"),
     OPTION_JSON(bench_args, as_json),
 };

@@ -21,12 +21,14 @@ typedef struct budget_args {
 static void print_levels(const level_costs *c)
 {
     if (c->count > 1) {
-        printf("%-10s %10s %10s %10s %10s %12s %12s\n", "level", "vertices", "triangles", "texels", "pairs", "CPU bytes", "GPU bytes, from it on");
+        printf("%-10s %10s %10s %10s %10s %12s %12s\n", "level", "vertices", "triangles", "texels", "pairs",
+               "CPU bytes", "GPU bytes, from it on");
     }
     for (uint32_t k = 0; k < c->count && c->count > 1; k++) {
         const level_cost *l = &c->levels[k];
-        printf("  %-8u %10llu %10llu %10llu %10llu %12llu %12llu\n", k, (unsigned long long)l->vertices, (unsigned long long)l->triangles,
-               (unsigned long long)l->texels, (unsigned long long)l->pairs, (unsigned long long)l->cpu_bytes, (unsigned long long)l->gpu_bytes);
+        printf("  %-8u %10llu %10llu %10llu %10llu %12llu %12llu\n", k, (unsigned long long)l->vertices,
+               (unsigned long long)l->triangles, (unsigned long long)l->texels, (unsigned long long)l->pairs,
+               (unsigned long long)l->cpu_bytes, (unsigned long long)l->gpu_bytes);
     }
 }
 
@@ -63,15 +65,16 @@ static void print_budget(const pack_file *file, const load_budget *b, const segm
     printf("  %-30s %12llu %12s  read where it lies\n", "the pack itself", (unsigned long long)b->pack_bytes, "");
     printf("  %-30s %12u %12s  at most, for any call\n", "stack", NOH_STACK_BYTES, "");
     if (clips->all) {
-        printf("clips: %u of %u decoded segments are held at once, enough for %u instance%s that cross-fade%s\n", clips->held, clips->all,
-               clips->instances, clips->instances == 1u ? "" : "s", clips->instances == 1u ? "s" : "");
+        printf("clips: %u of %u decoded segments are held at once, enough for %u instance%s that cross-fade%s\n",
+               clips->held, clips->all, clips->instances, clips->instances == 1u ? "" : "s",
+               clips->instances == 1u ? "s" : "");
     }
     if (!b->plan.atlas_width) {
         printf("%s\n", b->plan.reason);
         return;
     }
-    printf("%s-%s on %s (%s); accumulators %u x %u x 3\n", noh_morph_path_name(b->plan.path), noh_accumulate_name(b->plan.accumulate),
-           device, b->plan.reason, b->plan.atlas_width, b->plan.atlas_height);
+    printf("%s-%s on %s (%s); accumulators %u x %u x 3\n", noh_morph_path_name(b->plan.path),
+           noh_accumulate_name(b->plan.accumulate), device, b->plan.reason, b->plan.atlas_width, b->plan.atlas_height);
 }
 
 static int json_budget(const load_budget *b, const level_costs *levels, const segments *clips, const char *device)
@@ -101,7 +104,8 @@ static int json_budget(const load_budget *b, const level_costs *levels, const se
     return json_end(&j);
 }
 
-/* The capabilities of the driver that a load would meet, or of a nominal device: also for clips alone, which draw nothing. */
+/* The capabilities of the driver that a load would meet, or of a nominal device: also for clips alone, which draw
+ * nothing. */
 static int find_caps(const budget_args *a, const scene *s, noh_gl_caps *caps)
 {
     gpu g;
@@ -182,7 +186,9 @@ static const option options[] = {
     OPTION_ACCUMULATE(budget_args, accumulate, .initial = "auto"),
     OPTION_LOD(budget_args, lod, .needs = NULL),
     OPTION_DRIVER(budget_args, driver, .initial = "egl", .excludes = "--nominal"),
-    { .name = "--nominal", .kind = OPTION_FLAG, .at = offsetof(budget_args, nominal),
+    { .name = "--nominal",
+      .kind = OPTION_FLAG,
+      .at = offsetof(budget_args, nominal),
       .what = "without a driver: for a GLES 3.2 device on which everything works" },
     OPTION_JSON(budget_args, as_json),
 };

@@ -26,7 +26,8 @@ int parse_levels(const char *text, uint32_t *count, int *by_error)
 {
     double value = 1.0;
     *by_error = strcmp(text, "auto") == 0;
-    if (!*by_error && (tool_number(text, &value) || value < 1.0 || value > NOH_LOD_LEVELS_MAX || value != (double)(uint32_t)value)) {
+    if (!*by_error &&
+        (tool_number(text, &value) || value < 1.0 || value > NOH_LOD_LEVELS_MAX || value != (double)(uint32_t)value)) {
         return tool_usage("--lod wants auto or a whole number from 1 to %u, not '%s'", NOH_LOD_LEVELS_MAX, text);
     }
     *count = (uint32_t)value;
@@ -76,18 +77,15 @@ static int set_value(const option *o, void *args, const char *text)
     switch (o->kind) {
     case OPTION_TEXT:
     case OPTION_INPUT:
-    case OPTION_OUTPUT:
-        *(const char **)value = text;
-        break;
+    case OPTION_OUTPUT: *(const char **)value = text; break;
     case OPTION_NUMBER:
         return tool_number(text, (double *)value) ? tool_usage("%s wants a number, not '%s'", o->name, text) : 0;
     case OPTION_SIZE:
-        return parse_size(text, (uint32_t *)value) ? tool_usage("%s wants WIDTHxHEIGHT, 1 to 8192 each, not '%s'", o->name, text) : 0;
-    case OPTION_LIST:
-        return add_item(o, (option_list *)value, text);
-    case OPTION_FLAG:
-        *(int *)value = 1;
-        break;
+        return parse_size(text, (uint32_t *)value)
+                   ? tool_usage("%s wants WIDTHxHEIGHT, 1 to 8192 each, not '%s'", o->name, text)
+                   : 0;
+    case OPTION_LIST: return add_item(o, (option_list *)value, text);
+    case OPTION_FLAG: *(int *)value = 1; break;
     }
     return 0;
 }
@@ -128,7 +126,8 @@ static int was_given(const verb *v, const given *g, const char *word, size_t len
     const size_t name = equals ? (size_t)(equals - word) : length;
     for (int i = 0; i < v->option_count; i++) {
         if (g->text[i] && strlen(v->options[i].name) == name && memcmp(v->options[i].name, word, name) == 0) {
-            return !equals || (strlen(g->text[i]) == length - name - 1 && memcmp(g->text[i], equals + 1, length - name - 1) == 0);
+            return !equals ||
+                   (strlen(g->text[i]) == length - name - 1 && memcmp(g->text[i], equals + 1, length - name - 1) == 0);
         }
     }
     return 0;
@@ -158,7 +157,8 @@ static int check_effects(const verb *v, const given *g)
             continue;
         }
         if (o->needs && !first_given(v, g, o->needs, &length)) {
-            return tool_usage("%s has no effect without %s%s", o->name, strchr(o->needs, ' ') ? "one of " : "", o->needs);
+            return tool_usage("%s has no effect without %s%s", o->name, strchr(o->needs, ' ') ? "one of " : "",
+                              o->needs);
         }
         word = first_given(v, g, o->excludes, &length);
         if (word) {

@@ -1,4 +1,5 @@
-/* args.h: the arguments of a verb, read by the table that its help, the man page and the shell completion are made of. */
+/* args.h: the arguments of a verb, read by the table that its help, the man page and the shell completion are made of.
+ */
 #ifndef NOH_NOH_CLI_ARGS_H
 #define NOH_NOH_CLI_ARGS_H
 
@@ -25,7 +26,7 @@ typedef struct option_list {
 typedef struct option {
     const char *name; /* "--size" */
     option_kind kind;
-    size_t at;            /* offsetof the value in the verb's arguments */
+    size_t at; /* offsetof the value in the verb's arguments */
     int required;
     const char *value;    /* what follows it, for the help: "PACK", "auto|f32|f16"; NULL: nothing (FLAG) */
     const char *initial;  /* the default, as text; NULL: 0, none */
@@ -37,15 +38,15 @@ typedef struct option {
 
 typedef struct verb {
     const char *name;
-    const char *files;  /* the positional arguments, for the help: "PACK" */
-    const char *what;   /* one line */
-    const char *more;   /* paragraphs below the options; NULL: none */
+    const char *files;   /* the positional arguments, for the help: "PACK" */
+    const char *what;    /* one line */
+    const char *more;    /* paragraphs below the options; NULL: none */
     const char *example; /* arguments after the verb, one call a line */
     const option *options;
     int option_count;
-    int file_max;           /* one to so many files */
-    size_t files_at;        /* offsetof const char *[file_max] */
-    size_t file_count_at;   /* offsetof an int; used where file_max is over 1 */
+    int file_max;         /* one to so many files */
+    size_t files_at;      /* offsetof const char *[file_max] */
+    size_t file_count_at; /* offsetof an int; used where file_max is over 1 */
     void *args;
     int (*run)(void *args); /* returns an exit code */
 } verb;

@@ -1,5 +1,5 @@
-/* message.h: exit codes and errors. Every error is one line on stderr, "noh: SUBJECT: what is wrong (where)"; with --json
- * the last one is also an object on stdout, {"error": ...}, which main prints. */
+/* message.h: exit codes and errors. Every error is one line on stderr, "noh: SUBJECT: what is wrong (where)"; with
+ * --json the last one is also an object on stdout, {"error": ...}, which main prints. */
 #ifndef NOH_NOH_CLI_MESSAGE_H
 #define NOH_NOH_CLI_MESSAGE_H
 
@@ -27,10 +27,10 @@ int tool_usage(const char *format, ...) MESSAGE_FORMAT(1, 2);
 
 /* The last error. */
 typedef struct tool_error {
-    int status;           /* EXIT_FAILED or EXIT_USAGE; 0: there was none */
-    noh_result result;    /* NOH_OK: not an error of the library, `where` and `need` mean nothing */
+    int status;                   /* EXIT_FAILED or EXIT_USAGE; 0: there was none */
+    noh_result result;            /* NOH_OK: not an error of the library, `where` and `need` mean nothing */
     char subject[512], what[512]; /* cut to fit */
-    uint64_t where, need; /* see noh_error */
+    uint64_t where, need;         /* see noh_error */
 } tool_error;
 
 const tool_error *tool_last_error(void);

@@ -3,7 +3,6 @@
 #include <ctype.h>
 #include <string.h>
 
-
 #define NAME_MAX_COMPARED 64
 
 static size_t smaller(size_t a, size_t b)

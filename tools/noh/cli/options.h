@@ -5,49 +5,74 @@
 
 #include "args.h"
 
-#define OPTION_JSON(T, m)                                                                                      \
-    { .name = "--json", .kind = OPTION_FLAG, .at = offsetof(T, m),                                             \
-      .what = "print JSON on stdout; an error is {\"error\": {...}}" }
+#define OPTION_JSON(T, m)                                              \
+    {                                                                  \
+        .name = "--json", .kind = OPTION_FLAG, .at = offsetof(T, m),   \
+        .what = "print JSON on stdout; an error is {\"error\": {...}}" \
+    }
 
-#define OPTION_ANIM(T, m, ...)                                                                                 \
-    { .name = "--anim", .kind = OPTION_INPUT, .at = offsetof(T, m), .value = "PACK",                           \
-      .what = "take the clips from another pack", .example = "body_anim.noh", __VA_ARGS__ }
+#define OPTION_ANIM(T, m, ...)                                                              \
+    {                                                                                       \
+        .name = "--anim", .kind = OPTION_INPUT, .at = offsetof(T, m), .value = "PACK",      \
+        .what = "take the clips from another pack", .example = "body_anim.noh", __VA_ARGS__ \
+    }
 
-#define OPTION_CLIP(T, m, ...)                                                                                 \
-    { .name = "--clip", .kind = OPTION_LIST, .at = offsetof(T, m), .value = "NAME",                            \
-      .what = "pose by this clip; repeat it to play several at once", .example = "walk", __VA_ARGS__ }
+#define OPTION_CLIP(T, m, ...)                                                                         \
+    {                                                                                                  \
+        .name = "--clip", .kind = OPTION_LIST, .at = offsetof(T, m), .value = "NAME",                  \
+        .what = "pose by this clip; repeat it to play several at once", .example = "walk", __VA_ARGS__ \
+    }
 
-#define OPTION_TIME(T, m, ...)                                                                                 \
-    { .name = "--time", .kind = OPTION_NUMBER, .at = offsetof(T, m), .value = "S", .initial = "0",             \
-      .what = "time in the clips, seconds", \
-      .example = "0.5", __VA_ARGS__ }
+#define OPTION_TIME(T, m, ...)                                                                       \
+    {                                                                                                \
+        .name = "--time", .kind = OPTION_NUMBER, .at = offsetof(T, m), .value = "S", .initial = "0", \
+        .what = "time in the clips, seconds", .example = "0.5", __VA_ARGS__                          \
+    }
 
-#define OPTION_WEIGHT(T, m, ...)                                                                               \
-    { .name = "--weight", .kind = OPTION_LIST, .at = offsetof(T, m), .value = "NAME=V",                        \
-      .what = "weight of a target; may repeat, the last of a name holds", .example = "smile=0.7", __VA_ARGS__ }
+#define OPTION_WEIGHT(T, m, ...)                                                                                \
+    {                                                                                                           \
+        .name = "--weight", .kind = OPTION_LIST, .at = offsetof(T, m), .value = "NAME=V",                       \
+        .what = "weight of a target; may repeat, the last of a name holds", .example = "smile=0.7", __VA_ARGS__ \
+    }
 
-#define OPTION_PATH(T, m, ...)                                                                                 \
-    { .name = "--path", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "auto|blend|layered|mrt|per-layer|gather|cpu", \
-      .what = "how targets are accumulated (noh help FORMATS)", __VA_ARGS__ }
+#define OPTION_PATH(T, m, ...)                                                \
+    {                                                                         \
+        .name = "--path", .kind = OPTION_TEXT, .at = offsetof(T, m),          \
+        .value = "auto|blend|layered|mrt|per-layer|gather|cpu",               \
+        .what = "how targets are accumulated (noh help FORMATS)", __VA_ARGS__ \
+    }
 
-#define OPTION_ACCUMULATE(T, m, ...)                                                                           \
-    { .name = "--accumulate", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "auto|f32|f16",              \
-      .what = "format of the accumulation texels", __VA_ARGS__ }
+#define OPTION_ACCUMULATE(T, m, ...)                                                                \
+    {                                                                                               \
+        .name = "--accumulate", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "auto|f32|f16", \
+        .what = "format of the accumulation texels", __VA_ARGS__                                    \
+    }
 
-#define OPTION_DRIVER(T, m, ...)                                                                               \
-    { .name = "--driver", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "egl|osmesa|angle|glfw",         \
-      .what = "where the GL context comes from", __VA_ARGS__ }
+#define OPTION_DRIVER(T, m, ...)                                                                         \
+    {                                                                                                    \
+        .name = "--driver", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "egl|osmesa|angle|glfw", \
+        .what = "where the GL context comes from", __VA_ARGS__                                           \
+    }
 
-#define OPTION_LOD(T, m, ...)                                                                                  \
-    { .name = "--lod", .kind = OPTION_NUMBER, .at = offsetof(T, m), .value = "K", .initial = "0",              \
-      .what = "LOD level, 0 to 7: 0 is the full mesh; meshes with fewer levels take their coarsest", .example = "2", __VA_ARGS__ }
+#define OPTION_LOD(T, m, ...)                                                                                          \
+    {                                                                                                                  \
+        .name = "--lod", .kind = OPTION_NUMBER, .at = offsetof(T, m), .value = "K", .initial = "0",                    \
+        .what = "LOD level, 0 to 7: 0 is the full mesh; meshes with fewer levels take their coarsest", .example = "2", \
+        __VA_ARGS__                                                                                                    \
+    }
 
-#define OPTION_CAMERA(T, m, text)                                                                              \
-    { .name = "--camera", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "face|body|AZ,EL[,DIST]", .initial = text, \
-      .what = "what the camera frames, or where it is: azimuth and elevation in degrees, distance in model units", \
-      .example = "30,10,0.8" }
+#define OPTION_CAMERA(T, m, text)                                                                                    \
+    {                                                                                                                \
+        .name = "--camera", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "face|body|AZ,EL[,DIST]",            \
+        .initial = text,                                                                                             \
+        .what = "what the camera frames, or where it is: azimuth and elevation in degrees, distance in model units", \
+        .example = "30,10,0.8"                                                                                       \
+    }
 
-#define OPTION_INSTANCES(T, m, text, ...)                                                                      \
-    { .name = "--instances", .kind = OPTION_NUMBER, .at = offsetof(T, m), .value = "N", .initial = text, .example = "100", __VA_ARGS__ }
+#define OPTION_INSTANCES(T, m, text, ...)                                                                  \
+    {                                                                                                      \
+        .name = "--instances", .kind = OPTION_NUMBER, .at = offsetof(T, m), .value = "N", .initial = text, \
+        .example = "100", __VA_ARGS__                                                                      \
+    }
 
 #endif

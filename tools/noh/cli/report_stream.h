@@ -4,7 +4,8 @@
 
 #include <stdio.h>
 
-/* stdout; stderr where `output` is the pipe or file behind stdout (-o /dev/stdout | ...), which must hold nothing else. */
+/* stdout; stderr where `output` is the pipe or file behind stdout (-o /dev/stdout | ...), which must hold nothing else.
+ */
 FILE *report_stream(const char *output);
 
 #endif

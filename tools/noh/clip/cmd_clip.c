@@ -41,7 +41,8 @@ static int open_cache(opened *o, const char *path, noh_error *error)
     if (!o->cache_memory) {
         return tool_fail(path, "%s", o->cache_bytes ? "out of memory" : error->what);
     }
-    return noh_clip_cache_init(o->cache_memory, o->cache_bytes, &desc, &o->cache, error) ? tool_fail_error(path, error) : 0;
+    return noh_clip_cache_init(o->cache_memory, o->cache_bytes, &desc, &o->cache, error) ? tool_fail_error(path, error)
+                                                                                         : 0;
 }
 
 static int open_clip(opened *o, const pack_file *file, uint32_t index)
@@ -72,7 +73,8 @@ static int open_clip(opened *o, const pack_file *file, uint32_t index)
 static void print_keys(const pack_file *file, const noh_pack_clip *packed)
 {
     for (uint32_t i = 0; i < packed->header->event_count; i++) {
-        printf("    %.4f s '%s'\n", packed->events[i].tick / (double)NOH_TICKS_PER_SECOND, noh_pack_string(&file->pack, packed->events[i].name));
+        printf("    %.4f s '%s'\n", packed->events[i].tick / (double)NOH_TICKS_PER_SECOND,
+               noh_pack_string(&file->pack, packed->events[i].name));
     }
     for (uint32_t i = 0; i < packed->header->marker_count; i++) {
         printf("    %.4f s marker '%s'\n", packed->markers[i].tick / (double)NOH_TICKS_PER_SECOND,
@@ -82,18 +84,20 @@ static void print_keys(const pack_file *file, const noh_pack_clip *packed)
 
 static void print_clip(const pack_file *file, const opened *o)
 {
-    printf("clip '%s': %u joints, %u floats, %.3f s at %.4g Hz, %u of %u bytes (%.1f:1)\n", o->packed.name, o->info.joint_count,
-           o->info.float_count, tool_clip_seconds(&o->info), o->info.sample_rate_uhz / 1e6, o->packed.header->clip_bytes, o->packed.header->raw_bytes,
+    printf("clip '%s': %u joints, %u floats, %.3f s at %.4g Hz, %u of %u bytes (%.1f:1)\n", o->packed.name,
+           o->info.joint_count, o->info.float_count, tool_clip_seconds(&o->info), o->info.sample_rate_uhz / 1e6,
+           o->packed.header->clip_bytes, o->packed.header->raw_bytes,
            (double)o->packed.header->raw_bytes / (double)o->packed.header->clip_bytes);
     if (o->info.joint_count) {
-        printf("  certified at a %.3g cm shell: largest error %.5f cm (joint %u, %.3f s), rms %.5f cm\n", o->info.shell_cm,
-               o->info.max_error_cm, o->info.max_error_joint, o->info.max_error_time_s, o->info.rms_error_cm);
+        printf("  certified at a %.3g cm shell: largest error %.5f cm (joint %u, %.3f s), rms %.5f cm\n",
+               o->info.shell_cm, o->info.max_error_cm, o->info.max_error_joint, o->info.max_error_time_s,
+               o->info.rms_error_cm);
     }
     if (o->info.float_count) {
         printf("  weights within %.4g cm of what each moves\n", o->info.error_cm);
     }
-    printf("  %u segments, cache of %zu bytes; %u callback keys, %u sync markers\n", o->info.segment_count, o->cache_bytes,
-           o->packed.header->event_count, o->packed.header->marker_count);
+    printf("  %u segments, cache of %zu bytes; %u callback keys, %u sync markers\n", o->info.segment_count,
+           o->cache_bytes, o->packed.header->event_count, o->packed.header->marker_count);
     print_keys(file, &o->packed);
 }
 
@@ -210,13 +214,16 @@ static int dump_named(const pack_file *file, const char *name, const char *path)
     uint32_t index = 0;
     int status;
     if (file->pack.clip_count == 0 || (!name && file->pack.clip_count > 1)) {
-        return tool_fail(file->path, "--dump wants one clip; this pack has %u: name it with --clip", file->pack.clip_count);
+        return tool_fail(file->path, "--dump wants one clip; this pack has %u: name it with --clip",
+                         file->pack.clip_count);
     }
     status = name ? find_clip(file, name, &index) : 0;
     if (!status) status = open_clip(&o, file, index);
     if (!status) {
-        status = o.info.joint_count ? dump_clip(file, &o, path)
-                                    : tool_fail(file->path, "clip '%s' animates weights alone, and a .rcl file holds joints", o.packed.name);
+        status = o.info.joint_count
+                     ? dump_clip(file, &o, path)
+                     : tool_fail(file->path, "clip '%s' animates weights alone, and a .rcl file holds joints",
+                                 o.packed.name);
         close_clip(&o);
     }
     return status;
@@ -283,10 +290,19 @@ static int run(void *args)
 static clip_args arguments;
 
 static const option options[] = {
-    { .name = "--dump", .kind = OPTION_OUTPUT, .at = offsetof(clip_args, dump), .value = "OUT.rcl",
-      .what = "write a clip's decoded frames, joints only, in place of the list", .example = "walk.rcl" },
-    { .name = "--clip", .kind = OPTION_TEXT, .at = offsetof(clip_args, name), .value = "NAME",
-      .what = "which clip; a pack of one clip needs no name", .example = "walk", .needs = "--dump" },
+    { .name = "--dump",
+      .kind = OPTION_OUTPUT,
+      .at = offsetof(clip_args, dump),
+      .value = "OUT.rcl",
+      .what = "write a clip's decoded frames, joints only, in place of the list",
+      .example = "walk.rcl" },
+    { .name = "--clip",
+      .kind = OPTION_TEXT,
+      .at = offsetof(clip_args, name),
+      .value = "NAME",
+      .what = "which clip; a pack of one clip needs no name",
+      .example = "walk",
+      .needs = "--dump" },
     OPTION_JSON(clip_args, as_json),
 };
 

@@ -56,8 +56,9 @@ static void print_crowd(const crowd_drawn *d, const crowd_args *a)
     for (uint32_t k = 0; k < d->level_count && !a->plain; k++) {
         fprintf(out, "%s %u", k ? "," : "; by level", d->stats.levels[k]);
     }
-    fprintf(out, "; %u fade\n%llu bytes CPU, %llu GPU; planned %llu and %llu\n", d->stats.fading, (unsigned long long)d->cpu_planned,
-            (unsigned long long)d->gpu_used, (unsigned long long)d->cpu_planned, (unsigned long long)d->gpu_planned);
+    fprintf(out, "; %u fade\n%llu bytes CPU, %llu GPU; planned %llu and %llu\n", d->stats.fading,
+            (unsigned long long)d->cpu_planned, (unsigned long long)d->gpu_used, (unsigned long long)d->cpu_planned,
+            (unsigned long long)d->gpu_planned);
 }
 
 static void take_drawn(const crowd *c, crowd_drawn *d)
@@ -101,7 +102,8 @@ static int open_and_draw(gpu *g, const pack_file *file, const crowd_args *a, uin
         return status;
     }
     memory = malloc((size_t)plan.cpu_bytes);
-    status = memory ? crowd_open(&c, &plan, memory, (size_t)plan.cpu_bytes, g, file) : tool_fail(file->path, "out of memory");
+    status = memory ? crowd_open(&c, &plan, memory, (size_t)plan.cpu_bytes, g, file)
+                    : tool_fail(file->path, "out of memory");
     if (!status) {
         status = draw(&c, a, rgba);
         take_drawn(&c, d);
@@ -143,19 +145,45 @@ static int run(void *args)
 static crowd_args arguments;
 
 static const option options[] = {
-    { .name = "-o", .kind = OPTION_OUTPUT, .at = offsetof(crowd_args, output), .required = 1, .value = "OUT.png",
-      .what = "the picture", .example = "crowd.png" },
+    { .name = "-o",
+      .kind = OPTION_OUTPUT,
+      .at = offsetof(crowd_args, output),
+      .required = 1,
+      .value = "OUT.png",
+      .what = "the picture",
+      .example = "crowd.png" },
     OPTION_INSTANCES(crowd_args, instances, "1000", .what = "how many bodies, 1 to 65536"),
-    { .name = "--pixels", .kind = OPTION_NUMBER, .at = offsetof(crowd_args, pixels), .value = "N", .initial = "1",
-      .what = "the largest error on screen that levels may have, pixels, over 0", .example = "4", .excludes = "--plain" },
-    { .name = "--time", .kind = OPTION_NUMBER, .at = offsetof(crowd_args, time_s), .value = "S", .initial = "2",
-      .what = "when the picture is taken, seconds, 0 to 3600; every frame up to then is run", .example = "0.5" },
-    { .name = "--plain", .kind = OPTION_FLAG, .at = offsetof(crowd_args, plain),
+    { .name = "--pixels",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(crowd_args, pixels),
+      .value = "N",
+      .initial = "1",
+      .what = "the largest error on screen that levels may have, pixels, over 0",
+      .example = "4",
+      .excludes = "--plain" },
+    { .name = "--time",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(crowd_args, time_s),
+      .value = "S",
+      .initial = "2",
+      .what = "when the picture is taken, seconds, 0 to 3600; every frame up to then is run",
+      .example = "0.5" },
+    { .name = "--plain",
+      .kind = OPTION_FLAG,
+      .at = offsetof(crowd_args, plain),
       .what = "without LOD: every body at the full mesh, posed in every frame" },
-    { .name = "--debug", .kind = OPTION_TEXT, .at = offsetof(crowd_args, debug), .value = "lod",
+    { .name = "--debug",
+      .kind = OPTION_TEXT,
+      .at = offsetof(crowd_args, debug),
+      .value = "lod",
       .what = "colour each body by its LOD level" },
-    { .name = "--size", .kind = OPTION_SIZE, .at = offsetof(crowd_args, size), .value = "WxH", .initial = "1280x720",
-      .what = "size of the picture, pixels, 1 to 8192 each", .example = "1920x1080" },
+    { .name = "--size",
+      .kind = OPTION_SIZE,
+      .at = offsetof(crowd_args, size),
+      .value = "WxH",
+      .initial = "1280x720",
+      .what = "size of the picture, pixels, 1 to 8192 each",
+      .example = "1920x1080" },
     OPTION_DRIVER(crowd_args, driver, .initial = "egl"),
 };
 

@@ -7,7 +7,8 @@
 
 /* ---- opening ---- */
 
-/* What ends goes to and fro instead, so that nobody stands still; and two keys a pass where the pack has none at all. */
+/* What ends goes to and fro instead, so that nobody stands still; and two keys a pass where the pack has none at all.
+ */
 static void open_clips(crowd *c)
 {
     const noh_clip_set *from = &c->bank->clips;
@@ -70,13 +71,12 @@ static noh_result open_meshes(crowd *c, void *morph, void *palettes, char *log, 
     }
     if (!result) {
         result = noh_gl_morph_init(morph, (size_t)p->morph.cpu_bytes,
-                                   &(noh_gl_device){ gl, &c->g->caps, &c->ledger, log, log_bytes },
-                                   &p->morph_desc, &c->morph, error);
+                                   &(noh_gl_device){ gl, &c->g->caps, &c->ledger, log, log_bytes }, &p->morph_desc,
+                                   &c->morph, error);
     }
     if (!result) {
         result = noh_gl_skin_init(palettes, (size_t)p->skin_plan.cpu_bytes,
-                                  &(noh_gl_device){ gl, &c->g->caps, &c->ledger, NULL, 0 }, &skin,
-                                  &c->palettes, error);
+                                  &(noh_gl_device){ gl, &c->g->caps, &c->ledger, NULL, 0 }, &skin, &c->palettes, error);
     }
     return result;
 }
@@ -93,8 +93,8 @@ static noh_result open_renderer(crowd *c, char *log, size_t log_bytes, noh_error
     desc.crowds = 1;
     desc.fades = !c->plan->options.plain;
     desc.fewer_influences = !c->plan->options.plain;
-    return noh_gl_renderer_create(&(noh_gl_device){ &c->g->gl, NULL, &c->ledger, log, log_bytes }, &desc,
-                                  &c->renderer, error);
+    return noh_gl_renderer_create(&(noh_gl_device){ &c->g->gl, NULL, &c->ledger, log, log_bytes }, &desc, &c->renderer,
+                                  error);
 }
 
 static int open_all(crowd *c, noh_arena *arena)
@@ -109,7 +109,8 @@ static int open_all(crowd *c, noh_arena *arena)
     c->used_bytes = arena->used;
     result = noh_clip_bank_init(parts.set, p->set_needs.bytes, &p->set_desc, &c->bank, &error);
     if (!result) {
-        (void)noh_skin_skeleton(&p->skin, &c->bank->skeleton, c->inverse_bind, &c->skeleton); /* one skin: multiplied at updates */
+        (void)noh_skin_skeleton(&p->skin, &c->bank->skeleton, c->inverse_bind,
+                                &c->skeleton); /* one skin: multiplied at updates */
         open_clips(c);
         find_weights(c);
         result = open_characters(c, parts.scratch, &error);

@@ -1,5 +1,5 @@
-/* crowd.h: a thousand bodies, each as detailed as its pixels need: an example of character/ and gl/ together, to copy into a
- * game.
+/* crowd.h: a thousand bodies, each as detailed as its pixels need: an example of character/ and gl/ together, to copy
+ * into a game.
  *
  *   crowd_plan_make   every byte, CPU and GPU, before any load
  *   crowd_open        everything, in one block of memory of exactly that size; it never asks for another byte
@@ -10,11 +10,11 @@
  *     crowd_send      accumulate and upload
  *     crowd_draw      one draw per submesh and level; a body that fades between levels is drawn alone, twice, dithered
  *
- * The bodies are a pack's skinned mesh (of several the one that its targets move most). Each has a clip, phase and playback
- * speed of its own, and a second track with a clip of the face. One unit of the pack is a metre, y is up.
+ * The bodies are a pack's skinned mesh (of several the one that its targets move most). Each has a clip, phase and
+ * playback speed of its own, and a second track with a clip of the face. One unit of the pack is a metre, y is up.
  *
- * Without LOD (options.plain), the baseline, the same bodies are posed in every frame and drawn at the full level with all
- * targets.
+ * Without LOD (options.plain), the baseline, the same bodies are posed in every frame and drawn at the full level with
+ * all targets.
  *
  *   crowd_plan.c   bytes
  *   crowd.c        opening and closing
@@ -31,22 +31,23 @@
 #define CROWD_FIELD_M 100.0f /* radius of the field round the camera's start */
 
 typedef struct crowd_options {
-    uint32_t count;            /* bodies; 1..NOH_MORPH_INSTANCES_MAX */
-    int plain;                 /* 1: without LOD */
-    int unculled;              /* 1: treat all as visible */
-    float pixels;              /* the largest error on screen; default (0) 1 */
-    uint64_t budget_ns;        /* of pose updates per frame; default (0) no limit */
-    float field_of_view_rad;   /* of the view, vertical; default (0) 40 degrees */
-    uint32_t width, height;    /* of the view, pixels; default (0) 1280 x 720 */
-    uint32_t slots[NOH_LOD_LEVELS_MAX]; /* of each level's pool, the coarsest last; default (all 0) estimated from the density of bodies */
+    uint32_t count;                     /* bodies; 1..NOH_MORPH_INSTANCES_MAX */
+    int plain;                          /* 1: without LOD */
+    int unculled;                       /* 1: treat all as visible */
+    float pixels;                       /* the largest error on screen; default (0) 1 */
+    uint64_t budget_ns;                 /* of pose updates per frame; default (0) no limit */
+    float field_of_view_rad;            /* of the view, vertical; default (0) 40 degrees */
+    uint32_t width, height;             /* of the view, pixels; default (0) 1280 x 720 */
+    uint32_t slots[NOH_LOD_LEVELS_MAX]; /* of each level's pool, the coarsest last; default (all 0) estimated from the
+                                           density of bodies */
     noh_debug_view view;
 } crowd_options;
 
 /* Every byte, and what of the pack it depends on. */
 typedef struct crowd_plan {
-    crowd_options options;     /* with the defaults filled in */
-    noh_mesh mesh;             /* the full level */
-    uint32_t mesh_index;       /* in the pack */
+    crowd_options options; /* with the defaults filled in */
+    noh_mesh mesh;         /* the full level */
+    uint32_t mesh_index;   /* in the pack */
     noh_skin skin;
     uint32_t level_count;
     noh_mesh views[NOH_LOD_LEVELS_MAX]; /* the mesh at each level that has a pool */
@@ -66,13 +67,13 @@ int crowd_plan_make(crowd_plan *plan, const pack_file *file, const noh_gl_caps *
 
 /* A body beside its noh_character. */
 typedef struct crowd_body {
-    float world[12];   /* where it stands */
-    float centre[3];   /* of its bounding sphere over all clips; the radius is the crowd's */
-    float scale;       /* pixels per metre at its nearest point */
+    float world[12]; /* where it stands */
+    float centre[3]; /* of its bounding sphere over all clips; the radius is the crowd's */
+    float scale;     /* pixels per metre at its nearest point */
     int seen, was_seen, shown;
     noh_lod_slot slot;
     uint32_t level, level_before; /* drawn: within the slot's level; two while it fades */
-    uint32_t place;    /* its palette: in draw order */
+    uint32_t place;               /* its palette: in draw order */
 } crowd_body;
 
 typedef struct crowd_camera {
@@ -86,7 +87,7 @@ typedef struct crowd_events {
 } crowd_events;
 
 typedef struct crowd_stats {
-    uint32_t seen, updated, fading; /* of the frame shown last */
+    uint32_t seen, updated, fading;      /* of the frame shown last */
     uint32_t levels[NOH_LOD_LEVELS_MAX]; /* seen at each level; a fading body counts at its target level */
     noh_gl_morph_stats morph;
 } crowd_stats;
@@ -95,38 +96,39 @@ typedef struct crowd {
     const crowd_plan *plan;
     gpu *g;
     const pack_file *file;
-    noh_gl_ledger ledger;         /* of all below */
-    size_t used_bytes;            /* of the block */
+    noh_gl_ledger ledger; /* of all below */
+    size_t used_bytes;    /* of the block */
     /* shared */
     noh_clip_bank *bank;
-    noh_clip_set set;            /* the set's, with callback keys where the pack has none; clips that do not loop play ping-pong */
+    noh_clip_set set; /* the set's, with callback keys where the pack has none; clips that do not loop play ping-pong */
     noh_clip_entry *clips;
     noh_event_key *keys;
-    noh_skeleton skeleton;        /* with the skin's inverse bind matrices */
+    noh_skeleton skeleton;                /* with the skin's inverse bind matrices */
     float *inverse_bind, *update_error_m; /* [joint], [clip][NOH_UPDATE_RATE_COUNT] */
-    uint32_t first_weight;        /* of the mesh, among the floats of the set; NOH_NONE: no clip has them */
-    noh_lod_pack lod;       /* the errors that the pack states */
-    noh_lod_table table;       /* the same, with update rate errors for clips as they are played here */
+    uint32_t first_weight;                /* of the mesh, among the floats of the set; NOH_NONE: no clip has them */
+    noh_lod_pack lod;                     /* the errors that the pack states */
+    noh_lod_table table;                  /* the same, with update rate errors for clips as they are played here */
     noh_lod_settings settings;
     noh_character_scratch scratch;
     noh_schedule schedule;
     noh_lod_pools *pools;
-    float sphere[4];              /* of every body, from where it stands */
-    float *matrices;              /* [the skin's joint][12] */
-    float *floats, *weights;      /* [float], [target] */
+    float sphere[4];         /* of every body, from where it stands */
+    float *matrices;         /* [the skin's joint][12] */
+    float *floats, *weights; /* [float], [target] */
     /* each */
-    uint8_t *characters;          /* [count][character_bytes] */
-    crowd_body *bodies;           /* [count] */
-    uint32_t *order;              /* [count] visible bodies, run by run; fading ones last */
-    uint32_t runs[CROWD_RUNS_MAX + 1u]; /* where each run begins in `order`: bodies of one mesh level and one number of joints per vertex,
-                                         * level by level, within each the most joints first; the last run: fading bodies */
+    uint8_t *characters; /* [count][character_bytes] */
+    crowd_body *bodies;  /* [count] */
+    uint32_t *order;     /* [count] visible bodies, run by run; fading ones last */
+    uint32_t runs[CROWD_RUNS_MAX +
+                  1u]; /* where each run begins in `order`: bodies of one mesh level and one number of joints per
+                        * vertex, level by level, within each the most joints first; the last run: fading bodies */
     int unculled;
     uint32_t frame_ticks;
     crowd_events events;
     crowd_stats stats;
     /* on the GPU */
     noh_gl_mesh gl_mesh;
-    noh_gl_texture *pictures;     /* [texture_count] */
+    noh_gl_texture *pictures; /* [texture_count] */
     noh_gl_morph *morph;
     noh_gl_skin *palettes;
     noh_gl_renderer renderer;
@@ -171,7 +173,8 @@ void crowd_carve(noh_arena *arena, const crowd_plan *plan, crowd *c, crowd_parts
 noh_lod_pack_desc crowd_lod_desc(const crowd_plan *plan, const noh_clip_bank *set);
 /* The most runs there can be, without that of fading bodies. */
 uint32_t crowd_run_count(const crowd *c);
-/* Read the pack's detail into memory[plan->detail_bytes], then place the bodies. Prints an error and returns an exit code. */
+/* Read the pack's detail into memory[plan->detail_bytes], then place the bodies. Prints an error and returns an exit
+ * code. */
 int crowd_place(crowd *c, void *memory);
 
 #endif

@@ -33,7 +33,8 @@ static void draw_fading(const crowd *c, uint32_t i, int pass)
     const crowd_body *b = &c->bodies[i];
     const float part = noh_lod_fade(&ch->lod, noh_character_clock(ch));
     const noh_gl_lod lods[2] = { { b->level, 0.0f, part }, { b->level_before, part, 1.0f } };
-    const noh_gl_morph_binding morph = noh_gl_morph_binding_of(c->morph, noh_gl_morph_instance(c->morph, b->slot.pool, b->slot.slot));
+    const noh_gl_morph_binding morph = noh_gl_morph_binding_of(
+        c->morph, noh_gl_morph_instance(c->morph, b->slot.pool, b->slot.slot));
     noh_gl_skin_binding skin = noh_gl_skin_binding_of(c->palettes, b->place);
     skin.influences = noh_lod_influence_count(&ch->lod, &c->table);
     for (int k = 0; k < 2; k++) {
@@ -86,7 +87,8 @@ crowd_camera crowd_camera_at(const crowd *c, const float eye[3], float heading_r
     const crowd_options *o = &c->plan->options;
     const float slope_y = tanf(0.5f * o->field_of_view_rad), slope_x = slope_y * (float)o->width / (float)o->height;
     const float angles[2] = { atanf(slope_x), 0.5f * o->field_of_view_rad };
-    const float forward[3] = { sinf(heading_rad) * cosf(down_rad), -sinf(down_rad), -cosf(heading_rad) * cosf(down_rad) };
+    const float forward[3] = { sinf(heading_rad) * cosf(down_rad), -sinf(down_rad),
+                               -cosf(heading_rad) * cosf(down_rad) };
     const float right[3] = { cosf(heading_rad), 0.0f, sinf(heading_rad) };
     const float key[3] = { -0.424f, 0.778f, 0.463f };
     crowd_camera v;

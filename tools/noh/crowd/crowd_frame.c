@@ -112,7 +112,8 @@ uint32_t crowd_run_count(const crowd *c)
 static uint32_t run_of(const crowd *c, uint32_t i)
 {
     const crowd_body *b = &c->bodies[i];
-    return fades(b) ? crowd_run_count(c) : b->level * c->table.influence_level_count + crowd_character(c, i)->lod.influences;
+    return fades(b) ? crowd_run_count(c)
+                    : b->level * c->table.influence_level_count + crowd_character(c, i)->lod.influences;
 }
 
 /* A counting sort by run; fading bodies last. */

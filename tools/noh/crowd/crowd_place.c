@@ -9,7 +9,7 @@
 #define HALF_ANGLE_RAD 0.68f /* a little more than a 16 : 9 view shows */
 #define BEHIND 8u            /* every eighth stands behind the camera */
 #define SAMPLE_TICKS 1600u
-#define BETWEEN 1.02f        /* enlarges a sphere for clip between two samples */
+#define BETWEEN 1.02f /* enlarges a sphere for clip between two samples */
 
 /* ---- detail ---- */
 
@@ -39,11 +39,13 @@ static int read_lod(crowd *c, void *memory)
     c->table = c->lod.table;
     c->table.update_error_m = c->update_error_m;
     c->settings.pixels = p->options.pixels;
-    return noh_lod_table_check(&c->table, &error) || noh_lod_settings_check(&c->settings, &error) ? tool_fail_error(c->file->path, &error)
-                                                                                                     : 0;
+    return noh_lod_table_check(&c->table, &error) || noh_lod_settings_check(&c->settings, &error)
+               ? tool_fail_error(c->file->path, &error)
+               : 0;
 }
 
-/* One sphere that holds every pose of every clip, to cull by before there is a pose. Its centre is above the body's place. */
+/* One sphere that holds every pose of every clip, to cull by before there is a pose. Its centre is above the body's
+ * place. */
 static void measure_sphere(crowd *c)
 {
     noh_bounds b;
@@ -103,8 +105,7 @@ static uint32_t nth_clip(const crowd *c, uint32_t n, int joints)
     if (count == 0) {
         return NOH_NONE;
     }
-    for (n %= count; moves_joints(c, m) != joints || n-- > 0; m++) {
-    }
+    for (n %= count; moves_joints(c, m) != joints || n-- > 0; m++) {}
     return m;
 }
 
@@ -126,7 +127,8 @@ static void place_body(crowd *c, uint32_t i)
     float distance_m = NEAREST_M + (CROWD_FIELD_M - NEAREST_M) * sqrtf(spread(i + 1u, SPREAD_X));
     float angle = (2.0f * spread(i + 1u, SPREAD_Y) - 1.0f) * HALF_ANGLE_RAD;
     float side = i % BEHIND == BEHIND - 1u ? 1.0f : -1.0f;
-    crowd_move(c, i, distance_m * sinf(angle), side * distance_m * cosf(angle), 6.2831853f * spread(i + 1u, SPREAD_LINE));
+    crowd_move(c, i, distance_m * sinf(angle), side * distance_m * cosf(angle),
+               6.2831853f * spread(i + 1u, SPREAD_LINE));
     start(c, i, 0, nth_clip(c, i, 1));
     start(c, i, 1, nth_clip(c, i / 3u, 0));
 }

@@ -169,7 +169,8 @@ static void sum_bytes(crowd_plan *p)
     crowd_parts parts;
     crowd_carve(&arena, p, &measured, &parts);
     p->cpu_bytes = arena.used;
-    p->gpu_bytes = noh_gl_mesh_bytes(&p->views[0]) + p->morph.gpu_bytes + p->skin_plan.gpu_bytes + NOH_GL_RENDERER_BYTES;
+    p->gpu_bytes = noh_gl_mesh_bytes(&p->views[0]) + p->morph.gpu_bytes + p->skin_plan.gpu_bytes +
+                   NOH_GL_RENDERER_BYTES;
     for (uint32_t i = 0; i < p->mesh.pack->texture_count; i++) {
         noh_texture texture;
         noh_pack_texture_at(p->mesh.pack, i, &texture, NULL);
@@ -187,7 +188,9 @@ static int fill_options(crowd_plan *p, const crowd_options *o)
     p->options.field_of_view_rad = o->field_of_view_rad > 0.0f ? o->field_of_view_rad : 0.69813f;
     p->options.width = o->width ? o->width : 1280u;
     p->options.height = o->height ? o->height : 720u;
-    return o->count && o->count <= NOH_MORPH_INSTANCES_MAX ? 0 : tool_fail("crowd", "from 1 to %u bodies", NOH_MORPH_INSTANCES_MAX);
+    return o->count && o->count <= NOH_MORPH_INSTANCES_MAX
+               ? 0
+               : tool_fail("crowd", "from 1 to %u bodies", NOH_MORPH_INSTANCES_MAX);
 }
 
 /* The set does not exist yet; its counts suffice. */
@@ -220,7 +223,8 @@ static int ask_sizes(crowd_plan *p, const pack_file *file, const noh_gl_caps *ca
     if (!p->pools_bytes) {
         return tool_fail(file->path, "the slots of a crowd's pools: as many as bodies are wanted");
     }
-    if (noh_gl_morph_plan_make(&p->morph_desc, caps, &p->morph, &error) || noh_gl_skin_plan_make(&skin, caps, &p->skin_plan, &error)) {
+    if (noh_gl_morph_plan_make(&p->morph_desc, caps, &p->morph, &error) ||
+        noh_gl_skin_plan_make(&skin, caps, &p->skin_plan, &error)) {
         return tool_fail_error(file->path, &error);
     }
     return 0;

@@ -170,8 +170,9 @@ int view_camera(const view_options *o, const bounds *box, noh_gl_camera *camera)
 {
     orbit at = orbit_fit(box, (double)o->width / (double)o->height);
     if (o->camera && strcmp(o->camera, "face") != 0 && strcmp(o->camera, "body") != 0 && parse_orbit(o->camera, &at)) {
-        return tool_usage("--camera wants face, body or AZIMUTH,ELEVATION[,DISTANCE] (degrees; elevation within 89; over 0), not '%s'",
-                          o->camera);
+        return tool_usage(
+            "--camera wants face, body or AZIMUTH,ELEVATION[,DISTANCE] (degrees; elevation within 89; over 0), not '%s'",
+            o->camera);
     }
     orbit_camera(&at, camera);
     return 0;

@@ -48,8 +48,8 @@ static int open_bones(stage *st, gpu *g)
     return status;
 }
 
-int stage_open(stage *st, gpu *g, const pack_file *file, const scene *s, const load_options *o, int show_bones, uint32_t width,
-               uint32_t height)
+int stage_open(stage *st, gpu *g, const pack_file *file, const scene *s, const load_options *o, int show_bones,
+               uint32_t width, uint32_t height)
 {
     int status;
     memset(st, 0, sizeof *st);

@@ -8,23 +8,23 @@
 
 typedef struct stage {
     const scene *scene;
-    load load;   /* with meshes */
+    load load;    /* with meshes */
     bones *bones; /* [player_count], with bones */
     uint32_t bones_count;
     canvas canvas;
     int has_canvas;
 } stage;
 
-/* 1 where bones are to be drawn: they were asked for, or there are no meshes. Prints an error and returns -1 where there is no
- * skeleton either. */
+/* 1 where bones are to be drawn: they were asked for, or there are no meshes. Prints an error and returns -1 where
+ * there is no skeleton either. */
 int stage_shows_bones(const scene *s, const pack_file *file, int asked_for);
 
 /* The world bounds of what is drawn. */
 bounds stage_bounds(const scene *s, const pack_file *file, int face, int show_bones);
 
 /* Make everything that drawing needs. Prints an error and returns an exit code; 0 on success. */
-int stage_open(stage *st, gpu *g, const pack_file *file, const scene *s, const load_options *o, int show_bones, uint32_t width,
-               uint32_t height);
+int stage_open(stage *st, gpu *g, const pack_file *file, const scene *s, const load_options *o, int show_bones,
+               uint32_t width, uint32_t height);
 void stage_close(stage *st);
 
 /* Draw the scene into the canvas, as of the last load_update. */

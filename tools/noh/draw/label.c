@@ -43,6 +43,7 @@ void draw_text(uint8_t *rgba, uint32_t width, uint32_t height, int x, int y, int
     fill(rgba, width, height, x - 2, y - 2, x + scale * stb_easy_font_width(copy) + 2, y + scale * 10, 20);
     for (int q = 0; q < quads; q++) {
         const font_vertex *a = &vertices[4 * q], *b = &vertices[4 * q + 2];
-        fill(rgba, width, height, x + scale * (int)a->x, y + scale * (int)a->y, x + scale * (int)b->x, y + scale * (int)b->y, 235);
+        fill(rgba, width, height, x + scale * (int)a->x, y + scale * (int)a->y, x + scale * (int)b->x,
+             y + scale * (int)b->y, 235);
     }
 }

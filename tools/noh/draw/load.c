@@ -28,7 +28,8 @@ static uint32_t *count_instances(const pack_file *file, const scene *s, uint32_t
     return counts;
 }
 
-static noh_gl_morph_desc morph_desc(const pack_file *file, const scene *s, const load_options *o, const uint32_t *counts)
+static noh_gl_morph_desc morph_desc(const pack_file *file, const scene *s, const load_options *o,
+                                    const uint32_t *counts)
 {
     noh_gl_morph_desc desc;
     memset(&desc, 0, sizeof desc);
@@ -64,7 +65,8 @@ static size_t matrix_bytes(const pack_file *file, const scene *s)
     return most;
 }
 
-static int add_skin(load_budget *b, const pack_file *file, const scene *s, const noh_gl_caps *caps, const uint32_t *counts)
+static int add_skin(load_budget *b, const pack_file *file, const scene *s, const noh_gl_caps *caps,
+                    const uint32_t *counts)
 {
     noh_gl_skin_desc desc = skin_desc(file, s, counts);
     noh_error error = { NOH_OK, "", 0, 0 };
@@ -111,7 +113,8 @@ static void add_parts(load_budget *b, const pack_file *file, const scene *s)
     add_part(b, 0, NOH_GL_RENDERER_BYTES, "renderer", "");
 }
 
-int load_budget_make(load_budget *b, const pack_file *file, const scene *s, const noh_gl_caps *caps, const load_options *o)
+int load_budget_make(load_budget *b, const pack_file *file, const scene *s, const noh_gl_caps *caps,
+                     const load_options *o)
 {
     uint32_t *counts = count_instances(file, s, o->instances);
     noh_gl_morph_desc desc = morph_desc(file, s, o, counts);
@@ -200,8 +203,8 @@ static int create_renderer(load *l, const load_options *o)
     desc.meshes = l->scene->meshes;
     desc.mesh_count = l->file->pack.mesh_count;
     desc.palettes = l->skin.skin ? noh_gl_skin_plan_of(l->skin.skin)->mode : NOH_PALETTE_AUTO;
-    if (noh_gl_renderer_create(&(noh_gl_device){ &l->g->gl, NULL, &l->g->ledger, log, sizeof log }, &desc,
-                               &l->renderer, &error)) {
+    if (noh_gl_renderer_create(&(noh_gl_device){ &l->g->gl, NULL, &l->g->ledger, log, sizeof log }, &desc, &l->renderer,
+                               &error)) {
         fputs(log, stderr);
         return tool_fail_error("renderer", &error);
     }
@@ -216,7 +219,8 @@ static int open_skin(load *l, const uint32_t *counts)
         return 0;
     }
     l->matrices = malloc(l->matrix_bytes);
-    return l->matrices ? gpu_skin_open(&l->skin, l->g, &desc, l->file->path) : tool_fail(l->file->path, "out of memory");
+    return l->matrices ? gpu_skin_open(&l->skin, l->g, &desc, l->file->path)
+                       : tool_fail(l->file->path, "out of memory");
 }
 
 /* The k-th item that draws a mesh is its k-th instance. */
@@ -313,7 +317,8 @@ static void update_joints(load *l)
 {
     for (uint32_t i = 0; i < l->scene->item_count; i++) {
         noh_skin skin;
-        if (noh_pack_skin_at(&l->file->pack, l->scene->meshes[l->scene->items[i].mesh].header->skin, &skin, NULL) == NOH_OK) {
+        if (noh_pack_skin_at(&l->file->pack, l->scene->meshes[l->scene->items[i].mesh].header->skin, &skin, NULL) ==
+            NOH_OK) {
             scene_skin_matrices(l->scene, &skin, l->matrices);
             noh_gl_skin_set_matrices(l->skin.skin, l->item_instances[i], l->matrices);
         }
@@ -344,4 +349,3 @@ const noh_gl_skin_binding *load_skin_binding(const load *l, uint32_t item, noh_g
     *out = noh_gl_skin_binding_of(l->skin.skin, l->item_instances[item]);
     return out;
 }
-

@@ -24,12 +24,13 @@ typedef struct load_options {
     noh_accumulate accumulate;
     uint32_t instances; /* of the whole scene; 0: 1 */
     noh_debug_view view;
-    int fades;          /* 1: levels set by load_set_detail fade into each other; 0: they change at once */
+    int fades; /* 1: levels set by load_set_detail fade into each other; 0: they change at once */
 } load_options;
 
-/* Of clips alone, the clips, with a plan that says nothing but its reason. Prints an error and returns an exit code; 0 on
- * success. */
-int load_budget_make(load_budget *b, const pack_file *file, const scene *s, const noh_gl_caps *caps, const load_options *o);
+/* Of clips alone, the clips, with a plan that says nothing but its reason. Prints an error and returns an exit code; 0
+ * on success. */
+int load_budget_make(load_budget *b, const pack_file *file, const scene *s, const noh_gl_caps *caps,
+                     const load_options *o);
 void load_budget_free(load_budget *b);
 
 /* How an item is drawn: in one part, or in two while one level fades into another. */
@@ -42,15 +43,15 @@ typedef struct load {
     gpu *g;
     const pack_file *file;
     const scene *scene;
-    noh_gl_mesh *meshes;       /* [mesh_count] */
-    noh_gl_texture *pictures;  /* [texture_count] */
+    noh_gl_mesh *meshes;      /* [mesh_count] */
+    noh_gl_texture *pictures; /* [texture_count] */
     noh_gl_renderer renderer;
     gpu_morph morph;
     gpu_skin skin;
-    float *matrices;           /* [joints of the largest skin][12] */
+    float *matrices; /* [joints of the largest skin][12] */
     size_t matrix_bytes;
-    uint32_t *item_instances;  /* [item_count]: the morph instance of each item of the first copy of the scene */
-    load_lod *lods;      /* [item_count]: the finest loaded level until load_set_detail */
+    uint32_t *item_instances; /* [item_count]: the morph instance of each item of the first copy of the scene */
+    load_lod *lods;           /* [item_count]: the finest loaded level until load_set_detail */
 } load;
 
 int load_open(load *l, gpu *g, const pack_file *file, const scene *s, const load_options *o);
@@ -62,8 +63,8 @@ int load_restore(load *l);
 /* Upload the scene's weights and palettes, and accumulate. */
 int load_update(load *l, noh_gl_morph_stats *stats);
 
-/* From now on draw an item at the chosen mesh level (noh_lod_choose), or at both while they fade, and accumulate for the
- * finer one. Call it before load_update. Leaving out influences, joints and targets is up to the caller. */
+/* From now on draw an item at the chosen mesh level (noh_lod_choose), or at both while they fade, and accumulate for
+ * the finer one. Call it before load_update. Leaving out influences, joints and targets is up to the caller. */
 void load_set_lod(load *l, uint32_t item, const noh_lod *lod, int64_t clock);
 
 /* Draw every item: opaque, then blended. The framebuffer and viewport are the caller's. */
@@ -72,7 +73,8 @@ void load_draw(load *l, const noh_gl_camera *camera);
 /* The binding of an item's palette: out, or NULL for a rigid item. */
 const noh_gl_skin_binding *load_skin_binding(const load *l, uint32_t item, noh_gl_skin_binding *out);
 
-/* Capabilities to assume without a driver: a GLES 3.2 device with every feature, and textures as large as ES 3.0 demands. */
+/* Capabilities to assume without a driver: a GLES 3.2 device with every feature, and textures as large as ES 3.0
+ * demands. */
 noh_gl_caps nominal_caps(void);
 
 #endif

@@ -20,8 +20,8 @@ static void draw_item(load *l, uint32_t item, int pass)
     noh_gl_skin_binding joints;
     const noh_gl_skin_binding *skin = load_skin_binding(l, item, &joints);
     for (uint32_t i = 0; i < d->part_count; i++) {
-        noh_gl_draw_mesh(&l->renderer, &l->meshes[l->scene->items[item].mesh], scene_world(l->scene, l->file, item), &morph, skin,
-                         &d->parts[i], l->pictures, pass);
+        noh_gl_draw_mesh(&l->renderer, &l->meshes[l->scene->items[item].mesh], scene_world(l->scene, l->file, item),
+                         &morph, skin, &d->parts[i], l->pictures, pass);
     }
 }
 

@@ -64,15 +64,17 @@ static void item_box(const scene_lod *d, const scene *s, uint32_t item, float bo
     noh_skin_box(mesh, d->matrices, weights, box);
 }
 
-float scene_lod_scale(const scene_lod *d, const pack_file *file, const scene *s, uint32_t item, const noh_gl_camera *camera,
-                         uint32_t height)
+float scene_lod_scale(const scene_lod *d, const pack_file *file, const scene *s, uint32_t item,
+                      const noh_gl_camera *camera, uint32_t height)
 {
     float box[6];
     item_box(d, s, item, box);
-    return noh_lod_scale(noh_lod_depth(camera->view_projection, scene_world(s, file, item), box), (float)ORBIT_VIEW_RAD, height);
+    return noh_lod_scale(noh_lod_depth(camera->view_projection, scene_world(s, file, item), box), (float)ORBIT_VIEW_RAD,
+                         height);
 }
 
-void scene_lod_choose(scene_lod *d, uint32_t item, const noh_lod_settings *settings, float pixels_per_metre, int64_t clock)
+void scene_lod_choose(scene_lod *d, uint32_t item, const noh_lod_settings *settings, float pixels_per_metre,
+                      int64_t clock)
 {
     item_lod *i = &d->items[item];
     noh_lod_choose(&i->state, &i->table, settings, pixels_per_metre, NULL, clock);
@@ -83,12 +85,13 @@ void scene_lod_fix(scene_lod *d, uint32_t item, uint32_t level, float pixels_per
     noh_lod_set_mesh(&d->items[item].state, &d->items[item].table, level, pixels_per_metre);
 }
 
-uint32_t scene_lod_targets(scene_lod *d, uint32_t item, const noh_lod_settings *settings, const float *weights, uint32_t count,
-                              float *kept)
+uint32_t scene_lod_targets(scene_lod *d, uint32_t item, const noh_lod_settings *settings, const float *weights,
+                           uint32_t count, float *kept)
 {
     uint32_t with_weight = 0;
     for (uint32_t t = 0; t < count; t++) {
         with_weight += weights[t] != 0.0f;
     }
-    return with_weight - noh_lod_targets(&d->items[item].state, settings, weights, d->items[item].radius_m, count, kept);
+    return with_weight -
+           noh_lod_targets(&d->items[item].state, settings, weights, d->items[item].radius_m, count, kept);
 }

@@ -24,26 +24,28 @@ typedef struct item_lod {
 typedef struct scene_lod {
     item_lod *items; /* [item_count] */
     uint32_t item_count;
-    float *matrices;    /* [joints of the largest skin][12] */
+    float *matrices; /* [joints of the largest skin][12] */
 } scene_lod;
 
 /* The scene must be at its finest level. Prints an error and returns an exit code; 0 on success. */
 int scene_lod_open(scene_lod *d, const pack_file *file, const scene *s);
 void scene_lod_close(scene_lod *d);
 
-/* For the item's pose and a picture of that height, in pixels. By depth, not distance, so that it holds across the picture. */
-float scene_lod_scale(const scene_lod *d, const pack_file *file, const scene *s, uint32_t item, const noh_gl_camera *camera,
-                         uint32_t height);
+/* For the item's pose and a picture of that height, in pixels. By depth, not distance, so that it holds across the
+ * picture. */
+float scene_lod_scale(const scene_lod *d, const pack_file *file, const scene *s, uint32_t item,
+                      const noh_gl_camera *camera, uint32_t height);
 
 /* Choose a level. The first choice, and the first after scene_detail_fix, does not fade. */
-void scene_lod_choose(scene_lod *d, uint32_t item, const noh_lod_settings *settings, float pixels_per_metre, int64_t clock);
+void scene_lod_choose(scene_lod *d, uint32_t item, const noh_lod_settings *settings, float pixels_per_metre,
+                      int64_t clock);
 
 /* A level past the item's last means the last. No targets are left out. */
 void scene_lod_fix(scene_lod *d, uint32_t item, uint32_t level, float pixels_per_metre);
 
-/* After scene_detail_choose: weights to kept[count] (may alias), 0 where a target is left out. Returns how many of these had
- * a weight. */
-uint32_t scene_lod_targets(scene_lod *d, uint32_t item, const noh_lod_settings *settings, const float *weights, uint32_t count,
-                              float *kept);
+/* After scene_detail_choose: weights to kept[count] (may alias), 0 where a target is left out. Returns how many of
+ * these had a weight. */
+uint32_t scene_lod_targets(scene_lod *d, uint32_t item, const noh_lod_settings *settings, const float *weights,
+                           uint32_t count, float *kept);
 
 #endif

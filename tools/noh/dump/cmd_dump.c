@@ -33,14 +33,15 @@ static void print_to(byte_buffer *out, const char *format, ...)
     buffer_append(out, line, count < (int)sizeof line ? (size_t)count : sizeof line - 1);
 }
 
-/* A normal by the inverse transpose, which is the cofactor matrix up to a factor; unlike the inverse it exists for every
- * matrix. Transforming it by the matrix itself would tilt it under unequal scales. */
+/* A normal by the inverse transpose, which is the cofactor matrix up to a factor; unlike the inverse it exists for
+ * every matrix. Transforming it by the matrix itself would tilt it under unequal scales. */
 static void transform_normal(const float w[12], const float n[3], double out[3])
 {
     double length = 0.0;
     for (int i = 0; i < 3; i++) {
         const float *a = w + 4 * ((i + 1) % 3), *b = w + 4 * ((i + 2) % 3);
-        out[i] = ((double)a[1] * b[2] - (double)a[2] * b[1]) * n[0] + ((double)a[2] * b[0] - (double)a[0] * b[2]) * n[1] +
+        out[i] = ((double)a[1] * b[2] - (double)a[2] * b[1]) * n[0] +
+                 ((double)a[2] * b[0] - (double)a[0] * b[2]) * n[1] +
                  ((double)a[0] * b[1] - (double)a[1] * b[0]) * n[2];
         length += out[i] * out[i];
     }
@@ -56,7 +57,9 @@ static void dump_vertex(byte_buffer *out, const noh_vertex *v, const float world
     print_to(out, "v");
     for (int r = 0; r < 3; r++) {
         const float *row = world + 4 * r;
-        print_to(out, " %.9g", (double)row[0] * v->position[0] + (double)row[1] * v->position[1] + (double)row[2] * v->position[2] + (double)row[3]);
+        print_to(out, " %.9g",
+                 (double)row[0] * v->position[0] + (double)row[1] * v->position[1] + (double)row[2] * v->position[2] +
+                     (double)row[3]);
     }
     print_to(out, " %.4f %.4f %.4f\n", (double)v->color[0], (double)v->color[1], (double)v->color[2]);
     transform_normal(world, v->normal, n);
@@ -81,7 +84,8 @@ static void dump_faces(byte_buffer *out, const noh_mesh *mesh, uint32_t first)
     }
 }
 
-static void dump_item(byte_buffer *out, const pack_file *file, const scene *s, uint32_t item, const noh_vertex *vertices, uint32_t *first)
+static void dump_item(byte_buffer *out, const pack_file *file, const scene *s, uint32_t item,
+                      const noh_vertex *vertices, uint32_t *first)
 {
     const noh_mesh *mesh = &s->meshes[s->items[item].mesh];
     print_to(out, "o %s\n", mesh->name);
@@ -161,7 +165,8 @@ static int dump_scene(const pack_file *file, scene *s, const dump_args *a)
     if (!status) status = scene_set_weights(s, file, &a->weights);
     if (!status) {
         print_to(&out, "# baked by noh: positions in world space, vertex colours linear\n");
-        status = a->path && a->load.path != NOH_MORPH_CPU ? dump_gpu(&out, file, s, a) : dump_items(&out, file, s, NULL, NULL);
+        status = a->path && a->load.path != NOH_MORPH_CPU ? dump_gpu(&out, file, s, a)
+                                                          : dump_items(&out, file, s, NULL, NULL);
     }
     if (!status && (out.failed || noh_file_write(a->output, out.bytes, out.count, &error))) {
         status = tool_fail(a->output, "cannot write: %s", out.failed ? "out of memory" : error.what);
@@ -200,8 +205,13 @@ static int run(void *args)
 static dump_args arguments;
 
 static const option options[] = {
-    { .name = "-o", .kind = OPTION_OUTPUT, .at = offsetof(dump_args, output), .required = 1, .value = "OUT.obj",
-      .what = "the mesh, positions in world space, vertex colours linear", .example = "face.obj" },
+    { .name = "-o",
+      .kind = OPTION_OUTPUT,
+      .at = offsetof(dump_args, output),
+      .required = 1,
+      .value = "OUT.obj",
+      .what = "the mesh, positions in world space, vertex colours linear",
+      .example = "face.obj" },
     OPTION_WEIGHT(dump_args, weights, .needs = NULL),
     OPTION_CLIP(dump_args, clips, .needs = NULL),
     OPTION_TIME(dump_args, time_s, .needs = "--clip"),
@@ -216,7 +226,8 @@ const verb verb_dump = {
     .name = "dump",
     .files = "PACK",
     .what = "the deformed mesh, as drawn, baked to a plain one",
-    .more = "Without --path, and with --path cpu, the CPU computes the mesh and no GL is needed. With another path it is what the vertex shader has.",
+    .more =
+        "Without --path, and with --path cpu, the CPU computes the mesh and no GL is needed. With another path it is what the vertex shader has.",
     .example = "face.noh -o face.obj --weight smile=1\nbody.noh -o walk.obj --clip walk --time 0.5 --path mrt",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

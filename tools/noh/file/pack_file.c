@@ -41,7 +41,9 @@ int tool_clip_info(const pack_file *file, uint32_t index, noh_pack_clip *clip, n
     desc.byte_count = clip->header->clip_bytes;
     desc.bind = skeleton.bind_pose;
     desc.joint_count = clip->header->joint_count;
-    return noh_clip_measure(&desc, info, &bytes, &error) ? tool_fail(file->path, "clip '%s': %s", clip->name, error.what) : 0;
+    return noh_clip_measure(&desc, info, &bytes, &error)
+               ? tool_fail(file->path, "clip '%s': %s", clip->name, error.what)
+               : 0;
 }
 
 double tool_clip_seconds(const noh_clip_info *info)

@@ -4,8 +4,8 @@
 
 #include <stdint.h>
 
-/* Write a whole picture or nothing: rgba[height][width][4], top row first. Prints an error and returns an exit code; 0 on
- * success. */
+/* Write a whole picture or nothing: rgba[height][width][4], top row first. Prints an error and returns an exit code; 0
+ * on success. */
 int tool_write_png(const char *path, uint32_t width, uint32_t height, const uint8_t *rgba);
 
 #endif

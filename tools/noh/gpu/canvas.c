@@ -87,8 +87,8 @@ void canvas_resolve(canvas *c)
     const noh_gl_api *gl = &c->g->gl;
     gl->BindFramebuffer(GL_READ_FRAMEBUFFER, c->framebuffer);
     gl->BindFramebuffer(GL_DRAW_FRAMEBUFFER, c->resolved_framebuffer);
-    gl->BlitFramebuffer(0, 0, (GLint)c->width, (GLint)c->height, 0, 0, (GLint)c->width, (GLint)c->height, GL_COLOR_BUFFER_BIT,
-                        GL_NEAREST);
+    gl->BlitFramebuffer(0, 0, (GLint)c->width, (GLint)c->height, 0, 0, (GLint)c->width, (GLint)c->height,
+                        GL_COLOR_BUFFER_BIT, GL_NEAREST);
     gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
@@ -122,5 +122,6 @@ int canvas_read(canvas *c, uint8_t *rgba)
     gl->ReadPixels(0, 0, (GLsizei)c->width, (GLsizei)c->height, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
     gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
     error = gl->GetError();
-    return error ? tool_fail("canvas", "GL error 0x%x while drawing", error) : picture_from_gl(rgba, c->width, c->height);
+    return error ? tool_fail("canvas", "GL error 0x%x while drawing", error)
+                 : picture_from_gl(rgba, c->width, c->height);
 }

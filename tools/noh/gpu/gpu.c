@@ -45,7 +45,8 @@ int gpu_open(gpu *g, const char *driver)
     if (g->platform->create(&desc, &g->context, message, sizeof message)) {
         return tool_fail(name, "no GL context\n%s", message);
     }
-    if (noh_gl_api_load(&g->gl, g->platform->get_proc, g->context, &error) || noh_gl_caps_probe(&g->gl, &g->caps, &error)) {
+    if (noh_gl_api_load(&g->gl, g->platform->get_proc, g->context, &error) ||
+        noh_gl_caps_probe(&g->gl, &g->caps, &error)) {
         g->platform->destroy(g->context);
         return tool_fail_error(name, &error);
     }
@@ -75,9 +76,8 @@ int gpu_morph_open(gpu_morph *m, gpu *g, const noh_gl_morph_desc *desc, const ch
     if (!m->memory) {
         return tool_fail(subject, "out of memory");
     }
-    if (noh_gl_morph_init(m->memory, m->bytes,
-                          &(noh_gl_device){ &g->gl, &g->caps, &g->ledger, log, sizeof log }, desc, &m->morph,
-                          &error)) {
+    if (noh_gl_morph_init(m->memory, m->bytes, &(noh_gl_device){ &g->gl, &g->caps, &g->ledger, log, sizeof log }, desc,
+                          &m->morph, &error)) {
         free(m->memory);
         memset(m, 0, sizeof *m);
         if (log[0]) {
@@ -110,8 +110,8 @@ int gpu_skin_open(gpu_skin *s, gpu *g, const noh_gl_skin_desc *desc, const char 
     if (!s->memory) {
         return tool_fail(subject, "out of memory");
     }
-    if (noh_gl_skin_init(s->memory, s->bytes, &(noh_gl_device){ &g->gl, &g->caps, &g->ledger, NULL, 0 }, desc,
-                         &s->skin, &error)) {
+    if (noh_gl_skin_init(s->memory, s->bytes, &(noh_gl_device){ &g->gl, &g->caps, &g->ledger, NULL, 0 }, desc, &s->skin,
+                         &error)) {
         free(s->memory);
         memset(s, 0, sizeof *s);
         return tool_fail_error(subject, &error);

@@ -62,7 +62,8 @@ static void target_close(const noh_gl_api *gl, bit_target *t)
     gl->DeleteRenderbuffers(3, t->renderbuffers);
 }
 
-static int create_program(gpu *g, const noh_gl_source *vertex, const noh_gl_source *fragment, int is_uint, GLuint *program)
+static int create_program(gpu *g, const noh_gl_source *vertex, const noh_gl_source *fragment, int is_uint,
+                          GLuint *program)
 {
     static const char *const samplers[] = { "u_layers" };
     noh_gl_program_desc desc;

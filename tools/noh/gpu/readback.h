@@ -28,10 +28,10 @@ typedef struct readback_vertex {
 } readback_vertex;
 
 /* Every vertex of a mesh with these bindings (NULL: rest pose, bind pose), each by its own palette: out[vertex_count].
- * crowd: 0 draws one mesh in an identity world; else so many instances in one draw from the one that skin binds, each in
- * its own world, and out is [crowd][vertex_count]. Prints why not; 0 on success. */
-int readback_skinned(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph, const noh_gl_skin_binding *skin,
-                     uint32_t crowd, readback_vertex *out);
+ * crowd: 0 draws one mesh in an identity world; else so many instances in one draw from the one that skin binds, each
+ * in its own world, and out is [crowd][vertex_count]. Prints why not; 0 on success. */
+int readback_skinned(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph,
+                     const noh_gl_skin_binding *skin, uint32_t crowd, readback_vertex *out);
 
 /* Every vertex as drawn in the bind pose: positions, normals, tangents, each [vertex_count][3]. */
 int readback_vertices(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_binding *binding, float *positions,

@@ -18,8 +18,8 @@ static int use_variant(readback *r, noh_gl_variant_key key)
         return 0;
     }
     noh_gl_variant_delete(&r->g->gl, NULL, &r->variant);
-    if (noh_gl_variant_create(&(noh_gl_device){ &r->g->gl, NULL, NULL, log, sizeof log }, key, varyings, 4,
-                              &r->variant, &error)) {
+    if (noh_gl_variant_create(&(noh_gl_device){ &r->g->gl, NULL, NULL, log, sizeof log }, key, varyings, 4, &r->variant,
+                              &error)) {
         fputs(log, stderr);
         return tool_fail_error("readback", &error);
     }
@@ -76,21 +76,23 @@ static int capture(gpu *g, const noh_gl_mesh *mesh, uint32_t palette, uint32_t c
     return !mapped || !gl->UnmapBuffer(GL_TRANSFORM_FEEDBACK_BUFFER);
 }
 
-int readback_skinned(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph, const noh_gl_skin_binding *skin,
-                     uint32_t crowd, readback_vertex *out)
+int readback_skinned(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph,
+                     const noh_gl_skin_binding *skin, uint32_t crowd, readback_vertex *out)
 {
     const noh_gl_api *gl = &r->g->gl;
     uint32_t count = crowd ? crowd : 1u, palettes = skin ? mesh->mesh.header->palette_count : 0, palette = 0;
     GLuint buffer;
     GLenum error;
-    int status = use_variant(r, noh_gl_variant_key_of(&mesh->mesh, skin, crowd != 0, morph && morph->is_uint, NOH_VIEW_LIT)), lost;
+    int status = use_variant(
+            r, noh_gl_variant_key_of(&mesh->mesh, skin, crowd != 0, morph && morph->is_uint, NOH_VIEW_LIT)),
+        lost;
     if (status) {
         return status;
     }
     gl->GenBuffers(1, &buffer);
     gl->BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffer);
-    gl->BufferData(GL_TRANSFORM_FEEDBACK_BUFFER, (GLsizeiptr)sizeof *out * mesh->mesh.header->vertex_count * count, NULL,
-                   GL_STREAM_READ);
+    gl->BufferData(GL_TRANSFORM_FEEDBACK_BUFFER, (GLsizeiptr)sizeof *out * mesh->mesh.header->vertex_count * count,
+                   NULL, GL_STREAM_READ);
     set_up(r->g, &r->variant, mesh, morph);
     do {
         if (skin) {
@@ -101,7 +103,8 @@ int readback_skinned(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_bi
     tear_down(r->g);
     gl->DeleteBuffers(1, &buffer);
     error = gl->GetError();
-    return lost || error ? tool_fail("readback", "the driver does not give its vertices back (GL error 0x%x)", error) : 0;
+    return lost || error ? tool_fail("readback", "the driver does not give its vertices back (GL error 0x%x)", error)
+                         : 0;
 }
 
 int readback_vertices(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_binding *binding, float *positions,
@@ -109,7 +112,8 @@ int readback_vertices(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_b
 {
     size_t count = mesh->mesh.header->vertex_count;
     readback_vertex *vertices = malloc(count * sizeof *vertices);
-    int status = vertices ? readback_skinned(r, mesh, binding, NULL, 0, vertices) : tool_fail("readback", "out of memory");
+    int status = vertices ? readback_skinned(r, mesh, binding, NULL, 0, vertices)
+                          : tool_fail("readback", "out of memory");
     for (size_t v = 0; v < count && !status; v++) {
         memcpy(positions + 3 * v, vertices[v].position, 12);
         memcpy(normals + 3 * v, vertices[v].normal, 12);

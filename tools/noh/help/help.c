@@ -38,7 +38,8 @@ static void print_facts(FILE *out, const option *o)
         count += snprintf(facts, sizeof facts, "default %s", o->initial);
     }
     if (o->example) {
-        snprintf(facts + count, sizeof facts - (size_t)count, "%sexample: %s %s", count ? "; " : "", o->name, o->example);
+        snprintf(facts + count, sizeof facts - (size_t)count, "%sexample: %s %s", count ? "; " : "", o->name,
+                 o->example);
     }
     if (facts[0]) {
         fprintf(out, "%24s(%s)\n", "", facts);
@@ -129,7 +130,8 @@ static int unknown_topic(const char *name)
         names[i + 1] = verb_at(i)->name;
     }
     near = nearest_name(name, names, VERB_COUNT + 1);
-    return near ? tool_usage("there is no verb '%s' (did you mean '%s'?)", name, near) : tool_usage("there is no verb '%s'", name);
+    return near ? tool_usage("there is no verb '%s' (did you mean '%s'?)", name, near)
+                : tool_usage("there is no verb '%s'", name);
 }
 
 int help_run(int argc, char **argv)

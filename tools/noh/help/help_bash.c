@@ -57,7 +57,9 @@ void help_bash(FILE *out)
     for (int i = 0; i < VERB_COUNT; i++) {
         bash_verb(out, verb_at(i));
     }
-    fputs("    esac\n    [ \"$verb\" = help ] || case $word in -*) files= ;; *) words= ;; esac\n    case \"$verb $before\" in\n", out);
+    fputs(
+        "    esac\n    [ \"$verb\" = help ] || case $word in -*) files= ;; *) words= ;; esac\n    case \"$verb $before\" in\n",
+        out);
     for (int i = 0; i < VERB_COUNT; i++) {
         const verb *v = verb_at(i);
         for (int k = 0; k < v->option_count; k++) {

@@ -1,5 +1,5 @@
-/* help_formats.c: the text formats, as `noh help FORMATS` and the man page show them. A line that begins with a blank is
- * printed as it is. */
+/* help_formats.c: the text formats, as `noh help FORMATS` and the man page show them. A line that begins with a blank
+ * is printed as it is. */
 #include "help.h"
 
 const char *const help_formats_text[] = {

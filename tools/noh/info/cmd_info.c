@@ -11,14 +11,15 @@
 
 static uint64_t target_bytes(const noh_mesh_header *h)
 {
-    return 12ull * h->texel_count + sizeof(noh_rect) * (uint64_t)h->rect_count + sizeof(noh_target) * (uint64_t)h->target_count;
+    return 12ull * h->texel_count + sizeof(noh_rect) * (uint64_t)h->rect_count +
+           sizeof(noh_target) * (uint64_t)h->target_count;
 }
 
 static void print_target(const noh_pack *pack, const noh_target *t, double scale)
 {
-    printf("    %-24s %6u pairs %4u rects %6u texels  %2u/%2u/%2u bits  moves %.3f mm, error %.2f um\n", noh_pack_string(pack, t->name),
-           t->pair_count, t->rect_count, t->texel_count, t->position_bits, t->normal_bits, t->tangent_bits,
-           1e3 * scale * (double)t->radius, 1e6 * scale * (double)t->position_error);
+    printf("    %-24s %6u pairs %4u rects %6u texels  %2u/%2u/%2u bits  moves %.3f mm, error %.2f um\n",
+           noh_pack_string(pack, t->name), t->pair_count, t->rect_count, t->texel_count, t->position_bits,
+           t->normal_bits, t->tangent_bits, 1e3 * scale * (double)t->radius, 1e6 * scale * (double)t->position_error);
 }
 
 static const char *method_of(const noh_mesh_header *h)
@@ -30,8 +31,9 @@ static void print_skin(const noh_pack *pack, const noh_mesh_header *h)
 {
     noh_skin skin;
     if (noh_pack_skin_at(pack, h->skin, &skin, NULL) == NOH_OK) {
-        printf("  skin '%s': %u joints, %u influence%s a vertex, %u palette%s, by %s\n", skin.name, skin.header->joint_count,
-               h->influence_count, h->influence_count == 1 ? "" : "s", h->palette_count, h->palette_count == 1 ? "" : "s", method_of(h));
+        printf("  skin '%s': %u joints, %u influence%s a vertex, %u palette%s, by %s\n", skin.name,
+               skin.header->joint_count, h->influence_count, h->influence_count == 1 ? "" : "s", h->palette_count,
+               h->palette_count == 1 ? "" : "s", method_of(h));
     }
 }
 
@@ -45,18 +47,21 @@ static void print_levels(const noh_mesh *m)
 {
     if (m->header->influence_errors[2] > 0.0f) {
         printf("  with only the 4, 2, 1 heaviest joints of a vertex: off by at most %.3f, %.3f, %.3f mm in motion\n",
-               millimetres(m->header, m->header->influence_errors[0]), millimetres(m->header, m->header->influence_errors[1]),
+               millimetres(m->header, m->header->influence_errors[0]),
+               millimetres(m->header, m->header->influence_errors[1]),
                millimetres(m->header, m->header->influence_errors[2]));
     }
     for (uint32_t k = 0; k < m->header->level_count && m->header->level_count > 1; k++) {
         const noh_mesh level = noh_mesh_at_lod(m, k);
         const noh_mesh_header *h = level.header;
-        printf("  level %u: %6u vertices, %6u triangles, %6u texels, %7u pairs in %5u rectangles", k, h->vertex_count, h->index_count / 3,
-               h->touched_count, h->pair_count, h->rect_count);
+        printf("  level %u: %6u vertices, %6u triangles, %6u texels, %7u pairs in %5u rectangles", k, h->vertex_count,
+               h->index_count / 3, h->touched_count, h->pair_count, h->rect_count);
         if (k) {
-            printf("; off by at most, mm: %.3f at rest (99 %%: %.3f), %.3f a target, %.3f left and right, %.3f in motion",
-                   millimetres(h, h->level_error_rest), millimetres(h, h->level_error_rest_p99), millimetres(h, h->level_error_targets),
-                   millimetres(h, h->level_error_pairs), millimetres(h, h->level_error_clip));
+            printf(
+                "; off by at most, mm: %.3f at rest (99 %%: %.3f), %.3f a target, %.3f left and right, %.3f in motion",
+                millimetres(h, h->level_error_rest), millimetres(h, h->level_error_rest_p99),
+                millimetres(h, h->level_error_targets), millimetres(h, h->level_error_pairs),
+                millimetres(h, h->level_error_clip));
         }
         if (h->level_skipped > 0.0f) {
             printf(", targets of %.3f left out", millimetres(h, h->level_skipped));
@@ -68,16 +73,18 @@ static void print_levels(const noh_mesh *m)
 static void print_mesh(const noh_pack *pack, const noh_mesh *m)
 {
     const noh_mesh_header *h = m->header;
-    printf("mesh '%s': %u vertices, %u indices, %u submeshes%s%s%s\n", m->name, h->vertex_count, h->index_count, h->submesh_count,
-           (h->flags & NOH_MESH_TANGENTS) ? ", tangents" : "", (h->flags & NOH_MESH_UVS) ? ", uvs" : "",
-           (h->flags & NOH_MESH_COLORS) ? ", colours" : "");
+    printf("mesh '%s': %u vertices, %u indices, %u submeshes%s%s%s\n", m->name, h->vertex_count, h->index_count,
+           h->submesh_count, (h->flags & NOH_MESH_TANGENTS) ? ", tangents" : "",
+           (h->flags & NOH_MESH_UVS) ? ", uvs" : "", (h->flags & NOH_MESH_COLORS) ? ", colours" : "");
     print_skin(pack, h);
     if (h->target_count) {
-        printf("  %u targets, %u pairs in %u rectangles of %u texels (%.3f per pair), %llu bytes (%.2f per pair)\n", h->target_count,
-               h->pair_count, h->rect_count, h->texel_count, h->pair_count ? (double)h->texel_count / h->pair_count : 0.0,
-               (unsigned long long)target_bytes(h), h->pair_count ? (double)target_bytes(h) / h->pair_count : 0.0);
-        printf("  %u vertices touched, in %u x %u texels; f16 accumulation within %.0f um (weights -2..2)\n", h->touched_count,
-               1u << h->morph_width_log2, h->morph_height, 1e6 * (double)h->world_scale * (double)h->f16_position_bound);
+        printf("  %u targets, %u pairs in %u rectangles of %u texels (%.3f per pair), %llu bytes (%.2f per pair)\n",
+               h->target_count, h->pair_count, h->rect_count, h->texel_count,
+               h->pair_count ? (double)h->texel_count / h->pair_count : 0.0, (unsigned long long)target_bytes(h),
+               h->pair_count ? (double)target_bytes(h) / h->pair_count : 0.0);
+        printf("  %u vertices touched, in %u x %u texels; f16 accumulation within %.0f um (weights -2..2)\n",
+               h->touched_count, 1u << h->morph_width_log2, h->morph_height,
+               1e6 * (double)h->world_scale * (double)h->f16_position_bound);
     }
     print_levels(m);
     for (uint32_t t = 0; t < h->target_count; t++) {
@@ -91,9 +98,9 @@ static int print_clip(const pack_file *file, uint32_t index)
     noh_clip_info info;
     int status = tool_clip_info(file, index, &clip, &info);
     if (!status) {
-        printf("clip '%s': %.3f s, %u joints, %u floats, %u bytes, %u callback keys, %u sync markers%s\n", clip.name, tool_clip_seconds(&info),
-               info.joint_count, info.float_count, clip.header->clip_bytes, clip.header->event_count, clip.header->marker_count,
-               info.flags & NOH_CLIP_FLAG_LOOP ? ", a loop" : "");
+        printf("clip '%s': %.3f s, %u joints, %u floats, %u bytes, %u callback keys, %u sync markers%s\n", clip.name,
+               tool_clip_seconds(&info), info.joint_count, info.float_count, clip.header->clip_bytes,
+               clip.header->event_count, clip.header->marker_count, info.flags & NOH_CLIP_FLAG_LOOP ? ", a loop" : "");
         info_print_errors(&file->pack, &clip);
     }
     return status;
@@ -118,9 +125,10 @@ static int print_info(const pack_file *file)
     int status = 0;
     char writer[VERSION_BYTES];
     write_version(p, writer);
-    printf("%s: format %u, written by noh %s, %u bytes, %u chunks; %u meshes, %u nodes, %u skeletons, %u clips, %u materials, %u textures\n",
-           file->path, NOH_PACK_VERSION, writer, p->byte_count, p->chunk_count, p->mesh_count, p->node_count, p->skeleton_count, p->clip_count,
-           p->material_count, p->texture_count);
+    printf(
+        "%s: format %u, written by noh %s, %u bytes, %u chunks; %u meshes, %u nodes, %u skeletons, %u clips, %u materials, %u textures\n",
+        file->path, NOH_PACK_VERSION, writer, p->byte_count, p->chunk_count, p->mesh_count, p->node_count,
+        p->skeleton_count, p->clip_count, p->material_count, p->texture_count);
     for (uint32_t i = 0; i < p->mesh_count; i++) {
         noh_mesh mesh;
         noh_pack_mesh_at(p, i, &mesh, NULL);

@@ -27,7 +27,9 @@ static double unit_cm(const noh_pack *pack, const noh_pack_clip *clip)
 {
     noh_skeleton skeleton;
     const noh_skeleton_header *header;
-    return noh_pack_skeleton_at(pack, clip->header->skeleton, &skeleton, &header, NULL) == NOH_OK ? (double)header->unit_cm : 100.0;
+    return noh_pack_skeleton_at(pack, clip->header->skeleton, &skeleton, &header, NULL) == NOH_OK
+               ? (double)header->unit_cm
+               : 100.0;
 }
 
 void info_print_errors(const noh_pack *pack, const noh_pack_clip *clip)
@@ -36,8 +38,8 @@ void info_print_errors(const noh_pack *pack, const noh_pack_clip *clip)
     const double unit = unit_cm(pack, clip);
     uint32_t count;
     const uint32_t *levels = noh_pack_joint_levels(pack, h->skeleton, &count);
-    printf("  off at 30, 15, 8 Hz by %.3g, %.3g, %.3g cm", unit * (double)h->update_rate_error[1], unit * (double)h->update_rate_error[2],
-           unit * (double)h->update_rate_error[3]);
+    printf("  off at 30, 15, 8 Hz by %.3g, %.3g, %.3g cm", unit * (double)h->update_rate_error[1],
+           unit * (double)h->update_rate_error[2], unit * (double)h->update_rate_error[3]);
     for (uint32_t i = 1; i < h->joint_error_count; i++) {
         printf("%s %u joints by %.3g cm", i == 1 ? "; with" : ",", levels[i], unit * (double)clip->joint_errors[i]);
     }

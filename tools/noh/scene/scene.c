@@ -121,7 +121,8 @@ void scene_free(scene *s)
 }
 
 /* "no clip 'simle' (did you mean 'smile'?)", or the list's size when nothing is near. */
-int scene_fail_unknown(const pack_file *file, const char *kind, const char *name, const char *const *names, size_t count)
+int scene_fail_unknown(const pack_file *file, const char *kind, const char *name, const char *const *names,
+                       size_t count)
 {
     const char *near = nearest_name(name, names, count);
     if (near) {
@@ -168,7 +169,8 @@ static int set_weight(scene *s, const pack_file *file, const char *assignment)
     char name[NOH_NAME_BYTES_MAX];
     double value;
     int found = 0;
-    if (!equals || equals == assignment || (size_t)(equals - assignment) >= sizeof name || tool_number(equals + 1, &value)) {
+    if (!equals || equals == assignment || (size_t)(equals - assignment) >= sizeof name ||
+        tool_number(equals + 1, &value)) {
         return tool_usage("--weight wants NAME=NUMBER, not '%s'", assignment);
     }
     memcpy(name, assignment, (size_t)(equals - assignment));

@@ -10,18 +10,19 @@
 #include "cli/args.h"
 #include "file/pack_file.h"
 
-/* Plays clips on one skeleton of the pack, or on weights alone in a pack without skeletons: a clip set, a controller for each
- * copy of the scene, and room for one pose at a time. */
+/* Plays clips on one skeleton of the pack, or on weights alone in a pack without skeletons: a clip set, a controller
+ * for each copy of the scene, and room for one pose at a time. */
 typedef struct scene_player {
-    noh_skeleton skeleton;       /* joint_count 0: none */
-    float *joint_matrices;       /* [joint_count][12] in model space, see local_to_model.h; the bind pose until a clip is set */
-    noh_clip_bank *set;         /* NULL: not opened yet, or no clip fits */
+    noh_skeleton skeleton; /* joint_count 0: none */
+    /* [joint_count][12] in model space, see local_to_model.h; the bind pose until a clip is set */
+    float *joint_matrices;
+    noh_clip_bank *set;           /* NULL: not opened yet, or no clip fits */
     noh_controller **controllers; /* [controller_count] */
     uint32_t controller_count;
     noh_pose_scratch scratch;
     void *set_memory, *scratch_memory;
-    noh_transform *pose;         /* [joint_count] */
-    float *floats;               /* [set->clips.float_count] */
+    noh_transform *pose;                              /* [joint_count] */
+    float *floats;                                    /* [set->clips.float_count] */
     uint64_t set_bytes, controller_bytes, pose_bytes; /* taken */
 } scene_player;
 
@@ -33,19 +34,19 @@ typedef struct scene_item {
 } scene_item;
 
 typedef struct scene {
-    noh_mesh *meshes;   /* [pack->mesh_count] */
+    noh_mesh *meshes; /* [pack->mesh_count] */
     scene_item *items;
     uint32_t item_count;
-    const pack_file *anim;    /* whose clips are played: the pack's own, or that of --anim */
-    pack_file anim_file;      /* --anim */
-    scene_player *players;    /* [player_count] one for each skeleton of the pack, at least one */
+    const pack_file *anim; /* whose clips are played: the pack's own, or that of --anim */
+    pack_file anim_file;   /* --anim */
+    scene_player *players; /* [player_count] one for each skeleton of the pack, at least one */
     uint32_t player_count;
-    noh_skeleton skeleton;    /* of the first one */
+    noh_skeleton skeleton; /* of the first one */
     const float *joint_matrices;
 } scene;
 
-/* Every node with a mesh (or every mesh, in a pack without nodes) at its default weights, every skeleton in its bind pose.
- * The pack must stay where it is while the scene is used. */
+/* Every node with a mesh (or every mesh, in a pack without nodes) at its default weights, every skeleton in its bind
+ * pose. The pack must stay where it is while the scene is used. */
 int scene_init(scene *s, const pack_file *file);
 void scene_free(scene *s);
 /* Take every mesh at an LOD level, or at its coarsest; an error where no mesh has that many. */
@@ -58,8 +59,8 @@ int scene_open_anim(scene *s, const pack_file *file, const char *path);
 /* Open the clips and `controllers` controllers for each player. scene_set_clips does so for one. */
 int scene_open_players(scene *s, const pack_file *file, uint32_t controllers);
 /* The bytes that scene_open_players will take, added to *clips, *controller_bytes and *poses. */
-int scene_measure_players(const scene *s, const pack_file *file, uint32_t controllers, uint64_t *clips, uint64_t *controller_bytes,
-                          uint64_t *poses);
+int scene_measure_players(const scene *s, const pack_file *file, uint32_t controllers, uint64_t *clips,
+                          uint64_t *controller_bytes, uint64_t *poses);
 /* How many decoded segments the clips then hold at once, of how many in all. */
 void scene_measure_segments(const scene *s, const pack_file *file, uint32_t controllers, uint32_t *held, uint32_t *all);
 /* Weights and joint matrices of clips at a time, together; unknown names are an error that suggests the nearest. */
@@ -93,7 +94,8 @@ int scene_set_weights(scene *s, const pack_file *file, const option_list *assign
 /* 0 when some mesh has the target; prints an error with the nearest name otherwise. */
 int scene_check_target(const scene *s, const pack_file *file, const char *name);
 /* "no clip named 'wlak' (did you mean 'walk'?)"; returns an exit code. */
-int scene_fail_unknown(const pack_file *file, const char *kind, const char *name, const char *const *names, size_t count);
+int scene_fail_unknown(const pack_file *file, const char *kind, const char *name, const char *const *names,
+                       size_t count);
 
 /* The item's world matrix, 3 rows of 4. */
 const float *scene_world(const scene *s, const pack_file *file, uint32_t item);

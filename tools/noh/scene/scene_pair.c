@@ -21,7 +21,8 @@ static int find_pair(scene *s, const pack_file *file, const scene_pair *pair, sc
             }
         }
     }
-    return status ? status : tool_fail(file->path, "clips '%s' and '%s' move different skeletons", pair->from, pair->to);
+    return status ? status
+                  : tool_fail(file->path, "clips '%s' and '%s' move different skeletons", pair->from, pair->to);
 }
 
 static int start(scene_player *p, uint32_t track, uint32_t clip, int64_t position_ticks, float weight)
@@ -44,7 +45,8 @@ static int pose_blend(scene_player *p, const scene_pair *pair, const uint32_t cl
     const noh_clip_entry *m = p->set->clips.clips;
     int status = 0;
     for (uint32_t i = 0; i < 2 && !status; i++) {
-        status = start(p, i, clips[i], (int64_t)(phase * m[clips[i]].duration_ticks + 0.5), i ? (float)pair->weight : 1.0f - (float)pair->weight);
+        status = start(p, i, clips[i], (int64_t)(phase * m[clips[i]].duration_ticks + 0.5),
+                       i ? (float)pair->weight : 1.0f - (float)pair->weight);
     }
     return status;
 }
@@ -64,10 +66,12 @@ static int pose_transition(scene_player *p, const scene_pair *pair, const uint32
     if (pair->mix == SCENE_MIX_INERTIA) {
         if (noh_controller_inertia_capture(c, set, &p->scratch, &error)) return tool_fail_error("clip", &error);
         status = start(p, 0, clips[1], 0, 1.0f);
-        if (!status && noh_controller_inertia_begin(c, set, &p->scratch, over, &error)) return tool_fail_error("clip", &error);
+        if (!status && noh_controller_inertia_begin(c, set, &p->scratch, over, &error))
+            return tool_fail_error("clip", &error);
     } else {
         status = start(p, 1, clips[1], 0, 0.0f);
-        if (!status && noh_controller_cross_fade(c, set, 0, 1, 1.0f, over, NOH_CURVE_SMOOTHSTEP, &error)) return tool_fail_error("clip", &error);
+        if (!status && noh_controller_cross_fade(c, set, 0, 1, 1.0f, over, NOH_CURVE_SMOOTHSTEP, &error))
+            return tool_fail_error("clip", &error);
     }
     noh_controller_step(c, set, (uint32_t)noh_ticks_from_seconds(time_s - pair->lead_s), NULL, NULL);
     return status;
@@ -79,7 +83,9 @@ int scene_set_pair(scene *s, const pack_file *file, const scene_pair *pair, doub
     uint32_t clips[2];
     int status = find_pair(s, file, pair, &p, clips);
     if (!status) status = scene_reset_player(p);
-    if (!status) status = pair->mix == SCENE_MIX_BLEND ? pose_blend(p, pair, clips, time) : pose_transition(p, pair, clips, time);
+    if (!status)
+        status = pair->mix == SCENE_MIX_BLEND ? pose_blend(p, pair, clips, time)
+                                              : pose_transition(p, pair, clips, time);
     if (!status) scene_pose_player(s, p);
     return status;
 }

@@ -43,7 +43,8 @@ static noh_controller_desc controller_desc(const noh_clip_set *set)
 /* Bytes of one pose and its matrices, beside the scratch. */
 static uint64_t pose_bytes(const noh_clip_set *set)
 {
-    return (uint64_t)set->joint_count * (sizeof(noh_transform) + 12 * sizeof(float)) + (uint64_t)set->float_count * sizeof(float);
+    return (uint64_t)set->joint_count * (sizeof(noh_transform) + 12 * sizeof(float)) +
+           (uint64_t)set->float_count * sizeof(float);
 }
 
 /* A player whose skeleton no clip fits (NOT_FOUND) is no error while the clips fit another one. */
@@ -52,11 +53,12 @@ static int failed_for_good(const scene *s, const pack_file *file, uint32_t fitti
     if (error->result != NOH_OK && error->result != NOH_ERR_NOT_FOUND) {
         return tool_fail_error(s->anim->path, error);
     }
-    return fitting == 0 && s->anim->pack.clip_count ? tool_fail(s->anim->path, "for %s: %s", file->path, error->what) : 0;
+    return fitting == 0 && s->anim->pack.clip_count ? tool_fail(s->anim->path, "for %s: %s", file->path, error->what)
+                                                    : 0;
 }
 
-int scene_measure_players(const scene *s, const pack_file *file, uint32_t controllers, uint64_t *clips, uint64_t *controller_bytes,
-                          uint64_t *poses)
+int scene_measure_players(const scene *s, const pack_file *file, uint32_t controllers, uint64_t *clips,
+                          uint64_t *controller_bytes, uint64_t *poses)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
     uint32_t fitting = 0;
@@ -115,7 +117,8 @@ static int open_poses(scene_player *p)
     p->pose = calloc(set->joint_count + 1u, sizeof *p->pose);
     p->floats = calloc(set->float_count + 1u, sizeof *p->floats);
     p->pose_bytes = bytes + pose_bytes(set);
-    return !p->scratch_memory || !p->pose || !p->floats || noh_pose_scratch_init(p->scratch_memory, bytes, set, 1, &p->scratch, NULL);
+    return !p->scratch_memory || !p->pose || !p->floats ||
+           noh_pose_scratch_init(p->scratch_memory, bytes, set, 1, &p->scratch, NULL);
 }
 
 /* Also 0 where no clip fits: the player then has no set, and *error says why. */
@@ -193,11 +196,14 @@ static int fail_clip(const scene *s, const pack_file *file, const char *name)
         noh_pack_clip_at(&s->anim->pack, i, &clip, NULL);
         names[i] = clip.name;
         if (strcmp(clip.name, name) == 0) {
-            status = tool_fail(s->anim->path, "clip '%s' moves another skeleton than %s has: names or parents of joints differ", name, file->path);
+            status = tool_fail(s->anim->path,
+                               "clip '%s' moves another skeleton than %s has: names or parents of joints differ", name,
+                               file->path);
         }
     }
     if (!status) {
-        status = names ? scene_fail_unknown(s->anim, "clip", name, names, count) : tool_fail(file->path, "out of memory");
+        status = names ? scene_fail_unknown(s->anim, "clip", name, names, count)
+                       : tool_fail(file->path, "out of memory");
     }
     free(names);
     return status;
@@ -228,7 +234,8 @@ static void take_weights(scene *s, const scene_player *p)
     for (uint32_t i = 0; i < s->item_count; i++) {
         const uint32_t group = noh_clip_bank_node_group(p->set, s->items[i].node);
         if (group != NOH_NONE && is_moved(p, group)) {
-            memcpy(s->items[i].weights, p->floats + p->set->groups[group].first, p->set->groups[group].width * sizeof(float));
+            memcpy(s->items[i].weights, p->floats + p->set->groups[group].first,
+                   p->set->groups[group].width * sizeof(float));
         }
     }
 }
@@ -238,7 +245,9 @@ int scene_reset_player(scene_player *p)
     const noh_controller_desc desc = controller_desc(&p->set->clips);
     noh_error error = { NOH_OK, "", 0, 0 };
     noh_controller *c = p->controllers[0];
-    return noh_controller_init(c, noh_controller_bytes(c), &desc, &p->controllers[0], &error) ? tool_fail_error("controller", &error) : 0;
+    return noh_controller_init(c, noh_controller_bytes(c), &desc, &p->controllers[0], &error)
+               ? tool_fail_error("controller", &error)
+               : 0;
 }
 
 void scene_pose_player(scene *s, scene_player *p)

@@ -60,13 +60,17 @@ static void apply_smile(grid *g)
     }
 }
 
-static uint32_t face_count(const sheet_lods *o) { return o->faces->count ? (uint32_t)o->faces->count : 1u; }
+static uint32_t face_count(const sheet_lods *o)
+{
+    return o->faces->count ? (uint32_t)o->faces->count : 1u;
+}
 
 /* The weights of a row, in place of those of the row before. */
 static int apply_row(grid *g, uint32_t row)
 {
     for (uint32_t i = 0; i < g->scene.item_count; i++) {
-        memset(g->scene.items[i].weights, 0, sizeof(float) * g->scene.meshes[g->scene.items[i].mesh].header->target_count);
+        memset(g->scene.items[i].weights, 0,
+               sizeof(float) * g->scene.meshes[g->scene.items[i].mesh].header->target_count);
     }
     if (row == 0 || row + 1 == g->rows) {
         return 0;
@@ -99,7 +103,8 @@ static double level_error(const grid *g)
     double worst = 0.0;
     for (uint32_t i = 0; i < g->o->file->pack.mesh_count; i++) {
         const noh_mesh_header *h = g->scene.meshes[i].header;
-        const float errors[4] = { h->level_error_rest, h->level_error_targets, h->level_error_pairs, h->level_error_clip };
+        const float errors[4] = { h->level_error_rest, h->level_error_targets, h->level_error_pairs,
+                                  h->level_error_clip };
         for (int k = 0; k < 4; k++) {
             worst = fmax(worst, (double)errors[k] * (double)h->world_scale);
         }
@@ -118,7 +123,8 @@ static uint32_t size_of_use(const grid *g)
 
 static void place(grid *g, uint32_t column, uint32_t row, uint32_t size, const char *label)
 {
-    const uint32_t tile = g->o->tile, width = g->columns * tile, left = column * tile + (tile - size) / 2, top = row * tile + (tile - size) / 2;
+    const uint32_t tile = g->o->tile, width = g->columns * tile, left = column * tile + (tile - size) / 2,
+                   top = row * tile + (tile - size) / 2;
     for (uint32_t y = 0; y < size; y++) {
         memcpy(g->rgba + 4 * ((size_t)(top + y) * width + left), g->cell + 4 * (size_t)y * size, 4 * (size_t)size);
     }

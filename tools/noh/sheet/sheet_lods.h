@@ -8,12 +8,13 @@ typedef struct sheet_lods {
     const pack_file *file;
     const char *output, *camera, *driver;
     load_options load;
-    const option_list *faces; /* "NAME[=V][,NAME[=V]]...": a row each, below the one at rest; none: all targets with "smile" in their names */
+    const option_list *faces; /* "NAME[=V][,NAME[=V]]...": a row each, below the one at rest; none: all targets with
+                                 "smile" in their names */
     uint32_t tile;            /* pixels */
 } sheet_lods;
 
-/* A column for each level, finest first; a row at rest, one for each face, and one at rest at the size at which the level is
- * used: its largest error is one pixel there. Prints an error and returns an exit code; 0 on success. */
+/* A column for each level, finest first; a row at rest, one for each face, and one at rest at the size at which the
+ * level is used: its largest error is one pixel there. Prints an error and returns an exit code; 0 on success. */
 int sheet_lods_write(const sheet_lods *s);
 
 #endif

@@ -183,7 +183,8 @@ int sheet_tiles_pose(sheet_tiles *t, uint32_t tile)
                sizeof(float) * t->rest.meshes[t->rest.items[i].mesh].header->target_count);
     }
     if (t->clip) {
-        return t->blend || t->to ? pose_pair(t, tile) : scene_set_clips(&t->posed, t->file, &t->clips, tile_time(t, tile));
+        return t->blend || t->to ? pose_pair(t, tile)
+                                 : scene_set_clips(&t->posed, t->file, &t->clips, tile_time(t, tile));
     }
     if (tile) {
         pose_target(t, &t->targets[tile - 1]);
@@ -208,7 +209,8 @@ void sheet_tiles_label(const sheet_tiles *t, uint32_t tile, char *text, size_t b
     } else if (t->to && time_s < lead_s(t)) {
         snprintf(text, bytes, "%s %+.2f s", t->clip, time_s - lead_s(t));
     } else if (t->to) {
-        snprintf(text, bytes, "%s %+.2f s", time_s < lead_s(t) + t->over_s ? (t->inertia ? "inertia" : "fade") : t->to, time_s - lead_s(t));
+        snprintf(text, bytes, "%s %+.2f s", time_s < lead_s(t) + t->over_s ? (t->inertia ? "inertia" : "fade") : t->to,
+                 time_s - lead_s(t));
     } else {
         snprintf(text, bytes, "%s %.2f s", t->clip, time_s);
     }

@@ -16,13 +16,13 @@ typedef struct sheet_target {
 typedef struct sheet_tiles {
     const pack_file *file;
     scene rest, posed;
-    option_list clips;   /* the first sets the time, the others play along */
+    option_list clips;                    /* the first sets the time, the others play along */
     const char *clip, *blend, *to, *anim; /* clip names; NULL: none */
-    int inertia;         /* the transition to `to`: 1 inertialization, 0 a cross-fade */
-    double over_s;       /* its duration */
+    int inertia;                          /* the transition to `to`: 1 inertialization, 0 a cross-fade */
+    double over_s;                        /* its duration */
     double clip_seconds;
-    uint32_t clip_tiles; /* columns in time */
-    option_list only;    /* NAME or NAME=WEIGHT: targets to show instead of all */
+    uint32_t clip_tiles;   /* columns in time */
+    option_list only;      /* NAME or NAME=WEIGHT: targets to show instead of all */
     sheet_target *targets; /* [target_count] */
     uint32_t target_count;
 } sheet_tiles;

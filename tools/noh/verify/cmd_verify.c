@@ -28,7 +28,8 @@ static int verify_load(verify_job *job)
             job->cpu_used += p->set_bytes + p->controller_bytes + p->pose_bytes;
         }
         status = load_update(&l, NULL);
-        verify_check_memory(job, noh_gl_ledger_bytes(&job->g.ledger) == job->gpu_used, "GPU memory was taken after init");
+        verify_check_memory(job, noh_gl_ledger_bytes(&job->g.ledger) == job->gpu_used,
+                            "GPU memory was taken after init");
         load_close(&l);
     }
     load_budget_free(&b);
@@ -92,11 +93,22 @@ static verify_args arguments;
 
 static const option options[] = {
     OPTION_ANIM(verify_args, anim, .needs = NULL),
-    { .name = "--seed", .kind = OPTION_NUMBER, .at = offsetof(verify_args, seed), .value = "N", .initial = "1",
-      .what = "of the random weights and poses: the same on every machine", .example = "7" },
-    { .name = "--bound-scale", .kind = OPTION_NUMBER, .at = offsetof(verify_args, bound_scale), .value = "X", .initial = "1",
-      .what = "multiply the bounds of skinned vertices, over 0: to see how near they come, or a check fail", .example = "0.1" },
-    OPTION_INSTANCES(verify_args, instances, "1", .what = "copies of the scene whose memory is compared with the budget, 1 to 65536"),
+    { .name = "--seed",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(verify_args, seed),
+      .value = "N",
+      .initial = "1",
+      .what = "of the random weights and poses: the same on every machine",
+      .example = "7" },
+    { .name = "--bound-scale",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(verify_args, bound_scale),
+      .value = "X",
+      .initial = "1",
+      .what = "multiply the bounds of skinned vertices, over 0: to see how near they come, or a check fail",
+      .example = "0.1" },
+    OPTION_INSTANCES(verify_args, instances, "1",
+                     .what = "copies of the scene whose memory is compared with the budget, 1 to 65536"),
     OPTION_LOD(verify_args, lod, .needs = NULL),
     OPTION_DRIVER(verify_args, driver, .initial = "egl"),
     OPTION_JSON(verify_args, as_json),
@@ -106,8 +118,9 @@ const verb verb_verify = {
     .name = "verify",
     .files = "PACK",
     .what = "every path and format against the CPU reference, memory against its budget",
-    .more = "Fails (exit code 1) where a value differs that has to be equal, or one is past its bound; each FAILED line names the row, the "
-            "value and the bound.",
+    .more =
+        "Fails (exit code 1) where a value differs that has to be equal, or one is past its bound; each FAILED line names the row, the "
+        "value and the bound.",
     .example = "face.noh\nbody.noh --instances 100 --lod 1 --json",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

@@ -26,9 +26,9 @@ typedef struct verify_job {
     uint64_t state; /* of the random weights */
     verify_row rows[16];
     int row_count, failed;
-    double bound_scale; /* of skinned vertices */
+    double bound_scale;         /* of skinned vertices */
     const char *memory_failure; /* NULL: memory is as predicted */
-    load_options load;  /* of the load whose memory is compared with its budget */
+    load_options load;          /* of the load whose memory is compared with its budget */
     uint64_t gpu_predicted, gpu_used, cpu_predicted, cpu_used;
 } verify_job;
 

@@ -1,6 +1,6 @@
-/* verify_paths.c: the same random weights on every path that the driver has, and on the CPU. Sums of one vertex's deltas are
- * taken in the pack's order everywhere, so that f32 accumulators are equal bit for bit; where half floats are blended, the
- * CPU models the driver's rounding if the probe could name it. */
+/* verify_paths.c: the same random weights on every path that the driver has, and on the CPU. Sums of one vertex's
+ * deltas are taken in the pack's order everywhere, so that f32 accumulators are equal bit for bit; where half floats
+ * are blended, the CPU models the driver's rounding if the probe could name it. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -75,8 +75,8 @@ static void measure_f16(verify_row *row, const noh_mesh *mesh, const float *got,
 
 /* The fetched vertices: position is one exact sum; directions are compared within what a
  * GPU's normalize may differ. */
-static void compare_vertices(verify_row *row, const noh_mesh *mesh, const noh_morph_layers *layers, const float *positions,
-                             const float *normals)
+static void compare_vertices(verify_row *row, const noh_mesh *mesh, const noh_morph_layers *layers,
+                             const float *positions, const float *normals)
 {
     for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
         noh_vertex expected;
@@ -84,7 +84,8 @@ static void compare_vertices(verify_row *row, const noh_mesh *mesh, const noh_mo
         for (size_t c = 0; c < 3; c++) {
             row->vertex_values += 1;
             row->vertex_differing += positions[3 * v + c] != expected.position[c];
-            row->max_normal_error = fmax(row->max_normal_error, fabs((double)normals[3 * v + c] - (double)expected.normal[c]));
+            row->max_normal_error = fmax(row->max_normal_error,
+                                         fabs((double)normals[3 * v + c] - (double)expected.normal[c]));
         }
     }
 }
@@ -119,7 +120,8 @@ static void buffers_close(verify_buffers *b)
 }
 
 /* One mesh, one path: several sets of weights. */
-static int verify_mesh(verify_job *job, gpu_morph *m, readback *r, uint32_t mesh_index, const noh_gl_mesh *gl_mesh, verify_row *row)
+static int verify_mesh(verify_job *job, gpu_morph *m, readback *r, uint32_t mesh_index, const noh_gl_mesh *gl_mesh,
+                       verify_row *row)
 {
     const noh_mesh *mesh = &job->scene.meshes[mesh_index];
     const noh_gl_morph_plan *plan = noh_gl_morph_plan_of(m->morph);
@@ -169,8 +171,10 @@ static uint64_t least_block(verify_job *job, const noh_gl_morph_desc *desc, uint
     int ok = memory != NULL;
     if (ok) {
         memset(memory, 0xa5, (size_t)predicted + 64);
-        ok = noh_gl_morph_init(memory, (size_t)predicted - 1, &(noh_gl_device){ &job->g.gl, &job->g.caps, &job->g.ledger, NULL, 0 }, desc,
-                               &morph, &error) == NOH_ERR_MEMORY && error.need == predicted;
+        ok = noh_gl_morph_init(memory, (size_t)predicted - 1,
+                               &(noh_gl_device){ &job->g.gl, &job->g.caps, &job->g.ledger, NULL, 0 }, desc, &morph,
+                               &error) == NOH_ERR_MEMORY &&
+             error.need == predicted;
         for (size_t i = 0; i < (size_t)predicted + 64; i++) {
             ok &= memory[i] == 0xa5;
         }
@@ -263,7 +267,8 @@ static int verify_skins(verify_job *job, const noh_gl_mesh *gl_meshes)
         verify_skin skin;
         memset(row, 0, sizeof *row);
         skin.bound_scale = job->bound_scale;
-        status = verify_skin_run(&job->g, &job->file, &job->scene, gl_meshes, (noh_palette_mode)mode, &job->state, &skin);
+        status = verify_skin_run(&job->g, &job->file, &job->scene, gl_meshes, (noh_palette_mode)mode, &job->state,
+                                 &skin);
         row->path = names[mode];
         row->accumulate = "f32";
         row->reason = "skinned vertices";
@@ -282,7 +287,8 @@ static int verify_skins(verify_job *job, const noh_gl_mesh *gl_meshes)
 
 int verify_paths(verify_job *job)
 {
-    static const noh_morph_path paths[] = { NOH_MORPH_LAYERED, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER, NOH_MORPH_GATHER, NOH_MORPH_CPU };
+    static const noh_morph_path paths[] = { NOH_MORPH_LAYERED, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER, NOH_MORPH_GATHER,
+                                            NOH_MORPH_CPU };
     uint32_t count = job->file.pack.mesh_count;
     noh_gl_mesh *gl_meshes = calloc(count + 1u, sizeof *gl_meshes);
     noh_error error = { NOH_OK, "", 0, 0 };

@@ -15,8 +15,8 @@ static void fail_row(verify_row *row, const char *what, double value, double bou
     }
 }
 
-/* A row fails when a value differs where equality is demanded, when half floats or skins stray past their bound, or when
- * memory is not what was predicted. The first reason is kept. */
+/* A row fails when a value differs where equality is demanded, when half floats or skins stray past their bound, or
+ * when memory is not what was predicted. The first reason is kept. */
 int verify_row_failed(verify_row *row)
 {
     if (row->exact && (row->differing || row->vertex_differing)) {
@@ -50,7 +50,8 @@ static void print_failures(const verify_job *job)
     for (int i = 0; i < job->row_count; i++) {
         const verify_row *row = &job->rows[i];
         if (row->failure) {
-            printf("FAILED: %s %s: %s: %.6g, bound %.6g\n", row->path, row->accumulate, row->failure, row->failure_value, row->failure_bound);
+            printf("FAILED: %s %s: %s: %.6g, bound %.6g\n", row->path, row->accumulate, row->failure,
+                   row->failure_value, row->failure_bound);
         }
     }
     if (job->memory_failure) {
@@ -65,15 +66,18 @@ int verify_print(const verify_job *job)
     for (int i = 0; i < job->row_count; i++) {
         const verify_row *row = &job->rows[i];
         if (!row->available) {
-            printf("%-10s %-4s %10s %10s %12s %12s  not here: %s\n", row->path, row->accumulate, "-", "-", "-", "-", row->reason);
+            printf("%-10s %-4s %10s %10s %12s %12s  not here: %s\n", row->path, row->accumulate, "-", "-", "-", "-",
+                   row->reason);
             continue;
         }
         printf("%-10s %-4s %10llu %10llu %12.4g %12.4g  %s\n", row->path, row->accumulate,
-               (unsigned long long)(row->values + row->vertex_values), (unsigned long long)(row->differing + row->vertex_differing),
-               row->max_error_um, row->bound_um, row->exact ? "" : "within the bound only: this driver's rounding is not modelled");
+               (unsigned long long)(row->values + row->vertex_values),
+               (unsigned long long)(row->differing + row->vertex_differing), row->max_error_um, row->bound_um,
+               row->exact ? "" : "within the bound only: this driver's rounding is not modelled");
     }
-    printf("memory: CPU %llu bytes predicted, %llu used; GPU %llu predicted, %llu used\n", (unsigned long long)job->cpu_predicted,
-           (unsigned long long)job->cpu_used, (unsigned long long)job->gpu_predicted, (unsigned long long)job->gpu_used);
+    printf("memory: CPU %llu bytes predicted, %llu used; GPU %llu predicted, %llu used\n",
+           (unsigned long long)job->cpu_predicted, (unsigned long long)job->cpu_used,
+           (unsigned long long)job->gpu_predicted, (unsigned long long)job->gpu_used);
     print_failures(job);
     printf("%s: %s\n", job->file.path, job->failed ? "FAILED" : "ok");
     return 0;

@@ -86,7 +86,8 @@ static void compare(mesh_job *m)
         square = 0.0;
         for (size_t c = 0; c < 3; c++) {
             square += pow((double)m->got[v].position[c] - (double)m->positions[3 * v + c], 2.0);
-            out->normal_error = fmax(out->normal_error, fabs((double)m->got[v].normal[c] - (double)m->normals[3 * v + c]));
+            out->normal_error = fmax(out->normal_error,
+                                     fabs((double)m->got[v].normal[c] - (double)m->normals[3 * v + c]));
         }
         error = fmax(error, isnan(square) ? HUGE_VAL : 1e6 * sqrt(square));
     }
@@ -307,8 +308,8 @@ int verify_skin_run(gpu *g, const pack_file *file, const scene *s, const noh_gl_
     if (!memory) {
         return tool_fail(file->path, "out of memory");
     }
-    if (noh_gl_skin_init(memory, (size_t)plan.cpu_bytes,
-                         &(noh_gl_device){ &g->gl, &g->caps, &g->ledger, NULL, 0 }, &desc, &j.skin, &error)) {
+    if (noh_gl_skin_init(memory, (size_t)plan.cpu_bytes, &(noh_gl_device){ &g->gl, &g->caps, &g->ledger, NULL, 0 },
+                         &desc, &j.skin, &error)) {
         free(memory);
         return tool_fail_error(file->path, &error);
     }

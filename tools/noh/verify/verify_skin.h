@@ -5,18 +5,18 @@
 #include "gpu/gpu.h"
 #include "scene/scene.h"
 
-#define VERIFY_SKIN_TIMES 20u  /* random times of each clip; as many random poses where no clip fits a skeleton */
-/* How far off a vertex may be, as a share of the larger of the mesh's box and its distance to the origin, at rest and in the
- * pose. The CPU and the GPU round the same products and sums in different order; a coordinate at a distance d has steps of
- * up to d * 2^-23, however small the mesh is, and 17 of those are allowed. */
+#define VERIFY_SKIN_TIMES 20u /* random times of each clip; as many random poses where no clip fits a skeleton */
+/* How far off a vertex may be, as a share of the larger of the mesh's box and its distance to the origin, at rest and
+ * in the pose. The CPU and the GPU round the same products and sums in different order; a coordinate at a distance d
+ * has steps of up to d * 2^-23, however small the mesh is, and 17 of those are allowed. */
 #define VERIFY_SKIN_SHARE 2e-6
 
 typedef struct verify_skin {
-    double bound_scale;    /* given: bounds are multiplied by it */
-    uint64_t values;       /* coordinates that were compared */
-    double error_um;       /* of the mesh that comes nearest to its bound, or over it */
+    double bound_scale; /* given: bounds are multiplied by it */
+    uint64_t values;    /* coordinates that were compared */
+    double error_um;    /* of the mesh that comes nearest to its bound, or over it */
     double bound_um;
-    double normal_error;   /* the largest of a component */
+    double normal_error; /* the largest of a component */
     uint64_t cpu_predicted, gpu_predicted, gpu_used;
 } verify_skin;
 

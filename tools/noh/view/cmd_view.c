@@ -1,4 +1,5 @@
-/* cmd_view.c: a pack or a model in a window. What shows it is in view/, or in view_without.c where libraries are missing. */
+/* cmd_view.c: a pack or a model in a window. What shows it is in view/, or in view_without.c where libraries are
+ * missing. */
 #include <string.h>
 
 #include "view/view_window.h"
@@ -53,22 +54,49 @@ static view_args arguments;
 
 static const option options[] = {
     OPTION_ANIM(view_args, run.desc.anim, .needs = NULL),
-    { .name = "--clip", .kind = OPTION_TEXT, .at = offsetof(view_args, run.clip), .value = "NAME",
-      .what = "play this clip from the start", .example = "walk" },
-    { .name = "--bones", .kind = OPTION_FLAG, .at = offsetof(view_args, run.desc.show_bones),
+    { .name = "--clip",
+      .kind = OPTION_TEXT,
+      .at = offsetof(view_args, run.clip),
+      .value = "NAME",
+      .what = "play this clip from the start",
+      .example = "walk" },
+    { .name = "--bones",
+      .kind = OPTION_FLAG,
+      .at = offsetof(view_args, run.desc.show_bones),
       .what = "draw the skeletons in place of the meshes" },
-    { .name = "--lod", .kind = OPTION_TEXT, .at = offsetof(view_args, lod), .value = "auto|N",
-      .what = "LOD levels that a model is converted with, 1 to 8 with the full mesh; auto: up to five, by error", .example = "4" },
+    { .name = "--lod",
+      .kind = OPTION_TEXT,
+      .at = offsetof(view_args, lod),
+      .value = "auto|N",
+      .what = "LOD levels that a model is converted with, 1 to 8 with the full mesh; auto: up to five, by error",
+      .example = "4" },
     OPTION_PATH(view_args, path, .initial = "auto"),
     OPTION_ACCUMULATE(view_args, accumulate, .initial = "auto"),
-    { .name = "--driver", .kind = OPTION_TEXT, .at = offsetof(view_args, driver), .value = "egl|native", .initial = "egl",
+    { .name = "--driver",
+      .kind = OPTION_TEXT,
+      .at = offsetof(view_args, driver),
+      .value = "egl|native",
+      .initial = "egl",
       .what = "how the window gets its GL context" },
-    { .name = "--size", .kind = OPTION_SIZE, .at = offsetof(view_args, size), .value = "WxH", .initial = "1280x800",
-      .what = "size of the window, points, 1 to 8192 each", .example = "1600x900" },
-    { .name = "--frames", .kind = OPTION_NUMBER, .at = offsetof(view_args, frames), .value = "N",
-      .what = "draw so many frames, each 1/60 s of the clips, and end; default: until the window is closed", .example = "60" },
-    { .name = "--screenshot", .kind = OPTION_OUTPUT, .at = offsetof(view_args, run.screenshot), .value = "OUT.png",
-      .what = "a picture of the last of --frames", .example = "window.png" },
+    { .name = "--size",
+      .kind = OPTION_SIZE,
+      .at = offsetof(view_args, size),
+      .value = "WxH",
+      .initial = "1280x800",
+      .what = "size of the window, points, 1 to 8192 each",
+      .example = "1600x900" },
+    { .name = "--frames",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(view_args, frames),
+      .value = "N",
+      .what = "draw so many frames, each 1/60 s of the clips, and end; default: until the window is closed",
+      .example = "60" },
+    { .name = "--screenshot",
+      .kind = OPTION_OUTPUT,
+      .at = offsetof(view_args, run.screenshot),
+      .value = "OUT.png",
+      .what = "a picture of the last of --frames",
+      .example = "window.png" },
 };
 
 const verb verb_view = {

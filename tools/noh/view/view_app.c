@@ -163,8 +163,8 @@ void view_toggle_play(view_app *a)
 static void log_event(void *user, const view_passed *event)
 {
     view_log *log = (view_log *)user;
-    snprintf(log->lines[log->next], sizeof log->lines[0], "%9.3f s   %s / %s   track %u, weight %.2f", event->clock_s, event->clip,
-             event->key, event->track, (double)event->weight);
+    snprintf(log->lines[log->next], sizeof log->lines[0], "%9.3f s   %s / %s   track %u, weight %.2f", event->clock_s,
+             event->clip, event->key, event->track, (double)event->weight);
     log->next = (log->next + 1) % VIEW_LINES;
     log->total++;
 }
@@ -307,7 +307,8 @@ void view_app_after(view_app *a)
 int view_save(view_app *a, const char *path, int with_panels)
 {
     canvas *c = &a->model->stage.canvas;
-    const uint32_t width = with_panels ? a->screen.width : c->width, height = with_panels ? a->screen.height : c->height;
+    const uint32_t width = with_panels ? a->screen.width : c->width,
+                   height = with_panels ? a->screen.height : c->height;
     uint8_t *rgba = malloc((size_t)width * height * 4);
     int status = rgba ? 0 : tool_fail(path, "out of memory");
     if (!status) status = with_panels ? view_screen_read(&a->screen, rgba) : canvas_read(c, rgba);

@@ -29,7 +29,7 @@
 typedef struct view_times {
     float frame_ms[VIEW_HISTORY]; /* a ring, `next` is the oldest */
     uint32_t next;
-    uint64_t last_ns;                /* start of the last frame; 0: none, or the viewer was idle since */
+    uint64_t last_ns; /* start of the last frame; 0: none, or the viewer was idle since */
     double frame, animate, accumulate, draw;
     noh_gl_timer accumulate_timer, draw_timer;
     noh_gl_morph_stats stats; /* of the last accumulation that was not empty */
@@ -44,7 +44,7 @@ typedef struct view_log {
 typedef struct view_app {
     gpu gpu;
     view_screen screen;
-    view_model *model; /* never NULL after view_app_open */
+    view_model *model;    /* never NULL after view_app_open */
     view_model_desc desc; /* how it was opened; path and anim are the caller's */
     orbit orbit;
     view_lod lod;
@@ -54,7 +54,7 @@ typedef struct view_app {
     float speed, layer_gain;
     view_times times;
     view_log log;
-    char message[512];    /* the last error */
+    char message[512]; /* the last error */
 
     view_model_desc wish; /* the panels ask for this one ... */
     int wants_reload;     /* ... to draw what is shown */

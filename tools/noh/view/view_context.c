@@ -41,8 +41,8 @@ static int make_window(view_context *c, int width, int height, const char *title
 
 /* ---- its context ---- */
 
-static void GL_APIENTRY on_gl_message(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length, const GLchar *message,
-                                      const void *user)
+static void GL_APIENTRY on_gl_message(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
+                                      const GLchar *message, const void *user)
 {
     view_context *c = (view_context *)(uintptr_t)user;
     (void)source;
@@ -139,7 +139,8 @@ static int reopen(view_context *c, const char *title)
     }
     /* A plan for the old driver may not work on another. */
     if (!status && memcmp(&caps, &c->gpu->caps, sizeof caps) != 0) {
-        status = tool_fail("view", "the context was lost and another driver came back (%s): start again", caps.renderer);
+        status = tool_fail("view", "the context was lost and another driver came back (%s): start again",
+                           caps.renderer);
     }
     return status;
 }

@@ -13,7 +13,7 @@
 #include "gpu/gpu.h"
 
 typedef struct view_context {
-    GLFWwindow *window;                      /* NULL: none is open */
+    GLFWwindow *window; /* NULL: none is open */
     gpu *gpu;
     int native;                              /* the context by GLX or WGL instead of EGL */
     int interval;                            /* screen refreshes to wait for a swap */
@@ -28,12 +28,12 @@ void view_context_close(view_context *c);
 
 int view_context_lost(const view_context *c);
 
-/* A new window of the same size in the same place, since GLFW makes no context without one; fills the same table. It has no
- * callbacks yet. On failure there is no context, and the table's calls do nothing (gl_lost.h). */
+/* A new window of the same size in the same place, since GLFW makes no context without one; fills the same table. It
+ * has no callbacks yet. On failure there is no context, and the table's calls do nothing (gl_lost.h). */
 int view_context_reopen(view_context *c, const char *title);
 
-/* pixels[2]: of the framebuffer. scale: pixels in a point. units[2]: points in a unit of the window system, in which the
- * mouse is reported. Returns 0 while the window has no pixels. */
+/* pixels[2]: of the framebuffer. scale: pixels in a point. units[2]: points in a unit of the window system, in which
+ * the mouse is reported. Returns 0 while the window has no pixels. */
 int view_context_measure(const view_context *c, int pixels[2], float *scale, float units[2]);
 
 #endif

@@ -13,7 +13,8 @@ static_assert(sizeof(ImDrawVert) == sizeof(view_vertex) && offsetof(ImDrawVert, 
                   offsetof(ImDrawVert, col) == offsetof(view_vertex, color) && sizeof(ImDrawIdx) == sizeof(uint16_t),
               "view_screen draws ImGui's vertices as they are");
 
-namespace {
+namespace
+{
 
 float font_scale; // that the letters were drawn at
 
@@ -25,10 +26,18 @@ struct key_pair {
 };
 
 const key_pair keys[] = {
-    { ImGuiKey_Tab, GLFW_KEY_TAB },       { ImGuiKey_LeftArrow, GLFW_KEY_LEFT }, { ImGuiKey_RightArrow, GLFW_KEY_RIGHT },
-    { ImGuiKey_UpArrow, GLFW_KEY_UP },    { ImGuiKey_DownArrow, GLFW_KEY_DOWN }, { ImGuiKey_Home, GLFW_KEY_HOME },
-    { ImGuiKey_End, GLFW_KEY_END },       { ImGuiKey_Delete, GLFW_KEY_DELETE },  { ImGuiKey_Backspace, GLFW_KEY_BACKSPACE },
-    { ImGuiKey_Space, GLFW_KEY_SPACE },   { ImGuiKey_Enter, GLFW_KEY_ENTER },    { ImGuiKey_Escape, GLFW_KEY_ESCAPE },
+    { ImGuiKey_Tab, GLFW_KEY_TAB },
+    { ImGuiKey_LeftArrow, GLFW_KEY_LEFT },
+    { ImGuiKey_RightArrow, GLFW_KEY_RIGHT },
+    { ImGuiKey_UpArrow, GLFW_KEY_UP },
+    { ImGuiKey_DownArrow, GLFW_KEY_DOWN },
+    { ImGuiKey_Home, GLFW_KEY_HOME },
+    { ImGuiKey_End, GLFW_KEY_END },
+    { ImGuiKey_Delete, GLFW_KEY_DELETE },
+    { ImGuiKey_Backspace, GLFW_KEY_BACKSPACE },
+    { ImGuiKey_Space, GLFW_KEY_SPACE },
+    { ImGuiKey_Enter, GLFW_KEY_ENTER },
+    { ImGuiKey_Escape, GLFW_KEY_ESCAPE },
     { ImGuiKey_A, GLFW_KEY_A },
 };
 
@@ -119,7 +128,8 @@ void draw(view_app *a)
     for (int i = 0; i < data->CmdListsCount; i++) {
         const ImDrawList *list = data->CmdLists[i];
         view_triangles_list(&a->screen, reinterpret_cast<const view_vertex *>(list->VtxBuffer.Data),
-                            static_cast<size_t>(list->VtxBuffer.Size), list->IdxBuffer.Data, static_cast<size_t>(list->IdxBuffer.Size));
+                            static_cast<size_t>(list->VtxBuffer.Size), list->IdxBuffer.Data,
+                            static_cast<size_t>(list->IdxBuffer.Size));
         for (const ImDrawCmd &command : list->CmdBuffer) {
             const float clip[4] = { command.ClipRect.x, command.ClipRect.y, command.ClipRect.z, command.ClipRect.w };
             view_triangles_draw(&a->screen, clip, (GLuint)(intptr_t)command.GetTexID(), command.IdxOffset,

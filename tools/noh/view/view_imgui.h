@@ -1,5 +1,5 @@
-/* view_imgui.h: feeds Dear ImGui with the window's input and draws it with view_screen. Differences between its versions are
- * handled here alone. */
+/* view_imgui.h: feeds Dear ImGui with the window's input and draws it with view_screen. Differences between its
+ * versions are handled here alone. */
 #ifndef NOH_NOH_VIEW_VIEW_IMGUI_H
 #define NOH_NOH_VIEW_VIEW_IMGUI_H
 

@@ -39,7 +39,8 @@ static void choose_item(view_lod *d, view_model *m, uint32_t item, float scale)
         return;
     }
     scene_lod_choose(&m->lod, item, &d->settings, scale, d->clock);
-    d->left_out += scene_lod_targets(&m->lod, item, &d->settings, weights, m->scene.meshes[m->scene.items[item].mesh].header->target_count, weights);
+    d->left_out += scene_lod_targets(&m->lod, item, &d->settings, weights,
+                                     m->scene.meshes[m->scene.items[item].mesh].header->target_count, weights);
 }
 
 static void note_item(view_lod *d, const noh_lod *state)

@@ -4,7 +4,8 @@
 
 #include <cstdio>
 
-namespace {
+namespace
+{
 
 // The largest error of any item of the scene, millimetres.
 double level_error_mm(const view_model *m, uint32_t level)

@@ -39,7 +39,9 @@ static int convert_model(view_model *m, const lod_settings *levels)
                                       : tool_fail(m->path, "%s", failure.error.what);
     }
     m->file.path = m->path;
-    return noh_pack_open(m->converted.bytes, m->converted.count, &m->file.pack, &error) ? tool_fail_error(m->path, &error) : 0;
+    return noh_pack_open(m->converted.bytes, m->converted.count, &m->file.pack, &error)
+               ? tool_fail_error(m->path, &error)
+               : 0;
 }
 
 /* ---- lists for the panels ---- */
@@ -108,7 +110,8 @@ static int list_clips(view_model *m)
 
 /* ---- opening ---- */
 
-static int open_stage(view_model *m, gpu *g, const view_model_desc *desc, stage *st, load_budget *budget, level_costs *costs)
+static int open_stage(view_model *m, gpu *g, const view_model_desc *desc, stage *st, load_budget *budget,
+                      level_costs *costs)
 {
     int show_bones = stage_shows_bones(&m->scene, &m->file, desc->show_bones), status = 0;
     load_options options = desc->load;

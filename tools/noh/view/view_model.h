@@ -38,7 +38,7 @@ typedef struct view_model {
     scene scene;
     stage stage;
     load_budget budget; /* parts NULL where bones are drawn: nothing is loaded then */
-    level_costs costs; /* count 0 where bones are drawn, 1 in a pack without LOD levels */
+    level_costs costs;  /* count 0 where bones are drawn, 1 in a pack without LOD levels */
     scene_lod lod;
     float delta_max; /* how far one target moves a vertex at most, model units; over 0 */
     view_target *targets;
@@ -48,9 +48,9 @@ typedef struct view_model {
 } view_model;
 
 typedef struct view_model_desc {
-    const char *path; /* a pack, or .gltf, .glb, .bvh, .rcl */
-    const char *anim; /* a pack whose clips are played instead; NULL: none */
-    lod_settings lod; /* LOD levels to convert a model with; level_count 0: none. A pack has its own */
+    const char *path;  /* a pack, or .gltf, .glb, .bvh, .rcl */
+    const char *anim;  /* a pack whose clips are played instead; NULL: none */
+    lod_settings lod;  /* LOD levels to convert a model with; level_count 0: none. A pack has its own */
     load_options load; /* `fades` is set by the model */
     int show_bones;
     uint32_t width, height; /* of the canvas */

@@ -6,7 +6,8 @@
 #include <cstdio>
 #include <cstring>
 
-namespace {
+namespace
+{
 
 ImGuiTextFilter target_filter;
 bool mouse_held;
@@ -18,8 +19,8 @@ bool begin_panel(const char *name, float x, float y, float width, float height)
     ImGui::SetNextWindowPos(ImVec2(x, y));
     ImGui::SetNextWindowSize(ImVec2(width, height));
     return ImGui::Begin(name, nullptr,
-                        ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoTitleBar |
-                            ImGuiWindowFlags_NoBringToFrontOnFocus);
+                        ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
+                            ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoBringToFrontOnFocus);
 }
 
 // ---- targets ----
@@ -218,7 +219,8 @@ void drawing_section(view_app *a)
     }
     if (a->model->stage.load.morph.morph) {
         const noh_gl_morph_plan *plan = noh_gl_morph_plan_of(a->model->stage.load.morph.morph);
-        ImGui::TextWrapped("%s-%s (%s)", noh_morph_path_name(plan->path), noh_accumulate_name(plan->accumulate), plan->reason);
+        ImGui::TextWrapped("%s-%s (%s)", noh_morph_path_name(plan->path), noh_accumulate_name(plan->accumulate),
+                           plan->reason);
     }
 }
 
@@ -315,7 +317,8 @@ void layers_section(view_app *a)
     ImGui::SetNextItemWidth(-1.0f);
     ImGui::SliderFloat("##gain", &a->layer_gain, 0.1f, 20.0f, "gain %.2f", ImGuiSliderFlags_Logarithmic);
     const float width = (ImGui::GetContentRegionAvail().x - 8.0f) / 3.0f;
-    const float height = width * static_cast<float>(a->screen.layers_height) / static_cast<float>(a->screen.layers_width);
+    const float height = width * static_cast<float>(a->screen.layers_height) /
+                         static_cast<float>(a->screen.layers_width);
     for (int i = 0; i < 3; i++) {
         ImGui::BeginGroup();
         ImGui::Image(imgui_texture(a->screen.layers[i]), ImVec2(width, height));
@@ -343,7 +346,8 @@ void right_panel(view_app *a)
 
 void events_panel(view_app *a)
 {
-    begin_panel("events", VIEW_LEFT, a->window_height - VIEW_BOTTOM, a->window_width - VIEW_LEFT - VIEW_RIGHT, VIEW_BOTTOM);
+    begin_panel("events", VIEW_LEFT, a->window_height - VIEW_BOTTOM, a->window_width - VIEW_LEFT - VIEW_RIGHT,
+                VIEW_BOTTOM);
     if (a->message[0]) {
         ImGui::PushStyleColor(ImGuiCol_Text, red);
         ImGui::TextWrapped("%s", a->message);

@@ -10,11 +10,11 @@ extern "C" {
 
 /* What happened in the window since the last frame. */
 typedef struct view_input {
-    float mouse[2];        /* points */
-    int buttons[3];        /* left, right, middle: down, or pressed since the last frame */
+    float mouse[2]; /* points */
+    int buttons[3]; /* left, right, middle: down, or pressed since the last frame */
     float wheel;
-    uint8_t keys[512];     /* by GLFW's codes: down, or pressed since the last frame */
-    unsigned letters[32];  /* [letter_count] typed */
+    uint8_t keys[512];    /* by GLFW's codes: down, or pressed since the last frame */
+    unsigned letters[32]; /* [letter_count] typed */
     int letter_count;
 } view_input;
 

@@ -72,7 +72,8 @@ void view_seek(view_model *m, uint32_t player, uint32_t track, double seconds)
 {
     const scene_player *p = &m->scene.players[player];
     noh_error error = { NOH_OK, "", 0, 0 };
-    if (noh_controller_seek(p->controllers[0], &p->set->clips, track, noh_ticks_from_seconds(seconds), NOH_SEEK_SKIP, &error)) {
+    if (noh_controller_seek(p->controllers[0], &p->set->clips, track, noh_ticks_from_seconds(seconds), NOH_SEEK_SKIP,
+                            &error)) {
         tool_fail_error(m->path, &error);
     }
 }
@@ -113,7 +114,8 @@ void view_step(view_model *m, double seconds, view_event_fn fn, void *user)
         const scene_player *p = &m->scene.players[s.player];
         if (p->set) {
             noh_clip_cache_begin_frame(p->set->cache);
-            noh_controller_step(p->controllers[0], &p->set->clips, (uint32_t)noh_ticks_from_seconds(seconds), pass_event, &s);
+            noh_controller_step(p->controllers[0], &p->set->clips, (uint32_t)noh_ticks_from_seconds(seconds),
+                                pass_event, &s);
         }
     }
 }

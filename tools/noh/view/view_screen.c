@@ -10,8 +10,8 @@
 
 /* ---- making it ---- */
 
-static int make_program(gpu *g, const noh_gl_source *vertex, const noh_gl_source *fragment, const char *defines, const char *sampler,
-                        GLuint *program)
+static int make_program(gpu *g, const noh_gl_source *vertex, const noh_gl_source *fragment, const char *defines,
+                        const char *sampler, GLuint *program)
 {
     noh_gl_program_desc desc;
     noh_error error = { NOH_OK, "", 0, 0 };
@@ -34,11 +34,14 @@ static int make_programs(view_screen *s)
 {
     static const char uint_layers[] = "#define LAYERS_UINT\n";
     gpu *g = s->g;
-    int status = make_program(g, &noh_shader_full_screen_vert, &noh_shader_view_picture_frag, NULL, "u_picture", &s->picture_program);
-    if (!status) status = make_program(g, &noh_shader_view_panel_vert, &noh_shader_view_panel_frag, NULL, "u_picture", &s->panel_program);
+    int status = make_program(g, &noh_shader_full_screen_vert, &noh_shader_view_picture_frag, NULL, "u_picture",
+                              &s->picture_program);
+    if (!status)
+        status = make_program(g, &noh_shader_view_panel_vert, &noh_shader_view_panel_frag, NULL, "u_picture",
+                              &s->panel_program);
     for (int i = 0; i < 2 && !status; i++) {
-        status = make_program(g, &noh_shader_full_screen_vert, &noh_shader_view_layer_frag, i ? uint_layers : NULL, "u_layers",
-                              &s->layer_programs[i]);
+        status = make_program(g, &noh_shader_full_screen_vert, &noh_shader_view_layer_frag, i ? uint_layers : NULL,
+                              "u_layers", &s->layer_programs[i]);
     }
     return status;
 }
@@ -213,7 +216,8 @@ void view_triangles_begin(view_screen *s, float width, float height)
     gl->ActiveTexture(GL_TEXTURE0);
 }
 
-void view_triangles_list(view_screen *s, const view_vertex *vertices, size_t vertex_count, const uint16_t *indices, size_t index_count)
+void view_triangles_list(view_screen *s, const view_vertex *vertices, size_t vertex_count, const uint16_t *indices,
+                         size_t index_count)
 {
     const noh_gl_api *gl = &s->g->gl;
     gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(vertex_count * sizeof *vertices), vertices, GL_STREAM_DRAW);
@@ -230,7 +234,8 @@ void view_triangles_draw(view_screen *s, const float clip[4], GLuint texture, si
     }
     gl->Scissor(left, (GLint)s->height - bottom, right - left, bottom - top);
     gl->BindTexture(GL_TEXTURE_2D, texture);
-    gl->DrawElements(GL_TRIANGLES, (GLsizei)index_count, GL_UNSIGNED_SHORT, (const void *)(first_index * sizeof(uint16_t)));
+    gl->DrawElements(GL_TRIANGLES, (GLsizei)index_count, GL_UNSIGNED_SHORT,
+                     (const void *)(first_index * sizeof(uint16_t)));
 }
 
 void view_triangles_end(view_screen *s)

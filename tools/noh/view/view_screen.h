@@ -14,7 +14,7 @@
 typedef struct view_vertex {
     float position[2]; /* points of the window, from its upper left */
     float uv[2];
-    uint8_t color[4];  /* sRGB */
+    uint8_t color[4]; /* sRGB */
 } view_vertex;
 
 typedef struct view_screen {
@@ -42,7 +42,8 @@ void view_screen_layers(view_screen *s, const noh_gl_morph *morph, const float g
 
 /* width, height of the window in points. */
 void view_triangles_begin(view_screen *s, float width, float height);
-void view_triangles_list(view_screen *s, const view_vertex *vertices, size_t vertex_count, const uint16_t *indices, size_t index_count);
+void view_triangles_list(view_screen *s, const view_vertex *vertices, size_t vertex_count, const uint16_t *indices,
+                         size_t index_count);
 /* clip: left, top, right, bottom in points. */
 void view_triangles_draw(view_screen *s, const float clip[4], GLuint texture, size_t first_index, size_t index_count);
 void view_triangles_end(view_screen *s);

@@ -7,22 +7,22 @@
 #include "view/view_panels.h"
 #include "cli/message.h"
 
-#define AWAKE_FRAMES 4 /* drawn after an input before an unchanging picture idles */
+#define AWAKE_FRAMES 4  /* drawn after an input before an unchanging picture idles */
 #define SETTLE_FRAMES 3 /* until a click shows: press, release, pose */
 
 typedef struct view_window {
     view_context context;
     view_app app;
-    float units[2];                        /* points in a unit of the window system */
-    int lose;                              /* simulate a lost context */
+    float units[2]; /* points in a unit of the window system */
+    int lose;       /* simulate a lost context */
     view_input input;
     uint8_t pressed[3], keys_pressed[512]; /* since the last frame: a click may be shorter than one */
     float pressed_at[2];
-    int drag;                              /* GLFW's button + 1 that drags the camera, 0: none */
+    int drag; /* GLFW's button + 1 that drags the camera, 0: none */
     double mouse[2];
     int awake;
-    int save_in[2];                        /* frames until the figure, the window is saved; 0: not requested */
-    uint32_t saved;                        /* pictures */
+    int save_in[2]; /* frames until the figure, the window is saved; 0: not requested */
+    uint32_t saved; /* pictures */
 } view_window;
 
 static view_window *of(GLFWwindow *window)
@@ -38,7 +38,8 @@ static int on_stage(const view_window *w)
 {
     float box[4];
     view_app_stage(&w->app, box);
-    return w->mouse[0] >= (double)box[0] && w->mouse[0] < (double)box[2] && w->mouse[1] >= (double)box[1] && w->mouse[1] < (double)box[3];
+    return w->mouse[0] >= (double)box[0] && w->mouse[0] < (double)box[2] && w->mouse[1] >= (double)box[1] &&
+           w->mouse[1] < (double)box[3];
 }
 
 static void on_button(GLFWwindow *window, int button, int action, int mods)
@@ -252,7 +253,8 @@ static int loop(view_window *w, const view_run *run)
 {
     uint64_t last = noh_clock_ns();
     int status = 0;
-    for (uint32_t frame = 0; !status && !glfwWindowShouldClose(w->context.window) && (!run->frames || frame < run->frames); frame++) {
+    for (uint32_t frame = 0;
+         !status && !glfwWindowShouldClose(w->context.window) && (!run->frames || frame < run->frames); frame++) {
         const uint64_t now = noh_clock_ns();
         const double seconds = (double)(now - last) * 1e-9;
         last = now;

@@ -5,5 +5,7 @@
 int view_window_run(const view_run *run)
 {
     (void)run;
-    return tool_fail("view", "noh was built without %s (Debian: apt install libglfw3-dev libimgui-dev, then make again)", NOH_VIEW_WITHOUT);
+    return tool_fail("view",
+                     "noh was built without %s (Debian: apt install libglfw3-dev libimgui-dev, then make again)",
+                     NOH_VIEW_WITHOUT);
 }

@@ -1,5 +1,5 @@
-/* cmd_zoom.c: a slow zoom out and back, drawn at the chosen LOD levels and in full, and compared: the levels must not be
- * visible. */
+/* cmd_zoom.c: a slow zoom out and back, drawn at the chosen LOD levels and in full, and compared: the levels must not
+ * be visible. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,14 +28,20 @@ static int print_result(const zoom *z, const zoom_args *a)
     FILE *out = report_stream(a->output);
     const zoom_result *r = &z->worst;
     const double most = ZOOM_SLACK * a->pixels;
-    fprintf(out, "%s: %u frames from %.3g to %.3g m and back, %ux%u, knob %g pixels\n", a->pack, z->path.frames, z->path.near, z->path.far, z->path.side,
-           z->path.side, a->pixels);
-    fprintf(out, "  silhouettes off by at most   %6.3f pixels  (allowed: %g), slits and holes by %.3f\n", r->silhouette_px, most, r->hole_px);
-    fprintf(out, "  the surface off by at most   %6.3f pixels  (allowed: %g), claimed %.3f\n", r->position_px, most, r->claimed_px);
-    fprintf(out, "  a level change alters        %6.3f of 255  (allowed: %g), by the zoom %.3f\n", r->pop, ZOOM_POP, r->zoom_change);
-    fprintf(out, "  frame to frame more by       %6.3f of 255 than full pictures  (allowed: %g)\n", r->excess, ZOOM_POP);
-    fprintf(out, "  levels entered: %u out, %u in, each at most %u times; %u times from a camera shaken by %g %%  (allowed: once)\n", r->entered[0],
-           r->entered[1], r->most_entered, r->most_entered_shaken, 100.0 * a->jitter);
+    fprintf(out, "%s: %u frames from %.3g to %.3g m and back, %ux%u, knob %g pixels\n", a->pack, z->path.frames,
+            z->path.near, z->path.far, z->path.side, z->path.side, a->pixels);
+    fprintf(out, "  silhouettes off by at most   %6.3f pixels  (allowed: %g), slits and holes by %.3f\n",
+            r->silhouette_px, most, r->hole_px);
+    fprintf(out, "  the surface off by at most   %6.3f pixels  (allowed: %g), claimed %.3f\n", r->position_px, most,
+            r->claimed_px);
+    fprintf(out, "  a level change alters        %6.3f of 255  (allowed: %g), by the zoom %.3f\n", r->pop, ZOOM_POP,
+            r->zoom_change);
+    fprintf(out, "  frame to frame more by       %6.3f of 255 than full pictures  (allowed: %g)\n", r->excess,
+            ZOOM_POP);
+    fprintf(
+        out,
+        "  levels entered: %u out, %u in, each at most %u times; %u times from a camera shaken by %g %%  (allowed: once)\n",
+        r->entered[0], r->entered[1], r->most_entered, r->most_entered_shaken, 100.0 * a->jitter);
     fprintf(out, "  targets left out: at most %u at once\n", r->targets_left_out);
     fprintf(out, "%s: %s\n", a->pack, zoom_result_ok(r, a->pixels) ? "ok" : "FAILED");
     return 0;
@@ -99,7 +105,9 @@ static int open_scene(scene *s, const pack_file *file, const zoom_args *a)
 static int zoom_pack(const pack_file *file, const zoom_args *a)
 {
     /* the library's defaults, spelt out because the path is planned by them */
-    const noh_lod_settings settings = { (float)a->pixels, { 0.3f, 0.1f, 0.05f, 0.1f, 0.45f }, 0.3f, 0.15f, a->no_fades ? 1 : FADE_TICKS };
+    const noh_lod_settings settings = {
+        (float)a->pixels, { 0.3f, 0.1f, 0.05f, 0.1f, 0.45f }, 0.3f, 0.15f, a->no_fades ? 1 : FADE_TICKS
+    };
     scene full, kept;
     gpu g;
     zoom z;
@@ -114,7 +122,8 @@ static int zoom_pack(const pack_file *file, const zoom_args *a)
     z.kept = &kept;
     status = open_scene(&full, file, a);
     if (!status) status = open_scene(&kept, file, a);
-    if (!status) status = zoom_path_open(&z.path, file, &full, &settings, a->near, a->far, a->size[0], (uint32_t)a->frames);
+    if (!status)
+        status = zoom_path_open(&z.path, file, &full, &settings, a->near, a->far, a->size[0], (uint32_t)a->frames);
     if (!status) status = gpu_open(&g, a->driver);
     if (!status) {
         status = measure(&z, a);
@@ -162,26 +171,63 @@ static int run(void *args)
 static zoom_args arguments;
 
 static const option options[] = {
-    { .name = "-o", .kind = OPTION_OUTPUT, .at = offsetof(zoom_args, output), .value = "OUT.png",
-      .what = "a strip of twelve frames: with levels, full, coloured by level", .example = "zoom.png" },
-    { .name = "--frames", .kind = OPTION_NUMBER, .at = offsetof(zoom_args, frames), .value = "N", .initial = "600",
-      .what = "frames out and back, 4 to 100000, 60 a second", .example = "120" },
-    { .name = "--pixels", .kind = OPTION_NUMBER, .at = offsetof(zoom_args, pixels), .value = "N", .initial = "1",
-      .what = "the largest error on screen that levels may have, pixels, over 0, at most 100", .example = "2" },
-    { .name = "--near", .kind = OPTION_NUMBER, .at = offsetof(zoom_args, near), .value = "M",
-      .what = "the nearest distance from the camera to the middle of the scene, metres; default: so that every level is shown for a while", .example = "0.5" },
-    { .name = "--far", .kind = OPTION_NUMBER, .at = offsetof(zoom_args, far), .value = "M",
-      .what = "the farthest, metres; default: as for --near", .example = "20" },
-    { .name = "--size", .kind = OPTION_SIZE, .at = offsetof(zoom_args, size), .value = "NxN",
-      .what = "size of the pictures, pixels, square and even, at most 2048; default: large enough for the scene", .example = "512x512" },
+    { .name = "-o",
+      .kind = OPTION_OUTPUT,
+      .at = offsetof(zoom_args, output),
+      .value = "OUT.png",
+      .what = "a strip of twelve frames: with levels, full, coloured by level",
+      .example = "zoom.png" },
+    { .name = "--frames",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(zoom_args, frames),
+      .value = "N",
+      .initial = "600",
+      .what = "frames out and back, 4 to 100000, 60 a second",
+      .example = "120" },
+    { .name = "--pixels",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(zoom_args, pixels),
+      .value = "N",
+      .initial = "1",
+      .what = "the largest error on screen that levels may have, pixels, over 0, at most 100",
+      .example = "2" },
+    { .name = "--near",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(zoom_args, near),
+      .value = "M",
+      .what =
+          "the nearest distance from the camera to the middle of the scene, metres; default: so that every level is shown for a while",
+      .example = "0.5" },
+    { .name = "--far",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(zoom_args, far),
+      .value = "M",
+      .what = "the farthest, metres; default: as for --near",
+      .example = "20" },
+    { .name = "--size",
+      .kind = OPTION_SIZE,
+      .at = offsetof(zoom_args, size),
+      .value = "NxN",
+      .what = "size of the pictures, pixels, square and even, at most 2048; default: large enough for the scene",
+      .example = "512x512" },
     OPTION_WEIGHT(zoom_args, weights, .needs = NULL),
     OPTION_CLIP(zoom_args, clips, .needs = NULL),
     OPTION_TIME(zoom_args, time_s, .needs = "--clip"),
     OPTION_ANIM(zoom_args, anim, .needs = "--clip"),
-    { .name = "--every", .kind = OPTION_NUMBER, .at = offsetof(zoom_args, every), .value = "N", .initial = "1",
-      .what = "measure silhouettes in every n-th frame only, 1 to 100000, and wherever a level changes", .example = "8" },
-    { .name = "--jitter", .kind = OPTION_NUMBER, .at = offsetof(zoom_args, jitter), .value = "X", .initial = "0.03",
-      .what = "how far a second camera shakes, as a share of its distance, 0 to below 1", .example = "0.1" },
+    { .name = "--every",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(zoom_args, every),
+      .value = "N",
+      .initial = "1",
+      .what = "measure silhouettes in every n-th frame only, 1 to 100000, and wherever a level changes",
+      .example = "8" },
+    { .name = "--jitter",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(zoom_args, jitter),
+      .value = "X",
+      .initial = "0.03",
+      .what = "how far a second camera shakes, as a share of its distance, 0 to below 1",
+      .example = "0.1" },
     { .name = "--no-fades", .kind = OPTION_FLAG, .at = offsetof(zoom_args, no_fades), .what = "change levels at once" },
     OPTION_DRIVER(zoom_args, driver, .initial = "egl"),
     OPTION_JSON(zoom_args, as_json),
@@ -191,7 +237,8 @@ const verb verb_zoom = {
     .name = "zoom",
     .files = "PACK",
     .what = "a slow zoom out and back with LOD levels against the full mesh: silhouettes, surfaces, pops, flicker",
-    .more = "Fails (exit code 1) where silhouettes or the surface are off by more than 1.25 times --pixels, where a change of level shows, or where a level is entered twice on one way.",
+    .more =
+        "Fails (exit code 1) where silhouettes or the surface are off by more than 1.25 times --pixels, where a change of level shows, or where a level is entered twice on one way.",
     .example = "face.noh -o zoom.png\nface.noh --frames 120 --pixels 2 --json",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

@@ -20,8 +20,8 @@ static int nearest_on_ring(const zoom_picture *p, int x, int y, int kind, int ri
 {
     for (int d = -ring; d <= ring; d++) {
         const int squared = d * d + ring * ring;
-        const int hit = covered(p, x + d, y - ring) == kind || covered(p, x + d, y + ring) == kind || covered(p, x - ring, y + d) == kind ||
-                        covered(p, x + ring, y + d) == kind;
+        const int hit = covered(p, x + d, y - ring) == kind || covered(p, x + d, y + ring) == kind ||
+                        covered(p, x - ring, y + d) == kind || covered(p, x + ring, y + d) == kind;
         best = hit && squared < best ? squared : best;
     }
     return best;

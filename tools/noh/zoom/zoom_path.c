@@ -18,11 +18,12 @@
 /* Pixels per metre at which a level with this error uses up the share of the error budget that meshes have. */
 static double scale_of_share(const zoom_path *p, float error_m)
 {
-    return error_m > 0.0f ? (double)p->settings.pixels * (double)p->settings.shares[NOH_LOD_MESH] / (double)error_m : 0.0;
+    return error_m > 0.0f ? (double)p->settings.pixels * (double)p->settings.shares[NOH_LOD_MESH] / (double)error_m
+                          : 0.0;
 }
 
-/* The range of scales from where the finest level is chosen, despite hysteresis, to where the coarsest is. Returns 0 where no
- * item has levels. */
+/* The range of scales from where the finest level is chosen, despite hysteresis, to where the coarsest is. Returns 0
+ * where no item has levels. */
 static int find_scales(const zoom_path *p, double *near, double *far)
 {
     *near = *far = 0.0;
@@ -30,7 +31,8 @@ static int find_scales(const zoom_path *p, double *near, double *far)
         const noh_lod_table *t = &p->lod.items[i].table;
         if (t->mesh_level_count > 1) {
             const double first = scale_of_share(p, t->meshes[1].error_m) * BEYOND_NEAR;
-            const double last = scale_of_share(p, t->meshes[t->mesh_level_count - 1u].error_m) * (1.0 - (double)p->settings.hysteresis) / BEYOND_FAR;
+            const double last = scale_of_share(p, t->meshes[t->mesh_level_count - 1u].error_m) *
+                                (1.0 - (double)p->settings.hysteresis) / BEYOND_FAR;
             *near = first > *near ? first : *near;
             *far = *far == 0.0 || last < *far ? last : *far;
         }
@@ -38,31 +40,41 @@ static int find_scales(const zoom_path *p, double *near, double *far)
     return *far > 0.0;
 }
 
-static double half_view(void) { return tan(ORBIT_VIEW_RAD / 2.0); }
+static double half_view(void)
+{
+    return tan(ORBIT_VIEW_RAD / 2.0);
+}
 
 /* The distance at which the scene's nearest point has this scale. */
-static double distance_of(const zoom_path *p, double scale) { return p->side / (2.0 * half_view() * scale) + p->at.radius; }
+static double distance_of(const zoom_path *p, double scale)
+{
+    return p->side / (2.0 * half_view() * scale) + p->at.radius;
+}
 
 static int plan(zoom_path *p, const char *path, double near, double far)
 {
     double near_scale, far_scale;
     if (!find_scales(p, &near_scale, &far_scale) && (near <= 0.0 || far <= 0.0 || !p->side)) {
-        return tool_fail(path, "no LOD level differs from the full mesh (`noh build --lod N` makes them): give --near, --far and --size");
+        return tool_fail(
+            path,
+            "no LOD level differs from the full mesh (`noh build --lod N` makes them): give --near, --far and --size");
     }
     if (!p->side) {
-        const double wanted = near_scale * 2.0 * half_view() * (p->at.distance - p->at.radius); /* so that the scene fills it */
+        const double wanted = near_scale * 2.0 * half_view() *
+                              (p->at.distance - p->at.radius); /* so that the scene fills it */
         p->side = 2u * (uint32_t)fmin(SIDE_MOST / 2.0, fmax(SIDE_LEAST / 2.0, ceil(wanted / 2.0)));
     }
     p->near = near > 0.0 ? near : distance_of(p, near_scale);
     p->far = far > 0.0 ? far : distance_of(p, far_scale);
     if (p->near <= p->at.radius || p->far <= p->near) {
-        return tool_usage("--near wants more than the scene's radius, %g, --far more than --near; they are %g and %g", p->at.radius, p->near, p->far);
+        return tool_usage("--near wants more than the scene's radius, %g, --far more than --near; they are %g and %g",
+                          p->at.radius, p->near, p->far);
     }
     return 0;
 }
 
-int zoom_path_open(zoom_path *p, const pack_file *file, const scene *s, const noh_lod_settings *settings, double near, double far,
-                   uint32_t side, uint32_t frames)
+int zoom_path_open(zoom_path *p, const pack_file *file, const scene *s, const noh_lod_settings *settings, double near,
+                   double far, uint32_t side, uint32_t frames)
 {
     const bounds box = scene_bounds(s, file, 0);
     int status;
@@ -88,7 +100,10 @@ void zoom_path_close(zoom_path *p)
 
 /* ---- frame by frame ---- */
 
-static int way_of(const zoom_path *p, uint32_t frame) { return frame >= p->frames / 2u; }
+static int way_of(const zoom_path *p, uint32_t frame)
+{
+    return frame >= p->frames / 2u;
+}
 
 float zoom_path_place(zoom_path *p, uint32_t frame, double factor)
 {
@@ -112,7 +127,8 @@ uint32_t zoom_path_most_entered(const zoom_path *p)
 {
     uint32_t most = 0;
     for (uint32_t i = 0; i < p->lod.item_count * 2u * NOH_LOD_LEVELS_MAX; i++) {
-        const uint32_t times = p->entries[i / (2u * NOH_LOD_LEVELS_MAX)].entered[i / NOH_LOD_LEVELS_MAX % 2u][i % NOH_LOD_LEVELS_MAX];
+        const uint32_t times =
+            p->entries[i / (2u * NOH_LOD_LEVELS_MAX)].entered[i / NOH_LOD_LEVELS_MAX % 2u][i % NOH_LOD_LEVELS_MAX];
         most = times > most ? times : most;
     }
     return most;

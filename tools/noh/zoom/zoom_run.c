@@ -19,7 +19,8 @@ static int picture_open(zoom_picture *p, uint32_t side)
 static int open_pictures(zoom *z)
 {
     const uint32_t side = z->path.side;
-    int failed = picture_open(&z->fine_full, side * ZOOM_FINE) || picture_open(&z->fine_kept, side * ZOOM_FINE) || picture_open(&z->standing, side);
+    int failed = picture_open(&z->fine_full, side * ZOOM_FINE) || picture_open(&z->fine_kept, side * ZOOM_FINE) ||
+                 picture_open(&z->standing, side);
     for (int i = 0; i < 2; i++) {
         failed = failed || picture_open(&z->seen_full[i], side) || picture_open(&z->seen_kept[i], side);
     }
@@ -67,7 +68,8 @@ static int same_lod(const load_lod *a, const load_lod *b)
 {
     int same = a->part_count == b->part_count;
     for (uint32_t i = 0; i < a->part_count && same; i++) {
-        same = a->parts[i].level == b->parts[i].level && a->parts[i].from == b->parts[i].from && a->parts[i].to == b->parts[i].to;
+        same = a->parts[i].level == b->parts[i].level && a->parts[i].from == b->parts[i].from &&
+               a->parts[i].to == b->parts[i].to;
     }
     return same;
 }
@@ -204,6 +206,6 @@ int zoom_run(zoom *z, double jitter)
 
 int zoom_result_ok(const zoom_result *r, double pixels)
 {
-    return r->silhouette_px <= ZOOM_SLACK * pixels && r->position_px <= ZOOM_SLACK * pixels && r->pop <= ZOOM_POP && r->excess <= ZOOM_POP &&
-           r->most_entered <= 1 && r->most_entered_shaken <= 1;
+    return r->silhouette_px <= ZOOM_SLACK * pixels && r->position_px <= ZOOM_SLACK * pixels && r->pop <= ZOOM_POP &&
+           r->excess <= ZOOM_POP && r->most_entered <= 1 && r->most_entered_shaken <= 1;
 }

@@ -10,8 +10,8 @@
 #include "file/png_file.h"
 
 #define GAP 4u
-#define LABEL 14u  /* pixels above the pictures */
-#define WIDE 60u   /* enough for the whole label */
+#define LABEL 14u /* pixels above the pictures */
+#define WIDE 60u  /* enough for the whole label */
 
 int zoom_strip_open(zoom_strip *s, const zoom *z)
 {

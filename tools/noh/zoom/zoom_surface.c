@@ -15,7 +15,7 @@ typedef struct zoom_surface_entry {
 
 /* Both surfaces as one mesh: the vertices of the full one, then those of the level. */
 typedef struct pair {
-    model_mesh mesh;  /* with the triangles of the full one */
+    model_mesh mesh; /* with the triangles of the full one */
     lod_level level;
     lod_distance *distances;
 } pair;
@@ -45,8 +45,8 @@ static int pair_open(pair *p, const noh_mesh *full, const noh_mesh *level)
     p->level.submesh_first = calloc(submeshes, sizeof(uint32_t));
     p->level.submesh_count = calloc(submeshes, sizeof(uint32_t));
     p->distances = calloc(submeshes, sizeof *p->distances);
-    return !p->mesh.position || !p->mesh.indices || !p->mesh.submeshes || !p->level.indices || !p->level.submesh_first ||
-           !p->level.submesh_count || !p->distances;
+    return !p->mesh.position || !p->mesh.indices || !p->mesh.submeshes || !p->level.indices ||
+           !p->level.submesh_first || !p->level.submesh_count || !p->distances;
 }
 
 static void take_triangles(pair *p, const noh_mesh *full, const noh_mesh *level)
@@ -102,7 +102,8 @@ static int measure(const scene *full, const scene *shown, uint32_t item, double 
     return status;
 }
 
-static int measure_at(const pack_file *file, const scene *full, const scene *kept, uint32_t item, uint32_t level, double *metres)
+static int measure_at(const pack_file *file, const scene *full, const scene *kept, uint32_t item, uint32_t level,
+                      double *metres)
 {
     scene shown = *kept;
     int status;
@@ -134,8 +135,8 @@ static int remember(zoom_surface *z, const zoom_surface_entry *e, const float *w
     return 0;
 }
 
-int zoom_surface_distance(zoom_surface *z, const pack_file *file, const scene *full, const scene *kept, uint32_t item, uint32_t level,
-                          double *metres)
+int zoom_surface_distance(zoom_surface *z, const pack_file *file, const scene *full, const scene *kept, uint32_t item,
+                          uint32_t level, double *metres)
 {
     const float *weights = kept->items[item].weights;
     const size_t bytes = sizeof *weights * kept->meshes[kept->items[item].mesh].header->target_count;

@@ -38,13 +38,16 @@ int zoom_target_open(zoom_target *t, gpu *g, uint32_t side, uint32_t samples)
     status = gl->CheckFramebufferStatus(GL_FRAMEBUFFER);
     gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
     gl->BindRenderbuffer(GL_RENDERBUFFER, 0);
-    return status == GL_FRAMEBUFFER_COMPLETE ? 0 : tool_fail("zoom", "the driver refuses a target of %ux%u pixels", side, side);
+    return status == GL_FRAMEBUFFER_COMPLETE
+               ? 0
+               : tool_fail("zoom", "the driver refuses a target of %ux%u pixels", side, side);
 }
 
 void zoom_target_close(zoom_target *t)
 {
     if (t->g) {
-        const GLuint buffers[3] = { t->color, t->depth, t->resolved_color }, framebuffers[2] = { t->framebuffer, t->resolved_framebuffer };
+        const GLuint buffers[3] = { t->color, t->depth, t->resolved_color },
+                     framebuffers[2] = { t->framebuffer, t->resolved_framebuffer };
         t->g->gl.DeleteFramebuffers(2, framebuffers);
         t->g->gl.DeleteRenderbuffers(3, buffers);
     }
