@@ -443,10 +443,10 @@ $(AMALGAM)/%: $(BUILD)/tests/%.o $(filter-out %/libnoh.a,$(TEST_LIBS)) $(AMALGAM
 
 # Small programs that show the library; they may use platform/ for a GL context.
 examples: $(EXAMPLES)
-$(BUILD)/examples/%: $(BUILD)/tools/examples/%.o $(PLATFORM_O) $(BUILD)/libnoh.a
+$(BUILD)/examples/%: $(BUILD)/tools/examples/%.o $(BUILD)/libnoh.a
 	@mkdir -p $(@D)
 	$(call say,CC,$@)
-	$(Q)$(CC) $(ALL_LDFLAGS) $^ -o $@ -ldl -lm
+	$(Q)$(CC) $(ALL_LDFLAGS) $^ -o $@ $(if $(shell grep -ls '<EGL/' tools/examples/$*.c),-lEGL)
 
 # Code and data of the library by processor, against the table of the last commit; make sizes-update writes that table.
 sizes:

@@ -85,7 +85,7 @@ fi
 # ---- programs ----
 
 awk '/^```c$/ { inside = 1; next } /^```$/ { inside = 0 } inside' README.md >"$work/smile.c"
-cp tools/examples/*.c "$work" 2>/dev/null
+cp tools/examples/*.[ch] "$work"
 programs=$(cd "$work" && ls ./*.c | sed 's|^\./||; s|\.c$||' | grep -v '^alone$')
 libraries() { # PROGRAM: a program that makes its own context links EGL
     sed -n 's|^ *# *include <EGL/.*|-lEGL|p' "$work/$1.c" | head -n 1
@@ -123,6 +123,7 @@ check 'the README'"'"'s program does what it says' grep -q 'vertex 0 smiles' "$w
 if has cmake; then
     for program in $programs; do
         mkdir "$work/cmake_$program"
+        cp "$work"/*.h "$work/cmake_$program"
         cp "$work/$program.c" "$work/cmake_$program/c.c"
         cp "$work/$program.c" "$work/cmake_$program/cpp.cpp"
         cat >"$work/cmake_$program/CMakeLists.txt" <<END
