@@ -2,6 +2,14 @@
 
 #include <string.h>
 
+#include "base/compiler.h"
+
+#if defined(NOH_SSE2)
+#include <emmintrin.h>
+#elif defined(NOH_NEON)
+#include <arm_neon.h>
+#endif
+
 void noh_transform_matrix(const noh_transform *t, float matrix[12])
 {
     const float *q = t->rotation, *s = t->scale;
@@ -22,6 +30,44 @@ void noh_transform_matrix(const noh_transform *t, float matrix[12])
     matrix[11] = t->translation[2];
 }
 
+/* A row of the product is the sum of b's rows, each times one element of a's row, and the row's own translation comes
+ * last. Four lanes make one row: each lane does what the plain loop does for its column, product by product and sum by
+ * sum in the same order, so the bits are the same. The translation belongs to the last lane only; the others add -0,
+ * which leaves every float as it is, where +0 would turn -0 into +0. */
+#if defined(NOH_SSE2)
+
+void noh_matrix_multiply(const float a[12], const float b[12], float out[12])
+{
+    const __m128 b0 = _mm_loadu_ps(b), b1 = _mm_loadu_ps(b + 4), b2 = _mm_loadu_ps(b + 8);
+    __m128 rows[3];
+    for (int r = 0; r < 3; r++) {
+        const float *row = a + 4 * r;
+        __m128 sum = _mm_mul_ps(_mm_set1_ps(row[0]), b0);
+        sum = _mm_add_ps(sum, _mm_mul_ps(_mm_set1_ps(row[1]), b1));
+        sum = _mm_add_ps(sum, _mm_mul_ps(_mm_set1_ps(row[2]), b2));
+        rows[r] = _mm_add_ps(sum, _mm_set_ps(row[3], -0.0f, -0.0f, -0.0f));
+    }
+    for (int r = 0; r < 3; r++) _mm_storeu_ps(out + 4 * r, rows[r]);
+}
+
+#elif defined(NOH_NEON)
+
+void noh_matrix_multiply(const float a[12], const float b[12], float out[12])
+{
+    const float32x4_t b0 = vld1q_f32(b), b1 = vld1q_f32(b + 4), b2 = vld1q_f32(b + 8);
+    float32x4_t rows[3];
+    for (int r = 0; r < 3; r++) {
+        const float *row = a + 4 * r;
+        float32x4_t sum = vmulq_n_f32(b0, row[0]);
+        sum = vaddq_f32(sum, vmulq_n_f32(b1, row[1]));
+        sum = vaddq_f32(sum, vmulq_n_f32(b2, row[2]));
+        rows[r] = vaddq_f32(sum, vsetq_lane_f32(row[3], vdupq_n_f32(-0.0f), 3));
+    }
+    for (int r = 0; r < 3; r++) vst1q_f32(out + 4 * r, rows[r]);
+}
+
+#else
+
 void noh_matrix_multiply(const float a[12], const float b[12], float out[12])
 {
     float m[12];
@@ -34,6 +80,8 @@ void noh_matrix_multiply(const float a[12], const float b[12], float out[12])
     }
     memcpy(out, m, sizeof m);
 }
+
+#endif
 
 void noh_local_to_model(const noh_skeleton *skeleton, const noh_transform *pose, uint32_t joint_count, float *model)
 {
