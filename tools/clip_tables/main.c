@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/clip/clip_encoder.h"
+#include "convert/codec/clip_encoder.h"
 #include "convert/clips/raw_set.h"
 #include "convert/clips/rcl.h"
 

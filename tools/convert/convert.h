@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#include "convert/pack/clips.h"
+#include "convert/pack/pack_clips.h"
 #include "pack/pack.h"
 #include "convert/pack/pack_write.h"
 #include "convert/skin/skins.h"

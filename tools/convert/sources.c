@@ -65,7 +65,7 @@ static int read_clip_file(const char *path, const source_options *options, sourc
 
 static int read_gltf_file(const char *path, const source_options *options, source *s, model_error *error)
 {
-    sample_options rate = { options->sample_rate_hz };
+    sample_options sampling = { options->sample_rate_hz };
     if (model_read_gltf(path, &s->m, error)) {
         return 1;
     }
@@ -74,7 +74,7 @@ static int read_gltf_file(const char *path, const source_options *options, sourc
             return 1;
         }
     }
-    if (clips_from_model(s->m, &rate, &s->made, error) || skins_bind(s->m, s->made, &options->skin, error)) {
+    if (clips_from_model(s->m, &sampling, &s->made, error) || skins_bind(s->m, s->made, &options->skin, error)) {
         return 1;
     }
     s->sets = malloc(((size_t)s->made->set_count + 1u) * sizeof *s->sets); /* with room for `single` */
@@ -192,7 +192,7 @@ static int bind_weights(source *base, const char *base_path, raw_clip *clip, mod
                                     clip->name, base_path, floats.name, floats.width);
             free(floats.name);
             free(floats.values);
-            free(floats.reach);
+            free(floats.radius);
             memset(&clip->floats[i], 0, sizeof floats);
             if (failed) return out_of_memory(error);
             continue;

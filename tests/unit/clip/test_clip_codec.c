@@ -1,4 +1,4 @@
-/* Tests of the clip codec: the encoder (tools/convert/clip/), the decoder and its cache
+/* Tests of the clip codec: the encoder (tools/convert/codec/), the decoder and its cache
  * (runtime/anim/clip_*.c). The evaluator here is written from the definition of the error, in
  * double precision, and shares nothing with the encoder's. */
 #include <setjmp.h>
@@ -374,8 +374,8 @@ static raw_set *with_floats(uint32_t joints, uint32_t frames, uint32_t width)
         }
     }
     c->floats[0].node = 5;
-    c->floats[0].reach = malloc(width * sizeof(float));
-    for (uint32_t i = 0; i < width; i++) c->floats[0].reach[i] = 0.2f + 0.3f * (float)(i % 7u);
+    c->floats[0].radius = malloc(width * sizeof(float));
+    for (uint32_t i = 0; i < width; i++) c->floats[0].radius[i] = 0.2f + 0.3f * (float)(i % 7u);
     return set;
 }
 

@@ -48,21 +48,21 @@ static double last_digit_of(text_word word)
 }
 
 /* 0.0333333 means 30 Hz: a whole rate is taken where its period is the printed one but for the last digit. */
-static double rate_of(double period_s, double last_digit_s)
+static double sample_rate_of(double period_s, double last_digit_s)
 {
     double sample_rate_hz = 1.0 / period_s, whole_hz = floor(sample_rate_hz + 0.5);
     if (whole_hz >= 1.0 && fabs(1.0 / whole_hz - period_s) <= fmin(last_digit_s, 0.002 * period_s)) return whole_hz;
     return sample_rate_hz;
 }
 
-static int read_rate(bvh_file *f, double *sample_rate_hz)
+static int read_sample_rate(bvh_file *f, double *sample_rate_hz)
 {
     double period_s = 0.0;
     text_word word = text_next_on_line(&f->text);
     if (text_number(&f->text, word, &period_s) || expect_line_end(f)) return 1;
     if (!(period_s >= 1e-6 && period_s <= 1e3))
         return text_fail(&f->text, word.line, "a frame time of %g s is not possible: 0.000001 to 1000 s is", period_s);
-    *sample_rate_hz = rate_of(period_s, last_digit_of(word));
+    *sample_rate_hz = sample_rate_of(period_s, last_digit_of(word));
     return 0;
 }
 
@@ -176,7 +176,7 @@ int bvh_read_frames(bvh_file *f)
 {
     raw_clip *clip = &f->set->clips[0];
     if (expect_label(f, "Frames") || read_frame_count(f, &f->frame_count) || expect_label(f, "Frame Time") ||
-        read_rate(f, &clip->sample_rate_hz))
+        read_sample_rate(f, &clip->sample_rate_hz))
         return 1;
     double *values = model_zeros(f->channel_count, sizeof *values);
     int failed = !values || raw_clip_alloc(clip, frames_to_hold(f), f->joint_count) ? bvh_out_of_memory(f)

@@ -102,8 +102,8 @@ static void compare_floats(const raw_clip *clip, raw_loop_check *out)
         double sum_cm = 0.0;
         for (uint32_t k = 0; k < f->width; ++k) {
             double d = fabs((double)last[k] - (double)f->values[k]);
-            sum_cm += f->reach ? d * (double)f->reach[k] : 0.0;
-            out->float_units = f->reach ? out->float_units : fmax(out->float_units, d);
+            sum_cm += f->radius ? d * (double)f->radius[k] : 0.0;
+            out->float_units = f->radius ? out->float_units : fmax(out->float_units, d);
         }
         out->float_cm = fmax(out->float_cm, sum_cm);
     }

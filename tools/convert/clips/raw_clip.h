@@ -31,7 +31,7 @@ typedef struct raw_floats {
     uint32_t node; /* glTF node for morph weights, else MODEL_NONE */
     uint32_t width;
     float *values; /* [frame_count][width] */
-    float *reach;  /* [width] radius in centimetres: how far a value of 1 moves the surface; NULL: errors are in the
+    float *radius; /* [width] radius in centimetres: how far a value of 1 moves the surface; NULL: errors are in the
                       scalar's own unit */
 } raw_floats;
 

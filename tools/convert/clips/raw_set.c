@@ -56,7 +56,7 @@ void raw_floats_clear(raw_floats *floats)
 {
     free(floats->name);
     free(floats->values);
-    free(floats->reach);
+    free(floats->radius);
 }
 
 void raw_clip_clear(raw_clip *clip)

@@ -72,10 +72,10 @@ static int copy_floats_shape(const raw_floats *from, uint32_t frame_count, raw_f
     if (raw_floats_alloc(out, frame_count, from->width)) return 1;
     out->node = from->node;
     out->name = model_string(from->name ? from->name : "");
-    if (from->reach) {
-        out->reach = model_zeros(from->width, sizeof(float));
-        if (!out->reach) return 1;
-        memcpy(out->reach, from->reach, from->width * sizeof(float));
+    if (from->radius) {
+        out->radius = model_zeros(from->width, sizeof(float));
+        if (!out->radius) return 1;
+        memcpy(out->radius, from->radius, from->width * sizeof(float));
     }
     return !out->name;
 }

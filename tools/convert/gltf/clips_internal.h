@@ -35,9 +35,9 @@ void build_skeleton(const model &m, const skeleton_plan &p, raw_skeleton &out);
 /* A channel, and what an error of it is worth. */
 struct track {
     const model_channel *channel;
-    uint32_t joint;            /* MODEL_NONE for weights */
-    double lever_cm;           /* of a joint's: centimetres per radian, unit of translation or unit of scale */
-    std::vector<double> reach; /* of weights: centimetres per unit of each */
+    uint32_t joint;                /* MODEL_NONE for weights */
+    double lever_cm;               /* of a joint's: centimetres per radian, unit of translation or unit of scale */
+    std::vector<double> radius_cm; /* of weights: centimetres per unit of each */
 };
 struct timing {
     double sample_rate_hz;

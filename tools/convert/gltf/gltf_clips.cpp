@@ -30,7 +30,7 @@ struct set_job {
     const model_clips *made;
     uint32_t index;
     raw_set *set;
-    std::vector<double> lever_cm;        /* [joints] of a rotation: the reach below it */
+    std::vector<double> lever_cm;        /* [joints] of a rotation: the radius below it */
     std::vector<double> parent_scale_cm; /* [joints] centimetres per unit of its translation */
 };
 
@@ -86,14 +86,14 @@ static const uint32_t *skin_joints(const set_job &job, uint32_t node)
     return skin < job.m->skin_count ? job.made->skins[skin].joints : nullptr;
 }
 
-static std::vector<double> reach_of(const set_job &job, uint32_t node, const raw_clip *clip)
+static std::vector<double> radius_of(const set_job &job, uint32_t node, const raw_clip *clip)
 {
     const node_joint &mover = job.made->nodes[node];
     uint32_t joint = mover.set == job.index ? mover.joint : MODEL_NONE;
-    std::vector<double> reach = target_sizes(job.m->meshes[job.m->nodes[node].mesh]);
+    std::vector<double> radius = target_sizes(job.m->meshes[job.m->nodes[node].mesh]);
     double scale_cm = 100.0 * largest_scale(*job.m, node, skin_joints(job, node), joint, *job.set, clip);
-    for (double &r : reach) r *= scale_cm;
-    return reach;
+    for (double &r : radius) r *= scale_cm;
+    return radius;
 }
 
 /* --- the tracks of one clip --- */
@@ -108,7 +108,7 @@ static std::vector<track> find_tracks(const set_job &job, const model_clip &clip
         if (c.path != MODEL_PATH_WEIGHTS && joint != MODEL_NONE)
             tracks.push_back({ &c, joint, lever_of(job, c, joint), {} });
         if (c.path == MODEL_PATH_WEIGHTS && std::binary_search(weight_nodes.begin(), weight_nodes.end(), c.node))
-            tracks.push_back({ &c, MODEL_NONE, 0.0, reach_of(job, c.node, nullptr) });
+            tracks.push_back({ &c, MODEL_NONE, 0.0, radius_of(job, c.node, nullptr) });
     }
     return tracks;
 }
@@ -129,7 +129,7 @@ static double tolerance_of(const set_job &job, const std::vector<track> &tracks)
     for (const track &t : tracks) {
         if (t.channel->path == MODEL_PATH_TRANSLATION)
             size_cm = std::fmax(size_cm, largest_value(*t.channel) * t.lever_cm);
-        for (double r : t.reach) size_cm = std::fmax(size_cm, r);
+        for (double r : t.radius_cm) size_cm = std::fmax(size_cm, r);
     }
     return size_cm * tolerance_part;
 }
@@ -205,10 +205,10 @@ static void fill_weights(const set_job &job, const track &t, const timing &when,
     check_memory(raw_floats_alloc(&floats, clip.frame_count, width));
     floats.node = node;
     floats.name = copy_string(job.m->nodes[node].name);
-    floats.reach = zeros<float>(width);
-    std::vector<double> reach = reach_of(job, node, &clip);
+    floats.radius = zeros<float>(width);
+    std::vector<double> radius = radius_of(job, node, &clip);
     std::string place = where + " weights of node '" + printable(floats.name) + "'";
-    for (uint32_t i = 0; i < width; ++i) floats.reach[i] = to_float(reach[i], place);
+    for (uint32_t i = 0; i < width; ++i) floats.radius[i] = to_float(radius[i], place);
     sample_track(t, when, floats.values, width, place);
 }
 

@@ -126,10 +126,10 @@ static double difference_cm(const track &t, const std::vector<double> &a, const 
     if (t.channel->path == MODEL_PATH_ROTATION) return quat_angle(a.data(), b.data()) * t.lever_cm;
     double sum = 0.0;
     for (size_t i = 0; i < a.size(); ++i) {
-        double d = std::fabs(a[i] - b[i]) * (t.reach.empty() ? 1.0 : t.reach[i]);
-        sum += t.reach.empty() ? d * d : d; /* a distance; or weights, which may all push the same way */
+        double d = std::fabs(a[i] - b[i]) * (t.radius_cm.empty() ? 1.0 : t.radius_cm[i]);
+        sum += t.radius_cm.empty() ? d * d : d; /* a distance; or weights, which may all push the same way */
     }
-    return t.reach.empty() ? std::sqrt(sum) * t.lever_cm : sum;
+    return t.radius_cm.empty() ? std::sqrt(sum) * t.lever_cm : sum;
 }
 
 static std::vector<double> played(const track &t, const std::vector<double> &a, const std::vector<double> &b, double at)

@@ -213,7 +213,7 @@ static uint32_t goal_of(const builder *b, uint32_t level)
     return b->options.errors ? 0u : (uint32_t)ceil((double)b->options.ratios[level] * b->full - 1e-3);
 }
 
-static int reach_level(builder *b, uint32_t level)
+static int collapse_to_level(builder *b, uint32_t level)
 {
     uint32_t point, goal = goal_of(b, level);
     int failed = 0;
@@ -290,7 +290,7 @@ static int build_levels(builder *b)
         failed = queue_point(b, p);
     }
     for (uint32_t i = 0; i < b->options.level_count && !failed; i++) {
-        failed = reach_level(b, i) || write_level(b, &b->out->levels[i]);
+        failed = collapse_to_level(b, i) || write_level(b, &b->out->levels[i]);
         b->out->level_count += !failed;
     }
     return failed;

@@ -270,12 +270,12 @@ static uint32_t next_smallest(const morph_encoding *e, uint32_t after)
 {
     uint32_t best = e->target_count;
     for (uint32_t t = 0; t < e->target_count; t++) {
-        const float reach = e->targets[t].radius;
+        const float radius = e->targets[t].radius;
         if (after < e->target_count) {
             const float last = e->targets[after].radius;
-            if (reach < last || (reach == last && t <= after)) continue;
+            if (radius < last || (radius == last && t <= after)) continue;
         }
-        if (best == e->target_count || reach < e->targets[best].radius) best = t;
+        if (best == e->target_count || radius < e->targets[best].radius) best = t;
     }
     return best;
 }

@@ -234,7 +234,7 @@ static double diagonal(const model_mesh *mesh)
 static void certify(const model_mesh *mesh, const model_target *s, morph_target *q)
 {
     const double threshold = SOURCE_POSITION * diagonal(mesh);
-    double worst[3] = { 0.0, 0.0, 0.0 }, displacement = 0.0;
+    double worst[3] = { 0.0, 0.0, 0.0 }, radius = 0.0;
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         uint32_t words[3];
         double e[3];
@@ -243,7 +243,7 @@ static void certify(const model_mesh *mesh, const model_target *s, morph_target 
         vertex_errors(q, s, v, words, e);
         for (uint32_t i = 0; i < 3u; i++)
             if (e[i] > worst[i]) worst[i] = e[i];
-        if (moved > displacement) displacement = moved;
+        if (moved > radius) radius = moved;
         if (moved > threshold || direction_matters(s->normal, v, SOURCE_DIRECTION) ||
             direction_matters(s->tangent, v, SOURCE_DIRECTION))
             q->source_pairs++;
@@ -251,7 +251,7 @@ static void certify(const model_mesh *mesh, const model_target *s, morph_target 
     q->position_error = float_above(sqrt(worst[0]));
     q->normal_error = float_above(worst[1]);
     q->tangent_error = float_above(worst[2]);
-    q->radius = float_above(displacement);
+    q->radius = float_above(radius);
 }
 
 void morph_quantise_choose(const model_mesh *mesh, uint32_t t, float error_um, morph_target *out)

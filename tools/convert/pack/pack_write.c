@@ -7,7 +7,7 @@
 #include "base/hash.h"
 #include "base/version.h"
 #include "pack/format.h"
-#include "clips.h"
+#include "pack_clips.h"
 #include "pack_mesh.h"
 #include "pack_skin.h"
 

@@ -1,26 +1,26 @@
 /* clip_errors.h: the error of an encoded clip with fewer joints, and at lower update rates. The runtime chooses LOD
  * levels by these (character/lod.h). */
-#ifndef NOH_CONVERT_CLIPS_CLIP_ERRORS_H
-#define NOH_CONVERT_CLIPS_CLIP_ERRORS_H
+#ifndef NOH_CONVERT_CODEC_CLIP_ERRORS_H
+#define NOH_CONVERT_CODEC_CLIP_ERRORS_H
 
 #include "character/time_lod_points.h"
 #include "convert/base/byte_buffer.h"
 #include "pack/format.h"
-#include "raw_clip.h"
+#include "convert/clips/raw_clip.h"
 
 /* In the skeleton's unit; as noh_clip_header has them. */
 typedef struct clip_errors {
     float joint[NOH_LOD_LEVELS_MAX]; /* [level_count] */
-    float rate[NOH_CLIP_UPDATE_RATES];
+    float update_rate[NOH_CLIP_UPDATE_RATES];
     float shell;          /* 0: of vertices */
     uint32_t level_count; /* 0 without joints */
 } clip_errors;
 
 /* Where a clip's error is measured. Borrowed. */
 typedef struct error_points {
-    const float *reach; /* [joint_count] radius of what each joint moves (joint_radius); NULL: no mesh is bound to the
-                         * skeleton, points lie `shell_cm` from each joint */
-    const noh_time_lod_points *points; /* vertices on which update rates are measured; read only with `reach` */
+    const float *joint_radius; /* [joint_count] radius of what each joint moves (joint_radius); NULL: no mesh is bound
+                                * to the skeleton, points lie `shell_cm` from each joint */
+    const noh_time_lod_points *points; /* vertices on which update rates are measured; read only with `joint_radius` */
     double shell_cm;
 } error_points;
 
@@ -28,6 +28,6 @@ typedef struct error_points {
  * clip     the encoded one, of `raw`
  * errors   1 and *error: out of memory, or errors beyond what a float holds */
 int clip_errors_measure(const raw_skeleton *skeleton, const raw_clip *raw, const byte_buffer *clip,
-                        const error_points *flesh, clip_errors *out, model_error *error);
+                        const error_points *at, clip_errors *out, model_error *error);
 
 #endif

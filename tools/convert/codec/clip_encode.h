@@ -8,8 +8,8 @@
  * own arithmetic. Scalars are bounded one by one: |error| x radius <= error_cm, where the
  * radius is how far the scalar moves the surface per unit.
  * Deterministic: no clock, no address, contraction off. */
-#ifndef NOH_CONVERT_CLIP_CLIP_ENCODE_H
-#define NOH_CONVERT_CLIP_CLIP_ENCODE_H
+#ifndef NOH_CONVERT_CODEC_CLIP_ENCODE_H
+#define NOH_CONVERT_CODEC_CLIP_ENCODE_H
 
 #include "convert/base/byte_buffer.h"
 #include "convert/clips/raw_clip.h"
@@ -21,7 +21,7 @@ extern "C" {
 typedef struct clip_options {
     double error_cm;              /* the bound; 0 = 0.01 */
     double shell_cm;              /* distance of the virtual points; 0 = 3 */
-    double float_error;           /* bound of floats without a reach, in their own unit; 0 = 0.001 */
+    double float_error;           /* bound of floats without a radius, in their own unit; 0 = 0.001 */
     const double *joint_error_cm; /* [joint_count] bounds of single joints, 0 = error_cm; NULL = none */
     uint32_t segment_frames;      /* wanted length of a segment, 8..40; 0 = 24 */
     int open_loop;                /* for masking: no joint corrects the error of its parents */

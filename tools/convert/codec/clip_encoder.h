@@ -7,8 +7,8 @@
  * clip_write.c    bits
  * clip_certify.c  decodes what was written and measures it
  * clip_encode.c   the order of things, and what to do when the bound does not hold */
-#ifndef NOH_CONVERT_CLIP_CLIP_ENCODER_H
-#define NOH_CONVERT_CLIP_CLIP_ENCODER_H
+#ifndef NOH_CONVERT_CODEC_CLIP_ENCODER_H
+#define NOH_CONVERT_CODEC_CLIP_ENCODER_H
 
 #include "clip/clip_coefs_internal.h"
 #include "clip/clip_internal.h"
@@ -69,7 +69,7 @@ typedef struct enc_segment {
 } enc_segment;
 
 typedef struct enc_tuning {
-    double rho_root, rho_tip, margin, linear_part, correction, shell_weight, dead_zone;
+    double rho_root, rho_tip, headroom, linear_part, correction, shell_weight, dead_zone;
     int nudges;
 } enc_tuning;
 

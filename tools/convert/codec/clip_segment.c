@@ -205,7 +205,7 @@ static void rotation_limits(const encoder *e, judged *j, double (*q)[4])
         space_global g = *placed(e, j->joint, f);
         double v;
         space_turn(lossy_parent(e, j->joint, f), q[f], lossy(e, j->joint, f)->s, &g);
-        v = rotation_violation(e, j->joint, j->segment->first + f, &g) + e->tuning.margin * e->loop->slack;
+        v = rotation_violation(e, j->joint, j->segment->first + f, &g) + e->tuning.headroom * e->loop->slack;
         j->limits[f] = v > e->loop->slack ? v : e->loop->slack;
     }
 }

@@ -87,25 +87,25 @@ static void find_modes(encoder *e)
     for (uint32_t j = e->joint_count; j-- > 0u;) {
         enc_joint *t = &e->joints[j];
         const double scale = parent_scale(e, j);
-        double reach;
+        double radius;
         t->bound = e->bound;
         if (e->options.joint_error_cm && e->options.joint_error_cm[j] > 0.0)
             t->bound = e->options.joint_error_cm[j] * e->tight / e->unit_cm;
-        reach = lever[j] > e->shell ? lever[j] : e->shell;
-        t->lever = reach;
+        radius = lever[j] > e->shell ? lever[j] : e->shell;
+        t->lever = radius;
         t->modes[TRANSLATION] = linear_range(e, j, TRANSLATION, value) * scale > e->drop * t->bound
                                     ? NOH_CLIP_MODE_ANIMATED
                                     : NOH_CLIP_MODE_CONSTANT;
-        t->modes[SCALE] = linear_range(e, j, SCALE, value) * scale * reach > e->drop * t->bound
+        t->modes[SCALE] = linear_range(e, j, SCALE, value) * scale * radius > e->drop * t->bound
                               ? NOH_CLIP_MODE_ANIMATED
                               : NOH_CLIP_MODE_CONSTANT;
-        t->modes[ROTATION] = rotation_range(e, j, value) * reach > e->drop * t->bound ? NOH_CLIP_MODE_ANIMATED
-                                                                                      : NOH_CLIP_MODE_CONSTANT;
+        t->modes[ROTATION] = rotation_range(e, j, value) * radius > e->drop * t->bound ? NOH_CLIP_MODE_ANIMATED
+                                                                                       : NOH_CLIP_MODE_CONSTANT;
         if (t->parent != ENC_NONE && (t->modes[TRANSLATION] != NOH_CLIP_MODE_ANIMATED || e->options.open_loop)) {
             for (uint32_t f = 0; f < e->frame_count; f += stride_of(e)) {
                 double d = space_distance(enc_global(e, f, j)->p, enc_global(e, f, t->parent)->p);
                 if (e->options.open_loop || t->modes[ROTATION] != NOH_CLIP_MODE_ANIMATED)
-                    d += reach > e->shell ? reach : 0.0;
+                    d += radius > e->shell ? radius : 0.0;
                 if (d > lever[t->parent]) lever[t->parent] = d;
             }
         }
@@ -132,12 +132,12 @@ static int carried(const encoder *e, uint32_t carrier, uint32_t joint)
 
 static double point_radius(const encoder *e, uint32_t carrier, uint32_t joint)
 {
-    double reach = 0.0;
+    double radius = 0.0;
     for (uint32_t f = 0; f < e->frame_count; f += stride_of(e)) {
         const double d = space_distance(enc_global(e, f, joint)->p, enc_global(e, f, carrier)->p);
-        if (d > reach) reach = d;
+        if (d > radius) radius = d;
     }
-    return reach;
+    return radius;
 }
 
 /* Where a carried joint lies in its carrier's space. */
@@ -157,23 +157,23 @@ static void point_offset(const encoder *e, uint32_t carrier, enc_point *point)
 /* The radius of a joint's descendants around it, shells included. */
 static double scale_radius(const encoder *e, uint32_t joint)
 {
-    double reach = 0.0;
+    double radius = 0.0;
     for (uint32_t j = joint + 1u; j < e->joint_count; j++) {
         uint32_t p = j;
         while (p != ENC_NONE && p > joint) p = e->joints[p].parent;
         if (p == joint) {
             const double r = point_radius(e, joint, j);
-            if (r > reach) reach = r;
+            if (r > radius) radius = r;
         }
     }
-    return reach + e->shell;
+    return radius + e->shell;
 }
 
 /* The points that a joint's rotation must keep in place; when there are too many, the farthest. */
 static int find_points(encoder *e, uint32_t carrier)
 {
     enc_joint *t = &e->joints[carrier];
-    double reaches[ENC_RIG_MAX];
+    double radii[ENC_RIG_MAX];
     t->points = enc_alloc(e, ENC_RIG_MAX, sizeof *t->points);
     if (!t->points) return 1;
     t->point_count = 0;
@@ -181,20 +181,20 @@ static int find_points(encoder *e, uint32_t carrier)
     if (t->modes[SCALE] == NOH_CLIP_MODE_ANIMATED) t->scale_lever = scale_radius(e, carrier);
     for (uint32_t j = carrier + 1u; j < e->joint_count; j++) {
         uint32_t at = t->point_count;
-        double reach;
+        double radius;
         if (!carried(e, carrier, j)) continue;
-        reach = point_radius(e, carrier, j);
-        if (reach > t->lever) t->lever = reach;
+        radius = point_radius(e, carrier, j);
+        if (radius > t->lever) t->lever = radius;
         if (at == ENC_RIG_MAX) {
             at = 0;
             for (uint32_t i = 1; i < ENC_RIG_MAX; i++) {
-                if (reaches[i] < reaches[at]) at = i;
+                if (radii[i] < radii[at]) at = i;
             }
-            if (reaches[at] >= reach) continue;
+            if (radii[at] >= radius) continue;
         } else {
             t->point_count++;
         }
-        reaches[at] = reach;
+        radii[at] = radius;
         t->points[at].joint = j;
         point_offset(e, carrier, &t->points[at]);
     }

@@ -37,7 +37,7 @@
 #define RAW_JOINT_BYTES 40u
 #define RAW_FLOAT_BYTES 4u
 
-/* rho at the root and at the tips, margin, part of the bound for translations, strength of the
+/* rho at the root and at the tips, headroom, part of the bound for translations, strength of the
  * correction, weight of the shell in it, dead zone, nudges. The first is the best for most. */
 static const enc_tuning tunings[] = {
     { 0.82, 0.86, 0.05, 0.65, 0.2, 0.5, 0.06, 8 },

@@ -1,6 +1,6 @@
 /* clip_space.h (private to the clip encoder): poses in double precision. */
-#ifndef NOH_CONVERT_CLIP_CLIP_SPACE_H
-#define NOH_CONVERT_CLIP_CLIP_SPACE_H
+#ifndef NOH_CONVERT_CODEC_CLIP_SPACE_H
+#define NOH_CONVERT_CODEC_CLIP_SPACE_H
 
 #include <math.h>
 #include <stdint.h>

@@ -1,6 +1,6 @@
 /* named_errors.h: error bounds of single clips and joints, as the command line gives them: "NAME=CM". */
-#ifndef NOH_CONVERT_CLIP_NAMED_ERRORS_H
-#define NOH_CONVERT_CLIP_NAMED_ERRORS_H
+#ifndef NOH_CONVERT_CODEC_NAMED_ERRORS_H
+#define NOH_CONVERT_CODEC_NAMED_ERRORS_H
 
 #include "convert/clips/raw_clip.h"
 

@@ -1,12 +1,12 @@
-/* clips.h: the skeletons and clips of one pack, encoded. */
-#ifndef NOH_CONVERT_PACK_CLIPS_H
-#define NOH_CONVERT_PACK_CLIPS_H
+/* pack_clips.h: the skeletons and clips of one pack, encoded. */
+#ifndef NOH_CONVERT_PACK_PACK_CLIPS_H
+#define NOH_CONVERT_PACK_PACK_CLIPS_H
 
 #include <stdio.h>
 
-#include "convert/clip/clip_encode.h"
-#include "convert/clips/clip_errors.h"
-#include "convert/clip/named_errors.h"
+#include "convert/codec/clip_encode.h"
+#include "convert/codec/clip_errors.h"
+#include "convert/codec/named_errors.h"
 
 typedef struct encoded_clip {
     uint32_t set; /* index into clips.sets */

@@ -62,8 +62,9 @@ static int prepare_floats(encoder *e)
     for (uint32_t g = 0; g < c->float_count; g++) {
         const raw_floats *group = &c->floats[g];
         for (uint32_t i = 0; i < group->width; i++) {
-            const double reach = group->reach ? fabs((double)group->reach[i]) : 0.0;
-            double bound = group->reach ? e->options.error_cm / (reach > 1e-6 ? reach : 1e-6) : e->options.float_error;
+            const double radius = group->radius ? fabs((double)group->radius[i]) : 0.0;
+            double bound = group->radius ? e->options.error_cm / (radius > 1e-6 ? radius : 1e-6)
+                                         : e->options.float_error;
             if (bound > 1.0) bound = 1.0; /* a weight that moves nothing may still be looked at */
             e->float_bounds[first + i] = bound;
             for (uint32_t f = 0; f < e->frame_count; f++) {
