@@ -6,7 +6,7 @@
 
 #include "cli/message.h"
 
-int stage_shows_bones(const scene *s, const pack_file *file, int asked_for)
+int drawing_shows_bones(const scene *s, const pack_file *file, int asked_for)
 {
     if (!asked_for && s->item_count) {
         return 0;
@@ -20,7 +20,7 @@ int stage_shows_bones(const scene *s, const pack_file *file, int asked_for)
     return -1;
 }
 
-bounds stage_bounds(const scene *s, const pack_file *file, int face, int show_bones)
+bounds drawing_bounds(const scene *s, const pack_file *file, int face, int show_bones)
 {
     bounds box = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
     if (!show_bones) {
@@ -34,78 +34,78 @@ bounds stage_bounds(const scene *s, const pack_file *file, int face, int show_bo
     return box;
 }
 
-static int open_bones(stage *st, gpu *g)
+static int open_bones(drawing *d, gpu *g)
 {
     int status = 0;
-    st->bones = calloc(st->scene->player_count, sizeof *st->bones);
-    if (!st->bones) {
+    d->bones = calloc(d->scene->player_count, sizeof *d->bones);
+    if (!d->bones) {
         return tool_fail("bones", "out of memory");
     }
-    for (; st->bones_count < st->scene->player_count && !status; st->bones_count++) {
-        const uint32_t joints = st->scene->players[st->bones_count].skeleton.joint_count;
-        status = joints ? bones_open(&st->bones[st->bones_count], g, joints) : 0;
+    for (; d->bones_count < d->scene->player_count && !status; d->bones_count++) {
+        const uint32_t joints = d->scene->players[d->bones_count].skeleton.joint_count;
+        status = joints ? bones_open(&d->bones[d->bones_count], g, joints) : 0;
     }
     return status;
 }
 
-int stage_open(stage *st, gpu *g, const pack_file *file, const scene *s, const load_options *o, int show_bones,
-               uint32_t width, uint32_t height)
+int drawing_open(drawing *d, gpu *g, const pack_file *file, const scene *s, const load_options *o, int show_bones,
+                 uint32_t width, uint32_t height)
 {
     int status;
-    memset(st, 0, sizeof *st);
-    st->scene = s;
-    status = show_bones ? open_bones(st, g) : load_open(&st->load, g, file, s, o);
+    memset(d, 0, sizeof *d);
+    d->scene = s;
+    status = show_bones ? open_bones(d, g) : load_open(&d->load, g, file, s, o);
     if (!status) {
-        status = canvas_open(&st->canvas, g, width, height);
-        st->has_canvas = !status;
+        status = canvas_open(&d->canvas, g, width, height);
+        d->has_canvas = !status;
     }
     if (status) {
-        stage_close(st);
+        drawing_close(d);
     }
     return status;
 }
 
-void stage_close(stage *st)
+void drawing_close(drawing *d)
 {
-    for (uint32_t i = 0; i < st->bones_count; i++) {
-        bones_close(&st->bones[i]);
+    for (uint32_t i = 0; i < d->bones_count; i++) {
+        bones_close(&d->bones[i]);
     }
-    free(st->bones);
-    if (st->has_canvas) {
-        canvas_close(&st->canvas);
+    free(d->bones);
+    if (d->has_canvas) {
+        canvas_close(&d->canvas);
     }
-    if (st->load.g) {
-        load_close(&st->load);
+    if (d->load.g) {
+        load_close(&d->load);
     }
-    memset(st, 0, sizeof *st);
+    memset(d, 0, sizeof *d);
 }
 
-static void draw_bones(stage *st, const noh_gl_camera *camera)
+static void draw_bones(drawing *d, const noh_gl_camera *camera)
 {
-    for (uint32_t i = 0; i < st->bones_count; i++) {
-        const scene_player *p = &st->scene->players[i];
+    for (uint32_t i = 0; i < d->bones_count; i++) {
+        const scene_player *p = &d->scene->players[i];
         if (p->skeleton.joint_count) {
-            bones_draw(&st->bones[i], &p->skeleton, p->joint_matrices, camera);
+            bones_draw(&d->bones[i], &p->skeleton, p->joint_matrices, camera);
         }
     }
 }
 
-void stage_paint(stage *st, const noh_gl_camera *camera)
+void drawing_paint(drawing *d, const noh_gl_camera *camera)
 {
-    canvas_begin(&st->canvas);
-    if (st->bones) {
-        draw_bones(st, camera);
+    canvas_begin(&d->canvas);
+    if (d->bones) {
+        draw_bones(d, camera);
     } else {
-        load_draw(&st->load, camera);
+        load_draw(&d->load, camera);
     }
 }
 
-int stage_draw(stage *st, const noh_gl_camera *camera, uint8_t *rgba)
+int drawing_read(drawing *d, const noh_gl_camera *camera, uint8_t *rgba)
 {
-    int status = st->bones ? 0 : load_update(&st->load, NULL);
+    int status = d->bones ? 0 : load_update(&d->load, NULL);
     if (status) {
         return status;
     }
-    stage_paint(st, camera);
-    return canvas_read(&st->canvas, rgba);
+    drawing_paint(d, camera);
+    return canvas_read(&d->canvas, rgba);
 }

@@ -46,7 +46,7 @@ static int check_args(render_args *a)
     return status;
 }
 
-/* What was drawn, to be told once the picture is written. */
+/* What was drawn: printed once the picture is written. */
 typedef struct drawn {
     int bones;
     noh_gl_morph_plan plan; /* without bones */
@@ -64,25 +64,26 @@ static void print_done(const render_args *a, const drawn *d)
 }
 
 /* The camera frames the full mesh at every level. */
-static int draw(gpu *g, const pack_file *file, scene *s, const render_args *a, int show_bones, uint8_t *rgba, drawn *d)
+static int draw(gpu *g, const pack_file *file, scene *s, const render_args *a, int show_bones, uint8_t *rgba,
+                drawn *done)
 {
-    stage st;
+    drawing d;
     noh_gl_camera camera;
-    bounds box = stage_bounds(s, file, view_wants_face(&a->view), show_bones);
+    bounds box = drawing_bounds(s, file, view_wants_face(&a->view), show_bones);
     int status = view_camera(&a->view, &box, &camera);
     if (!status) status = scene_set_level(s, file, a->level);
     if (!status) {
-        status = stage_open(&st, g, file, s, &a->load, show_bones, a->size[0], a->size[1]);
+        status = drawing_open(&d, g, file, s, &a->load, show_bones, a->size[0], a->size[1]);
     }
     if (status) {
         return status;
     }
-    status = stage_draw(&st, &camera, rgba);
-    d->bones = show_bones;
+    status = drawing_read(&d, &camera, rgba);
+    done->bones = show_bones;
     if (!show_bones) {
-        d->plan = *noh_gl_morph_plan_of(st.load.morph.morph);
+        done->plan = *noh_gl_morph_plan_of(d.load.morph.morph);
     }
-    stage_close(&st);
+    drawing_close(&d);
     return status;
 }
 
@@ -94,7 +95,7 @@ static int pose_and_draw(const pack_file *file, const render_args *a)
     drawn d;
     int show_bones, status = rgba ? scene_init(&s, file) : tool_fail(file->path, "out of memory");
     if (!status) {
-        show_bones = stage_shows_bones(&s, file, a->show_bones);
+        show_bones = drawing_shows_bones(&s, file, a->show_bones);
         status = show_bones < 0 ? EXIT_FAILED : scene_open_anim(&s, file, a->anim);
         if (!status && a->clips.count) status = scene_set_clips(&s, file, &a->clips, a->time_s);
         if (!status) status = scene_set_weights(&s, file, &a->weights);

@@ -71,7 +71,7 @@ static int measure_tiles(sheet *s, int face)
         bounds box;
         status = sheet_tiles_pose(&s->tiles, tile);
         anchor_of(posed, anchor);
-        box = move_box(stage_bounds(posed, s->tiles.file, face, s->show_bones), anchor, -1.0);
+        box = move_box(drawing_bounds(posed, s->tiles.file, face, s->show_bones), anchor, -1.0);
         s->box = tile ? bounds_union(s->box, box) : box;
     }
     return status;
@@ -87,7 +87,7 @@ static int tile_camera(const sheet *s, noh_gl_camera *camera)
     return view_camera(&o, &box, camera);
 }
 
-static int draw_tiles(sheet *s, stage *st)
+static int draw_tiles(sheet *s, drawing *d)
 {
     uint8_t *rgba = malloc((size_t)s->tile * s->tile * 4);
     int status = rgba ? 0 : tool_fail(s->pack, "out of memory");
@@ -95,7 +95,7 @@ static int draw_tiles(sheet *s, stage *st)
         noh_gl_camera camera;
         status = sheet_tiles_pose(&s->tiles, tile);
         if (!status) status = tile_camera(s, &camera);
-        if (!status) status = stage_draw(st, &camera, rgba);
+        if (!status) status = drawing_read(d, &camera, rgba);
         if (!status) place_tile(s, tile, rgba);
     }
     free(rgba);
@@ -105,17 +105,17 @@ static int draw_tiles(sheet *s, stage *st)
 static int draw_sheet(sheet *s)
 {
     gpu g;
-    stage st;
+    drawing d;
     const view_options o = { s->camera, s->tile, s->tile };
     int status = measure_tiles(s, view_wants_face(&o));
     if (!status) status = gpu_open(&g, s->driver);
     if (status) {
         return status;
     }
-    status = stage_open(&st, &g, s->tiles.file, &s->tiles.posed, &s->load, s->show_bones, s->tile, s->tile);
+    status = drawing_open(&d, &g, s->tiles.file, &s->tiles.posed, &s->load, s->show_bones, s->tile, s->tile);
     if (!status) {
-        status = draw_tiles(s, &st);
-        stage_close(&st);
+        status = draw_tiles(s, &d);
+        drawing_close(&d);
     }
     gpu_close(&g);
     return status;
@@ -153,7 +153,7 @@ static int make_sheet(sheet *s, const pack_file *file)
 {
     int status = sheet_tiles_open(&s->tiles, file);
     if (!status) {
-        s->show_bones = stage_shows_bones(&s->tiles.rest, file, s->show_bones);
+        s->show_bones = drawing_shows_bones(&s->tiles.rest, file, s->show_bones);
         status = s->show_bones < 0 ? EXIT_FAILED : lay_out(s);
     }
     if (!status) status = draw_sheet(s);

@@ -146,11 +146,11 @@ static void label_cell(const grid *g, uint32_t column, uint32_t row, uint32_t si
     }
 }
 
-static int draw_cell(grid *g, stage *st, uint32_t column, uint32_t row, uint32_t size)
+static int draw_cell(grid *g, drawing *d, uint32_t column, uint32_t row, uint32_t size)
 {
     char label[160];
     int status = apply_row(g, row);
-    if (!status) status = stage_draw(st, &g->camera, g->cell);
+    if (!status) status = drawing_read(d, &g->camera, g->cell);
     if (!status) {
         label_cell(g, column, row, size, label, sizeof label);
         place(g, column, row, size, label);
@@ -161,15 +161,15 @@ static int draw_cell(grid *g, stage *st, uint32_t column, uint32_t row, uint32_t
 /* Some rows of a level, at one size. */
 static int draw_rows(grid *g, uint32_t column, uint32_t first, uint32_t end, uint32_t size)
 {
-    stage st;
-    int status = stage_open(&st, &g->gpu, g->o->file, &g->scene, &g->o->load, 0, size, size);
+    drawing d;
+    int status = drawing_open(&d, &g->gpu, g->o->file, &g->scene, &g->o->load, 0, size, size);
     if (status) {
         return status;
     }
     for (uint32_t row = first; row < end && !status; row++) {
-        status = draw_cell(g, &st, column, row, size);
+        status = draw_cell(g, &d, column, row, size);
     }
-    stage_close(&st);
+    drawing_close(&d);
     return status;
 }
 

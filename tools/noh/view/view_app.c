@@ -14,7 +14,7 @@ static void keep_failure(view_app *a, int status)
     snprintf(a->message, sizeof a->message, "%s", status ? tool_last_failure() : "");
 }
 
-static void stage_pixels(const view_app *a, int *x, int *y, uint32_t *width, uint32_t *height)
+static void figure_pixels(const view_app *a, int *x, int *y, uint32_t *width, uint32_t *height)
 {
     float box[4];
     view_app_stage(a, box);
@@ -43,7 +43,7 @@ int view_app_open(view_app *a, const view_model_desc *desc)
     a->window_width = (float)desc->width;
     a->window_height = (float)desc->height;
     a->scale = 1.0f;
-    stage_pixels(a, &x, &y, &a->desc.width, &a->desc.height);
+    figure_pixels(a, &x, &y, &a->desc.width, &a->desc.height);
     if (!status) status = view_model_open(&a->gpu, &a->desc, &a->model);
     if (status) {
         return status;
@@ -114,7 +114,7 @@ void view_frame_all(view_app *a)
     const bounds around = view_model_bounds(a->model);
     int x, y;
     uint32_t width, height;
-    stage_pixels(a, &x, &y, &width, &height);
+    figure_pixels(a, &x, &y, &width, &height);
     a->orbit = orbit_fit(&around, (double)width / (double)height);
 }
 
@@ -196,9 +196,9 @@ static void animate(view_app *a, double seconds)
 
 static int fit_canvas(view_app *a, int *x, int *y)
 {
-    canvas *c = &a->model->stage.canvas;
+    canvas *c = &a->model->drawing.canvas;
     uint32_t width, height;
-    stage_pixels(a, x, y, &width, &height);
+    figure_pixels(a, x, y, &width, &height);
     a->orbit.aspect = (double)width / (double)height;
     a->desc.width = a->wish.width = width;
     a->desc.height = a->wish.height = height;
@@ -206,18 +206,18 @@ static int fit_canvas(view_app *a, int *x, int *y)
         return 0;
     }
     canvas_close(c);
-    a->model->stage.has_canvas = 0;
+    a->model->drawing.has_canvas = 0;
     if (canvas_open(c, &a->gpu, width, height)) {
         return EXIT_FAILED;
     }
-    a->model->stage.has_canvas = 1;
+    a->model->drawing.has_canvas = 1;
     return 0;
 }
 
 /* Deltas of positions are in model units: at gain 1 the largest is white or black. */
 static void draw_layers(view_app *a)
 {
-    const load *l = &a->model->stage.load;
+    const load *l = &a->model->drawing.load;
     const float gain = a->layer_gain;
     const float gains[3] = { 0.5f * gain / a->model->delta_max, gain, gain };
     if (l->morph.morph && a->show_panels && a->show_layers) {
@@ -229,21 +229,21 @@ static int draw(view_app *a)
 {
     const noh_gl_api *gl = &a->gpu.gl;
     view_times *t = &a->times;
-    stage *st = &a->model->stage;
+    drawing *d = &a->model->drawing;
     noh_gl_camera camera;
     noh_gl_morph_stats stats;
     int status = 0;
     memset(&stats, 0, sizeof stats);
     orbit_camera(&a->orbit, &camera);
     noh_gl_timer_begin(&t->accumulate_timer, gl);
-    if (!st->bones) status = load_update(&st->load, &stats);
+    if (!d->bones) status = load_update(&d->load, &stats);
     noh_gl_timer_end(&t->accumulate_timer, gl);
     if (status) {
         return status;
     }
     t->stats = stats.instances ? stats : t->stats;
     noh_gl_timer_begin(&t->draw_timer, gl);
-    stage_paint(st, &camera);
+    drawing_paint(d, &camera);
     noh_gl_timer_end(&t->draw_timer, gl);
     poll_timer(&t->accumulate_timer, gl, &t->accumulate);
     poll_timer(&t->draw_timer, gl, &t->draw);
@@ -279,7 +279,7 @@ int view_app_frame(view_app *a, float scale, double seconds)
         return status;
     }
     draw_layers(a);
-    view_screen_picture(&a->screen, &a->model->stage.canvas, x, y);
+    view_screen_picture(&a->screen, &a->model->drawing.canvas, x, y);
     return 0;
 }
 
@@ -306,7 +306,7 @@ void view_app_after(view_app *a)
 
 int view_save(view_app *a, const char *path, int with_panels)
 {
-    canvas *c = &a->model->stage.canvas;
+    canvas *c = &a->model->drawing.canvas;
     const uint32_t width = with_panels ? a->screen.width : c->width,
                    height = with_panels ? a->screen.height : c->height;
     uint8_t *rgba = malloc((size_t)width * height * 4);

@@ -61,10 +61,10 @@ void view_lod_frame(view_lod *d, view_model *m, const orbit *at, double seconds)
     d->coarsest = d->left_out = 0;
     d->fade = 1.0f;
     d->error_px = 0.0f;
-    for (uint32_t i = 0; !m->stage.bones && m->costs.count > 1 && i < m->lod.item_count; i++) {
-        choose_item(d, m, i, scene_lod_scale(&m->lod, &m->file, &m->scene, i, &camera, m->stage.canvas.height));
+    for (uint32_t i = 0; !m->drawing.bones && m->costs.count > 1 && i < m->lod.item_count; i++) {
+        choose_item(d, m, i, scene_lod_scale(&m->lod, &m->file, &m->scene, i, &camera, m->drawing.canvas.height));
         note_item(d, &m->lod.items[i].state);
-        load_set_lod(&m->stage.load, i, &m->lod.items[i].state, d->clock);
+        load_set_lod(&m->drawing.load, i, &m->lod.items[i].state, d->clock);
     }
 }
 

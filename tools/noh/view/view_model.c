@@ -110,10 +110,10 @@ static int list_clips(view_model *m)
 
 /* ---- opening ---- */
 
-static int open_stage(view_model *m, gpu *g, const view_model_desc *desc, stage *st, load_budget *budget,
-                      level_costs *costs)
+static int open_drawing(view_model *m, gpu *g, const view_model_desc *desc, drawing *d, load_budget *budget,
+                        level_costs *costs)
 {
-    int show_bones = stage_shows_bones(&m->scene, &m->file, desc->show_bones), status = 0;
+    int show_bones = drawing_shows_bones(&m->scene, &m->file, desc->show_bones), status = 0;
     load_options options = desc->load;
     memset(budget, 0, sizeof *budget);
     memset(costs, 0, sizeof *costs);
@@ -123,7 +123,7 @@ static int open_stage(view_model *m, gpu *g, const view_model_desc *desc, stage 
     options.fades = scene_level_count(&m->scene, &m->file) > 1u;
     if (!show_bones) status = load_budget_make(budget, &m->file, &m->scene, &g->caps, &options);
     if (!show_bones && !status) status = level_costs_find(costs, &m->file, &m->scene, &g->caps, &options);
-    if (!status) status = stage_open(st, g, &m->file, &m->scene, &options, show_bones, desc->width, desc->height);
+    if (!status) status = drawing_open(d, g, &m->file, &m->scene, &options, show_bones, desc->width, desc->height);
     if (status) {
         load_budget_free(budget);
     }
@@ -138,7 +138,7 @@ static int open_scene(view_model *m, gpu *g, const view_model_desc *desc)
     if (!status) status = list_targets(m);
     if (!status) status = list_clips(m);
     if (!status) status = scene_lod_open(&m->lod, &m->file, &m->scene);
-    if (!status) status = open_stage(m, g, desc, &m->stage, &m->budget, &m->costs);
+    if (!status) status = open_drawing(m, g, desc, &m->drawing, &m->budget, &m->costs);
     return status;
 }
 
@@ -166,7 +166,7 @@ void view_model_close(view_model *m)
     if (!m) {
         return;
     }
-    stage_close(&m->stage);
+    drawing_close(&m->drawing);
     load_budget_free(&m->budget);
     scene_lod_close(&m->lod);
     scene_free(&m->scene);
@@ -182,16 +182,16 @@ void view_model_close(view_model *m)
 
 int view_model_reload(view_model *m, gpu *g, const view_model_desc *desc)
 {
-    stage st;
+    drawing d;
     load_budget budget;
     level_costs costs;
-    int status = open_stage(m, g, desc, &st, &budget, &costs);
+    int status = open_drawing(m, g, desc, &d, &budget, &costs);
     if (status) {
         return status;
     }
-    stage_close(&m->stage);
+    drawing_close(&m->drawing);
     load_budget_free(&m->budget);
-    m->stage = st;
+    m->drawing = d;
     m->budget = budget;
     m->costs = costs;
     return 0;
@@ -200,38 +200,38 @@ int view_model_reload(view_model *m, gpu *g, const view_model_desc *desc)
 void view_model_lost(view_model *m, gpu *g)
 {
     const noh_gl_api gl = g->gl;
-    m->stage.has_canvas = 0;
+    m->drawing.has_canvas = 0;
     g->gl = *noh_gl_lost_api();
-    while (m->stage.bones_count) {
-        bones_close(&m->stage.bones[--m->stage.bones_count]);
+    while (m->drawing.bones_count) {
+        bones_close(&m->drawing.bones[--m->drawing.bones_count]);
     }
     g->gl = gl;
 }
 
-static int restore_bones(stage *st, gpu *g)
+static int restore_bones(drawing *d, gpu *g)
 {
     int status = 0;
-    for (; st->bones_count < st->scene->player_count && !status; st->bones_count++) {
-        const uint32_t joints = st->scene->players[st->bones_count].skeleton.joint_count;
-        status = joints ? bones_open(&st->bones[st->bones_count], g, joints) : 0;
+    for (; d->bones_count < d->scene->player_count && !status; d->bones_count++) {
+        const uint32_t joints = d->scene->players[d->bones_count].skeleton.joint_count;
+        status = joints ? bones_open(&d->bones[d->bones_count], g, joints) : 0;
     }
     return status;
 }
 
 int view_model_restore(view_model *m, gpu *g)
 {
-    stage *st = &m->stage;
-    int status = st->bones ? restore_bones(st, g) : load_restore(&st->load);
+    drawing *d = &m->drawing;
+    int status = d->bones ? restore_bones(d, g) : load_restore(&d->load);
     if (!status) {
-        status = canvas_open(&st->canvas, g, st->canvas.width, st->canvas.height);
-        st->has_canvas = !status;
+        status = canvas_open(&d->canvas, g, d->canvas.width, d->canvas.height);
+        d->has_canvas = !status;
     }
     return status;
 }
 
 bounds view_model_bounds(const view_model *m)
 {
-    return stage_bounds(&m->scene, &m->file, 0, m->stage.bones != NULL);
+    return drawing_bounds(&m->scene, &m->file, 0, m->drawing.bones != NULL);
 }
 
 /* ---- posing ---- */

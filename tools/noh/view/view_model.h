@@ -36,7 +36,7 @@ typedef struct view_model {
     byte_buffer converted; /* the pack, where the file was a model */
     pack_file file;
     scene scene;
-    stage stage;
+    drawing drawing;
     load_budget budget; /* parts NULL where bones are drawn: nothing is loaded then */
     level_costs costs;  /* count 0 where bones are drawn, 1 in a pack without LOD levels */
     scene_lod lod;

@@ -201,7 +201,7 @@ void drawing_section(view_app *a)
 {
     static const char *const views[] = { "lit", "position", "normal", "tangent", "lod" };
     int view = static_cast<int>(a->desc.load.view);
-    bool bones = a->model->stage.bones != nullptr;
+    bool bones = a->model->drawing.bones != nullptr;
     if (!ImGui::CollapsingHeader("Drawing", ImGuiTreeNodeFlags_DefaultOpen)) {
         return;
     }
@@ -217,8 +217,8 @@ void drawing_section(view_app *a)
         a->wish.show_bones = bones;
         a->wants_reload = 1;
     }
-    if (a->model->stage.load.morph.morph) {
-        const noh_gl_morph_plan *plan = noh_gl_morph_plan_of(a->model->stage.load.morph.morph);
+    if (a->model->drawing.load.morph.morph) {
+        const noh_gl_morph_plan *plan = noh_gl_morph_plan_of(a->model->drawing.load.morph.morph);
         ImGui::TextWrapped("%s-%s (%s)", noh_morph_path_name(plan->path), noh_accumulate_name(plan->accumulate),
                            plan->reason);
     }
@@ -310,7 +310,7 @@ void layers_section(view_app *a)
     if (!a->show_layers) {
         return;
     }
-    if (!a->model->stage.load.morph.morph || !a->screen.layers_width) {
+    if (!a->model->drawing.load.morph.morph || !a->screen.layers_width) {
         ImGui::TextDisabled("no accumulators");
         return;
     }
