@@ -52,7 +52,8 @@ noh_result noh_gl_mesh_create(const noh_gl_api *api, noh_gl_ledger *ledger, cons
                               noh_error *error);
 void noh_gl_mesh_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mesh *mesh);
 
-/* Make it again in a new context (gl_lost.h). errors  as create; it then holds nothing */
+/* Make its GL objects again in a new context (gl_lost.h).
+ * errors  GL, MEMORY as noh_gl_mesh_create: it then has no GL objects */
 noh_result noh_gl_mesh_restore(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mesh *mesh, noh_error *error);
 
 /* The mesh as a draw of an LOD level sees it. Level 0 is the full mesh; clamped to the levels that were uploaded.
@@ -67,7 +68,8 @@ uint64_t noh_gl_picture_bytes(const noh_texture *texture);
 noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
                                  noh_gl_texture *out, noh_error *error);
 
-/* Make it again in a new context (gl_lost.h). errors  as create; it then holds nothing */
+/* Make its GL objects again in a new context (gl_lost.h).
+ * errors  GL, MEMORY as noh_gl_picture_create: it then has no GL objects */
 noh_result noh_gl_picture_restore(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
                                   noh_gl_texture *picture, noh_error *error);
 
@@ -103,7 +105,8 @@ noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_rend
                                   noh_error *error);
 void noh_gl_renderer_delete(noh_gl_renderer *renderer);
 
-/* Make it again in a new context (gl_lost.h). errors  as create; it then holds nothing */
+/* Make its GL objects again in a new context (gl_lost.h). `log` as in noh_gl_program_create.
+ * errors  GL, MEMORY, DATA as noh_gl_renderer_create: it then has no GL objects */
 noh_result noh_gl_renderer_restore(noh_gl_renderer *renderer, char *log, size_t log_bytes, noh_error *error);
 
 /* The variant of a key, whose encode_srgb is taken from the renderer. NULL: no mesh of the renderer's desc needs it. */

@@ -97,7 +97,7 @@ typedef struct noh_gl_morph_stats {
     uint32_t instances;            /* accumulated again */
     uint32_t draws;                /* accumulation draws, not counting clears */
     uint32_t targets;              /* active targets, summed over instances */
-    uint32_t rects, texels, pairs; /* rectangles, delta texels and pairs that were read */
+    uint32_t rects, texels, pairs; /* rectangles and texels that were drawn, pairs that were added */
 } noh_gl_morph_stats;
 
 /* Where an instance's accumulated deltas are. The last four numbers go into u_morph of common_layers.glsl in this

@@ -128,7 +128,8 @@ uint32_t noh_gl_joint_rows(const noh_mesh *mesh);
 /* The rows that transform normals: the inverse transpose of the 3 x 3 part of a placement, up to a positive factor.
  * They are its cofactors times the sign of its determinant, so nothing is divided, and the normals of a mirrored node
  * still point outwards. (The matrix itself would be right for rotations and uniform scales only.) Returns the
- * determinant. source  Turkowski, "Properties of Surface-Normal Transformations", Graphics Gems (1990) */
+ * determinant.
+ * source  Turkowski, "Properties of Surface-Normal Transformations", Graphics Gems (1990) */
 float noh_gl_normal_rows(const float world[12], float rows[12]);
 
 #ifdef __cplusplus

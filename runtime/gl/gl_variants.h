@@ -72,8 +72,8 @@ void noh_gl_variant_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_
 
 /* Bind one palette of an instance, for the submeshes that use it. The variant's program must be in use. For a program
  * of your own, fill a variant with `key` and `u_skin`, the location of that uniform (-1: palettes are in a uniform
- * block). state   Afterwards the texture is bound to NOH_UNIT_PALETTES, or the range of the buffer to uniform binding 0
- */
+ * block).
+ * state   Afterwards the texture is bound to NOH_UNIT_PALETTES, or the buffer's range to uniform binding 0 */
 void noh_gl_variant_skin(const noh_gl_api *api, const noh_gl_variant *variant, const noh_mesh *mesh,
                          const noh_gl_skin_binding *skin, uint32_t palette);
 
