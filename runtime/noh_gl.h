@@ -1,15 +1,29 @@
-/* noh_gl.h: all of noh with OpenGL ES 3.x; includes noh.h.
+/* noh_gl.h: all of noh with OpenGL ES 3.x. Includes noh.h.
  *
- * noh creates no context and links no GL: noh_gl_api_load fills a table of functions by a lookup of yours
- * (eglGetProcAddress and its like), and every GL object is made, drawn and deleted through that table. An object
- * is sized, placed and checked as those of noh.h are; its GL memory is counted (gl_memory.h), created at init and never
- * grown. Creating fails with the driver's error: GL, with the GL error code in `where`.
+ * noh creates no context and links no GL. Make a context current, then:
  *
- * noh changes GL state and does not put it back: what a call leaves bound is in its comment.
+ *     noh_gl_api_load         fill a table of GL functions through your lookup (eglGetProcAddress and the like)
+ *     noh_gl_caps_probe       find out what this GPU can do
+ *     noh_gl_mesh_create      upload a mesh of the pack; noh_gl_picture_create uploads a texture
+ *     noh_gl_morph_init       an accumulator for the morph targets of all instances
+ *     noh_gl_skin_init        palettes for the skins of all instances
+ *     noh_gl_renderer_create  the plain renderer; or use shaders of your own (gl_shader_text.h)
  *
- * Threads: all calls on the thread of the context that the objects were made in.
+ * In a frame, call noh_gl_morph_set_weights and noh_gl_skin_set_matrices for each instance that moved, then
+ * noh_gl_morph_update and noh_gl_skin_update once, then draw.
  *
- * After a lost context, call the _restore functions (gl_lost.h): they make the same objects again out of the pack. */
+ * Memory. As in noh.h: you bring it, and the exact size is known first. noh_gl_morph_plan_make and
+ * noh_gl_skin_plan_make tell the bytes on the CPU and on the GPU without touching GL. GL objects are made at init and
+ * never grow; a ledger counts them (gl_memory.h).
+ *
+ * Errors. When the driver refuses a call, the create or init that made it fails with NOH_ERR_GL, or with NOH_ERR_MEMORY
+ * where the GPU is out of memory. `where` is then the GL error code, and no object is left behind.
+ *
+ * State. noh changes GL state and does not put it back. The comment of a function says what it leaves bound.
+ *
+ * Threads. All calls on the thread of the context that the objects were made in, unless a header says otherwise.
+ *
+ * Lost context. The _restore functions make the same objects again from the pack (gl_lost.h). */
 #ifndef NOH_GL_H
 #define NOH_GL_H
 
@@ -18,23 +32,23 @@
 /* ---- what a game calls first ---- */
 
 #include "gl/gl_api.h"         /* the functions that noh calls */
-#include "gl/gl_caps.h"        /* what this GPU can really do, found by trying */
-#include "gl/gl_morph.h"       /* targets of many instances accumulated on the GPU */
-#include "gl/gl_skin.h"        /* palettes of many instances on the GPU */
+#include "gl/gl_caps.h"        /* what this GPU can do, found by trying it */
+#include "gl/gl_morph.h"       /* morph targets of many instances, accumulated on the GPU */
+#include "gl/gl_skin.h"        /* joint palettes of many instances on the GPU */
 #include "gl/gl_draw.h"        /* meshes on the GPU, and a plain renderer */
 #include "gl/gl_shader_text.h" /* the library's GLSL, for your own shaders */
 
-/* ---- when something is lost or slow ---- */
+/* ---- when a context is lost, a frame is slow, or a driver is odd ---- */
 
-#include "gl/gl_lost.h"   /* a lost context */
-#include "gl/gl_debug.h"  /* names that RenderDoc and apitrace show */
-#include "gl/gl_quirks.h" /* what a renderer's name tells and a probe cannot */
-#include "gl/gl_timer.h"  /* GPU time */
+#include "gl/gl_lost.h"   /* after a context was lost */
+#include "gl/gl_debug.h"  /* names for RenderDoc and apitrace */
+#include "gl/gl_quirks.h" /* what is known of a renderer by its name only */
+#include "gl/gl_timer.h"  /* how long the GPU took */
 
 /* ---- parts, for renderers of your own ---- */
 
 #include "gl/gl_memory.h"   /* GL objects, counted against a budget */
-#include "gl/gl_program.h"  /* shaders out of pieces */
+#include "gl/gl_program.h"  /* shaders compiled and linked */
 #include "gl/gl_variants.h" /* the programs of the plain renderer */
 
 #endif

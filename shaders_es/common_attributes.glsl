@@ -1,6 +1,8 @@
-/* common_attributes.glsl: directions as the pack stores them, pairs of 16-bit integers. The sphere is projected on an
- * octahedron and the lower half folded over the upper one (Cigolle et al., "A Survey of Efficient Representations for
- * Independent Unit Vectors", 2014). They are integer attributes because drivers differ in how they normalise. */
+/* common_attributes.glsl: normals and tangents from the pack's pairs of 16-bit integers.
+ *
+ * A direction is projected onto the octahedron |x| + |y| + |z| = 1, whose lower half is folded over the upper one, so that
+ * two numbers in -1..1 are left (Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors",
+ * 2014). They are integer attributes because drivers differ in how they convert normalised ones. */
 vec3 unfold(vec2 p)
 {
     vec3 v = vec3(p, 1.0 - abs(p.x) - abs(p.y));
@@ -14,7 +16,7 @@ vec3 direction_of_pair(ivec2 pair)
     return unfold(vec2(pair) / 32767.0);
 }
 
-/* w is the handedness; meshes without tangents give some unit vector. */
+/* The lowest bit of y is the handedness, here the sign of w. A mesh without tangents gets an arbitrary unit vector. */
 vec4 tangent_of_pair(ivec2 pair)
 {
     return vec4(unfold(vec2(pair.x, pair.y >> 1) / vec2(32767.0, 16383.0)), (pair.y & 1) != 0 ? -1.0 : 1.0);

@@ -1,9 +1,10 @@
-/* common_fade.glsl: the pattern by which LOD levels fade. Put it into your own fragment shader and keep a pixel
- * where from <= fade_noise(gl_FragCoord.xy) < to, of a noh_gl_lod.
+/* common_fade.glsl: the pattern by which LOD levels fade. Put it into your own fragment shader and discard a pixel
+ * unless from <= fade_noise(gl_FragCoord.xy) < to, the numbers of a noh_gl_lod.
  *
- * A number in [0, 1) for each pixel, in integers, so that every driver and both draws of a fade have the same one:
- * multiples of the plastic number's powers (Roberts 2018, the sequence R2), which spread evenly over every small
- * neighbourhood, so that a fade is a fine grain at every step. */
+ * Each pixel has a number in [0, 1): x / p + y / p^2 modulo 1, p the plastic number (the sequence R2 of Roberts, "The
+ * Unreasonable Effectiveness of Quasirandom Sequences", 2018). These numbers spread evenly over every small
+ * neighbourhood, so a fade is a fine grain at every step. They are computed in integers, in units of 2^-32, so that every
+ * driver and both draws of a fade have the same ones. */
 precision highp int;
 
 highp float fade_noise(highp vec2 pixel)

@@ -2,8 +2,8 @@
 uniform usampler2D u_deltas;
 uniform ivec3 u_tables;
 
-/* place: the number of the delta texel that would lie under fragment (0, 0), which may wrap
- * below zero and back, and the rectangle's width. */
+/* place: the index of the delta texel that would lie under fragment (0, 0) if the rectangle reached that far, and the
+ * rectangle's width. The index may be negative, that is wrap; adding the fragment's own offset wraps it back. */
 uvec3 delta_words(uvec2 place)
 {
     uvec2 at = uvec2(gl_FragCoord.xy);

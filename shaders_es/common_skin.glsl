@@ -1,14 +1,15 @@
 /* common_skin.glsl: vertices moved by the joints of a palette.
- * In your own vertex shader it goes after common_layers.glsl (shaders_es/README.md). Call morph_vertex for the vertex to
- * fetch deltas for, add them in bind space, then call skin: morphing comes before skinning (Granberg, Character Animation
- * with Direct3D, 2009, ch. 8), normals and tangents too. Define
  *
- *   INFLUENCES        joints stored per vertex: 0 (skin does nothing), 1, 2, 4 or 8
- *   DRAWN             how many of them move it, the strongest first, their weights made to sum to 1
- *   PALETTE_TEXTURE   where palettes are in a texture, else they are in a uniform block
- *   DUAL_QUATERNION   where a joint is 4 rows: a rotation, a dual part, a stretch in two; else it is 3 rows of a matrix
- *   MORPH_TEXELS      where the mesh has NOH_MESH_TEXELS: doubled vertices share a morph texel
- *   CROWD             where one draw has many instances; wants PALETTE_TEXTURE */
+ * In your own vertex shader it goes behind common_layers.glsl (shaders_es/README.md). Call morph_vertex for the vertex
+ * whose deltas to fetch, add them in the bind pose, then call skin. Morphing comes before skinning, for normals and
+ * tangents too (Granberg, Character Animation with Direct3D, 2009, ch. 8). Defines, which noh_gl_variant_defines writes:
+ *
+ *   INFLUENCES        joints stored per vertex: 1, 2, 4 or 8; 0: skin does nothing
+ *   DRAWN             how many of them are used, the strongest, their weights scaled to a sum of 1
+ *   PALETTE_TEXTURE   defined: palettes are in a texture; else in a uniform block
+ *   DUAL_QUATERNION   defined: a joint is 4 rows, a rotation, a dual part and a stretch in two; else 3 rows of a matrix
+ *   MORPH_TEXELS      defined: the mesh has NOH_MESH_TEXELS, in which split vertices share an accumulation texel
+ *   CROWD             defined: one draw has many instances; needs PALETTE_TEXTURE */
 #if INFLUENCES == 1
 layout(location = 5) in highp uint a_influences;
 #elif INFLUENCES == 2
@@ -23,7 +24,7 @@ layout(location = 6) in highp uvec3 a_more_influences;
 /* ---- what is fetched ---- */
 
 #ifdef MORPH_TEXELS
-layout(location = 7) in highp uint a_texel; /* above the lowest 22 bits: the vertex's palette */
+layout(location = 7) in highp uint a_texel; /* the lowest 22 bits; above them, the vertex's palette */
 
 int morph_vertex()
 {
@@ -44,7 +45,7 @@ int morph_vertex()
 
 #ifdef PALETTE_TEXTURE
 uniform highp sampler2D u_palettes;
-uniform highp ivec4 u_skin; /* first texel, texels from an instance to the next, width log2, texel of the palette in an instance */
+uniform highp ivec4 u_skin; /* first row, rows from an instance to the next, width log2, the palette's row in an instance */
 
 vec4 skin_texel(int i)
 {
@@ -60,7 +61,7 @@ int skin_instance()
 #endif
 }
 
-/* Rows 0..2 place the instance in the world, 3 is its tile for morph_fetch_tile. */
+/* Rows 0 to 2 place the instance in the world, row 3 is its tile for morph_fetch_tile. */
 vec4 crowd_row(int i)
 {
     return skin_texel(skin_instance() + i);
@@ -68,7 +69,7 @@ vec4 crowd_row(int i)
 
 #define JOINT_ROW(i) (skin_instance() + u_skin.w + JOINT_ROWS * (i))
 #define PALETTE_ROW(i) skin_texel(i)
-#elif INFLUENCES > 0 /* a block is active even where nothing reads it, and WebGL then wants it bound */
+#elif INFLUENCES > 0 /* not declared without need: a std140 block is active even if nothing reads it, and WebGL wants it bound */
 layout(std140) uniform palette_block {
     highp vec4 u_palette[256 * JOINT_ROWS];
 };
@@ -97,8 +98,7 @@ int joint_row(int i)
     return JOINT_ROW(int(places >> uint(8 * (i & 3)) & 255u));
 }
 
-/* The stored weights, integers in units of 2^-22. The first is not stored: it is what the others leave of 1, so the sum is
- * exactly 1. */
+/* All weights, in units of 2^-22. The first is not stored: it is what the others leave of 1, so the sum is exactly 1. */
 void stored_weights(out float w[INFLUENCES])
 {
 #if INFLUENCES == 2
@@ -124,7 +124,7 @@ void stored_weights(out float w[INFLUENCES])
     }
 }
 
-/* Of the joints that are drawn; they sum to 1. */
+/* The weights of the joints that are used. The first is again what the others leave of 1. */
 void drawn_weights(out float drawn[DRAWN])
 {
     float stored[INFLUENCES], sum = 4194304.0;
@@ -156,9 +156,11 @@ vec3 rotate(vec4 q, vec3 v)
     return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v);
 }
 
-/* Dual quaternion blending (Kavan et al. 2008) with a stretch. The stretch, a symmetric matrix xx, yy, zz, xy, xz, yz, is
- * blended linearly and applied first. Then the rigid clip: q and -q are the same rotation, so each dual quaternion is
- * added with the sign that puts it on the strongest joint's side of the sphere; the sum is made unit. */
+/* Dual quaternion blending (Kavan et al., "Geometric Skinning with Approximate Dual Quaternion Blending", 2008) with a
+ * stretch. Each joint is a stretch, the symmetric matrix xx yy zz xy xz yz, and then a rigid motion, a unit dual
+ * quaternion. Stretches are blended linearly and applied first. As q and -q are the same rotation, each dual quaternion is
+ * added with the sign that puts it on the strongest joint's side of the sphere, so that the blend takes the short way; the
+ * sum is made unit. Its translation is twice the vector part of dual * conjugate(rotation). */
 void skin(inout vec3 position, inout vec3 normal, inout vec4 tangent)
 {
     float w[DRAWN];
@@ -198,9 +200,9 @@ void skin(inout vec3 position, inout vec3 normal, inout vec4 tangent)
                    tangent.w * side);
 }
 #else
-/* Linear blending (Granberg 2009, ch. 3): the matrices are blended first, then used once. Normals are transformed by the
- * cofactors of the blend, its inverse transpose up to a factor, because scales need not be uniform; a blend that mirrors
- * flips their sign and the tangent's handedness. */
+/* Linear blending (Granberg 2009, ch. 3): the matrices are blended first, then applied once. Scales need not be uniform, so
+ * normals are transformed by the cofactors of the blend, which are its inverse transpose up to a factor. A blend that
+ * mirrors flips their sign and the tangent's handedness. */
 void skin(inout vec3 position, inout vec3 normal, inout vec4 tangent)
 {
     float w[DRAWN];

@@ -1,8 +1,10 @@
 #version 300 es
-/* mesh.frag: enough light to judge a face by. One key light with a wrapped edge,
- * a sky and ground fill, a soft rim; GGX highlight. Linear in and out: the target
- * is sRGB and encodes, or ENCODE_SRGB is defined. DEBUG_VIEW shows a quantity instead.
- * FADE draws some of the pixels (noh_gl_lod). */
+/* mesh.frag: enough light to judge a face by: one key light with a wrapped edge and a GGX highlight, a fill from sky and
+ * ground, and a soft rim. Defines:
+ *
+ *   DEBUG_VIEW    a noh_debug_view: 0 lit, 1 position, 2 normal, 3 tangent, 4 LOD level
+ *   ENCODE_SRGB   defined: encode to sRGB here; else colours stay linear and the target encodes
+ *   FADE          defined: draw only some of the pixels (noh_gl_lod) */
 precision highp float;
 
 uniform vec3 u_camera;
@@ -12,7 +14,7 @@ uniform vec4 u_material;         /* roughness, metallic, alpha cutoff, unlit */
 uniform mediump sampler2D u_base_color_texture;
 uniform vec3 u_bounds_min;
 uniform vec3 u_bounds_size;
-uniform vec3 u_lod;           /* pixels from and to, level */
+uniform vec3 u_lod;              /* pixels from and to, level */
 
 in vec3 v_world;
 in vec3 v_normal;
@@ -23,7 +25,9 @@ in vec3 v_model;
 
 layout(location = 0) out vec4 o_color;
 
-/* GGX distribution with Smith's visibility, isotropic. */
+/* The isotropic GGX distribution (Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007), times
+ * the visibility term of Smith in Schlick's approximation. nh, nl, nv: cosines between the normal, the half vector, the light and
+ * the eye. */
 float highlight(float nh, float nl, float nv, float roughness)
 {
     float a = roughness * roughness, a2 = a * a;
@@ -100,7 +104,7 @@ void main()
 #ifdef FADE
     float noise = fade_noise(gl_FragCoord.xy);
     if (noise < u_lod.x || noise >= u_lod.y) {
-        discard; /* last: a texture's level comes from neighbours */
+        discard; /* last: the mip level of a texture depends on the neighbouring pixels */
     }
 #endif
 }

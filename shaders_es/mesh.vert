@@ -1,5 +1,6 @@
 #version 300 es
-/* mesh.vert: a morphed and skinned mesh as its shaders see it. common_skin.glsl names the variants. */
+/* mesh.vert: the vertices of the plain renderer, morphed, skinned, and placed in the world. common_skin.glsl and
+ * common_layers.glsl name the defines. */
 precision highp float;
 precision highp int;
 #include "common_layers.glsl"
@@ -8,12 +9,12 @@ precision highp int;
 
 uniform mat4 u_view_projection;
 uniform vec4 u_world[3];        /* rows of 3 x 4 */
-uniform vec4 u_normal[3];       /* rows of the inverse transpose of its 3 x 3 part */
+uniform vec4 u_normal[3];       /* rows of the inverse transpose of its 3 x 3 part, up to a positive factor */
 uniform vec4 u_uv;              /* offset, scale */
 
 #ifdef CROWD
 #define WORLD(i) crowd_row(i)
-#define NORMAL_BY(i, a, b) cross(a.xyz, b.xyz) /* no instance of a crowd is mirrored */
+#define NORMAL_BY(i, a, b) cross(a.xyz, b.xyz) /* row i of the cofactors; no instance of a crowd is mirrored */
 #define TILE ivec4(crowd_row(3))
 #else
 #define WORLD(i) u_world[i]

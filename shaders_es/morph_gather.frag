@@ -1,12 +1,11 @@
 #version 300 es
-/* morph_gather.frag: each fragment sums the deltas of its own vertex in registers
- * and writes three layers once. No blending, so any format that can be rendered
- * will do: with LAYERS_UINT the float's bits. */
+/* morph_gather.frag: each fragment sums the deltas of its own vertex in registers and writes the three layers once. It
+ * needs no blending, so any format that can be rendered to will do; with LAYERS_UINT it writes the bits of the floats. */
 #include "common_delta.glsl"
 
 uniform usampler2D u_entries;  /* delta words, target */
 uniform usampler2D u_starts;   /* where each touched vertex's entries begin; one more at the end */
-uniform usampler2D u_records;    /* weight * scale of position, normal, tangent; bits */
+uniform usampler2D u_records;  /* weight * scale of position, normal, tangent; bits */
 uniform ivec3 u_tables;        /* width log2 of starts, records, entries */
 
 flat in uvec4 f_tile;
@@ -26,7 +25,7 @@ void main()
 {
     uint touched = f_tile.w & 0xffffffu;
     uvec2 local = uvec2(gl_FragCoord.xy) - uvec2(f_tile.x & 0xffffu, f_tile.x >> 16);
-    uint vertex = min((local.y << (f_tile.w >> 24)) + local.x, touched); /* the last row may be longer: empty lists */
+    uint vertex = min((local.y << (f_tile.w >> 24)) + local.x, touched); /* behind the last vertex: an empty list */
     uint from = texelFetch(u_starts, table_texel(f_tile.z + vertex, u_tables.x), 0).x;
     uint to = vertex < touched ? texelFetch(u_starts, table_texel(f_tile.z + vertex + 1u, u_tables.x), 0).x : from;
     vec3 position = vec3(0.0), normal = vec3(0.0), tangent = vec3(0.0);

@@ -1,11 +1,11 @@
 #version 300 es
-/* morph_gather.vert: one quad over the touched texels of one instance. */
+/* morph_gather.vert: one quad over the accumulation texels of one instance. */
 precision highp float;
 precision highp int;
 
 uniform vec2 u_atlas;     /* 2 / size of the accumulation texture */
 
-in uvec4 a_tile;          /* tile x | y << 16, first weight, first of the mesh's list starts, touched | width log2 << 24 */
+in uvec4 a_tile;          /* tile x | y << 16, first record, the mesh's first start, touched vertices | width log2 << 24 */
 
 flat out uvec4 f_tile;
 

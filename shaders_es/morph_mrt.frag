@@ -1,9 +1,9 @@
 #version 300 es
-/* morph_mrt.frag: one fragment adds to three layers. */
+/* morph_mrt.frag: one fragment gives the deltas of all three layers; blending adds them. */
 #include "common_delta.glsl"
 #include "common_place.glsl"
 
-flat in uvec3 f_place;     /* place, bits */
+flat in uvec3 f_place;     /* place (common_place.glsl), widths of the fields */
 flat in vec3 f_weights;
 
 layout(location = 0) out vec4 o_position;

@@ -1,5 +1,5 @@
 #version 300 es
-/* morph_one.frag: one fragment adds to one layer (per-layer passes, layered draws). */
+/* morph_one.frag: one fragment gives the delta of one layer (per-layer passes, layered draws); blending adds it. */
 #include "common_delta.glsl"
 #include "common_place.glsl"
 

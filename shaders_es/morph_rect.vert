@@ -1,19 +1,18 @@
 #version 300 es
-/* morph_rect.vert: one rectangle of one active target of one instance is one
- * instance of a quad. MORPH_MRT writes three layers at once; otherwise LAYER (or,
- * with MORPH_LAYERED, the geometry shader) says which. */
+/* morph_rect.vert: a quad over one rectangle of one active target, in the tile of one instance of a mesh. With MORPH_MRT,
+ * a fragment writes all three layers; with MORPH_LAYERED, the geometry shader says which layer; else u_layer does. */
 #include "common_delta.glsl"
 
-uniform usampler2D u_rects;   /* x | y << 16, w | h << 16, first texel, bits */
-uniform usampler2D u_records;   /* weight * scale of position, normal, tangent; tile x | y << 16 */
+uniform usampler2D u_rects;   /* x | y << 16, w | h << 16, first delta texel, widths of its fields */
+uniform usampler2D u_records; /* weight * scale of position, normal, tangent; tile x | y << 16 */
 uniform ivec3 u_tables;       /* width log2 of rects, records, deltas */
 uniform vec2 u_atlas;         /* 2 / size of the accumulation texture */
 uniform int u_layer;
 
-in uvec2 a_rect_record;
+in uvec2 a_rect_record;       /* a rectangle, and the record of its target in this instance */
 
 #if defined(MORPH_LAYERED)
-flat out uvec3 v_place;       /* place (common_place.glsl), bits */
+flat out uvec3 v_place;       /* place (common_place.glsl), widths */
 flat out vec3 v_weights;
 #elif defined(MORPH_MRT)
 flat out uvec3 f_place;

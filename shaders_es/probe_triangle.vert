@@ -1,6 +1,6 @@
 #version 300 es
-// One triangle over the whole target, from nothing but its vertex numbers. Each
-// instance reads another row of the values.
+// One triangle over the whole target, from gl_VertexID alone. Each instance reads
+// another row of the values.
 uniform highp int first_row;
 flat out highp int row;
 

@@ -30,7 +30,7 @@ static struct web {
     noh_error error;
     noh_arena arena;
     web_scene scene;
-    web_clip clip;
+    web_playback play;
     web_lod lod;
     noh_gl_mesh meshes[WEB_MESHES_MAX];
     noh_gl_texture pictures[PICTURES_MAX];
@@ -116,9 +116,9 @@ static noh_result load_skin(void)
     desc.meshes = web.scene.meshes;
     desc.mesh_count = web.scene.pack.mesh_count;
     desc.instance_counts = web.scene.instance_counts;
-    noh_result result = web_clip_open_matrices(&web.clip, &web.arena, &web.error);
+    noh_result result = web_playback_open_matrices(&web.play, &web.arena, &web.error);
     end_part("skin matrices");
-    if (result || !web.clip.matrices) return result;
+    if (result || !web.play.matrices) return result;
     result = noh_gl_skin_plan_make(&desc, &web.caps, &plan, &web.error);
     if (!result) {
         size_t bytes = (size_t)plan.cpu_bytes;
@@ -131,13 +131,13 @@ static noh_result load_skin(void)
     return result;
 }
 
-static noh_result load_clip(void)
+static noh_result load_clips(void)
 {
-    noh_result result = web_clip_open_clips(&web.clip, &web.scene, &web.arena, &web.error);
+    noh_result result = web_playback_open_clips(&web.play, &web.scene, &web.arena, &web.error);
     end_part("clips");
-    if (!result) result = web_clip_open_controllers(&web.clip, &web.arena, &web.error);
+    if (!result) result = web_playback_open_controllers(&web.play, &web.arena, &web.error);
     end_part("controllers");
-    if (!result) result = web_clip_open_poses(&web.clip, &web.arena, &web.error);
+    if (!result) result = web_playback_open_poses(&web.play, &web.arena, &web.error);
     end_part("pose scratch");
     return result;
 }
@@ -183,7 +183,7 @@ EMSCRIPTEN_KEEPALIVE int web_open(uint32_t bytes, int path)
     if (!result) result = open_context();
     if (!result) result = load_meshes();
     if (!result) result = load_morph((noh_morph_path)path);
-    if (!result) result = load_clip();
+    if (!result) result = load_clips();
     if (!result) result = load_skin();
     if (!result) result = load_renderer();
     return (int)result;
@@ -281,19 +281,19 @@ EMSCRIPTEN_KEEPALIVE uint32_t web_clip_count(void)
 }
 EMSCRIPTEN_KEEPALIVE double web_clip_seconds(uint32_t i)
 {
-    return web_clip_seconds(&web.clip, i);
+    return web_playback_seconds(&web.play, i);
 }
 EMSCRIPTEN_KEEPALIVE double web_time(void)
 {
-    return web_clip_time(&web.clip);
+    return web_playback_time(&web.play);
 }
 EMSCRIPTEN_KEEPALIVE void web_set_speed(float speed)
 {
-    web_clip_bank_speed(&web.clip, speed);
+    web_playback_set_speed(&web.play, speed);
 }
 EMSCRIPTEN_KEEPALIVE void web_step(double seconds)
 {
-    web_clip_step(&web.clip, seconds);
+    web_playback_step(&web.play, seconds);
 }
 
 EMSCRIPTEN_KEEPALIVE uint32_t web_level_count(void)
@@ -301,7 +301,7 @@ EMSCRIPTEN_KEEPALIVE uint32_t web_level_count(void)
     return web.lod.level_count;
 }
 /* A LOD level, or -1: what one pixel of error allows. */
-EMSCRIPTEN_KEEPALIVE void web_set_lod(int level)
+EMSCRIPTEN_KEEPALIVE void web_set_level(int level)
 {
     web.lod.level = level;
 }
@@ -340,7 +340,7 @@ EMSCRIPTEN_KEEPALIVE const char *web_clip_name(uint32_t i)
 /* clip: an index, or -1 for none. */
 EMSCRIPTEN_KEEPALIVE int web_play(int clip, double time_s, double transition_s)
 {
-    return (int)web_clip_play(&web.clip, clip < 0 ? NOH_NONE : (uint32_t)clip, time_s, transition_s, &web.error);
+    return (int)web_playback_start(&web.play, clip < 0 ? NOH_NONE : (uint32_t)clip, time_s, transition_s, &web.error);
 }
 
 /* ---- a frame ---- */
@@ -348,7 +348,7 @@ EMSCRIPTEN_KEEPALIVE int web_play(int clip, double time_s, double transition_s)
 /* The scene's current bounding box: 6 floats, valid until the next call. */
 EMSCRIPTEN_KEEPALIVE float *web_measure(void)
 {
-    web_clip_bounds(&web.clip, web.bounds);
+    web_playback_bounds(&web.play, web.bounds);
     return web.bounds;
 }
 
@@ -370,7 +370,7 @@ static noh_result update(void)
     noh_platform_web.size(web.context, &width, &height);
     for (uint32_t i = 0; i < web.scene.item_count; i++) {
         const web_item *item = &web.scene.items[i];
-        const float *matrices = web_clip_matrices(&web.clip, item) ? web.clip.matrices : NULL;
+        const float *matrices = web_playback_matrices(&web.play, item) ? web.play.matrices : NULL;
         web_lod_choose(&web.lod, &web.scene, i, matrices, &web.camera, height);
         noh_gl_morph_set_lod(web.morph, item->instance, noh_lod_drawn(&web.lod.states[i], web.lod.clock));
         noh_result result = noh_gl_morph_set_weights(web.morph, item->instance,

@@ -151,7 +151,7 @@ function showDetail() {
 }
 
 byId('detail').addEventListener('change', () => {
-    Module._web_set_lod(Number(byId('detail').value));
+    Module._web_set_level(Number(byId('detail').value));
     redraw();
 });
 
@@ -162,7 +162,7 @@ function beginDetail() {
     byId('details').hidden = count < 2;
     const asked = Number(query.get('detail') || -1);
     byId('detail').value = asked >= 0 && asked < count ? asked : -1;
-    Module._web_set_lod(Number(byId('detail').value));
+    Module._web_set_level(Number(byId('detail').value));
 }
 
 // ---- targets ----
@@ -259,7 +259,7 @@ function beginClips() {
         if (Module._web_clip_seconds(i) >= 0) byId('clips').add(new Option(text(Module._web_clip_name(i)), i));
     }
     const options = [...byId('clips').options], asked = query.get('clip');
-    byId('player').hidden = options.length < 2;
+    byId('motion').hidden = options.length < 2;
     const first = asked ? options.find((o) => o.text === asked) : options[1];
     byId('clips').value = first ? first.value : -1;
     choose(0);

@@ -1,4 +1,4 @@
-/* clip.h: what moves a scene: for each of its skeletons a clip bank, a controller and a pose. */
+/* play.h: what moves a scene: for each of its skeletons a clip bank, a controller and a pose. */
 #ifndef NOH_PLATFORM_WEB_PLAY_H
 #define NOH_PLATFORM_WEB_PLAY_H
 
@@ -17,7 +17,7 @@ typedef struct web_player {
     float *model;        /* [joint_count][12] model space */
 } web_player;
 
-typedef struct web_clip {
+typedef struct web_playback {
     web_scene *scene;
     web_player players[WEB_PLAYERS_MAX];
     uint32_t player_count;
@@ -27,36 +27,36 @@ typedef struct web_clip {
     float still[WEB_STILL_JOINTS_MAX]
                [12]; /* the joints of skeletons that no clip moves: `noh budget` does not count them */
     uint32_t still_count;
-} web_clip;
+} web_playback;
 
 /* Three steps, in this order, each of which carves what one line of `noh budget` says.
  * errors  as noh_clip_bank_init, noh_controller_init, noh_pose_scratch_init; LIMIT more skeletons, or more joints
  *         that nothing moves, than the page has room for; MEMORY */
-noh_result web_clip_open_clips(web_clip *clip, web_scene *scene, noh_arena *arena, noh_error *error);
-noh_result web_clip_open_controllers(web_clip *clip, noh_arena *arena, noh_error *error);
-noh_result web_clip_open_poses(web_clip *clip, noh_arena *arena, noh_error *error);
+noh_result web_playback_open_clips(web_playback *play, web_scene *scene, noh_arena *arena, noh_error *error);
+noh_result web_playback_open_controllers(web_playback *play, noh_arena *arena, noh_error *error);
+noh_result web_playback_open_poses(web_playback *play, noh_arena *arena, noh_error *error);
 
 /* Room for what is handed to noh_gl_skin_set_matrices, where the scene is skinned. errors  MEMORY */
-noh_result web_clip_open_matrices(web_clip *clip, noh_arena *arena, noh_error *error);
+noh_result web_playback_open_matrices(web_playback *play, noh_arena *arena, noh_error *error);
 
 /* The seconds of the pack's n-th clip; negative where it moves nothing here. */
-double web_clip_seconds(const web_clip *clip, uint32_t clip);
+double web_playback_seconds(const web_playback *play, uint32_t clip);
 
 /* Play a clip in a loop, from a time in seconds; NOH_NONE: stop, in the bind pose. A transition in seconds blends from
  * the previous clip by inertialisation. */
-noh_result web_clip_play(web_clip *clip, uint32_t clip, double time_s, double transition_s, noh_error *error);
-void web_clip_bank_speed(web_clip *clip, float speed);
+noh_result web_playback_start(web_playback *play, uint32_t clip, double time_s, double transition_s, noh_error *error);
+void web_playback_set_speed(web_playback *play, float speed);
 
 /* Advance by a time. */
-void web_clip_step(web_clip *clip, double seconds);
+void web_playback_step(web_playback *play, double seconds);
 
 /* The clip's time, in seconds. */
-double web_clip_time(const web_clip *clip);
+double web_playback_time(const web_playback *play);
 
-/* Compute the item's skin matrices in the current pose into clip->matrices. Returns 0 for a rigid item. */
-int web_clip_matrices(web_clip *clip, const web_item *item);
+/* Compute the item's skin matrices in the current pose into play->matrices. Returns 0 for a rigid item. */
+int web_playback_matrices(web_playback *play, const web_item *item);
 
 /* The scene's current bounding box in the world, without morphs. */
-void web_clip_bounds(web_clip *clip, float box[6]);
+void web_playback_bounds(web_playback *play, float box[6]);
 
 #endif

@@ -1,3 +1,9 @@
+/* gl_api.c: filling the table of GL functions.
+ *
+ * Functions of three kinds are looked up. Those that the library calls must all be there. Those for renderers may be
+ * missing. Those beyond ES 3.0 depend on the context: eglGetProcAddress and its like return a pointer for a name that
+ * the context does not support, so the version and the extension strings decide, and they also decide the suffix under
+ * which a function is found. The table is built apart and copied once nothing can fail any more. */
 #include "gl/gl_api.h"
 
 #include <string.h>
@@ -52,7 +58,7 @@ int noh_gl_has_extension(const noh_gl_api *api, const char *name)
     return 0;
 }
 
-/* Look up the function that `sentence` begins with; the first one that is not there becomes *missing. */
+/* Look up the function whose name is the first word of `sentence`. *missing keeps the sentence of the first failure. */
 static noh_gl_proc get_required(noh_gl_get_proc get, void *user, const char *sentence, const char **missing)
 {
     char name[PROC_NAME_BYTES];
@@ -68,7 +74,7 @@ static noh_gl_proc get_required(noh_gl_get_proc get, void *user, const char *sen
     return proc;
 }
 
-/* Returns a sentence about the first required function that is not there, or NULL. */
+/* Returns a sentence about the first required function that is missing, or NULL. */
 static const char *load_required(noh_gl_api *api, noh_gl_get_proc get, void *user)
 {
     const char *missing = NULL;
@@ -91,7 +97,7 @@ static noh_result read_version(noh_gl_api *api, noh_error *error)
     api->GetIntegerv(GL_MINOR_VERSION, &minor);
     api->is_es = text_starts(text, "OpenGL ES");
     api->version = major * 100 + minor * 10;
-    /* ES 2.0 does not know GL_MAJOR_VERSION and leaves zeros. */
+    /* ES 2.0 does not know GL_MAJOR_VERSION: it raises an error, and the zeros stay. */
     if (noh_gl_error_take(api) != GL_NO_ERROR || api->version < 300) {
         return noh_fail(error, NOH_ERR_UNSUPPORTED, "the context is older than OpenGL ES 3.0", (uint64_t)api->version,
                         300);
@@ -99,7 +105,7 @@ static noh_result read_version(noh_gl_api *api, noh_error *error)
     return NOH_OK;
 }
 
-/* The suffix under which each group's functions go in this context; NULL: absent. */
+/* The suffix of each group's functions in this context; NULL: the context does not have them. */
 static void choose_suffixes(noh_gl_api *api, const char *suffix[NOH_GL_GROUP_COUNT])
 {
     memset(suffix, 0, sizeof(*suffix) * NOH_GL_GROUP_COUNT);

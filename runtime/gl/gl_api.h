@@ -1,14 +1,12 @@
 /* gl_api.h: the table of OpenGL ES functions that noh uses.
  *
- *   noh_gl_api_load    fills the table through the caller's lookup function
- *   noh_gl_error_take  returns the oldest GL error and clears them all
- *   noh_gl_error_check the same as a result: what every create asks last
+ *   noh_gl_api_load       fill the table through the caller's lookup function
+ *   noh_gl_has_extension  whether the context lists an extension
+ *   noh_gl_error_take     return the oldest GL error and clear them all
+ *   noh_gl_error_check    the same as a noh_result
  *
- * The library links no GL: the application makes a context, makes it current, and
- * passes a lookup function. The table is a plain struct in the caller's memory and
- * belongs to that context.
- *
- * Call through it: `gl->DrawArrays(GL_TRIANGLES, 0, 3)`.
+ * The library links no GL: the application makes a context current and passes a lookup function. The table is a plain
+ * struct in the caller's memory and belongs to that context. Call through it: `gl->DrawArrays(GL_TRIANGLES, 0, 3)`.
  *
  * Threads: the context's own thread, for every function. */
 #ifndef NOH_GL_GL_API_H
@@ -26,10 +24,9 @@
 extern "C" {
 #endif
 
-/* What the library itself calls, all of it OpenGL ES 3.0 core; noh_gl_api_load refuses
- * a context that lacks one. tests/check_gl_calls.sh compares the list with the calls
- * in runtime/; platform/README.md prints it for porters.
- * X(field, the name as Khronos spells it in its PFNGL...PROC type) */
+/* What the library itself calls: all of it is OpenGL ES 3.0 core, and noh_gl_api_load refuses a context that lacks any.
+ * tests/check_gl_calls.sh compares the list with the calls in runtime/; platform/README.md prints it for porters.
+ * X(field, the name as Khronos spells it in the type PFNGL...PROC) */
 #define NOH_GL_REQUIRED(X)                                            \
     /* state */                                                       \
     X(Enable, ENABLE)                                                 \
@@ -125,8 +122,7 @@ extern "C" {
     /* transform feedback */                                          \
     X(TransformFeedbackVaryings, TRANSFORMFEEDBACKVARYINGS)
 
-/* More of ES 3.0 that a renderer is likely to need: NULL where the lookup does not
- * know it. The library never calls these. */
+/* More of ES 3.0, for renderers: NULL where the lookup does not know a function. The library never calls these. */
 #define NOH_GL_EXTRA(X)                                   \
     /* state */                                           \
     X(IsEnabled, ISENABLED)                               \
@@ -196,9 +192,8 @@ extern "C" {
     X(EndQuery, ENDQUERY)                                 \
     X(GetQueryObjectuiv, GETQUERYOBJECTUIV)
 
-/* Functions that a context may lack. One that is not NULL may be called: the loader
- * checks the version and the extension strings, because most lookups return a stub
- * for any name. A field does not tell whether the function is core, KHR, EXT or OES.
+/* Functions that a context may lack: NULL if so. The loader goes by the version and the extension strings, because most
+ * lookups return a stub for any name. A field may hold the core function or its KHR, EXT or OES form.
  * X(field, type, name without suffix, group) */
 #define NOH_GL_OPTIONAL(X)                                                                      \
     X(FramebufferTexture, FRAMEBUFFERTEXTURE, "glFramebufferTexture", NOH_GL_GROUP_GEOMETRY)    \
@@ -230,27 +225,27 @@ typedef struct noh_gl_api {
                        * "GL_OES_geometry_shader" (2); 0 where core or where absent */
 } noh_gl_api;
 
-/* Any function; cast to its own type before the call. */
+/* Any GL function; cast it to its own type before the call. */
 typedef void (*noh_gl_proc)(void);
 
-/* The caller's lookup, for instance around eglGetProcAddress. NULL: no such function. */
+/* The caller's lookup, for instance a wrapper of eglGetProcAddress. Returns NULL for an unknown name. */
 typedef noh_gl_proc (*noh_gl_get_proc)(void *user, const char *name);
 
-/* Fill the table for the context that is current on this thread.
+/* Fill the table for the context that is current on this thread. `user` is passed to `get`.
  * memory  none; `api` is untouched on error
- * errors  NOH_ERR_ARG api or get is NULL; NOH_ERR_UNSUPPORTED below ES 3.0, or a
- *         function of NOH_GL_REQUIRED is missing: `what` names it; NOH_ERR_GL no current context */
+ * errors  ARG api or get is NULL; UNSUPPORTED the context is below ES 3.0, or lacks a function of NOH_GL_REQUIRED,
+ *         which `what` names; GL no context is current */
 noh_result noh_gl_api_load(noh_gl_api *api, noh_gl_get_proc get, void *user, noh_error *error);
 
-/* 1 where the context lists the extension, 0 elsewhere. `name` in full, "GL_EXT_...". */
+/* 1 if the context lists the extension, else 0. `name` in full: "GL_EXT_...". */
 int noh_gl_has_extension(const noh_gl_api *api, const char *name);
 
-/* The oldest pending GL error, GL_NO_ERROR where there is none. All are cleared, with at
- * most 16 calls of glGetError: a lost context reports an error every time. */
+/* Return the oldest pending GL error, or GL_NO_ERROR, and clear the rest. Calls glGetError at most 16 times, because a
+ * lost context may report an error for ever. */
 GLenum noh_gl_error_take(const noh_gl_api *api);
 
-/* The oldest pending GL error as a result; all are cleared. A create clears them first and asks this last, so that it
- * never says NOH_OK though the driver refused one of its calls.
+/* The same as a result. Every create clears pending errors first and calls this last, so it never returns NOH_OK after
+ * the driver refused one of its calls.
  * errors  MEMORY GL_OUT_OF_MEMORY; GL any other. `where` is the GL error; `what` and `need` are the arguments */
 noh_result noh_gl_error_check(const noh_gl_api *api, const char *what, uint64_t need, noh_error *error);
 

@@ -1,3 +1,8 @@
+/* gl_caps.c: the probe of a context's abilities.
+ *
+ * Each ability is tried in the way that the library uses it: known floats are drawn into the three layers of an array
+ * texture and read back. A driver may claim a format and then clamp, round or drop what is written to it; only the
+ * values tell. Layers get different values, so that one that was mixed up or left out shows. */
 #include "gl/gl_caps.h"
 
 #include <string.h>
@@ -10,17 +15,17 @@
 #define TEXELS 16
 #define FLOATS (TEXELS * 4)
 #define LAYERS 3
-#define PASSES 3 /* rows of values: one stored, two blended on top of it by one draw */
+#define PASSES 3 /* rows of values: one is stored, two are blended on top of it by one draw */
 
 /* The GL objects that all probes share. */
 typedef struct probe {
     const noh_gl_api *api;
     GLuint vertex_array;
     GLuint framebuffer;
-    GLuint values; /* TEXELS x PASSES RGBA32F, what the fragment shaders write */
-    GLuint floats; /* programs */
-    GLuint bits;
-    GLint first_row; /* a uniform of floats */
+    GLuint values;   /* texture, TEXELS x PASSES RGBA32F: what the fragment shaders write */
+    GLuint floats;   /* program that writes the values */
+    GLuint bits;     /* program that writes their bits as integers */
+    GLint first_row; /* uniform location in `floats` */
 } probe;
 
 /* The result of drawing into a float format. */
@@ -31,8 +36,8 @@ typedef struct float_result {
 
 /* --- the numbers --- */
 
-/* 64 floats of both signs, 2^-20 to 2^2, full mantissas. As halves and in sums
- * they make ties, denormals and all roundings up and down. */
+/* 64 floats of both signs with full mantissas and magnitudes from 2^-20 to 2^2, by a linear congruential generator
+ * (Numerical Recipes' constants). As halves and in sums they give ties, denormals, and roundings up and down. */
 static void make_values(float values[FLOATS], uint32_t pass)
 {
     uint32_t state = 0x9e3779b9u * (pass + 1);
@@ -42,13 +47,13 @@ static void make_values(float values[FLOATS], uint32_t pass)
         uint32_t sign = state & 0x80000000u;
         state = state * 1664525u + 1013904223u;
         uint32_t bits = sign | (exponent << 23) | (state >> 9);
-        /* Every fourth lies exactly between two halves: ties tell the modes apart. */
+        /* Every fourth lies exactly between two halves: ties tell the rounding modes apart. */
         if (i % 4 == 3) bits = (bits & ~0x1fffu) | 0x1000u;
         memcpy(&values[i], &bits, sizeof bits);
     }
 }
 
-/* The float that lands in layer `layer` of texel channel `i`: see probe_floats.frag. */
+/* What probe_floats.frag writes to a layer, i counting the channels of its texels. */
 static float value_at(const float values[FLOATS], uint32_t layer, uint32_t i)
 {
     return values[(i + layer * 4) % FLOATS];
@@ -112,9 +117,8 @@ static void draw(const probe *p, GLuint program, GLsizei instances)
     p->api->DrawArraysInstanced(GL_TRIANGLES, 0, 3, instances);
 }
 
-/* Draw rows of the values over each other in one draw, as accumulation does (a
- * driver may keep a tile in fp32 for a whole draw), and read all layers. 0 on any
- * GL error. */
+/* Draw rows of the values on top of each other in one draw and read all layers. One draw, because accumulation is one,
+ * and a tiling GPU may keep float32 sums in its tile until the draw ends. 0 on any GL error. */
 static int draw_and_read(const probe *p, GLint first_row, GLsizei rows, float pixels[LAYERS][FLOATS])
 {
     p->api->UseProgram(p->floats);
@@ -130,15 +134,15 @@ static int draw_and_read(const probe *p, GLint first_row, GLsizei rows, float pi
 
 /* --- comparing ---
  *
- * What lies in a target is compared with three models of it: exact float32 sums, and halves that were rounded toward
- * zero or to nearest after each pass. The values are chosen so that the two roundings differ, ties included; the model
- * that matches every bit is how this driver rounds. If none does, a half-float result is only held to a bound. */
+ * What was read is compared with three models: exact float32 sums, and halves that were rounded toward zero or to
+ * nearest after each pass. The values are chosen so that the two roundings differ, ties included; the model that
+ * matches every bit is how this driver rounds. If neither does, half-float results are only known within a bound. */
 
-/* The models of what lies in the target after some passes, one per rounding. */
+/* What lies in the target after some passes, by each model. */
 typedef struct models {
-    float exact[LAYERS][FLOATS]; /* fp32 sums */
-    float rtz[LAYERS][FLOATS];
-    float rne[LAYERS][FLOATS];
+    float exact[LAYERS][FLOATS]; /* float32 sums */
+    float rtz[LAYERS][FLOATS];   /* halves rounded toward zero */
+    float rne[LAYERS][FLOATS];   /* halves rounded to nearest, ties to even */
 } models;
 
 typedef struct comparison {
@@ -159,8 +163,8 @@ static void advance(models *m, uint32_t pass)
     }
 }
 
-/* Close: within what a half accumulator may lose in three passes over values
- * below 4, flushed denormals included, but far from a pass that did not arrive. */
+/* Close: within what a half-float accumulator may lose in three passes over values below 4, flushed denormals included;
+ * a pass that did not arrive is off by far more. */
 static comparison compare(const models *m, float pixels[LAYERS][FLOATS])
 {
     comparison out = { 1, 1, 1, 1 };
@@ -168,7 +172,7 @@ static comparison compare(const models *m, float pixels[LAYERS][FLOATS])
         for (uint32_t i = 0; i < FLOATS; i++) {
             float got = pixels[layer][i];
             float bound = 0x1p-7f * (magnitude(m->exact[layer][i]) + 4.0f);
-            /* Written so that a NaN is never close. */
+            /* negated, so that a NaN is not close */
             if (!(magnitude(got - m->exact[layer][i]) <= bound)) out.close = 0;
             if (memcmp(&got, &m->exact[layer][i], sizeof got) != 0) out.exact = 0;
             if (memcmp(&got, &m->rtz[layer][i], sizeof got) != 0) out.rtz = 0;
@@ -259,7 +263,7 @@ static int probe_u32(const probe *p)
     return right;
 }
 
-/* Layers through a geometry shader, in RGBA8: whether floats render is asked apart. */
+/* Layered drawing is tried in RGBA8: whether floats can be rendered is another question. */
 static int draw_layers(const probe *p, GLuint program, GLuint texture)
 {
     static const GLfloat clear[4] = { 1.0f, 1.0f, 1.0f, 1.0f };
@@ -315,7 +319,7 @@ static int probe_layered(const probe *p)
     return right;
 }
 
-/* A driver that lists the extension but cannot time has a counter of 0 bits. */
+/* A driver that lists the extension but cannot measure time has a counter of 0 bits. */
 static int probe_timer(const noh_gl_api *gl)
 {
     if (!gl->TimeGenQueries || !gl->TimeDeleteQueries || !gl->TimeBeginQuery || !gl->TimeEndQuery ||

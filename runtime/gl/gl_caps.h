@@ -1,13 +1,12 @@
-/* gl_caps.h: what this context really does.
+/* gl_caps.h: what this context can do.
  *
- *   noh_gl_caps_probe        asks the limits, then draws and reads back
+ *   noh_gl_caps_probe        read the limits, then try each ability: draw, and read back
  *   noh_gl_geometry_version  the #version line that a geometry shader needs here
  *   noh_gl_geometry_defines  the #extension line that goes with it
  *
- * Extension strings lie both ways: OSMesa blends floats without listing the
- * extension, some drivers list formats that they cannot render. So each ability
- * is decided by doing it once, on 16 texels. The struct is plain: a test, or a
- * user with a driver bug, may clear any field after the probe.
+ * Extension strings are wrong in both directions: OSMesa blends floats without listing the extension, and some drivers
+ * list formats that they cannot render. So each ability is tried once, on 16 texels. The struct is plain: a test, or a
+ * game that knows of a driver bug, may clear any field after the probe.
  *
  * Threads: the context's own thread, for every function. */
 #ifndef NOH_GL_GL_CAPS_H
@@ -23,10 +22,10 @@ extern "C" {
 typedef struct noh_gl_caps {
     int version;     /* major * 100 + minor * 10 */
     int is_es;       /* 0: desktop GL */
-    char vendor[64]; /* cut to fit */
+    char vendor[64]; /* GL_VENDOR, GL_RENDERER and GL_VERSION, cut to fit */
     char renderer[128];
     char version_text[128];
-    uint64_t renderer_hash; /* FNV-1a 64 of the three whole texts: a key for calibrations kept between runs */
+    uint64_t renderer_hash; /* FNV-1a 64 of the three whole texts: a key for what is measured once per driver */
 
     uint32_t texture_size_max;
     uint32_t array_layers_max;
@@ -38,37 +37,32 @@ typedef struct noh_gl_caps {
     uint32_t uniform_block_bytes_max;
     uint32_t uniform_offset_align; /* bytes, for glBindBufferRange */
 
-    /* 1 or 0. All but layered draw into three layers of one array texture at once. */
-    int mrt3;            /* three layers of one array texture as draw buffers, in some format */
-    int render_f32;      /* RGBA32F arrives, bit for bit */
-    int render_f16;      /* RGBA16F arrives, within a half's precision */
-    int render_u32;      /* RGBA32UI arrives; ES 3.0 promises it */
-    int blend_f32;       /* ONE, ONE into RGBA32F adds */
+    /* 1 or 0. Each was tried with three layers of one array texture as the draw buffers, `layered` with gl_Layer. */
+    int mrt3;            /* three draw buffers work in at least one format */
+    int render_f32;      /* RGBA32F keeps what is written, bit for bit */
+    int render_f16;      /* RGBA16F keeps it within the precision of a half */
+    int render_u32;      /* RGBA32UI keeps it; ES 3.0 promises that */
+    int blend_f32;       /* blending ONE, ONE into RGBA32F adds */
     int blend_f16;       /* the same into RGBA16F */
-    int blend_f32_exact; /* and gives the bits of C's float addition */
-    int layered;         /* a geometry shader's gl_Layer reaches three layers of a layered framebuffer */
+    int blend_f32_exact; /* blend_f32, with the bits of C's float addition */
+    int layered;         /* a geometry shader reaches all three layers by gl_Layer */
     int timer_query;     /* EXT_disjoint_timer_query, or desktop GL's */
 
-    /* How a fragment's float becomes a half. UNKNOWN: not as either model, so
-     * results can only be compared within a bound. */
+    /* How this GPU rounds a float to a half. UNKNOWN: like neither model, so results are only known within a bound. */
     noh_half_mode f16_store_mode; /* half(source) */
     noh_half_mode f16_blend_mode; /* half(stored + source), the sum in fp32 */
 } noh_gl_caps;
 
-/* Fill `out` for the current context. Expects a context in the state that it was
- * made in: nothing bound to GL_PIXEL_PACK_BUFFER or GL_PIXEL_UNPACK_BUFFER,
- * default pixel store, no scissor, depth or stencil test, no rasteriser discard.
- * Afterwards framebuffer, program, vertex array and the textures of unit 0 are 0,
- * blending is off with ONE, ZERO, and the viewport as before. All GL objects that
- * it made are gone.
- * memory  none; about 5 KiB of stack
- * errors  NOH_ERR_ARG; NOH_ERR_GL the driver cannot even run the probe's programs.
- *         An ability that is lacking is a 0 in its field, not an error */
+/* Fill `out` for the current context. A missing ability is a 0 in its field, not an error.
+ * state   Before: as in a new context; nothing bound to GL_PIXEL_PACK_BUFFER or GL_PIXEL_UNPACK_BUFFER, default pixel
+ *         store, no scissor, depth or stencil test, no rasteriser discard. After: framebuffer, program, vertex array
+ *         and the textures of unit 0 are 0, blending is off with ONE, ZERO, the viewport is as before
+ * memory  none; about 5 KiB of stack. All GL objects that it made are deleted
+ * errors  ARG api or out is NULL; GL the driver cannot run the probe's programs */
 noh_result noh_gl_caps_probe(const noh_gl_api *api, noh_gl_caps *out, noh_error *error);
 
-/* For noh_gl_program_desc.version and .geometry_defines of a program with a geometry
- * stage. version is NULL where there are no geometry shaders, defines where no
- * #extension is needed. */
+/* For `version` and `geometry_defines` of the desc of a program with a geometry stage (gl_program.h). The version is
+ * NULL where there are no geometry shaders; the defines are NULL where no #extension is needed. */
 const char *noh_gl_geometry_version(const noh_gl_api *api);
 const char *noh_gl_geometry_defines(const noh_gl_api *api);
 

@@ -42,7 +42,7 @@ static void set_mesh(const noh_gl_renderer *r, const noh_gl_variant *v, const no
     r->gl->BindVertexArray(mesh->vertex_array);
 }
 
-/* What each instance of a crowd has in its own rows instead. */
+/* What is set for one instance. Those of a crowd have it in rows of their own instead. */
 static void set_instance(const noh_gl_renderer *r, const noh_gl_variant *v, const float world[12],
                          const noh_gl_morph_binding *morph)
 {
@@ -68,7 +68,7 @@ static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, cons
                          const noh_gl_texture *pictures)
 {
     GLuint texture = m->base_color_texture == NOH_NONE ? r->white.name : pictures[m->base_color_texture].name;
-    NOH_ASSERT(texture); /* a picture that was not made */
+    NOH_ASSERT(texture); /* the picture was created */
     r->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_BASE_COLOR);
     r->gl->BindTexture(GL_TEXTURE_2D, texture);
     r->gl->Uniform4fv(v->u_base_color, 1, m->base_color);
@@ -85,7 +85,7 @@ static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, cons
 
 static const noh_gl_lod whole = { 0, 0.0f, 1.0f };
 
-/* NULL where the renderer's desc had no such draw, or no pixel is to be drawn. */
+/* NULL if the renderer's desc did not ask for this variant, or if no pixel is to be drawn. */
 static const noh_gl_variant *variant_of(const noh_gl_renderer *r, const noh_gl_mesh *mesh,
                                         const noh_gl_skin_binding *skin, int crowd, const noh_gl_lod *lod)
 {

@@ -1,21 +1,18 @@
-/* gl_lost.h: after a context is gone.
+/* gl_lost.h: after a context was lost.
  *
- * A lost context takes every GL object with it. What is in your memory is still
- * valid: packs, weights, poses. Make a context, fill the same noh_gl_api with
- * noh_gl_api_load (objects point to that table), and restore each object:
+ * A lost context takes every GL object with it. What is in your memory is still valid: packs, weights, poses. Make a
+ * new context, fill the same noh_gl_api with noh_gl_api_load (objects point to that table), and restore each object:
  *
  *   noh_gl_mesh_restore, noh_gl_picture_restore, noh_gl_renderer_restore  gl_draw.h
  *   noh_gl_morph_restore                                                  gl_morph.h
  *   noh_gl_skin_restore                                                   gl_skin.h
  *
- * They take the old names out of the ledger without calling GL, because in the new
- * context these names may be other objects, and make new ones from the pack; the
- * ledger is then as before, to the byte. The new context must have the capabilities
- * of the old one: probe it by noh_gl_caps_probe, and if they differ delete the
- * objects with the table below and plan again.
+ * Each takes the old names out of the ledger without calling GL, because in the new context these names may be other
+ * objects, and makes new objects from the pack. The ledger is then as before, to the byte. The new context must have
+ * the capabilities of the old one: probe it with noh_gl_caps_probe, and if they differ, delete the objects with the
+ * table below and plan again.
  *
- *   noh_gl_lost_api  a table whose glDelete* do nothing: pass it to any
- *                    noh_gl_*_delete that takes an api
+ *   noh_gl_lost_api  a table whose delete functions do nothing: pass it to any noh_gl_*_delete that takes an api
  *
  * Threads: any; the table touches nothing. */
 #ifndef NOH_GL_GL_LOST_H
@@ -27,7 +24,7 @@
 extern "C" {
 #endif
 
-/* Every function but glDelete* is NULL. */
+/* All its other functions are NULL. */
 const noh_gl_api *noh_gl_lost_api(void);
 
 #ifdef __cplusplus

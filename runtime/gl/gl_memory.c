@@ -1,3 +1,7 @@
+/* gl_memory.c: GL objects and the bytes that they are counted with.
+ *
+ * A texture counts its texels in every mip level, each level half as wide and high as the one before, rounded down but
+ * at least 1 (OpenGL ES 3.0, 3.8.10), times its layers and the bytes of a texel. A renderbuffer counts its samples. */
 #include "gl/gl_memory.h"
 
 #define SIDE_MAX 65536u

@@ -14,7 +14,7 @@ static uint64_t attribute_bytes(const noh_mesh *mesh)
     return (uint64_t)mesh->header->vertex_count * mesh->header->attribute_stride;
 }
 
-/* Of this LOD level and all coarser ones, which follow each other in the pack. */
+/* Of this LOD level and all coarser ones, whose headers and indices follow it in the pack. */
 static uint64_t index_count(const noh_mesh *mesh)
 {
     const noh_mesh_header *h = mesh->header;
@@ -25,7 +25,7 @@ static uint64_t index_count(const noh_mesh *mesh)
     return count;
 }
 
-/* A mesh without triangles still gets a buffer: GL has none of zero bytes. */
+/* A mesh without triangles gets 4 bytes: GL has no empty buffers. */
 static uint64_t index_bytes(const noh_mesh *mesh)
 {
     uint64_t bytes = index_count(mesh) * mesh->header->index_bytes;
@@ -52,7 +52,7 @@ static void set_attribute(const noh_gl_api *gl, GLuint location, GLint size, GLe
     }
 }
 
-/* Directions are integer attributes: drivers differ in how they convert normalised ones to floats. */
+/* Directions are integer attributes, because drivers differ in how they convert normalised ones to floats. */
 static void set_pair(const noh_gl_api *gl, GLuint location, uint32_t stride, int offset)
 {
     if (offset >= 0) {
@@ -67,7 +67,8 @@ static void set_words(const noh_gl_api *gl, GLuint location, uint32_t words, uin
     gl->VertexAttribIPointer(location, (GLint)words, GL_UNSIGNED_INT, (GLsizei)stride, (const void *)(uintptr_t)offset);
 }
 
-/* The words of common_skin.glsl: seven are four and three. */
+/* The words of a vertex's influences, as common_skin.glsl reads them. Seven words are two attributes, of four and
+ * three. */
 static void set_influences(const noh_gl_api *gl, const noh_gl_mesh *m)
 {
     uint32_t words = NOH_INFLUENCE_WORDS(m->mesh.header->influence_count);

@@ -1,3 +1,8 @@
+/* gl_morph.c: the accumulator's life, and what is common to all paths: weights, LOD levels, which instances changed.
+ *
+ * Nothing is accumulated when weights are set. An instance is marked as changed, and noh_gl_morph_update accumulates
+ * all such instances together, so that a crowd costs a few draws. An instance that did not change keeps the sums of its
+ * tile. */
 #include "gl/gl_morph.h"
 
 #include <string.h>
@@ -19,7 +24,7 @@ static noh_result create_layers(noh_gl_morph *m, noh_error *error)
     return noh_gl_texture_create(m->gl, m->ledger, &desc, &m->layers, error);
 }
 
-/* What every path has; the vertex array, program and framebuffers are labelled where they are made. */
+/* The textures; vertex array, program and framebuffers are labelled where they are made. */
 static void label_objects(const noh_gl_morph *m)
 {
     const struct {
@@ -56,7 +61,7 @@ static noh_result make_gl_objects(noh_gl_morph *m, char *log, size_t log_bytes, 
 }
 
 #if NOH_ASSERT_LEVEL >= 2
-/* Every instance has a mesh of the set, a level that the mesh has, finite weights, and a tile inside the atlas; the
+/* Every instance has a mesh of the desc, a level that the mesh has, finite weights, and a tile inside the atlas; the
  * count of changed instances is right. */
 static int is_valid(const noh_gl_morph *m)
 {
@@ -217,7 +222,7 @@ noh_result noh_gl_morph_set_weights(noh_gl_morph *morph, uint32_t instance, cons
     own = morph->weights + noh_gl_morph_first_weight(morph, instance);
     NOH_ASSERT(weights || !count);
     for (uint32_t i = 0; i < count; i++) {
-        if (weights[i] - weights[i] != 0.0f) {
+        if (weights[i] - weights[i] != 0.0f) { /* NaN for infinities and NaN */
             return noh_fail(error, NOH_ERR_ARG, "weight is not finite", i, 0);
         }
     }

@@ -1,33 +1,33 @@
 /* gl_morph.h: morph targets accumulated on the GPU, for many instances at once.
  *
- *   noh_gl_morph_plan_make    which path, why, and every byte it will take: before any load
+ *   noh_gl_morph_plan_make    which path, why, and every byte that it takes; touches no GL
  *   noh_gl_morph_init         build it in your memory and make its GL objects
  *   noh_gl_morph_delete       delete the GL objects
  *   noh_gl_morph_restore      make them again after a lost context
- *   noh_gl_morph_set_weights  one instance's weights; cheap when they did not change
- *   noh_gl_morph_set_lod    accumulate only what an LOD level of an instance needs
+ *   noh_gl_morph_set_weights  set one instance's weights; costs no more than a comparison if they did not change
+ *   noh_gl_morph_set_lod      accumulate only what an LOD level of an instance needs
  *   noh_gl_morph_update       accumulate the instances whose weights changed
  *   noh_gl_morph_binding_of   where a vertex shader finds an instance's deltas
  *   noh_gl_morph_plan_of      the plan that it was built by
  *   noh_gl_morph_instance     the number of an instance of a mesh
  *   noh_morph_path_name, noh_accumulate_name
  *
- * Deltas of position, normal and tangent are accumulated in three layers of one
- * texture array; each instance has a tile of it, one accumulation texel per vertex
- * that a target moves. The base mesh stays in the vertex buffers and is added when
- * the vertex shader fetches (shaders_es/common_layers.glsl), so a half-float
- * accumulator rounds deltas only. Microsoft's SparseMorphTargets sample (DirectX
- * SDK) accumulates the same way, but whole vertices and one mesh.
+ * Deltas of position, normal and tangent are accumulated in the three layers of one texture array. Each instance has a
+ * tile of it with one accumulation texel per vertex that any target moves. The base mesh stays in the vertex buffers,
+ * and the vertex shader adds the accumulated deltas to it (shaders_es/common_layers.glsl), so a half-float accumulator
+ * rounds only deltas. Microsoft's SparseMorphTargets sample (DirectX SDK) accumulates in the same way, but whole
+ * vertices, and of one mesh.
  *
- *   path       needs                                how
- *   layered    geometry shader, blending            one additive pass to three layers
- *   mrt        ES 3.0, blending                     one additive pass, three outputs
- *   per-layer  ES 3.0, blending                     three additive passes
- *   gather     ES 3.0                               no blending: each fragment sums its vertex's list
- *   cpu        nothing                              SIMD on the CPU, the texture takes the result
- * Two policies choose among them: `auto` takes the cheapest here, `blend` layered draws where supported and per-layer
- * passes otherwise. "Blending" is into the accumulation format, which an extension grants: float32
- * (EXT_float_blend) is missing on most phones, float16 is not.
+ *   path       needs                      how
+ *   layered    geometry shader, blending  one additive pass into three layers
+ *   mrt        ES 3.0, blending           one additive pass with three outputs
+ *   per-layer  ES 3.0, blending           three additive passes
+ *   gather     ES 3.0                     no blending: each fragment sums the deltas of one vertex
+ *   cpu        nothing                    SIMD on the CPU; the sums are uploaded
+ *
+ * Two policies choose among them: `auto` takes the cheapest on this GPU; `blend` takes layered draws where they are
+ * supported and per-layer passes otherwise. Blending into the accumulation format needs an extension. Most phones lack
+ * that for float32 (EXT_float_blend), and have it for float16.
  *
  * Threads: the context's own thread. noh_gl_morph_plan_make and the names, any. */
 #ifndef NOH_GL_GL_MORPH_H
@@ -55,7 +55,7 @@ typedef enum noh_morph_path {
 typedef enum noh_accumulate {
     NOH_ACCUMULATE_AUTO = 0, /* f32 */
     NOH_ACCUMULATE_F32,
-    NOH_ACCUMULATE_F16 /* half the memory; error within the mesh's f16_position_bound */
+    NOH_ACCUMULATE_F16 /* half the memory; positions are off by at most the mesh's f16_position_bound */
 } noh_accumulate;
 
 /* "auto", "layered", "mrt", "per-layer", "gather", "cpu", "blend"; "auto", "f32", "f16". */
@@ -63,30 +63,30 @@ const char *noh_morph_path_name(noh_morph_path path);
 const char *noh_accumulate_name(noh_accumulate accumulate);
 
 typedef struct noh_gl_morph_desc {
-    /* [mesh_count]; copied, the packs must stay. May hold several LOD levels of one mesh, each with tiles of its own
-     * size: a few instances near, many far. They share the finest one's tables */
+    /* [mesh_count]; copied, but the packs must stay. May hold several LOD levels of one mesh, each with tiles of its
+     * own size, for a few instances near and many far; they share the tables of the finest one */
     const noh_mesh *meshes;
     uint32_t mesh_count;
     const uint32_t *instance_counts; /* [mesh_count]; NULL: one of each. 1..NOH_MORPH_INSTANCES_MAX in all */
-    noh_morph_path path;             /* 0: the cheapest that the capabilities allow; or a policy, or one path */
+    noh_morph_path path;             /* 0: the cheapest on this GPU; or the policy blend, or one path */
     noh_accumulate accumulate;       /* 0: f32 */
-    float expected_active;           /* for auto: share of the targets that is active at once, 0..1; 0: 0.5 */
+    float expected_active;           /* for auto: the share of targets that are active at once, 0..1; 0: 0.5 */
 } noh_gl_morph_desc;
 
 /* The resolved plan on a GPU with these capabilities. All bytes are exact. */
 typedef struct noh_gl_morph_plan {
-    noh_morph_path path;       /* never AUTO or BLEND */
-    noh_accumulate accumulate; /* never AUTO */
-    const char *reason;        /* why this path, in words; a string constant */
-    GLenum layer_format;       /* RGBA32F, RGBA16F, RGBA32UI (float bits), RGB32F or RGB16F */
-    uint32_t atlas_width, atlas_height;
+    noh_morph_path path;                /* never AUTO or BLEND */
+    noh_accumulate accumulate;          /* never AUTO */
+    const char *reason;                 /* why this path, in words; a string constant */
+    GLenum layer_format;                /* RGBA32F, RGBA16F, RGBA32UI (float bits), RGB32F or RGB16F */
+    uint32_t atlas_width, atlas_height; /* of the texture array that holds the tiles, in texels */
     uint32_t instance_count, weight_count;
-    uint32_t rect_count, texel_count, pair_count; /* in the tables, which levels of one mesh share */
+    uint32_t rect_count, texel_count, pair_count; /* in the tables, which LOD levels of one mesh share */
     uint64_t cpu_bytes;                           /* the block that noh_gl_morph_init needs */
-    uint64_t delta_bytes;                         /* GPU: delta texels, or the gather entries */
-    uint64_t table_bytes;                         /* GPU: rectangles, or the gather list starts */
+    uint64_t delta_bytes;                         /* GPU: delta texels, by rectangle or (gather) by vertex */
+    uint64_t table_bytes;                         /* GPU: rectangles, or (gather) where each vertex's deltas begin */
     uint64_t stream_bytes;                        /* GPU: what is sent at each update */
-    uint64_t layer_bytes;                         /* GPU: the accumulators */
+    uint64_t layer_bytes;                         /* GPU: the accumulation texels */
     uint64_t gpu_bytes;                           /* the sum of these four */
 } noh_gl_morph_plan;
 
@@ -94,39 +94,39 @@ typedef struct noh_gl_morph noh_gl_morph;
 
 /* What one update did. */
 typedef struct noh_gl_morph_stats {
-    uint32_t instances; /* accumulated again */
-    uint32_t draws;     /* accumulation draws; clears are not draws */
-    uint32_t targets;   /* active (instance, target) pairs */
-    uint32_t rects, texels, pairs;
+    uint32_t instances;            /* accumulated again */
+    uint32_t draws;                /* accumulation draws, not counting clears */
+    uint32_t targets;              /* active targets, summed over instances */
+    uint32_t rects, texels, pairs; /* rectangles and texels that were drawn, pairs that were added */
 } noh_gl_morph_stats;
 
-/* Where an instance's deltas are. The same numbers go into u_morph of
- * common_layers.glsl: tile x, tile y, width log2, touched vertices. */
+/* Where an instance's accumulated deltas are. The last four numbers go into u_morph of common_layers.glsl in this
+ * order. */
 typedef struct noh_gl_morph_binding {
     GLuint texture; /* GL_TEXTURE_2D_ARRAY of three layers */
-    int is_uint;    /* 1: the float's bits in RGBA32UI: build your shader with LAYERS_UINT */
-    int32_t tile_x, tile_y, width_log2, touched;
+    int is_uint;    /* 1: it holds the bits of floats as RGBA32UI: build your shader with LAYERS_UINT */
+    int32_t tile_x, tile_y, width_log2, touched; /* texels; log2 of the tile's width; vertices that any target moves */
 } noh_gl_morph_binding;
 
-/* Decide and measure, without touching GL.
- * errors  ARG a desc field is out of range; UNSUPPORTED the forced path cannot run here,
- *         `what` says what is missing; LIMIT the atlas or a table is larger than textures can be */
+/* Choose the path and measure it, without touching GL.
+ * errors  ARG a desc field is out of range; UNSUPPORTED the path of the desc cannot run here, `what` says what is
+ *         missing; LIMIT the atlas or a table is larger than textures can be */
 noh_result noh_gl_morph_plan_make(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan,
                                   noh_error *error);
 
-/* Build in memory[bytes], which is aligned to NOH_MEMORY_ALIGN and at least plan.cpu_bytes long, and make the GL
- * objects, counted in the device's ledger. All instances start at weight 0. errors  as noh_gl_morph_plan_make; ARG
- * memory is NULL or misaligned, MEMORY it is too small (`need`: plan.cpu_bytes), nothing is then touched; GL, MEMORY
- * the driver refused an object; DATA a shader does not compile or link. On error no GL object is left */
+/* Build it in memory[bytes], aligned to NOH_MEMORY_ALIGN and at least plan.cpu_bytes long, and make its GL objects,
+ * counted in the device's ledger. All weights are 0 at first. On error no GL object is left.
+ * errors  as noh_gl_morph_plan_make; ARG memory is NULL or misaligned; MEMORY it is too small, `need` is
+ *         plan.cpu_bytes; GL, MEMORY the driver refused an object; DATA a shader does not compile or link */
 noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_device *device, const noh_gl_morph_desc *desc,
                              noh_gl_morph **morph, noh_error *error);
 
 /* Delete the GL objects. The memory is yours again. */
 void noh_gl_morph_delete(noh_gl_morph *morph);
 
-/* Make its GL objects again in a new context (gl_lost.h). Weights stay; the next
- * noh_gl_morph_update accumulates every instance. `log` as in noh_gl_program_create.
- * errors  GL, DATA as init: it then holds no objects, and may be restored again */
+/* Make its GL objects again in a new context (gl_lost.h). Weights stay; the next noh_gl_morph_update accumulates every
+ * instance. `log` as in noh_gl_program_create.
+ * errors  GL, MEMORY, DATA as noh_gl_morph_init: it then has no GL objects, and may be restored again */
 noh_result noh_gl_morph_restore(noh_gl_morph *morph, char *log, size_t log_bytes, noh_error *error);
 
 const noh_gl_morph_plan *noh_gl_morph_plan_of(const noh_gl_morph *morph);
@@ -134,22 +134,22 @@ const noh_gl_morph_plan *noh_gl_morph_plan_of(const noh_gl_morph *morph);
 /* The number of the i-th instance of the m-th mesh. */
 uint32_t noh_gl_morph_instance(const noh_gl_morph *morph, uint32_t mesh, uint32_t i);
 
-/* Set weights[target_count of its mesh]; any finite values.
- * errors  ARG a weight is not finite, `where` is its index; nothing is then changed */
+/* Set an instance's weights[target_count of its mesh]: any finite values, below 0 and above 1 too.
+ * errors  ARG a weight is not finite, `where` is its index; nothing is changed */
 noh_result noh_gl_morph_set_weights(noh_gl_morph *morph, uint32_t instance, const float *weights, noh_error *error);
 
 /* Accumulate only what an LOD level of an instance's mesh needs. Draw the instance at this level or a coarser one;
  * while two levels fade, pass the finer. The level's accumulation texels have the same bits as at level 0, except that
- * targets without rectangles in the level do not move it. The instance's binding stays the same. ranges  level 0 is the
- * full mesh; clamped to the levels that the mesh of the desc has A finer level is accumulated by the next update. A
- * coarser one costs nothing and takes effect when the weights next change. */
+ * targets without a rectangle in the level do not move it. The instance's binding stays the same. A finer level is
+ * accumulated by the next update; a coarser one costs nothing and takes effect when the weights next change. ranges
+ * level 0 is the full mesh; clamped to the levels of the mesh in the desc */
 void noh_gl_morph_set_lod(noh_gl_morph *morph, uint32_t instance, uint32_t level);
 
 /* Accumulate the instances whose weights or level changed. stats may be NULL.
- * state   Afterwards: framebuffer 0, vertex array 0, program 0, array buffer 0 and textures of
- *         units 0..2 unbound; blending, scissor, depth and cull test off; viewport that of the
- *         atlas. Set your own before you draw. Nothing is touched when nothing changed.
- * errors  none: everything was checked by init */
+ * state   Afterwards framebuffer, vertex array, program, array buffer and the textures of units 0 to 2 are 0; blending,
+ *         scissor test, depth test and culling are off; the viewport is that of the atlas. Set your own before you
+ *         draw. No state is changed if no instance changed
+ * errors  none: init checked everything */
 void noh_gl_morph_update(noh_gl_morph *morph, noh_gl_morph_stats *stats);
 
 noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t instance);

@@ -1,13 +1,16 @@
-/* gl_morph_blend.c: the paths layered, mrt and per-layer: the blending unit is the adder.
+/* gl_morph_blend.c: the paths layered, mrt and per-layer, in which the GPU's blending adds.
  *
- * Each rectangle of an active target is drawn as a quad over the instance's tile, with blending ONE, ONE. The fragment
- * decodes the delta texel under it and multiplies it by weight and scale; alpha plays no part, so weights below 0 and
- * above 1 work. All quads of all instances are one instanced draw. Blending keeps the order in which primitives were
- * submitted (OpenGL ES 3.2, 2.1), so sums are made target by target as on the CPU and have its bits wherever the
- * blender adds in float32. Targets drawn additively, each cut to what it changes, and a geometry shader that sends a
- * triangle to three layers are those of Microsoft's SparseMorphTargets sample (DirectX SDK); that sample blends by
- * source alpha and starts from the base mesh. Here only deltas are summed, which costs half floats no precision of the
- * base. */
+ * Each rectangle of an active target is drawn as a quad over its place in the instance's tile, with blending ONE, ONE.
+ * The fragment decodes the delta texel under it and multiplies it by weight and scale. Alpha plays no part, so weights
+ * below 0 and above 1 work. All quads of all instances are one instanced draw.
+ *
+ * Why the bits are those of the CPU: blending happens in the order in which primitives are submitted (OpenGL ES 3.2,
+ * 2.1), and quads are submitted target by target in index order, as deform/morph.h adds. Each sum therefore has the
+ * same terms in the same order, and the same bits wherever the blender adds in float32.
+ *
+ * Microsoft's SparseMorphTargets sample (DirectX SDK) draws targets additively, each cut to what it changes, through a
+ * geometry shader that sends a triangle to three render targets. It blends by source alpha and starts from the base
+ * mesh. Here only deltas are summed, so a half-float accumulator never rounds the base. */
 #include <string.h>
 
 #include "gl/gl_debug.h"
@@ -55,7 +58,8 @@ static noh_result create_framebuffers(noh_gl_morph *m, noh_error *error)
     return result;
 }
 
-/* The rect table: place, size, first texel and bit widths; sent in chunks. */
+/* The rectangles of all targets: place, size, first delta texel, and the bit widths of a texel's fields. The staging
+ * memory holds a chunk of them at a time. */
 static void upload_rects(noh_gl_morph *m, const noh_gl_morph_mesh *mesh)
 {
     uint32_t(*chunk)[4] = (uint32_t(*)[4])m->staging;
@@ -82,7 +86,7 @@ static void upload_rects(noh_gl_morph *m, const noh_gl_morph_mesh *mesh)
     }
 }
 
-/* A coarser LOD level has a prefix of each target's delta texels: the gaps behind them are closed. */
+/* The delta texels of all targets, without gaps. (A coarser LOD level uses only the first texels of each target.) */
 static void upload_texels(noh_gl_morph *m, const noh_gl_morph_mesh *mesh)
 {
     uint32_t sent = mesh->first_texel;
@@ -147,9 +151,9 @@ static void put_rect_records(noh_gl_morph *m, uint32_t first_rect, uint32_t rect
     *count += rect_count;
 }
 
-/* The active targets of one instance, in index order: the order of the sums is part of the result. The table may belong
- * to a finer LOD level, so the first rectangle of each target is counted by that level's numbers. */
-static void list_instance(noh_gl_morph *m, uint32_t instance, uint32_t *slot_count, uint32_t *rect_records,
+/* The active targets of one instance, in index order: the order of a sum decides its last bit. The table may belong to
+ * a finer LOD level, so a target's first rectangle is counted by that level's numbers. */
+static void list_instance(noh_gl_morph *m, uint32_t instance, uint32_t *records, uint32_t *rect_records,
                           noh_gl_morph_stats *stats)
 {
     const noh_mesh mesh = noh_gl_morph_view(m, instance);
@@ -160,9 +164,9 @@ static void list_instance(noh_gl_morph *m, uint32_t instance, uint32_t *slot_cou
     for (uint32_t t = 0; t < mesh.header->target_count; first_rect += tables->mesh.targets[t++].rect_count) {
         const noh_target *target = &mesh.targets[t];
         if (weights[t] != 0.0f && target->rect_count) {
-            noh_gl_morph_put_record(m->records + 4u * (size_t)*slot_count, target, weights[t], x | y << 16);
-            put_rect_records(m, first_rect, target->rect_count, *slot_count, rect_records);
-            *slot_count += 1;
+            noh_gl_morph_put_record(m->records + 4u * (size_t)*records, target, weights[t], x | y << 16);
+            put_rect_records(m, first_rect, target->rect_count, *records, rect_records);
+            *records += 1;
             stats->targets += 1;
             stats->rects += target->rect_count;
             stats->texels += target->texel_count;
@@ -180,7 +184,7 @@ static void clear_bound(noh_gl_morph *m)
     }
 }
 
-/* Clear the dirty tiles only: the others keep their sums. */
+/* Clear the tiles of changed instances: the others keep their sums. */
 static void clear_tiles(noh_gl_morph *m)
 {
     if (m->dirty_count == m->plan.instance_count) {

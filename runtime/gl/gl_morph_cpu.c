@@ -1,10 +1,10 @@
-/* gl_morph_cpu.c: the path cpu: deform/morph.h accumulates, and the sums of each changed instance are uploaded to its
- * tile. The texture is only sampled, so three components do. */
+/* gl_morph_cpu.c: the path cpu. deform/morph.h accumulates each changed instance, and the sums are uploaded to its
+ * tile. The texture is only fetched from, never rendered to, so three components are enough. */
 #include <string.h>
 
 #include "gl/gl_morph_internal.h"
 
-/* Floats to halves in place: half i ends at byte 2 i + 2, before float i + 1 begins, so no unread float is overwritten.
+/* Floats to halves in place. Half i ends at byte 2 i + 2, before float i + 1 begins, so no unread float is overwritten.
  */
 static void narrow_to_half(void *floats, size_t count)
 {

@@ -1,9 +1,10 @@
-/* gl_morph_gather.c: the path gather: sums without blending.
+/* gl_morph_gather.c: the path gather, which sums without blending.
  *
- * Each vertex that a target moves has a list of its deltas, in target order, in compressed-row form: starts[v] to
- * starts[v + 1] are the entries of vertex v. One fragment per vertex walks its list, adds delta * weight in registers,
- * and writes the three layers once. The additions are those of the CPU in the same order, so the bits are the same. The
- * cost does not depend on how many targets are active, because every entry is read. */
+ * Each vertex that any target moves has a list of its delta texels in target order. The lists lie one behind another,
+ * as the rows of a sparse matrix in compressed-row form: those of vertex v are entries starts[v] to starts[v + 1] - 1.
+ * One fragment per vertex walks its list, adds delta * weight in registers, and writes the three layers once. The
+ * additions are those of the CPU in the same order, so the bits are the same. Every entry is read whatever its weight
+ * is, so the cost does not depend on how many targets are active. */
 #include <string.h>
 
 #include "gl/gl_morph_internal.h"
@@ -29,7 +30,7 @@ static noh_result create_program(noh_gl_morph *m, char *log, size_t log_bytes, n
 
 typedef void (*visit_pair)(void *context, uint32_t vertex, uint32_t target, const uint32_t words[3]);
 
-/* Every delta that is not zero, targets in index order. */
+/* Visit every delta texel that is not zero, targets in index order. */
 static void visit_pairs(const noh_mesh *mesh, visit_pair visit, void *context)
 {
     for (uint32_t t = 0; t < mesh->header->target_count; t++) {
@@ -56,25 +57,26 @@ static void count_pair(void *context, uint32_t vertex, uint32_t target, const ui
 }
 
 typedef struct chunk_filler {
-    uint32_t *cursors;      /* [touched] next entry of each vertex */
-    uint32_t first;         /* entry that the chunk begins with */
+    uint32_t *cursors;      /* [touched] the next entry of each vertex */
+    uint32_t first;         /* the entry that the chunk begins with */
     uint32_t (*entries)[4]; /* [NOH_GATHER_CHUNK] */
 } chunk_filler;
 
 static void fill_pair(void *context, uint32_t vertex, uint32_t target, const uint32_t words[3])
 {
     chunk_filler *f = (chunk_filler *)context;
-    uint32_t at = f->cursors[vertex]++ - f->first; /* wraps to a large number for entries before the chunk */
+    uint32_t at = f->cursors[vertex]++ - f->first; /* an entry before the chunk wraps to a large number */
     if (at < NOH_GATHER_CHUNK) {
         memcpy(f->entries[at], words, 12);
         f->entries[at][3] = target;
     }
 }
 
-/* Lists by vertex out of rectangles by target: a counting sort in fixed memory. The first walk over the mesh counts
- * each vertex's entries, and the running sum gives the starts. A second array of cursors then gives each delta its
- * place; but only NOH_GATHER_CHUNK entries fit in the staging memory, so the walk is repeated once per chunk and keeps
- * the entries that fall into it. Targets are visited in index order, so each list is in target order. */
+/* Turn rectangles by target into lists by vertex: a counting sort in fixed memory. The first walk over the mesh counts
+ * each vertex's entries, and their running sum gives the starts. A copy of the starts, as cursors, then gives each
+ * delta texel its place. Only NOH_GATHER_CHUNK entries fit into the staging memory, so this walk is repeated for each
+ * chunk and keeps the entries that fall into it. Targets are visited in index order, so each list is in target order.
+ */
 static void upload_lists(noh_gl_morph *m, const noh_gl_morph_mesh *mesh)
 {
     uint32_t touched = mesh->mesh.header->touched_count, pairs = mesh->mesh.header->pair_count;
@@ -131,7 +133,7 @@ noh_result noh_gl_morph_init_gather(noh_gl_morph *m, char *log, size_t log_bytes
 /* ---- updating ---- */
 
 /* The weights of all targets of an instance, and its tile. The lists may belong to a finer LOD level and name targets
- * that this one leaves out: their weight is 0. */
+ * that this level leaves out: those get the weight 0. */
 static void list_instance(noh_gl_morph *m, uint32_t instance, uint32_t *tile, noh_gl_morph_stats *stats)
 {
     const noh_mesh mesh = noh_gl_morph_view(m, instance);

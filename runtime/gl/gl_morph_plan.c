@@ -1,4 +1,4 @@
-/* gl_morph_plan.c: which path, and every byte of it, before anything is made. */
+/* gl_morph_plan.c: which path, where everything lies, and every byte of it, before anything is made. */
 #include <string.h>
 
 #include "gl/gl_morph_internal.h"
@@ -19,7 +19,7 @@ const char *noh_accumulate_name(noh_accumulate accumulate)
 
 /* ---- which path ---- */
 
-/* NULL when the path runs here, else what is missing. */
+/* NULL if the path runs here, else what is missing. */
 static const char *missing(noh_morph_path path, noh_accumulate accumulate, const noh_gl_caps *caps)
 {
     int half = accumulate == NOH_ACCUMULATE_F16;
@@ -50,10 +50,10 @@ static const char *missing(noh_morph_path path, noh_accumulate accumulate, const
     return NULL;
 }
 
-/* The cheapest path on a GPU. Costs are in blended texels: mrt blends every texel of the active targets, and a
- * rectangle costs as much as 4 texels of vertex work; gather makes two dependent fetches per entry and reads all
- * entries, active or not. The ratios were measured by `noh bench` (runtime/README.md). Layered and per-layer are never
- * cheaper than mrt. */
+/* The cheapest path on a GPU, by a model whose unit is one blended texel. mrt blends every texel of the active targets,
+ * and the vertex work of a rectangle costs as much as 4 texels; gather reads all entries, active or not, with two
+ * dependent fetches each, at 1.25. The factors were measured by `noh bench` (runtime/README.md). layered and per-layer
+ * do the work of mrt and more, so they are never cheaper. */
 static noh_morph_path cheapest_on_gpu(const noh_gl_morph_plan *plan, float active, noh_accumulate accumulate,
                                       const noh_gl_caps *caps, const char **reason)
 {
@@ -82,8 +82,8 @@ static noh_morph_path cheapest_on_gpu(const noh_gl_morph_plan *plan, float activ
     return NOH_MORPH_CPU;
 }
 
-/* The policy `blend`: the three layers are blended into, by one draw where a geometry shader can send a triangle to
- * each of them, else by a pass for each. Where this format cannot be blended into, per-layer says so. */
+/* The policy `blend`: one draw where a geometry shader can send a triangle to each of the three layers, else a pass for
+ * each. Where the format cannot be blended into, the check of per-layer says so. */
 static noh_morph_path blending_path(noh_accumulate accumulate, const noh_gl_caps *caps, const char **reason)
 {
     if (!missing(NOH_MORPH_LAYERED, accumulate, caps)) {
@@ -127,7 +127,7 @@ static GLenum layer_format(const noh_gl_morph_plan *plan, const noh_gl_caps *cap
 {
     int half = plan->accumulate == NOH_ACCUMULATE_F16;
     if (plan->path == NOH_MORPH_CPU) {
-        return half ? GL_RGB16F : GL_RGB32F; /* only sampled, so three components do */
+        return half ? GL_RGB16F : GL_RGB32F; /* never rendered to, so three components are enough */
     }
     if (half) {
         return GL_RGBA16F;
@@ -162,8 +162,9 @@ uint32_t noh_gl_morph_pitch(const noh_mesh_header *header)
     return (header->morph_height + 3u) & ~3u;
 }
 
-/* Stack the meshes' bands in an atlas of this width: a mesh's tiles fill rows of as many as fit side by side. Returns
- * the height, which may be more than a texture has. */
+/* Stack the meshes' bands in an atlas of this width. A tile is as wide as its mesh's grid of accumulation texels, a
+ * power of two, and a band has as many tiles side by side as fit. Returns the height, which may be more than a texture
+ * has. */
 static uint64_t stack_bands(const noh_gl_morph_desc *desc, uint32_t atlas_width, noh_gl_morph_mesh *meshes)
 {
     uint64_t y = 0;
@@ -171,7 +172,7 @@ static uint64_t stack_bands(const noh_gl_morph_desc *desc, uint32_t atlas_width,
         const noh_mesh_header *h = desc->meshes[i].header;
         uint32_t count = desc->instance_counts ? desc->instance_counts[i] : 1u;
         uint32_t columns = atlas_width >> h->morph_width_log2;
-        columns = columns ? columns : 1u; /* a mesh that nothing touches may be wider than the others: it has no rows */
+        columns = columns ? columns : 1u; /* a mesh that no target moves may be wider than the atlas; it has no rows */
         if (meshes) {
             meshes[i].columns = columns;
             meshes[i].band_y = (uint32_t)y;
@@ -181,9 +182,8 @@ static uint64_t stack_bands(const noh_gl_morph_desc *desc, uint32_t atlas_width,
     return y;
 }
 
-/* Choose the atlas: the narrowest width, a power of two, at which the bands are not higher than a texture may be.
- * Widths up to 2048 are tried with heights up to 2048, which every ES 3.0 has, and only then the larger ones of this
- * GPU. */
+/* Choose the atlas: the least width, a power of two, at which the bands are no higher than a texture may be. Widths up
+ * to 2048 are tried with heights up to 2048, which every ES 3.0 has, and only then the larger ones of this GPU. */
 static noh_result place_tiles(const noh_gl_morph_desc *desc, uint32_t texture_size_max, noh_gl_morph_mesh *meshes,
                               noh_gl_morph_plan *plan, noh_error *error)
 {
@@ -195,7 +195,7 @@ static noh_result place_tiles(const noh_gl_morph_desc *desc, uint32_t texture_si
             least = w;
         }
     }
-    if (least == 1) { /* no target anywhere: one texel, so that the shaders have something bound */
+    if (least == 1) { /* no target anywhere: one texel, so that there is a texture to bind */
         plan->atlas_width = plan->atlas_height = 1;
         for (uint32_t i = 0; meshes && i < desc->mesh_count; i++) {
             meshes[i].columns = 1;
@@ -219,8 +219,8 @@ static noh_result place_tiles(const noh_gl_morph_desc *desc, uint32_t texture_si
     return NOH_OK;
 }
 
-/* The mesh of the set whose tables a mesh uses: the finest LOD level of the same mesh in the set, the first one of
- * equals. This works because a level's rectangles, target by target, and its lists, vertex by vertex, are a prefix of
+/* The mesh of the desc whose tables a mesh uses: the finest LOD level of the same mesh, the first of equals. One table
+ * serves all levels because a level's rectangles, target by target, and its lists, vertex by vertex, are a prefix of
  * those of every finer level. */
 static uint32_t owner_of(const noh_gl_morph_desc *desc, uint32_t index)
 {
@@ -299,7 +299,7 @@ int noh_gl_morph_wide(const noh_gl_morph_plan *plan)
     return plan->rect_count > 65536u || plan->weight_count > 65536u;
 }
 
-/* The most that one update can draw: every rectangle of every instance. */
+/* For the most that one update can draw: every rectangle of every instance. */
 static uint64_t rect_record_bytes(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan)
 {
     uint64_t count = 0;

@@ -1,5 +1,5 @@
-/* gl_morph_shared.c: what the paths share: tiles, weights for the shaders, framebuffers, the instanced vertex stream,
- * and the GL state around a draw. */
+/* gl_morph_shared.c: what the paths share: tiles, records of weights, framebuffers, the instanced vertex stream, and
+ * the GL state around a draw. */
 #include <string.h>
 
 #include "gl/gl_debug.h"

@@ -1,3 +1,5 @@
+/* gl_program.c: compiling and linking. Pending GL errors are cleared first and taken last, so that a call that the
+ * driver refused is never taken for a program that works. */
 #include "gl/gl_program.h"
 
 #include "gl/gl_debug.h"
@@ -6,7 +8,7 @@
 
 enum { STAGE_VERTEX, STAGE_GEOMETRY, STAGE_FRAGMENT, STAGE_COUNT };
 
-/* A log that is filled from the left and stays a string. */
+/* A log that is appended to and is always zero-terminated. */
 typedef struct log_text {
     char *text;
     size_t room, length;
@@ -29,7 +31,7 @@ static void log_head(log_text *log, const char *name, const char *stage)
     log_append(log, ": ");
 }
 
-/* How many bytes the driver may write, its zero included. */
+/* How many bytes the driver may write, with its terminating zero. */
 static GLsizei log_rest(const log_text *log)
 {
     size_t rest = log->room - log->length;
@@ -102,8 +104,8 @@ static noh_result link_program(const noh_gl_api *api, const noh_gl_program_desc 
     return noh_fail(error, NOH_ERR_DATA, "the program does not link", 0, 0);
 }
 
-/* Compile every stage and attach it. The shaders are marked for deletion at once:
- * they then live exactly as long as the program. */
+/* Compile every stage and attach it. The shaders are marked for deletion at once: they then live exactly as long as the
+ * program. */
 static noh_result attach_stages(const noh_gl_api *api, const noh_gl_program_desc *desc, GLuint program, log_text *log,
                                 noh_error *error)
 {
@@ -152,7 +154,7 @@ noh_result noh_gl_program_create(const noh_gl_api *api, const noh_gl_program_des
     result = attach_stages(api, desc, name, &words, error);
     if (result == NOH_OK) result = link_program(api, desc, name, &words, error);
     if (result == NOH_OK) bind_names(api, desc, name);
-    /* A refused call explains more than what came of it: a shader whose text never arrived does not compile either. */
+    /* A refused call is the cause, a failed compile may be its effect: text that never arrived does not compile. */
     noh_result refused = noh_gl_error_check(api, "the driver refuses a call that makes a program", 0, error);
     if (refused != NOH_OK) result = refused;
     if (result != NOH_OK) {

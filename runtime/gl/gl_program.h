@@ -1,10 +1,10 @@
-/* gl_program.h: shaders into programs.
+/* gl_program.h: shaders compiled and linked.
  *
- *   noh_gl_program_create   compile up to three stages, link, bind units and blocks
+ *   noh_gl_program_create  compile up to three stages, link, bind samplers and blocks
  *   noh_gl_program_delete
  *
- * Sources come as tools/embed wrote them: the #version line apart from the rest,
- * the rest in pieces that glShaderSource takes as they are. Nothing is copied.
+ * A source is the #version line and the text behind it in pieces, which glShaderSource takes as they are: tools/embed
+ * writes the library's own in this form. Nothing is copied.
  *
  * Threads: the context's own thread, for every function. */
 #ifndef NOH_GL_GL_PROGRAM_H
@@ -18,7 +18,7 @@
 extern "C" {
 #endif
 
-/* One shader stage's text. tools/embed makes these. */
+/* The text of one shader stage. */
 typedef struct noh_gl_source {
     const char *version;       /* "#version 300 es\n" */
     const char *const *pieces; /* what follows it */
@@ -26,38 +26,37 @@ typedef struct noh_gl_source {
 } noh_gl_source;
 
 typedef struct noh_gl_program_desc {
-    const char *name;              /* debug label and head of the log; NULL: none */
+    const char *name;              /* for the debug label and the log; NULL: none */
     const noh_gl_source *vertex;   /* required */
     const noh_gl_source *geometry; /* NULL: none */
     const noh_gl_source *fragment; /* required */
-    const char *version;           /* instead of each source's own #version line, with its newline; NULL: its own.
-                                    * ES wants the same version in all stages of a program */
-    const char *defines; /* whole lines put right after #version in every stage: #extension, #define; NULL: none */
+    const char *version;           /* a #version line with its newline, for all stages, which must have the same one in
+                                    * ES; NULL: the sources' own */
+    const char *defines; /* whole lines put right behind #version in every stage: #extension, #define; NULL: none */
     const char *geometry_defines; /* more such lines, in the geometry stage only; NULL: none */
 
-    const char *const *samplers; /* sampler i reads texture unit i. A name that the linker dropped is skipped */
+    const char *const *samplers; /* sampler i reads texture unit i; names that the linker removed are skipped */
     uint32_t sampler_count;      /* default 0 */
-    const char *const *blocks;   /* uniform block i is fed from binding i; dropped names are skipped */
+    const char *const *blocks;   /* uniform block i reads binding i; names that the linker removed are skipped */
     uint32_t block_count;        /* default 0 */
 
-    const char *const *varyings; /* transform feedback outputs of the vertex stage */
+    const char *const *varyings; /* outputs of the vertex stage for transform feedback */
     uint32_t varying_count;      /* default 0: no transform feedback */
     GLenum varying_mode;         /* 0: GL_INTERLEAVED_ATTRIBS */
 
     noh_gl_ledger *ledger; /* counts the program; NULL: not counted */
 } noh_gl_program_desc;
 
-/* Compile, link and label one program. Leaves program 0 in use.
- * memory  none; log_bytes of `log` (NULL with 0: no log): empty on success, else
- *         "NAME: STAGE: " and the driver's words, cut to fit, always ended by a zero.
- *         Its source numbers are those named in the comments of the embedded file
- * errors  NOH_ERR_ARG a stage is missing or has too many pieces; NOH_ERR_DATA it does
- *         not compile or link, `what` says which, `where` is the GL stage (0 for link);
- *         NOH_ERR_GL the driver made no object. `program` is untouched on error */
+/* Compile, link and label one program. Leaves program 0 in use; `program` is untouched on error.
+ * log     [log_bytes], NULL with 0: no log. Empty on success, else "NAME: STAGE: " and the driver's log, cut to fit and
+ *         always zero-terminated. For the library's shaders, comments in shaders.gen.c explain its source numbers
+ * memory  none
+ * errors  ARG a stage is missing or has too many pieces; DATA it does not compile or link, `what` says which, `where`
+ *         is the GL stage (0: linking); GL, MEMORY the driver refused a call */
 noh_result noh_gl_program_create(const noh_gl_api *api, const noh_gl_program_desc *desc, GLuint *program, char *log,
                                  size_t log_bytes, noh_error *error);
 
-/* ledger NULL: not counted. A program that is 0 already is left alone. */
+/* Delete a program and set it to 0; 0 is left alone. ledger NULL: it was not counted. */
 void noh_gl_program_delete(const noh_gl_api *api, noh_gl_ledger *ledger, GLuint *program);
 
 #ifdef __cplusplus

@@ -17,7 +17,7 @@ static noh_result create_white(noh_gl_renderer *r, noh_error *error)
         r->gl->BindTexture(GL_TEXTURE_2D, 0);
         result = noh_gl_error_check(r->gl, "the driver refuses the renderer's white texel", r->white.bytes, error);
     }
-    return result; /* where it fails, create_objects deletes */
+    return result; /* on error, create_objects deletes */
 }
 
 /* ---- which variants ---- */
@@ -36,7 +36,7 @@ static noh_result want_one(noh_gl_renderer *r, noh_gl_variant_key key, noh_error
     return NOH_OK;
 }
 
-/* With every pixel, and where draws fade with some. */
+/* The variant that draws every pixel, and if the renderer fades, the one that draws some. */
 static noh_result want(noh_gl_renderer *r, noh_gl_variant_key key, noh_error *error)
 {
     noh_result result = want_one(r, key, error);
@@ -47,7 +47,8 @@ static noh_result want(noh_gl_renderer *r, noh_gl_variant_key key, noh_error *er
     return result;
 }
 
-/* Without joints; with all of its influences; and with each lower number. */
+/* Every variant that the mesh may be drawn by: in the bind pose; with all its influences; and with each lower number.
+ */
 static noh_result want_mesh(noh_gl_renderer *r, const noh_gl_renderer_desc *desc, const noh_mesh *mesh,
                             noh_error *error)
 {

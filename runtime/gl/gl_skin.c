@@ -1,3 +1,8 @@
+/* gl_skin.c: palettes in memory, and the GL object that takes them.
+ *
+ * All palettes of all instances lie in one array of rows, in the layout of the GL object. Setting matrices writes to
+ * this array, compares first, and widens one span of rows that differ from what was sent. An update sends the span in
+ * one call: a few rows in between that did not change are cheaper to send than more calls. */
 #include "gl/gl_skin.h"
 
 #include <string.h>
@@ -26,7 +31,7 @@ static uint32_t first_row(const noh_gl_skin_mesh *m, uint32_t instance)
     return m->first_row + (instance - m->first_instance) * m->stride;
 }
 
-/* Write rows if they differ from what is there, and widen the span that the next update sends. */
+/* Write rows that differ from what is there, and widen the span that the next update sends. */
 static void put_rows(noh_gl_skin *skin, uint32_t row, const float *values, uint32_t count)
 {
     float *own = skin->rows + 4u * (size_t)row;
@@ -38,7 +43,8 @@ static void put_rows(noh_gl_skin *skin, uint32_t row, const float *values, uint3
     }
 }
 
-/* A joint of a mesh with NOH_MESH_DUAL_QUATERNION, as common_skin.glsl has it. */
+/* A joint of a mesh with NOH_MESH_DUAL_QUATERNION in the rows of common_skin.glsl: rotation, dual part, and the
+ * stretch, a symmetric matrix, as xx yy zz xy, xz yz 0 0. */
 static void dual_rows(const float matrix[12], float rows[16])
 {
     noh_dual_quaternion q;
@@ -55,7 +61,7 @@ static void dual_rows(const float matrix[12], float rows[16])
     rows[14] = rows[15] = 0.0f;
 }
 
-/* Gather a palette's joints. stride: floats from a joint's matrix to the next; 0: one for all. */
+/* Write the joints of a palette. stride: floats from a joint's matrix to the next; 0: one matrix for all. */
 static void put_palette(noh_gl_skin *skin, const noh_mesh *mesh, const noh_palette *palette, uint32_t row,
                         const float *matrices, uint32_t stride)
 {
@@ -88,7 +94,8 @@ void noh_gl_skin_set_matrices(noh_gl_skin *skin, uint32_t instance, const float 
     put_palettes(skin, instance, matrices, 12);
 }
 
-/* Row i of the cofactors is the cross product of the other two rows; the determinant is any row times its cofactors. */
+/* Row i of the cofactors is the cross product of the two rows after it; the determinant is any row times its cofactors.
+ */
 float noh_gl_normal_rows(const float w[12], float rows[12])
 {
     float determinant;
@@ -106,8 +113,8 @@ float noh_gl_normal_rows(const float w[12], float rows[12])
     return determinant;
 }
 
-/* The tile goes in as floats: its numbers are below 2^24 and so exact. Integer bits would be denormal floats, which
- * GPUs flush to zero. */
+/* The tile is written as floats: its numbers are below 2^24 and so exact. The bits of such integers would be denormal
+ * floats, which GPUs may flush to zero. */
 noh_result noh_gl_skin_set_place(noh_gl_skin *skin, uint32_t instance, const float world[12],
                                  const noh_gl_morph_binding *morph, noh_error *error)
 {
@@ -163,7 +170,7 @@ static noh_result create_texture(noh_gl_skin *skin, noh_error *error)
 static noh_result create_object(noh_gl_skin *skin, noh_error *error)
 {
     noh_result result = NOH_OK;
-    skin->dirty_first = 0; /* the content of a new object is undefined: the first update sends all */
+    skin->dirty_first = 0; /* the content of a new object is undefined: the first update sends everything */
     skin->dirty_end = skin->plan.texel_count;
     if (skin->plan.mode == NOH_PALETTE_TEXTURE) {
         result = create_texture(skin, error);

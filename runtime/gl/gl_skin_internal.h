@@ -5,10 +5,10 @@
 #include "base/arena.h"
 #include "gl/gl_skin.h"
 
-#define NOH_CROWD_ROWS 4u            /* before an instance's palettes in a texture: world, tile (crowd_row) */
+#define NOH_CROWD_ROWS 4u            /* in front of an instance's palettes in a texture: see crowd_row */
 #define NOH_SKIN_ROWS_MAX (1u << 26) /* 1 GiB */
 
-/* One mesh of the set. */
+/* One mesh of the desc. */
 typedef struct noh_gl_skin_mesh {
     noh_mesh mesh;
     uint32_t instance_count, first_instance;
@@ -23,19 +23,19 @@ struct noh_gl_skin {
     uint32_t mesh_count;
     noh_gl_skin_mesh *meshes;        /* [mesh_count] */
     float *rows;                     /* [texel_count, in a texture width * height][4] */
-    uint32_t dirty_first, dirty_end; /* rows that were not sent yet; none where first >= end */
-    noh_gl_buffer buffer;            /* one of these two */
-    noh_gl_texture texture;
+    uint32_t dirty_first, dirty_end; /* the span that the next update sends; empty if first >= end */
+    noh_gl_buffer buffer;            /* either this */
+    noh_gl_texture texture;          /* or this */
 };
 
-/* Rows that palettes start at multiples of. */
+/* Palettes start at multiples of this many rows. */
 uint32_t noh_gl_skin_align(const noh_gl_skin_plan *plan, const noh_gl_caps *caps);
 
-/* Walk the set as init will; returns the rows. `meshes` may be NULL. */
+/* Place every mesh's instances, and return the number of rows. `meshes` NULL only counts. */
 uint64_t noh_gl_skin_layout(const noh_gl_skin_desc *desc, noh_palette_mode mode, uint32_t align,
                             noh_gl_skin_mesh *meshes);
 
-/* Carve everything behind the struct itself from an arena (or measure it). `skin` NULL only measures. */
+/* Carve everything behind the struct itself from an arena. `skin` NULL only measures. */
 void noh_gl_skin_carve(noh_arena *arena, uint32_t mesh_count, const noh_gl_skin_plan *plan, noh_gl_skin *skin);
 
 #endif

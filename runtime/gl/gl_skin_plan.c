@@ -1,4 +1,8 @@
-/* gl_skin_plan.c: where palettes go, and what they take. */
+/* gl_skin_plan.c: where palettes go, and every byte of them.
+ *
+ * Instance after instance, mesh after mesh, each instance has its palettes one behind another, each at a multiple of
+ * the alignment: of one row in a texture, of the GPU's offset alignment in a uniform buffer, where each palette is
+ * bound as a range of its own. In a texture, the four rows of a crowd's instance come first. */
 #include <string.h>
 
 #include "gl/gl_skin_internal.h"
@@ -43,7 +47,7 @@ uint32_t noh_gl_joint_rows(const noh_mesh *mesh)
     return (mesh->header->flags & NOH_MESH_DUAL_QUATERNION) ? 4u : 3u;
 }
 
-/* Of the largest palette_block that a mesh of the set is drawn with; ES 3.0 promises 16 KiB. */
+/* The bytes of the largest palette_block that a mesh of the desc is drawn with. ES 3.0 promises 16 KiB. */
 static uint32_t block_bytes(const noh_gl_skin_desc *desc)
 {
     uint32_t rows = 3;
@@ -80,7 +84,7 @@ uint32_t noh_gl_skin_align(const noh_gl_skin_plan *plan, const noh_gl_caps *caps
     return plan->mode == NOH_PALETTE_TEXTURE ? 1u : (bytes + 15u) / 16u;
 }
 
-/* The narrowest texture that holds the rows and is not higher than textures may be: up to 2048 x 2048, which every
+/* The narrowest texture that holds the rows and is no higher than textures may be: up to 2048 x 2048, which every
  * ES 3.0 has, then up to the limits of this GPU. */
 static noh_result shape_texture(uint64_t rows, uint32_t side_max, noh_gl_skin_plan *plan, noh_error *error)
 {
@@ -110,7 +114,6 @@ uint32_t noh_gl_palette_row(const noh_gl_skin_binding *binding, const noh_mesh *
     return row;
 }
 
-/* Walk the set as init will. `meshes` may be NULL. */
 uint64_t noh_gl_skin_layout(const noh_gl_skin_desc *desc, noh_palette_mode mode, uint32_t align,
                             noh_gl_skin_mesh *meshes)
 {
@@ -152,7 +155,7 @@ static void set_bytes(const noh_gl_skin_desc *desc, noh_gl_skin_plan *plan)
     plan->cpu_bytes = arena.used;
     if (plan->mode == NOH_PALETTE_TEXTURE) {
         plan->gpu_bytes = 16u * (uint64_t)plan->width * plan->height;
-    } else if (plan->texel_count) { /* the last palette is bound with a whole block behind its start */
+    } else if (plan->texel_count) { /* a whole block is bound from the start of every palette, also of the last one */
         plan->gpu_bytes = 16u * (uint64_t)plan->texel_count + block_bytes(desc);
     }
 }

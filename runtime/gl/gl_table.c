@@ -1,3 +1,4 @@
+/* gl_table.c: tables of texels in 2-D textures (gl_table_internal.h). */
 #include "gl/gl_table_internal.h"
 
 #define WIDTH_LOG2_MIN 8u
@@ -70,7 +71,7 @@ void noh_gl_table_upload(const noh_gl_api *api, const noh_gl_table *table, uint3
                          const void *data)
 {
     uint32_t width = 1u << table->width_log2, x = first & (width - 1u), y = first >> table->width_log2;
-    uint32_t head = x ? (count < width - x ? count : width - x) : 0; /* the rest of a row that is begun */
+    uint32_t head = x ? (count < width - x ? count : width - x) : 0; /* the rest of a row that was begun */
     uint32_t rows = (count - head) >> table->width_log2;
     const uint8_t *bytes = (const uint8_t *)data;
     NOH_ASSERT(table->texture.name && (data || !count));

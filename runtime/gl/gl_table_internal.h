@@ -1,7 +1,7 @@
-/* gl_table.h: a one-dimensional table of texels, folded into a 2-D texture.
+/* gl_table_internal.h (private to gl_morph*.c): a one-dimensional table of texels, folded into a 2-D texture.
  *
- * Texel i lies at (i & (width - 1), i >> width_log2). Core ES 3.0 has no buffer
- * textures and guarantees textures of 2048 x 2048, so tables may have 2^22 texels.
+ * Texel i lies at (i & (width - 1), i >> width_log2). Core ES 3.0 has no buffer textures, and guarantees textures of
+ * 2048 x 2048, so a table may have 2^22 texels.
  *
  * Threads: the context's own thread; noh_gl_table_shape and noh_gl_table_bytes, any. */
 #ifndef NOH_GL_GL_TABLE_INTERNAL_H
@@ -17,10 +17,11 @@ typedef struct noh_gl_table {
     uint32_t width_log2, height, texel_bytes;
 } noh_gl_table;
 
-/* The shape of a table of `count` texels: the narrowest of 256..2048 that is at most 2048 high. */
+/* The shape of a table of `count` texels: the least width of 256, 512, 1024 and 2048 at which it is at most 2048 high.
+ */
 void noh_gl_table_shape(uint32_t count, uint32_t *width_log2, uint32_t *height);
 
-/* Bytes of a table; 0 texels still take one row. */
+/* The bytes of a table. One of 0 texels still takes a row. */
 uint64_t noh_gl_table_bytes(GLenum format, uint32_t count);
 
 /* format: GL_RGB32UI, GL_RGBA32UI or GL_R32UI.

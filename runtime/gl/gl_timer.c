@@ -1,3 +1,5 @@
+/* gl_timer.c: a ring of queries. `oldest` is the next to be read, the `flying` queries from there on are in flight, and
+ * the one behind them is the next to begin. A clock that became disjoint makes all of them worthless. */
 #include "gl/gl_timer.h"
 
 #include <string.h>
@@ -10,7 +12,7 @@ void noh_gl_timer_init(noh_gl_timer *timer, const noh_gl_api *api, const noh_gl_
     if (!timer->available) return;
     noh_gl_error_take(api);
     api->TimeGenQueries(NOH_GL_TIMER_FLIGHT, timer->queries);
-    /* Reading the flag clears it: discard what happened before. */
+    /* reading the flag clears it: what happened before does not count */
     GLint disjoint = 0;
     if (api->is_es) api->GetIntegerv(GL_GPU_DISJOINT_EXT, &disjoint);
     if (noh_gl_error_take(api) != GL_NO_ERROR) {
@@ -31,8 +33,8 @@ void noh_gl_timer_begin(noh_gl_timer *timer, const noh_gl_api *api)
 {
     NOH_ASSERT(timer && api);
     if (!timer->available || timer->open || timer->flying == NOH_GL_TIMER_FLIGHT) return;
-    uint32_t slot = (timer->oldest + timer->flying) % NOH_GL_TIMER_FLIGHT;
-    api->TimeBeginQuery(GL_TIME_ELAPSED_EXT, timer->queries[slot]);
+    uint32_t next = (timer->oldest + timer->flying) % NOH_GL_TIMER_FLIGHT;
+    api->TimeBeginQuery(GL_TIME_ELAPSED_EXT, timer->queries[next]);
     timer->open = 1;
 }
 

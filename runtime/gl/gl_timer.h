@@ -4,9 +4,9 @@
  *   noh_gl_timer_begin / noh_gl_timer_end   around the calls to time
  *   noh_gl_timer_poll                       the oldest finished measurement, never waits
  *
- * Results come some frames late, so several measurements are in flight. Without
- * timer queries, and while all are in flight, begin and end do nothing. One timer
- * at a time may be open: GL does not nest time queries.
+ * Results arrive some frames later, so up to NOH_GL_TIMER_FLIGHT measurements are in flight at once. While all of them
+ * are, and without timer queries, begin and end do nothing. Only one timer may be open at a time: GL does not nest time
+ * queries.
  *
  * Threads: the context's own thread, for every function. */
 #ifndef NOH_GL_GL_TIMER_H
@@ -29,17 +29,17 @@ typedef struct noh_gl_timer {
     int open;        /* between begin and end */
 } noh_gl_timer;
 
-/* Never fails. `available` is 0 without timer queries, and where the driver refuses to make them: the timer then
- * measures nothing. */
+/* Never fails: without timer queries, or if the driver refuses to make them, `available` is 0 and nothing is measured.
+ */
 void noh_gl_timer_init(noh_gl_timer *timer, const noh_gl_api *api, const noh_gl_caps *caps);
 void noh_gl_timer_delete(noh_gl_timer *timer, const noh_gl_api *api);
 
 void noh_gl_timer_begin(noh_gl_timer *timer, const noh_gl_api *api);
 void noh_gl_timer_end(noh_gl_timer *timer, const noh_gl_api *api);
 
-/* units   nanoseconds
- * errors  NOH_ERR_NOT_FOUND none has finished yet; NOH_ERR_UNSUPPORTED no timer queries;
- *         NOH_ERR_GL the GPU's clock was disjoint (a frequency change, for instance): all in flight are dropped */
+/* Take the oldest finished measurement, in nanoseconds. Never waits for the GPU.
+ * errors  NOT_FOUND none has finished yet; UNSUPPORTED no timer queries; GL the GPU's clock was disjoint, as after a
+ *         change of its frequency: all measurements in flight are dropped */
 noh_result noh_gl_timer_poll(noh_gl_timer *timer, const noh_gl_api *api, uint64_t *elapsed_ns);
 
 #ifdef __cplusplus

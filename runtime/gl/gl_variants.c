@@ -1,3 +1,4 @@
+/* gl_variants.c: from a mesh and its bindings to a key, from a key to its defines, from the defines to a program. */
 #include "gl/gl_variants.h"
 
 #include <string.h>
@@ -5,7 +6,7 @@
 #include "gl/gl_program.h"
 #include "shaders.gen.h"
 
-/* The largest of 1, 2, 4, 8 that is at most `limit` and at most what is stored; limit 0: all. */
+/* The largest of 1, 2, 4, 8 that is at most `limit` and at most `stored`; limit 0: all that are stored. */
 static uint8_t drawn_of(uint32_t stored, uint32_t limit)
 {
     uint32_t drawn = stored;
@@ -39,7 +40,7 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
 
 /* ---- the text of the defines ---- */
 
-/* All of them take 214 bytes. */
+/* All defines together take 214 bytes, so NOH_GL_DEFINES_BYTES never cuts them. */
 static size_t put_text(char *text, size_t at, const char *more)
 {
     while (*more && at + 1u < NOH_GL_DEFINES_BYTES) {

@@ -1,13 +1,12 @@
 /* gl_variants.h: the programs of the plain renderer, one for each kind of mesh.
  *
- *   noh_gl_variant_key_of   what a mesh with these bindings is drawn by
+ *   noh_gl_variant_key_of   the variant that draws a mesh with these bindings
  *   noh_gl_variant_defines  a key as the text of its #defines, for your own shaders (gl_shader_text.h)
  *   noh_gl_variant_create   compile mesh.vert and mesh.frag for a key
  *   noh_gl_variant_delete
  *   noh_gl_variant_skin     bind an instance's palettes
  *
- * A key is the set of defines that common_skin.glsl, common_layers.glsl and mesh.frag name. Set `fade` in what
- * noh_gl_variant_key_of returns where a draw fades.
+ * A key stands for a set of #defines: those that common_skin.glsl, common_layers.glsl and mesh.frag are compiled with.
  *
  * Threads: the context's own thread; noh_gl_variant_key_of and noh_gl_variant_defines, any. */
 #ifndef NOH_GL_GL_VARIANTS_H
@@ -24,21 +23,21 @@ typedef enum noh_debug_view {
     NOH_VIEW_POSITION,
     NOH_VIEW_NORMAL,
     NOH_VIEW_TANGENT,
-    NOH_VIEW_LOD /* facets in the colour of the LOD level, from 0: white, orange, sky blue, green, yellow, blue,
-                  * vermilion, purple (Okabe and Ito's, which the colour-blind tell apart, with white for black) */
+    NOH_VIEW_LOD /* facets in the colour of the LOD level: from 0, white, orange, sky blue, green, yellow, blue,
+                  * vermilion, purple (the palette of Okabe and Ito, safe for colour-blind eyes, white for black) */
 } noh_debug_view;
 
 typedef struct noh_gl_variant_key {
-    uint8_t influences; /* stored per vertex: 0 (also: the bind pose), 1, 2, 4, 8 */
-    uint8_t drawn;      /* of these: 1, 2, 4, 8; 0 where influences is */
-    uint8_t texture;    /* 1: palettes from a texture, or a crowd */
-    uint8_t dual_quaternion;
-    uint8_t texels; /* the mesh has NOH_MESH_TEXELS */
-    uint8_t crowd;
-    uint8_t layers_uint; /* as in noh_gl_morph_binding.is_uint */
-    uint8_t view;        /* noh_debug_view */
-    uint8_t fade;        /* draws only some pixels: noh_gl_lod */
-    uint8_t encode_srgb; /* as in noh_gl_renderer_desc */
+    uint8_t influences;      /* stored per vertex: 1, 2, 4 or 8; 0: rigid, or the bind pose */
+    uint8_t drawn;           /* how many of them are used: 1, 2, 4 or 8; 0 if influences is 0 */
+    uint8_t texture;         /* 1: palettes or crowd rows are in a texture */
+    uint8_t dual_quaternion; /* 1: the mesh has NOH_MESH_DUAL_QUATERNION */
+    uint8_t texels;          /* 1: the mesh has NOH_MESH_TEXELS */
+    uint8_t crowd;           /* 1: for noh_gl_draw_crowd */
+    uint8_t layers_uint;     /* as in noh_gl_morph_binding.is_uint */
+    uint8_t view;            /* noh_debug_view */
+    uint8_t fade;            /* 1: draws only some pixels (noh_gl_lod) */
+    uint8_t encode_srgb;     /* as in noh_gl_renderer_desc */
 } noh_gl_variant_key;
 
 typedef struct noh_gl_variant {
@@ -53,24 +52,28 @@ typedef struct noh_gl_variant {
 #define NOH_UNIT_BASE_COLOR 1u
 #define NOH_UNIT_PALETTES 2u
 
-/* skin NULL: the bind pose. crowd: skin is then not NULL, and in a texture. */
+/* The key of a mesh with these bindings; `fade` and `encode_srgb` are 0, for you to set.
+ * skin   NULL: a rigid mesh, or the bind pose. Not NULL, and in a texture, for a crowd
+ * crowd  1: for noh_gl_draw_crowd */
 noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin_binding *skin, int crowd,
                                          int layers_uint, noh_debug_view view);
 
 #define NOH_GL_DEFINES_BYTES 256u
 
-/* The key as whole lines of #define, zero-terminated: what common_skin.glsl, common_layers.glsl and mesh.frag want. */
+/* Write the key as lines of #define, zero-terminated: what common_skin.glsl, common_layers.glsl and mesh.frag need. */
 void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYTES]);
 
-/* varyings[varying_count] for transform feedback, interleaved; 0: none. The device's ledger may be NULL.
- * errors  as noh_gl_program_create */
+/* Compile the plain renderer's program for a key. The device's ledger may be NULL.
+ * varyings  [varying_count] outputs for transform feedback, interleaved; none with 0
+ * errors    as noh_gl_program_create */
 noh_result noh_gl_variant_create(const noh_gl_device *device, noh_gl_variant_key key, const char *const *varyings,
                                  uint32_t varying_count, noh_gl_variant *out, noh_error *error);
 void noh_gl_variant_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_variant *variant);
 
-/* Bind the palettes for the submeshes of one palette; the variant is in use. For a program of your own fill a variant
- * with `key` and `u_skin` (the place of that uniform; -1 with a uniform block). Leaves the texture bound
- * at NOH_UNIT_PALETTES, or the buffer's range at uniform binding 0. */
+/* Bind one palette of an instance, for the submeshes that use it. The variant's program must be in use. For a program
+ * of your own, fill a variant with `key` and `u_skin`, the location of that uniform (-1: palettes are in a uniform
+ * block).
+ * state   Afterwards the texture is bound to NOH_UNIT_PALETTES, or the buffer's range to uniform binding 0 */
 void noh_gl_variant_skin(const noh_gl_api *api, const noh_gl_variant *variant, const noh_mesh *mesh,
                          const noh_gl_skin_binding *skin, uint32_t palette);
 

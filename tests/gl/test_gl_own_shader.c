@@ -1,6 +1,6 @@
-/* A game's own vertex shader, put together as shaders_es/README.md says out of its example and noh_gl_shader_text:
- * what it makes of a mesh that morphs and bends is what the CPU makes of it, with palettes in a block and in a texture,
- * float layers and integer ones, and for a mesh without joints. */
+/* A game's own shaders, put together from the examples of shaders_es/README.md and noh_gl_shader_text as the README
+ * says: the vertices of a mesh that morphs and bends are those of the CPU, with palettes in a block and in a texture,
+ * with float layers and integer ones, and for a mesh without joints. */
 #include "support/gl_fixture.h"
 
 #include "base/quat.h"
@@ -13,17 +13,19 @@
 
 /* ---- the shader ---- */
 
-/* The first ```glsl block of a file, to be freed. */
-static char *example(const char *path)
+/* The n-th ```glsl block of a file, to be freed. */
+static char *example(const char *path, int n)
 {
     FILE *file = fopen(path, "rb");
     char *text = test_zeros(1u << 16), *start, *end;
     if (!file) test_skip("%s is not here: run in the repository's root", path);
     assert_in_range(fread(text, 1, (1u << 16) - 1u, file), 1000, (1u << 16) - 2u);
     fclose(file);
-    start = strstr(text, "```glsl\n");
-    assert_non_null(start);
-    start += 8;
+    for (start = text; n >= 0; n--) {
+        start = strstr(start, "```glsl\n");
+        assert_non_null(start);
+        start += 8;
+    }
     end = strstr(start, "```");
     assert_non_null(end);
     *end = 0;
@@ -47,9 +49,8 @@ static GLuint compile(const noh_gl_api *gl, GLenum stage, const char *const *tex
 static GLuint own_program(const noh_gl_api *gl, noh_gl_variant_key key)
 {
     static const char *const varyings[] = { "v_position", "v_normal" };
-    static const char fragment_text[] =
-        "#version 300 es\nprecision mediump float;\nout vec4 c;\nvoid main() { c = vec4(1.0); }\n";
-    char defines[NOH_GL_DEFINES_BYTES], *own = example("shaders_es/README.md");
+    char defines[NOH_GL_DEFINES_BYTES], *own = example("shaders_es/README.md", 0);
+    char *own_fragment = example("shaders_es/README.md", 1);
     const char *vertex[] = { "#version 300 es\n",
                              defines,
                              "precision highp float;\nprecision highp int;\n",
@@ -57,12 +58,13 @@ static GLuint own_program(const noh_gl_api *gl, noh_gl_variant_key key)
                              noh_gl_shader_text("common_attributes.glsl"),
                              noh_gl_shader_text("common_skin.glsl"),
                              own };
-    const char *fragment[] = { fragment_text };
+    const char *fragment[] = { "#version 300 es\n", "precision highp float;\n", noh_gl_shader_text("common_fade.glsl"),
+                               own_fragment };
     GLuint shaders[2], program = gl->CreateProgram(), block;
     GLint ok = 0;
     noh_gl_variant_defines(key, defines);
     shaders[0] = compile(gl, GL_VERTEX_SHADER, vertex, 7);
-    shaders[1] = compile(gl, GL_FRAGMENT_SHADER, fragment, 1);
+    shaders[1] = compile(gl, GL_FRAGMENT_SHADER, fragment, 4);
     for (int i = 0; i < 2; i++) {
         gl->AttachShader(program, shaders[i]);
         gl->DeleteShader(shaders[i]);
@@ -77,6 +79,7 @@ static GLuint own_program(const noh_gl_api *gl, noh_gl_variant_key key)
     block = gl->GetUniformBlockIndex(program, "palette_block");
     if (block != GL_INVALID_INDEX) gl->UniformBlockBinding(program, block, 0);
     free(own);
+    free(own_fragment);
     return program;
 }
 
