@@ -266,7 +266,7 @@ static void at_low_rates_the_error_is_as_measured(void **state)
                 noh_character_step(g.ch, &g.s.set, FRAME, NULL, NULL);
                 if (noh_character_look(g.ch, &g.table, &g.settings, scale_for(errors[clip][rate])) != NOH_DUE_NOT)
                     update(&g, g.ch);
-                assert_int_equal(g.ch->lod.rate, rate);
+                assert_int_equal(g.ch->lod.update_rate, rate);
                 take_palette(g.ch, shown);
                 true_palette(&g, g.ch, truth, floats);
                 worst = fmax(worst, palettes_apart(&g, shown, truth));
@@ -579,7 +579,7 @@ static void keys_fire_the_same_with_and_without_lod(void **state)
         if (frame / 100 % 4) { /* seen */
             noh_due due = noh_character_look(g.ch, &g.table, &g.settings,
                                              powf(10.0f, test_random_float(&r, -2.0f, 4.0f)));
-            rates |= 1u << g.ch->lod.rate;
+            rates |= 1u << g.ch->lod.update_rate;
             if (due == NOH_DUE_AT_ONCE || (due == NOH_DUE && test_random_below(&r, 3))) update(&g, g.ch);
         }
     }

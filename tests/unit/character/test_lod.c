@@ -126,7 +126,7 @@ static void expect_within_shares(const noh_lod *d, float scale, float pixels, in
     if (with_mesh) assert_true(coarsest_shown_mesh(d) * scale <= shares[NOH_LOD_MESH] * pixels * slack);
     assert_true(joints[d->joints].error_m * scale <= shares[NOH_LOD_JOINTS] * pixels * slack);
     assert_true(influences[d->influences].error_m * scale <= shares[NOH_LOD_INFLUENCES] * pixels * slack);
-    if (d->rate) assert_true((rates[d->rate] + 0.0001f) * scale <= shares[NOH_LOD_UPDATES] * pixels * slack);
+    if (d->update_rate) assert_true((rates[d->update_rate] + 0.0001f) * scale <= shares[NOH_LOD_UPDATES] * pixels * slack);
 }
 
 static void fresh_choice_is_monotone_and_within_the_knob(void **state)
@@ -141,7 +141,7 @@ static void fresh_choice_is_monotone_and_within_the_knob(void **state)
         memset(&d, 0, sizeof d);
         noh_lod_choose(&d, &t, &s, scale, rates, 0);
         assert_true(d.mesh >= last.mesh && d.joints >= last.joints && d.influences >= last.influences &&
-                    d.rate >= last.rate);
+                    d.update_rate >= last.update_rate);
         assert_int_equal(d.mesh, d.mesh_before);
         assert_int_equal(d.fade_ticks, 0);
         expect_within_shares(&d, scale, 1.0f, 1);
@@ -151,7 +151,7 @@ static void fresh_choice_is_monotone_and_within_the_knob(void **state)
     assert_int_equal(last.mesh, LEVELS - 1u); /* far away all is coarse */
     assert_int_equal(last.joints, 2);
     assert_int_equal(last.influences, 2);
-    assert_int_equal(last.rate, NOH_UPDATE_RATE_8);
+    assert_int_equal(last.update_rate, NOH_UPDATE_RATE_8);
     assert_int_equal(noh_lod_joint_count(&last, &t), 12);
     assert_int_equal(noh_lod_influence_count(&last, &t), 1);
 }
@@ -166,7 +166,7 @@ static void nothing_to_choose_from_is_full_lod(void **state)
     memset(&d, 0, sizeof d);
     assert_int_equal(noh_lod_table_check(&t, NULL), NOH_OK);
     noh_lod_choose(&d, &t, &s, 0.0f, NULL, 0);
-    assert_true(d.mesh == 0 && d.joints == 0 && d.influences == 0 && d.rate == NOH_UPDATE_RATE_FULL);
+    assert_true(d.mesh == 0 && d.joints == 0 && d.influences == 0 && d.update_rate == NOH_UPDATE_RATE_FULL);
     assert_int_equal(noh_lod_joint_count(&d, &t), 0);
     assert_int_equal(noh_lod_influence_count(&d, &t), 0);
     assert_true(noh_lod_error_pixels(&d) == 0.0f);
@@ -191,7 +191,7 @@ static void influences_are_those_that_the_mesh_has(void **state)
 /* ---- no flicker ---- */
 
 typedef struct changes {
-    uint32_t mesh, joints, influences, rate;
+    uint32_t mesh, joints, influences, update_rate;
 } changes;
 
 static void count_changes(changes *n, const noh_lod *before, const noh_lod *after)
@@ -199,7 +199,7 @@ static void count_changes(changes *n, const noh_lod *before, const noh_lod *afte
     n->mesh += before->mesh != after->mesh;
     n->joints += before->joints != after->joints;
     n->influences += before->influences != after->influences;
-    n->rate += before->rate != after->rate;
+    n->update_rate += before->update_rate != after->update_rate;
 }
 
 /* A distance that trembles by less than the hysteresis: after the first frames, each kind changes at most once. */
@@ -220,7 +220,7 @@ static void trembling_never_flickers(void **state)
             noh_lod_choose(&d, &t, &s, middle * test_random_float(&r, 0.93f, 1.07f), rates, frame * FRAME);
             count_changes(&n, &before, &d);
         }
-        assert_true(n.mesh <= 1 && n.joints <= 1 && n.influences <= 1 && n.rate <= 1);
+        assert_true(n.mesh <= 1 && n.joints <= 1 && n.influences <= 1 && n.update_rate <= 1);
     }
 }
 
@@ -285,7 +285,7 @@ static void slow_zoom_passes_each_level_once(void **state)
     assert_int_equal(n.mesh, 6);
     assert_int_equal(n.joints, 4);
     assert_int_equal(n.influences, 4);
-    assert_int_equal(n.rate, 6);
+    assert_int_equal(n.update_rate, 6);
 }
 
 /* ---- limits ---- */
@@ -569,7 +569,7 @@ static void errors_of_all_kinds_add_up(void **state)
     assert_int_equal(noh_lod_targets(&d, &s, weights, reach, 2, kept), 1);
     assert_true(d.skipped_m == 0.001f);
     assert_true(fabsf(d.error_m - (meshes[3].error_m + joints[d.joints].error_m + influences[d.influences].error_m +
-                                   rates[d.rate] + t.clip_error_m)) < 1e-7f);
+                                   rates[d.update_rate] + t.clip_error_m)) < 1e-7f);
     assert_true(noh_lod_error_pixels(&d) == (d.error_m + d.skipped_m) * 15.0f);
     noh_lod_choose(&d, &t, &s, 1e5f, rates, 100); /* near at once: level 3 is still drawn while it fades */
     assert_true(d.mesh == 0 && d.mesh_before == 3);
@@ -589,9 +589,9 @@ static void a_coarser_update_rate_is_never_better(void **state)
     (void)state;
     memset(&d, 0, sizeof d);
     noh_lod_choose(&d, &t, &s, 1.0f, odd, 0);
-    assert_int_equal(d.rate, 3);
+    assert_int_equal(d.update_rate, 3);
     noh_lod_choose(&d, &t, &s, 31.5f, odd, 800); /* 0.0143 m may be off in time */
-    assert_int_equal(d.rate, 0);
+    assert_int_equal(d.update_rate, 0);
 }
 
 static void equal_targets_go_by_index(void **state)

@@ -156,11 +156,11 @@ static void lod_is_chosen_by_it(void **state)
         noh_lod_choose(&d, &t.made.table, &settings, scale, t.made.table.update_error_m, step);
         joints = noh_lod_joint_count(&d, &t.made.table);
         assert_true(joints <= before);
-        assert_true(step || (joints == 4 && d.rate == NOH_UPDATE_RATE_FULL));
+        assert_true(step || (joints == 4 && d.update_rate == NOH_UPDATE_RATE_FULL));
         before = joints;
     }
     assert_int_equal(before, 1);
-    assert_int_equal(d.rate, NOH_UPDATE_RATE_8);
+    assert_int_equal(d.update_rate, NOH_UPDATE_RATE_8);
     close_table(&t);
 }
 

@@ -137,13 +137,13 @@ static void on_time_the_error_is_that_of_straight_lines(void **state)
         now = shown(&l);
         error = fabs(now - wave((double)clock, 0.0));
         /* what a refined interval began with was as far off as the coarser rate may be */
-        period = noh_update_period((noh_update_rate)l.t.running) < period
+        period = noh_update_period((noh_update_rate)l.t.shown_rate) < period
                      ? period
-                     : noh_update_period((noh_update_rate)l.t.running);
+                     : noh_update_period((noh_update_rate)l.t.shown_rate);
         assert_true(error <= WAVE_BEND * (double)period * (double)period / 8.0 + 1e-6);
-        if (l.t.to_clock - l.t.from_clock == (int64_t)noh_update_period((noh_update_rate)l.t.running)) {
-            worst[l.t.running] = fmax(worst[l.t.running], error);
-            period = noh_update_period((noh_update_rate)l.t.running);
+        if (l.t.to_clock - l.t.from_clock == (int64_t)noh_update_period((noh_update_rate)l.t.shown_rate)) {
+            worst[l.t.shown_rate] = fmax(worst[l.t.shown_rate], error);
+            period = noh_update_period((noh_update_rate)l.t.shown_rate);
         }
         if (frame)
             assert_true(fabs(now - last) <= WAVE_SPEED * (double)ticks * 1.01 + WAVE_BEND * 6000.0 * 6000.0 / 4.0);
@@ -385,7 +385,9 @@ static void points_are_off_by_their_own_arrows(void **state)
     points.holds_per_point = 1;
     assert_int_equal(noh_time_lod_points_measure(memory, sizeof memory, &t.probe, &points, 0, errors, &error),
                      NOH_ERR_ARG);
-    assert_int_equal(strncmp(error.what, "points: no such joint", strlen("points: no such joint")), 0);
+    assert_int_equal(strncmp(error.what, "points: a joint that is not in the skeleton",
+                             strlen("points: a joint that is not in the skeleton")),
+                     0);
 }
 
 static void sample_walk(void *user, uint32_t clip, uint32_t tick, uint32_t joints, noh_transform *pose, uint32_t floats,
