@@ -4,10 +4,11 @@
 
 #define ROUNDING 1.000002f /* more than the sums and roots below can lose */
 
-/* A ball around a posed joint that contains the vertices of one joint: of this one, or of a descendant that was not
- * posed. */
+/* A ball that contains the vertices of one joint. Its centre is the joint or, where the joint was not posed, the
+ * nearest posed ancestor: the joint then keeps its bind pose relative to it, so it is at most the sum of the bones in
+ * between away, whatever their rotations. */
 typedef struct ball {
-    const float *matrix;
+    const float *matrix; /* of the joint at the centre */
     float radius;
 } ball;
 
@@ -28,16 +29,16 @@ static float longest_axis(const float *m)
     return noh_sqrt(longest);
 }
 
-static ball ball_of(const noh_skeleton *s, const float *model, float margin, uint32_t joint, uint32_t posed_count)
+static ball ball_of(const noh_skeleton *s, const float *model, float radius, uint32_t joint, uint32_t posed_count)
 {
     ball b;
     while (joint >= posed_count) {
         NOH_ASSERT(s->parents[joint] != NOH_JOINT_ROOT);
-        margin += bone_length(s, joint);
+        radius += bone_length(s, joint);
         joint = s->parents[joint];
     }
     b.matrix = model + 12u * (size_t)joint;
-    b.radius = margin * longest_axis(b.matrix) * ROUNDING;
+    b.radius = radius * longest_axis(b.matrix) * ROUNDING;
     return b;
 }
 
@@ -50,7 +51,8 @@ static void add_to_box(noh_bounds *bounds, ball b)
     }
 }
 
-static float reach_from(const float *centre, ball b)
+/* The radius around a centre that contains a ball. */
+static float radius_around(const float *centre, ball b)
 {
     float d[3];
     for (int i = 0; i < 3; i++) {
@@ -84,25 +86,26 @@ void noh_joint_bounds(const noh_skeleton *skeleton, const float *model, const fl
         bounds->centre[i] = 0.5f * bounds->low[i] + 0.5f * bounds->high[i];
     }
     for (uint32_t j = 0; j < skeleton->joint_count; j++) {
-        float reach = joint_radius_m[j] >= 0.0f
-                          ? reach_from(bounds->centre, ball_of(skeleton, model, joint_radius_m[j], j, joint_count))
-                          : 0.0f;
-        bounds->radius = reach > bounds->radius ? reach : bounds->radius;
+        float radius = joint_radius_m[j] >= 0.0f
+                           ? radius_around(bounds->centre, ball_of(skeleton, model, joint_radius_m[j], j, joint_count))
+                           : 0.0f;
+        bounds->radius = radius > bounds->radius ? radius : bounds->radius;
     }
 }
 
+/* Bones keep their lengths, so a joint is never farther from its root than the sum of the bones between them. */
 float noh_skeleton_radius(const noh_skeleton *skeleton, const float *joint_radius_m)
 {
-    float radius = 0.0f;
+    float largest = 0.0f;
     NOH_ASSERT(skeleton && joint_radius_m);
     for (uint32_t j = 0; j < skeleton->joint_count; j++) {
-        float reach = joint_radius_m[j];
-        for (uint32_t at = j; reach >= 0.0f && skeleton->parents[at] != NOH_JOINT_ROOT; at = skeleton->parents[at]) {
-            reach += bone_length(skeleton, at);
+        float radius = joint_radius_m[j];
+        for (uint32_t at = j; radius >= 0.0f && skeleton->parents[at] != NOH_JOINT_ROOT; at = skeleton->parents[at]) {
+            radius += bone_length(skeleton, at);
         }
-        radius = reach > radius ? reach : radius;
+        largest = radius > largest ? radius : largest;
     }
-    return radius * ROUNDING;
+    return largest * ROUNDING;
 }
 
 /* What the targets add to a box: the sum of their boxes, each of which contains 0. A negative weight swaps low and
@@ -120,7 +123,7 @@ static void add_targets(const noh_mesh *mesh, const float *weights, float deltas
     }
 }
 
-/* The farthest corner of a box from a joint, in the joint's space. */
+/* How far the farthest corner of a box is from a joint. In a box no point is farther from any place than a corner. */
 static float farthest_corner(const float *inverse_bind, const float box[6])
 {
     float farthest = 0.0f;
@@ -150,12 +153,13 @@ void noh_mesh_add_joint_radii(const noh_mesh *mesh, const float *weights, float 
     add_targets(mesh, weights, deltas);
     for (size_t j = 0; j < skin.header->joint_count; j++) {
         const float *rest = mesh->joint_boxes + 6u * j;
-        float box[6], margin;
+        float box[6], radius;
         for (int i = 0; i < 6; i++) {
             box[i] = rest[i] + deltas[i];
         }
-        margin = rest[0] <= rest[3] ? farthest_corner(skin.inverse_bind + 12u * j, box) : -1.0f;
-        joint_radius_m[skin.joints[j]] = margin > joint_radius_m[skin.joints[j]] ? margin
-                                                                                 : joint_radius_m[skin.joints[j]];
+        radius = rest[0] <= rest[3] ? farthest_corner(skin.inverse_bind + 12u * j, box) : -1.0f;
+        if (radius > joint_radius_m[skin.joints[j]]) {
+            joint_radius_m[skin.joints[j]] = radius;
+        }
     }
 }

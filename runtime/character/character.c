@@ -13,6 +13,7 @@ typedef struct layout {
     size_t controller, palettes[2], floats[2], bytes;
 } layout;
 
+/* Carve and return the offset, not the address: a character holds no pointers, so that a copy of it is a character. */
 static size_t place(noh_arena *arena, size_t bytes)
 {
     (void)noh_arena_carve(arena, bytes, 16);
@@ -29,7 +30,7 @@ static layout layout_of(const noh_character_desc *d, size_t controller_bytes)
         l.palettes[i] = place(&arena, 12u * sizeof(float) * (size_t)d->controller.set->joint_count);
         l.floats[i] = place(&arena, d->controller.set->float_count * sizeof(float));
     }
-    (void)noh_arena_carve(&arena, 0, 16); /* a multiple of the alignment: they lie in an array */
+    (void)noh_arena_carve(&arena, 0, 16); /* a multiple of the alignment, so that characters can lie in an array */
     l.bytes = arena.used;
     return l;
 }
@@ -156,14 +157,14 @@ static const noh_controller *controller_of(const noh_character *ch)
     return (const noh_controller *)(const void *)((const uint8_t *)ch + ch->controller_offset);
 }
 
-static float *palette_of(noh_character *ch, uint32_t target)
+static float *palette_of(noh_character *ch, uint32_t pose)
 {
-    return (float *)(void *)((uint8_t *)ch + ch->palette_offsets[target]);
+    return (float *)(void *)((uint8_t *)ch + ch->palette_offsets[pose]);
 }
 
-static float *floats_of(noh_character *ch, uint32_t target)
+static float *floats_of(noh_character *ch, uint32_t pose)
 {
-    return (float *)(void *)((uint8_t *)ch + ch->float_offsets[target]);
+    return (float *)(void *)((uint8_t *)ch + ch->float_offsets[pose]);
 }
 
 static const float *at(const noh_character *ch, uint32_t offset)
@@ -171,9 +172,9 @@ static const float *at(const noh_character *ch, uint32_t offset)
     return (const float *)(const void *)((const uint8_t *)ch + offset);
 }
 
-const float *noh_character_pose_palette(const noh_character *ch, uint32_t target)
+const float *noh_character_pose_palette(const noh_character *ch, uint32_t pose)
 {
-    return at(ch, ch->palette_offsets[target]);
+    return at(ch, ch->palette_offsets[pose]);
 }
 
 int64_t noh_character_clock(const noh_character *ch)
@@ -203,7 +204,7 @@ noh_due noh_character_look(noh_character *ch, const noh_lod_table *table, const 
     noh_lod_choose(&ch->lod, table, settings, pixels_per_metre, table->update_error_m ? update_error_m : NULL, clock);
     joints = noh_lod_joint_count(&ch->lod, table);
     (void)noh_controller_set_lod(c, ch->lod.mesh, joints < ch->joint_count ? joints : 0);
-    noh_time_lod_frame(&ch->time, clock, (noh_update_rate)ch->lod.rate);
+    noh_time_lod_frame(&ch->time, clock, (noh_update_rate)ch->lod.update_rate);
     return noh_time_lod_due(&ch->time);
 }
 
@@ -242,7 +243,8 @@ static void mix_floats(const float *a, const float *b, float part, uint32_t coun
     }
 }
 
-/* The mix that is shown now becomes the source pose. */
+/* The mix that is shown now becomes the source pose. The mix of two spheres contains the mix of what they contain, so
+ * spheres are mixed like the rest. */
 static void keep_shown(noh_character *ch, uint32_t from, float part)
 {
     uint32_t to = from ^ 1u;
@@ -254,8 +256,8 @@ static void keep_shown(noh_character *ch, uint32_t from, float part)
 void noh_character_update_begin(noh_character *ch, const noh_clip_set *set, noh_character_scratch *scratch)
 {
     const noh_controller *c = controller_of(ch);
-    /* The pose of the next update is found by playing a copy of the controller to that tick without firing callbacks:
-     * the future is known, unless a program changes it. */
+    /* The pose of the next update is found by playing a copy of the controller to that tick, without firing callbacks.
+     */
     noh_time_update u = noh_time_lod_update(&ch->time);
     int64_t ahead = noh_clock_since(u.pose_clock, noh_character_clock(ch));
     NOH_ASSERT(ch && set && scratch && set->joint_count == ch->joint_count && set->float_count == ch->float_count);
@@ -270,14 +272,15 @@ void noh_character_update_begin(noh_character *ch, const noh_clip_set *set, noh_
     }
     noh_controller_pose(c, set, &scratch->pose, scratch->local, scratch->floats);
     scratch->joint_count = c->lod_joint_count;
-    scratch->target = u.pose;
+    scratch->pose_index = u.pose;
     ch->updates++;
 }
 
-/* Matrices of all joints. With inverse bind matrices, a joint that was not sampled takes its parent's skinning matrix:
- * that moves its vertices as if they hung on the parent, which is where the bind pose has them. Without, it takes its
- * place in the bind pose relative to the parent, which comes to the same once a skin's inverse bind matrix is
- * multiplied in. */
+/* Matrices of all joints. A joint that was not sampled keeps its bind pose relative to its parent. With inverse bind
+ * matrices its skinning matrix is then its parent's: model[parent] * bind * inverse bind of the joint, where
+ * bind * inverse bind of the joint = inverse bind of the parent. So it is copied, which is cheaper than a product.
+ * Without inverse bind matrices the joint's model matrix is needed, and made from the bind pose that
+ * noh_controller_pose left in scratch->local. */
 static void make_palette(const noh_skeleton *skeleton, const noh_character_scratch *s, uint32_t joint_count,
                          float *palette)
 {
@@ -293,17 +296,17 @@ static void make_palette(const noh_skeleton *skeleton, const noh_character_scrat
 void noh_character_update_end(noh_character *ch, const noh_skeleton *skeleton, const float *joint_radius_m,
                               noh_character_scratch *scratch)
 {
-    uint32_t target = scratch->target;
-    NOH_ASSERT(ch && skeleton && scratch && target < 2u);
+    const uint32_t pose = scratch->pose_index;
+    NOH_ASSERT(ch && skeleton && scratch && pose < 2u);
     NOH_ASSERT(skeleton->joint_count == ch->joint_count);
-    make_palette(skeleton, scratch, ch->joint_count, palette_of(ch, target));
-    ch->multiplied = (ch->multiplied & ~(1u << target)) | (skeleton->inverse_bind ? 1u << target : 0u);
-    memcpy(floats_of(ch, target), scratch->floats, ch->float_count * sizeof(float));
+    make_palette(skeleton, scratch, ch->joint_count, palette_of(ch, pose));
+    ch->multiplied = (ch->multiplied & ~(1u << pose)) | (skeleton->inverse_bind ? 1u << pose : 0u);
+    memcpy(floats_of(ch, pose), scratch->floats, ch->float_count * sizeof(float));
     if (joint_radius_m) {
         noh_bounds bounds;
         noh_joint_bounds(skeleton, scratch->model, joint_radius_m, scratch->joint_count, &bounds);
-        memcpy(ch->spheres[target], bounds.centre, sizeof bounds.centre);
-        ch->spheres[target][3] = bounds.radius;
+        memcpy(ch->spheres[pose], bounds.centre, sizeof bounds.centre);
+        ch->spheres[pose][3] = bounds.radius;
     }
 }
 

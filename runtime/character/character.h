@@ -7,7 +7,7 @@
  * A frame of a game:
  *   noh_character_step(ch, set, ticks, fn, user)              every character, seen or not: clock and callback keys
  *   due = noh_character_look(ch, table, settings, scale)      those in view: chooses LOD levels
- *   noh_character_update(ch, set, skeleton, margins, &scratch)  those that are due: samples, blends, makes matrices
+ *   noh_character_update(ch, set, skeleton, radii, &scratch)  those that are due: samples, blends, makes matrices
  *   noh_character_skin(ch, skin, matrices)                    those that are drawn: skinning matrices (skin_palette.h)
  * A scheduler can spread updates within a time budget (scheduler.h). Change tracks through noh_character_controller,
  * then call noh_character_wake. After a memcpy, noh_character_set_instance gives the copy its own place in the stagger
@@ -16,13 +16,13 @@
  * Bytes: 160 for the head, the controller's (controller.h), and two palettes of 48 per joint with 4 per float, each
  * rounded up to 16. 31 joints, 34 floats and 4 tracks: 3,888; with room for inertia 5,648.
  *
- * One controller per instance, and poses in buffers of its own: C. Granberg, "Character Animation with Direct3D",
- * Charles River Media 2009, chapter 4, where clones of a controller write one shared tree of joints and must be drawn
- * in turn.
+ * Each instance has a controller and poses of its own, so updates and draws may be batched in any order. (C. Granberg,
+ * "Character Animation with Direct3D", Charles River Media 2009, chapter 4, clones controllers too, but all clones
+ * write one shared tree of joints, and each must be drawn before the next is updated.)
  *
  * Threads: a character belongs to one thread at a time, and so does a scratch; set, skeleton, table and settings are
- * read-only and shared. Characters may be stepped and looked at on several threads at once, and updated wherever the
- * set's sample function allows it (clip_bank.h). */
+ * read-only and shared. So different characters may be stepped and looked at on several threads at once; for updates
+ * each thread needs a view of the set (clip_bank.h). */
 #ifndef NOH_CHARACTER_CHARACTER_H
 #define NOH_CHARACTER_CHARACTER_H
 
@@ -48,7 +48,7 @@ typedef struct noh_character {
     uint32_t controller_offset;
     uint32_t palette_offsets[2], float_offsets[2];
     uint32_t updates;    /* since init */
-    uint32_t multiplied; /* a bit per palette: it was multiplied by the skeleton's inverse bind matrices */
+    uint32_t multiplied; /* a bit for each palette: set if it was multiplied by inverse bind matrices */
     noh_lod lod;
     noh_time_lod time;
     float spheres[2][4]; /* centre and radius around each of the two poses */
@@ -61,8 +61,8 @@ typedef struct noh_character_scratch {
     size_t ahead_bytes;
     noh_transform *local; /* [joint_count] the pose, between noh_character_update_begin and _end */
     float *floats;        /* [float_count] its floats */
-    uint32_t joint_count; /* joints that were sampled; the others have the bind pose */
-    uint32_t target;      /* 0 or 1: which of the character's two poses this becomes */
+    uint32_t joint_count; /* the joints that were sampled; the others have the bind pose */
+    uint32_t pose_index;  /* 0 or 1: which of the character's two poses this becomes */
     float *model;         /* [joint_count][12] model-space matrices, after _end */
 } noh_character_scratch;
 
@@ -76,7 +76,8 @@ size_t noh_character_size(const noh_character_desc *desc);
 noh_result noh_character_init(void *memory, size_t bytes, const noh_character_desc *desc, noh_character **character,
                               noh_error *error);
 
-/* Working memory for characters of this desc, or of one with fewer tracks and changes. errors  as above */
+/* Working memory for characters of this desc, or of one with fewer tracks and changes.
+ * errors  as noh_character_init */
 size_t noh_character_scratch_size(const noh_character_desc *desc);
 noh_result noh_character_scratch_init(void *memory, size_t bytes, const noh_character_desc *desc,
                                       noh_character_scratch *scratch, noh_error *error);
@@ -98,7 +99,7 @@ int64_t noh_character_clock(const noh_character *ch);
 uint32_t noh_character_step(noh_character *ch, const noh_clip_set *set, uint32_t ticks, noh_event_fn fn, void *user);
 
 /* The character is in view: choose its LOD levels and say whether an update is due. At most once a frame. The
- * controller's lod becomes the mesh level, its sampled joints those of the joint level.
+ * controller then plays for the chosen mesh level, and samples the joints of the chosen joint level.
  * units   pixels_per_metre at its nearest point (noh_lod_scale) */
 noh_due noh_character_look(noh_character *ch, const noh_lod_table *table, const noh_lod_settings *settings,
                            float pixels_per_metre);
@@ -113,18 +114,18 @@ uint32_t noh_character_joint_work(const noh_character *ch);
 void noh_character_update(noh_character *ch, const noh_clip_set *set, const noh_skeleton *skeleton,
                           const float *joint_radius_m, noh_character_scratch *scratch);
 
-/* First half: the local pose into scratch->local and scratch->floats, where a program may change it (look-at, IK). */
+/* First half: the local pose into scratch->local and scratch->floats, where you may change it (look-at, IK). */
 void noh_character_update_begin(noh_character *ch, const noh_clip_set *set, noh_character_scratch *scratch);
 
 /* Second half: matrices and bounds into the character. Joints that were not sampled move with their parents.
- * shapes  joint_radius_m[joint_count], the joints' radii (bounds.h); NULL: no sphere is kept
+ * shapes  joint_radius_m[joint_count] (bounds.h); NULL: no sphere is kept
  * ranges  the same skeleton in all updates of a character */
 void noh_character_update_end(noh_character *ch, const noh_skeleton *skeleton, const float *joint_radius_m,
                               noh_character_scratch *scratch);
 
 /* The first joint_count matrices shown in this frame, once the character was updated, in the skeleton's order: as
- * noh_model_to_palette makes them of the skeleton that update_end was given. They are model-space joint matrices unless
- * that skeleton has inverse bind matrices; to draw a mesh call noh_character_skin, which knows.
+ * noh_model_to_palette makes them for the skeleton that update_end was given. They are the joints' model-space matrices
+ * unless that skeleton has inverse bind matrices; to draw a mesh, call noh_character_skin, which takes care of both.
  * shapes   mixed[joint_count][12]
  * returns  `mixed`, or the character's own matrices where nothing had to be mixed: valid until the next update */
 const float *noh_character_palette(const noh_character *ch, float *mixed, uint32_t joint_count);
@@ -133,8 +134,8 @@ const float *noh_character_palette(const noh_character *ch, float *mixed, uint32
  * shapes  mixed[float_count of the set] */
 const float *noh_character_floats(const noh_character *ch, float *mixed);
 
-/* A sphere around what is shown in this frame: centre x, y, z and radius, in object space. It needs updates with radii.
- */
+/* A sphere around what is shown in this frame: centre x, y, z and radius, in object space. Updates must be given the
+ * joint radii. */
 void noh_character_sphere(const noh_character *ch, float sphere[4]);
 
 /* Call after changing tracks or weights. An update is due from now on; what is shown moves to the changed pose within

@@ -6,11 +6,12 @@
 #include "base/arena.h"
 #include "character/measure_internal.h"
 
-#define STEP_TICKS 400u /* frames of clips of 24, 30, 60 and 120 Hz lie on these */
+#define STEP_TICKS 400u /* frames at sample rates of 24, 30, 60 and 120 Hz lie on these */
 
 typedef struct work {
     noh_transform *pose;
-    float *model, *kept; /* all joints posed; those of a level */
+    float *model; /* [joint_count][12] with all joints posed */
+    float *kept;  /* the same with the joints of one level posed */
     float *floats;
 } work;
 
@@ -32,7 +33,8 @@ size_t noh_joint_lod_measure_size(const noh_time_probe *probe)
 }
 
 /* The largest error of a point with the first `count` joints posed, or `worst` if that is larger. Joints are stored
- * parents first, so one pass over those left out builds their matrices from their parents'. */
+ * parents first, so the prefix is posed as it would be in full, and one pass over the joints left out builds their
+ * matrices: the parent's, posed or itself left out, times the bind pose. Only their vertices can be off. */
 static float level_off(const noh_time_probe *p, work *w, uint32_t count, float worst)
 {
     const noh_skeleton *s = p->skeleton;
@@ -89,6 +91,7 @@ noh_result noh_joint_lod_measure(void *memory, size_t bytes, const noh_time_prob
             error_m[i] = level_off(probe, &w, counts[i], error_m[i]);
         }
     }
+    /* A coarser level may be closer by chance; errors of a LOD table must not fall. */
     for (uint32_t i = 1; i < level_count; i++) {
         error_m[i] = error_m[i] > error_m[i - 1] ? error_m[i] : error_m[i - 1];
     }

@@ -46,7 +46,7 @@ noh_result noh_lod_settings_check(const noh_lod_settings *s, noh_error *error)
     }
     if (sum > 1.0 + 1e-6) return noh_fail(error, NOH_ERR_ARG, "shares sum to more than 1", 0, 0);
     if (!(s->hysteresis >= 0.0f && s->hysteresis < 1.0f))
-        return noh_fail(error, NOH_ERR_ARG, "hysteresis is not in 0..1", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "hysteresis is negative, or not below 1", 0, 0);
     if (!(s->lead >= 0.0f && lead_of(s) < hysteresis_of(s)))
         return noh_fail(error, NOH_ERR_ARG, "lead is not below the hysteresis", 0, 0);
     return NOH_OK;
@@ -54,10 +54,11 @@ noh_result noh_lod_settings_check(const noh_lod_settings *s, noh_error *error)
 
 /* ---- the table ---- */
 
-/* The errors of one kind's levels, and how many there are. */
+/* The errors of one kind's levels. */
 typedef struct errors {
     float error_m[NOH_LOD_LEVELS_MAX];
-    uint32_t count, first; /* first: the finest that may be chosen */
+    uint32_t count;
+    uint32_t first; /* the finest that may be chosen */
 } errors;
 
 static errors errors_of(const noh_lod_table *t, noh_lod_kind kind)
@@ -75,7 +76,6 @@ static errors errors_of(const noh_lod_table *t, noh_lod_kind kind)
     return e;
 }
 
-/* Whether one kind's array is there, and short enough. */
 static int is_list(const void *levels, uint32_t count)
 {
     return count <= NOH_LOD_LEVELS_MAX && (levels || !count);
@@ -157,27 +157,30 @@ float noh_lod_depth(const float view_projection[16], const float world[12], cons
 }
 
 /* The quality setting in metres, at a scale. */
-static double knob_metres(const noh_lod_settings *s, float pixels_per_metre)
+static double quality_metres(const noh_lod_settings *s, float pixels_per_metre)
 {
     double pixels = s->pixels > 0.0f ? (double)s->pixels : 1.0;
     return pixels_per_metre > 0.0f ? pixels / (double)pixels_per_metre : 1e300;
 }
 
-/* The thresholds of one kind, in metres: a level is left when its error is above `refine`, entered up to `coarsen`. */
+/* The thresholds of one kind, in metres: a level is left when its error is above `refine`, and entered when its error
+ * is at most `coarsen`. Mesh levels are left early, by the lead, because the error keeps growing while they fade. */
 typedef struct limits {
     double refine, coarsen;
 } limits;
 
-static limits limits_of(const noh_lod_settings *s, noh_lod_kind kind, double knob_m)
+static limits limits_of(const noh_lod_settings *s, noh_lod_kind kind, double quality_m)
 {
     limits l;
-    double share_m = knob_m * share_of(s, kind);
+    double share_m = quality_m * share_of(s, kind);
     l.refine = share_m * (kind == NOH_LOD_MESH ? 1.0 - lead_of(s) : 1.0);
     l.coarsen = share_m * (1.0 - hysteresis_of(s));
     return l;
 }
 
-/* Errors rise with the level and coarsen < refine: the second loop cannot undo the first. */
+/* One step of the hysteresis: from the present level to finer ones while its error is above `refine`, then to coarser
+ * ones while theirs is at most `coarsen`. Errors rise with the level and coarsen < refine, so a level that the first
+ * loop has just left is never entered by the second, and an error that wavers between the two changes nothing. */
 static uint8_t choose_level(const errors *e, uint32_t level, limits l)
 {
     level = level < e->count ? level : e->count ? e->count - 1u : 0;
@@ -191,6 +194,8 @@ static uint8_t choose_level(const errors *e, uint32_t level, limits l)
     return (uint8_t)level;
 }
 
+/* The mesh level changes only once the fade before it has ended. It is then the level within the share, or the limit
+ * where no finer one has memory. */
 static void choose_mesh(noh_lod *d, const errors *e, const noh_lod_settings *s, limits l, int64_t clock)
 {
     uint8_t next;
@@ -210,8 +215,8 @@ static void choose_mesh(noh_lod *d, const errors *e, const noh_lod_settings *s, 
     }
 }
 
-/* Measured errors may fall from one update rate to a lower one by chance: raise them so that they never do, and add the
- * clips' own. */
+/* The errors of the update rates, as those of levels. Measured ones may fall by chance from one rate to a lower one:
+ * they are raised so that they never do. The clips' own error is present at every rate and counts in the same share. */
 static errors rate_errors(const noh_lod_table *t, const float *update_error_m)
 {
     errors e = { { 0.0f }, 1, 0 };
@@ -228,13 +233,13 @@ static errors rate_errors(const noh_lod_table *t, const float *update_error_m)
 static void forget_levels(noh_lod *d)
 {
     d->fade_ticks = 0;
-    d->mesh = d->mesh_before = d->joints = d->influences = d->rate = 0;
+    d->mesh = d->mesh_before = d->joints = d->influences = d->update_rate = 0;
 }
 
 void noh_lod_choose(noh_lod *d, const noh_lod_table *t, const noh_lod_settings *s, float pixels_per_metre,
                     const float *update_error_m, int64_t clock)
 {
-    double knob_m = knob_metres(s, pixels_per_metre);
+    double quality_m = quality_metres(s, pixels_per_metre);
     errors mesh = errors_of(t, NOH_LOD_MESH), joints = errors_of(t, NOH_LOD_JOINTS);
     errors influences = errors_of(t, NOH_LOD_INFLUENCES), rates = rate_errors(t, update_error_m);
     float coarser;
@@ -247,17 +252,18 @@ void noh_lod_choose(noh_lod *d, const noh_lod_table *t, const noh_lod_settings *
     d->pixels_per_metre = pixels_per_metre;
     d->mesh = d->mesh < mesh.first ? (uint8_t)mesh.first : d->mesh;
     d->mesh_before = d->mesh_before < mesh.first ? (uint8_t)mesh.first : d->mesh_before;
-    choose_mesh(d, &mesh, s, limits_of(s, NOH_LOD_MESH, knob_m), clock);
-    d->joints = choose_level(&joints, d->joints, limits_of(s, NOH_LOD_JOINTS, knob_m));
-    d->influences = choose_level(&influences, d->influences, limits_of(s, NOH_LOD_INFLUENCES, knob_m));
-    d->rate = choose_level(&rates, d->rate, limits_of(s, NOH_LOD_UPDATES, knob_m));
+    choose_mesh(d, &mesh, s, limits_of(s, NOH_LOD_MESH, quality_m), clock);
+    d->joints = choose_level(&joints, d->joints, limits_of(s, NOH_LOD_JOINTS, quality_m));
+    d->influences = choose_level(&influences, d->influences, limits_of(s, NOH_LOD_INFLUENCES, quality_m));
+    d->update_rate = choose_level(&rates, d->update_rate, limits_of(s, NOH_LOD_UPDATES, quality_m));
     if (!d->started) {
         d->started = 1;
         d->fade_ticks = 0;
         d->mesh_before = d->mesh;
     }
     coarser = mesh.error_m[d->mesh > d->mesh_before ? d->mesh : d->mesh_before];
-    d->error_m = coarser + joints.error_m[d->joints] + influences.error_m[d->influences] + rates.error_m[d->rate];
+    d->error_m = coarser + joints.error_m[d->joints] + influences.error_m[d->influences] +
+                 rates.error_m[d->update_rate];
 }
 
 void noh_lod_set_limit(noh_lod *d, uint32_t level)
@@ -309,11 +315,11 @@ uint32_t noh_lod_parts(const noh_lod *d, int64_t clock, noh_lod_part parts[2])
 {
     const float fade = noh_lod_fade(d, clock);
     const noh_lod_part whole = { fade < 1.0f ? d->mesh_before : d->mesh, 0.0f, 1.0f };
-    const noh_lod_part comes = { d->mesh, 0.0f, fade }, goes = { d->mesh_before, fade, 1.0f };
+    const noh_lod_part new_part = { d->mesh, 0.0f, fade }, old_part = { d->mesh_before, fade, 1.0f };
     NOH_ASSERT(parts);
     if (fade > 0.0f && fade < 1.0f) {
-        parts[0] = comes;
-        parts[1] = goes;
+        parts[0] = new_part;
+        parts[1] = old_part;
         return 2;
     }
     parts[0] = whole;
@@ -388,20 +394,20 @@ static cut cut_at(const float *weights, const float *radius_m, uint32_t count, f
     cut c = { 0.0, 0.0f, float_of(LARGEST_BITS + 1u) };
     for (uint32_t i = 0; i < count; i++) {
         float cost = cost_of(weights, radius_m, i);
-        int goes = cost <= limit;
-        c.sum += goes ? (double)cost : 0.0;
-        c.below = goes && cost > c.below ? cost : c.below;
+        int fits = cost <= limit;
+        c.sum += fits ? (double)cost : 0.0;
+        c.below = fits && cost > c.below ? cost : c.below;
         c.above = cost > limit && cost < c.above ? cost : c.above;
     }
     return c;
 }
 
-/* Find the largest limit such that all costs up to it fit into the room together, and return its bits. Sorting the
- * costs would need memory; instead this bisects over the limit. Floats that are not negative have the order of their
- * bits, so at most 31 halvings separate any two, and each pass tells the nearest costs on both sides, which lets the
- * search step from cost to cost. The next float above the result is then a cost of which not all fit: noh_lod_targets
- * takes those by index. The search starts between room / (count + 1), which always fits, and the room itself. *sum is
- * that of what fits. */
+/* Find the largest limit such that all costs up to it fit into the room together, and return its bits. This is the
+ * greedy choice: the smallest costs first gives the most targets that fit. Sorting the costs would need memory; instead
+ * this bisects over the limit. Floats that are not negative have the order of their bits, so at most 31 halvings
+ * separate any two, and each pass finds the nearest costs on both sides, which lets the search step from cost to cost.
+ * The next float above the result is then a cost of which not all fit: noh_lod_targets takes those by index. The search
+ * starts between room / (count + 1), which always fits, and the room itself. *sum is that of what fits. */
 static uint32_t largest_limit(const float *weights, const float *radius_m, uint32_t count, double room, double *sum)
 {
     const float most = room < (double)float_of(LARGEST_BITS) ? (float)room : float_of(LARGEST_BITS);
@@ -412,7 +418,7 @@ static uint32_t largest_limit(const float *weights, const float *radius_m, uint3
         if (c.sum <= room) {
             *sum = c.sum;
             fits = bits_of(c.above) - 1u;
-            over = middle == bits_of(most) ? fits + 1u : over; /* the others are larger than the whole room */
+            over = middle == bits_of(most) ? fits + 1u : over; /* any other cost exceeds the room */
         } else {
             over = bits_of(c.below);
         }
@@ -425,7 +431,7 @@ static uint32_t largest_limit(const float *weights, const float *radius_m, uint3
 uint32_t noh_lod_targets(noh_lod *d, const noh_lod_settings *settings, const float *weights, const float *radius_m,
                          uint32_t count, float *kept)
 {
-    double room = knob_metres(settings, d->pixels_per_metre) * share_of(settings, NOH_LOD_TARGETS);
+    double room = quality_metres(settings, d->pixels_per_metre) * share_of(settings, NOH_LOD_TARGETS);
     double skipped;
     uint32_t bits = largest_limit(weights, radius_m, count, room, &skipped), left = 0;
     float limit = float_of(bits), next = float_of(bits + 1u);

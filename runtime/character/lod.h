@@ -59,7 +59,7 @@ typedef struct noh_lod_table {
     const noh_lod_joints *joints;
     const noh_lod_influences *influences;
     uint32_t mesh_level_count; /* each 1..NOH_LOD_LEVELS_MAX, or 0: that kind has no levels */
-    /* the finest mesh level that is loaded; below mesh_level_count, or 0. None finer is chosen */
+    /* the finest mesh level that is loaded: below mesh_level_count, or 0. No finer one is chosen */
     uint32_t mesh_level_first;
     uint32_t joint_level_count;
     uint32_t influence_level_count;
@@ -91,15 +91,16 @@ typedef struct noh_lod {
     int64_t fade_start;     /* tick */
     uint32_t fade_ticks;    /* 0: no fade is running */
     float pixels_per_metre; /* the scale of the last choice */
-    float error_m;          /* present error: the sum of the largest errors of the shown LOD levels of the mesh, joints,
-                               influences and update rate */
-    float skipped_m;        /* present error of the morph targets that are left out */
-    uint8_t mesh, mesh_before; /* levels; mesh_before is the level that a fade leaves, else the same as mesh */
-    uint8_t joints, influences, rate;
-    uint8_t started;     /* 0: the next choice is made afresh, without a fade */
-    uint8_t mesh_wanted; /* level within the quality setting: finer than `mesh` only where noh_lod_set_limit holds it
-                            back */
-    uint8_t mesh_limit;  /* of noh_lod_set_limit */
+    float error_m;   /* present error: the sum of those of the mesh level (in a fade the coarser one), the joint level,
+                        the influence level and the update rate */
+    float skipped_m; /* present error of the morph targets that are left out */
+    uint8_t mesh, mesh_before;  /* levels; mesh_before is the level that a fade leaves, else the same as mesh */
+    uint8_t joints, influences; /* levels */
+    uint8_t update_rate;        /* noh_update_rate */
+    uint8_t started;            /* 0: the next choice is made afresh, without a fade */
+    /* the level within the quality setting: finer than `mesh` only where noh_lod_set_limit holds it back */
+    uint8_t mesh_wanted;
+    uint8_t mesh_limit; /* of noh_lod_set_limit */
 } noh_lod;
 
 NOH_STATIC_ASSERT(sizeof(noh_lod) == 32, lod);
@@ -116,9 +117,9 @@ float noh_lod_scale(float distance_m, float field_of_view_rad, uint32_t viewport
  *         box[6]: smallest x, y, z, largest x, y, z (noh_mesh_box, noh_skin_box) */
 float noh_lod_depth(const float view_projection[16], const float world[12], const float box[6]);
 
-/* Check a table once, wherever it comes from.
- * errors  DATA (where: the level) a count or an error that is not finite, negative, or smaller than that
- *         before it; ARG a count over the limit, or a NULL array */
+/* Check a table once, before it is used.
+ * errors  DATA (where: the level) a count of 0, or an error that is negative, not finite, or below that of the level
+ *         before; ARG a count of levels over the limit, or a NULL array */
 noh_result noh_lod_table_check(const noh_lod_table *table, noh_error *error);
 
 /* errors  ARG names the field */
@@ -155,21 +156,23 @@ typedef struct noh_lod_part {
     float from, to;
 } noh_lod_part;
 
-/* What to draw: one part with all pixels or, during a fade, the new level's and the old level's. Returns how many. */
+/* What to draw: one part with all pixels or, during a fade, the new level and the old one. Returns how many. */
 uint32_t noh_lod_parts(const noh_lod *d, int64_t clock, noh_lod_part parts[2]);
 
 /* The finest level drawn from now to the end of the fade: for noh_gl_morph_level. */
 uint32_t noh_lod_drawn(const noh_lod *d, int64_t clock);
 
 /* Leave out morph targets whose effect is too small to see: the smallest |weight| * radius first, while their sum is
- * within the share of targets. Sets d->skipped_m to that sum. Two passes over the weights where all can go, 33 at most.
- * shapes   weights[count]; kept[count], may be weights: 0 where left out; radius_m[count]: each target's radius, the
- * largest displacement that it causes at weight 1 returns  how many nonzero weights were kept. NaN is kept */
+ * within the share of targets. Sets d->skipped_m to that sum. Two passes over the weights where all can be left out, 33
+ * at most.
+ * shapes   weights[count]; radius_m[count]: the largest displacement that each target causes at weight 1; kept[count]:
+ *          the weights, 0 where left out; may be `weights`
+ * returns  how many weights that are not 0 were kept; NaN is kept */
 uint32_t noh_lod_targets(noh_lod *d, const noh_lod_settings *settings, const float *weights, const float *radius_m,
                          uint32_t count, float *kept);
 
-/* The total error in pixels, targets included. Within the quality setting wherever the finest levels and the clips' own
- * error are, unless the scale outgrew the lead during a fade. */
+/* The total error in pixels, targets included. It is within the quality setting, unless the finest levels and the clips
+ * themselves exceed it, or the scale outgrew the lead during a fade. */
 float noh_lod_error_pixels(const noh_lod *d);
 
 /* Joints to pose, and influences to use per vertex, at the chosen levels; 0: all, the table has no levels of that kind.

@@ -3,9 +3,7 @@
 #include "base/arena.h"
 #include "character/bounds.h"
 
-NOH_STATIC_ASSERT(NOH_LOD_LEVELS_MAX == NOH_LOD_LEVELS_MAX, joint_levels);
 NOH_STATIC_ASSERT(NOH_CLIP_UPDATE_RATES == NOH_UPDATE_RATE_COUNT, clip_rates);
-NOH_STATIC_ASSERT(NOH_LOD_LEVELS_MAX == NOH_LOD_LEVELS_MAX, mesh_levels);
 
 /* The resolved desc. */
 typedef struct source {
@@ -21,12 +19,12 @@ typedef struct parts {
     noh_lod_mesh *meshes;
     noh_lod_joints *joints;
     noh_lod_influences *influences; /* [INFLUENCE_LEVELS] */
-    float *rates, *margins, *reach;
+    float *update_errors, *joint_radii, *target_radii;
 } parts;
 
 #define INFLUENCE_LEVELS 4u /* all, 4, 2, 1 */
 
-/* ---- what is asked for ---- */
+/* ---- the desc ---- */
 
 static int is_of_skeleton(const source *s, const noh_mesh *mesh)
 {
@@ -67,9 +65,10 @@ static void carve(noh_arena *arena, const source *s, parts *p)
     p->influences = (noh_lod_influences *)noh_arena_carve(arena,
                                                           s->skinned ? INFLUENCE_LEVELS * sizeof *p->influences : 0, 4);
     p->joints = (noh_lod_joints *)noh_arena_carve(arena, s->level_count * sizeof *p->joints, 4);
-    p->rates = (float *)noh_arena_carve(arena, s->clip_count * (size_t)NOH_UPDATE_RATE_COUNT * sizeof(float), 4);
-    p->margins = (float *)noh_arena_carve(arena, s->skinned ? s->joint_count * sizeof(float) : 0, 4);
-    p->reach = (float *)noh_arena_carve(arena, s->target_count * sizeof(float), 4);
+    p->update_errors = (float *)noh_arena_carve(arena, s->clip_count * (size_t)NOH_UPDATE_RATE_COUNT * sizeof(float),
+                                                4);
+    p->joint_radii = (float *)noh_arena_carve(arena, s->skinned ? s->joint_count * sizeof(float) : 0, 4);
+    p->target_radii = (float *)noh_arena_carve(arena, s->target_count * sizeof(float), 4);
 }
 
 size_t noh_lod_pack_size(const noh_lod_pack_desc *desc)
@@ -87,9 +86,9 @@ size_t noh_lod_pack_size(const noh_lod_pack_desc *desc)
 
 /* ---- errors of clips ---- */
 
-/* The factor from a clip's errors to metres that hold for vertices as far from their joints as `margin`. An error of
+/* The factor that makes a clip's errors into metres, for vertices as far from their joints as `radius`. An error of
  * rotation grows with the distance, one of translation does not, so scaling by the ratio of distances bounds both. */
-static float to_metres(const source *s, const noh_clip_header *h, float margin)
+static float to_metres(const source *s, const noh_clip_header *h, float radius)
 {
     noh_skeleton skeleton;
     const noh_skeleton_header *of;
@@ -97,7 +96,7 @@ static float to_metres(const source *s, const noh_clip_header *h, float margin)
     if (noh_pack_skeleton_at(s->clips, h->skeleton, &skeleton, &of, NULL) == NOH_OK) {
         unit_m = of->unit_cm * 0.01f;
     }
-    return h->error_shell > 0.0f && margin > h->error_shell ? unit_m * (margin / h->error_shell) : unit_m;
+    return h->error_shell > 0.0f && radius > h->error_shell ? unit_m * (radius / h->error_shell) : unit_m;
 }
 
 /* The error of a clip with this many joints: that of the finest of its own levels that poses no more. -1: there is
@@ -128,16 +127,18 @@ static void add_joint_errors(const source *s, const noh_pack_clip *clip, float m
     }
 }
 
-static void fill_clips(const noh_lod_pack_desc *desc, const source *s, float margin, parts *p, noh_lod_table *table)
+/* The update errors of each clip, the joint errors of all clips, and the largest error of their compression. radius:
+ * the largest joint radius of the mesh. */
+static void fill_clips(const noh_lod_pack_desc *desc, const source *s, float radius, parts *p, noh_lod_table *table)
 {
     for (uint32_t m = 0; m < s->clip_count; m++) {
         noh_pack_clip clip;
         noh_clip_info info;
         float metres, clip_error_m;
         (void)noh_pack_clip_at(s->clips, desc->set->pack_clips[m], &clip, NULL);
-        metres = to_metres(s, clip.header, margin);
+        metres = to_metres(s, clip.header, radius);
         for (uint32_t r = 0; r < NOH_UPDATE_RATE_COUNT; r++) {
-            p->rates[m * (uint32_t)NOH_UPDATE_RATE_COUNT + r] = clip.header->update_rate_error[r] * metres;
+            p->update_errors[m * (uint32_t)NOH_UPDATE_RATE_COUNT + r] = clip.header->update_rate_error[r] * metres;
         }
         if (clip.header->joint_count) {
             add_joint_errors(s, &clip, metres, p->joints, &table->joint_level_count);
@@ -150,7 +151,7 @@ static void fill_clips(const noh_lod_pack_desc *desc, const source *s, float mar
 
 /* ---- meshes ---- */
 
-/* The worst error of a level in any pose, and what targets that it does without can add to it; metres. */
+/* The worst error of a level in any pose, plus what the targets that it leaves out can add to it; metres. */
 static float level_error(const noh_mesh_header *h)
 {
     const float errors[4] = { h->level_error_rest, h->level_error_targets, h->level_error_pairs, h->level_error_clip };
@@ -185,7 +186,7 @@ void noh_lod_target_radii(const noh_mesh *mesh, float *radius_m)
     }
 }
 
-/* A mesh that was built without levels has no errors of fewer influences: all are always used. */
+/* A mesh that was built without levels has no errors for fewer influences, so all are always used. */
 static uint32_t fill_influences(const noh_mesh_header *h, noh_lod_influences *levels)
 {
     uint32_t count = 0;
@@ -202,18 +203,18 @@ static uint32_t fill_influences(const noh_mesh_header *h, noh_lod_influences *le
 
 /* ---- filling ---- */
 
-/* Returns the largest. */
-static float fill_margins(const noh_lod_pack_desc *desc, const source *s, float *margins)
+/* The joint radii of the mesh. Returns the largest, 0 without a skinned mesh. */
+static float fill_joint_radii(const noh_lod_pack_desc *desc, const source *s, float *radii)
 {
     float largest = 0.0f;
     for (uint32_t j = 0; s->skinned && j < s->joint_count; j++) {
-        margins[j] = -1.0f;
+        radii[j] = -1.0f;
     }
     if (s->skinned) {
-        noh_mesh_add_joint_radii(desc->mesh, desc->weights, margins);
+        noh_mesh_add_joint_radii(desc->mesh, desc->weights, radii);
     }
     for (uint32_t j = 0; s->skinned && j < s->joint_count; j++) {
-        largest = margins[j] > largest ? margins[j] : largest;
+        largest = radii[j] > largest ? radii[j] : largest;
     }
     return largest;
 }
@@ -227,19 +228,19 @@ static void fill(const noh_lod_pack_desc *desc, const source *s, parts *p, noh_l
         p->joints[i].error_m = 0.0f;
     }
     if (desc->mesh) {
-        lod->radius_m = p->reach;
-        noh_lod_target_radii(desc->mesh, p->reach);
+        lod->radius_m = p->target_radii;
+        noh_lod_target_radii(desc->mesh, p->target_radii);
         noh_lod_mesh_levels(desc->mesh, p->meshes, &lod->table);
     }
     if (s->skinned) {
         lod->table.influences = p->influences;
         lod->table.influence_level_count = fill_influences(desc->mesh->header, p->influences);
     }
-    lod->joint_radius_m = s->skinned ? p->margins : NULL;
+    lod->joint_radius_m = s->skinned ? p->joint_radii : NULL;
     lod->table.joints = p->joints;
     lod->table.joint_level_count = s->level_count;
-    lod->table.update_error_m = p->rates;
-    fill_clips(desc, s, fill_margins(desc, s, p->margins), p, &lod->table);
+    lod->table.update_error_m = p->update_errors;
+    fill_clips(desc, s, fill_joint_radii(desc, s, p->joint_radii), p, &lod->table);
 }
 
 noh_result noh_lod_pack_init(void *memory, size_t bytes, const noh_lod_pack_desc *desc, noh_lod_pack *lod,

@@ -4,21 +4,22 @@
 
 #include "base/arena.h"
 
-#define ASKS_NOT 0xffu
+#define NOT_ASKED 0xffu
 #define STAYS 1.25f /* factor on the priority of an instance that keeps its slot */
 
 typedef struct pool {
     uint32_t level, slot_count;
-    uint32_t first;      /* of its slots in `free` */
-    uint32_t free_count; /* free[first .. first + free_count - 1] are its free slots */
+    uint32_t first;      /* the pool's part of `free` begins here */
+    uint32_t free_count; /* free[first .. first + free_count - 1] are its free slots: a stack */
 } pool;
 
+/* Of one instance. */
 typedef struct place {
     uint32_t slot;
-    uint8_t held;  /* 1: the slot is this instance's */
-    uint8_t pool;  /* whose slot it is */
+    uint8_t held;  /* 1: it holds a slot */
+    uint8_t pool;  /* of that slot */
     uint8_t level; /* asked for */
-    uint8_t next;  /* the pool that it is given now; ASKS_NOT */
+    uint8_t next;  /* the pool that it is given in this frame, or NOT_ASKED */
 } place;
 
 struct noh_lod_pools {
@@ -26,32 +27,31 @@ struct noh_lod_pools {
     pool pools[NOH_LOD_POOLS_MAX];
     noh_lod_pools_stats stats;
     place *places;  /* [instance_count] */
-    uint64_t *keys; /* [instance_count] requests: the bits of the priority above, 2^32 - 1 - instance below (lower
-                       numbers first) */
+    uint64_t *keys; /* [instance_count] requests; key_of */
     uint32_t *free; /* [slots] */
 };
 
 NOH_STATIC_ASSERT(sizeof(place) == 8, place);
 
-/* ---- making ---- */
+/* ---- memory ---- */
 
 static const char *bad_field(const noh_lod_pools_desc *d, uint32_t *slots)
 {
     uint64_t sum = 0;
     if (d->instance_count == 0 || d->instance_count > NOH_LOD_POOL_SLOTS_MAX)
-        return "instance_count of level pools is not in 1..NOH_LOD_POOL_SLOTS_MAX";
+        return "instance_count of LOD pools is not in 1..NOH_LOD_POOL_SLOTS_MAX";
     if (d->pool_count == 0 || d->pool_count > NOH_LOD_POOLS_MAX)
-        return "pool_count of level pools is not in 1..NOH_LOD_POOLS_MAX";
-    if (!d->levels) return "levels of level pools is NULL";
-    if (!d->slot_counts) return "slot_counts of level pools is NULL";
+        return "pool_count of LOD pools is not in 1..NOH_LOD_POOLS_MAX";
+    if (!d->levels) return "levels of LOD pools is NULL";
+    if (!d->slot_counts) return "slot_counts of LOD pools is NULL";
     for (uint32_t i = 0; i < d->pool_count; i++) {
         if (d->levels[i] >= NOH_LOD_LEVELS_MAX || (i && d->levels[i] <= d->levels[i - 1u]))
-            return "levels of level pools do not rise";
-        if (d->slot_counts[i] == 0) return "slot_counts of level pools: a pool without slots";
+            return "levels of LOD pools do not rise";
+        if (d->slot_counts[i] == 0) return "slot_counts of LOD pools: a pool without slots";
         sum += d->slot_counts[i];
     }
-    if (sum < d->instance_count) return "slot_counts of level pools: fewer slots than instances";
-    if (sum > NOH_LOD_POOL_SLOTS_MAX) return "slot_counts of level pools: more than NOH_LOD_POOL_SLOTS_MAX in all";
+    if (sum < d->instance_count) return "slot_counts of LOD pools: fewer slots than instances";
+    if (sum > NOH_LOD_POOL_SLOTS_MAX) return "slot_counts of LOD pools: more than NOH_LOD_POOL_SLOTS_MAX in all";
     *slots = (uint32_t)sum;
     return NULL;
 }
@@ -127,12 +127,13 @@ void noh_lod_pools_begin(noh_lod_pools *p)
 {
     NOH_ASSERT(p);
     for (uint32_t i = 0; i < p->instance_count; i++) {
-        p->places[i].next = ASKS_NOT;
+        p->places[i].next = NOT_ASKED;
     }
     p->stats.asked = p->stats.coarser = p->stats.moved = 0;
 }
 
-/* Floats that are not negative have the order of their bits. */
+/* A request as one number that sorts: the priority's bits above, since floats that are not negative have the order of
+ * their bits, and below the complement of the instance, so that of equal priorities the lower instance comes first. */
 static uint64_t key_of(float priority, uint32_t instance)
 {
     union {
@@ -152,7 +153,7 @@ void noh_lod_pools_ask(noh_lod_pools *p, uint32_t instance, uint32_t level, floa
 {
     place *at = &p->places[instance];
     int stays;
-    NOH_ASSERT(instance < p->instance_count && at->next == ASKS_NOT);
+    NOH_ASSERT(instance < p->instance_count && at->next == NOT_ASKED);
     at->level = (uint8_t)(level < NOH_LOD_LEVELS_MAX ? level : NOH_LOD_LEVELS_MAX - 1u);
     at->next = 0;
     stays = at->held && p->pools[at->pool].level <= at->level;
@@ -213,7 +214,7 @@ static void sort_keys(uint64_t *keys, uint32_t count)
     }
 }
 
-/* How many pools hold a level: the first ones, whose levels are as fine or finer. */
+/* How many pools hold a level: the first ones, whose own level is that one or a finer one. */
 static uint32_t count_fitting(const noh_lod_pools *p, uint32_t level)
 {
     uint32_t fit = 0;
@@ -256,6 +257,9 @@ static uint32_t choose_pool(const noh_lod_pools *p, uint32_t level)
     return i;
 }
 
+/* Sharing has three passes, so that a slot which one instance gives up can go to another in the same frame. The first
+ * only counts: each request, in order of priority, gets a pool. The second frees the slots of instances that did not
+ * ask or are given another pool. The third takes slots for those without one: the counts say that there are enough. */
 static void choose_pools(noh_lod_pools *p)
 {
     memset(p->stats.used, 0, sizeof p->stats.used);
@@ -267,7 +271,6 @@ static void choose_pools(noh_lod_pools *p)
     }
 }
 
-/* Free the slots of instances that did not ask, or that are given another pool. */
 static void release(noh_lod_pools *p)
 {
     for (uint32_t i = 0; i < p->instance_count; i++) {
@@ -315,7 +318,7 @@ void noh_lod_pools_share(noh_lod_pools *p)
     NOH_VALIDATE(is_consistent(p));
 }
 
-/* ---- looking ---- */
+/* ---- results ---- */
 
 noh_lod_slot noh_lod_pools_slot(const noh_lod_pools *p, uint32_t instance)
 {

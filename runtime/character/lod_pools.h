@@ -7,14 +7,14 @@
  *
  * A frame of a game:
  *   noh_lod_pools_begin(pools);
- *   noh_lod_pools_ask(pools, i, noh_lod_finest(&detail), pixels_per_metre);  per instance that is drawn
+ *   noh_lod_pools_ask(pools, i, noh_lod_finest(&lod), pixels_per_metre);  for each instance that is drawn
  *   noh_lod_pools_share(pools);
- *   slot = noh_lod_pools_slot(pools, i);       per instance that asked: draw it at slot.level or coarser, and
- *   noh_lod_set_limit(&detail, slot.level);       choose no finer level from the next frame on
+ *   slot = noh_lod_pools_slot(pools, i);     for each instance that asked: draw it at slot.level or coarser, and
+ *   noh_lod_set_limit(&lod, slot.level);     choose no finer level from the next frame on
  *
  * Sharing: requests are served by falling priority. Each gets the coarsest pool that holds its level; if that is full,
  * the next finer one with room, else the next coarser one, and the instance is drawn at that pool's level. There are at
- * least as many slots as instances, so everyone gets one. An instance keeps its slot while it is given the same pool,
+ * least as many slots as instances, so each gets one. An instance keeps its slot while it is given the same pool,
  * and its priority counts a quarter more than a newcomer's, so that two instances at the same distance do not take
  * turns. A level that comes back fades in; an evicted instance switches level at once. `coarser_high_water` tells when
  * pools are too small to avoid that.
@@ -58,7 +58,7 @@ typedef struct noh_lod_pools_stats {
     uint32_t used_high_water[NOH_LOD_POOLS_MAX];
 } noh_lod_pools_stats;
 
-/* Exact bytes: 16 for an instance, 4 for a slot, 248 for all; 0 for an impossible desc. */
+/* Exact bytes: 16 per instance, 4 per slot, and 248 once; 0 for an impossible desc. */
 size_t noh_lod_pools_size(const noh_lod_pools_desc *desc);
 
 /* errors  ARG a field of the desc, or memory NULL or not 16-byte aligned; MEMORY too small; need: the exact bytes */
@@ -72,8 +72,8 @@ void noh_lod_pools_begin(noh_lod_pools *pools);
  */
 void noh_lod_pools_ask(noh_lod_pools *pools, uint32_t instance, uint32_t level, float priority);
 
-/* Give a slot to every instance that asked. If a pool is too small for those that want it, requests are sorted: n log
- * n. */
+/* Give a slot to every instance that asked. Linear in the requests; where a pool is too small for those that want it,
+ * they are sorted first: n log n. */
 void noh_lod_pools_share(noh_lod_pools *pools);
 
 /* Of an instance that asked in this frame. */

@@ -34,10 +34,10 @@ void noh_probe_sample(const noh_time_probe *p, uint32_t clip, int64_t tick, cons
                       float *model, float *floats)
 {
     const noh_clip_entry *m = &p->set->clips[clip];
-    const int64_t position = noh_position_of(tick),
-                  folded = noh_time_clip(position, m->duration_ticks, (noh_loop)m->loop);
+    const int64_t position = noh_position_of(tick);
+    const int64_t in_clip = noh_time_clip(position, m->duration_ticks, (noh_loop)m->loop);
     const float passes = (float)noh_time_legs(position, m->duration_ticks, (noh_loop)m->loop);
-    noh_root_sample_rest(p->set, clip, (uint32_t)(folded >> 16), p->set->joint_count, pose, floats);
+    noh_root_sample_rest(p->set, clip, (uint32_t)(in_clip >> 16), p->set->joint_count, pose, floats);
     noh_local_to_model(p->skeleton, pose, p->set->joint_count, model);
     for (size_t i = 0; travel && passes > 0.0f && i < 3u * (size_t)p->set->joint_count; i++) {
         model[4u * i + 3u] += passes * travel[i % 3u];
@@ -66,20 +66,20 @@ static float norm_bound(const float a[9])
     return noh_sqrt(noh_sqrt(noh_sqrt(sum)));
 }
 
-float noh_probe_off(const float difference[12], float reach, float least)
+float noh_probe_off(const float difference[12], float radius, float least)
 {
-    float turn[9], way[3], square = 0.0f, length;
+    float linear[9], shift[3], square = 0.0f, length;
     for (int i = 0; i < 12; i++) {
-        *(i % 4 < 3 ? &turn[i / 4 * 3 + i % 4] : &way[i / 4]) = difference[i];
+        *(i % 4 < 3 ? &linear[i / 4 * 3 + i % 4] : &shift[i / 4]) = difference[i];
     }
     for (int i = 0; i < 9; i++) {
-        square += turn[i] * turn[i];
+        square += linear[i] * linear[i];
     }
-    length = noh_sqrt(noh_dot3(way, way));
-    reach = reach > 0.0f ? reach : 0.0f;
+    length = noh_sqrt(noh_dot3(shift, shift));
+    radius = radius > 0.0f ? radius : 0.0f;
     /* The Frobenius norm is never below the largest singular value, and cheap: most joints end here. */
-    if (length + reach * noh_sqrt(square) > least) {
-        const float off = length + reach * norm_bound(turn);
+    if (length + radius * noh_sqrt(square) > least) {
+        const float off = length + radius * norm_bound(linear);
         least = off > least ? off : least;
     }
     return least;

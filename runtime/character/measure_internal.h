@@ -14,11 +14,12 @@ const char *noh_probe_fault(const noh_time_probe *probe, uint32_t clip);
 void noh_probe_travel(const noh_time_probe *probe, uint32_t clip, noh_transform *pose, float *floats, float travel[3]);
 
 /* The matrices and floats of a clip at a tick of its own clock, played in its own loop mode, moved by `travel` for
- * every pass completed; NULL: not moved. shapes  pose[joint_count], model[joint_count][12], floats[float_count] */
+ * every pass completed; NULL: not moved.
+ * shapes  pose[joint_count], model[joint_count][12], floats[float_count] */
 void noh_probe_sample(const noh_time_probe *probe, uint32_t clip, int64_t tick, const float *travel,
                       noh_transform *pose, float *model, float *floats);
 
-/* ---- rates ---- */
+/* ---- update rates ---- */
 
 typedef struct noh_rate_pose {
     float *model;
@@ -45,10 +46,10 @@ float noh_rate_floats_off(const noh_time_probe *probe, const noh_rate_work *work
 void noh_rate_measure(const noh_time_probe *probe, uint32_t clip, noh_rate_off off, void *user, noh_rate_work *work,
                       float *error_m);
 
-/* ---- */
+/* ---- points ---- */
 
-/* The largest error of a point within `reach` of a joint whose matrix has this error (mixed minus true): the error of
- * its translation plus reach times the norm of the rest; or `least` if that is larger. */
-float noh_probe_off(const float difference[12], float reach, float least);
+/* The largest error of a point within `radius` of a joint whose matrix has this error (shown minus true): the error of
+ * its translation plus radius times the norm of the rest; or `least` if that is larger. */
+float noh_probe_off(const float difference[12], float radius, float least);
 
 #endif

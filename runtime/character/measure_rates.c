@@ -2,10 +2,10 @@
 #include "base/arena.h"
 #include "character/measure_internal.h"
 
-/* Frames of clips of 24, 30, 60 and 120 Hz lie on these, and with them the corners of what is interpolated
+/* Frames at sample rates of 24, 30, 60 and 120 Hz lie on these ticks, and with them the corners of what is interpolated
  * between frames, where errors are largest. */
-#define START_TICKS 400u /* from the start of one period that is measured to the next */
-#define PLACE_TICKS 200u /* from one tick that is measured within it to the next */
+#define START_TICKS 400u /* between the starts of two measured periods */
+#define PLACE_TICKS 200u /* between two measured ticks within a period */
 
 static void carve_one(noh_arena *arena, const noh_clip_set *set, noh_rate_pose *pose)
 {
@@ -37,8 +37,9 @@ static void sample(const noh_time_probe *p, uint32_t clip, int64_t tick, noh_rat
     noh_probe_sample(p, clip, tick, w->travel, w->pose, out->model, out->floats);
 }
 
-/* From the clip's first tick to where play repeats itself or stands still. At the start of each period and at its end
- * the shown pose is true; in between it is a straight mix, which is compared with the true pose. */
+/* At the start and the end of an update period the shown pose is the true one; in between it is a straight mix of these
+ * two, which is compared with the true pose. Instances are staggered, so a period may begin at any tick: all starts are
+ * tried, START_TICKS apart, from the clip's first tick to where play repeats itself or stands still. */
 static float measure(const noh_time_probe *p, uint32_t clip, uint32_t period, noh_rate_off off, void *user,
                      noh_rate_work *w)
 {

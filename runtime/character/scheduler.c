@@ -50,13 +50,16 @@ void noh_schedule_spend(noh_schedule *s, uint32_t cost)
     s->spent += cost;
 }
 
-/* A binary heap with the most urgent item on top: building it is linear in the offers, and only what is served is
- * sorted. */
+/* Where the budget does not suffice for all offers, they wait in a binary heap with the most urgent on top. Building it
+ * is linear in the offers, and taking one is logarithmic, so a frame that serves few of many never pays for a sort of
+ * all. Where the budget suffices, the order does not matter and nothing is built. (J. W. J. Williams, "Algorithm 232:
+ * Heapsort", and R. W. Floyd, "Algorithm 245: Treesort 3", Communications of the ACM 7, 1964) */
 static int before(const noh_schedule_item *a, const noh_schedule_item *b)
 {
     return a->urgency != b->urgency ? a->urgency > b->urgency : a->instance < b->instance;
 }
 
+/* Let an item sink to its place: the more urgent child moves up until neither is more urgent. */
 static void sift(noh_schedule_item *items, uint32_t at, uint32_t count)
 {
     noh_schedule_item item = items[at];
@@ -84,6 +87,7 @@ static int is_heap(const noh_schedule_item *items, uint32_t count)
 }
 #endif
 
+/* Fixed point with 8 fractional bits: urgencies are then whole numbers, equal on every machine. */
 static uint32_t visibility_steps(float visibility)
 {
     float clamped = visibility > 1.0f ? visibility < NOH_VISIBILITY_MAX ? visibility : NOH_VISIBILITY_MAX : 1.0f;
@@ -102,6 +106,7 @@ void noh_schedule_offer(noh_schedule *s, uint32_t instance, uint32_t late_ticks,
     }
     s->offered++;
     s->offered_high_water = s->offered > s->offered_high_water ? s->offered : s->offered_high_water;
+    /* One frame is added to the lateness, so that visibility counts among those that are due just now. */
     item->urgency = ((uint64_t)late_ticks + s->frame_ticks + 1u) * visibility_steps(visibility);
     item->instance = instance;
     item->cost = cost;
@@ -109,6 +114,7 @@ void noh_schedule_offer(noh_schedule *s, uint32_t instance, uint32_t late_ticks,
     s->count++;
 }
 
+/* Before the first is served: all offers fit into the budget, or they become a heap, subtree by subtree from below. */
 static void put_in_order(noh_schedule *s)
 {
     s->order = s->spent + s->offered_cost <= s->budget ? ALL_SERVED : HEAP;
@@ -140,6 +146,8 @@ int noh_schedule_next(noh_schedule *s, uint32_t *instance)
     return 1;
 }
 
+/* The bound that scheduler.h derives, in frames: W / D. A frame serves until its budget is spent, so at least
+ * budget / cost_max, rounded up, and never fewer than one. */
 uint64_t noh_schedule_wait_max(uint32_t instances, uint64_t budget, uint32_t cost_max)
 {
     uint64_t served = cost_max ? (budget + cost_max - 1u) / cost_max : instances;

@@ -2,8 +2,8 @@
  *
  * A frame of a game:
  *   noh_schedule_begin(s, frame_ticks, budget);
- *   noh_schedule_spend(s, cost);                      per instance that cannot wait (NOH_DUE_AT_ONCE), updated at once
- *   noh_schedule_offer(s, i, late, visibility, cost); per instance in view that is due
+ *   noh_schedule_spend(s, cost);                      for each that cannot wait (NOH_DUE_AT_ONCE): update it at once
+ *   noh_schedule_offer(s, i, late, visibility, cost); for each in view that is due
  *   while (noh_schedule_next(s, &i)) update i;
  * An instance off the screen is not offered: it pays only for `step`.
  *
@@ -11,11 +11,12 @@
  * exceeded by at most one instance, and at least one is served in every frame. Where the budget suffices for all, they
  * are served in the order of the offers, and nothing is sorted.
  *
- * The wait is bounded. Let V be the range of visibilities (1..NOH_VISIBILITY_MAX), N the number of instances, k the
- * least number that a frame serves, D the longest frame. Suppose an instance has waited W ticks. Whatever was served
- * before it at that time had waited at least (W + D) / V - D itself, since visibility weighs lateness by a factor of at
- * most V. So within the last (W + D) / V - D ticks no instance was served twice, and those ticks held at most (N - 1) /
- * k full frames. Hence W < V * D * ((N - 1) / k + 2) which noh_schedule_wait_max gives, in frames.
+ * The wait is bounded. Let V be NOH_VISIBILITY_MAX, N the number of instances, k the fewest that a frame serves, and D
+ * the longest frame. Suppose that an instance has waited W ticks. Whatever is served before it then has itself waited
+ * at least (W + D) / V - D, since visibility weighs lateness by a factor of at most V. So within the last
+ * (W + D) / V - D ticks no instance was served twice, and those ticks held at most (N - 1) / k full frames. Hence
+ *   W < V * D * ((N - 1) / k + 2)
+ * which noh_schedule_wait_max gives, in frames.
  *
  * Threads: a schedule belongs to one thread at a time. */
 #ifndef NOH_CHARACTER_SCHEDULER_H
@@ -44,7 +45,7 @@ typedef struct noh_schedule {
     uint32_t late_high_water; /* the worst since init */
     uint32_t offered_high_water;
     uint32_t lost;            /* offers past the capacity since init; they were ignored */
-    uint32_t order;           /* private: whether the items are a heap yet, or need not be */
+    uint32_t order;           /* private: as offered, a heap, or served in the order of the offers */
     noh_schedule_item *items; /* [capacity] */
 } noh_schedule;
 
@@ -54,14 +55,17 @@ size_t noh_schedule_size(uint32_t capacity);
 /* errors  ARG capacity, or memory NULL or not 16-byte aligned; MEMORY too small; need: the exact bytes */
 noh_result noh_schedule_init(void *memory, size_t bytes, uint32_t capacity, noh_schedule *s, noh_error *error);
 
-/* units  budget and costs in any one unit (noh_cost_ns: nanoseconds); ticks of 1/48,000 s */
+/* Begin a frame.
+ * units  frame_ticks: of the frame; budget and costs in any one unit (noh_cost_ns: nanoseconds) */
 void noh_schedule_begin(noh_schedule *s, uint32_t frame_ticks, uint64_t budget);
 
-/* Charge the budget for work that is done in this frame in any case. */
+/* Charge the budget for work that this frame does in any case. */
 void noh_schedule_spend(noh_schedule *s, uint32_t cost);
 
-/* ranges  visibility 1..NOH_VISIBILITY_MAX on a scale of the caller's (height in pixels over 100, say), clamped (NaN is
- * 1); each instance at most once in a frame; all offers before the first noh_schedule_next */
+/* Offer an instance that is due.
+ * units   late_ticks since its update was due (noh_time_lod_late); cost as the budget
+ * ranges  visibility 1..NOH_VISIBILITY_MAX on a scale of your own (height in pixels over 100, say), clamped; NaN is 1.
+ *         Each instance at most once in a frame; all offers before the first noh_schedule_next */
 void noh_schedule_offer(noh_schedule *s, uint32_t instance, uint32_t late_ticks, float visibility, uint32_t cost);
 
 /* The next instance to update; returns 0 when the budget is spent or none is left. Equal urgency: the lower number. */

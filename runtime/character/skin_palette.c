@@ -46,28 +46,28 @@ int noh_skin_skeleton(const noh_skin *skin, const noh_skeleton *skeleton, float 
     return 1;
 }
 
-/* A character's two palettes hold either model-space joint matrices or, where the skeleton of its updates had inverse
+/* A character's two palettes hold the joints' model-space matrices or, where the skeleton of its updates had inverse
  * bind matrices, their products with these. Mixing is linear, so it may come before or after that product; here it
  * comes first, joint by joint, and the product follows where it is still to be made. */
 void noh_character_skin(const noh_character *ch, const noh_skin *skin, float *matrices)
 {
     const uint32_t to = ch->time.to_pose;
-    const float *first = noh_character_pose_palette(ch, to ^ 1u), *last = noh_character_pose_palette(ch, to);
+    const float *source = noh_character_pose_palette(ch, to ^ 1u), *target = noh_character_pose_palette(ch, to);
     const float part = noh_time_lod_fraction(&ch->time);
     const int multiplied = (int)(ch->multiplied >> to & 1u);
     NOH_ASSERT(ch->time.posed && skin && matrices);
     NOH_ASSERT(part >= 1.0f || (int)(ch->multiplied >> (to ^ 1u) & 1u) == multiplied);
     for (size_t k = 0; k < skin->header->joint_count; k++) {
         const size_t joint = skin->joints[k];
-        float *row = matrices + 12u * k;
+        float *matrix = matrices + 12u * k;
         NOH_ASSERT(joint < ch->joint_count);
         if (part >= 1.0f) {
-            memcpy(row, last + 12u * joint, 12u * sizeof(float));
+            memcpy(matrix, target + 12u * joint, 12u * sizeof(float));
         } else {
-            noh_mix_fours(first + 12u * joint, last + 12u * joint, part, 3, row);
+            noh_mix_fours(source + 12u * joint, target + 12u * joint, part, 3, matrix);
         }
         if (!multiplied) {
-            noh_matrix_multiply(row, skin->inverse_bind + 12u * k, row);
+            noh_matrix_multiply(matrix, skin->inverse_bind + 12u * k, matrix);
         }
     }
 }

@@ -26,16 +26,16 @@ extern "C" {
 void noh_character_skin(const noh_character *ch, const noh_skin *skin, float *matrices);
 
 /* The skin's matrices of a local pose.
- * shapes  pose[the skeleton's joint_count], model[the skeleton's joint_count][12] to work in and the joints'
- * model-space matrices afterwards, matrices[skin's joint_count][12] */
+ * shapes  pose[the skeleton's joint_count]; model[the skeleton's joint_count][12]: the joints' model-space matrices
+ *         afterwards; matrices[skin's joint_count][12] */
 void noh_pose_skin(const noh_skeleton *skeleton, const noh_skin *skin, const noh_transform *pose, float *model,
                    float *matrices);
 
 /* Give a skeleton the inverse bind matrices of a skin, where only meshes of this skin are drawn. Updates then multiply
  * by them, and noh_character_skin only mixes and gathers. Where the skin holds a joint twice no such matrices exist:
- * `out` is then the skeleton without any, which noh_character_skin takes as well. shapes   inverse_bind[the skeleton's
- * joint_count][12], borrowed by `out`; out may be skeleton returns  1: `out` has inverse bind matrices; 0: it has none
- */
+ * `out` is then the skeleton without any, which noh_character_skin takes as well.
+ * shapes   inverse_bind[the skeleton's joint_count][12], borrowed by `out`; out may be skeleton
+ * returns  1: `out` has inverse bind matrices; 0: it has none */
 int noh_skin_skeleton(const noh_skin *skin, const noh_skeleton *skeleton, float *inverse_bind, noh_skeleton *out);
 
 #ifdef __cplusplus

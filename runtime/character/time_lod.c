@@ -19,10 +19,11 @@ void noh_time_lod_init(noh_time_lod *t, uint32_t instance)
     t->instance = instance;
 }
 
-/* The first of the instance's own update ticks after a clock. */
+/* The first of the instance's own update ticks after a clock. They lie a period apart; their phase is the fractional
+ * part of instance * golden ratio, in 32-bit fixed point, times the period. */
 static int64_t next_due(uint32_t instance, int64_t clock, uint32_t period)
 {
-    const uint32_t golden = 2654435769u; /* 2^32 over the golden ratio */
+    const uint32_t golden = 2654435769u; /* 2^32 divided by the golden ratio */
     int64_t phase = (int64_t)(((uint64_t)(instance * golden) * period) >> 32),
             rest = noh_clock_since(clock, phase) % (int64_t)period;
     return noh_clock_add(clock, (int64_t)period - (rest < 0 ? rest + (int64_t)period : rest));
@@ -34,8 +35,8 @@ void noh_time_lod_frame(noh_time_lod *t, int64_t clock, noh_update_rate rate)
     NOH_ASSERT(t && (unsigned)rate < NOH_UPDATE_RATE_COUNT);
     t->frame_ticks = ticks < 0 ? 0 : ticks > UINT32_MAX ? UINT32_MAX : (uint32_t)ticks;
     t->clock = clock;
-    t->wanted = (uint8_t)rate;
-    if (rate < t->running) {
+    t->chosen_rate = (uint8_t)rate;
+    if (rate < t->shown_rate) {
         noh_time_lod_wake(t); /* the mix that is shown is too coarse by now */
     }
 }
@@ -68,8 +69,9 @@ static noh_time_update update_exactly(noh_time_lod *t)
     return u;
 }
 
-/* Where a mix that begins at from_clock ends: at the next of the instance's own ticks, but at most a period away; and
- * at least half a period away after a restart, when source and target may be far apart. */
+/* Where a mix that begins at from_clock ends: at the next of the instance's own update ticks, but at most a period
+ * away. After a restart, when source and target may be far apart, it is at least half a period away, so that what is
+ * shown does not rush. */
 static int64_t interval_end(const noh_time_lod *t, uint32_t period, int restart)
 {
     int64_t longest = noh_clock_add(t->from_clock, period), shortest = noh_clock_add(t->from_clock, period / 2u);
@@ -78,14 +80,17 @@ static int64_t interval_end(const noh_time_lod *t, uint32_t period, int restart)
     return restart && end < shortest ? shortest : end;
 }
 
+/* Pose the instance as it will be at its next update. What is shown now must be where the new mix begins, so that
+ * nothing jumps; there are three cases:
+ *   in time  the mix has just ended, within the last frame: its target is the new source, and the new mix begins where
+ *            it ended, not at this frame, so that frames that fall between update ticks lose no time
+ *   early    the mix is still under way (noh_time_lod_wake): the mix as it is now becomes the source, from now on
+ *   held     the target has been shown for more than a frame (the scheduler was late): it is the source, from now on */
 static noh_time_update update_ahead(noh_time_lod *t, uint32_t period)
 {
     noh_time_update u = { 0, 1.0f, 0 };
-    int early = t->clock < t->to_clock; /* on the way: the mix shown now becomes the source */
-    int held = t->to_clock <
-               noh_clock_add(
-                   t->clock,
-                   -(int64_t)t->frame_ticks); /* the target has been held for a frame or more: it becomes the source */
+    const int early = t->clock < t->to_clock;
+    const int held = t->to_clock < noh_clock_add(t->clock, -(int64_t)t->frame_ticks);
     if (early) {
         u.keep = noh_time_lod_fraction(t);
     } else {
@@ -100,11 +105,11 @@ static noh_time_update update_ahead(noh_time_lod *t, uint32_t period)
 
 noh_time_update noh_time_lod_update(noh_time_lod *t)
 {
-    uint32_t period = noh_update_period((noh_update_rate)t->wanted);
+    uint32_t period = noh_update_period((noh_update_rate)t->chosen_rate);
     int exact = period == 0 || t->frame_ticks >= period || noh_time_lod_due(t) == NOH_DUE_AT_ONCE;
     NOH_ASSERT(t->to_pose < 2u);
     t->posed = 1;
-    t->running = t->wanted;
+    t->shown_rate = t->chosen_rate;
     return exact ? update_exactly(t) : update_ahead(t, period);
 }
 
@@ -121,14 +126,18 @@ void noh_time_lod_wake(noh_time_lod *t)
     t->due_clock = t->clock < t->due_clock ? t->clock : t->due_clock;
 }
 
-/* A track's playback speed, squared; at least 1. */
-static float haste(const noh_track *track)
+/* The square of a track's playback speed, its own or that which its sync group gives it now, whichever is faster; at
+ * least 1. Between two updates a mix strays from a smooth motion by up to period^2 / 8 times its acceleration (the
+ * error of linear interpolation), and a clip played s times as fast has s^2 times the acceleration. */
+static float speed_squared(const noh_track *track)
 {
-    float rate = (float)track->rate / (float)NOH_SPEED_ONE, speed = (float)track->speed / (float)NOH_SPEED_ONE;
-    float square = rate * rate > speed * speed ? rate * rate : speed * speed;
+    const float present = (float)track->rate / (float)NOH_SPEED_ONE, own = (float)track->speed / (float)NOH_SPEED_ONE;
+    const float square = present * present > own * own ? present * present : own * own;
     return square > 1.0f ? square : 1.0f;
 }
 
+/* Blended tracks are averaged, and a mean of poses is off by no more than the worst of them; additive tracks put their
+ * weighted errors on top. */
 void noh_time_lod_error(const noh_controller *c, const float *clip_error_m, float *error_m)
 {
     float added[NOH_UPDATE_RATE_COUNT] = { 0.0f };
@@ -143,7 +152,7 @@ void noh_time_lod_error(const noh_controller *c, const float *clip_error_m, floa
             continue;
         }
         for (int r = 0; r < NOH_UPDATE_RATE_COUNT; r++) {
-            float off = of_clip[r] * haste(track);
+            float off = of_clip[r] * speed_squared(track);
             if (track->flags & NOH_TRACK_ADDITIVE) {
                 added[r] += track->weight * off;
             } else {

@@ -1,13 +1,13 @@
 /* time_lod.h: posing an instance less often than once a frame.
  *
  * An instance holds two poses, source and target, and shows a mix of them. They are not the last two poses: mixing
- * those shows the past (125 ms late at 8 Hz: a walk's feet slide against the ground and the sound of its steps), and
- * extrapolating from them costs up to 8 times the error of interpolation and a jump at every update. A controller is a
- * block of bytes: a copy of it can be played ahead without firing callbacks. So an update at tick t poses the instance
- * as it will be at its next update, and until then what is shown moves from the true pose at t to the true pose there:
- * no lag, no jumps, and an error that grows with the square of the update period, measured for each clip by
- * noh_time_lod_measure. What a program changes in between was not foreseen: it is shown from the next update on, or
- * after noh_time_lod_wake from the next frame on, and never as a jump.
+ * those shows the past (125 ms late at 8 Hz, so that a walk's feet slide and its steps are heard before they are seen),
+ * and extrapolating from them costs up to 8 times the error of interpolation and a jump at every update. But a
+ * controller is a block of bytes, and a copy of it can be played ahead without firing callbacks. So an update at tick t
+ * poses the instance as it will be at its next update, and until then what is shown moves from the true pose at t to
+ * the true pose there: no lag, no jumps, and an error that grows with the square of the update period, measured for
+ * each clip by noh_time_lod_measure. What a program changes in between could not be foreseen: it is shown from the next
+ * update on, or after noh_time_lod_wake from the next frame on, and never as a jump.
  *
  * Poses are mixed as matrices in object space, so every skinned vertex moves in a straight line from one true position
  * to the next. Mixing local transforms would follow arcs, but would need new matrices in every frame, which costs more
@@ -39,9 +39,10 @@ typedef struct noh_time_lod {
     int64_t clock;                /* of the last frame */
     uint32_t frame_ticks;         /* from the frame before it to that one */
     uint32_t instance;
-    uint8_t wanted, running; /* noh_update_rate: as chosen last, and of the mix that is shown */
-    uint8_t to_pose;         /* target pose, 0 or 1; the other is the source */
-    uint8_t posed;           /* 0: no valid pose yet */
+    uint8_t chosen_rate; /* noh_update_rate of the last frame; the next update takes it up */
+    uint8_t shown_rate;  /* noh_update_rate of the mix that is shown */
+    uint8_t to_pose;     /* which pose is the target, 0 or 1; the other is the source */
+    uint8_t posed;       /* 0: no valid pose yet */
     uint8_t reserved[4];
 } noh_time_lod;
 
@@ -52,7 +53,8 @@ uint32_t noh_update_period(noh_update_rate rate);
 
 void noh_time_lod_init(noh_time_lod *t, uint32_t instance);
 
-/* Call once in each frame in which the instance is in view. Frames of an update period or longer are posed exactly. */
+/* Call once in each frame in which the instance is in view. Where frames are as long as the update period, or longer,
+ * every one is posed exactly. */
 void noh_time_lod_frame(noh_time_lod *t, int64_t clock, noh_update_rate rate);
 
 typedef enum noh_due {
@@ -66,12 +68,13 @@ noh_due noh_time_lod_due(const noh_time_lod *t);
 /* Ticks since the update was due; 0 when it is not. */
 uint32_t noh_time_lod_late(const noh_time_lod *t);
 
-/* The two steps of an update. */
+/* What an update has to do, in two steps:
+ *   1. where keep is below 1: replace the other pose by the mix of both at this fraction, which is what is shown now
+ *   2. pose the instance, as it will be at pose_clock, into `pose`; the other one is then the source */
 typedef struct noh_time_update {
-    int64_t pose_clock; /* second: pose the instance as it will be at this clock (this frame's, or later) */
-    /* first, below 1: replace the pose in the other pose by the mix of both at this fraction, as shown now */
+    int64_t pose_clock; /* this frame's, or later */
     float keep;
-    uint8_t pose; /* second: into this pose; the other becomes the source */
+    uint8_t pose; /* 0 or 1: the target from now on */
 } noh_time_update;
 
 /* Begin an update; allowed in any frame, due or not. */
@@ -89,12 +92,13 @@ void noh_time_lod_wake(noh_time_lod *t);
 typedef struct noh_time_probe {
     const noh_clip_set *set;
     const noh_skeleton *skeleton; /* of the set */
-    /* [joint_count] radius of each joint's vertices in the bind pose; below 0: it moves none */
+    /* [joint_count] the joint radii (bounds.h); below 0: the joint moves no vertex */
     const float *joint_radius_m;
     const float *float_radius_m; /* [float_count] the most that each float moves a vertex at weight 1; NULL: floats are
                                     left out */
-    int travels; /* 1: each pass of a repeating clip begins where joint 0 ended the one before, as if its translation
-                  * were root motion (for a set that will extract it, but does not yet); 0: it jumps back */
+    /* 1: each pass of a repeating clip begins where joint 0 ended the one before, as if its translation were root
+     * motion: for a set that does not extract it yet, but will; 0: joint 0 jumps back */
+    int travels;
 } noh_time_probe;
 
 /* Bytes of the working memory that measuring takes. */
@@ -102,18 +106,21 @@ size_t noh_time_lod_measure_size(const noh_time_probe *probe);
 
 /* Measure the largest error of a clip, played in its own loop mode, at each update rate: over periods that begin every
  * 400 ticks, every 200 ticks within each, for any point within a joint's radius, in object space (without root motion
- * where the set extracts it). For converters and for load time: ten seconds of 31 joints take about 0.1 s. shapes
- * error_m[NOH_UPDATE_RATE_COUNT]; at the full rate it is 0 units   model units, as metres errors  ARG probe, clip, or
- * memory NULL or not 16-byte aligned; MEMORY too small; need: the exact bytes The result is the largest error found,
- * not a proof for all ticks. At each tick it is a bound: a difference of two matrices moves a point by at most its
- * norm, which is overestimated by up to 15 % (the Schatten 8-norm) */
+ * where the set extracts it). For converters and for load time: ten seconds of 31 joints take about 0.1 s.
+ *
+ * The result is the largest error found, not a proof for all ticks. At each tick it is a bound: the difference of two
+ * matrices moves a point by at most its norm times the point's distance, and the norm is overestimated by up to 15 %
+ * (the Schatten 8-norm).
+ * shapes  error_m[NOH_UPDATE_RATE_COUNT]; at the full rate it is 0
+ * units   model units, taken as metres
+ * errors  ARG probe, clip, or memory NULL or not 16-byte aligned; MEMORY too small; need: the exact bytes */
 noh_result noh_time_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t clip, float *error_m,
                                 noh_error *error);
 
 /* The errors of what a controller plays: the largest among its blended tracks plus the weighted sum of its additive
- * ones. The error of a track faster than 1 grows with the square of its playback speed, as interpolation's does where a
- * clip is smooth over an update period. shapes  clip_error_m[clip_count of the set][NOH_UPDATE_RATE_COUNT],
- * error_m[NOH_UPDATE_RATE_COUNT] */
+ * ones. Where a track's playback speed is above 1, its error grows with the square of the speed, as that of
+ * interpolation does where a clip is smooth over an update period.
+ * shapes  clip_error_m[the set's clip_count][NOH_UPDATE_RATE_COUNT], error_m[NOH_UPDATE_RATE_COUNT] */
 void noh_time_lod_error(const noh_controller *c, const float *clip_error_m, float *error_m);
 
 #ifdef __cplusplus

@@ -6,7 +6,7 @@
 
 typedef struct work {
     const noh_time_lod_points *points;
-    float *off; /* [joint_count][12] the error of each joint's matrix: mixed minus true */
+    float *off; /* [joint_count][12] the error of each joint's matrix: shown minus true */
     noh_rate_work rates;
 } work;
 
@@ -25,18 +25,19 @@ size_t noh_time_lod_points_size(const noh_time_probe *probe)
     return arena.used;
 }
 
-/* A point's error, squared: the errors of its joints' matrices, applied to it and blended as skinning blends them. */
+/* A point's error, squared. Skinning is linear in the matrices, so the error of the skinned point is the errors of its
+ * joints' matrices, applied to it and blended by its weights. */
 static float point_off(const noh_time_hold *holds, uint32_t count, const float *off)
 {
-    float way[3] = { 0.0f, 0.0f, 0.0f };
+    float error[3] = { 0.0f, 0.0f, 0.0f };
     for (uint32_t i = 0; i < count; i++) {
         const noh_time_hold *h = &holds[i];
         for (size_t r = 0; r < 3 && h->weight > 0.0f; r++) {
             const float *row = off + 12u * (size_t)h->joint + 4u * r;
-            way[r] += h->weight * (row[0] * h->place[0] + row[1] * h->place[1] + row[2] * h->place[2] + row[3]);
+            error[r] += h->weight * (row[0] * h->place[0] + row[1] * h->place[1] + row[2] * h->place[2] + row[3]);
         }
     }
-    return noh_dot3(way, way);
+    return noh_dot3(error, error);
 }
 
 static float pose_off(void *user, const noh_time_probe *p, const noh_rate_work *w, float part, float least)
@@ -63,11 +64,11 @@ static const char *bad_argument(const noh_time_probe *p, const noh_time_lod_poin
     *where = clip;
     if (what) return what;
     *where = 0;
-    if (!points->holds || !points->point_count || !points->holds_per_point) return "points: none";
+    if (!points->holds || !points->point_count || !points->holds_per_point) return "points: NULL, or none";
     for (size_t i = 0; i < (size_t)points->point_count * points->holds_per_point; i++) {
         *where = i;
         if (points->holds[i].weight > 0.0f && points->holds[i].joint >= p->set->joint_count)
-            return "points: no such joint";
+            return "points: a joint that is not in the skeleton";
     }
     return NULL;
 }

@@ -4,9 +4,13 @@
 
 #include "base/math_internal.h"
 
-/* Rounding of a moved vertex is below this share of the largest terms that are summed: eight products and sums of
- * matrices, four of the vertex, each within 2^-24. */
+/* The rounding of a moved vertex is below this share of the largest terms that are summed: eight products and sums that
+ * blend the matrices, four that move the vertex, each within 2^-24. */
 #define ROUNDING 4e-6f
+/* How far an arc that dual quaternions take leaves the hull of where the joints put a vertex, as a share of the largest
+ * distance between two of these places. All of them, and the arc, lie on a sphere about the joints' common centre. By
+ * Jung's theorem points at most d apart fit into a ball of radius sqrt(3/8) d = 0.612 d, and the cap of the sphere over
+ * them, which holds the arc, is no higher than that radius. The rest is for rounding. */
 #define ARC 0.62f
 
 static float magnitude(float v)
@@ -56,10 +60,10 @@ static void move_box(const float m[12], const float box[6], float out[6])
     for (int r = 0; r < 3; r++) {
         float centre = m[4 * r + 3], half = 0.0f, slack = magnitude(m[4 * r + 3]);
         for (int c = 0; c < 3; c++) {
-            float element = m[4 * r + c], middle = 0.5f * (box[c] + box[c + 3]), reach = 0.5f * (box[c + 3] - box[c]);
+            float element = m[4 * r + c], middle = 0.5f * (box[c] + box[c + 3]), extent = 0.5f * (box[c + 3] - box[c]);
             centre += element * middle;
-            half += magnitude(element) * reach;
-            slack += magnitude(element) * (magnitude(middle) + reach);
+            half += magnitude(element) * extent;
+            slack += magnitude(element) * (magnitude(middle) + extent);
         }
         half += ROUNDING * slack;
         out[r] = centre - half;
@@ -94,7 +98,7 @@ static uint32_t joint_count(const noh_mesh *mesh)
     return noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin, NULL) ? 0 : skin.header->joint_count;
 }
 
-/* The box that both have. Returns 0 where there is none. */
+/* The intersection of two boxes. Returns 0 where there is none. */
 static int meet(const float a[6], const float b[6], float out[6])
 {
     for (int i = 0; i < 3; i++) {
@@ -107,8 +111,9 @@ static int meet(const float a[6], const float b[6], float out[6])
     return 1;
 }
 
-/* The furthest that two joints put one vertex of a box apart, squared. */
-static float apart(const float a[12], const float b[12], const float box[6])
+/* The farthest that two joints put one vertex of a box apart, squared: the difference of two matrices moves a point to
+ * the difference of where they move it. */
+static float distance_apart(const float a[12], const float b[12], const float box[6])
 {
     float difference[12], moved[6], square = 0.0f;
     for (int i = 0; i < 12; i++) {
@@ -122,8 +127,9 @@ static float apart(const float a[12], const float b[12], const float box[6])
     return square;
 }
 
-/* How far beyond the joints' boxes dual quaternions may take a vertex. */
-static float arc_reach(const noh_mesh *mesh, const float *matrices, const float deltas[6], uint32_t count)
+/* How far beyond the joints' boxes dual quaternions may take a vertex. Only joints whose boxes meet in the bind pose
+ * can share a vertex, and only within both boxes. */
+static float arc_radius(const noh_mesh *mesh, const float *matrices, const float deltas[6], uint32_t count)
 {
     float most = 0.0f;
     for (size_t i = 0; i < count; i++) {
@@ -131,7 +137,7 @@ static float arc_reach(const noh_mesh *mesh, const float *matrices, const float 
             float shared[6], square;
             if (meet(mesh->joint_boxes + 6u * i, mesh->joint_boxes + 6u * j, shared)) {
                 grow(shared, deltas, shared);
-                square = apart(matrices + 12u * i, matrices + 12u * j, shared);
+                square = distance_apart(matrices + 12u * i, matrices + 12u * j, shared);
                 most = square > most ? square : most;
             }
         }
@@ -139,9 +145,9 @@ static float arc_reach(const noh_mesh *mesh, const float *matrices, const float 
     return ARC * noh_sqrt(most);
 }
 
-/* What all joints' boxes are grown by. */
+/* What all joints' boxes are grown by: the targets' differences before they are moved, the arcs afterwards. */
 typedef struct growth {
-    float deltas[6], reach;
+    float deltas[6], radius;
 } growth;
 
 static growth growth_of(const noh_mesh *mesh, const float *matrices, const float *weights, uint32_t count)
@@ -149,7 +155,7 @@ static growth growth_of(const noh_mesh *mesh, const float *matrices, const float
     growth g;
     NOH_ASSERT(matrices || !count);
     delta_box(mesh, weights, g.deltas);
-    g.reach = (mesh->header->flags & NOH_MESH_DUAL_QUATERNION) ? arc_reach(mesh, matrices, g.deltas, count) : 0.0f;
+    g.radius = (mesh->header->flags & NOH_MESH_DUAL_QUATERNION) ? arc_radius(mesh, matrices, g.deltas, count) : 0.0f;
     return g;
 }
 
@@ -162,7 +168,7 @@ static void joint_box(const noh_mesh *mesh, const float *matrices, const growth 
         grow(rest, g->deltas, grown);
         move_box(matrices + 12u * joint, grown, box);
         for (int i = 0; i < 6; i++) {
-            box[i] += i < 3 ? -g->reach : g->reach;
+            box[i] += i < 3 ? -g->radius : g->radius;
         }
     }
 }

@@ -6,16 +6,16 @@
 #include "base/quat.h"
 #include "deform/skin_blend_internal.h"
 
-#define POLAR_STEPS \
-    24 /* axes of 1000 : 1 need 14: each step halves the ratio until it is small, then doubles the digits */
+/* Axes of 1000 : 1 need 14: each step halves the ratio until it is small, then doubles the number of correct digits. */
+#define POLAR_STEPS 24
 
 /* ---- polar decomposition ---- */
 
 /* R of the polar decomposition A = R H by Newton's iteration R <- (R + R^-T) / 2 (Higham, Computing the polar
  * decomposition, 1986). In terms of the singular values of R, each becomes the mean of itself and its reciprocal while
- * the directions stay: all go to 1, quadratically once they are near. A is first brought to about unit size, which
- * saves the steps that would only halve large values. m: 3 rows of 4, the fourth column is unused. Returns 0 where A
- * has no inverse. */
+ * the directions stay: all converge to 1, quadratically once they are near. R^-T is the cofactors over the determinant.
+ * A is first scaled to about unit size, which saves the steps that would only halve large values. m: 3 rows of 4, the
+ * fourth column is unused. Returns 0 where A has no inverse. */
 static int polar_rotation(const float a[12], float m[12])
 {
     float size = noh_sqrt((noh_dot3(a, a) + noh_dot3(a + 4, a + 4) + noh_dot3(a + 8, a + 8)) / 3.0f), c[9],
@@ -43,8 +43,9 @@ static int polar_rotation(const float a[12], float m[12])
     return 1;
 }
 
-/* The quaternion of a rotation. Each row below is the quaternion times four of one of its components, from sums and
- * differences of the matrix; the row of the largest component is exact where the others cancel, and is normalised. */
+/* The quaternion of a rotation. Each row below is the quaternion times four times one of its components, from sums and
+ * differences of the matrix. The row of the largest component loses no digits, where those of small ones cancel; it is
+ * normalised. (S. W. Shepperd, "Quaternion from rotation matrix", 1978) */
 static void rotation_quaternion(const float m[12], float q[4])
 {
     const float squares[4] = { 1.0f + m[0] - m[5] - m[10], 1.0f - m[0] + m[5] - m[10], 1.0f - m[0] - m[5] + m[10],
@@ -70,15 +71,16 @@ void noh_dual_quaternion_from_matrix(const float a[12], noh_dual_quaternion *out
     if (!polar_rotation(a, r)) {
         memcpy(r, identity, sizeof r);
     }
-    sign = noh_cofactors(r, c); /* a mirror: -R is the rotation, and the stretch takes the sign */
+    sign = noh_cofactors(r, c); /* below 0 for a mirror: then -R is the rotation, and the stretch takes the sign */
     for (int i = 0; i < 12; i++) {
         r[i] *= sign;
     }
     rotation_quaternion(r, out->real);
-    for (int i = 0; i < 9; i++) { /* R^T A */
+    for (int i = 0; i < 9; i++) { /* H = R^T A */
         const int row = i / 3, column = i % 3;
         out->stretch[i] = r[row] * a[column] + r[4 + row] * a[4 + column] + r[8 + row] * a[8 + column];
     }
+    /* d = 1/2 (t, 0) r */
     out->dual[0] = 0.5f * (out->real[3] * t[0] + t[1] * out->real[2] - t[2] * out->real[1]);
     out->dual[1] = 0.5f * (out->real[3] * t[1] + t[2] * out->real[0] - t[0] * out->real[2]);
     out->dual[2] = 0.5f * (out->real[3] * t[2] + t[0] * out->real[1] - t[1] * out->real[0]);
@@ -101,9 +103,9 @@ static void add_scaled(float *sum, const float *values, float factor, int count)
     }
 }
 
-/* The weighted sums of one vertex's joints, with the rotation part unit. r and -r are one rotation: those on the far
- * side of the strongest joint's are negated, or the blend would go the long way round. |r| is at least that joint's
- * weight: no division by 0. */
+/* The weighted sums of one vertex's joints, with the rotation part unit. r and -r are one rotation: where they are on
+ * the far side of the strongest joint's they are negated, or the blend would go the long way round. |r| is then at
+ * least that joint's weight, so nothing is divided by 0. */
 static void blend(const noh_dual_quaternion *joints, const uint32_t *places, const float *weights, uint32_t count,
                   noh_dual_quaternion *sum)
 {
@@ -123,6 +125,7 @@ static void blend(const noh_dual_quaternion *joints, const uint32_t *places, con
     }
 }
 
+/* Stretch the vertex (noh_skin_apply with a matrix that does not move the origin), then rotate and translate it. */
 static void move(const noh_dual_quaternion *q, noh_vertex *vertex)
 {
     const float *r = q->real, *d = q->dual, *h = q->stretch;

@@ -1,7 +1,9 @@
-/* lanes.h (private to deform/): as many floats side by side as the processor has registers for.
+/* lanes_internal.h (private to deform/): as many floats side by side as a register of the processor holds.
  *
- * One kernel is written over these; each operation rounds once, so every width gives the
- * bits of a single lane. The width is chosen when the library is compiled. */
+ * Kernels are written once, over these. Each operation works on every lane by itself and rounds once, as IEEE 754 has
+ * it (division and square root too; approximations of them, such as SSE's rsqrt, are not used), so every width gives
+ * the bits of a single lane. Masks are all ones or all zeros in each lane. The width is chosen when the library is
+ * compiled. */
 #ifndef NOH_DEFORM_LANES_INTERNAL_H
 #define NOH_DEFORM_LANES_INTERNAL_H
 
@@ -72,7 +74,7 @@ static inline void lanes_turn(const lanes pairs[4], lanes out[4]) /* two 4 x 4 m
     out[2] = _mm256_shuffle_ps(b, d, 0x44);
     out[3] = _mm256_shuffle_ps(b, d, 0xee);
 }
-/* rows[NOH_LANES] of 4 floats, `stride` floats apart, as four columns */
+/* rows[NOH_LANES] of 4 floats, `stride` floats apart, as four columns: a transposition */
 static inline void lanes_columns(const float *rows, size_t stride, lanes out[4])
 {
     lanes pairs[4];
@@ -83,7 +85,7 @@ static inline void lanes_columns(const float *rows, size_t stride, lanes out[4])
     }
     lanes_turn(pairs, out);
 }
-/* the other way; row after row, so that rows that overlap by one float leave the later one's */
+/* the inverse; rows are stored in order, so that where two overlap by one float, the later one's stays */
 static inline void lanes_rows(const lanes columns[4], float *rows, size_t stride)
 {
     lanes pairs[4];
@@ -337,7 +339,7 @@ static inline lanes lanes_dot3(const lanes a[3], const lanes b[3])
     return lanes_add(lanes_add(lanes_mul(a[0], b[0]), lanes_mul(a[1], b[1])), lanes_mul(a[2], b[2]));
 }
 
-/* noh_normalize3 */
+/* noh_normalize3, lane by lane */
 static inline void lanes_normalize3(lanes v[3], const lanes fallback[3])
 {
     lanes square = lanes_dot3(v, v), long_enough = lanes_less(lanes_set(1e-30f), square);

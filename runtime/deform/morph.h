@@ -5,11 +5,14 @@
  * that any target moves. For each target, in index order, and each of its delta texels:
  *   layer += weight * delta
  * with one product and one sum per value, never fused. The SIMD path is chosen when the library is compiled (AVX2,
- * SSE2, NEON, else scalar); each gives the scalar bits. source  Microsoft, SparseMorphTargets (DirectX SDK): additive
- * blending of sparse rectangles into three render targets. There the accumulator begins as the mesh; here it begins at
- * 0, so that half floats round the small differences and not the coordinates. Loops over targets outside and moved
- * vertices inside, weights by target: Granberg, Character Animation with Direct3D, 2009, chapter 8 (whose listing
- * indexes weights by vertex) Threads: no state; any thread, each with layers of its own. */
+ * SSE2, NEON, else scalar); each gives the scalar bits.
+ *
+ * source  Microsoft, SparseMorphTargets (DirectX SDK): additive blending of sparse rectangles into three render
+ * targets. There the accumulator begins as the mesh; here it begins at 0, so that half floats round the small
+ *         differences and not the coordinates. The loop over targets outside, over moved vertices inside: Granberg,
+ *         Character Animation with Direct3D, 2009, chapter 8 (whose listing indexes the weights by vertex)
+ *
+ * Threads: no state; any thread, each with layers of its own. */
 #ifndef NOH_DEFORM_MORPH_H
 #define NOH_DEFORM_MORPH_H
 
@@ -31,8 +34,8 @@ typedef struct noh_morph_layers {
 size_t noh_morph_layers_size(const noh_mesh *mesh);
 
 /* Place the layers in memory[bytes], aligned to NOH_MEMORY_ALIGN, and clear them. A mesh without accumulation texels
- * needs none: memory may then be NULL. errors  ARG memory is NULL or misaligned; MEMORY it is too small; need: the
- * bytes */
+ * needs none: memory may then be NULL.
+ * errors  ARG memory is NULL or misaligned; MEMORY it is too small; need: the exact bytes */
 noh_result noh_morph_layers_init(void *memory, size_t bytes, const noh_mesh *mesh, noh_morph_layers *layers,
                                  noh_error *error);
 
@@ -59,7 +62,7 @@ const char *noh_morph_simd(void);
  * ranges  index below vertex_count */
 void noh_morph_vertex(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t index, noh_vertex *out);
 
-/* Only its position. layers NULL: that of the bind pose. */
+/* Only its position, in the same bits. layers NULL: that of the bind pose. */
 void noh_morph_position(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t index, float out[3]);
 
 /* The work that these weights cause: targets whose weight is not 0, their rectangles, delta texels and pairs. For cost

@@ -1,9 +1,10 @@
-/* morph_kernel.h (private to deform/): add one run of delta words to the layers.
+/* morph_kernel_internal.h (private to deform/): add one run of delta words to the layers.
  *
- * Words and layers both run x, y, z, x, y, z..., so that a run of texels is a run
- * of words, whatever the vector width: no shuffles. Each kernel does, per word,
+ * Words and layers both run x, y, z, x, y, z..., so a run of texels is a run of words, and vectors of any width need no
+ * shuffles. Each kernel does, per word,
  *   layer[i] = layer[i] + (float)field(word[i]) * weight
- * with one rounding per operation; that is what makes all of them equal. */
+ * A field has at most 24 bits and converts exactly; the product and the sum round once each, in this order. No
+ * operation mixes words, so the width of the vectors does not matter: all kernels give the same bits. */
 #ifndef NOH_DEFORM_MORPH_KERNEL_INTERNAL_H
 #define NOH_DEFORM_MORPH_KERNEL_INTERNAL_H
 
@@ -26,8 +27,8 @@
 #define NOH_MORPH_SIMD "scalar"
 #endif
 
-/* Where a field lies in a word (shift left, then arithmetic shift right), and what
- * one unit of it weighs. */
+/* Where a field lies in a word, and the weight of one unit of it. The left shift drops the bits above the field, the
+ * arithmetic right shift those below it, and extends the sign. */
 typedef struct noh_field {
     uint32_t left, right;
     float weight;
@@ -35,7 +36,8 @@ typedef struct noh_field {
 
 static inline float noh_field_value(uint32_t word, noh_field f)
 {
-    /* the shift of a negative value is arithmetic in every compiler that we know of; a test says so */
+    /* C99 leaves the right shift of a negative value to the compiler; all known ones shift in the sign, and a test says
+     * so */
     return (float)((int32_t)(word << f.left) >> f.right) * f.weight;
 }
 
@@ -59,8 +61,8 @@ static inline void noh_add_step4(const uint32_t *words, noh_field f, float *laye
     _mm_storeu_ps(layer, noh_add_four(q, f, _mm_loadu_ps(layer)));
 }
 
-/* The last one to three words of a run: runs are rows of rectangles, so they end often (a
- * sixth less time in all with AVX2). Nothing past them is read or written. */
+/* The last one to three words of a run, in one register. Runs are rows of rectangles, so they end often: this saves a
+ * sixth of the whole time with AVX2. Nothing past the run is read or written. */
 #define NOH_MORPH_TAIL 1
 static inline __m128i noh_load_tail(const void *from, size_t count)
 {
@@ -112,7 +114,8 @@ static inline void noh_add_step(const uint32_t *words, noh_field f, float *layer
 }
 #endif
 
-/* A run into all three layers. */
+/* A run into all three layers. Steps are as wide as the processor's vectors; what remains is done four words at a time,
+ * then as a tail. */
 static inline void noh_add_run(const uint32_t *words, size_t count, const noh_field f[3], float *const layers[3])
 {
     size_t i = 0;

@@ -7,7 +7,7 @@
 #include "deform/bounds.h"
 #include "deform/skin.h"
 
-#define EDGE 1e-6f /* how far beyond a triangle's edge still counts, so that rays do not slip between two */
+#define EDGE 1e-6f /* how far beyond a triangle's edge is still a hit, so that rays do not slip between two */
 
 typedef struct ray {
     float origin[3], direction[3], limit; /* limit: the nearest hit so far */
@@ -100,10 +100,10 @@ static int boxes_meet(const float a[6], const float b[6])
     return a[0] <= b[3] && b[0] <= a[3] && a[1] <= b[4] && b[1] <= a[4] && a[2] <= b[5] && b[2] <= a[5];
 }
 
-/* For each joint the box of where its vertices may be. A vertex lies within the hull of where each of its joints would
- * put it, and each of its joints has it in its box of the bind pose, so only joints whose boxes meet there can share
- * one: the union of their moved boxes holds it. Conservative, so no hit is lost; it is made once and spares most
- * triangles. */
+/* For each joint a box that contains all its vertices as drawn. A vertex lies within the hull of where each of its
+ * joints would put it. In the bind pose it is in the box of each of these joints, so only joints whose boxes meet there
+ * can share a vertex, and the union of their moved boxes contains it. No hit is lost, and most triangles are skipped.
+ */
 static void neighbourhoods(const noh_mesh *mesh, uint32_t count, const float *boxes, float *out)
 {
     for (size_t j = 0; j < count; j++) {
@@ -123,7 +123,7 @@ static uint32_t strongest_joint(const noh_mesh *mesh, uint32_t vertex)
     return mesh->palette_joints[mesh->palettes[noh_mesh_palette(mesh, vertex)].first_joint + place];
 }
 
-/* May the ray meet this triangle? near: neighbourhoods, NULL for a rigid mesh. */
+/* Whether the ray may meet this triangle. near: neighbourhoods; NULL for a rigid mesh. */
 static int is_candidate(const ray *r, const noh_mesh *mesh, const uint32_t corners[3], const float *near)
 {
     float box[6];
@@ -213,7 +213,8 @@ size_t noh_pick_scratch_size(const noh_mesh *mesh)
     return joint_count(mesh) * 12u * sizeof(float);
 }
 
-/* Is anything near the ray? Skinned: fills the neighbourhoods behind the joints' boxes. */
+/* Whether the ray meets the mesh's box. Of a skinned mesh, fills boxes[count][6], then the neighbourhoods behind them.
+ */
 static int may_hit(const noh_pick_surface *s, const ray *r, float *boxes, uint32_t count)
 {
     float box[6];
@@ -263,7 +264,7 @@ noh_result noh_pick(const noh_pick_surface *surface, const float origin[3], cons
         }
     }
     if (nearest.triangle == NOH_NONE) {
-        return noh_fail(error, NOH_ERR_NOT_FOUND, "the ray hits nothing within its reach", 0, 0);
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "the ray hits nothing within distance_max", 0, 0);
     }
     finish(surface, &r, &nearest);
     *hit = nearest;

@@ -36,6 +36,7 @@ void NOH_SKIN_VERTICES(const noh_mesh *mesh, const float *matrices, const noh_mo
     if (tangents && !job.has_tangents) {
         memset(tangents, 0, 16u * (size_t)count);
     }
+    /* Full blocks store past their last vertex, where the next block writes again; the last block must not. */
     for (uint32_t i = 0; i < count; i += NOH_LANES) {
         uint32_t block = count - i < NOH_LANES ? count - i : NOH_LANES;
         skin_block(&job, first + i, block, i, count - i <= NOH_LANES);
@@ -52,7 +53,7 @@ void noh_skin_matrices(const noh_skin *skin, const float *model, float *matrices
     }
 }
 
-/* Make a moved direction unit; one without length becomes the rest direction. */
+/* Make a moved direction unit; one without length becomes the rest direction, which need not be unit itself. */
 static void unit_or_rest(float v[3], const float rest[3])
 {
     static const float up[3] = { 0.0f, 0.0f, 1.0f };
@@ -74,7 +75,7 @@ void noh_skin_apply(const float m[12], noh_vertex *vertex)
         vertex->normal[r] = sign * (c[3 * r] * n[0] + c[3 * r + 1] * n[1] + c[3 * r + 2] * n[2]);
     }
     unit_or_rest(vertex->normal, n);
-    if (t[3] != 0.0f) { /* else the mesh has no tangents */
+    if (t[3] != 0.0f) { /* 0: the mesh has no tangents */
         for (int r = 0; r < 3; r++) {
             vertex->tangent[r] = m[4 * r] * t[0] + m[4 * r + 1] * t[1] + m[4 * r + 2] * t[2];
         }
@@ -110,7 +111,7 @@ void noh_skin_vertex(const noh_mesh *mesh, const float *matrices, const noh_morp
         noh_morph_vertex(mesh, layers, index, out);
     } else {
         noh_mesh_vertex(mesh, index, out);
-        noh_mesh_directions(mesh, index, out->normal, out->tangent); /* made unit once is enough */
+        noh_mesh_directions(mesh, index, out->normal, out->tangent); /* unnormalised: noh_skin_apply makes them unit */
     }
     noh_skin_apply(m, out);
 }

@@ -10,8 +10,11 @@
  * and unlike the inverse the cofactors exist where an axis has no length.
  *
  * Meshes with NOH_MESH_DUAL_QUATERNION are drawn by dual_quaternion.h instead. The SIMD path is chosen when the library
- * is compiled; each gives the bits of noh_skin_vertex. source  Granberg, Character Animation with Direct3D, 2009,
- * chapters 3 and 8 (whose shader moves normals by M itself); the weight that is implied: Direct3D 9, Geometry Blending
+ * is compiled; each gives the bits of noh_skin_vertex.
+ *
+ * source  Granberg, Character Animation with Direct3D, 2009, chapters 3 and 8 (whose shader moves normals by M itself);
+ *         the implied last weight: Microsoft, Geometry Blending, DirectX 9.0 documentation
+ *
  * Threads: no state; any thread. */
 #ifndef NOH_DEFORM_SKIN_H
 #define NOH_DEFORM_SKIN_H
@@ -22,8 +25,8 @@
 extern "C" {
 #endif
 
-/* The matrices that move the vertices of a skin's meshes, made once per instance and frame: model[joint] * inverse
- * bind. shapes  model[the skeleton's joint_count][12] (noh_local_to_model), matrices[skin's joint_count][12] */
+/* The matrices that move the vertices of a skin's meshes: model[joint] * inverse bind, once per instance and frame.
+ * shapes  model[the skeleton's joint_count][12] (noh_local_to_model), matrices[skin's joint_count][12] */
 void noh_skin_matrices(const noh_skin *skin, const float *model, float *matrices);
 
 /* One vertex as drawn, in model space. layers NULL: no morph targets.

@@ -1,4 +1,4 @@
-/* skin_blend.h (private to deform/): the matrix of one vertex, and what it does to a vertex. */
+/* skin_blend_internal.h (private to deform/): cofactors of a matrix, and a vertex moved by it. */
 #ifndef NOH_DEFORM_SKIN_BLEND_INTERNAL_H
 #define NOH_DEFORM_SKIN_BLEND_INTERNAL_H
 

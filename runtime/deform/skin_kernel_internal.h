@@ -1,8 +1,10 @@
-/* skin_kernel.h (private to deform/): a block of NOH_LANES vertices, moved side by side.
+/* skin_kernel_internal.h (private to deform/): a block of NOH_LANES vertices, moved side by side.
  *
- * Matrices are blended row by row, vertex by vertex, because each vertex has its own; all
- * else runs over the block. Every operation is that of noh_mesh_directions, noh_morph_vertex
- * and noh_skin_apply, in their order: the same bits. */
+ * Each vertex has joints of its own, so matrices are gathered and blended vertex by vertex, with the rows of a matrix
+ * in the vector. All else is the same for every vertex and runs with one vertex in each lane: the block's matrices,
+ * positions and directions are transposed (lanes_columns), moved, and transposed back (lanes_rows). Every operation is
+ * that of noh_mesh_directions, noh_morph_vertex and noh_skin_apply, in their order, and lanes never mix: the same bits.
+ */
 #ifndef NOH_DEFORM_SKIN_KERNEL_INTERNAL_H
 #define NOH_DEFORM_SKIN_KERNEL_INTERNAL_H
 
@@ -19,15 +21,15 @@ typedef struct skin_job {
     const noh_morph_layers *layers;        /* or NULL */
     float *positions, *normals, *tangents; /* or NULL */
     int has_tangents;
-    int split;  /* into several palettes */
-    int texels; /* vertices have texel references */
+    int split;  /* the mesh has several palettes */
+    int texels; /* its vertices have texel references */
     const float *joints[NOH_PALETTE_JOINTS_MAX];
 } skin_job;
 
 /* ---- one matrix per vertex ---- */
 
 #if defined(NOH_AVX2)
-/* Two rows side by side, and one. */
+/* Two rows in one register, the third in half of one. */
 static inline void blend_rows(const float *const *from, const float *weights, uint32_t count, float m[12])
 {
     __m256 w = _mm256_set1_ps(weights[0]), ab = _mm256_mul_ps(w, _mm256_loadu_ps(from[0]));
@@ -69,7 +71,8 @@ static inline void blend_rows(const float *const *from, const float *weights, ui
 }
 #endif
 
-/* The weights of noh_mesh_influences, for a count that the compiler knows. */
+/* The weights of noh_mesh_influences, for a count that the compiler knows: it then unrolls the loop, and all positions
+ * of bits are constants. The first weight is not stored: it is what the others leave of 1. */
 static inline void unpack_weights(const uint32_t *bits, uint32_t count, float *weights)
 {
     const float unit = 1.0f / (float)NOH_WEIGHT_ONE;
@@ -120,7 +123,8 @@ static inline void blend_vertex(const skin_job *job, uint32_t vertex, uint32_t c
     blend_rows(from, weights, count, m);
 }
 
-/* Lanes past `count` repeat the last vertex. */
+/* The matrices of a block. Lanes past `count` repeat the last vertex: they cost nothing more, and no lane is undefined.
+ */
 static inline void blend_block_of(const skin_job *job, uint32_t first, uint32_t count, uint32_t influences,
                                   float m[NOH_LANES][12])
 {
@@ -141,8 +145,9 @@ static inline void blend_block(const skin_job *job, uint32_t first, uint32_t cou
 
 /* ---- a block ---- */
 
-/* Positions, and the first four words of the records. Blocks that are not full are copied first. A load
- * reads past its vertex, but not past the pack: other arrays follow both of these. */
+/* Positions, and the first four words of the attribute records. A load of four words reads past the three of a position
+ * and past short records, but not past the pack: other arrays follow both. Blocks that are not full are copied first.
+ */
 static inline void load_block(const skin_job *job, uint32_t first, uint32_t count, lanes p[4], lanes words[4])
 {
     const size_t stride = job->mesh->header->attribute_stride;
@@ -164,6 +169,8 @@ static inline void load_block(const skin_job *job, uint32_t first, uint32_t coun
     }
 }
 
+/* Octahedral directions, unnormalised: z is what |x| + |y| leave of 1; where that is negative, x and y are folded over
+ * the diagonal. (Q. Meyer et al., "On floating-point normal vectors", 2010) */
 static inline void unfold_lanes(lanes x, lanes y, lanes out[3])
 {
     const lanes zero = lanes_set(0.0f);
@@ -241,7 +248,7 @@ static inline void choose3(lanes mask, const lanes yes[3], lanes v[3])
     }
 }
 
-/* noh_morph_vertex */
+/* noh_morph_vertex for a block; vertices that no target moves stay as they are, without being made unit. */
 static inline void morph_block(skin_deltas *d, int tangents, lanes p[3], lanes n[3], lanes t[3])
 {
     lanes mask, moved[3], normal[3], unit[3] = { n[0], n[1], n[2] };
@@ -286,8 +293,10 @@ static inline void cofactor_lanes(lanes m[3][4], lanes c[3][3])
     c[2][2] = cross_term(m[0][0], m[1][1], m[0][1], m[1][0]);
 }
 
-/* Where `direct` each row is stored at once, and its fourth float is where the next vertex's first will be; else
- * only what is asked for is written. */
+/* Where `direct`, rows are stored as they are: of three floats, the fourth lands where the next vertex's first will be
+ * and is overwritten by it. In the last block, where there is no next vertex, only the vertices' own floats are
+ * written.
+ */
 static inline void store_block(const lanes v[3], lanes last, uint32_t floats, uint32_t count, int direct, float *out)
 {
     const lanes columns[4] = { v[0], v[1], v[2], last };
@@ -338,7 +347,8 @@ static inline void move_block(const skin_job *job, float matrices[NOH_LANES][12]
     }
 }
 
-/* Vertices first..first+count-1 to elements at..at+count-1; count is at most NOH_LANES. last: the outputs end there. */
+/* Move vertices first..first+count-1 to elements at..at+count-1 of the outputs; count is at most NOH_LANES. last: the
+ * outputs end there. */
 static inline void skin_block(const skin_job *job, uint32_t first, uint32_t count, uint32_t at, int last)
 {
     float matrices[NOH_LANES][12];

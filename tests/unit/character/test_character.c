@@ -14,7 +14,7 @@
 typedef struct stage {
     scene s;
     float inverse_bind[JOINTS * 12];
-    float margin[JOINTS];
+    float radius[JOINTS];
     noh_lod_joints joints[2];
     noh_lod_table table;
     noh_lod_settings settings;
@@ -43,7 +43,7 @@ static void measure_errors(stage *g)
     void *memory;
     probe.set = &g->s.set;
     probe.skeleton = &g->s.skeleton;
-    probe.joint_radius_m = g->margin;
+    probe.joint_radius_m = g->radius;
     memory = test_aligned(NULL, noh_time_lod_measure_size(&probe));
     for (uint32_t m = 0; m < CLIPS; m++) {
         assert_int_equal(noh_time_lod_measure(memory, noh_time_lod_measure_size(&probe), &probe, m, errors[m], NULL),
@@ -60,7 +60,7 @@ static void stage_open(stage *g)
     noh_local_to_model(&g->s.skeleton, g->s.bind, JOINTS, bind);
     for (uint32_t j = 0; j < JOINTS; j++) {
         invert_rigid(bind + 12 * j, g->inverse_bind + 12 * j);
-        g->margin[j] = 0.1f;
+        g->radius[j] = 0.1f;
     }
     g->s.skeleton.inverse_bind = g->inverse_bind;
     if (errors[WALK][NOH_UPDATE_RATE_8] == 0.0f) measure_errors(g);
@@ -92,7 +92,7 @@ static void play(stage *g, noh_character *ch, uint32_t track, noh_track_desc d)
 
 static void update(stage *g, noh_character *ch)
 {
-    noh_character_update(ch, &g->s.set, &g->s.skeleton, g->margin, &g->scratch);
+    noh_character_update(ch, &g->s.set, &g->s.skeleton, g->radius, &g->scratch);
 }
 
 /* The scale at which a rate is allowed, as long as `off` metres are a pixel. */
@@ -101,7 +101,7 @@ static float scale_for(float off)
     return 0.98f / off;
 }
 
-/* What the controller's own pose comes to. */
+/* The pose of the controller itself. */
 static void true_palette(stage *g, noh_character *ch, float *palette, float *floats)
 {
     noh_transform pose[JOINTS];
@@ -123,7 +123,7 @@ static void take_floats(const noh_character *ch, float *floats)
     if (shown != floats) memcpy(floats, shown, FLOATS * sizeof *floats);
 }
 
-/* How far a vertex on the six axes of any joint, at its margin, is off. */
+/* The largest error of a vertex on the six axes of any joint, at its radius. */
 static double palettes_apart(const stage *g, const float *a, const float *b)
 {
     double worst = 0.0;
@@ -133,7 +133,7 @@ static double palettes_apart(const stage *g, const float *a, const float *b)
         for (int axis = 0; axis < 6; axis++) {
             double p[3], off = 0.0;
             for (uint32_t i = 0; i < 3; i++) p[i] = (double)bind[12 * j + 4 * i + 3];
-            p[axis % 3] += (axis < 3 ? 1.0 : -1.0) * (double)g->margin[j];
+            p[axis % 3] += (axis < 3 ? 1.0 : -1.0) * (double)g->radius[j];
             for (uint32_t r = 0; r < 3; r++) {
                 const float *x = a + 12 * j + 4 * r, *y = b + 12 * j + 4 * r;
                 double d = (double)x[3] - (double)y[3];
@@ -183,7 +183,7 @@ static void memory_is_exact(void **state)
     assert_int_equal(noh_character_scratch_init(memory + 8, need, &g.desc, &scratch, &error), NOH_ERR_ARG);
     assert_int_equal(memory[0], 0xa5);
     assert_int_equal(noh_character_scratch_init(memory, need, &g.desc, &scratch, &error), NOH_OK);
-    noh_character_update(g.ch, &g.s.set, &g.s.skeleton, g.margin, &scratch);
+    noh_character_update(g.ch, &g.s.set, &g.s.skeleton, g.radius, &scratch);
     for (size_t i = need; i < need + 16; i++) assert_int_equal(memory[i], 0xa5);
     free(memory);
     stage_close(&g);
@@ -228,7 +228,7 @@ static void a_body_takes_less_than_8_kib(void **state)
 
 /* ---- what is shown ---- */
 
-static void at_full_rate_it_is_the_pose_to_the_bit(void **state)
+static void at_the_full_update_rate_it_is_the_exact_pose(void **state)
 {
     stage g;
     float shown[JOINTS * 12], truth[JOINTS * 12], floats[FLOATS], true_floats[FLOATS];
@@ -250,8 +250,8 @@ static void at_full_rate_it_is_the_pose_to_the_bit(void **state)
     stage_close(&g);
 }
 
-/* One clip at each rate: updates as many as the rate says, errors as measured, the sphere around all of it. */
-static void at_low_rates_the_error_is_as_measured(void **state)
+/* One clip at each update rate: as many updates as the rate says, errors as measured, and the sphere around it all. */
+static void at_low_update_rates_the_error_is_as_measured(void **state)
 {
     (void)state;
     for (uint32_t clip = WALK; clip <= JUMP; clip++) {
@@ -266,7 +266,7 @@ static void at_low_rates_the_error_is_as_measured(void **state)
                 noh_character_step(g.ch, &g.s.set, FRAME, NULL, NULL);
                 if (noh_character_look(g.ch, &g.table, &g.settings, scale_for(errors[clip][rate])) != NOH_DUE_NOT)
                     update(&g, g.ch);
-                assert_int_equal(g.ch->lod.rate, rate);
+                assert_int_equal(g.ch->lod.update_rate, rate);
                 take_palette(g.ch, shown);
                 true_palette(&g, g.ch, truth, floats);
                 worst = fmax(worst, palettes_apart(&g, shown, truth));
@@ -280,7 +280,7 @@ static void at_low_rates_the_error_is_as_measured(void **state)
     }
 }
 
-/* An update in the middle of an interval, to another clip: what is shown at that tick stays what it was. */
+/* An update in the middle of a mix, to another clip: what is shown at that tick does not change. */
 static void a_change_begins_with_what_is_shown(void **state)
 {
     stage g;
@@ -308,9 +308,9 @@ static void a_change_begins_with_what_is_shown(void **state)
     stage_close(&g);
 }
 
-/* Cross-fades, of which no error was measured: once what is shown has come to the new state (a period after the wake),
- * it is off by at most half as much again as the worse of the two clips. */
-static void cross_fades_are_off_a_little_more(void **state)
+/* No error was measured of cross-fades. Once what is shown has reached the new state (a period after the wake), its
+ * error is at most 1.5 times that of the worse of the two clips. */
+static void cross_fades_stay_near_the_measured_error(void **state)
 {
     test_random r = test_random_from(44);
     stage g;
@@ -375,7 +375,7 @@ static void the_sphere_holds_what_is_shown(void **state)
     stage_close(&g);
 }
 
-/* Joints that are not posed hang on their parents. */
+/* Joints that are not posed move with their parents. */
 static void dropped_joints_follow_their_parents(void **state)
 {
     stage g;
@@ -409,8 +409,8 @@ static void dropped_joints_follow_their_parents(void **state)
     stage_close(&g);
 }
 
-/* Of a skin: what a vertex of its k-th entry is moved by, in every frame, mixed or not, whatever skeleton the character
- * was updated with. `pair` characters play the same: one with the skeleton of the pack, one with the skin's own. */
+/* What moves a vertex of a skin's k-th entry is the same in every frame, mixed or not, whatever skeleton the character
+ * was updated with. Both characters of `pair` play the same: one has the skeleton of the pack, one the skin's own. */
 static void skins_of_all_packs_are_posed(stage *g, const noh_skin *skin, int has_matrices)
 {
     stage own;
@@ -471,8 +471,8 @@ static void a_skin_is_posed_with_and_without_inverse_bind_matrices(void **state)
     }
 }
 
-/* What the second half of an update is handed can be changed: a look-at. */
-static void a_program_changes_the_pose_between_the_halves(void **state)
+/* The pose may be changed between the two halves of an update: a look-at. */
+static void the_pose_may_be_changed_between_the_halves(void **state)
 {
     stage g;
     float plain[JOINTS * 12], changed[JOINTS * 12], floats[FLOATS];
@@ -579,7 +579,7 @@ static void keys_fire_the_same_with_and_without_lod(void **state)
         if (frame / 100 % 4) { /* seen */
             noh_due due = noh_character_look(g.ch, &g.table, &g.settings,
                                              powf(10.0f, test_random_float(&r, -2.0f, 4.0f)));
-            rates |= 1u << g.ch->lod.rate;
+            rates |= 1u << g.ch->lod.update_rate;
             if (due == NOH_DUE_AT_ONCE || (due == NOH_DUE && test_random_below(&r, 3))) update(&g, g.ch);
         }
     }
@@ -594,7 +594,7 @@ static void keys_fire_the_same_with_and_without_lod(void **state)
 
 /* ---- copies ---- */
 
-static void a_copy_goes_on_the_same_and_alone(void **state)
+static void a_copy_plays_the_same_on_its_own(void **state)
 {
     stage g;
     uint8_t *array;
@@ -623,8 +623,8 @@ static void a_copy_goes_on_the_same_and_alone(void **state)
     stage_close(&g);
 }
 
-/* A crowd with a budget that is a little over the mean: nobody who is seen goes without a pose, each frame keeps its
- * budget but for those that cannot wait, and the lateness is within what is stated. */
+/* A crowd with a budget a little above the mean: no character in view goes without a pose, each frame keeps its budget
+ * except for updates that cannot wait, and the lateness is within the stated bound. */
 static void a_crowd_keeps_its_budget(void **state)
 {
     enum { CROWD = 300, FRAMES = 600 };
@@ -670,15 +670,15 @@ static void a_crowd_keeps_its_budget(void **state)
     }
     print_message("%.1f updates a frame of at most 120, at worst %u ticks late\n", (double)updates / FRAMES,
                   worst_late);
-    assert_true(worst_late < FRAME); /* those who are due are served in the same frame */
+    assert_true(worst_late < FRAME); /* what is due is served in the same frame */
     assert_int_equal(schedule.lost, 0);
     free(array), free(schedule_memory);
     stage_close(&g);
 }
 
-/* A cut shows at once what is wanted then: no fade comes from before it. The controller hears of the level, so that
- * tracks for near instances alone are not sampled far away. */
-static void a_cut_begins_anew_at_the_level_wanted(void **state)
+/* After a cut the level for the new view is shown at once, without a fade from the old one. The controller is given the
+ * level too, so that tracks that only near instances play are not sampled far away. */
+static void a_cut_shows_the_new_level_at_once(void **state)
 {
     static const noh_lod_mesh levels[2] = { { 100, 100, 4, 0.0f }, { 10, 10, 4, 0.1f } };
     stage g;
@@ -709,17 +709,17 @@ int main(int argc, char **argv)
         cmocka_unit_test(memory_is_exact),
         cmocka_unit_test(impossible_descs_are_refused),
         cmocka_unit_test(a_body_takes_less_than_8_kib),
-        cmocka_unit_test(at_full_rate_it_is_the_pose_to_the_bit),
-        cmocka_unit_test(at_low_rates_the_error_is_as_measured),
+        cmocka_unit_test(at_the_full_update_rate_it_is_the_exact_pose),
+        cmocka_unit_test(at_low_update_rates_the_error_is_as_measured),
         cmocka_unit_test(a_change_begins_with_what_is_shown),
-        cmocka_unit_test(cross_fades_are_off_a_little_more),
+        cmocka_unit_test(cross_fades_stay_near_the_measured_error),
         cmocka_unit_test(the_sphere_holds_what_is_shown),
         cmocka_unit_test(dropped_joints_follow_their_parents),
         cmocka_unit_test(a_skin_is_posed_with_and_without_inverse_bind_matrices),
-        cmocka_unit_test(a_program_changes_the_pose_between_the_halves),
+        cmocka_unit_test(the_pose_may_be_changed_between_the_halves),
         cmocka_unit_test(keys_fire_the_same_with_and_without_lod),
-        cmocka_unit_test(a_copy_goes_on_the_same_and_alone),
-        cmocka_unit_test(a_cut_begins_anew_at_the_level_wanted),
+        cmocka_unit_test(a_copy_plays_the_same_on_its_own),
+        cmocka_unit_test(a_cut_shows_the_new_level_at_once),
         cmocka_unit_test(a_crowd_keeps_its_budget),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);

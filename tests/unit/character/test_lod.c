@@ -101,7 +101,7 @@ static void settings_fields_broken_in_turn(void **state)
 /* ---- scale ---- */
 
 /* 1080 lines over 90 degrees: at d metres the view is 2 d high. */
-static void scale_is_the_perspective_s(void **state)
+static void scale_is_that_of_the_perspective(void **state)
 {
     (void)state;
     assert_true(fabs(noh_lod_scale(1.0f, NOH_PI / 2.0f, 1080) - 540.0) < 1e-3);
@@ -126,10 +126,11 @@ static void expect_within_shares(const noh_lod *d, float scale, float pixels, in
     if (with_mesh) assert_true(coarsest_shown_mesh(d) * scale <= shares[NOH_LOD_MESH] * pixels * slack);
     assert_true(joints[d->joints].error_m * scale <= shares[NOH_LOD_JOINTS] * pixels * slack);
     assert_true(influences[d->influences].error_m * scale <= shares[NOH_LOD_INFLUENCES] * pixels * slack);
-    if (d->rate) assert_true((rates[d->rate] + 0.0001f) * scale <= shares[NOH_LOD_UPDATES] * pixels * slack);
+    if (d->update_rate)
+        assert_true((rates[d->update_rate] + 0.0001f) * scale <= shares[NOH_LOD_UPDATES] * pixels * slack);
 }
 
-static void fresh_choice_is_monotone_and_within_the_knob(void **state)
+static void fresh_choice_is_monotone_and_within_the_quality_setting(void **state)
 {
     noh_lod_table t = table_of();
     noh_lod_settings s = settings_of(1.0f);
@@ -141,7 +142,7 @@ static void fresh_choice_is_monotone_and_within_the_knob(void **state)
         memset(&d, 0, sizeof d);
         noh_lod_choose(&d, &t, &s, scale, rates, 0);
         assert_true(d.mesh >= last.mesh && d.joints >= last.joints && d.influences >= last.influences &&
-                    d.rate >= last.rate);
+                    d.update_rate >= last.update_rate);
         assert_int_equal(d.mesh, d.mesh_before);
         assert_int_equal(d.fade_ticks, 0);
         expect_within_shares(&d, scale, 1.0f, 1);
@@ -151,12 +152,12 @@ static void fresh_choice_is_monotone_and_within_the_knob(void **state)
     assert_int_equal(last.mesh, LEVELS - 1u); /* far away all is coarse */
     assert_int_equal(last.joints, 2);
     assert_int_equal(last.influences, 2);
-    assert_int_equal(last.rate, NOH_UPDATE_RATE_8);
+    assert_int_equal(last.update_rate, NOH_UPDATE_RATE_8);
     assert_int_equal(noh_lod_joint_count(&last, &t), 12);
     assert_int_equal(noh_lod_influence_count(&last, &t), 1);
 }
 
-static void nothing_to_choose_from_is_full_lod(void **state)
+static void an_empty_table_gives_full_detail(void **state)
 {
     noh_lod_table t;
     noh_lod_settings s = settings_of(1.0f);
@@ -166,7 +167,7 @@ static void nothing_to_choose_from_is_full_lod(void **state)
     memset(&d, 0, sizeof d);
     assert_int_equal(noh_lod_table_check(&t, NULL), NOH_OK);
     noh_lod_choose(&d, &t, &s, 0.0f, NULL, 0);
-    assert_true(d.mesh == 0 && d.joints == 0 && d.influences == 0 && d.rate == NOH_UPDATE_RATE_FULL);
+    assert_true(d.mesh == 0 && d.joints == 0 && d.influences == 0 && d.update_rate == NOH_UPDATE_RATE_FULL);
     assert_int_equal(noh_lod_joint_count(&d, &t), 0);
     assert_int_equal(noh_lod_influence_count(&d, &t), 0);
     assert_true(noh_lod_error_pixels(&d) == 0.0f);
@@ -191,7 +192,7 @@ static void influences_are_those_that_the_mesh_has(void **state)
 /* ---- no flicker ---- */
 
 typedef struct changes {
-    uint32_t mesh, joints, influences, rate;
+    uint32_t mesh, joints, influences, update_rate;
 } changes;
 
 static void count_changes(changes *n, const noh_lod *before, const noh_lod *after)
@@ -199,7 +200,7 @@ static void count_changes(changes *n, const noh_lod *before, const noh_lod *afte
     n->mesh += before->mesh != after->mesh;
     n->joints += before->joints != after->joints;
     n->influences += before->influences != after->influences;
-    n->rate += before->rate != after->rate;
+    n->update_rate += before->update_rate != after->update_rate;
 }
 
 /* A distance that trembles by less than the hysteresis: after the first frames, each kind changes at most once. */
@@ -220,13 +221,13 @@ static void trembling_never_flickers(void **state)
             noh_lod_choose(&d, &t, &s, middle * test_random_float(&r, 0.93f, 1.07f), rates, frame * FRAME);
             count_changes(&n, &before, &d);
         }
-        assert_true(n.mesh <= 1 && n.joints <= 1 && n.influences <= 1 && n.rate <= 1);
+        assert_true(n.mesh <= 1 && n.joints <= 1 && n.influences <= 1 && n.update_rate <= 1);
     }
 }
 
-/* What a random walk must never do: two mesh changes within a fade, a change back without the scale's having
- * moved by the hysteresis, an error over the knob while the scale grows no faster than the lead allows. */
-static void random_walks_keep_every_promise(void **state)
+/* What must never happen on a random walk: two mesh changes within one fade, a change back before the scale has moved
+ * by the hysteresis, an error above the quality setting while the scale grows no faster than the lead allows. */
+static void random_walks_keep_all_bounds(void **state)
 {
     noh_lod_table t = table_of();
     noh_lod_settings s = settings_of(1.0f);
@@ -285,12 +286,12 @@ static void slow_zoom_passes_each_level_once(void **state)
     assert_int_equal(n.mesh, 6);
     assert_int_equal(n.joints, 4);
     assert_int_equal(n.influences, 4);
-    assert_int_equal(n.rate, 6);
+    assert_int_equal(n.update_rate, 6);
 }
 
 /* ---- limits ---- */
 
-/* What there is no memory for is wanted, but not taken; when it may be, it fades in. */
+/* A level without memory is wanted but not taken; once the limit allows it, it fades in. */
 static void a_limit_holds_finer_levels_back(void **state)
 {
     noh_lod_table t = table_of();
@@ -309,7 +310,7 @@ static void a_limit_holds_finer_levels_back(void **state)
     assert_int_equal(d.mesh, LEVELS - 2u);
     assert_int_equal(d.mesh_wanted, 0);
     assert_int_equal(noh_lod_finest(&d), 0);
-    assert_true(d.error_m >= t.meshes[LEVELS - 2u].error_m); /* and it says so */
+    assert_true(d.error_m >= t.meshes[LEVELS - 2u].error_m); /* and error_m is that of the coarser level */
     noh_lod_set_limit(&d, 0);
     noh_lod_choose(&d, &t, &s, 1e5f, rates, clock += FRAME);
     assert_int_equal(d.mesh, 0);
@@ -317,9 +318,9 @@ static void a_limit_holds_finer_levels_back(void **state)
     assert_true(d.fade_ticks > 0);
 }
 
-/* A limit that comes when a finer level is shown: to the nearest that may be, with a fade, and on when less is wanted.
- */
-static void a_limit_sends_away_what_is_too_fine(void **state)
+/* A limit that is set while a finer level is shown: a fade to the nearest level allowed, and on to a coarser one when
+ * that is enough. */
+static void a_limit_fades_out_finer_levels(void **state)
 {
     noh_lod_table t = table_of();
     noh_lod_settings s = settings_of(1.0f);
@@ -366,7 +367,7 @@ static void clocks_at_the_ends(void **state)
 
 /* ---- fades ---- */
 
-static void fade_is_smooth_and_alone(void **state)
+static void fades_are_smooth_and_one_at_a_time(void **state)
 {
     noh_lod_table t = table_of();
     noh_lod_settings s = settings_of(1.0f);
@@ -407,18 +408,18 @@ static int by_value(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-/* By sorting: how much the greedy choice skips. */
-static double greedy_sum(const float *weights, const float *reach, double room)
+/* The sum that the greedy choice skips, found by sorting. */
+static double greedy_sum(const float *weights, const float *radius, double room)
 {
     float costs[TARGETS];
     double sum = 0.0;
-    for (uint32_t i = 0; i < TARGETS; i++) costs[i] = fabsf(weights[i] * reach[i]);
+    for (uint32_t i = 0; i < TARGETS; i++) costs[i] = fabsf(weights[i] * radius[i]);
     qsort(costs, TARGETS, sizeof *costs, by_value);
     for (uint32_t i = 0; i < TARGETS && sum + (double)costs[i] <= room; i++) sum += (double)costs[i];
     return sum;
 }
 
-/* Both parts of a fade have all pixels together, each of a level that is shown; what is drawn has memory. */
+/* Together the two parts of a fade have all pixels, each part is of a level that is shown, and both have memory. */
 static void parts_of_a_fade_are_all_pixels(void **state)
 {
     const uint8_t ways[2][2] = { { 1, 2 }, { 3, 0 } }; /* from, to */
@@ -450,7 +451,7 @@ static void parts_of_a_fade_are_all_pixels(void **state)
     }
 }
 
-static void a_fixed_level_has_no_say_afterwards(void **state)
+static void a_fixed_level_does_not_influence_later_choices(void **state)
 {
     const noh_lod_table t = table_of();
     const noh_lod_settings s = settings_of(1.0f);
@@ -465,14 +466,13 @@ static void a_fixed_level_has_no_say_afterwards(void **state)
         assert_int_equal(noh_lod_drawn(&d, 123), parts[0].level);
         assert_true(d.error_m == meshes[parts[0].level].error_m && noh_lod_error_pixels(&d) == 7.0f * d.error_m);
         memset(&fresh, 0, sizeof fresh);
-        noh_lod_choose(&d, &t, &s, 40.0f, rates,
-                       500); /* where hysteresis holds a coarser level that is there already */
+        noh_lod_choose(&d, &t, &s, 40.0f, rates, 500); /* where hysteresis would keep a coarser level */
         noh_lod_choose(&fresh, &t, &s, 40.0f, rates, 500);
         assert_memory_equal(&d, &fresh, sizeof d);
     }
 }
 
-/* Against what every corner comes to in double precision. */
+/* Against the depth of every corner in double precision. */
 static void depth_is_that_of_the_nearest_corner(void **state)
 {
     test_random r = test_random_from(91);
@@ -501,7 +501,7 @@ static void skipped_targets_are_the_smallest_and_bounded(void **state)
 {
     noh_lod_settings s = settings_of(0.0f);
     test_random r = test_random_from(13);
-    float weights[TARGETS], reach[TARGETS], kept[TARGETS];
+    float weights[TARGETS], radius[TARGETS], kept[TARGETS];
     (void)state;
     for (int round = 0; round < 300; round++) {
         float smallest_kept = INFINITY, largest_skipped = 0.0f;
@@ -513,10 +513,10 @@ static void skipped_targets_are_the_smallest_and_bounded(void **state)
         room = (double)shares[NOH_LOD_TARGETS] / (double)d.pixels_per_metre;
         test_random_weights(&r, weights, TARGETS);
         for (uint32_t i = 0; i < TARGETS; i++)
-            reach[i] = round % 3 ? test_random_float(&r, 0.0f, 0.03f) : 0.004f * (float)(1u + i % 2u);
-        told = noh_lod_targets(&d, &s, weights, reach, TARGETS, kept);
+            radius[i] = round % 3 ? test_random_float(&r, 0.0f, 0.03f) : 0.004f * (float)(1u + i % 2u);
+        told = noh_lod_targets(&d, &s, weights, radius, TARGETS, kept);
         for (uint32_t i = 0; i < TARGETS; i++) {
-            float cost = fabsf(weights[i] * reach[i]);
+            float cost = fabsf(weights[i] * radius[i]);
             if (kept[i] == 0.0f) {
                 sum += (double)cost;
                 largest_skipped = fmaxf(largest_skipped, cost);
@@ -529,7 +529,7 @@ static void skipped_targets_are_the_smallest_and_bounded(void **state)
         assert_int_equal(told, left);
         assert_true(sum <= room && fabs(sum - (double)d.skipped_m) <= 1e-6 * sum);
         assert_true(largest_skipped <= smallest_kept);
-        assert_true(fabs(sum - greedy_sum(weights, reach, room)) <= 1e-6 * sum + 1e-12);
+        assert_true(fabs(sum - greedy_sum(weights, radius, room)) <= 1e-6 * sum + 1e-12);
         assert_true(noh_lod_error_pixels(&d) <= shares[NOH_LOD_TARGETS] * 1.00001f);
     }
 }
@@ -549,14 +549,14 @@ static void fades_follow_the_smoothstep(void **state)
     memset(&d, 0, sizeof d);
     noh_lod_choose(&d, &t, &s, 15.0f, rates, 0);
     noh_lod_choose(&d, &t, &s, 1e5f, rates, 100);
-    assert_int_equal(d.fade_ticks, 12000); /* a quarter of a second where nothing is asked for */
+    assert_int_equal(d.fade_ticks, 12000); /* the default: a quarter of a second */
 }
 
-/* What is off in pixels is the sum of all kinds, the targets left out among them; while a level fades the coarser of
- * the two counts, whichever comes. */
+/* The error in pixels is the sum over all kinds, with the targets left out; during a fade the coarser level counts,
+ * whether it is the new one or the old one. */
 static void errors_of_all_kinds_add_up(void **state)
 {
-    const float weights[2] = { 0.5f, 1.0f }, reach[2] = { 0.002f, 1.0f };
+    const float weights[2] = { 0.5f, 1.0f }, radius[2] = { 0.002f, 1.0f };
     noh_lod_table t = table_of();
     noh_lod_settings s = settings_of(1.0f);
     float kept[2];
@@ -566,20 +566,20 @@ static void errors_of_all_kinds_add_up(void **state)
     s.fade_ticks = 24000;
     noh_lod_choose(&d, &t, &s, 15.0f, rates, 0);
     assert_int_equal(d.mesh, 3);
-    assert_int_equal(noh_lod_targets(&d, &s, weights, reach, 2, kept), 1);
+    assert_int_equal(noh_lod_targets(&d, &s, weights, radius, 2, kept), 1);
     assert_true(d.skipped_m == 0.001f);
     assert_true(fabsf(d.error_m - (meshes[3].error_m + joints[d.joints].error_m + influences[d.influences].error_m +
-                                   rates[d.rate] + t.clip_error_m)) < 1e-7f);
+                                   rates[d.update_rate] + t.clip_error_m)) < 1e-7f);
     assert_true(noh_lod_error_pixels(&d) == (d.error_m + d.skipped_m) * 15.0f);
-    noh_lod_choose(&d, &t, &s, 1e5f, rates, 100); /* near at once: level 3 is still drawn while it fades */
+    noh_lod_choose(&d, &t, &s, 1e5f, rates, 100); /* suddenly near: level 3 is still drawn while it fades */
     assert_true(d.mesh == 0 && d.mesh_before == 3);
     assert_true(fabsf(d.error_m - (meshes[3].error_m + t.clip_error_m)) < 1e-7f);
     noh_lod_choose(&d, &t, &s, 1e5f, rates, 30000);
     assert_true(fabsf(d.error_m - t.clip_error_m) < 1e-7f);
 }
 
-/* Posing less often can only be worse, whatever was measured: 15 Hz that happened to measure better than 30 Hz is not
- * stayed at where 30 Hz is too coarse. */
+/* A lower update rate never counts as better, whatever was measured: where 15 Hz happened to measure better than 30 Hz,
+ * it is not kept when 30 Hz is too coarse. */
 static void a_coarser_update_rate_is_never_better(void **state)
 {
     static const float odd[NOH_UPDATE_RATE_COUNT] = { 0.0f, 0.02f, 0.005f, 0.03f };
@@ -589,51 +589,51 @@ static void a_coarser_update_rate_is_never_better(void **state)
     (void)state;
     memset(&d, 0, sizeof d);
     noh_lod_choose(&d, &t, &s, 1.0f, odd, 0);
-    assert_int_equal(d.rate, 3);
-    noh_lod_choose(&d, &t, &s, 31.5f, odd, 800); /* 0.0143 m may be off in time */
-    assert_int_equal(d.rate, 0);
+    assert_int_equal(d.update_rate, 3);
+    noh_lod_choose(&d, &t, &s, 31.5f, odd, 800); /* allows 0.0143 m of error in time */
+    assert_int_equal(d.update_rate, 0);
 }
 
-static void equal_targets_go_by_index(void **state)
+static void equal_targets_are_left_out_by_index(void **state)
 {
-    const float weights[5] = { 0.5f, -0.5f, 0.5f, 0.0f, 0.5f }, reach[5] = { 0.01f, 0.01f, 0.01f, 0.01f, 0.01f };
+    const float weights[5] = { 0.5f, -0.5f, 0.5f, 0.0f, 0.5f }, radius[5] = { 0.01f, 0.01f, 0.01f, 0.01f, 0.01f };
     noh_lod_settings s = settings_of(1.0f);
     float kept[5];
     noh_lod d;
     (void)state;
     memset(&d, 0, sizeof d);
     d.pixels_per_metre = 0.1f / 0.0125f; /* room for two of 5 mm */
-    assert_int_equal(noh_lod_targets(&d, &s, weights, reach, 5, kept), 2);
+    assert_int_equal(noh_lod_targets(&d, &s, weights, radius, 5, kept), 2);
     assert_true(kept[0] == 0.0f && kept[1] == 0.0f && kept[2] == 0.5f && kept[4] == 0.5f);
     assert_true(fabsf(d.skipped_m - 0.01f) < 1e-8f);
 }
 
-/* What is larger does not go in the place of a smaller one that does not fit any more, wherever it stands. */
-static void a_larger_target_never_goes_first(void **state)
+/* Where a smaller target no longer fits, no larger one is left out in its place, whatever their order. */
+static void a_larger_target_is_never_left_out_first(void **state)
 {
-    const float weights[4] = { 0.6f, 0.5f, 0.5f, 0.5f }, reach[4] = { 0.01f, 0.01f, 0.01f, 0.01f };
+    const float weights[4] = { 0.6f, 0.5f, 0.5f, 0.5f }, radius[4] = { 0.01f, 0.01f, 0.01f, 0.01f };
     noh_lod_settings s = settings_of(1.0f);
     float kept[4];
     noh_lod d;
     (void)state;
     memset(&d, 0, sizeof d);
     d.pixels_per_metre = 0.1f / 0.0115f;
-    assert_int_equal(noh_lod_targets(&d, &s, weights, reach, 4, kept), 2);
+    assert_int_equal(noh_lod_targets(&d, &s, weights, radius, 4, kept), 2);
     assert_true(kept[0] == 0.6f && kept[1] == 0.0f && kept[2] == 0.0f && kept[3] == 0.5f);
 }
 
 static void odd_weights_are_kept(void **state)
 {
     float weights[4] = { NAN, INFINITY, 1.0f, -INFINITY };
-    const float reach[4] = { 0.01f, 0.01f, 0.01f, 0.0f }; /* the last: infinity times 0 */
+    const float radius[4] = { 0.01f, 0.01f, 0.01f, 0.0f }; /* the last: infinity times 0 */
     noh_lod_settings s = settings_of(1.0f);
     noh_lod d;
     (void)state;
     memset(&d, 0, sizeof d);
     d.pixels_per_metre = 1e-6f;
-    assert_int_equal(noh_lod_targets(&d, &s, weights, reach, 4, weights), 3);
+    assert_int_equal(noh_lod_targets(&d, &s, weights, radius, 4, weights), 3);
     assert_true(weights[2] == 0.0f && isnan(weights[0]));
-    assert_int_equal(noh_lod_targets(&d, &s, weights, reach, 0, weights), 0);
+    assert_int_equal(noh_lod_targets(&d, &s, weights, radius, 0, weights), 0);
     assert_true(d.skipped_m == 0.0f);
 }
 
@@ -642,26 +642,26 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(table_fields_broken_in_turn),
         cmocka_unit_test(settings_fields_broken_in_turn),
-        cmocka_unit_test(scale_is_the_perspective_s),
-        cmocka_unit_test(fresh_choice_is_monotone_and_within_the_knob),
-        cmocka_unit_test(nothing_to_choose_from_is_full_lod),
+        cmocka_unit_test(scale_is_that_of_the_perspective),
+        cmocka_unit_test(fresh_choice_is_monotone_and_within_the_quality_setting),
+        cmocka_unit_test(an_empty_table_gives_full_detail),
         cmocka_unit_test(influences_are_those_that_the_mesh_has),
         cmocka_unit_test(trembling_never_flickers),
-        cmocka_unit_test(random_walks_keep_every_promise),
+        cmocka_unit_test(random_walks_keep_all_bounds),
         cmocka_unit_test(slow_zoom_passes_each_level_once),
         cmocka_unit_test(a_limit_holds_finer_levels_back),
-        cmocka_unit_test(a_limit_sends_away_what_is_too_fine),
+        cmocka_unit_test(a_limit_fades_out_finer_levels),
         cmocka_unit_test(clocks_at_the_ends),
-        cmocka_unit_test(fade_is_smooth_and_alone),
+        cmocka_unit_test(fades_are_smooth_and_one_at_a_time),
         cmocka_unit_test(parts_of_a_fade_are_all_pixels),
-        cmocka_unit_test(a_fixed_level_has_no_say_afterwards),
+        cmocka_unit_test(a_fixed_level_does_not_influence_later_choices),
         cmocka_unit_test(depth_is_that_of_the_nearest_corner),
         cmocka_unit_test(skipped_targets_are_the_smallest_and_bounded),
         cmocka_unit_test(fades_follow_the_smoothstep),
         cmocka_unit_test(errors_of_all_kinds_add_up),
         cmocka_unit_test(a_coarser_update_rate_is_never_better),
-        cmocka_unit_test(equal_targets_go_by_index),
-        cmocka_unit_test(a_larger_target_never_goes_first),
+        cmocka_unit_test(equal_targets_are_left_out_by_index),
+        cmocka_unit_test(a_larger_target_is_never_left_out_first),
         cmocka_unit_test(odd_weights_are_kept),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);

@@ -1,5 +1,6 @@
-/* test_detail_pack.c: detail tables and margins out of packs: exact bytes, metres, what is safe where little is known,
- * and margins that hold every vertex. The pack is that of $NOH_BUILD/demo/arm.glb, which `make check` makes. */
+/* Tests of runtime/character/lod_pack.c: LOD tables and joint radii out of packs: exact bytes, metres, safe values
+ * where little is known, and radii that contain every vertex. The pack is that of $NOH_BUILD/demo/arm.glb, which `make
+ * check` makes. */
 #include "support/level_fixture.h"
 
 #include <math.h>
@@ -139,8 +140,8 @@ static void levels_have_the_worst_error_of_all_clips(void **state)
     close_table(&t);
 }
 
-/* What it is for: joints and updates fall away as it goes far. */
-static void lod_is_chosen_by_it(void **state)
+/* With growing distance, fewer joints and fewer updates are chosen. */
+static void lod_is_chosen_by_the_table(void **state)
 {
     const noh_lod_settings settings = { 1.0f, { 0.0f, 0.0f, 0.0f, 0.0f, 0.0f }, 0.0f, 0.0f, 1 };
     table t;
@@ -156,11 +157,11 @@ static void lod_is_chosen_by_it(void **state)
         noh_lod_choose(&d, &t.made.table, &settings, scale, t.made.table.update_error_m, step);
         joints = noh_lod_joint_count(&d, &t.made.table);
         assert_true(joints <= before);
-        assert_true(step || (joints == 4 && d.rate == NOH_UPDATE_RATE_FULL));
+        assert_true(step || (joints == 4 && d.update_rate == NOH_UPDATE_RATE_FULL));
         before = joints;
     }
     assert_int_equal(before, 1);
-    assert_int_equal(d.rate, NOH_UPDATE_RATE_8);
+    assert_int_equal(d.update_rate, NOH_UPDATE_RATE_8);
     close_table(&t);
 }
 
@@ -207,11 +208,11 @@ static void forge_shell(noh_skeleton_header *skeleton, uint32_t *levels, noh_cli
     clip->error_shell = 0.03f;
 }
 
-/* A clip that did not see the mesh is not trusted to hold for vertices farther out than its shell. */
+/* The errors of a clip that was built without the mesh are scaled up for vertices farther out than its shell. */
 static void errors_of_a_shell_grow_with_the_mesh(void **state)
 {
     table seen, unseen, no_mesh;
-    float margin = 0.0f;
+    float radius = 0.0f;
     (void)state;
     open_table(&seen, NULL);
     fill_table(&seen);
@@ -220,12 +221,12 @@ static void errors_of_a_shell_grow_with_the_mesh(void **state)
     open_table(&no_mesh, forge_shell);
     no_mesh.desc.mesh = NULL;
     fill_table(&no_mesh);
-    for (uint32_t j = 0; j < 4; j++) margin = fmaxf(margin, seen.made.joint_radius_m[j]);
-    assert_true(margin > 0.06f);
+    for (uint32_t j = 0; j < 4; j++) radius = fmaxf(radius, seen.made.joint_radius_m[j]);
+    assert_true(radius > 0.06f);
     for (uint32_t i = 0; i < 3; i++) {
         const float error = seen.made.table.joints[i].error_m;
-        assert_true(fabsf(unseen.made.table.joints[i].error_m - error * margin / 0.03f) <=
-                    1e-5f * error * margin / 0.03f);
+        assert_true(fabsf(unseen.made.table.joints[i].error_m - error * radius / 0.03f) <=
+                    1e-5f * error * radius / 0.03f);
         assert_true(no_mesh.made.table.joints[i].error_m == error);
     }
     close_table(&seen);
@@ -245,8 +246,9 @@ static void forge_finer(noh_skeleton_header *skeleton, uint32_t *levels, noh_cli
     levels[2] = 2;
 }
 
-/* Of a skeleton with other proportions a clip has other levels: the next coarser one vouches, or nothing does. */
-static void levels_that_no_clip_vouches_for_are_left_out(void **state)
+/* A clip of a skeleton with other proportions has other levels: the error of its next coarser one is taken, or there is
+ * none and the level is left out. */
+static void levels_without_an_error_in_some_clip_are_left_out(void **state)
 {
     table t;
     (void)state;
@@ -268,8 +270,7 @@ static noh_mesh_header *header_of(fixture_levels *f, uint32_t mesh)
     return (noh_mesh_header *)(void *)(f->bytes + f->pack.chunks[f->pack.first_mesh + mesh].offset);
 }
 
-/* A level has one number everywhere. Loaded from level 1 on: the coarsest is still 2, the finest that is chosen is 1.
- */
+/* A level has one number everywhere. Loaded from level 1 on, the coarsest is still 2, and the finest chosen is 1. */
 static void loaded_from_level_1(table *t, const noh_mesh_header *h)
 {
     noh_lod_settings settings;
@@ -415,9 +416,9 @@ static void bad_descs_are_named(void **state)
     close_table(&t);
 }
 
-/* ---- margins ---- */
+/* ---- radii ---- */
 
-/* How far a vertex is from a joint that holds it. */
+/* The distance of a vertex from a joint that moves it. */
 static double distance(const noh_skin *skin, uint32_t joint, const float *at)
 {
     const float *m = skin->inverse_bind + 12u * (size_t)joint;
@@ -454,7 +455,7 @@ static void distances(const noh_mesh *mesh, const float *weights, double *out, u
     free(memory);
 }
 
-static void margins_hold_all_vertices_of_all_weights(void **state)
+static void radii_contain_all_vertices_of_all_weights(void **state)
 {
     const skin_cylinder tube = { 24, 30, 6, 4, 3, 0, 2.0f, 0.3f };
     model *m = skin_cylinder_model(&tube);
@@ -462,7 +463,7 @@ static void margins_hold_all_vertices_of_all_weights(void **state)
     uint8_t *bytes;
     noh_pack pack;
     test_random r = test_random_from(74);
-    float margins[16], none[3] = { 0.0f, 0.0f, 0.0f }, most[3] = { 1.5f, -0.5f, 1.0f };
+    float radii[16], none[3] = { 0.0f, 0.0f, 0.0f }, most[3] = { 1.5f, -0.5f, 1.0f };
     double rest[16], found[16];
     uint32_t n;
     noh_skeleton skeleton;
@@ -477,33 +478,33 @@ static void margins_hold_all_vertices_of_all_weights(void **state)
     n = skeleton.joint_count;
     assert_true(n <= 16 && mesh.header->target_count == 3);
     distances(&mesh, none, rest, n);
-    for (uint32_t j = 0; j < n; j++) margins[j] = -1.0f;
-    noh_mesh_add_joint_radii(&mesh, none, margins);
+    for (uint32_t j = 0; j < n; j++) radii[j] = -1.0f;
+    noh_mesh_add_joint_radii(&mesh, none, radii);
     for (uint32_t j = 0; j < n; j++) {
-        assert_true((margins[j] < 0.0f) == (rest[j] < 0.0));
-        assert_true((double)margins[j] >= rest[j] &&
-                    (rest[j] < 0.0 || (double)margins[j] <= 1.8 * rest[j])); /* a corner of a box */
+        assert_true((radii[j] < 0.0f) == (rest[j] < 0.0));
+        assert_true((double)radii[j] >= rest[j] &&
+                    (rest[j] < 0.0 || (double)radii[j] <= 1.8 * rest[j])); /* a corner of a box */
     }
-    noh_mesh_add_joint_radii(&mesh, most, margins);
+    noh_mesh_add_joint_radii(&mesh, most, radii);
     for (int round = 0; round < 50; round++) {
         float weights[3];
         for (int t = 0; t < 3; t++) weights[t] = round ? test_random_float(&r, 0.0f, 1.0f) * most[t] : most[t];
         distances(&mesh, weights, found, n);
-        for (uint32_t j = 0; j < n; j++) assert_true(found[j] <= (double)margins[j]);
+        for (uint32_t j = 0; j < n; j++) assert_true(found[j] <= (double)radii[j]);
     }
     for (int t = 0; t < 3; t++) {
         float far[3] = { 0.0f, 0.0f, 0.0f };
         far[t] = -100.0f; /* against the target */
-        for (uint32_t j = 0; j < n; j++) margins[j] = -1.0f;
-        noh_mesh_add_joint_radii(&mesh, far, margins);
+        for (uint32_t j = 0; j < n; j++) radii[j] = -1.0f;
+        noh_mesh_add_joint_radii(&mesh, far, radii);
         distances(&mesh, far, found, n);
-        for (uint32_t j = 0; j < n; j++) assert_true(found[j] <= (double)margins[j]);
+        for (uint32_t j = 0; j < n; j++) assert_true(found[j] <= (double)radii[j]);
     }
     free(bytes);
     model_free(m);
 }
 
-/* Where the joints put a vertex. */
+/* A vertex as its joints move it. */
 static void skinned_vertex(const noh_mesh *mesh, const noh_skin *skin, const float *joint_matrices, uint32_t vertex,
                            double out[3])
 {
@@ -523,7 +524,7 @@ static void skinned_vertex(const noh_mesh *mesh, const noh_skin *skin, const flo
     }
 }
 
-/* Of real clip: every skinned vertex is in the sphere, with all joints or some. */
+/* Real clips: every skinned vertex is in the sphere, with all joints posed or some. */
 static void a_posed_arm_is_in_its_sphere(void **state)
 {
     table t;
@@ -559,17 +560,17 @@ static void a_posed_arm_is_in_its_sphere(void **state)
 int main(int argument_count, char **arguments)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(levels_have_the_worst_error_of_all_clips),
-                                        cmocka_unit_test(lod_is_chosen_by_it),
+                                        cmocka_unit_test(lod_is_chosen_by_the_table),
                                         cmocka_unit_test(centimetres_become_metres),
                                         cmocka_unit_test(errors_of_a_shell_grow_with_the_mesh),
-                                        cmocka_unit_test(levels_that_no_clip_vouches_for_are_left_out),
+                                        cmocka_unit_test(levels_without_an_error_in_some_clip_are_left_out),
                                         cmocka_unit_test(levels_come_from_the_mesh),
                                         cmocka_unit_test(a_byte_too_few_is_refused),
                                         cmocka_unit_test(bad_descs_are_named),
-                                        cmocka_unit_test(margins_hold_all_vertices_of_all_weights),
+                                        cmocka_unit_test(radii_contain_all_vertices_of_all_weights),
                                         cmocka_unit_test(a_posed_arm_is_in_its_sphere) };
     if (argument_count > 1) {
         cmocka_set_test_filter(arguments[1]);
     }
-    return cmocka_run_group_tests_name("detail_pack", tests, set_up, tear_down);
+    return cmocka_run_group_tests_name("lod_pack", tests, set_up, tear_down);
 }

@@ -116,7 +116,8 @@ static void expect_sound(const noh_lod_pools *p, const wish *wishes)
     assert_memory_equal(stats->used, used, sizeof used);
 }
 
-/* Who was given less than it asked for found all that would do taken by others who count for no less. */
+/* Where an instance is given a coarser level than it asked for, all slots that would do went to instances of at least
+ * its priority. */
 static void expect_fair(const noh_lod_pools *p, const wish *wishes)
 {
     for (uint32_t i = 0; i < INSTANCES; i++) {
@@ -137,7 +138,7 @@ static void expect_fair(const noh_lod_pools *p, const wish *wishes)
     }
 }
 
-static void everyone_gets_a_slot_by_priority(void **state)
+static void all_get_a_slot_by_priority(void **state)
 {
     test_random r = test_random_from(71);
     noh_lod_pools *p = pools_open(&three);
@@ -147,7 +148,7 @@ static void everyone_gets_a_slot_by_priority(void **state)
     for (int round = 0; round < 2000; round++) {
         const uint32_t finest = test_random_below(&r, 4), rush = test_random_below(&r, 4);
         for (uint32_t i = 0; i < INSTANCES; i++) {
-            if (round % 3 && test_random_below(&r, 8)) continue; /* most stay as they were */
+            if (round % 3 && test_random_below(&r, 8)) continue; /* most requests stay the same */
             wishes[i].asks = test_random_below(&r, 4) != 0;
             wishes[i].level = rush ? finest + test_random_below(&r, 8u - finest) : finest;
             wishes[i].priority = test_random_float(&r, 0.0f, 100.0f);
@@ -161,7 +162,7 @@ static void everyone_gets_a_slot_by_priority(void **state)
     free(p);
 }
 
-static void who_keeps_its_pool_keeps_its_slot(void **state)
+static void an_instance_that_keeps_its_pool_keeps_its_slot(void **state)
 {
     noh_lod_pools *p = pools_open(&three);
     noh_lod_slot before[INSTANCES];
@@ -184,7 +185,7 @@ static void who_keeps_its_pool_keeps_its_slot(void **state)
         const noh_lod_slot now = noh_lod_pools_slot(p, i);
         assert_true(now.pool == before[i].pool && now.slot == before[i].slot);
     }
-    wishes[7].level = 3; /* the last of the far ones makes room, in a slot that is larger than it needs */
+    wishes[7].level = 3; /* the last of the far ones moves to a slot that is finer than it needs */
     ask_all(p, wishes);
     assert_int_equal(noh_lod_pools_stats_of(p)->moved, 2);
     assert_int_equal(noh_lod_pools_slot(p, 7).pool, 2);
@@ -193,7 +194,7 @@ static void who_keeps_its_pool_keeps_its_slot(void **state)
     free(p);
 }
 
-/* Five who are nearly equal, for four slots: whoever has one keeps it, until another counts for a quarter more. */
+/* Five nearly equal instances, four slots: each keeps its slot until another's priority is a quarter higher. */
 static void equals_do_not_take_turns(void **state)
 {
     noh_lod_pools *p = pools_open(&three);
@@ -217,7 +218,7 @@ static void equals_do_not_take_turns(void **state)
     assert_int_equal(noh_lod_pools_slot(p, 4).level, 0);
     assert_int_equal(noh_lod_pools_stats_of(p)->moved, 2);
     assert_int_equal(noh_lod_pools_stats_of(p)->coarser_high_water, 1);
-    memset(wishes, 0, sizeof wishes); /* nobody asks: the marks stay */
+    memset(wishes, 0, sizeof wishes); /* no request: the high-water marks stay */
     ask_all(p, wishes);
     assert_int_equal(noh_lod_pools_stats_of(p)->coarser, 0);
     assert_int_equal(noh_lod_pools_stats_of(p)->coarser_high_water, 1);
@@ -238,7 +239,7 @@ static void odd_priorities_come_last(void **state)
     }
     ask_all(p, wishes);
     for (uint32_t i = 0; i < 5; i++)
-        assert_int_equal(noh_lod_pools_slot(p, i).level, i == 2 ? 1u : 0u); /* of three equal ones the last */
+        assert_int_equal(noh_lod_pools_slot(p, i).level, i == 2 ? 1u : 0u); /* the last of three equal ones */
     assert_int_equal(noh_lod_pools_stats_of(p)->used_high_water[0], 4);
     free(p);
 }
@@ -263,8 +264,8 @@ static void pools_may_begin_with_a_coarser_level(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(descs_are_checked),
     cmocka_unit_test(the_size_is_exact),
-    cmocka_unit_test(everyone_gets_a_slot_by_priority),
-    cmocka_unit_test(who_keeps_its_pool_keeps_its_slot),
+    cmocka_unit_test(all_get_a_slot_by_priority),
+    cmocka_unit_test(an_instance_that_keeps_its_pool_keeps_its_slot),
     cmocka_unit_test(equals_do_not_take_turns),
     cmocka_unit_test(odd_priorities_come_last),
     cmocka_unit_test(pools_may_begin_with_a_coarser_level),

@@ -1,4 +1,4 @@
-/* Tests of runtime/character/scheduler.c: budgets that are kept, and nobody who waits for ever. */
+/* Tests of runtime/character/scheduler.c: budgets are kept, and no instance waits for ever. */
 #include "support/support.h"
 
 #include <math.h>
@@ -47,7 +47,7 @@ static void memory_is_exact(void **state)
     for (uint32_t i = 0; i < 9; i++) noh_schedule_offer(&s, i, i, 1.0f, 1);
     assert_int_equal(s.offered, 7);
     assert_int_equal(s.lost, 2);
-    assert_int_equal(s.late_ticks, 8); /* of those who were not taken, too */
+    assert_int_equal(s.late_ticks, 8); /* of the offers that were lost, too */
     while (noh_schedule_next(&s, &instance)) assert_true(instance < 7);
     assert_int_equal(s.served, 7);
     for (int i = 16 * 7; i < 16 * 7 + 64; i++) assert_int_equal(memory[i], 0xa5);
@@ -86,7 +86,7 @@ static void the_most_urgent_come_first(void **state)
             offers[i].urgency = (uint64_t)(late + FRAME + 1u) * eighths;
             noh_schedule_offer(&c.s, i, late, (float)eighths / 8.0f, c.cost[i]);
         }
-        if (c.s.offered_cost > budget) { /* else all are served, as they come */
+        if (c.s.offered_cost > budget) { /* else all are served in the order of the offers */
             qsort(offers, count, sizeof *offers, by_urgency);
         }
         while (noh_schedule_next(&c.s, &instance)) {
@@ -100,7 +100,7 @@ static void the_most_urgent_come_first(void **state)
         assert_int_equal(c.s.served, served);
         sorted += c.s.offered_cost > budget;
     }
-    assert_in_range(sorted, 20, 180); /* of 200: both kinds came */
+    assert_in_range(sorted, 20, 180); /* of 200 rounds: both kinds occur */
     free(c.memory);
 }
 
@@ -116,7 +116,7 @@ static void odd_visibilities_are_clamped(void **state)
     noh_schedule_offer(&c.s, 2, 0, INFINITY, 1);
     noh_schedule_offer(&c.s, 3, UINT32_MAX, 0.0f, 1);
     noh_schedule_offer(&c.s, 4, 0, NOH_VISIBILITY_MAX, 1);
-    noh_schedule_offer(&c.s, 5, 0, 0.0f, 96); /* a little more than there is for all of them */
+    noh_schedule_offer(&c.s, 5, 0, 0.0f, 96); /* a little more than the budget for all of them */
     for (uint32_t i = 0; noh_schedule_next(&c.s, &instance); i++) {
         static const uint32_t order[] = { 3, 2, 4, 0, 1, 5 };
         assert_int_equal(instance, order[i]);
@@ -124,7 +124,7 @@ static void odd_visibilities_are_clamped(void **state)
     free(c.memory);
 }
 
-static void what_cannot_wait_is_taken_from_the_budget(void **state)
+static void work_that_cannot_wait_is_charged_to_the_budget(void **state)
 {
     crowd c;
     uint32_t instance, served = 0;
@@ -139,14 +139,14 @@ static void what_cannot_wait_is_taken_from_the_budget(void **state)
     noh_schedule_spend(&c.s, 1000);
     noh_schedule_offer(&c.s, 0, 0, 1.0f, 10);
     noh_schedule_offer(&c.s, 1, 0, 1.0f, 10);
-    assert_int_equal(noh_schedule_next(&c.s, &instance), 1); /* one in any case */
+    assert_int_equal(noh_schedule_next(&c.s, &instance), 1); /* at least one is served */
     assert_int_equal(noh_schedule_next(&c.s, &instance), 0);
     noh_schedule_begin(&c.s, FRAME, 100);
     assert_int_equal(noh_schedule_next(&c.s, &instance), 0);
     free(c.memory);
 }
 
-/* One frame: those who are due are offered, some are served and due again after their period. */
+/* One frame: instances that are due are offered; those that are served are due again after their period. */
 static void run_frame(crowd *c, uint32_t count, uint32_t period, uint64_t budget, uint32_t frame)
 {
     int64_t clock = (int64_t)frame * FRAME;
@@ -164,9 +164,9 @@ static void run_frame(crowd *c, uint32_t count, uint32_t period, uint64_t budget
     assert_true(c->s.spent < budget + (largest ? largest : 1u));
 }
 
-/* Against visibilities and costs of every kind, fixed ones and such as change from frame to frame: nobody waits
- * longer than the stated bound, and the worst lateness that is stated is that of the worst. */
-static void nobody_waits_longer_than_stated(void **state)
+/* With visibilities and costs of every kind, fixed or changing from frame to frame, no instance waits longer than the
+ * stated bound, and the lateness in the statistics is the worst one. */
+static void no_instance_waits_longer_than_stated(void **state)
 {
     test_random r = test_random_from(32);
     double closest = 0.0;
@@ -199,10 +199,10 @@ static void nobody_waits_longer_than_stated(void **state)
         free(c.memory);
     }
     print_message("the longest wait was %.2f of the bound\n", closest);
-    assert_true(closest > 0.1); /* the bound says something */
+    assert_true(closest > 0.1); /* the bound is not far too high */
 }
 
-/* With enough budget for the mean, late is at most what a burst takes to work off. */
+/* With enough budget for the mean, lateness is at most the time that a burst takes to work off. */
 static void the_most_visible_wait_least(void **state)
 {
     crowd c;
@@ -248,8 +248,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(memory_is_exact),
         cmocka_unit_test(the_most_urgent_come_first),
         cmocka_unit_test(odd_visibilities_are_clamped),
-        cmocka_unit_test(what_cannot_wait_is_taken_from_the_budget),
-        cmocka_unit_test(nobody_waits_longer_than_stated),
+        cmocka_unit_test(work_that_cannot_wait_is_charged_to_the_budget),
+        cmocka_unit_test(no_instance_waits_longer_than_stated),
         cmocka_unit_test(the_most_visible_wait_least),
         cmocka_unit_test(costs_add_up),
     };

@@ -14,11 +14,11 @@
 #define CROWD 1000u
 
 typedef struct load {
-    double mean, worst; /* a frame */
+    double mean, worst; /* of a frame */
     double per_second;
 } load;
 
-/* Updates a frame over ten seconds, the first one aside. rates[CROWD]; frames of `ticks`, give or take `jitter`. */
+/* Updates per frame over ten seconds, without the first one. rates[CROWD]; frames of `ticks`, give or take `jitter`. */
 static load run_crowd(const uint8_t *rates, uint32_t ticks, uint32_t jitter)
 {
     static noh_time_lod crowd[CROWD];
@@ -56,7 +56,7 @@ static void updates_are_spread_evenly(void **state)
     for (int kind = 0; kind <= 5; kind++) {
         for (uint32_t i = 0; i < CROWD; i++) {
             float distance = 100.0f *
-                             sqrtf(test_random_float(&r, 0.0f, 1.0f)); /* kind 4: strewn over a disc; 5: in rows */
+                             sqrtf(test_random_float(&r, 0.0f, 1.0f)); /* kind 4: scattered over a disc; 5: in rows */
             distance = kind == 5 ? 0.1f * (float)i : distance;
             rates[i] = (uint8_t)(kind <= 3          ? kind
                                  : distance < 15.0f ? 0
@@ -73,7 +73,7 @@ static void updates_are_spread_evenly(void **state)
     }
 }
 
-/* Frames that are not all alike do not make work: what is due is what fell into the frame. */
+/* Uneven frames cause no extra updates: exactly those whose tick falls into a frame are due. */
 static void uneven_frames_lose_no_updates(void **state)
 {
     uint8_t rates[CROWD];
@@ -116,7 +116,7 @@ static void update(line *l, double kind)
 
 /* Updated on time the error is that of interpolation, h^2 / 8 times the second derivative, and what is
  * shown at an update is true; rates change at random. */
-static void on_time_the_error_is_that_of_straight_lines(void **state)
+static void updates_on_time_have_the_error_of_interpolation(void **state)
 {
     test_random r = test_random_from(23);
     noh_update_rate rate = NOH_UPDATE_RATE_8;
@@ -136,14 +136,14 @@ static void on_time_the_error_is_that_of_straight_lines(void **state)
         assert_int_equal(noh_time_lod_due(&l.t), NOH_DUE_NOT);
         now = shown(&l);
         error = fabs(now - wave((double)clock, 0.0));
-        /* what a refined interval began with was as far off as the coarser rate may be */
-        period = noh_update_period((noh_update_rate)l.t.running) < period
+        /* a mix at a finer rate may begin with the error of the coarser rate before it */
+        period = noh_update_period((noh_update_rate)l.t.shown_rate) < period
                      ? period
-                     : noh_update_period((noh_update_rate)l.t.running);
+                     : noh_update_period((noh_update_rate)l.t.shown_rate);
         assert_true(error <= WAVE_BEND * (double)period * (double)period / 8.0 + 1e-6);
-        if (l.t.to_clock - l.t.from_clock == (int64_t)noh_update_period((noh_update_rate)l.t.running)) {
-            worst[l.t.running] = fmax(worst[l.t.running], error);
-            period = noh_update_period((noh_update_rate)l.t.running);
+        if (l.t.to_clock - l.t.from_clock == (int64_t)noh_update_period((noh_update_rate)l.t.shown_rate)) {
+            worst[l.t.shown_rate] = fmax(worst[l.t.shown_rate], error);
+            period = noh_update_period((noh_update_rate)l.t.shown_rate);
         }
         if (frame)
             assert_true(fabs(now - last) <= WAVE_SPEED * (double)ticks * 1.01 + WAVE_BEND * 6000.0 * 6000.0 / 4.0);
@@ -153,8 +153,8 @@ static void on_time_the_error_is_that_of_straight_lines(void **state)
     assert_true(worst[0] == 0.0 && worst[1] > 0.0 && worst[1] < worst[2] && worst[2] < worst[3]);
 }
 
-/* Late updates hold the last pose; things change at random: what is shown goes on in half a period at least, however
- * far it has to go, moves as the truth does when nothing happens, and comes back to it. */
+/* Late updates, which hold the last pose, and random changes: what is shown takes at least half a period to radius the
+ * new state, however far that is, moves as the true pose does when nothing changes, and returns to it. */
 static void late_updates_and_changes_never_jump(void **state)
 {
     test_random r = test_random_from(24);
@@ -167,7 +167,7 @@ static void late_updates_and_changes_never_jump(void **state)
     update(&l, kind);
     last = shown(&l);
     for (int frame = 1; frame < 100000; frame++) {
-        int late = frame / 500 % 2; /* every other stretch is short of budget */
+        int late = frame / 500 % 2; /* every second 500 frames are short of budget */
         clock += 800;
         if (test_random_below(&r, 300) == 0) {
             kind += 1.0;
@@ -206,7 +206,7 @@ static void unseen_for_long_is_posed_at_once(void **state)
     assert_true(shown(&l) == wave(1000000.0, 0.0));
 }
 
-/* A finer rate is not kept waiting by the interval that is shown; a coarser one lets it end. */
+/* A finer rate does not wait for the end of the mix that is shown; a coarser one does. */
 static void a_finer_rate_begins_at_once(void **state)
 {
     line l;
@@ -273,14 +273,14 @@ static void frames_longer_than_a_period_are_exact(void **state)
 
 /* ---- measuring ---- */
 
-/* A joint that turns by a whole turn in its clip, with a vertex at its reach, and a float that is a parabola. */
+/* A joint that makes one full turn in its clip, with a vertex at its radius, and a float that is a parabola. */
 typedef struct turning {
     noh_clip_set set;
     noh_clip_entry clip;
     noh_transform bind;
     noh_skeleton skeleton;
     uint16_t parent;
-    float reach, scalar_radius;
+    float radius, scalar_radius;
     noh_time_probe probe;
 } turning;
 
@@ -311,14 +311,14 @@ static void turning_open(turning *t)
     t->set.bind_pose = &t->bind;
     t->set.sample = sample_turning;
     t->set.user = t;
-    t->reach = 0.5f;
+    t->radius = 0.5f;
     t->scalar_radius = 0.01f;
     t->probe.set = &t->set;
     t->probe.skeleton = &t->skeleton;
-    t->probe.joint_radius_m = &t->reach;
+    t->probe.joint_radius_m = &t->radius;
 }
 
-static void a_turn_is_off_by_its_arrow(void **state)
+static void a_turn_has_the_error_of_its_sagitta(void **state)
 {
     ALIGNED uint8_t memory[1024];
     float errors[NOH_UPDATE_RATE_COUNT];
@@ -331,7 +331,7 @@ static void a_turn_is_off_by_its_arrow(void **state)
         double angle = TWO_PI * noh_update_period((noh_update_rate)r) / 96000.0, arrow = 0.5 * (1.0 - cos(angle / 2.0));
         assert_true(errors[r] >= arrow * 0.999 && errors[r] <= arrow * 1.15);
     }
-    t.reach = -1.0f; /* nothing hangs on it */
+    t.radius = -1.0f; /* it moves no vertex */
     assert_int_equal(noh_time_lod_measure(memory, sizeof memory, &t.probe, 0, errors, NULL), NOH_OK);
     for (int r = 0; r < NOH_UPDATE_RATE_COUNT; r++) assert_true(errors[r] == 0.0f);
     t.set.float_count = 1;
@@ -341,13 +341,14 @@ static void a_turn_is_off_by_its_arrow(void **state)
     for (int r = 1; r < NOH_UPDATE_RATE_COUNT; r++) {
         double h = noh_update_period((noh_update_rate)r) / 96000.0, inside = 0.01 * h * h / 4.0,
                at_the_end = 0.01 * 2.0 * h;
-        assert_true(errors[r] >= inside * 0.999 && errors[r] <= at_the_end); /* where it stops it has a corner */
+        assert_true(errors[r] >= inside * 0.999 &&
+                    errors[r] <= at_the_end); /* its motion has a corner where it stops */
     }
 }
 
-/* A point is off by its own arrow: of what stands on the axis nothing is, and a point that two joints hold is between.
- */
-static void points_are_off_by_their_own_arrows(void **state)
+/* A mix cuts a point's arc short by its sagitta: points on the axis have no error, and that of a point with two joints
+ * lies between those of each alone. */
+static void points_have_the_errors_of_their_own_sagittas(void **state)
 {
     ALIGNED uint8_t memory[1024];
     const noh_time_hold out = { 0, 1.0f, { 0.3f, 0.4f, 7.0f } }, none = { 5, 0.0f, { 0.0f, 0.0f, 0.0f } },
@@ -385,7 +386,9 @@ static void points_are_off_by_their_own_arrows(void **state)
     points.holds_per_point = 1;
     assert_int_equal(noh_time_lod_points_measure(memory, sizeof memory, &t.probe, &points, 0, errors, &error),
                      NOH_ERR_ARG);
-    assert_int_equal(strncmp(error.what, "points: no such joint", strlen("points: no such joint")), 0);
+    assert_int_equal(strncmp(error.what, "points: a joint that is not in the skeleton",
+                             strlen("points: a joint that is not in the skeleton")),
+                     0);
 }
 
 static void sample_walk(void *user, uint32_t clip, uint32_t tick, uint32_t joints, noh_transform *pose, uint32_t floats,
@@ -396,9 +399,9 @@ static void sample_walk(void *user, uint32_t clip, uint32_t tick, uint32_t joint
     pose[0].translation[0] = 3.0f * (float)tick / (float)t->clip.duration_ticks;
 }
 
-/* A loop that walks as it turns has the errors of one that turns in its place, when the probe says that it travels;
- * else its leap's. */
-static void points_go_with_a_loop_that_travels(void **state)
+/* A loop that walks as it turns has the errors of one that turns on the spot when the probe travels; else that of its
+ * jump back. */
+static void points_follow_a_loop_that_travels(void **state)
 {
     ALIGNED uint8_t memory[1024];
     const noh_time_hold out = { 0, 1.0f, { 0.3f, 0.4f, 7.0f } };
@@ -419,7 +422,7 @@ static void points_go_with_a_loop_that_travels(void **state)
     }
 }
 
-static void measuring_wants_its_fields_and_its_memory(void **state)
+static void measuring_checks_its_fields_and_its_memory(void **state)
 {
     ALIGNED uint8_t memory[4096];
     float errors[NOH_UPDATE_RATE_COUNT];
@@ -439,7 +442,7 @@ static void measuring_wants_its_fields_and_its_memory(void **state)
     assert_int_equal(noh_time_lod_measure(memory, size, &t.probe, 0, errors, &error), NOH_ERR_ARG);
     assert_int_equal(strncmp(error.what, "probe", strlen("probe")), 0);
     assert_int_equal(memory[0], 0xa5);
-    t.probe.joint_radius_m = &t.reach;
+    t.probe.joint_radius_m = &t.radius;
     assert_int_equal(noh_time_lod_measure(memory, size, &t.probe, 0, errors, &error), NOH_OK);
     for (size_t i = size; i < sizeof memory; i++) assert_int_equal(memory[i], 0xa5);
 }
@@ -467,10 +470,10 @@ static void errors_of_what_plays(void **state)
     track = track_of(WAVE, 0.25f);
     assert_int_equal(noh_controller_start(c, &s.set, 1, &track, NULL), NOH_OK);
     noh_time_lod_error(c, errors[0], out);
-    assert_true(out[0] == 0.0f && out[1] == 3.0f && out[3] == 9.0f); /* the wave's, however light */
+    assert_true(out[0] == 0.0f && out[1] == 3.0f && out[3] == 9.0f); /* that of the wave, however small its weight */
     assert_int_equal(noh_controller_set_speed(c, 0, -2 * NOH_SPEED_ONE), NOH_OK);
     noh_time_lod_error(c, errors[0], out);
-    assert_true(out[2] == 8.0f); /* the walk's, four times */
+    assert_true(out[2] == 8.0f); /* that of the walk, four times */
     track = track_of(LEAN, 0.5f);
     track.flags = NOH_TRACK_ADDITIVE;
     assert_int_equal(noh_controller_start(c, &s.set, 2, &track, NULL), NOH_OK);
@@ -484,7 +487,7 @@ static void errors_of_what_plays(void **state)
     assert_true(out[2] == 9.0f * 6.0f + 4.0f);
 }
 
-/* Waking asks for an update now; who is late already stays as late as it was. */
+/* Waking makes an update due now; one that is late already stays as late as it was. */
 static void waking_does_not_forgive_lateness(void **state)
 {
     noh_time_lod t;
@@ -503,10 +506,10 @@ static void waking_does_not_forgive_lateness(void **state)
     assert_int_equal(noh_time_lod_late(&t), 1600);
 }
 
-/* Real clip and what was measured of it. */
+/* A real clip and its measured errors. */
 typedef struct played {
     raw_play p;
-    float *reach, *from, *to, *right;
+    float *radius, *from, *to, *right;
     noh_transform *pose;
     float errors[NOH_UPDATE_RATE_COUNT];
 } played;
@@ -521,11 +524,11 @@ static void played_open(played *x, const char *path)
     size_t size;
     assert_int_equal(raw_play_open(&x->p, path, NOH_LOOP_ONCE), 0);
     joints = x->p.set.joint_count;
-    x->reach = test_zeros(joints * sizeof *x->reach);
+    x->radius = test_zeros(joints * sizeof *x->radius);
     x->pose = test_zeros(joints * sizeof *x->pose);
     x->from = test_zeros(joints * 48u), x->to = test_zeros(joints * 48u), x->right = test_zeros(joints * 48u);
-    for (uint32_t j = 0; j < joints; j++) x->reach[j] = SHELL_CM;
-    probe.set = &x->p.set, probe.skeleton = &x->p.skeleton, probe.joint_radius_m = x->reach;
+    for (uint32_t j = 0; j < joints; j++) x->radius[j] = SHELL_CM;
+    probe.set = &x->p.set, probe.skeleton = &x->p.skeleton, probe.joint_radius_m = x->radius;
     size = noh_time_lod_measure_size(&probe);
     memory = test_zeros(size);
     assert_int_equal(noh_time_lod_measure(memory, size, &probe, 0, x->errors, NULL), NOH_OK);
@@ -534,7 +537,7 @@ static void played_open(played *x, const char *path)
 
 static void played_close(played *x)
 {
-    free(x->reach), free(x->pose), free(x->from), free(x->to), free(x->right);
+    free(x->radius), free(x->pose), free(x->from), free(x->to), free(x->right);
     raw_play_close(&x->p);
 }
 
@@ -544,7 +547,7 @@ static void matrices_at(played *x, uint32_t tick, float *out)
     noh_local_to_model(&x->p.skeleton, x->pose, x->p.set.joint_count, out);
 }
 
-/* The farthest that a point of any joint's shell is off when matrices are mixed. */
+/* The largest error of a point of any joint's shell when matrices are mixed. */
 static float farthest_off(const played *x, const float *direction, float part)
 {
     float farthest = 0.0f;
@@ -563,7 +566,7 @@ static float farthest_off(const played *x, const float *direction, float part)
     return farthest;
 }
 
-/* At random intervals and places no joint's shell is farther off than was measured. */
+/* At random periods and ticks, no joint's shell has a larger error than was measured. */
 static void real_clips_stay_within_what_was_measured(void **state)
 {
     static const char *const names[] = { "clips/Knight__Walking_A.rcl", "clips/Knight__Idle.rcl", "clips/Fox__Walk.rcl",
@@ -601,16 +604,16 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(updates_are_spread_evenly),
         cmocka_unit_test(uneven_frames_lose_no_updates),
-        cmocka_unit_test(on_time_the_error_is_that_of_straight_lines),
+        cmocka_unit_test(updates_on_time_have_the_error_of_interpolation),
         cmocka_unit_test(late_updates_and_changes_never_jump),
         cmocka_unit_test(unseen_for_long_is_posed_at_once),
         cmocka_unit_test(a_finer_rate_begins_at_once),
         cmocka_unit_test(frames_longer_than_a_period_are_exact),
         cmocka_unit_test(clocks_at_the_ends),
-        cmocka_unit_test(a_turn_is_off_by_its_arrow),
-        cmocka_unit_test(points_are_off_by_their_own_arrows),
-        cmocka_unit_test(points_go_with_a_loop_that_travels),
-        cmocka_unit_test(measuring_wants_its_fields_and_its_memory),
+        cmocka_unit_test(a_turn_has_the_error_of_its_sagitta),
+        cmocka_unit_test(points_have_the_errors_of_their_own_sagittas),
+        cmocka_unit_test(points_follow_a_loop_that_travels),
+        cmocka_unit_test(measuring_checks_its_fields_and_its_memory),
         cmocka_unit_test(errors_of_what_plays),
         cmocka_unit_test(waking_does_not_forgive_lateness),
         cmocka_unit_test(real_clips_stay_within_what_was_measured),

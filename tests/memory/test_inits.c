@@ -1,0 +1,398 @@
+/* One contract for every function of the library that is given a block of memory: NULL and misaligned memory are ARG,
+ * one byte too few is MEMORY, `need` is the exact bytes each time, nothing is touched on an error, and the exact bytes
+ * suffice, with nothing written past them. The table below has every such function in the headers; a test compares the
+ * two. All are called for one pack: a skinned tube with morph targets and a clip. */
+#include "support/gl_fixture.h"
+#include "support/lod_fixture.h"
+
+#include <dirent.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define CANARY 64u
+#define FILL 0xa5
+#define JOINTS 4u
+
+/* What the functions are called with. */
+typedef struct subject {
+    model *m;
+    uint8_t *bytes;
+    noh_pack pack;
+    noh_mesh mesh;
+    noh_skeleton skeleton;
+    noh_skin skin;
+    noh_clip_desc clip;
+    noh_clip_bank_desc bank_desc;
+    noh_clip_bank *bank;
+    noh_controller_desc controller;
+    noh_character_desc character;
+    noh_graph graph;
+    noh_graph_node node;
+    noh_track_desc track;
+    noh_lod_pools_desc pools;
+    uint32_t level, slots;
+    noh_lod_pack_desc lod;
+    noh_time_probe probe;
+    float radii[JOINTS], matrices[JOINTS * 12];
+    gpu gl;
+} subject;
+
+static subject s;
+
+static void open_pack(void)
+{
+    const skin_cylinder tube = { 8, 9, JOINTS, 2, 2, 1, 1.0f, 0.2f };
+    noh_pack_clip clip;
+    size_t count;
+    s.m = lod_tube_model(&tube);
+    s.bytes = skin_pack_with_clips(s.m, 1.0f, &count);
+    s.pack = test_open(s.bytes, count);
+    s.mesh = test_mesh(&s.pack, 0);
+    assert_int_equal(noh_pack_skin_at(&s.pack, s.mesh.header->skin, &s.skin, NULL), NOH_OK);
+    assert_int_equal(noh_pack_skeleton_at(&s.pack, s.skin.header->skeleton, &s.skeleton, NULL, NULL), NOH_OK);
+    assert_int_equal(s.skeleton.joint_count, JOINTS);
+    assert_int_equal(noh_pack_clip_at(&s.pack, 0, &clip, NULL), NOH_OK);
+    s.clip.bytes = clip.bytes;
+    s.clip.byte_count = clip.header->clip_bytes;
+    s.clip.bind = s.skeleton.bind_pose;
+    s.clip.joint_count = JOINTS;
+    s.bank_desc.clips = &s.pack;
+    s.bank_desc.skeleton = s.skin.header->skeleton;
+    s.bank = test_clip_bank(&s.bank_desc);
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    memset(&s, 0, sizeof s);
+    open_pack();
+    s.controller.set = &s.bank->clips;
+    s.controller.flags = NOH_CONTROLLER_INERTIAL;
+    s.character.controller = s.controller;
+    s.node.param = NOH_GRAPH_NONE;
+    s.graph.node_count = s.graph.clip_count = 1;
+    s.graph.nodes = &s.node;
+    s.graph.clips = &s.track;
+    s.slots = 7;
+    s.pools.instance_count = 5;
+    s.pools.pool_count = 1;
+    s.pools.levels = &s.level;
+    s.pools.slot_counts = &s.slots;
+    s.lod.set = s.bank;
+    s.lod.set_desc = &s.bank_desc;
+    s.lod.mesh = &s.mesh;
+    s.probe.set = &s.bank->clips;
+    s.probe.skeleton = &s.bank->skeleton;
+    s.probe.joint_radius_m = s.radii;
+    noh_local_to_model(&s.skeleton, s.skeleton.bind_pose, JOINTS, s.matrices);
+    return gpu_open(&s.gl, "null");
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    gpu_close(&s.gl);
+    free(s.bank);
+    free(s.bytes);
+    model_free(s.m);
+    return 0;
+}
+
+static noh_gl_device device(void)
+{
+    return (noh_gl_device){ &s.gl.gl, &s.gl.caps, &s.gl.ledger, NULL, 0 };
+}
+
+/* ---- the functions ---- */
+
+typedef noh_result (*init_fn)(void *memory, size_t bytes, noh_error *error);
+
+#define INIT(name) static noh_result name(void *memory, size_t bytes, noh_error *error)
+
+INIT(clip_init)
+{
+    noh_clip *clip;
+    return noh_clip_init(memory, bytes, &s.clip, &clip, error);
+}
+
+INIT(clip_cache_init)
+{
+    const noh_clip *clip = noh_clip_cache_clip(s.bank->cache, 0);
+    const noh_clip_cache_desc desc = { &clip, 1, 0 };
+    noh_clip_cache *cache;
+    return noh_clip_cache_init(memory, bytes, &desc, &cache, error);
+}
+
+INIT(clip_view_init)
+{
+    noh_clip_view *view;
+    return noh_clip_view_init(memory, bytes, s.bank->cache, &view, error);
+}
+
+INIT(clip_bank_init)
+{
+    noh_clip_bank *bank;
+    return noh_clip_bank_init(memory, bytes, &s.bank_desc, &bank, error);
+}
+
+INIT(clip_bank_view_init)
+{
+    noh_clip_bank_view *view;
+    return noh_clip_bank_view_init(memory, bytes, s.bank, &view, error);
+}
+
+INIT(controller_init)
+{
+    noh_controller *controller;
+    return noh_controller_init(memory, bytes, &s.controller, &controller, error);
+}
+
+INIT(pose_scratch_init)
+{
+    noh_pose_scratch scratch;
+    return noh_pose_scratch_init(memory, bytes, s.controller.set, 1, &scratch, error);
+}
+
+INIT(event_queue_init)
+{
+    noh_event_queue queue;
+    return noh_event_queue_init(memory, bytes, 9, &queue, error);
+}
+
+INIT(graph_state_init)
+{
+    noh_graph_state *graph;
+    return noh_graph_state_init(memory, bytes, &s.graph, s.controller.set, &graph, error);
+}
+
+INIT(graph_scratch_init)
+{
+    noh_graph_scratch scratch;
+    return noh_graph_scratch_init(memory, bytes, &s.graph, s.controller.set, &scratch, error);
+}
+
+INIT(character_init)
+{
+    noh_character *character;
+    return noh_character_init(memory, bytes, &s.character, &character, error);
+}
+
+INIT(character_scratch_init)
+{
+    noh_character_scratch scratch;
+    return noh_character_scratch_init(memory, bytes, &s.character, &scratch, error);
+}
+
+INIT(lod_pack_init)
+{
+    noh_lod_pack made;
+    return noh_lod_pack_init(memory, bytes, &s.lod, &made, error);
+}
+
+INIT(lod_pools_init)
+{
+    noh_lod_pools *pools;
+    return noh_lod_pools_init(memory, bytes, &s.pools, &pools, error);
+}
+
+INIT(schedule_init)
+{
+    noh_schedule schedule;
+    return noh_schedule_init(memory, bytes, 11, &schedule, error);
+}
+
+INIT(joint_lod_measure)
+{
+    const uint32_t counts[1] = { JOINTS };
+    float errors[1];
+    return noh_joint_lod_measure(memory, bytes, &s.probe, 0, counts, 1, errors, error);
+}
+
+INIT(time_lod_measure)
+{
+    float errors[NOH_UPDATE_RATE_COUNT];
+    return noh_time_lod_measure(memory, bytes, &s.probe, 0, errors, error);
+}
+
+INIT(time_lod_points_measure)
+{
+    const noh_time_hold hold = { 1, 1.0f, { 0, 0, 0 } };
+    const noh_time_lod_points points = { &hold, 1, 1 };
+    float errors[NOH_UPDATE_RATE_COUNT];
+    return noh_time_lod_points_measure(memory, bytes, &s.probe, &points, 0, errors, error);
+}
+
+INIT(morph_layers_init)
+{
+    noh_morph_layers layers;
+    return noh_morph_layers_init(memory, bytes, &s.mesh, &layers, error);
+}
+
+/* A ray at the tube's middle: its scratch is a block too. */
+INIT(pick)
+{
+    const noh_pick_surface surface = { &s.mesh, NULL, s.matrices, NULL, NULL, NULL };
+    const float origin[3] = { 0.01f, 0.5f, 5.0f }, direction[3] = { 0, 0, -1 };
+    noh_pick_hit hit;
+    return noh_pick(&surface, origin, direction, 100.0f, memory, bytes, &hit, error);
+}
+
+INIT(gl_morph_init)
+{
+    const noh_gl_device on = device();
+    noh_gl_morph_desc desc;
+    noh_gl_morph *morph;
+    noh_result result;
+    memset(&desc, 0, sizeof desc);
+    desc.meshes = &s.mesh;
+    desc.mesh_count = 1;
+    desc.path = NOH_MORPH_CPU;
+    result = noh_gl_morph_init(memory, bytes, &on, &desc, &morph, error);
+    if (result == NOH_OK) noh_gl_morph_delete(morph);
+    return result;
+}
+
+INIT(gl_skin_init)
+{
+    const noh_gl_device on = device();
+    noh_gl_skin_desc desc;
+    noh_gl_skin *skin;
+    noh_result result;
+    memset(&desc, 0, sizeof desc);
+    desc.meshes = &s.mesh;
+    desc.mesh_count = 1;
+    result = noh_gl_skin_init(memory, bytes, &on, &desc, &skin, error);
+    if (result == NOH_OK) noh_gl_skin_delete(skin);
+    return result;
+}
+
+#define ROW(name)          \
+    {                      \
+        "noh_" #name, name \
+    }
+
+static const struct {
+    const char *name;
+    init_fn init;
+} inits[] = {
+    ROW(clip_init),           ROW(clip_cache_init),
+    ROW(clip_view_init),      ROW(clip_bank_init),
+    ROW(clip_bank_view_init), ROW(controller_init),
+    ROW(pose_scratch_init),   ROW(event_queue_init),
+    ROW(graph_state_init),    ROW(graph_scratch_init),
+    ROW(character_init),      ROW(character_scratch_init),
+    ROW(lod_pack_init),       ROW(lod_pools_init),
+    ROW(schedule_init),       ROW(joint_lod_measure),
+    ROW(time_lod_measure),    ROW(time_lod_points_measure),
+    ROW(morph_layers_init),   ROW(pick),
+    ROW(gl_morph_init),       ROW(gl_skin_init),
+};
+
+/* ---- the contract ---- */
+
+static int untouched(const uint8_t *bytes, size_t count)
+{
+    size_t i = 0;
+    while (i < count && bytes[i] == FILL) i++;
+    return i == count;
+}
+
+static void refuse(size_t row, void *memory, size_t bytes, noh_result expected, size_t need)
+{
+    noh_error error = { NOH_OK, NULL, 99, 99 };
+    const noh_result result = inits[row].init(memory, bytes, &error);
+    if (result != expected || error.result != expected || error.need != need || !error.what) {
+        fail_msg("%s: %s, need %lu; expected %s, need %lu", inits[row].name, noh_result_text(result),
+                 (unsigned long)error.need, noh_result_text(expected), (unsigned long)need);
+    }
+}
+
+static void every_block_opens_in_the_same_way(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(inits); i++) {
+        noh_error error = { NOH_OK, NULL, 0, 0 };
+        const noh_gl_ledger ledger = s.gl.ledger;
+        uint8_t *memory;
+        size_t need;
+        (void)inits[i].init(NULL, 0, &error);
+        need = (size_t)error.need;
+        if (!need) fail_msg("%s: no need for NULL memory", inits[i].name);
+        memory = test_aligned(NULL, need + CANARY);
+        memset(memory, FILL, need + CANARY);
+        refuse(i, NULL, need, NOH_ERR_ARG, need);
+        refuse(i, memory, need - 1u, NOH_ERR_MEMORY, need);
+        refuse(i, memory, 0, NOH_ERR_MEMORY, need);
+        for (size_t shift = 1; shift < NOH_MEMORY_ALIGN; shift++) refuse(i, memory + shift, need, NOH_ERR_ARG, need);
+        if (!untouched(memory, need + CANARY)) fail_msg("%s writes before it refuses", inits[i].name);
+        assert_memory_equal(&ledger, &s.gl.ledger, sizeof ledger);
+        if (inits[i].init(memory, need, &error) != NOH_OK) fail_msg("%s: %s", inits[i].name, error.what);
+        if (!untouched(memory + need, CANARY)) fail_msg("%s writes past its block", inits[i].name);
+        free(memory);
+    }
+}
+
+/* ---- the table is whole ---- */
+
+static int has_row(const char *name)
+{
+    for (size_t i = 0; i < TEST_COUNT(inits); i++) {
+        if (strcmp(inits[i].name, name) == 0) return 1;
+    }
+    return 0;
+}
+
+/* Every `noh_result noh_NAME(void *memory, size_t bytes` of a header has a row. Returns how many there are. */
+static uint32_t check_header(const char *path)
+{
+    static const char start[] = "noh_result ", block[] = "(void *memory, size_t bytes";
+    static char text[1 << 16];
+    uint32_t found = 0;
+    FILE *in = fopen(path, "rb");
+    assert_non_null(in);
+    text[fread(text, 1, sizeof text - 1u, in)] = 0;
+    fclose(in);
+    for (char *at = strstr(text, start); at; at = strstr(at, start)) {
+        char *name = at + strlen(start), *end = name + strcspn(name, "( \n");
+        at = name;
+        if (strncmp(end, block, strlen(block)) != 0) continue;
+        *end = 0;
+        if (!has_row(name)) fail_msg("%s: %s has no row in the table", path, name);
+        found++;
+        at = end + 1;
+    }
+    return found;
+}
+
+static void the_table_has_every_init_of_the_headers(void **state)
+{
+    DIR *folders = opendir("runtime");
+    uint32_t found = 0;
+    (void)state;
+    if (!folders) test_skip("run it in the root of the sources");
+    for (const struct dirent *folder = readdir(folders); folder; folder = readdir(folders)) {
+        char path[600];
+        DIR *files;
+        if (folder->d_name[0] == '.' || strchr(folder->d_name, '.')) continue;
+        snprintf(path, sizeof path, "runtime/%s", folder->d_name);
+        files = opendir(path);
+        assert_non_null(files);
+        for (const struct dirent *file = readdir(files); file; file = readdir(files)) {
+            const char *dot = strrchr(file->d_name, '.');
+            if (!dot || strcmp(dot, ".h") != 0) continue;
+            snprintf(path, sizeof path, "runtime/%.250s/%.250s", folder->d_name, file->d_name);
+            found += check_header(path);
+        }
+        closedir(files);
+    }
+    closedir(folders);
+    assert_int_equal(found + 1u, TEST_COUNT(inits)); /* noh_pick has its block among other arguments */
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(every_block_opens_in_the_same_way),
+    cmocka_unit_test(the_table_has_every_init_of_the_headers),
+};
+
+TEST_MAIN(tests, set_up, tear_down)
