@@ -124,7 +124,7 @@ void noh_time_lod_wake(noh_time_lod *t)
 /* A track's playback speed, squared; at least 1. */
 static float haste(const noh_track *track)
 {
-    float rate = (float)track->rate / (float)NOH_SPEED_ONE, speed = (float)track->speed / (float)NOH_SPEED_ONE;
+    float rate = (float)track->speed_now / (float)NOH_SPEED_ONE, speed = (float)track->speed / (float)NOH_SPEED_ONE;
     float square = rate * rate > speed * speed ? rate * rate : speed * speed;
     return square > 1.0f ? square : 1.0f;
 }

@@ -30,7 +30,7 @@ typedef struct nearest_edge {
     uint32_t a, b;
 } nearest_edge;
 
-/* Keep an edge if it is nearer to (x, y); of equally near ones the shorter. */
+/* Keep an edge if it is nearer to (x, y) than the best so far, or as near and shorter. */
 static void try_edge(const noh_blend_space_2d *s, uint32_t a, uint32_t b, float x, float y, nearest_edge *best)
 {
     float ex = s->points[2u * b] - s->points[2u * a], ey = s->points[2u * b + 1u] - s->points[2u * a + 1u];
@@ -50,6 +50,7 @@ static void try_edge(const noh_blend_space_2d *s, uint32_t a, uint32_t b, float 
     }
 }
 
+/* A point outside all triangles: the weights of the nearest point on any edge, which is one of the hull's. */
 static void edge_weights(const noh_blend_space_2d *s, float x, float y, float *weights)
 {
     nearest_edge best = { -1.0f, 0.0f, 0.0f, 0, 0 };
@@ -58,7 +59,7 @@ static void edge_weights(const noh_blend_space_2d *s, float x, float y, float *w
             try_edge(s, s->triangles[3u * i + k], s->triangles[3u * i + (k + 1) % 3], x, y, &best);
         }
     }
-    if (s->triangle_count == 0) { /* all points on a line: of the overlapping edges the shortest joins neighbours */
+    if (s->triangle_count == 0) { /* all points on a line: of overlapping edges the shortest joins neighbours */
         for (uint32_t a = 0; a < s->point_count; a++) {
             for (uint32_t b = a + 1; b < s->point_count; b++) {
                 try_edge(s, a, b, x, y, &best);

@@ -1,6 +1,6 @@
 /* check_mesh_part.c: checks of the parts that every level of a mesh has: its accumulation texture, triangles,
- * submeshes, rectangles and texel references. check_mesh.c, check_level.c and check_skin.c call them; they call none
- * of these. `h` is always the header of the level that is checked. */
+ * submeshes, rectangles and texel references. check_mesh.c, check_level.c and check_skin.c call these functions, never
+ * the other way round. `h` is always the header of the level that is checked. */
 #include "pack/check_internal.h"
 
 #include <stddef.h>
