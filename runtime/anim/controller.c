@@ -212,7 +212,8 @@ static void gather_group(noh_controller *c, const noh_clip_set *set, uint32_t tr
     c->flags |= SYNC_TOUCHED;
 }
 
-/* The position of a tick of the present pass, or ping-pong cycle. */
+/* The position of a tick of the present pass (of a ping-pong clip, of the present cycle): the durations passed so far,
+ * and the tick. */
 static int64_t seek_position(const noh_track *t, const noh_clip_entry *m, int64_t tick)
 {
     int64_t legs = noh_time_legs(t->position, m->duration_ticks, (noh_loop)t->loop);

@@ -100,6 +100,8 @@ noh_root_pose noh_root_extract(uint32_t axes, uint32_t up, const noh_transform *
     return e;
 }
 
+/* rest = inverse(E) * root: subtract E's translation, then turn both what is left of the translation and the rotation
+ * back by the heading. */
 void noh_root_remove(uint32_t axes, uint32_t up, noh_transform *root)
 {
     noh_root_pose e = noh_root_extract(axes, up, root);

@@ -28,6 +28,8 @@ static int64_t marker_position(const noh_clip_set *set, const noh_clip_entry *m,
     return m->marker_count ? pass + noh_position_of(set->markers[m->first_marker + n % count].tick) : pass;
 }
 
+/* Intervals are counted from the marker of phase 0, not from the clip's start, so that equal phases are equal steps in
+ * all clips of a group. */
 noh_phase noh_sync_phase(const noh_clip_set *set, const noh_clip_entry *clip, int64_t position)
 {
     uint32_t count = interval_count(clip), first = canonical(set, clip), n = 0;
@@ -96,7 +98,8 @@ static const noh_clip_entry *clip_of(const noh_clip_set *set, const noh_track *t
     return &set->clips[track->clip];
 }
 
-/* The position of a phase that is nearest to another position. */
+/* Of the positions of a phase, one in each pass, the nearest to another position: whole durations, rounded, are added
+ * to the one in the first pass. */
 static int64_t nearest(const noh_clip_set *set, const noh_clip_entry *m, noh_phase phase, int64_t to)
 {
     int64_t duration = noh_position_of(m->duration_ticks);

@@ -55,6 +55,7 @@ int64_t noh_time_advance(int64_t position, int64_t speed, int64_t ticks, uint32_
     return to;
 }
 
+/* Repeating and ping-pong clips differ in folding only, not in how far they have come: both count durations. */
 int64_t noh_time_legs(int64_t position, uint32_t duration_ticks, noh_loop loop)
 {
     return loop == NOH_LOOP_ONCE || duration_ticks == 0 ? 0 : noh_floor_div(position, noh_position_of(duration_ticks));
@@ -77,6 +78,8 @@ int64_t noh_time_clip(int64_t position, uint32_t duration_ticks, noh_loop loop)
     return loop == NOH_LOOP_PING_PONG && (leg & 1) ? duration - rest : rest;
 }
 
+/* Two durations are one cycle of a ping-pong clip and two passes of a repeating one: a whole number of them changes no
+ * folded position, direction or key. */
 int64_t noh_time_rebase(int64_t position, uint32_t duration_ticks, noh_loop loop)
 {
     int64_t cycle = 2 * noh_position_of(duration_ticks);

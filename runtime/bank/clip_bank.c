@@ -133,13 +133,11 @@ static noh_result count(const noh_clip_bank_desc *desc, const noh_bank_binding *
         if (r) return r;
     }
     if (c->shape.clip_count == 0) {
-        return noh_fail(
-            error, NOH_ERR_NOT_FOUND,
-            c->foreign
-                ? "no clip fits: they move another skeleton (names or parents of joints differ); build mesh and clips from one "
-                  "skeleton"
-                : "the pack has no clips",
-            0, c->foreign);
+        return noh_fail(error, NOH_ERR_NOT_FOUND,
+                        c->foreign ? "no clip fits: all move another skeleton (names or parents of joints differ); "
+                                     "build mesh and clips from one skeleton"
+                                   : "the pack has no clips",
+                        0, c->foreign);
     }
     if (c->shape.float_count > NOH_FLOATS_MAX) {
         return noh_fail(error, NOH_ERR_LIMIT,
@@ -378,6 +376,7 @@ static noh_result open_cache(const counts *c, parts *p, noh_error *error)
     return noh_clip_cache_init(p->cache_memory, c->cache_bytes, &cache, &p->bank->cache, error);
 }
 
+/* Root tracks sample the ends of every clip, which needs the cache: so they come last. */
 static noh_result measure_roots(const noh_clip_bank_desc *desc, parts *p, noh_error *error)
 {
     noh_clip_bank *bank = p->bank;

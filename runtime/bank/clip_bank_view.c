@@ -64,7 +64,10 @@ void noh_clip_bank_sample_cache(noh_clip_bank *bank)
     bank->clips.user = bank;
 }
 
-/* ---- views ---- */
+/* ---- views ----
+ *
+ * A view holds a copy of the set whose `sample` and `user` are its own. So calls that take a set need not know of
+ * views, and threads share everything else. */
 
 static size_t carve(noh_arena *arena, const noh_clip_bank *bank, noh_clip_bank_view **view, void **clips,
                     float **sampled)

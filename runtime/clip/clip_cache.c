@@ -90,6 +90,7 @@ static noh_result needs_of(const noh_clip_cache_desc *desc, noh_clip_cache_needs
 
 /* ---- memory ---- */
 
+/* The cosines of each segment length that occurs, once for all clips. */
 static void carve_bases(noh_arena *arena, const noh_clip_cache_needs *needs, noh_clip_basis *bases)
 {
     for (uint32_t n = 1; n <= NOH_CLIP_SEGMENT_FRAMES_MAX; n++) {
@@ -385,6 +386,8 @@ void noh_clip_cache_begin_frame(noh_clip_cache *cache)
     cache->stamp++;
 }
 
+/* Give a segment an entry, note up to which track it is wanted, and put it on the list if there is something to decode.
+ */
 static int want_segment(noh_clip_cache *cache, uint32_t clip, uint32_t segment, uint32_t tracks)
 {
     uint32_t s = cache->cached_of[cache->clips[clip].first + segment];
@@ -432,6 +435,8 @@ uint32_t noh_clip_cache_want_frames(noh_clip_cache *cache, uint32_t clip, uint32
     }
 }
 
+/* Wants are served in the order of asking, a track at a time. Where the budget ends in the middle of a segment its
+ * cursor stays, and the next call goes on from there. */
 uint32_t noh_clip_cache_work(noh_clip_cache *cache, uint32_t budget)
 {
     uint32_t spent = 0;

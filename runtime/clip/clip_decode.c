@@ -32,6 +32,7 @@ static float raw_float(noh_bits *b)
     return v - v == 0.0f ? v : 0.0f; /* NaN and infinity become 0 */
 }
 
+/* A raw track keeps its frames as floats: the encoder's last resort where coefficients do not keep to the bound. */
 static void decode_raw(noh_bits *b, const noh_clip *clip, const noh_clip_track *track, uint32_t frames, uint8_t *out)
 {
     const int wide = (clip->info.flags & NOH_CLIP_FLAG_WIDE) != 0u;

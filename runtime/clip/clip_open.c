@@ -162,6 +162,8 @@ static void add_track(parser *p, const noh_clip_track *track)
     p->track_count++;
 }
 
+/* The floats of a triple may have very different ranges: the second and third have steps of their own, relative to the
+ * first. They are kept as the diagonal of the mix matrix, so decoding floats takes the same path as mixed axes. */
 static void read_scales(parser *p, noh_clip_track *t)
 {
     for (uint32_t i = 0; i < 2u; i++) {
@@ -223,6 +225,8 @@ static noh_result read_subtrack(parser *p, noh_clip_kind kind, uint32_t mode, ui
     return read_floats(p, widths[noh_bits_get(&p->bits, 2u)], value);
 }
 
+/* Most joints of most clips only rotate: one bit says so. The others say for each of rotation, translation and scale
+ * whether it is the bind pose's, constant or animated. */
 static noh_result read_joint(parser *p, uint32_t joint)
 {
     uint32_t rotation = NOH_CLIP_MODE_ANIMATED, translation = NOH_CLIP_MODE_BIND, scale = NOH_CLIP_MODE_BIND;
@@ -466,6 +470,8 @@ noh_clip_group noh_clip_group_at(const noh_clip *clip, uint32_t index)
     return clip->groups[index];
 }
 
+/* ticks / 48,000 Hz * sample rate, as a quotient and a remainder of integers: no time is rounded before it is split
+ * into frame and fraction. */
 uint32_t noh_clip_frame_at(const noh_clip *clip, int64_t ticks, float *fraction)
 {
     const uint64_t unit = (uint64_t)NOH_CLIP_TICKS_PER_SECOND * NOH_CLIP_MICRO;

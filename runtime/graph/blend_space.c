@@ -70,7 +70,8 @@ static void edge_weights(const noh_blend_space_2d *s, float x, float y, float *w
     weights[best.b] += best.t;
 }
 
-/* Barycentric weights of a triangle; 0 when the point is outside. */
+/* Barycentric weights in a triangle: the area opposite each corner, over the whole. Returns 0 when the point is
+ * outside. */
 static int triangle_weights(const noh_blend_space_2d *s, const uint8_t t[3], float x, float y, float *weights)
 {
     const float *a = s->points + 2u * t[0], *b = s->points + 2u * t[1], *c = s->points + 2u * t[2];
@@ -107,7 +108,10 @@ void noh_blend_space_2d_weights(const noh_blend_space_2d *space, float x, float 
     edge_weights(space, px, py, weights);
 }
 
-/* ---- triangulation: a sweep, then flips until every edge is Delaunay ---- */
+/* ---- triangulation ----
+ *
+ * A sweep over the points by x joins each to the hull of those before it; then edges are flipped until all are
+ * Delaunay. There are few points and this runs once, so neither step needs to be fast. */
 
 typedef struct mesh {
     uint32_t count, triangle_count;

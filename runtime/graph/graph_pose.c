@@ -149,6 +149,7 @@ static int is_difference(const evaluation *e, uint32_t node)
     return (e->set->clips[noh_controller_track(e->c, clip->index)->clip].flags & NOH_CLIP_ADDITIVE) != 0;
 }
 
+/* The second child is added as a difference: as it is, or taken from the bind pose first. */
 static void add_part(evaluation *e, const noh_graph_node *node, const parts *p)
 {
     uint32_t joints = e->c->lod_joint_count, floats = e->set->float_count;
@@ -169,6 +170,7 @@ static void add_part(evaluation *e, const noh_graph_node *node, const parts *p)
     e->lacks[p->buffers[0]] &= e->lacks[p->buffers[1]];
 }
 
+/* The second child is laid over the first where the mask allows; what it does not animate stays the first's. */
 static void mask_part(evaluation *e, const noh_graph_node *node, const parts *p)
 {
     noh_mask_view mask = noh_clip_set_mask(e->set, node->mask);
@@ -241,6 +243,8 @@ static void evaluate(noh_graph_state *state, const noh_graph *graph, const noh_c
 
 /* ---- transitions by inertia ---- */
 
+/* As a controller's transitions: four poses, of the graph before and after the switch, now and a moment ago; their
+ * differences become the offsets that decay. The offsets of a transition that still runs belong to the poses before. */
 static void begin_inertia(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set,
                           noh_graph_scratch *scratch)
 {

@@ -150,6 +150,8 @@ static uint32_t stored_weight(const uint32_t *words, uint32_t n)
     return (uint32_t)(pair >> bit % 32u) & ((1u << size) - 1u);
 }
 
+/* The first joint's weight is not stored: it is what the others leave of 1. As integers of 2^-22 all weights, and their
+ * sum, are exact in float32. */
 uint32_t noh_mesh_influences(const noh_mesh *mesh, uint32_t vertex, uint32_t joints[NOH_INFLUENCES_MAX],
                              float weights[NOH_INFLUENCES_MAX])
 {

@@ -141,6 +141,8 @@ static noh_result check_arrays(noh_check *check, const noh_mesh_header *h)
     return noh_check_end(check);
 }
 
+/* A target begins where the one before it ended; its three fields fill a word at most, and no field is wider than a
+ * float's mantissa. */
 static noh_result check_target_head(const noh_check *check, const noh_mesh_header *h, const noh_target *t,
                                     uint32_t first_rect, uint32_t first_texel, uint64_t at)
 {

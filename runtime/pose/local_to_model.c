@@ -23,6 +23,7 @@ void noh_transform_matrix(const noh_transform *t, float matrix[12])
     matrix[11] = t->translation[2];
 }
 
+/* Both have an implied last row of 0 0 0 1. A copy is filled, so that out may be a or b. */
 void noh_matrix_multiply(const float a[12], const float b[12], float out[12])
 {
     float m[12];
@@ -30,7 +31,7 @@ void noh_matrix_multiply(const float a[12], const float b[12], float out[12])
         for (int c = 0; c < 3; c++) {
             m[r + c] = a[r] * b[c] + a[r + 1] * b[4 + c] + a[r + 2] * b[8 + c];
         }
-        m[r + 3] = a[r] * b[3] + a[r + 1] * b[7] + a[r + 2] * b[11] + a[r + 3]; /* the last column of b is 0 0 0 1 */
+        m[r + 3] = a[r] * b[3] + a[r + 1] * b[7] + a[r + 2] * b[11] + a[r + 3];
     }
     memcpy(out, m, sizeof m);
 }
