@@ -1,4 +1,4 @@
-/* noh.h: characters in fixed memory: one header for all of noh that needs no GL. With GL include noh_gl.h instead.
+/* noh.h: characters in fixed memory: all of noh that needs no GL. With GL include noh_gl.h instead.
  *
  * noh opens a pack of meshes, skeletons and compressed clips (made by `noh build`), plays the clips, morphs faces and
  * skins bodies, on the CPU or on OpenGL ES 3.x. It is C99, links memcpy, memset and memcmp and nothing else, and never
@@ -10,18 +10,18 @@
  *     bytes = noh_x_size(&desc);                        0: the desc is impossible, init says why
  *     noh_x_init(memory, bytes, &desc, &x, &error)      builds it in place, writes not a byte past `bytes`
  *
- * A pack is read where it lies, and so is all that is made of it: keep its bytes readable and unchanged.
+ * A pack is read where it lies, and what is made of it refers to its bytes: keep them readable and unchanged.
  *
  * Names. noh_noun_verb() is a function, noh_noun a type, NOH_NOUN a constant. A desc is a struct of settings in which
  * zero means the documented default. x_count counts, x_bytes counts bytes, x_max is a limit. Times end in their unit:
- * ticks, seconds. Matrices are 3 rows of 4 floats that multiply columns, quaternions x y z w, triangles
- * counter-clockwise.
+ * _ticks, _s. A header whose name ends in _internal.h is private and is not installed. Matrices are 3 rows of 4 floats
+ * that multiply columns, quaternions x y z w, triangles counter-clockwise.
  *
  * Errors. What can fail returns a noh_result, NOH_OK (0) or an error, and leaves its outputs untouched on error. The
  * last parameter is then a noh_error, which may be NULL: `what` is a sentence and never NULL after a failure, `where`
  * the byte or index at fault, `need` the size or count that was wanted; 0 where that means nothing. Bad data, short
- * memory and a missing capability are errors. A caller's bug (a NULL, an index past its count) is an assert: see
- * base/assert.h.
+ * memory and a missing capability are errors. A caller's bug (a NULL, an index past its count) is an assert, of
+ * two tiers that a build switches on: base/assert.h.
  *
  * Not found. A function that finds by name returns an index, or NOH_NONE. A function that returns a noh_result returns
  * NOH_ERR_NOT_FOUND.
@@ -30,9 +30,9 @@
  *
  * Threads. What is opened from bytes (packs, meshes, skins, skeletons, clips) and every desc is read-only: any number
  * of threads may share it. What an init made is for one thread at a time, each object for itself: two characters may be
- * posed on two threads. A clip cache is changed by whoever samples from it; its header says how threads share one.
- * Functions without an object (base/, deform/) keep no state. GL objects belong to the thread of the GL context. The
- * library takes no lock. Each header says in a line "Threads:" what differs. */
+ * posed on two threads. Sampling from a clip bank changes its cache: to pose on several threads give each a view
+ * (bank/clip_bank.h). Functions without an object (base/, deform/) keep no state. GL objects belong to the thread of
+ * the GL context. The library takes no lock. In each header a line "Threads:" says which of these holds there. */
 #ifndef NOH_H
 #define NOH_H
 
@@ -44,7 +44,7 @@
 #include "pack/pack.h"              /* open a pack; pack/format.h has its bytes */
 #include "mesh/mesh.h"              /* its meshes and skins: vertices, triangles, targets, LOD levels */
 #include "clip/pack_clip.h"         /* its skeletons and clips */
-#include "bank/clip_bank.h"         /* a pack's clips, ready to be played */
+#include "bank/clip_bank.h"         /* a pack's clips, ready to be played: a set, and the cache behind it */
 #include "character/character.h"    /* one character: a controller, what it shows, how finely */
 #include "character/skin_palette.h" /* what it shows, as matrices of any skin */
 #include "anim/controller.h"        /* tracks: start, fade, seek, callback keys */
@@ -58,10 +58,11 @@
 /* ---- more ways to move ---- */
 
 #include "graph/graph.h"            /* an animation graph over a controller */
-#include "anim/mask.h"              /* joints that a clip moves */
+#include "anim/clip_set.h"          /* the clips that controllers share: a set of your own, without a pack */
+#include "anim/mask.h"              /* weights per joint: which of them a track moves */
 #include "anim/root_motion.h"       /* root displacement of clips */
 #include "anim/event_queue.h"       /* callback keys collected, to be read later */
-#include "anim/ping_pong.h"         /* a weight that swings */
+#include "anim/ping_pong.h"         /* weights as functions of time: a ramp, a ping-pong */
 #include "deform/dual_quaternion.h" /* skins that keep their volume where joints twist */
 
 /* ---- crowds: what is drawn and posed, how finely, how often ---- */
@@ -79,7 +80,7 @@
 
 #include "base/arena.h"      /* carve a block */
 #include "base/half.h"       /* 16-bit floats */
-#include "base/hash.h"       /* FNV-1a, CRC-32C */
+#include "base/hash.h"       /* names as hashes, checksums */
 #include "base/quat.h"       /* quaternions */
 #include "base/trig.h"       /* trigonometry without libm, the same bits everywhere */
 #include "pose/blend.h"      /* poses mixed and added */
@@ -91,13 +92,16 @@
  *
  *   pack, chunk          a .noh file; one of its parts: a mesh, a skeleton, a clip...
  *   skeleton, bind pose  joints and their parents; the pose in which a mesh was attached to them
- *   joint                a node of a skeleton (elsewhere also "bone")
+ *   joint                a node of a skeleton, elsewhere called a bone
  *   palette              the matrices of the joints that one draw uses
  *   target, pair         a morph target; one vertex moved by one target
  *   delta texel          a stored difference of one vertex in one target: position, normal, tangent
  *   accumulation texel   the sum of a vertex's weighted delta texels, in an accumulator
  *   clip                 a compressed animation of joints and floats
- *   clip set             the clips that characters share, with their keys and cache; short: set
+ *   clip set             what controllers see of the clips they share: names, durations, keys, and a function that
+ *                        samples a pose; short: set. A game may fill in one of its own (noh_clip_set)
+ *   clip bank            the clips of a pack that fit one skeleton, opened, with their cache; it makes a clip set of
+ *                        them (noh_clip_bank)
  *   track                a clip that a controller plays: its position, weight and playback speed
  *   controller           the tracks of one character, and their changes over time
  *   callback key         a named moment of a clip that is reported when a track passes it
@@ -108,6 +112,9 @@
  *   cached segment       decoded frames of a clip, an entry of the clip cache
  *   LOD level            a version of a mesh or skeleton; 0 is the full one, higher ones are coarser
  *   slot                 a place in a fixed pool, held by an instance
- *   radius               the farthest that something reaches from its centre, or is moved */
+ *   radius               the farthest that something reaches from its centre, or is moved
+ *
+ * A noh_clip is a compressed clip that has been opened, a noh_clip_entry a clip of a set, a noh_pack_clip one of a
+ * pack. */
 
 #endif

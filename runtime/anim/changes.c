@@ -78,7 +78,7 @@ static int64_t wanted(const noh_change_desc *d)
 }
 
 /* The entry to fill: one of the same kind and track waiting for the same tick, else a free one, else NULL. */
-static noh_change *slot(noh_change *table, uint32_t count, const noh_change *c)
+static noh_change *entry_for(noh_change *table, uint32_t count, const noh_change *c)
 {
     noh_change *free_one = NULL;
     for (uint32_t i = 0; i < count; i++) {
@@ -96,11 +96,11 @@ static noh_change *slot(noh_change *table, uint32_t count, const noh_change *c)
 static noh_result add(noh_change *table, uint32_t count, noh_change_target *target, const noh_change *c,
                       noh_error *error)
 {
-    noh_change *place = slot(table, count, c);
-    if (!place) {
+    noh_change *entry = entry_for(table, count, c);
+    if (!entry) {
         return noh_fail(error, NOH_ERR_LIMIT, "the table of changes is full", count, (uint64_t)count + 1u);
     }
-    *place = *c;
+    *entry = *c;
     if (c->start == target->clock) {
         noh_changes_update(table, count, target);
     }
@@ -259,10 +259,10 @@ void noh_changes_update(noh_change *table, uint32_t count, noh_change_target *ta
     }
 }
 
-/* ---- rates ---- */
+/* ---- speeds ---- */
 
-/* A stretch of whole ticks in which a change is constant. A change shorter than NOH_CHANGE_SLICES ticks has empty
- * slices; their part of the curve goes to the next one that is not empty. */
+/* A stretch of whole ticks in which a change's speed is constant. A change shorter than NOH_CHANGE_SLICES ticks has
+ * empty slices; their part of the curve goes to the next one that is not empty. */
 typedef struct slice {
     int64_t begin, end;   /* ticks after the change's start */
     int64_t first, after; /* the part of the curve, in slices */
@@ -285,9 +285,9 @@ static slice slice_at(const noh_change *c, int64_t elapsed)
     return s;
 }
 
-/* The speed of one slice: the curve's value in its middle, which is also its mean over the slice for a linear curve,
- * and within 1/64^2 of it for the smoothstep. Returns up to when it holds. */
-static int64_t speed_rate(const noh_change *c, int64_t elapsed, int32_t *speed)
+/* The speed of one slice: the curve's value in its middle. For a linear curve that is its mean over the slice, for the
+ * smoothstep it is within 1/64^2 of the mean. Returns the tick, after the start, up to which it holds. */
+static int64_t slice_speed(const noh_change *c, int64_t elapsed, int32_t *speed)
 {
     slice s = slice_at(c, elapsed);
     int64_t middle = curve_fixed(c->curve, s.first + s.after);
@@ -295,10 +295,10 @@ static int64_t speed_rate(const noh_change *c, int64_t elapsed, int32_t *speed)
     return s.end;
 }
 
-/* The speed of a travel. The distance of each slice is cut into whole steps of one tick, in two sizes that differ by
- * one, the longer ones last (as Bresenham's line would, but in two runs), so that each slice ends exactly where the
- * curve says. Returns up to when the speed holds. */
-static int64_t position_rate(const noh_change *c, int64_t elapsed, int64_t *rate)
+/* The speed of a travel to a position. The distance of each slice is cut into steps of one tick, of two lengths that
+ * differ by one, the longer ones last (as in Bresenham's line, but in two runs), so that each slice ends exactly where
+ * the curve says. Returns the tick, after the start, up to which the speed holds. */
+static int64_t travel_speed(const noh_change *c, int64_t elapsed, int64_t *speed)
 {
     slice s = slice_at(c, elapsed);
     int64_t way = c->to - c->from, ticks = s.end - s.begin;
@@ -306,7 +306,7 @@ static int64_t position_rate(const noh_change *c, int64_t elapsed, int64_t *rate
                         scaled(way, curve_fixed(c->curve, 2 * s.first));
     int64_t step = noh_floor_div(slice_way, ticks), rest = slice_way - step * ticks;
     int64_t turn = s.end - rest; /* from here on one more per tick */
-    *rate = elapsed < turn ? step : step + 1;
+    *speed = elapsed < turn ? step : step + 1;
     return elapsed < turn ? turn : s.end;
 }
 
@@ -320,23 +320,24 @@ static int64_t sooner(int64_t a, int64_t b)
     return a < b ? a : b;
 }
 
-static int64_t speed_rates(const noh_change *table, uint32_t count, const noh_change_target *target, int64_t end)
+static int64_t apply_speeds(const noh_change *table, uint32_t count, const noh_change_target *target, int64_t end)
 {
     for (uint32_t i = 0; i < count; i++) {
         if (runs(&table[i], NOH_CHANGE_SPEED)) {
-            int64_t held = speed_rate(&table[i], target->clock - table[i].start, &target->tracks[table[i].track].speed);
+            int64_t held = slice_speed(&table[i], target->clock - table[i].start,
+                                       &target->tracks[table[i].track].speed);
             end = sooner(end, noh_clock_add(table[i].start, held));
         }
     }
     return end;
 }
 
-static int64_t position_rates(const noh_change *table, uint32_t count, const noh_change_target *target, int64_t end)
+static int64_t apply_travels(const noh_change *table, uint32_t count, const noh_change_target *target, int64_t end)
 {
     for (uint32_t i = 0; i < count; i++) {
         if (runs(&table[i], NOH_CHANGE_POSITION)) {
-            int64_t held = position_rate(&table[i], target->clock - table[i].start,
-                                         &target->tracks[table[i].track].rate);
+            int64_t held = travel_speed(&table[i], target->clock - table[i].start,
+                                        &target->tracks[table[i].track].speed_now);
             end = sooner(end, noh_clock_add(table[i].start, held));
         }
     }
@@ -360,12 +361,12 @@ int64_t noh_changes_speeds(const noh_change *table, uint32_t count, const noh_ch
                            uint32_t track_count, int64_t end)
 {
     NOH_ASSERT(target && (table || !count) && end >= target->clock);
-    end = speed_rates(table, count, target, next_change(table, count, end));
+    end = apply_speeds(table, count, target, next_change(table, count, end));
     for (uint32_t i = 0; i < track_count; i++) {
         noh_track *track = &target->tracks[i];
         if (!track->sync_group) {
-            track->rate = track->speed;
+            track->speed_now = track->speed;
         }
     }
-    return position_rates(table, count, target, end);
+    return apply_travels(table, count, target, end);
 }

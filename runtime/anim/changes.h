@@ -1,11 +1,13 @@
 /* changes.h: changes over time, now or scheduled: of speed, weight, position, mode, priority blend.
  *
  * A fixed table of 32-byte records inside a controller. Everything is exact in ticks: the effect of a change at a tick
- * does not depend on how time is cut into steps. WEIGHT, PRIORITY   follow the curve at every tick SPEED follows it in
- * NOH_CHANGE_SLICES equal slices of constant speed, each at the curve's middle value, so that the distance travelled is
- * that of the curve POSITION           travels along the curve in the same slices and arrives exactly; this is play and
- * fires events. With duration 0 it jumps and fires none MODE               switches when it is due; its duration must
- * be 0
+ * does not depend on how time is cut into steps.
+ *   WEIGHT, PRIORITY   follow the curve at every tick
+ *   SPEED              follows it in NOH_CHANGE_SLICES equal slices of constant speed, each at the curve's middle
+ *                      value, so that the distance travelled is that of the curve
+ *   POSITION           travels along the curve in the same slices and arrives exactly; this is play, and fires
+ *                      callback keys. With duration 0 it jumps and fires none
+ *   MODE               switches when it is due; its duration must be 0
  *
  * Threads: a table belongs to the thread of its controller. */
 #ifndef NOH_ANIM_CHANGES_H
@@ -35,9 +37,9 @@ typedef struct noh_change_desc {
     uint32_t delay_ticks;    /* from now; default 0 */
     uint32_t duration_ticks; /* default 0: at once */
     noh_curve curve;         /* default linear */
-    int32_t speed;           /* SPEED: to reach, 1/65,536; |speed| <= NOH_SPEED_MAX */
-    float weight;            /* WEIGHT: to reach, 0..NOH_WEIGHT_MAX; PRIORITY: 0..1 */
-    int64_t position_ticks;  /* POSITION: to reach, unwrapped; |position| <= 2^44 */
+    int32_t speed;           /* SPEED: the final one, 1/65,536; |speed| <= NOH_SPEED_MAX */
+    float weight;            /* WEIGHT: the final one, 0..NOH_WEIGHT_MAX; PRIORITY: 0..1 */
+    int64_t position_ticks;  /* POSITION: the final one, unwrapped; |position| <= 2^44 */
     noh_track_mode mode;     /* MODE */
 } noh_change_desc;
 
@@ -72,8 +74,9 @@ typedef struct noh_change_target {
 float noh_curve_at(noh_curve curve, float t);
 
 /* Add a change, and begin it if it is due now. It replaces a change of the same kind and track that waits for the same
- * tick. errors  ARG a field of the desc (POSITION of a synchronised track is refused: its group moves it); LIMIT the
- * table is full (need: entries) */
+ * tick.
+ * errors  ARG a field of the desc (POSITION of a synchronised track is refused: its group moves it); LIMIT the table is
+ *         full (need: entries) */
 noh_result noh_changes_add(noh_change *table, uint32_t count, noh_change_target *target, uint32_t track_count,
                            const noh_change_desc *desc, noh_error *error);
 
@@ -90,8 +93,8 @@ void noh_changes_drop(noh_change *table, uint32_t count, uint32_t track);
 /* Bring weights and the priority blend to target->clock, end changes that are over, begin those that are due. */
 void noh_changes_update(noh_change *table, uint32_t count, noh_change_target *target);
 
-/* Set the present speed (noh_track.rate) of all tracks from target->clock on, and return the tick, at most `end`, up to
- * which it holds. Synchronised tracks are left to their group. */
+/* Set speed_now of all tracks from target->clock on, and return the tick, at most `end`, up to which it holds.
+ * Synchronised tracks are left to their group. */
 int64_t noh_changes_speeds(const noh_change *table, uint32_t count, const noh_change_target *target,
                            uint32_t track_count, int64_t end);
 

@@ -1,12 +1,13 @@
-/* clip.h: what a controller knows of the clips it plays.
+/* clip_set.h: what a controller knows of the clips it plays.
  *
- * A clip here is a name, a duration, a loop mode, callback keys and sync markers: plain data with indices instead of
- * pointers, so that it may lie in a pack. How its poses are stored is not the controller's business: it asks
- * noh_clip_set.sample for them. One set serves any number of instances.
+ * To a controller a clip is a noh_clip_entry: a name, a duration, a loop mode, callback keys and sync markers, as plain
+ * data with indices instead of pointers. How its poses are stored the controller need not know: it asks
+ * noh_clip_set.sample for them. One set serves any number of instances. A game fills in a set of its own, or takes the
+ * one that a noh_clip_bank makes of a pack (bank/clip_bank.h).
  *
- * Threads: a set is read only while instances use it, so any number of threads may share one whose `sample` may run on
- * several threads. Where it may not, each thread hands a copy of its own with another `user` to the calls; for clips
- * out of packs noh_clip_bank_view is that copy. */
+ * Threads: a set is only read while instances use it, so any number of threads may share one whose `sample` may run on
+ * several threads. Where it may not, each thread passes a copy of its own with another `user`; for clips of packs
+ * noh_clip_bank_view holds that copy. */
 #ifndef NOH_ANIM_CLIP_SET_H
 #define NOH_ANIM_CLIP_SET_H
 
@@ -27,7 +28,7 @@ typedef struct noh_event_key {
     float weight_min; /* fires only while its track weighs at least this much; 0: always */
 } noh_event_key;
 
-/* A place that the clips of one sync group share: a foot on the ground. */
+/* A moment that the clips of a sync group have in common: a foot touches the ground. */
 typedef struct noh_marker {
     uint32_t tick; /* below the duration, increasing */
     uint32_t id;
@@ -35,9 +36,10 @@ typedef struct noh_marker {
 
 #define NOH_CLIP_ADDITIVE 1u    /* its poses are differences already: see noh_pose_difference */
 #define NOH_CLIP_FLOATS_ONLY 2u /* animates floats only: joints are left to the other tracks */
-#define NOH_CLIP_JOINTS_ONLY 4u /* animates joints only: a walk leaves the face to the track that speaks */
+#define NOH_CLIP_JOINTS_ONLY 4u /* animates joints only: a walk leaves the face to another track */
 #define NOH_CLIP_FLAGS (NOH_CLIP_ADDITIVE | NOH_CLIP_FLOATS_ONLY | NOH_CLIP_JOINTS_ONLY)
 
+/* A clip of a set. */
 typedef struct noh_clip_entry {
     uint32_t name_hash;
     uint32_t duration_ticks;             /* 0..NOH_DURATION_MAX */
@@ -73,9 +75,9 @@ typedef struct noh_clip_set {
     void *user; /* for sample */
 } noh_clip_set;
 
-/* Check a set once, before instances are made of it.
- * errors  ARG a count or pointer, named; DATA a clip (where: its index), named:
- *         loop mode, duration, a key's tick or weight or order, a marker's */
+/* Check a set once, before instances use it.
+ * errors  ARG a count or pointer, named; DATA a clip (where: its index): its loop mode or duration, the tick, weight or
+ *         order of a key, the tick or order of a marker */
 noh_result noh_clip_set_check(const noh_clip_set *set, noh_error *error);
 
 /* The index of the clip of that name; NOH_NONE when there is none. */

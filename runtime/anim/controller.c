@@ -12,7 +12,7 @@
 
 /* private flags, above the public ones */
 #define STEPPING 64u      /* inside noh_controller_step */
-#define SYNC_TOUCHED 128u /* the sync groups need new speeds before the next grid tick */
+#define SYNC_TOUCHED 128u /* sync groups need new speeds before the next multiple of NOH_SYNC_TICKS */
 
 /* ---- memory ---- */
 
@@ -142,7 +142,7 @@ static noh_change_target target_of(noh_controller *c, const noh_clip_set *set)
     return t;
 }
 
-/* After a change of the table: note its high-water mark, and whether a sync group is affected. */
+/* After the table of changes was touched: note its high-water mark, and whether a sync group is affected. */
 static void settle(noh_controller *c, const noh_change_target *t)
 {
     const noh_change *changes = changes_of(c);
@@ -200,7 +200,7 @@ noh_result noh_controller_start(noh_controller *c, const noh_clip_set *set, uint
     return NOH_OK;
 }
 
-/* Put a whole sync group on the phase of one of its tracks. */
+/* Move the other tracks of a sync group to the phase of one of them. */
 static void gather_group(noh_controller *c, const noh_clip_set *set, uint32_t track)
 {
     noh_track *tracks = noh_controller_tracks(c);
@@ -212,7 +212,8 @@ static void gather_group(noh_controller *c, const noh_clip_set *set, uint32_t tr
     c->flags |= SYNC_TOUCHED;
 }
 
-/* The position of a tick of the present pass, or ping-pong cycle. */
+/* The position of a tick of the present pass (of a ping-pong clip, of the present cycle): the durations passed so far,
+ * and the tick. */
 static int64_t seek_position(const noh_track *t, const noh_clip_entry *m, int64_t tick)
 {
     int64_t legs = noh_time_legs(t->position, m->duration_ticks, (noh_loop)t->loop);
@@ -409,7 +410,7 @@ static void move_track(noh_track *t, const noh_clip_entry *m, const noh_passage 
     int64_t rebase = noh_time_rebase(p->to, m->duration_ticks, (noh_loop)t->loop);
     t->position = p->to - rebase;
     t->root_position = noh_clock_add(t->root_position, -rebase);
-    t->placed = (uint8_t)(t->placed && t->rate == 0);
+    t->placed = (uint8_t)(t->placed && t->speed_now == 0);
 }
 
 /* Move all tracks on; returns how many may have passed keys. */
@@ -427,12 +428,14 @@ static uint32_t move_tracks(noh_controller *c, const noh_clip_set *set, int64_t 
         out[count].clip = t->clip;
         out[count].track = (uint8_t)i;
         move_track(t, m, &out[count].passage);
-        count += m->event_count != 0 && t->rate != 0;
+        count += m->event_count != 0 && t->speed_now != 0;
     }
     return count;
 }
 
-/* Move time to a tick and deliver what has been passed by then. */
+/* Move time to a tick and deliver the keys that have been passed by then. All tracks move, changes take effect, and the
+ * weights are noted before the first key is delivered: the callback may change anything, and the other keys of the tick
+ * still see the tick as it was. */
 static void advance(noh_controller *c, const noh_clip_set *set, int64_t clock, delivery *d)
 {
     passed list[NOH_TRACKS_MAX];
@@ -466,7 +469,7 @@ static int has_sync(const noh_controller *c)
 
 /* Give sync groups new speeds at every multiple of NOH_SYNC_TICKS, and whenever one was changed. Returns the tick up to
  * which the speeds hold. */
-static int64_t sync_rates(noh_controller *c, const noh_clip_set *set, int64_t end)
+static int64_t sync_speeds(noh_controller *c, const noh_clip_set *set, int64_t end)
 {
     int64_t next = noh_clock_add(c->clock, NOH_SYNC_TICKS - c->clock % NOH_SYNC_TICKS);
     if (!has_sync(c)) {
@@ -511,7 +514,7 @@ uint32_t noh_controller_step(noh_controller *c, const noh_clip_set *set, uint32_
     while (c->clock < end) {
         noh_change_target target = target_of(c, set);
         int64_t until = noh_changes_speeds(changes_of(c), c->change_count, &target, c->track_count, end);
-        until = sync_rates(c, set, until);
+        until = sync_speeds(c, set, until);
         until = d.passed < NOH_STEP_EVENTS_MAX ? next_event(c, set, until) : until;
         advance(c, set, until, &d);
     }

@@ -5,10 +5,11 @@
 #include "anim/controller.h"
 #include "anim/sync_internal.h"
 
-typedef struct reach {
-    uint64_t travel; /* the farthest it can move, 1/65,536 ticks */
-    uint64_t runs;   /* the most stretches of one direction */
-} reach;
+/* What a track can do in a step, at most. */
+typedef struct play_bound {
+    uint64_t travel; /* the sum of its movement, 1/65,536 ticks */
+    uint64_t runs;   /* stretches of one direction */
+} play_bound;
 
 static uint64_t plus(uint64_t a, uint64_t b)
 {
@@ -30,7 +31,7 @@ static int concerns(const noh_change *change, uint32_t track, noh_change_kind ki
     return change->state != NOH_CHANGE_FREE && change->kind == kind && change->track == track;
 }
 
-/* The highest speed of a track, now or by a change that waits or runs. */
+/* The highest speed of a track: its present one, or that of a change that waits or runs. */
 static uint64_t speed_reached(const noh_controller *c, uint32_t track)
 {
     const noh_change *changes = changes_of(c);
@@ -60,12 +61,12 @@ static void interval_range(const noh_clip_set *set, const noh_clip_entry *m, uin
 
 /* A synchronised track moves at most at the phase speed of its group's fastest member, through its own longest
  * interval; and the group may turn round whenever it gets new speeds. */
-static reach sync_reach(const noh_controller *c, const noh_clip_set *set, uint32_t track, uint32_t ticks)
+static play_bound sync_bound(const noh_controller *c, const noh_clip_set *set, uint32_t track, uint32_t ticks)
 {
     const noh_track *t = noh_controller_track(c, track);
     uint32_t shortest, longest;
     uint64_t fastest = 0;
-    reach r;
+    play_bound r;
     for (uint32_t i = 0; i < c->track_count; i++) {
         const noh_track *other = noh_controller_track(c, i);
         if (other->sync_group == t->sync_group) {
@@ -82,10 +83,12 @@ static reach sync_reach(const noh_controller *c, const noh_clip_set *set, uint32
     return r;
 }
 
-static reach free_reach(const noh_controller *c, uint32_t track, uint32_t ticks)
+/* A track that is not synchronised: its highest speed all the time, a change of speed may turn it round, and a change
+ * of position may take it to its target and on from there. */
+static play_bound free_bound(const noh_controller *c, uint32_t track, uint32_t ticks)
 {
     const noh_change *changes = changes_of(c);
-    reach r = { 0, 1 };
+    play_bound r = { 0, 1 };
     uint64_t way = speed_reached(c, track) * ticks;
     r.travel = way;
     for (uint32_t i = 0; i < c->change_count; i++) {
@@ -119,7 +122,7 @@ uint32_t noh_controller_events_max(const noh_controller *c, const noh_clip_set *
         const noh_track *t = noh_controller_track(c, i);
         const noh_clip_entry *m = &set->clips[t->clip];
         if (m->event_count && !stays_off(c, i)) {
-            reach r = t->sync_group ? sync_reach(c, set, i, ticks) : free_reach(c, i, ticks);
+            play_bound r = t->sync_group ? sync_bound(c, set, i, ticks) : free_bound(c, i, ticks);
             uint32_t runs = r.runs > UINT32_MAX ? UINT32_MAX : (uint32_t)r.runs;
             most += noh_events_max(m->event_count, m->duration_ticks, (noh_loop)t->loop, r.travel, runs);
         }

@@ -4,10 +4,11 @@
 #include "anim/controller.h"
 #include "base/arena.h"
 
-/* Bounds that every step keeps. Positions are rebased past NOH_POSITION_MAX; a synchronised track's rate is the mean
- * speed of its group, in intervals per tick (at most 256), times an interval of its own (at most 2^28 ticks). */
-#define SYNC_RATE_MAX ((int64_t)1 << 53)
-#define RATE_MAX ((int64_t)1 << 61)
+/* Bounds that every step keeps. Positions are rebased past NOH_POSITION_MAX; the present speed of a synchronised track
+ * is the mean speed of its group, in intervals per tick (at most 256), times an interval of its own (at most 2^28
+ * ticks). */
+#define SYNC_SPEED_NOW_MAX ((int64_t)1 << 53)
+#define SPEED_NOW_MAX ((int64_t)1 << 61)
 
 static int is_within(int64_t value, int64_t most)
 {
@@ -53,7 +54,8 @@ static const char *bad_track(const noh_clip_set *set, const noh_track *t)
         return "track: cannot be synchronised";
     if (!(t->weight >= 0.0f && t->weight <= NOH_WEIGHT_MAX)) return "track: weight is not in 0..NOH_WEIGHT_MAX";
     if (!is_within(t->speed, NOH_SPEED_MAX)) return "track: speed is past NOH_SPEED_MAX";
-    if (!is_within(t->rate, t->sync_group ? SYNC_RATE_MAX : RATE_MAX)) return "track: its rate is out of range";
+    if (!is_within(t->speed_now, t->sync_group ? SYNC_SPEED_NOW_MAX : SPEED_NOW_MAX))
+        return "track: speed_now is out of range";
     if (t->loop == NOH_LOOP_ONCE) {
         least = 0;
         most = noh_position_of(set->clips[t->clip].duration_ticks);
@@ -71,7 +73,7 @@ static int is_weight(const noh_change *change, int64_t bits)
     return bits >= 0 && bits <= UINT32_MAX && weight >= 0.0f && weight <= most;
 }
 
-/* What begins is not past, what runs is not over: a step relies on both. */
+/* A change that waits is due later than now, one that runs is not over: a step relies on both. */
 static const char *bad_change(const noh_controller *c, const noh_change *change)
 {
     if (change->state > NOH_CHANGE_RUNNING) return "change: bad state";

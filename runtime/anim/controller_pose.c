@@ -64,7 +64,7 @@ typedef struct view {
     const noh_controller *c;
     const noh_clip_set *set;
     noh_pose_scratch *scratch;
-    int64_t ago; /* ticks: tracks are taken where they were then, had they always had their present speeds */
+    int64_t ago; /* ticks: tracks are where they were then, had they always had their present speeds */
 } view;
 
 static int is_sampled(const noh_controller *c, const noh_track *t)
@@ -84,7 +84,7 @@ static void sample_at(const view *v, uint32_t clip, uint32_t tick, noh_transform
     noh_root_sample_rest(v->set, clip, tick, v->c->lod_joint_count, pose, floats);
 }
 
-/* Add a group's poses to the sum that was begun. Returns how many. */
+/* Add the poses of a group's tracks to the sum that was begun. Returns how many there were. */
 static uint32_t sum_group(const view *v, noh_track_group group)
 {
     noh_pose_scratch *s = v->scratch;
@@ -132,7 +132,7 @@ static const noh_track *only_track(const view *v)
     return only;
 }
 
-/* The reference pose of an additive track, into the blend's sums, which are free by now. */
+/* The reference pose of an additive track. It goes into the blend's sums, which are free by then. */
 static void reference_pose(const view *v, const noh_track *t, noh_transform *pose, float *floats)
 {
     const noh_clip_set *set = v->set;
@@ -236,6 +236,8 @@ void noh_controller_pose(const noh_controller *c, const noh_clip_set *set, noh_p
 
 /* ---- transitions ---- */
 
+/* Speeds of a transition are differences: the pose now and the pose NOH_INERTIA_BEFORE_TICKS ago, of what played before
+ * the switch (captured, with the offsets of a transition that still runs) and of what plays after it (without). */
 static const char *bad_transition(const noh_controller *c, const noh_pose_scratch *scratch)
 {
     if (!(c->flags & NOH_CONTROLLER_INERTIAL)) return "the controller has no room for inertia";
@@ -349,6 +351,8 @@ static noh_root_pose mean_root(const root_sum *sum)
     return out;
 }
 
+/* Each group's displacement is the weighted mean of its tracks', and the high one covers the low one by the priority
+ * blend times its mean mask, exactly as noh_blend_cover covers the pose of joint 0. */
 noh_root_pose noh_controller_root_motion(noh_controller *c, const noh_clip_set *set)
 {
     noh_root_pose out = { { 0.0, 0.0, 0.0 }, 0, 0 }, low, high;

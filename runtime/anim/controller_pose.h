@@ -18,8 +18,8 @@
 extern "C" {
 #endif
 
-/* Working memory of posing: not state, one for all instances of a set that are posed
- * one after another. Between noh_controller_inertia_capture and _begin it holds what was captured. */
+/* Working memory of posing: no state, so one serves all instances of a set that are posed one after another. Only
+ * between noh_controller_inertia_capture and _begin it holds what was captured. */
 typedef struct noh_pose_scratch {
     noh_blend blend;
     noh_transform *sample;             /* [joint_count] */
@@ -29,21 +29,22 @@ typedef struct noh_pose_scratch {
     float *float_captured[4];
 } noh_pose_scratch;
 
-/* inertial: with room for the four poses of a transition.
- * errors of init  ARG memory NULL or not 16-byte aligned; MEMORY need: the bytes */
+/* Exact bytes of a scratch, and a scratch in memory[bytes], 16-byte aligned. `inertial` 1: with room for the four poses
+ * of a transition.
+ * errors  ARG memory NULL or misaligned; MEMORY need: the bytes */
 size_t noh_pose_scratch_size(const noh_clip_set *set, int inertial);
 noh_result noh_pose_scratch_init(void *memory, size_t bytes, const noh_clip_set *set, int inertial,
                                  noh_pose_scratch *scratch, noh_error *error);
 
 /* The pose at the controller's clock: the low group, the high group over it by the priority blend, additive tracks in
- * their order, the rest of a transition. Clips that animate no joints (NOH_CLIP_FLOATS_ONLY) take no part in joints,
- * and those without floats none in floats. One unmasked track alone gives its clip to the bit. shapes
- * pose[joint_count], floats[float_count] of the set */
+ * their order, then what is left of a transition. Clips that animate no joints (NOH_CLIP_FLOATS_ONLY) take no part in
+ * joints, and those without floats none in floats. One unmasked track alone gives its clip to the bit.
+ * shapes  pose[joint_count], floats[float_count] of the set */
 void noh_controller_pose(const noh_controller *c, const noh_clip_set *set, noh_pose_scratch *scratch,
                          noh_transform *pose, float *floats);
 
 /* Root displacement since the last call, weighted as the pose is at joint 0; additive tracks do not count, nor do clips
- * that animate no joints. Seeks do not move the root, and drop what their track had moved since the last call. Zero
+ * that animate no joints. A seek does not move the root, and drops what its track has moved since the last call. Zero
  * without set->roots. All roots of a set must have the same up axis. */
 noh_root_pose noh_controller_root_motion(noh_controller *c, const noh_clip_set *set);
 
@@ -58,8 +59,8 @@ noh_result noh_controller_inertia_capture(const noh_controller *c, const noh_cli
 noh_result noh_controller_inertia_begin(noh_controller *c, const noh_clip_set *set, noh_pose_scratch *scratch,
                                         uint32_t duration_ticks, noh_error *error);
 
-/* The parts of these, for graph_pose.c, which poses tracks in its own way: add the offsets left `ago` ticks before now;
- * store offsets from the four captured poses. */
+/* Parts of these calls, for graph_pose.c, which poses tracks in its own way: add the offsets that were left `ago` ticks
+ * before now; store offsets from the four captured poses. */
 #define NOH_INERTIA_BEFORE_TICKS 480 /* speeds are differences over this many ticks before the switch */
 void noh_controller_inertia_add(const noh_controller *c, int64_t ago, noh_transform *pose, float *floats);
 void noh_controller_inertia_store(noh_controller *c, const noh_pose_scratch *scratch, uint32_t duration_ticks);

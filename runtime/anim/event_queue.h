@@ -1,4 +1,4 @@
-/* event_queue.h: keep the events of a step for later, instead of acting in the callback.
+/* event_queue.h: keeps the events of a step for later, instead of acting in the callback.
  *
  * A fixed array sized by a bound (noh_controller_events_max or noh_clip_set_events_max), so that it cannot overflow.
  * Pass noh_event_queue_push as the callback and the queue as its pointer.
@@ -20,16 +20,18 @@ typedef struct noh_event_queue {
     noh_event *events; /* [capacity], oldest first */
 } noh_event_queue;
 
-/* Exact bytes for so many events; 0 for none or too many. */
+/* Exact bytes for that many events; 0 for none or too many. */
 size_t noh_event_queue_size(uint32_t capacity);
 
-/* errors  ARG capacity, or memory NULL or not 16-byte aligned; MEMORY too small; need: the exact bytes */
+/* Make a queue over memory[bytes], 16-byte aligned.
+ * errors  ARG capacity, or memory NULL or misaligned; MEMORY need: the bytes */
 noh_result noh_event_queue_init(void *memory, size_t bytes, uint32_t capacity, noh_event_queue *queue,
                                 noh_error *error);
 
 /* The callback; queue is a noh_event_queue. */
 void noh_event_queue_push(void *queue, const noh_event *event);
 
+/* Forget the events; `lost` and `high_water` stay. */
 void noh_event_queue_clear(noh_event_queue *queue);
 
 #ifdef __cplusplus

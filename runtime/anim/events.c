@@ -1,7 +1,7 @@
 #include "anim/events.h"
 
-/* The whole ticks that a passage covers, both ends included. Occurrences lie on whole ticks, so this is all that is
- * needed of the passage's 1/65,536 ticks; which end is open is settled here, once. */
+/* The whole ticks that a passage covers, both ends included. Occurrences lie on whole ticks, so no more than this is
+ * needed of a passage in 1/65,536 ticks; which end is open is decided here, once. */
 typedef struct span {
     int64_t low, high;
 } span;
@@ -14,7 +14,7 @@ typedef struct leg {
 } leg;
 
 typedef struct legs {
-    int64_t next, last; /* leg numbers, `next` moving towards `last` */
+    int64_t next, last; /* numbers of legs; `next` moves towards `last` */
     int done;
 } legs;
 
@@ -110,7 +110,7 @@ int noh_events_first(const noh_event_key *keys, uint32_t count, const noh_passag
     legs l = passage_legs(passage, s);
     leg g;
     NOH_ASSERT(passage && position_tick && (keys || !count));
-    /* Every whole leg forth contains every key, so this ends after three legs at most. */
+    /* Every whole leg forwards contains every key, so this ends after three legs at most. */
     while (count && next_leg(passage, s, &l, &g)) {
         uint32_t begin = keys_before(keys, count, g.low), end = keys_before(keys, count, g.high + 1);
         if (begin < end) {

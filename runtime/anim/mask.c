@@ -10,8 +10,7 @@ void noh_mask_fill(uint8_t *mask, uint32_t count, uint8_t value)
     }
 }
 
-/* Whether `joint` is `above` or one of its descendants. Parents come first, so this climbs at most joint_count times.
- */
+/* Whether `joint` is `above` or one of its descendants. Parents come first, so this climbs no higher than `above`. */
 static int is_below(const noh_skeleton *s, uint32_t joint, uint32_t above)
 {
     while (joint > above && s->parents[joint] != NOH_JOINT_ROOT) {

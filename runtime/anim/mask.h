@@ -18,7 +18,8 @@ extern "C" {
 /* Set all entries, of joints and floats. */
 void noh_mask_fill(uint8_t *mask, uint32_t count, uint8_t value);
 
-/* Set the entries of a joint and of all its descendants. ranges  joint < skeleton->joint_count */
+/* Set the entries of a joint and of all its descendants.
+ * ranges  joint below skeleton->joint_count */
 void noh_mask_subtree(uint8_t *mask, const noh_skeleton *skeleton, uint32_t joint, uint8_t value);
 
 /* Replace every entry by 255 minus it. */

@@ -8,6 +8,7 @@ float noh_ramp(int64_t ticks, int64_t duration)
     return ticks >= duration ? 1.0f : (float)ticks / (float)duration;
 }
 
+/* The remainder is taken in integers, so the phase is exact however long the counter has run. */
 float noh_ping_pong(int64_t ticks, int64_t half)
 {
     int64_t phase;

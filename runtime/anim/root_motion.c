@@ -100,6 +100,8 @@ noh_root_pose noh_root_extract(uint32_t axes, uint32_t up, const noh_transform *
     return e;
 }
 
+/* rest = inverse(E) * root: subtract E's translation, then turn both what is left of the translation and the rotation
+ * back by the heading. */
 void noh_root_remove(uint32_t axes, uint32_t up, noh_transform *root)
 {
     noh_root_pose e = noh_root_extract(axes, up, root);
@@ -218,7 +220,7 @@ noh_root_pose noh_root_between(const noh_clip_set *set, const noh_root_track *tr
 {
     uint32_t duration = set->clips[clip].duration_ticks, up = track->up;
     NOH_ASSERT(set && track && clip < set->clip_count);
-    /* passes count only where they do not lead back */
+    /* a ping-pong clip comes back to where it was, so only a repeating one adds up its passes */
     int64_t passes = loop == NOH_LOOP_REPEAT ? noh_time_legs(to, duration, loop) - noh_time_legs(from, duration, loop)
                                              : 0;
     noh_root_pose a = sample_root(set, clip, track->axes, up, (uint32_t)(noh_time_clip(from, duration, loop) / 65536));

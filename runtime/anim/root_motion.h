@@ -2,16 +2,18 @@
  *
  * Of the root joint's transform a chosen part E (some axes of the translation, and the heading: the twist about the up
  * axis) moves the character in the world; the rest stays in its pose, so that world * E * rest is where the root was.
- * From position a to b of a clip the character moves by inverse(E(a)) * E(b)                                     within
- * one pass inverse(E(a)) * E(end) * L^(n-1) * inverse(E(0)) * E(b)  across n seams,  L = inverse(E(0)) * E(end) L^n has
- * a closed form, so a million passes are as exact as one: headings are 32-bit fractions of a turn, which add without
- * rounding, and the sum of the n displacements is a geometric series of rotations.
+ * From position a to b of a clip the character moves by
+ *   inverse(E(a)) * E(b)                                         within one pass
+ *   inverse(E(a)) * E(end) * L^(n-1) * inverse(E(0)) * E(b)      across n seams, L = inverse(E(0)) * E(end)
+ * L^n has a closed form, so a million passes are as exact as one: headings are 32-bit fractions of a turn, which add
+ * without rounding, and the sum of the n displacements is a geometric series of rotations.
+ *
  *   noh_root_at       displacement since the start of a clip, after any number of passes
  *   noh_controller_root_motion (controller_pose.h)   displacement by all tracks since the last call, by weight
  *
  * source  Granberg 2009, chapter 16, names root motion; adding up its displacements in floats drifts
  *
- * Threads: pure functions but for the set's sample function, which says where it may run. */
+ * Threads: pure functions, except that some call the set's `sample`: they may run where that may (clip_set.h). */
 #ifndef NOH_ANIM_ROOT_MOTION_H
 #define NOH_ANIM_ROOT_MOTION_H
 
@@ -34,7 +36,7 @@ typedef struct noh_root_pose {
     uint32_t reserved;
 } noh_root_pose;
 
-/* The root motion of one clip. Plain data. */
+/* What root motion needs to know of one clip. Plain data. */
 typedef struct noh_root_track {
     uint32_t axes;                  /* NOH_ROOT_*; 0: none is extracted */
     uint32_t up;                    /* 0, 1, 2: x, y, z */
@@ -57,7 +59,7 @@ noh_root_pose noh_root_inverse(uint32_t up, const noh_root_pose *a);
 /* a composed with itself n times; n < 0: its inverse, -n times. In closed form: constant time, no drift. */
 noh_root_pose noh_root_power(uint32_t up, const noh_root_pose *a, int64_t n);
 
-/* Sample a clip's two ends. Joint 0 is the root.
+/* Measure a root track by sampling the two ends of its clip. Joint 0 is the root.
  * errors  ARG clip, axes, up */
 noh_result noh_root_track_measure(const noh_clip_set *set, uint32_t clip, uint32_t axes, uint32_t up,
                                   noh_root_track *track, noh_error *error);

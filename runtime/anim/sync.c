@@ -28,6 +28,8 @@ static int64_t marker_position(const noh_clip_set *set, const noh_clip_entry *m,
     return m->marker_count ? pass + noh_position_of(set->markers[m->first_marker + n % count].tick) : pass;
 }
 
+/* Intervals are counted from the marker of phase 0, not from the clip's start, so that equal phases are equal steps in
+ * all clips of a group. */
 noh_phase noh_sync_phase(const noh_clip_set *set, const noh_clip_entry *clip, int64_t position)
 {
     uint32_t count = interval_count(clip), first = canonical(set, clip), n = 0;
@@ -35,8 +37,7 @@ noh_phase noh_sync_phase(const noh_clip_set *set, const noh_clip_entry *clip, in
     noh_phase p;
     NOH_ASSERT(set && clip && clip->duration_ticks > 0);
     if (rest < marker_position(set, clip, 0)) {
-        rest += noh_position_of(
-            clip->duration_ticks); /* before the first marker: in the last interval, across the seam */
+        rest += noh_position_of(clip->duration_ticks); /* before the first marker: the last interval, across the seam */
     }
     while (n + 1 < count && marker_position(set, clip, n + 1) <= rest) {
         n++;
@@ -97,7 +98,8 @@ static const noh_clip_entry *clip_of(const noh_clip_set *set, const noh_track *t
     return &set->clips[track->clip];
 }
 
-/* The position of a phase that is nearest to another position. */
+/* Of the positions of a phase, one in each pass, the nearest to another position: whole durations, rounded, are added
+ * to the one in the first pass. */
 static int64_t nearest(const noh_clip_set *set, const noh_clip_entry *m, noh_phase phase, int64_t to)
 {
     int64_t duration = noh_position_of(m->duration_ticks);
@@ -112,7 +114,7 @@ void noh_sync_join(const noh_clip_set *set, noh_track *track, const noh_track *l
     noh_track_place(track, clip_of(set, track), nearest(set, clip_of(set, track), phase, track->position));
 }
 
-/* Length of the marker interval of a phase, in 1/65,536 ticks. */
+/* Length of a phase's marker interval in this clip, in 1/65,536 ticks. */
 static double interval_length(const noh_clip_set *set, const noh_clip_entry *m, noh_phase phase)
 {
     uint32_t n = ((uint32_t)phase.interval + canonical(set, m)) % interval_count(m);
@@ -150,22 +152,24 @@ static void steer(const noh_clip_set *set, noh_track *track, noh_phase goal, dou
     const noh_clip_entry *m = clip_of(set, track);
     int64_t expected = track->position + rounded(travelled * (double)m->duration_ticks * 65536.0);
     int64_t way = nearest(set, m, goal, expected) - track->position;
-    int64_t rate = noh_floor_div(way + ticks / 2, ticks);
-    track->rate = (leader_speed > 0 && rate < 0) || (leader_speed < 0 && rate > 0) || leader_speed == 0 ? 0 : rate;
+    int64_t speed = noh_floor_div(way + ticks / 2, ticks);
+    track->speed_now = (leader_speed > 0 && speed < 0) || (leader_speed < 0 && speed > 0) || leader_speed == 0 ? 0
+                                                                                                               : speed;
 }
 
-static void group_rates(const noh_clip_set *set, noh_track *tracks, uint32_t track_count, uint32_t leader,
-                        int64_t ticks)
+/* The leader gets the group's mean phase speed, times its own interval; the others are steered to where it will be. */
+static void group_speeds(const noh_clip_set *set, noh_track *tracks, uint32_t track_count, uint32_t leader,
+                         int64_t ticks)
 {
     noh_track *lead = &tracks[leader];
     const noh_clip_entry *m = clip_of(set, lead);
     noh_phase now = noh_sync_phase(set, m, lead->position), goal;
-    lead->rate = rounded(mean_speed(set, tracks, track_count, leader, now) * interval_length(set, m, now));
-    goal = noh_sync_phase(set, m, lead->position + lead->rate * ticks);
+    lead->speed_now = rounded(mean_speed(set, tracks, track_count, leader, now) * interval_length(set, m, now));
+    goal = noh_sync_phase(set, m, lead->position + lead->speed_now * ticks);
     for (uint32_t i = 0; i < track_count; i++) {
         if (i != leader && is_member(&tracks[i], lead->sync_group)) {
-            steer(set, &tracks[i], goal, (double)(lead->rate * ticks) / ((double)m->duration_ticks * 65536.0),
-                  lead->rate, ticks);
+            steer(set, &tracks[i], goal, (double)(lead->speed_now * ticks) / ((double)m->duration_ticks * 65536.0),
+                  lead->speed_now, ticks);
         }
     }
 }
@@ -176,7 +180,7 @@ void noh_sync_speeds(const noh_clip_set *set, noh_track *tracks, uint32_t track_
     for (uint32_t group = 1; group <= NOH_SYNC_GROUPS_MAX; group++) {
         uint32_t leader = noh_sync_leader(tracks, track_count, group);
         if (leader < track_count) {
-            group_rates(set, tracks, track_count, leader, ticks);
+            group_speeds(set, tracks, track_count, leader, ticks);
         }
     }
 }

@@ -1,4 +1,4 @@
-/* sync.h: tracks that keep step: by phase, or by markers where their clips have them.
+/* sync_internal.h (private to anim/): tracks that keep step: by phase, or by markers where their clips have them.
  *
  * The tracks of a sync group share a phase: a marker interval and the fraction of it that has passed. A clip without
  * markers is one interval. The clips of a group must have the same marker ids in the same cyclic order; phase 0 lies at
@@ -6,8 +6,8 @@
  *
  * All tracks of a group move at the weighted mean of their own phase speeds. The heaviest leads; the others are steered
  * to its phase, every NOH_SYNC_TICKS of the controller's clock and whenever the group changes. In between speeds are
- * constant, so events stay exact and independent of the step size; when a marker is passed in between, a follower is
- * off by a part of those 10 milliseconds.
+ * constant, so events stay exact and independent of the step size; where a marker is passed in between, a follower is
+ * off by less than those 10 milliseconds.
  *
  * Threads: as tracks.h. */
 #ifndef NOH_ANIM_SYNC_INTERNAL_H
@@ -37,7 +37,7 @@ uint32_t noh_sync_leader(const noh_track *tracks, uint32_t track_count, uint32_t
 /* Move a track to the phase of another one, nearest to where it is, without firing callbacks. */
 void noh_sync_join(const noh_clip_set *set, noh_track *track, const noh_track *leader);
 
-/* Set the present speeds (noh_track.rate) of all groups for the next `ticks`. */
+/* Set speed_now of all synchronised tracks for the next `ticks`. */
 void noh_sync_speeds(const noh_clip_set *set, noh_track *tracks, uint32_t track_count, int64_t ticks);
 
 #endif

@@ -18,23 +18,23 @@ int64_t noh_position_of(int64_t ticks)
     return ticks * 65536;
 }
 
-/* position + rate * ticks, held at the ends of what 64 bits hold. */
-static int64_t advance_saturated(int64_t position, int64_t rate, int64_t ticks)
+/* position + speed * ticks, held at the ends of what 64 bits hold. */
+static int64_t advance_saturated(int64_t position, int64_t speed, int64_t ticks)
 {
-    const int back = (rate < 0) != (ticks < 0);
+    const int back = (speed < 0) != (ticks < 0);
     /* magnitudes as unsigned: INT64_MIN has none in int64_t */
-    const uint64_t r = rate < 0 ? (uint64_t)0 - (uint64_t)rate : (uint64_t)rate;
+    const uint64_t s = speed < 0 ? (uint64_t)0 - (uint64_t)speed : (uint64_t)speed;
     const uint64_t t = ticks < 0 ? (uint64_t)0 - (uint64_t)ticks : (uint64_t)ticks;
-    uint64_t left; /* to the end that play goes to */
-    if (r == 0u || t == 0u) {
+    uint64_t left; /* to the end of the range in the direction of play */
+    if (s == 0u || t == 0u) {
         return position;
     }
     left = back ? (uint64_t)position - (uint64_t)INT64_MIN : (uint64_t)INT64_MAX - (uint64_t)position;
-    if (r > left / t) {
+    if (s > left / t) {
         return back ? INT64_MIN : INT64_MAX;
     }
-    return (int64_t)(back ? (uint64_t)position - r * t
-                          : (uint64_t)position + r * t); /* in range, so modulo 2^64 is exact */
+    /* the result is in range, so arithmetic modulo 2^64 gives it exactly */
+    return (int64_t)(back ? (uint64_t)position - s * t : (uint64_t)position + s * t);
 }
 
 static int is_small(int64_t x)
@@ -42,19 +42,20 @@ static int is_small(int64_t x)
     return x < SMALL && x > -SMALL;
 }
 
-int64_t noh_time_advance(int64_t position, int64_t rate, int64_t ticks, uint32_t duration_ticks, noh_loop loop)
+int64_t noh_time_advance(int64_t position, int64_t speed, int64_t ticks, uint32_t duration_ticks, noh_loop loop)
 {
     const int64_t end = noh_position_of(duration_ticks);
     /* two factors below 2^30 move by less than 2^60: from within 2^62 that cannot overflow */
-    const int safe = is_small(rate) && is_small(ticks) && position < 4 * NOH_POSITION_MAX &&
+    const int safe = is_small(speed) && is_small(ticks) && position < 4 * NOH_POSITION_MAX &&
                      position > -4 * NOH_POSITION_MAX;
-    int64_t to = safe ? position + rate * ticks : advance_saturated(position, rate, ticks);
+    int64_t to = safe ? position + speed * ticks : advance_saturated(position, speed, ticks);
     if (loop == NOH_LOOP_ONCE || end == 0) {
         to = to < 0 ? 0 : to > end ? end : to;
     }
     return to;
 }
 
+/* Repeating and ping-pong clips differ in folding only, not in how far they have come: both count durations. */
 int64_t noh_time_legs(int64_t position, uint32_t duration_ticks, noh_loop loop)
 {
     return loop == NOH_LOOP_ONCE || duration_ticks == 0 ? 0 : noh_floor_div(position, noh_position_of(duration_ticks));
@@ -77,6 +78,8 @@ int64_t noh_time_clip(int64_t position, uint32_t duration_ticks, noh_loop loop)
     return loop == NOH_LOOP_PING_PONG && (leg & 1) ? duration - rest : rest;
 }
 
+/* Two durations are one cycle of a ping-pong clip and two passes of a repeating one: a whole number of them changes no
+ * folded position, direction or key. */
 int64_t noh_time_rebase(int64_t position, uint32_t duration_ticks, noh_loop loop)
 {
     int64_t cycle = 2 * noh_position_of(duration_ticks);

@@ -11,8 +11,9 @@
  *   noh_time_legs            how many durations have been passed
  *   noh_time_rebase          an equal position of small magnitude
  *
- * All are defined for every argument: what would overflow is held at the ends of the range.
- * Threads: functions of their arguments, callable from anywhere. */
+ * All are defined for every argument: a result that would overflow is held at the end of its range.
+ *
+ * Threads: pure functions of their arguments; any thread. */
 #ifndef NOH_ANIM_TIME_H
 #define NOH_ANIM_TIME_H
 
@@ -26,13 +27,13 @@ extern "C" {
 #define NOH_SPEED_ONE 65536 /* speeds are 16.16 fixed point: clip ticks per tick */
 #define NOH_SPEED_MAX (256 * 65536)
 #define NOH_DURATION_MAX 0x7fffffffu        /* ticks: 12.4 hours */
-#define NOH_POSITION_MAX ((int64_t)1 << 60) /* a placed position; 8,000 years are left after it at speed one */
+#define NOH_POSITION_MAX ((int64_t)1 << 60) /* 11 years at speed one; play past it is rebased: noh_time_rebase */
 
 typedef enum noh_loop {
     NOH_LOOP_OF_CLIP = 0, /* in descs only: what the clip says */
     NOH_LOOP_ONCE,        /* holds its first and last tick */
     NOH_LOOP_REPEAT,
-    NOH_LOOP_PING_PONG /* there and back: two durations make one cycle */
+    NOH_LOOP_PING_PONG /* forwards and back: two legs make one cycle */
 } noh_loop;
 
 /* Ticks nearest to a time in seconds.
@@ -43,18 +44,19 @@ int64_t noh_ticks_from_seconds(double seconds);
  * ranges  |ticks| < 2^47, 93 years; more is held there */
 int64_t noh_position_of(int64_t ticks);
 
-/* Where play is `ticks` later at a playback speed (`rate`, 16.16 fixed point).
- * ranges  any; the result is held in 0..duration for ONCE, and at INT64_MIN and INT64_MAX else */
-int64_t noh_time_advance(int64_t position, int64_t rate, int64_t ticks, uint32_t duration_ticks, noh_loop loop);
+/* Where play is `ticks` later at a playback speed.
+ * units   speed: 16.16 fixed point
+ * ranges  any; the result is held in 0..duration for ONCE, else at INT64_MIN and INT64_MAX */
+int64_t noh_time_advance(int64_t position, int64_t speed, int64_t ticks, uint32_t duration_ticks, noh_loop loop);
 
-/* The position in the clip, 0..duration << 16. A repeating clip is at 0, not at
- * its duration, when a pass is complete. */
+/* The position in the clip, 0..duration << 16. When a pass is complete a repeating clip is at 0, not at its duration.
+ */
 int64_t noh_time_clip(int64_t position, uint32_t duration_ticks, noh_loop loop);
 
 /* Whole durations up to the position, rounded down; 0 for ONCE and for a duration of 0. */
 int64_t noh_time_legs(int64_t position, uint32_t duration_ticks, noh_loop loop);
 
-/* What to subtract from a position to make it small while all that follows from it stays the same: a whole number of
+/* What to subtract from a position to make it small without changing anything that follows from it: a whole number of
  * double durations. 0 for positions within NOH_POSITION_MAX. */
 int64_t noh_time_rebase(int64_t position, uint32_t duration_ticks, noh_loop loop);
 

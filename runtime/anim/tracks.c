@@ -17,13 +17,15 @@ static const char *bad_desc(const noh_clip_set *set, const noh_track_desc *d)
     return NULL;
 }
 
-/* Only a repeating clip has a phase. */
+/* Only a repeating clip has a phase, and only one of some length can be steered. */
 static const char *bad_sync(const noh_clip_set *set, const noh_track_desc *d)
 {
     const noh_clip_entry *m = &set->clips[d->clip];
     uint32_t loop = d->loop ? (uint32_t)d->loop : m->loop;
     int fits = m->duration_ticks >= NOH_SYNC_DURATION_MIN && m->duration_ticks <= NOH_SYNC_DURATION_MAX;
-    return d->sync_group && (loop != NOH_LOOP_REPEAT || !fits) ? "sync_group is above NOH_SYNC_GROUPS_MAX" : NULL;
+    return d->sync_group && (loop != NOH_LOOP_REPEAT || !fits)
+               ? "sync_group: the clip does not repeat, or its duration is not in NOH_SYNC_DURATION_MIN..MAX"
+               : NULL;
 }
 
 noh_result noh_track_start(noh_track *track, const noh_clip_set *set, const noh_track_desc *desc, noh_error *error)
@@ -38,7 +40,7 @@ noh_result noh_track_start(noh_track *track, const noh_clip_set *set, const noh_
     m = &set->clips[desc->clip];
     track->clip = (uint16_t)desc->clip;
     track->speed = desc->flags & NOH_TRACK_PAUSED ? 0 : desc->speed ? desc->speed : NOH_SPEED_ONE;
-    track->rate = track->speed;
+    track->speed_now = track->speed;
     track->weight = desc->flags & NOH_TRACK_SILENT ? 0.0f : desc->weight > 0.0f ? desc->weight : 1.0f;
     track->loop = (uint8_t)(desc->loop ? (uint32_t)desc->loop : m->loop);
     track->mode = (uint8_t)(desc->mode ? desc->mode : NOH_TRACK_ON);
@@ -65,10 +67,10 @@ noh_passage noh_track_passage(const noh_track *track, const noh_clip_entry *clip
     noh_passage p;
     NOH_ASSERT(track && clip && ticks >= 0);
     p.from = track->position;
-    p.to = noh_time_advance(track->position, track->rate, ticks, clip->duration_ticks, (noh_loop)track->loop);
+    p.to = noh_time_advance(track->position, track->speed_now, ticks, clip->duration_ticks, (noh_loop)track->loop);
     p.duration_ticks = clip->duration_ticks;
     p.loop = track->loop;
-    p.backward = track->rate < 0;
+    p.backward = track->speed_now < 0;
     p.placed = track->placed;
     return p;
 }
@@ -77,9 +79,9 @@ int64_t noh_track_next_event(const noh_track *track, const noh_clip_set *set, in
 {
     const noh_clip_entry *m = &set->clips[track->clip];
     noh_passage p;
-    int64_t at, way, rate = track->rate < 0 ? -track->rate : track->rate;
+    int64_t at, way, speed = track->speed_now < 0 ? -track->speed_now : track->speed_now;
     NOH_ASSERT(track && set && track->clip < set->clip_count && ticks >= 0);
-    if (track->mode == NOH_TRACK_OFF || rate == 0 || m->event_count == 0 || ticks == 0) {
+    if (track->mode == NOH_TRACK_OFF || speed == 0 || m->event_count == 0 || ticks == 0) {
         return 0;
     }
     p = noh_track_passage(track, m, ticks);
@@ -90,12 +92,12 @@ int64_t noh_track_next_event(const noh_track *track, const noh_clip_set *set, in
     way = way < 0 ? -way : way;
     /* Rounded up: the first tick by which the key has been passed. A key exactly at a placed track's position is passed
      * by its first move. */
-    return way == 0 ? 1 : noh_ceil_div(way, rate);
+    return way == 0 ? 1 : noh_ceil_div(way, speed);
 }
 
 int noh_track_ended(const noh_track *track, const noh_clip_entry *clip)
 {
-    int64_t end = track->rate < 0 ? 0 : noh_position_of(clip->duration_ticks);
+    int64_t end = track->speed_now < 0 ? 0 : noh_position_of(clip->duration_ticks);
     NOH_ASSERT(track && clip);
     return track->loop == NOH_LOOP_ONCE && track->position == end && !track->placed;
 }
@@ -103,10 +105,10 @@ int noh_track_ended(const noh_track *track, const noh_clip_entry *clip)
 uint32_t noh_track_clip_tick(const noh_track *track, const noh_clip_entry *clip, int64_t ago)
 {
     noh_loop loop = (noh_loop)track->loop;
-    const int64_t most = ((int64_t)1 << 61) /
-                         (ago > 0 ? ago : 1); /* a seek may have gone billions of passes in its tick */
-    int64_t rate = track->rate > most ? most : track->rate < -most ? -most : track->rate;
-    int64_t position = noh_time_advance(track->position, -rate, ago, clip->duration_ticks, loop);
+    /* a seek that fires keys may travel billions of passes in its tick: keep the product in range */
+    const int64_t most = ((int64_t)1 << 61) / (ago > 0 ? ago : 1);
+    int64_t speed = track->speed_now > most ? most : track->speed_now < -most ? -most : track->speed_now;
+    int64_t position = noh_time_advance(track->position, -speed, ago, clip->duration_ticks, loop);
     NOH_ASSERT(track && clip);
     return (uint32_t)(noh_time_clip(position, clip->duration_ticks, loop) / 65536);
 }

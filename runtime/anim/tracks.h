@@ -14,7 +14,7 @@
 extern "C" {
 #endif
 
-/* Three levels of cost. Granberg switches ticking off for far characters; TIME_ONLY still fires their callback keys. */
+/* What a track costs. Granberg stops far characters altogether; TIME_ONLY still fires their callback keys. */
 typedef enum noh_track_mode {
     NOH_TRACK_OFF = 0,   /* does not play */
     NOH_TRACK_TIME_ONLY, /* plays and fires events, but is not in the pose */
@@ -42,23 +42,23 @@ typedef struct noh_track_desc {
     noh_track_mode mode;    /* default (NOH_TRACK_OFF) NOH_TRACK_ON: a track cannot start off */
     noh_track_group group;  /* default NOH_GROUP_LOW */
     uint32_t mask;          /* default 0: none; else 1 + index in the set's masks */
-    uint32_t lod_levels;    /* sampled while the controller's lod is below this; default (0) always; at most 255 */
-    uint32_t sync_group;    /* default 0: none; 1..NOH_SYNC_GROUPS_MAX; needs NOH_LOOP_REPEAT and a duration of
-                               NOH_SYNC_DURATION_MIN..MAX */
-    uint32_t flags;         /* NOH_TRACK_* */
+    uint32_t lod_levels; /* sampled while the controller's LOD level is below this; default (0) always; at most 255 */
+    uint32_t sync_group; /* default 0: none; 1..NOH_SYNC_GROUPS_MAX; needs NOH_LOOP_REPEAT and a duration of
+                            NOH_SYNC_DURATION_MIN..MAX */
+    uint32_t flags;      /* NOH_TRACK_* */
 } noh_track_desc;
 
 /* 48 bytes. */
 typedef struct noh_track {
     int64_t position;      /* 1/65,536 ticks, unwrapped */
     int64_t root_position; /* root motion has been returned up to here */
-    int64_t rate; /* present speed, 1/65,536 clip ticks per tick: its own, that of a change, or its sync group's */
-    int32_t speed;
+    int64_t speed_now;     /* playback speed at present, 1/65,536: its own, that of a change, or its sync group's */
+    int32_t speed;         /* its own */
     float weight;
     uint16_t clip;
     uint8_t mask; /* 1 + index, 0: none */
     uint8_t loop, mode, group, sync_group, lod_levels, flags;
-    uint8_t placed; /* 1: has not moved since it was started or sought */
+    uint8_t placed; /* 1: it has not moved since it was started or sought */
     uint8_t reserved[6];
 } noh_track;
 
@@ -71,7 +71,7 @@ noh_result noh_track_start(noh_track *track, const noh_clip_set *set, const noh_
 /* Move a track to a position without firing callbacks; keys that lie exactly there fire when play moves on. */
 void noh_track_place(noh_track *track, const noh_clip_entry *clip, int64_t position);
 
-/* The passage of the next `ticks`: events.h. */
+/* What it will pass in the next `ticks`: see events.h. */
 noh_passage noh_track_passage(const noh_track *track, const noh_clip_entry *clip, int64_t ticks);
 
 /* Ticks until the next key is passed, 1..ticks; 0: none is within `ticks`. */

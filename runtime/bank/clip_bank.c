@@ -12,7 +12,7 @@ typedef struct noh_bank_clip bank_clip;
 
 #define TRACKS 2u /* of an instance that play at once, where the desc does not say */
 
-/* A set is made in two passes over the pack. The first counts (clips that fit, their keys, markers and floats, the
+/* A bank is made in two passes over the pack. The first counts (clips that fit, their keys, markers and floats, the
  * cache's needs) without memory, out of the packs' bytes alone; the second carves exactly that and fills it in the same
  * order. */
 
@@ -22,14 +22,14 @@ typedef struct counts {
     uint32_t groups, runs, sampled, foreign, unknown;
     size_t clip_bytes;
     noh_clip_cache_needs cache;
-    uint32_t slots;
+    uint32_t cached_segments;
     size_t cache_bytes;
     int roots;
 } counts;
 
 /* Where it all lies. NULL while measuring. */
 typedef struct parts {
-    noh_clip_bank *set;
+    noh_clip_bank *bank;
     noh_clip_entry *clips;
     noh_event_key *events;
     noh_marker *markers;
@@ -50,7 +50,7 @@ static size_t align_up(size_t bytes)
     return (bytes + 15u) & ~(size_t)15u;
 }
 
-/* The set's floats begin with the weights of every node that has targets. */
+/* The bank's floats begin with the weights of every node that has targets. */
 static void count_nodes(const noh_bank_binding *b, counts *c)
 {
     noh_clip_group group;
@@ -60,8 +60,8 @@ static void count_nodes(const noh_bank_binding *b, counts *c)
     }
 }
 
-/* A clip's groups: named floats that no clip before had go behind; weights go to a node of the mesh pack, if it has
- * one. */
+/* A clip's groups: a named float that no clip before had is appended to the bank's floats; weights go to a node of the
+ * mesh pack, if it has one of their name. */
 static void count_groups(const noh_bank_binding *b, uint32_t index, const noh_clip_desc *clip, counts *c)
 {
     noh_clip_group_reader reader = noh_clip_groups_of(clip);
@@ -94,7 +94,8 @@ static noh_result count_clip(const noh_bank_binding *b, uint32_t index, counts *
         return noh_fail(error, why.result == NOH_ERR_ARG ? NOH_ERR_DATA : why.result, why.what, index, why.need);
     }
     if (info.duration_ticks > NOH_DURATION_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "ticks of a clip in a clip bank", index, info.duration_ticks);
+        return noh_fail(error, NOH_ERR_LIMIT, "a clip of a clip bank is longer than NOH_DURATION_MAX", index,
+                        info.duration_ticks);
     }
     c->shape.clip_count++;
     c->shape.event_count += packed.header->event_count;
@@ -106,8 +107,9 @@ static noh_result count_clip(const noh_bank_binding *b, uint32_t index, counts *
     return NOH_OK;
 }
 
-/* Segments for what plays at once, unless the desc says how many. */
-static uint32_t slots_of(const noh_clip_bank_desc *desc, uint32_t segments)
+/* How many segments the cache holds: enough for what plays at once, unless the desc says how many; no more than there
+ * are, but at least 2. A desc that asks for 1 is passed on, for the cache to refuse. */
+static uint32_t cached_segments_of(const noh_clip_bank_desc *desc, uint32_t segments)
 {
     const uint64_t instances = desc->instance_count ? desc->instance_count : 1u,
                    tracks = desc->track_count ? desc->track_count : TRACKS;
@@ -131,27 +133,26 @@ static noh_result count(const noh_clip_bank_desc *desc, const noh_bank_binding *
         if (r) return r;
     }
     if (c->shape.clip_count == 0) {
-        return noh_fail(
-            error, NOH_ERR_NOT_FOUND,
-            c->foreign
-                ? "no clip fits: they move another skeleton (names or parents of joints differ); build mesh and clips from one "
-                  "skeleton"
-                : "the pack has no clips",
-            0, c->foreign);
+        return noh_fail(error, NOH_ERR_NOT_FOUND,
+                        c->foreign ? "no clip fits: all move another skeleton (names or parents of joints differ); "
+                                     "build mesh and clips from one skeleton"
+                                   : "the pack has no clips",
+                        0, c->foreign);
     }
     if (c->shape.float_count > NOH_FLOATS_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "floats of a clip bank: morph weights of all nodes, and named ones", 0,
-                        c->shape.float_count);
+        return noh_fail(error, NOH_ERR_LIMIT,
+                        "a clip bank has more floats (morph weights of all nodes, and named ones) than NOH_FLOATS_MAX",
+                        0, c->shape.float_count);
     }
-    c->slots = slots_of(desc, c->cache.segment_count);
-    c->cache_bytes = noh_clip_cache_needs_size(&c->cache, c->slots, error);
+    c->cached_segments = cached_segments_of(desc, c->cache.segment_count);
+    c->cache_bytes = noh_clip_cache_needs_size(&c->cache, c->cached_segments, error);
     return c->cache_bytes ? NOH_OK : NOH_ERR_ARG;
 }
 
 static size_t carve(noh_arena *arena, const counts *c, parts *p)
 {
     const noh_clip_set *n = &c->shape;
-    p->set = noh_arena_carve(arena, sizeof *p->set, 16u);
+    p->bank = noh_arena_carve(arena, sizeof *p->bank, 16u);
     p->opened = noh_arena_carve(arena, n->clip_count * sizeof *p->opened, 8u);
     p->bound = noh_arena_carve(arena, n->clip_count * sizeof *p->bound, 8u);
     p->roots = noh_arena_carve(arena, c->roots ? n->clip_count * sizeof *p->roots : 0u, 8u);
@@ -191,7 +192,7 @@ static noh_result measure(const noh_clip_bank_desc *desc, noh_bank_binding *b, c
     return r;
 }
 
-/* As noh_clip_bank_view_size, before there is a set. */
+/* As noh_clip_bank_view_size, before there is a bank. */
 static size_t view_bytes(const counts *c)
 {
     noh_arena arena = noh_arena_measure();
@@ -211,7 +212,8 @@ noh_result noh_clip_bank_measure(const noh_clip_bank_desc *desc, noh_clip_bank_n
         needs->bytes = bytes;
         needs->view_bytes = view_bytes(&c);
         needs->shape = c.shape;
-        needs->cached_segment_count = c.slots < c.cache.segment_count ? c.slots : c.cache.segment_count;
+        needs->cached_segment_count = c.cached_segments < c.cache.segment_count ? c.cached_segments
+                                                                                : c.cache.segment_count;
         needs->segment_count = c.cache.segment_count;
         needs->foreign_count = c.foreign;
     }
@@ -228,39 +230,39 @@ size_t noh_clip_bank_size(const noh_clip_bank_desc *desc, noh_error *error)
 
 static void fill_nodes(const noh_bank_binding *b, parts *p)
 {
-    noh_clip_bank *set = p->set;
+    noh_clip_bank *bank = p->bank;
     uint32_t node = 0, first = 0;
-    while (noh_bank_next_node(b, &node, &first, &p->groups[set->group_count])) {
-        const noh_clip_group *group = &p->groups[set->group_count++];
+    while (noh_bank_next_node(b, &node, &first, &p->groups[bank->group_count])) {
+        const noh_clip_group *group = &p->groups[bank->group_count++];
         const noh_node *n = &b->mesh->nodes[group->node];
         noh_mesh mesh;
         (void)noh_pack_mesh_at(b->mesh, n->mesh, &mesh, NULL);
         memcpy(p->defaults + group->first,
                n->first_weight == NOH_NONE ? mesh.weights : b->mesh->node_weights + n->first_weight,
                group->width * sizeof *p->defaults);
-        set->clips.float_count = first;
+        bank->clips.float_count = first;
     }
 }
 
-/* The set's group of a named float; one that is new goes behind the others. */
+/* The bank's group of a named float; a new one is appended. */
 static const noh_clip_group *name_group(parts *p, const noh_clip_group *wanted)
 {
-    noh_clip_bank *set = p->set;
+    noh_clip_bank *bank = p->bank;
     noh_clip_group *group;
-    for (uint32_t i = 0; i < set->group_count; i++) {
+    for (uint32_t i = 0; i < bank->group_count; i++) {
         if (noh_bank_is_named(&p->groups[i]) && noh_bank_same_group(&p->groups[i], wanted)) {
             return &p->groups[i];
         }
     }
-    group = &p->groups[set->group_count++];
+    group = &p->groups[bank->group_count++];
     *group = *wanted;
-    group->first = set->clips.float_count;
-    set->clips.float_count += group->width;
+    group->first = bank->clips.float_count;
+    bank->clips.float_count += group->width;
     memset(p->defaults + group->first, 0, group->width * sizeof *p->defaults);
     return group;
 }
 
-/* Where the clip's floats go among the set's: one run for each of its groups that is played. */
+/* Where the clip's floats go among the bank's: one run for each of its groups that is played. */
 static void fill_runs(const noh_bank_binding *b, const noh_clip *opened, parts *p, bank_clip *clip)
 {
     noh_bank_floats *run = p->runs;
@@ -287,30 +289,30 @@ static void fill_runs(const noh_bank_binding *b, const noh_clip *opened, parts *
 
 static void fill_keys(const noh_pack_clip *from, parts *p, noh_clip_entry *to)
 {
-    noh_clip_bank *set = p->set;
-    to->first_event = set->clips.event_count;
+    noh_clip_bank *bank = p->bank;
+    to->first_event = bank->clips.event_count;
     to->event_count = from->header->event_count;
-    to->first_marker = set->clips.marker_count;
+    to->first_marker = bank->clips.marker_count;
     to->marker_count = from->header->marker_count;
     for (uint32_t i = 0; i < to->event_count; i++) {
-        noh_event_key *key = &p->events[set->clips.event_count++];
+        noh_event_key *key = &p->events[bank->clips.event_count++];
         key->tick = from->events[i].tick;
         key->name_hash = from->events[i].name_hash;
         memcpy(key->payload, from->events[i].payload, sizeof key->payload);
         key->weight_min = from->events[i].weight_min;
     }
     for (uint32_t i = 0; i < to->marker_count; i++) {
-        noh_marker *marker = &p->markers[set->clips.marker_count++];
+        noh_marker *marker = &p->markers[bank->clips.marker_count++];
         marker->tick = from->markers[i].tick;
         marker->id = from->markers[i].name_hash;
     }
 }
 
-/* Everything was measured: opening succeeds. */
+/* Open a clip and enter it in the set. It was measured, so opening succeeds. */
 static void fill_clip(const noh_bank_binding *b, uint32_t index, const noh_pack_clip *from, const noh_clip_desc *desc,
                       parts *p)
 {
-    const uint32_t m = p->set->clips.clip_count++;
+    const uint32_t m = p->bank->clips.clip_count++;
     const size_t bytes = align_up(noh_clip_size(desc, NULL));
     noh_clip_entry *to = &p->clips[m];
     noh_clip *clip = NULL;
@@ -345,24 +347,24 @@ static void fill(const noh_bank_binding *b, parts *p)
 
 static void join(const noh_bank_binding *b, const counts *c, parts *p)
 {
-    noh_clip_bank *set = p->set;
-    set->skeleton = b->skeleton;
-    set->groups = p->groups;
-    set->pack_clips = p->pack_clips;
-    set->foreign_count = c->foreign;
-    set->unknown_count = c->unknown;
-    set->bound = p->bound;
-    set->sampled = p->sampled;
-    set->sampled_count = c->sampled;
-    set->nodes = b->mesh->nodes;
-    set->clips.joint_count = b->skeleton.joint_count;
-    set->clips.clips = p->clips;
-    set->clips.events = p->events;
-    set->clips.markers = p->markers;
-    set->clips.bind_pose = b->header ? b->skeleton.bind_pose
-                                     : (const noh_transform *)(const void *)p->clips; /* of no joints */
-    set->clips.float_defaults = p->defaults;
-    noh_clip_bank_sample_cache(set);
+    noh_clip_bank *bank = p->bank;
+    bank->skeleton = b->skeleton;
+    bank->groups = p->groups;
+    bank->pack_clips = p->pack_clips;
+    bank->foreign_count = c->foreign;
+    bank->unknown_count = c->unknown;
+    bank->bound = p->bound;
+    bank->sampled = p->sampled;
+    bank->sampled_count = c->sampled;
+    bank->nodes = b->mesh->nodes;
+    bank->clips.joint_count = b->skeleton.joint_count;
+    bank->clips.clips = p->clips;
+    bank->clips.events = p->events;
+    bank->clips.markers = p->markers;
+    bank->clips.bind_pose = b->header ? b->skeleton.bind_pose
+                                      : (const noh_transform *)(const void *)p->clips; /* not NULL; of no joints */
+    bank->clips.float_defaults = p->defaults;
+    noh_clip_bank_sample_cache(bank);
 }
 
 static noh_result open_cache(const counts *c, parts *p, noh_error *error)
@@ -370,23 +372,24 @@ static noh_result open_cache(const counts *c, parts *p, noh_error *error)
     noh_clip_cache_desc cache;
     cache.clips = p->opened;
     cache.clip_count = c->shape.clip_count;
-    cache.cached_segment_count = c->slots;
-    return noh_clip_cache_init(p->cache_memory, c->cache_bytes, &cache, &p->set->cache, error);
+    cache.cached_segment_count = c->cached_segments;
+    return noh_clip_cache_init(p->cache_memory, c->cache_bytes, &cache, &p->bank->cache, error);
 }
 
+/* Root tracks sample the ends of every clip, which needs the cache: so they come last. */
 static noh_result measure_roots(const noh_clip_bank_desc *desc, parts *p, noh_error *error)
 {
-    noh_clip_bank *set = p->set;
-    for (uint32_t m = 0; m < set->clips.clip_count; m++) {
-        const noh_result r = noh_root_track_measure(&set->clips, m, desc->root_axes, desc->root_up, &p->roots[m],
+    noh_clip_bank *bank = p->bank;
+    for (uint32_t m = 0; m < bank->clips.clip_count; m++) {
+        const noh_result r = noh_root_track_measure(&bank->clips, m, desc->root_axes, desc->root_up, &p->roots[m],
                                                     error);
         if (r) return r;
     }
-    set->clips.roots = p->roots;
+    bank->clips.roots = p->roots;
     return NOH_OK;
 }
 
-noh_result noh_clip_bank_init(void *memory, size_t bytes, const noh_clip_bank_desc *desc, noh_clip_bank **set,
+noh_result noh_clip_bank_init(void *memory, size_t bytes, const noh_clip_bank_desc *desc, noh_clip_bank **bank,
                               noh_error *error)
 {
     noh_arena arena;
@@ -399,56 +402,56 @@ noh_result noh_clip_bank_init(void *memory, size_t bytes, const noh_clip_bank_de
     if (!r) r = noh_arena_open(&arena, memory, bytes, need, error);
     if (r) return r;
     (void)carve(&arena, &c, &p);
-    memset(p.set, 0, sizeof *p.set);
+    memset(p.bank, 0, sizeof *p.bank);
     fill(&b, &p);
     join(&b, &c, &p);
     r = open_cache(&c, &p, error);
     if (r) return r;
-    if (noh_clip_set_check(&p.set->clips, &why)) {
+    if (noh_clip_set_check(&p.bank->clips, &why)) {
         return noh_fail(error, why.result, why.what, p.pack_clips[why.where], 0);
     }
     if (c.roots) r = measure_roots(desc, &p, error);
-    if (!r) *set = p.set;
+    if (!r) *bank = p.bank;
     return r;
 }
 
 /* ---- looking ---- */
 
-uint32_t noh_clip_bank_find(const noh_clip_bank *set, const char *name)
+uint32_t noh_clip_bank_find(const noh_clip_bank *bank, const char *name)
 {
-    return noh_clip_set_find(&set->clips, noh_hash_name(name));
+    return noh_clip_set_find(&bank->clips, noh_hash_name(name));
 }
 
-int noh_clip_bank_moves(const noh_clip_bank *set, uint32_t index, uint32_t group)
+int noh_clip_bank_moves(const noh_clip_bank *bank, uint32_t index, uint32_t group)
 {
-    const bank_clip *clip = &set->bound[index];
-    NOH_ASSERT(index < set->clips.clip_count && group < set->group_count);
+    const bank_clip *clip = &bank->bound[index];
+    NOH_ASSERT(index < bank->clips.clip_count && group < bank->group_count);
     for (uint32_t i = 0; i < clip->float_runs; i++) {
-        if (clip->floats[i].to == set->groups[group].first && clip->floats[i].width == set->groups[group].width) {
+        if (clip->floats[i].to == bank->groups[group].first && clip->floats[i].width == bank->groups[group].width) {
             return 1;
         }
     }
     return 0;
 }
 
-uint32_t noh_clip_bank_node_group(const noh_clip_bank *set, uint32_t node)
+uint32_t noh_clip_bank_node_group(const noh_clip_bank *bank, uint32_t node)
 {
-    for (uint32_t g = 0; node != NOH_NONE && g < set->group_count; g++) {
-        if (set->groups[g].node == node) return g;
+    for (uint32_t g = 0; node != NOH_NONE && g < bank->group_count; g++) {
+        if (bank->groups[g].node == node) return g;
     }
     return NOH_NONE;
 }
 
-uint32_t noh_clip_bank_mesh_group(const noh_clip_bank *set, uint32_t mesh)
+uint32_t noh_clip_bank_mesh_group(const noh_clip_bank *bank, uint32_t mesh)
 {
-    for (uint32_t g = 0; mesh != NOH_NONE && g < set->group_count; g++) {
-        if (set->groups[g].node != NOH_NONE && set->nodes[set->groups[g].node].mesh == mesh) return g;
+    for (uint32_t g = 0; mesh != NOH_NONE && g < bank->group_count; g++) {
+        if (bank->groups[g].node != NOH_NONE && bank->nodes[bank->groups[g].node].mesh == mesh) return g;
     }
     return NOH_NONE;
 }
 
-const float *noh_clip_bank_mesh_weights(const noh_clip_bank *set, const float *floats, uint32_t mesh)
+const float *noh_clip_bank_mesh_weights(const noh_clip_bank *bank, const float *floats, uint32_t mesh)
 {
-    const uint32_t group = noh_clip_bank_mesh_group(set, mesh);
-    return group == NOH_NONE ? NULL : floats + set->groups[group].first;
+    const uint32_t group = noh_clip_bank_mesh_group(bank, mesh);
+    return group == NOH_NONE ? NULL : floats + bank->groups[group].first;
 }

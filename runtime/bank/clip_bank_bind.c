@@ -45,6 +45,8 @@ noh_result noh_bank_bind(const noh_pack *clips, const noh_pack *mesh, uint32_t s
     return r ? r : check_units(b, error);
 }
 
+/* A clip without joints fits always. One with joints fits the skeleton of the same hash; in a single pack, which may
+ * hold equal skeletons, it fits the very one that it was built with. */
 int noh_bank_fits(const noh_bank_binding *b, uint32_t index, noh_pack_clip *packed, noh_clip_desc *clip)
 {
     noh_skeleton built_with;
@@ -88,6 +90,8 @@ int noh_bank_next_node(const noh_bank_binding *b, uint32_t *node, uint32_t *firs
     return 0;
 }
 
+/* Names may repeat among nodes: the node of the clip's index decides where it has the name, else the first that does.
+ */
 int noh_bank_find_node(const noh_bank_binding *b, const noh_clip_group *wanted, noh_clip_group *found)
 {
     noh_clip_group group;

@@ -1,4 +1,4 @@
-/* clip_bank_bind_internal.h (private to anim/): which clips of a pack fit a skeleton and the nodes of a mesh pack.
+/* clip_bank_bind_internal.h (private to bank/): which clips of a pack fit a skeleton and the nodes of a mesh pack.
  * Reads only the packs' bytes, so that sizes are known before there is memory. */
 #ifndef NOH_BANK_CLIP_BANK_BIND_INTERNAL_H
 #define NOH_BANK_CLIP_BANK_BIND_INTERNAL_H
@@ -18,17 +18,18 @@ typedef struct noh_bank_binding {
 noh_result noh_bank_bind(const noh_pack *clips, const noh_pack *mesh, uint32_t skeleton, noh_bank_binding *b,
                          noh_error *error);
 
-/* The n-th clip of the pack and how it is opened; 0 when it moves another skeleton. */
+/* The n-th clip of the pack and the desc that opens it; returns 0 when it moves another skeleton. */
 int noh_bank_fits(const noh_bank_binding *b, uint32_t index, noh_pack_clip *packed, noh_clip_desc *clip);
 
-/* The next node with targets, from *node on, as a group of floats at *first; 0: there is none. Advances both. */
+/* The next node with targets, from *node on, as a group of floats at *first. Advances both; returns 0 when there is
+ * none. */
 int noh_bank_next_node(const noh_bank_binding *b, uint32_t *node, uint32_t *first, noh_clip_group *group);
 
-/* The set's group that a clip's group of weights moves: the node of that index if it has the name, else the first of
- * that name and width. 0: none. */
+/* The bank's group that a clip's group of weights moves: that of the node of the same index if it has the name and
+ * width, else the first of that name and width. Returns 0 when there is none. */
 int noh_bank_find_node(const noh_bank_binding *b, const noh_clip_group *wanted, noh_clip_group *found);
 
-/* Whether a group is a named float that neither an earlier clip that fits nor this clip, before it, has. */
+/* Whether a group is a named float that occurs here first: no earlier clip that fits has it, nor this one before. */
 int noh_bank_is_new(const noh_bank_binding *b, uint32_t index, const noh_clip_desc *clip, const noh_clip_group *group);
 
 static inline int noh_bank_is_named(const noh_clip_group *g)

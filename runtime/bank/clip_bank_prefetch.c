@@ -1,9 +1,9 @@
-/* clip_bank_ahead.c: which segments a controller will need soon.
+/* clip_bank_prefetch.c: which segments a controller will need soon.
  *
- * A track plays in legs: passes of its clip, forwards or (every other one of a ping-pong) backwards. The way from its
- * position to where it will be after `ahead_ticks` is cut at the ends of legs; each piece is one stretch of frames of
- * the clip, and the cache is asked for all segments under it. Three pieces suffice: the rest of this leg, one whole
- * leg, which covers the whole clip, and nothing new after that. */
+ * A track plays in legs: passes of its clip, forwards or (every other one of a ping-pong clip) backwards. The stretch
+ * of play from its position to where it will be after `ahead_ticks` is cut at the ends of legs; each piece covers one
+ * run of frames, and the cache is asked for all segments that hold them. Three pieces are enough: the rest of this leg
+ * and one whole leg cover the whole clip, and whatever comes later needs no other segment. */
 #include "clip/clip_internal.h"
 #include "bank/clip_bank.h"
 
@@ -14,16 +14,16 @@ typedef struct stretch {
     int64_t from, to;
 } stretch;
 
-static uint32_t want_stretch(const noh_clip_bank *set, uint32_t index, stretch s, uint32_t joint_count)
+static uint32_t want_stretch(const noh_clip_bank *bank, uint32_t index, stretch s, uint32_t joint_count)
 {
-    const noh_clip *clip = noh_clip_cache_clip(set->cache, index);
+    const noh_clip *clip = noh_clip_cache_clip(bank->cache, index);
     float fraction;
     uint32_t first = noh_clip_frame_at(clip, s.from, &fraction), last = noh_clip_frame_at(clip, s.to, &fraction);
     uint32_t *later = s.to >= s.from ? &last : &first;
     if (*later + 1u < clip->info.frame_count) {
         ++*later; /* a sample needs the frames on both sides */
     }
-    return noh_clip_cache_want_frames(set->cache, index, first, last, joint_count);
+    return noh_clip_cache_want_frames(bank->cache, index, first, last, joint_count);
 }
 
 /* Positions inside one leg, as clip ticks. */
@@ -37,41 +37,41 @@ static stretch fold(const noh_clip_entry *m, noh_loop loop, int64_t leg, int64_t
     return s;
 }
 
-static uint32_t want_track(const noh_clip_bank *set, const noh_track *t, uint32_t ahead_ticks, uint32_t joint_count)
+static uint32_t want_track(const noh_clip_bank *bank, const noh_track *t, uint32_t ahead_ticks, uint32_t joint_count)
 {
-    const noh_clip_entry *m = &set->clips.clips[t->clip];
+    const noh_clip_entry *m = &bank->clips.clips[t->clip];
     const noh_loop loop = (noh_loop)t->loop;
     const int64_t duration = noh_position_of(m->duration_ticks);
-    const int64_t end = noh_time_advance(t->position, t->rate, ahead_ticks, m->duration_ticks, loop);
+    const int64_t end = noh_time_advance(t->position, t->speed_now, ahead_ticks, m->duration_ticks, loop);
     const int64_t step = end < t->position ? -1 : 1;
     int64_t at = t->position, leg = noh_time_legs(at, m->duration_ticks, loop);
     uint32_t missing = 0;
     for (int i = 0; i < LEGS_MAX; i++, leg += step) {
         const int64_t edge = (leg + (step > 0)) * duration; /* where this leg ends in the direction of play */
         const int last = loop == NOH_LOOP_ONCE || duration == 0 || (step > 0 ? end <= edge : end >= edge);
-        missing += want_stretch(set, t->clip, fold(m, loop, leg, at, last ? end : edge), joint_count);
+        missing += want_stretch(bank, t->clip, fold(m, loop, leg, at, last ? end : edge), joint_count);
         if (last) break;
         at = edge;
     }
     return missing;
 }
 
-uint32_t noh_clip_bank_prefetch(noh_clip_bank *set, const noh_controller *controller, uint32_t ahead_ticks)
+uint32_t noh_clip_bank_prefetch(noh_clip_bank *bank, const noh_controller *controller, uint32_t ahead_ticks)
 {
     uint32_t missing = 0;
-    NOH_ASSERT(controller->clip_count == set->clips.clip_count && controller->joint_count == set->clips.joint_count);
+    NOH_ASSERT(controller->clip_count == bank->clips.clip_count && controller->joint_count == bank->clips.joint_count);
     for (uint32_t i = 0; i < controller->track_count; i++) {
         const noh_track *t = noh_controller_track(controller, i);
-        const noh_clip_entry *m = &set->clips.clips[t->clip];
+        const noh_clip_entry *m = &bank->clips.clips[t->clip];
         if (t->mode != NOH_TRACK_ON || (t->lod_levels && controller->lod >= t->lod_levels)) {
             continue;
         }
-        if (set->clips.roots) { /* root motion is measured from where it was last */
+        if (bank->clips.roots) { /* root motion is measured from the position of its last call */
             const int64_t tick = noh_time_clip(t->root_position, m->duration_ticks, (noh_loop)t->loop) / 65536;
             const stretch before = { tick, tick };
-            missing += want_stretch(set, t->clip, before, 1);
+            missing += want_stretch(bank, t->clip, before, 1);
         }
-        missing += want_track(set, t, ahead_ticks, controller->lod_joint_count);
+        missing += want_track(bank, t, ahead_ticks, controller->lod_joint_count);
     }
     return missing;
 }

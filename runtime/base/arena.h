@@ -1,7 +1,14 @@
 /* arena.h: carving one block of memory that the caller brought.
  *
- * An arena without a block measures: the code that carves an object also says how many bytes it needs, so the two
- * cannot disagree. Threads: an arena is for one thread at a time. */
+ * An arena without a block only measures: the code that carves an object also says how many bytes it needs, so the two
+ * cannot disagree.
+ *
+ *   noh_arena_open      the block that an init was given, checked
+ *   noh_arena_over      a block that is known to be good
+ *   noh_arena_measure   no block: count only
+ *   noh_arena_carve     the next bytes
+ *
+ * Threads: an arena is for one thread at a time. */
 #ifndef NOH_BASE_ARENA_H
 #define NOH_BASE_ARENA_H
 
@@ -23,9 +30,9 @@ typedef struct noh_arena {
 } noh_arena;
 
 /* Open the block that an init was given. Every init begins with this call, so all of them refuse the same memory.
- * need    the exact bytes that will be carved
+ * ranges  need: the exact bytes that will be carved
  * errors  ARG memory is NULL or not aligned to NOH_MEMORY_ALIGN; MEMORY it is too small (where: its bytes). `need` is
- *         always the bytes needed. The arena is then untouched */
+ *         always the bytes needed, and the arena is left untouched */
 noh_result noh_arena_open(noh_arena *arena, void *memory, size_t bytes, size_t need, noh_error *error);
 
 /* An arena over memory[bytes], which must be aligned to NOH_MEMORY_ALIGN. */
@@ -36,8 +43,8 @@ noh_arena noh_arena_measure(void);
 
 /* Carve bytes at an alignment.
  * ranges   alignment is a power of two, at most NOH_MEMORY_ALIGN
- * returns  NULL when the block is exhausted or the arena measures; `used` counts the bytes all the same, and is
- * SIZE_MAX after a sum that does not fit a size_t */
+ * returns  NULL when the block is exhausted or the arena only measures; `used` counts the bytes all the same, and is
+ *          SIZE_MAX once the sum no longer fits a size_t */
 void *noh_arena_carve(noh_arena *arena, size_t bytes, size_t alignment);
 
 #ifdef __cplusplus

@@ -1,7 +1,7 @@
-/* assert.h: checks for the caller's bugs, never for file bytes.
+/* assert.h: checks for the caller's bugs, in two tiers; never for file bytes.
  *
- *   NOH_ASSERT    cheap: a null pointer, an index past a count
- *   NOH_VALIDATE  costly: walks a whole structure
+ *   NOH_ASSERT         cheap: a null pointer, an index past a count
+ *   NOH_VALIDATE       costly: walks a whole structure
  *   NOH_STATIC_ASSERT  at compile time
  *
  * NOH_ASSERT_LEVEL 0 (default) compiles neither, 1 the cheap ones (a debug build), 2 both (the tests). A failed check

@@ -1,13 +1,13 @@
-/* compiler.h: everything that depends on the compiler, with plain C beside it.
+/* compiler.h: everything that depends on the compiler, each with a fallback in plain C.
  *
- *   NOH_PLAIN_C          define it to build with no builtin, attribute, pragma or SIMD: any C99 compiler can
- *   NOH_ALWAYS_INLINE    of a function that must be inlined for its speed
+ *   NOH_PLAIN_C          define it to build without builtins, attributes, pragmas and SIMD, with any C99 compiler
+ *   NOH_ALWAYS_INLINE    for a function that must be inlined to be fast
  *   NOH_UNROLL           before a short loop over an array of registers
  *   NOH_TRAP             ends the program, without a library
  *   NOH_AVX2, NOH_SSE2, NOH_NEON   which vector instructions the kernels may use; undefined: none
  *   noh_leading_zeros, noh_trailing_zeros   of a word that is not 0
  *
- * The plain twins are always compiled, as noh_..._plain, so that a test can hold them equal to what replaces them.
+ * The fallbacks are always compiled, as noh_..._plain, so that a test can hold them equal to what replaces them.
  * Threads: no state; any thread. */
 #ifndef NOH_BASE_COMPILER_H
 #define NOH_BASE_COMPILER_H
@@ -68,7 +68,8 @@ static inline uint32_t noh_trailing_zeros_plain(uint64_t word)
     return zeros;
 }
 
-/* Zero bits above the highest one. ranges  word is not 0 */
+/* How many zero bits lie above the highest set bit.
+ * ranges  word is not 0 */
 static inline uint32_t noh_leading_zeros(uint32_t word)
 {
 #if defined(NOH_GNU)
@@ -78,7 +79,8 @@ static inline uint32_t noh_leading_zeros(uint32_t word)
 #endif
 }
 
-/* Zero bits below the lowest one. ranges  word is not 0 */
+/* How many zero bits lie below the lowest set bit.
+ * ranges  word is not 0 */
 static inline uint32_t noh_trailing_zeros(uint64_t word)
 {
 #if defined(NOH_GNU)

@@ -20,8 +20,8 @@ static uint32_t shift_rounded(uint32_t value, uint32_t shift, noh_half_mode mode
     return kept;
 }
 
-/* `magnitude`: the bits of a finite float without its sign. A carry out of the
- * mantissa runs into the exponent, which is the right result in both cases. */
+/* `magnitude`: the bits of a finite float without its sign. A carry out of the mantissa runs into the exponent, which
+ * is the right result for normal halves and denormals alike. */
 static uint32_t half_magnitude(uint32_t magnitude, noh_half_mode mode)
 {
     if (magnitude >= FLOAT_HALF_MIN) return shift_rounded(magnitude - FLOAT_HALF_REBIAS, 13, mode);

@@ -4,7 +4,7 @@
  *   noh_half_to_float     one half to float, always exact
  *
  * Drivers differ in how they round a colour into an RGBA16F target. Both roundings in use are here, so that a CPU
- * reference can give a driver's bits. Only integers are used: the result does not depend on the processor.
+ * reference can reproduce a driver's bits. Only integers are used: the result does not depend on the processor.
  * Threads: no state; any thread. */
 #ifndef NOH_BASE_HALF_H
 #define NOH_BASE_HALF_H
@@ -22,10 +22,9 @@ typedef enum noh_half_mode {
 } noh_half_mode;
 
 /* Round a float to half.
- * ranges  any float. RTZ never reaches infinity from a finite value: it stops at
- *         65504. RNE overflows to infinity from 65520. Infinities stay, NaN stays
- *         NaN (quiet, upper payload bits kept), denormals are kept, not flushed.
- *         NOH_HALF_UNKNOWN rounds as RNE does.
+ * ranges  any float. RTZ never turns a finite value into infinity: it stops at 65504. RNE overflows to infinity from
+ *         65520. Infinities stay, NaN stays NaN (quiet, upper payload bits kept), denormals are kept, not flushed.
+ *         NOH_HALF_UNKNOWN rounds as RNE does
  * source  IEEE 754-2008, 4.3.1 and 4.3.2 */
 uint16_t noh_half_from_float(float value, noh_half_mode mode);
 

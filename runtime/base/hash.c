@@ -2,6 +2,7 @@
 
 #include "base/assert.h"
 
+/* FNV-1a: xor a byte in, then multiply by the FNV prime; it starts from the offset basis. */
 uint32_t noh_hash_name(const char *name)
 {
     uint32_t hash = 2166136261u;

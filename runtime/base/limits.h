@@ -1,20 +1,21 @@
 /* limits.h: the numbers that bound everything. A pack over a limit is refused when it is built, with the limit in the
  * message, and again when it is opened; a desc over a limit is NOH_ERR_ARG or NOH_ERR_LIMIT, with the number asked for.
  *
- * What the width of a field or a number sets stands where that is described: a compressed clip's (NOH_CLIP_*_MAX) in
- * clip/clip_format.h, those of time (NOH_DURATION_MAX, NOH_SPEED_MAX, NOH_POSITION_MAX) in anim/time.h.
+ * Limits that follow from the width of a field stand where the field is described: those of a compressed clip
+ * (NOH_CLIP_*_MAX) in clip/clip_format.h, those of time (NOH_DURATION_MAX, NOH_SPEED_MAX, NOH_POSITION_MAX) in
+ * anim/time.h.
  * Threads: constants. */
 #ifndef NOH_BASE_LIMITS_H
 #define NOH_BASE_LIMITS_H
 
 #define NOH_NONE 0xffffffffu /* an index that is none: above every count */
 
-/* No call of the library uses more stack than this; a check on the compiler's own figures says so. */
+/* No call of the library uses more stack than this: tests/check_stack.sh adds up what the compiler reports. */
 #define NOH_STACK_BYTES 8192u
 
 /* ---- a pack ---- */
 
-#define NOH_PACK_ALIGN 64u /* chunks start at multiples of this in the file; in memory a pack starts at one of 16 */
+#define NOH_PACK_ALIGN 64u /* chunks start at multiples of this in the file; a pack in memory is aligned to 16 */
 #define NOH_PACK_CHUNKS_MAX 4096u
 #define NOH_PACK_BYTES_MAX 0x7fffffffu
 #define NOH_NAME_BYTES_MAX 256u /* with the final zero */
@@ -27,7 +28,7 @@
 #define NOH_VERTICES_MAX (1u << 22) /* a texture of 2048 x 2048, which every ES 3.0 has */
 #define NOH_INDICES_MAX (1u << 26)
 #define NOH_SUBMESHES_MAX 256u
-#define NOH_LOD_LEVELS_MAX 8u           /* LOD levels */
+#define NOH_LOD_LEVELS_MAX 8u           /* of a mesh, of a skeleton, and rows of a table of LOD levels */
 #define NOH_TARGETS_MAX 1024u           /* the gather list keeps 10 bits for a target */
 #define NOH_DELTA_TEXELS_MAX (1u << 22) /* delta texels; the gather list keeps 22 bits */
 #define NOH_MORPH_WIDTH_LOG2_MIN 2u     /* of the texture of accumulation texels */
@@ -38,13 +39,12 @@
 /* ---- skeletons and skins ---- */
 
 #define NOH_JOINTS_MAX 4096u      /* of a skeleton */
-#define NOH_LOD_LEVELS_MAX 8u     /* LOD levels of a skeleton */
 #define NOH_SKIN_JOINTS_MAX 4096u /* of a skin */
 #define NOH_PALETTE_JOINTS_MAX \
-    256u                      /* a uniform block of 12 KiB; ES 3.0 guarantees 16. Vertices keep 8 bits for a place */
+    256u /* a uniform block of 12 KiB; ES 3.0 guarantees 16. A vertex has 8 bits for an index into its palette */
 #define NOH_INFLUENCES_MAX 8u /* joints that move one vertex */
 
-/* ---- clips and sets ---- */
+/* ---- clips, their sets and banks ---- */
 
 #define NOH_CLIP_EVENTS_MAX 65536u /* callback keys of one clip in a pack */
 #define NOH_CLIP_MARKERS_MAX 4096u /* sync markers of one clip in a pack */
@@ -62,7 +62,7 @@
 #define NOH_WEIGHT_MAX 1e6f   /* of a track */
 #define NOH_STEP_EVENTS_MAX                                                                                       \
     (1u << 20) /* callback keys that one step looks at. A track can pass billions (a seek a day away in a clip of \
-                * 10 ms); a step that comes to this many hands out no more, and only moves time on */
+                * 10 ms); a step that reaches this many delivers no more, and only moves time on */
 #define NOH_SYNC_GROUPS_MAX 15u
 #define NOH_SYNC_DURATION_MIN 480u       /* ticks, of a clip in a sync group: 10 ms */
 #define NOH_SYNC_DURATION_MAX (1u << 28) /* ticks: 93 minutes */
@@ -76,7 +76,6 @@
 
 /* ---- characters ---- */
 
-#define NOH_LOD_LEVELS_MAX 8u /* rows of a table of LOD levels */
 #define NOH_LOD_POOLS_MAX NOH_LOD_LEVELS_MAX
 #define NOH_LOD_POOL_SLOTS_MAX 65536u
 #define NOH_SCHEDULE_MAX 65536u /* characters of one scheduler */

@@ -1,4 +1,4 @@
-/* math.h: the little arithmetic that the library needs, without libm.
+/* math_internal.h: the little arithmetic that the library needs, without libm.
  *
  *   noh_sqrt          correctly rounded
  *   noh_dot3
@@ -16,8 +16,8 @@
 #include "base/compiler.h"
 
 /* With errno off (-fno-math-errno) gcc and clang turn the builtin into the processor's instruction. With errno on they
- * call sqrtf for what is negative, and where the processor has no such instruction always: there the vector unit does
- * it, or plain C. All give the same bits. */
+ * call sqrtf for negative arguments, and for all where the processor has no such instruction: there the vector unit
+ * takes the root, or plain C. All give the same bits. */
 #if defined(NOH_GNU) && defined(__NO_MATH_ERRNO__) && !(defined(__i386__) && !defined(__SSE__)) && \
     !defined(__SOFTFP__) && !(defined(__riscv) && !defined(__riscv_flen)) && !defined(__mips_soft_float)
 #define NOH_SQRT_BUILTIN 1
@@ -27,12 +27,13 @@
 #include <arm_neon.h>
 #endif
 
-/* The largest integer whose square is at most n, n below 2^50: 25 bits of result, the highest first. A bit stays where
- * what has been found so far, with it, is not too large; `rest` is n less the square of what has been found. */
+/* The largest integer whose square is at most n, n below 2^50: 25 bits of result, the highest first, as in long
+ * division. A bit is kept if the square of the root so far, with that bit set, is not above n; `rest` is n less the
+ * square of the root so far. */
 static inline uint32_t noh_integer_root(uint64_t n)
 {
     uint64_t root = 0, rest = n;
-    for (uint64_t bit = (uint64_t)1 << 48; bit; bit >>= 2) { /* the square of the bit that is tried */
+    for (uint64_t bit = (uint64_t)1 << 48; bit; bit >>= 2) { /* the square of the bit being tried */
         if (rest >= root + bit) {
             rest -= root + bit;
             root = (root >> 1) + bit;
@@ -47,8 +48,9 @@ static inline uint32_t noh_integer_root(uint64_t n)
  *
  * x = m 2^e with m of 24 bits and e even or odd. m is shifted left by 25 or 26 bits, whichever leaves an even exponent,
  * so that it lies in 2^48..2^50 and its integer root in 2^24..2^25: the 24 bits of the result and one more, which says
- * on which side of the middle between two floats the root lies. It never lies in the middle: a root of 25 bits whose
- * last one is set has an odd square, and the shifted m is even. So adding that bit rounds, and 2^24 is not reached. */
+ * on which side of the middle between two floats the root lies. The root is never the middle itself: 25 bits of which
+ * the last is set have an odd square, and the shifted m is even. So adding that bit rounds correctly, and the sum does
+ * not reach the next power of two. */
 static inline float noh_sqrt_plain(float x)
 {
     uint32_t bits, mantissa, root;
@@ -58,13 +60,13 @@ static inline float noh_sqrt_plain(float x)
         return x; /* 0, -0 and infinity */
     }
     if (bits > 0x7f800000u) {
-        return (x - x) / (x - x); /* NaN for what is negative, and NaN stays it */
+        return (x - x) / (x - x); /* a negative number gives NaN, and NaN stays NaN */
     }
     exponent = (int32_t)(bits >> 23);
     mantissa = bits & 0x7fffffu;
     if (exponent) {
         mantissa |= 0x800000u;
-    } else { /* subnormal: bring its highest bit up */
+    } else { /* subnormal: shift its highest bit to where the hidden bit is */
         const int32_t shift = (int32_t)noh_leading_zeros(mantissa) - 8;
         mantissa <<= shift;
         exponent = 1 - shift;
@@ -94,7 +96,7 @@ static inline float noh_dot3(const float a[3], const float b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Make v unit; a vector too short to have a direction becomes `fallback`. */
+/* Bring v to length 1; a vector too short to have a direction becomes `fallback`. */
 static inline void noh_normalize3(float v[3], const float fallback[3])
 {
     float square = noh_dot3(v, v);

@@ -6,9 +6,8 @@
 #include "base/math_internal.h"
 #include "base/trig.h"
 
-/* Sums only, with b's signs taken beforehand: gcc 12 makes fused multiply-adds out of
- * alternating sums and differences of products, whatever -ffp-contract says, where the
- * processor has them. */
+/* Sums only, with the signs of b applied beforehand: where the processor has fused multiply-adds, gcc 12 makes them out
+ * of alternating sums and differences of products, whatever -ffp-contract says. */
 void noh_quat_mul(const float a[4], const float b[4], float out[4])
 {
     const float x = b[0], y = b[1], z = b[2], w = b[3], nx = -x, ny = -y, nz = -z;
@@ -69,8 +68,8 @@ void noh_quat_nlerp(const float a[4], const float b[4], float t, float out[4])
     noh_quat_normalize(out);
 }
 
-/* The vector part is the axis times sin(angle / 2), w is cos(angle / 2), and atan2 of both is exact at every angle,
- * where an arccosine loses half the digits near 0. Near 0 the quotient angle / sine is 2. */
+/* The vector part is the axis times sin(angle / 2), w is cos(angle / 2), and atan2 of both keeps all its digits at
+ * every angle, where an arccosine loses half of them near 0. Near 0 the quotient angle / sine is 2. */
 void noh_quat_to_rotation(const float q[4], float rotation[3])
 {
     float sign = q[3] < 0.0f ? -1.0f : 1.0f;
@@ -95,6 +94,8 @@ void noh_quat_from_rotation(const float rotation[3], float q[4])
     noh_quat_normalize(q);
 }
 
+/* Project the vector part on the axis, keep w, and normalise: the rotation that is left over (the swing) then has its
+ * axis orthogonal to the twist's. */
 void noh_quat_twist(const float q[4], unsigned axis, float out[4])
 {
     float along = q[axis], w = q[3];

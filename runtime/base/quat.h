@@ -37,8 +37,8 @@ void noh_quat_to_rotation(const float q[4], float rotation[3]);
 void noh_quat_from_rotation(const float rotation[3], float q[4]);
 
 /* The twist of q about the axis 0, 1 or 2, as a quaternion; the identity where q turns by pi about an axis orthogonal
- * to it (the twist is then undefined). source  swing-twist decomposition: the projection of the vector part on the axis
- */
+ * to it (the twist is then undefined).
+ * source  swing-twist decomposition: the projection of the vector part on the axis */
 void noh_quat_twist(const float q[4], unsigned axis, float out[4]);
 
 static inline float noh_quat_dot(const float a[4], const float b[4])

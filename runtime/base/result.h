@@ -1,7 +1,7 @@
 /* result.h: how the library reports errors.
  *
- * Bad data, too little memory, a missing capability or a driver's refusal give a noh_result; outputs are then
- * untouched. A caller's bug (a null pointer where none is allowed, an index past a count) is an assert: see assert.h.
+ * Bad data, too little memory, a missing capability and a driver's refusal are reported as a noh_result; outputs are
+ * then untouched. A caller's bug (a null pointer where none is allowed, an index past a count) is an assert: assert.h.
  * Threads: no state; any thread. */
 #ifndef NOH_BASE_RESULT_H
 #define NOH_BASE_RESULT_H
@@ -19,9 +19,9 @@ typedef enum noh_result {
     NOH_OK = 0,
     NOH_ERR_ARG,         /* an argument or a field of a desc is out of its range: `what` names it */
     NOH_ERR_MEMORY,      /* memory is too small: `need` is the bytes needed */
-    NOH_ERR_DATA,        /* a pack or clip is broken: `where` is the byte offset in it, or the index of the part */
+    NOH_ERR_DATA,        /* a pack, clip or table is broken: `where` is the byte offset, or the index of the part */
     NOH_ERR_VERSION,     /* the pack is of another format version: `need` is ours */
-    NOH_ERR_LIMIT,       /* more than the format or this GPU holds: `need` is what was asked for */
+    NOH_ERR_LIMIT,       /* more than the format or this GPU can hold: `need` is what was asked for */
     NOH_ERR_NOT_FOUND,   /* no object of that name or index: `where` is the index, `need` how many there are */
     NOH_ERR_UNSUPPORTED, /* the GPU or driver cannot do it: `what` says what is missing */
     NOH_ERR_GL           /* the driver refused: `where` is the GL error */

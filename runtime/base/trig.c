@@ -55,7 +55,7 @@ static int in_range(float radians)
 void noh_sin_cos(float radians, float *sine, float *cosine)
 {
     double quarters = in_range(radians) ? (double)radians / HALF_PI : 0.0;
-    /* rounded to the nearest; double keeps the rest exact enough over the whole range */
+    /* rounded to nearest; in double the rest is exact enough over the whole range */
     int32_t k = (int32_t)(quarters < 0.0 ? quarters - 0.5 : quarters + 0.5);
     rotate_quarters((uint32_t)k, in_range(radians) ? (float)((double)radians - (double)k * HALF_PI) : 0.0f, sine,
                     cosine);
@@ -68,7 +68,8 @@ void noh_sin_cos_turn(uint32_t turn, float *sine, float *cosine)
     rotate_quarters(quarters, (float)((double)rest * RADIAN_PER_TURN), sine, cosine);
 }
 
-/* 0 <= x <= 1. Above tan(pi/8) the angle is counted from pi/4. */
+/* The arc tangent of 0 <= x <= 1. Above tan(pi/8) the angle is counted from pi/4, by atan(x) = pi/4 + atan((x - 1) /
+ * (x + 1)), so that the polynomial has to hold for |z| <= tan(pi/8) only. */
 static float atan_unit(float x)
 {
     float z = x > 0.414213562f ? (x - 1.0f) / (x + 1.0f) : x;
@@ -79,6 +80,7 @@ static float atan_unit(float x)
     return x > 0.414213562f ? a + 0.785398163f : a;
 }
 
+/* Fold the direction into the first eighth of the circle, where the quotient is at most 1, and unfold the angle. */
 float noh_atan2(float y, float x)
 {
     float ax = x < 0.0f ? -x : x, ay = y < 0.0f ? -y : y;
@@ -93,12 +95,15 @@ float noh_atan2(float y, float x)
     return y < 0.0f ? -angle : angle;
 }
 
+/* acos(x) = atan2(sqrt(1 - x^2), x); the product of 1 - x and 1 + x does not cancel near 1, as 1 - x^2 does. */
 float noh_acos(float x)
 {
     float c = x < -1.0f ? -1.0f : x > 1.0f ? 1.0f : x;
     return noh_atan2(noh_sqrt((1.0f - c) * (1.0f + c)), c);
 }
 
+/* 2^x = 2^whole * 2^f with |f| <= 1/2: the first factor is written into the exponent's bits, the second is a
+ * polynomial. */
 float noh_exp2(float x)
 {
     float clamped = x > 127.999f ? 127.999f : x;
@@ -115,7 +120,7 @@ float noh_exp2(float x)
                             f * (0.0555041088391f +
                                  f * (0.00961805667852f +
                                       f * (0.00133335023862f + f * (0.000154614446986f + f * 1.52973237607e-5f))))));
-    if (whole > 127) { /* 2^128 is no float, 2^128 * part is */
+    if (whole > 127) { /* 2^128 is not a float, 2^128 times a part below 1 is */
         part *= 2.0f;
         whole = 127;
     }

@@ -7,13 +7,12 @@
  *   noh_exp2           a power of two
  *   noh_turn_from_radians, noh_radians_from_turn
  *
- * Polynomials of our own (Chebyshev fits of the reduced functions), made of +, -,
- * * and / and square roots only: the same bits on every machine. Errors are of
- * the float result against the exact function of the float argument, measured
- * over the stated range by the tests.
+ * Polynomials of our own (Chebyshev fits of the reduced functions), made of sums, products, quotients and square roots
+ * only: the same bits on every machine. Errors are those of the float result against the exact function of the float
+ * argument, measured over the stated range by the tests.
  *
- * A turn is an angle as a uint32_t, 2^32 to the full circle: it wraps by itself
- * and adds without rounding, so that a heading never drifts.
+ * A turn is an angle as a uint32_t, 2^32 to the full circle: it wraps by itself and adds without rounding, so that a
+ * heading never drifts.
  * Threads: no state; any thread. */
 #ifndef NOH_BASE_TRIG_H
 #define NOH_BASE_TRIG_H
@@ -31,8 +30,7 @@ extern "C" {
 void noh_sin_cos(float radians, float *sine, float *cosine);
 
 /* ranges  any
- * errors  at most 1.2e-7 absolute; exact at the quarters; relative error of the
- *         sine near 0 at most 3e-7 */
+ * errors  at most 1.2e-7 absolute; exact at quarter turns; the sine near 0 at most 3e-7 relative */
 void noh_sin_cos_turn(uint32_t turn, float *sine, float *cosine);
 
 /* The angle of the direction (x, y), -pi to pi; 0 for (0, 0).

@@ -5,7 +5,7 @@
 #define TEXT_OF(number) #number
 #define TEXT(number) TEXT_OF(number)
 
-/* NOH_VERSION is written out, so that scripts can read it; here it is held to its three numbers. */
+/* NOH_VERSION is written out so that scripts can read it; this checks that it has the length of its three numbers. */
 static const char from_numbers[] = TEXT(NOH_VERSION_MAJOR) "." TEXT(NOH_VERSION_MINOR) "." TEXT(NOH_VERSION_PATCH);
 NOH_STATIC_ASSERT(sizeof from_numbers == sizeof NOH_VERSION, the_version_is_its_numbers);
 

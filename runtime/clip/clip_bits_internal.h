@@ -1,7 +1,7 @@
-/* clip_bits.h (private to anim/ and the encoder): reading bits, lowest first.
+/* clip_bits_internal.h (private to clip/ and the encoder): reading bits, lowest first.
  *
- * Past the end a reader gives zeros and keeps counting, so that no loop depends on
- * what it reads and noh_bits_overrun can tell afterwards. */
+ * Past the end a reader gives zeros and keeps counting, so that it never reads outside its bytes and noh_bits_overrun
+ * can tell afterwards. */
 #ifndef NOH_CLIP_CLIP_BITS_INTERNAL_H
 #define NOH_CLIP_CLIP_BITS_INTERNAL_H
 
@@ -44,7 +44,8 @@ static inline uint64_t noh_bits_load8(const uint8_t *p)
 #endif
 }
 
-/* At least NOH_BITS_READY bits after this. */
+/* Make at least NOH_BITS_READY bits ready. With 8 bytes left that is one load: the word is filled up to 56 bits or more
+ * by whole bytes, and what the load brought above `count` is the stream's next bits, which the next load repeats. */
 static inline void noh_bits_refill(noh_bits *b)
 {
     if (b->end - b->at >= 8u && b->at <= b->end) {
@@ -63,7 +64,7 @@ static inline void noh_bits_refill(noh_bits *b)
     }
 }
 
-/* The next `width` bits, 0..32, of those that a refill made ready. */
+/* The next `width` bits, 0..32, of those that a refill has made ready. */
 static inline uint32_t noh_bits_take(noh_bits *b, uint32_t width)
 {
     const uint32_t v = (uint32_t)(b->word & (((uint64_t)1 << width) - 1u));
@@ -79,6 +80,7 @@ static inline uint32_t noh_bits_get(noh_bits *b, uint32_t width)
     return noh_bits_take(b, width);
 }
 
+/* A varint: see clip_format.h. */
 static inline uint32_t noh_bits_varint(noh_bits *b)
 {
     uint32_t v = 0;

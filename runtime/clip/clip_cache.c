@@ -5,14 +5,14 @@
 #include "clip/clip_cache_internal.h"
 #include "base/arena.h"
 
-typedef noh_clip_cached cached;
+typedef noh_cached_segment cached;
 
 #define SEGMENT_BYTES_MIN 16u
 
 /* ---- sizes ---- */
 
-/* Four classes to each doubling: the number's highest three bits, and where they lie. Entries of a class are as large
- * as its largest segment, so at most a fifth of one is wasted. */
+/* The size class of a number of bytes: its highest three bits, and where they lie, so four classes to each doubling.
+ * Entries of a class are as large as its largest segment, so at most a fifth of an entry is wasted. */
 static uint32_t size_class(size_t bytes)
 {
     uint32_t shift = 0;
@@ -90,6 +90,7 @@ static noh_result needs_of(const noh_clip_cache_desc *desc, noh_clip_cache_needs
 
 /* ---- memory ---- */
 
+/* The cosines of each segment length that occurs, once for all clips. */
 static void carve_bases(noh_arena *arena, const noh_clip_cache_needs *needs, noh_clip_basis *bases)
 {
     for (uint32_t n = 1; n <= NOH_CLIP_SEGMENT_FRAMES_MAX; n++) {
@@ -105,7 +106,7 @@ static void carve_bases(noh_arena *arena, const noh_clip_cache_needs *needs, noh
     }
 }
 
-/* The frames of all entries, largest first, each class's in a row. */
+/* The frames of all entries: the largest class first, the entries of a class in a row. */
 static void carve_frames(noh_arena *arena, const noh_clip_cache_needs *needs, noh_clip_cache *cache, int build)
 {
     uint32_t made = 0;
@@ -144,7 +145,7 @@ static void carve(noh_arena *arena, const noh_clip_cache_needs *needs, uint32_t 
     cache->clip_count = needs->clip_count;
     cache->cached_count = capacity_of(needs, cached_segment_count);
     carve_bases(arena, needs, build ? cache->bases : NULL);
-    cache->entries = noh_arena_carve(arena, cache->clip_count * sizeof *cache->entries, 8u);
+    cache->clips = noh_arena_carve(arena, cache->clip_count * sizeof *cache->clips, 8u);
     cache->cached = noh_arena_carve(arena, cache->cached_count * sizeof *cache->cached, 8u);
     cache->sizes = noh_arena_carve(arena, count_sizes(needs, cache->cached_count) * sizeof *cache->sizes, 4u);
     cache->cached_of = noh_arena_carve(arena, needs->segment_count * sizeof *cache->cached_of, 2u);
@@ -171,7 +172,7 @@ size_t noh_clip_cache_size(const noh_clip_cache_desc *desc, noh_error *error)
     return needs_of(desc, &needs, error) ? 0u : noh_clip_cache_needs_size(&needs, desc->cached_segment_count, error);
 }
 
-/* Each size's entries in a list, in order, all free. */
+/* Link the entries of each size, in order; all are free. */
 static void link_all(noh_clip_cache *cache)
 {
     uint32_t first = 0;
@@ -192,13 +193,13 @@ static void add_clips(const noh_clip_cache_desc *desc, noh_clip_cache *cache)
 {
     uint32_t segments = 0;
     for (uint32_t i = 0; i < desc->clip_count; i++) {
-        noh_cached_segment *e = &cache->entries[i];
+        noh_cached_clip *e = &cache->clips[i];
         const uint32_t bytes = entry_bytes(&desc->clips[i]->info);
         e->clip = desc->clips[i];
         e->first = segments;
         e->size = cache->size_count - 1u;
         while (cache->sizes[e->size].bytes < bytes) {
-            e->size--; /* the largest of all is there: this ends */
+            e->size--; /* ends: the class of the largest segment is always there */
         }
         segments += desc->clips[i]->info.segment_count;
         cache->segment_bytes = bytes > cache->segment_bytes ? bytes : cache->segment_bytes;
@@ -289,7 +290,7 @@ static void touch(noh_clip_cache *cache, uint32_t s)
 static uint32_t find_room(const noh_clip_cache *cache, uint32_t clip, uint32_t keep, int must)
 {
     uint32_t any = NOH_CLIP_NOT_CACHED;
-    for (uint32_t k = cache->entries[clip].size + 1u; k-- > 0u;) {
+    for (uint32_t k = cache->clips[clip].size + 1u; k-- > 0u;) {
         uint32_t s = cache->sizes[k].oldest;
         if (s == keep) s = cache->cached[s].newer;
         if (s == NOH_CLIP_NOT_CACHED) continue;
@@ -303,9 +304,9 @@ static uint32_t find_room(const noh_clip_cache *cache, uint32_t clip, uint32_t k
 static void take(noh_clip_cache *cache, uint32_t s, uint32_t clip, uint32_t segment)
 {
     cached *t = &cache->cached[s];
-    const noh_cached_segment *e = &cache->entries[clip];
+    const noh_cached_clip *e = &cache->clips[clip];
     if (t->used) {
-        cache->cached_of[cache->entries[t->clip].first + t->cursor.segment] = NOH_CLIP_NOT_CACHED;
+        cache->cached_of[cache->clips[t->clip].first + t->cursor.segment] = NOH_CLIP_NOT_CACHED;
         cache->stats.evictions++;
         drop_want(cache, s);
     }
@@ -313,15 +314,14 @@ static void take(noh_clip_cache *cache, uint32_t s, uint32_t clip, uint32_t segm
     t->clip = clip;
     t->cursor = noh_clip_cursor_at(e->clip, segment);
     t->wanted = 0;
-    t->stamp = cache->stamp -
-               1u; /* so that touch() moves it, also where it was evicted in the frame that it was touched in */
+    t->stamp = cache->stamp - 1u; /* so that touch() moves it, even if it was evicted in the frame that touched it */
     cache->cached_of[e->first + segment] = (uint16_t)s;
 }
 
 static uint32_t decode_cached(noh_clip_cache *cache, uint32_t s, uint32_t track_end)
 {
     cached *t = &cache->cached[s];
-    return noh_clip_decode_up_to(cache, cache->entries[t->clip].clip, &t->cursor, track_end, t->frames);
+    return noh_clip_decode_up_to(cache, cache->clips[t->clip].clip, &t->cursor, track_end, t->frames);
 }
 
 /* The entry of a segment with at least `tracks` decoded, whatever it takes. A clip's second segment always finds room
@@ -329,7 +329,7 @@ static uint32_t decode_cached(noh_clip_cache *cache, uint32_t s, uint32_t track_
  * got any, and then a larger entry exists, because a cache of several segments has at least two. */
 static uint32_t ready(noh_clip_cache *cache, uint32_t clip, uint32_t segment, uint32_t tracks, uint32_t keep)
 {
-    uint32_t s = cache->cached_of[cache->entries[clip].first + segment];
+    uint32_t s = cache->cached_of[cache->clips[clip].first + segment];
     if (s == NOH_CLIP_NOT_CACHED) {
         s = find_room(cache, clip, keep, 1);
         NOH_ASSERT(s != NOH_CLIP_NOT_CACHED);
@@ -346,8 +346,8 @@ static uint32_t ready(noh_clip_cache *cache, uint32_t clip, uint32_t segment, ui
 }
 
 #if NOH_ASSERT_LEVEL >= 2
-/* Each size's list holds each of its entries once; what the segments say is what the entries say; who waits is listed.
- */
+/* Each size's list holds each of its entries once; `cached_of` and the entries agree; every entry that waits is in the
+ * list of wants. */
 static int is_sound(const noh_clip_cache *cache)
 {
     uint32_t first = 0, listed = 0, waiting = 0;
@@ -371,7 +371,7 @@ static int is_sound(const noh_clip_cache *cache)
         const cached *t = &cache->cached[s];
         waiting += t->waits;
         if (!t->used) continue;
-        if (cache->cached_of[cache->entries[t->clip].first + t->cursor.segment] != s) return 0;
+        if (cache->cached_of[cache->clips[t->clip].first + t->cursor.segment] != s) return 0;
         if (!t->waits && t->cursor.track < t->wanted) return 0;
     }
     return listed == waiting;
@@ -386,10 +386,12 @@ void noh_clip_cache_begin_frame(noh_clip_cache *cache)
     cache->stamp++;
 }
 
+/* Give a segment an entry, note up to which track it is wanted, and put it on the list if there is something to decode.
+ */
 static int want_segment(noh_clip_cache *cache, uint32_t clip, uint32_t segment, uint32_t tracks)
 {
-    uint32_t s = cache->cached_of[cache->entries[clip].first + segment];
-    NOH_ASSERT(tracks <= cache->entries[clip].clip->info.track_count);
+    uint32_t s = cache->cached_of[cache->clips[clip].first + segment];
+    NOH_ASSERT(tracks <= cache->clips[clip].clip->info.track_count);
     if (s == NOH_CLIP_NOT_CACHED) {
         s = find_room(cache, clip, NOH_CLIP_NOT_CACHED, 0);
         if (s == NOH_CLIP_NOT_CACHED) return 0;
@@ -433,6 +435,8 @@ uint32_t noh_clip_cache_want_frames(noh_clip_cache *cache, uint32_t clip, uint32
     }
 }
 
+/* Wants are served in the order of asking, a track at a time. Where the budget ends in the middle of a segment its
+ * cursor stays, and the next call goes on from there. */
 uint32_t noh_clip_cache_work(noh_clip_cache *cache, uint32_t budget)
 {
     uint32_t spent = 0;
@@ -472,5 +476,5 @@ uint32_t noh_clip_cache_capacity(const noh_clip_cache *cache)
 const noh_clip *noh_clip_cache_clip(const noh_clip_cache *cache, uint32_t clip)
 {
     NOH_ASSERT(clip < cache->clip_count);
-    return cache->entries[clip].clip;
+    return cache->clips[clip].clip;
 }

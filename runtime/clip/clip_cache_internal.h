@@ -1,4 +1,4 @@
-/* clip_cache_internal.h (private to anim/): what a cache and its views share. */
+/* clip_cache_internal.h (private to clip/): what a cache and its views share. */
 #ifndef NOH_CLIP_CLIP_CACHE_INTERNAL_H
 #define NOH_CLIP_CLIP_CACHE_INTERNAL_H
 
@@ -8,51 +8,53 @@
 
 #define NOH_CLIP_NOT_CACHED 0xffffu
 
-/* Entries of one size, least recently touched first: a list through the entries' `older` and `newer`. */
+/* The entries of one size, least recently touched first: a list through the entries' `older` and `newer`. */
 typedef struct noh_clip_size_class {
     uint32_t bytes, count;
     uint16_t oldest, newest;
 } noh_clip_size_class;
 
-/* One cached segment, or room for one. */
-typedef struct noh_clip_cached {
+/* An entry of the cache: one cached segment, or room for one. */
+typedef struct noh_cached_segment {
     noh_clip_cursor cursor;
     uint8_t *frames;
     uint32_t clip;
-    uint32_t stamp;         /* frame of the game in which it was touched last */
-    uint32_t wanted;        /* tracks to decode up to */
+    uint32_t stamp;         /* the frame of the game in which it was last touched */
+    uint32_t wanted;        /* decode up to this track */
     uint16_t older, newer;  /* in its size's list */
     uint16_t before, after; /* in the list of wants, while it is in it */
     uint8_t size;           /* index of its noh_clip_size_class */
-    uint8_t used, waits;    /* holds a segment; is in the list of wants */
-} noh_clip_cached;
-
-typedef struct noh_cached_segment {
-    const noh_clip *clip;
-    uint32_t first; /* of its segments in `cached_of` */
-    uint32_t size;  /* smallest that its segments fit in */
+    uint8_t used, waits;    /* 1: holds a segment; is in the list of wants */
 } noh_cached_segment;
 
+/* A clip of the cache. */
+typedef struct noh_cached_clip {
+    const noh_clip *clip;
+    uint32_t first; /* place of its first segment in `cached_of` */
+    uint32_t size;  /* index of the smallest noh_clip_size_class that its segments fit in */
+} noh_cached_clip;
+
 struct noh_clip_cache {
-    noh_cached_segment *entries; /* [clip_count] */
-    uint16_t *cached_of;         /* [segments of all clips] */
-    noh_clip_cached *cached;     /* [cached_count] */
-    noh_clip_size_class *sizes;  /* [size_count], largest first */
+    noh_cached_clip *clips;     /* [clip_count] */
+    uint16_t *cached_of;        /* [segments of all clips] the entry that holds each, or NOH_CLIP_NOT_CACHED */
+    noh_cached_segment *cached; /* [cached_count] */
+    noh_clip_size_class *sizes; /* [size_count], largest first */
     uint32_t clip_count, cached_count, size_count;
     uint32_t segment_bytes; /* of the largest segment of any clip */
     uint32_t stamp;
     uint16_t first_want, last_want;
     noh_clip_cache_stats stats;
+    /* by frames of a segment; only the lengths that the clips have */
     noh_clip_basis bases[NOH_CLIP_SEGMENT_FRAMES_MAX + 1u];
 };
 
-/* Where a sample lies. */
+/* Where a sample lies in its clip. */
 typedef struct noh_clip_place {
     const noh_clip *clip;
     uint32_t joints, tracks; /* to be sampled, and to be decoded for that */
     uint32_t segment, frame; /* frame: in the segment */
-    float fraction;          /* towards the next frame, */
-    int crosses;             /* which is the first of the next segment */
+    float fraction;          /* towards the next frame */
+    int crosses;             /* 1: the next frame is the first of the next segment */
 } noh_clip_place;
 
 static inline noh_clip_place noh_clip_place_of(const noh_clip *clip, int64_t ticks, uint32_t joint_count)
@@ -68,7 +70,7 @@ static inline noh_clip_place noh_clip_place_of(const noh_clip *clip, int64_t tic
     return p;
 }
 
-/* Blend out of decoded frames. `next`: those of the next segment, read only where the place crosses into it. */
+/* Blend two decoded frames. `next`: the frames of the next segment, read only where the place crosses into it. */
 static inline void noh_clip_blend_place(const noh_clip_place *p, const uint8_t *frames, const uint8_t *next,
                                         noh_transform *out, float *floats)
 {
@@ -77,7 +79,7 @@ static inline void noh_clip_blend_place(const noh_clip_place *p, const uint8_t *
     noh_clip_blend_frames(p->clip, a, b, p->fraction, p->joints, out, floats);
 }
 
-/* Decode a segment from where its cursor stands up to a track. Returns track-frames. */
+/* Decode a segment from where its cursor stands up to a track. Returns how many track-frames that was. */
 static inline uint32_t noh_clip_decode_up_to(const noh_clip_cache *cache, const noh_clip *clip, noh_clip_cursor *cursor,
                                              uint32_t track_end, uint8_t *out)
 {

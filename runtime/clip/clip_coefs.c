@@ -1,9 +1,10 @@
 #include "clip/clip_coefs_internal.h"
 
-/* Most coefficients of a track are 0, 1 or -1 and lie low; how large one is, its neighbours just above in frequency
- * tell well. So the three components of one frequency are one symbol from a table that their neighbours choose, with
- * the low bits, where neighbours are large, kept out of it (Rice coding with an adaptive parameter); clip_coefs.h has
- * the rules. Any bits decode: quotients, shifts and escapes are cut to a width at which nothing overflows. */
+/* Most coefficients of a track are 0, 1 or -1, and the larger ones are at low frequencies; the neighbours just above in
+ * frequency predict well how large one is. So the three components of one frequency are one symbol, from a table that
+ * their neighbours choose, and where neighbours are large the low bits are kept out of the symbol (Rice coding with an
+ * adaptive parameter); clip_coefs_internal.h has the rules. Any bits decode: quotients, shifts and escapes are cut to a
+ * width at which nothing overflows. */
 
 #define MAGNITUDE_MASK ((1u << NOH_CLIP_MAGNITUDE_BITS) - 1u)
 
@@ -29,7 +30,7 @@ static inline int32_t with_sign(uint32_t magnitude, uint32_t negative)
     return ((int32_t)magnitude ^ -(int32_t)negative) + (int32_t)negative;
 }
 
-/* Exp-Golomb of order 0; a prefix that no encoder writes is cut. */
+/* An Exp-Golomb number of order 0: n zeros, a one, n bits. A prefix longer than any encoder writes is cut. */
 static uint32_t read_escape(noh_bits *b)
 {
     uint32_t zeros;
@@ -42,6 +43,7 @@ static uint32_t read_escape(noh_bits *b)
     return ((1u << zeros) | noh_bits_take(b, zeros)) - 1u;
 }
 
+/* The low bits and the sign of a magnitude; `quotient` is what is above the low bits. */
 static inline int32_t read_rest(noh_bits *b, uint32_t quotient, uint32_t shift, history *h)
 {
     uint32_t magnitude = ((quotient << shift) | noh_bits_take(b, shift)) & MAGNITUDE_MASK;
@@ -88,6 +90,7 @@ static inline void read_triple(noh_bits *b, const uint16_t *table, history h[3],
     out[2] = read_rest(b, symbol >> 4, s2, &h[2]);
 }
 
+/* Frequency 0: the bit length as a symbol, the bits below the highest, the sign. */
 static void read_mean(noh_bits *b, uint32_t last, const history h[3], int32_t out[4])
 {
     for (uint32_t c = 0; c < 3u; c++) {

@@ -7,7 +7,7 @@
 #define ROTATION_NARROW 8u
 #define ROTATION_WIDE 16u
 #define LINEAR_BYTES 12u
-#define LAST_AT_START 4u /* what contexts take for the track before the first */
+#define LAST_AT_START 4u /* the context of the first track: as if the one before had 4 frequencies */
 
 noh_clip_cursor noh_clip_cursor_at(const noh_clip *clip, uint32_t segment)
 {
@@ -29,9 +29,10 @@ static float raw_float(noh_bits *b)
     const uint32_t word = noh_bits_get(b, 32u);
     float v;
     memcpy(&v, &word, sizeof v);
-    return v - v == 0.0f ? v : 0.0f; /* not-a-number or infinite */
+    return v - v == 0.0f ? v : 0.0f; /* NaN and infinity become 0 */
 }
 
+/* A raw track keeps its frames as floats: the encoder's last resort where coefficients do not keep to the bound. */
 static void decode_raw(noh_bits *b, const noh_clip *clip, const noh_clip_track *track, uint32_t frames, uint8_t *out)
 {
     const int wide = (clip->info.flags & NOH_CLIP_FLAG_WIDE) != 0u;
@@ -49,8 +50,8 @@ static void decode_raw(noh_bits *b, const noh_clip *clip, const noh_clip_track *
     }
 }
 
-/* The quantiser's step of a track. Where there are several segments the header has a step for the track and the segment
- * only the difference; a single segment has no header's step, and takes that of the track before. */
+/* The quantiser's step of a track. In a clip of several segments the header has a step for each track, and a segment
+ * only the difference from it; in a clip of a single segment the difference is from the step of the track before. */
 static uint32_t read_step(noh_bits *b, const noh_clip *clip, const noh_clip_track *track, int16_t before)
 {
     const uint32_t single = clip->info.segment_count == 1u;
@@ -77,8 +78,9 @@ static void read_wild(noh_bits *b, float reference[4])
     }
 }
 
-/* One track of a segment: read its coefficients, bring them to size, turn mixed axes back, and sum the cosines into
- * frames. Rotations become reference times what the components say, linear tracks reference plus it. */
+/* One track of a segment: read its coefficients, multiply by the step, turn mixed axes back, and sum the cosines into
+ * frames. A rotation is the reference times the rotation that the components stand for, a linear value the reference
+ * plus the components. */
 static void decode_track(noh_bits *b, const noh_clip *clip, const noh_clip_track *track, const noh_clip_basis *basis,
                          noh_clip_cursor *cursor, uint8_t *out)
 {

@@ -1,7 +1,7 @@
-/* clip_decode.h (private to anim/ and the encoder): one segment, track by track.
+/* clip_decode_internal.h (private to clip/ and the encoder): one segment, track by track.
  *
- * Decoding can stop after any track and resume later: a budget per frame is kept, and a prefix of the joints decoded
- * alone, with the same bits in the end. */
+ * Decoding can stop after any track and resume later. So a frame of the game can keep to a budget, and the first joints
+ * can be decoded alone; the bits are the same in the end. */
 #ifndef NOH_CLIP_CLIP_DECODE_INTERNAL_H
 #define NOH_CLIP_CLIP_DECODE_INTERNAL_H
 
@@ -14,7 +14,7 @@
 typedef struct noh_clip_cursor {
     uint32_t segment, track;
     size_t position;    /* bits from the clip's first byte */
-    uint8_t raw_tracks; /* the segment has some */
+    uint8_t raw_tracks; /* 1: the segment has some */
     uint8_t last_before[NOH_CLIP_CLASSES];
     int16_t step_before[NOH_CLIP_CLASSES];
 } noh_clip_cursor;
@@ -22,8 +22,8 @@ typedef struct noh_clip_cursor {
 /* A cursor at the first track of a segment. */
 noh_clip_cursor noh_clip_cursor_at(const noh_clip *clip, uint32_t segment);
 
-/* Decode tracks up to `track_end` (not past the clip's) into frames, clip->frame_bytes apart.
- * `basis` is that of the segment's length. Any bits give some frames, in bounds. */
+/* Decode tracks up to `track_end` (at most the clip's track_count) into frames, clip->frame_bytes apart. `basis` is
+ * that of the segment's length. Whatever the bits are, some frames come out, and nothing is written out of bounds. */
 void noh_clip_decode(const noh_clip *clip, const noh_clip_basis *basis, noh_clip_cursor *cursor, uint32_t track_end,
                      uint8_t *frames);
 

@@ -1,14 +1,12 @@
 /* clip_format.h: the bytes of a compressed clip.
  *
- * A clip is one block, position independent: a header of bits, then its segments.
- * Bits fill bytes from the lowest; a field's lowest bit comes first. There is no
- * alignment and no pointer. Headers are bits because a game clip of 20 frames is
- * two kilobytes: a plain struct of joints would be a third of it.
+ * A clip is one block, position independent: a header of bits, then its segments. Bits fill bytes from the lowest; a
+ * field's lowest bit comes first. There is no alignment and no pointer. Headers are bits because a game clip of 20
+ * frames is two kilobytes: a plain struct of joints would be a third of it.
  *
- * varint: groups of 4 bits, lowest first, each followed by one bit, 1 = another follows;
- *         at most 8 groups.
- * unit quaternion of width w: 2 bits index of the component that is left out (the largest,
- *         made positive), then 3 x w bits: (v - mid) * sqrt(1/2) / mid, mid = 2^(w-1) - 1.
+ * varint: groups of 4 bits, lowest first, each followed by one bit, 1 = another follows; at most 8 groups.
+ * unit quaternion of width w: 2 bits index of the component that is left out (the largest, made positive), then 3 x w
+ *         bits: component = (v - mid) * sqrt(1/2) / mid, mid = 2^(w-1) - 1.
  * floats of width w: the highest w bits of an IEEE single, the rest zero.
  *
  * Header
@@ -16,7 +14,7 @@
  *   4        flags, NOH_CLIP_FLAG_*
  *   varint   joints
  *   varint   frames, at least 1
- *   1        1: varint rate in Hz;  0: 32 bits of rate in micro-Hz
+ *   1        1: varint sample rate in Hz;  0: 32 bits of sample rate in micro-Hz
  *   varint   segments; segment s holds frames [s * frames / segments, (s + 1) * frames / segments)
  *   5        only when segments > 1: width of a segment's byte count
  *   varint   the bound in nanometres;  varint the shell in micrometres
@@ -49,20 +47,21 @@
  *            step size = 2^(NOH_CLIP_STEP_TOP - id / 4)
  *   32 + 1   wild rotations: unit quaternion of width 10, then a sign bit
  *   last     symbol: number of frequencies, 0..frames of the segment
- *   triples  frequencies last - 1 down to 1, all three components at once; see clip_coefs.h
+ *   triples  frequencies last - 1 down to 1, all three components at once; see clip_coefs_internal.h
  *   dc       frequency 0: per component a category symbol, then bits and sign
- * Values are the orthonormal DCT-II of each component; a rotation's components are the
- * modified Rodrigues vector u = 4 xyz / (1 + w) relative to the reference, a linear
- * track's are differences to it. */
+ * Values are the orthonormal DCT-II of each component; a rotation's components are the modified Rodrigues vector
+ * u = 4 xyz / (1 + w) relative to the reference, a linear track's are differences from it.
+ *
+ * Threads: constants. */
 #ifndef NOH_CLIP_CLIP_FORMAT_H
 #define NOH_CLIP_CLIP_FORMAT_H
 
-#define NOH_CLIP_VERSION 2u /* also counts new tables: clip_tables.c is part of the format */
+#define NOH_CLIP_VERSION 2u /* raised for new tables too: clip_tables.c is part of the format */
 
 #define NOH_CLIP_FLAG_WIDE 1u  /* cache rotations as floats: some joint's lever is too long for 16 bits */
 #define NOH_CLIP_FLAG_SCALE 2u /* some joint's scale is not its bind pose's */
 #define NOH_CLIP_FLAG_LOOP 4u  /* the last frame equals the first */
-#define NOH_CLIP_FLAG_OPEN 8u  /* each joint is coded for itself: joints may be masked or replaced */
+#define NOH_CLIP_FLAG_OPEN 8u  /* coded in an open loop, each joint for itself: joints may be masked or replaced */
 
 #define NOH_CLIP_JOINTS_MAX 4096u
 #define NOH_CLIP_FLOATS_MAX 4096u

@@ -1,4 +1,4 @@
-/* clip_internal.h (private to anim/ and the encoder): an expanded clip. */
+/* clip_internal.h (private to clip/, bank/ and the encoder): an expanded clip. */
 #ifndef NOH_CLIP_CLIP_INTERNAL_H
 #define NOH_CLIP_CLIP_INTERNAL_H
 
@@ -7,9 +7,9 @@
 
 typedef enum noh_clip_kind { NOH_CLIP_FLOATS, NOH_CLIP_TRANSLATION, NOH_CLIP_SCALE, NOH_CLIP_ROTATION } noh_clip_kind;
 
-#define NOH_CLIP_GROUP 4u /* rotations that are sampled together; a frame has room for whole groups */
-#define NOH_CLIP_WEIGHT_MAX 32767u
-#define NOH_CLIP_WEIGHT_PARTS 8u
+#define NOH_CLIP_GROUP 4u          /* rotations that are sampled together; a frame has room for whole groups */
+#define NOH_CLIP_WEIGHT_MAX 32767u /* of weight_one: two whole weights times 16-bit values stay within 32 bits */
+#define NOH_CLIP_WEIGHT_PARTS 8u   /* eighths of a frame are whole weights: there errors were measured */
 
 #define NOH_CLIP_TRACK_MIX 1u
 #define NOH_CLIP_TRACK_WILD 2u
@@ -41,25 +41,25 @@ struct noh_clip {
     uint64_t segments_per_frame;         /* times 2^32, rounded down */
     uint32_t frame_bytes, linear_offset; /* of one frame in the cache: rotations, in whole groups, then linear floats */
     uint32_t weight_one;                 /* what the whole weights of two frames add up to: a tick and an eighth of a
-                                          * frame are whole where the rate allows it */
-    const noh_transform *pose;           /* [joint_count] what is not animated */
+                                          * frame are whole where the sample rate allows it */
+    const noh_transform *pose;           /* [joint_count] the values that are not animated */
     const noh_clip_track *tracks;        /* [track_count] */
     const noh_clip_prefix *prefixes;     /* [joint_count + 1]; the last counts everything */
-    const uint32_t *rotation_offsets;    /* [rotation_count] where in a pose, bytes */
+    const uint32_t *rotation_offsets;    /* [rotation_count] where each goes in a pose, bytes */
     const noh_clip_linear *linears;      /* [linear_count]; those of float triples come first and are not used */
     const uint32_t *segment_offsets;     /* [segment_count + 1] bytes */
     const uint32_t *segment_firsts;      /* [segment_count + 1] frames */
     const noh_clip_group *groups;        /* [group_count] */
 };
 
-/* The float groups of a clip that noh_clip_measure has taken, out of its bytes, before it is opened. */
+/* Reads the float groups of a clip that noh_clip_measure has accepted from its bytes, before it is opened. */
 typedef struct noh_clip_group_reader {
     noh_bits bits;
     uint32_t left, first;
 } noh_clip_group_reader;
 
 noh_clip_group_reader noh_clip_groups_of(const noh_clip_desc *desc);
-/* 0 after the last one. */
+/* Read the next group; returns 0 after the last one. */
 int noh_clip_next_group(noh_clip_group_reader *reader, noh_clip_group *group);
 
 static inline uint32_t noh_clip_segment_first(const noh_clip *clip, uint32_t segment)
@@ -67,7 +67,8 @@ static inline uint32_t noh_clip_segment_first(const noh_clip *clip, uint32_t seg
     return clip->segment_firsts[segment];
 }
 
-/* The segment that holds a frame (below frame_count): a guess without a division, hardly ever too low. */
+/* The segment that holds a frame (below frame_count). Multiplied by a reciprocal that was rounded down, the guess is
+ * never too high and hardly ever too low. */
 static inline uint32_t noh_clip_segment_of(const noh_clip *clip, uint32_t frame)
 {
     uint32_t segment = (uint32_t)((uint64_t)frame * clip->segments_per_frame >> 32);

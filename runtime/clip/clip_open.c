@@ -1,10 +1,10 @@
 /* clip_open.c: the header, checked and expanded. One parser runs twice, first to measure (its pointers are NULL and it
  * only counts), then into the caller's memory, so that size and use cannot disagree.
  *
- * A clip is untrusted bytes. The header is read to its end with every count held to a limit before it bounds a loop;
- * past the end the bit reader gives zeros, and read_sizes finds that out. The segments' sizes must fill the clip
- * exactly; what is in the segments need not be checked, because any bits decode to some frames, in bounds
- * (clip_decode.h). */
+ * A clip is untrusted bytes. The header is read to its end, and every count is checked against a limit before it bounds
+ * a loop; past the end the bit reader gives zeros, and read_sizes finds that out. The segments' sizes must fill the
+ * clip exactly; what is in the segments need not be checked, because any bits decode to some frames, in bounds
+ * (clip_decode_internal.h). */
 #include <string.h>
 
 #include "base/arena.h"
@@ -131,19 +131,19 @@ static void read_quat(parser *p, uint32_t width, float q[4])
     noh_clip_quat_expand(codes, left_out, width, q);
 }
 
-/* Three floats of their highest `width` bits. Not-a-numbers and infinities are refused. */
+/* Three floats, of which the highest `width` bits are stored. NaN and infinity are refused. */
 static noh_result read_floats(parser *p, uint32_t width, float v[3])
 {
     for (uint32_t i = 0; i < 3u; i++) {
         const uint32_t word = noh_bits_get(&p->bits, width) << (32u - width);
-        if ((word & 0x7f800000u) == 0x7f800000u) return fail(p, NOH_ERR_DATA, "a value that is no number", 0);
+        if ((word & 0x7f800000u) == 0x7f800000u) return fail(p, NOH_ERR_DATA, "a value of the clip is not finite", 0);
         memcpy(&v[i], &word, sizeof v[i]);
     }
     return NOH_OK;
 }
 
-/* Keep a track that was read, or only count it. Rotations are numbered by themselves, and so are linear tracks: in a
- * cached frame each kind lies in a row, which is what makes sampling a loop over neighbours. */
+/* Keep a track that was read, or only count it. Rotations and linear tracks are numbered apart: a cached frame has all
+ * of one kind in a row, so that sampling is a loop over neighbours. */
 static void add_track(parser *p, const noh_clip_track *track)
 {
     noh_clip *clip = p->clip;
@@ -162,6 +162,8 @@ static void add_track(parser *p, const noh_clip_track *track)
     p->track_count++;
 }
 
+/* The floats of a triple may have very different ranges: the second and third have steps of their own, relative to the
+ * first. They are kept as the diagonal of the mix matrix, so decoding floats takes the same path as mixed axes. */
 static void read_scales(parser *p, noh_clip_track *t)
 {
     for (uint32_t i = 0; i < 2u; i++) {
@@ -223,6 +225,8 @@ static noh_result read_subtrack(parser *p, noh_clip_kind kind, uint32_t mode, ui
     return read_floats(p, widths[noh_bits_get(&p->bits, 2u)], value);
 }
 
+/* Most joints of most clips only rotate: one bit says so. The others say for each of rotation, translation and scale
+ * whether it is the bind pose's, constant or animated. */
 static noh_result read_joint(parser *p, uint32_t joint)
 {
     uint32_t rotation = NOH_CLIP_MODE_ANIMATED, translation = NOH_CLIP_MODE_BIND, scale = NOH_CLIP_MODE_BIND;
@@ -304,9 +308,9 @@ static noh_result read_sizes(parser *p)
 
 /* What the whole weights of two frames add up to: the largest number, up to NOH_CLIP_WEIGHT_MAX, of parts of a frame
  * with every tick and every eighth of a frame among them. At 30 Hz a frame is 1,600 ticks, and 32,000 parts of one hold
- * both. With g = gcd(48,000 Hz, sample rate), both in micro-hertz, a frame is 48,000 / rate ticks, so ticks lie at
- * multiples of 1 / (48,000 / g) frames; doubling that until 8 divides it takes in the eighths. At sample rates where it
- * is too large a time is off by less than 1/65,000 of a frame. */
+ * both. With g = gcd(48,000 Hz, sample rate), both in micro-hertz, ticks lie at multiples of 1 / (48,000 Hz / g) of a
+ * frame; doubling that divisor until 8 divides it takes in the eighths. At sample rates for which it is too large, a
+ * time is off by less than 1/65,000 of a frame. */
 static uint32_t weight_one(uint32_t sample_rate_uhz)
 {
     const uint64_t second = (uint64_t)NOH_CLIP_TICKS_PER_SECOND * NOH_CLIP_MICRO;
@@ -411,7 +415,7 @@ noh_clip_group_reader noh_clip_groups_of(const noh_clip_desc *desc)
     p.desc = desc;
     p.clip = &clip;
     p.bits = noh_bits_over(desc->bytes, 0, desc->byte_count);
-    (void)read_counts(&p); /* it was measured: this succeeds */
+    (void)read_counts(&p); /* the clip was measured: this succeeds */
     read_certificate(&p);
     reader.left = noh_bits_varint(&p.bits);
     reader.first = 0;
@@ -466,6 +470,8 @@ noh_clip_group noh_clip_group_at(const noh_clip *clip, uint32_t index)
     return clip->groups[index];
 }
 
+/* ticks / 48,000 Hz * sample rate, as a quotient and a remainder of integers: no time is rounded before it is split
+ * into frame and fraction. */
 uint32_t noh_clip_frame_at(const noh_clip *clip, int64_t ticks, float *fraction)
 {
     const uint64_t unit = (uint64_t)NOH_CLIP_TICKS_PER_SECOND * NOH_CLIP_MICRO;

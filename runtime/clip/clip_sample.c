@@ -7,9 +7,9 @@
 /* Kernels in which a flag is a constant, or whose vectors must stay in registers. */
 #define NOH_CLIP_INLINE NOH_ALWAYS_INLINE
 
-#define TINY 1e-30f /* so that frames of zeros, which only a broken clip has, divide */
+#define TINY 1e-30f /* so that rotations of zeros, which only a broken clip has, do not divide by 0 */
 
-/* What two frames are weighed by: whole numbers where they are kept in 16 bits, else floats. */
+/* The weights of two frames: whole numbers where rotations are kept in 16 bits, else floats. */
 typedef struct weights {
     int32_t whole_a, whole_b;
     float to_a, to_b;
@@ -94,8 +94,8 @@ NOH_CLIP_INLINE uint32_t blend_many(const uint32_t *offsets, const uint8_t *a, c
 }
 #endif
 
-/* Normalise four; they share the square root. Written out, here and below: at -O2 compilers keep
- * loops of four, and their arrays in memory. */
+/* Normalise four quaternions with one vector square root. Written out, here and below: at -O2 compilers keep loops of
+ * four, and their arrays in memory. */
 NOH_CLIP_INLINE void normalise_group(noh_v4 q[NOH_CLIP_GROUP])
 {
     noh_v4 scale = noh_v4_sums(noh_v4_mul(q[0], q[0]), noh_v4_mul(q[1], q[1]), noh_v4_mul(q[2], q[2]),
@@ -113,7 +113,7 @@ NOH_CLIP_INLINE noh_v4 lerp(const float *a, const float *b, noh_v4 to_a, noh_v4 
     return noh_v4_add(noh_v4_mul(noh_v4_load(a), to_a), noh_v4_mul(noh_v4_load(b), to_b));
 }
 
-/* Four neighbours; past the last rotation a frame has room, and whatever lies there is not used. */
+/* Four neighbours. A frame has room for a whole group past the last rotation; what lies there is not used. */
 NOH_CLIP_INLINE void blend_group(const uint8_t *a, const uint8_t *b, uint32_t r, int wide, const weights *w,
                                  noh_v4 q[NOH_CLIP_GROUP])
 {
@@ -134,8 +134,8 @@ NOH_CLIP_INLINE void blend_group(const uint8_t *a, const uint8_t *b, uint32_t r,
 }
 
 /* Rotations: a weighted sum, normalised. Frames of one segment lie in one hemisphere, and so do the last and first of
- * two neighbours (the encoder negates them where needed), so there is no sign to look at. Cached frames hold rotations
- * as 16-bit integers: they are weighed by whole numbers, exactly, and rounded once to floats, which is why every
+ * two neighbours (the encoder negates them where needed), so no signs are compared. Cached frames hold rotations as
+ * 16-bit integers: they are multiplied by whole weights, exactly, and rounded once to floats, which is why every
  * instruction set gives the same bits. */
 NOH_CLIP_INLINE void blend_rotations(const noh_clip *clip, const uint8_t *a, const uint8_t *b, const weights *w,
                                      uint32_t count, int wide, noh_transform *out)

@@ -8,7 +8,7 @@
 #define HALF_ROOT 0.70710678f
 #define COSINE_TERMS 12u
 
-/* cos(pi m / (2 n)), 0 <= m <= n: Taylor's series in double, below 1e-16 of the value at pi / 2. */
+/* cos(pi m / (2 n)), 0 <= m <= n: Taylor's series in double; 12 terms leave an error below 1e-16 up to pi / 2. */
 static double quarter_cosine(uint32_t m, uint32_t n)
 {
     const double x = 1.57079632679489661923 * (double)m / (double)n;
@@ -58,9 +58,9 @@ float noh_clip_step(uint32_t id)
     return power * parts[id % 4u];
 }
 
-/* "Smallest three": the largest component of a unit quaternion is left out and made positive; none of the others is
- * above sqrt(1/2), and they say what the largest was. Codes that are no unit quaternion (a broken clip) are scaled to
- * one. */
+/* "Smallest three": the largest component of a unit quaternion is made positive and left out. None of the others is
+ * above sqrt(1/2), and the one left out follows from them. Codes that give no unit quaternion (in a broken clip) are
+ * scaled to one. */
 void noh_clip_quat_expand(const uint32_t codes[3], uint32_t left_out, uint32_t width, float q[4])
 {
     const uint32_t mid = (1u << (width - 1u)) - 1u;
@@ -98,6 +98,8 @@ void noh_clip_quat_unit(const float q[4], float unit[4])
     }
 }
 
+/* A track's components may be coded along other axes, which the encoder chose; the matrix of a quaternion turns them
+ * back. */
 void noh_clip_mix_matrix(const float q[4], float m[9])
 {
     const float x = q[0], y = q[1], z = q[2], w = q[3];

@@ -1,7 +1,7 @@
-/* clip_synth.h (private to anim/ and the encoder): from coefficients to frames.
+/* clip_synth_internal.h (private to clip/ and the encoder): from coefficients to frames.
  *
- * The encoder calls these very functions, so that its closed loop sees the decoder's
- * bits. Index:
+ * The encoder calls these very functions, so that its closed loop sees the decoder's bits.
+ *
  *   noh_clip_basis_build    the DCT-II rows of a segment length
  *   noh_clip_step           a step id's size
  *   noh_clip_quat_expand    three small components to a unit quaternion
@@ -16,15 +16,15 @@
 
 #include "clip/clip_format.h"
 
-/* The orthonormal DCT-II of one length, first halves of its rows: row k is even about the
- * middle for even k, odd for odd k. */
+/* The orthonormal DCT-II of one length, first halves of its rows: row k is even about the middle for even k, odd for
+ * odd k. */
 typedef struct noh_clip_basis {
     uint32_t frames;
     uint32_t half;     /* (frames + 1) / 2, up to a multiple of 4 */
     const float *rows; /* [frames][half], zeros past the middle */
 } noh_clip_basis;
 
-/* floats of a basis */
+/* How many floats half a row has, and a whole basis. */
 static inline uint32_t noh_clip_basis_half(uint32_t frames)
 {
     return ((frames + 1u) / 2u + 3u) & ~3u;

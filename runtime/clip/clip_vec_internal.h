@@ -1,10 +1,10 @@
-/* clip_vec.h (private to anim/ and the encoder): four floats at a time.
+/* clip_vec_internal.h (private to clip/ and the encoder): four floats at a time, for SSE2, NEON and plain C.
  *
- * Every operation here rounds once, like the scalar twin's, so that all give the same
- * bits. Define NOH_CLIP_SCALAR to force the twin.
+ * Every operation rounds once, as the scalar one does, so that all give the same bits. Define NOH_CLIP_SCALAR to force
+ * the scalar ones.
  *
- * noh_v4_blend_i16: eight int16 each of a and b (16-byte aligned), summed with whole weights, 0..32767,
- * that add up to 32767 at most: exact in 32 bits, then rounded once to floats. */
+ * noh_v4_blend_i16: eight int16 each of a and b (16-byte aligned), summed with whole weights, 0..32767, that add up to
+ * 32767 at most: exact in 32 bits, then rounded once to floats. */
 #ifndef NOH_CLIP_CLIP_VEC_INTERNAL_H
 #define NOH_CLIP_CLIP_VEC_INTERNAL_H
 

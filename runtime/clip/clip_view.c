@@ -5,8 +5,8 @@
 #include "clip/clip_cache_internal.h"
 #include "base/arena.h"
 
-/* A segment of the view's own. It keeps what it holds from one sample to the next: a clip that plays on without
- * anybody's wanting it is decoded once a segment, not once a sample. */
+/* A segment of the view's own. It is kept from one sample to the next, so a clip that plays on without being wanted is
+ * decoded once a segment, not once a sample. */
 typedef struct spill {
     noh_clip_cursor cursor;
     uint8_t *frames;
@@ -17,7 +17,7 @@ typedef struct spill {
 struct noh_clip_view {
     const noh_clip_cache *cache;
     spill spills[2];
-    uint32_t latest; /* of the spills, the one used last */
+    uint32_t latest; /* index of the spill that was used last */
     noh_clip_cache_stats stats;
 };
 
@@ -86,7 +86,7 @@ static spill *find_spill(noh_clip_view *view, uint32_t clip, uint32_t segment)
     s = &view->spills[view->latest];
     s->used = 1;
     s->clip = clip;
-    s->cursor = noh_clip_cursor_at(view->cache->entries[clip].clip, segment);
+    s->cursor = noh_clip_cursor_at(view->cache->clips[clip].clip, segment);
     return s;
 }
 
@@ -94,14 +94,14 @@ static spill *find_spill(noh_clip_view *view, uint32_t clip, uint32_t segment)
 static const uint8_t *frames_of(noh_clip_view *view, uint32_t clip, uint32_t segment, uint32_t tracks)
 {
     const noh_clip_cache *cache = view->cache;
-    const uint32_t at = cache->cached_of[cache->entries[clip].first + segment];
+    const uint32_t at = cache->cached_of[cache->clips[clip].first + segment];
     spill *s;
     if (at != NOH_CLIP_NOT_CACHED && cache->cached[at].cursor.track >= tracks) {
         return cache->cached[at].frames;
     }
     s = find_spill(view, clip, segment);
     if (s->cursor.track < tracks) {
-        const uint32_t spent = noh_clip_decode_up_to(cache, cache->entries[clip].clip, &s->cursor, tracks, s->frames);
+        const uint32_t spent = noh_clip_decode_up_to(cache, cache->clips[clip].clip, &s->cursor, tracks, s->frames);
         view->stats.misses++;
         view->stats.decoded += spent;
         view->stats.decoded_late += spent;

@@ -1,10 +1,10 @@
 /* clip_view.h: sampling one clip cache from several threads.
  *
  * A view only reads its cache. What the cache lacks it decodes into two segments of its own: the same bits, counted as
- * late. So the segments that play are wanted and decoded on one thread, and then sampled on many:
- *   noh_clip_cache_begin_frame, _want, _work              one thread
- *   noh_clip_view_sample(view, ...)                any number of threads, each with its own view
- * and once these are done, the next frame begins.
+ * late. So segments are wanted and decoded on one thread, and then sampled on many:
+ *   noh_clip_cache_begin_frame, _want, _work   one thread
+ *   noh_clip_view_sample(view, ...)            any number of threads, each with its own view
+ * The next frame begins when all of them are done.
  *
  * Threads: a view belongs to one thread at a time. While views sample, nothing may change their cache (clip_cache.h
  * says which calls do); there is no lock and nothing atomic inside, the caller orders the two phases (a join, a

@@ -1,6 +1,6 @@
 /* pack_clip.h: skeletons and compressed clips of a pack, as pointers into its bytes.
  *
- * Threads: a pack is read only; any number may call these on one. */
+ * Threads: a pack is read-only; any number of threads. */
 #ifndef NOH_CLIP_PACK_CLIP_H
 #define NOH_CLIP_PACK_CLIP_H
 
@@ -11,14 +11,14 @@
 extern "C" {
 #endif
 
-/* One clip: give `bytes` to noh_clip_init (clip/clip_codec.h), with the bind pose of header->skeleton. */
+/* One clip. noh_clip_init (clip/clip_codec.h) takes its `bytes`, and the bind pose of header->skeleton. */
 typedef struct noh_pack_clip {
     const char *name;
     const noh_clip_header *header;
     const noh_clip_event *events;   /* [header->event_count], in time order */
     const noh_clip_marker *markers; /* [header->marker_count], in time order */
     const uint8_t *bytes;           /* [header->clip_bytes] */
-    const float *joint_errors;      /* [header->joint_error_count], for the levels of header->skeleton, in its unit */
+    const float *joint_errors; /* [header->joint_error_count], for the LOD levels of header->skeleton, in its unit */
 } noh_pack_clip;
 
 /* The n-th skeleton; header (NULL: not wanted) receives its hash and unit.
@@ -29,7 +29,7 @@ noh_result noh_pack_skeleton_at(const noh_pack *pack, uint32_t index, noh_skelet
 /* The name of a joint; "" where there is no such skeleton or joint. */
 const char *noh_pack_joint_name(const noh_pack *pack, uint32_t skeleton, uint32_t joint);
 
-/* The LOD levels of a skeleton: each poses the first so many joints.
+/* The LOD levels of a skeleton, as counts: each poses that many joints, the first ones.
  * shapes   the result [*level_count], falling; the first is the skeleton's joint_count
  * returns  NULL, and a level_count of 0, where index is not below skeleton_count */
 const uint32_t *noh_pack_joint_levels(const noh_pack *pack, uint32_t skeleton, uint32_t *level_count);

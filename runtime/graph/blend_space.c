@@ -30,7 +30,7 @@ typedef struct nearest_edge {
     uint32_t a, b;
 } nearest_edge;
 
-/* Keep an edge if it is nearer to (x, y); of equally near ones the shorter. */
+/* Keep an edge if it is nearer to (x, y) than the best so far, or as near and shorter. */
 static void try_edge(const noh_blend_space_2d *s, uint32_t a, uint32_t b, float x, float y, nearest_edge *best)
 {
     float ex = s->points[2u * b] - s->points[2u * a], ey = s->points[2u * b + 1u] - s->points[2u * a + 1u];
@@ -50,6 +50,7 @@ static void try_edge(const noh_blend_space_2d *s, uint32_t a, uint32_t b, float 
     }
 }
 
+/* A point outside all triangles: the weights of the nearest point on any edge, which is one of the hull's. */
 static void edge_weights(const noh_blend_space_2d *s, float x, float y, float *weights)
 {
     nearest_edge best = { -1.0f, 0.0f, 0.0f, 0, 0 };
@@ -58,7 +59,7 @@ static void edge_weights(const noh_blend_space_2d *s, float x, float y, float *w
             try_edge(s, s->triangles[3u * i + k], s->triangles[3u * i + (k + 1) % 3], x, y, &best);
         }
     }
-    if (s->triangle_count == 0) { /* all points on a line: of the overlapping edges the shortest joins neighbours */
+    if (s->triangle_count == 0) { /* all points on a line: of overlapping edges the shortest joins neighbours */
         for (uint32_t a = 0; a < s->point_count; a++) {
             for (uint32_t b = a + 1; b < s->point_count; b++) {
                 try_edge(s, a, b, x, y, &best);
@@ -69,7 +70,8 @@ static void edge_weights(const noh_blend_space_2d *s, float x, float y, float *w
     weights[best.b] += best.t;
 }
 
-/* Barycentric weights of a triangle; 0 when the point is outside. */
+/* Barycentric weights in a triangle: the area opposite each corner, over the whole. Returns 0 when the point is
+ * outside. */
 static int triangle_weights(const noh_blend_space_2d *s, const uint8_t t[3], float x, float y, float *weights)
 {
     const float *a = s->points + 2u * t[0], *b = s->points + 2u * t[1], *c = s->points + 2u * t[2];
@@ -106,7 +108,10 @@ void noh_blend_space_2d_weights(const noh_blend_space_2d *space, float x, float 
     edge_weights(space, px, py, weights);
 }
 
-/* ---- triangulation: a sweep, then flips until every edge is Delaunay ---- */
+/* ---- triangulation ----
+ *
+ * A sweep over the points by x joins each to the hull of those before it; then edges are flipped until all are
+ * Delaunay. There are few points and this runs once, so neither step needs to be fast. */
 
 typedef struct mesh {
     uint32_t count, triangle_count;

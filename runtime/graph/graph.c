@@ -17,7 +17,7 @@ static noh_controller_desc controller_desc(const noh_graph *g, const noh_clip_se
     memset(&d, 0, sizeof d);
     d.set = set;
     d.track_count = g->clip_count;
-    d.change_count = 1; /* the graph weighs by itself */
+    d.change_count = 1; /* the least: the graph sets weights by itself */
     for (uint32_t i = 0; i < g->transition_count; i++) {
         d.flags |= g->transitions[i].flags & NOH_TRANSITION_INERTIAL ? NOH_CONTROLLER_INERTIAL : 0u;
     }
@@ -181,7 +181,7 @@ uint32_t noh_graph_machine_state(const noh_graph_state *state, uint32_t machine)
 
 /* ---- state machines ---- */
 
-/* Whether a state's first clip ends within this many ticks, or has ended. */
+/* Whether a state's first clip ends within that many ticks, or has ended. */
 static int is_ending(noh_graph_state *s, const noh_graph *g, const noh_clip_set *set, uint32_t child, uint32_t ticks)
 {
     const noh_graph_node *clip = &g->nodes[noh_graph_first_of(g, child)];
@@ -206,6 +206,8 @@ static int holds(noh_graph_state *s, const noh_graph *g, const noh_clip_set *set
     }
 }
 
+/* Take a transition: the new state starts from its beginning, unless it keeps its place; the old one fades out, or is
+ * left at once and its difference decays. */
 static void take(noh_graph_state *s, const noh_graph *g, const noh_clip_set *set, const noh_graph_node *node,
                  const noh_graph_transition *t)
 {
@@ -238,7 +240,8 @@ static void take_first(noh_graph_state *s, const noh_graph *g, const noh_clip_se
     }
 }
 
-/* No pose was asked for since the last step: its inertial transitions switch without inertia. */
+/* Inertial transitions that still wait for a pose: there was none since the last step, so they switch without inertia.
+ */
 static void drop_switches(noh_graph_state *s)
 {
     for (uint32_t i = 0; i < s->machine_count; i++) {

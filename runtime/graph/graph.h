@@ -1,10 +1,10 @@
 /* graph.h: an animation graph in a fixed array.
  *
  * Nodes are stored in post-order: each node directly after the subtrees of its children; the last one gives the pose.
- * They are evaluated in stored order, without recursion, with as many pose buffers as the deepest chain needs, which is
- * known beforehand. Nodes of weight 0 are not sampled.
+ * They are evaluated in stored order, without recursion, with as many pose buffers as noh_graph_buffers counts
+ * beforehand. Nodes of weight 0 are not sampled.
  *
- *   CLIP      a clip; each is one track of a controller inside, so time, events and sync groups are the controller's
+ *   CLIP      a clip: one track of the controller inside, which keeps time, events and sync groups
  *   BLEND     a * (1 - t) + b * t
  *   ADD       a + t * (b as a difference): b's clips are differences already (NOH_CLIP_ADDITIVE), or are taken against
  *             the bind pose
@@ -16,7 +16,7 @@
  * the other children of a node.
  *
  * An instance is one block without pointers: cloning it is one memcpy. Weights and transitions are decided at the start
- * of a step; within the step everything is the controller's, events included.
+ * of a step; the rest of the step, events included, is the controller's (anim/controller.h).
  *
  * source  animation trees: Granberg 2009, chapter 16
  *
@@ -49,8 +49,8 @@ typedef struct noh_graph_node {
     uint16_t first_child, child_count; /* in the graph's children */
     uint16_t param;                    /* t or x; NOH_GRAPH_NONE: `value` */
     uint16_t param_y;                  /* SPACE_2D */
-    uint16_t first_item,
-        item_count; /* SPACE_1D: its thresholds, one per child; SPACE_2D: its space; MACHINE: its transitions */
+    /* SPACE_1D: its thresholds, one per child; SPACE_2D: its space; MACHINE: its transitions */
+    uint16_t first_item, item_count;
     uint16_t mask;  /* MASK: 1 + index in the set's masks */
     uint16_t index; /* CLIP, MACHINE: its number among the nodes of its kind, in stored order */
     uint16_t reserved;
@@ -82,16 +82,16 @@ typedef struct noh_graph_transition {
 typedef struct noh_graph {
     uint32_t node_count, child_count, clip_count, machine_count, transition_count, threshold_count, space_count,
         param_count;
-    const noh_graph_node *nodes;
-    const uint16_t *children;    /* node indices */
+    const noh_graph_node *nodes; /* [node_count] */
+    const uint16_t *children;    /* [child_count] indices of nodes */
     const noh_track_desc *clips; /* [clip_count]; clip, position, speed, loop, sync group and PAUSED are used */
-    const noh_graph_transition *transitions;
-    const float *thresholds;
-    const noh_blend_space_2d *spaces;
-    const float *param_defaults; /* [param_count]; NULL: all 0 */
+    const noh_graph_transition *transitions; /* [transition_count] */
+    const float *thresholds;                 /* [threshold_count] */
+    const noh_blend_space_2d *spaces;        /* [space_count] */
+    const float *param_defaults;             /* [param_count]; NULL: all 0 */
 } noh_graph;
 
-/* 16 bytes. */
+/* The state of a machine: 16 bytes. */
 typedef struct noh_machine {
     uint16_t current, previous; /* previous: NOH_GRAPH_NONE when no transition runs */
     uint32_t elapsed, duration; /* of a cross-fade, ticks */
@@ -117,8 +117,9 @@ uint32_t noh_graph_buffers(const noh_graph *graph);
 
 /* ---- instances ---- */
 
-/* errors of init  those of noh_graph_check; ARG memory NULL or not 16-byte aligned, or a clip's desc; MEMORY too small;
- * need: the exact bytes */
+/* Exact bytes of an instance (0 for a graph that noh_graph_check refuses), and an instance in memory[bytes], 16-byte
+ * aligned: all clips at their starts, all machines in their first states.
+ * errors  those of noh_graph_check; ARG memory NULL or misaligned, or the desc of a clip; MEMORY need: the bytes */
 size_t noh_graph_state_size(const noh_graph *graph, const noh_clip_set *set);
 noh_result noh_graph_state_init(void *memory, size_t bytes, const noh_graph *graph, const noh_clip_set *set,
                                 noh_graph_state **state, noh_error *error);
@@ -126,32 +127,37 @@ noh_result noh_graph_state_init(void *memory, size_t bytes, const noh_graph *gra
 /* The controller inside, with one track per clip node. */
 noh_controller *noh_graph_controller(noh_graph_state *state);
 
-/* errors  ARG index, or a value that is not finite */
+/* Set and read a parameter.
+ * errors  ARG param, or a value that is not finite */
 noh_result noh_graph_set_param(noh_graph_state *state, uint32_t param, float value);
 float noh_graph_param(const noh_graph_state *state, uint32_t param);
 
-/* The state of a machine, counted among machines: the child that it is in or fades to. */
+/* The state that a machine is in or fades to, as a child of its node. `machine` is its number among the machines. */
 uint32_t noh_graph_machine_state(const noh_graph_state *state, uint32_t machine);
 
-/* Take transitions, find weights, move time on. Returns the number of events delivered. The callback may set
- * parameters; changes that it makes to the tracks inside last until the next step. */
+/* Take transitions, find weights, move time on. The callback may set parameters; changes that it makes to the tracks
+ * inside last until the next step.
+ * returns  how many events were delivered */
 uint32_t noh_graph_step(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, uint32_t ticks,
                         noh_event_fn fn, void *user);
 
 /* ---- poses ---- */
 
+/* Working memory of posing: no state, so one serves all instances of a graph that are posed one after another. */
 typedef struct noh_graph_scratch {
     noh_pose_scratch pose;
     noh_transform *poses[NOH_GRAPH_BUFFERS_MAX];
     float *float_poses[NOH_GRAPH_BUFFERS_MAX];
 } noh_graph_scratch;
 
+/* Exact bytes of a scratch for a checked graph, and a scratch in memory[bytes], 16-byte aligned.
+ * errors  ARG memory NULL or misaligned; MEMORY need: the bytes */
 size_t noh_graph_scratch_size(const noh_graph *graph, const noh_clip_set *set);
 noh_result noh_graph_scratch_init(void *memory, size_t bytes, const noh_graph *graph, const noh_clip_set *set,
                                   noh_graph_scratch *scratch, noh_error *error);
 
-/* The present pose. It begins the inertial transitions of the last step; without a call between two steps they switch
- * without inertia.
+/* The present pose. It begins the inertial transitions of the last step; a step that is not posed before the next one
+ * switches without inertia.
  * shapes  pose[joint_count], floats[float_count] of the set */
 void noh_graph_pose(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, noh_graph_scratch *scratch,
                     noh_transform *pose, float *floats);

@@ -162,7 +162,7 @@ static const char *bad_order(const noh_graph *g, uint32_t *where)
     return count == 1 ? NULL : "more than one root: the last node must hold all others";
 }
 
-/* Numbers of clips and machines count up in stored order, so each is used once. */
+/* Clips and machines are numbered in stored order, so each number is used once. */
 static const char *bad_indices(const noh_graph *g, uint32_t *where)
 {
     uint32_t clips = 0, machines = 0;
@@ -173,8 +173,8 @@ static const char *bad_indices(const noh_graph *g, uint32_t *where)
         if (n->kind == NOH_NODE_MACHINE && n->index != machines++)
             return "machine index: each machine counts those before it";
     }
-    return clips != g->clip_count         ? "clip_count is not in 1..NOH_TRACKS_MAX"
-           : machines != g->machine_count ? "machine_count is above node_count"
+    return clips != g->clip_count         ? "clip_count is not the number of CLIP nodes"
+           : machines != g->machine_count ? "machine_count is not the number of MACHINE nodes"
                                           : NULL;
 }
 
@@ -189,7 +189,7 @@ noh_result noh_graph_check(const noh_graph *graph, const noh_clip_set *set, noh_
     for (; where < graph->node_count && !what; where++) {
         what = bad_node(graph, set, &graph->nodes[where]);
     }
-    where -= what != NULL;
+    where -= what != NULL; /* the loop has gone on by one */
     what = what ? what : bad_order(graph, &where);
     what = what ? what : bad_indices(graph, &where);
     if (!what && noh_graph_buffers(graph) > NOH_GRAPH_BUFFERS_MAX) {

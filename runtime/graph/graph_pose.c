@@ -68,7 +68,7 @@ typedef struct evaluation {
     uint32_t taken; /* a bit per buffer */
     float weights[NOH_GRAPH_NODES_MAX];
     uint8_t buffer[NOH_GRAPH_NODES_MAX]; /* where a node's pose lies, or NO_BUFFER */
-    /* NOH_CLIP_FLOATS_ONLY, NO_FLOATS: what nothing animates in a buffer's pose */
+    /* NOH_CLIP_FLOATS_ONLY, NOH_CLIP_JOINTS_ONLY: what no clip in a buffer's pose animates */
     uint8_t lacks[NOH_GRAPH_BUFFERS_MAX];
 } evaluation;
 
@@ -76,7 +76,7 @@ static uint8_t take_buffer(evaluation *e)
 {
     uint8_t i = 0;
     while (e->taken >> i & 1u) {
-        i++; /* noh_graph_buffers has counted how far this goes */
+        i++; /* ends: noh_graph_buffers counted the buffers */
     }
     e->taken |= 1u << i;
     return i;
@@ -149,6 +149,7 @@ static int is_difference(const evaluation *e, uint32_t node)
     return (e->set->clips[noh_controller_track(e->c, clip->index)->clip].flags & NOH_CLIP_ADDITIVE) != 0;
 }
 
+/* The second child is added as a difference: as it is, or taken from the bind pose first. */
 static void add_part(evaluation *e, const noh_graph_node *node, const parts *p)
 {
     uint32_t joints = e->c->lod_joint_count, floats = e->set->float_count;
@@ -169,6 +170,7 @@ static void add_part(evaluation *e, const noh_graph_node *node, const parts *p)
     e->lacks[p->buffers[0]] &= e->lacks[p->buffers[1]];
 }
 
+/* The second child is laid over the first where the mask allows; what it does not animate stays the first's. */
 static void mask_part(evaluation *e, const noh_graph_node *node, const parts *p)
 {
     noh_mask_view mask = noh_clip_set_mask(e->set, node->mask);
@@ -201,6 +203,9 @@ static void evaluate_node(evaluation *e, uint32_t i)
     e->buffer[i] = p.count ? p.buffers[0] : (uint8_t)NO_BUFFER;
 }
 
+/* Post-order makes this a walk over an array: children come before their node and leave their poses in buffers; the
+ * node combines them in the first one's buffer and frees the others. `before`: as things were before the inertial
+ * transitions that begin now. */
 static void evaluate(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set,
                      noh_graph_scratch *scratch, int before, int64_t ago, noh_transform *pose, float *floats)
 {
@@ -238,6 +243,8 @@ static void evaluate(noh_graph_state *state, const noh_graph *graph, const noh_c
 
 /* ---- transitions by inertia ---- */
 
+/* As a controller's transitions: four poses, of the graph before and after the switch, now and a moment ago; their
+ * differences become the offsets that decay. The offsets of a transition that still runs belong to the poses before. */
 static void begin_inertia(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set,
                           noh_graph_scratch *scratch)
 {

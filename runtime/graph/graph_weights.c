@@ -22,6 +22,8 @@ static float held(float t)
     return t > 0.0f ? (t < 1.0f ? t : 1.0f) : 0.0f;
 }
 
+/* One state has all the weight, or two share it while a cross-fade runs. In an inertial transition the old state has it
+ * as seen from before the switch, the new one from after. */
 static void machine_weights(const noh_graph_view *view, const noh_graph_node *node, float *local)
 {
     const noh_machine *m = &view->machines[node->index];
@@ -100,6 +102,7 @@ void noh_graph_weights(const noh_graph_view *view, float *weights, uint8_t *acti
     }
 }
 
+/* In post-order a subtree begins with its first child's subtree, so it begins with a leaf. */
 uint32_t noh_graph_first_of(const noh_graph *graph, uint32_t node)
 {
     while (graph->nodes[node].child_count) {

@@ -1,4 +1,4 @@
-/* graph_weights.h (private to anim/): the weight of every node of a graph. */
+/* graph_weights_internal.h (private to graph/): the weight of every node of a graph. */
 #ifndef NOH_GRAPH_GRAPH_WEIGHTS_INTERNAL_H
 #define NOH_GRAPH_GRAPH_WEIGHTS_INTERNAL_H
 
@@ -17,11 +17,13 @@ const noh_machine *noh_graph_machines_of(const noh_graph_state *state);
 /* A node's t or x. */
 float noh_graph_amount(const noh_graph_view *view, const noh_graph_node *node);
 
-/* The weight of each child in its node. ADD and MASK: 1 and t. shapes  local[child_count] */
+/* The weight of each child in its node. ADD and MASK: 1 and t.
+ * shapes  local[child_count] */
 void noh_graph_child_weights(const noh_graph_view *view, const noh_graph_node *node, float *local);
 
-/* The products of these weights from the root down, and which nodes are in play: not in a state that its machine is not
- * in. shapes  weights[node_count], active[node_count] */
+/* The products of these weights from the root down, and which nodes are in play: all but those in states that their
+ * machine is not in.
+ * shapes  weights[node_count], active[node_count] */
 void noh_graph_weights(const noh_graph_view *view, float *weights, uint8_t *active);
 
 /* The first node of a subtree; it is a clip. */

@@ -150,6 +150,8 @@ static uint32_t stored_weight(const uint32_t *words, uint32_t n)
     return (uint32_t)(pair >> bit % 32u) & ((1u << size) - 1u);
 }
 
+/* The first joint's weight is not stored: it is what the others leave of 1. As integers of 2^-22 all weights, and their
+ * sum, are exact in float32. */
 uint32_t noh_mesh_influences(const noh_mesh *mesh, uint32_t vertex, uint32_t joints[NOH_INFLUENCES_MAX],
                              float weights[NOH_INFLUENCES_MAX])
 {
@@ -170,8 +172,8 @@ uint32_t noh_mesh_influences(const noh_mesh *mesh, uint32_t vertex, uint32_t joi
 
 /* Decode an octahedral direction from x and y in -1..1. The sphere is projected on the octahedron |x| + |y| + |z| = 1;
  * its upper half lies in the square as it is, the lower half is folded outwards over the four edges. So z is what x and
- * y leave of 1, and where it is negative x and y are folded back by it. source  Meyer, Suessmuth, Sussner, Stamminger,
- * Greiner: On floating-point normal vectors, 2010 */
+ * y leave of 1, and where it is negative x and y are folded back by it.
+ * source  Meyer, Suessmuth, Sussner, Stamminger, Greiner: On floating-point normal vectors, 2010 */
 static void unfold(float x, float y, float out[3])
 {
     float z = 1.0f - (x < 0.0f ? -x : x) - (y < 0.0f ? -y : y);

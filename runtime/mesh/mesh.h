@@ -1,4 +1,5 @@
 /* mesh.h: a mesh of a pack and the skin that moves it, as pointers into the pack's bytes; and its vertices, decoded.
+ *
  * Threads: views are read-only; any number of threads. */
 #ifndef NOH_MESH_MESH_H
 #define NOH_MESH_MESH_H
@@ -46,27 +47,27 @@ typedef struct noh_vertex {
     float color[4]; /* linear; white without colours */
 } noh_vertex;
 
-/* The n-th mesh, its full level.
+/* The n-th mesh, at level 0.
  * errors  NOT_FOUND  past mesh_count (where: the index, need: the count); *mesh is untouched */
 noh_result noh_pack_mesh_at(const noh_pack *pack, uint32_t index, noh_mesh *mesh, noh_error *error);
 
 /* The same mesh at a LOD level: 0 is the full one, past the last it is the coarsest. Levels are absolute, whichever
- * level `mesh` is at. The result is a mesh like any other: what is made from it (layers, skinned vertices, GL buffers)
- * has that level's size and can show every coarser level too. */
+ * level `mesh` is at. The result is a mesh like any other: what is made from it (accumulators, skinned vertices, GL
+ * buffers) has that level's size and can show every coarser level too. */
 noh_mesh noh_mesh_at_lod(const noh_mesh *mesh, uint32_t level);
 
 /* The n-th skin; a mesh names its own in header->skin.
  * errors  NOT_FOUND  past skin_count, so also for NOH_NONE, a rigid mesh's (where: the index, need: the count) */
 noh_result noh_pack_skin_at(const noh_pack *pack, uint32_t index, noh_skin *skin, noh_error *error);
 
-/* The index of the target of that name, or NOH_NONE: weights[] has no place for it then. */
+/* The index of the target of that name, for weights[]; NOH_NONE when there is none. */
 uint32_t noh_mesh_find_target(const noh_mesh *mesh, const char *name);
 
 /* Decode a vertex of the bind pose, with the arithmetic of shaders_es/common_attributes.glsl.
  * ranges  index below vertex_count */
 void noh_mesh_vertex(const noh_mesh *mesh, uint32_t index, noh_vertex *out);
 
-/* Its normal and tangent unnormalised: of lengths from 0.57 to 1, for a caller that normalises later. Without tangents
+/* Its normal and tangent unnormalised, of lengths from 0.57 to 1, for a caller that normalises later. Without tangents
  * the tangent is 0. */
 void noh_mesh_directions(const noh_mesh *mesh, uint32_t index, float normal[3], float tangent[3]);
 
@@ -75,8 +76,8 @@ int noh_mesh_tangent_offset(const noh_mesh *mesh);
 int noh_mesh_uv_offset(const noh_mesh *mesh);
 int noh_mesh_color_offset(const noh_mesh *mesh);
 
-/* A vertex's accumulation texel: it has none where that is header->touched_count or more. And its palette: 0 unless the
- * mesh is split into several. */
+/* A vertex's accumulation texel; header->touched_count or more: it has none, no target moves it. And its palette: 0
+ * unless the mesh is split into several. */
 uint32_t noh_mesh_accumulation_texel(const noh_mesh *mesh, uint32_t vertex);
 uint32_t noh_mesh_palette(const noh_mesh *mesh, uint32_t vertex);
 

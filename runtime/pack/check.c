@@ -17,6 +17,8 @@ noh_result noh_check_head(noh_check *check, uint32_t bytes)
     return NOH_OK;
 }
 
+/* Arrays lie in a fixed order, each at the next multiple of 16, so an offset in the file can only be right or wrong: it
+ * is compared with the cursor, which then moves past the array. Nothing overlaps, and no byte is left unchecked. */
 noh_result noh_check_array(noh_check *check, uint32_t offset, uint64_t count, uint32_t stride)
 {
     uint64_t start = ((uint64_t)check->cursor + 15u) & ~(uint64_t)15u;

@@ -1,5 +1,5 @@
-/* check_clip.c: the checkers of skeletons and clip. The compressed clip inside a clip
- * chunk is checked by its decoder when it is opened, against its own bytes alone. */
+/* check_clip.c: the checkers of skeletons and clips. The compressed clip inside a clip chunk is checked by
+ * noh_clip_init when it is opened: its bytes alone say whether they are right. */
 #include "pack/check_internal.h"
 
 #include <stddef.h>
@@ -25,7 +25,7 @@ static noh_result check_joints(const noh_check *check, const noh_skeleton_header
     return noh_check_floats(check, bind, h->joint_count * 10u, "bind pose is not finite");
 }
 
-/* After the joints. */
+/* The joint counts of the LOD levels: falling, and no level lacks a joint without a parent. After check_joints. */
 static noh_result check_levels(const noh_check *check, const noh_skeleton_header *h)
 {
     const uint16_t *parents = (const uint16_t *)(const void *)(check->bytes + h->parents_offset);
@@ -131,7 +131,7 @@ static noh_result check_binding(const noh_check *check, const noh_clip_header *h
     return NOH_OK;
 }
 
-/* From 0 up: what is left out never makes it better. */
+/* Errors begin with 0 and never fall: leaving more out never makes a pose better. */
 static noh_result check_errors(const noh_check *check, const float *errors, uint32_t count, const char *what)
 {
     for (uint32_t i = 0; i < count; i++) {
@@ -149,7 +149,7 @@ static noh_result check_clip_errors(const noh_check *check, const noh_clip_heade
                                      "joint errors do not begin with 0, or fall, or are not finite");
     if (!result)
         result = check_errors(check, h->update_rate_error, NOH_CLIP_UPDATE_RATES,
-                              "rate errors do not begin with 0, or fall, or are not finite");
+                              "update rate errors do not begin with 0, or fall, or are not finite");
     if (!result && (!noh_float_finite(h->error_shell) || h->error_shell < 0.0f)) {
         result = noh_check_fail(check, "the shell of a clip's errors is not a length",
                                 offsetof(noh_clip_header, error_shell));

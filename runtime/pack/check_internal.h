@@ -1,4 +1,4 @@
-/* check.h (private to pack/): the checkers of the chunks, one per type.
+/* check_internal.h (private to pack/): the checkers of the chunks, one per type.
  *
  * Each sees only the bytes of its own chunk and the pack as far as it has been opened: chunks come in an order in which
  * none refers to a later one. Files call each other in one direction: check_mesh.c calls check_level.c and

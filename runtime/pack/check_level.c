@@ -6,7 +6,8 @@
 
 /* ---- headers ---- */
 
-/* What only this level has becomes what the full mesh has: the rest has to be equal already. */
+/* A level's header with the fields in which levels differ replaced by the full mesh's: what is left must be equal to
+ * it. */
 static noh_mesh_header as_full(const noh_mesh_header *l, const noh_mesh_header *h)
 {
     noh_mesh_header same = *l;
@@ -26,6 +27,7 @@ static noh_mesh_header as_full(const noh_mesh_header *l, const noh_mesh_header *
     return same;
 }
 
+/* Whether a level has nothing, or more of something than the finer level. */
 static int counts_rise(const noh_mesh_header *l, const noh_mesh_header *finer)
 {
     return !l->vertex_count || l->vertex_count > finer->vertex_count || l->index_count > finer->index_count ||
@@ -103,7 +105,7 @@ static int texel_is_right(const noh_mesh_header *l, uint32_t vertex, uint32_t te
                               : texel <= vertex && (vertex >= l->touched_count || texel == vertex);
 }
 
-/* The texels of a level's vertices are the level's. */
+/* Every vertex of a level refers to a texel that the level has. */
 static noh_result check_texels(const noh_check *check, const noh_mesh_header *h, const noh_mesh_header *l)
 {
     if (!(l->flags & NOH_MESH_TEXELS)) {

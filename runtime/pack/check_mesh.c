@@ -54,7 +54,7 @@ static noh_result check_limits(const noh_check *check, const noh_mesh_header *h)
                : NOH_OK;
 }
 
-/* What sizes the arrays of a skinned mesh; before they are looked at. */
+/* The counts that size a skinned mesh's arrays, before the arrays are looked at. */
 static noh_result check_skin_counts(const noh_check *check, const noh_mesh_header *h)
 {
     const uint32_t n = h->influence_count;
@@ -86,7 +86,7 @@ static noh_result check_skin_counts(const noh_check *check, const noh_mesh_heade
     return NOH_OK;
 }
 
-/* Boxes: finite, and not inside out, or (inverted) altogether. */
+/* Boxes are finite, and each has its smallest corner first; where it may be empty all three axes are inverted. */
 static noh_result check_boxes(const noh_check *check, uint32_t offset, uint32_t count, int may_be_empty)
 {
     const float *boxes = (const float *)(const void *)(check->bytes + offset);
@@ -141,6 +141,8 @@ static noh_result check_arrays(noh_check *check, const noh_mesh_header *h)
     return noh_check_end(check);
 }
 
+/* A target begins where the one before it ended; its three fields fill a word at most, and no field is wider than a
+ * float's mantissa. */
 static noh_result check_target_head(const noh_check *check, const noh_mesh_header *h, const noh_target *t,
                                     uint32_t first_rect, uint32_t first_texel, uint64_t at)
 {
@@ -163,6 +165,7 @@ static noh_result check_target_head(const noh_check *check, const noh_mesh_heade
     return noh_check_floats(check, &t->position_scale, 7, "target's scale is not finite");
 }
 
+/* The targets' rectangles and delta texels follow each other in target order and use up the mesh's. */
 static noh_result check_targets(const noh_check *check, const noh_mesh_header *h)
 {
     const noh_target *targets = (const noh_target *)(const void *)(check->bytes + h->targets_offset);
@@ -186,7 +189,7 @@ static noh_result check_targets(const noh_check *check, const noh_mesh_header *h
     return NOH_OK;
 }
 
-/* Of the full mesh and what all levels share. */
+/* The full mesh, and what all its levels share. */
 static noh_result check_full(noh_check *check, const noh_mesh_header *h)
 {
     noh_result result = noh_check_floats(check, h->bounds_min, 13, "bounds, error bound or scale are not finite");

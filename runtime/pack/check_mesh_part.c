@@ -1,10 +1,11 @@
 /* check_mesh_part.c: checks of the parts that every level of a mesh has: its accumulation texture, triangles,
- * submeshes, rectangles and texel references. check_mesh.c, check_level.c and check_skin.c call them; they call none
- * of these. `h` is always the header of the level that is checked. */
+ * submeshes, rectangles and texel references. check_mesh.c, check_level.c and check_skin.c call these functions, never
+ * the other way round. `h` is always the header of the level that is checked. */
 #include "pack/check_internal.h"
 
 #include <stddef.h>
 
+/* The accumulation texture has a power of two as its width and just as many rows as its texels need. */
 noh_result noh_check_texture_shape(const noh_check *check, const noh_mesh_header *h)
 {
     const uint64_t at = (uint64_t)h->level * sizeof *h;
@@ -89,6 +90,8 @@ static noh_result check_rect(const noh_check *check, const noh_mesh_header *h, c
     return NOH_OK;
 }
 
+/* A target's delta texels are those of its rectangles, one rectangle after the other, row by row. They must be used up
+ * exactly, and those that are not zero are its pairs. */
 noh_result noh_check_rects(const noh_check *check, const noh_mesh_header *h, const noh_target *t)
 {
     const noh_rect *rects = (const noh_rect *)(const void *)(check->bytes + h->rects_offset) + t->first_rect;

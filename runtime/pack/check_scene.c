@@ -56,6 +56,7 @@ static uint32_t mesh_target_count(const noh_pack *pack, uint32_t mesh)
     return ((const noh_mesh_header *)(const void *)(pack->bytes + chunk->offset))->target_count;
 }
 
+/* A node comes after its parent, so nodes make trees, and one pass in stored order meets parents first. */
 static noh_result check_node(const noh_check *check, const noh_nodes_header *h, const noh_node *node, uint32_t index)
 {
     uint64_t at = h->nodes_offset + (uint64_t)index * sizeof *node;

@@ -48,7 +48,7 @@ noh_result noh_check_skin(noh_check *check)
 
 /* ---- meshes ---- */
 
-/* The palettes lie behind each other, and name joints of the skin. */
+/* The palettes follow each other without gaps, and name joints of the skin. */
 static noh_result check_palettes(const noh_check *check, const noh_mesh_header *h)
 {
     const noh_palette *palettes = (const noh_palette *)(const void *)(check->bytes + h->palettes_offset);
@@ -75,7 +75,7 @@ static noh_result check_palettes(const noh_check *check, const noh_mesh_header *
     return NOH_OK;
 }
 
-/* The bits of a vertex's weights, lowest first. */
+/* `count` bits of a vertex's weights from `bit` up. */
 static uint32_t take_bits(const uint32_t *words, uint32_t bit, uint32_t count)
 {
     uint64_t pair = words[bit / 32u];
@@ -85,7 +85,8 @@ static uint32_t take_bits(const uint32_t *words, uint32_t bit, uint32_t count)
     return (uint32_t)(pair >> bit % 32u) & ((1u << count) - 1u);
 }
 
-/* Places in the palette, weights that leave something for the first, and no bit that means nothing. */
+/* Joints lie in the palette, a joint without a weight repeats the first, the weights are at most 1, and bits that mean
+ * nothing are 0. */
 static noh_result check_record(const noh_check *check, const uint32_t *words, uint32_t count, uint32_t places,
                                uint64_t at)
 {

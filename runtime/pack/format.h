@@ -3,8 +3,10 @@
  * A pack is a header, a chunk table and the chunks. Every chunk begins at the next multiple of 64 after the one before
  * it, and every array inside a chunk at the next multiple of 16 after the array before it. Offsets therefore follow
  * from the counts; the file carries them all the same, so that readers are simple, and noh_pack_open demands that both
- * agree. Padding and reserved fields are zero. Names are offsets into the string chunk. There are no pointers, nothing
- * to patch. Threads: constant data; any thread. */
+ * agree. Padding and reserved fields are zero. Names are offsets into the string chunk. There are no pointers, so
+ * nothing needs patching.
+ *
+ * Threads: constant data; any thread. */
 #ifndef NOH_PACK_FORMAT_H
 #define NOH_PACK_FORMAT_H
 
@@ -57,25 +59,24 @@ typedef struct noh_pack_chunk {
 #define NOH_MESH_UVS 2u
 #define NOH_MESH_COLORS 4u
 #define NOH_MESH_DUAL_QUATERNION 8u /* skinned by dual quaternions, else by matrices */
-#define NOH_MESH_TEXELS                                                                 \
-    16u /* a texel reference per vertex: split into several palettes, or LOD levels cut \
-         * through moved and unmoved vertices */
+/* Each vertex has a texel reference: the mesh is split into several palettes, or has LOD levels, in which moved and
+ * unmoved vertices alternate. */
+#define NOH_MESH_TEXELS 16u
 
-/* Attribute record, interleaved, 4 bytes each and in this order; those whose
- * flag is not set are absent:
+/* Attribute record, interleaved, 4 bytes each and in this order; those whose flag is not set are absent:
  *   normal   int16 x 2, octahedral: n.xy / 32767 unfolds to a unit vector; always there
  *   tangent  int16 x 2, octahedral; y has 15 bits above bit 0, which is 1 for handedness -1 (TANGENTS)
  *   uv       unorm 16:16, uv = uv_offset + uv_scale * value (UVS)
  *   color    unorm 8:8:8:8, linear rgb with a square-root curve, alpha straight (COLORS)
  *   texel    low 22 bits the vertex's accumulation texel, above them its palette (TEXELS). Without levels: the vertex
  *            whose texel it shares, which has one if it is below touched_count; with levels: the texel, or
- * NOH_TEXEL_NONE */
+ *            NOH_TEXEL_NONE */
 #define NOH_TEXEL_VERTEX_BITS 22u
 #define NOH_TEXEL_NONE ((1u << NOH_TEXEL_VERTEX_BITS) - 1u)
 
-/* The header of the full mesh is followed by those of its coarser LOD levels, each a mesh of its own. A level's
- * vertices, delta texels and, target by target, rectangles are the first ones of the finer level's arrays, which it
- * shares; its indices, submeshes and targets follow the finer level's. So a level can be used, and loaded, as if there
+/* The header of the full mesh is followed by those of its coarser LOD levels, each a mesh of its own. A level shares
+ * the finer level's arrays of vertices and delta texels and, target by target, of rectangles: it has the first so many
+ * of each. Its indices, submeshes and targets follow the finer level's. So a level can be used, and loaded, as if there
  * were no finer one. */
 typedef struct noh_mesh_header {
     uint32_t flags; /* NOH_MESH_* */
@@ -111,39 +112,37 @@ typedef struct noh_mesh_header {
     uint32_t skin;              /* the n-th skin chunk, or NOH_NONE: a rigid mesh, and all below is 0 */
     uint32_t influence_count;   /* joints per vertex: 0, 1, 2, 4 or 8 */
     uint32_t influences_offset; /* uint32_t[vertex_count][NOH_INFLUENCE_WORDS] */
-    uint32_t palette_count;     /* 1, or more where one palette cannot hold all joints: the mesh is split, triangle by
-                                   triangle */
+    uint32_t palette_count;     /* 1, or more where one palette cannot hold all joints: the mesh is split by triangle */
     uint32_t palettes_offset;   /* noh_palette[palette_count] */
     uint32_t palette_joint_count;
-    uint32_t palette_joints_offset; /* uint16_t[palette_joint_count], places in the skin's joints */
+    uint32_t palette_joints_offset; /* uint16_t[palette_joint_count], indices into the skin's joints */
     /* float[the skin's joint_count][6]: smallest and largest x, y, z of the rest positions of the vertices that this
      * joint moves; the smallest above the largest where it moves none */
     uint32_t joint_boxes_offset;
     uint32_t level;         /* 0: the full mesh; the others follow it in the chunk */
-    uint32_t level_count;   /* 1..NOH_LOD_LEVELS_MAX, of the mesh: in all its levels the same */
+    uint32_t level_count;   /* 1..NOH_LOD_LEVELS_MAX, of the mesh: the same in all its levels */
     float level_error_rest; /* certified: the largest distance between this level's surface and the full one, both ways,
                              * model units; all 0 in the full mesh. At rest, */
     float level_error_rest_p99; /* nearer than this for 99 % of the area; */
     float level_error_targets;  /* with each target alone at weight 1, */
     float level_error_pairs;    /* with the targets for left and right together, */
     float level_error_clip;     /* over frames of the clips that the pack was built with */
-    /* what the targets that have no rectangles in this level alone move at most, all at weight 1 */
+    /* the farthest that the targets without rectangles in this level would move a vertex, all at weight 1 */
     float level_skipped;
-    float influence_errors[3]; /* how far a vertex is off at most over those frames where only its 4, 2, 1 heaviest
-                                * joints move it, model units; with levels, else 0 */
+    float influence_errors[3]; /* the farthest that a vertex is off, over those frames, when only its 4, 2, 1 heaviest
+                                * joints move it, model units; 0 in a mesh without levels */
     uint32_t reserved[8];
 } noh_mesh_header;
 
-/* Influences of a vertex, in words. The first joint is the strongest: its weight is
- * what the others leave of 1, so sums are exact. The others' weights are
- * integers of 2^-22. Joints are 8-bit places in the vertex's palette; those without a
- * weight repeat the first.
+/* Influences of a vertex, in words. The first joint is the strongest: its weight is what the others leave of 1, so sums
+ * are exact. The others' weights are multiples of 2^-22. Joints are 8-bit indices into the vertex's palette; those
+ * without a weight repeat the first.
  *   1  j0
  *   2  j0 | j1 << 8, then w1
  *   4  j0 | j1 << 8 | j2 << 16 | j3 << 24, then w1, w2, w3
  *   8  the same, j4 to j7, then w1 to w7
- * Weights lie behind each other from the lowest bit of their words up: w1 has 22 bits
- * (it may be one half), the others 21 (they are at most a third). */
+ * Weights follow each other from the lowest bit of their words up: w1 has 22 bits (it may be one half), the others 21
+ * (they are at most a third). */
 #define NOH_INFLUENCE_WORDS(count) ((count) == 8u ? 7u : (count) == 4u ? 3u : (count))
 #define NOH_WEIGHT_ONE 0x400000u /* 2^22 */
 
@@ -160,9 +159,8 @@ typedef struct noh_submesh {
     uint32_t palette; /* 0 in a rigid mesh */
 } noh_submesh;
 
-/* One morph target. A delta texel is three words, word i for axis i: from the
- * top bit down `position_bits`, `normal_bits`, `tangent_bits` of two's
- * complement; value = integer * scale. */
+/* One morph target. A delta texel is three words, word i for axis i: from the top bit down `position_bits`,
+ * `normal_bits`, `tangent_bits` of two's complement; value = integer * scale. */
 typedef struct noh_target {
     uint32_t name, name_hash;
     uint32_t first_rect, rect_count;
@@ -170,14 +168,13 @@ typedef struct noh_target {
     uint32_t pair_count;
     uint8_t position_bits, normal_bits, tangent_bits, reserved0;
     float position_scale, normal_scale, tangent_scale;
-    float radius;                      /* model units, at weight 1 */
+    float radius;                      /* the farthest that it moves a vertex at weight 1, model units */
     float position_error;              /* largest error at weight 1, model units: certified by the converter */
     float normal_error, tangent_error; /* per component */
     uint32_t reserved1;
 } noh_target;
 
-/* A rectangle of accumulation texels; its delta texels follow those of the
- * rectangle before it. */
+/* A rectangle of accumulation texels; its delta texels follow those of the rectangle before it. */
 typedef struct noh_rect {
     uint16_t x, y, w, h;
 } noh_rect;
@@ -196,9 +193,9 @@ typedef struct noh_node {
     uint32_t parent;                             /* a lower index or NOH_NONE */
     uint32_t mesh;                               /* the n-th mesh chunk, or NOH_NONE */
     float translation[3], rotation[4], scale[3]; /* local */
-    float world[12];       /* 3 rows of 4: world position = rows * (x, y, z, 1); of a skinned mesh's node the
-                            * identity: the joints place it, and their model space is the world */
-    uint32_t first_weight; /* this node's default weights, or NOH_NONE: the mesh's hold */
+    float world[12];       /* 3 rows of 4: world position = rows * (x, y, z, 1). The identity in the node of a skinned
+                            * mesh: its joints place it, and their model space is the world */
+    uint32_t first_weight; /* this node's default weights, or NOH_NONE: it has the mesh's */
     uint32_t flags;
 } noh_node;
 
@@ -232,14 +229,14 @@ typedef struct noh_texture_header {
     uint32_t reserved[2];
 } noh_texture_header;
 
-/* ---- CHUNK_SKELETON: header, then four arrays. Joints come in an order in which each LOD level is
- * a prefix: those without a parent first, then by how far the bind pose reaches below them, falling. ---- */
+/* ---- CHUNK_SKELETON: header, then four arrays. Joints are in an order in which each LOD level is a prefix: those
+ * without a parent first, then by falling distance to the farthest joint below them in the bind pose. ---- */
 
 #define NOH_PACK_JOINT_ROOT 0xffffu /* parent of a joint that has none */
 
 typedef struct noh_skeleton_header {
     uint32_t joint_count;
-    uint32_t hash;           /* of names and parents: binds clip packs to mesh packs */
+    uint32_t hash;           /* of names and parents: joins the clips of one pack to the meshes of another */
     float unit_cm;           /* centimetres per unit of the translations */
     uint32_t parents_offset; /* uint16_t[joint_count], parents first, or NOH_PACK_JOINT_ROOT */
     uint32_t bind_offset;    /* float[joint_count][10]: rotation xyzw, translation, scale; local */
@@ -251,7 +248,7 @@ typedef struct noh_skeleton_header {
 
 /* ---- CHUNK_SKIN: header, then two arrays. ---- */
 
-/* A joint of a skeleton may be there several times, with different inverse bind matrices. */
+/* A skin may hold a joint of the skeleton several times, with different inverse bind matrices. */
 typedef struct noh_skin_header {
     uint32_t joint_count;
     uint32_t skeleton;      /* the n-th skeleton chunk */
@@ -260,9 +257,9 @@ typedef struct noh_skin_header {
     uint32_t inverse_bind_offset;
 } noh_skin_header;
 
-/* ---- CHUNK_CLIP: header, callback keys and sync markers in time order, what leaving out joints costs, then
- * the compressed clip (clip/clip_format.h): joints of a skeleton, morph weights of nodes, named floats.
- * Errors are in the skeleton's unit; in motion without joints in metres. ---- */
+/* ---- CHUNK_CLIP: header, callback keys and sync markers in time order, the errors of coarser skeletons, then the
+ * compressed clip (clip/clip_format.h): joints of a skeleton, morph weights of nodes, named floats. Errors are in the
+ * skeleton's unit; in a clip without joints in metres. ---- */
 
 #define NOH_CLIP_UPDATE_RATES 4u /* every frame, 30, 15 and 8 Hz: noh_update_rate of character/lod.h */
 
@@ -275,21 +272,23 @@ typedef struct noh_clip_header {
     uint32_t events_offset; /* noh_clip_event[event_count] */
     uint32_t marker_count;
     uint32_t markers_offset;      /* noh_clip_marker[marker_count] */
-    uint32_t joint_error_count;   /* levels of its skeleton; 0 without joints */
+    uint32_t joint_error_count;   /* LOD levels of its skeleton; 0 without joints */
     uint32_t joint_errors_offset; /* float[joint_error_count]: the farthest that a point is off when only the joints of
-                                   * a level are sampled and the others go where their parents go; of level 0 it is 0;
-                                   * not falling */
+                                   * a level are sampled and the others follow their parents; 0 for level 0, and never
+                                   * less than for the level before */
     uint32_t clip_bytes;
     uint32_t clip_offset;
-    float update_rate_error[NOH_CLIP_UPDATE_RATES]; /* of a probe that travels: a loop goes on from where it came, as
-                                                     * with root motion, its leap back is not counted; the first is 0;
-                                                     * not falling */
-    float error_shell; /* 0: the errors hold for the meshes that the clip was built with. joint_errors are bounds, for
-                        * all that is as near to a joint as the farthest vertex that it moves with a weight of 0.05 or
-                        * more (noh_joint_lod_measure). rate_error is exact for some hundred vertices, the farthest of
-                        * each joint among them, and no bound on what lies between these (noh_time_lod_points_measure).
-                        * Else there were none: both are bounds for points at this distance from each joint
-                        * (--shell-cm), in the skeleton's unit (noh_joint_lod_measure, noh_time_lod_measure) */
+    /* The farthest that a point is off when the clip is posed at an update rate and blended in between; 0 for the
+     * first, and never less than for the rate before. A loop counts as going on from where it ended, as with root
+     * motion: its leap back to the start is no error. */
+    float update_rate_error[NOH_CLIP_UPDATE_RATES];
+    /* 0: the errors hold for the meshes that the clip was built with. joint_errors are bounds for everything that is as
+     * near to a joint as the farthest vertex that it moves with a weight of 0.05 or more (noh_joint_lod_measure).
+     * update_rate_error is exact for some hundred vertices, the farthest of each joint among them, and no bound on what
+     * lies between these (noh_time_lod_points_measure).
+     * Above 0: there were no meshes, and both are bounds for points at this distance from each joint (--shell-cm), in
+     * the skeleton's unit (noh_joint_lod_measure, noh_time_lod_measure). */
+    float error_shell;
 } noh_clip_header;
 
 typedef struct noh_clip_event {
@@ -299,7 +298,7 @@ typedef struct noh_clip_event {
     float weight_min; /* below it the key does not fire */
 } noh_clip_event;
 
-/* A place that clips share which keep step: a foot on the ground (anim/sync_internal.h). */
+/* A moment that clips which keep step have in common: a foot touches the ground (anim/sync_internal.h). */
 typedef struct noh_clip_marker {
     uint32_t tick;            /* increasing */
     uint32_t name, name_hash; /* the hash is its id */

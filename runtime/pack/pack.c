@@ -55,6 +55,8 @@ static noh_result check_header(const uint8_t *bytes, size_t byte_count, noh_erro
     return NOH_OK;
 }
 
+/* The checksum covers the header, with its own field as 0, and the chunk table; the table holds the checksums of the
+ * chunks. So no bit of the file is outside a checksum but padding, which must be zero. */
 static noh_result check_table_crc(const uint8_t *bytes, noh_error *error)
 {
     noh_pack_header h;
@@ -102,6 +104,8 @@ static noh_result check_place(const noh_pack *pack, uint32_t index, uint64_t *cu
     return NOH_OK;
 }
 
+/* The chunk begins and ends with a zero, and no string is too long: so every offset below its size is a string that
+ * ends in the chunk, and offset 0 is the empty one. */
 static noh_result open_strings(noh_pack *pack, const noh_pack_chunk *c, noh_error *error)
 {
     const char *strings = (const char *)pack->bytes + c->offset;
@@ -120,6 +124,7 @@ static noh_result open_strings(noh_pack *pack, const noh_pack_chunk *c, noh_erro
     return NOH_OK;
 }
 
+/* Chunks of a type are neighbours, so a count and the first one's index find them all. */
 static void count_chunk(uint32_t *count, uint32_t *first, uint32_t index)
 {
     if (*count == 0) {
@@ -216,6 +221,9 @@ static noh_result check_tail(const noh_pack *pack, noh_error *error)
     return NOH_OK;
 }
 
+/* Checks come in an order in which each may rely on those before it: the counts of the header, the checksum of header
+ * and table, then chunk by chunk its place, its checksum and its content, and the padding at the end. The pack is built
+ * in a copy, which the caller gets only when everything has passed. */
 noh_result noh_pack_open(const void *bytes, size_t byte_count, noh_pack *pack, noh_error *error)
 {
     noh_pack p;

@@ -1,8 +1,9 @@
 /* pack.h: open a .noh pack where it lies: in a mapped file, in flash, in an array.
  *
  * noh_pack_open checks every byte once; afterwards no field is checked again, and nothing is copied. The bytes must
- * stay readable and unchanged for as long as the pack, or anything made from it, is used. Threads: an open pack is
- * read-only; any number of threads. */
+ * stay readable and unchanged for as long as the pack, or anything made from it, is used.
+ *
+ * Threads: an open pack is read-only; any number of threads. */
 #ifndef NOH_PACK_PACK_H
 #define NOH_PACK_PACK_H
 
@@ -41,8 +42,8 @@ typedef struct noh_texture {
 
 /* Open a pack: check all of it, and fill *pack.
  * memory  none; bytes must be aligned to 16
- * errors  ARG bytes or pack is NULL, or bytes are misaligned; VERSION another format version, need: ours; DATA broken,
- * where: the byte offset of the field at fault; LIMIT over a number of limits.h. *pack is then untouched */
+ * errors  ARG bytes or pack is NULL, or bytes are misaligned; VERSION another format version (need: ours); DATA broken
+ *         (where: the byte offset of the field at fault); LIMIT over a number of limits.h. *pack is then untouched */
 noh_result noh_pack_open(const void *bytes, size_t byte_count, noh_pack *pack, noh_error *error);
 
 /* The string at an offset that the pack stores; "" past the strings. */

@@ -22,8 +22,8 @@ void noh_blend_begin(noh_blend *blend)
     }
 }
 
-/* Coverage needs two things of every joint: whether the pose below has any weight there, and the unmasked weight of the
- * poses that take part above. One array holds both. Where nothing lies below, the total begins so far under zero that
+/* Coverage needs two facts for every joint: whether the pose below has any weight there, and the unmasked weight of the
+ * poses that take part above. One array holds both: where nothing lies below, the total begins so far under zero that
  * no sum of weights can lift it out (NOH_TRACKS_MAX times NOH_WEIGHT_MAX is 6.4e7). */
 #define NOTHING_BELOW (-1e30f)
 
@@ -122,7 +122,8 @@ static void mix_joint(const noh_transform *a, const noh_transform *b, float t, n
     }
 }
 
-/* How much of the pose below a sum covers at one joint. */
+/* How much of the pose below a sum covers at one joint: `amount` times the mean mask, which is the masked over the
+ * unmasked weight; all of it where nothing lies below. */
 static float cover_of(float amount, float weight, float total)
 {
     float part = weight / total;
@@ -166,6 +167,8 @@ void noh_floats_mix(uint32_t count, const float *a, const float *b, float t, con
     }
 }
 
+/* Differences are taken on the right, in the joint's own axes: reference * difference = pose. Added by noh_pose_add to
+ * another pose they turn the joint about the same axes of its own, whichever way that pose has turned it. */
 void noh_pose_difference(uint32_t joint_count, const noh_transform *reference, const noh_transform *pose,
                          noh_transform *out)
 {

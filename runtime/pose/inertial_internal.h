@@ -1,4 +1,4 @@
-/* inertial.h: transitions by a pose of offsets that decays.
+/* inertial_internal.h (private to pose/ and anim/): transitions by a pose of offsets that decays.
  *
  * At the switch the difference between the old and the new animation is stored for each joint, with its speed. From
  * then on only the new one is sampled, and the difference is added, shrinking along a quintic that starts with that
@@ -27,7 +27,7 @@ typedef struct noh_inertia_float {
     float offset, speed;
 } noh_inertia_float;
 
-/* The offset that is left of x0 >= 0 with speed v0 <= 0 at time t: x0 at 0, 0 from the duration on.
+/* What is left at time t of an offset x0 >= 0 that begins with speed v0 <= 0: x0 at 0, 0 from the duration on.
  * units   seconds */
 float noh_inertia_decay(float x0, float v0, float t, float duration);
 

@@ -10,6 +10,7 @@
 #include <arm_neon.h>
 #endif
 
+/* The rotation matrix of a unit quaternion, its columns scaled: scale acts first. */
 void noh_transform_matrix(const noh_transform *t, float matrix[12])
 {
     const float *q = t->rotation, *s = t->scale;
@@ -75,8 +76,7 @@ void noh_matrix_multiply(const float a[12], const float b[12], float out[12])
         for (int c = 0; c < 3; c++) {
             m[r + c] = a[r] * b[c] + a[r + 1] * b[4 + c] + a[r + 2] * b[8 + c];
         }
-        m[r + 3] = a[r] * b[3] + a[r + 1] * b[7] + a[r + 2] * b[11] +
-                   a[r + 3]; /* added in place it would wait for the others */
+        m[r + 3] = a[r] * b[3] + a[r + 1] * b[7] + a[r + 2] * b[11] + a[r + 3];
     }
     memcpy(out, m, sizeof m);
 }
@@ -87,7 +87,7 @@ void noh_local_to_model(const noh_skeleton *skeleton, const noh_transform *pose,
 {
     NOH_ASSERT(joint_count <= skeleton->joint_count);
     NOH_ASSERT(joint_count == 0u || (skeleton->parents && pose && model));
-    /* A parent comes before its joints, so its matrix is made when theirs need it. */
+    /* Parents come before their children, so a parent's matrix is ready when a child needs it. */
     for (uint32_t i = 0; i < joint_count; i++) {
         float *out = model + 12u * (size_t)i;
         noh_transform_matrix(&pose[i], out);

@@ -1,6 +1,6 @@
-/* pose.h: what sampling gives and blending takes: joint transforms, local to the parent.
+/* pose.h: the transform of a joint, local to its parent. A pose is an array of them in skeleton order, parents first:
+ * what sampling gives and blending takes.
  *
- * A pose is an array of them in skeleton order, parents first.
  * Threads: no state; any thread. */
 #ifndef NOH_POSE_POSE_H
 #define NOH_POSE_POSE_H

@@ -1,6 +1,6 @@
 /* skeleton.h: joints, parents first, so that one pass over them makes model matrices. The arrays are borrowed.
  *
- * Threads: read only; any number may share one. */
+ * Threads: read-only; any number of threads may share one. */
 #ifndef NOH_POSE_SKELETON_H
 #define NOH_POSE_SKELETON_H
 
@@ -21,7 +21,7 @@ typedef struct noh_skeleton {
     const float *inverse_bind;      /* [joint_count][12], see local_to_model.h; NULL: all identity */
 } noh_skeleton;
 
-/* Check a skeleton that does not come out of a checked pack.
+/* Check a skeleton of your own; those of packs were checked by noh_pack_open.
  * errors  ARG a count or pointer, named; DATA (where: the joint) a parent that does not come first, a value that is not
  *         finite, a rotation that is not unit */
 noh_result noh_skeleton_check(const noh_skeleton *skeleton, noh_error *error);

@@ -143,7 +143,7 @@ static void rates_hold_until_something_is_due(void **state)
     (void)state;
     rig_open(&r);
     assert_int_equal(noh_changes_speeds(r.table, ENTRIES, &r.target, 2, 1000), 1000);
-    assert_int_equal(r.tracks[0].rate, NOH_SPEED_ONE);
+    assert_int_equal(r.tracks[0].speed_now, NOH_SPEED_ONE);
     add(&r, desc_of(NOH_CHANGE_WEIGHT, 40, 100, 2.0f));
     assert_int_equal(noh_changes_speeds(r.table, ENTRIES, &r.target, 2, 1000), 40);
     run_to(&r, 40);

@@ -23,7 +23,7 @@ static noh_track synced(uint32_t clip, float weight, double tick)
     t.clip = (uint16_t)clip;
     t.weight = weight;
     t.speed = NOH_SPEED_ONE;
-    t.rate = NOH_SPEED_ONE;
+    t.speed_now = NOH_SPEED_ONE;
     t.loop = NOH_LOOP_REPEAT;
     t.mode = NOH_TRACK_ON;
     t.sync_group = GROUP;
@@ -150,15 +150,15 @@ static void a_group_moves_at_its_weighted_mean(void **state)
     t[1] = synced(RUN, 1.0f, 0);
     t[2] = synced(RUN, 2.0f, 0);
     t[2].mode = NOH_TRACK_OFF;
-    t[2].rate = 77;
+    t[2].speed_now = 77;
     noh_sync_speeds(&s.set, t, 3, 480);
     mean = (3.0 / 48000.0 + 1.0 / 30000.0) / 4.0;
-    assert_true(fabs((double)t[0].rate - mean * 48000.0 * 65536.0) <= 0.5);
-    assert_true(fabs((double)t[1].rate - mean * 30000.0 * 65536.0) <= 1.5);
-    assert_int_equal(t[2].rate, 77);  /* who is off neither weighs nor moves */
-    t[0].weight = t[1].weight = 0.0f; /* nobody weighs anything: the leader's own speed */
+    assert_true(fabs((double)t[0].speed_now - mean * 48000.0 * 65536.0) <= 0.5);
+    assert_true(fabs((double)t[1].speed_now - mean * 30000.0 * 65536.0) <= 1.5);
+    assert_int_equal(t[2].speed_now, 77); /* who is off neither weighs nor moves */
+    t[0].weight = t[1].weight = 0.0f;     /* nobody weighs anything: the leader's own speed */
     noh_sync_speeds(&s.set, t, 3, 480);
-    assert_int_equal(t[0].rate, NOH_SPEED_ONE);
+    assert_int_equal(t[0].speed_now, NOH_SPEED_ONE);
 }
 
 /* After the ticks for which its rate was made, a follower is on the leader's phase within half a unit a tick, wherever
@@ -175,8 +175,8 @@ static void followers_arrive_on_the_phase(void **state)
         noh_sync_join(&s.set, &t[1], &t[0]);
         t[1].position += k % 7; /* a little off */
         noh_sync_speeds(&s.set, t, 2, 480);
-        goal = noh_sync_phase(&s.set, &s.clips[WALK], t[0].position + 480 * t[0].rate);
-        off = t[1].position + 480 * t[1].rate - noh_sync_position(&s.set, &s.clips[RUN], goal);
+        goal = noh_sync_phase(&s.set, &s.clips[WALK], t[0].position + 480 * t[0].speed_now);
+        off = t[1].position + 480 * t[1].speed_now - noh_sync_position(&s.set, &s.clips[RUN], goal);
         off -= noh_floor_div(off + at(15000), at(30000)) * at(30000);
         assert_true(off >= -241 && off <= 241);
     }
@@ -195,14 +195,14 @@ static void followers_never_turn_round(void **state)
         t[1] = synced(RUN, 1.0f, sign * 6000); /* a fifth of a pass ahead */
         t[0].speed = t[1].speed = sign * NOH_SPEED_ONE;
         noh_sync_speeds(&s.set, t, 2, 480);
-        assert_true(sign * t[0].rate > 0);
-        assert_int_equal(t[1].rate, 0);
+        assert_true(sign * t[0].speed_now > 0);
+        assert_int_equal(t[1].speed_now, 0);
         t[1].position = at(-sign * 600); /* behind: it hurries, forwards */
         noh_sync_speeds(&s.set, t, 2, 480);
-        assert_true(sign * t[1].rate > NOH_SPEED_ONE);
+        assert_true(sign * t[1].speed_now > NOH_SPEED_ONE);
         t[0].speed = t[1].speed = 0;
         noh_sync_speeds(&s.set, t, 2, 480);
-        assert_true(t[0].rate == 0 && t[1].rate == 0);
+        assert_true(t[0].speed_now == 0 && t[1].speed_now == 0);
     }
 }
 

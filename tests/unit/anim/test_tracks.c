@@ -74,7 +74,7 @@ static void what_was_placed_at_the_end_has_not_ended(void **state)
     assert_false(noh_track_ended(&t, &s.clips[JUMP]));
     t.placed = 0; /* it has moved */
     assert_true(noh_track_ended(&t, &s.clips[JUMP]));
-    t.rate = -NOH_SPEED_ONE; /* backwards the end is the start */
+    t.speed_now = -NOH_SPEED_ONE; /* backwards the end is the start */
     assert_false(noh_track_ended(&t, &s.clips[JUMP]));
     t.position = 0;
     assert_true(noh_track_ended(&t, &s.clips[JUMP]));
@@ -128,7 +128,7 @@ static void descs_have_defaults(void **state)
     t = started(&s, (noh_track_desc){ .clip = JUMP,
                                       .flags = NOH_TRACK_SILENT | NOH_TRACK_PAUSED | NOH_TRACK_ADDITIVE,
                                       .position_ticks = 99999 });
-    assert_true(t.weight == 0.0f && t.speed == 0 && t.rate == 0 && t.flags == NOH_TRACK_ADDITIVE);
+    assert_true(t.weight == 0.0f && t.speed == 0 && t.speed_now == 0 && t.flags == NOH_TRACK_ADDITIVE);
     assert_int_equal(t.position, noh_position_of(36000)); /* held at the end of a clip that plays once */
 }
 

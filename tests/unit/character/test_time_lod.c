@@ -482,7 +482,7 @@ static void errors_of_what_plays(void **state)
     assert_int_equal(noh_controller_set_mode(c, 0, NOH_TRACK_TIME_ONLY), NOH_OK);
     noh_time_lod_error(c, errors[0], out);
     assert_true(out[2] == 6.0f + 4.0f);
-    noh_controller_tracks(c)[1].rate = 3 * NOH_SPEED_ONE; /* its sync group drives it faster than its own speed */
+    noh_controller_tracks(c)[1].speed_now = 3 * NOH_SPEED_ONE; /* its sync group drives it faster than its own speed */
     noh_time_lod_error(c, errors[0], out);
     assert_true(out[2] == 9.0f * 6.0f + 4.0f);
 }

@@ -176,12 +176,12 @@ static void entries_are_as_large_as_their_segments(void **state)
 /* Whether a segment of a clip is in the cache, wholly decoded or not. */
 static int holds(const noh_clip_cache *cache, uint32_t clip, uint32_t segment)
 {
-    return cache->cached_of[cache->entries[clip].first + segment] != NOH_CLIP_NOT_CACHED;
+    return cache->cached_of[cache->clips[clip].first + segment] != NOH_CLIP_NOT_CACHED;
 }
 
 static int64_t tick_of(const noh_clip_cache *cache, uint32_t clip, uint32_t segment)
 {
-    return 1600 * (int64_t)noh_clip_segment_first(cache->entries[clip].clip, segment) + 10;
+    return 1600 * (int64_t)noh_clip_segment_first(cache->clips[clip].clip, segment) + 10;
 }
 
 /* The lists are whole: each entry once, and what the segments say is what the entries say. */
@@ -202,12 +202,12 @@ static void expect_sound(const noh_clip_cache *cache)
     }
     for (uint32_t s = cache->first_want; s != NOH_CLIP_NOT_CACHED; s = cache->cached[s].after) listed++;
     for (uint32_t s = 0; s < cache->cached_count; s++) {
-        const noh_clip_cached *t = &cache->cached[s];
+        const noh_cached_segment *t = &cache->cached[s];
         waiting += t->waits;
         if (!t->used) continue;
-        assert_int_equal(cache->cached_of[cache->entries[t->clip].first + t->cursor.segment], s);
+        assert_int_equal(cache->cached_of[cache->clips[t->clip].first + t->cursor.segment], s);
         assert_true(t->waits || t->cursor.track >= t->wanted);
-        assert_true(cache->sizes[t->size].bytes >= cache->entries[t->clip].clip->info.segment_bytes_max);
+        assert_true(cache->sizes[t->size].bytes >= cache->clips[t->clip].clip->info.segment_bytes_max);
     }
     assert_int_equal(listed, waiting);
 }
@@ -283,8 +283,8 @@ static void wants_are_met_in_order(void **state)
     assert_int_equal(noh_clip_cache_want(cache, 3, tick_of(cache, 3, 9), JOINTS),
                      1); /* evicts segment 3, which waits */
     (void)noh_clip_cache_work(cache, 1);
-    assert_true(cache->cached[cache->cached_of[cache->entries[3].first + 2u]].cursor.track > 0u);
-    assert_int_equal(cache->cached[cache->cached_of[cache->entries[3].first + 1u]].cursor.track, 0);
+    assert_true(cache->cached[cache->cached_of[cache->clips[3].first + 2u]].cursor.track > 0u);
+    assert_int_equal(cache->cached[cache->cached_of[cache->clips[3].first + 1u]].cursor.track, 0);
     (void)noh_clip_cache_work(cache, 1000000);
     assert_int_equal(noh_clip_cache_work(cache, 1000000), 0);
     for (uint32_t s = 0; s < 3u; s++) {

@@ -382,13 +382,13 @@ static void lies_about_lod_are_named(void **state)
     expect_refused(&f, "joint errors");
     f = forge();
     f.clip->update_rate_error[0] = 0.5f;
-    expect_refused(&f, "rate errors");
+    expect_refused(&f, "update rate errors");
     f = forge();
     f.clip->update_rate_error[2] = -1.0f;
-    expect_refused(&f, "rate errors");
+    expect_refused(&f, "update rate errors");
     f = forge();
     memset(&f.clip->update_rate_error[3], 0xff, 4);
-    expect_refused(&f, "rate errors");
+    expect_refused(&f, "update rate errors");
     f = forge();
     f.clip->error_shell = -3.0f;
     expect_refused(&f, "shell");
