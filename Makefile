@@ -84,6 +84,9 @@ DEMO_O     := $(DEMO_C:%.c=$(BUILD)/%.o)
 $(DEMO_O): INCLUDES += -Itools/demo_assets
 EXAMPLES   := $(EXAMPLE_C:tools/examples/%.c=$(BUILD)/examples/%)
 TESTS      := $(TEST_C:tests/%.c=$(BUILD)/tests/%)
+# The library as three files, and the tests that are linked with it, too.
+AMALGAM    := $(BUILD)/amalgam
+AMALGAM_TESTS := $(patsubst tests/%.c,$(AMALGAM)/%,$(filter %/test_morph.c %/test_controller.c %/test_graph.c %/test_skin.c %/test_null.c,$(TEST_C)))
 
 # The accumulation and skinning kernels built for other instruction sets, for `noh bench` and the tests.
 KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/morph_$(set).o $(BUILD)/kernel/skin_$(set).o))
@@ -421,9 +424,7 @@ install-lib: lib
 uninstall:
 	@$(INSTALL) remove
 
-# The library as three files, and some of the tests linked with that instead of libnoh.a.
-AMALGAM       := $(BUILD)/amalgam
-AMALGAM_TESTS := $(patsubst tests/%.c,$(AMALGAM)/%,$(filter %/test_morph.c %/test_controller.c %/test_graph.c %/test_skin.c %/test_null.c,$(TEST_C)))
+# make amalgam; tests links some tests with it instead of libnoh.a.
 amalgam: $(AMALGAM)/noh.c
 $(AMALGAM)/noh.c: $(BUILD)/amalgamate $(RUNTIME_C) $(call sources,runtime,*.h) $(BUILD)/gen/shaders.gen.c
 	@mkdir -p $(@D)

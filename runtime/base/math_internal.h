@@ -49,7 +49,7 @@ static inline uint32_t noh_integer_root(uint64_t n)
  * so that it lies in 2^48..2^50 and its integer root in 2^24..2^25: the 24 bits of the result and one more, which says
  * on which side of the middle between two floats the root lies. It never lies in the middle: a root of 25 bits whose
  * last one is set has an odd square, and the shifted m is even. So adding that bit rounds, and 2^24 is not reached. */
-static inline float noh_sqrt_plain(float x)
+NOH_UNUSED static inline float noh_sqrt_plain(float x)
 {
     uint32_t bits, mantissa, root;
     int32_t exponent;
