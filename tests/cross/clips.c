@@ -1,4 +1,4 @@
-/* clip.c: stands in for the C++ side of the converter: a model has no clip here. Tests that want any are left out. */
+/* clips.c: stands in for the C++ side of the converter: a model has no clips here. Tests that need them are left out. */
 #include <stdlib.h>
 
 #include "convert/clips/model_clips.h"
