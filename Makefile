@@ -33,7 +33,7 @@ WARN     := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wvla $(WERROR)
 FP       := -ffp-contract=off -fno-math-errno
 SECTIONS := -ffunction-sections -fdata-sections
 SANFLAGS := $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
-OPT      ?= -O2 -g
+OPT      ?= $(if $(SAN),-O1,-O2) -g
 ALL_CFLAGS   = -std=c99 $(OPT) $(WARN) $(FP) $(SECTIONS) $(SANFLAGS) $(CPPFLAGS) $(CFLAGS)
 ALL_CXXFLAGS = -std=c++17 $(OPT) -Wall -Wextra $(FP) $(SANFLAGS) $(CPPFLAGS) $(CXXFLAGS)
 ALL_LDFLAGS  = $(SANFLAGS) $(LDFLAGS)
@@ -84,11 +84,14 @@ DEMO_O     := $(DEMO_C:%.c=$(BUILD)/%.o)
 $(DEMO_O): INCLUDES += -Itools/demo_assets
 EXAMPLES   := $(EXAMPLE_C:tools/examples/%.c=$(BUILD)/examples/%)
 TESTS      := $(TEST_C:tests/%.c=$(BUILD)/tests/%)
+# The library as three files, and the tests that are linked with it, too.
+AMALGAM    := $(BUILD)/amalgam
+AMALGAM_TESTS := $(patsubst tests/%.c,$(AMALGAM)/%,$(filter %/test_morph.c %/test_controller.c %/test_graph.c %/test_skin.c %/test_null.c,$(TEST_C)))
 
 # The accumulation and skinning kernels built for other instruction sets, for `noh bench` and the tests.
 KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/morph_$(set).o $(BUILD)/kernel/skin_$(set).o))
 
-.PHONY: FORCE install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body view check bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz cross cross-tests web web-check web-serve web-bench lib tests demo-run check-run fuzz sizes
+.PHONY: FORCE install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body view check bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests web web-check web-serve web-bench lib tests demo-run check-run fuzz sizes
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -103,6 +106,7 @@ help:
 	@echo 'make bench      ratios against the named baselines (the mask, and hero/head.glb and clips where they are)'
 	@echo 'make bench-lod  of them only LOD levels against meshoptimizer'"'"'s'
 	@echo 'make fuzz       fuzz the pack reader and the clip decoder (FUZZ_SECONDS=60 each), needs clang'
+	@echo 'make threads    poses on four threads under ThreadSanitizer, with gcc and clang'
 	@echo 'make cross      the library and its CPU tests for aarch64, armv7 and wasm (qemu, node)'
 	@echo 'make web        the page, WebGL 2 (WEB_PACK=PACK: for another pack); make web-serve, web-check, web-bench'
 	@echo 'make lint       clang-tidy and cppcheck over runtime/, platform/ and tools/'
@@ -281,6 +285,10 @@ check: deps-check
 	@$(MAKE) --no-print-directory -j$(JOBS) all tests $(BUILD)/mask.noh $(BUILD)/mask_levels.noh $(BUILD)/demo/puppet.glb $(BUILD)/demo/arm.glb
 	@CC="$(CC)" NOH_BUILD="$(BUILD)" NOH_ASSETS="$(ASSETS)" NOH_SAN="$(SAN)" sh tests/run.sh
 
+# Under ThreadSanitizer, with gcc and with clang.
+threads: deps-fuzz
+	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tests/tsan.sh
+
 cross: deps-cross
 	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tests/cross.sh
 
@@ -350,16 +358,17 @@ fuzz: deps-fuzz
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/tests/fuzz/corpus/.made $(BUILD)/gen/shaders.gen.c
 	@NOH_BUILD="$(BUILD)" FUZZ_SECONDS="$(FUZZ_SECONDS)" sh tests/fuzz.sh
 
-tests: $(TESTS) $(EXAMPLES) $(AMALGAM_TESTS) $(BUILD)/tests/gl/window $(BUILD)/tests/gl/picture_diff $(BUILD)/platform/template.o \
+tests: $(TESTS) $(EXAMPLES) $(if $(SAN),,$(AMALGAM_TESTS)) $(BUILD)/tests/gl/window $(BUILD)/tests/gl/picture_diff $(BUILD)/platform/template.o \
        $(BUILD)/tests/fuzz/fuzz_pack $(BUILD)/tests/fuzz/fuzz_clip $(BUILD)/tests/fuzz/corpus/.made
 
 # The tests load packs, draw them and read results back as the tool does, and share what lies in tests/ and
 # tests/support. Of the tool each takes what it calls, and the library has its asserts on.
 TEST_SHARED_O := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(TEST_C),$(wildcard tests/*.c) $(call sources,tests/support,*.c)))
 TEST_KERNELS := $(if $(filter x86_64%,$(MACHINE)),$(BUILD)/kernel/clip_sample_avx2.o)
-TEST_LIBS := $(TEST_SHARED_O) $(BUILD)/tests/tool.a $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(TEST_KERNELS) $(BUILD)/assert/libnoh.a
+TEST_LIBS := $(TEST_SHARED_O) $(BUILD)/tests/tool.a $(BUILD)/assert/libnoh.a
 
-$(BUILD)/tests/tool.a: $(filter-out %/main.o,$(TOOL_O))
+# One archive: a program links only what it calls, which is far quicker than all the objects.
+$(BUILD)/tests/tool.a: $(filter-out %/main.o,$(TOOL_O)) $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(TEST_KERNELS)
 	@mkdir -p $(@D)
 	@rm -f $@
 	$(call say,AR,$@)
@@ -376,7 +385,7 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TEST_LIBS)
 CROSS       ?=
 CROSS_SKIP  := gltf_read gltf_left_out gltf_formula embed clip_import clip_bank pack_clip influences bvh_read events_read sources sources_kept \
                skin skin_oracle skin_pack bounds_pick pick source_errors puppet simplify lod_chunks lod_certified lod_lies levels pack \
-               joint_order clip_errors lod_pack threads
+               joint_order clip_errors lod_pack $(if $(findstring emcc,$(CC)),threads)
 CROSS_TESTS := $(patsubst tests/%.c,$(BUILD)/cross/%,$(filter-out $(addprefix %/test_,$(CROSS_SKIP:%=%.c)),$(call sources,tests/unit,test_*.c)))
 CROSS_O     := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/cross/*.c) $(filter %/support.c %/pack_walk.c,$(wildcard tests/*.c tests/support/*.c)) \
                    platform/file.c platform/file_write.c $(CONVERT_C))
@@ -421,9 +430,7 @@ install-lib: lib
 uninstall:
 	@$(INSTALL) remove
 
-# The library as three files, and some of the tests linked with that instead of libnoh.a.
-AMALGAM       := $(BUILD)/amalgam
-AMALGAM_TESTS := $(patsubst tests/%.c,$(AMALGAM)/%,$(filter %/test_morph.c %/test_controller.c %/test_graph.c %/test_skin.c %/test_null.c,$(TEST_C)))
+# make amalgam; tests links some tests with it instead of libnoh.a.
 amalgam: $(AMALGAM)/noh.c
 $(AMALGAM)/noh.c: $(BUILD)/amalgamate $(RUNTIME_C) $(call sources,runtime,*.h) $(BUILD)/gen/shaders.gen.c
 	@mkdir -p $(@D)

@@ -4,6 +4,7 @@
  *   NOH_ALWAYS_INLINE    for a function that must be inlined to be fast
  *   NOH_UNROLL           before a short loop over an array of registers
  *   NOH_TRAP             ends the program, without a library
+ *   NOH_UNUSED           of a function that a file need not call
  *   NOH_AVX2, NOH_SSE2, NOH_NEON   which vector instructions the kernels may use; undefined: none
  *   noh_leading_zeros, noh_trailing_zeros   of a word that is not 0
  *
@@ -36,9 +37,11 @@ extern "C" {
 #if defined(NOH_GNU)
 #define NOH_ALWAYS_INLINE static inline __attribute__((always_inline))
 #define NOH_TRAP() __builtin_trap()
+#define NOH_UNUSED __attribute__((unused))
 #else
 #define NOH_ALWAYS_INLINE static inline
 #define NOH_TRAP() ((void)(*(volatile char *)0 = 0))
+#define NOH_UNUSED
 #endif
 
 /* gcc's -O2 leaves short loops over arrays of lanes as they are, in memory; unrolled they stay in registers. */

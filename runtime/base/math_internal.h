@@ -51,7 +51,7 @@ static inline uint32_t noh_integer_root(uint64_t n)
  * on which side of the middle between two floats the root lies. The root is never the middle itself: 25 bits of which
  * the last is set have an odd square, and the shifted m is even. So adding that bit rounds correctly, and the sum does
  * not reach the next power of two. */
-static inline float noh_sqrt_plain(float x)
+NOH_UNUSED static inline float noh_sqrt_plain(float x)
 {
     uint32_t bits, mantissa, root;
     int32_t exponent;

@@ -385,11 +385,11 @@ static void write_file(FILE *out, int index, int depth)
     fputc('\n', out);
 }
 
-/* Whether a file or a header that it includes asks for GL's headers. */
+/* Whether a file belongs to noh_gl.h's side: it is in gl/, or it or a header that it includes asks for GL's headers. */
 static int needs_gl(int index, int depth)
 {
     const char *line = inputs[index].text;
-    if (strstr(line, "<GLES")) return 1;
+    if (!strncmp(inputs[index].name, "gl/", 3) || strstr(line, "<GLES")) return 1;
     while (depth < 64 && *line) {
         char name[256];
         int header = included_name(line, name, sizeof name) ? find_input(name) : -1;
