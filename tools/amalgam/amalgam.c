@@ -385,11 +385,11 @@ static void write_file(FILE *out, int index, int depth)
     fputc('\n', out);
 }
 
-/* Whether a file belongs to noh_gl.h's side: it is in gl/, or it or a header that it includes asks for GL's headers. */
+/* Whether a file or a header that it includes asks for GL's headers, or stands in noh_gl.h. */
 static int needs_gl(int index, int depth)
 {
     const char *line = inputs[index].text;
-    if (!strncmp(inputs[index].name, "gl/", 3) || strstr(line, "<GLES")) return 1;
+    if (inputs[index].needs_gl || strstr(line, "<GLES")) return 1;
     while (depth < 64 && *line) {
         char name[256];
         int header = included_name(line, name, sizeof name) ? find_input(name) : -1;
@@ -423,10 +423,12 @@ static void write_headers(const char *folder)
     write_file(out, first, 0);
     close_output(out, "noh.h");
 
+    for (int i = 0; i < input_count; i++) inputs[i].needs_gl = !inputs[i].is_written;
     out = open_output(folder, "noh_gl.h");
     fputs("#include \"noh.h\"\n\n", out);
     if (second >= 0) write_file(out, second, 0);
     close_output(out, "noh_gl.h");
+    for (int i = 0; i < input_count; i++) inputs[i].needs_gl = inputs[i].needs_gl && inputs[i].is_written;
 }
 
 static void write_sources(FILE *out, int with_gl, const int *sources, int count)
@@ -460,9 +462,10 @@ int main(int argc, char **argv)
     if (!folder || !count) fail("usage: amalgam -o FOLDER -I FOLDER... FILE.c...");
     /* This reads every header before the first name is looked up. */
     find_input("noh.h");
-    for (int i = 0; i < count; i++) inputs[sources[i]].needs_gl = needs_gl(sources[i], 0);
+    for (int i = 0; i < count; i++) (void)needs_gl(sources[i], 0);
 
     write_headers(folder);
+    for (int i = 0; i < count; i++) inputs[sources[i]].needs_gl = needs_gl(sources[i], 0);
     out = open_output(folder, "noh.c");
     fputs(
         "/* noh.c: the library in one file. Compile it with -ffp-contract=off -fno-math-errno, so that results have the same bits\n"
