@@ -439,6 +439,40 @@ static void a_small_budget_is_enough_ahead(void **state)
     free(set);
 }
 
+/* Root motion is measured from where it was last taken, which may be a segment that no pose needs any more: that
+ * segment is asked for too. */
+static void where_root_motion_was_last_is_asked_for(void **state)
+{
+    noh_clip_bank_desc desc = desc_of(&pack);
+    noh_clip_cache_stats before, after;
+    noh_clip_bank *set;
+    clip_player p;
+    uint32_t walk;
+    (void)state;
+    desc.cached_segment_count = 4;
+    desc.root_axes = NOH_ROOT_X | NOH_ROOT_Z;
+    desc.root_up = 1;
+    set = test_clip_bank(&desc);
+    walk = noh_clip_bank_find(set, "walk");
+    clip_player_open(&p, set);
+    for (int seconds = 1; seconds <= 5; seconds++) {
+        clip_start(&p, walk, NOH_LOOP_REPEAT, NOH_SPEED_ONE, 0);
+        noh_clip_cache_begin_frame(set->cache); /* the four entries hold the end of the walk */
+        assert_int_equal(noh_clip_cache_want_frames(set->cache, walk, 160, 240, JOINTS), 0);
+        (void)noh_controller_step(p.c, &set->clips, 48000u * (uint32_t)seconds, NULL, NULL);
+        noh_clip_cache_begin_frame(set->cache);
+        assert_int_equal(noh_clip_bank_prefetch(set, p.c, 0), 0);
+        (void)noh_clip_cache_work(set->cache, 1000000);
+        before = noh_clip_cache_stats_of(set->cache);
+        (void)noh_controller_root_motion(p.c, &set->clips);
+        after = noh_clip_cache_stats_of(set->cache);
+        assert_true(after.samples > before.samples);
+        assert_int_equal(after.decoded_late - before.decoded_late, 0);
+    }
+    clip_player_close(&p);
+    free(set);
+}
+
 static void ahead_says_what_finds_no_room(void **state)
 {
     noh_clip_bank_desc desc = desc_of(&pack);
@@ -723,7 +757,7 @@ static void descs_are_checked(void **state)
     desc = desc_of(&pack), desc.skeleton = 1;
     expect_error(&desc, NOH_ERR_ARG, "skeleton");
     desc = desc_of(&pack), desc.cached_segment_count = 1;
-    expect_error(&desc, NOH_ERR_ARG, "slots");
+    expect_error(&desc, NOH_ERR_ARG, "cached_segment_count");
     desc = desc_of(&pack), desc.root_axes = 16;
     expect_error(&desc, NOH_ERR_ARG, "root_axes");
     desc = desc_of(&pack), desc.root_axes = NOH_ROOT_X, desc.root_up = 3;
@@ -786,6 +820,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(markers_of_a_pack_synchronise),
     cmocka_unit_test(nothing_is_decoded_late),
     cmocka_unit_test(a_small_budget_is_enough_ahead),
+    cmocka_unit_test(where_root_motion_was_last_is_asked_for),
     cmocka_unit_test(ahead_says_what_finds_no_room),
     cmocka_unit_test(fewer_joints_are_decoded_for_less_lod),
     cmocka_unit_test(a_hundred_controllers_share_a_set),

@@ -118,6 +118,42 @@ static void no_ray_slips_through_an_edge(void **state)
     free(s.bytes);
 }
 
+/* The same under a transform that leaves no corner at a round number, on the inner edges of every direction: the two
+ * triangles of an edge round the ray's place differently. */
+static void no_ray_slips_through_an_edge_askew(void **state)
+{
+    static const float world[12] = { 0.83f,  -0.29f, 0.41f,  0.37f, 0.31f, 0.91f,
+                                     -0.17f, -0.23f, -0.27f, 0.33f, 0.87f, 0.11f };
+    sheet s;
+    test_random r = test_random_from(25);
+    (void)state;
+    sheet_open(&s, 0);
+    s.surface.world = world;
+    for (int k = 0; k < 20000; k++) {
+        const uint32_t triangle = test_random_below(&r, s.mesh.header->index_count / 3u),
+                       edge = test_random_below(&r, 3);
+        const float t = test_random_float(&r, 0.05f, 0.95f);
+        float rest[3], at[3], from[3];
+        noh_pick_hit hit;
+        for (uint32_t i = 0; i < 3; i++) {
+            const float a = s.mesh.positions[3 * noh_mesh_index(&s.mesh, 3 * triangle + edge) + i],
+                        b = s.mesh.positions[3 * noh_mesh_index(&s.mesh, 3 * triangle + (edge + 1u) % 3u) + i];
+            rest[i] = a + t * (b - a);
+        }
+        if (rest[0] < 0.01f || rest[0] > 3.99f || rest[1] < 0.01f || rest[1] > 3.99f) {
+            continue; /* at the rim a ray may miss */
+        }
+        for (uint32_t i = 0; i < 3; i++) {
+            const float *row = world + 4 * i;
+            at[i] = row[0] * rest[0] + row[1] * rest[1] + row[2] * rest[2] + row[3];
+            from[i] = at[i] + test_random_float(&r, -1.0f, 1.0f) + (i == 2 ? 3.0f : 0.0f);
+        }
+        assert_int_equal(
+            pick(&s, from[0], from[1], from[2], at[0] - from[0], at[1] - from[1], at[2] - from[2], 2.0f, &hit), NOH_OK);
+    }
+    free(s.bytes);
+}
+
 /* Of two layers the nearer one is hit, from above and from below, in whatever order their triangles lie. */
 static void the_nearest_layer_is_hit(void **state)
 {
@@ -206,13 +242,72 @@ static void the_joint_is_that_of_the_point(void **state)
     model_free(m);
 }
 
+/* Where on a triangle a ray is sent: near one corner. */
+static void near_corner(float corners[3][3], uint32_t corner, float at[3], float normal[3])
+{
+    float ab[3], ac[3], length = 0.0f;
+    for (int i = 0; i < 3; i++) {
+        at[i] = 0.05f * (corners[0][i] + corners[1][i] + corners[2][i]) + 0.85f * corners[corner][i];
+        ab[i] = corners[1][i] - corners[0][i];
+        ac[i] = corners[2][i] - corners[0][i];
+    }
+    for (int i = 0; i < 3; i++) {
+        normal[i] = ab[(i + 1) % 3] * ac[(i + 2) % 3] - ab[(i + 2) % 3] * ac[(i + 1) % 3];
+        length += normal[i] * normal[i];
+    }
+    for (int i = 0; i < 3; i++) {
+        normal[i] /= sqrtf(length);
+    }
+}
+
+/* Every corner of every triangle is hit from closely above it while one joint is far from where its neighbours are: a
+ * vertex lies outside the box of its strongest joint, and the corners of a triangle in boxes of different joints. */
+static void what_a_far_joint_pulls_is_hit(void **state)
+{
+    (void)state;
+    for (uint32_t rings = 4; rings <= 9; rings++) {
+        const skin_cylinder c = { 12, rings, 5, 2, 0, 0, 4.0f, 0.5f };
+        model *m = skin_cylinder_model(&c);
+        float matrices[5 * 12], scratch[5 * 12];
+        noh_pick_surface surface;
+        size_t count;
+        uint8_t *bytes = skin_pack_of(m, NULL, 1.0f, &count, NULL);
+        noh_pack pack = test_open(bytes, count);
+        noh_mesh mesh = test_mesh(&pack, 0);
+        memset(&surface, 0, sizeof surface);
+        surface.mesh = &mesh;
+        surface.matrices = matrices;
+        assert_true(noh_pick_scratch_size(&mesh) <= sizeof scratch);
+        for (uint32_t moved = 0; moved < 5; moved++) {
+            for (uint32_t e = 0; e < 5 * 12; e++) {
+                matrices[e] = e % 12u % 5u == 0 ? 1.0f : 0.0f;
+            }
+            matrices[12u * moved + 3u] = 20.0f;
+            for (uint32_t k = 0; k < mesh.header->index_count; k++) {
+                float corners[3][3], at[3], d[3], o[3];
+                noh_pick_hit hit;
+                for (uint32_t corner = 0; corner < 3; corner++) {
+                    noh_skin_position(&mesh, matrices, NULL, noh_mesh_index(&mesh, k / 3u * 3u + corner),
+                                      corners[corner]);
+                }
+                near_corner(corners, k % 3u, at, d);
+                for (int i = 0; i < 3; i++) {
+                    o[i] = at[i] + 0.01f * d[i];
+                    d[i] = -d[i];
+                }
+                assert_int_equal(noh_pick(&surface, o, d, 0.02f, scratch, sizeof scratch, &hit, NULL), NOH_OK);
+            }
+        }
+        free(bytes);
+        model_free(m);
+    }
+}
+
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_hit_says_where_it_is),
-    cmocka_unit_test(a_ray_ends_at_its_distance),
-    cmocka_unit_test(no_ray_slips_through_an_edge),
-    cmocka_unit_test(the_nearest_layer_is_hit),
-    cmocka_unit_test(placed_surfaces_are_hit_where_they_stand),
-    cmocka_unit_test(the_joint_is_that_of_the_point),
+    cmocka_unit_test(a_hit_says_where_it_is),         cmocka_unit_test(a_ray_ends_at_its_distance),
+    cmocka_unit_test(no_ray_slips_through_an_edge),   cmocka_unit_test(no_ray_slips_through_an_edge_askew),
+    cmocka_unit_test(the_nearest_layer_is_hit),       cmocka_unit_test(placed_surfaces_are_hit_where_they_stand),
+    cmocka_unit_test(the_joint_is_that_of_the_point), cmocka_unit_test(what_a_far_joint_pulls_is_hit),
 };
 
 TEST_MAIN(tests, NULL, NULL)
