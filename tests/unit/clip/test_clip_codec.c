@@ -395,7 +395,7 @@ static void floats_keep_within_their_reach(void **state)
             const raw_floats *g = x.set->clips[0].floats;
             noh_clip_sample(x.cache, 0, (int64_t)f * 1600, joints[k], pose, values);
             for (uint32_t i = 0; i < 34u; i++) {
-                assert_true(fabs((double)values[i] - (double)g[0].values[f * 34u + i]) * (double)g[0].reach[i] <=
+                assert_true(fabs((double)values[i] - (double)g[0].values[f * 34u + i]) * (double)g[0].radius[i] <=
                             0.01 * ROUNDING);
             }
             assert_true(fabs((double)values[34] - (double)g[1].values[f]) <= 0.001 * ROUNDING);
