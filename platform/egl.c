@@ -1,9 +1,7 @@
-/* An OpenGL ES context through EGL: the system's own, or ANGLE's. Headless, or in
- * a window that the caller made.
+/* egl.c: an OpenGL ES context through EGL: the system's own, or ANGLE's. Headless, or in a window that the caller made.
  *
- * ANGLE's two libraries are looked for in the folder that the environment
- * variable NOH_ANGLE names (tools/angle.sh fills one), then where Debian puts
- * Chromium's, which has them in some versions. */
+ * ANGLE's two libraries are looked for in the folder that the environment variable NOH_ANGLE names (tools/angle.sh
+ * fills one), then in the folders of Debian's chromium, some versions of which bring them. */
 #define EGL_EGL_PROTOTYPES 0
 #include "platforms.h"
 
@@ -14,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* From EGL_ANGLE_platform_angle, which eglext.h does not have everywhere. */
+/* From EGL_ANGLE_platform_angle, which not every eglext.h has. */
 #define ANGLE_PLATFORM 0x3202
 #define ANGLE_PLATFORM_TYPE 0x3203
 #define ANGLE_TYPE_VULKAN 0x3450
@@ -26,7 +24,7 @@
     "NOH_ANGLE must name the folder that holds ANGLE's libEGL.so and libGLESv2.so (tools/angle.sh makes one)\n"
 #define DEVICES_MAX 16
 
-/* X(field, the name in its PFNEGL...PROC type) */
+/* X(field, name in the type PFNEGL...PROC) */
 #define EGL_FUNCTIONS(X)                          \
     X(GetError, GETERROR)                         \
     X(GetDisplay, GETDISPLAY)                     \
@@ -49,7 +47,7 @@ typedef struct egl_api {
 #define EGL_FIELD(field, TYPE) PFNEGL##TYPE##PROC field;
     EGL_FUNCTIONS(EGL_FIELD)
 #undef EGL_FIELD
-    void *gles; /* libGLESv2, for lookups that eglGetProcAddress refuses; may be NULL */
+    void *gles; /* libGLESv2, for names that eglGetProcAddress does not find; may be NULL */
 } egl_api;
 
 struct noh_platform_context {
@@ -59,7 +57,7 @@ struct noh_platform_context {
     EGLSurface surface; /* EGL_NO_SURFACE where none is needed */
 };
 
-/* What each attempt needs: the EGL functions, the desc, and the message for what failed. */
+/* What each attempt needs: the EGL functions, the desc, and the message to append failures to. */
 typedef struct attempt {
     egl_api egl;
     const noh_platform_desc *desc;

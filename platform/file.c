@@ -35,7 +35,7 @@ static noh_result map_open_file(int descriptor, noh_file *out, noh_error *error)
 
 noh_result noh_file_map(const char *path, noh_file *out, noh_error *error)
 {
-    /* O_NONBLOCK: opening a pipe that nobody writes to must not wait. */
+    /* O_NONBLOCK: opening a pipe without a writer must not wait. */
     int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (descriptor < 0) return fail_errno(error, NOH_ERR_NOT_FOUND, errno);
     noh_result result = map_open_file(descriptor, out, error);

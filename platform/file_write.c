@@ -1,4 +1,4 @@
-/* file_write.c: whole files out.
+/* file_write.c: writing whole files.
  *
  * Replacing a file by rename is atomic, but it replaces the directory entry: a symbolic link would become a file, and a
  * device node would be lost. So links are followed by hand first, and what is not a regular file is written in place.
@@ -16,7 +16,7 @@
 
 #define PATH_BYTES 4096
 #define LINKS_MAX 40 /* as many as Linux follows */
-#define ATTEMPTS 100 /* names for the temporary file */
+#define ATTEMPTS 100 /* different names for the temporary file */
 
 /* 0, or the errno of what failed: as all below. */
 static int write_all(int descriptor, const void *data, size_t bytes)
@@ -38,7 +38,7 @@ static char *name_in(char *path)
     return slash ? slash + 1 : path;
 }
 
-/* Replace the last component of `path` by what a link there says. */
+/* Replace the last component of `path`, a link, by the link's target. */
 static int follow(char path[PATH_BYTES], const char *link, size_t length)
 {
     char *at = link[0] == '/' ? path : name_in(path);
@@ -48,7 +48,7 @@ static int follow(char path[PATH_BYTES], const char *link, size_t length)
     return 0;
 }
 
-/* The file that a path means after its symbolic links, also where that does not exist yet. */
+/* The file that a path means once its symbolic links are followed, whether it exists or not. */
 static int resolve(char path[PATH_BYTES])
 {
     char link[PATH_BYTES];
@@ -81,7 +81,7 @@ static int write_in_place(const char *path, const void *data, size_t bytes)
     return code;
 }
 
-/* A new file in the folder. Its name does not hold the final one, which may be as long as a name can be. */
+/* A new file in the folder. Its name does not contain the final one, which may already be as long as names can be. */
 static int open_temporary(int folder, char name[64], int *descriptor)
 {
     for (int attempt = 0; attempt < ATTEMPTS; attempt++) {

@@ -1,5 +1,5 @@
-/* An OpenGL ES context in a GLFW window, shown or hidden. libglfw is opened when
- * asked for, so no header and no library of it is needed to build. */
+/* glfw.c: an OpenGL ES context in a GLFW window, shown or hidden. libglfw is opened when a context is made, so neither
+ * its header nor its library is needed to build. */
 #include "platforms.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* No GL at all: the library's logic runs, and every call is counted and checked. */
+/* null.c: no GL at all: the library's logic runs, and every call is counted and checked. */
 #include "null_internal.h"
 
 #include "platforms.h"
@@ -22,7 +22,7 @@ static const char *const call_names[NULL_CALL_COUNT] = {
     "glDebugMessageControl"
 };
 
-/* --- counting and telling --- */
+/* --- counts and violations --- */
 
 noh_platform_context *noh_null_count(int call)
 {

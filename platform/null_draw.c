@@ -1,4 +1,4 @@
-/* Framebuffers, vertex arrays and draws of the GL that does nothing. */
+/* null_draw.c: framebuffers, vertex arrays and draws of the GL that does nothing. */
 #include "null_internal.h"
 
 #include <string.h>
@@ -11,7 +11,7 @@ static const null_object *attached(const noh_platform_context *c, const null_att
     return a->name && object->alive && object->ready ? object : NULL;
 }
 
-/* All attachments live, have storage and are of one size, and there is one at least. */
+/* There is an attachment; all are live, have storage and are of one size. */
 int noh_null_complete(const noh_platform_context *c, GLuint framebuffer)
 {
     const null_object *f = &c->objects[NOH_NULL_FRAMEBUFFER][framebuffer];
@@ -216,8 +216,8 @@ static void GL_APIENTRY null_VertexAttribIPointer(GLuint index, GLint components
 
 /* --- draws --- */
 
-/* Each attribute's buffer lives and holds as many elements as the draw is known to read:
- * per instance all are known, per vertex only for draws without indices (vertices 0: unknown). */
+/* Each attribute's buffer is live and has as many elements as the draw is known to read: of instances all are known, of
+ * vertices only in draws without indices (vertices 0: unknown). */
 static void check_attributes(int call, const null_object *array, uint64_t vertices, uint64_t instances)
 {
     for (unsigned i = 0; i < NULL_ATTRIBUTES; i++) {
@@ -231,7 +231,7 @@ static void check_attributes(int call, const null_object *array, uint64_t vertic
     }
 }
 
-/* What is drawn to may not be bound where a shader could read it. */
+/* A texture that is drawn to must not be bound where a shader could read it. */
 static void check_feedback(int call, const noh_platform_context *c)
 {
     const null_object *f = &c->objects[NOH_NULL_FRAMEBUFFER][c->draw_framebuffer];

@@ -4,7 +4,7 @@
 
 #include "null.h"
 
-#define NULL_OBJECTS_MAX 2048 /* of a kind; names are never used again, so that a stale one is noticed */
+#define NULL_OBJECTS_MAX 2048 /* of one kind; names are never reused, so that a stale one is noticed */
 #define NULL_UNITS 32
 #define NULL_ATTRIBUTES 16
 #define NULL_ATTACHMENTS 5 /* four colours, depth */
@@ -21,10 +21,10 @@ typedef struct null_attachment {
     int is_texture;
 } null_attachment;
 
-/* An object of any kind. What a kind has no use for stays zero. */
+/* An object of any kind. Fields that a kind does not use stay zero. */
 typedef struct null_object {
     int alive, labelled;
-    int bound;   /* once at least: before, the name has no object */
+    int bound;   /* at least once; until then the name has no object */
     int ready;   /* has storage; compiled; linked */
     GLenum type; /* texture target or shader stage */
     uint64_t bytes;
@@ -41,7 +41,7 @@ typedef struct null_unit {
     GLuint flat, array; /* GL_TEXTURE_2D, GL_TEXTURE_2D_ARRAY */
 } null_unit;
 
-/* Every function that the platform has, in one place: counts are kept by these. */
+/* Every function that the platform has: calls are counted by these. */
 #define NULL_CALLS(X) NOH_GL_REQUIRED(X) NOH_GL_EXTRA(X)
 enum {
 #define NULL_CALL(field, TYPE) NULL_##field,
@@ -62,9 +62,9 @@ struct noh_platform_context {
     uint32_t draws, outside, allocations, violations;
     char first[160];
     int refused_call;    /* -1: none */
-    uint32_t refused_in; /* calls of it until the one that fails */
+    uint32_t refused_in; /* calls of it before the one that fails */
     GLenum refused_error;
-    int refusing, refused; /* the call that runs now fails; it has come */
+    int refusing, refused; /* the present call fails; the call has been made */
     GLenum error;
     uint32_t groups;
     GLint viewport[4];
@@ -79,21 +79,21 @@ struct noh_platform_context {
 /* The context that is current; NULL: none, and then no function may be called. */
 extern noh_platform_context *noh_null_current;
 
-/* ---- null.c: counting and telling ---- */
+/* ---- null.c: counts and violations ---- */
 
 /* Count a call of the current context. */
 noh_platform_context *noh_null_count(int call);
 
-/* A violation; format gives what comes after the function's name. */
+/* A violation; format gives the text after the function's name. */
 void noh_null_wrong(int call, const char *format, ...)
 #ifdef __GNUC__
     __attribute__((format(printf, 2, 3)))
 #endif
     ;
 
-/* ---- null_objects.c: names and what they stand for ---- */
+/* ---- null_objects.c: names and their objects ---- */
 
-/* The living object of a name; a violation and NULL where there is none. */
+/* The live object of a name; a violation and NULL where there is none. */
 null_object *noh_null_object(int call, noh_null_kind kind, GLuint name);
 
 /* A new name of a kind; its deletion. */

@@ -1,4 +1,4 @@
-/* Objects of the GL that does nothing: names, bindings, storage. */
+/* null_objects.c: objects of the GL that does nothing: names, bindings, storage. */
 #include "null_internal.h"
 
 #include "gl/gl_memory.h"
@@ -44,7 +44,7 @@ static void generate(int call, noh_null_kind kind, GLsizei count, GLuint *names)
     for (GLsizei i = 0; i < count; i++) names[i] = noh_null_make(call, kind);
 }
 
-/* A name that was deleted already is left alone by GL, but is a mistake here; 0 is fine. */
+/* GL ignores a name that was already deleted; here it is a violation. 0 is allowed. */
 void noh_null_delete(int call, noh_null_kind kind, GLsizei count, const GLuint *names)
 {
     noh_null_count(call);

@@ -1,4 +1,4 @@
-/* Shaders, programs and uniforms of the GL that does nothing. */
+/* null_programs.c: shaders, programs and uniforms of the GL that does nothing. */
 #include "null_internal.h"
 
 #include <string.h>
@@ -32,7 +32,7 @@ static void GL_APIENTRY null_ShaderSource(GLuint shader, GLsizei count, const GL
         noh_null_wrong(NULL_ShaderSource, "the text does not begin with #version");
     } else if (object) {
         object->bytes = 0;
-        object->levels = count; /* has a text */
+        object->levels = count; /* it has a source */
     }
 }
 
@@ -126,7 +126,7 @@ static void GL_APIENTRY null_TransformFeedbackVaryings(GLuint program, GLsizei c
     if (object && object->ready) noh_null_wrong(NULL_TransformFeedbackVaryings, "the program is linked already");
 }
 
-/* Every name has a place: the null platform reads no shaders. */
+/* Every name has a location: the null platform reads no shaders. */
 static GLint find(int call, GLuint program)
 {
     noh_null_count(call);

@@ -1,9 +1,9 @@
-/* State, questions and debug groups of the GL that does nothing. */
+/* null_state.c: state, queries and debug groups of the GL that does nothing. */
 #include "null_internal.h"
 
 #include <string.h>
 
-/* --- state that changes nothing here --- */
+/* --- state without effect here --- */
 
 #define STATE1(Name, T)                      \
     static void GL_APIENTRY null_##Name(T a) \
@@ -89,7 +89,7 @@ static void GL_APIENTRY null_Finish(void)
     noh_null_count(NULL_Finish);
 }
 
-/* --- questions --- */
+/* --- queries --- */
 
 static GLenum GL_APIENTRY null_GetError(void)
 {
@@ -114,7 +114,7 @@ static const GLubyte *GL_APIENTRY null_GetStringi(GLenum what, GLuint index)
     return NULL;
 }
 
-/* The least that ES 3.0 promises, and 2,048 where it promises more than textures need. */
+/* The minimum limits of ES 3.0; 2,048 where they are more than the tests need. */
 static void GL_APIENTRY null_GetIntegerv(GLenum what, GLint *value)
 {
     static const struct {

@@ -1,11 +1,11 @@
-/* A desktop GL context that draws into memory, through OSMesa. It compiles the
- * ES shaders and has every ES 3.2 function. libOSMesa is opened when asked for,
- * so no header and no library of it is needed to build. */
+/* osmesa.c: a desktop GL context that draws into memory, through OSMesa. It compiles the ES shaders and has every
+ * ES 3.2 function. libOSMesa is opened when a context is made, so neither its header nor its library is needed to
+ * build. */
 #include "platforms.h"
 
 #include <stdlib.h>
 
-/* From GL/osmesa.h, whose <GL/gl.h> does not go together with GLES3/gl32.h. */
+/* From GL/osmesa.h, whose <GL/gl.h> conflicts with GLES3/gl32.h. */
 #define OSMESA_FORMAT 0x22
 #define OSMESA_DEPTH_BITS 0x30
 #define OSMESA_PROFILE 0x33

@@ -1,18 +1,16 @@
 /* platform.h: GL contexts, files and clocks for the tools and tests.
  *
- *   noh_platform_find      a context maker by name: "egl", "angle", "osmesa", "glfw", "null"
+ *   noh_platform_find      a platform by name: "egl", "angle", "osmesa", "glfw", "null"
  *   noh_platform_names     all names, for messages
  *   noh_file_map / noh_file_unmap / noh_file_write
  *   noh_clock_ns / noh_cpu_clock_ns
  *
- * A game replaces this part with its own: README.md is the guide, template.c the
- * starting point. It may use libc; the library in runtime/ never calls it. GL
- * libraries are opened when a context is created, so a program that never draws
- * needs none of them. They stay open until the process ends, because drivers do not
- * survive being unloaded.
+ * A game replaces this part with its own: README.md is the guide, template.c the starting point. It may use libc; the
+ * library in runtime/ never calls it. GL libraries are opened when a context is created, so a program that never draws
+ * needs none of them. They stay open until the process ends, because drivers do not survive being unloaded.
  *
- * Threads: a context belongs to the thread that made it current; null has one
- * context for the whole process. Files and clocks, any. */
+ * Threads: a context belongs to the thread on which it is current; null has one context for the whole process. Files
+ * and clocks: any thread. */
 #ifndef NOH_PLATFORM_PLATFORM_H
 #define NOH_PLATFORM_PLATFORM_H
 
@@ -52,9 +50,9 @@ typedef struct noh_platform {
     /* Show what was drawn into the default framebuffer; without a window it only flushes.
      * errors  NOH_ERR_GL the surface or the context is gone: make both again */
     noh_result (*present)(noh_platform_context *context);
-    /* The default framebuffer as it is now, in pixels; a window's user may change it. */
+    /* The present size of the default framebuffer, in pixels; the user may resize a window. */
     void (*size)(noh_platform_context *context, uint32_t *width, uint32_t *height);
-    /* Objects that were made in it die with it. NULL is left alone. */
+    /* All objects that were made in it are gone afterwards. NULL is allowed. */
     void (*destroy)(noh_platform_context *context);
 } noh_platform;
 
@@ -76,9 +74,9 @@ noh_result noh_file_map(const char *path, noh_file *out, noh_error *error);
 void noh_file_unmap(noh_file *file);
 
 /* Write a whole file or change nothing: the bytes go to a new file in the same folder, which then takes the name, so
- * that a reader sees the old file or the new one. A symbolic link stays: its target is written. A device, a FIFO and
- * this process's own standard output (/dev/stdout) cannot be replaced and are written to directly. errors  NOH_ERR_DATA
- * the system refuses; `what` its own words, `where` its errno */
+ * that a reader sees either the old file or the new one. A symbolic link stays: its target is written. A device, a FIFO
+ * and this process's own standard output (/dev/stdout) cannot be replaced and are written to directly. errors
+ * NOH_ERR_DATA the system refuses; `what` is its own words, `where` its errno */
 noh_result noh_file_write(const char *path, const void *data, size_t bytes, noh_error *error);
 
 /* Nanoseconds of a steady clock, from any start. */

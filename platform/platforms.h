@@ -1,4 +1,4 @@
-/* platforms.h: the context makers, and what they share. Included by platform/ only. */
+/* platforms.h (private to platform/): all platforms, and what they share. */
 #ifndef NOH_PLATFORM_PLATFORMS_H
 #define NOH_PLATFORM_PLATFORMS_H
 
@@ -10,11 +10,10 @@ extern const noh_platform noh_platform_osmesa;
 extern const noh_platform noh_platform_glfw;
 extern const noh_platform noh_platform_null;
 
-/* Open a shared library, with its symbols for itself. NULL on failure, and the
- * reason is appended to message. */
+/* Open a shared library; its symbols stay private. NULL on failure; the reason is then appended to message. */
 void *noh_library_open(const char *path, char *message, size_t message_bytes);
 
-/* A function of an open library; NULL: not there. */
+/* A function of an open library; NULL where it has none of that name. */
 noh_gl_proc noh_library_proc(void *library, const char *name);
 
 /* Append a formatted text to a string; what does not fit is cut. */

@@ -1,9 +1,8 @@
 /* template.c: where a port begins.
  *
- * Copy this file, name it after your system, and put that system's own calls in place
- * of the system_* functions, which stand for them. Nothing else in noh has to change:
- * add the noh_platform at the end to platforms.h and platform.c if the tools should know
- * it by name, or use it alone. README.md says what each part must do. */
+ * Copy this file, name it after your system, and replace the system_* functions by that system's own calls. Nothing
+ * else in noh has to change: add the noh_platform at the end to platforms.h and platform.c if the tools should know it
+ * by name, or use it alone. README.md says what each part must do. */
 #include "platforms.h"
 
 #include <stdlib.h>
@@ -24,19 +23,19 @@ uint64_t system_clock_ns(void);
 
 /* ---- the context ---- */
 
-/* Whatever you need to find it again. One allocation, or a static where there is only one. */
+/* What your system needs to find the context again. One allocation, or a static where there is only one context. */
 struct noh_platform_context {
     system_context *context;
 };
 
-/* Current on this thread: noh's functions may then be called on it, on no other. */
+/* Make it current on this thread: noh's GL functions may then be called here, and on no other thread. */
 static noh_result make_current(noh_platform_context *c)
 {
     return system_context_bind(c->context) ? NOH_OK : NOH_ERR_GL;
 }
 
-/* Try the highest OpenGL ES first, down to 3.0, which is enough. Add a line to the message for
- * each attempt that failed: it is all that the user sees. */
+/* Try the highest version of OpenGL ES first, down to 3.0, which is enough. Add a line to the message for each attempt
+ * that fails: the user sees nothing else. */
 static noh_result create(const noh_platform_desc *desc, noh_platform_context **out, char *message, size_t message_bytes)
 {
     static const noh_platform_desc defaults;
@@ -99,8 +98,8 @@ const noh_platform noh_platform_template = {
 
 /* ---- files and clocks: these take the place of file.c ---- */
 
-/* The whole file, read only, at a multiple of 16 bytes, where it stays as long as anything of
- * its pack is used. A mapping costs no memory; a plain read into your own block will do. */
+/* The whole file, read only, at a multiple of 16 bytes, for as long as its pack is used. A mapping costs no memory; a
+ * plain read into your own block will do. */
 noh_result noh_file_map(const char *path, noh_file *out, noh_error *error)
 {
     size_t bytes = 0;
@@ -122,7 +121,7 @@ void noh_file_unmap(noh_file *file)
     file->bytes = 0;
 }
 
-/* The library has no clock: you hand it elapsed ticks. This is for your own frame loop. */
+/* The library has no clock: you pass it the elapsed ticks. This one is for your frame loop. */
 uint64_t noh_clock_ns(void)
 {
     return system_clock_ns();

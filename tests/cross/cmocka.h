@@ -1,6 +1,5 @@
-/* cmocka.h: as much of cmocka as the CPU tests use, for processors that have no package of it
- * (tests/cross.sh). A failed assertion ends its test; the program goes on with the next one and
- * tells all of it as TAP. */
+/* cmocka.h: as much of cmocka as the CPU tests use, for processors that have no package of it (tests/cross.sh). A
+ * failed assertion ends its test, and the program continues with the next one. Results are printed as TAP. */
 #ifndef NOH_TESTS_CROSS_CMOCKA_H
 #define NOH_TESTS_CROSS_CMOCKA_H
 
@@ -9,7 +8,7 @@ typedef int (*cross_fixture)(void **state);
 struct CMUnitTest {
     const char *name;
     void (*run)(void **state);
-    cross_fixture set_up, tear_down; /* of one test: not used by ours */
+    cross_fixture set_up, tear_down; /* of one test; unused */
     void *initial_state;
 };
 

@@ -1,5 +1,5 @@
-/* The functions that the converter's C files take from meshoptimizer, for processors that
- * have no package of it: the order of triangles stays as it is. */
+/* The functions of meshoptimizer that the converter's C files call, for processors that have no package of it: they
+ * keep the order of triangles. */
 #include <meshoptimizer.h>
 
 #include <string.h>

@@ -1,8 +1,8 @@
 /* fuzz_clip.c: any bytes, given to the clip decoder alone and, where it accepts them, played.
  *
- * There is no checksum in the way: in a pack these bytes come after one. The skeleton is as large as
- * the clip says, its bind pose made up. Samples go forward, back and past the ends, of all joints and of
- * prefixes, through a cache of two segments, some of them wanted before.
+ * There is no checksum in the way: a pack checks it before it gives out these bytes. The skeleton is as large as the
+ * clip says, with a bind pose made up. Samples are taken forwards, backwards and past the ends, of all joints and of
+ * prefixes, through a cache of two segments, some of them requested in advance.
  *
  * With libFuzzer (make fuzz) or replayed (make check), see tests/support/fuzz_replay.h. */
 #include <stdint.h>
@@ -15,7 +15,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count);
 
-#define BLOCK_MAX (64u << 20) /* a clip that needs more is not tried: time */
+#define BLOCK_MAX (64u << 20) /* a clip that needs more would take too long */
 #define SAMPLES 12u
 #define CANARY 0xa5u
 #define CANARIES 64u
@@ -78,7 +78,7 @@ static void play(const noh_clip *clip)
     free(floats);
 }
 
-/* The skeleton that these bytes ask for; a clip cannot be opened with another. */
+/* A skeleton as these bytes need it; a clip cannot be opened with any other. */
 static uint32_t joints_of(noh_clip_desc *desc)
 {
     noh_error error = { NOH_OK, NULL, 0, 0 };

@@ -1,8 +1,8 @@
-/* fuzz_pack.c: any bytes, opened as a pack and, where they open, used whole.
+/* fuzz_pack.c: any bytes, opened as a pack and, where that succeeds, used in full.
  *
  * With libFuzzer (make fuzz) LLVMFuzzerTestOneInput is called with mutated bytes. Without
- * (make check) the main below replays the files and folders that it is given, tells each as a
- * test, and damages each in a few thousand seeded ways (tests/support/fuzz_replay.c).
+ * (make check) the main below replays the files and folders that it is given, each as a test, and damages each in a few
+ * thousand seeded ways (tests/support/fuzz_replay.c).
  *
  * Each input is tried as it is, then with its length and checksums made right: a fuzzer cannot
  * guess a CRC, so only the second way reaches the structural checks. */
@@ -21,7 +21,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count);
 
 static int opened; /* of the last input, for the replay */
 
-/* A failed open has to say what and where. */
+/* A failed open must say what and where. */
 static void try_bytes(const uint8_t *bytes, size_t count)
 {
     noh_error error = { NOH_OK, NULL, 0, 0 };

@@ -22,7 +22,7 @@ static void write_pack(const char *folder, const char *name, const test_model_de
     free(bytes);
 }
 
-/* A skeleton and a clip, out of a .bvh. */
+/* A skeleton and a clip, from a .bvh. */
 static void write_clip_pack(const char *folder)
 {
     static const char bvh[] =
@@ -101,7 +101,7 @@ static void write_clip(const char *name, raw_set *set, const clip_options *optio
     fixture_free(&x);
 }
 
-/* Spins too fast for components: raw and wild tracks; and a scale that moves. */
+/* Spins too fast for components, which makes raw and wild tracks; and a scale that changes. */
 static raw_set *spinning(void)
 {
     raw_set *set = fixture_swing(4, 60, 1, 15.0f, 0.4, 0.5);

@@ -1,7 +1,7 @@
 /* clip_bank_fixture.h: packs with clips of joints, made by the converter out of .bvh files that the tests write.
  *
- * A chain of joints swings, its root walks; CLIP_PASS_FRAMES frames at 30 Hz close a loop but for
- * the way that was walked. */
+ * A chain of joints swings while its root walks; after CLIP_PASS_FRAMES frames at 30 Hz the pose is the first one
+ * again, except for the distance walked. */
 #ifndef NOH_TESTS_SUPPORT_CLIP_BANK_FIXTURE_H
 #define NOH_TESTS_SUPPORT_CLIP_BANK_FIXTURE_H
 
@@ -13,7 +13,7 @@
 /* Write NAME.bvh: `names` is one letter for each joint. Returns its path (see test_path). */
 const char *clip_bvh(const char *name, const char *names, uint32_t frames);
 
-/* Build inputs to a pack at aligned bytes, to be freed; fails the test where that fails. */
+/* Build a pack from inputs: aligned bytes, to be freed. Fails the test where that fails. */
 uint8_t *clip_pack(const char *const *inputs, int count, const convert_options *options, size_t *bytes);
 
 /* A model with weights, and with a joint that one of its clips moves: test_model of one mesh with
@@ -33,7 +33,7 @@ typedef struct clip_player {
 void clip_player_open(clip_player *p, noh_clip_bank *set);
 void clip_player_close(clip_player *p);
 void clip_start(clip_player *p, uint32_t clip, noh_loop loop, int32_t speed, int64_t tick);
-/* One frame of a game: everything that clip_bank.h says, in its order. */
+/* One frame of a game: all calls that clip_bank.h names, in its order. */
 void clip_frame(clip_player *p, uint32_t ticks, uint32_t ahead_ticks, uint32_t budget);
 
 #endif

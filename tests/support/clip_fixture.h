@@ -1,4 +1,4 @@
-/* clip_fixture.h: made-up clip, and a clip that is encoded and opened, for the clip tests. */
+/* clip_fixture.h: clips made in code, encoded and opened, for the clip tests. */
 #ifndef TESTS_CLIP_FIXTURE_H
 #define TESTS_CLIP_FIXTURE_H
 
@@ -18,10 +18,10 @@ typedef struct fixture {
     void *clip_memory, *cache_memory;
     noh_clip *clip;
     noh_clip_cache *cache;
-    uint32_t sample_rate_uhz; /* as the clip has it */
+    uint32_t sample_rate_uhz; /* of the clip */
 } fixture;
 
-/* ---- clip ---- */
+/* ---- raw clips ---- */
 
 typedef struct fixture_rng {
     uint32_t state;
@@ -55,7 +55,7 @@ static inline float *fixture_scale(raw_clip *c, uint32_t frame, uint32_t joint)
     return c->scales + ((size_t)frame * c->joint_count + joint) * 3u;
 }
 
-/* A chain or tree (branch > 1) of joints `bone` apart, standing still in its bind pose. */
+/* A chain or tree (branch > 1) of joints `bone` apart that stays in its bind pose. */
 static inline raw_set *fixture_still(uint32_t joints, uint32_t frames, uint32_t branch, float bone,
                                      double sample_rate_hz)
 {

@@ -1,5 +1,5 @@
-/* clip_set.h: a set of clips that are formulas, for the tests of runtime/anim.
- * Include after cmocka.h. */
+/* clip_set_fixture.h: a set of clips that are formulas, for the tests of anim/, graph/ and character/. Include it after
+ * cmocka.h. */
 #ifndef NOH_TESTS_SUPPORT_CLIP_SET_FIXTURE_H
 #define NOH_TESTS_SUPPORT_CLIP_SET_FIXTURE_H
 
@@ -71,7 +71,7 @@ static inline void scene_open(scene *s)
         s->clips[m].duration_ticks = durations[m];
         s->clips[m].loop = loops[m];
     }
-    for (uint32_t i = 0; i < 4; i++) { /* steps: walk 0 left, 1 right; run begins with the right foot */
+    for (uint32_t i = 0; i < 4; i++) { /* steps: id 0 left, 1 right; run begins with the right foot */
         s->clips[i / 2u].first_marker = i / 2u * 2u;
         s->clips[i / 2u].marker_count = 2;
         s->markers[i].id = i == 1 || i == 2;

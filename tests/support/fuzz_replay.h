@@ -1,5 +1,5 @@
-/* fuzz_replay.h: the fuzzers' main without libFuzzer (make check): every file that is given, or lies in a
- * folder that is given, is tried as it is and damaged in a few thousand seeded ways; each is a test. */
+/* fuzz_replay.h: the fuzzers' main without libFuzzer (make check): each file given, or in a folder given, is one test:
+ * it is tried as it is, then damaged in a few thousand seeded ways. */
 #ifndef TESTS_FUZZ_REPLAY_H
 #define TESTS_FUZZ_REPLAY_H
 
@@ -9,7 +9,7 @@
 /* Try one input; 1 when it was accepted. */
 typedef int (*fuzz_try)(const uint8_t *bytes, size_t count);
 
-/* What main returns. */
+/* Returns what main must return. */
 int fuzz_replay(int argument_count, char **arguments, fuzz_try try_input);
 
 #endif

@@ -88,7 +88,7 @@ void fixture_meshes_open(fixture_meshes *f)
     for (uint32_t i = 0; i < FIXTURE_MESHES; i++) {
         f->meshes[i] = test_mesh(&f->pack, i);
     }
-    /* what this set is for */
+    /* what these meshes are for */
     assert_int_not_equal(f->meshes[0].header->morph_width_log2, f->meshes[2].header->morph_width_log2);
     assert_int_equal(f->meshes[FIXTURE_BARE].header->touched_count, 0);
 }
@@ -132,7 +132,7 @@ void fixture_morph_close(fixture_morph *m)
     free(m->weights);
     free(m->levels);
     free(m->memory);
-    /* everything was given back, and nothing twice */
+    /* everything was deleted, and nothing twice */
     assert_true(noh_gl_ledger_bytes(&m->ledger) == 0);
     assert_int_equal(m->ledger.buffers + m->ledger.textures + m->ledger.framebuffers + m->ledger.programs, 0);
 }

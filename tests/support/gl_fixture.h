@@ -1,5 +1,4 @@
-/* gl_fixture.h: a GL context, a set of morphing meshes in it, and what the CPU says that the
- * GPU has to hold. */
+/* gl_fixture.h: a GL context, a set of morphing meshes in it, and what the GPU must hold according to the CPU. */
 #ifndef NOH_TESTS_SUPPORT_GL_FIXTURE_H
 #define NOH_TESTS_SUPPORT_GL_FIXTURE_H
 
@@ -13,7 +12,7 @@ gpu *fixture_gpu(void);
 /* Close it at the end. Fits cmocka's group teardown. */
 int fixture_tear_down(void **state);
 
-/* Neither glGetError nor the debug callback has anything to say since fixture_gpu. */
+/* Fails where glGetError or the debug callback has reported an error since fixture_gpu. */
 void fixture_expect_no_errors(void);
 
 /* Every path in both formats. */
@@ -65,8 +64,8 @@ void fixture_set_level(fixture_morph *m, uint32_t instance, uint32_t level);
 void fixture_set(fixture_morph *m, uint32_t instance, const float *weights);
 void fixture_set_random(fixture_morph *m, uint32_t instance, test_random *r);
 
-/* What the format and path leave for the remembered weights: layers[3][...] to be freed.
- * *exact is 0 where this driver's rounding is not modelled. */
+/* The layers that path and format should give for the remembered weights: layers[3][...], to be freed. *exact is 0
+ * where this driver's rounding is not modelled. */
 float *fixture_reference(const fixture_morph *m, uint32_t instance, int *exact);
 
 /* Read one instance's accumulator back and compare it with the reference: every value equal,
@@ -87,7 +86,7 @@ typedef struct fixture_frame {
 void fixture_frame_open(fixture_frame *f, uint32_t side);
 /* rgba[side][side][4], the lowest row first, to be freed. */
 uint8_t *fixture_frame_read(const fixture_frame *f);
-/* Everything that its ledger counts has to be deleted. */
+/* Everything that its ledger counts must have been deleted. */
 void fixture_frame_close(fixture_frame *f);
 
 #endif

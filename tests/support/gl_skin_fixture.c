@@ -240,7 +240,7 @@ static double distance(const float a[3], const float b[3])
     return sqrt(square);
 }
 
-/* A NaN is as far as can be. */
+/* A NaN counts as infinitely far. */
 static double farther(double most, double d)
 {
     return d <= most ? most : isnan(d) ? HUGE_VAL : d;

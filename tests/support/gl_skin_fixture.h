@@ -1,4 +1,4 @@
-/* gl_skin_fixture.h: an asset's skinned meshes on the GPU, posed at random, and what the CPU says of them. */
+/* gl_skin_fixture.h: an asset's skinned meshes on the GPU, posed at random, and the CPU's result for the same poses. */
 #ifndef NOH_TESTS_SUPPORT_GL_SKIN_FIXTURE_H
 #define NOH_TESTS_SUPPORT_GL_SKIN_FIXTURE_H
 
@@ -37,10 +37,10 @@ void fixture_skin_close(fixture_skin *f);
 /* Turn and stretch every joint at random, set random weights, and send both. */
 void fixture_skin_pose(fixture_skin *f, test_random *r);
 
-/* What the CPU makes of one instance: [vertex_count], to be freed. */
+/* One instance's vertices by the CPU: [vertex_count], to be freed. */
 noh_vertex *fixture_skin_reference(const fixture_skin *f, uint32_t instance);
 
-/* What the GPU makes of it, each vertex through the shader that draws: [crowd, at least 1][vertex_count], to be freed.
+/* The same by the GPU, each vertex through the shader that draws: [crowd, at least 1][vertex_count], to be freed.
  * influences: as in noh_gl_skin_binding. crowd: as in readback_skinned. */
 readback_vertex *fixture_skin_read(const fixture_skin *f, uint32_t mesh, uint32_t copy, uint32_t influences,
                                    uint32_t crowd);

@@ -47,7 +47,7 @@ static void skip_space(reader *r)
     }
 }
 
-/* Escapes are kept as they are: no name that we look up has any. */
+/* Escapes are kept as they are: no name that is looked up has any. */
 static char *read_text(reader *r)
 {
     const char *start = ++r->at;
@@ -189,7 +189,7 @@ static uint8_t *read_file(const char *path, size_t *count)
     fseek(f, 0, SEEK_END);
     size = ftell(f);
     fseek(f, 0, SEEK_SET);
-    bytes = test_zeros((size_t)size + 1); /* JSON ends with a zero then */
+    bytes = test_zeros((size_t)size + 1); /* so that the JSON ends with a zero */
     assert_int_equal(fread(bytes, 1, (size_t)size, f), size);
     fclose(f);
     *count = (size_t)size;
@@ -397,7 +397,7 @@ static double *decode_accessor(const oracle *o, uint32_t index, uint32_t compone
     return out;
 }
 
-/* The same, decoded once: the tests ask for the same accessors in every pose. They belong to the oracle. */
+/* The same, decoded once and kept by the oracle: the tests read the same accessors in every pose. */
 static const double *read_accessor(const oracle *o, uint32_t index, uint32_t components, uint32_t *count)
 {
     decoded_accessor *a = &o->decoded[index];

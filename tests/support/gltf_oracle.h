@@ -1,8 +1,7 @@
 /* gltf_oracle.h: a second reader of glTF, for tests only, that shares nothing with the
  * converter's: just enough to evaluate morph targets, node animations and skins as the
- * specification writes them, in double precision. Accessors of every type but uncompressed,
- * sparse or not; data URIs, files or a .glb's own chunk; nodes without matrices. What it does
- * not understand fails the test. */
+ * specification writes them, in double precision. It reads uncompressed accessors of every type, sparse or not; data
+ * URIs, files or a .glb's own chunk; nodes without matrices. What it does not understand fails the test. */
 #ifndef NOH_TESTS_SUPPORT_GLTF_ORACLE_H
 #define NOH_TESTS_SUPPORT_GLTF_ORACLE_H
 

@@ -149,7 +149,7 @@ static int moves(const maker *m, uint32_t texel)
     return (m->words[texel][0] | m->words[texel][1] | m->words[texel][2]) != 0;
 }
 
-/* Texels from..to-1 in runs of a row; a run goes on over a single texel that is not moved. */
+/* Texels from..to-1 in runs of a row; a run includes single texels that do not move. */
 static void put_runs(maker *m, uint32_t from, uint32_t to, noh_target *t)
 {
     const uint32_t log2 = m->mesh->header->morph_width_log2, width = 1u << log2;
@@ -201,7 +201,7 @@ static void cut_targets(maker *m)
 
 /* ---- the chunk ---- */
 
-/* What is a level's own, in a header that is the full mesh's else. */
+/* The fields of a level's own, in a copy of the full mesh's header. */
 static void fill_level(const maker *m, uint32_t level, noh_mesh_header *h)
 {
     h->vertex_count = m->vertex_count[level];

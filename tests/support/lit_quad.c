@@ -162,14 +162,14 @@ int lit_quad_is_background(const uint8_t *pixel)
 {
     static const uint8_t background[3] = { CANVAS_BACKGROUND_SRGB };
     for (int i = 0; i < 3; i++) {
-        if (abs(pixel[i] - background[i]) > 1) { /* drivers round it each their way */
+        if (abs(pixel[i] - background[i]) > 1) { /* each driver rounds it differently */
             return 0;
         }
     }
     return 1;
 }
 
-/* ---- what it has to be ---- */
+/* ---- the closed form ---- */
 
 double lit_quad_encoded(double linear)
 {
@@ -247,13 +247,13 @@ void lit_quad_pixel(const lit_quad *q, uint32_t column, lit_quad_normals by, int
     double n[3];
     cosines c;
     quad_normal(x, normal);
-    for (int i = 0; i < 3; i++) { /* NOT_UNIT: by the cofactors, as long as they leave it */
+    for (int i = 0; i < 3; i++) { /* NOT_UNIT: by the cofactors, with the length that they give */
         const double axis = (double)q->world[5 * i];
         n[i] = (double)normal[i] * (by == NORMALS_BY_MATRIX    ? axis
                                     : by == NORMALS_BY_NOTHING ? 1.0
                                                                : fabs(determinant) / axis);
     }
-    for (int i = 0; q->world[10] > 0.0f && i < 3; i++) { /* seen from behind: its other side's */
+    for (int i = 0; q->world[10] > 0.0f && i < 3; i++) { /* seen from behind: the normal of that side */
         n[i] = -n[i];
     }
     if (by != NORMALS_NOT_UNIT) {

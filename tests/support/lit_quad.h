@@ -1,8 +1,8 @@
-/* lit_quad.h: one quad drawn by the plain renderer, and what its pixels have to be, in closed form.
+/* lit_quad.h: one quad drawn by the plain renderer, and what its pixels must be, in closed form.
  *
- * The quad fills a square picture. Its normals differ much from corner to corner, so that one that is not made unit
- * again shows; it is turned half round and scaled by another factor along each axis, so that one that is turned wrongly
- * shows. */
+ * The quad fills a square picture. Its normals differ so much from corner to corner that it shows where they are not
+ * made unit again; it is turned by half a turn and scaled differently along each axis, so that it shows where they are
+ * transformed wrongly. */
 #ifndef NOH_TESTS_SUPPORT_LIT_QUAD_H
 #define NOH_TESTS_SUPPORT_LIT_QUAD_H
 
@@ -33,10 +33,10 @@ uint8_t *lit_quad_draw(gpu *g, const lit_quad *q, int pass);
 /* The pixel of a column of the middle row. */
 const uint8_t *lit_quad_at(const uint8_t *rgba, uint32_t column);
 
-/* Whether nothing was drawn there. */
+/* Whether nothing was drawn at that pixel. */
 int lit_quad_is_background(const uint8_t *pixel);
 
-/* How normals come to the light; only the first is right. */
+/* How normals are made for the light; only the first way is right. */
 typedef enum lit_quad_normals {
     NORMALS_BY_INVERSE_TRANSPOSE,
     NORMALS_BY_MATRIX,
@@ -44,8 +44,8 @@ typedef enum lit_quad_normals {
     NORMALS_NOT_UNIT
 } lit_quad_normals;
 
-/* mesh.frag's light on a column of the middle row, in sRGB 0..255. world has to be diagonal.
- * held: what faces away from the light takes none; 0: as the source has it */
+/* mesh.frag's light on a column of the middle row, in sRGB 0..255. world must be diagonal.
+ * held: what faces away from the light gets none; 0: as in the source */
 void lit_quad_pixel(const lit_quad *q, uint32_t column, lit_quad_normals by, int held, double out[3]);
 
 /* Linear light as a byte of sRGB. */

@@ -18,7 +18,7 @@
 
 const uint32_t lod_face_pairs[LOD_FACE_PAIRS][2] = { { 0, 1 }, { 2, 3 }, { 4, 5 }, { 7, 8 }, { 9, 10 } };
 
-/* Where a target's bump is, how far it reaches and how high it is, in radii of the sphere. */
+/* A target's bump: its place, radius and height, in radii of the sphere. */
 typedef struct face_target {
     const char *name;
     double at[3], reach, height;
@@ -102,7 +102,7 @@ static void add_ball_triangles(model_mesh *mesh, uint32_t n, uint32_t first, uin
     sub->index_count = mesh->index_count - sub->first_index;
 }
 
-/* How much of a target a place gets: 1 at its centre, falling to 0, or, of one that moves everything, near 0. */
+/* How much a target moves a place: 1 at its centre, falling to 0 or, where it moves every vertex, to nearly 0. */
 static double share_of(const face_target *t, const float *position, int everywhere)
 {
     double squared = 0.0, rest;

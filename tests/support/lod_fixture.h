@@ -13,17 +13,17 @@
 
 #define LOD_FACE_TARGETS 12u
 #define LOD_FACE_PAIRS 5u
-#define LOD_TUBE_HZ 8.0 /* its keys lie where frames are looked for (lod_frames.h) */
+#define LOD_TUBE_HZ 8.0 /* its keys lie on the frames that lod_frames.h looks at */
 #define LOD_TUBE_KEYS 7u
 
 typedef struct lod_face {
     uint32_t columns, rows; /* quads of the sphere: (columns + 1) x (rows + 1) vertices */
     uint32_t targets;       /* up to LOD_FACE_TARGETS */
     int eye;                /* a second submesh, blended, that no target moves */
-    int everywhere;         /* but here each target moves every vertex */
+    int everywhere;         /* each target moves every vertex */
 } lod_face;
 
-/* Which targets are one thing on the left and on the right. */
+/* Pairs of targets that are mirror images: left and right. */
 extern const uint32_t lod_face_pairs[LOD_FACE_PAIRS][2];
 
 /* Free with model_free. A face has room for one more submesh. */
@@ -38,7 +38,7 @@ typedef struct lod_pack {
     size_t byte_count;
     noh_pack pack;
     noh_mesh mesh;          /* the first, full; points to `pack`: do not copy */
-    const model_mesh *from; /* the model's: valid as long as that is */
+    const model_mesh *from; /* the model's; the model must outlive it */
     mesh_levels *levels;    /* [mesh_count] as built */
     uint32_t mesh_count;
 } lod_pack;
@@ -47,7 +47,7 @@ typedef struct lod_pack {
 void lod_pack_make(model *m, const lod_settings *settings, uint32_t palette, lod_pack *out);
 void lod_pack_free(lod_pack *p);
 
-/* [vertex_count] the model's vertex of each of the pack's, told by position and uv alone; to be freed. */
+/* [vertex_count] for each vertex of the pack the model's, found by position and uv alone; to be freed. */
 uint32_t *lod_pack_sources(const lod_pack *p);
 
 /* Layers of the exact size, cleared, with guards on both sides. */

@@ -5,7 +5,7 @@
 
 #include "noh_gl.h"
 
-#define NAMES_LOOKED_UP 64u /* names cost targets squared: enough to see every kind */
+#define NAMES_LOOKED_UP 64u /* looking up names takes targets squared: enough to see every kind */
 
 void pack_repair(uint8_t *bytes, size_t count)
 {
@@ -86,7 +86,7 @@ static void walk_textures(walk *w)
         eat_name(w, noh_pack_string(w->pack, m->name));
         if (m->base_color_texture != NOH_NONE &&
             noh_pack_texture_at(w->pack, m->base_color_texture, &t, NULL) != NOH_OK) {
-            abort(); /* the checker promised that it is there */
+            abort(); /* the checker guarantees it */
         }
     }
 }
@@ -164,7 +164,7 @@ static void walk_influences(walk *w, const noh_mesh *mesh)
     }
 }
 
-/* Skinned by the inverse bind matrices: as good as any others, and there. */
+/* Skinned by the inverse bind matrices: any matrices will do, and these are at hand. */
 static void walk_skinned(walk *w, const noh_mesh *mesh)
 {
     const uint32_t count = mesh->header->vertex_count;
@@ -329,7 +329,7 @@ static void walk_playing(walk *w, noh_clip_bank *set)
     free(scratch_block);
 }
 
-/* What is known of leaving out joints and updates. */
+/* The errors of fewer joints and fewer updates. */
 static void walk_lod(walk *w, const noh_clip_bank *set, const noh_clip_bank_desc *set_desc)
 {
     noh_lod_pack_desc desc;

@@ -1,6 +1,6 @@
 /* pack_walk.h: what the pack tests and the fuzzer share. Needs only libnoh.
  *
- *   pack_repair   make all checksums right again, so that what lies behind them is tested
+ *   pack_repair   make all checksums right again, so that the checks behind them are tested
  *   pack_walk     use everything that an opened pack offers, as a game would */
 #ifndef NOH_TESTS_SUPPORT_PACK_WALK_H
 #define NOH_TESTS_SUPPORT_PACK_WALK_H

@@ -1,4 +1,4 @@
-/* raw_play.h: a raw clip as a set of one clip, its frames lerped: for tests that want real clip. */
+/* raw_play.h: a raw clip as a set of one clip, its frames lerped: for tests that need real motion. */
 #ifndef TESTS_RAW_PLAY_H
 #define TESTS_RAW_PLAY_H
 

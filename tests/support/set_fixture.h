@@ -1,5 +1,5 @@
-/* set_fixture.h: a clip set out of a pack that is made here, without files or C++: a chain of joints that swings, its
- * root walks, and each clip has two named floats, of which it shares one with all others. */
+/* set_fixture.h: a clip bank from a pack that is made here, without files or C++: a chain of joints swings while its
+ * root walks, and each clip has two named floats, one of them shared by all clips. */
 #ifndef TESTS_SET_FIXTURE_H
 #define TESTS_SET_FIXTURE_H
 

@@ -41,8 +41,8 @@ static skin_source source_of(const oracle *o, uint32_t node, uint32_t vertex)
     return s;
 }
 
-/* What skins_bind makes of the meshes is told by vertex counts and the order of nodes: a mesh that is drawn as it was,
- * or one joined of rigid nodes, then of skinned ones. `before` is the model's nodes before binding. */
+/* Which mesh skins_bind made of which is found by vertex counts and the order of nodes: a mesh is unchanged, or joined
+ * from rigid nodes, then from skinned ones. `before` is the model's nodes before binding. */
 static skin_source *sources_of(const oracle *o, const model *before, const model *after, uint32_t mesh)
 {
     skin_source *out = test_zeros(sizeof *out * (after->meshes[mesh].vertex_count + 1u));
@@ -196,7 +196,7 @@ void skin_asset_expected(const skin_asset *a, uint32_t mesh, const double *world
     noh_mesh m = test_mesh(&a->pack, mesh);
     uint32_t node = MODEL_NONE, primitive = 0;
     double *drawn = NULL;
-    /* one primitive after another, as each is met: the pack's order mixes them, so all passes look for one of them */
+    /* One primitive in each pass: the pack's order mixes them. */
     uint8_t *done = test_zeros(m.header->vertex_count);
     for (uint32_t start = 0; start < m.header->vertex_count; start++) {
         const skin_source *first = &a->sources[mesh][noh_mesh_accumulation_texel(&m, start)];

@@ -6,7 +6,7 @@
 #include "support.h"
 #include "convert/skin/skins.h"
 
-/* Where a vertex of the pack comes from. */
+/* The vertex of the file that a vertex of the pack was made from. */
 typedef struct skin_source {
     uint32_t node, primitive, vertex; /* of the file */
 } skin_source;
@@ -31,7 +31,7 @@ void skin_asset_expected(const skin_asset *a, uint32_t mesh, const double *world
 /* A skeleton's model-space matrices out of the oracle's local transforms, by the library. matrices to be freed. */
 float *skin_asset_model(const skin_asset *a, uint32_t skeleton, const double *locals);
 
-/* What moves a mesh: [skin's joint_count][12], to be freed. */
+/* The matrices that move a mesh: [skin's joint_count][12], to be freed. */
 float *skin_asset_matrices(const skin_asset *a, const noh_mesh *mesh, const double *locals);
 
 /* ---- models made in code ---- */

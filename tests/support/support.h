@@ -40,7 +40,7 @@
 
 /* ---- memory, files ---- */
 
-/* Zeroed; never NULL. free() gives it back, as all below. */
+/* Zeroed; never NULL. Free it with free(), as all below. */
 void *test_zeros(size_t bytes);
 
 /* A copy at a multiple of 64, exactly `count` bytes long. */
@@ -90,14 +90,14 @@ typedef struct test_model_desc {
 /* To be freed with model_free. Vertex v of a grid lies at x = v % side, y = v / side. */
 model *test_model(const test_model_desc *desc);
 
-/* Encode and write it, its clips too; the bytes are aligned. Warnings go to the model. orders: NULL, or
+/* Encode and write it with its clips; the bytes are aligned. Warnings go to the model. orders: NULL, or
  * [mesh_count] to receive each mesh's new-to-old vertex order (to be freed). */
 uint8_t *test_pack_of(model *m, size_t *count, uint32_t **orders);
 
-/* Both in one. */
+/* test_model and test_pack_of in one call. */
 uint8_t *test_pack(const test_model_desc *desc, size_t *count);
 
-/* Open; fails the test where it does not open. */
+/* Open a pack; fails the test where it does not open. */
 noh_pack test_open(const uint8_t *bytes, size_t count);
 
 /* A clip bank in memory of the exact size; free() it. Fails the test where it cannot be made. */

@@ -83,7 +83,8 @@ static void a_change_takes_over_from_the_running_one(void **state)
     assert_true(r.tracks[1].weight == 1.0f);
 }
 
-/* Members of a sync group have to hear of what changes their mean speed, and only they. */
+/* A change of a weight or speed concerns all members of a sync group, because it changes their mean speed, and no other
+ * track. */
 static void sync_groups_hear_of_changes(void **state)
 {
     rig r;
@@ -101,7 +102,7 @@ static void sync_groups_hear_of_changes(void **state)
     assert_true(r.target.sync_touched != 0);
 }
 
-/* A track that starts anew loses its own changes, waiting ones too; the priority blend is nobody's. */
+/* A track that is started again loses its own changes, waiting ones too; the priority blend belongs to no track. */
 static void dropping_a_track_leaves_the_others(void **state)
 {
     rig r;
@@ -119,7 +120,7 @@ static void dropping_a_track_leaves_the_others(void **state)
     assert_true(r.tracks[0].weight == 1.0f && r.tracks[0].speed == NOH_SPEED_ONE);
 }
 
-/* The same kind, track and tick again replaces what waits; past the last entry it is refused. */
+/* A second change of the same kind, track and tick replaces the waiting one; when the table is full, it is refused. */
 static void a_full_table_refuses_and_replaces(void **state)
 {
     rig r;
@@ -136,7 +137,7 @@ static void a_full_table_refuses_and_replaces(void **state)
     assert_true(r.tracks[0].weight == 7.0f);
 }
 
-/* Rates hold up to where the next change is due. */
+/* Present speeds hold until the next change is due. */
 static void rates_hold_until_something_is_due(void **state)
 {
     rig r;

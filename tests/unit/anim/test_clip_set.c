@@ -1,4 +1,4 @@
-/* test_clip.c: checking a set that has only what it must have; broken fields are in test_controller.c. */
+/* Tests of runtime/anim/clip_set.c: a set with only the required fields; broken fields are in test_controller.c. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,4 +1,4 @@
-/* Tests of runtime/anim/{controller,tracks,changes,sync,controller_pose,inertial,clip,time}.c. */
+/* Tests of runtime/anim/controller*.c, and through the controller of tracks, changes, sync, time and inertial poses. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -316,7 +316,7 @@ static void test_time_functions(void **state)
     }
 }
 
-/* Integer time does not drift: a day of 60 Hz frames, then the sum in floats beside it. */
+/* Integer time does not drift over a day of 60 Hz frames; the same sum in floats does. */
 static void time_does_not_drift(void **state)
 {
     stage g;
@@ -436,7 +436,7 @@ static void test_weight_follows_its_curve(void **state)
     assert_true(noh_controller_track(g.c, 0)->weight == 0.75f);
 }
 
-/* The way of a speed that changes is the curve's integral: the mean of both speeds. */
+/* While a speed changes, a track moves by the integral of the curve: the mean of both speeds. */
 static void test_speed_change_travels_the_integral(void **state)
 {
     static const uint32_t durations[] = { 1, 2, 7, 63, 64, 65, 1000, 48000, 1000000 };
@@ -655,7 +655,7 @@ static void test_masked_layer(void **state)
     }
 }
 
-/* The high group covers the low one by the priority blend, and wholly where no low track has a say. */
+/* The high group covers the low one by the priority blend, and completely where no low track takes part. */
 static void the_high_group_covers_what_nothing_lies_below(void **state)
 {
     stage g;
@@ -679,7 +679,7 @@ static void the_high_group_covers_what_nothing_lies_below(void **state)
     }
 }
 
-/* A track with a mask, alone: what its mask shuts out stands in the bind pose. */
+/* A single track with a mask: what the mask leaves out has the bind pose. */
 static void a_masked_track_alone_leaves_the_bind_pose(void **state)
 {
     stage g;
@@ -717,8 +717,8 @@ static void test_clips_of_joints_and_of_floats(void **state)
     assert_true(pose_apart(g.pose, walk, JOINTS) > 1e-2 && floats_apart(g.floats, face_floats, FLOATS) > 1e-2);
 }
 
-/* In the high group likewise: a face that speaks neither covers the walk below nor dilutes the bow beside it, and a
- * bow that moves no floats leaves them to the face. */
+/* The same in the high group: a speaking face neither covers the walk below nor dilutes the bow beside it, and a bow
+ * that moves no floats leaves them to the face. */
 static void test_clips_of_joints_and_of_floats_above(void **state)
 {
     stage g;
@@ -876,7 +876,7 @@ static void clones_share_nothing_they_write(void **state)
     assert_true(pose_apart(a, want_a, JOINTS) < 1e-6 && pose_apart(b, want_b, JOINTS) < 1e-6);
 }
 
-/* Saved and restored by memcpy, an instance goes on bit for bit, changes and all. */
+/* Saved and restored by memcpy, an instance continues with the same bits, changes included. */
 static void test_snapshot_goes_on_the_same(void **state)
 {
     stage g;
@@ -923,7 +923,7 @@ static void test_decay(void **state)
     assert_true(noh_inertia_decay(NAN, 0.0f, 0.1f, 0.3f) == 0.0f);
 }
 
-/* What was left of a transition some ticks ago, asked for now, is what it was then. */
+/* The remaining offset of a transition at an earlier tick, computed now, is what it was then. */
 static void inertia_some_ticks_ago(void **state)
 {
     stage g;
@@ -1062,7 +1062,7 @@ static void test_check_takes_what_a_step_leaves(void **state)
     assert_int_equal(strncmp(error.what, "controller: made for another set", 32), 0);
 }
 
-/* Damage of head, tracks and changes is refused, or does no harm. */
+/* Damage to the head, tracks or changes is refused, or does no harm. */
 static void test_damaged_blocks_do_no_harm(void **state)
 {
     static stage g, kept;
@@ -1100,8 +1100,7 @@ static void test_damaged_blocks_do_no_harm(void **state)
     assert_true(refused > 1000 && taken > 1000);
 }
 
-/* A seek that fires goes any distance in one tick; what was shown 10 ms before it is still asked for by a transition.
- */
+/* A seek that fires moves any distance in one tick; a transition after it still finds what was shown 10 ms before. */
 static void test_a_pose_before_a_far_seek(void **state)
 {
     stage g;

@@ -45,8 +45,8 @@ static void events_come_out_in_the_order_of_pushing(void **state)
     assert_true(q.events[0].clock == 5 && q.events[1].clock == 2);
 }
 
-/* What finds no room is counted and leaves the others, and what lies behind the memory, alone. The counts of lost
- * events and of the most at once outlive a clear: they say whether the queue was large enough. */
+/* An event without room is counted; the others, and the bytes past the memory, stay untouched. The counts of lost
+ * events and of the most at once survive a clear: they say whether the queue was large enough. */
 static void what_finds_no_room_is_counted(void **state)
 {
     union {

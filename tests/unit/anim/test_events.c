@@ -162,7 +162,7 @@ static void oracle_tick(const noh_event_key *keys, uint32_t count, const noh_pas
         passes[0] = floor_of(u, d) - (modulo(u, d) == 0);
         passes[1] = floor_of(u, d);
     }
-    from_pass = passes[p->backward ? 0 : 1]; /* the pass on the side that play goes to */
+    from_pass = passes[p->backward ? 0 : 1]; /* the pass that play is moving to */
     for (int k = 0; k < (passes[0] == passes[1] ? 1 : 2); k++) {
         for (uint32_t i = 0; i < count; i++) {
             int64_t wanted = passes[p->backward ? 1 - k : k];
@@ -279,7 +279,7 @@ typedef struct sim_track {
     int placed, on;
 } sim_track;
 
-/* What a key does to the other tracks in the tests: read from its name hash, the same for both sides. */
+/* What a key's callback does to the other tracks in these tests, read from its name hash: the same for both sides. */
 typedef struct action {
     uint32_t kind, track, clip;
     int32_t speed;
@@ -365,7 +365,7 @@ static void sim_key(void *user, uint32_t index, int64_t u)
     sim_act(k->s, key);
 }
 
-/* One tick of everything. */
+/* One tick of all tracks. */
 static void sim_tick(sim *s)
 {
     noh_passage p[TRACKS];
@@ -853,7 +853,7 @@ static void test_a_day_in_one_step(void **state)
     one_close(&o);
 }
 
-/* A key fires this often at most in one step, however far it goes; time goes on all the same. */
+/* The most times that a key fires in one step, however long; time advances all the same. */
 static void test_a_step_is_bounded(void **state)
 {
     static const uint32_t ticks[] = { 0, 0, 1 };
@@ -877,7 +877,7 @@ static void test_a_step_is_bounded(void **state)
     }
 }
 
-/* The limit takes a list's beginning, in every loop mode and direction. */
+/* The limit keeps the beginning of the list, in every loop mode and direction. */
 static void test_a_limit_cuts_the_list(void **state)
 {
     rng r = { SEED + 5u };
@@ -941,7 +941,7 @@ static void test_clocks_stop_at_the_end(void **state)
     one_close(&o);
 }
 
-/* Seeks that go on and on from the pass that a track is in stay in range. */
+/* Repeated seeks, each from the pass that the track is in, stay in range. */
 static void test_seeks_add_up_within_range(void **state)
 {
     static const uint32_t ticks[] = { 2 };
@@ -999,8 +999,8 @@ static void test_bounds_saturate(void **state)
     assert_int_equal(noh_events_max(5, 0, NOH_LOOP_REPEAT, UINT64_MAX, 1), 5);
 }
 
-/* Near a turn a clip that goes to and fro passes a key twice in a few ticks, and twice again where the speed changes
- * its sign in the same step: four times in a way far shorter than the clip. The bound of a step counts both ways. */
+/* Near a turn a ping-pong clip passes a key twice in a few ticks, and twice more where the speed changes its sign in
+ * the same step: four times within a distance far shorter than the clip. The bound of a step counts both directions. */
 static void a_bound_holds_for_a_turn_within_the_step(void **state)
 {
     static const uint32_t ticks[] = { 998 };

@@ -66,7 +66,7 @@ static double root_apart(const noh_root_pose *a, const noh_root_pose *b)
     return worst;
 }
 
-/* world * E * rest is the root where the clip put it. */
+/* world * E * rest is the root as the clip has it. */
 static void test_extract_and_remove(void **state)
 {
     double worst = 0.0;
@@ -234,7 +234,7 @@ static void test_steps_add_up(void **state)
     }
 }
 
-/* Floats summed frame by frame drift away; moves composed as the library does stay where the clip leads. */
+/* Floats summed frame by frame drift; moves composed as the library does it stay on the clip's path. */
 static void sums_of_moves_do_not_drift(void **state)
 {
     walk w;
@@ -372,7 +372,7 @@ static void test_moves_are_blended_by_weight_and_group(void **state)
     assert_true(root_apart(&got, &want) < 1e-12);
 }
 
-/* A clip of floats alone, or one whose mask leaves the root out, takes no part: the walk goes as far as it does alone.
+/* A clip of floats only, or one whose mask leaves the root out, takes no part: the walk goes as far as it does alone.
  */
 static void test_what_moves_no_joints_does_not_hold_the_root(void **state)
 {
@@ -409,7 +409,7 @@ static void test_what_moves_no_joints_does_not_hold_the_root(void **state)
     }
 }
 
-/* What a track's mask gives joint 0 counts, within a group and of the high group over the low one. */
+/* The mask's value for joint 0 weighs the track, within its group and when the high group covers the low one. */
 static void masks_weigh_root_motion(void **state)
 {
     static const uint8_t half = 128;
@@ -466,7 +466,7 @@ static void opposite_turns_are_averaged_as_angles(void **state)
     }
 }
 
-/* An additive track moves what is posed, not the ground under it. */
+/* An additive track changes the pose, not the root motion. */
 static void additive_tracks_do_not_travel(void **state)
 {
     stage g;

@@ -1,4 +1,4 @@
-/* Tests of runtime/anim/sync.c: phases, leaders, and the rates that keep a group in step. */
+/* Tests of runtime/anim/sync.c: phases, leaders, and the speeds that keep a group in step. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -155,14 +155,14 @@ static void a_group_moves_at_its_weighted_mean(void **state)
     mean = (3.0 / 48000.0 + 1.0 / 30000.0) / 4.0;
     assert_true(fabs((double)t[0].speed_now - mean * 48000.0 * 65536.0) <= 0.5);
     assert_true(fabs((double)t[1].speed_now - mean * 30000.0 * 65536.0) <= 1.5);
-    assert_int_equal(t[2].speed_now, 77); /* who is off neither weighs nor moves */
-    t[0].weight = t[1].weight = 0.0f;     /* nobody weighs anything: the leader's own speed */
+    assert_int_equal(t[2].speed_now, 77);  /* a track that is off neither weighs nor moves */
+    t[0].weight = t[1].weight = 0.0f; /* no weights: the leader's own speed */
     noh_sync_speeds(&s.set, t, 3, 480);
     assert_int_equal(t[0].speed_now, NOH_SPEED_ONE);
 }
 
-/* After the ticks for which its rate was made, a follower is on the leader's phase within half a unit a tick, wherever
- * both began. */
+/* After the ticks for which its present speed was set, a follower is on the leader's phase within half a unit a tick,
+ * wherever both began. */
 static void followers_arrive_on_the_phase(void **state)
 {
     scene s;
@@ -182,7 +182,7 @@ static void followers_arrive_on_the_phase(void **state)
     }
 }
 
-/* A follower that is ahead waits; it is never sent back, and where the leader stands it stands. */
+/* A follower that is ahead waits; it never moves backwards, and it stops where the leader stops. */
 static void followers_never_turn_round(void **state)
 {
     scene s;

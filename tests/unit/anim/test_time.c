@@ -1,4 +1,4 @@
-/* test_time.c: time at the ends of its range; what it is in the middle is in test_controller.c. */
+/* Tests of runtime/anim/time.c: time at the ends of its range; the rest is in test_controller.c. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

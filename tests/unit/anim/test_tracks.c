@@ -43,8 +43,8 @@ static void clips_fold_positions(void **state)
                      noh_position_of(-1));
 }
 
-/* A huge position is brought near 0 by whole cycles of two durations: neither the place nor the direction of a clip
- * that goes to and fro may change, in odd passes as in even ones. */
+/* A huge position is brought near 0 by whole cycles of two durations: neither the place nor the direction of a
+ * ping-pong clip may change, in odd passes or in even ones. */
 static void rebasing_keeps_place_and_direction(void **state)
 {
     const int64_t d = noh_position_of(100);

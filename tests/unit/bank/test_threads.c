@@ -1,4 +1,4 @@
-/* test_threads.c: controllers of one clip set posed by four threads at once, each through its own view: the same bits
+/* Controllers of one clip set posed by four threads at once, each through its own view: the same bits
  * as one thread, and (tests/tsan.sh) no race. */
 #define _POSIX_C_SOURCE 200112L
 #include "support/set_fixture.h"
@@ -19,7 +19,7 @@ typedef struct instance {
     void *memory;
 } instance;
 
-/* What one instance's posing gives in one frame. */
+/* The result of posing one instance in one frame. */
 typedef struct result {
     noh_transform pose[JOINTS];
     float floats[CLIPS + 1u];
@@ -143,7 +143,7 @@ static void worker_close(worker *w)
 
 /* ---- a frame ---- */
 
-/* Instances go from thread to thread. */
+/* Instances move from thread to thread. */
 static int is_mine(const worker *w, uint32_t i, uint32_t frame)
 {
     return (i + frame) % w->thread_count == w->index;
@@ -260,7 +260,7 @@ static void expect_same(const crowd *a, const crowd *b)
 
 static void four_threads_give_the_bits_of_one(void **state)
 {
-    static const uint32_t slots[] = { 0, 12, 2 }; /* for what plays, for some of it, for hardly anything */
+    static const uint32_t slots[] = { 0, 12, 2 }; /* for all that plays, for some of it, for hardly any */
     (void)state;
     for (size_t k = 0; k < TEST_COUNT(slots); k++) {
         crowd *alone = crowd_open(slots[k]), *one = crowd_open(slots[k]), *four = crowd_open(slots[k]);
@@ -276,7 +276,8 @@ static void four_threads_give_the_bits_of_one(void **state)
     }
 }
 
-/* Whatever is cached, whole, in part or not at all, a view gives the cache's bits and writes nothing but itself. */
+/* Whether segments are cached in full, in part or not at all, a view gives the cache's bits and writes only to itself.
+ */
 static void a_view_only_reads(void **state)
 {
     test_random r = test_random_from(5);
@@ -321,7 +322,7 @@ static void a_view_only_reads(void **state)
     free(other);
 }
 
-/* What plays on without being asked for is decoded once a segment, not once a sample. */
+/* A clip that plays without having been asked for is decoded once a segment, not once a sample. */
 static void a_view_keeps_what_it_decoded(void **state)
 {
     noh_clip_bank *set = open_set(2);

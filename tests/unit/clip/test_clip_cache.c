@@ -1,4 +1,4 @@
-/* test_clip_cache.c: which segments a cache holds, what that costs, and what is decoded late. */
+/* Tests of runtime/clip/clip_cache.c: which segments it holds, at what cost, and what is decoded late. */
 #include "support/set_fixture.h"
 
 #include "clip/clip_cache_internal.h"
@@ -116,13 +116,13 @@ static void room_for_what_plays_decodes_nothing_late(void **state)
         assert_int_equal(late, 0);
         assert_int_equal(missing, 0);
     }
-    desc.cached_segment_count = 2u * CLIPS; /* two for each clip, whoever plays them */
+    desc.cached_segment_count = 2u * CLIPS; /* two for each clip, however many instances play it */
     assert_int_equal(noh_clip_bank_measure(&desc, &needs, NULL), NOH_OK);
     late = play_a_while(&desc, INSTANCES, &missing);
     print_message("%u instances: room for %u of %u segments, %zu bytes: %llu track-frames late\n", INSTANCES,
                   (unsigned)needs.cached_segment_count, (unsigned)needs.segment_count, needs.bytes,
                   (unsigned long long)late);
-    assert_true(late > 10000u); /* else this shows nothing */
+    assert_true(late > 10000u); /* otherwise this shows nothing */
     assert_true(missing > 0u);
 }
 
@@ -149,7 +149,7 @@ static void the_default_follows_from_instances_and_tracks(void **state)
 
 /* ---- sizes ---- */
 
-/* Clips of floats alone beside clips of joints: an entry for each is as large as it is, not as the largest. */
+/* Clips of floats only beside clips of joints: an entry is as large as its own clip needs, not as the largest does. */
 static void entries_are_as_large_as_their_segments(void **state)
 {
     noh_clip_bank_desc desc = desc_of();
@@ -184,7 +184,7 @@ static int64_t tick_of(const noh_clip_cache *cache, uint32_t clip, uint32_t segm
     return 1600 * (int64_t)noh_clip_segment_first(cache->clips[clip].clip, segment) + 10;
 }
 
-/* The lists are whole: each entry once, and what the segments say is what the entries say. */
+/* The lists are whole: each entry occurs once, and segments and entries agree. */
 static void expect_sound(const noh_clip_cache *cache)
 {
     uint32_t first = 0, waiting = 0, listed = 0;
@@ -265,7 +265,7 @@ static void the_one_touched_longest_ago_goes(void **state)
     free(set);
 }
 
-/* Wants are met in the order of asking, and one that was evicted is not decoded. */
+/* Requests are served in order, and a segment that was evicted is not decoded. */
 static void wants_are_met_in_order(void **state)
 {
     noh_clip_bank_desc desc = desc_of();

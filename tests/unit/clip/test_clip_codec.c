@@ -1,5 +1,5 @@
 /* Tests of the clip codec: the encoder (tools/convert/codec/), the decoder and its cache
- * (runtime/anim/clip_*.c). The evaluator here is written from the definition of the error, in
+ * (runtime/clip/). The evaluator here is written from the definition of the error, in
  * double precision, and shares nothing with the encoder's. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,7 +14,7 @@
 
 #define JOINTS_MAX 1100u
 #define SINGLE 3e-7      /* what single precision adds to a pose, of its distance from the origin */
-#define BETWEEN_PARTS 5u /* of a frame: not where the encoder looks */
+#define BETWEEN_PARTS 5u /* of a frame: not the times that the encoder checks */
 #define ROUNDING 1.0001  /* of the bound: time as a float, and single precision in a pose */
 
 /* NOH_CLIP_DENSE=64: check all real clips, also at their full rate, at so many times a frame. */

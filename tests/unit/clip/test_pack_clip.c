@@ -1,5 +1,5 @@
-/* test_pack_clip.c: skeletons and compressed clip inside a pack: built from a .bvh that the
- * test writes, bound by the skeleton's hash, and damaged in every bit. */
+/* Skeletons and compressed clips in a pack: built from a .bvh that the test writes, bound by the skeleton's hash, and
+ * damaged in every bit. */
 #include "support/support.h"
 
 #include <stdlib.h>
@@ -156,7 +156,7 @@ static void key_times_are_ticks(void **state)
     assert_int_equal(noh_ticks_from_seconds(1e300), 0);
 }
 
-/* Two joints: the level without the knee, and what it costs a clip whose knee turns by 25 degrees at most. */
+/* Two joints: the error of the level without the knee, in a clip whose knee turns by at most 25 degrees. */
 static void levels_and_errors_are_there(void **state)
 {
     noh_pack pack = test_open(good.bytes, good.count);
@@ -241,7 +241,7 @@ static uint32_t walk_flips(const uint8_t *from, size_t count)
     return opened;
 }
 
-/* With the checksums made right again the checkers and the decoder stand alone. */
+/* With repaired checksums only the checkers and the decoder are left. */
 static void repaired_flips_stay_in_bounds(void **state)
 {
     (void)state;

@@ -70,7 +70,7 @@ static double check_box(const float box[6], const float *positions, uint32_t cou
 /* ---- assets, converted once for boxes and rays ---- */
 
 typedef struct opened_asset {
-    const char *name, *dual_quaternion; /* dual_quaternion: NULL or the meshes skinned so */
+    const char *name, *dual_quaternion; /* dual_quaternion: the meshes skinned so, or NULL */
     skin_asset asset;
 } opened_asset;
 
@@ -159,7 +159,7 @@ static void boxes_of_body_quantized(void **state)
     (void)state;
     check_boxes("hero/body_quantized.glb", NULL);
 }
-static void boxes_of_body_8inf(void **state)
+static void boxes_of_body_with_eight_influences(void **state)
 {
     (void)state;
     check_boxes("hero/body_8inf.glb", NULL);
@@ -186,8 +186,9 @@ static void boxes_by_dual_quaternions(void **state)
     check_boxes("khronos/Fox.glb", "all");
 }
 
-/* Every vertex hangs on two joints by halves, and the second one turns about a line far from it: by dual quaternions a
- * vertex then goes along an arc that leaves the boxes of both joints, by as much as half of what they put it apart. */
+/* Each vertex has two joints of weight 1/2, and the second one turns about a line far from it. By dual quaternions the
+ * vertex then moves along an arc that leaves the boxes of both joints, by as much as half the distance between the two
+ * places where they alone would put it. */
 static void check_arcs(uint32_t other)
 {
     const skin_cylinder c = { 6, 9, 3, 2, 0, 0, 2.0f, 0.05f };
@@ -229,7 +230,7 @@ static void check_arcs(uint32_t other)
         noh_skin_box(&mesh, matrices, NULL, box);
         check_box(box, positions, mesh.header->vertex_count);
         noh_skin_joint_boxes(&mesh, matrices, NULL, joints);
-        assert_true(noh_box_is_empty(joints + 6u * (3u - other))); /* the joint that moves nothing */
+        assert_true(noh_box_is_empty(joints + 6u * (3u - other))); /* the joint that moves no vertex */
         for (uint32_t v = 0; v < mesh.header->vertex_count; v++) {
             const float *rest = mesh.positions + 3u * (size_t)v, y = rest[1] - pivot, cx = cosf(0.5f * turn),
                         sx = sinf(0.5f * turn);
@@ -239,7 +240,7 @@ static void check_arcs(uint32_t other)
             largest = fmaxf(largest, fabsf(positions[3 * v]));
         }
     }
-    assert_true(largest > 0.75f * pivot); /* it does leave them */
+    assert_true(largest > 0.75f * pivot); /* the arc does leave the boxes */
     free(positions);
     free(bytes);
     model_free(m);
@@ -316,7 +317,7 @@ static double brute_force(const noh_mesh *mesh, const float *positions, const fl
         if (determinant != 0.0 && u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t >= 0.0 && (nearest < 0.0 || t < nearest)) {
             nearest = t;
             *triangle = i / 3;
-            *margin = fmin(fmin(u, v), 1.0 - u - v); /* how far from an edge */
+            *margin = fmin(fmin(u, v), 1.0 - u - v); /* distance from an edge */
         }
     }
     return nearest;
@@ -368,7 +369,7 @@ static void rays_agree(const scene_pose *p, test_random *r, void *context)
     const noh_pick_surface surface = { &p->mesh, NULL, p->matrices, p->dual, &p->layers, p->weights };
     uint32_t vertices = p->mesh.header->vertex_count;
     for (int k = 0; k < 12; k++) {
-        /* from a point near a vertex, towards near another: most rays hit, and many pass close by */
+        /* from near one vertex towards near another: most rays hit, and many just miss */
         const float *a = p->positions + 3 * (size_t)test_random_below(r, vertices),
                     *b = p->positions + 3 * (size_t)test_random_below(r, vertices);
         float o[3], d[3], length = 0.0f;
@@ -416,7 +417,7 @@ static void rays_at_body(void **state)
     (void)state;
     check_rays("hero/body.glb", NULL);
 }
-static void rays_at_body_8inf(void **state)
+static void rays_at_body_with_eight_influences(void **state)
 {
     (void)state;
     check_rays("hero/body_8inf.glb", NULL);
@@ -437,7 +438,7 @@ static void rays_by_dual_quaternions(void **state)
     check_rays("khronos/Fox.glb", "all");
 }
 
-/* A rigid mesh is picked too, as it is placed and morphed. */
+/* Rigid meshes are picked as they are placed and morphed. */
 static void rays_at_a_rigid_mesh(void **state)
 {
     const test_model_desc desc = { 1, 6, 2, 0, 3 };
@@ -498,7 +499,7 @@ static void bad_picks_say_why(void **state)
     assert_int_equal(noh_pick(&surface, o, d, 100.0f, scratch, 4 * 48, &hit, &error), NOH_OK);
     assert_true(scratch[48] == 12345.0f);
     assert_true(fabsf(hit.distance - 4.5f) < 0.05f);
-    assert_true(hit.joint == 1 || hit.joint == 2); /* half way up, a bit nearer to the second */
+    assert_true(hit.joint == 1 || hit.joint == 2); /* half way up, a little nearer to the second */
     memset(&error, 0, sizeof error);
     assert_int_equal(noh_pick(&surface, o, d, 1.0f, scratch, 4 * 48, &hit, &error), NOH_ERR_NOT_FOUND);
     assert_int_equal(error.result, NOH_ERR_NOT_FOUND);
@@ -519,7 +520,7 @@ static void bad_picks_say_why(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(boxes_of_body),
     cmocka_unit_test(boxes_of_body_quantized),
-    cmocka_unit_test(boxes_of_body_8inf),
+    cmocka_unit_test(boxes_of_body_with_eight_influences),
     cmocka_unit_test(boxes_of_fox),
     cmocka_unit_test(boxes_of_robot),
     cmocka_unit_test(boxes_of_simple_skin),
@@ -527,7 +528,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(boxes_hold_the_arcs_of_dual_quaternions),
     cmocka_unit_test(boxes_of_rigid_meshes),
     cmocka_unit_test(rays_at_body),
-    cmocka_unit_test(rays_at_body_8inf),
+    cmocka_unit_test(rays_at_body_with_eight_influences),
     cmocka_unit_test(rays_at_fox),
     cmocka_unit_test(rays_at_robot),
     cmocka_unit_test(rays_by_dual_quaternions),

@@ -1,5 +1,5 @@
-/* Tests of runtime/deform/dual_quaternion.c: matrices taken apart into a rotation, a translation and a stretch. How
- * meshes are skinned by them is in test_skin. */
+/* Tests of runtime/deform/dual_quaternion.c: matrices split into a rotation, a translation and a stretch. Meshes
+ * skinned by them are in test_skin. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -12,7 +12,7 @@
 #include "base/quat.h"
 #include "deform/dual_quaternion.h"
 
-/* The rotation's part of a transform put together again: rows of 3 x 4. */
+/* The matrix of a split transform: rows of 3 x 4. */
 static void matrix_of(const float q[4], const float scale[3], const float t[3], float m[12])
 {
     for (int c = 0; c < 3; c++) {
@@ -24,7 +24,7 @@ static void matrix_of(const float q[4], const float scale[3], const float t[3], 
     for (int r = 0; r < 3; r++) m[4 * r + 3] = t[r];
 }
 
-/* R H x + t: what a vertex becomes. */
+/* R H x + t: where a vertex is moved to. */
 static void move(const noh_dual_quaternion *d, const float p[3], float out[3])
 {
     const float *q = d->real, *e = d->dual, *h = d->stretch;
@@ -49,7 +49,7 @@ static void expect_same(const float m[12], double within)
         length += d.real[i] * d.real[i];
         across += d.real[i] * d.dual[i];
     }
-    assert_true(fabsf(length - 1.0f) < 1e-5f && fabsf(across) < 1e-5f); /* a rigid clip */
+    assert_true(fabsf(length - 1.0f) < 1e-5f && fabsf(across) < 1e-5f); /* a rigid motion */
     for (int r = 0; r < 3; r++) {
         for (int c = 0; c < r; c++) assert_true(fabsf(d.stretch[3 * r + c] - d.stretch[3 * c + r]) < 1e-4f);
     }
@@ -68,7 +68,7 @@ static const float axes[6][3] = { { 1, 0, 0 },       { 0, 1, 0 },        { 0, 0,
                                   { 0.6f, 0.8f, 0 }, { 0, -0.6f, 0.8f }, { 0.48f, -0.6f, 0.64f } };
 static const float offset[3] = { 0.7f, -1.3f, 0.4f }, ones[3] = { 1.0f, 1.0f, 1.0f };
 
-/* At half a turn the quaternion's w is 0: one that is found by dividing by w has no direction left. */
+/* At half a turn the quaternion's w is 0: dividing by w would leave no direction. */
 static void rotations_by_any_angle(void **state)
 {
     (void)state;
@@ -83,7 +83,7 @@ static void rotations_by_any_angle(void **state)
     }
 }
 
-/* The exact half turns, of which a rounded angle is none. */
+/* Exact half turns; a rounded angle never gives one. */
 static void exact_half_turns(void **state)
 {
     (void)state;

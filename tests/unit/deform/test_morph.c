@@ -1,18 +1,18 @@
-/* Accumulation on the CPU: every instruction set gives the scalar's bits; half floats follow
- * their definition; vertices agree with an evaluation in double precision. */
+/* Accumulation on the CPU: every instruction set gives the scalar bits; half floats follow their definition; vertices
+ * agree with an evaluation in double precision. */
 #include "support/support.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The kernel built again for these (Makefile, KERNELS). */
+/* The kernel compiled for other instruction sets (Makefile, KERNELS). */
 void noh_morph_accumulate_sse2(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers);
 void noh_morph_accumulate_avx2(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers);
 
 typedef void (*accumulate_function)(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers);
 
-/* ---- meshes of rectangles, without a converter between: any width, any bits ---- */
+/* ---- meshes of rectangles, made without the converter: any width, any bits ---- */
 
 #define RECTS_MAX 12u
 #define TARGETS 9u
@@ -136,7 +136,7 @@ static void avx2_equals_scalar(void **state)
 #endif
 }
 
-/* ---- what is summed, by definition ---- */
+/* ---- sums by definition ---- */
 
 /* A field by arithmetic instead of shifts. */
 static double field(uint32_t word, uint32_t before, uint32_t bits)
@@ -152,7 +152,7 @@ static float keep_float(float value)
     return value;
 }
 
-/* To half by the definition of its places: exact in double. */
+/* To half by its definition: exact in double precision. */
 static float to_half(float value, int toward_zero)
 {
     int exponent;
@@ -235,13 +235,13 @@ static void scalar_follows_the_definition(void **state)
     compare_with_definition(noh_morph_accumulate_scalar, keep_float, "f32");
 }
 
-static void f16_to_nearest_follows_the_definition(void **state)
+static void half_floats_to_nearest_follow_the_definition(void **state)
 {
     (void)state;
     compare_with_definition(f16_nearest, half_nearest, "f16 to nearest");
 }
 
-static void f16_toward_zero_follows_the_definition(void **state)
+static void half_floats_toward_zero_follow_the_definition(void **state)
 {
     (void)state;
     compare_with_definition(f16_toward_zero, half_toward_zero, "f16 toward zero");
@@ -339,7 +339,7 @@ static void costs_are_those_of_the_active_targets(void **state)
     free(m.texels);
 }
 
-/* The sign of a shifted negative word is the compiler's to choose; all of ours keep it. */
+/* C leaves the right shift of a negative word to the compiler; ours must keep the sign. */
 static void shifts_of_negative_words_are_arithmetic(void **state)
 {
     volatile int32_t minus = -1024;
@@ -379,7 +379,7 @@ static double length3(const double v[3])
     return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-/* Base plus layers, made unit and square again, in double: what noh_morph_vertex is to give. */
+/* What noh_morph_vertex must give, in double precision: base plus layers, made unit and orthogonal again. */
 static void check_vertex(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t v)
 {
     noh_vertex rest, got;
@@ -440,7 +440,7 @@ static void positions_stay_within_the_certified_error(void **state)
     for (int round = 0; round < 40; round++) {
         noh_morph_layers layers = test_layers(&p.mesh);
         float weights[8];
-        double bound = 1e-6; /* of adding floats up to 12 */
+        double bound = 1e-6; /* for the rounding of floats up to 12 */
         test_random_weights(&r, weights, 8);
         noh_morph_accumulate(&p.mesh, weights, &layers);
         for (uint32_t t = 0; t < 8; t++) {
@@ -463,11 +463,11 @@ static void positions_stay_within_the_certified_error(void **state)
         }
         free(layers.position);
     }
-    assert_true(worst > 0.05); /* a bound that is never approached would test nothing */
+    assert_true(worst > 0.05); /* the bound is approached: the test can fail */
     close_packed(&p);
 }
 
-static void certified_errors_keep_what_was_asked(void **state)
+static void certified_errors_are_within_the_error_asked_for(void **state)
 {
     packed p;
     (void)state;
@@ -480,7 +480,7 @@ static void certified_errors_keep_what_was_asked(void **state)
 }
 
 /* A half accumulator stays within what the pack promises for weights up to 2. */
-static void f16_stays_within_the_pack_s_bound(void **state)
+static void half_floats_stay_within_the_bound_of_the_pack(void **state)
 {
     test_random r = test_random_from(34);
     packed p;
@@ -517,8 +517,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(sse2_equals_scalar),
     cmocka_unit_test(avx2_equals_scalar),
     cmocka_unit_test(scalar_follows_the_definition),
-    cmocka_unit_test(f16_to_nearest_follows_the_definition),
-    cmocka_unit_test(f16_toward_zero_follows_the_definition),
+    cmocka_unit_test(half_floats_to_nearest_follow_the_definition),
+    cmocka_unit_test(half_floats_toward_zero_follow_the_definition),
     cmocka_unit_test(rounding_finished_layers_rounds_once),
     cmocka_unit_test(targets_are_summed_in_index_order),
     cmocka_unit_test(zero_weights_do_nothing),
@@ -526,8 +526,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(shifts_of_negative_words_are_arithmetic),
     cmocka_unit_test(vertices_agree_with_double_precision),
     cmocka_unit_test(positions_stay_within_the_certified_error),
-    cmocka_unit_test(certified_errors_keep_what_was_asked),
-    cmocka_unit_test(f16_stays_within_the_pack_s_bound),
+    cmocka_unit_test(certified_errors_are_within_the_error_asked_for),
+    cmocka_unit_test(half_floats_stay_within_the_bound_of_the_pack),
 };
 
 TEST_MAIN(tests, NULL, NULL)

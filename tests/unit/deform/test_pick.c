@@ -15,7 +15,7 @@ typedef struct sheet {
     noh_pick_surface surface;
 } sheet;
 
-/* folded: what lies beyond x = 2 comes back over the rest, up to 1 above it. */
+/* folded: the part beyond x = 2 is folded back over the rest, up to 1 above it. */
 static void sheet_open(sheet *s, int folded)
 {
     const test_model_desc desc = { 1, SIDE, 0, TEST_SCENE, 1 };
@@ -80,7 +80,7 @@ static void a_hit_says_where_it_is(void **state)
     free(s.bytes);
 }
 
-/* What lies behind the origin, or farther than the distance, or beside the sheet, is not hit. */
+/* A surface behind the origin or beyond distance_max is not hit, nor is one beside the ray. */
 static void a_ray_ends_at_its_distance(void **state)
 {
     sheet s;
@@ -94,12 +94,12 @@ static void a_ray_ends_at_its_distance(void **state)
     assert_int_equal(pick(&s, -0.003f, 1.7f, 3, 0, 0, -1, 100, &hit), NOH_ERR_NOT_FOUND);
     assert_int_equal(pick(&s, 4.003f, 1.7f, 3, 0, 0, -1, 100, &hit), NOH_ERR_NOT_FOUND);
     assert_int_equal(pick(&s, -5, 2, 0, 1, 0, 0, 100, &hit),
-                     NOH_ERR_NOT_FOUND); /* along the sheet: it has no thickness */
+                     NOH_ERR_NOT_FOUND); /* in the plane of the sheet, which has no thickness */
     assert_int_equal(pick(&s, -5, 2, 1, 1, 0, 0, 100, &hit), NOH_ERR_NOT_FOUND);
     free(s.bytes);
 }
 
-/* Rays at edges and corners inside the sheet, from anywhere: none slips between two triangles. */
+/* Rays at edges and corners inside the sheet, from any side: none slips between two triangles. */
 static void no_ray_slips_through_an_edge(void **state)
 {
     sheet s;
@@ -154,7 +154,7 @@ static void no_ray_slips_through_an_edge_askew(void **state)
     free(s.bytes);
 }
 
-/* Of two layers the nearer one is hit, from above and from below, in whatever order their triangles lie. */
+/* Of two layers the nearer one is hit, from above and from below, whatever the order of their triangles. */
 static void the_nearest_layer_is_hit(void **state)
 {
     sheet s;
@@ -169,7 +169,7 @@ static void the_nearest_layer_is_hit(void **state)
         assert_int_equal(pick(&s, x, y, -3, 0, 0, 1, 100, &hit), NOH_OK);
         assert_true(fabsf(hit.distance - 3.0f) < 1e-5f && fabsf(hit.point[2]) < 1e-5f);
         assert_int_equal(pick(&s, x, y, 0.6f, 0, 0, 1, 100, &hit),
-                         NOH_OK); /* between them: what lies behind does not count */
+                         NOH_OK); /* from between them: the layer behind does not count */
         assert_true(fabsf(hit.distance - 0.4f) < 1e-5f);
         assert_int_equal(pick(&s, x, y, 0.6f, 0, 0, -1, 100, &hit), NOH_OK);
         assert_true(fabsf(hit.distance - 0.6f) < 1e-5f);

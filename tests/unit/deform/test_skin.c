@@ -1,4 +1,4 @@
-/* test_skin.c: skinning on the CPU: SIMD against scalar, weights, palettes, normals, dual quaternions. */
+/* Skinning on the CPU: SIMD against scalar, weights, palettes, normals, dual quaternions. */
 #include "support/skin_asset.h"
 
 #include <math.h>
@@ -179,12 +179,12 @@ static void weights_are_kept_and_sum_to_one(void **state)
             }
             assert_true(sum == 1.0f);
         }
-        assert_true(worst <= 4.5 / 4194304.0); /* the first takes the rounding of the seven others */
+        assert_true(worst <= 4.5 / 4194304.0); /* the first weight absorbs the rounding of the seven others */
         unmake(&x);
     }
 }
 
-/* One half is exact: the first stored weight has a bit more than the others. */
+/* One half is exact: the first stored weight has one bit more than the others. */
 static void halves_are_exact(void **state)
 {
     skin_cylinder c = { 3, 3, 3, 2, 0, 0, 2.0f, 0.5f };
@@ -212,7 +212,7 @@ static void halves_are_exact(void **state)
     model_free(m);
 }
 
-static void influences_are_limited_and_said(void **state)
+static void limited_influences_are_reported(void **state)
 {
     const skin_cylinder c = { 5, 20, 12, 6, 0, 0, 3.0f, 0.5f };
     skin_options options;
@@ -240,7 +240,7 @@ static float *sorted_triangles(const noh_mesh *mesh)
     uint32_t count = mesh->header->index_count;
     float *corners = test_zeros(12u * (size_t)count);
     for (uint32_t i = 0; i < count; i += 3) {
-        uint32_t start = 0; /* the cache order may turn a triangle round: begin with its smallest corner */
+        uint32_t start = 0; /* cache optimisation may rotate a triangle's corners: begin with the smallest */
         for (uint32_t k = 1; k < 3; k++) {
             if (memcmp(mesh->positions + 3u * (size_t)noh_mesh_index(mesh, i + k),
                        mesh->positions + 3u * (size_t)noh_mesh_index(mesh, i + start), 12) < 0) {
@@ -324,7 +324,7 @@ static double length3(const float *v)
     return sqrt((double)v[0] * (double)v[0] + (double)v[1] * (double)v[1] + (double)v[2] * (double)v[2]);
 }
 
-/* A plane's normal stays at a right angle to what lies in it, mirrored or not, and stays outside. */
+/* Normals stay at right angles to the surface, mirrored or not, and keep pointing outwards. */
 static void normals_stay_at_right_angles(void **state)
 {
     const skin_cylinder c = { 16, 3, 2, 1, 0, 1, 1.0f, 1.0f };
@@ -361,7 +361,8 @@ static void joints_of_no_size_give_finite_vertices(void **state)
     made x = make(&c, NULL);
     noh_dual_quaternion *joints = test_zeros(sizeof *joints * x.skin.header->joint_count);
     (void)state;
-    for (uint32_t dropped = 0; dropped <= 4; dropped++) { /* the first joints have no size, at last none has */
+    for (uint32_t dropped = 0; dropped <= 4;
+         dropped++) { /* the first joints have no size; in the last round none has */
         float *all = test_zeros(40u * (size_t)x.mesh.header->vertex_count);
         for (uint32_t j = 0; j < 4; j++) {
             for (int i = 0; i < 12; i++) {
@@ -443,7 +444,7 @@ static void a_twisted_tube_keeps_its_radius(void **state)
     unmake(&x);
 }
 
-/* A joint alone moves a vertex as its matrix does, whatever it is. */
+/* A joint alone moves a vertex as its matrix does, whatever the matrix. */
 static void one_joint_is_its_matrix(void **state)
 {
     const skin_cylinder c = { 6, 4, 3, 1, 0, 1, 1.0f, 1.0f };
@@ -525,7 +526,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(other_instruction_sets_give_the_scalar_bits),
     cmocka_unit_test(weights_are_kept_and_sum_to_one),
     cmocka_unit_test(halves_are_exact),
-    cmocka_unit_test(influences_are_limited_and_said),
+    cmocka_unit_test(limited_influences_are_reported),
     cmocka_unit_test(splits_draw_the_same_triangles),
     cmocka_unit_test(a_palette_too_small_for_a_triangle_is_refused),
     cmocka_unit_test(normals_stay_at_right_angles),

@@ -1,6 +1,6 @@
 /* Skinned assets against the formula of glTF 2.0 (3.7.3), evaluated in double precision by a reader that shares nothing
- * with the converter's (gltf_oracle.c): every clip at random times, random morph weights, every vertex. First the
- * arithmetic alone (the pack's own numbers in double precision), then the pack against the file. */
+ * with the converter's (gltf_oracle.c): every clip at random times, with random morph weights, every vertex. First only
+ * the arithmetic (the pack's own numbers in double precision), then the pack against the file. */
 #include "support/skin_asset.h"
 
 #include <math.h>

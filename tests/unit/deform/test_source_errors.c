@@ -1,6 +1,6 @@
-/* test_rows_deform.c: errors of the source documents about skinning, morphing and picking, each shown to fail as its
- * source has it, beside what the library does. tests/README.md says which source. Where an error is about what a GPU
- * binds, the test is of the data. */
+/* Errors of the source documents about skinning, morphing and picking: each test shows how the source's version fails,
+ * beside what the library does. tests/README.md names the sources. Where an error is about what a GPU binds, the test
+ * is of the data. */
 #include "support/skin_asset.h"
 
 #include <math.h>
@@ -83,7 +83,8 @@ static void point(const float m[12], const float p[3], float out[3])
 
 /* ---- skinned meshes ---- */
 
-/* "A bone can influence any number of vertices" says nothing: it is how many bones a vertex may follow that counts. */
+/* "A bone can influence any number of vertices" misses the point: what matters is how many bones a vertex can follow.
+ */
 static void a_vertex_may_follow_many_joints(void **state)
 {
     const skin_cylinder c = { 6, 40, 12, 7, 0, 0, 4.0f, 0.5f };
@@ -103,14 +104,14 @@ static void a_vertex_may_follow_many_joints(void **state)
         noh_skin_position(&limited->mesh, limited->matrices, NULL, v, b);
         worst = fmax(worst, distance(a, b));
     }
-    assert_true(worst > 1e-3); /* a limit shows; without one the source's seven are all there */
+    assert_true(worst > 1e-3); /* a limit changes the result; without one all seven of the source are kept */
     free_tube(any);
     free_tube(limited);
 }
 
 /* Four rows of constants for each matrix waste one: 16 KiB, the smallest uniform block that ES 3.0 guarantees, then
- * hold 256 joints and nothing beside them. Three rows leave room. The converter fills palettes to that limit and not
- * beyond, and noh_skin_matrices writes three rows of four for a joint, not a float more. */
+ * hold 256 joints and nothing else. Three rows leave room. The converter fills palettes up to that limit, and
+ * noh_skin_matrices writes exactly three rows of four for a joint. */
 static void a_palette_fits_a_uniform_block(void **state)
 {
     const skin_cylinder c = { 4, 400, 300, 2, 0, 0, 40.0f, 0.5f };
@@ -145,7 +146,7 @@ static void a_palette_fits_a_uniform_block(void **state)
 
 /* Weights rounded to bytes one by one sum to anything near 255, and are off by up to 1/510. Ours sum to one, and each
  * is the source's to 2^-21. */
-static void quantised_weights_are_the_source_s(void **state)
+static void quantised_weights_are_those_of_the_source(void **state)
 {
     const skin_cylinder c = { 3, 60, 8, 4, 0, 0, 4.0f, 0.5f };
     model *m = skin_cylinder_model(&c);
@@ -174,8 +175,8 @@ static void quantised_weights_are_the_source_s(void **state)
     model_free(m);
 }
 
-/* Normals moved by the vertices' own matrix leave the surface under a scale that differs by axis, and a vector made
- * unit before its last matrix is not unit after it. */
+/* Normals moved by the vertices' own matrix tilt where the scale differs by axis, and a vector that is made unit before
+ * its last matrix is not unit after it. */
 static void normals_by_the_inverse_transpose(void **state)
 {
     const skin_cylinder c = { 16, 9, 2, 2, 0, 0, 2.0f, 0.5f };
@@ -270,7 +271,7 @@ static void morph_then_skin(void **state)
 
 /* ---- picking ---- */
 
-/* A click clones nothing, sees the morphed and posed surface, leaves its outputs alone on a miss, and finds rigid
+/* A pick clones nothing, sees the morphed and posed surface, leaves its outputs untouched on a miss, and finds rigid
  * meshes. */
 static void picking_sees_the_morphed_and_posed_surface(void **state)
 {
@@ -305,7 +306,8 @@ static void picking_sees_the_morphed_and_posed_surface(void **state)
 
 /* ---- two streams ---- */
 
-/* The tube, and a second mesh of the same triangles that is wider above. `shuffle`: its triangles reordered alone. */
+/* The tube, and a second mesh of the same triangles that is wider at the top. `shuffle`: only its triangles are
+ * reordered. */
 static model *two_tubes(int shuffle)
 {
     const skin_cylinder c = { 12, 9, 2, 2, 0, 1, 2.0f, 0.5f };
@@ -336,7 +338,7 @@ static model *two_tubes(int shuffle)
     return m;
 }
 
-/* A(1 - S) + B S is what the code does; the comment beside it says the opposite, and shows B at the start. */
+/* The source's code computes A(1 - S) + B S; the comment beside it says the opposite, which would begin with B. */
 static void the_mix_begins_with_the_source(void **state)
 {
     model *m = two_tubes(0), *source = two_tubes(0);
@@ -386,7 +388,7 @@ static float source_ping_pong(uint32_t milliseconds)
     return f <= 1.0f ? f : 2.0f - f;
 }
 
-/* A period of 501 has 0 twice in a row, and a 32-bit clock jumps when it wraps. */
+/* The source's period of 501 has 0 twice in a row, and its 32-bit clock jumps when it wraps. */
 static void ping_pong_never_stalls(void **state)
 {
     const int64_t wrap = (int64_t)1 << 32;
@@ -405,7 +407,7 @@ static void ping_pong_never_stalls(void **state)
     assert_true(noh_ping_pong(0, 250) == 0.0f && noh_ping_pong(250, 250) == 1.0f && noh_ping_pong(500, 250) == 0.0f);
 }
 
-/* S = t / T has no answer at T = 0, and leaves 0..1 after T. */
+/* S = t / T is undefined at T = 0, and leaves 0..1 after T. */
 static void a_ramp_without_a_duration_is_over(void **state)
 {
     (void)state;
@@ -415,7 +417,7 @@ static void a_ramp_without_a_duration_is_over(void **state)
     assert_true(noh_ping_pong(7, 0) == 0.0f && noh_ping_pong(7, -3) == 0.0f);
 }
 
-/* Mixed normals are shorter than one; light must not be mistaken for their length. */
+/* Mixed normals are shorter than one; their length must not darken the light. */
 static void mixed_normals_are_unit(void **state)
 {
     model *m = two_tubes(0);
@@ -451,8 +453,8 @@ static void mixed_normals_are_unit(void **state)
     model_free(m);
 }
 
-/* A second mesh optimised on its own no longer corresponds: it is refused, not drawn as a hedgehog. Ours are reordered
- * together (the_mix_begins_with_the_source compares every vertex behind the encoder's order). */
+/* A second mesh that was optimised on its own no longer corresponds: it is refused, not drawn as a tangle of spikes.
+ * Ours are reordered together (the_mix_begins_with_the_source compares every vertex behind the encoder's order). */
 static void two_streams_must_correspond(void **state)
 {
     model *m = two_tubes(1);
@@ -504,8 +506,8 @@ static void the_last_weight_is_implied(void **state)
     }
 }
 
-/* Given weights above one make the implied one negative: the vertex leaves the hull of its joints. A pack may hold
- * weights up to exactly one, and is refused for that reason and no other when they are one unit more. */
+/* Where the given weights sum to more than one, the implied one is negative and the vertex leaves the hull of its
+ * joints. A pack's weights may sum to exactly one; one unit more is refused, and for that reason alone. */
 static void weights_above_one_are_refused(void **state)
 {
     const skin_cylinder c = { 4, 5, 4, 4, 0, 0, 1.0f, 0.5f };
@@ -535,8 +537,9 @@ static void weights_above_one_are_refused(void **state)
     free_tube(t);
 }
 
-/* The segmented arm: the lower half turns about the elbow, so it is moved there, turned and moved back; the source's
- * listing names a member that is not there, and without the way back the arm comes apart. The blended one bends. */
+/* The segmented arm: the lower half turns about the elbow, so the elbow is moved to the origin, turned and moved back;
+ * the source's listing names a member that does not exist, and without the last step the arm comes apart. The blended
+ * arm bends. */
 static void segmented_and_blended_arm(void **state)
 {
     const skin_cylinder rigid = { 16, 21, 3, 1, 0, 0, 2.0f, 0.3f }, blended = { 16, 21, 3, 2, 0, 0, 2.0f, 0.3f };
@@ -580,7 +583,7 @@ static void segmented_and_blended_arm(void **state)
     free_tube(banana);
 }
 
-/* A weight of zero: not affected, whatever the joint does. */
+/* A joint of weight zero does not affect the vertex, wherever it moves. */
 static void weight_zero_is_not_affected(void **state)
 {
     const skin_cylinder c = { 6, 11, 6, 2, 0, 0, 2.0f, 0.5f };
@@ -606,7 +609,7 @@ static void weight_zero_is_not_affected(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_vertex_may_follow_many_joints),
     cmocka_unit_test(a_palette_fits_a_uniform_block),
-    cmocka_unit_test(quantised_weights_are_the_source_s),
+    cmocka_unit_test(quantised_weights_are_those_of_the_source),
     cmocka_unit_test(normals_by_the_inverse_transpose),
     cmocka_unit_test(a_shift_turns_no_normal),
     cmocka_unit_test(morph_then_skin),

@@ -1,4 +1,4 @@
-/* Tests of runtime/anim/graph*.c. */
+/* Tests of runtime/graph/graph*.c. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -378,7 +378,7 @@ static void test_blend_space_in_step(void **state)
         float t = (float)i / 10.0f;
         param(&g, P_SPEED, t);
         step(&g, 3000);
-        assert_int_equal(take_pose(&g), i == 0 || i == 10 ? 1 : 2); /* what weighs nothing is not sampled */
+        assert_int_equal(take_pose(&g), i == 0 || i == 10 ? 1 : 2); /* clips of weight 0 are not sampled */
         clip_pose(&g, 0, a, fa);
         clip_pose(&g, 1, b, fb);
         noh_pose_mix(JOINTS, a, b, t, NULL, want);
@@ -461,7 +461,7 @@ static void test_layers_and_inertial_transitions(void **state)
     assert_int_equal(track(&g, 0)->position - left_at, noh_position_of(1)); /* goes on where it was left */
 }
 
-/* Half a walk, half a face: nodes leave joints to the clips that animate them, and floats likewise. */
+/* Half a walk, half a face: nodes leave joints to the clips that animate them, and floats too. */
 static void test_clips_of_joints_and_of_floats(void **state)
 {
     static const noh_node_kind kinds[3] = { NOH_NODE_BLEND, NOH_NODE_ADD, NOH_NODE_MASK };
@@ -533,7 +533,7 @@ static void count_event(void *user, const noh_event *e)
     counts[e->track]++;
 }
 
-/* A graph's clips fire by what they weigh in it. */
+/* A graph's clips fire their keys by their weights in it. */
 static void test_events_by_weight(void **state)
 {
     static stage g;

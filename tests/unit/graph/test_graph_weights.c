@@ -1,4 +1,4 @@
-/* Tests of runtime/graph/graph_weights.c: what each node of a graph weighs. */
+/* Tests of runtime/graph/graph_weights.c: the weight of each node. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -65,8 +65,8 @@ static void machines_fade_along_their_curve(void **state)
     assert_true(local[1] == 1.0f && local[2] == 0.0f);
 }
 
-/* Weights multiply from the root down. A product that would underflow stays above zero: what a parent asks for has to
- * be sampled. Zero stays zero. */
+/* Weights multiply from the root down. A product that would underflow stays above zero, because what a parent asks for
+ * must be sampled. Zero stays zero. */
 static void products_never_vanish(void **state)
 {
     static const uint16_t children[4] = { 0, 1, 2, 3 };
@@ -91,7 +91,7 @@ static void products_never_vanish(void **state)
     for (int i = 0; i < 5; i++) assert_int_equal(active[i], 1);
 }
 
-/* Only the state that a machine is in and the one that it leaves live. */
+/* Only the state that a machine is in and the one that it is leaving have weight. */
 static void machines_shut_the_other_states_out(void **state)
 {
     static const uint16_t children[3] = { 0, 1, 2 };

@@ -49,7 +49,7 @@ static void unmake(made *x)
     free(x->bytes);
 }
 
-/* Of every target, but of the first, which the coarsest level does without. */
+/* For every target except the first, which the coarsest level leaves out. */
 static const float weights[3] = { 0.0f, 0.7f, -0.4f };
 
 static noh_morph_layers accumulated(const noh_mesh *mesh)
@@ -80,7 +80,7 @@ static void views_are_found_from_any_level(void **state)
     unmake(&x);
 }
 
-/* The fixture's mesh is the one that it was made of, in another order. */
+/* The fixture's mesh is the original one in another order. */
 static void the_full_level_is_the_mesh(void **state)
 {
     noh_morph_layers plain, layers;

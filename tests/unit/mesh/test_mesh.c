@@ -1,4 +1,4 @@
-/* Meshes as they come out of a pack: what compact attributes may lose, and what they may not. */
+/* Meshes read from a pack: how much compact attributes may lose, and what they must keep. */
 #include "support/support.h"
 
 #include <math.h>
@@ -113,7 +113,7 @@ static void normals_stay_within_the_octahedral_bound(void **state)
         assert_true(is_unit(vertex.normal));
     }
     print_message("# worst %g, bound %g rad\n", worst, bound);
-    assert_true(worst <= bound && worst > 0.1 * bound); /* a bound that is far off would test nothing */
+    assert_true(worst <= bound && worst > 0.1 * bound); /* a bound far above would test nothing */
 }
 
 static void tangents_stay_within_the_octahedral_bound(void **state)
@@ -215,7 +215,7 @@ static void every_combination_of_attributes_decodes(void **state)
     }
 }
 
-/* Triangles may be reordered and turned, but the set of them has to be the same. */
+/* Triangles may be reordered and rotated, but their set must be the same. */
 static void triangles_are_the_source_s(void **state)
 {
     uint64_t got = 0, expected = 0;

@@ -1,5 +1,5 @@
-/* What a reader refuses of LOD levels: lies of their headers, targets, indices and texel references, with the
- * checksums made right; every cut and every flipped bit. */
+/* LOD levels that a reader refuses: lies in their headers, targets, indices and texel references, with repaired
+ * checksums; every cut and every flipped bit. */
 #include "support/lod_fixture.h"
 
 #include <math.h>
@@ -308,7 +308,7 @@ LIES(X)
 SPLIT_LIES(X)
 #undef X
 
-/* A mesh whose targets move everything needs no references: then vertex and texel are one. */
+/* A mesh whose targets move every vertex needs no references: vertex and texel have the same number. */
 static void texels_without_references_are_counted(void **state)
 {
     const lod_settings three = { 3, 0, LOD_FAST };
@@ -337,7 +337,7 @@ static void texels_without_references_are_counted(void **state)
     model_free(m);
 }
 
-/* What a lie has to be told apart from: the same steps without one. */
+/* The control: the same steps without a lie. */
 static void honest_copies_open(void **state)
 {
     const small_pack *both[2] = { &rigid, &split };
@@ -379,7 +379,7 @@ static void every_truncation_and_flip_is_refused(void **state)
     refuse_cuts_and_flips(&split);
 }
 
-/* With the checksums made right again every flip is refused, or what it opens to is walked without a step outside. */
+/* With repaired checksums every flip is refused, or the pack that opens is read without a step out of bounds. */
 static void walk_flips(const small_pack *good)
 {
     uint8_t *bytes = test_aligned(good->bytes, good->count);

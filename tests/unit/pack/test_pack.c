@@ -1,5 +1,5 @@
-/* The checker of packs: a good one opens and can be used whole; cut, flipped and forged ones
- * are errors that say what and where, or packs that can be used whole all the same. */
+/* The checker of packs: a good one opens and can be used in full; cut, flipped and forged ones are errors that say what
+ * and where, or packs that can still be used in full. */
 #include "support/support.h"
 
 #include <float.h>
@@ -72,7 +72,7 @@ static void past_the_last_is_not_found(void **state)
     assert_string_equal(noh_pack_chunk_name(&pack, pack.chunk_count), "");
 }
 
-/* The writer's version is told, and hinders nobody. */
+/* The writer's version is reported and does not matter. */
 static void the_writer_s_version_is_in_the_header(void **state)
 {
     uint8_t *other = test_aligned(good, good_count);
@@ -198,8 +198,8 @@ static void every_single_bit_flip_is_an_error(void **state)
     free(bytes);
 }
 
-/* With checksums made right again, the structure checks stand alone. Many flips are then
- * valid packs (another colour, another weight): those have to be usable whole. */
+/* With repaired checksums only the structural checks are left. Many flips then give valid packs (another colour,
+ * another weight), which must be usable in full. */
 static void every_flip_with_repaired_checksums_is_safe(void **state)
 {
     uint8_t *bytes = test_aligned(NULL, good_count);
@@ -227,7 +227,7 @@ static void every_flip_with_repaired_checksums_is_safe(void **state)
     free(bytes);
 }
 
-/* Several random bytes at once reach states that one bit does not. */
+/* Several random bytes reach states that one bit does not. */
 static void random_damage_with_repaired_checksums_is_safe(void **state)
 {
     static const uint32_t extremes[] = { 0, 1, 0x7fffffffu, 0x80000000u, 0xffffffffu, 0x7fc00000u, 0x7f800000u, 64 };
@@ -339,7 +339,7 @@ static void lose_last_touched(forged *f)
     f->mesh->touched_count -= 1;
 }
 
-/* A run of letters over all strings: every name is another one. */
+/* A run of letters over all strings, so that every name differs. */
 static void fill_strings(forged *f)
 {
     memset(f->strings + 1, 'a', f->strings_at->bytes - 2);
@@ -533,7 +533,7 @@ static void forged_pack_is_refused(void **state)
     }
 }
 
-/* What a forgery has to be told apart from: the same steps without a lie. */
+/* The control: the same steps without a lie. */
 static void an_honest_copy_opens(void **state)
 {
     forged f;
@@ -555,7 +555,7 @@ static void there_is_padding_behind_the_indices(void **state)
     free(f.bytes);
 }
 
-/* Where the error is told to be, for some lies whose place is one field. */
+/* The byte that the error names, for lies in a single field. */
 static void errors_say_where(void **state)
 {
     noh_error error = { NOH_OK, NULL, 0, 0 };
@@ -582,7 +582,7 @@ static void errors_say_where(void **state)
     free(f.bytes);
 }
 
-/* Fields whose check is theirs alone: the error names the field's own byte. */
+/* Fields with a check of their own: the error names the field's own byte. */
 #define PLACES(X)                                       \
     X(header->version, += 1)                            \
     X(header->byte_count, += 64)                        \
@@ -653,7 +653,7 @@ static void padding_has_to_be_zero(void **state)
     (void)state;
     forge(&f);
     end = f.strings_at->offset + f.strings_at->bytes;
-    assert_true(end % NOH_PACK_ALIGN != 0); /* else this test tests nothing: rename a target */
+    assert_true(end % NOH_PACK_ALIGN != 0); /* otherwise this tests nothing: rename a target */
     f.bytes[end] = 1;
     assert_int_equal(noh_pack_open(f.bytes, f.count, &pack, &error), NOH_ERR_DATA);
     assert_non_null(strstr(error.what, "padding"));

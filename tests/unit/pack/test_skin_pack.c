@@ -1,5 +1,4 @@
-/* test_skin_pack.c: skins in packs: what is written, what a reader refuses, and what the converter makes of odd input.
- */
+/* Skins in packs: what is written, what a reader refuses, and how the converter treats odd input. */
 #include "support/skin_asset.h"
 
 #include <math.h>
@@ -129,7 +128,7 @@ static forged reach(uint8_t *bytes)
 LIES(X)
 #undef X
 
-/* With the checksums made right again every flip is refused, or what it opens to is walked without a step outside. */
+/* With repaired checksums every flip is refused, or the pack that opens is read without a step out of bounds. */
 static void repaired_flips_stay_in_bounds(void **state)
 {
     size_t count;

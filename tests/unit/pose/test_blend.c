@@ -1,4 +1,4 @@
-/* Tests of runtime/anim/{blend,mask,blend_space,skeleton,local_to_model}.c. */
+/* Tests of runtime/pose/{blend,skeleton,local_to_model}.c, runtime/anim/mask.c and runtime/graph/blend_space.c. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -101,7 +101,7 @@ static void a_weight_of_one_shows_its_clip_alone(void **state)
     }
 }
 
-/* Quaternions summed as they come cancel out; aligned, they do not. */
+/* Quaternions of both hemispheres cancel out when they are summed as they are; aligned, they do not. */
 static void hemispheres_are_aligned(void **state)
 {
     scene s;
@@ -169,8 +169,8 @@ static void masked_joints_use_their_own_sum(void **state)
     assert_true(fabsf(out[0] - fa[0]) < 1e-6f && fabsf(out[4] - 0.5f * (fa[4] + fc[4])) < 1e-6f);
 }
 
-/* A sum over what lies below: by its amount where there is something below, by its masked share of the group, and whole
- * where nothing lies below. */
+/* A sum laid over a lower pose covers it by its amount and its masked share of the group, and completely where the
+ * lower pose has no weight. */
 static void a_sum_covers_what_lies_below(void **state)
 {
     scene s;
@@ -208,8 +208,8 @@ static void a_sum_covers_what_lies_below(void **state)
     }
 }
 
-/* Palette = model * inverse bind: the bind pose's points come first into the joint's space. Turned joints tell the
- * order. */
+/* Palette = model * inverse bind: points of the bind pose are moved into the joint's space first. Turned joints show
+ * the order. */
 static void palettes_take_the_bind_pose_away_first(void **state)
 {
     scene s;
@@ -258,8 +258,7 @@ static void test_mix_at_the_ends_and_in_place(void **state)
     assert_memory_equal(fa, fb, sizeof fa);
 }
 
-/* Between rotations far apart the sum of two unit quaternions is short: a mix must be a rotation all the same, half
- * way. */
+/* The sum of unit quaternions that are far apart is short; a mix must still be a rotation, half way between them. */
 static void test_a_mix_is_unit(void **state)
 {
     static const float a[4] = { 0, 0, 0, 1 };
@@ -277,8 +276,8 @@ static void test_a_mix_is_unit(void **state)
     }
 }
 
-/* What is laid over a pose covers by the mean mask of what takes part: not by what animates no joints there, and
- * wholly where the pose below has no weight. */
+/* A pose laid over another covers it by the mean mask of the tracks that animate the joint, and completely where the
+ * pose below has no weight. */
 static void test_cover(void **state)
 {
     scene s;
@@ -490,8 +489,7 @@ static void test_space_outside_and_degenerate(void **state)
         NOH_ERR_ARG);
 }
 
-/* The largest coordinates that are taken have exact results; what lies past them is refused, and held where it is asked
- * for. */
+/* The largest coordinates accepted have exact results; points beyond them are refused, and queries are clamped. */
 static void test_space_of_huge_coordinates(void **state)
 {
     static const float far_away[] = { 3e38f, -3e38f, 1.1e18f, INFINITY, -INFINITY, NAN };
@@ -562,7 +560,7 @@ static void test_skeleton_fields_broken_in_turn(void **state)
     bad_skeleton(&s.skeleton, NOH_ERR_DATA, "inverse bind matrix is not finite");
 }
 
-/* A point of each joint, taken up the chain joint by joint in double. */
+/* A point of each joint, moved up the chain joint by joint in double precision. */
 static void climb(const scene *s, const noh_transform *pose, uint32_t joint, double p[3])
 {
     for (uint32_t j = joint; j != NOH_JOINT_ROOT; j = s->parents[j]) {

@@ -50,7 +50,7 @@ static noh_transform posed(float angle, float x, float scale)
     return t;
 }
 
-/* Each of the three parts has its own length and its own speed: here all shrink, each at another pace. */
+/* Each of the three parts has its own length and speed: here all shrink, each at its own pace. */
 static void offsets_and_speeds_are_each_part_s_own(void **state)
 {
     const noh_transform target = posed(0.5f, 1.0f, 1.0f), target_before = posed(0.45f, 0.9f, 1.02f);
@@ -65,7 +65,7 @@ static void offsets_and_speeds_are_each_part_s_own(void **state)
     assert_true(fabsf(o.scale_speed - (0.5f - 0.53f) / BEFORE) < 1e-3f);
 }
 
-/* An offset that grows is stopped, not followed: else it would overshoot what it came from. */
+/* An offset that is growing is stopped, not followed: otherwise it would overshoot its start. */
 static void growing_offsets_are_stopped(void **state)
 {
     const noh_transform target = posed(0.0f, 0.0f, 1.0f), source = posed(0.3f, 2.0f, 1.5f),
@@ -80,7 +80,7 @@ static void growing_offsets_are_stopped(void **state)
     assert_true(f[0].speed == 0.0f && f[1].speed == 0.0f);
 }
 
-/* At the switch the pose is the old one; later each part is what its own decay says. */
+/* At the switch the pose is the old one; later each part follows its own decay. */
 static void the_pose_starts_at_the_source(void **state)
 {
     const noh_transform target = posed(0.5f, 1.0f, 1.0f), source = posed(0.8f, 3.0f, 1.5f);

@@ -1,5 +1,5 @@
-/* test_puppet.c: the puppet that demo_assets --puppet writes, read back through the converter: a
- * closed body, sound weights, loops that close, and feet that stand where they stand.
+/* The puppet that demo_assets --puppet writes, read back through the converter: a closed body, sound weights, loops
+ * that close, and feet that do not slide.
  *
  * The file is $NOH_BUILD/demo/puppet.glb, which `make check` makes. */
 #include "support/support.h"
@@ -161,7 +161,7 @@ static uint32_t root_of(uint32_t *parent, uint32_t i)
     return i;
 }
 
-/* How many pieces hang together. */
+/* How many connected pieces there are. */
 static uint32_t count_pieces(const model_mesh *mesh, const uint32_t *first)
 {
     uint32_t *parent = test_zeros(mesh->vertex_count * sizeof *parent), pieces = 0;
@@ -198,7 +198,7 @@ static void test_closed_surface(void **state)
     free(edges);
 }
 
-/* What a game must be able to afford, and a texture to paint on. */
+/* Counts that a game can afford, and a texture to paint on. */
 static void test_vertices(void **state)
 {
     const model_mesh *body = mesh_named("body");
