@@ -1,7 +1,7 @@
 #!/bin/sh
-# web.sh PACK...: the page of `make web` for each pack, built and in headless Chromium: loaded, moved, played, lost and
-# restored; its canvas compared with `noh render`, its bytes with `noh budget`. `make web-check` runs it. Closes as
-# tests/run.sh does; skips with the reason where emscripten, Chromium or what drives it cannot be had.
+# web.sh PACK...: for each pack, the page of `make web` is built and run in headless Chromium (tests/web/page.js); its
+# canvas is compared with `noh render`, its bytes with `noh budget`. `make web-check` runs it. The last line is as that
+# of tests/run.sh. Skipped with the reason if emscripten, Chromium or playwright cannot be had.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
@@ -23,15 +23,15 @@ not_ok() {
     echo "$name: $1"
 }
 
-# Another rasteriser than llvmpipe: the limits of tests/gl/matrix.sh. A canvas averages samples that are encoded already,
-# `noh render` linear ones, so edges differ; twice as large they are half of the picture that they are at 512.
+# The limits are those of tests/gl/matrix.sh for rasterisers other than llvmpipe. A canvas averages samples after their
+# encoding, `noh render` before it, so edges differ: hence a large picture, of which edges are a smaller share.
 size=1024
 compare() {
     if said=$("$build/tests/gl/picture_diff" "$out/native.png" "$out/$1.png" 0.25 0.01); then ok; else not_ok "$1 is not the native picture"; fi
     echo "$name $1: $said"
 }
 
-# The GPU's bytes are what `noh budget` says; the CPU's are at most that, pointers being smaller here, but for alignment.
+# The GPU's bytes are what `noh budget` says. The CPU's are at most that, plus alignment: pointers are smaller here.
 budget_of() {
     said=$("$build/noh" budget "$pack" --nominal --path "$1" --json)
     cpu=$(echo "$said" | sed -n 's/^  "cpu_bytes": \([0-9]*\).*/\1/p')

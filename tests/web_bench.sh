@@ -1,6 +1,6 @@
 #!/bin/sh
-# web_bench.sh ASSET: a frame of the page beside three.js's, in one browser, in one run; what they cost is printed, both
-# pictures are kept and compared. `make web-bench` runs it. No test: nothing fails for being slow.
+# web_bench.sh ASSET: a frame of the page beside one of three.js, in one browser and one run. Prints what they cost, and
+# keeps and compares both pictures. `make web-bench` runs it. It is no test: slowness is no failure.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}

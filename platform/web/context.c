@@ -1,5 +1,5 @@
-/* A WebGL 2 context on the element #canvas. WebGL has no lookup by name, so the table is made of
- * the functions that the library calls: nothing else of GL is linked into the page. */
+/* context.c: a WebGL 2 context on the element #canvas. WebGL has no lookup by name, so a table of the functions that
+ * the library calls stands in for one, and no other GL function is linked into the page. */
 #define GL_GLES_PROTOTYPES 1
 #include "context.h"
 
@@ -16,7 +16,7 @@ struct noh_platform_context {
 
 static noh_platform_context only; /* one canvas, one context */
 
-/* Browsers put their own name in GL_RENDERER; the driver's, which quirks are matched with, is a separate query. */
+/* Browsers give a name of their own as GL_RENDERER. The driver's, which quirks are matched with, is another query. */
 static const GLubyte *GL_APIENTRY get_string(GLenum what)
 {
     const GLubyte *text = NULL;
@@ -77,7 +77,7 @@ static noh_gl_proc get_proc(void *user, const char *name)
     return NULL;
 }
 
-/* The browser shows the canvas when the event or animation frame returns. */
+/* The browser itself shows the canvas when the event handler or animation frame returns. */
 static noh_result present(noh_platform_context *context)
 {
     return emscripten_is_webgl_context_lost(context->handle) ? NOH_ERR_GL : NOH_OK;

@@ -1,8 +1,8 @@
-/* The page's program: one pack, its targets and clips by number, in memory whose size was known
- * when the page was built. page.js calls the web_* functions. What returns an int returns 0 or a
- * noh_result: web_error then says what.
+/* main.c: the page's program. It shows one pack, whose targets and clips are given by index, in memory whose size was
+ * fixed when the page was built. page.js calls the web_* functions. Those that return an int return 0 or a noh_result;
+ * web_error then says what is wrong.
  *
- * NOH_WEB_PACK_BYTES and NOH_WEB_MEMORY_BYTES come from the Makefile, which asks `noh budget`. */
+ * The Makefile sets NOH_WEB_PACK_BYTES and NOH_WEB_MEMORY_BYTES to what `noh budget` says. */
 #include <emscripten.h>
 #include <string.h>
 
@@ -16,7 +16,7 @@
 static uint8_t pack_bytes[NOH_WEB_PACK_BYTES] __attribute__((aligned(64)));
 static uint8_t memory[NOH_WEB_MEMORY_BYTES] __attribute__((aligned(16)));
 
-/* A line of the page's table of memory. */
+/* A line in the page's table of memory. */
 typedef struct part {
     const char *name;
     uint32_t cpu_bytes, gpu_bytes;
@@ -46,7 +46,7 @@ static struct web {
 
 /* ---- loading ---- */
 
-/* A part's bytes are those carved since the part before. */
+/* End a part: its bytes are those that were taken since the part before ended. */
 static void end_part(const char *name)
 {
     uint32_t cpu = (uint32_t)web.arena.used, gpu = (uint32_t)noh_gl_ledger_bytes(&web.ledger);
@@ -167,13 +167,13 @@ static noh_result open_context(void)
     return result ? result : noh_gl_caps_probe(&web.gl, &web.caps, &web.error);
 }
 
-/* Where the page writes the file; NULL if it is larger than the page was built for. */
+/* Where the page is to write the file; NULL if it has more bytes than the page was built for. */
 EMSCRIPTEN_KEEPALIVE void *web_pack(uint32_t bytes)
 {
     return bytes <= sizeof pack_bytes ? pack_bytes : NULL;
 }
 
-/* path: a noh_morph_path. */
+/* Open the pack of so many bytes. path: a noh_morph_path. */
 EMSCRIPTEN_KEEPALIVE int web_open(uint32_t bytes, int path)
 {
     web.arena = noh_arena_over(memory, sizeof memory);
@@ -203,7 +203,7 @@ static noh_result restore_meshes(void)
     return result;
 }
 
-/* After the browser restored a lost context: make every object again from the pack. */
+/* Make every GL object again from the pack, after the browser restored a lost context. */
 EMSCRIPTEN_KEEPALIVE int web_restore(void)
 {
     noh_web_enable_extensions(web.context);
@@ -215,7 +215,7 @@ EMSCRIPTEN_KEEPALIVE int web_restore(void)
     return (int)result;
 }
 
-/* ---- what the page asks ---- */
+/* ---- getting and setting ---- */
 
 EMSCRIPTEN_KEEPALIVE const char *web_error(void)
 {
@@ -300,13 +300,12 @@ EMSCRIPTEN_KEEPALIVE uint32_t web_level_count(void)
 {
     return web.lod.level_count;
 }
-/* A LOD level, or -1: what one pixel of error allows. */
+/* An LOD level, or -1: the coarsest that an error of one pixel allows. */
 EMSCRIPTEN_KEEPALIVE void web_set_level(int level)
 {
     web.lod.level = level;
 }
-/* Of the frame that was drawn: the finest level of any item, the largest error that noh claims, whether a level fades.
- */
+/* Of the last frame: the finest level of any item, the largest error in pixels, whether any level fades. */
 EMSCRIPTEN_KEEPALIVE uint32_t web_level(void)
 {
     uint32_t finest = NOH_LOD_LEVELS_MAX;
@@ -337,7 +336,7 @@ EMSCRIPTEN_KEEPALIVE const char *web_clip_name(uint32_t i)
     return noh_pack_clip_at(&web.scene.pack, i, &clip, NULL) == NOH_OK ? clip.name : "";
 }
 
-/* clip: an index, or -1 for none. */
+/* Play a clip, -1: none, from a time in seconds, with a transition in seconds. */
 EMSCRIPTEN_KEEPALIVE int web_play(int clip, double time_s, double transition_s)
 {
     return (int)web_playback_start(&web.play, clip < 0 ? NOH_NONE : (uint32_t)clip, time_s, transition_s, &web.error);
@@ -345,20 +344,20 @@ EMSCRIPTEN_KEEPALIVE int web_play(int clip, double time_s, double transition_s)
 
 /* ---- a frame ---- */
 
-/* The scene's current bounding box: 6 floats, valid until the next call. */
+/* The scene's bounding box in the current pose: 6 floats, valid until the next call. */
 EMSCRIPTEN_KEEPALIVE float *web_measure(void)
 {
     web_playback_bounds(&web.play, web.bounds);
     return web.bounds;
 }
 
-/* A noh_gl_camera, to be written. */
+/* The noh_gl_camera that the page is to fill in. */
 EMSCRIPTEN_KEEPALIVE float *web_camera(void)
 {
     return web.camera.view_projection;
 }
 
-/* Draw without morphs, as if there were none: what the benchmark compares with. */
+/* Draw without morphs, and without their cost: what the benchmark compares with. */
 EMSCRIPTEN_KEEPALIVE void web_set_at_rest(int at_rest)
 {
     web.at_rest = at_rest;
@@ -411,7 +410,7 @@ static void begin_frame(void)
     web.gl.ClearBufferfv(GL_DEPTH, 0, &far);
 }
 
-/* seconds since the last one, for fades. A lost context is not an error: nothing is drawn. */
+/* Draw a frame. seconds: since the last one, for fades. In a lost context nothing is drawn, which is no error. */
 EMSCRIPTEN_KEEPALIVE int web_draw(double seconds)
 {
     web.lod.clock += (int64_t)(seconds * NOH_TICKS_PER_SECOND);
@@ -427,7 +426,7 @@ EMSCRIPTEN_KEEPALIVE int web_draw(double seconds)
     return 0;
 }
 
-/* Whether GL raised an error since the last call. Waits for the GPU. */
+/* An error if GL raised one since the last call. Waits for the GPU. */
 EMSCRIPTEN_KEEPALIVE int web_check(void)
 {
     GLenum code = noh_gl_error_take(&web.gl);

@@ -1,6 +1,6 @@
 // page.js: the page around the WebAssembly program (main.c): the camera, clips, sliders, the table of memory.
-// The pack is page.noh, or what ?pack=NAME says. ?path=gather forces a path, ?clip=NAME begins with that clip
-// (none: with none), ?detail=0 with that LOD level, ?size=512 draws so many pixels across.
+// The query: ?pack=NAME shows that pack instead of page.noh; ?path=gather forces a path; ?clip=NAME begins with that
+// clip, or with none; ?detail=0 begins with that LOD level; ?size=512 draws a canvas of so many pixels across.
 'use strict';
 
 const query = new URLSearchParams(location.search);
@@ -10,7 +10,7 @@ const byId = (id) => document.getElementById(id);
 const canvas = byId('canvas');
 let lost = false;
 let wanted = false;
-let drawn = 0; // when
+let drawn = 0; // time of the last frame, in ms
 
 // Tests wait for these.
 window.noh = { ready: false, lost: 0, restored: 0, frames: 0, error: '' };
@@ -38,7 +38,7 @@ function product(a, b) {
     return out;
 }
 
-// Come as close as lets the figure be seen whole, as it stands.
+// Come as near as the whole figure in its current pose allows.
 function fit() {
     orbit.box = Array.from(floats(Module._web_measure(), 6));
     orbit.distance = 0;
@@ -68,7 +68,7 @@ function setCamera() {
     camera.set(key.map((k) => k / Math.hypot(...key)), 19);
 }
 
-// A finger or the mouse turns; two fingers or the wheel come closer.
+// One finger or the mouse turns the figure; two fingers or the wheel zoom.
 const pointers = new Map();
 const apart = () => {
     const [a, b] = [...pointers.values()];
@@ -125,11 +125,11 @@ function resize() {
     if (width === canvas.width && height === canvas.height) return;
     Object.assign(canvas, { width, height });
     if (!window.noh.ready) return;
-    draw(); // at once: a canvas that is resized is empty
+    draw(); // at once, because resizing clears a canvas
 }
 
 canvas.addEventListener('webglcontextlost', (event) => {
-    event.preventDefault(); // else it never comes back
+    event.preventDefault(); // else the browser never restores it
     lost = true;
     window.noh.lost++;
     byId('message').textContent = 'the context is lost';
@@ -155,7 +155,7 @@ byId('detail').addEventListener('change', () => {
     redraw();
 });
 
-// By pixels, or what ?detail says.
+// By pixels, or at the level that ?detail says.
 function beginDetail() {
     const count = Module._web_level_count();
     for (let i = 1; i < count; i++) byId('detail').add(new Option(`level ${i}`, i));
@@ -277,7 +277,7 @@ function addRow(cells, tag) {
     }
 }
 
-// What noh took, part by part, beside what the page gives it.
+// What each part of noh takes, and what the page gives it.
 function showMemory() {
     const parts = Array.from({ length: Module._web_part_count() }, (_, i) =>
         ({ name: text(Module._web_part_name(i)), cpu: Module._web_part_cpu_bytes(i), gpu: Module._web_part_gpu_bytes(i) }));

@@ -32,7 +32,7 @@ static noh_controller_desc controller_desc(const web_player *p)
     return desc;
 }
 
-/* No clip for this skeleton is no error: it stands in its bind pose. */
+/* A skeleton without a clip is no error: it stands in its bind pose. */
 static noh_result open_clips(const web_playback *play, uint32_t player, noh_arena *arena, noh_clip_bank **set,
                              noh_error *error)
 {
@@ -154,7 +154,7 @@ double web_playback_seconds(const web_playback *play, uint32_t pack_clip)
     return -1.0;
 }
 
-/* For every item whose weights the clip moves: what the player's pose says, or what the pack does. */
+/* Reset the weights of every item that the clip moves to the pack's; with to_pose, set them to the player's pose. */
 static void move_weights(const web_playback *play, const web_player *p, int to_pose)
 {
     uint32_t clip;
@@ -192,7 +192,7 @@ static noh_result start(const web_playback *play, web_player *p, uint32_t clip, 
     return noh_controller_start(p->controller, &p->set->clips, 0, &desc, error);
 }
 
-/* The player's controller as it was made, and the clip on it where it has one. */
+/* Make the player's controller anew, and start the clip on it if it is one of the player's. */
 static noh_result restart(const web_playback *play, web_player *p, double time_s, noh_error *error)
 {
     const noh_controller_desc desc = controller_desc(p);
@@ -202,6 +202,8 @@ static noh_result restart(const web_playback *play, web_player *p, double time_s
     return !result && find_clip(p, play->clip, &clip) ? start(play, p, clip, time_s, error) : result;
 }
 
+/* Cross over to the clip, or to the bind pose if it is not one of the player's. The pose before the change is captured,
+ * and its difference to the new one decays over the transition (inertialisation: anim/controller_pose.h). */
 static noh_result go_over(const web_playback *play, web_player *p, double time_s, double transition_s, noh_error *error)
 {
     const noh_clip_set *set = &p->set->clips;
@@ -267,7 +269,7 @@ double web_playback_time(const web_playback *play)
     return 0.0;
 }
 
-/* ---- what is moved ---- */
+/* ---- results ---- */
 
 int web_playback_matrices(web_playback *play, const web_item *item)
 {

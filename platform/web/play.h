@@ -1,4 +1,4 @@
-/* play.h: what moves a scene: for each of its skeletons a clip bank, a controller and a pose. */
+/* play.h: what plays in a scene: for each of its skeletons a clip bank, a controller and a pose. */
 #ifndef NOH_PLATFORM_WEB_PLAY_H
 #define NOH_PLATFORM_WEB_PLAY_H
 
@@ -7,9 +7,10 @@
 #define WEB_PLAYERS_MAX 8u
 #define WEB_STILL_JOINTS_MAX 256u
 
+/* What moves one skeleton, or only weights. */
 typedef struct web_player {
-    noh_skeleton skeleton; /* joint_count 0: none, only weights are moved */
-    noh_clip_bank *set;    /* NULL: no clip fits */
+    noh_skeleton skeleton; /* joint_count 0: none, clips move only weights */
+    noh_clip_bank *set;    /* NULL: no clip of the pack is for this skeleton */
     noh_controller *controller;
     noh_pose_scratch scratch;
     noh_transform *pose; /* [joint_count] */
@@ -21,42 +22,45 @@ typedef struct web_playback {
     web_scene *scene;
     web_player players[WEB_PLAYERS_MAX];
     uint32_t player_count;
-    uint32_t clip; /* that plays: its index in the pack; NOH_NONE: none does */
+    uint32_t clip; /* index in the pack of the clip that plays; NOH_NONE: none */
     float speed;
     float *matrices; /* [joints of the largest skin][12]; NULL: nothing is skinned */
-    float still[WEB_STILL_JOINTS_MAX]
-               [12]; /* the joints of skeletons that no clip moves: `noh budget` does not count them */
+    /* model-space joints of the skeletons that no clip moves, which `noh budget` does not count */
+    float still[WEB_STILL_JOINTS_MAX][12];
     uint32_t still_count;
 } web_playback;
 
-/* Three steps, in this order, each of which carves what one line of `noh budget` says.
- * errors  as noh_clip_bank_init, noh_controller_init, noh_pose_scratch_init; LIMIT more skeletons, or more joints
- *         that nothing moves, than the page has room for; MEMORY */
+/* Three steps, in this order. Each carves what one line of `noh budget` says.
+ * errors  as noh_clip_bank_init, noh_controller_init, noh_pose_scratch_init; LIMIT more skeletons, or more joints that
+ *         no clip moves, than the page has room for; MEMORY the arena is too small */
 noh_result web_playback_open_clips(web_playback *play, web_scene *scene, noh_arena *arena, noh_error *error);
 noh_result web_playback_open_controllers(web_playback *play, noh_arena *arena, noh_error *error);
 noh_result web_playback_open_poses(web_playback *play, noh_arena *arena, noh_error *error);
 
-/* Room for what is handed to noh_gl_skin_set_matrices, where the scene is skinned. errors  MEMORY */
+/* Carve the matrices for noh_gl_skin_set_matrices, if anything in the scene is skinned.
+ * errors  MEMORY the arena is too small */
 noh_result web_playback_open_matrices(web_playback *play, noh_arena *arena, noh_error *error);
 
-/* The seconds of the pack's n-th clip; negative where it moves nothing here. */
+/* The duration of a clip of the pack in seconds; negative if it moves nothing in this scene. */
 double web_playback_seconds(const web_playback *play, uint32_t clip);
 
-/* Play a clip in a loop, from a time in seconds; NOH_NONE: stop, in the bind pose. A transition in seconds blends from
- * the previous clip by inertialisation. */
+/* Play a clip of the pack in a loop from a time in seconds; NOH_NONE: show the bind pose. With a transition in seconds,
+ * inertialisation blends from the previous clip.
+ * errors  as noh_controller_init, noh_controller_start and noh_controller_inertia_capture */
 noh_result web_playback_start(web_playback *play, uint32_t clip, double time_s, double transition_s, noh_error *error);
+/* Set the playback speed: 1 as made. */
 void web_playback_set_speed(web_playback *play, float speed);
 
-/* Advance by a time. */
+/* Advance by a time in seconds, and pose. */
 void web_playback_step(web_playback *play, double seconds);
 
-/* The clip's time, in seconds. */
+/* The position of the clip that plays, in seconds. */
 double web_playback_time(const web_playback *play);
 
-/* Compute the item's skin matrices in the current pose into play->matrices. Returns 0 for a rigid item. */
+/* Write an item's skin matrices in the current pose to play->matrices. Returns 0 for a rigid item. */
 int web_playback_matrices(web_playback *play, const web_item *item);
 
-/* The scene's current bounding box in the world, without morphs. */
+/* The scene's bounding box in the world in the current pose, without morphs: min, then max. */
 void web_playback_bounds(web_playback *play, float box[6]);
 
 #endif

@@ -1,4 +1,4 @@
-/* scene.h: what a pack draws: its meshes, placed by its nodes, with their weights. */
+/* scene.h: what a pack draws: its meshes, where its nodes place them, and their weights. */
 #ifndef NOH_PLATFORM_WEB_SCENE_H
 #define NOH_PLATFORM_WEB_SCENE_H
 
@@ -6,7 +6,7 @@
 
 #define WEB_MESHES_MAX 64u
 #define WEB_ITEMS_MAX 128u
-#define WEB_WEIGHTS_MAX 8192u /* of all items together */
+#define WEB_WEIGHTS_MAX 8192u /* for all items together */
 
 typedef struct web_item {
     uint32_t node; /* NOH_NONE in a pack without nodes */
@@ -23,7 +23,7 @@ typedef struct web_scene {
     float weights[WEB_WEIGHTS_MAX];
 } web_scene;
 
-/* List what scene->pack, which is open, draws.
+/* List what scene->pack draws, which must be open.
  * errors  LIMIT more of something than the page has room for; DATA nothing to draw */
 noh_result web_scene_list(web_scene *scene, noh_error *error);
 
@@ -33,7 +33,7 @@ const float *web_scene_world(const web_scene *scene, const web_item *item);
 /* Reset an item's weights to the pack's. */
 void web_scene_reset(web_scene *scene, const web_item *item);
 
-/* A target by its place in `names`, in every mesh that has it; read from the first of them. */
+/* Set a target, given by its index in `names`, in every mesh that has it; get it from the first of them. */
 void web_scene_set_weight(web_scene *scene, uint32_t target, float weight);
 float web_scene_weight(const web_scene *scene, uint32_t target);
 

@@ -1,3 +1,4 @@
+/* gl_debug.c: labels and groups of KHR_debug. */
 #include "gl/gl_debug.h"
 
 #define GROUP_ID 0x6e6f68u /* "noh": tells our groups from the application's */

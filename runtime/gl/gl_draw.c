@@ -1,4 +1,7 @@
-/* gl_draw.c: the plain renderer's draws. */
+/* gl_draw.c: the plain renderer's draws.
+ *
+ * Everything opaque is drawn first and writes depth. What is blended follows: it is hidden by opaque surfaces but does
+ * not write depth, so that two blended surfaces never hide each other, whatever their order. */
 #include "gl/gl_draw.h"
 
 #include "gl/gl_debug.h"

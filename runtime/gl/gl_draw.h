@@ -74,7 +74,7 @@ noh_result noh_gl_picture_restore(const noh_gl_api *api, noh_gl_ledger *ledger, 
                                   noh_gl_texture *picture, noh_error *error);
 
 typedef struct noh_gl_renderer_desc {
-    noh_debug_view view;
+    noh_debug_view view;    /* 0: lit */
     int layers_uint;        /* as in noh_gl_morph_binding.is_uint */
     const noh_mesh *meshes; /* [mesh_count] that will be drawn; not kept */
     uint32_t mesh_count;
@@ -147,12 +147,13 @@ void noh_gl_draw_mesh(const noh_gl_renderer *renderer, const noh_gl_mesh *mesh, 
 /* The same for `count` successive instances of one mesh, the first of them with the binding `first`: one draw call per
  * submesh. Each instance stands where noh_gl_skin_set_place put it. Rigid meshes work too; palettes must be in a
  * texture. The instances' blended submeshes are not sorted.
- * morph   the binding of any instance, for its texture; NULL: no target is active */
+ * morph   the binding of any instance, for its texture; NULL: noh_gl_skin_set_place was given none */
 void noh_gl_draw_crowd(const noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph,
                        const noh_gl_skin_binding *first, uint32_t count, const noh_gl_lod *lod,
                        const noh_gl_texture *pictures, int pass);
 
-/* Unbind program, vertex array, textures and uniform buffer. Depth test, culling and blending are then off. */
+/* End what noh_gl_draw_begin began: unbind program, vertex array, textures and uniform buffer. Depth test, culling and
+ * blending are then off. */
 void noh_gl_draw_end(const noh_gl_renderer *renderer);
 
 #ifdef __cplusplus

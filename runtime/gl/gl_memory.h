@@ -59,15 +59,16 @@ typedef struct noh_gl_texture_desc {
     GLenum wrap;     /* 0: GL_CLAMP_TO_EDGE */
 } noh_gl_texture_desc;
 
-/* 0 for a format that noh does not use. */
+/* The bytes of one texel of an internal format; 0 for a format that noh does not use. */
 uint32_t noh_gl_texel_bytes(GLenum format);
 
-/* 0 for an impossible desc. */
+/* The bytes of a texture; 0 for an impossible desc. */
 uint64_t noh_gl_texture_bytes(const noh_gl_texture_desc *desc);
 
-/* 0 for impossible arguments. samples 0 and 1 are the same. */
+/* The bytes of a renderbuffer; 0 for impossible arguments. samples 0 and 1 are the same. */
 uint64_t noh_gl_renderbuffer_bytes(GLenum format, uint32_t width, uint32_t height, uint32_t samples);
 
+/* The bytes of all objects that exist. */
 uint64_t noh_gl_ledger_bytes(const noh_gl_ledger *ledger);
 
 /* What objects are made with. The struct is not kept; the table and the ledger must outlive the object. */

@@ -1,4 +1,8 @@
-/* gl_mesh.c: a pack's meshes and textures as GL objects. */
+/* gl_mesh.c: a pack's meshes and textures as GL objects.
+ *
+ * All LOD levels of a mesh share its buffers. The vertices of a coarser level are the first ones of the finer level,
+ * and its indices lie behind those of the finer level. So a draw chooses a level by an offset into the index buffer,
+ * and a vertex keeps its number, by which its accumulation texel is found, at every level. */
 #include "gl/gl_draw.h"
 
 #include "gl/gl_debug.h"

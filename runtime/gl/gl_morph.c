@@ -234,6 +234,8 @@ noh_result noh_gl_morph_set_weights(noh_gl_morph *morph, uint32_t instance, cons
     return NOH_OK;
 }
 
+/* The accumulation texels of a coarser level are the first ones of a finer level. So when an instance gets coarser,
+ * what it needs has been accumulated already; only a finer level makes it accumulate again. */
 void noh_gl_morph_set_lod(noh_gl_morph *morph, uint32_t instance, uint32_t level)
 {
     const noh_mesh_header *h;

@@ -1,4 +1,9 @@
-/* gl_morph_plan.c: which path, where everything lies, and every byte of it, before anything is made. */
+/* gl_morph_plan.c: which path, where everything lies, and every byte of it, before anything is made.
+ *
+ * The atlas is the texture array whose layers take the sums. Each mesh of the desc has a band of it, and each instance
+ * a tile in its mesh's band. The tables hold what does not change, the delta texels and where they go, once per mesh
+ * however many instances it has. The stream and the staging memory hold what one update sends. They are large enough
+ * for every target of every instance to be active at once, so an update cannot run out of room, and never fails. */
 #include <string.h>
 
 #include "gl/gl_morph_internal.h"

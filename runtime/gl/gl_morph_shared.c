@@ -126,7 +126,7 @@ static void plain_state(const noh_gl_morph *m)
 void noh_gl_morph_begin(const noh_gl_morph *m)
 {
     const GLuint names[3] = { m->deltas.texture.name, m->rects.texture.name, m->record_table.texture.name };
-    for (unsigned i = 3; i-- > 0;) {
+    for (unsigned i = 3; i-- > 0;) { /* downwards, so that unit 0 is the active one at the end */
         m->gl->ActiveTexture(GL_TEXTURE0 + i);
         m->gl->BindTexture(GL_TEXTURE_2D, names[i]);
     }

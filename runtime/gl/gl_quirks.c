@@ -1,3 +1,4 @@
+/* gl_quirks.c: the table of quirks. Each entry has a source, so that it can be checked again and removed. */
 #include "gl/gl_quirks.h"
 
 #define SOFTWARE_REASON "cpu: this GL is rasterised in software, so SIMD on the CPU is the least work"

@@ -1,4 +1,5 @@
-/* gl_renderer.c: the plain renderer's programs and texture. */
+/* gl_renderer.c: the plain renderer's programs and texture. The keys of all variants are listed first, then compiled: a
+ * restore compiles the same list again. */
 #include <string.h>
 
 #include "gl/gl_debug.h"

@@ -1,3 +1,4 @@
+/* gl_shader_text.c: GLSL files by name. tools/embed made the strings. */
 #include "gl/gl_shader_text.h"
 
 #include <stddef.h>

@@ -281,6 +281,7 @@ noh_gl_skin_binding noh_gl_skin_binding_of(const noh_gl_skin *skin, uint32_t ins
 
 /* ---- sending ---- */
 
+/* A buffer takes the span as it is. A texture takes the rows of texels that the span touches, as one rectangle. */
 void noh_gl_skin_update(noh_gl_skin *skin)
 {
     const noh_gl_api *gl = skin->gl;

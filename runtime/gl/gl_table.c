@@ -5,6 +5,8 @@
 #define WIDTH_LOG2_MAX 11u
 #define HEIGHT_MAX 2048u
 
+/* 256 texels across are enough for a small mesh and waste at most a row of that; a wider table is needed only where the
+ * height would exceed 2048. */
 void noh_gl_table_shape(uint32_t count, uint32_t *width_log2, uint32_t *height)
 {
     NOH_ASSERT(width_log2 && height && count <= NOH_GL_TABLE_TEXELS_MAX);

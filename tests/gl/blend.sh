@@ -1,6 +1,6 @@
 #!/bin/sh
-# The policy `--path blend`: layered draws where supported, per-layer passes otherwise, refused where nothing blends;
-# and the line in which `make demo` tells of it. The pictures are those of the CPU, byte for byte.
+# The policy `--path blend`: layered draws where supported, per-layer passes otherwise, refused without float blending;
+# and the line in which `make demo` says so. The pictures are those of the CPU, byte for byte.
 . tests/cli/lib.sh
 mask=$build/mask.noh
 

@@ -1,5 +1,5 @@
 /* drop.c: `drop WINDOW FILE` drops a file on an X11 window as a file manager does (XDND, version 5).
- * Exit code 0 when the window said that it took it. view.sh compiles and uses it. */
+ * Exit code 0 if the window accepted it. view.sh compiles and uses it. */
 #define _POSIX_C_SOURCE 200809L
 
 #include <X11/Xatom.h>
@@ -55,7 +55,7 @@ static void answer(const drop *d, const XSelectionRequestEvent *request)
     XFlush(d->display);
 }
 
-/* Until a message of that type comes. */
+/* Wait for a message of that type. */
 static XClientMessageEvent wait_for(const drop *d, const char *type)
 {
     for (;;) {
@@ -75,7 +75,7 @@ int main(int argc, char **argv)
     if (argc != 3 || strlen(argv[2]) > 1024) {
         return 2;
     }
-    alarm(120); /* the window may never answer; it converts before it does */
+    alarm(120); /* the window may never answer; before it does, it converts the file */
     d.display = XOpenDisplay(NULL);
     if (!d.display) {
         return 1;
@@ -92,5 +92,5 @@ int main(int argc, char **argv)
         return 1;
     }
     send(&d, "XdndDrop", 0, CurrentTime, 0, 0);
-    return wait_for(&d, "XdndFinished").data.l[1] ? 0 : 1; /* GLFW sets more than the bit */
+    return wait_for(&d, "XdndFinished").data.l[1] ? 0 : 1; /* bit 0: accepted; GLFW sets others too */
 }

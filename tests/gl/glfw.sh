@@ -1,6 +1,6 @@
 #!/bin/sh
-# Windows, under a virtual display: the driver glfw draws the picture that EGL draws, to the byte,
-# and windows of glfw and of EGL are shown, read and resized.
+# Windows on a virtual display: the driver glfw draws the picture of EGL, byte for byte, and windows
+# of glfw and of EGL are shown, read and measured.
 . tests/cli/lib.sh
 mask=$build/mask.noh
 

@@ -1,8 +1,8 @@
 #!/bin/sh
-# The matrix: `noh verify` and one picture on every driver at hand, and on llvmpipe with the
-# capabilities of lesser devices. float32 has to equal the CPU in every bit everywhere; float16
-# too, where the driver's rounding is modelled, else stay within the pack's bound. The picture is
-# compared with llvmpipe's own: at most 0.25/255 off in the mean, and 1 % of the pixels by more
+# The matrix: `noh verify` and one picture on every driver that is here, and on llvmpipe with the
+# capabilities of lesser devices. float32 must equal the CPU in every bit everywhere; so must float16
+# where the driver's rounding is modelled, else it must stay within the pack's bound. The picture is
+# compared with that of llvmpipe: at most 0.25/255 off in the mean, and 1 % of the pixels by more
 # than 8 (edges and mip levels differ between rasterisers). Prints a table of what ran where.
 . tests/cli/lib.sh
 mask=$build/mask.noh

@@ -1,6 +1,6 @@
 /* picture_diff A.png B.png MEAN SHARE: the mean difference per channel of two pictures of one
  * size, in 1/255, and the share of pixels in which a channel differs by more than 8. Prints both;
- * exit code 0 where neither is above its limit, 1 where one is, 2 where they cannot be compared. */
+ * exit code 0 if neither is above its limit, 1 if one is, 2 if they cannot be compared. */
 #include <stb/stb_image.h>
 
 #include <stdio.h>

@@ -1,8 +1,8 @@
-/* The ground floor of runtime/gl: halves, the function table, the capability
- * probe, programs, counted objects, timers; and platform/ under it.
+/* The base of runtime/gl: halves, the function table, the capability probe, programs,
+ * counted objects, timers; and platform/, which it stands on.
  *
  *   test_gl_base                  the tests
- *   test_gl_base --caps DRIVER    print what the probe finds, one `name=value` a line
+ *   test_gl_base --caps DRIVER    print what the probe finds, one `name=value` per line
  *
  * The tests run the second form as child processes, with capabilities taken away
  * by Mesa's environment variables, and read what the probe said. */
@@ -32,7 +32,7 @@
 #include "shaders.gen.h"
 
 #define SWEEP 10000000u
-#define NO_CONTEXT 77 /* exit code of --caps where the driver is not there */
+#define NO_CONTEXT 77 /* exit code of --caps if the driver is missing */
 
 static const char *self; /* this program's path */
 
@@ -52,7 +52,7 @@ static uint32_t bits_of(float value)
     return bits;
 }
 
-/* What a half stands for, in double arithmetic from its definition. */
+/* The value of a half from its definition, in double precision. */
 static double half_value(uint16_t half)
 {
     int exponent = (half >> 10) & 31;
@@ -131,7 +131,7 @@ static void half_sweep(void **state)
         random ^= random << 13;
         random ^= random >> 17;
         random ^= random << 5;
-        /* Every second one in the range where halves have values. */
+        /* every second one in the range of halves */
         uint32_t bits = random;
         if (i & 1u) bits = (bits & 0x807fffffu) | ((100u + (random >> 24) % 46u) << 23);
         check_half(bits);
@@ -431,7 +431,7 @@ static int run_child(const char *environment, const char *driver, char *output, 
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-/* One line of the child's output, as a number. */
+/* The number in one line of the child's output. */
 static int said(const char *output, const char *name)
 {
     char key[64];
@@ -482,7 +482,7 @@ static void without_float_blend(void **state)
     assert_int_equal(said(output, "blend_f32_exact"), 0);
     assert_int_equal(said(output, "blend_f16"), 1);
     assert_int_equal(said(output, "f16_blend_mode"), NOH_HALF_RTZ);
-    assert_int_equal(said(output, "debug_errors"), 1); /* the refused draw, asked for by the probe */
+    assert_int_equal(said(output, "debug_errors"), 1); /* the refused draw, which the probe provokes */
     assert_int_equal(said(output, "gl_error"), 0);
 }
 
@@ -529,8 +529,8 @@ static void without_float_targets(void **state)
     assert_int_equal(said(output, "gl_error"), 0);
 }
 
-/* Mesa renders RGBA16F whatever it lists, so a table that lies stands in for the
- * phones that have neither float format. */
+/* Mesa renders RGBA16F whatever it lists, so a table that lies stands in for phones
+ * without any float format. */
 static PFNGLTEXSTORAGE3DPROC real_storage;
 
 static void GL_APIENTRY storage_without_floats(GLenum target, GLsizei levels, GLenum format, GLsizei width,
@@ -580,7 +580,7 @@ static void without_real_blending(void **state)
     expect_no_errors(c);
 }
 
-/* A driver of another name: the quirks that the probe heeds. */
+/* A driver of another name: the quirks that the probe obeys. */
 static PFNGLGETSTRINGPROC real_string;
 
 static const GLubyte *GL_APIENTRY string_of_swiftshader(GLenum what)
@@ -627,7 +627,7 @@ static void on_osmesa(void **state)
 {
     (void)state;
     char output[4096];
-    /* libOSMesa leaks 480 bytes a context by itself. */
+    /* libOSMesa itself leaks 480 bytes per context. */
     int code = run_child("ASAN_OPTIONS=detect_leaks=0", "osmesa", output, sizeof output);
     if (code == NO_CONTEXT) {
         print_message("SKIP: no libOSMesa here\n");
@@ -712,7 +712,7 @@ static void program_says_what_is_wrong(void **state)
     assert_non_null(strstr(log, "wrong"));
     assert_non_null(strstr(log, ":2")); /* the line, counted from the piece's #line */
     assert_int_equal(program, 12345);
-    /* A log that is too short is cut and stays a string, its neighbour untouched. */
+    /* In too little room the log is cut and zero-terminated, and what lies behind is untouched. */
     for (size_t room = 0; room < 32; room++) {
         memset(log, '#', sizeof log);
         assert_int_equal(noh_gl_program_create(&c->gl, &desc, &program, log, room, NULL), NOH_ERR_DATA);
@@ -902,7 +902,7 @@ static void refused_objects_leave_nothing(void **state)
         NOH_ERR_LIMIT);
     assert_int_equal(noh_gl_renderbuffer_create(gl, &ledger, GL_RGBA8, 0, 0, 0, &renderbuffer, &error), NOH_ERR_ARG);
     assert_int_equal(c->debug_errors, 0);
-    /* The driver's own refusals. */
+    /* Refused by the driver itself. */
     desc.height = 1;
     desc.width = 65536;
     if (c->caps.texture_size_max < desc.width) {
@@ -929,7 +929,7 @@ static void timer_tells_or_says_that_it_cannot(void **state)
     assert_int_equal(timer.available, c->caps.timer_query);
     noh_result idle = noh_gl_timer_poll(&timer, &c->gl, &elapsed);
     assert_int_equal(idle, timer.available ? NOH_ERR_NOT_FOUND : NOH_ERR_UNSUPPORTED);
-    for (unsigned i = 0; i < NOH_GL_TIMER_FLIGHT + 2; i++) { /* two more than fly */
+    for (unsigned i = 0; i < NOH_GL_TIMER_FLIGHT + 2; i++) { /* two more than can be in flight */
         noh_gl_timer_begin(&timer, &c->gl);
         noh_gl_timer_begin(&timer, &c->gl);
         c->gl.Finish();
@@ -1010,7 +1010,7 @@ static void version_can_be_asked_for(void **state)
     assert_int_equal(c->platform->create(&desc, &made, message, sizeof message), NOH_OK);
     assert_string_equal(message, "");
     assert_int_equal(noh_gl_api_load(&table, c->platform->get_proc, made, NULL), NOH_OK);
-    /* A driver may give any later version that is compatible. */
+    /* a driver may give any later version that is compatible */
     assert_true(table.version >= 300);
     c->platform->destroy(made);
     assert_int_equal(c->platform->make_current(c->made), NOH_OK);
@@ -1032,7 +1032,7 @@ static void files(void **state)
     assert_int_equal(noh_file_map(path, &file, NULL), NOH_OK);
     assert_int_equal(noh_file_write(path, "second!", 7, NULL), NOH_OK);
     assert_int_equal(file.bytes, 5);
-    assert_memory_equal(file.data, "first", 5); /* who maps the old file keeps it */
+    assert_memory_equal(file.data, "first", 5); /* a mapping of the old file keeps its content */
     noh_file_unmap(&file);
     noh_file_unmap(&file);
     assert_int_equal(noh_file_map(path, &file, NULL), NOH_OK);

@@ -1,5 +1,5 @@
-/* The crowd of tools/noh/crowd/crowd.h, with and without LOD: sixty tubes that bend, bulge and tell of it, while the
- * camera goes in among them and back. */
+/* The crowd of tools/noh/crowd/crowd.h, with and without LOD: sixty tubes that bend, bulge and fire callback keys while
+ * the camera moves in among them and back. */
 #include "support/gl_fixture.h"
 #include "support/level_fixture.h"
 #include "support/skin_asset.h"
@@ -41,7 +41,7 @@ static void fill_channel(model_channel *c, uint32_t node, model_path path, uint3
     }
 }
 
-/* Every joint turns to and fro, `turn` radians at most. */
+/* Every joint swings by at most `turn` radians. */
 static void fill_swing(model_clip *clip, float duration_s, float turn, uint32_t seed)
 {
     clip->duration_s = duration_s;
@@ -69,7 +69,7 @@ static void fill_face(model_clip *clip, float duration_s)
     }
 }
 
-/* Where the heaviest `count` of its joints put a vertex. */
+/* A vertex moved by the `count` heaviest of its joints. */
 static void capped_vertex(const noh_mesh *mesh, const float *matrices, uint32_t vertex, uint32_t count, float out[3])
 {
     const float *p = mesh->positions + 3u * (size_t)vertex;
@@ -88,7 +88,7 @@ static void capped_vertex(const noh_mesh *mesh, const float *matrices, uint32_t 
     }
 }
 
-/* What 2 and 1 joints per vertex are off in a pose. */
+/* How far 2 joints per vertex, and 1, are off in a pose. */
 static void add_cap_errors(const noh_mesh *mesh, const float *matrices, float errors[3])
 {
     for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
@@ -104,7 +104,7 @@ static void add_cap_errors(const noh_mesh *mesh, const float *matrices, float er
     }
 }
 
-/* The levels were not made by the converter: it would have measured this. */
+/* The levels do not come out of the converter, which would have measured this. */
 static void measure_caps(void)
 {
     const noh_clip_bank_desc desc = { &levels.pack, NULL, 0, 0, 0, 0, 0, 0 };
@@ -217,7 +217,7 @@ static crowd_options options_of(float pixels)
     return o;
 }
 
-/* In among them, and back. */
+/* The camera in a frame: in among them, and back. */
 static crowd_camera camera_at(const crowd *c, uint32_t frame)
 {
     const float part = (float)(frame < FRAMES / 2u ? frame : FRAMES - frame) / (float)(FRAMES / 2u);
@@ -253,10 +253,10 @@ typedef struct watch {
     uint32_t waits[BODIES]; /* frames in which a body has wanted a finer level than it shows, for want of its frame of
                                notice */
     uint32_t coarser, finer, fades, seen_max, seen_min, by_level[LEVELS];
-    uint64_t aside; /* the most that could not wait, after the first frame */
+    uint64_t aside; /* the most bodies that could not wait in a frame, after the first */
 } watch;
 
-/* No two bodies in one slot, nor more in a pool than it has. */
+/* No two bodies hold one slot, and no pool gives out more slots than it has. */
 static void expect_slots(const crowd *c)
 {
     uint8_t taken[NOH_LOD_LEVELS_MAX][BODIES];
@@ -273,7 +273,8 @@ static void expect_slots(const crowd *c)
     }
 }
 
-/* Under its share of the knob; or it fades, or there is no finer slot, or it has asked for one just now. */
+/* Each body is within its share of the error setting; or it fades, or no finer slot is free, or it has just asked for
+ * one. */
 static void expect_level(const crowd *c, uint32_t i, watch *w)
 {
     const crowd_body *b = &c->bodies[i];
@@ -321,7 +322,7 @@ static void watch_frame(const stand *s, uint32_t frame, watch *w)
     w->seen_min = frame && c->stats.seen >= w->seen_min ? w->seen_min : c->stats.seen;
 }
 
-/* What is spent aside shows between looking and showing. */
+/* Work outside the budget shows between looking and showing. */
 static void run_watched(stand *s, uint32_t frame, watch *w)
 {
     const crowd_camera camera = camera_at(&s->crowd, frame);
@@ -333,7 +334,7 @@ static void run_watched(stand *s, uint32_t frame, watch *w)
 
 /* ---- pictures ---- */
 
-/* The mean difference of what either covers, of 255; 0 where nothing is seen. */
+/* The mean difference, in 1/255, of the pixels that either covers; 0 if there are none. */
 static double compare_pictures(uint8_t *a, uint8_t *b)
 {
     double sum = 0.0;
@@ -365,7 +366,7 @@ static void a_crowd_with_lod_keeps_its_word(void **state)
     watch w;
     (void)state;
     memset(&w, 0, sizeof w);
-    o.slots[0] = 2; /* fewer than want the full level, so that some have to make do with less */
+    o.slots[0] = 2; /* fewer than the bodies that want the full level, so that some get a coarser one */
     o.slots[1] = 14;
     o.slots[2] = 44;
     o.budget_ns = 30000;
@@ -401,7 +402,7 @@ static void a_crowd_with_lod_keeps_its_word(void **state)
     stand_close(&without);
 }
 
-/* With a knob of nothing and slots for all, what is drawn is what is drawn without LOD. */
+/* With no error allowed and a full-sized slot for every body, the picture is that without LOD. */
 static void a_knob_of_nothing_leaves_nothing_out(void **state)
 {
     crowd_options o = options_of(1e-6f);
@@ -427,7 +428,8 @@ static void a_knob_of_nothing_leaves_nothing_out(void **state)
     stand_close(&without);
 }
 
-/* With a knob of half the view, who is far is posed with fewer joints and drawn with fewer a vertex, and still seen. */
+/* With an allowed error of half the view, distant bodies are posed with fewer joints and drawn with fewer joints per
+ * vertex, and still seen. */
 static void far_bodies_hang_on_fewer_joints(void **state)
 {
     const crowd_options o = options_of(96.0f), none = options_of(0.0f);
@@ -460,7 +462,7 @@ static void far_bodies_hang_on_fewer_joints(void **state)
     stand_close(&without);
 }
 
-/* Fewer accumulators are full-sized: that is what pools are for. */
+/* Pools save memory, because fewer accumulators are full-sized. */
 static void pools_by_level_take_less(void **state)
 {
     const crowd_options o = options_of(4.0f), none = options_of(0.0f);

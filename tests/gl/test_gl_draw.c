@@ -1,4 +1,4 @@
-/* Tests of runtime/gl/gl_draw.c and mesh.frag: what a material, a texture, colours and a mirrored world make of a
+/* Tests of runtime/gl/gl_draw.c and mesh.frag: how a material, a texture, colours and a mirrored world change a
  * pixel. */
 #include "support/gl_fixture.h"
 
@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The middle row is what the closed form says, within rounding. */
+/* The middle row equals the closed form, within rounding. */
 static void expect_lit(const lit_quad *q, const uint8_t *rgba)
 {
     for (uint32_t x = 0; x < LIT_QUAD_SIDE; x++) {
@@ -87,7 +87,7 @@ static void masked_materials_are_cut_off(void **state)
     }
 }
 
-/* A quad seen from behind is there only where its material has two sides, and is then lit as its other side. */
+/* A quad seen from behind is drawn only if its material is double-sided, and is then lit with its normal reversed. */
 static void two_sided_materials_are_seen_from_behind(void **state)
 {
     (void)state;
@@ -106,7 +106,7 @@ static void two_sided_materials_are_seen_from_behind(void **state)
     }
 }
 
-/* A mirrored node is drawn with its front where its front is, and its normals still point outwards. */
+/* A mirrored node shows its front faces, and its normals still point outwards. */
 static void mirrored_worlds_keep_their_front(void **state)
 {
     lit_quad q = lit_quad_of();
@@ -119,7 +119,7 @@ static void mirrored_worlds_keep_their_front(void **state)
     free(rgba);
 }
 
-/* The material's own texture, at the mesh's UVs, which the pack keeps as parts of their range. */
+/* The material's own texture is sampled at the mesh's UVs, which the pack stores as fractions of their range. */
 static void textures_are_looked_up_at_the_uvs(void **state)
 {
     static const float uv[8] = { 0.2f, 0.5f, 0.9f, 0.5f, 0.2f, 0.5f, 0.9f, 0.5f };
@@ -132,7 +132,7 @@ static void textures_are_looked_up_at_the_uvs(void **state)
     q.uv = uv;
     q.picture = picture;
     rgba = drawn(&q, NOH_DRAW_OPAQUE);
-    for (uint32_t x = 0; x < LIT_QUAD_SIDE; x++) { /* turned half round and looked at from behind: left stays left */
+    for (uint32_t x = 0; x < LIT_QUAD_SIDE; x++) { /* turned by half a turn and seen from behind: left stays left */
         const double u = 0.2 + 0.7 * ((double)x + 0.5) / (double)LIT_QUAD_SIDE;
         const uint8_t *texel = picture + (u < 0.5 ? 0 : 4);
         if (fabs(u - 0.5) > 0.02) {

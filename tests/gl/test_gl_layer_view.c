@@ -1,5 +1,5 @@
 /* The viewer's pictures of the accumulators: every texel of every layer of an instance's tile is grey plus gain times
- * the delta that is accumulated there, float layers and integer ones. */
+ * the delta that is accumulated there, in float layers and in integer ones. */
 #include "support/gl_fixture.h"
 
 #include "gl/gl_program.h"
@@ -73,7 +73,7 @@ static void expect_layer(const uint8_t *rgba, uint32_t side, const noh_mesh *mes
             spread = fmax(spread, fabs(want - 127.5));
         }
     }
-    assert_true(spread > 100.0); /* the gain is such that grey would not do */
+    assert_true(spread > 100.0); /* the gain is so high that plain grey would fail */
 }
 
 static void check_layers(noh_morph_path path, int is_uint)

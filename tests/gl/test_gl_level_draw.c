@@ -1,5 +1,5 @@
-/* LOD levels drawn: each level as a mesh of its triangles alone, faded pixel by pixel, alone and in crowds,
- * from meshes that have no finer levels, and in the colours that tell them apart. */
+/* LOD levels drawn: each level looks like a mesh of its triangles alone; levels fade pixel by pixel, alone and in
+ * crowds; meshes without the finer levels; the colours that tell levels apart. */
 #include "support/gl_fixture.h"
 #include "support/level_fixture.h"
 #include "support/skin_asset.h"
@@ -38,7 +38,7 @@ static side with, without;
 static void set_weights(side *s)
 {
     for (uint32_t i = 0; i < COPIES; i++) {
-        const float weights[3] = { 0.0f, 0.8f, i ? -0.6f : 0.4f }; /* the coarsest level does without the first */
+        const float weights[3] = { 0.0f, 0.8f, i ? -0.6f : 0.4f }; /* the coarsest level leaves out the first target */
         fixture_set(&s->morph, i, weights);
     }
     noh_gl_morph_update(s->morph.morph, NULL);
@@ -108,7 +108,8 @@ static void close_both(void)
     }
 }
 
-/* With so many joints to a palette at most, 0 all. Stays for the tests that follow; skips where there is no context. */
+/* Open one side, with at most so many joints per palette, 0: all. Kept for the tests that follow; skips without a
+ * context. */
 static void open_split(uint32_t palette)
 {
     static uint32_t opened;
@@ -179,7 +180,7 @@ static noh_gl_renderer_desc renderer_desc(const noh_mesh *meshes, uint32_t count
     return desc;
 }
 
-/* One side's copies, drawn once for each detail (NULL: of none), into one frame. */
+/* One side's copies, drawn once for each `lod` (NULL: without one), into one frame. */
 static uint8_t *picture(const side *s, const noh_gl_mesh *gl, draw_kind kind, const noh_gl_lod *lods, uint32_t count,
                         noh_debug_view view)
 {
@@ -239,7 +240,7 @@ static void same_picture(uint8_t *got, uint8_t *expected)
 
 /* ---- a level is a mesh of its triangles ---- */
 
-/* The mesh without levels, of the triangles of one alone, drawn. */
+/* The mesh without levels, of one level's triangles alone, drawn. */
 static uint8_t *picture_without(draw_kind kind, uint32_t level)
 {
     const noh_mesh of = noh_mesh_at_lod(&with.mesh, level);
@@ -308,10 +309,10 @@ static void no_lod_is_the_finest(void **state)
     same_picture(picture(&with, &with.gl, SKINNED, NULL, 0, NOH_VIEW_LIT), picture_of_level(SKINNED, 0));
     same_picture(picture(&with, &with.gl, CROWD, NULL, 0, NOH_VIEW_LIT), picture_of_level(CROWD, 0));
     same_picture(picture_of_level(SKINNED, 1000),
-                 picture_of_level(SKINNED, LEVELS - 1u)); /* and past the last the coarsest */
+                 picture_of_level(SKINNED, LEVELS - 1u)); /* beyond the last level: the coarsest */
 }
 
-/* Made of level 1: what is finer takes no memory, and draws as level 1. */
+/* Uploaded from level 1 on: finer levels take no memory, and a draw of one is that of level 1. */
 static void finer_levels_can_stay_away(void **state)
 {
     const noh_gl_lod lods[LEVELS] = { { 0, 0.0f, 1.0f }, { 1, 0.0f, 1.0f }, { 2, 0.0f, 1.0f } };
@@ -337,7 +338,7 @@ static void finer_levels_can_stay_away(void **state)
     assert_int_equal(first, 0);
     assert_int_equal(noh_gl_mesh_lod(&gl, 9, &first).header->level, 2);
     assert_int_equal(first, view.header->index_count * view.header->index_bytes);
-    noh_lod_mesh_levels(&view, table_levels, &table); /* what detail chooses by is what is drawn */
+    noh_lod_mesh_levels(&view, table_levels, &table); /* LOD chooses by what is drawn */
     for (uint32_t k = table.mesh_level_first; k < table.mesh_level_count; k++) {
         const noh_mesh_header *drawn;
         noh_lod_set_mesh(&chosen, &table, k, 1.0f);
@@ -354,13 +355,13 @@ static void finer_levels_can_stay_away(void **state)
 
 /* ---- fades ---- */
 
-/* common_fade.glsl's, of the n-th pixel of a frame. */
+/* fade_noise of common_fade.glsl, of the n-th pixel of a frame. */
 static float noise(uint32_t x, uint32_t y)
 {
     return (float)((x * 0xc13fa9a9u + y * 0x91e10da6u) >> 8) / 16777216.0f;
 }
 
-/* Each pixel is that of the level which the pattern says, or of the background: never both, never neither. */
+/* Each pixel is that of the level that the pattern says, or of the background: never of both levels, never of none. */
 static void check_fade(draw_kind kind, float f)
 {
     const noh_gl_lod lods[2] = { { 1, 0.0f, f }, { 0, f, 1.0f } };
@@ -416,7 +417,7 @@ static void a_draw_of_no_pixels_draws_none(void **state)
     free(got);
 }
 
-/* In every 8 x 8 pixels a share of the pattern's pixels is drawn that is nearly the fade's, and rises with it. */
+/* In every block of 8 x 8 pixels, the share that is drawn is nearly that of the fade, and rises with it. */
 static void the_pattern_is_even(void **state)
 {
     (void)state;
@@ -482,7 +483,7 @@ static void mean_color(const uint8_t *rgba, double mean[3])
     }
 }
 
-/* All eight that there can be: hues, whatever the light. */
+/* The colours of all eight possible levels differ in hue, whatever the light. */
 static void each_level_has_a_color(void **state)
 {
     fixture_levels eight;

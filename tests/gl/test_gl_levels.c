@@ -1,5 +1,5 @@
-/* LOD levels in the accumulators: every path at every level against the CPU, the finer level's bits in the
- * coarser, what is not done any more, and sets that hold several levels of one mesh. */
+/* LOD levels in the accumulators: every path at every level against the CPU; the same bits in finer and coarser levels;
+ * what a coarser level saves; and descs that hold several levels of one mesh. */
 #include "support/gl_fixture.h"
 #include "support/level_fixture.h"
 
@@ -20,7 +20,7 @@ static int set_up(void **state)
     for (uint32_t i = 0; i < FIXTURE_MESHES; i++) {
         meshes[i] = test_mesh(&levels.pack, i);
     }
-    /* what this set is for */
+    /* the shapes that these tests need */
     for (uint32_t k = 1; k < LEVELS; k++) {
         const noh_mesh_header *h = &meshes[2].header[k];
         assert_true(h->touched_count && h->touched_count < h[-1].touched_count && h->texel_count < h[-1].texel_count);
@@ -40,7 +40,7 @@ static const uint32_t few[FIXTURE_MESHES] = { 4, 2, 5 };
 
 typedef void (*way_test)(fixture_morph *m);
 
-/* Of these views, in every way that is here. */
+/* Check accumulators of these meshes in every way that this context can. */
 static void in_every_way(const noh_mesh *views, const uint32_t *counts, uint32_t count, way_test test)
 {
     int ran = 0;
@@ -81,7 +81,7 @@ static void check_random_levels(fixture_morph *m)
     for (int round = 0; round < 8; round++) {
         for (uint32_t i = 0; i < m->plan.instance_count; i++) {
             const uint32_t what = test_random_below(&r, 4);
-            if (what == 1) { /* finer, with the same weights */
+            if (what == 1) { /* a finer level, the same weights */
                 fixture_set_level(m, i, test_random_below(&r, m->levels[i] + 1u));
             }
             if (what == 2) {
@@ -102,7 +102,7 @@ static void every_way_equals_the_cpu_at_every_level(void **state)
     in_every_way(meshes, few, FIXTURE_MESHES, check_random_levels);
 }
 
-/* A level's texels, of three layers, in another's. */
+/* A level's texels in all three layers have the bits of another level's. */
 static void expect_prefix(const float *coarse, const noh_mesh_header *c, const float *fine, const noh_mesh_header *f)
 {
     for (size_t layer = 0; layer < 3; layer++) {
@@ -118,7 +118,7 @@ static void check_prefixes(fixture_morph *m)
     test_random r = { 82 };
     float weights[NOH_TARGETS_MAX], *fine;
     test_random_weights(&r, weights, meshes[2].header->target_count);
-    weights[0] = 0.0f; /* the coarsest level does without it */
+    weights[0] = 0.0f; /* the coarsest level leaves it out */
     for (uint32_t k = 0; k < LEVELS; k++) {
         fixture_set_level(m, first + k, k);
         fixture_set(m, first + k, weights);
@@ -139,7 +139,7 @@ static void coarser_levels_hold_the_finer_one_s_bits(void **state)
     in_every_way(meshes, few, FIXTURE_MESHES, check_prefixes);
 }
 
-/* A target that the level has no rectangles of does not move it, though a finer one's lists name it. */
+/* A target without rectangles in a level does not move it, though the lists of a finer level name the target. */
 static void check_skipped(fixture_morph *m)
 {
     const uint32_t i = noh_gl_morph_instance(m->morph, 2, 0);
@@ -178,16 +178,16 @@ static void check_changes(fixture_morph *m)
     float weights[NOH_TARGETS_MAX];
     noh_gl_morph_stats stats;
     test_random_weights(&r, weights, meshes[2].header->target_count);
-    weights[0] = 0.0f; /* which the coarsest level does without */
+    weights[0] = 0.0f; /* left out by the coarsest level */
     fixture_set(m, i, weights);
     update(m);
-    fixture_set_level(m, i, 2); /* coarser: what is there will do */
+    fixture_set_level(m, i, 2); /* coarser: its texels are there already */
     stats = update(m);
     assert_int_equal(stats.instances, 0);
     fixture_expect_instance(m, i);
     fixture_set_random(m, i, &r);
     assert_int_equal(update(m).instances, 1);
-    fixture_set_level(m, i, 1); /* finer: once more */
+    fixture_set_level(m, i, 1); /* finer: accumulated again */
     stats = update(m);
     assert_int_equal(stats.instances, 1);
     fixture_expect_all(m);
@@ -241,7 +241,7 @@ static void levels_are_clamped(void **state)
     desc.path = NOH_MORPH_CPU;
     fixture_morph_open(&m, &desc, NULL);
     update(&m);
-    fixture_set_level(&m, 0, 0); /* finer than there is */
+    fixture_set_level(&m, 0, 0); /* finer than the desc has */
     assert_int_equal(update(&m).instances, 0);
     fixture_set_random(&m, 0, &r);
     update(&m);
@@ -254,7 +254,7 @@ static void levels_are_clamped(void **state)
     fixture_morph_close(&m);
 }
 
-/* ---- several levels of one mesh in a set ---- */
+/* ---- several levels of one mesh in a desc ---- */
 
 static void compare_with_level(const fixture_morph *m, uint32_t level, const noh_mesh *mesh)
 {
@@ -296,7 +296,7 @@ static void levels_of_a_mesh_share_their_tables(void **state)
     in_every_way(coarse, counts, 1, check_pools); /* the coarsest alone */
 }
 
-/* Beside other meshes, whose tables follow. */
+/* The same beside other meshes, whose tables lie behind. */
 static void pools_stand_beside_other_meshes(void **state)
 {
     const noh_mesh views[5] = { noh_mesh_at_lod(&meshes[0], 1), meshes[FIXTURE_BARE], noh_mesh_at_lod(&meshes[2], 2),
@@ -306,7 +306,7 @@ static void pools_stand_beside_other_meshes(void **state)
     in_every_way(views, counts, 5, check_random_levels);
 }
 
-/* Tiles of coarse levels are small: that is what they are for. */
+/* Coarse levels save memory, because their tiles are small. */
 static void pools_take_less_memory(void **state)
 {
     const noh_mesh views[2] = { meshes[2], noh_mesh_at_lod(&meshes[2], 2) };

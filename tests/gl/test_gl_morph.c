@@ -1,5 +1,5 @@
 /* Accumulation on the GPU: every path and format against the CPU reference, value for value;
- * what is not accumulated again; and what happens where capabilities are missing. */
+ * what is not accumulated again; and what happens when capabilities are missing. */
 #include "support/gl_fixture.h"
 
 #include <math.h>
@@ -35,7 +35,7 @@ static noh_gl_morph_desc desc_of(fixture_way way)
     return desc;
 }
 
-/* Open the way's accumulator, or tell that it is not here. */
+/* Open an accumulator in this way, or say that it cannot run here. */
 static int open_way(fixture_morph *m, noh_gl_morph_desc *desc, fixture_way way)
 {
     noh_gl_morph_plan plan;
@@ -113,7 +113,7 @@ static void check_weights_back_and_forth(fixture_morph *m)
     set_all_random(m, &r);
     update(m);
     first = fixture_reference(m, 0, &exact);
-    for (int round = 0; round < 20; round++) { /* sums are made anew, so nothing drifts */
+    for (int round = 0; round < 20; round++) { /* every sum begins at zero, so nothing drifts */
         float saved[7];
         memcpy(saved, m->weights[0], sizeof saved);
         fixture_set_random(m, 0, &r);
@@ -136,7 +136,7 @@ static void sums_do_not_drift(void **state)
 
 static void check_first_update(fixture_morph *m)
 {
-    noh_gl_morph_stats stats = update(m); /* a new texture holds anything: it has to be cleared */
+    noh_gl_morph_stats stats = update(m); /* a new texture may hold anything: it must be cleared */
     assert_int_equal(stats.instances, m->plan.instance_count);
     fixture_expect_all(m);
 }
@@ -147,7 +147,7 @@ static void instances_start_at_rest(void **state)
     for_every_way(check_first_update);
 }
 
-/* Vertices as the vertex shader fetches them. */
+/* The vertices after the fetch of the vertex shader. */
 static void check_fetched(fixture_morph *m)
 {
     gpu *g = fixture_gpu();
@@ -254,7 +254,7 @@ static void check_zero(fixture_morph *m)
     }
     stats = update(m);
     assert_int_equal(stats.targets, 0);
-    if (m->plan.path != NOH_MORPH_GATHER) { /* which writes zeros by drawing */
+    if (m->plan.path != NOH_MORPH_GATHER) { /* gather writes zeros by drawing */
         assert_int_equal(stats.draws + stats.rects + stats.texels + stats.pairs, 0);
     }
     fixture_expect_all(m);
@@ -295,7 +295,7 @@ static void everything_is_one_draw_per_pass(void **state)
     for_every_way(check_draws);
 }
 
-/* ---- sizes that need more than the small set ---- */
+/* ---- sizes beyond the small meshes ---- */
 
 /* More rectangles and pairs than are sent at once at load (gl_morph_internal.h). */
 static void large_meshes_are_sent_in_chunks(void **state)
@@ -339,7 +339,7 @@ static void set_all_active(fixture_morph *m, test_random *r)
     }
 }
 
-/* The weights that are kept are still those that were set: nothing ran over them. */
+/* The kept weights are still those that were set: nothing overwrote them. */
 static void expect_weights_kept(fixture_morph *m)
 {
     for (uint32_t i = 0; i < m->plan.instance_count; i++) {
@@ -348,7 +348,7 @@ static void expect_weights_kept(fixture_morph *m)
     assert_int_equal(update(m).instances, 0);
 }
 
-/* Every target of every instance at once: the most that an update can have to send. */
+/* Every target of every instance at once: the most that one update can send. */
 static void a_crowd_with_every_target_active_works(void **state)
 {
     const uint32_t crowd[FIXTURE_MESHES] = { 60, 1, 60 };
@@ -599,7 +599,7 @@ typedef struct falling {
     GLenum format;
 } falling;
 
-/* What AUTO takes on a GPU as capabilities vanish; each time the sums are right. */
+/* The choice of AUTO as capabilities are taken away, one after the other; the sums are right each time. */
 static void automatic_falls_to_the_next_path(void **state)
 {
     static const falling cases[] = {
@@ -642,8 +642,8 @@ static void automatic_falls_to_the_next_path(void **state)
     }
 }
 
-/* The policy `blend`: layered draws where supported, per-layer passes otherwise, whatever else could be done, on
- * software too; each time every sum is the CPU's, bit for bit. Where nothing blends it is refused, by name. */
+/* The policy `blend`: layered draws where supported, per-layer passes otherwise, whatever else could run, on software
+ * GL too; every sum has the bits of the CPU. Without blending it is refused, and the error says what is missing. */
 static void blending_is_layered_or_per_layer(void **state)
 {
     static const struct {
@@ -689,7 +689,7 @@ static void blending_is_layered_or_per_layer(void **state)
     }
 }
 
-/* The other way to gather: rectangles of one texel each, all active, cost more than lists. */
+/* AUTO takes gather also where it is cheaper: rectangles of one texel each, all active, cost more than lists. */
 static void automatic_weighs_blending_against_lists(void **state)
 {
     const fixture_way way = { NOH_MORPH_AUTO, NOH_ACCUMULATE_AUTO };
@@ -733,7 +733,8 @@ static void automatic_takes_the_cpu_on_a_software_rasteriser(void **state)
     }
 }
 
-/* Few active targets, float blending: mrt anywhere else. Without gather, blending after all. */
+/* With few active targets and float blending, AUTO would take mrt on any other GPU. Without gather it blends here too.
+ */
 static void automatic_spares_mali_the_blending(void **state)
 {
     const fixture_way way = { NOH_MORPH_AUTO, NOH_ACCUMULATE_AUTO };

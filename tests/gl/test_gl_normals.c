@@ -1,6 +1,6 @@
-/* Normals of nodes whose scales are unequal, against closed forms that are worked out here in doubles: what
- * noh_gl_normal_rows gives, what leaves the vertex shader for a mesh drawn alone and in a crowd, and the colour of
- * pixels in the middle of triangles, where the interpolated normal is not unit. */
+/* Normals of nodes with unequal scales, against closed forms in double precision: the result of noh_gl_normal_rows,
+ * what leaves the vertex shader for a mesh drawn alone and in a crowd, and the colour of pixels in the middle of
+ * triangles, where the interpolated normal is not unit. */
 #include "support/gl_fixture.h"
 
 #include "base/quat.h"
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SIDE 5u /* pixels of a picture, the middle one counts */
+#define SIDE 5u /* pixels across a picture, of which only the middle one counts */
 
 /* ---- closed forms ---- */
 
@@ -31,7 +31,7 @@ static void unit(double v[3])
     for (int c = 0; c < 3; c++) v[c] /= length;
 }
 
-/* The inverse transpose by Gauss and Jordan: no cofactors, so that nothing is shared with what is tested. */
+/* The inverse transpose by Gauss-Jordan elimination: without cofactors, to share nothing with the code under test. */
 static void inverse_transpose(const float world[12], double out[3][3])
 {
     double m[3][6];
@@ -59,7 +59,7 @@ static void inverse_transpose(const float world[12], double out[3][3])
     }
 }
 
-/* A rotation about an axis, then unequal scales, then another rotation: not even the angles stay right. */
+/* A rotation about an axis, then unequal scales, then another rotation: right angles do not stay right. */
 static void random_world(test_random *r, int mirror, float world[12])
 {
     float q[2][4], scale[3];
@@ -91,7 +91,7 @@ static void normal_rows_are_the_inverse_transpose(void **state)
         inverse_transpose(world, expected);
         determinant = noh_gl_normal_rows(world, rows);
         assert_true(i % 2 ? determinant < 0.0f : determinant > 0.0f);
-        for (int k = 0; k < 3; k++) { /* a positive factor away: |determinant| */
+        for (int k = 0; k < 3; k++) { /* equal up to a positive factor, |determinant| */
             for (int c = 0; c < 3; c++) {
                 assert_true(fabs((double)rows[4 * k + c] - expected[k][c] * fabs((double)determinant)) < 2e-5);
             }
@@ -166,7 +166,7 @@ static void close_stage(stage *st)
     fixture_expect_no_errors();
 }
 
-/* The corners of a triangle in the world: positions, and normals as the inverse transpose gives them, not unit. */
+/* The corners of a triangle in the world: positions, and normals by the inverse transpose, not unit. */
 typedef struct corner {
     double position[3], normal[3];
 } corner;
@@ -191,8 +191,8 @@ static void corners_of(const stage *st, const float world[12], uint32_t triangle
     }
 }
 
-/* A camera that looks along the triangle's own normal at the point of it with these shares of the corners; at that
- * point the interpolated values are the sums by these shares, because the projection is parallel. */
+/* A camera that looks along the triangle's own normal at the point with these barycentric coordinates. The projection
+ * is parallel, so at that point the interpolated values are the sums weighted by them. */
 static const double shares[3] = { 0.5, 0.3, 0.2 };
 
 static noh_gl_camera camera_at(const corner t[3], double point[3])
@@ -225,7 +225,7 @@ static noh_gl_camera camera_at(const corner t[3], double point[3])
     return camera;
 }
 
-/* The normal there: summed by the shares, then made unit. */
+/* The normal there: the weighted sum, made unit. */
 static void normal_at(const corner t[3], double n[3])
 {
     for (int c = 0; c < 3; c++)
@@ -302,7 +302,7 @@ static void normals_of_nodes_with_unequal_scales(void **state)
         uint8_t rgb[3];
         random_world(&r, mirror, world);
         corners_of(&st, world, test_random_below(&r, triangle_count(&st)), t);
-        if (mirror) { /* seen from the side that is the front, now that the corners turn the other way */
+        if (mirror) { /* seen from its front, which is on the other side now */
             const corner swap = t[1];
             t[1] = t[2];
             t[2] = swap;

@@ -1,7 +1,7 @@
 /* A driver that refuses one call of a create: for every create of the library and every GL function, the first call of
- * it fails, then the second, until a create passes without the refusal. None may say NOH_OK before, nothing is left
- * behind in GL or in the ledger, and a second attempt with the same memory succeeds. On the null platform, which keeps
- * count of what lives. */
+ * that function fails, then the second, until a create passes without a refusal. Until then none may return NOH_OK,
+ * nothing is left behind in GL or in the ledger, and a second attempt in the same memory succeeds. Runs on the null
+ * platform, which counts the objects that exist. */
 #include "support/support.h"
 
 #include "gpu/gpu.h"
@@ -18,12 +18,12 @@ typedef struct maker {
     gpu g;
     noh_pack pack;
     noh_mesh meshes[2];
-    /* skins, made of headers only: the palettes alone matter */
+    /* skins of headers only: nothing but palettes is read */
     noh_mesh_header headers[2];
     noh_palette palette;
     uint16_t joints[2];
     noh_mesh skinned[2];
-    /* what the case wants */
+    /* what the case makes */
     noh_morph_path path;
     noh_accumulate accumulate;
     noh_palette_mode mode;
@@ -44,7 +44,7 @@ typedef struct create_case {
     const char *name;
     noh_result (*make)(maker *m, noh_error *error);
     void (*unmake)(maker *m);
-    noh_result (*restore)(maker *m, noh_error *error); /* after a lost context; NULL: it has none */
+    noh_result (*restore)(maker *m, noh_error *error); /* after a lost context; NULL: the case has none */
     noh_morph_path path;
     noh_accumulate accumulate;
     noh_palette_mode mode;
@@ -294,7 +294,7 @@ static uint32_t refuse_each(const create_case *c, maker *m, const char *function
     }
 }
 
-/* ---- the same when a lost context comes back ---- */
+/* ---- the same after a lost context ---- */
 
 static void lose(maker *m)
 {
@@ -339,7 +339,7 @@ static const char *const functions[] = {
     "glObjectLabel", "glPushDebugGroup", "glPopDebugGroup"
 };
 
-/* The call that asks for errors raises none, and nothing is deleted or read before an object is complete. */
+/* glGetError raises no error, and creates do not delete or read before an object is complete. */
 static int may_be_refused(const char *function)
 {
     return strcmp(function, "glGetError") != 0;
@@ -423,7 +423,7 @@ static void a_refused_timer_is_not_available(void **state)
         gl.TimeGenQueries = gen_queries;
         gl.TimeDeleteQueries = delete_queries;
         caps.timer_query = 1;
-        timer_error = GL_INVALID_ENUM; /* what was pending before is not the timer's */
+        timer_error = GL_INVALID_ENUM; /* an error from before is not the timer's */
         noh_gl_timer_init(&timer, &gl, &caps);
         assert_int_equal(timer.available, !timer_refuses);
         assert_int_equal(timer_live, timer_refuses ? 0 : (int)NOH_GL_TIMER_FLIGHT);

@@ -1,5 +1,5 @@
-/* Skinning on the GPU: every vertex against the CPU reference; a uniform block, a texture and a crowd give the same
- * bits; split meshes give the same picture; what is sent, and what is refused. */
+/* Skinning on the GPU: every vertex against the CPU reference; the same bits by a uniform block, a texture and a crowd;
+ * the same picture of split meshes; what is sent, and what is refused. */
 #include "support/gl_skin_fixture.h"
 
 #include <math.h>
@@ -21,7 +21,7 @@ static fixture_skin_desc desc_of(const char *asset, noh_palette_mode mode)
 
 /* ---- equal to the CPU ---- */
 
-/* The largest share of the box that a position is off. */
+/* The largest error of a position, as a share of the box. */
 static double expect_equals_cpu(const fixture_skin *f, const char *what)
 {
     double most = 0.0;
@@ -232,8 +232,8 @@ static void a_crowd_stands_where_it_was_placed(void **state)
     fixture_skin_close(&f);
 }
 
-/* Instances that are scaled by another factor along each axis: their normals stand on the scaled surface, which those
- * moved by the matrix itself do not. */
+/* Instances scaled by another factor along each axis: their normals are perpendicular to the scaled surface, which
+ * those transformed by the matrix itself would not be. */
 static void a_crowd_s_normals_go_by_the_inverse_transpose(void **state)
 {
     fixture_skin_desc desc = desc_of("khronos/Fox.glb", NOH_PALETTE_TEXTURE);
@@ -282,7 +282,7 @@ static void a_crowd_s_normals_go_by_the_inverse_transpose(void **state)
 
 /* ---- fewer influences ---- */
 
-/* The strongest `drawn` of a vertex, their weights made to sum to 1, in double precision; without morphs. */
+/* A vertex moved by its `drawn` strongest joints, weights scaled to a sum of 1, in double precision; without morphs. */
 static void fewer(const noh_mesh *mesh, const float *matrices, uint32_t vertex, uint32_t drawn, double position[3])
 {
     uint32_t joints[NOH_INFLUENCES_MAX];
@@ -732,7 +732,7 @@ static void expect_sent(unsigned calls, uint64_t first, uint64_t bytes)
     sent.calls = 0;
 }
 
-/* What is set last may lie first: both are sent. */
+/* The later of two settings may lie in front of the earlier one: the span covers both. */
 static void changes_in_any_order_are_sent(void **state)
 {
     static const noh_palette_mode modes[2] = { NOH_PALETTE_UNIFORM, NOH_PALETTE_TEXTURE };
@@ -862,8 +862,9 @@ static void renderers_make_what_they_were_told_of(void **state)
     desc.fewer_influences = 1;
     assert_int_equal(
         noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, log, sizeof log }, &desc, &r, &error), NOH_OK);
-    assert_int_equal(r.variant_count,
-                     14); /* rigid, and 4, 2, 1 by matrices and by dual quaternions; alone and in crowds */
+    assert_int_equal(
+        r.variant_count,
+        14); /* the bind pose, and 4, 2, 1 joints by matrices and by dual quaternions; alone and in crowds */
     assert_int_equal(ledger.programs, 14);
     assert_true(noh_gl_ledger_bytes(&ledger) == NOH_GL_RENDERER_BYTES);
     skin.influences = 3;
@@ -876,7 +877,8 @@ static void renderers_make_what_they_were_told_of(void **state)
     fixture_expect_no_errors();
 }
 
-/* A block that a program has must be bound in WebGL, whether it is read or not; encoding is a define of its own. */
+/* WebGL wants a program's uniform block bound even if nothing reads it, so a program without joints has none; and
+ * encoding is a define of its own. */
 static void rigid_variants_have_no_palettes(void **state)
 {
     gpu *g = fixture_gpu();

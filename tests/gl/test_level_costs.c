@@ -1,5 +1,5 @@
-/* What a LOD level of the mask takes: its vertices alone are transformed, its texels alone accumulated, and both
- * fall as the level does. */
+/* What an LOD level of the mask costs: only its own vertices are transformed and only its own texels accumulated, and
+ * both get fewer with each level. */
 #include "support/gl_fixture.h"
 #include "file/pack_file.h"
 
@@ -25,7 +25,7 @@ static int tear_down(void **state)
     return fixture_tear_down(state);
 }
 
-/* Opens it at the first test that wants it. */
+/* Opened by the first test that needs it. */
 static void open_mask(void)
 {
     static char path[1024];
@@ -65,7 +65,7 @@ static void a_level_draws_all_its_vertices_and_no_other(void **state)
     }
 }
 
-/* All targets active, anew at each level, finest first and coarsest first. */
+/* All targets active, accumulated again at each level, from the finest down and from the coarsest up. */
 static noh_gl_morph_stats accumulate(uint32_t level, float weight)
 {
     noh_gl_morph_stats stats;

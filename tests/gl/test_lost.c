@@ -1,6 +1,6 @@
-/* A lost context: destroyed for good, a new one made, everything made again out of the pack by
- * load_restore. The picture is the same, the ledger stands as before to the byte, and what else
- * lives in the new context under the old names is left alone. */
+/* A lost context: it is destroyed, a new one is made, and load_restore makes everything again from
+ * the pack. The picture is the same, the ledger is as before to the byte, and other objects that have
+ * the old names in the new context are left alone. */
 #include "support/gl_fixture.h"
 #include "support/level_fixture.h"
 
@@ -22,7 +22,7 @@ typedef struct stage {
     uint8_t *bytes;
     scene s;
     load l;
-    fixture_levels levels; /* bytes NULL: it has none */
+    fixture_levels levels; /* bytes NULL: without LOD levels */
 } stage;
 
 static void open_stage_of(stage *st, const char *driver, fixture_way way, int uint_layers, uint32_t level_count)
@@ -112,7 +112,7 @@ static uint32_t colours_in(const uint8_t *rgba)
     return different;
 }
 
-/* Destroy the context, make another and fill the same table. */
+/* Destroy the context, make another, and fill the same table. */
 static void lose(stage *st)
 {
     char message[1024];
@@ -121,7 +121,7 @@ static void lose(stage *st)
     assert_int_equal(noh_gl_api_load(&st->g.gl, st->g.platform->get_proc, st->g.context, NULL), NOH_OK);
 }
 
-/* Somebody else's buffers, in the new context, with contents that tell them apart. */
+/* Buffers that are not noh's, in the new context, each with a content of its own. */
 static void make_strangers(const noh_gl_api *gl, GLuint names[STRANGERS])
 {
     gl->GenBuffers(STRANGERS, names);
@@ -207,7 +207,7 @@ static void levels_come_back(void **state)
     }
 }
 
-/* The same under the platform that knows which names live: nothing of the old context is touched. */
+/* The same on the null platform, which knows which names exist: nothing of the old context is touched. */
 static void nothing_old_is_called(void **state)
 {
     noh_null_report before, after;
@@ -227,7 +227,7 @@ static void nothing_old_is_called(void **state)
     close_stage(&st);
 }
 
-/* A context that cannot take the accumulator back: the object holds nothing and can be tried again. */
+/* In a context that refuses the accumulator, the object has no GL objects and may be restored again. */
 static PFNGLTEXSTORAGE3DPROC real_storage;
 
 static void GL_APIENTRY no_storage(GLenum target, GLsizei levels, GLenum format, GLsizei width, GLsizei height,

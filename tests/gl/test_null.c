@@ -1,6 +1,6 @@
 /* The library on a GL that does nothing and checks every call (platform/null.h): whole loads,
- * frames and deletions without a violation, every object labelled and given back, every pass in
- * a debug group, and frames that make no object. And the checks themselves: each finds its lie. */
+ * frames and deletions without a violation, every object labelled and deleted, every pass in a
+ * debug group, no object made in a frame. And the checks themselves: each finds its own error. */
 #include "support/level_fixture.h"
 
 #include "draw/load.h"
@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What a good phone has: the null platform draws nothing, so the probe would find nothing. */
+/* The capabilities of a good phone: the null platform draws nothing, so a probe would find none. */
 static void all_abilities(noh_gl_caps *caps)
 {
     caps->mrt3 = caps->layered = 1;
@@ -90,7 +90,7 @@ static void frame(load *l, scene *s, uint32_t number, int which)
     load_draw(l, &camera);
 }
 
-/* All weights new, some, none: 8 frames, each without an allocation and within its groups. */
+/* 8 frames in which all weights are new, some, or none: no object is made, and every call is in a group. */
 static void steady_frames(gpu *g, load *l, scene *s, const char *name)
 {
     uint64_t most = 0, still = 0;
@@ -175,7 +175,7 @@ static void every_path_keeps_the_order(void **state)
 
 /* ---- LOD levels ---- */
 
-/* Instances at levels that go round, drawn in two fading parts. */
+/* Instances at changing levels, drawn in two fading parts. */
 static void draw_levels(load *l, const scene *s, const noh_gl_renderer *r, uint32_t number)
 {
     noh_gl_camera camera;
@@ -193,7 +193,7 @@ static void draw_levels(load *l, const scene *s, const noh_gl_renderer *r, uint3
     noh_gl_draw_end(r);
 }
 
-/* No index past its buffer, no object in a frame, nothing outside the groups. */
+/* No index past its buffer, no object made in a frame, no call outside the groups. */
 static void load_and_draw_levels(const pack_file *file, noh_morph_path path)
 {
     noh_gl_renderer_desc desc;

@@ -1,5 +1,5 @@
-/* test_rows_draw.c: errors of the source documents that show only where something is drawn. Each test draws, and
- * fails when the source's error is put into the library or its shaders (tests/README.md lists them). */
+/* Errors of the source documents that show only when something is drawn. Each test draws, and fails if the source's
+ * error is put into the library or its shaders (tests/README.md lists them). */
 #include "support/gl_fixture.h"
 
 #include "base/math_internal.h"
@@ -57,7 +57,7 @@ static void close_stage(stage *st)
     fixture_expect_no_errors();
 }
 
-/* The mean of green where something was drawn over the background. */
+/* The mean of green in the pixels that were drawn over the background. */
 static double brightness(stage *st, int reset_light)
 {
     const noh_gl_api *gl = &st->g->gl;
@@ -86,7 +86,7 @@ static double brightness(stage *st, int reset_light)
     return sum / drawn;
 }
 
-/* The light is set, then all constants are set to their defaults: the light is gone. Ours is set once a frame, last. */
+/* The source sets the light, and then resets all constants, the light among them. Here it is set once a frame, last. */
 static void defaults_come_first(void **state)
 {
     stage st;
@@ -100,9 +100,9 @@ static void defaults_come_first(void **state)
     close_stage(&st);
 }
 
-/* A light of the world wants normals of the world: by the inverse transpose, made unit again in every pixel, and what
- * faces away from the light takes none. The source has the light in the world and the normal in the object, mixed and
- * not made unit, and a product that may be negative. Every pixel of a row is held against the closed form. */
+/* A light in world space needs normals in world space: by the inverse transpose, made unit again in every pixel, and
+ * dark where they face away. The source has the light in world space and a normal in object space that is not unit, and
+ * a product that may be negative. Every pixel of a row is compared with the closed form. */
 static void light_and_normal_in_one_space(void **state)
 {
     const lit_quad q = lit_quad_of();
@@ -136,8 +136,8 @@ static void light_and_normal_in_one_space(void **state)
 
 /* ---- streams ---- */
 
-/* Two meshes whose records differ in length, both on the GPU at once: each is fetched by its own stride. The source
- * binds the first mesh with the second one's, and a later bind hides it. */
+/* Two meshes with vertices of different sizes, both on the GPU at once: each is fetched with its own stride. The source
+ * binds the first mesh with the stride of the second, which a later bind hides. */
 static void each_mesh_has_its_own_stride(void **state)
 {
     const test_model_desc lean = { 1, 7, 0, 0, 3 }, rich = { 1, 7, 0, TEST_UVS | TEST_COLORS | TEST_TANGENTS, 3 };
@@ -155,7 +155,7 @@ static void each_mesh_has_its_own_stride(void **state)
     for (int i = 0; i < 2; i++) {
         assert_int_equal(noh_gl_mesh_create(&g->gl, &ledger, &meshes[i], &uploaded[i], NULL), NOH_OK);
     }
-    for (int i = 0; i < 4; i++) { /* in turns: what one left bound must not reach the other */
+    for (int i = 0; i < 4; i++) { /* by turns: what one left bound must not affect the other */
         const noh_mesh *mesh = &meshes[i % 2];
         const uint32_t count = mesh->header->vertex_count;
         float *got = test_zeros(9u * sizeof *got * count);
@@ -179,8 +179,8 @@ static void each_mesh_has_its_own_stride(void **state)
     fixture_expect_no_errors();
 }
 
-/* A program that failed without a message passes where only messages are looked at. Here the result tells which stage
- * failed, with no log to read, and so it does where the stages compile and do not fit each other. */
+/* In the source, only messages are looked at, so a program that fails without one passes. Here the result tells which
+ * stage failed, without a log too, also if the stages compile and do not fit each other. */
 static void a_failed_shader_is_an_error_without_a_message(void **state)
 {
     static const char *const bad[] = { "void main() { this is no shader }\n" };
@@ -207,8 +207,8 @@ static void a_failed_shader_is_an_error_without_a_message(void **state)
     }
 }
 
-/* How many matrices blend is state that somebody else may have left; ours goes with each draw: what was drawn with one
- * joint a vertex leaves the next draw with all of its own. */
+/* In the source, the number of matrices that blend is state that an earlier draw may have left. Here it is part of each
+ * draw: after one with one joint per vertex, the next has all of its own. */
 static void influences_go_with_the_draw(void **state)
 {
     noh_gl_skin_binding binding;

@@ -1,6 +1,6 @@
 #!/bin/sh
 # `noh verify`: every path and format against the CPU, on every model, and with capabilities
-# taken away: it has to find no differing value where it can run at all. Drivers: matrix.sh.
+# taken away: whatever can run must not differ in any value. For drivers see matrix.sh.
 . tests/cli/lib.sh
 
 # Runs under `env VARIABLE=VALUE... noh verify PACK`; tells the result.

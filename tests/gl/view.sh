@@ -1,6 +1,6 @@
 #!/bin/sh
 # `noh view` on a virtual display, driven with real key, mouse and drop events. Every run fails on any GL error
-# that KHR_debug tells. F11 saves the figure without the panels: that is what is compared.
+# that KHR_debug reports. F11 saves the figure without the panels; those pictures are compared.
 . tests/cli/lib.sh
 mask=$build/mask.noh
 case $mask in /*) ;; *) mask=$PWD/$mask ;; esac
@@ -30,7 +30,7 @@ for program in Xvfb xdotool; do
         finish
     fi
 done
-# -noreset: between two programs it would begin anew, and refuse whoever comes just then.
+# -noreset: else it resets between two programs, and refuses one that connects meanwhile.
 Xvfb -noreset -displayfd 3 -screen 0 1800x1000x24 3>"$work/display" >"$work/xvfb" 2>&1 &
 xvfb=$!
 trap 'kill $xvfb 2>/dev/null; rm -rf "$work"' EXIT

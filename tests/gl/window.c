@@ -1,6 +1,6 @@
-/* window DRIVER: a window of the driver glfw, or of egl in a window that was made with Xlib, is
- * cleared, read, shown and asked for its size. Run under a display by glfw.sh.
- * Exit code 0, 1 (said why) or 77 (what it needs is not here). */
+/* window DRIVER: a window of the driver glfw, or of egl in a window of Xlib's, is cleared, read,
+ * shown and asked for its size. glfw.sh runs it under a display.
+ * Exit code 0, 1 (and the reason) or 77 (what it needs is missing). */
 #include "platforms.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
-// browser.js: what the tests of the page share: a server of one or more folders, and Chromium on SwiftShader.
-// Uses playwright-core, found through NODE_PATH.
+// browser.js: shared by the tests of the page: a server of one or more folders, and Chromium on SwiftShader.
+// Needs playwright-core, found through NODE_PATH.
 'use strict';
 const fs = require('fs');
 const http = require('http');
@@ -7,7 +7,7 @@ const path = require('path');
 
 const types = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm' };
 
-// Serve the files of { '/prefix/': folder }; resolves to the server and the address that it has.
+// Serve the files of { '/prefix/': folder }; resolves to the server and its address.
 function serve(folders) {
     const server = http.createServer((request, answer) => {
         const name = new URL(request.url, 'http://localhost').pathname;
@@ -30,7 +30,7 @@ function launch(executablePath) {
     });
 }
 
-// Save a canvas as it is.
+// Save a canvas as PNG.
 async function save(page, selector, file) {
     const url = await page.evaluate((s) => document.querySelector(s).toDataURL('image/png'), selector);
     fs.writeFileSync(file, Buffer.from(url.split(',')[1], 'base64'));

@@ -1,6 +1,6 @@
 // compare.js NOH_FOLDER ASSET THREE_FOLDER CHROMIUM OUT: what a frame costs with noh and with three.js in one browser, in one
-// run: the asset with all its targets active and with none, 512 x 512, the same fragment shader on both sides. Prints
-// medians and ratios, and saves both pictures in OUT. Frames are waited for one by one.
+// run: the asset with all its targets active and with none, at 512 x 512, with the same fragment shader on both sides.
+// Waits for each frame. Prints medians and ratios, and saves both pictures in OUT.
 'use strict';
 const fs = require('fs');
 const path = require('path');

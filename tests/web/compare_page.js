@@ -1,6 +1,6 @@
-// compare_page.js: one asset drawn by noh and by three.js, in one page, at one size, by one camera. Both shade with noh's
-// fragment shader (shaders_es/mesh.frag), so that what differs is how targets are added up and what a frame costs around it.
-// ?path=gather forces noh's path. compare.js calls what window.compare holds.
+// compare_page.js: one asset drawn by noh and by three.js, in one page, at one size, with one camera. Both shade with
+// noh's fragment shader (shaders_es/mesh.frag), so they differ only in how targets are summed and in the cost of a frame
+// around it. ?path=gather forces noh's path. compare.js calls the functions of window.compare.
 import * as THREE from 'three';
 import { GLTFLoader } from 'three/loaders/GLTFLoader.js';
 
@@ -9,10 +9,10 @@ const paths = ['auto', 'layered', 'mrt', 'per-layer', 'gather', 'cpu', 'blend'];
 const text = (pointer) => M.UTF8ToString(pointer);
 const check = (result) => { if (result) throw new Error(text(M._web_error())); };
 
-// Every target active, and other weights in every frame.
+// Every target is active, with other weights in every frame.
 const weight = (target, frame) => 0.25 + 0.15 * Math.sin(0.7 * target + 0.3 * frame);
 
-// Wait until a frame is drawn, in the same way on both sides.
+// Wait until a frame is drawn; the same for both sides.
 const pixel = new Uint8Array(4);
 const wait = (gl) => gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
 
@@ -41,7 +41,7 @@ async function openNoh() {
     };
 }
 
-// ---- the camera: as the page has it ----
+// ---- the camera: that of the page ----
 
 function placeCamera(bounds) {
     const low = new THREE.Vector3(...bounds.slice(0, 3)), high = new THREE.Vector3(...bounds.slice(3));
@@ -172,13 +172,13 @@ async function start() {
     window.compare = {
         about: { targets: noh.count, path: noh.path, renderer: noh.renderer, three: THREE.REVISION },
         draw(frame, morphed) { for (const side of Object.values(sides)) side.draw(morphed, frame); },
-        // One round of all four, in an order that is turned about from round to round.
+        // One round of all four, in an order that rotates from round to round.
         round(number, frames) {
             const all = Object.keys(sides).flatMap((name) => [false, true].map((morphed) => ({ name, morphed })));
             const out = {};
             for (let i = 0; i < 4; i++) {
                 const { name, morphed } = all[(i + number) % 4];
-                sample(sides[name], morphed, 1000 * number, 2); // its turn again: not counted
+                sample(sides[name], morphed, 1000 * number, 2); // warms up: not counted
                 out[`${name} ${morphed ? 'morphed' : 'rest'}`] = sample(sides[name], morphed, 1000 * number, frames);
             }
             return out;

@@ -1,5 +1,6 @@
-# find_browser.sh, to be sourced: find_browser FOLDER PACKAGE... sets $chromium, and NODE_PATH to where node finds the npm
-# packages: where they are, or FOLDER, into which they are fetched. Calls leave_out with the reason where it cannot.
+# find_browser.sh, to be sourced. find_browser FOLDER PACKAGE... sets $chromium, and NODE_PATH so that node finds the npm
+# packages; those that are missing are installed into FOLDER. If something cannot be had, it calls leave_out with the
+# reason.
 find_browser() {
     command -v node >/dev/null 2>&1 || leave_out 'no node here'
     chromium=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || leave_out 'no chromium here'

@@ -1,6 +1,6 @@
 // page.js FOLDER CHROMIUM OUT CLIP TIME SIZE: the page in headless Chromium on SwiftShader. Loads it, moves sliders,
-// searches, plays clips, turns the figure, loses the context and gets it back; saves canvases as PNG in OUT, among
-// them CLIP at TIME by each path, SIZE across, and tells its checks as TAP.
+// searches, plays clips, turns the figure, loses the context and restores it. Saves canvases in OUT as PNG, among them
+// CLIP at TIME by each path, SIZE pixels across. Prints its checks as TAP.
 'use strict';
 const fs = require('fs');
 const path = require('path');
@@ -20,7 +20,7 @@ function check(name, right, more) {
 const keep = (page, name) => save(page, '#canvas', path.join(out, name));
 const same = (a, b) => fs.readFileSync(path.join(out, a)).equals(fs.readFileSync(path.join(out, b)));
 
-// Do it, and wait until the page has drawn what came of it.
+// Act, and wait until the page has drawn the result.
 async function drawn(page, act) {
     const frames = await page.evaluate(() => window.noh.frames);
     await act();
@@ -45,7 +45,7 @@ async function open(browser, options, search) {
 
 async function close(page, name) {
     check(`${name}: no GL error`, await page.evaluate(() => Module._web_check()) === 0);
-    check(`${name}: the browser has nothing to complain of`, page.problems.length === 0, page.problems.join(' | '));
+    check(`${name}: the browser reports no problem`, page.problems.length === 0, page.problems.join(' | '));
     await page.close();
 }
 
@@ -59,7 +59,7 @@ async function loseAndRestore(page) {
     await page.waitForFunction(() => window.noh.restored === 1);
 }
 
-// The clip at its time, framed as `noh render` frames it.
+// Show the clip at its time, framed as by `noh render`.
 async function scrub(page) {
     await drawn(page, () => page.selectOption('#clips', { label: clip }));
     await slide(page, '#time', time);
@@ -144,7 +144,7 @@ async function phone(browser) {
     await close(page, 'a phone');
 }
 
-// Which level is shown once no other fades in.
+// The level that is shown once fades are over.
 async function settledLevel(page) {
     await page.waitForFunction(() => !Module._web_fades());
     return page.evaluate(() => Module._web_level());
