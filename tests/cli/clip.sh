@@ -40,8 +40,8 @@ noh info "$work/walk.noh" --json
 check 'info counts the skeleton' grep -q '"joints": 2' "$work/out"
 check 'and its levels' sh -c 'tr -d " \n" <"$1" | grep -q "\"levels\":\[2,1\]"' - "$work/out"
 noh info "$work/walk.noh"
-check 'info tells the levels' grep -q '2 joints, at less detail 1$' "$work/out"
-check 'and what they cost' grep -q 'off at 30, 15, 8 Hz by .* with 1 joints by 1\.[0-9]* cm (3 cm from the joints)' "$work/out"
+check 'info tells the levels' grep -q '2 joints, at coarser levels 1$' "$work/out"
+check 'and what they cost' grep -q 'off by at most .* cm at 30, 15, 8 Hz; 1\.[0-9]* cm with 1 joint (3 cm from the joints)' "$work/out"
 noh build "$work/walk.bvh" -o "$work/shell.noh" --shell-cm 6 --quiet
 noh info "$work/shell.noh"
 check 'of another shell too' grep -q '(6 cm from the joints)' "$work/out"

@@ -77,6 +77,27 @@ for height in 0 1.63 40; do
         /^skin\// { n++; if ($6 > 2.1 * (h + 0.12) || $5 > $6) bad++ } END { exit !(n == 2 && !bad) }' "$work/out"
 done
 
+# ---- a driver that draws nothing ----
+
+# Budgets need no more than its limits; a picture or a comparison of nothing would be a false result.
+for path in '' "$build/mask.noh"; do
+    pack=${path:-$work/ball.noh}
+    noh verify "$pack" --driver null
+    expect 1 'verify with the null driver'
+    says 'this driver draws nothing that could be read back'
+    check 'and prints no result' test ! -s "$work/out"
+done
+noh render "$build/mask.noh" -o "$work/null.png" --driver null
+expect 1 'render with the null driver'
+check 'and writes no picture' test ! -e "$work/null.png"
+noh bench "$build/mask.noh" --driver null --quick --only morph
+expect 1 'bench with the null driver'
+noh verify "$build/mask.noh" --driver null --json
+expect 1 'verify --json with the null driver'
+check 'gives the error as JSON' grep -q '"subject": "null"' "$work/out"
+noh budget "$build/mask.noh" --driver null
+expect 0 'budget with the null driver'
+
 # ---- a failure ----
 
 # A thousandth of the bound is less than a float can hold at this distance.

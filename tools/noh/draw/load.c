@@ -126,7 +126,7 @@ int load_budget_make(load_budget *b, const pack_file *file, const scene *s, cons
     if (!counts || !b->parts) {
         status = tool_fail(file->path, "out of memory");
     } else if (s->item_count == 0 && s->anim->pack.clip_count) {
-        b->plan.reason = "clips alone: name them as --anim of the pack that they move for the whole sum";
+        b->plan.reason = "only clips: for the whole sum give this pack as --anim of the one that it moves";
         status = add_clip(b, file, s, o->instances);
     } else if (s->item_count == 0) {
         status = tool_fail(file->path, "the pack has neither meshes nor clips");

@@ -221,7 +221,7 @@ int sheet_lods_write(const sheet_lods *s)
     if (status) {
         return status;
     }
-    status = gpu_open(&g.gpu, s->driver);
+    status = gpu_open_drawing(&g.gpu, s->driver);
     if (!status) {
         status = draw_all(&g);
         gpu_close(&g.gpu);
