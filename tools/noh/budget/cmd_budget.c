@@ -1,5 +1,5 @@
-/* cmd_budget.c: bytes before a load. The same sums that the load will make; `noh verify`
- * holds one against the other. */
+/* cmd_budget.c: the bytes that a load will take, by the sums that the load itself makes; `noh verify` compares the two.
+ */
 #include <stdio.h>
 #include <string.h>
 
@@ -49,7 +49,7 @@ static void json_levels(json *j, const level_costs *c)
     json_close(j, ']');
 }
 
-/* What the bytes of "clips" follow from. */
+/* Decoded segments: they decide the bytes of "clips". */
 typedef struct segments {
     uint32_t held, all, instances;
 } segments;
@@ -103,8 +103,7 @@ static int json_budget(const load_budget *b, const level_costs *levels, const se
     return json_end(&j);
 }
 
-/* The capabilities of the driver that a load would meet, or of a nominal device: also for clips alone, which draw
- * nothing. */
+/* The capabilities of the driver, or of a nominal device: also for a pack of clips, which draws nothing. */
 static int find_caps(const budget_args *a, const scene *s, noh_gl_caps *caps)
 {
     gpu g;

@@ -23,7 +23,7 @@ typedef struct build_args {
     option_list dual_quaternion, two_streams, clip_errors, joint_errors;
 } build_args;
 
-/* NAME=CM. Whether something has that name is for the converter to say. */
+/* NAME=CM. The converter checks that something has the name. */
 static int check_errors(const char *name, const option_list *list)
 {
     for (int i = 0; i < list->count; i++) {

@@ -1,5 +1,5 @@
-/* options.h: rows that the tables of several verbs share. T: the type of the verb's arguments; m: the member that takes
- * the value; what follows are more members of struct option. */
+/* options.h: options that several verbs share, as rows of their tables. T: the type of the verb's arguments; m: the
+ * member for the value; further members of struct option may follow. */
 #ifndef NOH_NOH_CLI_OPTIONS_H
 #define NOH_NOH_CLI_OPTIONS_H
 

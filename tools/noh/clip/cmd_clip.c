@@ -16,7 +16,7 @@
 /* An open clip with a cache of its own. */
 typedef struct opened {
     noh_pack_clip packed;
-    noh_skeleton skeleton; /* joint_count 0: a clip of floats alone */
+    noh_skeleton skeleton; /* joint_count 0: the clip has floats only */
     void *memory, *cache_memory;
     noh_clip *clip;
     noh_clip_cache *cache;
@@ -224,7 +224,7 @@ static int dump_named(const pack_file *file, const char *name, const char *path)
     if (!status) {
         status = o.info.joint_count
                      ? dump_clip(file, &o, path)
-                     : tool_fail(file->path, "clip '%s' animates weights alone, and a .rcl file holds joints",
+                     : tool_fail(file->path, "clip '%s' animates floats only, and .rcl files hold joints",
                                  o.packed.name);
         close_clip(&o);
     }
@@ -270,7 +270,7 @@ typedef struct clip_args {
     int as_json;
 } clip_args;
 
-/* With --dump the list is printed as JSON alone, and only once the file is there. */
+/* With --dump the list is printed only as JSON, and only after the file is written. */
 static int run(void *args)
 {
     const clip_args *a = args;

@@ -6,7 +6,7 @@
 
 #include "cli/message.h"
 
-/* ---- what it will take ---- */
+/* ---- the budget ---- */
 
 static void add_part(load_budget *b, uint64_t cpu_bytes, uint64_t gpu_bytes, const char *kind, const char *name)
 {
@@ -51,7 +51,7 @@ static noh_gl_skin_desc skin_desc(const pack_file *file, const scene *s, const u
     return desc;
 }
 
-/* Bytes for the palette of one skin at a time; 0 where no drawn mesh is skinned. */
+/* Bytes of the palette of the largest skin; 0 if no drawn mesh is skinned. */
 static size_t matrix_bytes(const pack_file *file, const scene *s)
 {
     size_t most = 0;
@@ -82,7 +82,7 @@ static int add_skin(load_budget *b, const pack_file *file, const scene *s, const
     return 0;
 }
 
-/* Clips, controllers and poses: none in a pack without clips. */
+/* Clips, controllers and poses, if there are clips. */
 static int add_clip(load_budget *b, const pack_file *file, const scene *s, uint32_t instances)
 {
     uint64_t clips = 0, controllers = 0, poses = 0;

@@ -1,5 +1,5 @@
-/* cmd_dump.c: the deformed mesh, baked to a plain OBJ. By default the CPU reference,
- * which needs no GL at all; with --path what the GPU's vertex shader fetches. */
+/* cmd_dump.c: the deformed mesh as an OBJ file: by default the CPU reference, which needs no GL; with --path the
+ * vertices of the GPU's vertex shader. */
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -116,7 +116,7 @@ static int fetch_item(load *l, readback *r, uint32_t item, noh_vertex *vertices)
     return status;
 }
 
-/* l, r NULL: the CPU's vertices. */
+/* l and r NULL: the vertices of the CPU. */
 static int dump_items(byte_buffer *out, const pack_file *file, const scene *s, load *l, readback *r)
 {
     uint32_t first = 1;

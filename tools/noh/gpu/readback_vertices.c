@@ -1,5 +1,5 @@
-/* readback_vertices.c: every vertex as mesh.vert leaves it, through transform feedback: the shader that draws
- * is the shader that is read. */
+/* readback_vertices.c: every vertex as mesh.vert leaves it, through transform feedback, so that the shader that is
+ * tested is the shader that draws. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* help_bash.c: completion for bash: verbs, a verb's options, the words that an option takes, else files. */
+/* help_bash.c: completion for bash: verbs, their options, the words that options take, else files. */
 #include <stdio.h>
 #include <string.h>
 

@@ -109,7 +109,7 @@ static int print_clip(const pack_file *file, uint32_t index)
 
 #define VERSION_BYTES 24
 
-/* The version of the noh that wrote the pack; "?" before packs held one. */
+/* The version of the noh that wrote the pack; "?" if the pack has none. */
 static void write_version(const noh_pack *pack, char text[VERSION_BYTES])
 {
     const uint32_t v = pack->library_version;

@@ -121,7 +121,7 @@ static int draw_sheet(sheet *s)
     return status;
 }
 
-/* Empty tiles have the colour of the canvas's background. */
+/* Empty tiles have the canvas's background colour. */
 static int make_picture(sheet *s)
 {
     static const uint8_t background[4] = { CANVAS_BACKGROUND_SRGB, 255 };

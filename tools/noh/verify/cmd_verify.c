@@ -1,5 +1,5 @@
-/* cmd_verify.c: every path and format against the CPU reference, value for value, and
- * memory used against memory predicted. */
+/* cmd_verify.c: compares every path and format with the CPU reference, value for value, and memory used with memory
+ * predicted. */
 #include <math.h>
 
 #include "gpu/gpu_args.h"

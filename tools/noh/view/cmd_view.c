@@ -1,5 +1,5 @@
-/* cmd_view.c: a pack or a model in a window. What shows it is in view/, or in view_without.c where libraries are
- * missing. */
+/* cmd_view.c: a pack or a model in a window. view_window.c opens it, or view_without.c says that libraries are missing.
+ */
 #include <string.h>
 
 #include "view/view_window.h"
