@@ -1,6 +1,6 @@
 #!/bin/sh
-# noh verify of a skinned mesh that is small and far from the origin, as eyes are: its bound is that of floats of such
-# size, not of its own box. And what a failure says.
+# noh verify of a skinned mesh that is small and far from the origin, as eyes are: its bound follows from the distance,
+# not from its own box. What a failure says; a driver that draws nothing is refused.
 . "$(dirname "$0")/lib.sh"
 
 # 32-bit floats as octal escapes for printf, from decimal numbers, one a line.
