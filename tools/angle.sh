@@ -1,6 +1,6 @@
 #!/bin/sh
 # angle.sh FOLDER: puts ANGLE's libraries and SwiftShader into FOLDER, for the platform `angle`; installs nothing. They
-# come from Debian's chromium-common. Some of its versions have only empty libEGL.so and libGLESv2.so, so every version
+# are in Debian's chromium-common. Some of its versions have only empty libEGL.so and libGLESv2.so, so every version
 # that apt knows is tried, the oldest first. If none will do, FOLDER/missing.txt says why, and later calls do not try
 # again (remove FOLDER to retry). Never fails: tests that need ANGLE are then skipped.
 set -u

@@ -1,7 +1,7 @@
 #!/bin/sh
 # clip_ratio.sh BUILD CLIPS CSV: every raw clip of a folder, also at 30 Hz where its rate is above 60, built at
 # 0.01 cm with a 3 cm shell and at 0.1 cm with a 10 cm shell; our bytes, the reference's over ours, and the
-# geometric means. CSV names each clip and tells the reference's bytes in the columns acl_bind_bytes (the first
+# geometric means. CSV names each clip and has the reference's bytes in the columns acl_bind_bytes (the first
 # setting) and acl_loose_bytes (the second). Fails where a clip is larger than the reference's.
 set -eu
 

@@ -1,5 +1,5 @@
 #!/bin/sh
-# demo.sh BUILD: convert the mask, draw it by additive blending into three render targets, and say what it cost.
+# demo.sh BUILD: convert the mask, draw it by additive blending into three render targets, and print what it costs.
 set -eu
 build=$1
 noh=$build/noh

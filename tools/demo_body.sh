@@ -1,5 +1,5 @@
 #!/bin/sh
-# demo_body.sh BUILD: convert the puppet, make it move, and say what it cost; the same arm bent and twisted by each
+# demo_body.sh BUILD: convert the puppet, make it move, and print what it costs; the same arm bent and twisted by each
 # kind of skinning; and, where $NOH_ASSETS has it, hero/body.glb.
 set -eu
 build=$1

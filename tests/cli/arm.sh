@@ -1,6 +1,6 @@
 #!/bin/sh
-# demo_assets --arm: every kind of skinning on the same arm (Direct3D 9, "Geometry Blending") and two streams: what the pack says of it,
-# and where the vertices are when it bends and twists.
+# demo_assets --arm: every kind of skinning on the same arm (Direct3D 9, "Geometry Blending") and two streams: what the pack
+# says about it, and where the vertices are when it bends and twists.
 . "$(dirname "$0")/lib.sh"
 
 check 'the arm is made' "$build/demo_assets" --arm "$work/arm.glb"

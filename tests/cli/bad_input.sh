@@ -1,6 +1,6 @@
 #!/bin/sh
-# Files that are missing, cut, flipped or something else: exit code 1, what is wrong and where
-# in one line, and no output file, whole or half.
+# Files that are missing, cut, damaged or of another kind: exit code 1, one line that says what is wrong and where, and no
+# output file, not even a part of one.
 . "$(dirname "$0")/lib.sh"
 
 pack=$build/mask.noh

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Skeletons as pictures: render and sheet of a pack that has nothing but clip; two clips at once.
+# Skeletons as pictures: render and sheet of a pack of clips only; two clips at once.
 . "$(dirname "$0")/lib.sh"
 
 bvh() { # NAME SECOND-FRAME-OF-THE-KNEE

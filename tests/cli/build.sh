@@ -1,6 +1,6 @@
 #!/bin/sh
-# noh build: the same bytes every time, whatever form the same targets come in; the error that
-# was asked for; what info says about it.
+# noh build: the same bytes every time, in whatever form the same targets are stored; the requested error; what info says
+# about it.
 . "$(dirname "$0")/lib.sh"
 
 mask=$build/mask.glb
@@ -22,7 +22,7 @@ check 'nothing else is left beside it' sh -c 'test "$(ls "$1" | grep -c noh)" = 
 
 # ---- the error asked for ----
 
-# The largest position_error_um that info tells, rounded up.
+# The largest position_error_um that info prints, rounded up.
 worst() {
     noh info "$1" --json
     sed -n 's/.*"position_error_um": \([0-9.e+-]*\).*/\1/p' "$work/out" | awk '$1 > m { m = $1 } END { print m + 0 }'

@@ -1,5 +1,5 @@
 #!/bin/sh
-# noh build and noh clip on clip: .bvh, .rcl, glTF; what is wrong with a file is said with its line.
+# noh build and noh clip with .bvh, .rcl and glTF clips; errors in a file name the line.
 . "$(dirname "$0")/lib.sh"
 
 cat >"$work/walk.bvh" <<'BVH'
@@ -31,7 +31,7 @@ noh build "$work/walk.bvh" -o "$work/walk.noh" --quiet
 expect 0 'a .bvh becomes a pack'
 noh clip "$work/walk.noh"
 expect 0 'clip'
-check 'and tells the certified error' grep -q 'certified at a 3 cm shell' "$work/out"
+check 'and prints the certified error' grep -q 'certified at a 3 cm shell' "$work/out"
 noh clip "$work/walk.noh" --dump "$work/walk.rcl"
 expect 0 'the decoded frames as .rcl'
 noh build "$work/walk.rcl" -o "$work/again.noh" --quiet
@@ -40,8 +40,8 @@ noh info "$work/walk.noh" --json
 check 'info counts the skeleton' grep -q '"joints": 2' "$work/out"
 check 'and its levels' sh -c 'tr -d " \n" <"$1" | grep -q "\"levels\":\[2,1\]"' - "$work/out"
 noh info "$work/walk.noh"
-check 'info tells the levels' grep -q '2 joints, at less detail 1$' "$work/out"
-check 'and what they cost' grep -q 'off at 30, 15, 8 Hz by .* with 1 joints by 1\.[0-9]* cm (3 cm from the joints)' "$work/out"
+check 'info prints the levels' grep -q '2 joints, at coarser levels 1$' "$work/out"
+check 'and what they cost' grep -q 'off by at most .* cm at 30, 15, 8 Hz; 1\.[0-9]* cm with 1 joint (3 cm from the joints)' "$work/out"
 noh build "$work/walk.bvh" -o "$work/shell.noh" --shell-cm 6 --quiet
 noh info "$work/shell.noh"
 check 'of another shell too' grep -q '(6 cm from the joints)' "$work/out"
@@ -72,7 +72,7 @@ noh build "$work/walk.bvh" -o "$work/fine.noh" --joint-error knee=0.0005 --quiet
 expect 0 'a bound for one joint'
 check 'makes another pack' sh -c '! cmp -s "$1" "$2"' - "$work/fine.noh" "$work/walk.noh"
 noh build "$work/walk.bvh" -o "$work/x.noh" --clip-error run=1
-expect 1 'a bound for a clip that is not there'
+expect 1 'a bound for a missing clip'
 says "no clip is named 'run'"
 for option in '--joint-error knee=none' '--clip-error walk' '--clip-error walk=' '--clip-error walk=0' '--clip-error =1' '--joint-error knee=-1'; do
     # shellcheck disable=SC2086
@@ -157,7 +157,7 @@ expect 1 'an animation pack without clips'
 says 'no clips for'
 noh clip "$build/mask.noh" --clip speak --dump "$work/x.rcl"
 expect 1 'a clip of weights as .rcl'
-says 'weights alone'
+says 'animates floats only'
 
 # ---- memory ----
 

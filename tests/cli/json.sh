@@ -1,6 +1,5 @@
 #!/bin/sh
-# --json: it parses, and has the keys that other people's scripts rely on;
-# what budget predicts is what verify finds used.
+# --json: it parses, and has the keys that users' scripts rely on; what budget predicts is what verify finds used.
 . "$(dirname "$0")/lib.sh"
 
 pack=$build/mask.noh

@@ -1,5 +1,5 @@
 # lib.sh: what the test scripts share; each begins with `. "$(dirname "$0")/lib.sh"` or
-# `. tests/cli/lib.sh`, tells its results with these functions and ends with `finish`.
+# `. tests/cli/lib.sh`, reports its results with these functions and ends with `finish`.
 #
 #   noh ARGUMENTS        run the program: $code, $work/out, $work/err
 #   expect CODE NAME     the last run ended so, and gave no sanitizer report
@@ -68,7 +68,7 @@ check() {
     fi
 }
 
-# What can read JSON here: sets $json, a command that evaluates an expression on the object j
+# Sets $json to what can read JSON here, a command that evaluates an expression on the object j
 # read from stdin and succeeds when it is true. Empty where there is neither.
 json=
 if command -v node >/dev/null 2>&1; then

@@ -1,5 +1,5 @@
 #!/bin/sh
-# noh build --lod: LOD levels by number and by error, what is refused, and that such a pack holds.
+# noh build --lod: LOD levels by number and by error, refused values, and that such packs verify.
 . "$(dirname "$0")/lib.sh"
 
 arm=$build/demo/arm.glb
@@ -68,9 +68,9 @@ Frame Time: 0.05
 5 0 0
 BVH
 noh build "$work/clip.bvh" -o "$work/clip.noh" --quiet
-expect 0 'build of clip alone'
+expect 0 'build of a clip only'
 noh build "$work/clip.bvh" -o "$work/clip_lod.noh" --lod 4 --quiet
-expect 0 'build of clip alone with --lod 4'
+expect 0 'build of a clip only, with --lod 4'
 check 'gives the same bytes' cmp "$work/clip.noh" "$work/clip_lod.noh"
 
 # ---- a real face ----

@@ -1,6 +1,5 @@
 #!/bin/sh
-# render, sheet and dump: files of the right kind and size, that change with the weights and
-# not with the path.
+# render, sheet and dump: files of the right kind and size, which change with the weights and not with the path.
 . "$(dirname "$0")/lib.sh"
 
 pack=$build/mask.noh
@@ -23,7 +22,7 @@ noh render "$pack" -o "$work/smile.png" --size 96x64 --weight smile=1
 expect 0 'render with a weight'
 check 'another picture' sh -c '! cmp -s "$1" "$2"' - "$work/rest.png" "$work/smile.png"
 noh render "$pack" -o "$work/zero.png" --size 96x64 --weight smile=1 --weight smile=0
-check 'the last weight of a name holds' cmp "$work/rest.png" "$work/zero.png"
+check 'the last weight of a name counts' cmp "$work/rest.png" "$work/zero.png"
 
 # What the plain renderer can show instead: each another picture.
 for view in none position normal tangent lod; do

@@ -1,6 +1,5 @@
 #!/bin/sh
-# demo_assets --puppet: the same bytes every time, taken by the converter without a warning; and what
-# demo_assets says when it cannot do what it is asked to.
+# demo_assets --puppet: the same bytes every time, converted without a warning; and the errors of demo_assets.
 . "$(dirname "$0")/lib.sh"
 
 check 'the puppet is made' "$build/demo_assets" --puppet "$work/puppet.glb"
@@ -18,7 +17,7 @@ for arguments in '' '--puppet' '--arm' '--other x.glb' 'a.glb b.glb'; do
     # shellcheck disable=SC2086
     "$build/demo_assets" $arguments >"$work/out" 2>"$work/err"
     code=$?
-    expect 2 "demo_assets '$arguments' is a mistake of usage"
+    expect 2 "demo_assets '$arguments' is a usage error"
 done
 "$build/demo_assets" --puppet "$work/no/such/folder.glb" >"$work/out" 2>"$work/err"
 code=$?

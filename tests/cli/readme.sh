@@ -1,5 +1,5 @@
 #!/bin/sh
-# The program on the README's page compiles, links against the library alone, and runs. What it cannot show it says.
+# The README's program compiles, links against the library only, and runs. On a pack without what it needs it says so.
 . "$(dirname "$0")/lib.sh"
 flags=
 [ -z "${NOH_SAN:-}" ] || flags="-fsanitize=$NOH_SAN"

@@ -1,5 +1,5 @@
 #!/bin/sh
-# What the command line says to wrong arguments: exit code 2, one line on stderr, nothing on stdout.
+# Wrong arguments: exit code 2, one line on stderr, nothing on stdout.
 . "$(dirname "$0")/lib.sh"
 
 pack=$build/mask.noh

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The mask, the puppet and the arm are valid glTF: npm's gltf-validator has no error and no warning to tell.
+# The mask, the puppet and the arm are valid glTF: npm's gltf-validator finds no errors and no warnings.
 . "$(dirname "$0")/lib.sh"
 
 name='what demo_assets writes is valid glTF'

@@ -1,6 +1,6 @@
 #!/bin/sh
-# noh verify of a skinned mesh that is small and far from the origin, as eyes are: its bound is that of floats of such
-# size, not of its own box. And what a failure says.
+# noh verify of a skinned mesh that is small and far from the origin, as eyes are: its bound follows from the distance,
+# not from its own box. What a failure says; a driver that draws nothing is refused.
 . "$(dirname "$0")/lib.sh"
 
 # 32-bit floats as octal escapes for printf, from decimal numbers, one a line.
@@ -76,6 +76,27 @@ for height in 0 1.63 40; do
     check 'within a bound of at most 2e-6 of its distance' awk -v h=$height '
         /^skin\// { n++; if ($6 > 2.1 * (h + 0.12) || $5 > $6) bad++ } END { exit !(n == 2 && !bad) }' "$work/out"
 done
+
+# ---- a driver that draws nothing ----
+
+# Budgets need no more than its limits; a picture or a comparison of nothing would be a false result.
+for path in '' "$build/mask.noh"; do
+    pack=${path:-$work/ball.noh}
+    noh verify "$pack" --driver null
+    expect 1 'verify with the null driver'
+    says 'this driver draws nothing that could be read back'
+    check 'and prints no result' test ! -s "$work/out"
+done
+noh render "$build/mask.noh" -o "$work/null.png" --driver null
+expect 1 'render with the null driver'
+check 'and writes no picture' test ! -e "$work/null.png"
+noh bench "$build/mask.noh" --driver null --quick --only morph
+expect 1 'bench with the null driver'
+noh verify "$build/mask.noh" --driver null --json
+expect 1 'verify --json with the null driver'
+check 'gives the error as JSON' grep -q '"subject": "null"' "$work/out"
+noh budget "$build/mask.noh" --driver null
+expect 0 'budget with the null driver'
 
 # ---- a failure ----
 

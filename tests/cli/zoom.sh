@@ -1,7 +1,7 @@
 #!/bin/sh
 # A slow zoom shows nothing of the LOD levels: silhouettes, surfaces, pops, flicker (tools/noh/zoom/zoom.h has the bounds);
 # and what a level costs falls as its vertices do. NOH_ZOOM_FULL=1: 600 frames of every model, and silhouettes in each;
-# else in every so many, and where detail changes, and without the body. Sanitized programs zoom only for a moment.
+# else in some frames and where a level changes, and without the body. Sanitized programs zoom only for a moment.
 . "$(dirname "$0")/lib.sh"
 
 pack=$build/mask_levels.noh

@@ -21,7 +21,7 @@ static const char *result_name(const tool_error *e)
     return (size_t)e->result < sizeof names / sizeof names[0] ? names[e->result] : "failed";
 }
 
-/* Where a verb printed no JSON because it failed. */
+/* For a verb that failed before it printed its JSON. */
 static void print_error_json(const tool_error *e)
 {
     json j = json_begin();

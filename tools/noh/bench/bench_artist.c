@@ -7,7 +7,7 @@
 #include "convert/morph/morph_encode.h"
 #include "cli/message.h"
 
-/* 0 where the encoder's order, applied to the asset, gives the pack's vertices. */
+/* 0 if the encoder's order, applied to the asset, gives the pack's vertices. */
 static int differs(const model_mesh *from, const morph_encoding *e, const noh_mesh *mesh)
 {
     if (e->vertex_count != mesh->header->vertex_count || e->target_count != mesh->header->target_count) {

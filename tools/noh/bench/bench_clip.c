@@ -3,7 +3,7 @@
  *   warm     one instance, every segment decoded before
  *   alone    one instance at 60 Hz with a cache of its own, decoding included
  *   shared   a hundred instances at random phases of all clips, one cache that holds them; with
- *            the wants and ticks of a game's frame
+ *            the requests and frame begins of a game
  *   seek     random times, a cache of two segments: nearly every sample of a long clip decodes */
 #include <stdio.h>
 #include <stdlib.h>

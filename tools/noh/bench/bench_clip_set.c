@@ -1,4 +1,4 @@
-/* bench_clip_set.c: the clips that are benched, their raw keys, caches; the baseline raw-keys. */
+/* bench_clip_set.c: the clips that are measured, their raw keys and caches; the baseline raw-keys. */
 #include "bench_clip.h"
 #include "cli/message.h"
 
@@ -20,7 +20,7 @@ static int init_clip(bench_clip *c, const pack_file *file, uint32_t index)
     memset(c, 0, sizeof *c);
     noh_pack_clip_at(&file->pack, index, &clip, NULL);
     if (clip.header->joint_count == 0u) {
-        return 0; /* weights alone */
+        return 0; /* floats only */
     }
     if (noh_pack_bind_clip(&file->pack, &clip, &skeleton, NULL, &error)) {
         return tool_fail(file->path, "clip '%s': %s", clip.name, error.what);
@@ -159,7 +159,7 @@ int64_t bench_clip_time(const bench_clip *c, uint32_t frame, uint64_t phase)
     return (int64_t)(((uint64_t)frame * BENCH_FRAME_TICKS + phase) % (c->info.duration_ticks + 1u));
 }
 
-/* All that plain C offers: no aliases, one division, no branch. */
+/* As good as plain C gets: no aliases, one division, no branch. */
 static inline void blend_key(const noh_transform *restrict a, const noh_transform *restrict b, float fraction,
                              noh_transform *restrict out)
 {

@@ -31,7 +31,7 @@ typedef struct stand {
     int is_open;
 } stand;
 
-/* The last but one has no detail; the last is the same crowd, drawing invisible bodies too. */
+/* The last but one is without LOD; the last is the same crowd with invisible bodies drawn too. */
 static const float knobs[] = { 1.0f, 2.0f, 4.0f, 16.0f };
 #define KNOBS (sizeof knobs / sizeof knobs[0])
 #define PLAIN KNOBS
@@ -98,7 +98,7 @@ static int open_stand(fair *f, uint32_t i)
     }
     if (!status &&
         (s->crowd.used_bytes != s->plan.cpu_bytes || noh_gl_ledger_bytes(&s->crowd.ledger) != s->plan.gpu_bytes)) {
-        status = tool_fail("bench", "a crowd takes other bytes than were planned");
+        status = tool_fail("bench", "a crowd takes another number of bytes than planned");
     }
     return status;
 }

@@ -1,6 +1,6 @@
 /* bench_crowd_pose.c: rows crowd/pose: what 1,000 characters on the first skeleton of a pack cost the CPU, from
  * clocks to palettes, posed at the update rate that pixels need, and in every frame. None where a pack has no
- * opened_clips. */
+ * clips. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +15,7 @@
 #define FIELD_M 100.0f   /* radius of the disc over which they are spread evenly */
 #define VIEW_RAD 1.0472f /* 60 degrees */
 #define VIEW_LINES 720u
-#define FLESH_M 0.06f /* radius round bones, since there is no mesh to measure */
+#define FLESH_M 0.06f /* radius around bones, since there is no mesh to measure */
 
 typedef struct crowd {
     noh_skeleton skeleton;
@@ -177,7 +177,7 @@ static int measure_rates(crowd *c)
     return status;
 }
 
-/* Half of them blend two opened_clips. Phases and places from a low-discrepancy sequence. */
+/* Half of them blend two clips. Phases and places are from a low-discrepancy sequence. */
 static void populate(crowd *c, float unit_m)
 {
     for (uint32_t i = 0; i < CROWD; i++) {
@@ -282,7 +282,7 @@ static int check(crowd_work *w)
         noh_character_look(ch, &w->table, &w->settings, 1e9f);
         noh_character_update(ch, &c->set, &c->skeleton, NULL, &c->scratch);
         if (memcmp(noh_character_palette(ch, c->palette, c->skeleton.joint_count), c->expected, bytes) != 0) {
-            return tool_fail("bench", "crowd/pose poses something else than full-rate");
+            return tool_fail("bench", "crowd/pose gives other poses than full-rate");
         }
     }
     return 0;

@@ -11,7 +11,7 @@
  *   bench_crowd.c       rows crowd/100-heads, and cost over pairs
  *   bench_cpu.c         rows morph/cpu
  *   bench_clip*.c       rows clip/ (see bench_clip.h)
- *   bench_crowd_pose.c  rows crowd/pose: a thousand characters, posed as often as pixels want it
+ *   bench_crowd_pose.c  rows crowd/pose: a thousand characters, posed at the update rate that pixels need
  *   bench_crowd_frame.c rows crowd/cpu and crowd/gpu: frames of a thousand bodies, with and without LOD
  *   bench_skin_gpu.c    rows skin/gpu: a crowd in one draw, joints per vertex
  *   bench_skin_cpu.c    rows skin/cpu
@@ -32,7 +32,7 @@
 
 typedef struct bench_row {
     char name[64], baseline[32];
-    double ratio;     /* the baseline's cost over ours: above one, we are better */
+    double ratio;     /* the baseline's cost over ours: above 1, ours is cheaper */
     double value;     /* our cost */
     const char *unit; /* of value */
     uint32_t runs;

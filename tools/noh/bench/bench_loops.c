@@ -4,7 +4,7 @@
  *   dense-vertex-loop   three.js: one RGBA32F array texture, a layer for each target, position
  *                       and normal texels of every vertex side by side, weights in a uniform array;
  *                       the texel index is divided by the width inside the loop
- *   dense-hoisted       the same with that division done once for each vertex: kinder than three.js
+ *   dense-hoisted       the same with that division done once per vertex: faster than three.js
  *   filament-layout     Filament: RGBA32F positions, and the morphed frames as quaternions in
  *                       RGBA16I; rows of 2048 texels, weights in a uniform block
  *

@@ -1,5 +1,5 @@
 #version 300 es
-/* bench_quad.frag: one target's difference, weighted, added by the blender. */
+/* bench_quad.frag: one target's delta, weighted; blending adds it. */
 precision highp float;
 precision highp int;
 precision highp sampler2D;

@@ -3,7 +3,7 @@
  * that holds all its differences in three RGBA16F maps; a quad is drawn for each active
  * target, blended additively, and a geometry shader sends it to the three layers.
  *
- * Kinder than the sample in one respect: differences are summed and the base is added at
+ * Faster than the sample in one respect: differences are summed and the base is added at
  * fetch, so that the base pose need not be copied into the layers first. */
 #include <math.h>
 #include <stdio.h>

@@ -93,7 +93,7 @@ static void print_head(const bench_job *job)
         job->gl_clock.what, job->rounds);
     printf("quad-per-target: rectangles in %s\n\n",
            job->artist ? "the asset's own vertex order"
-                       : "the pack's vertex order, which is kinder to it (--source ASSET: its own)");
+                       : "the pack's vertex order, which favours it (--source ASSET: the asset's own)");
 }
 
 static void print_rows(const bench_rows *rows)

@@ -183,8 +183,7 @@ static int skin_check(skin_bench *b, skin_work *kernel, const char *name)
         worst = fmaxf(worst, fabsf(b->out[i] - b->copy[i]));
         largest = fmaxf(largest, fabsf(b->copy[i]));
     }
-    return worst > 1e-5f * largest ? tool_fail("bench", "skin/cpu/%s puts vertices elsewhere than plain-scalar", name)
-                                   : 0;
+    return worst > 1e-5f * largest ? tool_fail("bench", "skin/cpu/%s gives other vertices than plain-scalar", name) : 0;
 }
 
 /* ---- rows ---- */

@@ -92,7 +92,7 @@ static int bench_all(bench_job *job, const bench_args *a)
     if (!status && !job->rows.count) {
         status = tool_fail(
             a->packs[0],
-            a->only ? "the pack has nothing for these rows: there is nothing to measure"
+            a->only ? "the pack has no data for these rows"
                     : "no target of any mesh moves anything, and there are no clips: there is nothing to measure");
     }
     if (!status) {
@@ -122,7 +122,7 @@ static int bench_packs(bench_job *job, const bench_args *a)
     }
     setenv("LP_NUM_THREADS", "0",
            0); /* llvmpipe draws on this thread, so that work is timed and not the waking of others */
-    status = gpu_open(&job->g, a->driver);
+    status = gpu_open_drawing(&job->g, a->driver);
     if (!status) {
         bench_clock_open(&job->gl_clock, &job->g);
         status = bench_all(job, a);
@@ -163,7 +163,7 @@ static const option options[] = {
       .kind = OPTION_TEXT,
       .at = offsetof(bench_args, only),
       .value = "morph|morph-cpu|skin-cpu|skin-gpu|heads|clip|pose|crowd",
-      .what = "one group of rows; default: all that the packs have something for" },
+      .what = "measure this group of rows; default: all for which the packs have data" },
     { .name = "--source",
       .kind = OPTION_INPUT,
       .at = offsetof(bench_args, source),
@@ -175,13 +175,13 @@ static const option options[] = {
       .at = offsetof(bench_args, rounds),
       .value = "N",
       .initial = "15",
-      .what = "measurements of each row, 1 to 1000; the median is printed",
+      .what = "measurements per row, 1 to 1000; the median is printed",
       .example = "31",
       .excludes = "--quick" },
     { .name = "--quick",
       .kind = OPTION_FLAG,
       .at = offsetof(bench_args, quick),
-      .what = "one short round: to see that it works" },
+      .what = "one short round, to see that it works" },
     OPTION_DRIVER(bench_args, driver, .initial = "egl"),
     OPTION_JSON(bench_args, as_json),
 };
@@ -189,7 +189,7 @@ static const option options[] = {
 const verb verb_bench = {
     .name = "bench",
     .files = "PACK...",
-    .what = "ratios against named baselines measured in the same run",
+    .what = "measure costs as ratios to named baselines of the same run",
     .example = "head.noh --source head.glb\nwalk.noh run.noh --only clip --json",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

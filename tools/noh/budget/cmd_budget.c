@@ -1,5 +1,5 @@
-/* cmd_budget.c: bytes before a load. The same sums that the load will make; `noh verify`
- * holds one against the other. */
+/* cmd_budget.c: the bytes that a load will take, by the sums that the load itself makes; `noh verify` compares the two.
+ */
 #include <stdio.h>
 #include <string.h>
 
@@ -22,7 +22,7 @@ static void print_levels(const level_costs *c)
 {
     if (c->count > 1) {
         printf("%-10s %10s %10s %10s %10s %12s %12s\n", "level", "vertices", "triangles", "texels", "pairs",
-               "CPU bytes", "GPU bytes, from it on");
+               "CPU bytes", "GPU bytes   when loaded from this level on");
     }
     for (uint32_t k = 0; k < c->count && c->count > 1; k++) {
         const level_cost *l = &c->levels[k];
@@ -49,7 +49,7 @@ static void json_levels(json *j, const level_costs *c)
     json_close(j, ']');
 }
 
-/* What the bytes of "clips" follow from. */
+/* Decoded segments: they decide the bytes of "clips". */
 typedef struct segments {
     uint32_t held, all, instances;
 } segments;
@@ -66,8 +66,7 @@ static void print_budget(const pack_file *file, const load_budget *b, const segm
     printf("  %-30s %12u %12s  at most, for any call\n", "stack", NOH_STACK_BYTES, "");
     if (clips->all) {
         printf("clips: %u of %u decoded segments are held at once, enough for %u instance%s that cross-fade%s\n",
-               clips->held, clips->all, clips->instances, clips->instances == 1u ? "" : "s",
-               clips->instances == 1u ? "s" : "");
+               clips->held, clips->all, clips->instances, plural(clips->instances), clips->instances == 1u ? "s" : "");
     }
     if (!b->plan.atlas_width) {
         printf("%s\n", b->plan.reason);
@@ -104,8 +103,7 @@ static int json_budget(const load_budget *b, const level_costs *levels, const se
     return json_end(&j);
 }
 
-/* The capabilities of the driver that a load would meet, or of a nominal device: also for clips alone, which draw
- * nothing. */
+/* The capabilities of the driver, or of a nominal device: also for a pack of clips, which draws nothing. */
 static int find_caps(const budget_args *a, const scene *s, noh_gl_caps *caps)
 {
     gpu g;
@@ -181,7 +179,7 @@ static budget_args arguments;
 
 static const option options[] = {
     OPTION_ANIM(budget_args, anim, .needs = NULL),
-    OPTION_INSTANCES(budget_args, instances, "1", .what = "how many copies of the scene, 1 to 65536"),
+    OPTION_INSTANCES(budget_args, instances, "1", .what = "copies of the scene, 1 to 65536"),
     OPTION_PATH(budget_args, path, .initial = "auto"),
     OPTION_ACCUMULATE(budget_args, accumulate, .initial = "auto"),
     OPTION_LOD(budget_args, lod, .needs = NULL),
@@ -189,14 +187,14 @@ static const option options[] = {
     { .name = "--nominal",
       .kind = OPTION_FLAG,
       .at = offsetof(budget_args, nominal),
-      .what = "without a driver: for a GLES 3.2 device on which everything works" },
+      .what = "assume a GLES 3.2 device that supports everything; needs no driver" },
     OPTION_JSON(budget_args, as_json),
 };
 
 const verb verb_budget = {
     .name = "budget",
     .files = "PACK",
-    .what = "bytes before a load, CPU and GPU, by part",
+    .what = "the bytes that a load will take, CPU and GPU, by part",
     .example = "face.noh\nface.noh --instances 100 --path mrt --nominal --json",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

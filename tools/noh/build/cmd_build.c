@@ -23,7 +23,7 @@ typedef struct build_args {
     option_list dual_quaternion, two_streams, clip_errors, joint_errors;
 } build_args;
 
-/* NAME=CM. Whether something has that name is for the converter to say. */
+/* NAME=CM. The converter checks that something has the name. */
 static int check_errors(const char *name, const option_list *list)
 {
     for (int i = 0; i < list->count; i++) {
@@ -153,7 +153,7 @@ static const option options[] = {
       .kind = OPTION_TEXT,
       .at = offsetof(build_args, only),
       .value = "mesh|anim",
-      .what = "write only meshes and skeletons, or only clips: a pack of clips is played with --anim" },
+      .what = "write only meshes and skeletons, or only clips; --anim plays a pack of clips" },
     { .name = "--quiet", .kind = OPTION_FLAG, .at = offsetof(build_args, quiet), .what = "no report" },
     { .name = "--error-um",
       .kind = OPTION_NUMBER,
@@ -168,14 +168,15 @@ static const option options[] = {
       .at = offsetof(build_args, rects),
       .value = "auto|N",
       .initial = "auto",
-      .what = "rectangles of a target, 1 to 65535; auto: the cheapest to draw",
+      .what = "rectangles per target at most, 1 to 65535; auto: the number that is cheapest to draw",
       .example = "4",
       .excludes = "--only=anim" },
     { .name = "--lod",
       .kind = OPTION_TEXT,
       .at = offsetof(build_args, lod),
       .value = "auto|N",
-      .what = "LOD levels with the full mesh, 1 to 8; auto: up to five, by error; default: the full mesh alone",
+      .what =
+          "number of LOD levels, with the full mesh, 1 to 8; auto: up to five, by error; default: the full mesh only",
       .example = "4",
       .excludes = "--only=anim" },
     { .name = "--lod-fast",
@@ -188,7 +189,7 @@ static const option options[] = {
       .at = offsetof(build_args, influences),
       .value = "N",
       .initial = "8",
-      .what = "most joints of a vertex, 1 to 8: the heaviest stay",
+      .what = "joints per vertex at most, 1 to 8; the heaviest are kept",
       .example = "4",
       .excludes = "--only=anim" },
     { .name = "--palette",
@@ -196,20 +197,20 @@ static const option options[] = {
       .at = offsetof(build_args, palette),
       .value = "N",
       .initial = "256",
-      .what = "most joints of a draw, 4 to 256: a mesh with more is split",
+      .what = "joints per draw at most, 4 to 256; a mesh with more is split",
       .example = "64",
       .excludes = "--only=anim" },
     { .name = "--dual-quaternion",
       .kind = OPTION_LIST,
       .at = offsetof(build_args, dual_quaternion),
       .value = "MESH|all",
-      .what = "skin this mesh by dual quaternions; may repeat",
+      .what = "skin this mesh with dual quaternions; may repeat",
       .example = "arm",
       .excludes = "--only=anim" },
     { .name = "--keep-parts",
       .kind = OPTION_FLAG,
       .at = offsetof(build_args, keep_parts),
-      .what = "keep rigid meshes below joints apart instead of joining them to one skinned mesh",
+      .what = "keep rigid meshes below joints separate instead of joining them into one skinned mesh",
       .excludes = "--only=anim" },
     { .name = "--two-stream",
       .kind = OPTION_LIST,
@@ -223,7 +224,7 @@ static const option options[] = {
       .at = offsetof(build_args, rate),
       .value = "HZ",
       .initial = "0",
-      .what = "sample rate of clips, Hz, at most 1000; 0: the file's own",
+      .what = "sample rate of clips, Hz, at most 1000; 0: that of the file",
       .example = "30",
       .excludes = "--only=mesh" },
     { .name = "--error-cm",
@@ -264,7 +265,7 @@ static const option options[] = {
     { .name = "--for-masks",
       .kind = OPTION_FLAG,
       .at = offsetof(build_args, mask),
-      .what = "no joint makes up for the error of its parents: for clips that are played through masks",
+      .what = "let no joint compensate for the errors of its parents: for clips that are played through masks",
       .excludes = "--only=mesh" },
     { .name = "--events",
       .kind = OPTION_INPUT,
@@ -285,7 +286,7 @@ static const option options[] = {
 const verb verb_build = {
     .name = "build",
     .files = "IN...",
-    .what = "convert .gltf, .glb, .bvh and .rcl to a pack: the first model, the clips of all",
+    .what = "convert .gltf, .glb, .bvh and .rcl files to one pack: the first model, the clips of all",
     .example =
         "head.glb -o head.noh --lod 4\nbody.glb walk.bvh run.bvh -o body.noh --events keys.txt\nwalk.bvh -o walk.noh --error-cm 0.02 --clip-error walk=0.1",
     .options = options,

@@ -119,7 +119,7 @@ static int unknown_option(const verb *v, const char *name)
                 : tool_usage("noh %s has no option %s", v->name, name);
 }
 
-/* One of "--clip" or "--only=mesh", as `length` bytes of a list have it, was given. */
+/* 1 if the option that `length` bytes of a list name was given; "--only=mesh": with that value. */
 static int was_given(const verb *v, const given *g, const char *word, size_t length)
 {
     const char *equals = memchr(word, '=', length);
@@ -146,7 +146,7 @@ static const char *first_given(const verb *v, const given *g, const char *list, 
     return NULL;
 }
 
-/* An option that changes nothing is a mistake of whoever gave it. */
+/* An option without effect is an error: the caller expected one. */
 static int check_effects(const verb *v, const given *g)
 {
     for (int i = 0; i < v->option_count; i++) {
@@ -168,14 +168,14 @@ static int check_effects(const verb *v, const given *g)
     return 0;
 }
 
-/* The same regular file by whatever path. */
+/* 1 if two paths lead to the same regular file. */
 static int same_file(const char *a, const char *b)
 {
     struct stat x, y;
     return stat(a, &x) == 0 && stat(b, &y) == 0 && S_ISREG(x.st_mode) && x.st_dev == y.st_dev && x.st_ino == y.st_ino;
 }
 
-/* Nothing that is read may be written over. */
+/* An output must not be an input. */
 static int check_output(const verb *v, const given *g, const option *o, const char *path)
 {
     for (int i = 0; i < g->file_count; i++) {
@@ -228,7 +228,7 @@ static int add_file(const verb *v, given *g, const char *path)
     return 0;
 }
 
-/* argv[*at] is an option; *at moves on to its value, if it has one. */
+/* Read the option argv[*at]; *at advances to its value, if it takes one. */
 static int read_option(const verb *v, given *g, int argc, char **argv, int *at)
 {
     const char *name = argv[*at];

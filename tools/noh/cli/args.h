@@ -1,5 +1,5 @@
-/* args.h: the arguments of a verb, read by the table that its help, the man page and the shell completion are made of.
- */
+/* args.h: the arguments of a verb, read by its table of options. Its help, the man page and the shell completion are
+ * made from the same table. */
 #ifndef NOH_NOH_CLI_ARGS_H
 #define NOH_NOH_CLI_ARGS_H
 
@@ -8,12 +8,12 @@
 
 typedef enum option_kind {
     OPTION_FLAG,   /* int: 1 where it is given */
-    OPTION_TEXT,   /* const char *: as all below but NUMBER, SIZE and LIST */
+    OPTION_TEXT,   /* const char *; INPUT and OUTPUT likewise */
     OPTION_NUMBER, /* double */
     OPTION_SIZE,   /* uint32_t[2], as 640x480 */
     OPTION_LIST,   /* option_list, may repeat */
     OPTION_INPUT,  /* a file that is read */
-    OPTION_OUTPUT  /* a file that is written: it may not be one that is read */
+    OPTION_OUTPUT  /* a file that is written; it must not be one that is read */
 } option_kind;
 
 #define OPTION_LIST_MAX 1024
@@ -28,11 +28,11 @@ typedef struct option {
     option_kind kind;
     size_t at; /* offsetof the value in the verb's arguments */
     int required;
-    const char *value;    /* what follows it, for the help: "PACK", "auto|f32|f16"; NULL: nothing (FLAG) */
-    const char *initial;  /* the default, as text; NULL: 0, none */
-    const char *what;     /* its meaning, unit and range */
-    const char *example;  /* a value; NULL where `value` lists all or there is none */
-    const char *needs;    /* it has no effect without one of these, separated by blanks: "--clip --to" */
+    const char *value;   /* what follows it, for the help: "PACK", "auto|f32|f16"; NULL: nothing (FLAG) */
+    const char *initial; /* the default, as text; NULL: 0, none */
+    const char *what;    /* its meaning, unit and range */
+    const char *example; /* a value; NULL where `value` lists all or there is none */
+    const char *needs;   /* one of these must be given too, else it has no effect; separated by blanks: "--clip --to" */
     const char *excludes; /* it has no effect with any of these; "--only=mesh": with that value */
 } option;
 
@@ -44,9 +44,9 @@ typedef struct verb {
     const char *example; /* arguments after the verb, one call a line */
     const option *options;
     int option_count;
-    int file_max;         /* one to so many files */
+    int file_max;         /* takes 1 to this many files */
     size_t files_at;      /* offsetof const char *[file_max] */
-    size_t file_count_at; /* offsetof an int; used where file_max is over 1 */
+    size_t file_count_at; /* offsetof an int; used if file_max is over 1 */
     void *args;
     int (*run)(void *args); /* returns an exit code */
 } verb;
@@ -58,12 +58,12 @@ int args_read(const verb *v, int argc, char **argv);
 
 const option *args_find(const verb *v, const char *name);
 
-/* A double out of text; 0 if all of it was one finite number. */
+/* Parse text as a double. 0 if all of it is one finite number. */
 int tool_number(const char *text, double *value);
 
 /* --lod: a whole number from 0, the full mesh. Returns an exit code. */
 int parse_level(double value, uint32_t *level);
-/* --lod of what converts: auto, or how many levels with the full one. Returns an exit code. */
+/* --lod of verbs that convert: auto, or the number of levels with the full one. Returns an exit code. */
 int parse_levels(const char *text, uint32_t *count, int *by_error);
 
 #endif

@@ -30,8 +30,8 @@ static void put_text(json *j, const char *text)
     put(j, text, strlen(text));
 }
 
-/* The bytes of the UTF-8 sequence that begins at c; 0 where none does. Names come from files and may hold anything,
- * and JSON is UTF-8: see RFC 3629, section 4, for the ranges. */
+/* The bytes of the UTF-8 sequence at c; 0 if it is not one. JSON is UTF-8, but names are read from files and may hold
+ * any bytes. Ranges: RFC 3629, section 4. */
 static size_t utf8_length(const unsigned char *c)
 {
     const unsigned char low = c[0] == 0xe0 ? 0xa0 : c[0] == 0xf0 ? 0x90 : 0x80;

@@ -1,4 +1,4 @@
-/* json.h: JSON on stdout. The text is kept until json_end, so that a verb that fails half way prints none of it. */
+/* json.h: JSON on stdout. The text is kept until json_end, so that a verb that fails half-way prints none of it. */
 #ifndef NOH_NOH_CLI_JSON_H
 #define NOH_NOH_CLI_JSON_H
 

@@ -74,3 +74,8 @@ int tool_fail_error(const char *subject, const noh_error *error)
     last.need = error->need;
     return EXIT_FAILED;
 }
+
+const char *plural(uint64_t count)
+{
+    return count == 1 ? "" : "s";
+}

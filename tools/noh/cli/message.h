@@ -25,6 +25,9 @@ int tool_fail_error(const char *subject, const noh_error *error);
 /* Print "noh: text" and a pointer to `noh help`; return EXIT_USAGE. */
 int tool_usage(const char *format, ...) MESSAGE_FORMAT(1, 2);
 
+/* "s" after a count of several: printf("%u clip%s", n, plural(n)). */
+const char *plural(uint64_t count);
+
 /* The last error. */
 typedef struct tool_error {
     int status;                   /* EXIT_FAILED or EXIT_USAGE; 0: there was none */

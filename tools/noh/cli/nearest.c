@@ -10,7 +10,8 @@ static size_t smaller(size_t a, size_t b)
     return a < b ? a : b;
 }
 
-/* Edits (insert, delete, replace, swap of neighbours) from a to b, case ignored. */
+/* Edits (insert, delete, replace, swap of neighbours) from a to b, case ignored: the optimal string alignment distance,
+ * row by row of the table of prefixes. Three rows are kept, because a swap looks two rows back. */
 static size_t edit_distance(const char *a, const char *b)
 {
     size_t rows[3][NAME_MAX_COMPARED + 1];
@@ -35,7 +36,7 @@ static size_t edit_distance(const char *a, const char *b)
 const char *nearest_name(const char *name, const char *const *candidates, size_t count)
 {
     const char *best = NULL;
-    size_t best_distance = strlen(name) / 2 + 2; /* farther than that is no help */
+    size_t best_distance = strlen(name) / 3 + 2; /* a name with more edits than that is another one */
     for (size_t i = 0; i < count; i++) {
         size_t distance = edit_distance(name, candidates[i]);
         if (distance < best_distance) {

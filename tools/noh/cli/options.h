@@ -1,5 +1,5 @@
-/* options.h: rows that the tables of several verbs share. T: the type of the verb's arguments; m: the member that takes
- * the value; what follows are more members of struct option. */
+/* options.h: options that several verbs share, as rows of their tables. T: the type of the verb's arguments; m: the
+ * member for the value; further members of struct option may follow. */
 #ifndef NOH_NOH_CLI_OPTIONS_H
 #define NOH_NOH_CLI_OPTIONS_H
 
@@ -8,7 +8,7 @@
 #define OPTION_JSON(T, m)                                              \
     {                                                                  \
         .name = "--json", .kind = OPTION_FLAG, .at = offsetof(T, m),   \
-        .what = "print JSON on stdout; an error is {\"error\": {...}}" \
+        .what = "print JSON on stdout; errors too: {\"error\": {...}}" \
     }
 
 #define OPTION_ANIM(T, m, ...)                                                              \
@@ -29,10 +29,11 @@
         .what = "time in the clips, seconds", .example = "0.5", __VA_ARGS__                          \
     }
 
-#define OPTION_WEIGHT(T, m, ...)                                                                                \
-    {                                                                                                           \
-        .name = "--weight", .kind = OPTION_LIST, .at = offsetof(T, m), .value = "NAME=V",                       \
-        .what = "weight of a target; may repeat, the last of a name holds", .example = "smile=0.7", __VA_ARGS__ \
+#define OPTION_WEIGHT(T, m, ...)                                                                            \
+    {                                                                                                       \
+        .name = "--weight", .kind = OPTION_LIST, .at = offsetof(T, m), .value = "NAME=V",                   \
+        .what = "weight of a target; may repeat, and the last of each name counts", .example = "smile=0.7", \
+        __VA_ARGS__                                                                                         \
     }
 
 #define OPTION_PATH(T, m, ...)                                                \
@@ -57,7 +58,7 @@
 #define OPTION_LOD(T, m, ...)                                                                                          \
     {                                                                                                                  \
         .name = "--lod", .kind = OPTION_NUMBER, .at = offsetof(T, m), .value = "K", .initial = "0",                    \
-        .what = "LOD level, 0 to 7: 0 is the full mesh; meshes with fewer levels take their coarsest", .example = "2", \
+        .what = "LOD level, 0 to 7; 0 is the full mesh; meshes with fewer levels take their coarsest", .example = "2", \
         __VA_ARGS__                                                                                                    \
     }
 

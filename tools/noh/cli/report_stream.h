@@ -1,4 +1,4 @@
-/* report_stream.h: where a verb tells what it did. */
+/* report_stream.h: where a verb reports what it did. */
 #ifndef NOH_NOH_CLI_REPORT_STREAM_H
 #define NOH_NOH_CLI_REPORT_STREAM_H
 

@@ -1,4 +1,4 @@
-/* verbs.h: what `noh` can do. Each verb has its own file, cmd_VERB.c, with the table of its options. */
+/* verbs.h: the verbs of `noh`. Each is a file, VERB/cmd_VERB.c, which ends with the table of its options. */
 #ifndef NOH_NOH_CLI_VERBS_H
 #define NOH_NOH_CLI_VERBS_H
 
@@ -11,7 +11,7 @@ extern const verb verb_build, verb_info, verb_clip, verb_budget, verb_render, ve
 
 /* In the order of the help. */
 const verb *verb_at(int index);
-/* NULL where there is none of that name. */
+/* NULL if there is none of that name. */
 const verb *verb_find(const char *name);
 
 #endif

@@ -16,7 +16,7 @@
 /* An open clip with a cache of its own. */
 typedef struct opened {
     noh_pack_clip packed;
-    noh_skeleton skeleton; /* joint_count 0: a clip of floats alone */
+    noh_skeleton skeleton; /* joint_count 0: the clip has floats only */
     void *memory, *cache_memory;
     noh_clip *clip;
     noh_clip_cache *cache;
@@ -94,10 +94,12 @@ static void print_clip(const pack_file *file, const opened *o)
                o->info.rms_error_cm);
     }
     if (o->info.float_count) {
-        printf("  weights within %.4g cm of what each moves\n", o->info.error_cm);
+        printf("  weights certified to %.4g cm of what they move\n", o->info.error_cm);
     }
-    printf("  %u segments, cache of %zu bytes; %u callback keys, %u sync markers\n", o->info.segment_count,
-           o->cache_bytes, o->packed.header->event_count, o->packed.header->marker_count);
+    printf("  %u segment%s, cache of %zu bytes; %u callback key%s, %u sync marker%s\n", o->info.segment_count,
+           plural(o->info.segment_count), o->cache_bytes, o->packed.header->event_count,
+           plural(o->packed.header->event_count), o->packed.header->marker_count,
+           plural(o->packed.header->marker_count));
     print_keys(file, &o->packed);
 }
 
@@ -222,7 +224,7 @@ static int dump_named(const pack_file *file, const char *name, const char *path)
     if (!status) {
         status = o.info.joint_count
                      ? dump_clip(file, &o, path)
-                     : tool_fail(file->path, "clip '%s' animates weights alone, and a .rcl file holds joints",
+                     : tool_fail(file->path, "clip '%s' animates floats only, and .rcl files hold joints",
                                  o.packed.name);
         close_clip(&o);
     }
@@ -268,7 +270,7 @@ typedef struct clip_args {
     int as_json;
 } clip_args;
 
-/* With --dump the list is printed as JSON alone, and only once the file is there. */
+/* With --dump the list is printed only as JSON, and only after the file is written. */
 static int run(void *args)
 {
     const clip_args *a = args;
@@ -294,13 +296,13 @@ static const option options[] = {
       .kind = OPTION_OUTPUT,
       .at = offsetof(clip_args, dump),
       .value = "OUT.rcl",
-      .what = "write a clip's decoded frames, joints only, in place of the list",
+      .what = "write the decoded frames of one clip, joints only, instead of the list",
       .example = "walk.rcl" },
     { .name = "--clip",
       .kind = OPTION_TEXT,
       .at = offsetof(clip_args, name),
       .value = "NAME",
-      .what = "which clip; a pack of one clip needs no name",
+      .what = "the clip to write; not needed where the pack has only one",
       .example = "walk",
       .needs = "--dump" },
     OPTION_JSON(clip_args, as_json),
@@ -309,7 +311,7 @@ static const option options[] = {
 const verb verb_clip = {
     .name = "clip",
     .files = "PACK",
-    .what = "compressed clips: bytes, certified errors; a clip decoded",
+    .what = "list compressed clips, their bytes and certified errors, or write one decoded",
     .example = "body.noh\nbody.noh --dump walk.rcl --clip walk --json",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

@@ -1,4 +1,4 @@
-/* cmd_crowd.c: a crowd drawn, and what it took. */
+/* cmd_crowd.c: draw a crowd, and say what it took. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,7 +42,7 @@ static int check_args(crowd_args *a)
     return status;
 }
 
-/* What was drawn, to be told once the picture is written. */
+/* What was drawn: printed once the picture is written. */
 typedef struct crowd_drawn {
     crowd_stats stats;
     uint32_t level_count;
@@ -52,11 +52,11 @@ typedef struct crowd_drawn {
 static void print_crowd(const crowd_drawn *d, const crowd_args *a)
 {
     FILE *out = report_stream(a->output);
-    fprintf(out, "%s: %u bodies, %u seen", a->output, a->options.count, d->stats.seen);
+    fprintf(out, "%s: %u bodies, %u visible", a->output, a->options.count, d->stats.seen);
     for (uint32_t k = 0; k < d->level_count && !a->plain; k++) {
-        fprintf(out, "%s %u", k ? "," : "; by level", d->stats.levels[k]);
+        fprintf(out, "%s %u", k ? "," : "; by level:", d->stats.levels[k]);
     }
-    fprintf(out, "; %u fade\n%llu bytes CPU, %llu GPU; planned %llu and %llu\n", d->stats.fading,
+    fprintf(out, "; %u fading\nCPU %llu bytes, GPU %llu; planned: CPU %llu, GPU %llu\n", d->stats.fading,
             (unsigned long long)d->cpu_planned, (unsigned long long)d->gpu_used, (unsigned long long)d->cpu_planned,
             (unsigned long long)d->gpu_planned);
 }
@@ -70,7 +70,7 @@ static void take_drawn(const crowd *c, crowd_drawn *d)
     d->gpu_used = noh_gl_ledger_bytes(&c->ledger);
 }
 
-/* Frame after frame up to the time, as a game comes there. */
+/* Run every frame up to the time, as a game would, and draw the last. */
 static int draw(crowd *c, const crowd_args *a, uint8_t *rgba)
 {
     const crowd_camera camera = crowd_camera_start(c);
@@ -118,7 +118,7 @@ static int draw_pack(const pack_file *file, const crowd_args *a)
     crowd_drawn d;
     gpu g;
     uint8_t *rgba = malloc((size_t)a->size[0] * a->size[1] * 4);
-    int status = rgba ? gpu_open(&g, a->driver) : tool_fail(a->pack, "out of memory");
+    int status = rgba ? gpu_open_drawing(&g, a->driver) : tool_fail(a->pack, "out of memory");
     if (!status) {
         status = open_and_draw(&g, file, a, rgba, &d);
         gpu_close(&g);
@@ -152,13 +152,13 @@ static const option options[] = {
       .value = "OUT.png",
       .what = "the picture",
       .example = "crowd.png" },
-    OPTION_INSTANCES(crowd_args, instances, "1000", .what = "how many bodies, 1 to 65536"),
+    OPTION_INSTANCES(crowd_args, instances, "1000", .what = "number of bodies, 1 to 65536"),
     { .name = "--pixels",
       .kind = OPTION_NUMBER,
       .at = offsetof(crowd_args, pixels),
       .value = "N",
       .initial = "1",
-      .what = "the largest error on screen that levels may have, pixels, over 0",
+      .what = "the largest error that LOD levels may have on screen, pixels, over 0",
       .example = "4",
       .excludes = "--plain" },
     { .name = "--time",
@@ -166,12 +166,12 @@ static const option options[] = {
       .at = offsetof(crowd_args, time_s),
       .value = "S",
       .initial = "2",
-      .what = "when the picture is taken, seconds, 0 to 3600; every frame up to then is run",
+      .what = "when the picture is taken, seconds, 0 to 3600; all frames up to then are run",
       .example = "0.5" },
     { .name = "--plain",
       .kind = OPTION_FLAG,
       .at = offsetof(crowd_args, plain),
-      .what = "without LOD: every body at the full mesh, posed in every frame" },
+      .what = "without LOD: every body with the full mesh, posed in every frame" },
     { .name = "--debug",
       .kind = OPTION_TEXT,
       .at = offsetof(crowd_args, debug),
@@ -190,7 +190,7 @@ static const option options[] = {
 const verb verb_crowd = {
     .name = "crowd",
     .files = "PACK",
-    .what = "a crowd of the skinned mesh of a pack, each body as detailed as its pixels want it",
+    .what = "draw a crowd of a pack's skinned mesh, each body at the LOD level that its size in pixels needs",
     .example = "body.noh -o crowd.png\nbody.noh -o crowd.png --instances 200 --pixels 4 --debug lod",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

@@ -7,8 +7,8 @@
 
 /* ---- opening ---- */
 
-/* What ends goes to and fro instead, so that nobody stands still; and two keys a pass where the pack has none at all.
- */
+/* A copy of the bank's set in which clips that end play ping-pong, so that every body keeps moving. A pack without
+ * callback keys gets two per clip, so that the crowd always has events to fire. */
 static void open_clips(crowd *c)
 {
     const noh_clip_set *from = &c->bank->clips;
@@ -35,7 +35,7 @@ static void open_clips(crowd *c)
     }
 }
 
-/* The first of the mesh's weights among the floats of a pose: those of the first node that draws it. */
+/* Where the mesh's weights begin among the floats of a pose: those of the first node that draws it. */
 static void find_weights(crowd *c)
 {
     const uint32_t group = noh_clip_bank_mesh_group(c->bank, c->plan->mesh_index);
@@ -107,10 +107,10 @@ static int open_all(crowd *c, noh_arena *arena)
     noh_result result;
     crowd_carve(arena, p, c, &parts);
     c->used_bytes = arena->used;
-    result = noh_clip_bank_init(parts.set, p->set_needs.bytes, &p->set_desc, &c->bank, &error);
+    result = noh_clip_bank_init(parts.bank, p->bank_needs.bytes, &p->bank_desc, &c->bank, &error);
     if (!result) {
         (void)noh_skin_skeleton(&p->skin, &c->bank->skeleton, c->inverse_bind,
-                                &c->skeleton); /* one skin: multiplied at updates */
+                                &c->skeleton); /* with one skin, updates can multiply by it */
         open_clips(c);
         find_weights(c);
         result = open_characters(c, parts.scratch, &error);
@@ -131,7 +131,7 @@ int crowd_open(crowd *c, const crowd_plan *plan, void *memory, size_t bytes, gpu
     noh_arena arena = noh_arena_over(memory, bytes);
     int status;
     if (bytes < plan->cpu_bytes) {
-        return tool_fail(file->path, "the crowd wants %llu bytes", (unsigned long long)plan->cpu_bytes);
+        return tool_fail(file->path, "the crowd needs %llu bytes", (unsigned long long)plan->cpu_bytes);
     }
     memset(c, 0, sizeof *c);
     c->plan = plan;

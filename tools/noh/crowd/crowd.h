@@ -1,24 +1,25 @@
-/* crowd.h: a thousand bodies, each as detailed as its pixels need: an example of character/ and gl/ together, to copy
- * into a game.
+/* crowd.h: a thousand bodies, each at the LOD level that its size in pixels needs: an example of character/ and gl/
+ * together, to copy into a game.
  *
- *   crowd_plan_make   every byte, CPU and GPU, before any load
- *   crowd_open        everything, in one block of memory of exactly that size; it never asks for another byte
+ *   crowd_plan_make   every byte, CPU and GPU, before anything is loaded
+ *   crowd_open        make everything in one block of memory of exactly that size
  *   a frame:
  *     crowd_step      advance all clocks, fire all callback keys
- *     crowd_look      cull; choose detail, slots and draw order
+ *     crowd_look      cull; choose LOD levels, slots and draw order
  *     crowd_show      pose the bodies that are due, within a budget; upload palettes and weights of visible bodies
  *     crowd_send      accumulate and upload
- *     crowd_draw      one draw per submesh and level; a body that fades between levels is drawn alone, twice, dithered
+ *     crowd_draw      one draw per submesh and level; a body that fades between two levels is drawn by itself,
+ * dithered, once at each
  *
- * The bodies are a pack's skinned mesh (of several the one that its targets move most). Each has a clip, phase and
- * playback speed of its own, and a second track with a clip of the face. One unit of the pack is a metre, y is up.
+ * Every body is the same skinned mesh of a pack (of several, the one with the most pairs) and has a clip, phase and
+ * playback speed of its own, and a second track with a clip of the face. One unit of the pack is a metre; y is up.
  *
- * Without LOD (options.plain), the baseline, the same bodies are posed in every frame and drawn at the full level with
+ * The baseline, without LOD (options.plain), poses the same bodies in every frame and draws them at the full level with
  * all targets.
  *
  *   crowd_plan.c   bytes
  *   crowd.c        opening and closing
- *   crowd_place.c  what the pack says of detail; places and clips
+ *   crowd_place.c  the errors that the pack states; places and clips of the bodies
  *   crowd_frame.c  a frame on the CPU
  *   crowd_draw.c   a frame on the GPU; the camera */
 #ifndef NOH_NOH_CROWD_CROWD_H
@@ -28,7 +29,7 @@
 #include "file/pack_file.h"
 
 #define CROWD_RUNS_MAX (NOH_LOD_LEVELS_MAX * NOH_LOD_LEVELS_MAX)
-#define CROWD_FIELD_M 100.0f /* radius of the field round the camera's start */
+#define CROWD_FIELD_M 100.0f /* radius of the field around the first camera */
 
 typedef struct crowd_options {
     uint32_t count;                     /* bodies; 1..NOH_MORPH_INSTANCES_MAX */
@@ -43,7 +44,7 @@ typedef struct crowd_options {
     noh_debug_view view;
 } crowd_options;
 
-/* Every byte, and what of the pack it depends on. */
+/* Every byte, and the parts of the pack on which it depends. */
 typedef struct crowd_plan {
     crowd_options options; /* with the defaults filled in */
     noh_mesh mesh;         /* the full level */
@@ -52,8 +53,8 @@ typedef struct crowd_plan {
     uint32_t level_count;
     noh_mesh views[NOH_LOD_LEVELS_MAX]; /* the mesh at each level that has a pool */
     uint32_t pool_levels[NOH_LOD_LEVELS_MAX], slots[NOH_LOD_LEVELS_MAX], pool_count;
-    noh_clip_bank_desc set_desc;
-    noh_clip_bank_needs set_needs;
+    noh_clip_bank_desc bank_desc;
+    noh_clip_bank_needs bank_needs;
     noh_gl_morph_desc morph_desc; /* of views and slots */
     noh_gl_morph_plan morph;
     noh_gl_skin_plan skin_plan;
@@ -67,13 +68,13 @@ int crowd_plan_make(crowd_plan *plan, const pack_file *file, const noh_gl_caps *
 
 /* A body beside its noh_character. */
 typedef struct crowd_body {
-    float world[12]; /* where it stands */
+    float world[12]; /* its place: 3 rows of 4 */
     float centre[3]; /* of its bounding sphere over all clips; the radius is the crowd's */
     float scale;     /* pixels per metre at its nearest point */
     int seen, was_seen, shown;
     noh_lod_slot slot;
-    uint32_t level, level_before; /* drawn: within the slot's level; two while it fades */
-    uint32_t place;               /* its palette: in draw order */
+    uint32_t level, level_before; /* drawn: no finer than the slot's level; the two differ while the body fades */
+    uint32_t place;               /* of its palette, in draw order */
 } crowd_body;
 
 typedef struct crowd_camera {
@@ -83,12 +84,12 @@ typedef struct crowd_camera {
 } crowd_camera;
 
 typedef struct crowd_events {
-    uint64_t count, sum; /* sum: of hashes of body, key and time: equal for equal events in any order */
+    uint64_t count, sum; /* sum of hashes of body, key and time: equal for the same events in any order */
 } crowd_events;
 
 typedef struct crowd_stats {
-    uint32_t seen, updated, fading;      /* of the frame shown last */
-    uint32_t levels[NOH_LOD_LEVELS_MAX]; /* seen at each level; a fading body counts at its target level */
+    uint32_t seen, updated, fading;      /* in the last frame */
+    uint32_t levels[NOH_LOD_LEVELS_MAX]; /* visible at each level; a fading body counts at its new level */
     noh_gl_morph_stats morph;
 } crowd_stats;
 
@@ -100,28 +101,28 @@ typedef struct crowd {
     size_t used_bytes;    /* of the block */
     /* shared */
     noh_clip_bank *bank;
-    noh_clip_set set; /* the set's, with callback keys where the pack has none; clips that do not loop play ping-pong */
+    noh_clip_set set; /* of the bank, with callback keys where the pack has none; what does not loop plays ping-pong */
     noh_clip_entry *clips;
     noh_event_key *keys;
     noh_skeleton skeleton;                /* with the skin's inverse bind matrices */
     float *inverse_bind, *update_error_m; /* [joint], [clip][NOH_UPDATE_RATE_COUNT] */
-    uint32_t first_weight;                /* of the mesh, among the floats of the set; NOH_NONE: no clip has them */
-    noh_lod_pack lod;                     /* the errors that the pack states */
-    noh_lod_table table;                  /* the same, with update rate errors for clips as they are played here */
+    uint32_t first_weight; /* of the mesh, among the floats of the set; NOH_NONE: no clip animates them */
+    noh_lod_pack lod;      /* the errors that the pack states */
+    noh_lod_table table;   /* the same, with the update rate errors of clips as the crowd plays them */
     noh_lod_settings settings;
     noh_character_scratch scratch;
     noh_schedule schedule;
     noh_lod_pools *pools;
-    float sphere[4];         /* of every body, from where it stands */
+    float sphere[4];         /* of every body, relative to its place */
     float *matrices;         /* [the skin's joint][12] */
     float *floats, *weights; /* [float], [target] */
     /* each */
     uint8_t *characters; /* [count][character_bytes] */
     crowd_body *bodies;  /* [count] */
     uint32_t *order;     /* [count] visible bodies, run by run; fading ones last */
-    uint32_t runs[CROWD_RUNS_MAX +
-                  1u]; /* where each run begins in `order`: bodies of one mesh level and one number of joints per
-                        * vertex, level by level, within each the most joints first; the last run: fading bodies */
+    /* Where each run begins in `order`. A run is the bodies of one mesh level and one number of joints per vertex:
+     * level by level, most joints first; the last run is the fading bodies. */
+    uint32_t runs[CROWD_RUNS_MAX + 1u];
     int unculled;
     uint32_t frame_ticks;
     crowd_events events;
@@ -134,8 +135,8 @@ typedef struct crowd {
     noh_gl_renderer renderer;
 } crowd;
 
-/* Open it in memory[bytes], 16-byte aligned, plan->cpu_bytes long. The plan, the pack and the memory stay with it.
- * Prints an error and returns an exit code; 0 on success, else nothing is left open. */
+/* memory[bytes]: 16-byte aligned, at least plan->cpu_bytes. Plan, pack and memory must outlive the crowd. Prints an
+ * error and returns an exit code, with nothing left open; 0 on success. */
 int crowd_open(crowd *c, const crowd_plan *plan, void *memory, size_t bytes, gpu *g, const pack_file *file);
 void crowd_close(crowd *c);
 
@@ -143,14 +144,15 @@ noh_character *crowd_character(const crowd *c, uint32_t body);
 /* The estimated cost of an update, counted against budget_ns. */
 uint32_t crowd_update_cost(const noh_character *ch);
 
-/* Move a body: metres on the ground, a turn about the vertical axis. */
+/* Put a body on the ground at x, z, metres, turned about the vertical axis. */
 void crowd_move(crowd *c, uint32_t body, float x, float z, float heading_rad);
 
 /* A camera at `eye`; heading 0 looks along -z, down_rad tilts it down. */
 crowd_camera crowd_camera_at(const crowd *c, const float eye[3], float heading_rad, float down_rad);
-/* Above head height, at the edge of the field. */
+/* 4 m above the middle of the field. */
 crowd_camera crowd_camera_start(const crowd *c);
 
+/* The parts of a frame, in this order. */
 void crowd_step(crowd *c, uint32_t ticks);
 void crowd_look(crowd *c, const crowd_camera *camera);
 void crowd_show(crowd *c);
@@ -160,21 +162,21 @@ void crowd_draw(const crowd *c, const crowd_camera *camera);
 
 /* ---- private to crowd*.c ---- */
 
-/* The objects that the library makes in the block. */
+/* Where the library's objects lie in the block. */
 typedef struct crowd_parts {
-    void *set, *scratch, *pools, *schedule, *lod, *morph, *palettes;
+    void *bank, *scratch, *pools, *schedule, *lod, *morph, *palettes;
 } crowd_parts;
 
 noh_character_desc crowd_character_desc(const noh_clip_set *set);
 noh_lod_pools_desc crowd_pools_desc(const crowd_plan *plan);
-/* Lay everything out in the block; with NULL return only its size. */
+/* Lay everything out in the arena; one that only measures (noh_arena_measure) gives the size. */
 void crowd_carve(noh_arena *arena, const crowd_plan *plan, crowd *c, crowd_parts *parts);
-/* The desc of a set's detail, also before the set exists. */
-noh_lod_pack_desc crowd_lod_desc(const crowd_plan *plan, const noh_clip_bank *set);
-/* The most runs there can be, without that of fading bodies. */
+/* The desc of the LOD table; of a bank that is not made yet, only the counts are needed. */
+noh_lod_pack_desc crowd_lod_desc(const crowd_plan *plan, const noh_clip_bank *bank);
+/* The number of runs, without that of fading bodies. */
 uint32_t crowd_run_count(const crowd *c);
-/* Read the pack's detail into memory[plan->detail_bytes], then place the bodies. Prints an error and returns an exit
- * code. */
+/* Read the pack's LOD errors into memory[plan->lod_bytes], then place the bodies. Prints an error and returns an exit
+ * code; 0 on success. */
 int crowd_place(crowd *c, void *memory);
 
 #endif

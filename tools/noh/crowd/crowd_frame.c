@@ -1,10 +1,11 @@
-/* crowd_frame.c: a frame of a crowd on the CPU: clocks, detail, poses, uploads. */
+/* crowd_frame.c: a frame of a crowd on the CPU: clocks, LOD levels, poses, uploads. */
 #include <math.h>
 #include <string.h>
 
 #include "crowd.h"
 
-#define BODY_PIXELS 0.018f /* of a body's height, 1.8 m, in hundreds: weights the urgency of an update */
+#define BODY_PIXELS \
+    0.018f /* hundreds of pixels that a body of 1.8 m covers per pixel per metre: urgency of an update */
 
 /* The cost of an update, nanoseconds, roughly as `noh bench` measures it. */
 static const noh_cost_weights costs = { 500.0f, 40.0f, 0.0f, 0.0f };
@@ -28,7 +29,7 @@ static void on_event(void *user, const noh_event *event)
     w->events->sum += hash;
 }
 
-/* Visible or not: all that an invisible body costs. */
+/* For all bodies, visible or not. An invisible one costs nothing else. */
 void crowd_step(crowd *c, uint32_t ticks)
 {
     noh_clip_cache_begin_frame(c->bank->cache);
@@ -39,7 +40,12 @@ void crowd_step(crowd *c, uint32_t ticks)
     }
 }
 
-/* ---- visibility and detail ---- */
+/* ---- visibility and LOD ---- */
+
+/* The bounding sphere against the four side planes of the view and the plane of the eye. The view is symmetric, so that
+ * |across| and |up| test two planes each: a plane through the eye at half the angle of view a has the normal
+ * (cos a, -sin a) in (across, depth), and the sphere is outside where its centre is a radius or more beyond it. Also
+ * sets the scale at the nearest point. */
 
 static int is_seen(const crowd *c, const crowd_camera *camera, crowd_body *b)
 {
@@ -67,7 +73,7 @@ uint32_t crowd_update_cost(const noh_character *ch)
     return noh_cost_ns(&costs, noh_character_joint_work(ch), 0, 0);
 }
 
-/* Choose a body's detail, and ask for a slot of its level. */
+/* Choose the levels of a body, update it at once or offer it for an update, and ask for a slot of its mesh level. */
 static void look_at(crowd *c, uint32_t i)
 {
     noh_character *ch = crowd_character(c, i);
@@ -88,7 +94,8 @@ static void look_at(crowd *c, uint32_t i)
     noh_lod_pools_ask(c->pools, i, noh_lod_finest(&ch->lod), b->scale);
 }
 
-/* No finer than its slot, now and in the next choice. */
+/* Pools may be short of fine slots: the body is then drawn no finer than the slot it got, and chooses no finer in the
+ * next frame. */
 static void take_slot(crowd *c, uint32_t i)
 {
     crowd_body *b = &c->bodies[i];
@@ -116,7 +123,8 @@ static uint32_t run_of(const crowd *c, uint32_t i)
                     : b->level * c->table.influence_level_count + crowd_character(c, i)->lod.influences;
 }
 
-/* A counting sort by run; fading bodies last. */
+/* A counting sort by run, fading bodies last: count each run, turn counts into starts, then place each body. It needs
+ * no second list and is stable. */
 static void put_in_order(crowd *c)
 {
     uint32_t next[CROWD_RUNS_MAX + 1u] = { 0 }, count = 0;
@@ -168,14 +176,14 @@ void crowd_look(crowd *c, const crowd_camera *camera)
 
 /* ---- uploads ---- */
 
-/* Without LOD: posed now, all of it. */
+/* Without LOD: all joints, in this frame. */
 static void pose_fully(crowd *c, noh_character *ch)
 {
     noh_controller_pose(noh_character_controller(ch), &c->set, &c->scratch.pose, c->scratch.local, c->floats);
     noh_pose_skin(&c->skeleton, &c->plan->skin, c->scratch.local, c->scratch.model, c->matrices);
 }
 
-/* Leave out weights too small to be seen; those that no clip animates are the mesh's own. */
+/* The weights that clips animate, or the mesh's own, without those too small to be seen. */
 static void give_weights(crowd *c, const crowd_body *b, uint32_t instance, noh_lod *d, const float *floats)
 {
     const float *weights = c->first_weight == NOH_NONE ? c->plan->mesh.weights : floats + c->first_weight;
@@ -201,7 +209,7 @@ static void show_body(crowd *c, uint32_t i)
     }
     noh_gl_skin_set_matrices(c->palettes, b->place, c->matrices);
     give_weights(c, b, instance, &ch->lod, plain ? c->floats : noh_character_floats(ch, c->floats));
-    (void)noh_gl_skin_set_place(c->palettes, b->place, b->world, &morph, NULL); /* nobody is mirrored */
+    (void)noh_gl_skin_set_place(c->palettes, b->place, b->world, &morph, NULL); /* no body is mirrored */
 }
 
 /* Updated bodies first, each uploaded while its pose is in the CPU's cache; then the others. */

@@ -7,15 +7,16 @@
 
 #define NEAREST_M 1.5f
 #define HALF_ANGLE_RAD 0.68f /* a little more than a 16 : 9 view shows */
-#define BEHIND 8u            /* every eighth stands behind the camera */
+#define BEHIND 8u            /* every eighth body is behind the camera */
 #define SAMPLE_TICKS 1600u
-#define BETWEEN 1.02f /* enlarges a sphere for clip between two samples */
+#define BETWEEN 1.02f /* enlarges a sphere for the motion between two samples */
 
-/* ---- detail ---- */
+/* ---- LOD ---- */
 
-/* The pack has measured a clip as it is played: once, where it does not repeat itself. Here it turns at its ends, and
- * what is off where a clip turns is twice what is off where it stops. (At its beginning, of which the pack says
- * nothing, it is taken to be no more than at its end.) */
+/* Update rate errors of the clips as the crowd plays them. The pack states those of a clip that is played once and
+ * stops. Here such clips play ping-pong: at a turn the velocity reverses instead of stopping, and the error of an
+ * extrapolated pose doubles. The error at a clip's beginning is not in the pack and is taken to be no larger than that
+ * at its end. */
 static void read_rates(crowd *c)
 {
     for (uint32_t m = 0; m < c->set.clip_count; m++) {
@@ -44,8 +45,8 @@ static int read_lod(crowd *c, void *memory)
                : 0;
 }
 
-/* One sphere that holds every pose of every clip, to cull by before there is a pose. Its centre is above the body's
- * place. */
+/* One sphere around every pose of every clip, so that bodies are culled without being posed. Its centre is above the
+ * body's place, at the height of the bind pose's; the radius is the largest at any sample of any clip. */
 static void measure_sphere(crowd *c)
 {
     noh_bounds b;
@@ -69,7 +70,8 @@ static void measure_sphere(crowd *c)
 
 /* ---- placing ---- */
 
-/* Steps of sequences that fill a square evenly, together, and a line (powers of the plastic and the golden ratio). */
+/* Steps of additive recurrences n * step mod 2^32: X and Y together fill a square evenly (1/p and 1/p^2, p the plastic
+ * number: M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018), LINE an interval (1/phi). */
 #define SPREAD_X 3242174889u
 #define SPREAD_Y 2447445414u
 #define SPREAD_LINE 2654435769u
@@ -95,7 +97,8 @@ static int moves_joints(const crowd *c, uint32_t clip)
     return (c->clips[clip].flags & NOH_CLIP_FLOATS_ONLY) == 0;
 }
 
-/* The n-th clip, modulo their count, among those with joints, or among those without; NOH_NONE: there is none. */
+/* The n-th clip, modulo their count, of those with joints (joints 1) or of those without (0); NOH_NONE: there is none.
+ */
 static uint32_t nth_clip(const crowd *c, uint32_t n, int joints)
 {
     uint32_t count = 0, m = 0;

@@ -1,15 +1,20 @@
-/* crowd_plan.c: every byte of a crowd, before it is made. */
+/* crowd_plan.c: every byte of a crowd, before it is made.
+ *
+ * Bodies are spread evenly over a disc, so that the share of bodies within a distance is the share of the area. The
+ * distance at which a level's error reaches the allowed pixels gives the number of bodies that may need a finer level
+ * at once, and with a reserve the slots of each pool. */
 #include <string.h>
 
 #include "crowd.h"
 #include "cli/message.h"
 
-#define RESERVE 1.25 /* slots for more bodies than an even spread puts so near, */
-#define RESERVE_BODIES 4.0
-#define ENTERED 0.21 /* of the allowed error: the share of meshes in lod.h, less its hysteresis */
-#define REACH_M 1.5  /* from a body's place to its nearest point, roughly */
+#define RESERVE 1.25       /* slots over those of an even spread: a factor, */
+#define RESERVE_BODIES 4.0 /* and a number of bodies */
+#define ENTERED \
+    0.21 /* share of the allowed error at which a level is entered: that of meshes in lod.h, less hysteresis */
+#define BODY_RADIUS_M 1.5 /* from a body's place to its nearest point, roughly */
 
-/* Of the skinned meshes the one with the most pairs. */
+/* The skinned mesh with the most pairs. */
 static int find_mesh(crowd_plan *p, const pack_file *file)
 {
     int found = 0;
@@ -26,13 +31,13 @@ static int find_mesh(crowd_plan *p, const pack_file *file)
             p->level_count = mesh.header->level_count;
         }
     }
-    return found ? 0 : tool_fail(file->path, "a crowd wants a skinned mesh, and the pack has none");
+    return found ? 0 : tool_fail(file->path, "a crowd needs a skinned mesh, and the pack has none");
 }
 
 /* ---- clips ---- */
 
-/* Every segment of every clip stays decoded, since a thousand bodies play all of them. */
-static int measure_clip(crowd_plan *p, const pack_file *file)
+/* The bank's bytes. Every segment of every clip stays decoded, since a thousand bodies play all of them. */
+static int measure_bank(crowd_plan *p, const pack_file *file)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
     uint32_t segments = 0;
@@ -45,12 +50,12 @@ static int measure_clip(crowd_plan *p, const pack_file *file)
         }
         segments += info.segment_count;
     }
-    p->set_desc.clips = &file->pack;
-    p->set_desc.skeleton = p->skin.header->skeleton;
-    p->set_desc.cached_segment_count = segments < NOH_CLIP_CACHE_SEGMENTS_MIN ? NOH_CLIP_CACHE_SEGMENTS_MIN : segments;
-    p->set_desc.root_axes = NOH_ROOT_X | NOH_ROOT_Z; /* bodies stay in place */
-    p->set_desc.root_up = 1;
-    return noh_clip_bank_measure(&p->set_desc, &p->set_needs, &error) ? tool_fail_error(file->path, &error) : 0;
+    p->bank_desc.clips = &file->pack;
+    p->bank_desc.skeleton = p->skin.header->skeleton;
+    p->bank_desc.cached_segment_count = segments < NOH_CLIP_CACHE_SEGMENTS_MIN ? NOH_CLIP_CACHE_SEGMENTS_MIN : segments;
+    p->bank_desc.root_axes = NOH_ROOT_X | NOH_ROOT_Z; /* bodies stay in place */
+    p->bank_desc.root_up = 1;
+    return noh_clip_bank_measure(&p->bank_desc, &p->bank_needs, &error) ? tool_fail_error(file->path, &error) : 0;
 }
 
 noh_character_desc crowd_character_desc(const noh_clip_set *set)
@@ -64,7 +69,7 @@ noh_character_desc crowd_character_desc(const noh_clip_set *set)
 
 /* ---- pools ---- */
 
-/* As in the LOD table. */
+/* The largest error of a level, metres, as the LOD table has it. */
 static float level_error(const noh_mesh *level)
 {
     const noh_mesh_header *h = level->header;
@@ -81,7 +86,7 @@ static double count_within(const crowd_plan *p, uint32_t level)
     const crowd_options *o = &p->options;
     const noh_mesh view = noh_mesh_at_lod(&p->mesh, level);
     double scale = ENTERED * (double)o->pixels / (double)level_error(&view);
-    double distance_m = (double)noh_lod_scale(1.0f, o->field_of_view_rad, o->height) / scale + REACH_M;
+    double distance_m = (double)noh_lod_scale(1.0f, o->field_of_view_rad, o->height) / scale + BODY_RADIUS_M;
     double share = distance_m / CROWD_FIELD_M;
     return share < 1.0 ? RESERVE * o->count * share * share + RESERVE_BODIES : o->count;
 }
@@ -95,7 +100,7 @@ static void add_pool(crowd_plan *p, uint32_t level, uint32_t slots)
     }
 }
 
-/* As many slots as bodies. */
+/* A pool for each level, with as many slots in all as there are bodies. */
 static void plan_pools(crowd_plan *p)
 {
     const crowd_options *o = &p->options;
@@ -132,17 +137,17 @@ static void *carve(noh_arena *arena, size_t count, size_t bytes)
     return noh_arena_carve(arena, count * bytes, 16);
 }
 
-noh_lod_pack_desc crowd_lod_desc(const crowd_plan *p, const noh_clip_bank *set)
+noh_lod_pack_desc crowd_lod_desc(const crowd_plan *p, const noh_clip_bank *bank)
 {
-    const noh_lod_pack_desc desc = { set, &p->set_desc, &p->mesh, NULL };
+    const noh_lod_pack_desc desc = { bank, &p->bank_desc, &p->mesh, NULL };
     return desc;
 }
 
 void crowd_carve(noh_arena *a, const crowd_plan *p, crowd *c, crowd_parts *parts)
 {
-    const noh_clip_set *shape = &p->set_needs.shape;
+    const noh_clip_set *shape = &p->bank_needs.shape;
     const size_t joints = shape->joint_count, targets = p->mesh.header->target_count, count = p->options.count;
-    parts->set = carve(a, 1, p->set_needs.bytes);
+    parts->bank = carve(a, 1, p->bank_needs.bytes);
     parts->scratch = carve(a, 1, p->scratch_bytes);
     parts->pools = carve(a, 1, p->pools_bytes);
     parts->schedule = carve(a, 1, p->schedule_bytes);
@@ -190,17 +195,17 @@ static int fill_options(crowd_plan *p, const crowd_options *o)
     p->options.height = o->height ? o->height : 720u;
     return o->count && o->count <= NOH_MORPH_INSTANCES_MAX
                ? 0
-               : tool_fail("crowd", "from 1 to %u bodies", NOH_MORPH_INSTANCES_MAX);
+               : tool_fail("crowd", "a crowd has from 1 to %u bodies", NOH_MORPH_INSTANCES_MAX);
 }
 
-/* The set does not exist yet; its counts suffice. */
+/* The bank does not exist yet; its counts suffice. */
 static size_t ask_lod(const crowd_plan *p)
 {
     noh_clip_bank counts;
     noh_lod_pack_desc desc;
     memset(&counts, 0, sizeof counts);
-    counts.clips = p->set_needs.shape;
-    counts.skeleton.joint_count = p->set_needs.shape.joint_count;
+    counts.clips = p->bank_needs.shape;
+    counts.skeleton.joint_count = p->bank_needs.shape.joint_count;
     desc = crowd_lod_desc(p, &counts);
     return noh_lod_pack_size(&desc);
 }
@@ -208,7 +213,7 @@ static size_t ask_lod(const crowd_plan *p)
 /* The sizes of the library's objects. */
 static int ask_sizes(crowd_plan *p, const pack_file *file, const noh_gl_caps *caps)
 {
-    const noh_character_desc character = crowd_character_desc(&p->set_needs.shape);
+    const noh_character_desc character = crowd_character_desc(&p->bank_needs.shape);
     const noh_lod_pools_desc pools = crowd_pools_desc(p);
     noh_gl_skin_desc skin = { &p->mesh, 1, &p->options.count, NOH_PALETTE_TEXTURE };
     noh_error error = { NOH_OK, "", 0, 0 };
@@ -221,7 +226,7 @@ static int ask_sizes(crowd_plan *p, const pack_file *file, const noh_gl_caps *ca
     p->schedule_bytes = noh_schedule_size(p->options.count);
     p->lod_bytes = ask_lod(p);
     if (!p->pools_bytes) {
-        return tool_fail(file->path, "the slots of a crowd's pools: as many as bodies are wanted");
+        return tool_fail(file->path, "the pools of a crowd need as many slots as it has bodies");
     }
     if (noh_gl_morph_plan_make(&p->morph_desc, caps, &p->morph, &error) ||
         noh_gl_skin_plan_make(&skin, caps, &p->skin_plan, &error)) {
@@ -236,7 +241,7 @@ int crowd_plan_make(crowd_plan *p, const pack_file *file, const noh_gl_caps *cap
     memset(p, 0, sizeof *p);
     status = fill_options(p, options);
     if (!status) status = find_mesh(p, file);
-    if (!status) status = measure_clip(p, file);
+    if (!status) status = measure_bank(p, file);
     if (!status) {
         plan_pools(p);
         status = ask_sizes(p, file, caps);

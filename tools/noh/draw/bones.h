@@ -14,7 +14,7 @@ typedef struct bones {
     float *vertices; /* [joint_count][2 octahedra][24 corners][9] */
 } bones;
 
-/* Room for one skeleton of that many joints. Prints an error and returns an exit code; 0 on success. */
+/* For a skeleton of that many joints. Prints an error and returns an exit code; 0 on success. */
 int bones_open(bones *b, gpu *g, uint32_t joint_count);
 void bones_close(bones *b);
 
@@ -22,7 +22,7 @@ void bones_close(bones *b);
  * shapes  matrices[joint_count][12], rows of 3 x 4: the joints in the world */
 void bones_draw(bones *b, const noh_skeleton *skeleton, const float *matrices, const noh_gl_camera *camera);
 
-/* The box of the joints. */
+/* The bounds of the joints. */
 bounds bones_bounds(uint32_t joint_count, const float *matrices);
 
 #endif

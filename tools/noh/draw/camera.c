@@ -52,7 +52,7 @@ bounds scene_bounds(const scene *s, const pack_file *file, int face)
     for (uint32_t i = 0; i < s->item_count; i++) {
         grow_item(&b, s, file, i, face);
     }
-    if (b.low[0] > b.high[0]) { /* no targets: the face is everything */
+    if (b.low[0] > b.high[0]) { /* no target moves anything: frame everything */
         if (face) {
             return scene_bounds(s, file, 0);
         }
@@ -171,7 +171,7 @@ int view_camera(const view_options *o, const bounds *box, noh_gl_camera *camera)
     orbit at = orbit_fit(box, (double)o->width / (double)o->height);
     if (o->camera && strcmp(o->camera, "face") != 0 && strcmp(o->camera, "body") != 0 && parse_orbit(o->camera, &at)) {
         return tool_usage(
-            "--camera wants face, body or AZIMUTH,ELEVATION[,DISTANCE] (degrees; elevation within 89; over 0), not '%s'",
+            "--camera wants face, body or AZIMUTH,ELEVATION[,DISTANCE] (degrees, elevation -89 to 89; distance over 0), not '%s'",
             o->camera);
     }
     orbit_camera(&at, camera);

@@ -23,7 +23,7 @@ typedef struct view_options {
 /* A camera that orbits a centre. Angles in radians, lengths in model units. */
 typedef struct orbit {
     double azimuth, elevation, distance;
-    double center[3], radius; /* what it looks at; radius of what lies between the near and the far plane */
+    double center[3], radius; /* of the sphere that it orbits; the near and far planes enclose it */
     double aspect;            /* width over height */
 } orbit;
 

@@ -6,7 +6,7 @@
 
 #include "cli/message.h"
 
-/* ---- what it will take ---- */
+/* ---- the budget ---- */
 
 static void add_part(load_budget *b, uint64_t cpu_bytes, uint64_t gpu_bytes, const char *kind, const char *name)
 {
@@ -51,7 +51,7 @@ static noh_gl_skin_desc skin_desc(const pack_file *file, const scene *s, const u
     return desc;
 }
 
-/* Bytes for the palette of one skin at a time; 0 where no drawn mesh is skinned. */
+/* Bytes of the palette of the largest skin; 0 if no drawn mesh is skinned. */
 static size_t matrix_bytes(const pack_file *file, const scene *s)
 {
     size_t most = 0;
@@ -82,7 +82,7 @@ static int add_skin(load_budget *b, const pack_file *file, const scene *s, const
     return 0;
 }
 
-/* Clips, controllers and poses: none in a pack without clips. */
+/* Clips, controllers and poses, if there are clips. */
 static int add_clip(load_budget *b, const pack_file *file, const scene *s, uint32_t instances)
 {
     uint64_t clips = 0, controllers = 0, poses = 0;
@@ -126,7 +126,7 @@ int load_budget_make(load_budget *b, const pack_file *file, const scene *s, cons
     if (!counts || !b->parts) {
         status = tool_fail(file->path, "out of memory");
     } else if (s->item_count == 0 && s->anim->pack.clip_count) {
-        b->plan.reason = "clips alone: name them as --anim of the pack that they move for the whole sum";
+        b->plan.reason = "only clips: for the whole sum give this pack as --anim of the one that it moves";
         status = add_clip(b, file, s, o->instances);
     } else if (s->item_count == 0) {
         status = tool_fail(file->path, "the pack has neither meshes nor clips");

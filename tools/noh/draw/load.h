@@ -24,11 +24,11 @@ typedef struct load_options {
     noh_accumulate accumulate;
     uint32_t instances; /* of the whole scene; 0: 1 */
     noh_debug_view view;
-    int fades; /* 1: levels set by load_set_detail fade into each other; 0: they change at once */
+    int fades; /* 1: levels set by load_set_lod fade into each other; 0: they change at once */
 } load_options;
 
-/* Of clips alone, the clips, with a plan that says nothing but its reason. Prints an error and returns an exit code; 0
- * on success. */
+/* What load_open will take. Of a pack of clips: its clips, and a plan with only a reason. Prints an error and returns
+ * an exit code; 0 on success. */
 int load_budget_make(load_budget *b, const pack_file *file, const scene *s, const noh_gl_caps *caps,
                      const load_options *o);
 void load_budget_free(load_budget *b);
@@ -51,26 +51,27 @@ typedef struct load {
     float *matrices; /* [joints of the largest skin][12] */
     size_t matrix_bytes;
     uint32_t *item_instances; /* [item_count]: the morph instance of each item of the first copy of the scene */
-    load_lod *lods;           /* [item_count]: the finest loaded level until load_set_detail */
+    load_lod *lods;           /* [item_count]: the finest loaded level until load_set_lod */
 } load;
 
 int load_open(load *l, gpu *g, const pack_file *file, const scene *s, const load_options *o);
 void load_close(load *l);
 
-/* Make everything again after g's context was lost and g->gl was filled for a new one. After an error close it. */
+/* Make everything again in a new context, with which g->gl was filled after the old one was lost. After an error, close
+ * it. */
 int load_restore(load *l);
 
 /* Upload the scene's weights and palettes, and accumulate. */
 int load_update(load *l, noh_gl_morph_stats *stats);
 
-/* From now on draw an item at the chosen mesh level (noh_lod_choose), or at both while they fade, and accumulate for
- * the finer one. Call it before load_update. Leaving out influences, joints and targets is up to the caller. */
+/* From now on draw an item at the chosen mesh level (noh_lod_choose), or at both levels of a fade, and accumulate for
+ * the finer one. Call it before load_update. The caller leaves out influences, joints and targets. */
 void load_set_lod(load *l, uint32_t item, const noh_lod *lod, int64_t clock);
 
 /* Draw every item: opaque, then blended. The framebuffer and viewport are the caller's. */
 void load_draw(load *l, const noh_gl_camera *camera);
 
-/* The binding of an item's palette: out, or NULL for a rigid item. */
+/* The binding of an item's palette, in *out; NULL for a rigid item. */
 const noh_gl_skin_binding *load_skin_binding(const load *l, uint32_t item, noh_gl_skin_binding *out);
 
 /* Capabilities to assume without a driver: a GLES 3.2 device with every feature, and textures as large as ES 3.0

@@ -1,10 +1,10 @@
-/* scene_detail.h: the LOD level of each item of a scene, chosen by its error in pixels.
+/* scene_lod.h: the LOD level of each item of a scene, chosen by its error in pixels.
  *
- *   scene_detail_open / scene_detail_close
- *   scene_detail_scale    pixels per metre at an item's nearest point
- *   scene_detail_choose   for a frame
- *   scene_detail_fix      a fixed level instead
- *   scene_detail_targets  weights without those of targets too small to be seen
+ *   scene_lod_open / scene_lod_close
+ *   scene_lod_scale    pixels per metre at an item's nearest point
+ *   scene_lod_choose   for a frame
+ *   scene_lod_fix      a fixed level instead
+ *   scene_lod_targets  weights without those of targets too small to be seen
  *
  * It chooses LOD levels of the mesh and targets; joints, influences and update rates stay full. */
 #ifndef NOH_NOH_DRAW_SCENE_LOD_H
@@ -13,7 +13,7 @@
 #include "noh_gl.h"
 #include "scene/scene.h"
 
-/* One item: the levels that it has, and the one chosen. */
+/* One item: its levels, and the chosen one. */
 typedef struct item_lod {
     noh_lod_mesh levels[NOH_LOD_LEVELS_MAX];
     noh_lod_table table;
@@ -31,19 +31,19 @@ typedef struct scene_lod {
 int scene_lod_open(scene_lod *d, const pack_file *file, const scene *s);
 void scene_lod_close(scene_lod *d);
 
-/* For the item's pose and a picture of that height, in pixels. By depth, not distance, so that it holds across the
- * picture. */
+/* Pixels per metre at the nearest point of an item in its pose; height: of the picture, pixels. By depth, not distance,
+ * so that it is the same across the picture. */
 float scene_lod_scale(const scene_lod *d, const pack_file *file, const scene *s, uint32_t item,
                       const noh_gl_camera *camera, uint32_t height);
 
-/* Choose a level. The first choice, and the first after scene_detail_fix, does not fade. */
+/* Choose a level. The first choice, and the first after scene_lod_fix, does not fade. */
 void scene_lod_choose(scene_lod *d, uint32_t item, const noh_lod_settings *settings, float pixels_per_metre,
                       int64_t clock);
 
-/* A level past the item's last means the last. No targets are left out. */
+/* A level past the last means the last. No targets are left out. */
 void scene_lod_fix(scene_lod *d, uint32_t item, uint32_t level, float pixels_per_metre);
 
-/* After scene_detail_choose: weights to kept[count] (may alias), 0 where a target is left out. Returns how many of
+/* After scene_lod_choose: weights to kept[count] (may alias), 0 where a target is left out. Returns how many of
  * these had a weight. */
 uint32_t scene_lod_targets(scene_lod *d, uint32_t item, const noh_lod_settings *settings, const float *weights,
                            uint32_t count, float *kept);

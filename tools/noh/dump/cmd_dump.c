@@ -1,5 +1,5 @@
-/* cmd_dump.c: the deformed mesh, baked to a plain OBJ. By default the CPU reference,
- * which needs no GL at all; with --path what the GPU's vertex shader fetches. */
+/* cmd_dump.c: the deformed mesh as an OBJ file: by default the CPU reference, which needs no GL; with --path the
+ * vertices of the GPU's vertex shader. */
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -116,7 +116,7 @@ static int fetch_item(load *l, readback *r, uint32_t item, noh_vertex *vertices)
     return status;
 }
 
-/* l, r NULL: the CPU's vertices. */
+/* l and r NULL: the vertices of the CPU. */
 static int dump_items(byte_buffer *out, const pack_file *file, const scene *s, load *l, readback *r)
 {
     uint32_t first = 1;
@@ -137,7 +137,7 @@ static int dump_gpu(byte_buffer *out, const pack_file *file, const scene *s, con
     gpu g;
     load l;
     readback r;
-    int status = gpu_open(&g, a->driver);
+    int status = gpu_open_drawing(&g, a->driver);
     if (status) {
         return status;
     }
@@ -210,7 +210,7 @@ static const option options[] = {
       .at = offsetof(dump_args, output),
       .required = 1,
       .value = "OUT.obj",
-      .what = "the mesh, positions in world space, vertex colours linear",
+      .what = "the mesh: positions in world space, linear vertex colours",
       .example = "face.obj" },
     OPTION_WEIGHT(dump_args, weights, .needs = NULL),
     OPTION_CLIP(dump_args, clips, .needs = NULL),
@@ -225,9 +225,9 @@ static const option options[] = {
 const verb verb_dump = {
     .name = "dump",
     .files = "PACK",
-    .what = "the deformed mesh, as drawn, baked to a plain one",
+    .what = "write the deformed mesh, as drawn, to an OBJ file",
     .more =
-        "Without --path, and with --path cpu, the CPU computes the mesh and no GL is needed. With another path it is what the vertex shader has.",
+        "Without --path, and with --path cpu, the CPU computes the mesh and no GL is needed. With any other path the vertices are those of the vertex shader.",
     .example = "face.noh -o face.obj --weight smile=1\nbody.noh -o walk.obj --clip walk --time 0.5 --path mrt",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

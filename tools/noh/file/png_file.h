@@ -1,4 +1,4 @@
-/* png_file.h: pictures out. */
+/* png_file.h: pictures as .png files. */
 #ifndef NOH_NOH_FILE_PNG_FILE_H
 #define NOH_NOH_FILE_PNG_FILE_H
 

@@ -4,7 +4,7 @@
 
 #include "gpu.h"
 
-/* The background, as linear light and as the sRGB bytes that it becomes. */
+/* The background, as linear light and as sRGB bytes. */
 #define CANVAS_BACKGROUND_LINEAR 0.075f, 0.078f, 0.085f
 #define CANVAS_BACKGROUND_SRGB 78, 79, 82
 

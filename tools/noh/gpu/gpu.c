@@ -54,6 +54,21 @@ int gpu_open(gpu *g, const char *driver)
     return 0;
 }
 
+int gpu_gives_vertices(const noh_gl_api *gl)
+{
+    return gl->BeginTransformFeedback && gl->EndTransformFeedback && gl->MapBufferRange && gl->UnmapBuffer;
+}
+
+int gpu_open_drawing(gpu *g, const char *driver)
+{
+    int status = gpu_open(g, driver);
+    if (!status && !gpu_gives_vertices(&g->gl)) {
+        status = tool_fail(g->platform->name, "this driver draws nothing that could be read back");
+        gpu_close(g);
+    }
+    return status;
+}
+
 void gpu_close(gpu *g)
 {
     if (g->platform) {

@@ -13,8 +13,13 @@ typedef struct gpu {
     noh_gl_ledger ledger; /* what the library's objects use */
 } gpu;
 
-/* Make a context of that driver ("egl" when NULL) and probe it. Prints why not; 0 on success. */
+/* Make a context of that driver ("egl" when NULL) and probe it. Prints an error and returns an exit code; 0 on success.
+ */
 int gpu_open(gpu *g, const char *driver);
+/* For what reads pictures or vertices back: refuse a driver that draws nothing ("null") too. */
+int gpu_open_drawing(gpu *g, const char *driver);
+/* 1 where the driver gives vertices back, by transform feedback. */
+int gpu_gives_vertices(const noh_gl_api *gl);
 void gpu_close(gpu *g);
 
 /* One noh_gl_morph with its memory. */

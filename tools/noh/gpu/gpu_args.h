@@ -1,11 +1,11 @@
-/* gpu_args.h: options that several verbs have, as rows of their tables, and the values that say how the GPU works. */
+/* gpu_args.h: values of options about the GPU. */
 #ifndef NOH_NOH_GPU_GPU_ARGS_H
 #define NOH_NOH_GPU_GPU_ARGS_H
 
 #include "cli/args.h"
 #include "noh_gl.h"
 
-/* The values of --path, --accumulate and --instances. Return 0, or EXIT_USAGE after printing. */
+/* Of --path, --accumulate and --instances. Return 0, or EXIT_USAGE after printing an error. */
 int parse_path(const char *text, noh_morph_path *path);
 int parse_accumulate(const char *text, noh_accumulate *accumulate);
 int parse_instances(double value, uint32_t *instances);

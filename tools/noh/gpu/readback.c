@@ -1,5 +1,5 @@
 /* readback.c: accumulated layers as bits, through RGBA32UI targets, which core ES 3.0 can always
- * render and read: no format conversion stands between the test and the value. */
+ * render and read: no format conversion changes a value on its way to the test. */
 #include "readback.h"
 
 #include <stdio.h>

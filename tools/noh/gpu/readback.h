@@ -1,4 +1,4 @@
-/* readback.h: what the GPU made, read back. */
+/* readback.h: results of the GPU, read back. */
 #ifndef NOH_NOH_GPU_READBACK_H
 #define NOH_NOH_GPU_READBACK_H
 
@@ -9,7 +9,7 @@ typedef struct readback {
     gpu *g;
     int is_uint;
     GLuint layers_program, vertex_array;
-    noh_gl_variant variant; /* what read vertices last */
+    noh_gl_variant variant; /* with which vertices were read last */
 } readback;
 
 int readback_open(readback *r, gpu *g, int is_uint);
@@ -28,8 +28,9 @@ typedef struct readback_vertex {
 } readback_vertex;
 
 /* Every vertex of a mesh with these bindings (NULL: rest pose, bind pose), each by its own palette: out[vertex_count].
- * crowd: 0 draws one mesh in an identity world; else so many instances in one draw from the one that skin binds, each
- * in its own world, and out is [crowd][vertex_count]. Prints why not; 0 on success. */
+ * crowd: 0 draws one mesh with an identity world matrix; else this many instances in one draw, from the one that skin
+ * binds, each with its own world matrix, into out[crowd][vertex_count]. Prints an error and returns an exit code; 0 on
+ * success. */
 int readback_skinned(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph,
                      const noh_gl_skin_binding *skin, uint32_t crowd, readback_vertex *out);
 

@@ -1,5 +1,5 @@
-/* readback_vertices.c: every vertex as mesh.vert leaves it, through transform feedback: the shader that draws
- * is the shader that is read. */
+/* readback_vertices.c: every vertex as mesh.vert leaves it, through transform feedback, so that the shader that is
+ * tested is the shader that draws. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -86,6 +86,9 @@ int readback_skinned(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_bi
     int status = use_variant(
             r, noh_gl_variant_key_of(&mesh->mesh, skin, crowd != 0, morph && morph->is_uint, NOH_VIEW_LIT)),
         lost;
+    if (!status && !gpu_gives_vertices(gl)) {
+        status = tool_fail("readback", "this driver has no transform feedback");
+    }
     if (status) {
         return status;
     }

@@ -10,7 +10,7 @@
 
 #define WIDTH 100 /* columns */
 
-/* Words, broken between blanks into lines that begin with `indent` blanks; the first line begins at column `at`. */
+/* Text broken at blanks into lines indented by `indent`; the first line begins at column `at`. */
 static void print_wrapped(FILE *out, const char *text, int at, int indent)
 {
     while (*text) {
@@ -101,7 +101,7 @@ void help_print(FILE *out)
         fprintf(out, "  noh %-7s %s\n", verb_at(i)->name, verb_at(i)->what);
     }
     fputs("\nnoh VERB --help     a verb's options, with examples (also: noh help VERB)\n"
-          "noh help FORMATS    the text formats that files and options have\n"
+          "noh help FORMATS    the formats of files and options\n"
           "noh help --man      all of it as a man page; --bash: completion for bash\n"
           "noh --version\n\n"
           "exit code: 0, 1 (the input or the check failed), 2 (usage)\n",

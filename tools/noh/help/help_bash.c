@@ -1,11 +1,11 @@
-/* help_bash.c: completion for bash: verbs, a verb's options, the words that an option takes, else files. */
+/* help_bash.c: completion for bash: verbs, their options, the words that options take, else files. */
 #include <stdio.h>
 #include <string.h>
 
 #include "help.h"
 #include "cli/verbs.h"
 
-/* "auto|f32|f16" are words to choose from; of "face|body|AZ,EL[,DIST]" the small ones are. */
+/* The words to choose from: all of "auto|f32|f16", those in lower case of "face|body|AZ,EL[,DIST]". */
 static void put_words(FILE *out, const char *value)
 {
     int first = 1;
@@ -22,7 +22,7 @@ static void put_words(FILE *out, const char *value)
 static void bash_option(FILE *out, const verb *v, const option *o)
 {
     if (o->kind == OPTION_FLAG || o->kind == OPTION_INPUT || o->kind == OPTION_OUTPUT) {
-        return; /* no value, or a file: the default */
+        return; /* no value, or a file name: bash's default */
     }
     fprintf(out, "    '%s %s') words='", v->name, o->name);
     put_words(out, o->value);

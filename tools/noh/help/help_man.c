@@ -6,7 +6,7 @@
 #include "help.h"
 #include "cli/verbs.h"
 
-/* A backslash and a hyphen mean something to troff, and a dot or quote at the start of a line. */
+/* Backslashes and hyphens are special to troff, dots and quotes at the start of a line. */
 static void put_escaped(FILE *out, const char *text, int length)
 {
     for (int i = 0; i < length; i++) {

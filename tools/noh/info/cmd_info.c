@@ -31,9 +31,9 @@ static void print_skin(const noh_pack *pack, const noh_mesh_header *h)
 {
     noh_skin skin;
     if (noh_pack_skin_at(pack, h->skin, &skin, NULL) == NOH_OK) {
-        printf("  skin '%s': %u joints, %u influence%s a vertex, %u palette%s, by %s\n", skin.name,
-               skin.header->joint_count, h->influence_count, h->influence_count == 1 ? "" : "s", h->palette_count,
-               h->palette_count == 1 ? "" : "s", method_of(h));
+        printf("  skin '%s': %u joints, %u influence%s per vertex, %u palette%s, with %s\n", skin.name,
+               skin.header->joint_count, h->influence_count, plural(h->influence_count), h->palette_count,
+               plural(h->palette_count), method_of(h));
     }
 }
 
@@ -46,7 +46,7 @@ static double millimetres(const noh_mesh_header *h, float length)
 static void print_levels(const noh_mesh *m)
 {
     if (m->header->influence_errors[2] > 0.0f) {
-        printf("  with only the 4, 2, 1 heaviest joints of a vertex: off by at most %.3f, %.3f, %.3f mm in motion\n",
+        printf("  with only the 4, 2, 1 heaviest joints of a vertex: off by at most %.3f, %.3f, %.3f mm in clips\n",
                millimetres(m->header, m->header->influence_errors[0]),
                millimetres(m->header, m->header->influence_errors[1]),
                millimetres(m->header, m->header->influence_errors[2]));
@@ -58,13 +58,13 @@ static void print_levels(const noh_mesh *m)
                h->index_count / 3, h->touched_count, h->pair_count, h->rect_count);
         if (k) {
             printf(
-                "; off by at most, mm: %.3f at rest (99 %%: %.3f), %.3f a target, %.3f left and right, %.3f in motion",
+                "; off by at most, mm: %.3f at rest (99 %%: %.3f), %.3f with one target, %.3f with left and right, %.3f in clips",
                 millimetres(h, h->level_error_rest), millimetres(h, h->level_error_rest_p99),
                 millimetres(h, h->level_error_targets), millimetres(h, h->level_error_pairs),
                 millimetres(h, h->level_error_clip));
         }
         if (h->level_skipped > 0.0f) {
-            printf(", targets of %.3f left out", millimetres(h, h->level_skipped));
+            printf("; targets left out move at most %.3f together", millimetres(h, h->level_skipped));
         }
         putchar('\n');
     }
@@ -98,9 +98,10 @@ static int print_clip(const pack_file *file, uint32_t index)
     noh_clip_info info;
     int status = tool_clip_info(file, index, &clip, &info);
     if (!status) {
-        printf("clip '%s': %.3f s, %u joints, %u floats, %u bytes, %u callback keys, %u sync markers%s\n", clip.name,
+        printf("clip '%s': %.3f s, %u joints, %u floats, %u bytes, %u callback key%s, %u sync marker%s%s\n", clip.name,
                tool_clip_seconds(&info), info.joint_count, info.float_count, clip.header->clip_bytes,
-               clip.header->event_count, clip.header->marker_count, info.flags & NOH_CLIP_FLAG_LOOP ? ", a loop" : "");
+               clip.header->event_count, plural(clip.header->event_count), clip.header->marker_count,
+               plural(clip.header->marker_count), info.flags & NOH_CLIP_FLAG_LOOP ? ", a loop" : "");
         info_print_errors(&file->pack, &clip);
     }
     return status;
@@ -108,7 +109,7 @@ static int print_clip(const pack_file *file, uint32_t index)
 
 #define VERSION_BYTES 24
 
-/* The version of the noh that wrote the pack; "?" before packs held one. */
+/* The version of the noh that wrote the pack; "?" if the pack has none. */
 static void write_version(const noh_pack *pack, char text[VERSION_BYTES])
 {
     const uint32_t v = pack->library_version;
@@ -126,9 +127,11 @@ static int print_info(const pack_file *file)
     char writer[VERSION_BYTES];
     write_version(p, writer);
     printf(
-        "%s: format %u, written by noh %s, %u bytes, %u chunks; %u meshes, %u nodes, %u skeletons, %u clips, %u materials, %u textures\n",
-        file->path, NOH_PACK_VERSION, writer, p->byte_count, p->chunk_count, p->mesh_count, p->node_count,
-        p->skeleton_count, p->clip_count, p->material_count, p->texture_count);
+        "%s: format %u, written by noh %s, %u bytes, %u chunks; %u mesh%s, %u node%s, %u skeleton%s, %u clip%s, %u material%s, %u texture%s\n",
+        file->path, NOH_PACK_VERSION, writer, p->byte_count, p->chunk_count, p->mesh_count,
+        p->mesh_count == 1 ? "" : "es", p->node_count, plural(p->node_count), p->skeleton_count,
+        plural(p->skeleton_count), p->clip_count, plural(p->clip_count), p->material_count, plural(p->material_count),
+        p->texture_count, plural(p->texture_count));
     for (uint32_t i = 0; i < p->mesh_count; i++) {
         noh_mesh mesh;
         noh_pack_mesh_at(p, i, &mesh, NULL);
@@ -338,7 +341,7 @@ static const option options[] = { OPTION_JSON(info_args, as_json) };
 const verb verb_info = {
     .name = "info",
     .files = "PACK",
-    .what = "chunks, counts, names, errors certified at build",
+    .what = "list what is in a pack: counts, names, bytes, errors certified at build",
     .example = "face.noh\nface.noh --json",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

@@ -7,7 +7,7 @@ void info_print_levels(const noh_pack *pack, uint32_t skeleton)
     uint32_t count;
     const uint32_t *levels = noh_pack_joint_levels(pack, skeleton, &count);
     for (uint32_t i = 1; i < count; i++) {
-        printf("%s%u", i == 1 ? ", at less detail " : i + 1 == count ? " or " : ", ", levels[i]);
+        printf("%s%u", i == 1 ? ", at coarser levels " : i + 1 == count ? " or " : ", ", levels[i]);
     }
 }
 
@@ -38,10 +38,16 @@ void info_print_errors(const noh_pack *pack, const noh_pack_clip *clip)
     const double unit = unit_cm(pack, clip);
     uint32_t count;
     const uint32_t *levels = noh_pack_joint_levels(pack, h->skeleton, &count);
-    printf("  off at 30, 15, 8 Hz by %.3g, %.3g, %.3g cm", unit * (double)h->update_rate_error[1],
+    printf("  off by at most %.3g, %.3g, %.3g cm at 30, 15, 8 Hz", unit * (double)h->update_rate_error[1],
            unit * (double)h->update_rate_error[2], unit * (double)h->update_rate_error[3]);
     for (uint32_t i = 1; i < h->joint_error_count; i++) {
-        printf("%s %u joints by %.3g cm", i == 1 ? "; with" : ",", levels[i], unit * (double)clip->joint_errors[i]);
+        printf("%s %.3g", i == 1 ? ";" : ",", unit * (double)clip->joint_errors[i]);
+    }
+    for (uint32_t i = 1; i < h->joint_error_count; i++) {
+        printf("%s %u", i == 1 ? " cm with" : ",", levels[i]);
+    }
+    if (h->joint_error_count > 1) {
+        fputs(h->joint_error_count == 2 && levels[1] == 1 ? " joint" : " joints", stdout);
     }
     if (h->error_shell > 0.0f) {
         printf(" (%.3g cm from the joints)", unit * (double)h->error_shell);

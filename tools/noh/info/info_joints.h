@@ -1,4 +1,4 @@
-/* info_joints.h: what `noh info` says of joint levels, and the errors of fewer joints and lower update rates. */
+/* info_joints.h: the part of `noh info` about joint levels, and the errors of fewer joints and lower update rates. */
 #ifndef NOH_NOH_INFO_INFO_JOINTS_H
 #define NOH_NOH_INFO_INFO_JOINTS_H
 

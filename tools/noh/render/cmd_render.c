@@ -63,7 +63,7 @@ static void print_done(const render_args *a, const drawn *d)
             noh_accumulate_name(d->plan.accumulate), d->plan.reason);
 }
 
-/* The camera frames the full mesh at every level. */
+/* Frame the full mesh at every level, so that pictures of levels can be compared. */
 static int draw(gpu *g, const pack_file *file, scene *s, const render_args *a, int show_bones, uint8_t *rgba,
                 drawn *done)
 {
@@ -99,7 +99,7 @@ static int pose_and_draw(const pack_file *file, const render_args *a)
         status = show_bones < 0 ? EXIT_FAILED : scene_open_anim(&s, file, a->anim);
         if (!status && a->clips.count) status = scene_set_clips(&s, file, &a->clips, a->time_s);
         if (!status) status = scene_set_weights(&s, file, &a->weights);
-        if (!status) status = gpu_open(&g, a->driver);
+        if (!status) status = gpu_open_drawing(&g, a->driver);
         if (!status) {
             status = draw(&g, file, &s, a, show_bones, rgba, &d);
             gpu_close(&g);
@@ -157,13 +157,13 @@ static const option options[] = {
     { .name = "--bones",
       .kind = OPTION_FLAG,
       .at = offsetof(render_args, show_bones),
-      .what = "draw the skeletons in place of the meshes; a pack without meshes is always drawn so" },
+      .what = "draw the skeletons instead of the meshes; implied where the pack has no meshes" },
     { .name = "--debug",
       .kind = OPTION_TEXT,
       .at = offsetof(render_args, debug),
       .value = "none|position|normal|tangent|lod",
       .initial = "none",
-      .what = "draw this as a colour instead of lighting",
+      .what = "show this as colours instead of lighting",
       .excludes = "--bones" },
     OPTION_PATH(render_args, path, .initial = "auto", .excludes = "--bones"),
     OPTION_ACCUMULATE(render_args, accumulate, .initial = "auto", .excludes = "--bones"),
@@ -173,7 +173,7 @@ static const option options[] = {
 const verb verb_render = {
     .name = "render",
     .files = "PACK",
-    .what = "a picture",
+    .what = "draw a picture",
     .example = "face.noh -o face.png --weight smile=1 --camera face\nbody.noh -o walk.png --clip walk --time 0.5",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

@@ -94,7 +94,8 @@ int scene_set_level(scene *s, const pack_file *file, uint32_t level)
 {
     const uint32_t count = scene_level_count(s, file);
     if (level >= count) {
-        return tool_fail(file->path, "no LOD level %u: the pack has %u (`noh build --lod N` makes them)", level, count);
+        return tool_fail(file->path, "no LOD level %u: the pack has %u level%s (`noh build --lod N` makes them)", level,
+                         count, plural(count));
     }
     for (uint32_t i = 0; i < file->pack.mesh_count; i++) {
         s->meshes[i] = noh_mesh_at_lod(&s->meshes[i], level);

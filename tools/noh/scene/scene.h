@@ -10,19 +10,19 @@
 #include "cli/args.h"
 #include "file/pack_file.h"
 
-/* Plays clips on one skeleton of the pack, or on weights alone in a pack without skeletons: a clip set, a controller
- * for each copy of the scene, and room for one pose at a time. */
+/* Plays clips on one skeleton of the pack, or only on weights in a pack without skeletons: a clip bank, a controller
+ * per copy of the scene, and memory for one pose at a time. */
 typedef struct scene_player {
     noh_skeleton skeleton; /* joint_count 0: none */
     /* [joint_count][12] in model space, see local_to_model.h; the bind pose until a clip is set */
     float *joint_matrices;
-    noh_clip_bank *set;           /* NULL: not opened yet, or no clip fits */
+    noh_clip_bank *bank;          /* NULL: not opened yet, or no clip fits */
     noh_controller **controllers; /* [controller_count] */
     uint32_t controller_count;
     noh_pose_scratch scratch;
     void *set_memory, *scratch_memory;
     noh_transform *pose;                              /* [joint_count] */
-    float *floats;                                    /* [set->clips.float_count] */
+    float *floats;                                    /* [bank->clips.float_count] */
     uint64_t set_bytes, controller_bytes, pose_bytes; /* taken */
 } scene_player;
 
@@ -46,26 +46,27 @@ typedef struct scene {
 } scene;
 
 /* Every node with a mesh (or every mesh, in a pack without nodes) at its default weights, every skeleton in its bind
- * pose. The pack must stay where it is while the scene is used. */
+ * pose. The pack must not move while the scene is used. */
 int scene_init(scene *s, const pack_file *file);
 void scene_free(scene *s);
-/* Take every mesh at an LOD level, or at its coarsest; an error where no mesh has that many. */
+/* Use every mesh at this LOD level or at its coarsest; an error if no mesh has so many levels. */
 int scene_set_level(scene *s, const pack_file *file, uint32_t level);
 uint32_t scene_level_count(const scene *s, const pack_file *file);
 /* Free what scene_open_players made; the skeleton stays. */
 void scene_close_player(scene_player *p);
-/* Take the clips from another pack (NULL: from the same one). Before any is played. */
+/* Use the clips of another pack (NULL: of the same one). Call it before any is played. */
 int scene_open_anim(scene *s, const pack_file *file, const char *path);
-/* Open the clips and `controllers` controllers for each player. scene_set_clips does so for one. */
+/* Open the clips and this many controllers for each player. scene_set_clips opens one. */
 int scene_open_players(scene *s, const pack_file *file, uint32_t controllers);
 /* The bytes that scene_open_players will take, added to *clips, *controller_bytes and *poses. */
 int scene_measure_players(const scene *s, const pack_file *file, uint32_t controllers, uint64_t *clips,
                           uint64_t *controller_bytes, uint64_t *poses);
-/* How many decoded segments the clips then hold at once, of how many in all. */
+/* How many decoded segments are then cached at once, and how many there are in all. */
 void scene_measure_segments(const scene *s, const pack_file *file, uint32_t controllers, uint32_t *held, uint32_t *all);
-/* Weights and joint matrices of clips at a time, together; unknown names are an error that suggests the nearest. */
+/* Pose by clips at a time, together: weights and joint matrices. An unknown name is an error that suggests the nearest.
+ */
 int scene_set_clips(scene *s, const pack_file *file, const option_list *names, double time_s);
-/* Reset a player's first controller; pose it into the player's matrices and the scene's weights. */
+/* Reset a player's first controller; pose the player's matrices and the scene's weights by it. */
 int scene_reset_player(scene_player *p);
 void scene_pose_player(scene *s, scene_player *p);
 
@@ -89,9 +90,9 @@ void scene_skin_matrices(const scene *s, const noh_skin *skin, float *matrices);
 /* The first `count` vertices of an item, morphed and skinned on the CPU, before its node's transform (scene_world).
  * Prints an error and returns an exit code; 0 on success. */
 int scene_deform(const scene *s, uint32_t item, uint32_t count, noh_vertex *vertices);
-/* NAME=VALUE for every mesh that has such a target; suggests the nearest name otherwise. */
+/* NAME=VALUE, for every mesh with such a target; an unknown name is an error that suggests the nearest. */
 int scene_set_weights(scene *s, const pack_file *file, const option_list *assignments);
-/* 0 when some mesh has the target; prints an error with the nearest name otherwise. */
+/* 0 if some mesh has the target; else prints an error that suggests the nearest. */
 int scene_check_target(const scene *s, const pack_file *file, const char *name);
 /* "no clip named 'wlak' (did you mean 'walk'?)"; returns an exit code. */
 int scene_fail_unknown(const pack_file *file, const char *kind, const char *name, const char *const *names,

@@ -12,10 +12,10 @@ static int find_pair(scene *s, const pack_file *file, const scene_pair *pair, sc
     if (!status) status = scene_clip_seconds(s, file, pair->to, &seconds);
     for (uint32_t i = 0; i < s->player_count && !status; i++) {
         scene_player *p = &s->players[i];
-        if (p->set) {
-            clips[0] = noh_clip_bank_find(p->set, pair->from);
-            clips[1] = noh_clip_bank_find(p->set, pair->to);
-            if (clips[0] < p->set->clips.clip_count && clips[1] < p->set->clips.clip_count) {
+        if (p->bank) {
+            clips[0] = noh_clip_bank_find(p->bank, pair->from);
+            clips[1] = noh_clip_bank_find(p->bank, pair->to);
+            if (clips[0] < p->bank->clips.clip_count && clips[1] < p->bank->clips.clip_count) {
                 *player = p;
                 return 0;
             }
@@ -32,7 +32,7 @@ static int start(scene_player *p, uint32_t track, uint32_t clip, int64_t positio
     memset(&desc, 0, sizeof desc);
     desc.clip = clip;
     desc.position_ticks = position_ticks;
-    if (noh_controller_start(p->controllers[0], &p->set->clips, track, &desc, &error)) {
+    if (noh_controller_start(p->controllers[0], &p->bank->clips, track, &desc, &error)) {
         return tool_fail_error("clip", &error);
     }
     noh_controller_set_weight(p->controllers[0], track, weight); /* 0 in a desc would mean 1 */
@@ -42,7 +42,7 @@ static int start(scene_player *p, uint32_t track, uint32_t clip, int64_t positio
 /* Both clips at the same phase. */
 static int pose_blend(scene_player *p, const scene_pair *pair, const uint32_t clips[2], double phase)
 {
-    const noh_clip_entry *m = p->set->clips.clips;
+    const noh_clip_entry *m = p->bank->clips.clips;
     int status = 0;
     for (uint32_t i = 0; i < 2 && !status; i++) {
         status = start(p, i, clips[i], (int64_t)(phase * m[clips[i]].duration_ticks + 0.5),
@@ -53,7 +53,7 @@ static int pose_blend(scene_player *p, const scene_pair *pair, const uint32_t cl
 
 static int pose_transition(scene_player *p, const scene_pair *pair, const uint32_t clips[2], double time_s)
 {
-    const noh_clip_set *set = &p->set->clips;
+    const noh_clip_set *set = &p->bank->clips;
     noh_controller *c = p->controllers[0];
     noh_error error = { NOH_OK, "", 0, 0 };
     const uint32_t over = (uint32_t)noh_ticks_from_seconds(pair->over_s);

@@ -1,11 +1,9 @@
-/* scene_play.c: a scene posed by clips: model_clips sets, controllers, and where their poses go. */
+/* scene_play.c: a scene posed by clips: banks, controllers, and the items that get their poses. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/message.h"
 #include "scene.h"
-
-/* ---- clips ---- */
 
 /* ---- opening ---- */
 
@@ -47,7 +45,7 @@ static uint64_t pose_bytes(const noh_clip_set *set)
            (uint64_t)set->float_count * sizeof(float);
 }
 
-/* A player whose skeleton no clip fits (NOT_FOUND) is no error while the clips fit another one. */
+/* A player whose skeleton no clip fits (NOT_FOUND) is an error only if the clips fit no other player either. */
 static int failed_for_good(const scene *s, const pack_file *file, uint32_t fitting, const noh_error *error)
 {
     if (error->result != NOH_OK && error->result != NOH_ERR_NOT_FOUND) {
@@ -94,7 +92,7 @@ void scene_measure_segments(const scene *s, const pack_file *file, uint32_t cont
 
 static int open_controllers(scene_player *p, uint32_t count)
 {
-    const noh_controller_desc desc = controller_desc(&p->set->clips);
+    const noh_controller_desc desc = controller_desc(&p->bank->clips);
     const size_t bytes = noh_controller_size(&desc);
     p->controllers = calloc(count, sizeof *p->controllers);
     for (uint32_t i = 0; p->controllers && i < count; i++) {
@@ -111,7 +109,7 @@ static int open_controllers(scene_player *p, uint32_t count)
 
 static int open_poses(scene_player *p)
 {
-    const noh_clip_set *set = &p->set->clips;
+    const noh_clip_set *set = &p->bank->clips;
     const size_t bytes = noh_pose_scratch_size(set, 1);
     p->scratch_memory = malloc(bytes + 1);
     p->pose = calloc(set->joint_count + 1u, sizeof *p->pose);
@@ -121,7 +119,7 @@ static int open_poses(scene_player *p)
            noh_pose_scratch_init(p->scratch_memory, bytes, set, 1, &p->scratch, NULL);
 }
 
-/* Also 0 where no clip fits: the player then has no set, and *error says why. */
+/* Also 0 if no clip fits: the player then has no bank, and *error says why. */
 static int open_player(scene *s, const pack_file *file, uint32_t index, uint32_t controllers, noh_error *error)
 {
     const noh_clip_bank_desc desc = set_desc(s, file, index, controllers);
@@ -135,8 +133,8 @@ static int open_player(scene *s, const pack_file *file, uint32_t index, uint32_t
     if (!p->set_memory) {
         return tool_fail(s->anim->path, "out of memory");
     }
-    if (noh_clip_bank_init(p->set_memory, bytes, &desc, &p->set, error)) {
-        p->set = NULL;
+    if (noh_clip_bank_init(p->set_memory, bytes, &desc, &p->bank, error)) {
+        p->bank = NULL;
         return tool_fail_error(s->anim->path, error);
     }
     return open_controllers(p, controllers) || open_poses(p) ? tool_fail(s->anim->path, "out of memory") : 0;
@@ -156,7 +154,7 @@ void scene_close_player(scene_player *p)
     p->set_memory = p->scratch_memory = NULL;
     p->pose = NULL;
     p->floats = NULL;
-    p->set = NULL;
+    p->bank = NULL;
     p->controller_count = 0;
     p->set_bytes = p->controller_bytes = p->pose_bytes = 0;
 }
@@ -164,7 +162,7 @@ void scene_close_player(scene_player *p)
 static int is_open(const scene *s)
 {
     for (uint32_t i = 0; i < s->player_count; i++) {
-        if (s->players[i].set) {
+        if (s->players[i].bank) {
             return 1;
         }
     }
@@ -197,8 +195,8 @@ static int fail_clip(const scene *s, const pack_file *file, const char *name)
         names[i] = clip.name;
         if (strcmp(clip.name, name) == 0) {
             status = tool_fail(s->anim->path,
-                               "clip '%s' moves another skeleton than %s has: names or parents of joints differ", name,
-                               file->path);
+                               "clip '%s' moves another skeleton than that of %s: names or parents of joints differ",
+                               name, file->path);
         }
     }
     if (!status) {
@@ -211,8 +209,8 @@ static int fail_clip(const scene *s, const pack_file *file, const char *name)
 
 static int has_clip(const scene_player *p, const char *name, uint32_t *clip)
 {
-    *clip = p->set ? noh_clip_bank_find(p->set, name) : 0;
-    return p->set && *clip < p->set->clips.clip_count;
+    *clip = p->bank ? noh_clip_bank_find(p->bank, name) : 0;
+    return p->bank && *clip < p->bank->clips.clip_count;
 }
 
 /* Whether a playing clip has tracks for the floats of a group. */
@@ -221,7 +219,7 @@ static int is_moved(const scene_player *p, uint32_t group)
     const noh_controller *c = p->controllers[0];
     for (uint32_t t = 0; t < c->track_count; t++) {
         const noh_track *track = noh_controller_track(c, t);
-        if (track->mode == NOH_TRACK_ON && noh_clip_bank_moves(p->set, track->clip, group)) {
+        if (track->mode == NOH_TRACK_ON && noh_clip_bank_moves(p->bank, track->clip, group)) {
             return 1;
         }
     }
@@ -232,17 +230,17 @@ static int is_moved(const scene_player *p, uint32_t group)
 static void take_weights(scene *s, const scene_player *p)
 {
     for (uint32_t i = 0; i < s->item_count; i++) {
-        const uint32_t group = noh_clip_bank_node_group(p->set, s->items[i].node);
+        const uint32_t group = noh_clip_bank_node_group(p->bank, s->items[i].node);
         if (group != NOH_NONE && is_moved(p, group)) {
-            memcpy(s->items[i].weights, p->floats + p->set->groups[group].first,
-                   p->set->groups[group].width * sizeof(float));
+            memcpy(s->items[i].weights, p->floats + p->bank->groups[group].first,
+                   p->bank->groups[group].width * sizeof(float));
         }
     }
 }
 
 int scene_reset_player(scene_player *p)
 {
-    const noh_controller_desc desc = controller_desc(&p->set->clips);
+    const noh_controller_desc desc = controller_desc(&p->bank->clips);
     noh_error error = { NOH_OK, "", 0, 0 };
     noh_controller *c = p->controllers[0];
     return noh_controller_init(c, noh_controller_bytes(c), &desc, &p->controllers[0], &error)
@@ -252,7 +250,7 @@ int scene_reset_player(scene_player *p)
 
 void scene_pose_player(scene *s, scene_player *p)
 {
-    noh_controller_pose(p->controllers[0], &p->set->clips, &p->scratch, p->pose, p->floats);
+    noh_controller_pose(p->controllers[0], &p->bank->clips, &p->scratch, p->pose, p->floats);
     take_weights(s, p);
     if (p->skeleton.joint_count) {
         noh_local_to_model(&p->skeleton, p->pose, p->skeleton.joint_count, p->joint_matrices);
@@ -273,7 +271,7 @@ static int start_clip(scene *s, scene_player *p, uint32_t clip, double time_s)
     memset(&desc, 0, sizeof desc);
     desc.clip = clip;
     desc.position_ticks = noh_ticks_from_seconds(time_s > limit_s ? limit_s : time_s < -limit_s ? -limit_s : time_s);
-    return noh_controller_start(c, &p->set->clips, track, &desc, &error) ? tool_fail_error(s->anim->path, &error) : 0;
+    return noh_controller_start(c, &p->bank->clips, track, &desc, &error) ? tool_fail_error(s->anim->path, &error) : 0;
 }
 
 static int start_named(scene *s, const pack_file *file, const char *name, double time_s)
@@ -293,13 +291,13 @@ int scene_set_clips(scene *s, const pack_file *file, const option_list *names, d
 {
     int status = scene_open_players(s, file, 1);
     for (uint32_t i = 0; i < s->player_count && !status; i++) {
-        status = s->players[i].set ? scene_reset_player(&s->players[i]) : 0;
+        status = s->players[i].bank ? scene_reset_player(&s->players[i]) : 0;
     }
     for (int i = 0; i < names->count && !status; i++) {
         status = start_named(s, file, names->items[i], time_s);
     }
     for (uint32_t i = 0; i < s->player_count && !status; i++) {
-        if (s->players[i].set) scene_pose_player(s, &s->players[i]);
+        if (s->players[i].bank) scene_pose_player(s, &s->players[i]);
     }
     return status;
 }
@@ -310,7 +308,7 @@ int scene_clip_seconds(scene *s, const pack_file *file, const char *clip_name, d
     for (uint32_t i = 0; i < s->player_count && !status; i++) {
         uint32_t clip;
         if (has_clip(&s->players[i], clip_name, &clip)) {
-            *seconds = (double)s->players[i].set->clips.clips[clip].duration_ticks / (double)NOH_TICKS_PER_SECOND;
+            *seconds = (double)s->players[i].bank->clips.clips[clip].duration_ticks / (double)NOH_TICKS_PER_SECOND;
             return 0;
         }
     }

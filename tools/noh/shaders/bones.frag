@@ -1,5 +1,5 @@
 #version 300 es
-/* bones.frag: one light from the viewer's side, one from above. Linear out. */
+/* bones.frag: one light beside the viewer, one above. Writes linear light. */
 precision highp float;
 
 uniform vec3 u_key; /* unit, towards the light */

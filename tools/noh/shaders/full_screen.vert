@@ -1,5 +1,5 @@
 #version 300 es
-/* full_screen.vert: one triangle over everything, from no buffers. */
+/* full_screen.vert: one triangle that covers everything, without buffers. */
 void main()
 {
     gl_Position = vec4(float(gl_VertexID & 1) * 4.0 - 1.0, float(gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);

@@ -108,7 +108,7 @@ static int draw_sheet(sheet *s)
     drawing d;
     const view_options o = { s->camera, s->tile, s->tile };
     int status = measure_tiles(s, view_wants_face(&o));
-    if (!status) status = gpu_open(&g, s->driver);
+    if (!status) status = gpu_open_drawing(&g, s->driver);
     if (status) {
         return status;
     }
@@ -121,7 +121,7 @@ static int draw_sheet(sheet *s)
     return status;
 }
 
-/* Empty tiles have the colour of the canvas's background. */
+/* Empty tiles have the canvas's background colour. */
 static int make_picture(sheet *s)
 {
     static const uint8_t background[4] = { CANVAS_BACKGROUND_SRGB, 255 };
@@ -178,7 +178,7 @@ static int check_args(sheet_args *a)
     if (!status) status = parse_accumulate(a->accumulate, &s->load.accumulate);
     if (!status && !(a->tile >= 16.0 && a->tile <= 1024.0 && a->tiles >= 1.0 && a->tiles <= 1024.0 &&
                      a->columns >= 0.0 && a->columns <= 64.0)) {
-        status = tool_usage("sheet wants a --tile of 16 to 1024 pixels, 1 to 1024 --tiles and up to 64 --columns");
+        status = tool_usage("--tile wants 16 to 1024 pixels, --tiles 1 to 1024, --columns at most 64");
     }
     if (!status) status = check_clips(&s->tiles, a->transition);
     s->tiles.inertia = strcmp(a->transition, "inertia") == 0;
@@ -224,14 +224,14 @@ static const option options[] = {
       .at = offsetof(sheet_args, s.tiles.only),
       .value = "NAME[=V]",
       .what =
-          "a tile of this target alone, at weight V or 1; may repeat; with --lods a row of several: NAME[=V],NAME[=V]...",
+          "show this target alone, at weight V (default 1); may repeat; with --lods: a row, of one or several targets, NAME[=V],NAME[=V]...",
       .example = "smile=0.5",
       .excludes = "--clip --bones" },
     { .name = "--clip",
       .kind = OPTION_LIST,
       .at = offsetof(sheet_args, s.tiles.clips),
       .value = "NAME",
-      .what = "show this clip in time; repeat it to play others along with the first",
+      .what = "show this clip over time; repeat it to play others along with the first",
       .example = "walk",
       .excludes = "--lods" },
     OPTION_ANIM(sheet_args, s.tiles.anim, .needs = "--clip"),
@@ -240,7 +240,7 @@ static const option options[] = {
       .at = offsetof(sheet_args, tiles),
       .value = "N",
       .initial = "24",
-      .what = "times of the clip that are shown, 1 to 1024",
+      .what = "number of moments of the clip to show, 1 to 1024",
       .example = "12",
       .needs = "--clip" },
     { .name = "--blend",
@@ -276,12 +276,13 @@ static const option options[] = {
     { .name = "--lods",
       .kind = OPTION_FLAG,
       .at = offsetof(sheet_args, s.lods),
-      .what = "a column for each LOD level: at rest, with each --target (default: smiles), and as small as it is used",
+      .what =
+          "a column per LOD level: at rest, with each --target (default: all smiles), and at the size at which it is used",
       .excludes = "--bones" },
     { .name = "--bones",
       .kind = OPTION_FLAG,
       .at = offsetof(sheet_args, s.show_bones),
-      .what = "draw the skeletons in place of the meshes" },
+      .what = "draw the skeletons instead of the meshes" },
     { .name = "--tile",
       .kind = OPTION_NUMBER,
       .at = offsetof(sheet_args, tile),
@@ -293,7 +294,7 @@ static const option options[] = {
       .kind = OPTION_NUMBER,
       .at = offsetof(sheet_args, columns),
       .value = "N",
-      .what = "tiles in a row, 1 to 64; default: nearly square",
+      .what = "tiles per row, 1 to 64; default: nearly square",
       .example = "8",
       .excludes = "--lods --blend" },
     OPTION_CAMERA(sheet_args, s.camera, "face"),
@@ -305,7 +306,7 @@ static const option options[] = {
 const verb verb_sheet = {
     .name = "sheet",
     .files = "PACK",
-    .what = "a contact sheet: every target at full weight, a clip in time, or the LOD levels",
+    .what = "draw a contact sheet: every target at full weight, a clip over time, or the LOD levels",
     .example =
         "face.noh -o targets.png\nbody.noh -o walk.png --clip walk --tiles 12 --camera body\nbody.noh -o bow.png --clip walk --to bow --transition inertia\nface.noh -o lods.png --lods --target smile --target jawOpen=0.6,smile",
     .options = options,

@@ -65,7 +65,7 @@ static uint32_t face_count(const sheet_lods *o)
     return o->faces->count ? (uint32_t)o->faces->count : 1u;
 }
 
-/* The weights of a row, in place of those of the row before. */
+/* Set the weights of a row; those of the row before are cleared. */
 static int apply_row(grid *g, uint32_t row)
 {
     for (uint32_t i = 0; i < g->scene.item_count; i++) {
@@ -158,7 +158,7 @@ static int draw_cell(grid *g, drawing *d, uint32_t column, uint32_t row, uint32_
     return status;
 }
 
-/* Some rows of a level, at one size. */
+/* Several rows of a level, drawn at one size. */
 static int draw_rows(grid *g, uint32_t column, uint32_t first, uint32_t end, uint32_t size)
 {
     drawing d;
@@ -221,7 +221,7 @@ int sheet_lods_write(const sheet_lods *s)
     if (status) {
         return status;
     }
-    status = gpu_open(&g.gpu, s->driver);
+    status = gpu_open_drawing(&g.gpu, s->driver);
     if (!status) {
         status = draw_all(&g);
         gpu_close(&g.gpu);

@@ -10,7 +10,7 @@
 
 /* ---- targets ---- */
 
-/* A name longer than a pack can hold is cut, and then not found. */
+/* A name longer than packs can hold is cut; it will not be found. */
 static void set_target(sheet_target *out, const char *name, size_t length, double weight)
 {
     snprintf(out->name, sizeof out->name, "%.*s", (int)(length < sizeof out->name ? length : sizeof out->name), name);

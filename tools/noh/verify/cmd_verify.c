@@ -1,5 +1,5 @@
-/* cmd_verify.c: every path and format against the CPU reference, value for value, and
- * memory used against memory predicted. */
+/* cmd_verify.c: compares every path and format with the CPU reference, value for value, and memory used with memory
+ * predicted. */
 #include <math.h>
 
 #include "gpu/gpu_args.h"
@@ -50,7 +50,7 @@ static int verify_scene(verify_job *job, const verify_args *a, uint32_t level)
 {
     int status = scene_set_level(&job->scene, &job->file, level);
     if (!status) status = scene_open_anim(&job->scene, &job->file, a->anim);
-    if (!status) status = gpu_open(&job->g, a->driver);
+    if (!status) status = gpu_open_drawing(&job->g, a->driver);
     if (status) {
         return status;
     }
@@ -98,14 +98,15 @@ static const option options[] = {
       .at = offsetof(verify_args, seed),
       .value = "N",
       .initial = "1",
-      .what = "of the random weights and poses: the same on every machine",
+      .what = "seed of the random weights and poses, which are the same on every machine",
       .example = "7" },
     { .name = "--bound-scale",
       .kind = OPTION_NUMBER,
       .at = offsetof(verify_args, bound_scale),
       .value = "X",
       .initial = "1",
-      .what = "multiply the bounds of skinned vertices, over 0: to see how near they come, or a check fail",
+      .what =
+          "multiply the bounds of skinned vertices by this, over 0: to see how close errors come, or the check fail",
       .example = "0.1" },
     OPTION_INSTANCES(verify_args, instances, "1",
                      .what = "copies of the scene whose memory is compared with the budget, 1 to 65536"),
@@ -117,10 +118,10 @@ static const option options[] = {
 const verb verb_verify = {
     .name = "verify",
     .files = "PACK",
-    .what = "every path and format against the CPU reference, memory against its budget",
+    .what = "compare every path and format with the CPU reference, and memory with its budget",
     .more =
-        "Fails (exit code 1) where a value differs that has to be equal, or one is past its bound; each FAILED line names the row, the "
-        "value and the bound.",
+        "Fails (exit code 1) when a value that must be equal differs, or when one exceeds its bound; each FAILED line names the row, "
+        "the value and the bound.",
     .example = "face.noh\nbody.noh --instances 100 --lod 1 --json",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

@@ -1,8 +1,8 @@
-/* verify.h (private to cmd_verify.c, verify_*.c): what is compared, and what came of it.
+/* verify.h (private to cmd_verify.c, verify_*.c): what is compared, and the results.
  *
  *   verify_paths    every path and format, SIMD, skins, against the CPU
  *   verify_skin     skinned vertices
- *   verify_rows     which row fails; telling it */
+ *   verify_rows     which rows fail; how they are printed */
 #ifndef NOH_NOH_VERIFY_VERIFY_H
 #define NOH_NOH_VERIFY_VERIFY_H
 
@@ -15,7 +15,7 @@ typedef struct verify_row {
     double max_error_um, bound_um; /* f16 against f32 */
     double max_normal_error;       /* of fetched normals: the GPU's reciprocal root is not exact */
     uint64_t cpu_predicted, cpu_used, gpu_predicted, gpu_used;
-    const char *failure; /* which of its values is past its bound: below, NULL: none */
+    const char *failure; /* which value is past its bound; NULL: none */
     double failure_value, failure_bound;
 } verify_row;
 
@@ -27,19 +27,19 @@ typedef struct verify_job {
     verify_row rows[16];
     int row_count, failed;
     double bound_scale;         /* of skinned vertices */
-    const char *memory_failure; /* NULL: memory is as predicted */
+    const char *memory_failure; /* NULL: memory was as predicted */
     load_options load;          /* of the load whose memory is compared with its budget */
     uint64_t gpu_predicted, gpu_used, cpu_predicted, cpu_used;
 } verify_job;
 
-/* Fill job->rows. Prints why it could not and returns an exit code; 0 on success, whatever failed to be equal. */
+/* Fill job->rows. Prints an error and returns an exit code; 0 if the comparisons ran, whatever their results. */
 int verify_paths(verify_job *job);
 
-/* Note the first value of a row that is past its bound, if any is; 1 then. */
+/* Record the first value of a row that is past its bound. Returns 1 if there is one. */
 int verify_row_failed(verify_row *row);
 /* Unless ok, the check fails for this reason. */
 void verify_check_memory(verify_job *job, int ok, const char *failure);
-/* On stdout. Return an exit code: 0, unless JSON found no memory. */
+/* Print the results. Return an exit code: 0, or EXIT_FAILED if memory for JSON ran out. */
 int verify_print(const verify_job *job);
 int verify_print_json(const verify_job *job);
 

@@ -30,7 +30,7 @@ static void random_weights(uint64_t *state, int round, float *weights, uint32_t 
     }
 }
 
-/* The exact model of what this path and format leave, or 0 when the driver's rounding is unknown. */
+/* The exact model of the accumulator of this path and format; 0 if the driver's rounding is unknown. */
 static int reference(const verify_job *job, const noh_gl_morph_plan *plan, const noh_mesh *mesh, const float *weights,
                      const noh_morph_layers *layers)
 {
@@ -161,8 +161,8 @@ static void set_bound(verify_job *job, verify_row *row, int half)
     }
 }
 
-/* The block that init takes: one byte less is refused and leaves it untouched. Returns the
- * bytes that suffice, or 0 when a smaller block was accepted or written to. */
+/* init must accept a block of the predicted size, and must refuse one byte less and leave it untouched. Returns the
+ * predicted bytes, or 0 if a smaller block was accepted or written to. */
 static uint64_t least_block(verify_job *job, const noh_gl_morph_desc *desc, uint64_t predicted)
 {
     noh_gl_morph *morph = NULL;

@@ -4,7 +4,7 @@
 #include "cli/json.h"
 #include "verify.h"
 
-#define NORMAL_BOUND 1e-5 /* of a component of a fetched normal: what a GPU's reciprocal root may be off */
+#define NORMAL_BOUND 1e-5 /* of a component of a fetched normal: the inexactness of a GPU's reciprocal root */
 
 static void fail_row(verify_row *row, const char *what, double value, double bound)
 {
@@ -15,8 +15,8 @@ static void fail_row(verify_row *row, const char *what, double value, double bou
     }
 }
 
-/* A row fails when a value differs where equality is demanded, when half floats or skins stray past their bound, or
- * when memory is not what was predicted. The first reason is kept. */
+/* A row fails when a value that must be equal differs, when half floats or skins exceed their bound, or when memory is
+ * not what was predicted. The first reason is kept. */
 int verify_row_failed(verify_row *row)
 {
     if (row->exact && (row->differing || row->vertex_differing)) {
@@ -73,7 +73,7 @@ int verify_print(const verify_job *job)
         printf("%-10s %-4s %10llu %10llu %12.4g %12.4g  %s\n", row->path, row->accumulate,
                (unsigned long long)(row->values + row->vertex_values),
                (unsigned long long)(row->differing + row->vertex_differing), row->max_error_um, row->bound_um,
-               row->exact ? "" : "within the bound only: this driver's rounding is not modelled");
+               row->exact ? "" : "only within the bound: this driver's rounding is not modelled");
     }
     printf("memory: CPU %llu bytes predicted, %llu used; GPU %llu predicted, %llu used\n",
            (unsigned long long)job->cpu_predicted, (unsigned long long)job->cpu_used,

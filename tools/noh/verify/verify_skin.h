@@ -6,8 +6,8 @@
 #include "scene/scene.h"
 
 #define VERIFY_SKIN_TIMES 20u /* random times of each clip; as many random poses where no clip fits a skeleton */
-/* How far off a vertex may be, as a share of the larger of the mesh's box and its distance to the origin, at rest and
- * in the pose. The CPU and the GPU round the same products and sums in different order; a coordinate at a distance d
+/* The allowed error of a vertex, as a share of the larger of the mesh's box and its distance to the origin, at rest and
+ * in the pose. The CPU and the GPU round the same products and sums in different orders; a coordinate at a distance d
  * has steps of up to d * 2^-23, however small the mesh is, and 17 of those are allowed. */
 #define VERIFY_SKIN_SHARE 2e-6
 
@@ -23,8 +23,8 @@ typedef struct verify_skin {
 /* 1 where the pack has something to verify. */
 int verify_skin_wanted(const scene *s, const noh_pack *pack);
 
-/* Every vertex of every skinned mesh, with random weights. state: of the random numbers. Prints why it could not; 0 on
- * success, whatever the errors. All of *out but bound_scale is written. */
+/* Every vertex of every skinned mesh, with random weights. state: of the random numbers. Prints an error and returns an
+ * exit code; 0 if it ran, whatever the errors of vertices. All of *out but bound_scale is written. */
 int verify_skin_run(gpu *g, const pack_file *file, const scene *s, const noh_gl_mesh *gl_meshes, noh_palette_mode mode,
                     uint64_t *state, verify_skin *out);
 

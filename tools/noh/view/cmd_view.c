@@ -1,5 +1,5 @@
-/* cmd_view.c: a pack or a model in a window. What shows it is in view/, or in view_without.c where libraries are
- * missing. */
+/* cmd_view.c: a pack or a model in a window. view_window.c opens it, or view_without.c says that libraries are missing.
+ */
 #include <string.h>
 
 #include "view/view_window.h"
@@ -63,12 +63,12 @@ static const option options[] = {
     { .name = "--bones",
       .kind = OPTION_FLAG,
       .at = offsetof(view_args, run.desc.show_bones),
-      .what = "draw the skeletons in place of the meshes" },
+      .what = "draw the skeletons instead of the meshes" },
     { .name = "--lod",
       .kind = OPTION_TEXT,
       .at = offsetof(view_args, lod),
       .value = "auto|N",
-      .what = "LOD levels that a model is converted with, 1 to 8 with the full mesh; auto: up to five, by error",
+      .what = "number of LOD levels to convert a model with, with the full mesh, 1 to 8; auto: up to five, by error",
       .example = "4" },
     OPTION_PATH(view_args, path, .initial = "auto"),
     OPTION_ACCUMULATE(view_args, accumulate, .initial = "auto"),
@@ -89,20 +89,20 @@ static const option options[] = {
       .kind = OPTION_NUMBER,
       .at = offsetof(view_args, frames),
       .value = "N",
-      .what = "draw so many frames, each 1/60 s of the clips, and end; default: until the window is closed",
+      .what = "draw this many frames, 1/60 s of the clips apart, and end; default: run until the window is closed",
       .example = "60" },
     { .name = "--screenshot",
       .kind = OPTION_OUTPUT,
       .at = offsetof(view_args, run.screenshot),
       .value = "OUT.png",
-      .what = "a picture of the last of --frames",
+      .what = "write a picture of the last frame",
       .example = "window.png" },
 };
 
 const verb verb_view = {
     .name = "view",
     .files = "PACK|MODEL",
-    .what = "a window: sliders, clips, events, memory and times; shows files that are dropped on it",
+    .what = "open a window: sliders, clips, callback keys, memory and times; files dropped on it are shown",
     .example = "head.glb\nbody.noh --clip walk\nbody.noh --frames 60 --screenshot window.png",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

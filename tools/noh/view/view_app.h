@@ -67,7 +67,7 @@ void view_app_close(view_app *a);
 /* On failure the current model stays. */
 int view_app_show(view_app *a, const char *path);
 
-/* The context was lost: drop its object names. Then fill a->gpu for another context and restore, or close. */
+/* The context was lost: forget its object names. Then fill a->gpu for another context and restore, or close. */
 void view_app_lost(view_app *a);
 int view_app_restore(view_app *a);
 

@@ -1,9 +1,9 @@
-/* view_detail.h: the LOD level that the viewer shows: a fixed one, or by the error in pixels.
+/* view_lod.h: the LOD level that the viewer shows: a fixed one, or by the error in pixels.
  *
- *   view_detail_level, view_detail_pixels   the switch
- *   view_detail_next                        all of its positions in turn
- *   view_detail_frame                       choose for this frame, of a posed model
- *   view_detail_text                        the choice, in words
+ *   view_lod_level, view_lod_pixels   the switch
+ *   view_lod_next                        cycles through its positions
+ *   view_lod_frame                       choose for this frame, of a posed model
+ *   view_lod_text                        the choice, in words
  *
  * It does nothing where bones are drawn. */
 #ifndef NOH_NOH_VIEW_VIEW_LOD_H

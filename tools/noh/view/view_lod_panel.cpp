@@ -1,4 +1,4 @@
-// view_detail_panel.cpp: the switch for LOD levels, with the cost of each.
+// view_lod_panel.cpp: the switch for LOD levels, with the cost of each.
 #include "view/view_panels.h"
 #include "view/view_imgui.h"
 

@@ -88,7 +88,7 @@ static int list_clips(view_model *m)
 {
     size_t count = 0;
     for (uint32_t p = 0; p < m->scene.player_count; p++) {
-        const noh_clip_bank *set = m->scene.players[p].set;
+        const noh_clip_bank *set = m->scene.players[p].bank;
         count += set ? set->clips.clip_count : 0u;
     }
     m->clips = calloc(count + 1, sizeof *m->clips);
@@ -96,7 +96,7 @@ static int list_clips(view_model *m)
         return tool_fail(m->path, "out of memory");
     }
     for (uint32_t p = 0; p < m->scene.player_count; p++) {
-        const noh_clip_bank *set = m->scene.players[p].set;
+        const noh_clip_bank *set = m->scene.players[p].bank;
         for (uint32_t i = 0; set && i < set->clips.clip_count; i++) {
             view_clip *clip = &m->clips[m->clip_count++];
             clip->name = view_clip_name(m, p, i);
@@ -243,7 +243,7 @@ void view_model_pose(view_model *m)
         m->scene.items[w->item].weights[w->index] = w->initial;
     }
     for (uint32_t p = 0; p < m->scene.player_count; p++) {
-        if (m->scene.players[p].set) {
+        if (m->scene.players[p].bank) {
             scene_pose_player(&m->scene, &m->scene.players[p]);
         }
     }

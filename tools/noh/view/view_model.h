@@ -60,17 +60,17 @@ typedef struct view_model_desc {
 int view_model_open(gpu *g, const view_model_desc *desc, view_model **out);
 void view_model_close(view_model *m);
 
-/* Remake what draws it, with other options. On failure it draws as before. */
+/* Remake the drawing with other options. On failure the old one stays. */
 int view_model_reload(view_model *m, gpu *g, const view_model_desc *desc);
 
-/* The context was lost: drop its object names. Then restore in another context, or close. */
+/* The context was lost: forget its object names. Then restore in another context, or close. */
 void view_model_lost(view_model *m, gpu *g);
 int view_model_restore(view_model *m, gpu *g);
 
-/* The box of what is drawn, in its pose. */
+/* The bounds of what is drawn, in its pose. */
 bounds view_model_bounds(const view_model *m);
 
-/* The asset's weights, overridden by clips, overridden by held sliders. */
+/* Weights are the asset's, overridden by clips, overridden by held sliders. */
 void view_model_pose(view_model *m);
 
 /* Play one clip alone, or beside those playing. Prints an error and returns an exit code when no track is free. */

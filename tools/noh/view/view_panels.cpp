@@ -107,7 +107,7 @@ void track_row(view_app *a, uint32_t player, uint32_t track)
     const noh_track *t = noh_controller_track(c, track);
     float at = static_cast<float>(view_position(a->model, player, track)), weight = t->weight;
     float speed = static_cast<float>(t->speed) / NOH_SPEED_ONE;
-    const float end = static_cast<float>(p.set->clips.clips[t->clip].duration_ticks) / NOH_TICKS_PER_SECOND;
+    const float end = static_cast<float>(p.bank->clips.clips[t->clip].duration_ticks) / NOH_TICKS_PER_SECOND;
     ImGui::PushID(static_cast<int>(player * NOH_TRACKS_MAX + track));
     ImGui::TextColored(amber, "%u %s", track, view_clip_name(a->model, player, t->clip));
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 40.0f);
@@ -159,7 +159,7 @@ void clips_section(view_app *a)
     ImGui::EndChild();
     for (uint32_t player = 0; player < m->scene.player_count; player++) {
         const scene_player &p = m->scene.players[player];
-        for (uint32_t t = 0; p.set && t < p.controllers[0]->track_count; t++) {
+        for (uint32_t t = 0; p.bank && t < p.controllers[0]->track_count; t++) {
             if (noh_controller_track(p.controllers[0], t)->mode != NOH_TRACK_OFF) {
                 track_row(a, player, t);
             }
@@ -365,7 +365,7 @@ void events_panel(view_app *a)
         ImGui::TextDisabled("callback keys that the clips pass are listed here");
     }
     if (ImGui::GetScrollY() >= ImGui::GetScrollMaxY()) {
-        ImGui::SetScrollHereY(1.0f); // follows, unless someone scrolled up
+        ImGui::SetScrollHereY(1.0f); // follow, unless the user scrolled up
     }
     ImGui::EndChild();
     ImGui::End();

@@ -1,4 +1,4 @@
-/* view_without.c: in place of view/ where its libraries were missing when noh was built. */
+/* view_without.c: instead of the viewer, if its libraries were missing when noh was built. */
 #include "cli/message.h"
 #include "view/view_window.h"
 

@@ -28,21 +28,21 @@ static int print_result(const zoom *z, const zoom_args *a)
     FILE *out = report_stream(a->output);
     const zoom_result *r = &z->worst;
     const double most = ZOOM_SLACK * a->pixels;
-    fprintf(out, "%s: %u frames from %.3g to %.3g m and back, %ux%u, knob %g pixels\n", a->pack, z->path.frames,
+    fprintf(out, "%s: %u frames from %.3g to %.3g m and back, %ux%u, %g pixels allowed\n", a->pack, z->path.frames,
             z->path.near, z->path.far, z->path.side, z->path.side, a->pixels);
     fprintf(out, "  silhouettes off by at most   %6.3f pixels  (allowed: %g), slits and holes by %.3f\n",
             r->silhouette_px, most, r->hole_px);
     fprintf(out, "  the surface off by at most   %6.3f pixels  (allowed: %g), claimed %.3f\n", r->position_px, most,
             r->claimed_px);
-    fprintf(out, "  a level change alters        %6.3f of 255  (allowed: %g), by the zoom %.3f\n", r->pop, ZOOM_POP,
+    fprintf(out, "  a level change alters        %6.3f of 255  (allowed: %g), the zoom itself %.3f\n", r->pop, ZOOM_POP,
             r->zoom_change);
-    fprintf(out, "  frame to frame more by       %6.3f of 255 than full pictures  (allowed: %g)\n", r->excess,
+    fprintf(out, "  frames differ more by        %6.3f of 255  (allowed: %g) than those of the full mesh\n", r->excess,
             ZOOM_POP);
     fprintf(
         out,
-        "  levels entered: %u out, %u in, each at most %u times; %u times from a camera shaken by %g %%  (allowed: once)\n",
+        "  levels entered               %u out, %u back; each at most %u times  (allowed: 1), %u with a camera shaken by %g %%\n",
         r->entered[0], r->entered[1], r->most_entered, r->most_entered_shaken, 100.0 * a->jitter);
-    fprintf(out, "  targets left out: at most %u at once\n", r->targets_left_out);
+    fprintf(out, "  targets left out             %u at once, at most\n", r->targets_left_out);
     fprintf(out, "%s: %s\n", a->pack, zoom_result_ok(r, a->pixels) ? "ok" : "FAILED");
     return 0;
 }
@@ -124,7 +124,7 @@ static int zoom_pack(const pack_file *file, const zoom_args *a)
     if (!status) status = open_scene(&kept, file, a);
     if (!status)
         status = zoom_path_open(&z.path, file, &full, &settings, a->near, a->far, a->size[0], (uint32_t)a->frames);
-    if (!status) status = gpu_open(&g, a->driver);
+    if (!status) status = gpu_open_drawing(&g, a->driver);
     if (!status) {
         status = measure(&z, a);
         gpu_close(&g);
@@ -175,7 +175,7 @@ static const option options[] = {
       .kind = OPTION_OUTPUT,
       .at = offsetof(zoom_args, output),
       .value = "OUT.png",
-      .what = "a strip of twelve frames: with levels, full, coloured by level",
+      .what = "a strip of twelve frames: with LOD levels, in full, and coloured by level",
       .example = "zoom.png" },
     { .name = "--frames",
       .kind = OPTION_NUMBER,
@@ -189,20 +189,20 @@ static const option options[] = {
       .at = offsetof(zoom_args, pixels),
       .value = "N",
       .initial = "1",
-      .what = "the largest error on screen that levels may have, pixels, over 0, at most 100",
+      .what = "the largest error that LOD levels may have on screen, pixels, over 0, at most 100",
       .example = "2" },
     { .name = "--near",
       .kind = OPTION_NUMBER,
       .at = offsetof(zoom_args, near),
       .value = "M",
       .what =
-          "the nearest distance from the camera to the middle of the scene, metres; default: so that every level is shown for a while",
+          "nearest distance from the camera to the middle of the scene, metres; default: such that every level is shown for a while",
       .example = "0.5" },
     { .name = "--far",
       .kind = OPTION_NUMBER,
       .at = offsetof(zoom_args, far),
       .value = "M",
-      .what = "the farthest, metres; default: as for --near",
+      .what = "farthest distance, metres; default: as for --near",
       .example = "20" },
     { .name = "--size",
       .kind = OPTION_SIZE,
@@ -219,7 +219,7 @@ static const option options[] = {
       .at = offsetof(zoom_args, every),
       .value = "N",
       .initial = "1",
-      .what = "measure silhouettes in every n-th frame only, 1 to 100000, and wherever a level changes",
+      .what = "measure silhouettes only in every N-th frame, 1 to 100000, and wherever a level changes",
       .example = "8" },
     { .name = "--jitter",
       .kind = OPTION_NUMBER,
@@ -236,9 +236,9 @@ static const option options[] = {
 const verb verb_zoom = {
     .name = "zoom",
     .files = "PACK",
-    .what = "a slow zoom out and back with LOD levels against the full mesh: silhouettes, surfaces, pops, flicker",
+    .what = "compare LOD levels with the full mesh in a slow zoom out and back: silhouettes, surfaces, pops, flicker",
     .more =
-        "Fails (exit code 1) where silhouettes or the surface are off by more than 1.25 times --pixels, where a change of level shows, or where a level is entered twice on one way.",
+        "Fails (exit code 1) when silhouettes or the surface are off by more than 1.25 times --pixels, when a change of level is visible, or when a level is entered twice on the way out or on the way back.",
     .example = "face.noh -o zoom.png\nface.noh --frames 120 --pixels 2 --json",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

@@ -1,12 +1,12 @@
-/* zoom.h (private to cmd_zoom.c, zoom_*.c): a camera moves out slowly and back; measured is what can be seen of the LOD
- * levels chosen on the way.
+/* zoom.h (private to cmd_zoom.c, zoom_*.c): a camera moves slowly out and back, and what can be seen of the LOD levels
+ * chosen on the way is measured.
  *
  *   zoom_path       the camera, and the levels chosen
  *   zoom_target     pictures
  *   zoom_compare    how far two pictures differ
  *   zoom_surface    distance of the drawn level's surface from the full one, in the pose
  *   zoom_run        all frames
- *   zoom_strip      the picture of it all */
+ *   zoom_strip      a picture of frames of all of it */
 #ifndef NOH_NOH_ZOOM_ZOOM_H
 #define NOH_NOH_ZOOM_ZOOM_H
 
@@ -19,14 +19,14 @@
 
 /* ---- the camera, the levels chosen ---- */
 
-/* How often an item entered each level, on the way out and on the way back. */
+/* How many times an item entered each level, on the way out and on the way back. */
 typedef struct zoom_entries {
     uint32_t entered[2][NOH_LOD_LEVELS_MAX];
 } zoom_entries;
 
 typedef struct zoom_path {
     scene_lod lod;
-    zoom_entries *entries; /* [detail.item_count] */
+    zoom_entries *entries; /* [lod.item_count] */
     noh_lod_settings settings;
     orbit at;              /* its distance is the frame's */
     double near, far;      /* from the camera to the middle of the scene */

@@ -152,7 +152,7 @@ static int measure_silhouettes(zoom *z, const noh_gl_camera *camera)
     return status;
 }
 
-/* Against the frame before; changed: z->standing shows this frame as detail was in the one before. */
+/* Against the frame before; changed: z->standing shows this frame at the levels of the one before. */
 static void measure_changes(zoom *z, uint32_t frame, int changed)
 {
     const uint32_t now = frame % 2u;

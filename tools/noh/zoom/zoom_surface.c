@@ -1,5 +1,5 @@
-/* zoom_surface.c: how far the shown level's surface is from the full one, in the pose shown: as the vertex shader has
- * both, out of the pack. */
+/* zoom_surface.c: how far the shown level's surface is from the full one, in the pose shown. Both are computed from the
+ * pack as the vertex shader does. */
 #include <stdlib.h>
 #include <string.h>
 
