@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "clip/clip_cache.h"
-#include "convert/clip/clip_encode.h"
+#include "convert/codec/clip_encode.h"
 #include "convert/clips/raw_set.h"
 
 typedef struct fixture {

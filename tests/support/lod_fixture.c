@@ -6,7 +6,7 @@
 
 #include "convert/clips/model_clips.h"
 #include "convert/model/model_build.h"
-#include "convert/pack/clips.h"
+#include "convert/pack/pack_clips.h"
 
 #define PI 3.14159265358979
 #define RADIUS 0.1

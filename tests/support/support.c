@@ -12,7 +12,7 @@
 
 #include "convert/clips/model_clips.h"
 #include "convert/model/model_build.h"
-#include "convert/pack/clips.h"
+#include "convert/pack/pack_clips.h"
 
 /* ---- memory, files ---- */
 

@@ -1,4 +1,4 @@
-/* Tests of the clip codec: the encoder (tools/convert/clip/), the decoder and its cache
+/* Tests of the clip codec: the encoder (tools/convert/codec/), the decoder and its cache
  * (runtime/anim/clip_*.c). The evaluator here is written from the definition of the error, in
  * double precision, and shares nothing with the encoder's. */
 #include <setjmp.h>
@@ -374,8 +374,8 @@ static raw_set *with_floats(uint32_t joints, uint32_t frames, uint32_t width)
         }
     }
     c->floats[0].node = 5;
-    c->floats[0].reach = malloc(width * sizeof(float));
-    for (uint32_t i = 0; i < width; i++) c->floats[0].reach[i] = 0.2f + 0.3f * (float)(i % 7u);
+    c->floats[0].radius = malloc(width * sizeof(float));
+    for (uint32_t i = 0; i < width; i++) c->floats[0].radius[i] = 0.2f + 0.3f * (float)(i % 7u);
     return set;
 }
 
@@ -395,7 +395,7 @@ static void floats_keep_within_their_reach(void **state)
             const raw_floats *g = x.set->clips[0].floats;
             noh_clip_sample(x.cache, 0, (int64_t)f * 1600, joints[k], pose, values);
             for (uint32_t i = 0; i < 34u; i++) {
-                assert_true(fabs((double)values[i] - (double)g[0].values[f * 34u + i]) * (double)g[0].reach[i] <=
+                assert_true(fabs((double)values[i] - (double)g[0].values[f * 34u + i]) * (double)g[0].radius[i] <=
                             0.01 * ROUNDING);
             }
             assert_true(fabs((double)values[34] - (double)g[1].values[f]) <= 0.001 * ROUNDING);

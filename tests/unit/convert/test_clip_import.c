@@ -765,7 +765,7 @@ static void weights_alone_make_clips_without_joints(void **state)
     assert_int_equal(f->width, 2);
     const float expected[10] = { 0, 1, 0.25f, 0.5f, 0.5f, 0, 0.75f, 0.125f, 1, 0.25f };
     assert_memory_equal(f->values, expected, sizeof expected);
-    assert_true(fabsf(f->reach[0] - 15.0f) < 1e-5f && f->reach[1] == 0.0f); /* 5 cm, three times as large */
+    assert_true(fabsf(f->radius[0] - 15.0f) < 1e-5f && f->radius[1] == 0.0f); /* 5 cm, three times as large */
     loaded_free(&l);
 }
 
@@ -779,7 +779,7 @@ static void weights_below_a_growing_joint(void **state)
     add_channel(s, 0, "scale", "LINEAR", two_times, 2, sizes, 6, 3);
     loaded l = load(s, 4.0);
     assert_int_equal(l.made->sets[0]->skeleton.joint_count, 1);
-    assert_true(fabsf(only_floats(&l)->reach[0] - 40.0f) < 1e-4f); /* 5 cm x 2 x 4 */
+    assert_true(fabsf(only_floats(&l)->radius[0] - 40.0f) < 1e-4f); /* 5 cm x 2 x 4 */
     loaded_free(&l);
 }
 
@@ -796,7 +796,7 @@ static void weights_of_a_skinned_mesh(void **state)
     loaded l = load(s, 0.0);
     assert_int_equal(l.made->sets[0]->skeleton.joint_count, 1);
     assert_string_equal(l.made->sets[0]->skeleton.joints[0].name, "joint");
-    assert_true(fabsf(only_floats(&l)->reach[0] - 15.0f) < 1e-4f); /* 5 cm x 6 x 1/2 */
+    assert_true(fabsf(only_floats(&l)->radius[0] - 15.0f) < 1e-4f); /* 5 cm x 6 x 1/2 */
     loaded_free(&l);
 }
 

@@ -361,7 +361,7 @@ static void check_weights(const asset *a, const char *clip, const model_channel 
     const raw_floats *frames = frames_of(a, clip, channel->node, &made);
     double strays = 0.0;
     for (uint32_t t = 0; t < frames->width; t++) {
-        const double played = play_frames(made, frames, time, t), reach = (double)frames->reach[t];
+        const double played = play_frames(made, frames, time, t), reach = (double)frames->radius[t];
         const double speed = fabs(play_frames(made, frames, time + TICK_S, t) -
                                   play_frames(made, frames, time - TICK_S, t));
         if (!(fabs((double)packed[t] - played) <= fmin(1.0, BOUND_CM / fmax(reach, 1e-6)) + speed + 1e-6)) {

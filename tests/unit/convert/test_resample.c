@@ -30,8 +30,8 @@ static raw_set *moving(uint32_t frames, double sample_rate_hz)
     clip->float_count = 1;
     assert_int_equal(raw_floats_alloc(&clip->floats[0], frames, 2), 0);
     clip->floats[0].name = model_string("face");
-    clip->floats[0].reach = test_zeros(2 * sizeof(float));
-    clip->floats[0].reach[0] = 0.5f;
+    clip->floats[0].radius = test_zeros(2 * sizeof(float));
+    clip->floats[0].radius[0] = 0.5f;
     for (uint32_t f = 0; f < frames; ++f) {
         const double half = (double)f * 5.0 * 3.14159265358979323846 / 180.0;
         float *q = clip->rotations + (size_t)f * 8, *t = clip->translations + (size_t)f * 6,
@@ -76,7 +76,7 @@ static void twice_the_rate_keeps_every_frame(void **state)
         assert_true(fabsf(a[2] * b[2] + a[3] * b[3] - cosf(2.5f * 0.0174532925f)) < 1e-6f);
         assert_true(fabsf(out.translations[f * 6] - (float)f) < 1e-6f);
     }
-    assert_true(out.floats[0].reach[0] == 0.5f);
+    assert_true(out.floats[0].radius[0] == 0.5f);
     raw_clip_clear(&out);
     raw_set_free(set);
 }

@@ -7,7 +7,7 @@
 
 #include "base/math_internal.h"
 #include "convert/clips/model_clips.h"
-#include "convert/pack/clips.h"
+#include "convert/pack/pack_clips.h"
 
 typedef struct made {
     uint8_t *bytes;

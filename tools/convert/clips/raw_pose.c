@@ -12,7 +12,7 @@ static void local_matrix(const float *rotation, const float *translation, const 
 {
     double q[4];
     for (int i = 0; i < 4; ++i) q[i] = (double)rotation[i];
-    (void)quat_normalize(q); /* as stored it is unit to a float's precision only */
+    (void)quat_normalize(q); /* stored, it has unit length only to a float's precision */
     quat_columns(q, out);
     for (int i = 0; i < 9; ++i) out[i] *= (double)scale[i / 3];
     for (int i = 0; i < 3; ++i) out[9 + i] = (double)translation[i];
@@ -51,9 +51,9 @@ static double distance(const double *a, const double *b)
     return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
 }
 
-/* Raise the reach of a joint and of all above it to what lies at `point`. */
-static void reach_point(const raw_skeleton *skeleton, const double *pose, uint32_t joint, const double *point,
-                        double *out)
+/* Raise the radii of a joint and of all above it to include `point`. */
+static void raise_radius(const raw_skeleton *skeleton, const double *pose, uint32_t joint, const double *point,
+                         double *out)
 {
     for (uint32_t j = joint; j != MODEL_NONE; j = skeleton->joints[j].parent)
         out[j] = fmax(out[j], distance(pose + (size_t)j * 12 + 9, point) * skeleton->unit_cm);
@@ -77,8 +77,8 @@ int raw_skeleton_radius(const raw_skeleton *skeleton, double *out, double *size_
     for (uint32_t j = 0; j < skeleton->joint_count; ++j) {
         double end[3];
         end_point(&skeleton->joints[j], pose + (size_t)j * 12, end);
-        reach_point(skeleton, pose, j, pose + (size_t)j * 12 + 9, out);
-        reach_point(skeleton, pose, j, end, out);
+        raise_radius(skeleton, pose, j, pose + (size_t)j * 12 + 9, out);
+        raise_radius(skeleton, pose, j, end, out);
     }
     for (uint32_t j = 0; j < skeleton->joint_count; ++j) *size_cm = fmax(*size_cm, out[j]);
     free(pose);

@@ -43,7 +43,7 @@ static void mix_rotations(const raw_clip *clip, const place *at, float *out)
     for (size_t i = 0; at->part != 0.0 && i < count; i += 4) mix_rotation(a + i, b + i, at->part, out + i);
 }
 
-/* A source whose quaternions jump in sign would pass the jump on. */
+/* Jumps of sign in the source's quaternions are not passed on. */
 static void align_rotations(raw_clip *clip)
 {
     const size_t count = (size_t)clip->joint_count * 4;
@@ -72,10 +72,10 @@ static int copy_floats_shape(const raw_floats *from, uint32_t frame_count, raw_f
     if (raw_floats_alloc(out, frame_count, from->width)) return 1;
     out->node = from->node;
     out->name = model_string(from->name ? from->name : "");
-    if (from->reach) {
-        out->reach = model_zeros(from->width, sizeof(float));
-        if (!out->reach) return 1;
-        memcpy(out->reach, from->reach, from->width * sizeof(float));
+    if (from->radius) {
+        out->radius = model_zeros(from->width, sizeof(float));
+        if (!out->radius) return 1;
+        memcpy(out->radius, from->radius, from->width * sizeof(float));
     }
     return !out->name;
 }
@@ -107,7 +107,7 @@ static int copy_shape(const raw_clip *clip, uint32_t frame_count, double sample_
     return copy_events(clip, out);
 }
 
-/* Frame i of the copy is at i * steps_from / steps_to frames of the source, of which the quotient and rest are exact.
+/* Frame i of the copy lies at i * steps_from / steps_to frames of the source; integer quotient and remainder are exact.
  */
 static int copy_frames(const raw_clip *clip, uint32_t frame_count, double sample_rate_hz, uint64_t steps_from,
                        uint64_t steps_to, raw_clip *out, model_error *error)

@@ -1,4 +1,4 @@
-/* gltf_clip.cpp: a model's animations as sampled clips. */
+/* gltf_clips.cpp: a model's animations as sampled clips. */
 #include "clips_internal.h"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ struct set_job {
     const model_clips *made;
     uint32_t index;
     raw_set *set;
-    std::vector<double> lever_cm;        /* [joints] of a rotation: the reach below it */
+    std::vector<double> lever_cm;        /* [joints] of a rotation: the radius of what is below it */
     std::vector<double> parent_scale_cm; /* [joints] centimetres per unit of its translation */
 };
 
@@ -46,7 +46,7 @@ static void check_memory(int failed)
     if (failed) throw std::bad_alloc();
 }
 
-/* --- what errors are worth --- */
+/* --- the effect of errors --- */
 
 static double column_length(const double *m)
 {
@@ -86,14 +86,14 @@ static const uint32_t *skin_joints(const set_job &job, uint32_t node)
     return skin < job.m->skin_count ? job.made->skins[skin].joints : nullptr;
 }
 
-static std::vector<double> reach_of(const set_job &job, uint32_t node, const raw_clip *clip)
+static std::vector<double> radius_of(const set_job &job, uint32_t node, const raw_clip *clip)
 {
     const node_joint &mover = job.made->nodes[node];
     uint32_t joint = mover.set == job.index ? mover.joint : MODEL_NONE;
-    std::vector<double> reach = target_sizes(job.m->meshes[job.m->nodes[node].mesh]);
+    std::vector<double> radius = target_sizes(job.m->meshes[job.m->nodes[node].mesh]);
     double scale_cm = 100.0 * largest_scale(*job.m, node, skin_joints(job, node), joint, *job.set, clip);
-    for (double &r : reach) r *= scale_cm;
-    return reach;
+    for (double &r : radius) r *= scale_cm;
+    return radius;
 }
 
 /* --- the tracks of one clip --- */
@@ -108,7 +108,7 @@ static std::vector<track> find_tracks(const set_job &job, const model_clip &clip
         if (c.path != MODEL_PATH_WEIGHTS && joint != MODEL_NONE)
             tracks.push_back({ &c, joint, lever_of(job, c, joint), {} });
         if (c.path == MODEL_PATH_WEIGHTS && std::binary_search(weight_nodes.begin(), weight_nodes.end(), c.node))
-            tracks.push_back({ &c, MODEL_NONE, 0.0, reach_of(job, c.node, nullptr) });
+            tracks.push_back({ &c, MODEL_NONE, 0.0, radius_of(job, c.node, nullptr) });
     }
     return tracks;
 }
@@ -121,7 +121,7 @@ static double largest_value(const model_channel &c)
     return static_cast<double>(largest);
 }
 
-/* What playing may stray by: a part of how large all that moves is. */
+/* How far playing may be off the curves: a share of the size of all that moves. */
 static double tolerance_of(const set_job &job, const std::vector<track> &tracks)
 {
     double size_cm = *std::max_element(job.lever_cm.begin(), job.lever_cm.end());
@@ -129,7 +129,7 @@ static double tolerance_of(const set_job &job, const std::vector<track> &tracks)
     for (const track &t : tracks) {
         if (t.channel->path == MODEL_PATH_TRANSLATION)
             size_cm = std::fmax(size_cm, largest_value(*t.channel) * t.lever_cm);
-        for (double r : t.reach) size_cm = std::fmax(size_cm, r);
+        for (double r : t.radius_cm) size_cm = std::fmax(size_cm, r);
     }
     return size_cm * tolerance_part;
 }
@@ -205,10 +205,10 @@ static void fill_weights(const set_job &job, const track &t, const timing &when,
     check_memory(raw_floats_alloc(&floats, clip.frame_count, width));
     floats.node = node;
     floats.name = copy_string(job.m->nodes[node].name);
-    floats.reach = zeros<float>(width);
-    std::vector<double> reach = reach_of(job, node, &clip);
+    floats.radius = zeros<float>(width);
+    std::vector<double> radius = radius_of(job, node, &clip);
     std::string place = where + " weights of node '" + printable(floats.name) + "'";
-    for (uint32_t i = 0; i < width; ++i) floats.reach[i] = to_float(reach[i], place);
+    for (uint32_t i = 0; i < width; ++i) floats.radius[i] = to_float(radius[i], place);
     sample_track(t, when, floats.values, width, place);
 }
 
@@ -229,7 +229,7 @@ static void copy_events(const model_clip &from, raw_clip &clip)
 
 static void warn_of_error(const set_job &job, const raw_clip &clip, double tolerance_cm, const std::string &where)
 {
-    const double usual_hz = 119.0; /* linear keys of a usual rate are taken as they are, without a word */
+    const double usual_hz = 119.0; /* linear keys at a usual sample rate are taken as frames, without a warning */
     if (clip.source_error_cm > tolerance_cm && clip.sample_rate_hz >= usual_hz)
         check_memory(model_warn(job.m, "%s: sampled at %g Hz it is up to %.3g cm off its curves between frames",
                                 where.c_str(), clip.sample_rate_hz, clip.source_error_cm));
@@ -264,7 +264,7 @@ static void make_clips(set_job &job, double sample_rate_hz, std::vector<bool> &u
         std::vector<track> tracks = find_tracks(job, from);
         if (tracks.empty()) continue;
         make_clip(job, from, tracks, sample_rate_hz, bytes_left);
-        if (!used[c]) /* in several sets a key would be delivered several times */
+        if (!used[c]) /* a key in several sets would fire several times */
             copy_events(from, job.set->clips[job.set->clip_count - 1]);
         used[c] = true;
     }

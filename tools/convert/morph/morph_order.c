@@ -1,26 +1,26 @@
 /* morph_order.c: a line of patterns along which targets rarely start or stop.
  *
  * Vertices that exactly the same targets move form a pattern. A target's vertices along the line form runs, and a run
- * becomes a rectangle. A gap of g vertices between two runs costs min(g, reach) texels: it is filled with zeros, or a
+ * becomes a rectangle. A gap of g vertices between two runs costs min(g, gap_max) texels: it is filled with zeros, or a
  * new rectangle starts, whichever is cheaper. Finding the line of least cost is a travelling-salesman problem, with a
  * pattern for each city and about the Hamming distance between them; it is solved as such problems are: a
  * nearest-neighbour tour, then 2-opt reversals accepted by simulated annealing (Kirkpatrick, Gelatt and Vecchi,
  * "Optimization by Simulated Annealing", 1983).
  *
  * A reversal is judged in constant time. With c(t, p) the distance from a cut to the nearest vertex of target t on
- * side p of it, two sides that lie together save max(0, reach - c(t, left) - c(t, right)) against lying far apart, and
- * nothing else depends on the cut. Reversing a stretch changes the two cuts at its ends and no other, so the change of
- * cost is the difference of four such sums, each a few words of bits.
+ * side p of it, two sides that lie together save max(0, gap_max - c(t, left) - c(t, right)) against lying far apart,
+ * and nothing else depends on the cut. Reversing a stretch changes the two cuts at its ends and no other, so the change
+ * of cost is the difference of four such sums, each a few words of bits.
  *
- * Costs are integers and chances are taken from a fixed sequence without libm, so every machine takes the same
+ * Costs are integers and random numbers come from a fixed sequence without libm, so every machine takes the same
  * decisions and writes the same bytes. */
 #include "morph_internal.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#define REACH_MAX 8u   /* beyond it only the time grows */
-#define REACH_MORE 2u  /* besides its cost a rectangle has ragged ends, empty texels in a column */
+#define GAP_LIMIT 8u   /* a larger one takes longer and gains nothing */
+#define GAP_MORE 2u    /* beside its cost a rectangle has ragged ends: empty texels in a column */
 #define NEIGHBOURS 10u /* nearest patterns of each, the partners tried */
 #define SCAN_MOST                                                                                       \
     6000u /* candidates looked at for a nearest pattern: patterns are sorted, so they are the likeliest \
@@ -32,11 +32,11 @@
 
 typedef struct line {
     const morph_patterns *patterns;
-    uint32_t count, words, reach, neighbours;
+    uint32_t count, words, gap_max, neighbours;
     uint32_t *path;      /* place -> pattern */
     uint32_t *place;     /* pattern -> place */
     uint32_t *neighbour; /* [count][neighbours] */
-    uint64_t *side[4];   /* [reach][words]: targets within 1, 2, ... vertices of a cut's side */
+    uint64_t *side[4];   /* [gap_max][words]: targets within 1, 2, ... vertices of a cut's side */
     morph_random random;
 } line;
 
@@ -58,7 +58,7 @@ static uint32_t distance(const line *l, uint32_t a, uint32_t b)
     return d;
 }
 
-/* ---- the start ---- */
+/* ---- the first tour ---- */
 
 static void nearest_neighbour_path(line *l)
 {
@@ -102,14 +102,14 @@ static void find_neighbours(line *l, uint32_t a)
 
 /* ---- the cost of a reversal ---- */
 
-/* side[k] = targets among the k + 1 vertices from place `at` in direction `step`; nothing lies beyond the ends. */
+/* side[k] = the targets of the k + 1 vertices from place `at` in direction `step`; beyond the ends there are none. */
 static void look_aside(const line *l, uint32_t at, uint32_t step, uint64_t *side)
 {
     uint32_t k = 0;
-    while (k < l->reach) {
+    while (k < l->gap_max) {
         const int ended = at >= l->count; /* also for -1 */
-        uint32_t size = ended ? l->reach : pattern_size(l, l->path[at]);
-        if (size > l->reach - k) size = l->reach - k;
+        uint32_t size = ended ? l->gap_max : pattern_size(l, l->path[at]);
+        if (size > l->gap_max - k) size = l->gap_max - k;
         for (uint32_t end = k + size; k < end; k++)
             for (uint32_t w = 0; w < l->words; w++)
                 side[k * l->words + w] = (k ? side[(k - 1u) * l->words + w] : 0u) |
@@ -118,15 +118,15 @@ static void look_aside(const line *l, uint32_t at, uint32_t step, uint64_t *side
     }
 }
 
-/* Targets of one word whose gap is at most 0, 1, ... reach - 1, summed: what the two sides save. */
+/* The counts of targets in one word whose gap is at most 0, 1, ... gap_max - 1, summed: what the two sides save. */
 static uint32_t saved_word(const line *l, const uint64_t *left, const uint64_t *right)
 {
-    const uint64_t far_left = left[(size_t)(l->reach - 1u) * l->words],
-                   far_right = right[(size_t)(l->reach - 1u) * l->words];
+    const uint64_t far_left = left[(size_t)(l->gap_max - 1u) * l->words],
+                   far_right = right[(size_t)(l->gap_max - 1u) * l->words];
     uint32_t sum = 0;
     if (!(far_left & far_right)) return 0;
-    if (left[0] == far_left && right[0] == far_right) return l->reach * morph_popcount(far_left & far_right);
-    for (uint32_t most = 0; most < l->reach; most++) {
+    if (left[0] == far_left && right[0] == far_right) return l->gap_max * morph_popcount(far_left & far_right);
+    for (uint32_t most = 0; most < l->gap_max; most++) {
         uint64_t near = left[0] & right[(size_t)most * l->words];
         for (uint32_t k = 1; k <= most; k++) near |= left[(size_t)k * l->words] & right[(size_t)(most - k) * l->words];
         sum += morph_popcount(near);
@@ -142,8 +142,8 @@ static uint32_t saved(const line *l, const uint64_t *left, const uint64_t *right
     return sum;
 }
 
-/* Change of cost when path[low..high] is reversed. The ends of a stretch shorter than the reach
- * see past it, unlike what `saved` knows; that is only inexact, never unsafe. */
+/* The change of cost when path[low..high] is reversed. For a stretch shorter than gap_max the result is inexact,
+ * because its ends see past it; that costs quality, not correctness. */
 static int32_t change(line *l, uint32_t low, uint32_t high)
 {
     look_aside(l, low - 1u, (uint32_t)-1, l->side[0]);
@@ -181,11 +181,11 @@ static void try_reversal(line *l, uint32_t odds)
     if (morph_accepts(&l->random, change(l, low, high), odds)) reverse(l, low, high);
 }
 
-/* The temperature falls geometrically from the reach to a tenth of it. */
+/* The temperature falls geometrically from gap_max to a tenth of it. */
 static void anneal(line *l)
 {
     uint64_t steps = (uint64_t)STEPS_PER_PATTERN * l->count;
-    uint32_t heat = l->reach << MORPH_HEAT_BITS;
+    uint32_t heat = l->gap_max << MORPH_HEAT_BITS;
     if (steps > STEPS_MOST / l->words) steps = STEPS_MOST / l->words;
     for (uint32_t stage = 0; stage < STAGES; stage++) {
         const uint32_t odds = morph_odds(heat);
@@ -200,7 +200,7 @@ static int line_init(line *l)
     l->place = morph_alloc(l->count, sizeof *l->place);
     l->neighbour = morph_alloc((size_t)l->count * l->neighbours, sizeof *l->neighbour);
     for (uint32_t i = 0; i < 4u; i++) {
-        l->side[i] = morph_alloc((size_t)l->reach * l->words, sizeof *l->side[i]);
+        l->side[i] = morph_alloc((size_t)l->gap_max * l->words, sizeof *l->side[i]);
         if (!l->side[i]) return 1;
     }
     return !l->place || !l->neighbour;
@@ -215,7 +215,7 @@ int morph_order_path(const morph_patterns *patterns, float rect_cost, uint32_t *
     l.patterns = patterns;
     l.count = patterns->count;
     l.words = patterns->bits.words;
-    l.reach = rect_cost + (float)REACH_MORE < (float)REACH_MAX ? (uint32_t)(rect_cost + (float)REACH_MORE) : REACH_MAX;
+    l.gap_max = rect_cost + (float)GAP_MORE < (float)GAP_LIMIT ? (uint32_t)(rect_cost + (float)GAP_MORE) : GAP_LIMIT;
     l.path = path;
     l.random = MORPH_RANDOM_SEED;
     failed = line_init(&l);

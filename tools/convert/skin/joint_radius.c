@@ -20,9 +20,9 @@ static void add_mesh(const model_mesh *mesh, const model_skin *skin, float *out)
     for (size_t i = 0; i < (size_t)mesh->vertex_count * MODEL_INFLUENCES_MAX; i++) {
         if (mesh->joint_weights[i] >= JOINT_RADIUS_WEIGHT) {
             const uint32_t place = mesh->joints[i];
-            float *reach = &out[skin->skeleton_joints[place]];
-            *reach = fmaxf(*reach, distance(skin->inverse_bind + 16 * (size_t)place,
-                                            mesh->position + i / MODEL_INFLUENCES_MAX * 3));
+            float *radius = &out[skin->skeleton_joints[place]];
+            *radius = fmaxf(*radius, distance(skin->inverse_bind + 16 * (size_t)place,
+                                              mesh->position + i / MODEL_INFLUENCES_MAX * 3));
         }
     }
 }

@@ -1,4 +1,4 @@
-/* clip_prepare.c: raw clip in double precision and in object space. */
+/* clip_prepare.c: the raw clip in double precision and in object space. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -62,9 +62,11 @@ static int prepare_floats(encoder *e)
     for (uint32_t g = 0; g < c->float_count; g++) {
         const raw_floats *group = &c->floats[g];
         for (uint32_t i = 0; i < group->width; i++) {
-            const double reach = group->reach ? fabs((double)group->reach[i]) : 0.0;
-            double bound = group->reach ? e->options.error_cm / (reach > 1e-6 ? reach : 1e-6) : e->options.float_error;
-            if (bound > 1.0) bound = 1.0; /* a weight that moves nothing may still be looked at */
+            const double radius = group->radius ? fabs((double)group->radius[i]) : 0.0;
+            double bound = group->radius ? e->options.error_cm / (radius > 1e-6 ? radius : 1e-6)
+                                         : e->options.float_error;
+            if (bound > 1.0)
+                bound = 1.0; /* programs may read a weight that moves nothing, so it keeps some precision */
             e->float_bounds[first + i] = bound;
             for (uint32_t f = 0; f < e->frame_count; f++) {
                 e->floats[(size_t)f * e->float_count + first + i] = group->values[(size_t)f * group->width + i];

@@ -10,7 +10,7 @@
 #include "convert/clips/joint_order.h"
 #include "convert/model/model_build.h"
 
-#define SLOTS 4u /* segments: an eighth of a second lies in two or three */
+#define CACHED_SEGMENTS 4u /* an eighth of a second lies in two or three segments */
 
 /* A skeleton and its one clip as the runtime has them. */
 typedef struct player {
@@ -38,7 +38,7 @@ static int open_clip(const byte_buffer *bytes, player *p)
 {
     noh_clip_desc desc = { bytes->bytes, bytes->count, p->bind, p->skeleton.joint_count };
     const noh_clip *clips[1];
-    noh_clip_cache_desc cache = { clips, 1, SLOTS };
+    noh_clip_cache_desc cache = { clips, 1, CACHED_SEGMENTS };
     size_t clip_size = noh_clip_size(&desc, NULL), cache_size;
     p->clip_memory = malloc(clip_size + 1u);
     if (!p->clip_memory || noh_clip_init(p->clip_memory, clip_size, &desc, &p->clip, NULL)) {
@@ -50,7 +50,7 @@ static int open_clip(const byte_buffer *bytes, player *p)
     return !p->cache_memory || noh_clip_cache_init(p->cache_memory, cache_size, &cache, &p->cache, NULL) != NOH_OK;
 }
 
-static void fill_skeleton(const raw_skeleton *s, const float *reach, double shell, player *p)
+static void fill_skeleton(const raw_skeleton *s, const float *joint_radius, double shell, player *p)
 {
     p->skeleton.joint_count = s->joint_count;
     p->skeleton.parents = p->parents;
@@ -61,7 +61,7 @@ static void fill_skeleton(const raw_skeleton *s, const float *reach, double shel
         memcpy(p->bind[j].rotation, joint->rotation, sizeof joint->rotation);
         memcpy(p->bind[j].translation, joint->translation, sizeof joint->translation);
         memcpy(p->bind[j].scale, joint->scale, sizeof joint->scale);
-        p->joint_radius[j] = reach ? reach[j] : (float)shell;
+        p->joint_radius[j] = joint_radius ? joint_radius[j] : (float)shell;
     }
 }
 
@@ -74,8 +74,8 @@ static void fill_set(const raw_clip *raw, double unit_cm, player *p)
     p->entry.loop = info.flags & NOH_CLIP_FLAG_LOOP ? NOH_LOOP_REPEAT : NOH_LOOP_ONCE;
     for (uint32_t g = 0; g < raw->float_count; g++) {
         for (uint32_t i = 0; i < raw->floats[g].width; i++) {
-            p->scalar_radius[count++] = raw->floats[g].reach ? (float)((double)raw->floats[g].reach[i] / unit_cm)
-                                                             : 0.0f;
+            p->scalar_radius[count++] = raw->floats[g].radius ? (float)((double)raw->floats[g].radius[i] / unit_cm)
+                                                              : 0.0f;
         }
     }
     p->set.clip_count = 1;
@@ -92,7 +92,7 @@ static void fill_set(const raw_clip *raw, double unit_cm, player *p)
     p->probe.travels = 1;
 }
 
-static int open_player(const raw_skeleton *s, const raw_clip *raw, const byte_buffer *bytes, const float *reach,
+static int open_player(const raw_skeleton *s, const raw_clip *raw, const byte_buffer *bytes, const float *joint_radius,
                        double shell, player *p)
 {
     const uint32_t joints = raw->joint_count;
@@ -110,7 +110,7 @@ static int open_player(const raw_skeleton *s, const raw_clip *raw, const byte_bu
     if (!p->parents || !p->bind || !p->joint_radius || !p->scalar_radius) {
         return 1;
     }
-    fill_skeleton(joints ? s : &none, reach, shell, p);
+    fill_skeleton(joints ? s : &none, joint_radius, shell, p);
     if (open_clip(bytes, p)) {
         return 1;
     }
@@ -135,7 +135,8 @@ static void close_player(player *p)
     free(p->work);
 }
 
-/* A lower rate is not said to be better. Returns 0 where a number is not finite. */
+/* Raise each error to the one before it: a lower update rate, or fewer joints, never counts as better. Returns 0 if an
+ * error is not finite. */
 static int settle(float *errors, uint32_t count)
 {
     int fine = 1;
@@ -146,33 +147,34 @@ static int settle(float *errors, uint32_t count)
     return fine;
 }
 
-/* points: NULL: by what the joints reach. */
-static int measure_rates(player *p, const noh_time_lod_points *points, float *out)
+/* points NULL: measured by the joints' radii. */
+static int measure_update_rates(player *p, const noh_time_lod_points *points, float *out)
 {
     return points ? noh_time_lod_points_measure(p->work, p->work_bytes, &p->probe, points, 0, out, NULL) != NOH_OK
                   : noh_time_lod_measure(p->work, p->work_bytes, &p->probe, 0, out, NULL) != NOH_OK;
 }
 
 int clip_errors_measure(const raw_skeleton *skeleton, const raw_clip *raw, const byte_buffer *clip,
-                        const error_points *flesh, clip_errors *out, model_error *error)
+                        const error_points *at, clip_errors *out, model_error *error)
 {
-    const double shell = flesh->shell_cm / skeleton->unit_cm;
+    const double shell = at->shell_cm / skeleton->unit_cm;
     uint32_t counts[NOH_LOD_LEVELS_MAX];
     player p;
-    int failed = open_player(skeleton, raw, clip, flesh->reach, shell, &p);
+    int failed = open_player(skeleton, raw, clip, at->joint_radius, shell, &p);
     memset(out, 0, sizeof *out);
     if (!failed && raw->joint_count) {
-        out->shell = flesh->reach ? 0.0f : (float)shell;
+        out->shell = at->joint_radius ? 0.0f : (float)shell;
         out->level_count = joint_levels(skeleton, counts);
         failed = !out->level_count ||
                  noh_joint_lod_measure(p.work, p.work_bytes, &p.probe, 0, counts, out->level_count, out->joint, NULL);
     }
-    failed = failed || measure_rates(&p, raw->joint_count && flesh->reach ? flesh->points : NULL, out->rate);
+    failed = failed ||
+             measure_update_rates(&p, raw->joint_count && at->joint_radius ? at->points : NULL, out->update_rate);
     close_player(&p);
     if (failed) {
         return model_fail(error, "", "out of memory");
     }
-    if (!settle(out->joint, out->level_count) || !settle(out->rate, NOH_CLIP_UPDATE_RATES)) {
+    if (!settle(out->joint, out->level_count) || !settle(out->update_rate, NOH_CLIP_UPDATE_RATES)) {
         return model_fail(error, "", "clip '%.80s': its joints move farther than a float can hold", raw->name);
     }
     return 0;

@@ -1,4 +1,4 @@
-#include "clips.h"
+#include "pack_clips.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -130,7 +130,7 @@ static int encode_bounded(const raw_set *set, const raw_clip *clip, const clips_
     return failed;
 }
 
-static int encode_clip(const raw_set *set, raw_clip *clip, const error_points *flesh, const clips_settings *s,
+static int encode_clip(const raw_set *set, raw_clip *clip, const error_points *at, const clips_settings *s,
                        encoded_clip *out, model_error *error)
 {
     clip->loop = (uint8_t)(clip->loop || s->check_loops);
@@ -139,7 +139,7 @@ static int encode_clip(const raw_set *set, raw_clip *clip, const error_points *f
         fflush(s->progress);
     }
     if (check_length(clip, error) || check_markers(clip, error) || encode_bounded(set, clip, s, out, error) ||
-        clip_errors_measure(&set->skeleton, clip, &out->bytes, flesh, &out->errors, error)) {
+        clip_errors_measure(&set->skeleton, clip, &out->bytes, at, &out->errors, error)) {
         return 1;
     }
     if (s->report) {
@@ -148,24 +148,24 @@ static int encode_clip(const raw_set *set, raw_clip *clip, const error_points *f
     return s->check_loops && clip->joint_count ? report_loop(set, clip, s, error) : 0;
 }
 
-/* reach[joint_count], points: to be filled, and freed, also where it fails. */
-static int open_flesh(const clips_settings *s, uint32_t index, uint32_t joint_count, float *reach, joint_points *points,
-                      error_points *flesh)
+/* Fills radius[joint_count] and points. The caller frees both, also on failure. */
+static int open_points(const clips_settings *s, uint32_t index, uint32_t joint_count, float *radius,
+                       joint_points *points, error_points *at)
 {
     memset(points, 0, sizeof *points);
-    flesh->shell_cm = shell_cm(s);
-    flesh->reach = reach && joint_radius(s->m, index, joint_count, reach) ? reach : NULL;
-    flesh->points = flesh->reach ? &points->points : NULL;
-    return !reach || (flesh->reach && joint_points_choose(s->m, index, joint_count, points));
+    at->shell_cm = shell_cm(s);
+    at->joint_radius = radius && joint_radius(s->m, index, joint_count, radius) ? radius : NULL;
+    at->points = at->joint_radius ? &points->points : NULL;
+    return !radius || (at->joint_radius && joint_points_choose(s->m, index, joint_count, points));
 }
 
 static int encode_set(encoded_clips *m, uint32_t index, const clips_settings *s, model_error *error)
 {
     raw_set *set = m->sets[index];
-    float *reach = malloc((set->skeleton.joint_count + 1u) * sizeof *reach);
+    float *radius = malloc((set->skeleton.joint_count + 1u) * sizeof *radius);
     joint_points points;
-    error_points flesh;
-    int failed = open_flesh(s, index, set->skeleton.joint_count, reach, &points, &flesh);
+    error_points at;
+    int failed = open_points(s, index, set->skeleton.joint_count, radius, &points, &at);
     if (failed) {
         snprintf(error->what, sizeof error->what, "out of memory");
     }
@@ -173,10 +173,10 @@ static int encode_set(encoded_clips *m, uint32_t index, const clips_settings *s,
         encoded_clip *to = &m->clips[m->clip_count++];
         to->set = index;
         to->raw = &set->clips[c];
-        failed = encode_clip(set, &set->clips[c], &flesh, s, to, error);
+        failed = encode_clip(set, &set->clips[c], &at, s, to, error);
     }
     joint_points_free(&points);
-    free(reach);
+    free(radius);
     return failed;
 }
 
@@ -279,7 +279,7 @@ static void append_marker(const raw_clip *clip, const raw_event *from, string_ta
     buffer_append(out, &to, sizeof to);
 }
 
-/* The place of a set's skeleton among the pack's: sets without joints have none. */
+/* The index of a set's skeleton among the pack's: sets without joints have none. */
 static uint32_t skeleton_index(const encoded_clips *m, uint32_t set)
 {
     uint32_t index = 0;
@@ -299,7 +299,7 @@ static noh_clip_header clip_header(const encoded_clips *m, const encoded_clip *c
     h.raw_bytes = clip->report.raw_bytes < NOH_NONE ? (uint32_t)clip->report.raw_bytes : NOH_NONE;
     h.clip_bytes = (uint32_t)clip->bytes.count;
     h.joint_error_count = clip->errors.level_count;
-    memcpy(h.update_rate_error, clip->errors.rate, sizeof h.update_rate_error);
+    memcpy(h.update_rate_error, clip->errors.update_rate, sizeof h.update_rate_error);
     h.error_shell = clip->errors.shell;
     for (uint32_t i = 0; i < clip->raw->event_count; i++) {
         *(clip->raw->events[i].is_marker ? &h.marker_count : &h.event_count) += 1;

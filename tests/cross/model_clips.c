@@ -1,4 +1,5 @@
-/* clip.c: stands in for the C++ side of the converter: a model has no clip here. Tests that want any are left out. */
+/* model_clips.c: stands in for the C++ side of the converter: no model has clips here. Tests that need one are left
+ * out. */
 #include <stdlib.h>
 
 #include "convert/clips/model_clips.h"
