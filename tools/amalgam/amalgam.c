@@ -6,7 +6,7 @@
  * first what needs no GL, then, inside #ifndef NOH_WITHOUT_GL, what does; private headers stand where they are first
  * included. In one translation unit the names that files keep to themselves would clash, so a file-scope name of a .c
  * file that occurs anywhere else gets its file's name in front (run in deform/morph.c: deform_morph_run), and the
- * macros that a .c file defines are undefined at its end. What begins with noh_ or NOH_ is left alone.
+ * macros that a .c file defines are undefined at its end. Names that begin with noh_ or NOH_ are kept.
  *
  * Names are found by a scan of tokens, not by a parser: it knows the shapes of declarations that the library uses, and
  * the compiler finds the others, because a name that was missed is a redefinition. Errors: stderr and exit code 1. */
@@ -33,7 +33,7 @@ static input inputs[FILES_MAX];
 static int input_count;
 static const char *folders[FOLDERS_MAX];
 static int folder_count;
-static char names[NAMES_MAX][NAME_MAX_CHARS]; /* that the file in hand declares at file scope */
+static char names[NAMES_MAX][NAME_MAX_CHARS]; /* that the current file declares at file scope */
 static int name_count;
 
 static void fail(const char *format, ...)
@@ -264,7 +264,7 @@ static void write_prefix(FILE *out, const char *file)
     fputc('_', out);
 }
 
-/* What renaming has to know of the tokens before: whether they are ., -> or the beginning of a struct. */
+/* What renaming needs to know of the tokens before: whether they are ., -> or the beginning of a struct. */
 typedef struct {
     token before, before_that;
     int struct_braces; /* how many are open, counted from that of the outermost struct or union */

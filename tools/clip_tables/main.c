@@ -1,4 +1,4 @@
-/* clip_tables: derive the prefix codes of the clip codec from clip.
+/* clip_tables: derives the prefix codes of the clip codec from raw clips.
  *
  *   clip_tables > runtime/clip/clip_tables.c                 flat codes, to start from
  *   clip_tables CLIP.rcl... > runtime/clip/clip_tables.c     codes for these clips
@@ -7,7 +7,7 @@
  * above 60 Hz also with every 4th frame. Symbols are counted per context, each clip weighted so
  * that long ones do not drown short ones (by 1 / sqrt of its bytes), a little is added to every
  * symbol, and lengths limited to the look-up's bits are found by package-merge (Larmore and
- * Hirschberg, 1990). What is coded does not depend on the tables, so one pass settles. */
+ * Hirschberg, 1990). What is coded does not depend on the tables, so one pass is enough. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,7 +18,7 @@
 
 #define SYMBOLS_MAX 65u
 #define ITEMS_MAX (2u * SYMBOLS_MAX)
-#define SMOOTHING 0.02 /* of one average symbol, for those that were not seen */
+#define SMOOTHING 0.02 /* of an average symbol's count, for symbols that did not occur */
 #define FAST_HZ 60.0
 #define DECIMATE 4u
 

@@ -8,8 +8,8 @@
 #include "pack/pack.h"
 #include "sources.h"
 
-/* What a level leaves out of its targets, against how far its surface is off: the shares of both kinds of detail
- * in the largest error in pixels (runtime/character/lod.h). */
+/* How far targets that a level leaves out may move the surface, as a share of that level's error: both add up to the
+ * largest error in pixels (runtime/character/lod.h). */
 #define SKIP_SHARE (1.0f / 3.0f)
 
 static int out_of_memory(model_error *error)
@@ -33,7 +33,7 @@ static int apply_events(const convert_options *options, source *s, model_error *
 
 /* ---- encoding ---- */
 
-/* What becomes of the meshes of a model. */
+/* The meshes of a model, encoded. */
 typedef struct encoded {
     uint32_t count;
     mesh_levels *levels;     /* [count] */
@@ -73,7 +73,7 @@ static int encode_mesh(const model *m, uint32_t index, const convert_options *op
     float skip_radius[NOH_LOD_LEVELS_MAX];
     morph_options morph = options->morph;
     morph.error_um = (morph.error_um > 0.0f ? morph.error_um : 10.0f) /
-                     scale; /* asked for in the world, kept in the mesh */
+                     scale; /* given in world units, held in the mesh's own */
     say(options, "LOD levels", m, index);
     if (mesh_levels_make(m, index, &options->lod, &e->levels[index], error)) {
         return 1;
@@ -102,12 +102,12 @@ static int encode_meshes(const model *m, const convert_options *options, encoded
         failed = encode_mesh(m, i, options, e, error);
     }
     if (options->progress) {
-        fputs("\r\033[K", options->progress); /* leave the terminal's line as it was */
+        fputs("\r\033[K", options->progress); /* clear the terminal's line */
     }
     return failed;
 }
 
-/* A pack that its own reader refuses must not leave the converter. */
+/* Open the pack with the library's own reader: a pack that it refuses is never written. */
 static int check_own_pack(byte_buffer *out, FILE *report, model_error *error)
 {
     noh_pack pack;
@@ -168,7 +168,7 @@ static int convert_source(const source *s, const convert_options *options, byte_
     return failed;
 }
 
-/* The model: the first input that has meshes, else the first. */
+/* The input that gives the model: the first with meshes, else the first. */
 static int base_of(const source *all, int count)
 {
     for (int i = 0; i < count; i++) {

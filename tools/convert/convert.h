@@ -1,4 +1,4 @@
-/* convert.h: files in, the bytes of one pack out, and a report of what was done. */
+/* convert.h: makes the bytes of one pack out of files, and reports what was done. */
 #ifndef NOH_CONVERT_CONVERT_H
 #define NOH_CONVERT_CONVERT_H
 
@@ -12,7 +12,7 @@
 typedef enum convert_only { CONVERT_ALL, CONVERT_MESH, CONVERT_CLIPS } convert_only;
 
 typedef struct convert_options {
-    morph_options morph; /* but rank and level_count */
+    morph_options morph; /* rank, level_count and skip_radius are filled in by convert_files */
     lod_settings lod;
     clips_settings clip;
     skin_options skin;
@@ -29,20 +29,19 @@ typedef struct convert_failure {
     model_error error;
 } convert_failure;
 
-/* Read, join (sources.h; the model is that of the first input with meshes), encode and write. 0 on
- * success; *out is then the whole pack, to be freed with buffer_free. The same inputs and options
- * give the same bytes everywhere. */
+/* Read, join (sources.h; the first input with meshes gives the model), encode and write. 0 on success: *out is the
+ * whole pack, to be freed with buffer_free. The same inputs and options give the same bytes on every machine. */
 int convert_files(const char *const *inputs, int input_count, const convert_options *options, byte_buffer *out,
                   convert_failure *failure);
 
-/* The report of one encoded mesh: counts, bits, and bytes beside the peers' layouts.
- * scale: model_mesh_scale, so that errors are printed as they show in the world. */
+/* Report one encoded mesh: counts, bits, and its bytes beside those of other engines' layouts. scale: model_mesh_scale,
+ * so that errors are printed in world units. */
 void convert_report_mesh(FILE *out, const model_mesh *mesh, const morph_encoding *e, float scale, float error_um);
 
-/* The certified errors of each LOD level. */
+/* Report the certified errors of each LOD level. */
 void convert_report_lods(FILE *out, const model_mesh *mesh, const mesh_levels *levels, float scale);
 
-/* The skin of each skinned mesh of a finished pack, and the parts that it was split into. */
+/* Report the skin of each skinned mesh of a finished pack, and the parts that the mesh was split into. */
 void convert_report_skins(FILE *out, const noh_pack *pack);
 
 #endif

@@ -1,5 +1,5 @@
-/* report.c: what `noh build` did, beside what others would store (anchors: the
- * peers' layouts, bytes per vertex and target, or per non-zero pair). */
+/* report.c: what `noh build` prints of meshes, LOD levels and skins. The bytes of other engines' layouts are computed
+ * from their bytes per vertex and target, or per pair. */
 #include "convert.h"
 #include "mesh/mesh.h"
 

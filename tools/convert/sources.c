@@ -133,7 +133,7 @@ static int fail_skeletons(const raw_skeleton *base, const char *base_path, const
                       other->joint_count, base->joint_count);
 }
 
-/* The base's set that clips of joints go to. */
+/* Find the base's set that has the same joints as `from`. */
 static int find_set(const source *base, const char *base_path, const raw_set *from, raw_set **to, model_error *error)
 {
     const raw_skeleton *first = NULL;
@@ -146,10 +146,10 @@ static int find_set(const source *base, const char *base_path, const raw_set *fr
         first = !first && s->joint_count ? s : first;
     }
     return first ? fail_skeletons(first, base_path, &from->skeleton, error)
-                 : model_fail(error, "", "it moves a skeleton, and %.150s has none", base_path);
+                 : model_fail(error, "", "it animates a skeleton, and %.150s has none", base_path);
 }
 
-/* A set for clips without joints: any will do. */
+/* A set for clips without joints: any of the base's, or a new one. */
 static int any_set(source *base, raw_set **to, model_error *error)
 {
     if (base->set_count == 0) {
@@ -179,7 +179,7 @@ static uint32_t find_node(const model *m, const raw_floats *floats)
     return MODEL_NONE;
 }
 
-/* Weights are of the base's nodes now; those of nodes that it does not have are left out. */
+/* Assign the clip's weights to the base's nodes; weights of nodes that the base lacks are left out. */
 static int bind_weights(source *base, const char *base_path, raw_clip *clip, model_error *error)
 {
     uint32_t kept = 0;
@@ -215,7 +215,7 @@ static int has_clip(const raw_set *set, const char *name)
     return 0;
 }
 
-/* FILE/NAME. */
+/* To FILE/NAME. */
 static int rename_clip(raw_clip *clip, const char *path, model_error *error)
 {
     const char *slash = strrchr(path, '/'), *stem = slash ? slash + 1 : path, *dot = strrchr(stem, '.');
@@ -237,7 +237,7 @@ static void scale_translations(raw_clip *clip, double scale)
     }
 }
 
-/* The clip is then empty where it was. */
+/* Move a clip to the end of a set; an empty one stays behind. */
 static int move_clip(raw_clip *clip, raw_set *to, model_error *error)
 {
     raw_clip *grown = realloc(to->clips, ((size_t)to->clip_count + 1u) * sizeof *grown);

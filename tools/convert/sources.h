@@ -1,8 +1,8 @@
 /* sources.h: the files that one pack is built from.
  *
- * One of them is the base: its model and its skeletons are the pack's. Of the others only the clips
- * are added: those of joints where their skeleton has the same joints (names and parents) as one of the
- * base, morph weights where the base has a node of the same name with as many targets. */
+ * One of them is the base: its model and its skeletons are the pack's. From the others only clips are added: clips of
+ * joints if their skeleton has the same joints (names and parents) as one of the base's, morph weights if the base has
+ * a node of the same name with as many targets. */
 #ifndef NOH_CONVERT_SOURCES_H
 #define NOH_CONVERT_SOURCES_H
 
@@ -12,8 +12,8 @@
 typedef struct source {
     model *m;          /* of a glTF file; an empty one otherwise */
     model_clips *made; /* of a glTF file */
-    raw_set *single;   /* of a .bvh or .rcl; or clips that were added to a glTF file without any of its own */
-    raw_set **sets;    /* [set_count] those of `made`, or `single` */
+    raw_set *single;   /* of a .bvh or .rcl file; or clips added to a glTF file that has none of its own */
+    raw_set **sets;    /* [set_count] the sets of `made`, or `single` */
     uint32_t set_count;
 } source;
 
@@ -29,9 +29,10 @@ typedef struct source_options {
 int source_read(const char *path, const source_options *options, source *s, model_error *error);
 void source_free(source *s);
 
-/* Move the clips of `other` to `base`. Translations are brought to the base's unit. A clip whose name the
- * base has is called FILE/NAME, by the file's name without its ending. What is left out is a warning of base.
- * errors  1: no skeleton of base has these joints (what differs first is said), or `other` has no clips */
+/* Move the clips of `other` to `base`. Translations are converted to the base's unit. A clip whose name the base
+ * already has is renamed FILE/NAME, where FILE is the file's name without its ending. What is left out becomes a
+ * warning of base. errors  1: no skeleton of base has these joints (the message names the first difference), or `other`
+ * has no clips */
 int source_join(source *base, const char *base_path, source *other, const char *other_path, model_error *error);
 
 #endif

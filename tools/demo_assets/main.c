@@ -1,6 +1,6 @@
 /* demo_assets OUT.glb: models a Noh mask and writes it as a glTF binary.
- * demo_assets --puppet OUT.glb: the same mask, worn by a puppet that moves.
- * demo_assets --arm OUT.glb: arms in parts and in one piece, bent and twisted by every kind of skinning. */
+ * demo_assets --puppet OUT.glb: the same mask, worn by an animated puppet.
+ * demo_assets --arm OUT.glb: arms in parts and in one piece, bent and twisted by each kind of skinning. */
 #include "mask/gltf_write.h"
 #include "shared/grab.h"
 #include "arm/arm_write.h"
@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Writes beside the file first, so that a failure never leaves half of one. */
+/* Write to a temporary file first, so that a failure never leaves half of one. */
 static int save(const char *path, const Buffer *file)
 {
     int length = (int)strlen(path) + 5;

@@ -3,9 +3,8 @@
  *   embed -o OUT.c [-d DEPS.d] [-D NAME=VALUE]... FILE...
  *
  * Each FILE becomes a `noh_gl_source` (see runtime/gl/gl_program.h) named after
- * it: probe_store.frag gives noh_shader_probe_store_frag. Its #version line is
- * kept apart, so that a program can put its own lines right behind it or ask for
- * another version. #include "x" is replaced by that file, found beside the
+ * it: probe_store.frag gives noh_shader_probe_store_frag. Its #version line is kept apart, so that a program can put
+ * its own lines right after it or ask for another version. #include "x" is replaced by that file, found beside the
  * including one, once per FILE, whatever #if stands around it; the #line numbers
  * tell source files apart, and a comment in OUT.c says which number is which file.
  * Comments, indents and blanks at line ends are left out; a run of lines without code
@@ -71,7 +70,7 @@ typedef struct job {
     text c, h, prerequisites;
 } job;
 
-/* What to remove if we stop half way. */
+/* Files to remove if the run fails. */
 static char *unfinished[3];
 
 static void stop(int code)
@@ -452,7 +451,7 @@ static char *header_path(const char *out_c)
     return path;
 }
 
-/* Write beside the goal; the rename to it comes when all files are written. */
+/* Write to a temporary file; it is renamed when all files are written. */
 static void write_unfinished(size_t slot, const char *goal, const text *content)
 {
     size_t room = strlen(goal) + 32;

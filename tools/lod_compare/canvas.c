@@ -40,7 +40,7 @@ typedef struct corner {
 
 static uint8_t to_byte(float linear)
 {
-    float x = linear < 0.0f ? 0.0f : linear > 1.0f ? 1.0f : sqrtf(linear); /* near enough to sRGB */
+    float x = linear < 0.0f ? 0.0f : linear > 1.0f ? 1.0f : sqrtf(linear); /* close to sRGB */
     return (uint8_t)(x * 255.0f + 0.5f);
 }
 

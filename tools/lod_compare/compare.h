@@ -1,11 +1,11 @@
-/* compare.h: what the comparison with meshoptimizer shares.
+/* compare.h: shared by the files of the comparison with meshoptimizer.
  *
  *   peer_levels     meshoptimizer's levels at our triangle counts
  *   shapes_*        poses that the builder did not see, named faces
  *   faults_of       turned UVs, non-manifold edges
  *   canvas_*        a software z-buffer, for what shows and for pictures
- *   figures_*       all of it in numbers
- *   pictures_write  and to look at */
+ *   figures_*       all of it as numbers
+ *   pictures_write  and as pictures */
 #ifndef NOH_LOD_COMPARE_COMPARE_H
 #define NOH_LOD_COMPARE_COMPARE_H
 
@@ -14,7 +14,7 @@
 
 /* ---- the peer: peer.c ---- */
 
-/* meshopt_simplify of each submesh, down to the triangles that ours has. Ends the program where memory ends. */
+/* meshopt_simplify for each submesh, down to our number of triangles. Ends the program when out of memory. */
 lod *peer_levels(const model_mesh *mesh, const lod *ours);
 
 /* ---- poses: shapes.c ---- */
@@ -24,21 +24,21 @@ typedef struct shapes {
     float **poses; /* [mix_count + frame_count][vertex_count][3] */
 } shapes;
 
-/* Random mixes by another seed than the builder's, and frames at random times of the clips that move the skin. */
+/* Random mixes with another seed than the builder's, and frames at random times of the clips that move the skin. */
 void shapes_make(const model *m, uint32_t mesh, uint32_t mixes, uint32_t frames, shapes *out);
 void shapes_free(shapes *s);
 
-/* Weights that shut both eyes, or open the mouth. 0 where the mesh has no such targets. */
+/* Weights that shut both eyes, or open the mouth. Returns 0 if the mesh has no such targets. */
 int shapes_eyes_shut(const model_mesh *mesh, float *weights);
 int shapes_mouth_open(const model_mesh *mesh, float *weights);
 /* Positions and, unless NULL, unit normals. */
 void shapes_mixed(const model_mesh *mesh, const float *weights, float *position, float *normal);
 
-/* ---- what is broken: faults.c ---- */
+/* ---- faults: faults.c ---- */
 
 typedef struct faults {
     uint32_t uv_flips;     /* triangles whose UVs run against those of most triangles of their island */
-    uint32_t non_manifold; /* edges of more than two triangles, vertices at one place being one */
+    uint32_t non_manifold; /* edges of more than two triangles, with vertices at one position counted as one */
 } faults;
 
 void faults_of(const model_mesh *mesh, const uint32_t *indices, uint32_t index_count, faults *out);
@@ -55,23 +55,22 @@ typedef struct canvas {
 
 canvas canvas_new(float left, float bottom, float right, float top, float pixel);
 void canvas_free(canvas *c);
-/* Draw a level: triangles that face the camera or whose material has two sides, not the blended ones. */
+/* Draw a level: triangles that face the camera or have a two-sided material, without the blended ones. */
 void canvas_draw(canvas *c, const model *m, const model_mesh *mesh, const lod_level *level, const float *position,
                  const float *normal);
 /* Pixels in which a submesh is in front. */
 uint32_t canvas_count(const canvas *c, uint32_t submesh);
-/* Copy a smaller picture, `shrink` pixels made one, into a sheet of RGB. */
+/* Copy a picture into a sheet of RGB, `shrink` x `shrink` pixels averaged to one. */
 void canvas_paste(const canvas *c, uint32_t shrink, uint8_t *sheet, uint32_t sheet_width, uint32_t x, uint32_t y);
 
 /* ---- figures: report.c ---- */
 
 /* Of one level: lengths in millimetres, areas in square millimetres. */
 typedef struct figures {
-    uint32_t triangles, main_triangles;     /* of all submeshes; of the largest one */
-    float targets, mixes, frames, rest_p99; /* of the largest submesh: the largest distances */
-    float others;                           /* of all other submeshes, in any of those poses */
-    float eyes_open, eyes_shut, teeth,
-        teeth_skin; /* seen from the front; teeth_skin: with all but the skin at full detail */
+    uint32_t triangles, main_triangles;            /* of all submeshes; of the largest one */
+    float targets, mixes, frames, rest_p99;        /* of the largest submesh: the largest distances */
+    float others;                                  /* of all other submeshes, in any of those poses */
+    float eyes_open, eyes_shut, teeth, teeth_skin; /* seen from the front; teeth_skin: with all but the skin in full */
     faults faults;
 } figures;
 
@@ -80,16 +79,16 @@ void figures_print(const lod *l, const figures *ours, const figures *peer);
 
 /* ---- pictures.c ---- */
 
-/* A sheet of the levels, ours above the peer's, each as small as it is used: one pixel for its largest error.
- * pixel_mm [level_count]. Returns 0 where the picture could not be written. */
+/* A sheet of the levels, ours above meshoptimizer's, each at the size at which its largest error is one pixel. pixel_mm
+ * [level_count]. Returns 0 if the picture could not be written. */
 int pictures_write(const model *m, const model_mesh *mesh, const lod *ours, const lod *peer, const float *pixel_mm,
                    const char *path);
 
-/* The submesh of a material; MODEL_NONE where there is none. */
+/* The submesh of a material, or MODEL_NONE. */
 uint32_t find_submesh(const model *m, const model_mesh *mesh, const char *material);
-/* left, bottom, right, top of a submesh's vertices and a margin. */
-void box_of(const model_mesh *mesh, uint32_t submesh, const float *position, float margin, float *box);
-/* Zeroed memory; ends the program where there is none. */
+/* Left, bottom, right, top of a submesh's vertices, with a border around them. */
+void box_of(const model_mesh *mesh, uint32_t submesh, const float *position, float border, float *box);
+/* Zeroed memory; ends the program when there is none. */
 void *compare_zeros(size_t count, size_t bytes);
 
 #endif

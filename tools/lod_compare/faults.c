@@ -1,4 +1,4 @@
-/* faults.c: counting what a level must not have. */
+/* faults.c: counts what a level must not have. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,7 +23,7 @@ static int uv_sign(const model_mesh *mesh, const uint32_t *corner)
     return (area > 0.0) - (area < 0.0);
 }
 
-/* The islands and the side that most of an island's triangles show are the full mesh's. */
+/* Islands, and the orientation of most of an island's triangles, are taken from the full mesh. */
 static uint32_t count_flips(const model_mesh *mesh, const uint32_t *indices, uint32_t index_count)
 {
     uint32_t *parent = compare_zeros(mesh->vertex_count, sizeof *parent), flips = 0;

@@ -2,9 +2,9 @@
  *
  *   lod_compare FILE.glb [--fast] [--picture OUT.png]
  *
- * The file's first mesh, at 50, 25 and 10 % of its triangles. The builder sees rest, targets, its own random
- * mixes and, of a skinned mesh, 12 frames; what is compared are all targets, 20 other mixes and 28 other frames.
- * One submesh of the peer's level has as many triangles as ours has (or what meshoptimizer stops at). */
+ * The file's first mesh, at 50, 25 and 10 % of its triangles. The builder sees rest, targets, its own random mixes and,
+ * of a skinned mesh, 12 frames; compared are all targets, 20 other mixes and 28 other frames. Each submesh of
+ * meshoptimizer's level has as many triangles as ours, or as few as meshoptimizer reaches. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,15 +42,15 @@ uint32_t find_submesh(const model *m, const model_mesh *mesh, const char *materi
     return MODEL_NONE;
 }
 
-void box_of(const model_mesh *mesh, uint32_t submesh, const float *position, float margin, float *box)
+void box_of(const model_mesh *mesh, uint32_t submesh, const float *position, float border, float *box)
 {
     const model_submesh *sub = &mesh->submeshes[submesh];
     for (uint32_t i = 0; i < sub->index_count; i++) {
         const float *p = position + (size_t)mesh->indices[sub->first_index + i] * 3u;
-        box[0] = i == 0 || p[0] - margin < box[0] ? p[0] - margin : box[0];
-        box[1] = i == 0 || p[1] - margin < box[1] ? p[1] - margin : box[1];
-        box[2] = i == 0 || p[0] + margin > box[2] ? p[0] + margin : box[2];
-        box[3] = i == 0 || p[1] + margin > box[3] ? p[1] + margin : box[3];
+        box[0] = i == 0 || p[0] - border < box[0] ? p[0] - border : box[0];
+        box[1] = i == 0 || p[1] - border < box[1] ? p[1] - border : box[1];
+        box[2] = i == 0 || p[0] + border > box[2] ? p[0] + border : box[2];
+        box[3] = i == 0 || p[1] + border > box[3] ? p[1] + border : box[3];
     }
 }
 

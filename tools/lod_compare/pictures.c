@@ -1,4 +1,4 @@
-/* pictures.c: the levels side by side, as small as they are used. */
+/* pictures.c: the levels side by side, at the sizes at which they are used. */
 #include <stb/stb_image_write.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,7 +24,7 @@ static void face_weights(const model_mesh *mesh, uint32_t face, float *weights)
     }
 }
 
-/* The head around the eyes, or the whole mesh where it has none. */
+/* The head around the eyes, or the whole mesh if it has none. */
 static void picture_box(const model *m, const model_mesh *mesh, float *box)
 {
     uint32_t eyes = find_submesh(m, mesh, "eyes");

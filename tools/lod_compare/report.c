@@ -1,11 +1,11 @@
-/* report.c: the figures of levels, ours beside the peer's. */
+/* report.c: the figures of the levels, ours beside meshoptimizer's. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "compare.h"
 
-#define SEEN_PIXEL 0.0002f /* of the z-buffer that counts what is seen: 0.2 mm */
+#define SEEN_PIXEL 0.0002f /* 0.2 mm, a pixel of the z-buffer that measures visible areas */
 
 static void raise_to(float *to, float value)
 {
@@ -45,7 +45,7 @@ static void measure(const model_mesh *mesh, const lod_level *level, const shapes
     free(d);
 }
 
-/* Square millimetres of two submeshes that the camera sees; -1 where the mesh does not have the first. */
+/* Square millimetres of two submeshes that the camera sees; -1 if the mesh lacks the first. */
 static float seen(const model *m, const model_mesh *mesh, const lod_level *level, const char *name, const char *other,
                   const float *weights)
 {
@@ -66,7 +66,7 @@ static float seen(const model *m, const model_mesh *mesh, const lod_level *level
     return (float)count * SEEN_PIXEL * SEEN_PIXEL * 1e6f;
 }
 
-/* The level's largest submesh with all others as they were. */
+/* The level's largest submesh with all others in full. */
 static lod_level with_full_parts(const model_mesh *mesh, const lod_level *level)
 {
     uint32_t n = mesh->submesh_count, skin = main_submesh(mesh);

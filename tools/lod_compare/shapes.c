@@ -1,4 +1,4 @@
-/* shapes.c: faces and frames to compare in. */
+/* shapes.c: the faces and frames in which levels are compared. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

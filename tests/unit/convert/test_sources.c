@@ -191,7 +191,7 @@ static void what_adds_nothing_is_refused(void **state)
     expect_refused(&base, &other, "it has no clips to add to base.glb");
     base = source_of_model(test_model(&still));
     other = source_of(clip_bvh("walk", "abc", FRAMES));
-    expect_refused(&base, &other, "it moves a skeleton, and base.glb has none");
+    expect_refused(&base, &other, "it animates a skeleton, and base.glb has none");
 }
 
 /* The clips of all, the same bytes in whatever order. */

@@ -4,7 +4,7 @@
 
 #define PI 3.14159265358979323846
 
-/* Taylor series, to where the next term is below half a bit at pi/4. */
+/* Taylor series, cut off where the next term is below half a bit at pi/4. */
 static double sine_series(double x)
 {
     double x2 = x * x, sum = 1.0;
@@ -21,7 +21,7 @@ static double cosine_series(double x)
 
 void angle_sin_cos_degrees(double degrees, double *sine, double *cosine)
 {
-    double turned = fmod(degrees, 360.0); /* exact, as is what follows */
+    double turned = fmod(degrees, 360.0); /* exact, and so is the subtraction below */
     double quarters = floor(turned / 90.0 + 0.5);
     double x = (turned - 90.0 * quarters) * (PI / 180.0), s = sine_series(x), c = cosine_series(x);
     switch ((int)quarters & 3) {

@@ -1,6 +1,5 @@
-/* angle.h: sine, cosine and arc tangent in double precision, from sums, products and
- * square roots only: the same bits on every machine, where libm's last bits differ.
- * Errors below 4e-16. */
+/* angle.h: sine, cosine and arc tangent in double precision, made of sums, products and square roots only: libm's last
+ * bits differ between machines, these do not. Errors below 4e-16. */
 #ifndef NOH_CONVERT_BASE_ANGLE_H
 #define NOH_CONVERT_BASE_ANGLE_H
 

@@ -11,7 +11,7 @@
 typedef struct byte_buffer {
     uint8_t *bytes;
     size_t count, capacity;
-    int failed; /* out of memory at some append; later appends do nothing */
+    int failed; /* an append ran out of memory; later ones do nothing */
 } byte_buffer;
 
 void *buffer_append(byte_buffer *b, const void *bytes, size_t count); /* bytes NULL: zeros */
@@ -23,7 +23,7 @@ typedef struct string_table {
     byte_buffer bytes;
 } string_table;
 
-/* A name as a pack keeps it: cut to the format's limit, with the final zero, at a character's end. */
+/* A name as a pack keeps it: cut to the format's limit (its final zero included), never inside a character. */
 void string_cut(const char *name, char cut[NOH_NAME_BYTES_MAX]);
 
 /* The offset of a name, cut likewise; added if it is new. */

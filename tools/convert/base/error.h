@@ -1,4 +1,4 @@
-/* error.h: why an input is refused, and memory that says when there is none. */
+/* error.h: why an input is refused; allocations that may fail. */
 #ifndef NOH_CONVERT_BASE_ERROR_H
 #define NOH_CONVERT_BASE_ERROR_H
 
@@ -20,7 +20,7 @@ __attribute__((format(printf, 3, 4)))
 #endif
 int model_fail(model_error *error, const char *where, const char *format, ...);
 
-/* A zeroed array, or NULL (also for a size that overflows). 0 elements get a block too. */
+/* A zeroed array, or NULL: out of memory, or its size overflows. 0 elements get a block too. */
 void *model_zeros(size_t count, size_t element_size);
 
 /* A copy of a string, or NULL. */

@@ -54,7 +54,7 @@ double quat_angle(const double *a, const double *b)
 static void mix(const double *a, double wa, const double *b, double wb, double *out)
 {
     for (int i = 0; i < 4; ++i) out[i] = a[i] * wa + b[i] * wb;
-    (void)quat_normalize(out); /* neighbours on one half of the sphere: never without length */
+    (void)quat_normalize(out); /* both in one hemisphere: never of length 0 */
 }
 
 void quat_slerp(const double *a, const double *b, double t, double *out)

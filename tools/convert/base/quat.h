@@ -8,13 +8,13 @@ extern "C" {
 
 double quat_dot(const double *a, const double *b);
 
-/* First b, then a. out may be neither. */
+/* The rotation b followed by a. out may be neither of them. */
 void quat_multiply(const double *a, const double *b, double *out);
 
 /* Scale to length 1. Returns 0 and leaves q alone when it has no length. */
 int quat_normalize(double *q);
 
-/* Negate q where that brings it nearer to `to`: the same rotation, without a jump in its numbers. */
+/* Negate q if that brings it nearer to `to`: the same rotation, in the same hemisphere. */
 void quat_align(double *q, const double *to);
 
 /* The angle of the rotation from one unit quaternion to another, 0 to pi. */
@@ -23,7 +23,7 @@ double quat_angle(const double *a, const double *b);
 /* Spherical interpolation of unit quaternions along the shorter way; t from 0 to 1. */
 void quat_slerp(const double *a, const double *b, double t, double *out);
 
-/* What playing frames does: interpolate along the shorter chord, then normalise. */
+/* Interpolate along the shorter chord, then normalise, as the player does between frames. */
 void quat_nlerp(const double *a, const double *b, double t, double *out);
 
 /* The rotation matrix of a unit quaternion: three columns. */

@@ -106,7 +106,7 @@ int text_fail(text_scan *s, uint32_t line, const char *format, ...)
     return model_fail(s->error, where, "%s", what);
 }
 
-/* nan, inf and their longer spellings */
+/* also nan, inf and their longer spellings */
 static int is_not_finite(text_word word)
 {
     size_t sign = word.size > 0 && (word.text[0] == '-' || word.text[0] == '+');

@@ -1,5 +1,5 @@
-/* text_scan.h: a text in memory, taken word by word and line by line, with line numbers
- * for messages. Lines end with LF or CRLF; words are apart by blanks and tabs. */
+/* text_scan.h: reads a text in memory word by word and line by line, and knows line numbers for messages. Lines end
+ * with LF or CRLF; blanks and tabs separate words. */
 #ifndef NOH_CONVERT_BASE_TEXT_SCAN_H
 #define NOH_CONVERT_BASE_TEXT_SCAN_H
 
@@ -21,19 +21,19 @@ typedef struct text_word {
 
 void text_start(text_scan *s, const char *text, size_t size, model_error *error);
 
-/* The next word, on this line or a later one. A word of size 0 at the end of the text. */
+/* The next word, on this line or a later one; of size 0 at the end of the text. */
 text_word text_next(text_scan *s);
 
-/* The next word of this line. A word of size 0 at the line's end, which is not passed. */
+/* The next word of this line; of size 0 at its end, where the scan stays. */
 text_word text_next_on_line(text_scan *s);
 
-/* What is left of this line, without blanks around it. The line's end is not passed. */
+/* The rest of this line, without blanks around it. The scan stays at the line's end. */
 text_word text_rest_of_line(text_scan *s);
 
-/* To the first word of a later line, from the end of this one. 0 at the end of the text. */
+/* Go from the end of this line to the first word of a later one. 0 at the end of the text. */
 int text_next_line(text_scan *s);
 
-/* Compare with letters of any case. */
+/* Compare without regard to case. */
 int text_is(text_word word, const char *keyword);
 
 /* A copy for messages: short, without control characters. Returns `out`. */

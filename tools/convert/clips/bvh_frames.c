@@ -10,7 +10,7 @@
 #include "convert/base/quat.h"
 #include "raw_set.h"
 
-/* "Frames:", "Frame Time:", with or without blanks before the colon and after it. */
+/* "Frames:" or "Frame Time:"; blanks may stand before the colon and after it. */
 static int expect_label(bvh_file *f, const char *label)
 {
     text_scan *s = &f->text;
@@ -36,7 +36,7 @@ static int expect_line_end(bvh_file *f)
     return word.size == 0 ? 0 : text_fail(&f->text, word.line, "'%s' is unexpected here", text_show(word, shown));
 }
 
-/* The digits after the point say how well the time is known. */
+/* The unit of the last digit printed: how precisely the time is known. */
 static double last_digit_of(text_word word)
 {
     double unit = 1.0;
@@ -47,7 +47,7 @@ static double last_digit_of(text_word word)
     return unit;
 }
 
-/* 0.0333333 means 30 Hz: a whole rate is taken where its period is the printed one but for the last digit. */
+/* 0.0333333 means 30 Hz: a whole number of Hz is taken if its period agrees with the printed one to the last digit. */
 static double sample_rate_of(double period_s, double last_digit_s)
 {
     double sample_rate_hz = 1.0 / period_s, whole_hz = floor(sample_rate_hz + 0.5);
@@ -144,8 +144,8 @@ static int read_frame(bvh_file *f, uint32_t frame, double *values)
     return 0;
 }
 
-/* Some writers count the steps between frames, and so announce one less than they write: one whole
- * frame more is left out with a warning. Anything else behind the frames is an error. */
+/* Some writers count the steps between frames and so announce one frame less than they write: one more whole frame is
+ * left out with a warning. Anything else after the frames is an error. */
 static int check_end(bvh_file *f, double *values)
 {
     if (!text_next_line(&f->text)) return 0;
@@ -164,8 +164,8 @@ static int read_frames(bvh_file *f, double *values)
     return check_end(f, values);
 }
 
-/* As many frames as were announced, but no more than the rest of the file has room for: a
- * number takes two bytes with the blank after it. */
+/* As many frames as were announced, but no more than the rest of the file can hold: a number takes at least two bytes
+ * with the blank after it. */
 static uint32_t frames_to_hold(const bvh_file *f)
 {
     size_t room = (size_t)(f->text.end - f->text.at) / (2u * f->channel_count) + 1;

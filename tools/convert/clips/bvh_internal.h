@@ -1,14 +1,14 @@
 /* bvh_internal.h: a .bvh file while it is read.
  *
  *   bvh_read.c    bvh_read; the hierarchy
- *   bvh_clip.c  the frames */
+ *   bvh_frames.c  the frames */
 #ifndef NOH_CONVERT_CLIPS_BVH_INTERNAL_H
 #define NOH_CONVERT_CLIPS_BVH_INTERNAL_H
 
 #include "bvh_read.h"
 #include "convert/base/text_scan.h"
 
-/* In the order of bit and index: positions 0 to 2, rotations 3 to 5. */
+/* kind: 0 to 2 are positions along x, y, z; 3 to 5 rotations about them. */
 typedef struct bvh_channel {
     uint32_t joint;
     uint8_t kind;
@@ -37,7 +37,7 @@ static inline int bvh_out_of_memory(bvh_file *f)
     return model_fail(f->text.error, "", "there is not enough memory to read this file");
 }
 
-/* From the word CLIP to the end: fills the set's clip. */
+/* Read what follows the word MOTION into the set's clip. */
 int bvh_read_frames(bvh_file *f);
 
 #endif

@@ -215,7 +215,7 @@ static int read_member(bvh_file *f, uint32_t *open, text_word word)
     return text_fail(&f->text, word.line, "'%s' is not known inside a joint", text_show(word, shown));
 }
 
-/* Up to and with the word CLIP. */
+/* Up to the word MOTION, and past it. */
 static int read_hierarchy(bvh_file *f)
 {
     char shown[TEXT_SHOWN];

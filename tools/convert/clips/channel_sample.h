@@ -1,4 +1,4 @@
-/* channel_sample.h: the source's own curves at any time, in double precision. */
+/* channel_sample.h: a source's animation curves at any time, in double precision. */
 #ifndef NOH_CONVERT_CLIPS_CHANNEL_SAMPLE_H
 #define NOH_CONVERT_CLIPS_CHANNEL_SAMPLE_H
 
@@ -8,11 +8,11 @@
 extern "C" {
 #endif
 
-/* The value of a channel at a time; before the first and after the last key their values hold.
- * Rotations are unit, interpolated along the shorter arc (LINEAR) or normalised (CUBICSPLINE).
- * snap_s  a key that lies no further off gives its value as it is
+/* The value of a channel at a time; constant before the first key and after the last.
+ * Rotations are unit quaternions, interpolated along the shorter arc (LINEAR) or normalised (CUBICSPLINE).
+ * snap_s  a key at most this far away gives its value unchanged
  * out     [channel->width]
- * errors  1 where a rotation has no length: a spline through zero
+ * errors  1: a rotation has no length, as where a spline passes through zero
  * source  glTF 2.0, appendix C */
 int channel_sample(const model_channel *channel, double time_s, double snap_s, double *out);
 

@@ -9,7 +9,7 @@
 #include "raw_set.h"
 #include "convert/base/text_scan.h"
 
-#define TIME_ROUNDING_S 1e-4 /* a key that a tool put on the last frame may lie this much behind it */
+#define TIME_ROUNDING_S 1e-4 /* a tool that rounds may place a key for the last frame this far after it */
 
 typedef struct events_reader {
     text_scan text;
@@ -22,7 +22,7 @@ static int out_of_memory(text_scan *s)
     return model_fail(s->error, "", "there is not enough memory to read this file");
 }
 
-/* The next word of the line, or what stands between quotes; size 0 at its end and at a comment. */
+/* The next word of the line, or the text between quotes; of size 0 at the line's end and at a comment. */
 static int take_word(text_scan *s, text_word *out)
 {
     const char *before;
@@ -53,7 +53,7 @@ static int take_needed(text_scan *s, const char *what, text_word *out)
                            what);
 }
 
-/* payload or min=WEIGHT, in any order, each once; or marker, alone */
+/* a payload and min=WEIGHT, each at most once and in any order; or `marker` alone */
 static int take_options(text_scan *s, raw_event *event)
 {
     text_word word;

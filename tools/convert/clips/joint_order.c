@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CLASS_PART (1.0 / 2000.0) /* of the largest extent: closer ones are equal */
-#define END_PART 0.125            /* of the longest chain: an end reaches no farther */
+#define CLASS_PART (1.0 / 2000.0) /* of the largest extent: extents closer than this are equal */
+#define END_PART 0.125            /* of the longest chain: the most that the end of a chain counts */
 #define LESS_PART 0.2             /* how far beside the wanted share of joints a level may be cut */
 #define MORE_PART 0.3
 
@@ -17,8 +17,7 @@ static double length(const float *v)
     return sqrt(x * x + y * y + z * z);
 }
 
-/* With joints at the ends of chains that reach as far as the bones that lead to them, up to `end`. Returns the largest.
- */
+/* Extents, with the ends of chains counted as long as the bones that lead to them, up to `end`. Returns the largest. */
 static double find_chains(const raw_skeleton *s, double end, double *extents)
 {
     double largest = 0.0;
@@ -62,7 +61,7 @@ static int by_rank(const void *left, const void *right)
     return a->rank != b->rank ? (a->rank < b->rank ? -1 : 1) : a->joint < b->joint ? -1 : 1;
 }
 
-/* order [joint_count]: the joint that comes to each place. */
+/* order [joint_count]: the joint for each place. */
 static int find_order(const raw_skeleton *s, uint32_t *order)
 {
     double *extents = malloc((s->joint_count + 1u) * sizeof *extents), near;
@@ -159,8 +158,8 @@ int joint_order_sets(raw_set **sets, uint32_t set_count, model *m)
 
 /* ---- levels ---- */
 
-/* How much the extent falls at a place between joints, as a part of what is before it: 0 where it must not be cut
- * there. */
+/* How much the extent falls at a place between joints, as a part of the extent before it; 0 where no level may be cut.
+ */
 typedef struct cuts {
     double *falls; /* [joint_count]: before each joint */
     uint32_t joint_count;
@@ -176,7 +175,7 @@ static void find_cuts(const raw_skeleton *s, const double *extents, double near,
         roots = is_root ? j + 1u : roots;
         above = is_root ? above : fmin(above, extents[j]);
     }
-    above = 0.0; /* from here on: what lies behind */
+    above = 0.0; /* from here on: the joints after the place */
     for (uint32_t j = s->joint_count; j-- > 0;) {
         const int is_root = s->joints[j].parent == MODEL_NONE;
         above = is_root ? above : fmax(above, extents[j]);

@@ -12,7 +12,7 @@ static double length(const double *v)
     return sqrt(vec_dot(v, v));
 }
 
-/* One axis both ways: the joint's matrices in the two poses, in the skeleton's unit. */
+/* The points at both ends of one axis, in the two poses, in the skeleton's unit. */
 static double axis_difference(const double *a, const double *b, int axis, double shell)
 {
     const double size = length(a + axis * 3), out = size > 0.0 ? shell / size : 0.0;
@@ -49,7 +49,7 @@ static void compare_joints(const raw_skeleton *skeleton, const double *first, co
 
 /* --- without the travel --- */
 
-#define TRAVEL_CM 0.01 /* less is noise of a joint that stands */
+#define TRAVEL_CM 0.01 /* a smaller distance is the noise of a joint that stands still */
 
 static double local_travel_cm(const raw_skeleton *skeleton, const raw_clip *clip, const double *first, uint32_t j)
 {
@@ -60,7 +60,7 @@ static double local_travel_cm(const raw_skeleton *skeleton, const raw_clip *clip
     return length(d) * skeleton->unit_cm * (parent == MODEL_NONE ? 1.0 : length(first + (size_t)parent * 12));
 }
 
-/* The topmost joint of each chain that travels is put back to where it began: in a copy of the last frame. */
+/* In a copy of the last frame, move the topmost joint of each chain that travels back to where it began. */
 static void put_back(const raw_skeleton *skeleton, const raw_clip *clip, const double *first, uint8_t *below,
                      raw_clip *frame)
 {

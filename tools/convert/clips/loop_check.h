@@ -11,9 +11,10 @@ extern "C" {
 typedef struct raw_loop_check {
     double difference_cm; /* largest difference of the first and the last frame, in object space */
     uint32_t joint;       /* where; MODEL_NONE for a clip without joints */
-    double in_place_cm; /* likewise with the topmost joint that travels put back: how a loop with root motion closes */
+    double in_place_cm;   /* likewise with the topmost joint that travels moved back to its start: how a loop with root
+                             motion closes */
     uint32_t in_place_joint;
-    double float_cm;    /* of morph weights: the sum over a group, by its radius */
+    double float_cm;    /* of morph weights: difference x radius, summed over a group */
     double float_units; /* of scalars without a radius, in their own unit */
 } raw_loop_check;
 

@@ -1,13 +1,13 @@
-/* gltf_clip.h: from a model's nodes, skins and animations to skeletons and sampled clips.
+/* model_clips.h: from a model's nodes, skins and animations to skeletons and sampled clips.
  *
- * Skeletons. Skins that share joints, or whose joints lie below each other's, share one
- * skeleton. It holds their joints, the animated nodes below these, and of the nodes above
- * them those that are animated or have a transform: a skeleton's object space is the scene,
- * and nothing is folded or rounded. Animated nodes that belong to no skin form one more skeleton.
+ * Skeletons. Skins that share joints, or one of which has joints below the other's, share one skeleton. It holds their
+ * joints, the animated nodes below these, and those of the nodes above them that are animated or have a transform: a
+ * skeleton's object space is the scene, and no transforms are merged or rounded. Animated nodes that belong to no skin
+ * form one more skeleton.
  *
- * Clips. Each skeleton gets the animations that move a joint of it or the weights of its meshes.
- * Frames lie at equal times from 0 to the animation's last key, both exactly: with R Hz asked
- * for there are n = round(duration * R), at least 1, steps, and the sample rate is n / duration. */
+ * Clips. Each skeleton gets the animations that animate one of its joints or the weights of its meshes. Frames are
+ * equally spaced from 0 to the animation's last key, both exact: a request for R Hz gives n = round(duration * R)
+ * steps, at least 1, and a sample rate of n / duration. */
 #ifndef NOH_CONVERT_CLIPS_MODEL_CLIPS_H
 #define NOH_CONVERT_CLIPS_MODEL_CLIPS_H
 
@@ -18,9 +18,9 @@ extern "C" {
 #endif
 
 typedef struct sample_options {
-    double sample_rate_hz; /* 0: the rate of the keys, where they lie on a grid of 15 Hz or more and are linear. Else
+    double sample_rate_hz; /* 0: that of the keys, if they lie on a grid of 15 Hz or more and are linear. Else
                             * the lowest of the grid's multiples, or of 30, 60 and 120, at which playing the frames
-                            * strays from the curves by at most 1/1000 of the skeleton's size; at most 120 */
+                            * is off the curves by at most 1/1000 of the skeleton's size; at most 120 */
 } sample_options;
 
 /* The joints of a model's skin in its skeleton. */
@@ -29,7 +29,7 @@ typedef struct clip_skin {
     uint32_t *joints; /* [model_skin.joint_count] */
 } clip_skin;
 
-/* The joint at or next above a node; MODEL_NONE twice where nothing moves it. */
+/* The joint at a node, or the next one above it; both MODEL_NONE where no joint moves the node. */
 typedef struct node_joint {
     uint32_t set, joint;
 } node_joint;

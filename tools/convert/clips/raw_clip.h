@@ -31,8 +31,8 @@ typedef struct raw_floats {
     uint32_t node; /* glTF node for morph weights, else MODEL_NONE */
     uint32_t width;
     float *values; /* [frame_count][width] */
-    float *radius; /* [width] radius in centimetres: how far a value of 1 moves the surface; NULL: errors are in the
-                      scalar's own unit */
+    float *radius; /* [width] centimetres: how far a value of 1 moves the surface; NULL: errors are in the scalar's own
+                      unit */
 } raw_floats;
 
 typedef struct raw_event {
@@ -46,7 +46,7 @@ typedef struct raw_event {
 typedef struct raw_clip {
     char *name;
     double sample_rate_hz;
-    uint32_t frame_count; /* at least 1; the clip lasts (frame_count - 1) / rate_hz seconds */
+    uint32_t frame_count; /* at least 1; the clip lasts (frame_count - 1) / sample_rate_hz seconds */
     uint32_t joint_count; /* of its skeleton; 0: animates scalar tracks only */
     uint8_t loop;         /* marked as a loop: the last frame equals the first */
     float *rotations;     /* [frame_count][joint_count][4] unit */
@@ -56,8 +56,8 @@ typedef struct raw_clip {
     raw_floats *floats;
     uint32_t event_count;
     raw_event *events;      /* keys and markers, in time order */
-    double source_error_cm; /* the largest distance, between frames, from the source's own curves when these frames are
-                             * played (lerp, normalise): over all joints and scalars, one by one; 0: none */
+    double source_error_cm; /* the largest distance between these frames as played (lerp, normalise) and the source's
+                               curves, each joint and scalar judged alone; 0: none */
 } raw_clip;
 
 /* One skeleton and its clips. */

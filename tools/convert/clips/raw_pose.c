@@ -12,7 +12,7 @@ static void local_matrix(const float *rotation, const float *translation, const 
 {
     double q[4];
     for (int i = 0; i < 4; ++i) q[i] = (double)rotation[i];
-    (void)quat_normalize(q); /* as stored it is unit to a float's precision only */
+    (void)quat_normalize(q); /* stored, it has unit length only to a float's precision */
     quat_columns(q, out);
     for (int i = 0; i < 9; ++i) out[i] *= (double)scale[i / 3];
     for (int i = 0; i < 3; ++i) out[9 + i] = (double)translation[i];
@@ -51,7 +51,7 @@ static double distance(const double *a, const double *b)
     return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
 }
 
-/* Raise the radius of a joint and of all above it to what lies at `point`. */
+/* Raise the radii of a joint and of all above it to include `point`. */
 static void raise_radius(const raw_skeleton *skeleton, const double *pose, uint32_t joint, const double *point,
                          double *out)
 {

@@ -92,7 +92,7 @@ void raw_set_free(raw_set *set)
     free(set);
 }
 
-/* The array is grown to powers of two, so its capacity need not be stored. */
+/* The array grows to powers of two, so its capacity need not be stored. */
 static int events_grow(raw_clip *clip)
 {
     uint32_t count = clip->event_count;

@@ -2,7 +2,7 @@
  *
  *   raw_set_new, raw_set_free       a set on the heap
  *   raw_set_clear                   what a set holds, not the set itself
- *   raw_skeleton_alloc              joints in a bind pose of no rotation
+ *   raw_skeleton_alloc              joints, all with an identity bind pose
  *   raw_clip_alloc, raw_clip_clear  frames
  *   raw_clip_add_event              keeps the events in time order
  *   raw_skeleton_hash               binds the clips of one pack to the skeleton of another
@@ -27,13 +27,13 @@ raw_set *raw_set_new(uint32_t joint_count, uint32_t clip_count);
 void raw_set_free(raw_set *set);
 void raw_set_clear(raw_set *set);
 int raw_skeleton_alloc(raw_skeleton *skeleton, uint32_t joint_count);
-/* Frames of zeros, to be filled; the clip's other fields are left alone. */
+/* Frames of zeros, to be filled; the clip's other fields are untouched. */
 int raw_clip_alloc(raw_clip *clip, uint32_t frame_count, uint32_t joint_count);
 int raw_floats_alloc(raw_floats *floats, uint32_t frame_count, uint32_t width);
 void raw_floats_clear(raw_floats *floats);
 void raw_clip_clear(raw_clip *clip);
 
-/* Add a copy, after those of the same time. The caller keeps to RAW_EVENTS_MAX. */
+/* Add a copy, after those of the same time. The caller keeps the count within RAW_EVENTS_MAX. */
 int raw_clip_add_event(raw_clip *clip, const raw_event *event);
 
 double raw_clip_duration_s(const raw_clip *clip);
@@ -46,9 +46,9 @@ uint32_t raw_skeleton_hash(const raw_skeleton *skeleton);
  * out  [joint_count][12]: three columns and the translation */
 void raw_pose_object(const raw_skeleton *skeleton, const raw_clip *clip, uint32_t frame, double *out);
 
-/* For each joint the largest distance, in centimetres and in the bind pose, to one of the joints
- * and ends below it: what an error of its rotation reaches. out [joint_count].
- * *size_cm: the largest of them. Returns 1 when out of memory. */
+/* The radius of each joint: the largest distance, in centimetres and in the bind pose, to one of the joints and ends
+ * below it, which an error of its rotation would move. out [joint_count]. *size_cm: the largest of them. Returns 1 when
+ * out of memory. */
 int raw_skeleton_radius(const raw_skeleton *skeleton, double *out, double *size_cm);
 
 #ifdef __cplusplus

@@ -1,6 +1,6 @@
 /* rcl.h: .rcl, raw clips without loss.
  *
- * Little endian, 32-bit floats, distances in centimetres:
+ * Little-endian, 32-bit floats, distances in centimetres:
  *   char[4] "RCL1"; u32 joints; u32 frames; f32 rate_hz; u32 length; char name[length]
  *   per joint: i32 parent (-1: a root; parents first); u32 flags (1 rotation, 2 translation,
  *     4 scale animated); u32 length; char name[length]; f32 bind[10]; f32 first[10],
@@ -19,9 +19,8 @@ extern "C" {
  * *error, whose `where` is a byte offset. */
 int rcl_read(const char *path, raw_set **out, model_error *error);
 
-/* Joints only: the format has no place for floats and events. What was read from .rcl
- * is written back to the same bytes; other units are converted to centimetres.
- * Writes the whole file or leaves what was there. */
+/* Joints only: the format has no floats and no events. A clip read from .rcl is written back to the same bytes; other
+ * units are converted to centimetres. On failure an existing file is untouched. */
 int rcl_write(const char *path, const raw_skeleton *skeleton, const raw_clip *clip, model_error *error);
 
 #ifdef __cplusplus

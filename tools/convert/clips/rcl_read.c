@@ -61,7 +61,7 @@ static int take_floats(rcl_reader *r, size_t count, float *out)
     return 0;
 }
 
-/* As stored, to the last bit; but what is no rotation at all is refused. */
+/* Kept as stored, to the last bit; what cannot be a rotation is refused. */
 static int take_rotation(rcl_reader *r, float *q)
 {
     size_t at = r->at;
@@ -158,7 +158,7 @@ static int read_sample(rcl_reader *r, uint32_t j, float *q, float *t, float *s)
            (r->flags[j] & 4 && take_floats(r, 3, s));
 }
 
-/* Before frames are allocated: a short file must not ask for much memory. */
+/* Checked before frames are allocated: a short file must not claim much memory. */
 static int check_frame_bytes(rcl_reader *r)
 {
     const uint64_t frames = r->set->clips[0].frame_count;

@@ -43,7 +43,7 @@ static void mix_rotations(const raw_clip *clip, const place *at, float *out)
     for (size_t i = 0; at->part != 0.0 && i < count; i += 4) mix_rotation(a + i, b + i, at->part, out + i);
 }
 
-/* A source whose quaternions jump in sign would pass the jump on. */
+/* Jumps of sign in the source's quaternions are not passed on. */
 static void align_rotations(raw_clip *clip)
 {
     const size_t count = (size_t)clip->joint_count * 4;
@@ -107,7 +107,7 @@ static int copy_shape(const raw_clip *clip, uint32_t frame_count, double sample_
     return copy_events(clip, out);
 }
 
-/* Frame i of the copy is at i * steps_from / steps_to frames of the source, of which the quotient and rest are exact.
+/* Frame i of the copy lies at i * steps_from / steps_to frames of the source; integer quotient and remainder are exact.
  */
 static int copy_frames(const raw_clip *clip, uint32_t frame_count, double sample_rate_hz, uint64_t steps_from,
                        uint64_t steps_to, raw_clip *out, model_error *error)

@@ -1,20 +1,23 @@
-/* clip_analyse.c: what of each joint is animated, what an error of it moves, and what its tracks are relative to.
+/* clip_analyse.c: which tracks of each joint are animated, how far their errors are felt, and what their values are
+ * relative to.
  *
- * A track whose whole range moves nothing by more than a part of the bound is stored as a constant. An error of a
- * rotation moves everything below the joint: its "lever" is the farthest such point that no animated joint in between
+ * A track whose whole range moves no point by more than a small share of the bound is stored as a constant. An error of
+ * a rotation moves everything below the joint: its "lever" is the farthest such point that no animated joint in between
  * can correct. Animated rotations are stored relative to a reference (their mean, or the bind pose where that is near),
- * as three numbers that grow like the angle; where the three are correlated, as in a hinge that is not aligned with an
- * axis, they are turned into the axes of their covariance (`find_mix`), which leaves fewer coefficients to store. */
+ * as three numbers that grow in proportion to the angle. If the three are correlated, as in a hinge that is not aligned
+ * with an axis, they are rotated to the axes of their covariance (`find_mix`), which leaves fewer coefficients to
+ * store. */
 #include <stdlib.h>
 
 #include "clip_encoder.h"
 
 #define SAMPLES 50u  /* frames that levers are judged by */
-#define WILD_RAD 2.2 /* a rotation that strays further from its mean brings references along */
+#define WILD_RAD 2.2 /* radians from the mean: a rotation that goes farther stores a reference with each segment */
 #define NEAR_BIND_RAD 1.2
-#define WIDE_LEVER 125.0   /* in units of 0.01 cm of bound: longer levers show the 16 bits of the cache */
-#define CONSTANT_PART 0.04 /* of the bound: what the coding of a constant may cost */
-#define MIX_COST_BITS 39.0 /* 27 bits of header, and half again so that it pays */
+#define WIDE_LEVER \
+    125.0 /* in units of 0.01 cm of bound: with longer levers the 16 bits of cached rotations would show */
+#define CONSTANT_PART 0.04 /* share of the bound that the coding of a constant may take */
+#define MIX_COST_BITS 39.0 /* 27 bits of header and nearly half as much again, so that it pays */
 #define LOOSE 1e300
 
 enum { ROTATION, TRANSLATION, SCALE };
@@ -233,8 +236,7 @@ static float cut_float(double v, uint32_t width)
     memcpy(&word, &f, sizeof word);
     if (width < 32u) {
         const uint32_t low = 32u - width, half = 1u << (low - 1u);
-        if ((word & 0x7f800000u) < 0x7f000000u)
-            word += half; /* to nearest; a carry moves on to the exponent, as it should */
+        if ((word & 0x7f800000u) < 0x7f000000u) word += half; /* to nearest; a carry into the exponent is right */
         word &= ~(((uint32_t)1 << low) - 1u);
     }
     memcpy(&f, &word, sizeof f);
@@ -296,7 +298,7 @@ static enc_track *new_track(encoder *e, noh_clip_kind kind, uint32_t target)
     return t;
 }
 
-/* Negate a joint's rotations in the whole clip where it begins outside its reference's hemisphere. */
+/* Negate a joint's rotations in the whole clip if the first is outside its reference's hemisphere. */
 static void align_clip(encoder *e, uint32_t joint, const double reference[4])
 {
     double sum = 0.0;
@@ -449,7 +451,7 @@ static void matrix_quat(const double m[9], double q[4])
     space_unit(q);
 }
 
-/* What frame f of a joint's track is, roughly, in the track's components. */
+/* An estimate of frame f of a joint's track, in the track's components. */
 static void rough_components(const encoder *e, const enc_track *t, uint32_t f, double u[3])
 {
     const space_local *l = enc_local(e, f, t->track.target);
@@ -484,7 +486,7 @@ static void find_mix(encoder *e, enc_track *t)
     for (int i = 0; i < 3; i++)
         gain += log2(diagonal[i] + floor_square) - log2((c[4 * i] > 0.0 ? c[4 * i] : 0.0) + floor_square);
     if (gain / 2.0 * (double)e->frame_count <= MIX_COST_BITS) return;
-    for (int i = 0; i < 2; i++) { /* the busiest first */
+    for (int i = 0; i < 2; i++) { /* the axis with the largest variance first */
         for (int k = i + 1; k < 3; k++) {
             if (c[4 * order[k]] > c[4 * order[i]]) {
                 const int o = order[i];
@@ -507,7 +509,7 @@ static void find_mix(encoder *e, enc_track *t)
     t->track.flags |= NOH_CLIP_TRACK_MIX;
 }
 
-/* Where in its longest chain of turning joints each joint is. */
+/* Each joint's place in the longest chain of rotating joints through it: 0 at the root, 1 at the tip. */
 static int find_depths(encoder *e)
 {
     uint32_t *above = enc_alloc(e, e->joint_count, sizeof *above), *below = enc_alloc(e, e->joint_count, sizeof *below);

@@ -1,4 +1,4 @@
-/* clip_certify.c: decode what was written and measure it against the raw clip. */
+/* clip_certify.c: decodes what was written, with the runtime's own code, and measures it against the raw clip. */
 #include <stdlib.h>
 
 #include "clip/clip_decode_internal.h"
@@ -8,7 +8,7 @@
 typedef struct certifier {
     encoder *e;
     noh_clip *clip;
-    uint8_t *memory, *frames[2]; /* two segments: this and the last */
+    uint8_t *memory, *frames[2]; /* two segments: this one and the one before */
     noh_transform *pose;
     float *floats;
     space_global *raw, *lossy;

@@ -1,19 +1,17 @@
 /* clip_encode.c: drives the encoder.
  *
- * A clip is transform-coded like a picture, but with its error bounded in the world instead of per value:
+ * A clip is transform-coded like a picture, but the bound is on distances in object space instead of on each value:
  *
- *   prepare   everything in double precision, quaternions in one hemisphere, object-space transforms of every frame
- *   analyse   which tracks are constant, what a joint's rotation carries, the reference and axes of each track
+ *   prepare   double precision, quaternions in one hemisphere, object-space transforms of every frame
+ *   analyse   which tracks are constant, what each joint's rotation carries, the reference and axes of each track
  *   segments  for each run of about 24 frames, parents first: a DCT along time, quantised by the largest step whose
  *             decoded result keeps the object-space error within the bound (clip_segment.c, clip_fit.c)
  *   write     the coefficients, in prefix codes whose tables were trained on other clips (tools/clip_tables)
  *   certify   the bytes are decoded by the runtime's own code and measured; only then are they returned
  *
- * The certificate therefore does not rest on the encoder's reasoning: whatever it got wrong shows there, and the clip
- * is encoded again more carefully:
- *   level 0  everything that saves bytes
- *   level 1  rotations cached as floats, and hardly anything taken for constant
- *   level 2  constants to single precision, animated tracks raw
+ * The certificate therefore does not depend on the encoder's reasoning: a mistake shows there, and the clip is encoded
+ * again at a more careful level: level 0  everything that saves bytes level 1  rotations cached as floats, and almost
+ * nothing stored as constant level 2  constants to single precision, animated tracks raw
  *
  * Compare Arikan, "Compression of Motion Capture Databases" (2006), who bounds nothing per joint, and Nicholas
  * Frechette's Animation Compression Library, which measures at a shell of virtual points as this does. */
@@ -37,8 +35,7 @@
 #define RAW_JOINT_BYTES 40u
 #define RAW_FLOAT_BYTES 4u
 
-/* rho at the root and at the tips, headroom, part of the bound for translations, strength of the
- * correction, weight of the shell in it, dead zone, nudges. The first is the best for most. */
+/* In the order of enc_tuning. The first is the best for most segments. */
 static const enc_tuning tunings[] = {
     { 0.82, 0.86, 0.05, 0.65, 0.2, 0.5, 0.06, 8 },
     { 0.7, 0.9, 0.05, 0.65, 0.2, 0.5, 0.06, 8 },
@@ -123,8 +120,8 @@ static void free_encoder(encoder *e)
     free(e->tracks);
 }
 
-/* The certificate is stored in the header, and is known only when the clip has been decoded: so the header is written
- * twice. */
+/* The header holds the certificate, which is known only once the clip has been decoded: so the header is written twice.
+ */
 static int write_certified(encoder *e, byte_buffer *out, double *worst_part)
 {
     clip_report *r = &e->report;
@@ -147,8 +144,8 @@ static int write_certified(encoder *e, byte_buffer *out, double *worst_part)
     return 0;
 }
 
-/* One attempt. *worst_part is above 1 where the bound did not hold; nothing is then left in `out`.
- * *decoded says whether that was seen only after decoding. */
+/* One attempt. *worst_part is above 1 if the bound did not hold; `out` is then as before. *decoded says whether only
+ * decoding showed it. */
 static int encode_once(encoder *e, byte_buffer *out, double *worst_part, int *decoded)
 {
     static const double drops[LEVELS] = { ENC_DROP, 0.01, 0.0 };
@@ -178,7 +175,7 @@ int clip_encode(const raw_skeleton *skeleton, const raw_clip *clip, const clip_o
 {
     double worst_part = 2.0, tight = 1.0;
     int failed = 0, level = 0;
-    encoder *e = malloc(sizeof *e); /* 64 bases: too much for some stacks */
+    encoder *e = malloc(sizeof *e); /* its 64 bases are too large for some stacks */
     if (!e) {
         if (error) snprintf(error->what, sizeof error->what, "out of memory");
         return 1;
@@ -197,7 +194,8 @@ int clip_encode(const raw_skeleton *skeleton, const raw_clip *clip, const clip_o
             report->level = level;
         }
         if (decoded && level < LEVELS - 1 && worst_part < TIGHTEN_MAX && tight > TIGHT_MIN) {
-            tight *= TIGHTEN / worst_part; /* what single precision adds is not in the loop: leave it room */
+            tight *= TIGHTEN /
+                     worst_part; /* leave room for the rounding to single precision, which the loop does not see */
         } else {
             level++;
             tight = 1.0;

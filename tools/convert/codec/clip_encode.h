@@ -5,9 +5,8 @@
  * and between frames against the raw clip with translations and scales lerped and rotations
  * lerped and normalised (neighbouring raw quaternions taken in one hemisphere). It is at most
  * `error_cm` wherever it is measured: at frames and at the eighths between them, by the decoder's
- * own arithmetic. Scalars are bounded one by one: |error| x radius <= error_cm, where the
- * radius is how far the scalar moves the surface per unit.
- * Deterministic: no clock, no address, contraction off. */
+ * own arithmetic. Scalars are bounded one by one: |error| x radius <= error_cm, where the radius is how far the scalar
+ * moves the surface per unit. The same clip and options give the same bytes on every machine. */
 #ifndef NOH_CONVERT_CODEC_CLIP_ENCODE_H
 #define NOH_CONVERT_CODEC_CLIP_ENCODE_H
 
@@ -24,10 +23,10 @@ typedef struct clip_options {
     double float_error;           /* bound of floats without a radius, in their own unit; 0 = 0.001 */
     const double *joint_error_cm; /* [joint_count] bounds of single joints, 0 = error_cm; NULL = none */
     uint32_t segment_frames;      /* wanted length of a segment, 8..40; 0 = 24 */
-    int open_loop;                /* for masking: no joint corrects the error of its parents */
+    int open_loop; /* joints do not correct their parents' errors, so that single joints can be masked out */
     void (*progress)(void *user, uint32_t done, uint32_t of); /* segments; NULL = none */
     void *user;
-    struct clip_histogram *histogram; /* NULL, or where symbols are counted, to train the tables */
+    struct clip_histogram *histogram; /* counts symbols, to train the tables; NULL = none */
 } clip_options;
 
 typedef struct clip_report {
@@ -36,15 +35,15 @@ typedef struct clip_report {
     double max_error_cm, rms_error_cm; /* as decoded */
     uint32_t max_error_joint;
     double max_error_time_s;
-    double max_float_error; /* of its bound: at most 1 */
+    double max_float_error; /* as a share of its bound: at most 1 */
     uint32_t segment_count, track_count, raw_track_segments;
-    int level; /* 0: normal; more: what it took to hold the bound, see clip_encode.c */
+    int level; /* 0 = normal; higher: what it took to hold the bound, see clip_encode.c */
     int wide;
 } clip_report;
 
-/* Encode a clip. `out` gets the bytes appended; report may be NULL.
- * errors  1 and *error: limits of the format, no memory, values that are no numbers, or a bound
- *         that single precision cannot hold */
+/* Encode a clip and append its bytes to `out`. report may be NULL.
+ * errors  1 and *error: a limit of the format, out of memory, a value that is not finite, or a bound that single
+ *         precision cannot hold */
 int clip_encode(const raw_skeleton *skeleton, const raw_clip *clip, const clip_options *options, byte_buffer *out,
                 clip_report *report, model_error *error);
 

@@ -2,11 +2,11 @@
  *
  * clip_prepare.c  raw clip to double, in one hemisphere; object space
  * clip_analyse.c  what is animated, levers, references, mixes
- * clip_fit.c      one track of one segment: the largest step that holds
+ * clip_fit.c      one track of one segment: the largest step that holds the bound
  * clip_segment.c  one segment: tracks in order, parents first, in a closed loop
  * clip_write.c    bits
  * clip_certify.c  decodes what was written and measures it
- * clip_encode.c   the order of things, and what to do when the bound does not hold */
+ * clip_encode.c   the order of these, and what happens when the bound does not hold */
 #ifndef NOH_CONVERT_CODEC_CLIP_ENCODER_H
 #define NOH_CONVERT_CODEC_CLIP_ENCODER_H
 
@@ -18,8 +18,8 @@
 
 #define ENC_FRAMES_MAX NOH_CLIP_SEGMENT_FRAMES_MAX
 #define ENC_PARTS 8     /* errors are measured at eighths of a frame */
-#define ENC_RIG_MAX 48u /* points of a joint's rigid descendants that are watched */
-#define ENC_DROP 0.15   /* a track whose effect stays under this part of the bound is constant */
+#define ENC_RIG_MAX 48u /* points of a joint's rigid descendants that are checked */
+#define ENC_DROP 0.15   /* a track whose effect stays below this share of the bound is constant */
 #define ENC_NONE 0xffffffffu
 
 /* A point that a joint carries rigidly: a descendant's origin. */
@@ -32,12 +32,12 @@ typedef struct enc_joint {
     uint32_t parent;
     uint8_t modes[3];           /* NOH_CLIP_MODE_*: rotation, translation, scale */
     uint32_t tracks[3];         /* indices, ENC_NONE where not animated */
-    space_local rest;           /* what is not animated, as the decoder has it */
+    space_local rest;           /* the constant parts, as the decoder has them */
     uint32_t constant_width;    /* of the rotation */
-    uint32_t constant_codes[4]; /* the last is the index left out */
+    uint32_t constant_codes[4]; /* the last is the index of the omitted component */
     uint32_t linear_width[2];   /* class 0..3 of constant translation and scale */
-    double lever;               /* units: what an error of its rotation moves that nothing makes up for */
-    double scale_lever;         /* likewise of its scale: everything below it */
+    double lever;               /* units: distance of the farthest point that only its rotation places */
+    double scale_lever;         /* units: the radius of all that its scale moves */
     double bound;               /* units */
     double depth;               /* 0 at the root of its longest chain of turning joints, 1 at the tip */
     enc_point *points;
@@ -50,7 +50,7 @@ typedef struct enc_track {
     uint32_t reference_codes[4], mix_codes[4];
     int32_t scale_ids[3]; /* floats: relative steps, id units */
     double bounds[3];     /* floats */
-    int step_guess;       /* id at which the search starts */
+    int step_guess;       /* id at which the search for a step starts */
 } enc_track;
 
 /* One track of one segment, quantised. */
@@ -68,6 +68,14 @@ typedef struct enc_segment {
     enc_piece *pieces; /* [track_count] */
 } enc_segment;
 
+/* How a segment spends its bound:
+ *   rho_root, rho_tip  a joint's share of the bound for what it carries, at the root and at the tip of its chain
+ *   headroom           share of the bound that a frame gets beyond its parents' error
+ *   linear_part        share of the bound for translations
+ *   correction         how much of a joint's position error its rotation makes up for
+ *   shell_weight       weight of the shell's points in that correction
+ *   dead_zone          widening of the quantiser's zero, in steps
+ *   nudges             attempts to save a step that just fails */
 typedef struct enc_tuning {
     double rho_root, rho_tip, headroom, linear_part, correction, shell_weight, dead_zone;
     int nudges;
@@ -77,12 +85,12 @@ typedef struct encoder {
     const raw_skeleton *skeleton;
     const raw_clip *clip;
     clip_options options;
-    enc_tuning tuning;         /* of the attempt in work */
-    const enc_tuning *tunings; /* [tuning_count] every segment is tried with each; the smallest stays */
+    enc_tuning tuning;         /* of the current attempt */
+    const enc_tuning *tunings; /* [tuning_count] every segment is encoded with each; the smallest result is kept */
     uint32_t tuning_count;
     model_error *error;
-    double unit_cm, bound, shell; /* bound and shell in units */
-    double tight; /* part of the bound that is aimed at: below 1 where single precision takes the rest */
+    double unit_cm, bound, shell; /* unit_cm: centimetres per unit; bound and shell in units */
+    double tight; /* the share of the bound that is aimed at: below 1 if single precision needs the rest */
     int level, wide, single;
     double drop;
     uint32_t joint_count, frame_count, float_count, group_count;
@@ -102,15 +110,15 @@ typedef struct encoder {
     clip_report report;
 } encoder;
 
-/* Lossy clip of the segment in work: [joint][frame], and what is measured against it. */
+/* The decoded values of the current segment, [joint][frame], and what they are measured against. */
 typedef struct enc_loop {
     space_local *local; /* [joint][ENC_FRAMES_MAX] */
     space_global *global;
-    space_global *raw_between; /* [(frames) * 3][joint]: raw clip between this frame and the last */
-    space_local *before;       /* [joint] last frame of the segment before */
+    space_global *raw_between; /* [frames][ENC_PARTS - 1][joint]: the raw clip between a frame and the one before */
+    space_local *before;       /* [joint] last frame of the previous segment */
     space_local *end;          /* [joint] last frame of the best attempt so far */
     space_global *scratch;     /* [joint] */
-    double *errors;            /* [ENC_PARTS + 1][joint] of one interval, parts of the bound; row 0: the frame before */
+    double *errors; /* [ENC_PARTS + 1][joint] of one interval, as shares of the bound; row 0: the frame before */
     double *errors_before, *errors_end; /* [joint] likewise of the last frames */
     double slack;
     double rho_scale;
@@ -148,17 +156,18 @@ int enc_write(encoder *e, double max_error, double rms_error, uint32_t joint, ui
 int enc_certify(encoder *e, const byte_buffer *blob, size_t begin, double *worst_part, double *max_error,
                 double *rms_error, uint32_t *joint, uint32_t *time_parts);
 
-/* Fit one track. `targets` [frames][3] components, relative to the reference. `check` judges the decoded
- * frames, lane by lane, in units of what is allowed; clip_fit.c. */
+/* Fit one track (clip_fit.c). `targets` [frames][3] components, relative to the reference. `check` judges the decoded
+ * frames: for each its error over what is allowed. */
 typedef double (*enc_check)(encoder *e, void *user, const uint8_t *frames, double *violations);
 int enc_fit(encoder *e, enc_track *track, enc_piece *piece, uint32_t count, const float reference[4],
             double (*targets)[3], enc_check check, void *user);
 
-/* Smallest-three codes of a quaternion (any sign); codes[3] = the index left out. Returns 1 when q was negated. */
+/* Smallest-three codes of a quaternion of either sign; codes[3] is the index of the omitted component. Returns 1 if q
+ * was negated. */
 int enc_quat_codes(const double q[4], uint32_t width, uint32_t codes[4]);
 void enc_quat_value(const uint32_t codes[4], uint32_t width, float q[4]);
 
-/* 1 with a message. */
+/* Fill the error (printf form) and return 1. */
 int enc_fail(encoder *e, const char *what);
 void *enc_alloc(encoder *e, size_t count, size_t size);
 

@@ -10,7 +10,7 @@
 #include "convert/clips/joint_order.h"
 #include "convert/model/model_build.h"
 
-#define SLOTS 4u /* segments: an eighth of a second lies in two or three */
+#define CACHED_SEGMENTS 4u /* an eighth of a second lies in two or three segments */
 
 /* A skeleton and its one clip as the runtime has them. */
 typedef struct player {
@@ -38,7 +38,7 @@ static int open_clip(const byte_buffer *bytes, player *p)
 {
     noh_clip_desc desc = { bytes->bytes, bytes->count, p->bind, p->skeleton.joint_count };
     const noh_clip *clips[1];
-    noh_clip_cache_desc cache = { clips, 1, SLOTS };
+    noh_clip_cache_desc cache = { clips, 1, CACHED_SEGMENTS };
     size_t clip_size = noh_clip_size(&desc, NULL), cache_size;
     p->clip_memory = malloc(clip_size + 1u);
     if (!p->clip_memory || noh_clip_init(p->clip_memory, clip_size, &desc, &p->clip, NULL)) {
@@ -135,7 +135,8 @@ static void close_player(player *p)
     free(p->work);
 }
 
-/* A lower rate is not said to be better. Returns 0 where a number is not finite. */
+/* Raise each error to the one before it: a lower update rate, or fewer joints, never counts as better. Returns 0 if an
+ * error is not finite. */
 static int settle(float *errors, uint32_t count)
 {
     int fine = 1;
@@ -146,7 +147,7 @@ static int settle(float *errors, uint32_t count)
     return fine;
 }
 
-/* points: NULL: by what the joints reach. */
+/* points NULL: measured by the joints' radii. */
 static int measure_update_rates(player *p, const noh_time_lod_points *points, float *out)
 {
     return points ? noh_time_lod_points_measure(p->work, p->work_bytes, &p->probe, points, 0, out, NULL) != NOH_OK

@@ -1,5 +1,5 @@
-/* clip_errors.h: the error of an encoded clip with fewer joints, and at lower update rates. The runtime chooses LOD
- * levels by these (character/lod.h). */
+/* clip_errors.h: the error of an encoded clip that is posed with fewer joints, or at lower update rates. The runtime
+ * chooses LOD levels by it (character/lod.h). */
 #ifndef NOH_CONVERT_CODEC_CLIP_ERRORS_H
 #define NOH_CONVERT_CODEC_CLIP_ERRORS_H
 
@@ -12,21 +12,21 @@
 typedef struct clip_errors {
     float joint[NOH_LOD_LEVELS_MAX]; /* [level_count] */
     float update_rate[NOH_CLIP_UPDATE_RATES];
-    float shell;          /* 0: of vertices */
+    float shell;          /* distance of the points from each joint; 0: errors are of vertices */
     uint32_t level_count; /* 0 without joints */
 } clip_errors;
 
 /* Where a clip's error is measured. Borrowed. */
 typedef struct error_points {
-    const float *joint_radius; /* [joint_count] radius of what each joint moves (joint_radius); NULL: no mesh is bound
-                                * to the skeleton, points lie `shell_cm` from each joint */
+    const float *joint_radius; /* [joint_count] radius of what each joint moves (skin/joint_radius.h); NULL: no mesh is
+                                  bound to the skeleton, points lie `shell_cm` from each joint */
     const noh_time_lod_points *points; /* vertices on which update rates are measured; read only with `joint_radius` */
     double shell_cm;
 } error_points;
 
 /* Measure a clip as its decoder plays it.
- * clip     the encoded one, of `raw`
- * errors   1 and *error: out of memory, or errors beyond what a float holds */
+ * clip     `raw`, encoded
+ * errors   1 and *error: out of memory, or an error too large for a float */
 int clip_errors_measure(const raw_skeleton *skeleton, const raw_clip *raw, const byte_buffer *clip,
                         const error_points *at, clip_errors *out, model_error *error);
 

@@ -1,24 +1,25 @@
-/* clip_fit.c: one track of one segment, with the largest step that its check allows.
+/* clip_fit.c: one track of one segment, quantised with the largest step that its check allows.
  *
  * The track's components are transformed by an orthonormal DCT along time: a smooth clip has nearly all of its
- * energy in the first coefficients, and the rest quantise to zero. All coefficients share one step, because the
- * transform is orthonormal: an error in any of them weighs the same in time. Each step is judged by decoding with the
- * runtime's own arithmetic and asking `check`, so it does not matter how the error depends on the step.
+ * energy in the first coefficients, and the rest quantise to zero. All coefficients share one step: the transform is
+ * orthonormal, so an error in any of them has the same energy in time. Each step is judged by decoding with the
+ * runtime's own arithmetic and asking `check`, so nothing is assumed about how the error depends on the step.
  *
  * Steps (quarters of an octave) are tried from large to small, starting two octaves above what the last segment took.
- * A step that just fails gets a few more chances: the targets of the frames that are out of bounds are pushed against
- * their error, which lets the quantiser fall another way. */
+ * A step that just fails gets a few more attempts: the targets of the frames out of bounds are pushed against their
+ * error, which makes the quantiser round some coefficients the other way. */
 #include <stdlib.h>
 
 #include "clip_encoder.h"
 
 #define IDS_ABOVE 8 /* larger steps than the guess that are tried: two octaves */
 #define IDS_RAISE 4
-#define HOPELESS 1.8 /* a violation that nudging does not mend */
+#define HOPELESS 1.8 /* a violation that nudging cannot repair */
 #define NEARLY 0.97
 #define PUSH 0.5
-#define WORTH_AN_OCTAVE 0.9 /* a finer step that fails too must at least come this much nearer */
-#define FRAME_BYTES 16u     /* of the frames that a check sees */
+#define WORTH_AN_OCTAVE \
+    0.9                 /* a finer step that fails too must reduce the violation at least to this share per octave */
+#define FRAME_BYTES 16u /* of a frame as `check` sees it */
 
 int enc_quat_codes(const double q[4], uint32_t width, uint32_t codes[4])
 {
@@ -71,7 +72,7 @@ static void forward(const encoder *e, const enc_track *t, uint32_t n, double (*x
     }
 }
 
-/* Returns 0 when a coefficient passes what the format holds. */
+/* Returns 0 if a coefficient exceeds what the format holds. */
 static int quantise(const encoder *e, double (*spectrum)[3], uint32_t n, double step, enc_piece *piece)
 {
     uint32_t last = 0;
@@ -93,7 +94,7 @@ typedef struct attempt {
     enc_piece *piece;
     uint32_t count;
     const float *reference;
-    double whole[ENC_FRAMES_MAX][3]; /* the spectrum of the targets as they came: it does not depend on the step */
+    double whole[ENC_FRAMES_MAX][3]; /* the spectrum of the targets before nudging, which does not depend on the step */
     float components[ENC_FRAMES_MAX][4];
     uint8_t frames[ENC_FRAMES_MAX * FRAME_BYTES];
 } attempt;
@@ -117,7 +118,7 @@ static int try_spectrum(attempt *a, double (*spectrum)[3], int id)
     return 1;
 }
 
-/* Push the targets of frames that are out against their error. */
+/* Push the targets of frames out of bounds against their error. */
 static void nudge(attempt *a, double (*targets)[3], double (*work)[3], const double *violations)
 {
     const float zero[3] = { 0.0f, 0.0f, 0.0f };
@@ -156,14 +157,15 @@ static int clamp_id(int id)
     return id < 0 ? 0 : id >= (int)NOH_CLIP_STEP_IDS ? (int)NOH_CLIP_STEP_IDS - 1 : id;
 }
 
-/* Ids to skip after a violation: errors grow with steps, so the next that may hold is far when it is large. */
+/* Ids to skip after a violation: errors grow with the step, so after a large violation the next step that may hold is
+ * far away. */
 static int stride_after(double violation)
 {
     const double octaves = violation > HOPELESS && violation < 1e30 ? log2(violation / HOPELESS) : 0.0;
     return 1 + (int)(4.0 * octaves);
 }
 
-/* The largest step that holds, into the piece. Returns 0, and the id of the least violation, when there is none. */
+/* Find the largest step that holds and fill the piece. If none does, returns 0 and the id of the least violation. */
 static int search(attempt *a, double (*targets)[3], enc_check check, void *user, int *best)
 {
     const int guess = a->track->step_guess;
@@ -173,7 +175,8 @@ static int search(attempt *a, double (*targets)[3], enc_check check, void *user,
     while (id < (int)NOH_CLIP_STEP_IDS) {
         double v;
         if (try_nudged(a, targets, id, check, user, &v)) {
-            if (id != start || start == 0 || a->piece->last == 0u) return 1; /* no larger step did, or none is needed */
+            if (id != start || start == 0 || a->piece->last == 0u)
+                return 1; /* no larger step holds, or none is needed */
             start = id = clamp_id(start - IDS_RAISE);
             continue;
         }

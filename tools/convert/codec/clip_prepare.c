@@ -1,4 +1,4 @@
-/* clip_prepare.c: raw clip in double precision and in object space. */
+/* clip_prepare.c: the raw clip in double precision and in object space. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -65,7 +65,8 @@ static int prepare_floats(encoder *e)
             const double radius = group->radius ? fabs((double)group->radius[i]) : 0.0;
             double bound = group->radius ? e->options.error_cm / (radius > 1e-6 ? radius : 1e-6)
                                          : e->options.float_error;
-            if (bound > 1.0) bound = 1.0; /* a weight that moves nothing may still be looked at */
+            if (bound > 1.0)
+                bound = 1.0; /* programs may read a weight that moves nothing, so it keeps some precision */
             e->float_bounds[first + i] = bound;
             for (uint32_t f = 0; f < e->frame_count; f++) {
                 e->floats[(size_t)f * e->float_count + first + i] = group->values[(size_t)f * group->width + i];

@@ -1,11 +1,11 @@
 /* clip_segment.c: one segment in a closed loop.
  *
- * Joints are coded parents first, and each is coded against what the decoder will have made of its parents: the
- * target of a rotation is the raw object-space rotation seen from the decoded parent, the target of a translation the
- * raw position seen from there. A parent's error so becomes part of its child's target and is corrected instead of
- * added to; this is what prediction from decoded values does in every lossy codec (DPCM, video), applied along the
- * skeleton. A rotation's target is also turned a little (`correct`), so that the points it carries make up for the
- * error of its own position, which it cannot change.
+ * Joints are coded parents first, each against its parents as they will be decoded: the target of a rotation is the raw
+ * object-space rotation seen from the decoded parent, the target of a translation the raw position seen from there. A
+ * parent's error thus becomes part of its child's target and is corrected instead of added to. Lossy codecs do the same
+ * in time when they predict from decoded values (DPCM, video); here it is done along the skeleton. A rotation's target
+ * is also turned a little (`correct`), so that the points it carries compensate the error of its own position, which it
+ * cannot change.
  *
  * How exact a joint must be is not known in advance: the bound is on the object-space error of the whole chain, at
  * frames and between them. So the segment is fitted, measured as a whole, and fitted again with a smaller share of
@@ -16,9 +16,9 @@
 
 #define TRIES 16
 #define SLACK_MIN 0.1
-#define SAFETY 0.9995 /* of the bound, for what single precision does after us */
+#define SAFETY 0.9995 /* of the bound; the rest is for rounding to single precision afterwards */
 #define BETWEEN (ENC_PARTS - 1)
-#define SPIN_W (-0.7) /* beyond this the components of a rotation run away: kept raw */
+#define SPIN_W (-0.7) /* beyond this the components of a rotation grow without bound: it is stored raw */
 #define TRANSLATION_SCALE_MIN 1e-9
 
 enum { ROTATION, TRANSLATION, SCALE };
@@ -38,19 +38,19 @@ static const space_global *lossy_parent(const encoder *e, uint32_t joint, uint32
     return p == ENC_NONE ? NULL : placed(e, p, f);
 }
 
-/* What a check is told. */
+/* What a check needs to know. */
 typedef struct judged {
     const enc_segment *segment;
     const enc_track *track;
     uint32_t joint;
     double limit;                  /* linear tracks: units */
-    double limits[ENC_FRAMES_MAX]; /* rotations: of each frame, parts of the bound */
+    double limits[ENC_FRAMES_MAX]; /* rotations: of each frame, as shares of the bound */
     double (*targets)[3];          /* linear: absolute values */
 } judged;
 
 /* ---- rotations ---- */
 
-/* How far a joint's shell and what it carries are from the raw clip, in parts of what is allowed. */
+/* The distance of a joint's shell, and of what it carries, from the raw clip, as a share of what is allowed. */
 static double rotation_violation(const encoder *e, uint32_t joint, uint32_t frame, const space_global *g)
 {
     const enc_joint *t = &e->joints[joint];
@@ -100,7 +100,7 @@ static double check_rotation(encoder *e, void *user, const uint8_t *frames, doub
     return worst;
 }
 
-/* One point's pull: it lies at u from the joint and should move by -off. */
+/* Add one point to the sums: it lies at u from the joint and should move by -off. */
 static void add_pull(double a[6], double b[3], const double u[3], const double off[3], double weight)
 {
     const double uu = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
@@ -198,7 +198,7 @@ static void wild_reference(const encoder *e, uint32_t joint, const enc_segment *
     for (int i = 0; i < 4 && piece->negative; i++) reference[i] = -reference[i];
 }
 
-/* What a frame may be out by: its parents' doing, and a margin, or the slack. */
+/* A frame's allowance: the error that its parents leave it with plus some headroom, but at least the slack. */
 static void rotation_limits(const encoder *e, judged *j, double (*q)[4])
 {
     for (uint32_t f = 0; f < j->segment->count; f++) {
@@ -288,7 +288,7 @@ static double check_floats(encoder *e, void *user, const uint8_t *frames, double
     return worst;
 }
 
-/* Code a linear track towards absolute targets; the decoded values come back in `values`. */
+/* Code a linear track with absolute targets; `values` gets the decoded ones. */
 static int fit_linear(encoder *e, judged *j, enc_track *track, enc_piece *piece, double (*targets)[3],
                       double (*values)[3])
 {
@@ -413,7 +413,7 @@ static int fit_joint(encoder *e, uint32_t joint, const enc_segment *s)
     return 0;
 }
 
-/* Raw clip at the eighths before each frame of the segment. */
+/* The raw clip at the points between frames, before each frame of the segment. */
 static void raw_between(encoder *e, const enc_segment *s)
 {
     for (uint32_t f = s->first ? 0u : 1u; f < s->count; f++) {
@@ -436,7 +436,7 @@ static double peak(double before, double here, double after)
     return bend > 0.0 && fabs(slope) < 2.0 * bend ? here + slope * slope / (8.0 * bend) : here;
 }
 
-/* Errors of all joints at the eighths before frame f, in parts of their bounds. */
+/* Errors of all joints between frame f - 1 and frame f, as shares of their bounds. */
 static void errors_between(const encoder *e, uint32_t f, uint32_t part, double *errors)
 {
     const space_global *raw = e->loop->raw_between + (size_t)(f * BETWEEN + part) * e->joint_count;
@@ -449,8 +449,8 @@ static void errors_between(const encoder *e, uint32_t f, uint32_t part, double *
     }
 }
 
-/* The largest error at frames and between, in parts of the joints' bounds. Between the eighths it is
- * taken to run along parabolas. */
+/* The largest error at frames and between, as a share of the joints' bounds. Between the points measured it is
+ * interpolated by parabolas. */
 static double segment_error(const encoder *e, const enc_segment *s)
 {
     double worst = 0.0, *rows[ENC_PARTS + 1];
@@ -506,7 +506,7 @@ void enc_free_pieces(const encoder *e, enc_piece *pieces)
     free(pieces);
 }
 
-/* With the tuning as it is: shrink what may be out until the whole segment holds. */
+/* With the current tuning: reduce the slack until the whole segment holds. */
 static int fit_tuned(encoder *e, const enc_segment *s, double *worst)
 {
     e->loop->slack = 1.0;
@@ -523,7 +523,7 @@ static int fit_tuned(encoder *e, const enc_segment *s, double *worst)
     return 0;
 }
 
-/* What the next segment needs to know of this one. */
+/* Keep what the next segment needs of this one. */
 static void keep_end(encoder *e, const enc_segment *s, space_local *end)
 {
     for (uint32_t j = 0; j < e->joint_count; j++) end[j] = *lossy(e, j, s->count - 1u);

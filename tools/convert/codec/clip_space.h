@@ -6,12 +6,12 @@
 #include <stdint.h>
 #include <string.h>
 
-/* A joint against its parent. */
+/* A joint relative to its parent. */
 typedef struct space_local {
     double q[4], t[3], s[3];
 } space_local;
 
-/* A joint against the model: rotation alone, the linear part (rotation and scale), position. */
+/* A joint in object space: its rotation, the linear part (rotation and scale), its position. */
 typedef struct space_global {
     double q[4], m[9], p[3];
 } space_global;
@@ -52,7 +52,7 @@ static inline void space_unit(double q[4])
     }
 }
 
-/* The angle between two rotations, radians, 0..pi; exact for small ones. */
+/* The angle between two rotations, radians, 0 to pi; precise for small angles too. */
 static inline double space_angle(const double a[4], const double b[4])
 {
     double i[4], d[4];
@@ -89,7 +89,7 @@ static inline double space_distance(const double a[3], const double b[3])
     return sqrt(x * x + y * y + z * z);
 }
 
-/* Where a joint's origin is. parent NULL: a root. */
+/* The position of a joint's origin. parent NULL: a root. */
 static inline void space_place(const space_global *parent, const double t[3], double p[3])
 {
     if (parent) {
@@ -100,7 +100,7 @@ static inline void space_place(const space_global *parent, const double t[3], do
     }
 }
 
-/* Rotation and linear part; the position is left. */
+/* Rotation and linear part; the position is not set. */
 static inline void space_turn(const space_global *parent, const double q[4], const double s[3], space_global *g)
 {
     double r[9];
@@ -136,7 +136,7 @@ static inline double space_error(const space_global *a, const space_global *b, d
     for (int k = 0; k < 3; k++) {
         const double dx = shell * (a->m[k] - b->m[k]) + x, dy = shell * (a->m[3 + k] - b->m[3 + k]) + y,
                      dz = shell * (a->m[6 + k] - b->m[6 + k]) + z, square = dx * dx + dy * dy + dz * dz;
-        if (!(square <= worst)) worst = square; /* a not-a-number wins */
+        if (!(square <= worst)) worst = square; /* also true for a NaN, which wins */
     }
     return sqrt(worst);
 }
@@ -158,7 +158,7 @@ static inline int space_inverse(const double m[9], double o[9])
     const double det = m[0] * a + m[1] * b + m[2] * c;
     double size = 0.0;
     for (int i = 0; i < 9; i++) size += m[i] * m[i];
-    if (!(fabs(det) > 1e-6 * size * sqrt(size))) return 0; /* too flat to be of use */
+    if (!(fabs(det) > 1e-6 * size * sqrt(size))) return 0; /* nearly singular */
     o[0] = a / det;
     o[1] = (m[2] * m[7] - m[1] * m[8]) / det;
     o[2] = (m[1] * m[5] - m[2] * m[4]) / det;

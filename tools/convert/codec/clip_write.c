@@ -1,5 +1,4 @@
-/* clip_write.c: the bits of clip_format.h, in the order in which clip_open.c and clip_decode.c
- * read them. */
+/* clip_write.c: writes the bits of clip_format.h, in the order in which clip_open.c and clip_decode.c read them. */
 #include <stdlib.h>
 
 #include "base/hash.h"
@@ -54,7 +53,8 @@ static void put_quat(bit_writer *w, const uint32_t codes[4], uint32_t width)
     for (int i = 0; i < 3; i++) put(w, codes[i], width);
 }
 
-/* A symbol's code is the lowest index that has it: the bits above its length are zero there. */
+/* A symbol's code is the lowest index of the decoding table that holds the symbol: there the bits above its length are
+ * zero. */
 static void put_symbol(bit_writer *w, const uint16_t *table, uint32_t bits, uint32_t symbol, uint64_t *counts)
 {
     if (counts) counts[symbol]++;
@@ -113,7 +113,7 @@ static void put_groups(bit_writer *w, const encoder *e)
     put_varint(w, e->group_count);
     for (uint32_t g = 0; g < e->group_count; g++) {
         const raw_floats *group = &e->clip->floats[g];
-        char name[NOH_NAME_BYTES_MAX]; /* as the node's in the pack */
+        char name[NOH_NAME_BYTES_MAX]; /* cut as names in packs are */
         string_cut(group->name ? group->name : "", name);
         put(w, noh_hash_name(name), 32);
         put_varint(w, group->node + 1u);
@@ -272,7 +272,7 @@ static void put_segment(bit_writer *w, encoder *e, const enc_segment *s)
     put_end(w);
 }
 
-/* What a segment would cost: the writer itself tells. */
+/* The size of a segment, found by writing it. */
 int enc_segment_cost(encoder *e, const enc_segment *s, size_t *bytes)
 {
     clip_histogram *histogram = e->options.histogram;
@@ -282,7 +282,7 @@ int enc_segment_cost(encoder *e, const enc_segment *s, size_t *bytes)
     memset(&out, 0, sizeof out);
     e->options.histogram = NULL;
     for (uint32_t i = 0; i < e->track_count; i++)
-        e->tracks[i].track.step = (int16_t)e->tracks[i].step_guess; /* not known yet: near */
+        e->tracks[i].track.step = (int16_t)e->tracks[i].step_guess; /* not known yet; this is near */
     put_segment(&w, e, s);
     e->options.histogram = histogram;
     e->report.raw_track_segments = raw;

@@ -1,10 +1,10 @@
-/* clip_internal.h: what the files behind gltf_clip.h share. They read a model, not the
- * glTF file; but their messages are the glTF reader's.
+/* clips_internal.h: shared by the files that implement clips/model_clips.h. They read a model, not the glTF file, but
+ * use the glTF reader's messages.
  *
- *   gltf_clip.cpp   clips_from_model: sets, clips
- *   gltf_skeleton.cpp which nodes make which skeletons
- *   clip_rate.cpp   how many frames a clip needs
- *   clip_reach.cpp  how far a morph weight moves what is seen */
+ *   gltf_clips.cpp     clips_from_model: sets, clips
+ *   gltf_skeleton.cpp  which nodes make which skeletons
+ *   sample_rate.cpp    how many frames a clip needs
+ *   weight_radius.cpp  how far a morph weight moves the surface */
 #ifndef NOH_CONVERT_GLTF_CLIPS_INTERNAL_H
 #define NOH_CONVERT_GLTF_CLIPS_INTERNAL_H
 
@@ -17,20 +17,20 @@ namespace gltf
 
 /* --- gltf_skeleton.cpp --- */
 
-/* One skeleton to be. */
+/* A skeleton that is to be built. */
 struct skeleton_plan {
     std::vector<uint32_t> nodes; /* ascending, so parents first: the joints */
     std::vector<uint32_t> skins;
-    std::vector<uint32_t> weight_nodes; /* ascending: whose morph weights its clips animate */
+    std::vector<uint32_t> weight_nodes; /* ascending: nodes whose morph weights its clips animate */
 };
 std::vector<skeleton_plan> plan_skeletons(const model &m);
 /* The joint that a node is, or MODEL_NONE. */
 uint32_t joint_of(const skeleton_plan &p, uint32_t node);
-/* For every node the joint at or next above it. */
+/* For every node, the joint at it or the next one above. */
 std::vector<node_joint> find_movers(const model &m, const std::vector<skeleton_plan> &plans);
 void build_skeleton(const model &m, const skeleton_plan &p, raw_skeleton &out);
 
-/* --- clip_rate.cpp --- */
+/* --- sample_rate.cpp --- */
 
 /* A channel, and what an error of it is worth. */
 struct track {
@@ -42,19 +42,20 @@ struct track {
 struct timing {
     double sample_rate_hz;
     uint32_t frame_count;
-    double near_s;   /* a key no further from a frame lies on it: rounded times are not to cost its exact value */
-    double error_cm; /* largest of playing the frames against the curves, each track judged alone */
+    double near_s;   /* a key at most this far from a frame counts as on it, so that a rounded time does not cost its
+                        exact value */
+    double error_cm; /* the largest distance between the played frames and the curves, each track judged alone */
 };
 double frame_time_s(const timing &t, uint32_t frame);
-/* rate_hz 0: choose. Throws failure where more than frames_max would be needed. */
+/* sample_rate_hz 0: choose one. Throws failure if more than frames_max would be needed. */
 timing choose_timing(const std::vector<track> &tracks, double duration_s, double sample_rate_hz, double tolerance_cm,
                      uint64_t frames_max, const std::string &where);
 
-/* --- clip_reach.cpp --- */
+/* --- weight_radius.cpp --- */
 
 /* What each target at weight 1 moves a vertex by, in the mesh's own units. */
 std::vector<double> target_sizes(const model_mesh &mesh);
-/* The most by which the poses of a clip (NULL: the bind pose) enlarge what a node draws.
+/* The largest factor by which the poses of a clip (NULL: the bind pose) enlarge what a node draws.
  * skin  the joints of the node's skin in the set's skeleton, or NULL */
 double largest_scale(const model &m, uint32_t node, const uint32_t *skin, uint32_t joint, const raw_set &set,
                      const raw_clip *clip);

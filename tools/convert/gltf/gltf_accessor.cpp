@@ -10,7 +10,7 @@ namespace gltf
 /* An accessor without a buffer view needs no bytes in the file, so its count is limited here. */
 static const uint64_t zeros_count_max = 16u << 20;
 
-/* An accessor that was checked: what to read, and how. */
+/* A checked accessor: what to read, and how. */
 struct layout {
     const tinygltf::Accessor *accessor;
     uint32_t component; /* one bit */
@@ -76,7 +76,7 @@ static const char *type_name(int type)
     }
 }
 
-/* tinygltf numbers the vectors by their width. */
+/* tinygltf's values for vectors are their widths. */
 static int type_of_width(uint32_t components)
 {
     return components == 1    ? TINYGLTF_TYPE_SCALAR
@@ -139,7 +139,7 @@ static span dense_part(file &f, const layout &l)
 template <class T> static T load(const uint8_t *bytes_at)
 {
     T value;
-    memcpy(&value, bytes_at, sizeof value); /* nothing promises alignment */
+    memcpy(&value, bytes_at, sizeof value); /* it may be misaligned */
     return value;
 }
 
@@ -178,7 +178,7 @@ static void load_element(const layout &l, const uint8_t *at, uint64_t element, f
     }
 }
 
-/* Where the sparse part replaces elements, and by what. */
+/* The sparse part: which elements it replaces, and by what. */
 struct sparse_part {
     uint64_t count;
     uint32_t index_component;
@@ -198,7 +198,7 @@ static sparse_part read_sparse(file &f, const layout &l)
              text("the component type %s is not allowed here", component_name(a.sparse.indices.componentType)));
     if (s.count == 0) return s;
     uint64_t index_size = component_size(s.index_component);
-    /* offsets came through int: above 2^31 they are negative, and fail below as huge */
+    /* offsets have passed through int: above 2^31 they are negative, and fail below as huge numbers */
     uint64_t index_offset = static_cast<uint32_t>(a.sparse.indices.byteOffset);
     uint64_t value_offset = static_cast<uint32_t>(a.sparse.values.byteOffset);
     s.indices = view_bytes(f, a.sparse.indices.bufferView, l.where + " sparse indices");

@@ -42,7 +42,7 @@ static const char *reason_to_skip(const file &f, const tinygltf::AnimationChanne
     node = f.node_of[static_cast<size_t>(c.target_node)];
     if (node == MODEL_NONE) return "its target node is not in the default scene";
     if (!path_of(c.target_path, path)) return "its path is unknown";
-    /* a mesh that is not kept (points, lines) takes its weights with it */
+    /* if a mesh is not kept (points, lines), neither are its weights */
     int mesh = f.json.nodes[static_cast<size_t>(c.target_node)].mesh;
     if (path == MODEL_PATH_WEIGHTS && mesh >= 0 && f.out->nodes[node].mesh == MODEL_NONE) return "its mesh was skipped";
     return nullptr;
@@ -85,7 +85,7 @@ static void read_times(file &f, int accessor, model_channel &c, const std::strin
     check_times(c, input + text(" (accessor %d)", accessor));
 }
 
-/* Also CUBICSPLINE: the values between the tangents are rotations. */
+/* Of CUBICSPLINE keys, only the values between the tangents are rotations. */
 static void check_rotations(const model_channel &c, const std::string &where)
 {
     const size_t per_key = c.interpolation == MODEL_CUBICSPLINE ? 3 : 1;

@@ -8,7 +8,7 @@
 
 namespace tinygltf
 {
-/* tinygltf defines this one, but its header only declares it for its own use. */
+/* tinygltf defines this function, but its header declares it only for its own use. */
 std::string base64_decode(std::string const &s);
 } // namespace tinygltf
 
@@ -17,7 +17,7 @@ namespace gltf
 
 /* tinygltf counts in int in many places. */
 static const uint64_t file_bytes_max = 0x7fffffff;
-/* All that a glTF refers to, together. */
+/* The limit for all that a glTF refers to, together. */
 static const uint64_t input_bytes_max = uint64_t{ 4 } << 30;
 
 struct file_closer {
@@ -71,8 +71,8 @@ static bytes decode_data_uri(const std::string &uri, const std::string &where)
     return bytes(decoded.begin(), decoded.end());
 }
 
-/* Only files beside the glTF (or above it) are opened: a converter that is handed
- * a stranger's file should not read the user's own. */
+/* Only files beside the glTF (or above it) are opened: a file from a stranger must not make the converter read the
+ * user's own files. */
 static std::string path_of(const file &f, const std::string &uri, const std::string &where)
 {
     std::string path = percent_decode(uri);
@@ -97,7 +97,7 @@ static void load_buffer(file &f, buffer &b, bool first, const std::string &where
         b.data = read_uri(f, b.uri, where);
     else if (first && f.has_bin)
         b.data.swap(f.bin);
-    /* an error only where it is used */
+    /* an error only if it is used */
     else
         return;
     b.uri = std::string();

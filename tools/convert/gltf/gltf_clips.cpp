@@ -1,4 +1,4 @@
-/* gltf_clip.cpp: a model's animations as sampled clips. */
+/* gltf_clips.cpp: a model's animations as sampled clips. */
 #include "clips_internal.h"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ struct set_job {
     const model_clips *made;
     uint32_t index;
     raw_set *set;
-    std::vector<double> lever_cm;        /* [joints] of a rotation: the radius below it */
+    std::vector<double> lever_cm;        /* [joints] of a rotation: the radius of what is below it */
     std::vector<double> parent_scale_cm; /* [joints] centimetres per unit of its translation */
 };
 
@@ -46,7 +46,7 @@ static void check_memory(int failed)
     if (failed) throw std::bad_alloc();
 }
 
-/* --- what errors are worth --- */
+/* --- the effect of errors --- */
 
 static double column_length(const double *m)
 {
@@ -121,7 +121,7 @@ static double largest_value(const model_channel &c)
     return static_cast<double>(largest);
 }
 
-/* What playing may stray by: a part of how large all that moves is. */
+/* How far playing may be off the curves: a share of the size of all that moves. */
 static double tolerance_of(const set_job &job, const std::vector<track> &tracks)
 {
     double size_cm = *std::max_element(job.lever_cm.begin(), job.lever_cm.end());
@@ -229,7 +229,7 @@ static void copy_events(const model_clip &from, raw_clip &clip)
 
 static void warn_of_error(const set_job &job, const raw_clip &clip, double tolerance_cm, const std::string &where)
 {
-    const double usual_hz = 119.0; /* linear keys of a usual rate are taken as they are, without a word */
+    const double usual_hz = 119.0; /* linear keys at a usual sample rate are taken as frames, without a warning */
     if (clip.source_error_cm > tolerance_cm && clip.sample_rate_hz >= usual_hz)
         check_memory(model_warn(job.m, "%s: sampled at %g Hz it is up to %.3g cm off its curves between frames",
                                 where.c_str(), clip.sample_rate_hz, clip.source_error_cm));
@@ -264,7 +264,7 @@ static void make_clips(set_job &job, double sample_rate_hz, std::vector<bool> &u
         std::vector<track> tracks = find_tracks(job, from);
         if (tracks.empty()) continue;
         make_clip(job, from, tracks, sample_rate_hz, bytes_left);
-        if (!used[c]) /* in several sets a key would be delivered several times */
+        if (!used[c]) /* a key in several sets would fire several times */
             copy_events(from, job.set->clips[job.set->clip_count - 1]);
         used[c] = true;
     }

@@ -1,4 +1,4 @@
-/* gltf_extras.cpp: what an animation's extras say: callback keys, sync markers, whether it repeats.
+/* gltf_extras.cpp: an animation's extras: callback keys, sync markers, loops.
  *
  *     "extras": {"loop": true}
  *
@@ -6,9 +6,9 @@
  *
  *     "extras": {"events": [{"time": 0.25, "name": "left", "marker": true}]}
  *
- * The last is a sync marker. payload: a number, or for what a 32-bit integer and a double cannot hold, a text as in
- * events_read.h. glTF says nothing about extras: a key that cannot be understood is left
- * out with a warning. */
+ * The last line is a sync marker. payload is a number, or a string as in events_read.h for values that neither a 32-bit
+ * integer nor a double can hold. glTF does not define extras, so a key that is not understood is left out with a
+ * warning. */
 #include "gltf_internal.h"
 
 #include <cmath>
@@ -30,7 +30,7 @@ static bool number_member(const tinygltf::Value &object, const char *key, double
     return true;
 }
 
-/* As text, so that the file format's rules are written once. */
+/* Converted to text, so that the rules of event files apply here too. */
 static bool read_payload(const tinygltf::Value &value, uint8_t *out)
 {
     std::string written;
@@ -43,7 +43,7 @@ static bool read_payload(const tinygltf::Value &value, uint8_t *out)
     return event_payload(written.c_str(), written.size(), out);
 }
 
-/* Why a key cannot be kept, or null. Fills out but for the name. */
+/* Why a key cannot be kept, or null. Fills all of `out` but the name. */
 static const char *read_key(const tinygltf::Value &key, double duration_s, model_event &out)
 {
     double weight_min = 0.0;

@@ -1,4 +1,4 @@
-/* gltf_file.cpp: what every part of the reader uses: failures, warnings, names, and the size that a model may have. */
+/* gltf_file.cpp: used by every part of the reader: failures, warnings, names, and the limit on a model's size. */
 #include "gltf_internal.h"
 
 #include <cfloat>
@@ -48,7 +48,7 @@ std::string printable(const std::string &name)
 {
     const size_t limit = 40;
     std::string out = name.substr(0, limit);
-    /* do not cut a UTF-8 sequence in two */
+    /* do not cut a UTF-8 sequence */
     while (name.size() > out.size() && !out.empty() && (static_cast<unsigned char>(name[out.size()]) & 0xc0) == 0x80)
         out.pop_back();
     for (char &c : out)

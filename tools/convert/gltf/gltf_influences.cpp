@@ -15,7 +15,7 @@ struct influence {
     float weight;
 };
 
-/* The sets of four that a primitive has. */
+/* How many sets of four influences a primitive has. */
 static size_t count_sets(const tinygltf::Primitive &p, const std::string &where)
 {
     size_t count = 0;
@@ -48,7 +48,7 @@ static std::vector<float> read_sets(file &f, const tinygltf::Primitive &p, const
     return all;
 }
 
-/* Half a step of the coarsest type that any set of weights is stored in: how far rounding may move one weight. */
+/* Half a step of the coarsest type in which any set of weights is stored: how far rounding may change one weight. */
 static double weight_rounding(const file &f, const tinygltf::Primitive &p, size_t sets)
 {
     double most = 0.0;
@@ -69,7 +69,8 @@ static double sum_of(const std::vector<influence> &used)
     return sum;
 }
 
-/* Used influences of one vertex, the strongest first. A vertex without any has no place in any pose: it is refused. */
+/* Used influences of one vertex, the strongest first. A vertex without any has no position in any pose and is refused.
+ */
 static std::vector<influence> sort_influences(const float *joints, const float *weights, size_t count,
                                               const std::string &where, size_t vertex)
 {
@@ -86,8 +87,8 @@ static std::vector<influence> sort_influences(const float *joints, const float *
     return used;
 }
 
-/* Keeps the strongest and divides them by their sum, so that they sum to 1 whatever the file says: without that a
- * vertex would be drawn towards the origin (or away from it) by what is missing. Returns the share that is dropped. */
+/* Keep the strongest and divide them by their sum, so that they sum to 1 whatever the file says: otherwise the missing
+ * share would pull the vertex towards the origin (or push it away). Returns the share that is dropped. */
 static double store_influences(const std::vector<influence> &used, size_t vertex, model_mesh &out)
 {
     size_t count = std::min<size_t>(used.size(), MODEL_INFLUENCES_MAX);
@@ -109,7 +110,7 @@ void allocate_influences(file &f, const std::string &where, model_mesh &out)
     out.joint_weights = allocate<float>(f, uint64_t{ out.vertex_count } * MODEL_INFLUENCES_MAX, where);
 }
 
-/* Beside primitives with joints one without follows the first joint: as if it were drawn with the others. */
+/* A primitive without joints, beside others that have them, follows the first joint. */
 static void fill_rigid(const model_submesh &part, model_mesh &out)
 {
     for (size_t v = 0; v < part.vertex_count; ++v)
@@ -160,7 +161,7 @@ void warn_influence_changes(file &f, const influence_changes &changes, const std
              where.c_str(), changes.truncated, MODEL_INFLUENCES_MAX, changes.most_lost);
 }
 
-/* A mesh names joints by their place in the skin of the node that draws it. */
+/* A mesh refers to joints by their place in the skin of the node that draws it. */
 void check_influences(const model_mesh &mesh, uint32_t joint_count)
 {
     for (size_t i = 0; mesh.joint_limit > joint_count && i < size_t{ mesh.vertex_count } * MODEL_INFLUENCES_MAX; ++i)

@@ -1,10 +1,8 @@
-/* gltf_internal.h: what the glTF reader's files share (C++, because tinygltf is).
+/* gltf_internal.h: shared by the glTF reader's files (C++, because tinygltf is).
  *
- * tinygltf turns JSON into structs and decodes images. Around it the reader does
- * itself what must survive a hostile file: it opens the container, checks the
- * JSON before tinygltf sees it, loads the buffers, and reads every accessor with
- * its bounds checked. Errors are thrown as gltf::failure and become a model_error
- * at the boundary (model_read_gltf).
+ * tinygltf turns JSON into structs and decodes images. What must survive a hostile file the reader does itself: it
+ * opens the container, checks the JSON before tinygltf sees it, loads the buffers, and reads every accessor with its
+ * bounds checked. Errors are thrown as gltf::failure and become a model_error at the boundary (model_read_gltf).
  *
  *   gltf_read.cpp      model_read_gltf: the container, the order of the steps
  *   gltf_json.cpp      the JSON: checks, repairs, tinygltf
@@ -20,7 +18,7 @@
  *   gltf_animation.cpp animations
  *   gltf_extras.cpp    an animation's extras: callback keys, sync markers, loops
  *   gltf_material.cpp  materials, textures, images
- *   gltf_left_out.cpp  warnings about what the file has and the model has no place for */
+ *   gltf_left_out.cpp  warnings about what the model has no place for */
 #ifndef NOH_CONVERT_GLTF_GLTF_INTERNAL_H
 #define NOH_CONVERT_GLTF_GLTF_INTERNAL_H
 
@@ -46,7 +44,7 @@ struct failure {
 [[noreturn]] void fail(const std::string &where, const std::string &what);
 
 /* tinygltf would load buffers and images itself, but a fallback buffer has no data
- * to load, and a bad image would fail the whole file: these are read by us. */
+ * to load, and a bad image would fail the whole file: so the reader loads both. */
 struct buffer {
     uint64_t byte_length = 0;
     std::string uri;
@@ -69,11 +67,11 @@ struct span {
 
 /* One kind of thing that the model has no place for. */
 struct left_out {
-    std::string first, what; /* where the first one is, and what a warning says of it */
+    std::string first, what; /* where the first one is; what the warning says */
     size_t count;
 };
 
-/* What is loaded of a file while the model is built from it. */
+/* A file while a model is built from it. */
 struct file {
     std::string path, directory; /* directory: with its slash, or empty */
     tinygltf::Model json;
@@ -82,7 +80,7 @@ struct file {
     bytes bin; /* the BIN chunk of a .glb */
     bool has_bin = false;
     std::vector<bytes> decoded_views; /* of EXT_meshopt_compression, empty until used */
-    uint64_t input_bytes = 0;         /* of all that was read */
+    uint64_t input_bytes = 0;         /* of all files read */
     uint64_t output_bytes = 0;        /* of what the model needs so far */
     ::model *out = nullptr;
     std::vector<uint32_t> mesh_of;         /* [json.meshes] index into out->meshes or MODEL_NONE */
@@ -98,13 +96,13 @@ template <class... Arguments> void warn(file &f, const char *format, Arguments..
 {
     if (model_warn(f.out, format, arguments...)) throw std::bad_alloc();
 }
-/* Something at `where` is left out, or read as something else; `what` continues the sentence (" was skipped: ...",
- * ": the normal texture was left out"). One warning for each `what` is given when the file has been read: it names
- * the first place and says how many more there are, so a file of a thousand nodes cannot bury other warnings. */
+/* Note that something at `where` is left out, or read as something else; `what` continues the sentence (" was skipped:
+ * ...", ": the normal texture was left out"). After the file has been read there is one warning for each `what`, which
+ * names the first place and counts the others: a file of a thousand nodes cannot bury other warnings. */
 void leave_out(file &f, const std::string &where, const std::string &what);
 /* Give those warnings. */
 void warn_left_out(file &f);
-/* Count bytes of the model before they are allocated; refuse what no honest file of this size needs. */
+/* Count bytes of the model before they are allocated; refuse more than an honest file of this size needs. */
 void charge(file &f, uint64_t count, uint64_t element_size, const std::string &where);
 /* A zeroed array of the model, charged. */
 template <class T> T *allocate(file &f, uint64_t count, const std::string &where)
@@ -115,12 +113,12 @@ template <class T> T *allocate(file &f, uint64_t count, const std::string &where
     return array;
 }
 char *copy_string(const std::string &text);
-/* A name as it may stand in a message: short, without control characters. */
+/* A name for messages: short, without control characters. */
 std::string printable(const std::string &name);
 /* The given name, or "<kind>_<index>". */
 std::string name_or(const std::string &name, const char *kind, size_t index);
 std::string text(const char *format, ...) __attribute__((format(printf, 1, 2)));
-/* A JSON number as a float; refuses what a float cannot hold. */
+/* A JSON number as a float; throws failure if a float cannot hold it. */
 float to_float(double value, const std::string &where);
 
 /* --- gltf_json.cpp --- */
@@ -161,7 +159,7 @@ const tinygltf::Accessor &accessor_at(const file &f, int accessor, const std::st
 /* Read an accessor as floats, all checked to be finite.
  * components  1 to 4 per element, or 16: a 4 x 4 matrix
  * accepted    a set of component bits
- * count       the elements that out has room for; any other count in the file is an error */
+ * count       the number of elements in `out`; any other count in the file is an error */
 void read_floats(file &f, int accessor, uint32_t components, uint32_t accepted, uint64_t count,
                  const std::string &where, float *out);
 /* Read an accessor as vertex indices, each checked to be below limit. */
@@ -172,7 +170,7 @@ void read_materials(file &f);
 void read_meshes(file &f);
 bool has_influences(const tinygltf::Primitive &p);
 void allocate_influences(file &f, const std::string &where, model_mesh &out);
-/* What was done to the weights of one mesh's vertices. */
+/* How the weights of one mesh's vertices were changed. */
 struct influence_changes {
     size_t truncated = 0, rescaled = 0; /* vertices: over MODEL_INFLUENCES_MAX joints; weights that do not sum to 1 */
     double most_lost = 0.0;             /* the largest share of a vertex's weight that was dropped */
@@ -187,8 +185,8 @@ void check_influences(const model_mesh &mesh, uint32_t joint_count);
 void read_nodes(file &f);
 void read_skins(file &f); /* after read_nodes */
 void read_animations(file &f);
-/* What no reader above looks at: textures other than the base colour's, further UV sets and colours, cameras, nodes
- * outside the scene. */
+/* Notes what no reader above handles: textures other than the base colour's, further UV sets and colours, cameras,
+ * nodes outside the scene. */
 void find_left_out(file &f);
 void read_extras(file &f, const tinygltf::Animation &a, const std::string &where, model_clip &out);
 

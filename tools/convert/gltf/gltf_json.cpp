@@ -1,8 +1,7 @@
 /* gltf_json.cpp: the JSON of a glTF file, checked before tinygltf sees it.
  *
- * tinygltf skips optional properties of the wrong type in silence, cuts integers
- * to 32 bits, and recurses through `extras`; so types, ranges and depth are
- * checked here first. */
+ * tinygltf silently skips optional properties of the wrong type, cuts integers to 32 bits, and recurses through
+ * `extras`; so types, ranges and depth are checked first. */
 #include "gltf_internal.h"
 
 #include <cmath>
@@ -18,8 +17,8 @@ namespace gltf
 static const size_t depth_max = 64;
 static const uint64_t array_max = 1u << 20; /* elements of a top-level array */
 
-/* Properties that hold whole numbers, and what they may hold. An optional index may
- * be -1, which some exporters write for "none". */
+/* Properties that are whole numbers, and their ranges. An optional index may be -1, which some exporters write for
+ * "none". */
 struct integer_rule {
     const char *key;
     int64_t minimum, maximum;
@@ -37,7 +36,7 @@ static const integer_rule integer_rules[] = {
     { "wrapT", 0, int_max }
 };
 
-/* Extensions that are understood, or that may be ignored where they are not required. */
+/* Extensions that are understood, or may be ignored if they are not required. */
 static const char *const supported[] = { "KHR_mesh_quantization", "EXT_meshopt_compression", "KHR_texture_transform",
                                          "KHR_materials_unlit" };
 
@@ -62,7 +61,7 @@ static std::string not_supported(const std::string &extension)
     return "the extension " + printable(extension) + " is not supported and was ignored";
 }
 
-/* Brackets outside strings, so that no recursive code below can exhaust the stack. */
+/* Limit the depth of brackets outside strings, so that no recursive code can exhaust the stack. */
 static void check_depth(const char *text_begin, size_t size)
 {
     size_t depth = 0;
@@ -90,7 +89,7 @@ static json parse_text(const char *text_begin, size_t size)
         json document = json::parse(text_begin, text_begin + size);
         if (document.is_object()) return document;
     } catch (const json::exception &error) {
-        /* "[json.exception.parse_error.101] parse error at ...": the part in brackets says nothing to a user */
+        /* "[json.exception.parse_error.101] parse error at ...": the part in brackets means nothing to a user */
         const char *message = strstr(error.what(), "] ");
         fail("glTF JSON", text("the JSON is broken: %.180s", message ? message + 2 : error.what()));
     }
@@ -130,8 +129,9 @@ static bool holds_accessors(const std::string &key)
 static void check_member(json &value, const std::string &key, const std::string &parent, const std::string &path)
 {
     static const integer_rule accessor_rule = { "attribute", 0, int_max };
-    if (key == "extras" || (parent == "extensions" && key != "EXT_meshopt_compression")) return; /* not ours to judge */
-    if (parent == "EXT_meshopt_compression" && key == "mode") return;                            /* a string there */
+    if (key == "extras" || (parent == "extensions" && key != "EXT_meshopt_compression"))
+        return;                                                       /* not defined by glTF */
+    if (parent == "EXT_meshopt_compression" && key == "mode") return; /* there it is a string */
     const integer_rule *rule = holds_accessors(parent) ? &accessor_rule : rule_of(key);
     if (rule && !value.is_structured())
         check_integer(value, *rule, path + "/" + printable(key));
@@ -157,7 +157,7 @@ static void check_value(json &value, const std::string &key, const std::string &
     }
 }
 
-/* Every top-level array must be one, hold objects, and stay small enough for tinygltf's structs. */
+/* What should be a top-level array must be one, hold objects, and be small enough for tinygltf's structs. */
 static void check_top_level(const json &document)
 {
     static const char *const arrays[] = { "accessors", "animations", "bufferViews", "buffers", "cameras",
@@ -209,7 +209,7 @@ static void check_required(const json &document)
     }
 }
 
-/* Take an array out of the document, so that tinygltf does not see it. */
+/* Move an array out of the document, so that tinygltf does not see it. */
 static json take(json &document, const char *key)
 {
     json taken = json::array();
@@ -284,7 +284,7 @@ static void mark_untargeted_channels(json &document)
     }
 }
 
-/* Every extension that some object carries and that is not read, under the name of that object. */
+/* Note every extension of an object that is not read, with the object's name. */
 static void find_extensions(file &f, const json &value, const std::string &where)
 {
     for (auto member = value.begin(); member != value.end(); ++member) {
@@ -292,7 +292,7 @@ static void find_extensions(file &f, const json &value, const std::string &where
         if (value.is_object() && member.key() == "extensions" && member->is_object()) {
             for (auto extension = member->begin(); extension != member->end(); ++extension)
                 if (!is_supported(extension.key())) leave_out(f, where, ": " + not_supported(extension.key()));
-            continue; /* what an extension holds is not read either */
+            continue; /* the contents of an extension are not searched */
         }
         find_extensions(f, *member, where);
     }
@@ -307,7 +307,7 @@ static const char *const named_arrays[][2] = { { "materials", "material" },   { 
                                                { "buffers", "buffer" } };
 
 /* After check_top_level: these are arrays. The document's own "extensions" (lists of lights and the like) are used by
- * the objects that are looked at here; an extension that no object carries is named without one. */
+ * the objects searched here; an extension that no object has is noted without a name. */
 static void find_unsupported(file &f, const json &document)
 {
     for (const auto &array : named_arrays) {
@@ -338,7 +338,7 @@ static void run_tinygltf(file &f, const json &document)
     tinygltf::TinyGLTF loader;
     bool loaded = loader.LoadASCIIFromString(&f.json, &error, &warning, text_form.data(),
                                              static_cast<unsigned int>(text_form.size()), "");
-    /* It also reports, but survives, primitives and channels that it could not read. */
+    /* It also reports primitives and channels that it could not read, and goes on. */
     if (!loaded || !error.empty())
         fail("glTF JSON", error.empty() ? "the JSON is not that of a glTF file" : first_line(error));
 }

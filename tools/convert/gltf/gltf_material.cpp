@@ -29,7 +29,7 @@ static bytes encoded_image(file &f, const image &source, const std::string &wher
     return read_uri(f, source.uri, where);
 }
 
-/* glTF allows these two; the other decoders of stb_image need not see strangers' data. */
+/* glTF allows these two formats; stb_image's other decoders are kept from untrusted data. */
 static bool is_png_or_jpeg(const bytes &data)
 {
     static const uint8_t png[4] = { 0x89, 'P', 'N', 'G' }, jpeg[3] = { 0xff, 0xd8, 0xff };
@@ -124,7 +124,7 @@ static void read_texture(file &f, size_t index, model_texture &out)
     out.name = copy_string(name_or(texture.name.empty() ? source.name : texture.name, "texture", index));
 }
 
-/* A material can do without its texture, so a bad image is a warning. */
+/* A material works without its texture, so a bad image is a warning. */
 static uint32_t try_texture(file &f, size_t index, const std::string &material)
 {
     model_texture &texture = f.out->textures[f.out->texture_count++]; /* counted first: see read_meshes */
@@ -140,7 +140,7 @@ static uint32_t try_texture(file &f, size_t index, const std::string &material)
     return MODEL_NONE;
 }
 
-/* Only base colours are drawn, so only their textures are read; each one once. */
+/* Only base colours are drawn, so only their textures are read, each one once. */
 static uint32_t base_color_texture(file &f, const tinygltf::Material &m, const std::string &where)
 {
     const uint32_t untried = MODEL_NONE - 1;

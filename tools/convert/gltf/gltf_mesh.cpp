@@ -40,7 +40,7 @@ static std::string where_of(const mesh_job &job, const part &p)
     return job.where + text(" primitive %zu", p.number);
 }
 
-/* --- what components each attribute may have --- */
+/* --- the component types that each attribute may have --- */
 
 static uint32_t with_quantization(const file &f, uint32_t core, uint32_t quantized)
 {
@@ -221,7 +221,7 @@ std::string uv_name(const file &f, const tinygltf::Primitive &p)
     return has(p.attributes, wanted) ? wanted : "TEXCOORD_0";
 }
 
-/* The transform is baked into the UVs: a model has no other place for it. */
+/* The transform is applied to the UVs: a model has no place for it. */
 static void transform_uvs(file &f, const mesh_job &job, const part &p, float *uv)
 {
     uv_use use = uv_use_of(f, *p.source);
@@ -330,7 +330,7 @@ static void check_materials(const file &f, const mesh_job &job)
 
 /* --- targets --- */
 
-/* Deltas count only beside a base: without one they belong to a surface that the file does not show. */
+/* Deltas are used only if the base has the attribute: else they belong to a surface that the file does not have. */
 static bool gives(const part &p, size_t target, const char *name)
 {
     return has(p.source->targets[target], name) && has(p.source->attributes, name);
@@ -363,7 +363,7 @@ static void read_delta(file &f, const part &p, size_t t, const char *name, uint3
     float *out = deltas + size_t{ p.first_vertex } * 3;
     read_floats(f, find(p.source->targets[t], name), 3, accepted, p.vertex_count, where + " " + name, out);
     for (size_t i = 0; i < size_t{ p.vertex_count } * 3; ++i)
-        out[i] += 0.0f; /* -0 becomes 0: a dense and a sparse file give the same model */
+        out[i] += 0.0f; /* -0 becomes 0, so that dense and sparse files give the same model */
 }
 
 static void warn_unused_deltas(file &f, const part &p, size_t t, const std::string &where)
@@ -525,7 +525,7 @@ void read_meshes(file &f)
     f.mesh_of.assign(f.json.meshes.size(), MODEL_NONE);
     f.out->meshes = allocate<model_mesh>(f, f.json.meshes.size(), "meshes");
     for (size_t i = 0; i < f.json.meshes.size(); ++i) {
-        uint32_t slot = f.out->mesh_count++; /* counted first: a half-read mesh is freed with the model */
+        uint32_t slot = f.out->mesh_count++; /* counted first, so that a half-read mesh is freed with the model */
         if (read_mesh(f, i, &f.out->meshes[slot]))
             f.mesh_of[i] = slot;
         else

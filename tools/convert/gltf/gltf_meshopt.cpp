@@ -9,7 +9,7 @@
 namespace gltf
 {
 
-/* The densest stream (all attributes equal) packs 64 bytes into one; with some slack. */
+/* The densest stream (all attributes equal) packs 64 bytes into one; this allows some more. */
 static const uint64_t expansion_max = 256;
 
 struct stream {

@@ -61,7 +61,7 @@ static std::vector<size_t> root_nodes(const file &f)
     return roots;
 }
 
-/* Depth first, parents first, children in the file's order. */
+/* Depth first: parents before children, children in the file's order. */
 static std::vector<visit> visit_order(file &f)
 {
     std::vector<size_t> roots = root_nodes(f);
@@ -77,7 +77,7 @@ static std::vector<visit> visit_order(file &f)
         const std::vector<int> &children = f.json.nodes[v.node].children;
         for (size_t i = children.size(); i-- > 0;) open.push_back({ static_cast<size_t>(children[i]), index });
     }
-    /* every node has at most one parent, so what no root leads to is a cycle */
+    /* every node has at most one parent, so nodes that no root leads to form a cycle */
     if (f.json.scenes.empty() && order.size() != f.json.nodes.size())
         fail("nodes", text("%zu nodes are their own ancestors", f.json.nodes.size() - order.size()));
     return order;
@@ -242,7 +242,7 @@ static void store_transform(file &f, const transform &t, model_node &out, const 
             fail(where, "the world matrix is not finite: the scales of its ancestors are too large");
 }
 
-/* --- what a node carries --- */
+/* --- a node's mesh, skin and weights --- */
 
 static void read_mesh_of_node(const file &f, const tinygltf::Node &node, model_node &out, const std::string &where)
 {

@@ -1,4 +1,4 @@
-/* gltf_skeleton.cpp: which nodes make which skeletons. The rules are in gltf_clip.h. */
+/* gltf_skeleton.cpp: which nodes make which skeletons. The rules are in clips/model_clips.h. */
 #include "clips_internal.h"
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 namespace gltf
 {
 
-/* Sets of skins that are to share a skeleton. */
+/* Union-find over skins that share a skeleton. */
 class skin_groups
 {
   public:
@@ -30,12 +30,12 @@ class skin_groups
     std::vector<uint32_t> above;
 };
 
-/* What is known of each node while skeletons are planned. */
+/* The nodes while skeletons are planned. */
 struct survey {
     std::vector<bool> animated; /* its transform is */
     std::vector<bool> has_children;
     std::vector<bool> above_a_joint;
-    std::vector<uint32_t> owner; /* a skin whose joint it is or lies below; or MODEL_NONE */
+    std::vector<uint32_t> owner; /* a skin of which it is a joint, or lies below one; or MODEL_NONE */
 };
 
 static void survey_animations(const model &m, survey &s)
@@ -45,7 +45,7 @@ static void survey_animations(const model &m, survey &s)
             if (m.clips[c].channels[i].path != MODEL_PATH_WEIGHTS) s.animated[m.clips[c].channels[i].node] = true;
 }
 
-/* A skin for each joint; skins that share one are united. */
+/* Assign a skin to each joint; skins that share one are united. */
 static std::vector<uint32_t> survey_joints(const model &m, skin_groups &groups)
 {
     std::vector<uint32_t> skin_at(m.node_count, MODEL_NONE);
@@ -60,7 +60,7 @@ static std::vector<uint32_t> survey_joints(const model &m, skin_groups &groups)
     return skin_at;
 }
 
-/* Down the tree, for which the nodes' order is enough. */
+/* Pass it down the tree: parents come first in the nodes' order. */
 static void survey_owners(const model &m, const std::vector<uint32_t> &skin_at, skin_groups &groups, survey &s)
 {
     for (uint32_t n = 0; n < m.node_count; ++n) {
@@ -81,7 +81,7 @@ static bool is_identity(const model_node &n)
     return n.rotation[3] == 1.0f;
 }
 
-/* Add the nodes above that the given ones need. What is left out is an identity at all times. */
+/* Add the nodes above the given ones that they need. Those left out are identities at all times. */
 static void close_upward(const model &m, const survey &s, std::vector<uint32_t> &stamps, uint32_t stamp,
                          skeleton_plan &p)
 {
@@ -114,7 +114,7 @@ static std::vector<skeleton_plan> plan_skins(const model &m, skin_groups &groups
     return plans;
 }
 
-/* The transform of a skinned mesh's node shows nowhere (glTF 2.0, 3.7.3.2). */
+/* The transform of a skinned mesh's node has no effect (glTF 2.0, 3.7.3.2). */
 static bool shows(const model &m, const survey &s, uint32_t node)
 {
     return s.has_children[node] || m.nodes[node].skin == MODEL_NONE;
@@ -143,7 +143,7 @@ static std::vector<bool> nodes_with_weights(const model &m)
     return found;
 }
 
-/* To the skeleton that moves the mesh; where none does, to the first. */
+/* Weights go to the skeleton that moves the mesh; if none does, to the first. */
 static void plan_weights(const model &m, const std::vector<uint32_t> &plan_of_skin, std::vector<skeleton_plan> &plans)
 {
     std::vector<bool> animated = nodes_with_weights(m);
@@ -177,7 +177,7 @@ uint32_t joint_of(const skeleton_plan &p, uint32_t node)
     return found != p.nodes.end() && *found == node ? static_cast<uint32_t>(found - p.nodes.begin()) : MODEL_NONE;
 }
 
-/* A node is a joint of several skeletons only where it is above them all: then the first is as good as any. */
+/* A node is a joint of several skeletons only if it is above them all: then any will do, and the first is taken. */
 std::vector<node_joint> find_movers(const model &m, const std::vector<skeleton_plan> &plans)
 {
     std::vector<node_joint> movers(m.node_count, { MODEL_NONE, MODEL_NONE });

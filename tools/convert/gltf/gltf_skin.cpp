@@ -9,7 +9,7 @@ namespace gltf
 
 /* --- inverse bind matrices --- */
 
-/* Exporters that invert in floats miss the last row by rounding: that is repaired. */
+/* Exporters that invert in floats leave rounding errors in the last row: it is repaired. */
 static void repair_last_row(float *m, const std::string &where)
 {
     const float expected[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
@@ -20,7 +20,7 @@ static void repair_last_row(float *m, const std::string &where)
     }
 }
 
-/* Against the lengths of the columns, so that small scales are no error. */
+/* The determinant is compared with the product of the columns' lengths, so that small scales are not an error. */
 static void check_invertible(const float *m, const std::string &where)
 {
     double columns[3][3], cross[3], size = 1.0;
@@ -72,7 +72,7 @@ static void check_joints(const file &f, const tinygltf::Skin &skin, const std::s
             fail(where, text("joint node %d does not exist: the file has %zu nodes", joint, f.json.nodes.size()));
 }
 
-/* Joints in no scene move nothing that is drawn. */
+/* Joints outside the scene move nothing that is drawn. */
 static bool all_in_scene(const file &f, const tinygltf::Skin &skin)
 {
     for (int joint : skin.joints)

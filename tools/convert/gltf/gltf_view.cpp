@@ -1,4 +1,4 @@
-/* gltf_view.cpp: buffer views: a range of a buffer, or what EXT_meshopt_compression holds. */
+/* gltf_view.cpp: buffer views: a range of a buffer, or data decoded from EXT_meshopt_compression. */
 #include "gltf_internal.h"
 
 namespace gltf

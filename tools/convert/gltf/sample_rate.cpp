@@ -1,8 +1,8 @@
-/* clip_rate.cpp: how many frames a clip needs.
+/* sample_rate.cpp: how many frames a clip needs.
  *
  * Frames are played with linear interpolation at a constant sample rate; the source's curves need not be linear, and
- * its keys lie at any time. So sample rates are tried from the keys' own upwards, until the played frames stay within
- * a tolerance of the curves. */
+ * its keys lie at any time. So sample rates are tried, from that of the keys upwards, until the played frames stay
+ * within a tolerance of the curves. */
 #include "clips_internal.h"
 
 #include <algorithm>
@@ -15,10 +15,10 @@
 namespace gltf
 {
 
-static const double rate_max_hz = 120.0;       /* that is chosen; keys on a denser grid keep theirs */
-static const double dense_rate_min_hz = 15.0;  /* linear keys of which are taken as they are */
-static const double sparse_rate_max_hz = 60.0; /* of a grid that most frames have no key on */
-static const double rounding_s = 1e-6;         /* of key times that are floats */
+static const double rate_max_hz = 120.0;       /* the highest that is chosen; keys on a denser grid keep theirs */
+static const double dense_rate_min_hz = 15.0;  /* linear keys at this rate or a higher one are taken as frames */
+static const double sparse_rate_max_hz = 60.0; /* of a grid on which most frames have no key */
+static const double rounding_s = 1e-6;         /* of key times, which are floats */
 
 double frame_time_s(const timing &t, uint32_t frame)
 {
@@ -40,7 +40,7 @@ static timing timing_at(double duration_s, double sample_rate_hz, uint64_t frame
     return { whole ? sample_rate_hz : exact_hz, static_cast<uint32_t>(steps) + 1, 0.0, 0.0 };
 }
 
-/* --- the rate of the keys --- */
+/* --- the sample rate of the keys --- */
 
 static std::vector<double> key_times(const std::vector<track> &tracks)
 {
@@ -66,7 +66,7 @@ static bool worth_its_frames(const std::vector<double> &times, double sample_rat
            static_cast<double>(times.size()) * 2.0 > times.back() * sample_rate_hz;
 }
 
-/* Linear keys of a usual rate are frames already: what playing makes between them is as good. */
+/* Linear keys at a usual sample rate already are frames: played, they give what the curves give. */
 static bool are_frames(const std::vector<track> &tracks, double grid_hz)
 {
     for (const track &t : tracks)
@@ -74,7 +74,8 @@ static bool are_frames(const std::vector<track> &tracks, double grid_hz)
     return grid_hz >= dense_rate_min_hz;
 }
 
-/* The coarsest grid that all keys lie on: whole rates, those of television, then any. 0 where there is none. */
+/* The coarsest grid on which all keys lie: whole numbers of Hz are tried first, then television's rates, then any. 0 if
+ * there is none. */
 static double grid_rate(const std::vector<double> &times)
 {
     static const double television_hz[] = { 24.0, 30.0, 60.0, 120.0 };
@@ -86,7 +87,7 @@ static double grid_rate(const std::vector<double> &times)
     return times.size() > 2 && on_grid(times, uniform) ? uniform : 0.0;
 }
 
-/* Half of the steps from key to key are no longer than this rate's. */
+/* Whether at least half of the steps from key to key are no longer than one at this sample rate. */
 static double median_rate(const std::vector<double> &times)
 {
     std::vector<double> steps;
@@ -112,7 +113,7 @@ static std::vector<double> rates_to_try(const std::vector<track> &tracks, const 
     return rates;
 }
 
-/* --- the error of a rate --- */
+/* --- the error of a sample rate --- */
 
 static void sample(const track &t, double time_s, double near_s, const std::string &where, std::vector<double> &out)
 {
@@ -127,7 +128,7 @@ static double difference_cm(const track &t, const std::vector<double> &a, const 
     double sum = 0.0;
     for (size_t i = 0; i < a.size(); ++i) {
         double d = std::fabs(a[i] - b[i]) * (t.radius_cm.empty() ? 1.0 : t.radius_cm[i]);
-        sum += t.radius_cm.empty() ? d * d : d; /* a distance; or weights, which may all push the same way */
+        sum += t.radius_cm.empty() ? d * d : d; /* a distance, or else weights, which may all push in one direction */
     }
     return t.radius_cm.empty() ? std::sqrt(sum) * t.lever_cm : sum;
 }
@@ -142,7 +143,7 @@ static std::vector<double> played(const track &t, const std::vector<double> &a, 
     return out;
 }
 
-/* Where between two frames to look: at quarters, and at the keys that lie there. */
+/* The times between two frames at which errors are measured: the quarters, and the keys in between. */
 static std::vector<double> places_between(const model_channel &c, double from_s, double to_s, double near_s)
 {
     std::vector<double> places = { 0.25, 0.5, 0.75 };

@@ -1,4 +1,4 @@
-/* clip_reach.cpp: the radius of a morph weight: how far, in the world, it moves the surface. */
+/* weight_radius.cpp: the radius of a morph weight: how far, in the world, it moves the surface. */
 #include "clips_internal.h"
 
 #include <algorithm>
@@ -34,8 +34,8 @@ static void multiply(const double *a, const double *b, double *c)
                                   a[6 + row] * b[column * 3 + 2];
 }
 
-/* No vector is enlarged more: the largest eigenvalue of M^T M is at most its largest sum of a
- * row. That is exact for rotations with scales along the axes. */
+/* A bound on how much a matrix M enlarges any vector: the largest eigenvalue of M^T M is at most its largest row sum.
+ * It is exact for rotations with scales along the axes. */
 static double norm_bound(const double *m)
 {
     double largest = 0.0;
@@ -56,7 +56,7 @@ static void local_columns(const model_node &node, double *out)
     for (int i = 0; i < 9; ++i) out[i] *= static_cast<double>(node.scale[i / 3]);
 }
 
-/* What a joint's matrix is followed by: an inverse bind matrix, or the nodes between. */
+/* What is applied before a joint's matrix: an inverse bind matrix, or the nodes in between. */
 struct attachment {
     uint32_t joint; /* or MODEL_NONE */
     double columns[9];

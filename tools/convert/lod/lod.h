@@ -1,19 +1,18 @@
-/* lod.h: coarser levels of a mesh that keep its face: every morph target, mixes of them and frames of clips are poses
+/* lod.h: coarser levels of a mesh that can still morph: every target, mixes of targets and frames of clips are poses
  * that the levels have to follow.
  *
- *   lod_build, lod_free     half-edge collapses in order, and the levels cut out of them
- *   lod_certify             how far a level lies from the full mesh, measured both ways
+ *   lod_build, lod_free     an ordered list of half-edge collapses, and the levels cut from it
+ *   lod_certify             the distance between a level and the full mesh, measured both ways
  *
- * A collapse moves one point of the surface onto a neighbour. Nothing new is made: the vertices
- * of a level are a subset of the finer level's, and their data stay as they are.
+ * A collapse moves one point of the surface onto a neighbour. No vertex is created or changed: the vertices of a level
+ * are a subset of the finer level's.
  *
  * source  Garland and Heckbert, "Surface Simplification Using Quadric Error Metrics" (1997);
  *         Mohr and Gleicher, "Deformation Sensitive Decimation" (2003) and DeCoro and
- *         Rusinkiewicz, "Pose-independent Simplification of Articulated Meshes" (2005), which
- *         add the quadrics of the poses up (here the largest counts); Kobbelt, Campagna and
- *         Seidel, "A General Framework for Mesh Decimation" (1998) for distances tracked by
- *         samples that stay attached to the surface; Dey et al., "Topology Preserving Edge
- *         Contraction" (1999) for the link condition. */
+ *         Rusinkiewicz, "Pose-independent Simplification of Articulated Meshes" (2005), which sum the quadrics of the
+ * poses (here the largest counts); Kobbelt, Campagna and Seidel, "A General Framework for Mesh Decimation" (1998) for
+ * distances tracked by samples that stay attached to the surface; Dey et al., "Topology Preserving Edge Contraction"
+ * (1999) for the link condition. */
 #ifndef NOH_CONVERT_LOD_LOD_H
 #define NOH_CONVERT_LOD_LOD_H
 
@@ -27,8 +26,8 @@ extern "C" {
 #define LOD_POSES_MAX 4096u
 
 typedef enum lod_mode {
-    LOD_QUALITY, /* quadrics choose the candidates, tracked samples measure them: tens of seconds for a body */
-    LOD_FAST     /* quadrics only: seconds */
+    LOD_QUALITY, /* quadrics choose candidates, tracked samples measure them: tens of seconds for a body */
+    LOD_FAST     /* quadrics alone: seconds */
 } lod_mode;
 
 /* All zeros is the default. Lengths are in the mesh's own units (metres of the model). */
@@ -36,33 +35,35 @@ typedef struct lod_options {
     lod_mode mode;
     uint32_t level_count;      /* 0: four, or no more than LOD_LEVELS_MAX */
     const float *ratios;       /* [level_count] falling shares of the triangles, 0 to 1; NULL: 1, 0.5, 0.25, 0.1 */
-    const float *errors;       /* [level_count] rising: instead of ratios, the largest cost that a level may have */
-    const float *const *poses; /* [pose_count][vertex_count][3] further shapes, such as frames of clip */
+    const float *errors;       /* [level_count] rising: the largest cost of each level, instead of ratios */
+    const float *const *poses; /* [pose_count][vertex_count][3] further shapes, such as frames of clips */
     uint32_t pose_count;
     uint32_t mix_count; /* random mixes of targets as poses; 0: 24 */
     uint64_t mix_seed;  /* 0: a fixed one */
-    float pose_weight;  /* factor on distances in the given poses; 0: 0.4, because a moving body is seen as a whole */
+    float pose_weight;  /* factor on distances in `poses`; 0: 0.4, because in motion a body is seen less closely */
     float face_weight;  /* factor on distances at vertices that targets move; 0: 1.2 with poses, else 1 */
-    float uv_weight;    /* a UV slide of one length counts as so much of it; 0: 0.1; below 0: none */
-    float color_length; /* a colour difference of 1 counts as this length, in a small part as three times as much; 0:
-                         * 0.24 of the mean edge; below 0: none */
-    float skin_length;  /* all skin weight on other joints counts as this length; 0: the mean edge; below 0: none */
-    void (*progress)(void *user, uint32_t done, uint32_t total); /* now and then, triangles taken away; NULL: none */
+    float uv_weight;    /* factor on the length by which UVs slide; 0: 0.1; below 0: ignored */
+    float color_length; /* a colour difference of 1 counts as this length, three times that in small parts; 0: 0.24 of
+                           the mean edge; below 0: ignored */
+    float skin_length; /* skin weights that go to other joints entirely count as this length; 0: the mean edge; below 0:
+                          ignored */
+    void (*progress)(void *user, uint32_t done,
+                     uint32_t total); /* called now and then with the triangles removed; NULL: none */
     void *user;
 } lod_options;
 
-/* One vertex is removed; its triangles use another one. The vertices of one point (a seam splits
- * it) follow each other and carry the same step. */
+/* One vertex is removed; its triangles use another one. The vertices of one point (several at a seam) stand next to
+ * each other with the same step. */
 typedef struct lod_collapse {
     uint32_t from, to; /* vertices of the mesh */
     uint32_t step;     /* counts the points collapsed, from 0 */
-    float cost; /* distance of the surface from the full one after this collapse, in the worst pose that the builder
-                   saw; never falls along the list */
+    float cost; /* distance from the full surface after this collapse, in the worst pose that the builder saw; never
+                   falls along the list */
 } lod_collapse;
 
 typedef struct lod_level {
-    uint32_t collapse_count; /* the level is what these first collapses leave */
-    uint32_t vertex_count;   /* that are used; those of no triangle are in no level */
+    uint32_t collapse_count; /* the level is what this many collapses leave */
+    uint32_t vertex_count;   /* used ones; vertices of no triangle are in no level */
     uint32_t index_count;    /* of all submeshes */
     uint32_t *indices; /* [index_count] vertices of the mesh, the submeshes one after another, triangles in the mesh's
                           order */
@@ -78,19 +79,19 @@ typedef struct lod {
 
 /* Simplify. The same input and options give the same result on every machine.
  * ranges  positions, deltas and poses within 1e5; targets' positions not NULL; indices within vertex_count
- * memory  about vertices x poses x 12 bytes, and 88 bytes for each vertex and pose that moves it
- * errors  1 and *error: out of memory, NaN, larger than 1e5, bad ratios, indices out of range. A mesh that cannot
- *         be simplified so far (locked borders, foldings) is no error: the level has more triangles. */
+ * memory  about vertices x poses x 12 bytes, plus 88 bytes for each pair of a vertex and a pose that moves it
+ * errors  1 and *error: out of memory, NaN, larger than 1e5, bad ratios, indices out of range. If a mesh cannot be
+ * simplified that far (locked borders, folds) the level has more triangles; that is not an error. */
 int lod_build(const model_mesh *mesh, const lod_options *options, lod **out, model_error *error);
 void lod_free(lod *l);
 
-/* How far two surfaces are apart in one pose: lengths, the larger of both ways. */
+/* The distance between two surfaces in one pose, the larger of both directions. */
 typedef struct lod_distance {
-    float max; /* over vertices, a fixed grid on every triangle and random samples */
-    float p99; /* 99 % of the area is nearer; at rest only, else 0 */
+    float max; /* over a grid of samples on every triangle, and random ones */
+    float p99; /* 99 % of the area is nearer than this; measured at rest, else 0 */
 } lod_distance;
 
-/* Measure a level against the full mesh, each submesh against itself.
+/* Measure a level against the full mesh, submesh by submesh.
  * level  only its indices, submesh_first and submesh_count are read
  * poses  [pose_count][vertex_count][3] further shapes, as in lod_options
  * out    [submesh_count][1 + target_count + pose_count]: at rest, with each target alone at full weight, in

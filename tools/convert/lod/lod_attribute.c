@@ -1,9 +1,9 @@
-/* lod_attribute.c: how far UVs, colours and skin weights slide, as lengths.
+/* lod_attribute.c: changes of UVs, colours and skin weights, as lengths.
  *
- * A collapse may keep the shape and still drag the texture over it. For places on the triangles that it replaces the
- * nearest place of the new surface is looked up, and what is interpolated there is compared with what was here. The
- * difference is turned into a length (UVs by the mesh's length per UV unit, colours and weights by parts of the mean
- * edge), so that it adds to a distance and is held to the same bound. */
+ * A collapse may keep the shape and still drag the texture over it. For points on the triangles that it replaces, the
+ * nearest point of the new surface is found, and the attributes interpolated there are compared with the old ones. The
+ * difference is converted to a length (UVs by the mesh's length per UV unit, colours and weights by fractions of the
+ * mean edge), so that it can be added to a distance and is held to the same bound. */
 #include "lod_internal.h"
 
 #include <float.h>
@@ -13,7 +13,7 @@
 
 #define UV_WEIGHT 0.1f
 #define COLOR_EDGES 0.24f
-#define MINOR_COLORS 3.0f /* a small part, such as an eye, is its colours */
+#define MINOR_COLORS 3.0f /* in a small part, such as an eye, colours matter most */
 #define SKIN_EDGES 1.0f
 #define FIRST_COLOR 2u
 
@@ -64,14 +64,14 @@ int lod_attributes_make(lod_surface *s, const lod_options *o)
         for (uint32_t k = 0; mesh->uv && k < 2u; k++) {
             to[k] = mesh->uv[v * 2u + k] * uv;
         }
-        for (uint32_t k = 0; mesh->color && k < 4u; k++) { /* as they are seen, not as light */
+        for (uint32_t k = 0; mesh->color && k < 4u; k++) { /* as perceived, not linear */
             to[2u + k] = (k < 3u ? sqrtf(mesh->color[v * 4u + k]) : mesh->color[v * 4u + k]) * length;
         }
     }
     return 0;
 }
 
-/* The place of the new surface that stands for a point of the old one. */
+/* The point of the new surface that stands for one of the old. */
 typedef struct place {
     float squared, weight[3];
     uint32_t vertex[3];
@@ -87,7 +87,7 @@ static uint32_t moved(const lod_move *m, uint32_t vertex)
     return vertex;
 }
 
-/* The nearest one at rest among the new triangles of an island (LOD_NONE: all). 0 where it has none here. */
+/* The nearest one at rest, among the new triangles of an island (LOD_NONE: all). 0 if the island has none here. */
 static int nearest_place(const lod_surface *s, const lod_move *m, const float *at, uint32_t island, place *out)
 {
     out->squared = FLT_MAX;
@@ -110,7 +110,8 @@ static int nearest_place(const lod_surface *s, const lod_move *m, const float *a
     return out->squared < FLT_MAX;
 }
 
-/* Between attributes first..end-1 at a place of the new surface, and where `mean` weighs an old triangle's corners. */
+/* The squared difference of attributes first to end - 1, at a point of the new surface and at the weights `mean` of an
+ * old triangle's corners. */
 static float attribute_error(const lod_surface *s, const place *p, const uint32_t *corners, const float *mean,
                              uint32_t first, uint32_t end)
 {
@@ -126,7 +127,7 @@ static float attribute_error(const lod_surface *s, const place *p, const uint32_
     return sum;
 }
 
-/* Of a vertex's weight on one joint, what the place does not carry. */
+/* The part of a vertex's weight on one joint that the new point lacks. */
 static float missing_weight(const model_mesh *mesh, const place *p, uint16_t joint, float weight)
 {
     for (uint32_t i = 0; i < 3u; i++) {
@@ -162,8 +163,8 @@ static void weigh_corners(const lod_surface *s, const uint32_t *corners, const f
     }
 }
 
-/* Colours are looked for where they are seen: a pupil with vertices of its own would shrink into the iris around it.
- * They often change at an edge, so that a triangle's middle does not tell. */
+/* Colours are compared at the nearest point of any island, where they are seen: otherwise a pupil with its own vertices
+ * would shrink into the iris around it. They often change at an edge, where a triangle's centre does not show it. */
 static float color_error(const lod_surface *s, const lod_move *m, const uint32_t *corners)
 {
     static const float means[4][3] = {
@@ -181,7 +182,7 @@ static float color_error(const lod_surface *s, const lod_move *m, const uint32_t
     return worst;
 }
 
-/* In the triangle's own island: one that has gone says nothing about others. */
+/* UVs are compared in the triangle's own island: one that has vanished says nothing about the others. */
 static float uv_error(const lod_surface *s, const lod_move *m, const uint32_t *corners, uint32_t island)
 {
     static const float middle[3] = { 1.0f / 3.0f, 1.0f / 3.0f, 1.0f / 3.0f };

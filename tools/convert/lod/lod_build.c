@@ -1,15 +1,15 @@
 /* lod_build.c: the order of the collapses, and the levels.
  *
- * Simplification by half-edge collapses from a priority queue: the point whose best collapse costs least goes, its
- * neighbours are judged again, until the level has few enough triangles (or the next collapse would exceed the
- * level's error). What is unusual is the cost, for a face must still smile when it is coarse: the quadrics of a point
- * exist once for each pose in which it moves (at rest, every target, mixes, frames of clips), and the largest counts,
- * not the sum: an error that shows in one pose alone is not averaged away.
+ * Simplification by half-edge collapses from a priority queue: the point whose best collapse costs least is removed and
+ * its neighbours are judged again, until the level has few enough triangles (or the next collapse would exceed the
+ * level's error). The cost makes the difference, because a coarse face must still smile: a point has a quadric for each
+ * pose in which it moves (rest, every target, mixes, frames of clips), and the largest counts, not the sum, so an error
+ * that shows in a single pose is not averaged away.
  *
- * Quadrics forget how far the surface has already moved and measure planes, not triangles. So they only rank: the
- * TESTED best collapses of a point are then measured by samples of the full surface that stay attached to the
- * triangles standing for them (lod_track.c, lod_measure.c), with UVs, colours and skin weights as lengths beside
- * (lod_attribute.c). LOD_FAST leaves the measuring out. */
+ * Quadrics measure planes, not triangles, and lose track of how far the surface has already moved. So they only rank:
+ * the TESTED best collapses of a point are measured by samples of the full surface, which stay attached to the
+ * triangles that replace theirs (lod_track.c, lod_measure.c); changes of UVs, colours and skin weights are added as
+ * lengths (lod_attribute.c). LOD_FAST omits the measuring. */
 #include "lod_internal.h"
 
 #include <math.h>
@@ -20,7 +20,7 @@
 #include "convert/model/model_build.h"
 
 #define TESTED 4u         /* candidates of a point that are measured, the best by quadric */
-#define QUADRIC_SHARE 0.3 /* of the quadric in the cost of measured collapses */
+#define QUADRIC_SHARE 0.3 /* the quadric's share in the cost of a measured collapse */
 #define PROGRESS_STEP 256u
 
 #define MINOR_GROWTH 1.5
@@ -33,10 +33,10 @@ typedef struct builder {
     lod_quadric_row *quadrics;
     lod_track *track; /* NULL: fast */
     lod_queue queue;
-    uint32_t *best_to;                    /* [vertex_count] the neighbour that a queued point would go to */
+    uint32_t *best_to;                    /* [vertex_count] the neighbour that a queued point would move to */
     float *best_length;                   /* [vertex_count] that collapse's error as a length */
     uint8_t *state;                       /* [vertex_count] point_state; PARKED points wait for a coarser level */
-    uint32_t steps, live, full, coarsest; /* triangles: left, of the mesh, of the last level */
+    uint32_t steps, live, full, coarsest; /* live, full, coarsest: triangles left, of the mesh, of the last level */
     float cost;
     lod *out;
 } builder;
@@ -96,8 +96,8 @@ static double measure(builder *b, const lod_fan *fan, const candidate *c, double
     return tracked + lod_attribute_cost(s, &move, list, count, s->corner);
 }
 
-/* What a squared length counts at a point: small parts (eyes, teeth) the more the larger it is, for the same
- * length is more of them. */
+/* The factor on a squared length at a point: in small parts (eyes, teeth) it grows with the length, which is a larger
+ * share of them. */
 static double importance(const builder *b, uint32_t point, double squared)
 {
     const lod_surface *s = &b->surface;
@@ -196,18 +196,18 @@ static int take(builder *b, uint32_t point)
         return 0;
     }
     if (!lod_move_allowed(&b->surface, &fan, b->best_to[point], &move)) {
-        return queue_point(b, point); /* something two rings away is in the way now */
+        return queue_point(b, point); /* a change two rings away now forbids the collapse */
     }
     return collapse(b, &fan, &move);
 }
 
-/* 1 where a point has to wait for a coarser level. */
+/* Whether a point has to wait for a coarser level. */
 static int is_beyond(const builder *b, uint32_t level, uint32_t point)
 {
     return b->options.errors && b->best_length[point] > b->options.errors[level];
 }
 
-/* Triangles that a level is to have. */
+/* The number of triangles wanted for a level. */
 static uint32_t goal_of(const builder *b, uint32_t level)
 {
     return b->options.errors ? 0u : (uint32_t)ceil((double)b->options.ratios[level] * b->full - 1e-3);
@@ -246,7 +246,7 @@ static uint32_t count_vertices(const lod_level *level, uint32_t *mark, uint32_t 
     return count;
 }
 
-/* Copy what is left. Returns 1 when out of memory. */
+/* Copy the triangles that are left. Returns 1 when out of memory. */
 static int write_level(builder *b, lod_level *level)
 {
     const lod_surface *s = &b->surface;

@@ -1,12 +1,12 @@
 /* lod_certify.c: the distance between a level and the full mesh, both ways, pose by pose.
  *
  * The two-sided (Hausdorff) distance: the farthest that any point of one surface lies from the other surface, in both
- * directions, because a level may lack a tip that the full mesh has and may bridge a gap that it has not. It is
- * independent of how the level was built and is what the pack stores as the level's error. Each triangle carries a
- * grid of samples, its corners and edges, its centroid and a random place; random samples alone miss the largest
- * distances by half (compare Cignoni, Rocchini and Scopigno, "Metro", 1998). The nearest triangle is found in a tree of
- * boxes whose structure is kept and whose boxes are fitted anew in every pose; the nearest triangle of the last pose
- * is the first guess for the next, which prunes most of the tree. */
+ * directions, because a level may lack a tip of the full mesh, and may bridge a gap in it. It does not depend on how
+ * the level was built, and is stored in the pack as the level's error. Each triangle carries a grid of samples, its
+ * corners and edges, its centroid and a random place; random samples alone find only about half of the largest
+ * distances (compare Cignoni, Rocchini and Scopigno, "Metro", 1998). The nearest triangle is found in a tree of boxes
+ * that is built once; only the boxes are refitted in every pose. The nearest triangle of the previous pose is the first
+ * guess, which prunes most of the tree. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,20 +22,20 @@
 typedef struct sample {
     uint32_t triangle;
     float weight[3];
-    float area; /* that it stands for; 0 on edges and corners */
+    float area; /* that the sample stands for; 0 on edges and corners */
 } sample;
 
-/* One way of measuring: samples on `from`, distances to the tree of `to`. */
+/* One direction: samples on `from`, distances to the tree of `to`. */
 typedef struct way {
     const uint32_t *from;
     uint32_t from_count;
     lod_tree to;
     sample *samples;
     uint32_t sample_count;
-    uint32_t *nearest;      /* [sample_count] in the last pose: the guess for the next */
+    uint32_t *nearest;      /* [sample_count] triangles in the previous pose: the guess for the next */
     uint32_t *rest_nearest; /* [sample_count] */
     float *rest;            /* [sample_count] distances */
-    uint32_t worst;         /* the sample that is farthest at rest */
+    uint32_t worst;         /* the farthest sample at rest */
 } way;
 
 typedef struct ranked {
@@ -97,7 +97,7 @@ static uint32_t grid_steps(const way *w, const float *position, uint32_t triangl
     return steps < (float)GRID_LEAST ? GRID_LEAST : steps > (float)GRID_MAX ? GRID_MAX : (uint32_t)steps;
 }
 
-/* A lattice with the corners and edges, the centroid, and a random place. */
+/* A lattice that includes corners and edges, the centroid, and a random point. */
 static void sample_triangle(way *w, uint32_t triangle, uint32_t steps, float area, uint64_t *random)
 {
     uint32_t inner = 2u + (steps - 1u) * (steps - 2u) / 2u;
@@ -116,7 +116,7 @@ static void sample_triangle(way *w, uint32_t triangle, uint32_t steps, float are
     add_sample(w, triangle, u, v, 1.0f - u - v, share);
 }
 
-/* ---- one way ---- */
+/* ---- one direction ---- */
 
 static int way_make(way *w, const uint32_t *from, uint32_t from_count, const uint32_t *to, uint32_t to_count,
                     const float *position, float spacing)
@@ -182,8 +182,8 @@ static void way_measure_rest(way *w, const float *position)
     memcpy(w->rest_nearest, w->nearest, w->sample_count * sizeof *w->nearest);
 }
 
-/* The distance of one sample where it is above *most. One that has any triangle nearer than that is not looked at:
- * most samples are near the triangle that was nearest in the last pose. */
+/* The distance of one sample, if it is above *most. A sample with any triangle nearer than that is skipped, as most
+ * are: they lie near the triangle that was nearest in the previous pose. */
 static void way_raise(way *w, uint32_t i, const float *position, float *most)
 {
     float at[3], squared;
@@ -195,8 +195,8 @@ static void way_raise(way *w, uint32_t i, const float *position, float *most)
     }
 }
 
-/* The largest distance in a pose. moved: NULL, or [vertices]; where neither a sample nor what lay nearest moves, the
- * distance at rest stands (it may have become smaller, never larger). */
+/* The largest distance in a pose. moved: NULL, or [vertices]. If neither a sample nor its nearest triangle moves, its
+ * distance at rest is taken: it may have become smaller, never larger. */
 static void way_measure(way *w, const float *position, const uint8_t *moved, float *most)
 {
     lod_tree_pose(&w->to, position);

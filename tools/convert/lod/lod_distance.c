@@ -1,12 +1,12 @@
-/* lod_distance.c: points to triangles. Branch-free over lanes, so that compilers make SIMD of it. */
+/* lod_distance.c: distances of points to triangles. Branch-free over lanes, so that compilers vectorise it. */
 #include "lod_internal.h"
 
-/* Comparisons may be made for all lanes: nobody looks at the processor's exception flags. */
+/* Comparisons may be evaluated for all lanes: floating-point exception flags are not read. */
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-trapping-math")
 #endif
 
-/* A corner, the edge from it, and the plane through that edge upright on the triangle. */
+/* A corner, the edge from it, and the plane through that edge perpendicular to the triangle. */
 typedef struct edge {
     float at[3], along[3], side[3], inverse; /* inverse: 1 / |along|^2, 0 for an edge without length */
 } edge;
@@ -94,7 +94,7 @@ void lod_distance_triangle(const float *triangle, const float *x, const float *y
     }
 }
 
-/* Weights of the nearest place on the edge from corner e. */
+/* Barycentric weights of the nearest point on the edge from corner e. */
 static float edge_barycentric(const prepared *p, uint32_t e, const float *point, float *out)
 {
     const edge *of = &p->edges[e];
@@ -128,7 +128,7 @@ float lod_distance_point(const float *triangle, const float *point, float *baryc
             barycentric[2] = weights[2];
         }
     }
-    if (squared < best) { /* inside: areas against the edges opposite to the corners */
+    if (squared < best) { /* inside: weights from the areas opposite the corners */
         for (uint32_t e = 0; e < 3u; e++) {
             const edge *of = &p.edges[e];
             float d[3] = { point[0] - of->at[0], point[1] - of->at[1], point[2] - of->at[2] };

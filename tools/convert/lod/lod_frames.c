@@ -34,7 +34,7 @@ static void from_columns(const double *m16, double *out)
     }
 }
 
-/* Of an affine matrix; zeros where it has no inverse. */
+/* The inverse of an affine matrix; zeros if there is none. */
 static void invert(const double *m, double *out)
 {
     double rows[3][3], determinant;
@@ -126,7 +126,8 @@ static void inverse_bind(const model_skin *skin, uint32_t joint, double *out)
     from_columns(columns, out);
 }
 
-/* From the mesh to the mesh in the pose, for each joint; the mesh is where the first joint puts it at rest. */
+/* For each joint, the matrix from the mesh at rest to the mesh in the pose; at rest the mesh is where its first joint
+ * puts it. */
 static void joint_matrices(const model *m, const model_node *node, const double *worlds, double *out)
 {
     const model_skin *skin = &m->skins[node->skin];
@@ -142,7 +143,7 @@ static void joint_matrices(const model *m, const model_node *node, const double 
     }
 }
 
-/* By its heaviest joints, at most so many. */
+/* Skin a vertex by its `most` heaviest joints. */
 static void skin_vertex(const model_mesh *mesh, const double *joints, size_t v, uint32_t most, float *out)
 {
     const float *p = mesh->position + v * 3u;
@@ -159,7 +160,7 @@ static void skin_vertex(const model_mesh *mesh, const double *joints, size_t v, 
     }
 }
 
-/* Raise errors[LOD_CAPS] to what the caps do to a frame. */
+/* Raise errors[LOD_CAPS] to the errors of the caps in a frame. */
 static void measure_caps(const model_mesh *mesh, const double *joints, const float *frame, float *errors)
 {
     static const uint32_t caps[LOD_CAPS] = { 4, 2, 1 };
@@ -212,7 +213,7 @@ int lod_frame_pose(const model *m, uint32_t node, uint32_t clip, double time_s, 
 
 typedef struct moment {
     uint32_t clip;
-    double time_s, distance; /* to the nearest of those taken */
+    double time_s, distance; /* from the nearest of those taken */
 } moment;
 
 static int moves_joints(const model *m, uint32_t node, uint32_t clip)
@@ -247,7 +248,7 @@ static uint32_t list_moments(const model *m, uint32_t node, moment *out)
     return count;
 }
 
-/* How differently the skin's joints are turned. */
+/* The difference of two poses: the angles between the rotations of the skin's joints. */
 static double difference(const model_skin *skin, const node_pose *a, const node_pose *b)
 {
     double sum = 0.0;
@@ -258,7 +259,7 @@ static double difference(const model_skin *skin, const node_pose *a, const node_
     return sum;
 }
 
-/* Lower every moment's distance to that of the pose `taken`. Returns 1 where a rotation has no length. */
+/* Lower every moment's distance to that from the pose `taken`. Returns 1 if a rotation has no length. */
 static int near_by(const model *m, const model_skin *skin, moment *list, uint32_t count, const node_pose *taken,
                    node_pose *scratch)
 {

@@ -1,7 +1,7 @@
 /* lod_frames.h: frames of a model's clips as poses of a skinned mesh.
  *
  *   lod_frame_pose      one frame
- *   lod_frames_choose   a few that differ most, for lod_options.poses */
+ *   lod_frames_choose   the few that differ most, for lod_options.poses */
 #ifndef NOH_CONVERT_LOD_LOD_FRAMES_H
 #define NOH_CONVERT_LOD_LOD_FRAMES_H
 
@@ -11,16 +11,16 @@
 extern "C" {
 #endif
 
-#define LOD_CAPS 3u /* at most 4, 2, 1 joints a vertex */
+#define LOD_CAPS 3u /* at most 4, 2 and 1 joints a vertex */
 
 typedef struct lod_frames {
     uint32_t count;
-    float **poses;             /* [count][vertex_count][3], lod_options.poses takes it */
-    float cap_error[LOD_CAPS]; /* largest error of a vertex in these frames when only its 4, 2, 1 heaviest joints move
-                                * it and the weights are normalised, as a renderer does that caps influences */
+    float **poses;             /* [count][vertex_count][3], for lod_options.poses */
+    float cap_error[LOD_CAPS]; /* largest error of a vertex in these frames if only its 4, 2 or 1 heaviest joints move
+                                  it, with weights normalised, as renderers do that cap influences */
 } lod_frames;
 
-/* The node that draws a mesh with a skin; MODEL_NONE where there is none. */
+/* The node that draws a mesh with a skin, or MODEL_NONE. */
 uint32_t lod_skinned_node(const model *m, uint32_t mesh);
 
 /* Skin a node's mesh at a time of a clip: linear blending in double precision, targets at rest.
@@ -28,9 +28,9 @@ uint32_t lod_skinned_node(const model *m, uint32_t mesh);
  * out [vertex_count][3]. Returns 1 when out of memory or where a rotation has no length. */
 int lod_frame_pose(const model *m, uint32_t node, uint32_t clip, double time_s, float *out);
 
-/* Up to `count` frames of all clips that move the node's joints, 8 looked at in each second: the one
- * farthest from rest by its joints' rotations, then each time the one farthest from those taken.
- * Returns 1 when out of memory or where a rotation has no length. */
+/* Up to `count` frames of all clips that move the node's joints, from 8 candidates in each second: first the one
+ * farthest from rest by its joints' rotations, then each time the one farthest from those taken. Returns 1 when out of
+ * memory or if a rotation has no length. */
 int lod_frames_choose(const model *m, uint32_t node, uint32_t count, lod_frames *out);
 void lod_frames_free(lod_frames *f);
 

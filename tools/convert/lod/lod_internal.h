@@ -11,7 +11,7 @@
 #define LOD_FAN_MAX 96u /* triangles around a point; one with more stays */
 #define LOD_RING_MAX (2u * LOD_FAN_MAX)
 #define LOD_ATTRIBUTES 6u    /* u, v, r, g, b, a */
-#define LOD_REST_WEIGHT 1.6f /* distances at rest count so many times: rest is what is seen most */
+#define LOD_REST_WEIGHT 1.6f /* factor on distances at rest, the pose that is seen most */
 
 /* ---- input: lod_check.c ---- */
 
@@ -21,13 +21,13 @@ int lod_check_options(lod_options *o, uint32_t target_count, model_error *error)
 
 /* ---- poses: lod_poses.c ---- */
 
-/* Pose 0 is rest; then the targets, the mixes, the caller's. */
+/* Pose 0 is rest; then come the targets, the mixes and the caller's poses. */
 typedef struct lod_poses {
     uint32_t count, words; /* words: 64-bit words of a set of poses */
     uint32_t first_given;  /* the first of the caller's poses */
-    float *weight;         /* [count] what a squared distance counts, before it grows (lod_measure.c) */
+    float *weight;         /* [count] factor on squared distances, before growth (lod_measure.c) */
     float *position;       /* [vertex_count][count][3] */
-    uint64_t *moves;       /* [vertex_count][words] the poses in which a vertex is not where it rests */
+    uint64_t *moves;       /* [vertex_count][words] the poses in which a vertex is not at rest */
 } lod_poses;
 
 int lod_poses_make(const model_mesh *mesh, const lod_options *o, lod_poses *out);
@@ -109,11 +109,11 @@ typedef struct lod_move {
     uint32_t gone[LOD_FAN_MAX]; /* of those that vanish */
 } lod_move;
 
-/* 1 where the collapse keeps topology, seams, borders and orientation; fills *move. */
+/* 1 if the collapse keeps topology, seams, borders and orientation; fills *move. */
 int lod_move_allowed(lod_surface *s, const lod_fan *fan, uint32_t to, lod_move *move);
 void lod_move_apply(lod_surface *s, const lod_move *move);
 
-/* The triangle of a corner in a pose, with its corner where `point` would be; [3][3]. */
+/* The triangle of a corner in a pose, with that corner moved to `point`; [3][3]. */
 void lod_move_triangle(const lod_surface *s, uint32_t corner, uint32_t point, uint32_t pose, float *out);
 
 /* ---- quadrics: lod_quadric.c ---- */
@@ -122,7 +122,7 @@ typedef struct lod_quadric {
     double a[10], area; /* symmetric 4 x 4, upper half by rows */
 } lod_quadric;
 
-/* Of one point: only poses in which something around it moves, rising, rest first. */
+/* One point: only the poses in which something around it moves, ascending, rest first. */
 typedef struct lod_quadric_row {
     uint32_t count;
     uint16_t *pose;
@@ -153,14 +153,15 @@ typedef struct lod_track lod_track;
 
 lod_track *lod_track_make(lod_surface *s);
 void lod_track_free(lod_track *t);
-/* Look at one fan: what is attached to it, in which poses it moves. Returns 1 when out of memory. */
+/* Open one fan: find its attached samples, and the poses in which it moves. Returns 1 when out of memory. */
 int lod_track_open(lod_track *t, const lod_fan *fan);
 /* The mesh's triangles whose centroids are attached to the open fan. */
 const uint32_t *lod_track_triangles(const lod_track *t, uint32_t *count);
-/* What a move costs: the largest weighed squared distance, over the fan's poses, between the samples and the
- * surface that it leaves, both ways; stops at `bound`. *squared: the largest one as it is. */
+/* The cost of a move: the largest weighted squared distance, over the fan's poses, between the samples and the surface
+ * that the move leaves, both ways; stops at `bound`. *squared: the largest one unweighted. */
 double lod_track_cost(lod_track *t, const lod_move *move, double bound, double *squared);
-/* Attach the fan's samples, and the point itself, to what is left. Before lod_move_apply. */
+/* Attach the fan's samples, and the removed point itself, to the triangles that stay. To be called before
+ * lod_move_apply. */
 void lod_track_commit(lod_track *t, const lod_move *move);
 
 /* ---- attributes: lod_attribute.c ---- */

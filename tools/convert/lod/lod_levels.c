@@ -7,14 +7,14 @@
 #include "convert/model/model_build.h"
 
 #define FRAMES_BUILT 12u     /* frames that the builder sees */
-#define FRAMES_CERTIFIED 28u /* and those that the levels are measured in */
+#define FRAMES_CERTIFIED 28u /* frames that the levels are measured in */
 #define FINEST_ERROR (1.0f / 4000.0f)
 #define ERROR_STEP 4.0f
 #define LEVELS_BY_ERROR 5u /* the coarsest is off by 1/62 of the diagonal */
-#define LEAST_SAVED 0.95f  /* of the finer level's triangles: a level with more is not worth its bytes */
+#define LEAST_SAVED 0.95f  /* of the finer level's triangles: a level with more is left out */
 
 typedef struct pose_list {
-    uint32_t count, pairs; /* the first so many are pairs of targets */
+    uint32_t count, pairs; /* the first `pairs` poses are pairs of targets */
     float **poses;         /* [count][vertex_count][3] */
 } pose_list;
 
@@ -29,7 +29,7 @@ static int is_other_side(const char *name, const char *other, const char *left, 
            !strcmp(found + strlen(left), other + before + length);
 }
 
-/* Whether they end in L and R, or in l and r behind a sign, and are alike before. */
+/* Whether they end in L and R, or in l and r after a separator, and are otherwise alike. */
 static int is_other_end(const char *name, const char *other)
 {
     const size_t last = strlen(name) - 1u;
@@ -38,7 +38,7 @@ static int is_other_end(const char *name, const char *other)
            ((name[last] == 'L' && other[last] == 'R') || (marked && name[last] == 'l' && other[last] == 'r'));
 }
 
-/* Whether they are one thing on the left and on the right, by the names that artists give. */
+/* Whether two targets are the left and the right half of one expression, by the names that artists give. */
 static int is_pair(const char *name, const char *other)
 {
     static const char *const sides[3][2] = { { "Left", "Right" }, { "left", "right" }, { "LEFT", "RIGHT" } };
@@ -70,7 +70,7 @@ static int add_pair(const model_mesh *mesh, uint32_t left, uint32_t right, pose_
     return !pose;
 }
 
-/* ---- poses to certify in ---- */
+/* ---- the poses of the certificate ---- */
 
 static void poses_free(pose_list *p)
 {
@@ -80,7 +80,7 @@ static void poses_free(pose_list *p)
     free(p->poses);
 }
 
-/* Pairs first, then the frames, which are taken over. */
+/* Pairs first, then the frames, whose ownership passes to the list. */
 static int poses_make(const model_mesh *mesh, lod_frames *frames, pose_list *out)
 {
     int failed = 0;

@@ -12,10 +12,10 @@ extern "C" {
 
 /* All zeros: the full mesh alone. */
 typedef struct lod_settings {
-    uint32_t level_count; /* with the full one, 2 to NOH_LOD_LEVELS_MAX; 0 and 1: no others. The triangles' shares are
-                             LOD_SHARES */
-    int by_error; /* instead: up to four coarser levels whose costs are 1/4000 of the box's diagonal, and four times as
-                     much each time */
+    uint32_t level_count; /* counting the full mesh, 2 to NOH_LOD_LEVELS_MAX; 0 and 1: the full mesh alone. LOD_SHARES
+                             has the shares of triangles */
+    int by_error; /* instead: up to four coarser levels, with costs of 1/4000 of the box's diagonal, and four times as
+                     much for each further one */
     lod_mode mode;
 } lod_settings;
 
@@ -24,7 +24,7 @@ typedef struct lod_settings {
         1.0f, 0.5f, 0.25f, 0.1f, 0.05f, 0.025f, 0.01f, 0.005f \
     }
 
-/* Certified: the largest distances to the full mesh, in the mesh's own lengths. None is below the finer level's. */
+/* Certified: the largest distances to the full mesh, in the mesh's own units. None is below the finer level's. */
 typedef struct lod_errors {
     float rest, rest_p99, targets, pairs, clip;
 } lod_errors;
@@ -32,15 +32,15 @@ typedef struct lod_errors {
 /* The largest of them. */
 float lod_worst(const lod_errors *errors);
 
-/* One level: what mesh_layout draws. */
+/* The triangles of one level. */
 typedef struct lod_view {
     const uint32_t *indices;       /* submeshes one after another */
     const uint32_t *first, *count; /* [submesh_count] into indices */
 } lod_view;
 
 typedef struct mesh_levels {
-    uint32_t count; /* 1: the full mesh alone, and all below is 0 */
-    lod *built;     /* level k of the mesh is built->levels[which[k]], for k of 1 and more */
+    uint32_t count; /* 1: the full mesh alone, and all that follows is 0 */
+    lod *built;     /* for k >= 1, level k of the mesh is built->levels[which[k]] */
     uint32_t which[NOH_LOD_LEVELS_MAX];
     uint8_t *rank; /* [vertex_count] the coarsest level that a vertex is in */
     lod_errors errors[NOH_LOD_LEVELS_MAX];

@@ -1,8 +1,8 @@
-/* lod_measure.c: what a collapse would do, in every pose, to the samples around it.
+/* lod_measure.c: how far a collapse would take the surface from the samples around it, in every pose.
  *
- * Fine levels are seen from near and at rest; coarse ones have to save what the face does. So distances
- * with targets grow: one of a mean edge's length counts 1 + POSE_GROWTH times. The outline of lids and lips
- * shows what is behind or hides it, where the distance to the nearest surface says little: it grows as well. */
+ * Fine levels are seen from near, mostly at rest; coarse ones must at least keep the expressions. So distances in poses
+ * of targets count more as they grow: one of a mean edge's length counts 1 + POSE_GROWTH times. So do those at the rims
+ * of lids and lips, where the distance to the nearest surface says little about the gap that opens. */
 #include <math.h>
 #include <string.h>
 
@@ -22,7 +22,7 @@ static float largest(const float *values, uint32_t count)
     return worst;
 }
 
-/* The same where rims open or close: their outline shows what is behind, or hides it. */
+/* The same for rims that open or close. */
 static float largest_of_rims(const lod_track *t, uint32_t pose)
 {
     const lod_surface *s = t->surface;
@@ -48,7 +48,8 @@ static float samples_to_triangles(lod_track *t, const lod_pose_view *v, uint32_t
     return lod_set_has(t->shows, pose) ? largest_of_rims(t, pose) : largest(t->squared, t->count);
 }
 
-/* Where a new triangle is held against the full mesh: on its new edge, from the point that stays, and inside. */
+/* The points at which a new triangle is compared with the full mesh: on its new edge, which starts at the point that
+ * stays, and inside. */
 static const float reverse_weights[REVERSE_SAMPLES][3] = {
     { 0.75f, 0.25f, 0.0f }, { 0.5f, 0.5f, 0.0f }, { 0.25f, 0.75f, 0.0f },
     { 0.6f, 0.2f, 0.2f },   { 0.2f, 0.6f, 0.2f }, { 0.2f, 0.2f, 0.6f },
@@ -80,7 +81,7 @@ static void normal_of(const float *t, float *out)
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* A triangle that turns over in a pose costs its area: so much of it shows wrongly. */
+/* A triangle that flips in a pose costs its area, which is what shows wrongly. */
 static float turned_area(const lod_surface *s, const lod_move *m, uint32_t pose, const float *triangles)
 {
     float area = 0.0f;
@@ -114,7 +115,7 @@ static double pose_cost(lod_track *t, const lod_move *m, uint32_t pose, double b
     return reverse > worst ? reverse : worst;
 }
 
-/* What a squared distance counts in a pose. */
+/* The factor on a squared distance in a pose. */
 static double counted(const lod_surface *s, uint32_t pose, double squared)
 {
     double grown = 1.0;

@@ -9,7 +9,7 @@
 #include <string.h>
 
 #define TURN_COSINE 0.2588190451 /* 75 degrees at rest */
-#define SLIVER 0.01f             /* the least height of a new triangle over its longest edge */
+#define SLIVER 0.01f             /* the least ratio of a new triangle's height to its longest edge */
 
 void lod_move_triangle(const lod_surface *s, uint32_t corner, uint32_t point, uint32_t pose, float *out)
 {
@@ -18,7 +18,7 @@ void lod_move_triangle(const lod_surface *s, uint32_t corner, uint32_t point, ui
     memcpy(out + 6, lod_posed(&s->poses, lod_point(s, lod_previous(corner)), pose), 3u * sizeof *out);
 }
 
-/* Which wedge of `to` each wedge of `from` becomes. 0 where one has none, or two. */
+/* Find the wedge of `to` that each wedge of `from` becomes. 0 if one has none, or two. */
 static int map_wedges(const lod_surface *s, const lod_fan *fan, lod_move *m)
 {
     m->wedge_count = m->kept_count = m->gone_count = 0;
@@ -108,7 +108,7 @@ static float longest_edge(const float *t)
     return longest; /* squared */
 }
 
-/* At rest: no triangle turns too far or becomes a line, but for one that was one. */
+/* At rest no triangle may turn too far or become a line, unless it was one. */
 static int shape_allows(const lod_surface *s, const lod_move *m)
 {
     for (uint32_t i = 0; i < m->kept_count; i++) {
@@ -142,7 +142,7 @@ static double uv_area(const float *a, const float *b, const float *c)
     return ((double)b[0] - a[0]) * ((double)c[1] - a[1]) - ((double)b[1] - a[1]) * ((double)c[0] - a[0]);
 }
 
-/* No triangle's picture turns over, or shrinks to a line. */
+/* No triangle may flip in UV space, or shrink to a line there. */
 static int uv_allows(const lod_surface *s, const lod_move *m)
 {
     const float *uv = s->mesh->uv;

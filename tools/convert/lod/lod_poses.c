@@ -18,7 +18,7 @@ static double random_unit(uint64_t *state)
     return (double)((*state * UINT64_C(0x2545f4914f6cdd1d)) >> 40) / 16777216.0;
 }
 
-/* A share of the targets at weights from 0 to 1, others for each mix. */
+/* For each mix, a random share of the targets at weights from 0 to 1. */
 static void mix_weights(uint64_t *state, float *weights, uint32_t count, double share)
 {
     for (uint32_t t = 0; t < count; t++) {

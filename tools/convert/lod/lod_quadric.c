@@ -1,8 +1,8 @@
-/* lod_quadric.c: one quadric per point and pose, the largest counts.
+/* lod_quadric.c: one quadric per point and pose; the largest counts.
  *
  * A quadric is the sum of squared distances to the planes of the triangles around a point, weighted by their areas: a
- * symmetric 4 x 4 matrix, ten numbers, that can be added when two points become one (Garland and Heckbert 1997). On
- * borders a plane stands upright on the edge, so that outlines hold.
+ * symmetric 4 x 4 matrix, ten numbers, that can be added when two points become one (Garland and Heckbert 1997). At
+ * borders, planes through the edge and perpendicular to the triangle are added, so that outlines hold.
  *
  * A row holds the poses in which the point or one of its neighbours differs from rest, sorted; in every other pose its
  * surroundings lie as at rest, so the rest quadric serves. A target moves a part of a face, so most rows are short. */
@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define BORDER_WEIGHT 4.0 /* of the planes that stand upright on borders, against the triangles' own */
+#define BORDER_WEIGHT 4.0 /* of the perpendicular planes at borders, relative to the triangles' own */
 
 static void add_plane(lod_quadric *q, const double *n, double d, double area)
 {
@@ -60,7 +60,7 @@ static double dot(const double *a, const double *b)
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* The triangle's plane; and where its edges from the point are borders, planes upright on them. */
+/* Add the triangle's plane and, for its edges from the point that are borders, the planes perpendicular to it. */
 static void add_triangle(const lod_surface *s, const lod_fan *fan, uint32_t corner, uint32_t pose, lod_quadric *q)
 {
     const uint32_t ends[2] = { lod_point(s, lod_next(corner)), lod_point(s, lod_previous(corner)) };
@@ -160,7 +160,7 @@ void lod_quadrics_free(lod_quadric_row *rows, uint32_t count)
     free(rows);
 }
 
-/* Walks two rows at once. Where a row lacks a pose its point's surroundings lie as at rest. */
+/* Walks two rows at once. A row that lacks a pose has its rest quadric there. */
 typedef struct pair {
     uint32_t a, b; /* places in the rows */
     uint32_t pose;

@@ -30,7 +30,7 @@ static void set(lod_queue *q, uint32_t i, uint32_t point)
     q->place[point] = i;
 }
 
-/* Find a point's place from a free one on, towards the root or away from it. */
+/* Find a point's place, from a free one towards the root or away from it. */
 static void settle(lod_queue *q, uint32_t i, uint32_t point)
 {
     while (i > 0 && before(q, point, q->heap[(i - 1u) / 2u])) {

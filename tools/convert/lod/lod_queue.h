@@ -1,4 +1,4 @@
-/* lod_queue.h (private to lod_*.c): points by cost, the cheapest first; of equal ones the lower number. */
+/* lod_queue.h (private to lod_*.c): points by cost, the cheapest first; ties go to the lower number. */
 #ifndef NOH_CONVERT_LOD_LOD_QUEUE_H
 #define NOH_CONVERT_LOD_LOD_QUEUE_H
 

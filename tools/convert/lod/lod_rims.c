@@ -1,15 +1,15 @@
 /* lod_rims.c: where the surface opens and closes: lids, lips.
  *
  * The distance to the nearest surface cannot see a gap between two lids that should meet: each lid
- * may lie well within the error, and the eye shows between them. So the points that some target brings
- * together, or takes apart, are found here and weigh more. */
+ * may lie well within the error, and the eye shows between them. So the points that a target brings together or takes
+ * apart are found here, and count more. */
 #include "lod_internal.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define APART 2.5f /* far is so many times near */
+#define APART 2.5f /* far is this many times near */
 
 typedef struct cell_entry {
     int32_t cell[3];
@@ -68,7 +68,7 @@ static void note(lod_surface *s, uint32_t point, uint32_t pose)
     s->shows[(size_t)point * s->poses.words + pose / 64u] |= UINT64_C(1) << (pose % 64u);
 }
 
-/* Two points that are near in one pose; note both poses where they are far in the other. */
+/* For two points that are near in one pose: note both poses if they are far apart in the other. */
 static void compare_poses(lod_surface *s, uint32_t a, uint32_t b, uint32_t near_pose, uint32_t far_pose, float near)
 {
     if (distance(s, a, b, far_pose) > APART * near) {
@@ -79,7 +79,7 @@ static void compare_poses(lod_surface *s, uint32_t a, uint32_t b, uint32_t near_
     }
 }
 
-/* What a target brings together is apart at rest; what it takes apart is together at rest. */
+/* Points that a target brings together are apart at rest; points that it takes apart are together at rest. */
 static void compare_pair(lod_surface *s, uint32_t a, uint32_t b, uint32_t pose, float near)
 {
     if (pose) {
@@ -91,7 +91,7 @@ static void compare_pair(lod_surface *s, uint32_t a, uint32_t b, uint32_t pose, 
     }
 }
 
-/* Pairs of one entry with those after it in the cells around. */
+/* Test an entry with those after it in the surrounding cells. */
 static void compare_near(lod_surface *s, const cell_entry *list, uint32_t count, const cell_entry *at, uint32_t pose,
                          float near)
 {

@@ -1,4 +1,4 @@
-/* lod_surface.c: points, corners around them, islands, and what may not move. */
+/* lod_surface.c: points, the corners around them, islands, and the points that may not move. */
 #include "lod_internal.h"
 
 #include <math.h>
@@ -7,7 +7,7 @@
 
 #include "convert/model/model_build.h"
 
-#define MINOR_SHARE 8u /* a submesh with fewer than one in so many triangles is a minor part */
+#define MINOR_SHARE 8u /* a submesh with less than 1/8 of the triangles is a minor part */
 
 /* ---- points ---- */
 
@@ -31,7 +31,7 @@ static int same_in_all_poses(const lod_surface *s, uint32_t a, uint32_t b)
 static void split_torn_points(lod_surface *s)
 {
     uint32_t count = s->mesh->vertex_count;
-    uint8_t *torn = s->removed; /* not used yet */
+    uint8_t *torn = s->removed; /* borrowed as scratch: not used yet */
     for (uint32_t v = 0; v < count; v++) {
         if (!same_in_all_poses(s, v, s->point_of[v])) {
             torn[s->point_of[v]] = 1;
@@ -143,9 +143,9 @@ static void note_minor_parts(lod_surface *s)
     }
 }
 
-/* ---- what stays ---- */
+/* ---- locked points ---- */
 
-/* Where an edge has other than two triangles that run along it in opposite directions. */
+/* Find the edges that are not shared by exactly two triangles running along them in opposite directions. */
 static int edge_is_complex(lod_surface *s, const lod_fan *fan, uint32_t neighbour)
 {
     int forwards = 0, backwards = 0;
@@ -199,7 +199,7 @@ static int by_place(const void *a, const void *b)
     return order ? order : (p->point > q->point) - (p->point < q->point);
 }
 
-/* Two borders at one place that targets move apart: what closes at rest must not gape. */
+/* Lock two borders at one place that targets move apart: what is closed at rest must stay closed. */
 static int lock_touching_borders(lod_surface *s, const uint8_t *border)
 {
     uint32_t count = 0;
@@ -308,7 +308,7 @@ int lod_fan_gather(lod_surface *s, uint32_t point, lod_fan *fan)
     while (*link != LOD_NONE) {
         uint32_t c = *link, others[2] = { lod_point(s, lod_next(c)), lod_point(s, lod_previous(c)) };
         if (s->dead[c / 3u]) {
-            *link = s->next[c]; /* unhook what has vanished */
+            *link = s->next[c]; /* unlink a vanished triangle */
             continue;
         }
         if (fan->count == LOD_FAN_MAX) {

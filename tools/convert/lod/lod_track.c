@@ -1,9 +1,9 @@
-/* lod_track.c: which samples belong to which triangle, and where they are in each pose.
+/* lod_track.c: which samples are attached to which triangle, and where they are in each pose.
  *
  * Every removed point and the centroid of every original triangle is a sample that stays attached to the triangle
  * nearest to it (Kobbelt, Campagna and Seidel 1998). A collapse replaces a fan of triangles, and only the samples of
- * that fan can change their distance: so the error against the full mesh, not against the last step, is measured
- * locally, and errors of successive collapses do not add up unseen. */
+ * that fan can change their distance: so the error against the full mesh, not just against the previous step, is
+ * measured locally, and errors of successive collapses cannot accumulate unnoticed. */
 #include "lod_track.h"
 
 #include <float.h>
@@ -218,7 +218,8 @@ void lod_track_fill(float *values, uint32_t count)
     }
 }
 
-/* For one new triangle: each sample's largest distance over the poses; the sample goes to the least. */
+/* For one new triangle: the largest distance of each sample over the poses. A sample is attached to the triangle where
+ * it is least. */
 static void offer_owner(lod_track *t, const lod_move *m, uint32_t which)
 {
     float *worst = t->worst;

@@ -7,7 +7,7 @@
 
 #include "lod_internal.h"
 
-/* What one pose makes of a fan; filled when first asked for. */
+/* A fan in one pose; filled when first needed. */
 typedef struct lod_pose_view {
     uint32_t stamp;
     float *samples;   /* [3][capacity]: x, y, z */
@@ -17,22 +17,22 @@ typedef struct lod_pose_view {
 struct lod_track {
     lod_surface *surface;
     uint32_t *first, *next;           /* [triangle_count], [vertex_count + triangle_count]: the samples at a triangle */
-    const lod_fan *fan;               /* that is open */
+    const lod_fan *fan;               /* the open fan */
     uint32_t capacity, count, padded; /* its samples; the last one repeats up to `padded` */
     uint32_t *sample;                 /* [capacity]; the fan's own point is the last one */
     uint32_t triangle_count;          /* centroids among the samples */
-    uint32_t *triangle;               /* [capacity] whose they are */
+    uint32_t *triangle;               /* [capacity] the mesh's triangle of each centroid */
     float *squared, *nearest, *worst; /* [capacity] */
     uint32_t *owner;                  /* [capacity] */
     uint64_t *shows;                  /* [words] poses in which one of its samples is a rim that opens or closes */
     uint64_t *set;                    /* [words] poses in which the fan or its samples move */
-    uint32_t *pose;                   /* [pose_count] those; the one that decided last comes first */
+    uint32_t *pose;                   /* [pose_count] those poses as a list; the one that decided last comes first */
     uint32_t pose_count, stamp;
     lod_pose_view *views; /* [poses.count] */
     float *block;         /* of all views */
 };
 
-/* What a pose makes of the fan that is open. */
+/* The open fan in a pose. */
 const lod_pose_view *lod_track_view(lod_track *t, uint32_t pose);
 
 void lod_track_fill(float *values, uint32_t count); /* with FLT_MAX */

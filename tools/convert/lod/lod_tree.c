@@ -1,5 +1,5 @@
 /* lod_tree.c: a bounding volume hierarchy of axis-aligned boxes. The tree is split once, at the median of the widest
- * axis at rest; each pose only fits the boxes anew from the leaves up, in linear time. */
+ * axis at rest; for each pose only the boxes are refitted, from the leaves up, in linear time. */
 #include "lod_tree.h"
 
 #include <float.h>
@@ -149,7 +149,7 @@ static float box_squared(const lod_tree_node *n, const float *p)
     return sum;
 }
 
-/* The boxes still to be looked into; the tree is balanced, so they are few. */
+/* The boxes still to be visited; the tree is balanced, so they are few. */
 typedef struct box_stack {
     uint32_t node[STACK_MAX], count;
     float squared[STACK_MAX];
@@ -200,7 +200,7 @@ float lod_tree_nearest(const lod_tree *t, const float *point, uint32_t *nearest)
         if (n->count == 0) {
             push(&s, t, n->first, point);
             push(&s, t, n->first + 1u, point);
-            swap_last(&s); /* the nearer one is looked into first */
+            swap_last(&s); /* the nearer one is visited first */
         }
     }
     return best;

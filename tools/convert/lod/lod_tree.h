@@ -18,14 +18,14 @@ typedef struct lod_tree {
     float *triangles;        /* [triangle_count][9] in the pose of the last lod_tree_pose */
 } lod_tree;
 
-/* Over the triangles in one pose, position [vertices][3]. Returns 1 when out of memory. */
+/* Build the tree over triangles in one pose, position [vertices][3]. Returns 1 when out of memory. */
 int lod_tree_make(const uint32_t *indices, uint32_t triangle_count, const float *position, lod_tree *out);
 void lod_tree_free(lod_tree *t);
 
-/* The same triangles in another pose. */
+/* Refit the tree to another pose. */
 void lod_tree_pose(lod_tree *t, const float *position);
 
-/* The squared distance to one of its triangles. */
+/* The squared distance to one of the triangles. */
 float lod_tree_distance(const lod_tree *t, const float *point, uint32_t triangle);
 
 /* The squared distance to the surface. *nearest: a guess on entry (any triangle), the nearest on return. */

@@ -14,8 +14,8 @@ void affine_of_floats(const float in[16], double out[16]);
 void affine_of_node(const model_node *node, double out[16]);
 /* out = a * b; out may be neither. */
 void affine_multiply(const double a[16], const double b[16], double out[16]);
-/* Returns 1 where there is no inverse: an axis has no length, or they lie in one plane to within 1e-9. out may not be
- * in. */
+/* Returns 1 if there is no inverse: an axis has no length, or all lie in one plane to within 1e-9. out may not be in.
+ */
 int affine_invert(const double in[16], double out[16]);
 double affine_determinant(const double m[16]);
 /* The matrix that turns normals as m turns points: the inverse transposed times the determinant; [3][3] columns.

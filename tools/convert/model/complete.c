@@ -1,9 +1,8 @@
 /* complete.c: computes the normals and tangents that a file lacks, in the base and in the targets.
  *
- * A delta that is missing is what our own algorithm gives for the morphed mesh
- * minus what it gives for the base, added to whatever base the file has. Where
- * no triangle around a vertex changes, both are the same bits and the delta is
- * an exact zero. */
+ * A missing delta is what our own algorithm gives for the morphed mesh minus what it gives for the base; it is added to
+ * the base that the file has. Where no triangle around a vertex changes, both are equal to the bit and the delta is an
+ * exact zero. */
 #include "model_build.h"
 
 #include <math.h>
@@ -11,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Longer or shorter than this and a normal of the file is scaled to length 1.
- * Quantised normals (8 bits) stay below it and keep the file's exact values. */
+/* A normal of the file whose length is off by more than this is scaled to length 1. Quantised normals (8 bits) are off
+ * by less and keep their exact values. */
 #define UNIT_TOLERANCE 0.01
 
 /* The state of one mesh while it is completed. */
@@ -59,8 +58,8 @@ static void scale_by(float *v, double factor)
     for (int i = 0; i < 3; ++i) v[i] = (float)((double)v[i] * factor);
 }
 
-/* A base vector of the file that is not unit is scaled together with its deltas,
- * which keeps the direction of every blend. Returns 0 when it has no length. */
+/* A base vector that is not unit is scaled together with its deltas, which keeps the direction of every blend. Returns
+ * 0 when it has no length. */
 static int unit_from_file(model_mesh *mesh, uint32_t v, int is_tangent)
 {
     float *base = is_tangent ? mesh->tangent + (size_t)v * 4 : mesh->normal + (size_t)v * 3;
@@ -75,7 +74,7 @@ static int unit_from_file(model_mesh *mesh, uint32_t v, int is_tangent)
     return 1;
 }
 
-/* Unit length for what the file gave; vectors without length count as missing. */
+/* Bring the file's vectors to unit length; those without length count as missing. */
 static uint32_t check_file_vectors(work *w, int is_tangent)
 {
     uint8_t bit = is_tangent ? MODEL_MISSING_TANGENT : MODEL_MISSING_NORMAL;
@@ -167,8 +166,8 @@ static void normal_in_pose(const work *w, const float *delta, uint32_t v, double
     (void)vec_normalize(out);
 }
 
-/* A vertex's tangent from its group's sum; where there is none, from the base
- * tangent (so that it turns with the normal), or any at a right angle. */
+/* A vertex's tangent from its group's sum; if that is zero, from the base tangent, so that it turns with the normal; if
+ * there is none either, any perpendicular vector. */
 static void tangent_in_pose(const work *w, const float *normal_delta, uint32_t v, const double *base, double *out)
 {
     const double *sum = w->groups.sum + (size_t)w->groups.vertex_group[v] * 3;
@@ -185,7 +184,7 @@ static void tangent_in_pose(const work *w, const float *normal_delta, uint32_t v
     vec_any_perpendicular(normal, out);
 }
 
-/* Where the file has tangents but no UVs: its own tangent serves as ours. */
+/* If the file has tangents but no UVs, its tangent serves as ours. */
 static const double *base_tangent_seed(const work *w, uint32_t v, double *buffer)
 {
     if (w->missing[v] & MODEL_MISSING_TANGENT) return NULL;
@@ -246,7 +245,7 @@ static void target_tangents(work *w, model_target *target)
 
 /* --- one mesh --- */
 
-/* Missing arrays become zeros with every bit set, so the rest sees one case only. */
+/* Missing arrays become zeros with every MODEL_MISSING_* bit set, so that the rest has one case only. */
 static int allocate_target(const model_mesh *mesh, model_target *target)
 {
     size_t count = mesh->vertex_count;

@@ -13,7 +13,7 @@ model *model_new(void)
     return model_zeros(1, sizeof(model));
 }
 
-/* The array is grown to powers of two, so its capacity need not be stored. */
+/* The array grows to powers of two, so its capacity need not be stored. */
 static int warnings_grow(model *m)
 {
     uint32_t count = m->warning_count;

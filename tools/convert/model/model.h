@@ -1,9 +1,7 @@
-/* model.h: what the converter keeps of an asset, decoded and in model units.
+/* model.h: an asset as the converter holds it, decoded and in model units.
  *
- * Every reader (glTF now) fills a `model`; the encoders and the pack writer
- * read nothing else. All arrays are owned by the model and freed by
- * model_free. Units: metres, seconds; right-handed, Y up; quaternions xyzw;
- * matrices column-major. */
+ * A reader fills a `model`; the encoders and the pack writer read nothing else. All arrays are owned by the model and
+ * freed by model_free. Units: metres, seconds; right-handed, Y up; quaternions xyzw; matrices column-major. */
 #ifndef NOH_CONVERT_MODEL_MODEL_H
 #define NOH_CONVERT_MODEL_MODEL_H
 
@@ -38,7 +36,7 @@ typedef struct model_material {
     uint8_t double_sided, unlit;
 } model_material;
 
-/* What model_complete has yet to fill, for the vertices of one submesh. */
+/* What the file lacks for the vertices of one submesh, and model_complete fills in. */
 #define MODEL_MISSING_NORMAL 1u
 #define MODEL_MISSING_TANGENT 2u
 
@@ -48,8 +46,8 @@ typedef struct model_target {
     float *position;                               /* [vertex_count][3] */
     float *normal;                                 /* [vertex_count][3]; never NULL after model_complete */
     float *tangent;                                /* [vertex_count][3]; NULL where the mesh has no tangents */
-    uint8_t has_position, has_normal, has_tangent; /* what the file itself gave (any primitive) */
-    /* [submesh_count] MODEL_MISSING_* bits: deltas that model_complete has yet to compute; NULL = none */
+    uint8_t has_position, has_normal, has_tangent; /* whether the file gave it, in any primitive */
+    /* [submesh_count] MODEL_MISSING_* bits: deltas for model_complete to compute; NULL = none */
     uint8_t *missing;
 } model_target;
 
@@ -77,12 +75,12 @@ typedef struct model_mesh {
     model_target *targets;
     float *weights;         /* [target_count] the mesh's default weights */
     uint32_t influence_max; /* the most joints that move one vertex; 0: the mesh is not skinned */
-    uint32_t joint_limit;   /* above every place in `joints` that is used */
+    uint32_t joint_limit;   /* one above the largest place used in `joints` */
     uint16_t *joints;     /* [vertex_count][MODEL_INFLUENCES_MAX] places in the skin's joints; NULL where not skinned */
     float *joint_weights; /* [vertex_count][MODEL_INFLUENCES_MAX] sum 1, the largest first, zeros last; likewise */
-    uint8_t bound;        /* skins_bind found the skin that moves it */
+    uint8_t bound;        /* skins_bind has found its skin */
     uint8_t dual_quaternion; /* skinned by dual quaternions, else by matrices */
-    uint32_t skin;           /* where it is bound */
+    uint32_t skin;           /* valid if `bound` */
     uint32_t palette_limit;  /* joints that one draw may use; 0: as many as the format holds */
 } model_mesh;
 
@@ -91,19 +89,20 @@ typedef struct model_node {
     uint32_t parent;                             /* index or MODEL_NONE; parents come first */
     uint32_t mesh;                               /* index or MODEL_NONE */
     float translation[3], rotation[4], scale[3]; /* local; a matrix is decomposed */
-    double world[16]; /* column-major, from the local matrices in double precision; it does not place a skinned mesh */
-    float *weights;   /* [targets of the mesh] or NULL: the mesh's defaults hold */
-    uint32_t skin;    /* index or MODEL_NONE: also where its skin was left out with a warning */
+    double
+        world[16];  /* column-major, from the local matrices in double precision; skinned meshes are not placed by it */
+    float *weights; /* [targets of the mesh] or NULL: the mesh's defaults hold */
+    uint32_t skin;  /* index, or MODEL_NONE: it has none, or its skin was left out with a warning */
 } model_node;
 
 /* The joints that move a mesh. Vertices in the bind pose become joint-local by inverse_bind. */
 typedef struct model_skin {
     char *name;
     uint32_t joint_count;
-    uint32_t *joints;          /* [joint_count] nodes, in the order that the vertices count in */
+    uint32_t *joints;          /* [joint_count] nodes; model_mesh.joints are places in this list */
     float *inverse_bind;       /* [joint_count][16] affine and invertible; identities where the file has none */
-    uint32_t set;              /* skins_bind: its skeleton, an index into clip.sets */
-    uint32_t *skeleton_joints; /* skins_bind: [joint_count] joints of that skeleton; else NULL */
+    uint32_t set;              /* from skins_bind: its skeleton, an index into model_clips.sets */
+    uint32_t *skeleton_joints; /* from skins_bind: [joint_count] joints of that skeleton; NULL before */
 } model_skin;
 
 typedef enum model_path {
@@ -137,7 +136,7 @@ typedef struct model_clip {
     uint32_t channel_count;
     model_channel *channels;
     float duration_s; /* the largest key time */
-    uint8_t loop;     /* its author says that it repeats */
+    uint8_t loop;     /* marked as a loop by its author */
     uint32_t event_count;
     model_event *events; /* in the file's order, times within 0 and duration_s */
 } model_clip;
@@ -158,8 +157,8 @@ typedef struct model {
  * Calls model_complete. */
 int model_read_gltf(const char *path, model **out, model_error *error);
 
-/* World units per unit of a mesh: the largest scale of the nodes that draw it, or of the joints that move it, in the
- * rest pose; 1 where none does. */
+/* World units per unit of a mesh: the largest scale, in the rest pose, of the nodes that draw it or of the joints that
+ * move it; 1 if nothing draws it. */
 float model_mesh_scale(const model *m, uint32_t mesh);
 
 /* Fill in what the file left out (NULL arrays and MODEL_MISSING_* bits): normals

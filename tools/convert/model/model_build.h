@@ -15,7 +15,7 @@
 extern "C" {
 #endif
 
-/* Deltas shorter than this came out of rounding and are stored as exact zeros. */
+/* Deltas shorter than this are rounding noise and are stored as exact zeros. */
 #define MODEL_DELTA_NOISE 1e-7
 
 model *model_new(void);
@@ -31,13 +31,12 @@ __attribute__((format(printf, 2, 3)))
 #endif
 int model_warn(model *m, const char *format, ...);
 
-/* For each vertex the first one that is the same point of the surface: at the same
- * position, and moved alike by every target (two lips that touch are two points).
- * out [vertex_count]. Returns 1 when out of memory. */
+/* For each vertex, the first vertex that is the same point of the surface: at the same position, and moved alike by
+ * every target (two lips that touch are two points). out [vertex_count]. Returns 1 when out of memory. */
 int weld_vertices(const model_mesh *mesh, uint32_t *out);
 
-/* A fan: the corners around one point that share one normal. A vertex is in one
- * fan only, because vertices are never split. */
+/* A fan: the corners around one point that share one normal. A vertex is in only one fan, because vertices are never
+ * split. */
 typedef struct normal_fans {
     uint32_t corner_count, fan_count;
     uint32_t *corner_fan; /* [corner_count]; a corner is an entry of mesh->indices */
@@ -52,7 +51,7 @@ int normals_build(const model_mesh *mesh, const uint32_t *weld, normal_fans *out
 
 /* Angle-weighted normals of the fans in one pose: base plus delta.
  * delta    [vertex_count][3] or NULL for the base pose
- * touched  [fan_count] only these are evaluated (the others are left as they are); NULL = all
+ * touched  [fan_count] only these are evaluated, the others keep their values; NULL = all
  * A fan without area gets a zero normal. */
 void normals_evaluate(normal_fans *fans, const model_mesh *mesh, const float *delta, const uint8_t *touched);
 void normals_free(normal_fans *fans);
@@ -81,11 +80,11 @@ double vec_dot(const double *a, const double *b);
 void vec_cross(const double *a, const double *b, double *out);
 /* Scale to length 1. Returns 0 and leaves v alone when it has no length. */
 int vec_normalize(double *v);
-/* The part of v at a right angle to the unit vector n. */
+/* Reduce v to its part perpendicular to the unit vector n. */
 void vec_reject(double *v, const double *n);
-/* Any unit vector at a right angle to the unit vector n. */
+/* Any unit vector perpendicular to the unit vector n. */
 void vec_any_perpendicular(const double *n, double *out);
-/* The angle between two vectors, 0..pi, to 1e-7. Not libm's: its last bits differ between machines. */
+/* The angle between two vectors, 0..pi, to 1e-7. Without libm, whose last bits differ between machines. */
 double vec_angle(const double *a, const double *b);
 /* A vertex's position or normal in a pose. delta may be NULL. */
 void vec_posed(const float *base, const float *delta, uint32_t vertex, double *out);

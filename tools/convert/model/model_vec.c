@@ -1,5 +1,5 @@
-/* model_vec.c: small vectors in double precision, without libm (square roots apart,
- * which are correctly rounded everywhere), so that every machine gives the same bits. */
+/* model_vec.c: small vectors in double precision, without libm but for square roots, which are correctly rounded
+ * everywhere: every machine gives the same bits. */
 #include "model_build.h"
 
 #include <math.h>
@@ -36,7 +36,7 @@ void vec_reject(double *v, const double *n)
 
 void vec_any_perpendicular(const double *n, double *out)
 {
-    /* The axis that n leans on least is never parallel to it. */
+    /* The axis along which n is shortest is never parallel to n. */
     int axis = 0;
     for (int i = 1; i < 3; ++i)
         if (fabs(n[i]) < fabs(n[axis])) axis = i;

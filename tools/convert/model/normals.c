@@ -3,10 +3,9 @@
  * glTF (2.0, 3.7.2.1) asks for flat normals where a file has none, which would split every vertex of an indexed mesh.
  * The vertices are kept: all triangles of one vertex
  * share its normal, and triangles of welded vertices join in where they meet at
- * an edge below the crease angle. A mesh with split vertices at its hard edges
- * (or without indices) keeps those edges hard, and its seams vanish. Triangles are weighted by their angle at the
- * vertex, which makes the normal independent of the triangulation (Thürmer and Wüthrich, "Computing Vertex Normals
- * from Polygonal Facets", 1998). */
+ * an edge below the crease angle. A mesh that splits vertices at its hard edges keeps these hard, and seams in smooth
+ * surfaces do not show. Triangles are weighted by their angle at the vertex, which makes the normal independent of the
+ * triangulation (Thürmer and Wüthrich, "Computing Vertex Normals from Polygonal Facets", 1998). */
 #include "model_build.h"
 
 #include <math.h>
@@ -71,12 +70,12 @@ static void corner_join(uint32_t *parent, uint32_t a, uint32_t b)
         parent[a] = b;
 }
 
-/* An edge of the welded surface and the triangles seen at it so far. More than
- * two are kept because doubled cards (lashes, leaves) put four on one edge. */
+/* An edge of the welded surface and the triangles found at it so far. More than two are kept because doubled cards
+ * (lashes, leaves) have four at one edge. */
 #define EDGE_FACES 4
 typedef struct edge {
-    uint32_t a, b;             /* welded vertices, a < b; a == b marks a free slot */
-    uint32_t face_count;       /* all that were seen; the ring below holds the latest */
+    uint32_t a, b;             /* welded vertices, a < b; a == b: the entry is free */
+    uint32_t face_count;       /* of all found; `face` holds the latest */
     uint32_t face[EDGE_FACES]; /* triangle * 3 + k: the edge leaves its corner k */
 } edge;
 
@@ -113,8 +112,8 @@ static int smooth_between(const fan_builder *b, uint32_t triangle_0, uint32_t tr
     return cosine >= CREASE_COSINE;
 }
 
-/* Join the corners of two triangles at both ends of the edge that they share.
- * from_0 and from_1 are the corners that the edge leaves in each triangle. */
+/* Join the corners of two triangles at both ends of their shared edge, which leaves from_0 in one triangle and from_1
+ * in the other. */
 static void join_across(fan_builder *b, uint32_t from_0, uint32_t from_1)
 {
     uint32_t to_0 = from_0 / 3 * 3 + (from_0 + 1) % 3, to_1 = from_1 / 3 * 3 + (from_1 + 1) % 3;
@@ -172,7 +171,7 @@ static void number_fans(fan_builder *b, normal_fans *out)
         uint32_t root = corner_root(b->parent, c);
         out->corner_fan[c] = root == c ? out->fan_count++ : out->corner_fan[root];
     }
-    /* vertex_fan held each vertex's first corner until here */
+    /* until here vertex_fan held each vertex's first corner */
     for (uint32_t v = 0; v < b->mesh->vertex_count; ++v)
         if (out->vertex_fan[v] != MODEL_NONE) out->vertex_fan[v] = out->corner_fan[out->vertex_fan[v]];
 }

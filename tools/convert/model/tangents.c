@@ -1,6 +1,6 @@
 /* tangents.c: tangents for meshes that have UVs but no tangents.
  *
- * In the spirit of MikkTSpace (what normal maps are baked for): each corner of a
+ * After MikkTSpace, for which normal maps are baked: each corner of a
  * triangle adds the direction in which u grows, projected to the plane of the
  * corner's normal and weighted by the corner's angle in that plane; corners of
  * welded vertices with equal normals and UVs share the sum. Unlike MikkTSpace,

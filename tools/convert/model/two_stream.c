@@ -76,7 +76,7 @@ static int add_target(model_mesh *a, const model_mesh *b)
     return !t->name || !t->position || !t->normal || (a->tangent && !t->tangent);
 }
 
-/* Nodes that draw the first mesh have one weight more. */
+/* Nodes that draw the first mesh get one more weight. */
 static int grow_weights(model *m, uint32_t mesh)
 {
     for (uint32_t n = 0; n < m->node_count; n++) {
@@ -93,7 +93,7 @@ static int grow_weights(model *m, uint32_t mesh)
     return 0;
 }
 
-/* Keys of the first mesh's weights would be one short. */
+/* Animations of the first mesh's weights would lack the new weight. */
 static int is_animated(const model *m, uint32_t mesh)
 {
     for (uint32_t c = 0; c < m->clip_count; c++) {

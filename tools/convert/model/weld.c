@@ -1,7 +1,7 @@
 /* weld.c: which vertices are one point of the surface.
  *
- * glTF splits a vertex where UVs, normals or materials change; normals and
- * tangents that are computed must not show those seams. */
+ * glTF splits a vertex where UVs, normals or materials change; computed normals and tangents must not show those seams.
+ */
 #include "model_build.h"
 
 #include <stdlib.h>

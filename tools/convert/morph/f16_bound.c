@@ -71,7 +71,7 @@ void f16_bound(const morph_encoding *e, float *position, float *direction)
             largest = fmax(largest, b[c].sum + b[c].error);
         }
     }
-    if (largest < HALF_MAX) { /* else a sum can overflow, and no bound holds */
+    if (largest < HALF_MAX) { /* else a sum may overflow, and there is no bound */
         *position = nextafterf((float)worst_position, 1e30f);
         *direction = nextafterf((float)worst_direction, 1e30f);
     }

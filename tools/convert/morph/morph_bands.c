@@ -1,14 +1,14 @@
-/* morph_bands.c: the start of a cover: each band of rows cut into boxes, at best.
+/* morph_bands.c: the start of a cover: each band of rows, cut into boxes at least cost.
  *
  * A band is `rows` texture rows. Its used columns are cut into stretches, each covered by the bounding box of its
  * texels. The best cut of the first n columns is the best cut of some first m < n and one box over the rest, so dynamic
- * programming over n finds the cut of least area + rectangles exactly; boxes that are mostly empty end the search
- * early. Boxes of different bands are joined later (morph_rects.c). */
+ * programming over n finds the exact minimum of area plus the rectangles' cost. The search for m ends at a box that is
+ * mostly empty. Boxes of different bands are joined later (morph_rects.c). */
 #include "morph_internal.h"
 
 #include <stdlib.h>
 
-/* A box that holds more empty texels than this many rectangles cost is never worth a look. */
+/* A box with more empty texels than this many rectangles cost is never tried. */
 #define WASTE_MOST 16.0
 
 typedef struct band_column {
@@ -54,7 +54,7 @@ static void band_free(band *b)
     free(b->from);
 }
 
-/* The used columns of one band, by counting per x and then closing the gaps. */
+/* List the used columns of one band: count per x, then close the gaps. */
 static void read_band(band *b, const uint32_t *texels, uint32_t count, uint32_t width_log2)
 {
     band_column *all = b->columns;

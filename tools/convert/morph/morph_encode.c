@@ -1,5 +1,5 @@
-/* morph_encode.c: drives the encoder: which pairs stay, in which order the
- * vertices lie, which rectangles cover each target, and the texels in them. */
+/* morph_encode.c: drives the encoder: chooses the pairs that stay, the order of the vertices, the rectangles that cover
+ * each target, and fills their texels. */
 #include "morph_internal.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@
 
 #define WIDTH_LOG2_MAX 10u
 #define RECT_LIMIT 65535u /* morph_rect is 16-bit */
-#define DELTA_LIMIT 1e30f /* larger ones are a broken file, and their squares would overflow */
+#define DELTA_LIMIT 1e30f /* larger ones mean a broken file, and their squares would overflow */
 
 typedef struct encoder {
     const model_mesh *mesh;
@@ -131,7 +131,7 @@ static int compact(encoder *c)
 
 /* ---- where they lie ---- */
 
-/* The texels that a level has more than the coarser one. */
+/* The texels that a level adds to those of the coarser one. */
 static morph_region block_of(const morph_encoding *e, uint32_t level)
 {
     morph_region r = { e->width_log2, 0, 0 };
@@ -187,7 +187,7 @@ static int order_vertices(encoder *c)
 
 /* ---- rectangles and texels ---- */
 
-/* Indices, ascending, of what target t moves among `count` from `first`; order == NULL: the source's order. */
+/* The indices, ascending, of what target t moves among the `count` from `first` on; order NULL: the source's order. */
 static uint32_t list_texels(const encoder *c, uint32_t t, const uint32_t *order, uint32_t first, uint32_t count,
                             uint32_t *texels)
 {
@@ -216,7 +216,7 @@ static int cover_block(encoder *c, uint32_t t, uint32_t level, uint32_t *texels,
     return 0;
 }
 
-/* From the coarsest level to the finest, so that each level's rectangles are the first ones. */
+/* From the coarsest level to the finest, so that each level's rectangles are a prefix of the finer level's. */
 static int cover_target(encoder *c, uint32_t t, uint32_t *texels, morph_rect_list *rects, uint64_t *area)
 {
     morph_encoding *e = c->e;
@@ -250,7 +250,8 @@ static int cover_all(encoder *c, uint32_t *texels)
     return failed;
 }
 
-/* The texels of a rectangle, in a level's block. What it takes in besides belongs to another level's rectangles. */
+/* The texels of a rectangle in a level's block. Vertices of other blocks inside it are left zero: rectangles of their
+ * own levels hold them. */
 static uint32_t *fill_rect(const encoder *c, uint32_t t, const morph_rect *rect, const morph_region *block,
                            uint32_t *out)
 {
@@ -263,9 +264,9 @@ static uint32_t *fill_rect(const encoder *c, uint32_t t, const morph_rect *rect,
     return out;
 }
 
-/* ---- targets that a level does without ---- */
+/* ---- targets that a level leaves out ---- */
 
-/* Targets in the order of what they move, from the one that moves least; `after` target_count: the first. */
+/* The target of the next larger radius after `after`; after = target_count: the smallest. */
 static uint32_t next_smallest(const morph_encoding *e, uint32_t after)
 {
     uint32_t best = e->target_count;
@@ -307,7 +308,7 @@ static int fill_texels(encoder *c)
     return 0;
 }
 
-/* For the report: one bounding rectangle per target, all vertices in the source's order, square texture. */
+/* For the report: texels with one bounding rectangle per target, vertices in the source's order, a square texture. */
 static void count_one_rect(encoder *c, uint32_t *texels)
 {
     morph_encoding *e = c->e;

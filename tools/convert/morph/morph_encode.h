@@ -1,11 +1,11 @@
 /* morph_encode.h: from dense morph targets to the pack's sparse form.
  *
- * The encoder drops pairs that move nothing, orders vertices so that those which move together lie together in a
- * texture of `width` columns, covers each target's vertices by rectangles, and quantises the deltas (layouts in
- * runtime/pack/format.h). Microsoft's SparseMorphTargets sample keeps one rectangle per target, in the order in which
- * the artist's tool wrote the vertices; here the order is chosen, and a target may have many rectangles.
- * Deterministic: no clock, no order that depends on addresses, fixed seeds, no float result that depends on the
- * compiler's choice of contraction. */
+ * The encoder drops pairs that move nothing, orders vertices so that those that move together lie together in the
+ * accumulation texture, covers each target's vertices by rectangles, and quantises the deltas (layouts in
+ * runtime/pack/format.h). Microsoft's SparseMorphTargets sample has one rectangle per target, over vertices in the
+ * order of the artist's tool; here the order is chosen, and a target may have many rectangles. The same mesh and
+ * options give the same bytes on every machine: seeds are fixed, and nothing depends on addresses or on contraction of
+ * floats. */
 #ifndef NOH_CONVERT_MORPH_MORPH_ENCODE_H
 #define NOH_CONVERT_MORPH_MORPH_ENCODE_H
 
@@ -17,12 +17,12 @@ extern "C" {
 
 typedef struct morph_options {
     float error_um; /* largest position error of one target at weight 1, micrometres (model unit = metre); 0 = 10 */
-    uint32_t rects; /* most rectangles per target, in each LOD level; 0 = auto (by cost) */
-    float rect_cost_texels; /* auto: what one more rectangle costs, in texels; 0 = default */
-    const uint8_t *rank;    /* [vertex_count] the coarsest LOD level that a vertex is in; NULL: all in level 0 alone */
-    uint32_t level_count;   /* 0 = 1 */
-    const float *skip_radius; /* [level_count] rising: the targets that move least are left out of a level for as long
-                               * as what they move, all at weight 1, sums to no more than this; NULL: none is */
+    uint32_t rects; /* the most rectangles per target in each LOD level; 0 = auto (by cost) */
+    float rect_cost_texels; /* for auto: the cost of a rectangle, in texels; 0 = default */
+    const uint8_t *rank;  /* [vertex_count] the coarsest LOD level that has the vertex; NULL: all are in level 0 only */
+    uint32_t level_count; /* 0 = 1 */
+    const float *skip_radius; /* [level_count] rising: a level leaves out the targets of smallest radius whose radii sum
+                                 to at most this; NULL: none */
 } morph_options;
 
 typedef struct morph_rect {
@@ -33,16 +33,16 @@ typedef struct morph_target {
     uint32_t first_rect, rect_count;   /* rectangles in drawing order; may be 0 */
     uint32_t first_texel, texel_count; /* the sum of its rectangles' areas */
     uint32_t pair_count;               /* (vertex, target) pairs kept: texels that are not all zero */
-    uint32_t source_pairs; /* pairs of the source above the 1e-6 x bounding-box diagonal threshold (or normal/tangent >
-                              1e-5) */
+    uint32_t source_pairs; /* pairs of the source above 1e-6 x the bounding box's diagonal (or 1e-5 of a normal or
+                              tangent) */
     uint8_t position_bits, normal_bits, tangent_bits;
     float position_scale, normal_scale, tangent_scale; /* value = integer x scale */
     float radius;                                      /* largest |position delta| of the source */
-    float position_error;              /* largest |decoded - source| over all vertices, dropped ones included */
+    float position_error;              /* largest |decoded - source| over all vertices, dropped pairs included */
     float normal_error, tangent_error; /* likewise, per component */
 } morph_target;
 
-/* A target in a LOD level: the first so many of its rectangles, with the texels and pairs in them. */
+/* A target in a LOD level: how many of its first rectangles, and the texels and pairs in them. */
 typedef struct morph_part {
     uint32_t rect_count, texel_count, pair_count;
 } morph_part;
@@ -52,11 +52,11 @@ typedef struct morph_part {
  *   two's complement; bits that are left over at the bottom are zero. */
 typedef struct morph_encoding {
     uint32_t vertex_count, target_count;
-    uint32_t touched_count; /* vertices 0..touched_count-1 of the new order are in the texture; those of coarse levels
-                               first */
+    uint32_t touched_count; /* the first touched_count vertices of the new order are in the texture, those of coarse
+                               levels first */
     uint32_t *order;        /* [vertex_count] new index -> old index; untouched ones in the source's order */
     uint32_t level_count;
-    uint32_t *level_touched; /* [level_count] the first so many texels are the level's */
+    uint32_t *level_touched; /* [level_count] how many of the first accumulation texels a level uses */
     morph_part *parts;       /* [level_count][target_count] */
     uint32_t width_log2;     /* texture width = 1 << width_log2; texel of vertex v: (v & (width-1), v >> width_log2) */
     uint32_t height;         /* ceil(touched_count / width) */
@@ -69,7 +69,7 @@ typedef struct morph_encoding {
     uint32_t texels_one_rect; /* for the report: sum of areas with one rectangle per target in the source's order */
 } morph_encoding;
 
-/* Encode the targets of one mesh. 0 on success, 1 and a filled error otherwise. */
+/* Encode the targets of one mesh. 0 and *out, or 1 and a filled error. */
 int morph_encode(const model_mesh *mesh, const morph_options *options, morph_encoding **out, model_error *error);
 void morph_encoding_free(morph_encoding *e);
 

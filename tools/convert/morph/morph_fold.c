@@ -1,15 +1,15 @@
-/* morph_fold.c: lays the line of vertices into the texture, and settles it there.
+/* morph_fold.c: lays the line of vertices into the texture and improves it there.
  *
- * The texture is cut into strips of MORPH_STRIP_ROWS rows, and the line fills a strip column by column. Rectangles
- * are then a few texels high, which rasterisers want: they shade 2x2 quads on GPUs and 4x4 blocks in software, so that
- * runs one texel high would pay for two to four.
+ * The texture is cut into strips of MORPH_STRIP_ROWS rows, and the line fills a strip column by column. Rectangles are
+ * then a few texels high, which suits rasterisers: they shade 2x2 quads on GPUs and 4x4 blocks in software, so a run
+ * one texel high would cost as much as one of two to four.
  *
- * A target needs every column that one of its vertices lies in, so runs should start and stop where columns do. The
- * line is annealed once more, now with that cost: short stretches are turned and exchanged (2-opt and or-opt moves),
- * and a change is taken where it costs nothing, or with a chance that falls with its cost and with the temperature.
- * The cost is a sum over columns of which targets use them. A change touches the columns of its stretch alone, so
- * `used` keeps that set for every column: the cost before a change is a count of bits, and only the stretch is read
- * again after it. */
+ * A target needs every column that holds one of its vertices, so runs should start and stop where columns do. The line
+ * is annealed once more, with that cost: short stretches are reversed and exchanged (2-opt and or-opt moves), and a
+ * change is accepted if it costs nothing, else with a probability that falls with its cost and as the temperature
+ * falls. The cost is a sum over columns of which targets use them. A change affects only the columns of its stretch, so
+ * `used` holds that set for every column: the cost before a change is a count of bits, and after it only the stretch is
+ * read again. */
 #include "morph_internal.h"
 
 #include <stdlib.h>
@@ -31,13 +31,13 @@ typedef struct fold {
     uint32_t columns;
     uint32_t *first;  /* [columns + 1] column -> place */
     uint32_t *column; /* place -> column */
-    uint8_t *starts;  /* column is the first of its strip, or there is a gap before it */
+    uint8_t *starts;  /* the column is the first of its strip, or a gap precedes it */
     uint64_t *used;   /* [columns][words] the targets that move a vertex of a column */
-    uint64_t *saved;  /* [STRETCH_MOST + 1][words] those of a stretch before it was moved */
+    uint64_t *saved;  /* [STRETCH_MOST + 1][words] `used` of a stretch before it was moved */
     morph_random random;
 } fold;
 
-/* Nearly square: software and tiled GPUs both work in square tiles, and empty rows of a tile cost too. */
+/* Nearly square: tiled GPUs and software work in square tiles, of which empty rows cost too. */
 void morph_fold_size(uint32_t touched, uint32_t *width_log2, uint32_t *height)
 {
     uint32_t log2 = WIDTH_LOG2_MIN;
@@ -63,7 +63,7 @@ static int has_texel(const morph_region *r, uint32_t texel)
     return texel >= r->first && texel - r->first < r->count;
 }
 
-/* The rows of a strip's column that the region has: its first and its last row may be partly filled. */
+/* The rows of a strip's column that lie in the region: its first and last row may be partly filled. */
 static uint32_t rows_of_column(const morph_region *r, uint32_t y0, uint32_t x)
 {
     uint32_t rows = 0;
@@ -115,7 +115,8 @@ static void use_columns(fold *f, uint32_t low, uint32_t high)
     }
 }
 
-/* Texels of columns low..high, and rectangles that start in low..high + 1, summed over targets. */
+/* The cost of columns low to high: their texels, and the rectangles that start in low to high + 1, summed over targets.
+ */
 static int64_t column_cost(const fold *f, uint32_t low, uint32_t high)
 {
     uint64_t texels = 0, rects = 0;
@@ -130,7 +131,7 @@ static int64_t column_cost(const fold *f, uint32_t low, uint32_t high)
     return (int64_t)(texels + rects * f->rect_cost);
 }
 
-/* ---- settling ---- */
+/* ---- annealing ---- */
 
 static void turn(uint32_t *line, uint32_t low, uint32_t high)
 {
@@ -154,7 +155,7 @@ static uint32_t next_change(const fold *f, uint32_t at, uint32_t limit)
     return at;
 }
 
-/* Turns [a, c), or exchanges [a, b) and [b, c): both are turns, and undone by turns. */
+/* Reverse [a, c), or exchange [a, b) and [b, c): both consist of reversals, and are undone by reversals. */
 static void step(fold *f, uint32_t odds)
 {
     uint32_t a = morph_random_below(&f->random, f->count), b, c, limit, low, high;
@@ -188,8 +189,8 @@ static void step(fold *f, uint32_t odds)
     turn(f->line, a, b);
 }
 
-/* The temperature falls from a third of a texel to about nothing, then is nothing: these are
- * repairs, and a warmer start only tears the line up. */
+/* The temperature falls from a third of a texel to about zero, then is zero: these are repairs, and a warmer start
+ * would only undo the order that came in. */
 static void settle(fold *f)
 {
     uint64_t steps = (uint64_t)STEPS_PER_VERTEX * f->count;
@@ -202,7 +203,7 @@ static void settle(fold *f)
     }
 }
 
-/* Big meshes get too few steps to freeze again: the line that came in may be the better one. */
+/* For big meshes the steps may end too early: keep the order that came in if it is the better one. */
 static int settle_or_leave(fold *f)
 {
     const size_t bytes = f->count * sizeof *f->line;

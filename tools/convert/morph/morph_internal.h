@@ -2,8 +2,8 @@
  *
  * morph_encode.c drives; morph_quantise.c turns deltas into words and certifies
  * the errors; morph_patterns.c groups vertices by the targets that move them;
- * morph_order.c puts the groups in a line; morph_fold.c lays the line into the
- * texture; morph_bands.c and morph_rects.c cover a target's texels by rectangles. */
+ * morph_order.c puts the groups in line; morph_fold.c lays the line into the texture; morph_bands.c and morph_rects.c
+ * cover a target's texels by rectangles. */
 #ifndef NOH_CONVERT_MORPH_MORPH_INTERNAL_H
 #define NOH_CONVERT_MORPH_MORPH_INTERNAL_H
 
@@ -14,12 +14,12 @@ extern "C" {
 #endif
 
 #define MORPH_AXES 3u
-/* Measured on llvmpipe, three RGBA32F layers blended: a rectangle costs about 250 ns, a 4x4 block that
- * it touches 100 ns, a texel 5 ns. Larger costs draw no faster and take more bytes. */
+/* Measured on llvmpipe with three RGBA32F layers: blending a rectangle costs about 250 ns, each 4x4 block that it
+ * touches 100 ns, each texel 5 ns. A larger value draws no faster and takes more bytes. */
 #define MORPH_DEFAULT_RECT_COST 8.0f
 #define MORPH_DEFAULT_ERROR_UM 10.0f
 
-/* ---- bits: which target moves which vertex; a row per vertex ---- */
+/* ---- bits: which targets move which vertices; a row per vertex ---- */
 typedef struct morph_bits {
     uint32_t rows, words; /* words: 64-bit words per row */
     uint64_t *bits;       /* [rows][words] */
@@ -49,7 +49,7 @@ static inline uint32_t morph_popcount(uint64_t x)
     return (uint32_t)(x * 0x0101010101010101u >> 56);
 }
 
-/* ---- memory: calloc(count, size) that also refuses products over SIZE_MAX and gives a block for 0 ---- */
+/* ---- memory: calloc that refuses products above SIZE_MAX, and returns a block for 0 ---- */
 void *morph_alloc(size_t count, size_t size);
 
 /* ---- annealing, in integers and without libm: the same decisions on every machine ---- */
@@ -74,13 +74,13 @@ static inline uint32_t morph_random_below(morph_random *r, uint32_t n)
     return (uint32_t)(((uint64_t)morph_random32(r) * n) >> 32);
 }
 
-/* The chance of one unit of extra cost at a temperature: T / (T + 1) stands in for exp(-1 / T). */
+/* The probability of accepting one unit of extra cost at temperature T: T / (T + 1) in place of exp(-1 / T). */
 static inline uint32_t morph_odds(uint32_t heat)
 {
     return (uint32_t)(((uint64_t)heat << MORPH_ODDS_BITS) / (heat + ((uint32_t)1 << MORPH_HEAT_BITS)));
 }
 
-/* Whether a change is taken: always when it costs nothing, else with the chance odds^cost. */
+/* Whether a change is accepted: always if it costs nothing, else with the probability odds^cost. */
 static inline int morph_accepts(morph_random *r, int64_t cost, uint32_t odds)
 {
     uint64_t chance = (uint64_t)1 << MORPH_ODDS_BITS;
@@ -90,8 +90,8 @@ static inline int morph_accepts(morph_random *r, int64_t cost, uint32_t odds)
 }
 
 /* ---- quantising ---- */
-/* Chooses bits and scales of target t and fills every field of *out that has to do with values;
- * error_um as in morph_options, above 0. */
+/* Chooses bits and scales of target t, and fills these, the errors and the counts of pairs in *out; error_um as in
+ * morph_options, above 0. */
 void morph_quantise_choose(const model_mesh *mesh, uint32_t t, float error_um, morph_target *out);
 
 /* The three words of one delta. 0 where the pair is dropped: the words are then 0. */
@@ -110,25 +110,24 @@ int morph_patterns_init(morph_patterns *p, const morph_bits *vertices);
 void morph_patterns_free(morph_patterns *p);
 
 /* ---- order ---- */
-/* Fills path[patterns->count] with an order of the patterns that needs few rectangles. */
+/* Fills path[patterns->count] with an order of the patterns that takes few rectangles. */
 int morph_order_path(const morph_patterns *patterns, float rect_cost, uint32_t *path);
 
 /* ---- fold: the line into the texture ---- */
-#define MORPH_STRIP_ROWS 4u /* the texture is filled in strips of so many rows */
+#define MORPH_STRIP_ROWS 4u /* the texture is filled in strips of this many rows */
 
 void morph_fold_size(uint32_t touched, uint32_t *width_log2, uint32_t *height);
 
-/* Texels that lie behind each other, row by row. */
+/* A run of texels, row after row. */
 typedef struct morph_region {
     uint32_t width_log2; /* of the texture */
     uint32_t first, count;
 } morph_region;
 
-/* Moves rows of `vertices` in line[vertices->rows] a little, to where they cost least in that region, which has
- * as many texels. */
+/* Improves line[vertices->rows], an order of the rows of `vertices`, for a region of as many texels. */
 int morph_fold_settle(const morph_bits *vertices, const morph_region *region, float rect_cost, uint32_t *line);
 
-/* order[texel - region->first] = the line's entry that lies there. */
+/* order[texel - region->first] = the entry of the line that lies at that texel. */
 void morph_fold_order(const uint32_t *line, const morph_region *region, uint32_t *order);
 
 /* ---- rectangles ---- */

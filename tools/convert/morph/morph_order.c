@@ -12,15 +12,15 @@
  * and nothing else depends on the cut. Reversing a stretch changes the two cuts at its ends and no other, so the change
  * of cost is the difference of four such sums, each a few words of bits.
  *
- * Costs are integers and chances are taken from a fixed sequence without libm, so every machine takes the same
+ * Costs are integers and random numbers come from a fixed sequence without libm, so every machine takes the same
  * decisions and writes the same bytes. */
 #include "morph_internal.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#define GAP_LIMIT 8u   /* beyond it only the time grows */
-#define GAP_MORE 2u    /* besides its cost a rectangle has ragged ends, empty texels in a column */
+#define GAP_LIMIT 8u   /* a larger one takes longer and gains nothing */
+#define GAP_MORE 2u    /* beside its cost a rectangle has ragged ends: empty texels in a column */
 #define NEIGHBOURS 10u /* nearest patterns of each, the partners tried */
 #define SCAN_MOST                                                                                       \
     6000u /* candidates looked at for a nearest pattern: patterns are sorted, so they are the likeliest \
@@ -58,7 +58,7 @@ static uint32_t distance(const line *l, uint32_t a, uint32_t b)
     return d;
 }
 
-/* ---- the start ---- */
+/* ---- the first tour ---- */
 
 static void nearest_neighbour_path(line *l)
 {
@@ -102,7 +102,7 @@ static void find_neighbours(line *l, uint32_t a)
 
 /* ---- the cost of a reversal ---- */
 
-/* side[k] = targets among the k + 1 vertices from place `at` in direction `step`; nothing lies beyond the ends. */
+/* side[k] = the targets of the k + 1 vertices from place `at` in direction `step`; beyond the ends there are none. */
 static void look_aside(const line *l, uint32_t at, uint32_t step, uint64_t *side)
 {
     uint32_t k = 0;
@@ -118,7 +118,7 @@ static void look_aside(const line *l, uint32_t at, uint32_t step, uint64_t *side
     }
 }
 
-/* Targets of one word whose gap is at most 0, 1, ... gap_max - 1, summed: what the two sides save. */
+/* The counts of targets in one word whose gap is at most 0, 1, ... gap_max - 1, summed: what the two sides save. */
 static uint32_t saved_word(const line *l, const uint64_t *left, const uint64_t *right)
 {
     const uint64_t far_left = left[(size_t)(l->gap_max - 1u) * l->words],
@@ -142,8 +142,8 @@ static uint32_t saved(const line *l, const uint64_t *left, const uint64_t *right
     return sum;
 }
 
-/* Change of cost when path[low..high] is reversed. The ends of a stretch shorter than gap_max
- * see past it, unlike what `saved` knows; that is only inexact, never unsafe. */
+/* The change of cost when path[low..high] is reversed. For a stretch shorter than gap_max the result is inexact,
+ * because its ends see past it; that costs quality, not correctness. */
 static int32_t change(line *l, uint32_t low, uint32_t high)
 {
     look_aside(l, low - 1u, (uint32_t)-1, l->side[0]);

@@ -1,8 +1,8 @@
 /* morph_patterns.c: groups vertices that exactly the same targets move.
  *
- * A real face has few such groups (318 for 2,966 vertices of the test head), and no good order separates vertices of
- * one group, so groups are ordered instead of vertices. Rows of bits are sorted by merges; equal ones are neighbours
- * then. */
+ * A face has few such groups (a head with 2,966 touched vertices has 318), and no good order separates vertices of one
+ * group, so groups are ordered instead of vertices. The rows of bits are merge-sorted, which makes equal ones
+ * neighbours. */
 #include "morph_internal.h"
 
 #include <stdlib.h>
@@ -31,8 +31,8 @@ static void merge(const morph_bits *b, const uint32_t *from, uint32_t *to, uint3
     }
 }
 
-/* Bottom-up and stable; qsort's order of equal keys differs between C libraries.
- * Returns whichever of the two arrays holds the result. */
+/* Merge sort, bottom-up and stable; qsort's order of equal keys differs between C libraries. Returns the one of the two
+ * arrays that holds the result. */
 static uint32_t *sort_rows(const morph_bits *b, uint32_t *a, uint32_t *spare)
 {
     for (uint32_t size = 1; size < b->rows; size *= 2u) {

@@ -1,4 +1,4 @@
-/* morph_quantise.c: deltas to integers of a few bits, and the error that this makes.
+/* morph_quantise.c: deltas to integers of a few bits, and the error of that.
  *
  * A word holds one axis of one texel: position, normal and tangent, two's
  * complement, from the top. The decoder computes (float)integer * scale, and
@@ -15,12 +15,12 @@
 #define TANGENT_BITS_MIN 6u
 #define EMPTY_BITS 1u /* of a part that moves nothing */
 
-/* A pair is dropped when its position would be written as zero anyway (so the vertices of a seam
- * that share a position also share its fate) and no component of its normal and tangent delta is
- * above this: 0.1 degrees, less than one 8-bit step of a lit surface. */
+/* A pair is dropped if its position would be stored as zero anyway (so vertices of a seam, which share a position, are
+ * kept or dropped together) and no component of its normal and tangent delta is above this: 0.1 degrees, less than one
+ * 8-bit step of a lit surface. */
 #define NEGLIGIBLE (1.0f / 512.0f)
 
-/* A source pair, for the report: position above this part of the bounding box's diagonal ... */
+/* A pair of the source, for the report: position above this share of the bounding box's diagonal ... */
 #define SOURCE_POSITION 1e-6
 #define SOURCE_DIRECTION 1e-5f /* ... or a normal or tangent component above this */
 
@@ -121,7 +121,7 @@ static uint32_t at_most(uint32_t x, uint32_t limit)
     return x < limit ? x : limit;
 }
 
-/* What positions leave is the normal's and the tangent's; one that moves nothing takes one bit. */
+/* The bits that positions leave go to the normal and the tangent; a part that moves nothing takes one bit. */
 static void split_rest(morph_target *q, int has_normal, int has_tangent)
 {
     const uint32_t rest = WORD_BITS - q->position_bits;
@@ -230,7 +230,7 @@ static double diagonal(const model_mesh *mesh)
     return sqrt(sum);
 }
 
-/* One pass over the vertices: certified errors, kept and source pairs. */
+/* One pass over the vertices: certified errors, radius, pairs kept and pairs of the source. */
 static void certify(const model_mesh *mesh, const model_target *s, morph_target *q)
 {
     const double threshold = SOURCE_POSITION * diagonal(mesh);

@@ -1,16 +1,16 @@
 /* morph_rects.c: covers the texels of one target by disjoint rectangles.
  *
- * The least cover is a hard problem (minimum rectangle cover is NP-hard), and rectangles may also hold texels that the
- * target does not need, at the price of storing zeros. This is a greedy cover: it starts from the boxes of bands (of
- * single rows, and of strips; the cheaper result is taken) and joins two rectangles into their bounding box, together
- * with all that the box touches, while that pays: each rectangle saved is worth `rect_cost` texels, each empty texel
- * taken in costs one. The join that gains most comes first. A rectangle's candidates are its successor in row order
- * and those right below it; each remembers its best join, and after a join only those near it look again. */
+ * The least cover by rectangles is NP-hard, and here rectangles may also hold texels that the target does not need,
+ * stored as zeros. So the cover is greedy: it starts from the boxes of bands (of single rows, and of strips; the
+ * cheaper result is kept) and joins two rectangles into their bounding box, together with all that the box touches, as
+ * long as that pays: each rectangle saved is worth `rect_cost` texels, each empty texel taken in costs one. The join
+ * that gains most comes first. A rectangle's candidates are its successor in row order and those directly below it;
+ * each remembers its best join, and after a join only nearby ones search again. */
 #include "morph_internal.h"
 
 #include <stdlib.h>
 
-#define PIECES_MOST 4096u /* joining takes the square of their number; noise that needs more stays as its bands */
+#define PIECES_MOST 4096u /* joining takes time quadratic in their number; noise that has more keeps its bands */
 #define NOBODY UINT32_MAX
 #define HOPELESS (-1e30)
 
@@ -20,9 +20,9 @@ typedef struct box {
 
 typedef struct piece {
     box b;
-    box join;      /* what becomes of it with its best partner */
+    box join;      /* the box with its best partner */
     double gain;   /* of that join, in texels */
-    uint8_t dirty; /* gain and join are to be found again */
+    uint8_t dirty; /* gain and join are out of date */
 } piece;
 
 typedef struct cover {
@@ -134,7 +134,7 @@ static uint32_t best_piece(cover *c)
     return best;
 }
 
-/* Whoever's best join the new box may change: its neighbours and whose box it cuts. */
+/* Mark the pieces whose best join the new box may change: its neighbours, and those whose joined box it cuts. */
 static void mark_dirty(cover *c, const box *joined, uint32_t at)
 {
     box near = *joined;
@@ -154,7 +154,7 @@ static void join_pieces(cover *c, box joined)
     uint32_t kept = 0, at;
     for (uint32_t i = 0; i < c->count; i++) {
         if (contains(&joined, &c->pieces[i].b)) {
-            if (kept > 0u) c->pieces[kept - 1u].dirty = 1; /* loses its successor */
+            if (kept > 0u) c->pieces[kept - 1u].dirty = 1; /* its successor is gone */
             continue;
         }
         c->pieces[kept++] = c->pieces[i];
@@ -182,7 +182,7 @@ static int add_bands(cover *c, const uint32_t *texels, uint32_t count, uint32_t 
     return failed;
 }
 
-/* As above, and coarser until few enough to be joined where they have to be. */
+/* The same, with higher bands until there are few enough to be joined if they must be. */
 static int add_few_bands(cover *c, const uint32_t *texels, uint32_t count, uint32_t rows,
                          const morph_cover_options *options)
 {
@@ -195,7 +195,7 @@ static int add_few_bands(cover *c, const uint32_t *texels, uint32_t count, uint3
     return 1;
 }
 
-/* Joins them as far as that pays or has to be. */
+/* Join pieces as long as that pays, or there are more than allowed. */
 static int join_bands(cover *c, const uint32_t *texels, uint32_t count, uint32_t rows,
                       const morph_cover_options *options)
 {

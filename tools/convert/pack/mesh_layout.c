@@ -7,7 +7,7 @@
 #include "convert/model/model_build.h"
 #include "convert/skin/palette_deal.h"
 
-#define OVERDRAW_LOSS 1.05f /* of the vertex cache's hits: what a better order of depth may cost */
+#define OVERDRAW_LOSS 1.05f /* vertex cache misses may grow by this factor for less overdraw */
 
 typedef struct layout_job {
     const model_mesh *mesh;
@@ -17,7 +17,7 @@ typedef struct layout_job {
     mesh_layout *out;
     palette_deal deal;
     uint32_t *place;            /* [the mesh's vertex_count] old vertex -> new */
-    uint32_t *triangle_palette; /* [triangles] of the level at hand */
+    uint32_t *triangle_palette; /* [triangles] of the current level */
     uint32_t *next_copy;        /* [vertex capacity] the vertex doubled after this one, or MODEL_NONE */
     float *positions;           /* [vertex capacity][3] */
     uint32_t submesh_capacity;
@@ -49,7 +49,7 @@ static part part_of(const layout_job *j, uint32_t level, uint32_t s)
     return p;
 }
 
-/* Each triangle's palette; a blended submesh's go up, so that its triangles stay in order. */
+/* Each triangle's palette. In a blended submesh palettes only rise, so that its triangles stay in order. */
 static int deal_triangles(layout_job *j, uint32_t level, model_error *error)
 {
     const model_mesh *m = j->mesh;
@@ -74,7 +74,7 @@ static uint32_t find_copy(const layout_job *j, uint32_t vertex, uint32_t palette
     return vertex;
 }
 
-/* The new vertex of an old one, for a palette; doubled where another palette has it. */
+/* The new vertex for an old one in a palette; doubled if another palette has it. */
 static uint32_t vertex_for(layout_job *j, uint32_t old, uint32_t palette)
 {
     mesh_layout *out = j->out;
@@ -95,7 +95,7 @@ static uint32_t vertex_for(layout_job *j, uint32_t old, uint32_t palette)
     return copy;
 }
 
-/* Vertices of no triangle have a palette too: the CPU moves them with the others. */
+/* Vertices of no triangle get a palette too: the CPU skins them with the others. */
 static int deal_loose_vertices(layout_job *j, model_error *error)
 {
     for (uint32_t v = 0; v < j->mesh->vertex_count; v++) {
@@ -135,15 +135,15 @@ static int store_palettes(layout_job *j)
 
 /* ---- triangles ---- */
 
-/* In an order that vertex caches like, then from the outside in. */
+/* Sort for the vertex cache, then for little overdraw: outer triangles first. */
 static void optimize(const layout_job *j, uint32_t *indices, uint32_t count)
 {
     meshopt_optimizeVertexCache(indices, indices, count, j->out->vertex_count);
     meshopt_optimizeOverdraw(indices, indices, count, j->positions, j->out->vertex_count, 12, OVERDRAW_LOSS);
 }
 
-/* The triangles of one submesh that one palette draws. Those of blended materials keep the artist's order: in it
- * they are drawn over each other. */
+/* The triangles of one submesh that use one palette. Those of blended materials keep the artist's order, in which they
+ * are drawn over each other. */
 static void add_part(layout_job *j, uint32_t level, uint32_t s, uint32_t palette)
 {
     const part from = part_of(j, level, s);
@@ -209,7 +209,7 @@ static void move_words(uint32_t *words, const uint32_t *to, uint32_t count, uint
     memcpy(words, scratch, (size_t)count * sizeof *words);
 }
 
-/* With levels a reference is a texel, or says that there is none. */
+/* With levels a texel reference is the texel, or says that there is none. */
 static void set_texels(mesh_layout *l, uint32_t touched)
 {
     for (uint32_t v = 0; v < l->vertex_count; v++) {
@@ -220,7 +220,7 @@ static void set_texels(mesh_layout *l, uint32_t touched)
     }
 }
 
-/* Vertices of coarse levels go first; all else stays in order. */
+/* Vertices of coarse levels go first; otherwise the order stays. */
 static int sort_by_level(layout_job *j)
 {
     mesh_layout *l = j->out;

@@ -1,8 +1,8 @@
 /* mesh_layout.h (private to the pack writer): which vertex goes where, and which palette draws it.
  *
  * Vertices lie by LOD level, the coarsest first, and within a level in the morph encoder's order. Where a
- * skinned mesh needs more joints than its palette holds, its triangles are dealt out to several palettes
- * (palette_deal.h); a vertex that several palettes need is doubled and shares the first one's morph texel. */
+ * skinned mesh needs more joints than its palette holds, its triangles are shared out among several palettes
+ * (palette_deal.h); a vertex that several palettes need is doubled, and its copies share one accumulation texel. */
 #ifndef NOH_CONVERT_PACK_MESH_LAYOUT_H
 #define NOH_CONVERT_PACK_MESH_LAYOUT_H
 
@@ -10,7 +10,7 @@
 #include "convert/morph/morph_encode.h"
 #include "pack/format.h"
 
-/* Of one LOD level: the first vertices, and runs of indices and submeshes. */
+/* One LOD level: how many of the first vertices, and its ranges of indices and submeshes. */
 typedef struct level_layout {
     uint32_t vertex_count;
     uint32_t first_index, index_count;
@@ -21,7 +21,7 @@ typedef struct mesh_layout {
     uint32_t vertex_count, index_count, submesh_count, palette_count, palette_joint_count; /* of all levels */
     uint32_t level_count;
     level_layout levels[NOH_LOD_LEVELS_MAX];
-    int texel_references;   /* vertices are not where their texels are: NOH_MESH_TEXELS */
+    int texel_references;   /* vertex n does not use texel n for all n: NOH_MESH_TEXELS */
     uint32_t *source;       /* [vertex_count] the model's vertex */
     uint32_t *texel;        /* [vertex_count] as in the pack's texel reference */
     uint32_t *palette;      /* [vertex_count] */
@@ -31,8 +31,8 @@ typedef struct mesh_layout {
     uint16_t *palette_joints; /* [palette_joint_count] places in the skin's joints, ascending in each palette */
 } mesh_layout;
 
-/* submesh_blends[the mesh's submesh_count]: 1 where the order of triangles is to be kept. 0, or 1 and a filled
- * error; free in both cases. */
+/* submesh_blends[the mesh's submesh_count]: 1 if the order of triangles must be kept. 0, or 1 and a filled error; free
+ * in both cases. */
 int mesh_layout_make(const model_mesh *mesh, const mesh_levels *levels, const morph_encoding *e,
                      const uint8_t *submesh_blends, mesh_layout *out, model_error *error);
 void mesh_layout_free(mesh_layout *layout);

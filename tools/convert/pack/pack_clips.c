@@ -148,7 +148,7 @@ static int encode_clip(const raw_set *set, raw_clip *clip, const error_points *a
     return s->check_loops && clip->joint_count ? report_loop(set, clip, s, error) : 0;
 }
 
-/* radius[joint_count] and points are filled, and freed, also where it fails. */
+/* Fills radius[joint_count] and points. The caller frees both, also on failure. */
 static int open_points(const clips_settings *s, uint32_t index, uint32_t joint_count, float *radius,
                        joint_points *points, error_points *at)
 {
@@ -279,7 +279,7 @@ static void append_marker(const raw_clip *clip, const raw_event *from, string_ta
     buffer_append(out, &to, sizeof to);
 }
 
-/* The place of a set's skeleton among the pack's: sets without joints have none. */
+/* The index of a set's skeleton among the pack's: sets without joints have none. */
 static uint32_t skeleton_index(const encoded_clips *m, uint32_t set)
 {
     uint32_t index = 0;

@@ -9,7 +9,7 @@
 #include "convert/codec/named_errors.h"
 
 typedef struct encoded_clip {
-    uint32_t set; /* index into clips.sets */
+    uint32_t set; /* index into encoded_clips.sets */
     const raw_clip *raw;
     byte_buffer bytes;
     clip_report report;
@@ -27,11 +27,11 @@ typedef struct clips_settings {
     double sample_rate_hz; /* 0: as the source has it */
     double unit_cm;        /* of .bvh; 0: 1 */
     int check_loops;       /* mark every clip as a loop, and report the gap between its ends */
-    int skeletons_only;    /* no clips: what a mesh pack needs */
+    int skeletons_only;    /* no clips, for a pack of meshes */
     clip_options clip;
-    named_errors clip_errors, joint_errors; /* over those of `clip` */
-    const model *m; /* bound to the sets: errors of fewer joints and lower update rates are measured on its vertices;
-                       NULL: on the shell */
+    named_errors clip_errors, joint_errors; /* they take precedence over those of `clip` */
+    const model *m;          /* bound to the sets: on its vertices the errors of fewer joints and lower update rates are
+                                measured; NULL: on the shell */
     FILE *report, *progress; /* or NULL */
 } clips_settings;
 
@@ -40,7 +40,7 @@ int clips_encode(raw_set **sets, uint32_t set_count, const clips_settings *setti
                  model_error *error);
 void clips_free(encoded_clips *m);
 
-/* Append the bytes of a skeleton chunk, of a clip chunk. */
+/* Append the bytes of a skeleton chunk; of a clip chunk. */
 void pack_skeleton(const raw_skeleton *skeleton, string_table *strings, byte_buffer *out);
 void pack_clip(const encoded_clips *m, const encoded_clip *clip, string_table *strings, byte_buffer *out);
 

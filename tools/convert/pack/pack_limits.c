@@ -1,4 +1,4 @@
-/* pack_limits.c: more than the format holds is refused by the converter, with the limit. */
+/* pack_limits.c: refuses models that exceed the format's limits, and names the limit. */
 #include <stdio.h>
 
 #include "pack/format.h"

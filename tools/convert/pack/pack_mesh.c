@@ -11,7 +11,7 @@
 #include "pack/format.h"
 #include "pack_skin.h"
 
-/* A unit vector as an octahedral pair in -1..1. */
+/* A unit vector as an octahedral pair in -1 to 1. */
 static void fold(const float v[3], float pair[2])
 {
     float sum = fabsf(v[0]) + fabsf(v[1]) + fabsf(v[2]);
@@ -138,7 +138,7 @@ static void append_vertices(const model_mesh *m, const mesh_layout *l, noh_mesh_
     }
 }
 
-/* Of all levels; h is the full mesh's header. */
+/* For all levels; h is the full mesh's header. */
 static void append_indices(const mesh_layout *l, noh_mesh_header *h, size_t base, byte_buffer *out)
 {
     buffer_align(out, 16);
@@ -200,7 +200,7 @@ static void append_targets(const model_mesh *m, const morph_encoding *e, string_
     buffer_append(out, e->texels, 12u * (size_t)e->texel_count);
 }
 
-/* Deltas of the source; what the pack decodes to is off by the certified error at most. */
+/* From the source's deltas; decoded ones differ by at most the certified error. */
 static void append_target_boxes(const model_mesh *m, const morph_encoding *e, noh_mesh_header *h, size_t base,
                                 byte_buffer *out)
 {
@@ -253,7 +253,7 @@ static void set_skin(const model_mesh *m, const mesh_layout *l, uint32_t skin, n
     }
 }
 
-/* A level's header from the full mesh's, whose offsets are known. */
+/* A level's header, from the full mesh's, whose offsets are known by now. */
 static noh_mesh_header level_header(const noh_mesh_header *full, const morph_encoding *e, const mesh_layout *l,
                                     const lod_errors *errors, uint32_t level)
 {

@@ -7,10 +7,10 @@
 #include "convert/morph/morph_encode.h"
 
 /* Append a mesh chunk: the full mesh and its levels; e was made with the levels' ranks.
- * submesh_blends  [submesh_count] 1 where the material blends
+ * submesh_blends  [submesh_count] 1 if the material blends
  * world_scale     model_mesh_scale
  * skin            the n-th skin chunk, or NOH_NONE; skin_joint_count: its joints
- * Returns 0, or 1 and a filled error where the mesh cannot be split into palettes. */
+ * Returns 0, or 1 and a filled error if the mesh cannot be split into palettes. */
 int pack_mesh(const model_mesh *mesh, const mesh_levels *levels, const morph_encoding *e, const uint8_t *submesh_blends,
               float world_scale, uint32_t skin, uint32_t skin_joint_count, string_table *strings, byte_buffer *out,
               model_error *error);

@@ -1,4 +1,4 @@
-/* pack_skin.h (private to the pack writer): the bytes of a skin chunk, and a mesh's share of its skin. */
+/* pack_skin.h (private to the pack writer): the bytes of a skin chunk, and of the skin data in a mesh chunk. */
 #ifndef NOH_CONVERT_PACK_PACK_SKIN_H
 #define NOH_CONVERT_PACK_PACK_SKIN_H
 
@@ -12,7 +12,7 @@ void pack_skin(const model_skin *skin, uint32_t skeleton, byte_buffer *out);
 void pack_influences(const model_mesh *m, const mesh_layout *l, noh_mesh_header *h, size_t base, byte_buffer *out);
 void pack_joint_boxes(const model_mesh *m, uint32_t joint_count, noh_mesh_header *h, size_t base, byte_buffer *out);
 
-/* Make a box (smallest, then largest x, y, z) hold a point. */
+/* Extend a box (smallest, then largest x, y, z) to a point. */
 void pack_grow_box(float box[6], const float point[3]);
 
 #endif

@@ -52,7 +52,7 @@ static uint32_t wrap_mode(uint32_t gltf)
     return gltf == 33071 ? NOH_WRAP_CLAMP : gltf == 33648 ? NOH_WRAP_MIRROR : NOH_WRAP_REPEAT;
 }
 
-/* Halve an image until it is within the limit; a 2 x 2 box is right for powers of two. */
+/* Halve an image until it is within the limit, by a 2 x 2 box filter. */
 static uint8_t *shrink(const model_texture *t, uint32_t *width, uint32_t *height)
 {
     uint8_t *pixels = malloc((size_t)t->width * t->height * 4);
@@ -217,7 +217,7 @@ static void write_skeletons(writer *w)
     }
 }
 
-/* Those that move a mesh. */
+/* Only skins that move a mesh. */
 static void write_skins(writer *w)
 {
     uint32_t count = 0;
@@ -264,7 +264,7 @@ static void write_clips(writer *w)
     }
 }
 
-/* The strings are known last but lie first: put them between the table and the content. */
+/* The strings are complete only now, but their chunk is the first: put it between the table and the other chunks. */
 static int assemble(writer *w, byte_buffer *out)
 {
     noh_pack_header h;
@@ -332,7 +332,7 @@ int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const 
     string_offset(&w.strings, "");
     if (w.chunks && w.skin_chunks) {
         begin_chunk(&w, NOH_CHUNK_STRINGS, "");
-        w.chunk_count = 1; /* filled by assemble */
+        w.chunk_count = 1; /* the strings, filled in by assemble */
         write_content(&w, encodings);
         if (made) {
             write_clips(&w);

@@ -6,14 +6,14 @@
 #include "convert/lod/lod_levels.h"
 #include "convert/morph/morph_encode.h"
 
-/* Refuse what no pack can hold: before encoding, and after. 0, or 1 and a filled error with the limit. */
+/* Refuse what no pack can hold: before encoding, and after. 0, or 1 and a filled error that names the limit. */
 int pack_check_model(const model *m, model_error *error);
 int pack_check_encoding(const model_mesh *m, const morph_encoding *e, model_error *error);
 
 struct encoded_clips;
 
-/* Build a pack. levels[mesh_count], NULL: none has coarser ones; encodings[mesh_count], none NULL; made NULL: no clip,
- * and no mesh is bound to a skin. 0 on success, else 1 and a filled error. */
+/* Build a pack. levels[mesh_count], or NULL: no mesh has coarser ones; encodings[mesh_count], none of them NULL; made
+ * NULL: no clips, and no mesh is bound to a skin. 0, or 1 and a filled error. */
 int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const *encodings,
                const struct encoded_clips *made, byte_buffer *out, model_error *error);
 

@@ -15,7 +15,7 @@ void influence_quantise(const model_mesh *mesh, uint32_t vertex, influence_list 
     for (uint32_t i = 1; i < MODEL_INFLUENCES_MAX; i++) {
         uint32_t weight = (uint32_t)floor((double)weights[i] * (double)NOH_WEIGHT_ONE + 0.5);
         uint32_t most = i == 1 ? NOH_WEIGHT_ONE / 2u
-                               : NOH_WEIGHT_ONE / 2u - 1u; /* 22 and 21 bits; reached by rounding alone */
+                               : NOH_WEIGHT_ONE / 2u - 1u; /* 22 and 21 bits; only rounding gets there */
         weight = weight < most ? weight : most;
         if (weight) {
             out->joints[out->count] = joints[i];

@@ -1,4 +1,4 @@
-/* influence_pack.h (private to the pack writer): a vertex's joints and weights as the pack keeps them
+/* influence_pack.h (private to the pack writer): a vertex's joints and weights as the pack stores them
  * (runtime/pack/format.h). */
 #ifndef NOH_CONVERT_SKIN_INFLUENCE_PACK_H
 #define NOH_CONVERT_SKIN_INFLUENCE_PACK_H
@@ -8,14 +8,14 @@
 typedef struct influence_list {
     uint32_t count;                         /* with a weight above zero, at least 1 */
     uint32_t joints[MODEL_INFLUENCES_MAX];  /* places in the skin's joints, the strongest first */
-    uint32_t weights[MODEL_INFLUENCES_MAX]; /* in units of 2^-22; the first is what the others leave */
+    uint32_t weights[MODEL_INFLUENCES_MAX]; /* in units of 2^-22; the first is one minus the others */
 } influence_list;
 
-/* The weights of a vertex as integers that sum to exactly one; each is off by at most half a unit, the first by as
- * many as there are others. */
+/* The weights of a vertex as integers that sum to exactly one. Each is off by at most half a unit, the first by as many
+ * halves as there are others. */
 void influence_quantise(const model_mesh *mesh, uint32_t vertex, influence_list *out);
 
-/* 1, 2, 4 or 8: what the vertex with the most joints needs. */
+/* 1, 2, 4 or 8: enough for the vertex with the most joints. */
 uint32_t influence_width(const model_mesh *mesh);
 
 /* One record. places[list.count]: the joints' places in the palette. Returns the words written. */

@@ -19,7 +19,7 @@ static const float directions[DIRECTIONS][3] = { { 1, 0, 0 },   { -1, 0, 0 },  {
 typedef struct vertex {
     const model_mesh *mesh;
     uint32_t index;
-    float way; /* squared, to the nearest one that was chosen; 0: it, or one in its place, was */
+    float way; /* squared distance to the nearest chosen vertex; 0: this one, or one at the same place, is chosen */
 } vertex;
 
 typedef struct extreme {
@@ -42,7 +42,7 @@ static const float *position(const vertex *v)
     return v->mesh->position + 3u * (size_t)v->index;
 }
 
-/* ---- what there is to choose from ---- */
+/* ---- candidates ---- */
 
 static int is_of(const model *m, const model_mesh *mesh, uint32_t set)
 {

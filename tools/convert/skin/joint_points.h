@@ -5,17 +5,17 @@
 #include "character/time_lod_points.h"
 #include "convert/model/model.h"
 
-#define JOINT_POINTS 256u /* at most, and one more for each joint */
+#define JOINT_POINTS 256u /* the most chosen, not counting one for each joint */
 
 typedef struct joint_points {
     noh_time_lod_points points; /* point_count 0: no mesh is bound to the skeleton */
     noh_time_hold *holds;       /* its own */
 } joint_points;
 
-/* Choose those that move most: of each joint the farthest that it moves, in all and along its axes, weighted; the
- * extremes of the box; then always the vertex farthest from all that were chosen (farthest-point sampling).
- * m       NULL: no meshes; else bound (skins.h)
- * errors  1: out of memory; nothing is then left open */
+/* Choose the vertices that move most: for each joint the farthest that it moves, in any direction and along its axes,
+ * by distance times weight; the extremes of the bounding box; then, again and again, the vertex farthest from all
+ * chosen so far (farthest-point sampling). m       NULL: no meshes; else bound (skins.h) errors  1: out of memory;
+ * there is then nothing to free */
 int joint_points_choose(const model *m, uint32_t set, uint32_t joint_count, joint_points *out);
 
 void joint_points_free(joint_points *p);

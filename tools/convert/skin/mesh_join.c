@@ -7,10 +7,10 @@
 #include "convert/model/affine.h"
 #include "convert/model/model_build.h"
 
-/* How a part's vectors become the joined mesh's. */
+/* The transform from a part to the joined mesh. */
 typedef struct turn {
-    double place[16], normal[9]; /* normal: cofactors, of the sign that keeps them outward */
-    float hand;                  /* -1: a mirror */
+    double place[16], normal[9]; /* normal: the cofactors, with the sign that keeps normals outward */
+    float hand;                  /* -1: it mirrors */
 } turn;
 
 static void make_turn(const mesh_part *part, turn *t)
@@ -98,7 +98,7 @@ static void join_vertex(const mesh_part *part, size_t v, const turn *t, model_me
     join_influences(part, v, out, to);
 }
 
-/* Deltas turn like what they are added to; a normal's is also scaled as the normal was when it was made unit. */
+/* Deltas are transformed like what they are added to; a normal's delta is also scaled by what made the normal unit. */
 static void join_target(const model_mesh *from, const model_target *target, size_t v, const turn *t, model_target *out,
                         size_t to)
 {
@@ -119,7 +119,7 @@ static void join_target(const model_mesh *from, const model_target *target, size
 
 /* ---- triangles ---- */
 
-/* The submesh of a material, made where it is new. */
+/* The submesh of a material, added if there is none. */
 static model_submesh *submesh_of(model_mesh *out, uint32_t material)
 {
     uint32_t s = 0;
@@ -237,7 +237,7 @@ int mesh_join(const mesh_part *parts, uint32_t part_count, model_mesh *out)
     uint32_t first_vertex = 0;
     memset(out, 0, sizeof *out);
     if (allocate(parts, part_count, out)) {
-        return 1; /* the model that it is in frees what there is */
+        return 1; /* freed with the model that it is in */
     }
     list_submeshes(parts, part_count, out);
     for (uint32_t p = 0; p < part_count; p++) {

@@ -1,9 +1,9 @@
 /* palette_deal.h (private to the pack writer): splits a mesh that follows more joints than one draw may use.
  *
  * Greedy by triangle: each goes to the palette that lacks the fewest of its joints and has room for them, or to a new
- * one. Triangles of one region follow the same few joints and come in the mesh's order, so palettes fill with
- * neighbours; vertices on the border of two palettes are doubled. Fewest parts would be a
- * set-cover problem; a greedy deal does not promise them, and no part is over its limit. */
+ * one. Triangles of one region follow the same few joints and are neighbours in the mesh's order, so palettes cover
+ * regions; vertices on the border of two palettes are doubled. The least number of parts is a set-cover problem; the
+ * greedy choice may need more, but no part exceeds the limit. */
 #ifndef NOH_CONVERT_SKIN_PALETTE_DEAL_H
 #define NOH_CONVERT_SKIN_PALETTE_DEAL_H
 

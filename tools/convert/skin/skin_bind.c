@@ -50,7 +50,7 @@ static int is_bound_like(const model_mesh *mesh, const model_node *node)
     return mesh->bound ? mesh->skin == node->skin : node->skin == MODEL_NONE;
 }
 
-/* A mesh is drawn with one skin, or with none: those of which a file wants more are copied. */
+/* In a pack a mesh has one skin or none: a mesh that a file draws with several is copied. */
 static int bind_meshes(model *m)
 {
     uint32_t *copied_from = model_zeros((size_t)m->mesh_count + m->node_count, sizeof *copied_from),
@@ -85,7 +85,7 @@ static int bind_meshes(model *m)
 
 /* ---- fewer joints per vertex ---- */
 
-/* Keep the strongest of one vertex. Returns the weight that is left out. */
+/* Keep the strongest influences of a vertex. Returns the weight that is left out. */
 static double keep_strongest(float *weights, uint16_t *joints, uint32_t limit)
 {
     double kept = 0.0, lost = 0.0;

@@ -9,12 +9,12 @@
 #include "convert/model/model_build.h"
 #include "convert/clips/raw_set.h"
 
-/* One mesh to be, and its skin: a joint and a matrix may be shared by several parts. */
+/* A joined mesh in the making, and its skin: several parts may share a joint and its matrix. */
 typedef struct join_job {
     model *m;
     model_clips *made;
     uint32_t set;
-    uint8_t *taken;  /* [node_count] drawn by a mesh made here */
+    uint8_t *taken;  /* [node_count] drawn as part of a mesh made here */
     uint32_t *nodes; /* [node_count] of the parts */
     uint32_t part_count;
     mesh_part *parts; /* [node_count] */
@@ -80,7 +80,7 @@ static int same_targets(const join_job *j, uint32_t a, uint32_t b)
     return same;
 }
 
-/* The part whose targets the joined mesh has; part_count without any. */
+/* The part that gives the joined mesh its targets; part_count if none has any. */
 static uint32_t find_owner(const join_job *j)
 {
     uint32_t p = 0;
@@ -156,8 +156,8 @@ static void matrix_below(const model *m, uint32_t node, uint32_t joint_node, dou
     }
 }
 
-/* Where the rest pose has no inverse (a joint of scale zero), vertices stay in their own space: then the mesh is
- * its node's alone. */
+/* If the rest pose has no inverse (a joint of scale zero), vertices stay in their own space, and the mesh can belong to
+ * its own node only. */
 static int has_rest_place(const join_job *j, uint32_t node)
 {
     uint32_t joint = j->made->sets[j->set]->skeleton.joints[j->made->nodes[node].joint].node;
@@ -184,7 +184,7 @@ static void add_rigid(join_job *j, uint32_t node)
     j->nodes[j->part_count++] = node;
 }
 
-/* Where the rest pose puts the first joint's vertices. Returns 1 where that has no inverse. */
+/* The rest pose's matrix for vertices of the first joint. Returns 1 if it has no inverse. */
 static int rest_place(const join_job *j, uint32_t node, double place[16])
 {
     const model_skin *skin = &j->m->skins[j->m->nodes[node].skin];
@@ -221,7 +221,7 @@ static int add_skinned(join_job *j, uint32_t node)
 
 /* ---- the joined mesh ---- */
 
-/* The first with targets: its weights and its clips' are the mesh's. */
+/* The first node with targets: its weights, and those of its clips, become the joined mesh's. */
 static uint32_t drawing_node(const join_job *j)
 {
     uint32_t owner = find_owner(j);
@@ -330,7 +330,7 @@ static int join_from(join_job *j, uint32_t first, int keep_parts, FILE *report)
     return failed;
 }
 
-/* ---- meshes that nothing draws any more ---- */
+/* ---- meshes that are no longer drawn ---- */
 
 static int is_drawn(const model *m, uint32_t mesh)
 {
@@ -360,7 +360,7 @@ static void list_drawn(const model *m, uint8_t *drawn)
     }
 }
 
-/* Nodes whose mesh went to another node have no weights to animate; the other node's are the same. */
+/* Nodes whose mesh was joined to another node's have no weights to animate; those of the other node are the same. */
 static void drop_channels(const join_job *j, model_clip *clip)
 {
     uint32_t kept = 0;

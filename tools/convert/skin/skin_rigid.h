@@ -12,7 +12,7 @@
 
 #include "convert/clips/model_clips.h"
 
-/* keep_parts: none are joined. report: NULL: quiet. Returns 0, or 1 when out of memory. */
+/* keep_parts: join none. report: NULL: quiet. Returns 0, or 1 when out of memory. */
 int skin_rigid_meshes(model *m, model_clips *made, int keep_parts, FILE *report);
 
 #endif

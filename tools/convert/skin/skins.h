@@ -1,4 +1,4 @@
-/* skins.h: joins meshes to the joints that move them, before they are encoded. */
+/* skins.h: binds meshes to skeletons, before they are encoded. */
 #ifndef NOH_CONVERT_SKIN_SKINS_H
 #define NOH_CONVERT_SKIN_SKINS_H
 
@@ -6,21 +6,21 @@
 
 #include "convert/model/model.h"
 
-struct model_clips; /* gltf_clip.h */
+struct model_clips; /* clips/model_clips.h */
 
 typedef struct skin_options {
     uint32_t influences; /* the most per vertex, 1 to MODEL_INFLUENCES_MAX; 0: that */
     uint32_t palette;    /* joints that one draw may use; 0: as many as the format holds */
     const char *const
-        *dual_quaternion; /* [dual_quaternion_count] names of meshes, or "all": skinned by dual quaternions */
+        *dual_quaternion; /* [dual_quaternion_count] meshes to skin by dual quaternions: names, or "all" */
     uint32_t dual_quaternion_count;
-    int keep_parts; /* rigid meshes that joints move are not joined into one */
+    int keep_parts; /* do not join rigid meshes that joints move */
     FILE *report;   /* NULL: quiet */
 } skin_options;
 
 /* Bind every skinned mesh of a model to its skin, and every skin to its skeleton. Rigid meshes that a joint moves
- * become skinned ones (skin_rigid.h); a mesh that several skins move, or that is drawn both with and without one, is
- * copied. Weights that are left out are a warning of the model. 0, or 1 and a filled error. */
+ * become skinned ones (skin_rigid.h); a mesh that is drawn with several skins, or both with and without one, is copied.
+ * Weights that are left out give a warning. 0, or 1 and a filled error. */
 int skins_bind(model *m, struct model_clips *made, const skin_options *options, model_error *error);
 
 #endif

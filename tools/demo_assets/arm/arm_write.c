@@ -74,7 +74,7 @@ static void add_root(File *file, int node)
     buffer_print(&file->roots, file->root_count++ ? ",%d" : "%d", node);
 }
 
-/* An even pace to the peak and three times as fast back; slerp does the rest. */
+/* At a steady pace to the peak and three times as fast back; slerp gives the frames between. */
 static void add_turn(File *file, int clip, int node, double turn)
 {
     static const double way[] = { 0, 1.0 / 3, 2.0 / 3, 1, 0 };

@@ -1,4 +1,4 @@
-/* Every way to bend an arm, side by side, as a glTF 2.0 binary. */
+/* Arms, bent in every way that noh knows, side by side in a glTF 2.0 binary. */
 #ifndef ARM_WRITE_H
 #define ARM_WRITE_H
 

@@ -3,10 +3,10 @@
 #define PI 3.14159265358979323846
 #define BONE 0.5 /* metres, from the shoulder to the elbow and from there to the end */
 #define RADIUS 0.14
-#define UP 1.40 /* of the row that bends above the row that twists */
+#define UP 1.40 /* height of the bending row above the twisting one */
 #define DEGREES (PI / 180)
 
-/* Just short of it: at half a turn both ways round are as short, and beyond it dual quaternions take the other. */
+/* Just short of half a turn, where both directions are equally short; beyond it dual quaternions take the other one. */
 #define HALF_A_TURN (179.5 * DEGREES)
 
 const double segment_turn = 120 * DEGREES;

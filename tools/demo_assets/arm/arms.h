@@ -12,14 +12,14 @@ typedef struct {
     const char *name;
     V3 stand; /* where its lower end is */
     Tube tube;
-    int clip;    /* which one turns its joints but the first */
-    double turn; /* radians, each, at the clip's peak */
+    int clip;    /* the clip that turns its joints, except the first */
+    double turn; /* of each joint at the clip's peak, radians */
     Dye dye;
 } Arm;
 
 const Arm *arm_number(int number);
 
-/* The same in two rigid parts: the second's node hangs below the first's, and turns about the elbow. */
+/* The same in two rigid parts: the second's node is a child of the first's and turns about the elbow. */
 typedef struct {
     const char *name;
     V3 bone;   /* from the node above */

@@ -22,7 +22,7 @@ static V3 open_at(double turn, double rise)
     return v3(wide * at.x, wide * at.y, 0.40 * at.z);
 }
 
-/* Out of the places near by; rise and turn are a right-handed pair. */
+/* The normal, from positions nearby; rise and turn are a right-handed pair. */
 static V3 find_normal(V3 (*at)(double, double), double turn, double rise)
 {
     const double near = 1e-4;
@@ -38,7 +38,7 @@ static Place hand_place(const void *what, int band, int step, int side)
     double turn = 2 * PI * side / (BLOCKS * SIDES), rise = PI * row / (BANDS * STEPS);
     Place place = { { 0, 0, 0 }, { 0, 0, 0 }, { 1 } };
     if (is_back || is_front) {
-        /* One place for all turns, and a direction that none of them gives. */
+        /* At a pole all turns give one position, and none gives a direction. */
         place.at = v3(0, 0, at(0, is_back ? 0 : PI).z);
         place.normal = v3(0, 0, is_back ? -1 : 1);
     } else {

@@ -20,7 +20,7 @@ static int same_place(V3 a, V3 b)
     return v3_length(v3_sub(a, b)) <= 0;
 }
 
-/* At a pole two corners of a face are one: then there is no triangle. */
+/* At a pole two corners of a face coincide: one of its triangles vanishes. */
 static void add_triangle(Shape *shape, int a, int b, int c)
 {
     const V3 *at = shape->position;

@@ -24,8 +24,8 @@ typedef struct {
  * the pattern is a band of a block; its border vertices are its own, so that colours end sharply. */
 typedef struct {
     int bands, steps, blocks, sides;
-    /* side runs from 0 to blocks * sides - 1, counter-clockwise seen from where the bands go to. Neighbouring bands
-     * have the same place, in every bit, where they meet. */
+    /* side runs from 0 to blocks * sides - 1, counter-clockwise seen from where the bands go to. Where neighbouring
+     * bands meet, their positions are equal to the bit. */
     Place (*place)(const void *what, int band, int step, int side);
     const void *what;
     Dye dye;

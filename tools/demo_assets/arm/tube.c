@@ -21,14 +21,14 @@ static void find_shares(const Tube *tube, double y, double share[HOLDERS])
     share[0] = 1;
     share[1] = share[2] = share[3] = 0;
     if (tube->joint_count == 2) {
-        share[1] = smooth(tube->joint_at[1] - tube->reach, tube->joint_at[1] + tube->reach, y);
+        share[1] = smooth(tube->joint_at[1] - tube->overlap, tube->joint_at[1] + tube->overlap, y);
         share[0] = 1 - share[1];
     } else if (tube->joint_count == HOLDERS) {
         share_four(clamp((y - tube->low) / (tube->high - tube->low), 0, 1), share);
     }
 }
 
-/* In steps of 1/65536; the largest is what the others leave. */
+/* In steps of 1/65536; the largest is one minus the others. */
 static void find_weights(const Tube *tube, double y, double weight[HOLDERS])
 {
     double share[HOLDERS], rest = 65536;
@@ -47,7 +47,7 @@ static void find_weights(const Tube *tube, double y, double weight[HOLDERS])
 
 /* ---- the surface ---- */
 
-/* What is turned about the axis: a distance from it, a height, and the direction that looks outwards. */
+/* The profile that is turned about the axis: a distance from it, a height, and the outward direction. */
 typedef struct {
     double radius, y, out, up;
 } Profile;

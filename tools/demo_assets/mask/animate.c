@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One target is to have one weight at one key. Whatever is not named is 0.
- * Weights add up: targets that shut the same lips or lids may sum to 1 at most. */
+/* The weight of one target at one key. Targets that are not named are 0. Weights add up: those of targets that shut the
+ * same lips or lids may sum to at most 1. */
 typedef struct {
     int key;
     const char *target;
@@ -98,8 +98,7 @@ static Animation animation_blank(const char *name, const char *interpolation, in
     return animation;
 }
 
-/* Slopes through the neighbouring keys, but flat at every high or low point:
- * so no weight swings past its keys. */
+/* Slopes through the neighbouring keys, but flat at every extreme, so that no weight overshoots its keys. */
 static void ease(Animation *animation)
 {
     int targets = target_count();

@@ -17,14 +17,14 @@ static const V3 white_of_eye = { 0.78, 0.72, 0.60 }, iris = { 0.030, 0.014, 0.00
 static const V3 tooth = { 0.62, 0.54, 0.38 }, gum = { 0.22, 0.05, 0.035 };
 static const V3 tongue = { 0.34, 0.075, 0.060 }, throat = { 0.030, 0.006, 0.005 };
 
-/* Distance from the middle as a part of the way to the rim. */
+/* Distance from the middle, as a share of the distance to the rim. */
 static double to_rim(double s, double t)
 {
     double p = s / (FACE_HALF_WIDTH * outline_width(t)), q = t / FACE_HALF_HEIGHT;
     return sqrt(p * p + q * q);
 }
 
-/* Colours darken in a crease, and darken towards brown. */
+/* In creases colours darken towards brown. */
 static V3 shade(V3 colour, double open)
 {
     double k = 1 - open;

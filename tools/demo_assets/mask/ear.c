@@ -10,8 +10,7 @@
 static const double rings[] = { 0.15, 0.30, 0.42, 0.53, 0.63, 0.72, 0.80, 0.88, 0.95, 1.0, 1.03, 1.0, 0.85, 0.45 };
 enum { RINGS = sizeof rings / sizeof rings[0], FRONT_RINGS = 10, SEGMENTS = 32 };
 
-/* Height of the carving over the disc, at (a, b) in the unit circle; a points
- * away from the face, b up. */
+/* Height of the relief above the disc at (a, b) in the unit circle; a points away from the face, b up. */
 static double ear_height(double a, double b)
 {
     double r = sqrt(a * a + b * b);

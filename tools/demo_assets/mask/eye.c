@@ -39,7 +39,7 @@ double ball_shell(int side, double x, double y, double lift)
     V3 centre = ball_centre(side);
     double dx = x - centre.x, dy = y - centre.y, radius = BALL_RADIUS + lift;
     double inside = 1 - (dx * dx + dy * dy) / (radius * radius);
-    /* Past the silhouette a straight slope goes on, so the depth stays smooth. */
+    /* Beyond the silhouette it continues as a straight slope, so that the depth stays smooth. */
     double edge = 0.04;
     if (inside > edge) {
         return centre.z + radius * sqrt(inside);

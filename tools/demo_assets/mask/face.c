@@ -31,8 +31,8 @@ double mouth_almond(double s)
 
 double mouth_gate(double s, double from_line)
 {
-    double away = fabs(from_line), reach = MOUTH_HALF + 1.2 * away;
-    return pow(almond(s / reach, 0.7), 1 + 1.5 * smooth(0, 0.010, away));
+    double away = fabs(from_line), half_width = MOUTH_HALF + 1.2 * away;
+    return pow(almond(s / half_width, 0.7), 1 + 1.5 * smooth(0, 0.010, away));
 }
 
 double eye_line(double s)
@@ -79,7 +79,7 @@ static double lid_shift(FacePoint point, const Pose *pose)
     return -lower_lid(side, pose) * width * bump(from_line / 0.016);
 }
 
-/* How much of a one-sided mouth movement a point takes part in. */
+/* The share of a one-sided mouth movement that a point takes part in. */
 static double half_mouth(int side, double s)
 {
     return smooth(-0.010, 0.010, side_sign(side) * s);
@@ -104,12 +104,11 @@ static double lip_shift(FacePoint point, const Pose *pose)
     return -lower * open * bump(from_line / 0.020);
 }
 
-/* A stroke drags the plane around one place; the drag is zero from the
- * ellipse's edge on. Written for the left side (x outwards); the right side
- * is its mirror image. */
+/* A stroke drags the plane around one point; the drag falls to zero at the ellipse's edge. Written for the left side (x
+ * outwards); the right side is its mirror image. */
 typedef struct {
-    double x, y, rx, ry; /* where, and how far it reaches */
-    double dx, dy, dz;   /* how far it drags */
+    double x, y, rx, ry; /* centre and radii of the ellipse */
+    double dx, dy, dz;   /* by how much it drags */
 } Stroke;
 
 static void drag(V3 *shift, FacePoint point, int side, double pull, Stroke stroke)
@@ -166,8 +165,7 @@ static void drag_whole_mouth(V3 *shift, FacePoint point, const Pose *pose)
     shift->x -= point.s * wide * (0.46 * pose->pucker + 0.40 * pose->funnel);
     shift->z += near * (0.0075 * pose->pucker + 0.0065 * pose->funnel);
     shift->x += wide * 0.0090 * pose->mouth_side;
-    /* Lips alone: each side of the slit for itself, so nothing may remain at
-     * the corners. */
+    /* The lips alone: each side of the slit moves by itself, so the pull must be zero at the corners. */
     double from_line = point.t - mouth_line(point.s), width = mouth_almond(point.s);
     double red = width * bump(from_line / 0.011);
     if (point.mouth > 0) {
@@ -191,8 +189,7 @@ static double over_ball(double x, double y, double depth)
     return smooth_max(depth, ball_shell(side, x, y, LID_THICKNESS), 0.006);
 }
 
-/* Depth over a plane has no overhang; the nose gets one by being dragged down
- * over its own foot. */
+/* A depth over a plane cannot overhang; the nose overhangs because it is dragged down over its own base. */
 static double nose_overhang(FacePoint point)
 {
     return -0.0032 * bump2(point.s, point.t + 0.0230, 0.0220, 0.0092);

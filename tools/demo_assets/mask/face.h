@@ -24,15 +24,15 @@ V3 face_place(FacePoint point, const Pose *pose);
 double eye_line(double s);
 double mouth_line(double s);
 
-/* 1 at the middle of a slit, 0 from its corners on. */
+/* 1 at the middle of a slit, 0 at its corners and beyond. */
 double eye_almond(double s);
 double mouth_almond(double s);
 
-/* The same, but it widens and softens away from the line between the lips:
- * only there need it end at the corners, and a sharp end would leave a mark. */
+/* The same, but it widens and softens away from the line between the lips: only on that line must it end at the
+ * corners, and a sharp end would show. */
 double mouth_gate(double s, double from_line);
 
-/* Half width of the mask's outline at height t, as a part of the widest. */
+/* Half the width of the mask's outline at height t, as a share of its largest. */
 double outline_width(double t);
 
 #endif

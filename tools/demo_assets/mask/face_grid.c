@@ -10,8 +10,8 @@ enum { MAX_LINES = 128, COLUMN_ANCHORS = 6, ROW_ANCHORS = 2, MAX_ANCHORS = 8 };
 enum { EYE_RIGHT_OUTER, MOUTH_RIGHT, EYE_RIGHT_INNER, EYE_LEFT_INNER, MOUTH_LEFT, EYE_LEFT_OUTER };
 enum { MOUTH_ROW, EYE_ROW };
 
-/* Grid lines across one direction. Anchors are lines that must be hit
- * exactly: the slits begin and end on one. */
+/* Grid lines across one direction. Anchors are positions at which a line must lie exactly: slits begin and end there.
+ */
 typedef struct {
     int count;
     double at[MAX_LINES];
@@ -134,8 +134,8 @@ static void crowd_hair(double *s, double *t, double share)
     }
 }
 
-/* A plain rectangle in the middle, pulled to the mask's oval towards the
- * border (the corners of the rectangle come to lie on the oval's diagonals). */
+/* A plain rectangle in the middle, drawn out to the mask's oval towards the border (the rectangle's corners end up on
+ * the oval's diagonals). */
 static void grid_point(const Grid *grid, int i, int j, double *s, double *t)
 {
     double x = grid->column.at[i], y = grid->row.at[j];
@@ -201,8 +201,8 @@ static void add_vertices(Model *model, Grid *grid)
     }
 }
 
-/* Diagonals mirror left to right, and at the oval's corners they lead into
- * the corner, where the other choice would leave a flat triangle. */
+/* Diagonals are mirrored left to right, and at the oval's corners they lead into the corner: the other choice would
+ * leave a flat triangle there. */
 static void add_faces(Model *model, const Grid *grid)
 {
     for (int j = 0; j + 1 < GRID_ROWS; j++) {

@@ -1,4 +1,4 @@
-/* The mask by itself as a glTF 2.0 binary. */
+/* The mask alone as a glTF 2.0 binary. */
 #ifndef MASK_GLTF_WRITE_H
 #define MASK_GLTF_WRITE_H
 

@@ -13,8 +13,8 @@ static double radius(double s, double t)
     return sqrt(p * p + q * q);
 }
 
-/* The hair is parted in the middle and falls along the temples. Keys: angle
- * from straight up, and the hairline as a part of the way to the rim. */
+/* The hair is parted in the middle and falls along the temples. Keys: the angle from straight up, and the hairline as a
+ * share of the distance to the rim. */
 static double hair_line(double angle)
 {
     static const Key line[] = { { 0.00, 0.872 }, { 0.05, 0.860 }, { 0.14, 0.852 }, { 0.45, 0.858 }, { 0.80, 0.868 },
@@ -35,7 +35,7 @@ void hair_shift(double *s, double *t, double distance)
     *t *= k;
 }
 
-/* A stroke lies a hair's breadth over the face and moves with it. */
+/* A stroke lies just above the face and moves with it. */
 V3 stroke_place(const Seed *seed, const Pose *pose)
 {
     FacePoint point = { seed->s, seed->t, 1, seed->t > MOUTH_Y ? 1 : -1 };

@@ -4,7 +4,7 @@
 #include "mouth.h"
 #include "wood.h"
 
-/* What has no slit of its own lies beside the face at its border. */
+/* Parts without slits are treated like the border of the face beside them. */
 static double border_hold(const Seed *seed)
 {
     FacePoint point = { seed->s, seed->t, seed->t > EYE_Y ? 1 : -1, seed->t > MOUTH_Y ? 1 : -1 };

@@ -1,4 +1,4 @@
-/* What a jaw of a skeleton would hold of the mask. */
+/* The weights of the mask's vertices on a skeleton's jaw. */
 #ifndef MASK_HOLD_H
 #define MASK_HOLD_H
 

@@ -4,9 +4,8 @@
 
 static const double hinge_y = -0.004, hinge_z = -0.045, full_angle = 0.20;
 
-/* The skin between cheekbone and chin follows in part. At the mouth the two
- * lips part: the upper one stays, the lower one follows in full, and at the
- * corners both agree. */
+/* The skin between cheekbone and chin follows in part. At the mouth the lips part: the upper one stays, the lower one
+ * follows fully, and at the corners both agree. */
 double jaw_weight(FacePoint point)
 {
     double skin = smooth(0.024, 0.092, -point.t);

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* All zeros, for a part that a target leaves alone. */
+/* All zeros, for a part that a target does not move. */
 static int write_zeros(Writer *w, int count)
 {
     accessor_begin(w, TYPE_FLOAT, count, "VEC3");

@@ -5,14 +5,14 @@
 #include "mask.h"
 #include "shared/writer.h"
 
-/* Where the mask is worn: it lies about `origin`, and two joints of a skin hold it. */
+/* How the mask is worn: its origin is at `origin`, and two joints of a skin move it. */
 typedef struct {
     V3 origin;
     int head, jaw;
 } MaskWearer;
 
 /* Prints a mesh object with all targets. Its primitives use the materials 0 to PART_COUNT - 1.
- * wearer: NULL for a mask by itself, without a skin. */
+ * wearer: NULL for a mask alone, without a skin. */
 void mask_mesh_write(Writer *w, Buffer *json, const Mask *mask, const MaskWearer *wearer);
 
 /* Prints PART_COUNT material objects, with commas between them. */

@@ -96,8 +96,7 @@ static void add_triangle(const Part *part, const int *first, const Frame *frame,
     }
 }
 
-/* The part of `along` that lies in the surface; where there is none, any
- * direction in the surface will do. */
+/* The part of `along` that lies in the surface; if there is none, any direction in the surface. */
 static V3 in_surface(V3 along, V3 normal)
 {
     V3 flat = v3_sub(along, v3_scale(normal, v3_dot(along, normal)));
@@ -127,7 +126,7 @@ Frame mesh_frame(const Part *part, const int *first, const Pose *pose)
     for (int i = 0; i < count; i++) {
         V3 normal = v3_unit(sums.normal[first[i]]);
         V3 tangent = in_surface(sums.along_u[i], normal);
-        /* v runs down the picture, and the bitangent is to run up it. */
+        /* v runs down the image, and the bitangent must run up. */
         double up = -v3_dot(v3_cross(normal, tangent), sums.along_v[i]);
         frame.normal[i] = normal;
         frame.tangent[i] = tangent;

@@ -25,8 +25,8 @@ typedef enum {
     ON_BAG
 } Region;
 
-/* Where a vertex grows from. A pose turns a seed into a place, and the same
- * seeds serve every pose, so all targets have the same vertices. */
+/* What a vertex grows from. A pose turns a seed into a position, and every pose uses the same seeds, so all targets
+ * have the same vertices. */
 typedef struct {
     Region region;
     double s, t; /* place in the closed face plane, or the region's own grid */

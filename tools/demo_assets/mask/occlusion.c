@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The mask seen from the front, as a map of depths: half a millimetre a cell. */
+/* A depth map of the mask from the front: half a millimetre a cell. */
 enum { WIDE = 400, HIGH = 500 };
 static const double cell = 0.0005, nothing = -1;
 static double map[HIGH][WIDE];
@@ -77,8 +77,7 @@ static double depth_at(double x, double y)
     return map[(int)row][(int)column];
 }
 
-/* For each way over the map: how far the highest thing rises above the
- * surface's own slope. */
+/* In each direction over the map: how far the highest point rises above the surface's own slope. */
 static double openness(V3 at, V3 normal)
 {
     enum { WAYS = 20, STEPS = 14 };
@@ -87,10 +86,10 @@ static double openness(V3 at, V3 normal)
         double angle = 6.283185307179586 * way / WAYS, dx = cos(angle), dy = sin(angle);
         double own = -(normal.x * dx + normal.y * dy) / facing;
         double own_sine = own / sqrt(1 + own * own), highest = own_sine;
-        double reach = 0.0008;
-        for (int step = 0; step < STEPS; step++, reach *= 1.28) {
-            double rise = depth_at(at.x + dx * reach, at.y + dy * reach) - at.z - 0.0002;
-            double sine = rise / sqrt(rise * rise + reach * reach);
+        double distance = 0.0008;
+        for (int step = 0; step < STEPS; step++, distance *= 1.28) {
+            double rise = depth_at(at.x + dx * distance, at.y + dy * distance) - at.z - 0.0002;
+            double sine = rise / sqrt(rise * rise + distance * distance);
             double fade = 1 - 0.5 * step / STEPS;
             highest = fmax(highest, mix(own_sine, sine, fade));
         }
@@ -99,7 +98,7 @@ static double openness(V3 at, V3 normal)
     return clamp(1 - closed / WAYS, 0, 1);
 }
 
-/* Spreads values to neighbours, which takes the grain off. */
+/* Average values with their neighbours', which removes noise. */
 static void soften(const Part *part, double *values)
 {
     double *sum = grab(NULL, part->seed_count, (int)sizeof *sum);

@@ -1,4 +1,4 @@
-/* How open each vertex lies to the light from in front, at rest. */
+/* How open each vertex is to light from the front, at rest. */
 #ifndef MASK_OCCLUSION_H
 #define MASK_OCCLUSION_H
 

@@ -1,4 +1,4 @@
-/* A pose: how far each muscle of the face is pulled, 0 at rest and 1 in full. */
+/* A pose: how far each muscle of the face is pulled, 0 at rest, 1 fully. */
 #ifndef MASK_POSE_H
 #define MASK_POSE_H
 

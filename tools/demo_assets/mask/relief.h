@@ -1,4 +1,4 @@
-/* The carving: an egg-like head, and the features that stand out from it. */
+/* The relief: an egg-shaped head, and the features that stand out from it. */
 #ifndef MASK_RELIEF_H
 #define MASK_RELIEF_H
 

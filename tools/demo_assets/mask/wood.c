@@ -7,8 +7,8 @@
 
 enum { STEP = 2, SEGMENTS = GRID_BORDER / STEP, RIM_ROWS = 7, BACK_RINGS = 9 };
 
-/* The rim's profile: outwards in the plane of the outline, and back. The
- * first row lies under the paint, so that no crack can show along the seam. */
+/* The rim's profile: outwards in the plane of the outline, and back. The first row lies under the paint, so that no gap
+ * shows along the seam. */
 static const double rim_out[RIM_ROWS] = { -0.0008, 0.0008, 0.0024, 0.0028, 0.0022, 0, -0.0040 };
 static const double rim_back[RIM_ROWS] = { 0.0004, 0.0001, 0.0006, 0.0030, 0.0058, 0.0070, 0.0066 };
 

@@ -1,4 +1,4 @@
-/* The wood that shows: the rim around the paint and the hollowed back. */
+/* Visible wood: the rim around the paint and the hollow back. */
 #ifndef MASK_WOOD_H
 #define MASK_WOOD_H
 
@@ -8,7 +8,7 @@ void wood_build(Model *model);
 V3 rim_place(const Seed *seed, const Pose *pose);
 V3 back_place(const Seed *seed, const Pose *pose);
 
-/* How near a vertex of the back lies to the rim: 1 there, 0 in the middle. */
+/* How near a vertex of the back is to the rim: 1 at the rim, 0 in the middle. */
 double back_share(const Seed *seed);
 
 #endif

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The surface is looked at from many sides; what a map of depths shows lies open to that side. */
+/* The surface is seen from many sides; what a depth map shows is open to that side. */
 enum { SIDES_LOOKED_FROM = 96, MAP = 512 };
 static const double cell = 0.0042, slack = 0.012;
 

@@ -1,4 +1,4 @@
-/* How open each place of a surface lies to the sky around it. */
+/* How open each vertex of a surface is to light from all sides. */
 #ifndef PUPPET_AMBIENT_H
 #define PUPPET_AMBIENT_H
 

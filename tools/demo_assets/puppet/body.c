@@ -60,7 +60,7 @@ static V3 *find_normals(const Cage *surface)
     return normals;
 }
 
-/* --- holds --- */
+/* --- weights --- */
 
 static Grip strongest(const Hold *hold)
 {
@@ -91,7 +91,7 @@ Grip grip_of(const Hold *hold)
     }
     for (int i = HELD_BY - 1; i > 0; i--) {
         double steps = floor(grip.weight[i] / sum * 65536 + 0.5);
-        /* Less than 1/256 is not worth a joint. */
+        /* Weights below 1/256 are dropped. */
         steps = steps < 256 ? 0 : steps;
         grip.weight[i] = steps / 65536;
         grip.joint[i] = steps > 0 ? grip.joint[i] : 0;
@@ -103,7 +103,7 @@ Grip grip_of(const Hold *hold)
 
 /* --- pieces --- */
 
-/* A corner of a face: vertices of the file are corners that agree in all but the face. */
+/* A corner of a face: corners that agree in all but the face become one vertex of the file. */
 typedef struct {
     int vertex, paint;
     double u, v;
@@ -137,7 +137,7 @@ static int collect_corners(const Cage *surface, int material, Corner *corners)
     for (int f = 0; f < surface->face_count; f++) {
         const CageFace *face = &surface->faces[f];
         for (int i = 0; i < 4 && paint_material(face->paint) == material; i++) {
-            /* Places of the texture that are one may differ by rounding. */
+            /* Equal texture coordinates may differ by rounding. */
             double u = floor(face->u[i] * 65536 + 0.5) / 65536, v = floor(face->v[i] * 65536 + 0.5) / 65536;
             Corner corner = { face->corner[i], (int)face->paint, u, v, f, i };
             corners[count++] = corner;

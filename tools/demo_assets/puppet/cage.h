@@ -1,6 +1,6 @@
 /* The cage: a coarse closed surface of four-sided faces that is grown ring by ring, and that
- * subdivision turns into the body. What a vertex is held by and what a face is painted with
- * are set here once, and become smooth with the rest. */
+ * subdivision turns into the body. Joint weights of vertices and paints of faces are set here once; weights become
+ * smooth with the surface. */
 #ifndef PUPPET_CAGE_H
 #define PUPPET_CAGE_H
 

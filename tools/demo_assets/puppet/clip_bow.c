@@ -2,7 +2,7 @@
 
 enum { STEPS = 135 };
 
-/* 1 when bowed; the head goes first, and comes up last. */
+/* 1 when bowed; the head leads on the way down and comes up last. */
 static double bowed(double time_s, double late_s)
 {
     return smooth(0.4, 1.6, time_s - late_s) * smooth(3.9, 2.5, time_s - late_s);

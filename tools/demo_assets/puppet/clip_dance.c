@@ -109,7 +109,7 @@ static HandStance hand_at(const HandKey *keys, int count, double time_s)
 
 /* --- the rest --- */
 
-/* While a foot is up to stamp, the other one carries. */
+/* While a foot is raised to stamp, the other one carries the weight. */
 static double stamp_lift(double time_s, int side)
 {
     double since = time_s - stamp_s[side];

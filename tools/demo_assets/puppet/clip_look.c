@@ -37,7 +37,7 @@ static Stance stance(double time_s)
     return s;
 }
 
-/* The eyes are where the head will be. */
+/* The eyes lead: they are where the head will be. */
 static void face(double time_s, double *weights)
 {
     double ahead = yaw(time_s + 0.20) - yaw(time_s), left = clamp(2.2 * ahead, 0, 0.9),

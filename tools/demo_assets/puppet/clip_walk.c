@@ -5,8 +5,8 @@
 
 #define PI 3.14159265358979323846
 
-/* Suriashi, the gliding walk of the Noh stage: level hips, still hands, and soles that all but
- * touch the floor. The root goes forward with it. */
+/* Suriashi, the gliding walk of the Noh stage: level hips, still hands, and soles that barely leave the floor. The root
+ * moves forward. */
 enum { STEPS = 42 };
 static const double period_s = (double)STEPS / CLIP_RATE_HZ, speed = 0.50;
 static const double left_lands_s = 0.60, right_lands_s = 1.30;
@@ -25,7 +25,7 @@ static Stance stance(double time_s)
                         .count = { 1, 1 },
                         .steps = { { { 0.06, left_lands_s, 0.014, 0.16 } },
                                    { { 0.76, right_lands_s, 0.014, 0.16 } } } };
-    /* 1 where the left foot carries, -1 where the right does. */
+    /* 1 while the left foot carries the weight, -1 while the right one does. */
     double phase = 2 * PI * (time_s - 1.03) / period_s, carries = cos(phase), leads = sin(phase + 0.5);
     Stance s = stance_calm();
     s.root = path(time_s).place;

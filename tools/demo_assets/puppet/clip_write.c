@@ -22,7 +22,7 @@ static void add_channel(Animation *animation, const double *values, const char *
                  node, path);
 }
 
-/* Signs are chosen so that neighbours lie near each other. */
+/* Signs are chosen so that neighbouring keys are in one hemisphere. */
 static void add_turns(Animation *animation, const Posed *frames, int joint)
 {
     double *values = grab(NULL, 4 * animation->frames, (int)sizeof *values);
@@ -82,7 +82,7 @@ static int write_times(Writer *w, int frames)
     return accessor;
 }
 
-/* All repeat. In the syntax that the converter reads. */
+/* All are loops. The syntax is the converter's. */
 static void write_cues(Buffer *json, const Clip *clip)
 {
     Cue cues[CUES_MAX];

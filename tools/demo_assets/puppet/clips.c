@@ -39,7 +39,7 @@ void face_add(double *weights, const char *target, double amount)
     weights[target_find(target)] += amount;
 }
 
-/* A sleeve trails behind the hand: it hangs as it would in the wind of the hand's way. */
+/* A sleeve trails behind the hand: it hangs in the wind of the hand's movement. */
 static V3 find_drift(V3 before, V3 after, double step_s)
 {
     V3 velocity = v3_scale(v3_sub(after, before), 1 / step_s);
@@ -50,7 +50,7 @@ Posed clip_frame(const Clip *clip, int frame)
 {
     const double late_s = 0.10, span_s = 0.12;
     Stance first = clip->stance(0), last = clip->stance((double)clip->steps / CLIP_RATE_HZ);
-    /* The last frame is the first one, at another place. */
+    /* The last frame is the first one, at another position of the root. */
     double time_s = (double)(frame % clip->steps) / CLIP_RATE_HZ;
     Stance stance = clip->stance(time_s);
     Stance before = clip->stance(time_s - late_s - span_s / 2), after = clip->stance(time_s - late_s + span_s / 2);

@@ -15,7 +15,7 @@ typedef struct {
 
 typedef struct {
     const char *name;
-    int steps;                                    /* of 1/30 s; it has one frame more */
+    int steps;                                    /* of 1/30 s; there is one more frame than steps */
     Stance (*stance)(double time_s);              /* also a little before the start and after the end */
     void (*face)(double time_s, double *weights); /* fills zeros: a weight for each of the mask's targets */
     int (*cues)(Cue *cues);                       /* in time order; returns their number, up to CUES_MAX */
@@ -25,8 +25,8 @@ extern const Clip clip_idle, clip_walk, clip_bow, clip_look_round, clip_dance;
 
 const Clip *clip_number(int number);
 
-/* The clip's frame, the sleeves swinging behind the hands. A clip that ends as it began does so in every bit,
- * but for the way that the root has gone. */
+/* A frame of the clip, with sleeves that trail behind the hands. The last frame equals the first to the bit, but for
+ * the root displacement. */
 Posed clip_frame(const Clip *clip, int frame);
 
 /* --- for the clips --- */

@@ -5,10 +5,10 @@
 #define PI 3.14159265358979323846
 
 /* A ring about the foot. It is turned from lying (0 degrees, at the ankle) to standing upright
- * (90, from the heel on); `upper` is its reach to the instep, `lower` to heel and sole. */
+ * (90, from the heel on); `upper` is its extent to the instep, `lower` to heel and sole. */
 typedef struct {
     double y, z, degrees, half_width, upper, lower;
-    double foot, toes; /* what holds it; the rest is the shin */
+    double foot, toes; /* weights on these joints; the rest goes to the shin */
 } Slice;
 
 /* clang-format off */
@@ -24,9 +24,9 @@ enum { SLICES = sizeof slices / sizeof *slices };
 static V3 slice_place(const Slice *s, int i)
 {
     double angle = PI / 6 * (i - 1), turn = PI / 180 * s->degrees;
-    double reach = cos(angle) * (cos(angle) > 0 ? s->upper : s->lower);
+    double extent = cos(angle) * (cos(angle) > 0 ? s->upper : s->lower);
     double x = joint_place(side_joint(LEFT, FOOT)).x + 0.04 * (s->z + 0.012);
-    return v3(x + s->half_width * sin(angle), s->y + reach * sin(turn), s->z + reach * cos(turn));
+    return v3(x + s->half_width * sin(angle), s->y + extent * sin(turn), s->z + extent * cos(turn));
 }
 
 static Hold slice_hold(int side, const Slice *s)

@@ -4,7 +4,7 @@
 
 #define PI 3.14159265358979323846
 
-/* Neck and wig. The mask lies before the flat front of the wig and hides it. */
+/* Neck and wig. The mask hides the flat front of the wig. */
 typedef struct {
     double y, half_width, front, back, z;
     Paint paint; /* of the band below it */
@@ -21,7 +21,7 @@ enum { ROWS = sizeof girths / sizeof *girths };
 static V3 head_place(const Girth *g, int column)
 {
     double angle = 2 * PI * column / TORSO_RING, across = sin(angle), ahead = cos(angle);
-    /* The neck is round; the wig's front is flat, as it has the mask before it. */
+    /* The neck is round; the wig's front, behind the mask, is flat. */
     double power = g->y < 1.415 ? 1 : ahead > 0 ? 0.55 : 0.95;
     double wide = copysign(pow(fabs(across), ahead > 0 ? 0.75 : 0.95), across);
     double deep = copysign(pow(fabs(ahead), power), ahead);

@@ -37,13 +37,13 @@ int side_joint(int side, int joint);
 const char *joint_name(int joint);
 int joint_parent(int joint); /* -1 for the root; parents come first */
 
-/* Where a joint lies in the bind pose, in the scene; no joint is turned there. */
+/* A joint's position in the bind pose, in the scene; there no joint is rotated. */
 V3 joint_place(int joint);
 
 /* The place for the left side's arm at `x`, on the line from shoulder to wrist. */
 V3 arm_line(double x);
 
-/* Where the mask's own origin lies in the bind pose. */
+/* The position of the mask's own origin in the bind pose. */
 V3 mask_origin(void);
 
 #endif

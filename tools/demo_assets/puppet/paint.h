@@ -26,7 +26,7 @@ typedef enum {
 
 int paint_material(Paint paint);
 
-/* Linear. open: how open the place lies, 0 to 1. */
+/* Linear. open: how open the vertex is to light, 0 to 1. */
 V3 paint_colour(Paint paint, V3 at, double open);
 
 #endif

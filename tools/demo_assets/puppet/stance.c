@@ -67,8 +67,8 @@ typedef struct {
     V3 bend; /* where the middle joint points in the bind pose */
 } Limb;
 
-/* Turns upper and lower bone so that the end comes to lie at `target`, or as near as it can, and the
- * middle joint points to `bend`. */
+/* Turn the upper and the lower bone so that the end lies at `target`, or as near as it can, and the middle joint points
+ * to `bend`. */
 static void reach(World *world, const Limb *limb, V3 target, V3 bend)
 {
     V3 bone1 = bind_bone(limb->upper, limb->lower), bone2 = bind_bone(limb->lower, limb->end);
@@ -133,8 +133,8 @@ static void pose_fingers(World *world, const HandStance *hand, int side)
     hang_turned(world, side_joint(side, THUMB_TIP), quat_about(thick, 0.5 * hand->thumb));
 }
 
-/* The bag of the sleeve turns with the forearm, then back towards where it would hang. It keeps
- * away from the hand, and where the forearm itself hangs down it follows that: cloth twists little. */
+/* The bag of the sleeve turns with the forearm, then back towards where it would hang. It keeps away from the hand;
+ * where the forearm itself hangs down it follows the forearm, because cloth twists little. */
 static void pose_sleeve(World *world, V3 drift, int side)
 {
     const double along_max = 0.64, turn_max = 1.15;
@@ -157,7 +157,7 @@ static void pose_arm(World *world, const Stance *s, int side)
     const HandStance *hand = &s->hands[side];
     Quat chest = world->turn[CHEST];
     V3 target = v3_add(world->place[CHEST], quat_rotate(chest, mirrored(hand->wrist, side)));
-    /* The collar bone takes a share of the arm's way up and round. */
+    /* The collar bone takes a share of the arm's raising and turning. */
     V3 rest = v3_unit(bind_bone(arm.upper, arm.end));
     V3 way = v3_sub(mirrored(hand->wrist, side), v3_sub(joint_place(arm.upper), joint_place(CHEST)));
     V3 share = v3_unit(v3_add(v3_scale(rest, 2), v3_unit(way)));

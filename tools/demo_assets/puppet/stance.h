@@ -1,5 +1,5 @@
-/* How the puppet stands: a few controls, and the joints that follow from them. Limbs are reached
- * for by two-bone inverse kinematics, so feet stay where they are put. */
+/* How the puppet stands: a few controls, and the joints that follow from them. Limbs are posed by two-bone inverse
+ * kinematics, so feet stay where they are put. */
 #ifndef PUPPET_STANCE_H
 #define PUPPET_STANCE_H
 
@@ -24,9 +24,9 @@ typedef struct {
 typedef struct {
     V3 root;
     double heading;
-    V3 hips, hips_turn; /* off their place above the root */
+    V3 hips, hips_turn; /* offset and turn relative to their place above the root */
     V3 waist, head;     /* turns, spread over spine and chest, neck and head */
-    double jaw;         /* open by so much */
+    double jaw;         /* radians open */
     FootStance feet[SIDES];
     HandStance hands[SIDES];
     V3 drift[SIDES]; /* of each sleeve, where it hangs towards instead of straight down; of length 1 */
@@ -41,7 +41,7 @@ typedef struct {
 /* A calm stance at the origin, knees slightly bent, hands before the thighs. */
 Stance stance_calm(void);
 
-/* wrists: receives where they come to lie in the scene; may be NULL. */
+/* wrists: receives their positions in the scene; may be NULL. */
 Posed stance_solve(const Stance *stance, V3 wrists[SIDES]);
 
 #endif

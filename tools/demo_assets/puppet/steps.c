@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-/* Step `number` of a foot; they go on before and after the period. */
+/* Step `number` of a foot; steps continue before and after the period. */
 static Step step_at(const Gait *gait, int side, int number)
 {
     int count = gait->count[side];
@@ -23,7 +23,7 @@ static FootStance put_down(const Gait *gait, int side, int number)
     return foot;
 }
 
-/* From one place to the next. The heel comes up first, the toes last of all go down. */
+/* From one place to the next. The heel rises first, and the toes come down last. */
 static FootStance swing(FootStance from, FootStance to, const Step *step, double k)
 {
     double across = smooth(0, 1, k);

@@ -84,8 +84,8 @@ static void make_edge_points(const Cage *cage, const HalfEdge *edges, Cage *fine
     }
 }
 
-/* With n faces about a vertex: the mean of their middles, twice the mean of its edges' middles,
- * and n - 3 times itself, over n. */
+/* With n faces about a vertex: the mean of their centres, plus twice the mean of its edges' midpoints, plus n - 3 times
+ * itself, all over n. */
 static void make_vertex_points(const Cage *cage, const HalfEdge *edges, Cage *fine)
 {
     int *around = grab(NULL, cage->vertex_count, (int)sizeof *around);

@@ -68,7 +68,7 @@ static V3 torso_place(int row, int column)
     if (from_front == 0 && row > SASH_HIGH && row < COLLAR_TOP) {
         at.z -= 0.006;
     }
-    /* The collar stands away from the neck behind, and dips in front. */
+    /* The collar stands off the neck behind and dips in front. */
     if (row >= COLLAR_ROW && row <= COLLAR_INSIDE) {
         at.y -= 0.016 * (1 + ahead) * (row == COLLAR_ROW ? 1.2 : 1);
     }

@@ -1,4 +1,4 @@
-/* Memory, or the end of the program: a generator has nothing better to do. */
+/* Memory, or the end of the program. */
 #ifndef MASK_GRAB_H
 #define MASK_GRAB_H
 

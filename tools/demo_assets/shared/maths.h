@@ -1,4 +1,4 @@
-/* Small vectors and the smooth, compact functions the mask is shaped with. */
+/* Small vectors, and the smooth functions of compact support that the mask is shaped with. */
 #ifndef MASK_MATHS_H
 #define MASK_MATHS_H
 
@@ -19,7 +19,7 @@ V3 v3_unit(V3 a); /* the zero vector stays zero */
 double clamp(double x, double low, double high);
 double mix(double a, double b, double k);
 double smooth(double edge0, double edge1, double x); /* C2 step, 0 to 1 */
-double bump(double d);                               /* C2, 1 at 0, exactly 0 from |d| = 1 on */
+double bump(double d);                               /* C2, 1 at 0, exactly 0 for |d| >= 1 */
 double bump2(double x, double y, double rx, double ry);
 double smooth_max(double a, double b, double blend);
 

@@ -1,11 +1,11 @@
-/* What a glTF binary is put together from: views of its bytes, accessors, and the container. */
+/* The parts of a glTF binary: views of its bytes, accessors, and the container. */
 #ifndef MASK_WRITER_H
 #define MASK_WRITER_H
 
 #include "buffer.h"
 #include "maths.h"
 
-/* Component types and view targets, as glTF numbers them. */
+/* Component types and view targets, with glTF's numbers. */
 enum { TYPE_U8 = 5121, TYPE_U16 = 5123, TYPE_FLOAT = 5126 };
 enum { TARGET_NONE = 0, TARGET_ARRAY = 34962, TARGET_ELEMENTS = 34963 };
 
@@ -27,8 +27,8 @@ void put_f3(Buffer *data, F3 f);
 int view_open(Writer *w);
 int view_close(Writer *w, int start, int target);
 
-/* Accessors: what is printed into w->accessors between these two belongs to the new one, which
- * the second returns. */
+/* Accessors: what is printed into w->accessors between these two calls belongs to the new one, whose number the second
+ * returns. */
 void accessor_begin(Writer *w, int component, int count, const char *type);
 int accessor_end(Writer *w);
 void print_range(Writer *w, const F3 *values, int count, F3 low, F3 high);
