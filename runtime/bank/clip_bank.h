@@ -105,7 +105,7 @@ uint32_t noh_clip_bank_node_group(const noh_clip_bank *set, uint32_t node);
 uint32_t noh_clip_bank_mesh_group(const noh_clip_bank *set, uint32_t mesh);
 
 /* The morph weights of a mesh among the floats of a pose: those of the first node that draws it. Hand them to
- * noh_gl_morph_weights or noh_morph_accumulate.
+ * noh_gl_morph_set_weights or noh_morph_accumulate.
  * shapes   floats[anim.float_count] of a pose; the result [the mesh's target_count], inside floats
  * returns  NULL as noh_clip_bank_mesh_group: the mesh keeps its defaults */
 const float *noh_clip_bank_mesh_weights(const noh_clip_bank *set, const float *floats, uint32_t mesh);
