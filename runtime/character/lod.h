@@ -159,7 +159,7 @@ typedef struct noh_lod_part {
 /* What to draw: one part with all pixels or, during a fade, the new level and the old one. Returns how many. */
 uint32_t noh_lod_parts(const noh_lod *d, int64_t clock, noh_lod_part parts[2]);
 
-/* The finest level drawn from now to the end of the fade: for noh_gl_morph_level. */
+/* The finest level drawn from now to the end of the fade: for noh_gl_morph_set_lod. */
 uint32_t noh_lod_drawn(const noh_lod *d, int64_t clock);
 
 /* Leave out morph targets whose effect is too small to see: the smallest |weight| * radius first, while their sum is

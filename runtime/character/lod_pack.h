@@ -37,7 +37,7 @@ typedef struct noh_lod_pack {
 } noh_lod_pack;
 
 /* Fill only the mesh levels of a table: for a table of your own, or for a mesh that no clip moves. Levels have the same
- * numbers everywhere (the pack, this table, noh_gl_mesh_lod, noh_gl_morph_level): 0 is the full mesh, loaded or not.
+ * numbers everywhere (the pack, this table, noh_gl_mesh_lod, noh_gl_morph_set_lod): 0 is the full mesh, loaded or not.
  * error_m is a level's worst error in any pose plus what the targets that it leaves out can add, in metres.
  * shapes  levels[NOH_LOD_LEVELS_MAX], borrowed by the table; mesh: at the finest level that is loaded */
 void noh_lod_mesh_levels(const noh_mesh *mesh, noh_lod_mesh *levels, noh_lod_table *table);

@@ -121,6 +121,11 @@ printf 'HIERARCHY\nROOT hip\n{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yro
 sed 's/5 10 0/5 40 3/' "$work/nod.bvh" >"$work/turn.bvh"
 noh build "$work/nod.bvh" "$work/turn.bvh" -o "$work/two.noh" --quiet
 expect 0 'a pack of clips'
+ineffective --path budget "$work/two.noh" --path cpu
+ineffective --accumulate budget "$work/two.noh" --accumulate f16
+noh build "$build/mask.glb" -o "$work/x.noh" --dual-quaternion all
+expect 1 'dual quaternions for all of a rigid model'
+says 'no mesh is skinned'
 # The events file of the help, with the names of these clips.
 noh help FORMATS
 sed -n '/^callback keys and sync/,/^callback keys in glTF/{s/^ *walk /nod /p; s/^ *"wave hand"/turn/p}' "$work/out" >"$work/keys.txt"
@@ -157,6 +162,9 @@ error_json 1 data 'a cut pack' info "$work/cut.noh" --json
 check 'says where' grep -q '"where": [0-9]' "$work/out"
 error_json 1 data 'budget of it' budget "$work/cut.noh" --json
 error_json 1 data 'verify of it' verify "$work/cut.noh" --json
+dd if=/dev/zero of="$work/zeros.noh" bs=1024 count=4 2>"$work/dd"
+error_json 1 data 'no pack at all' info "$work/zeros.noh" --json
+check 'at byte 0; need means nothing' sh -c 'grep -q "\"where\": 0" "$1" && grep -q "\"need\": null" "$1"' - "$work/out"
 error_json 2 usage 'an unknown option' info "$pack" --json --nonsense
 check 'where and need are null' sh -c 'grep -q "\"where\": null" "$1" && grep -q "\"need\": null" "$1"' - "$work/out"
 error_json 2 usage 'no file' bench --json

@@ -21,6 +21,12 @@ static const char *result_name(const tool_error *e)
     return (size_t)e->result < sizeof names / sizeof names[0] ? names[e->result] : "failed";
 }
 
+/* Results whose `where` is a byte or an index, so that 0 means the first. */
+static int places(noh_result result)
+{
+    return result == NOH_ERR_DATA || result == NOH_ERR_NOT_FOUND;
+}
+
 /* For a verb that failed before it printed its JSON. */
 static void print_error_json(const tool_error *e)
 {
@@ -29,11 +35,14 @@ static void print_error_json(const tool_error *e)
     json_text(&j, "result", result_name(e));
     json_text(&j, "subject", e->subject);
     json_text(&j, "what", e->what);
-    if (e->result != NOH_OK) {
+    if (e->where || places(e->result)) {
         json_integer(&j, "where", e->where);
-        json_integer(&j, "need", e->need);
     } else {
         json_null(&j, "where");
+    }
+    if (e->need) {
+        json_integer(&j, "need", e->need);
+    } else {
         json_null(&j, "need");
     }
     json_close(&j, '}');

@@ -130,7 +130,10 @@ static int mark_dual_quaternion(model *m, const char *name, model_error *error)
             found = 1;
         }
     }
-    return found ? 0 : model_fail(error, "", "--dual-quaternion: no skinned mesh is named '%.80s'", name);
+    if (found) return 0;
+    return strcmp(name, "all") == 0
+               ? model_fail(error, "", "--dual-quaternion all: no mesh is skinned")
+               : model_fail(error, "", "--dual-quaternion: no skinned mesh is named '%.80s'", name);
 }
 
 int skins_bind(model *m, model_clips *made, const skin_options *options, model_error *error)

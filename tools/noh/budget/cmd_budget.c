@@ -120,6 +120,15 @@ static int find_caps(const budget_args *a, const scene *s, noh_gl_caps *caps)
     return status;
 }
 
+/* Clips alone draw nothing. */
+static int check_clips_alone(const budget_args *a)
+{
+    const char *given = a->load.path != NOH_MORPH_AUTO              ? "--path"
+                        : a->load.accumulate != NOH_ACCUMULATE_AUTO ? "--accumulate"
+                                                                    : NULL;
+    return given ? tool_usage("%s has no effect with a pack of clips alone", given) : 0;
+}
+
 static int budget_of(const budget_args *a, const pack_file *file)
 {
     noh_gl_caps caps;
@@ -132,7 +141,8 @@ static int budget_of(const budget_args *a, const pack_file *file)
         return status;
     }
     memset(&b, 0, sizeof b);
-    status = find_caps(a, &s, &caps);
+    status = s.item_count ? 0 : check_clips_alone(a);
+    if (!status) status = find_caps(a, &s, &caps);
     if (!status) status = scene_set_level(&s, file, a->level);
     if (!status) status = scene_open_anim(&s, file, a->anim);
     if (!status) status = load_budget_make(&b, file, &s, &caps, &a->load);

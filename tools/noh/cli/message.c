@@ -58,6 +58,7 @@ static int print_error(const char *subject, const noh_error *error, const char *
     switch (error->result) {
     case NOH_ERR_DATA: return tool_fail(subject, "%s (byte %llu)", what, where);
     case NOH_ERR_MEMORY: return tool_fail(subject, "%s (%llu bytes, %llu needed)", what, where, need);
+    case NOH_ERR_VERSION: return tool_fail(subject, "%s (this noh reads version %llu)", what, need);
     case NOH_ERR_LIMIT: return tool_fail(subject, "%s (%llu)", what, need);
     case NOH_ERR_GL: return tool_fail(subject, "%s (GL error 0x%llx)", what, where);
     default: return tool_fail(subject, "%s (%s)", what, noh_result_text(error->result));

@@ -1,0 +1,44 @@
+#!/bin/sh
+# check_names.sh: every noh_ and NOH_ name in a comment or a document is one that the sources have: no text speaks of a
+# function that was renamed. A name that ends in _ stands for all that begin so; noh.h's noh_noun_verb and noh_x are
+# patterns.
+set -u
+. tests/cli/lib.sh
+
+find runtime platform shaders_es tools tests -type f \
+    \( -name '*.[ch]' -o -name '*.cpp' -o -name '*.glsl' -o -name '*.vert' -o -name '*.frag' -o -name '*.geom' \) |
+    grep -v '/cross/cmocka' | sort >"$work/sources"
+find . -name '*.md' ! -name CHANGELOG.md ! -path './.git/*' ! -path "./${build#./}/*" ! -path './build*' | sort >"$work/documents"
+
+# The code without its comments, and the comments without the code. Comments do not nest and strings hold no "/*".
+awk -v code="$work/code" -v text="$work/text" '
+    FNR == 1 { inside = 0 }
+    {
+        line = $0
+        while (line != "") {
+            if (inside) {
+                at = index(line, "*/")
+                print FILENAME ": " (at ? substr(line, 1, at - 1) : line) >text
+                line = at ? substr(line, at + 2) : ""
+                if (at) inside = 0
+            } else {
+                at = index(line, "/*")
+                print at ? substr(line, 1, at - 1) : line >code
+                line = at ? substr(line, at + 2) : ""
+                if (at) inside = 1
+            }
+        }
+    }' $(cat "$work/sources")
+for document in $(cat "$work/documents"); do sed "s|^|$document: |" "$document"; done >>"$work/text"
+
+grep -oE '\b(noh|NOH)_[A-Za-z0-9_]+' "$work/code" | sort -u >"$work/names"
+check 'names were found' test "$(wc -l <"$work/names")" -gt 1000
+grep -oE '\b(noh|NOH)_[A-Za-z0-9_]+' "$work/text" | sort -u |
+    grep -vE '^(noh_noun.*|NOH_NOUN|noh_x_.*|noh_shader_.*)$' >"$work/spoken"
+check 'and spoken of' test "$(wc -l <"$work/spoken")" -gt 300
+# Known: the name itself, or a beginning of one.
+awk 'NR == FNR { known[$0] = 1; all = all "\n" $0; next }
+     !($0 in known) && !index(all, "\n" $0) { print }' "$work/names" "$work/spoken" >"$work/strange"
+while read -r name; do grep -m 1 -wF "$name" "$work/text"; done <"$work/strange" | sed 's/^/#   /'
+check 'no comment or document names what does not exist' test ! -s "$work/strange"
+finish
