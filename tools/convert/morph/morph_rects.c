@@ -11,7 +11,7 @@
 #include <stdlib.h>
 
 #define PIECES_MOST 4096u /* joining takes time quadratic in their number; noise that has more keeps its bands */
-#define NOBODY UINT32_MAX
+#define NO_PIECE UINT32_MAX
 #define HOPELESS (-1e30)
 
 typedef struct box {
@@ -125,11 +125,11 @@ static void find_join(cover *c, uint32_t index)
 
 static uint32_t best_piece(cover *c)
 {
-    uint32_t best = NOBODY;
+    uint32_t best = NO_PIECE;
     for (uint32_t i = 0; i < c->count; i++) {
         if (c->pieces[i].dirty) find_join(c, i);
         if (c->pieces[i].gain <= HOPELESS) continue;
-        if (best == NOBODY || c->pieces[i].gain > c->pieces[best].gain) best = i;
+        if (best == NO_PIECE || c->pieces[i].gain > c->pieces[best].gain) best = i;
     }
     return best;
 }
