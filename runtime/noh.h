@@ -19,9 +19,10 @@
  *
  * Errors. What can fail returns a noh_result, NOH_OK (0) or an error, and leaves its outputs untouched on error. The
  * last parameter is then a noh_error, which may be NULL: `what` is a sentence and never NULL after a failure, `where`
- * the byte or index at fault, `need` the size or count that was wanted; 0 where that means nothing. Bad data, short
- * memory and a missing capability are errors. A caller's bug (a NULL, an index past its count) is an assert, of
- * two tiers that a build switches on: base/assert.h.
+ * the byte or index at fault, `need` the size or count that was wanted; 0 where that means nothing. Setters of one
+ * number and noh_gl_timer_poll have none: their result says all. Bad data, short memory and a missing capability are
+ * errors. A caller's bug (a NULL, an index past its count) is an assert, of two tiers that a build switches on:
+ * base/assert.h.
  *
  * Not found. A function that finds by name returns an index, or NOH_NONE. A function that returns a noh_result returns
  * NOH_ERR_NOT_FOUND.

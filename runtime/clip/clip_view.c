@@ -61,9 +61,11 @@ noh_result noh_clip_view_init(void *memory, size_t bytes, const noh_clip_cache *
     const noh_result r = noh_arena_open(&arena, memory, bytes, noh_clip_view_size(cache), error);
     if (r) return r;
     view = noh_arena_carve(&arena, sizeof *view, 16u);
-    memset(view, 0, sizeof *view);
-    view->cache = cache;
-    carve(&arena, cache->segment_bytes, view->spills);
+    if (view) { /* always: the arena has its size */
+        memset(view, 0, sizeof *view);
+        view->cache = cache;
+        carve(&arena, cache->segment_bytes, view->spills);
+    }
     *out = view;
     return NOH_OK;
 }

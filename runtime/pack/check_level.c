@@ -27,13 +27,36 @@ static noh_mesh_header as_full(const noh_mesh_header *l, const noh_mesh_header *
     return same;
 }
 
-/* Whether a level has nothing, or more of something than the finer level. */
-static int counts_rise(const noh_mesh_header *l, const noh_mesh_header *finer)
+/* The byte in a header of the first count that is larger than the finer level's, or that no level can have; 0: none,
+ * for the first field is no count. */
+static size_t find_risen_count(const noh_mesh_header *l, const noh_mesh_header *finer)
 {
-    return !l->vertex_count || l->vertex_count > finer->vertex_count || l->index_count > finer->index_count ||
-           l->index_count % 3 || !l->submesh_count || l->submesh_count > NOH_SUBMESHES_MAX ||
-           l->touched_count > finer->touched_count || l->rect_count > finer->rect_count ||
-           l->texel_count > finer->texel_count || l->pair_count > finer->pair_count;
+    const struct {
+        size_t at;
+        int bad;
+    } counts[] = {
+        { offsetof(noh_mesh_header, vertex_count), !l->vertex_count || l->vertex_count > finer->vertex_count },
+        { offsetof(noh_mesh_header, index_count), l->index_count > finer->index_count || l->index_count % 3 },
+        { offsetof(noh_mesh_header, submesh_count), !l->submesh_count || l->submesh_count > NOH_SUBMESHES_MAX },
+        { offsetof(noh_mesh_header, touched_count), l->touched_count > finer->touched_count },
+        { offsetof(noh_mesh_header, rect_count), l->rect_count > finer->rect_count },
+        { offsetof(noh_mesh_header, texel_count), l->texel_count > finer->texel_count },
+        { offsetof(noh_mesh_header, pair_count), l->pair_count > finer->pair_count },
+    };
+    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
+        if (counts[i].bad) return counts[i].at;
+    }
+    return 0;
+}
+
+/* The byte in a header of the first field in which two headers differ; their size where they are the same. Headers are
+ * words without gaps. */
+static size_t find_difference(const noh_mesh_header *a, const noh_mesh_header *b)
+{
+    const uint8_t *x = (const uint8_t *)a, *y = (const uint8_t *)b;
+    size_t at = 0;
+    while (at < sizeof *a && memcmp(x + at, y + at, 4u) == 0) at += 4u;
+    return at;
 }
 
 static noh_result check_errors(const noh_check *check, const noh_mesh_header *l, const noh_mesh_header *finer)
@@ -75,12 +98,15 @@ noh_result noh_check_level_headers(noh_check *check, const noh_mesh_header *h)
     if (!result) result = check_full_errors(check, h);
     for (uint32_t k = 1; !result && k < h->level_count; k++) {
         const noh_mesh_header same = as_full(&h[k], h);
-        if (h[k].level != k || memcmp(&same, h, sizeof same) != 0) {
+        const uint64_t start = (uint64_t)k * sizeof *h;
+        const size_t differs = h[k].level != k ? offsetof(noh_mesh_header, level) : find_difference(&same, h);
+        const size_t risen = find_risen_count(&h[k], &h[k - 1]);
+        if (differs < sizeof same) {
             return noh_check_fail(check, "LOD level is out of order, or differs in what all levels share",
-                                  (uint64_t)k * sizeof *h);
+                                  start + differs);
         }
-        if (counts_rise(&h[k], &h[k - 1])) {
-            return noh_check_fail(check, "LOD level has more of something than the finer one", (uint64_t)k * sizeof *h);
+        if (risen) {
+            return noh_check_fail(check, "LOD level has more of something than the finer one", start + risen);
         }
         result = check_errors(check, &h[k], &h[k - 1]);
     }
@@ -171,12 +197,17 @@ static noh_result check_targets(const noh_check *check, const noh_mesh_header *h
 
 static noh_result check_offsets(const noh_check *check, const noh_mesh_header *l, const noh_mesh_header *finer)
 {
-    const int follow = l->indices_offset == finer->indices_offset + finer->index_count * finer->index_bytes &&
-                       l->submeshes_offset == finer->submeshes_offset + finer->submesh_count * sizeof(noh_submesh) &&
-                       l->targets_offset == finer->targets_offset + finer->target_count * sizeof(noh_target);
-    return follow ? NOH_OK
-                  : noh_check_fail(check, "level's indices, submeshes or targets do not follow the finer level's",
-                                   (uint64_t)l->level * sizeof *l);
+    size_t field = 0;
+    if (l->indices_offset != finer->indices_offset + finer->index_count * finer->index_bytes) {
+        field = offsetof(noh_mesh_header, indices_offset);
+    } else if (l->submeshes_offset != finer->submeshes_offset + finer->submesh_count * sizeof(noh_submesh)) {
+        field = offsetof(noh_mesh_header, submeshes_offset);
+    } else if (l->targets_offset != finer->targets_offset + finer->target_count * sizeof(noh_target)) {
+        field = offsetof(noh_mesh_header, targets_offset);
+    }
+    return field ? noh_check_fail(check, "level's indices, submeshes or targets do not follow the finer level's",
+                                  (uint64_t)l->level * sizeof *l + field)
+                 : NOH_OK;
 }
 
 noh_result noh_check_levels(const noh_check *check, const noh_mesh_header *h)

@@ -308,6 +308,52 @@ LIES(X)
 SPLIT_LIES(X)
 #undef X
 
+/* Each of these fields, wrong in the header of one level alone, is named by its byte. */
+static void errors_name_the_field(void **state)
+{
+#define AT(field) offsetof(noh_mesh_header, field)
+    static const size_t fields[] = { AT(flags),
+                                     AT(vertex_count),
+                                     AT(index_count),
+                                     AT(submesh_count),
+                                     AT(target_count),
+                                     AT(rect_count),
+                                     AT(texel_count),
+                                     AT(pair_count),
+                                     AT(touched_count),
+                                     AT(attribute_stride),
+                                     AT(positions_offset),
+                                     AT(bounds_max),
+                                     AT(world_scale),
+                                     AT(skin),
+                                     AT(joint_boxes_offset),
+                                     AT(level),
+                                     AT(level_count),
+                                     AT(indices_offset),
+                                     AT(submeshes_offset),
+                                     AT(targets_offset),
+                                     AT(reserved) };
+#undef AT
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(fields); i++) {
+        for (uint32_t k = 1; k < 3u; k++) {
+            uint8_t *bytes = test_aligned(rigid.bytes, rigid.count);
+            forged f = reach(bytes);
+            const size_t at = (size_t)(f.chunk - bytes) + k * sizeof *f.h + fields[i];
+            noh_error error = { NOH_OK, "nothing", 0, 0 };
+            noh_pack pack;
+            bytes[at + 2u] ^= 0x7f;
+            pack_repair(bytes, rigid.count);
+            assert_int_equal(noh_pack_open(bytes, rigid.count, &pack, &error), NOH_ERR_DATA);
+            if (error.where != at) {
+                fail_msg("level %u, byte %lu of its header: where is byte %ld of it (%s)", (unsigned)k,
+                         (unsigned long)fields[i], (long)error.where - (long)at + (long)fields[i], error.what);
+            }
+            free(bytes);
+        }
+    }
+}
+
 /* A mesh whose targets move every vertex needs no references: vertex and texel have the same number. */
 static void texels_without_references_are_counted(void **state)
 {
@@ -407,14 +453,16 @@ static void repaired_flips_stay_in_bounds(void **state)
     walk_flips(&split);
 }
 
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(honest_copies_open), cmocka_unit_test(texels_without_references_are_counted),
-    cmocka_unit_test(every_truncation_and_flip_is_refused), cmocka_unit_test(repaired_flips_stay_in_bounds),
+static const struct CMUnitTest tests[] = { cmocka_unit_test(honest_copies_open),
+                                           cmocka_unit_test(errors_name_the_field),
+                                           cmocka_unit_test(texels_without_references_are_counted),
+                                           cmocka_unit_test(every_truncation_and_flip_is_refused),
+                                           cmocka_unit_test(repaired_flips_stay_in_bounds),
 #define X(name, statement, message) cmocka_unit_test(level_##name),
-    LIES(X)
+                                           LIES(X)
 #undef X
 #define X(name, statement, message) cmocka_unit_test(split_##name),
-        SPLIT_LIES(X)
+                                               SPLIT_LIES(X)
 #undef X
 };
 
