@@ -112,8 +112,9 @@ static noh_result count_clip(const noh_bank_binding *b, uint32_t index, counts *
 static uint32_t cached_segments_of(const noh_clip_bank_desc *desc, uint32_t segments)
 {
     const uint64_t instances = desc->instance_count ? desc->instance_count : 1u,
-                   tracks = desc->track_count ? desc->track_count : TRACKS;
-    const uint64_t plays = NOH_CLIP_CACHE_SEGMENTS_PER_TRACK * instances * tracks;
+                   tracks = desc->track_count ? desc->track_count : TRACKS, most = NOH_CLIP_CACHE_SEGMENTS_MAX;
+    const uint64_t plays = NOH_CLIP_CACHE_SEGMENTS_PER_TRACK * (instances < most ? instances : most) *
+                           (tracks < most ? tracks : most); /* of the full numbers, 64 bits might overflow */
     const uint64_t wanted = desc->cached_segment_count            ? desc->cached_segment_count
                             : plays < NOH_CLIP_CACHE_SEGMENTS_MAX ? plays
                                                                   : NOH_CLIP_CACHE_SEGMENTS_MAX;
@@ -124,6 +125,7 @@ static uint32_t cached_segments_of(const noh_clip_bank_desc *desc, uint32_t segm
 
 static noh_result count(const noh_clip_bank_desc *desc, const noh_bank_binding *b, counts *c, noh_error *error)
 {
+    noh_error why = { NOH_OK, "", 0, 0 };
     memset(c, 0, sizeof *c);
     c->shape.joint_count = b->skeleton.joint_count;
     c->roots = desc->root_axes != 0 && c->shape.joint_count != 0;
@@ -145,8 +147,8 @@ static noh_result count(const noh_clip_bank_desc *desc, const noh_bank_binding *
                         0, c->shape.float_count);
     }
     c->cached_segments = cached_segments_of(desc, c->cache.segment_count);
-    c->cache_bytes = noh_clip_cache_needs_size(&c->cache, c->cached_segments, error);
-    return c->cache_bytes ? NOH_OK : NOH_ERR_ARG;
+    c->cache_bytes = noh_clip_cache_needs_size(&c->cache, c->cached_segments, &why);
+    return c->cache_bytes ? NOH_OK : noh_fail(error, why.result, why.what, why.where, why.need);
 }
 
 static size_t carve(noh_arena *arena, const counts *c, parts *p)

@@ -8,6 +8,7 @@
 typedef noh_cached_segment cached;
 
 #define SEGMENT_BYTES_MIN 16u
+#define SEGMENTS_MAX (1u << 28) /* of all clips of a cache: their table is within 32 bits of bytes */
 
 /* ---- sizes ---- */
 
@@ -33,6 +34,10 @@ void noh_clip_cache_needs_add(noh_clip_cache_needs *needs, const noh_clip_info *
     const uint32_t bytes = entry_bytes(info), size = size_class(bytes);
     NOH_ASSERT(size < NOH_CLIP_CACHE_SIZES);
     needs->clip_count++;
+    if (info->segment_count > SEGMENTS_MAX - needs->segment_count) {
+        needs->segment_count = SEGMENTS_MAX; /* which is refused */
+        return;
+    }
     needs->segment_count += info->segment_count;
     needs->size_segments[size] += info->segment_count;
     if (bytes > needs->size_bytes[size]) needs->size_bytes[size] = bytes;
@@ -58,6 +63,10 @@ static noh_result check_counts(const noh_clip_cache_needs *needs, uint32_t cache
     if (needs->clip_count == 0u || needs->clip_count > NOH_CLIP_CACHE_CLIPS_MAX) {
         return noh_fail(error, NOH_ERR_ARG, "clip_count of a clip cache: none, or more than NOH_CLIP_CACHE_CLIPS_MAX",
                         0, needs->clip_count);
+    }
+    if (needs->segment_count >= SEGMENTS_MAX) {
+        return noh_fail(error, NOH_ERR_LIMIT, "clips of a clip cache: more segments than it can number", 0,
+                        needs->segment_count);
     }
     if (cached_segment_count == 1u) {
         return noh_fail(error, NOH_ERR_ARG,

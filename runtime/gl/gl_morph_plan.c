@@ -338,7 +338,8 @@ static size_t staging_size(const noh_gl_morph_desc *desc, const noh_gl_morph_pla
         bytes = load > bytes ? load : bytes;
     } else {
         size_t load = 16u * (size_t)NOH_RECT_CHUNK;
-        bytes = (size_t)rect_record_bytes(desc, plan);
+        const uint64_t records = rect_record_bytes(desc, plan);
+        bytes = records < SIZE_MAX ? (size_t)records : SIZE_MAX; /* which no memory has */
         bytes = bytes > load ? bytes : load;
     }
     return bytes;

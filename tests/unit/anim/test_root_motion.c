@@ -322,6 +322,29 @@ static void test_one_track_moves_as_its_clip(void **state)
     assert_true(root_apart(&world, &want) < 1e-6);
 }
 
+/* A track without weight plays on, but what it walked meanwhile is not made up for when it has weight again. */
+static void what_was_walked_without_weight_is_gone(void **state)
+{
+    stage g;
+    noh_root_pose move, want;
+    int64_t from;
+    (void)state;
+    stage_open(&g, NOH_ROOT_GROUND);
+    start(&g, 0, track_of(0, 0.3f));
+    assert_int_equal(noh_controller_set_weight(g.c, 0, 0.0f), NOH_OK);
+    for (int i = 0; i < 10; i++) {
+        noh_controller_step(g.c, &g.w.set, 800, NULL, NULL);
+        move = noh_controller_root_motion(g.c, &g.w.set);
+        assert_true(move.translation[0] == 0.0 && move.translation[2] == 0.0 && move.turn == 0u);
+    }
+    assert_int_equal(noh_controller_set_weight(g.c, 0, 0.3f), NOH_OK);
+    from = noh_controller_track(g.c, 0)->position;
+    noh_controller_step(g.c, &g.w.set, 800, NULL, NULL);
+    move = noh_controller_root_motion(g.c, &g.w.set);
+    want = noh_root_between(&g.w.set, &g.w.roots[0], 0, NOH_LOOP_REPEAT, from, noh_controller_track(g.c, 0)->position);
+    assert_true(root_apart(&move, &want) < 1e-9);
+}
+
 static void test_seeks_do_not_move_play_does(void **state)
 {
     stage g;
@@ -523,6 +546,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(sums_of_moves_do_not_drift),
         cmocka_unit_test(test_measure_refuses),
         cmocka_unit_test(test_one_track_moves_as_its_clip),
+        cmocka_unit_test(what_was_walked_without_weight_is_gone),
         cmocka_unit_test(test_seeks_do_not_move_play_does),
         cmocka_unit_test(test_moves_are_blended_by_weight_and_group),
         cmocka_unit_test(test_what_moves_no_joints_does_not_hold_the_root),

@@ -39,6 +39,18 @@ static void every_position_lies_in_its_clip(void **state)
 }
 
 /* What passes the range is held at its end; what fits is exact. */
+/* Ping-pong is even about 0: what lies below 0 is played as what lies above it. */
+static void ping_pong_is_mirrored_at_zero(void **state)
+{
+    (void)state;
+    for (int64_t position = 0; position < 7 * 3 * 65536; position += 977) {
+        const int64_t leg = position / (3 * 65536), rest = position % (3 * 65536);
+        assert_int_equal(noh_time_clip(position, 3, NOH_LOOP_PING_PONG), leg % 2 ? 3 * 65536 - rest : rest);
+        assert_int_equal(noh_time_clip(-position, 3, NOH_LOOP_PING_PONG),
+                         noh_time_clip(position, 3, NOH_LOOP_PING_PONG));
+    }
+}
+
 static void advancing_never_overflows(void **state)
 {
     static const int64_t rates[] = { INT64_MIN, -(256 * 65536), -1, 0, 1, 65536, 256 * 65536, INT64_MAX };
@@ -102,9 +114,9 @@ static void seconds_become_the_nearest_tick(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(every_position_lies_in_its_clip), cmocka_unit_test(advancing_never_overflows),
-    cmocka_unit_test(positions_of_ticks_are_held),     cmocka_unit_test(rebasing_keeps_the_place),
-    cmocka_unit_test(seconds_become_the_nearest_tick),
+    cmocka_unit_test(every_position_lies_in_its_clip), cmocka_unit_test(ping_pong_is_mirrored_at_zero),
+    cmocka_unit_test(advancing_never_overflows),       cmocka_unit_test(positions_of_ticks_are_held),
+    cmocka_unit_test(rebasing_keeps_the_place),        cmocka_unit_test(seconds_become_the_nearest_tick),
 };
 
 int main(void)

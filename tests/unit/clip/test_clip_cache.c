@@ -293,6 +293,50 @@ static void wants_are_met_in_order(void **state)
     free(set);
 }
 
+/* A sample across two segments keeps the first one, also where that is what was touched longest ago. */
+static void a_second_segment_spares_the_first(void **state)
+{
+    noh_clip_bank_desc desc = desc_of();
+    noh_clip_bank *small, *large;
+    noh_transform pose[JOINTS], expected[JOINTS];
+    float floats[64], expected_floats[64];
+    int64_t across;
+    (void)state;
+    desc.cached_segment_count = 2;
+    small = test_clip_bank(&desc);
+    desc.cached_segment_count = 32768;
+    large = test_clip_bank(&desc);
+    across = tick_of(large->cache, 3, 1) - 800; /* between the last frame of segment 0 and the first of 1 */
+    noh_clip_cache_begin_frame(small->cache);
+    noh_clip_sample(small->cache, 3, tick_of(large->cache, 3, 0), JOINTS, pose, floats);
+    noh_clip_sample(small->cache, 3, tick_of(large->cache, 3, 5), JOINTS, pose, floats);
+    noh_clip_sample(small->cache, 3, across, JOINTS, pose, floats);
+    noh_clip_sample(large->cache, 3, across, JOINTS, expected, expected_floats);
+    assert_memory_equal(pose, expected, sizeof pose);
+    assert_true(holds(small->cache, 3, 0) && holds(small->cache, 3, 1));
+    free(small);
+    free(large);
+}
+
+/* What work spends is counted as decoded, and not as late. */
+static void work_is_counted(void **state)
+{
+    noh_clip_bank_desc desc = desc_of();
+    noh_clip_bank *set = test_clip_bank(&desc);
+    const noh_clip_cache_stats before = noh_clip_cache_stats_of(set->cache);
+    noh_clip_cache_stats after;
+    uint32_t spent;
+    (void)state;
+    noh_clip_cache_begin_frame(set->cache);
+    assert_int_equal(noh_clip_cache_want(set->cache, 3, tick_of(set->cache, 3, 2), JOINTS), 1);
+    spent = noh_clip_cache_work(set->cache, 1000000);
+    after = noh_clip_cache_stats_of(set->cache);
+    assert_true(spent > 0u);
+    assert_int_equal(after.decoded - before.decoded, spent);
+    assert_int_equal(after.decoded_late, before.decoded_late);
+    free(set);
+}
+
 /* ---- ends ---- */
 
 static void frames_past_the_end_are_clamped(void **state)
@@ -356,6 +400,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(any_use_leaves_the_lists_whole),
     cmocka_unit_test(the_one_touched_longest_ago_goes),
     cmocka_unit_test(wants_are_met_in_order),
+    cmocka_unit_test(a_second_segment_spares_the_first),
+    cmocka_unit_test(work_is_counted),
     cmocka_unit_test(frames_past_the_end_are_clamped),
     cmocka_unit_test(memory_and_descs_are_checked),
 };

@@ -122,10 +122,13 @@ static void stretches_are_kept(void **state)
 static void mirrors_go_into_the_stretch(void **state)
 {
     (void)state;
-    for (int a = 0; a < 3; a++) {
-        const float q[4] = { 0.5f, 0.5f, 0.5f, 0.5f };
-        float scale[3] = { 1.0f, 2.0f, 0.5f }, m[12];
-        scale[a] = -scale[a];
+    for (int a = 0; a < 6; a++) {
+        float q[4] = { 0.1f, 0.7f, -0.1f, 0.7f }, scale[3] = { 1.0f, 2.0f, 0.5f }, m[12];
+        if (a < 3) {
+            q[0] = q[1] = q[2] = q[3] = 0.5f; /* the axes change places */
+        }
+        scale[a % 3] = -scale[a % 3];
+        noh_quat_normalize(q);
         matrix_of(q, scale, offset, m);
         expect_same(m, 2e-5);
     }

@@ -467,6 +467,7 @@ static void one_joint_is_its_matrix(void **state)
                 assert_true(fabs((double)(a.position[i] - b.position[i])) < 1e-5 * size + 1e-9);
             }
             assert_true(noh_dot3(a.normal, b.normal) > 0.999f && a.tangent[3] == b.tangent[3]);
+            assert_true(noh_dot3(a.tangent, b.tangent) > 0.999f);
         }
     }
     unmake(&x);

@@ -504,6 +504,51 @@ static void test_clips_of_joints_and_of_floats(void **state)
     }
 }
 
+/* A blend under a mask: mask(jump, blend(walk, wave)). Of joints and floats the blend has what either of its clips has.
+ */
+static void a_blend_has_what_either_clip_has(void **state)
+{
+    static const uint16_t children[4] = { 1, 2, 0, 3 }; /* of the blend, then of the mask */
+    ALIGNED uint8_t memory[4096], scratch_memory[16384];
+    noh_track_desc clips[3] = { track_of(JUMP, 0.0f), track_of(WALK, 0.0f), track_of(WAVE, 0.0f) };
+    noh_graph_node nodes[5];
+    noh_graph graph;
+    noh_graph_state *it;
+    noh_graph_scratch scratch;
+    scene s;
+    noh_transform walk[JOINTS], face[JOINTS], pose[JOINTS];
+    float walk_floats[FLOATS], face_floats[FLOATS], floats[FLOATS];
+    uint8_t mask[JOINTS + FLOATS];
+    (void)state;
+    memset(mask, 255, sizeof mask);
+    scene_open(&s);
+    s.set.masks = mask;
+    s.set.mask_count = 1;
+    s.clips[WALK].flags = NOH_CLIP_JOINTS_ONLY;
+    s.clips[WAVE].flags = NOH_CLIP_FLOATS_ONLY;
+    memset(nodes, 0, sizeof nodes);
+    memset(&graph, 0, sizeof graph);
+    for (uint16_t i = 0; i < 3; i++) nodes[i].index = i;
+    for (uint16_t i = 0; i < 5; i++) nodes[i].param = nodes[i].param_y = NOH_GRAPH_NONE;
+    nodes[3].kind = NOH_NODE_BLEND;
+    nodes[4].kind = NOH_NODE_MASK;
+    nodes[3].child_count = nodes[4].child_count = 2;
+    nodes[3].value = 0.5f;
+    nodes[4].value = 1.0f;
+    nodes[4].mask = 1;
+    nodes[4].first_child = 2;
+    graph.node_count = 5, graph.child_count = 4, graph.clip_count = 3;
+    graph.nodes = nodes, graph.children = children, graph.clips = clips;
+    assert_int_equal(noh_graph_state_init(memory, sizeof memory, &graph, &s.set, &it, NULL), NOH_OK);
+    assert_int_equal(noh_graph_scratch_init(scratch_memory, sizeof scratch_memory, &graph, &s.set, &scratch, NULL),
+                     NOH_OK);
+    scene_pose(&s, WALK, 0, walk, walk_floats);
+    scene_pose(&s, WAVE, 0, face, face_floats);
+    noh_graph_pose(it, &graph, &s.set, &scratch, pose, floats);
+    assert_true(pose_apart(pose, walk, JOINTS) < 1e-6);
+    assert_true(floats_apart(floats, face_floats, FLOATS) < 1e-6);
+}
+
 static void test_space_2d_state(void **state)
 {
     static stage g;
@@ -604,6 +649,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_cross_fade_and_back_at_the_end),
         cmocka_unit_test(test_layers_and_inertial_transitions),
         cmocka_unit_test(test_clips_of_joints_and_of_floats),
+        cmocka_unit_test(a_blend_has_what_either_clip_has),
         cmocka_unit_test(test_space_2d_state),
         cmocka_unit_test(test_events_by_weight),
         cmocka_unit_test(a_graph_is_cloned_by_memcpy),
