@@ -58,7 +58,7 @@ static void bad_set(scene *s, noh_result result, const char *what)
     scene_open(s);
 }
 
-static void test_set_fields_broken_in_turn(void **state)
+static void set_fields_broken_in_turn(void **state)
 {
     scene s;
     (void)state;
@@ -126,7 +126,7 @@ static void bad_controller(noh_controller_desc d, const char *what)
     assert_null(c);
 }
 
-static void test_controller_desc_fields_broken_in_turn(void **state)
+static void controller_desc_fields_broken_in_turn(void **state)
 {
     scene s;
     noh_controller_desc fine, d;
@@ -147,7 +147,7 @@ static void test_controller_desc_fields_broken_in_turn(void **state)
     bad_controller(fine, "set");
 }
 
-static void test_memory_is_exact(void **state)
+static void memory_is_exact(void **state)
 {
     stage g;
     noh_controller_desc d;
@@ -179,7 +179,7 @@ static void test_memory_is_exact(void **state)
     for (size_t i = size; i < sizeof g.memory; i++) assert_int_equal(g.memory[i], 0xa5);
 }
 
-static void test_scratch_memory_is_exact(void **state)
+static void scratch_memory_is_exact(void **state)
 {
     scene s;
     static ALIGNED uint8_t memory[32768];
@@ -197,7 +197,7 @@ static void test_scratch_memory_is_exact(void **state)
 }
 
 /* At most 64 bytes per joint and 64 per track, head, changes and offsets of a transition counted in. */
-static void test_state_is_small(void **state)
+static void state_is_small(void **state)
 {
     static const uint32_t joints[] = { 20, 31, 60, 1024 }, tracks[] = { 2, 4, 8 };
     scene s;
@@ -234,7 +234,7 @@ static void bad_start(stage *g, noh_track_desc d, const char *what)
     assert_memory_equal(&before, noh_controller_track(g->c, 1), sizeof before);
 }
 
-static void test_track_desc_fields_broken_in_turn(void **state)
+static void track_desc_fields_broken_in_turn(void **state)
 {
     stage g;
     noh_track_desc d;
@@ -275,7 +275,7 @@ static void test_track_desc_fields_broken_in_turn(void **state)
     assert_int_equal(strncmp(error.what, "track", strlen("track")), 0);
 }
 
-static void test_setters_refuse(void **state)
+static void setters_refuse_bad_values(void **state)
 {
     stage g;
     (void)state;
@@ -295,7 +295,7 @@ static void test_setters_refuse(void **state)
 
 /* ---- time ---- */
 
-static void test_time_functions(void **state)
+static void time_functions_follow_their_loop_modes(void **state)
 {
     int64_t d = noh_position_of(100), big = (int64_t)1 << 61;
     (void)state;
@@ -332,7 +332,7 @@ static void time_does_not_drift(void **state)
     assert_true(fabsf(seconds - 86400.0f) > 1000.0f);
 }
 
-static void test_ended(void **state)
+static void ended_tracks_are_known(void **state)
 {
     stage g;
     (void)state;
@@ -368,7 +368,7 @@ static void bad_change(stage *g, noh_change_desc d, const char *what)
     assert_int_equal(strncmp(error.what, what, strlen(what)), 0);
 }
 
-static void test_change_fields_broken_in_turn(void **state)
+static void change_fields_broken_in_turn(void **state)
 {
     stage g;
     noh_change_desc d;
@@ -409,7 +409,7 @@ static void test_change_fields_broken_in_turn(void **state)
     assert_int_equal(noh_controller_change(g.c, &g.s.set, &d, &error), NOH_OK); /* room again */
 }
 
-static void test_weight_follows_its_curve(void **state)
+static void a_weight_follows_its_curve(void **state)
 {
     stage g;
     noh_change_desc d = change_of(NOH_CHANGE_WEIGHT, 1000);
@@ -437,7 +437,7 @@ static void test_weight_follows_its_curve(void **state)
 }
 
 /* While a speed changes, a track moves by the integral of the curve: the mean of both speeds. */
-static void test_speed_change_travels_the_integral(void **state)
+static void a_speed_change_moves_by_the_integral(void **state)
 {
     static const uint32_t durations[] = { 1, 2, 7, 63, 64, 65, 1000, 48000, 1000000 };
     (void)state;
@@ -461,7 +461,7 @@ static void test_speed_change_travels_the_integral(void **state)
     }
 }
 
-static void test_position_change_arrives_exactly(void **state)
+static void a_position_change_arrives_exactly(void **state)
 {
     static const uint32_t durations[] = { 0, 1, 2, 7, 63, 64, 65, 1000, 48000 };
     (void)state;
@@ -490,7 +490,7 @@ static void test_position_change_arrives_exactly(void **state)
     }
 }
 
-static void test_cross_fade(void **state)
+static void a_cross_fade_is_the_blend_of_both(void **state)
 {
     stage g;
     (void)state;
@@ -526,7 +526,7 @@ static double phases_apart(stage *g, uint32_t a, uint32_t b)
     return fmin(apart, (double)count - apart);
 }
 
-static void test_sync_by_markers_and_by_phase(void **state)
+static void tracks_keep_in_step_by_markers_and_by_phase(void **state)
 {
     (void)state;
     for (int markers = 0; markers < 2; markers++) {
@@ -557,7 +557,7 @@ static void test_sync_by_markers_and_by_phase(void **state)
     }
 }
 
-static void test_sync_refuses_other_markers(void **state)
+static void clips_with_other_markers_are_not_synced(void **state)
 {
     stage g;
     noh_track_desc d = track_of(LEAN, 1.0f); /* has none */
@@ -574,7 +574,7 @@ static void test_sync_refuses_other_markers(void **state)
 
 /* ---- poses ---- */
 
-static void test_one_track_is_its_clip(void **state)
+static void one_track_shows_its_clip(void **state)
 {
     stage g;
     noh_transform want[JOINTS];
@@ -635,7 +635,7 @@ static void priority_is_the_blend_group(void **state)
 }
 
 /* A masked high track covers what its mask lets through, with soft edges, and leaves the rest. */
-static void test_masked_layer(void **state)
+static void a_masked_track_covers_by_its_mask(void **state)
 {
     stage g;
     noh_transform low[JOINTS], high[JOINTS], want[JOINTS];
@@ -696,7 +696,7 @@ static void a_masked_track_alone_leaves_the_bind_pose(void **state)
 }
 
 /* A walk that moves no floats and a face that moves no joints, together: each is what it is alone. */
-static void test_clips_of_joints_and_of_floats(void **state)
+static void clips_of_joints_and_of_floats_do_not_mix(void **state)
 {
     stage g;
     noh_transform walk[JOINTS], face[JOINTS];
@@ -719,7 +719,7 @@ static void test_clips_of_joints_and_of_floats(void **state)
 
 /* The same in the high group: a speaking face neither covers the walk below nor dilutes the bow beside it, and a bow
  * that moves no floats leaves them to the face. */
-static void test_clips_of_joints_and_of_floats_above(void **state)
+static void clips_of_joints_and_of_floats_do_not_mix_in_the_high_group(void **state)
 {
     stage g;
     noh_transform low[JOINTS], bow[JOINTS], face[JOINTS];
@@ -745,7 +745,7 @@ static void test_clips_of_joints_and_of_floats_above(void **state)
 }
 
 /* A high track whose mask leaves a joint out does not dilute another high track there. */
-static void test_a_masked_track_leaves_others_their_joints(void **state)
+static void a_masked_track_leaves_others_their_joints(void **state)
 {
     stage g;
     noh_transform run[JOINTS], wave[JOINTS], mean[JOINTS];
@@ -765,7 +765,7 @@ static void test_a_masked_track_leaves_others_their_joints(void **state)
 }
 
 /* The low group is the mean by weight: three of a walk to one of a run. */
-static void test_tracks_count_by_weight(void **state)
+static void tracks_count_by_weight(void **state)
 {
     stage g;
     noh_transform a[JOINTS], b[JOINTS], want[JOINTS];
@@ -784,7 +784,7 @@ static void test_tracks_count_by_weight(void **state)
     }
 }
 
-static void test_lod(void **state)
+static void lod_levels_leave_out_tracks_and_joints(void **state)
 {
     stage g;
     noh_transform want[JOINTS];
@@ -807,7 +807,7 @@ static void test_lod(void **state)
     assert_true(pose_apart(g.pose, want, JOINTS) < 1e-6);
 }
 
-static void test_additive_tracks(void **state)
+static void additive_tracks_add_differences(void **state)
 {
     stage g;
     noh_transform base[JOINTS], lean[JOINTS], first[JOINTS], want[JOINTS];
@@ -877,7 +877,7 @@ static void clones_share_nothing_they_write(void **state)
 }
 
 /* Saved and restored by memcpy, an instance continues with the same bits, changes included. */
-static void test_snapshot_goes_on_the_same(void **state)
+static void a_snapshot_continues_with_the_same_bits(void **state)
 {
     stage g;
     static ALIGNED uint8_t saved[8192];
@@ -902,7 +902,7 @@ static void test_snapshot_goes_on_the_same(void **state)
 
 /* ---- transitions ---- */
 
-static void test_decay(void **state)
+static void offsets_decay_without_overshoot(void **state)
 {
     (void)state;
     for (int v = 0; v < 40; v++) {
@@ -949,7 +949,7 @@ static void inertia_some_ticks_ago(void **state)
     assert_memory_equal(floats_now, floats_then, sizeof floats_now);
 }
 
-static void test_inertial_transition(void **state)
+static void an_inertial_transition_does_not_jump(void **state)
 {
     stage g;
     noh_transform before[JOINTS], last[JOINTS], target[JOINTS];
@@ -987,7 +987,7 @@ static void test_inertial_transition(void **state)
     assert_true(largest < 0.35 * jump);
 }
 
-static void test_transition_within_a_transition(void **state)
+static void a_transition_within_a_transition_does_not_jump(void **state)
 {
     stage g;
     noh_transform before[JOINTS];
@@ -1043,7 +1043,7 @@ static void busy_open(stage *g)
     step(g, 1234);
 }
 
-static void test_check_takes_what_a_step_leaves(void **state)
+static void check_accepts_what_a_step_leaves(void **state)
 {
     stage g;
     noh_error error;
@@ -1063,7 +1063,7 @@ static void test_check_takes_what_a_step_leaves(void **state)
 }
 
 /* Damage to the head, tracks or changes is refused, or does no harm. */
-static void test_damaged_blocks_do_no_harm(void **state)
+static void damaged_blocks_do_no_harm(void **state)
 {
     static stage g, kept;
     noh_error error;
@@ -1101,7 +1101,7 @@ static void test_damaged_blocks_do_no_harm(void **state)
 }
 
 /* A seek that fires moves any distance in one tick; a transition after it still finds what was shown 10 ms before. */
-static void test_a_pose_before_a_far_seek(void **state)
+static void a_pose_before_a_far_seek(void **state)
 {
     stage g;
     (void)state;
@@ -1126,7 +1126,7 @@ static void restart_other(void *user, const noh_event *e)
     }
 }
 
-static void test_callback_starts_a_track_within_the_step(void **state)
+static void a_callback_may_start_a_track_within_the_step(void **state)
 {
     stage g;
     handler h = { NULL, 0, 0 };
@@ -1148,44 +1148,44 @@ static void test_callback_starts_a_track_within_the_step(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_set_fields_broken_in_turn),
-        cmocka_unit_test(test_controller_desc_fields_broken_in_turn),
-        cmocka_unit_test(test_memory_is_exact),
-        cmocka_unit_test(test_scratch_memory_is_exact),
-        cmocka_unit_test(test_state_is_small),
-        cmocka_unit_test(test_track_desc_fields_broken_in_turn),
-        cmocka_unit_test(test_setters_refuse),
-        cmocka_unit_test(test_time_functions),
+        cmocka_unit_test(set_fields_broken_in_turn),
+        cmocka_unit_test(controller_desc_fields_broken_in_turn),
+        cmocka_unit_test(memory_is_exact),
+        cmocka_unit_test(scratch_memory_is_exact),
+        cmocka_unit_test(state_is_small),
+        cmocka_unit_test(track_desc_fields_broken_in_turn),
+        cmocka_unit_test(setters_refuse_bad_values),
+        cmocka_unit_test(time_functions_follow_their_loop_modes),
         cmocka_unit_test(time_does_not_drift),
-        cmocka_unit_test(test_ended),
-        cmocka_unit_test(test_change_fields_broken_in_turn),
-        cmocka_unit_test(test_weight_follows_its_curve),
-        cmocka_unit_test(test_speed_change_travels_the_integral),
-        cmocka_unit_test(test_position_change_arrives_exactly),
-        cmocka_unit_test(test_cross_fade),
-        cmocka_unit_test(test_sync_by_markers_and_by_phase),
-        cmocka_unit_test(test_sync_refuses_other_markers),
-        cmocka_unit_test(test_one_track_is_its_clip),
+        cmocka_unit_test(ended_tracks_are_known),
+        cmocka_unit_test(change_fields_broken_in_turn),
+        cmocka_unit_test(a_weight_follows_its_curve),
+        cmocka_unit_test(a_speed_change_moves_by_the_integral),
+        cmocka_unit_test(a_position_change_arrives_exactly),
+        cmocka_unit_test(a_cross_fade_is_the_blend_of_both),
+        cmocka_unit_test(tracks_keep_in_step_by_markers_and_by_phase),
+        cmocka_unit_test(clips_with_other_markers_are_not_synced),
+        cmocka_unit_test(one_track_shows_its_clip),
         cmocka_unit_test(priority_is_the_blend_group),
-        cmocka_unit_test(test_masked_layer),
+        cmocka_unit_test(a_masked_track_covers_by_its_mask),
         cmocka_unit_test(the_high_group_covers_what_nothing_lies_below),
         cmocka_unit_test(a_masked_track_alone_leaves_the_bind_pose),
-        cmocka_unit_test(test_clips_of_joints_and_of_floats),
-        cmocka_unit_test(test_clips_of_joints_and_of_floats_above),
-        cmocka_unit_test(test_a_masked_track_leaves_others_their_joints),
-        cmocka_unit_test(test_tracks_count_by_weight),
-        cmocka_unit_test(test_lod),
-        cmocka_unit_test(test_additive_tracks),
+        cmocka_unit_test(clips_of_joints_and_of_floats_do_not_mix),
+        cmocka_unit_test(clips_of_joints_and_of_floats_do_not_mix_in_the_high_group),
+        cmocka_unit_test(a_masked_track_leaves_others_their_joints),
+        cmocka_unit_test(tracks_count_by_weight),
+        cmocka_unit_test(lod_levels_leave_out_tracks_and_joints),
+        cmocka_unit_test(additive_tracks_add_differences),
         cmocka_unit_test(clones_share_nothing_they_write),
-        cmocka_unit_test(test_snapshot_goes_on_the_same),
-        cmocka_unit_test(test_decay),
+        cmocka_unit_test(a_snapshot_continues_with_the_same_bits),
+        cmocka_unit_test(offsets_decay_without_overshoot),
         cmocka_unit_test(inertia_some_ticks_ago),
-        cmocka_unit_test(test_inertial_transition),
-        cmocka_unit_test(test_transition_within_a_transition),
-        cmocka_unit_test(test_callback_starts_a_track_within_the_step),
-        cmocka_unit_test(test_check_takes_what_a_step_leaves),
-        cmocka_unit_test(test_damaged_blocks_do_no_harm),
-        cmocka_unit_test(test_a_pose_before_a_far_seek),
+        cmocka_unit_test(an_inertial_transition_does_not_jump),
+        cmocka_unit_test(a_transition_within_a_transition_does_not_jump),
+        cmocka_unit_test(a_callback_may_start_a_track_within_the_step),
+        cmocka_unit_test(check_accepts_what_a_step_leaves),
+        cmocka_unit_test(damaged_blocks_do_no_harm),
+        cmocka_unit_test(a_pose_before_a_far_seek),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);

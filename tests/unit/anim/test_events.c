@@ -232,7 +232,7 @@ static void passages_join(rng *r, const noh_event_key *keys, uint32_t count, con
     free(parts.items);
 }
 
-static void test_passages_against_the_definition(void **state)
+static void passages_follow_the_definition(void **state)
 {
     rng r = { SEED };
     uint64_t total = 0;
@@ -506,7 +506,7 @@ static uint64_t play_partition(const fixture *f, uint32_t seed, uint32_t style, 
     return steps;
 }
 
-static void test_every_partition_gives_the_oracles_list(void **state)
+static void every_partition_gives_the_oracles_list(void **state)
 {
     static ALIGNED uint8_t memory[2048];
     rng r = { SEED + 1u };
@@ -642,7 +642,7 @@ static void compare_changes(rng *r, int sync, uint64_t *steps, uint64_t *events)
     free(one.out.items);
 }
 
-static void test_changes_and_sync_do_not_depend_on_the_partition(void **state)
+static void changes_and_sync_do_not_depend_on_the_partition(void **state)
 {
     rng r = { SEED + 2u };
     uint64_t steps = 0, events = 0;
@@ -705,7 +705,7 @@ static void one_close(one_clip *o)
     free(o->p.out.items);
 }
 
-static void test_start_end_seam_and_turn(void **state)
+static void keys_at_start_end_seam_and_turn(void **state)
 {
     static const uint32_t ticks[] = { 0, 5, 5, 10 };
     one_clip o;
@@ -744,7 +744,7 @@ static void test_start_end_seam_and_turn(void **state)
     one_close(&o);
 }
 
-static void test_turning_back_passes_again_what_was_passed(void **state)
+static void turning_back_passes_again_what_was_passed(void **state)
 {
     static const uint32_t ticks[] = { 5 };
     one_clip o;
@@ -761,7 +761,7 @@ static void test_turning_back_passes_again_what_was_passed(void **state)
     one_close(&o);
 }
 
-static void test_seek_skips_or_fires(void **state)
+static void a_seek_skips_or_fires(void **state)
 {
     static const uint32_t ticks[] = { 2, 4, 6, 8 };
     one_clip o;
@@ -788,7 +788,7 @@ static void test_seek_skips_or_fires(void **state)
     one_close(&o);
 }
 
-static void test_weight_min(void **state)
+static void keys_need_their_smallest_weight(void **state)
 {
     static const uint32_t ticks[] = { 2, 4, 6 };
     one_clip o;
@@ -807,7 +807,7 @@ static void test_weight_min(void **state)
     one_close(&o);
 }
 
-static void test_order_across_tracks_is_time_then_track(void **state)
+static void keys_are_ordered_by_time_then_track(void **state)
 {
     static const uint32_t ticks[] = { 2, 4 };
     one_clip o;
@@ -827,7 +827,7 @@ static void test_order_across_tracks_is_time_then_track(void **state)
     one_close(&o);
 }
 
-static void test_no_callback_and_no_time(void **state)
+static void a_step_without_callback_or_time(void **state)
 {
     static const uint32_t ticks[] = { 2 };
     one_clip o;
@@ -841,7 +841,7 @@ static void test_no_callback_and_no_time(void **state)
 }
 
 /* A step far longer than anything sane: bounded work, right count. */
-static void test_a_day_in_one_step(void **state)
+static void a_day_passes_in_one_step(void **state)
 {
     static const uint32_t ticks[] = { 2, 7 };
     one_clip o;
@@ -854,7 +854,7 @@ static void test_a_day_in_one_step(void **state)
 }
 
 /* The most times that a key fires in one step, however long; time advances all the same. */
-static void test_a_step_is_bounded(void **state)
+static void a_step_is_bounded(void **state)
 {
     static const uint32_t ticks[] = { 0, 0, 1 };
     one_clip o;
@@ -878,7 +878,7 @@ static void test_a_step_is_bounded(void **state)
 }
 
 /* The limit keeps the beginning of the list, in every loop mode and direction. */
-static void test_a_limit_cuts_the_list(void **state)
+static void a_limit_cuts_the_list(void **state)
 {
     rng r = { SEED + 5u };
     (void)state;
@@ -903,7 +903,7 @@ static void test_a_limit_cuts_the_list(void **state)
 }
 
 /* Clocks at the end of their range stop there: nothing overflows, waits for ever or fires without end. */
-static void test_clocks_stop_at_the_end(void **state)
+static void clocks_stop_at_the_end(void **state)
 {
     static const uint32_t ticks[] = { 2, 700 };
     one_clip o;
@@ -942,7 +942,7 @@ static void test_clocks_stop_at_the_end(void **state)
 }
 
 /* Repeated seeks, each from the pass that the track is in, stay in range. */
-static void test_seeks_add_up_within_range(void **state)
+static void seeks_add_up_within_range(void **state)
 {
     static const uint32_t ticks[] = { 2 };
     one_clip o;
@@ -959,7 +959,7 @@ static void test_seeks_add_up_within_range(void **state)
 
 /* ---- queue and bounds ---- */
 
-static void test_queue_of_the_bound_never_overflows(void **state)
+static void a_queue_of_the_bound_never_overflows(void **state)
 {
     static const uint32_t ticks[] = { 0, 3, 10 };
     one_clip o;
@@ -989,7 +989,7 @@ static void test_queue_of_the_bound_never_overflows(void **state)
     one_close(&o);
 }
 
-static void test_bounds_saturate(void **state)
+static void bounds_saturate(void **state)
 {
     (void)state;
     assert_int_equal(noh_events_max(5, 10, NOH_LOOP_ONCE, 1u << 30, 1), 5);
@@ -1039,22 +1039,22 @@ static void keys_fire_once_however_frames_fall(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_passages_against_the_definition),
-        cmocka_unit_test(test_every_partition_gives_the_oracles_list),
-        cmocka_unit_test(test_changes_and_sync_do_not_depend_on_the_partition),
-        cmocka_unit_test(test_start_end_seam_and_turn),
-        cmocka_unit_test(test_turning_back_passes_again_what_was_passed),
-        cmocka_unit_test(test_seek_skips_or_fires),
-        cmocka_unit_test(test_weight_min),
-        cmocka_unit_test(test_order_across_tracks_is_time_then_track),
-        cmocka_unit_test(test_no_callback_and_no_time),
-        cmocka_unit_test(test_a_day_in_one_step),
-        cmocka_unit_test(test_a_step_is_bounded),
-        cmocka_unit_test(test_a_limit_cuts_the_list),
-        cmocka_unit_test(test_clocks_stop_at_the_end),
-        cmocka_unit_test(test_seeks_add_up_within_range),
-        cmocka_unit_test(test_queue_of_the_bound_never_overflows),
-        cmocka_unit_test(test_bounds_saturate),
+        cmocka_unit_test(passages_follow_the_definition),
+        cmocka_unit_test(every_partition_gives_the_oracles_list),
+        cmocka_unit_test(changes_and_sync_do_not_depend_on_the_partition),
+        cmocka_unit_test(keys_at_start_end_seam_and_turn),
+        cmocka_unit_test(turning_back_passes_again_what_was_passed),
+        cmocka_unit_test(a_seek_skips_or_fires),
+        cmocka_unit_test(keys_need_their_smallest_weight),
+        cmocka_unit_test(keys_are_ordered_by_time_then_track),
+        cmocka_unit_test(a_step_without_callback_or_time),
+        cmocka_unit_test(a_day_passes_in_one_step),
+        cmocka_unit_test(a_step_is_bounded),
+        cmocka_unit_test(a_limit_cuts_the_list),
+        cmocka_unit_test(clocks_stop_at_the_end),
+        cmocka_unit_test(seeks_add_up_within_range),
+        cmocka_unit_test(a_queue_of_the_bound_never_overflows),
+        cmocka_unit_test(bounds_saturate),
         cmocka_unit_test(a_bound_holds_for_a_turn_within_the_step),
         cmocka_unit_test(keys_fire_once_however_frames_fall),
     };

@@ -67,7 +67,7 @@ static double root_apart(const noh_root_pose *a, const noh_root_pose *b)
 }
 
 /* world * E * rest is the root as the clip has it. */
-static void test_extract_and_remove(void **state)
+static void what_is_extracted_is_removed(void **state)
 {
     double worst = 0.0;
     (void)state;
@@ -102,7 +102,7 @@ static void test_extract_and_remove(void **state)
     assert_true(worst < 3e-6);
 }
 
-static void test_group_laws(void **state)
+static void root_moves_compose_as_a_group(void **state)
 {
     (void)state;
     for (uint32_t up = 0; up < 3; up++) {
@@ -153,7 +153,7 @@ static noh_root_pose million_by_squaring(const noh_root_pose *a)
 }
 
 /* A million passes in closed form, against both. */
-static void test_no_drift_after_a_million_loops(void **state)
+static void a_million_loops_do_not_drift(void **state)
 {
     static const uint32_t turns[] = { 0, 1, 5000, 0xffffff00u, 0x20000000u, 0x80000000u, 0x12345678u };
     (void)state;
@@ -178,7 +178,7 @@ static void test_no_drift_after_a_million_loops(void **state)
 }
 
 /* The same through a clip's positions, and from pass 0 and from pass a million alike. */
-static void test_at_is_the_same_in_every_pass(void **state)
+static void positions_are_the_same_in_every_pass(void **state)
 {
     walk w;
     noh_root_pose near_by, far, after;
@@ -206,7 +206,7 @@ static void test_at_is_the_same_in_every_pass(void **state)
 }
 
 /* Steps of any size add up to the closed form: the sum does not drift either. */
-static void test_steps_add_up(void **state)
+static void steps_add_up(void **state)
 {
     walk w;
     (void)state;
@@ -263,7 +263,7 @@ static void sums_of_moves_do_not_drift(void **state)
     assert_true(fabs((double)x - want.translation[0]) + fabs((double)z - want.translation[2]) > 1e-3);
 }
 
-static void test_measure_refuses(void **state)
+static void measuring_names_the_bad_argument(void **state)
 {
     walk w;
     noh_root_track t;
@@ -305,7 +305,7 @@ static void start(stage *g, uint32_t track, noh_track_desc d)
     assert_int_equal(noh_controller_start(g->c, &g->w.set, track, &d, NULL), NOH_OK);
 }
 
-static void test_one_track_moves_as_its_clip(void **state)
+static void one_track_moves_as_its_clip(void **state)
 {
     stage g;
     noh_root_pose world = { { 0, 0, 0 }, 0, 0 }, want;
@@ -345,7 +345,7 @@ static void what_was_walked_without_weight_is_gone(void **state)
     assert_true(root_apart(&move, &want) < 1e-9);
 }
 
-static void test_seeks_do_not_move_play_does(void **state)
+static void seeks_do_not_move_play_does(void **state)
 {
     stage g;
     noh_root_pose move, none = { { 0, 0, 0 }, 0, 0 };
@@ -368,7 +368,7 @@ static void test_seeks_do_not_move_play_does(void **state)
     assert_true(root_apart(&move, &none) == 0.0);
 }
 
-static void test_moves_are_blended_by_weight_and_group(void **state)
+static void moves_are_blended_by_weight_and_group(void **state)
 {
     stage g;
     noh_root_pose a, b, got, want;
@@ -397,7 +397,7 @@ static void test_moves_are_blended_by_weight_and_group(void **state)
 
 /* A clip of floats only, or one whose mask leaves the root out, takes no part: the walk goes as far as it does alone.
  */
-static void test_what_moves_no_joints_does_not_hold_the_root(void **state)
+static void what_moves_no_joints_does_not_hold_the_root(void **state)
 {
     static const uint8_t no_joints[1] = { 0 };
     (void)state;
@@ -507,7 +507,7 @@ static void additive_tracks_do_not_travel(void **state)
 }
 
 /* World * pose is the path of the clip without any extraction, over the seams. */
-static void test_pose_and_clip_make_the_whole(void **state)
+static void pose_and_clip_make_the_whole(void **state)
 {
     stage g;
     noh_pose_scratch scratch;
@@ -538,22 +538,22 @@ static void test_pose_and_clip_make_the_whole(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_extract_and_remove),
-        cmocka_unit_test(test_group_laws),
-        cmocka_unit_test(test_no_drift_after_a_million_loops),
-        cmocka_unit_test(test_at_is_the_same_in_every_pass),
-        cmocka_unit_test(test_steps_add_up),
+        cmocka_unit_test(what_is_extracted_is_removed),
+        cmocka_unit_test(root_moves_compose_as_a_group),
+        cmocka_unit_test(a_million_loops_do_not_drift),
+        cmocka_unit_test(positions_are_the_same_in_every_pass),
+        cmocka_unit_test(steps_add_up),
         cmocka_unit_test(sums_of_moves_do_not_drift),
-        cmocka_unit_test(test_measure_refuses),
-        cmocka_unit_test(test_one_track_moves_as_its_clip),
+        cmocka_unit_test(measuring_names_the_bad_argument),
+        cmocka_unit_test(one_track_moves_as_its_clip),
         cmocka_unit_test(what_was_walked_without_weight_is_gone),
-        cmocka_unit_test(test_seeks_do_not_move_play_does),
-        cmocka_unit_test(test_moves_are_blended_by_weight_and_group),
-        cmocka_unit_test(test_what_moves_no_joints_does_not_hold_the_root),
+        cmocka_unit_test(seeks_do_not_move_play_does),
+        cmocka_unit_test(moves_are_blended_by_weight_and_group),
+        cmocka_unit_test(what_moves_no_joints_does_not_hold_the_root),
         cmocka_unit_test(masks_weigh_root_motion),
         cmocka_unit_test(opposite_turns_are_averaged_as_angles),
         cmocka_unit_test(additive_tracks_do_not_travel),
-        cmocka_unit_test(test_pose_and_clip_make_the_whole),
+        cmocka_unit_test(pose_and_clip_make_the_whole),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);

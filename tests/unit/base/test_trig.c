@@ -17,7 +17,7 @@ static double worse(double worst, double error)
     return fabs(error) > worst ? fabs(error) : worst;
 }
 
-static void test_sin_cos(void **state)
+static void sin_and_cos_are_close(void **state)
 {
     double worst = 0.0, far = 0.0, turns = 0.0, small = 0.0;
     float s, c;
@@ -54,7 +54,7 @@ static void test_sin_cos(void **state)
     assert_true(s == 0.0f && c == 1.0f);
 }
 
-static void test_atan2_acos(void **state)
+static void atan2_and_acos_are_close(void **state)
 {
     double worst = 0.0, relative = 0.0, arc = 0.0;
     (void)state;
@@ -75,7 +75,7 @@ static void test_atan2_acos(void **state)
     assert_true(noh_acos(1.0000001f) == 0.0f && noh_acos(-1.5f) == NOH_PI); /* a dot of unit vectors strays over 1 */
 }
 
-static void test_exp2(void **state)
+static void exp2_is_close(void **state)
 {
     double worst = 0.0;
     (void)state;
@@ -89,7 +89,7 @@ static void test_exp2(void **state)
     assert_true(noh_exp2(NAN) == 0.0f && noh_exp2(1e30f) > 3.39e38f && noh_exp2(1e30f) < INFINITY);
 }
 
-static void test_turns(void **state)
+static void turns_are_reduced(void **state)
 {
     (void)state;
     assert_int_equal(noh_turn_from_radians(0.0f), 0);
@@ -101,7 +101,7 @@ static void test_turns(void **state)
     }
 }
 
-static void test_quaternions(void **state)
+static void quaternions_rotate_as_defined(void **state)
 {
     (void)state;
     for (int i = 1; i < 5000; i++) {
@@ -148,7 +148,7 @@ static void nlerp_takes_the_shorter_way(void **state)
     assert_true(noh_quat_dot(out, a) > 0.99f);
 }
 
-static void test_degenerate_quaternions(void **state)
+static void degenerate_quaternions_become_unit(void **state)
 {
     float zero[4] = { 0, 0, 0, 0 }, half[4] = { 1, 0, 0, 0 }, twist[4];
     (void)state;
@@ -163,13 +163,13 @@ static void test_degenerate_quaternions(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sin_cos),
-        cmocka_unit_test(test_atan2_acos),
-        cmocka_unit_test(test_exp2),
-        cmocka_unit_test(test_turns),
-        cmocka_unit_test(test_quaternions),
+        cmocka_unit_test(sin_and_cos_are_close),
+        cmocka_unit_test(atan2_and_acos_are_close),
+        cmocka_unit_test(exp2_is_close),
+        cmocka_unit_test(turns_are_reduced),
+        cmocka_unit_test(quaternions_rotate_as_defined),
         cmocka_unit_test(nlerp_takes_the_shorter_way),
-        cmocka_unit_test(test_degenerate_quaternions),
+        cmocka_unit_test(degenerate_quaternions_become_unit),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -584,7 +584,7 @@ static void what_has_no_triangles_has_no_levels(void **state)
     check_has_no_levels(m, &four_levels);
 }
 
-/* A pack of clip alone does not mind. */
+/* A pack of clips alone is not affected. */
 static void clip_has_no_levels(void **state)
 {
     const char *input = clip_bvh("lod_clip", "abc", 10);

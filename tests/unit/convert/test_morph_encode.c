@@ -263,7 +263,7 @@ static int same(const morph_encoding *a, const morph_encoding *b)
 
 /* ---- tests ---- */
 
-static void test_sheet(void **state)
+static void a_sheet_is_few_rectangles(void **state)
 {
     (void)state;
     for (int tangents = 0; tangents < 2; tangents++) {
@@ -286,7 +286,7 @@ static void test_sheet(void **state)
 }
 
 /* One bit less must not have met the error: the bits are the smallest. */
-static void test_bits_are_smallest(void **state)
+static void bits_are_as_few_as_suffice(void **state)
 {
     model_mesh *m = bumpy_sheet(24, 6, 1, 0.01f, 3);
     float last = 0.0f;
@@ -307,7 +307,7 @@ static void test_bits_are_smallest(void **state)
     mesh_free(m);
 }
 
-static void test_limit_of_bits(void **state)
+static void an_error_too_small_takes_all_bits(void **state)
 {
     const morph_options options = { .error_um = 0.001f };
     model_mesh *m = bumpy_sheet(24, 6, 1, 10.0f, 3);
@@ -322,7 +322,7 @@ static void test_limit_of_bits(void **state)
     mesh_free(m);
 }
 
-static void test_rect_limit(void **state)
+static void rectangles_stay_below_their_limit(void **state)
 {
     static const uint32_t limits[] = { 1, 2, 3, 8, 100 };
     model_mesh *m = bumpy_sheet(40, 20, 0, 0.01f, 11);
@@ -341,7 +341,7 @@ static void test_rect_limit(void **state)
 }
 
 /* Noise needs thousands of rectangles; a limit still holds. */
-static void test_noise(void **state)
+static void noise_is_encoded_within_its_limits(void **state)
 {
     static const uint32_t limits[] = { 0, 5 };
     model_mesh *m = mesh_new(20000, 3, 0);
@@ -360,7 +360,7 @@ static void test_noise(void **state)
     mesh_free(m);
 }
 
-static void test_nothing(void **state)
+static void empty_meshes_and_targets_are_encoded(void **state)
 {
     static const uint32_t sizes[][2] = { { 0, 0 }, { 0, 3 }, { 10, 0 }, { 10, 4 }, { 1, 1 } };
     (void)state;
@@ -382,7 +382,7 @@ static void test_nothing(void **state)
 }
 
 /* Every size around the strip's and the row's ends. */
-static void test_target_that_moves_all(void **state)
+static void a_target_may_move_every_vertex(void **state)
 {
     (void)state;
     for (uint32_t vertices = 1; vertices < 300u; vertices += vertices < 70u ? 1u : 37u) {
@@ -400,7 +400,7 @@ static void test_target_that_moves_all(void **state)
     }
 }
 
-static void test_scales(void **state)
+static void scales_of_any_size_are_kept(void **state)
 {
     static const float sizes[] = { 1e-42f, 1e-37f, 1e-20f, 1e-7f, 1.0f, 1e6f, 1e20f, 1e30f };
     (void)state;
@@ -415,7 +415,7 @@ static void test_scales(void **state)
 }
 
 /* Random targets on few vertices: shapes that no sheet gives. */
-static void test_random_small(void **state)
+static void small_random_meshes_are_encoded(void **state)
 {
     (void)state;
     for (uint32_t seed = 0; seed < 60u; seed++) {
@@ -440,7 +440,7 @@ static void test_random_small(void **state)
     }
 }
 
-static void test_deterministic(void **state)
+static void encoding_is_deterministic(void **state)
 {
     model_mesh *m = bumpy_sheet(32, 30, 1, 0.01f, 21);
     morph_encoding *a = encode(m, NULL), *b = encode(m, NULL);
@@ -452,7 +452,7 @@ static void test_deterministic(void **state)
 }
 
 /* Position 0.0635 m in steps of 0.5 mm takes 8 bits; 24 are left, 12 for the normal, 12 for the tangent. */
-static void test_bit_layout(void **state)
+static void bits_are_laid_out_as_documented(void **state)
 {
     const morph_options options = { .error_um = 433.1f }; /* half of the diagonal of a 0.5 mm step, a little more */
     model_mesh *m = mesh_new(3, 1, 1);
@@ -485,7 +485,7 @@ static void test_bit_layout(void **state)
 }
 
 /* Dropped: position below half a step and directions below 1/512. The source's pairs count them. */
-static void test_negligible_pairs(void **state)
+static void negligible_pairs_are_dropped(void **state)
 {
     model_mesh *m = mesh_new(5, 1, 1);
     model_target *t = &m->targets[0];
@@ -507,7 +507,7 @@ static void test_negligible_pairs(void **state)
     mesh_free(m);
 }
 
-static void test_bad_input(void **state)
+static void bad_input_is_refused(void **state)
 {
     static const float bad[] = { INFINITY, -INFINITY, NAN, 2e30f };
     model_mesh *m = mesh_new(4, 2, 1);
@@ -533,19 +533,19 @@ static void test_bad_input(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sheet),
-        cmocka_unit_test(test_bits_are_smallest),
-        cmocka_unit_test(test_limit_of_bits),
-        cmocka_unit_test(test_rect_limit),
-        cmocka_unit_test(test_noise),
-        cmocka_unit_test(test_nothing),
-        cmocka_unit_test(test_target_that_moves_all),
-        cmocka_unit_test(test_scales),
-        cmocka_unit_test(test_random_small),
-        cmocka_unit_test(test_deterministic),
-        cmocka_unit_test(test_bit_layout),
-        cmocka_unit_test(test_negligible_pairs),
-        cmocka_unit_test(test_bad_input),
+        cmocka_unit_test(a_sheet_is_few_rectangles),
+        cmocka_unit_test(bits_are_as_few_as_suffice),
+        cmocka_unit_test(an_error_too_small_takes_all_bits),
+        cmocka_unit_test(rectangles_stay_below_their_limit),
+        cmocka_unit_test(noise_is_encoded_within_its_limits),
+        cmocka_unit_test(empty_meshes_and_targets_are_encoded),
+        cmocka_unit_test(a_target_may_move_every_vertex),
+        cmocka_unit_test(scales_of_any_size_are_kept),
+        cmocka_unit_test(small_random_meshes_are_encoded),
+        cmocka_unit_test(encoding_is_deterministic),
+        cmocka_unit_test(bits_are_laid_out_as_documented),
+        cmocka_unit_test(negligible_pairs_are_dropped),
+        cmocka_unit_test(bad_input_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

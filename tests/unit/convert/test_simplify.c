@@ -1,4 +1,4 @@
-/* test_lod.c: simplification that keeps targets (tools/convert/lod/.c), on sheets made here. */
+/* Simplification that keeps targets (tools/convert/lod/), on sheets made here. */
 #include "support/support.h"
 
 #include <math.h>

@@ -177,7 +177,7 @@ static void bad_graph(rig *r, noh_result result, const char *what)
     rig_open(r);
 }
 
-static void test_counts_and_pointers_broken_in_turn(void **state)
+static void counts_and_pointers_broken_in_turn(void **state)
 {
     rig r;
     (void)state;
@@ -216,7 +216,7 @@ static void test_counts_and_pointers_broken_in_turn(void **state)
     bad_graph(&r, NOH_ERR_ARG, "param_defaults");
 }
 
-static void test_node_fields_broken_in_turn(void **state)
+static void node_fields_broken_in_turn(void **state)
 {
     rig r;
     uint32_t machine = NODES - 3u, space2 = machine - 1u, mask = 8;
@@ -298,7 +298,7 @@ static void test_node_fields_broken_in_turn(void **state)
 }
 
 /* Random bytes in the node and child arrays: refused, or run within bounds. */
-static void test_random_graphs_do_no_harm(void **state)
+static void random_graphs_do_no_harm(void **state)
 {
     static stage g;
     uint32_t seed = 3, fine = 0;
@@ -326,7 +326,7 @@ static void test_random_graphs_do_no_harm(void **state)
     assert_true(fine > 1000);
 }
 
-static void test_memory_is_exact(void **state)
+static void memory_is_exact(void **state)
 {
     static stage g;
     noh_graph_state *s = NULL;
@@ -367,7 +367,7 @@ static void test_memory_is_exact(void **state)
 
 /* ---- poses ---- */
 
-static void test_blend_space_in_step(void **state)
+static void blend_spaces_stay_in_step(void **state)
 {
     static stage g;
     noh_transform a[JOINTS], b[JOINTS], want[JOINTS];
@@ -390,7 +390,7 @@ static void test_blend_space_in_step(void **state)
     assert_int_equal(track(&g, 2)->position, 0);
 }
 
-static void test_cross_fade_and_back_at_the_end(void **state)
+static void a_cross_fade_returns_at_the_end(void **state)
 {
     static stage g;
     noh_transform a[JOINTS], b[JOINTS], want[JOINTS];
@@ -417,7 +417,7 @@ static void test_cross_fade_and_back_at_the_end(void **state)
     assert_int_equal(track(&g, 0)->position, noh_position_of(1)); /* started anew */
 }
 
-static void test_layers_and_inertial_transitions(void **state)
+static void layers_play_inertial_transitions(void **state)
 {
     static stage g;
     noh_transform walk[JOINTS], lean[JOINTS], wave[JOINTS], want[JOINTS];
@@ -462,7 +462,7 @@ static void test_layers_and_inertial_transitions(void **state)
 }
 
 /* Half a walk, half a face: nodes leave joints to the clips that animate them, and floats too. */
-static void test_clips_of_joints_and_of_floats(void **state)
+static void clips_of_joints_and_of_floats_do_not_mix(void **state)
 {
     static const noh_node_kind kinds[3] = { NOH_NODE_BLEND, NOH_NODE_ADD, NOH_NODE_MASK };
     static const uint16_t children[2] = { 0, 1 };
@@ -549,7 +549,7 @@ static void a_blend_has_what_either_clip_has(void **state)
     assert_true(floats_apart(floats, face_floats, FLOATS) < 1e-6);
 }
 
-static void test_space_2d_state(void **state)
+static void a_state_may_be_a_space_of_two_dimensions(void **state)
 {
     static stage g;
     noh_transform want[JOINTS];
@@ -579,7 +579,7 @@ static void count_event(void *user, const noh_event *e)
 }
 
 /* A graph's clips fire their keys by their weights in it. */
-static void test_events_by_weight(void **state)
+static void clips_fire_by_their_weights(void **state)
 {
     static stage g;
     uint32_t counts[CLIP_NODES] = { 0 };
@@ -623,7 +623,7 @@ static void a_graph_is_cloned_by_memcpy(void **state)
     assert_memory_equal(first, g.pose, sizeof first);
 }
 
-static void test_lod_and_a_switch_without_a_pose(void **state)
+static void a_switch_without_a_pose_is_taken(void **state)
 {
     static stage g;
     (void)state;
@@ -641,19 +641,19 @@ static void test_lod_and_a_switch_without_a_pose(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_counts_and_pointers_broken_in_turn),
-        cmocka_unit_test(test_node_fields_broken_in_turn),
-        cmocka_unit_test(test_random_graphs_do_no_harm),
-        cmocka_unit_test(test_memory_is_exact),
-        cmocka_unit_test(test_blend_space_in_step),
-        cmocka_unit_test(test_cross_fade_and_back_at_the_end),
-        cmocka_unit_test(test_layers_and_inertial_transitions),
-        cmocka_unit_test(test_clips_of_joints_and_of_floats),
+        cmocka_unit_test(counts_and_pointers_broken_in_turn),
+        cmocka_unit_test(node_fields_broken_in_turn),
+        cmocka_unit_test(random_graphs_do_no_harm),
+        cmocka_unit_test(memory_is_exact),
+        cmocka_unit_test(blend_spaces_stay_in_step),
+        cmocka_unit_test(a_cross_fade_returns_at_the_end),
+        cmocka_unit_test(layers_play_inertial_transitions),
+        cmocka_unit_test(clips_of_joints_and_of_floats_do_not_mix),
         cmocka_unit_test(a_blend_has_what_either_clip_has),
-        cmocka_unit_test(test_space_2d_state),
-        cmocka_unit_test(test_events_by_weight),
+        cmocka_unit_test(a_state_may_be_a_space_of_two_dimensions),
+        cmocka_unit_test(clips_fire_by_their_weights),
         cmocka_unit_test(a_graph_is_cloned_by_memcpy),
-        cmocka_unit_test(test_lod_and_a_switch_without_a_pose),
+        cmocka_unit_test(a_switch_without_a_pose_is_taken),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);

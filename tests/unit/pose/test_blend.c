@@ -31,7 +31,7 @@ static const noh_mask_view everywhere = { NULL, NULL };
 /* ---- blending by weight ---- */
 
 /* pose = sum w * pose / sum w, joint by joint, against the same in double. */
-static void test_weighted_sum(void **state)
+static void the_weighted_sum_follows_its_definition(void **state)
 {
     scene s;
     sums b;
@@ -238,7 +238,7 @@ static void palettes_take_the_bind_pose_away_first(void **state)
     }
 }
 
-static void test_mix_at_the_ends_and_in_place(void **state)
+static void mixes_are_exact_at_the_ends_and_in_place(void **state)
 {
     scene s;
     noh_transform a[JOINTS], b[JOINTS], got[JOINTS];
@@ -259,7 +259,7 @@ static void test_mix_at_the_ends_and_in_place(void **state)
 }
 
 /* The sum of unit quaternions that are far apart is short; a mix must still be a rotation, half way between them. */
-static void test_a_mix_is_unit(void **state)
+static void a_mix_is_unit(void **state)
 {
     static const float a[4] = { 0, 0, 0, 1 };
     (void)state;
@@ -278,7 +278,7 @@ static void test_a_mix_is_unit(void **state)
 
 /* A pose laid over another covers it by the mean mask of the tracks that animate the joint, and completely where the
  * pose below has no weight. */
-static void test_cover(void **state)
+static void poses_cover_by_their_masks(void **state)
 {
     scene s;
     sums b;
@@ -310,7 +310,7 @@ static void test_cover(void **state)
 }
 
 /* A difference added at full weight to its reference is the pose again. */
-static void test_difference_and_back(void **state)
+static void a_difference_added_to_its_reference_is_the_pose(void **state)
 {
     scene s;
     noh_transform a[JOINTS], b[JOINTS], d[JOINTS];
@@ -333,7 +333,7 @@ static void test_difference_and_back(void **state)
 
 /* ---- masks ---- */
 
-static void test_masks(void **state)
+static void masks_are_made_by_subtree(void **state)
 {
     scene s;
     uint8_t mask[JOINTS + FLOATS];
@@ -356,7 +356,7 @@ static void test_masks(void **state)
 
 /* ---- blend spaces ---- */
 
-static void test_space_1d(void **state)
+static void spaces_of_one_dimension_interpolate(void **state)
 {
     static const float at[] = { -1.0f, 0.0f, 2.0f, 5.0f };
     float w[4];
@@ -395,7 +395,7 @@ static double in_circle(const float *p, const uint8_t *t, uint32_t d)
 }
 
 /* Triangles turn left, cover the square once, and no point lies in a triangle's circle. */
-static void test_triangulation(void **state)
+static void triangulations_cover_the_square(void **state)
 {
     uint32_t seed = 7;
     (void)state;
@@ -440,7 +440,7 @@ static void test_triangulation(void **state)
     }
 }
 
-static void test_delaunay(void **state)
+static void triangulations_are_delaunay(void **state)
 {
     /* a thin kite: the short diagonal is the Delaunay one, whichever order the sweep finds */
     static const float p[8] = { 0, 0, 10, 0, 5, 1, 5, -1 };
@@ -456,7 +456,7 @@ static void test_delaunay(void **state)
     }
 }
 
-static void test_space_outside_and_degenerate(void **state)
+static void spaces_clamp_outside_and_where_degenerate(void **state)
 {
     static const float square[8] = { 0, 0, 1, 0, 0, 1, 1, 1 }, line[6] = { 2, 2, 0, 0, 1, 1 };
     static const float same[4] = { 1, 1, 1, 1 };
@@ -490,7 +490,7 @@ static void test_space_outside_and_degenerate(void **state)
 }
 
 /* The largest coordinates accepted have exact results; points beyond them are refused, and queries are clamped. */
-static void test_space_of_huge_coordinates(void **state)
+static void spaces_take_huge_coordinates(void **state)
 {
     static const float far_away[] = { 3e38f, -3e38f, 1.1e18f, INFINITY, -INFINITY, NAN };
     const float most = NOH_BLEND_SPACE_COORDINATE_MAX,
@@ -532,7 +532,7 @@ static void bad_skeleton(const noh_skeleton *s, noh_result result, const char *w
     assert_non_null(strstr(error.what, what));
 }
 
-static void test_skeleton_fields_broken_in_turn(void **state)
+static void skeleton_fields_broken_in_turn(void **state)
 {
     scene s;
     noh_skeleton k;
@@ -603,7 +603,7 @@ static void model_is_parent_times_local(void **state)
     assert_true(palette[60] == 0.0f);
 }
 
-static void test_palette(void **state)
+static void the_palette_is_model_times_inverse_bind(void **state)
 {
     scene s;
     float model[JOINTS * 12], inverse[JOINTS * 12], palette[JOINTS * 12];
@@ -625,24 +625,24 @@ static void test_palette(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_weighted_sum),
+        cmocka_unit_test(the_weighted_sum_follows_its_definition),
         cmocka_unit_test(a_weight_of_one_shows_its_clip_alone),
         cmocka_unit_test(hemispheres_are_aligned),
         cmocka_unit_test(weights_are_divided_by_their_sum),
         cmocka_unit_test(masked_joints_use_their_own_sum),
-        cmocka_unit_test(test_mix_at_the_ends_and_in_place),
-        cmocka_unit_test(test_a_mix_is_unit),
-        cmocka_unit_test(test_cover),
-        cmocka_unit_test(test_difference_and_back),
-        cmocka_unit_test(test_masks),
-        cmocka_unit_test(test_space_1d),
-        cmocka_unit_test(test_triangulation),
-        cmocka_unit_test(test_delaunay),
-        cmocka_unit_test(test_space_outside_and_degenerate),
-        cmocka_unit_test(test_space_of_huge_coordinates),
-        cmocka_unit_test(test_skeleton_fields_broken_in_turn),
+        cmocka_unit_test(mixes_are_exact_at_the_ends_and_in_place),
+        cmocka_unit_test(a_mix_is_unit),
+        cmocka_unit_test(poses_cover_by_their_masks),
+        cmocka_unit_test(a_difference_added_to_its_reference_is_the_pose),
+        cmocka_unit_test(masks_are_made_by_subtree),
+        cmocka_unit_test(spaces_of_one_dimension_interpolate),
+        cmocka_unit_test(triangulations_cover_the_square),
+        cmocka_unit_test(triangulations_are_delaunay),
+        cmocka_unit_test(spaces_clamp_outside_and_where_degenerate),
+        cmocka_unit_test(spaces_take_huge_coordinates),
+        cmocka_unit_test(skeleton_fields_broken_in_turn),
         cmocka_unit_test(model_is_parent_times_local),
-        cmocka_unit_test(test_palette),
+        cmocka_unit_test(the_palette_is_model_times_inverse_bind),
         cmocka_unit_test(a_sum_covers_what_lies_below),
         cmocka_unit_test(palettes_take_the_bind_pose_away_first),
     };

@@ -78,7 +78,7 @@ static const char *const clip_names[] = { "idle", "walk", "bow", "look_round", "
 
 /* ---- skeleton and mesh ---- */
 
-static void test_joints(void **state)
+static void joints_are_those_of_a_body(void **state)
 {
     static const char *const names[] = { "root", "hips", "spine", "chest", "neck", "head", "jaw" };
     static const char *const pairs[] = { "shoulder",  "upper_arm", "forearm",   "hand",   "thumb",
@@ -180,7 +180,7 @@ static uint32_t count_pieces(const model_mesh *mesh, const uint32_t *first)
 }
 
 /* Each edge once in each direction, in one piece, without a hole through it. */
-static void test_closed_surface(void **state)
+static void the_surface_is_closed(void **state)
 {
     const model_mesh *body = mesh_named("body");
     uint32_t distinct, *first = weld(body, &distinct);
@@ -199,7 +199,7 @@ static void test_closed_surface(void **state)
 }
 
 /* Counts that a game can afford, and a texture to paint on. */
-static void test_vertices(void **state)
+static void vertices_have_texture_coordinates(void **state)
 {
     const model_mesh *body = mesh_named("body");
     (void)state;
@@ -209,7 +209,7 @@ static void test_vertices(void **state)
     }
 }
 
-static void test_weights(void **state)
+static void weights_sum_to_one(void **state)
 {
     static const char *const names[] = { "body", "mask" };
     (void)state;
@@ -228,7 +228,7 @@ static void test_weights(void **state)
 }
 
 /* Weights of neighbours do not jump. */
-static void test_smooth_weights(void **state)
+static void weights_are_smooth(void **state)
 {
     const model_mesh *body = mesh_named("body");
     float *all = test_zeros((size_t)body->vertex_count * 45 * sizeof *all), largest = 0.0f;
@@ -259,7 +259,7 @@ static uint32_t target_named(const model_mesh *mesh, const char *name)
 }
 
 /* Skin and morph meet on one vertex: two joints hold it, and a smile moves it. */
-static void test_mask(void **state)
+static void the_smile_moves_vertices_of_several_joints(void **state)
 {
     const model_mesh *mask = mesh_named("mask");
     const float *smile;
@@ -277,7 +277,7 @@ static void test_mask(void **state)
 
 /* ---- clips ---- */
 
-static void test_loops_close(void **state)
+static void loops_close(void **state)
 {
     uint32_t root = joint_named("root");
     (void)state;
@@ -377,7 +377,7 @@ static tread follow_foot(const raw_clip *clip, const char *ankle_name, const cha
     return result;
 }
 
-static void test_feet_do_not_slide(void **state)
+static void feet_do_not_slide(void **state)
 {
     static const char *const feet[2][2] = { { "foot.L", "toes.L" }, { "foot.R", "toes.R" } };
     static const struct {
@@ -398,7 +398,7 @@ static void test_feet_do_not_slide(void **state)
 }
 
 /* The callback keys lie where a foot comes down: it is up shortly before. */
-static void test_footfalls(void **state)
+static void keys_lie_at_footfalls(void **state)
 {
     static const char *const names[] = { "walk", "dance" };
     double *pose = test_zeros(45 * 12 * sizeof *pose), rest;
@@ -457,7 +457,7 @@ static double lowest(const model_mesh *body, const raw_clip *clip, uint32_t fram
     return low;
 }
 
-static void test_stays_above_the_floor(void **state)
+static void the_body_stays_above_the_floor(void **state)
 {
     const model_mesh *body = mesh_named("body");
     double *pose = test_zeros(45 * 12 * sizeof *pose), *palette = test_zeros(45 * 4 * sizeof *palette);
@@ -487,7 +487,7 @@ static float most_of(const char *clip_name, const char *target)
     return most;
 }
 
-static void test_faces(void **state)
+static void clips_move_the_face(void **state)
 {
     (void)state;
     assert_true(most_of("dance", "smile") > 0.95f);
@@ -498,12 +498,17 @@ static void test_faces(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_joints),         cmocka_unit_test(test_closed_surface),
-    cmocka_unit_test(test_vertices),       cmocka_unit_test(test_weights),
-    cmocka_unit_test(test_smooth_weights), cmocka_unit_test(test_mask),
-    cmocka_unit_test(test_loops_close),    cmocka_unit_test(test_feet_do_not_slide),
-    cmocka_unit_test(test_footfalls),      cmocka_unit_test(test_stays_above_the_floor),
-    cmocka_unit_test(test_faces),
+    cmocka_unit_test(joints_are_those_of_a_body),
+    cmocka_unit_test(the_surface_is_closed),
+    cmocka_unit_test(vertices_have_texture_coordinates),
+    cmocka_unit_test(weights_sum_to_one),
+    cmocka_unit_test(weights_are_smooth),
+    cmocka_unit_test(the_smile_moves_vertices_of_several_joints),
+    cmocka_unit_test(loops_close),
+    cmocka_unit_test(feet_do_not_slide),
+    cmocka_unit_test(keys_lie_at_footfalls),
+    cmocka_unit_test(the_body_stays_above_the_floor),
+    cmocka_unit_test(clips_move_the_face),
 };
 
 TEST_MAIN(tests, set_up, tear_down)
