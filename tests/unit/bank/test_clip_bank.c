@@ -723,7 +723,7 @@ static void descs_are_checked(void **state)
     desc = desc_of(&pack), desc.skeleton = 1;
     expect_error(&desc, NOH_ERR_ARG, "skeleton");
     desc = desc_of(&pack), desc.cached_segment_count = 1;
-    expect_error(&desc, NOH_ERR_ARG, "slots");
+    expect_error(&desc, NOH_ERR_ARG, "cached_segment_count");
     desc = desc_of(&pack), desc.root_axes = 16;
     expect_error(&desc, NOH_ERR_ARG, "root_axes");
     desc = desc_of(&pack), desc.root_axes = NOH_ROOT_X, desc.root_up = 3;
