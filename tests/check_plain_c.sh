@@ -7,7 +7,7 @@
 . "$(dirname "$0")/cli/lib.sh"
 
 grep -rnE '__builtin_|__attribute__|_Pragma|^ *# *pragma|__GNUC__|__clang__|__SSE|__AVX|__ARM|__has_' runtime |
-    grep -v '^runtime/base/\(compiler\|math\)\.h:' >"$work/words"
+    grep -v '^runtime/base/\(compiler\|math_internal\)\.h:' >"$work/words"
 check 'what depends on the compiler is in base/compiler.h and base/math_internal.h' sh -c '! grep . "$1"' - "$work/words"
 
 if [ -n "${NOH_SAN:-}" ]; then
