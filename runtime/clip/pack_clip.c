@@ -33,7 +33,7 @@ const char *noh_pack_joint_name(const noh_pack *pack, uint32_t skeleton, uint32_
 {
     noh_skeleton s;
     const noh_skeleton_header *h = NULL;
-    if (noh_pack_skeleton_at(pack, skeleton, &s, &h, NULL) || joint >= h->joint_count) {
+    if (noh_pack_skeleton_at(pack, skeleton, &s, &h, NULL) || !h || joint >= h->joint_count) {
         return "";
     }
     return noh_pack_string(pack, ((const uint32_t *)(const void *)((const uint8_t *)h + h->names_offset))[joint]);
@@ -43,7 +43,7 @@ const uint32_t *noh_pack_joint_levels(const noh_pack *pack, uint32_t skeleton, u
 {
     noh_skeleton s;
     const noh_skeleton_header *h = NULL;
-    if (noh_pack_skeleton_at(pack, skeleton, &s, &h, NULL)) {
+    if (noh_pack_skeleton_at(pack, skeleton, &s, &h, NULL) || !h) {
         *level_count = 0;
         return NULL;
     }
