@@ -11,7 +11,7 @@
  *   MASK      b over a where the mask allows, by t
  *   SPACE_1D, SPACE_2D   see blend_space.h
  *   MACHINE   one of the children at a time; transitions cross-fade, or switch at once and let the difference decay
- *             (inertial.h)
+ *             (pose/inertial_internal.h)
  * t, x and y are parameters of the instance, or constants. A clip that animates no joints, or no floats, leaves them to
  * the other children of a node.
  *
