@@ -32,8 +32,8 @@ WERROR   ?= -Werror
 WARN     := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wvla $(WERROR)
 FP       := -ffp-contract=off -fno-math-errno
 SECTIONS := -ffunction-sections -fdata-sections
-SANFLAGS := $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
-OPT      ?= $(if $(SAN),-O1,-O2) -g
+SANFLAGS := $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer)
+OPT      ?= $(if $(SAN),-O1 -g1,-O2 -g)
 ALL_CFLAGS   = -std=c99 $(OPT) $(WARN) $(FP) $(SECTIONS) $(SANFLAGS) $(CPPFLAGS) $(CFLAGS)
 ALL_CXXFLAGS = -std=c++17 $(OPT) -Wall -Wextra $(FP) $(SANFLAGS) $(CPPFLAGS) $(CXXFLAGS)
 ALL_LDFLAGS  = $(SANFLAGS) $(LDFLAGS)
@@ -356,7 +356,7 @@ $(WEB)/noh.js: $(WEB_C) $(wildcard platform/web/*.h runtime/*/*.h) $(BUILD)/gen/
 # FUZZ_SECONDS=60: how long, both at once. Skips where clang or its runtime is not.
 fuzz: deps-fuzz
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/tests/fuzz/corpus/.made $(BUILD)/gen/shaders.gen.c
-	@NOH_BUILD="$(BUILD)" FUZZ_SECONDS="$(FUZZ_SECONDS)" sh tests/fuzz.sh
+	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" FUZZ_SECONDS="$(FUZZ_SECONDS)" sh tests/fuzz.sh
 
 tests: $(TESTS) $(EXAMPLES) $(if $(SAN),,$(AMALGAM_TESTS)) $(BUILD)/tests/gl/window $(BUILD)/tests/gl/picture_diff $(BUILD)/platform/template.o \
        $(BUILD)/tests/fuzz/fuzz_pack $(BUILD)/tests/fuzz/fuzz_clip $(BUILD)/tests/fuzz/corpus/.made

@@ -111,7 +111,8 @@ programs | while read -r name command; do
     rm -f "$log.told" "$log.txt" "$log.status"
     echo "${seconds:-1} $name $command"
 done | sort -s -k1,1nr | cut -d' ' -f2- >"$logs/programs"
-xargs -P "$jobs" -L 1 sh tests/run.sh --one <"$logs/programs"
+[ -s "$logs/programs" ] || echo "no test is named ${NOH_TEST:-}"
+xargs -r -P "$jobs" -L 1 sh tests/run.sh --one <"$logs/programs"
 
 passed=0 failed=0 skipped=0
 : >"$logs/skips"

@@ -13,9 +13,10 @@ work=$build/sizes
 table=tools/sizes.txt
 mkdir -p "$work"
 
-# The library's objects: an archive's members have no folders, and two may have one name.
+# The library's objects, by its sources: an archive's members have no folders, and two may have one name; objects of
+# files that have moved may still lie beside them.
 files() { # TARGET
-    find "$work/$1/runtime" "$work/$1/gen/shaders.gen.o" -name '*.o' | sort
+    { find runtime -name '*.c' | sed 's/c$/o/' && echo gen/shaders.gen.o; } | sed "s|^|$work/$1/|" | sort
 }
 # Lines "OBJECT:NAME BYTES". WebAssembly's have addresses in the code section, no sizes.
 symbols() { # TARGET NM
