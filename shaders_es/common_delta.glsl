@@ -5,7 +5,8 @@ precision highp float;
 precision highp int;
 precision highp usampler2D;
 
-/* The left and right shift of a layer's field. bits: the widths of the fields, position | normal << 8 | tangent << 16. */
+/* The left and right shift of a layer's field. bits: the widths of the fields, position | normal << 8 |
+ * tangent << 16. */
 uvec2 delta_shifts(uint bits, int layer)
 {
     uint position = bits & 255u, normal = (bits >> 8) & 255u, tangent = (bits >> 16) & 255u;

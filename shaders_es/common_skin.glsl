@@ -1,8 +1,9 @@
 /* common_skin.glsl: vertices moved by the joints of a palette.
  *
- * In your own vertex shader it goes behind common_layers.glsl (shaders_es/README.md). Call morph_vertex for the vertex
- * whose deltas to fetch, add them in the bind pose, then call skin. Morphing comes before skinning, for normals and
- * tangents too (Granberg, Character Animation with Direct3D, 2009, ch. 8). Defines, which noh_gl_variant_defines writes:
+ * In your own vertex shader it goes behind common_layers.glsl (shaders_es/README.md). Call morph_vertex for the
+ * vertex whose deltas to fetch, add them in the bind pose, then call skin. Morphing comes before skinning, for
+ * normals and tangents too (Granberg, Character Animation with Direct3D, 2009, ch. 8). Defines, which
+ * noh_gl_variant_defines writes:
  *
  *   INFLUENCES        joints stored per vertex: 1, 2, 4 or 8; 0: skin does nothing
  *   DRAWN             how many of them are used, the strongest, their weights scaled to a sum of 1
@@ -45,7 +46,8 @@ int morph_vertex()
 
 #ifdef PALETTE_TEXTURE
 uniform highp sampler2D u_palettes;
-uniform highp ivec4 u_skin; /* first row, rows from an instance to the next, width log2, the palette's row in an instance */
+/* first row, rows from an instance to the next, width log2, the palette's row in an instance */
+uniform highp ivec4 u_skin;
 
 vec4 skin_texel(int i)
 {
@@ -69,7 +71,7 @@ vec4 crowd_row(int i)
 
 #define JOINT_ROW(i) (skin_instance() + u_skin.w + JOINT_ROWS * (i))
 #define PALETTE_ROW(i) skin_texel(i)
-#elif INFLUENCES > 0 /* not declared without need: a std140 block is active even if nothing reads it, and WebGL wants it bound */
+#elif INFLUENCES > 0 /* else a std140 block would be active all the same, and WebGL wants active blocks bound */
 layout(std140) uniform palette_block {
     highp vec4 u_palette[256 * JOINT_ROWS];
 };
@@ -98,7 +100,7 @@ int joint_row(int i)
     return JOINT_ROW(int(places >> uint(8 * (i & 3)) & 255u));
 }
 
-/* All weights, in units of 2^-22. The first is not stored: it is what the others leave of 1, so the sum is exactly 1. */
+/* All weights, in units of 2^-22. The first is not stored: it is what the others leave of 1, so they sum to 1. */
 void stored_weights(out float w[INFLUENCES])
 {
 #if INFLUENCES == 2
@@ -156,11 +158,11 @@ vec3 rotate(vec4 q, vec3 v)
     return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v);
 }
 
-/* Dual quaternion blending (Kavan et al., "Geometric Skinning with Approximate Dual Quaternion Blending", 2008) with a
- * stretch. Each joint is a stretch, the symmetric matrix xx yy zz xy xz yz, and then a rigid motion, a unit dual
- * quaternion. Stretches are blended linearly and applied first. As q and -q are the same rotation, each dual quaternion is
- * added with the sign that puts it on the strongest joint's side of the sphere, so that the blend takes the short way; the
- * sum is made unit. Its translation is twice the vector part of dual * conjugate(rotation). */
+/* Dual quaternion blending (Kavan et al., "Geometric Skinning with Approximate Dual Quaternion Blending", 2008) with
+ * a stretch. Each joint is a stretch, the symmetric matrix xx yy zz xy xz yz, and then a rigid motion, a unit dual
+ * quaternion. Stretches are blended linearly and applied first. As q and -q are the same rotation, each dual
+ * quaternion is added with the sign that puts it on the strongest joint's side of the sphere, so that the blend takes
+ * the short way; the sum is made unit. Its translation is twice the vector part of dual * conjugate(rotation). */
 void skin(inout vec3 position, inout vec3 normal, inout vec4 tangent)
 {
     float w[DRAWN];
@@ -200,9 +202,9 @@ void skin(inout vec3 position, inout vec3 normal, inout vec4 tangent)
                    tangent.w * side);
 }
 #else
-/* Linear blending (Granberg 2009, ch. 3): the matrices are blended first, then applied once. Scales need not be uniform, so
- * normals are transformed by the cofactors of the blend, which are its inverse transpose up to a factor. A blend that
- * mirrors flips their sign and the tangent's handedness. */
+/* Linear blending (Granberg 2009, ch. 3): the matrices are blended first, then applied once. Scales need not be
+ * uniform, so normals are transformed by the cofactors of the blend, which are its inverse transpose up to a factor.
+ * A blend that mirrors flips their sign and the tangent's handedness. */
 void skin(inout vec3 position, inout vec3 normal, inout vec4 tangent)
 {
     float w[DRAWN];

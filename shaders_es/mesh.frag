@@ -1,6 +1,6 @@
 #version 300 es
-/* mesh.frag: enough light to judge a face by: one key light with a wrapped edge and a GGX highlight, a fill from sky and
- * ground, and a soft rim. Defines:
+/* mesh.frag: enough light to judge a face by: one key light with a wrapped edge and a GGX highlight, a fill from sky
+ * and ground, and a soft rim. Defines:
  *
  *   DEBUG_VIEW    a noh_debug_view: 0 lit, 1 position, 2 normal, 3 tangent, 4 LOD level
  *   ENCODE_SRGB   defined: encode to sRGB here; else colours stay linear and the target encodes
@@ -25,9 +25,9 @@ in vec3 v_model;
 
 layout(location = 0) out vec4 o_color;
 
-/* The isotropic GGX distribution (Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007), times
- * the visibility term of Smith in Schlick's approximation. nh, nl, nv: cosines between the normal, the half vector, the light and
- * the eye. */
+/* The isotropic GGX distribution (Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007),
+ * times the visibility term of Smith in Schlick's approximation. nh, nl, nv: cosines between the normal, the half
+ * vector, the light and the eye. */
 float highlight(float nh, float nl, float nv, float roughness)
 {
     float a = roughness * roughness, a2 = a * a;

@@ -1,6 +1,7 @@
 #version 300 es
-/* morph_gather.frag: each fragment sums the deltas of its own vertex in registers and writes the three layers once. It
- * needs no blending, so any format that can be rendered to will do; with LAYERS_UINT it writes the bits of the floats. */
+/* morph_gather.frag: each fragment sums the deltas of its own vertex in registers and writes the three layers once.
+ * It needs no blending, so any format that can be rendered to will do; with LAYERS_UINT it writes the bits of the
+ * floats. */
 #include "common_delta.glsl"
 
 uniform usampler2D u_entries;  /* delta words, target */

@@ -5,7 +5,7 @@ precision highp int;
 
 uniform vec2 u_atlas;     /* 2 / size of the accumulation texture */
 
-in uvec4 a_tile;          /* tile x | y << 16, first record, the mesh's first start, touched vertices | width log2 << 24 */
+in uvec4 a_tile;          /* tile x | y << 16, first record, first start, touched vertices | width log2 << 24 */
 
 flat out uvec4 f_tile;
 
