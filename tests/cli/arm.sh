@@ -17,7 +17,7 @@ noh info "$work/arm.noh"
 expect 0 'info'
 check 'six meshes: the second stream is a target now' grep -q ' 6 meshes, .* 5 skeletons, 5 clips' "$work/out"
 skin() { # NAME JOINTS INFLUENCES... HOW
-    check "skin '$1': $3 of $2 joints, by $4" grep -q "^  skin '$1': $2 joints, $3 a vertex, 1 palette, by $4\$" "$work/out"
+    check "skin '$1': $3 of $2 joints, with $4" grep -q "^  skin '$1': $2 joints, $3 per vertex, 1 palette, with $4\$" "$work/out"
 }
 skin segmented 2 '1 influence' matrices
 skin bent 2 '2 influences' matrices
