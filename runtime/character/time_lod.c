@@ -131,7 +131,8 @@ void noh_time_lod_wake(noh_time_lod *t)
  * error of linear interpolation), and a clip played s times as fast has s^2 times the acceleration. */
 static float speed_squared(const noh_track *track)
 {
-    const float present = (float)track->speed_now / (float)NOH_SPEED_ONE, own = (float)track->speed / (float)NOH_SPEED_ONE;
+    const float present = (float)track->speed_now / (float)NOH_SPEED_ONE,
+                own = (float)track->speed / (float)NOH_SPEED_ONE;
     const float square = present * present > own * own ? present * present : own * own;
     return square > 1.0f ? square : 1.0f;
 }

@@ -49,8 +49,7 @@ void cross_memory(const void *a, const void *b, size_t bytes, const char *file, 
     cross_same((uint64_t)(x) >= (uint64_t)(low) && (uint64_t)(x) <= (uint64_t)(high), #x " in range", __FILE__, \
                __LINE__)
 #define assert_string_equal(a, b) cross_texts((a), (b), __FILE__, __LINE__)
-#define assert_string_not_equal(a, b) \
-    cross_same(strcmp((a), (b)) != 0, #a " is not " #b, __FILE__, __LINE__)
+#define assert_string_not_equal(a, b) cross_same(strcmp((a), (b)) != 0, #a " is not " #b, __FILE__, __LINE__)
 #define assert_memory_equal(a, b, bytes) cross_memory((a), (b), (bytes), __FILE__, __LINE__)
 #define assert_memory_not_equal(a, b, bytes) \
     cross_same(memcmp((a), (b), (bytes)) != 0, #a " is not " #b, __FILE__, __LINE__)

@@ -155,8 +155,8 @@ static void a_group_moves_at_its_weighted_mean(void **state)
     mean = (3.0 / 48000.0 + 1.0 / 30000.0) / 4.0;
     assert_true(fabs((double)t[0].speed_now - mean * 48000.0 * 65536.0) <= 0.5);
     assert_true(fabs((double)t[1].speed_now - mean * 30000.0 * 65536.0) <= 1.5);
-    assert_int_equal(t[2].speed_now, 77);  /* a track that is off neither weighs nor moves */
-    t[0].weight = t[1].weight = 0.0f; /* no weights: the leader's own speed */
+    assert_int_equal(t[2].speed_now, 77); /* a track that is off neither weighs nor moves */
+    t[0].weight = t[1].weight = 0.0f;     /* no weights: the leader's own speed */
     noh_sync_speeds(&s.set, t, 3, 480);
     assert_int_equal(t[0].speed_now, NOH_SPEED_ONE);
 }

@@ -488,9 +488,9 @@ static float nan_value(void)
     X(clip_hash_without_joints, DATA, "names a skeleton", f->clip->skeleton_hash = 1)                                \
     X(clip_joint_errors_without_joints, DATA, "joint errors", f->clip->joint_error_count = 1)                        \
     X(clip_joint_errors_elsewhere, DATA, "begin", f->clip->joint_errors_offset += 16)                                \
-    X(clip_update_rate_error_at_full_rate, DATA, "update rate errors", f->clip->update_rate_error[0] = 1.0f)                \
-    X(clip_update_rate_error_nan, DATA, "update rate errors", f->clip->update_rate_error[3] = nan_value())                  \
-    X(clip_update_rate_error_falls, DATA, "update rate errors",                                                             \
+    X(clip_update_rate_error_at_full_rate, DATA, "update rate errors", f->clip->update_rate_error[0] = 1.0f)         \
+    X(clip_update_rate_error_nan, DATA, "update rate errors", f->clip->update_rate_error[3] = nan_value())           \
+    X(clip_update_rate_error_falls, DATA, "update rate errors",                                                      \
       f->clip->update_rate_error[1] = f->clip->update_rate_error[2] + 1.0f)                                          \
     X(clip_shell_negative, DATA, "shell", f->clip->error_shell = -1.0f)                                              \
     X(clip_shell_infinite, DATA, "shell", f->clip->error_shell = INFINITE)                                           \
