@@ -4,10 +4,10 @@
  *   noh_pose_skin        a pose, without a character
  *   noh_skin_skeleton    optional: moves the product with the inverse bind matrices from frames to updates
  *
- * All give skin order: matrix k belongs to skin->joints[k], as noh_gl_skin_set, noh_skin_vertices and noh_skin_box take
- * them. A skin may hold one joint several times, each time with another inverse bind matrix (rigid parts that the
- * converter joined), and two skins may bind one joint in different ways: skeletons of packs therefore have no inverse
- * bind matrices, skins have.
+ * All give skin order: matrix k belongs to skin->joints[k], as noh_gl_skin_set_matrices, noh_skin_vertices and
+ * noh_skin_box take them. A skin may hold one joint several times, each time with another inverse bind matrix (rigid
+ * parts that the converter joined), and two skins may bind one joint in different ways: skeletons of packs therefore
+ * have no inverse bind matrices, skins have.
  *
  * Threads: as character.h. noh_pose_skin and noh_skin_skeleton write only to what they are given. */
 #ifndef NOH_CHARACTER_SKIN_PALETTE_H

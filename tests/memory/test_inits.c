@@ -343,7 +343,7 @@ static int has_row(const char *name)
     return 0;
 }
 
-/* Every `noh_result noh_NAME(void *memory, size_t bytes` of a header has a row. Returns how many there are. */
+/* Every function of a header that begins `(void *memory, size_t bytes` has a row. Returns how many there are. */
 static uint32_t check_header(const char *path)
 {
     static const char start[] = "noh_result ", block[] = "(void *memory, size_t bytes";

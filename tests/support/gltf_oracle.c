@@ -736,7 +736,7 @@ static void skin_points(const oracle *o, uint32_t attributes, uint32_t count, co
 {
     double *sums = test_zeros(sizeof *sums * 4 * count);
     for (int set = 0; set < 2; set++) {
-        char joints_name[16], weights_name[16];
+        char joints_name[24], weights_name[24];
         const double *joints, *weights;
         uint32_t same;
         snprintf(joints_name, sizeof joints_name, "JOINTS_%d", set);
