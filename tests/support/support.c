@@ -443,8 +443,10 @@ noh_mesh test_mesh(const noh_pack *pack, uint32_t index)
 noh_morph_layers test_layers(const noh_mesh *mesh)
 {
     size_t bytes = noh_morph_layers_size(mesh);
+    void *memory = test_zeros(bytes);
     noh_morph_layers layers = { NULL, NULL, NULL };
-    assert_int_equal(noh_morph_layers_init(test_zeros(bytes), bytes, mesh, &layers, NULL), NOH_OK);
+    assert_int_equal(noh_morph_layers_init(memory, bytes, mesh, &layers, NULL), NOH_OK);
+    layers.position = memory; /* NULL for no texels; it is what the caller frees */
     return layers;
 }
 
