@@ -15,8 +15,8 @@
 
 static union {
     uint8_t bytes[64];
-    uint64_t align[8];
-} small; /* far less than anything needs */
+    uint64_t words[8];
+} small __attribute__((aligned(16))); /* far less than anything needs */
 
 /* What refuses says ARG or LIMIT, and why. */
 static void expect_refused(noh_result result, const noh_error *error)

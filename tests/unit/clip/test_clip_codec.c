@@ -524,7 +524,7 @@ static void a_block_too_small_says_what_works(void **state)
     desc.clip_count = 1;
     desc.cached_segment_count = 3;
     size = noh_clip_cache_size(&desc, &error);
-    memory = malloc(size + 16u);
+    memory = test_aligned(NULL, size + 16u);
     memset(memory, 0xa5, size + 16u);
     assert_int_equal(noh_clip_cache_init(memory, size - 1u, &desc, &cache, &error), NOH_ERR_MEMORY);
     assert_int_equal(error.need, size);
