@@ -5,7 +5,8 @@
  * allocates, prints, reads a clock or a file, or keeps a global.
  *
  * Memory. An object tells its exact size, is built in memory that you bring, and is never freed: drop the memory and it
- * is gone. Nothing asks for memory after init. Memory is aligned to NOH_MEMORY_ALIGN (16) bytes.
+ * is gone. Nothing asks for memory after init. Memory is aligned to NOH_MEMORY_ALIGN bytes (16; 8 on 32-bit ARM and
+ * wasm), as malloc's is.
  *
  *     bytes = noh_x_size(&desc);                        0: the desc is impossible, init says why
  *     noh_x_init(memory, bytes, &desc, &x, &error)      builds it in place, writes not a byte past `bytes`

@@ -7,7 +7,9 @@ noh_result noh_arena_open(noh_arena *arena, void *memory, size_t bytes, size_t n
         return noh_fail(error, NOH_ERR_ARG, "memory is NULL", 0, need);
     }
     if (((uintptr_t)memory & (NOH_MEMORY_ALIGN - 1u)) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory is not aligned to 16 bytes",
+        return noh_fail(error, NOH_ERR_ARG,
+                        NOH_MEMORY_ALIGN == 16u ? "memory is not aligned to 16 bytes"
+                                                : "memory is not aligned to 8 bytes",
                         (uintptr_t)memory & (NOH_MEMORY_ALIGN - 1u), need);
     }
     if (bytes < need) {
@@ -33,7 +35,7 @@ noh_arena noh_arena_measure(void)
 void *noh_arena_carve(noh_arena *arena, size_t bytes, size_t alignment)
 {
     const size_t start = (arena->used + alignment - 1) & ~(alignment - 1);
-    NOH_ASSERT(alignment && alignment <= NOH_MEMORY_ALIGN && (alignment & (alignment - 1u)) == 0);
+    NOH_ASSERT(alignment && alignment <= 16u && (alignment & (alignment - 1u)) == 0);
     if (start < arena->used || bytes > SIZE_MAX - start) {
         arena->used = SIZE_MAX;
         return NULL;

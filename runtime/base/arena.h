@@ -21,7 +21,13 @@
 extern "C" {
 #endif
 
-#define NOH_MEMORY_ALIGN 16u /* of every block that an init takes */
+/* Of every block that an init takes: what malloc gives. Within a block all is placed to 16 bytes; 8 do for a block
+ * where pointers have 32 bits, since vectors are loaded unaligned there (SSE2 asks for 16). */
+#if UINTPTR_MAX == 0xffffffffu && !defined(__i386__) && !defined(_M_IX86)
+#define NOH_MEMORY_ALIGN 8u
+#else
+#define NOH_MEMORY_ALIGN 16u
+#endif
 
 typedef struct noh_arena {
     uint8_t *base;
@@ -42,7 +48,7 @@ noh_arena noh_arena_over(void *memory, size_t bytes);
 noh_arena noh_arena_measure(void);
 
 /* Carve bytes at an alignment.
- * ranges   alignment is a power of two, at most NOH_MEMORY_ALIGN
+ * ranges   alignment is a power of two, at most 16
  * returns  NULL when the block is exhausted or the arena only measures; `used` counts the bytes all the same, and is
  *          SIZE_MAX once the sum no longer fits a size_t */
 void *noh_arena_carve(noh_arena *arena, size_t bytes, size_t alignment);

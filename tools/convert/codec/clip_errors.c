@@ -4,10 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "anim/clip_set.h"
-#include "base/arena.h"
-#include "character/joint_lod.h"
 #include "clip/clip_cache.h"
+#include "anim/clip_set.h"
+#include "character/joint_lod.h"
 #include "convert/clips/joint_order.h"
 #include "convert/model/model_build.h"
 
@@ -35,27 +34,20 @@ static void sample(void *user, uint32_t entry, uint32_t tick, uint32_t joint_cou
     noh_clip_sample(p->cache, entry, tick, joint_count, pose, float_count ? floats : NULL);
 }
 
-/* The first aligned address of memory from malloc, which on some 32-bit processors aligns to 8 bytes only. */
-static void *aligned(void *memory)
-{
-    return (void *)(((uintptr_t)memory + (NOH_MEMORY_ALIGN - 1u)) & ~(uintptr_t)(NOH_MEMORY_ALIGN - 1u));
-}
-
 static int open_clip(const byte_buffer *bytes, player *p)
 {
     noh_clip_desc desc = { bytes->bytes, bytes->count, p->bind, p->skeleton.joint_count };
     const noh_clip *clips[1];
     noh_clip_cache_desc cache = { clips, 1, CACHED_SEGMENTS };
     size_t clip_size = noh_clip_size(&desc, NULL), cache_size;
-    p->clip_memory = malloc(clip_size + NOH_MEMORY_ALIGN);
-    if (!p->clip_memory || noh_clip_init(aligned(p->clip_memory), clip_size, &desc, &p->clip, NULL)) {
+    p->clip_memory = malloc(clip_size + 1u);
+    if (!p->clip_memory || noh_clip_init(p->clip_memory, clip_size, &desc, &p->clip, NULL)) {
         return 1;
     }
     clips[0] = p->clip;
     cache_size = noh_clip_cache_size(&cache, NULL);
-    p->cache_memory = malloc(cache_size + NOH_MEMORY_ALIGN);
-    return !p->cache_memory ||
-           noh_clip_cache_init(aligned(p->cache_memory), cache_size, &cache, &p->cache, NULL) != NOH_OK;
+    p->cache_memory = malloc(cache_size + 1u);
+    return !p->cache_memory || noh_clip_cache_init(p->cache_memory, cache_size, &cache, &p->cache, NULL) != NOH_OK;
 }
 
 static void fill_skeleton(const raw_skeleton *s, const float *joint_radius, double shell, player *p)
@@ -128,7 +120,7 @@ static int open_player(const raw_skeleton *s, const raw_clip *raw, const byte_bu
     points = noh_time_lod_points_size(&p->probe);
     p->work_bytes = rates > levels ? rates : levels;
     p->work_bytes = points > p->work_bytes ? points : p->work_bytes;
-    p->work = malloc(p->work_bytes + NOH_MEMORY_ALIGN);
+    p->work = malloc(p->work_bytes + 1u);
     return !p->work;
 }
 
@@ -158,9 +150,8 @@ static int settle(float *errors, uint32_t count)
 /* points NULL: measured by the joints' radii. */
 static int measure_update_rates(player *p, const noh_time_lod_points *points, float *out)
 {
-    return points
-               ? noh_time_lod_points_measure(aligned(p->work), p->work_bytes, &p->probe, points, 0, out, NULL) != NOH_OK
-               : noh_time_lod_measure(aligned(p->work), p->work_bytes, &p->probe, 0, out, NULL) != NOH_OK;
+    return points ? noh_time_lod_points_measure(p->work, p->work_bytes, &p->probe, points, 0, out, NULL) != NOH_OK
+                  : noh_time_lod_measure(p->work, p->work_bytes, &p->probe, 0, out, NULL) != NOH_OK;
 }
 
 int clip_errors_measure(const raw_skeleton *skeleton, const raw_clip *raw, const byte_buffer *clip,
@@ -174,8 +165,8 @@ int clip_errors_measure(const raw_skeleton *skeleton, const raw_clip *raw, const
     if (!failed && raw->joint_count) {
         out->shell = at->joint_radius ? 0.0f : (float)shell;
         out->level_count = joint_levels(skeleton, counts);
-        failed = !out->level_count || noh_joint_lod_measure(aligned(p.work), p.work_bytes, &p.probe, 0, counts,
-                                                            out->level_count, out->joint, NULL);
+        failed = !out->level_count ||
+                 noh_joint_lod_measure(p.work, p.work_bytes, &p.probe, 0, counts, out->level_count, out->joint, NULL);
     }
     failed = failed ||
              measure_update_rates(&p, raw->joint_count && at->joint_radius ? at->points : NULL, out->update_rate);
