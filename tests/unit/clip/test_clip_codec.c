@@ -563,7 +563,7 @@ static void other_skeletons_and_versions_are_refused(void **state)
     size = noh_clip_size(&desc, &error);
     assert_int_equal(noh_clip_init(NULL, size, &desc, &clip, &error), NOH_ERR_ARG);
     assert_int_equal(error.need, size);
-    assert_int_equal(noh_clip_init((uint8_t *)x.clip_memory + 8, size, &desc, &clip, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_clip_init((uint8_t *)x.clip_memory + 4, size, &desc, &clip, &error), NOH_ERR_ARG);
     assert_int_equal(error.need, size);
     assert_int_equal(noh_clip_init(x.clip_memory, size - 1u, &desc, &clip, &error), NOH_ERR_MEMORY);
     assert_int_equal(error.need, size);
