@@ -180,7 +180,7 @@ static void memory_is_exact(void **state)
     memset(memory, 0xa5, need + 16);
     assert_int_equal(noh_character_scratch_init(memory, need - 1, &g.desc, &scratch, &error), NOH_ERR_MEMORY);
     assert_int_equal(error.need, need);
-    assert_int_equal(noh_character_scratch_init(memory + 8, need, &g.desc, &scratch, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_character_scratch_init(memory + 4, need, &g.desc, &scratch, &error), NOH_ERR_ARG);
     assert_int_equal(memory[0], 0xa5);
     assert_int_equal(noh_character_scratch_init(memory, need, &g.desc, &scratch, &error), NOH_OK);
     noh_character_update(g.ch, &g.s.set, &g.s.skeleton, g.radius, &scratch);

@@ -38,7 +38,7 @@ static void memory_is_exact(void **state)
     memset(&s, 0x11, sizeof s);
     assert_int_equal(noh_schedule_init(memory, 16 * 7 - 1, 7, &s, &error), NOH_ERR_MEMORY);
     assert_int_equal(error.need, 16 * 7);
-    assert_int_equal(noh_schedule_init(memory + 8, 16 * 7, 7, &s, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_schedule_init(memory + 4, 16 * 7, 7, &s, &error), NOH_ERR_ARG);
     assert_int_equal(noh_schedule_init(memory, 16 * 7, 0, &s, &error), NOH_ERR_ARG);
     assert_int_equal(strncmp(error.what, "capacity", strlen("capacity")), 0);
     assert_int_equal(s.capacity, 0x11111111);
