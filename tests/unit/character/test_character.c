@@ -162,7 +162,7 @@ static void memory_is_exact(void **state)
     memset(memory, 0xa5, g.size + 512);
     assert_int_equal(noh_character_init(memory + 256, g.size - 1, &g.desc, &ch, &error), NOH_ERR_MEMORY);
     assert_int_equal(error.need, g.size);
-    assert_int_equal(noh_character_init(memory + 264, g.size, &g.desc, &ch, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_character_init(memory + 260, g.size, &g.desc, &ch, &error), NOH_ERR_ARG);
     assert_null(ch);
     for (size_t i = 0; i < g.size + 512; i++) assert_int_equal(memory[i], 0xa5);
     assert_int_equal(noh_character_init(memory + 256, g.size, &g.desc, &ch, &error), NOH_OK);
