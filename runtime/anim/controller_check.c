@@ -112,7 +112,7 @@ noh_result noh_controller_check(const void *memory, size_t bytes, const noh_clip
     const char *what;
     NOH_ASSERT(set);
     if (!memory || ((uintptr_t)memory & (NOH_MEMORY_ALIGN - 1u)) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory is NULL or not aligned to 16 bytes", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "memory is NULL or not aligned to NOH_MEMORY_ALIGN bytes", 0, 0);
     }
     what = bytes < sizeof *c ? "controller: cut short" : bad_head(c, bytes, set);
     if (what) {

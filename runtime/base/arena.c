@@ -7,9 +7,7 @@ noh_result noh_arena_open(noh_arena *arena, void *memory, size_t bytes, size_t n
         return noh_fail(error, NOH_ERR_ARG, "memory is NULL", 0, need);
     }
     if (((uintptr_t)memory & (NOH_MEMORY_ALIGN - 1u)) != 0) {
-        return noh_fail(error, NOH_ERR_ARG,
-                        NOH_MEMORY_ALIGN == 16u ? "memory is not aligned to 16 bytes"
-                                                : "memory is not aligned to 8 bytes",
+        return noh_fail(error, NOH_ERR_ARG, "memory is not aligned to NOH_MEMORY_ALIGN bytes",
                         (uintptr_t)memory & (NOH_MEMORY_ALIGN - 1u), need);
     }
     if (bytes < need) {

@@ -9,7 +9,6 @@
 #include "clip/clip_cache.h"
 #include "convert/codec/clip_encode.h"
 #include "convert/clips/raw_set.h"
-#include "support.h"
 
 typedef struct fixture {
     raw_set *set;
@@ -131,7 +130,7 @@ static inline const char *fixture_open(fixture *x, uint32_t slots)
     desc.joint_count = joints;
     size = noh_clip_size(&desc, &error);
     if (!size) return error.what;
-    x->clip_memory = test_aligned(NULL, size);
+    x->clip_memory = malloc(size);
     if (noh_clip_init(x->clip_memory, size, &desc, &x->clip, &error) != NOH_OK) return error.what;
     noh_clip_info_of(x->clip, &info);
     x->sample_rate_uhz = info.sample_rate_uhz;
@@ -142,7 +141,7 @@ static inline const char *fixture_open(fixture *x, uint32_t slots)
     cache.cached_segment_count = slots;
     size = noh_clip_cache_size(&cache, &error);
     if (!size) return error.what;
-    x->cache_memory = test_aligned(NULL, size);
+    x->cache_memory = malloc(size);
     return noh_clip_cache_init(x->cache_memory, size, &cache, &x->cache, &error) == NOH_OK ? NULL : error.what;
 }
 

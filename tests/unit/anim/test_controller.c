@@ -5,6 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include "base/arena.h"
 #include "support/clip_set_fixture.h"
 #include "anim/event_queue.h"
 #include "pose/inertial_internal.h"
@@ -166,7 +167,7 @@ static void memory_is_exact(void **state)
     assert_int_equal(error.need, size);
     assert_null(c);
     assert_int_equal(g.memory[0], 0xa5);
-    assert_int_equal(noh_controller_init(g.memory + 4, size, &d, &c, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_controller_init(g.memory + NOH_MEMORY_ALIGN / 2, size, &d, &c, &error), NOH_ERR_ARG);
     assert_int_equal(noh_controller_init(NULL, size, &d, &c, &error), NOH_ERR_ARG);
     assert_int_equal(noh_controller_init(g.memory, size, &d, &c, &error), NOH_OK);
     assert_int_equal(noh_controller_bytes(c), size);
@@ -1055,7 +1056,7 @@ static void check_accepts_what_a_step_leaves(void **state)
     }
     assert_int_equal(noh_controller_check(g.c, g.c->bytes - 1u, &g.s.set, &error), NOH_ERR_DATA);
     assert_int_equal(noh_controller_check(g.c, sizeof *g.c - 1u, &g.s.set, &error), NOH_ERR_DATA);
-    assert_int_equal(noh_controller_check(g.memory + 4, g.c->bytes, &g.s.set, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_controller_check(g.memory + NOH_MEMORY_ALIGN / 2, g.c->bytes, &g.s.set, &error), NOH_ERR_ARG);
     assert_int_equal(noh_controller_check(NULL, 0, &g.s.set, &error), NOH_ERR_ARG);
     g.s.set.mask_count--;
     assert_int_equal(noh_controller_check(g.c, g.c->bytes, &g.s.set, &error), NOH_ERR_DATA);

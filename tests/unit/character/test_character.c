@@ -1,4 +1,5 @@
 /* Tests of runtime/character/character.c: one block that steps, chooses, poses and shows; and a crowd of them. */
+#include "base/arena.h"
 #include "support/support.h"
 
 #include <math.h>
@@ -162,7 +163,8 @@ static void memory_is_exact(void **state)
     memset(memory, 0xa5, g.size + 512);
     assert_int_equal(noh_character_init(memory + 256, g.size - 1, &g.desc, &ch, &error), NOH_ERR_MEMORY);
     assert_int_equal(error.need, g.size);
-    assert_int_equal(noh_character_init(memory + 260, g.size, &g.desc, &ch, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_character_init(memory + 256 + NOH_MEMORY_ALIGN / 2, g.size, &g.desc, &ch, &error),
+                     NOH_ERR_ARG);
     assert_null(ch);
     for (size_t i = 0; i < g.size + 512; i++) assert_int_equal(memory[i], 0xa5);
     assert_int_equal(noh_character_init(memory + 256, g.size, &g.desc, &ch, &error), NOH_OK);
@@ -180,7 +182,8 @@ static void memory_is_exact(void **state)
     memset(memory, 0xa5, need + 16);
     assert_int_equal(noh_character_scratch_init(memory, need - 1, &g.desc, &scratch, &error), NOH_ERR_MEMORY);
     assert_int_equal(error.need, need);
-    assert_int_equal(noh_character_scratch_init(memory + 4, need, &g.desc, &scratch, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_character_scratch_init(memory + NOH_MEMORY_ALIGN / 2, need, &g.desc, &scratch, &error),
+                     NOH_ERR_ARG);
     assert_int_equal(memory[0], 0xa5);
     assert_int_equal(noh_character_scratch_init(memory, need, &g.desc, &scratch, &error), NOH_OK);
     noh_character_update(g.ch, &g.s.set, &g.s.skeleton, g.radius, &scratch);

@@ -1,4 +1,5 @@
 /* Tests of runtime/character/scheduler.c: budgets are kept, and no instance waits for ever. */
+#include "base/arena.h"
 #include "support/support.h"
 
 #include <math.h>
@@ -38,7 +39,7 @@ static void memory_is_exact(void **state)
     memset(&s, 0x11, sizeof s);
     assert_int_equal(noh_schedule_init(memory, 16 * 7 - 1, 7, &s, &error), NOH_ERR_MEMORY);
     assert_int_equal(error.need, 16 * 7);
-    assert_int_equal(noh_schedule_init(memory + 4, 16 * 7, 7, &s, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_schedule_init(memory + NOH_MEMORY_ALIGN / 2, 16 * 7, 7, &s, &error), NOH_ERR_ARG);
     assert_int_equal(noh_schedule_init(memory, 16 * 7, 0, &s, &error), NOH_ERR_ARG);
     assert_int_equal(strncmp(error.what, "capacity", strlen("capacity")), 0);
     assert_int_equal(s.capacity, 0x11111111);

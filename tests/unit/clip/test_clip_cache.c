@@ -1,4 +1,5 @@
 /* Tests of runtime/clip/clip_cache.c: which segments it holds, at what cost, and what is decoded late. */
+#include "base/arena.h"
 #include "support/set_fixture.h"
 
 #include "clip/clip_cache_internal.h"
@@ -375,7 +376,7 @@ static void memory_and_descs_are_checked(void **state)
     memory = test_aligned(NULL, bytes + 16u);
     assert_int_equal(noh_clip_cache_init(NULL, bytes, &desc, &cache, &error), NOH_ERR_ARG);
     assert_int_equal(error.need, bytes);
-    assert_int_equal(noh_clip_cache_init(memory + 4, bytes, &desc, &cache, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_clip_cache_init(memory + NOH_MEMORY_ALIGN / 2, bytes, &desc, &cache, &error), NOH_ERR_ARG);
     assert_int_equal(error.need, bytes);
     assert_int_equal(noh_clip_cache_init(memory, bytes - 1u, &desc, &cache, &error), NOH_ERR_MEMORY);
     assert_int_equal(error.need, bytes);
