@@ -12,7 +12,7 @@ work=$build/lint
 accepted=tools/lint/accepted.txt
 jobs=${JOBS:-$(nproc 2>/dev/null || echo 2)}
 mkdir -p "$work"
-includes="-Iruntime -Iplatform -Itools -Itools/noh -I$build/gen"
+includes="-Iruntime -Iplatform -Itools -Itools/noh -Itools/demo_assets -I$build/gen"
 # Not the page (emscripten's headers), the template for porters, and what a build without windows has instead of view/.
 find runtime platform tools -name '*.c' ! -path 'platform/web/*' ! -name template.c ! -name view_without.c | sort >"$work/files"
 total=$(wc -l <"$work/files")
