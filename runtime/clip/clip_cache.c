@@ -34,7 +34,7 @@ void noh_clip_cache_needs_add(noh_clip_cache_needs *needs, const noh_clip_info *
     const uint32_t bytes = entry_bytes(info), size = size_class(bytes);
     NOH_ASSERT(size < NOH_CLIP_CACHE_SIZES);
     needs->clip_count++;
-    if (info->segment_count > SEGMENTS_MAX - needs->segment_count) {
+    if (info->segment_count == 0 || info->segment_count > SEGMENTS_MAX - needs->segment_count) {
         needs->segment_count = SEGMENTS_MAX; /* which is refused */
         return;
     }
