@@ -38,7 +38,8 @@ static const char *bad_desc(const noh_controller_desc *d)
         return "set: NULL, or without joints and floats, or over NOH_JOINTS_MAX or NOH_FLOATS_MAX";
     if (d->track_count > NOH_TRACKS_MAX) return "track_count is above NOH_TRACKS_MAX";
     if (d->change_count > NOH_CHANGES_MAX) return "change_count is above NOH_CHANGES_MAX";
-    if (d->flags & ~NOH_CONTROLLER_INERTIAL) return "flags has bits other than NOH_CONTROLLER_INERTIAL";
+    if (d->flags & ~(NOH_CONTROLLER_INERTIAL | NOH_CONTROLLER_COVERS))
+        return "flags has bits other than NOH_CONTROLLER_INERTIAL and NOH_CONTROLLER_COVERS";
     return NULL;
 }
 

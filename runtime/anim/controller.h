@@ -33,6 +33,10 @@ extern "C" {
 
 #define NOH_CONTROLLER_INERTIAL 1u   /* room for the offsets of a transition: 48 bytes per joint, 8 per float */
 #define NOH_CONTROLLER_EVENTS_CUT 2u /* set by a step that reached NOH_STEP_EVENTS_MAX keys and delivered no more */
+/* Weights that sum to less than 1 cover in part: those of the high group cover the pose of the low one, those of floats
+ * their defaults. So a group can be faded in and out by the weights of its tracks. Without it weights are relative to
+ * each other. The joints of the low group are always relative */
+#define NOH_CONTROLLER_COVERS 4u
 
 /* A controller takes 80 bytes, 48 per track and 32 per change; with room for inertia 48 more per joint and 8 per
  * float. */
@@ -41,7 +45,7 @@ typedef struct noh_controller_desc {
     uint32_t track_count;    /* default (0) 4; at most NOH_TRACKS_MAX */
     /* changes waiting or running at one time; default (0) track_count + 2; at most NOH_CHANGES_MAX */
     uint32_t change_count;
-    uint32_t flags; /* NOH_CONTROLLER_INERTIAL */
+    uint32_t flags; /* NOH_CONTROLLER_INERTIAL, NOH_CONTROLLER_COVERS */
 } noh_controller_desc;
 
 /* The head of the block; tables follow at byte offsets from it. Reading the fields is fine; change them by calls. */

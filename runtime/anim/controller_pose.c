@@ -78,6 +78,11 @@ static uint32_t clip_tick(const view *v, const noh_track *t)
     return noh_track_clip_tick(t, &v->set->clips[t->clip], v->ago);
 }
 
+static float full_weight(const noh_controller *c)
+{
+    return c->flags & NOH_CONTROLLER_COVERS ? 1.0f : 0.0f;
+}
+
 /* One track's pose into the scratch, without its root motion. */
 static void sample_at(const view *v, uint32_t clip, uint32_t tick, noh_transform *pose, float *floats)
 {
@@ -116,14 +121,15 @@ static void blend_groups(const view *v, noh_transform *pose, float *floats)
     }
 }
 
-/* The track that is the whole blend, if there is just one and it has no mask: its clip needs no sum. */
+/* The track that is the whole blend, if there is just one, it has no mask and its weight is full: its clip needs no
+ * sum. */
 static const noh_track *only_track(const view *v)
 {
     const noh_track *only = NULL;
     for (uint32_t i = 0; i < v->c->track_count; i++) {
         const noh_track *t = noh_controller_track(v->c, i);
         if (!(t->flags & NOH_TRACK_ADDITIVE) && is_sampled(v->c, t)) {
-            if (only || t->mask) {
+            if (only || t->mask || t->weight < full_weight(v->c)) {
                 return NULL;
             }
             only = t;
@@ -209,6 +215,7 @@ static void evaluate(const noh_controller *c, const noh_clip_set *set, noh_pose_
     v.ago = ago;
     scratch->blend.joint_count = c->lod_joint_count;
     scratch->blend.float_count = c->float_count;
+    scratch->blend.full = full_weight(c);
     scratch->blend.totals = scratch->below;
     scratch->blend.float_totals = scratch->float_below;
     only = only_track(&v);
@@ -366,8 +373,9 @@ noh_root_pose noh_controller_root_motion(noh_controller *c, const noh_clip_set *
     high_sum = group_root(c, set, NOH_GROUP_HIGH);
     low = mean_root(&low_sum);
     high = mean_root(&high_sum);
+    if (high_sum.total < (double)full_weight(c)) high_sum.total = (double)full_weight(c);
     cover = high_sum.weight > 0.0 ? (double)c->priority_blend * high_sum.weight / high_sum.total : 0.0;
-    cover = low_sum.weight > 0.0 ? cover : 1.0;
+    cover = low_sum.weight > 0.0 || full_weight(c) > 0.0f ? cover : 1.0;
     memset(&both, 0, sizeof both);
     add_root(&both, &low, 1.0 - cover, 1.0);
     add_root(&both, &high, cover, 1.0);

@@ -27,18 +27,18 @@ void noh_blend_begin(noh_blend *blend)
  * no sum of weights can lift it out (NOH_TRACKS_MAX times NOH_WEIGHT_MAX is 6.4e7). */
 #define NOTHING_BELOW (-1e30f)
 
-static void begin_totals(const float *below, uint32_t count, float *totals)
+static void begin_totals(const noh_blend *blend, const float *below, uint32_t count, float *totals)
 {
     for (uint32_t i = 0; i < count; i++) {
-        totals[i] = below[i] > 0.0f ? 0.0f : NOTHING_BELOW;
+        totals[i] = below[i] > 0.0f || blend->full > 0.0f ? 0.0f : NOTHING_BELOW;
     }
 }
 
 void noh_blend_begin_over(noh_blend *blend)
 {
     NOH_ASSERT(blend && (!blend->joint_count || blend->totals) && (!blend->float_count || blend->float_totals));
-    begin_totals(blend->weights, blend->joint_count, blend->totals);
-    begin_totals(blend->float_weights, blend->float_count, blend->float_totals);
+    begin_totals(blend, blend->weights, blend->joint_count, blend->totals);
+    begin_totals(blend, blend->float_weights, blend->float_count, blend->float_totals);
     noh_blend_begin(blend);
     blend->covers = 1;
 }
@@ -108,8 +108,11 @@ void noh_blend_finish(const noh_blend *blend, const noh_transform *bind_pose, co
         }
     }
     for (uint32_t i = 0; i < blend->float_count; i++) {
-        float rest = defaults ? defaults[i] : 0.0f;
-        floats[i] = blend->float_weights[i] > 0.0f ? blend->float_sum[i] / blend->float_weights[i] : rest;
+        const float rest = defaults ? defaults[i] : 0.0f, weight = blend->float_weights[i];
+        floats[i] = weight > 0.0f ? blend->float_sum[i] / weight : rest;
+        if (weight > 0.0f && weight < blend->full) {
+            floats[i] = rest * (1.0f - weight) + blend->float_sum[i];
+        }
     }
 }
 
@@ -124,9 +127,9 @@ static void mix_joint(const noh_transform *a, const noh_transform *b, float t, n
 
 /* How much of the pose below a sum covers at one joint: `amount` times the mean mask, which is the masked over the
  * unmasked weight; all of it where nothing lies below. */
-static float cover_of(float amount, float weight, float total)
+static float cover_of(const noh_blend *blend, float amount, float weight, float total)
 {
-    float part = weight / total;
+    float part = weight / (total < blend->full ? blend->full : total);
     return total > 0.0f ? amount * (part < 1.0f ? part : 1.0f) : 1.0f;
 }
 
@@ -138,12 +141,12 @@ void noh_blend_cover(const noh_blend *blend, float amount, noh_transform *pose, 
         if (blend->weights[i] > 0.0f) {
             noh_transform over;
             divide_joint(&blend->sum[i], blend->weights[i], &over);
-            mix_joint(&pose[i], &over, cover_of(amount, blend->weights[i], blend->totals[i]), &pose[i]);
+            mix_joint(&pose[i], &over, cover_of(blend, amount, blend->weights[i], blend->totals[i]), &pose[i]);
         }
     }
     for (uint32_t i = 0; i < blend->float_count; i++) {
         if (blend->float_weights[i] > 0.0f) {
-            float t = cover_of(amount, blend->float_weights[i], blend->float_totals[i]);
+            float t = cover_of(blend, amount, blend->float_weights[i], blend->float_totals[i]);
             floats[i] = floats[i] * (1.0f - t) + blend->float_sum[i] / blend->float_weights[i] * t;
         }
     }

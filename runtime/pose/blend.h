@@ -37,6 +37,8 @@ typedef struct noh_blend {
     float *totals;        /* [joint_count] unmasked weights, after noh_blend_begin_over; else not touched */
     float *float_totals;  /* [float_count] likewise */
     int covers;           /* 1: begun by noh_blend_begin_over */
+    float full;           /* 0: weights are relative. 1: weights that sum to less than 1 cover only so much of what lies
+                           * below: floats of their defaults, a sum begun by noh_blend_begin_over of the pose there */
 } noh_blend;
 
 /* A mask: a factor for each joint and float, 255 = 1; NULL arrays: 1 everywhere (track masks: Granberg 2009, chapter
@@ -64,6 +66,7 @@ void noh_blend_finish(const noh_blend *blend, const noh_transform *bind_pose, co
 
 /* Lay a sum begun by noh_blend_begin_over over the pose below, in place. Each joint is covered by `amount` times the
  * mean mask of the poses that take part there (sum of w * mask / sum of w), wholly where the pose below has no weight.
+ * With `full` 1 the sum of w counts as at least 1, and so does a pose below without weight: it is the bind pose.
  * shapes  pose[joint_count], floats[float_count] */
 void noh_blend_cover(const noh_blend *blend, float amount, noh_transform *pose, float *floats);
 

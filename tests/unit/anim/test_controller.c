@@ -680,6 +680,43 @@ static void the_high_group_covers_what_nothing_lies_below(void **state)
     }
 }
 
+/* With NOH_CONTROLLER_COVERS a high track covers by its weight, so it can be faded in from nothing; two that fade into
+ * each other cover wholly all the time; and floats come from their defaults. */
+static void weights_below_one_cover_in_part(void **state)
+{
+    stage g;
+    noh_transform low[JOINTS], high[JOINTS], other[JOINTS], want[JOINTS];
+    float low_floats[FLOATS], high_floats[FLOATS], other_floats[FLOATS];
+    (void)state;
+    stage_open(&g, 3, NOH_CONTROLLER_COVERS);
+    scene_pose(&g.s, WALK, 0, low, low_floats);
+    scene_pose(&g.s, WAVE, 0, high, high_floats);
+    scene_pose(&g.s, RUN, 0, other, other_floats);
+    for (int i = 1; i <= 5; i++) {
+        const float weight = (float)i / 4.0f, part = weight < 1.0f ? weight : 1.0f;
+        start(&g, 0, (noh_track_desc){ .clip = WALK, .weight = 3.0f });
+        start(&g, 1, (noh_track_desc){ .clip = WAVE, .group = NOH_GROUP_HIGH, .weight = weight });
+        take_pose(&g);
+        noh_pose_mix(JOINTS, low, high, part, NULL, want);
+        assert_true(pose_apart(g.pose, want, JOINTS) < 1e-6);
+        assert_true(fabsf(g.floats[1] - (low_floats[1] + (high_floats[1] - low_floats[1]) * part)) < 1e-6f);
+        noh_controller_set_mode(g.c, 0, NOH_TRACK_OFF); /* below is the bind pose */
+        take_pose(&g);
+        noh_pose_mix(JOINTS, g.s.bind, high, part, NULL, want);
+        assert_true(pose_apart(g.pose, want, JOINTS) < 1e-6);
+        start(&g, 1, (noh_track_desc){ .clip = WAVE, .weight = weight }); /* low: joints are whole, floats in part */
+        take_pose(&g);
+        assert_true(pose_apart(g.pose, high, JOINTS) < 1e-6);
+        assert_true(fabsf(g.floats[1] - (g.s.defaults[1] + (high_floats[1] - g.s.defaults[1]) * part)) < 1e-6f);
+    }
+    start(&g, 1, (noh_track_desc){ .clip = WAVE, .group = NOH_GROUP_HIGH, .weight = 0.25f });
+    start(&g, 2, (noh_track_desc){ .clip = RUN, .group = NOH_GROUP_HIGH, .weight = 0.75f });
+    take_pose(&g);
+    noh_pose_mix(JOINTS, high, other, 0.75f, NULL, want);
+    assert_true(pose_apart(g.pose, want, JOINTS) < 2e-3); /* the sum and the mix normalise at different times */
+    assert_true(fabsf(g.floats[1] - (high_floats[1] * 0.25f + other_floats[1] * 0.75f)) < 1e-6f);
+}
+
 /* A single track with a mask: what the mask leaves out has the bind pose. */
 static void a_masked_track_alone_leaves_the_bind_pose(void **state)
 {
@@ -1170,6 +1207,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(priority_is_the_blend_group),
         cmocka_unit_test(a_masked_track_covers_by_its_mask),
         cmocka_unit_test(the_high_group_covers_what_nothing_lies_below),
+        cmocka_unit_test(weights_below_one_cover_in_part),
         cmocka_unit_test(a_masked_track_alone_leaves_the_bind_pose),
         cmocka_unit_test(clips_of_joints_and_of_floats_do_not_mix),
         cmocka_unit_test(clips_of_joints_and_of_floats_do_not_mix_in_the_high_group),

@@ -19,6 +19,7 @@ static void sums_open(sums *s)
 {
     s->blend.joint_count = JOINTS;
     s->blend.float_count = FLOATS;
+    s->blend.full = 0.0f;
     s->blend.sum = s->sum;
     s->blend.weights = s->weights;
     s->blend.float_sum = s->float_sum;
