@@ -12,14 +12,14 @@ typedef struct noh_bank_clip bank_clip;
 
 #define TRACKS 2u /* of an instance that play at once, where the desc does not say */
 
-/* A bank is made in two passes over the pack. The first counts (clips that fit, their keys, markers and floats, the
+/* A bank is made in two passes over the packs. The first counts (clips that fit, their keys, markers and floats, the
  * cache's needs) without memory, out of the packs' bytes alone; the second carves exactly that and fills it in the same
  * order. */
 
 /* What the first pass finds. */
 typedef struct counts {
     noh_clip_set shape;
-    uint32_t groups, runs, sampled, foreign, unknown;
+    uint32_t groups, runs, sampled, foreign, replaced, unknown;
     size_t clip_bytes;
     noh_clip_cache_needs cache;
     uint32_t cached_segments;
@@ -38,7 +38,7 @@ typedef struct parts {
     noh_clip_group *groups;
     float *defaults, *sampled;
     noh_root_track *roots;
-    uint32_t *pack_clips;
+    uint32_t *packs, *pack_clips;
     const noh_clip **opened;
     uint8_t *clip_memory, *cache_memory;
 } parts;
@@ -62,16 +62,16 @@ static void count_nodes(const noh_bank_binding *b, counts *c)
 
 /* A clip's groups: a named float that no clip before had is appended to the bank's floats; weights go to a node of the
  * mesh pack, if it has one of their name. */
-static void count_groups(const noh_bank_binding *b, uint32_t index, const noh_clip_desc *clip, counts *c)
+static void count_groups(const noh_bank_binding *b, const noh_bank_found *found, counts *c)
 {
-    noh_clip_group_reader reader = noh_clip_groups_of(clip);
-    noh_clip_group group, found;
+    noh_clip_group_reader reader = noh_clip_groups_of(&found->clip);
+    noh_clip_group group, node;
     while (noh_clip_next_group(&reader, &group)) {
-        if (noh_bank_is_new(b, index, clip, &group)) {
+        if (noh_bank_is_new(b, found, &group)) {
             c->groups++;
             c->shape.float_count += group.width;
         }
-        if (noh_bank_is_named(&group) || noh_bank_find_node(b, &group, &found)) {
+        if (noh_bank_is_named(&group) || noh_bank_find_node(b, &group, &node)) {
             c->runs++;
         } else {
             c->unknown++;
@@ -79,31 +79,48 @@ static void count_groups(const noh_bank_binding *b, uint32_t index, const noh_cl
     }
 }
 
-static noh_result count_clip(const noh_bank_binding *b, uint32_t index, counts *c, noh_error *error)
+static noh_result count_clip(const noh_bank_binding *b, const noh_bank_found *found, counts *c, noh_error *error)
 {
-    noh_pack_clip packed;
-    noh_clip_desc clip;
     noh_clip_info info;
     size_t bytes;
     noh_error why = { NOH_OK, "", 0, 0 };
-    if (!noh_bank_fits(b, index, &packed, &clip)) {
-        c->foreign++;
-        return NOH_OK;
-    }
-    if (noh_clip_measure(&clip, &info, &bytes, &why)) {
-        return noh_fail(error, why.result == NOH_ERR_ARG ? NOH_ERR_DATA : why.result, why.what, index, why.need);
+    if (noh_clip_measure(&found->clip, &info, &bytes, &why)) {
+        return noh_fail(error, why.result == NOH_ERR_ARG ? NOH_ERR_DATA : why.result, why.what,
+                        noh_bank_where(found->at), why.need);
     }
     if (info.duration_ticks > NOH_DURATION_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "a clip of a clip bank is longer than NOH_DURATION_MAX", index,
-                        info.duration_ticks);
+        return noh_fail(error, NOH_ERR_LIMIT, "a clip of a clip bank is longer than NOH_DURATION_MAX",
+                        noh_bank_where(found->at), info.duration_ticks);
+    }
+    if (c->shape.clip_count == NOH_CLIP_CACHE_CLIPS_MAX) {
+        return noh_fail(error, NOH_ERR_LIMIT, "the packs of a clip bank have more clips than NOH_CLIP_CACHE_CLIPS_MAX",
+                        noh_bank_where(found->at), (uint64_t)c->shape.clip_count + 1u);
     }
     c->shape.clip_count++;
-    c->shape.event_count += packed.header->event_count;
-    c->shape.marker_count += packed.header->marker_count;
+    c->shape.event_count += found->packed.header->event_count;
+    c->shape.marker_count += found->packed.header->marker_count;
     c->sampled = info.float_count > c->sampled ? info.float_count : c->sampled;
     c->clip_bytes += align_up(bytes);
     noh_clip_cache_needs_add(&c->cache, &info);
-    count_groups(b, index, &clip, c);
+    count_groups(b, found, c);
+    return NOH_OK;
+}
+
+/* Count all clips: those of the bank, those that a later pack replaces, those that move another skeleton. */
+static noh_result count_clips(const noh_bank_binding *b, counts *c, noh_error *error)
+{
+    const uint32_t fitting = noh_bank_count_fitting(b);
+    noh_bank_place next = { 0, 0 };
+    noh_bank_found found;
+    while (noh_bank_next_clip(b, &next, &found)) {
+        const noh_result r = count_clip(b, &found, c, error);
+        if (r) return r;
+    }
+    for (uint32_t i = 0; i < b->pack_count; i++) {
+        c->foreign += b->packs[i]->clip_count;
+    }
+    c->foreign -= fitting;
+    c->replaced = fitting - c->shape.clip_count;
     return NOH_OK;
 }
 
@@ -126,19 +143,18 @@ static uint32_t cached_segments_of(const noh_clip_bank_desc *desc, uint32_t segm
 static noh_result count(const noh_clip_bank_desc *desc, const noh_bank_binding *b, counts *c, noh_error *error)
 {
     noh_error why = { NOH_OK, "", 0, 0 };
+    noh_result r;
     memset(c, 0, sizeof *c);
     c->shape.joint_count = b->skeleton.joint_count;
     c->roots = desc->root_axes != 0 && c->shape.joint_count != 0;
     count_nodes(b, c);
-    for (uint32_t i = 0; i < b->clips->clip_count; i++) {
-        const noh_result r = count_clip(b, i, c, error);
-        if (r) return r;
-    }
+    r = count_clips(b, c, error);
+    if (r) return r;
     if (c->shape.clip_count == 0) {
         return noh_fail(error, NOH_ERR_NOT_FOUND,
                         c->foreign ? "no clip fits: all move another skeleton (names or parents of joints differ); "
                                      "build mesh and clips from one skeleton"
-                                   : "the pack has no clips",
+                                   : "the packs of a clip bank hold no clips",
                         0, c->foreign);
     }
     if (c->shape.float_count > NOH_FLOATS_MAX) {
@@ -164,6 +180,7 @@ static size_t carve(noh_arena *arena, const counts *c, parts *p)
     p->groups = noh_arena_carve(arena, c->groups * sizeof *p->groups, 4u);
     p->defaults = noh_arena_carve(arena, n->float_count * sizeof *p->defaults, 4u);
     p->sampled = noh_arena_carve(arena, c->sampled * sizeof *p->sampled, 4u);
+    p->packs = noh_arena_carve(arena, n->clip_count * sizeof *p->packs, 4u);
     p->pack_clips = noh_arena_carve(arena, n->clip_count * sizeof *p->pack_clips, 4u);
     p->runs = noh_arena_carve(arena, c->runs * sizeof *p->runs, 2u);
     p->clip_memory = noh_arena_carve(arena, c->clip_bytes, 16u);
@@ -171,9 +188,26 @@ static size_t carve(noh_arena *arena, const counts *c, parts *p)
     return arena->used;
 }
 
+static noh_result check_packs(const noh_clip_bank_desc *desc, noh_error *error)
+{
+    const char *what = desc->clips ? (desc->clip_packs || desc->clip_pack_count
+                                          ? "clips and clip_packs of a clip bank are both set: set clips for one pack, "
+                                            "clip_packs for several"
+                                          : NULL)
+                       : !desc->clip_packs || !desc->clip_pack_count
+                           ? "clips of a clip bank is NULL, and so is clip_packs, or clip_pack_count is 0"
+                           : NULL;
+    if (what) return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
+    for (uint32_t i = 0; i < desc->clip_pack_count; i++) {
+        if (!desc->clip_packs[i]) return noh_fail(error, NOH_ERR_ARG, "one of clip_packs of a clip bank is NULL", i, 0);
+    }
+    return NOH_OK;
+}
+
 static noh_result check_desc(const noh_clip_bank_desc *desc, noh_error *error)
 {
-    if (!desc->clips) return noh_fail(error, NOH_ERR_ARG, "clips of a clip bank is NULL", 0, 0);
+    const noh_result r = check_packs(desc, error);
+    if (r) return r;
     if (desc->root_axes > (NOH_ROOT_GROUND | NOH_ROOT_Y)) {
         return noh_fail(error, NOH_ERR_ARG, "root_axes of a clip bank hold unknown bits", desc->root_axes, 0);
     }
@@ -188,7 +222,7 @@ static noh_result measure(const noh_clip_bank_desc *desc, noh_bank_binding *b, c
     noh_arena arena = noh_arena_measure();
     parts p;
     noh_result r = check_desc(desc, error);
-    if (!r) r = noh_bank_bind(desc->clips, desc->mesh ? desc->mesh : desc->clips, desc->skeleton, b, error);
+    if (!r) r = noh_bank_bind(desc, b, error);
     if (!r) r = count(desc, b, c, error);
     if (!r) *bytes = carve(&arena, c, &p);
     return r;
@@ -218,6 +252,7 @@ noh_result noh_clip_bank_measure(const noh_clip_bank_desc *desc, noh_clip_bank_n
                                                                                 : c.cache.segment_count;
         needs->segment_count = c.cache.segment_count;
         needs->foreign_count = c.foreign;
+        needs->replaced_count = c.replaced;
     }
     return r;
 }
@@ -311,23 +346,23 @@ static void fill_keys(const noh_pack_clip *from, parts *p, noh_clip_entry *to)
 }
 
 /* Open a clip and enter it in the set. It was measured, so opening succeeds. */
-static void fill_clip(const noh_bank_binding *b, uint32_t index, const noh_pack_clip *from, const noh_clip_desc *desc,
-                      parts *p)
+static void fill_clip(const noh_bank_binding *b, const noh_bank_found *from, parts *p)
 {
     const uint32_t m = p->bank->clips.clip_count++;
-    const size_t bytes = align_up(noh_clip_size(desc, NULL));
+    const size_t bytes = align_up(noh_clip_size(&from->clip, NULL));
     noh_clip_entry *to = &p->clips[m];
     noh_clip *clip = NULL;
-    (void)noh_clip_init(p->clip_memory, bytes, desc, &clip, NULL);
+    (void)noh_clip_init(p->clip_memory, bytes, &from->clip, &clip, NULL);
     p->clip_memory += bytes;
     p->opened[m] = clip;
-    p->pack_clips[m] = index;
+    p->packs[m] = from->at.pack;
+    p->pack_clips[m] = from->at.index;
     p->bound[m].joint_count = clip->info.joint_count;
     memset(to, 0, sizeof *to);
-    to->name_hash = noh_hash_name(from->name);
+    to->name_hash = noh_hash_name(from->packed.name);
     to->duration_ticks = (uint32_t)clip->info.duration_ticks;
     to->loop = clip->info.flags & NOH_CLIP_FLAG_LOOP ? NOH_LOOP_REPEAT : NOH_LOOP_ONCE;
-    fill_keys(from, p, to);
+    fill_keys(&from->packed, p, to);
     fill_runs(b, clip, p, &p->bound[m]);
     to->flags = (p->bound[m].joint_count ? 0u : NOH_CLIP_FLOATS_ONLY) |
                 (p->bound[m].float_runs ? 0u : NOH_CLIP_JOINTS_ONLY);
@@ -335,13 +370,11 @@ static void fill_clip(const noh_bank_binding *b, uint32_t index, const noh_pack_
 
 static void fill(const noh_bank_binding *b, parts *p)
 {
+    noh_bank_place next = { 0, 0 };
+    noh_bank_found found;
     fill_nodes(b, p);
-    for (uint32_t i = 0; i < b->clips->clip_count; i++) {
-        noh_pack_clip packed;
-        noh_clip_desc desc;
-        if (noh_bank_fits(b, i, &packed, &desc)) {
-            fill_clip(b, i, &packed, &desc, p);
-        }
+    while (noh_bank_next_clip(b, &next, &found)) {
+        fill_clip(b, &found, p);
     }
 }
 
@@ -352,8 +385,10 @@ static void join(const noh_bank_binding *b, const counts *c, parts *p)
     noh_clip_bank *bank = p->bank;
     bank->skeleton = b->skeleton;
     bank->groups = p->groups;
+    bank->packs = p->packs;
     bank->pack_clips = p->pack_clips;
     bank->foreign_count = c->foreign;
+    bank->replaced_count = c->replaced;
     bank->unknown_count = c->unknown;
     bank->bound = p->bound;
     bank->sampled = p->sampled;
@@ -410,7 +445,8 @@ noh_result noh_clip_bank_init(void *memory, size_t bytes, const noh_clip_bank_de
     r = open_cache(&c, &p, error);
     if (r) return r;
     if (noh_clip_set_check(&p.bank->clips, &why)) {
-        return noh_fail(error, why.result, why.what, p.pack_clips[why.where], 0);
+        const noh_bank_place at = { p.packs[why.where], p.pack_clips[why.where] };
+        return noh_fail(error, why.result, why.what, noh_bank_where(at), 0);
     }
     if (c.roots) r = measure_roots(desc, &p, error);
     if (!r) *bank = p.bank;

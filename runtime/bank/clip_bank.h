@@ -1,10 +1,14 @@
-/* clip_bank.h: the compressed clips of a pack, joined to the controller.
+/* clip_bank.h: the compressed clips of packs, joined to the controller.
  *
  * A clip bank holds everything that can move one skeleton and the morph weights of its pack: the clips that fit,
  * opened, with one cache of decoded segments. Over them it makes a noh_clip_set, bank->clips, which any number of
  * controllers play: the set is what controllers see (names, durations, keys, a function that samples), the bank is what
- * is behind it (packs, codec, cache). Skeleton and meshes may be in one pack and the clips in another: skeletons are
+ * is behind it (packs, codec, cache). Skeleton and meshes may be in one pack and the clips in others: skeletons are
  * bound by hash, weights by the names of their nodes.
+ *
+ * Several packs of clips make one set, in their order: a game, what was added to it, what was mended since. A clip of a
+ * later pack takes the place of a clip of the same name in an earlier one, if both fit; so a pack put at the end
+ * replaces clips and adds others, and those that were there keep their index. Within one pack names are not compared.
  *
  * In each frame of a game call
  *   noh_clip_cache_begin_frame(bank->cache);                        once
@@ -41,8 +45,9 @@ extern "C" {
 #endif
 
 typedef struct noh_clip_bank_desc {
-    const noh_pack *clips; /* the pack whose clips are played; required */
-    const noh_pack *mesh;  /* the pack whose skeleton and nodes they move; default (NULL) `clips` */
+    const noh_pack *clips; /* the pack whose clips are played; NULL where clip_packs has them */
+    /* the pack whose skeleton and nodes they move; default (NULL) `clips`, or the first of clip_packs */
+    const noh_pack *mesh;
     /* index in `mesh`, default 0. NOH_NONE, and any index in a pack without skeletons: only clips without joints */
     uint32_t skeleton;
     uint32_t cached_segment_count; /* segments that the cache holds; default (0): NOH_CLIP_CACHE_SEGMENTS_PER_TRACK for
@@ -52,6 +57,10 @@ typedef struct noh_clip_bank_desc {
     uint32_t track_count;          /* tracks of each that play at once; default (0) 2, a cross-fade */
     uint32_t root_axes;            /* NOH_ROOT_* to extract from joint 0 as root motion; default (0) none */
     uint32_t root_up;              /* axis of the heading: 0 x, 1 y, 2 z; not used without root_axes */
+    /* [clip_pack_count] instead of `clips`, where there are several: none NULL; both arrays borrowed until the bank is
+     * made */
+    const noh_pack *const *clip_packs;
+    uint32_t clip_pack_count; /* 0 with `clips` */
 } noh_clip_bank_desc;
 
 /* What is known before there is memory: the bytes, and counts to size the rest by. */
@@ -61,7 +70,8 @@ typedef struct noh_clip_bank_needs {
     noh_clip_set shape;            /* counts only, for noh_controller_size and noh_pose_scratch_size */
     uint32_t cached_segment_count; /* segments that the cache will hold */
     uint32_t segment_count;        /* segments of all clips */
-    uint32_t foreign_count;        /* clips of the pack that move another skeleton and are left out */
+    uint32_t foreign_count;        /* clips of the packs that move another skeleton and are left out */
+    uint32_t replaced_count;       /* clips left out for one of the same name in a later pack */
 } noh_clip_bank_needs;
 
 typedef struct noh_clip_bank {
@@ -71,9 +81,10 @@ typedef struct noh_clip_bank {
     noh_clip_cache *cache; /* its clip i is clip i of the set */
     /* [group_count] of the set's floats; `node` is one of the mesh pack, NOH_NONE for a named float */
     const noh_clip_group *groups;
-    const uint32_t *pack_clips; /* [clips.clip_count] index of each in the clips' pack, for noh_pack_clip_at */
+    const uint32_t *packs;      /* [clips.clip_count] the pack of each: an index into clip_packs; 0 with `clips` */
+    const uint32_t *pack_clips; /* [clips.clip_count] index of each in its pack, for noh_pack_clip_at */
     uint32_t group_count;
-    uint32_t foreign_count; /* as above */
+    uint32_t foreign_count, replaced_count; /* as above */
     uint32_t unknown_count; /* groups of weights in the clips for which the mesh pack has no node: not played */
     const noh_node *nodes;  /* private: of the mesh pack */
     const struct noh_bank_clip *bound; /* [clips.clip_count] private */
@@ -90,10 +101,12 @@ size_t noh_clip_bank_size(const noh_clip_bank_desc *desc, noh_error *error);
 
 /* Make a bank in memory[bytes], 16-byte aligned. The packs' bytes must outlive it.
  * errors  ARG a field of desc, named, or memory NULL or misaligned; MEMORY need: the bytes;
- *         NOT_FOUND the pack has no clip that fits: all have joints, and of another skeleton (need: how many), or
- *         their skeleton has another unit (where: its index in the clips' pack);
- *         DATA a clip is broken, or its keys or markers lie outside it (where: the clip's index in the pack);
- *         LIMIT a clip longer than NOH_DURATION_MAX, more than NOH_FLOATS_MAX floats */
+ *         NOT_FOUND the packs have no clip that fits: all have joints, and of another skeleton (need: how many), or
+ *         their skeleton has another unit (where: the skeleton);
+ *         DATA a clip is broken, or its keys or markers lie outside it (where: the clip);
+ *         LIMIT a clip longer than NOH_DURATION_MAX (where: the clip), more clips than NOH_CLIP_CACHE_CLIPS_MAX or
+ *         floats than NOH_FLOATS_MAX.
+ *         `where` is an index in a pack, plus 2^32 times the index of that pack in clip_packs */
 noh_result noh_clip_bank_init(void *memory, size_t bytes, const noh_clip_bank_desc *desc, noh_clip_bank **bank,
                               noh_error *error);
 

@@ -19,41 +19,49 @@ static noh_result bind_skeleton(uint32_t skeleton, noh_bank_binding *b, noh_erro
 }
 
 /* Clips of this skeleton that were built in other units would be posed in the wrong size. */
-static noh_result check_units(const noh_bank_binding *b, noh_error *error)
+static noh_result check_units(const noh_bank_binding *b, uint32_t pack, noh_error *error)
 {
-    for (uint32_t i = 0; b->header && i < b->clips->skeleton_count; i++) {
+    for (uint32_t i = 0; b->header && i < b->packs[pack]->skeleton_count; i++) {
+        const noh_bank_place at = { pack, i };
         noh_skeleton skeleton;
         const noh_skeleton_header *h;
-        noh_pack_skeleton_at(b->clips, i, &skeleton, &h, NULL);
+        noh_pack_skeleton_at(b->packs[pack], i, &skeleton, &h, NULL);
         if (h->hash == b->header->hash && (h->unit_cm > b->header->unit_cm || h->unit_cm < b->header->unit_cm)) {
             return noh_fail(
                 error, NOH_ERR_NOT_FOUND,
-                "the clips' skeleton has another unit than the mesh's: build both in one unit, or in one pack", i, 0);
+                "the clips' skeleton has another unit than the mesh's: build both in one unit, or in one pack",
+                noh_bank_where(at), 0);
         }
     }
     return NOH_OK;
 }
 
-noh_result noh_bank_bind(const noh_pack *clips, const noh_pack *mesh, uint32_t skeleton, noh_bank_binding *b,
-                         noh_error *error)
+noh_result noh_bank_bind(const noh_clip_bank_desc *desc, noh_bank_binding *b, noh_error *error)
 {
     noh_result r;
     memset(b, 0, sizeof *b);
-    b->clips = clips;
-    b->mesh = mesh;
-    r = bind_skeleton(skeleton, b, error);
-    return r ? r : check_units(b, error);
+    b->packs = desc->clips ? &desc->clips : desc->clip_packs;
+    b->pack_count = desc->clips ? 1u : desc->clip_pack_count;
+    b->mesh = desc->mesh ? desc->mesh : b->packs[0];
+    r = bind_skeleton(desc->skeleton, b, error);
+    for (uint32_t i = 0; !r && i < b->pack_count; i++) {
+        r = check_units(b, i, error);
+    }
+    return r;
 }
 
-/* A clip without joints fits always. One with joints fits the skeleton of the same hash; in a single pack, which may
- * hold equal skeletons, it fits the very one that it was built with. */
-int noh_bank_fits(const noh_bank_binding *b, uint32_t index, noh_pack_clip *packed, noh_clip_desc *clip)
+/* Whether the clip at found->at fits, and the desc that opens it. A clip without joints fits always. One with joints
+ * fits the skeleton of the same hash; in the mesh's own pack, which may hold equal skeletons, it fits the very one that
+ * it was built with. */
+static int fits(const noh_bank_binding *b, noh_bank_found *found)
 {
+    const noh_pack *pack = b->packs[found->at.pack];
+    noh_clip_desc *clip = &found->clip;
     noh_skeleton built_with;
     const noh_clip_header *h;
-    (void)noh_pack_clip_at(b->clips, index, packed, NULL);
-    h = packed->header;
-    clip->bytes = packed->bytes;
+    (void)noh_pack_clip_at(pack, found->at.index, &found->packed, NULL);
+    h = found->packed.header;
+    clip->bytes = found->packed.bytes;
     clip->byte_count = h->clip_bytes;
     clip->joint_count = h->joint_count;
     clip->bind = NULL;
@@ -61,12 +69,74 @@ int noh_bank_fits(const noh_bank_binding *b, uint32_t index, noh_pack_clip *pack
         return 1;
     }
     if (!b->header || h->skeleton_hash != b->header->hash || h->joint_count != b->header->joint_count ||
-        (b->mesh == b->clips && h->skeleton != b->skeleton_index)) {
+        (b->mesh == pack && h->skeleton != b->skeleton_index)) {
         return 0;
     }
-    if (noh_pack_skeleton_at(b->clips, h->skeleton, &built_with, NULL, NULL)) return 0;
+    if (noh_pack_skeleton_at(pack, h->skeleton, &built_with, NULL, NULL)) return 0;
     clip->bind = built_with.bind_pose;
     return 1;
+}
+
+static uint32_t name_hash_at(const noh_bank_binding *b, noh_bank_place at)
+{
+    const noh_pack *pack = b->packs[at.pack];
+    return pack->chunks[pack->first_clip + at.index].name_hash;
+}
+
+/* The first clip of a pack that fits and has this name. Returns 0 when there is none. */
+static int find_name(const noh_bank_binding *b, uint32_t pack, uint32_t name_hash, noh_bank_found *found)
+{
+    noh_bank_place at = { pack, 0 };
+    for (; at.index < b->packs[pack]->clip_count; at.index++) {
+        if (name_hash_at(b, at) == name_hash) {
+            found->at = at;
+            if (fits(b, found)) return 1;
+        }
+    }
+    return 0;
+}
+
+/* A clip takes the place of the first pack's that has its name, so an added pack renumbers no clip: one that an earlier
+ * pack has too was handed out there. */
+static int resolve(const noh_bank_binding *b, noh_bank_place at, noh_bank_found *found)
+{
+    const uint32_t name_hash = name_hash_at(b, at);
+    for (uint32_t pack = 0; pack < at.pack; pack++) {
+        if (find_name(b, pack, name_hash, found)) return 0;
+    }
+    for (uint32_t pack = b->pack_count; pack-- > at.pack + 1u;) {
+        if (find_name(b, pack, name_hash, found)) return 1;
+    }
+    found->at = at;
+    return fits(b, found);
+}
+
+int noh_bank_next_clip(const noh_bank_binding *b, noh_bank_place *next, noh_bank_found *found)
+{
+    while (next->pack < b->pack_count) {
+        const noh_bank_place at = *next;
+        if (at.index >= b->packs[at.pack]->clip_count) {
+            next->pack++;
+            next->index = 0;
+            continue;
+        }
+        next->index++;
+        found->at = at;
+        if (fits(b, found) && resolve(b, at, found)) return 1;
+    }
+    return 0;
+}
+
+uint32_t noh_bank_count_fitting(const noh_bank_binding *b)
+{
+    noh_bank_found found;
+    uint32_t count = 0;
+    for (found.at.pack = 0; found.at.pack < b->pack_count; found.at.pack++) {
+        for (found.at.index = 0; found.at.index < b->packs[found.at.pack]->clip_count; found.at.index++) {
+            count += (uint32_t)fits(b, &found);
+        }
+    }
+    return count;
 }
 
 int noh_bank_next_node(const noh_bank_binding *b, uint32_t *node, uint32_t *first, noh_clip_group *group)
@@ -118,15 +188,15 @@ static int clip_has(const noh_clip_desc *clip, const noh_clip_group *wanted, uin
     return 0;
 }
 
-int noh_bank_is_new(const noh_bank_binding *b, uint32_t index, const noh_clip_desc *clip, const noh_clip_group *group)
+int noh_bank_is_new(const noh_bank_binding *b, const noh_bank_found *found, const noh_clip_group *group)
 {
-    if (!noh_bank_is_named(group) || group->width == 0 || clip_has(clip, group, group->first)) {
+    noh_bank_place next = { 0, 0 };
+    noh_bank_found other;
+    if (!noh_bank_is_named(group) || group->width == 0 || clip_has(&found->clip, group, group->first)) {
         return 0;
     }
-    for (uint32_t i = 0; i < index; i++) {
-        noh_pack_clip packed;
-        noh_clip_desc other;
-        if (noh_bank_fits(b, i, &packed, &other) && clip_has(&other, group, NOH_NONE)) {
+    while (noh_bank_next_clip(b, &next, &other) && noh_bank_where(other.at) != noh_bank_where(found->at)) {
+        if (clip_has(&other.clip, group, NOH_NONE)) {
             return 0;
         }
     }

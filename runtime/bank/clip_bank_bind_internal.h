@@ -1,25 +1,48 @@
-/* clip_bank_bind_internal.h (private to bank/): which clips of a pack fit a skeleton and the nodes of a mesh pack.
+/* clip_bank_bind_internal.h (private to bank/): which clips of packs fit a skeleton and the nodes of a mesh pack.
  * Reads only the packs' bytes, so that sizes are known before there is memory. */
 #ifndef NOH_BANK_CLIP_BANK_BIND_INTERNAL_H
 #define NOH_BANK_CLIP_BANK_BIND_INTERNAL_H
 
+#include "bank/clip_bank.h"
 #include "clip/clip_internal.h"
-#include "clip/pack_clip.h"
 
 typedef struct noh_bank_binding {
-    const noh_pack *clips, *mesh;
+    const noh_pack *const *packs; /* [pack_count] of clips */
+    uint32_t pack_count;
+    const noh_pack *mesh;
     noh_skeleton skeleton;             /* joint_count 0: none */
     const noh_skeleton_header *header; /* NULL: none */
     uint32_t skeleton_index;
 } noh_bank_binding;
 
-/* Bind clips to the skeleton of that index in `mesh`; NOH_NONE, or any in a pack without skeletons: none.
- * errors  ARG skeleton; NOT_FOUND the clips' skeleton has another unit (where: its index in their pack) */
-noh_result noh_bank_bind(const noh_pack *clips, const noh_pack *mesh, uint32_t skeleton, noh_bank_binding *b,
-                         noh_error *error);
+/* A clip: its pack, and its index there. */
+typedef struct noh_bank_place {
+    uint32_t pack, index;
+} noh_bank_place;
 
-/* The n-th clip of the pack and the desc that opens it; returns 0 when it moves another skeleton. */
-int noh_bank_fits(const noh_bank_binding *b, uint32_t index, noh_pack_clip *packed, noh_clip_desc *clip);
+/* The place as errors tell it. */
+static inline uint64_t noh_bank_where(noh_bank_place at)
+{
+    return (uint64_t)at.pack << 32 | at.index;
+}
+
+/* A clip of the bank: where it lies, and the desc that opens it. */
+typedef struct noh_bank_found {
+    noh_bank_place at;
+    noh_pack_clip packed;
+    noh_clip_desc clip;
+} noh_bank_found;
+
+/* Bind the clips of desc's packs to its skeleton.
+ * errors  ARG skeleton; NOT_FOUND the clips' skeleton has another unit (where: its place) */
+noh_result noh_bank_bind(const noh_clip_bank_desc *desc, noh_bank_binding *b, noh_error *error);
+
+/* The next clip of the bank, from *next on, which starts as zeros. Advances *next; returns 0 when there is none. A clip
+ * of which a later pack has one of the same name is replaced by that. */
+int noh_bank_next_clip(const noh_bank_binding *b, noh_bank_place *next, noh_bank_found *found);
+
+/* How many clips of all packs fit, the replaced ones too. */
+uint32_t noh_bank_count_fitting(const noh_bank_binding *b);
 
 /* The next node with targets, from *node on, as a group of floats at *first. Advances both; returns 0 when there is
  * none. */
@@ -29,8 +52,9 @@ int noh_bank_next_node(const noh_bank_binding *b, uint32_t *node, uint32_t *firs
  * width, else the first of that name and width. Returns 0 when there is none. */
 int noh_bank_find_node(const noh_bank_binding *b, const noh_clip_group *wanted, noh_clip_group *found);
 
-/* Whether a group is a named float that occurs here first: no earlier clip that fits has it, nor this one before. */
-int noh_bank_is_new(const noh_bank_binding *b, uint32_t index, const noh_clip_desc *clip, const noh_clip_group *group);
+/* Whether a group is a named float that occurs here first: none of the bank's clips before this one has it, nor this
+ * one before. */
+int noh_bank_is_new(const noh_bank_binding *b, const noh_bank_found *found, const noh_clip_group *group);
 
 static inline int noh_bank_is_named(const noh_clip_group *g)
 {

@@ -7,7 +7,8 @@ NOH_STATIC_ASSERT(NOH_CLIP_UPDATE_RATES == NOH_UPDATE_RATE_COUNT, clip_rates);
 
 /* The resolved desc. */
 typedef struct source {
-    const noh_pack *clips, *pack;
+    const noh_pack *const *packs; /* of clips */
+    const noh_pack *pack;
     const uint32_t *levels; /* [level_count] joints */
     uint32_t level_count, skeleton, clip_count, joint_count;
     uint32_t mesh_level_count, target_count;
@@ -37,10 +38,10 @@ static int is_of_skeleton(const source *s, const noh_mesh *mesh)
 static const char *resolve(const noh_lod_pack_desc *desc, source *s)
 {
     if (!desc->set) return "set is NULL";
-    if (!desc->set_desc || !desc->set_desc->clips)
+    if (!desc->set_desc || (!desc->set_desc->clips && !(desc->set_desc->clip_packs && desc->set_desc->clip_pack_count)))
         return "set_desc: NULL, without clips, or not what the set was made by";
-    s->clips = desc->set_desc->clips;
-    s->pack = desc->set_desc->mesh ? desc->set_desc->mesh : s->clips;
+    s->packs = desc->set_desc->clips ? &desc->set_desc->clips : desc->set_desc->clip_packs;
+    s->pack = desc->set_desc->mesh ? desc->set_desc->mesh : s->packs[0];
     s->skeleton = desc->set_desc->skeleton;
     s->clip_count = desc->set->clips.clip_count;
     s->joint_count = desc->set->skeleton.joint_count;
@@ -88,12 +89,12 @@ size_t noh_lod_pack_size(const noh_lod_pack_desc *desc)
 
 /* The factor that makes a clip's errors into metres, for vertices as far from their joints as `radius`. An error of
  * rotation grows with the distance, one of translation does not, so scaling by the ratio of distances bounds both. */
-static float to_metres(const source *s, const noh_clip_header *h, float radius)
+static float to_metres(const noh_pack *pack, const noh_clip_header *h, float radius)
 {
     noh_skeleton skeleton;
     const noh_skeleton_header *of;
     float unit_m = 1.0f;
-    if (noh_pack_skeleton_at(s->clips, h->skeleton, &skeleton, &of, NULL) == NOH_OK) {
+    if (noh_pack_skeleton_at(pack, h->skeleton, &skeleton, &of, NULL) == NOH_OK) {
         unit_m = of->unit_cm * 0.01f;
     }
     return h->error_shell > 0.0f && radius > h->error_shell ? unit_m * (radius / h->error_shell) : unit_m;
@@ -101,10 +102,10 @@ static float to_metres(const source *s, const noh_clip_header *h, float radius)
 
 /* The error of a clip with this many joints: that of the finest of its own levels that poses no more. -1: there is
  * none. */
-static float joint_error(const source *s, const noh_pack_clip *clip, uint32_t joint_count)
+static float joint_error(const noh_pack *pack, const noh_pack_clip *clip, uint32_t joint_count)
 {
     uint32_t level_count;
-    const uint32_t *levels = noh_pack_joint_levels(s->clips, clip->header->skeleton, &level_count);
+    const uint32_t *levels = noh_pack_joint_levels(pack, clip->header->skeleton, &level_count);
     for (uint32_t i = 0; levels && i < level_count; i++) {
         if (levels[i] <= joint_count) {
             return clip->joint_errors[i];
@@ -114,11 +115,11 @@ static float joint_error(const source *s, const noh_pack_clip *clip, uint32_t jo
 }
 
 /* Raise the errors of the levels to those of a clip; drop the levels that it has no error for. */
-static void add_joint_errors(const source *s, const noh_pack_clip *clip, float metres, noh_lod_joints *levels,
+static void add_joint_errors(const noh_pack *pack, const noh_pack_clip *clip, float metres, noh_lod_joints *levels,
                              uint32_t *level_count)
 {
     for (uint32_t i = 0; i < *level_count; i++) {
-        const float error = joint_error(s, clip, levels[i].joint_count) * metres;
+        const float error = joint_error(pack, clip, levels[i].joint_count) * metres;
         if (error < 0.0f) {
             *level_count = i;
         } else if (error > levels[i].error_m) {
@@ -132,16 +133,17 @@ static void add_joint_errors(const source *s, const noh_pack_clip *clip, float m
 static void fill_clips(const noh_lod_pack_desc *desc, const source *s, float radius, parts *p, noh_lod_table *table)
 {
     for (uint32_t m = 0; m < s->clip_count; m++) {
+        const noh_pack *pack = s->packs[desc->set->packs[m]];
         noh_pack_clip clip;
         noh_clip_info info;
         float metres, clip_error_m;
-        (void)noh_pack_clip_at(s->clips, desc->set->pack_clips[m], &clip, NULL);
-        metres = to_metres(s, clip.header, radius);
+        (void)noh_pack_clip_at(pack, desc->set->pack_clips[m], &clip, NULL);
+        metres = to_metres(pack, clip.header, radius);
         for (uint32_t r = 0; r < NOH_UPDATE_RATE_COUNT; r++) {
             p->update_errors[m * (uint32_t)NOH_UPDATE_RATE_COUNT + r] = clip.header->update_rate_error[r] * metres;
         }
         if (clip.header->joint_count) {
-            add_joint_errors(s, &clip, metres, p->joints, &table->joint_level_count);
+            add_joint_errors(pack, &clip, metres, p->joints, &table->joint_level_count);
         }
         noh_clip_info_of(noh_clip_cache_clip(desc->set->cache, m), &info);
         clip_error_m = (float)info.max_error_cm * 0.01f;

@@ -535,18 +535,13 @@ static void expect_exact_view(const noh_clip_bank *set, size_t bytes)
     free(floats);
 }
 
-static void expect_exact_set(const noh_pack *pack, uint32_t skeleton, uint32_t slots, uint32_t root_axes)
+static void expect_exact_set(const noh_clip_bank_desc *of)
 {
-    noh_clip_bank_desc desc;
+    noh_clip_bank_desc desc = *of;
     noh_clip_bank_needs needs;
     noh_error error = { NOH_OK, NULL, 0, 0 };
     noh_clip_bank *set = NULL;
     guarded g;
-    memset(&desc, 0, sizeof desc);
-    desc.clips = pack;
-    desc.skeleton = skeleton;
-    desc.cached_segment_count = slots;
-    desc.root_axes = root_axes;
     assert_int_equal(noh_clip_bank_measure(&desc, &needs, &error), NOH_OK);
     assert_int_equal(needs.bytes, noh_clip_bank_size(&desc, NULL));
     g = guarded_new(needs.bytes);
@@ -572,18 +567,31 @@ static void clip_banks_want_their_exact_size(void **state)
     size_t counts[2];
     uint8_t *made[2];
     noh_pack packs[2];
+    const noh_pack *const both[2] = { &packs[0], &packs[1] };
+    noh_clip_bank_desc desc;
     (void)state;
+    memset(&desc, 0, sizeof desc);
     inputs[0] = clip_bvh("walk", "abcde", 100);
     inputs[1] = clip_bvh("long", "abcde", 211);
     made[0] = clip_pack(inputs, 2, NULL, &counts[0]);
     made[1] = test_pack_of(m, &counts[1], NULL);
     for (int i = 0; i < 2; i++) {
         packs[i] = test_open(made[i], counts[i]);
+    }
+    for (int i = 0; i < 3; i++) { /* the third: of both packs, whose clips without joints are for any skeleton */
+        desc.clips = i < 2 ? &packs[i] : NULL;
+        desc.clip_packs = i < 2 ? NULL : both;
+        desc.clip_pack_count = i < 2 ? 0 : 2;
         for (uint32_t slots = 0; slots <= 40; slots += slots ? 13 : 2) {
-            expect_exact_set(&packs[i], 0, slots, slots % 2 ? NOH_ROOT_GROUND : 0);
+            desc.cached_segment_count = slots;
+            desc.root_axes = slots % 2 ? NOH_ROOT_GROUND : 0;
+            expect_exact_set(&desc);
         }
     }
-    expect_exact_set(&packs[1], NOH_NONE, 0, 0);
+    desc.skeleton = NOH_NONE;
+    desc.mesh = &packs[1];
+    desc.cached_segment_count = desc.root_axes = 0;
+    expect_exact_set(&desc);
     free(made[0]);
     free(made[1]);
     model_free(m);

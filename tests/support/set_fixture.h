@@ -66,20 +66,15 @@ static inline void set_fixture_clip(const raw_skeleton *s, raw_clip *c, uint32_t
     set_fixture_floats(c, 1, name);
 }
 
-/* Clips "clip0", "clip1", ... of so many frames each, at 30 Hz. */
-static inline set_fixture set_fixture_make(uint32_t joints, uint32_t clips, const uint32_t *frames)
+/* The pack of a raw set, which is freed. */
+static inline set_fixture set_fixture_of(raw_set *raw)
 {
     set_fixture x;
-    raw_set *raw = raw_set_new(joints, clips);
     model *empty = model_new();
     clips_settings settings;
     encoded_clips made;
     model_error error;
     byte_buffer out = { NULL, 0, 0, 0 };
-    set_fixture_joints(&raw->skeleton);
-    for (uint32_t c = 0; c < clips; c++) {
-        set_fixture_clip(&raw->skeleton, &raw->clips[c], c, frames[c]);
-    }
     memset(&settings, 0, sizeof settings);
     if (clips_encode(&raw, 1, &settings, &made, &error) || pack_write(empty, NULL, NULL, &made, &out, &error)) {
         fail_msg("%s", error.what);
@@ -91,6 +86,17 @@ static inline set_fixture set_fixture_make(uint32_t joints, uint32_t clips, cons
     model_free(empty);
     raw_set_free(raw);
     return x;
+}
+
+/* Clips "clip0", "clip1", ... of so many frames each, at 30 Hz. */
+static inline set_fixture set_fixture_make(uint32_t joints, uint32_t clips, const uint32_t *frames)
+{
+    raw_set *raw = raw_set_new(joints, clips);
+    set_fixture_joints(&raw->skeleton);
+    for (uint32_t c = 0; c < clips; c++) {
+        set_fixture_clip(&raw->skeleton, &raw->clips[c], c, frames[c]);
+    }
+    return set_fixture_of(raw);
 }
 
 #endif
