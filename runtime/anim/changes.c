@@ -280,7 +280,7 @@ static slice slice_at(const noh_change *c, int64_t elapsed)
     slice s;
     s.begin = duration * number / NOH_CHANGE_SLICES;
     s.end = duration * (number + 1) / NOH_CHANGE_SLICES;
-    s.first = s.begin > 0 ? slice_number(duration, s.begin - 1) + 1 : 0;
+    s.first = slice_number(duration, s.begin - 1) + 1;
     s.after = number + 1;
     return s;
 }

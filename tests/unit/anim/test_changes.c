@@ -151,6 +151,32 @@ static void rates_hold_until_something_is_due(void **state)
     assert_int_equal(noh_changes_speeds(r.table, ENTRIES, &r.target, 2, 1000), 140);
 }
 
+/* A speed that changes within fewer ticks than the curve has slices takes, in each tick, the curve's value at the
+ * middle of that tick; where ticks are no whole number of slices, within a slice. */
+static void short_changes_take_the_middle_of_each_tick(void **state)
+{
+    (void)state;
+    for (int curve = NOH_CURVE_LINEAR; curve <= NOH_CURVE_SMOOTHSTEP; curve++) {
+        for (uint32_t ticks = 1; ticks <= NOH_CHANGE_SLICES; ticks++) {
+            const double slack = NOH_CHANGE_SLICES % ticks ? 1.5 / NOH_CHANGE_SLICES : 1e-6;
+            rig r;
+            noh_change_desc d = desc_of(NOH_CHANGE_SPEED, 0, ticks, 0.0f);
+            rig_open(&r);
+            d.speed = -100 * NOH_SPEED_ONE;
+            d.curve = (noh_curve)curve;
+            add(&r, d);
+            for (uint32_t i = 0; i < ticks; i++) {
+                const double part = (double)noh_curve_at((noh_curve)curve, ((float)i + 0.5f) / (float)ticks);
+                assert_int_equal(noh_changes_speeds(r.table, ENTRIES, &r.target, 2, 1000), i + 1u);
+                assert_true(fabs((double)r.tracks[0].speed_now / NOH_SPEED_ONE - (1.0 - 101.0 * part)) <=
+                            101.0 * slack);
+                run_to(&r, i + 1);
+            }
+            assert_int_equal(r.tracks[0].speed, d.speed);
+        }
+    }
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -160,6 +186,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(dropping_a_track_leaves_the_others),
         cmocka_unit_test(a_full_table_refuses_and_replaces),
         cmocka_unit_test(rates_hold_until_something_is_due),
+        cmocka_unit_test(short_changes_take_the_middle_of_each_tick),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);

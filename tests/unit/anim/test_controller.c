@@ -845,14 +845,14 @@ static void lod_levels_leave_out_tracks_and_joints(void **state)
     assert_true(pose_apart(g.pose, want, JOINTS) < 1e-6);
 }
 
-static void additive_tracks_add_differences(void **state)
+/* An additive track over a base of WALK, whichever of the two comes first. */
+static void add_differences(uint32_t additive)
 {
     stage g;
     noh_transform base[JOINTS], lean[JOINTS], first[JOINTS], want[JOINTS];
     float base_floats[FLOATS], lean_floats[FLOATS], first_floats[FLOATS];
-    (void)state;
     stage_open(&g, 2, 0);
-    start(&g, 0, track_of(WALK, 2.0f));
+    start(&g, 1u - additive, track_of(WALK, 2.0f));
     scene_pose(&g.s, WALK, 0, base, base_floats);
     scene_pose(&g.s, LEAN, 24000, lean, lean_floats);
     scene_pose(&g.s, LEAN, 0, first, first_floats);
@@ -863,7 +863,7 @@ static void additive_tracks_add_differences(void **state)
         d.flags = NOH_TRACK_ADDITIVE | (reference == 1 ? NOH_TRACK_REFERENCE_START : 0u);
         d.mask = 2;
         g.s.clips[LEAN].flags = reference == 2 ? NOH_CLIP_ADDITIVE : 0u;
-        start(&g, 1, d);
+        start(&g, additive, d);
         take_pose(&g);
         memcpy(want, lean, sizeof want);
         if (reference < 2) noh_pose_difference(JOINTS, against, lean, want);
@@ -885,6 +885,29 @@ static void additive_tracks_add_differences(void **state)
                         1e-6f);
         }
     }
+}
+
+static void additive_tracks_add_differences(void **state)
+{
+    (void)state;
+    add_differences(1);
+    add_differences(0);
+}
+
+/* Without a base an additive track lies over the bind pose: it is no base itself, alone or not. */
+static void an_additive_track_alone_lies_over_the_bind_pose(void **state)
+{
+    stage g;
+    noh_transform lean[JOINTS];
+    float floats[FLOATS];
+    (void)state;
+    stage_open(&g, 1, 0);
+    start(&g, 0,
+          (noh_track_desc){ .clip = LEAN, .weight = 1.0f, .position_ticks = 24000, .flags = NOH_TRACK_ADDITIVE });
+    scene_pose(&g.s, LEAN, 24000, lean, floats);
+    take_pose(&g);
+    assert_true(pose_apart(g.pose, lean, JOINTS) < 2e-6); /* the bind pose and all of the difference from it */
+    assert_true(floats_apart(g.floats, floats, FLOATS) < 1e-6);
 }
 
 /* Clones that write one bone tree overwrite each other unless each is drawn before the
@@ -1215,6 +1238,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(tracks_count_by_weight),
         cmocka_unit_test(lod_levels_leave_out_tracks_and_joints),
         cmocka_unit_test(additive_tracks_add_differences),
+        cmocka_unit_test(an_additive_track_alone_lies_over_the_bind_pose),
         cmocka_unit_test(clones_share_nothing_they_write),
         cmocka_unit_test(a_snapshot_continues_with_the_same_bits),
         cmocka_unit_test(offsets_decay_without_overshoot),

@@ -182,6 +182,23 @@ static void followers_arrive_on_the_phase(void **state)
     }
 }
 
+/* A phase comes once in every pass. At high speeds a leader covers whole passes in one stretch, and its follower takes
+ * the position of as many: not the nearest to where it is. */
+static void followers_cover_as_many_passes_as_their_leader(void **state)
+{
+    scene s;
+    (void)state;
+    scene_open(&s);
+    s.clips[WALK].marker_count = s.clips[RUN].marker_count = 0;
+    for (int eighths = -40; eighths <= 40; eighths++) {
+        noh_track t[2] = { synced(WALK, 1.0f, 0), synced(RUN, 0.0f, 0) };
+        t[0].speed = eighths * NOH_SPEED_ONE; /* an eighth of a pass in 6,000 ticks */
+        noh_sync_speeds(&s.set, t, 2, 6000);
+        assert_int_equal(t[0].speed_now, t[0].speed);
+        assert_int_equal(t[1].speed_now, t[0].speed / 8 * 5); /* 30,000 for 48,000 */
+    }
+}
+
 /* A follower that is ahead waits; it never moves backwards, and it stops where the leader stops. */
 static void followers_never_turn_round(void **state)
 {
@@ -217,6 +234,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(joining_goes_the_shorter_way),
         cmocka_unit_test(a_group_moves_at_its_weighted_mean),
         cmocka_unit_test(followers_arrive_on_the_phase),
+        cmocka_unit_test(followers_cover_as_many_passes_as_their_leader),
         cmocka_unit_test(followers_never_turn_round),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
