@@ -85,6 +85,13 @@ noh_result noh_character_scratch_init(void *memory, size_t bytes, const noh_char
 /* How many bytes to copy to clone or save it. The copy must be 16-byte aligned too. */
 size_t noh_character_bytes(const noh_character *ch);
 
+/* Check a block from outside, such as a saved game, before any other call. With a block that passes, no call overruns
+ * its memory; its poses are not looked at, so what is shown until the next update may be nonsense.
+ * shapes  table: of the LOD levels that it will be looked at with
+ * errors  ARG memory NULL or misaligned; DATA not a character for this set and table */
+noh_result noh_character_check(const void *memory, size_t bytes, const noh_clip_set *set, const noh_lod_table *table,
+                               noh_error *error);
+
 /* Give a copy its own place in the stagger of updates. */
 void noh_character_set_instance(noh_character *ch, uint32_t instance);
 

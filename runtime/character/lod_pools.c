@@ -26,9 +26,11 @@ struct noh_lod_pools {
     uint32_t instance_count, pool_count;
     pool pools[NOH_LOD_POOLS_MAX];
     noh_lod_pools_stats stats;
-    place *places;  /* [instance_count] */
-    uint64_t *keys; /* [instance_count] requests; key_of */
-    uint32_t *free; /* [slots] */
+    /* byte offsets from here, so that a copy of the block is the same pools */
+    uint32_t keys_offset;   /* uint64_t[instance_count] requests; key_of */
+    uint32_t places_offset; /* place[instance_count] */
+    uint32_t free_offset;   /* uint32_t[slots] */
+    uint32_t bytes;
 };
 
 NOH_STATIC_ASSERT(sizeof(place) == 8, place);
@@ -56,26 +58,43 @@ static const char *bad_field(const noh_lod_pools_desc *d, uint32_t *slots)
     return NULL;
 }
 
-static noh_lod_pools *carve(noh_arena *arena, uint32_t instances, uint32_t slots, noh_lod_pools *parts)
+static uint64_t *keys_of(const noh_lod_pools *p)
 {
-    noh_lod_pools *p = (noh_lod_pools *)noh_arena_carve(arena, sizeof *p, 16);
-    parts->keys = (uint64_t *)noh_arena_carve(arena, instances * sizeof *parts->keys, 8);
-    parts->places = (place *)noh_arena_carve(arena, instances * sizeof *parts->places, 4);
-    parts->free = (uint32_t *)noh_arena_carve(arena, slots * sizeof *parts->free, 4);
+    return (uint64_t *)(void *)((uint8_t *)(uintptr_t)p + p->keys_offset);
+}
+
+static place *place_of(const noh_lod_pools *p, uint32_t instance)
+{
+    return (place *)(void *)((uint8_t *)(uintptr_t)p + p->places_offset) + instance;
+}
+
+static uint32_t *free_of(const noh_lod_pools *p)
+{
+    return (uint32_t *)(void *)((uint8_t *)(uintptr_t)p + p->free_offset);
+}
+
+/* The bytes carved, and where the arrays lie. */
+static noh_lod_pools layout_of(uint32_t instances, uint32_t slots)
+{
+    noh_arena arena = noh_arena_measure();
+    noh_lod_pools p;
+    memset(&p, 0, sizeof p);
+    (void)noh_arena_carve(&arena, sizeof p, 16);
+    p.keys_offset = (uint32_t)arena.used;
+    (void)noh_arena_carve(&arena, instances * sizeof(uint64_t), 8);
+    p.places_offset = (uint32_t)arena.used;
+    (void)noh_arena_carve(&arena, instances * sizeof(place), 4);
+    p.free_offset = (uint32_t)arena.used;
+    (void)noh_arena_carve(&arena, slots * sizeof(uint32_t), 4);
+    p.bytes = (uint32_t)arena.used;
     return p;
 }
 
 size_t noh_lod_pools_size(const noh_lod_pools_desc *desc)
 {
-    noh_arena arena = noh_arena_measure();
-    noh_lod_pools parts;
     uint32_t slots;
     NOH_ASSERT(desc);
-    if (bad_field(desc, &slots)) {
-        return 0;
-    }
-    (void)carve(&arena, desc->instance_count, slots, &parts);
-    return arena.used;
+    return bad_field(desc, &slots) ? 0 : layout_of(desc->instance_count, slots).bytes;
 }
 
 static void fill_pools(noh_lod_pools *p, const noh_lod_pools_desc *d)
@@ -87,7 +106,7 @@ static void fill_pools(noh_lod_pools *p, const noh_lod_pools_desc *d)
         to->slot_count = to->free_count = d->slot_counts[i];
         to->first = first;
         for (uint32_t k = 0; k < to->slot_count; k++) {
-            p->free[first + k] = to->slot_count - 1u - k; /* the last is taken first: slot 0 */
+            free_of(p)[first + k] = to->slot_count - 1u - k; /* the last is taken first: slot 0 */
         }
         first += to->slot_count;
     }
@@ -98,7 +117,7 @@ noh_result noh_lod_pools_init(void *memory, size_t bytes, const noh_lod_pools_de
 {
     noh_arena arena;
     noh_result result;
-    noh_lod_pools parts, *p;
+    noh_lod_pools *p;
     uint32_t slots = 0;
     const char *what = bad_field(desc, &slots);
     NOH_ASSERT(desc && pools);
@@ -109,12 +128,11 @@ noh_result noh_lod_pools_init(void *memory, size_t bytes, const noh_lod_pools_de
     if (result != NOH_OK) {
         return result;
     }
-    memset(&parts, 0, sizeof parts);
-    p = carve(&arena, desc->instance_count, slots, &parts);
-    *p = parts;
+    p = (noh_lod_pools *)memory;
+    memset(p, 0, noh_lod_pools_size(desc));
+    *p = layout_of(desc->instance_count, slots);
     p->instance_count = desc->instance_count;
     p->pool_count = desc->pool_count;
-    memset(p->places, 0, p->instance_count * sizeof *p->places);
     fill_pools(p, desc);
     noh_lod_pools_begin(p);
     *pools = p;
@@ -127,7 +145,7 @@ void noh_lod_pools_begin(noh_lod_pools *p)
 {
     NOH_ASSERT(p);
     for (uint32_t i = 0; i < p->instance_count; i++) {
-        p->places[i].next = NOT_ASKED;
+        place_of(p, i)->next = NOT_ASKED;
     }
     p->stats.asked = p->stats.coarser = p->stats.moved = 0;
 }
@@ -151,13 +169,13 @@ static uint32_t instance_of(uint64_t key)
 
 void noh_lod_pools_ask(noh_lod_pools *p, uint32_t instance, uint32_t level, float priority)
 {
-    place *at = &p->places[instance];
+    place *at = place_of(p, instance);
     int stays;
     NOH_ASSERT(instance < p->instance_count && at->next == NOT_ASKED);
     at->level = (uint8_t)(level < NOH_LOD_LEVELS_MAX ? level : NOH_LOD_LEVELS_MAX - 1u);
     at->next = 0;
     stays = at->held && p->pools[at->pool].level <= at->level;
-    p->keys[p->stats.asked++] = key_of(stays ? priority * STAYS : priority, instance);
+    keys_of(p)[p->stats.asked++] = key_of(stays ? priority * STAYS : priority, instance);
 }
 
 /* ---- sharing ---- */
@@ -168,7 +186,7 @@ static int is_consistent(const noh_lod_pools *p)
 {
     uint32_t held[NOH_LOD_POOLS_MAX] = { 0 };
     for (uint32_t i = 0; i < p->instance_count; i++) {
-        const place *at = &p->places[i];
+        const place *at = place_of(p, i);
         if (at->held && (at->pool >= p->pool_count || at->slot >= p->pools[at->pool].slot_count)) {
             return 0;
         }
@@ -229,7 +247,7 @@ static int all_fit(const noh_lod_pools *p)
 {
     uint32_t by_level[NOH_LOD_LEVELS_MAX] = { 0 }, by_pool[NOH_LOD_POOLS_MAX] = { 0 };
     for (uint32_t i = 0; i < p->stats.asked; i++) {
-        by_level[p->places[instance_of(p->keys[i])].level]++;
+        by_level[place_of(p, instance_of(keys_of(p)[i]))->level]++;
     }
     for (uint32_t level = 0; level < NOH_LOD_LEVELS_MAX; level++) {
         const uint32_t fit = count_fitting(p, level);
@@ -264,7 +282,7 @@ static void choose_pools(noh_lod_pools *p)
 {
     memset(p->stats.used, 0, sizeof p->stats.used);
     for (uint32_t i = 0; i < p->stats.asked; i++) {
-        place *at = &p->places[instance_of(p->keys[i])];
+        place *at = place_of(p, instance_of(keys_of(p)[i]));
         at->next = (uint8_t)choose_pool(p, at->level);
         p->stats.used[at->next]++;
         p->stats.coarser += p->pools[at->next].level > at->level;
@@ -274,10 +292,10 @@ static void choose_pools(noh_lod_pools *p)
 static void release(noh_lod_pools *p)
 {
     for (uint32_t i = 0; i < p->instance_count; i++) {
-        place *at = &p->places[i];
+        place *at = place_of(p, i);
         if (at->held && at->next != at->pool) {
             pool *from = &p->pools[at->pool];
-            p->free[from->first + from->free_count++] = at->slot;
+            free_of(p)[from->first + from->free_count++] = at->slot;
             at->held = 0;
         }
     }
@@ -286,10 +304,10 @@ static void release(noh_lod_pools *p)
 static void take(noh_lod_pools *p)
 {
     for (uint32_t i = 0; i < p->stats.asked; i++) {
-        place *at = &p->places[instance_of(p->keys[i])];
+        place *at = place_of(p, instance_of(keys_of(p)[i]));
         if (!at->held) {
             pool *to = &p->pools[at->next];
-            at->slot = p->free[to->first + --to->free_count];
+            at->slot = free_of(p)[to->first + --to->free_count];
             at->pool = at->next;
             at->held = 1;
             p->stats.moved++;
@@ -306,7 +324,7 @@ void noh_lod_pools_share(noh_lod_pools *p)
 {
     NOH_ASSERT(p);
     if (!all_fit(p)) {
-        sort_keys(p->keys, p->stats.asked);
+        sort_keys(keys_of(p), p->stats.asked);
     }
     choose_pools(p);
     release(p);
@@ -322,7 +340,7 @@ void noh_lod_pools_share(noh_lod_pools *p)
 
 noh_lod_slot noh_lod_pools_slot(const noh_lod_pools *p, uint32_t instance)
 {
-    const place *at = &p->places[instance];
+    const place *at = place_of(p, instance);
     noh_lod_slot s;
     NOH_ASSERT(instance < p->instance_count && at->held && at->next == at->pool);
     s.pool = at->pool;

@@ -58,7 +58,7 @@ typedef struct noh_lod_pools_stats {
     uint32_t used_high_water[NOH_LOD_POOLS_MAX];
 } noh_lod_pools_stats;
 
-/* Exact bytes: 16 per instance, 4 per slot, and 248 once; 0 for an impossible desc. */
+/* Exact bytes: 16 per instance, 4 per slot, and 232 once; 0 for an impossible desc. */
 size_t noh_lod_pools_size(const noh_lod_pools_desc *desc);
 
 /* errors  ARG a field of the desc, or memory NULL or not 16-byte aligned; MEMORY too small; need: the exact bytes */

@@ -626,6 +626,41 @@ static void a_copy_plays_the_same_on_its_own(void **state)
     stage_close(&g);
 }
 
+/* A saved character with any one bit of its head turned is either refused or harmless. */
+static void damaged_characters_do_no_harm(void **state)
+{
+    stage g;
+    uint8_t *good;
+    uint32_t refused = 0, accepted = 0;
+    float shown[JOINTS * 12];
+    (void)state;
+    stage_open(&g);
+    play(&g, g.ch, 0, track_of(WALK, 1.0f));
+    for (int frame = 0; frame < 13; frame++) {
+        noh_character_step(g.ch, &g.s.set, FRAME, NULL, NULL);
+        if (noh_character_look(g.ch, &g.table, &g.settings, 0.5f) != NOH_DUE_NOT) update(&g, g.ch);
+    }
+    good = test_aligned(g.ch, g.size);
+    assert_int_equal(noh_character_check(g.ch, g.size, &g.s.set, &g.table, NULL), NOH_OK);
+    assert_int_equal(noh_character_check(g.ch, g.size - 1u, &g.s.set, &g.table, NULL), NOH_ERR_DATA);
+    assert_int_equal(noh_character_check(NULL, g.size, &g.s.set, &g.table, NULL), NOH_ERR_ARG);
+    for (uint32_t bit = 0; bit < 8u * (uint32_t)sizeof *g.ch; bit++) {
+        memcpy(g.ch, good, g.size);
+        ((uint8_t *)g.ch)[bit / 8u] ^= (uint8_t)(1u << bit % 8u);
+        if (noh_character_check(g.ch, g.size, &g.s.set, &g.table, NULL) != NOH_OK) {
+            refused++;
+            continue;
+        }
+        accepted++;
+        noh_character_step(g.ch, &g.s.set, FRAME, NULL, NULL);
+        if (noh_character_look(g.ch, &g.table, &g.settings, 0.5f) != NOH_DUE_NOT) update(&g, g.ch);
+        if (g.ch->time.posed) take_palette(g.ch, shown);
+    }
+    assert_true(refused > 8u * 40u && accepted > 0);
+    free(good);
+    stage_close(&g);
+}
+
 /* A crowd with a budget a little above the mean: no character in view goes without a pose, each frame keeps its budget
  * except for updates that cannot wait, and the lateness is within the stated bound. */
 static void a_crowd_keeps_its_budget(void **state)
@@ -723,6 +758,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(keys_fire_the_same_with_and_without_lod),
         cmocka_unit_test(a_copy_plays_the_same_on_its_own),
         cmocka_unit_test(a_cut_shows_the_new_level_at_once),
+        cmocka_unit_test(damaged_characters_do_no_harm),
         cmocka_unit_test(a_crowd_keeps_its_budget),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
