@@ -154,14 +154,13 @@ double web_playback_seconds(const web_playback *play, uint32_t pack_clip)
     return -1.0;
 }
 
-/* Reset the weights of every item that the clip moves to the pack's; with to_pose, set them to the player's pose. */
+/* Reset the weights of every item that the player moves to the pack's; with to_pose, set them to the player's pose. */
 static void move_weights(const web_playback *play, const web_player *p, int to_pose)
 {
-    uint32_t clip;
-    for (uint32_t i = 0; find_clip(p, play->clip, &clip) && i < play->scene->item_count; i++) {
+    for (uint32_t i = 0; p->set && i < play->scene->item_count; i++) {
         const web_item *item = &play->scene->items[i];
         const uint32_t g = noh_clip_bank_node_group(p->set, item->node);
-        if (g == NOH_NONE || !noh_clip_bank_moves(p->set, clip, g)) continue;
+        if (g == NOH_NONE || !noh_clip_bank_controller_moves(p->set, p->controller, g)) continue;
         web_scene_reset(play->scene, item);
         if (to_pose)
             memcpy(play->scene->weights + item->first_weight, p->floats + p->set->groups[g].first,

@@ -84,16 +84,16 @@ typedef void (*noh_event_fn)(void *user, const noh_event *event);
 size_t noh_controller_size(const noh_controller_desc *desc);
 
 /* Make a controller in memory[bytes]: all tracks off, clock 0.
- * errors  ARG a field of the desc, or memory NULL or not 16-byte aligned; MEMORY too small; need: the exact bytes */
+ * errors  ARG a field of the desc, or memory NULL or misaligned; MEMORY too small; need: the exact bytes */
 noh_result noh_controller_init(void *memory, size_t bytes, const noh_controller_desc *desc, noh_controller **controller,
                                noh_error *error);
 
-/* How many bytes to copy to clone or save it. The copy must be 16-byte aligned too. */
+/* How many bytes to copy to clone or save it. The copy must be aligned to NOH_MEMORY_ALIGN too. */
 size_t noh_controller_bytes(const noh_controller *c);
 
 /* Check a block from outside, such as a saved game, before any other call. With a block that passes, no call overruns
  * its memory, overflows or hangs; but the offsets of a transition are not checked, so a pose may still be nonsense.
- * errors  ARG memory NULL or not 16-byte aligned; DATA not a controller for this set (where: the track or change) */
+ * errors  ARG memory NULL or misaligned; DATA not a controller for this set (where: the track or change) */
 noh_result noh_controller_check(const void *memory, size_t bytes, const noh_clip_set *set, noh_error *error);
 
 /* ---- tracks ---- */

@@ -108,11 +108,12 @@ static const char *bad_change(const noh_controller *c, const noh_change *change)
 noh_result noh_controller_check(const void *memory, size_t bytes, const noh_clip_set *set, noh_error *error)
 {
     const noh_controller *c = (const noh_controller *)memory;
+    const noh_result result = noh_arena_check(memory, 0, error);
     const noh_change *changes;
     const char *what;
     NOH_ASSERT(set);
-    if (!memory || ((uintptr_t)memory & (NOH_MEMORY_ALIGN - 1u)) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory is NULL or not aligned to NOH_MEMORY_ALIGN bytes", 0, 0);
+    if (result) {
+        return result;
     }
     what = bytes < sizeof *c ? "controller: cut short" : bad_head(c, bytes, set);
     if (what) {

@@ -116,6 +116,12 @@ uint32_t noh_clip_bank_find(const noh_clip_bank *bank, const char *name);
 /* Whether a clip moves the floats of a group. Where it does not, they have their defaults. */
 int noh_clip_bank_moves(const noh_clip_bank *bank, uint32_t index, uint32_t group);
 
+/* Whether a controller moves the floats of a group: some track of it that is on, at any weight, plays a clip that does.
+ * A game that sets the weights of a face itself keeps its own where this is 0, and takes those of the pose where it is
+ * not.
+ * ranges   a controller of the bank's set */
+int noh_clip_bank_controller_moves(const noh_clip_bank *bank, const noh_controller *controller, uint32_t group);
+
 /* The group of a node's morph weights, or of those of the first node that draws a mesh; NOH_NONE when that has no
  * targets or the mesh pack has no such node. */
 uint32_t noh_clip_bank_node_group(const noh_clip_bank *bank, uint32_t node);

@@ -1,14 +1,28 @@
 #include "base/arena.h"
 
-noh_result noh_arena_open(noh_arena *arena, void *memory, size_t bytes, size_t need, noh_error *error)
+static uintptr_t misalignment(const void *memory)
 {
-    NOH_ASSERT(arena);
+    return (uintptr_t)memory & (NOH_MEMORY_ALIGN - 1u);
+}
+
+noh_result noh_arena_check(const void *memory, size_t need, noh_error *error)
+{
     if (!memory) {
         return noh_fail(error, NOH_ERR_ARG, "memory is NULL", 0, need);
     }
-    if (((uintptr_t)memory & (NOH_MEMORY_ALIGN - 1u)) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "memory is not aligned to NOH_MEMORY_ALIGN bytes",
-                        (uintptr_t)memory & (NOH_MEMORY_ALIGN - 1u), need);
+    if (misalignment(memory)) {
+        return noh_fail(error, NOH_ERR_ARG, "memory is not aligned to NOH_MEMORY_ALIGN bytes", misalignment(memory),
+                        need);
+    }
+    return NOH_OK;
+}
+
+noh_result noh_arena_open(noh_arena *arena, void *memory, size_t bytes, size_t need, noh_error *error)
+{
+    const noh_result result = noh_arena_check(memory, need, error);
+    NOH_ASSERT(arena);
+    if (result) {
+        return result;
     }
     if (bytes < need) {
         return noh_fail(error, NOH_ERR_MEMORY, "memory is too small", bytes, need);
@@ -20,7 +34,7 @@ noh_result noh_arena_open(noh_arena *arena, void *memory, size_t bytes, size_t n
 noh_arena noh_arena_over(void *memory, size_t bytes)
 {
     noh_arena arena = { (uint8_t *)memory, memory ? bytes : 0, 0 };
-    NOH_ASSERT(((uintptr_t)memory & (NOH_MEMORY_ALIGN - 1u)) == 0);
+    NOH_ASSERT(!misalignment(memory));
     return arena;
 }
 

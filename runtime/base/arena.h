@@ -4,6 +4,7 @@
  * cannot disagree.
  *
  *   noh_arena_open      the block that an init was given, checked
+ *   noh_arena_check     whether any block can lie there
  *   noh_arena_over      a block that is known to be good
  *   noh_arena_measure   no block: count only
  *   noh_arena_carve     the next bytes
@@ -40,6 +41,10 @@ typedef struct noh_arena {
  * errors  ARG memory is NULL or not aligned to NOH_MEMORY_ALIGN; MEMORY it is too small (where: its bytes). `need` is
  *         always the bytes needed, and the arena is left untouched */
 noh_result noh_arena_open(noh_arena *arena, void *memory, size_t bytes, size_t need, noh_error *error);
+
+/* Check an address for a block whose bytes are looked at afterwards, such as one from a saved game.
+ * errors  ARG memory is NULL or not aligned to NOH_MEMORY_ALIGN (where: by how many bytes); need: as given */
+noh_result noh_arena_check(const void *memory, size_t need, noh_error *error);
 
 /* An arena over memory[bytes], which must be aligned to NOH_MEMORY_ALIGN. */
 noh_arena noh_arena_over(void *memory, size_t bytes);

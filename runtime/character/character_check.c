@@ -48,10 +48,11 @@ noh_result noh_character_check(const void *memory, size_t bytes, const noh_clip_
                                noh_error *error)
 {
     const noh_character *ch = (const noh_character *)memory;
+    const noh_result result = noh_arena_check(memory, 0, error);
     const char *what;
     NOH_ASSERT(set && table);
-    if (!memory || (uintptr_t)memory % NOH_MEMORY_ALIGN) {
-        return noh_fail(error, NOH_ERR_ARG, "memory of a character is NULL or misaligned", 0, 0);
+    if (result) {
+        return result;
     }
     what = bad_head(ch, bytes, set);
     if (!what) what = bad_lod(&ch->lod, table);

@@ -693,8 +693,8 @@ static void weights_are_bound_by_name(void **state)
     model_free(other);
 }
 
-/* Two clips have the float "glow" between them, one has "heat" too: it is one float in the set. */
-static void named_floats_are_shared(void **state)
+/* A pack of two clips without joints: "one" has the floats "glow" 1 and "heat" 2, "two" has "glow" 3 and "cold" 4. */
+static uint8_t *named_floats_pack(size_t *count)
 {
     static const char *const names[2][2] = { { "glow", "heat" }, { "glow", "cold" } };
     raw_set *raw = raw_set_new(0, 2);
@@ -703,10 +703,7 @@ static void named_floats_are_shared(void **state)
     encoded_clips made;
     model_error error;
     byte_buffer out = { NULL, 0, 0, 0 };
-    noh_pack packed;
-    noh_clip_bank *set;
     uint8_t *copy;
-    (void)state;
     raw->skeleton.unit_cm = 1.0;
     for (uint32_t c = 0; c < 2; c++) {
         raw_clip *clip = &raw->clips[c];
@@ -727,8 +724,22 @@ static void named_floats_are_shared(void **state)
     assert_int_equal(clips_encode(&raw, 1, &settings, &made, &error), 0);
     assert_int_equal(pack_write(empty, NULL, NULL, &made, &out, &error), 0);
     copy = test_aligned(out.bytes, out.count);
-    packed = test_open(copy, out.count);
-    set = set_of(&packed);
+    *count = out.count;
+    buffer_free(&out);
+    clips_free(&made);
+    model_free(empty);
+    raw_set_free(raw);
+    return copy;
+}
+
+/* "glow" is one float in the set, whichever clip it is of. */
+static void named_floats_are_shared(void **state)
+{
+    size_t count;
+    uint8_t *made = named_floats_pack(&count);
+    const noh_pack packed = test_open(made, count);
+    noh_clip_bank *set = set_of(&packed);
+    (void)state;
     assert_int_equal(set->group_count, 3);
     assert_int_equal(set->clips.float_count, 3);
     for (uint32_t c = 0; c < 2; c++) {
@@ -740,11 +751,39 @@ static void named_floats_are_shared(void **state)
         assert_true(fabsf(floats[2] - (c ? 4.0f : 0.0f)) < 2e-3f);
     }
     free(set);
-    free(copy);
-    buffer_free(&out);
-    clips_free(&made);
-    model_free(empty);
-    raw_set_free(raw);
+    free(made);
+}
+
+/* Of all its tracks, those that are on count, whatever their weight: time that only runs shows nothing. */
+static void a_controller_moves_what_its_tracks_show(void **state)
+{
+    size_t count;
+    uint8_t *made = named_floats_pack(&count);
+    const noh_pack packed = test_open(made, count);
+    noh_clip_bank *set = set_of(&packed);
+    clip_player p;
+    noh_track_desc d;
+    (void)state;
+    memset(&d, 0, sizeof d);
+    clip_player_open(&p, set);
+    for (uint32_t g = 0; g < 3; g++) {
+        assert_int_equal(noh_clip_bank_controller_moves(set, p.c, g), 0);
+    }
+    d.clip = noh_clip_bank_find(set, "two");
+    assert_int_equal(noh_controller_start(p.c, &set->clips, 1, &d, NULL), NOH_OK);
+    for (uint32_t g = 0; g < 3; g++) {
+        assert_int_equal(noh_clip_bank_controller_moves(set, p.c, g), g != 1); /* glow and cold */
+    }
+    d.clip = noh_clip_bank_find(set, "one");
+    assert_int_equal(noh_controller_start(p.c, &set->clips, 0, &d, NULL), NOH_OK);
+    assert_int_equal(noh_controller_set_weight(p.c, 0, 0.0f), NOH_OK);
+    assert_int_equal(noh_clip_bank_controller_moves(set, p.c, 1), 1);
+    assert_int_equal(noh_controller_set_mode(p.c, 0, NOH_TRACK_TIME_ONLY), NOH_OK);
+    assert_int_equal(noh_clip_bank_controller_moves(set, p.c, 1), 0);
+    assert_int_equal(noh_clip_bank_controller_moves(set, p.c, 0), 1);
+    clip_player_close(&p);
+    free(set);
+    free(made);
 }
 
 /* ---- what is refused ---- */
@@ -829,6 +868,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(another_skeleton_or_unit_is_refused),
     cmocka_unit_test(weights_are_bound_by_name),
     cmocka_unit_test(named_floats_are_shared),
+    cmocka_unit_test(a_controller_moves_what_its_tracks_show),
     cmocka_unit_test(descs_are_checked),
     cmocka_unit_test(a_pack_without_clips_is_not_found),
     cmocka_unit_test(lies_are_told_with_the_clip),

@@ -213,25 +213,12 @@ static int has_clip(const scene_player *p, const char *name, uint32_t *clip)
     return p->bank && *clip < p->bank->clips.clip_count;
 }
 
-/* Whether a playing clip has tracks for the floats of a group. */
-static int is_moved(const scene_player *p, uint32_t group)
-{
-    const noh_controller *c = p->controllers[0];
-    for (uint32_t t = 0; t < c->track_count; t++) {
-        const noh_track *track = noh_controller_track(c, t);
-        if (track->mode == NOH_TRACK_ON && noh_clip_bank_moves(p->bank, track->clip, group)) {
-            return 1;
-        }
-    }
-    return 0;
-}
-
 /* Animated weights, to every item of their nodes. */
 static void take_weights(scene *s, const scene_player *p)
 {
     for (uint32_t i = 0; i < s->item_count; i++) {
         const uint32_t group = noh_clip_bank_node_group(p->bank, s->items[i].node);
-        if (group != NOH_NONE && is_moved(p, group)) {
+        if (group != NOH_NONE && noh_clip_bank_controller_moves(p->bank, p->controllers[0], group)) {
             memcpy(s->items[i].weights, p->floats + p->bank->groups[group].first,
                    p->bank->groups[group].width * sizeof(float));
         }
