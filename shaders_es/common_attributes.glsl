@@ -3,7 +3,7 @@
  * A direction is projected onto the octahedron |x| + |y| + |z| = 1, whose lower half is folded over the upper one, so
  * that two numbers in -1..1 are left (Cigolle et al., "A Survey of Efficient Representations for Independent Unit
  * Vectors", 2014). They are integer attributes because drivers differ in how they convert normalised ones. */
-vec3 unfold(vec2 p)
+vec3 noh_unfold(vec2 p)
 {
     vec3 v = vec3(p, 1.0 - abs(p.x) - abs(p.y));
     float fold = max(-v.z, 0.0);
@@ -11,13 +11,13 @@ vec3 unfold(vec2 p)
     return normalize(v);
 }
 
-vec3 direction_of_pair(ivec2 pair)
+vec3 noh_direction_of_pair(ivec2 pair)
 {
-    return unfold(vec2(pair) / 32767.0);
+    return noh_unfold(vec2(pair) / 32767.0);
 }
 
 /* The lowest bit of y is the handedness, here the sign of w. A mesh without tangents gets an arbitrary unit vector. */
-vec4 tangent_of_pair(ivec2 pair)
+vec4 noh_tangent_of_pair(ivec2 pair)
 {
-    return vec4(unfold(vec2(pair.x, pair.y >> 1) / vec2(32767.0, 16383.0)), (pair.y & 1) != 0 ? -1.0 : 1.0);
+    return vec4(noh_unfold(vec2(pair.x, pair.y >> 1) / vec2(32767.0, 16383.0)), (pair.y & 1) != 0 ? -1.0 : 1.0);
 }

@@ -1,5 +1,5 @@
 /* common_fade.glsl: the pattern by which LOD levels fade. Put it into your own fragment shader and discard a pixel
- * unless from <= fade_noise(gl_FragCoord.xy) < to, the numbers of a noh_gl_lod.
+ * unless from <= noh_fade_noise(gl_FragCoord.xy) < to, the numbers of a noh_gl_lod.
  *
  * Each pixel has a number in [0, 1): x / p + y / p^2 modulo 1, p the plastic number (the sequence R2 of Roberts, "The
  * Unreasonable Effectiveness of Quasirandom Sequences", 2018). These numbers spread evenly over every small
@@ -7,7 +7,7 @@
  * every driver and both draws of a fade have the same ones. */
 precision highp int;
 
-highp float fade_noise(highp vec2 pixel)
+highp float noh_fade_noise(highp vec2 pixel)
 {
     uvec2 p = uvec2(pixel) * uvec2(0xc13fa9a9u, 0x91e10da6u);
     return float((p.x + p.y) >> 8) * (1.0 / 16777216.0);

@@ -1,116 +1,119 @@
 /* common_skin.glsl: vertices moved by the joints of a palette.
  *
- * In your own vertex shader it goes behind common_layers.glsl (shaders_es/README.md). Call morph_vertex for the
- * vertex whose deltas to fetch, add them in the bind pose, then call skin. Morphing comes before skinning, for
- * normals and tangents too (Granberg, Character Animation with Direct3D, 2009, ch. 8). Defines, which
+ * It goes behind common_layers.glsl. noh_fetch of common_vertex.glsl does all of it; without it (shaders_es/README.md),
+ * call noh_morph_vertex for the vertex whose deltas to fetch, add them in the bind pose, then call noh_skin_vertex,
+ * whose result is still in the mesh's own space. Morphing comes before skinning, for normals and
+ * tangents too (Granberg, Character Animation with Direct3D, 2009, ch. 8). Defines, which
  * noh_gl_variant_defines writes:
  *
- *   INFLUENCES        joints stored per vertex: 1, 2, 4 or 8; 0: skin does nothing
- *   DRAWN             how many of them are used, the strongest, their weights scaled to a sum of 1
- *   PALETTE_TEXTURE   defined: palettes are in a texture; else in a uniform block
- *   DUAL_QUATERNION   defined: a joint is 4 rows, a rotation, a dual part and a stretch in two; else 3 rows of a matrix
- *   MORPH_TEXELS      defined: the mesh has NOH_MESH_TEXELS, in which split vertices share an accumulation texel
- *   CROWD             defined: one draw has many instances; needs PALETTE_TEXTURE */
-#if INFLUENCES == 1
-layout(location = 5) in highp uint a_influences;
-#elif INFLUENCES == 2
-layout(location = 5) in highp uvec2 a_influences;
-#elif INFLUENCES == 4
-layout(location = 5) in highp uvec3 a_influences;
-#elif INFLUENCES == 8
-layout(location = 5) in highp uvec4 a_influences;
-layout(location = 6) in highp uvec3 a_more_influences;
+ *   NOH_INFLUENCES        joints stored per vertex: 1, 2, 4 or 8; 0: nothing moves
+ *   NOH_DRAWN             how many of them are used, the strongest, their weights scaled to a sum of 1
+ *   NOH_PALETTE_TEXTURE   defined: palettes are in a texture; else in a uniform block
+ *   NOH_DUAL_QUATERNION   defined: a joint is 4 rows, a rotation, a dual part and a stretch in two; else
+ *                         3 rows of a matrix
+ *   NOH_MORPH_TEXELS      defined: the mesh has NOH_MESH_TEXELS, in which split vertices share an accumulation texel
+ *   NOH_CROWD             defined: one draw has many instances; needs NOH_PALETTE_TEXTURE
+ *   NOH_DEPTH_ONLY        defined: normals and tangents are left as they are */
+#if NOH_INFLUENCES == 1
+layout(location = 5) in highp uint noh_a_influences;
+#elif NOH_INFLUENCES == 2
+layout(location = 5) in highp uvec2 noh_a_influences;
+#elif NOH_INFLUENCES == 4
+layout(location = 5) in highp uvec3 noh_a_influences;
+#elif NOH_INFLUENCES == 8
+layout(location = 5) in highp uvec4 noh_a_influences;
+layout(location = 6) in highp uvec3 noh_a_more_influences;
 #endif
 
 /* ---- what is fetched ---- */
 
-#ifdef MORPH_TEXELS
-layout(location = 7) in highp uint a_texel; /* the lowest 22 bits; above them, the vertex's palette */
+#ifdef NOH_MORPH_TEXELS
+layout(location = 7) in highp uint noh_a_texel; /* the lowest 22 bits; above them, the vertex's palette */
 
-int morph_vertex()
+int noh_morph_vertex()
 {
-    return int(a_texel & 0x3fffffu);
+    return int(noh_a_texel & 0x3fffffu);
 }
 #else
-int morph_vertex()
+int noh_morph_vertex()
 {
     return gl_VertexID;
 }
 #endif
 
-#ifdef DUAL_QUATERNION
-#define JOINT_ROWS 4
+#ifdef NOH_DUAL_QUATERNION
+#define NOH_JOINT_ROWS 4
 #else
-#define JOINT_ROWS 3
+#define NOH_JOINT_ROWS 3
 #endif
 
-#ifdef PALETTE_TEXTURE
-uniform highp sampler2D u_palettes;
+#ifdef NOH_PALETTE_TEXTURE
+uniform highp sampler2D noh_palettes;
 /* first row, rows from an instance to the next, width log2, the palette's row in an instance */
-uniform highp ivec4 u_skin;
+uniform highp ivec4 noh_skin;
 
-vec4 skin_texel(int i)
+vec4 noh_skin_texel(int i)
 {
-    return texelFetch(u_palettes, ivec2(i & ((1 << u_skin.z) - 1), i >> u_skin.z), 0);
+    return texelFetch(noh_palettes, ivec2(i & ((1 << noh_skin.z) - 1), i >> noh_skin.z), 0);
 }
 
-int skin_instance()
+int noh_skin_instance()
 {
-#ifdef CROWD
-    return u_skin.x + gl_InstanceID * u_skin.y;
+#ifdef NOH_CROWD
+    return noh_skin.x + gl_InstanceID * noh_skin.y;
 #else
-    return u_skin.x;
+    return noh_skin.x;
 #endif
 }
 
-/* Rows 0 to 2 place the instance in the world, row 3 is its tile for morph_fetch_tile. */
-vec4 crowd_row(int i)
+/* Rows 0 to 2 place the instance in the world, row 3 is its tile for noh_morph_fetch_tile. */
+vec4 noh_crowd_row(int i)
 {
-    return skin_texel(skin_instance() + i);
+    return noh_skin_texel(noh_skin_instance() + i);
 }
 
-#define JOINT_ROW(i) (skin_instance() + u_skin.w + JOINT_ROWS * (i))
-#define PALETTE_ROW(i) skin_texel(i)
-#elif INFLUENCES > 0 /* else a std140 block would be active all the same, and WebGL wants active blocks bound */
-layout(std140) uniform palette_block {
-    highp vec4 u_palette[256 * JOINT_ROWS];
+#define NOH_JOINT_ROW(i) (noh_skin_instance() + noh_skin.w + NOH_JOINT_ROWS * (i))
+#define NOH_PALETTE_ROW(i) noh_skin_texel(i)
+#elif NOH_INFLUENCES > 0 /* else a std140 block would be active all the same, and WebGL wants active blocks bound */
+layout(std140) uniform noh_palette_block {
+    highp vec4 noh_palette[256 * NOH_JOINT_ROWS];
 };
-#define JOINT_ROW(i) (JOINT_ROWS * (i))
-#define PALETTE_ROW(i) u_palette[i]
+#define NOH_JOINT_ROW(i) (NOH_JOINT_ROWS * (i))
+#define NOH_PALETTE_ROW(i) noh_palette[i]
 #endif
 
 /* ---- influences: runtime/pack/format.h ---- */
 
-#if INFLUENCES > 0
-#if INFLUENCES == 1
-#define PLACES_LOW a_influences
+#if NOH_INFLUENCES > 0
+#if NOH_INFLUENCES == 1
+#define NOH_PLACES_LOW noh_a_influences
 #else
-#define PLACES_LOW a_influences.x
+#define NOH_PLACES_LOW noh_a_influences.x
 #endif
-#if INFLUENCES == 8
-#define PLACES_HIGH a_influences.y
+#if NOH_INFLUENCES == 8
+#define NOH_PLACES_HIGH noh_a_influences.y
 #else
-#define PLACES_HIGH 0u
+#define NOH_PLACES_HIGH 0u
 #endif
 
 /* The first row of the i-th joint. */
-int joint_row(int i)
+int noh_joint_row(int i)
 {
-    uint places = i < 4 ? PLACES_LOW : PLACES_HIGH;
-    return JOINT_ROW(int(places >> uint(8 * (i & 3)) & 255u));
+    uint places = i < 4 ? NOH_PLACES_LOW : NOH_PLACES_HIGH;
+    return NOH_JOINT_ROW(int(places >> uint(8 * (i & 3)) & 255u));
 }
 
 /* All weights, in units of 2^-22. The first is not stored: it is what the others leave of 1, so they sum to 1. */
-void stored_weights(out float w[INFLUENCES])
+void noh_stored_weights(out float w[NOH_INFLUENCES])
 {
-#if INFLUENCES == 2
-    w[1] = float(a_influences.y);
-#elif INFLUENCES > 2
-#if INFLUENCES == 4
-    uvec2 words = a_influences.yz;
+#if NOH_INFLUENCES == 2
+    w[1] = float(noh_a_influences.y);
+#elif NOH_INFLUENCES > 2
+#if NOH_INFLUENCES == 4
+    uvec2 words = noh_a_influences.yz;
 #else
-    uvec2 words = a_influences.zw;
-    uvec3 more = a_more_influences;
+    uvec2 words = noh_a_influences.zw;
+    uvec3 more = noh_a_more_influences;
     w[4] = float(more.x & 0x1fffffu);
     w[5] = float(more.x >> 21 | (more.y & 0x3ffu) << 11);
     w[6] = float(more.y >> 10 & 0x1fffffu);
@@ -121,30 +124,30 @@ void stored_weights(out float w[INFLUENCES])
     w[3] = float(words.y >> 11);
 #endif
     w[0] = 4194304.0;
-    for (int i = 1; i < INFLUENCES; i++) {
+    for (int i = 1; i < NOH_INFLUENCES; i++) {
         w[0] -= w[i];
     }
 }
 
 /* The weights of the joints that are used. The first is again what the others leave of 1. */
-void drawn_weights(out float drawn[DRAWN])
+void noh_drawn_weights(out float drawn[NOH_DRAWN])
 {
-    float stored[INFLUENCES], sum = 4194304.0;
-    stored_weights(stored);
-#if DRAWN < INFLUENCES
+    float stored[NOH_INFLUENCES], sum = 4194304.0;
+    noh_stored_weights(stored);
+#if NOH_DRAWN < NOH_INFLUENCES
     sum = stored[0];
-    for (int i = 1; i < DRAWN; i++) {
+    for (int i = 1; i < NOH_DRAWN; i++) {
         sum += stored[i];
     }
 #endif
     drawn[0] = 1.0;
-    for (int i = 1; i < DRAWN; i++) {
+    for (int i = 1; i < NOH_DRAWN; i++) {
         drawn[i] = stored[i] / sum;
         drawn[0] -= drawn[i];
     }
 }
 
-vec3 unit_or(vec3 v, vec3 otherwise)
+vec3 noh_unit_or(vec3 v, vec3 otherwise)
 {
     float square = dot(v, v);
     return square > 1e-30 ? v * inversesqrt(square) : otherwise;
@@ -152,8 +155,8 @@ vec3 unit_or(vec3 v, vec3 otherwise)
 
 /* ---- the two ways to blend ---- */
 
-#ifdef DUAL_QUATERNION
-vec3 rotate(vec4 q, vec3 v)
+#ifdef NOH_DUAL_QUATERNION
+vec3 noh_rotate(vec4 q, vec3 v)
 {
     return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v);
 }
@@ -163,27 +166,27 @@ vec3 rotate(vec4 q, vec3 v)
  * quaternion. Stretches are blended linearly and applied first. As q and -q are the same rotation, each dual
  * quaternion is added with the sign that puts it on the strongest joint's side of the sphere, so that the blend takes
  * the short way; the sum is made unit. Its translation is twice the vector part of dual * conjugate(rotation). */
-void skin(inout vec3 position, inout vec3 normal, inout vec4 tangent)
+void noh_skin_vertex(inout vec3 position, inout vec3 normal, inout vec4 tangent)
 {
-    float w[DRAWN];
-    int row = joint_row(0);
-    vec4 pivot = PALETTE_ROW(row), rotation, dual, h, more;
+    float w[NOH_DRAWN];
+    int row = noh_joint_row(0);
+    vec4 pivot = NOH_PALETTE_ROW(row), rotation, dual, h, more;
     vec3 x, y, z, cx, cy, cz;
     float size, side;
-    drawn_weights(w);
+    noh_drawn_weights(w);
     rotation = pivot * w[0];
-    dual = PALETTE_ROW(row + 1) * w[0];
-    h = PALETTE_ROW(row + 2) * w[0];
-    more = PALETTE_ROW(row + 3) * w[0];
-    for (int i = 1; i < DRAWN; i++) {
+    dual = NOH_PALETTE_ROW(row + 1) * w[0];
+    h = NOH_PALETTE_ROW(row + 2) * w[0];
+    more = NOH_PALETTE_ROW(row + 3) * w[0];
+    for (int i = 1; i < NOH_DRAWN; i++) {
         vec4 q;
-        row = joint_row(i);
-        q = PALETTE_ROW(row);
+        row = noh_joint_row(i);
+        q = NOH_PALETTE_ROW(row);
         side = dot(pivot, q) < 0.0 ? -w[i] : w[i];
         rotation += q * side;
-        dual += PALETTE_ROW(row + 1) * side;
-        h += PALETTE_ROW(row + 2) * w[i];
-        more += PALETTE_ROW(row + 3) * w[i];
+        dual += NOH_PALETTE_ROW(row + 1) * side;
+        h += NOH_PALETTE_ROW(row + 2) * w[i];
+        more += NOH_PALETTE_ROW(row + 3) * w[i];
     }
     size = 1.0 / sqrt(dot(rotation, rotation));
     rotation *= size;
@@ -195,45 +198,49 @@ void skin(inout vec3 position, inout vec3 normal, inout vec4 tangent)
     cy = cross(z, x);
     cz = cross(x, y);
     side = dot(x, cx) < 0.0 ? -1.0 : 1.0;
-    position = rotate(rotation, vec3(dot(x, position), dot(y, position), dot(z, position))) +
+    position = noh_rotate(rotation, vec3(dot(x, position), dot(y, position), dot(z, position))) +
                2.0 * (rotation.w * dual.xyz - dual.w * rotation.xyz + cross(rotation.xyz, dual.xyz));
-    normal = unit_or(rotate(rotation, vec3(dot(cx, normal), dot(cy, normal), dot(cz, normal)) * side), normal);
-    tangent = vec4(unit_or(rotate(rotation, vec3(dot(x, tangent.xyz), dot(y, tangent.xyz), dot(z, tangent.xyz))), tangent.xyz),
+#ifndef NOH_DEPTH_ONLY
+    normal = noh_unit_or(noh_rotate(rotation, vec3(dot(cx, normal), dot(cy, normal), dot(cz, normal)) * side), normal);
+    tangent = vec4(noh_unit_or(noh_rotate(rotation, vec3(dot(x, tangent.xyz), dot(y, tangent.xyz), dot(z, tangent.xyz))), tangent.xyz),
                    tangent.w * side);
+#endif
 }
 #else
 /* Linear blending (Granberg 2009, ch. 3): the matrices are blended first, then applied once. Scales need not be
  * uniform, so normals are transformed by the cofactors of the blend, which are its inverse transpose up to a factor.
  * A blend that mirrors flips their sign and the tangent's handedness. */
-void skin(inout vec3 position, inout vec3 normal, inout vec4 tangent)
+void noh_skin_vertex(inout vec3 position, inout vec3 normal, inout vec4 tangent)
 {
-    float w[DRAWN];
-    int row = joint_row(0);
+    float w[NOH_DRAWN];
+    int row = noh_joint_row(0);
     vec4 x, y, z, p = vec4(position, 1.0);
     vec3 cx, cy, cz;
     float side;
-    drawn_weights(w);
-    x = PALETTE_ROW(row) * w[0];
-    y = PALETTE_ROW(row + 1) * w[0];
-    z = PALETTE_ROW(row + 2) * w[0];
-    for (int i = 1; i < DRAWN; i++) {
-        row = joint_row(i);
-        x += PALETTE_ROW(row) * w[i];
-        y += PALETTE_ROW(row + 1) * w[i];
-        z += PALETTE_ROW(row + 2) * w[i];
+    noh_drawn_weights(w);
+    x = NOH_PALETTE_ROW(row) * w[0];
+    y = NOH_PALETTE_ROW(row + 1) * w[0];
+    z = NOH_PALETTE_ROW(row + 2) * w[0];
+    for (int i = 1; i < NOH_DRAWN; i++) {
+        row = noh_joint_row(i);
+        x += NOH_PALETTE_ROW(row) * w[i];
+        y += NOH_PALETTE_ROW(row + 1) * w[i];
+        z += NOH_PALETTE_ROW(row + 2) * w[i];
     }
     cx = cross(y.xyz, z.xyz);
     cy = cross(z.xyz, x.xyz);
     cz = cross(x.xyz, y.xyz);
     side = dot(x.xyz, cx) < 0.0 ? -1.0 : 1.0;
     position = vec3(dot(x, p), dot(y, p), dot(z, p));
-    normal = unit_or(vec3(dot(cx, normal), dot(cy, normal), dot(cz, normal)) * side, normal);
-    tangent = vec4(unit_or(vec3(dot(x.xyz, tangent.xyz), dot(y.xyz, tangent.xyz), dot(z.xyz, tangent.xyz)), tangent.xyz),
+#ifndef NOH_DEPTH_ONLY
+    normal = noh_unit_or(vec3(dot(cx, normal), dot(cy, normal), dot(cz, normal)) * side, normal);
+    tangent = vec4(noh_unit_or(vec3(dot(x.xyz, tangent.xyz), dot(y.xyz, tangent.xyz), dot(z.xyz, tangent.xyz)), tangent.xyz),
                    tangent.w * side);
+#endif
 }
 #endif
 #else
-void skin(inout vec3 position, inout vec3 normal, inout vec4 tangent)
+void noh_skin_vertex(inout vec3 position, inout vec3 normal, inout vec4 tangent)
 {
 }
 #endif

@@ -1,20 +1,9 @@
 #version 300 es
 /* mesh.frag: enough light to judge a face by: one key light with a wrapped edge and a GGX highlight, a fill from sky
- * and ground, and a soft rim. Defines:
- *
- *   DEBUG_VIEW    a noh_debug_view: 0 lit, 1 position, 2 normal, 3 tangent, 4 LOD level
- *   ENCODE_SRGB   defined: encode to sRGB here; else colours stay linear and the target encodes
- *   FADE          defined: draw only some of the pixels (noh_gl_lod) */
-precision highp float;
-
-uniform vec3 u_camera;
-uniform vec3 u_key;              /* unit, towards the light */
-uniform vec4 u_base_color;
-uniform vec4 u_material;         /* roughness, metallic, alpha cutoff, unlit */
-uniform mediump sampler2D u_base_color_texture;
-uniform vec3 u_bounds_min;
-uniform vec3 u_bounds_size;
-uniform vec3 u_lod;              /* pixels from and to, level */
+ * and ground, and a soft rim; or what a noh_debug_view shows. Behind #version goes noh_gl_shader_prefix, as before a
+ * game's own. */
+uniform vec3 noh_bounds_min;     /* of the mesh, for NOH_VIEW_POSITION */
+uniform vec3 noh_bounds_size;
 
 in vec3 v_world;
 in vec3 v_normal;
@@ -23,7 +12,9 @@ in vec2 v_uv;
 in vec4 v_color;
 in vec3 v_model;
 
+#ifndef NOH_DEPTH_ONLY
 layout(location = 0) out vec4 o_color;
+#endif
 
 /* The isotropic GGX distribution (Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007),
  * times the visibility term of Smith in Schlick's approximation. nh, nl, nv: cosines between the normal, the half
@@ -39,72 +30,60 @@ float highlight(float nh, float nl, float nv, float roughness)
 
 vec3 shade(vec3 albedo, vec3 n, vec3 v)
 {
-    float roughness = max(u_material.x, 0.08);
-    vec3 f0 = mix(vec3(0.04), albedo, u_material.y);
-    vec3 diffuse = albedo * (1.0 - u_material.y);
-    vec3 h = normalize(u_key + v);
-    float nl = dot(n, u_key), nv = max(dot(n, v), 1e-3), nh = max(dot(n, h), 0.0);
+    float roughness = max(noh_material.x, 0.08);
+    vec3 f0 = mix(vec3(0.04), albedo, noh_material.y);
+    vec3 diffuse = albedo * (1.0 - noh_material.y);
+    vec3 h = normalize(noh_key + v);
+    float nl = dot(n, noh_key), nv = max(dot(n, v), 1e-3), nh = max(dot(n, h), 0.0);
     float lit = max(nl, 0.0), wrapped = max((nl + 0.18) / 1.18, 0.0);
     vec3 fresnel = f0 + (1.0 - f0) * pow(1.0 - max(dot(h, v), 0.0), 5.0);
     vec3 sky = mix(vec3(0.23, 0.20, 0.18), vec3(0.50, 0.54, 0.60), n.y * 0.5 + 0.5);
     vec3 color = diffuse * (vec3(1.02, 0.98, 0.92) * wrapped * wrapped + 0.62 * sky);
     color += fresnel * highlight(nh, lit, nv, roughness) * lit * 2.6;
-    color += f0 * sky * (0.7 - 0.4 * roughness) * (0.15 + 0.85 * u_material.y);
+    color += f0 * sky * (0.7 - 0.4 * roughness) * (0.15 + 0.85 * noh_material.y);
     color += 0.10 * sky * pow(1.0 - nv, 3.0) * (1.0 - 0.6 * roughness);
     return color;
 }
 
-#ifdef ENCODE_SRGB
-vec3 encoded(vec3 c)
-{
-    return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, vec3(lessThanEqual(c, vec3(0.0031308))));
-}
-#endif
-
-#ifdef FADE
-#include "common_fade.glsl"
-#endif
-
-#if DEBUG_VIEW == 4
+#if NOH_DEBUG_VIEW == 4
 vec3 level_color()
 {
     const vec3 colors[8] = vec3[8](vec3(0.90), vec3(0.79, 0.35, 0.0), vec3(0.09, 0.46, 0.81), vec3(0.0, 0.34, 0.17),
                                    vec3(0.87, 0.78, 0.05), vec3(0.0, 0.17, 0.45), vec3(0.67, 0.11, 0.0), vec3(0.60, 0.19, 0.39));
     vec3 facet = normalize(cross(dFdx(v_world), dFdy(v_world)));
-    return colors[int(u_lod.z)] * (0.35 + 0.65 * max(dot(facet, u_key), 0.0));
+    return colors[int(noh_lod.z)] * (0.35 + 0.65 * max(dot(facet, noh_key), 0.0));
 }
 #endif
 
+#ifdef NOH_DEPTH_ONLY
 void main()
 {
-    vec4 base = u_base_color * v_color * texture(u_base_color_texture, v_uv);
+    noh_cut(noh_base(v_uv, v_color).a);
+    noh_fade();
+}
+#else
+void main()
+{
+    vec4 base = noh_base(v_uv, v_color);
     vec3 n = normalize(v_normal);
     if (!gl_FrontFacing) {
         n = -n;
     }
-#if DEBUG_VIEW == 1
-    o_color = vec4(pow((v_model - u_bounds_min) / max(u_bounds_size, vec3(1e-9)), vec3(2.2)), 1.0);
-#elif DEBUG_VIEW == 2
+#if NOH_DEBUG_VIEW == 1
+    o_color = vec4(pow((v_model - noh_bounds_min) / max(noh_bounds_size, vec3(1e-9)), vec3(2.2)), 1.0);
+#elif NOH_DEBUG_VIEW == 2
     o_color = vec4(pow(n * 0.5 + 0.5, vec3(2.2)), 1.0);
-#elif DEBUG_VIEW == 3
+#elif NOH_DEBUG_VIEW == 3
     vec3 t = dot(v_tangent.xyz, v_tangent.xyz) > 0.0 ? normalize(v_tangent.xyz) : vec3(-1.0);
     o_color = vec4(pow(t * 0.5 + 0.5, vec3(2.2)), 1.0);
-#elif DEBUG_VIEW == 4
+#elif NOH_DEBUG_VIEW == 4
     o_color = vec4(level_color(), 1.0);
 #else
-    if (base.a < u_material.z) {
-        discard;
-    }
-    vec3 color = u_material.w > 0.5 ? base.rgb : shade(base.rgb, n, normalize(u_camera - v_world));
+    noh_cut(base.a);
+    vec3 color = noh_material.w > 0.5 ? base.rgb : shade(base.rgb, n, normalize(noh_camera - v_world));
     o_color = vec4(color, base.a);
 #endif
-#ifdef ENCODE_SRGB
-    o_color.rgb = encoded(o_color.rgb);
-#endif
-#ifdef FADE
-    float noise = fade_noise(gl_FragCoord.xy);
-    if (noise < u_lod.x || noise >= u_lod.y) {
-        discard; /* last: the mip level of a texture depends on the neighbouring pixels */
-    }
-#endif
+    o_color.rgb = noh_encode(o_color.rgb);
+    noh_fade(); /* last: the mip level of a texture depends on the neighbouring pixels */
 }
+#endif

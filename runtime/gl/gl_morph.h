@@ -100,11 +100,11 @@ typedef struct noh_gl_morph_stats {
     uint32_t rects, texels, pairs; /* rectangles and texels that were drawn, pairs that were added */
 } noh_gl_morph_stats;
 
-/* Where an instance's accumulated deltas are. The last four numbers go into u_morph of common_layers.glsl in this
- * order. */
+/* Where an instance's accumulated deltas are. The last four numbers go into noh_morph of common_layers.glsl in
+ * this order. */
 typedef struct noh_gl_morph_binding {
     GLuint texture; /* GL_TEXTURE_2D_ARRAY of three layers */
-    int is_uint;    /* 1: it holds the bits of floats as RGBA32UI: build your shader with LAYERS_UINT */
+    int is_uint;    /* 1: it holds the bits of floats as RGBA32UI: build your shader with NOH_LAYERS_UINT */
     int32_t tile_x, tile_y, width_log2, touched; /* texels; log2 of the tile's width; vertices that any target moves */
 } noh_gl_morph_binding;
 

@@ -22,7 +22,9 @@ const char *noh_gl_shader_text(const char *name)
     } texts[] = { { "common_layers.glsl", noh_shader_common_layers_glsl },
                   { "common_attributes.glsl", noh_shader_common_attributes_glsl },
                   { "common_skin.glsl", noh_shader_common_skin_glsl },
-                  { "common_fade.glsl", noh_shader_common_fade_glsl } };
+                  { "common_vertex.glsl", noh_shader_common_vertex_glsl },
+                  { "common_fade.glsl", noh_shader_common_fade_glsl },
+                  { "common_fragment.glsl", noh_shader_common_fragment_glsl } };
     NOH_ASSERT(name);
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
         if (same(name, texts[i].name)) {

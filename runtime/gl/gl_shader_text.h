@@ -1,10 +1,10 @@
-/* gl_shader_text.h: the library's GLSL as text, to put into your own shaders.
+/* gl_shader_text.h: the library's GLSL as text, file by file.
  *
  *   noh_gl_shader_text      the text of one of the files of shaders_es/ that are made for this
- *   noh_gl_variant_defines  (gl_variants.h) the defines that they need for a mesh
  *
- * shaders_es/README.md has a whole vertex shader with the uniforms and textures to set. The text is in the library:
- * nothing is read at run time. The source of a shader is given to GL in one call:
+ * Your own shaders want noh_gl_shader_prefix (gl_variants.h), which is all of them in order, with the defines for a
+ * key. A single file is for what fits no noh_gl_mesh: your own vertex formats, or a tile of deltas in another use. The
+ * text is in the library: nothing is read at run time. The source of a shader is given to GL in one call:
  *
  *   char defines[NOH_GL_DEFINES_BYTES];
  *   noh_gl_variant_defines(key, defines);
@@ -22,10 +22,12 @@ extern "C" {
 #endif
 
 /* GLSL ES 3.00 without a #version line and without comments; a zero-terminated string constant.
- * name    "common_layers.glsl"      morph_fetch adds an instance's deltas
+ * name    "common_layers.glsl"      noh_morph_fetch adds an instance's deltas
  *         "common_attributes.glsl"  normals and tangents from the pack's integers
- *         "common_skin.glsl"        skin moves a vertex by its joints; goes behind common_layers.glsl
- *         "common_fade.glsl"        fade_noise, for fragment shaders that fade between LOD levels
+ *         "common_skin.glsl"        noh_skin_vertex moves a vertex by its joints; goes behind common_layers.glsl
+ *         "common_vertex.glsl"      noh_fetch, all of it for a noh_gl_mesh; goes behind the three
+ *         "common_fade.glsl"        noh_fade_noise, the pattern by which LOD levels fade
+ *         "common_fragment.glsl"    noh_fade, noh_cut, noh_base, noh_encode; goes behind common_fade.glsl
  * errors  NULL for any other name */
 const char *noh_gl_shader_text(const char *name);
 

@@ -20,7 +20,7 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
                                          int layers_uint, noh_debug_view view)
 {
     const noh_mesh_header *h = mesh->header;
-    noh_gl_variant_key key = { 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 };
+    noh_gl_variant_key key = { 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 };
     NOH_ASSERT((unsigned)view <= NOH_VIEW_LOD);
     if (skin && h->influence_count) {
         key.influences = (uint8_t)h->influence_count;
@@ -38,9 +38,18 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
     return key;
 }
 
-/* ---- the text of the defines ---- */
+noh_gl_variant_key noh_gl_variant_key_depth(noh_gl_variant_key key, int cut)
+{
+    key.view = NOH_VIEW_LIT;
+    key.encode_srgb = 0;
+    key.depth = 1;
+    key.cut = cut != 0;
+    return key;
+}
 
-/* All defines together take 214 bytes, so NOH_GL_DEFINES_BYTES never cuts them. */
+/* ---- the text before a shader's own ---- */
+
+/* All defines together take 326 bytes, so NOH_GL_DEFINES_BYTES never cuts them. */
 static size_t put_text(char *text, size_t at, const char *more)
 {
     while (*more && at + 1u < NOH_GL_DEFINES_BYTES) {
@@ -61,44 +70,115 @@ static size_t put_digit(char *text, size_t at, const char *name, unsigned digit)
 void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYTES])
 {
     NOH_ASSERT(text && key.influences <= 8u && key.drawn <= key.influences && key.view <= NOH_VIEW_LOD);
+    NOH_ASSERT(key.depth || !key.cut);
     const struct {
         int on;
         const char *line;
-    } flags[] = { { key.texture, "#define PALETTE_TEXTURE\n" },
-                  { key.dual_quaternion, "#define DUAL_QUATERNION\n" },
-                  { key.texels, "#define MORPH_TEXELS\n" },
-                  { key.crowd, "#define CROWD\n" },
-                  { key.layers_uint, "#define LAYERS_UINT\n" },
-                  { key.encode_srgb, "#define ENCODE_SRGB\n" },
-                  { key.fade, "#define FADE\n" } };
-    size_t at = put_digit(text, 0, "#define INFLUENCES ", key.influences);
-    at = put_digit(text, at, "#define DRAWN ", key.drawn);
-    at = put_digit(text, at, "#define DEBUG_VIEW ", key.view);
+    } flags[] = { { key.texture, "#define NOH_PALETTE_TEXTURE\n" },
+                  { key.dual_quaternion, "#define NOH_DUAL_QUATERNION\n" },
+                  { key.texels, "#define NOH_MORPH_TEXELS\n" },
+                  { key.crowd, "#define NOH_CROWD\n" },
+                  { key.layers_uint, "#define NOH_LAYERS_UINT\n" },
+                  { key.encode_srgb, "#define NOH_ENCODE_SRGB\n" },
+                  { key.fade, "#define NOH_FADE\n" },
+                  { key.depth, "#define NOH_DEPTH_ONLY\n" },
+                  { key.cut, "#define NOH_ALPHA_CUT\n" } };
+    size_t at = put_digit(text, 0, "#define NOH_INFLUENCES ", key.influences);
+    at = put_digit(text, at, "#define NOH_DRAWN ", key.drawn);
+    at = put_digit(text, at, "#define NOH_DEBUG_VIEW ", key.view);
     for (size_t i = 0; i < sizeof flags / sizeof flags[0]; i++) {
         at = put_text(text, at, flags[i].on ? flags[i].line : "");
     }
 }
 
+/* The texts behind the defines: what is compiled and what noh_gl_shader_prefix hands out. */
+#define PREFIX_PIECES_MAX 6u
+static uint32_t prefix_pieces(GLenum stage, const char *pieces[PREFIX_PIECES_MAX])
+{
+    static const char precision[] = "precision highp float;\nprecision highp int;\n", own[] = "#line 1 0\n";
+    uint32_t count = 0;
+    pieces[count++] = precision;
+    if (stage == GL_VERTEX_SHADER) {
+        pieces[count++] = noh_shader_common_layers_glsl;
+        pieces[count++] = noh_shader_common_attributes_glsl;
+        pieces[count++] = noh_shader_common_skin_glsl;
+        pieces[count++] = noh_shader_common_vertex_glsl;
+    } else {
+        pieces[count++] = noh_shader_common_fade_glsl;
+        pieces[count++] = noh_shader_common_fragment_glsl;
+    }
+    pieces[count++] = own;
+    return count;
+}
+
+static size_t length_of(const char *text)
+{
+    size_t length = 0;
+    while (text[length]) {
+        length++;
+    }
+    return length;
+}
+
+size_t noh_gl_shader_prefix(noh_gl_variant_key key, GLenum stage, char *text, size_t bytes)
+{
+    char defines[NOH_GL_DEFINES_BYTES];
+    const char *pieces[PREFIX_PIECES_MAX + 1u] = { defines };
+    size_t need = 1, at = 0;
+    NOH_ASSERT((stage == GL_VERTEX_SHADER || stage == GL_FRAGMENT_SHADER) && (text || !bytes));
+    const uint32_t count = 1u + prefix_pieces(stage, pieces + 1);
+    noh_gl_variant_defines(key, defines);
+    for (uint32_t i = 0; i < count; i++) {
+        need += length_of(pieces[i]);
+    }
+    for (uint32_t i = 0; i < count && need <= bytes; i++) {
+        const size_t length = length_of(pieces[i]);
+        memcpy(text + at, pieces[i], length);
+        at += length;
+        text[at] = 0;
+    }
+    return need;
+}
+
 /* ---- programs ---- */
+
+/* A stage's text: the prefix without its defines, which the program's desc has, and the shader's own. */
+#define SOURCE_PIECES_MAX 12u
+typedef struct whole_source {
+    noh_gl_source source;
+    const char *pieces[SOURCE_PIECES_MAX];
+} whole_source;
+
+static void make_source(whole_source *to, GLenum stage, const noh_gl_source *own)
+{
+    uint32_t count = prefix_pieces(stage, to->pieces);
+    NOH_ASSERT(count + own->piece_count <= SOURCE_PIECES_MAX);
+    for (uint32_t i = 0; i < own->piece_count; i++) {
+        to->pieces[count++] = own->pieces[i];
+    }
+    to->source.version = own->version;
+    to->source.pieces = to->pieces;
+    to->source.piece_count = count;
+}
 
 static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
 {
     const struct {
         const char *name;
         GLint *at;
-    } uniforms[] = { { "u_view_projection", &v->u_view_projection },
-                     { "u_world", &v->u_world },
-                     { "u_normal", &v->u_normal },
-                     { "u_uv", &v->u_uv },
-                     { "u_morph", &v->u_morph },
-                     { "u_skin", &v->u_skin },
-                     { "u_camera", &v->u_camera },
-                     { "u_key", &v->u_key },
-                     { "u_base_color", &v->u_base_color },
-                     { "u_material", &v->u_material },
-                     { "u_bounds_min", &v->u_bounds_min },
-                     { "u_bounds_size", &v->u_bounds_size },
-                     { "u_lod", &v->u_lod } };
+    } uniforms[] = { { "noh_view_projection", &v->u_view_projection },
+                     { "noh_world", &v->u_world },
+                     { "noh_normal", &v->u_normal },
+                     { "noh_uv", &v->u_uv },
+                     { "noh_morph", &v->u_morph },
+                     { "noh_skin", &v->u_skin },
+                     { "noh_camera", &v->u_camera },
+                     { "noh_key", &v->u_key },
+                     { "noh_base_color", &v->u_base_color },
+                     { "noh_material", &v->u_material },
+                     { "noh_bounds_min", &v->u_bounds_min },
+                     { "noh_bounds_size", &v->u_bounds_size },
+                     { "noh_lod", &v->u_lod } };
     for (size_t i = 0; i < sizeof uniforms / sizeof uniforms[0]; i++) {
         *uniforms[i].at = gl->GetUniformLocation(v->program, uniforms[i].name);
     }
@@ -107,10 +187,11 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
 noh_result noh_gl_variant_create(const noh_gl_device *device, noh_gl_variant_key key, const char *const *varyings,
                                  uint32_t varying_count, noh_gl_variant *out, noh_error *error)
 {
-    static const char *const samplers[] = { "u_layers", "u_base_color_texture", "u_palettes" };
-    static const char *const blocks[] = { "palette_block" };
+    static const char *const samplers[] = { "noh_layers", "noh_base_color_texture", "noh_palettes" };
+    static const char *const blocks[] = { "noh_palette_block" };
     char defines[NOH_GL_DEFINES_BYTES];
     noh_gl_variant v;
+    whole_source vertex, fragment;
     noh_gl_program_desc desc;
     noh_result result;
     NOH_ASSERT(device && device->api && out && (varyings || !varying_count));
@@ -118,8 +199,10 @@ noh_result noh_gl_variant_create(const noh_gl_device *device, noh_gl_variant_key
     memset(&desc, 0, sizeof desc);
     noh_gl_variant_defines(key, defines);
     desc.name = "mesh";
-    desc.vertex = &noh_shader_mesh_vert;
-    desc.fragment = &noh_shader_mesh_frag;
+    make_source(&vertex, GL_VERTEX_SHADER, &noh_shader_mesh_vert);
+    make_source(&fragment, GL_FRAGMENT_SHADER, &noh_shader_mesh_frag);
+    desc.vertex = &vertex.source;
+    desc.fragment = &fragment.source;
     desc.defines = defines;
     desc.samplers = samplers;
     desc.sampler_count = 3;

@@ -1,14 +1,17 @@
 /* gl_variants.h: the programs of the plain renderer, one for each kind of mesh.
  *
  *   noh_gl_variant_key_of   the variant that draws a mesh with these bindings
- *   noh_gl_variant_defines  a key as the text of its #defines, for your own shaders (gl_shader_text.h)
+ *   noh_gl_variant_key_depth  the key that draws the same depth without colour
+ *   noh_gl_variant_defines  a key as the text of its #defines
+ *   noh_gl_shader_prefix    all that stands between #version and a shader's own text, for a key
  *   noh_gl_variant_create   compile mesh.vert and mesh.frag for a key
  *   noh_gl_variant_delete
  *   noh_gl_variant_skin     bind an instance's palettes
  *
- * A key stands for a set of #defines: those that common_skin.glsl, common_layers.glsl and mesh.frag are compiled with.
+ * A key stands for a set of #defines, which say how a vertex is fetched and which pixels are drawn. The texts behind
+ * them, shaders_es/common_*.glsl, are the same for the library's shaders and for a game's (shaders_es/README.md).
  *
- * Threads: the context's own thread; noh_gl_variant_key_of and noh_gl_variant_defines, any. */
+ * Threads: the context's own thread; the keys, noh_gl_variant_defines and noh_gl_shader_prefix, any. */
 #ifndef NOH_GL_GL_VARIANTS_H
 #define NOH_GL_GL_VARIANTS_H
 
@@ -38,6 +41,8 @@ typedef struct noh_gl_variant_key {
     uint8_t view;            /* noh_debug_view */
     uint8_t fade;            /* 1: draws only some pixels (noh_gl_lod) */
     uint8_t encode_srgb;     /* as in noh_gl_renderer_desc */
+    uint8_t depth;           /* 1: depth alone (NOH_DRAW_DEPTH): positions, and what alpha needs if cut */
+    uint8_t cut;             /* with depth, 1: for alpha-cut materials. Without depth 0: every colour variant cuts */
 } noh_gl_variant_key;
 
 typedef struct noh_gl_variant {
@@ -52,16 +57,26 @@ typedef struct noh_gl_variant {
 #define NOH_UNIT_BASE_COLOR 1u
 #define NOH_UNIT_PALETTES 2u
 
-/* The key of a mesh with these bindings; `fade` and `encode_srgb` are 0, for you to set.
+/* The key of a mesh with these bindings; `fade`, `encode_srgb`, `depth` and `cut` are 0, for you to set.
  * skin   NULL: a rigid mesh, or the bind pose. Not NULL, and in a texture, for a crowd
  * crowd  1: for noh_gl_draw_crowd */
 noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin_binding *skin, int crowd,
                                          int layers_uint, noh_debug_view view);
 
-#define NOH_GL_DEFINES_BYTES 256u
+/* The key that draws the same triangles and the same depth, to the bit, without colour.
+ * cut  1: of alpha-cut materials */
+noh_gl_variant_key noh_gl_variant_key_depth(noh_gl_variant_key key, int cut);
 
-/* Write the key as lines of #define, zero-terminated: what common_skin.glsl, common_layers.glsl and mesh.frag need. */
+#define NOH_GL_DEFINES_BYTES 384u
+
+/* Write the key as lines of #define, zero-terminated. */
 void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYTES]);
+
+/* All that stands between the line #version 300 es and a shader's own text: defines, precision, and the declarations of
+ * attributes, uniforms and functions (shaders_es/README.md). The last line is a #line, so that a driver's messages
+ * count the lines of your own text. stage    GL_VERTEX_SHADER or GL_FRAGMENT_SHADER text     [bytes], zero-terminated;
+ * untouched if it is too small; NULL with 0 only asks returns  the bytes that it takes, with the zero */
+size_t noh_gl_shader_prefix(noh_gl_variant_key key, GLenum stage, char *text, size_t bytes);
 
 /* Compile the plain renderer's program for a key. The device's ledger may be NULL.
  * varyings  [varying_count] outputs for transform feedback, interleaved; none with 0

@@ -11,13 +11,13 @@
 
 static GLuint layer_program(int is_uint)
 {
-    static const char *const samplers[] = { "u_layers" };
+    static const char *const samplers[] = { "noh_layers" };
     noh_gl_program_desc desc;
     GLuint program = 0;
     memset(&desc, 0, sizeof desc);
     desc.vertex = &noh_shader_full_screen_vert;
     desc.fragment = &noh_shader_view_layer_frag;
-    desc.defines = is_uint ? "#define LAYERS_UINT\n" : NULL;
+    desc.defines = is_uint ? "#define NOH_LAYERS_UINT\n" : NULL;
     desc.samplers = samplers;
     desc.sampler_count = 1;
     assert_int_equal(noh_gl_program_create(&fixture_gpu()->gl, &desc, &program, NULL, 0, NULL), NOH_OK);

@@ -1,6 +1,6 @@
-/* A game's own shaders, put together from the examples of shaders_es/README.md and noh_gl_shader_text as the README
- * says: the vertices of a mesh that morphs and bends are those of the CPU, with palettes in a block and in a texture,
- * with float layers and integer ones, and for a mesh without joints. */
+/* A game's own shaders, the examples of shaders_es/README.md: behind noh_gl_shader_prefix, and put together from single
+ * files as the README says. The vertices of a mesh that morphs and bends are those of the CPU, with palettes in a block
+ * and in a texture, with float layers and integer ones, and for a mesh without joints. */
 #include "support/gl_fixture.h"
 
 #include "base/quat.h"
@@ -46,25 +46,55 @@ static GLuint compile(const noh_gl_api *gl, GLenum stage, const char *const *tex
     return shader;
 }
 
-static GLuint own_program(const noh_gl_api *gl, noh_gl_variant_key key)
+enum { TOON_VERTEX, TOON_FRAGMENT, SINGLE_FILES }; /* the README's examples */
+
+static char *prefix_of(noh_gl_variant_key key, GLenum stage)
 {
-    static const char *const varyings[] = { "v_position", "v_normal" };
-    char defines[NOH_GL_DEFINES_BYTES], *own = example("shaders_es/README.md", 0);
-    char *own_fragment = example("shaders_es/README.md", 1);
-    const char *vertex[] = { "#version 300 es\n",
-                             defines,
-                             "precision highp float;\nprecision highp int;\n",
-                             noh_gl_shader_text("common_layers.glsl"),
-                             noh_gl_shader_text("common_attributes.glsl"),
-                             noh_gl_shader_text("common_skin.glsl"),
-                             own };
-    const char *fragment[] = { "#version 300 es\n", "precision highp float;\n", noh_gl_shader_text("common_fade.glsl"),
-                               own_fragment };
+    const size_t bytes = noh_gl_shader_prefix(key, stage, NULL, 0);
+    char *text = test_zeros(bytes);
+    assert_int_equal(noh_gl_shader_prefix(key, stage, text, bytes), bytes);
+    assert_int_equal(strlen(text) + 1, bytes);
+    return text;
+}
+
+/* From the prefix, or from single files. */
+static GLuint own_vertex(const noh_gl_api *gl, noh_gl_variant_key key, int whole)
+{
+    char defines[NOH_GL_DEFINES_BYTES], *own = example("shaders_es/README.md", whole ? TOON_VERTEX : SINGLE_FILES);
+    char *prefix = prefix_of(key, GL_VERTEX_SHADER);
+    const char *one[] = { "#version 300 es\n", prefix, own };
+    const char *files[] = { "#version 300 es\n",
+                            defines,
+                            "precision highp float;\nprecision highp int;\n",
+                            noh_gl_shader_text("common_layers.glsl"),
+                            noh_gl_shader_text("common_attributes.glsl"),
+                            noh_gl_shader_text("common_skin.glsl"),
+                            own };
+    GLuint shader;
+    noh_gl_variant_defines(key, defines);
+    shader = compile(gl, GL_VERTEX_SHADER, whole ? one : files, whole ? 3 : 7);
+    free(prefix);
+    free(own);
+    return shader;
+}
+
+static GLuint own_fragment(const noh_gl_api *gl, noh_gl_variant_key key, int whole)
+{
+    char *prefix = prefix_of(key, GL_FRAGMENT_SHADER), *own = example("shaders_es/README.md", TOON_FRAGMENT);
+    const char *parts[] = { "#version 300 es\n", prefix, whole ? own : "void main() {}" };
+    GLuint shader = compile(gl, GL_FRAGMENT_SHADER, parts, 3);
+    free(prefix);
+    free(own);
+    return shader;
+}
+
+static GLuint own_program(const noh_gl_api *gl, noh_gl_variant_key key, int whole)
+{
+    static const char *const varyings[] = { "gl_Position", "v_normal" };
     GLuint shaders[2], program = gl->CreateProgram(), block;
     GLint ok = 0;
-    noh_gl_variant_defines(key, defines);
-    shaders[0] = compile(gl, GL_VERTEX_SHADER, vertex, 7);
-    shaders[1] = compile(gl, GL_FRAGMENT_SHADER, fragment, 4);
+    shaders[0] = own_vertex(gl, key, whole);
+    shaders[1] = own_fragment(gl, key, whole);
     for (int i = 0; i < 2; i++) {
         gl->AttachShader(program, shaders[i]);
         gl->DeleteShader(shaders[i]);
@@ -74,12 +104,11 @@ static GLuint own_program(const noh_gl_api *gl, noh_gl_variant_key key)
     gl->GetProgramiv(program, GL_LINK_STATUS, &ok);
     assert_true(ok);
     gl->UseProgram(program);
-    gl->Uniform1i(gl->GetUniformLocation(program, "u_layers"), (GLint)NOH_UNIT_LAYERS);
-    gl->Uniform1i(gl->GetUniformLocation(program, "u_palettes"), (GLint)NOH_UNIT_PALETTES);
-    block = gl->GetUniformBlockIndex(program, "palette_block");
+    gl->Uniform1i(gl->GetUniformLocation(program, "noh_layers"), (GLint)NOH_UNIT_LAYERS);
+    gl->Uniform1i(gl->GetUniformLocation(program, "noh_palettes"), (GLint)NOH_UNIT_PALETTES);
+    gl->Uniform1i(gl->GetUniformLocation(program, "noh_base_color_texture"), (GLint)NOH_UNIT_BASE_COLOR);
+    block = gl->GetUniformBlockIndex(program, "noh_palette_block");
     if (block != GL_INVALID_INDEX) gl->UniformBlockBinding(program, block, 0);
-    free(own);
-    free(own_fragment);
     return program;
 }
 
@@ -173,24 +202,27 @@ static void close_stage(stage *st)
 
 /* ---- drawing with it ---- */
 
-/* [vertex_count] position and normal, to be freed. */
-static float *draw(const stage *st)
+/* [vertex_count] position, 1 and normal, to be freed. */
+static float *draw(const stage *st, int whole)
 {
     static const float identity[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 };
     const noh_gl_api *gl = &st->g->gl;
     const noh_gl_morph_binding morph = noh_gl_morph_binding_of(st->morph.morph, 0);
     const noh_gl_skin_binding skin = st->skin ? noh_gl_skin_binding_of(st->skin, 0) : (noh_gl_skin_binding){ 0 };
-    const size_t bytes = 24u * (size_t)st->mesh.header->vertex_count;
+    const size_t bytes = 28u * (size_t)st->mesh.header->vertex_count;
     noh_gl_variant own;
     GLuint buffer = 0;
     float *out = test_zeros(bytes);
     const void *mapped;
     memset(&own, 0, sizeof own);
     own.key = noh_gl_variant_key_of(&st->mesh, st->skin ? &skin : NULL, 0, morph.is_uint, NOH_VIEW_LIT);
-    own.program = own_program(gl, own.key);
-    own.u_skin = gl->GetUniformLocation(own.program, "u_skin");
-    gl->UniformMatrix4fv(gl->GetUniformLocation(own.program, "u_view_projection"), 1, GL_FALSE, identity);
-    gl->Uniform4i(gl->GetUniformLocation(own.program, "u_morph"), morph.tile_x, morph.tile_y, morph.width_log2,
+    own.program = own_program(gl, own.key, whole);
+    own.u_skin = gl->GetUniformLocation(own.program, "noh_skin");
+    gl->UniformMatrix4fv(gl->GetUniformLocation(own.program, whole ? "noh_view_projection" : "u_view_projection"), 1,
+                         GL_FALSE, identity);
+    gl->Uniform4fv(gl->GetUniformLocation(own.program, "noh_world"), 3, identity);
+    gl->Uniform4fv(gl->GetUniformLocation(own.program, "noh_normal"), 3, identity);
+    gl->Uniform4i(gl->GetUniformLocation(own.program, "noh_morph"), morph.tile_x, morph.tile_y, morph.width_log2,
                   morph.touched);
     gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_LAYERS);
     gl->BindTexture(GL_TEXTURE_2D_ARRAY, morph.texture);
@@ -217,14 +249,14 @@ static float *draw(const stage *st)
     return out;
 }
 
-static void check(int jointed, noh_palette_mode mode, int is_uint)
+static void check_one(int jointed, noh_palette_mode mode, int is_uint, int whole)
 {
     stage st;
     noh_morph_layers layers;
     float *got;
     double moved = 0.0;
     open_stage(&st, jointed, mode, is_uint);
-    got = draw(&st);
+    got = draw(&st, whole);
     layers = test_layers(&st.mesh);
     noh_morph_accumulate(&st.mesh, st.morph.weights[0], &layers);
     for (uint32_t v = 0; v < st.mesh.header->vertex_count; v++) {
@@ -238,17 +270,24 @@ static void check(int jointed, noh_palette_mode mode, int is_uint)
         for (int c = 0; c < 3; c++) {
             moved = fmax(moved, fabs((double)want.position[c] - (double)rest.position[c]));
             if (jointed) {
-                assert_true(fabsf(got[6 * v + (uint32_t)c] - want.position[c]) < 4e-6f);
+                assert_true(fabsf(got[7 * v + (uint32_t)c] - want.position[c]) < 4e-6f);
             } else {
-                assert_memory_equal(&got[6 * v + (uint32_t)c], &want.position[c], 4); /* one sum: the same bits */
+                assert_memory_equal(&got[7 * v + (uint32_t)c], &want.position[c], 4); /* one sum: the same bits */
             }
-            assert_true(fabsf(got[6 * v + 3 + (uint32_t)c] - want.normal[c]) < 2e-5f);
+            assert_true(fabsf(got[7 * v + 4 + (uint32_t)c] - want.normal[c]) < 2e-5f);
         }
     }
     assert_true(moved > 0.05);
     free(layers.position);
     free(got);
     close_stage(&st);
+}
+
+static void check(int jointed, noh_palette_mode mode, int is_uint)
+{
+    for (int whole = 0; whole < 2; whole++) {
+        check_one(jointed, mode, is_uint, whole);
+    }
 }
 
 static void it_morphs(void **state)
@@ -279,7 +318,7 @@ static void it_skins_by_a_texture(void **state)
 static void other_names_have_no_text(void **state)
 {
     static const char *const names[] = { "common_layers.glsl", "common_attributes.glsl", "common_skin.glsl",
-                                         "common_fade.glsl" };
+                                         "common_vertex.glsl", "common_fade.glsl",       "common_fragment.glsl" };
     (void)state;
     for (size_t i = 0; i < TEST_COUNT(names); i++) {
         const char *text = noh_gl_shader_text(names[i]);
@@ -292,6 +331,28 @@ static void other_names_have_no_text(void **state)
     assert_null(noh_gl_shader_text(""));
 }
 
+/* One byte short, nothing is written. */
+static void a_short_prefix_is_not_written(void **state)
+{
+    static const GLenum stages[] = { GL_VERTEX_SHADER, GL_FRAGMENT_SHADER };
+    const noh_gl_variant_key key = { 8, 4, 1, 1, 1, 1, 1, NOH_VIEW_LOD, 1, 1, 0, 0 };
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        const size_t bytes = noh_gl_shader_prefix(key, stages[i], NULL, 0);
+        char *text = test_zeros(bytes + 1);
+        text[0] = text[bytes] = 7;
+        assert_int_equal(noh_gl_shader_prefix(key, stages[i], text, bytes - 1), bytes);
+        assert_int_equal(text[0], 7);
+        assert_int_equal(text[1], 0);
+        assert_int_equal(noh_gl_shader_prefix(key, stages[i], text, bytes), bytes);
+        assert_int_equal(text[bytes - 1], 0);
+        assert_int_equal(text[bytes], 7);
+        assert_int_equal(strlen(text), bytes - 1);
+        assert_memory_equal(text + bytes - 12, "\n#line 1 0\n", 12);
+        free(text);
+    }
+}
+
 int main(int argument_count, char **arguments)
 {
     const struct CMUnitTest tests[] = {
@@ -300,6 +361,7 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(it_skins_by_a_block),
         cmocka_unit_test(it_skins_by_a_texture),
         cmocka_unit_test(other_names_have_no_text),
+        cmocka_unit_test(a_short_prefix_is_not_written),
     };
     if (argument_count > 1) cmocka_set_test_filter(arguments[1]);
     return cmocka_run_group_tests(tests, NULL, fixture_tear_down);

@@ -904,8 +904,8 @@ static void rigid_variants_have_no_palettes(void **state)
     rigid = noh_gl_renderer_variant(&r, noh_gl_variant_key_of(&m.meshes[0], NULL, 0, 0, NOH_VIEW_LIT));
     skinned = noh_gl_renderer_variant(&r, noh_gl_variant_key_of(&m.meshes[0], &skin, 0, 0, NOH_VIEW_LIT));
     assert_true(rigid->key.encode_srgb && skinned->key.encode_srgb);
-    assert_true(g->gl.GetUniformBlockIndex(rigid->program, "palette_block") == GL_INVALID_INDEX);
-    assert_true(g->gl.GetUniformBlockIndex(skinned->program, "palette_block") == 0);
+    assert_true(g->gl.GetUniformBlockIndex(rigid->program, "noh_palette_block") == GL_INVALID_INDEX);
+    assert_true(g->gl.GetUniformBlockIndex(skinned->program, "noh_palette_block") == 0);
     noh_gl_renderer_delete(&r);
     fixture_expect_no_errors();
 }

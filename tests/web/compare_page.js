@@ -88,8 +88,9 @@ void main()
 }`;
 
 async function fragmentShader() {
-    const source = await (await fetch('/shaders/mesh.frag')).text();
-    return '#define DEBUG_VIEW 0\n#define ENCODE_SRGB\n' + source.replace(/#version.*\n/, '');
+    const names = ['common_fade.glsl', 'common_fragment.glsl', 'mesh.frag'];
+    const texts = await Promise.all(names.map(async (name) => (await fetch('/shaders/' + name)).text()));
+    return '#define NOH_DEBUG_VIEW 0\n#define NOH_ENCODE_SRGB\n' + texts.join('\n').replace(/#version.*\n/, '');
 }
 
 function whiteTexture() {
@@ -107,13 +108,13 @@ function shadeAsNoh(from, shader, view) {
         side: from.side,
         transparent: from.transparent,
         uniforms: {
-            u_camera: { value: view.camera.position },
-            u_key: { value: view.key },
-            u_base_color: { value: new THREE.Vector4(from.color.r, from.color.g, from.color.b, from.opacity) },
-            u_material: { value: new THREE.Vector4(from.roughness, from.metalness, from.alphaTest || -1, 0) },
-            u_base_color_texture: { value: from.map || whiteTexture() },
-            u_bounds_min: { value: new THREE.Vector3() },
-            u_bounds_size: { value: new THREE.Vector3(1, 1, 1) },
+            noh_camera: { value: view.camera.position },
+            noh_key: { value: view.key },
+            noh_base_color: { value: new THREE.Vector4(from.color.r, from.color.g, from.color.b, from.opacity) },
+            noh_material: { value: new THREE.Vector4(from.roughness, from.metalness, from.alphaTest || -1, 0) },
+            noh_base_color_texture: { value: from.map || whiteTexture() },
+            noh_bounds_min: { value: new THREE.Vector3() },
+            noh_bounds_size: { value: new THREE.Vector3(1, 1, 1) },
         },
     });
 }

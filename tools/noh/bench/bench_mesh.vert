@@ -117,7 +117,7 @@ void morph(inout vec3 position, inout vec3 normal)
 void morph(inout vec3 position, inout vec3 normal)
 {
     vec3 tangent = vec3(0.0);
-    morph_fetch(gl_VertexID, position, normal, tangent);
+    noh_morph_fetch(gl_VertexID, position, normal, tangent);
     normal = normalize(normal);
 }
 #else
@@ -128,7 +128,7 @@ void morph(inout vec3 position, inout vec3 normal)
 
 void main()
 {
-    vec3 position = a_position, normal = direction_of_pair(a_normal);
+    vec3 position = a_position, normal = noh_direction_of_pair(a_normal);
     morph(position, normal);
     vec4 p = vec4(position, 1.0);
     v_world = vec3(dot(u_world[0], p), dot(u_world[1], p), dot(u_world[2], p));

@@ -77,10 +77,10 @@ int bench_open_path(bench_method *m, bench_stage *s, noh_morph_path path, noh_ac
     if (!status) {
         p->binding = noh_gl_morph_binding_of(p->morph.morph, 0);
         status = bench_programs(
-            s, m, p->binding.is_uint ? "#define BENCH_LAYERS\n#define LAYERS_UINT\n" : "#define BENCH_LAYERS\n");
+            s, m, p->binding.is_uint ? "#define BENCH_LAYERS\n#define NOH_LAYERS_UINT\n" : "#define BENCH_LAYERS\n");
     }
     for (int pass = 0; pass < BENCH_PASS_COUNT; pass++) {
-        p->u_morph[pass] = s->g->gl.GetUniformLocation(m->programs[pass], "u_morph");
+        p->u_morph[pass] = s->g->gl.GetUniformLocation(m->programs[pass], "noh_morph");
     }
     return status;
 }

@@ -1,5 +1,6 @@
 /* bench_stage.c: where the methods draw: one 512 x 512 target, one camera, one fragment shader. */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "bench_job.h"
@@ -97,45 +98,73 @@ static void set_constants(const bench_stage *s, GLuint program)
     gl->Uniform4fv(gl->GetUniformLocation(program, "u_normal"), 3, rows);
     gl->Uniform4f(gl->GetUniformLocation(program, "u_uv"), h->uv_offset[0], h->uv_offset[1], h->uv_scale[0],
                   h->uv_scale[1]);
-    gl->Uniform3f(gl->GetUniformLocation(program, "u_camera"), 0.0f, 0.0f, 4.0f / scale);
-    gl->Uniform3f(gl->GetUniformLocation(program, "u_key"), 0.48f, 0.6f, 0.64f);
-    gl->Uniform4f(gl->GetUniformLocation(program, "u_base_color"), 0.8f, 0.7f, 0.6f, 1.0f);
-    gl->Uniform4f(gl->GetUniformLocation(program, "u_material"), 0.6f, 0.0f, -1.0f, 0.0f);
-    gl->Uniform1i(gl->GetUniformLocation(program, "u_base_color_texture"), 2);
+    gl->Uniform3f(gl->GetUniformLocation(program, "noh_camera"), 0.0f, 0.0f, 4.0f / scale);
+    gl->Uniform3f(gl->GetUniformLocation(program, "noh_key"), 0.48f, 0.6f, 0.64f);
+    gl->Uniform4f(gl->GetUniformLocation(program, "noh_base_color"), 0.8f, 0.7f, 0.6f, 1.0f);
+    gl->Uniform4f(gl->GetUniformLocation(program, "noh_material"), 0.6f, 0.0f, -1.0f, 0.0f);
+    gl->Uniform1i(gl->GetUniformLocation(program, "noh_base_color_texture"), 2);
     gl->UseProgram(0);
+}
+
+#define LIT_PIECES 8u
+typedef struct lit_source {
+    noh_gl_source source;
+    char *prefix; /* to be freed */
+    const char *pieces[LIT_PIECES];
+} lit_source;
+
+/* The library's fragment shader of a lit mesh, with all that goes before it. */
+static int lit_source_make(lit_source *lit)
+{
+    const noh_gl_variant_key plain = { 0 };
+    const noh_gl_source *own = &noh_shader_mesh_frag;
+    const size_t bytes = noh_gl_shader_prefix(plain, GL_FRAGMENT_SHADER, NULL, 0);
+    lit->prefix = malloc(bytes);
+    if (!lit->prefix || own->piece_count >= LIT_PIECES) {
+        return tool_fail("bench", "out of memory");
+    }
+    noh_gl_shader_prefix(plain, GL_FRAGMENT_SHADER, lit->prefix, bytes);
+    lit->pieces[0] = lit->prefix;
+    memcpy(lit->pieces + 1, own->pieces, own->piece_count * sizeof *own->pieces);
+    lit->source = (noh_gl_source){ own->version, lit->pieces, own->piece_count + 1u };
+    return 0;
 }
 
 static int create_program(bench_stage *s, bench_method *m, const char *defines, bench_pass pass)
 {
-    static const char *const samplers[3][2] = { { "u_layers", "" },
+    static const char *const samplers[3][2] = { { "noh_layers", "" },
                                                 { "u_targets", "u_positions" },
                                                 { "u_sums", "u_frames" } };
     static const char *const varyings[] = { "v_model", "v_normal" };
     const char *names[2] = { samplers[0][0], NULL };
     noh_gl_program_desc desc;
     noh_error error = { NOH_OK, "", 0, 0 };
-    char log[4096] = "", text[256];
+    char log[4096] = "";
+    lit_source lit = { 0 };
+    int status = lit_source_make(&lit);
     memset(&desc, 0, sizeof desc);
     names[0] = strstr(defines, "DENSE")      ? samplers[1][0]
                : strstr(defines, "FILAMENT") ? samplers[1][1]
                : strstr(defines, "QUADS")    ? samplers[2][0]
                                              : samplers[0][0];
     names[1] = samplers[2][1];
-    snprintf(text, sizeof text, "%s#define DEBUG_VIEW 0\n", defines);
     desc.name = m->name;
     desc.vertex = &noh_shader_bench_mesh_vert;
-    desc.fragment = pass == BENCH_COLOR ? &noh_shader_mesh_frag : &noh_shader_bench_depth_frag;
-    desc.defines = text;
+    desc.fragment = pass == BENCH_COLOR ? &lit.source : &noh_shader_bench_depth_frag;
+    desc.defines = defines;
     desc.samplers = names;
     desc.sampler_count = 2;
     desc.varyings = varyings;
     desc.varying_count = pass == BENCH_CHECK ? 2 : 0;
-    if (noh_gl_program_create(&s->g->gl, &desc, &m->programs[pass], log, sizeof log, &error)) {
+    if (!status && noh_gl_program_create(&s->g->gl, &desc, &m->programs[pass], log, sizeof log, &error)) {
         fputs(log, stderr);
-        return tool_fail_error(m->name, &error);
+        status = tool_fail_error(m->name, &error);
     }
-    set_constants(s, m->programs[pass]);
-    return 0;
+    free(lit.prefix);
+    if (!status) {
+        set_constants(s, m->programs[pass]);
+    }
+    return status;
 }
 
 int bench_programs(bench_stage *s, bench_method *m, const char *defines)

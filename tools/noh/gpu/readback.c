@@ -65,7 +65,7 @@ static void target_close(const noh_gl_api *gl, bit_target *t)
 static int create_program(gpu *g, const noh_gl_source *vertex, const noh_gl_source *fragment, int is_uint,
                           GLuint *program)
 {
-    static const char *const samplers[] = { "u_layers" };
+    static const char *const samplers[] = { "noh_layers" };
     noh_gl_program_desc desc;
     noh_error error = { NOH_OK, "", 0, 0 };
     char log[4096] = "";
@@ -73,7 +73,7 @@ static int create_program(gpu *g, const noh_gl_source *vertex, const noh_gl_sour
     desc.name = "readback";
     desc.vertex = vertex;
     desc.fragment = fragment;
-    desc.defines = is_uint ? "#define LAYERS_UINT\n" : NULL;
+    desc.defines = is_uint ? "#define NOH_LAYERS_UINT\n" : NULL;
     desc.samplers = samplers;
     desc.sampler_count = 1;
     if (noh_gl_program_create(&g->gl, &desc, program, log, sizeof log, &error)) {
@@ -105,7 +105,7 @@ static void use(readback *r, GLuint program, const noh_gl_morph_binding *b)
 {
     const noh_gl_api *gl = &r->g->gl;
     gl->UseProgram(program);
-    gl->Uniform4i(gl->GetUniformLocation(program, "u_morph"), b->tile_x, b->tile_y, b->width_log2, b->touched);
+    gl->Uniform4i(gl->GetUniformLocation(program, "noh_morph"), b->tile_x, b->tile_y, b->width_log2, b->touched);
     gl->ActiveTexture(GL_TEXTURE0);
     gl->BindTexture(GL_TEXTURE_2D_ARRAY, b->texture);
 }

@@ -13,7 +13,7 @@ void main()
 {
     ivec2 p = ivec2(gl_FragCoord.xy);
     vec3 position = vec3(0.0), normal = vec3(0.0), tangent = vec3(0.0);
-    morph_fetch((p.y << u_morph.z) + p.x, position, normal, tangent);
+    noh_morph_fetch((p.y << noh_morph.z) + p.x, position, normal, tangent);
     o_position = uvec4(floatBitsToUint(position), 0u);
     o_normal = uvec4(floatBitsToUint(normal), 0u);
     o_tangent = uvec4(floatBitsToUint(tangent), 0u);

@@ -32,7 +32,7 @@ static int make_program(gpu *g, const noh_gl_source *vertex, const noh_gl_source
 
 static int make_programs(view_screen *s)
 {
-    static const char uint_layers[] = "#define LAYERS_UINT\n";
+    static const char uint_layers[] = "#define NOH_LAYERS_UINT\n";
     gpu *g = s->g;
     int status = make_program(g, &noh_shader_full_screen_vert, &noh_shader_view_picture_frag, NULL, "u_picture",
                               &s->picture_program);
@@ -41,7 +41,7 @@ static int make_programs(view_screen *s)
                               &s->panel_program);
     for (int i = 0; i < 2 && !status; i++) {
         status = make_program(g, &noh_shader_full_screen_vert, &noh_shader_view_layer_frag, i ? uint_layers : NULL,
-                              "u_layers", &s->layer_programs[i]);
+                              "noh_layers", &s->layer_programs[i]);
     }
     return status;
 }

@@ -1,0 +1,57 @@
+/* common_fragment.glsl: what a fragment shader is given: the light, the camera, the material, and which of its pixels
+ * are drawn. It goes behind common_fade.glsl: noh_gl_shader_prefix puts them together. Defines, which
+ * noh_gl_variant_defines writes:
+ *
+ *   NOH_DEPTH_ONLY    defined: depth alone is drawn; o_color is not wanted, discards are
+ *   NOH_ALPHA_CUT     defined with it where the material cuts by alpha; elsewhere base colours are then white
+ *   NOH_FADE          defined: draw only some of the pixels (noh_gl_lod)
+ *   NOH_ENCODE_SRGB   defined: the target does not encode to sRGB
+ *   NOH_DEBUG_VIEW    a noh_debug_view */
+uniform vec3 noh_camera;                             /* world */
+uniform vec3 noh_key;                                /* unit, towards the light, world */
+uniform vec3 noh_lod;                                /* pixels from and to, level */
+uniform vec4 noh_base_color;
+uniform vec4 noh_material;                           /* roughness, metallic, alpha cutoff or -1, 1: unlit */
+uniform mediump sampler2D noh_base_color_texture;
+
+/* The material's colour times the vertex's, linear, with alpha. */
+vec4 noh_base(vec2 uv, vec4 color)
+{
+#if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
+    return noh_base_color * color * texture(noh_base_color_texture, uv);
+#else
+    return color;
+#endif
+}
+
+/* Discard what an alpha-cut material leaves out. */
+void noh_cut(float alpha)
+{
+#if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
+    if (alpha < noh_material.z) {
+        discard;
+    }
+#endif
+}
+
+/* Discard the pixels that another LOD level draws. Textures with mip levels are better read before: the level depends
+ * on the neighbouring pixels. */
+void noh_fade()
+{
+#ifdef NOH_FADE
+    float noise = noh_fade_noise(gl_FragCoord.xy);
+    if (noise < noh_lod.x || noise >= noh_lod.y) {
+        discard;
+    }
+#endif
+}
+
+/* A linear colour as the target wants it. */
+vec3 noh_encode(vec3 c)
+{
+#ifdef NOH_ENCODE_SRGB
+    return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, vec3(lessThanEqual(c, vec3(0.0031308))));
+#else
+    return c;
+#endif
+}

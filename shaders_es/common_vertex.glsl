@@ -1,0 +1,88 @@
+/* common_vertex.glsl: noh_fetch, a vertex of a noh_gl_mesh morphed, skinned and placed in the world.
+ *
+ * It goes behind common_layers.glsl, common_attributes.glsl and common_skin.glsl: noh_gl_shader_prefix puts them
+ * together. Defines of its own, which noh_gl_variant_defines writes:
+ *
+ *   NOH_DEPTH_ONLY   defined: depth alone is drawn. Normals and tangents are neither fetched nor computed, their deltas
+ *                    not either, and they are 0; nor are colours and uv, except with
+ *   NOH_ALPHA_CUT    defined: pixels are discarded by their alpha. Without NOH_DEPTH_ONLY that needs no define */
+uniform mat4 noh_view_projection;
+uniform vec4 noh_world[3];      /* rows of 3 x 4 */
+uniform vec4 noh_normal[3];     /* rows of the inverse transpose of its 3 x 3 part, up to a positive factor */
+uniform vec4 noh_uv;            /* offset, scale */
+
+layout(location = 0) in vec3 noh_a_position;
+#ifndef NOH_DEPTH_ONLY
+layout(location = 1) in ivec2 noh_a_normal;
+layout(location = 2) in ivec2 noh_a_tangent;
+#endif
+#if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
+layout(location = 3) in vec2 noh_a_uv;
+layout(location = 4) in vec4 noh_a_color;
+#endif
+
+/* A surface that two programs draw, one for depth and one for colour, has the same depth in both. */
+invariant gl_Position;
+
+struct noh_vertex {
+    vec3 position; /* world */
+    vec3 normal;   /* world; not unit */
+    vec4 tangent;  /* world; not unit. w: handedness, 1 or -1 */
+    vec2 uv;
+    vec4 color;    /* linear; alpha last */
+    vec4 tint;     /* of the instance: white */
+    vec3 model;    /* position in the mesh's own space: morphed and skinned, not placed */
+};
+
+vec4 noh_world_row(int i)
+{
+#ifdef NOH_CROWD
+    return noh_crowd_row(i);
+#else
+    return noh_world[i];
+#endif
+}
+
+/* Normals in the world: by the cofactors of a crowd's rows, of which none is mirrored, else by rows of their own. */
+vec3 noh_world_normal(vec4 x, vec4 y, vec4 z, vec3 normal)
+{
+#ifdef NOH_CROWD
+    return vec3(dot(cross(y.xyz, z.xyz), normal), dot(cross(z.xyz, x.xyz), normal), dot(cross(x.xyz, y.xyz), normal));
+#else
+    return vec3(dot(noh_normal[0].xyz, normal), dot(noh_normal[1].xyz, normal), dot(noh_normal[2].xyz, normal));
+#endif
+}
+
+ivec4 noh_tile()
+{
+#ifdef NOH_CROWD
+    return ivec4(noh_crowd_row(3));
+#else
+    return noh_morph;
+#endif
+}
+
+noh_vertex noh_fetch()
+{
+    noh_vertex v = noh_vertex(vec3(0.0), vec3(0.0), vec4(0.0), vec2(0.0), vec4(1.0), vec4(1.0), noh_a_position);
+    vec4 x = noh_world_row(0), y = noh_world_row(1), z = noh_world_row(2), p;
+#ifndef NOH_DEPTH_ONLY
+    v.normal = noh_direction_of_pair(noh_a_normal);
+    v.tangent = noh_tangent_of_pair(noh_a_tangent);
+#endif
+    if (noh_morph_fetch_tile(noh_tile(), noh_morph_vertex(), v.model, v.normal, v.tangent.xyz)) {
+        noh_morph_frame(v.normal, v.tangent.xyz);
+    }
+    noh_skin_vertex(v.model, v.normal, v.tangent);
+    p = vec4(v.model, 1.0);
+    v.position = vec3(dot(x, p), dot(y, p), dot(z, p));
+#ifndef NOH_DEPTH_ONLY
+    v.normal = noh_world_normal(x, y, z, v.normal);
+    v.tangent.xyz = vec3(dot(x.xyz, v.tangent.xyz), dot(y.xyz, v.tangent.xyz), dot(z.xyz, v.tangent.xyz));
+#endif
+#if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
+    v.uv = noh_uv.xy + noh_uv.zw * noh_a_uv;
+    v.color = vec4(noh_a_color.rgb * noh_a_color.rgb, noh_a_color.a);
+#endif
+    return v;
+}
