@@ -83,9 +83,8 @@
 
 /* ---- GL ---- */
 
-#define NOH_GL_VARIANTS_MAX \
-    64u /* programs of a renderer: a character of one kind of mesh needs 2 to 8, twice that with fades */
-#define NOH_GL_LABEL_BYTES 96u /* of an object's name; longer ones are cut. GL takes at least 256 */
-#define NOH_GL_PIECES_MAX 56u  /* of a shader's text; PIECES_MAX in tools/embed is the same number */
+#define NOH_GL_VARIANTS_MAX 64u /* of a renderer: a kind of mesh needs 2 to 8; with fades or depth twice that */
+#define NOH_GL_LABEL_BYTES 96u  /* of an object's name; longer ones are cut. GL takes at least 256 */
+#define NOH_GL_PIECES_MAX 56u   /* of a shader's text; PIECES_MAX in tools/embed is the same number */
 
 #endif

@@ -38,6 +38,7 @@ extern "C" {
     X(Scissor, SCISSOR)                                               \
     X(DepthFunc, DEPTHFUNC)                                           \
     X(DepthMask, DEPTHMASK)                                           \
+    X(ColorMask, COLORMASK)                                           \
     X(FrontFace, FRONTFACE)                                           \
     X(ClearBufferfv, CLEARBUFFERFV)                                   \
     /* questions */                                                   \
@@ -128,7 +129,6 @@ extern "C" {
     X(IsEnabled, ISENABLED)                               \
     X(PolygonOffset, POLYGONOFFSET)                       \
     X(CullFace, CULLFACE)                                 \
-    X(ColorMask, COLORMASK)                               \
     X(ClearColor, CLEARCOLOR)                             \
     X(ClearDepthf, CLEARDEPTHF)                           \
     X(Clear, CLEAR)                                       \

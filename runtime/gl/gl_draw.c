@@ -67,8 +67,8 @@ static const noh_material *material_of(const noh_gl_mesh *mesh, const noh_submes
     return submesh->material == NOH_NONE ? &plain : &mesh->mesh.pack->materials[submesh->material];
 }
 
-static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m,
-                         const noh_gl_texture *pictures)
+static void set_base_color(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m,
+                           const noh_gl_texture *pictures)
 {
     GLuint texture = m->base_color_texture == NOH_NONE ? r->white.name : pictures[m->base_color_texture].name;
     NOH_ASSERT(texture); /* the picture was created */
@@ -77,6 +77,14 @@ static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, cons
     r->gl->Uniform4fv(v->u_base_color, 1, m->base_color);
     r->gl->Uniform4f(v->u_material, m->roughness, m->metallic, (m->flags & NOH_MATERIAL_MASK) ? m->alpha_cutoff : -1.0f,
                      (m->flags & NOH_MATERIAL_UNLIT) ? 1.0f : 0.0f);
+}
+
+static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m,
+                         const noh_gl_texture *pictures)
+{
+    if (!v->key.depth || v->key.cut) {
+        set_base_color(r, v, m, pictures);
+    }
     if (m->flags & NOH_MATERIAL_DOUBLE_SIDED) {
         r->gl->Disable(GL_CULL_FACE);
     } else {
@@ -88,57 +96,119 @@ static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, cons
 
 static const noh_gl_lod whole = { 0, 0.0f, 1.0f };
 
-/* NULL if the renderer's desc did not ask for this variant, or if no pixel is to be drawn. */
-static const noh_gl_variant *variant_of(const noh_gl_renderer *r, const noh_gl_mesh *mesh,
-                                        const noh_gl_skin_binding *skin, int crowd, const noh_gl_lod *lod)
+/* What one call draws. */
+typedef struct draw_job {
+    const noh_gl_renderer *r;
+    const noh_gl_mesh *mesh;
+    const float *world; /* NULL: a crowd */
+    const noh_gl_morph_binding *morph;
+    const noh_gl_skin_binding *skin;
+    uint32_t count;
+    const noh_gl_lod *lod;
+    const noh_gl_texture *pictures;
+} draw_job;
+
+/* The submeshes of a pass that one program draws. */
+typedef enum draw_part { PART_OPAQUE, PART_BLENDED, PART_SOLID_DEPTH, PART_CUT_DEPTH } draw_part;
+
+static int is_in_part(const noh_material *m, draw_part part)
 {
-    noh_gl_variant_key key = noh_gl_variant_key_of(&mesh->mesh, skin, crowd, r->layers_uint, r->view);
-    const noh_gl_variant *v;
-    key.fade = lod->from > 0.0f || lod->to < 1.0f;
-    v = noh_gl_renderer_variant(r, key);
-    NOH_ASSERT(v);
-    return lod->from < lod->to ? v : NULL;
+    const int blended = (m->flags & NOH_MATERIAL_BLEND) != 0, cut = (m->flags & NOH_MATERIAL_MASK) != 0;
+    if (part == PART_OPAQUE || part == PART_BLENDED) {
+        return blended == (part == PART_BLENDED);
+    }
+    return !blended && cut == (part == PART_CUT_DEPTH);
 }
 
-static void draw_submesh(const noh_gl_renderer *r, const noh_gl_mesh *mesh, const noh_submesh *s, size_t level_first,
-                         uint32_t count)
+static int is_empty(const noh_gl_mesh *mesh, const noh_mesh *level, draw_part part)
 {
-    const void *first = (const void *)(level_first + (uintptr_t)s->first_index * mesh->mesh.header->index_bytes);
-    if (count == 1u) {
-        r->gl->DrawElements(GL_TRIANGLES, (GLsizei)s->index_count, mesh->index_type, first);
+    int drawn = 0;
+    for (uint32_t i = 0; i < level->header->submesh_count; i++) {
+        const noh_submesh *s = &level->submeshes[i];
+        drawn |= s->index_count && is_in_part(material_of(mesh, s), part);
+    }
+    return !drawn;
+}
+
+/* NULL if the renderer's desc did not ask for this variant. */
+static const noh_gl_variant *variant_of(const draw_job *j, draw_part part)
+{
+    noh_gl_variant_key key = noh_gl_variant_key_of(&j->mesh->mesh, j->skin, !j->world, j->r->layers_uint, j->r->view);
+    key.fade = j->lod->from > 0.0f || j->lod->to < 1.0f;
+    if (part == PART_SOLID_DEPTH || part == PART_CUT_DEPTH) {
+        key = noh_gl_variant_key_depth(key, part == PART_CUT_DEPTH);
+    }
+    return noh_gl_renderer_variant(j->r, key);
+}
+
+static void draw_submesh(const draw_job *j, const noh_submesh *s, size_t level_first)
+{
+    const noh_gl_api *gl = j->r->gl;
+    const void *first = (const void *)(level_first + (uintptr_t)s->first_index * j->mesh->mesh.header->index_bytes);
+    if (j->count == 1u) {
+        gl->DrawElements(GL_TRIANGLES, (GLsizei)s->index_count, j->mesh->index_type, first);
     } else {
-        r->gl->DrawElementsInstanced(GL_TRIANGLES, (GLsizei)s->index_count, mesh->index_type, first, (GLsizei)count);
+        gl->DrawElementsInstanced(GL_TRIANGLES, (GLsizei)s->index_count, j->mesh->index_type, first, (GLsizei)j->count);
     }
 }
 
-static void draw_submeshes(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_gl_mesh *mesh,
-                           const noh_gl_skin_binding *skin, uint32_t count, const noh_gl_lod *lod,
-                           const noh_gl_texture *pictures, int pass)
+static void draw_submeshes(const draw_job *j, const noh_gl_variant *v, const noh_mesh *level, size_t first,
+                           draw_part part)
 {
-    size_t first;
-    const noh_mesh level = noh_gl_mesh_lod(mesh, lod->level, &first);
     uint32_t palette = NOH_NONE;
-    r->gl->Uniform3f(v->u_lod, lod->from, lod->to, (float)level.header->level);
-    if (pass == NOH_DRAW_BLENDED) {
-        r->gl->Enable(GL_BLEND);
-        r->gl->DepthMask(GL_FALSE);
-    }
-    for (uint32_t i = 0; i < level.header->submesh_count; i++) {
-        const noh_submesh *s = &level.submeshes[i];
-        const noh_material *m = material_of(mesh, s);
-        int blended = (m->flags & NOH_MATERIAL_BLEND) != 0;
-        if (blended == pass && s->index_count) {
-            set_material(r, v, m, pictures);
-            if (skin && s->palette != palette) {
+    j->r->gl->Uniform3f(v->u_lod, j->lod->from, j->lod->to, (float)level->header->level);
+    for (uint32_t i = 0; i < level->header->submesh_count; i++) {
+        const noh_submesh *s = &level->submeshes[i];
+        const noh_material *m = material_of(j->mesh, s);
+        if (s->index_count && is_in_part(m, part)) {
+            set_material(j->r, v, m, j->pictures);
+            if (j->skin && s->palette != palette) {
                 palette = s->palette;
-                noh_gl_variant_skin(r->gl, v, &mesh->mesh, skin, palette);
+                noh_gl_variant_skin(j->r->gl, v, &j->mesh->mesh, j->skin, palette);
             }
-            draw_submesh(r, mesh, s, first, count);
+            draw_submesh(j, s, first);
         }
     }
-    if (pass == NOH_DRAW_BLENDED) {
-        r->gl->Disable(GL_BLEND);
-        r->gl->DepthMask(GL_TRUE);
+}
+
+static void draw_part_of(const draw_job *j, draw_part part)
+{
+    size_t first;
+    const noh_mesh level = noh_gl_mesh_lod(j->mesh, j->lod->level, &first);
+    const noh_gl_variant *v = is_empty(j->mesh, &level, part) ? NULL : variant_of(j, part);
+    NOH_ASSERT(v || is_empty(j->mesh, &level, part)); /* the renderer's desc asked for it */
+    if (v) {
+        set_mesh(j->r, v, j->mesh, j->morph);
+        if (j->world) {
+            set_instance(j->r, v, j->world, j->morph);
+        } else {
+            j->r->gl->FrontFace(GL_CCW);
+        }
+        draw_submeshes(j, v, &level, first, part);
+    }
+}
+
+static void draw_pass(const draw_job *j, int pass)
+{
+    const noh_gl_api *gl = j->r->gl;
+    NOH_ASSERT(j->mesh->vertex_array && pass >= NOH_DRAW_OPAQUE && pass <= NOH_DRAW_DEPTH);
+    NOH_ASSERT(!j->morph || j->morph->is_uint == j->r->layers_uint);
+    if (!j->count || !(j->lod->from < j->lod->to)) {
+        return;
+    }
+    if (pass == NOH_DRAW_DEPTH) {
+        gl->ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+        draw_part_of(j, PART_SOLID_DEPTH);
+        draw_part_of(j, PART_CUT_DEPTH);
+        gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    } else if (pass == NOH_DRAW_BLENDED) {
+        gl->Enable(GL_BLEND);
+        gl->DepthMask(GL_FALSE);
+        draw_part_of(j, PART_BLENDED);
+        gl->Disable(GL_BLEND);
+        gl->DepthMask(GL_TRUE);
+    } else {
+        draw_part_of(j, PART_OPAQUE);
     }
 }
 
@@ -146,30 +216,17 @@ void noh_gl_draw_mesh(const noh_gl_renderer *r, const noh_gl_mesh *mesh, const f
                       const noh_gl_morph_binding *morph, const noh_gl_skin_binding *skin, const noh_gl_lod *lod,
                       const noh_gl_texture *pictures, int pass)
 {
-    const noh_gl_lod *d = lod ? lod : &whole;
-    const noh_gl_variant *v = variant_of(r, mesh, skin, 0, d);
-    NOH_ASSERT(world && mesh->vertex_array && (pass == NOH_DRAW_OPAQUE || pass == NOH_DRAW_BLENDED));
-    NOH_ASSERT(!morph || morph->is_uint == r->layers_uint);
-    if (v) {
-        set_mesh(r, v, mesh, morph);
-        set_instance(r, v, world, morph);
-        draw_submeshes(r, v, mesh, skin, 1, d, pictures, pass);
-    }
+    const draw_job job = { r, mesh, world, morph, skin, 1, lod ? lod : &whole, pictures };
+    NOH_ASSERT(world);
+    draw_pass(&job, pass);
 }
 
 void noh_gl_draw_crowd(const noh_gl_renderer *r, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph,
                        const noh_gl_skin_binding *first, uint32_t count, const noh_gl_lod *lod,
                        const noh_gl_texture *pictures, int pass)
 {
-    const noh_gl_lod *d = lod ? lod : &whole;
-    const noh_gl_variant *v = variant_of(r, mesh, first, 1, d);
-    NOH_ASSERT(mesh->vertex_array && (pass == NOH_DRAW_OPAQUE || pass == NOH_DRAW_BLENDED));
-    NOH_ASSERT(!morph || morph->is_uint == r->layers_uint);
-    if (v && count) {
-        set_mesh(r, v, mesh, morph);
-        r->gl->FrontFace(GL_CCW);
-        draw_submeshes(r, v, mesh, first, count, d, pictures, pass);
-    }
+    const draw_job job = { r, mesh, NULL, morph, first, count, lod ? lod : &whole, pictures };
+    draw_pass(&job, pass);
 }
 
 void noh_gl_draw_end(const noh_gl_renderer *r)

@@ -26,12 +26,12 @@ extern "C" {
 #endif
 
 /* Attribute locations of a noh_gl_mesh's vertex array. */
-#define NOH_ATTRIBUTE_POSITION 0u        /* vec3 */
-#define NOH_ATTRIBUTE_NORMAL 1u          /* ivec2, octahedral: direction_of_pair in shaders_es/common_attributes.glsl */
-#define NOH_ATTRIBUTE_TANGENT 2u         /* ivec2, octahedral with handedness: tangent_of_pair; not in every mesh */
-#define NOH_ATTRIBUTE_UV 3u              /* vec2 in 0..1, to be scaled by the mesh's uv_offset and uv_scale */
-#define NOH_ATTRIBUTE_COLOR 4u           /* vec4 in 0..1, rgb as square roots; not in every mesh */
-#define NOH_ATTRIBUTE_INFLUENCES 5u      /* uint, uvec2, uvec3 or uvec4: the first words of a vertex's influences */
+#define NOH_ATTRIBUTE_POSITION 0u   /* vec3 */
+#define NOH_ATTRIBUTE_NORMAL 1u     /* ivec2, octahedral: noh_direction_of_pair in shaders_es/common_attributes.glsl */
+#define NOH_ATTRIBUTE_TANGENT 2u    /* ivec2, octahedral with handedness: noh_tangent_of_pair; not in every mesh */
+#define NOH_ATTRIBUTE_UV 3u         /* vec2 in 0..1, to be scaled by the mesh's uv_offset and uv_scale */
+#define NOH_ATTRIBUTE_COLOR 4u      /* vec4 in 0..1, rgb as square roots; not in every mesh */
+#define NOH_ATTRIBUTE_INFLUENCES 5u /* uint, uvec2, uvec3 or uvec4: the first words of a vertex's influences */
 #define NOH_ATTRIBUTE_MORE_INFLUENCES 6u /* uvec3: the last three of seven words */
 #define NOH_ATTRIBUTE_TEXEL 7u           /* uint: accumulation texel and palette; only with NOH_MESH_TEXELS */
 
@@ -73,6 +73,13 @@ noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
 noh_result noh_gl_picture_restore(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
                                   noh_gl_texture *picture, noh_error *error);
 
+/* The passes that a renderer compiles variants for. */
+typedef enum noh_gl_passes {
+    NOH_PASSES_COLOR = 0, /* NOH_DRAW_OPAQUE and NOH_DRAW_BLENDED */
+    NOH_PASSES_ALL,
+    NOH_PASSES_DEPTH /* NOH_DRAW_DEPTH alone */
+} noh_gl_passes;
+
 typedef struct noh_gl_renderer_desc {
     noh_debug_view view;    /* 0: lit */
     int layers_uint;        /* as in noh_gl_morph_binding.is_uint */
@@ -83,6 +90,7 @@ typedef struct noh_gl_renderer_desc {
     int fewer_influences;      /* bindings will lower `influences` */
     int fades;                 /* LOD levels will fade (noh_gl_lod): also compile variants that discard pixels */
     int encode_srgb;           /* the shader encodes to sRGB, for targets that do not, such as WebGL's canvas */
+    noh_gl_passes passes;
 } noh_gl_renderer_desc;
 
 typedef struct noh_gl_renderer {
@@ -90,6 +98,7 @@ typedef struct noh_gl_renderer {
     noh_gl_ledger *ledger;
     int layers_uint, encode_srgb, fades;
     noh_debug_view view;
+    noh_gl_passes passes;
     noh_gl_texture white; /* 1 x 1, for materials without a texture */
     uint32_t variant_count;
     noh_gl_variant variants[NOH_GL_VARIANTS_MAX];
@@ -99,8 +108,8 @@ typedef struct noh_gl_renderer {
 
 /* Compile every variant that the meshes of the desc may need: nothing is compiled later.
  * memory  none; *out may be written even on error, but then owns no GL object
- * errors  ARG crowds without palettes in a texture; LIMIT the meshes need more variants than NOH_GL_VARIANTS_MAX;
- *         MEMORY, GL, DATA as noh_gl_program_create and noh_gl_texture_create */
+ * errors  ARG crowds without palettes in a texture, or unknown passes; LIMIT the meshes need more variants than
+ * NOH_GL_VARIANTS_MAX; MEMORY, GL, DATA as noh_gl_program_create and noh_gl_texture_create */
 noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_renderer_desc *desc, noh_gl_renderer *out,
                                   noh_error *error);
 void noh_gl_renderer_delete(noh_gl_renderer *renderer);
@@ -109,7 +118,8 @@ void noh_gl_renderer_delete(noh_gl_renderer *renderer);
  * errors  GL, MEMORY, DATA as noh_gl_renderer_create: it then has no GL objects */
 noh_result noh_gl_renderer_restore(noh_gl_renderer *renderer, char *log, size_t log_bytes, noh_error *error);
 
-/* The variant of a key, whose encode_srgb is taken from the renderer. NULL: no mesh of the renderer's desc needs it. */
+/* The variant of a key, whose encode_srgb is taken from the renderer, 0 for depth. NULL: no mesh of the renderer's desc
+ * needs it. */
 const noh_gl_variant *noh_gl_renderer_variant(const noh_gl_renderer *renderer, noh_gl_variant_key key);
 
 typedef struct noh_gl_camera {
@@ -124,6 +134,8 @@ void noh_gl_draw_begin(const noh_gl_renderer *renderer, const noh_gl_camera *cam
 
 #define NOH_DRAW_OPAQUE 0
 #define NOH_DRAW_BLENDED 1
+#define NOH_DRAW_DEPTH \
+    2 /* the depth of what NOH_DRAW_OPAQUE draws, to the bit, and no colour: shadow maps, depth first */
 
 /* The LOD level of a draw, and which of its pixels are drawn. Two draws fade from one level to another: the new level
  * with (0, f), the old one with (f, 1), f from noh_lod_fade. A pixel that both cover is drawn by exactly one of them,
@@ -135,6 +147,8 @@ typedef struct noh_gl_lod {
 } noh_gl_lod;
 
 /* Draw a mesh's submeshes of one pass: first every mesh with NOH_DRAW_OPAQUE, then every mesh with NOH_DRAW_BLENDED.
+ * NOH_DRAW_DEPTH fetches positions alone, of alpha-cut materials uv, colours and texture too, and writes no colour. It
+ * may come before the others, with the same framebuffer, or stand alone.
  * A mesh whose variant the renderer's desc did not ask for asserts, and is not drawn.
  * shapes  world[12] rows of 3 x 4; pictures[texture_count of the pack]
  * morph   where its deltas are, accumulated for this LOD level or a finer one; NULL: no target is active

@@ -23,6 +23,13 @@ static noh_result create_white(noh_gl_renderer *r, noh_error *error)
 
 /* ---- which variants ---- */
 
+/* What the renderer decides, not a mesh: depth is the same whatever colours are. */
+static noh_gl_variant_key completed(const noh_gl_renderer *r, noh_gl_variant_key key)
+{
+    key.encode_srgb = (uint8_t)(r->encode_srgb && !key.depth);
+    return key;
+}
+
 static noh_result want_one(noh_gl_renderer *r, noh_gl_variant_key key, noh_error *error)
 {
     if (noh_gl_renderer_variant(r, key)) {
@@ -32,18 +39,43 @@ static noh_result want_one(noh_gl_renderer *r, noh_gl_variant_key key, noh_error
         return noh_fail(error, NOH_ERR_LIMIT, "the meshes need more shader variants than the limit",
                         NOH_GL_VARIANTS_MAX, 0);
     }
-    key.encode_srgb = (uint8_t)r->encode_srgb;
-    r->variants[r->variant_count++].key = key;
+    r->variants[r->variant_count++].key = completed(r, key);
     return NOH_OK;
 }
 
 /* The variant that draws every pixel, and if the renderer fades, the one that draws some. */
-static noh_result want(noh_gl_renderer *r, noh_gl_variant_key key, noh_error *error)
+static noh_result want_fades(noh_gl_renderer *r, noh_gl_variant_key key, noh_error *error)
 {
     noh_result result = want_one(r, key, error);
     if (!result && r->fades) {
         key.fade = 1;
         result = want_one(r, key, error);
+    }
+    return result;
+}
+
+static int has_cut_materials(const noh_mesh *mesh)
+{
+    int cut = 0;
+    for (uint32_t i = 0; i < mesh->header->submesh_count; i++) {
+        const uint32_t material = mesh->submeshes[i].material;
+        cut |= material != NOH_NONE && (mesh->pack->materials[material].flags & NOH_MATERIAL_MASK);
+    }
+    return cut;
+}
+
+/* The variants of all passes. */
+static noh_result want(noh_gl_renderer *r, const noh_mesh *mesh, noh_gl_variant_key key, noh_error *error)
+{
+    noh_result result = NOH_OK;
+    if (r->passes != NOH_PASSES_DEPTH) {
+        result = want_fades(r, key, error);
+    }
+    if (!result && r->passes != NOH_PASSES_COLOR) {
+        result = want_fades(r, noh_gl_variant_key_depth(key, 0), error);
+        if (!result && has_cut_materials(mesh)) {
+            result = want_fades(r, noh_gl_variant_key_depth(key, 1), error);
+        }
     }
     return result;
 }
@@ -55,13 +87,13 @@ static noh_result want_mesh(noh_gl_renderer *r, const noh_gl_renderer_desc *desc
 {
     noh_gl_skin_binding skin = { NOH_PALETTE_AUTO, 0, 0, 0, 0, 0, 0 };
     uint32_t least = desc->fewer_influences ? 1u : NOH_INFLUENCES_MAX;
-    noh_result result = want(r, noh_gl_variant_key_of(mesh, NULL, 0, r->layers_uint, r->view), error);
+    noh_result result = want(r, mesh, noh_gl_variant_key_of(mesh, NULL, 0, r->layers_uint, r->view), error);
     skin.mode = desc->palettes;
     for (uint32_t limit = NOH_INFLUENCES_MAX; limit >= least && !result && desc->palettes; limit /= 2u) {
         skin.influences = limit;
-        result = want(r, noh_gl_variant_key_of(mesh, &skin, 0, r->layers_uint, r->view), error);
+        result = want(r, mesh, noh_gl_variant_key_of(mesh, &skin, 0, r->layers_uint, r->view), error);
         if (!result && desc->crowds) {
-            result = want(r, noh_gl_variant_key_of(mesh, &skin, 1, r->layers_uint, r->view), error);
+            result = want(r, mesh, noh_gl_variant_key_of(mesh, &skin, 1, r->layers_uint, r->view), error);
         }
     }
     return result;
@@ -70,7 +102,7 @@ static noh_result want_mesh(noh_gl_renderer *r, const noh_gl_renderer_desc *desc
 const noh_gl_variant *noh_gl_renderer_variant(const noh_gl_renderer *r, noh_gl_variant_key key)
 {
     NOH_ASSERT(r && r->variant_count <= NOH_GL_VARIANTS_MAX);
-    key.encode_srgb = (uint8_t)r->encode_srgb;
+    key = completed(r, key);
     for (uint32_t i = 0; i < r->variant_count; i++) {
         if (memcmp(&r->variants[i].key, &key, sizeof key) == 0) {
             return &r->variants[i];
@@ -99,6 +131,9 @@ noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_rend
 {
     noh_result result = NOH_OK;
     NOH_ASSERT(device && device->api && device->ledger && desc && out && (desc->meshes || !desc->mesh_count));
+    if ((unsigned)desc->passes > NOH_PASSES_DEPTH) {
+        return noh_fail(error, NOH_ERR_ARG, "renderer desc has unknown passes", (uint64_t)desc->passes, 0);
+    }
     if (desc->crowds && desc->palettes != NOH_PALETTE_TEXTURE) {
         return noh_fail(error, NOH_ERR_ARG, "crowds want palettes in a texture", 0, 0);
     }
@@ -109,6 +144,7 @@ noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_rend
     out->encode_srgb = desc->encode_srgb != 0;
     out->fades = desc->fades != 0;
     out->view = desc->view;
+    out->passes = desc->passes;
     for (uint32_t i = 0; i < desc->mesh_count && !result; i++) {
         result = want_mesh(out, desc, &desc->meshes[i], error);
     }

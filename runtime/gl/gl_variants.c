@@ -111,33 +111,36 @@ static uint32_t prefix_pieces(GLenum stage, const char *pieces[PREFIX_PIECES_MAX
     return count;
 }
 
-static size_t length_of(const char *text)
+/* Append a piece, as far as text[bytes] reaches. Returns where it would end. */
+static size_t put_piece(char *text, size_t bytes, size_t at, const char *piece)
 {
-    size_t length = 0;
-    while (text[length]) {
-        length++;
+    for (; *piece; piece++, at++) {
+        if (at < bytes) {
+            text[at] = *piece;
+        }
     }
-    return length;
+    return at;
 }
 
 size_t noh_gl_shader_prefix(noh_gl_variant_key key, GLenum stage, char *text, size_t bytes)
 {
     char defines[NOH_GL_DEFINES_BYTES];
     const char *pieces[PREFIX_PIECES_MAX + 1u] = { defines };
-    size_t need = 1, at = 0;
+    size_t room = 0, at = 0;
     NOH_ASSERT((stage == GL_VERTEX_SHADER || stage == GL_FRAGMENT_SHADER) && (text || !bytes));
     const uint32_t count = 1u + prefix_pieces(stage, pieces + 1);
     noh_gl_variant_defines(key, defines);
-    for (uint32_t i = 0; i < count; i++) {
-        need += length_of(pieces[i]);
+    for (int pass = 0; pass < 2; pass++) { /* the first measures */
+        room = pass && at < bytes ? bytes : 0;
+        at = 0;
+        for (uint32_t i = 0; i < count; i++) {
+            at = put_piece(text, room, at, pieces[i]);
+        }
     }
-    for (uint32_t i = 0; i < count && need <= bytes; i++) {
-        const size_t length = length_of(pieces[i]);
-        memcpy(text + at, pieces[i], length);
-        at += length;
+    if (room) {
         text[at] = 0;
     }
-    return need;
+    return at + 1u;
 }
 
 /* ---- programs ---- */

@@ -1,6 +1,6 @@
 /* LOD levels drawn: each level looks like a mesh of its triangles alone; levels fade pixel by pixel, alone and in
  * crowds; meshes without the finer levels; the colours that tell levels apart. */
-#include "support/gl_fixture.h"
+#include "support/tube_fixture.h"
 #include "support/level_fixture.h"
 #include "support/skin_asset.h"
 
@@ -10,98 +10,19 @@
 
 #define SIDE 192u
 #define LEVELS 3u
-#define COPIES 2u
 
-/* ---- a tube with joints and targets, with levels and without ---- */
-
-/* The mesh, and all that it takes to draw copies of it. */
-typedef struct side {
-    noh_mesh mesh;
-    noh_gl_mesh gl;
-    noh_gl_morph_desc morph_desc;
-    fixture_morph morph;
-    noh_gl_skin_plan plan;
-    void *memory;
-    noh_gl_skin *skin;
-    noh_gl_ledger ledger;
-} side;
-
-static const uint32_t copies = COPIES;
-static const float worlds[COPIES][12] = { { 1, 0, 0, -0.5f, 0, 1, 0, 0, 0, 0, 1, 0 },
-                                          { 0, 0, 1, 0.6f, 0, 1, 0, 0.2f, -1, 0, 0, -0.4f } };
+/* ---- a tube with levels and without ---- */
 
 static uint8_t *tube_bytes;
-static noh_pack tube;
+static noh_pack tube_pack;
 static fixture_levels levels;
-static side with, without;
-
-static void set_weights(side *s)
-{
-    for (uint32_t i = 0; i < COPIES; i++) {
-        const float weights[3] = { 0.0f, 0.8f, i ? -0.6f : 0.4f }; /* the coarsest level leaves out the first target */
-        fixture_set(&s->morph, i, weights);
-    }
-    noh_gl_morph_update(s->morph.morph, NULL);
-}
-
-static void pose(side *s)
-{
-    test_random r = { 90 };
-    noh_skin skin;
-    uint32_t joints;
-    float *matrices;
-    assert_int_equal(noh_pack_skin_at(s->mesh.pack, s->mesh.header->skin, &skin, NULL), NOH_OK);
-    joints = skin.header->joint_count;
-    matrices = test_zeros(48u * (size_t)joints);
-    for (uint32_t i = 0; i < COPIES; i++) {
-        noh_gl_morph_binding morph = noh_gl_morph_binding_of(s->morph.morph, i);
-        for (uint32_t e = 0; e < 12u * joints; e++) {
-            matrices[e] = (e % 12u % 5u == 0 ? 1.0f : 0.0f) + test_random_float(&r, -0.08f, 0.08f);
-        }
-        noh_gl_skin_set_matrices(s->skin, i, matrices);
-        assert_int_equal(noh_gl_skin_set_place(s->skin, i, worlds[i], &morph, NULL), NOH_OK);
-    }
-    noh_gl_skin_update(s->skin);
-    free(matrices);
-}
-
-static void side_open(side *s, const noh_mesh *mesh)
-{
-    gpu *g = fixture_gpu();
-    noh_gl_skin_desc desc;
-    memset(s, 0, sizeof *s);
-    memset(&desc, 0, sizeof desc);
-    s->mesh = *mesh;
-    assert_int_equal(noh_gl_mesh_create(&g->gl, &s->ledger, mesh, &s->gl, NULL), NOH_OK);
-    s->morph_desc.meshes = desc.meshes = &s->mesh;
-    s->morph_desc.mesh_count = desc.mesh_count = 1;
-    s->morph_desc.instance_counts = desc.instance_counts = &copies;
-    s->morph_desc.path = NOH_MORPH_CPU;
-    desc.mode = NOH_PALETTE_TEXTURE;
-    fixture_morph_open(&s->morph, &s->morph_desc, NULL);
-    assert_int_equal(noh_gl_skin_plan_make(&desc, &g->caps, &s->plan, NULL), NOH_OK);
-    s->memory = test_aligned(NULL, (size_t)s->plan.cpu_bytes);
-    assert_int_equal(noh_gl_skin_init(s->memory, (size_t)s->plan.cpu_bytes,
-                                      &(noh_gl_device){ &g->gl, &g->caps, &s->ledger, NULL, 0 }, &desc, &s->skin, NULL),
-                     NOH_OK);
-    set_weights(s);
-    pose(s);
-}
-
-static void side_close(side *s)
-{
-    noh_gl_mesh_delete(&fixture_gpu()->gl, &s->ledger, &s->gl);
-    noh_gl_skin_delete(s->skin);
-    fixture_morph_close(&s->morph);
-    free(s->memory);
-    assert_true(noh_gl_ledger_bytes(&s->ledger) == 0);
-}
+static tube with, without;
 
 static void close_both(void)
 {
     if (tube_bytes) {
-        side_close(&with);
-        side_close(&without);
+        tube_close(&with);
+        tube_close(&without);
         fixture_levels_close(&levels);
         free(tube_bytes);
         tube_bytes = NULL;
@@ -128,15 +49,15 @@ static void open_split(uint32_t palette)
     memset(&options, 0, sizeof options);
     options.palette = palette;
     tube_bytes = skin_pack_of(m, &options, 1.0f, &count, NULL);
-    tube = test_open(tube_bytes, count);
+    tube_pack = test_open(tube_bytes, count);
     model_free(m);
-    fixture_levels_open(&levels, &tube, LEVELS, 0.12f);
+    fixture_levels_open(&levels, &tube_pack, LEVELS, 0.12f);
     mesh = test_mesh(&levels.pack, 0);
     assert_true(mesh.header[1].index_count < mesh.header[0].index_count &&
                 mesh.header[2].index_count < mesh.header[1].index_count);
-    side_open(&with, &mesh);
-    mesh = test_mesh(&tube, 0);
-    side_open(&without, &mesh);
+    tube_open(&with, &mesh, NOH_PALETTE_TEXTURE);
+    mesh = test_mesh(&tube_pack, 0);
+    tube_open(&without, &mesh, NOH_PALETTE_TEXTURE);
 }
 
 static void open_both(void)
@@ -152,23 +73,6 @@ static int tear_down(void **state)
 
 /* ---- pictures ---- */
 
-typedef enum draw_kind { RIGID, SKINNED, FEWER, CROWD } draw_kind;
-
-static void draw(const noh_gl_renderer *r, const side *s, const noh_gl_mesh *gl, draw_kind kind,
-                 const noh_gl_lod *drawn)
-{
-    for (uint32_t i = 0; i < (kind == CROWD ? 1u : COPIES); i++) {
-        noh_gl_morph_binding morph = noh_gl_morph_binding_of(s->morph.morph, i);
-        noh_gl_skin_binding skin = noh_gl_skin_binding_of(s->skin, i);
-        skin.influences = kind == FEWER ? 1u + i : 0;
-        if (kind == CROWD) {
-            noh_gl_draw_crowd(r, gl, &morph, &skin, COPIES, drawn, NULL, NOH_DRAW_OPAQUE);
-        } else {
-            noh_gl_draw_mesh(r, gl, worlds[i], &morph, kind == RIGID ? NULL : &skin, drawn, NULL, NOH_DRAW_OPAQUE);
-        }
-    }
-}
-
 static noh_gl_renderer_desc renderer_desc(const noh_mesh *meshes, uint32_t count)
 {
     noh_gl_renderer_desc desc;
@@ -181,12 +85,9 @@ static noh_gl_renderer_desc renderer_desc(const noh_mesh *meshes, uint32_t count
 }
 
 /* One side's copies, drawn once for each `lod` (NULL: without one), into one frame. */
-static uint8_t *picture(const side *s, const noh_gl_mesh *gl, draw_kind kind, const noh_gl_lod *lods, uint32_t count,
+static uint8_t *picture(const tube *s, const noh_gl_mesh *gl, draw_kind kind, const noh_gl_lod *lods, uint32_t count,
                         noh_debug_view view)
 {
-    static const noh_gl_camera camera = { { 0.8f, 0, 0, 0, 0, 0.8f, 0, 0, 0, 0, -0.3f, 0, 0, -0.8f, 0, 1 },
-                                          { 0, 0.8f, 9 },
-                                          { 0.6f, 0, 0.8f } };
     const noh_gl_api *api = &fixture_gpu()->gl;
     noh_gl_renderer_desc desc = renderer_desc(&s->mesh, 1);
     noh_gl_renderer renderer;
@@ -198,9 +99,9 @@ static uint8_t *picture(const side *s, const noh_gl_mesh *gl, draw_kind kind, co
     assert_int_equal(
         noh_gl_renderer_create(&(noh_gl_device){ api, NULL, &f.ledger, log, sizeof log }, &desc, &renderer, NULL),
         NOH_OK);
-    noh_gl_draw_begin(&renderer, &camera);
+    noh_gl_draw_begin(&renderer, &tube_camera);
     for (uint32_t i = 0; i < (lods ? count : 1u); i++) {
-        draw(&renderer, s, gl, kind, lods ? &lods[i] : NULL);
+        tube_draw(&renderer, s, gl, kind, lods ? &lods[i] : NULL, NOH_DRAW_OPAQUE);
     }
     noh_gl_draw_end(&renderer);
     rgba = fixture_frame_read(&f);
@@ -355,7 +256,7 @@ static void finer_levels_can_stay_away(void **state)
 
 /* ---- fades ---- */
 
-/* fade_noise of common_fade.glsl, of the n-th pixel of a frame. */
+/* noh_fade_noise of common_fade.glsl, of the n-th pixel of a frame. */
 static float noise(uint32_t x, uint32_t y)
 {
     return (float)((x * 0xc13fa9a9u + y * 0x91e10da6u) >> 8) / 16777216.0f;
@@ -489,12 +390,12 @@ static void each_level_has_a_color(void **state)
     fixture_levels eight;
     noh_mesh mesh;
     double colors[NOH_LOD_LEVELS_MAX][3];
-    side s;
+    tube s;
     (void)state;
     open_both();
-    fixture_levels_open(&eight, &tube, NOH_LOD_LEVELS_MAX, 0.005f);
+    fixture_levels_open(&eight, &tube_pack, NOH_LOD_LEVELS_MAX, 0.005f);
     mesh = test_mesh(&eight.pack, 0);
-    side_open(&s, &mesh);
+    tube_open(&s, &mesh, NOH_PALETTE_TEXTURE);
     for (uint32_t k = 0; k < NOH_LOD_LEVELS_MAX; k++) {
         const noh_gl_lod drawn = { k, 0.0f, 1.0f };
         uint8_t *rgba = picture(&s, &s.gl, SKINNED, &drawn, 1, NOH_VIEW_LOD);
@@ -509,7 +410,7 @@ static void each_level_has_a_color(void **state)
         }
     }
     assert_true(fabs(colors[0][0] - colors[0][2]) < 0.01); /* the full mesh is white */
-    side_close(&s);
+    tube_close(&s);
     fixture_levels_close(&eight);
 }
 

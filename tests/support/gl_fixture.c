@@ -41,8 +41,9 @@ static void GL_APIENTRY count_debug(GLenum source, GLenum type, GLuint id, GLenu
 
 gpu *fixture_gpu(void)
 {
+    const char *driver = getenv("NOH_TEST_DRIVER");
     if (shared_state == UNTRIED) {
-        shared_state = gpu_open(&shared, "egl") == 0 ? WORKS : FAILED;
+        shared_state = gpu_open(&shared, driver ? driver : "egl") == 0 ? WORKS : FAILED;
         if (shared_state == WORKS && shared.gl.DebugMessageCallback) {
             shared.gl.Enable(GL_DEBUG_OUTPUT);
             shared.gl.Enable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
@@ -50,7 +51,7 @@ gpu *fixture_gpu(void)
         }
     }
     if (shared_state != WORKS) {
-        test_skip("no EGL context here");
+        test_skip("no %s context here", driver ? driver : "EGL");
     }
     noh_gl_error_take(&shared.gl);
     debug_errors = 0;

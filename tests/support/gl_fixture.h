@@ -6,8 +6,8 @@
 
 #include "gpu/readback.h"
 
-/* One EGL context for the whole program; skips the test where there is none. Starts with no
- * GL errors counted. */
+/* One context for the whole program, of EGL or of the driver that NOH_TEST_DRIVER names (tests/gl/matrix.sh); skips the
+ * test where there is none. Starts with no GL errors counted. */
 gpu *fixture_gpu(void);
 /* Close it at the end. Fits cmocka's group teardown. */
 int fixture_tear_down(void **state);
