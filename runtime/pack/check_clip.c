@@ -63,10 +63,10 @@ noh_result noh_check_skeleton(noh_check *check)
         return noh_check_fail(check, "count of joint levels is zero or over the limit",
                               offsetof(noh_skeleton_header, level_count));
     }
-    result = noh_check_array(check, h->parents_offset, h->joint_count, 2);
-    if (!result) result = noh_check_array(check, h->bind_offset, h->joint_count, 40);
-    if (!result) result = noh_check_array(check, h->names_offset, h->joint_count, 4);
-    if (!result) result = noh_check_array(check, h->levels_offset, h->level_count, 4);
+    result = noh_check_array(check, offsetof(noh_skeleton_header, parents_offset), h->joint_count, 2);
+    if (!result) result = noh_check_array(check, offsetof(noh_skeleton_header, bind_offset), h->joint_count, 40);
+    if (!result) result = noh_check_array(check, offsetof(noh_skeleton_header, names_offset), h->joint_count, 4);
+    if (!result) result = noh_check_array(check, offsetof(noh_skeleton_header, levels_offset), h->level_count, 4);
     if (!result) result = noh_check_end(check);
     if (!result) result = check_joints(check, h);
     return result ? result : check_levels(check, h);
@@ -77,13 +77,17 @@ static noh_result check_events(const noh_check *check, const noh_clip_header *h)
     const noh_clip_event *events = (const noh_clip_event *)(const void *)(check->bytes + h->events_offset);
     for (uint32_t i = 0; i < h->event_count; i++) {
         uint64_t at = h->events_offset + (uint64_t)i * sizeof *events;
-        noh_result result = noh_check_name(check, events[i].name, events[i].name_hash, at);
+        noh_result result = noh_check_name(check, events[i].name, events[i].name_hash,
+                                           at + offsetof(noh_clip_event, name));
         if (result) {
             return result;
         }
-        if ((i && events[i].tick < events[i - 1].tick) || !noh_float_finite(events[i].weight_min) ||
-            events[i].weight_min < 0.0f) {
-            return noh_check_fail(check, "callback keys are not in time order, or a weight is not 0 or more", at);
+        if (i && events[i].tick < events[i - 1].tick) {
+            return noh_check_fail(check, "callback keys are not in time order", at + offsetof(noh_clip_event, tick));
+        }
+        if (!noh_float_finite(events[i].weight_min) || events[i].weight_min < 0.0f) {
+            return noh_check_fail(check, "callback key's smallest weight is not 0 or more",
+                                  at + offsetof(noh_clip_event, weight_min));
         }
     }
     return NOH_OK;
@@ -94,12 +98,13 @@ static noh_result check_markers(const noh_check *check, const noh_clip_header *h
     const noh_clip_marker *markers = (const noh_clip_marker *)(const void *)(check->bytes + h->markers_offset);
     for (uint32_t i = 0; i < h->marker_count; i++) {
         uint64_t at = h->markers_offset + (uint64_t)i * sizeof *markers;
-        noh_result result = noh_check_name(check, markers[i].name, markers[i].name_hash, at);
+        noh_result result = noh_check_name(check, markers[i].name, markers[i].name_hash,
+                                           at + offsetof(noh_clip_marker, name));
         if (result) {
             return result;
         }
         if (i && markers[i].tick <= markers[i - 1].tick) {
-            return noh_check_fail(check, "sync markers are not in time order", at);
+            return noh_check_fail(check, "sync markers are not in time order", at + offsetof(noh_clip_marker, tick));
         }
     }
     return NOH_OK;
@@ -110,19 +115,24 @@ static noh_result check_binding(const noh_check *check, const noh_clip_header *h
     const noh_pack *pack = check->pack;
     const noh_skeleton_header *skeleton;
     if (h->joint_count == 0) {
-        return h->skeleton_hash == 0 && h->skeleton == NOH_NONE && h->joint_error_count == 0
-                   ? NOH_OK
-                   : noh_check_fail(check, "clip without joints names a skeleton, or has joint errors",
-                                    offsetof(noh_clip_header, joint_count));
+        const noh_check_field fields[] = {
+            { offsetof(noh_clip_header, skeleton_hash), h->skeleton_hash != 0 },
+            { offsetof(noh_clip_header, skeleton), h->skeleton != NOH_NONE },
+            { offsetof(noh_clip_header, joint_error_count), h->joint_error_count != 0 },
+        };
+        return noh_check_fields(check, fields, 3, "clip without joints names a skeleton, or has joint errors", 0);
     }
     if (h->skeleton >= pack->skeleton_count) {
         return noh_check_fail(check, "clip names a skeleton that is not there", offsetof(noh_clip_header, skeleton));
     }
     skeleton = (const noh_skeleton_header *)(const void *)(pack->bytes +
                                                            pack->chunks[pack->first_skeleton + h->skeleton].offset);
-    if (skeleton->joint_count != h->joint_count || skeleton->hash != h->skeleton_hash) {
-        return noh_check_fail(check, "clip's joint count or hash is not its skeleton's",
-                              offsetof(noh_clip_header, skeleton_hash));
+    if (skeleton->joint_count != h->joint_count) {
+        return noh_check_fail(check, "clip's joint count is not its skeleton's",
+                              offsetof(noh_clip_header, joint_count));
+    }
+    if (skeleton->hash != h->skeleton_hash) {
+        return noh_check_fail(check, "clip's hash is not its skeleton's", offsetof(noh_clip_header, skeleton_hash));
     }
     if (skeleton->level_count != h->joint_error_count) {
         return noh_check_fail(check, "clip's joint errors are not of its skeleton's levels",
@@ -171,10 +181,13 @@ noh_result noh_check_clip(noh_check *check)
     if (h->marker_count > NOH_CLIP_MARKERS_MAX) {
         return noh_check_fail(check, "sync marker count is over the limit", offsetof(noh_clip_header, marker_count));
     }
-    result = noh_check_array(check, h->events_offset, h->event_count, sizeof(noh_clip_event));
-    if (!result) result = noh_check_array(check, h->markers_offset, h->marker_count, sizeof(noh_clip_marker));
-    if (!result) result = noh_check_array(check, h->joint_errors_offset, h->joint_error_count, 4);
-    if (!result) result = noh_check_array(check, h->clip_offset, h->clip_bytes, 1);
+    result = noh_check_array(check, offsetof(noh_clip_header, events_offset), h->event_count, sizeof(noh_clip_event));
+    if (!result)
+        result = noh_check_array(check, offsetof(noh_clip_header, markers_offset), h->marker_count,
+                                 sizeof(noh_clip_marker));
+    if (!result)
+        result = noh_check_array(check, offsetof(noh_clip_header, joint_errors_offset), h->joint_error_count, 4);
+    if (!result) result = noh_check_array(check, offsetof(noh_clip_header, clip_offset), h->clip_bytes, 1);
     if (!result) result = noh_check_end(check);
     if (!result) result = check_events(check, h);
     if (!result) result = check_markers(check, h);

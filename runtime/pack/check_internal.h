@@ -20,16 +20,28 @@ typedef struct noh_check {
 /* Fail at a byte of the chunk. */
 noh_result noh_check_fail(const noh_check *check, const char *what, uint64_t offset);
 
+/* A field of a record, and whether it is wrong. */
+typedef struct noh_check_field {
+    size_t at; /* byte in the record */
+    int wrong;
+} noh_check_field;
+
+/* Fail at the first field that is wrong, of the record at a byte of the chunk. */
+noh_result noh_check_fields(const noh_check *check, const noh_check_field *fields, size_t count, const char *what,
+                            uint64_t record);
+
 /* The fixed head of a chunk. */
 noh_result noh_check_head(noh_check *check, uint32_t bytes);
 
-/* The next array has to begin at the next multiple of 16 and to fit; the padding before it has to be zero. */
-noh_result noh_check_array(noh_check *check, uint32_t offset, uint64_t count, uint32_t stride);
+/* The next array, whose offset is the word at byte `field` of the chunk, has to begin at the next multiple of 16 and to
+ * fit; the padding before it has to be zero. */
+noh_result noh_check_array(noh_check *check, size_t field, uint64_t count, uint32_t stride);
 
 /* The chunk has to end where its last array did. */
 noh_result noh_check_end(const noh_check *check);
 
 noh_result noh_check_floats(const noh_check *check, const float *values, uint32_t count, const char *what);
+/* `offset`: of the name's field, which that of its hash follows. */
 noh_result noh_check_name(const noh_check *check, uint32_t name, uint32_t hash, uint64_t offset);
 
 noh_result noh_check_texture(noh_check *check);
@@ -46,6 +58,9 @@ noh_result noh_check_indices(const noh_check *check, const noh_mesh_header *h);
 noh_result noh_check_submeshes(const noh_check *check, const noh_mesh_header *h);
 noh_result noh_check_draws(const noh_check *check, const noh_mesh_header *h);
 noh_result noh_check_rects(const noh_check *check, const noh_mesh_header *h, const noh_target *t);
+/* The sums over a level's targets are the counts in its header. */
+noh_result noh_check_target_sums(const noh_check *check, const noh_mesh_header *h, uint64_t rects, uint64_t texels,
+                                 uint64_t pairs);
 
 /* The headers of a mesh's coarser levels, which follow that of the full one: present, and equal in all that levels
  * share. Comes before the arrays. */

@@ -27,14 +27,10 @@ static noh_mesh_header as_full(const noh_mesh_header *l, const noh_mesh_header *
     return same;
 }
 
-/* The byte in a header of the first count that is larger than the finer level's, or that no level can have; 0: none,
- * for the first field is no count. */
-static size_t find_risen_count(const noh_mesh_header *l, const noh_mesh_header *finer)
+/* No count is larger than the finer level's, or one that no level can have. */
+static noh_result check_level_counts(const noh_check *check, const noh_mesh_header *l, const noh_mesh_header *finer)
 {
-    const struct {
-        size_t at;
-        int bad;
-    } counts[] = {
+    const noh_check_field counts[] = {
         { offsetof(noh_mesh_header, vertex_count), !l->vertex_count || l->vertex_count > finer->vertex_count },
         { offsetof(noh_mesh_header, index_count), l->index_count > finer->index_count || l->index_count % 3 },
         { offsetof(noh_mesh_header, submesh_count), !l->submesh_count || l->submesh_count > NOH_SUBMESHES_MAX },
@@ -43,10 +39,8 @@ static size_t find_risen_count(const noh_mesh_header *l, const noh_mesh_header *
         { offsetof(noh_mesh_header, texel_count), l->texel_count > finer->texel_count },
         { offsetof(noh_mesh_header, pair_count), l->pair_count > finer->pair_count },
     };
-    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
-        if (counts[i].bad) return counts[i].at;
-    }
-    return 0;
+    return noh_check_fields(check, counts, sizeof counts / sizeof counts[0],
+                            "LOD level has more of something than the finer one", (uint64_t)l->level * sizeof *l);
 }
 
 /* The byte in a header of the first field in which two headers differ; their size where they are the same. Headers are
@@ -57,6 +51,25 @@ static size_t find_difference(const noh_mesh_header *a, const noh_mesh_header *b
     size_t at = 0;
     while (at < sizeof *a && memcmp(x + at, y + at, 4u) == 0) at += 4u;
     return at;
+}
+
+/* What all levels share is in each of their headers. Where levels 1 and 2 agree and differ from the full mesh, its
+ * field is named, else that of the level. */
+static noh_result check_shared(const noh_check *check, const noh_mesh_header *h, uint32_t k)
+{
+    const noh_mesh_header same = as_full(&h[k], h), next = as_full(&h[k + 1u < h->level_count ? k + 1u : k], h);
+    const uint64_t start = (uint64_t)k * sizeof *h;
+    const size_t at = find_difference(&same, h);
+    if (h[k].level != k) {
+        return noh_check_fail(check, "LOD level is out of order", start + offsetof(noh_mesh_header, level));
+    }
+    if (at == sizeof same) {
+        return NOH_OK;
+    }
+    if (k == 1 && h->level_count > 2 && memcmp((const uint8_t *)&same + at, (const uint8_t *)&next + at, 4u) == 0) {
+        return noh_check_fail(check, "full mesh differs from its LOD levels in what all levels share", at);
+    }
+    return noh_check_fail(check, "LOD level differs in what all levels share", start + at);
 }
 
 static noh_result check_errors(const noh_check *check, const noh_mesh_header *l, const noh_mesh_header *finer)
@@ -97,18 +110,9 @@ noh_result noh_check_level_headers(noh_check *check, const noh_mesh_header *h)
     noh_result result = noh_check_head(check, h->level_count * (uint32_t)sizeof *h);
     if (!result) result = check_full_errors(check, h);
     for (uint32_t k = 1; !result && k < h->level_count; k++) {
-        const noh_mesh_header same = as_full(&h[k], h);
-        const uint64_t start = (uint64_t)k * sizeof *h;
-        const size_t differs = h[k].level != k ? offsetof(noh_mesh_header, level) : find_difference(&same, h);
-        const size_t risen = find_risen_count(&h[k], &h[k - 1]);
-        if (differs < sizeof same) {
-            return noh_check_fail(check, "LOD level is out of order, or differs in what all levels share",
-                                  start + differs);
-        }
-        if (risen) {
-            return noh_check_fail(check, "LOD level has more of something than the finer one", start + risen);
-        }
-        result = check_errors(check, &h[k], &h[k - 1]);
+        result = check_shared(check, h, k);
+        if (!result) result = check_level_counts(check, &h[k], &h[k - 1]);
+        if (!result) result = check_errors(check, &h[k], &h[k - 1]);
     }
     return result;
 }
@@ -187,10 +191,7 @@ static noh_result check_targets(const noh_check *check, const noh_mesh_header *h
         texels += t->texel_count;
         pairs += t->pair_count;
     }
-    if (rects != l->rect_count || texels != l->texel_count || pairs != l->pair_count) {
-        return noh_check_fail(check, "the targets' counts do not add up to the level's", l->targets_offset);
-    }
-    return NOH_OK;
+    return noh_check_target_sums(check, l, rects, texels, pairs);
 }
 
 /* ---- all of it ---- */

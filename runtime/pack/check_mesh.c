@@ -3,15 +3,6 @@
 
 #include <stddef.h>
 
-static int any_word(const uint32_t *words, size_t count)
-{
-    uint32_t all = 0;
-    for (size_t i = 0; i < count; i++) {
-        all |= words[i];
-    }
-    return all != 0;
-}
-
 static noh_result check_limits(const noh_check *check, const noh_mesh_header *h)
 {
     if (h->vertex_count == 0 || h->vertex_count > NOH_VERTICES_MAX) {
@@ -49,9 +40,18 @@ static noh_result check_limits(const noh_check *check, const noh_mesh_header *h)
     if (h->flags & ~(NOH_MESH_TANGENTS | NOH_MESH_UVS | NOH_MESH_COLORS | NOH_MESH_DUAL_QUATERNION | NOH_MESH_TEXELS)) {
         return noh_check_fail(check, "unknown mesh flags", offsetof(noh_mesh_header, flags));
     }
-    return any_word(h->reserved, sizeof h->reserved / sizeof h->reserved[0])
-               ? noh_check_fail(check, "reserved field of a mesh is not zero", offsetof(noh_mesh_header, reserved))
-               : NOH_OK;
+    return NOH_OK;
+}
+
+static noh_result check_reserved(const noh_check *check, const noh_mesh_header *h)
+{
+    for (size_t i = 0; i < sizeof h->reserved / sizeof h->reserved[0]; i++) {
+        if (h->reserved[i]) {
+            return noh_check_fail(check, "reserved field of a mesh is not zero",
+                                  offsetof(noh_mesh_header, reserved) + 4u * i);
+        }
+    }
+    return NOH_OK;
 }
 
 /* The counts that size a skinned mesh's arrays, before the arrays are looked at. */
@@ -60,10 +60,13 @@ static noh_result check_skin_counts(const noh_check *check, const noh_mesh_heade
     const uint32_t n = h->influence_count;
     const int split = h->palette_count > 1;
     if (h->skin == NOH_NONE) {
-        return n || h->palette_count || h->palette_joint_count || (h->flags & NOH_MESH_DUAL_QUATERNION)
-                   ? noh_check_fail(check, "rigid mesh has influences, palettes or a skin's flags",
-                                    offsetof(noh_mesh_header, skin))
-                   : NOH_OK;
+        const noh_check_field fields[] = {
+            { offsetof(noh_mesh_header, influence_count), n != 0 },
+            { offsetof(noh_mesh_header, palette_count), h->palette_count != 0 },
+            { offsetof(noh_mesh_header, palette_joint_count), h->palette_joint_count != 0 },
+            { offsetof(noh_mesh_header, flags), (h->flags & NOH_MESH_DUAL_QUATERNION) != 0 },
+        };
+        return noh_check_fields(check, fields, 4, "rigid mesh has influences, palettes or a skin's flags", 0);
     }
     if (h->skin >= check->pack->skin_count) {
         return noh_check_fail(check, "mesh names a skin that is not there", offsetof(noh_mesh_header, skin));
@@ -112,28 +115,30 @@ static noh_result check_arrays(noh_check *check, const noh_mesh_header *h)
 {
     const noh_level_sums sums = noh_check_level_sums(h);
     const struct {
-        uint32_t offset;
+        size_t field;
         uint64_t count;
         uint32_t stride;
-    } arrays[13] = { { h->positions_offset, h->vertex_count, 12 },
-                     { h->attributes_offset, h->vertex_count, h->attribute_stride },
-                     { h->indices_offset, sums.indices, h->index_bytes },
-                     { h->submeshes_offset, sums.submeshes, sizeof(noh_submesh) },
-                     { h->targets_offset, (uint64_t)h->target_count * h->level_count, sizeof(noh_target) },
-                     { h->weights_offset, h->target_count, 4 },
-                     { h->rects_offset, h->rect_count, sizeof(noh_rect) },
-                     { h->texels_offset, h->texel_count, 12 },
-                     { h->target_boxes_offset, h->target_count, 24 },
-                     { h->influences_offset, h->vertex_count, 4u * NOH_INFLUENCE_WORDS(h->influence_count) },
-                     { h->palettes_offset, h->palette_count, sizeof(noh_palette) },
-                     { h->palette_joints_offset, h->palette_joint_count, 2 },
-                     { h->joint_boxes_offset, noh_check_skin_joints(check->pack, h->skin), 24 } };
+    } arrays[13] = {
+        { offsetof(noh_mesh_header, positions_offset), h->vertex_count, 12 },
+        { offsetof(noh_mesh_header, attributes_offset), h->vertex_count, h->attribute_stride },
+        { offsetof(noh_mesh_header, indices_offset), sums.indices, h->index_bytes },
+        { offsetof(noh_mesh_header, submeshes_offset), sums.submeshes, sizeof(noh_submesh) },
+        { offsetof(noh_mesh_header, targets_offset), (uint64_t)h->target_count * h->level_count, sizeof(noh_target) },
+        { offsetof(noh_mesh_header, weights_offset), h->target_count, 4 },
+        { offsetof(noh_mesh_header, rects_offset), h->rect_count, sizeof(noh_rect) },
+        { offsetof(noh_mesh_header, texels_offset), h->texel_count, 12 },
+        { offsetof(noh_mesh_header, target_boxes_offset), h->target_count, 24 },
+        { offsetof(noh_mesh_header, influences_offset), h->vertex_count, 4u * NOH_INFLUENCE_WORDS(h->influence_count) },
+        { offsetof(noh_mesh_header, palettes_offset), h->palette_count, sizeof(noh_palette) },
+        { offsetof(noh_mesh_header, palette_joints_offset), h->palette_joint_count, 2 },
+        { offsetof(noh_mesh_header, joint_boxes_offset), noh_check_skin_joints(check->pack, h->skin), 24 }
+    };
     if (h->attribute_stride != stride_of(h->flags)) {
         return noh_check_fail(check, "attribute stride does not fit the mesh flags",
                               offsetof(noh_mesh_header, attribute_stride));
     }
     for (unsigned i = 0; i < sizeof arrays / sizeof arrays[0]; i++) {
-        noh_result result = noh_check_array(check, arrays[i].offset, arrays[i].count, arrays[i].stride);
+        noh_result result = noh_check_array(check, arrays[i].field, arrays[i].count, arrays[i].stride);
         if (result) {
             return result;
         }
@@ -141,35 +146,61 @@ static noh_result check_arrays(noh_check *check, const noh_mesh_header *h)
     return noh_check_end(check);
 }
 
-/* A target begins where the one before it ended; its three fields fill a word at most, and no field is wider than a
- * float's mantissa. */
+static int bad_bits(uint32_t bits)
+{
+    return !bits || bits > 24u;
+}
+
+/* A delta's three fields fill a word at most, and none is wider than a float's mantissa; where their sum is too large
+ * the first is named. */
+static noh_result check_target_values(const noh_check *check, const noh_target *t, uint64_t at)
+{
+    const int sum = t->position_bits + t->normal_bits + t->tangent_bits;
+    const noh_check_field bits[] = {
+        { offsetof(noh_target, normal_bits), bad_bits(t->normal_bits) },
+        { offsetof(noh_target, tangent_bits), bad_bits(t->tangent_bits) },
+        { offsetof(noh_target, position_bits), bad_bits(t->position_bits) || sum > 32 },
+    };
+    const noh_check_field scales[] = {
+        { offsetof(noh_target, position_scale), t->position_scale < 0.0f },
+        { offsetof(noh_target, normal_scale), t->normal_scale < 0.0f },
+        { offsetof(noh_target, tangent_scale), t->tangent_scale < 0.0f },
+        { offsetof(noh_target, radius), t->radius < 0.0f },
+    };
+    const noh_check_field reserved[] = {
+        { offsetof(noh_target, reserved0), t->reserved0 != 0 },
+        { offsetof(noh_target, reserved1), t->reserved1 != 0 },
+    };
+    noh_result result = noh_check_fields(check, bits, 3, "target's bit widths are impossible", at);
+    if (!result) result = noh_check_fields(check, reserved, 2, "reserved field of a target is not zero", at);
+    if (!result) result = noh_check_fields(check, scales, 4, "target's scale or radius is negative", at);
+    return result ? result : noh_check_floats(check, &t->position_scale, 7, "target's scale is not finite");
+}
+
+/* A target begins where the one before it ended. */
 static noh_result check_target_head(const noh_check *check, const noh_mesh_header *h, const noh_target *t,
                                     uint32_t first_rect, uint32_t first_texel, uint64_t at)
 {
+    const noh_check_field place[] = {
+        { offsetof(noh_target, first_rect), t->first_rect != first_rect },
+        { offsetof(noh_target, rect_count), t->rect_count > h->rect_count - first_rect },
+        { offsetof(noh_target, first_texel), t->first_texel != first_texel },
+        { offsetof(noh_target, texel_count), t->texel_count > h->texel_count - first_texel },
+    };
     noh_result result = noh_check_name(check, t->name, t->name_hash, at);
     if (result) {
         return result;
     }
-    if (t->first_rect != first_rect || t->rect_count > h->rect_count - first_rect || t->first_texel != first_texel ||
-        t->texel_count > h->texel_count - first_texel) {
-        return noh_check_fail(check, "target's rectangles or texels lie outside the mesh's", at);
-    }
-    if (!t->position_bits || !t->normal_bits || !t->tangent_bits || t->position_bits > 24 || t->normal_bits > 24 ||
-        t->tangent_bits > 24 || t->position_bits + t->normal_bits + t->tangent_bits > 32 || t->reserved0 ||
-        t->reserved1) {
-        return noh_check_fail(check, "target's bit widths are impossible", at + offsetof(noh_target, position_bits));
-    }
-    if (t->position_scale < 0.0f || t->normal_scale < 0.0f || t->tangent_scale < 0.0f || t->radius < 0.0f) {
-        return noh_check_fail(check, "target's scale is negative", at + offsetof(noh_target, position_scale));
-    }
-    return noh_check_floats(check, &t->position_scale, 7, "target's scale is not finite");
+    result = noh_check_fields(check, place, 4, "target's rectangles or texels lie outside the mesh's", at);
+    return result ? result : check_target_values(check, t, at);
 }
 
 /* The targets' rectangles and delta texels follow each other in target order and use up the mesh's. */
 static noh_result check_targets(const noh_check *check, const noh_mesh_header *h)
 {
     const noh_target *targets = (const noh_target *)(const void *)(check->bytes + h->targets_offset);
-    uint32_t rects = 0, texels = 0, pairs = 0;
+    uint32_t rects = 0, texels = 0;
+    uint64_t pairs = 0;
     for (uint32_t i = 0; i < h->target_count; i++) {
         uint64_t at = h->targets_offset + (uint64_t)i * sizeof *targets;
         noh_result result = check_target_head(check, h, &targets[i], rects, texels, at);
@@ -183,10 +214,7 @@ static noh_result check_targets(const noh_check *check, const noh_mesh_header *h
         texels += targets[i].texel_count;
         pairs += targets[i].pair_count;
     }
-    if (rects != h->rect_count || texels != h->texel_count || pairs != h->pair_count) {
-        return noh_check_fail(check, "the targets' counts do not add up to the mesh's", h->targets_offset);
-    }
-    return NOH_OK;
+    return noh_check_target_sums(check, h, rects, texels, pairs);
 }
 
 /* The full mesh, and what all its levels share. */
@@ -217,9 +245,10 @@ noh_result noh_check_mesh(noh_check *check)
     const noh_mesh_header *h = (const noh_mesh_header *)(const void *)check->bytes;
     noh_result result = noh_check_head(check, sizeof *h);
     if (!result) result = check_limits(check, h);
-    if (!result) result = noh_check_level_headers(check, h);
+    if (!result) result = check_reserved(check, h);
     if (!result) result = noh_check_texture_shape(check, h);
     if (!result) result = check_skin_counts(check, h);
+    if (!result) result = noh_check_level_headers(check, h);
     if (!result) result = check_arrays(check, h);
     if (!result) result = check_full(check, h);
     if (!result) result = noh_check_levels(check, h);

@@ -44,6 +44,21 @@ noh_result noh_check_indices(const noh_check *check, const noh_mesh_header *h)
     return NOH_OK;
 }
 
+/* The indices and vertices of a submesh are some of the mesh's. */
+static noh_result check_ranges(const noh_check *check, const noh_mesh_header *h, const noh_submesh *s, uint64_t at)
+{
+    const noh_check_field indices[] = {
+        { offsetof(noh_submesh, first_index), s->first_index > h->index_count },
+        { offsetof(noh_submesh, index_count), s->index_count > h->index_count - s->first_index || s->index_count % 3 },
+    };
+    const noh_check_field vertices[] = {
+        { offsetof(noh_submesh, first_vertex), s->first_vertex > h->vertex_count },
+        { offsetof(noh_submesh, vertex_count), s->vertex_count > h->vertex_count - s->first_vertex },
+    };
+    const noh_result result = noh_check_fields(check, indices, 2, "submesh indices lie outside the mesh", at);
+    return result ? result : noh_check_fields(check, vertices, 2, "submesh vertices lie outside the mesh", at);
+}
+
 noh_result noh_check_submeshes(const noh_check *check, const noh_mesh_header *h)
 {
     const noh_submesh *submeshes = (const noh_submesh *)(const void *)(check->bytes + h->submeshes_offset);
@@ -51,18 +66,18 @@ noh_result noh_check_submeshes(const noh_check *check, const noh_mesh_header *h)
     for (uint32_t i = 0; i < h->submesh_count; i++) {
         const noh_submesh *s = &submeshes[i];
         uint64_t at = h->submeshes_offset + (uint64_t)i * sizeof *s;
-        if (s->first_index > h->index_count || s->index_count > h->index_count - s->first_index || s->index_count % 3) {
-            return noh_check_fail(check, "submesh indices lie outside the mesh", at);
+        noh_result result = check_ranges(check, h, s, at);
+        if (result) {
+            return result;
         }
         if (s->first_index < next) {
-            return noh_check_fail(check, "submeshes overlap, or are out of order", at);
+            return noh_check_fail(check, "submeshes overlap, or are out of order",
+                                  at + offsetof(noh_submesh, first_index));
         }
         next = s->first_index + s->index_count;
-        if (s->first_vertex > h->vertex_count || s->vertex_count > h->vertex_count - s->first_vertex) {
-            return noh_check_fail(check, "submesh vertices lie outside the mesh", at);
-        }
         if (s->material != NOH_NONE && s->material >= check->pack->material_count) {
-            return noh_check_fail(check, "submesh names a material that is not there", at);
+            return noh_check_fail(check, "submesh names a material that is not there",
+                                  at + offsetof(noh_submesh, material));
         }
     }
     return NOH_OK;
@@ -74,9 +89,13 @@ static noh_result check_rect(const noh_check *check, const noh_mesh_header *h, c
 {
     const uint32_t *texel = (const uint32_t *)(const void *)(check->bytes + h->texels_offset) +
                             3u * (size_t)first_texel;
-    if (!r->w || !r->h || (uint32_t)r->x + r->w > (1u << h->morph_width_log2) ||
-        (uint32_t)r->y + r->h > h->morph_height) {
-        return noh_check_fail(check, "rectangle lies outside the accumulation texture", at);
+    const noh_check_field fields[] = {
+        { offsetof(noh_rect, w), !r->w || (uint32_t)r->x + r->w > (1u << h->morph_width_log2) },
+        { offsetof(noh_rect, h), !r->h || (uint32_t)r->y + r->h > h->morph_height },
+    };
+    const noh_result result = noh_check_fields(check, fields, 2, "rectangle lies outside the accumulation texture", at);
+    if (result) {
+        return result;
     }
     for (uint32_t y = r->y; y < (uint32_t)r->y + r->h; y++) {
         for (uint32_t x = r->x; x < (uint32_t)r->x + r->w; x++, texel += 3) {
@@ -88,6 +107,29 @@ static noh_result check_rect(const noh_check *check, const noh_mesh_header *h, c
         }
     }
     return NOH_OK;
+}
+
+static noh_result check_counts(const noh_check *check, const noh_target *t, uint32_t texels, uint32_t pairs)
+{
+    const noh_check_field fields[] = {
+        { offsetof(noh_target, texel_count), t->texel_count != texels },
+        { offsetof(noh_target, pair_count), t->pair_count != pairs },
+    };
+    return noh_check_fields(check, fields, 2, "target's texel or pair count is wrong",
+                            (uint64_t)((const uint8_t *)t - check->bytes));
+}
+
+noh_result noh_check_target_sums(const noh_check *check, const noh_mesh_header *h, uint64_t rects, uint64_t texels,
+                                 uint64_t pairs)
+{
+    const noh_check_field fields[] = {
+        { offsetof(noh_mesh_header, rect_count), h->rect_count != rects },
+        { offsetof(noh_mesh_header, texel_count), h->texel_count != texels },
+        { offsetof(noh_mesh_header, pair_count), h->pair_count != pairs },
+    };
+    const char *what = h->level ? "the targets' counts do not add up to the level's"
+                                : "the targets' counts do not add up to the mesh's";
+    return noh_check_fields(check, fields, 3, what, (uint64_t)h->level * sizeof *h);
 }
 
 /* A target's delta texels are those of its rectangles, one rectangle after the other, row by row. They must be used up
@@ -109,11 +151,7 @@ noh_result noh_check_rects(const noh_check *check, const noh_mesh_header *h, con
         }
         texel += (uint32_t)area;
     }
-    if (texel - t->first_texel != t->texel_count || pairs != t->pair_count) {
-        return noh_check_fail(check, "target's texel or pair count is wrong",
-                              h->targets_offset + (uint64_t)((const uint8_t *)t - (check->bytes + h->targets_offset)));
-    }
-    return NOH_OK;
+    return check_counts(check, t, texel - t->first_texel, pairs);
 }
 
 uint32_t noh_check_texel_word(const noh_check *check, const noh_mesh_header *h, uint32_t vertex)
@@ -130,7 +168,8 @@ noh_result noh_check_draws(const noh_check *check, const noh_mesh_header *h)
     for (uint32_t s = 0; s < h->submesh_count; s++) {
         uint64_t at = h->submeshes_offset + (uint64_t)s * sizeof *submeshes;
         if (submeshes[s].palette >= (h->palette_count ? h->palette_count : 1u)) {
-            return noh_check_fail(check, "submesh names a palette that is not there", at);
+            return noh_check_fail(check, "submesh names a palette that is not there",
+                                  at + offsetof(noh_submesh, palette));
         }
         for (uint32_t i = 0; h->palette_count > 1 && i < submeshes[s].index_count; i++) {
             size_t k = (size_t)submeshes[s].first_index + i;

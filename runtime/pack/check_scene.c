@@ -3,6 +3,26 @@
 
 #include <stddef.h>
 
+static noh_result check_texture_fields(const noh_check *check, const noh_texture_header *h)
+{
+    const noh_check_field size[] = {
+        { offsetof(noh_texture_header, width), !h->width || h->width > NOH_TEXTURE_SIZE_MAX },
+        { offsetof(noh_texture_header, height), !h->height || h->height > NOH_TEXTURE_SIZE_MAX },
+    };
+    const noh_check_field sampling[] = {
+        { offsetof(noh_texture_header, wrap_s), h->wrap_s > NOH_WRAP_MIRROR },
+        { offsetof(noh_texture_header, wrap_t), h->wrap_t > NOH_WRAP_MIRROR },
+        { offsetof(noh_texture_header, nearest), h->nearest > 1 },
+    };
+    const noh_check_field reserved[] = {
+        { offsetof(noh_texture_header, reserved[0]), h->reserved[0] != 0 },
+        { offsetof(noh_texture_header, reserved[1]), h->reserved[1] != 0 },
+    };
+    noh_result result = noh_check_fields(check, size, 2, "texture size is zero or over the limit", 0);
+    if (!result) result = noh_check_fields(check, sampling, 3, "unknown texture sampling", 0);
+    return result ? result : noh_check_fields(check, reserved, 2, "reserved field of a texture is not zero", 0);
+}
+
 noh_result noh_check_texture(noh_check *check)
 {
     const noh_texture_header *h = (const noh_texture_header *)(const void *)check->bytes;
@@ -10,15 +30,10 @@ noh_result noh_check_texture(noh_check *check)
     if (result) {
         return result;
     }
-    if (!h->width || !h->height || h->width > NOH_TEXTURE_SIZE_MAX || h->height > NOH_TEXTURE_SIZE_MAX) {
-        return noh_check_fail(check, "texture size is zero or over the limit", offsetof(noh_texture_header, width));
+    result = check_texture_fields(check, h);
+    if (!result) {
+        result = noh_check_array(check, offsetof(noh_texture_header, pixels_offset), (uint64_t)h->width * h->height, 4);
     }
-    if (h->wrap_s > NOH_WRAP_MIRROR || h->wrap_t > NOH_WRAP_MIRROR || h->nearest > 1 || h->reserved[0] ||
-        h->reserved[1]) {
-        return noh_check_fail(check, "unknown texture sampling, or a reserved field is not zero",
-                              offsetof(noh_texture_header, wrap_s));
-    }
-    result = noh_check_array(check, h->pixels_offset, (uint64_t)h->width * h->height, 4);
     return result ? result : noh_check_end(check);
 }
 
@@ -42,9 +57,12 @@ noh_result noh_check_materials(noh_check *check)
             return noh_check_fail(check, "material names a texture that is not there",
                                   at + offsetof(noh_material, base_color_texture));
         }
-        if (m[i].flags & ~15u || m[i].reserved) {
-            return noh_check_fail(check, "unknown material flags, or a reserved field is not zero",
-                                  at + offsetof(noh_material, flags));
+        if (m[i].flags & ~15u) {
+            return noh_check_fail(check, "unknown material flags", at + offsetof(noh_material, flags));
+        }
+        if (m[i].reserved) {
+            return noh_check_fail(check, "reserved field of a material is not zero",
+                                  at + offsetof(noh_material, reserved));
         }
     }
     return NOH_OK;
@@ -91,8 +109,8 @@ noh_result noh_check_nodes(noh_check *check)
     if (h->node_count > NOH_NODES_MAX) {
         return noh_check_fail(check, "node count is over the limit", offsetof(noh_nodes_header, node_count));
     }
-    result = noh_check_array(check, h->nodes_offset, h->node_count, sizeof(noh_node));
-    if (!result) result = noh_check_array(check, h->weights_offset, h->weight_count, 4);
+    result = noh_check_array(check, offsetof(noh_nodes_header, nodes_offset), h->node_count, sizeof(noh_node));
+    if (!result) result = noh_check_array(check, offsetof(noh_nodes_header, weights_offset), h->weight_count, 4);
     if (!result) result = noh_check_end(check);
     for (uint32_t i = 0; !result && i < h->node_count; i++) {
         result = check_node(check, h, (const noh_node *)(const void *)(check->bytes + h->nodes_offset) + i, i);

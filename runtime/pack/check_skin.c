@@ -29,8 +29,8 @@ noh_result noh_check_skin(noh_check *check)
     if (h->skeleton >= check->pack->skeleton_count) {
         return noh_check_fail(check, "skin names a skeleton that is not there", offsetof(noh_skin_header, skeleton));
     }
-    result = noh_check_array(check, h->joints_offset, h->joint_count, 2);
-    if (!result) result = noh_check_array(check, h->inverse_bind_offset, h->joint_count, 48);
+    result = noh_check_array(check, offsetof(noh_skin_header, joints_offset), h->joint_count, 2);
+    if (!result) result = noh_check_array(check, offsetof(noh_skin_header, inverse_bind_offset), h->joint_count, 48);
     if (!result) result = noh_check_end(check);
     if (result) {
         return result;
@@ -56,10 +56,16 @@ static noh_result check_palettes(const noh_check *check, const noh_mesh_header *
     uint32_t joint_count = noh_check_skin_joints(check->pack, h->skin), next = 0;
     for (uint32_t p = 0; p < h->palette_count; p++) {
         const uint32_t left = h->palette_joint_count - next;
-        if (palettes[p].first_joint != next || !palettes[p].joint_count || palettes[p].joint_count > left ||
-            palettes[p].joint_count > NOH_PALETTE_JOINTS_MAX) {
-            return noh_check_fail(check, "palette is empty, too large, or does not follow the one before it",
-                                  h->palettes_offset + 8ull * p);
+        const noh_check_field fields[] = {
+            { offsetof(noh_palette, first_joint), palettes[p].first_joint != next },
+            { offsetof(noh_palette, joint_count), !palettes[p].joint_count || palettes[p].joint_count > left ||
+                                                      palettes[p].joint_count > NOH_PALETTE_JOINTS_MAX },
+        };
+        const noh_result result = noh_check_fields(check, fields, 2,
+                                                   "palette is empty, too large, or does not follow the one before it",
+                                                   h->palettes_offset + 8ull * p);
+        if (result) {
+            return result;
         }
         next += palettes[p].joint_count;
     }

@@ -87,10 +87,12 @@ static noh_result check_place(const noh_pack *pack, uint32_t index, uint64_t *cu
     uint64_t start = (*cursor + NOH_PACK_ALIGN - 1) & ~(uint64_t)(NOH_PACK_ALIGN - 1);
     uint64_t table_at = sizeof(noh_pack_header) + (uint64_t)index * sizeof *c;
     if (c->offset != start) {
-        return noh_fail(error, NOH_ERR_DATA, "chunk does not begin where the one before it ended", table_at, start);
+        return noh_fail(error, NOH_ERR_DATA, "chunk does not begin where the one before it ended",
+                        table_at + offsetof(noh_pack_chunk, offset), start);
     }
     if (c->bytes > pack->byte_count || start + c->bytes > pack->byte_count) {
-        return noh_fail(error, NOH_ERR_DATA, "chunk reaches past the end of the file", table_at, start + c->bytes);
+        return noh_fail(error, NOH_ERR_DATA, "chunk reaches past the end of the file",
+                        table_at + offsetof(noh_pack_chunk, bytes), start + c->bytes);
     }
     for (uint64_t i = *cursor; i < start; i++) {
         if (pack->bytes[i]) {
@@ -176,7 +178,19 @@ static noh_result open_chunk(noh_pack *pack, uint32_t index, noh_error *error)
         count_chunk(&pack->clip_count, &pack->first_clip, index);
         break;
     }
-    return result ? result : noh_check_name(&check, c->name, c->name_hash, 0);
+    check.file_offset = (uint32_t)((const uint8_t *)c - pack->bytes); /* the name is in the chunk table */
+    return result ? result : noh_check_name(&check, c->name, c->name_hash, offsetof(noh_pack_chunk, name));
+}
+
+static noh_result check_chunk_reserved(const noh_pack_chunk *c, uint64_t table_at, noh_error *error)
+{
+    for (unsigned i = 0; i < 2; i++) {
+        if (c->reserved[i]) {
+            return noh_fail(error, NOH_ERR_DATA, "reserved field of a chunk is not zero",
+                            table_at + offsetof(noh_pack_chunk, reserved) + 4ull * i, 0);
+        }
+    }
+    return NOH_OK;
 }
 
 /* Every chunk in turn: its type and rank, its place, its checksum, its content. */
@@ -190,12 +204,14 @@ static noh_result open_chunks(noh_pack *pack, noh_error *error)
         int rank = chunk_rank(type);
         int single = type == NOH_CHUNK_STRINGS || type == NOH_CHUNK_MATERIALS || type == NOH_CHUNK_NODES;
         noh_result result;
-        if (rank < 0 || rank < last_rank || (single && rank == last_rank) || (i == 0) != (rank == 0) ||
-            pack->chunks[i].reserved[0] || pack->chunks[i].reserved[1]) {
+        if (rank < 0 || rank < last_rank || (single && rank == last_rank) || (i == 0) != (rank == 0)) {
             return noh_fail(error, NOH_ERR_DATA, "chunk of an unknown type, or out of order", table_at, 0);
         }
         last_rank = rank;
-        result = check_place(pack, i, &cursor, error);
+        result = check_chunk_reserved(&pack->chunks[i], table_at, error);
+        if (!result) {
+            result = check_place(pack, i, &cursor, error);
+        }
         if (!result) {
             result = open_chunk(pack, i, error);
         }

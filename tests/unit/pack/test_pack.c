@@ -364,7 +364,7 @@ static float nan_value(void)
     X(chunk_count_past_end, DATA, "past the end", f->header->chunk_count = NOH_PACK_CHUNKS_MAX)                      \
     X(header_reserved, DATA, "reserved", f->header->reserved[9] = 1)                                                 \
     X(chunk_type_unknown, DATA, "unknown type", f->mesh_at->type ^= 0x20u)                                           \
-    X(chunk_reserved, DATA, "unknown type", f->mesh_at->reserved[1] = 1)                                             \
+    X(chunk_reserved, DATA, "reserved field of a chunk", f->mesh_at->reserved[1] = 1)                                \
     X(chunks_out_of_order, DATA, "out of order", f->clip_at[1].type = NOH_CHUNK_TEXTURE)                             \
     X(chunks_swapped, DATA, "begin", swap_chunks(f, 3, 4))                                                           \
     X(chunk_before_strings, DATA, "out of order", swap_chunks(f, 0, 1))                                              \
@@ -394,10 +394,10 @@ static float nan_value(void)
     X(texture_pixels_elsewhere, DATA, "begin", f->texture->pixels_offset = 0)                                        \
     X(texture_wrap, DATA, "sampling", f->texture->wrap_s = 3)                                                        \
     X(texture_filter, DATA, "sampling", f->texture->nearest = 2)                                                     \
-    X(texture_reserved, DATA, "sampling", f->texture->reserved[0] = 1)                                               \
+    X(texture_reserved, DATA, "reserved field of a texture", f->texture->reserved[0] = 1)                            \
     X(material_texture_missing, DATA, "texture", f->materials[0].base_color_texture = 1)                             \
     X(material_flags, DATA, "flags", f->materials[0].flags = 16)                                                     \
-    X(material_reserved, DATA, "flags", f->materials[0].reserved = 1)                                                \
+    X(material_reserved, DATA, "reserved field of a material", f->materials[0].reserved = 1)                         \
     X(material_color_nan, DATA, "not finite", f->materials[0].base_color[2] = nan_value())                           \
     X(material_cutoff_infinite, DATA, "not finite", f->materials[1].alpha_cutoff = INFINITE)                         \
     X(material_name, DATA, "outside the strings", f->materials[0].name = 0x10000000u)                                \
@@ -455,7 +455,7 @@ static float nan_value(void)
     X(target_bits_zero, DATA, "bit widths", f->targets[0].normal_bits = 0)                                           \
     X(target_bits_too_many, DATA, "bit widths", f->targets[0].position_bits = 24)                                    \
     X(target_bits_wrap, DATA, "bit widths", f->targets[0].tangent_bits = 255)                                        \
-    X(target_reserved, DATA, "bit widths", f->targets[0].reserved1 = 1)                                              \
+    X(target_reserved, DATA, "reserved field of a target", f->targets[0].reserved1 = 1)                              \
     X(target_scale_nan, DATA, "not finite", f->targets[0].position_scale = nan_value())                              \
     X(target_scale_infinite, DATA, "not finite", f->targets[2].tangent_scale = INFINITE)                             \
     X(target_scale_negative, DATA, "negative", f->targets[1].normal_scale = -1.0f)                                   \
@@ -582,16 +582,29 @@ static void errors_say_where(void **state)
     free(f.bytes);
 }
 
-/* Fields with a check of their own: the error names the field's own byte. */
+/* The error names the byte of the field that is wrong. */
 #define PLACES(X)                                       \
+    X(mesh_at->reserved[1], = 1)                        \
+    X(mesh_at->offset, += 64)                           \
+    X(mesh_at->bytes, = 0xffffffffu)                    \
+    X(mesh_at->name, = 0xffffffffu)                     \
+    X(mesh_at->name_hash, ^= 1u)                        \
     X(header->version, += 1)                            \
     X(header->byte_count, += 64)                        \
     X(header->chunk_count, = 0)                         \
     X(header->reserved[9], = 1)                         \
     X(texture->width, = 0)                              \
+    X(texture->height, = 0)                             \
     X(texture->wrap_s, = 9)                             \
+    X(texture->wrap_t, = 9)                             \
+    X(texture->nearest, = 2)                            \
+    X(texture->reserved[1], = 1)                        \
+    X(texture->pixels_offset, += 16)                    \
     X(materials[1].base_color_texture, = 7)             \
     X(materials[0].flags, = 16)                         \
+    X(materials[1].reserved, = 1)                       \
+    X(materials[1].name, = 0xffffffffu)                 \
+    X(materials[0].name_hash, ^= 1u)                    \
     X(mesh->flags, = 0x80000000u)                       \
     X(mesh->vertex_count, = 0)                          \
     X(mesh->index_count, -= 1)                          \
@@ -611,13 +624,63 @@ static void errors_say_where(void **state)
     X(mesh->level_skipped, = 1.0f)                      \
     X(mesh->influence_errors[1], = -1.0f)               \
     X(mesh->reserved[0], = 1)                           \
+    X(mesh->reserved[7], = 1)                           \
+    X(mesh->influence_count, = 4)                       \
+    X(mesh->palette_count, = 1)                         \
+    X(mesh->palette_joint_count, = 1)                   \
+    X(mesh->positions_offset, += 16)                    \
+    X(mesh->attributes_offset, -= 16)                   \
+    X(mesh->indices_offset, += 2)                       \
+    X(mesh->submeshes_offset, = 0)                      \
+    X(mesh->targets_offset, += 64)                      \
+    X(mesh->weights_offset, += 16)                      \
+    X(mesh->rects_offset, += 8)                         \
+    X(mesh->texels_offset, += 12)                       \
+    X(mesh->target_boxes_offset, += 16)                 \
+    X(mesh->influences_offset, += 16)                   \
+    X(mesh->palettes_offset, += 16)                     \
+    X(mesh->palette_joints_offset, += 16)               \
+    X(mesh->joint_boxes_offset, = 0xffffffffu)          \
+    X(mesh->pair_count, += 1)                           \
+    X(submeshes[0].first_index, = 0xffffffffu)          \
+    X(submeshes[0].index_count, += 1)                   \
+    X(submeshes[0].first_vertex, = 0xffffffffu)         \
+    X(submeshes[0].vertex_count, = 0xffffffffu)         \
+    X(submeshes[0].material, = 77)                      \
+    X(submeshes[0].palette, = 1)                        \
+    X(targets[1].name, = 0xffffffffu)                   \
+    X(targets[0].name_hash, ^= 1u)                      \
+    X(targets[1].first_rect, += 1)                      \
+    X(targets[1].rect_count, = 0xffffffffu)             \
+    X(targets[1].first_texel, += 1)                     \
+    X(targets[1].texel_count, = 0xffffffffu)            \
+    X(targets[0].pair_count, += 1)                      \
     X(targets[1].position_bits, = 0)                    \
+    X(targets[1].normal_bits, = 25)                     \
+    X(targets[1].tangent_bits, = 0)                     \
+    X(targets[1].reserved0, = 1)                        \
+    X(targets[1].reserved1, = 1)                        \
     X(targets[1].position_scale, = -1.0f)               \
+    X(targets[1].normal_scale, = -1.0f)                 \
+    X(targets[1].tangent_scale, = nan_value())          \
+    X(targets[1].radius, = -1.0f)                       \
+    X(rects[0].w, = 0)                                  \
+    X(rects[0].h, = 0)                                  \
+    X(nodes_header->nodes_offset, += 16)                \
+    X(nodes_header->weights_offset, += 16)              \
     X(nodes_header->node_count, = NOH_NODES_MAX + 1u)   \
     X(nodes[1].parent, = 1)                             \
     X(nodes[1].mesh, = 1)                               \
     X(nodes[0].first_weight, = 0)                       \
     X(nodes[0].flags, = 1)                              \
+    X(nodes[1].name, = 0xffffffffu)                     \
+    X(clip->skeleton, = 0)                              \
+    X(clip->skeleton_hash, = 1)                         \
+    X(clip->joint_error_count, = 1)                     \
+    X(clip->events_offset, += 16)                       \
+    X(clip->markers_offset, += 16)                      \
+    X(clip->joint_errors_offset, += 16)                 \
+    X(clip->clip_offset, += 16)                         \
     X(clip->event_count, = NOH_CLIP_EVENTS_MAX + 1u)    \
     X(clip->marker_count, = NOH_CLIP_MARKERS_MAX + 1u)  \
     X(clip->update_rate_error[0], = 1.0f)               \
