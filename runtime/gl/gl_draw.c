@@ -166,6 +166,9 @@ static void draw_submeshes(const draw_job *j, const noh_gl_variant *v, const noh
                 palette = s->palette;
                 noh_gl_variant_skin(j->r->gl, v, &j->mesh->mesh, j->skin, palette);
             }
+            if (j->r->shaders.bind) {
+                j->r->shaders.bind(j->r->shaders.user, j->r->gl, v->program, m);
+            }
             draw_submesh(j, s, first);
         }
     }

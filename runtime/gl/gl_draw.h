@@ -9,8 +9,9 @@
  *   noh_gl_draw_crowd        draw many instances of one mesh in one call
  *
  * The renderer is deliberately small: one shader in variants, one key light, base colour textures and vertex colours.
- * A game with its own shaders (gl_shader_text.h) needs only noh_gl_mesh, a noh_gl_morph_binding and a
- * noh_gl_skin_binding.
+ * A game's own shaders take its place (noh_gl_renderer_desc.shaders): two texts, compiled for whatever kinds of meshes
+ * there are. A game with its own renderer needs only noh_gl_mesh, a noh_gl_morph_binding, a noh_gl_skin_binding and
+ * noh_gl_shader_prefix.
  *
  * Threads: the context's own thread; noh_gl_mesh_bytes, noh_gl_mesh_lod and noh_gl_picture_bytes, any. */
 #ifndef NOH_GL_GL_DRAW_H
@@ -91,6 +92,7 @@ typedef struct noh_gl_renderer_desc {
     int fades;                 /* LOD levels will fade (noh_gl_lod): also compile variants that discard pixels */
     int encode_srgb;           /* the shader encodes to sRGB, for targets that do not, such as WebGL's canvas */
     noh_gl_passes passes;
+    const noh_gl_shader_desc *shaders; /* your own in place of the library's; copied, without its texts. NULL: none */
 } noh_gl_renderer_desc;
 
 typedef struct noh_gl_renderer {
@@ -99,7 +101,8 @@ typedef struct noh_gl_renderer {
     int layers_uint, encode_srgb, fades;
     noh_debug_view view;
     noh_gl_passes passes;
-    noh_gl_texture white; /* 1 x 1, for materials without a texture */
+    noh_gl_shader_desc shaders; /* zeros: the library's */
+    noh_gl_texture white;       /* 1 x 1, for materials without a texture */
     uint32_t variant_count;
     noh_gl_variant variants[NOH_GL_VARIANTS_MAX];
 } noh_gl_renderer;

@@ -118,7 +118,7 @@ static noh_result create_objects(noh_gl_renderer *r, char *log, size_t log_bytes
     const noh_gl_device device = { r->gl, NULL, r->ledger, log, log_bytes };
     noh_result result = create_white(r, error);
     for (uint32_t i = 0; i < r->variant_count && !result; i++) {
-        result = noh_gl_variant_create(&device, r->variants[i].key, NULL, 0, &r->variants[i], error);
+        result = noh_gl_variant_create(&device, r->variants[i].key, &r->shaders, NULL, 0, &r->variants[i], error);
     }
     if (result) {
         noh_gl_renderer_delete(r);
@@ -145,6 +145,9 @@ noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_rend
     out->fades = desc->fades != 0;
     out->view = desc->view;
     out->passes = desc->passes;
+    if (desc->shaders) {
+        out->shaders = *desc->shaders;
+    }
     for (uint32_t i = 0; i < desc->mesh_count && !result; i++) {
         result = want_mesh(out, desc, &desc->meshes[i], error);
     }

@@ -145,21 +145,30 @@ size_t noh_gl_shader_prefix(noh_gl_variant_key key, GLenum stage, char *text, si
 
 /* ---- programs ---- */
 
-/* A stage's text: the prefix without its defines, which the program's desc has, and the shader's own. */
+/* A stage's text: what goes behind the key's defines. */
 #define SOURCE_PIECES_MAX 12u
 typedef struct whole_source {
     noh_gl_source source;
     const char *pieces[SOURCE_PIECES_MAX];
 } whole_source;
 
-static void make_source(whole_source *to, GLenum stage, const noh_gl_source *own)
+/* own: NULL for the library's */
+static void make_source(whole_source *to, GLenum stage, const noh_gl_source *library, const char *own,
+                        const char *defines)
 {
-    uint32_t count = prefix_pieces(stage, to->pieces);
-    NOH_ASSERT(count + own->piece_count <= SOURCE_PIECES_MAX);
-    for (uint32_t i = 0; i < own->piece_count; i++) {
-        to->pieces[count++] = own->pieces[i];
+    uint32_t count = 0;
+    if (defines) {
+        to->pieces[count++] = defines;
     }
-    to->source.version = own->version;
+    count += prefix_pieces(stage, to->pieces + count);
+    NOH_ASSERT(count + library->piece_count <= SOURCE_PIECES_MAX);
+    for (uint32_t i = 0; i < library->piece_count && !own; i++) {
+        to->pieces[count++] = library->pieces[i];
+    }
+    if (own) {
+        to->pieces[count++] = own;
+    }
+    to->source.version = library->version;
     to->source.pieces = to->pieces;
     to->source.piece_count = count;
 }
@@ -187,36 +196,53 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
     }
 }
 
-noh_result noh_gl_variant_create(const noh_gl_device *device, noh_gl_variant_key key, const char *const *varyings,
-                                 uint32_t varying_count, noh_gl_variant *out, noh_error *error)
+static noh_result create_program(const noh_gl_device *device, const noh_gl_variant *v, const noh_gl_shader_desc *own,
+                                 noh_gl_program_desc *desc, GLuint *program, noh_error *error)
 {
-    static const char *const samplers[] = { "noh_layers", "noh_base_color_texture", "noh_palettes" };
     static const char *const blocks[] = { "noh_palette_block" };
+    const char *samplers[NOH_UNIT_USER + NOH_GL_OWN_SAMPLERS_MAX] = { "noh_layers", "noh_base_color_texture",
+                                                                      "noh_palettes" };
     char defines[NOH_GL_DEFINES_BYTES];
-    noh_gl_variant v;
     whole_source vertex, fragment;
+    noh_gl_variant_defines(v->key, defines);
+    make_source(&vertex, GL_VERTEX_SHADER, &noh_shader_mesh_vert, own->vertex, own->defines);
+    make_source(&fragment, GL_FRAGMENT_SHADER, &noh_shader_mesh_frag, own->fragment, own->defines);
+    for (uint32_t i = 0; i < own->sampler_count; i++) {
+        samplers[NOH_UNIT_USER + i] = own->samplers[i];
+    }
+    desc->name = own->name ? own->name : "mesh";
+    desc->vertex = &vertex.source;
+    desc->fragment = &fragment.source;
+    desc->defines = defines;
+    desc->samplers = samplers;
+    desc->sampler_count = NOH_UNIT_USER + own->sampler_count;
+    desc->blocks = blocks;
+    desc->block_count = 1;
+    desc->ledger = device->ledger;
+    return noh_gl_program_create(device->api, desc, program, device->log, device->log_bytes, error);
+}
+
+noh_result noh_gl_variant_create(const noh_gl_device *device, noh_gl_variant_key key, const noh_gl_shader_desc *own,
+                                 const char *const *varyings, uint32_t varying_count, noh_gl_variant *out,
+                                 noh_error *error)
+{
+    static const noh_gl_shader_desc library = { NULL, NULL, NULL, NULL, NULL, 0, NULL, NULL };
+    noh_gl_variant v;
     noh_gl_program_desc desc;
     noh_result result;
     NOH_ASSERT(device && device->api && out && (varyings || !varying_count));
+    own = own ? own : &library;
+    if (own->sampler_count > NOH_GL_OWN_SAMPLERS_MAX) {
+        return noh_fail(error, NOH_ERR_LIMIT, "a shader desc has more samplers than the limit", NOH_GL_OWN_SAMPLERS_MAX,
+                        own->sampler_count);
+    }
     memset(&v, 0, sizeof v);
     memset(&desc, 0, sizeof desc);
-    noh_gl_variant_defines(key, defines);
-    desc.name = "mesh";
-    make_source(&vertex, GL_VERTEX_SHADER, &noh_shader_mesh_vert);
-    make_source(&fragment, GL_FRAGMENT_SHADER, &noh_shader_mesh_frag);
-    desc.vertex = &vertex.source;
-    desc.fragment = &fragment.source;
-    desc.defines = defines;
-    desc.samplers = samplers;
-    desc.sampler_count = 3;
-    desc.blocks = blocks;
-    desc.block_count = 1;
+    v.key = key;
     desc.varyings = varyings;
     desc.varying_count = varying_count;
-    desc.ledger = device->ledger;
-    result = noh_gl_program_create(device->api, &desc, &v.program, device->log, device->log_bytes, error);
+    result = create_program(device, &v, own, &desc, &v.program, error);
     if (!result) {
-        v.key = key;
         find_uniforms(device->api, &v);
         result = noh_gl_error_check(device->api, "the driver refuses to tell a shader variant's uniforms", 0, error);
         if (result) {

@@ -4,7 +4,8 @@
  *   noh_gl_variant_key_depth  the key that draws the same depth without colour
  *   noh_gl_variant_defines  a key as the text of its #defines
  *   noh_gl_shader_prefix    all that stands between #version and a shader's own text, for a key
- *   noh_gl_variant_create   compile mesh.vert and mesh.frag for a key
+ *   noh_gl_shader_desc      shaders of your own in place of mesh.vert and mesh.frag
+ *   noh_gl_variant_create   compile them for a key
  *   noh_gl_variant_delete
  *   noh_gl_variant_skin     bind an instance's palettes
  *
@@ -56,6 +57,7 @@ typedef struct noh_gl_variant {
 #define NOH_UNIT_LAYERS 0u
 #define NOH_UNIT_BASE_COLOR 1u
 #define NOH_UNIT_PALETTES 2u
+#define NOH_UNIT_USER 3u /* the first of those that are left to a game's shaders */
 
 /* The key of a mesh with these bindings; `fade`, `encode_srgb`, `depth` and `cut` are 0, for you to set.
  * skin   NULL: a rigid mesh, or the bind pose. Not NULL, and in a texture, for a crowd
@@ -78,11 +80,30 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
  * untouched if it is too small; NULL with 0 only asks returns  the bytes that it takes, with the zero */
 size_t noh_gl_shader_prefix(noh_gl_variant_key key, GLenum stage, char *text, size_t bytes);
 
-/* Compile the plain renderer's program for a key. The device's ledger may be NULL.
+/* Shaders of your own. The texts are bodies without #version: noh_gl_shader_prefix goes before each, so one pair serves
+ * every key (shaders_es/README.md). With only one of them, the other is the library's: its varyings are those of
+ * mesh.vert. All zeros: the library's. What is pointed to must stay while the programs are there. */
+typedef struct noh_gl_shader_desc {
+    const char *name;              /* in the log and of debug labels; NULL: "mesh" */
+    const char *vertex, *fragment; /* NULL: mesh.vert, mesh.frag */
+    const char *defines;           /* whole lines behind #version in both: #extension, #define; NULL: none */
+    const char *const *samplers;   /* [sampler_count] the i-th reads texture unit NOH_UNIT_USER + i */
+    uint32_t sampler_count;        /* 0..NOH_GL_OWN_SAMPLERS_MAX */
+    /* Called before each draw, when the program is in use and the library's uniforms are set: set your uniforms and
+     * bind textures to units from NOH_UNIT_USER on, which stay bound. Leave program, vertex array and render state as
+     * they are. material: that of the submesh. NULL: nothing to set */
+    void (*bind)(void *user, const noh_gl_api *api, GLuint program, const noh_material *material);
+    void *user;
+} noh_gl_shader_desc;
+
+/* Compile a program for a key. The device's ledger may be NULL.
+ * own       the shaders; NULL: the library's. `bind` is not called here
  * varyings  [varying_count] outputs for transform feedback, interleaved; none with 0
- * errors    as noh_gl_program_create */
-noh_result noh_gl_variant_create(const noh_gl_device *device, noh_gl_variant_key key, const char *const *varyings,
-                                 uint32_t varying_count, noh_gl_variant *out, noh_error *error);
+ * errors    LIMIT more samplers than NOH_GL_OWN_SAMPLERS_MAX; DATA, GL, MEMORY as noh_gl_program_create: the log then
+ *           has the driver's words, which count the lines of your text from 1 */
+noh_result noh_gl_variant_create(const noh_gl_device *device, noh_gl_variant_key key, const noh_gl_shader_desc *own,
+                                 const char *const *varyings, uint32_t varying_count, noh_gl_variant *out,
+                                 noh_error *error);
 void noh_gl_variant_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_variant *variant);
 
 /* Bind one palette of an instance, for the submeshes that use it. The variant's program must be in use. For a program

@@ -290,9 +290,9 @@ static void depth_fetches_positions_alone(void **state)
         key.fade = i >> 2 & 1;
         key.view = i & 1 ? NOH_VIEW_TANGENT : NOH_VIEW_LIT;
         key = noh_gl_variant_key_depth(key, i >> 3 & 1);
-        assert_int_equal(
-            noh_gl_variant_create(&(noh_gl_device){ &g->gl, NULL, &ledger, log, sizeof log }, key, NULL, 0, &v, NULL),
-            NOH_OK);
+        assert_int_equal(noh_gl_variant_create(&(noh_gl_device){ &g->gl, NULL, &ledger, log, sizeof log }, key, NULL,
+                                               NULL, 0, &v, NULL),
+                         NOH_OK);
         assert_int_equal(attributes_of(&v), key.cut ? 1 | 8 | 16 : 1);
         assert_int_equal(v.u_normal, -1);
         assert_int_equal(v.u_base_color >= 0, key.cut);

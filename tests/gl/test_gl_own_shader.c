@@ -13,26 +13,6 @@
 
 /* ---- the shader ---- */
 
-/* The n-th ```glsl block of a file, to be freed. */
-static char *example(const char *path, int n)
-{
-    FILE *file = fopen(path, "rb");
-    char *text = test_zeros(1u << 16), *start, *end;
-    if (!file) test_skip("%s is not here: run in the repository's root", path);
-    assert_in_range(fread(text, 1, (1u << 16) - 1u, file), 1000, (1u << 16) - 2u);
-    fclose(file);
-    for (start = text; n >= 0; n--) {
-        start = strstr(start, "```glsl\n");
-        assert_non_null(start);
-        start += 8;
-    }
-    end = strstr(start, "```");
-    assert_non_null(end);
-    *end = 0;
-    memmove(text, start, strlen(start) + 1);
-    return text;
-}
-
 static GLuint compile(const noh_gl_api *gl, GLenum stage, const char *const *texts, GLsizei count)
 {
     GLuint shader = gl->CreateShader(stage);
@@ -60,7 +40,7 @@ static char *prefix_of(noh_gl_variant_key key, GLenum stage)
 /* From the prefix, or from single files. */
 static GLuint own_vertex(const noh_gl_api *gl, noh_gl_variant_key key, int whole)
 {
-    char defines[NOH_GL_DEFINES_BYTES], *own = example("shaders_es/README.md", whole ? TOON_VERTEX : SINGLE_FILES);
+    char defines[NOH_GL_DEFINES_BYTES], *own = test_example("shaders_es/README.md", whole ? TOON_VERTEX : SINGLE_FILES);
     char *prefix = prefix_of(key, GL_VERTEX_SHADER);
     const char *one[] = { "#version 300 es\n", prefix, own };
     const char *files[] = { "#version 300 es\n",
@@ -80,7 +60,7 @@ static GLuint own_vertex(const noh_gl_api *gl, noh_gl_variant_key key, int whole
 
 static GLuint own_fragment(const noh_gl_api *gl, noh_gl_variant_key key, int whole)
 {
-    char *prefix = prefix_of(key, GL_FRAGMENT_SHADER), *own = example("shaders_es/README.md", TOON_FRAGMENT);
+    char *prefix = prefix_of(key, GL_FRAGMENT_SHADER), *own = test_example("shaders_es/README.md", TOON_FRAGMENT);
     const char *parts[] = { "#version 300 es\n", prefix, whole ? own : "void main() {}" };
     GLuint shader = compile(gl, GL_FRAGMENT_SHADER, parts, 3);
     free(prefix);

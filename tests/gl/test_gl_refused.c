@@ -130,7 +130,7 @@ static noh_result make_variant(maker *m, noh_error *error)
 {
     static const char *const varyings[] = { "v_world" };
     noh_gl_variant_key key = noh_gl_variant_key_of(&m->meshes[0], NULL, 0, 0, NOH_VIEW_LIT);
-    return noh_gl_variant_create(&(noh_gl_device){ &m->g.gl, NULL, &m->g.ledger, NULL, 0 }, key, varyings, 1,
+    return noh_gl_variant_create(&(noh_gl_device){ &m->g.gl, NULL, &m->g.ledger, NULL, 0 }, key, NULL, varyings, 1,
                                  &m->made.variant, error);
 }
 

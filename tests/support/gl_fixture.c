@@ -279,3 +279,24 @@ void fixture_frame_close(fixture_frame *f)
     noh_gl_renderbuffer_delete(gl, &f->ledger, &f->color);
     assert_true(noh_gl_ledger_bytes(&f->ledger) == 0 && f->ledger.programs == 0);
 }
+
+/* ---- texts ---- */
+
+char *test_example(const char *path, int n)
+{
+    FILE *file = fopen(path, "rb");
+    char *text = test_zeros(1u << 16), *start, *end;
+    if (!file) test_skip("%s is not here: run in the repository's root", path);
+    assert_in_range(fread(text, 1, (1u << 16) - 1u, file), 1000, (1u << 16) - 2u);
+    fclose(file);
+    for (start = text; n >= 0; n--) {
+        start = strstr(start, "```glsl\n");
+        assert_non_null(start);
+        start += 8;
+    }
+    end = strstr(start, "```");
+    assert_non_null(end);
+    *end = 0;
+    memmove(text, start, strlen(start) + 1);
+    return text;
+}

@@ -76,6 +76,9 @@ void fixture_expect_all(const fixture_morph *m);
 /* The values that an instance's accumulator holds: layers[3][...] of its view, to be freed. */
 float *fixture_layers(const fixture_morph *m, uint32_t instance);
 
+/* The n-th ```glsl block of a file, to be freed; skips the test where the file is not. */
+char *test_example(const char *path, int n);
+
 /* A square of pixels to draw to, RGBA8 with depth, cleared to zeros and bound. */
 typedef struct fixture_frame {
     noh_gl_ledger ledger; /* its own, and what is made while it is open */

@@ -117,6 +117,7 @@ static void draw(gpu *g, const lit_quad *q, const noh_pack *pack, noh_gl_ledger 
     memset(pictures, 0, sizeof pictures);
     desc.meshes = &mesh;
     desc.mesh_count = 1;
+    desc.shaders = q->shaders;
     for (uint32_t i = 0; i < pack->texture_count; i++) {
         noh_texture texture;
         noh_pack_texture_at(pack, i, &texture, NULL);
@@ -237,27 +238,36 @@ static double shade(const lit_quad *q, const cosines *c, int i)
     return color + 0.10 * sky * pow(1.0 - c->nv, 3.0) * (1.0 - 0.6 * rough);
 }
 
-void lit_quad_pixel(const lit_quad *q, uint32_t column, lit_quad_normals by, int held, double out[3])
+static float x_of(const lit_quad *q, uint32_t column)
 {
     const float screen = (2.0f * (float)column + 1.0f) / (float)LIT_QUAD_SIDE - 1.0f;
-    const float x = screen / (q->camera.view_projection[0] * q->world[0]);
-    const double at[3] = { (double)(q->world[0] * x), 0.0, 0.0 },
-                 determinant = (double)(q->world[0] * q->world[5] * q->world[10]);
+    return screen / (q->camera.view_projection[0] * q->world[0]);
+}
+
+void lit_quad_normal(const lit_quad *q, uint32_t column, lit_quad_normals by, double n[3])
+{
+    const double determinant = (double)(q->world[0] * q->world[5] * q->world[10]);
     float normal[3];
-    double n[3];
-    cosines c;
-    quad_normal(x, normal);
+    quad_normal(x_of(q, column), normal);
     for (int i = 0; i < 3; i++) { /* NOT_UNIT: by the cofactors, with the length that they give */
         const double axis = (double)q->world[5 * i];
         n[i] = (double)normal[i] * (by == NORMALS_BY_MATRIX    ? axis
                                     : by == NORMALS_BY_NOTHING ? 1.0
                                                                : fabs(determinant) / axis);
     }
-    for (int i = 0; q->world[10] > 0.0f && i < 3; i++) { /* seen from behind: the normal of that side */
-        n[i] = -n[i];
-    }
     if (by != NORMALS_NOT_UNIT) {
         unit(n);
+    }
+}
+
+void lit_quad_pixel(const lit_quad *q, uint32_t column, lit_quad_normals by, int held, double out[3])
+{
+    const double at[3] = { (double)(q->world[0] * x_of(q, column)), 0.0, 0.0 };
+    double n[3];
+    cosines c;
+    lit_quad_normal(q, column, by, n);
+    for (int i = 0; q->world[10] > 0.0f && i < 3; i++) { /* seen from behind: the normal of that side */
+        n[i] = -n[i];
     }
     c = cosines_of(q, n, at, held);
     for (int i = 0; i < 3; i++) {

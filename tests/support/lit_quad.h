@@ -8,6 +8,7 @@
 
 #include "gpu/gpu.h"
 #include "convert/model/model.h"
+#include "gl/gl_variants.h"
 
 #define LIT_QUAD_SIDE 33u  /* pixels of the picture's side */
 #define LIT_QUAD_CLOSE 1.5 /* of 255: what rounding may leave between a pixel and its closed form */
@@ -22,6 +23,7 @@ typedef struct lit_quad {
     const float *color; /* [4][4] or NULL */
     /* [2][4]: a texture of two texels beside each other, the second of the pack's two; or NULL */
     const uint8_t *picture;
+    const noh_gl_shader_desc *shaders; /* in place of the library's; NULL: none */
 } lit_quad;
 
 /* Opaque, half metal, without UVs, colours and texture. */
@@ -43,6 +45,9 @@ typedef enum lit_quad_normals {
     NORMALS_BY_NOTHING,
     NORMALS_NOT_UNIT
 } lit_quad_normals;
+
+/* The normal in the world at a column of the middle row. world must be diagonal. */
+void lit_quad_normal(const lit_quad *q, uint32_t column, lit_quad_normals by, double n[3]);
 
 /* mesh.frag's light on a column of the middle row, in sRGB 0..255. world must be diagonal.
  * held: what faces away from the light gets none; 0: as in the source */

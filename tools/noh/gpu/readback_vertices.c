@@ -18,8 +18,8 @@ static int use_variant(readback *r, noh_gl_variant_key key)
         return 0;
     }
     noh_gl_variant_delete(&r->g->gl, NULL, &r->variant);
-    if (noh_gl_variant_create(&(noh_gl_device){ &r->g->gl, NULL, NULL, log, sizeof log }, key, varyings, 4, &r->variant,
-                              &error)) {
+    if (noh_gl_variant_create(&(noh_gl_device){ &r->g->gl, NULL, NULL, log, sizeof log }, key, NULL, varyings, 4,
+                              &r->variant, &error)) {
         fputs(log, stderr);
         return tool_fail_error("readback", &error);
     }
