@@ -1,14 +1,19 @@
-#include "anim/clip_set.h"
+#include "anim/clip_set_internal.h"
+
+const char *noh_clip_set_excess(const noh_clip_set *set)
+{
+    if (set->joint_count > NOH_JOINTS_MAX) return "joint_count of a set is above NOH_JOINTS_MAX";
+    if (set->float_count > NOH_FLOATS_MAX) return "float_count of a set is above NOH_FLOATS_MAX";
+    return NULL;
+}
 
 static const char *bad_count(const noh_clip_set *set)
 {
     if (set->clip_count == 0 || set->clip_count > NOH_CLIPS_MAX)
         return "clip_count of a set is 0, or above NOH_CLIPS_MAX";
-    if (set->joint_count > NOH_JOINTS_MAX) return "joint_count of a set is above NOH_JOINTS_MAX";
     if (set->joint_count == 0 && set->float_count == 0) return "joint_count and float_count of a set are both 0";
-    if (set->float_count > NOH_FLOATS_MAX) return "float_count of a set is above NOH_FLOATS_MAX";
     if (set->mask_count > NOH_MASKS_MAX) return "mask_count of a set is above NOH_MASKS_MAX";
-    return NULL;
+    return noh_clip_set_excess(set);
 }
 
 static const char *bad_pointer(const noh_clip_set *set)

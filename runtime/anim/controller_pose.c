@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "anim/clip_set_internal.h"
 #include "anim/clock_internal.h"
 #include "pose/inertial_internal.h"
 #include "anim/mask.h"
@@ -41,6 +42,9 @@ size_t noh_pose_scratch_size(const noh_clip_set *set, int inertial)
     noh_arena arena = noh_arena_measure();
     noh_pose_scratch s;
     NOH_ASSERT(set);
+    if (noh_clip_set_excess(set)) {
+        return 0;
+    }
     carve(&arena, set, inertial, &s);
     return arena.used;
 }
@@ -48,8 +52,10 @@ size_t noh_pose_scratch_size(const noh_clip_set *set, int inertial)
 noh_result noh_pose_scratch_init(void *memory, size_t bytes, const noh_clip_set *set, int inertial,
                                  noh_pose_scratch *scratch, noh_error *error)
 {
+    const char *what = noh_clip_set_excess(set);
     noh_arena arena;
-    noh_result result = noh_arena_open(&arena, memory, bytes, noh_pose_scratch_size(set, inertial), error);
+    noh_result result = what ? noh_fail(error, NOH_ERR_ARG, what, 0, 0)
+                             : noh_arena_open(&arena, memory, bytes, noh_pose_scratch_size(set, inertial), error);
     NOH_ASSERT(set && scratch);
     if (result == NOH_OK) {
         carve(&arena, set, inertial, scratch);

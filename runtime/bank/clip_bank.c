@@ -100,7 +100,7 @@ static noh_result count_clip(const noh_bank_binding *b, const noh_bank_found *fo
     c->shape.event_count += found->packed.header->event_count;
     c->shape.marker_count += found->packed.header->marker_count;
     c->sampled = info.float_count > c->sampled ? info.float_count : c->sampled;
-    c->clip_bytes += align_up(bytes);
+    c->clip_bytes = align_up(bytes) > SIZE_MAX - c->clip_bytes ? SIZE_MAX : c->clip_bytes + align_up(bytes);
     noh_clip_cache_needs_add(&c->cache, &info);
     count_groups(b, found, c);
     return NOH_OK;
@@ -224,8 +224,11 @@ static noh_result measure(const noh_clip_bank_desc *desc, noh_bank_binding *b, c
     noh_result r = check_desc(desc, error);
     if (!r) r = noh_bank_bind(desc, b, error);
     if (!r) r = count(desc, b, c, error);
-    if (!r) *bytes = carve(&arena, c, &p);
-    return r;
+    if (r) return r;
+    *bytes = carve(&arena, c, &p);
+    return *bytes < SIZE_MAX ? NOH_OK
+                             : noh_fail(error, NOH_ERR_LIMIT,
+                                        "the clips of a clip bank need more memory than there can be", 0, SIZE_MAX);
 }
 
 /* As noh_clip_bank_view_size, before there is a bank. */

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "pose/local_to_model.h"
+#include "anim/clip_set_internal.h"
 #include "base/arena.h"
 #include "character/measure_internal.h"
 
@@ -28,6 +29,9 @@ size_t noh_joint_lod_measure_size(const noh_time_probe *probe)
     noh_arena arena = noh_arena_measure();
     work w;
     NOH_ASSERT(probe && probe->set);
+    if (noh_clip_set_excess(probe->set)) {
+        return 0;
+    }
     carve(&arena, probe->set, &w);
     return arena.used;
 }

@@ -15,7 +15,7 @@
 extern "C" {
 #endif
 
-/* Bytes of the working memory that measuring takes. */
+/* Bytes of the working memory that measuring takes; 0 for a set over NOH_JOINTS_MAX or NOH_FLOATS_MAX. */
 size_t noh_joint_lod_measure_size(const noh_time_probe *probe);
 
 /* Measure the largest error of a clip, from its first tick to its last, at each joint level: every 400 ticks, for any

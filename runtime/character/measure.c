@@ -1,5 +1,6 @@
 /* What the measurements of LOD errors share: measure_internal.h. */
 #include "pose/local_to_model.h"
+#include "anim/clip_set_internal.h"
 #include "anim/root_motion.h"
 #include "base/math_internal.h"
 #include "character/measure_internal.h"
@@ -9,7 +10,7 @@ const char *noh_probe_fault(const noh_time_probe *p, uint32_t clip)
     if (!p->set || !p->skeleton || p->skeleton->joint_count != p->set->joint_count)
         return "probe: NULL set or skeleton, or a skeleton of other joints";
     if (clip >= p->set->clip_count) return "clip is not a clip of the set";
-    return NULL;
+    return noh_clip_set_excess(p->set);
 }
 
 void noh_probe_travel(const noh_time_probe *p, uint32_t clip, noh_transform *pose, float *floats, float travel[3])

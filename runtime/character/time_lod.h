@@ -101,7 +101,7 @@ typedef struct noh_time_probe {
     int travels;
 } noh_time_probe;
 
-/* Bytes of the working memory that measuring takes. */
+/* Bytes of the working memory that measuring takes; 0 for a set over NOH_JOINTS_MAX or NOH_FLOATS_MAX. */
 size_t noh_time_lod_measure_size(const noh_time_probe *probe);
 
 /* Measure the largest error of a clip, played in its own loop mode, at each update rate: over periods that begin every

@@ -1,4 +1,5 @@
 /* The error of interpolation between updates: time_lod.h, noh_time_lod_measure. */
+#include "anim/clip_set_internal.h"
 #include "base/arena.h"
 #include "character/measure_internal.h"
 
@@ -7,6 +8,9 @@ size_t noh_time_lod_measure_size(const noh_time_probe *probe)
     noh_arena arena = noh_arena_measure();
     noh_rate_work w;
     NOH_ASSERT(probe && probe->set);
+    if (noh_clip_set_excess(probe->set)) {
+        return 0;
+    }
     noh_rate_carve(&arena, probe->set, &w);
     return arena.used;
 }

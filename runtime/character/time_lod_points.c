@@ -1,5 +1,6 @@
 #include "character/time_lod_points.h"
 
+#include "anim/clip_set_internal.h"
 #include "base/arena.h"
 #include "base/math_internal.h"
 #include "character/measure_internal.h"
@@ -21,6 +22,9 @@ size_t noh_time_lod_points_size(const noh_time_probe *probe)
     noh_arena arena = noh_arena_measure();
     work w;
     NOH_ASSERT(probe && probe->set);
+    if (noh_clip_set_excess(probe->set)) {
+        return 0;
+    }
     carve(&arena, probe->set, &w);
     return arena.used;
 }

@@ -25,7 +25,7 @@ typedef struct noh_time_lod_points {
     uint32_t point_count, holds_per_point;
 } noh_time_lod_points;
 
-/* Bytes of the working memory that measuring takes. */
+/* Bytes of the working memory that measuring takes; 0 for a set over NOH_JOINTS_MAX or NOH_FLOATS_MAX. */
 size_t noh_time_lod_points_size(const noh_time_probe *probe);
 
 /* Measure the largest error of any point at each update rate, over the periods and ticks of noh_time_lod_measure, plus

@@ -109,7 +109,8 @@ typedef struct noh_graph_state {
 } noh_graph_state;
 
 /* Check a graph once, before instances are made of it.
- * errors  ARG a count or pointer; DATA a node (where: its index); LIMIT more pose buffers than NOH_GRAPH_BUFFERS_MAX */
+ * errors  ARG a count or pointer, or a set over NOH_JOINTS_MAX or NOH_FLOATS_MAX; DATA a node (where: its index); LIMIT
+ * more pose buffers than NOH_GRAPH_BUFFERS_MAX */
 noh_result noh_graph_check(const noh_graph *graph, const noh_clip_set *set, noh_error *error);
 
 /* Pose buffers that evaluating a checked graph needs. */
@@ -150,8 +151,9 @@ typedef struct noh_graph_scratch {
     float *float_poses[NOH_GRAPH_BUFFERS_MAX];
 } noh_graph_scratch;
 
-/* Exact bytes of a scratch for a checked graph, and a scratch in memory[bytes], 16-byte aligned.
- * errors  ARG memory NULL or misaligned; MEMORY need: the bytes */
+/* Exact bytes of a scratch for a checked graph (0 for a set over NOH_JOINTS_MAX or NOH_FLOATS_MAX), and a scratch in
+ * memory[bytes], 16-byte aligned.
+ * errors  ARG such a set, or memory NULL or misaligned; MEMORY need: the bytes */
 size_t noh_graph_scratch_size(const noh_graph *graph, const noh_clip_set *set);
 noh_result noh_graph_scratch_init(void *memory, size_t bytes, const noh_graph *graph, const noh_clip_set *set,
                                   noh_graph_scratch *scratch, noh_error *error);

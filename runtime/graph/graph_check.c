@@ -1,6 +1,7 @@
 /* Checking a graph, and how many pose buffers it needs. */
 #include <string.h>
 
+#include "anim/clip_set_internal.h"
 #include "graph/graph.h"
 #include "graph/graph_weights_internal.h"
 
@@ -183,6 +184,7 @@ noh_result noh_graph_check(const noh_graph *graph, const noh_clip_set *set, noh_
     const char *what = bad_count(graph);
     uint32_t where = 0;
     NOH_ASSERT(graph && set);
+    what = what ? what : noh_clip_set_excess(set);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }

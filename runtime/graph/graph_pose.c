@@ -3,6 +3,7 @@
 
 #include "graph/graph.h"
 #include "graph/graph_weights_internal.h"
+#include "anim/clip_set_internal.h"
 #include "anim/mask.h"
 #include "base/arena.h"
 
@@ -29,6 +30,9 @@ size_t noh_graph_scratch_size(const noh_graph *graph, const noh_clip_set *set)
 {
     noh_arena arena = noh_arena_measure();
     NOH_ASSERT(graph && set);
+    if (noh_clip_set_excess(set)) {
+        return 0;
+    }
     (void)noh_arena_carve(&arena, noh_pose_scratch_size(set, is_inertial(graph)), 16);
     for (uint32_t i = 0; i < noh_graph_buffers(graph); i++) {
         (void)noh_arena_carve(&arena, pose_bytes(set), 4);
@@ -40,9 +44,11 @@ size_t noh_graph_scratch_size(const noh_graph *graph, const noh_clip_set *set)
 noh_result noh_graph_scratch_init(void *memory, size_t bytes, const noh_graph *graph, const noh_clip_set *set,
                                   noh_graph_scratch *scratch, noh_error *error)
 {
+    const char *what = noh_clip_set_excess(set);
     size_t pose_need = noh_pose_scratch_size(set, is_inertial(graph));
     noh_arena arena;
-    noh_result result = noh_arena_open(&arena, memory, bytes, noh_graph_scratch_size(graph, set), error);
+    noh_result result = what ? noh_fail(error, NOH_ERR_ARG, what, 0, 0)
+                             : noh_arena_open(&arena, memory, bytes, noh_graph_scratch_size(graph, set), error);
     NOH_ASSERT(graph && set && scratch);
     if (result != NOH_OK) {
         return result;
