@@ -1,6 +1,7 @@
 /* common_layers.glsl: the accumulated deltas of a vertex. noh_fetch of common_vertex.glsl adds them; without it, call
  * noh_morph_fetch, which adds them, and if it returns true noh_morph_frame (shaders_es/README.md). Define
- * NOH_LAYERS_UINT if noh_gl_morph_binding.is_uint is 1, NOH_DEPTH_ONLY if positions are enough. */
+ * NOH_LAYERS_UINT if noh_gl_morph_binding.is_uint is 1, NOH_TWO_LAYERS if its layer_count is 2, NOH_DEPTH_ONLY if
+ * positions are enough. */
 #ifdef NOH_LAYERS_UINT
 uniform highp usampler2DArray noh_layers;
 #define NOH_LAYER_FETCH(texel, layer) uintBitsToFloat(texelFetch(noh_layers, ivec3(texel, layer), 0).xyz)
@@ -21,7 +22,9 @@ bool noh_morph_fetch_tile(ivec4 tile, int vertex, inout vec3 position, inout vec
         position += NOH_LAYER_FETCH(texel, 0);
 #ifndef NOH_DEPTH_ONLY
         normal += NOH_LAYER_FETCH(texel, 1);
+#ifndef NOH_TWO_LAYERS
         tangent += NOH_LAYER_FETCH(texel, 2);
+#endif
 #endif
     }
     return touched;

@@ -1,5 +1,5 @@
 #version 300 es
-/* morph_gather.frag: each fragment sums the deltas of its own vertex in registers and writes the three layers once.
+/* morph_gather.frag: each fragment sums the deltas of its own vertex in registers and writes the three layers once, with TWO_LAYERS two.
  * It needs no blending, so any format that can be rendered to will do; with LAYERS_UINT it writes the bits of the
  * floats. */
 #include "common_delta.glsl"
@@ -20,7 +20,9 @@ flat in uvec4 f_tile;
 #endif
 layout(location = 0) out LAYER o_position;
 layout(location = 1) out LAYER o_normal;
+#ifndef TWO_LAYERS
 layout(location = 2) out LAYER o_tangent;
+#endif
 
 void main()
 {
@@ -35,9 +37,13 @@ void main()
         uvec4 record = texelFetch(u_records, table_texel(f_tile.y + entry.w, u_tables.y), 0);
         position += delta_field(entry.xyz, delta_shifts(record.w, 0), uintBitsToFloat(record.x));
         normal += delta_field(entry.xyz, delta_shifts(record.w, 1), uintBitsToFloat(record.y));
+#ifndef TWO_LAYERS
         tangent += delta_field(entry.xyz, delta_shifts(record.w, 2), uintBitsToFloat(record.z));
+#endif
     }
     o_position = LAYER_VALUE(position);
     o_normal = LAYER_VALUE(normal);
+#ifndef TWO_LAYERS
     o_tangent = LAYER_VALUE(tangent);
+#endif
 }

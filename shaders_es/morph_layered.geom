@@ -3,7 +3,11 @@
  * Microsoft's SparseMorphTargets sample (DirectX SDK) does for its three render targets. */
 #include "common_delta.glsl"
 
+#ifdef TWO_LAYERS
+layout(triangles, invocations = 2) in;
+#else
 layout(triangles, invocations = 3) in;
+#endif
 layout(triangle_strip, max_vertices = 3) out;
 
 flat in uvec3 v_place[];

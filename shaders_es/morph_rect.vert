@@ -1,6 +1,6 @@
 #version 300 es
 /* morph_rect.vert: a quad over one rectangle of one active target, in the tile of one instance of a mesh. With
- * MORPH_MRT, a fragment writes all three layers; with MORPH_LAYERED, the geometry shader says which layer; else
+ * MORPH_MRT, a fragment writes all layers; with MORPH_LAYERED, the geometry shader says which layer; else
  * u_layer does. */
 #include "common_delta.glsl"
 

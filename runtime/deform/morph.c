@@ -26,7 +26,11 @@ typedef void (*run_function)(const uint32_t *words, size_t count, const noh_fiel
 
 static void run_simd(const uint32_t *words, size_t count, const noh_field f[3], float *const layers[3])
 {
-    noh_add_run(words, count, f, layers);
+    if (layers[2]) {
+        noh_add_run(words, count, f, layers, 3);
+    } else {
+        noh_add_run(words, count, f, layers, 2);
+    }
 }
 
 /* Every row of every rectangle of one target. The delta texels of a target lie in the order of its rectangles, row by
@@ -41,7 +45,8 @@ static void accumulate_target(const noh_mesh *mesh, const noh_target *t, const n
         size_t row = 3u * (((size_t)rect->y << mesh->header->morph_width_log2) + rect->x);
         size_t count = 3u * (size_t)rect->w;
         for (unsigned y = 0; y < rect->h; y++) {
-            float *at[3] = { layers->position + row, layers->normal + row, layers->tangent + row };
+            float *at[3] = { layers->position + row, layers->normal + row,
+                             layers->tangent ? layers->tangent + row : NULL };
             run(words, count, f, at);
             words += count;
             row += (size_t)3u << mesh->header->morph_width_log2;
@@ -125,7 +130,7 @@ const char *noh_morph_simd(void)
 
 static void run_scalar(const uint32_t *words, size_t count, const noh_field f[3], float *const layers[3])
 {
-    for (int l = 0; l < 3; l++) {
+    for (int l = 0; l < 3 && layers[l]; l++) {
         noh_add_run_scalar(words, count, f[l], layers[l]);
     }
 }
@@ -142,7 +147,7 @@ static float round_half(float value, noh_half_mode mode)
 
 static void run_f16_rne(const uint32_t *words, size_t count, const noh_field f[3], float *const layers[3])
 {
-    for (int l = 0; l < 3; l++) {
+    for (int l = 0; l < 3 && layers[l]; l++) {
         for (size_t i = 0; i < count; i++) {
             layers[l][i] = round_half(layers[l][i] + noh_field_value(words[i], f[l]), NOH_HALF_RNE);
         }
@@ -151,7 +156,7 @@ static void run_f16_rne(const uint32_t *words, size_t count, const noh_field f[3
 
 static void run_f16_rtz(const uint32_t *words, size_t count, const noh_field f[3], float *const layers[3])
 {
-    for (int l = 0; l < 3; l++) {
+    for (int l = 0; l < 3 && layers[l]; l++) {
         for (size_t i = 0; i < count; i++) {
             layers[l][i] = round_half(layers[l][i] + noh_field_value(words[i], f[l]), NOH_HALF_RTZ);
         }
@@ -166,9 +171,9 @@ void noh_morph_accumulate_f16(const noh_mesh *mesh, const float *weights, noh_ha
 
 void noh_morph_round_f16(const noh_mesh *mesh, noh_half_mode mode, const noh_morph_layers *layers)
 {
-    size_t floats = layer_texels(mesh) * 9u;
+    size_t floats = layer_texels(mesh) * (layers->tangent ? 9u : 6u);
     for (size_t i = 0; i < floats; i++) {
-        layers->position[i] = round_half(layers->position[i], mode); /* the three layers lie one behind another */
+        layers->position[i] = round_half(layers->position[i], mode); /* the layers lie one behind another */
     }
 }
 
@@ -183,13 +188,13 @@ void noh_morph_vertex(const noh_mesh *mesh, const noh_morph_layers *layers, uint
     }
     p = layers->position + 3u * texel;
     n = layers->normal + 3u * texel;
-    t = layers->tangent + 3u * texel;
+    t = layers->tangent ? layers->tangent + 3u * texel : NULL;
     memcpy(rest_normal, out->normal, sizeof rest_normal);
     memcpy(rest_tangent, out->tangent, sizeof rest_tangent);
     for (int i = 0; i < 3; i++) {
         out->position[i] += p[i];
         out->normal[i] += n[i];
-        out->tangent[i] += t[i];
+        out->tangent[i] += t ? t[i] : 0.0f;
     }
     noh_normalize3(out->normal, rest_normal);
     if (mesh->header->flags & NOH_MESH_TANGENTS) {

@@ -24,16 +24,17 @@
 extern "C" {
 #endif
 
-/* Accumulated differences of one instance, model units. The three layers are adjacent in memory, each
+/* Accumulated differences of one instance, model units. The layers are adjacent in memory, each
  * [morph_height << morph_width_log2][3]. */
 typedef struct noh_morph_layers {
-    float *position, *normal, *tangent;
+    float *position, *normal;
+    float *tangent; /* NULL: two layers, tangents are not morphed. The bind pose's are still turned with the normal */
 } noh_morph_layers;
 
-/* Exact bytes of the layers of a mesh; 0 for a mesh that no target moves. */
+/* Exact bytes of three layers of a mesh; 0 for a mesh that no target moves. Two layers take two thirds of it. */
 size_t noh_morph_layers_size(const noh_mesh *mesh);
 
-/* Place the layers in memory[bytes], aligned to NOH_MEMORY_ALIGN, and clear them. A mesh without accumulation texels
+/* Place three layers in memory[bytes], aligned to NOH_MEMORY_ALIGN, and clear them. A mesh without accumulation texels
  * needs none: memory may then be NULL.
  * errors  ARG memory is NULL or misaligned; MEMORY it is too small; need: the exact bytes */
 noh_result noh_morph_layers_init(void *memory, size_t bytes, const noh_mesh *mesh, noh_morph_layers *layers,

@@ -114,30 +114,33 @@ static inline void noh_add_step(const uint32_t *words, noh_field f, float *layer
 }
 #endif
 
-/* A run into all three layers. Steps are as wide as the processor's vectors; what remains is done four words at a time,
- * then as a tail. */
-static inline void noh_add_run(const uint32_t *words, size_t count, const noh_field f[3], float *const layers[3])
+/* A run into all layers, of which there are two or three: a constant wherever this is inlined. Steps are as wide as the
+ * processor's vectors; what remains is done four words at a time, then as a tail. */
+static inline void noh_add_run(const uint32_t *words, size_t count, const noh_field f[3], float *const layers[3],
+                               int layer_count)
 {
     size_t i = 0;
 #ifdef NOH_MORPH_STEP
     for (; i + NOH_MORPH_STEP <= count; i += NOH_MORPH_STEP) {
         noh_add_step(words + i, f[0], layers[0] + i);
         noh_add_step(words + i, f[1], layers[1] + i);
-        noh_add_step(words + i, f[2], layers[2] + i);
+        if (layer_count == 3) {
+            noh_add_step(words + i, f[2], layers[2] + i);
+        }
     }
 #endif
 #ifdef NOH_MORPH_TAIL
     if (NOH_MORPH_STEP > 4u && i + 4u <= count) {
-        noh_add_step4(words + i, f[0], layers[0] + i);
-        noh_add_step4(words + i, f[1], layers[1] + i);
-        noh_add_step4(words + i, f[2], layers[2] + i);
+        for (int l = 0; l < layer_count; l++) {
+            noh_add_step4(words + i, f[l], layers[l] + i);
+        }
         i += 4u;
     }
-    for (int l = 0; l < 3 && i < count; l++) {
+    for (int l = 0; l < layer_count && i < count; l++) {
         noh_add_tail(words + i, count - i, f[l], layers[l] + i);
     }
 #else
-    for (int l = 0; l < 3; l++) {
+    for (int l = 0; l < layer_count; l++) {
         noh_add_run_scalar(words + i, count - i, f[l], layers[l] + i);
     }
 #endif

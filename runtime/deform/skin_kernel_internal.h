@@ -224,7 +224,7 @@ static inline int gather_deltas(const skin_job *job, uint32_t first, uint32_t co
             d->touched[i] = 1.0f;
             memcpy(d->of[0][i], layers->position + 3u * texel, 12);
             memcpy(d->of[1][i], layers->normal + 3u * texel, 12);
-            memcpy(d->of[2][i], layers->tangent + 3u * texel, 12);
+            if (layers->tangent) memcpy(d->of[2][i], layers->tangent + 3u * texel, 12);
         }
     }
     return any;

@@ -196,6 +196,7 @@ static void draw_pass(const draw_job *j, int pass)
     const noh_gl_api *gl = j->r->gl;
     NOH_ASSERT(j->mesh->vertex_array && pass >= NOH_DRAW_OPAQUE && pass <= NOH_DRAW_DEPTH);
     NOH_ASSERT(!j->morph || j->morph->is_uint == j->r->layers_uint);
+    NOH_ASSERT(!j->morph || pass == NOH_DRAW_DEPTH || (j->morph->layer_count == 2) == j->r->without_tangents);
     if (!j->count || !(j->lod->from < j->lod->to)) {
         return;
     }

@@ -84,6 +84,7 @@ typedef enum noh_gl_passes {
 typedef struct noh_gl_renderer_desc {
     noh_debug_view view;    /* 0: lit */
     int layers_uint;        /* as in noh_gl_morph_binding.is_uint */
+    int without_tangents;   /* as in noh_gl_morph_desc */
     const noh_mesh *meshes; /* [mesh_count] that will be drawn; not kept */
     uint32_t mesh_count;
     noh_palette_mode palettes; /* noh_gl_skin_plan.mode; 0: nothing is skinned, all meshes are in their bind pose */
@@ -98,7 +99,7 @@ typedef struct noh_gl_renderer_desc {
 typedef struct noh_gl_renderer {
     const noh_gl_api *gl;
     noh_gl_ledger *ledger;
-    int layers_uint, encode_srgb, fades;
+    int layers_uint, without_tangents, encode_srgb, fades;
     noh_debug_view view;
     noh_gl_passes passes;
     noh_gl_shader_desc shaders; /* zeros: the library's */
@@ -121,8 +122,8 @@ void noh_gl_renderer_delete(noh_gl_renderer *renderer);
  * errors  GL, MEMORY, DATA as noh_gl_renderer_create: it then has no GL objects */
 noh_result noh_gl_renderer_restore(noh_gl_renderer *renderer, char *log, size_t log_bytes, noh_error *error);
 
-/* The variant of a key, whose encode_srgb is taken from the renderer, 0 for depth. NULL: no mesh of the renderer's desc
- * needs it. */
+/* The variant of a key, whose encode_srgb and two_layers are taken from the renderer, 0 for depth. NULL: no mesh of the
+ * renderer's desc needs it. */
 const noh_gl_variant *noh_gl_renderer_variant(const noh_gl_renderer *renderer, noh_gl_variant_key key);
 
 typedef struct noh_gl_camera {

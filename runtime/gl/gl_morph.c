@@ -20,7 +20,7 @@ static noh_result create_layers(noh_gl_morph *m, noh_error *error)
     desc.format = m->plan.layer_format;
     desc.width = m->plan.atlas_width;
     desc.height = m->plan.atlas_height;
-    desc.layers = 3;
+    desc.layers = m->plan.layer_count;
     return noh_gl_texture_create(m->gl, m->ledger, &desc, &m->layers, error);
 }
 
@@ -204,6 +204,7 @@ noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t
     noh_gl_morph_tile(morph, instance, &x, &y);
     binding.texture = morph->layers.name;
     binding.is_uint = morph->plan.layer_format == GL_RGBA32UI;
+    binding.layer_count = (int)morph->plan.layer_count;
     binding.tile_x = (int32_t)x;
     binding.tile_y = (int32_t)y;
     binding.width_log2 = (int32_t)h->morph_width_log2;

@@ -12,7 +12,8 @@
  *   noh_gl_morph_instance     the number of an instance of a mesh
  *   noh_morph_path_name, noh_accumulate_name
  *
- * Deltas of position, normal and tangent are accumulated in the three layers of one texture array. Each instance has a
+ * Deltas of position, normal and tangent are accumulated in the three layers of one texture array; in two of them where
+ * tangents are not wanted, and then those of the bind pose are turned with the normal. Each instance has a
  * tile of it with one accumulation texel per vertex that any target moves. The base mesh stays in the vertex buffers,
  * and the vertex shader adds the accumulated deltas to it (shaders_es/common_layers.glsl), so a half-float accumulator
  * rounds only deltas. Microsoft's SparseMorphTargets sample (DirectX SDK) accumulates in the same way, but whole
@@ -71,6 +72,7 @@ typedef struct noh_gl_morph_desc {
     noh_morph_path path;             /* 0: the cheapest on this GPU; or the policy blend, or one path */
     noh_accumulate accumulate;       /* 0: f32 */
     float expected_active;           /* for auto: the share of targets that are active at once, 0..1; 0: 0.5 */
+    int without_tangents;            /* 1: two layers, a third less memory, where no shader reads morphed tangents */
 } noh_gl_morph_desc;
 
 /* The resolved plan on a GPU with these capabilities. All bytes are exact. */
@@ -79,6 +81,7 @@ typedef struct noh_gl_morph_plan {
     noh_accumulate accumulate;          /* never AUTO */
     const char *reason;                 /* why this path, in words; a string constant */
     GLenum layer_format;                /* RGBA32F, RGBA16F, RGBA32UI (float bits), RGB32F or RGB16F */
+    uint32_t layer_count;               /* 3; 2 without tangents */
     uint32_t atlas_width, atlas_height; /* of the texture array that holds the tiles, in texels */
     uint32_t instance_count, weight_count;
     uint32_t rect_count, texel_count, pair_count; /* in the tables, which LOD levels of one mesh share */
@@ -103,8 +106,9 @@ typedef struct noh_gl_morph_stats {
 /* Where an instance's accumulated deltas are. The last four numbers go into noh_morph of common_layers.glsl in
  * this order. */
 typedef struct noh_gl_morph_binding {
-    GLuint texture; /* GL_TEXTURE_2D_ARRAY of three layers */
-    int is_uint;    /* 1: it holds the bits of floats as RGBA32UI: build your shader with NOH_LAYERS_UINT */
+    GLuint texture;  /* GL_TEXTURE_2D_ARRAY */
+    int is_uint;     /* 1: it holds the bits of floats as RGBA32UI: build your shader with NOH_LAYERS_UINT */
+    int layer_count; /* 2: it has no layer of tangents: build your shader with NOH_TWO_LAYERS */
     int32_t tile_x, tile_y, width_log2, touched; /* texels; log2 of the tile's width; vertices that any target moves */
 } noh_gl_morph_binding;
 

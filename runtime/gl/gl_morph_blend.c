@@ -23,6 +23,7 @@
 static noh_result create_program(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
 {
     static const char *const samplers[] = { "u_deltas", "u_rects", "u_records" };
+    const int two = m->plan.layer_count == 2u;
     noh_gl_program_desc desc;
     memset(&desc, 0, sizeof desc);
     desc.name = noh_morph_path_name(m->plan.path);
@@ -33,12 +34,12 @@ static noh_result create_program(noh_gl_morph *m, char *log, size_t log_bytes, n
     desc.ledger = m->ledger;
     if (m->plan.path == NOH_MORPH_MRT) {
         desc.fragment = &noh_shader_morph_mrt_frag;
-        desc.defines = "#define MORPH_MRT\n";
+        desc.defines = two ? "#define MORPH_MRT\n#define TWO_LAYERS\n" : "#define MORPH_MRT\n";
     } else if (m->plan.path == NOH_MORPH_LAYERED) {
         desc.geometry = &noh_shader_morph_layered_geom;
         desc.version = noh_gl_geometry_version(m->gl);
         desc.geometry_defines = noh_gl_geometry_defines(m->gl);
-        desc.defines = "#define MORPH_LAYERED\n";
+        desc.defines = two ? "#define MORPH_LAYERED\n#define TWO_LAYERS\n" : "#define MORPH_LAYERED\n";
     }
     return noh_gl_program_create(m->gl, &desc, &m->program, log, log_bytes, error);
 }
@@ -52,7 +53,7 @@ static noh_result create_framebuffers(noh_gl_morph *m, noh_error *error)
     if (m->plan.path == NOH_MORPH_LAYERED) {
         return noh_gl_morph_framebuffer(m, NOH_LAYERS_LAYERED, &m->framebuffers[0], error);
     }
-    for (int layer = 0; layer < 3 && !result; layer++) {
+    for (int layer = 0; layer < (int)m->plan.layer_count && !result; layer++) {
         result = noh_gl_morph_framebuffer(m, layer, &m->framebuffers[layer], error);
     }
     return result;
@@ -178,7 +179,8 @@ static void list_instance(noh_gl_morph *m, uint32_t instance, uint32_t *records,
 static void clear_bound(noh_gl_morph *m)
 {
     static const float zero[4] = { 0.0f, 0.0f, 0.0f, 0.0f };
-    GLint buffers = m->plan.path == NOH_MORPH_MRT ? 3 : 1; /* clearing a layered framebuffer clears all layers */
+    GLint buffers = m->plan.path == NOH_MORPH_MRT ? (GLint)m->plan.layer_count
+                                                  : 1; /* clearing a layered framebuffer clears all layers */
     for (GLint i = 0; i < buffers; i++) {
         m->gl->ClearBufferfv(GL_COLOR, i, zero);
     }
@@ -208,7 +210,7 @@ void noh_gl_morph_update_blend(noh_gl_morph *m, noh_gl_morph_stats *stats)
 {
     static const char *const pass_names[3] = { "position", "normal", "tangent" };
     uint32_t records = 0, rect_records = 0;
-    int passes = m->plan.path == NOH_MORPH_PER_LAYER ? 3 : 1;
+    int passes = m->plan.path == NOH_MORPH_PER_LAYER ? (int)m->plan.layer_count : 1;
     for (uint32_t i = 0; i < m->plan.instance_count; i++) {
         if (m->dirty[i]) {
             list_instance(m, i, &records, &rect_records, stats);
@@ -224,7 +226,7 @@ void noh_gl_morph_update_blend(noh_gl_morph *m, noh_gl_morph_stats *stats)
     m->gl->BlendEquation(GL_FUNC_ADD);
     m->gl->BlendFunc(GL_ONE, GL_ONE);
     for (int pass = 0; pass < passes; pass++) {
-        noh_gl_group_begin(m->gl, "pass", passes == 3 ? pass_names[pass] : "all layers");
+        noh_gl_group_begin(m->gl, "pass", passes > 1 ? pass_names[pass] : "all layers");
         m->gl->BindFramebuffer(GL_FRAMEBUFFER, m->framebuffers[pass]);
         clear_tiles(m);
         if (rect_records) {

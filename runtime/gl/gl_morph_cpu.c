@@ -27,14 +27,19 @@ static void update_instance(noh_gl_morph *m, uint32_t instance, noh_gl_morph_sta
     int half = m->plan.accumulate == NOH_ACCUMULATE_F16;
     noh_morph_layers layers;
     uint32_t x, y;
-    noh_morph_layers_init(m->staging, m->staging_bytes, &mesh, &layers, NULL);
+    const size_t floats = noh_morph_layers_size(&mesh) / 12u; /* of a layer */
+    memset(m->staging, 0, 4u * floats * m->plan.layer_count);
+    layers.position = (float *)m->staging;
+    layers.normal = layers.position + floats;
+    layers.tangent = m->plan.layer_count == 3u ? layers.normal + floats : NULL;
     noh_morph_accumulate(&mesh, weights, &layers);
     if (half) {
-        narrow_to_half(m->staging, noh_morph_layers_size(&mesh) / 4u);
+        narrow_to_half(m->staging, floats * m->plan.layer_count);
     }
     noh_gl_morph_tile(m, instance, &x, &y);
     m->gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, (GLint)x, (GLint)y, 0, (GLsizei)(1u << h->morph_width_log2),
-                         (GLsizei)h->morph_height, 3, GL_RGB, half ? GL_HALF_FLOAT : GL_FLOAT, m->staging);
+                         (GLsizei)h->morph_height, (GLsizei)m->plan.layer_count, GL_RGB,
+                         half ? GL_HALF_FLOAT : GL_FLOAT, m->staging);
     stats->targets += cost.targets;
     stats->rects += cost.rects;
     stats->texels += cost.texels;

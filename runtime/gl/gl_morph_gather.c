@@ -16,6 +16,9 @@
 static noh_result create_program(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
 {
     static const char *const samplers[] = { "u_entries", "u_starts", "u_records" };
+    static const char *const defines[2][2] = {
+        { NULL, "#define LAYERS_UINT\n" }, { "#define TWO_LAYERS\n", "#define LAYERS_UINT\n#define TWO_LAYERS\n" }
+    };
     noh_gl_program_desc desc;
     memset(&desc, 0, sizeof desc);
     desc.name = "gather";
@@ -23,7 +26,7 @@ static noh_result create_program(noh_gl_morph *m, char *log, size_t log_bytes, n
     desc.fragment = &noh_shader_morph_gather_frag;
     desc.samplers = samplers;
     desc.sampler_count = 3;
-    desc.defines = m->plan.layer_format == GL_RGBA32UI ? "#define LAYERS_UINT\n" : NULL;
+    desc.defines = defines[m->plan.layer_count == 2u][m->plan.layer_format == GL_RGBA32UI];
     desc.ledger = m->ledger;
     return noh_gl_program_create(m->gl, &desc, &m->program, log, log_bytes, error);
 }

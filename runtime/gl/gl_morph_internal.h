@@ -98,8 +98,8 @@ void noh_gl_morph_update_gather(noh_gl_morph *m, noh_gl_morph_stats *stats);
 void noh_gl_morph_update_cpu(noh_gl_morph *m, noh_gl_morph_stats *stats);
 
 /* A framebuffer over the layers. which: 0 to 2 for one layer, or one of these. */
-#define NOH_LAYERS_ALL 3     /* all three as draw buffers */
-#define NOH_LAYERS_LAYERED 4 /* all three as a layered attachment */
+#define NOH_LAYERS_ALL 3     /* all as draw buffers */
+#define NOH_LAYERS_LAYERED 4 /* all as a layered attachment */
 noh_result noh_gl_morph_framebuffer(noh_gl_morph *m, int which, GLuint *framebuffer, noh_error *error);
 
 #endif

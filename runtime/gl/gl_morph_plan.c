@@ -329,7 +329,7 @@ static size_t staging_size(const noh_gl_morph_desc *desc, const noh_gl_morph_pla
     size_t bytes = 0;
     if (plan->path == NOH_MORPH_CPU) {
         for (uint32_t i = 0; i < desc->mesh_count; i++) {
-            size_t layers = noh_morph_layers_size(&desc->meshes[i]);
+            size_t layers = noh_morph_layers_size(&desc->meshes[i]) / 3u * plan->layer_count;
             bytes = layers > bytes ? layers : bytes;
         }
     } else if (plan->path == NOH_MORPH_GATHER) {
@@ -368,7 +368,7 @@ static void set_gpu_bytes(const noh_gl_morph_desc *desc, noh_gl_morph_plan *plan
     layers.format = plan->layer_format;
     layers.width = plan->atlas_width;
     layers.height = plan->atlas_height;
-    layers.layers = 3;
+    layers.layers = plan->layer_count;
     plan->layer_bytes = noh_gl_texture_bytes(&layers);
     if (plan->path == NOH_MORPH_GATHER) {
         plan->delta_bytes = noh_gl_table_bytes(GL_RGBA32UI, plan->pair_count);
@@ -397,6 +397,7 @@ noh_result noh_gl_morph_plan_make(const noh_gl_morph_desc *desc, const noh_gl_ca
         return result;
     }
     p.layer_format = layer_format(&p, caps);
+    p.layer_count = desc->without_tangents ? 2u : 3u;
     set_gpu_bytes(desc, &p);
     noh_arena_carve(&arena, sizeof(noh_gl_morph), 16);
     noh_gl_morph_carve(&arena, desc, &p, NULL);

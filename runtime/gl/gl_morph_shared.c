@@ -72,10 +72,10 @@ noh_result noh_gl_morph_framebuffer(noh_gl_morph *m, int which, GLuint *framebuf
     if (which == NOH_LAYERS_LAYERED) {
         m->gl->FramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, m->layers.name, 0);
     } else if (which == NOH_LAYERS_ALL) {
-        for (GLint layer = 0; layer < 3; layer++) {
+        for (GLint layer = 0; layer < (GLint)m->plan.layer_count; layer++) {
             m->gl->FramebufferTextureLayer(GL_FRAMEBUFFER, attachments[layer], m->layers.name, 0, layer);
         }
-        m->gl->DrawBuffers(3, attachments);
+        m->gl->DrawBuffers((GLsizei)m->plan.layer_count, attachments);
     } else {
         m->gl->FramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, m->layers.name, 0, which);
     }

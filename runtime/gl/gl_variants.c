@@ -20,7 +20,7 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
                                          int layers_uint, noh_debug_view view)
 {
     const noh_mesh_header *h = mesh->header;
-    noh_gl_variant_key key = { 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 };
+    noh_gl_variant_key key = { 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 };
     NOH_ASSERT((unsigned)view <= NOH_VIEW_LOD);
     if (skin && h->influence_count) {
         key.influences = (uint8_t)h->influence_count;
@@ -41,7 +41,7 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
 noh_gl_variant_key noh_gl_variant_key_depth(noh_gl_variant_key key, int cut)
 {
     key.view = NOH_VIEW_LIT;
-    key.encode_srgb = 0;
+    key.encode_srgb = key.two_layers = 0;
     key.depth = 1;
     key.cut = cut != 0;
     return key;
@@ -49,7 +49,7 @@ noh_gl_variant_key noh_gl_variant_key_depth(noh_gl_variant_key key, int cut)
 
 /* ---- the text before a shader's own ---- */
 
-/* All defines together take 326 bytes, so NOH_GL_DEFINES_BYTES never cuts them. */
+/* All defines together take 349 bytes, so NOH_GL_DEFINES_BYTES never cuts them. */
 static size_t put_text(char *text, size_t at, const char *more)
 {
     while (*more && at + 1u < NOH_GL_DEFINES_BYTES) {
@@ -82,6 +82,7 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
                   { key.encode_srgb, "#define NOH_ENCODE_SRGB\n" },
                   { key.fade, "#define NOH_FADE\n" },
                   { key.depth, "#define NOH_DEPTH_ONLY\n" },
+                  { key.two_layers, "#define NOH_TWO_LAYERS\n" },
                   { key.cut, "#define NOH_ALPHA_CUT\n" } };
     size_t at = put_digit(text, 0, "#define NOH_INFLUENCES ", key.influences);
     at = put_digit(text, at, "#define NOH_DRAWN ", key.drawn);

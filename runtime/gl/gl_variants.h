@@ -43,6 +43,7 @@ typedef struct noh_gl_variant_key {
     uint8_t fade;            /* 1: draws only some pixels (noh_gl_lod) */
     uint8_t encode_srgb;     /* as in noh_gl_renderer_desc */
     uint8_t depth;           /* 1: depth alone (NOH_DRAW_DEPTH): positions, and what alpha needs if cut */
+    uint8_t two_layers;      /* 1: noh_gl_morph_binding.layer_count is 2; with depth 0 */
     uint8_t cut;             /* with depth, 1: for alpha-cut materials. Without depth 0: every colour variant cuts */
 } noh_gl_variant_key;
 
@@ -59,7 +60,7 @@ typedef struct noh_gl_variant {
 #define NOH_UNIT_PALETTES 2u
 #define NOH_UNIT_USER 3u /* the first of those that are left to a game's shaders */
 
-/* The key of a mesh with these bindings; `fade`, `encode_srgb`, `depth` and `cut` are 0, for you to set.
+/* The key of a mesh with these bindings; `fade`, `encode_srgb`, `two_layers`, `depth` and `cut` are 0, for you to set.
  * skin   NULL: a rigid mesh, or the bind pose. Not NULL, and in a texture, for a crowd
  * crowd  1: for noh_gl_draw_crowd */
 noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin_binding *skin, int crowd,

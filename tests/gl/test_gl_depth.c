@@ -217,7 +217,7 @@ static void check(const tube_kind *k)
     assert_int_equal((mesh.header->flags & NOH_MESH_DUAL_QUATERNION) != 0, k->dual);
     if (k->is_uint) caps.render_f32 = caps.blend_f32 = 0;
     tube_open_with(&t, &mesh, k->uniform ? NOH_PALETTE_UNIFORM : NOH_PALETTE_TEXTURE,
-                   k->is_uint ? NOH_MORPH_GATHER : NOH_MORPH_CPU, &caps);
+                   k->is_uint ? NOH_MORPH_GATHER : NOH_MORPH_CPU, 0, &caps);
     for (int kind = RIGID; kind <= (k->uniform ? FEWER : CROWD); kind++) {
         for (uint32_t level = 0; level < 2; level++) {
             expect_same(&t, k, (draw_kind)kind, &wholes[level], 1);

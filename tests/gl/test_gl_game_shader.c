@@ -52,7 +52,7 @@ static void open_tube(tube *t, uint8_t **bytes, noh_pack *pack, const tube_kind 
     mesh = test_mesh(pack, 0);
     if (k->is_uint) caps.render_f32 = caps.blend_f32 = 0;
     tube_open_with(t, &mesh, k->uniform ? NOH_PALETTE_UNIFORM : NOH_PALETTE_TEXTURE,
-                   k->is_uint ? NOH_MORPH_GATHER : NOH_MORPH_CPU, &caps);
+                   k->is_uint ? NOH_MORPH_GATHER : NOH_MORPH_CPU, 0, &caps);
 }
 
 static noh_gl_renderer_desc desc_of(const tube *t, const tube_kind *k, const noh_gl_shader_desc *shaders)

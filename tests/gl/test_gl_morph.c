@@ -1,5 +1,5 @@
-/* Accumulation on the GPU: every path and format against the CPU reference, value for value;
- * what is not accumulated again; and what happens when capabilities are missing. */
+/* Accumulation on the GPU: every path and format, of three layers and of two, against the CPU reference, value for
+ * value; what is not accumulated again; and what happens when capabilities are missing. */
 #include "support/gl_fixture.h"
 
 #include <math.h>
@@ -36,12 +36,13 @@ static noh_gl_morph_desc desc_of(fixture_way way)
 }
 
 /* Open an accumulator in this way, or say that it cannot run here. */
-static int open_way(fixture_morph *m, noh_gl_morph_desc *desc, fixture_way way)
+static int open_way(fixture_morph *m, noh_gl_morph_desc *desc, fixture_way way, int without_tangents)
 {
     noh_gl_morph_plan plan;
     noh_error error = { NOH_OK, "", 0, 0 };
     gpu *g = fixture_gpu();
     *desc = desc_of(way);
+    desc->without_tangents = without_tangents;
     if (noh_gl_morph_plan_make(desc, &g->caps, &plan, &error) == NOH_ERR_UNSUPPORTED) {
         print_message("# %s is not here: %s\n", fixture_way_name(way), error.what);
         return 0;
@@ -55,17 +56,18 @@ typedef void (*way_test)(fixture_morph *m);
 static void for_every_way(way_test test)
 {
     int ran = 0;
-    for (int i = 0; i < FIXTURE_WAYS; i++) {
+    for (int i = 0; i < 2 * FIXTURE_WAYS; i++) {
         noh_gl_morph_desc desc;
         fixture_morph m;
-        if (open_way(&m, &desc, fixture_ways[i])) {
+        if (open_way(&m, &desc, fixture_ways[i / 2], i % 2)) {
+            assert_int_equal(m.plan.layer_count, i % 2 ? 2 : 3);
             test(&m);
             fixture_morph_close(&m);
             fixture_expect_no_errors();
             ran++;
         }
     }
-    assert_in_range(ran, 2, FIXTURE_WAYS); /* the CPU's two run everywhere */
+    assert_in_range(ran, 4, 2 * FIXTURE_WAYS); /* the CPU's two, each with and without tangents, run everywhere */
 }
 
 static noh_gl_morph_stats update(fixture_morph *m)
@@ -77,7 +79,7 @@ static noh_gl_morph_stats update(fixture_morph *m)
 
 static uint32_t passes_of(const fixture_morph *m)
 {
-    return m->plan.path == NOH_MORPH_CPU ? 0 : m->plan.path == NOH_MORPH_PER_LAYER ? 3 : 1;
+    return m->plan.path == NOH_MORPH_CPU ? 0 : m->plan.path == NOH_MORPH_PER_LAYER ? m->plan.layer_count : 1;
 }
 
 static void set_all_random(fixture_morph *m, test_random *r)
@@ -167,7 +169,7 @@ static void check_fetched(fixture_morph *m)
     update(m);
     layers.position = fixture_reference(m, instance, &exact);
     layers.normal = layers.position + noh_morph_layers_size(mesh) / 12;
-    layers.tangent = layers.normal + noh_morph_layers_size(mesh) / 12;
+    layers.tangent = m->plan.layer_count == 3 ? layers.normal + noh_morph_layers_size(mesh) / 12 : NULL;
     assert_int_equal(noh_gl_mesh_create(&g->gl, &ledger, mesh, &gl_mesh, NULL), NOH_OK);
     assert_int_equal(readback_open(&back, g, binding.is_uint), 0);
     assert_int_equal(readback_vertices(&back, &gl_mesh, &binding, positions, normals, tangents), 0);
@@ -768,14 +770,46 @@ static void a_forced_path_says_so(void **state)
 }
 
 /* The gather path needs no extension at all: the floats' bits in RGBA32UI. */
-static void gather_works_on_core_es3(void **state)
+/* On every path and with every format, the accumulation texels are two thirds of what they are with tangents, and on
+ * the CPU's, the staging memory too; everything else stays as it is. */
+static void a_third_is_saved_without_tangents(void **state)
+{
+    gpu *g = fixture_gpu();
+    (void)state;
+    for (int i = 0; i < 2 * FIXTURE_WAYS; i++) {
+        noh_gl_morph_desc desc = desc_of(fixture_ways[i / 2]);
+        noh_gl_caps caps = g->caps;
+        noh_gl_morph_plan three, two;
+        if (i % 2) clear_cap(&caps, "render_f32"); /* RGBA32UI */
+        if (noh_gl_morph_plan_make(&desc, &caps, &three, NULL) != NOH_OK) {
+            continue;
+        }
+        desc.without_tangents = 1;
+        assert_int_equal(noh_gl_morph_plan_make(&desc, &caps, &two, NULL), NOH_OK);
+        assert_int_equal(two.layer_format, three.layer_format);
+        assert_true(three.layer_bytes > 0 && two.layer_bytes * 3u == three.layer_bytes * 2u);
+        assert_int_equal(three.gpu_bytes - two.gpu_bytes, three.layer_bytes - two.layer_bytes);
+        if (two.path == NOH_MORPH_CPU) {
+            uint64_t layer = 0; /* of the mesh with the largest layers, which the staging memory holds */
+            for (uint32_t m = 0; m < FIXTURE_MESHES; m++) {
+                const uint64_t bytes = noh_morph_layers_size(&set.meshes[m]) / 3u;
+                layer = bytes > layer ? bytes : layer;
+            }
+            assert_in_range(three.cpu_bytes - two.cpu_bytes, layer - 12u, layer + 12u); /* alignment */
+        } else {
+            assert_int_equal(three.cpu_bytes, two.cpu_bytes);
+        }
+    }
+}
+
+static void gather_works_on_core_es3_with(int without_tangents)
 {
     const fixture_way way = { NOH_MORPH_GATHER, NOH_ACCUMULATE_F32 };
     noh_gl_morph_desc desc = desc_of(way);
     noh_gl_caps caps = fixture_gpu()->caps;
     test_random r = test_random_from(73);
     fixture_morph m;
-    (void)state;
+    desc.without_tangents = without_tangents;
     clear_cap(&caps, "layered blend_f32 blend_f16 render_f32 render_f16");
     fixture_morph_open(&m, &desc, &caps);
     assert_int_equal(m.plan.layer_format, GL_RGBA32UI);
@@ -787,6 +821,13 @@ static void gather_works_on_core_es3(void **state)
     }
     fixture_morph_close(&m);
     fixture_expect_no_errors();
+}
+
+static void gather_works_on_core_es3(void **state)
+{
+    (void)state;
+    gather_works_on_core_es3_with(0);
+    gather_works_on_core_es3_with(1);
 }
 
 static const struct CMUnitTest tests[] = {
@@ -812,6 +853,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(automatic_takes_the_cpu_on_a_software_rasteriser),
     cmocka_unit_test(automatic_spares_mali_the_blending),
     cmocka_unit_test(a_forced_path_says_so),
+    cmocka_unit_test(a_third_is_saved_without_tangents),
     cmocka_unit_test(gather_works_on_core_es3),
 };
 

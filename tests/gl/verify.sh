@@ -30,6 +30,11 @@ for seed in 2 3; do
 done
 options=
 
+options=--without-tangents
+verify 'the mask without tangents' "$build/mask.noh"
+verify 'the mask with levels, without tangents' "$build/mask_levels.noh"
+options=
+
 # Vertices that name their delta texels themselves: with LOD levels, and split by palettes.
 verify 'the mask with levels' "$build/mask_levels.noh"
 noh build "$build/demo/puppet.glb" -o "$work/split.noh" --quiet --only mesh --palette 6
@@ -93,6 +98,10 @@ if grep -q '"driver": "llvmpipe' "$work/out"; then
     verify 'bare ES 3.0' "$build/mask.noh" MESA_GLES_VERSION_OVERRIDE=3.0 \
         MESA_EXTENSION_OVERRIDE='-GL_EXT_color_buffer_float -GL_EXT_color_buffer_half_float -GL_EXT_float_blend -GL_EXT_geometry_shader -GL_OES_geometry_shader'
     missing RGBA32F
+    options=--without-tangents
+    verify 'bare ES 3.0 without tangents' "$build/mask.noh" MESA_GLES_VERSION_OVERRIDE=3.0 \
+        MESA_EXTENSION_OVERRIDE='-GL_EXT_color_buffer_float -GL_EXT_color_buffer_half_float -GL_EXT_float_blend -GL_EXT_geometry_shader -GL_OES_geometry_shader'
+    options=
     if [ -f "$work/skin.noh" ]; then
         verify 'a skin on bare ES 3.0' "$work/skin.noh" MESA_GLES_VERSION_OVERRIDE=3.0 \
             MESA_EXTENSION_OVERRIDE='-GL_EXT_color_buffer_float -GL_EXT_color_buffer_half_float -GL_EXT_float_blend'

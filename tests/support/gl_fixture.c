@@ -181,7 +181,8 @@ float *fixture_reference(const fixture_morph *m, uint32_t instance, int *exact)
     noh_half_mode mode = blended                         ? m->caps.f16_blend_mode
                          : m->plan.path == NOH_MORPH_CPU ? NOH_HALF_RNE
                                                          : m->caps.f16_store_mode;
-    float *block = layers.position; /* test_layers: never NULL, even for no texels */
+    float *block = layers.position;                                    /* test_layers: never NULL, even for no texels */
+    layers.tangent = m->plan.layer_count == 3 ? layers.tangent : NULL; /* else zeros, as readback_layers gives */
     if (m->plan.accumulate == NOH_ACCUMULATE_F32) {
         noh_morph_accumulate_scalar(mesh, m->weights[instance], &layers);
         *exact = !blended || m->caps.blend_f32_exact;

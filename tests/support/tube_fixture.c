@@ -43,7 +43,8 @@ static void pose(tube *t)
     free(matrices);
 }
 
-void tube_open_with(tube *t, const noh_mesh *mesh, noh_palette_mode mode, noh_morph_path path, const noh_gl_caps *caps)
+void tube_open_with(tube *t, const noh_mesh *mesh, noh_palette_mode mode, noh_morph_path path, int without_tangents,
+                    const noh_gl_caps *caps)
 {
     gpu *g = fixture_gpu();
     noh_gl_skin_desc desc;
@@ -55,6 +56,7 @@ void tube_open_with(tube *t, const noh_mesh *mesh, noh_palette_mode mode, noh_mo
     t->morph_desc.mesh_count = desc.mesh_count = 1;
     t->morph_desc.instance_counts = desc.instance_counts = &copies;
     t->morph_desc.path = path;
+    t->morph_desc.without_tangents = without_tangents;
     desc.mode = mode;
     fixture_morph_open(&t->morph, &t->morph_desc, caps);
     assert_int_equal(noh_gl_skin_plan_make(&desc, &g->caps, &t->plan, NULL), NOH_OK);
@@ -68,7 +70,7 @@ void tube_open_with(tube *t, const noh_mesh *mesh, noh_palette_mode mode, noh_mo
 
 void tube_open(tube *t, const noh_mesh *mesh, noh_palette_mode mode)
 {
-    tube_open_with(t, mesh, mode, NOH_MORPH_CPU, NULL);
+    tube_open_with(t, mesh, mode, NOH_MORPH_CPU, 0, NULL);
 }
 
 void tube_close(tube *t)

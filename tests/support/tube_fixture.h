@@ -20,8 +20,10 @@ typedef struct tube {
 
 /* Upload, morph and pose the copies of a mesh of three targets, on the morph path cpu. */
 void tube_open(tube *t, const noh_mesh *mesh, noh_palette_mode mode);
-/* The same with a path, and with capabilities that may differ from what the GPU has; NULL: what it has. */
-void tube_open_with(tube *t, const noh_mesh *mesh, noh_palette_mode mode, noh_morph_path path, const noh_gl_caps *caps);
+/* The same with a path, with layers of tangents or without, and with capabilities that may differ from what the GPU
+ * has; NULL: what it has. */
+void tube_open_with(tube *t, const noh_mesh *mesh, noh_palette_mode mode, noh_morph_path path, int without_tangents,
+                    const noh_gl_caps *caps);
 void tube_close(tube *t);
 
 /* Sees all copies. */

@@ -86,6 +86,22 @@ static void random_loose_weights(test_random *r, float weights[TARGETS])
     weights[test_random_below(r, TARGETS)] = test_random_float(r, -40.0f, 40.0f);
 }
 
+/* Two layers have the bits of the first two of three, and the third is left alone. */
+static void expect_two_layers(const noh_mesh *mesh, const float *weights, accumulate_function accumulate,
+                              const noh_morph_layers *three)
+{
+    const size_t floats = noh_morph_layers_size(mesh) / 12u;
+    noh_morph_layers two = test_layers(mesh);
+    const float *third = two.tangent;
+    two.tangent = NULL;
+    accumulate(mesh, weights, &two);
+    test_same_floats(two.position, three->position, 2u * floats, "two layers");
+    for (size_t i = 0; i < floats; i++) {
+        assert_true(third[i] == 0.0f);
+    }
+    free(two.position);
+}
+
 static void compare_with_scalar(accumulate_function accumulate, const char *name)
 {
     test_random r = test_random_from(21);
@@ -100,6 +116,7 @@ static void compare_with_scalar(accumulate_function accumulate, const char *name
         noh_morph_accumulate_scalar(&m.mesh, weights, &expected);
         accumulate(&m.mesh, weights, &got);
         test_same_floats(got.position, expected.position, noh_morph_layers_size(&m.mesh) / 4, name);
+        expect_two_layers(&m.mesh, weights, accumulate, &expected);
         free(expected.position);
         free(got.position);
         free(m.texels);
@@ -409,6 +426,54 @@ static void check_vertex(const noh_mesh *mesh, const noh_morph_layers *layers, u
     assert_true(got.tangent[3] == rest.tangent[3]);
 }
 
+static void accumulate_rne(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers)
+{
+    noh_morph_accumulate_f16(mesh, weights, NOH_HALF_RNE, layers);
+}
+
+static void accumulate_and_round(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers)
+{
+    noh_morph_accumulate(mesh, weights, layers);
+    noh_morph_round_f16(mesh, NOH_HALF_RTZ, layers);
+}
+
+/* Without a layer of tangents: the same positions and normals in every format, and the bind pose's tangent made
+ * perpendicular to the normal, as if no target moved it. */
+static void tangents_can_be_left_out(void **state)
+{
+    test_random r = test_random_from(37);
+    packed p;
+    (void)state;
+    open_packed(&p, 37);
+    for (int round = 0; round < 10; round++) {
+        noh_morph_layers three = test_layers(&p.mesh), two;
+        const size_t floats = noh_morph_layers_size(&p.mesh) / 12u;
+        float weights[8];
+        for (uint32_t t = 0; t < 8; t++) {
+            weights[t] = test_random_float(&r, -1.0f, 1.0f);
+        }
+        noh_morph_accumulate_scalar(&p.mesh, weights, &three);
+        expect_two_layers(&p.mesh, weights, noh_morph_accumulate_scalar, &three);
+        memset(three.position, 0, 12u * floats);
+        accumulate_rne(&p.mesh, weights, &three);
+        expect_two_layers(&p.mesh, weights, accumulate_rne, &three);
+        memset(three.position, 0, 12u * floats);
+        accumulate_and_round(&p.mesh, weights, &three);
+        expect_two_layers(&p.mesh, weights, accumulate_and_round, &three);
+        two = three;
+        two.tangent = NULL;
+        memset(three.tangent, 0, 4u * floats);
+        for (uint32_t v = 0; v < p.mesh.header->vertex_count; v++) {
+            noh_vertex got, want;
+            noh_morph_vertex(&p.mesh, &two, v, &got);
+            noh_morph_vertex(&p.mesh, &three, v, &want);
+            assert_memory_equal(&got, &want, sizeof got);
+        }
+        free(three.position);
+    }
+    close_packed(&p);
+}
+
 static void vertices_agree_with_double_precision(void **state)
 {
     test_random r = test_random_from(31);
@@ -525,6 +590,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(costs_are_those_of_the_active_targets),
     cmocka_unit_test(shifts_of_negative_words_are_arithmetic),
     cmocka_unit_test(vertices_agree_with_double_precision),
+    cmocka_unit_test(tangents_can_be_left_out),
     cmocka_unit_test(positions_stay_within_the_certified_error),
     cmocka_unit_test(certified_errors_are_within_the_error_asked_for),
     cmocka_unit_test(half_floats_stay_within_the_bound_of_the_pack),

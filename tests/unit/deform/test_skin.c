@@ -102,12 +102,13 @@ static void check_simd(const skin_cylinder *c, const skin_options *options, skin
     made x = make(c, options);
     noh_morph_layers layers = test_layers(&x.mesh);
     const float weights[2] = { 0.7f, -0.4f };
+    const noh_morph_layers two = { layers.position, layers.normal, NULL }, *all[3] = { NULL, &layers, &two };
     uint32_t vertices = x.mesh.header->vertex_count;
     noh_morph_accumulate(&x.mesh, weights, &layers);
     for (int k = 0; k < 12; k++) {
         uint32_t first = k ? test_random_below(&r, vertices) : 0;
         random_matrices(&x, &r);
-        compare_range(&x, function, k % 2 ? &layers : NULL, first,
+        compare_range(&x, function, all[k % 3], first,
                       k < 2 ? vertices - first : test_random_below(&r, vertices - first + 1u));
     }
     free(layers.position);

@@ -63,8 +63,11 @@ static void target_close(const noh_gl_api *gl, bit_target *t)
 }
 
 static int create_program(gpu *g, const noh_gl_source *vertex, const noh_gl_source *fragment, int is_uint,
-                          GLuint *program)
+                          int two_layers, GLuint *program)
 {
+    static const char *const defines[2][2] = { { NULL, "#define NOH_LAYERS_UINT\n" },
+                                               { "#define NOH_TWO_LAYERS\n",
+                                                 "#define NOH_LAYERS_UINT\n#define NOH_TWO_LAYERS\n" } };
     static const char *const samplers[] = { "noh_layers" };
     noh_gl_program_desc desc;
     noh_error error = { NOH_OK, "", 0, 0 };
@@ -73,7 +76,7 @@ static int create_program(gpu *g, const noh_gl_source *vertex, const noh_gl_sour
     desc.name = "readback";
     desc.vertex = vertex;
     desc.fragment = fragment;
-    desc.defines = is_uint ? "#define NOH_LAYERS_UINT\n" : NULL;
+    desc.defines = defines[two_layers][is_uint];
     desc.samplers = samplers;
     desc.sampler_count = 1;
     if (noh_gl_program_create(&g->gl, &desc, program, log, sizeof log, &error)) {
@@ -89,14 +92,16 @@ int readback_open(readback *r, gpu *g, int is_uint)
     memset(r, 0, sizeof *r);
     r->g = g;
     r->is_uint = is_uint;
-    status = create_program(g, &noh_shader_full_screen_vert, &noh_shader_read_layers_frag, is_uint, &r->layers_program);
+    status = create_program(g, &noh_shader_full_screen_vert, &noh_shader_read_layers_frag, is_uint, 0,
+                            &r->layers_programs[0]);
     g->gl.GenVertexArrays(1, &r->vertex_array);
     return status;
 }
 
 void readback_close(readback *r)
 {
-    noh_gl_program_delete(&r->g->gl, NULL, &r->layers_program);
+    noh_gl_program_delete(&r->g->gl, NULL, &r->layers_programs[0]);
+    noh_gl_program_delete(&r->g->gl, NULL, &r->layers_programs[1]);
     noh_gl_variant_delete(&r->g->gl, NULL, &r->variant);
     r->g->gl.DeleteVertexArrays(1, &r->vertex_array);
 }
@@ -128,14 +133,22 @@ int readback_layers(readback *r, const noh_mesh *mesh, const noh_gl_morph_bindin
 {
     uint32_t width = 1u << mesh->header->morph_width_log2, height = mesh->header->morph_height;
     size_t texels = (size_t)width * height;
+    const int two = binding->layer_count == 2;
     bit_target t;
-    int status;
+    int status = 0;
     if (!texels) {
         return 0;
     }
+    if (!r->layers_programs[two]) {
+        status = create_program(r->g, &noh_shader_full_screen_vert, &noh_shader_read_layers_frag, r->is_uint, two,
+                                &r->layers_programs[two]);
+    }
+    if (status) {
+        return status;
+    }
     status = target_open(&r->g->gl, &t, width, height);
     if (!status) {
-        use(r, r->layers_program, binding);
+        use(r, r->layers_programs[two], binding);
         r->g->gl.BindVertexArray(r->vertex_array);
         r->g->gl.DrawArrays(GL_TRIANGLES, 0, 3);
         for (unsigned i = 0; i < 3 && !status; i++) {

@@ -8,7 +8,8 @@
 typedef struct readback {
     gpu *g;
     int is_uint;
-    GLuint layers_program, vertex_array;
+    GLuint layers_programs[2]; /* of three layers; of two, made when it is needed */
+    GLuint vertex_array;
     noh_gl_variant variant; /* with which vertices were read last */
 } readback;
 
@@ -16,7 +17,7 @@ int readback_open(readback *r, gpu *g, int is_uint);
 void readback_close(readback *r);
 
 /* An instance's accumulated deltas, as the vertex shader fetches them:
- * out[3][morph_height << morph_width_log2][3]. */
+ * out[3][morph_height << morph_width_log2][3]; the third layer is zeros where there are two. */
 int readback_layers(readback *r, const noh_mesh *mesh, const noh_gl_morph_binding *binding, float *out);
 
 /* A vertex as mesh.vert leaves it, before the camera. */

@@ -83,9 +83,11 @@ int readback_skinned(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_bi
     uint32_t count = crowd ? crowd : 1u, palettes = skin ? mesh->mesh.header->palette_count : 0, palette = 0;
     GLuint buffer;
     GLenum error;
-    int status = use_variant(
-            r, noh_gl_variant_key_of(&mesh->mesh, skin, crowd != 0, morph && morph->is_uint, NOH_VIEW_LIT)),
-        lost;
+    noh_gl_variant_key key = noh_gl_variant_key_of(&mesh->mesh, skin, crowd != 0, morph && morph->is_uint,
+                                                   NOH_VIEW_LIT);
+    int status, lost;
+    key.two_layers = morph && morph->layer_count == 2;
+    status = use_variant(r, key);
     if (!status && !gpu_gives_vertices(gl)) {
         status = tool_fail("readback", "this driver has no transform feedback");
     }

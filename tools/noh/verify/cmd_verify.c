@@ -43,7 +43,7 @@ static int verify_load(verify_job *job)
 typedef struct verify_args {
     const char *pack, *anim, *driver;
     double seed, instances, lod, bound_scale;
-    int as_json;
+    int without_tangents, as_json;
 } verify_args;
 
 static int verify_scene(verify_job *job, const verify_args *a, uint32_t level)
@@ -75,6 +75,7 @@ static int run(void *args)
         return tool_usage("--bound-scale wants a number over 0");
     }
     job.bound_scale = a->bound_scale;
+    job.without_tangents = a->without_tangents;
     job.state = 0x9e3779b97f4a7c15ull ^ (uint64_t)fabs(a->seed) << 20;
     status = pack_file_open(&job.file, a->pack);
     if (status) {
@@ -108,6 +109,10 @@ static const option options[] = {
       .what =
           "multiply the bounds of skinned vertices by this, over 0: to see how close errors come, or the check fail",
       .example = "0.1" },
+    { .name = "--without-tangents",
+      .kind = OPTION_FLAG,
+      .at = offsetof(verify_args, without_tangents),
+      .what = "accumulate positions and normals alone, on every path" },
     OPTION_INSTANCES(verify_args, instances, "1",
                      .what = "copies of the scene whose memory is compared with the budget, 1 to 65536"),
     OPTION_LOD(verify_args, lod, .needs = NULL),

@@ -27,6 +27,7 @@ typedef struct verify_job {
     verify_row rows[16];
     int row_count, failed;
     double bound_scale;         /* of skinned vertices */
+    int without_tangents;       /* accumulators of two layers */
     const char *memory_failure; /* NULL: memory was as predicted */
     load_options load;          /* of the load whose memory is compared with its budget */
     uint64_t gpu_predicted, gpu_used, cpu_predicted, cpu_used;

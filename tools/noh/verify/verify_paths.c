@@ -48,10 +48,11 @@ static int reference(const verify_job *job, const noh_gl_morph_plan *plan, const
     return job->g.caps.f16_blend_mode != NOH_HALF_UNKNOWN;
 }
 
-static void compare_layers(verify_row *row, const noh_mesh *mesh, const float *got, const float *expected)
+static void compare_layers(const verify_job *job, verify_row *row, const noh_mesh *mesh, const float *got,
+                           const float *expected)
 {
     size_t texels = (size_t)mesh->header->morph_height << mesh->header->morph_width_log2;
-    for (size_t layer = 0; layer < 3; layer++) {
+    for (size_t layer = 0; layer < (job->without_tangents ? 2u : 3u); layer++) {
         for (size_t i = 0; i < 3 * (size_t)mesh->header->touched_count; i++) {
             size_t at = layer * texels * 3 + i;
             row->values += 1;
@@ -119,6 +120,13 @@ static void buffers_close(verify_buffers *b)
     free(b->tangents);
 }
 
+static void clear_layers(const verify_job *job, void *memory, size_t bytes, const noh_mesh *mesh,
+                         noh_morph_layers *layers)
+{
+    noh_morph_layers_init(memory, bytes, mesh, layers, NULL);
+    layers->tangent = job->without_tangents ? NULL : layers->tangent;
+}
+
 /* One mesh, one path: several sets of weights. */
 static int verify_mesh(verify_job *job, gpu_morph *m, readback *r, uint32_t mesh_index, const noh_gl_mesh *gl_mesh,
                        verify_row *row)
@@ -133,8 +141,8 @@ static int verify_mesh(verify_job *job, gpu_morph *m, readback *r, uint32_t mesh
     for (int round = 0; round < ROUNDS && !status; round++) {
         noh_morph_layers expected, exact;
         random_weights(&job->state, round, b.weights, mesh->header->target_count);
-        noh_morph_layers_init(b.expected, bytes + 16, mesh, &expected, NULL);
-        noh_morph_layers_init(b.exact, bytes + 16, mesh, &exact, NULL);
+        clear_layers(job, b.expected, bytes + 16, mesh, &expected);
+        clear_layers(job, b.exact, bytes + 16, mesh, &exact);
         row->exact &= reference(job, plan, mesh, b.weights, &expected);
         noh_morph_accumulate_scalar(mesh, b.weights, &exact);
         noh_gl_morph_set_weights(m->morph, instance, b.weights, NULL);
@@ -144,7 +152,7 @@ static int verify_mesh(verify_job *job, gpu_morph *m, readback *r, uint32_t mesh
             status = readback_vertices(r, gl_mesh, &binding, b.positions, b.normals, b.tangents);
         }
         if (!status) {
-            compare_layers(row, mesh, b.got, b.expected);
+            compare_layers(job, row, mesh, b.got, b.expected);
             compare_vertices(row, mesh, &expected, b.positions, b.normals);
             measure_f16(row, mesh, b.got, b.exact);
         }
@@ -201,6 +209,7 @@ static int verify_path(verify_job *job, noh_morph_path path, noh_accumulate accu
     desc.mesh_count = job->file.pack.mesh_count;
     desc.path = path;
     desc.accumulate = accumulate;
+    desc.without_tangents = job->without_tangents;
     if (noh_gl_morph_plan_make(&desc, &job->g.caps, &plan, &error)) {
         row->reason = error.what;
         return 0;
@@ -245,11 +254,11 @@ static int verify_simd(verify_job *job)
         for (int round = 0; round < ROUNDS && !status; round++) {
             noh_morph_layers expected, got;
             random_weights(&job->state, round, b.weights, mesh->header->target_count);
-            noh_morph_layers_init(b.expected, bytes + 16, mesh, &expected, NULL);
-            noh_morph_layers_init(b.got, bytes + 16, mesh, &got, NULL);
+            clear_layers(job, b.expected, bytes + 16, mesh, &expected);
+            clear_layers(job, b.got, bytes + 16, mesh, &got);
             noh_morph_accumulate_scalar(mesh, b.weights, &expected);
             noh_morph_accumulate(mesh, b.weights, &got);
-            compare_layers(row, mesh, b.got, (float *)b.expected);
+            compare_layers(job, row, mesh, b.got, (float *)b.expected);
         }
         buffers_close(&b);
     }
