@@ -292,13 +292,13 @@ void web_playback_bounds(web_playback *play, float box[6])
     noh_box_empty(box);
     for (uint32_t i = 0; i < play->scene->item_count; i++) {
         const web_item *item = &play->scene->items[i];
-        const noh_mesh *mesh = &play->scene->meshes[item->mesh];
+        const noh_mesh mesh = noh_mesh_at_lod(&play->scene->meshes[item->mesh], NOH_LOD_LEVELS_MAX); /* as the tool */
         const float *world = web_scene_world(play->scene, item);
         int is_skinned = web_playback_matrices(play, item);
-        for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
+        for (uint32_t v = 0; v < mesh.header->vertex_count; v++) {
             float skinned[3];
-            if (is_skinned) noh_skin_position(mesh, play->matrices, NULL, v, skinned);
-            grow(box, world, is_skinned ? skinned : mesh->positions + 3 * (size_t)v);
+            if (is_skinned) noh_skin_position(&mesh, play->matrices, NULL, v, skinned);
+            grow(box, world, is_skinned ? skinned : mesh.positions + 3 * (size_t)v);
         }
     }
 }

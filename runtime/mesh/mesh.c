@@ -5,11 +5,16 @@
 #include "base/hash.h"
 #include "base/math_internal.h"
 
-/* Point a view at a level's header. The headers of a mesh's levels lie at the chunk's start, so header - level is the
- * chunk; the offsets of every level count from there. */
+/* The headers of a mesh's levels lie at the chunk's start; the offsets of every level count from there. */
+static const noh_mesh_header *chunk_of(const noh_mesh_header *h)
+{
+    return h - (h->level - h->level_first);
+}
+
+/* Point a view at a level's header. */
 static void view_of(const noh_mesh_header *h, noh_mesh *mesh)
 {
-    const uint8_t *chunk = (const uint8_t *)(h - h->level);
+    const uint8_t *chunk = (const uint8_t *)chunk_of(h);
     mesh->header = h;
     mesh->positions = (const float *)(const void *)(chunk + h->positions_offset);
     mesh->attributes = chunk + h->attributes_offset;
@@ -43,10 +48,24 @@ noh_result noh_pack_mesh_at(const noh_pack *pack, uint32_t index, noh_mesh *mesh
 noh_mesh noh_mesh_at_lod(const noh_mesh *mesh, uint32_t level)
 {
     noh_mesh other = *mesh;
-    const uint32_t last = mesh->header->level_count - 1u;
-    NOH_ASSERT(mesh->header->level <= last);
-    view_of(mesh->header - mesh->header->level + (level < last ? level : last), &other);
+    const uint32_t first = mesh->header->level_first, last = mesh->header->level_count - 1u;
+    NOH_ASSERT(mesh->header->level >= first && mesh->header->level <= last);
+    level = level < first ? first : level < last ? level : last;
+    view_of(chunk_of(mesh->header) + (level - first), &other);
     return other;
+}
+
+uint32_t noh_mesh_source(const noh_mesh *mesh)
+{
+    const noh_pack *pack = mesh->pack;
+    const uint8_t *chunk = (const uint8_t *)chunk_of(mesh->header);
+    if (mesh->header->level_first) {
+        return mesh->header->source_crc;
+    }
+    for (uint32_t i = pack->first_mesh; i < pack->first_mesh + pack->mesh_count; i++) {
+        if (pack->bytes + pack->chunks[i].offset == chunk) return pack->chunks[i].crc;
+    }
+    return 0;
 }
 
 noh_result noh_pack_skin_at(const noh_pack *pack, uint32_t index, noh_skin *skin, noh_error *error)

@@ -47,14 +47,19 @@ typedef struct noh_vertex {
     float color[4]; /* linear; white without colours */
 } noh_vertex;
 
-/* The n-th mesh, at level 0.
+/* The n-th mesh, at the finest level that the pack has: 0, unless finer ones were left out (`noh strip`).
  * errors  NOT_FOUND  past mesh_count (where: the index, need: the count); *mesh is untouched */
 noh_result noh_pack_mesh_at(const noh_pack *pack, uint32_t index, noh_mesh *mesh, noh_error *error);
 
-/* The same mesh at a LOD level: 0 is the full one, past the last it is the coarsest. Levels are absolute, whichever
- * level `mesh` is at. The result is a mesh like any other: what is made from it (accumulators, skinned vertices, GL
- * buffers) has that level's size and can show every coarser level too. */
+/* The same mesh at a LOD level: 0 is the full one. Past the last it is the coarsest, and for one that the pack lacks it
+ * is the finest there is. Levels are absolute, whichever level `mesh` is at. The result is a mesh like any other: what
+ * is made from it (accumulators, skinned vertices, GL buffers) has that level's size and can show every coarser level
+ * too. */
 noh_mesh noh_mesh_at_lod(const noh_mesh *mesh, uint32_t level);
+
+/* Which full mesh this is a level of: equal in a pack and in what was stripped from it, so that a device that has the
+ * coarse levels knows whose finer ones fit. The CRC-32C of the mesh's chunk with all levels. */
+uint32_t noh_mesh_source(const noh_mesh *mesh);
 
 /* The n-th skin; a mesh names its own in header->skin.
  * errors  NOT_FOUND  past skin_count, so also for NOH_NONE, a rigid mesh's (where: the index, need: the count) */

@@ -66,6 +66,16 @@ noh_result noh_check_target_sums(const noh_check *check, const noh_mesh_header *
  * share. Comes before the arrays. */
 noh_result noh_check_level_headers(noh_check *check, const noh_mesh_header *h);
 
+/* The levels that a mesh has in the pack, and so headers in its chunk; and where in the chunk a level's lies. */
+static inline uint32_t noh_check_levels_there(const noh_mesh_header *h)
+{
+    return h->level_count - h->level_first;
+}
+static inline uint64_t noh_check_level_at(const noh_mesh_header *h)
+{
+    return (uint64_t)(h->level - h->level_first) * sizeof *h;
+}
+
 /* Sums over all levels of a mesh, of the arrays that each level has a part of. */
 typedef struct noh_level_sums {
     uint64_t indices, submeshes;

@@ -6,7 +6,7 @@
 
 /* ---- headers ---- */
 
-/* A level's header with the fields in which levels differ replaced by the full mesh's: what is left must be equal to
+/* A level's header with the fields in which levels differ replaced by the finest one's: what is left must be equal to
  * it. */
 static noh_mesh_header as_full(const noh_mesh_header *l, const noh_mesh_header *h)
 {
@@ -40,7 +40,7 @@ static noh_result check_level_counts(const noh_check *check, const noh_mesh_head
         { offsetof(noh_mesh_header, pair_count), l->pair_count > finer->pair_count },
     };
     return noh_check_fields(check, counts, sizeof counts / sizeof counts[0],
-                            "LOD level has more of something than the finer one", (uint64_t)l->level * sizeof *l);
+                            "LOD level has more of something than the finer one", noh_check_level_at(l));
 }
 
 /* The byte in a header of the first field in which two headers differ; their size where they are the same. Headers are
@@ -53,21 +53,23 @@ static size_t find_difference(const noh_mesh_header *a, const noh_mesh_header *b
     return at;
 }
 
-/* What all levels share is in each of their headers. Where levels 1 and 2 agree and differ from the full mesh, its
+/* What all levels share is in each of their headers. Where the second and third agree and differ from the first, its
  * field is named, else that of the level. */
 static noh_result check_shared(const noh_check *check, const noh_mesh_header *h, uint32_t k)
 {
-    const noh_mesh_header same = as_full(&h[k], h), next = as_full(&h[k + 1u < h->level_count ? k + 1u : k], h);
+    const uint32_t count = noh_check_levels_there(h);
+    const noh_mesh_header same = as_full(&h[k], h), next = as_full(&h[k + 1u < count ? k + 1u : k], h);
     const uint64_t start = (uint64_t)k * sizeof *h;
     const size_t at = find_difference(&same, h);
-    if (h[k].level != k) {
+    if (h[k].level != h->level_first + k) {
         return noh_check_fail(check, "LOD level is out of order", start + offsetof(noh_mesh_header, level));
     }
     if (at == sizeof same) {
         return NOH_OK;
     }
-    if (k == 1 && h->level_count > 2 && memcmp((const uint8_t *)&same + at, (const uint8_t *)&next + at, 4u) == 0) {
-        return noh_check_fail(check, "full mesh differs from its LOD levels in what all levels share", at);
+    if (k == 1 && count > 2 && memcmp((const uint8_t *)&same + at, (const uint8_t *)&next + at, 4u) == 0) {
+        return noh_check_fail(check, "the finest level differs from the coarser LOD levels in what all levels share",
+                              at);
     }
     return noh_check_fail(check, "LOD level differs in what all levels share", start + at);
 }
@@ -79,15 +81,16 @@ static noh_result check_errors(const noh_check *check, const noh_mesh_header *l,
     for (unsigned i = 0; !result && i < 6; i++) {
         if (mine[i] < before[i]) {
             result = noh_check_fail(check, "level's error is below that of the finer level",
-                                    (uint64_t)l->level * sizeof *l + offsetof(noh_mesh_header, level_error_rest) +
-                                        4u * i);
+                                    noh_check_level_at(l) + offsetof(noh_mesh_header, level_error_rest) + 4u * i);
         }
     }
     return result;
 }
 
-static noh_result check_full_errors(const noh_check *check, const noh_mesh_header *h)
+/* The errors of the finest level: 0 where it is the full mesh. */
+static noh_result check_finest_errors(const noh_check *check, const noh_mesh_header *h)
 {
+    static const noh_mesh_header none;
     const float *errors = &h->level_error_rest;
     for (unsigned i = 0; i < 3; i++) {
         if (!(h->influence_errors[i] >= (i ? h->influence_errors[i - 1] : 0.0f)) ||
@@ -96,20 +99,21 @@ static noh_result check_full_errors(const noh_check *check, const noh_mesh_heade
                                   offsetof(noh_mesh_header, influence_errors) + 4u * i);
         }
     }
-    for (unsigned i = 0; i < 6; i++) {
+    for (unsigned i = 0; i < 6 && !h->level_first; i++) {
         if (!(errors[i] == 0.0f)) {
             return noh_check_fail(check, "full mesh has the error of a level",
                                   offsetof(noh_mesh_header, level_error_rest) + 4u * i);
         }
     }
-    return NOH_OK;
+    return check_errors(check, h, &none);
 }
 
 noh_result noh_check_level_headers(noh_check *check, const noh_mesh_header *h)
 {
-    noh_result result = noh_check_head(check, h->level_count * (uint32_t)sizeof *h);
-    if (!result) result = check_full_errors(check, h);
-    for (uint32_t k = 1; !result && k < h->level_count; k++) {
+    const uint32_t count = noh_check_levels_there(h);
+    noh_result result = noh_check_head(check, count * (uint32_t)sizeof *h);
+    if (!result) result = check_finest_errors(check, h);
+    for (uint32_t k = 1; !result && k < count; k++) {
         result = check_shared(check, h, k);
         if (!result) result = check_level_counts(check, &h[k], &h[k - 1]);
         if (!result) result = check_errors(check, &h[k], &h[k - 1]);
@@ -120,7 +124,7 @@ noh_result noh_check_level_headers(noh_check *check, const noh_mesh_header *h)
 noh_level_sums noh_check_level_sums(const noh_mesh_header *h)
 {
     noh_level_sums sums = { 0, 0 };
-    for (uint32_t k = 0; k < h->level_count; k++) {
+    for (uint32_t k = 0; k < noh_check_levels_there(h); k++) {
         sums.indices += h[k].index_count;
         sums.submeshes += h[k].submesh_count;
     }
@@ -141,7 +145,7 @@ static noh_result check_texels(const noh_check *check, const noh_mesh_header *h,
     if (!(l->flags & NOH_MESH_TEXELS)) {
         const uint32_t least = l->vertex_count < h->touched_count ? l->vertex_count : h->touched_count;
         return l->touched_count < least
-                   ? noh_check_fail(check, "LOD level lacks texels of its vertices", (uint64_t)l->level * sizeof *l)
+                   ? noh_check_fail(check, "LOD level lacks texels of its vertices", noh_check_level_at(l))
                    : NOH_OK;
     }
     for (uint32_t v = 0; v < l->vertex_count; v++) {
@@ -207,14 +211,14 @@ static noh_result check_offsets(const noh_check *check, const noh_mesh_header *l
         field = offsetof(noh_mesh_header, targets_offset);
     }
     return field ? noh_check_fail(check, "level's indices, submeshes or targets do not follow the finer level's",
-                                  (uint64_t)l->level * sizeof *l + field)
+                                  noh_check_level_at(l) + field)
                  : NOH_OK;
 }
 
 noh_result noh_check_levels(const noh_check *check, const noh_mesh_header *h)
 {
     noh_result result = check_texels(check, h, h);
-    for (uint32_t k = 1; !result && k < h->level_count; k++) {
+    for (uint32_t k = 1; !result && k < noh_check_levels_there(h); k++) {
         const noh_mesh_header *l = &h[k];
         result = check_offsets(check, l, &h[k - 1]);
         if (!result) result = noh_check_texture_shape(check, l);

@@ -8,12 +8,18 @@ static noh_result check_limits(const noh_check *check, const noh_mesh_header *h)
     if (h->vertex_count == 0 || h->vertex_count > NOH_VERTICES_MAX) {
         return noh_check_fail(check, "vertex count is zero or over the limit", offsetof(noh_mesh_header, vertex_count));
     }
-    if (h->level) {
-        return noh_check_fail(check, "mesh does not begin with the full one of its levels",
-                              offsetof(noh_mesh_header, level));
-    }
     if (!h->level_count || h->level_count > NOH_LOD_LEVELS_MAX) {
         return noh_check_fail(check, "mesh has no level or too many", offsetof(noh_mesh_header, level_count));
+    }
+    if (h->level_first >= h->level_count) {
+        return noh_check_fail(check, "mesh lacks all of its levels", offsetof(noh_mesh_header, level_first));
+    }
+    if (h->level != h->level_first) {
+        return noh_check_fail(check, "mesh does not begin with the finest of its levels",
+                              offsetof(noh_mesh_header, level));
+    }
+    if (h->source_crc && !h->level_first) {
+        return noh_check_fail(check, "mesh lacks no level but names a source", offsetof(noh_mesh_header, source_crc));
     }
     if (h->index_count > NOH_INDICES_MAX || h->index_count % 3) {
         return noh_check_fail(check, "index count is over the limit or not a multiple of three",
@@ -123,7 +129,8 @@ static noh_result check_arrays(noh_check *check, const noh_mesh_header *h)
         { offsetof(noh_mesh_header, attributes_offset), h->vertex_count, h->attribute_stride },
         { offsetof(noh_mesh_header, indices_offset), sums.indices, h->index_bytes },
         { offsetof(noh_mesh_header, submeshes_offset), sums.submeshes, sizeof(noh_submesh) },
-        { offsetof(noh_mesh_header, targets_offset), (uint64_t)h->target_count * h->level_count, sizeof(noh_target) },
+        { offsetof(noh_mesh_header, targets_offset), (uint64_t)h->target_count * noh_check_levels_there(h),
+          sizeof(noh_target) },
         { offsetof(noh_mesh_header, weights_offset), h->target_count, 4 },
         { offsetof(noh_mesh_header, rects_offset), h->rect_count, sizeof(noh_rect) },
         { offsetof(noh_mesh_header, texels_offset), h->texel_count, 12 },
@@ -217,7 +224,7 @@ static noh_result check_targets(const noh_check *check, const noh_mesh_header *h
     return noh_check_target_sums(check, h, rects, texels, pairs);
 }
 
-/* The full mesh, and what all its levels share. */
+/* The finest level, and what all levels share. */
 static noh_result check_full(noh_check *check, const noh_mesh_header *h)
 {
     noh_result result = noh_check_floats(check, h->bounds_min, 13, "bounds, error bound or scale are not finite");

@@ -8,7 +8,7 @@
 /* The accumulation texture has a power of two as its width and just as many rows as its texels need. */
 noh_result noh_check_texture_shape(const noh_check *check, const noh_mesh_header *h)
 {
-    const uint64_t at = (uint64_t)h->level * sizeof *h;
+    const uint64_t at = noh_check_level_at(h);
     uint64_t texels;
     if (h->touched_count > h->vertex_count) {
         return noh_check_fail(check, "more touched vertices than vertices",
@@ -129,7 +129,7 @@ noh_result noh_check_target_sums(const noh_check *check, const noh_mesh_header *
     };
     const char *what = h->level ? "the targets' counts do not add up to the level's"
                                 : "the targets' counts do not add up to the mesh's";
-    return noh_check_fields(check, fields, 3, what, (uint64_t)h->level * sizeof *h);
+    return noh_check_fields(check, fields, 3, what, noh_check_level_at(h));
 }
 
 /* A target's delta texels are those of its rectangles, one rectangle after the other, row by row. They must be used up

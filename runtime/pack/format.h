@@ -77,7 +77,11 @@ typedef struct noh_pack_chunk {
 /* The header of the full mesh is followed by those of its coarser LOD levels, each a mesh of its own. A level shares
  * the finer level's arrays of vertices and delta texels and, target by target, of rectangles: it has the first so many
  * of each. Its indices, submeshes and targets follow the finer level's. So a level can be used, and loaded, as if there
- * were no finer one. */
+ * were no finer one.
+ *
+ * A pack may lack the finest levels of a mesh (`noh strip`): the first header is then that of the finest level there
+ * is. Levels keep their numbers, and errors remain distances to the full mesh; bounds, boxes and the other fields that
+ * all levels share are the full mesh's too, only the arrays are shorter. */
 typedef struct noh_mesh_header {
     uint32_t flags; /* NOH_MESH_* */
     uint32_t vertex_count;
@@ -119,8 +123,8 @@ typedef struct noh_mesh_header {
     /* float[the skin's joint_count][6]: smallest and largest x, y, z of the rest positions of the vertices that this
      * joint moves; the smallest above the largest where it moves none */
     uint32_t joint_boxes_offset;
-    uint32_t level;         /* 0: the full mesh; the others follow it in the chunk */
-    uint32_t level_count;   /* 1..NOH_LOD_LEVELS_MAX, of the mesh: the same in all its levels */
+    uint32_t level;         /* 0: the full mesh; level_first in the chunk's first header, then rising by 1 */
+    uint32_t level_count;   /* 1..NOH_LOD_LEVELS_MAX, of the mesh: the same in all its levels; with those it lacks */
     float level_error_rest; /* certified: the largest distance between this level's surface and the full one, both ways,
                              * model units; all 0 in the full mesh. At rest, */
     float level_error_rest_p99; /* nearer than this for 99 % of the area; */
@@ -131,7 +135,9 @@ typedef struct noh_mesh_header {
     float level_skipped;
     float influence_errors[3]; /* the farthest that a vertex is off, over those frames, when only its 4, 2, 1 heaviest
                                 * joints move it, model units; 0 in a mesh without levels */
-    uint32_t reserved[8];
+    uint32_t level_first;      /* the finest level in the pack; below level_count */
+    uint32_t source_crc; /* CRC-32C of the chunk that the levels were cut from, with level 0; 0 where level_first is */
+    uint32_t reserved[6];
 } noh_mesh_header;
 
 /* Influences of a vertex, in words. The first joint is the strongest: its weight is what the others leave of 1, so sums

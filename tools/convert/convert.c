@@ -126,6 +126,26 @@ static int check_own_pack(byte_buffer *out, FILE *report, model_error *error)
     return 0;
 }
 
+/* Leave out the finest levels, from the finished pack: so the bytes are those of `noh strip`. */
+static int strip(byte_buffer *out, const strip_levels *levels, model_error *error)
+{
+    byte_buffer stripped = { NULL, 0, 0, 0 };
+    uint32_t *first;
+    noh_pack pack;
+    int failed;
+    if (!levels->count) {
+        return 0;
+    }
+    (void)noh_pack_open(out->bytes, out->count, &pack, NULL); /* check_own_pack opened it */
+    first = calloc(pack.mesh_count + 1u, sizeof *first);
+    failed = first ? strip_levels_of(levels, &pack, first, error) || pack_strip(&pack, first, &stripped, error)
+                   : out_of_memory(error);
+    free(first);
+    buffer_free(out);
+    *out = stripped;
+    return failed || check_own_pack(out, NULL, error);
+}
+
 static void report_warnings(FILE *report, const source *s)
 {
     for (uint32_t i = 0; i < s->m->warning_count; i++) {
@@ -161,7 +181,7 @@ static int convert_source(const source *s, const convert_options *options, byte_
     if (!failed) {
         failed = clips_encode(s->sets, s->set_count, &settings, &made, error) ||
                  pack_write(m, meshes.levels, meshes.morphs, &made, out, error) ||
-                 check_own_pack(out, options->report, error);
+                 check_own_pack(out, options->report, error) || strip(out, &options->lod_from, error);
         clips_free(&made);
     }
     encoded_free(&meshes);

@@ -6,6 +6,7 @@
 
 #include "convert/pack/pack_clips.h"
 #include "pack/pack.h"
+#include "convert/pack/pack_strip.h"
 #include "convert/pack/pack_write.h"
 #include "convert/skin/skins.h"
 
@@ -19,9 +20,10 @@ typedef struct convert_options {
     const char *const *two_streams; /* [two_stream_count] "SOURCE=TARGET", see two_stream.h */
     uint32_t two_stream_count;
     convert_only only;
-    const char *events; /* a text file of callback keys; NULL: none */
-    FILE *report;       /* NULL: quiet */
-    FILE *progress;     /* a terminal, for progress; NULL: none */
+    const char *events;    /* a text file of callback keys; NULL: none */
+    strip_levels lod_from; /* count 0: all levels stay */
+    FILE *report;          /* NULL: quiet */
+    FILE *progress;        /* a terminal, for progress; NULL: none */
 } convert_options;
 
 typedef struct convert_failure {

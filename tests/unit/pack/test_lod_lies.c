@@ -163,11 +163,11 @@ static void have_more_rectangles(forged *f)
 #define LIES(X)                                                                                                      \
     X(no_levels, f->h->level_count = 0, "no level or too many")                                                      \
     X(nine_levels, f->h->level_count = 9, "no level or too many")                                                    \
-    X(begins_with_a_coarse_one, f->h->level = 1, "begin with the full one")                                          \
+    X(begins_with_a_coarse_one, f->h->level = 1, "begin with the finest")                                            \
     X(full_mesh_has_an_error, f->h->level_error_rest = 1e-6f, "full mesh has the error")                             \
     X(full_mesh_has_an_error_that_is_none, f->h->level_error_clip = NAN, "full mesh has the error")                  \
     X(full_mesh_skips, f->h->level_skipped = 1.0f, "full mesh has the error")                                        \
-    X(one_level_more, f->h->level_count = 4, "differs from its LOD levels")                                          \
+    X(one_level_more, f->h->level_count = 4, "differs from the coarser LOD levels")                                  \
     X(one_level_less, f->h->level_count = 2, "differs in what all levels share")                                     \
     X(levels_exchanged, (f->h[1].level = 2, f->h[2].level = 1), "out of order")                                      \
     X(level_twice, f->h[2].level = 1, "out of order")                                                                \
@@ -189,7 +189,7 @@ static void have_more_rectangles(forged *f)
     X(other_boxes, f->h[1].target_boxes_offset += 16, "differs in what all levels share")                            \
     X(other_skin, f->h[1].skin = 0, "differs in what all levels share")                                              \
     X(other_level_count, f->h[1].level_count = 2, "differs in what all levels share")                                \
-    X(other_reserved, f->h[2].reserved[7] = 1, "differs in what all levels share")                                   \
+    X(other_reserved, f->h[2].reserved[5] = 1, "differs in what all levels share")                                   \
     X(falling_influences, f->h[0].influence_errors[0] = 1.0f, "fewer influences")                                    \
     X(unknown_influences, f->h[0].influence_errors[2] = NAN, "fewer influences")                                     \
     X(no_vertices, f->h[2].vertex_count = 0, "more of something")                                                    \

@@ -624,7 +624,9 @@ static void errors_say_where(void **state)
     X(mesh->level_skipped, = 1.0f)                      \
     X(mesh->influence_errors[1], = -1.0f)               \
     X(mesh->reserved[0], = 1)                           \
-    X(mesh->reserved[7], = 1)                           \
+    X(mesh->reserved[5], = 1)                           \
+    X(mesh->level_first, = 1)                           \
+    X(mesh->source_crc, = 1)                            \
     X(mesh->influence_count, = 4)                       \
     X(mesh->palette_count, = 1)                         \
     X(mesh->palette_joint_count, = 1)                   \

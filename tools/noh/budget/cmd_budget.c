@@ -24,7 +24,7 @@ static void print_levels(const level_costs *c)
         printf("%-10s %10s %10s %10s %10s %12s %12s\n", "level", "vertices", "triangles", "texels", "pairs",
                "CPU bytes", "GPU bytes   when loaded from this level on");
     }
-    for (uint32_t k = 0; k < c->count && c->count > 1; k++) {
+    for (uint32_t k = c->first; k < c->count && c->count > 1; k++) {
         const level_cost *l = &c->levels[k];
         printf("  %-8u %10llu %10llu %10llu %10llu %12llu %12llu\n", k, (unsigned long long)l->vertices,
                (unsigned long long)l->triangles, (unsigned long long)l->texels, (unsigned long long)l->pairs,
@@ -35,9 +35,10 @@ static void print_levels(const level_costs *c)
 static void json_levels(json *j, const level_costs *c)
 {
     json_open(j, "levels", '[');
-    for (uint32_t k = 0; k < c->count; k++) {
+    for (uint32_t k = c->first; k < c->count; k++) {
         const level_cost *l = &c->levels[k];
         json_open(j, NULL, '{');
+        json_integer(j, "level", k);
         json_integer(j, "vertices", l->vertices);
         json_integer(j, "triangles", l->triangles);
         json_integer(j, "texels", l->texels);

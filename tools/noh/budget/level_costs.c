@@ -17,7 +17,8 @@ int level_costs_find(level_costs *out, const pack_file *file, scene *s, const no
 {
     int status = 0;
     memset(out, 0, sizeof *out);
-    for (out->count = 0; out->count < scene_level_count(s, file) && !status; out->count++) {
+    out->first = scene_level_first(s, file);
+    for (out->count = out->first; out->count < scene_level_count(s, file) && !status; out->count++) {
         level_cost *cost = &out->levels[out->count];
         load_budget b;
         status = scene_set_level(s, file, out->count);

@@ -13,10 +13,10 @@ typedef struct level_cost {
 
 typedef struct level_costs {
     level_cost levels[NOH_LOD_LEVELS_MAX];
-    uint32_t count;
+    uint32_t first, count; /* the levels first to count - 1 are there */
 } level_costs;
 
-/* Leaves the scene at its full level. Prints an error and returns an exit code; 0 on success. */
+/* Leaves the scene at its finest level. Prints an error and returns an exit code; 0 on success. */
 int level_costs_find(level_costs *out, const pack_file *file, scene *s, const noh_gl_caps *caps, const load_options *o);
 
 #endif

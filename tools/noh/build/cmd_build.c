@@ -20,7 +20,7 @@ typedef struct build_args {
     const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *lod;
     int input_count, quiet, loop, mask, keep_parts, lod_fast;
     double error_um, rate, error_cm, shell_cm, unit_cm, influences, palette;
-    option_list dual_quaternion, two_streams, clip_errors, joint_errors;
+    option_list dual_quaternion, two_streams, clip_errors, joint_errors, lod_from;
 } build_args;
 
 /* NAME=CM. The converter checks that something has the name. */
@@ -77,6 +77,15 @@ static int set_skin(const build_args *a, convert_options *o)
 
 static int set_lod(const build_args *a, convert_options *o)
 {
+    uint32_t level;
+    size_t name_bytes;
+    for (int i = 0; i < a->lod_from.count; i++) {
+        if (strip_level_parse(a->lod_from.items[i], &name_bytes, &level)) {
+            return tool_usage("--lod-from wants K or MESH=K, K from 0 to %u, not '%s'", NOH_LOD_LEVELS_MAX - 1u,
+                              a->lod_from.items[i]);
+        }
+    }
+    o->lod_from = (strip_levels){ a->lod_from.items, (uint32_t)a->lod_from.count };
     o->lod.mode = a->lod_fast ? LOD_FAST : LOD_QUALITY;
     return a->lod ? parse_levels(a->lod, &o->lod.level_count, &o->lod.by_error) : 0;
 }
@@ -179,6 +188,13 @@ static const option options[] = {
           "number of LOD levels, with the full mesh, 1 to 8; auto: up to five, by error; default: the full mesh only",
       .example = "4",
       .excludes = "--only=anim" },
+    { .name = "--lod-from",
+      .kind = OPTION_LIST,
+      .at = offsetof(build_args, lod_from),
+      .value = "K|MESH=K",
+      .what = "leave out the levels before K, 0 to 7, of all meshes or of one, as noh strip does; may repeat",
+      .example = "2",
+      .needs = "--lod" },
     { .name = "--lod-fast",
       .kind = OPTION_FLAG,
       .at = offsetof(build_args, lod_fast),

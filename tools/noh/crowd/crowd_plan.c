@@ -104,15 +104,16 @@ static void add_pool(crowd_plan *p, uint32_t level, uint32_t slots)
 static void plan_pools(crowd_plan *p)
 {
     const crowd_options *o = &p->options;
+    const uint32_t first = p->mesh.header->level_first;
     uint32_t given = 0, taken = 0;
-    for (uint32_t i = 0; i < p->level_count; i++) {
+    for (uint32_t i = first; i < p->level_count; i++) {
         given += o->slots[i];
     }
     if (o->plain) {
-        add_pool(p, 0, o->count);
+        add_pool(p, first, o->count);
         return;
     }
-    for (uint32_t i = 0; i < p->level_count; i++) {
+    for (uint32_t i = first; i < p->level_count; i++) {
         double need = i + 1u < p->level_count ? count_within(p, i + 1u) : o->count;
         uint32_t within = need < o->count ? (uint32_t)need : o->count;
         add_pool(p, i, given ? o->slots[i] : within > taken ? within - taken : 0);

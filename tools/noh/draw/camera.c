@@ -46,7 +46,7 @@ static void grow_item(bounds *b, const scene *s, const pack_file *file, uint32_t
     free(vertices);
 }
 
-bounds scene_bounds(const scene *s, const pack_file *file, int face)
+static bounds bounds_of(const scene *s, const pack_file *file, int face)
 {
     bounds b = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
     for (uint32_t i = 0; i < s->item_count; i++) {
@@ -54,10 +54,23 @@ bounds scene_bounds(const scene *s, const pack_file *file, int face)
     }
     if (b.low[0] > b.high[0]) { /* no target moves anything: frame everything */
         if (face) {
-            return scene_bounds(s, file, 0);
+            return bounds_of(s, file, 0);
         }
         memset(&b, 0, sizeof b);
     }
+    return b;
+}
+
+bounds scene_bounds(const scene *s, const pack_file *file, int face)
+{
+    scene coarsest = *s;
+    bounds b;
+    coarsest.meshes = malloc(sizeof *coarsest.meshes * (file->pack.mesh_count + 1u));
+    for (uint32_t i = 0; coarsest.meshes && i < file->pack.mesh_count; i++) {
+        coarsest.meshes[i] = noh_mesh_at_lod(&s->meshes[i], NOH_LOD_LEVELS_MAX);
+    }
+    b = bounds_of(coarsest.meshes ? &coarsest : s, file, face);
+    free(coarsest.meshes);
     return b;
 }
 

@@ -89,6 +89,9 @@ static void dump_item(byte_buffer *out, const pack_file *file, const scene *s, u
 {
     const noh_mesh *mesh = &s->meshes[s->items[item].mesh];
     print_to(out, "o %s\n", mesh->name);
+    if (mesh->header->level) {
+        print_to(out, "# LOD level %u of 0 to %u\n", mesh->header->level, mesh->header->level_count - 1u);
+    }
     for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
         dump_vertex(out, &vertices[v], scene_world(s, file, item));
     }

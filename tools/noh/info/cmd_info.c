@@ -51,7 +51,10 @@ static void print_levels(const noh_mesh *m)
                millimetres(m->header, m->header->influence_errors[1]),
                millimetres(m->header, m->header->influence_errors[2]));
     }
-    for (uint32_t k = 0; k < m->header->level_count && m->header->level_count > 1; k++) {
+    if (m->header->level_first) {
+        printf("  finer levels than %u were left out; source %08x\n", m->header->level_first, noh_mesh_source(m));
+    }
+    for (uint32_t k = m->header->level_first; k < m->header->level_count && m->header->level_count > 1; k++) {
         const noh_mesh level = noh_mesh_at_lod(m, k);
         const noh_mesh_header *h = level.header;
         printf("  level %u: %6u vertices, %6u triangles, %6u texels, %7u pairs in %5u rectangles", k, h->vertex_count,
@@ -187,10 +190,11 @@ static void json_skin(json *j, const noh_pack *pack, const noh_mesh_header *h)
 static void json_levels(json *j, const noh_mesh *m)
 {
     json_open(j, "lods", '[');
-    for (uint32_t k = 0; k < m->header->level_count; k++) {
+    for (uint32_t k = m->header->level_first; k < m->header->level_count; k++) {
         const noh_mesh level = noh_mesh_at_lod(m, k);
         const noh_mesh_header *h = level.header;
         json_open(j, NULL, '{');
+        json_integer(j, "level", k);
         json_integer(j, "vertices", h->vertex_count);
         json_integer(j, "triangles", h->index_count / 3);
         json_integer(j, "touched", h->touched_count);
@@ -225,6 +229,8 @@ static void json_mesh(json *j, const noh_pack *pack, const noh_mesh *m)
     json_integer(j, "target_bytes", target_bytes(h));
     json_number(j, "f16_bound_um", 1e6 * (double)h->world_scale * (double)h->f16_position_bound);
     json_skin(j, pack, h);
+    json_integer(j, "level_first", h->level_first);
+    json_integer(j, "source", noh_mesh_source(m));
     json_levels(j, m);
     json_open(j, "target_list", '[');
     for (uint32_t t = 0; t < h->target_count; t++) {

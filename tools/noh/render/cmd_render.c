@@ -63,7 +63,6 @@ static void print_done(const render_args *a, const drawn *d)
             noh_accumulate_name(d->plan.accumulate), d->plan.reason);
 }
 
-/* Frame the full mesh at every level, so that pictures of levels can be compared. */
 static int draw(gpu *g, const pack_file *file, scene *s, const render_args *a, int show_bones, uint8_t *rgba,
                 drawn *done)
 {

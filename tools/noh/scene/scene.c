@@ -90,6 +90,15 @@ uint32_t scene_level_count(const scene *s, const pack_file *file)
     return most;
 }
 
+uint32_t scene_level_first(const scene *s, const pack_file *file)
+{
+    uint32_t least = file->pack.mesh_count ? NOH_LOD_LEVELS_MAX : 0;
+    for (uint32_t i = 0; i < file->pack.mesh_count; i++) {
+        least = s->meshes[i].header->level_first < least ? s->meshes[i].header->level_first : least;
+    }
+    return least;
+}
+
 int scene_set_level(scene *s, const pack_file *file, uint32_t level)
 {
     const uint32_t count = scene_level_count(s, file);

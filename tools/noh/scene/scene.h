@@ -52,6 +52,8 @@ void scene_free(scene *s);
 /* Use every mesh at this LOD level or at its coarsest; an error if no mesh has so many levels. */
 int scene_set_level(scene *s, const pack_file *file, uint32_t level);
 uint32_t scene_level_count(const scene *s, const pack_file *file);
+/* The finest level that any mesh has: 0, but in a stripped pack. */
+uint32_t scene_level_first(const scene *s, const pack_file *file);
 /* Free what scene_open_players made; the skeleton stays. */
 void scene_close_player(scene_player *p);
 /* Use the clips of another pack (NULL: of the same one). Call it before any is played. */

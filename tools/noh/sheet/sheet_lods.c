@@ -15,6 +15,7 @@ typedef struct grid {
     const sheet_lods *o;
     scene scene;
     gpu gpu;
+    uint32_t first;         /* the first column's level */
     uint32_t columns, rows; /* rows: rest, faces, size of use */
     noh_gl_camera camera;
     double tile_pixels_per_unit;
@@ -138,7 +139,7 @@ static void label_cell(const grid *g, uint32_t column, uint32_t row, uint32_t si
         triangles += g->scene.meshes[g->scene.items[i].mesh].header->index_count / 3;
     }
     if (row == 0) {
-        snprintf(label, bytes, "level %u: %u triangles, %.2f mm", column, triangles, 1e3 * level_error(g));
+        snprintf(label, bytes, "level %u: %u triangles, %.2f mm", g->first + column, triangles, 1e3 * level_error(g));
     } else if (row + 1 == g->rows) {
         snprintf(label, bytes, "used up to %u pixels", size);
     } else {
@@ -173,11 +174,11 @@ static int draw_rows(grid *g, uint32_t column, uint32_t first, uint32_t end, uin
     return status;
 }
 
-static int draw_level(grid *g, uint32_t level)
+static int draw_level(grid *g, uint32_t column)
 {
-    int status = scene_set_level(&g->scene, g->o->file, level);
-    if (!status) status = draw_rows(g, level, 0, g->rows - 1, g->o->tile);
-    if (!status) status = draw_rows(g, level, g->rows - 1, g->rows, size_of_use(g));
+    int status = scene_set_level(&g->scene, g->o->file, g->first + column);
+    if (!status) status = draw_rows(g, column, 0, g->rows - 1, g->o->tile);
+    if (!status) status = draw_rows(g, column, g->rows - 1, g->rows, size_of_use(g));
     return status;
 }
 
@@ -201,12 +202,13 @@ static int draw_all(grid *g)
     const view_options view = { o->camera, o->tile, o->tile };
     const bounds box = scene_bounds(&g->scene, o->file, view_wants_face(&view));
     int status = view_camera(&view, &box, &g->camera);
-    g->columns = scene_level_count(&g->scene, o->file);
+    g->first = scene_level_first(&g->scene, o->file);
+    g->columns = scene_level_count(&g->scene, o->file) - g->first;
     g->rows = 2 + face_count(o);
     g->tile_pixels_per_unit = pixels_per_unit(&g->camera, &box, o->tile);
     if (!status) status = make_picture(g);
-    for (uint32_t level = 0; level < g->columns && !status; level++) {
-        status = draw_level(g, level);
+    for (uint32_t column = 0; column < g->columns && !status; column++) {
+        status = draw_level(g, column);
     }
     return status ? status : tool_write_png(o->output, g->columns * o->tile, g->rows * o->tile, g->rgba);
 }

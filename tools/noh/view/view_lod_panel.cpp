@@ -24,7 +24,7 @@ void level_row(view_app *a, uint32_t level)
 {
     const level_cost &cost = a->model->costs.levels[level];
     view_lod *d = &a->lod;
-    char name[16];
+    char name[24];
     snprintf(name, sizeof name, level ? "level %u" : "full", level);
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
@@ -61,7 +61,7 @@ void level_table(view_app *a)
         ImGui::TableNextColumn();
         ImGui::TextDisabled("%s", head);
     }
-    for (uint32_t k = 0; k < a->model->costs.count; k++) {
+    for (uint32_t k = a->model->costs.first; k < a->model->costs.count; k++) {
         level_row(a, k);
     }
     ImGui::TableNextRow();

@@ -29,8 +29,8 @@ static int find_scales(const zoom_path *p, double *near, double *far)
     *near = *far = 0.0;
     for (uint32_t i = 0; i < p->lod.item_count; i++) {
         const noh_lod_table *t = &p->lod.items[i].table;
-        if (t->mesh_level_count > 1) {
-            const double first = scale_of_share(p, t->meshes[1].error_m) * BEYOND_NEAR;
+        if (t->mesh_level_count > t->mesh_level_first + 1u) {
+            const double first = scale_of_share(p, t->meshes[t->mesh_level_first + 1u].error_m) * BEYOND_NEAR;
             const double last = scale_of_share(p, t->meshes[t->mesh_level_count - 1u].error_m) *
                                 (1.0 - (double)p->settings.hysteresis) / BEYOND_FAR;
             *near = first > *near ? first : *near;
