@@ -628,7 +628,7 @@ static void pictures_and_the_renderer_take_what_they_say(void **state)
     noh_texture texture;
     noh_gl_texture picture;
     const noh_mesh mesh = test_mesh(&pack, 0);
-    const noh_gl_renderer_desc desc = { NOH_VIEW_LIT, 0, &mesh, 1, NOH_PALETTE_AUTO, 0, 0, 0, 0, NOH_PASSES_ALL, NULL };
+    const noh_gl_renderer_desc desc = { .meshes = &mesh, .mesh_count = 1 };
     noh_gl_renderer renderer;
     noh_gl_ledger ledger;
     (void)state;
