@@ -431,7 +431,7 @@ static void plans_of_instances(void **state)
     const noh_gl_caps caps = caps_of_a_gpu();
     (void)state;
     for (int path = 0; path < NOH_MORPH_PATH_COUNT; path++) {
-        noh_gl_morph_desc morph = { meshes, 2, NULL, (noh_morph_path)path, NOH_ACCUMULATE_AUTO, 0.0f };
+        noh_gl_morph_desc morph = { .meshes = meshes, .mesh_count = 2, .path = (noh_morph_path)path };
         noh_gl_skin_desc skin = { meshes, 2, NULL, path % 2 ? NOH_PALETTE_TEXTURE : NOH_PALETTE_AUTO };
         noh_gl_morph_plan plan;
         noh_gl_skin_plan skin_plan;
