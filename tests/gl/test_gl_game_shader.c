@@ -154,7 +154,7 @@ static void check_own(const tube_kind *k, int texts)
     free(fragment);
 }
 
-static void the_library_s_text_draws_its_pictures(void **state)
+static void the_text_of_the_library_draws_its_pictures(void **state)
 {
     const tube_kind kinds[] = { { 0, 0, 0, NOH_VIEW_LIT },
                                 { 1, 0, 0, NOH_VIEW_TANGENT },
@@ -415,7 +415,7 @@ static void too_many_samplers_are_refused(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(the_library_s_text_draws_its_pictures),
+    cmocka_unit_test(the_text_of_the_library_draws_its_pictures),
     cmocka_unit_test(so_with_integer_layers),
     cmocka_unit_test(one_of_two_is_enough),
     cmocka_unit_test(a_toon_shader_has_its_steps),

@@ -133,7 +133,7 @@ static void check_prefixes(fixture_morph *m)
     free(fine);
 }
 
-static void coarser_levels_hold_the_finer_one_s_bits(void **state)
+static void coarser_levels_hold_bits_of_the_finer_one(void **state)
 {
     (void)state;
     in_every_way(meshes, few, FIXTURE_MESHES, check_prefixes);
@@ -329,7 +329,7 @@ static void pools_take_less_memory(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(every_way_equals_the_cpu_at_every_level),
-    cmocka_unit_test(coarser_levels_hold_the_finer_one_s_bits),
+    cmocka_unit_test(coarser_levels_hold_bits_of_the_finer_one),
     cmocka_unit_test(a_level_does_without_targets_that_it_has_not),
     cmocka_unit_test(going_finer_accumulates_again),
     cmocka_unit_test(less_is_done_at_coarser_levels),

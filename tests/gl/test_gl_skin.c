@@ -234,7 +234,7 @@ static void a_crowd_stands_where_it_was_placed(void **state)
 
 /* Instances scaled by another factor along each axis: their normals are perpendicular to the scaled surface, which
  * those transformed by the matrix itself would not be. */
-static void a_crowd_s_normals_go_by_the_inverse_transpose(void **state)
+static void normals_of_a_crowd_go_by_the_inverse_transpose(void **state)
 {
     fixture_skin_desc desc = desc_of("khronos/Fox.glb", NOH_PALETTE_TEXTURE);
     static const float world[12] = { 0.4f, 0.3f, 0, 5, -0.2f, 2.0f, 0.1f, -3, 0, 0.5f, 1.2f, 1 };
@@ -916,7 +916,7 @@ static const struct CMUnitTest tests[] = { cmocka_unit_test(every_asset_equals_t
                                            cmocka_unit_test(mirrors_and_lost_axes),
                                            cmocka_unit_test(uniform_texture_and_crowd_give_the_same_bits),
                                            cmocka_unit_test(a_crowd_stands_where_it_was_placed),
-                                           cmocka_unit_test(a_crowd_s_normals_go_by_the_inverse_transpose),
+                                           cmocka_unit_test(normals_of_a_crowd_go_by_the_inverse_transpose),
                                            cmocka_unit_test(influences_can_be_capped),
                                            cmocka_unit_test(small_palettes_give_the_same_picture),
                                            cmocka_unit_test(a_crowd_looks_like_its_instances),

@@ -392,7 +392,7 @@ static void a_desc_needs_meshes(void **state)
     expect_plan(&desc, &caps, NOH_ERR_ARG, "no meshes");
 }
 
-static void a_desc_s_fields_are_checked(void **state)
+static void fields_of_a_desc_are_checked(void **state)
 {
     const noh_gl_caps caps = imagined_caps();
     const fixture_way automatic = { NOH_MORPH_AUTO, NOH_ACCUMULATE_AUTO };
@@ -660,7 +660,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(misaligned_or_no_memory_is_refused),
     cmocka_unit_test(instances_share_deltas),
     cmocka_unit_test(a_desc_needs_meshes),
-    cmocka_unit_test(a_desc_s_fields_are_checked),
+    cmocka_unit_test(fields_of_a_desc_are_checked),
     cmocka_unit_test(instance_counts_have_a_limit),
     cmocka_unit_test(tiles_have_to_fit_a_texture),
     cmocka_unit_test(weights_have_to_be_finite),

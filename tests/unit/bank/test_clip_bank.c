@@ -115,7 +115,7 @@ static void weights_and_joints_of_a_model(void **state)
 }
 
 /* A key's smallest weight comes through: it is silent under a lighter track. */
-static void a_key_s_smallest_weight_is_kept(void **state)
+static void the_smallest_weight_of_a_key_is_kept(void **state)
 {
     uint8_t *copy = test_aligned(bytes, byte_count);
     noh_pack p = test_open(copy, byte_count);
@@ -547,7 +547,7 @@ static void a_hundred_controllers_share_a_set(void **state)
 
 /* ---- root motion ---- */
 
-static void the_root_s_way_is_taken_out(void **state)
+static void the_way_of_the_root_is_taken_out(void **state)
 {
     noh_clip_bank_desc desc = desc_of(&pack);
     noh_clip_bank *set;
@@ -849,7 +849,7 @@ static void lies_are_told_with_the_clip(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(clips_keys_and_markers_are_joined),
     cmocka_unit_test(weights_and_joints_of_a_model),
-    cmocka_unit_test(a_key_s_smallest_weight_is_kept),
+    cmocka_unit_test(the_smallest_weight_of_a_key_is_kept),
     cmocka_unit_test(floats_are_joined_to_meshes),
     cmocka_unit_test(playing_is_sampling_to_the_bit),
     cmocka_unit_test(weights_are_sampled_to_the_bit),
@@ -863,7 +863,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(ahead_says_what_finds_no_room),
     cmocka_unit_test(fewer_joints_are_decoded_for_less_lod),
     cmocka_unit_test(a_hundred_controllers_share_a_set),
-    cmocka_unit_test(the_root_s_way_is_taken_out),
+    cmocka_unit_test(the_way_of_the_root_is_taken_out),
     cmocka_unit_test(mesh_and_clips_apart),
     cmocka_unit_test(another_skeleton_or_unit_is_refused),
     cmocka_unit_test(weights_are_bound_by_name),

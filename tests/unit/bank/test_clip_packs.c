@@ -179,7 +179,7 @@ static void several_packs_equal_one_of_all_their_clips(void **state)
     }
 }
 
-static void a_view_of_several_packs_gives_the_bank_s_bits(void **state)
+static void a_view_of_several_packs_gives_the_bits_of_the_bank(void **state)
 {
     static const uint32_t numbers[] = { 0, 1 };
     set_fixture x = pack_of(numbers, 1), y = pack_of(numbers + 1, 1);
@@ -249,7 +249,7 @@ static void a_later_pack_replaces_a_clip_in_its_place(void **state)
     free(more.bytes);
 }
 
-static void of_three_packs_the_last_one_s_clip_is_played(void **state)
+static void of_three_packs_the_last_gives_the_clip(void **state)
 {
     static const uint32_t numbers[] = { 0, 1 };
     set_fixture game = pack_of(numbers, 2), first = pack_of_another_clip1(JOINTS, 4),
@@ -449,9 +449,9 @@ static void more_clips_than_a_bank_holds_are_refused(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(several_packs_equal_one_of_all_their_clips),
-    cmocka_unit_test(a_view_of_several_packs_gives_the_bank_s_bits),
+    cmocka_unit_test(a_view_of_several_packs_gives_the_bits_of_the_bank),
     cmocka_unit_test(a_later_pack_replaces_a_clip_in_its_place),
-    cmocka_unit_test(of_three_packs_the_last_one_s_clip_is_played),
+    cmocka_unit_test(of_three_packs_the_last_gives_the_clip),
     cmocka_unit_test(a_clip_of_another_skeleton_replaces_none_and_is_counted),
     cmocka_unit_test(errors_say_which_pack),
     cmocka_unit_test(another_unit_in_a_later_pack_is_refused),

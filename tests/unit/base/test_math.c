@@ -32,7 +32,7 @@ static void compare_root(uint32_t bits)
 }
 
 /* All signs and exponents with mantissas spread over their range, and those next to powers of two. */
-static void plain_square_roots_are_the_processor_s(void **state)
+static void plain_square_roots_equal_those_of_the_processor(void **state)
 {
     uint64_t compared = 0;
     (void)state;
@@ -64,7 +64,7 @@ static void roots_of_squares_are_exact(void **state)
     assert_true(noh_sqrt_plain(-1.0f) != noh_sqrt_plain(-1.0f));
 }
 
-static void plain_counts_of_zeros_are_the_processor_s(void **state)
+static void plain_counts_of_zeros_equal_those_of_the_processor(void **state)
 {
     test_random r = test_random_from(5);
     (void)state;
@@ -113,9 +113,9 @@ static void nlerp_is_unit(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(plain_square_roots_are_the_processor_s),
+    cmocka_unit_test(plain_square_roots_equal_those_of_the_processor),
     cmocka_unit_test(roots_of_squares_are_exact),
-    cmocka_unit_test(plain_counts_of_zeros_are_the_processor_s),
+    cmocka_unit_test(plain_counts_of_zeros_equal_those_of_the_processor),
     cmocka_unit_test(nlerp_is_unit),
 };
 

@@ -416,7 +416,7 @@ static void mutations_never_crash(void **state)
 
 /* --- real files --- */
 
-/* Debian's assimp-testmodels, and .rcl made from the same capture: another reader's word. */
+/* Debian's assimp-testmodels, against .rcl files that another reader made from the same captures. */
 static void compare_with_rcl(const char *bvh, const char *rcl, double unit_cm)
 {
     struct stat status;

@@ -1,5 +1,5 @@
-/* test_clip_errors.c: what a pack says that its clips are off with fewer joints and at lower rates, against poses
- * computed in double precision, and against the library's own measurement of the opened pack. */
+/* test_clip_errors.c: the errors that a pack states for its clips with fewer joints and at lower update rates, against
+ * poses computed in double precision, and against what the library measures on the opened pack. */
 #include "support/support.h"
 
 #include <math.h>
@@ -202,8 +202,8 @@ static void a_puppets_joint_errors_are_those_of_its_vertices(void **state)
 
 #define GRID 200u /* ticks */
 
-/* Where all joints are every GRID ticks of a clip, and for the longest period on: [count][joint_count][12]. A loop goes
- * on from where it came. */
+/* The matrices of all joints every GRID ticks, to the end of a clip and one longest period further:
+ * [count][joint_count][12]. Each pass of a loop begins where the one before it ended. */
 static double *course_of(const opened *o, uint32_t clip, uint32_t *count)
 {
     const noh_skeleton *s = &o->set->skeleton;
@@ -234,7 +234,8 @@ static double *course_of(const opened *o, uint32_t clip, uint32_t *count)
     return course;
 }
 
-/* Where a vertex is at each of these: way[count][3]; and how far it is from the joints that move it by 0.05 or more. */
+/* A vertex's path: its place at each of these times, way[count][3]. `reach` of the joints whose weight on it is 0.05 or
+ * more becomes at least its distance from them. */
 static void way_of(const noh_mesh *mesh, const noh_skin *skin, uint32_t vertex, const double *course, uint32_t count,
                    uint32_t joint_count, double *way, float *reach)
 {
@@ -264,7 +265,7 @@ static void way_of(const noh_mesh *mesh, const noh_skin *skin, uint32_t vertex, 
     }
 }
 
-/* The most that it is off on straight lines between places of its way. */
+/* The farthest that the path is from the straight lines between its places one period apart. */
 static double way_off(const double *way, uint32_t duration, uint32_t period)
 {
     const uint32_t steps = period / GRID;
@@ -283,7 +284,7 @@ static double way_off(const double *way, uint32_t duration, uint32_t period)
     return sqrt(worst);
 }
 
-/* Of all vertices that the set's skeleton moves; and how far they are from their joints. */
+/* The worst of all vertices that the set's skeleton moves, and the reach of its joints. */
 static void worst_of_all(const opened *o, uint32_t skeleton, uint32_t clip, double worst[NOH_UPDATE_RATE_COUNT],
                          float *reach)
 {
@@ -310,7 +311,8 @@ static void worst_of_all(const opened *o, uint32_t skeleton, uint32_t clip, doub
     free(way);
 }
 
-/* Not much less than its worst vertex, and never more than what was said of all that a joint reaches. */
+/* The stated error is not much less than that of the worst vertex, and never more than the bound for all points that
+ * the joints reach. */
 static void expect_rates(const opened *o, uint32_t skeleton)
 {
     float *reach = test_zeros(o->set->skeleton.joint_count * sizeof *reach);
@@ -354,7 +356,7 @@ static void rates_are_those_of_the_worst_vertex(void **state)
     }
 }
 
-/* Two joints a metre apart, three vertices; the farthest hangs on the second by too little to count. */
+/* Two joints a metre apart, three vertices; the farthest has too small a weight on the second to count. */
 static void only_what_a_joint_moves_counts(void **state)
 {
     float positions[9] = { 0.0f, 0.5f, 0.0f, 0.0f, 1.25f, 0.0f, 0.0f, 4.0f, 0.0f }, weights[24] = { 0.0f }, reach[3];
@@ -410,7 +412,7 @@ static noh_time_probe probe_of(const opened *o, float *reach, float distance)
     return probe;
 }
 
-/* Stored is what the library measures of the opened pack, to the bit: the same decoder, the same method. */
+/* The stored errors equal, to the bit, what the library measures on the opened pack: same decoder, same method. */
 static void a_chains_errors_are_what_the_library_measures(void **state)
 {
     const char *path = clip_bvh("chain", "abcdefghijklmnopqrst", 2 * CLIP_PASS_FRAMES);

@@ -934,7 +934,7 @@ static void real_body(void **state)
     asset_against_oracle("hero/body.glb", 31);
 }
 
-/* Playing the frames strays from the curves by no more than the clip says, track by track. */
+/* What is played differs from the curves by no more than the clip states, track by track. */
 static void real_body_plays_as_promised(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* test_joint_order.c: joints in an order in which LOD levels are prefixes: nothing moves for it, files of
- * one skeleton agree on it, and levels are cut where they should be. */
+/* test_joint_order.c: joints in an order in which LOD levels are prefixes: reordering moves nothing, files of one
+ * skeleton agree on the order, and levels are cut where they should be. */
 #include "support/support.h"
 
 #include <math.h>

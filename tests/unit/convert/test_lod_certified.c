@@ -14,9 +14,9 @@
  * between its points the distance can be larger, in these meshes by 5 percent, with 40,000 points a surface. Deltas of
  * targets in the pack are quantised besides: their error, twice, is allowed as well. */
 #define ABOVE 1.08
-/* Below it: of a correct value random points find nearly all; half is what the value may not miss by. */
+/* How much less they may find: points come close to a correct value, so finding less than half shows a wrong one. */
 #define BELOW 0.5
-/* 99 % of the area: POINTS leaves 25 above it, of which chance may take or give a third. */
+/* The same for the value that 99 % of the area is below: 25 of POINTS are above it, give or take a third by chance. */
 #define P99_ABOVE 1.3
 #define P99_BELOW 0.7
 
@@ -79,14 +79,14 @@ static double triangle_distance(const point p, const point a, const point b, con
 
 typedef struct face {
     point corner[3], middle;
-    double radius; /* around its middle */
+    double radius; /* about its centre */
 } face;
 
 /* The triangles of one material in one pose: a submesh of the model. */
 typedef struct surface {
     uint32_t count;
     face *faces;
-    double *areas; /* [count] the sum of those up to here */
+    double *areas; /* [count] summed up to each triangle */
 } surface;
 
 static void close_face(face *f)
@@ -200,7 +200,7 @@ static measured one_way(const surface *from, const surface *to, test_random *r)
     return m;
 }
 
-/* Each material against itself, the larger of both ways. */
+/* Each material against itself, in both directions: the larger distance. */
 static measured apart(const noh_mesh *full, const noh_mesh *level, const point *positions, uint32_t material_count,
                       test_random *r)
 {

@@ -602,7 +602,8 @@ static void clip_has_no_levels(void **state)
     free(without);
 }
 
-/* Levels whose errors are asked for instead of their triangles: each has fewer, and none more than eight are made. */
+/* Levels asked for by their error instead of their share of triangles: each has fewer triangles, and at most eight are
+ * made. */
 static void levels_by_error(void **state)
 {
     const lod_settings by_error = { 0, 1, LOD_FAST };

@@ -36,7 +36,7 @@ static raw_set *moving(uint32_t frames, double sample_rate_hz)
         const double half = (double)f * 5.0 * 3.14159265358979323846 / 180.0;
         float *q = clip->rotations + (size_t)f * 8, *t = clip->translations + (size_t)f * 6,
               *s = clip->scales + (size_t)f * 6;
-        const float sign = f % 2 ? -1.0f : 1.0f; /* the reader's promise broken: to be mended */
+        const float sign = f % 2 ? -1.0f : 1.0f; /* readers leave no such signs; here they are to be mended */
         q[2] = sign * (float)sin(half);
         q[3] = sign * (float)cos(half);
         q[7] = 1.0f;

@@ -11,8 +11,8 @@
 
 /* ---- sheets ---- */
 
-/* side x side vertices, 1 cm apart, in one or two submeshes whose border (at half the width) has both one's vertices.
- */
+/* side x side vertices, 1 cm apart, in one submesh, or in two that meet at half the width, each with vertices of its
+ * own there. */
 typedef struct sheet {
     model_mesh mesh;
     uint32_t side;
@@ -444,7 +444,7 @@ static void outline_stays(void **state)
     sheet_free(&s);
 }
 
-/* ---- meshes that are not nice ---- */
+/* ---- odd meshes ---- */
 
 static void no_new_edges_of_three(const model_mesh *mesh, const lod_level *level, uint32_t limit)
 {
@@ -495,7 +495,7 @@ static void degenerate_triangles_go(void **state)
     (void)state;
     sheet s = sheet_new(9, 1, 0);
     uint32_t *last = s.mesh.indices + s.mesh.index_count - 3u;
-    last[2] = last[1]; /* and its vertex is in the other triangle of the square still */
+    last[2] = last[1]; /* the other triangle of the square still uses its vertex */
     lod *l = build_to(&s.mesh, LOD_QUALITY, 1.0f);
     assert_int_equal(l->levels[0].index_count, s.mesh.index_count - 3u);
     assert_int_equal(l->collapse_count, 0);
@@ -565,7 +565,7 @@ static void size_does_not_matter(void **state)
         bump(&small, 0, 0.04f, 0.04f, 0.03f, 0.02f);
         bump(&large, 0, 0.04f, 0.04f, 0.03f, 0.02f);
         for (uint32_t i = 0; i < large.mesh.vertex_count * 3u; i++) {
-            large.mesh.position[i] *= 0x1p20f; /* a power of 2: every bit behind it stays */
+            large.mesh.position[i] *= 0x1p20f; /* a power of 2 leaves mantissas as they are */
             large.mesh.targets[0].position[i] *= 0x1p20f;
         }
         lod *a = build_to(&small.mesh, mode, 0.25f), *b = build_to(&large.mesh, mode, 0.25f);

@@ -22,7 +22,7 @@ static source source_of(const char *path)
     return s;
 }
 
-/* Of a model; takes it. */
+/* Takes the model. */
 static source source_of_model(model *m)
 {
     source s;
@@ -74,7 +74,7 @@ static void clips_of_one_skeleton_are_joined(void **state)
     source_free(&base);
 }
 
-static void a_name_that_is_taken_gets_the_file_s(void **state)
+static void a_name_that_is_taken_gets_that_of_the_file(void **state)
 {
     source base = source_of(clip_bvh("walk", "abc", FRAMES)), other = source_of(clip_bvh("walk", "abc", FRAMES));
     model_error error;
@@ -111,7 +111,7 @@ static void the_first_difference_is_told(void **state)
     expect_refused(&base, &other, "the parent of joint 'd' is 'b' here and 'c' there");
 }
 
-static void translations_come_to_the_base_s_unit(void **state)
+static void translations_come_to_the_unit_of_the_base(void **state)
 {
     source base = source_of(clip_bvh("walk", "abc", FRAMES)), other = source_of(clip_bvh("run", "abc", FRAMES));
     const float before = other.sets[0]->clips[0].translations[1];
@@ -153,7 +153,7 @@ static void weights_of_unknown_nodes_are_left_out(void **state)
     model_error error;
     (void)state;
     assert_int_equal(source_join(&base, "base.glb", &other, "other.glb", &error), 0);
-    assert_int_equal(base.sets[0]->clip_count, 4); /* of "linear" its joint is left */
+    assert_int_equal(base.sets[0]->clip_count, 4); /* of "linear" only the joint's track is taken */
     assert_int_equal(base.sets[0]->clips[3].float_count, 0);
     assert_int_equal(base.sets[0]->clips[3].joint_count, 1);
     assert_true(has_warning(base.m, "clip 'step': base.glb has no node 'grid_0' with 5 targets"));
@@ -224,11 +224,16 @@ static void the_pack_of_several_files(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(clips_of_one_skeleton_are_joined),      cmocka_unit_test(a_name_that_is_taken_gets_the_file_s),
-    cmocka_unit_test(a_name_that_is_taken_twice_is_refused), cmocka_unit_test(the_first_difference_is_told),
-    cmocka_unit_test(translations_come_to_the_base_s_unit),  cmocka_unit_test(weights_go_to_nodes_of_the_same_name),
-    cmocka_unit_test(weights_of_unknown_nodes_are_left_out), cmocka_unit_test(weights_come_to_a_model_without_clip),
-    cmocka_unit_test(what_adds_nothing_is_refused),          cmocka_unit_test(the_pack_of_several_files),
+    cmocka_unit_test(clips_of_one_skeleton_are_joined),
+    cmocka_unit_test(a_name_that_is_taken_gets_that_of_the_file),
+    cmocka_unit_test(a_name_that_is_taken_twice_is_refused),
+    cmocka_unit_test(the_first_difference_is_told),
+    cmocka_unit_test(translations_come_to_the_unit_of_the_base),
+    cmocka_unit_test(weights_go_to_nodes_of_the_same_name),
+    cmocka_unit_test(weights_of_unknown_nodes_are_left_out),
+    cmocka_unit_test(weights_come_to_a_model_without_clip),
+    cmocka_unit_test(what_adds_nothing_is_refused),
+    cmocka_unit_test(the_pack_of_several_files),
 };
 
 TEST_MAIN(tests, NULL, NULL)

@@ -16,7 +16,7 @@ static double length(const float v[3])
     return sqrt((double)v[0] * (double)v[0] + (double)v[1] * (double)v[1] + (double)v[2] * (double)v[2]);
 }
 
-/* Of the pack's targets: not less than the longest delta of the source, and not a millionth more. */
+/* A target's radius in the pack is at least the source's longest delta, and at most a millionth more. */
 static void the_radius_of_a_target_is_its_longest_delta(void **state)
 {
     const test_model_desc desc = { 2, 9, 7, TEST_TANGENTS, 61 };
@@ -67,7 +67,7 @@ static model *two_grids(void)
     return m;
 }
 
-static void a_joined_mesh_keeps_the_source_s_texture_coordinates(void **state)
+static void a_joined_mesh_keeps_its_texture_coordinates(void **state)
 {
     model *m = two_grids();
     const uint32_t vertices = m->meshes[0].vertex_count;
@@ -99,7 +99,7 @@ int main(int argument_count, char **arguments)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_radius_of_a_target_is_its_longest_delta),
-        cmocka_unit_test(a_joined_mesh_keeps_the_source_s_texture_coordinates),
+        cmocka_unit_test(a_joined_mesh_keeps_its_texture_coordinates),
     };
     if (argument_count > 1) cmocka_set_test_filter(arguments[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);

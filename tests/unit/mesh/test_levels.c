@@ -120,7 +120,7 @@ static void half(const noh_mesh *mesh, const noh_morph_layers *layers)
     noh_morph_accumulate_f16(mesh, weights, NOH_HALF_RNE, layers);
 }
 
-static void a_level_s_sums_are_the_full_one_s(void **state)
+static void sums_of_a_level_are_those_of_the_full_mesh(void **state)
 {
     static const accumulator ways[] = { simd, scalar, half };
     made x;
@@ -238,9 +238,12 @@ static void by_other_instruction_sets_too(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(views_are_found_from_any_level),      cmocka_unit_test(the_full_level_is_the_mesh),
-    cmocka_unit_test(a_level_s_sums_are_the_full_one_s),   cmocka_unit_test(a_level_costs_less),
-    cmocka_unit_test(levels_are_skinned_as_the_full_mesh), cmocka_unit_test(by_other_instruction_sets_too),
+    cmocka_unit_test(views_are_found_from_any_level),
+    cmocka_unit_test(the_full_level_is_the_mesh),
+    cmocka_unit_test(sums_of_a_level_are_those_of_the_full_mesh),
+    cmocka_unit_test(a_level_costs_less),
+    cmocka_unit_test(levels_are_skinned_as_the_full_mesh),
+    cmocka_unit_test(by_other_instruction_sets_too),
 };
 
 TEST_MAIN(tests, NULL, NULL)

@@ -216,7 +216,7 @@ static void every_combination_of_attributes_decodes(void **state)
 }
 
 /* Triangles may be reordered and rotated, but their set must be the same. */
-static void triangles_are_the_source_s(void **state)
+static void triangles_are_those_of_the_source(void **state)
 {
     uint64_t got = 0, expected = 0;
     (void)state;
@@ -278,7 +278,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(colors_are_within_half_a_step_of_their_root),
     cmocka_unit_test(a_mesh_without_attributes_has_defaults),
     cmocka_unit_test(every_combination_of_attributes_decodes),
-    cmocka_unit_test(triangles_are_the_source_s),
+    cmocka_unit_test(triangles_are_those_of_the_source),
     cmocka_unit_test(large_meshes_have_wide_indices),
     cmocka_unit_test(targets_are_found_by_name),
     cmocka_unit_test(default_weights_are_kept),

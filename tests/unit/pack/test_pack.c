@@ -73,7 +73,7 @@ static void past_the_last_is_not_found(void **state)
 }
 
 /* The writer's version is reported and does not matter. */
-static void the_writer_s_version_is_in_the_header(void **state)
+static void the_header_has_the_version_of_its_writer(void **state)
 {
     uint8_t *other = test_aligned(good, good_count);
     noh_pack pack = test_open(good, good_count);
@@ -688,7 +688,7 @@ static void errors_say_where(void **state)
     X(clip->update_rate_error[0], = 1.0f)               \
     X(clip->error_shell, = -1.0f)
 
-static void a_field_s_error_is_at_the_field(void **state)
+static void an_error_is_at_its_field(void **state)
 {
     noh_error error = { NOH_OK, NULL, 0, 0 };
     noh_pack pack;
@@ -753,7 +753,7 @@ enum {
 
 static const struct CMUnitTest tests[] = { cmocka_unit_test(opens_and_walks),
                                            cmocka_unit_test(past_the_last_is_not_found),
-                                           cmocka_unit_test(the_writer_s_version_is_in_the_header),
+                                           cmocka_unit_test(the_header_has_the_version_of_its_writer),
                                            cmocka_unit_test(the_smallest_mesh_opens),
                                            cmocka_unit_test(misaligned_memory_is_an_argument_error),
                                            cmocka_unit_test(null_is_an_argument_error),
@@ -766,7 +766,7 @@ static const struct CMUnitTest tests[] = { cmocka_unit_test(opens_and_walks),
                                            cmocka_unit_test(an_honest_copy_opens),
                                            cmocka_unit_test(there_is_padding_behind_the_indices),
                                            cmocka_unit_test(errors_say_where),
-                                           cmocka_unit_test(a_field_s_error_is_at_the_field),
+                                           cmocka_unit_test(an_error_is_at_its_field),
                                            cmocka_unit_test(padding_has_to_be_zero),
                                            cmocka_unit_test(bytes_after_the_last_chunk_are_refused),
 #define X(name, code, word, statement) \

@@ -51,7 +51,7 @@ static noh_transform posed(float angle, float x, float scale)
 }
 
 /* Each of the three parts has its own length and speed: here all shrink, each at its own pace. */
-static void offsets_and_speeds_are_each_part_s_own(void **state)
+static void each_part_has_its_own_offset_and_speed(void **state)
 {
     const noh_transform target = posed(0.5f, 1.0f, 1.0f), target_before = posed(0.45f, 0.9f, 1.02f);
     const noh_transform source = posed(0.8f, 3.0f, 1.5f), source_before = posed(0.77f, 2.95f, 1.55f);
@@ -144,7 +144,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(decay_is_the_quintic),
         cmocka_unit_test(decay_keeps_its_speed_at_the_start),
-        cmocka_unit_test(offsets_and_speeds_are_each_part_s_own),
+        cmocka_unit_test(each_part_has_its_own_offset_and_speed),
         cmocka_unit_test(growing_offsets_are_stopped),
         cmocka_unit_test(the_pose_starts_at_the_source),
         cmocka_unit_test(rotations_are_added_from_outside),
