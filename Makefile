@@ -454,7 +454,7 @@ examples: $(EXAMPLES)
 $(BUILD)/examples/%: $(BUILD)/tools/examples/%.o $(BUILD)/libnoh.a
 	@mkdir -p $(@D)
 	$(call say,CC,$@)
-	$(Q)$(CC) $(ALL_LDFLAGS) $^ -o $@ $(if $(shell grep -ls '<EGL/' tools/examples/$*.c),-lEGL)
+	$(Q)$(CC) $(ALL_LDFLAGS) $^ -o $@ $(if $(shell grep -lsE '<EGL/|egl_context' tools/examples/$*.c),-lEGL)
 
 # Code and data of the library by processor, against the table of the last commit; make sizes-update writes that table.
 sizes:

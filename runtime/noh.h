@@ -40,6 +40,8 @@
 
 /* ---- what a game calls first ---- */
 
+#include "stage/stage.h"            /* a whole cast of characters out of one block */
+#include "stage/view.h"             /* cameras and lights for it */
 #include "base/version.h"           /* which noh this is */
 #include "base/result.h"            /* noh_result, noh_error */
 #include "base/limits.h"            /* every limit, in one place */

@@ -81,6 +81,17 @@
 #define NOH_SCHEDULE_MAX 65536u /* characters of one scheduler */
 #define NOH_VISIBILITY_MAX 8.0f
 
+/* ---- stages ---- */
+
+#define NOH_STAGE_KINDS_MAX 16u
+#define NOH_STAGE_ACTORS_MAX 65535u /* of all kinds */
+#define NOH_STAGE_MESHES_MAX 32u    /* drawn meshes of a kind */
+#define NOH_STAGE_JOBS_MAX 64u
+#define NOH_STAGE_VIEWS_MAX 8u
+#define NOH_LAYERS_MAX 16u      /* of a kind */
+#define NOH_LAYER_TRACKS_MAX 8u /* of a layer */
+#define NOH_CONCESSIONS_MAX 32u /* of a plan */
+
 /* ---- GL ---- */
 
 #define NOH_GL_VARIANTS_MAX 64u     /* of a renderer: a kind of mesh needs 2 to 8; with fades or depth twice that */

@@ -139,6 +139,52 @@ noh_result noh_lod_pools_init(void *memory, size_t bytes, const noh_lod_pools_de
     return NOH_OK;
 }
 
+/* ---- checking ---- */
+
+static int same_desc(const noh_lod_pools *a, const noh_lod_pools *b)
+{
+    int same = a->instance_count == b->instance_count && a->pool_count == b->pool_count && a->bytes == b->bytes &&
+               a->keys_offset == b->keys_offset && a->places_offset == b->places_offset &&
+               a->free_offset == b->free_offset;
+    for (uint32_t i = 0; i < b->pool_count && same; i++) {
+        same = a->pools[i].level == b->pools[i].level && a->pools[i].slot_count == b->pools[i].slot_count &&
+               a->pools[i].first == b->pools[i].first;
+    }
+    return same;
+}
+
+/* All slots are in range, and as many are held or free as there are. A slot held twice shows one actor's face on two:
+ * wrong to look at, and harmless. */
+static int are_slots_sound(const noh_lod_pools *p)
+{
+    uint32_t held[NOH_LOD_POOLS_MAX] = { 0 };
+    for (uint32_t i = 0; i < p->instance_count; i++) {
+        const place *at = place_of(p, i);
+        if (at->held > 1u || (at->held && (at->pool >= p->pool_count || at->slot >= p->pools[at->pool].slot_count)))
+            return 0;
+        if (at->held) held[at->pool]++;
+    }
+    for (uint32_t i = 0; i < p->pool_count; i++) {
+        if (p->pools[i].free_count > p->pools[i].slot_count ||
+            held[i] + p->pools[i].free_count != p->pools[i].slot_count)
+            return 0;
+        for (uint32_t k = 0; k < p->pools[i].free_count; k++) {
+            if (free_of(p)[p->pools[i].first + k] >= p->pools[i].slot_count) return 0;
+        }
+    }
+    return 1;
+}
+
+noh_result noh_lod_pools_check(const void *copy, const noh_lod_pools *like, noh_error *error)
+{
+    const noh_lod_pools *p = (const noh_lod_pools *)copy;
+    NOH_ASSERT(copy && like);
+    if (!same_desc(p, like)) {
+        return noh_fail(error, NOH_ERR_DATA, "LOD pools: a copy of others", 0, 0);
+    }
+    return are_slots_sound(p) ? NOH_OK : noh_fail(error, NOH_ERR_DATA, "LOD pools: a slot out of range, or lost", 0, 0);
+}
+
 /* ---- asking ---- */
 
 void noh_lod_pools_begin(noh_lod_pools *p)

@@ -65,6 +65,10 @@ size_t noh_lod_pools_size(const noh_lod_pools_desc *desc);
 noh_result noh_lod_pools_init(void *memory, size_t bytes, const noh_lod_pools_desc *desc, noh_lod_pools **pools,
                               noh_error *error);
 
+/* Check a copy of a pools' block from outside, such as a saved game, against pools of the same desc.
+ * errors  DATA not a copy of such pools, or a count or slot in it is out of range */
+noh_result noh_lod_pools_check(const void *copy, const noh_lod_pools *like, noh_error *error);
+
 void noh_lod_pools_begin(noh_lod_pools *pools);
 
 /* Ask for a slot in this frame; each instance at most once. An instance that does not ask gives up its slot.

@@ -267,6 +267,27 @@ INIT(gl_skin_init)
     return result;
 }
 
+INIT(stage_init)
+{
+    static noh_stage_plan plan;
+    const noh_gl_device on = device();
+    noh_kind_desc kind;
+    noh_stage_desc desc;
+    noh_stage *stage;
+    noh_result result;
+    memset(&kind, 0, sizeof kind);
+    memset(&desc, 0, sizeof desc);
+    kind.mesh = &s.pack;
+    kind.actor_count = 2;
+    desc.kinds = &kind;
+    desc.kind_count = 1;
+    desc.gpu = &noh_stage_on_gl;
+    if (noh_stage_plan_make(&desc, &s.gl.caps, &plan, error) != NOH_OK) fail_msg("plan: %s", error->what);
+    result = noh_stage_init(memory, bytes, &on, &desc, &plan, &stage, error);
+    if (result == NOH_OK) noh_stage_delete(stage);
+    return result;
+}
+
 #define ROW(name)          \
     {                      \
         "noh_" #name, name \
@@ -287,6 +308,7 @@ static const struct {
     ROW(time_lod_measure),    ROW(time_lod_points_measure),
     ROW(morph_layers_init),   ROW(pick),
     ROW(gl_morph_init),       ROW(gl_skin_init),
+    ROW(stage_init),
 };
 
 /* ---- the contract ---- */

@@ -1,0 +1,427 @@
+/* stage.h: a cast of characters out of one block of memory.
+ *
+ * A stage owns what its characters need: clips and their caches, poses, morph targets and palettes on the GPU. A game
+ * says what it wants (noh_stage_desc) and is told every byte (noh_stage_plan_make), before anything is loaded. It
+ * brings the block, and from then on spawns, plays, steps and draws. Nothing is allocated after init.
+ *
+ *   plan     noh_stage_plan_make, noh_stage_plan_parts, noh_stage_init, noh_stage_delete, noh_stage_restore,
+ *            noh_stage_plan_of, noh_stage_stats_of
+ *   names    noh_stage_find, noh_stage_name
+ *   actors   noh_stage_spawn, noh_stage_despawn, noh_stage_actor_at, noh_actor_set_place, noh_actor_place,
+ *            noh_actor_set_look, noh_actor_attach
+ *   play     noh_actor_play, noh_actor_stop, noh_actor_track, noh_actor_controller, noh_actor_hold_float
+ *   ask      noh_actor_floats, noh_actor_joint, noh_actor_root, noh_actor_sphere, noh_stage_pick
+ *   frame    noh_stage_frame; or its pieces noh_stage_step, noh_stage_frame_begin, noh_stage_jobs, noh_stage_job,
+ *            noh_stage_frame_end; noh_stage_events
+ *   state    noh_stage_state, noh_stage_set_state, noh_stage_hash
+ *
+ * Drawing is stage_gl.h. A program that does not name noh_stage_on_gl links no GL code: a server steps and poses.
+ *
+ * Space     a place is in the game's units, and a model unit is one of them at scale 1. LOD counts a unit as a metre.
+ *           y is up unless a kind says otherwise. Matrices are 3 rows of 4, position = rows * (x, y, z, 1).
+ * Time      ticks of 1/48,000 s (NOH_TICKS_PER_SECOND).
+ * Threads   a stage belongs to one thread at a time; noh_stage_job alone may be called from several at once. Stages
+ * that share packs share nothing that changes. Errors    a failed call changes nothing. An actor that is gone is
+ * NOH_ERR_NOT_FOUND, never another actor. */
+#ifndef NOH_STAGE_STAGE_H
+#define NOH_STAGE_STAGE_H
+
+#include "anim/controller.h"
+#include "anim/root_motion.h"
+#include "base/limits.h"
+#include "character/lod.h"
+#include "pack/pack.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- what is wanted ---- */
+
+typedef enum noh_layer_mode {
+    NOH_LAYER_BASE = 0, /* blended with the other base layers by weight, joint by joint */
+    NOH_LAYER_OVER,     /* covers the base layers where its mask lets it, by its weight; layers over the same joints
+                         * are blended with each other */
+    NOH_LAYER_ADD       /* adds its difference from the clip's first frame */
+} noh_layer_mode;
+
+/* One thing that an actor can do at a time: walk, wave, talk. */
+typedef struct noh_layer_desc {
+    const char *name; /* required; borrowed */
+    noh_layer_mode mode;
+    const char *joints;   /* names of joints, each with all below it, separated by blanks; '-' before one takes it and
+                           * all below out again: "spine_02 -clavicle_l". "": none; default (NULL) all. Read at init */
+    const char *floats;   /* names of floats; '*' at the end matches any rest, '-' takes out again. "": none; default
+                           * (NULL) all. Read at init */
+    uint32_t track_count; /* clips at one time, 1..8; default (0) 2, so that one fades into another */
+} noh_layer_desc;
+
+/* A kind of character: the meshes of one skeleton and the clips that move them. Zero is a good value for all but mesh
+ * and actor_count. */
+typedef struct noh_kind_desc {
+    const char *name;                  /* for messages and plans; default (NULL) "". Borrowed */
+    const noh_pack *mesh;              /* its skeleton, meshes and nodes; required. Its bytes must outlive the stage */
+    const noh_pack *clips;             /* default (NULL) `mesh`. Clips of other skeletons are left out */
+    const noh_pack *const *clip_packs; /* [clip_pack_count] instead of `clips`, where there are several: a later one's
+                                        * clip replaces an earlier one's of the same name. Must outlive the stage */
+    uint32_t clip_pack_count;          /* 0 with `clips` */
+    uint32_t skeleton;     /* in `mesh`; default 0; NOH_NONE: only what no joint moves. A node's mesh that another
+                            * skeleton moves is left out */
+    uint32_t actor_count;  /* of this kind at one time; required */
+    uint32_t near_count;   /* of these, how many may be at the finest level at once, */
+    uint32_t middle_count; /* and how many at the next one. Both 0: by an even spread over 100 m */
+    uint32_t finest_level; /* the finest level that may be used (noh_stage_plan.kinds[].levels); default 0 */
+    const noh_layer_desc *layers; /* [layer_count] default (NULL) three: "body" (base), "face" (over, floats alone),
+                                   * "add" (add) */
+    uint32_t layer_count;         /* 0..NOH_LAYERS_MAX */
+    uint32_t change_count;        /* fades and other changes over time at once; default (0) 3 for each track */
+    uint32_t held_float_count; /* floats that the game may hold at once (noh_actor_hold_float); default (0) 8; NOH_NONE:
+                                * none */
+    uint32_t root_axes;        /* NOH_ROOT_* that clips move the actor by; default (0) none */
+    uint32_t root_up;          /* axis of the heading: 0 x, 1 y, 2 z; not used without root_axes */
+    int root_told;             /* 1: root motion does not move the actor, it is only told (noh_actor_root) */
+    int unpickable;            /* 1: noh_stage_pick passes through */
+} noh_kind_desc;
+
+typedef struct noh_stage_gpu noh_stage_gpu; /* stage_gl.h has the one there is */
+
+/* Zero is a good value for all but kinds. */
+typedef struct noh_stage_desc {
+    const noh_kind_desc *kinds; /* [kind_count]; required */
+    uint32_t kind_count;        /* 1..NOH_STAGE_KINDS_MAX */
+    uint64_t cpu_bytes_max;     /* bounds that the plan has to keep; default (0) none */
+    uint64_t gpu_bytes_max;
+    uint64_t bytes_max;        /* of both together, where memory is shared */
+    noh_lod_settings lod;      /* `pixels` is the largest error that may show; zeros: as lod.h has them */
+    uint32_t height_px;        /* of the view that slots are counted for; default (0) 1,080 */
+    uint32_t job_count;        /* noh_stage_job may run this many at once; default (0) 1 */
+    uint32_t event_count;      /* callback keys that one step may deliver to noh_stage_events; default (0) 64 and one
+                                * for each actor */
+    uint64_t update_budget_ns; /* of posing in a frame, by noh_cost_ns; default (0) no bound */
+    int halves;                /* 1: 16-bit accumulators */
+    uint32_t morph_path;       /* noh_morph_path of gl_morph.h; default (0) the cheapest */
+    const noh_stage_gpu *gpu;  /* &noh_stage_on_gl of stage_gl.h; default (NULL) nothing is drawn */
+} noh_stage_desc;
+
+/* ---- the plan ---- */
+
+/* A level of an actor: a level for each of its meshes, chosen so that none is off by more than error_m. */
+typedef struct noh_actor_level {
+    float error_m; /* certified, of the mesh that is off the most */
+    uint32_t triangle_count;
+    uint32_t slot_count; /* actors that may be at this level or a finer one that is free, at one time */
+    uint8_t mesh_levels[NOH_STAGE_MESHES_MAX];
+} noh_actor_level;
+
+/* What a kind came to. */
+typedef struct noh_kind_plan {
+    uint32_t mesh_count, level_count, finest_level;
+    uint32_t track_count, joint_count, float_count;
+    uint32_t cached_segment_count, segment_count; /* of its clips: held decoded at once; in all */
+    noh_actor_level levels[NOH_LOD_LEVELS_MAX];
+} noh_kind_plan;
+
+/* Something that was given up to keep a bound. */
+typedef struct noh_concession {
+    const char *what;  /* a constant: "half-float accumulators", "cached segments", "slots", "finest level" */
+    uint32_t kind;     /* NOH_NONE: of all */
+    uint32_t value;    /* what it is now */
+    float loss_pixels; /* the error that it may show, at the distance where the level given up would begin; 0: none */
+    uint64_t cpu_bytes, gpu_bytes; /* that it won */
+} noh_concession;
+
+/* Plain data, 7 KiB: print it, compare it, keep it with the build. */
+typedef struct noh_stage_plan {
+    uint64_t cpu_bytes;   /* of the block that noh_stage_init wants; exact */
+    uint64_t gpu_bytes;   /* of what it makes on the GPU; exact, as the ledger counts */
+    uint64_t state_bytes; /* of cpu_bytes: noh_stage_state */
+    uint64_t pack_bytes;  /* of the packs, which are read where they lie and not counted above */
+    uint32_t halves;      /* 1: 16-bit accumulators */
+    uint32_t morph_path;  /* noh_morph_path that was chosen; 0 without GPU */
+    uint32_t hash;        /* of the desc and the plan: a state of another one is refused */
+    uint32_t concession_count;
+    noh_concession concessions[NOH_CONCESSIONS_MAX]; /* in the order in which they were given up */
+    noh_kind_plan kinds[NOH_STAGE_KINDS_MAX];
+} noh_stage_plan;
+
+struct noh_gl_caps;
+
+/* Decide and measure. Needs no driver and no memory; the same desc, packs and capabilities give the same plan
+ * everywhere. Where a bound is not kept, things are given up in this order, the bound being checked after each: 16-bit
+ * accumulators; cached segments, down to half; slots of finer levels, the finest first, unless near_count or
+ * middle_count promise them; the finest level; cached segments, down to two for each bank.
+ * caps    of gl_caps.h; NULL with desc->gpu NULL
+ * errors  ARG a field of the desc (where: the kind); MEMORY no choice keeps the bounds (need: bytes of the smallest);
+ *         NOT_FOUND a joint or float of a layer (where: the kind); LIMIT; DATA a clip is broken */
+noh_result noh_stage_plan_make(const noh_stage_desc *desc, const struct noh_gl_caps *caps, noh_stage_plan *plan,
+                               noh_error *error);
+
+/* A part of the sum. */
+typedef struct noh_stage_bytes {
+    const char *what; /* a constant: "clips", "characters", "accumulators" */
+    uint32_t kind;    /* NOH_NONE: of all */
+    uint64_t cpu_bytes, gpu_bytes;
+} noh_stage_bytes;
+
+/* The parts that the plan's bytes are made of; their sums are cpu_bytes and gpu_bytes.
+ * shapes   parts[capacity]
+ * returns  how many there are; those past `capacity` are not written */
+uint32_t noh_stage_plan_parts(const noh_stage_desc *desc, const struct noh_gl_caps *caps, const noh_stage_plan *plan,
+                              noh_stage_bytes *parts, uint32_t capacity);
+
+/* ---- a stage ---- */
+
+typedef struct noh_stage noh_stage;
+
+/* Build it in memory[bytes], aligned to NOH_MEMORY_ALIGN and at least plan->cpu_bytes long.
+ * desc    as the plan was made for; its packs and names must outlive the stage, the rest is copied
+ * plan    must outlive the stage
+ * device  a noh_gl_device (gl_memory.h) with all fields set but the log; its table, caps and ledger must outlive the
+ *         stage. NULL with desc->gpu NULL
+ * errors  as noh_stage_plan_make; ARG memory is NULL or misaligned; MEMORY it is too small (need: the bytes), or the
+ *         driver's is; GL, DATA the driver refused an object or a shader: nothing is left behind */
+noh_result noh_stage_init(void *memory, size_t bytes, const void *device, const noh_stage_desc *desc,
+                          const noh_stage_plan *plan, noh_stage **stage, noh_error *error);
+
+/* Delete the GL objects. The memory is yours again. */
+void noh_stage_delete(noh_stage *stage);
+
+/* Make the GL objects again in a new context (gl_lost.h): the next frame shows what it would have shown.
+ * errors  GL, MEMORY, DATA: it then has no GL objects, and may be restored again */
+noh_result noh_stage_restore(noh_stage *stage, noh_error *error);
+
+const noh_stage_plan *noh_stage_plan_of(const noh_stage *stage);
+
+/* Counts of the last frame, and high-water marks to plan the next build by. Not part of the state. */
+typedef struct noh_stage_stats {
+    uint32_t actors, seen, updated, fading, events;
+    uint32_t at_level[NOH_LOD_LEVELS_MAX]; /* of those that are seen */
+    uint32_t coarser;                      /* actors that are drawn coarser than they asked for: too few slots */
+    uint64_t decoded;                      /* track-frames */
+    uint64_t decoded_late;                 /* of these, those that a pose had to wait for: too few cached segments */
+    uint32_t events_lost;                  /* since init: event_count is too small */
+    uint32_t actors_high, events_high, coarser_high;
+    float error_pixels; /* the largest of all that are seen */
+} noh_stage_stats;
+
+const noh_stage_stats *noh_stage_stats_of(const noh_stage *stage);
+
+/* ---- names ---- */
+
+typedef enum noh_name { NOH_NAME_CLIP, NOH_NAME_LAYER, NOH_NAME_FLOAT, NOH_NAME_JOINT } noh_name;
+
+/* The index of a name in a kind; NOH_NONE when there is none. Look names up once, not in every frame. Floats are the
+ * morph targets of all meshes and the named floats of clips; meshes that have a target of the same name share it. */
+uint32_t noh_stage_find(const noh_stage *stage, uint32_t kind, noh_name what, const char *name);
+
+/* The name of an index; NULL past the last. */
+const char *noh_stage_name(const noh_stage *stage, uint32_t kind, noh_name what, uint32_t index);
+
+/* ---- actors ---- */
+
+/* An actor, 0: nobody. 16 bits of index and 16 of generation: keep it, pass it by value, send it over a network. An
+ * index is used again as late as possible, and its generation repeats after 65,535 times. */
+typedef struct noh_actor {
+    uint32_t id;
+} noh_actor;
+
+typedef struct noh_place {
+    float position[3];
+    float rotation[4]; /* quaternion x, y, z, w; all 0: the identity */
+    float scale;       /* above 0; 0: 1 */
+} noh_place;
+
+/* A new actor of a kind: nothing plays.
+ * place   NULL: the origin
+ * errors  ARG kind, or a field of place; LIMIT all actors of the kind are there (need: their number) */
+noh_result noh_stage_spawn(noh_stage *stage, uint32_t kind, const noh_place *place, noh_actor *actor, noh_error *error);
+
+/* It is gone at once, and lets go of what hangs on it.
+ * errors  NOT_FOUND it is gone already */
+noh_result noh_stage_despawn(noh_stage *stage, noh_actor actor, noh_error *error);
+
+/* The actor at an index below the sum of all actor_counts, kind after kind; id 0 where nobody is. */
+noh_actor noh_stage_actor_at(const noh_stage *stage, uint32_t index);
+
+/* errors  NOT_FOUND; ARG a value that is not finite, a rotation without length, a scale below 0 */
+noh_result noh_actor_set_place(noh_stage *stage, noh_actor actor, const noh_place *place, noh_error *error);
+
+/* Where it is after the last step; one that hangs on another: relative to the joint. errors NOT_FOUND */
+noh_result noh_actor_place(const noh_stage *stage, noh_actor actor, noh_place *place, noh_error *error);
+
+/* How it is drawn. All zeros: seen, with a shadow, within the stage's error. */
+typedef struct noh_look {
+    uint32_t hidden;    /* 1: neither drawn nor picked; clocks and callback keys go on */
+    uint32_t no_shadow; /* 1: not drawn in depth passes of views without height_px */
+    uint32_t posed;     /* 1: posed in every frame in full detail, seen or not: for noh_actor_joint on a server */
+    float pixels;       /* its own largest error; 0: that of the stage */
+} noh_look;
+
+/* errors  NOT_FOUND; ARG pixels is negative or not finite */
+noh_result noh_actor_set_look(noh_stage *stage, noh_actor actor, const noh_look *look, noh_error *error);
+
+/* Hang an actor on a joint of another one: a sword in a hand. Its place is then relative to the joint. The parent is
+ * posed wherever the actor is seen.
+ * parent  id 0: let go, and stay where it is
+ * errors  NOT_FOUND either is gone, or the parent has no such joint; ARG the parent hangs itself, or holds something
+ * that would then hang two deep */
+noh_result noh_actor_attach(noh_stage *stage, noh_actor actor, noh_actor parent, uint32_t joint, noh_error *error);
+
+/* ---- play ---- */
+
+#define NOH_PLAY_KEEP 1u  /* leave the layer alone where this clip plays on it already */
+#define NOH_PLAY_PHASE 2u /* begin at the phase of what it takes over from: walk into run */
+
+/* All zeros play the clip as it was made, faded in within a fifth of a second. */
+typedef struct noh_play {
+    uint32_t fade_ticks; /* default (0) 9,600; 1: at once */
+    int32_t speed;       /* 1/65,536; default (0) 65,536; negative: backwards */
+    int64_t start_ticks; /* default 0 */
+    float weight;        /* default (0) 1 */
+    noh_loop loop;       /* default NOH_LOOP_OF_CLIP: the clip's own */
+    uint32_t sync_group; /* default (0) none; 1..NOH_SYNC_GROUPS_MAX */
+    uint32_t flags;      /* NOH_PLAY_* */
+} noh_play;
+
+/* Play a clip on a layer; what played there fades out. Where all tracks of the layer are in use, the lightest ends. A
+ * base layer that moves joints and on which nothing plays is not faded in: there is nothing to fade from.
+ * play    NULL: zeros
+ * errors  NOT_FOUND the actor is gone, or the kind has no such clip; ARG layer, or a field of play; LIMIT too many
+ *         changes over time are under way (need: 3) */
+noh_result noh_actor_play(noh_stage *stage, noh_actor actor, uint32_t layer, const char *clip, const noh_play *play,
+                          noh_error *error);
+
+/* Fade a layer out; fade_ticks as above.
+ * errors  as noh_actor_play */
+noh_result noh_actor_stop(noh_stage *stage, noh_actor actor, uint32_t layer, uint32_t fade_ticks, noh_error *error);
+
+/* The track of a layer that was started last; NULL: the actor is gone, or nothing plays there. */
+const noh_track *noh_actor_track(const noh_stage *stage, noh_actor actor, uint32_t layer);
+
+/* The whole controller, for what the calls above do not do; and the set that its calls take. NULL: the actor is gone.
+ */
+noh_controller *noh_actor_controller(noh_stage *stage, noh_actor actor, const noh_clip_set **set);
+
+/* Hold a float: what shows is what the clips say, mixed with this value.
+ * ranges  amount 0..1: 1 is this value alone; 0 lets go
+ * errors  NOT_FOUND the actor is gone, or the kind has no such float; LIMIT held_float_count are held (need: it); ARG
+ * not finite, or amount out of its range */
+noh_result noh_actor_hold_float(noh_stage *stage, noh_actor actor, uint32_t index, float value, float amount,
+                                noh_error *error);
+
+/* ---- ask ---- */
+
+/* The floats as they showed in the last frame: [the kind's float_count], valid until the next frame; NULL: the actor is
+ * gone, or was not shown. */
+const float *noh_actor_floats(const noh_stage *stage, noh_actor actor);
+
+/* A joint in the world, as it was shown last; a joint that LOD left out stands where its parent takes it.
+ * errors  NOT_FOUND the actor is gone, was never posed, or has no such joint */
+noh_result noh_actor_joint(const noh_stage *stage, noh_actor actor, uint32_t joint, float matrix[12], noh_error *error);
+
+/* What the clips moved the root by in the last step, in the actor's own space, in model units.
+ * errors  NOT_FOUND the actor is gone */
+noh_result noh_actor_root(const noh_stage *stage, noh_actor actor, noh_root_pose *moved, noh_error *error);
+
+/* Centre x, y, z and radius in the world of a sphere that holds every vertex as posed last.
+ * errors  NOT_FOUND the actor is gone */
+noh_result noh_actor_sphere(const noh_stage *stage, noh_actor actor, float sphere[4], noh_error *error);
+
+typedef struct noh_stage_hit {
+    noh_actor actor;
+    uint32_t mesh; /* in the kind's mesh pack */
+    uint32_t submesh, triangle;
+    uint32_t joint;      /* of the skeleton; NOH_NONE: rigid */
+    float distance;      /* in lengths of the direction */
+    float point[3];      /* world */
+    float bind_point[3]; /* the same place of the bind pose */
+    float barycentric[3];
+} noh_stage_hit;
+
+/* The nearest of the actors that were shown in the last frame along origin + distance * direction. Morph targets are
+ * left out: a face is picked as it is at rest.
+ * errors  NOT_FOUND nothing is hit; ARG direction has no length, or distance_max is not above 0 */
+noh_result noh_stage_pick(noh_stage *stage, const float origin[3], const float direction[3], float distance_max,
+                          noh_stage_hit *hit, noh_error *error);
+
+/* ---- a frame ---- */
+
+/* A callback key that play has passed. */
+typedef struct noh_stage_event {
+    noh_actor actor;
+    uint32_t layer, clip;
+    const char *name; /* of the key, in the pack */
+    uint32_t name_hash;
+    uint32_t index;    /* of the key in its clip */
+    int64_t clock;     /* tick of the stage's clock */
+    float weight;      /* of the track */
+    uint32_t backward; /* 1: passed in backward play */
+    uint8_t payload[8];
+} noh_stage_event;
+
+/* Called within a step, at the tick of a key. It may play, stop, hold and move the actor that the key belongs to, from
+ * that tick on. Other actors it may not change, for the result would depend on the order of actors: such calls are
+ * NOH_ERR_ARG. */
+typedef void (*noh_stage_event_fn)(void *user, noh_stage *stage, const noh_stage_event *event);
+
+/* Move time on: clocks, fades, callback keys, root motion; of all actors, seen or not. Any number of steps to a frame.
+ * on_key  NULL: keys are in noh_stage_events alone
+ * errors  ARG within on_key, or within a frame */
+noh_result noh_stage_step(noh_stage *stage, uint32_t ticks, noh_stage_event_fn on_key, void *user, noh_error *error);
+
+/* The keys of the last step: actor by actor, each in order of time. Valid until the next step. */
+const noh_stage_event *noh_stage_events(const noh_stage *stage, uint32_t *count);
+
+/* A camera or a light. noh_view_orbit and others of stage/view.h make one. */
+typedef struct noh_stage_view {
+    float view_projection[16]; /* column-major, clip space of GL; perspective or parallel */
+    float eye[3];
+    float light[3];     /* unit vector towards the key light */
+    uint32_t height_px; /* of the picture; 0: casts shadows only, and asks for no detail of its own */
+    uint32_t cut;       /* 1: the camera has jumped: detail is chosen afresh, nothing fades */
+} noh_stage_view;
+
+/* What shows in this frame: views[view_count], 0..NOH_STAGE_VIEWS_MAX. An actor is shown if any of them sees it, in the
+ * finest detail that one of them asks for.
+ * errors  ARG a matrix is not finite, or a frame has begun */
+noh_result noh_stage_frame_begin(noh_stage *stage, const noh_stage_view *views, uint32_t view_count, noh_error *error);
+
+/* The next phase of a frame: how many jobs it has; 0: none is left. All jobs of a phase must have returned before the
+ * next call.
+ *   while ((count = noh_stage_jobs(stage)) > 0)
+ *       noh_stage_job(stage, i) for each i below count, on any threads, in any order; wait for all */
+uint32_t noh_stage_jobs(noh_stage *stage);
+
+/* One job, each index once. It reads what no job of the phase writes and writes what no other one touches: nothing
+ * locks, nothing is atomic, and the bits do not depend on the number of threads. */
+void noh_stage_job(noh_stage *stage, uint32_t job);
+
+/* Run what is left of the phases, and hand everything to the GPU: on the thread of the context.
+ * errors  ARG no frame has begun */
+noh_result noh_stage_frame_end(noh_stage *stage, noh_error *error);
+
+/* All of it: one step, one frame, all jobs in turn.
+ * view    NULL: none */
+noh_result noh_stage_frame(noh_stage *stage, uint32_t ticks, const noh_stage_view *view, noh_stage_event_fn on_key,
+                           void *user, noh_error *error);
+
+/* ---- state ---- */
+
+/* Everything that time or the game changes: one stretch of plan->state_bytes without pointers. Copy it to save or fork
+ * the stage; not within a frame or a step. */
+const void *noh_stage_state(const noh_stage *stage, size_t *bytes);
+
+/* Put a copy back, of this stage or of another one with the same plan, on any processor of the same byte order. The
+ * frames that follow equal to the bit those that followed the copy.
+ * errors  ARG within a frame or a step; DATA another plan's state, or a count or index in it is out of range (where:
+ * the actor); nothing has changed then */
+noh_result noh_stage_set_state(noh_stage *stage, const void *state, size_t bytes, noh_error *error);
+
+/* A hash of the state: equal on every processor, for any number of jobs. */
+uint64_t noh_stage_hash(const noh_stage *stage);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,339 @@
+/* stage_actor.c: actors come and go, and stand somewhere. */
+#include <string.h>
+
+#include "base/math_internal.h"
+#include "base/quat.h"
+#include "pose/local_to_model.h"
+#include "stage/stage_internal.h"
+
+/* ---- ids ---- */
+
+uint32_t noh_stage_index(const noh_stage_kind *kind, const noh_stage_actor *a)
+{
+    return (uint32_t)(a - kind->actors);
+}
+
+noh_character *noh_stage_character(const noh_stage_kind *kind, uint32_t index)
+{
+    return (noh_character *)(void *)(kind->characters + (size_t)index * kind->character_bytes);
+}
+
+noh_stage_kind *noh_stage_kind_of(const noh_stage *s, uint32_t index)
+{
+    uint32_t k = 0;
+    while (index - s->kinds[k].first_actor >= s->kinds[k].desc.actor_count) k++;
+    return &s->kinds[k];
+}
+
+static noh_actor id_of(const noh_stage *s, uint32_t index)
+{
+    const noh_actor id = { s->actors[index].generation << 16 | index };
+    return id;
+}
+
+noh_stage_actor *noh_stage_actor_of(const noh_stage *s, noh_actor actor, noh_stage_kind **kind)
+{
+    const uint32_t index = actor.id & 0xffffu;
+    noh_stage_actor *a;
+    NOH_ASSERT(s);
+    if (index >= s->actor_count) return NULL;
+    a = &s->actors[index];
+    if (!a->alive || a->generation != actor.id >> 16) return NULL;
+    if (kind) *kind = noh_stage_kind_of(s, index);
+    return a;
+}
+
+noh_result noh_stage_gone(noh_error *error, noh_actor actor)
+{
+    return noh_fail(error, NOH_ERR_NOT_FOUND, "the actor is gone, or never was", actor.id & 0xffffu, 0);
+}
+
+noh_result noh_stage_change(noh_stage *s, noh_actor actor, noh_stage_actor **a, noh_stage_kind **kind, noh_error *error)
+{
+    noh_stage_actor *found = noh_stage_actor_of(s, actor, kind);
+    if (!found) {
+        return noh_stage_gone(error, actor);
+    }
+    if (s->phase == NOH_STAGE_STEPPING && s->callback_actor != actor.id) {
+        return noh_fail(error, NOH_ERR_ARG, "within on_key only the key's own actor may be changed", actor.id & 0xffffu,
+                        0);
+    }
+    if (s->phase > NOH_STAGE_STEPPING) {
+        return noh_fail(error, NOH_ERR_ARG, "actors are changed before a frame begins or after it has ended",
+                        actor.id & 0xffffu, 0);
+    }
+    *a = found;
+    return NOH_OK;
+}
+
+noh_actor noh_stage_actor_at(const noh_stage *stage, uint32_t index)
+{
+    const noh_actor nobody = { 0 };
+    NOH_ASSERT(stage);
+    return index < stage->actor_count && stage->actors[index].alive ? id_of(stage, index) : nobody;
+}
+
+/* ---- places ---- */
+
+static int is_finite(float x)
+{
+    return x - x == 0.0f;
+}
+
+static const char *normal_place(const noh_place *in, noh_place *out)
+{
+    static const float identity[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
+    const float *q = in->rotation;
+    float square = 0.0f;
+    *out = *in;
+    for (int i = 0; i < 3; i++) {
+        if (!is_finite(in->position[i])) return "position of a place is not finite";
+    }
+    for (int i = 0; i < 4; i++) square += q[i] * q[i];
+    if (!is_finite(square)) return "rotation of a place is not finite";
+    if (!(in->scale >= 0.0f) || !is_finite(in->scale)) return "scale of a place is below 0 or not finite";
+    if (in->scale <= 0.0f) out->scale = 1.0f;
+    if (q[0] == 0.0f && q[1] == 0.0f && q[2] == 0.0f && q[3] == 0.0f) {
+        memcpy(out->rotation, identity, sizeof identity);
+    } else if (square < 1e-12f) {
+        return "rotation of a place has no length";
+    } else {
+        noh_quat_normalize(out->rotation);
+    }
+    return NULL;
+}
+
+void noh_place_matrix(const noh_place *place, float matrix[12])
+{
+    noh_transform t;
+    memcpy(t.rotation, place->rotation, sizeof t.rotation);
+    memcpy(t.translation, place->position, sizeof t.translation);
+    for (int i = 0; i < 3; i++) t.scale[i] = place->scale;
+    noh_transform_matrix(&t, matrix);
+}
+
+noh_result noh_actor_set_place(noh_stage *stage, noh_actor actor, const noh_place *place, noh_error *error)
+{
+    noh_stage_actor *a;
+    noh_place normal;
+    noh_stage_kind *kind;
+    const char *what;
+    const noh_result result = noh_stage_change(stage, actor, &a, &kind, error);
+    NOH_ASSERT(place);
+    if (result != NOH_OK) {
+        return result;
+    }
+    what = normal_place(place, &normal);
+    if (what) {
+        return noh_fail(error, NOH_ERR_ARG, what, actor.id & 0xffffu, 0);
+    }
+    a->place = normal;
+    return NOH_OK;
+}
+
+noh_result noh_actor_place(const noh_stage *stage, noh_actor actor, noh_place *place, noh_error *error)
+{
+    const noh_stage_actor *a = noh_stage_actor_of(stage, actor, NULL);
+    NOH_ASSERT(place);
+    if (!a) {
+        return noh_stage_gone(error, actor);
+    }
+    *place = a->place;
+    return NOH_OK;
+}
+
+/* ---- coming and going ---- */
+
+static noh_result make_character(noh_stage_kind *k, uint32_t index, int64_t clock, noh_error *error)
+{
+    noh_character_desc desc = noh_stage_character_desc(k, index);
+    noh_character *made;
+    desc.start_clock = clock;
+    return noh_character_init(noh_stage_character(k, index), k->character_bytes, &desc, &made, error);
+}
+
+static const char *cannot_spawn(const noh_stage *s, uint32_t kind)
+{
+    if (kind >= s->desc.kind_count) return "no such kind";
+    return s->phase != NOH_STAGE_IDLE ? "actors come and go outside of steps and frames" : NULL;
+}
+
+noh_result noh_stage_spawn(noh_stage *stage, uint32_t kind, const noh_place *place, noh_actor *actor, noh_error *error)
+{
+    static const noh_place origin = { { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f }, 1.0f };
+    const char *what = cannot_spawn(stage, kind);
+    noh_stage_free *f;
+    noh_stage_actor *a;
+    noh_place normal;
+    noh_result result;
+    NOH_ASSERT(stage && actor);
+    if (!what) what = normal_place(place ? place : &origin, &normal);
+    if (what) {
+        return noh_fail(error, NOH_ERR_ARG, what, kind, 0);
+    }
+    f = &stage->head->kinds[kind];
+    if (!f->first) {
+        return noh_fail(error, NOH_ERR_LIMIT, "all actors of the kind are there", kind,
+                        stage->kinds[kind].desc.actor_count);
+    }
+    a = &stage->kinds[kind].actors[f->first - 1u];
+    result = make_character(&stage->kinds[kind], f->first - 1u, stage->head->clock, error);
+    if (result != NOH_OK) {
+        return result;
+    }
+    f->first = a->next_free;
+    if (!f->first) f->last = 0;
+    f->count++;
+    a->next_free = 0;
+    a->alive = 1;
+    a->place = normal;
+    *actor = id_of(stage, (uint32_t)(a - stage->actors));
+    return NOH_OK;
+}
+
+/* What hung on it stays where it was shown. */
+static void let_go(noh_stage *s, noh_stage_actor *child, const noh_place *shown)
+{
+    (void)s;
+    child->parent = 0;
+    child->joint = 0;
+    child->place = *shown;
+}
+
+static float length3(const float *m)
+{
+    return noh_sqrt(m[0] * m[0] + m[4] * m[4] + m[8] * m[8]);
+}
+
+/* The place of a matrix without shear or reflection.
+ * source  K. Shoemake, "Quaternions" (1994): from the largest of the four squares */
+static void place_of_matrix(const float m[12], noh_place *place)
+{
+    const float s = length3(m);
+    float r[9], *q = place->rotation;
+    for (int i = 0; i < 9; i++) r[i] = s > 0.0f ? m[4 * (i / 3) + i % 3] / s : 0.0f;
+    place->scale = s > 0.0f ? s : 1.0f;
+    for (int i = 0; i < 3; i++) place->position[i] = m[4 * i + 3];
+    if (r[0] + r[4] + r[8] > 0.0f) {
+        q[3] = 1.0f + r[0] + r[4] + r[8], q[0] = r[7] - r[5], q[1] = r[2] - r[6], q[2] = r[3] - r[1];
+    } else if (r[0] > r[4] && r[0] > r[8]) {
+        q[0] = 1.0f + r[0] - r[4] - r[8], q[1] = r[1] + r[3], q[2] = r[2] + r[6], q[3] = r[7] - r[5];
+    } else if (r[4] > r[8]) {
+        q[1] = 1.0f - r[0] + r[4] - r[8], q[0] = r[1] + r[3], q[2] = r[5] + r[7], q[3] = r[2] - r[6];
+    } else {
+        q[2] = 1.0f - r[0] - r[4] + r[8], q[0] = r[2] + r[6], q[1] = r[5] + r[7], q[3] = r[3] - r[1];
+    }
+    noh_quat_normalize(q);
+}
+
+/* Where an actor is in the world: its own place, or that on its parent's joint. */
+static void world_place(const noh_stage *s, const noh_stage_actor *a, noh_place *out)
+{
+    float matrix[12];
+    *out = a->place;
+    if (a->parent) {
+        noh_stage_world(s, (uint32_t)(a - s->actors), matrix);
+        place_of_matrix(matrix, out);
+    }
+}
+
+static void let_go_all(noh_stage *s, uint32_t parent)
+{
+    for (uint32_t i = 0; i < s->actor_count; i++) {
+        noh_stage_actor *child = &s->actors[i];
+        if (child->alive && child->parent == parent) {
+            noh_place shown;
+            world_place(s, child, &shown);
+            let_go(s, child, &shown);
+        }
+    }
+}
+
+static void free_actor(noh_stage *s, noh_stage_actor *a, noh_stage_kind *k)
+{
+    noh_stage_free *f = &s->head->kinds[k - s->kinds];
+    const uint32_t own = noh_stage_index(k, a) + 1u, generation = a->generation;
+    memset(k->held + (size_t)(own - 1u) * k->desc.held_float_count, 0, k->desc.held_float_count * sizeof *k->held);
+    memset(a, 0, sizeof *a);
+    a->generation = generation == 0xffffu ? 1u : generation + 1u;
+    if (f->last) {
+        k->actors[f->last - 1u].next_free = own;
+    } else {
+        f->first = own;
+    }
+    f->last = own;
+    f->count--;
+    s->shown[a - s->actors].frame = 0;
+}
+
+noh_result noh_stage_despawn(noh_stage *stage, noh_actor actor, noh_error *error)
+{
+    noh_stage_actor *a;
+    noh_stage_kind *k;
+    noh_result result = noh_stage_change(stage, actor, &a, &k, error);
+    if (result == NOH_OK && stage->phase != NOH_STAGE_IDLE) {
+        result = noh_fail(error, NOH_ERR_ARG, "actors come and go outside of steps and frames", 0, 0);
+    }
+    if (result == NOH_OK) {
+        let_go_all(stage, actor.id);
+        free_actor(stage, a, k);
+    }
+    return result;
+}
+
+/* ---- looks and links ---- */
+
+noh_result noh_actor_set_look(noh_stage *stage, noh_actor actor, const noh_look *look, noh_error *error)
+{
+    noh_stage_actor *a;
+    noh_stage_kind *k;
+    const noh_result result = noh_stage_change(stage, actor, &a, &k, error);
+    NOH_ASSERT(look);
+    if (result != NOH_OK) {
+        return result;
+    }
+    if (!(look->pixels >= 0.0f) || !is_finite(look->pixels)) {
+        return noh_fail(error, NOH_ERR_ARG, "pixels of a look is negative or not finite", actor.id & 0xffffu, 0);
+    }
+    a->look = *look;
+    return NOH_OK;
+}
+
+static int holds_something(const noh_stage *s, uint32_t id)
+{
+    for (uint32_t i = 0; i < s->actor_count; i++) {
+        if (s->actors[i].alive && s->actors[i].parent == id) return 1;
+    }
+    return 0;
+}
+
+noh_result noh_actor_attach(noh_stage *stage, noh_actor actor, noh_actor parent, uint32_t joint, noh_error *error)
+{
+    noh_stage_actor *a, *p;
+    noh_stage_kind *k, *of_parent;
+    const noh_result result = noh_stage_change(stage, actor, &a, &k, error);
+    if (result != NOH_OK) {
+        return result;
+    }
+    if (!parent.id) {
+        noh_place shown;
+        world_place(stage, a, &shown);
+        let_go(stage, a, &shown);
+        return NOH_OK;
+    }
+    p = noh_stage_actor_of(stage, parent, &of_parent);
+    if (!p) {
+        return noh_stage_gone(error, parent);
+    }
+    if (joint >= of_parent->skeleton.joint_count) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "the parent has no such joint", joint,
+                        of_parent->skeleton.joint_count);
+    }
+    if (p->parent || p == a || holds_something(stage, actor.id)) {
+        return noh_fail(error, NOH_ERR_ARG, "an actor hangs on one that hangs on nothing, and nothing hangs on it",
+                        actor.id & 0xffffu, 0);
+    }
+    a->parent = parent.id;
+    a->joint = joint;
+    return NOH_OK;
+}

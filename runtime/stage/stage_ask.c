@@ -1,0 +1,103 @@
+/* stage_ask.c: where joints and actors are. */
+#include <string.h>
+
+#include "base/math_internal.h"
+#include "character/character_internal.h"
+#include "pose/local_to_model.h"
+#include "stage/stage_internal.h"
+
+/* A joint in model space, as shown. */
+static void joint_matrix(const noh_character *ch, uint32_t joint, float matrix[12])
+{
+    const uint32_t to = ch->time.to_pose;
+    const float part = noh_time_lod_fraction(&ch->time);
+    const float *target = noh_character_pose_palette(ch, to) + 12u * (size_t)joint;
+    if (part >= 1.0f) {
+        memcpy(matrix, target, 12u * sizeof *matrix);
+    } else {
+        noh_mix_fours(noh_character_pose_palette(ch, to ^ 1u) + 12u * (size_t)joint, target, part, 3, matrix);
+    }
+}
+
+void noh_stage_world(const noh_stage *s, uint32_t index, float matrix[12])
+{
+    const noh_stage_actor *a = &s->actors[index], *on;
+    noh_stage_kind *k;
+    noh_place_matrix(&a->place, matrix);
+    on = a->parent ? noh_stage_actor_of(s, (noh_actor){ a->parent }, &k) : NULL;
+    if (on) {
+        const noh_character *ch = noh_stage_character(k, noh_stage_index(k, on));
+        float joint[12], world[12];
+        noh_place_matrix(&on->place, world);
+        if (ch->time.posed && a->joint < k->skeleton.joint_count) {
+            joint_matrix(ch, a->joint, joint);
+            noh_matrix_multiply(world, joint, world);
+        }
+        noh_matrix_multiply(world, matrix, matrix);
+    }
+}
+
+noh_result noh_actor_joint(const noh_stage *stage, noh_actor actor, uint32_t joint, float matrix[12], noh_error *error)
+{
+    noh_stage_kind *k;
+    const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
+    const noh_character *ch;
+    float world[12];
+    NOH_ASSERT(matrix);
+    if (!a) {
+        return noh_stage_gone(error, actor);
+    }
+    ch = noh_stage_character(k, noh_stage_index(k, a));
+    if (joint >= k->skeleton.joint_count || !ch->time.posed) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "no such joint, or the actor was never posed", joint,
+                        k->skeleton.joint_count);
+    }
+    noh_stage_world(stage, (uint32_t)(a - stage->actors), world);
+    joint_matrix(ch, joint, matrix);
+    noh_matrix_multiply(world, matrix, matrix);
+    return NOH_OK;
+}
+
+noh_result noh_actor_root(const noh_stage *stage, noh_actor actor, noh_root_pose *moved, noh_error *error)
+{
+    const noh_stage_actor *a = noh_stage_actor_of(stage, actor, NULL);
+    NOH_ASSERT(moved);
+    if (!a) {
+        return noh_stage_gone(error, actor);
+    }
+    *moved = a->moved;
+    return NOH_OK;
+}
+
+noh_result noh_actor_sphere(const noh_stage *stage, noh_actor actor, float sphere[4], noh_error *error)
+{
+    noh_stage_kind *k;
+    const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
+    const noh_character *ch;
+    float world[12], own[4], scale = 0.0f;
+    NOH_ASSERT(sphere);
+    if (!a) {
+        return noh_stage_gone(error, actor);
+    }
+    ch = noh_stage_character(k, noh_stage_index(k, a));
+    memcpy(own, k->reach, sizeof own);
+    if (ch->time.posed && k->skeleton.joint_count) noh_character_sphere(ch, own);
+    noh_stage_world(stage, (uint32_t)(a - stage->actors), world);
+    for (int i = 0; i < 3; i++) {
+        const float *r = world + 4 * i;
+        sphere[i] = r[0] * own[0] + r[1] * own[1] + r[2] * own[2] + r[3];
+        scale += world[4 * i] * world[4 * i];
+    }
+    sphere[3] = own[3] * noh_sqrt(scale);
+    return NOH_OK;
+}
+
+const float *noh_actor_floats(const noh_stage *stage, noh_actor actor)
+{
+    noh_stage_kind *k;
+    const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
+    if (!a || stage->shown[a - stage->actors].frame != stage->frame || !stage->frame) {
+        return NULL;
+    }
+    return k->floats + (size_t)noh_stage_index(k, a) * k->float_count;
+}

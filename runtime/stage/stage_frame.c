@@ -1,0 +1,136 @@
+/* stage_frame.c: a frame: look, share, pose, hand over. */
+#include <string.h>
+
+#include "stage/stage_internal.h"
+
+static const char *bad_views(const noh_stage *s, const noh_stage_view *views, uint32_t count)
+{
+    if (s->phase != NOH_STAGE_IDLE) return "a frame begins outside of steps and frames";
+    if (count > NOH_STAGE_VIEWS_MAX) return "view_count is above NOH_STAGE_VIEWS_MAX";
+    for (uint32_t v = 0; v < count; v++) {
+        for (int i = 0; i < 16; i++) {
+            const float x = views[v].view_projection[i];
+            if (x - x != 0.0f) return "view_projection of a view is not finite";
+        }
+    }
+    return NULL;
+}
+
+noh_result noh_stage_frame_begin(noh_stage *stage, const noh_stage_view *views, uint32_t view_count, noh_error *error)
+{
+    const char *what = bad_views(stage, views, view_count);
+    NOH_ASSERT(stage && (views || !view_count));
+    if (what) {
+        return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
+    }
+    stage->cut = 0;
+    for (uint32_t v = 0; v < view_count; v++) {
+        stage->views[v] = views[v];
+        noh_view_planes_of(&views[v], &stage->planes[v]);
+        stage->cut |= views[v].cut != 0;
+    }
+    stage->view_count = view_count;
+    stage->frame++;
+    if (!stage->frame) stage->frame = 1;
+    stage->phase = NOH_STAGE_BEGUN;
+    return NOH_OK;
+}
+
+/* So many of `count` things to a job that every job has some. */
+static uint32_t cut_of(const noh_stage *s, uint32_t count)
+{
+    return (count + s->desc.job_count - 1u) / s->desc.job_count;
+}
+
+static uint32_t jobs_for(const noh_stage *s, uint32_t count)
+{
+    const uint32_t each = cut_of(s, count);
+    return each ? (count + each - 1u) / each : 0;
+}
+
+static void count_poses(noh_stage *s)
+{
+    noh_stage_stats *stats = &s->stats;
+    stats->updated = 0;
+    stats->decoded_late = 0;
+    stats->error_pixels = 0.0f;
+    for (uint32_t j = 0; j < jobs_for(s, s->todo_count); j++) {
+        stats->updated += s->jobs[j].updated;
+        stats->decoded_late += s->jobs[j].decoded_late;
+        if (s->jobs[j].error_pixels > stats->error_pixels) stats->error_pixels = s->jobs[j].error_pixels;
+    }
+}
+
+uint32_t noh_stage_jobs(noh_stage *stage)
+{
+    NOH_ASSERT(stage);
+    switch (stage->phase) {
+    case NOH_STAGE_BEGUN: stage->phase = NOH_STAGE_LOOKING; return jobs_for(stage, stage->actor_count);
+    case NOH_STAGE_LOOKING:
+        noh_stage_share(stage);
+        stage->phase = NOH_STAGE_POSING;
+        if (stage->todo_count) return jobs_for(stage, stage->todo_count);
+        stage->phase = NOH_STAGE_POSED;
+        count_poses(stage);
+        return 0;
+    case NOH_STAGE_POSING:
+        count_poses(stage);
+        stage->phase = NOH_STAGE_POSED;
+        return 0;
+    default: return 0;
+    }
+}
+
+void noh_stage_job(noh_stage *stage, uint32_t job)
+{
+    const uint32_t count = stage->phase == NOH_STAGE_LOOKING ? stage->actor_count : stage->todo_count;
+    const uint32_t each = cut_of(stage, count), first = job * each;
+    const uint32_t end = first + each < count ? first + each : count;
+    NOH_ASSERT(stage && (stage->phase == NOH_STAGE_LOOKING || stage->phase == NOH_STAGE_POSING));
+    NOH_ASSERT(job < jobs_for(stage, count));
+    if (stage->phase == NOH_STAGE_LOOKING) {
+        noh_stage_look_at(stage, first, end);
+    } else {
+        noh_stage_pose_todo(stage, job, first, end);
+    }
+}
+
+static void run_jobs(noh_stage *s)
+{
+    uint32_t count;
+    while ((count = noh_stage_jobs(s)) > 0) {
+        for (uint32_t i = 0; i < count; i++) noh_stage_job(s, i);
+    }
+}
+
+/* Where everybody is drawn: what hangs on another only now, when that was posed. */
+static void place_all(noh_stage *s)
+{
+    for (uint32_t i = 0; i < s->actor_count; i++) {
+        if (s->actors[i].alive && s->shown[i].frame == s->frame) noh_stage_world(s, i, s->shown[i].world);
+    }
+}
+
+noh_result noh_stage_frame_end(noh_stage *stage, noh_error *error)
+{
+    NOH_ASSERT(stage);
+    if (stage->phase < NOH_STAGE_BEGUN) {
+        return noh_fail(error, NOH_ERR_ARG, "no frame has begun", 0, 0);
+    }
+    run_jobs(stage);
+    place_all(stage);
+    if (stage->gpu) {
+        stage->desc.gpu->upload(stage);
+    }
+    stage->phase = NOH_STAGE_IDLE;
+    return NOH_OK;
+}
+
+noh_result noh_stage_frame(noh_stage *stage, uint32_t ticks, const noh_stage_view *view, noh_stage_event_fn on_key,
+                           void *user, noh_error *error)
+{
+    noh_result result = noh_stage_step(stage, ticks, on_key, user, error);
+    if (result == NOH_OK) result = noh_stage_frame_begin(stage, view, view ? 1u : 0u, error);
+    if (result == NOH_OK) result = noh_stage_frame_end(stage, error);
+    return result;
+}

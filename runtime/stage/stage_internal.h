@@ -1,0 +1,338 @@
+/* stage_internal.h: what a stage is made of.
+ *
+ *   stage_desc.c     a desc with its defaults filled in; what is wrong with one
+ *   stage_levels.c   the levels of an actor, and how many slots each has
+ *   stage_carve.c    the block laid out
+ *   stage_plan.c     bytes, and what is given up to keep a bound
+ *   stage.c          made in its block, and deleted
+ *   stage_kind.c     what the actors of a kind share
+ *   stage_layers.c   layers and their masks
+ *   stage_names.c    clips, layers, floats and joints by name
+ *   stage_actor.c    actors come and go, and stand somewhere
+ *   stage_play.c     layers
+ *   stage_step.c     time, callback keys, root motion
+ *   stage_look.c     phase 1: who is seen, how finely
+ *   stage_share.c    between the phases: slots, updates, decoding, order
+ *   stage_pose.c     phase 2: poses and floats
+ *   stage_frame.c    the phases of a frame
+ *   stage_ask.c      joints, spheres, floats
+ *   stage_pick.c     a ray
+ *   stage_state.c    state out and in
+ *   view.c           cameras
+ *
+ * The block has three parts. The state comes first: all that time or the game changes, without pointers. What is
+ * derived from desc and packs follows, then what a frame writes for its own use. */
+#ifndef NOH_STAGE_STAGE_INTERNAL_H
+#define NOH_STAGE_STAGE_INTERNAL_H
+
+#include "bank/clip_bank.h"
+#include "base/arena.h"
+#include "character/character.h"
+#include "character/lod_pack.h"
+#include "character/lod_pools.h"
+#include "character/scheduler.h"
+#include "mesh/mesh.h"
+#include "stage/stage.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- state ---- */
+
+typedef struct noh_stage_held {
+    uint32_t index;      /* of the float */
+    float value, amount; /* amount 0: free */
+} noh_stage_held;
+
+typedef struct noh_stage_actor {
+    noh_root_pose moved; /* by the last step */
+    noh_place place;     /* normalised */
+    noh_look look;
+    uint32_t generation;
+    uint32_t alive;
+    uint32_t next_free;  /* index + 1; 0: the last */
+    uint32_t parent;     /* id; 0: hangs on nothing */
+    uint32_t joint;      /* of the parent */
+    uint32_t was_seen;   /* in the last frame */
+    uint32_t started[2]; /* for each layer four bits: the track that was started last, of the layer's own */
+} noh_stage_actor;
+
+typedef struct noh_stage_free {
+    uint32_t first, last; /* actor index + 1; 0: none. Taken at the front, given back at the end */
+    uint32_t count;       /* actors that are there */
+    uint32_t reserved;
+} noh_stage_free;
+
+typedef struct noh_stage_head {
+    uint32_t magic, hash;
+    int64_t clock;
+    uint32_t step_ticks; /* of the last step */
+    uint32_t reserved;
+    noh_stage_free kinds[NOH_STAGE_KINDS_MAX];
+} noh_stage_head;
+
+NOH_STATIC_ASSERT(sizeof(noh_place) == 32, place);
+NOH_STATIC_ASSERT(sizeof(noh_look) == 16, look);
+NOH_STATIC_ASSERT(sizeof(noh_stage_actor) == 112, stage_actor);
+NOH_STATIC_ASSERT(sizeof(noh_stage_head) == 24 + 16 * NOH_STAGE_KINDS_MAX, stage_head);
+
+#define NOH_STAGE_MAGIC 0x53484f4eu /* "NOHS" */
+
+/* ---- kinds ---- */
+
+/* A mesh that a kind draws, and the node that places it. */
+typedef struct noh_stage_item {
+    uint32_t node, mesh; /* node: NOH_NONE in a pack without nodes */
+} noh_stage_item;
+
+typedef struct noh_stage_mesh {
+    noh_mesh mesh; /* the full one */
+    noh_skin skin; /* where `skinned` */
+    noh_stage_item item;
+    const float *node_world; /* [12] of a rigid mesh */
+    const float *defaults;   /* [target_count] weights */
+    uint32_t first_float;    /* of its targets, among the kind's floats */
+    uint32_t first_weight;   /* of its targets, among the kind's weights */
+    int skinned;
+} noh_stage_mesh;
+
+typedef struct noh_stage_layer {
+    const char *name;
+    uint32_t mode, first_track, track_count;
+    uint32_t mask;    /* 1 + index in the set; 0: none */
+    int moves_joints; /* 0: its mask has no joint */
+} noh_stage_layer;
+
+typedef struct noh_stage_kind {
+    noh_kind_desc desc; /* defaults filled in; `layers` is NULL afterwards */
+    const noh_kind_plan *plan;
+    uint32_t first_actor;
+    uint32_t bank_kind; /* the kind whose bank it shares: itself, or an earlier one */
+    noh_clip_bank_desc bank_desc;
+    noh_clip_bank *bank; /* NULL: no clip fits */
+    noh_clip_set set;    /* with the kind's masks; samples through the bank's own cache */
+    noh_skeleton skeleton;
+    noh_stage_layer *layers; /* [layer_count] */
+    uint32_t layer_count;
+    noh_stage_mesh *meshes; /* [plan->mesh_count] */
+    uint32_t float_count;   /* those of the set, then, where the pack has no nodes, one for each target */
+    uint32_t weight_count;  /* targets of all meshes */
+    uint32_t *sources;      /* [float_count] the float whose value it takes: itself, or one of the same name that a clip
+                             * moves */
+    uint32_t *name_hashes;  /* [float_count] */
+    float *defaults;        /* [float_count] */
+    float *target_radii;    /* [weight_count] */
+    uint8_t *masks;         /* [set.mask_count][joints + floats of the set] */
+    noh_lod_pack lod;       /* of the first skinned mesh */
+    noh_lod_mesh *levels;   /* [plan->level_count] */
+    noh_lod_table table;
+    float *joint_radii; /* [joint_count]; NULL: rigid */
+    float reach[4];     /* centre and radius in model space: holds the actor in any pose of its clips */
+    uint32_t character_bytes;
+    noh_clip_entry rest_clip; /* where no clip fits: a set of one clip that is the bind pose */
+    noh_transform rest_pose;
+    /* state */
+    uint8_t *characters; /* [actor_count][character_bytes] */
+    noh_stage_actor *actors;
+    noh_stage_held *held; /* [actor_count][held_float_count] */
+    noh_lod_pools *pools; /* NULL: nothing is drawn */
+    uint32_t pool_levels[NOH_LOD_LEVELS_MAX], pool_count;
+    /* a frame's own */
+    float *floats;   /* [actor_count][float_count] as shown */
+    float *weights;  /* [actor_count][weight_count] the same, without targets too small to see */
+    uint32_t *order; /* [actor_count] seen actors by run; fading ones last */
+    /* where each run begins in `order`. A run has one level and one number of influences; the last one fades */
+    uint32_t runs[NOH_LOD_LEVELS_MAX * 4u + 2u];
+} noh_stage_kind;
+
+/* ---- a frame ---- */
+
+typedef struct noh_stage_shown {
+    float world[12];
+    float scale;    /* pixels per unit of the world, at its nearest point, in the view that is nearest */
+    uint32_t views; /* a bit for each view that sees it */
+    uint32_t frame; /* the number of the last frame in which it was shown: its floats and pose are of then */
+    noh_lod_slot slot;
+    uint32_t place;              /* in its kind's order */
+    uint8_t due;                 /* noh_due */
+    uint8_t updates;             /* 1: is posed in this frame */
+    uint8_t level, level_before; /* drawn */
+} noh_stage_shown;
+
+typedef struct noh_stage_job_part {
+    noh_clip_bank_view *views[NOH_STAGE_KINDS_MAX]; /* of the kinds that have a bank of their own */
+    void *scratch;
+    uint64_t decoded_late;
+    uint32_t updated;
+    float error_pixels;
+} noh_stage_job_part;
+
+typedef enum noh_stage_phase {
+    NOH_STAGE_IDLE = 0,
+    NOH_STAGE_STEPPING,
+    NOH_STAGE_BEGUN, /* the look phase is next */
+    NOH_STAGE_LOOKING,
+    NOH_STAGE_POSING,
+    NOH_STAGE_POSED /* no phase is left */
+} noh_stage_phase;
+
+typedef struct noh_view_planes {
+    float planes[4]
+                [4]; /* left, right, bottom, top: inside where the dot product with (x, y, z, 1) is at least 0; unit */
+    float eye_plane[4];   /* w of clip space, its gradient's length in `w_slope` */
+    float w_slope, scale; /* scale / w is pixels per unit */
+    int is_light;
+} noh_view_planes;
+
+struct noh_stage {
+    noh_stage_desc desc; /* defaults filled in; `kinds` is NULL afterwards */
+    const noh_stage_plan *plan;
+    noh_stage_kind *kinds; /* [desc.kind_count] */
+    uint32_t actor_count;  /* of all kinds */
+    /* state */
+    noh_stage_head *head;
+    uint8_t *state;
+    size_t state_bytes;
+    noh_stage_actor *actors; /* [actor_count], kind after kind */
+    /* a frame's own */
+    noh_stage_shown *shown; /* [actor_count] */
+    uint32_t *todo;         /* [actor_count] those that a pose job looks at */
+    uint32_t todo_count;
+    noh_stage_event *events;
+    uint32_t events_held;
+    noh_schedule schedule;
+    noh_stage_job_part *jobs; /* [job_count] */
+    size_t scratch_bytes;
+    uint32_t phase, frame, callback_actor; /* id while on_key runs, else 0 */
+    noh_stage_event_fn on_key;
+    void *on_key_user;
+    noh_stage_view views[NOH_STAGE_VIEWS_MAX];
+    noh_view_planes planes[NOH_STAGE_VIEWS_MAX];
+    uint32_t view_count;
+    int cut;
+    uint64_t decoded_before;
+    noh_stage_stats stats;
+    float *matrices; /* [joints of the largest skin][12] */
+    void *pick_scratch;
+    size_t pick_bytes;
+    void *gpu; /* of desc.gpu; NULL without */
+};
+
+typedef struct noh_stage_list noh_stage_list;
+
+/* ---- what draws ---- */
+
+/* The functions that make a stage drawable. There is one such table, noh_stage_on_gl; a program that does not name it
+ * links no GL code. */
+struct noh_stage_gpu {
+    noh_result (*measure)(const noh_stage_desc *desc, const struct noh_gl_caps *caps, noh_stage_plan *plan,
+                          uint64_t *cpu_bytes, uint64_t *gpu_bytes, noh_error *error); /* writes plan->morph_path */
+    void (*parts)(const noh_stage_desc *desc, const struct noh_gl_caps *caps, const noh_stage_plan *plan,
+                  noh_stage_list *list);
+    noh_result (*init)(void *memory, size_t bytes, const void *device, noh_stage *stage, noh_error *error);
+    void (*destroy)(noh_stage *stage);
+    noh_result (*restore)(noh_stage *stage, noh_error *error);
+    void (*upload)(noh_stage *stage);
+};
+
+/* ---- private calls ---- */
+
+/* A desc's kind with its defaults filled in; the number of its drawn meshes into items[NOH_STAGE_MESHES_MAX] (NULL:
+ * only count). */
+noh_kind_desc noh_stage_kind_desc(const noh_stage_desc *desc, uint32_t kind);
+uint32_t noh_stage_items(const noh_kind_desc *kind, noh_stage_item *items);
+noh_result noh_stage_check_desc(const noh_stage_desc *desc, noh_error *error);
+noh_stage_desc noh_stage_desc_filled(const noh_stage_desc *desc);
+uint32_t noh_stage_layer_tracks(const noh_layer_desc *layer);
+uint32_t noh_stage_track_count(const noh_kind_desc *kind);
+extern const noh_layer_desc noh_stage_default_layers[3];
+
+/* The kind whose bank, or whose meshes on the GPU, a kind shares: itself or an earlier one. */
+uint32_t noh_stage_bank_kind(const noh_stage_desc *desc, uint32_t kind);
+noh_clip_bank_desc noh_stage_bank_desc(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind);
+
+/* The levels of a kind's actors, and their slots by an even spread. */
+noh_result noh_stage_find_levels(const noh_stage_desc *desc, uint32_t kind, noh_kind_plan *plan, noh_error *error);
+void noh_stage_share_slots(const noh_stage_desc *desc, uint32_t kind, noh_kind_plan *plan);
+float noh_stage_mesh_error(const noh_mesh *mesh, uint32_t level);
+
+/* What a kind's objects need, by the counts of its clips. */
+typedef struct noh_stage_needs {
+    noh_clip_set shape; /* counts only */
+    size_t bank_bytes;  /* 0: it shares another kind's, or no clip fits */
+    size_t view_bytes;  /* of that bank */
+    size_t character_bytes, scratch_bytes, lod_bytes, pools_bytes;
+    uint32_t cached_segment_count, segment_count;
+    uint32_t mesh_count, float_count, weight_count, mask_count;
+    uint32_t skin_joints; /* of its largest skin */
+    size_t pick_bytes;
+    int has_clips;
+} noh_stage_needs;
+
+noh_result noh_stage_measure_kind(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind,
+                                  noh_stage_needs *needs, noh_error *error);
+
+/* Where everything lies; what an arena that only measures gives is NULL. */
+typedef struct noh_stage_blocks {
+    noh_stage *stage;
+    noh_stage_kind *kinds;
+    noh_stage_head *head;
+    size_t state_bytes;
+    noh_stage_actor *actors;
+    noh_stage_shown *shown;
+    uint32_t *todo;
+    noh_stage_event *events;
+    noh_stage_job_part *jobs;
+    uint8_t *views;   /* of all jobs, of all banks, one after another */
+    uint8_t *scratch; /* of all jobs */
+    size_t scratch_bytes, views_bytes, pick_bytes;
+    float *matrices;
+    void *pick_scratch, *schedule;
+    void *banks[NOH_STAGE_KINDS_MAX], *lods[NOH_STAGE_KINDS_MAX], *pools[NOH_STAGE_KINDS_MAX];
+} noh_stage_blocks;
+
+/* Lay a stage out, without what draws it. parts[capacity] receives the bytes by part (capacity 0: not wanted); *count
+ * how many there are. */
+struct noh_stage_list {
+    noh_stage_bytes *parts;
+    uint32_t capacity, count;
+};
+
+noh_result noh_stage_carve(noh_arena *arena, const noh_stage_desc *desc, const noh_stage_plan *plan,
+                           noh_stage_blocks *blocks, noh_stage_list *list, noh_error *error);
+void noh_stage_add_part(noh_stage_list *list, const char *what, uint32_t kind, uint64_t cpu_bytes, uint64_t gpu_bytes);
+uint32_t noh_stage_pools(const noh_kind_plan *plan, uint32_t *levels, uint32_t *slots); /* returns how many */
+
+noh_character_desc noh_stage_character_desc(const noh_stage_kind *kind, uint32_t instance);
+noh_result noh_stage_open_kind(noh_stage *s, const noh_stage_desc *desc, uint32_t kind, const noh_stage_blocks *blocks,
+                               noh_error *error);
+noh_result noh_stage_open_layers(noh_stage_kind *kind, uint32_t number, noh_error *error);
+
+/* An actor that is there, and its kind; NULL: gone. */
+noh_stage_actor *noh_stage_actor_of(const noh_stage *s, noh_actor actor, noh_stage_kind **kind);
+/* The same for a change: also refuses others within a callback. */
+noh_result noh_stage_change(noh_stage *s, noh_actor actor, noh_stage_actor **a, noh_stage_kind **kind,
+                            noh_error *error);
+noh_stage_kind *noh_stage_kind_of(const noh_stage *s, uint32_t index); /* of an actor's index in the stage */
+noh_result noh_stage_gone(noh_error *error, noh_actor actor);
+/* Where an actor is drawn: its place, or that on its parent's joint as that was posed last. */
+void noh_stage_world(const noh_stage *s, uint32_t index, float matrix[12]);
+noh_result noh_stage_pack_clip(const noh_stage_kind *k, uint32_t clip, noh_pack_clip *out);
+noh_character *noh_stage_character(const noh_stage_kind *kind, uint32_t index);
+uint32_t noh_stage_index(const noh_stage_kind *kind, const noh_stage_actor *a); /* in its kind */
+void noh_place_matrix(const noh_place *place, float matrix[12]);
+
+noh_clip_set noh_stage_job_set(const noh_stage *s, const noh_stage_job_part *job, const noh_stage_kind *kind);
+void noh_stage_look_at(noh_stage *s, uint32_t first, uint32_t end);
+void noh_stage_share(noh_stage *s);
+void noh_stage_pose_todo(noh_stage *s, uint32_t job, uint32_t first, uint32_t end);
+uint32_t noh_stage_run_count(const noh_stage_kind *k); /* without that of fading actors */
+uint32_t noh_stage_seen(const noh_stage_kind *k);      /* so many are in `order` */
+void noh_view_planes_of(const noh_stage_view *view, noh_view_planes *out);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,190 @@
+/* stage_levels.c: the levels of an actor, each of which names a level of every mesh.
+ *
+ * Meshes of one figure need different numbers of triangles for the same error: a head has small features, but a body
+ * bends. Drawing all of them at the same level number spends triangles where they show least. So the errors of all
+ * levels of all meshes are sorted, and for each of them every mesh takes its coarsest level that is off by no more. */
+#include "stage/stage_internal.h"
+
+#define ERRORS_MAX (NOH_STAGE_MESHES_MAX * NOH_LOD_LEVELS_MAX)
+#define SPREAD_M 100.0f /* actors are thought to be spread evenly within this distance */
+#define RESERVE 1.3f    /* for actors that crowd together */
+#define VIEW_RAD 0.69813f
+#define MESH_SHARE 0.3f /* of the error, as lod.h has it by default */
+
+float noh_stage_mesh_error(const noh_mesh *mesh, uint32_t level)
+{
+    noh_lod_mesh levels[NOH_LOD_LEVELS_MAX];
+    noh_lod_table table;
+    noh_lod_mesh_levels(mesh, levels, &table);
+    return levels[level < table.mesh_level_count ? level : table.mesh_level_count - 1u].error_m;
+}
+
+typedef struct finder {
+    const noh_kind_desc *kind;
+    noh_stage_item items[NOH_STAGE_MESHES_MAX];
+    uint32_t item_count;
+    float errors[ERRORS_MAX];       /* rising */
+    uint32_t triangles[ERRORS_MAX]; /* of the figure that is off by no more than that */
+    uint32_t count;
+} finder;
+
+static noh_mesh mesh_of(const finder *f, uint32_t item)
+{
+    noh_mesh mesh;
+    (void)noh_pack_mesh_at(f->kind->mesh, f->items[item].mesh, &mesh, NULL);
+    return mesh;
+}
+
+/* The coarsest level of a mesh that is off by no more than this; the finest where none is. */
+static uint32_t coarsest(const noh_mesh *mesh, float error_m)
+{
+    uint32_t level = mesh->header->level_count - 1u;
+    while (level && noh_stage_mesh_error(mesh, level) > error_m) {
+        level--;
+    }
+    return level;
+}
+
+static void insert(finder *f, float error_m)
+{
+    uint32_t i = f->count;
+    for (uint32_t k = 0; k < f->count; k++) {
+        if (f->errors[k] >= error_m && f->errors[k] <= error_m) return;
+    }
+    f->errors[f->count++] = error_m;
+    for (; i && f->errors[i - 1u] > error_m; i--) {
+        f->errors[i] = f->errors[i - 1u];
+        f->errors[i - 1u] = error_m;
+    }
+}
+
+static void drop(finder *f, uint32_t i)
+{
+    const float error_m = f->errors[i];
+    f->count--;
+    for (; i < f->count; i++) { /* exchanged, not shifted: compilers make a call of memmove out of that */
+        f->errors[i] = f->errors[i + 1u];
+        f->errors[i + 1u] = error_m;
+        f->triangles[i] = f->triangles[i + 1u];
+        f->triangles[i + 1u] = 0;
+    }
+}
+
+/* All errors that lie between what the finest levels have anyway and what the coarsest have. */
+static void collect(finder *f)
+{
+    float least = 0.0f;
+    for (uint32_t i = 0; i < f->item_count; i++) {
+        const noh_mesh mesh = mesh_of(f, i);
+        const float error_m = noh_stage_mesh_error(&mesh, 0);
+        least = error_m > least ? error_m : least;
+    }
+    insert(f, least);
+    for (uint32_t i = 0; i < f->item_count; i++) {
+        const noh_mesh mesh = mesh_of(f, i);
+        for (uint32_t k = 1; k < mesh.header->level_count; k++) {
+            const float error_m = noh_stage_mesh_error(&mesh, k);
+            if (error_m > least) insert(f, error_m);
+        }
+    }
+}
+
+static void count_triangles(finder *f)
+{
+    for (uint32_t e = 0; e < f->count; e++) {
+        f->triangles[e] = 0;
+        for (uint32_t i = 0; i < f->item_count; i++) {
+            const noh_mesh mesh = mesh_of(f, i);
+            const noh_mesh level = noh_mesh_at_lod(&mesh, coarsest(&mesh, f->errors[e]));
+            f->triangles[e] += level.header->index_count / 3u;
+        }
+    }
+}
+
+/* Leave out what saves no triangle against the level before, then what saves the fewest, until the rest fits. */
+static void thin_out(finder *f)
+{
+    for (;;) {
+        uint32_t worst = 0, least = UINT32_MAX;
+        for (uint32_t e = 1; e < f->count; e++) {
+            const uint32_t saved = f->triangles[e - 1u] - f->triangles[e];
+            if (saved < least) {
+                least = saved;
+                worst = e;
+            }
+        }
+        if (!worst || (least && f->count <= NOH_LOD_LEVELS_MAX)) {
+            return;
+        }
+        drop(f, worst);
+    }
+}
+
+static void write_level(const finder *f, uint32_t e, noh_actor_level *level)
+{
+    level->error_m = f->errors[e];
+    level->triangle_count = f->triangles[e];
+    for (uint32_t i = 0; i < f->item_count; i++) {
+        const noh_mesh mesh = mesh_of(f, i);
+        level->mesh_levels[i] = (uint8_t)coarsest(&mesh, f->errors[e]);
+    }
+}
+
+noh_result noh_stage_find_levels(const noh_stage_desc *desc, uint32_t kind, noh_kind_plan *plan, noh_error *error)
+{
+    const noh_kind_desc d = noh_stage_kind_desc(desc, kind);
+    finder f;
+    f.kind = &d;
+    f.count = 0;
+    f.item_count = noh_stage_items(&d, f.items);
+    if (f.item_count == 0) {
+        return noh_fail(error, NOH_ERR_ARG, "a kind draws nothing: its mesh pack has no mesh of that skeleton", kind,
+                        0);
+    }
+    collect(&f);
+    count_triangles(&f);
+    thin_out(&f);
+    plan->mesh_count = f.item_count;
+    plan->level_count = f.count;
+    plan->finest_level = d.finest_level < f.count ? d.finest_level : f.count - 1u;
+    for (uint32_t e = 0; e < f.count; e++) {
+        write_level(&f, e, &plan->levels[e]);
+    }
+    return NOH_OK;
+}
+
+/* ---- slots ---- */
+
+/* Of actors that are spread evenly, how many are nearer than where a level begins to be good enough. */
+static uint32_t count_within(const noh_stage_desc *desc, uint32_t actors, float error_m)
+{
+    const float pixels = (desc->lod.pixels > 0.0f ? desc->lod.pixels : 1.0f) * MESH_SHARE;
+    const float height = (float)(desc->height_px ? desc->height_px : 1080u);
+    const float distance_m = error_m * noh_lod_scale(1.0f, VIEW_RAD, (uint32_t)height) / pixels;
+    const float share = distance_m / SPREAD_M;
+    const float count = RESERVE * (float)actors * share * share + 1.0f;
+    return share < 1.0f && count < (float)actors ? (uint32_t)count : actors;
+}
+
+/* Each level from the finest on gets slots until every actor has one; the coarsest takes the rest. */
+void noh_stage_share_slots(const noh_stage_desc *desc, uint32_t kind, noh_kind_plan *plan)
+{
+    const noh_kind_desc d = noh_stage_kind_desc(desc, kind);
+    const int promised = d.near_count || d.middle_count;
+    uint32_t left = d.actor_count, taken = 0;
+    for (uint32_t l = 0; l < plan->level_count; l++) {
+        noh_actor_level *level = &plan->levels[l];
+        uint32_t wanted = 0;
+        if (l + 1u >= plan->level_count) {
+            wanted = left;
+        } else if (l >= plan->finest_level) {
+            const uint32_t within = count_within(desc, d.actor_count, plan->levels[l + 1u].error_m);
+            wanted = within > taken ? within - taken : 0;
+            if (promised && l == plan->finest_level) wanted = d.near_count;
+            if (promised && l == plan->finest_level + 1u) wanted = d.middle_count;
+        }
+        level->slot_count = wanted < left ? wanted : left;
+        left -= level->slot_count;
+        taken += level->slot_count;
+    }
+}

@@ -1,0 +1,126 @@
+/* stage_look.c: the first phase of a frame: who is seen by which view, and how finely that actor is to be shown. Each
+ * job looks at actors of its own. */
+#include <string.h>
+
+#include "base/math_internal.h"
+#include "stage/stage_internal.h"
+
+#define FULL_DETAIL 1e9f /* pixels per metre */
+
+/* The sphere that culling takes: where any clip may take the actor, or what was shown last where that sticks out. */
+static void reach_in_world(const noh_stage_kind *k, const noh_character *ch, const float world[12], float scale,
+                           float out[4])
+{
+    float centre[4];
+    memcpy(centre, k->reach, sizeof centre);
+    if (ch->time.posed) {
+        float shown[4], apart = 0.0f;
+        noh_character_sphere(ch, shown);
+        for (int i = 0; i < 3; i++) apart += (shown[i] - centre[i]) * (shown[i] - centre[i]);
+        apart = noh_sqrt(apart) + shown[3];
+        centre[3] = apart > centre[3] ? apart : centre[3];
+    }
+    for (int i = 0; i < 3; i++) {
+        out[i] = world[4 * i] * centre[0] + world[4 * i + 1] * centre[1] + world[4 * i + 2] * centre[2] +
+                 world[4 * i + 3];
+    }
+    out[3] = centre[3] * scale;
+}
+
+static int is_inside(const noh_view_planes *v, const float sphere[4])
+{
+    for (int p = 0; p < 4; p++) {
+        const float *plane = v->planes[p];
+        if (plane[0] * sphere[0] + plane[1] * sphere[1] + plane[2] * sphere[2] + plane[3] < -sphere[3]) return 0;
+    }
+    return 1;
+}
+
+/* Pixels per unit at the nearest point of a sphere. */
+static float scale_at(const noh_view_planes *v, const float sphere[4])
+{
+    const float *w = v->eye_plane;
+    const float middle = w[0] * sphere[0] + w[1] * sphere[1] + w[2] * sphere[2] + w[3];
+    const float nearest = middle - sphere[3] * v->w_slope;
+    return v->scale / (nearest > 1e-3f ? nearest : 1e-3f);
+}
+
+static uint32_t find_views(const noh_stage *s, const noh_stage_actor *a, const float sphere[4], float *scale)
+{
+    uint32_t views = 0;
+    for (uint32_t v = 0; v < s->view_count && !a->look.hidden; v++) {
+        const noh_view_planes *planes = &s->planes[v];
+        if (is_inside(planes, sphere) && !(planes->is_light && a->look.no_shadow)) {
+            const float here = scale_at(planes, sphere);
+            views |= 1u << v;
+            *scale = here > *scale ? here : *scale;
+        }
+    }
+    return views;
+}
+
+/* What hangs on another is where that is seen: its own matrix is known only when the other was posed. */
+static uint32_t look_from(const noh_stage *s, uint32_t index, float *scale)
+{
+    const noh_stage_actor *a = &s->actors[index], *on = a;
+    const noh_stage_kind *k = noh_stage_kind_of(s, index), *of = k;
+    const noh_character *ch;
+    float world[12], sphere[4];
+    if (a->parent) {
+        on = noh_stage_actor_of(s, (noh_actor){ a->parent }, NULL);
+        if (!on || on->look.hidden) return 0;
+        of = noh_stage_kind_of(s, (uint32_t)(on - s->actors));
+    }
+    ch = noh_stage_character(of, noh_stage_index(of, on));
+    noh_place_matrix(&on->place, world);
+    reach_in_world(of, ch, world, on->place.scale, sphere);
+    if (a != on)
+        sphere[3] += (k->reach[3] +
+                      noh_sqrt(k->reach[0] * k->reach[0] + k->reach[1] * k->reach[1] + k->reach[2] * k->reach[2])) *
+                     a->place.scale * on->place.scale;
+    return find_views(s, a, sphere, scale);
+}
+
+/* Pixels per metre of the model: LOD errors are in metres. */
+static float model_scale(const noh_stage_kind *k, const noh_stage_actor *a, float pixels_per_unit)
+{
+    const float metres = k->meshes[0].mesh.header->world_scale;
+    return pixels_per_unit * a->place.scale / (metres > 0.0f ? metres : 1.0f);
+}
+
+static void look_at(noh_stage *s, noh_stage_kind *k, uint32_t index)
+{
+    noh_stage_actor *a = &s->actors[index];
+    noh_stage_shown *shown = &s->shown[index];
+    noh_character *ch = noh_stage_character(k, noh_stage_index(k, a));
+    noh_lod_settings settings = s->desc.lod;
+    float scale = 0.0f;
+    shown->views = look_from(s, index, &scale);
+    shown->due = NOH_DUE_NOT;
+    shown->updates = 0;
+    shown->scale = scale;
+    if (!shown->views && !a->look.posed) {
+        a->was_seen = 0;
+        return;
+    }
+    if (!a->was_seen || s->cut) {
+        noh_lod_cut(&ch->lod);
+    }
+    a->was_seen = 1;
+    if (a->look.pixels > 0.0f) settings.pixels = a->look.pixels;
+    shown->due = (uint8_t)noh_character_look(ch, &k->table, &settings,
+                                             a->look.posed ? FULL_DETAIL : model_scale(k, a, scale));
+}
+
+void noh_stage_look_at(noh_stage *s, uint32_t first, uint32_t end)
+{
+    for (uint32_t i = first; i < end; i++) {
+        if (s->actors[i].alive) {
+            look_at(s, noh_stage_kind_of(s, i), i);
+        } else {
+            s->shown[i].views = 0;
+            s->shown[i].updates = 0;
+            s->shown[i].due = NOH_DUE_NOT;
+        }
+    }
+}

@@ -1,0 +1,107 @@
+/* stage_pick.c: a ray against the actors as they were shown last. */
+#include <string.h>
+
+#include "base/math_internal.h"
+#include "character/skin_palette.h"
+#include "deform/pick.h"
+#include "pose/local_to_model.h"
+#include "stage/stage_internal.h"
+
+typedef struct ray {
+    float origin[3], direction[3];
+    float distance; /* of the nearest hit so far */
+} ray;
+
+/* The inverse of a matrix without shear, applied to a point (w 1) or a direction (w 0). */
+static void into(const float m[12], const float v[3], float w, float out[3])
+{
+    const float square = m[0] * m[0] + m[4] * m[4] + m[8] * m[8];
+    float d[3];
+    for (int i = 0; i < 3; i++) d[i] = v[i] - w * m[4 * i + 3];
+    for (int i = 0; i < 3; i++) out[i] = (m[i] * d[0] + m[4 + i] * d[1] + m[8 + i] * d[2]) / square;
+}
+
+static int meets(const ray *r, const float sphere[4])
+{
+    float to[3], along = 0.0f, square = 0.0f, length = 0.0f, apart;
+    for (int i = 0; i < 3; i++) {
+        to[i] = sphere[i] - r->origin[i];
+        along += to[i] * r->direction[i];
+        square += to[i] * to[i];
+        length += r->direction[i] * r->direction[i];
+    }
+    apart = square - along * along / length;
+    return apart <= sphere[3] * sphere[3] && (along >= 0.0f || square <= sphere[3] * sphere[3]);
+}
+
+static void tell(noh_stage *s, uint32_t index, const noh_stage_mesh *mesh, const noh_pick_hit *from, noh_stage_hit *hit)
+{
+    hit->actor = noh_stage_actor_at(s, index);
+    hit->mesh = mesh->item.mesh;
+    hit->submesh = from->submesh;
+    hit->triangle = from->triangle;
+    hit->joint = mesh->skinned && from->joint != NOH_NONE ? mesh->skin.joints[from->joint] : NOH_NONE;
+    hit->distance = from->distance;
+    memcpy(hit->bind_point, from->bind_point, sizeof hit->bind_point);
+    memcpy(hit->barycentric, from->barycentric, sizeof hit->barycentric);
+}
+
+/* The meshes of one actor, at the level that was drawn. */
+static void pick_actor(noh_stage *s, noh_stage_kind *k, uint32_t index, ray *r, noh_stage_hit *hit, int *found)
+{
+    const noh_character *ch = noh_stage_character(k, index - k->first_actor);
+    const noh_stage_shown *shown = &s->shown[index];
+    float origin[3], direction[3];
+    into(shown->world, r->origin, 1.0f, origin);
+    into(shown->world, r->direction, 0.0f, direction);
+    for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
+        const noh_stage_mesh *mesh = &k->meshes[m];
+        const noh_mesh level = noh_mesh_at_lod(&mesh->mesh, k->plan->levels[shown->level].mesh_levels[m]);
+        noh_pick_surface surface;
+        noh_pick_hit own;
+        memset(&surface, 0, sizeof surface);
+        surface.mesh = &level;
+        surface.world = mesh->skinned ? NULL : mesh->node_world;
+        if (mesh->skinned) {
+            noh_character_skin(ch, &mesh->skin, s->matrices);
+            surface.matrices = s->matrices;
+        }
+        if (noh_pick(&surface, origin, direction, r->distance, s->pick_scratch, s->pick_bytes, &own, NULL) == NOH_OK) {
+            r->distance = own.distance;
+            tell(s, index, mesh, &own, hit);
+            *found = 1;
+        }
+    }
+}
+
+noh_result noh_stage_pick(noh_stage *stage, const float origin[3], const float direction[3], float distance_max,
+                          noh_stage_hit *hit, noh_error *error)
+{
+    ray r;
+    int found = 0;
+    float square = 0.0f;
+    NOH_ASSERT(stage && origin && direction && hit);
+    for (int i = 0; i < 3; i++) square += direction[i] * direction[i];
+    if (!(square > 0.0f) || square - square != 0.0f || !(distance_max > 0.0f)) {
+        return noh_fail(error, NOH_ERR_ARG, "the direction of a ray has no length, or its distance_max is not above 0",
+                        0, 0);
+    }
+    memcpy(r.origin, origin, sizeof r.origin);
+    memcpy(r.direction, direction, sizeof r.direction);
+    r.distance = distance_max;
+    for (uint32_t i = 0; i < stage->actor_count; i++) {
+        noh_stage_kind *k = noh_stage_kind_of(stage, i);
+        float sphere[4];
+        if (!stage->actors[i].alive || k->desc.unpickable || stage->actors[i].look.hidden || !stage->shown[i].views ||
+            stage->shown[i].frame != stage->frame)
+            continue;
+        if (noh_actor_sphere(stage, noh_stage_actor_at(stage, i), sphere, NULL) == NOH_OK && meets(&r, sphere)) {
+            pick_actor(stage, k, i, &r, hit, &found);
+        }
+    }
+    if (!found) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "the ray hits no actor", 0, 0);
+    }
+    for (int i = 0; i < 3; i++) hit->point[i] = origin[i] + hit->distance * direction[i];
+    return NOH_OK;
+}

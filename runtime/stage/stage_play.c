@@ -1,0 +1,315 @@
+/* stage_play.c: layers of a controller. A layer owns some tracks: what is played takes a free one, or the lightest, and
+ * the others of the layer fade out. */
+#include <string.h>
+
+#include "base/hash.h"
+#include "stage/stage_internal.h"
+
+#define FADE_TICKS 9600u
+
+typedef struct player {
+    noh_stage *s;
+    noh_stage_kind *k;
+    noh_stage_actor *a;
+    const noh_stage_layer *layer;
+    uint32_t layer_index;
+    noh_controller *c;
+} player;
+
+static noh_result open_player(noh_stage *s, noh_actor actor, uint32_t layer, player *p, noh_error *error)
+{
+    const noh_result result = noh_stage_change(s, actor, &p->a, &p->k, error);
+    if (result != NOH_OK) {
+        return result;
+    }
+    if (layer >= p->k->layer_count) {
+        return noh_fail(error, NOH_ERR_ARG, "the kind has no such layer", layer, p->k->layer_count);
+    }
+    p->s = s;
+    p->layer = &p->k->layers[layer];
+    p->layer_index = layer;
+    p->c = noh_character_controller(noh_stage_character(p->k, noh_stage_index(p->k, p->a)));
+    return NOH_OK;
+}
+
+static noh_track *track_at(const player *p, uint32_t i)
+{
+    return &noh_controller_tracks(p->c)[p->layer->first_track + i];
+}
+
+/* ---- the track that was started last ---- */
+
+static uint32_t started(const noh_stage_actor *a, uint32_t layer)
+{
+    return a->started[layer / 8u] >> 4u * (layer % 8u) & 15u;
+}
+
+static void set_started(noh_stage_actor *a, uint32_t layer, uint32_t track)
+{
+    uint32_t *word = &a->started[layer / 8u];
+    const uint32_t shift = 4u * (layer % 8u);
+    *word = (*word & ~(15u << shift)) | track << shift;
+}
+
+const noh_track *noh_actor_track(const noh_stage *stage, noh_actor actor, uint32_t layer)
+{
+    noh_stage_kind *k;
+    const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
+    const noh_controller *c;
+    const noh_track *track;
+    if (!a || layer >= k->layer_count) {
+        return NULL;
+    }
+    c = noh_character_controller(noh_stage_character(k, noh_stage_index(k, a)));
+    track = noh_controller_track(c, k->layers[layer].first_track + started(a, layer));
+    return track->mode == NOH_TRACK_OFF ? NULL : track;
+}
+
+noh_controller *noh_actor_controller(noh_stage *stage, noh_actor actor, const noh_clip_set **set)
+{
+    noh_stage_kind *k;
+    const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
+    if (!a) {
+        return NULL;
+    }
+    if (set) {
+        *set = &k->set;
+    }
+    return noh_character_controller(noh_stage_character(k, noh_stage_index(k, a)));
+}
+
+/* ---- fading ---- */
+
+static uint32_t free_changes(const player *p)
+{
+    const noh_change *changes = (const noh_change *)(const void *)((const uint8_t *)p->c + p->c->changes_offset);
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < p->c->change_count; i++) {
+        count += changes[i].state == NOH_CHANGE_FREE;
+    }
+    return count;
+}
+
+/* Fade a track out, and switch it off then. */
+static noh_result fade_out(player *p, uint32_t i, uint32_t ticks, noh_error *error)
+{
+    noh_change_desc d;
+    noh_result result;
+    const uint32_t track = p->layer->first_track + i;
+    if (ticks <= 1u) {
+        return noh_controller_set_mode(p->c, track, NOH_TRACK_OFF);
+    }
+    memset(&d, 0, sizeof d);
+    d.kind = NOH_CHANGE_WEIGHT;
+    d.track = track;
+    d.duration_ticks = ticks;
+    d.curve = NOH_CURVE_SMOOTHSTEP;
+    result = noh_controller_change(p->c, &p->k->set, &d, error);
+    if (result == NOH_OK) {
+        d.kind = NOH_CHANGE_MODE;
+        d.delay_ticks = ticks;
+        d.duration_ticks = 0;
+        d.mode = NOH_TRACK_OFF;
+        result = noh_controller_change(p->c, &p->k->set, &d, error);
+    }
+    return result;
+}
+
+static noh_result fade_in(player *p, uint32_t i, float weight, uint32_t ticks, noh_error *error)
+{
+    noh_change_desc d;
+    memset(&d, 0, sizeof d);
+    d.kind = NOH_CHANGE_WEIGHT;
+    d.track = p->layer->first_track + i;
+    d.duration_ticks = ticks;
+    d.curve = NOH_CURVE_SMOOTHSTEP;
+    d.weight = weight;
+    return noh_controller_change(p->c, &p->k->set, &d, error);
+}
+
+static noh_result fade_others(player *p, uint32_t but, uint32_t ticks, noh_error *error)
+{
+    noh_result result = NOH_OK;
+    for (uint32_t i = 0; i < p->layer->track_count && result == NOH_OK; i++) {
+        if (i != but && track_at(p, i)->mode != NOH_TRACK_OFF) {
+            result = fade_out(p, i, ticks, error);
+        }
+    }
+    return result;
+}
+
+/* ---- playing ---- */
+
+static uint32_t free_track(const player *p)
+{
+    uint32_t lightest = 0;
+    for (uint32_t i = 0; i < p->layer->track_count; i++) {
+        if (track_at(p, i)->mode == NOH_TRACK_OFF) return i;
+        if (track_at(p, i)->weight < track_at(p, lightest)->weight) lightest = i;
+    }
+    return lightest;
+}
+
+static int something_plays(const player *p, uint32_t but)
+{
+    for (uint32_t i = 0; i < p->layer->track_count; i++) {
+        if (i != but && track_at(p, i)->mode != NOH_TRACK_OFF && track_at(p, i)->weight > 0.0f) return 1;
+    }
+    return 0;
+}
+
+/* The position of a clip at the same part of its pass as what plays now. */
+static int64_t phase_ticks(const player *p, uint32_t clip)
+{
+    const noh_track *from = track_at(p, started(p->a, p->layer_index));
+    const noh_clip_entry *old, *next = &p->k->set.clips[clip];
+    if (from->mode == NOH_TRACK_OFF) {
+        return 0;
+    }
+    old = &p->k->set.clips[from->clip];
+    return old->duration_ticks
+               ? (int64_t)((uint64_t)noh_track_clip_tick(from, old, 0) * next->duration_ticks / old->duration_ticks)
+               : 0;
+}
+
+static noh_track_desc track_desc(const player *p, uint32_t clip, const noh_play *play, int silent)
+{
+    noh_track_desc d;
+    memset(&d, 0, sizeof d);
+    d.clip = clip;
+    d.position_ticks = play->flags & NOH_PLAY_PHASE ? phase_ticks(p, clip) : play->start_ticks;
+    d.speed = play->speed;
+    d.weight = play->weight;
+    d.loop = play->loop;
+    d.sync_group = play->sync_group;
+    d.mask = p->layer->mask;
+    d.group = p->layer->mode == NOH_LAYER_OVER ? NOH_GROUP_HIGH : NOH_GROUP_LOW;
+    if (p->layer->mode == NOH_LAYER_ADD) d.flags |= NOH_TRACK_ADDITIVE | NOH_TRACK_REFERENCE_START;
+    if (silent) d.flags |= NOH_TRACK_SILENT;
+    return d;
+}
+
+/* Room for the changes of all tracks of the layer: checked first, so that a call that fails has changed nothing. What
+ * the tracks that are faded have waiting is ended before. */
+static noh_result make_room(player *p, uint32_t but, noh_error *error)
+{
+    noh_change *changes = (noh_change *)(void *)((uint8_t *)p->c + p->c->changes_offset);
+    uint32_t wanted = 1, own = 0;
+    for (uint32_t i = 0; i < p->layer->track_count; i++) {
+        wanted += i != but && track_at(p, i)->mode != NOH_TRACK_OFF ? 2u : 0u;
+    }
+    for (uint32_t i = 0; i < p->c->change_count; i++) {
+        own += changes[i].state != NOH_CHANGE_FREE && changes[i].track - p->layer->first_track < p->layer->track_count;
+    }
+    if (free_changes(p) + own < wanted) {
+        return noh_fail(error, NOH_ERR_LIMIT, "too many changes over time are under way: raise change_count", 0,
+                        wanted);
+    }
+    for (uint32_t i = 0; i < p->layer->track_count; i++) {
+        noh_changes_drop(changes, p->c->change_count, p->layer->first_track + i);
+    }
+    return NOH_OK;
+}
+
+static noh_result begin(player *p, uint32_t clip, const noh_play *play, noh_error *error)
+{
+    const uint32_t ticks = play->fade_ticks ? play->fade_ticks : FADE_TICKS, track = free_track(p);
+    const int from_nothing = p->layer->mode == NOH_LAYER_BASE && p->layer->moves_joints && !something_plays(p, track);
+    const int at_once = ticks <= 1u || from_nothing;
+    const noh_track_desc d = track_desc(p, clip, play, !at_once);
+    noh_track probe;
+    noh_result result = noh_track_start(&probe, &p->k->set, &d, error);
+    if (result == NOH_OK) result = make_room(p, track, error);
+    if (result == NOH_OK) {
+        result = noh_controller_start(p->c, &p->k->set, p->layer->first_track + track, &d, error);
+    }
+    if (result == NOH_OK) result = fade_others(p, track, ticks, error);
+    if (result == NOH_OK && !at_once) {
+        result = fade_in(p, track, play->weight > 0.0f ? play->weight : 1.0f, ticks, error);
+    }
+    if (result == NOH_OK) {
+        set_started(p->a, p->layer_index, track);
+        noh_character_wake(noh_stage_character(p->k, noh_stage_index(p->k, p->a)));
+    }
+    return result;
+}
+
+/* Whether the clip plays already, and is not on its way out. */
+static int plays(const player *p, uint32_t clip)
+{
+    const noh_track *track = track_at(p, started(p->a, p->layer_index));
+    return track->mode != NOH_TRACK_OFF && track->clip == clip && !noh_track_ended(track, &p->k->set.clips[clip]);
+}
+
+noh_result noh_actor_play(noh_stage *stage, noh_actor actor, uint32_t layer, const char *clip, const noh_play *play,
+                          noh_error *error)
+{
+    static const noh_play plain;
+    const noh_play *how = play ? play : &plain;
+    uint32_t index;
+    player p;
+    const noh_result result = open_player(stage, actor, layer, &p, error);
+    NOH_ASSERT(clip);
+    if (result != NOH_OK) {
+        return result;
+    }
+    index = noh_stage_find(stage, (uint32_t)(p.k - stage->kinds), NOH_NAME_CLIP, clip);
+    if (index == NOH_NONE) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "the kind has no clip of that name", (uint64_t)(p.k - stage->kinds),
+                        p.k->bank ? p.k->set.clip_count : 0);
+    }
+    if (how->flags & ~(NOH_PLAY_KEEP | NOH_PLAY_PHASE)) {
+        return noh_fail(error, NOH_ERR_ARG, "flags of a play has unknown bits", how->flags, 0);
+    }
+    if ((how->flags & NOH_PLAY_KEEP) && plays(&p, index)) {
+        return NOH_OK;
+    }
+    return begin(&p, index, how, error);
+}
+
+noh_result noh_actor_stop(noh_stage *stage, noh_actor actor, uint32_t layer, uint32_t fade_ticks, noh_error *error)
+{
+    player p;
+    noh_result result = open_player(stage, actor, layer, &p, error);
+    if (result == NOH_OK) result = make_room(&p, NOH_NONE, error);
+    if (result == NOH_OK) result = fade_others(&p, NOH_NONE, fade_ticks ? fade_ticks : FADE_TICKS, error);
+    if (result == NOH_OK) noh_character_wake(noh_stage_character(p.k, noh_stage_index(p.k, p.a)));
+    return result;
+}
+
+/* ---- held floats ---- */
+
+noh_result noh_actor_hold_float(noh_stage *stage, noh_actor actor, uint32_t index, float value, float amount,
+                                noh_error *error)
+{
+    noh_stage_actor *a;
+    noh_stage_kind *k;
+    noh_stage_held *held, *at = NULL;
+    const noh_result result = noh_stage_change(stage, actor, &a, &k, error);
+    if (result != NOH_OK) {
+        return result;
+    }
+    if (index >= k->float_count) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "the kind has no such float", index, k->float_count);
+    }
+    if (value - value != 0.0f || !(amount >= 0.0f && amount <= 1.0f)) {
+        return noh_fail(error, NOH_ERR_ARG, "a held float is not finite, or its amount is not in 0..1", index, 0);
+    }
+    held = k->held + (size_t)noh_stage_index(k, a) * k->desc.held_float_count;
+    for (uint32_t i = 0; i < k->desc.held_float_count; i++) {
+        if (held[i].amount > 0.0f && held[i].index == index) {
+            at = &held[i];
+            break;
+        }
+        if (!at && !(held[i].amount > 0.0f)) at = &held[i];
+    }
+    if (!at && amount > 0.0f) {
+        return noh_fail(error, NOH_ERR_LIMIT, "held_float_count floats are held", index, k->desc.held_float_count);
+    }
+    if (at) {
+        at->index = index;
+        at->value = value;
+        at->amount = amount;
+    }
+    return NOH_OK;
+}

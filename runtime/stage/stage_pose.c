@@ -1,0 +1,114 @@
+/* stage_pose.c: the second phase of a frame: poses of those that are due, floats of all that are shown. Each job takes
+ * actors of its own, and samples through its own view of the clips. */
+#include <string.h>
+
+#include "stage/stage_internal.h"
+
+/* The set of a kind, sampled by a job's own view. */
+noh_clip_set noh_stage_job_set(const noh_stage *s, const noh_stage_job_part *job, const noh_stage_kind *kind)
+{
+    noh_clip_set set = kind->set;
+    (void)s;
+    if (kind->bank) {
+        set.sample = job->views[kind->bank_kind]->clips.sample;
+        set.user = job->views[kind->bank_kind]->clips.user;
+    }
+    return set;
+}
+
+/* What the clips say: the set's floats as shown, then the defaults of those behind them. A float that no clip moves has
+ * the value of its namesake. */
+static void take_floats(const noh_stage_kind *k, const noh_character *ch, float *floats)
+{
+    const uint32_t own = k->bank ? k->set.float_count : 0;
+    if (own) {
+        const float *shown = noh_character_floats(ch, floats);
+        if (shown != floats) memcpy(floats, shown, own * sizeof *floats);
+    }
+    for (uint32_t f = 0; f < k->float_count; f++) {
+        if (f >= own) floats[f] = k->defaults[f];
+        if (k->sources[f] != f) floats[f] = floats[k->sources[f]];
+    }
+}
+
+static void hold(const noh_stage_kind *k, uint32_t index, float *floats)
+{
+    const noh_stage_held *held = k->held + (size_t)index * k->desc.held_float_count;
+    for (uint32_t h = 0; h < k->desc.held_float_count; h++) {
+        if (!(held[h].amount > 0.0f)) continue;
+        for (uint32_t f = 0; f < k->float_count; f++) {
+            if (f == held[h].index || (k->name_hashes[f] == k->name_hashes[held[h].index] && k->name_hashes[f])) {
+                floats[f] = floats[f] * (1.0f - held[h].amount) + held[h].value * held[h].amount;
+            }
+        }
+    }
+}
+
+/* The weights of all meshes, one after another, without targets whose effect is too small to see. */
+static void take_weights(noh_stage *s, const noh_stage_kind *k, noh_stage_actor *a, noh_character *ch,
+                         const float *floats, float *weights)
+{
+    noh_lod_settings settings = s->desc.lod;
+    if (a->look.pixels > 0.0f) settings.pixels = a->look.pixels;
+    for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
+        const noh_stage_mesh *mesh = &k->meshes[m];
+        memcpy(weights + mesh->first_weight, floats + mesh->first_float,
+               mesh->mesh.header->target_count * sizeof *weights);
+    }
+    if (k->weight_count) {
+        (void)noh_lod_targets(&ch->lod, &settings, weights, k->target_radii, k->weight_count, weights);
+    }
+}
+
+static void show(noh_stage *s, noh_stage_job_part *job, noh_stage_kind *k, uint32_t index)
+{
+    const uint32_t i = index - k->first_actor;
+    noh_character *ch = noh_stage_character(k, i);
+    float *floats = k->floats + (size_t)i * k->float_count;
+    float error_pixels;
+    if (!ch->time.posed) {
+        return; /* over budget: not shown yet */
+    }
+    take_floats(k, ch, floats);
+    hold(k, i, floats);
+    take_weights(s, k, &s->actors[index], ch, floats, k->weights + (size_t)i * k->weight_count);
+    s->shown[index].frame = s->frame;
+    error_pixels = noh_lod_error_pixels(&ch->lod);
+    if (error_pixels > job->error_pixels && !s->actors[index].look.posed) job->error_pixels = error_pixels;
+}
+
+static uint64_t late_of(const noh_stage *s, const noh_stage_job_part *job)
+{
+    uint64_t late = 0;
+    for (uint32_t i = 0; i < s->desc.kind_count; i++) {
+        if (job->views[i]) late += noh_clip_view_stats_of(job->views[i]->samples).decoded_late;
+    }
+    return late;
+}
+
+void noh_stage_pose_todo(noh_stage *s, uint32_t number, uint32_t first, uint32_t end)
+{
+    noh_stage_job_part *job = &s->jobs[number];
+    noh_stage_kind *k = NULL;
+    noh_character_scratch scratch;
+    noh_clip_set set;
+    const uint64_t late = late_of(s, job);
+    job->updated = 0;
+    job->error_pixels = 0.0f;
+    for (uint32_t t = first; t < end; t++) {
+        noh_stage_kind *of = noh_stage_kind_of(s, s->todo[t]);
+        if (of != k) {
+            const noh_character_desc desc = noh_stage_character_desc(of, 0);
+            k = of;
+            set = noh_stage_job_set(s, job, k);
+            (void)noh_character_scratch_init(job->scratch, s->scratch_bytes, &desc, &scratch, NULL);
+        }
+        if (s->shown[s->todo[t]].updates) {
+            noh_character_update(noh_stage_character(k, s->todo[t] - k->first_actor), &set, &k->skeleton,
+                                 k->skeleton.joint_count ? k->joint_radii : NULL, &scratch);
+            job->updated++;
+        }
+        show(s, job, k, s->todo[t]);
+    }
+    job->decoded_late = late_of(s, job) - late;
+}

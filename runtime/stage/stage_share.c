@@ -1,0 +1,203 @@
+/* stage_share.c: between the phases, on one thread: slots are shared out, updates chosen, segments decoded, and the
+ * seen actors put into the order in which they are drawn. */
+#include <string.h>
+
+#include "stage/stage_internal.h"
+
+#define AHEAD_TICKS 12000u      /* looked ahead for clips: a quarter of a second */
+#define AHEAD_TRACK_FRAMES 512u /* decoded in a frame for what is not needed yet */
+
+static const noh_cost_weights costs = { 500.0f, 40.0f, 0.0f, 0.0f }; /* as `noh bench` measures them, roughly */
+
+/* ---- slots ---- */
+
+static void ask(noh_stage *s, noh_stage_kind *k)
+{
+    noh_lod_pools_begin(k->pools);
+    for (uint32_t i = 0; i < k->desc.actor_count; i++) {
+        const noh_stage_shown *shown = &s->shown[k->first_actor + i];
+        if (shown->views) {
+            noh_lod_pools_ask(k->pools, i, noh_lod_finest(&noh_stage_character(k, i)->lod), shown->scale);
+        }
+    }
+    noh_lod_pools_share(k->pools);
+}
+
+/* A pool may be short of fine slots: the actor is then drawn no finer than its slot, and chooses no finer from now on.
+ */
+static void take_slot(noh_stage *s, noh_stage_kind *k, uint32_t i)
+{
+    noh_stage_shown *shown = &s->shown[k->first_actor + i];
+    noh_lod *d = &noh_stage_character(k, i)->lod;
+    shown->slot = noh_lod_pools_slot(k->pools, i);
+    shown->level = (uint8_t)(d->mesh > shown->slot.level ? d->mesh : shown->slot.level);
+    shown->level_before = (uint8_t)(d->mesh_before > shown->slot.level ? d->mesh_before : shown->slot.level);
+    noh_lod_set_limit(d, shown->slot.level);
+}
+
+/* ---- order ---- */
+
+static uint32_t influence_levels(const noh_stage_kind *k)
+{
+    return k->table.influence_level_count ? k->table.influence_level_count : 1u;
+}
+
+uint32_t noh_stage_run_count(const noh_stage_kind *k)
+{
+    return k->plan->level_count * influence_levels(k);
+}
+
+uint32_t noh_stage_seen(const noh_stage_kind *k)
+{
+    return k->runs[noh_stage_run_count(k) + 1u];
+}
+
+static uint32_t run_of(const noh_stage *s, const noh_stage_kind *k, uint32_t i)
+{
+    const noh_stage_shown *shown = &s->shown[k->first_actor + i];
+    return shown->level != shown->level_before
+               ? noh_stage_run_count(k)
+               : shown->level * influence_levels(k) + noh_stage_character(k, i)->lod.influences;
+}
+
+/* A counting sort by run; stable, so that neighbours in memory stay neighbours. */
+static void put_in_order(noh_stage *s, noh_stage_kind *k)
+{
+    const uint32_t runs = noh_stage_run_count(k);
+    uint32_t next[NOH_LOD_LEVELS_MAX * 4u + 1u] = { 0 }, count = 0;
+    for (uint32_t i = 0; i < k->desc.actor_count; i++) {
+        if (s->shown[k->first_actor + i].views) next[run_of(s, k, i)]++;
+    }
+    for (uint32_t r = 0; r <= runs; r++) {
+        k->runs[r] = count;
+        count += next[r];
+        next[r] = k->runs[r];
+    }
+    k->runs[runs + 1u] = count;
+    for (uint32_t i = 0; i < k->desc.actor_count; i++) {
+        noh_stage_shown *shown = &s->shown[k->first_actor + i];
+        if (shown->views) {
+            shown->place = next[run_of(s, k, i)]++;
+            k->order[shown->place] = i;
+        }
+    }
+}
+
+/* ---- updates ---- */
+
+static void offer(noh_stage *s, noh_stage_kind *k, uint32_t i)
+{
+    noh_stage_shown *shown = &s->shown[k->first_actor + i];
+    const noh_character *ch = noh_stage_character(k, i);
+    uint32_t cost;
+    if (shown->due == NOH_DUE_NOT) {
+        return;
+    }
+    cost = noh_cost_ns(&costs, noh_character_joint_work(ch), 0, 0);
+    if (shown->due == NOH_DUE_AT_ONCE) {
+        noh_schedule_spend(&s->schedule, cost);
+        shown->updates = 1;
+    } else {
+        noh_schedule_offer(&s->schedule, k->first_actor + i, noh_character_late(ch), 0.01f * shown->scale, cost);
+    }
+}
+
+static void choose_updates(noh_stage *s)
+{
+    uint32_t index;
+    noh_schedule_begin(&s->schedule, s->head->step_ticks, s->desc.update_budget_ns);
+    for (uint32_t i = 0; i < s->desc.kind_count; i++) {
+        for (uint32_t a = 0; a < s->kinds[i].desc.actor_count; a++) offer(s, &s->kinds[i], a);
+    }
+    while (noh_schedule_next(&s->schedule, &index)) s->shown[index].updates = 1;
+    s->todo_count = 0;
+    for (uint32_t i = 0; i < s->actor_count; i++) {
+        if (s->shown[i].views || s->shown[i].updates) s->todo[s->todo_count++] = i;
+    }
+}
+
+/* ---- decoding ---- */
+
+/* How far ahead an update poses: until the next one. */
+static uint32_t ahead_of(const noh_stage *s, const noh_character *ch)
+{
+    return noh_update_period((noh_update_rate)ch->lod.update_rate) + s->head->step_ticks;
+}
+
+static void want(noh_stage *s, int now)
+{
+    for (uint32_t t = 0; t < s->todo_count; t++) {
+        const uint32_t index = s->todo[t];
+        const noh_stage_kind *k = noh_stage_kind_of(s, index);
+        noh_character *ch = noh_stage_character(k, index - k->first_actor);
+        if (k->bank && (s->shown[index].updates || !now)) {
+            (void)noh_clip_bank_prefetch(k->bank, noh_character_controller(ch), now ? ahead_of(s, ch) : AHEAD_TICKS);
+        }
+    }
+}
+
+static uint64_t decoded_so_far(const noh_stage *s)
+{
+    uint64_t sum = 0;
+    for (uint32_t i = 0; i < s->desc.kind_count; i++) {
+        if (s->kinds[i].bank && s->kinds[i].bank_kind == i) {
+            sum += noh_clip_cache_stats_of(s->kinds[i].bank->cache).decoded;
+        }
+    }
+    return sum;
+}
+
+/* First all that this frame needs, then a little of what the next ones will. */
+static void decode(noh_stage *s)
+{
+    const uint64_t before = decoded_so_far(s);
+    for (uint32_t i = 0; i < s->desc.kind_count; i++) {
+        if (s->kinds[i].bank && s->kinds[i].bank_kind == i) noh_clip_cache_begin_frame(s->kinds[i].bank->cache);
+    }
+    for (int now = 1; now >= 0; now--) {
+        want(s, now);
+        for (uint32_t i = 0; i < s->desc.kind_count; i++) {
+            if (s->kinds[i].bank && s->kinds[i].bank_kind == i) {
+                (void)noh_clip_cache_work(s->kinds[i].bank->cache, now ? UINT32_MAX : AHEAD_TRACK_FRAMES);
+            }
+        }
+    }
+    s->stats.decoded = decoded_so_far(s) - before;
+}
+
+/* ---- all of it ---- */
+
+static void count_levels(noh_stage *s)
+{
+    noh_stage_stats *stats = &s->stats;
+    stats->actors = stats->seen = stats->fading = stats->coarser = 0;
+    memset(stats->at_level, 0, sizeof stats->at_level);
+    for (uint32_t i = 0; i < s->desc.kind_count; i++) {
+        const noh_stage_kind *k = &s->kinds[i];
+        const uint32_t runs = noh_stage_run_count(k);
+        stats->actors += s->head->kinds[i].count;
+        stats->seen += k->runs[runs + 1u];
+        stats->fading += k->runs[runs + 1u] - k->runs[runs];
+        stats->coarser += noh_lod_pools_stats_of(k->pools)->coarser;
+        for (uint32_t p = 0; p < k->runs[runs + 1u]; p++) {
+            stats->at_level[s->shown[k->first_actor + k->order[p]].level]++;
+        }
+    }
+    if (stats->actors > stats->actors_high) stats->actors_high = stats->actors;
+    if (stats->coarser > stats->coarser_high) stats->coarser_high = stats->coarser;
+}
+
+void noh_stage_share(noh_stage *s)
+{
+    for (uint32_t i = 0; i < s->desc.kind_count; i++) {
+        noh_stage_kind *k = &s->kinds[i];
+        ask(s, k);
+        for (uint32_t a = 0; a < k->desc.actor_count; a++) {
+            if (s->shown[k->first_actor + a].views) take_slot(s, k, a);
+        }
+        put_in_order(s, k);
+    }
+    count_levels(s);
+    choose_updates(s);
+    decode(s);
+}

@@ -1,0 +1,131 @@
+/* stage_step.c: time moves on for all actors: clocks, fades, callback keys, root motion. */
+#include <string.h>
+
+#include "anim/controller_pose.h"
+#include "base/quat.h"
+#include "base/trig.h"
+#include "clip/pack_clip.h"
+#include "stage/stage_internal.h"
+
+/* ---- callback keys ---- */
+
+typedef struct stepper {
+    noh_stage *s;
+    noh_stage_kind *k;
+    noh_stage_actor *a;
+    int64_t before; /* the controller's clock, and the stage's, at the start of the step */
+} stepper;
+
+static uint32_t layer_of(const noh_stage_kind *k, uint32_t track)
+{
+    uint32_t i = 0;
+    while (i + 1u < k->layer_count && track - k->layers[i].first_track >= k->layers[i].track_count) i++;
+    return i;
+}
+
+static void describe(const stepper *t, const noh_event *from, noh_stage_event *out)
+{
+    noh_pack_clip clip;
+    memset(out, 0, sizeof *out);
+    out->actor = noh_stage_actor_at(t->s, (uint32_t)(t->a - t->s->actors));
+    out->layer = layer_of(t->k, from->track);
+    out->clip = from->clip;
+    out->name = "";
+    if (t->k->bank && noh_stage_pack_clip(t->k, from->clip, &clip) == NOH_OK &&
+        from->index < clip.header->event_count) {
+        out->name = noh_pack_string(t->k->desc.clip_packs ? t->k->desc.clip_packs[t->k->bank->packs[from->clip]]
+                                                          : t->k->desc.clips,
+                                    clip.events[from->index].name);
+    }
+    out->name_hash = from->key->name_hash;
+    out->index = from->index;
+    out->clock = t->s->head->clock + (from->clock - t->before);
+    out->weight = from->weight;
+    out->backward = from->backward != 0;
+    memcpy(out->payload, from->key->payload, sizeof out->payload);
+}
+
+static void on_event(void *user, const noh_event *event)
+{
+    const stepper *t = user;
+    noh_stage *s = t->s;
+    noh_stage_event told;
+    describe(t, event, &told);
+    s->stats.events++;
+    if (s->events_held < s->desc.event_count) {
+        s->events[s->events_held++] = told;
+    } else {
+        s->stats.events_lost++;
+    }
+    if (s->on_key) {
+        s->callback_actor = told.actor.id;
+        s->on_key(s->on_key_user, s, &told);
+        s->callback_actor = 0;
+    }
+}
+
+const noh_stage_event *noh_stage_events(const noh_stage *stage, uint32_t *count)
+{
+    NOH_ASSERT(stage && count);
+    *count = stage->events_held;
+    return stage->events;
+}
+
+/* ---- root motion ---- */
+
+static void drive(noh_stage_actor *a, const noh_root_pose *moved, uint32_t up)
+{
+    float step[3], turn[4] = { 0.0f, 0.0f, 0.0f, 0.0f }, sine, cosine;
+    for (int i = 0; i < 3; i++) step[i] = (float)moved->translation[i] * a->place.scale;
+    noh_quat_rotate(a->place.rotation, step, step);
+    for (int i = 0; i < 3; i++) a->place.position[i] += step[i];
+    if (moved->turn) {
+        noh_sin_cos_turn(moved->turn / 2u, &sine, &cosine);
+        turn[up] = sine;
+        turn[3] = cosine;
+        noh_quat_mul(a->place.rotation, turn, a->place.rotation);
+        noh_quat_normalize(a->place.rotation);
+    }
+}
+
+/* ---- a step ---- */
+
+static void step_actor(noh_stage *s, noh_stage_kind *k, uint32_t index, uint32_t ticks)
+{
+    noh_character *ch = noh_stage_character(k, index);
+    noh_controller *c = noh_character_controller(ch);
+    stepper t;
+    t.s = s;
+    t.k = k;
+    t.a = &k->actors[index];
+    t.before = c->clock;
+    (void)noh_character_step(ch, &k->set, ticks, on_event, &t);
+    if (k->set.roots) {
+        t.a->moved = noh_controller_root_motion(c, &k->set);
+        if (!k->desc.root_told && !t.a->parent) drive(t.a, &t.a->moved, k->desc.root_up);
+    }
+}
+
+noh_result noh_stage_step(noh_stage *stage, uint32_t ticks, noh_stage_event_fn on_key, void *user, noh_error *error)
+{
+    NOH_ASSERT(stage);
+    if (stage->phase != NOH_STAGE_IDLE) {
+        return noh_fail(error, NOH_ERR_ARG, "a stage is stepped outside of steps and frames", 0, 0);
+    }
+    stage->phase = NOH_STAGE_STEPPING;
+    stage->on_key = on_key;
+    stage->on_key_user = user;
+    stage->events_held = 0;
+    stage->stats.events = 0;
+    for (uint32_t i = 0; i < stage->desc.kind_count; i++) {
+        noh_stage_kind *k = &stage->kinds[i];
+        for (uint32_t a = 0; a < k->desc.actor_count; a++) {
+            if (k->actors[a].alive) step_actor(stage, k, a, ticks);
+        }
+    }
+    stage->head->clock += ticks;
+    stage->head->step_ticks = ticks;
+    stage->phase = NOH_STAGE_IDLE;
+    if (stage->stats.events > stage->stats.events_high) stage->stats.events_high = stage->stats.events;
+    return NOH_OK;
+}

@@ -1,0 +1,187 @@
+#include "stage/view.h"
+
+#include <string.h>
+
+#include "base/math_internal.h"
+#include "base/trig.h"
+#include "stage/stage_internal.h"
+
+#define HALF_VIEW_RAD 0.349066f
+
+/* out = a * b; both column-major 4 x 4. */
+static void multiply(const float a[16], const float b[16], float out[16])
+{
+    for (int c = 0; c < 4; c++) {
+        for (int r = 0; r < 4; r++) {
+            out[4 * c + r] = (a[r] * b[4 * c] + a[4 + r] * b[4 * c + 1]) +
+                             (a[8 + r] * b[4 * c + 2] + a[12 + r] * b[4 * c + 3]);
+        }
+    }
+}
+
+/* World to eye: the axes are rows. */
+static void eye_matrix(const float axes[3][3], const float eye[3], float out[16])
+{
+    memset(out, 0, 16 * sizeof *out);
+    for (int r = 0; r < 3; r++) {
+        for (int c = 0; c < 3; c++) {
+            out[4 * c + r] = axes[r][c];
+            out[12 + r] -= axes[r][c] * eye[c];
+        }
+    }
+    out[15] = 1.0f;
+}
+
+static void cross(const float a[3], const float b[3], float out[3])
+{
+    for (int i = 0; i < 3; i++) {
+        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+    }
+}
+
+static void normalize(float v[3])
+{
+    const float length = noh_sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    for (int i = 0; i < 3 && length > 0.0f; i++) {
+        v[i] /= length;
+    }
+}
+
+void noh_view_orbit(noh_stage_view *view, const float target[3], float yaw_rad, float pitch_rad, float distance,
+                    uint32_t width, uint32_t height)
+{
+    const float near = 0.01f * distance, far = 100.0f * distance;
+    float axes[3][3], world_to_eye[16], projection[16], sy, cy, sp, cp, sh, ch, slope;
+    NOH_ASSERT(view && target && distance > 0.0f && width && height);
+    memset(view, 0, sizeof *view);
+    noh_sin_cos(yaw_rad, &sy, &cy);
+    noh_sin_cos(pitch_rad, &sp, &cp);
+    noh_sin_cos(HALF_VIEW_RAD, &sh, &ch);
+    slope = sh / ch;
+    axes[0][0] = cy, axes[0][1] = 0.0f, axes[0][2] = -sy;
+    axes[2][0] = sy * cp, axes[2][1] = sp, axes[2][2] = cy * cp; /* back, from the target to the eye */
+    cross(axes[2], axes[0], axes[1]);
+    for (int i = 0; i < 3; i++) {
+        view->eye[i] = target[i] + distance * axes[2][i];
+        view->light[i] = 0.5f * axes[2][i] - 0.45f * axes[0][i] + (i == 1 ? 0.8f : 0.0f);
+    }
+    normalize(view->light);
+    eye_matrix((const float(*)[3])axes, view->eye, world_to_eye);
+    memset(projection, 0, sizeof projection);
+    projection[0] = (float)height / (slope * (float)width);
+    projection[5] = 1.0f / slope;
+    projection[10] = (near + far) / (near - far);
+    projection[11] = -1.0f;
+    projection[14] = 2.0f * near * far / (near - far);
+    multiply(projection, world_to_eye, view->view_projection);
+    view->height_px = height;
+}
+
+void noh_view_shadow(noh_stage_view *view, const float sphere[4], const float light[3])
+{
+    float axes[3][3], world_to_eye[16], projection[16], up[3] = { 0.0f, 1.0f, 0.0f };
+    NOH_ASSERT(view && sphere && light && sphere[3] > 0.0f);
+    memset(view, 0, sizeof *view);
+    memcpy(axes[2], light, sizeof axes[2]);
+    if (light[0] * light[0] + light[2] * light[2] < 1e-6f) {
+        up[1] = 0.0f, up[2] = 1.0f;
+    }
+    cross(up, axes[2], axes[0]);
+    normalize(axes[0]);
+    cross(axes[2], axes[0], axes[1]);
+    for (int i = 0; i < 3; i++) {
+        view->eye[i] = sphere[i] + 3.0f * sphere[3] * light[i];
+        view->light[i] = light[i];
+    }
+    eye_matrix((const float(*)[3])axes, view->eye, world_to_eye);
+    memset(projection, 0, sizeof projection);
+    projection[0] = projection[5] = 1.0f / sphere[3];
+    projection[10] = -0.5f / sphere[3]; /* from the eye to four radii away */
+    projection[14] = -1.0f;
+    projection[15] = 1.0f;
+    multiply(projection, world_to_eye, view->view_projection);
+}
+
+/* ---- rays ---- */
+
+/* Solve m * x = b by elimination with pivots; 0: m is singular. */
+static int solve(float m[4][5], float x[4])
+{
+    for (int c = 0; c < 4; c++) {
+        int best = c;
+        for (int r = c + 1; r < 4; r++) {
+            if (m[r][c] * m[r][c] > m[best][c] * m[best][c]) best = r;
+        }
+        if (!(m[best][c] * m[best][c] > 0.0f)) return 0;
+        for (int k = 0; k < 5; k++) {
+            const float t = m[c][k];
+            m[c][k] = m[best][k];
+            m[best][k] = t;
+        }
+        for (int r = 0; r < 4; r++) {
+            const float f = r == c ? 0.0f : m[r][c] / m[c][c];
+            for (int k = 0; k < 5; k++) m[r][k] -= f * m[c][k];
+        }
+    }
+    for (int r = 0; r < 4; r++) x[r] = m[r][4] / m[r][r];
+    return 1;
+}
+
+static int unproject(const noh_stage_view *view, float x, float y, float z, float out[3])
+{
+    const float clip[4] = { x, y, z, 1.0f };
+    float m[4][5], at[4];
+    for (int r = 0; r < 4; r++) {
+        for (int c = 0; c < 4; c++) m[r][c] = view->view_projection[4 * c + r];
+        m[r][4] = clip[r];
+    }
+    if (!solve(m, at) || !(at[3] * at[3] > 0.0f)) return 0;
+    for (int i = 0; i < 3; i++) out[i] = at[i] / at[3];
+    return 1;
+}
+
+int noh_view_ray(const noh_stage_view *view, float x, float y, uint32_t width, uint32_t height, float origin[3],
+                 float direction[3])
+{
+    const float cx = 2.0f * (x + 0.5f) / (float)width - 1.0f, cy = 1.0f - 2.0f * (y + 0.5f) / (float)height;
+    float far[3];
+    NOH_ASSERT(view && width && height && origin && direction);
+    if (!unproject(view, cx, cy, -1.0f, origin) || !unproject(view, cx, cy, 0.5f, far)) {
+        return 0;
+    }
+    for (int i = 0; i < 3; i++) direction[i] = far[i] - origin[i];
+    normalize(direction);
+    return 1;
+}
+
+/* ---- planes ---- */
+
+static float gradient(const float p[4])
+{
+    return noh_sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+}
+
+/* source  G. Gribb and K. Hartmann, "Fast Extraction of Viewing Frustum Planes from the World-View-Projection Matrix"
+ *         (2001). The far and near planes are left out: what lies beyond the far one is rare, and cheap. */
+void noh_view_planes_of(const noh_stage_view *view, noh_view_planes *out)
+{
+    const float *m = view->view_projection;
+    float up[4];
+    memset(out, 0, sizeof *out);
+    for (int i = 0; i < 4; i++) {
+        const float x = m[4 * i], y = m[4 * i + 1], w = m[4 * i + 3];
+        out->planes[0][i] = w + x;
+        out->planes[1][i] = w - x;
+        out->planes[2][i] = w + y;
+        out->planes[3][i] = w - y;
+        out->eye_plane[i] = w;
+        up[i] = y;
+    }
+    for (int p = 0; p < 4; p++) {
+        const float length = gradient(out->planes[p]);
+        for (int i = 0; i < 4 && length > 0.0f; i++) out->planes[p][i] /= length;
+    }
+    out->w_slope = gradient(out->eye_plane);
+    out->scale = 0.5f * (float)view->height_px * gradient(up);
+    out->is_light = view->height_px == 0;
+}

@@ -1,0 +1,432 @@
+/* stage_gl.c: a stage's objects on the GPU: measured, made, deleted, made again. */
+#include <string.h>
+
+#include "character/skin_palette.h"
+#include "pose/local_to_model.h"
+#include "stage_gl/stage_gl_internal.h"
+
+/* ---- what it takes ---- */
+
+typedef struct measure {
+    const noh_stage_desc *desc;
+    const noh_stage_plan *plan;
+    const noh_gl_caps *caps;
+    noh_arena arena;      /* of the CPU's part */
+    noh_stage_gl *gl;     /* NULL: only measured */
+    noh_stage_list *list; /* NULL: not wanted */
+    uint64_t gpu_bytes;
+    uint32_t morph_path;
+} measure;
+
+#define CARVE(m, count, type) ((type *)noh_arena_carve(&(m)->arena, (size_t)(count) * sizeof(type), 16))
+
+/* What was carved since `from` and is made on the GPU. */
+static void add(measure *m, const char *what, uint32_t kind, size_t from, uint64_t gpu_bytes)
+{
+    m->gpu_bytes += gpu_bytes;
+    noh_stage_add_part(m->list, what, kind, m->arena.used - from, gpu_bytes);
+}
+
+static uint32_t count_models(const measure *m)
+{
+    noh_gl_site site = { UINT32_MAX, UINT32_MAX };
+    uint32_t count = 0;
+    while (noh_gl_next_site(m->plan, m->desc->kind_count, &site)) {
+        const noh_gl_site owner = noh_gl_owner(m->desc, m->plan, site);
+        count += owner.kind == site.kind && owner.item == site.item;
+    }
+    return count;
+}
+
+/* The place of an owner's model among all. */
+static uint32_t model_index(const measure *m, noh_gl_site owner)
+{
+    noh_gl_site site = { UINT32_MAX, UINT32_MAX };
+    uint32_t index = 0;
+    while (noh_gl_next_site(m->plan, m->desc->kind_count, &site) &&
+           (site.kind != owner.kind || site.item != owner.item)) {
+        const noh_gl_site of = noh_gl_owner(m->desc, m->plan, site);
+        index += of.kind == site.kind && of.item == site.item;
+    }
+    return index;
+}
+
+static noh_result visit_model(measure *m, noh_gl_site site, noh_gl_model *model, noh_error *error)
+{
+    const noh_mesh mesh = noh_gl_site_mesh(m->desc, m->plan, site);
+    const size_t from = m->arena.used;
+    noh_gl_tiles tiles;
+    noh_gl_morph_desc d;
+    noh_gl_morph_plan plan;
+    noh_result result = NOH_OK;
+    void *memory;
+    add(m, "mesh buffers", site.kind, from, noh_gl_mesh_bytes(&mesh));
+    if (model) {
+        result = noh_gl_mesh_create(m->gl->device.api, m->gl->device.ledger, &mesh, &model->mesh, error);
+    }
+    if (result != NOH_OK || mesh.header->touched_count == 0) {
+        return result;
+    }
+    noh_gl_tiles_of(m->desc, m->plan, site, &tiles);
+    d = noh_gl_site_morph(m->desc, &tiles);
+    result = noh_gl_morph_plan_make(&d, m->caps, &plan, error);
+    if (result != NOH_OK) {
+        return result;
+    }
+    m->morph_path = (uint32_t)plan.path;
+    memory = noh_arena_carve(&m->arena, (size_t)plan.cpu_bytes, 16);
+    add(m, "morph targets", site.kind, from, plan.gpu_bytes - plan.layer_bytes);
+    add(m, "accumulators", site.kind, m->arena.used, plan.layer_bytes);
+    return model ? noh_gl_morph_init(memory, (size_t)plan.cpu_bytes, &m->gl->device, &d, &model->morph, error) : NOH_OK;
+}
+
+/* The palettes, and the rows of places, of one kind's actors for one mesh. */
+static noh_result visit_item(measure *m, noh_gl_site site, noh_gl_item *item, noh_error *error)
+{
+    const noh_mesh mesh = noh_gl_site_mesh(m->desc, m->plan, site);
+    const uint32_t count = m->desc->kinds[site.kind].actor_count;
+    const noh_gl_skin_desc d = { &mesh, 1, &count, NOH_PALETTE_TEXTURE };
+    const size_t from = m->arena.used;
+    noh_gl_skin_plan plan;
+    const noh_result result = noh_gl_skin_plan_make(&d, m->caps, &plan, error);
+    void *memory;
+    if (result != NOH_OK) {
+        return result;
+    }
+    memory = noh_arena_carve(&m->arena, (size_t)plan.cpu_bytes, 16);
+    add(m, "palettes", site.kind, from, plan.gpu_bytes);
+    return item ? noh_gl_skin_init(memory, (size_t)plan.cpu_bytes, &m->gl->device, &d, &item->skin, error) : NOH_OK;
+}
+
+static noh_result visit_pictures(measure *m, uint32_t kind, noh_gl_texture *pictures, noh_error *error)
+{
+    const noh_pack *pack = m->desc->kinds[kind].mesh;
+    uint64_t bytes = 0;
+    for (uint32_t i = 0; i < pack->texture_count; i++) {
+        noh_texture texture;
+        noh_result result = noh_pack_texture_at(pack, i, &texture, error);
+        bytes += noh_gl_picture_bytes(&texture);
+        if (result == NOH_OK && pictures) {
+            result = noh_gl_picture_create(m->gl->device.api, m->gl->device.ledger, &texture, &pictures[i], error);
+        }
+        if (result != NOH_OK) return result;
+    }
+    add(m, "textures", kind, m->arena.used, bytes);
+    return NOH_OK;
+}
+
+/* ---- the arrays of objects ---- */
+
+static void carve_kinds(measure *m)
+{
+    noh_gl_kind *kinds = CARVE(m, m->desc->kind_count, noh_gl_kind);
+    for (uint32_t i = 0; i < m->desc->kind_count; i++) {
+        noh_gl_item *items = CARVE(m, m->plan->kinds[i].mesh_count, noh_gl_item);
+        const uint32_t owner = noh_gl_picture_owner(m->desc, i), count = m->desc->kinds[i].mesh->texture_count;
+        noh_gl_texture *pictures = owner == i ? CARVE(m, count, noh_gl_texture) : NULL;
+        if (!kinds) continue;
+        kinds[i].items = items;
+        kinds[i].pictures = owner == i ? pictures : kinds[owner].pictures;
+        memset(items, 0, m->plan->kinds[i].mesh_count * sizeof *items);
+        if (owner == i) memset(pictures, 0, count * sizeof *pictures);
+    }
+    if (m->gl) m->gl->kinds = kinds;
+}
+
+static void carve_head(measure *m)
+{
+    const uint32_t models = count_models(m);
+    noh_stage_gl *gl = CARVE(m, 1, noh_stage_gl);
+    noh_gl_model *of = CARVE(m, models, noh_gl_model);
+    noh_mesh *meshes = CARVE(m, models, noh_mesh);
+    noh_gl_renderer *renderer = CARVE(m, 1, noh_gl_renderer);
+    if (m->gl) { /* carved for a real stage: init put the device into a copy */
+        gl->device = m->gl->device;
+        m->gl = gl;
+        gl->models = of;
+        gl->model_count = models;
+        gl->meshes = meshes;
+        gl->renderer = renderer;
+        memset(of, 0, models * sizeof *of);
+        memset(renderer, 0, sizeof *renderer);
+    }
+    carve_kinds(m);
+    add(m, "renderer", NOH_NONE, 0, NOH_GL_RENDERER_BYTES);
+}
+
+/* ---- all of it ---- */
+
+static noh_result visit_site(measure *m, noh_gl_site site, noh_error *error)
+{
+    const noh_gl_site owner = noh_gl_owner(m->desc, m->plan, site);
+    const uint32_t index = model_index(m, owner);
+    noh_gl_item *item = m->gl ? &m->gl->kinds[site.kind].items[site.item] : NULL;
+    noh_result result = NOH_OK;
+    if (owner.kind == site.kind && owner.item == site.item) {
+        if (m->gl) m->gl->meshes[index] = noh_gl_site_mesh(m->desc, m->plan, site);
+        result = visit_model(m, site, m->gl ? &m->gl->models[index] : NULL, error);
+    }
+    if (item) {
+        item->model = &m->gl->models[index];
+        item->first_pool = noh_gl_first_pool(m->desc, m->plan, site);
+    }
+    return result == NOH_OK ? visit_item(m, site, item, error) : result;
+}
+
+static noh_result visit(measure *m, noh_error *error)
+{
+    noh_gl_site site = { UINT32_MAX, UINT32_MAX };
+    noh_result result = NOH_OK;
+    carve_head(m);
+    while (result == NOH_OK && noh_gl_next_site(m->plan, m->desc->kind_count, &site)) {
+        result = visit_site(m, site, error);
+    }
+    for (uint32_t i = 0; i < m->desc->kind_count && result == NOH_OK; i++) {
+        if (noh_gl_picture_owner(m->desc, i) == i) {
+            result = visit_pictures(m, i, m->gl ? m->gl->kinds[i].pictures : NULL, error);
+        }
+    }
+    return result;
+}
+
+static noh_result measure_stage(const noh_stage_desc *desc, const struct noh_gl_caps *caps, noh_stage_plan *plan,
+                                uint64_t *cpu_bytes, uint64_t *gpu_bytes, noh_error *error)
+{
+    measure m = { desc, plan, caps, noh_arena_measure(), NULL, NULL, 0, 0 };
+    const noh_result result = visit(&m, error);
+    *cpu_bytes = m.arena.used;
+    *gpu_bytes = m.gpu_bytes;
+    plan->morph_path = m.morph_path;
+    return result;
+}
+
+static void list_parts(const noh_stage_desc *desc, const struct noh_gl_caps *caps, const noh_stage_plan *plan,
+                       noh_stage_list *list)
+{
+    measure m = { desc, plan, caps, noh_arena_measure(), NULL, list, 0, 0 };
+    (void)visit(&m, NULL);
+}
+
+/* ---- made, deleted, made again ---- */
+
+static noh_result make_renderer(const noh_stage_gl *gl, const noh_stage *s, noh_gl_passes passes,
+                                const noh_gl_shader_desc *own, const noh_gl_device *device, noh_gl_renderer *out,
+                                noh_error *error)
+{
+    noh_gl_renderer_desc d;
+    memset(&d, 0, sizeof d);
+    for (uint32_t i = 0; i < gl->model_count; i++) {
+        if (gl->models[i].morph) d.layers_uint = noh_gl_morph_plan_of(gl->models[i].morph)->layer_format == GL_RGBA32UI;
+    }
+    d.meshes = gl->meshes;
+    d.mesh_count = gl->model_count;
+    d.palettes = NOH_PALETTE_TEXTURE;
+    d.crowds = 1;
+    d.passes = passes;
+    d.shaders = own;
+    for (uint32_t i = 0; i < s->desc.kind_count; i++) {
+        d.fades |= s->kinds[i].plan->level_count > 1u;
+        d.fewer_influences |= s->kinds[i].table.influence_level_count > 1u;
+    }
+    return noh_gl_renderer_create(device, &d, out, error);
+}
+
+static void destroy(noh_stage *stage)
+{
+    noh_stage_gl *gl = stage->gpu;
+    const noh_gl_device *d = &gl->device;
+    if (gl->renderer->gl) noh_gl_renderer_delete(gl->renderer);
+    for (uint32_t i = 0; i < stage->desc.kind_count; i++) {
+        const noh_stage_kind *k = &stage->kinds[i];
+        for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
+            if (gl->kinds[i].items[m].skin) noh_gl_skin_delete(gl->kinds[i].items[m].skin);
+        }
+        for (uint32_t t = 0; t < k->desc.mesh->texture_count; t++) {
+            noh_gl_texture_delete(d->api, d->ledger, &gl->kinds[i].pictures[t]);
+        }
+    }
+    for (uint32_t i = 0; i < gl->model_count; i++) {
+        if (gl->models[i].morph) noh_gl_morph_delete(gl->models[i].morph);
+        if (gl->models[i].mesh.vertex_array) noh_gl_mesh_delete(d->api, d->ledger, &gl->models[i].mesh);
+    }
+}
+
+static void find_mirrored(noh_stage_gl *gl, const noh_stage *s)
+{
+    for (uint32_t i = 0; i < s->desc.kind_count; i++) {
+        for (uint32_t m = 0; m < s->kinds[i].plan->mesh_count; m++) {
+            const noh_stage_mesh *mesh = &s->kinds[i].meshes[m];
+            float rows[12];
+            gl->kinds[i].items[m].mirrored = !mesh->skinned && mesh->node_world &&
+                                             noh_gl_normal_rows(mesh->node_world, rows) < 0.0f;
+        }
+    }
+}
+
+/* The desc of a stage, with kinds: those that it keeps. */
+static noh_stage_desc whole_desc(const noh_stage *s, noh_kind_desc kinds[NOH_STAGE_KINDS_MAX])
+{
+    noh_stage_desc d = s->desc;
+    for (uint32_t i = 0; i < d.kind_count; i++) kinds[i] = s->kinds[i].desc;
+    d.kinds = kinds;
+    return d;
+}
+
+static noh_result init(void *memory, size_t bytes, const void *device, noh_stage *stage, noh_error *error)
+{
+    noh_kind_desc kinds[NOH_STAGE_KINDS_MAX];
+    const noh_stage_desc desc = whole_desc(stage, kinds);
+    measure m = { &desc, stage->plan, NULL, noh_arena_over(memory, bytes), NULL, NULL, 0, 0 };
+    noh_stage_gl first;
+    noh_result result;
+    first.device = *(const noh_gl_device *)device;
+    NOH_ASSERT(first.device.api && first.device.caps && first.device.ledger);
+    m.caps = first.device.caps;
+    m.gl = &first;
+    result = visit(&m, error);
+    stage->gpu = m.gl;
+    if (result == NOH_OK) {
+        find_mirrored(m.gl, stage);
+        result = make_renderer(m.gl, stage, NOH_PASSES_ALL, NULL, &m.gl->device, m.gl->renderer, error);
+    }
+    if (result != NOH_OK) {
+        destroy(stage);
+        stage->gpu = NULL;
+    }
+    m.gl->device.log = NULL;
+    m.gl->device.log_bytes = 0;
+    return result;
+}
+
+static noh_result restore_kind(noh_stage *s, uint32_t kind, noh_error *error)
+{
+    noh_stage_gl *gl = s->gpu;
+    const noh_pack *pack = s->kinds[kind].desc.mesh;
+    noh_result result = NOH_OK;
+    for (uint32_t m = 0; m < s->kinds[kind].plan->mesh_count && result == NOH_OK; m++) {
+        result = noh_gl_skin_restore(gl->kinds[kind].items[m].skin, error);
+    }
+    for (uint32_t i = 0; i < kind; i++) {
+        if (gl->kinds[i].pictures == gl->kinds[kind].pictures) return result;
+    }
+    for (uint32_t t = 0; t < pack->texture_count && result == NOH_OK; t++) {
+        noh_texture texture;
+        (void)noh_pack_texture_at(pack, t, &texture, NULL);
+        result = noh_gl_picture_restore(gl->device.api, gl->device.ledger, &texture, &gl->kinds[kind].pictures[t],
+                                        error);
+    }
+    return result;
+}
+
+static noh_result restore(noh_stage *stage, noh_error *error)
+{
+    noh_stage_gl *gl = stage->gpu;
+    noh_result result = NOH_OK;
+    for (uint32_t i = 0; i < gl->model_count && result == NOH_OK; i++) {
+        noh_gl_model *model = &gl->models[i];
+        result = noh_gl_mesh_restore(gl->device.api, gl->device.ledger, &model->mesh, error);
+        if (result == NOH_OK && model->morph) result = noh_gl_morph_restore(model->morph, NULL, 0, error);
+    }
+    for (uint32_t i = 0; i < stage->desc.kind_count && result == NOH_OK; i++) {
+        result = restore_kind(stage, i, error);
+    }
+    return result == NOH_OK ? noh_gl_renderer_restore(gl->renderer, NULL, 0, error) : result;
+}
+
+/* ---- upload ---- */
+
+static int any_weight(const float *weights, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        if (weights[i] != 0.0f) return 1;
+    }
+    return 0;
+}
+
+/* One actor's mesh: its weights, its place, its palette. */
+static void upload_one(noh_stage *s, noh_stage_kind *k, uint32_t m, const noh_gl_item *item, uint32_t index)
+{
+    const noh_stage_mesh *mesh = &k->meshes[m];
+    const noh_stage_shown *shown = &s->shown[k->first_actor + index];
+    const float *weights = k->weights + (size_t)index * k->weight_count + mesh->first_weight;
+    noh_gl_morph_binding morph;
+    float world[12];
+    int moved = 0;
+    memcpy(world, shown->world, sizeof world);
+    if (!mesh->skinned && mesh->node_world) noh_matrix_multiply(shown->world, mesh->node_world, world);
+    if (item->model->morph) {
+        const uint32_t tile = noh_gl_morph_instance(item->model->morph, item->first_pool + shown->slot.pool,
+                                                    shown->slot.slot);
+        moved = any_weight(weights, mesh->mesh.header->target_count);
+        (void)noh_gl_morph_set_weights(item->model->morph, tile, weights, NULL);
+        morph = noh_gl_morph_binding_of(item->model->morph, tile);
+    }
+    if (!item->mirrored) {
+        (void)noh_gl_skin_set_place(item->skin, shown->place, world, moved ? &morph : NULL, NULL);
+    }
+    if (mesh->skinned) {
+        noh_character_skin(noh_stage_character(k, index), &mesh->skin, s->matrices);
+        noh_gl_skin_set_matrices(item->skin, shown->place, s->matrices);
+    }
+}
+
+static void upload(noh_stage *s)
+{
+    noh_stage_gl *gl = s->gpu;
+    for (uint32_t i = 0; i < s->desc.kind_count; i++) {
+        noh_stage_kind *k = &s->kinds[i];
+        for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
+            for (uint32_t p = 0; p < noh_stage_seen(k); p++) upload_one(s, k, m, &gl->kinds[i].items[m], k->order[p]);
+            noh_gl_skin_update(gl->kinds[i].items[m].skin);
+        }
+    }
+    for (uint32_t i = 0; i < gl->model_count; i++) {
+        if (gl->models[i].morph) noh_gl_morph_update(gl->models[i].morph, NULL);
+    }
+}
+
+const noh_stage_gpu noh_stage_on_gl = { measure_stage, list_parts, init, destroy, restore, upload };
+
+/* ---- shaders of a game's own ---- */
+
+size_t noh_stage_shader_size(const noh_stage *stage)
+{
+    (void)stage;
+    return sizeof(noh_stage_shader);
+}
+
+noh_result noh_stage_shader_create(noh_stage *stage, void *memory, size_t bytes, const noh_gl_shader_desc *desc,
+                                   char *log, size_t log_bytes, noh_stage_shader **shader, noh_error *error)
+{
+    const noh_stage_gl *gl = stage->gpu;
+    noh_gl_device device;
+    noh_arena arena;
+    noh_stage_shader *made;
+    noh_result result = noh_arena_open(&arena, memory, bytes, noh_stage_shader_size(stage), error);
+    NOH_ASSERT(gl && desc && shader);
+    if (result != NOH_OK) {
+        return result;
+    }
+    made = noh_arena_carve(&arena, sizeof *made, 16);
+    memset(made, 0, sizeof *made);
+    device = gl->device;
+    device.log = log;
+    device.log_bytes = log_bytes;
+    result = make_renderer(gl, stage, NOH_PASSES_ALL, desc, &device, &made->renderer, error);
+    if (result == NOH_OK) {
+        *shader = made;
+    }
+    return result;
+}
+
+void noh_stage_shader_delete(noh_stage_shader *shader)
+{
+    NOH_ASSERT(shader);
+    noh_gl_renderer_delete(&shader->renderer);
+}
+
+noh_result noh_stage_shader_restore(noh_stage_shader *shader, char *log, size_t log_bytes, noh_error *error)
+{
+    NOH_ASSERT(shader);
+    return noh_gl_renderer_restore(&shader->renderer, log, log_bytes, error);
+}

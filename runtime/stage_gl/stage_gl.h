@@ -1,0 +1,57 @@
+/* stage_gl.h: a stage drawn by OpenGL ES 3.
+ *
+ *   noh_stage_on_gl           its address goes into noh_stage_desc.gpu; noh_stage_init then takes a noh_gl_device
+ *   noh_stage_draw            one pass of what a view of the last frame sees
+ *   noh_stage_shader_size     shaders of your own in place of the library's:
+ *   noh_stage_shader_create   in every variant that the kinds of the stage need
+ *   noh_stage_shader_delete, noh_stage_shader_restore
+ *
+ * On the GPU a mesh of a pack is there once, however many kinds draw it. Actors at the same level are drawn by one call
+ * for each submesh, those that fade between two levels one by one.
+ *
+ * Threads: the context's own thread. */
+#ifndef NOH_STAGE_GL_STAGE_GL_H
+#define NOH_STAGE_GL_STAGE_GL_H
+
+#include "gl/gl_draw.h"
+#include "stage/stage.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+extern const noh_stage_gpu noh_stage_on_gl;
+
+typedef enum noh_pass {
+    NOH_PASS_COLOR = 0, /* opaque, then blended */
+    NOH_PASS_OPAQUE,
+    NOH_PASS_BLENDED,
+    NOH_PASS_DEPTH /* what NOH_PASS_OPAQUE draws, positions alone: shadow maps, depth first */
+} noh_pass;
+
+typedef struct noh_stage_shader noh_stage_shader;
+
+/* Draw what the view-th view of the last frame sees, into the framebuffer and viewport that are set. In a view without
+ * height_px actors with no_shadow are left out.
+ * shader  NULL: the library's
+ * state   afterwards as noh_gl_draw_end leaves it
+ * errors  ARG the last frame had no such view, or a frame has begun and not ended */
+noh_result noh_stage_draw(noh_stage *stage, noh_pass pass, uint32_t view, const noh_stage_shader *shader,
+                          noh_error *error);
+
+/* Shaders of your own (gl_variants.h; shaders_es/README.md says what they can call). They are made in memory of yours.
+ * log     as in noh_gl_device: what the driver says of them
+ * errors  ARG memory is NULL or misaligned; MEMORY it is too small; else as noh_gl_renderer_create */
+size_t noh_stage_shader_size(const noh_stage *stage);
+noh_result noh_stage_shader_create(noh_stage *stage, void *memory, size_t bytes, const noh_gl_shader_desc *desc,
+                                   char *log, size_t log_bytes, noh_stage_shader **shader, noh_error *error);
+void noh_stage_shader_delete(noh_stage_shader *shader);
+
+/* After a lost context. errors  as noh_gl_renderer_restore */
+noh_result noh_stage_shader_restore(noh_stage_shader *shader, char *log, size_t log_bytes, noh_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,159 @@
+/* stage_gl_draw.c: one pass of a view. */
+#include <string.h>
+
+#include "pose/local_to_model.h"
+#include "stage_gl/stage_gl_internal.h"
+
+typedef struct drawing {
+    const noh_stage *s;
+    const noh_stage_gl *gl;
+    const noh_stage_kind *k;
+    const noh_gl_kind *on_gl;
+    const noh_gl_renderer *renderer;
+    uint32_t view;
+    int pass;
+} drawing;
+
+static const noh_stage_shown *shown_at(const drawing *d, uint32_t place)
+{
+    return &d->s->shown[d->k->first_actor + d->k->order[place]];
+}
+
+static int is_seen(const drawing *d, uint32_t place)
+{
+    return (int)(shown_at(d, place)->views >> d->view & 1u);
+}
+
+static noh_gl_skin_binding skin_of(const drawing *d, const noh_gl_item *item, uint32_t place, uint32_t influences)
+{
+    noh_gl_skin_binding binding = noh_gl_skin_binding_of(item->skin, place);
+    binding.influences = influences;
+    return binding;
+    (void)d;
+}
+
+static noh_gl_morph_binding morph_of(const noh_gl_item *item, const noh_stage_shown *shown)
+{
+    return noh_gl_morph_binding_of(
+        item->model->morph,
+        noh_gl_morph_instance(item->model->morph, item->first_pool + shown->slot.pool, shown->slot.slot));
+}
+
+static uint32_t mesh_level(const drawing *d, uint32_t mesh, uint32_t level)
+{
+    return d->k->plan->levels[level].mesh_levels[mesh];
+}
+
+/* One actor's mesh, at one level, with a share of the pixels. */
+static void draw_alone(const drawing *d, uint32_t mesh, uint32_t place, uint32_t level, float from, float to)
+{
+    const noh_gl_item *item = &d->on_gl->items[mesh];
+    const noh_stage_mesh *m = &d->k->meshes[mesh];
+    const noh_stage_shown *shown = shown_at(d, place);
+    const noh_gl_lod lod = { mesh_level(d, mesh, level), from, to };
+    const noh_character *ch = noh_stage_character(d->k, d->k->order[place]);
+    const noh_gl_skin_binding skin = skin_of(d, item, place, noh_lod_influence_count(&ch->lod, &d->k->table));
+    noh_gl_morph_binding morph;
+    float world[12];
+    memcpy(world, shown->world, sizeof world);
+    if (!m->skinned && m->node_world) noh_matrix_multiply(shown->world, m->node_world, world);
+    if (item->model->morph) morph = morph_of(item, shown);
+    noh_gl_draw_mesh(d->renderer, &item->model->mesh, world, item->model->morph ? &morph : NULL,
+                     m->skinned ? &skin : NULL, &lod, d->on_gl->pictures, d->pass);
+}
+
+/* A fading actor: the new level and the old one, each with its share of the pixels. */
+static void draw_fading(const drawing *d, uint32_t mesh, uint32_t place)
+{
+    const noh_stage_shown *shown = shown_at(d, place);
+    const noh_character *ch = noh_stage_character(d->k, d->k->order[place]);
+    const float part = noh_lod_fade(&ch->lod, noh_character_clock(ch));
+    if (mesh_level(d, mesh, shown->level) == mesh_level(d, mesh, shown->level_before)) {
+        draw_alone(d, mesh, place, shown->level, 0.0f, 1.0f);
+        return;
+    }
+    draw_alone(d, mesh, place, shown->level, 0.0f, part);
+    draw_alone(d, mesh, place, shown->level_before, part, 1.0f);
+}
+
+/* Neighbours of a run that the view sees, in one call. */
+static void draw_together(const drawing *d, uint32_t mesh, uint32_t run, uint32_t first, uint32_t count)
+{
+    const uint32_t caps = d->k->table.influence_level_count ? d->k->table.influence_level_count : 1u;
+    const noh_gl_item *item = &d->on_gl->items[mesh];
+    const uint32_t influences = d->k->table.influence_level_count ? d->k->table.influences[run % caps].influence_count
+                                                                  : 0;
+    const noh_gl_lod lod = { mesh_level(d, mesh, run / caps), 0.0f, 1.0f };
+    const noh_gl_skin_binding skin = skin_of(d, item, first, influences);
+    noh_gl_morph_binding morph;
+    if (item->mirrored) {
+        for (uint32_t i = 0; i < count; i++) draw_alone(d, mesh, first + i, run / caps, 0.0f, 1.0f);
+        return;
+    }
+    if (item->model->morph) morph = morph_of(item, shown_at(d, first));
+    noh_gl_draw_crowd(d->renderer, &item->model->mesh, item->model->morph ? &morph : NULL, &skin, count, &lod,
+                      d->on_gl->pictures, d->pass);
+}
+
+static void draw_run(const drawing *d, uint32_t mesh, uint32_t run)
+{
+    const uint32_t end = d->k->runs[run + 1u];
+    uint32_t at = d->k->runs[run];
+    while (at < end) {
+        uint32_t first;
+        while (at < end && !is_seen(d, at)) at++;
+        first = at;
+        while (at < end && is_seen(d, at)) at++;
+        if (at > first) draw_together(d, mesh, run, first, at - first);
+    }
+}
+
+static void draw_kind(const drawing *d)
+{
+    const uint32_t runs = noh_stage_run_count(d->k);
+    for (uint32_t m = 0; m < d->k->plan->mesh_count; m++) {
+        for (uint32_t run = 0; run < runs; run++) draw_run(d, m, run);
+        for (uint32_t p = d->k->runs[runs]; p < d->k->runs[runs + 1u]; p++) {
+            if (is_seen(d, p)) draw_fading(d, m, p);
+        }
+    }
+}
+
+static void draw_pass(drawing *d, int pass)
+{
+    d->pass = pass;
+    for (uint32_t i = 0; i < d->s->desc.kind_count; i++) {
+        d->k = &d->s->kinds[i];
+        d->on_gl = &d->gl->kinds[i];
+        draw_kind(d);
+    }
+}
+
+noh_result noh_stage_draw(noh_stage *stage, noh_pass pass, uint32_t view, const noh_stage_shader *shader,
+                          noh_error *error)
+{
+    noh_gl_camera camera;
+    drawing d;
+    NOH_ASSERT(stage && stage->gpu);
+    if (stage->phase != NOH_STAGE_IDLE || view >= stage->view_count) {
+        return noh_fail(error, NOH_ERR_ARG, "no such view in the last frame, or a frame has begun and not ended", view,
+                        stage->view_count);
+    }
+    memset(&d, 0, sizeof d);
+    d.s = stage;
+    d.gl = stage->gpu;
+    d.renderer = shader ? &shader->renderer : d.gl->renderer;
+    d.view = view;
+    memcpy(camera.view_projection, stage->views[view].view_projection, sizeof camera.view_projection);
+    memcpy(camera.eye, stage->views[view].eye, sizeof camera.eye);
+    memcpy(camera.key, stage->views[view].light, sizeof camera.key);
+    noh_gl_draw_begin(d.renderer, &camera);
+    if (pass == NOH_PASS_DEPTH) {
+        draw_pass(&d, NOH_DRAW_DEPTH);
+    } else {
+        if (pass != NOH_PASS_BLENDED) draw_pass(&d, NOH_DRAW_OPAQUE);
+        if (pass != NOH_PASS_OPAQUE) draw_pass(&d, NOH_DRAW_BLENDED);
+    }
+    noh_gl_draw_end(d.renderer);
+    return NOH_OK;
+}

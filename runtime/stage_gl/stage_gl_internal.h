@@ -1,0 +1,68 @@
+/* stage_gl_internal.h (private to stage_gl/): a stage's objects on the GPU. */
+#ifndef NOH_STAGE_GL_STAGE_GL_INTERNAL_H
+#define NOH_STAGE_GL_STAGE_GL_INTERNAL_H
+
+#include "stage/stage_internal.h"
+#include "stage_gl/stage_gl.h"
+
+#define NOH_MODEL_POOLS_MAX 16u /* tiles of one mesh come in at most so many sizes */
+
+/* A mesh of a pack, with its accumulators for all kinds that draw it. */
+typedef struct noh_gl_model {
+    noh_gl_mesh mesh;
+    noh_gl_morph *morph; /* NULL: no targets */
+} noh_gl_model;
+
+/* What one kind draws by one node. */
+typedef struct noh_gl_item {
+    noh_gl_model *model;
+    uint32_t first_pool; /* of the kind's pools, among the meshes of model->morph */
+    noh_gl_skin *skin;
+    int mirrored; /* its node mirrors: a crowd cannot be drawn */
+} noh_gl_item;
+
+typedef struct noh_gl_kind {
+    noh_gl_item *items;       /* [mesh_count] */
+    noh_gl_texture *pictures; /* [texture_count of the pack], shared by kinds of one pack */
+} noh_gl_kind;
+
+typedef struct noh_stage_gl {
+    noh_gl_device device;
+    noh_gl_kind *kinds;
+    noh_gl_model *models;
+    uint32_t model_count;
+    noh_mesh *meshes; /* [model_count] full, for renderers */
+    noh_gl_renderer *renderer;
+} noh_stage_gl;
+
+struct noh_stage_shader {
+    noh_gl_renderer renderer;
+};
+
+/* ---- who shares what ---- */
+
+/* An item of a kind: numbered over all kinds of a desc. */
+typedef struct noh_gl_site {
+    uint32_t kind, item;
+} noh_gl_site;
+
+/* The next item after *site, over all kinds; 0 at the end. Begin with kind and item UINT32_MAX. */
+int noh_gl_next_site(const noh_stage_plan *plan, uint32_t kind_count, noh_gl_site *site);
+/* The first site that draws the same mesh of the same pack from the same level on, and may share with this one. */
+noh_gl_site noh_gl_owner(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site);
+uint32_t noh_gl_picture_owner(const noh_stage_desc *desc, uint32_t kind);
+
+/* The meshes and slots of all sites that an owner serves. Borrowed by `out`. */
+typedef struct noh_gl_tiles {
+    noh_mesh meshes[NOH_MODEL_POOLS_MAX];
+    uint32_t counts[NOH_MODEL_POOLS_MAX];
+    uint32_t count;
+} noh_gl_tiles;
+
+void noh_gl_tiles_of(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site owner, noh_gl_tiles *out);
+/* The index of a site's first pool in the tiles of its owner. */
+uint32_t noh_gl_first_pool(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site);
+noh_mesh noh_gl_site_mesh(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site); /* finest level */
+noh_gl_morph_desc noh_gl_site_morph(const noh_stage_desc *desc, const noh_gl_tiles *tiles);
+
+#endif

@@ -1,0 +1,132 @@
+/* stage_gl_plan.c: what a stage takes on the GPU, and on the CPU for that; which kinds share a mesh. */
+#include <string.h>
+
+#include "stage_gl/stage_gl_internal.h"
+
+/* ---- sites ---- */
+
+int noh_gl_next_site(const noh_stage_plan *plan, uint32_t kind_count, noh_gl_site *site)
+{
+    if (site->kind == UINT32_MAX) {
+        site->kind = site->item = 0;
+        return 1;
+    }
+    if (++site->item < plan->kinds[site->kind].mesh_count) {
+        return 1;
+    }
+    site->item = 0;
+    return ++site->kind < kind_count;
+}
+
+static noh_stage_item item_of(const noh_stage_desc *desc, noh_gl_site site)
+{
+    const noh_kind_desc kind = noh_stage_kind_desc(desc, site.kind);
+    noh_stage_item items[NOH_STAGE_MESHES_MAX];
+    (void)noh_stage_items(&kind, items);
+    return items[site.item];
+}
+
+static uint32_t finest_of(const noh_stage_plan *plan, noh_gl_site site)
+{
+    const noh_kind_plan *k = &plan->kinds[site.kind];
+    return k->levels[k->finest_level].mesh_levels[site.item];
+}
+
+noh_mesh noh_gl_site_mesh(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site)
+{
+    noh_mesh mesh;
+    (void)noh_pack_mesh_at(desc->kinds[site.kind].mesh, item_of(desc, site).mesh, &mesh, NULL);
+    return noh_mesh_at_lod(&mesh, finest_of(plan, site));
+}
+
+static int same_mesh(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site a, noh_gl_site b)
+{
+    return desc->kinds[a.kind].mesh->bytes == desc->kinds[b.kind].mesh->bytes &&
+           item_of(desc, a).mesh == item_of(desc, b).mesh && finest_of(plan, a) == finest_of(plan, b);
+}
+
+static uint32_t pool_count(const noh_stage_plan *plan, uint32_t kind)
+{
+    uint32_t levels[NOH_LOD_LEVELS_MAX], slots[NOH_LOD_LEVELS_MAX];
+    return noh_stage_pools(&plan->kinds[kind], levels, slots);
+}
+
+/* Pools of all sites that draw a mesh: where there are too many, nobody shares it. */
+static uint32_t count_pools(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site of)
+{
+    noh_gl_site site = { UINT32_MAX, UINT32_MAX };
+    uint32_t pools = 0;
+    while (noh_gl_next_site(plan, desc->kind_count, &site)) {
+        if (same_mesh(desc, plan, site, of)) pools += pool_count(plan, site.kind);
+    }
+    return pools;
+}
+
+noh_gl_site noh_gl_owner(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site)
+{
+    noh_gl_site other = { UINT32_MAX, UINT32_MAX };
+    if (count_pools(desc, plan, site) > NOH_MODEL_POOLS_MAX) {
+        return site;
+    }
+    while (noh_gl_next_site(plan, desc->kind_count, &other) && !same_mesh(desc, plan, other, site)) {}
+    return other;
+}
+
+static int is_same(noh_gl_site a, noh_gl_site b)
+{
+    return a.kind == b.kind && a.item == b.item;
+}
+
+uint32_t noh_gl_picture_owner(const noh_stage_desc *desc, uint32_t kind)
+{
+    uint32_t owner = 0;
+    while (desc->kinds[owner].mesh->bytes != desc->kinds[kind].mesh->bytes) owner++;
+    return owner;
+}
+
+/* ---- accumulators ---- */
+
+static void add_tiles(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site, noh_gl_tiles *out)
+{
+    const noh_kind_plan *k = &plan->kinds[site.kind];
+    uint32_t levels[NOH_LOD_LEVELS_MAX], slots[NOH_LOD_LEVELS_MAX];
+    const uint32_t count = noh_stage_pools(k, levels, slots);
+    const noh_mesh mesh = noh_gl_site_mesh(desc, plan, site);
+    for (uint32_t i = 0; i < count; i++) {
+        NOH_ASSERT(out->count < NOH_MODEL_POOLS_MAX);
+        out->meshes[out->count] = noh_mesh_at_lod(&mesh, k->levels[levels[i]].mesh_levels[site.item]);
+        out->counts[out->count++] = slots[i];
+    }
+}
+
+void noh_gl_tiles_of(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site owner, noh_gl_tiles *out)
+{
+    noh_gl_site site = { UINT32_MAX, UINT32_MAX };
+    out->count = 0;
+    while (noh_gl_next_site(plan, desc->kind_count, &site)) {
+        if (is_same(noh_gl_owner(desc, plan, site), owner)) add_tiles(desc, plan, site, out);
+    }
+}
+
+uint32_t noh_gl_first_pool(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site)
+{
+    const noh_gl_site owner = noh_gl_owner(desc, plan, site);
+    noh_gl_site other = { UINT32_MAX, UINT32_MAX };
+    uint32_t first = 0;
+    while (noh_gl_next_site(plan, desc->kind_count, &other) && !is_same(other, site)) {
+        if (is_same(noh_gl_owner(desc, plan, other), owner)) first += pool_count(plan, other.kind);
+    }
+    return first;
+}
+
+noh_gl_morph_desc noh_gl_site_morph(const noh_stage_desc *desc, const noh_gl_tiles *tiles)
+{
+    noh_gl_morph_desc d;
+    memset(&d, 0, sizeof d);
+    d.meshes = tiles->meshes;
+    d.mesh_count = tiles->count;
+    d.instance_counts = tiles->counts;
+    d.path = (noh_morph_path)desc->morph_path;
+    d.accumulate = desc->halves ? NOH_ACCUMULATE_F16 : NOH_ACCUMULATE_AUTO;
+    return d;
+}
