@@ -89,6 +89,27 @@ BVH
 noh view "$work/leg.bvh" --frames 2 --size 700x400
 expect 0 'a clip is converted and its bones are shown'
 check 'without a complaint' test ! -s "$work/err"
+# The leg runs off; the camera goes with it, unless it is told to stay. Only the times in the panels change then.
+sed 's/^Frames: .*/Frames: 3/; s/^Frame Time: .*/Frame Time: 0.5/; /^Frame Time/q' "$work/leg.bvh" >"$work/run.bvh"
+printf '0 0 0 0 0 0 0 0 0\n0 0 100 0 0 0 0 0 0\n100 0 0 0 0 0 0 0 0\n' >>"$work/run.bvh"
+run_for() { # FRAMES OUT ARGUMENTS...
+    frames=$1 out=$2
+    shift 2
+    noh view "$work/run.bvh" --frames "$frames" --clip run --size 1200x1000 --screenshot "$work/$out.png" "$@"
+    expect 0 "$frames frames of a run, $out"
+}
+changed() { # pixels of a hundred thousand in which a screenshot differs from the first
+    "$build/tests/gl/picture_diff" "$work/first.png" "$work/$1.png" 255 100 | sed 's/.*, \([0-9.]*\) % of.*/\1/' | awk '{ print int($1 * 1000) }'
+}
+run_for 1 first
+run_for 60 followed --camera follow
+run_for 60 fixed --camera fixed
+echo "# changed: $(changed followed) followed, $(changed fixed) fixed"
+check 'the camera follows it' test "$(changed followed)" -lt 700
+check 'or is fixed' test "$(changed fixed)" -gt 1200
+noh view "$work/run.bvh" --frames 1 --camera sideways
+expect 2 'an unknown camera'
+says '--camera wants follow or fixed'
 noh view "$work/leg.bvh" --frames 2 --clip jump
 expect 1 'a clip that is not there'
 says "no clip named 'jump'"

@@ -44,14 +44,7 @@ static void place_tile(sheet *s, uint32_t tile, const uint8_t *rgba)
               (int)(tile / s->columns * s->tile) + 6, 1, label);
 }
 
-/* The camera follows the first joint over the ground, so that a walk stays in its tile. */
-static void anchor_of(const scene *s, double anchor[3])
-{
-    anchor[0] = s->skeleton.joint_count ? (double)s->joint_matrices[3] : 0.0;
-    anchor[1] = 0.0;
-    anchor[2] = s->skeleton.joint_count ? (double)s->joint_matrices[11] : 0.0;
-}
-
+/* The camera follows the figure over the ground, so that a walk stays in its tile. */
 static bounds move_box(bounds box, const double by[3], double sign)
 {
     for (int c = 0; c < 3; c++) {
@@ -70,7 +63,7 @@ static int measure_tiles(sheet *s, int face)
         double anchor[3];
         bounds box;
         status = sheet_tiles_pose(&s->tiles, tile);
-        anchor_of(posed, anchor);
+        scene_anchor(posed, anchor);
         box = move_box(drawing_bounds(posed, s->tiles.file, face, s->show_bones), anchor, -1.0);
         s->box = tile ? bounds_union(s->box, box) : box;
     }
@@ -82,7 +75,7 @@ static int tile_camera(const sheet *s, noh_gl_camera *camera)
     const view_options o = { s->camera, s->tile, s->tile };
     double anchor[3];
     bounds box;
-    anchor_of(&s->tiles.posed, anchor);
+    scene_anchor(&s->tiles.posed, anchor);
     box = move_box(s->box, anchor, 1.0);
     return view_camera(&o, &box, camera);
 }

@@ -9,7 +9,7 @@
 #include "cli/verbs.h"
 
 typedef struct view_args {
-    const char *path, *accumulate, *driver, *lod;
+    const char *path, *accumulate, *driver, *lod, *camera;
     double frames;
     uint32_t size[2];
     view_run run;
@@ -32,6 +32,9 @@ static int check_args(view_args *a)
     if (strcmp(a->driver, "egl") != 0 && strcmp(a->driver, "native") != 0) {
         return tool_usage("--driver wants egl or native, not '%s'", a->driver);
     }
+    if (strcmp(a->camera, "follow") != 0 && strcmp(a->camera, "fixed") != 0) {
+        return tool_usage("--camera wants follow or fixed, not '%s'", a->camera);
+    }
     return 0;
 }
 
@@ -43,6 +46,7 @@ static int run(void *args)
         return status;
     }
     a->run.frames = (uint32_t)a->frames;
+    a->run.fixed_camera = strcmp(a->camera, "fixed") == 0;
     a->run.native = a->driver[0] == 'n';
     a->run.desc.lod.mode = LOD_FAST; /* conversion stays quick */
     a->run.desc.width = a->size[0];
@@ -60,6 +64,12 @@ static const option options[] = {
       .value = "NAME",
       .what = "play this clip from the start",
       .example = "walk" },
+    { .name = "--camera",
+      .kind = OPTION_TEXT,
+      .at = offsetof(view_args, camera),
+      .value = "follow|fixed",
+      .initial = "follow",
+      .what = "whether the camera goes with a figure that walks over the ground" },
     { .name = "--bones",
       .kind = OPTION_FLAG,
       .at = offsetof(view_args, run.desc.show_bones),

@@ -34,7 +34,7 @@ int view_app_open(view_app *a, const view_model_desc *desc)
 {
     int x, y, status = view_screen_open(&a->screen, &a->gpu);
     a->desc = *desc;
-    a->show_panels = a->show_layers = 1;
+    a->show_panels = a->show_layers = a->follow = 1;
     a->speed = 1.0f;
     a->layer_gain = 1.0f;
     a->lod.settings.pixels = 1.0f;
@@ -116,6 +116,18 @@ void view_frame_all(view_app *a)
     uint32_t width, height;
     figure_pixels(a, &x, &y, &width, &height);
     a->orbit = orbit_fit(&around, (double)width / (double)height);
+    scene_anchor(&a->model->scene, a->anchor);
+}
+
+/* A clip that walks takes the camera along, and back where it begins again. */
+static void follow(view_app *a)
+{
+    double anchor[3];
+    scene_anchor(&a->model->scene, anchor);
+    for (int c = 0; c < 3; c++) {
+        a->orbit.center[c] += a->follow ? anchor[c] - a->anchor[c] : 0.0;
+        a->anchor[c] = anchor[c];
+    }
 }
 
 void view_turn(view_app *a, double dx, double dy)
@@ -191,6 +203,7 @@ static void animate(view_app *a, double seconds)
         view_step(a->model, seconds * (double)a->speed, log_event, &a->log);
     }
     view_model_pose(a->model);
+    follow(a);
     smooth(&a->times.animate, (double)(noh_clock_ns() - start) * 1e-6);
 }
 

@@ -47,6 +47,8 @@ typedef struct view_app {
     view_model *model;    /* never NULL after view_app_open */
     view_model_desc desc; /* how it was opened; path and anim are the caller's */
     orbit orbit;
+    double anchor[3]; /* where the figure stood in the last frame */
+    int follow;       /* the orbit's centre goes with it */
     view_lod lod;
     float window_width, window_height; /* points */
     float scale;                       /* pixels in a point */

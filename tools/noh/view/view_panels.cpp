@@ -217,6 +217,13 @@ void drawing_section(view_app *a)
         a->wish.show_bones = bones;
         a->wants_reload = 1;
     }
+    if (a->model->scene.skeleton.joint_count) {
+        bool follow = a->follow != 0;
+        ImGui::SameLine();
+        if (ImGui::Checkbox("follow", &follow)) {
+            a->follow = follow;
+        }
+    }
     if (a->model->drawing.load.morph.morph) {
         const noh_gl_morph_plan *plan = noh_gl_morph_plan_of(a->model->drawing.load.morph.morph);
         ImGui::TextWrapped("%s-%s (%s)", noh_morph_path_name(plan->path), noh_accumulate_name(plan->accumulate),

@@ -277,6 +277,7 @@ static int show(view_window *w, const view_run *run)
 {
     int status = view_app_open(&w->app, &run->desc);
     if (!status) status = view_panels_open();
+    w->app.follow = !run->fixed_camera;
     if (!status && run->clip) status = start_clip(&w->app, run->clip);
     if (!status) {
         listen(w);
