@@ -176,7 +176,7 @@ void noh_pose_difference(uint32_t joint_count, const noh_transform *reference, c
                          noh_transform *out)
 {
     NOH_ASSERT(!joint_count || (reference && pose && out));
-    NOH_ASSERT(reference != out);
+    NOH_ASSERT(!joint_count || reference != out);
     for (uint32_t j = 0; j < joint_count; j++) {
         float inverse[4];
         noh_quat_conjugate(reference[j].rotation, inverse);

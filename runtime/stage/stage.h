@@ -152,7 +152,7 @@ struct noh_gl_caps;
  * middle_count promise them; the finest level; cached segments, down to two for each bank.
  * caps    of gl_caps.h; NULL with desc->gpu NULL
  * errors  ARG a field of the desc (where: the kind); MEMORY no choice keeps the bounds (need: bytes of the smallest);
- *         NOT_FOUND a joint or float of a layer (where: the kind); LIMIT; DATA a clip is broken */
+ *         LIMIT; DATA a clip is broken. *plan is undefined then */
 noh_result noh_stage_plan_make(const noh_stage_desc *desc, const struct noh_gl_caps *caps, noh_stage_plan *plan,
                                noh_error *error);
 
@@ -178,7 +178,7 @@ typedef struct noh_stage noh_stage;
  * plan    must outlive the stage
  * device  a noh_gl_device (gl_memory.h) with all fields set but the log; its table, caps and ledger must outlive the
  *         stage. NULL with desc->gpu NULL
- * errors  as noh_stage_plan_make; ARG memory is NULL or misaligned; MEMORY it is too small (need: the bytes), or the
+ * errors  as noh_stage_plan_make; NOT_FOUND a joint or float of a layer (where: the kind); ARG memory is NULL or misaligned; MEMORY it is too small (need: the bytes), or the
  *         driver's is; GL, DATA the driver refused an object or a shader: nothing is left behind */
 noh_result noh_stage_init(void *memory, size_t bytes, const void *device, const noh_stage_desc *desc,
                           const noh_stage_plan *plan, noh_stage **stage, noh_error *error);

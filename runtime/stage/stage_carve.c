@@ -170,6 +170,7 @@ void noh_stage_add_part(noh_stage_list *list, const char *what, uint32_t kind, u
     }
     if (list) {
         list->count++;
+        list->cpu_bytes += cpu_bytes;
     }
 }
 

@@ -297,6 +297,7 @@ typedef struct noh_stage_blocks {
 struct noh_stage_list {
     noh_stage_bytes *parts;
     uint32_t capacity, count;
+    uint64_t cpu_bytes; /* of all, those past the capacity too */
 };
 
 noh_result noh_stage_carve(noh_arena *arena, const noh_stage_desc *desc, const noh_stage_plan *plan,

@@ -36,7 +36,7 @@ static noh_result measure(const planner *p, noh_error *error)
 uint32_t noh_stage_plan_parts(const noh_stage_desc *desc, const struct noh_gl_caps *caps, const noh_stage_plan *plan,
                               noh_stage_bytes *parts, uint32_t capacity)
 {
-    noh_stage_list list = { NULL, 0, 0 };
+    noh_stage_list list = { NULL, 0, 0, 0 };
     noh_stage_blocks blocks;
     noh_arena arena = noh_arena_measure();
     noh_stage_desc d = *desc;
@@ -46,11 +46,9 @@ uint32_t noh_stage_plan_parts(const noh_stage_desc *desc, const struct noh_gl_ca
     list.capacity = capacity;
     d.halves = (int)plan->halves;
     if (noh_stage_carve(&arena, &d, plan, &blocks, &list, NULL) == NOH_OK && d.gpu) {
-        const size_t before = arena.used;
-        (void)noh_arena_carve(&arena, 0, 16);
         d.gpu->parts(&d, caps, plan, &list);
-        noh_stage_add_part(&list, "alignment", NOH_NONE, arena.used - before, 0);
     }
+    noh_stage_add_part(&list, "alignment", NOH_NONE, plan->cpu_bytes - list.cpu_bytes, 0);
     return list.count;
 }
 

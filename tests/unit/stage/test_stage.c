@@ -1,0 +1,710 @@
+/* A stage without a GPU: plans, actors, layers, events, frames, jobs, states. */
+#include "support/stage_fixture.h"
+
+#include <math.h>
+
+static noh_error said;
+
+static void step(noh_stage *s, uint32_t ticks)
+{
+    assert_int_equal(noh_stage_step(s, ticks, NULL, NULL, NULL), NOH_OK);
+}
+
+static void frame(noh_stage *s, uint32_t number, float distance)
+{
+    const noh_stage_view view = cast_view(number, distance);
+    assert_int_equal(noh_stage_frame(s, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
+}
+
+/* ---- plans ---- */
+
+static void the_parts_of_a_plan_sum_to_its_bytes(void **state)
+{
+    noh_stage_bytes parts[64];
+    uint64_t cpu = 0, gpu = 0;
+    uint32_t count;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, NULL), NOH_OK);
+    count = noh_stage_plan_parts(&c.desc, NULL, &c.plan, parts, 64);
+    assert_true(count > 8 && count < 64);
+    for (uint32_t i = 0; i < count; i++) cpu += parts[i].cpu_bytes, gpu += parts[i].gpu_bytes;
+    assert_true(cpu == c.plan.cpu_bytes && gpu == 0 && c.plan.gpu_bytes == 0);
+    assert_int_equal(noh_stage_plan_parts(&c.desc, NULL, &c.plan, parts, 2), count);
+    cast_close(&c);
+}
+
+static void plans_do_not_depend_on_when_they_are_made(void **state)
+{
+    static noh_stage_plan other;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    memset(&other, 0x5a, sizeof other);
+    assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, NULL), NOH_OK);
+    assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &other, NULL), NOH_OK);
+    assert_memory_equal(&c.plan, &other, sizeof other);
+    cast_close(&c);
+}
+
+/* The levels of an actor are of rising error and falling triangles, each mesh no finer than in the level before. */
+static void actor_levels_rise_in_error(void **state)
+{
+    cast c;
+    (void)state;
+    cast_open(&c);
+    assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, NULL), NOH_OK);
+    for (uint32_t k = 0; k < CAST_KINDS; k++) {
+        const noh_kind_plan *p = &c.plan.kinds[k];
+        uint32_t slots = 0;
+        assert_true(p->level_count >= 1 && p->level_count <= NOH_LOD_LEVELS_MAX);
+        for (uint32_t l = 0; l < p->level_count; l++) {
+            slots += p->levels[l].slot_count;
+            if (!l) continue;
+            assert_true(p->levels[l].error_m > p->levels[l - 1u].error_m);
+            assert_true(p->levels[l].triangle_count < p->levels[l - 1u].triangle_count);
+            for (uint32_t m = 0; m < p->mesh_count; m++) {
+                assert_true(p->levels[l].mesh_levels[m] >= p->levels[l - 1u].mesh_levels[m]);
+            }
+        }
+        assert_int_equal(slots, c.kinds[k].actor_count);
+    }
+    assert_true(c.plan.kinds[PUPPETS].level_count > 3); /* of two meshes with levels of their own */
+    assert_true(c.plan.kinds[MASKS].level_count > 2 && c.plan.kinds[TUBES].level_count > 1);
+    cast_close(&c);
+}
+
+/* Down to the smallest stage every bound is kept, and says what it cost; below it is MEMORY, with the need. */
+static void a_bound_is_kept_or_refused(void **state)
+{
+    uint64_t largest, least = 0;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, NULL), NOH_OK);
+    largest = c.plan.cpu_bytes;
+    assert_int_equal(c.plan.concession_count, 0);
+    c.desc.cpu_bytes_max = 1;
+    assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, &said), NOH_ERR_MEMORY);
+    least = said.need;
+    assert_true(least > 1 && least < largest);
+    for (uint64_t bound = least; bound < largest; bound += (largest - least) / 7u + 1u) {
+        c.desc.cpu_bytes_max = bound;
+        assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, &said), NOH_OK);
+        assert_true(c.plan.cpu_bytes <= bound && c.plan.concession_count > 0);
+        cast_close_stage(&c);
+        cast_make(&c, NULL);
+        frame(c.stage, 0, 6.0f);
+    }
+    c.desc.cpu_bytes_max = least - 1u;
+    assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, &said), NOH_ERR_MEMORY);
+    cast_close(&c);
+}
+
+static void bad_plan(cast *c, noh_result result, const char *what)
+{
+    assert_int_equal(noh_stage_plan_make(&c->desc, NULL, &c->plan, &said), result);
+    if (!strstr(said.what, what)) fail_msg("\"%s\" does not name %s", said.what, what);
+}
+
+static void desc_fields_broken_in_turn(void **state)
+{
+    noh_layer_desc layers[2] = { { .name = "body" }, { .name = "arm", .joints = "no_such_joint" } };
+    noh_kind_desc fine[CAST_KINDS];
+    noh_stage *made;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    memcpy(fine, c.kinds, sizeof fine);
+    c.desc.kind_count = 0, bad_plan(&c, NOH_ERR_ARG, "kind_count"), c.desc.kind_count = CAST_KINDS;
+    c.desc.job_count = 65, bad_plan(&c, NOH_ERR_ARG, "job_count"), c.desc.job_count = 0;
+    c.desc.lod.pixels = -1.0f, bad_plan(&c, NOH_ERR_ARG, "pixels"), c.desc.lod.pixels = 0.0f;
+    c.kinds[1].mesh = NULL, bad_plan(&c, NOH_ERR_ARG, "mesh"), c.kinds[1] = fine[1];
+    assert_int_equal(said.where, 1);
+    c.kinds[2].actor_count = 0, bad_plan(&c, NOH_ERR_ARG, "actor_count"), c.kinds[2] = fine[2];
+    c.kinds[0].actor_count = 65535, bad_plan(&c, NOH_ERR_LIMIT, "actors"), c.kinds[0] = fine[0];
+    c.kinds[0].skeleton = 7, bad_plan(&c, NOH_ERR_ARG, "skeleton"), c.kinds[0] = fine[0];
+    c.kinds[0].root_axes = 64, bad_plan(&c, NOH_ERR_ARG, "root_axes"), c.kinds[0] = fine[0];
+    c.kinds[0].layer_count = 17, bad_plan(&c, NOH_ERR_ARG, "layer_count"), c.kinds[0] = fine[0];
+    layers[0].name = NULL, c.kinds[0].layers = layers, c.kinds[0].layer_count = 2, bad_plan(&c, NOH_ERR_ARG, "name");
+    layers[0].name = "body", layers[0].track_count = 9, bad_plan(&c, NOH_ERR_ARG, "track_count");
+    layers[0].track_count = 0;
+    assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, NULL), NOH_OK); /* names are read at init */
+    c.memory = test_aligned(NULL, (size_t)c.plan.cpu_bytes);
+    assert_int_equal(noh_stage_init(c.memory, (size_t)c.plan.cpu_bytes, NULL, &c.desc, &c.plan, &made, &said),
+                     NOH_ERR_NOT_FOUND);
+    assert_non_null(strstr(said.what, "joints of a layer"));
+    cast_close(&c);
+}
+
+/* One byte less is MEMORY and touches nothing; misaligned memory is ARG (tests/memory/test_inits.c has the rest). */
+static void a_byte_less_is_refused(void **state)
+{
+    noh_stage *made = NULL;
+    uint8_t *memory;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, NULL), NOH_OK);
+    memory = test_aligned(NULL, (size_t)c.plan.cpu_bytes);
+    memset(memory, 0xa5, (size_t)c.plan.cpu_bytes);
+    assert_int_equal(noh_stage_init(memory, (size_t)c.plan.cpu_bytes - 1u, NULL, &c.desc, &c.plan, &made, &said),
+                     NOH_ERR_MEMORY);
+    assert_int_equal(said.need, c.plan.cpu_bytes);
+    for (size_t i = 0; i < c.plan.cpu_bytes; i++) assert_int_equal(memory[i], 0xa5);
+    assert_null(made);
+    free(memory);
+    cast_close(&c);
+}
+
+/* ---- actors ---- */
+
+static void a_stale_actor_is_an_error(void **state)
+{
+    noh_actor first, again;
+    noh_place place;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    cast_make(&c, NULL);
+    assert_int_equal(noh_stage_spawn(c.stage, MASKS, NULL, &first, NULL), NOH_OK);
+    assert_int_equal(noh_stage_despawn(c.stage, first, NULL), NOH_OK);
+    assert_int_equal(noh_stage_despawn(c.stage, first, &said), NOH_ERR_NOT_FOUND);
+    for (uint32_t i = 0; i < 70000; i++) { /* past the end of a generation */
+        assert_int_equal(noh_stage_spawn(c.stage, MASKS, NULL, &again, NULL), NOH_OK);
+        assert_true(again.id != 0);
+        if (i < 65535u * 7u - 1u) assert_true(again.id != first.id);
+        assert_int_equal(noh_actor_place(c.stage, again, &place, NULL), NOH_OK);
+        assert_int_equal(noh_stage_despawn(c.stage, again, NULL), NOH_OK);
+    }
+    assert_int_equal(noh_actor_play(c.stage, first, 0, "speak", NULL, &said), NOH_ERR_NOT_FOUND);
+    assert_int_equal(noh_actor_set_place(c.stage, (noh_actor){ 0 }, &place, &said), NOH_ERR_NOT_FOUND);
+    assert_null(noh_actor_floats(c.stage, first));
+    cast_close(&c);
+}
+
+static void a_full_kind_refuses_to_spawn(void **state)
+{
+    noh_actor actors[CAST_ACTORS], more;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    cast_make(&c, NULL);
+    cast_enter(&c, actors);
+    assert_int_equal(noh_stage_spawn(c.stage, PUPPETS, NULL, &more, &said), NOH_ERR_LIMIT);
+    assert_int_equal(said.need, 5);
+    for (uint32_t i = 0; i < CAST_ACTORS; i++) assert_int_equal(noh_stage_actor_at(c.stage, i).id, actors[i].id);
+    assert_int_equal(noh_stage_actor_at(c.stage, CAST_ACTORS).id, 0);
+    cast_close(&c);
+}
+
+static void bad_places_are_refused(void **state)
+{
+    const noh_place bad[] = { { { NAN, 0, 0 }, { 0, 0, 0, 1 }, 1 },
+                              { { 0, 0, 0 }, { 0, 0, INFINITY, 1 }, 1 },
+                              { { 0, 0, 0 }, { 0, 1e-9f, 0, 0 }, 1 },
+                              { { 0, 0, 0 }, { 0, 0, 0, 1 }, -1 } };
+    noh_actor actor;
+    noh_place was, is;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    cast_make(&c, NULL);
+    assert_int_equal(noh_stage_spawn(c.stage, TUBES, NULL, &actor, NULL), NOH_OK);
+    assert_int_equal(noh_actor_place(c.stage, actor, &was, NULL), NOH_OK);
+    for (uint32_t i = 0; i < TEST_COUNT(bad); i++) {
+        assert_int_equal(noh_actor_set_place(c.stage, actor, &bad[i], &said), NOH_ERR_ARG);
+    }
+    assert_int_equal(noh_actor_place(c.stage, actor, &is, NULL), NOH_OK);
+    assert_memory_equal(&was, &is, sizeof is);
+    cast_close(&c);
+}
+
+/* ---- what shows ---- */
+
+static void names_are_found(void **state)
+{
+    cast c;
+    uint32_t smile;
+    (void)state;
+    cast_open(&c);
+    cast_make(&c, NULL);
+    smile = noh_stage_find(c.stage, PUPPETS, NOH_NAME_FLOAT, "smile");
+    assert_true(smile != NOH_NONE);
+    assert_string_equal(noh_stage_name(c.stage, PUPPETS, NOH_NAME_FLOAT, smile), "smile");
+    assert_int_equal(noh_stage_find(c.stage, PUPPETS, NOH_NAME_LAYER, "face"), 1);
+    assert_true(noh_stage_find(c.stage, PUPPETS, NOH_NAME_CLIP, "walk") != NOH_NONE);
+    assert_int_equal(noh_stage_find(c.stage, PUPPETS, NOH_NAME_CLIP, "wlak"), NOH_NONE);
+    assert_int_equal(noh_stage_find(c.stage, MASKS, NOH_NAME_JOINT, "head"), NOH_NONE);
+    for (uint32_t j = 0; j < c.plan.kinds[PUPPETS].joint_count; j++) {
+        const char *name = noh_stage_name(c.stage, PUPPETS, NOH_NAME_JOINT, j);
+        assert_int_equal(noh_stage_find(c.stage, PUPPETS, NOH_NAME_JOINT, name), j);
+    }
+    assert_null(noh_stage_name(c.stage, PUPPETS, NOH_NAME_JOINT, c.plan.kinds[PUPPETS].joint_count));
+    cast_close(&c);
+}
+
+/* A layer without joints moves none, and fades its floats in and out; a held float shows whatever plays. */
+static void a_face_is_played_over_a_body(void **state)
+{
+    noh_actor actor;
+    noh_look look = { 0, 0, 1, 0.0f };
+    const noh_play at_once = { .fade_ticks = 1 };
+    float before[12], after[12];
+    uint32_t hand, smile;
+    int moved = 0;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    cast_make(&c, NULL);
+    hand = noh_stage_find(c.stage, PUPPETS, NOH_NAME_JOINT, noh_stage_name(c.stage, PUPPETS, NOH_NAME_JOINT, 20));
+    smile = noh_stage_find(c.stage, PUPPETS, NOH_NAME_FLOAT, "smile");
+    assert_int_equal(noh_stage_spawn(c.stage, PUPPETS, NULL, &actor, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_look(c.stage, actor, &look, NULL), NOH_OK);
+    assert_int_equal(noh_stage_frame(c.stage, 0, NULL, NULL, NULL, NULL), NOH_OK);
+    assert_int_equal(noh_actor_joint(c.stage, actor, hand, before, NULL), NOH_OK);
+    for (uint32_t i = 0; noh_stage_name(c.stage, PUPPETS, NOH_NAME_CLIP, i); i++) { /* no clip moves it on the face */
+        assert_int_equal(
+            noh_actor_play(c.stage, actor, 1, noh_stage_name(c.stage, PUPPETS, NOH_NAME_CLIP, i), &at_once, NULL),
+            NOH_OK);
+        for (int f = 0; f < 30; f++) {
+            const float *floats;
+            assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
+            floats = noh_actor_floats(c.stage, actor);
+            for (uint32_t w = 0; w < c.plan.kinds[PUPPETS].float_count; w++) moved |= floats[w] > 0.05f;
+        }
+        assert_int_equal(noh_actor_joint(c.stage, actor, hand, after, NULL), NOH_OK);
+        assert_memory_equal(before, after, sizeof after);
+    }
+    assert_true(moved);
+    assert_int_equal(noh_actor_stop(c.stage, actor, 1, 4800, NULL), NOH_OK);
+    for (int f = 0; f < 8; f++) assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
+    assert_null(noh_actor_track(c.stage, actor, 1));
+    assert_true(fabsf(noh_actor_floats(c.stage, actor)[smile]) < 1e-6f);
+    assert_int_equal(noh_actor_hold_float(c.stage, actor, smile, 0.75f, 1.0f, NULL), NOH_OK);
+    assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
+    assert_true(fabsf(noh_actor_floats(c.stage, actor)[smile] - 0.75f) < 1e-6f);
+    for (uint32_t i = 0; i < 7; i++) {
+        assert_int_equal(noh_actor_hold_float(c.stage, actor, smile + 1u + i, 0.5f, 0.5f, NULL), NOH_OK);
+    }
+    assert_int_equal(noh_actor_hold_float(c.stage, actor, smile + 9u, 0.5f, 0.5f, &said), NOH_ERR_LIMIT);
+    assert_int_equal(noh_actor_hold_float(c.stage, actor, smile, 0.0f, 0.0f, NULL), NOH_OK);
+    assert_int_equal(noh_actor_hold_float(c.stage, actor, smile + 9u, 0.5f, 0.5f, NULL), NOH_OK);
+    cast_close(&c);
+}
+
+/* The pose of a played clip is that of a controller joined by hand, and root motion is where it takes the actor. */
+static void a_walk_takes_the_actor_along(void **state)
+{
+    noh_clip_bank_desc desc;
+    noh_clip_bank *bank;
+    noh_root_pose all = { { 0, 0, 0 }, 0, 0 }, moved;
+    noh_actor actor;
+    noh_place place;
+    double end;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    cast_make(&c, NULL);
+    memset(&desc, 0, sizeof desc);
+    desc.clips = &c.packs[PUPPETS];
+    desc.root_axes = NOH_ROOT_GROUND;
+    desc.root_up = 1;
+    bank = test_clip_bank(&desc);
+    assert_int_equal(noh_stage_spawn(c.stage, PUPPETS, NULL, &actor, NULL), NOH_OK);
+    assert_int_equal(noh_actor_play(c.stage, actor, 0, "walk", NULL, NULL), NOH_OK);
+    for (int f = 0; f < 120; f++) {
+        step(c.stage, CAST_STEP);
+        assert_int_equal(noh_actor_root(c.stage, actor, &moved, NULL), NOH_OK);
+        all = noh_root_compose(1, &all, &moved);
+    }
+    {
+        const uint32_t walk = noh_clip_bank_find(bank, "walk");
+        const noh_root_pose want = noh_root_at(&bank->clips, &bank->clips.roots[walk], walk, NOH_LOOP_REPEAT,
+                                               noh_position_of(120 * CAST_STEP));
+        assert_int_equal(noh_actor_place(c.stage, actor, &place, NULL), NOH_OK);
+        end = want.translation[2];
+        assert_true(end > 0.5); /* it has walked */
+        for (int i = 0; i < 3; i++) {
+            assert_true(fabs(all.translation[i] - want.translation[i]) < 1e-9);
+            assert_true(fabs((double)place.position[i] - want.translation[i]) < 1e-4);
+        }
+    }
+    free(bank);
+    cast_close(&c);
+}
+
+/* ---- callback keys ---- */
+
+typedef struct heard {
+    noh_actor other;
+    uint32_t count;
+    noh_result refused;
+} heard;
+
+static void on_key(void *user, noh_stage *stage, const noh_stage_event *event)
+{
+    heard *h = user;
+    const noh_place far_away = { { 9, 9, 9 }, { 0, 0, 0, 0 }, 0 };
+    h->count++;
+    assert_true(event->name && event->name[0]);
+    h->refused = noh_actor_set_place(stage, h->other, &far_away, NULL);
+    assert_int_equal(noh_actor_set_place(stage, event->actor, &far_away, NULL), NOH_OK);
+    assert_int_equal(noh_stage_step(stage, 1, NULL, NULL, NULL), NOH_ERR_ARG);
+    assert_int_equal(noh_stage_despawn(stage, event->actor, NULL), NOH_ERR_ARG);
+}
+
+static void keys_are_told_with_their_names(void **state)
+{
+    noh_actor actor;
+    heard h = { { 0 }, 0, NOH_OK };
+    uint32_t told = 0;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    cast_make(&c, NULL);
+    assert_int_equal(noh_stage_spawn(c.stage, PUPPETS, NULL, &actor, NULL), NOH_OK);
+    assert_int_equal(noh_stage_spawn(c.stage, PUPPETS, NULL, &h.other, NULL), NOH_OK);
+    assert_int_equal(noh_actor_play(c.stage, actor, 0, "walk", NULL, NULL), NOH_OK);
+    for (int f = 0; f < 120; f++) {
+        uint32_t count;
+        const noh_stage_event *events;
+        assert_int_equal(noh_stage_step(c.stage, CAST_STEP, on_key, &h, NULL), NOH_OK);
+        events = noh_stage_events(c.stage, &count);
+        for (uint32_t i = 0; i < count; i++) {
+            assert_int_equal(events[i].actor.id, actor.id);
+            assert_int_equal(events[i].layer, 0);
+            assert_true(events[i].clock > f * (int64_t)CAST_STEP - 1 &&
+                        events[i].clock <= (f + 1) * (int64_t)CAST_STEP);
+        }
+        told += count;
+    }
+    assert_true(told > 2 && told == h.count);
+    assert_int_equal(h.refused, NOH_ERR_ARG);
+    cast_close(&c);
+}
+
+/* ---- frames ---- */
+
+static void frames_and_steps_do_not_mix(void **state)
+{
+    const noh_stage_view view = cast_view(0, 8.0f);
+    noh_actor actor;
+    size_t bytes;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    cast_make(&c, NULL);
+    assert_int_equal(noh_stage_spawn(c.stage, MASKS, NULL, &actor, NULL), NOH_OK);
+    assert_int_equal(noh_stage_frame_end(c.stage, NULL), NOH_ERR_ARG);
+    assert_int_equal(noh_stage_frame_begin(c.stage, &view, 1, NULL), NOH_OK);
+    assert_int_equal(noh_stage_frame_begin(c.stage, &view, 1, NULL), NOH_ERR_ARG);
+    assert_int_equal(noh_stage_step(c.stage, 1, NULL, NULL, NULL), NOH_ERR_ARG);
+    assert_int_equal(noh_actor_play(c.stage, actor, 1, "speak", NULL, NULL), NOH_ERR_ARG);
+    assert_int_equal(noh_stage_despawn(c.stage, actor, NULL), NOH_ERR_ARG);
+    assert_int_equal(noh_stage_set_state(c.stage, noh_stage_state(c.stage, &bytes), c.plan.state_bytes, NULL),
+                     NOH_ERR_ARG);
+    assert_int_equal(noh_stage_frame_end(c.stage, NULL), NOH_OK);
+    assert_int_equal(noh_stage_jobs(c.stage), 0);
+    cast_close(&c);
+}
+
+static void who_is_behind_the_camera_is_not_posed(void **state)
+{
+    noh_actor actors[CAST_ACTORS];
+    noh_stage_view view = cast_view(0, 8.0f);
+    static const float away[3] = { 0.0f, 0.8f, 40.0f };
+    cast c;
+    (void)state;
+    cast_open(&c);
+    cast_make(&c, NULL);
+    cast_enter(&c, actors);
+    assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
+    assert_int_equal(noh_stage_stats_of(c.stage)->seen, CAST_ACTORS);
+    noh_view_orbit(&view, away, 3.14159f, 0.0f, 8.0f, 640, 360); /* in front of them, looking away */
+    assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
+    assert_int_equal(noh_stage_stats_of(c.stage)->seen, 0);
+    assert_int_equal(noh_stage_stats_of(c.stage)->updated, 0);
+    assert_null(noh_actor_floats(c.stage, actors[0]));
+    cast_close(&c);
+}
+
+/* Every vertex of a dancing puppet is within the sphere that it is culled by; by the CPU's skin. */
+static void spheres_hold_every_vertex(void **state)
+{
+    noh_actor actor;
+    const noh_look look = { 0, 0, 1, 0.0f };
+    float joints[64 * 12], matrices[64 * 12];
+    cast c;
+    (void)state;
+    cast_open(&c);
+    cast_make(&c, NULL);
+    assert_true(c.plan.kinds[PUPPETS].joint_count <= 64);
+    assert_int_equal(noh_stage_spawn(c.stage, PUPPETS, NULL, &actor, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_look(c.stage, actor, &look, NULL), NOH_OK);
+    assert_int_equal(noh_actor_play(c.stage, actor, 0, "dance", NULL, NULL), NOH_OK);
+    for (int f = 0; f < 60; f++) {
+        float sphere[4];
+        assert_int_equal(noh_stage_frame(c.stage, 3u * CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
+        assert_int_equal(noh_actor_sphere(c.stage, actor, sphere, NULL), NOH_OK);
+        for (uint32_t j = 0; j < c.plan.kinds[PUPPETS].joint_count; j++) {
+            assert_int_equal(noh_actor_joint(c.stage, actor, j, joints + 12 * j, NULL), NOH_OK);
+        }
+        for (uint32_t m = 0; m < c.packs[PUPPETS].mesh_count; m++) {
+            const noh_mesh mesh = test_mesh(&c.packs[PUPPETS], m);
+            noh_skin skin;
+            assert_int_equal(noh_pack_skin_at(&c.packs[PUPPETS], mesh.header->skin, &skin, NULL), NOH_OK);
+            noh_skin_matrices(&skin, joints, matrices);
+            for (uint32_t v = 0; v < mesh.header->vertex_count; v += 7) {
+                float at[3];
+                double apart = 0.0;
+                noh_skin_position(&mesh, matrices, NULL, v, at);
+                for (int i = 0; i < 3; i++)
+                    apart += ((double)at[i] - (double)sphere[i]) * ((double)at[i] - (double)sphere[i]);
+                assert_true(sqrt(apart) <= (double)sphere[3] * 1.00001);
+            }
+        }
+    }
+    cast_close(&c);
+}
+
+/* ---- jobs and states ---- */
+
+/* A show of many frames with everything that changes; returns the hash after each. */
+static void show(cast *c, uint64_t seed, uint32_t frames, int shuffled, uint64_t *hashes)
+{
+    static const char *const clips[CAST_KINDS][3] = { { "walk", "run", "dance" },
+                                                      { "speak", "blink", "speak" },
+                                                      { "none", "none", "none" } };
+    test_random r = { seed };
+    for (uint32_t f = 0; f < frames; f++) {
+        const noh_stage_view view = cast_view(f, 4.0f + 20.0f * (float)(f % 90u) / 90.0f);
+        const uint32_t which = test_random_below(&r, CAST_ACTORS), what = test_random_below(&r, 8);
+        const noh_actor actor = noh_stage_actor_at(c->stage, which);
+        uint32_t count, kind = which < 5 ? PUPPETS : which < 12 ? MASKS : TUBES;
+        if (what == 0 && actor.id) assert_int_equal(noh_stage_despawn(c->stage, actor, NULL), NOH_OK);
+        if (what == 1) {
+            noh_actor made;
+            (void)noh_stage_spawn(c->stage, kind, NULL, &made, NULL);
+        }
+        if (what == 2 && actor.id) {
+            (void)noh_actor_play(c->stage, actor, test_random_below(&r, 3), clips[kind][test_random_below(&r, 3)], NULL,
+                                 NULL);
+        }
+        if (what == 3 && actor.id)
+            (void)noh_actor_hold_float(c->stage, actor, 0, test_random_float(&r, 0, 1), 1.0f, NULL);
+        if (what == 4 && actor.id) (void)noh_actor_stop(c->stage, actor, 0, 0, NULL);
+        step(c->stage, 400u + test_random_below(&r, 900));
+        assert_int_equal(noh_stage_frame_begin(c->stage, &view, 1, NULL), NOH_OK);
+        while ((count = noh_stage_jobs(c->stage)) > 0) {
+            for (uint32_t i = 0; i < count; i++) noh_stage_job(c->stage, shuffled ? count - 1u - i : i);
+        }
+        assert_int_equal(noh_stage_frame_end(c->stage, NULL), NOH_OK);
+        if (hashes) hashes[f] = noh_stage_hash(c->stage);
+    }
+}
+
+#define SHOW 240u
+
+static void the_bits_do_not_depend_on_the_jobs(void **state)
+{
+    static uint64_t hashes[3][SHOW];
+    static const uint32_t jobs[3] = { 1, 4, 7 };
+    noh_actor actors[CAST_ACTORS];
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        cast c;
+        cast_open(&c);
+        c.desc.job_count = jobs[i];
+        cast_make(&c, NULL);
+        cast_enter(&c, actors);
+        show(&c, 77, SHOW, i == 2, hashes[i]);
+        cast_close(&c);
+    }
+    assert_memory_equal(hashes[0], hashes[1], sizeof hashes[0]);
+    assert_memory_equal(hashes[0], hashes[2], sizeof hashes[0]);
+}
+
+/* What followed a state follows it again, in the same stage and in another one of the plan. */
+static void a_state_is_put_back_to_the_bit(void **state)
+{
+    static uint64_t first[SHOW], again[SHOW];
+    noh_actor actors[CAST_ACTORS];
+    uint8_t *saved;
+    size_t bytes;
+    cast c, fork;
+    (void)state;
+    cast_open(&c);
+    cast_make(&c, NULL);
+    cast_enter(&c, actors);
+    show(&c, 5, 100, 0, NULL);
+    saved = test_aligned(noh_stage_state(c.stage, &bytes), c.plan.state_bytes);
+    assert_int_equal(bytes, c.plan.state_bytes);
+    show(&c, 6, SHOW, 0, first);
+    assert_int_equal(noh_stage_set_state(c.stage, saved, bytes, NULL), NOH_OK);
+    show(&c, 6, SHOW, 0, again);
+    assert_memory_equal(first, again, sizeof first);
+    cast_open(&fork);
+    fork.desc.job_count = 3;
+    cast_make(&fork, NULL);
+    assert_int_equal(noh_stage_set_state(fork.stage, saved, bytes, NULL), NOH_OK);
+    show(&fork, 6, SHOW, 0, again);
+    assert_memory_equal(first, again, sizeof first);
+    free(saved);
+    cast_close(&fork);
+    cast_close(&c);
+}
+
+/* A state with any byte changed is refused, or plays on without harm (under the sanitizers, too). */
+static void a_damaged_state_does_no_harm(void **state)
+{
+    test_random r = test_random_from(9);
+    noh_actor actors[CAST_ACTORS];
+    uint8_t *good, *bad;
+    uint32_t refused = 0, accepted = 0;
+    size_t bytes;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    cast_make(&c, NULL);
+    cast_enter(&c, actors);
+    show(&c, 5, 40, 0, NULL);
+    good = test_aligned(noh_stage_state(c.stage, &bytes), c.plan.state_bytes);
+    bad = test_aligned(good, bytes);
+    assert_int_equal(noh_stage_set_state(c.stage, good, bytes - 1u, &said), NOH_ERR_DATA);
+    for (uint32_t i = 0; i < 3000; i++) {
+        const uint32_t head = i % 2u ? 288u + 112u * CAST_ACTORS : (uint32_t)bytes; /* heads and actors more often */
+        const uint32_t at = test_random_below(&r, head);
+        bad[at] ^= (uint8_t)(1u << test_random_below(&r, 8));
+        if (noh_stage_set_state(c.stage, bad, bytes, &said) == NOH_OK) {
+            accepted++;
+            if (accepted % 16u == 0) frame(c.stage, i, 9.0f);
+        } else {
+            refused++;
+        }
+        bad[at] = good[at];
+    }
+    assert_true(refused > 100 && accepted > 100);
+    free(good);
+    free(bad);
+    cast_close(&c);
+}
+
+/* ---- links and rays ---- */
+
+static void what_hangs_on_a_joint_goes_with_it(void **state)
+{
+    noh_actor puppet, mask;
+    const noh_look look = { 0, 0, 1, 0.0f };
+    const noh_place up = { { 0.0f, 0.25f, 0.0f }, { 0, 0, 0, 0 }, 0.5f };
+    float joint[12], sphere[4];
+    noh_stage_view view = cast_view(0, 9.0f);
+    noh_place place;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    cast_make(&c, NULL);
+    assert_int_equal(noh_stage_spawn(c.stage, PUPPETS, NULL, &puppet, NULL), NOH_OK);
+    assert_int_equal(noh_stage_spawn(c.stage, MASKS, &up, &mask, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_look(c.stage, puppet, &look, NULL), NOH_OK);
+    assert_int_equal(noh_actor_attach(c.stage, mask, puppet, 20, NULL), NOH_OK);
+    assert_int_equal(noh_actor_attach(c.stage, puppet, mask, 0, &said), NOH_ERR_NOT_FOUND); /* a mask has no joints */
+    assert_int_equal(noh_actor_attach(c.stage, mask, puppet, 4000, &said), NOH_ERR_NOT_FOUND);
+    assert_int_equal(noh_actor_play(c.stage, puppet, 0, "dance", NULL, NULL), NOH_OK);
+    for (int f = 0; f < 30; f++) assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
+    assert_int_equal(noh_actor_joint(c.stage, puppet, 20, joint, NULL), NOH_OK);
+    assert_int_equal(noh_actor_attach(c.stage, mask, (noh_actor){ 0 }, 0, NULL), NOH_OK); /* it stays where it was */
+    assert_int_equal(noh_actor_place(c.stage, mask, &place, NULL), NOH_OK);
+    for (int i = 0; i < 3; i++) {
+        const float want = joint[4 * i + 1] * 0.25f + joint[4 * i + 3];
+        assert_true(fabsf(place.position[i] - want) < 1e-5f);
+    }
+    assert_true(fabsf(place.scale - 0.5f) < 1e-4f);
+    assert_int_equal(noh_actor_sphere(c.stage, mask, sphere, NULL), NOH_OK);
+    assert_int_equal(noh_actor_attach(c.stage, mask, puppet, 20, NULL), NOH_OK);
+    assert_int_equal(noh_stage_despawn(c.stage, puppet, NULL), NOH_OK); /* lets go */
+    assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
+    assert_int_equal(noh_actor_sphere(c.stage, mask, sphere, NULL), NOH_OK);
+    cast_close(&c);
+}
+
+static void a_ray_meets_the_nearest_actor(void **state)
+{
+    noh_actor actors[CAST_ACTORS];
+    const noh_stage_view view = cast_view(0, 8.0f);
+    float sphere[4], direction[3];
+    noh_stage_hit hit;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    cast_make(&c, NULL);
+    cast_enter(&c, actors);
+    assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
+    for (uint32_t i = 0; i < 5; i++) { /* the first row stands in front of the others */
+        const float origin[3] = { 1.2f * (float)i - 4.0f, 0.9f, 30.0f };
+        assert_int_equal(noh_actor_sphere(c.stage, actors[i], sphere, NULL), NOH_OK);
+        direction[0] = 0.0f, direction[1] = 0.0f, direction[2] = -2.0f;
+        assert_int_equal(noh_stage_pick(c.stage, origin, direction, 100.0f, &hit, NULL), NOH_OK);
+        assert_int_equal(hit.actor.id, actors[i].id);
+        assert_true(fabsf(hit.point[2] - (30.0f - 2.0f * hit.distance)) < 1e-4f && fabsf(hit.point[2]) < 1.0f);
+        assert_true(hit.joint < c.plan.kinds[PUPPETS].joint_count);
+    }
+    direction[2] = 2.0f;
+    assert_int_equal(noh_stage_pick(c.stage, sphere, direction, 0.0f, &hit, &said), NOH_ERR_ARG);
+    {
+        const float origin[3] = { 0.0f, 50.0f, 0.0f };
+        assert_int_equal(noh_stage_pick(c.stage, origin, direction, 10.0f, &hit, &said), NOH_ERR_NOT_FOUND);
+    }
+    cast_close(&c);
+}
+
+/* What noh_view_ray finds under a pixel is projected back to that pixel. */
+static void a_ray_goes_through_its_pixel(void **state)
+{
+    const noh_stage_view view = cast_view(33, 8.0f);
+    (void)state;
+    for (int y = 0; y < 360; y += 59) {
+        for (int x = 0; x < 640; x += 71) {
+            float origin[3], direction[3], clip[4];
+            assert_true(noh_view_ray(&view, (float)x, (float)y, 640, 360, origin, direction));
+            for (int r = 0; r < 4; r++) {
+                clip[r] = view.view_projection[12 + r];
+                for (int k = 0; k < 3; k++)
+                    clip[r] += view.view_projection[4 * k + r] * (origin[k] + 7.0f * direction[k]);
+            }
+            assert_true(fabsf((clip[0] / clip[3] + 1.0f) * 320.0f - ((float)x + 0.5f)) < 0.02f);
+            assert_true(fabsf((1.0f - clip[1] / clip[3]) * 180.0f - ((float)y + 0.5f)) < 0.02f);
+        }
+    }
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_parts_of_a_plan_sum_to_its_bytes),
+        cmocka_unit_test(plans_do_not_depend_on_when_they_are_made),
+        cmocka_unit_test(actor_levels_rise_in_error),
+        cmocka_unit_test(a_bound_is_kept_or_refused),
+        cmocka_unit_test(desc_fields_broken_in_turn),
+        cmocka_unit_test(a_byte_less_is_refused),
+        cmocka_unit_test(a_stale_actor_is_an_error),
+        cmocka_unit_test(a_full_kind_refuses_to_spawn),
+        cmocka_unit_test(bad_places_are_refused),
+        cmocka_unit_test(names_are_found),
+        cmocka_unit_test(a_face_is_played_over_a_body),
+        cmocka_unit_test(a_walk_takes_the_actor_along),
+        cmocka_unit_test(keys_are_told_with_their_names),
+        cmocka_unit_test(frames_and_steps_do_not_mix),
+        cmocka_unit_test(who_is_behind_the_camera_is_not_posed),
+        cmocka_unit_test(spheres_hold_every_vertex),
+        cmocka_unit_test(the_bits_do_not_depend_on_the_jobs),
+        cmocka_unit_test(a_state_is_put_back_to_the_bit),
+        cmocka_unit_test(a_damaged_state_does_no_harm),
+        cmocka_unit_test(what_hangs_on_a_joint_goes_with_it),
+        cmocka_unit_test(a_ray_meets_the_nearest_actor),
+        cmocka_unit_test(a_ray_goes_through_its_pixel),
+    };
+    if (argc > 1) cmocka_set_test_filter(argv[1]);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
