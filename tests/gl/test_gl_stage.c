@@ -1,0 +1,383 @@
+/* A stage that draws: bytes as planned on every path, pictures as drawn by hand, states and lost contexts without a
+ * trace, and drivers that refuse. */
+#include "support/stage_fixture.h"
+#include "support/gl_fixture.h"
+
+#include "gpu/canvas.h"
+#include "null.h"
+
+#define WIDTH 320u
+#define HEIGHT 180u
+#define PIXELS (WIDTH * HEIGHT)
+
+static char shader_log[4096];
+
+static noh_gl_device device_of(gpu *g)
+{
+    const noh_gl_device d = { &g->gl, &g->caps, &g->ledger, shader_log, sizeof shader_log };
+    return d;
+}
+
+static void open_on(cast *c, gpu *g)
+{
+    const noh_gl_device d = device_of(g);
+    c->desc.gpu = &noh_stage_on_gl;
+    cast_make(c, &d);
+}
+
+static void draw(cast *c, canvas *to, uint32_t *rgba)
+{
+    canvas_begin(to);
+    assert_int_equal(noh_stage_draw(c->stage, NOH_PASS_COLOR, 0, NULL, NULL), NOH_OK);
+    canvas_resolve(to);
+    assert_int_equal(canvas_read(to, (uint8_t *)rgba), 0);
+}
+
+static void play_frames(cast *c, uint32_t first, uint32_t count)
+{
+    for (uint32_t f = first; f < first + count; f++) {
+        const noh_stage_view view = cast_view(f, 5.0f + 0.1f * (float)(f % 60u));
+        assert_int_equal(noh_stage_frame(c->stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
+    }
+}
+
+/* ---- bytes ---- */
+
+/* For every path, format and bound: the ledger counts what the plan says, and afterwards what it counted before. */
+static void the_plan_is_what_is_used(void **state)
+{
+    gpu *g = fixture_gpu();
+    const noh_gl_ledger before = g->ledger;
+    uint32_t made = 0;
+    (void)state;
+    for (uint32_t way = 0; way < FIXTURE_WAYS; way++) {
+        for (uint32_t bound = 0; bound < 2; bound++) {
+            noh_stage_bytes parts[128];
+            uint64_t cpu = 0, gpu_bytes = 0;
+            noh_error error;
+            uint32_t count;
+            cast c;
+            cast_open(&c);
+            c.desc.gpu = &noh_stage_on_gl;
+            c.desc.morph_path = (uint32_t)fixture_ways[way].path;
+            c.desc.halves = fixture_ways[way].accumulate == NOH_ACCUMULATE_F16;
+            if (bound) c.desc.bytes_max = 5u << 20;
+            if (noh_stage_plan_make(&c.desc, &g->caps, &c.plan, &error) != NOH_OK) {
+                assert_int_equal(error.result, NOH_ERR_UNSUPPORTED); /* of this driver */
+                cast_close(&c);
+                continue;
+            }
+            open_on(&c, g);
+            assert_true(noh_gl_ledger_bytes(&g->ledger) - noh_gl_ledger_bytes(&before) == c.plan.gpu_bytes);
+            assert_true(!bound || c.plan.cpu_bytes + c.plan.gpu_bytes <= 5u << 20);
+            count = noh_stage_plan_parts(&c.desc, &g->caps, &c.plan, parts, 128);
+            for (uint32_t i = 0; i < count; i++) cpu += parts[i].cpu_bytes, gpu_bytes += parts[i].gpu_bytes;
+            assert_true(count <= 128 && cpu == c.plan.cpu_bytes && gpu_bytes == c.plan.gpu_bytes);
+            play_frames(&c, 0, 3);
+            assert_true(noh_gl_ledger_bytes(&g->ledger) - noh_gl_ledger_bytes(&before) == c.plan.gpu_bytes);
+            cast_close(&c);
+            assert_memory_equal(&before, &g->ledger, sizeof before);
+            made++;
+        }
+    }
+    assert_true(made >= 2);
+    fixture_expect_no_errors();
+}
+
+/* ---- pictures ---- */
+
+/* A mask alone, at rest but for a smile: the stage's picture is the one that its parts draw, pixel by pixel. */
+static void the_picture_is_that_of_the_parts(void **state)
+{
+    static uint32_t by_stage[PIXELS], by_hand[PIXELS];
+    gpu *g = fixture_gpu();
+    const noh_gl_device device = device_of(g);
+    noh_stage_view view;
+    noh_gl_camera camera;
+    const noh_look finest = { 0, 0, 0, 1e-4f };
+    float sphere[4];
+    noh_actor actor;
+    canvas to;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    c.kinds[0] = c.kinds[MASKS];
+    c.desc.kind_count = 1;
+    c.kinds[0].actor_count = 1;
+    open_on(&c, g);
+    assert_int_equal(canvas_open(&to, g, WIDTH, HEIGHT), 0);
+    assert_int_equal(noh_stage_spawn(c.stage, 0, NULL, &actor, NULL), NOH_OK);
+    assert_int_equal(
+        noh_actor_hold_float(c.stage, actor, noh_stage_find(c.stage, 0, NOH_NAME_FLOAT, "smile"), 1.0f, 1.0f, NULL),
+        NOH_OK);
+    assert_int_equal(noh_actor_sphere(c.stage, actor, sphere, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_look(c.stage, actor, &finest, NULL), NOH_OK);
+    noh_view_orbit(&view, sphere, 0.4f, 0.1f, 1.4f * sphere[3], WIDTH, HEIGHT);
+    assert_int_equal(noh_stage_frame(c.stage, 0, &view, NULL, NULL, NULL), NOH_OK);
+    draw(&c, &to, by_stage);
+    {
+        const noh_pack *pack = &c.packs[MASKS];
+        const noh_mesh mesh = test_mesh(pack, 0);
+        noh_gl_mesh on_gl;
+        noh_gl_renderer_desc desc;
+        static noh_gl_renderer renderer;
+        gpu_morph morph;
+        const noh_gl_morph_desc morph_desc = { .meshes = &mesh, .mesh_count = 1 };
+        noh_gl_texture pictures[32];
+        float weights[NOH_TARGETS_MAX] = { 0.0f };
+        weights[noh_mesh_find_target(&mesh, "smile")] = 1.0f;
+        memset(&desc, 0, sizeof desc);
+        assert_int_equal(gpu_morph_open(&morph, g, &morph_desc, "mask"), 0);
+        desc.layers_uint = noh_gl_morph_plan_of(morph.morph)->layer_format == GL_RGBA32UI;
+        desc.meshes = &mesh;
+        desc.mesh_count = 1;
+        assert_int_equal(noh_gl_mesh_create(&g->gl, &g->ledger, &mesh, &on_gl, NULL), NOH_OK);
+        assert_int_equal(noh_gl_renderer_create(&device, &desc, &renderer, NULL), NOH_OK);
+        for (uint32_t t = 0; t < pack->texture_count; t++) {
+            noh_texture texture;
+            assert_int_equal(noh_pack_texture_at(pack, t, &texture, NULL), NOH_OK);
+            assert_int_equal(noh_gl_picture_create(&g->gl, &g->ledger, &texture, &pictures[t], NULL), NOH_OK);
+        }
+        assert_int_equal(noh_gl_morph_set_weights(morph.morph, 0, weights, NULL), NOH_OK);
+        noh_gl_morph_update(morph.morph, NULL);
+        memcpy(camera.view_projection, view.view_projection, sizeof camera.view_projection);
+        memcpy(camera.eye, view.eye, sizeof camera.eye);
+        memcpy(camera.key, view.light, sizeof camera.key);
+        canvas_begin(&to);
+        noh_gl_draw_begin(&renderer, &camera);
+        for (int pass = NOH_DRAW_OPAQUE; pass <= NOH_DRAW_BLENDED; pass++) {
+            const noh_gl_morph_binding binding = noh_gl_morph_binding_of(morph.morph, 0);
+            static const float identity[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
+            noh_gl_draw_mesh(&renderer, &on_gl, pack->node_count ? pack->nodes[0].world : identity, &binding, NULL,
+                             NULL, pictures, pass);
+        }
+        noh_gl_draw_end(&renderer);
+        canvas_resolve(&to);
+        assert_int_equal(canvas_read(&to, (uint8_t *)by_hand), 0);
+        noh_gl_renderer_delete(&renderer);
+        noh_gl_mesh_delete(&g->gl, &g->ledger, &on_gl);
+        for (uint32_t t = 0; t < pack->texture_count; t++) noh_gl_texture_delete(&g->gl, &g->ledger, &pictures[t]);
+        gpu_morph_close(&morph);
+    }
+    {
+        uint32_t drawn = 0, apart = 0;
+        for (uint32_t i = 0; i < PIXELS; i++) {
+            drawn += by_hand[i] != by_hand[0];
+            apart += by_hand[i] != by_stage[i];
+        }
+        if (drawn <= PIXELS / 20u) fail_msg("%u pixels are drawn, %u differ; radius %g", (unsigned)drawn, (unsigned)apart, (double)sphere[3]);
+        if (apart) fail_msg("%u of %u pixels differ", (unsigned)apart, (unsigned)drawn);
+    }
+    canvas_close(&to);
+    cast_close(&c);
+    fixture_expect_no_errors();
+}
+
+/* After frames of its own, a state that is put back shows again what followed it, on the same stage and on another. */
+static void a_state_shows_the_same_picture_again(void **state)
+{
+    static uint32_t first[PIXELS], again[PIXELS];
+    noh_actor actors[CAST_ACTORS];
+    gpu *g = fixture_gpu();
+    uint8_t *saved;
+    size_t bytes;
+    canvas to;
+    cast c, fork;
+    (void)state;
+    cast_open(&c);
+    open_on(&c, g);
+    assert_int_equal(canvas_open(&to, g, WIDTH, HEIGHT), 0);
+    cast_enter(&c, actors);
+    play_frames(&c, 0, 20);
+    saved = test_aligned(noh_stage_state(c.stage, &bytes), c.plan.state_bytes);
+    play_frames(&c, 20, 25);
+    draw(&c, &to, first);
+    play_frames(&c, 45, 10);
+    assert_int_equal(noh_stage_set_state(c.stage, saved, bytes, NULL), NOH_OK);
+    play_frames(&c, 20, 25);
+    draw(&c, &to, again);
+    assert_memory_equal(first, again, sizeof first);
+    cast_open(&fork);
+    open_on(&fork, g);
+    assert_int_equal(noh_stage_set_state(fork.stage, saved, bytes, NULL), NOH_OK);
+    play_frames(&fork, 20, 25);
+    draw(&fork, &to, again);
+    assert_memory_equal(first, again, sizeof first);
+    free(saved);
+    canvas_close(&to);
+    cast_close(&fork);
+    cast_close(&c);
+    fixture_expect_no_errors();
+}
+
+static const char vertex[] = "out vec3 v_normal;\n"
+                             "void main() {\n"
+                             "    noh_vertex v = noh_fetch();\n"
+                             "    v_normal = v.normal;\n"
+                             "    gl_Position = noh_view_projection * vec4(v.position, 1.0);\n"
+                             "}\n";
+static const char fragment[] = "in vec3 v_normal; out vec4 color;\n"
+                               "void main() { noh_fade(); color = vec4(normalize(v_normal) * 0.5 + 0.5, 1.0); }\n";
+
+/* A shader of the game's own covers the same pixels as the library's, in other colours; one that does not compile is
+ * DATA and leaves nothing. */
+static void own_shaders_draw_the_same_shapes(void **state)
+{
+    static uint32_t own[PIXELS], built_in[PIXELS];
+    noh_actor actors[CAST_ACTORS];
+    gpu *g = fixture_gpu();
+    noh_gl_shader_desc desc;
+    noh_stage_shader *shader = NULL;
+    noh_gl_ledger before;
+    noh_error error;
+    void *memory;
+    canvas to;
+    cast c;
+    uint32_t covered = 0, apart = 0;
+    (void)state;
+    cast_open(&c);
+    open_on(&c, g);
+    before = g->ledger;
+    assert_int_equal(canvas_open(&to, g, WIDTH, HEIGHT), 0);
+    cast_enter(&c, actors);
+    play_frames(&c, 0, 10);
+    memory = test_aligned(NULL, noh_stage_shader_size(c.stage));
+    memset(&desc, 0, sizeof desc);
+    desc.vertex = vertex;
+    desc.fragment = "void main() { not glsl; }\n";
+    assert_int_equal(noh_stage_shader_create(c.stage, memory, noh_stage_shader_size(c.stage), &desc, shader_log,
+                                             sizeof shader_log, &shader, &error),
+                     NOH_ERR_DATA);
+    assert_true(shader == NULL && shader_log[0]);
+    assert_memory_equal(&before, &g->ledger, sizeof before);
+    desc.fragment = fragment;
+    assert_int_equal(
+        noh_stage_shader_create(c.stage, memory, noh_stage_shader_size(c.stage) - 1u, &desc, NULL, 0, &shader, &error),
+        NOH_ERR_MEMORY);
+    assert_int_equal(noh_stage_shader_create(c.stage, memory, noh_stage_shader_size(c.stage), &desc, shader_log,
+                                             sizeof shader_log, &shader, &error),
+                     NOH_OK);
+    draw(&c, &to, built_in);
+    canvas_begin(&to);
+    assert_int_equal(noh_stage_draw(c.stage, NOH_PASS_COLOR, 0, shader, NULL), NOH_OK);
+    canvas_resolve(&to);
+    assert_int_equal(canvas_read(&to, (uint8_t *)own), 0);
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        covered += built_in[i] != built_in[0];
+        apart += (built_in[i] != built_in[0]) != (own[i] != own[0]);
+    }
+    assert_true(covered > PIXELS / 50u && apart < covered / 100u);
+    assert_int_equal(noh_stage_draw(c.stage, NOH_PASS_DEPTH, 1, NULL, &error), NOH_ERR_ARG); /* there is no such view */
+    noh_stage_shader_delete(shader);
+    assert_memory_equal(&before, &g->ledger, sizeof before);
+    free(memory);
+    canvas_close(&to);
+    cast_close(&c);
+    fixture_expect_no_errors();
+}
+
+/* ---- on the driver that counts ---- */
+
+static void open_null(gpu *g)
+{
+    assert_int_equal(gpu_open(g, "null"), 0);
+    g->caps.blend_f32 = g->caps.blend_f32_exact = 1;
+}
+
+/* Ten thousand frames of coming, going, playing and cutting: no call that makes anything, none that GL would refuse. */
+static void frames_make_nothing(void **state)
+{
+    test_random r = test_random_from(3);
+    static const char *const clips[CAST_KINDS][2] = { { "walk", "dance" }, { "speak", "blink" }, { "none", "none" } };
+    static gpu g;
+    noh_actor actors[CAST_ACTORS];
+    noh_null_report report;
+    cast c;
+    (void)state;
+    memset(&g, 0, sizeof g);
+    open_null(&g);
+    cast_open(&c);
+    open_on(&c, &g);
+    cast_enter(&c, actors);
+    noh_null_count_anew(g.context);
+    for (uint32_t f = 0; f < 10000; f++) {
+        const uint32_t which = test_random_below(&r, CAST_ACTORS), kind = which < 5    ? PUPPETS
+                                                                          : which < 12 ? MASKS
+                                                                                       : TUBES;
+        const noh_actor actor = noh_stage_actor_at(c.stage, which);
+        noh_stage_view view = cast_view(f, 3.0f + (float)test_random_below(&r, 40));
+        noh_actor made;
+        switch (test_random_below(&r, 6)) {
+        case 0: (void)noh_stage_despawn(c.stage, actor, NULL); break;
+        case 1: (void)noh_stage_spawn(c.stage, kind, NULL, &made, NULL); break;
+        case 2: (void)noh_actor_play(c.stage, actor, test_random_below(&r, 3), clips[kind][f % 2u], NULL, NULL); break;
+        case 3: view.cut = 1; break;
+        default: break;
+        }
+        assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
+        assert_int_equal(noh_stage_draw(c.stage, f % 3u ? NOH_PASS_COLOR : NOH_PASS_DEPTH, 0, NULL, NULL), NOH_OK);
+    }
+    noh_null_report_of(g.context, &report);
+    if (report.violations) fail_msg("%s", report.first);
+    assert_int_equal(report.allocations, 0);
+    assert_true(report.draws > 10000);
+    cast_close(&c);
+    noh_null_report_of(g.context, &report);
+    for (uint32_t i = 0; i < NOH_NULL_KINDS; i++) assert_true(report.live[i] <= 1);
+    gpu_close(&g);
+}
+
+/* Whatever call a driver refuses while a stage is made: it is not made, nothing is left, and then it is made. */
+static void a_refusing_driver_leaves_nothing(void **state)
+{
+    static const char *const calls[] = { "glBufferData",      "glTexStorage2D",    "glTexStorage3D",
+                                         "glGenVertexArrays", "glGenFramebuffers", "glCreateProgram" };
+    static gpu g;
+    uint32_t refused = 0;
+    cast c;
+    (void)state;
+    memset(&g, 0, sizeof g);
+    open_null(&g);
+    cast_open(&c);
+    c.desc.gpu = &noh_stage_on_gl;
+    assert_int_equal(noh_stage_plan_make(&c.desc, &g.caps, &c.plan, NULL), NOH_OK);
+    c.memory = test_aligned(NULL, (size_t)c.plan.cpu_bytes);
+    for (uint32_t i = 0; i < TEST_COUNT(calls); i++) {
+        for (uint32_t k = 0; k < 200; k += k < 4 ? 1 : 13) {
+            const noh_gl_device d = device_of(&g);
+            const noh_gl_ledger before = g.ledger;
+            noh_stage *stage = NULL;
+            noh_error error;
+            noh_result result;
+            if (!noh_null_refuse(g.context, calls[i], k, GL_OUT_OF_MEMORY)) break;
+            result = noh_stage_init(c.memory, (size_t)c.plan.cpu_bytes, &d, &c.desc, &c.plan, &stage, &error);
+            if (!noh_null_refused(g.context)) {
+                assert_int_equal(result, NOH_OK);
+                noh_stage_delete(stage);
+                break;
+            }
+            if (result == NOH_OK) fail_msg("%s refused at %u, and the stage was made", calls[i], (unsigned)k);
+            assert_null(stage);
+            assert_memory_equal(&before, &g.ledger, sizeof before);
+            refused++;
+        }
+        (void)noh_null_refuse(g.context, NULL, 0, 0);
+    }
+    assert_true(refused > 20);
+    cast_close(&c);
+    gpu_close(&g);
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_plan_is_what_is_used),
+        cmocka_unit_test(the_picture_is_that_of_the_parts),
+        cmocka_unit_test(a_state_shows_the_same_picture_again),
+        cmocka_unit_test(own_shaders_draw_the_same_shapes),
+        cmocka_unit_test(frames_make_nothing),
+        cmocka_unit_test(a_refusing_driver_leaves_nothing),
+    };
+    if (argc > 1) cmocka_set_test_filter(argv[1]);
+    return cmocka_run_group_tests(tests, NULL, fixture_tear_down);
+}
