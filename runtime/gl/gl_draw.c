@@ -4,9 +4,11 @@
  * not write depth, so that two blended surfaces never hide each other, whatever their order. */
 #include "gl/gl_draw.h"
 
+#include <string.h>
+
 #include "gl/gl_debug.h"
 
-void noh_gl_draw_begin(const noh_gl_renderer *r, const noh_gl_camera *camera)
+void noh_gl_draw_begin(noh_gl_renderer *r, const noh_gl_camera *camera)
 {
     NOH_ASSERT(r && r->gl && camera);
     noh_gl_group_begin(r->gl, "noh meshes", NULL);
@@ -15,22 +17,29 @@ void noh_gl_draw_begin(const noh_gl_renderer *r, const noh_gl_camera *camera)
     r->gl->DepthMask(GL_TRUE);
     r->gl->BlendEquation(GL_FUNC_ADD);
     r->gl->BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    for (uint32_t i = 0; i < r->variant_count; i++) {
-        const noh_gl_variant *v = &r->variants[i];
-        r->gl->UseProgram(v->program);
-        r->gl->UniformMatrix4fv(v->u_view_projection, 1, GL_FALSE, camera->view_projection);
-        r->gl->Uniform3fv(v->u_camera, 1, camera->eye);
-        r->gl->Uniform3fv(v->u_key, 1, camera->key);
-    }
+    r->camera = *camera;
+    memset(r->has_camera, 0, sizeof r->has_camera);
 }
 
 /* ---- uniforms, attributes, textures ---- */
+
+/* Use a variant's program, with the camera of this pass. */
+static void use_variant(noh_gl_renderer *r, const noh_gl_variant *v)
+{
+    uint8_t *has_camera = &r->has_camera[v - r->variants];
+    r->gl->UseProgram(v->program);
+    if (!*has_camera) {
+        *has_camera = 1;
+        r->gl->UniformMatrix4fv(v->u_view_projection, 1, GL_FALSE, r->camera.view_projection);
+        r->gl->Uniform3fv(v->u_camera, 1, r->camera.eye);
+        r->gl->Uniform3fv(v->u_key, 1, r->camera.key);
+    }
+}
 
 static void set_mesh(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_gl_mesh *mesh,
                      const noh_gl_morph_binding *morph)
 {
     const noh_mesh_header *h = mesh->mesh.header;
-    r->gl->UseProgram(v->program);
     r->gl->Uniform4f(v->u_uv, h->uv_offset[0], h->uv_offset[1], h->uv_scale[0], h->uv_scale[1]);
     r->gl->Uniform3f(v->u_bounds_min, h->bounds_min[0], h->bounds_min[1], h->bounds_min[2]);
     r->gl->Uniform3f(v->u_bounds_size, h->bounds_max[0] - h->bounds_min[0], h->bounds_max[1] - h->bounds_min[1],
@@ -98,7 +107,7 @@ static const noh_gl_lod whole = { 0, 0.0f, 1.0f };
 
 /* What one call draws. */
 typedef struct draw_job {
-    const noh_gl_renderer *r;
+    noh_gl_renderer *r;
     const noh_gl_mesh *mesh;
     const float *world; /* NULL: a crowd */
     const noh_gl_morph_binding *morph;
@@ -181,6 +190,7 @@ static void draw_part_of(const draw_job *j, draw_part part)
     const noh_gl_variant *v = is_empty(j->mesh, &level, part) ? NULL : variant_of(j, part);
     NOH_ASSERT(v || is_empty(j->mesh, &level, part)); /* the renderer's desc asked for it */
     if (v) {
+        use_variant(j->r, v);
         set_mesh(j->r, v, j->mesh, j->morph);
         if (j->world) {
             set_instance(j->r, v, j->world, j->morph);
@@ -216,7 +226,7 @@ static void draw_pass(const draw_job *j, int pass)
     }
 }
 
-void noh_gl_draw_mesh(const noh_gl_renderer *r, const noh_gl_mesh *mesh, const float world[12],
+void noh_gl_draw_mesh(noh_gl_renderer *r, const noh_gl_mesh *mesh, const float world[12],
                       const noh_gl_morph_binding *morph, const noh_gl_skin_binding *skin, const noh_gl_lod *lod,
                       const noh_gl_texture *pictures, int pass)
 {
@@ -225,7 +235,7 @@ void noh_gl_draw_mesh(const noh_gl_renderer *r, const noh_gl_mesh *mesh, const f
     draw_pass(&job, pass);
 }
 
-void noh_gl_draw_crowd(const noh_gl_renderer *r, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph,
+void noh_gl_draw_crowd(noh_gl_renderer *r, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph,
                        const noh_gl_skin_binding *first, uint32_t count, const noh_gl_lod *lod,
                        const noh_gl_texture *pictures, int pass)
 {

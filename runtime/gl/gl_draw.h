@@ -96,6 +96,12 @@ typedef struct noh_gl_renderer_desc {
     const noh_gl_shader_desc *shaders; /* your own in place of the library's; copied, without its texts. NULL: none */
 } noh_gl_renderer_desc;
 
+typedef struct noh_gl_camera {
+    float view_projection[16]; /* column-major, clip space of GL */
+    float eye[3];              /* world */
+    float key[3];              /* unit vector towards the key light, world */
+} noh_gl_camera;
+
 typedef struct noh_gl_renderer {
     const noh_gl_api *gl;
     noh_gl_ledger *ledger;
@@ -104,8 +110,10 @@ typedef struct noh_gl_renderer {
     noh_gl_passes passes;
     noh_gl_shader_desc shaders; /* zeros: the library's */
     noh_gl_texture white;       /* 1 x 1, for materials without a texture */
+    noh_gl_camera camera;       /* of this pass */
     uint32_t variant_count;
     noh_gl_variant variants[NOH_GL_VARIANTS_MAX];
+    uint8_t has_camera[NOH_GL_VARIANTS_MAX]; /* 1: the variant was given it */
 } noh_gl_renderer;
 
 #define NOH_GL_RENDERER_BYTES 4u /* the white texel */
@@ -126,15 +134,9 @@ noh_result noh_gl_renderer_restore(noh_gl_renderer *renderer, char *log, size_t 
  * renderer's desc needs it. */
 const noh_gl_variant *noh_gl_renderer_variant(const noh_gl_renderer *renderer, noh_gl_variant_key key);
 
-typedef struct noh_gl_camera {
-    float view_projection[16]; /* column-major, clip space of GL */
-    float eye[3];              /* world */
-    float key[3];              /* unit vector towards the key light, world */
-} noh_gl_camera;
-
-/* Turn the depth test on, set up blending, give the camera to every variant, and open a debug group that
- * noh_gl_draw_end closes. Bind your framebuffer and set your viewport before. */
-void noh_gl_draw_begin(const noh_gl_renderer *renderer, const noh_gl_camera *camera);
+/* Turn the depth test on, set up blending, and open a debug group that noh_gl_draw_end closes. Bind your framebuffer
+ * and set your viewport before. The camera is copied; each variant is given it when it is first drawn with. */
+void noh_gl_draw_begin(noh_gl_renderer *renderer, const noh_gl_camera *camera);
 
 #define NOH_DRAW_OPAQUE 0
 #define NOH_DRAW_BLENDED 1
@@ -158,7 +160,7 @@ typedef struct noh_gl_lod {
  * morph   where its deltas are, accumulated for this LOD level or a finer one; NULL: no target is active
  * skin    where its palettes are; NULL: a rigid mesh, or the bind pose
  * lod     NULL: the finest level that was uploaded, all pixels */
-void noh_gl_draw_mesh(const noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const float world[12],
+void noh_gl_draw_mesh(noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const float world[12],
                       const noh_gl_morph_binding *morph, const noh_gl_skin_binding *skin, const noh_gl_lod *lod,
                       const noh_gl_texture *pictures, int pass);
 
@@ -166,7 +168,7 @@ void noh_gl_draw_mesh(const noh_gl_renderer *renderer, const noh_gl_mesh *mesh, 
  * submesh. Each instance stands where noh_gl_skin_set_place put it. Rigid meshes work too; palettes must be in a
  * texture. The instances' blended submeshes are not sorted.
  * morph   the binding of any instance, for its texture; NULL: noh_gl_skin_set_place was given none */
-void noh_gl_draw_crowd(const noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph,
+void noh_gl_draw_crowd(noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph,
                        const noh_gl_skin_binding *first, uint32_t count, const noh_gl_lod *lod,
                        const noh_gl_texture *pictures, int pass);
 

@@ -36,8 +36,7 @@ typedef struct noh_stage_shader noh_stage_shader;
  * shader  NULL: the library's
  * state   afterwards as noh_gl_draw_end leaves it
  * errors  ARG the last frame had no such view, or a frame has begun and not ended */
-noh_result noh_stage_draw(noh_stage *stage, noh_pass pass, uint32_t view, const noh_stage_shader *shader,
-                          noh_error *error);
+noh_result noh_stage_draw(noh_stage *stage, noh_pass pass, uint32_t view, noh_stage_shader *shader, noh_error *error);
 
 /* Shaders of your own (gl_variants.h; shaders_es/README.md says what they can call). They are made in memory of yours.
  * log     as in noh_gl_device: what the driver says of them

@@ -9,7 +9,7 @@ typedef struct drawing {
     const noh_stage_gl *gl;
     const noh_stage_kind *k;
     const noh_gl_kind *on_gl;
-    const noh_gl_renderer *renderer;
+    noh_gl_renderer *renderer;
     uint32_t view;
     int pass;
 } drawing;
@@ -129,8 +129,7 @@ static void draw_pass(drawing *d, int pass)
     }
 }
 
-noh_result noh_stage_draw(noh_stage *stage, noh_pass pass, uint32_t view, const noh_stage_shader *shader,
-                          noh_error *error)
+noh_result noh_stage_draw(noh_stage *stage, noh_pass pass, uint32_t view, noh_stage_shader *shader, noh_error *error)
 {
     noh_gl_camera camera;
     drawing d;

@@ -361,7 +361,7 @@ static uint8_t *grid_with(model_alpha alpha, size_t *count)
     return bytes;
 }
 
-static uint32_t *grid_depth(const noh_gl_renderer *r, const noh_gl_mesh *gl, int pass)
+static uint32_t *grid_depth(noh_gl_renderer *r, const noh_gl_mesh *gl, int pass)
 {
     static const float world[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
     depth_frame f;

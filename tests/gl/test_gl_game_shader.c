@@ -82,8 +82,8 @@ static noh_gl_renderer renderer_of(const noh_gl_renderer_desc *desc, noh_gl_ledg
 }
 
 /* Passes in order, each drawing what `drawn` says; to be freed. */
-static uint8_t *picture(const noh_gl_renderer *r, const tube *t, draw_kind kind, const noh_gl_lod *drawn,
-                        const int *passes, uint32_t pass_count)
+static uint8_t *picture(noh_gl_renderer *r, const tube *t, draw_kind kind, const noh_gl_lod *drawn, const int *passes,
+                        uint32_t pass_count)
 {
     uint8_t *rgba;
     fixture_frame f;
@@ -108,7 +108,7 @@ static uint32_t covered(const uint8_t *rgba)
     return count;
 }
 
-static void check_same(const tube *t, const tube_kind *k, const noh_gl_renderer r[2])
+static void check_same(const tube *t, const tube_kind *k, noh_gl_renderer r[2])
 {
     static const int passes[2][2] = { { NOH_DRAW_OPAQUE }, { NOH_DRAW_DEPTH, NOH_DRAW_OPAQUE } };
     const noh_gl_lod drawn[2] = { { 0, 0.0f, 1.0f }, { 0, 0.3f, 0.8f } };

@@ -342,7 +342,7 @@ static void influences_can_be_capped(void **state)
 typedef enum draw_kind { BIND_POSE, ALONE, CROWD } draw_kind;
 
 /* Every copy of every mesh, side by side. */
-static void draw_all(const fixture_skin *f, const noh_gl_renderer *renderer, draw_kind kind, int pass)
+static void draw_all(const fixture_skin *f, noh_gl_renderer *renderer, draw_kind kind, int pass)
 {
     for (uint32_t i = 0; i < f->mesh_count; i++) {
         for (uint32_t k = 0; k < (kind == CROWD ? 1u : f->copies); k++) {

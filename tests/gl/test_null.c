@@ -176,7 +176,7 @@ static void every_path_keeps_the_order(void **state)
 /* ---- LOD levels ---- */
 
 /* Instances at changing levels, drawn in two fading parts. */
-static void draw_levels(load *l, const scene *s, const noh_gl_renderer *r, uint32_t number)
+static void draw_levels(load *l, const scene *s, noh_gl_renderer *r, uint32_t number)
 {
     noh_gl_camera camera;
     memset(&camera, 0, sizeof camera);
@@ -191,6 +191,18 @@ static void draw_levels(load *l, const scene *s, const noh_gl_renderer *r, uint3
                          l->pictures, NOH_DRAW_OPAQUE);
     }
     noh_gl_draw_end(r);
+}
+
+/* Each program that a pass draws with is given the camera once, however many meshes it draws; the others never. */
+static void expect_cameras(const gpu *g, const scene *s, const noh_gl_renderer *r)
+{
+    uint32_t used = 0;
+    for (uint32_t i = 0; i < r->variant_count; i++) {
+        used += r->has_camera[i];
+    }
+    assert_in_range(used, 1, r->variant_count - 1u); /* the variants that draw every pixel are not used here */
+    assert_true(2u * s->item_count > used);
+    assert_int_equal(noh_null_calls_of(g->context, "glUniformMatrix4fv"), used);
 }
 
 /* No index past its buffer, no object made in a frame, no call outside the groups. */
@@ -219,6 +231,7 @@ static void load_and_draw_levels(const pack_file *file, noh_morph_path path)
         set_weights(&s, number, 2);
         noh_null_count_anew(g.context);
         draw_levels(&l, &s, &renderer, number);
+        expect_cameras(&g, &s, &renderer);
         assert_int_equal(report_of(&g).allocations, 0);
         assert_int_equal(report_of(&g).outside, 0);
     }

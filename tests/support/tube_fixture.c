@@ -82,7 +82,7 @@ void tube_close(tube *t)
     assert_true(noh_gl_ledger_bytes(&t->ledger) == 0);
 }
 
-void tube_draw(const noh_gl_renderer *r, const tube *t, const noh_gl_mesh *gl, draw_kind kind, const noh_gl_lod *drawn,
+void tube_draw(noh_gl_renderer *r, const tube *t, const noh_gl_mesh *gl, draw_kind kind, const noh_gl_lod *drawn,
                int pass)
 {
     for (uint32_t i = 0; i < (kind == CROWD ? 1u : COPIES); i++) {

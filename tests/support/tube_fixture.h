@@ -33,7 +33,7 @@ typedef enum draw_kind { RIGID, SKINNED, FEWER, CROWD } draw_kind;
 
 /* Draw a pass of the copies: without joints, with them, with fewer influences, or as a crowd, which needs palettes in a
  * texture. gl: the mesh, or one like it. */
-void tube_draw(const noh_gl_renderer *r, const tube *t, const noh_gl_mesh *gl, draw_kind kind, const noh_gl_lod *drawn,
+void tube_draw(noh_gl_renderer *r, const tube *t, const noh_gl_mesh *gl, draw_kind kind, const noh_gl_lod *drawn,
                int pass);
 
 #endif

@@ -158,7 +158,7 @@ void crowd_look(crowd *c, const crowd_camera *camera);
 void crowd_show(crowd *c);
 void crowd_send(crowd *c);
 /* Draw into the current framebuffer and viewport. */
-void crowd_draw(const crowd *c, const crowd_camera *camera);
+void crowd_draw(crowd *c, const crowd_camera *camera);
 
 /* ---- private to crowd*.c ---- */
 

@@ -16,7 +16,7 @@ void crowd_send(crowd *c)
 /* ---- drawing ---- */
 
 /* One run: one instanced draw per submesh. */
-static void draw_run(const crowd *c, uint32_t run, int pass)
+static void draw_run(crowd *c, uint32_t run, int pass)
 {
     const uint32_t first = c->runs[run], count = c->runs[run + 1u] - first, caps = c->table.influence_level_count;
     const noh_gl_lod lod = { run / caps, 0.0f, 1.0f };
@@ -27,7 +27,7 @@ static void draw_run(const crowd *c, uint32_t run, int pass)
 }
 
 /* A fading body: the incoming and the outgoing level, each with its share of the pixels. */
-static void draw_fading(const crowd *c, uint32_t i, int pass)
+static void draw_fading(crowd *c, uint32_t i, int pass)
 {
     const noh_character *ch = crowd_character(c, i);
     const crowd_body *b = &c->bodies[i];
@@ -42,7 +42,7 @@ static void draw_fading(const crowd *c, uint32_t i, int pass)
     }
 }
 
-void crowd_draw(const crowd *c, const crowd_camera *camera)
+void crowd_draw(crowd *c, const crowd_camera *camera)
 {
     const uint32_t runs = crowd_run_count(c);
     noh_gl_draw_begin(&c->renderer, &camera->gl);
