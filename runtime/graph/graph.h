@@ -12,6 +12,8 @@
  *   SPACE_1D, SPACE_2D   see blend_space.h
  *   MACHINE   one of the children at a time; transitions cross-fade, or switch at once and let the difference decay
  *             (pose/inertial_internal.h)
+ *   SELECT    the child whose number a parameter holds; a change of it cross-fades, or switches by inertia
+ *   ONE_SHOT  b plays once over a, where the mask allows, each time that a parameter triggers it
  * t, x and y are parameters of the instance, or constants. A clip that animates no joints, or no floats, leaves them to
  * the other children of a node.
  *
@@ -41,20 +43,25 @@ typedef enum noh_node_kind {
     NOH_NODE_MASK,
     NOH_NODE_SPACE_1D,
     NOH_NODE_SPACE_2D,
-    NOH_NODE_MACHINE
+    NOH_NODE_MACHINE,
+    NOH_NODE_SELECT,
+    NOH_NODE_ONE_SHOT
 } noh_node_kind;
 
 typedef struct noh_graph_node {
     uint16_t kind;
     uint16_t first_child, child_count; /* in the graph's children */
-    uint16_t param;                    /* t or x; NOH_GRAPH_NONE: `value` */
-    uint16_t param_y;                  /* SPACE_2D */
+    uint16_t param;   /* t, x, SELECT's number or ONE_SHOT's trigger; t and x may be NOH_GRAPH_NONE: `value` */
+    uint16_t param_y; /* SPACE_2D */
     /* SPACE_1D: its thresholds, one per child; SPACE_2D: its space; MACHINE: its transitions */
     uint16_t first_item, item_count;
-    uint16_t mask;  /* MASK: 1 + index in the set's masks */
-    uint16_t index; /* CLIP, MACHINE: its number among the nodes of its kind, in stored order */
-    uint16_t reserved;
-    float value;
+    uint16_t mask;       /* MASK, ONE_SHOT: 1 + index in the set's masks; ONE_SHOT also 0: everywhere */
+    uint16_t index;      /* CLIP: its number among the clips; MACHINE, SELECT, ONE_SHOT: among these, in stored order */
+    uint8_t curve;       /* SELECT, ONE_SHOT: noh_curve of the fades */
+    uint8_t flags;       /* SELECT: NOH_TRANSITION_* */
+    float value;         /* ONE_SHOT: it is triggered by a parameter above this */
+    uint32_t fade_ticks; /* SELECT: a change; ONE_SHOT: fading in. 0: at once, and not inertial */
+    uint32_t fade_out_ticks; /* ONE_SHOT */
 } noh_graph_node;
 
 typedef enum noh_condition {
@@ -78,10 +85,20 @@ typedef struct noh_graph_transition {
     uint16_t flags;          /* NOH_TRANSITION_* */
 } noh_graph_transition;
 
+/* SELECT takes the number from its parameter, rounded to the nearest and held in 0..child_count - 1, at the start of a
+ * step; when it is entered, without a fade. Back to the child that it fades from, the fade turns round; to a third one
+ * it waits for the end of the fade. A child starts from its beginning unless NOH_TRANSITION_KEEP is set.
+ *
+ * ONE_SHOT is triggered at the start of a step, which sets the parameter to 0: b starts from its beginning and fades
+ * in. It fades out so that it is gone when its first clip, which has to play ONCE, has ended; that clip is played to
+ * its very end, so every callback key of it fires exactly once. A trigger that comes while it plays waits until it is
+ * gone. While it does not play, b's clips do not either, and fire nothing. */
+
 /* Shared by all instances; borrowed and constant. */
 typedef struct noh_graph {
-    uint32_t node_count, child_count, clip_count, machine_count, transition_count, threshold_count, space_count,
-        param_count;
+    uint32_t node_count, child_count, clip_count;
+    uint32_t machine_count; /* nodes that keep a noh_machine: MACHINE, SELECT, ONE_SHOT */
+    uint32_t transition_count, threshold_count, space_count, param_count;
     const noh_graph_node *nodes; /* [node_count] */
     const uint16_t *children;    /* [child_count] indices of nodes */
     const noh_track_desc *clips; /* [clip_count]; clip, position, speed, loop, sync group and PAUSED are used */
@@ -91,7 +108,7 @@ typedef struct noh_graph {
     const float *param_defaults;             /* [param_count]; NULL: all 0 */
 } noh_graph;
 
-/* The state of a machine: 16 bytes. */
+/* The state of a MACHINE, SELECT or ONE_SHOT: 16 bytes. */
 typedef struct noh_machine {
     uint16_t current, previous; /* previous: NOH_GRAPH_NONE when no transition runs */
     uint32_t elapsed, duration; /* of a cross-fade, ticks */
@@ -133,7 +150,8 @@ noh_controller *noh_graph_controller(noh_graph_state *state);
 noh_result noh_graph_set_param(noh_graph_state *state, uint32_t param, float value);
 float noh_graph_param(const noh_graph_state *state, uint32_t param);
 
-/* The state that a machine is in or fades to, as a child of its node. `machine` is its number among the machines. */
+/* The state that a machine is in or fades to, as a child of its node: of a MACHINE its state, of a SELECT the child
+ * chosen, of a ONE_SHOT 1 while it plays, until it fades out. `machine` is the node's `index`. */
 uint32_t noh_graph_machine_state(const noh_graph_state *state, uint32_t machine);
 
 /* Take transitions, find weights, move time on. The callback may set parameters; changes that it makes to the tracks

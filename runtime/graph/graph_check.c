@@ -113,10 +113,29 @@ static const char *bad_machine(const noh_graph *g, const noh_graph_node *n)
     return what;
 }
 
+static const char *bad_select(const noh_graph *g, const noh_graph_node *n)
+{
+    if (n->index >= g->machine_count) return "machine index is not below machine_count";
+    if (n->param >= g->param_count) return "param: SELECT and ONE_SHOT need one below param_count";
+    if (n->curve > NOH_CURVE_SMOOTHSTEP) return "curve is not a noh_curve";
+    if (n->flags & ~(NOH_TRANSITION_INERTIAL | NOH_TRANSITION_KEEP))
+        return "flags has bits other than NOH_TRANSITION_*";
+    if ((n->flags & NOH_TRANSITION_INERTIAL) && n->fade_ticks == 0) return "fade_ticks is 0 though it is inertial";
+    return NULL;
+}
+
+static const char *bad_one_shot(const noh_graph *g, const noh_clip_set *set, const noh_graph_node *n)
+{
+    if (n->flags) return "flags: ONE_SHOT has none";
+    if (n->mask > set->mask_count) return "mask is above mask_count of the set";
+    return bad_select(g, n);
+}
+
 static const char *bad_children(const noh_graph *g, const noh_graph_node *n)
 {
-    int pair = n->kind == NOH_NODE_BLEND || n->kind == NOH_NODE_ADD || n->kind == NOH_NODE_MASK;
-    if (n->kind > NOH_NODE_MACHINE) return "kind is not a noh_node_kind";
+    int pair = n->kind == NOH_NODE_BLEND || n->kind == NOH_NODE_ADD || n->kind == NOH_NODE_MASK ||
+               n->kind == NOH_NODE_ONE_SHOT;
+    if (n->kind > NOH_NODE_ONE_SHOT) return "kind is not a noh_node_kind";
     if (n->kind == NOH_NODE_CLIP ? n->child_count != 0 : n->child_count == 0)
         return "child_count does not suit the kind";
     if (n->child_count > NOH_GRAPH_CHILDREN_MAX || (pair && n->child_count != 2))
@@ -129,7 +148,7 @@ static const char *bad_node(const noh_graph *g, const noh_clip_set *set, const n
     const char *what = bad_children(g, n);
     if (what) return what;
     if (!is_finite(n->value)) return "value is not finite";
-    if (n->kind != NOH_NODE_CLIP && n->kind != NOH_NODE_MACHINE && bad_param(g, n->param))
+    if (n->kind != NOH_NODE_CLIP && !noh_graph_is_machine(n->kind) && bad_param(g, n->param))
         return "param is not below param_count";
     switch (n->kind) {
     case NOH_NODE_CLIP: return bad_clip(g, set, n);
@@ -138,6 +157,8 @@ static const char *bad_node(const noh_graph *g, const noh_clip_set *set, const n
     case NOH_NODE_SPACE_1D: return bad_space_1d(g, n);
     case NOH_NODE_SPACE_2D: return bad_space_2d(g, n);
     case NOH_NODE_MACHINE: return bad_machine(g, n);
+    case NOH_NODE_SELECT: return bad_select(g, n);
+    case NOH_NODE_ONE_SHOT: return bad_one_shot(g, set, n);
     default: return NULL;
     }
 }
@@ -171,12 +192,27 @@ static const char *bad_indices(const noh_graph *g, uint32_t *where)
         const noh_graph_node *n = &g->nodes[i];
         *where = i;
         if (n->kind == NOH_NODE_CLIP && n->index != clips++) return "clip index: each clip counts those before it";
-        if (n->kind == NOH_NODE_MACHINE && n->index != machines++)
+        if (noh_graph_is_machine(n->kind) && n->index != machines++)
             return "machine index: each machine counts those before it";
     }
     return clips != g->clip_count         ? "clip_count is not the number of CLIP nodes"
-           : machines != g->machine_count ? "machine_count is not the number of MACHINE nodes"
+           : machines != g->machine_count ? "machine_count is not the number of MACHINE, SELECT and ONE_SHOT nodes"
                                           : NULL;
+}
+
+/* The clip that says when a shot is over has to end: the first of its subtree. After bad_order. */
+static const char *bad_shots(const noh_graph *g, const noh_clip_set *set, uint32_t *where)
+{
+    for (uint32_t i = 0; i < g->node_count; i++) {
+        const noh_graph_node *n = &g->nodes[i];
+        const noh_track_desc *clip;
+        *where = i;
+        if (n->kind != NOH_NODE_ONE_SHOT) continue;
+        clip = &g->clips[g->nodes[noh_graph_first_of(g, g->children[n->first_child + 1u])].index];
+        if ((clip->loop == NOH_LOOP_OF_CLIP ? set->clips[clip->clip].loop : (uint32_t)clip->loop) != NOH_LOOP_ONCE)
+            return "shot: the first clip of ONE_SHOT's second child must play ONCE";
+    }
+    return NULL;
 }
 
 noh_result noh_graph_check(const noh_graph *graph, const noh_clip_set *set, noh_error *error)
@@ -194,6 +230,7 @@ noh_result noh_graph_check(const noh_graph *graph, const noh_clip_set *set, noh_
     where -= what != NULL; /* the loop has gone on by one */
     what = what ? what : bad_order(graph, &where);
     what = what ? what : bad_indices(graph, &where);
+    what = what ? what : bad_shots(graph, set, &where);
     if (!what && noh_graph_buffers(graph) > NOH_GRAPH_BUFFERS_MAX) {
         return noh_fail(error, NOH_ERR_LIMIT, "pose buffers: evaluating takes more than NOH_GRAPH_BUFFERS_MAX", 0,
                         noh_graph_buffers(graph));

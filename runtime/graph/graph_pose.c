@@ -12,15 +12,6 @@
 
 /* ---- scratch ---- */
 
-static int is_inertial(const noh_graph *g)
-{
-    int any = 0;
-    for (uint32_t i = 0; i < g->transition_count; i++) {
-        any |= (g->transitions[i].flags & NOH_TRANSITION_INERTIAL) != 0;
-    }
-    return any;
-}
-
 static size_t pose_bytes(const noh_clip_set *set)
 {
     return set->joint_count * sizeof(noh_transform);
@@ -33,7 +24,7 @@ size_t noh_graph_scratch_size(const noh_graph *graph, const noh_clip_set *set)
     if (noh_clip_set_excess(set)) {
         return 0;
     }
-    (void)noh_arena_carve(&arena, noh_pose_scratch_size(set, is_inertial(graph)), 16);
+    (void)noh_arena_carve(&arena, noh_pose_scratch_size(set, noh_graph_is_inertial(graph)), 16);
     for (uint32_t i = 0; i < noh_graph_buffers(graph); i++) {
         (void)noh_arena_carve(&arena, pose_bytes(set), 4);
         (void)noh_arena_carve(&arena, set->float_count * sizeof(float), 4);
@@ -45,7 +36,7 @@ noh_result noh_graph_scratch_init(void *memory, size_t bytes, const noh_graph *g
                                   noh_graph_scratch *scratch, noh_error *error)
 {
     const char *what = noh_clip_set_excess(set);
-    size_t pose_need = noh_pose_scratch_size(set, is_inertial(graph));
+    size_t pose_need = noh_pose_scratch_size(set, noh_graph_is_inertial(graph));
     noh_arena arena;
     noh_result result = what ? noh_fail(error, NOH_ERR_ARG, what, 0, 0)
                              : noh_arena_open(&arena, memory, bytes, noh_graph_scratch_size(graph, set), error);
@@ -54,7 +45,7 @@ noh_result noh_graph_scratch_init(void *memory, size_t bytes, const noh_graph *g
         return result;
     }
     memset(scratch, 0, sizeof *scratch);
-    result = noh_pose_scratch_init(noh_arena_carve(&arena, pose_need, 16), pose_need, set, is_inertial(graph),
+    result = noh_pose_scratch_init(noh_arena_carve(&arena, pose_need, 16), pose_need, set, noh_graph_is_inertial(graph),
                                    &scratch->pose, error);
     for (uint32_t i = 0; i < noh_graph_buffers(graph); i++) {
         scratch->poses[i] = (noh_transform *)noh_arena_carve(&arena, pose_bytes(set), 4);
@@ -198,9 +189,9 @@ static void evaluate_node(evaluation *e, uint32_t i)
     parts p = parts_of(e, node);
     if (node->kind == NOH_NODE_ADD && p.count == 2) {
         add_part(e, node, &p);
-    } else if (node->kind == NOH_NODE_MASK && p.count == 2) {
-        mask_part(e, node, &p);
-    } else if (node->kind != NOH_NODE_ADD && node->kind != NOH_NODE_MASK) {
+    } else if (node->kind == NOH_NODE_MASK || node->kind == NOH_NODE_ONE_SHOT) {
+        if (p.count == 2) mask_part(e, node, &p);
+    } else if (node->kind != NOH_NODE_ADD) {
         sum_parts(e, &p);
     }
     for (uint32_t k = 1; k < p.count; k++) {

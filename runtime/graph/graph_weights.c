@@ -42,7 +42,7 @@ static void machine_weights(const noh_graph_view *view, const noh_graph_node *no
 void noh_graph_child_weights(const noh_graph_view *view, const noh_graph_node *node, float *local)
 {
     const noh_graph *g = view->graph;
-    int has_amount = node->kind != NOH_NODE_CLIP && node->kind != NOH_NODE_MACHINE;
+    int has_amount = node->kind != NOH_NODE_CLIP && !noh_graph_is_machine(node->kind);
     float t = has_amount ? noh_graph_amount(view, node) : 0.0f;
     switch (node->kind) {
     case NOH_NODE_BLEND:
@@ -61,16 +61,22 @@ void noh_graph_child_weights(const noh_graph_view *view, const noh_graph_node *n
         noh_blend_space_2d_weights(&g->spaces[node->first_item], t,
                                    node->param_y == NOH_GRAPH_NONE ? 0.0f : view->params[node->param_y], local);
         break;
-    case NOH_NODE_MACHINE: machine_weights(view, node, local); break;
+    case NOH_NODE_MACHINE:
+    case NOH_NODE_SELECT: machine_weights(view, node, local); break;
+    case NOH_NODE_ONE_SHOT:
+        machine_weights(view, node, local);
+        local[0] = 1.0f; /* what lies below is covered, not faded */
+        break;
     default: break;
     }
 }
 
-/* Whether a child is in play: of a machine only the state it is in and the one it leaves. */
+/* Whether a child is in play: of a machine only the state it is in and the one it leaves; what lies below a one-shot
+ * always is. */
 static int lets_live(const noh_graph_view *view, const noh_graph_node *node, uint32_t child)
 {
     const noh_machine *m;
-    if (node->kind != NOH_NODE_MACHINE) {
+    if (!noh_graph_is_machine(node->kind) || (node->kind == NOH_NODE_ONE_SHOT && child == 0)) {
         return 1;
     }
     m = &view->machines[node->index];
@@ -109,4 +115,16 @@ uint32_t noh_graph_first_of(const noh_graph *graph, uint32_t node)
         node = graph->children[graph->nodes[node].first_child]; /* lower each time */
     }
     return node;
+}
+
+int noh_graph_is_inertial(const noh_graph *graph)
+{
+    uint32_t any = 0;
+    for (uint32_t i = 0; i < graph->transition_count; i++) {
+        any |= graph->transitions[i].flags & NOH_TRANSITION_INERTIAL;
+    }
+    for (uint32_t i = 0; i < graph->node_count; i++) {
+        any |= graph->nodes[i].kind == NOH_NODE_SELECT ? graph->nodes[i].flags & NOH_TRANSITION_INERTIAL : 0u;
+    }
+    return any != 0;
 }

@@ -14,6 +14,15 @@ typedef struct noh_graph_view {
 const float *noh_graph_params_of(const noh_graph_state *state);
 const noh_machine *noh_graph_machines_of(const noh_graph_state *state);
 
+/* Whether nodes of a kind keep a noh_machine. */
+static inline int noh_graph_is_machine(uint32_t kind)
+{
+    return kind == NOH_NODE_MACHINE || kind == NOH_NODE_SELECT || kind == NOH_NODE_ONE_SHOT;
+}
+
+/* Whether any change of state may be inertial, so that instances and scratches need room for it. */
+int noh_graph_is_inertial(const noh_graph *graph);
+
 /* A node's t or x. */
 float noh_graph_amount(const noh_graph_view *view, const noh_graph_node *node);
 

@@ -225,7 +225,7 @@ static void node_fields_broken_in_turn(void **state)
     assert_int_equal(r.nodes[machine].kind, NOH_NODE_MACHINE);
     assert_int_equal(r.nodes[space2].kind, NOH_NODE_SPACE_2D);
     assert_int_equal(r.nodes[mask].kind, NOH_NODE_MASK);
-    r.nodes[2].kind = 7;
+    r.nodes[2].kind = NOH_NODE_ONE_SHOT + 1;
     bad_graph(&r, NOH_ERR_DATA, "kind");
     r.nodes[0].child_count = 1;
     bad_graph(&r, NOH_ERR_DATA, "child_count");
