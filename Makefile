@@ -250,8 +250,9 @@ $(BUILD)/mask.noh: $(BUILD)/mask.glb $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --quiet
 $(BUILD)/mask_levels.noh: $(BUILD)/mask.glb $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --lod 4 --lod-fast --quiet
-$(BUILD)/demo/puppet.noh: $(BUILD)/demo/puppet.glb $(BUILD)/noh
-	$(BUILD)/noh build $< -o $@ --quiet
+PUPPET_GRAPH := tools/demo_assets/puppet/puppet.graph
+$(BUILD)/demo/puppet.noh: $(BUILD)/demo/puppet.glb $(PUPPET_GRAPH) $(BUILD)/noh
+	$(BUILD)/noh build $< -o $@ --graph $(PUPPET_GRAPH) --quiet
 
 $(BUILD)/demo/puppet_levels.noh: $(BUILD)/demo/puppet.glb $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --lod 4 --lod-fast --quiet
@@ -286,7 +287,7 @@ view: deps-view
 
 check: deps-check
 	@[ "$(DEPS)" = 0 ] || sh tools/angle.sh $(BUILD)/angle
-	@$(MAKE) --no-print-directory -j$(JOBS) all tests $(BUILD)/mask.noh $(BUILD)/mask_levels.noh $(BUILD)/demo/puppet_levels.noh $(BUILD)/demo/puppet.glb $(BUILD)/demo/arm.glb
+	@$(MAKE) --no-print-directory -j$(JOBS) all tests $(BUILD)/mask.noh $(BUILD)/mask_levels.noh $(BUILD)/demo/puppet_levels.noh $(BUILD)/demo/puppet.noh $(BUILD)/demo/arm.glb
 	@CC="$(CC)" NOH_BUILD="$(BUILD)" NOH_ASSETS="$(ASSETS)" NOH_SAN="$(SAN)" sh tests/run.sh
 
 # Under ThreadSanitizer, with gcc and with clang.
@@ -389,7 +390,7 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TEST_LIBS)
 CROSS       ?=
 CROSS_SKIP  := gltf_read gltf_left_out gltf_formula embed clip_import clip_bank pack_clip influences bvh_read events_read sources sources_kept \
                skin skin_oracle skin_pack bounds_pick pick source_errors puppet simplify lod_chunks lod_certified lod_lies levels pack \
-               joint_order clip_errors lod_pack strip stage $(if $(findstring emcc,$(CC)),threads)
+               joint_order clip_errors lod_pack strip stage graph_text puppet_graph $(if $(findstring emcc,$(CC)),threads)
 CROSS_TESTS := $(patsubst tests/%.c,$(BUILD)/cross/%,$(filter-out $(addprefix %/test_,$(CROSS_SKIP:%=%.c)),$(call sources,tests/unit,test_*.c)))
 CROSS_O     := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/cross/*.c) $(filter %/support.c %/pack_walk.c,$(wildcard tests/*.c tests/support/*.c)) \
                    platform/file.c platform/file_write.c $(CONVERT_C))

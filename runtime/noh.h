@@ -62,6 +62,7 @@
 /* ---- more ways to move ---- */
 
 #include "graph/graph.h"            /* an animation graph over a controller */
+#include "graph/graph_pack.h"       /* the same out of a pack, played by names */
 #include "anim/clip_set.h"          /* the clips that controllers share: a set of your own, without a pack */
 #include "anim/mask.h"              /* weights per joint: which of them a track moves */
 #include "anim/root_motion.h"       /* root displacement of clips */
@@ -108,6 +109,9 @@
  *                        them (noh_clip_bank)
  *   track                a clip that a controller plays: its position, weight and playback speed
  *   controller           the tracks of one character, and their changes over time
+ *   graph, node          what decides which clips play, and how they are blended; a part of it, with a name in a pack
+ *   state                a child of a machine, select or one-shot: what it shows
+ *   parameter            a number of an instance of a graph, which the game sets
  *   callback key         a named moment of a clip that is reported when a track passes it
  *   tick                 1/48,000 second, of time and nothing else
  *   sample rate          frames per second that a clip was made with

@@ -69,8 +69,10 @@
 #define NOH_GRAPH_NODES_MAX 256u
 #define NOH_GRAPH_CHILDREN_MAX 32u /* of one node */
 #define NOH_GRAPH_PARAMS_MAX 256u
-#define NOH_GRAPH_BUFFERS_MAX 32u      /* pose buffers */
-#define NOH_BLEND_SPACE_POINTS_MAX 32u /* of a blend space */
+#define NOH_GRAPH_BUFFERS_MAX 32u       /* pose buffers */
+#define NOH_GRAPH_TRANSITIONS_MAX 1024u /* of one graph in a pack */
+#define NOH_GRAPH_NAMES_MAX 4096u       /* values of parameters, and joints of masks, of one graph in a pack */
+#define NOH_BLEND_SPACE_POINTS_MAX 32u  /* of a blend space */
 #define NOH_BLEND_SPACE_TRIANGLES_MAX (2u * NOH_BLEND_SPACE_POINTS_MAX)
 #define NOH_BLEND_SPACE_COORDINATE_MAX 1e18f /* of points and thresholds: squares of differences stay finite */
 

@@ -29,6 +29,7 @@ extern "C" {
 #define NOH_CHUNK_SKELETON NOH_FOURCC('S', 'K', 'E', 'L')
 #define NOH_CHUNK_CLIP NOH_FOURCC('M', 'O', 'T', 'N')
 #define NOH_CHUNK_SKIN NOH_FOURCC('S', 'K', 'I', 'N')
+#define NOH_CHUNK_GRAPH NOH_FOURCC('G', 'R', 'P', 'H')
 
 typedef struct noh_pack_header {
     uint32_t magic;
@@ -310,6 +311,113 @@ typedef struct noh_clip_marker {
     uint32_t name, name_hash; /* the hash is its id */
 } noh_clip_marker;
 
+/* ---- CHUNK_GRAPH, none or several: header, then ten arrays. An animation graph as graph/graph.h has it, whose nodes,
+ * parameters, clips and joints have names: it is checked, and bound to clips and a skeleton, when it is opened
+ * (graph/graph_pack.h). Kinds, conditions, curves, loops and flags are the numbers of graph/graph.h, anim/changes.h and
+ * anim/time.h. ---- */
+
+#define NOH_PACK_GRAPH_NONE 0xffffu
+
+#define NOH_PACK_NODE_CLIP 0u
+#define NOH_PACK_NODE_BLEND 1u
+#define NOH_PACK_NODE_ADD 2u
+#define NOH_PACK_NODE_MASK 3u
+#define NOH_PACK_NODE_SPACE_1D 4u
+#define NOH_PACK_NODE_SPACE_2D 5u
+#define NOH_PACK_NODE_MACHINE 6u
+#define NOH_PACK_NODE_SELECT 7u
+#define NOH_PACK_NODE_ONE_SHOT 8u
+
+typedef struct noh_pack_graph_header {
+    uint32_t node_count, nodes_offset;             /* noh_pack_graph_node[], children first; the last one is the root */
+    uint32_t child_count, children_offset;         /* uint16_t[], indices of nodes: one less than nodes */
+    uint32_t clip_count, clips_offset;             /* noh_pack_graph_clip[] */
+    uint32_t transition_count, transitions_offset; /* noh_pack_graph_transition[] */
+    uint32_t point_count, points_offset;           /* float[], of blend spaces: SPACE_1D thresholds, SPACE_2D x and y */
+    uint32_t space_count, spaces_offset;           /* noh_pack_graph_space[] */
+    uint32_t triangle_count, triangles_offset;     /* uint8_t[][3], indices of a space's points, counter-clockwise */
+    uint32_t param_count, params_offset;           /* noh_pack_graph_param[] */
+    uint32_t mask_count, masks_offset;             /* noh_pack_graph_mask[] */
+    uint32_t name_count, names_offset; /* noh_pack_graph_name[]: values of ENUM parameters, joints of masks */
+    uint32_t machine_count;            /* MACHINE, SELECT and ONE_SHOT nodes */
+    uint32_t reserved[3];
+} noh_pack_graph_header;
+
+/* Fields that a kind does not have are 0; params that it does not have, NOH_PACK_GRAPH_NONE. */
+typedef struct noh_pack_graph_node {
+    uint32_t name, name_hash;
+    uint16_t kind; /* NOH_PACK_NODE_* */
+    uint16_t first_child, child_count;
+    uint16_t param, param_y;
+    /* SPACE_1D: points, one per child; SPACE_2D: its space, 1; MACHINE: its transitions */
+    uint16_t first_item, item_count;
+    uint16_t mask;  /* MASK, ONE_SHOT: 1 + index; ONE_SHOT also 0 */
+    uint16_t index; /* CLIP: its number among the clips; MACHINE, SELECT, ONE_SHOT: among these. In stored order */
+    uint8_t curve, flags;
+    float value;
+    uint32_t fade_ticks, fade_out_ticks;
+} noh_pack_graph_node;
+
+typedef struct noh_pack_graph_clip {
+    uint32_t name, name_hash; /* of a clip of the set that the graph is bound to */
+    uint32_t start_tick;
+    int32_t speed; /* 1/65,536, not 0 */
+    uint8_t loop;  /* 0: the clip's own */
+    uint8_t sync_group;
+    uint8_t paused; /* 1: starts at speed 0 */
+    uint8_t reserved;
+} noh_pack_graph_clip;
+
+typedef struct noh_pack_graph_transition {
+    uint16_t from, to; /* children of its machine; from NOH_PACK_GRAPH_NONE: any */
+    uint16_t condition, param;
+    float threshold;
+    uint32_t duration_ticks;
+    uint16_t curve, flags;
+} noh_pack_graph_transition;
+
+typedef struct noh_pack_graph_space {
+    uint16_t first_point; /* in points: two floats for each child of its node */
+    uint16_t point_count;
+    uint16_t first_triangle, triangle_count;
+} noh_pack_graph_space;
+
+#define NOH_PARAM_NUMBER 0u
+#define NOH_PARAM_INTEGER 1u
+#define NOH_PARAM_ENUM 2u    /* minimum 0, maximum the number of its values less 1 */
+#define NOH_PARAM_TRIGGER 3u /* 0..1, 0 at first */
+
+typedef struct noh_pack_graph_param {
+    uint32_t name, name_hash;
+    float minimum, maximum, initial;
+    uint16_t kind;                     /* NOH_PARAM_* */
+    uint16_t first_value, value_count; /* ENUM: its values, in names */
+    uint16_t reserved;
+} noh_pack_graph_param;
+
+/* All joints 0, then its entries in order; floats (morph weights, named floats) all alike. */
+typedef struct noh_pack_graph_mask {
+    uint32_t name, name_hash;
+    uint16_t first_joint, joint_count; /* in names */
+    uint8_t floats;                    /* 255: full weight */
+    uint8_t reserved[3];
+} noh_pack_graph_mask;
+
+typedef struct noh_pack_graph_name {
+    uint32_t name, name_hash;
+    uint8_t weight;  /* of a joint, 255: full */
+    uint8_t subtree; /* 1: and all joints below it */
+    uint8_t reserved[2];
+} noh_pack_graph_name;
+
+NOH_STATIC_ASSERT(sizeof(noh_pack_graph_header) == 96, graph_header);
+NOH_STATIC_ASSERT(sizeof(noh_pack_graph_node) == 40, graph_node);
+NOH_STATIC_ASSERT(sizeof(noh_pack_graph_clip) == 20, graph_clip);
+NOH_STATIC_ASSERT(sizeof(noh_pack_graph_transition) == 20, graph_transition);
+NOH_STATIC_ASSERT(sizeof(noh_pack_graph_space) == 8, graph_space);
+NOH_STATIC_ASSERT(sizeof(noh_pack_graph_param) == 28, graph_param);
+NOH_STATIC_ASSERT(sizeof(noh_pack_graph_mask) == 16, graph_mask);
+NOH_STATIC_ASSERT(sizeof(noh_pack_graph_name) == 12, graph_name);
 NOH_STATIC_ASSERT(sizeof(noh_skeleton_header) == 32, skeleton_header);
 NOH_STATIC_ASSERT(sizeof(noh_skin_header) == 16, skin_header);
 NOH_STATIC_ASSERT(sizeof(noh_palette) == 8, palette);

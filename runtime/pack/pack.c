@@ -18,6 +18,7 @@ static int chunk_rank(uint32_t type)
     case NOH_CHUNK_MESH: return 5;
     case NOH_CHUNK_NODES: return 6;
     case NOH_CHUNK_CLIP: return 7;
+    case NOH_CHUNK_GRAPH: return 8;
     default: return -1;
     }
 }
@@ -173,9 +174,12 @@ static noh_result open_chunk(noh_pack *pack, uint32_t index, noh_error *error)
         result = noh_check_skin(&check);
         count_chunk(&pack->skin_count, &pack->first_skin, index);
         break;
-    default:
+    case NOH_CHUNK_CLIP:
         result = noh_check_clip(&check);
         count_chunk(&pack->clip_count, &pack->first_clip, index);
+        break;
+    default: /* a graph, which noh_pack_check_graph checks when it is opened */
+        count_chunk(&pack->graph_count, &pack->first_graph, index);
         break;
     }
     check.file_offset = (uint32_t)((const uint8_t *)c - pack->bytes); /* the name is in the chunk table */

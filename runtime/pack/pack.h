@@ -26,6 +26,7 @@ typedef struct noh_pack {
     uint32_t skeleton_count, first_skeleton;
     uint32_t skin_count, first_skin;
     uint32_t clip_count, first_clip;
+    uint32_t graph_count, first_graph;
     uint32_t material_count;
     const noh_material *materials;
     uint32_t node_count;
@@ -55,6 +56,12 @@ const char *noh_pack_chunk_name(const noh_pack *pack, uint32_t chunk);
 /* The n-th texture.
  * errors  NOT_FOUND  past texture_count (where: the index, need: the count); *texture is untouched */
 noh_result noh_pack_texture_at(const noh_pack *pack, uint32_t index, noh_texture *texture, noh_error *error);
+
+/* Check the chunk of the n-th graph, of which noh_pack_open has seen the checksum only: counts, arrays, names, nodes.
+ * noh_pack_graph_at (graph/graph_pack.h) calls it.
+ * ranges  index below graph_count
+ * errors  DATA  what is wrong; where: the byte in the pack */
+noh_result noh_pack_check_graph(const noh_pack *pack, uint32_t index, noh_error *error);
 
 #ifdef __cplusplus
 }

@@ -7,6 +7,7 @@
 
 #include "convert/convert.h"
 #include "convert/model/model_build.h"
+#include "support/graph_fixture.h"
 #include "support/lod_fixture.h"
 #include "support/clip_bank_fixture.h"
 #include "support/skin_asset.h"
@@ -87,6 +88,16 @@ static void write_levels(const char *folder, const char *name, model *m, uint32_
     model_free(m);
 }
 
+/* Clips and an animation graph with every kind of node. */
+static void write_graph(const char *folder)
+{
+    const set_fixture x = graph_fixture_pack(GRAPH_FIXTURE_TEXT);
+    char path[4096];
+    snprintf(path, sizeof path, "%s/graph.noh", folder);
+    test_write_file(path, x.bytes, x.pack.byte_count);
+    free(x.bytes);
+}
+
 static const char *folder, *clip_folder;
 
 /* Encode a clip, take it, and write its bytes. */
@@ -159,6 +170,7 @@ static void corpus(void **state)
     }
     write_clip_pack(folder);
     write_weights(folder);
+    write_graph(folder);
     write_skin(folder, "skin", 0);
     write_skin(folder, "skin_split", 4);
     write_levels(folder, "levels", lod_face_model(&face), 0);

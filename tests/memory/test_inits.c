@@ -3,6 +3,7 @@
  * suffice, with nothing written past them. The table below has every such function in the headers; a test compares the
  * two. All are called for one pack: a skinned tube with morph targets and a clip. */
 #include "support/gl_fixture.h"
+#include "support/graph_fixture.h"
 #include "support/lod_fixture.h"
 
 #include <dirent.h>
@@ -30,6 +31,9 @@ typedef struct subject {
     noh_graph graph;
     noh_graph_node node;
     noh_track_desc track;
+    set_fixture moves; /* a pack with a graph */
+    noh_clip_bank *moves_bank;
+    noh_graph_pack_desc graph_pack;
     noh_lod_pools_desc pools;
     uint32_t level, slots;
     noh_lod_pack_desc lod;
@@ -62,11 +66,23 @@ static void open_pack(void)
     s.bank = test_clip_bank(&s.bank_desc);
 }
 
+static void open_graph_pack(void)
+{
+    noh_clip_bank_desc desc;
+    memset(&desc, 0, sizeof desc);
+    s.moves = graph_fixture_pack(GRAPH_FIXTURE_TEXT);
+    desc.clips = &s.moves.pack;
+    s.moves_bank = test_clip_bank(&desc);
+    s.graph_pack.pack = &s.moves.pack;
+    s.graph_pack.set = &s.moves_bank->clips;
+}
+
 static int set_up(void **state)
 {
     (void)state;
     memset(&s, 0, sizeof s);
     open_pack();
+    open_graph_pack();
     s.controller.set = &s.bank->clips;
     s.controller.flags = NOH_CONTROLLER_INERTIAL;
     s.character.controller = s.controller;
@@ -93,6 +109,8 @@ static int tear_down(void **state)
 {
     (void)state;
     gpu_close(&s.gl);
+    free(s.moves_bank);
+    free(s.moves.bytes);
     free(s.bank);
     free(s.bytes);
     model_free(s.m);
@@ -170,6 +188,12 @@ INIT(graph_scratch_init)
 {
     noh_graph_scratch scratch;
     return noh_graph_scratch_init(memory, bytes, &s.graph, s.controller.set, &scratch, error);
+}
+
+INIT(graph_pack_init)
+{
+    noh_graph_pack *graph;
+    return noh_graph_pack_init(memory, bytes, &s.graph_pack, &graph, error);
 }
 
 INIT(character_init)
@@ -297,17 +321,29 @@ static const struct {
     const char *name;
     init_fn init;
 } inits[] = {
-    ROW(clip_init),           ROW(clip_cache_init),
-    ROW(clip_view_init),      ROW(clip_bank_init),
-    ROW(clip_bank_view_init), ROW(controller_init),
-    ROW(pose_scratch_init),   ROW(event_queue_init),
-    ROW(graph_state_init),    ROW(graph_scratch_init),
-    ROW(character_init),      ROW(character_scratch_init),
-    ROW(lod_pack_init),       ROW(lod_pools_init),
-    ROW(schedule_init),       ROW(joint_lod_measure),
-    ROW(time_lod_measure),    ROW(time_lod_points_measure),
-    ROW(morph_layers_init),   ROW(pick),
-    ROW(gl_morph_init),       ROW(gl_skin_init),
+    ROW(clip_init),
+    ROW(clip_cache_init),
+    ROW(clip_view_init),
+    ROW(clip_bank_init),
+    ROW(clip_bank_view_init),
+    ROW(controller_init),
+    ROW(pose_scratch_init),
+    ROW(event_queue_init),
+    ROW(graph_state_init),
+    ROW(graph_scratch_init),
+    ROW(graph_pack_init),
+    ROW(character_init),
+    ROW(character_scratch_init),
+    ROW(lod_pack_init),
+    ROW(lod_pools_init),
+    ROW(schedule_init),
+    ROW(joint_lod_measure),
+    ROW(time_lod_measure),
+    ROW(time_lod_points_measure),
+    ROW(morph_layers_init),
+    ROW(pick),
+    ROW(gl_morph_init),
+    ROW(gl_skin_init),
     ROW(stage_init),
 };
 

@@ -329,6 +329,60 @@ static void walk_playing(walk *w, noh_clip_bank *set)
     free(scratch_block);
 }
 
+/* Every parameter at random, for some steps. */
+static void walk_instance(walk *w, const noh_graph_pack *made, noh_graph_state *state, noh_graph_scratch *scratch)
+{
+    noh_transform *pose = memory(sizeof *pose * made->clips.joint_count);
+    float *floats = memory(sizeof *floats * made->clips.float_count);
+    for (uint32_t i = 0; i < 6; i++) {
+        for (uint32_t p = 0; p < made->graph.param_count; p++) {
+            if (noh_graph_pack_set_param(made, state, p, 4.0f * weight(w)) != NOH_OK) {
+                abort();
+            }
+        }
+        noh_graph_step(state, &made->graph, &made->clips, 1500, NULL, NULL);
+        noh_graph_pose(state, &made->graph, &made->clips, scratch, pose, floats);
+        eat(w, pose, sizeof *pose * made->clips.joint_count);
+        eat(w, floats, sizeof *floats * made->clips.float_count);
+    }
+    for (uint32_t m = 0; m < made->graph.machine_count; m++) {
+        eat_name(w, noh_graph_pack_state_name(made, m, noh_graph_machine_state(state, m)));
+    }
+    free(floats);
+    free(pose);
+}
+
+static void walk_graph(walk *w, const noh_graph_pack_desc *desc)
+{
+    const size_t bytes = noh_graph_pack_size(desc, NULL);
+    void *block = memory(bytes);
+    noh_graph_pack *made = NULL;
+    if (bytes && noh_graph_pack_init(block, bytes, desc, &made, NULL) == NOH_OK) {
+        const size_t state_bytes = noh_graph_state_size(&made->graph, &made->clips),
+                     scratch_bytes = noh_graph_scratch_size(&made->graph, &made->clips);
+        void *state_block = memory(state_bytes), *scratch_block = memory(scratch_bytes);
+        noh_graph_state *state = NULL;
+        noh_graph_scratch scratch;
+        if (noh_graph_state_init(state_block, state_bytes, &made->graph, &made->clips, &state, NULL) != NOH_OK ||
+            noh_graph_scratch_init(scratch_block, scratch_bytes, &made->graph, &made->clips, &scratch, NULL) !=
+                NOH_OK) {
+            abort(); /* noh_graph_pack_init has checked it */
+        }
+        walk_instance(w, made, state, &scratch);
+        free(scratch_block);
+        free(state_block);
+    }
+    free(block);
+}
+
+static void walk_graphs(walk *w, const noh_clip_bank *set, uint32_t skeleton)
+{
+    for (uint32_t i = 0; i < w->pack->graph_count; i++) {
+        const noh_graph_pack_desc desc = { w->pack, i, &set->clips, NULL, skeleton };
+        walk_graph(w, &desc);
+    }
+}
+
 /* The errors of fewer joints and fewer updates. */
 static void walk_lod(walk *w, const noh_clip_bank *set, const noh_clip_bank_desc *set_desc)
 {
@@ -364,6 +418,7 @@ static void walk_set(walk *w, uint32_t skeleton)
     block = memory(bytes);
     if (bytes && noh_clip_bank_init(block, bytes, &desc, &set, NULL) == NOH_OK) {
         walk_playing(w, set);
+        walk_graphs(w, set, skeleton);
         walk_lod(w, set, &desc);
     }
     free(block);

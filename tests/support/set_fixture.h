@@ -66,8 +66,8 @@ static inline void set_fixture_clip(const raw_skeleton *s, raw_clip *c, uint32_t
     set_fixture_floats(c, 1, name);
 }
 
-/* The pack of a raw set, which is freed. */
-static inline set_fixture set_fixture_of(raw_set *raw)
+/* The pack of a raw set, which is freed, and of graphs (NULL: none). */
+static inline set_fixture set_fixture_of_graphs(raw_set *raw, const graph_file *graphs)
 {
     set_fixture x;
     model *empty = model_new();
@@ -76,7 +76,11 @@ static inline set_fixture set_fixture_of(raw_set *raw)
     model_error error;
     byte_buffer out = { NULL, 0, 0, 0 };
     memset(&settings, 0, sizeof settings);
-    if (clips_encode(&raw, 1, &settings, &made, &error) || pack_write(empty, NULL, NULL, &made, &out, &error)) {
+    if (clips_encode(&raw, 1, &settings, &made, &error)) {
+        fail_msg("%s", error.what);
+    }
+    made.graphs = graphs;
+    if (pack_write(empty, NULL, NULL, &made, &out, &error)) {
         fail_msg("%s", error.what);
     }
     x.bytes = test_aligned(out.bytes, out.count);
@@ -88,15 +92,26 @@ static inline set_fixture set_fixture_of(raw_set *raw)
     return x;
 }
 
-/* Clips "clip0", "clip1", ... of so many frames each, at 30 Hz. */
-static inline set_fixture set_fixture_make(uint32_t joints, uint32_t clips, const uint32_t *frames)
+static inline set_fixture set_fixture_of(raw_set *raw)
+{
+    return set_fixture_of_graphs(raw, NULL);
+}
+
+/* Clips "clip0", "clip1", ... of so many frames each, at 30 Hz; and graphs (NULL: none). */
+static inline set_fixture set_fixture_make_graphs(uint32_t joints, uint32_t clips, const uint32_t *frames,
+                                                  const graph_file *graphs)
 {
     raw_set *raw = raw_set_new(joints, clips);
     set_fixture_joints(&raw->skeleton);
     for (uint32_t c = 0; c < clips; c++) {
         set_fixture_clip(&raw->skeleton, &raw->clips[c], c, frames[c]);
     }
-    return set_fixture_of(raw);
+    return set_fixture_of_graphs(raw, graphs);
+}
+
+static inline set_fixture set_fixture_make(uint32_t joints, uint32_t clips, const uint32_t *frames)
+{
+    return set_fixture_make_graphs(joints, clips, frames, NULL);
 }
 
 #endif

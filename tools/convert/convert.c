@@ -5,6 +5,7 @@
 
 #include "convert/clips/events_read.h"
 #include "convert/clips/joint_order.h"
+#include "convert/pack/pack_graph.h"
 #include "pack/pack.h"
 #include "sources.h"
 
@@ -29,6 +30,23 @@ static int apply_events(const convert_options *options, source *s, model_error *
     failed = events_read(options->events, &list, error) || events_apply(list, s->sets, s->set_count, error);
     events_free(list);
     return failed;
+}
+
+/* The graphs, and whether the inputs have what they name; *out NULL: there are none. */
+static int read_graphs(const convert_options *options, const source *s, graph_file **out, convert_failure *failure)
+{
+    const char *model_file = failure->file;
+    *out = NULL;
+    if (!options->graph) {
+        return 0;
+    }
+    failure->file = options->graph;
+    if (graph_text_read(options->graph, out, &failure->line, &failure->error) ||
+        graph_text_bind(*out, s->sets, s->set_count, &failure->line, &failure->error)) {
+        return 1;
+    }
+    failure->file = model_file;
+    return 0;
 }
 
 /* ---- encoding ---- */
@@ -120,6 +138,10 @@ static int check_own_pack(byte_buffer *out, FILE *report, model_error *error)
         buffer_free(out);
         return 1;
     }
+    if (pack_check_graphs(&pack, error)) {
+        buffer_free(out);
+        return 1;
+    }
     if (report) {
         convert_report_skins(report, &pack);
     }
@@ -158,7 +180,8 @@ static void report_warnings(FILE *report, const source *s)
     }
 }
 
-static int convert_source(const source *s, const convert_options *options, byte_buffer *out, model_error *error)
+static int convert_source(const source *s, const graph_file *graphs, const convert_options *options, byte_buffer *out,
+                          model_error *error)
 {
     model empty;
     const model *m = options->only == CONVERT_CLIPS ? memset(&empty, 0, sizeof empty) : s->m;
@@ -179,8 +202,9 @@ static int convert_source(const source *s, const convert_options *options, byte_
     }
     failed = pack_check_model(m, error) || encode_meshes(m, options, &meshes, error);
     if (!failed) {
-        failed = clips_encode(s->sets, s->set_count, &settings, &made, error) ||
-                 pack_write(m, meshes.levels, meshes.morphs, &made, out, error) ||
+        failed = clips_encode(s->sets, s->set_count, &settings, &made, error);
+        made.graphs = graphs;
+        failed = failed || pack_write(m, meshes.levels, meshes.morphs, &made, out, error) ||
                  check_own_pack(out, options->report, error) || strip(out, &options->lod_from, error);
         clips_free(&made);
     }
@@ -230,6 +254,7 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
                   convert_failure *failure)
 {
     source *all = calloc((size_t)input_count + 1u, sizeof *all);
+    graph_file *graphs = NULL;
     int failed, base;
     memset(failure, 0, sizeof *failure);
     failure->file = inputs[0];
@@ -240,14 +265,16 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
     if (!failed) {
         base = base_of(all, input_count);
         failed = join_all(inputs, input_count, base, all, failure) ||
-                 apply_events(options, &all[base], &failure->error);
+                 apply_events(options, &all[base], &failure->error) ||
+                 read_graphs(options, &all[base], &graphs, failure);
         failed = failed ||
                  (joint_order_sets(all[base].sets, all[base].set_count, all[base].m) && out_of_memory(&failure->error));
-        failed = failed || convert_source(&all[base], options, out, &failure->error);
+        failed = failed || convert_source(&all[base], graphs, options, out, &failure->error);
     }
     for (int i = 0; i < input_count; i++) {
         source_free(&all[i]);
     }
+    graph_text_free(graphs);
     free(all);
     return failed;
 }

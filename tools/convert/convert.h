@@ -21,6 +21,7 @@ typedef struct convert_options {
     uint32_t two_stream_count;
     convert_only only;
     const char *events;    /* a text file of callback keys; NULL: none */
+    const char *graph;     /* a text file of animation graphs; NULL: none */
     strip_levels lod_from; /* count 0: all levels stay */
     FILE *report;          /* NULL: quiet */
     FILE *progress;        /* a terminal, for progress; NULL: none */
@@ -28,6 +29,7 @@ typedef struct convert_options {
 
 typedef struct convert_failure {
     const char *file; /* which input */
+    uint32_t line;    /* of a text; 0: not known */
     model_error error;
 } convert_failure;
 

@@ -7,7 +7,7 @@
 #include "help/help.h"
 #include "cli/json.h"
 #include "cli/message.h"
-#include "cli/nearest.h"
+#include "convert/base/nearest.h"
 #include "cli/verbs.h"
 
 /* The names of enum noh_result, without their prefix. */

@@ -7,6 +7,7 @@
 #include "convert/codec/clip_encode.h"
 #include "convert/codec/clip_errors.h"
 #include "convert/codec/named_errors.h"
+#include "convert/graph/graph_text.h"
 
 typedef struct encoded_clip {
     uint32_t set; /* index into encoded_clips.sets */
@@ -21,6 +22,7 @@ typedef struct encoded_clips {
     uint32_t set_count;
     encoded_clip *clips; /* [clip_count] */
     uint32_t clip_count;
+    const graph_file *graphs; /* borrowed; NULL: none */
 } encoded_clips;
 
 typedef struct clips_settings {

@@ -8,6 +8,7 @@
 #include "base/version.h"
 #include "pack/format.h"
 #include "pack_clips.h"
+#include "pack_graph.h"
 #include "pack_mesh.h"
 #include "pack_skin.h"
 
@@ -264,6 +265,15 @@ static void write_clips(writer *w)
     }
 }
 
+static void write_graphs(writer *w)
+{
+    for (uint32_t i = 0; w->clips->graphs && i < w->clips->graphs->count; i++) {
+        begin_chunk(w, NOH_CHUNK_GRAPH, w->clips->graphs->graphs[i]->name);
+        pack_graph(w->clips->graphs->graphs[i], &w->strings, &w->out);
+        end_chunk(w);
+    }
+}
+
 /* The strings are complete only now, but their chunk is the first: put it between the table and the other chunks. */
 static int assemble(writer *w, byte_buffer *out)
 {
@@ -302,7 +312,7 @@ static int assemble(writer *w, byte_buffer *out)
 static size_t chunk_capacity(const model *m, const encoded_clips *made)
 {
     return (size_t)m->mesh_count + m->texture_count + m->skin_count + 3 +
-           (made ? (size_t)made->set_count + made->clip_count : 0);
+           (made ? (size_t)made->set_count + made->clip_count + (made->graphs ? made->graphs->count : 0) : 0);
 }
 
 int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const *encodings, const encoded_clips *made,
@@ -317,7 +327,7 @@ int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const 
     }
     if (chunk_capacity(m, made) > NOH_PACK_CHUNKS_MAX) {
         snprintf(error->what, sizeof error->what,
-                 "more than %u meshes, textures, skeletons and clips: build them into several packs",
+                 "more than %u meshes, textures, skeletons, clips and graphs: build them into several packs",
                  NOH_PACK_CHUNKS_MAX);
         error->where[0] = 0;
         return 1;
@@ -336,6 +346,7 @@ int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const 
         write_content(&w, encodings);
         if (made) {
             write_clips(&w);
+            write_graphs(&w);
         }
     }
     failed = w.refused || !w.chunks || !w.skin_chunks || w.out.failed || w.strings.bytes.failed || assemble(&w, out);

@@ -8,7 +8,7 @@
 #include "cli/options.h"
 #include "cli/verbs.h"
 #include "cli/message.h"
-#include "cli/nearest.h"
+#include "convert/base/nearest.h"
 
 typedef struct bench_args {
     const char *packs[BENCH_FILES_MAX], *driver, *source, *only;

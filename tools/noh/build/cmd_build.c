@@ -17,7 +17,7 @@
 #define INPUTS_MAX 64
 
 typedef struct build_args {
-    const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *lod;
+    const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod;
     int input_count, quiet, loop, mask, keep_parts, lod_fast;
     double error_um, rate, error_cm, shell_cm, unit_cm, influences, palette;
     option_list dual_quaternion, two_streams, clip_errors, joint_errors, lod_from;
@@ -54,6 +54,7 @@ static int set_clip(const build_args *a, convert_options *o)
     o->clip.joint_errors = (named_errors){ a->joint_errors.items, (uint32_t)a->joint_errors.count };
     o->only = !a->only ? CONVERT_ALL : a->only[0] == 'm' ? CONVERT_MESH : CONVERT_CLIPS;
     o->events = a->events;
+    o->graph = a->graph;
     return 0;
 }
 
@@ -119,6 +120,17 @@ static int set_options(const build_args *a, convert_options *o)
     return status;
 }
 
+static int fail_build(const convert_failure *f)
+{
+    char place[512];
+    if (f->line) {
+        (void)snprintf(place, sizeof place, "%s:%u", f->file, f->line);
+        return tool_fail(place, "%s", f->error.what);
+    }
+    return f->error.where[0] ? tool_fail(f->file, "%s (%s)", f->error.what, f->error.where)
+                             : tool_fail(f->file, "%s", f->error.what);
+}
+
 static int run(void *args)
 {
     const build_args *a = args;
@@ -136,8 +148,7 @@ static int run(void *args)
     o.report = report;
     o.progress = !a->quiet && isatty(STDERR_FILENO) ? stderr : NULL;
     if (convert_files(a->inputs, a->input_count, &o, &pack, &failure)) {
-        return failure.error.where[0] ? tool_fail(failure.file, "%s (%s)", failure.error.what, failure.error.where)
-                                      : tool_fail(failure.file, "%s", failure.error.what);
+        return fail_build(&failure);
     }
     if (noh_file_write(a->output, pack.bytes, pack.count, &error)) {
         status = tool_fail(a->output, "cannot write: %s", error.what);
@@ -289,6 +300,13 @@ static const option options[] = {
       .value = "FILE",
       .what = "callback keys and sync markers, a text file (noh help FORMATS)",
       .example = "keys.txt",
+      .excludes = "--only=mesh" },
+    { .name = "--graph",
+      .kind = OPTION_INPUT,
+      .at = offsetof(build_args, graph),
+      .value = "FILE",
+      .what = "animation graphs that play the clips, a text file (noh help FORMATS)",
+      .example = "hero.graph",
       .excludes = "--only=mesh" },
     { .name = "--unit-cm",
       .kind = OPTION_NUMBER,

@@ -9,7 +9,7 @@
 
 #include "base/limits.h"
 #include "message.h"
-#include "nearest.h"
+#include "convert/base/nearest.h"
 
 #define OPTIONS_MAX 64
 

@@ -8,7 +8,7 @@
 #include "cli/args.h"
 #include "cli/json.h"
 #include "cli/message.h"
-#include "cli/nearest.h"
+#include "convert/base/nearest.h"
 #include "file/pack_file.h"
 #include "cli/options.h"
 #include "cli/verbs.h"

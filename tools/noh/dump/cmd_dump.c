@@ -7,7 +7,9 @@
 #include <string.h>
 
 #include "convert/base/byte_buffer.h"
+#include "convert/base/nearest.h"
 #include "draw/load.h"
+#include "dump_graph.h"
 #include "gpu/gpu_args.h"
 #include "cli/message.h"
 #include "gpu/readback.h"
@@ -15,7 +17,7 @@
 #include "cli/verbs.h"
 
 typedef struct dump_args {
-    const char *pack, *output, *anim, *path, *accumulate, *driver;
+    const char *pack, *output, *anim, *path, *accumulate, *driver, *graph;
     double time_s, lod;
     uint32_t level;
     option_list weights, clips;
@@ -158,10 +160,18 @@ static int dump_gpu(byte_buffer *out, const pack_file *file, const scene *s, con
     return status;
 }
 
+static int write_out(const dump_args *a, byte_buffer *out)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    if (out->failed || noh_file_write(a->output, out->bytes, out->count, &error)) {
+        return tool_fail(a->output, "cannot write: %s", out->failed ? "out of memory" : error.what);
+    }
+    return 0;
+}
+
 static int dump_scene(const pack_file *file, scene *s, const dump_args *a)
 {
     byte_buffer out = { NULL, 0, 0, 0 };
-    noh_error error = { NOH_OK, "", 0, 0 };
     int status = scene_set_level(s, file, a->level);
     if (!status) status = scene_open_anim(s, file, a->anim);
     if (!status && a->clips.count) status = scene_set_clips(s, file, &a->clips, a->time_s);
@@ -171,9 +181,38 @@ static int dump_scene(const pack_file *file, scene *s, const dump_args *a)
         status = a->path && a->load.path != NOH_MORPH_CPU ? dump_gpu(&out, file, s, a)
                                                           : dump_items(&out, file, s, NULL, NULL);
     }
-    if (!status && (out.failed || noh_file_write(a->output, out.bytes, out.count, &error))) {
-        status = tool_fail(a->output, "cannot write: %s", out.failed ? "out of memory" : error.what);
+    if (!status) status = write_out(a, &out);
+    buffer_free(&out);
+    return status;
+}
+
+static int fail_graph(const pack_file *file, const char *name)
+{
+    const char *names[64], *near;
+    size_t count = 0;
+    for (; count < file->pack.graph_count && count < sizeof names / sizeof names[0]; count++) {
+        names[count] = noh_pack_chunk_name(&file->pack, file->pack.first_graph + (uint32_t)count);
     }
+    if (!count) return tool_fail(file->path, "holds no animation graph");
+    near = nearest_name(name, names, count);
+    return near ? tool_fail(file->path, "no graph '%s'; did you mean '%s'?", name, near)
+                : tool_fail(file->path, "no graph '%s'; it has %zu", name, count);
+}
+
+/* One graph, or all of them. */
+static int dump_graphs(const pack_file *file, const dump_args *a)
+{
+    byte_buffer out = { NULL, 0, 0, 0 };
+    const int all = strcmp(a->graph, "all") == 0;
+    const uint32_t found = all ? 0 : noh_pack_graph_find(&file->pack, a->graph);
+    int status = found < file->pack.graph_count ? 0 : fail_graph(file, a->graph);
+    for (uint32_t i = found; !status && i < (all ? file->pack.graph_count : found + 1u); i++) {
+        noh_pack_graph g;
+        noh_error error = { NOH_OK, "", 0, 0 };
+        status = noh_pack_graph_at(&file->pack, i, &g, &error) ? tool_fail_error(file->path, &error) : 0;
+        if (!status) dump_graph(&out, &g);
+    }
+    if (!status) status = write_out(a, &out);
     buffer_free(&out);
     return status;
 }
@@ -196,6 +235,11 @@ static int run(void *args)
     if (status) {
         return status;
     }
+    if (a->graph) {
+        status = dump_graphs(&file, a);
+        pack_file_close(&file);
+        return status;
+    }
     status = scene_init(&s, &file);
     if (!status) {
         status = dump_scene(&file, &s, a);
@@ -213,8 +257,15 @@ static const option options[] = {
       .at = offsetof(dump_args, output),
       .required = 1,
       .value = "OUT.obj",
-      .what = "the mesh: positions in world space, linear vertex colours",
+      .what = "the mesh: positions in world space, linear vertex colours; or the text of --graph",
       .example = "face.obj" },
+    { .name = "--graph",
+      .kind = OPTION_TEXT,
+      .at = offsetof(dump_args, graph),
+      .value = "NAME|all",
+      .what = "write an animation graph instead, as the text that noh build --graph reads",
+      .example = "hero",
+      .excludes = "--weight --clip --anim --lod --path" },
     OPTION_WEIGHT(dump_args, weights, .needs = NULL),
     OPTION_CLIP(dump_args, clips, .needs = NULL),
     OPTION_TIME(dump_args, time_s, .needs = "--clip"),
@@ -228,10 +279,11 @@ static const option options[] = {
 const verb verb_dump = {
     .name = "dump",
     .files = "PACK",
-    .what = "write the deformed mesh, as drawn, to an OBJ file",
+    .what = "write the deformed mesh, as drawn, to an OBJ file; or an animation graph as text",
     .more =
         "Without --path, and with --path cpu, the CPU computes the mesh and no GL is needed. With any other path the vertices are those of the vertex shader.",
-    .example = "face.noh -o face.obj --weight smile=1\nbody.noh -o walk.obj --clip walk --time 0.5 --path mrt",
+    .example =
+        "face.noh -o face.obj --weight smile=1\nbody.noh -o walk.obj --clip walk --time 0.5 --path mrt\nbody.noh -o hero.graph --graph hero",
     .options = options,
     .option_count = sizeof options / sizeof options[0],
     .file_max = 1,

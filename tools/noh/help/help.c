@@ -5,7 +5,7 @@
 
 #include "base/version.h"
 #include "cli/message.h"
-#include "cli/nearest.h"
+#include "convert/base/nearest.h"
 #include "cli/verbs.h"
 
 #define WIDTH 100 /* columns */

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "info_graph.h"
 #include "info_joints.h"
 #include "cli/args.h"
 #include "cli/message.h"
@@ -149,6 +150,9 @@ static int print_info(const pack_file *file)
     }
     for (uint32_t i = 0; i < p->clip_count && !status; i++) {
         status = print_clip(file, i);
+    }
+    for (uint32_t i = 0; i < p->graph_count && !status; i++) {
+        status = info_print_graph(file, i);
     }
     return status;
 }
@@ -311,6 +315,11 @@ static int json_info(const pack_file *file)
     json_open(&j, "clips", '[');
     for (uint32_t i = 0; i < p->clip_count && !status; i++) {
         status = json_clip(&j, file, i);
+    }
+    json_close(&j, ']');
+    json_open(&j, "graphs", '[');
+    for (uint32_t i = 0; i < p->graph_count && !status; i++) {
+        status = info_json_graph(&j, file, i);
     }
     json_close(&j, ']');
     json_integer(&j, "events", count_events(p));

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "cli/nearest.h"
+#include "convert/base/nearest.h"
 
 static int add_item(scene *s, const pack_file *file, uint32_t node, uint32_t mesh)
 {

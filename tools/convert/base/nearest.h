@@ -1,6 +1,6 @@
 /* nearest.h: what a misspelt name may have meant. */
-#ifndef NOH_NOH_CLI_NEAREST_H
-#define NOH_NOH_CLI_NEAREST_H
+#ifndef NOH_CONVERT_BASE_NEAREST_H
+#define NOH_CONVERT_BASE_NEAREST_H
 
 #include <stddef.h>
 
