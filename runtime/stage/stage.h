@@ -98,9 +98,11 @@ typedef struct noh_stage_desc {
     uint32_t event_count;      /* callback keys that one step may deliver to noh_stage_events; default (0) 64 and one
                                 * for each actor */
     uint64_t update_budget_ns; /* of posing in a frame, by noh_cost_ns; default (0) no bound */
-    int halves;                /* 1: 16-bit accumulators */
-    uint32_t morph_path;       /* noh_morph_path of gl_morph.h; default (0) the cheapest */
-    const noh_stage_gpu *gpu;  /* &noh_stage_on_gl of stage_gl.h; default (NULL) nothing is drawn */
+    int tangents;        /* 1: accumulators with a layer of tangents, for shaders of yours that read them morphed; the
+                          * library's do not */
+    int halves;          /* 1: 16-bit accumulators */
+    uint32_t morph_path; /* noh_morph_path of gl_morph.h; default (0) the cheapest */
+    const noh_stage_gpu *gpu; /* &noh_stage_on_gl of stage_gl.h; default (NULL) nothing is drawn */
 } noh_stage_desc;
 
 /* ---- the plan ---- */
@@ -178,8 +180,9 @@ typedef struct noh_stage noh_stage;
  * plan    must outlive the stage
  * device  a noh_gl_device (gl_memory.h) with all fields set but the log; its table, caps and ledger must outlive the
  *         stage. NULL with desc->gpu NULL
- * errors  as noh_stage_plan_make; NOT_FOUND a joint or float of a layer (where: the kind); ARG memory is NULL or misaligned; MEMORY it is too small (need: the bytes), or the
- *         driver's is; GL, DATA the driver refused an object or a shader: nothing is left behind */
+ * errors  as noh_stage_plan_make; NOT_FOUND a joint or float of a layer (where: the kind); ARG memory is NULL or
+ * misaligned; MEMORY it is too small (need: the bytes), or the driver's is; GL, DATA the driver refused an object or a
+ * shader: nothing is left behind */
 noh_result noh_stage_init(void *memory, size_t bytes, const void *device, const noh_stage_desc *desc,
                           const noh_stage_plan *plan, noh_stage **stage, noh_error *error);
 

@@ -221,6 +221,7 @@ static noh_result make_renderer(const noh_stage_gl *gl, const noh_stage *s, noh_
     d.meshes = gl->meshes;
     d.mesh_count = gl->model_count;
     d.palettes = NOH_PALETTE_TEXTURE;
+    d.without_tangents = !s->desc.tangents;
     d.crowds = 1;
     d.passes = passes;
     d.shaders = own;

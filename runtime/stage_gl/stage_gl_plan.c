@@ -127,6 +127,7 @@ noh_gl_morph_desc noh_gl_site_morph(const noh_stage_desc *desc, const noh_gl_til
     d.mesh_count = tiles->count;
     d.instance_counts = tiles->counts;
     d.path = (noh_morph_path)desc->morph_path;
+    d.without_tangents = !desc->tangents;
     d.accumulate = desc->halves ? NOH_ACCUMULATE_F16 : NOH_ACCUMULATE_AUTO;
     return d;
 }

@@ -51,7 +51,7 @@ static void the_plan_is_what_is_used(void **state)
     uint32_t made = 0;
     (void)state;
     for (uint32_t way = 0; way < FIXTURE_WAYS; way++) {
-        for (uint32_t bound = 0; bound < 2; bound++) {
+        for (uint32_t bound = 0; bound < 3; bound++) {
             noh_stage_bytes parts[128];
             uint64_t cpu = 0, gpu_bytes = 0;
             noh_error error;
@@ -61,7 +61,8 @@ static void the_plan_is_what_is_used(void **state)
             c.desc.gpu = &noh_stage_on_gl;
             c.desc.morph_path = (uint32_t)fixture_ways[way].path;
             c.desc.halves = fixture_ways[way].accumulate == NOH_ACCUMULATE_F16;
-            if (bound) c.desc.bytes_max = 5u << 20;
+            if (bound == 1) c.desc.bytes_max = 5u << 20;
+            c.desc.tangents = bound == 2;
             if (noh_stage_plan_make(&c.desc, &g->caps, &c.plan, &error) != NOH_OK) {
                 assert_int_equal(error.result, NOH_ERR_UNSUPPORTED); /* of this driver */
                 cast_close(&c);
@@ -69,7 +70,7 @@ static void the_plan_is_what_is_used(void **state)
             }
             open_on(&c, g);
             assert_true(noh_gl_ledger_bytes(&g->ledger) - noh_gl_ledger_bytes(&before) == c.plan.gpu_bytes);
-            assert_true(!bound || c.plan.cpu_bytes + c.plan.gpu_bytes <= 5u << 20);
+            assert_true(bound != 1 || c.plan.cpu_bytes + c.plan.gpu_bytes <= 5u << 20);
             count = noh_stage_plan_parts(&c.desc, &g->caps, &c.plan, parts, 128);
             for (uint32_t i = 0; i < count; i++) cpu += parts[i].cpu_bytes, gpu_bytes += parts[i].gpu_bytes;
             assert_true(count <= 128 && cpu == c.plan.cpu_bytes && gpu_bytes == c.plan.gpu_bytes);
@@ -104,6 +105,7 @@ static void the_picture_is_that_of_the_parts(void **state)
     c.kinds[0] = c.kinds[MASKS];
     c.desc.kind_count = 1;
     c.kinds[0].actor_count = 1;
+    c.desc.tangents = 1;
     open_on(&c, g);
     assert_int_equal(canvas_open(&to, g, WIDTH, HEIGHT), 0);
     assert_int_equal(noh_stage_spawn(c.stage, 0, NULL, &actor, NULL), NOH_OK);
@@ -165,7 +167,8 @@ static void the_picture_is_that_of_the_parts(void **state)
             drawn += by_hand[i] != by_hand[0];
             apart += by_hand[i] != by_stage[i];
         }
-        if (drawn <= PIXELS / 20u) fail_msg("%u pixels are drawn, %u differ; radius %g", (unsigned)drawn, (unsigned)apart, (double)sphere[3]);
+        if (drawn <= PIXELS / 20u)
+            fail_msg("%u pixels are drawn, %u differ; radius %g", (unsigned)drawn, (unsigned)apart, (double)sphere[3]);
         if (apart) fail_msg("%u of %u pixels differ", (unsigned)apart, (unsigned)drawn);
     }
     canvas_close(&to);
