@@ -151,10 +151,10 @@ struct noh_gl_caps;
 /* Decide and measure. Needs no driver and no memory; the same desc, packs and capabilities give the same plan
  * everywhere. Where a bound is not kept, things are given up in this order, the bound being checked after each: 16-bit
  * accumulators; cached segments, down to half; slots of finer levels, the finest first, unless near_count or
- * middle_count promise them; the finest level; cached segments, down to two for each bank.
- * caps    of gl_caps.h; NULL with desc->gpu NULL
- * errors  ARG a field of the desc (where: the kind); MEMORY no choice keeps the bounds (need: bytes of the smallest);
- *         LIMIT; DATA a clip is broken. *plan is undefined then */
+ * middle_count promise them; the finest level; cached segments, down to two for each bank. What then fits again is
+ * given back: 32-bit accumulators, cached segments. caps    of gl_caps.h; NULL with desc->gpu NULL errors  ARG a field
+ * of the desc (where: the kind); MEMORY no choice keeps the bounds (need: bytes of the smallest); LIMIT; DATA a clip is
+ * broken. *plan is undefined then */
 noh_result noh_stage_plan_make(const noh_stage_desc *desc, const struct noh_gl_caps *caps, noh_stage_plan *plan,
                                noh_error *error);
 

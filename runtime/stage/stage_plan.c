@@ -208,6 +208,99 @@ static noh_result give_up_finest(const planner *p, noh_error *error)
     return result;
 }
 
+/* ---- giving back ---- */
+
+/* Take a concession out of the list, or state what it is now. */
+static void taken_back(noh_stage_plan *plan, const char *what, uint32_t kind, uint32_t value, int whole, uint64_t cpu,
+                       uint64_t gpu)
+{
+    for (uint32_t i = 0; i < plan->concession_count; i++) {
+        noh_concession *row = &plan->concessions[i];
+        if (row->what != what || row->kind != kind) continue;
+        row->value = value;
+        row->cpu_bytes -= cpu < row->cpu_bytes ? cpu : row->cpu_bytes;
+        row->gpu_bytes -= gpu < row->gpu_bytes ? gpu : row->gpu_bytes;
+        if (whole) {
+            plan->concession_count--;
+            for (uint32_t k = i; k < plan->concession_count; k++) plan->concessions[k] = plan->concessions[k + 1u];
+            memset(&plan->concessions[plan->concession_count], 0, sizeof *row);
+        }
+        return;
+    }
+}
+
+/* Whether a number of cached segments fits; the plan then has it. */
+static noh_result try_segments(const planner *p, uint32_t kind, uint32_t count, int *does, noh_error *error)
+{
+    noh_result result;
+    p->plan->kinds[kind].cached_segment_count = count;
+    result = measure(p, error);
+    *does = result == NOH_OK && fits(p->desc, p->plan);
+    return result;
+}
+
+/* As many cached segments as still fit, by halving the distance. */
+static noh_result give_back_segments(const planner *p, uint32_t kind, uint32_t most, noh_error *error)
+{
+    noh_kind_plan *k = &p->plan->kinds[kind];
+    const uint64_t cpu = p->plan->cpu_bytes, gpu = p->plan->gpu_bytes;
+    uint32_t good = k->cached_segment_count, bad = most + 1u;
+    noh_result result = NOH_OK;
+    int does;
+    while (result == NOH_OK && bad - good > 1u) {
+        const uint32_t middle = bad == most + 1u ? most : good + (bad - good) / 2u;
+        result = try_segments(p, kind, middle, &does, error);
+        if (does) {
+            good = middle;
+        } else {
+            bad = middle;
+        }
+    }
+    if (result == NOH_OK) result = try_segments(p, kind, good, &does, error);
+    if (result == NOH_OK) {
+        taken_back(p->plan, segments_text, kind, good, good == most, p->plan->cpu_bytes - cpu,
+                   p->plan->gpu_bytes - gpu);
+    }
+    return result;
+}
+
+static noh_result give_back_halves(const planner *p, noh_error *error)
+{
+    const uint64_t cpu = p->plan->cpu_bytes, gpu = p->plan->gpu_bytes;
+    noh_result result;
+    if (!p->plan->halves || p->desc->halves) {
+        return NOH_OK;
+    }
+    p->plan->halves = 0;
+    result = measure(p, error);
+    if (result == NOH_OK && !fits(p->desc, p->plan)) {
+        p->plan->halves = 1;
+        return measure(p, error);
+    }
+    if (result == NOH_OK) {
+        taken_back(p->plan, halves_text, NOH_NONE, 0, 1, p->plan->cpu_bytes - cpu, p->plan->gpu_bytes - gpu);
+    }
+    return result;
+}
+
+/* What was given up first may fit again, once more was won than was needed. */
+static noh_result give_back(const planner *p, noh_error *error)
+{
+    noh_result result = p->plan->concession_count ? give_back_halves(p, error) : NOH_OK;
+    for (uint32_t i = 0; i < p->desc->kind_count && result == NOH_OK; i++) {
+        const uint32_t now = p->plan->kinds[i].cached_segment_count;
+        noh_stage_needs needs;
+        if (noh_stage_bank_kind(p->desc, i) != i) continue;
+        p->plan->kinds[i].cached_segment_count = 0;
+        result = noh_stage_measure_kind(p->desc, p->plan, i, &needs, error);
+        p->plan->kinds[i].cached_segment_count = now;
+        if (result == NOH_OK && needs.cached_segment_count > now) {
+            result = give_back_segments(p, i, needs.cached_segment_count, error);
+        }
+    }
+    return result;
+}
+
 /* The error of a finest level that is above 0 shows to whoever comes as near as the camera's own distance: in pixels at
  * three metres, where a figure of two metres fills the picture. */
 static void state_losses(const planner *p)
@@ -295,6 +388,7 @@ static noh_result find_fit(const planner *p, noh_error *error)
     if (result == NOH_OK) result = give_up_slots(p, error);
     if (result == NOH_OK) result = give_up_finest(p, error);
     if (result == NOH_OK) result = give_up_segments(p, 0, error);
+    if (result == NOH_OK && fits(p->desc, p->plan)) result = give_back(p, error);
     if (result == NOH_OK && !fits(p->desc, p->plan)) {
         return noh_fail(error, NOH_ERR_MEMORY,
                         "no choice of levels, slots and cached segments keeps the bounds of a stage", 0,
