@@ -222,7 +222,11 @@ static void taken_back(noh_stage_plan *plan, const char *what, uint32_t kind, ui
         row->gpu_bytes -= gpu < row->gpu_bytes ? gpu : row->gpu_bytes;
         if (whole) {
             plan->concession_count--;
-            for (uint32_t k = i; k < plan->concession_count; k++) plan->concessions[k] = plan->concessions[k + 1u];
+            for (uint32_t k = i; k < plan->concession_count; k++) { /* exchanged: see drop in stage_levels.c */
+                const noh_concession gone = plan->concessions[k];
+                plan->concessions[k] = plan->concessions[k + 1u];
+                plan->concessions[k + 1u] = gone;
+            }
             memset(&plan->concessions[plan->concession_count], 0, sizeof *row);
         }
         return;
