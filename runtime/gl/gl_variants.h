@@ -77,8 +77,10 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
 
 /* All that stands between the line #version 300 es and a shader's own text: defines, precision, and the declarations of
  * attributes, uniforms and functions (shaders_es/README.md). The last line is a #line, so that a driver's messages
- * count the lines of your own text. stage    GL_VERTEX_SHADER or GL_FRAGMENT_SHADER text     [bytes], zero-terminated;
- * untouched if it is too small; NULL with 0 only asks returns  the bytes that it takes, with the zero */
+ * count the lines of your own text.
+ * stage    GL_VERTEX_SHADER or GL_FRAGMENT_SHADER
+ * text     [bytes], zero-terminated; untouched if it is too small; NULL with 0 only asks
+ * returns  the bytes that it takes, with the zero */
 size_t noh_gl_shader_prefix(noh_gl_variant_key key, GLenum stage, char *text, size_t bytes);
 
 /* Shaders of your own. The texts are bodies without #version: noh_gl_shader_prefix goes before each, so one pair serves

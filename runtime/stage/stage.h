@@ -69,7 +69,8 @@ typedef struct noh_kind_desc {
                             * skeleton moves is left out */
     uint32_t actor_count;  /* of this kind at one time; required */
     uint32_t near_count;   /* of these, how many may be at the finest level at once, */
-    uint32_t middle_count; /* and how many at the next one. Both 0: by an even spread over 100 m */
+    uint32_t middle_count; /* and how many at the next one. Both 0: 16, or more by an even
+                            * spread over 100 m; a bound takes some back */
     uint32_t finest_level; /* the finest level that may be used (noh_stage_plan.kinds[].levels); default 0 */
     const noh_layer_desc *layers; /* [layer_count] default (NULL) three: "body" (base), "face" (over, floats alone),
                                    * "add" (add) */
@@ -149,12 +150,14 @@ typedef struct noh_stage_plan {
 struct noh_gl_caps;
 
 /* Decide and measure. Needs no driver and no memory; the same desc, packs and capabilities give the same plan
- * everywhere. Where a bound is not kept, things are given up in this order, the bound being checked after each: 16-bit
+ * everywhere. Where a bound is not kept, things are given up in this order, the bound being checked after each: 32-bit
  * accumulators; cached segments, down to half; slots of finer levels, the finest first, unless near_count or
  * middle_count promise them; the finest level; cached segments, down to two for each bank. What then fits again is
- * given back: 32-bit accumulators, cached segments. caps    of gl_caps.h; NULL with desc->gpu NULL errors  ARG a field
- * of the desc (where: the kind); MEMORY no choice keeps the bounds (need: bytes of the smallest); LIMIT; DATA a clip is
- * broken. *plan is undefined then */
+ * given back: 32-bit accumulators, cached segments.
+ *
+ * caps    of gl_caps.h; NULL with desc->gpu NULL
+ * errors  ARG a field of the desc (where: the kind); MEMORY no choice keeps the bounds (need: bytes of the smallest);
+ *         LIMIT; DATA a clip is broken. *plan is undefined then */
 noh_result noh_stage_plan_make(const noh_stage_desc *desc, const struct noh_gl_caps *caps, noh_stage_plan *plan,
                                noh_error *error);
 

@@ -8,6 +8,7 @@
 #define ERRORS_MAX (NOH_STAGE_MESHES_MAX * NOH_LOD_LEVELS_MAX)
 #define SPREAD_M 100.0f /* actors are thought to be spread evenly within this distance */
 #define RESERVE 1.3f    /* for actors that crowd together */
+#define FINEST_MIN 16u  /* slots of the finest level, where a kind has so many actors: a small cast stands together */
 #define VIEW_RAD 0.69813f
 #define MESH_SHARE 0.3f /* of the error, as lod.h has it by default */
 
@@ -180,6 +181,7 @@ void noh_stage_share_slots(const noh_stage_desc *desc, uint32_t kind, noh_kind_p
         } else if (l >= plan->finest_level) {
             const uint32_t within = count_within(desc, d.actor_count, plan->levels[l + 1u].error_m);
             wanted = within > taken ? within - taken : 0;
+            if (l == plan->finest_level && wanted < FINEST_MIN) wanted = FINEST_MIN;
             if (promised && l == plan->finest_level) wanted = d.near_count;
             if (promised && l == plan->finest_level + 1u) wanted = d.middle_count;
         }

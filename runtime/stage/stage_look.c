@@ -81,13 +81,6 @@ static uint32_t look_from(const noh_stage *s, uint32_t index, float *scale)
     return find_views(s, a, sphere, scale);
 }
 
-/* Pixels per metre of the model: LOD errors are in metres. */
-static float model_scale(const noh_stage_kind *k, const noh_stage_actor *a, float pixels_per_unit)
-{
-    const float metres = k->meshes[0].mesh.header->world_scale;
-    return pixels_per_unit * a->place.scale / (metres > 0.0f ? metres : 1.0f);
-}
-
 static void look_at(noh_stage *s, noh_stage_kind *k, uint32_t index)
 {
     noh_stage_actor *a = &s->actors[index];
@@ -109,7 +102,7 @@ static void look_at(noh_stage *s, noh_stage_kind *k, uint32_t index)
     a->was_seen = 1;
     if (a->look.pixels > 0.0f) settings.pixels = a->look.pixels;
     shown->due = (uint8_t)noh_character_look(ch, &k->table, &settings,
-                                             a->look.posed ? FULL_DETAIL : model_scale(k, a, scale));
+                                             a->look.posed ? FULL_DETAIL : scale * a->place.scale);
 }
 
 void noh_stage_look_at(noh_stage *s, uint32_t first, uint32_t end)
