@@ -4,6 +4,7 @@
 #include "base/math_internal.h"
 #include "character/bounds.h"
 #include "deform/bounds.h"
+#include "pose/local_to_model.h"
 #include "stage/stage_internal.h"
 
 /* ---- clips ---- */
@@ -256,6 +257,37 @@ static void unite_rigid(const noh_stage_kind *k, float box[6])
     }
 }
 
+static float longest_axis(const float m[12])
+{
+    float most = 0.0f;
+    for (int c = 0; c < 3; c++) {
+        const float square = m[c] * m[c] + m[4 + c] * m[4 + c] + m[8 + c] * m[8 + c];
+        most = square > most ? square : most;
+    }
+    return noh_sqrt(most);
+}
+
+/* The farthest that a vertex can be from a root, however joints turn: bones keep their lengths and scales, those of the
+ * bind pose in model space. (noh_skeleton_radius is for skeletons without scales.) The way to each joint goes where its
+ * first matrix element was. */
+static float bones_radius(const noh_stage_kind *k, noh_character_scratch *scratch)
+{
+    float farthest = 0.0f, *model = scratch->model;
+    noh_local_to_model(&k->skeleton, k->skeleton.bind_pose, k->skeleton.joint_count, model);
+    for (uint32_t j = 0; j < k->skeleton.joint_count; j++) {
+        float *m = model + 12u * (size_t)j, way = 0.0f, radius = k->joint_radii[j] * longest_axis(m);
+        if (k->skeleton.parents[j] != NOH_JOINT_ROOT) {
+            const float *parent = model + 12u * (size_t)k->skeleton.parents[j];
+            float square = 0.0f;
+            for (int i = 3; i < 12; i += 4) square += (m[i] - parent[i]) * (m[i] - parent[i]);
+            way = parent[0] + noh_sqrt(square);
+        }
+        m[0] = way;
+        if (k->joint_radii[j] >= 0.0f && way + radius > farthest) farthest = way + radius;
+    }
+    return farthest;
+}
+
 /* Where the roots may be, and as far as joints may reach from them: any rotation of any joint. */
 static void open_reach(noh_stage_kind *k, noh_character_scratch *scratch)
 {
@@ -263,7 +295,7 @@ static void open_reach(noh_stage_kind *k, noh_character_scratch *scratch)
     noh_box_empty(box);
     if (k->skeleton.joint_count) {
         box_of_roots(k, scratch, box);
-        radius = noh_skeleton_radius(&k->skeleton, k->joint_radii);
+        radius = bones_radius(k, scratch);
         for (int i = 0; i < 3; i++) {
             box[i] -= radius;
             box[3 + i] += radius;
