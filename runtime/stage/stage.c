@@ -69,6 +69,8 @@ static void adopt(const noh_stage_desc *desc, const noh_stage_plan *plan, const 
     s->matrices = b->matrices;
     s->pick_scratch = b->pick_scratch;
     s->pick_bytes = b->pick_bytes;
+    s->inertia_scratch = b->inertia_scratch;
+    s->inertia_bytes = b->inertia_bytes;
     for (uint32_t i = 0; i < desc->kind_count; i++) {
         s->kinds[i].first_actor = s->actor_count;
         s->actor_count += desc->kinds[i].actor_count;

@@ -81,6 +81,7 @@ typedef struct noh_kind_desc {
     uint32_t root_axes;        /* NOH_ROOT_* that clips move the actor by; default (0) none */
     uint32_t root_up;          /* axis of the heading: 0 x, 1 y, 2 z; not used without root_axes */
     int root_told;             /* 1: root motion does not move the actor, it is only told (noh_actor_root) */
+    int inertia;               /* 1: room for NOH_PLAY_INERTIA: 48 bytes a joint and 8 a float for each actor */
     int unpickable;            /* 1: noh_stage_pick passes through */
 } noh_kind_desc;
 
@@ -275,8 +276,10 @@ noh_result noh_actor_attach(noh_stage *stage, noh_actor actor, noh_actor parent,
 
 /* ---- play ---- */
 
-#define NOH_PLAY_KEEP 1u  /* leave the layer alone where this clip plays on it already */
-#define NOH_PLAY_PHASE 2u /* begin at the phase of what it takes over from: walk into run */
+#define NOH_PLAY_KEEP 1u    /* leave the layer alone where this clip plays on it already */
+#define NOH_PLAY_PHASE 2u   /* begin at the phase of what it takes over from: walk into run */
+#define NOH_PLAY_INERTIA 4u /* no cross-fade: the clip plays at once, and what the pose leaps by decays in fade_ticks \
+                             */
 
 /* All zeros play the clip as it was made, faded in within a fifth of a second. */
 typedef struct noh_play {
@@ -292,8 +295,8 @@ typedef struct noh_play {
 /* Play a clip on a layer; what played there fades out. Where all tracks of the layer are in use, the lightest ends. A
  * base layer that moves joints and on which nothing plays is not faded in: there is nothing to fade from.
  * play    NULL: zeros
- * errors  NOT_FOUND the actor is gone, or the kind has no such clip; ARG layer, or a field of play; LIMIT too many
- *         changes over time are under way (need: 3) */
+ * errors  NOT_FOUND the actor is gone, or the kind has no such clip; ARG layer, a field of play, or NOH_PLAY_INERTIA
+ *         without noh_kind_desc.inertia; LIMIT too many changes over time are under way (need: so many are wanted) */
 noh_result noh_actor_play(noh_stage *stage, noh_actor actor, uint32_t layer, const char *clip, const noh_play *play,
                           noh_error *error);
 

@@ -104,7 +104,8 @@ static void measure_actors(const noh_kind_desc *d, noh_stage_needs *n)
     character.controller.set = &n->shape;
     character.controller.track_count = noh_stage_track_count(d);
     character.controller.change_count = d->change_count;
-    character.controller.flags = NOH_CONTROLLER_COVERS;
+    character.controller.flags = noh_stage_controller_flags(d);
+    n->inertia_bytes = d->inertia ? noh_pose_scratch_size(&n->shape, 1) : 0;
     n->character_bytes = noh_character_size(&character);
     n->scratch_bytes = noh_character_scratch_size(&character);
 }
@@ -183,7 +184,7 @@ static void add(noh_stage_list *list, const char *what, uint32_t kind, const noh
 
 /* What the other functions need to know of all kinds together. */
 typedef struct widest {
-    size_t scratch_bytes, pick_bytes, views_bytes;
+    size_t scratch_bytes, pick_bytes, views_bytes, inertia_bytes;
     uint32_t skin_joints, actors;
 } widest;
 
@@ -196,6 +197,7 @@ static void widen(widest *most, const noh_stage_desc *desc, uint32_t kind, const
 {
     if (n->scratch_bytes > most->scratch_bytes) most->scratch_bytes = n->scratch_bytes;
     if (n->pick_bytes > most->pick_bytes) most->pick_bytes = n->pick_bytes;
+    if (n->inertia_bytes > most->inertia_bytes) most->inertia_bytes = n->inertia_bytes;
     if (n->skin_joints > most->skin_joints) most->skin_joints = n->skin_joints;
     most->views_bytes += aligned(n->view_bytes);
     most->actors += desc->kinds[kind].actor_count;
@@ -242,6 +244,8 @@ static void carve_stage(noh_arena *arena, const noh_stage_desc *filled, const wi
     b->matrices = CARVE(arena, 12u * most->skin_joints, float);
     b->pick_bytes = most->pick_bytes;
     b->pick_scratch = noh_arena_carve(arena, most->pick_bytes, 16);
+    b->inertia_bytes = most->inertia_bytes;
+    b->inertia_scratch = noh_arena_carve(arena, most->inertia_bytes, 16);
 }
 
 static void carve_jobs(noh_arena *arena, const noh_stage_desc *filled, const widest *most, noh_stage_blocks *b)

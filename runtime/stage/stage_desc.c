@@ -23,6 +23,11 @@ uint32_t noh_stage_track_count(const noh_kind_desc *kind)
     return tracks;
 }
 
+uint32_t noh_stage_controller_flags(const noh_kind_desc *kind)
+{
+    return NOH_CONTROLLER_COVERS | (kind->inertia ? NOH_CONTROLLER_INERTIAL : 0u);
+}
+
 noh_kind_desc noh_stage_kind_desc(const noh_stage_desc *desc, uint32_t kind)
 {
     noh_kind_desc d = desc->kinds[kind];

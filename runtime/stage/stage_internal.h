@@ -214,8 +214,8 @@ struct noh_stage {
     uint64_t decoded_before;
     noh_stage_stats stats;
     float *matrices; /* [joints of the largest skin][12] */
-    void *pick_scratch;
-    size_t pick_bytes;
+    void *pick_scratch, *inertia_scratch;
+    size_t pick_bytes, inertia_bytes;
     void *gpu; /* of desc.gpu; NULL without */
 };
 
@@ -246,6 +246,7 @@ noh_result noh_stage_check_desc(const noh_stage_desc *desc, noh_error *error);
 noh_stage_desc noh_stage_desc_filled(const noh_stage_desc *desc);
 uint32_t noh_stage_layer_tracks(const noh_layer_desc *layer);
 uint32_t noh_stage_track_count(const noh_kind_desc *kind);
+uint32_t noh_stage_controller_flags(const noh_kind_desc *kind);
 extern const noh_layer_desc noh_stage_default_layers[3];
 
 /* The kind whose bank, or whose meshes on the GPU, a kind shares: itself or an earlier one. */
@@ -262,7 +263,7 @@ typedef struct noh_stage_needs {
     noh_clip_set shape; /* counts only */
     size_t bank_bytes;  /* 0: it shares another kind's, or no clip fits */
     size_t view_bytes;  /* of that bank */
-    size_t character_bytes, scratch_bytes, lod_bytes, pools_bytes;
+    size_t character_bytes, scratch_bytes, lod_bytes, pools_bytes, inertia_bytes;
     uint32_t cached_segment_count, segment_count;
     uint32_t mesh_count, float_count, weight_count, mask_count;
     uint32_t skin_joints; /* of its largest skin */
@@ -286,9 +287,9 @@ typedef struct noh_stage_blocks {
     noh_stage_job_part *jobs;
     uint8_t *views;   /* of all jobs, of all banks, one after another */
     uint8_t *scratch; /* of all jobs */
-    size_t scratch_bytes, views_bytes, pick_bytes;
+    size_t scratch_bytes, views_bytes, pick_bytes, inertia_bytes;
     float *matrices;
-    void *pick_scratch, *schedule;
+    void *pick_scratch, *inertia_scratch, *schedule;
     void *banks[NOH_STAGE_KINDS_MAX], *lods[NOH_STAGE_KINDS_MAX], *pools[NOH_STAGE_KINDS_MAX];
 } noh_stage_blocks;
 

@@ -318,7 +318,7 @@ noh_character_desc noh_stage_character_desc(const noh_stage_kind *kind, uint32_t
     d.controller.set = &kind->set;
     d.controller.track_count = kind->plan->track_count;
     d.controller.change_count = kind->desc.change_count;
-    d.controller.flags = NOH_CONTROLLER_COVERS;
+    d.controller.flags = noh_stage_controller_flags(&kind->desc);
     d.instance = instance;
     return d;
 }

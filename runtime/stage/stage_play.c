@@ -2,7 +2,7 @@
  * the others of the layer fade out. */
 #include <string.h>
 
-#include "base/hash.h"
+#include "anim/controller_pose.h"
 #include "stage/stage_internal.h"
 
 #define FADE_TICKS 9600u
@@ -211,6 +211,31 @@ static noh_result make_room(player *p, uint32_t but, noh_error *error)
     return NOH_OK;
 }
 
+/* Over to a clip by inertia: it alone plays on the layer from now on, and the leap decays. */
+static noh_result leap(player *p, uint32_t clip, const noh_play *play, noh_error *error)
+{
+    const uint32_t ticks = play->fade_ticks ? play->fade_ticks : FADE_TICKS, track = free_track(p);
+    const noh_track_desc d = track_desc(p, clip, play, 0);
+    noh_pose_scratch scratch;
+    noh_track probe;
+    noh_result result = noh_track_start(&probe, &p->k->set, &d, error);
+    if (result == NOH_OK) {
+        result = noh_pose_scratch_init(p->s->inertia_scratch, p->s->inertia_bytes, &p->k->set, 1, &scratch, error);
+    }
+    if (result == NOH_OK) result = noh_controller_inertia_capture(p->c, &p->k->set, &scratch, error);
+    if (result == NOH_OK) result = make_room(p, track, error);
+    if (result == NOH_OK) result = fade_others(p, track, 1, error);
+    if (result == NOH_OK) {
+        result = noh_controller_start(p->c, &p->k->set, p->layer->first_track + track, &d, error);
+    }
+    if (result == NOH_OK) result = noh_controller_inertia_begin(p->c, &p->k->set, &scratch, ticks, error);
+    if (result == NOH_OK) {
+        set_started(p->a, p->layer_index, track);
+        noh_character_wake(noh_stage_character(p->k, noh_stage_index(p->k, p->a)));
+    }
+    return result;
+}
+
 static noh_result begin(player *p, uint32_t clip, const noh_play *play, noh_error *error)
 {
     const uint32_t ticks = play->fade_ticks ? play->fade_ticks : FADE_TICKS, track = free_track(p);
@@ -258,13 +283,16 @@ noh_result noh_actor_play(noh_stage *stage, noh_actor actor, uint32_t layer, con
         return noh_fail(error, NOH_ERR_NOT_FOUND, "the kind has no clip of that name", (uint64_t)(p.k - stage->kinds),
                         p.k->bank ? p.k->set.clip_count : 0);
     }
-    if (how->flags & ~(NOH_PLAY_KEEP | NOH_PLAY_PHASE)) {
+    if (how->flags & ~(NOH_PLAY_KEEP | NOH_PLAY_PHASE | NOH_PLAY_INERTIA)) {
         return noh_fail(error, NOH_ERR_ARG, "flags of a play has unknown bits", how->flags, 0);
     }
     if ((how->flags & NOH_PLAY_KEEP) && plays(&p, index)) {
         return NOH_OK;
     }
-    return begin(&p, index, how, error);
+    if ((how->flags & NOH_PLAY_INERTIA) && !p.k->desc.inertia) {
+        return noh_fail(error, NOH_ERR_ARG, "the kind has no room for inertia", (uint64_t)(p.k - stage->kinds), 0);
+    }
+    return how->flags & NOH_PLAY_INERTIA ? leap(&p, index, how, error) : begin(&p, index, how, error);
 }
 
 noh_result noh_actor_stop(noh_stage *stage, noh_actor actor, uint32_t layer, uint32_t fade_ticks, noh_error *error)

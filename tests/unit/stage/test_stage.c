@@ -335,6 +335,53 @@ static void a_walk_takes_the_actor_along(void **state)
     cast_close(&c);
 }
 
+/* Every joint of a puppet in the world: out[joint_count][12]. */
+static void take_joints(const cast *c, noh_actor actor, float *out)
+{
+    for (uint32_t j = 0; j < c->plan.kinds[PUPPETS].joint_count; j++) {
+        assert_int_equal(noh_actor_joint(c->stage, actor, j, out + 12u * j, NULL), NOH_OK);
+    }
+}
+
+/* By inertia no joint leaps, while the new clip plays from the first tick; a cut leaps. */
+static void inertia_takes_over_without_a_leap(void **state)
+{
+    const noh_play leap = { .fade_ticks = 12000, .flags = NOH_PLAY_INERTIA }, cut = { .fade_ticks = 1 };
+    const noh_look look = { 0, 0, 1, 0.0f };
+    float before[64 * 12], after[64 * 12], steps[3] = { 0, 0, 0 };
+    noh_actor actor;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    c.kinds[PUPPETS].inertia = 1;
+    cast_make(&c, NULL);
+    for (int way = 0; way < 3; way++) { /* in between, by inertia, by a cut */
+        assert_int_equal(noh_stage_spawn(c.stage, PUPPETS, NULL, &actor, NULL), NOH_OK);
+        assert_int_equal(noh_actor_set_look(c.stage, actor, &look, NULL), NOH_OK);
+        assert_int_equal(noh_actor_play(c.stage, actor, 0, "dance", NULL, NULL), NOH_OK);
+        for (int f = 0; f < 45; f++) {
+            assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
+        }
+        take_joints(&c, actor, before);
+        if (way) assert_int_equal(noh_actor_play(c.stage, actor, 0, "bow", way == 1 ? &leap : &cut, NULL), NOH_OK);
+        assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
+        take_joints(&c, actor, after);
+        for (uint32_t j = 0; j < c.plan.kinds[PUPPETS].joint_count; j++) {
+            float square = 0.0f;
+            for (uint32_t i = 12u * j + 3u; i < 12u * j + 12u; i += 4u) {
+                square += (after[i] - before[i]) * (after[i] - before[i]);
+            }
+            if (sqrtf(square) > steps[way]) steps[way] = sqrtf(square);
+        }
+    }
+    if (!(steps[1] < 2.0f * steps[0] + 0.005f && steps[2] > 5.0f * steps[1])) {
+        fail_msg("%g in between, %g by inertia, %g by a cut", (double)steps[0], (double)steps[1], (double)steps[2]);
+    }
+    assert_int_equal(noh_stage_spawn(c.stage, MASKS, NULL, &actor, NULL), NOH_OK);
+    assert_int_equal(noh_actor_play(c.stage, actor, 1, "speak", &leap, &said), NOH_ERR_ARG);
+    cast_close(&c);
+}
+
 /* ---- callback keys ---- */
 
 typedef struct heard {
@@ -694,6 +741,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(names_are_found),
         cmocka_unit_test(a_face_is_played_over_a_body),
         cmocka_unit_test(a_walk_takes_the_actor_along),
+        cmocka_unit_test(inertia_takes_over_without_a_leap),
         cmocka_unit_test(keys_are_told_with_their_names),
         cmocka_unit_test(frames_and_steps_do_not_mix),
         cmocka_unit_test(who_is_behind_the_camera_is_not_posed),
