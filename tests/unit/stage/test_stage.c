@@ -1,4 +1,5 @@
 /* A stage without a GPU: plans, actors, layers, events, frames, jobs, states. */
+#include "support/clip_bank_fixture.h"
 #include "support/stage_fixture.h"
 
 #include <math.h>
@@ -516,6 +517,70 @@ static void spheres_hold_every_vertex(void **state)
     cast_close(&c);
 }
 
+/* The largest distance of a skinned vertex from the middle of a sphere, over its radius. */
+static double farthest(const cast *c, const noh_pack *pack, noh_actor actor, const float sphere[4])
+{
+    static float joints[256 * 12], matrices[256 * 12];
+    double worst = 0.0;
+    for (uint32_t j = 0; j < c->plan.kinds[0].joint_count; j++) {
+        assert_int_equal(noh_actor_joint(c->stage, actor, j, joints + 12u * j, NULL), NOH_OK);
+    }
+    for (uint32_t m = 0; m < pack->mesh_count; m++) {
+        const noh_mesh mesh = test_mesh(pack, m);
+        noh_skin skin;
+        if (noh_pack_skin_at(pack, mesh.header->skin, &skin, NULL) != NOH_OK) continue;
+        noh_skin_matrices(&skin, joints, matrices);
+        for (uint32_t v = 0; v < mesh.header->vertex_count; v += 11) {
+            float at[3];
+            double apart = 0.0;
+            noh_skin_position(&mesh, matrices, NULL, v, at);
+            for (int i = 0; i < 3; i++) apart += pow((double)at[i] - (double)sphere[i], 2.0);
+            worst = fmax(worst, sqrt(apart) / (double)sphere[3]);
+        }
+    }
+    return worst;
+}
+
+/* The sphere by which an actor is culled before it was ever posed holds it in all its clips, and is not far too large:
+ * of figures whose joints have scales, roots that travel, and other units. */
+static void whoever_was_never_posed_is_culled_by_where_clips_may_take_it(void **state)
+{
+    static const char *const names[] = { "khronos/RobotExpressive.glb", "khronos/Fox.glb", "hero/body.glb" };
+    (void)state;
+    for (uint32_t n = 0; n < TEST_COUNT(names); n++) {
+        const char *input = test_asset(names[n]);
+        const noh_look look = { 0, 0, 1, 0.0f };
+        double worst = 0.0;
+        uint8_t *bytes;
+        size_t count;
+        noh_actor actor;
+        float reach[4];
+        cast c;
+        memset(&c, 0, sizeof c);
+        bytes = clip_pack(&input, 1, NULL, &count);
+        c.packs[0] = test_open(bytes, count);
+        c.kinds[0].mesh = &c.packs[0];
+        c.kinds[0].actor_count = 1;
+        c.desc.kinds = c.kinds;
+        c.desc.kind_count = 1;
+        cast_make(&c, NULL);
+        assert_int_equal(noh_stage_spawn(c.stage, 0, NULL, &actor, NULL), NOH_OK);
+        assert_int_equal(noh_actor_sphere(c.stage, actor, reach, NULL), NOH_OK);
+        assert_int_equal(noh_actor_set_look(c.stage, actor, &look, NULL), NOH_OK);
+        for (uint32_t i = 0; noh_stage_name(c.stage, 0, NOH_NAME_CLIP, i); i++) {
+            assert_int_equal(
+                noh_actor_play(c.stage, actor, 0, noh_stage_name(c.stage, 0, NOH_NAME_CLIP, i), NULL, NULL), NOH_OK);
+            for (int f = 0; f < 12; f++) {
+                assert_int_equal(noh_stage_frame(c.stage, 5u * CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
+                worst = fmax(worst, farthest(&c, &c.packs[0], actor, reach));
+            }
+        }
+        if (!(worst <= 1.0 && worst > 0.2)) fail_msg("%s: up to %g of the sphere's radius", names[n], worst);
+        cast_close_stage(&c);
+        free(bytes);
+    }
+}
+
 /* ---- jobs and states ---- */
 
 /* A show of many frames with everything that changes; returns the hash after each. */
@@ -746,6 +811,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(frames_and_steps_do_not_mix),
         cmocka_unit_test(who_is_behind_the_camera_is_not_posed),
         cmocka_unit_test(spheres_hold_every_vertex),
+        cmocka_unit_test(whoever_was_never_posed_is_culled_by_where_clips_may_take_it),
         cmocka_unit_test(the_bits_do_not_depend_on_the_jobs),
         cmocka_unit_test(a_state_is_put_back_to_the_bit),
         cmocka_unit_test(a_damaged_state_does_no_harm),
