@@ -330,6 +330,90 @@ static void frames_make_nothing(void **state)
     gpu_close(&g);
 }
 
+/* Random casts: kinds that share packs or do not, with levels, layers and bounds of all sorts. What is planned is what
+ * is used, CPU and GPU, and a frame passes. */
+static void random_casts_use_what_is_planned(void **state)
+{
+    static const noh_layer_desc layers[3] = { { "body", NOH_LAYER_BASE, NULL, "", 3 },
+                                              { "face", NOH_LAYER_BASE, "", NULL, 1 },
+                                              { "breath", NOH_LAYER_ADD, NULL, NULL, 1 } };
+    test_random r = test_random_from(21);
+    static gpu g;
+    uint32_t made = 0, bounded = 0;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    for (uint32_t round = 0; round < 120; round++) {
+        static const noh_gl_ledger before; /* nothing */
+        noh_kind_desc kinds[5];
+        noh_stage_view view = cast_view(round, 6.0f);
+        noh_error error;
+        noh_actor actor;
+        uint64_t full;
+        memset(&g, 0, sizeof g);
+        open_null(&g); /* anew: it never gives a name twice, and has only so many */
+        memset(kinds, 0, sizeof kinds);
+        memset(&c.desc, 0, sizeof c.desc);
+        c.desc.kinds = kinds;
+        c.desc.kind_count = 1u + test_random_below(&r, 5);
+        for (uint32_t k = 0; k < c.desc.kind_count; k++) {
+            kinds[k].mesh = &c.packs[test_random_below(&r, CAST_KINDS)];
+            kinds[k].actor_count = 1u + test_random_below(&r, 20);
+            kinds[k].near_count = test_random_below(&r, 2) ? test_random_below(&r, 5) : 0;
+            kinds[k].middle_count = test_random_below(&r, 2) ? test_random_below(&r, 9) : 0;
+            kinds[k].finest_level = test_random_below(&r, 3) ? 0 : test_random_below(&r, 5);
+            kinds[k].inertia = (int)test_random_below(&r, 2);
+            kinds[k].unpickable = (int)test_random_below(&r, 2);
+            kinds[k].held_float_count = test_random_below(&r, 2) ? NOH_NONE : test_random_below(&r, 20);
+            kinds[k].layers = test_random_below(&r, 2) ? layers : NULL;
+            kinds[k].layer_count = kinds[k].layers ? 3 : 0;
+            kinds[k].root_axes = test_random_below(&r, 2) ? NOH_ROOT_GROUND : 0;
+            kinds[k].root_up = 1;
+        }
+        c.desc.job_count = test_random_below(&r, 5);
+        c.desc.halves = (int)test_random_below(&r, 2);
+        c.desc.tangents = (int)test_random_below(&r, 2);
+        c.desc.gpu = test_random_below(&r, 5) ? &noh_stage_on_gl : NULL;
+        if (noh_stage_plan_make(&c.desc, c.desc.gpu ? &g.caps : NULL, &c.plan, &error) != NOH_OK)
+            fail_msg("plan: %s", error.what);
+        full = c.plan.cpu_bytes + c.plan.gpu_bytes;
+        if (test_random_below(&r, 2)) {
+            c.desc.bytes_max = full / 4u + (uint64_t)((double)full * 0.75 * (double)test_random_float(&r, 0.0f, 1.0f));
+            if (noh_stage_plan_make(&c.desc, c.desc.gpu ? &g.caps : NULL, &c.plan, &error) != NOH_OK) {
+                assert_int_equal(error.result, NOH_ERR_MEMORY);
+                assert_true(error.need > c.desc.bytes_max);
+                gpu_close(&g);
+                continue;
+            }
+            assert_true(c.plan.cpu_bytes + c.plan.gpu_bytes <= c.desc.bytes_max);
+            bounded++;
+        }
+        if (c.desc.gpu) {
+            open_on(&c, &g);
+        } else {
+            cast_make(&c, NULL);
+        }
+        assert_true(noh_gl_ledger_bytes(&g.ledger) - noh_gl_ledger_bytes(&before) == c.plan.gpu_bytes);
+        for (uint32_t k = 0; k < c.desc.kind_count; k++) {
+            for (uint32_t i = 0; i < kinds[k].actor_count; i++) {
+                const char *clip = noh_stage_name(c.stage, k, NOH_NAME_CLIP, i % 3u);
+                assert_int_equal(noh_stage_spawn(c.stage, k, NULL, &actor, NULL), NOH_OK);
+                if (clip) assert_int_equal(noh_actor_play(c.stage, actor, i % 3u, clip, NULL, NULL), NOH_OK);
+            }
+        }
+        for (int f = 0; f < 3; f++) {
+            assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
+            if (c.desc.gpu) assert_int_equal(noh_stage_draw(c.stage, NOH_PASS_COLOR, 0, NULL, NULL), NOH_OK);
+        }
+        cast_close_stage(&c);
+        assert_memory_equal(&before, &g.ledger, sizeof before);
+        gpu_close(&g);
+        made++;
+    }
+    assert_true(made > 80 && bounded > 15);
+    cast_close(&c);
+}
+
 /* Whatever call a driver refuses while a stage is made: it is not made, nothing is left, and then it is made. */
 static void a_refusing_driver_leaves_nothing(void **state)
 {
@@ -379,6 +463,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_state_shows_the_same_picture_again),
         cmocka_unit_test(own_shaders_draw_the_same_shapes),
         cmocka_unit_test(frames_make_nothing),
+        cmocka_unit_test(random_casts_use_what_is_planned),
         cmocka_unit_test(a_refusing_driver_leaves_nothing),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
