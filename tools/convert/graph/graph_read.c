@@ -163,7 +163,7 @@ static int read_mask(graph_reader *r)
 static int read_joint(graph_reader *r, uint32_t subtree)
 {
     graph_word name;
-    graph_name *joint;
+    graph_name *joint = NULL;
     double weight = 1.0;
     if (!r->mask)
         return graph_fail(r, r->words[0].line, "'%.60s' belongs to a mask: the lines of a mask follow it directly",
