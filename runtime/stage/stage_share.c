@@ -85,12 +85,14 @@ static void put_in_order(noh_stage *s, noh_stage_kind *k)
 
 /* ---- updates ---- */
 
+/* Without a budget all that are due are posed: nothing is put in order, and no cost is asked for. */
 static void offer(noh_stage *s, noh_stage_kind *k, uint32_t i)
 {
     noh_stage_shown *shown = &s->shown[k->first_actor + i];
     const noh_character *ch = noh_stage_character(k, i);
     uint32_t cost;
-    if (shown->due == NOH_DUE_NOT) {
+    if (shown->due == NOH_DUE_NOT || s->desc.update_budget_ns == UINT64_MAX) {
+        shown->updates = shown->due != NOH_DUE_NOT;
         return;
     }
     cost = noh_cost_ns(&costs, noh_character_joint_work(ch), 0, 0);

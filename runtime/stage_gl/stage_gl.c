@@ -344,12 +344,10 @@ static int any_weight(const float *weights, uint32_t count)
     return 0;
 }
 
-/* One actor's mesh: its weights, its place, its palette. */
-static void upload_one(noh_stage *s, noh_stage_kind *k, uint32_t m, const noh_gl_item *item, uint32_t index)
+/* One actor's mesh: its weights and its place. */
+static void upload_place(const noh_stage_mesh *mesh, const noh_gl_item *item, const noh_stage_shown *shown,
+                         const float *weights)
 {
-    const noh_stage_mesh *mesh = &k->meshes[m];
-    const noh_stage_shown *shown = &s->shown[k->first_actor + index];
-    const float *weights = k->weights + (size_t)index * k->weight_count + mesh->first_weight;
     noh_gl_morph_binding morph;
     float world[12];
     int moved = 0;
@@ -365,9 +363,21 @@ static void upload_one(noh_stage *s, noh_stage_kind *k, uint32_t m, const noh_gl
     if (!item->mirrored) {
         (void)noh_gl_skin_set_place(item->skin, shown->place, world, moved ? &morph : NULL, NULL);
     }
-    if (mesh->skinned) {
-        noh_character_skin(noh_stage_character(k, index), &mesh->skin, s->matrices);
-        noh_gl_skin_set_matrices(item->skin, shown->place, s->matrices);
+}
+
+/* All meshes of one actor, while its pose is at hand. Meshes of one skin take the same matrices. */
+static void upload_actor(noh_stage *s, const noh_stage_kind *k, const noh_gl_item *items, uint32_t index)
+{
+    const noh_stage_shown *shown = &s->shown[k->first_actor + index];
+    const float *weights = k->weights + (size_t)index * k->weight_count;
+    const noh_skin_header *ready = NULL;
+    for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
+        const noh_stage_mesh *mesh = &k->meshes[m];
+        upload_place(mesh, &items[m], shown, weights + mesh->first_weight);
+        if (!mesh->skinned) continue;
+        if (mesh->skin.header != ready) noh_character_skin(noh_stage_character(k, index), &mesh->skin, s->matrices);
+        ready = mesh->skin.header;
+        noh_gl_skin_set_matrices(items[m].skin, shown->place, s->matrices);
     }
 }
 
@@ -375,11 +385,9 @@ static void upload(noh_stage *s)
 {
     noh_stage_gl *gl = s->gpu;
     for (uint32_t i = 0; i < s->desc.kind_count; i++) {
-        noh_stage_kind *k = &s->kinds[i];
-        for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
-            for (uint32_t p = 0; p < noh_stage_seen(k); p++) upload_one(s, k, m, &gl->kinds[i].items[m], k->order[p]);
-            noh_gl_skin_update(gl->kinds[i].items[m].skin);
-        }
+        const noh_stage_kind *k = &s->kinds[i];
+        for (uint32_t p = 0; p < noh_stage_seen(k); p++) upload_actor(s, k, gl->kinds[i].items, k->order[p]);
+        for (uint32_t m = 0; m < k->plan->mesh_count; m++) noh_gl_skin_update(gl->kinds[i].items[m].skin);
     }
     for (uint32_t i = 0; i < gl->model_count; i++) {
         if (gl->models[i].morph) noh_gl_morph_update(gl->models[i].morph, NULL);
