@@ -1,6 +1,6 @@
 #!/bin/sh
-# bench.sh BUILD: `noh bench` on the mask and the puppet, and, where $NOH_ASSETS has them, on hero/head.glb,
-# hero/body.glb, a crowd of it with four LOD levels, and five captured clips at 30 Hz.
+# bench.sh BUILD: `noh bench` on the mask, the puppet and a stage of it, and, where $NOH_ASSETS has them, on hero/head.glb,
+# hero/body.glb, a crowd and a stage of it with four LOD levels, and five captured clips at 30 Hz.
 # Everything after BUILD goes to `noh bench`: --json, --rounds N, --driver D.
 set -eu
 
@@ -13,6 +13,9 @@ echo "== the mask" >&2
 echo "== the puppet" >&2
 "$build/noh" build "$build/demo/puppet.glb" -o "$build/demo/puppet.noh" --quiet --graph tools/demo_assets/puppet/puppet.graph
 "$build/noh" bench "$build/demo/puppet.noh" "$@"
+"$build/noh" build "$build/demo/puppet.glb" -o "$build/demo/puppet_levels.noh" --lod 4 --lod-fast --quiet
+echo "== a stage of the puppet with LOD levels" >&2
+"$build/noh" bench "$build/demo/puppet_levels.noh" --only stage "$@"
 
 for name in head body; do
     asset=${NOH_ASSETS:-}/hero/$name.glb
@@ -30,6 +33,7 @@ if [ -f "$body" ]; then
     "$build/noh" build "$body" -o "$build/body_levels.noh" --lod 4 --quiet
     echo "== a crowd of $body with LOD levels" >&2
     "$build/noh" bench "$build/body_levels.noh" --only crowd "$@"
+    "$build/noh" bench "$build/body_levels.noh" --only stage "$@"
 fi
 
 clips=${NOH_ASSETS:-}/clips

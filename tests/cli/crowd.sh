@@ -54,6 +54,9 @@ if [ -f "$assets/hero/body.glb" ]; then
     for row in cpu/1-pixel cpu/16-pixels gpu/1-pixel gpu/16-pixels; do
         check "it has rows crowd/$row" grep -q "\"crowd/$row\"" "$work/out"
     done
+    noh bench "$work/body.noh" --only stage --quick --json
+    expect 0 'a stage and its parts joined by hand come to the same palettes'
+    check 'it has rows stage/cpu and stage/lod' awk '/"stage\/(cpu|lod)\/20-actors"/ { found++ } END { exit found != 2 }' "$work/out"
 else
     skip 'a bench of fifty bodies' 'no hero/body.glb in NOH_ASSETS'
 fi

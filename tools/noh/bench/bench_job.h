@@ -13,6 +13,7 @@
  *   bench_clip*.c       rows clip/ (see bench_clip.h)
  *   bench_crowd_pose.c  rows crowd/pose: a thousand characters, posed at the update rate that pixels need
  *   bench_crowd_frame.c rows crowd/cpu and crowd/gpu: frames of a thousand bodies, with and without LOD
+ *   bench_cast.c        rows stage/: frames of a stage, against its parts joined by hand, and without detail
  *   bench_skin_gpu.c    rows skin/gpu: a crowd in one draw, joints per vertex
  *   bench_skin_cpu.c    rows skin/cpu
  *   bench_report.c      rows, storage, and how they are printed
@@ -208,6 +209,7 @@ int bench_cpu(bench_job *job);
 int bench_clip_rows(bench_job *job); /* none where no pack has clips */
 int bench_crowd_pose(bench_job *job);
 int bench_crowd_frame(bench_job *job);
+int bench_cast(bench_job *job); /* none where no mesh has joints and levels, or there are no clips */
 /* The skinned mesh of the most vertices; no rows where the pack has none. */
 int bench_skin_gpu(bench_job *job);
 int bench_skin_cpu(bench_job *job);

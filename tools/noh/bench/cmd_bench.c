@@ -41,7 +41,7 @@ static const struct group {
 } groups[] = {
     { "morph", bench_morph, 1 },       { "morph-cpu", bench_cpu, 1 },     { "skin-cpu", bench_skin_cpu, 1 },
     { "skin-gpu", bench_skin_gpu, 1 }, { "heads", bench_crowd, 1 },       { "clip", bench_clip_rows, 0 },
-    { "pose", bench_crowd_pose, 0 },   { "crowd", bench_crowd_frame, 1 },
+    { "pose", bench_crowd_pose, 0 },   { "crowd", bench_crowd_frame, 1 }, { "stage", bench_cast, 0 },
 };
 #define GROUPS (sizeof groups / sizeof groups[0])
 
@@ -162,7 +162,7 @@ static const option options[] = {
     { .name = "--only",
       .kind = OPTION_TEXT,
       .at = offsetof(bench_args, only),
-      .value = "morph|morph-cpu|skin-cpu|skin-gpu|heads|clip|pose|crowd",
+      .value = "morph|morph-cpu|skin-cpu|skin-gpu|heads|clip|pose|crowd|stage",
       .what = "measure this group of rows; default: all for which the packs have data" },
     { .name = "--source",
       .kind = OPTION_INPUT,
