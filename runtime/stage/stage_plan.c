@@ -342,6 +342,15 @@ static noh_result begin(const planner *p, uint32_t kind, noh_error *error)
     return result;
 }
 
+/* Kinds of the same clips have one bank, whose number is kept with the first of them. */
+static void state_segments(const planner *p)
+{
+    for (uint32_t i = 0; i < p->desc->kind_count; i++) {
+        const uint32_t owner = noh_stage_bank_kind(p->desc, i);
+        p->plan->kinds[i].cached_segment_count = p->plan->kinds[owner].cached_segment_count;
+    }
+}
+
 static uint64_t count_packs(const noh_stage_desc *desc)
 {
     uint64_t bytes = 0;
@@ -424,6 +433,7 @@ noh_result noh_stage_plan_make(const noh_stage_desc *desc, const struct noh_gl_c
     if (result == NOH_OK) result = find_fit(&p, error);
     if (result == NOH_OK) {
         state_losses(&p);
+        state_segments(&p);
         out->pack_bytes = count_packs(desc);
         out->hash = hash_plan(desc, out);
     }

@@ -103,6 +103,22 @@ static void a_bound_is_kept_or_refused(void **state)
     cast_close(&c);
 }
 
+/* Three kinds of the same clips have one bank: its cached segments are the same number in all of them. */
+static void kinds_that_share_clips_tell_the_same_cached_segments(void **state)
+{
+    cast c;
+    (void)state;
+    cast_open(&c);
+    c.kinds[1] = c.kinds[2] = c.kinds[PUPPETS];
+    assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, &said), NOH_OK);
+    c.desc.cpu_bytes_max = c.plan.cpu_bytes - 1u;
+    assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, &said), NOH_OK);
+    assert_true(c.plan.kinds[0].cached_segment_count < c.plan.kinds[0].segment_count);
+    assert_int_equal(c.plan.kinds[1].cached_segment_count, c.plan.kinds[0].cached_segment_count);
+    assert_int_equal(c.plan.kinds[2].cached_segment_count, c.plan.kinds[0].cached_segment_count);
+    cast_close(&c);
+}
+
 static void bad_plan(cast *c, noh_result result, const char *what)
 {
     assert_int_equal(noh_stage_plan_make(&c->desc, NULL, &c->plan, &said), result);
@@ -798,6 +814,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(plans_do_not_depend_on_when_they_are_made),
         cmocka_unit_test(actor_levels_rise_in_error),
         cmocka_unit_test(a_bound_is_kept_or_refused),
+        cmocka_unit_test(kinds_that_share_clips_tell_the_same_cached_segments),
         cmocka_unit_test(desc_fields_broken_in_turn),
         cmocka_unit_test(a_byte_less_is_refused),
         cmocka_unit_test(a_stale_actor_is_an_error),
