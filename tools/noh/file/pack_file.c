@@ -7,18 +7,23 @@
 
 int pack_file_open(pack_file *file, const char *path)
 {
+    return pack_file_open_as(file, path, path);
+}
+
+int pack_file_open_as(pack_file *file, const char *path, const char *subject)
+{
     noh_error error = { NOH_OK, "", 0, 0 };
     memset(file, 0, sizeof *file);
     file->path = path;
     if (noh_file_map(path, &file->file, &error)) {
-        return tool_fail(path, "%s", error.what);
+        return tool_fail(subject, "%s", error.what);
     }
     if (file->file.bytes == 0) {
-        return tool_fail(path, "the file is empty");
+        return tool_fail(subject, "the file is empty");
     }
     if (noh_pack_open(file->file.data, file->file.bytes, &file->pack, &error)) {
         pack_file_close(file);
-        return tool_fail_error(path, &error);
+        return tool_fail_error(subject, &error);
     }
     return 0;
 }

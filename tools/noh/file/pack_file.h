@@ -13,6 +13,8 @@ typedef struct pack_file {
 
 /* Map and open a pack; prints the error and returns an exit code, 0 on success. */
 int pack_file_open(pack_file *file, const char *path);
+/* The same, with messages about `subject`: "cast.txt:3: head.noh". */
+int pack_file_open_as(pack_file *file, const char *path, const char *subject);
 void pack_file_close(pack_file *file);
 
 /* Read the header of the pack's n-th clip; prints an error about a broken one and returns an exit code. */

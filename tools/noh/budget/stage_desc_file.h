@@ -1,0 +1,28 @@
+/* stage_desc_file.h: what a game asks of a stage, as a text (noh help FORMATS). */
+#ifndef NOH_NOH_BUDGET_STAGE_DESC_FILE_H
+#define NOH_NOH_BUDGET_STAGE_DESC_FILE_H
+
+#include "file/pack_file.h"
+#include "noh.h"
+
+#define STAGE_DESC_CLIPS_MAX 32u /* packs of clips of one kind */
+#define STAGE_DESC_PACKS_MAX (NOH_STAGE_KINDS_MAX * (STAGE_DESC_CLIPS_MAX + 1u))
+
+/* The desc points into the rest: neither is copied. */
+typedef struct stage_desc_file {
+    noh_stage_desc desc; /* gpu and morph_path are the caller's to set */
+    noh_kind_desc kinds[NOH_STAGE_KINDS_MAX];
+    noh_layer_desc layers[NOH_STAGE_KINDS_MAX][NOH_LAYERS_MAX];
+    const noh_pack *clips[NOH_STAGE_KINDS_MAX][STAGE_DESC_CLIPS_MAX];
+    pack_file packs[STAGE_DESC_PACKS_MAX]; /* each file once, so that kinds share it */
+    char *pack_paths[STAGE_DESC_PACKS_MAX];
+    uint32_t pack_count;
+    char *text; /* names lie in it */
+} stage_desc_file;
+
+/* Read the text and open its packs, whose paths are relative to the text's folder. Prints an error, "FILE:LINE: ...",
+ * and returns an exit code; 0 on success, and the file is then to be freed. */
+int stage_desc_file_read(const char *path, stage_desc_file **out);
+void stage_desc_file_free(stage_desc_file *file);
+
+#endif
