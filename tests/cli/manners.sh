@@ -27,7 +27,7 @@ for verb in $verbs; do
     expect 0 "help $verb"
     check 'says the same' cmp "$work/out" "$work/help"
     # Every option that the help lists is one that the parser takes.
-    options=$(sed -n 's/^  \(-[-a-z]*\).*/\1/p' "$work/help" | grep -v '^-h$')
+    options=$(sed -n 's/^  \(-[-a-z0-9]*\).*/\1/p' "$work/help" | grep -v '^-h$')
     for option in $options; do
         noh $verb $option
         check "$verb knows $option" sh -c 'test "$2" = 2 && ! grep -q "has no option" "$1"' - "$work/err" $code

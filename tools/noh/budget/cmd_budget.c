@@ -1,22 +1,15 @@
 /* cmd_budget.c: the bytes that a load will take, by the sums that the load itself makes; `noh verify` compares the two.
- */
+ * With --actors or --desc those of a stage, by its plan. */
 #include <stdio.h>
 #include <string.h>
 
+#include "budget_args.h"
 #include "level_costs.h"
 #include "gpu/gpu_args.h"
 #include "cli/json.h"
 #include "cli/message.h"
 #include "cli/options.h"
 #include "cli/verbs.h"
-
-typedef struct budget_args {
-    const char *pack, *anim, *path, *accumulate, *driver;
-    double instances, lod;
-    uint32_t level;
-    int as_json, nominal;
-    load_options load;
-} budget_args;
 
 static void print_levels(const level_costs *c)
 {
@@ -104,12 +97,11 @@ static int json_budget(const load_budget *b, const level_costs *levels, const se
     return json_end(&j);
 }
 
-/* The capabilities of the driver, or of a nominal device: also for a pack of clips, which draws nothing. */
-static int find_caps(const budget_args *a, const scene *s, noh_gl_caps *caps)
+int budget_caps(const budget_args *a, int draws, noh_gl_caps *caps)
 {
     gpu g;
     int status;
-    if (a->nominal || !s->item_count) {
+    if (a->nominal || !draws) {
         *caps = nominal_caps();
         return 0;
     }
@@ -143,7 +135,7 @@ static int budget_of(const budget_args *a, const pack_file *file)
     }
     memset(&b, 0, sizeof b);
     status = s.item_count ? 0 : check_clips_alone(a);
-    if (!status) status = find_caps(a, &s, &caps);
+    if (!status) status = budget_caps(a, s.item_count != 0, &caps);
     if (!status) status = scene_set_level(&s, file, a->level);
     if (!status) status = scene_open_anim(&s, file, a->anim);
     if (!status) status = load_budget_make(&b, file, &s, &caps, &a->load);
@@ -162,54 +154,125 @@ static int budget_of(const budget_args *a, const pack_file *file)
     return status;
 }
 
+static int budget_of_pack(const budget_args *a)
+{
+    pack_file file;
+    int status = pack_file_open(&file, a->pack);
+    if (!status) {
+        status = budget_of(a, &file);
+        pack_file_close(&file);
+    }
+    return status;
+}
+
+/* ---- the verb ---- */
+
 static int check_args(budget_args *a)
 {
     int status = parse_path(a->path, &a->load.path);
     if (!status) status = parse_accumulate(a->accumulate, &a->load.accumulate);
     if (!status) status = parse_instances(a->instances, &a->load.instances);
     if (!status) status = parse_level(a->lod, &a->level);
-    return status;
+    return status ? status : stage_args_check(a);
 }
 
 static int run(void *args)
 {
     budget_args *a = args;
-    pack_file file;
-    int status = check_args(a);
-    if (!status) {
-        status = pack_file_open(&file, a->pack);
-        if (!status) {
-            status = budget_of(a, &file);
-            pack_file_close(&file);
-        }
+    const int status = check_args(a);
+    if (status) {
+        return status;
     }
-    return status;
+    if (a->desc) {
+        return budget_of_desc(a);
+    }
+    return a->counts[ACTORS] ? budget_of_actors(a) : budget_of_pack(a);
 }
 
 static budget_args arguments;
 
+#define OF_STAGE "--actors --desc"
+#define COUNT_OPTION(text, index, unit, ...)                                                                     \
+    {                                                                                                            \
+        .name = text, .kind = OPTION_TEXT, .at = offsetof(budget_args, texts[index]), .value = unit, __VA_ARGS__ \
+    }
+
 static const option options[] = {
-    OPTION_ANIM(budget_args, anim, .needs = NULL),
-    OPTION_INSTANCES(budget_args, instances, "1", .what = "copies of the scene, 1 to 65536"),
-    OPTION_PATH(budget_args, path, .initial = "auto"),
-    OPTION_ACCUMULATE(budget_args, accumulate, .initial = "auto"),
-    OPTION_LOD(budget_args, lod, .needs = NULL),
-    OPTION_DRIVER(budget_args, driver, .initial = "egl", .excludes = "--nominal"),
+    OPTION_ANIM(budget_args, anim, .excludes = OF_STAGE),
+    OPTION_INSTANCES(budget_args, instances, "1", .what = "copies of the scene, 1 to 65536", .excludes = OF_STAGE),
+    OPTION_PATH(budget_args, path, .initial = "auto", .excludes = "--no-gpu"),
+    OPTION_ACCUMULATE(budget_args, accumulate, .initial = "auto", .excludes = OF_STAGE),
+    OPTION_LOD(budget_args, lod, .excludes = OF_STAGE),
+    OPTION_DRIVER(budget_args, driver, .initial = "egl", .excludes = "--nominal --no-gpu"),
     { .name = "--nominal",
       .kind = OPTION_FLAG,
       .at = offsetof(budget_args, nominal),
-      .what = "assume a GLES 3.2 device that supports everything; needs no driver" },
+      .what = "assume a GLES 3.2 device that supports everything; needs no driver",
+      .excludes = "--no-gpu" },
+    COUNT_OPTION("--actors", ACTORS, "N", .example = "20", .excludes = "--desc",
+                 .what = "a stage with this many characters of the pack at one time, 1 to 65535"),
+    COUNT_OPTION(
+        "--near", NEAR, "N", .needs = "--actors", .example = "4",
+        .what = "of these at the finest level at once; without --near and --middle by an even spread over 100 m"),
+    COUNT_OPTION("--middle", MIDDLE, "N", .needs = "--actors", .example = "8", .what = "and at the next level"),
+    COUNT_OPTION("--finest", FINEST, "K", .needs = "--actors", .example = "1",
+                 .what = "the finest level that may be used, 0 to 7; 0: all"),
+    { .name = "--clips",
+      .kind = OPTION_LIST,
+      .at = offsetof(budget_args, clips),
+      .value = "PACK",
+      .what =
+          "take the clips from this pack; repeat it for several, of which a later one's clip replaces one of the same "
+          "name",
+      .example = "body_anim.noh",
+      .needs = "--actors" },
+    { .name = "--desc",
+      .kind = OPTION_INPUT,
+      .at = offsetof(budget_args, desc),
+      .value = "FILE",
+      .what = "a stage of several kinds, as a text (noh help FORMATS); stands in place of PACK",
+      .example = "cast.txt" },
+    COUNT_OPTION("--bytes", BYTES, "N", .needs = OF_STAGE, .example = "2097152",
+                 .what = "the stage may take this many bytes, CPU and GPU together; what is given up for it is listed"),
+    COUNT_OPTION("--cpu-bytes", CPU_BYTES, "N", .needs = OF_STAGE, .example = "1048576", .what = "and on the CPU"),
+    COUNT_OPTION("--gpu-bytes", GPU_BYTES, "N", .needs = OF_STAGE, .example = "1048576", .what = "and on the GPU"),
+    { .name = "--pixels",
+      .kind = OPTION_TEXT,
+      .at = offsetof(budget_args, pixels_text),
+      .value = "F",
+      .what = "largest error that LOD may show, in pixels, above 0; without it 1, or what --desc says",
+      .example = "0.5",
+      .needs = OF_STAGE },
+    COUNT_OPTION("--height", HEIGHT, "N", .needs = OF_STAGE, .example = "720",
+                 .what = "lines of the picture, 1 to 65536; without it 1080, or what --desc says"),
+    COUNT_OPTION("--jobs", JOBS, "N", .needs = OF_STAGE, .example = "4", .what = "parallel jobs of a frame, 1 to 64"),
+    { .name = "--f16",
+      .kind = OPTION_FLAG,
+      .at = offsetof(budget_args, halves),
+      .what = "16-bit accumulation texels",
+      .needs = OF_STAGE,
+      .excludes = "--no-gpu" },
+    { .name = "--no-gpu",
+      .kind = OPTION_FLAG,
+      .at = offsetof(budget_args, without_gpu),
+      .what = "a stage that steps and poses, and draws nothing",
+      .needs = OF_STAGE },
     OPTION_JSON(budget_args, as_json),
 };
 
 const verb verb_budget = {
     .name = "budget",
     .files = "PACK",
-    .what = "the bytes that a load will take, CPU and GPU, by part",
-    .example = "face.noh\nface.noh --instances 100 --path mrt --nominal --json",
+    .what = "the bytes that a load, or a stage, will take, CPU and GPU, by part",
+    .more =
+        "With --actors, or with --desc in place of PACK, it plans a stage: its parts, each kind's levels, and what is "
+        "given up where the stage has to keep a bound.",
+    .example = "face.noh\nface.noh --instances 100 --path mrt --nominal --json\n"
+               "body.noh --actors 20 --near 4 --bytes 2097152\n--desc cast.txt --nominal",
     .options = options,
     .option_count = sizeof options / sizeof options[0],
     .file_max = 1,
+    .instead = "--desc",
     .files_at = offsetof(budget_args, pack),
     .args = &arguments,
     .run = run,

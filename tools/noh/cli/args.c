@@ -191,12 +191,23 @@ static int check_output(const verb *v, const given *g, const option *o, const ch
     return 0;
 }
 
+/* There are files, or the option that stands in for them. */
+static int check_files(const verb *v, const given *g)
+{
+    const int instead = v->instead && was_given(v, g, v->instead, strlen(v->instead));
+    if (instead) {
+        return g->file_count ? tool_usage("'%s' has no effect with %s", g->files[0], v->instead) : 0;
+    }
+    if (g->file_count) {
+        return 0;
+    }
+    return v->instead ? tool_usage("noh %s wants %s or %s", v->name, v->files, v->instead)
+                      : tool_usage("noh %s wants %s", v->name, v->files);
+}
+
 static int check_all(const verb *v, const given *g)
 {
-    int status = 0;
-    if (!g->file_count) {
-        return tool_usage("noh %s wants %s", v->name, v->files);
-    }
+    int status = check_files(v, g);
     for (int i = 0; i < v->option_count && !status; i++) {
         const option *o = &v->options[i];
         if (o->required && !g->text[i]) {

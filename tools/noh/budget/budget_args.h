@@ -1,0 +1,35 @@
+/* budget_args.h: the options of `noh budget`, and what it does of a stage. */
+#ifndef NOH_NOH_BUDGET_BUDGET_ARGS_H
+#define NOH_NOH_BUDGET_BUDGET_ARGS_H
+
+#include "cli/args.h"
+#include "draw/load.h"
+
+/* Options that are whole numbers. */
+enum { ACTORS, NEAR, MIDDLE, FINEST, BYTES, CPU_BYTES, GPU_BYTES, HEIGHT, JOBS, COUNT_OPTIONS };
+
+typedef struct budget_args {
+    const char *pack, *anim, *path, *accumulate, *driver;
+    double instances, lod;
+    uint32_t level;
+    int as_json, nominal;
+    load_options load;
+    /* of a stage */
+    const char *desc;
+    const char *texts[COUNT_OPTIONS]; /* NULL: not given */
+    uint64_t counts[COUNT_OPTIONS];   /* 0: not given */
+    const char *pixels_text;
+    double pixels;
+    int halves, without_gpu;
+    option_list clips;
+} budget_args;
+
+/* The capabilities of the driver, or of a nominal device: also for what draws nothing, a pack of clips alone. */
+int budget_caps(const budget_args *a, int draws, noh_gl_caps *caps);
+
+/* These print errors and return an exit code. */
+int stage_args_check(budget_args *a);
+int budget_of_actors(const budget_args *a); /* --actors: one kind, the pack's characters */
+int budget_of_desc(const budget_args *a);   /* --desc */
+
+#endif

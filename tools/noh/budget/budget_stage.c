@@ -1,0 +1,144 @@
+/* budget_stage.c: a stage out of the options of `noh budget`. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "budget_args.h"
+#include "stage_budget.h"
+#include "stage_desc_file.h"
+#include "cli/message.h"
+#include "convert/base/input_file.h"
+
+#define BYTES_MAX 9007199254740992.0 /* whole numbers up to here are exact as doubles */
+
+static int check_counts(budget_args *a)
+{
+    static const struct {
+        const char *name;
+        double least, most;
+    } rows[COUNT_OPTIONS] = {
+        { "--actors", 1.0, NOH_STAGE_ACTORS_MAX },
+        { "--near", 0.0, NOH_STAGE_ACTORS_MAX },
+        { "--middle", 0.0, NOH_STAGE_ACTORS_MAX },
+        { "--finest", 0.0, NOH_LOD_LEVELS_MAX - 1u },
+        { "--bytes", 1.0, BYTES_MAX },
+        { "--cpu-bytes", 1.0, BYTES_MAX },
+        { "--gpu-bytes", 1.0, BYTES_MAX },
+        { "--height", 1.0, 65536.0 },
+        { "--jobs", 1.0, NOH_STAGE_JOBS_MAX },
+    };
+    for (int i = 0; i < COUNT_OPTIONS; i++) {
+        double value;
+        if (!a->texts[i]) continue;
+        if (tool_number(a->texts[i], &value) || !(value >= rows[i].least && value <= rows[i].most) ||
+            value > (double)(uint64_t)value) {
+            return tool_usage("%s wants a whole number from %.0f to %.0f, not '%s'", rows[i].name, rows[i].least,
+                              rows[i].most, a->texts[i]);
+        }
+        a->counts[i] = (uint64_t)value;
+    }
+    return 0;
+}
+
+static int check_pixels(budget_args *a)
+{
+    if (a->pixels_text && (tool_number(a->pixels_text, &a->pixels) || !(a->pixels > 0.0 && a->pixels <= 1e6))) {
+        return tool_usage("--pixels wants a number above 0 and at most 1000000, not '%s'", a->pixels_text);
+    }
+    return 0;
+}
+
+int stage_args_check(budget_args *a)
+{
+    const int status = check_counts(a);
+    return status ? status : check_pixels(a);
+}
+
+/* What the options say, over what a text says. */
+static void apply_options(const budget_args *a, noh_stage_desc *desc)
+{
+    const uint64_t *counts = a->counts;
+    if (counts[BYTES]) desc->bytes_max = counts[BYTES];
+    if (counts[CPU_BYTES]) desc->cpu_bytes_max = counts[CPU_BYTES];
+    if (counts[GPU_BYTES]) desc->gpu_bytes_max = counts[GPU_BYTES];
+    if (counts[HEIGHT]) desc->height_px = (uint32_t)counts[HEIGHT];
+    if (counts[JOBS]) desc->job_count = (uint32_t)counts[JOBS];
+    if (a->pixels_text) desc->lod.pixels = (float)a->pixels;
+    if (a->halves) desc->halves = 1;
+    desc->gpu = a->without_gpu ? NULL : &noh_stage_on_gl;
+    desc->morph_path = (uint32_t)a->load.path;
+}
+
+static int budget_of_stage(const budget_args *a, const char *subject, noh_stage_desc *desc)
+{
+    noh_gl_caps caps;
+    stage_budget b;
+    int status = 0;
+    apply_options(a, desc);
+    if (desc->gpu) status = budget_caps(a, 1, &caps);
+    if (!status) status = stage_budget_make(&b, subject, desc, desc->gpu ? &caps : NULL);
+    if (!status) {
+        if (a->as_json) {
+            status = stage_budget_json(&b);
+        } else {
+            stage_budget_print(&b);
+        }
+        stage_budget_free(&b);
+    }
+    return status;
+}
+
+int budget_of_desc(const budget_args *a)
+{
+    stage_desc_file *file;
+    int status = stage_desc_file_read(a->desc, &file);
+    if (!status) {
+        status = budget_of_stage(a, a->desc, &file->desc);
+        stage_desc_file_free(file);
+    }
+    return status;
+}
+
+/* One kind: the pack's characters. */
+static int budget_of_kind(const budget_args *a, const pack_file *file, const noh_pack *const *clips)
+{
+    noh_kind_desc kind;
+    noh_stage_desc desc;
+    char *name = input_stem(a->pack);
+    int status;
+    memset(&kind, 0, sizeof kind);
+    memset(&desc, 0, sizeof desc);
+    kind.name = name ? name : a->pack;
+    kind.mesh = &file->pack;
+    kind.clip_packs = a->clips.count ? clips : NULL;
+    kind.clip_pack_count = (uint32_t)a->clips.count;
+    kind.actor_count = (uint32_t)a->counts[ACTORS];
+    kind.near_count = (uint32_t)a->counts[NEAR];
+    kind.middle_count = (uint32_t)a->counts[MIDDLE];
+    kind.finest_level = (uint32_t)a->counts[FINEST];
+    desc.kinds = &kind;
+    desc.kind_count = 1;
+    status = budget_of_stage(a, a->pack, &desc);
+    free(name);
+    return status;
+}
+
+int budget_of_actors(const budget_args *a)
+{
+    const noh_pack *packs[STAGE_DESC_CLIPS_MAX];
+    pack_file file, clips[STAGE_DESC_CLIPS_MAX];
+    int open = 0, status;
+    if (a->clips.count > (int)STAGE_DESC_CLIPS_MAX) {
+        return tool_usage("more than %u times --clips", STAGE_DESC_CLIPS_MAX);
+    }
+    status = pack_file_open(&file, a->pack);
+    for (; open < a->clips.count && !status; open++) {
+        status = pack_file_open(&clips[open], a->clips.items[open]);
+        packs[open] = &clips[open].pack;
+    }
+    if (!status) status = budget_of_kind(a, &file, packs);
+    while (open) {
+        pack_file_close(&clips[--open]);
+    }
+    pack_file_close(&file);
+    return status;
+}
