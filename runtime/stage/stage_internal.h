@@ -309,7 +309,7 @@ uint32_t noh_stage_pools(const noh_kind_plan *plan, uint32_t *levels, uint32_t *
 noh_character_desc noh_stage_character_desc(const noh_stage_kind *kind, uint32_t instance);
 noh_result noh_stage_open_kind(noh_stage *s, const noh_stage_desc *desc, uint32_t kind, const noh_stage_blocks *blocks,
                                noh_error *error);
-noh_result noh_stage_open_layers(noh_stage_kind *kind, uint32_t number, noh_error *error);
+noh_result noh_stage_open_layers(noh_stage_kind *k, uint32_t kind, noh_error *error);
 
 /* An actor that is there, and its kind; NULL: gone. */
 noh_stage_actor *noh_stage_actor_of(const noh_stage *s, noh_actor actor, noh_stage_kind **kind);
