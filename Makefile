@@ -83,6 +83,7 @@ CONVERT_O  := $(CONVERT_C:%.c=$(BUILD)/%.o) $(CONVERT_CC:%.cpp=$(BUILD)/%.o)
 TOOL_O     := $(TOOL_C:%.c=$(BUILD)/%.o) $(BUILD)/gen/tool_shaders.gen.o
 DEMO_O     := $(DEMO_C:%.c=$(BUILD)/%.o)
 $(DEMO_O): INCLUDES += -Itools/demo_assets
+comma      := ,
 EXAMPLES   := $(EXAMPLE_C:tools/examples/%.c=$(BUILD)/examples/%)
 TESTS      := $(TEST_C:tests/%.c=$(BUILD)/tests/%)
 # The library as three files, and the tests that are linked with it, too.
@@ -460,7 +461,8 @@ examples: $(EXAMPLES)
 $(BUILD)/examples/%: $(BUILD)/tools/examples/%.o $(BUILD)/libnoh.a
 	@mkdir -p $(@D)
 	$(call say,CC,$@)
-	$(Q)$(CC) $(ALL_LDFLAGS) $^ -o $@ $(if $(shell grep -lsE '<EGL/|egl_context' tools/examples/$*.c),-lEGL)
+	$(Q)$(CC) $(ALL_LDFLAGS) $^ -o $@ $(if $(shell grep -lsE '<EGL/|start.h' tools/examples/$*.c),-lEGL) \
+	    $(if $(shell grep -ls measure.h tools/examples/$*.c),$(addprefix -Wl$(comma)--wrap=,malloc calloc realloc))
 
 # Code and data of the library by processor, against the table of the last commit; make sizes-update writes that table.
 sizes:

@@ -55,7 +55,8 @@ for source in tools/examples/*.c; do
 done
 for source in $sources; do
     name=$(basename "$source" .c)
-    libraries=$(sed -n 's|^ *# *include <EGL/.*|-lEGL|p' "$source" | head -n 1)
+    libraries=$(sed -n 's|^ *# *include <EGL/.*|-lEGL|p; s|^ *# *include "start.h".*|-lEGL|p' "$source" | head -n 1)
+    ! grep -q '"measure.h"' "$source" || libraries="$libraries -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc"
     # shellcheck disable=SC2086
     check "$name builds with it" gcc -std=gnu99 -O2 -Wl,--gc-sections "-I$work/alone" "$source" "$work/alone/noh.o" -o "$work/with_amalgam" $libraries -lm
     # shellcheck disable=SC2086

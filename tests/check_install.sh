@@ -88,7 +88,11 @@ awk '/^```c$/ { inside = 1; next } /^```$/ { inside = 0 } inside' README.md >"$w
 cp tools/examples/*.[ch] "$work"
 programs=$(cd "$work" && ls ./*.c | sed 's|^\./||; s|\.c$||' | grep -v '^alone$')
 libraries() { # PROGRAM: a program that makes its own context links EGL
-    sed -n 's|^ *# *include <EGL/.*|-lEGL|p' "$work/$1.c" | head -n 1
+    sed -n 's|^ *# *include <EGL/.*|-lEGL|p; s|^ *# *include "start.h".*|-lEGL|p' "$work/$1.c" | head -n 1
+    ! grep -q '"measure.h"' "$work/$1.c" || echo -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc
+}
+is_c_alone() { # PROGRAM: it has designated initialisers of C99
+    grep -q '"start.h"' "$work/$1.c"
 }
 # The same lines with every compiler, language and way to build.
 runs() { # WHAT PROGRAM EXECUTABLE
@@ -100,6 +104,7 @@ by_pkg_config() { # NAME COMPILER...
     name=$1
     shift
     for program in $programs; do
+        [ "$language" = c ] || ! is_c_alone "$program" || continue
         # shellcheck disable=SC2046
         check "pkg-config, $name: $program builds" "$@" -x "$language" "$work/$program.c" -x none -o "$work/program" \
             $(PKG_CONFIG_PATH="$prefix/lib/pkgconfig" pkg-config --define-variable=prefix="$prefix" --cflags --libs noh) $(libraries "$program") -lm
@@ -134,15 +139,16 @@ add_executable(c c.c)
 add_executable(cpp cpp.cpp)
 set_target_properties(c PROPERTIES C_STANDARD 99)
 set_target_properties(cpp PROPERTIES CXX_STANDARD 17)
-target_link_libraries(c noh::noh m $(libraries "$program"))
-target_link_libraries(cpp noh::noh m $(libraries "$program"))
+target_link_libraries(c noh::noh m $(libraries "$program" | tr '\n' ' '))
+target_link_libraries(cpp noh::noh m $(libraries "$program" | tr '\n' ' '))
 if(NOT EXISTS "\${noh_SHADERS_DIR}/common_layers.glsl")
     message(FATAL_ERROR "no shaders in \${noh_SHADERS_DIR}")
 endif()
 END
+        ! is_c_alone "$program" || sed -i '/(cpp /d' "$work/cmake_$program/CMakeLists.txt"
         check "CMake: $program builds" sh -c 'cmake -S "$1" -B "$1/build" -DCMAKE_PREFIX_PATH="$2" && cmake --build "$1/build"' - "$work/cmake_$program" "$prefix"
         runs 'CMake, C99' "$program" "$work/cmake_$program/build/c"
-        runs 'CMake, C++17' "$program" "$work/cmake_$program/build/cpp"
+        is_c_alone "$program" || runs 'CMake, C++17' "$program" "$work/cmake_$program/build/cpp"
     done
     sed 's/noh [0-9.]* REQUIRED/noh 99.0 REQUIRED/' "$work/cmake_smile/CMakeLists.txt" >"$work/CMakeLists.txt"
     mkdir "$work/cmake_new" && mv "$work/CMakeLists.txt" "$work/cmake_smile/"*.c* "$work/cmake_new"

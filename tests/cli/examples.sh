@@ -37,19 +37,19 @@ run face_cpu
 expect 2 'no file is a mistake of usage'
 
 noh build "$build/demo/puppet.glb" -o "$work/puppet.noh" --quiet
-run walker puppet.noh
-expect 0 'walker walks'
+run walker_cpu puppet.noh
+expect 0 'walker_cpu walks'
 check 'its feet come down in turn' sh -c 'test "$(sed -n "s/.* s  //p" "$1" | tr "\n" " ")" = "foot_left foot_right foot_left "' - "$work/out"
 check 'and carry it a metre' grep -q '^1\.00 m' "$work/out"
-shows 'and it shows a figure' "$work/walker.ppm" 480 540 15 60
-run walker puppet.noh 1.3 -o later.ppm
+shows 'and it shows a figure' "$work/walker_cpu.ppm" 480 540 15 60
+run walker_cpu puppet.noh 1.3 -o later.ppm
 expect 0 'for a shorter time'
-check 'it is in another pose' differ "$work/walker.ppm" "$work/later.ppm"
-run walker "$build/mask.noh"
+check 'it is in another pose' differ "$work/walker_cpu.ppm" "$work/later.ppm"
+run walker_cpu "$build/mask.noh"
 expect 0 'of a pack without a skeleton it draws nothing'
 
 if [ -n "${NOH_SAN:-}" ]; then
-    skip 'face_gl' 'the driver leaks under the sanitizer'
+    skip 'face_gl, walker, cast' 'the driver leaks under the sanitizer'
 else
     run face_gl "$build/mask.noh"
     expect 0 'face_gl draws a smile'
@@ -60,10 +60,33 @@ else
     check 'is another picture' differ "$work/face_gl.ppm" "$work/wink.ppm"
     run face_gl "$build/mask.noh" nobody
     expect 1 'a target that is missing is refused'
+
+    run walker puppet.noh -o walker.png
+    expect 0 'walker walks on the GPU'
+    check 'its feet come down in turn' sh -c 'test "$(sed -n "s/.* s  //p" "$1" | tr "\n" " ")" = "foot_left foot_right foot_left "' - "$work/out"
+    check 'and carry it a metre' grep -q '^1\.00 m' "$work/out"
+    check 'and it saves a picture' sh -c 'test "$(wc -c <"$1")" -gt 20000' - "$work/walker.png"
+    run walker "$build/mask.noh"
+    expect 1 'a pack without the clip is refused'
+    check 'by name' grep -q actor "$work/err"
+
+    field() { sed -n "s/.*\"$1\": \([0-9]*\).*/\1/p" "$work/out"; }
+    run cast "$build/demo/puppet_levels.noh" --json --seconds 1 -o cast.png
+    expect 0 'cast plays for a second'
+    check 'it takes on the GPU what was predicted' test "$(field gpu_bytes)" = "$(field gpu_predicted)"
+    check 'both together within 2 MiB' test $(($(field gpu_bytes) + $(field cpu_bytes))) -le 2097152
+    check 'nothing is allocated once there is a stage' test "$(field allocations)" = 0
+    check 'no error of GL' test "$(field gl_errors)" = 0
+    check 'twenty actors put their feet down' test "$(field keys)" -ge 20
+    check 'and it saves a picture' sh -c 'test "$(wc -c <"$1")" -gt 50000' - "$work/cast.png"
+    run cast "$build/demo/puppet_levels.noh" --bytes 1000
+    expect 1 'a bound that nothing keeps is refused'
 fi
 awk '/^```C$/ { inside = 1; next } /^```$/ { inside = 0 } inside' README.md >"$work/quoted"
-check 'the README quotes walker.c' sh -c 'test -s "$1" && ! grep -vxF -f tools/examples/walker.c "$1"' - "$work/quoted"
+check 'the README quotes walker_cpu.c' sh -c 'test -s "$1" && ! grep -vxF -f tools/examples/walker_cpu.c "$1"' - "$work/quoted"
 for example in tools/examples/*.c; do
-    check "$(basename "$example") has less than 150 lines" test "$(wc -l <"$example")" -lt 150
+    name=$(basename "$example" .c)
+    case $name in walker) most=60 ;; cast) most=200 ;; *) most=150 ;; esac
+    check "$name has less than $most lines" test "$(wc -l <"$example")" -lt $most
 done
 finish

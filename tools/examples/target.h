@@ -12,18 +12,6 @@
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #include <stb/stb_image_write.h>
 
-/* A whole file, in memory that stays; NULL when it cannot be read. */
-static void *target_read(const char *path, size_t *bytes)
-{
-    FILE *in = fopen(path, "rb");
-    long length = in && fseek(in, 0, SEEK_END) == 0 ? ftell(in) : -1;
-    void *data = length > 0 ? malloc((size_t)length) : NULL;
-    *bytes = length > 0 ? (size_t)length : 0;
-    if (data && (fseek(in, 0, SEEK_SET) != 0 || fread(data, 1, *bytes, in) != *bytes)) *bytes = 0;
-    if (in) fclose(in);
-    return data;
-}
-
 typedef struct target {
     GLuint framebuffer, depth; /* depth: a texture that a sampler2DShadow reads, for shadows */
     GLsizei width, height;
