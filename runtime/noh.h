@@ -113,6 +113,8 @@
  *   state                a child of a machine, select or one-shot: what it shows
  *   parameter            a number of an instance of a graph, which the game sets
  *   callback key         a named moment of a clip that is reported when a track passes it
+ *   stage, kind, actor   a cast out of one block; a sort of character on it; one character
+ *   layer                one thing that an actor can do at a time: walk, wave, talk
  *   tick                 1/48,000 second, of time and nothing else
  *   sample rate          frames per second that a clip was made with
  *   playback speed       how fast a track runs: 1 is as made

@@ -135,11 +135,10 @@ static noh_result give_up_segments(const planner *p, uint32_t share, noh_error *
 }
 
 /* The error in pixels of the next level, at the distance where the spread has the last actor that keeps a slot. */
-static float slot_loss(const planner *p, const noh_kind_plan *k, uint32_t level, uint32_t slots)
+static float slot_loss(const planner *p, const noh_kind_plan *k, uint32_t level)
 {
     const float pixels = p->desc->lod.pixels > 0.0f ? p->desc->lod.pixels : 1.0f;
     const float now = k->levels[level + 1u].error_m, was = k->levels[level].error_m;
-    (void)slots;
     return was > 0.0f && now / was < 1e6f ? pixels * 0.3f * now / was : pixels;
 }
 
@@ -175,14 +174,34 @@ static noh_result give_up_slots(const planner *p, noh_error *error)
         noh_kind_plan *k = &p->plan->kinds[i];
         uint32_t level = 0;
         while (result == NOH_OK && !fits(p->desc, p->plan) && drop_slots(p, i, &level)) {
-            result = changed(p, slots_text, i, k->levels[k->finest_level].slot_count,
-                             slot_loss(p, k, level, k->levels[level].slot_count), error);
+            result = changed(p, slots_text, i, k->levels[k->finest_level].slot_count, slot_loss(p, k, level), error);
         }
     }
     return result;
 }
 
-/* Leave out the finest level of the kind that loses the least; its slots go to the next. */
+/* The slots of the finest level go to the next. */
+static void drop_finest(noh_kind_plan *k)
+{
+    k->levels[k->finest_level + 1u].slot_count += k->levels[k->finest_level].slot_count;
+    k->levels[k->finest_level].slot_count = 0;
+    k->finest_level++;
+}
+
+/* Kinds of one pack share its meshes on the GPU: nothing is won until all of them have left a level out. */
+static void drop_with_others(const planner *p, uint32_t kind)
+{
+    const uint32_t level = p->plan->kinds[kind].finest_level;
+    for (uint32_t i = 0; i < p->desc->kind_count; i++) {
+        noh_kind_plan *k = &p->plan->kinds[i];
+        if (p->desc->kinds[i].mesh->bytes == p->desc->kinds[kind].mesh->bytes && k->finest_level <= level &&
+            k->finest_level + 1u < k->level_count) {
+            drop_finest(k);
+        }
+    }
+}
+
+/* Leave out the finest level of the kind that loses the least. */
 static noh_result give_up_finest(const planner *p, noh_error *error)
 {
     noh_result result = NOH_OK;
@@ -200,9 +219,7 @@ static noh_result give_up_finest(const planner *p, noh_error *error)
         if (!best) {
             return NOH_OK;
         }
-        best->levels[best->finest_level + 1u].slot_count += best->levels[best->finest_level].slot_count;
-        best->levels[best->finest_level].slot_count = 0;
-        best->finest_level++;
+        drop_with_others(p, kind);
         result = changed(p, finest_text, kind, best->finest_level, 0.0f, error);
     }
     return result;
