@@ -2,6 +2,7 @@
  *
  *   NOH_PLAIN_C          define it to build without builtins, attributes, pragmas and SIMD, with any C99 compiler
  *   NOH_ALWAYS_INLINE    for a function that must be inlined to be fast
+ *   NOH_NEVER_INLINE     before a function that is called from so many places that inlining it would cost kilobytes
  *   NOH_UNROLL           before a short loop over an array of registers
  *   NOH_TRAP             ends the program, without a library
  *   NOH_UNUSED           of a function that a file need not call
@@ -36,10 +37,12 @@ extern "C" {
 
 #if defined(NOH_GNU)
 #define NOH_ALWAYS_INLINE static inline __attribute__((always_inline))
+#define NOH_NEVER_INLINE __attribute__((noinline))
 #define NOH_TRAP() __builtin_trap()
 #define NOH_UNUSED __attribute__((unused))
 #else
 #define NOH_ALWAYS_INLINE static inline
+#define NOH_NEVER_INLINE
 #define NOH_TRAP() ((void)(*(volatile char *)0 = 0))
 #define NOH_UNUSED
 #endif

@@ -1,5 +1,7 @@
 #include "base/result.h"
 
+#include "base/compiler.h"
+
 const char *noh_result_text(noh_result result)
 {
     switch (result) {
@@ -16,7 +18,8 @@ const char *noh_result_text(noh_result result)
     return "unknown result";
 }
 
-noh_result noh_fail(noh_error *error, noh_result result, const char *what, uint64_t where, uint64_t need)
+NOH_NEVER_INLINE noh_result noh_fail(noh_error *error, noh_result result, const char *what, uint64_t where,
+                                     uint64_t need)
 {
     if (error) {
         error->result = result;
