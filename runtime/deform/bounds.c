@@ -94,7 +94,7 @@ void noh_mesh_box(const noh_mesh *mesh, const float *world, const float *weights
 
 static uint32_t joint_count(const noh_mesh *mesh)
 {
-    noh_skin skin;
+    noh_skin skin = { NULL, NULL, NULL, NULL };
     return noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin, NULL) ? 0 : skin.header->joint_count;
 }
 

@@ -276,10 +276,11 @@ noh_result noh_actor_attach(noh_stage *stage, noh_actor actor, noh_actor parent,
 
 /* ---- play ---- */
 
-#define NOH_PLAY_KEEP 1u    /* leave the layer alone where this clip plays on it already */
-#define NOH_PLAY_PHASE 2u   /* begin at the phase of what it takes over from: walk into run */
-#define NOH_PLAY_INERTIA 4u /* no cross-fade: the clip plays at once, and what the pose leaps by decays in fade_ticks \
-                             */
+#define NOH_PLAY_KEEP 1u  /* leave the layer alone where this clip plays on it already */
+#define NOH_PLAY_PHASE 2u /* begin at the phase of what it takes over from: walk into run */
+#define NOH_PLAY_INERTIA                                                                         \
+    4u /* no cross-fade: the clip plays at once, and what the pose leaps by decays in fade_ticks \
+        */
 
 /* All zeros play the clip as it was made, faded in within a fifth of a second. */
 typedef struct noh_play {

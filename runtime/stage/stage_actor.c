@@ -192,9 +192,8 @@ noh_result noh_stage_spawn(noh_stage *stage, uint32_t kind, const noh_place *pla
 }
 
 /* What hung on it stays where it was shown. */
-static void let_go(noh_stage *s, noh_stage_actor *child, const noh_place *shown)
+static void let_go(noh_stage_actor *child, const noh_place *shown)
 {
-    (void)s;
     child->parent = 0;
     child->joint = 0;
     child->place = *shown;
@@ -244,7 +243,7 @@ static void let_go_all(noh_stage *s, uint32_t parent)
         if (child->alive && child->parent == parent) {
             noh_place shown;
             world_place(s, child, &shown);
-            let_go(s, child, &shown);
+            let_go(child, &shown);
         }
     }
 }
@@ -318,7 +317,7 @@ noh_result noh_actor_attach(noh_stage *stage, noh_actor actor, noh_actor parent,
     if (!parent.id) {
         noh_place shown;
         world_place(stage, a, &shown);
-        let_go(stage, a, &shown);
+        let_go(a, &shown);
         return NOH_OK;
     }
     p = noh_stage_actor_of(stage, parent, &of_parent);

@@ -7,12 +7,10 @@
 /* ---- what a kind needs ---- */
 
 /* A clip bank with counts alone, for sizes that depend on nothing else. */
-static size_t lod_bytes(const noh_kind_desc *d, const noh_clip_bank_desc *bank_desc, const noh_stage_needs *n,
-                        const noh_mesh *mesh)
+static size_t lod_bytes(const noh_clip_bank_desc *bank_desc, const noh_stage_needs *n, const noh_mesh *mesh)
 {
     noh_clip_bank counts;
     noh_lod_pack_desc desc;
-    (void)d;
     if (!n->has_clips) {
         return 0;
     }
@@ -134,7 +132,7 @@ noh_result noh_stage_measure_kind(const noh_stage_desc *desc, const noh_stage_pl
     measure_meshes(&d, needs, &skinned);
     needs->float_count = (needs->has_clips ? needs->shape.float_count : 0) +
                          (needs->has_clips && d.mesh->node_count ? 0 : needs->weight_count);
-    needs->lod_bytes = lod_bytes(&d, &bank, needs, skinned.header ? &skinned : NULL);
+    needs->lod_bytes = lod_bytes(&bank, needs, skinned.header ? &skinned : NULL);
     measure_actors(&d, needs);
     needs->pools_bytes = pools_bytes(plan, &d, kind);
     if (!needs->character_bytes || !needs->pools_bytes) {

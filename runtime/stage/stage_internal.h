@@ -211,7 +211,6 @@ struct noh_stage {
     noh_view_planes planes[NOH_STAGE_VIEWS_MAX];
     uint32_t view_count;
     int cut;
-    uint64_t decoded_before;
     noh_stage_stats stats;
     float *matrices; /* [joints of the largest skin][12] */
     void *pick_scratch, *inertia_scratch;
@@ -325,7 +324,6 @@ noh_character *noh_stage_character(const noh_stage_kind *kind, uint32_t index);
 uint32_t noh_stage_index(const noh_stage_kind *kind, const noh_stage_actor *a); /* in its kind */
 void noh_place_matrix(const noh_place *place, float matrix[12]);
 
-noh_clip_set noh_stage_job_set(const noh_stage *s, const noh_stage_job_part *job, const noh_stage_kind *kind);
 void noh_stage_look_at(noh_stage *s, uint32_t first, uint32_t end);
 void noh_stage_share(noh_stage *s);
 void noh_stage_pose_todo(noh_stage *s, uint32_t job, uint32_t first, uint32_t end);

@@ -5,10 +5,9 @@
 #include "stage/stage_internal.h"
 
 /* The set of a kind, sampled by a job's own view. */
-noh_clip_set noh_stage_job_set(const noh_stage *s, const noh_stage_job_part *job, const noh_stage_kind *kind)
+static noh_clip_set job_set(const noh_stage_job_part *job, const noh_stage_kind *kind)
 {
     noh_clip_set set = kind->set;
-    (void)s;
     if (kind->bank) {
         set.sample = job->views[kind->bank_kind]->clips.sample;
         set.user = job->views[kind->bank_kind]->clips.user;
@@ -100,7 +99,7 @@ void noh_stage_pose_todo(noh_stage *s, uint32_t number, uint32_t first, uint32_t
         if (of != k) {
             const noh_character_desc desc = noh_stage_character_desc(of, 0);
             k = of;
-            set = noh_stage_job_set(s, job, k);
+            set = job_set(job, k);
             (void)noh_character_scratch_init(job->scratch, s->scratch_bytes, &desc, &scratch, NULL);
         }
         if (s->shown[s->todo[t]].updates) {

@@ -24,12 +24,11 @@ static int is_seen(const drawing *d, uint32_t place)
     return (int)(shown_at(d, place)->views >> d->view & 1u);
 }
 
-static noh_gl_skin_binding skin_of(const drawing *d, const noh_gl_item *item, uint32_t place, uint32_t influences)
+static noh_gl_skin_binding skin_of(const noh_gl_item *item, uint32_t place, uint32_t influences)
 {
     noh_gl_skin_binding binding = noh_gl_skin_binding_of(item->skin, place);
     binding.influences = influences;
     return binding;
-    (void)d;
 }
 
 static noh_gl_morph_binding morph_of(const noh_gl_item *item, const noh_stage_shown *shown)
@@ -52,7 +51,7 @@ static void draw_alone(const drawing *d, uint32_t mesh, uint32_t place, uint32_t
     const noh_stage_shown *shown = shown_at(d, place);
     const noh_gl_lod lod = { mesh_level(d, mesh, level), from, to };
     const noh_character *ch = noh_stage_character(d->k, d->k->order[place]);
-    const noh_gl_skin_binding skin = skin_of(d, item, place, noh_lod_influence_count(&ch->lod, &d->k->table));
+    const noh_gl_skin_binding skin = skin_of(item, place, noh_lod_influence_count(&ch->lod, &d->k->table));
     noh_gl_morph_binding morph;
     float world[12];
     memcpy(world, shown->world, sizeof world);
@@ -84,7 +83,7 @@ static void draw_together(const drawing *d, uint32_t mesh, uint32_t run, uint32_
     const uint32_t influences = d->k->table.influence_level_count ? d->k->table.influences[run % caps].influence_count
                                                                   : 0;
     const noh_gl_lod lod = { mesh_level(d, mesh, run / caps), 0.0f, 1.0f };
-    const noh_gl_skin_binding skin = skin_of(d, item, first, influences);
+    const noh_gl_skin_binding skin = skin_of(item, first, influences);
     noh_gl_morph_binding morph;
     if (item->mirrored) {
         for (uint32_t i = 0; i < count; i++) draw_alone(d, mesh, first + i, run / caps, 0.0f, 1.0f);
