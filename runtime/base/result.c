@@ -1,7 +1,5 @@
 #include "base/result.h"
 
-#include "base/compiler.h"
-
 const char *noh_result_text(noh_result result)
 {
     switch (result) {
@@ -18,7 +16,7 @@ const char *noh_result_text(noh_result result)
     return "unknown result";
 }
 
-NOH_NEVER_INLINE noh_result noh_fail(noh_error *error, noh_result result, const char *what, uint64_t where,
+noh_result noh_fail(noh_error *error, noh_result result, const char *what, uint64_t where,
                                      uint64_t need)
 {
     if (error) {

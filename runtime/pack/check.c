@@ -1,11 +1,12 @@
 /* check.c: what all chunk checkers share. */
+#include "base/compiler.h"
 #include "pack/check_internal.h"
 
 #include <string.h>
 
 #include "base/hash.h"
 
-noh_result noh_check_fail(const noh_check *check, const char *what, uint64_t offset)
+NOH_NEVER_INLINE noh_result noh_check_fail(const noh_check *check, const char *what, uint64_t offset)
 {
     return noh_fail(check->error, NOH_ERR_DATA, what, check->file_offset + offset, 0);
 }
