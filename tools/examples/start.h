@@ -28,7 +28,7 @@ static int start_pack(const start *s, const char *path, noh_pack *pack)
     FILE *in = fopen(path, "rb");
     long length = in && fseek(in, 0, SEEK_END) == 0 ? ftell(in) : -1;
     void *data = length > 0 ? malloc((size_t)length) : NULL;
-    size_t bytes = data && fseek(in, 0, SEEK_SET) == 0 ? fread(data, 1, (size_t)length, in) : 0;
+    size_t bytes = in && data && fseek(in, 0, SEEK_SET) == 0 ? fread(data, 1, (size_t)length, in) : 0;
     noh_error e;
     if (in) fclose(in);
     return noh_pack_open(data, bytes, pack, &e) ? start_fail(s, path, &e) : 0;
