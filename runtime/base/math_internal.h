@@ -1,6 +1,7 @@
 /* math_internal.h: the little arithmetic that the library needs, without libm.
  *
  *   noh_sqrt          correctly rounded
+ *   noh_is_finite
  *   noh_dot3
  *   noh_normalize3
  *
@@ -14,6 +15,12 @@
 #include <string.h>
 
 #include "base/compiler.h"
+
+/* Neither an infinity nor a NaN. */
+static inline int noh_is_finite(float x)
+{
+    return x - x == 0.0f;
+}
 
 /* With errno off (-fno-math-errno) gcc and clang turn the builtin into the processor's instruction. With errno on they
  * call sqrtf for negative arguments, and for all where the processor has no such instruction: there the vector unit

@@ -1,14 +1,10 @@
 /* Checking a graph, and how many pose buffers it needs. */
 #include <string.h>
 
+#include "base/math_internal.h"
 #include "anim/clip_set_internal.h"
 #include "graph/graph.h"
 #include "graph/graph_weights_internal.h"
-
-static int is_finite(float x)
-{
-    return x - x == 0.0f;
-}
 
 static int is_coordinate(float x)
 {
@@ -29,7 +25,7 @@ static const char *bad_count(const noh_graph *g)
     if (!g->thresholds && g->threshold_count) return "thresholds is NULL";
     if (!g->spaces && g->space_count) return "spaces is NULL";
     for (uint32_t i = 0; g->param_defaults && i < g->param_count; i++) {
-        if (!is_finite(g->param_defaults[i])) return "param_defaults has a value that is not finite";
+        if (!noh_is_finite(g->param_defaults[i])) return "param_defaults has a value that is not finite";
     }
     return NULL;
 }
@@ -92,7 +88,7 @@ static const char *bad_transition(const noh_graph *g, const noh_graph_node *n, c
     if (t->condition > NOH_WHEN_ENDING) return "transition condition is not a noh_condition";
     if (t->condition != NOH_WHEN_ENDING && t->param >= g->param_count)
         return "transition param is not below param_count";
-    if (!is_finite(t->threshold)) return "transition threshold is not finite";
+    if (!noh_is_finite(t->threshold)) return "transition threshold is not finite";
     if (t->curve > NOH_CURVE_SMOOTHSTEP) return "transition curve is not a noh_curve";
     if (t->flags & ~(NOH_TRANSITION_INERTIAL | NOH_TRANSITION_KEEP))
         return "transition flags has bits other than NOH_TRANSITION_*";
@@ -147,7 +143,7 @@ static const char *bad_node(const noh_graph *g, const noh_clip_set *set, const n
 {
     const char *what = bad_children(g, n);
     if (what) return what;
-    if (!is_finite(n->value)) return "value is not finite";
+    if (!noh_is_finite(n->value)) return "value is not finite";
     if (n->kind != NOH_NODE_CLIP && !noh_graph_is_machine(n->kind) && bad_param(g, n->param))
         return "param is not below param_count";
     switch (n->kind) {

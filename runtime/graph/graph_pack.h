@@ -109,8 +109,8 @@ uint32_t noh_graph_pack_find_track(const noh_graph_pack *made, const char *name)
 const char *noh_graph_pack_clip_name(const noh_pack_graph *graph, uint32_t clip);
 
 /* Set a parameter within its range: a value outside is held at its end; whole numbers and values of an ENUM are
- * rounded. A trigger is 1 to fire, and 0 again once it is taken. errors  ARG param, NOH_NONE too, or a value that is
- * not finite */
+ * rounded. A trigger is 1 to fire, and 0 again once it is taken.
+ * errors  ARG param, NOH_NONE too, or a value that is not finite */
 noh_result noh_graph_pack_set_param(const noh_graph_pack *made, noh_graph_state *state, uint32_t param, float value);
 
 #ifdef __cplusplus

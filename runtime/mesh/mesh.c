@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "base/name_internal.h"
 #include "base/hash.h"
 #include "base/math_internal.h"
 
@@ -85,22 +86,13 @@ noh_result noh_pack_skin_at(const noh_pack *pack, uint32_t index, noh_skin *skin
     return NOH_OK;
 }
 
-static int names_equal(const char *a, const char *b)
-{
-    while (*a && *a == *b) {
-        a++;
-        b++;
-    }
-    return *a == *b;
-}
-
 uint32_t noh_mesh_find_target(const noh_mesh *mesh, const char *name)
 {
     const uint32_t hash = noh_hash_name(name);
     NOH_ASSERT(mesh && mesh->header);
     for (uint32_t i = 0; i < mesh->header->target_count; i++) {
         if (mesh->targets[i].name_hash == hash &&
-            names_equal(noh_pack_string(mesh->pack, mesh->targets[i].name), name)) {
+            noh_names_equal(noh_pack_string(mesh->pack, mesh->targets[i].name), name)) {
             return i;
         }
     }

@@ -75,11 +75,6 @@ noh_actor noh_stage_actor_at(const noh_stage *stage, uint32_t index)
 
 /* ---- places ---- */
 
-static int is_finite(float x)
-{
-    return x - x == 0.0f;
-}
-
 static const char *normal_place(const noh_place *in, noh_place *out)
 {
     static const float identity[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
@@ -87,11 +82,11 @@ static const char *normal_place(const noh_place *in, noh_place *out)
     float square = 0.0f;
     *out = *in;
     for (int i = 0; i < 3; i++) {
-        if (!is_finite(in->position[i])) return "position of a place is not finite";
+        if (!noh_is_finite(in->position[i])) return "position of a place is not finite";
     }
     for (int i = 0; i < 4; i++) square += q[i] * q[i];
-    if (!is_finite(square)) return "rotation of a place is not finite";
-    if (!(in->scale >= 0.0f) || !is_finite(in->scale)) return "scale of a place is below 0 or not finite";
+    if (!noh_is_finite(square)) return "rotation of a place is not finite";
+    if (!(in->scale >= 0.0f) || !noh_is_finite(in->scale)) return "scale of a place is below 0 or not finite";
     if (in->scale <= 0.0f) out->scale = 1.0f;
     if (q[0] == 0.0f && q[1] == 0.0f && q[2] == 0.0f && q[3] == 0.0f) {
         memcpy(out->rotation, identity, sizeof identity);
@@ -291,7 +286,7 @@ noh_result noh_actor_set_look(noh_stage *stage, noh_actor actor, const noh_look 
     if (result != NOH_OK) {
         return result;
     }
-    if (!(look->pixels >= 0.0f) || !is_finite(look->pixels)) {
+    if (!(look->pixels >= 0.0f) || !noh_is_finite(look->pixels)) {
         return noh_fail(error, NOH_ERR_ARG, "pixels of a look is negative or not finite", actor.id & 0xffffu, 0);
     }
     a->look = *look;

@@ -252,6 +252,8 @@ extern const noh_layer_desc noh_stage_default_layers[3];
 uint32_t noh_stage_bank_kind(const noh_stage_desc *desc, uint32_t kind);
 noh_clip_bank_desc noh_stage_bank_desc(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind);
 
+#define NOH_STAGE_VIEW_RAD 0.69813f /* of the view that plans count for: 40 degrees */
+
 /* The levels of a kind's actors, and their slots by an even spread. */
 noh_result noh_stage_find_levels(const noh_stage_desc *desc, uint32_t kind, noh_kind_plan *plan, noh_error *error);
 void noh_stage_share_slots(const noh_stage_desc *desc, uint32_t kind, noh_kind_plan *plan);
@@ -327,8 +329,9 @@ void noh_place_matrix(const noh_place *place, float matrix[12]);
 void noh_stage_look_at(noh_stage *s, uint32_t first, uint32_t end);
 void noh_stage_share(noh_stage *s);
 void noh_stage_pose_todo(noh_stage *s, uint32_t job, uint32_t first, uint32_t end);
-uint32_t noh_stage_run_count(const noh_stage_kind *k); /* without that of fading actors */
-uint32_t noh_stage_seen(const noh_stage_kind *k);      /* so many are in `order` */
+uint32_t noh_stage_influence_levels(const noh_stage_kind *k); /* at least 1: a run is a level and one of these */
+uint32_t noh_stage_run_count(const noh_stage_kind *k);        /* without that of fading actors */
+uint32_t noh_stage_seen(const noh_stage_kind *k);             /* so many are in `order` */
 void noh_view_planes_of(const noh_stage_view *view, noh_view_planes *out);
 
 #ifdef __cplusplus

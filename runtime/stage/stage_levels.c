@@ -9,7 +9,6 @@
 #define SPREAD_M 100.0f /* actors are thought to be spread evenly within this distance */
 #define RESERVE 1.3f    /* for actors that crowd together */
 #define FINEST_MIN 16u  /* slots of the finest level, where a kind has so many actors: a small cast stands together */
-#define VIEW_RAD 0.69813f
 #define MESH_SHARE 0.3f /* of the error, as lod.h has it by default */
 
 float noh_stage_mesh_error(const noh_mesh *mesh, uint32_t level)
@@ -156,12 +155,12 @@ noh_result noh_stage_find_levels(const noh_stage_desc *desc, uint32_t kind, noh_
 
 /* ---- slots ---- */
 
-/* Of actors that are spread evenly, how many are nearer than where a level begins to be good enough. */
+/* desc: with its defaults filled in. Of actors that are spread evenly, how many are nearer than where a level begins to
+ * be good enough. */
 static uint32_t count_within(const noh_stage_desc *desc, uint32_t actors, float error_m)
 {
-    const float pixels = (desc->lod.pixels > 0.0f ? desc->lod.pixels : 1.0f) * MESH_SHARE;
-    const float height = (float)(desc->height_px ? desc->height_px : 1080u);
-    const float distance_m = error_m * noh_lod_scale(1.0f, VIEW_RAD, (uint32_t)height) / pixels;
+    const float pixels = desc->lod.pixels * MESH_SHARE;
+    const float distance_m = error_m * noh_lod_scale(1.0f, NOH_STAGE_VIEW_RAD, desc->height_px) / pixels;
     const float share = distance_m / SPREAD_M;
     const float count = RESERVE * (float)actors * share * share + 1.0f;
     return share < 1.0f && count < (float)actors ? (uint32_t)count : actors;

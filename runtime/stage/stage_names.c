@@ -1,7 +1,7 @@
 /* stage_names.c: clips, layers, floats and joints of a kind, by name. */
-#include <string.h>
 
 #include "base/hash.h"
+#include "base/name_internal.h"
 #include "clip/pack_clip.h"
 #include "stage/stage_internal.h"
 
@@ -72,13 +72,11 @@ uint32_t noh_stage_find(const noh_stage *stage, uint32_t kind, noh_name what, co
     count = count_of(k, what);
     for (uint32_t i = 0; i < count; i++) {
         const char *own;
-        if (what == NOH_NAME_FLOAT) {
-            if (k->name_hashes[i] == hash) return i;
-            continue;
-        }
         if (what == NOH_NAME_CLIP && k->set.clips[i].name_hash != hash) continue;
+        if (what == NOH_NAME_FLOAT && k->name_hashes[i] != hash) continue;
         own = noh_stage_name(stage, kind, what, i);
-        if (own && noh_hash_name(own) == hash) return i;
+        /* of a named float of clips the hash is all there is */
+        if (own && (noh_names_equal(own, name) || (what == NOH_NAME_FLOAT && !own[0]))) return i;
     }
     return NOH_NONE;
 }

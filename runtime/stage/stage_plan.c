@@ -7,7 +7,7 @@
 /* ---- measuring ---- */
 
 typedef struct planner {
-    const noh_stage_desc *desc;
+    const noh_stage_desc *desc; /* with its defaults filled in */
     const struct noh_gl_caps *caps;
     noh_stage_plan *plan;
 } planner;
@@ -137,9 +137,8 @@ static noh_result give_up_segments(const planner *p, uint32_t share, noh_error *
 /* The error in pixels of the next level, at the distance where the spread has the last actor that keeps a slot. */
 static float slot_loss(const planner *p, const noh_kind_plan *k, uint32_t level)
 {
-    const float pixels = p->desc->lod.pixels > 0.0f ? p->desc->lod.pixels : 1.0f;
     const float now = k->levels[level + 1u].error_m, was = k->levels[level].error_m;
-    return was > 0.0f && now / was < 1e6f ? pixels * 0.3f * now / was : pixels;
+    return was > 0.0f && now / was < 1e6f ? p->desc->lod.pixels * 0.3f * now / was : p->desc->lod.pixels;
 }
 
 static uint32_t promised(const noh_kind_desc *d, const noh_kind_plan *k, uint32_t level)
@@ -326,12 +325,12 @@ static noh_result give_back(const planner *p, noh_error *error)
  * three metres, where a figure of two metres fills the picture. */
 static void state_losses(const planner *p)
 {
-    const uint32_t height = p->desc->height_px ? p->desc->height_px : 1080u;
     for (uint32_t i = 0; i < p->plan->concession_count; i++) {
         noh_concession *c = &p->plan->concessions[i];
         if (c->what == finest_text && c->kind < p->desc->kind_count) {
             const noh_kind_plan *k = &p->plan->kinds[c->kind];
-            c->loss_pixels = k->levels[k->finest_level].error_m * noh_lod_scale(3.0f, 0.69813f, height);
+            c->loss_pixels = k->levels[k->finest_level].error_m *
+                             noh_lod_scale(3.0f, NOH_STAGE_VIEW_RAD, p->desc->height_px);
         }
     }
 }
@@ -430,8 +429,8 @@ static noh_result find_fit(const planner *p, noh_error *error)
 noh_result noh_stage_plan_make(const noh_stage_desc *desc, const struct noh_gl_caps *caps, noh_stage_plan *plan,
                                noh_error *error)
 {
-    noh_stage_plan *out = plan;
-    planner p = { desc, caps, out };
+    noh_stage_desc filled;
+    planner p = { &filled, caps, plan };
     noh_result result;
     NOH_ASSERT(desc && plan);
     result = noh_stage_check_desc(desc, error);
@@ -441,8 +440,9 @@ noh_result noh_stage_plan_make(const noh_stage_desc *desc, const struct noh_gl_c
     if (desc->gpu && !caps) {
         return noh_fail(error, NOH_ERR_ARG, "a stage that draws needs the capabilities of a GPU", 0, 0);
     }
-    memset(out, 0, sizeof *out);
-    out->halves = desc->halves != 0;
+    filled = noh_stage_desc_filled(desc);
+    memset(plan, 0, sizeof *plan);
+    plan->halves = desc->halves != 0;
     for (uint32_t i = 0; i < desc->kind_count && result == NOH_OK; i++) {
         result = begin(&p, i, error);
     }
@@ -451,8 +451,8 @@ noh_result noh_stage_plan_make(const noh_stage_desc *desc, const struct noh_gl_c
     if (result == NOH_OK) {
         state_losses(&p);
         state_segments(&p);
-        out->pack_bytes = count_packs(desc);
-        out->hash = hash_plan(desc, out);
+        plan->pack_bytes = count_packs(desc);
+        plan->hash = hash_plan(desc, plan);
     }
     return result;
 }

@@ -37,14 +37,14 @@ static void take_slot(noh_stage *s, noh_stage_kind *k, uint32_t i)
 
 /* ---- order ---- */
 
-static uint32_t influence_levels(const noh_stage_kind *k)
+uint32_t noh_stage_influence_levels(const noh_stage_kind *k)
 {
     return k->table.influence_level_count ? k->table.influence_level_count : 1u;
 }
 
 uint32_t noh_stage_run_count(const noh_stage_kind *k)
 {
-    return k->plan->level_count * influence_levels(k);
+    return k->plan->level_count * noh_stage_influence_levels(k);
 }
 
 uint32_t noh_stage_seen(const noh_stage_kind *k)
@@ -57,7 +57,7 @@ static uint32_t run_of(const noh_stage *s, const noh_stage_kind *k, uint32_t i)
     const noh_stage_shown *shown = &s->shown[k->first_actor + i];
     return shown->level != shown->level_before
                ? noh_stage_run_count(k)
-               : shown->level * influence_levels(k) + noh_stage_character(k, i)->lod.influences;
+               : shown->level * noh_stage_influence_levels(k) + noh_stage_character(k, i)->lod.influences;
 }
 
 /* A counting sort by run; stable, so that neighbours in memory stay neighbours. */

@@ -1,6 +1,7 @@
 /* stage_state.c: the state out and in. */
 #include <string.h>
 
+#include "base/math_internal.h"
 #include "stage/stage_internal.h"
 
 const void *noh_stage_state(const noh_stage *stage, size_t *bytes)
@@ -34,11 +35,6 @@ static const void *in_copy(const reader *r, const void *own)
     return r->state + ((const uint8_t *)own - r->s->state);
 }
 
-static int is_finite(float x)
-{
-    return x - x == 0.0f;
-}
-
 static const char *bad_actor(const reader *r, const noh_stage_kind *k, const noh_stage_actor *a)
 {
     float length = 0.0f;
@@ -47,12 +43,12 @@ static const char *bad_actor(const reader *r, const noh_stage_kind *k, const noh
     if (a->next_free > k->desc.actor_count) return "state: bad list of free actors";
     if (!a->alive) return NULL;
     for (int i = 0; i < 3; i++) {
-        if (!is_finite(a->place.position[i])) return "state: an actor's place is not finite";
+        if (!noh_is_finite(a->place.position[i])) return "state: an actor's place is not finite";
     }
     for (int i = 0; i < 4; i++) length += a->place.rotation[i] * a->place.rotation[i];
-    if (!(length > 0.9f && length < 1.1f) || !(a->place.scale > 0.0f) || !is_finite(a->place.scale))
+    if (!(length > 0.9f && length < 1.1f) || !(a->place.scale > 0.0f) || !noh_is_finite(a->place.scale))
         return "state: an actor's rotation is not unit, or its scale not above 0";
-    if (!(a->look.pixels >= 0.0f) || !is_finite(a->look.pixels)) return "state: an actor's look is not finite";
+    if (!(a->look.pixels >= 0.0f) || !noh_is_finite(a->look.pixels)) return "state: an actor's look is not finite";
     if (a->parent && (a->parent & 0xffffu) >= r->s->actor_count) return "state: a parent out of range";
     for (uint32_t l = 0; l < k->layer_count; l++) {
         if ((a->started[l / 8u] >> 4u * (l % 8u) & 15u) >= k->layers[l].track_count)
@@ -64,7 +60,7 @@ static const char *bad_actor(const reader *r, const noh_stage_kind *k, const noh
 static const char *bad_held(const noh_stage_kind *k, const noh_stage_held *held)
 {
     for (uint32_t i = 0; i < k->desc.held_float_count; i++) {
-        if (!(held[i].amount >= 0.0f && held[i].amount <= 1.0f) || !is_finite(held[i].value))
+        if (!(held[i].amount >= 0.0f && held[i].amount <= 1.0f) || !noh_is_finite(held[i].value))
             return "state: a held float is not finite";
         if (held[i].amount > 0.0f && held[i].index >= k->float_count) return "state: a held float out of range";
     }

@@ -39,14 +39,6 @@ static void cross(const float a[3], const float b[3], float out[3])
     }
 }
 
-static void normalize(float v[3])
-{
-    const float length = noh_sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int i = 0; i < 3 && length > 0.0f; i++) {
-        v[i] /= length;
-    }
-}
-
 void noh_view_orbit(noh_stage_view *view, const float target[3], float yaw_rad, float pitch_rad, float distance,
                     uint32_t width, uint32_t height)
 {
@@ -65,7 +57,7 @@ void noh_view_orbit(noh_stage_view *view, const float target[3], float yaw_rad, 
         view->eye[i] = target[i] + distance * axes[2][i];
         view->light[i] = 0.5f * axes[2][i] - 0.45f * axes[0][i] + (i == 1 ? 0.8f : 0.0f);
     }
-    normalize(view->light);
+    noh_normalize3(view->light, view->light);
     eye_matrix((const float(*)[3])axes, view->eye, world_to_eye);
     memset(projection, 0, sizeof projection);
     projection[0] = (float)height / (slope * (float)width);
@@ -87,7 +79,7 @@ void noh_view_shadow(noh_stage_view *view, const float sphere[4], const float li
         up[1] = 0.0f, up[2] = 1.0f;
     }
     cross(up, axes[2], axes[0]);
-    normalize(axes[0]);
+    noh_normalize3(axes[0], axes[0]);
     cross(axes[2], axes[0], axes[1]);
     for (int i = 0; i < 3; i++) {
         view->eye[i] = sphere[i] + 3.0f * sphere[3] * light[i];
@@ -150,7 +142,7 @@ int noh_view_ray(const noh_stage_view *view, float x, float y, uint32_t width, u
         return 0;
     }
     for (int i = 0; i < 3; i++) direction[i] = far[i] - origin[i];
-    normalize(direction);
+    noh_normalize3(direction, direction);
     return 1;
 }
 

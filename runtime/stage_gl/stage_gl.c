@@ -354,8 +354,7 @@ static void upload_place(const noh_stage_mesh *mesh, const noh_gl_item *item, co
     memcpy(world, shown->world, sizeof world);
     if (!mesh->skinned && mesh->node_world) noh_matrix_multiply(shown->world, mesh->node_world, world);
     if (item->model->morph) {
-        const uint32_t tile = noh_gl_morph_instance(item->model->morph, item->first_pool + shown->slot.pool,
-                                                    shown->slot.slot);
+        const uint32_t tile = noh_gl_item_tile(item, shown);
         moved = any_weight(weights, mesh->mesh.header->target_count);
         (void)noh_gl_morph_set_weights(item->model->morph, tile, weights, NULL);
         morph = noh_gl_morph_binding_of(item->model->morph, tile);

@@ -46,7 +46,8 @@ noh_result noh_stage_shader_create(noh_stage *stage, void *memory, size_t bytes,
                                    char *log, size_t log_bytes, noh_stage_shader **shader, noh_error *error);
 void noh_stage_shader_delete(noh_stage_shader *shader);
 
-/* After a lost context. errors  as noh_gl_renderer_restore */
+/* After a lost context.
+ * errors  as noh_gl_renderer_restore */
 noh_result noh_stage_shader_restore(noh_stage_shader *shader, char *log, size_t log_bytes, noh_error *error);
 
 #ifdef __cplusplus

@@ -33,9 +33,7 @@ static noh_gl_skin_binding skin_of(const noh_gl_item *item, uint32_t place, uint
 
 static noh_gl_morph_binding morph_of(const noh_gl_item *item, const noh_stage_shown *shown)
 {
-    return noh_gl_morph_binding_of(
-        item->model->morph,
-        noh_gl_morph_instance(item->model->morph, item->first_pool + shown->slot.pool, shown->slot.slot));
+    return noh_gl_morph_binding_of(item->model->morph, noh_gl_item_tile(item, shown));
 }
 
 static uint32_t mesh_level(const drawing *d, uint32_t mesh, uint32_t level)
@@ -78,7 +76,7 @@ static void draw_fading(const drawing *d, uint32_t mesh, uint32_t place)
 /* Neighbours of a run that the view sees, in one call. */
 static void draw_together(const drawing *d, uint32_t mesh, uint32_t run, uint32_t first, uint32_t count)
 {
-    const uint32_t caps = d->k->table.influence_level_count ? d->k->table.influence_level_count : 1u;
+    const uint32_t caps = noh_stage_influence_levels(d->k);
     const noh_gl_item *item = &d->on_gl->items[mesh];
     const uint32_t influences = d->k->table.influence_level_count ? d->k->table.influences[run % caps].influence_count
                                                                   : 0;

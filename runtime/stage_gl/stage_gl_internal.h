@@ -21,6 +21,12 @@ typedef struct noh_gl_item {
     int mirrored; /* its node mirrors: a crowd cannot be drawn */
 } noh_gl_item;
 
+/* The instance of model->morph that an actor's slot is. */
+static inline uint32_t noh_gl_item_tile(const noh_gl_item *item, const noh_stage_shown *shown)
+{
+    return noh_gl_morph_instance(item->model->morph, item->first_pool + shown->slot.pool, shown->slot.slot);
+}
+
 typedef struct noh_gl_kind {
     noh_gl_item *items;       /* [mesh_count] */
     noh_gl_texture *pictures; /* [texture_count of the pack], shared by kinds of one pack */
