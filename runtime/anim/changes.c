@@ -1,3 +1,9 @@
+/* changes.c: fades and other changes over time.
+ *
+ * A change waits in a table until its tick, then notes the value it starts from and runs. A weight is a function of the
+ * clock alone, so it may be evaluated at the end of a step. A speed may not: tracks are moved by its integral. So
+ * speeds are held constant over stretches of whole ticks, NOH_CHANGE_SLICES to a change, and noh_changes_speeds says up
+ * to which tick they hold; the integral is then a product of integers, however time is cut into steps. */
 #include "anim/changes.h"
 
 #include <string.h>

@@ -1,3 +1,8 @@
+/* controller.c: tracks, changes and callback keys on one clock.
+ *
+ * A controller is one block: a header, the tracks, the table of changes, then inertial offsets where there is room for
+ * them. Arrays are found by their offsets and clips by their index in the set, so the block has no pointers and a copy
+ * of it is a controller. */
 #include "anim/controller.h"
 
 #include <string.h>

@@ -1,3 +1,8 @@
+/* controller_pose.c: the pose and the root motion of a controller.
+ *
+ * A pose is made in four steps: the low group's tracks are blended; the high group's result is laid over them; additive
+ * tracks are added in the order of their indices; what is left of an inertial transition is added last, since it is the
+ * difference between two such results. A single track with its full weight skips the blend, which would return it. */
 #include "anim/controller_pose.h"
 
 #include <string.h>

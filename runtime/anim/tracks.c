@@ -1,3 +1,9 @@
+/* tracks.c: one clip on its way through time.
+ *
+ * A track's position is in 1/65,536 ticks and grows past the clip's end: it is folded into the clip only where it is
+ * looked at, so that passes can be counted, and it is brought back by whole cycles after each move, so that it never
+ * grows out of 64 bits. A track that was just placed has not passed the keys at its position yet: `placed` says so
+ * until it moves. */
 #include "anim/tracks.h"
 
 static const char *bad_desc(const noh_clip_set *set, const noh_track_desc *d)

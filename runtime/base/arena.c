@@ -1,3 +1,7 @@
+/* arena.c: one block cut into pieces. Each object of the library is laid out by one function over an arena, which runs
+ * twice: over an arena without memory it adds up the bytes, over the real block it hands out the pieces. So a size and
+ * the layout that it is the size of cannot disagree. A sum that would overflow stays at SIZE_MAX, which no block has.
+ */
 #include "base/arena.h"
 
 static uintptr_t misalignment(const void *memory)

@@ -40,8 +40,8 @@
 
 #define NOH_JOINTS_MAX 4096u      /* of a skeleton */
 #define NOH_SKIN_JOINTS_MAX 4096u /* of a skin */
-#define NOH_PALETTE_JOINTS_MAX \
-    256u /* a uniform block of 12 KiB; ES 3.0 guarantees 16. A vertex has 8 bits for an index into its palette */
+/* a uniform block of 12 KiB; ES 3.0 guarantees 16. A vertex has 8 bits for an index into its palette */
+#define NOH_PALETTE_JOINTS_MAX 256u
 #define NOH_INFLUENCES_MAX 8u /* joints that move one vertex */
 
 /* ---- clips, their sets and banks ---- */

@@ -1,3 +1,8 @@
+/* character.c: a controller with levels of detail and two poses.
+ *
+ * A character that is far away is not posed in every frame. It is posed ahead of time, at the tick of its next update,
+ * and until then what shows is a mix of that pose and the one before: linear in the matrices, and far cheaper than a
+ * pose. The two palettes, weights and spheres take turns at being the pose that is left and the one that is reached. */
 #include "character/character.h"
 
 #include <string.h>

@@ -1,3 +1,5 @@
+/* morph.c: morph targets on the CPU, the reference that the GPU's accumulators are compared with. Every product and
+ * every sum is made in the order of the shaders, so equal inputs give equal bits. */
 #include "deform/morph.h"
 
 #include <string.h>

@@ -140,8 +140,8 @@ void noh_gl_draw_begin(noh_gl_renderer *renderer, const noh_gl_camera *camera);
 
 #define NOH_DRAW_OPAQUE 0
 #define NOH_DRAW_BLENDED 1
-#define NOH_DRAW_DEPTH \
-    2 /* the depth of what NOH_DRAW_OPAQUE draws, to the bit, and no colour: shadow maps, depth first */
+/* the depth of what NOH_DRAW_OPAQUE draws, to the bit, and no colour: shadow maps, depth first */
+#define NOH_DRAW_DEPTH 2
 
 /* The LOD level of a draw, and which of its pixels are drawn. Two draws fade from one level to another: the new level
  * with (0, f), the old one with (f, 1), f from noh_lod_fade. A pixel that both cover is drawn by exactly one of them,

@@ -1,3 +1,5 @@
+/* graph.c: the state of a graph: a controller with a track for each of its clips, parameters, and where each state
+ * machine stands. The graph itself is constant and shared. A state holds no pointers, so a copy of it is a state. */
 #include "graph/graph.h"
 
 #include <string.h>

@@ -21,8 +21,8 @@
  *           y is up unless a kind says otherwise. Matrices are 3 rows of 4, position = rows * (x, y, z, 1).
  * Time      ticks of 1/48,000 s (NOH_TICKS_PER_SECOND).
  * Threads   a stage belongs to one thread at a time; noh_stage_job alone may be called from several at once. Stages
- * that share packs share nothing that changes. Errors    a failed call changes nothing. An actor that is gone is
- * NOH_ERR_NOT_FOUND, never another actor. */
+ *           that share packs share nothing that changes.
+ * Errors    a failed call changes nothing. An actor that is gone is NOH_ERR_NOT_FOUND, never another actor. */
 #ifndef NOH_STAGE_STAGE_H
 #define NOH_STAGE_STAGE_H
 
@@ -253,7 +253,8 @@ noh_actor noh_stage_actor_at(const noh_stage *stage, uint32_t index);
 /* errors  NOT_FOUND; ARG a value that is not finite, a rotation without length, a scale below 0 */
 noh_result noh_actor_set_place(noh_stage *stage, noh_actor actor, const noh_place *place, noh_error *error);
 
-/* Where it is after the last step; one that hangs on another: relative to the joint. errors NOT_FOUND */
+/* Where it is after the last step; one that hangs on another: relative to the joint.
+ * errors  NOT_FOUND */
 noh_result noh_actor_place(const noh_stage *stage, noh_actor actor, noh_place *place, noh_error *error);
 
 /* How it is drawn. All zeros: seen, with a shadow, within the stage's error. */
@@ -276,11 +277,9 @@ noh_result noh_actor_attach(noh_stage *stage, noh_actor actor, noh_actor parent,
 
 /* ---- play ---- */
 
-#define NOH_PLAY_KEEP 1u  /* leave the layer alone where this clip plays on it already */
-#define NOH_PLAY_PHASE 2u /* begin at the phase of what it takes over from: walk into run */
-#define NOH_PLAY_INERTIA                                                                         \
-    4u /* no cross-fade: the clip plays at once, and what the pose leaps by decays in fade_ticks \
-        */
+#define NOH_PLAY_KEEP 1u    /* leave the layer alone where this clip plays on it already */
+#define NOH_PLAY_PHASE 2u   /* begin at the phase of what it takes over from: walk into run */
+#define NOH_PLAY_INERTIA 4u /* no cross-fade: the clip plays at once, and the leap decays within fade_ticks */
 
 /* All zeros play the clip as it was made, faded in within a fifth of a second. */
 typedef struct noh_play {

@@ -14,8 +14,8 @@
 #define SAMPLES 50u  /* frames that levers are judged by */
 #define WILD_RAD 2.2 /* radians from the mean: a rotation that goes farther stores a reference with each segment */
 #define NEAR_BIND_RAD 1.2
-#define WIDE_LEVER \
-    125.0 /* in units of 0.01 cm of bound: with longer levers the 16 bits of cached rotations would show */
+/* in units of 0.01 cm of bound: with longer levers the 16 bits of cached rotations would show */
+#define WIDE_LEVER 125.0
 #define CONSTANT_PART 0.04 /* share of the bound that the coding of a constant may take */
 #define MIX_COST_BITS 39.0 /* 27 bits of header and nearly half as much again, so that it pays */
 #define LOOSE 1e300

@@ -17,8 +17,8 @@
 #define HOPELESS 1.8 /* a violation that nudging cannot repair */
 #define NEARLY 0.97
 #define PUSH 0.5
-#define WORTH_AN_OCTAVE \
-    0.9                 /* a finer step that fails too must reduce the violation at least to this share per octave */
+/* a finer step that fails too must reduce the violation at least to this share per octave */
+#define WORTH_AN_OCTAVE 0.9
 #define FRAME_BYTES 16u /* of a frame as `check` sees it */
 
 int enc_quat_codes(const double q[4], uint32_t width, uint32_t codes[4])

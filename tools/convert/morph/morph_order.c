@@ -22,9 +22,8 @@
 #define GAP_LIMIT 8u   /* a larger one takes longer and gains nothing */
 #define GAP_MORE 2u    /* beside its cost a rectangle has ragged ends: empty texels in a column */
 #define NEIGHBOURS 10u /* nearest patterns of each, the partners tried */
-#define SCAN_MOST                                                                                       \
-    6000u /* candidates looked at for a nearest pattern: patterns are sorted, so they are the likeliest \
-           */
+/* candidates looked at for a nearest pattern: patterns are sorted, so they are the likeliest */
+#define SCAN_MOST 6000u
 #define REVERSE_MOST 1000u /* patterns: longer reversals of big meshes cost more than they bring */
 #define STEPS_PER_PATTERN 2000u
 #define STEPS_MOST 2000000u /* divided by the words of a row */
