@@ -149,6 +149,7 @@ noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_rend
     out->passes = desc->passes;
     if (desc->shaders) {
         out->shaders = *desc->shaders;
+        if (desc->shaders->view) out->view = desc->shaders->view;
     }
     for (uint32_t i = 0; i < desc->mesh_count && !result; i++) {
         result = want_mesh(out, desc, &desc->meshes[i], error);

@@ -227,7 +227,7 @@ noh_result noh_gl_variant_create(const noh_gl_device *device, noh_gl_variant_key
                                  const char *const *varyings, uint32_t varying_count, noh_gl_variant *out,
                                  noh_error *error)
 {
-    static const noh_gl_shader_desc library = { NULL, NULL, NULL, NULL, NULL, 0, NULL, NULL };
+    static const noh_gl_shader_desc library = { NULL, NULL, NULL, NULL, NULL, 0, NULL, NULL, NOH_VIEW_LIT };
     noh_gl_variant v;
     noh_gl_program_desc desc;
     noh_result result;

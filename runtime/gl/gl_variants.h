@@ -97,6 +97,8 @@ typedef struct noh_gl_shader_desc {
      * they are. material: that of the submesh. NULL: nothing to set */
     void (*bind)(void *user, const noh_gl_api *api, GLuint program, const noh_material *material);
     void *user;
+    noh_debug_view view; /* what mesh.frag shows; a fragment shader of yours finds it as NOH_DEBUG_VIEW. 0: lit, or the
+                          * view of the renderer's desc */
 } noh_gl_shader_desc;
 
 /* Compile a program for a key. The device's ledger may be NULL.

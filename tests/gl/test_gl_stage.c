@@ -279,6 +279,46 @@ static void own_shaders_draw_the_same_shapes(void **state)
     fixture_expect_no_errors();
 }
 
+/* A debug view is a shader without texts: it covers the pixels of the lit one, in the colours of levels. */
+static void levels_are_shown_in_their_colours(void **state)
+{
+    static uint32_t colours[PIXELS], built_in[PIXELS];
+    noh_actor actors[CAST_ACTORS];
+    gpu *g = fixture_gpu();
+    const noh_gl_shader_desc desc = { .name = "levels", .view = NOH_VIEW_LOD };
+    noh_stage_shader *shader = NULL;
+    void *memory;
+    canvas to;
+    cast c;
+    uint32_t covered = 0, apart = 0, differing = 0;
+    (void)state;
+    cast_open(&c);
+    open_on(&c, g);
+    assert_int_equal(canvas_open(&to, g, WIDTH, HEIGHT), 0);
+    cast_enter(&c, actors);
+    play_frames(&c, 0, 40);
+    memory = test_aligned(NULL, noh_stage_shader_size(c.stage));
+    assert_int_equal(noh_stage_shader_create(c.stage, memory, noh_stage_shader_size(c.stage), &desc, shader_log,
+                                             sizeof shader_log, &shader, NULL),
+                     NOH_OK);
+    draw(&c, &to, built_in);
+    canvas_begin(&to);
+    assert_int_equal(noh_stage_draw(c.stage, NOH_PASS_COLOR, 0, shader, NULL), NOH_OK);
+    canvas_resolve(&to);
+    assert_int_equal(canvas_read(&to, (uint8_t *)colours), 0);
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        covered += built_in[i] != built_in[0];
+        apart += (built_in[i] != built_in[0]) != (colours[i] != colours[0]);
+        differing += built_in[i] != colours[i];
+    }
+    assert_true(covered > PIXELS / 50u && apart < covered / 100u && differing > covered / 2u);
+    noh_stage_shader_delete(shader);
+    free(memory);
+    canvas_close(&to);
+    cast_close(&c);
+    fixture_expect_no_errors();
+}
+
 /* ---- on the driver that counts ---- */
 
 static void open_null(gpu *g)
@@ -462,6 +502,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(the_picture_is_that_of_the_parts),
         cmocka_unit_test(a_state_shows_the_same_picture_again),
         cmocka_unit_test(own_shaders_draw_the_same_shapes),
+        cmocka_unit_test(levels_are_shown_in_their_colours),
         cmocka_unit_test(frames_make_nothing),
         cmocka_unit_test(random_casts_use_what_is_planned),
         cmocka_unit_test(a_refusing_driver_leaves_nothing),
