@@ -280,6 +280,7 @@ noh_result noh_actor_attach(noh_stage *stage, noh_actor actor, noh_actor parent,
 #define NOH_PLAY_KEEP 1u    /* leave the layer alone where this clip plays on it already */
 #define NOH_PLAY_PHASE 2u   /* begin at the phase of what it takes over from: walk into run */
 #define NOH_PLAY_INERTIA 4u /* no cross-fade: the clip plays at once, and the leap decays within fade_ticks */
+#define NOH_PLAY_BESIDE 8u  /* what plays on the layer plays on, blended with this clip by weight; not with INERTIA */
 
 /* All zeros play the clip as it was made, faded in within a fifth of a second. */
 typedef struct noh_play {
@@ -296,7 +297,8 @@ typedef struct noh_play {
  * base layer that moves joints and on which nothing plays is not faded in: there is nothing to fade from.
  * play    NULL: zeros
  * errors  NOT_FOUND the actor is gone, or the kind has no such clip; ARG layer, a field of play, or NOH_PLAY_INERTIA
- *         without noh_kind_desc.inertia; LIMIT too many changes over time are under way (need: so many are wanted) */
+ *         without noh_kind_desc.inertia; LIMIT too many changes over time are under way (need: so many are wanted), or
+ *         NOH_PLAY_BESIDE finds no free track (where: the layer, need: tracks) */
 noh_result noh_actor_play(noh_stage *stage, noh_actor actor, uint32_t layer, const char *clip, const noh_play *play,
                           noh_error *error);
 

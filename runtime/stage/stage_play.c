@@ -189,6 +189,11 @@ static noh_track_desc track_desc(const player *p, uint32_t clip, const noh_play 
     return d;
 }
 
+static noh_result no_change_free(uint32_t wanted, noh_error *error)
+{
+    return noh_fail(error, NOH_ERR_LIMIT, "too many changes over time are under way: raise change_count", 0, wanted);
+}
+
 /* Room for the changes of all tracks of the layer: checked first, so that a call that fails has changed nothing. What
  * the tracks that are faded have waiting is ended before. */
 static noh_result make_room(player *p, uint32_t but, noh_error *error)
@@ -202,8 +207,7 @@ static noh_result make_room(player *p, uint32_t but, noh_error *error)
         own += changes[i].state != NOH_CHANGE_FREE && changes[i].track - p->layer->first_track < p->layer->track_count;
     }
     if (free_changes(p) + own < wanted) {
-        return noh_fail(error, NOH_ERR_LIMIT, "too many changes over time are under way: raise change_count", 0,
-                        wanted);
+        return no_change_free(wanted, error);
     }
     for (uint32_t i = 0; i < p->layer->track_count; i++) {
         noh_changes_drop(changes, p->c->change_count, p->layer->first_track + i);
@@ -236,19 +240,30 @@ static noh_result leap(player *p, uint32_t clip, const noh_play *play, noh_error
     return result;
 }
 
+/* Room beside the tracks that play on: one of their own, and a change to fade in by. */
+static noh_result make_room_beside(const player *p, uint32_t track, noh_error *error)
+{
+    if (track_at(p, track)->mode != NOH_TRACK_OFF) {
+        return noh_fail(error, NOH_ERR_LIMIT, "all tracks of the layer play: raise its track_count", p->layer_index,
+                        p->layer->track_count + 1u);
+    }
+    return free_changes(p) ? NOH_OK : no_change_free(1, error);
+}
+
 static noh_result begin(player *p, uint32_t clip, const noh_play *play, noh_error *error)
 {
+    const int beside = (play->flags & NOH_PLAY_BESIDE) != 0;
     const uint32_t ticks = play->fade_ticks ? play->fade_ticks : FADE_TICKS, track = free_track(p);
     const int from_nothing = p->layer->mode == NOH_LAYER_BASE && p->layer->moves_joints && !something_plays(p, track);
     const int at_once = ticks <= 1u || from_nothing;
     const noh_track_desc d = track_desc(p, clip, play, !at_once);
     noh_track probe;
     noh_result result = noh_track_start(&probe, &p->k->set, &d, error);
-    if (result == NOH_OK) result = make_room(p, track, error);
+    if (result == NOH_OK) result = beside ? make_room_beside(p, track, error) : make_room(p, track, error);
     if (result == NOH_OK) {
         result = noh_controller_start(p->c, &p->k->set, p->layer->first_track + track, &d, error);
     }
-    if (result == NOH_OK) result = fade_others(p, track, ticks, error);
+    if (result == NOH_OK && !beside) result = fade_others(p, track, ticks, error);
     if (result == NOH_OK && !at_once) {
         result = fade_in(p, track, play->weight > 0.0f ? play->weight : 1.0f, ticks, error);
     }
@@ -283,8 +298,11 @@ noh_result noh_actor_play(noh_stage *stage, noh_actor actor, uint32_t layer, con
         return noh_fail(error, NOH_ERR_NOT_FOUND, "the kind has no clip of that name", (uint64_t)(p.k - stage->kinds),
                         p.k->bank ? p.k->set.clip_count : 0);
     }
-    if (how->flags & ~(NOH_PLAY_KEEP | NOH_PLAY_PHASE | NOH_PLAY_INERTIA)) {
+    if (how->flags & ~(NOH_PLAY_KEEP | NOH_PLAY_PHASE | NOH_PLAY_INERTIA | NOH_PLAY_BESIDE)) {
         return noh_fail(error, NOH_ERR_ARG, "flags of a play has unknown bits", how->flags, 0);
+    }
+    if ((how->flags & NOH_PLAY_INERTIA) && (how->flags & NOH_PLAY_BESIDE)) {
+        return noh_fail(error, NOH_ERR_ARG, "flags of a play: by inertia nothing plays on beside", how->flags, 0);
     }
     if ((how->flags & NOH_PLAY_KEEP) && plays(&p, index)) {
         return NOH_OK;

@@ -399,6 +399,55 @@ static void inertia_takes_over_without_a_leap(void **state)
     cast_close(&c);
 }
 
+/* Clips beside each other play on; their weights are those of the tracks; a layer without a free track refuses. */
+static void clips_play_beside_each_other(void **state)
+{
+    static const char *const clips[] = { "walk", "dance", "bow" };
+    const noh_play beside = { .fade_ticks = 1, .flags = NOH_PLAY_BESIDE };
+    const noh_play wrong = { .flags = NOH_PLAY_BESIDE | NOH_PLAY_INERTIA };
+    const noh_look look = { 0, 0, 1, 0.0f };
+    float alone[64 * 12], mixed[64 * 12];
+    const noh_clip_set *set;
+    noh_actor actor;
+    noh_controller *c;
+    cast k;
+    (void)state;
+    cast_open(&k);
+    k.kinds[PUPPETS].inertia = 1;
+    k.kinds[PUPPETS].root_axes = 0; /* what is compared is the pose */
+    cast_make(&k, NULL);
+    assert_int_equal(noh_stage_spawn(k.stage, PUPPETS, NULL, &actor, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_look(k.stage, actor, &look, NULL), NOH_OK);
+    c = noh_actor_controller(k.stage, actor, &set);
+    for (uint32_t i = 0; i < 2; i++) {
+        const noh_track *track;
+        assert_int_equal(noh_actor_play(k.stage, actor, 0, clips[i], &beside, NULL), NOH_OK);
+        track = noh_actor_track(k.stage, actor, 0);
+        assert_ptr_equal(track, noh_controller_track(c, i));
+        assert_true(track->weight > 0.99f);
+        assert_int_equal(noh_stage_frame(k.stage, 20 * CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
+        take_joints(&k, actor, i ? mixed : alone);
+    }
+    assert_int_equal(noh_controller_track(c, 0)->mode, NOH_TRACK_ON);
+    assert_true(noh_controller_track(c, 0)->weight > 0.99f); /* not faded */
+    assert_int_equal(noh_actor_play(k.stage, actor, 0, clips[2], &beside, &said), NOH_ERR_LIMIT);
+    assert_int_equal(said.need, 3);
+    assert_int_equal(noh_actor_play(k.stage, actor, 0, clips[2], &wrong, &said), NOH_ERR_ARG);
+    assert_int_equal(noh_controller_set_weight(c, 1, 0.0f), NOH_OK);
+    assert_int_equal(noh_controller_seek(c, set, 0, 19 * CAST_STEP, NOH_SEEK_SKIP, NULL), NOH_OK);
+    assert_true(memcmp(alone, mixed, sizeof(float) * 12u * k.plan.kinds[PUPPETS].joint_count) != 0);
+    assert_int_equal(noh_stage_frame(k.stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
+    take_joints(&k, actor, mixed);
+    for (uint32_t j = 0; j < k.plan.kinds[PUPPETS].joint_count; j++) { /* the walk alone again, as of then */
+        for (uint32_t r = 0; r < 3; r++) {
+            for (uint32_t i = 0; i < 3; i++) {
+                assert_true(fabsf(alone[12 * j + 4 * r + i] - mixed[12 * j + 4 * r + i]) < 1e-4f);
+            }
+        }
+    }
+    cast_close(&k);
+}
+
 /* ---- callback keys ---- */
 
 typedef struct heard {
@@ -824,6 +873,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_face_is_played_over_a_body),
         cmocka_unit_test(a_walk_takes_the_actor_along),
         cmocka_unit_test(inertia_takes_over_without_a_leap),
+        cmocka_unit_test(clips_play_beside_each_other),
         cmocka_unit_test(keys_are_told_with_their_names),
         cmocka_unit_test(frames_and_steps_do_not_mix),
         cmocka_unit_test(who_is_behind_the_camera_is_not_posed),
