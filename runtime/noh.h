@@ -81,6 +81,11 @@
 #include "character/time_lod_points.h" /* what that moves vertices by */
 #include "character/joint_lod.h"       /* what posing fewer joints costs */
 
+/* ---- light ---- */
+
+#include "light/environment.h" /* light from all around, built in or your own, as spherical harmonics */
+#include "light/sh.h"          /* spherical harmonics: projected, convolved, turned */
+
 /* ---- parts, for tools and engines of your own ---- */
 
 #include "base/arena.h"      /* carve a block */

@@ -94,6 +94,12 @@
 #define NOH_LAYER_TRACKS_MAX 8u /* of a layer */
 #define NOH_CONCESSIONS_MAX 32u /* of a plan */
 
+/* ---- light ---- */
+
+#define NOH_SH_ORDER_MAX 6u /* of spherical harmonics */
+#define NOH_SH_COUNT_MAX 36u
+#define NOH_LAMPS_MAX 8u /* of an environment */
+
 /* ---- GL ---- */
 
 #define NOH_GL_VARIANTS_MAX 64u     /* of a renderer: a kind of mesh needs 2 to 8; with fades or depth twice that */
