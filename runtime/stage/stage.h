@@ -103,6 +103,7 @@ typedef struct noh_stage_desc {
     int tangents;        /* 1: accumulators with a layer of tangents, for shaders of yours that read them morphed; the
                           * library's do not */
     int halves;          /* 1: 16-bit accumulators */
+    int encode_srgb;     /* 1: shaders encode to sRGB, for targets that do not, such as WebGL's canvas */
     uint32_t morph_path; /* noh_morph_path of gl_morph.h; default (0) the cheapest */
     const noh_stage_gpu *gpu; /* &noh_stage_on_gl of stage_gl.h; default (NULL) nothing is drawn */
 } noh_stage_desc;

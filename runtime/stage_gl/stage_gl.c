@@ -222,6 +222,7 @@ static noh_result make_renderer(const noh_stage_gl *gl, const noh_stage *s, noh_
     d.mesh_count = gl->model_count;
     d.palettes = NOH_PALETTE_TEXTURE;
     d.without_tangents = !s->desc.tangents;
+    d.encode_srgb = s->desc.encode_srgb;
     d.crowds = 1;
     d.passes = passes;
     d.shaders = own;

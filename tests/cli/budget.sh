@@ -88,6 +88,7 @@ mesh puppet.noh
 actor_count 20
 near_count 4
 root_axes ground
+inertia 1
 layer body floats=
 layer face over joints= tracks=1
 layer nod joints="no_such_joint"    # names are looked up when there is a stage

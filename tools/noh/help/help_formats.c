@@ -83,6 +83,7 @@ const char *const help_formats_text[] = {
     "     near_count N                                of these, at the finest level at once",
     "     middle_count N                              and at the next level",
     "     finest_level K                              the finest level that may be used",
+    "     inertia 0|1                                 clips may take over by inertia (0)",
     "     held_float_count N                          floats that the game may hold (8; 0: none)",
     "     root_axes ground|x,y,z,heading              axes that clips move the character by; ground: x,z,heading. y is up",
     "     layer NAME [base|over|add] [joints=NAMES] [floats=NAMES] [tracks=N]",
