@@ -149,6 +149,12 @@ void noh_character_set_instance(noh_character *ch, uint32_t instance)
     ch->time.instance = instance;
 }
 
+void noh_character_set_behind(noh_character *ch, uint32_t ticks)
+{
+    NOH_ASSERT(ch);
+    ch->time.behind_ticks = ticks;
+}
+
 /* ---- parts ---- */
 
 noh_controller *noh_character_controller(noh_character *ch)
@@ -206,7 +212,8 @@ noh_due noh_character_look(noh_character *ch, const noh_lod_table *table, const 
     if (table->update_error_m) {
         noh_time_lod_error(c, table->update_error_m, update_error_m);
     }
-    noh_lod_choose(&ch->lod, table, settings, pixels_per_metre, table->update_error_m ? update_error_m : NULL, clock);
+    noh_lod_choose(&ch->lod, table, settings, pixels_per_metre, table->update_error_m ? update_error_m : NULL,
+                   noh_clock_add(clock, -(int64_t)ch->time.behind_ticks));
     joints = noh_lod_joint_count(&ch->lod, table);
     (void)noh_controller_set_lod(c, ch->lod.mesh, joints < ch->joint_count ? joints : 0);
     noh_time_lod_frame(&ch->time, clock, (noh_update_rate)ch->lod.update_rate);

@@ -92,6 +92,10 @@ size_t noh_character_bytes(const noh_character *ch);
 noh_result noh_character_check(const void *memory, size_t bytes, const noh_clip_set *set, const noh_lod_table *table,
                                noh_error *error);
 
+/* What the next frames show lies so many ticks behind the clock: a frame between two steps of a game. At most the last
+ * step; 0 to begin with. */
+void noh_character_set_behind(noh_character *ch, uint32_t ticks);
+
 /* Give a copy its own place in the stagger of updates. */
 void noh_character_set_instance(noh_character *ch, uint32_t instance);
 

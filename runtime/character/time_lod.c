@@ -31,10 +31,10 @@ static int64_t next_due(uint32_t instance, int64_t clock, uint32_t period)
 
 void noh_time_lod_frame(noh_time_lod *t, int64_t clock, noh_update_rate rate)
 {
-    int64_t ticks = noh_clock_since(clock, t->clock);
+    const int64_t shown = noh_clock_add(clock, -(int64_t)t->behind_ticks), ticks = noh_clock_since(shown, t->clock);
     NOH_ASSERT(t && (unsigned)rate < NOH_UPDATE_RATE_COUNT);
     t->frame_ticks = ticks < 0 ? 0 : ticks > UINT32_MAX ? UINT32_MAX : (uint32_t)ticks;
-    t->clock = clock;
+    t->clock = shown;
     t->chosen_rate = (uint8_t)rate;
     if (rate < t->shown_rate) {
         noh_time_lod_wake(t); /* the mix that is shown is too coarse by now */
@@ -58,26 +58,36 @@ uint32_t noh_time_lod_late(const noh_time_lod *t)
     return late < 0 || !t->posed ? 0 : late > UINT32_MAX ? UINT32_MAX : (uint32_t)late;
 }
 
+/* The game's clock in this frame. */
+static int64_t present(const noh_time_lod *t)
+{
+    return noh_clock_add(t->clock, t->behind_ticks);
+}
+
 /* Pose the instance as it is now, and show that alone. */
 static noh_time_update update_exactly(noh_time_lod *t)
 {
     noh_time_update u = { 0, 1.0f, 0 };
-    t->from_clock = t->to_clock = t->clock;
-    t->due_clock = noh_clock_add(t->clock, 1); /* with the next frame */
-    u.pose_clock = t->clock;
+    t->from_clock = t->to_clock = present(t);
+    t->due_clock = noh_clock_add(t->clock, 1);       /* with the next frame */
+    if (t->behind_ticks) t->due_clock = t->to_clock; /* after the next step */
+    u.pose_clock = t->to_clock;
     u.pose = t->to_pose;
     return u;
 }
 
 /* Where a mix that begins at from_clock ends: at the next of the instance's own update ticks, but at most a period
  * away. After a restart, when source and target may be far apart, it is at least half a period away, so that what is
- * shown does not rush. */
+ * shown does not rush. A controller does not play back: it ends at the game's clock, or after it.
+ * period  0: at the game's clock */
 static int64_t interval_end(const noh_time_lod *t, uint32_t period, int restart)
 {
-    int64_t longest = noh_clock_add(t->from_clock, period), shortest = noh_clock_add(t->from_clock, period / 2u);
-    int64_t end = next_due(t->instance, t->clock, period);
+    const int64_t longest = noh_clock_add(t->from_clock, period), soonest = present(t);
+    const int64_t shortest = noh_clock_add(t->from_clock, period / 2u);
+    int64_t end = period ? next_due(t->instance, t->clock, period) : soonest;
     end = end > longest ? longest : end;
-    return restart && end < shortest ? shortest : end;
+    end = restart && end < shortest ? shortest : end;
+    return end < soonest ? soonest : end;
 }
 
 /* Pose the instance as it will be at its next update. What is shown now must be where the new mix begins, so that
@@ -106,8 +116,12 @@ static noh_time_update update_ahead(noh_time_lod *t, uint32_t period)
 noh_time_update noh_time_lod_update(noh_time_lod *t)
 {
     uint32_t period = noh_update_period((noh_update_rate)t->chosen_rate);
-    int exact = period == 0 || t->frame_ticks >= period || noh_time_lod_due(t) == NOH_DUE_AT_ONCE;
+    int exact = noh_time_lod_due(t) == NOH_DUE_AT_ONCE;
     NOH_ASSERT(t->to_pose < 2u);
+    if (t->frame_ticks >= period) {
+        period = 0;
+        exact |= t->behind_ticks == 0;
+    }
     t->posed = 1;
     t->shown_rate = t->chosen_rate;
     return exact ? update_exactly(t) : update_ahead(t, period);
@@ -117,7 +131,7 @@ float noh_time_lod_fraction(const noh_time_lod *t)
 {
     int64_t since = noh_clock_since(t->clock, t->from_clock), span = noh_clock_since(t->to_clock, t->from_clock);
     NOH_ASSERT(t);
-    return since >= span ? 1.0f : since > 0 ? (float)since / (float)span : 0.0f;
+    return since >= span || span <= 0 ? 1.0f : since > 0 ? (float)since / (float)span : 0.0f;
 }
 
 void noh_time_lod_wake(noh_time_lod *t)

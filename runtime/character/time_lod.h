@@ -13,6 +13,11 @@
  * to the next. Mixing local transforms would follow arcs, but would need new matrices in every frame, which costs more
  * than sampling does.
  *
+ * What is shown may lie behind the clock (behind_ticks): a game that steps at a fixed rate and draws at another one
+ * shows frames between its last two steps. An update then poses the instance as it is after the last step, or later,
+ * and what is shown moves there from the pose before: an instance at the full rate is posed once in a step, and mixed
+ * in every frame.
+ *
  * Callback keys are not affected: controllers are stepped in every frame, seen or not.
  *
  * Updates are staggered: instance n is updated at the fraction n * golden ratio (modulo 1) of the period, so that any
@@ -36,14 +41,15 @@ extern "C" {
 typedef struct noh_time_lod {
     int64_t from_clock, to_clock; /* the mix runs from source to target between these; equal: the target alone */
     int64_t due_clock;            /* when the next update is due */
-    int64_t clock;                /* of the last frame */
+    int64_t clock;                /* of the last frame, as shown: behind_ticks before the game's */
     uint32_t frame_ticks;         /* from the frame before it to that one */
     uint32_t instance;
-    uint8_t chosen_rate; /* noh_update_rate of the last frame; the next update takes it up */
-    uint8_t shown_rate;  /* noh_update_rate of the mix that is shown */
-    uint8_t to_pose;     /* which pose is the target, 0 or 1; the other is the source */
-    uint8_t posed;       /* 0: no valid pose yet */
-    uint8_t reserved[4];
+    uint8_t chosen_rate;   /* noh_update_rate of the last frame; the next update takes it up */
+    uint8_t shown_rate;    /* noh_update_rate of the mix that is shown */
+    uint8_t to_pose;       /* which pose is the target, 0 or 1; the other is the source */
+    uint8_t posed;         /* 0: no valid pose yet */
+    uint32_t behind_ticks; /* what frames show lies so far behind the game's clock; set it before a frame. At most the
+                            * last step */
 } noh_time_lod;
 
 NOH_STATIC_ASSERT(sizeof(noh_time_lod) == 48, time_lod);
@@ -54,7 +60,8 @@ uint32_t noh_update_period(noh_update_rate rate);
 void noh_time_lod_init(noh_time_lod *t, uint32_t instance);
 
 /* Call once in each frame in which the instance is in view. Where frames are as long as the update period, or longer,
- * every one is posed exactly. */
+ * every one is posed exactly, or where what is shown lies behind, every step.
+ * units   clock: the game's */
 void noh_time_lod_frame(noh_time_lod *t, int64_t clock, noh_update_rate rate);
 
 typedef enum noh_due {
@@ -72,7 +79,7 @@ uint32_t noh_time_lod_late(const noh_time_lod *t);
  *   1. where keep is below 1: replace the other pose by the mix of both at this fraction, which is what is shown now
  *   2. pose the instance, as it will be at pose_clock, into `pose`; the other one is then the source */
 typedef struct noh_time_update {
-    int64_t pose_clock; /* this frame's, or later */
+    int64_t pose_clock; /* the game's clock in this frame, or later */
     float keep;
     uint8_t pose; /* 0 or 1: the target from now on */
 } noh_time_update;

@@ -8,11 +8,11 @@
  *            noh_stage_plan_of, noh_stage_stats_of
  *   names    noh_stage_find, noh_stage_name
  *   actors   noh_stage_spawn, noh_stage_despawn, noh_stage_actor_at, noh_actor_set_place, noh_actor_place,
- *            noh_actor_set_look, noh_actor_attach
+ *            noh_actor_place_between, noh_actor_cut, noh_actor_set_look, noh_actor_attach
  *   play     noh_actor_play, noh_actor_stop, noh_actor_track, noh_actor_controller, noh_actor_hold_float
  *   ask      noh_actor_floats, noh_actor_joint, noh_actor_root, noh_actor_sphere, noh_stage_pick
- *   frame    noh_stage_frame; or its pieces noh_stage_step, noh_stage_frame_begin, noh_stage_jobs, noh_stage_job,
- *            noh_stage_frame_end; noh_stage_events
+ *   frame    noh_stage_frame; or its pieces noh_stage_step, noh_stage_frame_begin or noh_stage_frame_between,
+ *            noh_stage_jobs, noh_stage_job, noh_stage_frame_end; noh_stage_events
  *   state    noh_stage_state, noh_stage_set_state, noh_stage_hash
  *
  * Drawing is stage_gl.h. A program that does not name noh_stage_on_gl links no GL code: a server steps and poses.
@@ -251,12 +251,26 @@ noh_result noh_stage_despawn(noh_stage *stage, noh_actor actor, noh_error *error
 /* The actor at an index below the sum of all actor_counts, kind after kind; id 0 where nobody is. */
 noh_actor noh_stage_actor_at(const noh_stage *stage, uint32_t index);
 
-/* errors  NOT_FOUND; ARG a value that is not finite, a rotation without length, a scale below 0 */
+/* Where it is after the next step, or, set after a step and before the next frame, after that one; before root motion.
+ * Frames between two steps show it on its way (noh_stage_frame_between), other frames show it there.
+ * errors  NOT_FOUND; ARG a value that is not finite, a rotation without length, a scale below 0 */
 noh_result noh_actor_set_place(noh_stage *stage, noh_actor actor, const noh_place *place, noh_error *error);
 
 /* Where it is after the last step; one that hangs on another: relative to the joint.
  * errors  NOT_FOUND */
 noh_result noh_actor_place(const noh_stage *stage, noh_actor actor, noh_place *place, noh_error *error);
+
+/* Where a frame between the last two steps shows it: what a camera that follows it must follow. Positions and scales
+ * are interpolated linearly, rotations as by noh_quat_nlerp.
+ * ranges  alpha as in noh_stage_frame_between
+ * errors  NOT_FOUND; ARG alpha */
+noh_result noh_actor_place_between(const noh_stage *stage, noh_actor actor, float alpha, noh_place *place,
+                                   noh_error *error);
+
+/* It has leapt: what shows from the next frame on is where it is and as it is after the last step, even between two
+ * steps; its detail is chosen afresh. Call it after noh_actor_set_place or noh_actor_play. Until that frame it counts
+ * as never posed. errors  NOT_FOUND */
+noh_result noh_actor_cut(noh_stage *stage, noh_actor actor, noh_error *error);
 
 /* How it is drawn. All zeros: seen, with a shadow, within the stage's error. */
 typedef struct noh_look {
@@ -397,6 +411,18 @@ typedef struct noh_stage_view {
  * finest detail that one of them asks for.
  * errors  ARG a matrix is not finite, or a frame has begun */
 noh_result noh_stage_frame_begin(noh_stage *stage, const noh_stage_view *views, uint32_t view_count, noh_error *error);
+
+/* The same between the last two steps, for a game that steps at a fixed rate and draws at another one. Places and poses
+ * are those of the two steps, mixed: a game that is `left` ticks behind its next step of `ticks` shows alpha = 1 -
+ * left / ticks, and what shows lies up to a step behind callback keys. Places, matrices of joints and floats are mixed,
+ * so that skinned vertices go straight from one step to the next, which at 30 steps a second is off by as much as poses
+ * at 30 Hz (time_lod.h); an actor in full detail is posed once in a step. Actors that are posed less often need no mix
+ * of steps. Held floats and looks show at once, and so does the place of an actor that was spawned, attached or cut.
+ * noh_actor_joint, noh_actor_sphere and noh_stage_pick agree with what shows.
+ * ranges  alpha 0..1: 0 the step before the last one, 1 the last; taken to a tick
+ * errors  as noh_stage_frame_begin, which is alpha 1; ARG alpha */
+noh_result noh_stage_frame_between(noh_stage *stage, const noh_stage_view *views, uint32_t view_count, float alpha,
+                                   noh_error *error);
 
 /* The next phase of a frame: how many jobs it has; 0: none is left. All jobs of a phase must have returned before the
  * next call.

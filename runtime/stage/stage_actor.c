@@ -107,6 +107,43 @@ void noh_place_matrix(const noh_place *place, float matrix[12])
     noh_transform_matrix(&t, matrix);
 }
 
+/* part  0: before the last step, 1: after it */
+static void mix_places(const noh_stage_actor *a, float part, noh_place *out)
+{
+    *out = part > 0.0f ? a->place : a->before;
+    if (part > 0.0f && part < 1.0f && memcmp(&a->before, &a->place, sizeof a->place) != 0) {
+        for (int i = 0; i < 3; i++) {
+            out->position[i] = a->before.position[i] + (a->place.position[i] - a->before.position[i]) * part;
+        }
+        noh_quat_nlerp(a->before.rotation, a->place.rotation, part, out->rotation);
+        out->scale = a->before.scale + (a->place.scale - a->before.scale) * part;
+    }
+}
+
+static float part_of_step(uint32_t behind_ticks, uint32_t step_ticks)
+{
+    if (behind_ticks == 0) return 1.0f;
+    return behind_ticks < step_ticks ? (float)(step_ticks - behind_ticks) / (float)step_ticks : 0.0f;
+}
+
+void noh_stage_shown_place(const noh_stage *s, const noh_stage_actor *a, noh_place *out)
+{
+    mix_places(a, part_of_step(s->head->behind_ticks, s->head->step_ticks), out);
+}
+
+/* A place from outside a step: until the step that it belongs to is over, or a frame has shown it, `before` stays. */
+static void go_to(noh_stage_actor *a, const noh_place *place)
+{
+    if (!a->on_its_way) a->before = a->place;
+    a->on_its_way = 1;
+    a->place = *place;
+}
+
+static void be_at(noh_stage_actor *a, const noh_place *place)
+{
+    a->place = a->before = *place;
+}
+
 noh_result noh_actor_set_place(noh_stage *stage, noh_actor actor, const noh_place *place, noh_error *error)
 {
     noh_stage_actor *a;
@@ -122,7 +159,7 @@ noh_result noh_actor_set_place(noh_stage *stage, noh_actor actor, const noh_plac
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, actor.id & 0xffffu, 0);
     }
-    a->place = normal;
+    go_to(a, &normal);
     return NOH_OK;
 }
 
@@ -134,6 +171,34 @@ noh_result noh_actor_place(const noh_stage *stage, noh_actor actor, noh_place *p
         return noh_stage_gone(error, actor);
     }
     *place = a->place;
+    return NOH_OK;
+}
+
+noh_result noh_actor_place_between(const noh_stage *stage, noh_actor actor, float alpha, noh_place *place,
+                                   noh_error *error)
+{
+    const noh_stage_actor *a = noh_stage_actor_of(stage, actor, NULL);
+    NOH_ASSERT(place);
+    if (!a) {
+        return noh_stage_gone(error, actor);
+    }
+    if (!(alpha >= 0.0f && alpha <= 1.0f)) {
+        return noh_fail(error, NOH_ERR_ARG, "alpha is outside of 0..1", 0, 0);
+    }
+    mix_places(a, part_of_step(noh_stage_behind(stage, alpha), stage->head->step_ticks), place);
+    return NOH_OK;
+}
+
+noh_result noh_actor_cut(noh_stage *stage, noh_actor actor, noh_error *error)
+{
+    noh_stage_actor *a;
+    noh_stage_kind *k;
+    const noh_result result = noh_stage_change(stage, actor, &a, &k, error);
+    if (result != NOH_OK) {
+        return result;
+    }
+    be_at(a, &a->place);
+    noh_character_cut(noh_stage_character(k, noh_stage_index(k, a)));
     return NOH_OK;
 }
 
@@ -181,7 +246,7 @@ noh_result noh_stage_spawn(noh_stage *stage, uint32_t kind, const noh_place *pla
     f->count++;
     a->next_free = 0;
     a->alive = 1;
-    a->place = normal;
+    be_at(a, &normal);
     *actor = id_of(stage, (uint32_t)(a - stage->actors));
     return NOH_OK;
 }
@@ -191,7 +256,7 @@ static void let_go(noh_stage_actor *child, const noh_place *shown)
 {
     child->parent = 0;
     child->joint = 0;
-    child->place = *shown;
+    be_at(child, shown);
 }
 
 static float length3(const float *m)
@@ -224,7 +289,7 @@ static void place_of_matrix(const float m[12], noh_place *place)
 static void world_place(const noh_stage *s, const noh_stage_actor *a, noh_place *out)
 {
     float matrix[12];
-    *out = a->place;
+    noh_stage_shown_place(s, a, out);
     if (a->parent) {
         noh_stage_world(s, (uint32_t)(a - s->actors), matrix);
         place_of_matrix(matrix, out);
@@ -329,5 +394,6 @@ noh_result noh_actor_attach(noh_stage *stage, noh_actor actor, noh_actor parent,
     }
     a->parent = parent.id;
     a->joint = joint;
+    be_at(a, &a->place); /* from now on relative to the joint */
     return NOH_OK;
 }

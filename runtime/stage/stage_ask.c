@@ -23,12 +23,15 @@ void noh_stage_world(const noh_stage *s, uint32_t index, float matrix[12])
 {
     const noh_stage_actor *a = &s->actors[index], *on;
     noh_stage_kind *k;
-    noh_place_matrix(&a->place, matrix);
+    noh_place place;
+    noh_stage_shown_place(s, a, &place);
+    noh_place_matrix(&place, matrix);
     on = a->parent ? noh_stage_actor_of(s, (noh_actor){ a->parent }, &k) : NULL;
     if (on) {
         const noh_character *ch = noh_stage_character(k, noh_stage_index(k, on));
         float joint[12], world[12];
-        noh_place_matrix(&on->place, world);
+        noh_stage_shown_place(s, on, &place);
+        noh_place_matrix(&place, world);
         if (ch->time.posed && a->joint < k->skeleton.joint_count) {
             joint_matrix(ch, a->joint, joint);
             noh_matrix_multiply(world, joint, world);

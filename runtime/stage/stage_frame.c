@@ -16,10 +16,22 @@ static const char *bad_views(const noh_stage *s, const noh_stage_view *views, ui
     return NULL;
 }
 
+uint32_t noh_stage_behind(const noh_stage *s, float alpha)
+{
+    return (uint32_t)((1.0 - (double)alpha) * (double)s->head->step_ticks + 0.5);
+}
+
 noh_result noh_stage_frame_begin(noh_stage *stage, const noh_stage_view *views, uint32_t view_count, noh_error *error)
+{
+    return noh_stage_frame_between(stage, views, view_count, 1.0f, error);
+}
+
+noh_result noh_stage_frame_between(noh_stage *stage, const noh_stage_view *views, uint32_t view_count, float alpha,
+                                   noh_error *error)
 {
     const char *what = bad_views(stage, views, view_count);
     NOH_ASSERT(stage && (views || !view_count));
+    if (!what && !(alpha >= 0.0f && alpha <= 1.0f)) what = "alpha is outside of 0..1";
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }
@@ -30,6 +42,7 @@ noh_result noh_stage_frame_begin(noh_stage *stage, const noh_stage_view *views, 
         stage->cut |= views[v].cut != 0;
     }
     stage->view_count = view_count;
+    stage->head->behind_ticks = noh_stage_behind(stage, alpha);
     stage->frame++;
     if (!stage->frame) stage->frame = 1;
     stage->phase = NOH_STAGE_BEGUN;

@@ -48,13 +48,15 @@ typedef struct noh_stage_held {
 typedef struct noh_stage_actor {
     noh_root_pose moved; /* by the last step */
     noh_place place;     /* normalised */
+    noh_place before;    /* at the end of the step before the last one */
     noh_look look;
     uint32_t generation;
     uint32_t alive;
     uint32_t next_free;  /* index + 1; 0: the last */
     uint32_t parent;     /* id; 0: hangs on nothing */
     uint32_t joint;      /* of the parent */
-    uint32_t was_seen;   /* in the last frame */
+    uint16_t was_seen;   /* in the last frame */
+    uint16_t on_its_way; /* 1: `before` is that of the step that is under way, or comes next */
     uint32_t started[2]; /* for each layer four bits: the track that was started last, of the layer's own */
 } noh_stage_actor;
 
@@ -67,14 +69,14 @@ typedef struct noh_stage_free {
 typedef struct noh_stage_head {
     uint32_t magic, hash;
     int64_t clock;
-    uint32_t step_ticks; /* of the last step */
-    uint32_t reserved;
+    uint32_t step_ticks;   /* of the last step */
+    uint32_t behind_ticks; /* what the last frame shows lies so far behind the clock */
     noh_stage_free kinds[NOH_STAGE_KINDS_MAX];
 } noh_stage_head;
 
 NOH_STATIC_ASSERT(sizeof(noh_place) == 32, place);
 NOH_STATIC_ASSERT(sizeof(noh_look) == 16, look);
-NOH_STATIC_ASSERT(sizeof(noh_stage_actor) == 112, stage_actor);
+NOH_STATIC_ASSERT(sizeof(noh_stage_actor) == 144, stage_actor);
 NOH_STATIC_ASSERT(sizeof(noh_stage_head) == 24 + 16 * NOH_STAGE_KINDS_MAX, stage_head);
 
 #define NOH_STAGE_MAGIC 0x53484f4eu /* "NOHS" */
@@ -319,6 +321,8 @@ noh_result noh_stage_change(noh_stage *s, noh_actor actor, noh_stage_actor **a, 
                             noh_error *error);
 noh_stage_kind *noh_stage_kind_of(const noh_stage *s, uint32_t index); /* of an actor's index in the stage */
 noh_result noh_stage_gone(noh_error *error, noh_actor actor);
+/* Its own place as the last frame shows it. */
+void noh_stage_shown_place(const noh_stage *s, const noh_stage_actor *a, noh_place *out);
 /* Where an actor is drawn: its place, or that on its parent's joint as that was posed last. */
 void noh_stage_world(const noh_stage *s, uint32_t index, float matrix[12]);
 noh_result noh_stage_pack_clip(const noh_stage_kind *k, uint32_t clip, noh_pack_clip *out);
@@ -326,6 +330,7 @@ noh_character *noh_stage_character(const noh_stage_kind *kind, uint32_t index);
 uint32_t noh_stage_index(const noh_stage_kind *kind, const noh_stage_actor *a); /* in its kind */
 void noh_place_matrix(const noh_place *place, float matrix[12]);
 
+uint32_t noh_stage_behind(const noh_stage *s, float alpha); /* ticks behind the last step */
 void noh_stage_look_at(noh_stage *s, uint32_t first, uint32_t end);
 void noh_stage_share(noh_stage *s);
 void noh_stage_pose_todo(noh_stage *s, uint32_t job, uint32_t first, uint32_t end);

@@ -60,24 +60,26 @@ static uint32_t find_views(const noh_stage *s, const noh_stage_actor *a, const f
 }
 
 /* What hangs on another is where that is seen: its own matrix is known only when the other was posed. */
-static uint32_t look_from(const noh_stage *s, uint32_t index, float *scale)
+static uint32_t look_from(const noh_stage *s, uint32_t index, const noh_place *own, float *scale)
 {
     const noh_stage_actor *a = &s->actors[index], *on = a;
     const noh_stage_kind *k = noh_stage_kind_of(s, index), *of = k;
     const noh_character *ch;
+    noh_place place = *own;
     float world[12], sphere[4];
     if (a->parent) {
         on = noh_stage_actor_of(s, (noh_actor){ a->parent }, NULL);
         if (!on || on->look.hidden) return 0;
+        noh_stage_shown_place(s, on, &place);
         of = noh_stage_kind_of(s, (uint32_t)(on - s->actors));
     }
     ch = noh_stage_character(of, noh_stage_index(of, on));
-    noh_place_matrix(&on->place, world);
-    reach_in_world(of, ch, world, on->place.scale, sphere);
+    noh_place_matrix(&place, world);
+    reach_in_world(of, ch, world, place.scale, sphere);
     if (a != on)
         sphere[3] += (k->reach[3] +
                       noh_sqrt(k->reach[0] * k->reach[0] + k->reach[1] * k->reach[1] + k->reach[2] * k->reach[2])) *
-                     a->place.scale * on->place.scale;
+                     own->scale * place.scale;
     return find_views(s, a, sphere, scale);
 }
 
@@ -87,8 +89,11 @@ static void look_at(noh_stage *s, noh_stage_kind *k, uint32_t index)
     noh_stage_shown *shown = &s->shown[index];
     noh_character *ch = noh_stage_character(k, noh_stage_index(k, a));
     noh_lod_settings settings = s->desc.lod;
+    noh_place place;
     float scale = 0.0f;
-    shown->views = look_from(s, index, &scale);
+    noh_stage_shown_place(s, a, &place);
+    shown->views = look_from(s, index, &place, &scale);
+    a->on_its_way = 0;
     shown->due = NOH_DUE_NOT;
     shown->updates = 0;
     shown->scale = scale;
@@ -101,8 +106,9 @@ static void look_at(noh_stage *s, noh_stage_kind *k, uint32_t index)
     }
     a->was_seen = 1;
     if (a->look.pixels > 0.0f) settings.pixels = a->look.pixels;
+    noh_character_set_behind(ch, s->head->behind_ticks);
     shown->due = (uint8_t)noh_character_look(ch, &k->table, &settings,
-                                             a->look.posed ? FULL_DETAIL : scale * a->place.scale);
+                                             a->look.posed ? FULL_DETAIL : scale * place.scale);
 }
 
 void noh_stage_look_at(noh_stage *s, uint32_t first, uint32_t end)

@@ -35,19 +35,28 @@ static const void *in_copy(const reader *r, const void *own)
     return r->state + ((const uint8_t *)own - r->s->state);
 }
 
-static const char *bad_actor(const reader *r, const noh_stage_kind *k, const noh_stage_actor *a)
+static const char *bad_place(const noh_place *place)
 {
     float length = 0.0f;
+    for (int i = 0; i < 3; i++) {
+        if (!noh_is_finite(place->position[i])) return "state: an actor's place is not finite";
+    }
+    for (int i = 0; i < 4; i++) length += place->rotation[i] * place->rotation[i];
+    if (!(length > 0.9f && length < 1.1f) || !(place->scale > 0.0f) || !noh_is_finite(place->scale))
+        return "state: an actor's rotation is not unit, or its scale not above 0";
+    return NULL;
+}
+
+static const char *bad_actor(const reader *r, const noh_stage_kind *k, const noh_stage_actor *a)
+{
+    const char *what;
     if (a->generation == 0 || a->generation > 0xffffu) return "state: bad generation of an actor";
-    if (a->alive > 1u || a->was_seen > 1u) return "state: an actor is neither there nor gone";
+    if (a->alive > 1u || a->was_seen > 1u || a->on_its_way > 1u) return "state: an actor is neither there nor gone";
     if (a->next_free > k->desc.actor_count) return "state: bad list of free actors";
     if (!a->alive) return NULL;
-    for (int i = 0; i < 3; i++) {
-        if (!noh_is_finite(a->place.position[i])) return "state: an actor's place is not finite";
-    }
-    for (int i = 0; i < 4; i++) length += a->place.rotation[i] * a->place.rotation[i];
-    if (!(length > 0.9f && length < 1.1f) || !(a->place.scale > 0.0f) || !noh_is_finite(a->place.scale))
-        return "state: an actor's rotation is not unit, or its scale not above 0";
+    what = bad_place(&a->place);
+    if (!what) what = bad_place(&a->before);
+    if (what) return what;
     if (!(a->look.pixels >= 0.0f) || !noh_is_finite(a->look.pixels)) return "state: an actor's look is not finite";
     if (a->parent && (a->parent & 0xffffu) >= r->s->actor_count) return "state: a parent out of range";
     for (uint32_t l = 0; l < k->layer_count; l++) {

@@ -99,11 +99,14 @@ static void step_actor(noh_stage *s, noh_stage_kind *k, uint32_t index, uint32_t
     t.k = k;
     t.a = &k->actors[index];
     t.before = c->clock;
+    if (!t.a->on_its_way) t.a->before = t.a->place;
+    t.a->on_its_way = 1; /* places that callbacks set belong to this step */
     (void)noh_character_step(ch, &k->set, ticks, on_event, &t);
     if (k->set.roots) {
         t.a->moved = noh_controller_root_motion(c, &k->set);
         if (!k->desc.root_told && !t.a->parent) drive(t.a, &t.a->moved, k->desc.root_up);
     }
+    t.a->on_its_way = 0;
 }
 
 noh_result noh_stage_step(noh_stage *stage, uint32_t ticks, noh_stage_event_fn on_key, void *user, noh_error *error)

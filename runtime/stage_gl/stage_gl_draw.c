@@ -64,7 +64,7 @@ static void draw_fading(const drawing *d, uint32_t mesh, uint32_t place)
 {
     const noh_stage_shown *shown = shown_at(d, place);
     const noh_character *ch = noh_stage_character(d->k, d->k->order[place]);
-    const float part = noh_lod_fade(&ch->lod, noh_character_clock(ch));
+    const float part = noh_lod_fade(&ch->lod, ch->time.clock);
     if (mesh_level(d, mesh, shown->level) == mesh_level(d, mesh, shown->level_before)) {
         draw_alone(d, mesh, place, shown->level, 0.0f, 1.0f);
         return;

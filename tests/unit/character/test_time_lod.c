@@ -153,6 +153,43 @@ static void updates_on_time_have_the_error_of_interpolation(void **state)
     assert_true(worst[0] == 0.0 && worst[1] > 0.0 && worst[1] < worst[2] && worst[2] < worst[3]);
 }
 
+/* Frames between the last two steps of a game: what is shown has the error of interpolation between steps or, where
+ * those are longer, updates; and no update poses what the controller has left behind. */
+static void frames_between_steps_have_the_error_of_interpolation(void **state)
+{
+    test_random r = test_random_from(26);
+    noh_update_rate rate = NOH_UPDATE_RATE_FULL;
+    int64_t shown_clock = 5000, clock = 4800, span = 0;
+    double worst[NOH_UPDATE_RATE_COUNT] = { 0.0 };
+    line l;
+    (void)state;
+    noh_time_lod_init(&l.t, 31);
+    for (int frame = 0; frame < 200000; frame++) {
+        const int64_t end = l.t.to_clock;
+        double error;
+        shown_clock += 200 + test_random_below(&r, 1000);
+        while (clock < shown_clock) clock += 1600;
+        if (test_random_below(&r, 200) == 0) rate = (noh_update_rate)test_random_below(&r, NOH_UPDATE_RATE_COUNT);
+        l.t.behind_ticks = (uint32_t)(clock - shown_clock);
+        noh_time_lod_frame(&l.t, clock, rate);
+        if (noh_time_lod_due(&l.t) != NOH_DUE_NOT) {
+            update(&l, 0.0);
+            assert_true(l.t.to_clock >= clock);
+            span = l.t.from_clock == end ? l.t.to_clock - end : 6000; /* else it begins with the error of a mix */
+        }
+        if (l.t.from_clock == l.t.to_clock && shown_clock < clock) continue; /* the first ones show the step itself */
+        error = fabs(shown(&l) - wave((double)shown_clock, 0.0));
+        if (error > WAVE_BEND * (double)span * (double)span / 8.0 + 1e-6)
+            fail_msg("frame %d: off by %g in a span of %d", frame, error, (int)span);
+        if (span < 6000 || l.t.shown_rate == NOH_UPDATE_RATE_8)
+            worst[l.t.shown_rate] = fmax(worst[l.t.shown_rate], error);
+        if (l.t.from_clock < shown_clock && shown_clock == l.t.to_clock) assert_true(error < 1e-6);
+    }
+    print_message("largest errors between steps at 30 Hz, at full rate, 30, 15, 8 Hz: %g %g %g %g\n", worst[0],
+                  worst[1], worst[2], worst[3]);
+    assert_true(worst[0] > 0.0 && worst[0] < worst[2] && worst[2] < worst[3]);
+}
+
 /* Late updates, which hold the last pose, and random changes: what is shown takes at least half a period to radius the
  * new state, however far that is, moves as the true pose does when nothing changes, and returns to it. */
 static void late_updates_and_changes_never_jump(void **state)
@@ -605,6 +642,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(updates_are_spread_evenly),
         cmocka_unit_test(uneven_frames_lose_no_updates),
         cmocka_unit_test(updates_on_time_have_the_error_of_interpolation),
+        cmocka_unit_test(frames_between_steps_have_the_error_of_interpolation),
         cmocka_unit_test(late_updates_and_changes_never_jump),
         cmocka_unit_test(unseen_for_long_is_posed_at_once),
         cmocka_unit_test(a_finer_rate_begins_at_once),

@@ -672,8 +672,14 @@ static void show(cast *c, uint64_t seed, uint32_t frames, int shuffled, uint64_t
         if (what == 3 && actor.id)
             (void)noh_actor_hold_float(c->stage, actor, 0, test_random_float(&r, 0, 1), 1.0f, NULL);
         if (what == 4 && actor.id) (void)noh_actor_stop(c->stage, actor, 0, 0, NULL);
-        step(c->stage, 400u + test_random_below(&r, 900));
-        assert_int_equal(noh_stage_frame_begin(c->stage, &view, 1, NULL), NOH_OK);
+        if (what == 5 && actor.id) {
+            const noh_place place = { { test_random_float(&r, -4, 4), 0, test_random_float(&r, -4, 4) }, { 0 }, 1.2f };
+            assert_int_equal(noh_actor_set_place(c->stage, actor, &place, NULL), NOH_OK);
+            if (f % 4u == 0) assert_int_equal(noh_actor_cut(c->stage, actor, NULL), NOH_OK);
+        }
+        if (f % 3u) step(c->stage, 400u + test_random_below(&r, 900));
+        assert_int_equal(noh_stage_frame_between(c->stage, &view, 1, f % 5u ? 0.3f * (float)(f % 4u) : 1.0f, NULL),
+                         NOH_OK);
         while ((count = noh_stage_jobs(c->stage)) > 0) {
             for (uint32_t i = 0; i < count; i++) noh_stage_job(c->stage, shuffled ? count - 1u - i : i);
         }
@@ -751,7 +757,7 @@ static void a_damaged_state_does_no_harm(void **state)
     bad = test_aligned(good, bytes);
     assert_int_equal(noh_stage_set_state(c.stage, good, bytes - 1u, &said), NOH_ERR_DATA);
     for (uint32_t i = 0; i < 3000; i++) {
-        const uint32_t head = i % 2u ? 288u + 112u * CAST_ACTORS : (uint32_t)bytes; /* heads and actors more often */
+        const uint32_t head = i % 2u ? 288u + 144u * CAST_ACTORS : (uint32_t)bytes; /* heads and actors more often */
         const uint32_t at = test_random_below(&r, head);
         bad[at] ^= (uint8_t)(1u << test_random_below(&r, 8));
         if (noh_stage_set_state(c.stage, bad, bytes, &said) == NOH_OK) {

@@ -94,7 +94,10 @@ static void frames(show *s, uint32_t first, uint32_t end, uint64_t *hashes)
                                  NULL);
         if (f % 16u == 3u) (void)noh_actor_hold_float(s->stage, actor, f % 20u, 0.01f * (float)f, 0.5f, NULL);
         noh_view_orbit(&view, middle, 0.05f * (float)f, 0.3f, 3.0f + 0.2f * (float)(f % 80u), 640, 360);
-        assert_int_equal(noh_stage_frame(s->stage, FRAME_TICKS + f % 7u, &view, NULL, NULL, NULL), NOH_OK);
+        assert_int_equal(noh_stage_step(s->stage, FRAME_TICKS + f % 7u, NULL, NULL, NULL), NOH_OK);
+        assert_int_equal(noh_stage_frame_between(s->stage, &view, 1, f % 2u ? 1.0f : 0.01f * (float)(f % 100u), NULL),
+                         NOH_OK);
+        assert_int_equal(noh_stage_frame_end(s->stage, NULL), NOH_OK);
         hashes[f] = noh_stage_hash(s->stage);
     }
 }

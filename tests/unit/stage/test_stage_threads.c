@@ -152,7 +152,7 @@ static double play_frames(pool *p, result *results)
         const noh_stage_view view = cast_view(f, 4.0f + 12.0f * (float)(f % 80u) / 80.0f);
         direct(c, &r, f);
         assert_int_equal(noh_stage_step(c->stage, 500u + test_random_below(&r, 700), NULL, NULL, NULL), NOH_OK);
-        assert_int_equal(noh_stage_frame_begin(c->stage, &view, 1, NULL), NOH_OK);
+        assert_int_equal(noh_stage_frame_between(c->stage, &view, 1, 1.0f - 0.3f * (float)(f % 3u), NULL), NOH_OK);
         seconds -= now();
         run_phases(p);
         seconds += now();
