@@ -15,7 +15,8 @@
 
 /* ---- a pack ---- */
 
-#define NOH_PACK_ALIGN 64u /* chunks start at multiples of this in the file; a pack in memory is aligned to 16 */
+/* Chunks start at multiples of this in the file. In memory a pack is aligned as any block is (NOH_MEMORY_ALIGN). */
+#define NOH_PACK_ALIGN 64u
 #define NOH_PACK_CHUNKS_MAX 4096u
 #define NOH_PACK_BYTES_MAX 0x7fffffffu
 #define NOH_NAME_BYTES_MAX 256u /* with the final zero */
