@@ -54,7 +54,7 @@ static void adopt(const noh_stage_desc *desc, const noh_stage_plan *plan, const 
     noh_stage *s = b->stage;
     memset(s, 0, sizeof *s);
     s->desc = noh_stage_desc_filled(desc);
-    s->desc.halves = (int)plan->halves;
+    s->desc.halves = noh_stage_halves(desc, plan);
     s->plan = plan;
     s->kinds = b->kinds;
     s->head = b->head;

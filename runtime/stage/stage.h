@@ -10,7 +10,7 @@
  *   actors   noh_stage_spawn, noh_stage_despawn, noh_stage_actor_at, noh_actor_set_place, noh_actor_place,
  *            noh_actor_place_between, noh_actor_cut, noh_actor_set_look, noh_actor_attach
  *   play     noh_actor_play, noh_actor_stop, noh_actor_track, noh_actor_controller, noh_actor_hold_float
- *   ask      noh_actor_floats, noh_actor_joint, noh_actor_root, noh_actor_sphere, noh_stage_pick
+ *   ask      noh_actor_floats, noh_actor_joint, noh_actor_root, noh_actor_sphere, noh_actor_mesh_at, noh_stage_pick
  *   frame    noh_stage_frame; or its pieces noh_stage_step, noh_stage_frame_begin or noh_stage_frame_between,
  *            noh_stage_jobs, noh_stage_job, noh_stage_frame_end; noh_stage_events
  *   state    noh_stage_state, noh_stage_set_state, noh_stage_hash
@@ -64,7 +64,10 @@ typedef struct noh_kind_desc {
     const noh_pack *clips;             /* default (NULL) `mesh`. Clips of other skeletons are left out */
     const noh_pack *const *clip_packs; /* [clip_pack_count] instead of `clips`, where there are several: a later one's
                                         * clip replaces an earlier one's of the same name. Must outlive the stage */
-    uint32_t clip_pack_count;          /* 0 with `clips` */
+    uint32_t clip_pack_count;          /* 0 with `clips`; 0 with clip_packs: no clips at all */
+    const uint32_t *nodes; /* [node_count] only these nodes of `mesh` are drawn; in a pack without nodes: these meshes.
+                            * Default (NULL) all. Read by plans and by init */
+    uint32_t node_count;
     uint32_t skeleton;     /* in `mesh`; default 0; NOH_NONE: only what no joint moves. A node's mesh that another
                             * skeleton moves is left out */
     uint32_t actor_count;  /* of this kind at one time; required */
@@ -72,6 +75,8 @@ typedef struct noh_kind_desc {
     uint32_t middle_count; /* and how many at the next one. Both 0: 16, or more by an even
                             * spread over 100 m; a bound takes some back */
     uint32_t finest_level; /* the finest level that may be used (noh_stage_plan.kinds[].levels); default 0 */
+    int levels_by_number;  /* 1: level k of an actor is level k of each of its meshes, or their coarsest; 0: each mesh
+                            * takes its coarsest level that is off by no more than the others */
     const noh_layer_desc *layers; /* [layer_count] default (NULL) three: "body" (base), "face" (over, floats alone),
                                    * "add" (add) */
     uint32_t layer_count;         /* 0..NOH_LAYERS_MAX */
@@ -102,8 +107,12 @@ typedef struct noh_stage_desc {
     uint64_t update_budget_ns; /* of posing in a frame, by noh_cost_ns; default (0) no bound */
     int tangents;        /* 1: accumulators with a layer of tangents, for shaders of yours that read them morphed; the
                           * library's do not */
-    int halves;          /* 1: 16-bit accumulators */
+    int halves;          /* 1: 16-bit accumulators; -1: 32-bit ones, which are not given up either */
     int encode_srgb;     /* 1: shaders encode to sRGB, for targets that do not, such as WebGL's canvas */
+    int full_detail;     /* 1: each actor is shown at its kind's finest level, or at noh_look.level, with everything
+                          * else in full: no tables of LOD, no programs that fade or take fewer influences */
+    int without_depth;   /* 1: NOH_PASS_DEPTH is never drawn: its programs are not compiled */
+    int without_shader;  /* 1: every noh_stage_draw names a shader: the library's programs are not compiled */
     uint32_t morph_path; /* noh_morph_path of gl_morph.h; default (0) the cheapest */
     const noh_stage_gpu *gpu; /* &noh_stage_on_gl of stage_gl.h; default (NULL) nothing is drawn */
 } noh_stage_desc;
@@ -118,20 +127,11 @@ typedef struct noh_actor_level {
     uint8_t mesh_levels[NOH_STAGE_MESHES_MAX];
 } noh_actor_level;
 
-/* What the clips of a kind take, read from its packs: a plan reads them once, however much it then gives up. */
-typedef struct noh_kind_clips {
-    uint64_t bank_bytes, view_bytes; /* 0: no clip fits */
-    uint32_t clip_count, event_count, marker_count, joint_count, float_count;
-    uint32_t cached_segment_count, segment_count;
-    uint32_t asked; /* cached segments that it was read for */
-} noh_kind_clips;
-
 /* What a kind came to. */
 typedef struct noh_kind_plan {
     uint32_t mesh_count, level_count, finest_level;
     uint32_t track_count, joint_count, float_count;
     uint32_t cached_segment_count, segment_count; /* of its clips: held decoded at once; in all */
-    noh_kind_clips clips;                         /* of the kind whose clips it shares: itself, or an earlier one */
     noh_actor_level levels[NOH_LOD_LEVELS_MAX];
 } noh_kind_plan;
 
@@ -144,7 +144,7 @@ typedef struct noh_concession {
     uint64_t cpu_bytes, gpu_bytes; /* that it won */
 } noh_concession;
 
-/* Plain data, 8 KiB: print it, compare it, keep it with the build. */
+/* Plain data, 7 KiB: print it, compare it, keep it with the build. */
 typedef struct noh_stage_plan {
     uint64_t cpu_bytes;   /* of the block that noh_stage_init wants; exact */
     uint64_t gpu_bytes;   /* of what it makes on the GPU; exact, as the ledger counts */
@@ -287,6 +287,7 @@ typedef struct noh_look {
     uint32_t no_shadow; /* 1: not drawn in depth passes of views without height_px */
     uint32_t posed;     /* 1: posed in every frame in full detail, seen or not: for noh_actor_joint on a server */
     float pixels;       /* its own largest error; 0: that of the stage */
+    uint32_t level;     /* 1 + the level to show whatever its error, with everything else in full; 0: chosen by error */
 } noh_look;
 
 /* errors  NOT_FOUND; ARG pixels is negative or not finite */
@@ -361,6 +362,22 @@ noh_result noh_actor_root(const noh_stage *stage, noh_actor actor, noh_root_pose
 /* Centre x, y, z and radius in the world of a sphere that holds every vertex as posed last.
  * errors  NOT_FOUND the actor is gone */
 noh_result noh_actor_sphere(const noh_stage *stage, noh_actor actor, float sphere[4], noh_error *error);
+
+/* A mesh of an actor as it was shown last, for what deforms it on the CPU (noh_morph_accumulate, noh_skin_vertices):
+ * exact bounds, decals, export. */
+typedef struct noh_actor_mesh {
+    uint32_t node, mesh;  /* of the kind's mesh pack; node NOH_NONE: a pack without nodes */
+    uint32_t level;       /* of the mesh */
+    uint32_t joint_count; /* of its skin; 0: rigid */
+    const float *weights; /* [its target_count]; valid until the next frame */
+    float world[12];      /* of its vertices, once they are deformed */
+} noh_actor_mesh;
+
+/* The index-th mesh of an actor.
+ * shapes  matrices[joint_count][12], its palette in model space; NULL: not wanted
+ * errors  NOT_FOUND the actor is gone, was not shown in the last frame, or has no such mesh (need: how many) */
+noh_result noh_actor_mesh_at(const noh_stage *stage, noh_actor actor, uint32_t index, noh_actor_mesh *out,
+                             float *matrices, noh_error *error);
 
 typedef struct noh_stage_hit {
     noh_actor actor;

@@ -3,6 +3,7 @@
 
 #include "base/math_internal.h"
 #include "character/character_internal.h"
+#include "character/skin_palette.h"
 #include "pose/local_to_model.h"
 #include "stage/stage_internal.h"
 
@@ -103,4 +104,36 @@ const float *noh_actor_floats(const noh_stage *stage, noh_actor actor)
         return NULL;
     }
     return k->floats + (size_t)noh_stage_index(k, a) * k->float_count;
+}
+
+/* ---- meshes ---- */
+
+noh_result noh_actor_mesh_at(const noh_stage *stage, noh_actor actor, uint32_t index, noh_actor_mesh *out,
+                             float *matrices, noh_error *error)
+{
+    noh_stage_kind *k;
+    const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
+    const noh_stage_mesh *mesh;
+    const noh_stage_shown *shown;
+    NOH_ASSERT(out);
+    if (!a) {
+        return noh_stage_gone(error, actor);
+    }
+    shown = &stage->shown[a - stage->actors];
+    if (index >= k->plan->mesh_count || shown->frame != stage->frame || !stage->frame) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "an actor has no such mesh, or was not shown in the last frame",
+                        index, k->plan->mesh_count);
+    }
+    mesh = &k->meshes[index];
+    out->node = mesh->item.node;
+    out->mesh = mesh->item.mesh;
+    out->level = k->plan->levels[noh_stage_character(k, noh_stage_index(k, a))->lod.mesh].mesh_levels[index];
+    out->joint_count = mesh->skinned ? mesh->skin.header->joint_count : 0;
+    out->weights = k->weights + (size_t)noh_stage_index(k, a) * k->weight_count + mesh->first_weight;
+    memcpy(out->world, shown->world, sizeof out->world);
+    if (!mesh->skinned && mesh->node_world) noh_matrix_multiply(shown->world, mesh->node_world, out->world);
+    if (matrices && mesh->skinned) {
+        noh_character_skin(noh_stage_character(k, noh_stage_index(k, a)), &mesh->skin, matrices);
+    }
+    return NOH_OK;
 }

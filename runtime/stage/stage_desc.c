@@ -72,6 +72,15 @@ static int is_drawn(const noh_kind_desc *kind, uint32_t mesh)
            skin.header->skeleton == kind->skeleton;
 }
 
+/* Whether a kind draws a node, or in a pack without nodes a mesh, as far as its own list says. */
+static int is_listed(const noh_kind_desc *kind, uint32_t node)
+{
+    for (uint32_t i = 0; kind->nodes && i < kind->node_count; i++) {
+        if (kind->nodes[i] == node) return 1;
+    }
+    return !kind->nodes;
+}
+
 uint32_t noh_stage_items(const noh_kind_desc *kind, noh_stage_item *items)
 {
     const noh_pack *pack = kind->mesh;
@@ -79,7 +88,7 @@ uint32_t noh_stage_items(const noh_kind_desc *kind, noh_stage_item *items)
     uint32_t found = 0;
     for (uint32_t i = 0; i < count; i++) {
         const uint32_t mesh = pack->node_count ? pack->nodes[i].mesh : i;
-        if (mesh == NOH_NONE || !is_drawn(kind, mesh)) {
+        if (mesh == NOH_NONE || !is_listed(kind, i) || !is_drawn(kind, mesh)) {
             continue;
         }
         if (items && found < NOH_STAGE_MESHES_MAX) {
@@ -115,6 +124,10 @@ static const char *bad_kind(const noh_stage_desc *desc, uint32_t number)
         if (what) return what;
     }
     if (d->clips && d->clip_packs) return "a kind has clips and clip_packs";
+    for (uint32_t i = 0; d->nodes && i < d->node_count; i++) {
+        if (d->nodes[i] >= (d->mesh->node_count ? d->mesh->node_count : d->mesh->mesh_count))
+            return "nodes of a kind: one is none of its mesh pack's";
+    }
     if (d->root_axes & ~(NOH_ROOT_GROUND | NOH_ROOT_Y)) return "root_axes of a kind has unknown bits";
     if (d->root_axes && d->root_up > 2u) return "root_up of a kind is not 0, 1 or 2";
     if (d->change_count > NOH_CHANGES_MAX) return "change_count of a kind is above NOH_CHANGES_MAX";

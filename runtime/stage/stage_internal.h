@@ -58,6 +58,7 @@ typedef struct noh_stage_actor {
     uint16_t was_seen;   /* in the last frame */
     uint16_t on_its_way; /* 1: `before` is that of the step that is under way, or comes next */
     uint32_t started[2]; /* for each layer four bits: the track that was started last, of the layer's own */
+    uint32_t reserved;
 } noh_stage_actor;
 
 typedef struct noh_stage_free {
@@ -75,8 +76,8 @@ typedef struct noh_stage_head {
 } noh_stage_head;
 
 NOH_STATIC_ASSERT(sizeof(noh_place) == 32, place);
-NOH_STATIC_ASSERT(sizeof(noh_look) == 16, look);
-NOH_STATIC_ASSERT(sizeof(noh_stage_actor) == 144, stage_actor);
+NOH_STATIC_ASSERT(sizeof(noh_look) == 20, look);
+NOH_STATIC_ASSERT(sizeof(noh_stage_actor) == 152, stage_actor);
 NOH_STATIC_ASSERT(sizeof(noh_stage_head) == 24 + 16 * NOH_STAGE_KINDS_MAX, stage_head);
 
 #define NOH_STAGE_MAGIC 0x53484f4eu /* "NOHS" */
@@ -220,6 +221,12 @@ struct noh_stage {
     void *gpu; /* of desc.gpu; NULL without */
 };
 
+/* Whether an actor's level is given, not chosen, and all else is in full. */
+static inline int noh_stage_is_full(const noh_stage *s, const noh_stage_actor *a)
+{
+    return s->desc.full_detail || a->look.level;
+}
+
 typedef struct noh_stage_list noh_stage_list;
 
 /* ---- what draws ---- */
@@ -274,16 +281,11 @@ typedef struct noh_stage_needs {
     int has_clips;
 } noh_stage_needs;
 
-/* Read the clips of a kind that has a bank of its own. */
-noh_result noh_stage_measure_clips(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind,
-                                   noh_kind_clips *clips, noh_error *error);
-/* clips  as read before; NULL: read them */
 noh_result noh_stage_measure_kind(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind,
-                                  const noh_kind_clips *clips, noh_stage_needs *needs, noh_error *error);
+                                  noh_stage_needs *needs, noh_error *error);
 
 /* Where everything lies; what an arena that only measures gives is NULL. */
 typedef struct noh_stage_blocks {
-    int planned; /* 1: the plan is being made, and says what clips take; a plan from outside is not believed */
     noh_stage *stage;
     noh_stage_kind *kinds;
     noh_stage_head *head;
@@ -312,6 +314,7 @@ struct noh_stage_list {
 noh_result noh_stage_carve(noh_arena *arena, const noh_stage_desc *desc, const noh_stage_plan *plan,
                            noh_stage_blocks *blocks, noh_stage_list *list, noh_error *error);
 void noh_stage_add_part(noh_stage_list *list, const char *what, uint32_t kind, uint64_t cpu_bytes, uint64_t gpu_bytes);
+int noh_stage_halves(const noh_stage_desc *desc, const noh_stage_plan *plan);           /* of a desc by a plan */
 uint32_t noh_stage_pools(const noh_kind_plan *plan, uint32_t *levels, uint32_t *slots); /* returns how many */
 
 noh_character_desc noh_stage_character_desc(const noh_stage_kind *kind, uint32_t instance);

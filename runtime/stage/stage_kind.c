@@ -172,7 +172,7 @@ static void open_levels(noh_stage_kind *k)
 
 /* The table of the first skinned mesh, of which the mesh levels are replaced by those of actors. Fewer influences are
  * chosen only where all meshes have the same: errors are stated by mesh. */
-static noh_result open_lod(noh_stage_kind *k, void *memory, size_t bytes, noh_error *error)
+static noh_result open_lod(const noh_stage *s, noh_stage_kind *k, void *memory, size_t bytes, noh_error *error)
 {
     noh_lod_pack_desc desc;
     const noh_stage_mesh *skinned = NULL;
@@ -184,7 +184,7 @@ static noh_result open_lod(noh_stage_kind *k, void *memory, size_t bytes, noh_er
             count++;
         }
     }
-    if (k->bank) {
+    if (k->bank && !s->desc.full_detail) {
         memset(&desc, 0, sizeof desc);
         desc.set = k->bank;
         desc.set_desc = &k->bank_desc;
@@ -202,7 +202,7 @@ static noh_result open_lod(noh_stage_kind *k, void *memory, size_t bytes, noh_er
 static void open_radii(noh_stage_kind *k)
 {
     for (uint32_t j = 0; j < k->skeleton.joint_count; j++) {
-        k->joint_radii[j] = -1.0f;
+        k->joint_radii[j] = k->plan->mesh_count ? -1.0f : 0.0f;
     }
     for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
         if (k->meshes[m].skinned) {
@@ -340,7 +340,7 @@ noh_result noh_stage_open_kind(noh_stage *s, const noh_stage_desc *desc, uint32_
 {
     noh_stage_kind *k = &s->kinds[kind];
     noh_stage_needs needs;
-    noh_result result = noh_stage_measure_kind(desc, s->plan, kind, NULL, &needs, error);
+    noh_result result = noh_stage_measure_kind(desc, s->plan, kind, &needs, error);
     k->desc = noh_stage_kind_desc(desc, kind);
     k->plan = &s->plan->kinds[kind];
     if (result == NOH_OK) result = open_clips(s, desc, kind, blocks->banks[kind], &needs, error);
@@ -350,7 +350,7 @@ noh_result noh_stage_open_kind(noh_stage *s, const noh_stage_desc *desc, uint32_
     open_meshes(k);
     open_floats(k);
     result = noh_stage_open_layers(k, kind, error);
-    if (result == NOH_OK) result = open_lod(k, blocks->lods[kind], needs.lod_bytes, error);
+    if (result == NOH_OK) result = open_lod(s, k, blocks->lods[kind], needs.lod_bytes, error);
     s->jobs[0].scratch = blocks->scratch;
     if (result == NOH_OK) result = open_bounds(s, k, error);
     k->desc.layers = NULL;

@@ -89,13 +89,48 @@ static void collect(finder *f)
     }
 }
 
+/* By number: level e of each mesh, or its coarsest. An error is at least that of the level before. */
+static void collect_by_number(finder *f)
+{
+    for (uint32_t e = 0; e < NOH_LOD_LEVELS_MAX; e++) {
+        float most = e ? f->errors[e - 1u] : 0.0f;
+        int is_there = e == 0;
+        for (uint32_t i = 0; i < f->item_count; i++) {
+            const noh_mesh mesh = mesh_of(f, i);
+            const float error_m = noh_stage_mesh_error(&mesh, e);
+            is_there |= e < mesh.header->level_count;
+            most = error_m > most ? error_m : most;
+        }
+        if (!is_there) return;
+        f->errors[f->count++] = most;
+    }
+}
+
+/* The level of a mesh in level e of the actor. */
+static uint32_t level_of(const finder *f, const noh_mesh *mesh, uint32_t e)
+{
+    const uint32_t last = mesh->header->level_count - 1u;
+    return !f->kind->levels_by_number ? coarsest(mesh, f->errors[e]) : e < last ? e : last;
+}
+
+/* The finest level that a pack of coarser levels alone still has. */
+static uint32_t first_of(const finder *f)
+{
+    uint32_t first = f->item_count ? NOH_LOD_LEVELS_MAX : 0;
+    for (uint32_t i = 0; i < f->item_count; i++) {
+        const noh_mesh mesh = mesh_of(f, i);
+        if (mesh.header->level_first < first) first = mesh.header->level_first;
+    }
+    return first;
+}
+
 static void count_triangles(finder *f)
 {
     for (uint32_t e = 0; e < f->count; e++) {
         f->triangles[e] = 0;
         for (uint32_t i = 0; i < f->item_count; i++) {
             const noh_mesh mesh = mesh_of(f, i);
-            const noh_mesh level = noh_mesh_at_lod(&mesh, coarsest(&mesh, f->errors[e]));
+            const noh_mesh level = noh_mesh_at_lod(&mesh, level_of(f, &mesh, e));
             f->triangles[e] += level.header->index_count / 3u;
         }
     }
@@ -126,27 +161,33 @@ static void write_level(const finder *f, uint32_t e, noh_actor_level *level)
     level->triangle_count = f->triangles[e];
     for (uint32_t i = 0; i < f->item_count; i++) {
         const noh_mesh mesh = mesh_of(f, i);
-        level->mesh_levels[i] = (uint8_t)coarsest(&mesh, f->errors[e]);
+        level->mesh_levels[i] = (uint8_t)level_of(f, &mesh, e);
     }
 }
 
 noh_result noh_stage_find_levels(const noh_stage_desc *desc, uint32_t kind, noh_kind_plan *plan, noh_error *error)
 {
     const noh_kind_desc d = noh_stage_kind_desc(desc, kind);
+    uint32_t finest = d.finest_level;
     finder f;
     f.kind = &d;
     f.count = 0;
     f.item_count = noh_stage_items(&d, f.items);
-    if (f.item_count == 0) {
+    if (f.item_count == 0 && desc->gpu) {
         return noh_fail(error, NOH_ERR_ARG, "a kind draws nothing: its mesh pack has no mesh of that skeleton", kind,
                         0);
     }
-    collect(&f);
+    if (d.levels_by_number) {
+        collect_by_number(&f);
+        finest = finest > first_of(&f) ? finest : first_of(&f);
+    } else {
+        collect(&f);
+    }
     count_triangles(&f);
-    thin_out(&f);
+    if (!d.levels_by_number) thin_out(&f);
     plan->mesh_count = f.item_count;
     plan->level_count = f.count;
-    plan->finest_level = d.finest_level < f.count ? d.finest_level : f.count - 1u;
+    plan->finest_level = finest < f.count ? finest : f.count - 1u;
     for (uint32_t e = 0; e < f.count; e++) {
         write_level(&f, e, &plan->levels[e]);
     }

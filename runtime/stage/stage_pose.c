@@ -54,7 +54,7 @@ static void take_weights(noh_stage *s, const noh_stage_kind *k, noh_stage_actor 
         memcpy(weights + mesh->first_weight, floats + mesh->first_float,
                mesh->mesh.header->target_count * sizeof *weights);
     }
-    if (k->weight_count) {
+    if (k->weight_count && !noh_stage_is_full(s, a)) {
         (void)noh_lod_targets(&ch->lod, &settings, weights, k->target_radii, k->weight_count, weights);
     }
 }

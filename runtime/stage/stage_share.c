@@ -114,7 +114,8 @@ static void choose_updates(noh_stage *s)
     while (noh_schedule_next(&s->schedule, &index)) s->shown[index].updates = 1;
     s->todo_count = 0;
     for (uint32_t i = 0; i < s->actor_count; i++) {
-        if (s->shown[i].views || s->shown[i].updates) s->todo[s->todo_count++] = i;
+        const noh_stage_actor *at = &s->actors[i];
+        if (s->shown[i].views || s->shown[i].updates || (at->alive && at->look.posed)) s->todo[s->todo_count++] = i;
     }
 }
 

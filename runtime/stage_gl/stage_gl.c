@@ -151,7 +151,7 @@ static void carve_head(measure *m)
         memset(renderer, 0, sizeof *renderer);
     }
     carve_kinds(m);
-    add(m, "renderer", NOH_NONE, 0, NOH_GL_RENDERER_BYTES);
+    add(m, "renderer", NOH_NONE, 0, m->desc->without_shader ? 0 : NOH_GL_RENDERER_BYTES);
 }
 
 /* ---- all of it ---- */
@@ -209,9 +209,8 @@ static void list_parts(const noh_stage_desc *desc, const struct noh_gl_caps *cap
 
 /* ---- made, deleted, made again ---- */
 
-static noh_result make_renderer(const noh_stage_gl *gl, const noh_stage *s, noh_gl_passes passes,
-                                const noh_gl_shader_desc *own, const noh_gl_device *device, noh_gl_renderer *out,
-                                noh_error *error)
+static noh_result make_renderer(const noh_stage_gl *gl, const noh_stage *s, const noh_gl_shader_desc *own,
+                                const noh_gl_device *device, noh_gl_renderer *out, noh_error *error)
 {
     noh_gl_renderer_desc d;
     memset(&d, 0, sizeof d);
@@ -223,11 +222,11 @@ static noh_result make_renderer(const noh_stage_gl *gl, const noh_stage *s, noh_
     d.palettes = NOH_PALETTE_TEXTURE;
     d.without_tangents = !s->desc.tangents;
     d.encode_srgb = s->desc.encode_srgb;
-    d.crowds = 1;
-    d.passes = passes;
+    d.passes = s->desc.without_depth ? NOH_PASSES_COLOR : NOH_PASSES_ALL;
     d.shaders = own;
     for (uint32_t i = 0; i < s->desc.kind_count; i++) {
-        d.fades |= s->kinds[i].plan->level_count > 1u;
+        d.crowds |= noh_gl_is_crowd(&s->kinds[i]);
+        d.fades |= s->kinds[i].plan->level_count > 1u && !s->desc.full_detail;
         d.fewer_influences |= s->kinds[i].table.influence_level_count > 1u;
     }
     return noh_gl_renderer_create(device, &d, out, error);
@@ -289,7 +288,9 @@ static noh_result init(void *memory, size_t bytes, const void *device, noh_stage
     stage->gpu = m.gl;
     if (result == NOH_OK) {
         find_mirrored(m.gl, stage);
-        result = make_renderer(m.gl, stage, NOH_PASSES_ALL, NULL, &m.gl->device, m.gl->renderer, error);
+        if (!desc.without_shader) {
+            result = make_renderer(m.gl, stage, NULL, &m.gl->device, m.gl->renderer, error);
+        }
     }
     if (result != NOH_OK) {
         destroy(stage);
@@ -332,7 +333,7 @@ static noh_result restore(noh_stage *stage, noh_error *error)
     for (uint32_t i = 0; i < stage->desc.kind_count && result == NOH_OK; i++) {
         result = restore_kind(stage, i, error);
     }
-    return result == NOH_OK ? noh_gl_renderer_restore(gl->renderer, NULL, 0, error) : result;
+    return result == NOH_OK && gl->renderer->gl ? noh_gl_renderer_restore(gl->renderer, NULL, 0, error) : result;
 }
 
 /* ---- upload ---- */
@@ -394,6 +395,53 @@ static void upload(noh_stage *s)
     }
 }
 
+/* ---- what is on the GPU, for tools ---- */
+
+noh_result noh_stage_morph_plan(const noh_stage_desc *desc, const noh_gl_caps *caps, const noh_stage_plan *plan,
+                                noh_gl_morph_plan *out, noh_error *error)
+{
+    noh_gl_site site = { UINT32_MAX, UINT32_MAX }, first = { 0, 0 };
+    noh_stage_desc d = *desc;
+    noh_gl_tiles tiles;
+    noh_gl_morph_desc morph;
+    NOH_ASSERT(plan && caps && out);
+    d.halves = noh_stage_halves(desc, plan);
+    while (noh_gl_next_site(plan, d.kind_count, &site)) {
+        if (noh_gl_site_mesh(&d, plan, site).header->touched_count) {
+            first = noh_gl_owner(&d, plan, site);
+            break;
+        }
+    }
+    noh_gl_tiles_of(&d, plan, first, &tiles);
+    morph = noh_gl_site_morph(&d, &tiles);
+    return noh_gl_morph_plan_make(&morph, caps, out, error);
+}
+
+noh_result noh_actor_on_gl(noh_stage *stage, noh_actor actor, uint32_t index, noh_stage_drawn *out, noh_error *error)
+{
+    noh_stage_kind *k;
+    const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
+    const noh_stage_shown *shown;
+    const noh_gl_item *item;
+    NOH_ASSERT(stage->gpu && out);
+    if (!a) {
+        return noh_stage_gone(error, actor);
+    }
+    shown = &stage->shown[a - stage->actors];
+    if (index >= k->plan->mesh_count || shown->frame != stage->frame || !shown->views) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "an actor has no such mesh, or no view saw it in the last frame",
+                        index, k->plan->mesh_count);
+    }
+    item = &((const noh_stage_gl *)stage->gpu)->kinds[k - stage->kinds].items[index];
+    memset(out, 0, sizeof *out);
+    out->mesh = &item->model->mesh;
+    if (item->model->morph) out->morph = noh_gl_morph_binding_of(item->model->morph, noh_gl_item_tile(item, shown));
+    out->is_morphed = item->model->morph != NULL;
+    out->is_skinned = k->meshes[index].skinned;
+    if (out->is_skinned) out->skin = noh_gl_skin_binding_of(item->skin, shown->place);
+    return NOH_OK;
+}
+
 const noh_stage_gpu noh_stage_on_gl = { measure_stage, list_parts, init, destroy, restore, upload };
 
 /* ---- shaders of a game's own ---- */
@@ -421,7 +469,7 @@ noh_result noh_stage_shader_create(noh_stage *stage, void *memory, size_t bytes,
     device = gl->device;
     device.log = log;
     device.log_bytes = log_bytes;
-    result = make_renderer(gl, stage, NOH_PASSES_ALL, desc, &device, &made->renderer, error);
+    result = make_renderer(gl, stage, desc, &device, &made->renderer, error);
     if (result == NOH_OK) {
         *shader = made;
     }

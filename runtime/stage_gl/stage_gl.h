@@ -5,6 +5,8 @@
  *   noh_stage_shader_size     shaders of your own in place of the library's:
  *   noh_stage_shader_create   in every variant that the kinds of the stage need
  *   noh_stage_shader_delete, noh_stage_shader_restore
+ *   noh_stage_morph_plan      how its targets are accumulated
+ *   noh_actor_on_gl           the GL objects of an actor, for draws of your own
  *
  * On the GPU a mesh of a pack is there once, however many kinds draw it. Actors at the same level are drawn by one call
  * for each submesh, those that fade between two levels one by one.
@@ -35,7 +37,8 @@ typedef struct noh_stage_shader noh_stage_shader;
  * height_px actors with no_shadow are left out.
  * shader  NULL: the library's
  * state   afterwards as noh_gl_draw_end leaves it
- * errors  ARG the last frame had no such view, or a frame has begun and not ended */
+ * errors  ARG the last frame had no such view, or a frame has begun and not ended; or the desc is without_shader or
+ *         without_depth, and this draw needs it */
 noh_result noh_stage_draw(noh_stage *stage, noh_pass pass, uint32_t view, noh_stage_shader *shader, noh_error *error);
 
 /* Shaders of your own (gl_variants.h; shaders_es/README.md says what they can call). They are made in memory of yours.
@@ -49,6 +52,24 @@ void noh_stage_shader_delete(noh_stage_shader *shader);
 /* After a lost context.
  * errors  as noh_gl_renderer_restore */
 noh_result noh_stage_shader_restore(noh_stage_shader *shader, char *log, size_t log_bytes, noh_error *error);
+
+/* How the first mesh that has targets is accumulated, or would be in a stage of this plan: path, format and reason.
+ * Needs no driver.
+ * errors  as noh_gl_morph_plan_make */
+noh_result noh_stage_morph_plan(const noh_stage_desc *desc, const noh_gl_caps *caps, const noh_stage_plan *plan,
+                                noh_gl_morph_plan *out, noh_error *error);
+
+/* A mesh of an actor on the GPU. */
+typedef struct noh_stage_drawn {
+    const noh_gl_mesh *mesh; /* the stage's, valid as long as it is */
+    noh_gl_morph_binding morph;
+    noh_gl_skin_binding skin;
+    int is_morphed, is_skinned; /* 0: that binding is zeros, and not to be used */
+} noh_stage_drawn;
+
+/* The index-th mesh of an actor, as noh_actor_mesh_at counts them. Valid until the next frame.
+ * errors  NOT_FOUND the actor is gone, has no such mesh, or no view of the last frame saw it */
+noh_result noh_actor_on_gl(noh_stage *stage, noh_actor actor, uint32_t index, noh_stage_drawn *out, noh_error *error);
 
 #ifdef __cplusplus
 }

@@ -65,7 +65,7 @@ static void draw_fading(const drawing *d, uint32_t mesh, uint32_t place)
     const noh_stage_shown *shown = shown_at(d, place);
     const noh_character *ch = noh_stage_character(d->k, d->k->order[place]);
     const float part = noh_lod_fade(&ch->lod, ch->time.clock);
-    if (mesh_level(d, mesh, shown->level) == mesh_level(d, mesh, shown->level_before)) {
+    if (!d->renderer->fades || mesh_level(d, mesh, shown->level) == mesh_level(d, mesh, shown->level_before)) {
         draw_alone(d, mesh, place, shown->level, 0.0f, 1.0f);
         return;
     }
@@ -83,7 +83,7 @@ static void draw_together(const drawing *d, uint32_t mesh, uint32_t run, uint32_
     const noh_gl_lod lod = { mesh_level(d, mesh, run / caps), 0.0f, 1.0f };
     const noh_gl_skin_binding skin = skin_of(item, first, influences);
     noh_gl_morph_binding morph;
-    if (item->mirrored) {
+    if (item->mirrored || !noh_gl_is_crowd(d->k)) {
         for (uint32_t i = 0; i < count; i++) draw_alone(d, mesh, first + i, run / caps, 0.0f, 1.0f);
         return;
     }
@@ -131,6 +131,12 @@ noh_result noh_stage_draw(noh_stage *stage, noh_pass pass, uint32_t view, noh_st
     noh_gl_camera camera;
     drawing d;
     NOH_ASSERT(stage && stage->gpu);
+    if ((stage->desc.without_shader && !shader) || (stage->desc.without_depth && pass == NOH_PASS_DEPTH)) {
+        return noh_fail(error, NOH_ERR_ARG,
+                        "the desc of the stage leaves out what this draw needs: without_shader, or "
+                        "without_depth",
+                        (uint64_t)pass, 0);
+    }
     if (stage->phase != NOH_STAGE_IDLE || view >= stage->view_count) {
         return noh_fail(error, NOH_ERR_ARG, "no such view in the last frame, or a frame has begun and not ended", view,
                         stage->view_count);

@@ -45,6 +45,12 @@ struct noh_stage_shader {
     noh_gl_renderer renderer;
 };
 
+/* Kinds of one actor are drawn by the programs of single instances. */
+static inline int noh_gl_is_crowd(const noh_stage_kind *kind)
+{
+    return kind->desc.actor_count > 1u;
+}
+
 /* ---- who shares what ---- */
 
 /* An item of a kind: numbered over all kinds of a desc. */

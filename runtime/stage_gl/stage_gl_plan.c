@@ -128,6 +128,6 @@ noh_gl_morph_desc noh_gl_site_morph(const noh_stage_desc *desc, const noh_gl_til
     d.instance_counts = tiles->counts;
     d.path = (noh_morph_path)desc->morph_path;
     d.without_tangents = !desc->tangents;
-    d.accumulate = desc->halves ? NOH_ACCUMULATE_F16 : NOH_ACCUMULATE_AUTO;
+    d.accumulate = desc->halves > 0 ? NOH_ACCUMULATE_F16 : desc->halves < 0 ? NOH_ACCUMULATE_F32 : NOH_ACCUMULATE_AUTO;
     return d;
 }

@@ -266,7 +266,7 @@ static void names_are_found(void **state)
 static void a_face_is_played_over_a_body(void **state)
 {
     noh_actor actor;
-    noh_look look = { 0, 0, 1, 0.0f };
+    noh_look look = { 0, 0, 1, 0.0f, 0 };
     const noh_play at_once = { .fade_ticks = 1 };
     float before[12], after[12];
     uint32_t hand, smile;
@@ -364,7 +364,7 @@ static void take_joints(const cast *c, noh_actor actor, float *out)
 static void inertia_takes_over_without_a_leap(void **state)
 {
     const noh_play leap = { .fade_ticks = 12000, .flags = NOH_PLAY_INERTIA }, cut = { .fade_ticks = 1 };
-    const noh_look look = { 0, 0, 1, 0.0f };
+    const noh_look look = { 0, 0, 1, 0.0f, 0 };
     float before[64 * 12], after[64 * 12], steps[3] = { 0, 0, 0 };
     noh_actor actor;
     cast c;
@@ -405,7 +405,7 @@ static void clips_play_beside_each_other(void **state)
     static const char *const clips[] = { "walk", "dance", "bow" };
     const noh_play beside = { .fade_ticks = 1, .flags = NOH_PLAY_BESIDE };
     const noh_play wrong = { .flags = NOH_PLAY_BESIDE | NOH_PLAY_INERTIA };
-    const noh_look look = { 0, 0, 1, 0.0f };
+    const noh_look look = { 0, 0, 1, 0.0f, 0 };
     float alone[64 * 12], mixed[64 * 12];
     const noh_clip_set *set;
     noh_actor actor;
@@ -547,7 +547,7 @@ static void who_is_behind_the_camera_is_not_posed(void **state)
 static void spheres_hold_every_vertex(void **state)
 {
     noh_actor actor;
-    const noh_look look = { 0, 0, 1, 0.0f };
+    const noh_look look = { 0, 0, 1, 0.0f, 0 };
     float joints[64 * 12], matrices[64 * 12];
     cast c;
     (void)state;
@@ -614,7 +614,7 @@ static void whoever_was_never_posed_is_culled_by_where_clips_may_take_it(void **
     (void)state;
     for (uint32_t n = 0; n < TEST_COUNT(names); n++) {
         const char *input = test_asset(names[n]);
-        const noh_look look = { 0, 0, 1, 0.0f };
+        const noh_look look = { 0, 0, 1, 0.0f, 0 };
         double worst = 0.0;
         uint8_t *bytes;
         size_t count;
@@ -779,7 +779,7 @@ static void a_damaged_state_does_no_harm(void **state)
 static void what_hangs_on_a_joint_goes_with_it(void **state)
 {
     noh_actor puppet, mask;
-    const noh_look look = { 0, 0, 1, 0.0f };
+    const noh_look look = { 0, 0, 1, 0.0f, 0 };
     const noh_place up = { { 0.0f, 0.25f, 0.0f }, { 0, 0, 0, 0 }, 0.5f };
     float joint[12], sphere[4];
     noh_stage_view view = cast_view(0, 9.0f);
@@ -862,6 +862,141 @@ static void a_ray_goes_through_its_pixel(void **state)
     }
 }
 
+/* ---- what tools ask for ---- */
+
+/* One puppet that is posed in each frame, of a kind that is changed by the caller first. */
+static noh_actor one_puppet(cast *c, uint32_t level)
+{
+    const noh_look look = { 0, 0, 1, 0.0f, level };
+    noh_actor actor;
+    cast_make(c, NULL);
+    assert_int_equal(noh_stage_spawn(c->stage, PUPPETS, NULL, &actor, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_look(c->stage, actor, &look, NULL), NOH_OK);
+    return actor;
+}
+
+static void a_kind_draws_the_nodes_of_its_list(void **state)
+{
+    static const uint32_t nothing[1] = { 0 };
+    uint32_t node = 0, none = 9999;
+    noh_skeleton skeleton;
+    float joint[12];
+    noh_actor actor;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    while (c.packs[PUPPETS].nodes[node].mesh == NOH_NONE) node++;
+    c.kinds[PUPPETS].nodes = &none, c.kinds[PUPPETS].node_count = 1, bad_plan(&c, NOH_ERR_ARG, "nodes");
+    c.kinds[PUPPETS].nodes = &node;
+    assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, NULL), NOH_OK);
+    assert_int_equal(c.plan.kinds[PUPPETS].mesh_count, 1);
+    /* without a mesh it has its joints, where nothing is drawn */
+    c.kinds[PUPPETS].nodes = nothing, c.kinds[PUPPETS].node_count = 0;
+    actor = one_puppet(&c, 0);
+    assert_int_equal(c.plan.kinds[PUPPETS].mesh_count, 0);
+    assert_int_equal(noh_actor_play(c.stage, actor, 0, "walk", NULL, NULL), NOH_OK);
+    assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
+    assert_int_equal(noh_pack_skeleton_at(&c.packs[PUPPETS], 0, &skeleton, NULL, NULL), NOH_OK);
+    assert_int_equal(noh_actor_joint(c.stage, actor, skeleton.joint_count - 1u, joint, NULL), NOH_OK);
+    cast_close(&c);
+}
+
+static void a_kind_may_have_no_clips(void **state)
+{
+    uint64_t bytes;
+    noh_actor actor;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, NULL), NOH_OK);
+    bytes = c.plan.cpu_bytes;
+    c.kinds[PUPPETS].clip_packs = &c.kinds[PUPPETS].mesh;
+    actor = one_puppet(&c, 0);
+    assert_true(c.plan.cpu_bytes < bytes && c.plan.kinds[PUPPETS].segment_count == 0);
+    assert_int_equal(noh_actor_play(c.stage, actor, 0, "walk", NULL, NULL), NOH_ERR_NOT_FOUND);
+    assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
+    cast_close(&c);
+}
+
+/* Level k of an actor is that of each mesh, and is shown where its look or its stage says so. */
+static void levels_are_those_of_the_meshes(void **state)
+{
+    cast c;
+    (void)state;
+    for (int full = 0; full < 2; full++) {
+        const noh_kind_plan *k = &c.plan.kinds[PUPPETS];
+        noh_actor actor;
+        cast_open(&c);
+        c.kinds[PUPPETS].levels_by_number = 1;
+        c.kinds[PUPPETS].finest_level = 1;
+        c.desc.full_detail = full;
+        actor = one_puppet(&c, full ? 0 : 3);
+        assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
+        assert_int_equal(k->finest_level, 1);
+        for (uint32_t m = 0; m < k->mesh_count; m++) {
+            noh_actor_mesh shown;
+            noh_mesh mesh;
+            assert_int_equal(noh_actor_mesh_at(c.stage, actor, m, &shown, NULL, NULL), NOH_OK);
+            assert_int_equal(shown.level, full ? 1 : 2);
+            assert_int_equal(c.packs[PUPPETS].nodes[shown.node].mesh, shown.mesh);
+            mesh = test_mesh(&c.packs[PUPPETS], shown.mesh);
+            for (uint32_t l = 0; l < k->level_count; l++) {
+                const uint32_t last = mesh.header->level_count - 1u;
+                assert_int_equal(k->levels[l].mesh_levels[m], l < last ? l : last);
+                assert_true(!l || k->levels[l].error_m >= k->levels[l - 1u].error_m);
+            }
+        }
+        cast_close(&c);
+    }
+}
+
+/* The palette is joint times inverse bind matrix, the weights are those that are held. */
+static void meshes_are_told_as_they_are_shown(void **state)
+{
+    noh_actor actor;
+    noh_actor_mesh shown;
+    uint32_t smile, held = 0;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    actor = one_puppet(&c, 1);
+    smile = noh_stage_find(c.stage, PUPPETS, NOH_NAME_FLOAT, "smile");
+    assert_int_equal(noh_actor_mesh_at(c.stage, actor, 0, &shown, NULL, NULL), NOH_ERR_NOT_FOUND); /* no frame yet */
+    assert_int_equal(noh_actor_hold_float(c.stage, actor, smile, 0.375f, 1.0f, NULL), NOH_OK);
+    assert_int_equal(noh_actor_play(c.stage, actor, 0, "walk", NULL, NULL), NOH_OK);
+    assert_int_equal(noh_stage_frame(c.stage, 9000, NULL, NULL, NULL, NULL), NOH_OK);
+    for (uint32_t m = 0; m < c.plan.kinds[PUPPETS].mesh_count; m++) {
+        float *matrices;
+        noh_mesh mesh;
+        noh_skin skin;
+        assert_int_equal(noh_actor_mesh_at(c.stage, actor, m, &shown, NULL, NULL), NOH_OK);
+        mesh = test_mesh(&c.packs[PUPPETS], shown.mesh);
+        for (uint32_t t = 0; t < mesh.header->target_count; t++) {
+            const int is_smile = strcmp(noh_pack_string(mesh.pack, mesh.targets[t].name), "smile") == 0;
+            held += is_smile && shown.weights[t] == 0.375f;
+        }
+        if (noh_pack_skin_at(mesh.pack, mesh.header->skin, &skin, NULL) != NOH_OK) continue;
+        assert_int_equal(shown.joint_count, skin.header->joint_count);
+        matrices = test_zeros(shown.joint_count * 12u * sizeof *matrices);
+        assert_int_equal(noh_actor_mesh_at(c.stage, actor, m, &shown, matrices, NULL), NOH_OK);
+        for (uint32_t j = 0; j < shown.joint_count; j++) {
+            float joint[12], placed[12];
+            assert_int_equal(noh_actor_joint(c.stage, actor, skin.joints[j], joint, NULL), NOH_OK);
+            noh_matrix_multiply(joint, skin.inverse_bind + 12u * (size_t)j, joint);
+            noh_matrix_multiply(shown.world, matrices + 12u * (size_t)j, placed);
+            for (int i = 0; i < 12; i++) assert_true(fabsf(joint[i] - placed[i]) < 1e-5f);
+        }
+        free(matrices);
+    }
+    assert_true(held >= 1);
+    assert_int_equal(noh_actor_mesh_at(c.stage, actor, c.plan.kinds[PUPPETS].mesh_count, &shown, NULL, &said),
+                     NOH_ERR_NOT_FOUND);
+    assert_int_equal(said.need, c.plan.kinds[PUPPETS].mesh_count);
+    assert_int_equal(noh_stage_despawn(c.stage, actor, NULL), NOH_OK);
+    assert_int_equal(noh_actor_mesh_at(c.stage, actor, 0, &shown, NULL, NULL), NOH_ERR_NOT_FOUND);
+    cast_close(&c);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -891,6 +1026,10 @@ int main(int argc, char **argv)
         cmocka_unit_test(what_hangs_on_a_joint_goes_with_it),
         cmocka_unit_test(a_ray_meets_the_nearest_actor),
         cmocka_unit_test(a_ray_goes_through_its_pixel),
+        cmocka_unit_test(a_kind_draws_the_nodes_of_its_list),
+        cmocka_unit_test(a_kind_may_have_no_clips),
+        cmocka_unit_test(levels_are_those_of_the_meshes),
+        cmocka_unit_test(meshes_are_told_as_they_are_shown),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);
