@@ -1,0 +1,227 @@
+/* What the verbs draw (tools/noh/draw/figure.h): it takes the bytes that it plans, is posed and held by name, and draws
+ * what the CPU says, at any level and in any debug view; without a GPU it has joints and bounds. */
+#include "support/gl_fixture.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/message.h"
+#include "draw/figure.h"
+#include "gpu/canvas.h"
+
+#define SIDE 160u
+
+static pack_file open_file(const char *name)
+{
+    static char path[2][1024];
+    static int next;
+    const char *build = getenv("NOH_BUILD");
+    pack_file file;
+    next = !next;
+    snprintf(path[next], sizeof path[next], "%s/%s", build ? build : "build", name);
+    assert_int_equal(pack_file_open(&file, path[next]), 0);
+    return file;
+}
+
+static uint32_t *picture(figure *f, gpu *g, const char *camera)
+{
+    const view_options o = { camera, SIDE, SIDE };
+    uint32_t *rgba = test_zeros(SIDE * SIDE * 4);
+    noh_gl_camera at;
+    bounds box;
+    canvas c;
+    assert_int_equal(figure_pose(f), 0);
+    box = figure_bounds(f, view_wants_face(&o));
+    assert_int_equal(view_camera(&o, &box, &at), 0);
+    assert_int_equal(canvas_open(&c, g, SIDE, SIDE), 0);
+    assert_int_equal(figure_look(f, &at, SIDE), 0);
+    canvas_begin(&c);
+    assert_int_equal(figure_draw(f), 0);
+    assert_int_equal(canvas_read(&c, (uint8_t *)rgba), 0);
+    canvas_close(&c);
+    return rgba;
+}
+
+static uint32_t differing(const uint32_t *a, const uint32_t *b)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < SIDE * SIDE; i++) count += a[i] != b[i];
+    return count;
+}
+
+static uint32_t painted(const uint32_t *a)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < SIDE * SIDE; i++) count += a[i] != a[0];
+    return count;
+}
+
+static void it_takes_the_bytes_that_it_plans(void **state)
+{
+    gpu *g = fixture_gpu();
+    pack_file file = open_file("demo/puppet_levels.noh");
+    (void)state;
+    for (uint32_t level = 0; level < 4; level++) {
+        for (int halves = 0; halves < 2; halves++) {
+            const uint64_t before = noh_gl_ledger_bytes(&g->ledger);
+            const figure_desc d = { .file = &file,
+                                    .clips = &file,
+                                    .level = level,
+                                    .accumulate = halves ? NOH_ACCUMULATE_F16 : NOH_ACCUMULATE_AUTO };
+            figure f, planned;
+            assert_int_equal(figure_plan(&planned, &d, &g->caps), 0);
+            assert_int_equal(figure_open(&f, &d, g), 0);
+            assert_int_equal(noh_gl_ledger_bytes(&g->ledger) - before, planned.plan.gpu_bytes);
+            assert_true(planned.plan.cpu_bytes == f.plan.cpu_bytes && f.plan.kinds[0].finest_level == level);
+            figure_plan_free(&planned);
+            figure_close(&f);
+            assert_int_equal(noh_gl_ledger_bytes(&g->ledger), before);
+        }
+    }
+    pack_file_close(&file);
+    fixture_expect_no_errors();
+}
+
+/* A clip moves it, a held target and a level change it, and a reset takes all back. */
+static void clips_and_held_floats_show(void **state)
+{
+    gpu *g = fixture_gpu();
+    pack_file file = open_file("demo/puppet_levels.noh");
+    const figure_desc d = { .file = &file, .clips = &file, .held_float_count = FIGURE_HELD_ALL };
+    const noh_play play = { .start_ticks = 20000 };
+    uint32_t *rest, *walk, *smile, *again;
+    figure f;
+    (void)state;
+    assert_int_equal(figure_open(&f, &d, g), 0);
+    rest = picture(&f, g, "body");
+    assert_true(painted(rest) > SIDE * SIDE / 20u);
+    assert_int_equal(figure_play(&f, "walk", &play), 0);
+    walk = picture(&f, g, "body");
+    assert_true(differing(rest, walk) > SIDE * SIDE / 100u);
+    assert_int_equal(figure_play(&f, "wlak", &play), EXIT_FAILED);
+    assert_non_null(strstr(tool_last_failure(), "did you mean 'walk'"));
+    assert_int_equal(figure_reset(&f), 0);
+    assert_int_equal(figure_hold(&f, "smile", 1.0), 0);
+    assert_int_equal(figure_hold(&f, "simle", 1.0), EXIT_FAILED);
+    smile = picture(&f, g, "face");
+    assert_int_equal(figure_hold_all(&f, 0.0), 0);
+    again = picture(&f, g, "face");
+    assert_true(differing(smile, again) > 20u);
+    free(again);
+    assert_int_equal(figure_reset(&f), 0);
+    again = picture(&f, g, "body");
+    assert_memory_equal(rest, again, SIDE * SIDE * 4u);
+    free(again), free(smile), free(walk), free(rest);
+    figure_close(&f);
+    pack_file_close(&file);
+    fixture_expect_no_errors();
+}
+
+/* Each debug view is another picture of the same pixels; a level has facets of its own. */
+static void debug_views_and_levels_show(void **state)
+{
+    gpu *g = fixture_gpu();
+    pack_file file = open_file("demo/puppet_levels.noh");
+    uint32_t *seen[8];
+    uint32_t count = 0;
+    (void)state;
+    for (int view = NOH_VIEW_LIT; view <= NOH_VIEW_LOD; view++) {
+        for (uint32_t level = 0; level < (view == NOH_VIEW_LOD ? 4u : 1u); level++) {
+            const figure_desc d = { .file = &file, .level = level, .view = (noh_debug_view)view };
+            figure f;
+            assert_int_equal(figure_open(&f, &d, g), 0);
+            seen[count] = picture(&f, g, "body");
+            for (uint32_t i = 0; i < count; i++) assert_true(differing(seen[i], seen[count]) > SIDE * SIDE / 20u);
+            count++;
+            figure_close(&f);
+        }
+    }
+    while (count) free(seen[--count]);
+    pack_file_close(&file);
+    fixture_expect_no_errors();
+}
+
+/* The vertices on the GPU are those of the CPU, of each mesh. */
+static void vertices_are_those_of_the_cpu(void **state)
+{
+    gpu *g = fixture_gpu();
+    pack_file file = open_file("demo/puppet_levels.noh");
+    const figure_desc d = { .file = &file, .clips = &file, .held_float_count = 4 };
+    const noh_play play = { .start_ticks = 20000 };
+    readback r;
+    figure f;
+    (void)state;
+    assert_int_equal(figure_open(&f, &d, g), 0);
+    assert_int_equal(figure_play(&f, "walk", &play), 0);
+    assert_int_equal(figure_hold(&f, "smile", 1.0), 0);
+    free(picture(&f, g, "body"));
+    assert_int_equal(readback_open(&r, g, 0), 0);
+    for (uint32_t m = 0; m < f.plan.kinds[0].mesh_count; m++) {
+        noh_stage_drawn drawn;
+        noh_actor_mesh shown;
+        noh_mesh mesh;
+        noh_vertex *cpu = figure_deform(&f, 0, m, 0, &mesh, &shown);
+        readback_vertex *gpu_vertices = test_zeros(mesh.header->vertex_count * sizeof *gpu_vertices);
+        assert_int_equal(noh_actor_on_gl(f.stage, f.actors[0], m, &drawn, NULL), NOH_OK);
+        assert_int_equal(readback_skinned(&r, drawn.mesh, drawn.is_morphed ? &drawn.morph : NULL,
+                                          drawn.is_skinned ? &drawn.skin : NULL, 0, gpu_vertices),
+                         0);
+        for (uint32_t v = 0; v < mesh.header->vertex_count; v++) {
+            for (int i = 0; i < 3; i++) {
+                assert_true(fabsf(gpu_vertices[v].position[i] - cpu[v].position[i]) < 1e-5f);
+            }
+        }
+        free(gpu_vertices);
+        free(cpu);
+    }
+    readback_close(&r);
+    figure_close(&f);
+    pack_file_close(&file);
+    fixture_expect_no_errors();
+}
+
+/* Without a GPU: joints, anchor, bounds. */
+static void without_a_gpu_it_is_posed(void **state)
+{
+    pack_file file = open_file("demo/puppet_levels.noh");
+    const figure_desc d = { .file = &file, .clips = &file };
+    const noh_play play = { .start_ticks = 20000 };
+    double anchor[3], moved[3], seconds;
+    noh_skeleton skeleton;
+    float *joints;
+    bounds box;
+    figure f;
+    (void)state;
+    assert_int_equal(figure_open(&f, &d, NULL), 0);
+    assert_int_equal(figure_pose(&f), 0);
+    figure_anchor(&f, anchor);
+    box = figure_bounds(&f, 0);
+    assert_int_equal(figure_clip_seconds(&f, "walk", &seconds), 0);
+    assert_true(seconds > 0.2);
+    assert_int_equal(figure_play(&f, "walk", &play), 0);
+    assert_int_equal(figure_pose(&f), 0);
+    figure_anchor(&f, moved);
+    assert_true(fabs(moved[0] - anchor[0]) + fabs(moved[2] - anchor[2]) > 0.0);
+    joints = figure_joints(&f, 0, &skeleton);
+    assert_non_null(joints);
+    for (uint32_t j = 0; j < skeleton.joint_count; j++) {
+        assert_true(joints[12u * j + 7u] > (float)box.low[1] - 0.3f &&
+                    joints[12u * j + 7u] < (float)box.high[1] + 0.3f);
+    }
+    free(joints);
+    figure_close(&f);
+    pack_file_close(&file);
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(it_takes_the_bytes_that_it_plans), cmocka_unit_test(clips_and_held_floats_show),
+        cmocka_unit_test(debug_views_and_levels_show),      cmocka_unit_test(vertices_are_those_of_the_cpu),
+        cmocka_unit_test(without_a_gpu_it_is_posed),
+    };
+    if (argc > 1) cmocka_set_test_filter(argv[1]);
+    return cmocka_run_group_tests(tests, NULL, fixture_tear_down);
+}

@@ -1,0 +1,314 @@
+/* figure.c: a figure is planned, made and deleted. */
+#include "figure.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/message.h"
+
+/* ---- its kinds ---- */
+
+/* The skeleton that moves what a node draws; NOH_NONE: rigid. */
+static uint32_t skeleton_of(const noh_pack *pack, uint32_t mesh)
+{
+    noh_mesh m;
+    noh_skin skin;
+    (void)noh_pack_mesh_at(pack, mesh, &m, NULL);
+    return noh_pack_skin_at(pack, m.header->skin, &skin, NULL) == NOH_OK ? skin.header->skeleton : NOH_NONE;
+}
+
+/* The nodes (meshes, in a pack without nodes) of a skeleton, those of the first with all that are rigid. */
+static uint32_t list_nodes(const noh_pack *pack, uint32_t skeleton, uint32_t *nodes)
+{
+    const uint32_t count = pack->node_count ? pack->node_count : pack->mesh_count;
+    uint32_t found = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t mesh = pack->node_count ? pack->nodes[i].mesh : i;
+        if (mesh != NOH_NONE) {
+            const uint32_t of = skeleton_of(pack, mesh);
+            if (of == skeleton || (of == NOH_NONE && !skeleton)) nodes[found++] = i;
+        }
+    }
+    return found;
+}
+
+static int add_kind(figure *f, uint32_t skeleton, const uint32_t *nodes, uint32_t node_count)
+{
+    noh_kind_desc *k = &f->kinds[f->stage_desc.kind_count];
+    const figure_desc *d = &f->desc;
+    if (f->stage_desc.kind_count == NOH_STAGE_KINDS_MAX) {
+        return tool_fail(d->file->path, "more meshes than a stage can have: %u kinds of %u each", NOH_STAGE_KINDS_MAX,
+                         NOH_STAGE_MESHES_MAX);
+    }
+    k->mesh = &d->file->pack;
+    k->clips = d->clips ? &d->clips->pack : NULL;
+    k->clip_packs = d->clips ? NULL : &f->kinds[0].mesh; /* none of them */
+    k->skeleton = k->mesh->skeleton_count ? skeleton : NOH_NONE;
+    k->nodes = nodes;
+    k->node_count = node_count;
+    k->levels_by_number = 1;
+    k->finest_level = d->level;
+    k->actor_count = k->near_count = d->actor_count ? d->actor_count : 1u;
+    k->layers = &f->layer;
+    k->layer_count = 1;
+    k->inertia = d->inertia;
+    k->unpickable = !d->pickable;
+    f->stage_desc.kind_count++;
+    return 0;
+}
+
+/* One kind, or several where there are more meshes than one can have. */
+static int add_kinds(figure *f, uint32_t skeleton, const uint32_t *nodes, uint32_t count)
+{
+    int status = 0;
+    for (uint32_t i = 0; i < count && !status; i += NOH_STAGE_MESHES_MAX) {
+        status = add_kind(f, skeleton, nodes + i, count - i < NOH_STAGE_MESHES_MAX ? count - i : NOH_STAGE_MESHES_MAX);
+    }
+    return status;
+}
+
+static int list_kinds(figure *f, int draws)
+{
+    const noh_pack *pack = &f->desc.file->pack;
+    const uint32_t skeletons = pack->skeleton_count ? pack->skeleton_count : 1u;
+    uint32_t *next;
+    int status = 0;
+    f->nodes = calloc((size_t)pack->node_count + pack->mesh_count + 1u, sizeof *f->nodes);
+    if (!f->nodes) {
+        return tool_fail(f->desc.file->path, "out of memory");
+    }
+    next = f->nodes;
+    for (uint32_t s = 0; s < skeletons && !status; s++) {
+        const uint32_t count = list_nodes(pack, s, next);
+        status = !draws && !count ? add_kind(f, s, next, 0) : add_kinds(f, s, next, count);
+        next += count;
+    }
+    if (!status && !f->stage_desc.kind_count) {
+        status = tool_fail(f->desc.file->path, "the pack has nothing to draw");
+    }
+    return status;
+}
+
+/* Of all kinds the one that has the most. */
+static uint32_t count_targets(const figure *f)
+{
+    const noh_pack *pack = &f->desc.file->pack;
+    uint32_t most = 0;
+    for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
+        uint32_t targets = 0;
+        for (uint32_t i = 0; i < f->kinds[k].node_count; i++) {
+            const uint32_t node = f->kinds[k].nodes[i];
+            noh_mesh mesh;
+            (void)noh_pack_mesh_at(pack, pack->node_count ? pack->nodes[node].mesh : node, &mesh, NULL);
+            targets += mesh.header->target_count;
+        }
+        most = targets > most ? targets : most;
+    }
+    return most;
+}
+
+static void set_held(figure *f)
+{
+    uint32_t held = f->desc.held_float_count == FIGURE_HELD_ALL ? count_targets(f) : f->desc.held_float_count;
+    held = held > NOH_FLOATS_MAX ? NOH_FLOATS_MAX : held;
+    for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
+        f->kinds[k].held_float_count = held ? held : NOH_NONE;
+    }
+}
+
+/* ---- its bytes ---- */
+
+/* Clips that no kind can play: why. */
+static int check_clips(const figure *f)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
+        noh_clip_bank_desc bank;
+        noh_clip_bank_needs needs;
+        memset(&bank, 0, sizeof bank);
+        bank.mesh = f->kinds[k].mesh;
+        bank.clips = f->kinds[k].clips;
+        bank.skeleton = f->kinds[k].skeleton;
+        if (f->plan.kinds[k].segment_count || noh_clip_bank_measure(&bank, &needs, &error) == NOH_OK) return 0;
+    }
+    return tool_fail(f->desc.clips->path, "for %s: %s", f->desc.file->path, error.what);
+}
+
+int figure_plan(figure *f, const figure_desc *desc, const noh_gl_caps *caps)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_stage_desc *d = &f->stage_desc;
+    int status;
+    memset(f, 0, sizeof *f);
+    f->desc = *desc;
+    f->layer.name = "body";
+    f->layer.track_count = desc->track_count;
+    d->kinds = f->kinds;
+    d->full_detail = !desc->by_error;
+    d->tangents = desc->view == NOH_VIEW_TANGENT;
+    d->halves = desc->accumulate == NOH_ACCUMULATE_F16 ? 1 : desc->accumulate == NOH_ACCUMULATE_F32 ? -1 : 0;
+    d->morph_path = (uint32_t)desc->path;
+    d->without_depth = 1;
+    d->without_shader = desc->view != NOH_VIEW_LIT;
+    d->gpu = caps ? &noh_stage_on_gl : NULL;
+    status = figure_check_level(desc->file, desc->level);
+    if (!status) status = list_kinds(f, caps != NULL);
+    if (!status) {
+        set_held(f);
+        status = noh_stage_plan_make(d, caps, &f->plan, &error) ? tool_fail_error(desc->file->path, &error) : 0;
+    }
+    if (!status && desc->clips && desc->clips->pack.clip_count) status = check_clips(f);
+    if (status) figure_plan_free(f);
+    return status;
+}
+
+void figure_plan_free(figure *f)
+{
+    free(f->nodes);
+    memset(f, 0, sizeof *f);
+}
+
+/* ---- its stage ---- */
+
+static int open_stage(figure *f)
+{
+    char log[4096] = "";
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_gl_device device;
+    const size_t bytes = (size_t)f->plan.cpu_bytes;
+    f->memory = malloc(bytes);
+    if (!f->memory) {
+        return tool_fail(f->desc.file->path, "out of memory");
+    }
+    if (f->g) device = (noh_gl_device){ &f->g->gl, &f->g->caps, &f->g->ledger, log, sizeof log };
+    if (noh_stage_init(f->memory, bytes, f->g ? &device : NULL, &f->stage_desc, &f->plan, &f->stage, &error)) {
+        fputs(log, stderr);
+        return tool_fail_error(f->desc.file->path, &error);
+    }
+    return 0;
+}
+
+static int open_shader(figure *f)
+{
+    char log[4096] = "";
+    noh_error error = { NOH_OK, "", 0, 0 };
+    const size_t bytes = noh_stage_shader_size(f->stage);
+    const noh_gl_shader_desc desc = { .view = f->desc.view };
+    if (!f->g || f->desc.view == NOH_VIEW_LIT) {
+        return 0;
+    }
+    f->shader_memory = malloc(bytes);
+    if (!f->shader_memory) {
+        return tool_fail("renderer", "out of memory");
+    }
+    if (noh_stage_shader_create(f->stage, f->shader_memory, bytes, &desc, log, sizeof log, &f->shader, &error)) {
+        fputs(log, stderr);
+        return tool_fail_error("renderer", &error);
+    }
+    return 0;
+}
+
+static int open_actors(figure *f)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
+        if (noh_stage_spawn(f->stage, k, NULL, &f->actors[k], &error)) {
+            return tool_fail_error(f->desc.file->path, &error);
+        }
+    }
+    return figure_set_look(f, &f->look);
+}
+
+int figure_set_look(figure *f, const noh_look *look)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    f->look = *look;
+    for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
+        if (noh_actor_set_look(f->stage, f->actors[k], &f->look, &error)) {
+            return tool_fail_error(f->desc.file->path, &error);
+        }
+    }
+    return 0;
+}
+
+int figure_open(figure *f, const figure_desc *desc, gpu *g)
+{
+    int status = figure_plan(f, desc, g ? &g->caps : NULL);
+    if (status) {
+        return status;
+    }
+    f->g = g;
+    status = open_stage(f);
+    if (!status) status = open_shader(f);
+    if (!status) status = open_actors(f);
+    if (status) figure_close(f);
+    return status;
+}
+
+void figure_close(figure *f)
+{
+    if (f->shader) noh_stage_shader_delete(f->shader);
+    if (f->stage) noh_stage_delete(f->stage);
+    free(f->shader_memory);
+    free(f->memory);
+    figure_plan_free(f);
+}
+
+int figure_restore(figure *f)
+{
+    char log[4096] = "";
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_result result = noh_stage_restore(f->stage, &error);
+    if (!result && f->shader) result = noh_stage_shader_restore(f->shader, log, sizeof log, &error);
+    if (result) {
+        fputs(log, stderr);
+        return tool_fail_error(f->desc.file->path, &error);
+    }
+    return 0;
+}
+
+int figure_reset(figure *f)
+{
+    for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
+        (void)noh_stage_despawn(f->stage, f->actors[k], NULL);
+    }
+    return open_actors(f);
+}
+
+/* ---- frames ---- */
+
+static int frame(figure *f, const noh_stage_view *view)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    return noh_stage_frame(f->stage, 0, view, NULL, NULL, &error) ? tool_fail_error(f->desc.file->path, &error) : 0;
+}
+
+int figure_pose(figure *f)
+{
+    const noh_look own = f->look;
+    noh_look posed = own;
+    int status;
+    posed.posed = 1;
+    status = figure_set_look(f, &posed);
+    if (!status) status = frame(f, NULL);
+    return status ? status : figure_set_look(f, &own);
+}
+
+int figure_look(figure *f, const noh_gl_camera *camera, uint32_t height)
+{
+    noh_stage_view view;
+    memset(&view, 0, sizeof view);
+    memcpy(view.view_projection, camera->view_projection, sizeof view.view_projection);
+    memcpy(view.eye, camera->eye, sizeof view.eye);
+    memcpy(view.light, camera->key, sizeof view.light);
+    view.height_px = height;
+    return frame(f, &view);
+}
+
+int figure_draw(figure *f)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    return noh_stage_draw(f->stage, NOH_PASS_COLOR, 0, f->shader, &error) ? tool_fail_error(f->desc.file->path, &error)
+                                                                          : 0;
+}

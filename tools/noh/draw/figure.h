@@ -1,0 +1,119 @@
+/* figure.h: a pack on a stage, as the verbs want it: everything that it holds, once, in the pose of its clips.
+ *
+ *   figure_plan            the bytes, without a driver; figure_open makes the stage; figure_close, figure_restore
+ *   figure_reset           at rest: nothing plays, nothing is held; figure_set_look
+ *   figure_play            a clip; figure_clip_seconds
+ *   figure_hold            a morph target or named float; figure_hold_all, figure_hold_options
+ *   figure_pose            a frame that no view sees, for what follows
+ *   figure_bounds          of what is posed; figure_anchor, figure_joints, figure_deform
+ *   figure_look            a frame that a camera sees; figure_draw draws it
+ *
+ * A figure is a kind of the stage for each skeleton of the pack, the first of which also has what no joint moves, and
+ * of each kind one actor at the origin. Whatever a verb needs beside these functions it does with figure.stage and
+ * figure.actors: steps, callback keys, fades, detail.
+ *
+ * Functions that return an int print an error and return an exit code; 0 on success. A figure must not move in memory,
+ * and its pack_files must outlive it. */
+#ifndef NOH_NOH_DRAW_FIGURE_H
+#define NOH_NOH_DRAW_FIGURE_H
+
+#include "camera.h"
+#include "cli/args.h"
+#include "file/pack_file.h"
+#include "gpu/gpu.h"
+
+#define FIGURE_HELD_ALL UINT32_MAX
+
+/* Zero is a good value for all but file. */
+typedef struct figure_desc {
+    const pack_file *file;
+    const pack_file *clips;    /* whose clips are played; may be `file`. NULL: none */
+    uint32_t level;            /* the finest LOD level that is there, as `noh info` counts them */
+    int by_error;              /* 1: levels are chosen by error, and fade; 0: `level` is shown, with all else in full */
+    uint32_t actor_count;      /* of each kind; 0: 1. Only the first of each is there */
+    uint32_t track_count;      /* clips at one time, 1..NOH_LAYER_TRACKS_MAX; 0: 2, so that one fades into another */
+    uint32_t held_float_count; /* floats held at one time, FIGURE_HELD_ALL: all targets; 0: none */
+    int inertia;               /* 1: room for NOH_PLAY_INERTIA */
+    int pickable;              /* 1: noh_stage_pick finds it */
+    noh_morph_path path;
+    noh_accumulate accumulate;
+    noh_debug_view view;
+} figure_desc;
+
+typedef struct figure {
+    figure_desc desc;
+    noh_stage_desc stage_desc;
+    noh_kind_desc kinds[NOH_STAGE_KINDS_MAX];
+    noh_layer_desc layer; /* the one that all kinds have */
+    uint32_t *nodes;      /* of all kinds, one after another */
+    noh_stage_plan plan;
+    /* of an open figure */
+    gpu *g; /* NULL: nothing is drawn */
+    void *memory, *shader_memory;
+    noh_stage *stage;
+    noh_stage_shader *shader; /* NULL: the library's own, lit */
+    noh_actor actors[NOH_STAGE_KINDS_MAX];
+    noh_look look; /* of all actors */
+} figure;
+
+/* desc, stage_desc and plan alone.
+ * caps  NULL: nothing is drawn, and packs of skeletons or clips alone are taken, too */
+int figure_plan(figure *f, const figure_desc *desc, const noh_gl_caps *caps);
+void figure_plan_free(figure *f); /* of a figure that is not opened */
+
+/* g  NULL: nothing is drawn, as above */
+int figure_open(figure *f, const figure_desc *desc, gpu *g);
+void figure_close(figure *f);
+/* Make everything again in a new context, with which g->gl was filled after the old one was lost. */
+int figure_restore(figure *f);
+
+/* The pack of --anim; path NULL: `file` itself. */
+int figure_open_clips(pack_file *opened, const char *path, const pack_file *file, const pack_file **clips);
+void figure_close_clips(pack_file *opened, const pack_file *clips);
+
+/* The LOD levels of a pack: how many, and the finest that it has, 0 but in a stripped pack. */
+uint32_t figure_level_count(const noh_pack *pack);
+uint32_t figure_level_first(const noh_pack *pack);
+int figure_check_level(const pack_file *file, uint32_t level);
+
+int figure_reset(figure *f);
+/* How all actors are drawn, from now on. */
+int figure_set_look(figure *f, const noh_look *look);
+
+/* Play a clip, by every kind that has it. play: as noh_actor_play, but at once where fade_ticks is 0. An unknown name
+ * is an error that suggests the nearest. */
+int figure_play(figure *f, const char *clip, const noh_play *play);
+int figure_clip_seconds(const figure *f, const char *clip, double *seconds);
+/* Each --clip at this time, beside each other. */
+int figure_play_options(figure *f, const option_list *clips, double time_s);
+
+/* Hold a float of that name, in all kinds that have it. The same of all floats; --weight NAME=VALUE. */
+int figure_hold(figure *f, const char *name, double value);
+int figure_hold_all(figure *f, double value);
+int figure_hold_options(figure *f, const option_list *assignments);
+/* 0 if some mesh has the target. */
+int figure_check_target(const pack_file *file, const char *name);
+
+int figure_pose(figure *f);
+
+/* The world bounds of all meshes as posed, of their coarsest levels, whichever is shown: pictures of all levels can be
+ * compared, also with those of a stripped pack. face: only of vertices that targets move. */
+bounds figure_bounds(const figure *f, int face);
+/* Where the first joint stands over the ground: what a camera follows. 0 without joints. */
+void figure_anchor(const figure *f, double anchor[3]);
+/* The joints of a kind: matrices[joint_count][12], by malloc; NULL: it has none. */
+float *figure_joints(const figure *f, uint32_t kind, noh_skeleton *skeleton);
+/* The vertices of a kind's mesh as posed, morphed and skinned on the CPU, of an LOD level or its coarsest: by malloc.
+ * *mesh: that level; shown: where it is. NULL after printing an error. */
+noh_vertex *figure_deform(const figure *f, uint32_t kind, uint32_t index, uint32_t level, noh_mesh *mesh,
+                          noh_actor_mesh *shown);
+
+/* height: of the picture, pixels. Accumulates: bind the framebuffer to draw into afterwards */
+int figure_look(figure *f, const noh_gl_camera *camera, uint32_t height);
+int figure_draw(figure *f);
+
+/* "no clip named 'wlak' (did you mean 'walk'?)" */
+int figure_fail_unknown(const char *subject, const char *kind, const char *name, const char *const *names,
+                        size_t count);
+
+#endif

@@ -1,0 +1,161 @@
+/* figure_shape.c: what a figure looks like in its pose, by the CPU: levels, joints, vertices, bounds. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/message.h"
+#include "deform/dual_quaternion.h"
+#include "deform/skin.h"
+#include "figure.h"
+
+/* ---- levels ---- */
+
+uint32_t figure_level_count(const noh_pack *pack)
+{
+    uint32_t most = 1;
+    noh_mesh mesh;
+    for (uint32_t i = 0; noh_pack_mesh_at(pack, i, &mesh, NULL) == NOH_OK; i++) {
+        most = mesh.header->level_count > most ? mesh.header->level_count : most;
+    }
+    return most;
+}
+
+uint32_t figure_level_first(const noh_pack *pack)
+{
+    uint32_t least = pack->mesh_count ? NOH_LOD_LEVELS_MAX : 0;
+    noh_mesh mesh;
+    for (uint32_t i = 0; noh_pack_mesh_at(pack, i, &mesh, NULL) == NOH_OK; i++) {
+        least = mesh.header->level_first < least ? mesh.header->level_first : least;
+    }
+    return least;
+}
+
+int figure_check_level(const pack_file *file, uint32_t level)
+{
+    const uint32_t count = figure_level_count(&file->pack);
+    return level < count
+               ? 0
+               : tool_fail(file->path, "no LOD level %u: the pack has %u level%s (`noh build --lod N` makes them)",
+                           level, count, plural(count));
+}
+
+/* ---- joints ---- */
+
+float *figure_joints(const figure *f, uint32_t kind, noh_skeleton *skeleton)
+{
+    float *matrices;
+    if (noh_pack_skeleton_at(f->kinds[kind].mesh, f->kinds[kind].skeleton, skeleton, NULL, NULL)) {
+        return NULL;
+    }
+    matrices = calloc(skeleton->joint_count, 12u * sizeof *matrices);
+    for (uint32_t j = 0; matrices && j < skeleton->joint_count; j++) {
+        (void)noh_actor_joint(f->stage, f->actors[kind], j, matrices + 12u * (size_t)j, NULL);
+    }
+    return matrices;
+}
+
+void figure_anchor(const figure *f, double anchor[3])
+{
+    float joint[12];
+    const int has = noh_actor_joint(f->stage, f->actors[0], 0, joint, NULL) == NOH_OK;
+    anchor[0] = has ? (double)joint[3] : 0.0;
+    anchor[1] = 0.0;
+    anchor[2] = has ? (double)joint[11] : 0.0;
+}
+
+/* ---- vertices ---- */
+
+static void deform(const noh_mesh *mesh, const noh_actor_mesh *shown, const float *matrices,
+                   const noh_dual_quaternion *dual, const noh_morph_layers *layers, noh_vertex *vertices)
+{
+    for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
+        if (dual) {
+            noh_skin_vertex_dual(mesh, dual, layers, v, &vertices[v]);
+        } else if (shown->joint_count) {
+            noh_skin_vertex(mesh, matrices, layers, v, &vertices[v]);
+        } else {
+            noh_morph_vertex(mesh, layers, v, &vertices[v]);
+        }
+    }
+}
+
+noh_vertex *figure_deform(const figure *f, uint32_t kind, uint32_t index, uint32_t level, noh_mesh *mesh,
+                          noh_actor_mesh *shown)
+{
+    const int found = noh_actor_mesh_at(f->stage, f->actors[kind], index, shown, NULL, NULL) == NOH_OK;
+    const size_t joints = found ? shown->joint_count + 1u : 1u;
+    float *matrices = malloc(joints * 12u * sizeof *matrices);
+    noh_dual_quaternion *dual = malloc(joints * sizeof *dual);
+    noh_vertex *vertices = NULL;
+    noh_morph_layers layers;
+    void *memory = NULL;
+    if (found) {
+        (void)noh_pack_mesh_at(f->kinds[kind].mesh, shown->mesh, mesh, NULL);
+        *mesh = noh_mesh_at_lod(mesh, level);
+        vertices = malloc(sizeof *vertices * (mesh->header->vertex_count + 1u));
+        memory = malloc(noh_morph_layers_size(mesh) + 16u);
+    }
+    if (matrices && dual && vertices && memory) {
+        const int is_dual = shown->joint_count && mesh->header->flags & NOH_MESH_DUAL_QUATERNION;
+        (void)noh_actor_mesh_at(f->stage, f->actors[kind], index, shown, matrices, NULL);
+        if (is_dual) noh_skin_dual_quaternions(matrices, shown->joint_count, dual);
+        noh_morph_layers_init(memory, noh_morph_layers_size(mesh) + 16u, mesh, &layers, NULL);
+        noh_morph_accumulate(mesh, shown->weights, &layers);
+        deform(mesh, shown, matrices, is_dual ? dual : NULL, &layers, vertices);
+    } else {
+        tool_fail(f->desc.file->path, found ? "out of memory" : "it is not posed");
+        free(vertices);
+        vertices = NULL;
+    }
+    free(memory);
+    free(matrices);
+    free(dual);
+    return vertices;
+}
+
+/* ---- bounds ---- */
+
+static void grow(bounds *b, const double p[3])
+{
+    for (int c = 0; c < 3; c++) {
+        b->low[c] = fmin(b->low[c], p[c]);
+        b->high[c] = fmax(b->high[c], p[c]);
+    }
+}
+
+static void grow_mesh(bounds *b, const noh_mesh *mesh, const noh_vertex *vertices, const float world[12], int face)
+{
+    for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
+        const float *p = vertices[v].position;
+        double placed[3];
+        if (face && noh_mesh_accumulation_texel(mesh, v) >= mesh->header->touched_count) {
+            continue;
+        }
+        for (int r = 0; r < 3; r++) {
+            const float *row = world + 4 * r;
+            placed[r] = (double)row[0] * p[0] + (double)row[1] * p[1] + (double)row[2] * p[2] + (double)row[3];
+        }
+        grow(b, placed);
+    }
+}
+
+bounds figure_bounds(const figure *f, int face)
+{
+    bounds b = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
+    for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
+        for (uint32_t i = 0; i < f->plan.kinds[k].mesh_count; i++) {
+            noh_mesh mesh;
+            noh_actor_mesh shown;
+            noh_vertex *vertices = figure_deform(f, k, i, NOH_LOD_LEVELS_MAX, &mesh, &shown);
+            if (vertices) grow_mesh(&b, &mesh, vertices, shown.world, face);
+            free(vertices);
+        }
+    }
+    if (b.low[0] > b.high[0]) { /* no target moves anything: frame everything */
+        if (face) {
+            return figure_bounds(f, 0);
+        }
+        memset(&b, 0, sizeof b);
+    }
+    return b;
+}
