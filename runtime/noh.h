@@ -86,6 +86,10 @@
 #include "light/environment.h" /* light from all around, built in or your own, as spherical harmonics */
 #include "light/sh.h"          /* spherical harmonics: projected, convolved, turned */
 
+/* ---- faces ---- */
+
+#include "face/face.h" /* blinks, gaze, emotions, breath */
+
 /* ---- parts, for tools and engines of your own ---- */
 
 #include "base/arena.h"      /* carve a block */

@@ -29,8 +29,8 @@ typedef struct noh_pose_scratch {
     float *float_captured[4];
 } noh_pose_scratch;
 
-/* Exact bytes of a scratch (0 for a set over NOH_JOINTS_MAX or NOH_FLOATS_MAX), and a scratch in memory[bytes], 16-byte
- * aligned. `inertial` 1: with room for the four poses of a transition.
+/* Exact bytes of a scratch (0 for a set over NOH_JOINTS_MAX or NOH_FLOATS_MAX), and a scratch in memory[bytes], aligned
+ * to NOH_MEMORY_ALIGN. `inertial` 1: with room for the four poses of a transition.
  * errors  ARG such a set, or memory NULL or misaligned; MEMORY need: the bytes */
 size_t noh_pose_scratch_size(const noh_clip_set *set, int inertial);
 noh_result noh_pose_scratch_init(void *memory, size_t bytes, const noh_clip_set *set, int inertial,

@@ -23,7 +23,7 @@ typedef struct noh_event_queue {
 /* Exact bytes for that many events; 0 for none or too many. */
 size_t noh_event_queue_size(uint32_t capacity);
 
-/* Make a queue over memory[bytes], 16-byte aligned.
+/* Make a queue over memory[bytes], aligned to NOH_MEMORY_ALIGN.
  * errors  ARG capacity, or memory NULL or misaligned; MEMORY need: the bytes */
 noh_result noh_event_queue_init(void *memory, size_t bytes, uint32_t capacity, noh_event_queue *queue,
                                 noh_error *error);

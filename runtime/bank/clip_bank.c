@@ -60,17 +60,13 @@ static void count_nodes(const noh_bank_binding *b, counts *c)
     }
 }
 
-/* A clip's groups: a named float that no clip before had is appended to the bank's floats; weights go to a node of the
- * mesh pack, if it has one of their name. */
+/* A clip's groups: named floats go to the bank's own, weights to a node of the mesh pack, if it has one of their name.
+ */
 static void count_groups(const noh_bank_binding *b, const noh_bank_found *found, counts *c)
 {
     noh_clip_group_reader reader = noh_clip_groups_of(&found->clip);
     noh_clip_group group, node;
     while (noh_clip_next_group(&reader, &group)) {
-        if (noh_bank_is_new(b, found, &group)) {
-            c->groups++;
-            c->shape.float_count += group.width;
-        }
         if (noh_bank_is_named(&group) || noh_bank_find_node(b, &group, &node)) {
             c->runs++;
         } else {
@@ -121,6 +117,7 @@ static noh_result count_clips(const noh_bank_binding *b, counts *c, noh_error *e
     }
     c->foreign -= fitting;
     c->replaced = fitting - c->shape.clip_count;
+    noh_bank_count_names(b, &c->groups, &c->shape.float_count); /* they are appended to those of nodes */
     return NOH_OK;
 }
 

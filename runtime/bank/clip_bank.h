@@ -99,7 +99,7 @@ noh_result noh_clip_bank_measure(const noh_clip_bank_desc *desc, noh_clip_bank_n
 /* Exact bytes of a bank with its clips and its cache; 0 on error. */
 size_t noh_clip_bank_size(const noh_clip_bank_desc *desc, noh_error *error);
 
-/* Make a bank in memory[bytes], 16-byte aligned. The packs' bytes must outlive it.
+/* Make a bank in memory[bytes], aligned to NOH_MEMORY_ALIGN. The packs' bytes must outlive it.
  * errors  ARG a field of desc, named, or memory NULL or misaligned; MEMORY need: the bytes;
  *         NOT_FOUND the packs have no clip that fits: all have joints, and of another skeleton (need: how many), or
  *         their skeleton has another unit (where: the skeleton);
@@ -153,7 +153,8 @@ typedef struct noh_clip_bank_view {
 /* Exact bytes of a view: two segments, and the floats of a clip. */
 size_t noh_clip_bank_view_size(const noh_clip_bank *bank);
 
-/* Make a view in memory[bytes], 16-byte aligned. The bank must outlive it; its masks are taken as they are now.
+/* Make a view in memory[bytes], aligned to NOH_MEMORY_ALIGN. The bank must outlive it; its masks are taken as they are
+ * now.
  * errors  ARG memory NULL or misaligned; MEMORY need: the bytes */
 noh_result noh_clip_bank_view_init(void *memory, size_t bytes, const noh_clip_bank *bank, noh_clip_bank_view **view,
                                    noh_error *error);

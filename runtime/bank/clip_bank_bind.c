@@ -176,29 +176,66 @@ int noh_bank_find_node(const noh_bank_binding *b, const noh_clip_group *wanted, 
     return any;
 }
 
-static int clip_has(const noh_clip_desc *clip, const noh_clip_group *wanted, uint32_t before)
+/* ---- named floats ---- */
+
+#define NAMES_AT_ONCE 128u
+
+/* Distinct named groups, a batch of the lowest keys at a time: counting them all at once wants memory, and comparing
+ * each with all before it the square of their number. */
+typedef struct names {
+    uint64_t after;               /* keys up to this one were counted in earlier batches */
+    uint64_t keys[NAMES_AT_ONCE]; /* rising: the name's hash above, the width below */
+    uint32_t count;
+} names;
+
+static void keep_name(names *n, uint64_t key)
 {
-    noh_clip_group_reader reader = noh_clip_groups_of(clip);
-    noh_clip_group group;
-    while (noh_clip_next_group(&reader, &group) && group.first < before) {
-        if (noh_bank_is_named(&group) && noh_bank_same_group(&group, wanted)) {
-            return 1;
+    uint32_t at = 0, end = n->count;
+    while (at < end) {
+        const uint32_t middle = at + (end - at) / 2u;
+        if (n->keys[middle] < key) {
+            at = middle + 1u;
+        } else {
+            end = middle;
         }
     }
-    return 0;
+    if (key <= n->after || at == NAMES_AT_ONCE || (at < n->count && n->keys[at] == key)) {
+        return;
+    }
+    n->count += n->count < NAMES_AT_ONCE;
+    for (; at < n->count; at++) { /* the highest falls out of a full batch */
+        const uint64_t next = n->keys[at];
+        n->keys[at] = key;
+        key = next;
+    }
 }
 
-int noh_bank_is_new(const noh_bank_binding *b, const noh_bank_found *found, const noh_clip_group *group)
+static void collect_names(const noh_bank_binding *b, names *n)
 {
     noh_bank_place next = { 0, 0 };
-    noh_bank_found other;
-    if (!noh_bank_is_named(group) || group->width == 0 || clip_has(&found->clip, group, group->first)) {
-        return 0;
-    }
-    while (noh_bank_next_clip(b, &next, &other) && noh_bank_where(other.at) != noh_bank_where(found->at)) {
-        if (clip_has(&other.clip, group, NOH_NONE)) {
-            return 0;
+    noh_bank_found found;
+    n->count = 0;
+    while (noh_bank_next_clip(b, &next, &found)) {
+        noh_clip_group_reader reader = noh_clip_groups_of(&found.clip);
+        noh_clip_group group;
+        while (noh_clip_next_group(&reader, &group)) {
+            if (noh_bank_is_named(&group) && group.width) {
+                keep_name(n, (uint64_t)group.name_hash << 32 | group.width);
+            }
         }
     }
-    return 1;
+}
+
+void noh_bank_count_names(const noh_bank_binding *b, uint32_t *group_count, uint32_t *float_count)
+{
+    names n;
+    n.after = 0; /* below every key: no width is 0 */
+    do {
+        collect_names(b, &n);
+        for (uint32_t i = 0; i < n.count; i++) {
+            *float_count += (uint32_t)n.keys[i];
+        }
+        *group_count += n.count;
+        n.after = n.count ? n.keys[n.count - 1u] : n.after;
+    } while (n.count == NAMES_AT_ONCE);
 }

@@ -52,9 +52,9 @@ int noh_bank_next_node(const noh_bank_binding *b, uint32_t *node, uint32_t *firs
  * width, else the first of that name and width. Returns 0 when there is none. */
 int noh_bank_find_node(const noh_bank_binding *b, const noh_clip_group *wanted, noh_clip_group *found);
 
-/* Whether a group is a named float that occurs here first: none of the bank's clips before this one has it, nor this
- * one before. */
-int noh_bank_is_new(const noh_bank_binding *b, const noh_bank_found *found, const noh_clip_group *group);
+/* Count the named groups of the bank's clips, those of one name and width as one, and their floats: added to both. The
+ * clips were checked. */
+void noh_bank_count_names(const noh_bank_binding *b, uint32_t *group_count, uint32_t *float_count);
 
 static inline int noh_bank_is_named(const noh_clip_group *g)
 {

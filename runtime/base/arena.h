@@ -22,8 +22,8 @@
 extern "C" {
 #endif
 
-/* Of every block that an init takes: what malloc gives. Within a block all is placed to 16 bytes; 8 do for a block
- * where pointers have 32 bits, since vectors are loaded unaligned there (SSE2 asks for 16). */
+/* Of every block that an init takes, and of every pack: what malloc gives. Within a block all is placed to 16 bytes; 8
+ * do for a block where pointers have 32 bits, since vectors are loaded unaligned there (SSE2 asks for 16). */
 #if UINTPTR_MAX == 0xffffffffu && !defined(__i386__) && !defined(_M_IX86)
 #define NOH_MEMORY_ALIGN 8u
 #else

@@ -15,7 +15,8 @@
 
 /* ---- a pack ---- */
 
-#define NOH_PACK_ALIGN 64u /* chunks start at multiples of this in the file; a pack in memory is aligned to 16 */
+/* Chunks start at multiples of this in the file. In memory a pack is aligned as any block is (NOH_MEMORY_ALIGN). */
+#define NOH_PACK_ALIGN 64u
 #define NOH_PACK_CHUNKS_MAX 4096u
 #define NOH_PACK_BYTES_MAX 0x7fffffffu
 #define NOH_NAME_BYTES_MAX 256u /* with the final zero */
@@ -55,14 +56,18 @@
 #define NOH_CLIP_CACHE_SEGMENTS_MIN 2u /* cached segments; a sample between two segments needs both */
 #define NOH_CLIP_CACHE_SEGMENTS_MAX 32768u
 
+/* ---- faces ---- */
+
+#define NOH_FACE_EMOTIONS_MAX 3u /* emotions that a face shows at once; one more takes the place of the weakest */
+
 /* ---- controllers and graphs ---- */
 
 #define NOH_TRACKS_MAX 64u
 #define NOH_CHANGES_MAX 1024u /* waiting or running at one time */
 #define NOH_WEIGHT_MAX 1e6f   /* of a track */
-#define NOH_STEP_EVENTS_MAX                                                                                       \
-    (1u << 20) /* callback keys that one step looks at. A track can pass billions (a seek a day away in a clip of \
-                * 10 ms); a step that reaches this many delivers no more, and only moves time on */
+/* Callback keys that one step looks at. A track can pass billions (a seek a day away in a clip of 10 ms); a step that
+ * reaches this many delivers no more, and only moves time on. */
+#define NOH_STEP_EVENTS_MAX (1u << 20)
 #define NOH_SYNC_GROUPS_MAX 15u
 #define NOH_SYNC_DURATION_MIN 480u       /* ticks, of a clip in a sync group: 10 ms */
 #define NOH_SYNC_DURATION_MAX (1u << 28) /* ticks: 93 minutes */

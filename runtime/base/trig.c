@@ -129,6 +129,34 @@ float noh_exp2(float x)
     return power * part;
 }
 
+/* x = m 2^e with m between sqrt(1/2) and sqrt(2), and ln m = 2 artanh z with z = (m - 1) / (m + 1), |z| < 0.172: five
+ * terms of the series z + z^3 / 3 + z^5 / 5 + .. leave less than 1e-9. */
+float noh_log2(float x)
+{
+    float m = x, z, square, series;
+    int32_t e = 0;
+    uint32_t bits;
+    if (!(x > 0.0f)) {
+        return -150.0f;
+    }
+    if (m < 1.17549435e-38f) { /* subnormal */
+        m *= 16777216.0f;
+        e = -24;
+    }
+    memcpy(&bits, &m, sizeof bits);
+    e += (int32_t)(bits >> 23) - 127;
+    bits = (bits & 0x7fffffu) | 0x3f800000u;
+    memcpy(&m, &bits, sizeof m);
+    if (m > 1.41421356f) {
+        m *= 0.5f;
+        e++;
+    }
+    z = (m - 1.0f) / (m + 1.0f);
+    square = z * z;
+    series = 1.0f + square * (1.0f / 3.0f + square * (0.2f + square * (1.0f / 7.0f + square * (1.0f / 9.0f))));
+    return (float)e + 2.88539008f * z * series;
+}
+
 uint32_t noh_turn_from_radians(float radians)
 {
     double turn = in_range(radians) ? (double)radians * TURN_PER_RADIAN : 0.0;

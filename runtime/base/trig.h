@@ -5,6 +5,7 @@
  *   noh_atan2          the angle of a direction
  *   noh_acos           the angle of a cosine, clamped
  *   noh_exp2           a power of two
+ *   noh_log2           the logarithm to base two
  *   noh_turn_from_radians, noh_radians_from_turn
  *
  * Polynomials of our own (Chebyshev fits of the reduced functions), made of sums, products, quotients and square roots
@@ -47,6 +48,11 @@ float noh_acos(float x);
  * ranges  below -126 the result is 0, above 127.999 it is 2^127.999
  * errors  at most 2e-7 relative */
 float noh_exp2(float x);
+
+/* The logarithm of x to base 2.
+ * ranges  above 0 and finite; -150 for 0 and below
+ * errors  at most 2e-7 absolute near 1, else 1e-7 relative */
+float noh_log2(float x);
 
 /* ranges  |radians| <= 1e6 */
 uint32_t noh_turn_from_radians(float radians);

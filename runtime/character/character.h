@@ -72,7 +72,8 @@ typedef struct noh_character_scratch {
 size_t noh_character_size(const noh_character_desc *desc);
 
 /* Make a character in memory[bytes]: all tracks off, no valid pose.
- * errors  ARG a field of the desc, or memory NULL or not 16-byte aligned; MEMORY too small; need: the exact bytes */
+ * errors  ARG a field of the desc, or memory NULL or not aligned to NOH_MEMORY_ALIGN; MEMORY too small; need: the exact
+ * bytes */
 noh_result noh_character_init(void *memory, size_t bytes, const noh_character_desc *desc, noh_character **character,
                               noh_error *error);
 
@@ -82,7 +83,7 @@ size_t noh_character_scratch_size(const noh_character_desc *desc);
 noh_result noh_character_scratch_init(void *memory, size_t bytes, const noh_character_desc *desc,
                                       noh_character_scratch *scratch, noh_error *error);
 
-/* How many bytes to copy to clone or save it. The copy must be 16-byte aligned too. */
+/* How many bytes to copy to clone or save it. The copy must be aligned to NOH_MEMORY_ALIGN too. */
 size_t noh_character_bytes(const noh_character *ch);
 
 /* Check a block from outside, such as a saved game, before any other call. With a block that passes, no call overruns

@@ -24,7 +24,8 @@ size_t noh_joint_lod_measure_size(const noh_time_probe *probe);
  * shapes  counts[level_count]: joints posed, falling, each prefix with all joints that have no parent;
  *         error_m[level_count], never falling
  * units   model units, taken as metres
- * errors  ARG probe, clip, counts, or memory NULL or not 16-byte aligned; MEMORY too small; need: the exact bytes */
+ * errors  ARG probe, clip, counts, or memory NULL or not aligned to NOH_MEMORY_ALIGN; MEMORY too small; need: the exact
+ * bytes */
 noh_result noh_joint_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t clip,
                                  const uint32_t *counts, uint32_t level_count, float *error_m, noh_error *error);
 

@@ -60,7 +60,8 @@ size_t noh_lod_pack_size(const noh_lod_pack_desc *desc);
  * may be off by a little more (noh_time_lod_points_measure). Those errors assume that the set extracts root motion: the
  * jump at the seam of a clip that travels is not counted. A clip built for a skeleton of other proportions may have
  * other joint levels: a joint level that some clip has no error for is left out, and so are all coarser ones.
- * errors  ARG the field of desc, or memory NULL or not 16-byte aligned; MEMORY too small; need: the exact bytes */
+ * errors  ARG the field of desc, or memory NULL or not aligned to NOH_MEMORY_ALIGN; MEMORY too small; need: the exact
+ * bytes */
 noh_result noh_lod_pack_init(void *memory, size_t bytes, const noh_lod_pack_desc *desc, noh_lod_pack *lod,
                              noh_error *error);
 

@@ -61,7 +61,8 @@ typedef struct noh_lod_pools_stats {
 /* Exact bytes: 16 per instance, 4 per slot, and 232 once; 0 for an impossible desc. */
 size_t noh_lod_pools_size(const noh_lod_pools_desc *desc);
 
-/* errors  ARG a field of the desc, or memory NULL or not 16-byte aligned; MEMORY too small; need: the exact bytes */
+/* errors  ARG a field of the desc, or memory NULL or not aligned to NOH_MEMORY_ALIGN; MEMORY too small; need: the exact
+ * bytes */
 noh_result noh_lod_pools_init(void *memory, size_t bytes, const noh_lod_pools_desc *desc, noh_lod_pools **pools,
                               noh_error *error);
 

@@ -52,7 +52,7 @@ typedef struct noh_schedule {
 /* Exact bytes for so many offers in a frame: 16 each; 0 for none or more than NOH_SCHEDULE_MAX. */
 size_t noh_schedule_size(uint32_t capacity);
 
-/* errors  ARG capacity, or memory NULL or not 16-byte aligned; MEMORY too small; need: the exact bytes */
+/* errors  ARG capacity, or memory NULL or not aligned to NOH_MEMORY_ALIGN; MEMORY too small; need: the exact bytes */
 noh_result noh_schedule_init(void *memory, size_t bytes, uint32_t capacity, noh_schedule *s, noh_error *error);
 
 /* Begin a frame.

@@ -120,7 +120,8 @@ size_t noh_time_lod_measure_size(const noh_time_probe *probe);
  * (the Schatten 8-norm).
  * shapes  error_m[NOH_UPDATE_RATE_COUNT]; at the full rate it is 0
  * units   model units, taken as metres
- * errors  ARG probe, clip, or memory NULL or not 16-byte aligned; MEMORY too small; need: the exact bytes */
+ * errors  ARG probe, clip, or memory NULL or not aligned to NOH_MEMORY_ALIGN; MEMORY too small; need: the exact bytes
+ */
 noh_result noh_time_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t clip, float *error_m,
                                 noh_error *error);
 

@@ -32,8 +32,8 @@ size_t noh_time_lod_points_size(const noh_time_probe *probe);
  * what the probe's floats add. joint_radius_m is not read. Ten seconds of 31 joints and 128 points take about 0.2 s.
  * shapes  error_m[NOH_UPDATE_RATE_COUNT]; at the full rate it is 0
  * units   model units, taken as metres
- * errors  ARG probe, clip, points (none, or no such joint; where: the hold), or memory NULL or not 16-byte aligned;
- *         MEMORY too small; need: the exact bytes */
+ * errors  ARG probe, clip, points (none, or no such joint; where: the hold), or memory NULL or not aligned to
+ * NOH_MEMORY_ALIGN; MEMORY too small; need: the exact bytes */
 noh_result noh_time_lod_points_measure(void *memory, size_t bytes, const noh_time_probe *probe,
                                        const noh_time_lod_points *points, uint32_t clip, float *error_m,
                                        noh_error *error);

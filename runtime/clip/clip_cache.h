@@ -58,7 +58,7 @@ typedef struct noh_clip_cache_stats {
 /* Exact bytes of a cache; 0 for an impossible desc (the error says why). */
 size_t noh_clip_cache_size(const noh_clip_cache_desc *desc, noh_error *error);
 
-/* Build a cache in memory[bytes], 16-byte aligned.
+/* Build a cache in memory[bytes], aligned to NOH_MEMORY_ALIGN.
  * errors  ARG a field of desc, or memory NULL or misaligned; MEMORY need: the bytes */
 noh_result noh_clip_cache_init(void *memory, size_t bytes, const noh_clip_cache_desc *desc, noh_clip_cache **out,
                                noh_error *error);

@@ -61,7 +61,7 @@ noh_result noh_clip_measure(const noh_clip_desc *desc, noh_clip_info *info, size
 /* Exact bytes of a noh_clip; 0 for a clip that noh_clip_measure refuses. */
 size_t noh_clip_size(const noh_clip_desc *desc, noh_error *error);
 
-/* Check the clip completely and expand its header into memory[noh_clip_size()], 16-byte aligned.
+/* Check the clip completely and expand its header into memory[noh_clip_size()], aligned to NOH_MEMORY_ALIGN.
  * errors  ARG bytes or bind is NULL, the joints are not the skeleton's (need: the clip's), memory NULL or misaligned;
  *         MEMORY need: the bytes; VERSION need: ours; LIMIT need: what the clip has; DATA where: the byte in the clip
  */

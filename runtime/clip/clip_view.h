@@ -24,7 +24,7 @@ typedef struct noh_clip_view noh_clip_view;
 size_t noh_clip_view_size(const noh_clip_cache *cache);
 size_t noh_clip_view_needs_size(const noh_clip_cache_needs *needs); /* before there is a cache */
 
-/* Make a view in memory[bytes], 16-byte aligned. The cache must outlive it.
+/* Make a view in memory[bytes], aligned to NOH_MEMORY_ALIGN. The cache must outlive it.
  * errors  ARG memory NULL or misaligned; MEMORY need: the bytes */
 noh_result noh_clip_view_init(void *memory, size_t bytes, const noh_clip_cache *cache, noh_clip_view **out,
                               noh_error *error);

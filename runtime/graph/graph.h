@@ -135,8 +135,8 @@ uint32_t noh_graph_buffers(const noh_graph *graph);
 
 /* ---- instances ---- */
 
-/* Exact bytes of an instance (0 for a graph that noh_graph_check refuses), and an instance in memory[bytes], 16-byte
- * aligned: all clips at their starts, all machines in their first states.
+/* Exact bytes of an instance (0 for a graph that noh_graph_check refuses), and an instance in memory[bytes], aligned to
+ * NOH_MEMORY_ALIGN: all clips at their starts, all machines in their first states.
  * errors  those of noh_graph_check; ARG memory NULL or misaligned, or the desc of a clip; MEMORY need: the bytes */
 size_t noh_graph_state_size(const noh_graph *graph, const noh_clip_set *set);
 noh_result noh_graph_state_init(void *memory, size_t bytes, const noh_graph *graph, const noh_clip_set *set,
@@ -170,7 +170,7 @@ typedef struct noh_graph_scratch {
 } noh_graph_scratch;
 
 /* Exact bytes of a scratch for a checked graph (0 for a set over NOH_JOINTS_MAX or NOH_FLOATS_MAX), and a scratch in
- * memory[bytes], 16-byte aligned.
+ * memory[bytes], aligned to NOH_MEMORY_ALIGN.
  * errors  ARG such a set, or memory NULL or misaligned; MEMORY need: the bytes */
 size_t noh_graph_scratch_size(const noh_graph *graph, const noh_clip_set *set);
 noh_result noh_graph_scratch_init(void *memory, size_t bytes, const noh_graph *graph, const noh_clip_set *set,

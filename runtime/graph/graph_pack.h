@@ -73,8 +73,8 @@ typedef struct noh_graph_pack {
  * errors  those of noh_graph_pack_init that need no clips: ARG, and those of noh_pack_graph_at */
 size_t noh_graph_pack_size(const noh_graph_pack_desc *desc, noh_error *error);
 
-/* Make a graph in memory[bytes], 16-byte aligned, and check it (noh_graph_check). The pack's bytes and the set must
- * outlive it.
+/* Make a graph in memory[bytes], aligned to NOH_MEMORY_ALIGN, and check it (noh_graph_check). The pack's bytes and the
+ * set must outlive it.
  * errors  ARG a field of desc, named, a set over the limits, or memory NULL or misaligned; MEMORY need: the bytes;
  *         those of noh_pack_graph_at; NOT_FOUND the set has no clip of a name (where: its index in source.clips, see
  *         noh_graph_pack_clip_name); the skeleton has no joint of a name (where: its index in source.names);

@@ -3,6 +3,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "base/arena.h"
 #include "base/hash.h"
 #include "pack/check_internal.h"
 
@@ -26,8 +27,8 @@ static int chunk_rank(uint32_t type)
 static noh_result check_header(const uint8_t *bytes, size_t byte_count, noh_error *error)
 {
     noh_pack_header h;
-    if (((uintptr_t)bytes & 15u) != 0) {
-        return noh_fail(error, NOH_ERR_ARG, "pack is not 16-byte aligned in memory", 0, 16);
+    if ((uintptr_t)bytes % NOH_MEMORY_ALIGN != 0) {
+        return noh_fail(error, NOH_ERR_ARG, "pack is not aligned to NOH_MEMORY_ALIGN in memory", 0, NOH_MEMORY_ALIGN);
     }
     if (byte_count < sizeof h) {
         return noh_fail(error, NOH_ERR_DATA, "file is shorter than a pack header", byte_count, sizeof h);

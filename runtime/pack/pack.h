@@ -42,7 +42,7 @@ typedef struct noh_texture {
 } noh_texture;
 
 /* Open a pack: check all of it, and fill *pack.
- * memory  none; bytes must be aligned to 16
+ * memory  none; bytes must be aligned to NOH_MEMORY_ALIGN (base/arena.h)
  * errors  ARG bytes or pack is NULL, or bytes are misaligned; VERSION another format version (need: ours); DATA broken
  *         (where: the byte offset of the field at fault); LIMIT over a number of limits.h. *pack is then untouched */
 noh_result noh_pack_open(const void *bytes, size_t byte_count, noh_pack *pack, noh_error *error);

@@ -127,11 +127,20 @@ typedef struct noh_actor_level {
     uint8_t mesh_levels[NOH_STAGE_MESHES_MAX];
 } noh_actor_level;
 
+/* What the clips of a kind take, read from its packs: a plan reads them once, however much it then gives up. */
+typedef struct noh_kind_clips {
+    uint64_t bank_bytes, view_bytes; /* 0: no clip fits */
+    uint32_t clip_count, event_count, marker_count, joint_count, float_count;
+    uint32_t cached_segment_count, segment_count;
+    uint32_t asked; /* cached segments that it was read for */
+} noh_kind_clips;
+
 /* What a kind came to. */
 typedef struct noh_kind_plan {
     uint32_t mesh_count, level_count, finest_level;
     uint32_t track_count, joint_count, float_count;
     uint32_t cached_segment_count, segment_count; /* of its clips: held decoded at once; in all */
+    noh_kind_clips clips;                         /* of the kind whose clips it shares: itself, or an earlier one */
     noh_actor_level levels[NOH_LOD_LEVELS_MAX];
 } noh_kind_plan;
 
@@ -144,7 +153,7 @@ typedef struct noh_concession {
     uint64_t cpu_bytes, gpu_bytes; /* that it won */
 } noh_concession;
 
-/* Plain data, 7 KiB: print it, compare it, keep it with the build. */
+/* Plain data, 8 KiB: print it, compare it, keep it with the build. */
 typedef struct noh_stage_plan {
     uint64_t cpu_bytes;   /* of the block that noh_stage_init wants; exact */
     uint64_t gpu_bytes;   /* of what it makes on the GPU; exact, as the ledger counts */

@@ -36,32 +36,50 @@ static void shape_without_clips(const noh_kind_desc *d, noh_clip_set *shape)
     shape->float_count = shape->joint_count ? 0 : 1;
 }
 
-static noh_result measure_bank(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind,
-                               noh_stage_needs *n, noh_error *error)
+noh_result noh_stage_measure_clips(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind,
+                                   noh_kind_clips *clips, noh_error *error)
 {
-    const noh_kind_desc d = noh_stage_kind_desc(desc, kind);
-    const uint32_t owner = noh_stage_bank_kind(desc, kind);
-    const noh_clip_bank_desc bank = noh_stage_bank_desc(desc, plan, owner);
+    const noh_clip_bank_desc bank = noh_stage_bank_desc(desc, plan, kind);
     noh_error said = { NOH_OK, "", 0, 0 };
     noh_clip_bank_needs needs;
-    const int none = d.clip_packs && !d.clip_pack_count;
+    const int none = bank.clip_packs && !bank.clip_pack_count;
     const noh_result result = none ? NOH_ERR_NOT_FOUND : noh_clip_bank_measure(&bank, &needs, &said);
+    memset(clips, 0, sizeof *clips);
+    clips->asked = plan->kinds[kind].cached_segment_count;
     if (result == NOH_ERR_NOT_FOUND) {
-        shape_without_clips(&d, &n->shape);
         return NOH_OK;
     }
     if (result != NOH_OK) {
         return noh_fail(error, result, said.what, said.where, said.need);
     }
-    n->has_clips = 1;
-    n->shape = needs.shape;
-    n->cached_segment_count = needs.cached_segment_count;
-    n->segment_count = needs.segment_count;
-    if (owner == kind) {
-        n->bank_bytes = needs.bytes;
-        n->view_bytes = needs.view_bytes;
-    }
+    clips->bank_bytes = needs.bytes;
+    clips->view_bytes = needs.view_bytes;
+    clips->clip_count = needs.shape.clip_count;
+    clips->event_count = needs.shape.event_count;
+    clips->marker_count = needs.shape.marker_count;
+    clips->joint_count = needs.shape.joint_count;
+    clips->float_count = needs.shape.float_count;
+    clips->cached_segment_count = needs.cached_segment_count;
+    clips->segment_count = needs.segment_count;
     return NOH_OK;
+}
+
+static void take_clips(const noh_kind_clips *clips, const noh_kind_desc *d, int owns, noh_stage_needs *n)
+{
+    if (!clips->bank_bytes) {
+        shape_without_clips(d, &n->shape);
+        return;
+    }
+    n->has_clips = 1;
+    n->shape.clip_count = clips->clip_count;
+    n->shape.event_count = clips->event_count;
+    n->shape.marker_count = clips->marker_count;
+    n->shape.joint_count = clips->joint_count;
+    n->shape.float_count = clips->float_count;
+    n->cached_segment_count = clips->cached_segment_count;
+    n->segment_count = clips->segment_count;
+    n->bank_bytes = owns ? (size_t)clips->bank_bytes : 0;
+    n->view_bytes = owns ? (size_t)clips->view_bytes : 0;
 }
 
 /* Masks: one for each layer that names joints or floats. */
@@ -118,17 +136,19 @@ static size_t pools_bytes(const noh_stage_plan *plan, const noh_kind_desc *d, ui
 }
 
 noh_result noh_stage_measure_kind(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind,
-                                  noh_stage_needs *needs, noh_error *error)
+                                  const noh_kind_clips *clips, noh_stage_needs *needs, noh_error *error)
 {
     const noh_kind_desc d = noh_stage_kind_desc(desc, kind);
-    const noh_clip_bank_desc bank = noh_stage_bank_desc(desc, plan, noh_stage_bank_kind(desc, kind));
+    const uint32_t owner = noh_stage_bank_kind(desc, kind);
+    const noh_clip_bank_desc bank = noh_stage_bank_desc(desc, plan, owner);
+    noh_kind_clips own;
     noh_mesh skinned;
-    noh_result result;
-    memset(needs, 0, sizeof *needs);
-    result = measure_bank(desc, plan, kind, needs, error);
+    const noh_result result = clips ? NOH_OK : noh_stage_measure_clips(desc, plan, owner, &own, error);
     if (result != NOH_OK) {
         return result;
     }
+    memset(needs, 0, sizeof *needs);
+    take_clips(clips ? clips : &own, &d, owner == kind, needs);
     needs->mask_count = count_masks(&d);
     measure_meshes(&d, needs, &skinned);
     needs->float_count = (needs->has_clips ? needs->shape.float_count : 0) +
@@ -273,7 +293,8 @@ static noh_result carve_states(noh_arena *arena, const noh_stage_desc *desc, con
         const noh_kind_desc d = noh_stage_kind_desc(desc, i);
         noh_stage_needs needs;
         noh_stage_kind kind;
-        const noh_result result = noh_stage_measure_kind(desc, plan, i, &needs, error);
+        const noh_result result = noh_stage_measure_kind(desc, plan, i, b->planned ? &plan->kinds[i].clips : NULL,
+                                                         &needs, error);
         if (result != NOH_OK) {
             return result;
         }
@@ -320,7 +341,7 @@ noh_result noh_stage_carve(noh_arena *arena, const noh_stage_desc *desc, const n
         const noh_kind_desc d = noh_stage_kind_desc(desc, i);
         noh_stage_needs needs;
         noh_stage_kind measured, *k = b->kinds ? &b->kinds[i] : &measured;
-        result = noh_stage_measure_kind(desc, plan, i, &needs, error);
+        result = noh_stage_measure_kind(desc, plan, i, b->planned ? &plan->kinds[i].clips : NULL, &needs, error);
         memset(k, 0, sizeof *k);
         carve_shared(arena, &d, &plan->kinds[i], &needs, k);
         b->lods[i] = noh_arena_carve(arena, needs.lod_bytes, 16);

@@ -281,11 +281,16 @@ typedef struct noh_stage_needs {
     int has_clips;
 } noh_stage_needs;
 
+/* Read the clips of a kind that has a bank of its own. */
+noh_result noh_stage_measure_clips(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind,
+                                   noh_kind_clips *clips, noh_error *error);
+/* clips  as read before; NULL: read them */
 noh_result noh_stage_measure_kind(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind,
-                                  noh_stage_needs *needs, noh_error *error);
+                                  const noh_kind_clips *clips, noh_stage_needs *needs, noh_error *error);
 
 /* Where everything lies; what an arena that only measures gives is NULL. */
 typedef struct noh_stage_blocks {
+    int planned; /* 1: the plan is being made, and says what clips take; a plan from outside is not believed */
     noh_stage *stage;
     noh_stage_kind *kinds;
     noh_stage_head *head;

@@ -17,6 +17,23 @@ typedef struct planner {
     noh_stage_plan *plan;
 } planner;
 
+/* Read clips where another number of cached segments is asked for than they were read for, and tell those that share
+ * them. */
+static noh_result read_clips(const planner *p, noh_error *error)
+{
+    noh_result result = NOH_OK;
+    for (uint32_t i = 0; i < p->desc->kind_count && result == NOH_OK; i++) {
+        noh_kind_plan *k = &p->plan->kinds[i];
+        const uint32_t owner = noh_stage_bank_kind(p->desc, i);
+        if (owner != i) {
+            k->clips = p->plan->kinds[owner].clips;
+        } else if (k->clips.asked != k->cached_segment_count) {
+            result = noh_stage_measure_clips(p->desc, p->plan, i, &k->clips, error);
+        }
+    }
+    return result;
+}
+
 static noh_result measure(const planner *p, noh_error *error)
 {
     noh_stage_plan *plan = p->plan;
@@ -24,10 +41,11 @@ static noh_result measure(const planner *p, noh_error *error)
     noh_arena arena = noh_arena_measure();
     uint64_t cpu_bytes = 0, gpu_bytes = 0;
     noh_stage_desc desc = *p->desc;
-    noh_result result;
+    noh_result result = read_clips(p, error);
     memset(&blocks, 0, sizeof blocks);
+    blocks.planned = 1;
     desc.halves = noh_stage_halves(&desc, plan);
-    result = noh_stage_carve(&arena, &desc, plan, &blocks, NULL, error);
+    if (result == NOH_OK) result = noh_stage_carve(&arena, &desc, plan, &blocks, NULL, error);
     if (result == NOH_OK && desc.gpu) {
         result = desc.gpu->measure(&desc, p->caps, plan, &cpu_bytes, &gpu_bytes, error);
         (void)noh_arena_carve(&arena, (size_t)cpu_bytes, 16);
@@ -47,6 +65,7 @@ uint32_t noh_stage_plan_parts(const noh_stage_desc *desc, const struct noh_gl_ca
     noh_stage_desc d = *desc;
     NOH_ASSERT(plan && (parts || !capacity));
     memset(&blocks, 0, sizeof blocks);
+    blocks.planned = 1;
     list.parts = parts;
     list.capacity = capacity;
     d.halves = noh_stage_halves(&d, plan);
@@ -313,14 +332,15 @@ static noh_result give_back(const planner *p, noh_error *error)
 {
     noh_result result = p->plan->concession_count ? give_back_halves(p, error) : NOH_OK;
     for (uint32_t i = 0; i < p->desc->kind_count && result == NOH_OK; i++) {
-        const uint32_t now = p->plan->kinds[i].cached_segment_count;
-        noh_stage_needs needs;
+        noh_kind_plan *k = &p->plan->kinds[i];
+        const uint32_t now = k->cached_segment_count;
+        noh_kind_clips most;
         if (noh_stage_bank_kind(p->desc, i) != i) continue;
-        p->plan->kinds[i].cached_segment_count = 0;
-        result = noh_stage_measure_kind(p->desc, p->plan, i, &needs, error);
-        p->plan->kinds[i].cached_segment_count = now;
-        if (result == NOH_OK && needs.cached_segment_count > now) {
-            result = give_back_segments(p, i, needs.cached_segment_count, error);
+        k->cached_segment_count = 0;
+        result = noh_stage_measure_clips(p->desc, p->plan, i, &most, error);
+        k->cached_segment_count = now;
+        if (result == NOH_OK && most.cached_segment_count > now) {
+            result = give_back_segments(p, i, most.cached_segment_count, error);
         }
     }
     return result;
@@ -346,13 +366,16 @@ static noh_result begin(const planner *p, uint32_t kind, noh_error *error)
 {
     noh_kind_plan *k = &p->plan->kinds[kind];
     const noh_kind_desc d = noh_stage_kind_desc(p->desc, kind);
+    const uint32_t owner = noh_stage_bank_kind(p->desc, kind);
     noh_stage_needs needs;
     noh_result result = noh_stage_find_levels(p->desc, kind, k, error);
     if (result != NOH_OK) {
         return result;
     }
     noh_stage_share_slots(p->desc, kind, k);
-    result = noh_stage_measure_kind(p->desc, p->plan, kind, &needs, error);
+    k->clips = p->plan->kinds[owner].clips;
+    if (owner == kind) result = noh_stage_measure_clips(p->desc, p->plan, kind, &k->clips, error);
+    if (result == NOH_OK) result = noh_stage_measure_kind(p->desc, p->plan, kind, &k->clips, &needs, error);
     if (result == NOH_OK) {
         k->track_count = noh_stage_track_count(&d);
         k->joint_count = needs.shape.joint_count;

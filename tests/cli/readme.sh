@@ -1,8 +1,17 @@
 #!/bin/sh
-# The README's program compiles, links against the library only, and runs. On a pack without what it needs it says so.
+# The README's table of bytes is what `noh budget` prints. Its program compiles, links against the library only, and runs.
+# On a pack without what it needs it says so.
 . "$(dirname "$0")/lib.sh"
 flags=
 [ -z "${NOH_SAN:-}" ] || flags="-fsanitize=$NOH_SAN"
+
+# The table's rows, without the head, whose width follows the pack's path; the tool also prints rows of zeros.
+awk '/^build\/mask.noh .*CPU bytes/ { inside = 1; next } inside && /^```/ { exit } inside' README.md >"$work/table"
+noh budget "$build/mask.noh" --path cpu --accumulate f32 --nominal
+expect 0 'the budget of the mask'
+awk 'NR == 1 { next } /^[^ ]/ { exit } !($NF == "0" && $(NF - 1) == "0")' "$work/out" >"$work/rows"
+check 'the README has its rows' diff "$work/table" "$work/rows"
+check 'and there are some' grep -q '^  sum ' "$work/table"
 
 awk '/^```c$/ { inside = 1; next } /^```$/ { inside = 0 } inside' README.md >"$work/smile.c"
 # shellcheck disable=SC2086

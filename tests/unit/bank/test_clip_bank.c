@@ -754,6 +754,76 @@ static void named_floats_are_shared(void **state)
     free(made);
 }
 
+/* Clips of two floats: one of its own, whose name every fourth clip has from the one before it, and one that
+ * all have. */
+static uint8_t *many_names_pack(uint32_t clips, size_t *count)
+{
+    raw_set *raw = raw_set_new(0, clips);
+    model *empty = model_new();
+    clips_settings settings;
+    encoded_clips made;
+    model_error error;
+    byte_buffer out = { NULL, 0, 0, 0 };
+    uint8_t *copy;
+    raw->skeleton.unit_cm = 1.0;
+    for (uint32_t c = 0; c < clips; c++) {
+        raw_clip *clip = &raw->clips[c];
+        char name[32];
+        snprintf(name, sizeof name, "clip%u", c);
+        clip->name = model_string(name);
+        clip->sample_rate_hz = 30.0;
+        assert_int_equal(raw_clip_alloc(clip, 2, 0), 0);
+        clip->floats = test_zeros(2 * sizeof *clip->floats);
+        clip->float_count = 2;
+        snprintf(name, sizeof name, "own%u", c % 4u == 3u ? c - 1u : c);
+        for (uint32_t g = 0; g < 2; g++) {
+            assert_int_equal(raw_floats_alloc(&clip->floats[g], 2, 1), 0);
+            clip->floats[g].name = model_string(g ? "shared" : name);
+            clip->floats[g].values[0] = clip->floats[g].values[1] = (float)(g ? 0u : c + 1u);
+        }
+    }
+    memset(&settings, 0, sizeof settings);
+    assert_int_equal(clips_encode(&raw, 1, &settings, &made, &error), 0);
+    assert_int_equal(pack_write(empty, NULL, NULL, &made, &out, &error), 0);
+    copy = test_aligned(out.bytes, out.count);
+    *count = out.count;
+    buffer_free(&out);
+    clips_free(&made);
+    model_free(empty);
+    raw_set_free(raw);
+    return copy;
+}
+
+/* Floats are counted in batches, without memory: the numbers around a batch, and thousands. Each clip moves its own. */
+static void many_named_floats_are_counted(void **state)
+{
+    static const uint32_t numbers[] = { 1, 127, 169, 170, 171, 4000 };
+    (void)state;
+    for (uint32_t n = 0; n < sizeof numbers / sizeof numbers[0]; n++) {
+        size_t count;
+        uint8_t *made = many_names_pack(numbers[n], &count);
+        const noh_pack packed = test_open(made, count);
+        noh_clip_bank *set = set_of(&packed);
+        const uint32_t own = numbers[n] - numbers[n] / 4u;
+        float *floats = test_zeros((own + 1u) * sizeof *floats);
+        assert_int_equal(set->group_count, own + 1u);
+        assert_int_equal(set->clips.float_count, own + 1u);
+        for (uint32_t c = 0; c < numbers[n]; c += 1u + numbers[n] / 50u) {
+            noh_transform none;
+            uint32_t moved = 0;
+            set->clips.sample(set, c, 0, 0, &none, own + 1u, floats);
+            for (uint32_t f = 0; f < own + 1u; f++) {
+                moved += floats[f] != 0.0f;
+            }
+            assert_int_equal(moved, 1);
+            assert_true(noh_clip_bank_moves(set, c, 1)); /* the second that was found: the shared one */
+        }
+        free(floats);
+        free(set);
+        free(made);
+    }
+}
+
 /* Of all its tracks, those that are on count, whatever their weight: time that only runs shows nothing. */
 static void a_controller_moves_what_its_tracks_show(void **state)
 {
@@ -868,6 +938,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(another_skeleton_or_unit_is_refused),
     cmocka_unit_test(weights_are_bound_by_name),
     cmocka_unit_test(named_floats_are_shared),
+    cmocka_unit_test(many_named_floats_are_counted),
     cmocka_unit_test(a_controller_moves_what_its_tracks_show),
     cmocka_unit_test(descs_are_checked),
     cmocka_unit_test(a_pack_without_clips_is_not_found),

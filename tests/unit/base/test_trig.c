@@ -75,6 +75,22 @@ static void atan2_and_acos_are_close(void **state)
     assert_true(noh_acos(1.0000001f) == 0.0f && noh_acos(-1.5f) == NOH_PI); /* a dot of unit vectors strays over 1 */
 }
 
+static void log2_is_close(void **state)
+{
+    double worst = 0.0, near_one = 0.0;
+    (void)state;
+    for (int i = 0; i < 4000000; i++) {
+        const float x = (float)exp2((double)i * 6e-5 - 120.0), y = 0.5f + (float)i * 2.5e-7f;
+        const double exact = log2((double)x);
+        worst = worse(worst, ((double)noh_log2(x) - exact) / fmax(1.0, fabs(exact)));
+        near_one = worse(near_one, (double)noh_log2(y) - log2((double)y));
+    }
+    print_message("log2 %.3g, near one %.3g\n", worst, near_one);
+    assert_true(worst <= 2e-7 && near_one <= 2e-7);
+    for (int e = -149; e < 128; e++) assert_true(noh_log2((float)ldexp(1.0, e)) == (float)e);
+    assert_true(noh_log2(0.0f) == -150.0f && noh_log2(-1.0f) == -150.0f && noh_log2(NAN) == -150.0f);
+}
+
 static void exp2_is_close(void **state)
 {
     double worst = 0.0;
@@ -166,6 +182,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(sin_and_cos_are_close),
         cmocka_unit_test(atan2_and_acos_are_close),
         cmocka_unit_test(exp2_is_close),
+        cmocka_unit_test(log2_is_close),
         cmocka_unit_test(turns_are_reduced),
         cmocka_unit_test(quaternions_rotate_as_defined),
         cmocka_unit_test(nlerp_takes_the_shorter_way),

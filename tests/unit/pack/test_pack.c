@@ -109,15 +109,15 @@ static void misaligned_memory_is_an_argument_error(void **state)
     uint8_t *block = test_aligned(NULL, good_count + 16);
     noh_pack pack;
     (void)state;
-    for (size_t shift = 1; shift < 16; shift++) {
+    for (size_t shift = 1; shift < NOH_MEMORY_ALIGN; shift++) {
         noh_error error = { NOH_OK, NULL, 0, 0 };
         memcpy(block + shift, good, good_count);
         assert_int_equal(noh_pack_open(block + shift, good_count, &pack, &error), NOH_ERR_ARG);
         assert_non_null(strstr(error.what, "aligned"));
-        assert_int_equal(error.need, 16);
+        assert_int_equal(error.need, NOH_MEMORY_ALIGN);
     }
-    memcpy(block + 16, good, good_count); /* 16 is enough, 64 is not asked for */
-    assert_int_equal(noh_pack_open(block + 16, good_count, &pack, NULL), NOH_OK);
+    memcpy(block + NOH_MEMORY_ALIGN, good, good_count); /* that is enough, the 64 of the file are not asked for */
+    assert_int_equal(noh_pack_open(block + NOH_MEMORY_ALIGN, good_count, &pack, NULL), NOH_OK);
     free(block);
 }
 
