@@ -34,6 +34,11 @@ static const char *bad_sync(const noh_clip_set *set, const noh_track_desc *d)
                : NULL;
 }
 
+static uint32_t turns(const noh_track *track, const noh_clip_entry *clip)
+{
+    return track->loop == NOH_LOOP_PING_PONG && clip->loop != NOH_LOOP_PING_PONG ? NOH_TRACK_TURNS : 0;
+}
+
 noh_result noh_track_start(noh_track *track, const noh_clip_set *set, const noh_track_desc *desc, noh_error *error)
 {
     const char *what = bad_desc(set, desc);
@@ -54,7 +59,7 @@ noh_result noh_track_start(noh_track *track, const noh_clip_set *set, const noh_
     track->mask = (uint8_t)desc->mask;
     track->lod_levels = (uint8_t)desc->lod_levels;
     track->sync_group = (uint8_t)desc->sync_group;
-    track->flags = (uint8_t)(desc->flags & (NOH_TRACK_ADDITIVE | NOH_TRACK_REFERENCE_START));
+    track->flags = (uint8_t)((desc->flags & (NOH_TRACK_ADDITIVE | NOH_TRACK_REFERENCE_START)) | turns(track, m));
     noh_track_place(track, m, noh_position_of(desc->position_ticks));
     return NOH_OK;
 }

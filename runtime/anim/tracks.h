@@ -30,6 +30,7 @@ typedef enum noh_track_group { NOH_GROUP_LOW = 0, NOH_GROUP_HIGH } noh_track_gro
 #define NOH_TRACK_PAUSED 2u          /* starts at speed 0 */
 #define NOH_TRACK_ADDITIVE 4u        /* its difference from a reference pose is added after the blend */
 #define NOH_TRACK_REFERENCE_START 8u /* that reference is the clip's own pose at tick 0, not the bind pose */
+#define NOH_TRACK_TURNS 16u          /* of a noh_track alone: plays ping-pong a clip that by itself does not */
 #define NOH_TRACK_FLAGS (NOH_TRACK_SILENT | NOH_TRACK_PAUSED | NOH_TRACK_ADDITIVE | NOH_TRACK_REFERENCE_START)
 
 /* How a track starts. All zeros play clip 0 from its start. */

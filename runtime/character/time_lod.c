@@ -167,7 +167,7 @@ void noh_time_lod_error(const noh_controller *c, const float *clip_error_m, floa
             continue;
         }
         for (int r = 0; r < NOH_UPDATE_RATE_COUNT; r++) {
-            float off = of_clip[r] * speed_squared(track);
+            float off = of_clip[r] * speed_squared(track) * (track->flags & NOH_TRACK_TURNS ? 2.0f : 1.0f);
             if (track->flags & NOH_TRACK_ADDITIVE) {
                 added[r] += track->weight * off;
             } else {

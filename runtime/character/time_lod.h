@@ -127,7 +127,8 @@ noh_result noh_time_lod_measure(void *memory, size_t bytes, const noh_time_probe
 
 /* The errors of what a controller plays: the largest among its blended tracks plus the weighted sum of its additive
  * ones. Where a track's playback speed is above 1, its error grows with the square of the speed, as that of
- * interpolation does where a clip is smooth over an update period.
+ * interpolation does where a clip is smooth over an update period. A clip that ends by itself was measured so: played
+ * ping-pong it turns instead, where velocity reverses instead of stopping, and its error counts twice.
  * shapes  clip_error_m[the set's clip_count][NOH_UPDATE_RATE_COUNT], error_m[NOH_UPDATE_RATE_COUNT] */
 void noh_time_lod_error(const noh_controller *c, const float *clip_error_m, float *error_m);
 

@@ -1,5 +1,5 @@
 #!/bin/sh
-# noh crowd, and the rows of a crowd in noh bench: what they refuse, and, where NOH_ASSETS has models, what they draw and measure.
+# noh crowd, and the rows of a crowd and of a stage in noh bench: what they refuse, draw and measure.
 . "$(dirname "$0")/lib.sh"
 
 pack=$build/mask.noh
@@ -47,10 +47,31 @@ else
     skip 'a crowd of robots' 'no khronos/RobotExpressive.glb in NOH_ASSETS'
 fi
 
+# ---- a crowd of puppets, each of two meshes ----
+
+puppets=$build/demo/puppet_levels.noh
+planned() {
+    check "$1: all of its bytes were planned" awk '/planned:/ { gsub(/[,;]/, ""); if ($2 != $8 || $5 != $10) exit 1; found = 1 } END { exit !found }' "$work/out"
+}
+noh crowd "$puppets" -o "$work/lit.png" --instances 40 --time 0.3 --size 320x180
+expect 0 'a crowd of puppets'
+planned 'a crowd of puppets'
+check 'every visible body has a level' awk '/visible/ { gsub(/[,;]/, ""); for (i = 8; $i != "fading"; i++) sum += $i; found = sum && sum - $(i - 1) == $4 } END { exit !found }' "$work/out"
+noh crowd "$puppets" -o "$work/levels.png" --instances 40 --time 0.3 --size 320x180 --debug lod
+expect 0 'in the colours of their levels'
+planned 'in the colours of their levels'
+check 'is another picture' sh -c '! cmp -s "$1" "$2"' - "$work/lit.png" "$work/levels.png"
+noh crowd "$puppets" -o "$work/plain.png" --instances 40 --time 0.3 --size 320x180 --plain
+expect 0 'without LOD'
+planned 'without LOD'
+check 'the picture stays nearly the same' "$build/tests/gl/picture_diff" "$work/lit.png" "$work/plain.png" 0.3 0.02
+
 if [ -f "$assets/hero/body.glb" ]; then
-    "$build/noh" build "$assets/hero/body.glb" -o "$work/body.noh" --lod 2 --lod-fast --quiet
+    printf 'walk 0.1 step\nrun 0.2 step\njump 0.5 land\n' >"$work/keys.txt"
+    "$build/noh" build "$assets/hero/body.glb" -o "$work/body.noh" --lod 2 --lod-fast --events "$work/keys.txt" --quiet
     noh bench "$work/body.noh" --only crowd --quick --json
     expect 0 'a bench of fifty bodies: events equal, bytes as planned'
+    check 'there were events' awk '/"crowd_events":/ { gsub(/[^0-9]/, ""); found = $0 > 20 } END { exit !found }' "$work/out"
     for row in cpu/1-pixel cpu/16-pixels gpu/1-pixel gpu/16-pixels; do
         check "it has rows crowd/$row" grep -q "\"crowd/$row\"" "$work/out"
     done

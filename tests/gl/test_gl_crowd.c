@@ -1,5 +1,5 @@
-/* The crowd of tools/noh/crowd/crowd.h, with and without LOD: sixty tubes that bend, bulge and fire callback keys while
- * the camera moves in among them and back. */
+/* A crowd on a stage (tools/noh/crowd/crowd.h), with and without LOD: sixty tubes that bend, bulge and fire callback
+ * keys while the camera moves in among them and back. */
 #include "support/gl_fixture.h"
 #include "support/level_fixture.h"
 #include "support/skin_asset.h"
@@ -10,13 +10,13 @@
 
 #include "convert/model/model_build.h"
 #include "crowd/crowd.h"
+#include "stage/stage_internal.h"
 
 #define BODIES 60u
 #define FRAMES 300u
 #define FRAME 800u
 #define SIDE 192u
 #define LEVELS 3u
-#define CANARY 256u
 #define JOINTS 9u
 #define TARGETS 3u
 #define KEYS 9u
@@ -66,6 +66,17 @@ static void fill_face(model_clip *clip, float duration_s)
     fill_channel(clip->channels, JOINTS, MODEL_PATH_WEIGHTS, TARGETS, duration_s);
     for (uint32_t k = 0; k < KEYS * TARGETS; k++) {
         clip->channels->values[k] = 0.5f + 0.5f * sinf((float)k * 1.7f);
+    }
+}
+
+/* Two keys, at a quarter and three quarters. */
+static void add_keys(model_clip *clip)
+{
+    clip->event_count = 2;
+    clip->events = test_zeros(2 * sizeof *clip->events);
+    for (uint32_t k = 0; k < 2; k++) {
+        clip->events[k].time_s = clip->duration_s * (0.25f + 0.5f * (float)k);
+        clip->events[k].name = model_string("step");
     }
 }
 
@@ -154,6 +165,7 @@ static void open_tube(void)
     fill_swing(&m->clips[0], 1.5f, 0.12f, 0);
     fill_swing(&m->clips[1], 0.8f, 0.2f, 1);
     fill_face(&m->clips[2], 1.1f);
+    for (uint32_t i = 0; i < 3; i++) add_keys(&m->clips[i]);
     tube_bytes = skin_pack_with_clips(m, 1.0f, &count);
     model_free(m);
     plain = test_open(tube_bytes, count);
@@ -172,38 +184,17 @@ static int tear_down(void **state)
     return fixture_tear_down(state);
 }
 
-/* ---- a crowd between canaries ---- */
+/* ---- crowds ---- */
 
-typedef struct stand {
-    crowd_plan plan;
-    crowd crowd;
-    uint8_t *whole;
-} stand;
-
-static void stand_open(stand *s, const crowd_options *options)
+static void open_crowd(crowd *c, const crowd_options *options)
 {
-    gpu *g = fixture_gpu();
     open_tube();
-    assert_int_equal(crowd_plan_make(&s->plan, &file, &g->caps, options), 0);
-    s->whole = test_aligned(NULL, (size_t)s->plan.cpu_bytes + 2u * CANARY);
-    memset(s->whole, 0xa5, (size_t)s->plan.cpu_bytes + 2u * CANARY);
-    assert_int_equal(crowd_open(&s->crowd, &s->plan, s->whole + CANARY, (size_t)s->plan.cpu_bytes, g, &file), 0);
+    assert_int_equal(crowd_open(c, fixture_gpu(), &file, options), 0);
 }
 
-static void expect_kept(const stand *s)
+static void expect_kept(const crowd *c)
 {
-    assert_int_equal(s->crowd.used_bytes, s->plan.cpu_bytes);
-    assert_true(noh_gl_ledger_bytes(&s->crowd.ledger) == s->plan.gpu_bytes);
-    for (size_t i = 0; i < CANARY; i++) {
-        assert_int_equal(s->whole[i], 0xa5);
-        assert_int_equal(s->whole[CANARY + s->plan.cpu_bytes + i], 0xa5);
-    }
-}
-
-static void stand_close(stand *s)
-{
-    crowd_close(&s->crowd);
-    free(s->whole);
+    assert_true(noh_gl_ledger_bytes(&c->ledger) == c->plan.gpu_bytes);
 }
 
 static crowd_options options_of(float pixels)
@@ -217,30 +208,36 @@ static crowd_options options_of(float pixels)
     return o;
 }
 
+static const noh_stage_kind *kind_of(const crowd *c)
+{
+    return &c->stage->kinds[0];
+}
+
+static const noh_lod *lod_of(const crowd *c, uint32_t i)
+{
+    return &noh_stage_character(kind_of(c), i)->lod;
+}
+
 /* The camera in a frame: in among them, and back. */
-static crowd_camera camera_at(const crowd *c, uint32_t frame)
+static noh_stage_view camera_at(const crowd *c, uint32_t frame)
 {
     const float part = (float)(frame < FRAMES / 2u ? frame : FRAMES - frame) / (float)(FRAMES / 2u);
     const float eye[3] = { 0.0f, 3.0f, 10.0f - 50.0f * part };
     return crowd_camera_at(c, eye, 0.2f * part, 0.05f);
 }
 
-static void run_frame(stand *s, uint32_t frame)
+static void run_frame(crowd *c, uint32_t frame)
 {
-    const crowd_camera camera = camera_at(&s->crowd, frame);
-    crowd_step(&s->crowd, FRAME);
-    crowd_look(&s->crowd, &camera);
-    crowd_show(&s->crowd);
+    const noh_stage_view camera = camera_at(c, frame);
+    crowd_frame(c, FRAME, &camera);
 }
 
-static uint8_t *picture(stand *s, uint32_t frame)
+static uint8_t *picture(crowd *c)
 {
-    const crowd_camera camera = camera_at(&s->crowd, frame);
     fixture_frame f;
     uint8_t *rgba;
-    crowd_send(&s->crowd);
     fixture_frame_open(&f, SIDE);
-    crowd_draw(&s->crowd, &camera);
+    crowd_draw(c);
     rgba = fixture_frame_read(&f);
     fixture_frame_close(&f);
     fixture_expect_no_errors();
@@ -253,21 +250,22 @@ typedef struct watch {
     uint32_t waits[BODIES]; /* frames in which a body has wanted a finer level than it shows, for want of its frame of
                                notice */
     uint32_t coarser, finer, fades, seen_max, seen_min, by_level[LEVELS];
-    uint64_t aside; /* the most bodies that could not wait in a frame, after the first */
+    uint64_t aside; /* the most that a frame after the first had to pose whatever the budget */
 } watch;
 
 /* No two bodies hold one slot, and no pool gives out more slots than it has. */
 static void expect_slots(const crowd *c)
 {
+    const noh_stage_kind *k = kind_of(c);
     uint8_t taken[NOH_LOD_LEVELS_MAX][BODIES];
     memset(taken, 0, sizeof taken);
     for (uint32_t i = 0; i < BODIES; i++) {
-        const crowd_body *b = &c->bodies[i];
-        if (b->seen) {
-            assert_true(b->slot.pool < c->plan->pool_count && b->slot.slot < c->plan->slots[b->slot.pool]);
+        const noh_stage_shown *b = &c->stage->shown[i];
+        if (b->views) {
+            assert_true(b->slot.pool < k->pool_count);
+            assert_true(b->slot.slot < k->plan->levels[k->pool_levels[b->slot.pool]].slot_count);
             assert_true(!taken[b->slot.pool][b->slot.slot]);
-            assert_true(b->level >= c->plan->pool_levels[b->slot.pool] &&
-                        b->level_before >= c->plan->pool_levels[b->slot.pool]);
+            assert_true(b->level >= k->pool_levels[b->slot.pool] && b->level_before >= k->pool_levels[b->slot.pool]);
             taken[b->slot.pool][b->slot.slot] = 1;
         }
     }
@@ -277,17 +275,16 @@ static void expect_slots(const crowd *c)
  * one. */
 static void expect_level(const crowd *c, uint32_t i, watch *w)
 {
-    const crowd_body *b = &c->bodies[i];
-    const noh_lod *d = &crowd_character(c, i)->lod;
-    const float share = 0.3f * c->plan->options.pixels;
-    const int over = c->table.meshes[b->level].error_m * b->scale > share * 1.0001f;
-    const int crowded = noh_lod_pools_stats_of(c->pools)->coarser > 0;
+    const noh_stage_shown *b = &c->stage->shown[i];
+    const float share = 0.3f * c->options.pixels;
+    const int over = kind_of(c)->table.meshes[b->level].error_m * b->scale > share * 1.0001f;
+    const int crowded = noh_stage_stats_of(c->stage)->coarser > 0;
     w->fades += b->level != b->level_before;
     w->by_level[b->level]++;
     w->waits[i] = over && !crowded && b->level == b->level_before ? w->waits[i] + 1u : 0;
     assert_in_range(w->waits[i], 0, 1);
     if (over && b->level == b->level_before) {
-        assert_true(d->mesh_wanted < b->level);
+        assert_true(lod_of(c, i)->mesh_wanted < b->level);
         w->coarser += crowded != 0;
     }
     w->finer += !over;
@@ -295,41 +292,40 @@ static void expect_level(const crowd *c, uint32_t i, watch *w)
 
 static void expect_order(const crowd *c)
 {
-    const uint32_t caps = c->table.influence_level_count;
+    const noh_stage_kind *k = kind_of(c);
+    const uint32_t caps = noh_stage_influence_levels(k);
     uint32_t before = 0;
-    for (uint32_t k = 0; k < c->stats.seen; k++) {
-        const crowd_body *b = &c->bodies[c->order[k]];
-        const noh_lod *d = &crowd_character(c, c->order[k])->lod;
-        const uint32_t run = b->level == b->level_before ? b->level * caps + d->influences
-                                                         : c->plan->level_count * caps;
-        assert_true(b->seen && b->place == k && run >= before && k >= c->runs[run]);
+    for (uint32_t p = 0; p < noh_stage_seen(k); p++) {
+        const noh_stage_shown *b = &c->stage->shown[k->order[p]];
+        const uint32_t run = b->level == b->level_before ? b->level * caps + lod_of(c, k->order[p])->influences
+                                                         : noh_stage_run_count(k);
+        assert_true(b->views && b->place == p && run >= before && p >= k->runs[run]);
         before = run;
     }
 }
 
-static void watch_frame(const stand *s, uint32_t frame, watch *w)
+static uint32_t update_cost(const crowd *c, uint32_t i)
 {
-    const crowd *c = &s->crowd;
+    static const noh_cost_weights costs = { 500.0f, 40.0f, 0.0f, 0.0f };
+    return noh_cost_ns(&costs, noh_character_joint_work(noh_stage_character(kind_of(c), i)), 0, 0);
+}
+
+static void watch_frame(const crowd *c, uint32_t frame, watch *w)
+{
+    const uint32_t seen = noh_stage_stats_of(c->stage)->seen;
+    uint64_t aside = 0;
     expect_slots(c);
     expect_order(c);
     for (uint32_t i = 0; i < BODIES; i++) {
-        if (c->bodies[i].seen)
+        if (c->stage->shown[i].views)
             expect_level(c, i, w);
         else
             w->waits[i] = 0;
+        aside += c->stage->shown[i].due == NOH_DUE_AT_ONCE ? update_cost(c, i) : 0;
     }
-    w->seen_max = c->stats.seen > w->seen_max ? c->stats.seen : w->seen_max;
-    w->seen_min = frame && c->stats.seen >= w->seen_min ? w->seen_min : c->stats.seen;
-}
-
-/* Work outside the budget shows between looking and showing. */
-static void run_watched(stand *s, uint32_t frame, watch *w)
-{
-    const crowd_camera camera = camera_at(&s->crowd, frame);
-    crowd_step(&s->crowd, FRAME);
-    crowd_look(&s->crowd, &camera);
-    w->aside = frame && s->crowd.schedule.spent > w->aside ? s->crowd.schedule.spent : w->aside;
-    crowd_show(&s->crowd);
+    w->aside = frame && aside > w->aside ? aside : w->aside;
+    w->seen_max = seen > w->seen_max ? seen : w->seen_max;
+    w->seen_min = frame && seen >= w->seen_min ? w->seen_min : seen;
 }
 
 /* ---- pictures ---- */
@@ -359,28 +355,31 @@ static void a_crowd_with_lod_keeps_its_word(void **state)
 {
     crowd_options o = options_of(1.0f);
     const crowd_options none = options_of(0.0f);
-    uint32_t cost_max;
+    const noh_schedule *schedule;
+    uint32_t cost_max = 0;
     uint64_t wait;
     double worst = 0.0;
-    static stand with, without;
+    static crowd with, without;
     watch w;
     (void)state;
     memset(&w, 0, sizeof w);
-    o.slots[0] = 2; /* fewer than the bodies that want the full level, so that some get a coarser one */
-    o.slots[1] = 14;
-    o.slots[2] = 44;
+    o.near_count = 3; /* fewer than the bodies that want the full level, so that some get a coarser one */
+    o.middle_count = 17;
     o.budget_ns = 30000;
-    stand_open(&with, &o);
-    stand_open(&without, &none);
-    cost_max = crowd_update_cost(crowd_character(&with.crowd, 0));
+    open_crowd(&with, &o);
+    open_crowd(&without, &none);
+    schedule = &with.stage->schedule;
     for (uint32_t frame = 0; frame < FRAMES; frame++) {
-        run_watched(&with, frame, &w);
+        run_frame(&with, frame);
         run_frame(&without, frame);
         watch_frame(&with, frame, &w);
-        assert_true(with.crowd.events.count == without.crowd.events.count &&
-                    with.crowd.events.sum == without.crowd.events.sum);
+        for (uint32_t i = 0; i < BODIES; i++) {
+            const uint32_t cost = update_cost(&with, i);
+            cost_max = cost > cost_max ? cost : cost_max;
+        }
+        assert_true(with.events.count == without.events.count && with.events.sum == without.events.sum);
         if (frame % 50u == 49u) {
-            worst = fmax(worst, compare_pictures(picture(&with, frame), picture(&without, frame)));
+            worst = fmax(worst, compare_pictures(picture(&with), picture(&without)));
             expect_kept(&with);
         }
     }
@@ -390,42 +389,57 @@ static void a_crowd_with_lod_keeps_its_word(void **state)
         "%u to %u seen; levels %u %u %u, %u fading, %u times none finer was left; %llu events; at most %u ticks late of %llu; "
         "pictures differ by %.2f\n",
         w.seen_min, w.seen_max, w.by_level[0], w.by_level[1], w.by_level[2], w.fades, w.coarser,
-        (unsigned long long)with.crowd.events.count, with.crowd.schedule.late_high_water,
-        (unsigned long long)wait * FRAME, worst);
-    assert_true(wait < FRAMES && with.crowd.schedule.late_high_water > 0 &&
-                with.crowd.schedule.late_high_water <= wait * FRAME);
-    assert_int_equal(with.crowd.schedule.lost, 0);
-    assert_true(with.crowd.events.count > 100 && w.seen_min < w.seen_max);
+        (unsigned long long)with.events.count, schedule->late_high_water, (unsigned long long)wait * FRAME, worst);
+    assert_true(wait < FRAMES && schedule->late_high_water > 0 && schedule->late_high_water <= wait * FRAME);
+    assert_int_equal(schedule->lost, 0);
+    assert_true(with.events.count > 100 && w.seen_min < w.seen_max);
     assert_true(w.by_level[0] && w.by_level[1] && w.by_level[2] && w.fades && w.coarser);
     assert_true(worst < 12.0);
-    stand_close(&with);
-    stand_close(&without);
+    crowd_close(&with);
+    crowd_close(&without);
 }
 
-/* With no error allowed and a full-sized slot for every body, the picture is that without LOD. */
-static void a_knob_of_nothing_leaves_nothing_out(void **state)
+/* Without detail every body that is seen has, in every frame, the exact pose of its tracks, and all weights. */
+static void without_lod_nothing_is_left_out(void **state)
 {
-    crowd_options o = options_of(1e-6f);
     const crowd_options none = options_of(0.0f);
-    static stand with, without;
+    static crowd c;
+    const noh_stage_kind *k;
+    noh_character_scratch scratch;
+    noh_character_desc desc;
+    float *matrices, *floats;
+    void *memory;
+    size_t bytes;
+    uint32_t compared = 0;
     (void)state;
-    o.slots[0] = BODIES;
-    stand_open(&with, &o);
-    stand_open(&without, &none);
-    for (uint32_t frame = 0; frame < 12; frame++) {
-        run_frame(&with, frame);
-        run_frame(&without, frame);
-        if (frame % 4u == 3u) {
-            uint8_t *got = picture(&with, frame), *expected = picture(&without, frame);
-            assert_memory_equal(got, expected, SIDE * SIDE * 4u);
-            assert_true(compare_pictures(got, expected) == 0.0);
+    open_crowd(&c, &none);
+    k = kind_of(&c);
+    desc = noh_stage_character_desc(k, 0);
+    bytes = noh_character_scratch_size(&desc);
+    memory = test_aligned(NULL, bytes);
+    matrices = test_zeros(12u * k->skeleton.joint_count * sizeof *matrices);
+    floats = test_zeros((k->set.float_count + 1u) * sizeof *floats);
+    assert_int_equal(noh_character_scratch_init(memory, bytes, &desc, &scratch, NULL), NOH_OK);
+    for (uint32_t frame = 0; frame < 60; frame++) {
+        run_frame(&c, frame);
+        for (uint32_t i = 0; i < BODIES && frame % 6u == 5u; i++) {
+            noh_character *ch = noh_stage_character(k, i);
+            if (!c.stage->shown[i].views) continue;
+            noh_controller_pose(noh_character_controller(ch), &k->set, &scratch.pose, scratch.local, floats);
+            noh_local_to_model(&k->skeleton, scratch.local, k->skeleton.joint_count, scratch.model);
+            assert_memory_equal(noh_character_palette(ch, matrices, k->skeleton.joint_count), scratch.model,
+                                12u * k->skeleton.joint_count * sizeof *matrices);
+            assert_memory_equal(noh_actor_floats(c.stage, noh_stage_actor_at(c.stage, i)), floats,
+                                k->set.float_count * sizeof *floats);
+            assert_int_equal(c.stage->shown[i].level, 0);
+            compared++;
         }
     }
-    expect_kept(&with);
-    expect_kept(&without);
-    assert_true(with.plan.cpu_bytes >= without.plan.cpu_bytes);
-    stand_close(&with);
-    stand_close(&without);
+    assert_true(compared > 5u * BODIES && k->set.float_count >= TARGETS);
+    free(floats);
+    free(matrices);
+    free(memory);
+    crowd_close(&c);
 }
 
 /* With an allowed error of half the view, distant bodies are posed with fewer joints and drawn with fewer joints per
@@ -434,51 +448,55 @@ static void far_bodies_hang_on_fewer_joints(void **state)
 {
     const crowd_options o = options_of(96.0f), none = options_of(0.0f);
     uint32_t fewer_joints = 0, fewer_influences = 0;
-    static stand with, without;
+    static crowd with, without;
+    const noh_lod_table *t;
     (void)state;
-    stand_open(&with, &o);
-    stand_open(&without, &none);
-    assert_true(with.crowd.table.joint_level_count > 1 && with.crowd.table.influence_level_count == 3);
+    open_crowd(&with, &o);
+    open_crowd(&without, &none);
+    t = &kind_of(&with)->table;
+    assert_true(t->joint_level_count > 1 && t->influence_level_count == 3);
     for (uint32_t frame = 0; frame < 12; frame++) {
         run_frame(&with, frame);
         run_frame(&without, frame);
-        expect_order(&with.crowd);
+        expect_order(&with);
         for (uint32_t i = 0; i < BODIES; i++) {
-            const noh_lod *d = &crowd_character(&with.crowd, i)->lod;
-            const noh_lod_table *t = &with.crowd.table;
-            if (!with.crowd.bodies[i].seen) continue;
+            const noh_stage_shown *b = &with.stage->shown[i];
+            const noh_lod *d = lod_of(&with, i);
+            if (!b->views) continue;
             fewer_joints += d->joints > 0;
             fewer_influences += d->influences > 0;
-            assert_true(t->joints[d->joints].error_m * with.crowd.bodies[i].scale <= 9.6f * 1.0001f);
-            assert_true(t->influences[d->influences].error_m * with.crowd.bodies[i].scale <= 4.8f * 1.0001f);
+            assert_true(t->joints[d->joints].error_m * b->scale <= 9.6f * 1.0001f);
+            assert_true(t->influences[d->influences].error_m * b->scale <= 4.8f * 1.0001f);
         }
-        assert_true(with.crowd.events.sum == without.crowd.events.sum);
+        assert_true(with.events.sum == without.events.sum);
     }
     print_message("%u times fewer joints, %u times fewer a vertex; pictures differ by %.2f\n", fewer_joints,
-                  fewer_influences, compare_pictures(picture(&with, 11), picture(&without, 11)));
+                  fewer_influences, compare_pictures(picture(&with), picture(&without)));
     assert_true(fewer_joints && fewer_influences);
     expect_kept(&with);
-    stand_close(&with);
-    stand_close(&without);
+    crowd_close(&with);
+    crowd_close(&without);
 }
 
 /* Pools save memory, because fewer accumulators are full-sized. */
 static void pools_by_level_take_less(void **state)
 {
     const crowd_options o = options_of(4.0f), none = options_of(0.0f);
-    static crowd_plan with, without;
-    gpu *g = fixture_gpu();
+    static crowd with, without;
     (void)state;
-    open_tube();
-    assert_int_equal(crowd_plan_make(&with, &file, &g->caps, &o), 0);
-    assert_int_equal(crowd_plan_make(&without, &file, &g->caps, &none), 0);
-    assert_true(with.pool_count > 1 && with.morph.layer_bytes * 2u < without.morph.layer_bytes);
-    assert_true(with.gpu_bytes < without.gpu_bytes);
+    open_crowd(&with, &o);
+    open_crowd(&without, &none);
+    assert_true(kind_of(&with)->pool_count > 1 && kind_of(&without)->pool_count == 1);
+    assert_true(with.plan.gpu_bytes < without.plan.gpu_bytes);
+    expect_kept(&with);
+    expect_kept(&without);
+    crowd_close(&with);
+    crowd_close(&without);
 }
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_crowd_with_lod_keeps_its_word),
-    cmocka_unit_test(a_knob_of_nothing_leaves_nothing_out),
+    cmocka_unit_test(without_lod_nothing_is_left_out),
     cmocka_unit_test(far_bodies_hang_on_fewer_joints),
     cmocka_unit_test(pools_by_level_take_less),
 };

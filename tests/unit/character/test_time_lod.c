@@ -522,6 +522,12 @@ static void errors_of_what_plays(void **state)
     noh_controller_tracks(c)[1].speed_now = 3 * NOH_SPEED_ONE; /* its sync group drives it faster than its own speed */
     noh_time_lod_error(c, errors[0], out);
     assert_true(out[2] == 9.0f * 6.0f + 4.0f);
+    assert_int_not_equal(s.set.clips[WALK].loop, NOH_LOOP_PING_PONG);
+    track = track_of(WALK, 1.0f);
+    track.loop = NOH_LOOP_PING_PONG; /* it was measured otherwise, and turns */
+    assert_int_equal(noh_controller_start(c, &s.set, 1, &track, NULL), NOH_OK);
+    noh_time_lod_error(c, errors[0], out);
+    assert_true(out[2] == 2.0f * 2.0f + 4.0f);
 }
 
 /* Waking makes an update due now; one that is late already stays as late as it was. */

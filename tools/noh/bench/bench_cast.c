@@ -361,6 +361,7 @@ int bench_cast(bench_job *job)
     if (status) {
         return status;
     }
+    g.caps.blend_f32 = g.caps.blend_f32_exact = 1; /* or the CPU would accumulate */
     for (size_t i = 0; i < steps && !status; i++) status = against_hand(job, &g, counts[i]);
     if (!status) status = against_full(job, &g, counts[steps - 1u]);
     gpu_close(&g);

@@ -12,7 +12,7 @@
  *   bench_cpu.c         rows morph/cpu
  *   bench_clip*.c       rows clip/ (see bench_clip.h)
  *   bench_crowd_pose.c  rows crowd/pose: a thousand characters, posed at the update rate that pixels need
- *   bench_crowd_frame.c rows crowd/cpu and crowd/gpu: frames of a thousand bodies, with and without LOD
+ *   bench_crowd_frame.c rows crowd/cpu and crowd/gpu: frames of a thousand bodies on a stage, with and without LOD
  *   bench_cast.c        rows stage/: frames of a stage, against its parts joined by hand, and without detail
  *   bench_skin_gpu.c    rows skin/gpu: a crowd in one draw, joints per vertex
  *   bench_skin_cpu.c    rows skin/cpu

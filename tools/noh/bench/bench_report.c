@@ -242,6 +242,7 @@ int bench_print_json(bench_job *job)
         json_text(&j, "clock", job->cpu_clock.what);
     }
     json_rows(&j, &job->rows);
+    if (job->memory_count) json_integer(&j, "crowd_events", job->crowd_events);
     json_memories(&j, job);
     if (job->has_mesh) {
         json_slopes(&j, job);

@@ -44,9 +44,9 @@ static int check_args(crowd_args *a)
 
 /* What was drawn: printed once the picture is written. */
 typedef struct crowd_drawn {
-    crowd_stats stats;
+    noh_stage_stats stats;
     uint32_t level_count;
-    uint64_t cpu_planned, gpu_planned, gpu_used;
+    uint64_t cpu_bytes, gpu_bytes, gpu_used;
 } crowd_drawn;
 
 static void print_crowd(const crowd_drawn *d, const crowd_args *a)
@@ -54,39 +54,36 @@ static void print_crowd(const crowd_drawn *d, const crowd_args *a)
     FILE *out = report_stream(a->output);
     fprintf(out, "%s: %u bodies, %u visible", a->output, a->options.count, d->stats.seen);
     for (uint32_t k = 0; k < d->level_count && !a->plain; k++) {
-        fprintf(out, "%s %u", k ? "," : "; by level:", d->stats.levels[k]);
+        fprintf(out, "%s %u", k ? "," : "; by level:", d->stats.at_level[k]);
     }
     fprintf(out, "; %u fading\nCPU %llu bytes, GPU %llu; planned: CPU %llu, GPU %llu\n", d->stats.fading,
-            (unsigned long long)d->cpu_planned, (unsigned long long)d->gpu_used, (unsigned long long)d->cpu_planned,
-            (unsigned long long)d->gpu_planned);
+            (unsigned long long)d->cpu_bytes, (unsigned long long)d->gpu_used, (unsigned long long)d->cpu_bytes,
+            (unsigned long long)d->gpu_bytes);
 }
 
 static void take_drawn(const crowd *c, crowd_drawn *d)
 {
-    d->stats = c->stats;
-    d->level_count = c->plan->level_count;
-    d->cpu_planned = c->plan->cpu_bytes;
-    d->gpu_planned = c->plan->gpu_bytes;
+    d->stats = *noh_stage_stats_of(c->stage);
+    d->level_count = c->plan.kinds[0].level_count;
+    d->cpu_bytes = c->plan.cpu_bytes; /* noh_stage_init takes exactly these */
+    d->gpu_bytes = c->plan.gpu_bytes + (c->shader ? NOH_GL_RENDERER_BYTES : 0);
     d->gpu_used = noh_gl_ledger_bytes(&c->ledger);
 }
 
 /* Run every frame up to the time, as a game would, and draw the last. */
-static int draw(crowd *c, const crowd_args *a, uint8_t *rgba)
+static int draw(crowd *c, gpu *g, const crowd_args *a, uint8_t *rgba)
 {
-    const crowd_camera camera = crowd_camera_start(c);
+    const noh_stage_view camera = crowd_camera_start(c);
     canvas target;
-    int status = canvas_open(&target, c->g, a->size[0], a->size[1]);
+    int status = canvas_open(&target, g, a->size[0], a->size[1]);
     if (status) {
         return status;
     }
     for (uint32_t frame = 0; frame <= (uint32_t)(a->time_s * NOH_TICKS_PER_SECOND / FRAME_TICKS); frame++) {
-        crowd_step(c, FRAME_TICKS);
-        crowd_look(c, &camera);
-        crowd_show(c);
+        crowd_frame(c, FRAME_TICKS, &camera);
     }
-    crowd_send(c);
     canvas_begin(&target);
-    crowd_draw(c, &camera);
+    crowd_draw(c);
     status = canvas_read(&target, rgba);
     canvas_close(&target);
     return status;
@@ -94,22 +91,13 @@ static int draw(crowd *c, const crowd_args *a, uint8_t *rgba)
 
 static int open_and_draw(gpu *g, const pack_file *file, const crowd_args *a, uint8_t *rgba, crowd_drawn *d)
 {
-    static crowd_plan plan;
-    crowd c;
-    void *memory;
-    int status = crowd_plan_make(&plan, file, &g->caps, &a->options);
-    if (status) {
-        return status;
-    }
-    memory = malloc((size_t)plan.cpu_bytes);
-    status = memory ? crowd_open(&c, &plan, memory, (size_t)plan.cpu_bytes, g, file)
-                    : tool_fail(file->path, "out of memory");
+    static crowd c;
+    int status = crowd_open(&c, g, file, &a->options);
     if (!status) {
-        status = draw(&c, a, rgba);
+        status = draw(&c, g, a, rgba);
         take_drawn(&c, d);
         crowd_close(&c);
     }
-    free(memory);
     return status;
 }
 

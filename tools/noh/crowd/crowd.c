@@ -1,164 +1,259 @@
 #include "crowd.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cli/message.h"
+#include "stage/view.h"
+
+#define NEAREST_M 1.5f
+#define HALF_ANGLE_RAD 0.68f /* a little more than a 16 : 9 view shows */
+#define BEHIND 8u            /* every eighth body is behind the camera */
+#define NOTHING_PIXELS 1e-6f /* an error that leaves nothing out */
+
+enum { BODY, FACE, LAYERS };
+static const noh_layer_desc layers[LAYERS] = { { "body", NOH_LAYER_BASE, NULL, NULL, 1 },
+                                               { "face", NOH_LAYER_OVER, "", NULL, 1 } };
+
+/* ---- what is wanted ---- */
+
+static int fill_options(crowd *c, const crowd_options *o)
+{
+    c->options = *o;
+    c->options.pixels = o->plain ? NOTHING_PIXELS : o->pixels > 0.0f ? o->pixels : 1.0f;
+    c->options.width = o->width ? o->width : 1280u;
+    c->options.height = o->height ? o->height : 720u;
+    if (o->plain) c->options.near_count = o->count;
+    return o->count && o->count <= NOH_MORPH_INSTANCES_MAX
+               ? 0
+               : tool_fail("crowd", "a crowd has from 1 to %u bodies", NOH_MORPH_INSTANCES_MAX);
+}
+
+/* The skeleton of the skinned mesh that targets move the most. */
+static int find_skeleton(crowd *c, const pack_file *file)
+{
+    uint32_t most = 0;
+    int found = 0;
+    for (uint32_t i = 0; i < file->pack.mesh_count; i++) {
+        noh_mesh mesh;
+        noh_skin skin;
+        noh_pack_mesh_at(&file->pack, i, &mesh, NULL);
+        if (noh_pack_skin_at(&file->pack, mesh.header->skin, &skin, NULL) == NOH_OK &&
+            (!found || mesh.header->pair_count > most)) {
+            found = 1;
+            most = mesh.header->pair_count;
+            c->kind.skeleton = skin.header->skeleton;
+        }
+    }
+    return found ? 0 : tool_fail(file->path, "a crowd needs a skinned mesh, and the pack has none");
+}
+
+static void fill_desc(crowd *c, const pack_file *file)
+{
+    const crowd_options *o = &c->options;
+    c->kind.mesh = &file->pack;
+    c->kind.actor_count = o->count;
+    c->kind.near_count = o->near_count;
+    c->kind.middle_count = o->middle_count;
+    c->kind.layers = layers;
+    c->kind.layer_count = LAYERS;
+    c->kind.held_float_count = NOH_NONE;
+    c->kind.root_axes = NOH_ROOT_X | NOH_ROOT_Z;
+    c->kind.root_up = 1;
+    c->kind.root_told = 1;
+    c->kind.unpickable = 1;
+    c->desc.kinds = &c->kind;
+    c->desc.kind_count = 1;
+    c->desc.lod.pixels = o->pixels;
+    c->desc.height_px = o->height;
+    c->desc.update_budget_ns = o->budget_ns;
+    c->desc.gpu = &noh_stage_on_gl;
+}
+
+/* ---- bodies ---- */
+
+/* Steps of additive recurrences n * step mod 2^32: X and Y together fill a square evenly (1/p and 1/p^2, p the plastic
+ * number: M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018), LINE an interval (1/phi). */
+#define SPREAD_X 3242174889u
+#define SPREAD_Y 2447445414u
+#define SPREAD_LINE 2654435769u
+
+static float spread(uint32_t n, uint32_t step)
+{
+    return (float)((n * step) >> 8) / 16777216.0f;
+}
+
+static noh_place place_of(uint32_t body)
+{
+    const float distance_m = NEAREST_M + (CROWD_FIELD_M - NEAREST_M) * sqrtf(spread(body + 1u, SPREAD_X));
+    const float angle = (2.0f * spread(body + 1u, SPREAD_Y) - 1.0f) * HALF_ANGLE_RAD;
+    const float side = body % BEHIND == BEHIND - 1u ? 1.0f : -1.0f;
+    const float half_turn = 3.1415927f * spread(body + 1u, SPREAD_LINE);
+    const noh_place place = { { distance_m * sinf(angle), 0.0f, side * distance_m * cosf(angle) },
+                              { 0.0f, sinf(half_turn), 0.0f, cosf(half_turn) },
+                              1.0f };
+    return place;
+}
+
+/* The n-th clip, modulo their count, of those with joints (joints 1) or of those without (0); NOH_NONE: there is none.
+ */
+static uint32_t nth_clip(const noh_clip_set *set, uint32_t n, int joints)
+{
+    uint32_t count = 0, m = 0;
+    for (uint32_t i = 0; i < set->clip_count; i++) {
+        count += ((set->clips[i].flags & NOH_CLIP_FLOATS_ONLY) == 0) == joints;
+    }
+    if (count == 0) {
+        return NOH_NONE;
+    }
+    for (n %= count; ((set->clips[m].flags & NOH_CLIP_FLOATS_ONLY) == 0) != joints || n-- > 0; m++) {}
+    return m;
+}
+
+static noh_result play(crowd *c, noh_actor actor, uint32_t body, uint32_t layer, uint32_t clip, const noh_clip_set *set,
+                       noh_error *error)
+{
+    const char *name = noh_stage_name(c->stage, 0, NOH_NAME_CLIP, clip);
+    noh_play p;
+    memset(&p, 0, sizeof p);
+    p.fade_ticks = 1;
+    p.start_ticks = (int64_t)(spread(body + 1u, SPREAD_Y) * 1e6f);
+    p.speed = (int32_t)((0.8f + 0.4f * spread(body + 1u, SPREAD_LINE)) * 65536.0f);
+    if (!name) {
+        return NOH_OK; /* the pack has none of that sort */
+    }
+    if (set->clips[clip].loop == NOH_LOOP_ONCE) {
+        p.loop = NOH_LOOP_PING_PONG;
+    }
+    return noh_actor_play(c->stage, actor, layer, name, &p, error);
+}
+
+static noh_result enter(crowd *c, uint32_t body, noh_error *error)
+{
+    const noh_place place = place_of(body);
+    const noh_clip_set *set = NULL;
+    noh_actor actor;
+    noh_result result = noh_stage_spawn(c->stage, 0, &place, &actor, error);
+    if (!result) {
+        (void)noh_actor_controller(c->stage, actor, &set);
+        result = play(c, actor, body, BODY, nth_clip(set, body, 1), set, error);
+    }
+    if (!result) result = play(c, actor, body, FACE, nth_clip(set, body / 3u, 0), set, error);
+    return result;
+}
 
 /* ---- opening ---- */
 
-/* A copy of the bank's set in which clips that end play ping-pong, so that every body keeps moving. A pack without
- * callback keys gets two per clip, so that the crowd always has events to fire. */
-static void open_clips(crowd *c)
+static noh_result open_shader(crowd *c, char *log, size_t log_bytes, noh_error *error)
 {
-    const noh_clip_set *from = &c->bank->clips;
-    c->set = *from;
-    c->set.clips = c->clips;
-    memcpy(c->clips, from->clips, from->clip_count * sizeof *c->clips);
-    for (uint32_t m = 0; m < from->clip_count; m++) {
-        if (c->clips[m].loop == NOH_LOOP_ONCE) {
-            c->clips[m].loop = NOH_LOOP_PING_PONG;
-        }
+    const noh_gl_shader_desc desc = { .name = "crowd", .view = c->options.view };
+    const size_t bytes = noh_stage_shader_size(c->stage);
+    if (c->options.view == NOH_VIEW_LIT) {
+        return NOH_OK;
     }
-    if (from->event_count) {
-        return;
+    c->shader_memory = malloc(bytes);
+    if (!c->shader_memory) {
+        return noh_fail(error, NOH_ERR_MEMORY, "out of memory", 0, bytes);
     }
-    c->set.events = c->keys;
-    for (uint32_t m = 0; m < from->clip_count; m++) {
-        c->clips[m].first_event = c->set.event_count;
-        c->clips[m].event_count = 2;
-        for (uint32_t k = 0; k < 2; k++) {
-            noh_event_key *key = &c->keys[c->set.event_count++];
-            memset(key, 0, sizeof *key);
-            key->tick = c->clips[m].duration_ticks / 4u * (1u + 2u * k);
-        }
-    }
+    return noh_stage_shader_create(c->stage, c->shader_memory, bytes, &desc, log, log_bytes, &c->shader, error);
 }
 
-/* Where the mesh's weights begin among the floats of a pose: those of the first node that draws it. */
-static void find_weights(crowd *c)
+static noh_result open_stage(crowd *c, gpu *g, noh_error *error)
 {
-    const uint32_t group = noh_clip_bank_mesh_group(c->bank, c->plan->mesh_index);
-    c->first_weight = group == NOH_NONE ? NOH_NONE : c->bank->groups[group].first;
-}
-
-static noh_result open_characters(crowd *c, void *scratch, noh_error *error)
-{
-    const crowd_plan *p = c->plan;
-    noh_character_desc desc = crowd_character_desc(&c->set);
-    noh_result result = noh_character_scratch_init(scratch, p->scratch_bytes, &desc, &c->scratch, error);
-    memset(c->bodies, 0, p->options.count * sizeof *c->bodies);
-    for (uint32_t i = 0; i < p->options.count && !result; i++) {
-        noh_character *made;
-        desc.instance = i;
-        result = noh_character_init(c->characters + i * p->character_bytes, p->character_bytes, &desc, &made, error);
-    }
-    return result;
-}
-
-/* The finest level that any pool holds, and all coarser ones. */
-static noh_result open_meshes(crowd *c, void *morph, void *palettes, char *log, size_t log_bytes, noh_error *error)
-{
-    const crowd_plan *p = c->plan;
-    const noh_gl_api *gl = &c->g->gl;
-    noh_gl_skin_desc skin = { &p->mesh, 1, &p->options.count, NOH_PALETTE_TEXTURE };
-    noh_result result = noh_gl_mesh_create(gl, &c->ledger, &p->views[0], &c->gl_mesh, error);
-    memset(c->pictures, 0, p->mesh.pack->texture_count * sizeof *c->pictures);
-    for (uint32_t i = 0; i < p->mesh.pack->texture_count && !result; i++) {
-        noh_texture texture;
-        noh_pack_texture_at(p->mesh.pack, i, &texture, NULL);
-        result = noh_gl_picture_create(gl, &c->ledger, &texture, &c->pictures[i], error);
-    }
-    if (!result) {
-        result = noh_gl_morph_init(morph, (size_t)p->morph.cpu_bytes,
-                                   &(noh_gl_device){ gl, &c->g->caps, &c->ledger, log, log_bytes }, &p->morph_desc,
-                                   &c->morph, error);
-    }
-    if (!result) {
-        result = noh_gl_skin_init(palettes, (size_t)p->skin_plan.cpu_bytes,
-                                  &(noh_gl_device){ gl, &c->g->caps, &c->ledger, NULL, 0 }, &skin, &c->palettes, error);
-    }
-    return result;
-}
-
-static noh_result open_renderer(crowd *c, char *log, size_t log_bytes, noh_error *error)
-{
-    noh_gl_renderer_desc desc;
-    memset(&desc, 0, sizeof desc);
-    desc.view = c->plan->options.view;
-    desc.layers_uint = c->plan->morph.layer_format == GL_RGBA32UI;
-    desc.meshes = &c->plan->mesh;
-    desc.mesh_count = 1;
-    desc.palettes = c->plan->skin_plan.mode;
-    desc.crowds = 1;
-    desc.fades = !c->plan->options.plain;
-    desc.fewer_influences = !c->plan->options.plain;
-    return noh_gl_renderer_create(&(noh_gl_device){ &c->g->gl, NULL, &c->ledger, log, log_bytes }, &desc, &c->renderer,
-                                  error);
-}
-
-static int open_all(crowd *c, noh_arena *arena)
-{
-    const crowd_plan *p = c->plan;
-    const noh_lod_pools_desc pools_desc = crowd_pools_desc(p);
-    noh_error error = { NOH_OK, "", 0, 0 };
     char log[4096] = "";
-    crowd_parts parts;
-    noh_result result;
-    crowd_carve(arena, p, c, &parts);
-    c->used_bytes = arena->used;
-    result = noh_clip_bank_init(parts.bank, p->bank_needs.bytes, &p->bank_desc, &c->bank, &error);
-    if (!result) {
-        (void)noh_skin_skeleton(&p->skin, &c->bank->skeleton, c->inverse_bind,
-                                &c->skeleton); /* with one skin, updates can multiply by it */
-        open_clips(c);
-        find_weights(c);
-        result = open_characters(c, parts.scratch, &error);
-    }
-    if (!result) result = noh_lod_pools_init(parts.pools, p->pools_bytes, &pools_desc, &c->pools, &error);
-    if (!result) result = noh_schedule_init(parts.schedule, p->schedule_bytes, p->options.count, &c->schedule, &error);
-    if (!result) result = open_meshes(c, parts.morph, parts.palettes, log, sizeof log, &error);
-    if (!result) result = open_renderer(c, log, sizeof log, &error);
+    const noh_gl_device device = { &g->gl, &g->caps, &c->ledger, log, sizeof log };
+    noh_result result = noh_stage_plan_make(&c->desc, &g->caps, &c->plan, error);
     if (result) {
-        fputs(log, stderr);
-        return tool_fail_error(c->file->path, &error);
+        return result;
     }
-    return crowd_place(c, parts.lod);
+    c->memory = malloc((size_t)c->plan.cpu_bytes);
+    result = c->memory
+                 ? noh_stage_init(c->memory, (size_t)c->plan.cpu_bytes, &device, &c->desc, &c->plan, &c->stage, error)
+                 : noh_fail(error, NOH_ERR_MEMORY, "out of memory", 0, c->plan.cpu_bytes);
+    if (result) {
+        c->stage = NULL;
+    } else {
+        result = open_shader(c, log, sizeof log, error);
+    }
+    if (result) fputs(log, stderr);
+    return result;
 }
 
-int crowd_open(crowd *c, const crowd_plan *plan, void *memory, size_t bytes, gpu *g, const pack_file *file)
+int crowd_open(crowd *c, gpu *g, const pack_file *file, const crowd_options *options)
 {
-    noh_arena arena = noh_arena_over(memory, bytes);
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_result result;
     int status;
-    if (bytes < plan->cpu_bytes) {
-        return tool_fail(file->path, "the crowd needs %llu bytes", (unsigned long long)plan->cpu_bytes);
-    }
     memset(c, 0, sizeof *c);
-    c->plan = plan;
-    c->g = g;
-    c->file = file;
-    c->unculled = plan->options.unculled;
-    status = open_all(c, &arena);
+    status = fill_options(c, options);
+    if (!status) status = find_skeleton(c, file);
     if (status) {
-        crowd_close(c);
+        return status;
     }
-    return status;
+    fill_desc(c, file);
+    result = open_stage(c, g, &error);
+    for (uint32_t i = 0; i < c->options.count && !result; i++) result = enter(c, i, &error);
+    if (result) {
+        crowd_close(c);
+        return tool_fail_error(file->path, &error);
+    }
+    return 0;
 }
 
 void crowd_close(crowd *c)
 {
-    const noh_gl_api *gl = &c->g->gl;
-    if (c->renderer.gl) noh_gl_renderer_delete(&c->renderer);
-    if (c->palettes) noh_gl_skin_delete(c->palettes);
-    if (c->morph) noh_gl_morph_delete(c->morph);
-    for (uint32_t i = 0; c->gl_mesh.vertex_array && i < c->plan->mesh.pack->texture_count; i++) {
-        noh_gl_texture_delete(gl, &c->ledger, &c->pictures[i]);
-    }
-    noh_gl_mesh_delete(gl, &c->ledger, &c->gl_mesh);
+    if (c->shader) noh_stage_shader_delete(c->shader);
+    if (c->stage) noh_stage_delete(c->stage);
+    free(c->shader_memory);
+    free(c->memory);
     memset(c, 0, sizeof *c);
 }
 
-noh_character *crowd_character(const crowd *c, uint32_t body)
+/* ---- a frame ---- */
+
+static void on_key(void *user, noh_stage *stage, const noh_stage_event *event)
 {
-    return (noh_character *)(void *)(c->characters + body * c->plan->character_bytes);
+    crowd_events *events = user;
+    const uint64_t what[4] = { event->actor.id, event->clip, event->index, (uint64_t)event->clock };
+    uint64_t hash = 14695981039346656037u;
+    (void)stage;
+    for (int i = 0; i < 4; i++) {
+        hash = (hash ^ what[i]) * 1099511628211u;
+    }
+    events->count++;
+    events->sum += hash;
+}
+
+void crowd_frame(crowd *c, uint32_t ticks, const noh_stage_view *view)
+{
+    (void)noh_stage_frame(c->stage, ticks, view, on_key, &c->events, NULL); /* a camera of ours is finite */
+}
+
+void crowd_draw(crowd *c)
+{
+    (void)noh_stage_draw(c->stage, NOH_PASS_COLOR, 0, c->shader, NULL); /* a frame with a view was before */
+}
+
+/* ---- the camera ---- */
+
+#define AHEAD_M 20.0f /* noh_view_orbit then sees from 0.2 m on */
+
+noh_stage_view crowd_camera_at(const crowd *c, const float eye[3], float heading_rad, float down_rad)
+{
+    const float ahead[3] = { sinf(heading_rad) * cosf(down_rad), -sinf(down_rad), -cosf(heading_rad) * cosf(down_rad) };
+    static const float light[3] = { -0.424f, 0.778f, 0.463f };
+    noh_stage_view view;
+    float target[3];
+    for (int i = 0; i < 3; i++) target[i] = eye[i] + AHEAD_M * ahead[i];
+    noh_view_orbit(&view, target, -heading_rad, down_rad, AHEAD_M, c->options.width, c->options.height);
+    memcpy(view.light, light, sizeof view.light);
+    return view;
+}
+
+noh_stage_view crowd_camera_start(const crowd *c)
+{
+    static const float eye[3] = { 0.0f, 4.0f, 0.0f };
+    return crowd_camera_at(c, eye, 0.0f, 0.14f);
 }
