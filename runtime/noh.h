@@ -88,7 +88,8 @@
 
 /* ---- faces ---- */
 
-#include "face/face.h" /* blinks, gaze, emotions, breath */
+#include "face/face.h"   /* blinks, gaze, emotions, breath */
+#include "face/recipe.h" /* what a face shows, as weights of the targets that it has */
 
 /* ---- parts, for tools and engines of your own ---- */
 

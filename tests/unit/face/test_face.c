@@ -438,7 +438,7 @@ static void the_bits_are_the_same_everywhere(void **state)
     assert_int_equal(hash, 0x0369ae9a);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(blinks_come_at_their_rates),
@@ -459,5 +459,6 @@ int main(void)
         cmocka_unit_test(a_face_lives_past_the_day_at_which_ticks_wrap),
         cmocka_unit_test(the_bits_are_the_same_everywhere),
     };
+    if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,185 @@
+/* recipe.c: channels, and the targets that they move. */
+#include "face/recipe.h"
+
+#include <string.h>
+
+#include "base/assert.h"
+#include "face/face_internal.h"
+
+/* ---- channels ---- */
+
+static float unit(float x)
+{
+    return x < 0.0f ? 0.0f : x > 1.0f ? 1.0f : x;
+}
+
+/* A share of a limit, in one direction. */
+static float share(float angle, float limit)
+{
+    return unit(angle / limit);
+}
+
+static void eye_channels(const noh_face_pose *pose, const noh_face_desc *desc, float *channels)
+{
+    const float yaw = noh_face_or(desc->yaw_max, 35.0f * NOH_DEGREE),
+                up = noh_face_or(desc->up_max, 25.0f * NOH_DEGREE);
+    const float down = noh_face_or(desc->down_max, 30.0f * NOH_DEGREE);
+    for (int eye = 0; eye < 2; eye++) {
+        const float out = eye == 0 ? pose->eyes[0][0] : -pose->eyes[1][0];
+        float *c = channels + NOH_CHANNEL_EYES + 4 * eye;
+        c[0] = share(pose->eyes[eye][1], up);
+        c[1] = share(-pose->eyes[eye][1], down);
+        c[2] = share(out, yaw);
+        c[3] = share(-out, yaw);
+    }
+}
+
+/* Shapes that shut the lips are exempt from what the others add up to: they take their share first, and what is left is
+ * shared out among the others so that all together are at most 1. */
+static float speech_channels(const float *visemes, float *channels)
+{
+    const float shut = unit(unit(visemes[NOH_VISEME_PP]) + unit(visemes[NOH_VISEME_FF]));
+    float sum = 0.0f, scale;
+    for (int i = NOH_VISEME_TH; i < NOH_VISEME_COUNT; i++) sum += unit(visemes[i]);
+    scale = sum > 1.0f - shut ? (1.0f - shut) / sum : 1.0f;
+    for (int i = NOH_VISEME_PP; i < NOH_VISEME_COUNT; i++) {
+        const int shuts = i == NOH_VISEME_PP || i == NOH_VISEME_FF;
+        channels[NOH_CHANNEL_VISEMES + i] = unit(visemes[i]) * (shuts ? 1.0f : scale);
+    }
+    return unit(shut + sum);
+}
+
+void noh_face_channels(const noh_face_pose *pose, const noh_face_desc *desc, const float *visemes, noh_mouth_rule rule,
+                       float *channels)
+{
+    float moves = 0.0f, left, shut;
+    NOH_ASSERT(pose && desc && channels);
+    memset(channels, 0, NOH_CHANNEL_COUNT * sizeof *channels);
+    eye_channels(pose, desc, channels);
+    channels[NOH_CHANNEL_BLINK_LEFT] = channels[NOH_CHANNEL_BLINK_RIGHT] = pose->blink;
+    channels[NOH_CHANNEL_LIDS_UP] = pose->lids_up * (1.0f - pose->blink);
+    channels[NOH_CHANNEL_LIDS_DOWN] = pose->lids_down;
+    channels[NOH_CHANNEL_BREATH] = pose->breath;
+    if (visemes) moves = speech_channels(visemes, channels);
+    shut = channels[NOH_CHANNEL_VISEMES + NOH_VISEME_PP] + channels[NOH_CHANNEL_VISEMES + NOH_VISEME_FF];
+    left = rule == NOH_MOUTH_NONE ? 1.0f : rule == NOH_MOUTH_BLOCK ? (moves > 0.0f ? 0.0f : 1.0f) : 1.0f - moves;
+    left = left < 1.0f - shut ? left : unit(1.0f - shut);
+    for (int i = 0; i < NOH_EMOTION_COUNT; i++) {
+        channels[NOH_CHANNEL_UPPER + i] = pose->emotions[i];
+        channels[NOH_CHANNEL_MOUTH + i] = pose->emotions[i] * left;
+    }
+}
+
+/* ---- binding ---- */
+
+static uint32_t find(const char *const *names, uint32_t count, const char *name)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        if (names[i] && strcmp(names[i], name) == 0) return i;
+    }
+    return NOH_NONE;
+}
+
+/* How many rows of a channel a recipe has, and how many of them the mesh has a target for. */
+static void count_rows(const noh_face_recipe *recipe, uint32_t channel, const char *const *names, uint32_t count,
+                       uint32_t *rows, uint32_t *found)
+{
+    *rows = *found = 0;
+    for (uint32_t i = 0; i < recipe->row_count; i++) {
+        if (recipe->rows[i].channel != channel) continue;
+        ++*rows;
+        *found += find(names, count, recipe->rows[i].target) != NOH_NONE;
+    }
+}
+
+static const noh_face_recipe *choose(const noh_face_recipe *const *recipes, uint32_t recipe_count, uint32_t channel,
+                                     const char *const *names, uint32_t count)
+{
+    const noh_face_recipe *some = NULL;
+    for (uint32_t i = 0; i < recipe_count; i++) {
+        uint32_t rows, found;
+        count_rows(recipes[i], channel, names, count, &rows, &found);
+        if (rows && found == rows) return recipes[i];
+        if (found && !some) some = recipes[i];
+    }
+    return some;
+}
+
+/* The mouth shape that looks most like one that a face has no targets for; NOH_VISEME_SIL: there is none. */
+static uint32_t nearest(uint32_t channel)
+{
+    static const uint8_t other[NOH_VISEME_COUNT] = { NOH_VISEME_SIL, NOH_VISEME_SIL, NOH_VISEME_PP,  NOH_VISEME_DD,
+                                                     NOH_VISEME_NN,  NOH_VISEME_DD,  NOH_VISEME_OU,  NOH_VISEME_IH,
+                                                     NOH_VISEME_IH,  NOH_VISEME_OU,  NOH_VISEME_SIL, NOH_VISEME_IH,
+                                                     NOH_VISEME_AA,  NOH_VISEME_AA,  NOH_VISEME_OH };
+    const uint32_t to = channel < NOH_CHANNEL_VISEMES ? 0u : other[channel - NOH_CHANNEL_VISEMES];
+    return to == NOH_VISEME_SIL ? NOH_NONE : NOH_CHANNEL_VISEMES + to;
+}
+
+typedef struct binding {
+    const noh_face_recipe *const *recipes;
+    uint32_t recipe_count;
+    const char *const *names;
+    uint32_t name_count;
+    noh_face_link *links;
+    uint32_t link_max, count;
+} binding;
+
+static void link_rows(binding *b, const noh_face_recipe *recipe, uint32_t from, uint32_t channel)
+{
+    for (uint32_t i = 0; i < recipe->row_count; i++) {
+        const noh_face_row *row = &recipe->rows[i];
+        const uint32_t target = row->channel == from ? find(b->names, b->name_count, row->target) : NOH_NONE;
+        if (target == NOH_NONE) continue;
+        if (b->count < b->link_max) {
+            b->links[b->count].channel = (uint16_t)channel;
+            b->links[b->count].target = (uint16_t)target;
+            b->links[b->count].weight = row->weight;
+        }
+        b->count++;
+    }
+}
+
+/* The nearest shapes of shapes make a path that ends, at a vowel or at shut lips. */
+static void bind_channel(binding *b, uint32_t channel)
+{
+    uint32_t from = channel;
+    while (from != NOH_NONE) {
+        const noh_face_recipe *recipe = choose(b->recipes, b->recipe_count, from, b->names, b->name_count);
+        if (recipe) {
+            link_rows(b, recipe, from, channel);
+            return;
+        }
+        from = nearest(from);
+    }
+}
+
+uint32_t noh_face_recipe_bind(const noh_face_recipe *const *recipes, uint32_t recipe_count, const char *const *names,
+                              uint32_t target_count, noh_face_link *links, uint32_t link_max)
+{
+    const noh_face_recipe *const built_in[3] = { &noh_face_recipe_arkit, &noh_face_recipe_vrm, &noh_face_recipe_units };
+    binding b = { NULL, 0, NULL, 0, NULL, 0, 0 };
+    NOH_ASSERT((names || !target_count) && (links || !link_max) && target_count <= NOH_FLOATS_MAX);
+    b.recipes = recipes ? recipes : built_in;
+    b.recipe_count = recipes ? recipe_count : 3u;
+    b.names = names;
+    b.name_count = target_count;
+    b.links = links;
+    b.link_max = link_max;
+    for (uint32_t channel = 0; channel < NOH_CHANNEL_COUNT; channel++) bind_channel(&b, channel);
+    return b.count;
+}
+
+/* ---- weights ---- */
+
+/* Rows of one target are added before the sum is held, so that their order does not matter. */
+void noh_face_apply(const noh_face_link *links, uint32_t link_count, const float *channels, float *weights)
+{
+    NOH_ASSERT((links || !link_count) && channels && weights);
+    for (uint32_t i = 0; i < link_count; i++) {
+        weights[links[i].target] += links[i].weight * channels[links[i].channel];
+    }
+    for (uint32_t i = 0; i < link_count; i++) {
+        weights[links[i].target] = unit(weights[links[i].target]);
+    }
+}
