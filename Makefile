@@ -255,8 +255,9 @@ PUPPET_GRAPH := tools/demo_assets/puppet/puppet.graph
 $(BUILD)/demo/puppet.noh: $(BUILD)/demo/puppet.glb $(PUPPET_GRAPH) $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --graph $(PUPPET_GRAPH) --quiet
 
-$(BUILD)/demo/puppet_levels.noh: $(BUILD)/demo/puppet.glb $(BUILD)/noh
-	$(BUILD)/noh build $< -o $@ --lod 4 --lod-fast --quiet
+PUPPET_MOVES := tools/demo_assets/puppet/moves.graph
+$(BUILD)/demo/puppet_levels.noh: $(BUILD)/demo/puppet.glb $(PUPPET_MOVES) $(BUILD)/noh
+	$(BUILD)/noh build $< -o $@ --lod 4 --lod-fast --graph $(PUPPET_MOVES) --quiet
 
 # ---- demo, tests, benchmarks ----
 

@@ -334,7 +334,8 @@ static double root_part(const noh_clip_set *set, const noh_track *t)
     return mask.joints ? (double)mask.joints[0] / 255.0 : 1.0;
 }
 
-static root_sum group_root(noh_controller *c, const noh_clip_set *set, noh_track_group group)
+static root_sum group_root(noh_controller *c, const noh_clip_set *set, noh_track_group group,
+                           const noh_given_root *given)
 {
     root_sum sum;
     memset(&sum, 0, sizeof sum);
@@ -348,7 +349,9 @@ static root_sum group_root(noh_controller *c, const noh_clip_set *set, noh_track
         part = root_part(set, t);
         if (part > 0.0 && is_sampled(c, t) && !(t->flags & NOH_TRACK_ADDITIVE)) {
             noh_root_pose move = { { 0.0, 0.0, 0.0 }, 0, 0 };
-            if (root->axes) {
+            if (given && t->clip >= given->first_clip) {
+                move = given->moved;
+            } else if (root->axes) {
                 move = noh_root_between(set, root, t->clip, (noh_loop)t->loop, t->root_position, t->position);
             }
             add_root(&sum, &move, (double)t->weight, part);
@@ -371,7 +374,7 @@ static noh_root_pose mean_root(const root_sum *sum)
 
 /* Each group's displacement is the weighted mean of its tracks', and the high one covers the low one by the priority
  * blend times its mean mask, exactly as noh_blend_cover covers the pose of joint 0. */
-noh_root_pose noh_controller_root_motion(noh_controller *c, const noh_clip_set *set)
+noh_root_pose noh_controller_root_motion_given(noh_controller *c, const noh_clip_set *set, const noh_given_root *given)
 {
     noh_root_pose out = { { 0.0, 0.0, 0.0 }, 0, 0 }, low, high;
     root_sum low_sum, high_sum, both;
@@ -380,8 +383,8 @@ noh_root_pose noh_controller_root_motion(noh_controller *c, const noh_clip_set *
     if (!set->roots) {
         return out;
     }
-    low_sum = group_root(c, set, NOH_GROUP_LOW);
-    high_sum = group_root(c, set, NOH_GROUP_HIGH);
+    low_sum = group_root(c, set, NOH_GROUP_LOW, given);
+    high_sum = group_root(c, set, NOH_GROUP_HIGH, given);
     low = mean_root(&low_sum);
     high = mean_root(&high_sum);
     if (high_sum.total < (double)full_weight(c)) high_sum.total = (double)full_weight(c);
@@ -391,4 +394,9 @@ noh_root_pose noh_controller_root_motion(noh_controller *c, const noh_clip_set *
     add_root(&both, &low, 1.0 - cover, 1.0);
     add_root(&both, &high, cover, 1.0);
     return cover >= 1.0 ? high : cover <= 0.0 ? low : mean_root(&both);
+}
+
+noh_root_pose noh_controller_root_motion(noh_controller *c, const noh_clip_set *set)
+{
+    return noh_controller_root_motion_given(c, set, NULL);
 }

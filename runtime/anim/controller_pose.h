@@ -48,6 +48,14 @@ void noh_controller_pose(const noh_controller *c, const noh_clip_set *set, noh_p
  * without set->roots. All roots of a set must have the same up axis. */
 noh_root_pose noh_controller_root_motion(noh_controller *c, const noh_clip_set *set);
 
+/* The same where some clips of the set stand for motion that is played elsewhere, such as a graph's: those from
+ * first_clip on move the root by `moved`. */
+typedef struct noh_given_root {
+    uint32_t first_clip;
+    noh_root_pose moved;
+} noh_given_root;
+noh_root_pose noh_controller_root_motion_given(noh_controller *c, const noh_clip_set *set, const noh_given_root *given);
+
 /* A transition, wrapped around any change of the tracks:
  *   noh_controller_inertia_capture(c, set, &scratch);
  *   ... start, stop, set weights: what plays from now on ...

@@ -59,13 +59,15 @@ static uint32_t want_track(const noh_clip_bank *bank, const noh_track *t, uint32
 uint32_t noh_clip_bank_prefetch(noh_clip_bank *bank, const noh_controller *controller, uint32_t ahead_ticks)
 {
     uint32_t missing = 0;
-    NOH_ASSERT(controller->clip_count == bank->clips.clip_count && controller->joint_count == bank->clips.joint_count);
+    NOH_ASSERT(controller->clip_count >= bank->clips.clip_count && controller->joint_count == bank->clips.joint_count);
     for (uint32_t i = 0; i < controller->track_count; i++) {
         const noh_track *t = noh_controller_track(controller, i);
-        const noh_clip_entry *m = &bank->clips.clips[t->clip];
-        if (t->mode != NOH_TRACK_ON || (t->lod_levels && controller->lod >= t->lod_levels)) {
-            continue;
+        const noh_clip_entry *m;
+        if (t->clip >= bank->clips.clip_count || t->mode != NOH_TRACK_ON ||
+            (t->lod_levels && controller->lod >= t->lod_levels)) {
+            continue; /* clips past the bank's are the caller's own */
         }
+        m = &bank->clips.clips[t->clip];
         if (bank->clips.roots) { /* root motion is measured from the position of its last call */
             const int64_t tick = noh_time_clip(t->root_position, m->duration_ticks, (noh_loop)t->loop) / 65536;
             const stretch before = { tick, tick };

@@ -96,6 +96,7 @@
 #define NOH_STAGE_JOBS_MAX 64u
 #define NOH_STAGE_VIEWS_MAX 8u
 #define NOH_LAYERS_MAX 16u      /* of a kind */
+#define NOH_STAGE_GRAPHS_MAX 16u /* of a kind */
 #define NOH_LAYER_TRACKS_MAX 8u /* of a layer */
 #define NOH_CONCESSIONS_MAX 32u /* of a plan */
 

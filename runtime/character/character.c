@@ -204,15 +204,23 @@ uint32_t noh_character_step(noh_character *ch, const noh_clip_set *set, uint32_t
 noh_due noh_character_look(noh_character *ch, const noh_lod_table *table, const noh_lod_settings *settings,
                            float pixels_per_metre)
 {
-    noh_controller *c = noh_character_controller(ch);
-    int64_t clock = noh_character_clock(ch);
     float update_error_m[NOH_UPDATE_RATE_COUNT];
-    uint32_t joints;
     NOH_ASSERT(ch && table && settings);
     if (table->update_error_m) {
-        noh_time_lod_error(c, table->update_error_m, update_error_m);
+        noh_time_lod_error(noh_character_controller(ch), table->update_error_m, update_error_m);
     }
-    noh_lod_choose(&ch->lod, table, settings, pixels_per_metre, table->update_error_m ? update_error_m : NULL,
+    return noh_character_look_given(ch, table, settings, pixels_per_metre,
+                                    table->update_error_m ? update_error_m : NULL);
+}
+
+noh_due noh_character_look_given(noh_character *ch, const noh_lod_table *table, const noh_lod_settings *settings,
+                                 float pixels_per_metre, const float *update_error_m)
+{
+    noh_controller *c = noh_character_controller(ch);
+    const int64_t clock = noh_character_clock(ch);
+    uint32_t joints;
+    NOH_ASSERT(ch && table && settings);
+    noh_lod_choose(&ch->lod, table, settings, pixels_per_metre, update_error_m,
                    noh_clock_add(clock, -(int64_t)ch->time.behind_ticks));
     joints = noh_lod_joint_count(&ch->lod, table);
     (void)noh_controller_set_lod(c, ch->lod.mesh, joints < ch->joint_count ? joints : 0);
@@ -263,6 +271,14 @@ static void keep_shown(noh_character *ch, uint32_t from, float part)
     noh_mix_fours(palette_of(ch, from), palette_of(ch, to), part, 3u * (size_t)ch->joint_count, palette_of(ch, from));
     mix_floats(floats_of(ch, from), floats_of(ch, to), part, ch->float_count, floats_of(ch, from));
     mix_floats(ch->spheres[from], ch->spheres[to], part, 4, ch->spheres[from]);
+}
+
+int64_t noh_character_pose_clock(const noh_character *ch)
+{
+    noh_time_lod t;
+    NOH_ASSERT(ch);
+    t = ch->time;
+    return noh_time_lod_update(&t).pose_clock;
 }
 
 void noh_character_update_begin(noh_character *ch, const noh_clip_set *set, noh_character_scratch *scratch)

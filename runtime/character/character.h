@@ -116,11 +116,19 @@ uint32_t noh_character_step(noh_character *ch, const noh_clip_set *set, uint32_t
 noh_due noh_character_look(noh_character *ch, const noh_lod_table *table, const noh_lod_settings *settings,
                            float pixels_per_metre);
 
+/* The same where more plays than the controller knows.
+ * shapes  update_error_m[NOH_UPDATE_RATE_COUNT] of all that plays (noh_time_lod_error); NULL: full update rate */
+noh_due noh_character_look_given(noh_character *ch, const noh_lod_table *table, const noh_lod_settings *settings,
+                                 float pixels_per_metre, const float *update_error_m);
+
 /* Ticks since an update was due, for noh_schedule_offer. */
 uint32_t noh_character_late(const noh_character *ch);
 
 /* How many joints an update samples: joints times tracks in the pose, for noh_cost_ns. */
 uint32_t noh_character_joint_work(const noh_character *ch);
+
+/* The tick of the game's clock that an update begun now poses it for: the present one, or that of the next update. */
+int64_t noh_character_pose_clock(const noh_character *ch);
 
 /* Pose it, for this frame or for the next update: _begin and _end. Not within a callback of noh_character_step. */
 void noh_character_update(noh_character *ch, const noh_clip_set *set, const noh_skeleton *skeleton,

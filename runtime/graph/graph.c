@@ -13,14 +13,14 @@ typedef struct layout {
     size_t params, machines, controller, bytes;
 } layout;
 
-static noh_controller_desc controller_desc(const noh_graph *g, const noh_clip_set *set)
+static noh_controller_desc controller_desc(const noh_graph_shape *g, const noh_clip_set *set)
 {
     noh_controller_desc d;
     memset(&d, 0, sizeof d);
     d.set = set;
     d.track_count = g->clip_count;
     d.change_count = 1; /* the least: the graph sets weights by itself */
-    d.flags = noh_graph_is_inertial(g) ? NOH_CONTROLLER_INERTIAL : 0u;
+    d.flags = g->inertial ? NOH_CONTROLLER_INERTIAL : 0u;
     return d;
 }
 
@@ -30,7 +30,7 @@ static size_t place(noh_arena *arena, size_t bytes, size_t alignment)
     return arena->used - bytes;
 }
 
-static layout layout_of(const noh_graph *g, const noh_clip_set *set)
+static layout layout_of(const noh_graph_shape *g, const noh_clip_set *set)
 {
     noh_arena arena = noh_arena_measure();
     noh_controller_desc d = controller_desc(g, set);
@@ -43,10 +43,21 @@ static layout layout_of(const noh_graph *g, const noh_clip_set *set)
     return l;
 }
 
+size_t noh_graph_shape_state_size(const noh_graph_shape *shape, const noh_clip_set *set)
+{
+    const noh_controller_desc d = controller_desc(shape, set);
+    return noh_controller_size(&d) ? layout_of(shape, set).bytes : 0;
+}
+
 size_t noh_graph_state_size(const noh_graph *graph, const noh_clip_set *set)
 {
+    noh_graph_shape shape;
     NOH_ASSERT(graph && set);
-    return noh_graph_check(graph, set, NULL) == NOH_OK ? layout_of(graph, set).bytes : 0;
+    if (noh_graph_check(graph, set, NULL) != NOH_OK) {
+        return 0;
+    }
+    shape = noh_graph_shape_of(graph);
+    return noh_graph_shape_state_size(&shape, set);
 }
 
 noh_controller *noh_graph_controller(noh_graph_state *state)
@@ -129,16 +140,26 @@ noh_result noh_graph_start_subtree(noh_graph_state *s, const noh_graph *g, const
     return result;
 }
 
-static void fill_state(noh_graph_state *s, const noh_graph *g, layout l)
+void noh_graph_state_head(const noh_graph *g, const noh_clip_set *set, noh_graph_state *head)
 {
-    memset(s, 0, l.bytes);
-    s->bytes = (uint32_t)l.bytes;
-    s->node_count = g->node_count;
-    s->param_count = g->param_count;
-    s->machine_count = g->machine_count;
-    s->params_offset = (uint32_t)l.params;
-    s->machines_offset = (uint32_t)l.machines;
-    s->controller_offset = (uint32_t)l.controller;
+    const noh_graph_shape shape = noh_graph_shape_of(g);
+    const layout l = layout_of(&shape, set);
+    memset(head, 0, sizeof *head);
+    head->bytes = (uint32_t)l.bytes;
+    head->node_count = g->node_count;
+    head->param_count = g->param_count;
+    head->machine_count = g->machine_count;
+    head->params_offset = (uint32_t)l.params;
+    head->machines_offset = (uint32_t)l.machines;
+    head->controller_offset = (uint32_t)l.controller;
+}
+
+static void fill_state(noh_graph_state *s, const noh_graph *g, const noh_clip_set *set)
+{
+    noh_graph_state head;
+    noh_graph_state_head(g, set, &head);
+    memset(s, 0, head.bytes);
+    *s = head;
     if (g->param_defaults && g->param_count) {
         memcpy(noh_graph_state_params(s), g->param_defaults, g->param_count * sizeof(float));
     }
@@ -148,23 +169,23 @@ noh_result noh_graph_state_init(void *memory, size_t bytes, const noh_graph *gra
                                 noh_graph_state **state, noh_error *error)
 {
     noh_result result = noh_graph_check(graph, set, error);
-    noh_controller_desc d;
     noh_graph_state *s = (noh_graph_state *)memory;
+    noh_controller_desc d;
+    noh_graph_shape shape;
     noh_controller *c;
     noh_arena arena;
-    layout l;
     NOH_ASSERT(graph && set && state);
     if (result != NOH_OK) {
         return result;
     }
-    l = layout_of(graph, set);
-    d = controller_desc(graph, set);
-    result = noh_arena_open(&arena, memory, bytes, l.bytes, error);
+    shape = noh_graph_shape_of(graph);
+    d = controller_desc(&shape, set);
+    result = noh_arena_open(&arena, memory, bytes, layout_of(&shape, set).bytes, error);
     if (result != NOH_OK) {
         return result;
     }
-    fill_state(s, graph, l);
-    result = noh_controller_init((uint8_t *)memory + l.controller, noh_controller_size(&d), &d, &c, error);
+    fill_state(s, graph, set);
+    result = noh_controller_init((uint8_t *)memory + s->controller_offset, noh_controller_size(&d), &d, &c, error);
     result = result == NOH_OK ? noh_graph_start_subtree(s, graph, set, graph->node_count - 1, error) : result;
     if (result == NOH_OK) {
         noh_graph_weigh_tracks(s, graph);

@@ -94,6 +94,8 @@ typedef struct noh_graph_transition {
  * its very end, so every callback key of it fires exactly once. A trigger that comes while it plays waits until it is
  * gone. While it does not play, b's clips do not either, and fire nothing. */
 
+NOH_STATIC_ASSERT(sizeof(noh_graph_node) == 32, graph_node_bytes);
+
 /* Shared by all instances; borrowed and constant. */
 typedef struct noh_graph {
     uint32_t node_count, child_count, clip_count;
@@ -160,6 +162,23 @@ uint32_t noh_graph_machine_state(const noh_graph_state *state, uint32_t machine)
 uint32_t noh_graph_step(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, uint32_t ticks,
                         noh_event_fn fn, void *user);
 
+/* The two halves of a step, for whom plays other things beside a graph and wants all keys in the order of time:
+ * _decide takes transitions and finds the weights of the next `ticks`; then noh_controller_step moves the controller
+ * inside by so many, in as many pieces as you like. */
+void noh_graph_decide(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, uint32_t ticks);
+
+/* Root displacement since the last call, weighted as joint 0 of the pose is: blends by their weights, a MASK or a
+ * ONE_SHOT by its mask at joint 0, and what ADD adds does not count; nor do clips that animate no joints. Zero without
+ * set->roots. All roots of a set must have the same up axis. */
+noh_root_pose noh_graph_root_motion(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set);
+
+/* Check a block from outside, such as a saved game, before any other call: with one that passes no call overruns its
+ * memory, overflows or hangs.
+ * errors  ARG memory NULL or misaligned; DATA not an instance of this graph and set (where: the machine, track or
+ *         change) */
+noh_result noh_graph_state_check(const void *memory, size_t bytes, const noh_graph *graph, const noh_clip_set *set,
+                                 noh_error *error);
+
 /* ---- poses ---- */
 
 /* Working memory of posing: no state, so one serves all instances of a graph that are posed one after another. */
@@ -181,6 +200,11 @@ noh_result noh_graph_scratch_init(void *memory, size_t bytes, const noh_graph *g
  * shapes  pose[joint_count], floats[float_count] of the set */
 void noh_graph_pose(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, noh_graph_scratch *scratch,
                     noh_transform *pose, float *floats);
+
+/* The pose `ago` ticks before now: all clips were where they were then, had they had their present weights and speeds.
+ * Begin what noh_graph_pose would begin by calling that first. */
+void noh_graph_pose_ago(const noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set,
+                        noh_graph_scratch *scratch, int64_t ago, noh_transform *pose, float *floats);
 
 #ifdef __cplusplus
 }

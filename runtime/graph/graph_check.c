@@ -241,20 +241,26 @@ static uint32_t live_children(const noh_graph_node *n)
     return n->child_count < most ? n->child_count : most;
 }
 
-uint32_t noh_graph_buffers(const noh_graph *graph)
+uint32_t noh_graph_count_buffers(const noh_graph_nodes *nodes, const uint16_t *children)
 {
     uint16_t need[NOH_GRAPH_NODES_MAX];
-    NOH_ASSERT(graph && graph->node_count > 0 && graph->node_count <= NOH_GRAPH_NODES_MAX);
-    for (uint32_t i = 0; i < graph->node_count; i++) {
-        const noh_graph_node *n = &graph->nodes[i];
+    NOH_ASSERT(nodes->count > 0 && nodes->count <= NOH_GRAPH_NODES_MAX);
+    for (uint32_t i = 0; i < nodes->count; i++) {
+        const noh_graph_node *n = noh_graph_node_at(nodes, i);
         need[i] = 1;
         for (uint32_t k = 0; k < n->child_count; k++) {
             /* While a child is evaluated, the buffers of its elder siblings wait, at most one less than can have
              * weight: the numbering of Sethi and Ullman (1970) for registers, with a fixed order of children. */
             uint32_t waiting = k < live_children(n) - 1 ? k : live_children(n) - 1;
-            uint32_t depth = need[graph->children[n->first_child + k]] + waiting;
+            uint32_t depth = need[children[n->first_child + k]] + waiting;
             need[i] = (uint16_t)(depth > need[i] ? depth : need[i]);
         }
     }
-    return need[graph->node_count - 1];
+    return need[nodes->count - 1];
+}
+
+uint32_t noh_graph_buffers(const noh_graph *graph)
+{
+    const noh_graph_nodes nodes = { (const uint8_t *)graph->nodes, sizeof *graph->nodes, graph->node_count };
+    return noh_graph_count_buffers(&nodes, graph->children);
 }

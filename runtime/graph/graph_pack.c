@@ -1,11 +1,13 @@
 #include "graph/graph_pack.h"
 
+#include <stddef.h>
 #include <string.h>
 
 #include "anim/clip_set_internal.h"
 #include "anim/mask.h"
 #include "base/arena.h"
 #include "base/hash.h"
+#include "graph/graph_weights_internal.h"
 
 /* The numbers of the format are those of the graph. */
 NOH_STATIC_ASSERT(NOH_PACK_NODE_CLIP == NOH_NODE_CLIP && NOH_PACK_NODE_BLEND == NOH_NODE_BLEND, kinds_first);
@@ -245,6 +247,52 @@ size_t noh_graph_pack_size(const noh_graph_pack_desc *desc, noh_error *error)
     return check_desc(desc, &g, error) ? 0u : carve(&arena, g.header, desc->set, &p);
 }
 
+/* A node of a pack is its name and then a noh_graph_node. */
+NOH_STATIC_ASSERT(sizeof(noh_pack_graph_node) == 8u + sizeof(noh_graph_node), graph_node_of_pack);
+NOH_STATIC_ASSERT(offsetof(noh_pack_graph_node, kind) == 8u, graph_node_kind);
+NOH_STATIC_ASSERT(offsetof(noh_pack_graph_node, value) == 8u + offsetof(noh_graph_node, value), graph_node_value);
+
+static int is_inertial(const noh_pack_graph *g)
+{
+    uint32_t any = 0;
+    for (uint32_t i = 0; i < g->header->transition_count; i++) {
+        any |= g->transitions[i].flags & NOH_TRANSITION_INERTIAL;
+    }
+    for (uint32_t i = 0; i < g->header->node_count; i++) {
+        any |= g->nodes[i].kind == NOH_NODE_SELECT ? g->nodes[i].flags & NOH_TRANSITION_INERTIAL : 0u;
+    }
+    return any != 0;
+}
+
+noh_result noh_graph_pack_measure(const noh_graph_pack_desc *desc, noh_graph_pack_needs *needs, noh_error *error)
+{
+    noh_arena arena = noh_arena_measure();
+    noh_pack_graph g;
+    noh_graph_nodes nodes;
+    noh_graph_shape shape;
+    parts p;
+    const noh_result result = check_desc(desc, &g, error);
+    NOH_ASSERT(desc && needs);
+    if (result != NOH_OK) {
+        return result;
+    }
+    nodes.first = (const uint8_t *)g.nodes + 8;
+    nodes.stride = sizeof *g.nodes;
+    nodes.count = g.header->node_count;
+    shape.clip_count = g.header->clip_count;
+    shape.param_count = g.header->param_count;
+    shape.machine_count = g.header->machine_count;
+    shape.inertial = is_inertial(&g);
+    shape.buffer_count = noh_graph_count_buffers(&nodes, g.children);
+    needs->bytes = carve(&arena, g.header, desc->set, &p);
+    needs->state_bytes = noh_graph_shape_state_size(&shape, desc->set);
+    needs->scratch_bytes = noh_graph_shape_scratch_size(&shape, desc->set);
+    return needs->state_bytes && needs->scratch_bytes
+               ? NOH_OK
+               : noh_fail(error, NOH_ERR_LIMIT, "a graph plays more clips than NOH_TRACKS_MAX", desc->graph,
+                          NOH_TRACKS_MAX);
+}
+
 /* Everything but the clips and the masks, which may fail. */
 static void join(const noh_pack_graph *g, const noh_clip_set *set, const parts *p)
 {
@@ -358,6 +406,18 @@ static const noh_pack_graph_node *machine_at(const noh_pack_graph *g, uint32_t m
         if (n->kind >= NOH_PACK_NODE_MACHINE && n->index == machine) return n;
     }
     return NULL;
+}
+
+const char *noh_graph_pack_machine_name(const noh_graph_pack *made, uint32_t machine)
+{
+    const noh_pack_graph_node *n = machine_at(&made->source, machine);
+    return n ? noh_pack_string(made->source.pack, n->name) : "";
+}
+
+const char *noh_graph_pack_param_name(const noh_graph_pack *made, uint32_t param)
+{
+    const noh_pack_graph *g = &made->source;
+    return param < g->header->param_count ? noh_pack_string(g->pack, g->params[param].name) : "";
 }
 
 const char *noh_graph_pack_state_name(const noh_graph_pack *made, uint32_t machine, uint32_t state)

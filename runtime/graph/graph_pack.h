@@ -73,6 +73,16 @@ typedef struct noh_graph_pack {
  * errors  those of noh_graph_pack_init that need no clips: ARG, and those of noh_pack_graph_at */
 size_t noh_graph_pack_size(const noh_graph_pack_desc *desc, noh_error *error);
 
+/* What a graph and its instances will need, told by counts alone, before there are clips. */
+typedef struct noh_graph_pack_needs {
+    size_t bytes;         /* noh_graph_pack_size */
+    size_t state_bytes;   /* noh_graph_state_size */
+    size_t scratch_bytes; /* noh_graph_scratch_size */
+} noh_graph_pack_needs;
+
+/* errors  as noh_graph_pack_size */
+noh_result noh_graph_pack_measure(const noh_graph_pack_desc *desc, noh_graph_pack_needs *needs, noh_error *error);
+
 /* Make a graph in memory[bytes], aligned to NOH_MEMORY_ALIGN, and check it (noh_graph_check). The pack's bytes and the
  * set must outlive it.
  * errors  ARG a field of desc, named, a set over the limits, or memory NULL or misaligned; MEMORY need: the bytes;
@@ -87,6 +97,10 @@ noh_result noh_graph_pack_init(void *memory, size_t bytes, const noh_graph_pack_
 
 /* The index of a parameter, for noh_graph_set_param; NOH_NONE when there is none of that name. */
 uint32_t noh_graph_pack_find_param(const noh_graph_pack *made, const char *name);
+
+/* The name of a parameter, and of a machine, select or one-shot; "" past the last. */
+const char *noh_graph_pack_param_name(const noh_graph_pack *made, uint32_t param);
+const char *noh_graph_pack_machine_name(const noh_graph_pack *made, uint32_t machine);
 
 /* The number of a value of an ENUM parameter; NOH_NONE when it has none of that name. */
 uint32_t noh_graph_pack_find_value(const noh_graph_pack *made, uint32_t param, const char *name);

@@ -17,19 +17,25 @@ static size_t pose_bytes(const noh_clip_set *set)
     return set->joint_count * sizeof(noh_transform);
 }
 
-size_t noh_graph_scratch_size(const noh_graph *graph, const noh_clip_set *set)
+size_t noh_graph_shape_scratch_size(const noh_graph_shape *shape, const noh_clip_set *set)
 {
     noh_arena arena = noh_arena_measure();
-    NOH_ASSERT(graph && set);
     if (noh_clip_set_excess(set)) {
         return 0;
     }
-    (void)noh_arena_carve(&arena, noh_pose_scratch_size(set, noh_graph_is_inertial(graph)), 16);
-    for (uint32_t i = 0; i < noh_graph_buffers(graph); i++) {
+    (void)noh_arena_carve(&arena, noh_pose_scratch_size(set, shape->inertial), 16);
+    for (uint32_t i = 0; i < shape->buffer_count; i++) {
         (void)noh_arena_carve(&arena, pose_bytes(set), 4);
         (void)noh_arena_carve(&arena, set->float_count * sizeof(float), 4);
     }
     return arena.used;
+}
+
+size_t noh_graph_scratch_size(const noh_graph *graph, const noh_clip_set *set)
+{
+    const noh_graph_shape shape = noh_graph_shape_of(graph);
+    NOH_ASSERT(graph && set);
+    return noh_graph_shape_scratch_size(&shape, set);
 }
 
 noh_result noh_graph_scratch_init(void *memory, size_t bytes, const noh_graph *graph, const noh_clip_set *set,
@@ -203,7 +209,7 @@ static void evaluate_node(evaluation *e, uint32_t i)
 /* Post-order makes this a walk over an array: children come before their node and leave their poses in buffers; the
  * node combines them in the first one's buffer and frees the others. `before`: as things were before the inertial
  * transitions that begin now. */
-static void evaluate(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set,
+static void evaluate(const noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set,
                      noh_graph_scratch *scratch, int before, int64_t ago, noh_transform *pose, float *floats)
 {
     evaluation e;
@@ -214,7 +220,7 @@ static void evaluate(noh_graph_state *state, const noh_graph *graph, const noh_c
     e.view.machines = noh_graph_machines_of(state);
     e.view.before = before;
     e.set = set;
-    e.c = noh_graph_controller(state);
+    e.c = noh_graph_controller_of(state);
     e.scratch = scratch;
     e.ago = ago;
     scratch->pose.blend.joint_count = e.c->lod_joint_count;
@@ -265,15 +271,22 @@ static void begin_inertia(noh_graph_state *state, const noh_graph *graph, const 
     state->inertia_ticks = 0;
 }
 
-void noh_graph_pose(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, noh_graph_scratch *scratch,
-                    noh_transform *pose, float *floats)
+void noh_graph_pose_ago(const noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set,
+                        noh_graph_scratch *scratch, int64_t ago, noh_transform *pose, float *floats)
 {
     NOH_ASSERT(state && graph && set && scratch && (!set->joint_count || pose) && (!set->float_count || floats));
     NOH_VALIDATE(noh_graph_check(graph, set, NULL) == NOH_OK);
     NOH_ASSERT(state->node_count == graph->node_count);
+    evaluate(state, graph, set, scratch, 0, ago, pose, floats);
+    noh_controller_inertia_add(noh_graph_controller_of(state), ago, pose, floats);
+}
+
+void noh_graph_pose(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, noh_graph_scratch *scratch,
+                    noh_transform *pose, float *floats)
+{
+    NOH_ASSERT(state && graph && set && scratch && state->node_count == graph->node_count);
     if (state->inertia_ticks) {
         begin_inertia(state, graph, set, scratch);
     }
-    evaluate(state, graph, set, scratch, 0, 0, pose, floats);
-    noh_controller_inertia_add(noh_graph_controller(state), 0, pose, floats);
+    noh_graph_pose_ago(state, graph, set, scratch, 0, pose, floats);
 }

@@ -8,6 +8,9 @@ float *noh_graph_state_params(noh_graph_state *state);
 noh_machine *noh_graph_state_machines(noh_graph_state *state);
 noh_graph_view noh_graph_view_of(const noh_graph_state *state, const noh_graph *graph);
 
+/* The head of a new instance of a checked graph. Of the set only the counts are read. */
+void noh_graph_state_head(const noh_graph *graph, const noh_clip_set *set, noh_graph_state *head);
+
 /* The child that a SELECT's parameter asks for. */
 uint32_t noh_graph_choice(const noh_graph_state *state, const noh_graph_node *node);
 

@@ -180,8 +180,7 @@ static void run_fades(noh_graph_state *s, const noh_graph *g, uint32_t ticks)
     }
 }
 
-uint32_t noh_graph_step(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, uint32_t ticks,
-                        noh_event_fn fn, void *user)
+void noh_graph_decide(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, uint32_t ticks)
 {
     NOH_ASSERT(state && graph && set);
     NOH_VALIDATE(noh_graph_check(graph, set, NULL) == NOH_OK);
@@ -190,5 +189,11 @@ uint32_t noh_graph_step(noh_graph_state *state, const noh_graph *graph, const no
     run_machines(state, graph, set);
     run_fades(state, graph, ticks);
     noh_graph_weigh_tracks(state, graph);
+}
+
+uint32_t noh_graph_step(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, uint32_t ticks,
+                        noh_event_fn fn, void *user)
+{
+    noh_graph_decide(state, graph, set, ticks);
     return noh_controller_step(noh_graph_controller(state), set, ticks, fn, user);
 }

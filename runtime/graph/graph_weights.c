@@ -2,6 +2,11 @@
 
 #include <string.h>
 
+const noh_controller *noh_graph_controller_of(const noh_graph_state *state)
+{
+    return (const noh_controller *)(const void *)((const uint8_t *)state + state->controller_offset);
+}
+
 const float *noh_graph_params_of(const noh_graph_state *state)
 {
     return (const float *)(const void *)((const uint8_t *)state + state->params_offset);
@@ -127,4 +132,15 @@ int noh_graph_is_inertial(const noh_graph *graph)
         any |= graph->nodes[i].kind == NOH_NODE_SELECT ? graph->nodes[i].flags & NOH_TRANSITION_INERTIAL : 0u;
     }
     return any != 0;
+}
+
+noh_graph_shape noh_graph_shape_of(const noh_graph *graph)
+{
+    noh_graph_shape shape;
+    shape.clip_count = graph->clip_count;
+    shape.param_count = graph->param_count;
+    shape.machine_count = graph->machine_count;
+    shape.buffer_count = noh_graph_buffers(graph);
+    shape.inertial = noh_graph_is_inertial(graph);
+    return shape;
 }

@@ -10,6 +10,8 @@
  *   actors   noh_stage_spawn, noh_stage_despawn, noh_stage_actor_at, noh_actor_set_place, noh_actor_place,
  *            noh_actor_place_between, noh_actor_cut, noh_actor_set_look, noh_actor_attach
  *   play     noh_actor_play, noh_actor_stop, noh_actor_track, noh_actor_controller, noh_actor_hold_float
+ *   graphs   noh_actor_play_graph, noh_actor_set_parameter, noh_actor_parameter, noh_actor_state, noh_stage_find_value,
+ *            noh_actor_graph
  *   ask      noh_actor_floats, noh_actor_joint, noh_actor_root, noh_actor_sphere, noh_actor_mesh_at, noh_stage_pick
  *   frame    noh_stage_frame; or its pieces noh_stage_step, noh_stage_frame_begin or noh_stage_frame_between,
  *            noh_stage_jobs, noh_stage_job, noh_stage_frame_end; noh_stage_events
@@ -80,7 +82,10 @@ typedef struct noh_kind_desc {
     const noh_layer_desc *layers; /* [layer_count] default (NULL) three: "body" (base), "face" (over, floats alone),
                                    * "add" (add) */
     uint32_t layer_count;         /* 0..NOH_LAYERS_MAX */
-    uint32_t change_count;        /* fades and other changes over time at once; default (0) 3 for each track */
+    /* Names of graphs in the packs of clips (noh build --graph) that its actors may play, one at a time, separated by
+     * blanks; '*' at the end matches any rest. Default (NULL) none, at no cost. Read at init */
+    const char *graphs;
+    uint32_t change_count;     /* fades and other changes over time at once; default (0) 3 for each track */
     uint32_t held_float_count; /* floats that the game may hold at once (noh_actor_hold_float); default (0) 8; NOH_NONE:
                                 * none */
     uint32_t root_axes;        /* NOH_ROOT_* that clips move the actor by; default (0) none */
@@ -138,7 +143,7 @@ typedef struct noh_kind_clips {
 /* What a kind came to. */
 typedef struct noh_kind_plan {
     uint32_t mesh_count, level_count, finest_level;
-    uint32_t track_count, joint_count, float_count;
+    uint32_t track_count, joint_count, float_count, graph_count;
     uint32_t cached_segment_count, segment_count; /* of its clips: held decoded at once; in all */
     noh_kind_clips clips;                         /* of the kind whose clips it shares: itself, or an earlier one */
     noh_actor_level levels[NOH_LOD_LEVELS_MAX];
@@ -176,8 +181,8 @@ struct noh_gl_caps;
  * given back: 32-bit accumulators, cached segments.
  *
  * caps    of gl_caps.h; NULL with desc->gpu NULL
- * errors  ARG a field of the desc (where: the kind); MEMORY no choice keeps the bounds (need: bytes of the smallest);
- *         LIMIT; DATA a clip is broken. *plan is undefined then */
+ * errors  ARG a field of the desc (where: the kind); NOT_FOUND graphs of a kind name none of its packs; MEMORY no
+ * choice keeps the bounds (need: bytes of the smallest); LIMIT; DATA a clip is broken. *plan is undefined then */
 noh_result noh_stage_plan_make(const noh_stage_desc *desc, const struct noh_gl_caps *caps, noh_stage_plan *plan,
                                noh_error *error);
 
@@ -234,7 +239,15 @@ const noh_stage_stats *noh_stage_stats_of(const noh_stage *stage);
 
 /* ---- names ---- */
 
-typedef enum noh_name { NOH_NAME_CLIP, NOH_NAME_LAYER, NOH_NAME_FLOAT, NOH_NAME_JOINT } noh_name;
+typedef enum noh_name {
+    NOH_NAME_CLIP,
+    NOH_NAME_LAYER,
+    NOH_NAME_FLOAT,
+    NOH_NAME_JOINT,
+    NOH_NAME_GRAPH,
+    NOH_NAME_PARAMETER, /* of the kind's graphs */
+    NOH_NAME_MACHINE    /* a machine, select or one-shot of its graphs */
+} noh_name;
 
 /* The index of a name in a kind; NOH_NONE when there is none. Look names up once, not in every frame. Floats are the
  * morph targets of all meshes and the named floats of clips; meshes that have a target of the same name share it. */
@@ -353,6 +366,43 @@ noh_controller *noh_actor_controller(noh_stage *stage, noh_actor actor, const no
  * not finite, or amount out of its range */
 noh_result noh_actor_hold_float(noh_stage *stage, noh_actor actor, uint32_t index, float value, float amount,
                                 noh_error *error);
+
+/* ---- graphs ---- */
+
+/* Play an animation graph (graph/graph.h) on a base or over layer, from its beginning: all its parameters as the pack
+ * has them. It fades in as a clip does, and what played on the layer fades out; noh_actor_play and noh_actor_stop fade
+ * it out again. An actor plays one graph at a time: another one, or the same again, ends it at once, so give it
+ * NOH_PLAY_INERTIA there. What the layer's mask lets through is the graph's; faces and additive layers play over it.
+ * play    NULL: zeros; fade_ticks, weight, NOH_PLAY_KEEP and NOH_PLAY_INERTIA are used, all else is ARG
+ * errors  NOT_FOUND the actor is gone, or the kind has no such graph; ARG layer, or one that adds; a field of play;
+ *         within on_key of a key of a graph; LIMIT as noh_actor_play */
+noh_result noh_actor_play_graph(noh_stage *stage, noh_actor actor, uint32_t layer, const char *graph,
+                                const noh_play *play, noh_error *error);
+
+/* Set a parameter of the graph that plays, by an index of noh_stage_find: a blend space follows at once, machines at
+ * the start of the next step. It is held within its range; a trigger is 1 to fire; an enumerated one takes a number of
+ * noh_stage_find_value. Where graphs of a kind have parameters of one name, one index serves all.
+ * errors  NOT_FOUND the actor is gone, plays no graph, or one without such a parameter; ARG not finite */
+noh_result noh_actor_set_parameter(noh_stage *stage, noh_actor actor, uint32_t parameter, float value,
+                                   noh_error *error);
+
+/* Its present value; 0 where noh_actor_set_parameter would be NOT_FOUND. */
+float noh_actor_parameter(const noh_stage *stage, noh_actor actor, uint32_t parameter);
+
+/* The number of a value of an enumerated parameter; NOH_NONE when it has none of that name. */
+uint32_t noh_stage_find_value(const noh_stage *stage, uint32_t kind, uint32_t parameter, const char *name);
+
+/* The name of the state that a machine, select or one-shot of the graph is in or fades to; NULL where
+ * noh_actor_set_parameter would be NOT_FOUND.
+ * ranges  machine  of NOH_NAME_MACHINE */
+const char *noh_actor_state(const noh_stage *stage, noh_actor actor, uint32_t machine);
+
+struct noh_graph_pack;
+struct noh_graph_state;
+
+/* The instance that an actor plays, for what the calls above do not do, and the graph that it is of (graph_pack.h).
+ * Do not step it: the stage does. NULL: the actor is gone, or plays none. */
+struct noh_graph_state *noh_actor_graph(noh_stage *stage, noh_actor actor, const struct noh_graph_pack **graph);
 
 /* ---- ask ---- */
 

@@ -143,7 +143,7 @@ noh_result noh_stage_measure_kind(const noh_stage_desc *desc, const noh_stage_pl
     const noh_clip_bank_desc bank = noh_stage_bank_desc(desc, plan, owner);
     noh_kind_clips own;
     noh_mesh skinned;
-    const noh_result result = clips ? NOH_OK : noh_stage_measure_clips(desc, plan, owner, &own, error);
+    noh_result result = clips ? NOH_OK : noh_stage_measure_clips(desc, plan, owner, &own, error);
     if (result != NOH_OK) {
         return result;
     }
@@ -155,6 +155,10 @@ noh_result noh_stage_measure_kind(const noh_stage_desc *desc, const noh_stage_pl
                          (needs->has_clips && d.mesh->node_count ? 0 : needs->weight_count);
     needs->lod_bytes = desc->full_detail ? 0 : lod_bytes(&bank, needs, skinned.header ? &skinned : NULL);
     measure_actors(&d, needs);
+    result = noh_stage_measure_graphs(&d, kind, needs, error);
+    if (result != NOH_OK) {
+        return result;
+    }
     needs->pools_bytes = pools_bytes(plan, &d, kind);
     if (!needs->character_bytes || !needs->pools_bytes) {
         return noh_fail(error, NOH_ERR_LIMIT, "a kind has more clips, joints, tracks or slots than a character can",
@@ -203,7 +207,7 @@ static void add(noh_stage_list *list, const char *what, uint32_t kind, const noh
 
 /* What the other functions need to know of all kinds together. */
 typedef struct widest {
-    size_t scratch_bytes, pick_bytes, views_bytes, inertia_bytes;
+    size_t scratch_bytes, graph_scratch_bytes, pick_bytes, views_bytes, inertia_bytes;
     uint32_t skin_joints, actors;
 } widest;
 
@@ -215,6 +219,7 @@ static size_t aligned(size_t bytes)
 static void widen(widest *most, const noh_stage_desc *desc, uint32_t kind, const noh_stage_needs *n)
 {
     if (n->scratch_bytes > most->scratch_bytes) most->scratch_bytes = n->scratch_bytes;
+    if (n->graph_scratch_bytes > most->graph_scratch_bytes) most->graph_scratch_bytes = n->graph_scratch_bytes;
     if (n->pick_bytes > most->pick_bytes) most->pick_bytes = n->pick_bytes;
     if (n->inertia_bytes > most->inertia_bytes) most->inertia_bytes = n->inertia_bytes;
     if (n->skin_joints > most->skin_joints) most->skin_joints = n->skin_joints;
@@ -228,6 +233,8 @@ static void carve_state(noh_arena *arena, const noh_kind_desc *d, const noh_stag
     k->character_bytes = (uint32_t)n->character_bytes;
     k->characters = noh_arena_carve(arena, d->actor_count * n->character_bytes, 16);
     k->held = CARVE(arena, d->actor_count * (size_t)d->held_float_count, noh_stage_held);
+    k->graph_slots = noh_arena_carve(arena, d->actor_count * n->slot_bytes, 16);
+    k->slot_bytes = (uint32_t)n->slot_bytes;
     *pools = noh_arena_carve(arena, n->pools_bytes, 16);
 }
 
@@ -274,6 +281,8 @@ static void carve_jobs(noh_arena *arena, const noh_stage_desc *filled, const wid
     b->views = noh_arena_carve(arena, filled->job_count * most->views_bytes, 16);
     b->scratch_bytes = aligned(most->scratch_bytes);
     b->scratch = noh_arena_carve(arena, filled->job_count * b->scratch_bytes, 16);
+    b->graph_scratch_bytes = aligned(most->graph_scratch_bytes);
+    b->graph_scratch = noh_arena_carve(arena, filled->job_count * b->graph_scratch_bytes, 16);
 }
 
 /* The first pass: the state, and what it takes to know how large the rest is. */
@@ -347,6 +356,8 @@ noh_result noh_stage_carve(noh_arena *arena, const noh_stage_desc *desc, const n
         b->lods[i] = noh_arena_carve(arena, needs.lod_bytes, 16);
         carve_frame(arena, &d, &needs, k);
         add(list, "kind", i, arena, &from);
+        b->graphs[i] = noh_arena_carve(arena, needs.graph_bytes, 16);
+        if (needs.graph_count) add(list, "graphs", i, arena, &from);
         b->banks[i] = noh_arena_carve(arena, needs.bank_bytes, 16);
         add(list, "clips", i, arena, &from);
         if (state) point_at_state(desc, &needs, i, &state, k);

@@ -10,6 +10,8 @@
  *   stage_names.c    clips, layers, floats and joints by name
  *   stage_actor.c    actors come and go, and stand somewhere
  *   stage_play.c     layers
+ *   stage_graph.c    which graphs a kind plays, and their bytes
+ *   stage_graph_play.c  the graph of an actor
  *   stage_step.c     time, callback keys, root motion
  *   stage_look.c     phase 1: who is seen, how finely
  *   stage_share.c    between the phases: slots, updates, decoding, order
@@ -31,6 +33,7 @@
 #include "character/lod_pack.h"
 #include "character/lod_pools.h"
 #include "character/scheduler.h"
+#include "graph/graph_pack.h"
 #include "mesh/mesh.h"
 #include "stage/stage.h"
 
@@ -61,6 +64,13 @@ typedef struct noh_stage_actor {
     uint32_t reserved;
 } noh_stage_actor;
 
+/* The graph that an actor plays: its instance follows, in as many bytes as the largest of the kind takes. A track of
+ * the actor's controller stands for it: graph g plays while one is on the set's clip first_graph_clip + g. */
+typedef struct noh_stage_graph_slot {
+    uint32_t graph; /* 1 + index in the kind's; 0: none was played yet */
+    uint32_t reserved[3];
+} noh_stage_graph_slot;
+
 typedef struct noh_stage_free {
     uint32_t first, last; /* actor index + 1; 0: none. Taken at the front, given back at the end */
     uint32_t count;       /* actors that are there */
@@ -78,6 +88,7 @@ typedef struct noh_stage_head {
 NOH_STATIC_ASSERT(sizeof(noh_place) == 32, place);
 NOH_STATIC_ASSERT(sizeof(noh_look) == 20, look);
 NOH_STATIC_ASSERT(sizeof(noh_stage_actor) == 152, stage_actor);
+NOH_STATIC_ASSERT(sizeof(noh_stage_graph_slot) == 16, stage_graph_slot);
 NOH_STATIC_ASSERT(sizeof(noh_stage_head) == 24 + 16 * NOH_STAGE_KINDS_MAX, stage_head);
 
 #define NOH_STAGE_MAGIC 0x53484f4eu /* "NOHS" */
@@ -107,6 +118,18 @@ typedef struct noh_stage_layer {
     int moves_joints; /* 0: its mask has no joint */
 } noh_stage_layer;
 
+/* A set some of whose clips stand for graphs: these have the poses that were made of an actor's. */
+typedef struct noh_stage_sampler {
+    noh_clip_sample_fn sample; /* of all other clips */
+    void *user;
+    uint32_t first_graph_clip;
+    uint32_t tick;                 /* of the first pose, where there are two */
+    const noh_transform *poses[2]; /* NULL: none */
+    const float *floats[2];
+    const noh_transform *bind_pose; /* where there is none */
+    const float *float_defaults;
+} noh_stage_sampler;
+
 typedef struct noh_stage_kind {
     noh_kind_desc desc; /* defaults filled in; `layers` is NULL afterwards */
     const noh_kind_plan *plan;
@@ -133,12 +156,20 @@ typedef struct noh_stage_kind {
     float *joint_radii; /* [joint_count]; NULL: rigid */
     float reach[4];     /* centre and radius in model space: holds the actor in any pose of its clips */
     uint32_t character_bytes;
-    noh_clip_entry rest_clip; /* where no clip fits: a set of one clip that is the bind pose */
+    uint32_t graph_count;        /* 0: the rest is not used */
+    noh_graph_pack **graphs;     /* [graph_count] */
+    noh_clip_entry *graph_clips; /* [set.clip_count] those of the bank, then one for each graph */
+    noh_root_track *graph_roots; /* [set.clip_count] where the bank has roots */
+    float *update_errors;        /* [set.clip_count][NOH_UPDATE_RATE_COUNT] where there are any */
+    uint32_t slot_bytes;
+    noh_stage_sampler sampler; /* of `set` */
+    noh_clip_entry rest_clip;  /* where no clip fits: a set of one clip that is the bind pose */
     noh_transform rest_pose;
     /* state */
     uint8_t *characters; /* [actor_count][character_bytes] */
     noh_stage_actor *actors;
     noh_stage_held *held; /* [actor_count][held_float_count] */
+    uint8_t *graph_slots; /* [actor_count][slot_bytes] */
     noh_lod_pools *pools; /* NULL: nothing is drawn */
     uint32_t pool_levels[NOH_LOD_LEVELS_MAX], pool_count;
     /* a frame's own */
@@ -165,7 +196,7 @@ typedef struct noh_stage_shown {
 
 typedef struct noh_stage_job_part {
     noh_clip_bank_view *views[NOH_STAGE_KINDS_MAX]; /* of the kinds that have a bank of their own */
-    void *scratch;
+    void *scratch, *graph_scratch;
     uint64_t decoded_late;
     uint32_t updated;
     float error_pixels;
@@ -206,8 +237,10 @@ struct noh_stage {
     uint32_t events_held;
     noh_schedule schedule;
     noh_stage_job_part *jobs; /* [job_count] */
-    size_t scratch_bytes;
+    size_t scratch_bytes, graph_scratch_bytes;
     uint32_t phase, frame, callback_actor; /* id while on_key runs, else 0 */
+    int callback_of_graph;                 /* the key is one of the actor's graph */
+    int graph_begun;                       /* by a callback of this step */
     noh_stage_event_fn on_key;
     void *on_key_user;
     noh_stage_view views[NOH_STAGE_VIEWS_MAX];
@@ -274,6 +307,8 @@ typedef struct noh_stage_needs {
     size_t bank_bytes;  /* 0: it shares another kind's, or no clip fits */
     size_t view_bytes;  /* of that bank */
     size_t character_bytes, scratch_bytes, lod_bytes, pools_bytes, inertia_bytes;
+    size_t graph_bytes, slot_bytes, graph_scratch_bytes; /* 0 without graphs */
+    uint32_t graph_count;
     uint32_t cached_segment_count, segment_count;
     uint32_t mesh_count, float_count, weight_count, mask_count;
     uint32_t skin_joints; /* of its largest skin */
@@ -302,9 +337,11 @@ typedef struct noh_stage_blocks {
     noh_stage_job_part *jobs;
     uint8_t *views;   /* of all jobs, of all banks, one after another */
     uint8_t *scratch; /* of all jobs */
-    size_t scratch_bytes, views_bytes, pick_bytes, inertia_bytes;
+    uint8_t *graph_scratch;
+    size_t graph_scratch_bytes, scratch_bytes, views_bytes, pick_bytes, inertia_bytes;
     float *matrices;
     void *pick_scratch, *inertia_scratch, *schedule;
+    void *graphs[NOH_STAGE_KINDS_MAX];
     void *banks[NOH_STAGE_KINDS_MAX], *lods[NOH_STAGE_KINDS_MAX], *pools[NOH_STAGE_KINDS_MAX];
 } noh_stage_blocks;
 
@@ -344,6 +381,52 @@ uint32_t noh_stage_index(const noh_stage_kind *kind, const noh_stage_actor *a); 
 void noh_place_matrix(const noh_place *place, float matrix[12]);
 
 uint32_t noh_stage_behind(const noh_stage *s, float alpha); /* ticks behind the last step */
+/* ---- graphs ---- */
+
+/* One word of a list of names. */
+typedef struct noh_stage_word {
+    const char *text;
+    size_t length;
+    int takes_out; /* began with '-' */
+    int any_rest;  /* ended with '*' */
+} noh_stage_word;
+
+int noh_stage_next_word(const char **list, noh_stage_word *word); /* 0 at the end */
+int noh_stage_word_matches(const noh_stage_word *word, const char *name);
+
+noh_result noh_stage_measure_graphs(const noh_kind_desc *kind, uint32_t number, noh_stage_needs *needs,
+                                    noh_error *error);
+noh_result noh_stage_open_graphs(noh_stage_kind *k, uint32_t number, void *memory, const noh_stage_needs *needs,
+                                 noh_error *error);
+uint32_t noh_stage_graph_names(const noh_stage_kind *k, noh_name what); /* how many */
+const char *noh_stage_graph_name(const noh_stage_kind *k, noh_name what, uint32_t index);
+/* Which graph an index of a parameter or machine belongs to; *index becomes that in the graph. 0: past the last. */
+int noh_stage_in_graph(const noh_stage_kind *k, noh_name what, uint32_t *index, uint32_t *graph);
+uint32_t noh_stage_clip_count(const noh_stage_kind *k); /* of clips that have a name */
+
+/* What an actor plays. graph NULL: none. */
+typedef struct noh_stage_playing {
+    const noh_graph_pack *graph;
+    noh_graph_state *state;
+    const noh_track *track; /* of the actor's controller */
+} noh_stage_playing;
+
+noh_stage_playing noh_stage_playing_of(const noh_stage_kind *k, uint32_t index);
+
+/* From now on a set samples through `sampler`: what it sampled before, and the poses that are made for graphs. */
+void noh_stage_wrap(const noh_stage_kind *k, noh_clip_set *set, noh_stage_sampler *sampler);
+
+/* The pose of an actor's graph `ahead` ticks from now, and with `ago` that of so many ticks before, into the scratch of
+ * a job, for its sampler; none where no graph plays. */
+void noh_stage_pose_graph(const noh_stage *s, const noh_stage_job_part *job, noh_stage_kind *k, uint32_t index,
+                          int64_t ahead, int64_t ago, noh_stage_sampler *sampler);
+void noh_stage_begin_graph(noh_stage_kind *k, uint32_t index, uint32_t graph);
+void noh_stage_follow_lod(const noh_stage_kind *k, uint32_t index); /* so that as many joints are decoded ahead */
+noh_due noh_stage_look_graph(noh_stage_kind *k, uint32_t index, const noh_lod_settings *settings,
+                             float pixels_per_metre);
+uint32_t noh_stage_graph_work(const noh_stage_kind *k, uint32_t index); /* joints times clips in its pose */
+noh_result noh_stage_check_graph(const noh_stage_kind *k, const void *slot, noh_error *error);
+
 void noh_stage_look_at(noh_stage *s, uint32_t first, uint32_t end);
 void noh_stage_share(noh_stage *s);
 void noh_stage_pose_todo(noh_stage *s, uint32_t job, uint32_t first, uint32_t end);

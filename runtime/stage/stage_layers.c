@@ -6,16 +6,9 @@
 #include "clip/pack_clip.h"
 #include "stage/stage_internal.h"
 
-/* One word of a list of names. */
-typedef struct word {
-    const char *text;
-    size_t length;
-    int takes_out; /* began with '-' */
-    int any_rest;  /* ended with '*' */
-} word;
+typedef noh_stage_word word;
 
-/* The next word; 0 at the end. */
-static int next_word(const char **list, word *w)
+int noh_stage_next_word(const char **list, word *w)
 {
     const char *at = *list;
     memset(w, 0, sizeof *w);
@@ -36,7 +29,7 @@ static int next_word(const char **list, word *w)
     return 1;
 }
 
-static int matches(const word *w, const char *name)
+int noh_stage_word_matches(const word *w, const char *name)
 {
     size_t i = 0;
     while (i < w->length && name[i] == w->text[i] && name[i]) i++;
@@ -49,7 +42,7 @@ static int mask_joints(const noh_stage_kind *k, const word *w, uint8_t *mask)
 {
     int found = 0;
     for (uint32_t j = 0; j < k->skeleton.joint_count; j++) {
-        if (matches(w, noh_pack_joint_name(k->desc.mesh, k->desc.skeleton, j))) {
+        if (noh_stage_word_matches(w, noh_pack_joint_name(k->desc.mesh, k->desc.skeleton, j))) {
             noh_mask_subtree(mask, &k->skeleton, j, w->takes_out ? 0 : 255);
             found = 1;
         }
@@ -84,7 +77,7 @@ static int mask_floats(const noh_stage_kind *k, const word *w, uint8_t *mask)
         noh_mesh mesh;
         const int has_mesh = group_mesh(k, group, &mesh);
         for (uint32_t i = 0; i < group->width; i++) {
-            if (has_mesh ? matches(w, noh_pack_string(mesh.pack, mesh.targets[i].name))
+            if (has_mesh ? noh_stage_word_matches(w, noh_pack_string(mesh.pack, mesh.targets[i].name))
                          : matches_hash(w, group->name_hash)) {
                 mask[group->first + i] = w->takes_out ? 0 : 255;
                 found = 1;
@@ -105,7 +98,7 @@ static noh_result fill_mask(const noh_stage_kind *k, const char *list, mask_fn f
     const char *at = list;
     word w;
     noh_mask_fill(mask, count, !list ? 255 : 0);
-    for (int first = 1; list && next_word(&at, &w); first = 0) {
+    for (int first = 1; list && noh_stage_next_word(&at, &w); first = 0) {
         if (first && w.takes_out) noh_mask_fill(mask, count, 255);
         if (!fn(k, &w, mask)) {
             return noh_fail(error, NOH_ERR_NOT_FOUND, what, kind, 0);

@@ -90,7 +90,7 @@ static void look_at(noh_stage *s, noh_stage_kind *k, uint32_t index)
     noh_character *ch = noh_stage_character(k, noh_stage_index(k, a));
     noh_lod_settings settings = s->desc.lod;
     noh_place place;
-    float scale = 0.0f;
+    float scale = 0.0f, asked;
     noh_stage_shown_place(s, a, &place);
     shown->views = look_from(s, index, &place, &scale);
     a->on_its_way = 0;
@@ -107,13 +107,15 @@ static void look_at(noh_stage *s, noh_stage_kind *k, uint32_t index)
     a->was_seen = 1;
     if (a->look.pixels > 0.0f) settings.pixels = a->look.pixels;
     noh_character_set_behind(ch, s->head->behind_ticks);
-    shown->due = (uint8_t)noh_character_look(
-        ch, &k->table, &settings, a->look.posed || noh_stage_is_full(s, a) ? FULL_DETAIL : scale * place.scale);
+    asked = a->look.posed || noh_stage_is_full(s, a) ? FULL_DETAIL : scale * place.scale;
+    shown->due = (uint8_t)(k->graph_count ? noh_stage_look_graph(k, noh_stage_index(k, a), &settings, asked)
+                                          : noh_character_look(ch, &k->table, &settings, asked));
     if (noh_stage_is_full(s, a)) {
         const uint32_t level = a->look.level ? a->look.level - 1u : k->plan->finest_level;
         noh_lod_set_mesh(&ch->lod, &k->table, level, scale * place.scale);
         (void)noh_controller_set_lod(noh_character_controller(ch), ch->lod.mesh, 0);
     }
+    if (k->graph_count) noh_stage_follow_lod(k, noh_stage_index(k, a));
 }
 
 void noh_stage_look_at(noh_stage *s, uint32_t first, uint32_t end)

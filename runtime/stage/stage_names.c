@@ -20,7 +20,7 @@ noh_result noh_stage_pack_clip(const noh_stage_kind *k, uint32_t clip, noh_pack_
 static const char *clip_name(const noh_stage_kind *k, uint32_t index)
 {
     noh_pack_clip clip;
-    return k->bank && index < k->set.clip_count && noh_stage_pack_clip(k, index, &clip) == NOH_OK ? clip.name : NULL;
+    return index < noh_stage_clip_count(k) && noh_stage_pack_clip(k, index, &clip) == NOH_OK ? clip.name : NULL;
 }
 
 static const char *float_name(const noh_stage_kind *k, uint32_t index)
@@ -45,6 +45,9 @@ const char *noh_stage_name(const noh_stage *stage, uint32_t kind, noh_name what,
     case NOH_NAME_FLOAT: return float_name(k, index);
     case NOH_NAME_JOINT:
         return index < k->skeleton.joint_count ? noh_pack_joint_name(k->desc.mesh, k->desc.skeleton, index) : NULL;
+    case NOH_NAME_GRAPH:
+    case NOH_NAME_PARAMETER:
+    case NOH_NAME_MACHINE: return noh_stage_graph_name(k, what, index);
     }
     return NULL;
 }
@@ -54,10 +57,13 @@ const char *noh_stage_name(const noh_stage *stage, uint32_t kind, noh_name what,
 static uint32_t count_of(const noh_stage_kind *k, noh_name what)
 {
     switch (what) {
-    case NOH_NAME_CLIP: return k->bank ? k->set.clip_count : 0;
+    case NOH_NAME_CLIP: return noh_stage_clip_count(k);
     case NOH_NAME_LAYER: return k->layer_count;
     case NOH_NAME_FLOAT: return k->float_count;
     case NOH_NAME_JOINT: return k->skeleton.joint_count;
+    case NOH_NAME_GRAPH:
+    case NOH_NAME_PARAMETER:
+    case NOH_NAME_MACHINE: return noh_stage_graph_names(k, what);
     }
     return 0;
 }

@@ -381,6 +381,7 @@ static noh_result begin(const planner *p, uint32_t kind, noh_error *error)
         k->joint_count = needs.shape.joint_count;
         k->float_count = needs.float_count;
         k->segment_count = needs.segment_count;
+        k->graph_count = needs.graph_count;
         k->cached_segment_count = needs.cached_segment_count;
     }
     return result;
@@ -431,6 +432,7 @@ static uint32_t hash_plan(const noh_stage_desc *desc, const noh_stage_plan *plan
         hash = mix(mix(mix(hash, d.actor_count), d.held_float_count), d.mesh->byte_count);
         hash = mix(mix(mix(hash, k->level_count), k->finest_level), k->track_count);
         hash = mix(mix(mix(hash, k->joint_count), k->float_count), k->segment_count);
+        hash = mix(hash, k->graph_count);
         for (uint32_t l = 0; l < k->level_count; l++) {
             hash = mix(hash, k->levels[l].slot_count);
         }

@@ -150,12 +150,35 @@ static uint32_t free_track(const player *p)
     return lightest;
 }
 
-static int something_plays(const player *p, uint32_t but)
+static int is_graph(const player *p, uint32_t clip)
+{
+    return p->k->graph_count && clip >= noh_stage_clip_count(p->k);
+}
+
+/* A graph that another one is to replace does not count: it ends at once. */
+static int something_plays(const player *p, uint32_t but, int for_graph)
 {
     for (uint32_t i = 0; i < p->layer->track_count; i++) {
-        if (i != but && track_at(p, i)->mode != NOH_TRACK_OFF && track_at(p, i)->weight > 0.0f) return 1;
+        const noh_track *t = track_at(p, i);
+        if (i != but && t->mode != NOH_TRACK_OFF && t->weight > 0.0f && !(for_graph && is_graph(p, t->clip))) return 1;
     }
     return 0;
+}
+
+/* An actor has one graph: what plays of it ends on all layers, and a new instance begins. */
+static void change_graph(player *p, uint32_t clip)
+{
+    noh_change *changes = (noh_change *)(void *)((uint8_t *)p->c + p->c->changes_offset);
+    if (!is_graph(p, clip)) {
+        return;
+    }
+    for (uint32_t i = 0; i < p->c->track_count; i++) {
+        if (!is_graph(p, noh_controller_track(p->c, i)->clip)) continue;
+        noh_changes_drop(changes, p->c->change_count, i);
+        (void)noh_controller_set_mode(p->c, i, NOH_TRACK_OFF);
+    }
+    noh_stage_begin_graph(p->k, noh_stage_index(p->k, p->a), clip - noh_stage_clip_count(p->k));
+    p->s->graph_begun = 1;
 }
 
 /* The position of a clip at the same part of its pass as what plays now. */
@@ -163,7 +186,7 @@ static int64_t phase_ticks(const player *p, uint32_t clip)
 {
     const noh_track *from = track_at(p, started(p->a, p->layer_index));
     const noh_clip_entry *old, *next = &p->k->set.clips[clip];
-    if (from->mode == NOH_TRACK_OFF) {
+    if (from->mode == NOH_TRACK_OFF || is_graph(p, from->clip)) {
         return 0;
     }
     old = &p->k->set.clips[from->clip];
@@ -215,24 +238,41 @@ static noh_result make_room(player *p, uint32_t but, noh_error *error)
     return NOH_OK;
 }
 
+/* The kind's set, with the poses of the actor's graph now and a moment ago. */
+static noh_clip_set set_for_inertia(const player *p, noh_stage_sampler *sampler)
+{
+    noh_clip_set set = p->k->set;
+    if (p->k->graph_count) {
+        *sampler = p->k->sampler;
+        noh_stage_pose_graph(p->s, &p->s->jobs[0], p->k, noh_stage_index(p->k, p->a), 0, NOH_INERTIA_BEFORE_TICKS,
+                             sampler);
+        set.user = sampler;
+    }
+    return set;
+}
+
 /* Over to a clip by inertia: it alone plays on the layer from now on, and the leap decays. */
 static noh_result leap(player *p, uint32_t clip, const noh_play *play, noh_error *error)
 {
     const uint32_t ticks = play->fade_ticks ? play->fade_ticks : FADE_TICKS, track = free_track(p);
     const noh_track_desc d = track_desc(p, clip, play, 0);
     noh_pose_scratch scratch;
+    noh_stage_sampler sampler;
+    noh_clip_set set = set_for_inertia(p, &sampler);
     noh_track probe;
-    noh_result result = noh_track_start(&probe, &p->k->set, &d, error);
+    noh_result result = noh_track_start(&probe, &set, &d, error);
     if (result == NOH_OK) {
-        result = noh_pose_scratch_init(p->s->inertia_scratch, p->s->inertia_bytes, &p->k->set, 1, &scratch, error);
+        result = noh_pose_scratch_init(p->s->inertia_scratch, p->s->inertia_bytes, &set, 1, &scratch, error);
     }
-    if (result == NOH_OK) result = noh_controller_inertia_capture(p->c, &p->k->set, &scratch, error);
+    if (result == NOH_OK) result = noh_controller_inertia_capture(p->c, &set, &scratch, error);
     if (result == NOH_OK) result = make_room(p, track, error);
+    if (result == NOH_OK) change_graph(p, clip);
     if (result == NOH_OK) result = fade_others(p, track, 1, error);
     if (result == NOH_OK) {
         result = noh_controller_start(p->c, &p->k->set, p->layer->first_track + track, &d, error);
     }
-    if (result == NOH_OK) result = noh_controller_inertia_begin(p->c, &p->k->set, &scratch, ticks, error);
+    set = set_for_inertia(p, &sampler);
+    if (result == NOH_OK) result = noh_controller_inertia_begin(p->c, &set, &scratch, ticks, error);
     if (result == NOH_OK) {
         set_started(p->a, p->layer_index, track);
         noh_character_wake(noh_stage_character(p->k, noh_stage_index(p->k, p->a)));
@@ -254,12 +294,14 @@ static noh_result begin(player *p, uint32_t clip, const noh_play *play, noh_erro
 {
     const int beside = (play->flags & NOH_PLAY_BESIDE) != 0;
     const uint32_t ticks = play->fade_ticks ? play->fade_ticks : FADE_TICKS, track = free_track(p);
-    const int from_nothing = p->layer->mode == NOH_LAYER_BASE && p->layer->moves_joints && !something_plays(p, track);
+    const int from_nothing = p->layer->mode == NOH_LAYER_BASE && p->layer->moves_joints &&
+                             !something_plays(p, track, is_graph(p, clip));
     const int at_once = ticks <= 1u || from_nothing;
     const noh_track_desc d = track_desc(p, clip, play, !at_once);
     noh_track probe;
     noh_result result = noh_track_start(&probe, &p->k->set, &d, error);
     if (result == NOH_OK) result = beside ? make_room_beside(p, track, error) : make_room(p, track, error);
+    if (result == NOH_OK) change_graph(p, clip);
     if (result == NOH_OK) {
         result = noh_controller_start(p->c, &p->k->set, p->layer->first_track + track, &d, error);
     }
@@ -296,7 +338,7 @@ noh_result noh_actor_play(noh_stage *stage, noh_actor actor, uint32_t layer, con
     index = noh_stage_find(stage, (uint32_t)(p.k - stage->kinds), NOH_NAME_CLIP, clip);
     if (index == NOH_NONE) {
         return noh_fail(error, NOH_ERR_NOT_FOUND, "the kind has no clip of that name", (uint64_t)(p.k - stage->kinds),
-                        p.k->bank ? p.k->set.clip_count : 0);
+                        noh_stage_clip_count(p.k));
     }
     if (how->flags & ~(NOH_PLAY_KEEP | NOH_PLAY_PHASE | NOH_PLAY_INERTIA | NOH_PLAY_BESIDE)) {
         return noh_fail(error, NOH_ERR_ARG, "flags of a play has unknown bits", how->flags, 0);
@@ -309,6 +351,47 @@ noh_result noh_actor_play(noh_stage *stage, noh_actor actor, uint32_t layer, con
     }
     if ((how->flags & NOH_PLAY_INERTIA) && !p.k->desc.inertia) {
         return noh_fail(error, NOH_ERR_ARG, "the kind has no room for inertia", (uint64_t)(p.k - stage->kinds), 0);
+    }
+    return how->flags & NOH_PLAY_INERTIA ? leap(&p, index, how, error) : begin(&p, index, how, error);
+}
+
+static const char *bad_graph_play(const player *p, const noh_play *play)
+{
+    if (p->layer->mode == NOH_LAYER_ADD) return "a graph plays on a base or an over layer";
+    if (play->speed || play->start_ticks || play->loop || play->sync_group)
+        return "a graph has its own speeds, starts, loops and sync groups: leave those of the play 0";
+    if (play->flags & ~(NOH_PLAY_KEEP | NOH_PLAY_INERTIA)) return "flags of a graph's play: KEEP and INERTIA alone";
+    if ((play->flags & NOH_PLAY_INERTIA) && !p->k->desc.inertia) return "the kind has no room for inertia";
+    return p->s->callback_of_graph ? "within a key of a graph no graph begins: set a parameter of it, or play after "
+                                     "the step"
+                                   : NULL;
+}
+
+noh_result noh_actor_play_graph(noh_stage *stage, noh_actor actor, uint32_t layer, const char *graph,
+                                const noh_play *play, noh_error *error)
+{
+    static const noh_play plain;
+    const noh_play *how = play ? play : &plain;
+    const char *what;
+    uint32_t index;
+    player p;
+    const noh_result result = open_player(stage, actor, layer, &p, error);
+    NOH_ASSERT(graph);
+    if (result != NOH_OK) {
+        return result;
+    }
+    index = noh_stage_find(stage, (uint32_t)(p.k - stage->kinds), NOH_NAME_GRAPH, graph);
+    if (index == NOH_NONE) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "the kind has no graph of that name", (uint64_t)(p.k - stage->kinds),
+                        p.k->graph_count);
+    }
+    what = bad_graph_play(&p, how);
+    if (what) {
+        return noh_fail(error, NOH_ERR_ARG, what, layer, 0);
+    }
+    index += noh_stage_clip_count(p.k);
+    if ((how->flags & NOH_PLAY_KEEP) && plays(&p, index)) {
+        return NOH_OK;
     }
     return how->flags & NOH_PLAY_INERTIA ? leap(&p, index, how, error) : begin(&p, index, how, error);
 }

@@ -4,13 +4,16 @@
 
 #include "stage/stage_internal.h"
 
-/* The set of a kind, sampled by a job's own view. */
-static noh_clip_set job_set(const noh_stage_job_part *job, const noh_stage_kind *kind)
+/* The set of a kind, sampled by a job's own view; through `sampler` where some clips stand for graphs. */
+static noh_clip_set job_set(const noh_stage_job_part *job, const noh_stage_kind *kind, noh_stage_sampler *sampler)
 {
     noh_clip_set set = kind->set;
     if (kind->bank) {
         set.sample = job->views[kind->bank_kind]->clips.sample;
         set.user = job->views[kind->bank_kind]->clips.user;
+    }
+    if (kind->graph_count) {
+        noh_stage_wrap(kind, &set, sampler);
     }
     return set;
 }
@@ -85,29 +88,50 @@ static uint64_t late_of(const noh_stage *s, const noh_stage_job_part *job)
     return late;
 }
 
+/* What the actors of a kind are posed with, one after another. */
+typedef struct poser {
+    noh_stage_kind *k;
+    noh_clip_set set;
+    noh_stage_sampler sampler;
+    noh_character_scratch scratch;
+} poser;
+
+static void open_poser(const noh_stage *s, const noh_stage_job_part *job, noh_stage_kind *k, poser *p)
+{
+    const noh_character_desc desc = noh_stage_character_desc(k, 0);
+    p->k = k;
+    p->set = job_set(job, k, &p->sampler);
+    (void)noh_character_scratch_init(job->scratch, s->scratch_bytes, &desc, &p->scratch, NULL);
+}
+
+static void update(const noh_stage *s, const noh_stage_job_part *job, poser *p, uint32_t i)
+{
+    noh_stage_kind *k = p->k;
+    noh_character *ch = noh_stage_character(k, i);
+    if (k->graph_count) {
+        noh_stage_pose_graph(s, job, k, i, noh_character_pose_clock(ch) - noh_character_clock(ch), 0, &p->sampler);
+    }
+    noh_character_update(ch, &p->set, &k->skeleton, k->skeleton.joint_count ? k->joint_radii : NULL, &p->scratch);
+}
+
 void noh_stage_pose_todo(noh_stage *s, uint32_t number, uint32_t first, uint32_t end)
 {
     noh_stage_job_part *job = &s->jobs[number];
-    noh_stage_kind *k = NULL;
-    noh_character_scratch scratch;
-    noh_clip_set set;
+    poser p;
     const uint64_t late = late_of(s, job);
+    p.k = NULL;
     job->updated = 0;
     job->error_pixels = 0.0f;
     for (uint32_t t = first; t < end; t++) {
         noh_stage_kind *of = noh_stage_kind_of(s, s->todo[t]);
-        if (of != k) {
-            const noh_character_desc desc = noh_stage_character_desc(of, 0);
-            k = of;
-            set = job_set(job, k);
-            (void)noh_character_scratch_init(job->scratch, s->scratch_bytes, &desc, &scratch, NULL);
+        if (of != p.k) {
+            open_poser(s, job, of, &p);
         }
         if (s->shown[s->todo[t]].updates) {
-            noh_character_update(noh_stage_character(k, s->todo[t] - k->first_actor), &set, &k->skeleton,
-                                 k->skeleton.joint_count ? k->joint_radii : NULL, &scratch);
+            update(s, job, &p, s->todo[t] - of->first_actor);
             job->updated++;
         }
-        show(s, job, k, s->todo[t]);
+        show(s, job, of, s->todo[t]);
     }
     job->decoded_late = late_of(s, job) - late;
 }

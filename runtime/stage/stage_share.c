@@ -95,7 +95,7 @@ static void offer(noh_stage *s, noh_stage_kind *k, uint32_t i)
         shown->updates = shown->due != NOH_DUE_NOT;
         return;
     }
-    cost = noh_cost_ns(&costs, noh_character_joint_work(ch), 0, 0);
+    cost = noh_cost_ns(&costs, noh_character_joint_work(ch) + noh_stage_graph_work(k, i), 0, 0);
     if (shown->due == NOH_DUE_AT_ONCE) {
         noh_schedule_spend(&s->schedule, cost);
         shown->updates = 1;
@@ -127,14 +127,24 @@ static uint32_t ahead_of(const noh_stage *s, const noh_character *ch)
     return noh_update_period((noh_update_rate)ch->lod.update_rate) + s->head->step_ticks;
 }
 
+static void want_clips(noh_stage *s, const noh_stage_kind *k, uint32_t i, int now)
+{
+    noh_character *ch = noh_stage_character(k, i);
+    const uint32_t ahead = now ? ahead_of(s, ch) : AHEAD_TICKS;
+    const noh_stage_playing p = noh_stage_playing_of(k, i);
+    (void)noh_clip_bank_prefetch(k->bank, noh_character_controller(ch), ahead);
+    if (p.graph) {
+        (void)noh_clip_bank_prefetch(k->bank, noh_graph_controller(p.state), ahead);
+    }
+}
+
 static void want(noh_stage *s, int now)
 {
     for (uint32_t t = 0; t < s->todo_count; t++) {
         const uint32_t index = s->todo[t];
         const noh_stage_kind *k = noh_stage_kind_of(s, index);
-        noh_character *ch = noh_stage_character(k, index - k->first_actor);
         if (k->bank && (s->shown[index].updates || !now)) {
-            (void)noh_clip_bank_prefetch(k->bank, noh_character_controller(ch), now ? ahead_of(s, ch) : AHEAD_TICKS);
+            want_clips(s, k, index - k->first_actor, now);
         }
     }
 }

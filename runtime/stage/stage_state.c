@@ -105,6 +105,9 @@ static noh_result check_kind(const reader *r, uint32_t kind, noh_error *error)
         if (!what) what = bad_held(k, in_copy(r, k->held + (size_t)i * k->desc.held_float_count));
         if (what) return noh_fail(error, NOH_ERR_DATA, what, k->first_actor + i, 0);
         if (actors[i].alive) result = noh_character_check(character, k->character_bytes, &k->set, &k->table, error);
+        if (actors[i].alive && result == NOH_OK) {
+            result = noh_stage_check_graph(k, in_copy(r, k->graph_slots + (size_t)i * k->slot_bytes), error);
+        }
     }
     what = result == NOH_OK ? bad_list(r, k, &head->kinds[kind]) : NULL;
     if (!what && result == NOH_OK) {

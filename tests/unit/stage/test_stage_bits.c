@@ -52,6 +52,7 @@ static void open_show(show *s)
     s->kinds[0].root_axes = NOH_ROOT_GROUND;
     s->kinds[0].root_up = 1;
     s->kinds[0].inertia = 1;
+    s->kinds[0].graphs = "moves";
     s->kinds[1].actor_count = MASKS;
     s->desc.kinds = s->kinds;
     s->desc.kind_count = 2;
@@ -92,6 +93,9 @@ static void frames(show *s, uint32_t first, uint32_t end, uint64_t *hashes)
         if (f % 16u == 7u)
             (void)noh_actor_play(s->stage, actor, 0, f % 32u == 7u ? "dance" : "bow", f % 48u == 7u ? NULL : &leap,
                                  NULL);
+        if (f % 40u == 10u)
+            (void)noh_actor_play_graph(s->stage, actor, 0, "moves", f % 80u == 10u ? NULL : &leap, NULL);
+        if (f % 8u == 2u) (void)noh_actor_set_parameter(s->stage, actor, f / 8u % 4u, 0.01f * (float)f, NULL);
         if (f % 16u == 3u) (void)noh_actor_hold_float(s->stage, actor, f % 20u, 0.01f * (float)f, 0.5f, NULL);
         noh_view_orbit(&view, middle, 0.05f * (float)f, 0.3f, 3.0f + 0.2f * (float)(f % 80u), 640, 360);
         assert_int_equal(noh_stage_step(s->stage, FRAME_TICKS + f % 7u, NULL, NULL, NULL), NOH_OK);

@@ -73,6 +73,7 @@ static void open_cast(cast *c)
     }
     c->kinds[PUPPETS].root_axes = NOH_ROOT_GROUND;
     c->kinds[PUPPETS].root_up = 1;
+    c->kinds[PUPPETS].graphs = "moves";
     c->desc.kinds = c->kinds;
     c->desc.kind_count = KINDS;
     c->desc.job_count = THREADS;
@@ -96,17 +97,23 @@ static void enter(cast *c, uint32_t kind, uint32_t number)
     if (noh_stage_spawn(c->stage, kind, &place, &actor, NULL) != NOH_OK) return; /* all of the kind are there */
     assert_int_equal(noh_actor_play(c->stage, actor, kind == MASKS, kind == MASKS ? "speak" : "walk", &play, NULL),
                      NOH_OK);
+    if (kind == PUPPETS && number % 2u) {
+        assert_int_equal(noh_actor_play_graph(c->stage, actor, 0, "moves", NULL, NULL), NOH_OK);
+    }
 }
 
 /* Somebody goes, comes or changes. */
 static void direct(cast *c, test_random *r, uint32_t frame)
 {
     static const char *const clips[] = { "walk", "run", "bow" };
-    const uint32_t index = test_random_below(r, ACTORS), what = test_random_below(r, 4);
+    const uint32_t index = test_random_below(r, ACTORS), what = test_random_below(r, 5);
     const noh_actor actor = noh_stage_actor_at(c->stage, index);
     if (what == 0 && actor.id) assert_int_equal(noh_stage_despawn(c->stage, actor, NULL), NOH_OK);
     if (what == 1) enter(c, index < c->kinds[PUPPETS].actor_count ? PUPPETS : MASKS, index + frame);
     if (what == 2 && actor.id) (void)noh_actor_play(c->stage, actor, 0, clips[frame % 3u], NULL, NULL);
+    if (what == 4 && actor.id) { /* where it plays the graph */
+        (void)noh_actor_set_parameter(c->stage, actor, frame % 3u, test_random_float(r, 0, 1), NULL);
+    }
     if (what == 3 && actor.id) (void)noh_actor_hold_float(c->stage, actor, 0, test_random_float(r, 0, 1), 0.5f, NULL);
 }
 
