@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "draw/drawing.h"
+#include "draw/picture.h"
 #include "gpu/gpu_args.h"
 #include "cli/message.h"
 #include "file/png_file.h"
@@ -15,11 +15,10 @@ typedef struct render_args {
     const char *pack, *output, *anim, *path, *accumulate, *driver, *debug;
     uint32_t size[2];
     double time_s, lod;
-    uint32_t level;
     int show_bones;
     option_list weights, clips;
     view_options view;
-    load_options load;
+    figure_desc figure;
 } render_args;
 
 static int parse_debug(const char *text, noh_debug_view *view)
@@ -37,81 +36,78 @@ static int parse_debug(const char *text, noh_debug_view *view)
 
 static int check_args(render_args *a)
 {
-    int status = parse_path(a->path, &a->load.path);
-    if (!status) status = parse_accumulate(a->accumulate, &a->load.accumulate);
-    if (!status) status = parse_debug(a->debug, &a->load.view);
-    if (!status) status = parse_level(a->lod, &a->level);
+    int status = parse_path(a->path, &a->figure.path);
+    if (!status) status = parse_accumulate(a->accumulate, &a->figure.accumulate);
+    if (!status) status = parse_debug(a->debug, &a->figure.view);
+    if (!status) status = parse_level(a->lod, &a->figure.level);
+    if (!status && a->clips.count > (int)NOH_LAYER_TRACKS_MAX) {
+        status = tool_usage("more than %u times --clip", NOH_LAYER_TRACKS_MAX);
+    }
     a->view.width = a->size[0];
     a->view.height = a->size[1];
     return status;
 }
 
-/* What was drawn: printed once the picture is written. */
-typedef struct drawn {
-    int bones;
-    noh_gl_morph_plan plan; /* without bones */
-} drawn;
-
-static void print_done(const render_args *a, const drawn *d)
+/* Once the picture is written. plan: NULL where bones were drawn. */
+static void print_done(const render_args *a, const noh_gl_morph_plan *plan)
 {
     FILE *out = report_stream(a->output);
-    if (d->bones) {
+    if (!plan) {
         fprintf(out, "%s: %ux%u, bones\n", a->output, a->size[0], a->size[1]);
         return;
     }
-    fprintf(out, "%s: %ux%u, %s-%s (%s)\n", a->output, a->size[0], a->size[1], noh_morph_path_name(d->plan.path),
-            noh_accumulate_name(d->plan.accumulate), d->plan.reason);
+    fprintf(out, "%s: %ux%u, %s-%s (%s)\n", a->output, a->size[0], a->size[1], noh_morph_path_name(plan->path),
+            noh_accumulate_name(plan->accumulate), plan->reason);
 }
 
-static int draw(gpu *g, const pack_file *file, scene *s, const render_args *a, int show_bones, uint8_t *rgba,
-                drawn *done)
+static int draw(picture *p, const render_args *a, uint8_t *rgba)
 {
-    drawing d;
     noh_gl_camera camera;
-    bounds box = drawing_bounds(s, file, view_wants_face(&a->view), show_bones);
-    int status = view_camera(&a->view, &box, &camera);
-    if (!status) status = scene_set_level(s, file, a->level);
+    int status = figure_play_options(&p->figure, &a->clips, a->time_s);
+    if (!status) status = figure_hold_options(&p->figure, &a->weights);
+    if (!status) status = figure_pose(&p->figure);
     if (!status) {
-        status = drawing_open(&d, g, file, s, &a->load, show_bones, a->size[0], a->size[1]);
+        const bounds box = picture_bounds(p, view_wants_face(&a->view));
+        status = view_camera(&a->view, &box, &camera);
     }
-    if (status) {
-        return status;
+    return status ? status : picture_read(p, &camera, rgba);
+}
+
+static int draw_and_write(gpu *g, const render_args *a, int shows_bones)
+{
+    picture p;
+    uint8_t *rgba = malloc((size_t)a->size[0] * a->size[1] * 4);
+    noh_gl_morph_plan plan;
+    int status = rgba ? picture_open(&p, g, &a->figure, shows_bones, a->size[0], a->size[1])
+                      : tool_fail(a->output, "out of memory");
+    if (!status) {
+        const figure *f = &p.figure;
+        status = draw(&p, a, rgba);
+        if (!shows_bones) (void)noh_stage_morph_plan(&f->stage_desc, &g->caps, &f->plan, &plan, NULL);
+        picture_close(&p);
     }
-    status = drawing_read(&d, &camera, rgba);
-    done->bones = show_bones;
-    if (!show_bones) {
-        done->plan = *noh_gl_morph_plan_of(d.load.morph.morph);
-    }
-    drawing_close(&d);
+    if (!status) status = tool_write_png(a->output, a->size[0], a->size[1], rgba);
+    if (!status) print_done(a, shows_bones ? NULL : &plan);
+    free(rgba);
     return status;
 }
 
-static int pose_and_draw(const pack_file *file, const render_args *a)
+static int render(render_args *a, const pack_file *file)
 {
-    uint8_t *rgba = malloc((size_t)a->size[0] * a->size[1] * 4);
-    scene s;
+    pack_file anim;
     gpu g;
-    drawn d;
-    int show_bones, status = rgba ? scene_init(&s, file) : tool_fail(file->path, "out of memory");
+    const int shows_bones = picture_shows_bones(file, a->show_bones);
+    int status = shows_bones < 0 ? EXIT_FAILED : 0;
+    a->figure.file = file;
+    a->figure.track_count = (uint32_t)a->clips.count;
+    a->figure.held_float_count = (uint32_t)a->weights.count;
+    if (!status && a->clips.count) status = figure_open_clips(&anim, a->anim, file, &a->figure.clips);
+    if (!status) status = gpu_open_drawing(&g, a->driver);
     if (!status) {
-        show_bones = drawing_shows_bones(&s, file, a->show_bones);
-        status = show_bones < 0 ? EXIT_FAILED : scene_open_anim(&s, file, a->anim);
-        if (!status && a->clips.count) status = scene_set_clips(&s, file, &a->clips, a->time_s);
-        if (!status) status = scene_set_weights(&s, file, &a->weights);
-        if (!status) status = gpu_open_drawing(&g, a->driver);
-        if (!status) {
-            status = draw(&g, file, &s, a, show_bones, rgba, &d);
-            gpu_close(&g);
-        }
-        scene_free(&s);
+        status = draw_and_write(&g, a, shows_bones);
+        gpu_close(&g);
     }
-    if (!status) {
-        status = tool_write_png(a->output, a->size[0], a->size[1], rgba);
-    }
-    if (!status) {
-        print_done(a, &d);
-    }
-    free(rgba);
+    if (a->figure.clips) figure_close_clips(&anim, a->figure.clips);
     return status;
 }
 
@@ -123,7 +119,7 @@ static int run(void *args)
     if (!status) {
         status = pack_file_open(&file, a->pack);
         if (!status) {
-            status = pose_and_draw(&file, a);
+            status = render(a, &file);
             pack_file_close(&file);
         }
     }

@@ -1,0 +1,34 @@
+/* picture.h: pictures of a figure: its meshes, or its skeletons drawn as bones. */
+#ifndef NOH_NOH_DRAW_PICTURE_H
+#define NOH_NOH_DRAW_PICTURE_H
+
+#include "bones.h"
+#include "figure.h"
+#include "gpu/canvas.h"
+
+typedef struct picture {
+    figure figure;
+    int shows_bones;
+    bones bones[NOH_STAGE_KINDS_MAX]; /* of kinds with joints */
+    canvas canvas;
+    int has_canvas;
+} picture;
+
+/* 1 where bones are to be drawn: they were asked for, or there are no meshes. Prints an error and returns -1 where
+ * there is no skeleton either. */
+int picture_shows_bones(const pack_file *file, int asked_for);
+
+/* Make everything that drawing needs, with a context that can draw. Prints an error and returns an exit code; 0 on
+ * success. */
+int picture_open(picture *p, gpu *g, const figure_desc *desc, int shows_bones, uint32_t width, uint32_t height);
+void picture_close(picture *p);
+
+/* The world bounds of what is drawn, as posed. */
+bounds picture_bounds(const picture *p, int face);
+
+/* Draw the figure into the canvas, as it is. */
+int picture_paint(picture *p, const noh_gl_camera *camera);
+/* The same, and read the picture: rgba[height][width][4], top row first. */
+int picture_read(picture *p, const noh_gl_camera *camera, uint8_t *rgba);
+
+#endif
