@@ -75,6 +75,8 @@ void figure_close_clips(pack_file *opened, const pack_file *clips);
 uint32_t figure_level_count(const noh_pack *pack);
 uint32_t figure_level_first(const noh_pack *pack);
 int figure_check_level(const pack_file *file, uint32_t level);
+/* Of all that is drawn at a level. */
+uint32_t figure_triangles(const figure *f, uint32_t level);
 
 int figure_reset(figure *f);
 /* How all actors are drawn, from now on. */

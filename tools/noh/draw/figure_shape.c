@@ -39,6 +39,16 @@ int figure_check_level(const pack_file *file, uint32_t level)
                            level, count, plural(count));
 }
 
+uint32_t figure_triangles(const figure *f, uint32_t level)
+{
+    uint32_t triangles = 0;
+    for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
+        const noh_kind_plan *plan = &f->plan.kinds[k];
+        triangles += plan->levels[level < plan->level_count ? level : plan->level_count - 1u].triangle_count;
+    }
+    return triangles;
+}
+
 /* ---- joints ---- */
 
 float *figure_joints(const figure *f, uint32_t kind, noh_skeleton *skeleton)

@@ -5,7 +5,7 @@
 
 #include "sheet_lods.h"
 #include "sheet_tiles.h"
-#include "draw/drawing.h"
+#include "draw/picture.h"
 #include "gpu/gpu_args.h"
 #include "draw/label.h"
 #include "cli/message.h"
@@ -22,7 +22,7 @@ typedef struct sheet {
     bounds box; /* of all tiles, relative to the anchor */
     uint8_t *rgba;
     const char *pack, *output, *driver, *camera;
-    load_options load;
+    figure_desc figure;
 } sheet;
 
 typedef struct sheet_args {
@@ -55,60 +55,63 @@ static bounds move_box(bounds box, const double by[3], double sign)
 }
 
 /* One box for all tiles, relative to the anchor, from at most 40 of the poses. */
-static int measure_tiles(sheet *s, int face)
+static int measure_tiles(sheet *s, picture *p, int face)
 {
-    const scene *posed = &s->tiles.posed;
     int status = 0;
     for (uint32_t tile = 0; tile < s->tile_count && !status; tile += 1 + s->tile_count / 40) {
         double anchor[3];
         bounds box;
-        status = sheet_tiles_pose(&s->tiles, tile);
-        scene_anchor(posed, anchor);
-        box = move_box(drawing_bounds(posed, s->tiles.file, face, s->show_bones), anchor, -1.0);
+        status = sheet_tiles_pose(&s->tiles, &p->figure, tile);
+        if (status) break;
+        figure_anchor(&p->figure, anchor);
+        box = move_box(picture_bounds(p, face), anchor, -1.0);
         s->box = tile ? bounds_union(s->box, box) : box;
     }
     return status;
 }
 
-static int tile_camera(const sheet *s, noh_gl_camera *camera)
+static int tile_camera(const sheet *s, const picture *p, noh_gl_camera *camera)
 {
     const view_options o = { s->camera, s->tile, s->tile };
     double anchor[3];
     bounds box;
-    scene_anchor(&s->tiles.posed, anchor);
+    figure_anchor(&p->figure, anchor);
     box = move_box(s->box, anchor, 1.0);
     return view_camera(&o, &box, camera);
 }
 
-static int draw_tiles(sheet *s, drawing *d)
+static int draw_tiles(sheet *s, picture *p)
 {
     uint8_t *rgba = malloc((size_t)s->tile * s->tile * 4);
     int status = rgba ? 0 : tool_fail(s->pack, "out of memory");
     for (uint32_t tile = 0; tile < s->tile_count && !status; tile++) {
         noh_gl_camera camera;
-        status = sheet_tiles_pose(&s->tiles, tile);
-        if (!status) status = tile_camera(s, &camera);
-        if (!status) status = drawing_read(d, &camera, rgba);
+        status = sheet_tiles_pose(&s->tiles, &p->figure, tile);
+        if (!status) status = tile_camera(s, p, &camera);
+        if (!status) status = picture_read(p, &camera, rgba);
         if (!status) place_tile(s, tile, rgba);
     }
     free(rgba);
     return status;
 }
 
-static int draw_sheet(sheet *s)
+static int draw_sheet(sheet *s, const pack_file *file)
 {
-    gpu g;
-    drawing d;
     const view_options o = { s->camera, s->tile, s->tile };
-    int status = measure_tiles(s, view_wants_face(&o));
-    if (!status) status = gpu_open_drawing(&g, s->driver);
+    gpu g;
+    picture p;
+    int status = gpu_open_drawing(&g, s->driver);
     if (status) {
         return status;
     }
-    status = drawing_open(&d, &g, s->tiles.file, &s->tiles.posed, &s->load, s->show_bones, s->tile, s->tile);
+    sheet_tiles_want(&s->tiles, &s->figure);
+    s->figure.file = file;
+    status = picture_open(&p, &g, &s->figure, s->show_bones, s->tile, s->tile);
     if (!status) {
-        status = draw_tiles(s, &d);
-        drawing_close(&d);
+        status = sheet_tiles_measure(&s->tiles, &p.figure);
+        if (!status) status = measure_tiles(s, &p, view_wants_face(&o));
+        if (!status) status = draw_tiles(s, &p);
+        picture_close(&p);
     }
     gpu_close(&g);
     return status;
@@ -144,13 +147,16 @@ static int lay_out(sheet *s)
 
 static int make_sheet(sheet *s, const pack_file *file)
 {
+    pack_file anim;
     int status = sheet_tiles_open(&s->tiles, file);
     if (!status) {
-        s->show_bones = drawing_shows_bones(&s->tiles.rest, file, s->show_bones);
+        s->show_bones = picture_shows_bones(file, s->show_bones);
         status = s->show_bones < 0 ? EXIT_FAILED : lay_out(s);
     }
-    if (!status) status = draw_sheet(s);
+    if (!status && s->tiles.clip) status = figure_open_clips(&anim, s->tiles.anim, file, &s->figure.clips);
+    if (!status) status = draw_sheet(s, file);
     if (!status) status = tool_write_png(s->output, s->columns * s->tile, s->rows * s->tile, s->rgba);
+    if (s->figure.clips) figure_close_clips(&anim, s->figure.clips);
     free(s->rgba);
     sheet_tiles_close(&s->tiles);
     return status;
@@ -161,14 +167,17 @@ static int check_clips(const sheet_tiles *t, const char *transition)
     if (strcmp(transition, "fade") != 0 && strcmp(transition, "inertia") != 0) {
         return tool_usage("--transition wants fade or inertia, not '%s'", transition);
     }
+    if (t->clips.count > (int)NOH_LAYER_TRACKS_MAX) {
+        return tool_usage("more than %u times --clip", NOH_LAYER_TRACKS_MAX);
+    }
     return t->over_s > 0.0 && t->over_s <= 60.0 ? 0 : tool_usage("--over wants up to 60 seconds");
 }
 
 static int check_args(sheet_args *a)
 {
     sheet *s = &a->s;
-    int status = parse_path(a->path, &s->load.path);
-    if (!status) status = parse_accumulate(a->accumulate, &s->load.accumulate);
+    int status = parse_path(a->path, &s->figure.path);
+    if (!status) status = parse_accumulate(a->accumulate, &s->figure.accumulate);
     if (!status && !(a->tile >= 16.0 && a->tile <= 1024.0 && a->tiles >= 1.0 && a->tiles <= 1024.0 &&
                      a->columns >= 0.0 && a->columns <= 64.0)) {
         status = tool_usage("--tile wants 16 to 1024 pixels, --tiles 1 to 1024, --columns at most 64");
@@ -181,9 +190,11 @@ static int check_args(sheet_args *a)
     return status;
 }
 
-static int make_lods(const sheet *s, const pack_file *file)
+static int make_lods(sheet *s, const pack_file *file)
 {
-    const sheet_lods o = { file, s->output, s->camera, s->driver, s->load, &s->tiles.only, s->tile };
+    s->figure.file = file;
+    s->figure.held_float_count = FIGURE_HELD_ALL;
+    const sheet_lods o = { file, s->output, s->camera, s->driver, s->figure, &s->tiles.only, s->tile };
     return sheet_lods_write(&o);
 }
 

@@ -13,7 +13,7 @@
 
 typedef struct grid {
     const sheet_lods *o;
-    scene scene;
+    picture *picture; /* of the column that is being drawn */
     gpu gpu;
     uint32_t first;         /* the first column's level */
     uint32_t columns, rows; /* rows: rest, faces, size of use */
@@ -34,7 +34,7 @@ static int apply_part(grid *g, const char *part, size_t length)
     snprintf(text, sizeof text, "%.*s%s", (int)length, part, memchr(part, '=', length) ? "" : "=1");
     one.count = 1;
     one.items[0] = text;
-    return scene_set_weights(&g->scene, g->o->file, &one);
+    return figure_hold_options(&g->picture->figure, &one);
 }
 
 static int apply_named(grid *g, const char *face)
@@ -48,17 +48,18 @@ static int apply_named(grid *g, const char *face)
     return status;
 }
 
-static void apply_smile(grid *g)
+static int apply_smile(grid *g)
 {
-    for (uint32_t i = 0; i < g->scene.item_count; i++) {
-        const noh_mesh *mesh = &g->scene.meshes[g->scene.items[i].mesh];
-        for (uint32_t t = 0; t < mesh->header->target_count; t++) {
-            const char *name = noh_pack_string(mesh->pack, mesh->targets[t].name);
-            if (strstr(name, "smile") || strstr(name, "Smile")) {
-                g->scene.items[i].weights[t] = 1.0f;
-            }
+    const noh_pack *pack = &g->o->file->pack;
+    noh_mesh mesh;
+    int status = 0;
+    for (uint32_t m = 0; noh_pack_mesh_at(pack, m, &mesh, NULL) == NOH_OK; m++) {
+        for (uint32_t t = 0; t < mesh.header->target_count && !status; t++) {
+            const char *name = noh_pack_string(pack, mesh.targets[t].name);
+            if (strstr(name, "smile") || strstr(name, "Smile")) status = figure_hold(&g->picture->figure, name, 1.0);
         }
     }
+    return status;
 }
 
 static uint32_t face_count(const sheet_lods *o)
@@ -69,18 +70,11 @@ static uint32_t face_count(const sheet_lods *o)
 /* Set the weights of a row; those of the row before are cleared. */
 static int apply_row(grid *g, uint32_t row)
 {
-    for (uint32_t i = 0; i < g->scene.item_count; i++) {
-        memset(g->scene.items[i].weights, 0,
-               sizeof(float) * g->scene.meshes[g->scene.items[i].mesh].header->target_count);
+    const int status = figure_hold_all(&g->picture->figure, 0.0);
+    if (status || row == 0 || row + 1 == g->rows) {
+        return status;
     }
-    if (row == 0 || row + 1 == g->rows) {
-        return 0;
-    }
-    if (g->o->faces->count) {
-        return apply_named(g, g->o->faces->items[row - 1]);
-    }
-    apply_smile(g);
-    return 0;
+    return g->o->faces->count ? apply_named(g, g->o->faces->items[row - 1]) : apply_smile(g);
 }
 
 /* ---- sizes ---- */
@@ -99,11 +93,13 @@ static double pixels_per_unit(const noh_gl_camera *camera, const bounds *box, ui
 }
 
 /* The largest error of any mesh, world units. */
-static double level_error(const grid *g)
+static double level_error(const grid *g, uint32_t level)
 {
     double worst = 0.0;
-    for (uint32_t i = 0; i < g->o->file->pack.mesh_count; i++) {
-        const noh_mesh_header *h = g->scene.meshes[i].header;
+    noh_mesh full;
+    for (uint32_t i = 0; noh_pack_mesh_at(&g->o->file->pack, i, &full, NULL) == NOH_OK; i++) {
+        const noh_mesh mesh = noh_mesh_at_lod(&full, level);
+        const noh_mesh_header *h = mesh.header;
         const float errors[4] = { h->level_error_rest, h->level_error_targets, h->level_error_pairs,
                                   h->level_error_clip };
         for (int k = 0; k < 4; k++) {
@@ -113,9 +109,9 @@ static double level_error(const grid *g)
     return worst;
 }
 
-static uint32_t size_of_use(const grid *g)
+static uint32_t size_of_use(const grid *g, uint32_t level)
 {
-    const double error = level_error(g) * g->tile_pixels_per_unit, tile = g->o->tile;
+    const double error = level_error(g, level) * g->tile_pixels_per_unit, tile = g->o->tile;
     const double size = error > 0.0 ? tile * USE_PIXELS / error : tile;
     return (uint32_t)fmax(4.0, fmin(tile, size));
 }
@@ -134,12 +130,9 @@ static void place(grid *g, uint32_t column, uint32_t row, uint32_t size, const c
 
 static void label_cell(const grid *g, uint32_t column, uint32_t row, uint32_t size, char *label, size_t bytes)
 {
-    uint32_t triangles = 0;
-    for (uint32_t i = 0; i < g->scene.item_count; i++) {
-        triangles += g->scene.meshes[g->scene.items[i].mesh].header->index_count / 3;
-    }
+    const uint32_t level = g->first + column, triangles = figure_triangles(&g->picture->figure, level);
     if (row == 0) {
-        snprintf(label, bytes, "level %u: %u triangles, %.2f mm", g->first + column, triangles, 1e3 * level_error(g));
+        snprintf(label, bytes, "level %u: %u triangles, %.2f mm", level, triangles, 1e3 * level_error(g, level));
     } else if (row + 1 == g->rows) {
         snprintf(label, bytes, "used up to %u pixels", size);
     } else {
@@ -147,11 +140,11 @@ static void label_cell(const grid *g, uint32_t column, uint32_t row, uint32_t si
     }
 }
 
-static int draw_cell(grid *g, drawing *d, uint32_t column, uint32_t row, uint32_t size)
+static int draw_cell(grid *g, uint32_t column, uint32_t row, uint32_t size)
 {
     char label[160];
     int status = apply_row(g, row);
-    if (!status) status = drawing_read(d, &g->camera, g->cell);
+    if (!status) status = picture_read(g->picture, &g->camera, g->cell);
     if (!status) {
         label_cell(g, column, row, size, label, sizeof label);
         place(g, column, row, size, label);
@@ -162,24 +155,26 @@ static int draw_cell(grid *g, drawing *d, uint32_t column, uint32_t row, uint32_
 /* Several rows of a level, drawn at one size. */
 static int draw_rows(grid *g, uint32_t column, uint32_t first, uint32_t end, uint32_t size)
 {
-    drawing d;
-    int status = drawing_open(&d, &g->gpu, g->o->file, &g->scene, &g->o->load, 0, size, size);
+    figure_desc desc = g->o->figure;
+    picture p;
+    int status;
+    desc.level = g->first + column;
+    status = picture_open(&p, &g->gpu, &desc, 0, size, size);
     if (status) {
         return status;
     }
+    g->picture = &p;
     for (uint32_t row = first; row < end && !status; row++) {
-        status = draw_cell(g, &d, column, row, size);
+        status = draw_cell(g, column, row, size);
     }
-    drawing_close(&d);
+    picture_close(&p);
     return status;
 }
 
 static int draw_level(grid *g, uint32_t column)
 {
-    int status = scene_set_level(&g->scene, g->o->file, g->first + column);
-    if (!status) status = draw_rows(g, column, 0, g->rows - 1, g->o->tile);
-    if (!status) status = draw_rows(g, column, g->rows - 1, g->rows, size_of_use(g));
-    return status;
+    const int status = draw_rows(g, column, 0, g->rows - 1, g->o->tile);
+    return status ? status : draw_rows(g, column, g->rows - 1, g->rows, size_of_use(g, g->first + column));
 }
 
 /* ---- all of it ---- */
@@ -196,16 +191,33 @@ static int make_picture(grid *g)
     return g->rgba && g->cell ? 0 : tool_fail(g->o->output, "out of memory");
 }
 
-static int draw_all(grid *g)
+/* A figure that nothing draws, at rest. */
+static int place_camera(grid *g)
 {
     const sheet_lods *o = g->o;
     const view_options view = { o->camera, o->tile, o->tile };
-    const bounds box = scene_bounds(&g->scene, o->file, view_wants_face(&view));
-    int status = view_camera(&view, &box, &g->camera);
-    g->first = scene_level_first(&g->scene, o->file);
-    g->columns = scene_level_count(&g->scene, o->file) - g->first;
+    figure f;
+    int status = figure_open(&f, &o->figure, NULL);
+    if (status) {
+        return status;
+    }
+    status = figure_pose(&f);
+    if (!status) {
+        const bounds box = figure_bounds(&f, view_wants_face(&view));
+        status = view_camera(&view, &box, &g->camera);
+        g->tile_pixels_per_unit = pixels_per_unit(&g->camera, &box, o->tile);
+    }
+    figure_close(&f);
+    return status;
+}
+
+static int draw_all(grid *g)
+{
+    const sheet_lods *o = g->o;
+    int status = place_camera(g);
+    g->first = figure_level_first(&o->file->pack);
+    g->columns = figure_level_count(&o->file->pack) - g->first;
     g->rows = 2 + face_count(o);
-    g->tile_pixels_per_unit = pixels_per_unit(&g->camera, &box, o->tile);
     if (!status) status = make_picture(g);
     for (uint32_t column = 0; column < g->columns && !status; column++) {
         status = draw_level(g, column);
@@ -219,16 +231,14 @@ int sheet_lods_write(const sheet_lods *s)
     int status;
     memset(&g, 0, sizeof g);
     g.o = s;
-    status = scene_init(&g.scene, s->file);
-    if (status) {
-        return status;
+    if (picture_shows_bones(s->file, 0)) {
+        return tool_fail(s->file->path, "the pack has nothing to draw");
     }
     status = gpu_open_drawing(&g.gpu, s->driver);
     if (!status) {
         status = draw_all(&g);
         gpu_close(&g.gpu);
     }
-    scene_free(&g.scene);
     free(g.rgba);
     free(g.cell);
     return status;

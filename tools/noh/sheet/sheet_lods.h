@@ -2,12 +2,12 @@
 #ifndef NOH_NOH_SHEET_SHEET_LODS_H
 #define NOH_NOH_SHEET_SHEET_LODS_H
 
-#include "draw/drawing.h"
+#include "draw/picture.h"
 
 typedef struct sheet_lods {
     const pack_file *file;
     const char *output, *camera, *driver;
-    load_options load;
+    figure_desc figure;
     const option_list *faces; /* "NAME[=V][,NAME[=V]]...": a row each, below the one at rest; none: all targets with
                                  "smile" in their names */
     uint32_t tile;            /* pixels */

@@ -36,7 +36,7 @@ static int list_only(sheet_tiles *t)
     }
     for (int i = 0; i < t->only.count && !status; i++) {
         read_target(t->only.items[i], &t->targets[t->target_count]);
-        status = scene_check_target(&t->rest, t->file, t->targets[t->target_count++].name);
+        status = figure_check_target(t->file, t->targets[t->target_count++].name);
     }
     return status;
 }
@@ -54,34 +54,25 @@ static void add_name(sheet_tiles *t, const char *name)
 /* Every target name of every mesh, once. */
 static int list_names(sheet_tiles *t)
 {
+    const noh_pack *pack = &t->file->pack;
     size_t total = 0;
+    noh_mesh mesh;
     if (t->only.count) {
         return list_only(t);
     }
-    for (uint32_t m = 0; m < t->file->pack.mesh_count; m++) {
-        total += t->rest.meshes[m].header->target_count;
+    for (uint32_t m = 0; noh_pack_mesh_at(pack, m, &mesh, NULL) == NOH_OK; m++) {
+        total += mesh.header->target_count;
     }
     t->targets = calloc(total + 1, sizeof *t->targets);
     if (!t->targets) {
         return tool_fail(t->file->path, "out of memory");
     }
-    for (uint32_t m = 0; m < t->file->pack.mesh_count; m++) {
-        for (uint32_t i = 0; i < t->rest.meshes[m].header->target_count; i++) {
-            add_name(t, noh_pack_string(&t->file->pack, t->rest.meshes[m].targets[i].name));
+    for (uint32_t m = 0; noh_pack_mesh_at(pack, m, &mesh, NULL) == NOH_OK; m++) {
+        for (uint32_t i = 0; i < mesh.header->target_count; i++) {
+            add_name(t, noh_pack_string(pack, mesh.targets[i].name));
         }
     }
     return 0;
-}
-
-static void pose_target(sheet_tiles *t, const sheet_target *shown)
-{
-    for (uint32_t i = 0; i < t->posed.item_count; i++) {
-        const noh_mesh *mesh = &t->posed.meshes[t->posed.items[i].mesh];
-        uint32_t target = noh_mesh_find_target(mesh, shown->name);
-        if (target < mesh->header->target_count) {
-            t->posed.items[i].weights[target] = (float)shown->weight;
-        }
-    }
 }
 
 static void label_target(const sheet_target *shown, char *text, size_t bytes)
@@ -127,39 +118,71 @@ static double tile_time(const sheet_tiles *t, uint32_t tile)
     return from + (to - from) * fraction(tile, t->clip_tiles);
 }
 
-static int pose_pair(sheet_tiles *t, uint32_t tile)
+/* Both clips at the same phase; one of weight 0 is not played. */
+static int pose_blend(const sheet_tiles *t, figure *f, uint32_t tile)
 {
-    scene_pair pair;
-    memset(&pair, 0, sizeof pair);
-    pair.from = t->clip;
-    pair.to = t->blend ? t->blend : t->to;
-    pair.mix = t->blend ? SCENE_MIX_BLEND : t->inertia ? SCENE_MIX_INERTIA : SCENE_MIX_FADE;
-    pair.weight = t->blend ? blend_weight(t, tile) : 0.0;
-    pair.lead_s = lead_s(t);
-    pair.over_s = t->over_s;
-    return scene_set_pair(&t->posed, t->file, &pair, t->blend ? blend_phase(t, tile) : tile_time(t, tile));
+    const char *const names[2] = { t->clip, t->blend };
+    const float weight = (float)blend_weight(t, tile), weights[2] = { 1.0f - weight, weight };
+    int status = 0;
+    for (int i = 0; i < 2 && !status; i++) {
+        double seconds = 0.0;
+        noh_play play = { .weight = weights[i], .flags = NOH_PLAY_BESIDE };
+        status = figure_clip_seconds(f, names[i], &seconds);
+        play.start_ticks = (int64_t)(blend_phase(t, tile) * seconds * NOH_TICKS_PER_SECOND + 0.5);
+        if (!status && weights[i] > 0.0f) status = figure_play(f, names[i], &play);
+    }
+    return status;
+}
+
+static int step(figure *f, double seconds)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    const uint32_t ticks = (uint32_t)noh_ticks_from_seconds(seconds);
+    return noh_stage_step(f->stage, ticks, NULL, NULL, &error) ? tool_fail_error("clip", &error) : 0;
+}
+
+static int pose_transition(const sheet_tiles *t, figure *f, uint32_t tile)
+{
+    const double time_s = tile_time(t, tile), before_s = time_s < lead_s(t) ? time_s : lead_s(t);
+    const noh_play first = { .fade_ticks = 1 };
+    const noh_play then = { .fade_ticks = (uint32_t)noh_ticks_from_seconds(t->over_s),
+                            .flags = t->inertia ? NOH_PLAY_INERTIA : 0 };
+    int status = figure_play(f, t->clip, &first);
+    if (!status) status = step(f, before_s);
+    if (status || time_s < lead_s(t)) {
+        return status;
+    }
+    status = figure_play(f, t->to, &then);
+    return status ? status : step(f, time_s - lead_s(t));
 }
 
 /* ---- all ---- */
 
+void sheet_tiles_want(const sheet_tiles *t, figure_desc *desc)
+{
+    desc->track_count = t->blend || t->to || t->clips.count < 2 ? 2u : (uint32_t)t->clips.count;
+    desc->held_float_count = 1;
+    desc->inertia = t->inertia;
+}
+
 int sheet_tiles_open(sheet_tiles *t, const pack_file *file)
 {
-    int status;
     t->file = file;
     t->clip = t->clips.count ? t->clips.items[0] : NULL;
-    status = scene_init(&t->rest, file);
-    if (!status) status = scene_init(&t->posed, file);
-    if (!status) status = list_names(t);
-    if (!status) status = scene_open_anim(&t->posed, file, t->anim);
-    if (!status && t->clip) status = scene_clip_seconds(&t->posed, file, t->clip, &t->clip_seconds);
-    return status;
+    return list_names(t);
+}
+
+int sheet_tiles_measure(sheet_tiles *t, const figure *f)
+{
+    const char *other = t->blend ? t->blend : t->to;
+    double seconds;
+    const int status = t->clip ? figure_clip_seconds(f, t->clip, &t->clip_seconds) : 0;
+    return status || !other ? status : figure_clip_seconds(f, other, &seconds);
 }
 
 void sheet_tiles_close(sheet_tiles *t)
 {
     free(t->targets);
-    scene_free(&t->rest);
-    scene_free(&t->posed);
 }
 
 uint32_t sheet_tiles_count(const sheet_tiles *t)
@@ -176,20 +199,22 @@ uint32_t sheet_tiles_columns(const sheet_tiles *t)
 }
 
 /* Tile 0 of a sheet of targets is the rest pose. */
-int sheet_tiles_pose(sheet_tiles *t, uint32_t tile)
+int sheet_tiles_pose(const sheet_tiles *t, figure *f, uint32_t tile)
 {
-    for (uint32_t i = 0; i < t->rest.item_count; i++) {
-        memcpy(t->posed.items[i].weights, t->rest.items[i].weights,
-               sizeof(float) * t->rest.meshes[t->rest.items[i].mesh].header->target_count);
+    int status = figure_reset(f);
+    if (status) {
+        return status;
     }
-    if (t->clip) {
-        return t->blend || t->to ? pose_pair(t, tile)
-                                 : scene_set_clips(&t->posed, t->file, &t->clips, tile_time(t, tile));
+    if (t->blend) {
+        status = pose_blend(t, f, tile);
+    } else if (t->to) {
+        status = pose_transition(t, f, tile);
+    } else if (t->clip) {
+        status = figure_play_options(f, &t->clips, tile_time(t, tile));
+    } else if (tile) {
+        status = figure_hold(f, t->targets[tile - 1].name, t->targets[tile - 1].weight);
     }
-    if (tile) {
-        pose_target(t, &t->targets[tile - 1]);
-    }
-    return 0;
+    return status ? status : figure_pose(f);
 }
 
 void sheet_tiles_label(const sheet_tiles *t, uint32_t tile, char *text, size_t bytes)

@@ -3,7 +3,7 @@
 #ifndef NOH_NOH_SHEET_SHEET_TILES_H
 #define NOH_NOH_SHEET_SHEET_TILES_H
 
-#include "scene/scene.h"
+#include "draw/figure.h"
 
 #define SHEET_BLEND_ROWS 5u /* weights 0, 1/4, 1/2, 3/4, 1 */
 
@@ -15,7 +15,6 @@ typedef struct sheet_target {
 
 typedef struct sheet_tiles {
     const pack_file *file;
-    scene rest, posed;
     option_list clips;                    /* the first sets the time, the others play along */
     const char *clip, *blend, *to, *anim; /* clip names; NULL: none */
     int inertia;                          /* the transition to `to`: 1 inertialization, 0 a cross-fade */
@@ -27,7 +26,9 @@ typedef struct sheet_tiles {
     uint32_t target_count;
 } sheet_tiles;
 
-/* Open the scene and find what was asked for. Prints an error and returns an exit code; 0 on success. */
+/* What a figure must have for them. */
+void sheet_tiles_want(const sheet_tiles *t, figure_desc *desc);
+/* Find what was asked for. Prints an error and returns an exit code; 0 on success. */
 int sheet_tiles_open(sheet_tiles *t, const pack_file *file);
 void sheet_tiles_close(sheet_tiles *t);
 
@@ -35,8 +36,10 @@ void sheet_tiles_close(sheet_tiles *t);
 uint32_t sheet_tiles_count(const sheet_tiles *t);
 uint32_t sheet_tiles_columns(const sheet_tiles *t);
 
-/* Put t->posed into a tile's pose. */
-int sheet_tiles_pose(sheet_tiles *t, uint32_t tile);
+/* Look the clips up. */
+int sheet_tiles_measure(sheet_tiles *t, const figure *f);
+/* Put a figure into a tile's pose; after sheet_tiles_measure. */
+int sheet_tiles_pose(const sheet_tiles *t, figure *f, uint32_t tile);
 void sheet_tiles_label(const sheet_tiles *t, uint32_t tile, char *text, size_t bytes);
 
 #endif
