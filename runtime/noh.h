@@ -90,6 +90,7 @@
 
 #include "face/face.h"   /* blinks, gaze, emotions, breath */
 #include "face/recipe.h" /* what a face shows, as weights of the targets that it has */
+#include "face/speech.h" /* phones to mouth shapes */
 
 /* ---- parts, for tools and engines of your own ---- */
 

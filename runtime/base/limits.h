@@ -58,6 +58,7 @@
 
 /* ---- faces ---- */
 
+#define NOH_SPEECH_PHONES_MAX 65536u
 #define NOH_FACE_EMOTIONS_MAX 3u /* emotions that a face shows at once; one more takes the place of the weakest */
 
 /* ---- controllers and graphs ---- */
