@@ -66,7 +66,7 @@ int noh_skin_instance()
 #endif
 }
 
-/* Rows 0 to 2 place the instance in the world, row 3 is its tile for noh_morph_fetch_tile. */
+/* Rows 0 to 2 place the instance in the world, row 3 is its tile and tint: noh_tile_row. */
 vec4 noh_crowd_row(int i)
 {
     return noh_skin_texel(noh_skin_instance() + i);

@@ -30,7 +30,7 @@ struct noh_vertex {
     vec4 tangent;  /* world; not unit. w: handedness, 1 or -1 */
     vec2 uv;
     vec4 color;    /* linear; alpha last */
-    vec4 tint;     /* of the instance: white */
+    vec4 tint;     /* of the instance; linear. alpha: 1 where the material does not blend */
     vec3 model;    /* position in the mesh's own space: morphed and skinned, not placed */
 };
 
@@ -53,7 +53,8 @@ vec3 noh_world_normal(vec4 x, vec4 y, vec4 z, vec3 normal)
 #endif
 }
 
-ivec4 noh_tile()
+/* The tile's numbers; in their high bits, what the tint leaves of white. */
+ivec4 noh_tile_row()
 {
 #ifdef NOH_CROWD
     return ivec4(noh_crowd_row(3));
@@ -62,15 +63,34 @@ ivec4 noh_tile()
 #endif
 }
 
+#ifndef NOH_DEPTH_ONLY
+uniform int noh_blends; /* 1: the material blends, so that a tint's alpha counts */
+
+/* From 8 bits of sRGB, and of alpha. */
+vec4 noh_tint_of(ivec4 row)
+{
+    ivec4 left = ivec4(row.x >> 16, row.y >> 16, row.z >> 8 & 255, row.z >> 16);
+    vec4 tint = vec4(1.0);
+    if (left != ivec4(0)) {
+        tint -= vec4(left) / 255.0;
+        tint.rgb = mix(pow((tint.rgb + 0.055) / 1.055, vec3(2.4)), tint.rgb / 12.92, vec3(lessThanEqual(tint.rgb, vec3(0.04045))));
+        tint.a = noh_blends != 0 ? tint.a : 1.0;
+    }
+    return tint;
+}
+#endif
+
 noh_vertex noh_fetch()
 {
     noh_vertex v = noh_vertex(vec3(0.0), vec3(0.0), vec4(0.0), vec2(0.0), vec4(1.0), vec4(1.0), noh_a_position);
     vec4 x = noh_world_row(0), y = noh_world_row(1), z = noh_world_row(2), p;
+    ivec4 row = noh_tile_row(), tile = ivec4(row.xy & 0xffff, row.z & 0xff, row.w);
 #ifndef NOH_DEPTH_ONLY
     v.normal = noh_direction_of_pair(noh_a_normal);
     v.tangent = noh_tangent_of_pair(noh_a_tangent);
+    v.tint = noh_tint_of(row);
 #endif
-    if (noh_morph_fetch_tile(noh_tile(), noh_morph_vertex(), v.model, v.normal, v.tangent.xyz)) {
+    if (noh_morph_fetch_tile(tile, noh_morph_vertex(), v.model, v.normal, v.tangent.xyz)) {
         noh_morph_frame(v.normal, v.tangent.xyz);
     }
     noh_skin_vertex(v.model, v.normal, v.tangent);

@@ -95,6 +95,7 @@
 #define NOH_STAGE_ACTORS_MAX 65535u /* of all kinds */
 #define NOH_STAGE_MESHES_MAX 32u    /* drawn meshes of a kind */
 #define NOH_STAGE_JOBS_MAX 64u
+#define NOH_TEXTURE_SETS_MAX 64u /* of a kind, besides its own */
 #define NOH_STAGE_VIEWS_MAX 8u
 #define NOH_LAYERS_MAX 16u      /* of a kind */
 #define NOH_STAGE_GRAPHS_MAX 16u /* of a kind */

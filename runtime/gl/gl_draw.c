@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "gl/gl_debug.h"
+#include "gl/gl_skin_internal.h"
 
 void noh_gl_draw_begin(noh_gl_renderer *r, const noh_gl_camera *camera)
 {
@@ -18,7 +19,15 @@ void noh_gl_draw_begin(noh_gl_renderer *r, const noh_gl_camera *camera)
     r->gl->BlendEquation(GL_FUNC_ADD);
     r->gl->BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     r->camera = *camera;
+    noh_gl_draw_tint(r, NULL);
     memset(r->has_camera, 0, sizeof r->has_camera);
+}
+
+void noh_gl_draw_tint(noh_gl_renderer *r, const uint8_t tint[4])
+{
+    static const uint8_t white[4] = { 255, 255, 255, 255 };
+    NOH_ASSERT(r);
+    memcpy(r->tint, tint ? tint : white, sizeof r->tint);
 }
 
 /* ---- uniforms, attributes, textures ---- */
@@ -59,13 +68,16 @@ static void set_instance(const noh_gl_renderer *r, const noh_gl_variant *v, cons
                          const noh_gl_morph_binding *morph)
 {
     float rows[12], determinant = noh_gl_normal_rows(world, rows);
+    uint32_t tint[3];
     r->gl->FrontFace(determinant < 0.0f ? GL_CW : GL_CCW);
     r->gl->Uniform4fv(v->u_world, 3, world);
     r->gl->Uniform4fv(v->u_normal, 3, rows);
+    noh_gl_tint_bits(r->tint, tint);
     if (morph) {
-        r->gl->Uniform4i(v->u_morph, morph->tile_x, morph->tile_y, morph->width_log2, morph->touched);
+        r->gl->Uniform4i(v->u_morph, morph->tile_x | (GLint)tint[0], morph->tile_y | (GLint)tint[1],
+                         morph->width_log2 | (GLint)tint[2], morph->touched);
     } else {
-        r->gl->Uniform4i(v->u_morph, 0, 0, 0, 0);
+        r->gl->Uniform4i(v->u_morph, (GLint)tint[0], (GLint)tint[1], (GLint)tint[2], 0);
     }
 }
 
@@ -197,7 +209,9 @@ static void draw_part_of(const draw_job *j, draw_part part)
         } else {
             j->r->gl->FrontFace(GL_CCW);
         }
+        if (part == PART_BLENDED) j->r->gl->Uniform1i(v->u_blends, 1);
         draw_submeshes(j, v, &level, first, part);
+        if (part == PART_BLENDED) j->r->gl->Uniform1i(v->u_blends, 0);
     }
 }
 

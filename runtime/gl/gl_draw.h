@@ -7,6 +7,7 @@
  *   noh_gl_draw_begin        begin to draw; noh_gl_draw_end ends it
  *   noh_gl_draw_mesh         draw one instance
  *   noh_gl_draw_crowd        draw many instances of one mesh in one call
+ *   noh_gl_draw_tint         the tint of what noh_gl_draw_mesh draws next
  *
  * The renderer is deliberately small: one shader in variants, one key light, base colour textures and vertex colours.
  * A game's own shaders take its place (noh_gl_renderer_desc.shaders): two texts, compiled for whatever kinds of meshes
@@ -111,6 +112,7 @@ typedef struct noh_gl_renderer {
     noh_gl_shader_desc shaders; /* zeros: the library's */
     noh_gl_texture white;       /* 1 x 1, for materials without a texture */
     noh_gl_camera camera;       /* of this pass */
+    uint8_t tint[4];            /* of the next noh_gl_draw_mesh */
     uint32_t variant_count;
     noh_gl_variant variants[NOH_GL_VARIANTS_MAX];
     uint8_t has_camera[NOH_GL_VARIANTS_MAX]; /* 1: the variant was given it */
@@ -163,6 +165,12 @@ typedef struct noh_gl_lod {
 void noh_gl_draw_mesh(noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const float world[12],
                       const noh_gl_morph_binding *morph, const noh_gl_skin_binding *skin, const noh_gl_lod *lod,
                       const noh_gl_texture *pictures, int pass);
+
+/* The tint of the meshes that noh_gl_draw_mesh draws next; noh_gl_draw_begin makes it white. Instances of a crowd have
+ * their own (noh_gl_skin_set_tint).
+ * shapes  tint: sRGB and alpha, by which the colour of vertices is multiplied; alpha counts where the material blends.
+ *         NULL: white */
+void noh_gl_draw_tint(noh_gl_renderer *renderer, const uint8_t tint[4]);
 
 /* The same for `count` successive instances of one mesh, the first of them with the binding `first`: one draw call per
  * submesh. Each instance stands where noh_gl_skin_set_place put it. Rigid meshes work too; palettes must be in a

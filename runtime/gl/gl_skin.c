@@ -113,29 +113,65 @@ float noh_gl_normal_rows(const float w[12], float rows[12])
     return determinant;
 }
 
-/* The tile is written as floats: its numbers are below 2^24 and so exact. The bits of such integers would be denormal
- * floats, which GPUs may flush to zero. */
+static noh_result no_crowds(uint32_t instance, noh_error *error)
+{
+    return noh_fail(error, NOH_ERR_UNSUPPORTED, "palettes are in a uniform buffer: crowds want NOH_PALETTE_TEXTURE",
+                    instance, 0);
+}
+
+/* The row of a tile with its tint, as floats: its numbers are below 2^24 and so exact. The bits of such integers would
+ * be denormal floats, which GPUs may flush to zero. */
+static void put_tile(noh_gl_skin *skin, uint32_t row, const uint32_t tile[4], const uint32_t tint[3])
+{
+    float values[4];
+    for (int i = 0; i < 4; i++) values[i] = (float)(i < 3 ? tile[i] | tint[i] : tile[i]);
+    put_rows(skin, row, values, 1);
+}
+
+/* What a row holds in the bits of a mask, or in the others. */
+static uint32_t tile_bits(const float *row, int i, int of_tint)
+{
+    const uint32_t mask = i < 2 ? NOH_TILE_XY_MASK : i == 2 ? NOH_TILE_LOG2_MASK : 0xffffffffu;
+    return (uint32_t)row[i] & (of_tint ? ~mask : mask);
+}
+
+noh_result noh_gl_skin_set_tint(noh_gl_skin *skin, uint32_t instance, const uint8_t tint[4], noh_error *error)
+{
+    const uint32_t row = first_row(mesh_of(skin, instance), instance) + 3u;
+    const float *own = skin->rows + 4u * (size_t)row;
+    uint32_t tile[4], bits[3];
+    if (skin->plan.mode != NOH_PALETTE_TEXTURE) {
+        return no_crowds(instance, error);
+    }
+    for (int i = 0; i < 4; i++) tile[i] = tile_bits(own, i, 0);
+    noh_gl_tint_bits(tint, bits);
+    put_tile(skin, row, tile, bits);
+    return NOH_OK;
+}
+
 noh_result noh_gl_skin_set_place(noh_gl_skin *skin, uint32_t instance, const float world[12],
                                  const noh_gl_morph_binding *morph, noh_error *error)
 {
     uint32_t row = first_row(mesh_of(skin, instance), instance);
-    float normal[12], tile[4] = { 0.0f, 0.0f, 0.0f, 0.0f };
+    const float *own = skin->rows + 4u * (size_t)(row + 3u);
+    uint32_t tile[4] = { 0, 0, 0, 0 }, tint[3];
+    float normal[12];
     NOH_ASSERT(world);
     if (skin->plan.mode != NOH_PALETTE_TEXTURE) {
-        return noh_fail(error, NOH_ERR_UNSUPPORTED, "palettes are in a uniform buffer: crowds want NOH_PALETTE_TEXTURE",
-                        instance, 0);
+        return no_crowds(instance, error);
     }
     if (noh_gl_normal_rows(world, normal) < 0.0f) {
         return noh_fail(error, NOH_ERR_ARG, "an instance of a crowd is mirrored: draw it alone", instance, 0);
     }
     if (morph) {
-        tile[0] = (float)morph->tile_x;
-        tile[1] = (float)morph->tile_y;
-        tile[2] = (float)morph->width_log2;
-        tile[3] = (float)morph->touched;
+        tile[0] = (uint32_t)morph->tile_x;
+        tile[1] = (uint32_t)morph->tile_y;
+        tile[2] = (uint32_t)morph->width_log2;
+        tile[3] = (uint32_t)morph->touched;
     }
+    for (int i = 0; i < 3; i++) tint[i] = tile_bits(own, i, 1);
     put_rows(skin, row, world, 3);
-    put_rows(skin, row + 3u, tile, 1);
+    put_tile(skin, row + 3u, tile, tint);
     return NOH_OK;
 }
 

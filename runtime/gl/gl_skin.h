@@ -6,6 +6,7 @@
  *   noh_gl_skin_restore       make it again after a lost context
  *   noh_gl_skin_set_matrices  set one instance's joint matrices
  *   noh_gl_skin_set_place     set one instance's place in the world and its morph tile, for crowds
+ *   noh_gl_skin_set_tint      set one instance's tint, for crowds
  *   noh_gl_skin_update        upload what changed
  *   noh_gl_skin_binding_of    where a vertex shader finds an instance's palettes
  *   noh_gl_skin_plan_of, noh_gl_skin_instance, noh_palette_mode_name
@@ -22,7 +23,7 @@
  *
  * Both are core ES 3.0, and both give the same bits.
  *
- * Threads: the context's own thread. noh_gl_skin_set_matrices and noh_gl_skin_set_place call no GL: another thread may,
+ * Threads: the context's own thread. noh_gl_skin_set_matrices, _set_place and _set_tint call no GL: another thread may,
  * while no other call on that object runs. noh_gl_skin_plan_make and the pure functions, any. */
 #ifndef NOH_GL_GL_SKIN_H
 #define NOH_GL_GL_SKIN_H
@@ -109,6 +110,12 @@ void noh_gl_skin_set_matrices(noh_gl_skin *skin, uint32_t instance, const float 
  *         have triangles of both windings, so draw this instance alone. `where` is the instance */
 noh_result noh_gl_skin_set_place(noh_gl_skin *skin, uint32_t instance, const float world[12],
                                  const noh_gl_morph_binding *morph, noh_error *error);
+
+/* Set the tint of one instance, for noh_gl_draw_crowd: noh_vertex.tint in shaders. noh_gl_skin_set_place keeps it.
+ * shapes  tint: sRGB and alpha, by which the colour of vertices is multiplied; alpha counts where the material blends.
+ *         NULL: white, as at first
+ * errors  UNSUPPORTED palettes are in a uniform buffer, which cannot draw crowds */
+noh_result noh_gl_skin_set_tint(noh_gl_skin *skin, uint32_t instance, const uint8_t tint[4], noh_error *error);
 
 /* Upload the span of rows that changed since the last update, in one call.
  * state   Afterwards the texture of unit 0, or the uniform buffer, is 0. No state is changed if no row changed

@@ -28,6 +28,17 @@ struct noh_gl_skin {
     noh_gl_texture texture;          /* or this */
 };
 
+/* A tint in the high bits of a tile's numbers x, y, width_log2: 255 minus red above the 16 bits of x, minus green above
+ * those of y, minus blue and then alpha above 8 bits of width_log2. White is 0, and all three are below 2^24, so that
+ * they are exact as floats. tint NULL: white. */
+#define NOH_TILE_XY_MASK 0xffffu
+#define NOH_TILE_LOG2_MASK 0xffu
+static inline void noh_gl_tint_bits(const uint8_t tint[4], uint32_t bits[3])
+{
+    for (int i = 0; i < 3; i++) bits[i] = tint ? (uint32_t)(255 - tint[i]) << (i < 2 ? 16 : 8) : 0;
+    if (tint) bits[2] |= (uint32_t)(255 - tint[3]) << 16;
+}
+
 /* Palettes start at multiples of this many rows. */
 uint32_t noh_gl_skin_align(const noh_gl_skin_plan *plan, const noh_gl_caps *caps);
 

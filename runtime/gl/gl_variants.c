@@ -191,7 +191,8 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
                      { "noh_material", &v->u_material },
                      { "noh_bounds_min", &v->u_bounds_min },
                      { "noh_bounds_size", &v->u_bounds_size },
-                     { "noh_lod", &v->u_lod } };
+                     { "noh_lod", &v->u_lod },
+                     { "noh_blends", &v->u_blends } };
     for (size_t i = 0; i < sizeof uniforms / sizeof uniforms[0]; i++) {
         *uniforms[i].at = gl->GetUniformLocation(v->program, uniforms[i].name);
     }

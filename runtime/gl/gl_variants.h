@@ -51,7 +51,7 @@ typedef struct noh_gl_variant {
     noh_gl_variant_key key;
     GLuint program;
     GLint u_view_projection, u_world, u_normal, u_uv, u_morph, u_skin, u_camera, u_key, u_base_color, u_material,
-        u_bounds_min, u_bounds_size, u_lod;
+        u_bounds_min, u_bounds_size, u_lod, u_blends;
 } noh_gl_variant;
 
 /* Texture units of mesh.vert and mesh.frag; the uniform block binding is 0. */

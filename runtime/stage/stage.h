@@ -58,6 +58,14 @@ typedef struct noh_layer_desc {
     uint32_t track_count; /* clips at one time, 1..8; default (0) 2, so that one fades into another */
 } noh_layer_desc;
 
+/* Textures in place of those of a kind's mesh pack: of each the one in `pack` that has its name with `suffix` behind. A
+ * texture without such a namesake stays. One of `mesh` takes no bytes; one of another pack is on the GPU once. */
+typedef struct noh_texture_set {
+    const char *name;     /* for noh_stage_find; default (NULL) "" */
+    const noh_pack *pack; /* default (NULL) the kind's mesh. Its bytes must outlive the stage */
+    const char *suffix;   /* "_red"; default (NULL) "" */
+} noh_texture_set;
+
 /* A kind of character: the meshes of one skeleton and the clips that move them. Zero is a good value for all but mesh
  * and actor_count. */
 typedef struct noh_kind_desc {
@@ -93,6 +101,8 @@ typedef struct noh_kind_desc {
     int root_told;             /* 1: root motion does not move the actor, it is only told (noh_actor_root) */
     int inertia;               /* 1: room for NOH_PLAY_INERTIA: 48 bytes a joint and 8 a float for each actor */
     int unpickable;            /* 1: noh_stage_pick passes through */
+    const noh_texture_set *texture_sets; /* [texture_set_count] that its actors may wear (noh_look); borrowed */
+    uint32_t texture_set_count;          /* 0..NOH_TEXTURE_SETS_MAX */
 } noh_kind_desc;
 
 typedef struct noh_stage_gpu noh_stage_gpu; /* stage_gl.h has the one there is */
@@ -245,8 +255,9 @@ typedef enum noh_name {
     NOH_NAME_FLOAT,
     NOH_NAME_JOINT,
     NOH_NAME_GRAPH,
-    NOH_NAME_PARAMETER, /* of the kind's graphs */
-    NOH_NAME_MACHINE    /* a machine, select or one-shot of its graphs */
+    NOH_NAME_PARAMETER,  /* of the kind's graphs */
+    NOH_NAME_MACHINE,    /* a machine, select or one-shot of its graphs */
+    NOH_NAME_TEXTURE_SET /* 0: the kind's own, "" */
 } noh_name;
 
 /* The index of a name in a kind; NOH_NONE when there is none. Look names up once, not in every frame. Floats are the
@@ -303,16 +314,19 @@ noh_result noh_actor_place_between(const noh_stage *stage, noh_actor actor, floa
  * as never posed. errors  NOT_FOUND */
 noh_result noh_actor_cut(noh_stage *stage, noh_actor actor, noh_error *error);
 
-/* How it is drawn. All zeros: seen, with a shadow, within the stage's error. */
+/* How it is drawn. All zeros: seen, with a shadow, within the stage's error, in its own colours. */
 typedef struct noh_look {
     uint32_t hidden;    /* 1: neither drawn nor picked; clocks and callback keys go on */
     uint32_t no_shadow; /* 1: not drawn in depth passes of views without height_px */
     uint32_t posed;     /* 1: posed in every frame in full detail, seen or not: for noh_actor_joint on a server */
     float pixels;       /* its own largest error; 0: that of the stage */
     uint32_t level;     /* 1 + the level to show whatever its error, with everything else in full; 0: chosen by error */
+    uint8_t tint[4];    /* sRGB and alpha, multiplied with its colours; alpha counts where a material blends. All 0:
+                         * white */
+    uint32_t texture_set; /* 0: its kind's own textures; else noh_kind_desc.texture_sets[texture_set - 1] */
 } noh_look;
 
-/* errors  NOT_FOUND; ARG pixels is negative or not finite */
+/* errors  NOT_FOUND; ARG pixels is negative or not finite, or the kind has no such texture_set */
 noh_result noh_actor_set_look(noh_stage *stage, noh_actor actor, const noh_look *look, noh_error *error);
 
 /* Hang an actor on a joint of another one: a sword in a hand. Its place is then relative to the joint. The parent is

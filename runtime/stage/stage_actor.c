@@ -355,6 +355,10 @@ noh_result noh_actor_set_look(noh_stage *stage, noh_actor actor, const noh_look 
     if (!(look->pixels >= 0.0f) || !noh_is_finite(look->pixels)) {
         return noh_fail(error, NOH_ERR_ARG, "pixels of a look is negative or not finite", actor.id & 0xffffu, 0);
     }
+    if (look->texture_set > k->desc.texture_set_count) {
+        return noh_fail(error, NOH_ERR_ARG, "texture_set of a look is none of the kind's", actor.id & 0xffffu,
+                        k->desc.texture_set_count);
+    }
     a->look = *look;
     return NOH_OK;
 }

@@ -1,6 +1,7 @@
 /* stage_desc.c: what is wrong with a desc, and its defaults. */
 #include <string.h>
 
+#include "base/name_internal.h"
 #include "stage/stage_internal.h"
 
 const noh_layer_desc noh_stage_default_layers[3] = {
@@ -100,7 +101,53 @@ uint32_t noh_stage_items(const noh_kind_desc *kind, noh_stage_item *items)
     return found;
 }
 
+/* ---- textures ---- */
+
+static int is_namesake(const char *name, const char *of, const char *suffix)
+{
+    while (*of && *name == *of) name++, of++;
+    return !*of && noh_names_equal(name, suffix);
+}
+
+uint32_t noh_stage_worn(const noh_kind_desc *kind, uint32_t set, uint32_t texture, const noh_pack **pack)
+{
+    const noh_texture_set *s = set ? &kind->texture_sets[set - 1u] : NULL;
+    const noh_pack *from = s && s->pack ? s->pack : kind->mesh;
+    noh_texture own, other;
+    *pack = kind->mesh;
+    if (!s || noh_pack_texture_at(kind->mesh, texture, &own, NULL) != NOH_OK) {
+        return texture;
+    }
+    for (uint32_t i = 0; noh_pack_texture_at(from, i, &other, NULL) == NOH_OK; i++) {
+        if (is_namesake(other.name, own.name, s->suffix ? s->suffix : "")) {
+            *pack = from;
+            return i;
+        }
+    }
+    return texture;
+}
+
+static int replaces_nothing(const noh_kind_desc *kind, uint32_t set)
+{
+    for (uint32_t t = 0; t < kind->mesh->texture_count; t++) {
+        const noh_pack *pack;
+        if (noh_stage_worn(kind, set, t, &pack) != t || pack->bytes != kind->mesh->bytes) return 0;
+    }
+    return 1;
+}
+
 /* ---- what is wrong ---- */
+
+static const char *bad_texture_sets(const noh_kind_desc *d)
+{
+    if (d->texture_set_count > NOH_TEXTURE_SETS_MAX) return "texture_set_count of a kind is above NOH_TEXTURE_SETS_MAX";
+    if (!d->texture_sets && d->texture_set_count)
+        return "texture_sets of a kind is NULL, and texture_set_count is not 0";
+    for (uint32_t i = 1; i <= d->texture_set_count; i++) {
+        if (replaces_nothing(d, i)) return "a texture set of a kind replaces no texture of its mesh: see the names";
+    }
+    return NULL;
+}
 
 static const char *bad_layer(const noh_layer_desc *layer)
 {
@@ -133,6 +180,7 @@ static const char *bad_kind(const noh_stage_desc *desc, uint32_t number)
     if (d->change_count > NOH_CHANGES_MAX) return "change_count of a kind is above NOH_CHANGES_MAX";
     if (d->held_float_count != NOH_NONE && d->held_float_count > NOH_FLOATS_MAX)
         return "held_float_count of a kind is above NOH_FLOATS_MAX";
+    if (bad_texture_sets(d)) return bad_texture_sets(d);
     filled = noh_stage_kind_desc(desc, number);
     if (filled.skeleton != NOH_NONE && filled.skeleton >= d->mesh->skeleton_count)
         return "skeleton of a kind is none of its mesh pack's";

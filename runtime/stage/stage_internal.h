@@ -86,8 +86,8 @@ typedef struct noh_stage_head {
 } noh_stage_head;
 
 NOH_STATIC_ASSERT(sizeof(noh_place) == 32, place);
-NOH_STATIC_ASSERT(sizeof(noh_look) == 20, look);
-NOH_STATIC_ASSERT(sizeof(noh_stage_actor) == 152, stage_actor);
+NOH_STATIC_ASSERT(sizeof(noh_look) == 28, look);
+NOH_STATIC_ASSERT(sizeof(noh_stage_actor) == 160, stage_actor);
 NOH_STATIC_ASSERT(sizeof(noh_stage_graph_slot) == 16, stage_graph_slot);
 NOH_STATIC_ASSERT(sizeof(noh_stage_head) == 24 + 16 * NOH_STAGE_KINDS_MAX, stage_head);
 
@@ -283,6 +283,8 @@ struct noh_stage_gpu {
  * only count). */
 noh_kind_desc noh_stage_kind_desc(const noh_stage_desc *desc, uint32_t kind);
 uint32_t noh_stage_items(const noh_kind_desc *kind, noh_stage_item *items);
+/* The texture that stands for one of the kind's mesh pack in a set, 0 its own: its pack, and its index there. */
+uint32_t noh_stage_worn(const noh_kind_desc *kind, uint32_t set, uint32_t texture, const noh_pack **pack);
 noh_result noh_stage_check_desc(const noh_stage_desc *desc, noh_error *error);
 noh_stage_desc noh_stage_desc_filled(const noh_stage_desc *desc);
 uint32_t noh_stage_layer_tracks(const noh_layer_desc *layer);

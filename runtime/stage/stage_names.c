@@ -34,6 +34,12 @@ static const char *float_name(const noh_stage_kind *k, uint32_t index)
     return index < k->float_count ? "" : NULL; /* clips keep the hashes of named floats */
 }
 
+static const char *set_name(const noh_stage_kind *k, uint32_t index)
+{
+    if (index > k->desc.texture_set_count) return NULL;
+    return index && k->desc.texture_sets[index - 1u].name ? k->desc.texture_sets[index - 1u].name : "";
+}
+
 const char *noh_stage_name(const noh_stage *stage, uint32_t kind, noh_name what, uint32_t index)
 {
     const noh_stage_kind *k;
@@ -48,6 +54,7 @@ const char *noh_stage_name(const noh_stage *stage, uint32_t kind, noh_name what,
     case NOH_NAME_GRAPH:
     case NOH_NAME_PARAMETER:
     case NOH_NAME_MACHINE: return noh_stage_graph_name(k, what, index);
+    case NOH_NAME_TEXTURE_SET: return set_name(k, index);
     }
     return NULL;
 }
@@ -64,6 +71,7 @@ static uint32_t count_of(const noh_stage_kind *k, noh_name what)
     case NOH_NAME_GRAPH:
     case NOH_NAME_PARAMETER:
     case NOH_NAME_MACHINE: return noh_stage_graph_names(k, what);
+    case NOH_NAME_TEXTURE_SET: return k->desc.texture_set_count + 1u;
     }
     return 0;
 }

@@ -396,6 +396,21 @@ static void state_segments(const planner *p)
     }
 }
 
+/* Of the packs of a kind's texture sets, each once. */
+static uint64_t count_set_packs(const noh_kind_desc *d)
+{
+    uint64_t bytes = 0;
+    for (uint32_t i = 0; i < d->texture_set_count; i++) {
+        const noh_pack *pack = d->texture_sets[i].pack;
+        int seen = !pack || pack->bytes == d->mesh->bytes;
+        for (uint32_t k = 0; k < i && !seen; k++) {
+            seen = d->texture_sets[k].pack && d->texture_sets[k].pack->bytes == pack->bytes;
+        }
+        bytes += seen ? 0 : pack->byte_count;
+    }
+    return bytes;
+}
+
 static uint64_t count_packs(const noh_stage_desc *desc)
 {
     uint64_t bytes = 0;
@@ -406,6 +421,7 @@ static uint64_t count_packs(const noh_stage_desc *desc)
             seen |= desc->kinds[k].mesh->bytes == d.mesh->bytes;
         }
         bytes += seen ? 0 : d.mesh->byte_count;
+        bytes += seen ? 0 : count_set_packs(&d);
         if (!seen && d.clips && d.clips->bytes != d.mesh->bytes) bytes += d.clips->byte_count;
         for (uint32_t c = 0; !seen && d.clip_packs && c < d.clip_pack_count; c++) {
             bytes += d.clip_packs[c]->bytes != d.mesh->bytes ? d.clip_packs[c]->byte_count : 0;
@@ -430,6 +446,7 @@ static uint32_t hash_plan(const noh_stage_desc *desc, const noh_stage_plan *plan
         const noh_kind_plan *k = &plan->kinds[i];
         const noh_kind_desc d = noh_stage_kind_desc(desc, i);
         hash = mix(mix(mix(hash, d.actor_count), d.held_float_count), d.mesh->byte_count);
+        hash = mix(hash, d.texture_set_count);
         hash = mix(mix(mix(hash, k->level_count), k->finest_level), k->track_count);
         hash = mix(mix(mix(hash, k->joint_count), k->float_count), k->segment_count);
         hash = mix(hash, k->graph_count);

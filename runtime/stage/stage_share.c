@@ -60,7 +60,19 @@ static uint32_t run_of(const noh_stage *s, const noh_stage_kind *k, uint32_t i)
                : shown->level * noh_stage_influence_levels(k) + noh_stage_character(k, i)->lod.influences;
 }
 
-/* A counting sort by run; stable, so that neighbours in memory stay neighbours. */
+/* The next place in its run for each seen actor of a texture set. */
+static void take_places(noh_stage *s, noh_stage_kind *k, uint32_t set, uint32_t *next)
+{
+    for (uint32_t i = 0; i < k->desc.actor_count; i++) {
+        noh_stage_shown *shown = &s->shown[k->first_actor + i];
+        if (shown->views && k->actors[i].look.texture_set == set) {
+            shown->place = next[run_of(s, k, i)]++;
+            k->order[shown->place] = i;
+        }
+    }
+}
+
+/* A counting sort by run, in a run by texture set; stable, so that neighbours in memory stay neighbours. */
 static void put_in_order(noh_stage *s, noh_stage_kind *k)
 {
     const uint32_t runs = noh_stage_run_count(k);
@@ -74,13 +86,7 @@ static void put_in_order(noh_stage *s, noh_stage_kind *k)
         next[r] = k->runs[r];
     }
     k->runs[runs + 1u] = count;
-    for (uint32_t i = 0; i < k->desc.actor_count; i++) {
-        noh_stage_shown *shown = &s->shown[k->first_actor + i];
-        if (shown->views) {
-            shown->place = next[run_of(s, k, i)]++;
-            k->order[shown->place] = i;
-        }
-    }
+    for (uint32_t set = 0; set <= k->desc.texture_set_count; set++) take_places(s, k, set, next);
 }
 
 /* ---- updates ---- */

@@ -98,23 +98,6 @@ static noh_result visit_item(measure *m, noh_gl_site site, noh_gl_item *item, no
     return item ? noh_gl_skin_init(memory, (size_t)plan.cpu_bytes, &m->gl->device, &d, &item->skin, error) : NOH_OK;
 }
 
-static noh_result visit_pictures(measure *m, uint32_t kind, noh_gl_texture *pictures, noh_error *error)
-{
-    const noh_pack *pack = m->desc->kinds[kind].mesh;
-    uint64_t bytes = 0;
-    for (uint32_t i = 0; i < pack->texture_count; i++) {
-        noh_texture texture;
-        noh_result result = noh_pack_texture_at(pack, i, &texture, error);
-        bytes += noh_gl_picture_bytes(&texture);
-        if (result == NOH_OK && pictures) {
-            result = noh_gl_picture_create(m->gl->device.api, m->gl->device.ledger, &texture, &pictures[i], error);
-        }
-        if (result != NOH_OK) return result;
-    }
-    add(m, "textures", kind, m->arena.used, bytes);
-    return NOH_OK;
-}
-
 /* ---- the arrays of objects ---- */
 
 static void carve_kinds(measure *m)
@@ -122,13 +105,13 @@ static void carve_kinds(measure *m)
     noh_gl_kind *kinds = CARVE(m, m->desc->kind_count, noh_gl_kind);
     for (uint32_t i = 0; i < m->desc->kind_count; i++) {
         noh_gl_item *items = CARVE(m, m->plan->kinds[i].mesh_count, noh_gl_item);
-        const uint32_t owner = noh_gl_picture_owner(m->desc, i), count = m->desc->kinds[i].mesh->texture_count;
-        noh_gl_texture *pictures = owner == i ? CARVE(m, count, noh_gl_texture) : NULL;
+        const uint32_t count = noh_gl_pictures_count(&m->desc->kinds[i]);
+        noh_gl_texture *pictures = CARVE(m, count, noh_gl_texture);
         if (!kinds) continue;
         kinds[i].items = items;
-        kinds[i].pictures = owner == i ? pictures : kinds[owner].pictures;
+        kinds[i].pictures = pictures;
         memset(items, 0, m->plan->kinds[i].mesh_count * sizeof *items);
-        if (owner == i) memset(pictures, 0, count * sizeof *pictures);
+        memset(pictures, 0, count * sizeof *pictures);
     }
     if (m->gl) m->gl->kinds = kinds;
 }
@@ -182,11 +165,10 @@ static noh_result visit(measure *m, noh_error *error)
         result = visit_site(m, site, error);
     }
     for (uint32_t i = 0; i < m->desc->kind_count && result == NOH_OK; i++) {
-        if (noh_gl_picture_owner(m->desc, i) == i) {
-            result = visit_pictures(m, i, m->gl ? m->gl->kinds[i].pictures : NULL, error);
-        }
+        const uint64_t bytes = noh_gl_pictures_bytes(m->desc, i);
+        if (bytes) add(m, "textures", i, m->arena.used, bytes);
     }
-    return result;
+    return result == NOH_OK && m->gl ? noh_gl_pictures_create(m->desc, &m->gl->device, m->gl->kinds, error) : result;
 }
 
 static noh_result measure_stage(const noh_stage_desc *desc, const struct noh_gl_caps *caps, noh_stage_plan *plan,
@@ -232,8 +214,19 @@ static noh_result make_renderer(const noh_stage_gl *gl, const noh_stage *s, cons
     return noh_gl_renderer_create(device, &d, out, error);
 }
 
+/* The desc of a stage, with kinds: those that it keeps. */
+static noh_stage_desc whole_desc(const noh_stage *s, noh_kind_desc kinds[NOH_STAGE_KINDS_MAX])
+{
+    noh_stage_desc d = s->desc;
+    for (uint32_t i = 0; i < d.kind_count; i++) kinds[i] = s->kinds[i].desc;
+    d.kinds = kinds;
+    return d;
+}
+
 static void destroy(noh_stage *stage)
 {
+    noh_kind_desc kinds[NOH_STAGE_KINDS_MAX];
+    const noh_stage_desc desc = whole_desc(stage, kinds);
     noh_stage_gl *gl = stage->gpu;
     const noh_gl_device *d = &gl->device;
     if (gl->renderer->gl) noh_gl_renderer_delete(gl->renderer);
@@ -242,10 +235,8 @@ static void destroy(noh_stage *stage)
         for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
             if (gl->kinds[i].items[m].skin) noh_gl_skin_delete(gl->kinds[i].items[m].skin);
         }
-        for (uint32_t t = 0; t < k->desc.mesh->texture_count; t++) {
-            noh_gl_texture_delete(d->api, d->ledger, &gl->kinds[i].pictures[t]);
-        }
     }
+    noh_gl_pictures_delete(&desc, d, gl->kinds);
     for (uint32_t i = 0; i < gl->model_count; i++) {
         if (gl->models[i].morph) noh_gl_morph_delete(gl->models[i].morph);
         if (gl->models[i].mesh.vertex_array) noh_gl_mesh_delete(d->api, d->ledger, &gl->models[i].mesh);
@@ -262,15 +253,6 @@ static void find_mirrored(noh_stage_gl *gl, const noh_stage *s)
                                              noh_gl_normal_rows(mesh->node_world, rows) < 0.0f;
         }
     }
-}
-
-/* The desc of a stage, with kinds: those that it keeps. */
-static noh_stage_desc whole_desc(const noh_stage *s, noh_kind_desc kinds[NOH_STAGE_KINDS_MAX])
-{
-    noh_stage_desc d = s->desc;
-    for (uint32_t i = 0; i < d.kind_count; i++) kinds[i] = s->kinds[i].desc;
-    d.kinds = kinds;
-    return d;
 }
 
 static noh_result init(void *memory, size_t bytes, const void *device, noh_stage *stage, noh_error *error)
@@ -301,28 +283,20 @@ static noh_result init(void *memory, size_t bytes, const void *device, noh_stage
     return result;
 }
 
-static noh_result restore_kind(noh_stage *s, uint32_t kind, noh_error *error)
+static noh_result restore_kind(const noh_stage *s, uint32_t kind, noh_error *error)
 {
-    noh_stage_gl *gl = s->gpu;
-    const noh_pack *pack = s->kinds[kind].desc.mesh;
+    const noh_stage_gl *gl = s->gpu;
     noh_result result = NOH_OK;
     for (uint32_t m = 0; m < s->kinds[kind].plan->mesh_count && result == NOH_OK; m++) {
         result = noh_gl_skin_restore(gl->kinds[kind].items[m].skin, error);
-    }
-    for (uint32_t i = 0; i < kind; i++) {
-        if (gl->kinds[i].pictures == gl->kinds[kind].pictures) return result;
-    }
-    for (uint32_t t = 0; t < pack->texture_count && result == NOH_OK; t++) {
-        noh_texture texture;
-        (void)noh_pack_texture_at(pack, t, &texture, NULL);
-        result = noh_gl_picture_restore(gl->device.api, gl->device.ledger, &texture, &gl->kinds[kind].pictures[t],
-                                        error);
     }
     return result;
 }
 
 static noh_result restore(noh_stage *stage, noh_error *error)
 {
+    noh_kind_desc kinds[NOH_STAGE_KINDS_MAX];
+    const noh_stage_desc desc = whole_desc(stage, kinds);
     noh_stage_gl *gl = stage->gpu;
     noh_result result = NOH_OK;
     for (uint32_t i = 0; i < gl->model_count && result == NOH_OK; i++) {
@@ -333,6 +307,7 @@ static noh_result restore(noh_stage *stage, noh_error *error)
     for (uint32_t i = 0; i < stage->desc.kind_count && result == NOH_OK; i++) {
         result = restore_kind(stage, i, error);
     }
+    if (result == NOH_OK) result = noh_gl_pictures_restore(&desc, &gl->device, gl->kinds, error);
     return result == NOH_OK && gl->renderer->gl ? noh_gl_renderer_restore(gl->renderer, NULL, 0, error) : result;
 }
 
@@ -348,7 +323,7 @@ static int any_weight(const float *weights, uint32_t count)
 
 /* One actor's mesh: its weights and its place. */
 static void upload_place(const noh_stage_mesh *mesh, const noh_gl_item *item, const noh_stage_shown *shown,
-                         const float *weights)
+                         const uint8_t *tint, const float *weights)
 {
     noh_gl_morph_binding morph;
     float world[12];
@@ -363,6 +338,7 @@ static void upload_place(const noh_stage_mesh *mesh, const noh_gl_item *item, co
     }
     if (!item->mirrored) {
         (void)noh_gl_skin_set_place(item->skin, shown->place, world, moved ? &morph : NULL, NULL);
+        (void)noh_gl_skin_set_tint(item->skin, shown->place, tint, NULL);
     }
 }
 
@@ -374,7 +350,7 @@ static void upload_actor(noh_stage *s, const noh_stage_kind *k, const noh_gl_ite
     const noh_skin_header *ready = NULL;
     for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
         const noh_stage_mesh *mesh = &k->meshes[m];
-        upload_place(mesh, &items[m], shown, weights + mesh->first_weight);
+        upload_place(mesh, &items[m], shown, noh_gl_tint_of(&k->actors[index]), weights + mesh->first_weight);
         if (!mesh->skinned) continue;
         if (mesh->skin.header != ready) noh_character_skin(noh_stage_character(k, index), &mesh->skin, s->matrices);
         ready = mesh->skin.header;

@@ -19,6 +19,17 @@ static const noh_stage_shown *shown_at(const drawing *d, uint32_t place)
     return &d->s->shown[d->k->first_actor + d->k->order[place]];
 }
 
+static const noh_stage_actor *actor_at(const drawing *d, uint32_t place)
+{
+    return &d->k->actors[d->k->order[place]];
+}
+
+/* The textures that an actor wears. */
+static const noh_gl_texture *pictures_of(const drawing *d, uint32_t place)
+{
+    return d->on_gl->pictures + (size_t)actor_at(d, place)->look.texture_set * d->k->desc.mesh->texture_count;
+}
+
 static int is_seen(const drawing *d, uint32_t place)
 {
     return (int)(shown_at(d, place)->views >> d->view & 1u);
@@ -55,8 +66,9 @@ static void draw_alone(const drawing *d, uint32_t mesh, uint32_t place, uint32_t
     memcpy(world, shown->world, sizeof world);
     if (!m->skinned && m->node_world) noh_matrix_multiply(shown->world, m->node_world, world);
     if (item->model->morph) morph = morph_of(item, shown);
+    noh_gl_draw_tint(d->renderer, noh_gl_tint_of(actor_at(d, place)));
     noh_gl_draw_mesh(d->renderer, &item->model->mesh, world, item->model->morph ? &morph : NULL,
-                     m->skinned ? &skin : NULL, &lod, d->on_gl->pictures, d->pass);
+                     m->skinned ? &skin : NULL, &lod, pictures_of(d, place), d->pass);
 }
 
 /* A fading actor: the new level and the old one, each with its share of the pixels. */
@@ -73,7 +85,7 @@ static void draw_fading(const drawing *d, uint32_t mesh, uint32_t place)
     draw_alone(d, mesh, place, shown->level_before, part, 1.0f);
 }
 
-/* Neighbours of a run that the view sees, in one call. */
+/* Neighbours of a run that the view sees and that wear the same, in one call. */
 static void draw_together(const drawing *d, uint32_t mesh, uint32_t run, uint32_t first, uint32_t count)
 {
     const uint32_t caps = noh_stage_influence_levels(d->k);
@@ -89,7 +101,12 @@ static void draw_together(const drawing *d, uint32_t mesh, uint32_t run, uint32_
     }
     if (item->model->morph) morph = morph_of(item, shown_at(d, first));
     noh_gl_draw_crowd(d->renderer, &item->model->mesh, item->model->morph ? &morph : NULL, &skin, count, &lod,
-                      d->on_gl->pictures, d->pass);
+                      pictures_of(d, first), d->pass);
+}
+
+static uint32_t wears(const drawing *d, uint32_t place)
+{
+    return actor_at(d, place)->look.texture_set;
 }
 
 static void draw_run(const drawing *d, uint32_t mesh, uint32_t run)
@@ -100,7 +117,7 @@ static void draw_run(const drawing *d, uint32_t mesh, uint32_t run)
         uint32_t first;
         while (at < end && !is_seen(d, at)) at++;
         first = at;
-        while (at < end && is_seen(d, at)) at++;
+        while (at < end && is_seen(d, at) && wears(d, at) == wears(d, first)) at++;
         if (at > first) draw_together(d, mesh, run, first, at - first);
     }
 }

@@ -27,9 +27,16 @@ static inline uint32_t noh_gl_item_tile(const noh_gl_item *item, const noh_stage
     return noh_gl_morph_instance(item->model->morph, item->first_pool + shown->slot.pool, shown->slot.slot);
 }
 
+/* NULL: white. */
+static inline const uint8_t *noh_gl_tint_of(const noh_stage_actor *a)
+{
+    const uint8_t *t = a->look.tint;
+    return t[0] | t[1] | t[2] | t[3] ? t : NULL;
+}
+
 typedef struct noh_gl_kind {
     noh_gl_item *items;       /* [mesh_count] */
-    noh_gl_texture *pictures; /* [texture_count of the pack], shared by kinds of one pack */
+    noh_gl_texture *pictures; /* [1 + texture_set_count][texture_count of the pack]: those that others own, too */
 } noh_gl_kind;
 
 typedef struct noh_stage_gl {
@@ -62,7 +69,18 @@ typedef struct noh_gl_site {
 int noh_gl_next_site(const noh_stage_plan *plan, uint32_t kind_count, noh_gl_site *site);
 /* The first site that draws the same mesh of the same pack from the same level on, and may share with this one. */
 noh_gl_site noh_gl_owner(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site);
-uint32_t noh_gl_picture_owner(const noh_stage_desc *desc, uint32_t kind);
+
+/* ---- textures ---- */
+
+/* The textures of a kind's sets that no kind before it has, no set before theirs: their bytes. */
+uint64_t noh_gl_pictures_bytes(const noh_stage_desc *desc, uint32_t kind);
+uint32_t noh_gl_pictures_count(const noh_kind_desc *kind); /* of all sets */
+/* Make, make again in a new context, delete the textures of all kinds. */
+noh_result noh_gl_pictures_create(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds,
+                                  noh_error *error);
+noh_result noh_gl_pictures_restore(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds,
+                                   noh_error *error);
+void noh_gl_pictures_delete(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds);
 
 /* The meshes and slots of all sites that an owner serves. Borrowed by `out`. */
 typedef struct noh_gl_tiles {

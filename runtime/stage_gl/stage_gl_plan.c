@@ -77,13 +77,6 @@ static int is_same(noh_gl_site a, noh_gl_site b)
     return a.kind == b.kind && a.item == b.item;
 }
 
-uint32_t noh_gl_picture_owner(const noh_stage_desc *desc, uint32_t kind)
-{
-    uint32_t owner = 0;
-    while (desc->kinds[owner].mesh->bytes != desc->kinds[kind].mesh->bytes) owner++;
-    return owner;
-}
-
 /* ---- accumulators ---- */
 
 static void add_tiles(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site, noh_gl_tiles *out)

@@ -95,7 +95,7 @@ static void the_picture_is_that_of_the_parts(void **state)
     const noh_gl_device device = device_of(g);
     noh_stage_view view;
     noh_gl_camera camera;
-    const noh_look finest = { 0, 0, 0, 1e-4f, 0 };
+    const noh_look finest = { .pixels = 1e-4f };
     float sphere[4];
     noh_actor actor;
     canvas to;

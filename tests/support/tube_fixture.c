@@ -20,7 +20,7 @@ static void set_weights(tube *t)
     noh_gl_morph_update(t->morph.morph, NULL);
 }
 
-static void pose(tube *t)
+void tube_pose(tube *t)
 {
     test_random r = { 90 };
     noh_skin skin;
@@ -65,7 +65,7 @@ void tube_open_with(tube *t, const noh_mesh *mesh, noh_palette_mode mode, noh_mo
                                       &(noh_gl_device){ &g->gl, &g->caps, &t->ledger, NULL, 0 }, &desc, &t->skin, NULL),
                      NOH_OK);
     set_weights(t);
-    pose(t);
+    tube_pose(t);
 }
 
 void tube_open(tube *t, const noh_mesh *mesh, noh_palette_mode mode)

@@ -26,6 +26,9 @@ void tube_open_with(tube *t, const noh_mesh *mesh, noh_palette_mode mode, noh_mo
                     const noh_gl_caps *caps);
 void tube_close(tube *t);
 
+/* Pose and place the copies, as they are when opened. */
+void tube_pose(tube *t);
+
 /* Sees all copies. */
 extern const noh_gl_camera tube_camera;
 
