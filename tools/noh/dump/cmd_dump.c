@@ -8,7 +8,7 @@
 
 #include "convert/base/byte_buffer.h"
 #include "convert/base/nearest.h"
-#include "draw/load.h"
+#include "draw/figure.h"
 #include "dump_graph.h"
 #include "gpu/gpu_args.h"
 #include "cli/message.h"
@@ -19,9 +19,8 @@
 typedef struct dump_args {
     const char *pack, *output, *anim, *path, *accumulate, *driver, *graph;
     double time_s, lod;
-    uint32_t level;
     option_list weights, clips;
-    load_options load;
+    figure_desc figure;
 } dump_args;
 
 static void print_to(byte_buffer *out, const char *format, ...)
@@ -86,34 +85,35 @@ static void dump_faces(byte_buffer *out, const noh_mesh *mesh, uint32_t first)
     }
 }
 
-static void dump_item(byte_buffer *out, const pack_file *file, const scene *s, uint32_t item,
-                      const noh_vertex *vertices, uint32_t *first)
+static void dump_mesh(byte_buffer *out, const noh_mesh *mesh, const noh_vertex *vertices, const float world[12],
+                      uint32_t *first)
 {
-    const noh_mesh *mesh = &s->meshes[s->items[item].mesh];
     print_to(out, "o %s\n", mesh->name);
     if (mesh->header->level) {
         print_to(out, "# LOD level %u of 0 to %u\n", mesh->header->level, mesh->header->level_count - 1u);
     }
     for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
-        dump_vertex(out, &vertices[v], scene_world(s, file, item));
+        dump_vertex(out, &vertices[v], world);
     }
     dump_faces(out, mesh, *first);
     *first += mesh->header->vertex_count;
 }
 
 /* Positions and normals as the vertex shader leaves them. */
-static int fetch_item(load *l, readback *r, uint32_t item, noh_vertex *vertices)
+static int fetch_mesh(const figure *f, readback *r, uint32_t kind, uint32_t index, noh_vertex *vertices)
 {
-    const noh_gl_mesh *mesh = &l->meshes[l->scene->items[item].mesh];
-    noh_gl_morph_binding morph = noh_gl_morph_binding_of(l->morph.morph, l->item_instances[item]);
-    noh_gl_skin_binding skin;
-    uint32_t count = mesh->mesh.header->vertex_count;
-    readback_vertex *read = malloc(sizeof *read * (count + 1u));
-    int status = read ? 0 : tool_fail(l->file->path, "out of memory");
-    if (!status) {
-        status = readback_skinned(r, mesh, &morph, load_skin_binding(l, item, &skin), 0, read);
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_stage_drawn drawn;
+    readback_vertex *read;
+    int status;
+    if (noh_actor_on_gl(f->stage, f->actors[kind], index, &drawn, &error)) {
+        return tool_fail_error(f->desc.file->path, &error);
     }
-    for (uint32_t v = 0; v < count && !status; v++) {
+    read = malloc(sizeof *read * (drawn.mesh->mesh.header->vertex_count + 1u));
+    status = read ? readback_skinned(r, drawn.mesh, drawn.is_morphed ? &drawn.morph : NULL,
+                                     drawn.is_skinned ? &drawn.skin : NULL, 0, read)
+                  : tool_fail(f->desc.file->path, "out of memory");
+    for (uint32_t v = 0; v < drawn.mesh->mesh.header->vertex_count && !status; v++) {
         memcpy(vertices[v].position, read[v].position, sizeof vertices[v].position);
         memcpy(vertices[v].normal, read[v].normal, sizeof vertices[v].normal);
     }
@@ -121,42 +121,63 @@ static int fetch_item(load *l, readback *r, uint32_t item, noh_vertex *vertices)
     return status;
 }
 
-/* l and r NULL: the vertices of the CPU. */
-static int dump_items(byte_buffer *out, const pack_file *file, const scene *s, load *l, readback *r)
+/* r NULL: the vertices of the CPU. */
+static int dump_meshes(byte_buffer *out, const figure *f, readback *r)
 {
     uint32_t first = 1;
     int status = 0;
-    for (uint32_t i = 0; i < s->item_count && !status; i++) {
-        uint32_t count = s->meshes[s->items[i].mesh].header->vertex_count;
-        noh_vertex *vertices = malloc(sizeof *vertices * (count + 1u));
-        status = vertices ? scene_deform(s, i, count, vertices) : tool_fail(file->path, "out of memory");
-        if (!status && l) status = fetch_item(l, r, i, vertices);
-        if (!status) dump_item(out, file, s, i, vertices, &first);
-        free(vertices);
+    for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
+        for (uint32_t i = 0; i < f->plan.kinds[k].mesh_count && !status; i++) {
+            noh_mesh mesh;
+            noh_actor_mesh shown;
+            noh_vertex *vertices = figure_deform(f, k, i, f->desc.level, &mesh, &shown);
+            status = !vertices ? EXIT_FAILED : r ? fetch_mesh(f, r, k, i, vertices) : 0;
+            if (!status) dump_mesh(out, &mesh, vertices, shown.world, &first);
+            free(vertices);
+        }
     }
     return status;
 }
 
-static int dump_gpu(byte_buffer *out, const pack_file *file, const scene *s, const dump_args *a)
+/* What no view sees is not handed to the GPU. */
+static int look_at_all(figure *f)
 {
-    gpu g;
-    load l;
+    const bounds box = figure_bounds(f, 0);
+    const orbit at = orbit_fit(&box, 1.0);
+    noh_gl_camera camera;
+    orbit_camera(&at, &camera);
+    return figure_look(f, &camera, 512);
+}
+
+static int dump_by_gpu(byte_buffer *out, figure *f)
+{
+    noh_gl_morph_plan plan;
     readback r;
-    int status = gpu_open_drawing(&g, a->driver);
+    int status = look_at_all(f);
+    (void)noh_stage_morph_plan(&f->stage_desc, &f->g->caps, &f->plan, &plan, NULL);
+    if (!status) status = readback_open(&r, f->g, plan.layer_format == GL_RGBA32UI);
+    if (!status) {
+        status = dump_meshes(out, f, &r);
+        readback_close(&r);
+    }
+    return status;
+}
+
+static int dump_figure(byte_buffer *out, const dump_args *a, gpu *g)
+{
+    figure f;
+    int status = figure_open(&f, &a->figure, g);
     if (status) {
         return status;
     }
-    status = load_open(&l, &g, file, s, &a->load);
+    status = figure_play_options(&f, &a->clips, a->time_s);
+    if (!status) status = figure_hold_options(&f, &a->weights);
+    if (!status) status = figure_pose(&f);
     if (!status) {
-        status = load_update(&l, NULL);
-        if (!status) status = readback_open(&r, &g, noh_gl_morph_plan_of(l.morph.morph)->layer_format == GL_RGBA32UI);
-        if (!status) {
-            status = dump_items(out, file, s, &l, &r);
-            readback_close(&r);
-        }
-        load_close(&l);
+        print_to(out, "# baked by noh: positions in world space, vertex colours linear\n");
+        status = g ? dump_by_gpu(out, &f) : dump_meshes(out, &f, NULL);
     }
-    gpu_close(&g);
+    figure_close(&f);
     return status;
 }
 
@@ -169,19 +190,25 @@ static int write_out(const dump_args *a, byte_buffer *out)
     return 0;
 }
 
-static int dump_scene(const pack_file *file, scene *s, const dump_args *a)
+static int dump_pack(const pack_file *file, dump_args *a)
 {
     byte_buffer out = { NULL, 0, 0, 0 };
-    int status = scene_set_level(s, file, a->level);
-    if (!status) status = scene_open_anim(s, file, a->anim);
-    if (!status && a->clips.count) status = scene_set_clips(s, file, &a->clips, a->time_s);
-    if (!status) status = scene_set_weights(s, file, &a->weights);
+    const int by_gpu = a->path && a->figure.path != NOH_MORPH_CPU;
+    const pack_file *clips;
+    pack_file anim;
+    gpu g;
+    int status = figure_open_clips(&anim, a->anim, file, &clips);
+    a->figure.file = file;
+    a->figure.clips = a->clips.count ? clips : NULL;
+    a->figure.track_count = (uint32_t)a->clips.count;
+    a->figure.held_float_count = (uint32_t)a->weights.count;
+    if (!status && by_gpu) status = gpu_open_drawing(&g, a->driver);
     if (!status) {
-        print_to(&out, "# baked by noh: positions in world space, vertex colours linear\n");
-        status = a->path && a->load.path != NOH_MORPH_CPU ? dump_gpu(&out, file, s, a)
-                                                          : dump_items(&out, file, s, NULL, NULL);
+        status = dump_figure(&out, a, by_gpu ? &g : NULL);
+        if (by_gpu) gpu_close(&g);
     }
     if (!status) status = write_out(a, &out);
+    figure_close_clips(&anim, clips);
     buffer_free(&out);
     return status;
 }
@@ -219,9 +246,9 @@ static int dump_graphs(const pack_file *file, const dump_args *a)
 
 static int check_args(dump_args *a)
 {
-    int status = parse_path(a->path, &a->load.path);
-    if (!status) status = parse_accumulate(a->accumulate, &a->load.accumulate);
-    if (!status) status = parse_level(a->lod, &a->level);
+    int status = parse_path(a->path, &a->figure.path);
+    if (!status) status = parse_accumulate(a->accumulate, &a->figure.accumulate);
+    if (!status) status = parse_level(a->lod, &a->figure.level);
     return status;
 }
 
@@ -229,22 +256,12 @@ static int run(void *args)
 {
     dump_args *a = args;
     pack_file file;
-    scene s;
     int status = check_args(a);
     if (!status) status = pack_file_open(&file, a->pack);
     if (status) {
         return status;
     }
-    if (a->graph) {
-        status = dump_graphs(&file, a);
-        pack_file_close(&file);
-        return status;
-    }
-    status = scene_init(&s, &file);
-    if (!status) {
-        status = dump_scene(&file, &s, a);
-        scene_free(&s);
-    }
+    status = a->graph ? dump_graphs(&file, a) : dump_pack(&file, a);
     pack_file_close(&file);
     return status;
 }
