@@ -169,7 +169,7 @@ else
     used=$(sed -n 's/.*"cpu_used": \([0-9]*\).*/\1/p' "$work/out")
     noh budget "$work/mesh.noh" --anim "$work/anim.noh" --instances 7 --json
     check "budget predicts what it used ($used)" grep -q "\"cpu_bytes\": $used," "$work/out"
-    check 'clips, controllers and poses are parts of it' sh -c 'for p in clips controllers "pose scratch"; do grep -q "\"name\": \"$p\"" "$1" || exit 1; done' - "$work/out"
+    check 'clips, characters and jobs are parts of it' sh -c 'for p in clips characters jobs; do grep -q "\"name\": \"$p\"" "$1" || exit 1; done' - "$work/out"
 fi
 
 clip=$assets/clips/Knight__Walking_A.rcl

@@ -3,7 +3,7 @@
 #define NOH_NOH_BUDGET_BUDGET_ARGS_H
 
 #include "cli/args.h"
-#include "draw/load.h"
+#include "draw/figure.h"
 
 /* Options that are whole numbers. */
 enum { ACTORS, NEAR, MIDDLE, FINEST, BYTES, CPU_BYTES, GPU_BYTES, HEIGHT, JOBS, COUNT_OPTIONS };
@@ -11,9 +11,8 @@ enum { ACTORS, NEAR, MIDDLE, FINEST, BYTES, CPU_BYTES, GPU_BYTES, HEIGHT, JOBS, 
 typedef struct budget_args {
     const char *pack, *anim, *path, *accumulate, *driver;
     double instances, lod;
-    uint32_t level;
     int as_json, nominal;
-    load_options load;
+    figure_desc figure;
     /* of a stage */
     const char *desc;
     const char *texts[COUNT_OPTIONS]; /* NULL: not given */

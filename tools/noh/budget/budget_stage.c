@@ -65,7 +65,7 @@ static void apply_options(const budget_args *a, noh_stage_desc *desc)
     if (a->pixels_text) desc->lod.pixels = (float)a->pixels;
     if (a->halves) desc->halves = 1;
     desc->gpu = a->without_gpu ? NULL : &noh_stage_on_gl;
-    desc->morph_path = (uint32_t)a->load.path;
+    desc->morph_path = (uint32_t)a->figure.path;
 }
 
 static int budget_of_stage(const budget_args *a, const char *subject, noh_stage_desc *desc)

@@ -1,35 +1,35 @@
-/* cmd_budget.c: the bytes that a load will take, by the sums that the load itself makes; `noh verify` compares the two.
- * With --actors or --desc those of a stage, by its plan. */
+/* cmd_budget.c: the bytes that a pack will take on the stage that the other verbs make of it, by its plan; `noh verify`
+ * compares the two. With --actors or --desc those of a game's own stage. */
 #include <stdio.h>
 #include <string.h>
 
 #include "budget_args.h"
-#include "level_costs.h"
+#include "pack_budget.h"
 #include "gpu/gpu_args.h"
 #include "cli/json.h"
 #include "cli/message.h"
 #include "cli/options.h"
 #include "cli/verbs.h"
 
-static void print_levels(const level_costs *c)
+static void print_levels(const pack_budget *b)
 {
-    if (c->count > 1) {
+    if (b->level_count > 1) {
         printf("%-10s %10s %10s %10s %10s %12s %12s\n", "level", "vertices", "triangles", "texels", "pairs",
                "CPU bytes", "GPU bytes   when loaded from this level on");
     }
-    for (uint32_t k = c->first; k < c->count && c->count > 1; k++) {
-        const level_cost *l = &c->levels[k];
+    for (uint32_t k = b->level_first; k < b->level_count && b->level_count > 1; k++) {
+        const level_cost *l = &b->levels[k];
         printf("  %-8u %10llu %10llu %10llu %10llu %12llu %12llu\n", k, (unsigned long long)l->vertices,
                (unsigned long long)l->triangles, (unsigned long long)l->texels, (unsigned long long)l->pairs,
                (unsigned long long)l->cpu_bytes, (unsigned long long)l->gpu_bytes);
     }
 }
 
-static void json_levels(json *j, const level_costs *c)
+static void json_levels(json *j, const pack_budget *b)
 {
     json_open(j, "levels", '[');
-    for (uint32_t k = c->first; k < c->count; k++) {
-        const level_cost *l = &c->levels[k];
+    for (uint32_t k = b->level_first; k < b->level_count; k++) {
+        const level_cost *l = &b->levels[k];
         json_open(j, NULL, '{');
         json_integer(j, "level", k);
         json_integer(j, "vertices", l->vertices);
@@ -43,57 +43,65 @@ static void json_levels(json *j, const level_costs *c)
     json_close(j, ']');
 }
 
-/* Decoded segments: they decide the bytes of "clips". */
-typedef struct segments {
-    uint32_t held, all, instances;
-} segments;
-
-static void print_budget(const pack_file *file, const load_budget *b, const segments *clips, const char *device)
+static void print_parts(const pack_budget *b)
 {
-    printf("%-32s %12s %12s\n", file->path, "CPU bytes", "GPU bytes");
+    const noh_stage_plan *plan = &b->planned.plan;
+    printf("%-32s %12s %12s\n", b->planned.desc.file->path, "CPU bytes", "GPU bytes");
     for (uint32_t i = 0; i < b->part_count; i++) {
-        printf("  %-30s %12llu %12llu\n", b->parts[i].name, (unsigned long long)b->parts[i].cpu_bytes,
+        char name[96];
+        pack_budget_name(b, i, name, sizeof name);
+        printf("  %-30s %12llu %12llu\n", name, (unsigned long long)b->parts[i].cpu_bytes,
                (unsigned long long)b->parts[i].gpu_bytes);
     }
-    printf("  %-30s %12llu %12llu\n", "sum", (unsigned long long)b->cpu_bytes, (unsigned long long)b->gpu_bytes);
-    printf("  %-30s %12llu %12s  read where it lies\n", "the pack itself", (unsigned long long)b->pack_bytes, "");
+    printf("  %-30s %12llu %12llu\n", "sum", (unsigned long long)plan->cpu_bytes, (unsigned long long)plan->gpu_bytes);
+    printf("  %-30s %12llu %12s  read where it lies\n", "the pack itself", (unsigned long long)plan->pack_bytes, "");
     printf("  %-30s %12u %12s  at most, for any call\n", "stack", NOH_STACK_BYTES, "");
-    if (clips->all) {
-        printf("clips: %u of %u decoded segments are held at once, enough for %u instance%s that cross-fade%s\n",
-               clips->held, clips->all, clips->instances, plural(clips->instances), clips->instances == 1u ? "s" : "");
-    }
-    if (!b->plan.atlas_width) {
-        printf("%s\n", b->plan.reason);
-        return;
-    }
-    printf("%s-%s on %s (%s); accumulators %u x %u x 3\n", noh_morph_path_name(b->plan.path),
-           noh_accumulate_name(b->plan.accumulate), device, b->plan.reason, b->plan.atlas_width, b->plan.atlas_height);
 }
 
-static int json_budget(const load_budget *b, const level_costs *levels, const segments *clips, const char *device)
+static void print_budget(const pack_budget *b, const char *device)
 {
+    const uint32_t instances = b->planned.kinds[0].actor_count;
+    print_parts(b);
+    if (b->segment_count) {
+        printf("clips: %u of %u decoded segments are held at once, enough for %u instance%s that cross-fade%s\n",
+               b->cached_segment_count, b->segment_count, instances, plural(instances), instances == 1u ? "s" : "");
+    }
+    if (b->morph.atlas_width) {
+        printf("%s-%s on %s (%s)\n", noh_morph_path_name(b->morph.path), noh_accumulate_name(b->morph.accumulate),
+               device, b->morph.reason);
+    } else {
+        printf("%s\n", b->morph.reason);
+    }
+    print_levels(b);
+}
+
+static int json_budget(const pack_budget *b, const char *device)
+{
+    const noh_stage_plan *plan = &b->planned.plan;
     json j = json_begin();
-    json_integer(&j, "cpu_bytes", b->cpu_bytes);
-    json_integer(&j, "gpu_bytes", b->gpu_bytes);
-    json_integer(&j, "pack_bytes", b->pack_bytes);
+    json_integer(&j, "cpu_bytes", plan->cpu_bytes);
+    json_integer(&j, "gpu_bytes", plan->gpu_bytes);
+    json_integer(&j, "pack_bytes", plan->pack_bytes);
     json_integer(&j, "stack_bytes", NOH_STACK_BYTES);
-    json_text(&j, "path", noh_morph_path_name(b->plan.path));
-    json_text(&j, "accumulate", noh_accumulate_name(b->plan.accumulate));
-    json_text(&j, "reason", b->plan.reason);
+    json_text(&j, "path", noh_morph_path_name(b->morph.path));
+    json_text(&j, "accumulate", noh_accumulate_name(b->morph.accumulate));
+    json_text(&j, "reason", b->morph.reason);
     json_text(&j, "device", device);
-    json_integer(&j, "instances", clips->instances);
-    json_integer(&j, "clip_segments_held", clips->held);
-    json_integer(&j, "clip_segments", clips->all);
+    json_integer(&j, "instances", b->planned.kinds[0].actor_count);
+    json_integer(&j, "clip_segments_held", b->cached_segment_count);
+    json_integer(&j, "clip_segments", b->segment_count);
     json_open(&j, "parts", '[');
     for (uint32_t i = 0; i < b->part_count; i++) {
+        char name[96];
+        pack_budget_name(b, i, name, sizeof name);
         json_open(&j, NULL, '{');
-        json_text(&j, "name", b->parts[i].name);
+        json_text(&j, "name", name);
         json_integer(&j, "cpu_bytes", b->parts[i].cpu_bytes);
         json_integer(&j, "gpu_bytes", b->parts[i].gpu_bytes);
         json_close(&j, '}');
     }
     json_close(&j, ']');
-    json_levels(&j, levels);
+    json_levels(&j, b);
     return json_end(&j);
 }
 
@@ -102,7 +110,7 @@ int budget_caps(const budget_args *a, int draws, noh_gl_caps *caps)
     gpu g;
     int status;
     if (a->nominal || !draws) {
-        *caps = nominal_caps();
+        *caps = gpu_nominal_caps();
         return 0;
     }
     status = gpu_open(&g, a->driver);
@@ -116,52 +124,47 @@ int budget_caps(const budget_args *a, int draws, noh_gl_caps *caps)
 /* Clips alone draw nothing. */
 static int check_clips_alone(const budget_args *a)
 {
-    const char *given = a->load.path != NOH_MORPH_AUTO              ? "--path"
-                        : a->load.accumulate != NOH_ACCUMULATE_AUTO ? "--accumulate"
-                                                                    : NULL;
+    const char *given = a->figure.path != NOH_MORPH_AUTO              ? "--path"
+                        : a->figure.accumulate != NOH_ACCUMULATE_AUTO ? "--accumulate"
+                                                                      : NULL;
     return given ? tool_usage("%s has no effect with a pack of clips alone", given) : 0;
 }
 
-static int budget_of(const budget_args *a, const pack_file *file)
+static int budget_of(const budget_args *a, const figure_desc *desc)
 {
+    const int draws = figure_draws(&desc->file->pack);
     noh_gl_caps caps;
-    level_costs levels;
-    segments clips = { 0, 0, a->load.instances ? a->load.instances : 1u };
-    load_budget b;
-    scene s;
-    int status = scene_init(&s, file);
-    if (status) {
-        return status;
+    pack_budget b;
+    int status = draws ? 0 : check_clips_alone(a);
+    if (!draws && !status && !desc->clips->pack.clip_count) {
+        status = tool_fail(desc->file->path, "the pack has neither meshes nor clips");
     }
-    memset(&b, 0, sizeof b);
-    status = s.item_count ? 0 : check_clips_alone(a);
-    if (!status) status = budget_caps(a, s.item_count != 0, &caps);
-    if (!status) status = scene_set_level(&s, file, a->level);
-    if (!status) status = scene_open_anim(&s, file, a->anim);
-    if (!status) status = load_budget_make(&b, file, &s, &caps, &a->load);
-    if (!status) status = level_costs_find(&levels, file, &s, &caps, &a->load);
+    if (!status) status = budget_caps(a, draws, &caps);
+    if (!status) status = pack_budget_make(&b, desc, draws ? &caps : NULL);
     if (!status) {
-        scene_measure_segments(&s, file, clips.instances, &clips.held, &clips.all);
         if (a->as_json) {
-            status = json_budget(&b, &levels, &clips, caps.renderer);
+            status = json_budget(&b, caps.renderer);
         } else {
-            print_budget(file, &b, &clips, caps.renderer);
-            print_levels(&levels);
+            print_budget(&b, caps.renderer);
         }
+        pack_budget_free(&b);
     }
-    load_budget_free(&b);
-    scene_free(&s);
     return status;
 }
 
 static int budget_of_pack(const budget_args *a)
 {
-    pack_file file;
+    figure_desc desc = a->figure;
+    pack_file file, anim;
     int status = pack_file_open(&file, a->pack);
-    if (!status) {
-        status = budget_of(a, &file);
-        pack_file_close(&file);
+    if (status) {
+        return status;
     }
+    desc.file = &file;
+    status = figure_open_clips(&anim, a->anim, &file, &desc.clips);
+    if (!status) status = budget_of(a, &desc);
+    figure_close_clips(&anim, desc.clips);
+    pack_file_close(&file);
     return status;
 }
 
@@ -169,10 +172,10 @@ static int budget_of_pack(const budget_args *a)
 
 static int check_args(budget_args *a)
 {
-    int status = parse_path(a->path, &a->load.path);
-    if (!status) status = parse_accumulate(a->accumulate, &a->load.accumulate);
-    if (!status) status = parse_instances(a->instances, &a->load.instances);
-    if (!status) status = parse_level(a->lod, &a->level);
+    int status = parse_path(a->path, &a->figure.path);
+    if (!status) status = parse_accumulate(a->accumulate, &a->figure.accumulate);
+    if (!status) status = parse_instances(a->instances, &a->figure.actor_count);
+    if (!status) status = parse_level(a->lod, &a->figure.level);
     return status ? status : stage_args_check(a);
 }
 

@@ -71,6 +71,8 @@ int figure_restore(figure *f);
 int figure_open_clips(pack_file *opened, const char *path, const pack_file *file, const pack_file **clips);
 void figure_close_clips(pack_file *opened, const pack_file *clips);
 
+/* 1 where a pack has meshes to draw. */
+int figure_draws(const noh_pack *pack);
 /* The LOD levels of a pack: how many, and the finest that it has, 0 but in a stripped pack. */
 uint32_t figure_level_count(const noh_pack *pack);
 uint32_t figure_level_first(const noh_pack *pack);

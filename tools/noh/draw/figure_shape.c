@@ -8,7 +8,15 @@
 #include "deform/skin.h"
 #include "figure.h"
 
-/* ---- levels ---- */
+/* ---- meshes and levels ---- */
+
+int figure_draws(const noh_pack *pack)
+{
+    for (uint32_t i = 0; i < pack->node_count; i++) {
+        if (pack->nodes[i].mesh != NOH_NONE) return 1;
+    }
+    return !pack->node_count && pack->mesh_count;
+}
 
 uint32_t figure_level_count(const noh_pack *pack)
 {

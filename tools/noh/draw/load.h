@@ -74,8 +74,4 @@ void load_draw(load *l, const noh_gl_camera *camera);
 /* The binding of an item's palette, in *out; NULL for a rigid item. */
 const noh_gl_skin_binding *load_skin_binding(const load *l, uint32_t item, noh_gl_skin_binding *out);
 
-/* Capabilities to assume without a driver: a GLES 3.2 device with every feature, and textures as large as ES 3.0
- * demands. */
-noh_gl_caps nominal_caps(void);
-
 #endif

@@ -6,17 +6,9 @@
 
 #include "cli/message.h"
 
-static int draws_meshes(const noh_pack *pack)
-{
-    for (uint32_t i = 0; i < pack->node_count; i++) {
-        if (pack->nodes[i].mesh != NOH_NONE) return 1;
-    }
-    return !pack->node_count && pack->mesh_count;
-}
-
 int picture_shows_bones(const pack_file *file, int asked_for)
 {
-    if (!asked_for && draws_meshes(&file->pack)) {
+    if (!asked_for && figure_draws(&file->pack)) {
         return 0;
     }
     if (file->pack.skeleton_count) {

@@ -1,6 +1,8 @@
 /* cmd_verify.c: compares every path and format with the CPU reference, value for value, and memory used with memory
  * predicted. */
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "gpu/gpu_args.h"
 #include "cli/message.h"
@@ -8,31 +10,66 @@
 #include "cli/verbs.h"
 #include "verify.h"
 
-/* A whole load, as `noh render` makes it, against its budget, as `noh budget` prints it. */
-static int verify_load(verify_job *job)
+/* init must take a block of the planned size, and must refuse one byte less and leave it untouched. Returns the planned
+ * bytes, or 0 if a smaller block was accepted or written to. */
+static uint64_t least_block(verify_job *job, const figure *planned)
 {
-    load_budget b;
-    load l;
-    int status = load_budget_make(&b, &job->file, &job->scene, &job->g.caps, &job->load);
-    if (!status) status = scene_open_players(&job->scene, &job->file, job->load.instances ? job->load.instances : 1u);
-    if (!status) {
-        status = load_open(&l, &job->g, &job->file, &job->scene, &job->load);
+    const noh_gl_device device = { &job->g.gl, &job->g.caps, &job->g.ledger, NULL, 0 };
+    const size_t bytes = (size_t)planned->plan.cpu_bytes;
+    noh_error error = { NOH_OK, "", 0, 0 };
+    uint8_t *memory = malloc(bytes);
+    noh_stage *stage = NULL;
+    int ok = memory != NULL;
+    if (ok) {
+        memset(memory, 0xa5, bytes);
+        ok = noh_stage_init(memory, bytes - 1u, &device, &planned->stage_desc, &planned->plan, &stage, &error) ==
+                 NOH_ERR_MEMORY &&
+             error.need == bytes;
+        for (size_t i = 0; i < bytes; i++) ok &= memory[i] == 0xa5;
     }
+    free(memory);
+    return ok ? bytes : 0;
+}
+
+/* A frame that a camera sees, with the first clip playing. */
+static int show(figure *f)
+{
+    const char *clip = noh_stage_name(f->stage, 0, NOH_NAME_CLIP, 0);
+    const noh_play play = { .start_ticks = 4800 };
+    noh_gl_camera camera;
+    bounds box;
+    orbit at;
+    int status = clip ? figure_play(f, clip, &play) : 0;
+    if (!status) status = figure_pose(f);
+    if (status) {
+        return status;
+    }
+    box = figure_bounds(f, 0);
+    at = orbit_fit(&box, 1.0);
+    orbit_camera(&at, &camera);
+    return figure_look(f, &camera, 512);
+}
+
+/* A whole stage, as `noh render` makes it, against its budget, as `noh budget` prints it. */
+static int verify_figure(verify_job *job)
+{
+    figure planned, f;
+    int status = figure_plan(&planned, &job->figure, &job->g.caps);
+    if (status) {
+        return status;
+    }
+    job->cpu_predicted = planned.plan.cpu_bytes;
+    job->gpu_predicted = planned.plan.gpu_bytes;
+    job->cpu_used = least_block(job, &planned);
+    figure_plan_free(&planned);
+    status = figure_open(&f, &job->figure, &job->g);
     if (!status) {
-        job->cpu_predicted = b.cpu_bytes;
-        job->gpu_predicted = b.gpu_bytes;
         job->gpu_used = noh_gl_ledger_bytes(&job->g.ledger);
-        job->cpu_used = l.morph.bytes + l.skin.bytes + l.matrix_bytes;
-        for (uint32_t i = 0; i < job->scene.player_count; i++) {
-            const scene_player *p = &job->scene.players[i];
-            job->cpu_used += p->set_bytes + p->controller_bytes + p->pose_bytes;
-        }
-        status = load_update(&l, NULL);
+        status = show(&f);
         verify_check_memory(job, noh_gl_ledger_bytes(&job->g.ledger) == job->gpu_used,
                             "GPU memory was taken after init");
-        load_close(&l);
+        figure_close(&f);
     }
-    load_budget_free(&b);
     verify_check_memory(job, job->cpu_predicted == job->cpu_used, "CPU bytes are not those predicted");
     verify_check_memory(job, job->gpu_predicted == job->gpu_used, "GPU bytes are not those predicted");
     verify_check_memory(job, noh_gl_ledger_bytes(&job->g.ledger) == 0, "GPU memory was not given back");
@@ -46,18 +83,33 @@ typedef struct verify_args {
     int without_tangents, as_json;
 } verify_args;
 
-static int verify_scene(verify_job *job, const verify_args *a, uint32_t level)
+static int open_meshes(verify_job *job)
 {
-    int status = scene_set_level(&job->scene, &job->file, level);
-    if (!status) status = scene_open_anim(&job->scene, &job->file, a->anim);
-    if (!status) status = gpu_open_drawing(&job->g, a->driver);
+    const noh_pack *pack = &job->file.pack;
+    const int status = figure_check_level(&job->file, job->figure.level);
     if (status) {
         return status;
     }
-    status = verify_paths(job);
-    if (!status) status = verify_load(job);
-    if (!status) status = a->as_json ? verify_print_json(job) : verify_print(job);
-    gpu_close(&job->g);
+    job->meshes = calloc(pack->mesh_count + 1u, sizeof *job->meshes);
+    for (uint32_t i = 0; job->meshes && i < pack->mesh_count; i++) {
+        noh_mesh full;
+        (void)noh_pack_mesh_at(pack, i, &full, NULL);
+        job->meshes[i] = noh_mesh_at_lod(&full, job->figure.level);
+    }
+    return job->meshes ? 0 : tool_fail(job->file.path, "out of memory");
+}
+
+static int verify_pack(verify_job *job, const verify_args *a)
+{
+    int status = open_meshes(job);
+    if (!status) status = gpu_open_drawing(&job->g, a->driver);
+    if (!status) {
+        status = verify_paths(job);
+        if (!status) status = verify_figure(job);
+        if (!status) status = a->as_json ? verify_print_json(job) : verify_print(job);
+        gpu_close(&job->g);
+    }
+    free(job->meshes);
     return status;
 }
 
@@ -65,9 +117,9 @@ static int run(void *args)
 {
     static verify_job job;
     const verify_args *a = args;
-    uint32_t level = 0;
-    int status = parse_instances(a->instances, &job.load.instances);
-    if (!status) status = parse_level(a->lod, &level);
+    pack_file anim;
+    int status = parse_instances(a->instances, &job.figure.actor_count);
+    if (!status) status = parse_level(a->lod, &job.figure.level);
     if (status) {
         return status;
     }
@@ -81,11 +133,10 @@ static int run(void *args)
     if (status) {
         return status;
     }
-    status = scene_init(&job.scene, &job.file);
-    if (!status) {
-        status = verify_scene(&job, a, level);
-        scene_free(&job.scene);
-    }
+    job.figure.file = &job.file;
+    status = figure_open_clips(&anim, a->anim, &job.file, &job.figure.clips);
+    if (!status) status = verify_pack(&job, a);
+    figure_close_clips(&anim, job.figure.clips);
     pack_file_close(&job.file);
     return status ? status : job.failed ? EXIT_FAILED : 0;
 }

@@ -6,7 +6,7 @@
 #ifndef NOH_NOH_VERIFY_VERIFY_H
 #define NOH_NOH_VERIFY_VERIFY_H
 
-#include "draw/load.h"
+#include "draw/figure.h"
 
 typedef struct verify_row {
     const char *path, *accumulate, *reason;
@@ -21,7 +21,7 @@ typedef struct verify_row {
 
 typedef struct verify_job {
     pack_file file;
-    scene scene;
+    noh_mesh *meshes; /* [mesh_count of the pack] at the level that is asked for */
     gpu g;
     uint64_t state; /* of the random weights */
     verify_row rows[16];
@@ -29,7 +29,7 @@ typedef struct verify_job {
     double bound_scale;         /* of skinned vertices */
     int without_tangents;       /* accumulators of two layers */
     const char *memory_failure; /* NULL: memory was as predicted */
-    load_options load;          /* of the load whose memory is compared with its budget */
+    figure_desc figure;         /* of the stage whose memory is compared with its budget */
     uint64_t gpu_predicted, gpu_used, cpu_predicted, cpu_used;
 } verify_job;
 

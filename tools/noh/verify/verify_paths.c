@@ -131,7 +131,7 @@ static void clear_layers(const verify_job *job, void *memory, size_t bytes, cons
 static int verify_mesh(verify_job *job, gpu_morph *m, readback *r, uint32_t mesh_index, const noh_gl_mesh *gl_mesh,
                        verify_row *row)
 {
-    const noh_mesh *mesh = &job->scene.meshes[mesh_index];
+    const noh_mesh *mesh = &job->meshes[mesh_index];
     const noh_gl_morph_plan *plan = noh_gl_morph_plan_of(m->morph);
     uint32_t instance = noh_gl_morph_instance(m->morph, mesh_index, 0);
     size_t bytes = noh_morph_layers_size(mesh);
@@ -164,7 +164,7 @@ static int verify_mesh(verify_job *job, gpu_morph *m, readback *r, uint32_t mesh
 static void set_bound(verify_job *job, verify_row *row, int half)
 {
     for (uint32_t i = 0; half && i < job->file.pack.mesh_count; i++) {
-        const noh_mesh_header *h = job->scene.meshes[i].header;
+        const noh_mesh_header *h = job->meshes[i].header;
         row->bound_um = fmax(row->bound_um, 1e6 * (double)h->world_scale * (double)h->f16_position_bound);
     }
 }
@@ -205,7 +205,7 @@ static int verify_path(verify_job *job, noh_morph_path path, noh_accumulate accu
     memset(&desc, 0, sizeof desc);
     row->path = noh_morph_path_name(path);
     row->accumulate = noh_accumulate_name(accumulate);
-    desc.meshes = job->scene.meshes;
+    desc.meshes = job->meshes;
     desc.mesh_count = job->file.pack.mesh_count;
     desc.path = path;
     desc.accumulate = accumulate;
@@ -247,7 +247,7 @@ static int verify_simd(verify_job *job)
     row->reason = noh_morph_simd();
     row->available = row->exact = 1;
     for (uint32_t i = 0; i < job->file.pack.mesh_count && !status; i++) {
-        const noh_mesh *mesh = &job->scene.meshes[i];
+        const noh_mesh *mesh = &job->meshes[i];
         size_t bytes = noh_morph_layers_size(mesh);
         verify_buffers b;
         status = buffers_open(&b, mesh) ? tool_fail(job->file.path, "out of memory") : 0;
@@ -276,7 +276,7 @@ static int verify_skins(verify_job *job, const noh_gl_mesh *gl_meshes)
         verify_skin skin;
         memset(row, 0, sizeof *row);
         skin.bound_scale = job->bound_scale;
-        status = verify_skin_run(&job->g, &job->file, &job->scene, gl_meshes, (noh_palette_mode)mode, &job->state,
+        status = verify_skin_run(&job->g, &job->file, job->meshes, gl_meshes, (noh_palette_mode)mode, &job->state,
                                  &skin);
         row->path = names[mode];
         row->accumulate = "f32";
@@ -303,7 +303,7 @@ int verify_paths(verify_job *job)
     noh_error error = { NOH_OK, "", 0, 0 };
     int status = gl_meshes ? 0 : tool_fail(job->file.path, "out of memory");
     for (uint32_t i = 0; i < count && !status; i++) {
-        if (noh_gl_mesh_create(&job->g.gl, &job->g.ledger, &job->scene.meshes[i], &gl_meshes[i], &error)) {
+        if (noh_gl_mesh_create(&job->g.gl, &job->g.ledger, &job->meshes[i], &gl_meshes[i], &error)) {
             status = tool_fail_error(job->file.path, &error);
         }
     }
@@ -315,7 +315,7 @@ int verify_paths(verify_job *job)
             status = verify_path(job, paths[p], (noh_accumulate)a, gl_meshes);
         }
     }
-    if (!status && verify_skin_wanted(&job->scene, &job->file.pack)) {
+    if (!status && verify_skin_wanted(job->meshes, &job->file.pack)) {
         status = verify_skins(job, gl_meshes);
     }
     for (uint32_t i = 0; gl_meshes && i < count; i++) {

@@ -16,7 +16,7 @@
 typedef struct job {
     gpu *g;
     const pack_file *file;
-    const scene *s;
+    const noh_mesh *meshes;
     gpu_morph morph;
     noh_gl_skin *skin;
     readback back;
@@ -223,7 +223,7 @@ static int check_mesh(job *j, uint32_t index, const noh_gl_mesh *gl_mesh)
     int status;
     memset(&m, 0, sizeof m);
     m.j = j;
-    m.mesh = &j->s->meshes[index];
+    m.mesh = &j->meshes[index];
     m.gl_mesh = gl_mesh;
     m.index = index;
     noh_pack_skin_at(&j->file->pack, m.mesh->header->skin, &m.skin, NULL);
@@ -248,10 +248,10 @@ static int check_mesh(job *j, uint32_t index, const noh_gl_mesh *gl_mesh)
 
 /* ---- the whole pack ---- */
 
-int verify_skin_wanted(const scene *s, const noh_pack *pack)
+int verify_skin_wanted(const noh_mesh *meshes, const noh_pack *pack)
 {
     for (uint32_t i = 0; i < pack->mesh_count; i++) {
-        if (s->meshes[i].header->influence_count) {
+        if (meshes[i].header->influence_count) {
             return 1;
         }
     }
@@ -263,7 +263,7 @@ static int check_meshes(job *j, const noh_gl_mesh *gl_meshes)
     noh_gl_morph_desc desc;
     int status;
     memset(&desc, 0, sizeof desc);
-    desc.meshes = j->s->meshes;
+    desc.meshes = j->meshes;
     desc.mesh_count = j->file->pack.mesh_count;
     desc.path = NOH_MORPH_CPU; /* its sums are the reference's on every driver: what differs is the skin */
     status = gpu_morph_open(&j->morph, j->g, &desc, j->file->path);
@@ -272,7 +272,7 @@ static int check_meshes(job *j, const noh_gl_mesh *gl_meshes)
     }
     status = readback_open(&j->back, j->g, 0);
     for (uint32_t i = 0; i < j->file->pack.mesh_count && !status; i++) {
-        if (j->s->meshes[i].header->influence_count) {
+        if (j->meshes[i].header->influence_count) {
             status = check_mesh(j, i, &gl_meshes[i]);
         }
     }
@@ -281,10 +281,10 @@ static int check_meshes(job *j, const noh_gl_mesh *gl_meshes)
     return status;
 }
 
-int verify_skin_run(gpu *g, const pack_file *file, const scene *s, const noh_gl_mesh *gl_meshes, noh_palette_mode mode,
-                    uint64_t *state, verify_skin *out)
+int verify_skin_run(gpu *g, const pack_file *file, const noh_mesh *meshes, const noh_gl_mesh *gl_meshes,
+                    noh_palette_mode mode, uint64_t *state, verify_skin *out)
 {
-    noh_gl_skin_desc desc = { s->meshes, file->pack.mesh_count, NULL, NOH_PALETTE_AUTO };
+    noh_gl_skin_desc desc = { meshes, file->pack.mesh_count, NULL, NOH_PALETTE_AUTO };
     noh_gl_skin_plan plan;
     noh_error error = { NOH_OK, "", 0, 0 };
     uint64_t before = noh_gl_ledger_bytes(&g->ledger);
@@ -297,7 +297,7 @@ int verify_skin_run(gpu *g, const pack_file *file, const scene *s, const noh_gl_
     memset(&j, 0, sizeof j);
     j.g = g;
     j.file = file;
-    j.s = s;
+    j.meshes = meshes;
     j.state = state;
     j.out = out;
     desc.mode = mode;

@@ -3,7 +3,7 @@
 #define NOH_NOH_VERIFY_VERIFY_SKIN_H
 
 #include "gpu/gpu.h"
-#include "scene/scene.h"
+#include "file/pack_file.h"
 
 #define VERIFY_SKIN_TIMES 20u /* random times of each clip; as many random poses where no clip fits a skeleton */
 /* The allowed error of a vertex, as a share of the larger of the mesh's box and its distance to the origin, at rest and
@@ -21,11 +21,11 @@ typedef struct verify_skin {
 } verify_skin;
 
 /* 1 where the pack has something to verify. */
-int verify_skin_wanted(const scene *s, const noh_pack *pack);
+int verify_skin_wanted(const noh_mesh *meshes, const noh_pack *pack);
 
 /* Every vertex of every skinned mesh, with random weights. state: of the random numbers. Prints an error and returns an
  * exit code; 0 if it ran, whatever the errors of vertices. All of *out but bound_scale is written. */
-int verify_skin_run(gpu *g, const pack_file *file, const scene *s, const noh_gl_mesh *gl_meshes, noh_palette_mode mode,
-                    uint64_t *state, verify_skin *out);
+int verify_skin_run(gpu *g, const pack_file *file, const noh_mesh *meshes, const noh_gl_mesh *gl_meshes,
+                    noh_palette_mode mode, uint64_t *state, verify_skin *out);
 
 #endif
