@@ -8,7 +8,7 @@ static const char toon_vertex[] =
     "out vec3 v_normal; out vec4 v_color; out vec4 v_in_shadow;\n"
     "void main() {\n"
     "    noh_vertex v = noh_fetch();\n"
-    "    v_normal = v.normal; v_color = v.color; v_in_shadow = u_shadow * vec4(v.position, 1.0);\n"
+    "    v_normal = v.normal; v_color = v.color * v.tint; v_in_shadow = u_shadow * vec4(v.position, 1.0);\n"
     "    gl_Position = noh_view_projection * vec4(v.position, 1.0);\n"
     "}\n";
 static const char toon_fragment[] =
