@@ -84,6 +84,7 @@
 /* ---- light ---- */
 
 #include "light/environment.h" /* light from all around, built in or your own, as spherical harmonics */
+#include "light/transfer.h"    /* what light a vertex of a mesh receives, as it turns and morphs */
 #include "light/sh.h"          /* spherical harmonics: projected, convolved, turned */
 
 /* ---- faces ---- */
@@ -113,6 +114,9 @@
  *   target, pair         a morph target; one vertex moved by one target
  *   delta texel          a stored difference of one vertex in one target: position, normal, tangent
  *   accumulation texel   the sum of a vertex's weighted delta texels, in an accumulator
+ *   environment          light from all around
+ *   transfer, lobe       how a mesh answers to such light; the answer of one vertex, round about an axis
+ *   occlusion            the share of the light on a matte surface that the mesh itself lets through: 1 is open
  *   clip                 a compressed animation of joints and floats
  *   clip set             what controllers see of the clips they share: names, durations, keys, and a function that
  *                        samples a pose; short: set. A game may fill in one of its own (noh_clip_set)

@@ -5,6 +5,7 @@
 #include "base/name_internal.h"
 #include "base/hash.h"
 #include "base/math_internal.h"
+#include "base/octahedral_internal.h"
 
 /* The headers of a mesh's levels lie at the chunk's start; the offsets of every level count from there. */
 static const noh_mesh_header *chunk_of(const noh_mesh_header *h)
@@ -181,19 +182,6 @@ uint32_t noh_mesh_influences(const noh_mesh *mesh, uint32_t vertex, uint32_t joi
     return count;
 }
 
-/* Decode an octahedral direction from x and y in -1..1. The sphere is projected on the octahedron |x| + |y| + |z| = 1;
- * its upper half lies in the square as it is, the lower half is folded outwards over the four edges. So z is what x and
- * y leave of 1, and where it is negative x and y are folded back by it.
- * source  Meyer, Suessmuth, Sussner, Stamminger, Greiner: On floating-point normal vectors, 2010 */
-static void unfold(float x, float y, float out[3])
-{
-    float z = 1.0f - (x < 0.0f ? -x : x) - (y < 0.0f ? -y : y);
-    float fold = z < 0.0f ? -z : 0.0f;
-    out[0] = x + (x >= 0.0f ? -fold : fold);
-    out[1] = y + (y >= 0.0f ? -fold : fold);
-    out[2] = z;
-}
-
 static int32_t low_half(uint32_t word)
 {
     return (int32_t)(word << 16) >> 16;
@@ -221,11 +209,13 @@ void noh_mesh_directions(const noh_mesh *mesh, uint32_t index, float normal[3], 
     uint32_t word;
     NOH_ASSERT(index < mesh->header->vertex_count && normal && tangent);
     word = load_u32(record);
-    unfold((float)low_half(word) * (1.0f / 32767.0f), (float)high_half(word) * (1.0f / 32767.0f), normal);
+    noh_octahedral_unfold((float)low_half(word) * (1.0f / 32767.0f), (float)high_half(word) * (1.0f / 32767.0f),
+                          normal);
     memset(tangent, 0, 3 * sizeof *tangent);
     if (noh_mesh_tangent_offset(mesh) >= 0) {
         word = load_u32(record + noh_mesh_tangent_offset(mesh));
-        unfold((float)low_half(word) * (1.0f / 32767.0f), (float)(high_half(word) >> 1) * (1.0f / 16383.0f), tangent);
+        noh_octahedral_unfold((float)low_half(word) * (1.0f / 32767.0f),
+                              (float)(high_half(word) >> 1) * (1.0f / 16383.0f), tangent);
     }
 }
 

@@ -30,6 +30,7 @@ extern "C" {
 #define NOH_CHUNK_CLIP NOH_FOURCC('M', 'O', 'T', 'N')
 #define NOH_CHUNK_SKIN NOH_FOURCC('S', 'K', 'I', 'N')
 #define NOH_CHUNK_GRAPH NOH_FOURCC('G', 'R', 'P', 'H')
+#define NOH_CHUNK_TRANSFER NOH_FOURCC('T', 'R', 'N', 'S')
 
 typedef struct noh_pack_header {
     uint32_t magic;
@@ -185,6 +186,33 @@ typedef struct noh_target {
 typedef struct noh_rect {
     uint16_t x, y, w, h;
 } noh_rect;
+
+/* ---- CHUNK_TRANSFER, none or one for a mesh, in the order of meshes: header, then three arrays. How much of the light
+ * around it each vertex of the mesh receives (light/transfer.h). Levels of the mesh use the first so many records, and
+ * the deltas that belong to their delta texels. ---- */
+
+#define NOH_TRANSFER_ON_NORMAL 1u /* lobes lie about the normals, records have no axis */
+
+/* Record of a vertex:
+ *   occlusion  unorm 8: the share of a white matte surface's light that reaches it in the bind pose
+ *   shape      snorm 8 x (order - 1): for bands 1 and up the mean of the Legendre polynomial P_l of the angle to the
+ *              lobe's axis
+ *   axis       snorm 8 x 2, octahedral, model space; absent with ON_NORMAL
+ * No byte of shape, axis or delta is -128. */
+#define NOH_TRANSFER_RECORD_BYTES(order, flags) ((order) + ((flags)&NOH_TRANSFER_ON_NORMAL ? 0u : 2u))
+
+typedef struct noh_transfer_header {
+    uint32_t mesh;                                    /* the n-th mesh chunk */
+    uint32_t order;                                   /* 4 or 6 */
+    uint32_t flags;                                   /* NOH_TRANSFER_* */
+    uint32_t vertex_count, texel_count, target_count; /* the mesh's, at the finest level that the pack has */
+    uint32_t records_offset; /* uint8_t[vertex_count][NOH_TRANSFER_RECORD_BYTES(order, flags)] */
+    uint32_t scales_offset;  /* float[target_count], not below 0 */
+    uint32_t deltas_offset;  /* int8_t[texel_count], in the order of the delta texels: delta * scale is the difference
+                              * of occlusion at weight 1 of the target */
+    uint32_t ray_count;      /* for reports: directions that were tried for each vertex, over the whole sphere */
+    uint32_t reserved[6];
+} noh_transfer_header;
 
 /* ---- CHUNK_NODES: header, then noh_node[node_count] at 16, then float[weight_count]. ---- */
 
@@ -435,6 +463,7 @@ NOH_STATIC_ASSERT(sizeof(noh_rect) == 8, rect);
 NOH_STATIC_ASSERT(sizeof(noh_node) == 112, node);
 NOH_STATIC_ASSERT(sizeof(noh_material) == 48, material);
 NOH_STATIC_ASSERT(sizeof(noh_texture_header) == 32, texture_header);
+NOH_STATIC_ASSERT(sizeof(noh_transfer_header) == 64, transfer_header);
 
 #ifdef __cplusplus
 }

@@ -17,9 +17,10 @@ static int chunk_rank(uint32_t type)
     case NOH_CHUNK_SKELETON: return 3;
     case NOH_CHUNK_SKIN: return 4;
     case NOH_CHUNK_MESH: return 5;
-    case NOH_CHUNK_NODES: return 6;
-    case NOH_CHUNK_CLIP: return 7;
-    case NOH_CHUNK_GRAPH: return 8;
+    case NOH_CHUNK_TRANSFER: return 6;
+    case NOH_CHUNK_NODES: return 7;
+    case NOH_CHUNK_CLIP: return 8;
+    case NOH_CHUNK_GRAPH: return 9;
     default: return -1;
     }
 }
@@ -156,6 +157,10 @@ static noh_result open_chunk(noh_pack *pack, uint32_t index, noh_error *error)
     case NOH_CHUNK_MESH:
         result = noh_check_mesh(&check);
         count_chunk(&pack->mesh_count, &pack->first_mesh, index);
+        break;
+    case NOH_CHUNK_TRANSFER:
+        result = noh_check_transfer(&check);
+        count_chunk(&pack->transfer_count, &pack->first_transfer, index);
         break;
     case NOH_CHUNK_NODES:
         result = noh_check_nodes(&check);

@@ -27,6 +27,7 @@ typedef struct noh_pack {
     uint32_t skin_count, first_skin;
     uint32_t clip_count, first_clip;
     uint32_t graph_count, first_graph;
+    uint32_t transfer_count, first_transfer;
     uint32_t material_count;
     const noh_material *materials;
     uint32_t node_count;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "convert/convert.h"
+#include "convert/light/pack_transfer.h"
 #include "convert/model/model_build.h"
 #include "support/graph_fixture.h"
 #include "support/lod_fixture.h"
@@ -98,6 +99,26 @@ static void write_graph(const char *folder)
     free(x.bytes);
 }
 
+/* LOD levels and a transfer. */
+static void write_transfer(const char *folder)
+{
+    const lod_face face = { 8, 7, 2, 0, 0 };
+    const lod_settings two = { 2, 0, LOD_FAST };
+    const transfer_settings settings = { 4, 0, NULL };
+    byte_buffer out = { NULL, 0, 0, 0 };
+    model *m = lod_face_model(&face);
+    model_error error;
+    char path[4096];
+    lod_pack p;
+    lod_pack_make(m, &two, 0, &p);
+    assert_int_equal(pack_transfer(&p.pack, &settings, &out, &error), 0);
+    snprintf(path, sizeof path, "%s/transfer.noh", folder);
+    test_write_file(path, out.bytes, out.count);
+    buffer_free(&out);
+    lod_pack_free(&p);
+    model_free(m);
+}
+
 static const char *folder, *clip_folder;
 
 /* Encode a clip, take it, and write its bytes. */
@@ -171,6 +192,7 @@ static void corpus(void **state)
     write_clip_pack(folder);
     write_weights(folder);
     write_graph(folder);
+    write_transfer(folder);
     write_skin(folder, "skin", 0);
     write_skin(folder, "skin_split", 4);
     write_levels(folder, "levels", lod_face_model(&face), 0);

@@ -259,6 +259,34 @@ static void walk_level(walk *w, const noh_mesh *level)
     }
 }
 
+static void walk_transfer(walk *w, const noh_mesh *mesh)
+{
+    const size_t bytes = 4u * ((size_t)mesh->header->morph_height << mesh->header->morph_width_log2);
+    float *weights, *layer;
+    noh_transfer transfer;
+    noh_light light;
+    if (noh_transfer_of(mesh, &transfer, NULL)) {
+        return;
+    }
+    weights = memory(4u * (size_t)mesh->header->target_count);
+    layer = memory(bytes);
+    for (uint32_t t = 0; t < mesh->header->target_count; t++) {
+        weights[t] = weight(w);
+    }
+    memset(layer, 0, bytes);
+    noh_transfer_accumulate(mesh, &transfer, weights, layer);
+    noh_light_from_environment(noh_environment_at(1), NOH_SH_ORDER_MAX, &light);
+    for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
+        noh_vertex vertex;
+        float rgb[3];
+        noh_mesh_vertex(mesh, v, &vertex);
+        noh_transfer_shade(mesh, &transfer, v, vertex.normal, layer, &light, rgb);
+        eat(w, rgb, sizeof rgb);
+    }
+    free(weights);
+    free(layer);
+}
+
 static void walk_meshes(walk *w)
 {
     noh_mesh *meshes = memory(sizeof *meshes * w->pack->mesh_count);
@@ -270,6 +298,7 @@ static void walk_meshes(walk *w)
         for (uint32_t k = 0; k < meshes[i].header->level_count; k++) {
             const noh_mesh level = noh_mesh_at_lod(&meshes[i], k);
             walk_level(w, &level);
+            walk_transfer(w, &level);
         }
     }
     if (w->pack->mesh_count) {

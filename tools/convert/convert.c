@@ -5,6 +5,7 @@
 
 #include "convert/clips/events_read.h"
 #include "convert/clips/joint_order.h"
+#include "convert/light/pack_transfer.h"
 #include "convert/pack/pack_graph.h"
 #include "pack/pack.h"
 #include "sources.h"
@@ -148,6 +149,27 @@ static int check_own_pack(byte_buffer *out, FILE *report, model_error *error)
     return 0;
 }
 
+/* Add transfers, from the finished pack: so they fit the vertices as they are stored. */
+static int add_transfers(byte_buffer *out, const convert_options *options, model_error *error)
+{
+    transfer_settings settings = options->transfer;
+    byte_buffer with = { NULL, 0, 0, 0 };
+    noh_pack pack;
+    int failed;
+    if (!settings.order) {
+        return 0;
+    }
+    settings.progress = options->progress;
+    (void)noh_pack_open(out->bytes, out->count, &pack, NULL); /* check_own_pack opened it */
+    failed = pack_transfer(&pack, &settings, &with, error);
+    if (options->progress) {
+        fputs("\r\033[K", options->progress);
+    }
+    buffer_free(out);
+    *out = with;
+    return failed || check_own_pack(out, NULL, error);
+}
+
 /* Leave out the finest levels, from the finished pack: so the bytes are those of `noh strip`. */
 static int strip(byte_buffer *out, const strip_levels *levels, model_error *error)
 {
@@ -205,7 +227,8 @@ static int convert_source(const source *s, const graph_file *graphs, const conve
         failed = clips_encode(s->sets, s->set_count, &settings, &made, error);
         made.graphs = graphs;
         failed = failed || pack_write(m, meshes.levels, meshes.morphs, &made, out, error) ||
-                 check_own_pack(out, options->report, error) || strip(out, &options->lod_from, error);
+                 check_own_pack(out, options->report, error) || add_transfers(out, options, error) ||
+                 strip(out, &options->lod_from, error);
         clips_free(&made);
     }
     encoded_free(&meshes);

@@ -4,6 +4,7 @@
 
 #include <stdio.h>
 
+#include "convert/light/transfer_make.h"
 #include "convert/pack/pack_clips.h"
 #include "pack/pack.h"
 #include "convert/pack/pack_strip.h"
@@ -17,6 +18,7 @@ typedef struct convert_options {
     lod_settings lod;
     clips_settings clip;
     skin_options skin;
+    transfer_settings transfer;     /* order 0: none; progress is filled in by convert_files */
     const char *const *two_streams; /* [two_stream_count] "SOURCE=TARGET", see two_stream.h */
     uint32_t two_stream_count;
     convert_only only;

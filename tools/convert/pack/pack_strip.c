@@ -2,7 +2,8 @@
  *
  * Levels are prefixes of one another: vertices, accumulation texels, and for each target its rectangles and delta
  * texels. So the arrays are cut at the counts of the finest level that stays. Rectangles and delta texels of all
- * targets lie in one array each, in target order: they move together, and every level's targets are told where. */
+ * targets lie in one array each, in target order: they move together, and every level's targets are told where. A
+ * mesh's transfer is cut likewise. */
 #include "pack_strip.h"
 
 #include <stdlib.h>
@@ -204,6 +205,32 @@ static void append_mesh(stripper *s)
     }
 }
 
+/* ---- a transfer ---- */
+
+/* Its records follow the vertices, its differences the delta texels. */
+static void append_transfer(stripper *s, uint32_t index)
+{
+    const uint8_t *from = s->pack->bytes + s->pack->chunks[index].offset;
+    const noh_transfer_header *of = (const noh_transfer_header *)(const void *)from;
+    noh_transfer_header h = *of;
+    (void)noh_pack_mesh_at(s->pack, of->mesh, &s->from, NULL);
+    s->from = noh_mesh_at_lod(&s->from, s->first[of->mesh]);
+    h.vertex_count = s->from.header->vertex_count;
+    h.texel_count = s->from.header->texel_count;
+    buffer_append(s->out, NULL, sizeof h);
+    h.records_offset = append(s, from + of->records_offset,
+                              h.vertex_count * (size_t)NOH_TRANSFER_RECORD_BYTES(h.order, h.flags));
+    h.scales_offset = append(s, from + of->scales_offset, 4u * (size_t)h.target_count);
+    h.deltas_offset = append(s, NULL, 0);
+    for (uint32_t t = 0; t < h.target_count; t++) {
+        buffer_append(s->out, from + of->deltas_offset + s->from.targets[t].first_texel,
+                      s->from.targets[t].texel_count);
+    }
+    if (!s->out->failed) {
+        memcpy(s->out->bytes + s->base, &h, sizeof h);
+    }
+}
+
 /* ---- the pack ---- */
 
 static void append_chunk(stripper *s, uint32_t index, noh_pack_chunk *chunk)
@@ -218,6 +245,8 @@ static void append_chunk(stripper *s, uint32_t index, noh_pack_chunk *chunk)
     if (index >= s->pack->first_mesh && mesh < s->pack->mesh_count && s->first[mesh] > s->from.header->level) {
         s->from = noh_mesh_at_lod(&s->from, s->first[mesh]);
         append_mesh(s);
+    } else if (chunk->type == NOH_CHUNK_TRANSFER) {
+        append_transfer(s, index);
     } else {
         buffer_append(s->out, s->pack->bytes + chunk->offset, chunk->bytes);
     }

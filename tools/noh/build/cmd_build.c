@@ -17,7 +17,7 @@
 #define INPUTS_MAX 64
 
 typedef struct build_args {
-    const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod;
+    const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer;
     int input_count, quiet, loop, mask, keep_parts, lod_fast;
     double error_um, rate, error_cm, shell_cm, unit_cm, influences, palette;
     option_list dual_quaternion, two_streams, clip_errors, joint_errors, lod_from;
@@ -104,6 +104,26 @@ static int set_rects(const build_args *a, convert_options *o)
     return 0;
 }
 
+/* The order of the transfer, and whether it is the source's, about normals. */
+static int set_transfer(const build_args *a, convert_options *o)
+{
+    static const struct {
+        const char *name;
+        uint32_t order, flags;
+    } all[] = {
+        { "4", 4, 0 }, { "6", 6, 0 }, { "seed-4", 4, NOH_TRANSFER_ON_NORMAL }, { "seed-6", 6, NOH_TRANSFER_ON_NORMAL }
+    };
+    for (size_t i = 0; a->transfer && i < sizeof all / sizeof all[0]; i++) {
+        if (strcmp(a->transfer, all[i].name) == 0) {
+            o->transfer.order = all[i].order;
+            o->transfer.flags = all[i].flags;
+        }
+    }
+    return a->transfer && !o->transfer.order
+               ? tool_usage("--transfer wants 4, 6, seed-4 or seed-6, not '%s'", a->transfer)
+               : 0;
+}
+
 static int set_options(const build_args *a, convert_options *o)
 {
     int status;
@@ -117,6 +137,7 @@ static int set_options(const build_args *a, convert_options *o)
     if (!status) status = set_skin(a, o);
     if (!status) status = set_lod(a, o);
     if (!status) status = set_rects(a, o);
+    if (!status) status = set_transfer(a, o);
     return status;
 }
 
@@ -211,6 +232,14 @@ static const option options[] = {
       .at = offsetof(build_args, lod_fast),
       .what = "simplify in seconds, with larger errors",
       .needs = "--lod" },
+    { .name = "--transfer",
+      .kind = OPTION_TEXT,
+      .at = offsetof(build_args, transfer),
+      .value = "4|6|seed-4|seed-6",
+      .what =
+          "precompute how each vertex answers to light from all around, with occlusion that follows the targets, by spherical harmonics of order 4 (6 bytes a vertex) or 6 (8 bytes); seed-: about the normal, as in the SparseMorphTargets sample (4 and 6 bytes)",
+      .example = "4",
+      .excludes = "--only=anim" },
     { .name = "--influences",
       .kind = OPTION_NUMBER,
       .at = offsetof(build_args, influences),

@@ -4,6 +4,7 @@
 
 #include "info_graph.h"
 #include "info_joints.h"
+#include "info_transfer.h"
 #include "cli/args.h"
 #include "cli/message.h"
 #include "file/pack_file.h"
@@ -90,6 +91,7 @@ static void print_mesh(const noh_pack *pack, const noh_mesh *m)
                h->touched_count, 1u << h->morph_width_log2, h->morph_height,
                1e6 * (double)h->world_scale * (double)h->f16_position_bound);
     }
+    info_print_transfer(m);
     print_levels(m);
     for (uint32_t t = 0; t < h->target_count; t++) {
         print_target(pack, &m->targets[t], (double)h->world_scale);
@@ -233,6 +235,7 @@ static void json_mesh(json *j, const noh_pack *pack, const noh_mesh *m)
     json_integer(j, "target_bytes", target_bytes(h));
     json_number(j, "f16_bound_um", 1e6 * (double)h->world_scale * (double)h->f16_position_bound);
     json_skin(j, pack, h);
+    info_json_transfer(j, m);
     json_integer(j, "level_first", h->level_first);
     json_integer(j, "source", noh_mesh_source(m));
     json_levels(j, m);

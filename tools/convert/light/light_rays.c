@@ -1,0 +1,78 @@
+#include "light_rays.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/trig.h"
+
+#define GOLDEN_TURN 1640531527u /* 2^32 (1 - 1 / golden ratio) */
+
+int light_rays_make(uint32_t count, light_rays *out)
+{
+    out->count = count;
+    out->directions = malloc(3u * sizeof(float) * (count + 1u));
+    out->basis = malloc(NOH_SH_COUNT_MAX * sizeof(float) * (count + 1u));
+    if (!out->directions || !out->basis) {
+        return 1;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        float *d = out->directions + 3u * (size_t)i, sine, cosine, across;
+        d[1] = 1.0f - (2.0f * (float)i + 1.0f) / (float)count;
+        across = sqrtf(1.0f - d[1] * d[1]);
+        noh_sin_cos_turn(i * GOLDEN_TURN, &sine, &cosine);
+        d[0] = across * cosine;
+        d[2] = across * sine;
+        noh_sh_basis(NOH_SH_ORDER_MAX, d, out->basis + NOH_SH_COUNT_MAX * (size_t)i);
+    }
+    return 0;
+}
+
+void light_rays_free(light_rays *r)
+{
+    free(r->directions);
+    free(r->basis);
+    memset(r, 0, sizeof *r);
+}
+
+static float dot(const float a[3], const float b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+float light_rays_sum(const light_rays *r, const float normal[3])
+{
+    float sum = 0.0f;
+    for (uint32_t i = 0; i < r->count; i++) {
+        const float cosine = dot(normal, r->directions + 3u * (size_t)i);
+        sum += cosine > 0.0f ? cosine : 0.0f;
+    }
+    return sum;
+}
+
+void light_rays_blocked(const light_rays *r, const light_surface *s, uint32_t vertex, uint8_t *blocked)
+{
+    const float *p = s->position + 3u * (size_t)vertex, *n = s->normal + 3u * (size_t)vertex;
+    const float origin[3] = { p[0] + s->least * n[0], p[1] + s->least * n[1], p[2] + s->least * n[2] };
+    for (uint32_t i = 0; i < r->count; i++) {
+        const float *d = r->directions + 3u * (size_t)i;
+        blocked[i] = dot(n, d) > 0.0f && ray_tree_hit(&s->tree, origin, d, s->least);
+    }
+}
+
+void light_rays_transfer(const light_rays *r, const light_surface *s, uint32_t vertex, uint8_t *blocked,
+                         float *transfer)
+{
+    const float *n = s->normal + 3u * (size_t)vertex;
+    const float scale = 1.0f / light_rays_sum(r, n);
+    noh_sh_basis(NOH_SH_ORDER_MAX, n, transfer);
+    noh_sh_convolve(NOH_SH_ORDER_MAX, noh_sh_cosine_lobe, transfer);
+    light_rays_blocked(r, s, vertex, blocked);
+    for (uint32_t i = 0; i < r->count; i++) {
+        const float weight = blocked[i] ? scale * dot(n, r->directions + 3u * (size_t)i) : 0.0f;
+        const float *basis = r->basis + NOH_SH_COUNT_MAX * (size_t)i;
+        for (uint32_t k = 0; k < NOH_SH_COUNT_MAX && blocked[i]; k++) {
+            transfer[k] -= weight * basis[k];
+        }
+    }
+}

@@ -1,0 +1,281 @@
+#include "transfer_make.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "light/transfer.h"
+#include "transfer_fit.h"
+
+/* A vertex that is darker than this in the bind pose takes the form of its lobe from the target that opens it most: a
+ * tooth behind closed lips. */
+#define DARK 0.02f
+
+typedef struct maker {
+    light_surface surface;
+    const light_rays *rays;
+    const transfer_settings *settings;
+    uint8_t *blocked;   /* [rays->count] */
+    float *normals;     /* [vertex_count][3] in the bind pose */
+    float *transfers;   /* [vertex_count][NOH_SH_COUNT_MAX] that the lobes are of */
+    float *occlusion;   /* [vertex_count] in the bind pose */
+    float *brightest;   /* [vertex_count] of the transfers */
+    float *targets;     /* [texel_count][NOH_SH_COUNT_MAX] with one target each at weight 1 */
+    float *turned;      /* [texel_count][3] the normals then */
+    uint32_t *vertices; /* [touched_count] a vertex of each accumulation texel */
+    float *weights;     /* [target_count] */
+} maker;
+
+static int open(maker *k, const noh_pack *pack, uint32_t mesh, model_error *error)
+{
+    size_t vertices, texels;
+    if (light_surface_open(pack, mesh, &k->surface, error)) {
+        return 1;
+    }
+    vertices = k->surface.mesh.header->vertex_count;
+    texels = k->surface.mesh.header->texel_count;
+    k->blocked = model_zeros(k->rays->count, 1);
+    k->normals = model_zeros(vertices, 3u * sizeof(float));
+    k->transfers = model_zeros(vertices, NOH_SH_COUNT_MAX * sizeof(float));
+    k->occlusion = model_zeros(vertices, sizeof(float));
+    k->brightest = model_zeros(vertices, sizeof(float));
+    k->targets = model_zeros(texels, NOH_SH_COUNT_MAX * sizeof(float));
+    k->turned = model_zeros(texels, 3u * sizeof(float));
+    k->vertices = model_zeros(k->surface.mesh.header->touched_count, sizeof(uint32_t));
+    k->weights = model_zeros(k->surface.mesh.header->target_count, sizeof(float));
+    return k->blocked && k->normals && k->transfers && k->occlusion && k->brightest && k->targets && k->turned &&
+                   k->vertices && k->weights
+               ? 0
+               : model_fail(error, k->surface.mesh.name, "out of memory");
+}
+
+static void close(maker *k)
+{
+    light_surface_close(&k->surface);
+    free(k->blocked);
+    free(k->normals);
+    free(k->transfers);
+    free(k->occlusion);
+    free(k->brightest);
+    free(k->targets);
+    free(k->turned);
+    free(k->vertices);
+    free(k->weights);
+}
+
+/* The integral of a transfer: white light from everywhere. */
+static float integral(const float *transfer)
+{
+    return transfer[0] * 3.5449077f; /* sqrt(4 pi) */
+}
+
+static void measure_bind_pose(maker *k)
+{
+    const uint32_t count = k->surface.mesh.header->vertex_count;
+    memcpy(k->normals, k->surface.normal, 3u * sizeof(float) * (size_t)count);
+    for (uint32_t v = count; v-- > 0;) {
+        float *transfer = k->transfers + NOH_SH_COUNT_MAX * (size_t)v;
+        const uint32_t texel = noh_mesh_accumulation_texel(&k->surface.mesh, v);
+        light_rays_transfer(k->rays, &k->surface, v, k->blocked, transfer);
+        k->occlusion[v] = k->brightest[v] = integral(transfer);
+        if (texel < k->surface.mesh.header->touched_count) {
+            k->vertices[texel] = v;
+        }
+    }
+}
+
+/* Turn a direction by the smallest rotation from one normal to another. */
+static void turn(const float from[3], const float to[3], float direction[3])
+{
+    noh_lobe lobe;
+    memcpy(lobe.axis, direction, sizeof lobe.axis);
+    noh_lobe_turn(&lobe, from, to);
+    memcpy(direction, lobe.axis, sizeof lobe.axis);
+}
+
+/* The delta texels of a target, in their order: the vertex of each, or NOH_NONE past the last accumulation texel. */
+typedef struct texel_walk {
+    const maker *k;
+    uint32_t rect, end, x, y, texel;
+} texel_walk;
+
+static texel_walk walk_target(const maker *k, uint32_t target)
+{
+    const noh_target *t = &k->surface.mesh.targets[target];
+    const texel_walk w = { k, t->first_rect, t->first_rect + t->rect_count, 0, 0, t->first_texel };
+    return w;
+}
+
+static int next_texel(texel_walk *w, uint32_t *texel, uint32_t *vertex)
+{
+    const noh_mesh *mesh = &w->k->surface.mesh;
+    const noh_rect *r;
+    uint32_t place;
+    if (w->rect == w->end) {
+        return 0;
+    }
+    r = &mesh->rects[w->rect];
+    place = ((uint32_t)(r->y + w->y) << mesh->header->morph_width_log2) + r->x + w->x;
+    *vertex = place < mesh->header->touched_count ? w->k->vertices[place] : NOH_NONE;
+    *texel = w->texel++;
+    w->x = w->x + 1u < r->w ? w->x + 1u : 0u;
+    w->y += w->x == 0;
+    if (w->y == r->h) {
+        w->y = 0;
+        w->rect++;
+    }
+    return 1;
+}
+
+/* All transfers of the vertices in a target's rectangles, with it alone at weight 1. */
+static int measure_target(maker *k, uint32_t target, model_error *error)
+{
+    texel_walk w = walk_target(k, target);
+    uint32_t texel, v;
+    int failed;
+    k->weights[target] = 1.0f;
+    failed = light_surface_pose(&k->surface, k->weights, error);
+    k->weights[target] = 0.0f;
+    while (!failed && next_texel(&w, &texel, &v)) {
+        float *transfer = k->targets + NOH_SH_COUNT_MAX * (size_t)texel;
+        if (v == NOH_NONE) {
+            continue;
+        }
+        light_rays_transfer(k->rays, &k->surface, v, k->blocked, transfer);
+        memcpy(k->turned + 3u * (size_t)texel, k->surface.normal + 3u * (size_t)v, 3u * sizeof(float));
+        if (k->occlusion[v] < DARK && integral(transfer) > k->brightest[v]) {
+            k->brightest[v] = integral(transfer);
+        }
+    }
+    return failed;
+}
+
+/* Where a dark vertex is brightest: the form of that transfer's lobe, about the axis turned back. */
+static void take_brightest(maker *k, uint32_t target)
+{
+    texel_walk w = walk_target(k, target);
+    uint32_t texel, v;
+    while (next_texel(&w, &texel, &v)) {
+        const float *transfer = k->targets + NOH_SH_COUNT_MAX * (size_t)texel;
+        if (v != NOH_NONE && k->occlusion[v] < DARK && k->brightest[v] > k->occlusion[v] &&
+            integral(transfer) == k->brightest[v]) {
+            float *own = k->transfers + NOH_SH_COUNT_MAX * (size_t)v, axis[3], back[3];
+            noh_lobe lobe;
+            transfer_axis(transfer, k->turned + 3u * (size_t)texel, axis);
+            transfer_lobe(transfer, axis, &lobe);
+            memcpy(back, axis, sizeof back);
+            turn(k->turned + 3u * (size_t)texel, k->normals + 3u * (size_t)v, back);
+            noh_sh_basis(NOH_SH_ORDER_MAX, back, own);
+            noh_sh_convolve(NOH_SH_ORDER_MAX, lobe.shape, own);
+        }
+    }
+}
+
+static void make_records(const maker *k, transfer_data *out)
+{
+    const transfer_settings *s = k->settings;
+    for (uint32_t v = 0; v < k->surface.mesh.header->vertex_count; v++) {
+        const float *transfer = k->transfers + NOH_SH_COUNT_MAX * (size_t)v, *normal = k->normals + 3u * (size_t)v;
+        uint8_t *record = out->records + (size_t)v * NOH_TRANSFER_RECORD_BYTES(s->order, s->flags);
+        const float occlusion = k->occlusion[v];
+        float axis[3];
+        memcpy(axis, normal, sizeof axis);
+        if (!(s->flags & NOH_TRANSFER_ON_NORMAL)) {
+            transfer_axis(transfer, normal, axis);
+        }
+        transfer_record(transfer, axis, s->order, s->flags, record);
+        record[0] = (uint8_t)roundf(255.0f * (occlusion < 0.0f ? 0.0f : occlusion > 1.0f ? 1.0f : occlusion));
+    }
+}
+
+/* The differences of occlusion to what the records say, in whole steps of a scale of the target's own. */
+static void make_deltas(const maker *k, uint32_t target, float *differences, transfer_data *out)
+{
+    const noh_target *t = &k->surface.mesh.targets[target];
+    const uint32_t stride = NOH_TRANSFER_RECORD_BYTES(k->settings->order, k->settings->flags);
+    texel_walk w = walk_target(k, target);
+    uint32_t texel, v;
+    float largest = 0.0f;
+    memset(differences, 0, t->texel_count * sizeof *differences);
+    while (next_texel(&w, &texel, &v)) {
+        float *difference = &differences[texel - t->first_texel];
+        if (v != NOH_NONE) {
+            *difference = integral(k->targets + NOH_SH_COUNT_MAX * (size_t)texel) -
+                          (float)out->records[(size_t)v * stride] / 255.0f;
+        }
+        largest = fabsf(*difference) > largest ? fabsf(*difference) : largest;
+    }
+    out->scales[target] = largest / 127.0f;
+    for (uint32_t i = 0; i < t->texel_count && largest > 0.0f; i++) {
+        out->deltas[t->first_texel + i] = (int8_t)roundf(127.0f * differences[i] / largest);
+    }
+}
+
+static int make_all_deltas(const maker *k, transfer_data *out, model_error *error)
+{
+    const noh_mesh_header *h = k->surface.mesh.header;
+    float *differences = model_zeros(h->texel_count, sizeof *differences);
+    for (uint32_t t = 0; differences && t < h->target_count; t++) {
+        make_deltas(k, t, differences, out);
+    }
+    free(differences);
+    return differences ? 0 : model_fail(error, k->surface.mesh.name, "out of memory");
+}
+
+static void say(const maker *k, uint32_t target)
+{
+    if (k->settings->progress) {
+        fprintf(k->settings->progress, "\r\033[Klight of '%s', target %u of %u ", k->surface.mesh.name, target + 1u,
+                k->surface.mesh.header->target_count);
+        fflush(k->settings->progress);
+    }
+}
+
+static int make(maker *k, transfer_data *out, model_error *error)
+{
+    const uint32_t target_count = k->surface.mesh.header->target_count;
+    int failed = 0;
+    measure_bind_pose(k);
+    for (uint32_t t = 0; t < target_count && !failed; t++) {
+        say(k, t);
+        failed = measure_target(k, t, error);
+    }
+    for (uint32_t t = 0; t < target_count && !failed; t++) {
+        take_brightest(k, t);
+    }
+    if (!failed) {
+        make_records(k, out);
+        failed = make_all_deltas(k, out, error);
+    }
+    return failed;
+}
+
+int transfer_make(const noh_pack *pack, uint32_t mesh, const light_rays *rays, const transfer_settings *settings,
+                  transfer_data *out, model_error *error)
+{
+    maker k;
+    int failed;
+    memset(&k, 0, sizeof k);
+    memset(out, 0, sizeof *out);
+    k.rays = rays;
+    k.settings = settings;
+    failed = open(&k, pack, mesh, error);
+    if (!failed) {
+        const noh_mesh_header *h = k.surface.mesh.header;
+        out->records = model_zeros(h->vertex_count, NOH_TRANSFER_RECORD_BYTES(settings->order, settings->flags));
+        out->scales = model_zeros(h->target_count, sizeof *out->scales);
+        out->deltas = model_zeros(h->texel_count, 1);
+        failed = out->records && out->scales && out->deltas ? make(&k, out, error)
+                                                            : model_fail(error, k.surface.mesh.name, "out of memory");
+    }
+    close(&k);
+    return failed;
+}
+
+void transfer_data_free(transfer_data *d)
+{
+    free(d->records);
+    free(d->scales);
+    free(d->deltas);
+    memset(d, 0, sizeof *d);
+}

@@ -1,0 +1,29 @@
+/* transfer_make.h: the transfer of one mesh of a pack. */
+#ifndef NOH_CONVERT_LIGHT_TRANSFER_MAKE_H
+#define NOH_CONVERT_LIGHT_TRANSFER_MAKE_H
+
+#include <stdio.h>
+
+#include "light_rays.h"
+
+#define TRANSFER_RAYS 1024u /* directions over the sphere, half of them in front of a vertex */
+
+typedef struct transfer_settings {
+    uint32_t order; /* 4 or 6; 0: none */
+    uint32_t flags; /* NOH_TRANSFER_* */
+    FILE *progress; /* a terminal; NULL: none */
+} transfer_settings;
+
+/* The arrays of a transfer chunk. */
+typedef struct transfer_data {
+    uint8_t *records; /* [vertex_count][NOH_TRANSFER_RECORD_BYTES] */
+    float *scales;    /* [target_count] */
+    int8_t *deltas;   /* [texel_count] */
+} transfer_data;
+
+/* 0, or 1 and a filled error; free in both cases. */
+int transfer_make(const noh_pack *pack, uint32_t mesh, const light_rays *rays, const transfer_settings *settings,
+                  transfer_data *out, model_error *error);
+void transfer_data_free(transfer_data *d);
+
+#endif
