@@ -312,20 +312,23 @@ bench-lod: deps-build
 
 # ---- the page ----
 
-# Built for one pack, in a folder of its own: WebAssembly memory cannot grow, and its size is the pack, what
-# `noh budget` says at most of any path, the program's own static data, the stack and a heap for emscripten's strings.
+# Built for one pack and so many characters, in a folder of its own: WebAssembly memory cannot grow, and its size is the
+# pack, the stage's plan for the path that takes the most (platform/web/plan.c, run under node), the program's own static
+# data, the stack and a heap for emscripten's strings.
 WEB_PACK    ?= $(BUILD)/mask.noh
+WEB_ACTORS  ?= 1
 WEB         := $(BUILD)/web/$(basename $(notdir $(WEB_PACK)))
-WEB_FLAGS   := -std=c99 -O2 -msimd128 -msse2 $(WARN) $(FP) -Wno-sign-conversion $(INCLUDES) -Iplatform/web
+WEB_FLAGS   := -std=c99 -Os -msimd128 -msse2 $(WARN) $(FP) -Wno-sign-conversion $(INCLUDES) -Iplatform/web
 WEB_LINK    := -s MIN_WEBGL_VERSION=2 -s MAX_WEBGL_VERSION=2 -s ALLOW_MEMORY_GROWTH=0 -s ENVIRONMENT=web --no-entry \
-               -s EXPORTED_RUNTIME_METHODS=UTF8ToString -s INCOMING_MODULE_JS_API=onRuntimeInitialized
+               -s MALLOC=emmalloc -s EXPORTED_RUNTIME_METHODS=UTF8ToString -s INCOMING_MODULE_JS_API=onRuntimeInitialized
 WEB_STACK   := 65536
 WEB_HEAP    := 65536
-WEB_STATIC  := 262144
+WEB_STATIC  := 131072
 WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js page.noh)
+WEB_OBJECTS := $(BUILD)/web-objects
 
 web: deps-web
-	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(WEB_PACK)
+	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB_PACK)
 	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB)/noh.js $(WEB_PAGE)
 
 # Of the mask and of the puppet; or of one pack, if it is named.
@@ -355,11 +358,28 @@ $(WEB)/%: platform/web/%
 	@mkdir -p $(@D)
 	@cp $< $@
 
-WEB_C := $(wildcard platform/web/*.c) $(RUNTIME_C)
-$(WEB)/noh.js: $(WEB_C) $(wildcard platform/web/*.h runtime/*/*.h) $(BUILD)/gen/shaders.gen.c $(WEB_PACK) $(BUILD)/noh
+# What does not depend on the pack is compiled once, for all pages and for the planner.
+WEB_C := platform/web/bounds.c platform/web/cast.c platform/web/context.c $(RUNTIME_C)
+WEB_O := $(WEB_C:%.c=$(WEB_OBJECTS)/%.o) $(WEB_OBJECTS)/shaders.gen.o
+WEB_PLAN_O := $(WEB_OBJECTS)/platform/web/plan.o $(WEB_OBJECTS)/platform/file.o $(filter-out %/context.o,$(WEB_O))
+WEB_CC := NODE_PATH="$$NODE_PATH:/usr/share/nodejs" emcc # Debian's emscripten uses Debian's node modules
+$(WEB_OBJECTS)/%.o: %.c
 	@mkdir -p $(@D)
-	@NOH_BUILD="$(BUILD)" PACK="$(WEB_PACK)" STACK=$(WEB_STACK) HEAP=$(WEB_HEAP) STATIC=$(WEB_STATIC) OUT=$@ \
-	    FLAGS="$(WEB_FLAGS)" LINK="$(WEB_LINK)" sh tools/web.sh $(WEB_C) $(BUILD)/gen/shaders.gen.c
+	$(call say,EMCC,$@)
+	$(Q)$(WEB_CC) $(WEB_FLAGS) -MMD -MP -c $< -o $@
+$(WEB_OBJECTS)/shaders.gen.o: $(BUILD)/gen/shaders.gen.c
+	@mkdir -p $(@D)
+	$(call say,EMCC,$@)
+	$(Q)$(WEB_CC) $(WEB_FLAGS) -MMD -MP -c $< -o $@
+$(WEB_OBJECTS)/plan.js: $(WEB_PLAN_O)
+	$(call say,EMCC,$@)
+	$(Q)$(WEB_CC) $(WEB_FLAGS) $^ -s NODERAWFS=1 -s EXIT_RUNTIME=1 -s ALLOW_MEMORY_GROWTH=1 -o $@
+-include $(WEB_O:.o=.d) $(WEB_PLAN_O:.o=.d)
+
+$(WEB)/noh.js: platform/web/main.c $(WEB_O) $(WEB_OBJECTS)/plan.js $(WEB_PACK) tools/web.sh $(if $(filter 1,$(WEB_ACTORS)),,FORCE)
+	@mkdir -p $(@D)
+	@PLAN=$(WEB_OBJECTS)/plan.js PACK="$(WEB_PACK)" ACTORS=$(WEB_ACTORS) STACK=$(WEB_STACK) HEAP=$(WEB_HEAP) \
+	    STATIC=$(WEB_STATIC) OUT=$@ FLAGS="$(WEB_FLAGS)" LINK="$(WEB_LINK)" sh tools/web.sh platform/web/main.c $(WEB_O)
 
 # FUZZ_SECONDS=60: how long, both at once. Skips where clang or its runtime is not.
 fuzz: deps-fuzz

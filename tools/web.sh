@@ -1,34 +1,31 @@
 #!/bin/sh
-# web.sh SOURCE...: the page's program (platform/web) with emscripten, in as much memory as the
-# pack's budget says. Called by `make web`, which sets NOH_BUILD, PACK, OUT, STACK, HEAP, STATIC,
-# FLAGS and LINK. Prints the sum, and what goes over the wire.
+# web.sh INPUT...: links the page's program (platform/web) with emscripten, in as much memory as the plan of its stage
+# says. Called by `make web`, which sets PLAN, PACK, ACTORS, OUT, STACK, HEAP, STATIC, FLAGS and LINK. Prints the sum,
+# and what goes over the wire.
 set -eu
 command -v emcc >/dev/null 2>&1 || { echo 'make web needs emscripten (emcc)' >&2; exit 1; }
 
-# The most that any path takes: which one it will be is found in the browser.
-noh=0
-for path in cpu gather mrt per-layer layered; do
-    bytes=$("$NOH_BUILD/noh" budget "$PACK" --nominal --path $path --json | sed -n 's/^  "cpu_bytes": \([0-9]*\).*/\1/p')
-    [ "$bytes" -le $noh ] || noh=$bytes
-done
+# node's fetch does not read files, and emscripten's older loader asks it to
+fetch=
+node --no-experimental-fetch -e 0 2>/dev/null && fetch=--no-experimental-fetch
+# shellcheck disable=SC2086
+plan=$(node $fetch "$PLAN" "$PACK" "$ACTORS")
+noh=$(echo "$plan" | sed -n 's/^block //p')
 pack=$(wc -c <"$PACK")
 pack=$(((pack + 63) / 64 * 64))
-noh=$(((noh + 63) / 64 * 64))
-align=1024 # what lies between at most 64 objects that begin at multiples of 16
-sum=$((pack + noh + align + STATIC + STACK + HEAP))
+sum=$((pack + noh + STATIC + STACK + HEAP))
 memory=$(((sum + 65535) / 65536 * 65536))
 
 # Debian's emscripten uses Debian's node modules, which another node does not look for.
 export NODE_PATH="${NODE_PATH:+$NODE_PATH:}/usr/share/nodejs"
 # shellcheck disable=SC2086
-emcc $FLAGS -DNOH_WEB_PACK_BYTES=$pack -DNOH_WEB_MEMORY_BYTES=$((noh + align)) "$@" $LINK \
+emcc $FLAGS -DNOH_WEB_PACK_BYTES=$pack -DNOH_WEB_MEMORY_BYTES="$noh" -DNOH_WEB_ACTORS="$ACTORS" "$@" $LINK \
     -s TOTAL_STACK="$STACK" -s INITIAL_MEMORY=$memory -o "$OUT"
 
 cat <<END
 WebAssembly memory, which cannot grow:
   the pack                     $pack
-  what noh budget says         $noh
-  alignment of its parts       $align (at most)
+  its stage, by its plan       $noh (the most of any path)
   static data of the program   $STATIC (at most)
   stack                        $STACK
   heap of emscripten's strings $HEAP

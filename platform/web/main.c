@@ -1,26 +1,34 @@
-/* main.c: the page's program. It shows one pack, whose targets and clips are given by index, in memory whose size was
- * fixed when the page was built. page.js calls the web_* functions. Those that return an int return 0 or a noh_result;
- * web_error then says what is wrong.
+/* main.c: the page's program. It shows the characters of one pack, whose targets and clips are given by index, on a
+ * stage in memory whose size was fixed when the page was built. page.js calls the web_* functions. Those that return an
+ * int return 0 or a noh_result; web_error then says what is wrong.
  *
- * The Makefile sets NOH_WEB_PACK_BYTES and NOH_WEB_MEMORY_BYTES to what `noh budget` says. */
+ * The Makefile sets NOH_WEB_PACK_BYTES, NOH_WEB_ACTORS, and NOH_WEB_MEMORY_BYTES to what plan.c says. */
 #include <emscripten.h>
 #include <string.h>
 
+#include "bounds.h"
+#include "cast.h"
 #include "context.h"
-#include "lod.h"
-#include "play.h"
 
-#define PICTURES_MAX 64u
-#define PARTS_MAX 16u
+#define PARTS_MAX 128u
+#define ACTORS_MAX (NOH_STAGE_KINDS_MAX * NOH_WEB_ACTORS)
+#define PICK_M 1e6f
+#define SPEED_ONE 65536
 
 static uint8_t pack_bytes[NOH_WEB_PACK_BYTES] __attribute__((aligned(64)));
 static uint8_t memory[NOH_WEB_MEMORY_BYTES] __attribute__((aligned(16)));
 
-/* A line in the page's table of memory. */
-typedef struct part {
+/* A character has an actor for each of its skeletons. */
+typedef struct figure {
+    noh_actor actor;
+    uint32_t kind, character;
+} figure;
+
+/* What a slider moves: the floats of a name. */
+typedef struct target {
     const char *name;
-    uint32_t cpu_bytes, gpu_bytes;
-} part;
+    uint32_t figure, index; /* the first figure that has it */
+} target;
 
 static struct web {
     noh_platform_context *context;
@@ -28,135 +36,23 @@ static struct web {
     noh_gl_caps caps;
     noh_gl_ledger ledger;
     noh_error error;
-    noh_arena arena;
-    web_scene scene;
-    web_playback play;
-    web_lod lod;
-    noh_gl_mesh meshes[WEB_MESHES_MAX];
-    noh_gl_texture pictures[PICTURES_MAX];
-    noh_gl_morph *morph;
-    noh_gl_skin *skin; /* NULL: nothing is skinned */
-    noh_gl_renderer renderer;
-    noh_gl_camera camera;
-    float bounds[6];
-    int at_rest;
-    part parts[PARTS_MAX];
+    noh_pack pack;
+    web_cast cast;
+    noh_stage *stage;
+    noh_stage_bytes parts[PARTS_MAX];
     uint32_t part_count;
+    figure figures[ACTORS_MAX];
+    uint32_t figure_count;
+    target targets[NOH_TARGETS_MAX];
+    uint32_t target_count;
+    noh_stage_view view;
+    noh_stage_hit hit;
+    float bounds[6], spacing;
+    int32_t speed;  /* 1/65,536, of what plays */
+    uint32_t level; /* 1 + the LOD level that is shown; 0: by pixels */
 } web;
 
 /* ---- loading ---- */
-
-/* End a part: its bytes are those that were taken since the part before ended. */
-static void end_part(const char *name)
-{
-    uint32_t cpu = (uint32_t)web.arena.used, gpu = (uint32_t)noh_gl_ledger_bytes(&web.ledger);
-    for (uint32_t i = 0; i < web.part_count; i++) {
-        cpu -= web.parts[i].cpu_bytes;
-        gpu -= web.parts[i].gpu_bytes;
-    }
-    if (web.part_count < PARTS_MAX) {
-        part *p = &web.parts[web.part_count++];
-        p->name = name;
-        p->cpu_bytes = cpu;
-        p->gpu_bytes = gpu;
-    }
-}
-
-static noh_result load_meshes(void)
-{
-    const noh_pack *pack = &web.scene.pack;
-    noh_result result = NOH_OK;
-    for (uint32_t i = 0; i < pack->mesh_count && !result; i++) {
-        result = noh_gl_mesh_create(&web.gl, &web.ledger, &web.scene.meshes[i], &web.meshes[i], &web.error);
-    }
-    end_part("meshes");
-    if (!result && pack->texture_count > PICTURES_MAX) {
-        return noh_fail(&web.error, NOH_ERR_LIMIT, "more textures than the page has room for", pack->texture_count,
-                        PICTURES_MAX);
-    }
-    for (uint32_t i = 0; i < pack->texture_count && !result; i++) {
-        noh_texture texture;
-        noh_pack_texture_at(pack, i, &texture, NULL);
-        result = noh_gl_picture_create(&web.gl, &web.ledger, &texture, &web.pictures[i], &web.error);
-    }
-    end_part("textures");
-    return result;
-}
-
-static noh_result load_morph(noh_morph_path path)
-{
-    noh_gl_morph_plan plan;
-    noh_gl_morph_desc desc;
-    memset(&desc, 0, sizeof desc);
-    desc.meshes = web.scene.meshes;
-    desc.mesh_count = web.scene.pack.mesh_count;
-    desc.instance_counts = web.scene.instance_counts;
-    desc.path = path;
-    noh_result result = noh_gl_morph_plan_make(&desc, &web.caps, &plan, &web.error);
-    if (!result) {
-        size_t bytes = (size_t)plan.cpu_bytes;
-        void *block = noh_arena_carve(&web.arena, bytes, 16);
-        result = noh_gl_morph_init(block, block ? bytes : 0,
-                                   &(noh_gl_device){ &web.gl, &web.caps, &web.ledger, NULL, 0 }, &desc, &web.morph,
-                                   &web.error);
-    }
-    for (uint32_t i = 0; i < web.scene.item_count && !result; i++) {
-        web_item *item = &web.scene.items[i];
-        item->instance = noh_gl_morph_instance(web.morph, item->mesh, item->instance);
-    }
-    end_part("morphs");
-    return result;
-}
-
-static noh_result load_skin(void)
-{
-    noh_gl_skin_plan plan;
-    noh_gl_skin_desc desc;
-    memset(&desc, 0, sizeof desc);
-    desc.meshes = web.scene.meshes;
-    desc.mesh_count = web.scene.pack.mesh_count;
-    desc.instance_counts = web.scene.instance_counts;
-    noh_result result = web_playback_open_matrices(&web.play, &web.arena, &web.error);
-    end_part("skin matrices");
-    if (result || !web.play.matrices) return result;
-    result = noh_gl_skin_plan_make(&desc, &web.caps, &plan, &web.error);
-    if (!result) {
-        size_t bytes = (size_t)plan.cpu_bytes;
-        void *block = noh_arena_carve(&web.arena, bytes, 16);
-        result = noh_gl_skin_init(block, block ? bytes : 0,
-                                  &(noh_gl_device){ &web.gl, &web.caps, &web.ledger, NULL, 0 }, &desc, &web.skin,
-                                  &web.error);
-    }
-    end_part("palettes");
-    return result;
-}
-
-static noh_result load_clips(void)
-{
-    noh_result result = web_playback_open_clips(&web.play, &web.scene, &web.arena, &web.error);
-    end_part("clips");
-    if (!result) result = web_playback_open_controllers(&web.play, &web.arena, &web.error);
-    end_part("controllers");
-    if (!result) result = web_playback_open_poses(&web.play, &web.arena, &web.error);
-    end_part("pose scratch");
-    return result;
-}
-
-static noh_result load_renderer(void)
-{
-    noh_gl_renderer_desc desc;
-    memset(&desc, 0, sizeof desc);
-    desc.layers_uint = noh_gl_morph_plan_of(web.morph)->layer_format == GL_RGBA32UI;
-    desc.meshes = web.scene.meshes;
-    desc.mesh_count = web.scene.pack.mesh_count;
-    desc.fades = web.lod.level_count > 1;
-    desc.encode_srgb = 1; /* a canvas does not encode */
-    desc.palettes = web.skin ? noh_gl_skin_plan_of(web.skin)->mode : NOH_PALETTE_AUTO;
-    noh_result result = noh_gl_renderer_create(&(noh_gl_device){ &web.gl, NULL, &web.ledger, NULL, 0 }, &desc,
-                                               &web.renderer, &web.error);
-    end_part("renderer");
-    return result;
-}
 
 static noh_result open_context(void)
 {
@@ -167,40 +63,90 @@ static noh_result open_context(void)
     return result ? result : noh_gl_caps_probe(&web.gl, &web.caps, &web.error);
 }
 
+static noh_result open_stage(noh_morph_path path)
+{
+    const noh_gl_device device = { &web.gl, &web.caps, &web.ledger, NULL, 0 };
+    noh_result result = web_cast_plan(&web.cast, &web.pack, NOH_WEB_ACTORS, path, &web.caps, &web.error);
+    if (!result && web.cast.bytes > sizeof memory) {
+        return noh_fail(&web.error, NOH_ERR_MEMORY, "less memory than the pack needs: build the page for this pack", 0,
+                        web.cast.bytes);
+    }
+    if (!result) {
+        result = noh_stage_init(memory, (size_t)web.cast.plan.cpu_bytes, &device, &web.cast.desc, &web.cast.plan,
+                                &web.stage, &web.error);
+    }
+    if (result) return result;
+    web.part_count = noh_stage_plan_parts(&web.cast.desc, &web.caps, &web.cast.plan, web.parts, PARTS_MAX);
+    web.part_count = web.part_count < PARTS_MAX ? web.part_count : PARTS_MAX;
+    return NOH_OK;
+}
+
+/* The first character stands in the middle, the others by turns at its right and left. */
+static void go_home(void)
+{
+    for (uint32_t i = 0; i < web.figure_count; i++) {
+        const uint32_t n = web.figures[i].character;
+        noh_place place;
+        memset(&place, 0, sizeof place);
+        place.position[0] = web.spacing * (float)((n + 1u) / 2u) * (n % 2u ? 1.0f : -1.0f);
+        (void)noh_actor_set_place(web.stage, web.figures[i].actor, &place, NULL);
+    }
+}
+
+static noh_result enter(uint32_t characters)
+{
+    noh_result result = NOH_OK;
+    for (uint32_t n = 0; n < characters && n < NOH_WEB_ACTORS; n++) {
+        for (uint32_t k = 0; k < web.cast.desc.kind_count && !result; k++) {
+            figure *f = &web.figures[web.figure_count++];
+            f->kind = k;
+            f->character = n;
+            result = noh_stage_spawn(web.stage, k, NULL, &f->actor, &web.error);
+        }
+    }
+    return result;
+}
+
+static void add_target(const char *name)
+{
+    target t = { name, 0, NOH_NONE };
+    for (uint32_t i = 0; i < web.target_count; i++) {
+        if (strcmp(web.targets[i].name, name) == 0) return;
+    }
+    for (uint32_t k = 0; k < web.cast.desc.kind_count && t.index == NOH_NONE; k++) { /* figure k is of kind k */
+        t.figure = k;
+        t.index = noh_stage_find(web.stage, k, NOH_NAME_FLOAT, name);
+    }
+    if (t.index != NOH_NONE && web.target_count < NOH_TARGETS_MAX) web.targets[web.target_count++] = t;
+}
+
+static void list_targets(void)
+{
+    for (uint32_t i = 0; i < web.pack.mesh_count; i++) {
+        noh_mesh mesh;
+        noh_pack_mesh_at(&web.pack, i, &mesh, NULL);
+        for (uint32_t t = 0; t < mesh.header->target_count; t++) {
+            add_target(noh_pack_string(&web.pack, mesh.targets[t].name));
+        }
+    }
+}
+
 /* Where the page is to write the file; NULL if it has more bytes than the page was built for. */
 EMSCRIPTEN_KEEPALIVE void *web_pack(uint32_t bytes)
 {
     return bytes <= sizeof pack_bytes ? pack_bytes : NULL;
 }
 
-/* Open the pack of so many bytes. path: a noh_morph_path. */
-EMSCRIPTEN_KEEPALIVE int web_open(uint32_t bytes, int path)
+/* Open the pack of so many bytes. path: a noh_morph_path. characters: on stage, at most as many as there is room for */
+EMSCRIPTEN_KEEPALIVE int web_open(uint32_t bytes, int path, uint32_t characters)
 {
-    web.arena = noh_arena_over(memory, sizeof memory);
-    noh_result result = noh_pack_open(pack_bytes, bytes, &web.scene.pack, &web.error);
-    if (!result) result = web_scene_list(&web.scene, &web.error);
-    if (!result) web_lod_open(&web.lod, &web.scene);
+    noh_result result = noh_pack_open(pack_bytes, bytes, &web.pack, &web.error);
     if (!result) result = open_context();
-    if (!result) result = load_meshes();
-    if (!result) result = load_morph((noh_morph_path)path);
-    if (!result) result = load_clips();
-    if (!result) result = load_skin();
-    if (!result) result = load_renderer();
+    if (!result) result = open_stage((noh_morph_path)path);
+    if (!result) result = enter(characters);
+    if (!result) list_targets();
+    web.speed = SPEED_ONE;
     return (int)result;
-}
-
-static noh_result restore_meshes(void)
-{
-    noh_result result = NOH_OK;
-    for (uint32_t i = 0; i < web.scene.pack.mesh_count && !result; i++) {
-        result = noh_gl_mesh_restore(&web.gl, &web.ledger, &web.meshes[i], &web.error);
-    }
-    for (uint32_t i = 0; i < web.scene.pack.texture_count && !result; i++) {
-        noh_texture texture;
-        noh_pack_texture_at(&web.scene.pack, i, &texture, NULL);
-        result = noh_gl_picture_restore(&web.gl, &web.ledger, &texture, &web.pictures[i], &web.error);
-    }
-    return result;
 }
 
 /* Make every GL object again from the pack, after the browser restored a lost context. */
@@ -208,11 +154,7 @@ EMSCRIPTEN_KEEPALIVE int web_restore(void)
 {
     noh_web_enable_extensions(web.context);
     noh_result result = noh_gl_api_load(&web.gl, noh_platform_web.get_proc, web.context, &web.error);
-    if (!result) result = restore_meshes();
-    if (!result) result = noh_gl_morph_restore(web.morph, NULL, 0, &web.error);
-    if (!result && web.skin) result = noh_gl_skin_restore(web.skin, &web.error);
-    if (!result) result = noh_gl_renderer_restore(&web.renderer, NULL, 0, &web.error);
-    return (int)result;
+    return (int)(result ? result : noh_stage_restore(web.stage, &web.error));
 }
 
 /* ---- getting and setting ---- */
@@ -225,9 +167,11 @@ EMSCRIPTEN_KEEPALIVE const char *web_renderer(void)
 {
     return web.caps.renderer;
 }
+/* "" where the pack has no targets. */
 EMSCRIPTEN_KEEPALIVE const char *web_path(void)
 {
-    return noh_morph_path_name(noh_gl_morph_plan_of(web.morph)->path);
+    const uint32_t path = web.cast.plan.morph_path;
+    return path ? noh_morph_path_name((noh_morph_path)path) : "";
 }
 EMSCRIPTEN_KEEPALIVE uint32_t web_pack_room(void)
 {
@@ -247,162 +191,264 @@ EMSCRIPTEN_KEEPALIVE uint32_t web_part_count(void)
 }
 EMSCRIPTEN_KEEPALIVE const char *web_part_name(uint32_t i)
 {
-    return web.parts[i].name;
+    return web.parts[i].what;
 }
 EMSCRIPTEN_KEEPALIVE uint32_t web_part_cpu_bytes(uint32_t i)
 {
-    return web.parts[i].cpu_bytes;
+    return (uint32_t)web.parts[i].cpu_bytes;
 }
 EMSCRIPTEN_KEEPALIVE uint32_t web_part_gpu_bytes(uint32_t i)
 {
-    return web.parts[i].gpu_bytes;
+    return (uint32_t)web.parts[i].gpu_bytes;
 }
 
 EMSCRIPTEN_KEEPALIVE uint32_t web_target_count(void)
 {
-    return web.scene.name_count;
+    return web.target_count;
 }
 EMSCRIPTEN_KEEPALIVE const char *web_target_name(uint32_t i)
 {
-    return web.scene.names[i];
+    return web.targets[i].name;
 }
-EMSCRIPTEN_KEEPALIVE float web_weight(uint32_t target)
+/* As the last frame showed it, where that showed the figure. */
+EMSCRIPTEN_KEEPALIVE float web_weight(uint32_t i)
 {
-    return web_scene_weight(&web.scene, target);
+    const float *floats = noh_actor_floats(web.stage, web.figures[web.targets[i].figure].actor);
+    return floats ? floats[web.targets[i].index] : 0.0f;
 }
-EMSCRIPTEN_KEEPALIVE void web_set_weight(uint32_t target, float weight)
+/* Hold a target at a weight, or let go: it then shows what clips say. */
+EMSCRIPTEN_KEEPALIVE void web_hold(uint32_t i, float weight, int holds)
 {
-    web_scene_set_weight(&web.scene, target, weight);
+    for (uint32_t f = 0; f < web.figure_count; f++) {
+        const uint32_t index = noh_stage_find(web.stage, web.figures[f].kind, NOH_NAME_FLOAT, web.targets[i].name);
+        if (index != NOH_NONE) {
+            (void)noh_actor_hold_float(web.stage, web.figures[f].actor, index, weight, holds ? 1.0f : 0.0f, NULL);
+        }
+    }
+}
+
+/* ---- clips ---- */
+
+/* Of the skeleton that clips move; 0: they move faces alone. */
+EMSCRIPTEN_KEEPALIVE uint32_t web_joint_count(void)
+{
+    return web.cast.plan.kinds[0].joint_count;
 }
 
 EMSCRIPTEN_KEEPALIVE uint32_t web_clip_count(void)
 {
-    return web.scene.pack.clip_count;
+    return web.pack.clip_count;
 }
+EMSCRIPTEN_KEEPALIVE const char *web_clip_name(uint32_t i)
+{
+    noh_pack_clip clip;
+    return noh_pack_clip_at(&web.pack, i, &clip, NULL) == NOH_OK ? clip.name : "";
+}
+/* Negative if it moves nothing here. */
 EMSCRIPTEN_KEEPALIVE double web_clip_seconds(uint32_t i)
 {
-    return web_playback_seconds(&web.play, i);
-}
-EMSCRIPTEN_KEEPALIVE double web_time(void)
-{
-    return web_playback_time(&web.play);
-}
-EMSCRIPTEN_KEEPALIVE void web_set_speed(float speed)
-{
-    web_playback_set_speed(&web.play, speed);
-}
-EMSCRIPTEN_KEEPALIVE void web_step(double seconds)
-{
-    web_playback_step(&web.play, seconds);
+    for (uint32_t k = 0; k < web.cast.desc.kind_count; k++) {
+        const uint32_t clip = noh_stage_find(web.stage, k, NOH_NAME_CLIP, web_clip_name(i));
+        const noh_clip_set *set;
+        (void)noh_actor_controller(web.stage, web.figures[k].actor, &set);
+        if (clip != NOH_NONE) return (double)set->clips[clip].duration_ticks / NOH_TICKS_PER_SECOND;
+    }
+    return -1.0;
 }
 
+static void set_speeds(const figure *f, int32_t body, int32_t rest)
+{
+    noh_controller *c = noh_actor_controller(web.stage, f->actor, NULL);
+    const noh_track *on_body = noh_actor_track(web.stage, f->actor, WEB_BODY);
+    for (uint32_t t = 0; t < c->track_count; t++) {
+        (void)noh_controller_set_speed(c, t, noh_controller_track(c, t) == on_body ? body : rest);
+    }
+}
+
+static void set_all_speeds(int32_t body, int32_t rest)
+{
+    for (uint32_t i = 0; i < web.figure_count; i++) set_speeds(&web.figures[i], body, rest);
+}
+
+/* 1 as made; 0 stands still. */
+EMSCRIPTEN_KEEPALIVE void web_set_speed(float speed)
+{
+    web.speed = (int32_t)(speed * (float)SPEED_ONE);
+    set_all_speeds(web.speed, web.speed);
+}
+
+/* A clip of that name, or none, on a figure's layer. The body goes over by inertia, so that it does not slow down. */
+static noh_result play(const figure *f, uint32_t layer, const char *clip, uint32_t fade_ticks)
+{
+    noh_play how;
+    if (noh_stage_find(web.stage, f->kind, NOH_NAME_CLIP, clip) == NOH_NONE) {
+        return noh_actor_stop(web.stage, f->actor, layer, fade_ticks, &web.error);
+    }
+    memset(&how, 0, sizeof how);
+    how.fade_ticks = fade_ticks;
+    how.loop = NOH_LOOP_REPEAT;
+    how.flags = fade_ticks > 1u && layer == WEB_BODY ? NOH_PLAY_INERTIA : 0;
+    return noh_actor_play(web.stage, f->actor, layer, clip, &how, &web.error);
+}
+
+/* Go to a time of what plays on the bodies, from where they began: root motion takes them along. */
+static noh_result seek(double time_s)
+{
+    const int64_t ticks = noh_ticks_from_seconds(time_s);
+    noh_result result;
+    go_home();
+    set_all_speeds(0, 0);
+    result = noh_stage_step(web.stage, 1, NULL, NULL, &web.error); /* what faded out at once is gone */
+    set_all_speeds(SPEED_ONE, 0);
+    if (!result && ticks > 0) result = noh_stage_step(web.stage, (uint32_t)ticks, NULL, NULL, &web.error);
+    web.view.cut = 1;
+    return result;
+}
+
+/* Play a clip on a layer, -1: none. With a transition in seconds it goes on from what is shown; else the bodies begin
+ * at a time in seconds. */
+EMSCRIPTEN_KEEPALIVE int web_play(uint32_t layer, int clip, double time_s, double transition_s)
+{
+    const uint32_t fade_ticks = transition_s > 0.0 ? (uint32_t)noh_ticks_from_seconds(transition_s) : 1u;
+    noh_result result = NOH_OK;
+    for (uint32_t i = 0; i < web.figure_count && !result; i++) {
+        result = play(&web.figures[i], layer, clip < 0 ? "" : web_clip_name((uint32_t)clip), fade_ticks);
+    }
+    if (!result && layer == WEB_BODY && fade_ticks <= 1u) result = seek(time_s);
+    set_all_speeds(web.speed, web.speed);
+    return (int)result;
+}
+
+/* The position of the clip that plays on the body, in seconds. */
+EMSCRIPTEN_KEEPALIVE double web_time(void)
+{
+    for (uint32_t k = 0; k < web.cast.desc.kind_count; k++) {
+        const noh_track *track = noh_actor_track(web.stage, web.figures[k].actor, WEB_BODY);
+        const noh_clip_set *set;
+        (void)noh_actor_controller(web.stage, web.figures[k].actor, &set);
+        if (track) return (double)noh_track_clip_tick(track, &set->clips[track->clip], 0) / NOH_TICKS_PER_SECOND;
+    }
+    return 0.0;
+}
+
+/* ---- LOD levels ---- */
+
+static void set_looks(int posed)
+{
+    noh_look look;
+    memset(&look, 0, sizeof look);
+    look.posed = posed != 0;
+    look.level = web.level;
+    for (uint32_t i = 0; i < web.figure_count; i++) {
+        (void)noh_actor_set_look(web.stage, web.figures[i].actor, &look, NULL);
+    }
+}
+
+/* The most that any kind has. */
 EMSCRIPTEN_KEEPALIVE uint32_t web_level_count(void)
 {
-    return web.lod.level_count;
+    uint32_t most = 0;
+    for (uint32_t k = 0; k < web.cast.desc.kind_count; k++) {
+        const uint32_t count = web.cast.plan.kinds[k].level_count;
+        most = count > most ? count : most;
+    }
+    return most;
 }
 /* An LOD level, or -1: the coarsest that an error of one pixel allows. */
 EMSCRIPTEN_KEEPALIVE void web_set_level(int level)
 {
-    web.lod.level = level;
+    web.level = (uint32_t)(level + 1);
+    set_looks(0);
 }
-/* Of the last frame: the finest level of any item, the largest error in pixels, whether any level fades. */
+/* Of the last frame: the finest level of any figure, the largest error in pixels, whether any level fades. */
 EMSCRIPTEN_KEEPALIVE uint32_t web_level(void)
 {
-    uint32_t finest = NOH_LOD_LEVELS_MAX;
-    for (uint32_t i = 0; i < web.scene.item_count; i++) {
-        finest = web.lod.states[i].mesh < finest ? web.lod.states[i].mesh : finest;
-    }
-    return finest;
+    const uint32_t *at_level = noh_stage_stats_of(web.stage)->at_level;
+    uint32_t level = 0;
+    while (level + 1u < NOH_LOD_LEVELS_MAX && !at_level[level]) level++;
+    return level;
 }
 EMSCRIPTEN_KEEPALIVE float web_error_pixels(void)
 {
-    float most = 0.0f;
-    for (uint32_t i = 0; i < web.scene.item_count; i++) {
-        const float error = noh_lod_error_pixels(&web.lod.states[i]);
-        most = error > most ? error : most;
-    }
-    return most;
+    return noh_stage_stats_of(web.stage)->error_pixels;
 }
 EMSCRIPTEN_KEEPALIVE int web_fades(void)
 {
-    int fades = 0;
-    for (uint32_t i = 0; i < web.scene.item_count; i++) fades |= noh_lod_fade(&web.lod.states[i], web.lod.clock) < 1.0f;
-    return fades;
+    return noh_stage_stats_of(web.stage)->fading > 0;
 }
 
-EMSCRIPTEN_KEEPALIVE const char *web_clip_name(uint32_t i)
-{
-    noh_pack_clip clip;
-    return noh_pack_clip_at(&web.scene.pack, i, &clip, NULL) == NOH_OK ? clip.name : "";
-}
+/* ---- picking ---- */
 
-/* Play a clip, -1: none, from a time in seconds, with a transition in seconds. */
-EMSCRIPTEN_KEEPALIVE int web_play(int clip, double time_s, double transition_s)
+/* The nearest figure under a pixel of the canvas; x to the right, y down. Returns 0 for none. */
+EMSCRIPTEN_KEEPALIVE int web_pick(float x, float y)
 {
-    return (int)web_playback_start(&web.play, clip < 0 ? NOH_NONE : (uint32_t)clip, time_s, transition_s, &web.error);
+    float origin[3], direction[3];
+    uint32_t width, height;
+    noh_platform_web.size(web.context, &width, &height);
+    return noh_view_ray(&web.view, x, y, width, height, origin, direction) &&
+           noh_stage_pick(web.stage, origin, direction, PICK_M, &web.hit, NULL) == NOH_OK;
+}
+/* Of what was picked last. */
+EMSCRIPTEN_KEEPALIVE const char *web_picked_mesh(void)
+{
+    noh_mesh mesh;
+    return noh_pack_mesh_at(&web.pack, web.hit.mesh, &mesh, NULL) == NOH_OK ? mesh.name : "";
+}
+/* "" for a mesh that no joint moves. */
+EMSCRIPTEN_KEEPALIVE const char *web_picked_joint(void)
+{
+    for (uint32_t i = 0; i < web.figure_count && web.hit.joint != NOH_NONE; i++) {
+        const figure *f = &web.figures[i];
+        if (f->actor.id == web.hit.actor.id) return noh_stage_name(web.stage, f->kind, NOH_NAME_JOINT, web.hit.joint);
+    }
+    return "";
 }
 
 /* ---- a frame ---- */
 
-/* The scene's bounding box in the current pose: 6 floats, valid until the next call. */
+/* The box of all figures in their present pose: 6 floats, valid until the next call. */
 EMSCRIPTEN_KEEPALIVE float *web_measure(void)
 {
-    web_playback_bounds(&web.play, web.bounds);
+    set_looks(1);
+    if (noh_stage_frame(web.stage, 0, NULL, NULL, NULL, &web.error) == NOH_OK) {
+        web_bounds(web.stage, &web.pack, web.cast.desc.kind_count * NOH_WEB_ACTORS,
+                   (float *)(void *)(memory + web_cast_matrices(&web.cast)), web.bounds);
+    }
+    set_looks(0);
+    web.view.cut = 1;
     return web.bounds;
 }
 
-/* The noh_gl_camera that the page is to fill in. */
-EMSCRIPTEN_KEEPALIVE float *web_camera(void)
+/* Stand the characters side by side, so far apart. */
+EMSCRIPTEN_KEEPALIVE void web_set_spacing(float spacing)
 {
-    return web.camera.view_projection;
+    web.spacing = spacing;
+    go_home();
 }
 
-/* Draw without morphs, and without their cost: what the benchmark compares with. */
-EMSCRIPTEN_KEEPALIVE void web_set_at_rest(int at_rest)
+/* Where the first character has walked to: 3 floats, what the camera follows. Valid until the next call. */
+EMSCRIPTEN_KEEPALIVE float *web_walked(void)
 {
-    web.at_rest = at_rest;
+    static noh_place place;
+    (void)noh_actor_place(web.stage, web.figures[0].actor, &place, NULL);
+    return place.position;
 }
 
-static noh_result update(void)
+/* The matrix, eye and light of the noh_stage_view that the page is to fill in: 22 floats. */
+EMSCRIPTEN_KEEPALIVE float *web_view(void)
 {
-    uint32_t width, height;
-    noh_platform_web.size(web.context, &width, &height);
-    for (uint32_t i = 0; i < web.scene.item_count; i++) {
-        const web_item *item = &web.scene.items[i];
-        const float *matrices = web_playback_matrices(&web.play, item) ? web.play.matrices : NULL;
-        web_lod_choose(&web.lod, &web.scene, i, matrices, &web.camera, height);
-        noh_gl_morph_set_lod(web.morph, item->instance, noh_lod_drawn(&web.lod.states[i], web.lod.clock));
-        noh_result result = noh_gl_morph_set_weights(web.morph, item->instance,
-                                                     web_lod_weights(&web.lod, &web.scene, i), &web.error);
-        if (result) return result;
-        if (matrices) noh_gl_skin_set_matrices(web.skin, item->instance, matrices);
-    }
-    noh_gl_morph_update(web.morph, NULL);
-    if (web.skin) noh_gl_skin_update(web.skin);
-    return NOH_OK;
+    return web.view.view_projection;
 }
 
-static void draw_item(uint32_t index, int pass)
+/* Move time on. In a lost context it goes on, too. */
+EMSCRIPTEN_KEEPALIVE int web_step(double seconds)
 {
-    const web_item *item = &web.scene.items[index];
-    noh_lod_part parts[2];
-    const uint32_t part_count = noh_lod_parts(&web.lod.states[index], web.lod.clock, parts);
-    noh_gl_morph_binding morph = noh_gl_morph_binding_of(web.morph, item->instance);
-    noh_gl_skin_binding skin;
-    int is_skinned = web.scene.meshes[item->mesh].header->skin != NOH_NONE;
-    if (is_skinned) skin = noh_gl_skin_binding_of(web.skin, item->instance);
-    for (uint32_t k = 0; k < part_count; k++) {
-        const noh_gl_lod lod = { parts[k].level, parts[k].from, parts[k].to };
-        noh_gl_draw_mesh(&web.renderer, &web.meshes[item->mesh], web_scene_world(&web.scene, item),
-                         web.at_rest ? NULL : &morph, is_skinned ? &skin : NULL, &lod, web.pictures, pass);
-    }
+    return (int)noh_stage_step(web.stage, (uint32_t)noh_ticks_from_seconds(seconds), NULL, NULL, &web.error);
 }
 
-static void begin_frame(void)
+static void begin_frame(uint32_t width, uint32_t height)
 {
     static const float background[4] = { 0.3035f, 0.3094f, 0.3227f, 1.0f }, far = 1.0f;
-    uint32_t width, height;
-    noh_platform_web.size(web.context, &width, &height);
     web.gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
     web.gl.Viewport(0, 0, (GLsizei)width, (GLsizei)height);
     web.gl.DepthMask(GL_TRUE);
@@ -410,20 +456,20 @@ static void begin_frame(void)
     web.gl.ClearBufferfv(GL_DEPTH, 0, &far);
 }
 
-/* Draw a frame. seconds: since the last one, for fades. In a lost context nothing is drawn, which is no error. */
-EMSCRIPTEN_KEEPALIVE int web_draw(double seconds)
+/* Draw a frame. In a lost context nothing is drawn, which is no error. */
+EMSCRIPTEN_KEEPALIVE int web_draw(void)
 {
-    web.lod.clock += (int64_t)(seconds * NOH_TICKS_PER_SECOND);
+    uint32_t width, height;
+    noh_result result;
     if (noh_platform_web.present(web.context)) return 0;
-    noh_result result = web.at_rest ? NOH_OK : update();
+    noh_platform_web.size(web.context, &width, &height);
+    web.view.height_px = height;
+    result = noh_stage_frame_begin(web.stage, &web.view, 1, &web.error);
+    if (!result) result = noh_stage_frame_end(web.stage, &web.error);
+    web.view.cut = 0;
     if (result) return (int)result;
-    begin_frame();
-    noh_gl_draw_begin(&web.renderer, &web.camera);
-    for (int pass = NOH_DRAW_OPAQUE; pass <= NOH_DRAW_BLENDED; pass++) {
-        for (uint32_t i = 0; i < web.scene.item_count; i++) draw_item(i, pass);
-    }
-    noh_gl_draw_end(&web.renderer);
-    return 0;
+    begin_frame(width, height);
+    return (int)noh_stage_draw(web.stage, NOH_PASS_COLOR, 0, NULL, &web.error);
 }
 
 /* An error if GL raised one since the last call. Waits for the GPU. */

@@ -1,16 +1,20 @@
 // page.js: the page around the WebAssembly program (main.c): the camera, clips, sliders, the table of memory.
 // The query: ?pack=NAME shows that pack instead of page.noh; ?path=gather forces a path; ?clip=NAME begins with that
-// clip, or with none; ?detail=0 begins with that LOD level; ?size=512 draws a canvas of so many pixels across.
+// clip, or with none; ?face=NAME has that clip's face over it; ?detail=0 begins with that LOD level; ?camera=fixed leaves
+// the camera where it is; ?actors=3 shows so many characters, as far as the page was built for them; ?size=512 draws a
+// canvas of so many pixels across.
 'use strict';
 
 const query = new URLSearchParams(location.search);
 const paths = ['auto', 'layered', 'mrt', 'per-layer', 'gather', 'cpu', 'blend'];
 const transition = 0.3; // seconds from one clip into another
+const body = 0, face = 1; // layers
 const byId = (id) => document.getElementById(id);
 const canvas = byId('canvas');
 let lost = false;
 let wanted = false;
 let drawn = 0; // time of the last frame, in ms
+let busy = 0; // until then something fades
 
 // Tests wait for these.
 window.noh = { ready: false, lost: 0, restored: 0, frames: 0, error: '' };
@@ -28,7 +32,8 @@ const floats = (pointer, count) => Module.HEAPF32.subarray(pointer >> 2, (pointe
 // ---- the camera: as `noh render` has it, 30 degrees high ----
 
 const front = { azimuth: 0, elevation: 0.05 };
-const orbit = { ...front, distance: 0, box: null };
+const orbit = { ...front, distance: 0, box: null, from: [0, 0, 0] };
+const walked = () => Array.from(floats(Module._web_walked(), 3));
 
 function product(a, b) {
     const out = new Float32Array(16);
@@ -38,16 +43,17 @@ function product(a, b) {
     return out;
 }
 
-// Come as near as the whole figure in its current pose allows.
+// Come as near as all figures in their current pose allow.
 function fit() {
     orbit.box = Array.from(floats(Module._web_measure(), 6));
+    orbit.from = walked();
     orbit.distance = 0;
     redraw();
 }
 
 function setCamera() {
-    const b = orbit.box;
-    const centre = [0, 1, 2].map((c) => (b[c] + b[3 + c]) / 2);
+    const b = orbit.box, to = byId('follow').checked ? walked() : orbit.from;
+    const centre = [0, 1, 2].map((c) => (b[c] + b[3 + c]) / 2 + to[c] - orbit.from[c]);
     const half = [0, 1, 2].map((c) => (b[3 + c] - b[c]) / 2);
     const aspect = canvas.width / canvas.height, f = 1 / Math.tan(Math.PI / 12);
     const radius = Math.max(Math.hypot(...half), 1e-6);
@@ -62,14 +68,15 @@ function setCamera() {
     const view = [0, 1, 2].flatMap((c) => [right[c], up[c], back[c], 0]).concat([-dot(right), -dot(up), -dot(back), 1]);
     const projection = [f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, -(far + near) / (far - near), -1, 0, 0, -2 * far * near / (far - near), 0];
     const key = right.map((r, i) => -0.45 * r + 0.62 * up[i] + 0.64 * back[i]);
-    const camera = floats(Module._web_camera(), 22); // noh_gl_camera: matrix, eye, key
-    camera.set(product(projection, view), 0);
-    camera.set(eye, 16);
-    camera.set(key.map((k) => k / Math.hypot(...key)), 19);
+    const out = floats(Module._web_view(), 22); // matrix, eye, light
+    out.set(product(projection, view), 0);
+    out.set(eye, 16);
+    out.set(key.map((k) => k / Math.hypot(...key)), 19);
 }
 
-// One finger or the mouse turns the figure; two fingers or the wheel zoom.
+// One finger or the mouse turns the figure; two fingers or the wheel zoom; a tap or a click picks.
 const pointers = new Map();
+let tapped = null;
 const apart = () => {
     const [a, b] = [...pointers.values()];
     return Math.max(Math.hypot(a.x - b.x, a.y - b.y), 1);
@@ -78,19 +85,31 @@ function zoom(by) {
     orbit.distance = Math.min(4, Math.max(0.15, (orbit.distance || 1) * by));
     redraw();
 }
+function pick(event) {
+    const r = canvas.getBoundingClientRect();
+    const x = (event.clientX - r.left) * canvas.width / r.width, y = (event.clientY - r.top) * canvas.height / r.height;
+    const names = Module._web_pick(x, y) ? [Module._web_picked_mesh(), Module._web_picked_joint()].map(text) : [];
+    byId('picked').textContent = names.filter((name) => name).join(', joint ');
+}
 canvas.addEventListener('pointerdown', (event) => {
     canvas.setPointerCapture(event.pointerId);
+    tapped = pointers.size ? null : { x: event.clientX, y: event.clientY };
     pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
 });
 canvas.addEventListener('pointermove', (event) => {
     const at = pointers.get(event.pointerId);
     if (!at || pointers.size > 2) return;
+    if (tapped && Math.hypot(event.clientX - tapped.x, event.clientY - tapped.y) > 6) tapped = null;
     const x = event.clientX - at.x, y = event.clientY - at.y, before = pointers.size === 2 ? apart() : 0;
     Object.assign(at, { x: event.clientX, y: event.clientY });
     if (before) return zoom(before / apart());
     orbit.azimuth -= x * 0.01;
     orbit.elevation = Math.min(1.5, Math.max(-1.5, orbit.elevation + y * 0.01));
     redraw();
+});
+canvas.addEventListener('pointerup', (event) => {
+    if (tapped && !lost) pick(event);
+    tapped = null;
 });
 for (const end of ['pointerup', 'pointercancel']) canvas.addEventListener(end, (event) => pointers.delete(event.pointerId));
 canvas.addEventListener('wheel', (event) => {
@@ -99,19 +118,23 @@ canvas.addEventListener('wheel', (event) => {
 }, { passive: false });
 byId('fit').addEventListener('click', fit);
 byId('front').addEventListener('click', () => { Object.assign(orbit, front); redraw(); });
+byId('follow').addEventListener('change', redraw);
 
 // ---- frames ----
 
 function draw() {
     wanted = false;
     if (lost || !window.noh.ready) return;
-    setCamera();
     const now = performance.now();
-    check(Module._web_draw(Math.min(now - drawn, 100) / 1000));
+    check(Module._web_step(Math.min(now - drawn, 100) / 1000));
     drawn = now;
+    setCamera();
+    check(Module._web_draw());
     window.noh.frames++;
     showDetail();
-    if (Module._web_fades()) redraw();
+    showTime();
+    sliders.forEach(showWeight);
+    if (playing || now < busy || Module._web_fades()) redraw();
 }
 
 function redraw() {
@@ -165,7 +188,7 @@ function beginDetail() {
     Module._web_set_level(Number(byId('detail').value));
 }
 
-// ---- targets ----
+// ---- targets: a slider that was moved holds its target, whatever plays, until the reset ----
 
 const sliders = [];
 
@@ -183,10 +206,10 @@ function addSlider(index, name) {
     span.textContent = span.title = name;
     Object.assign(slider, { type: 'range', min: -1, max: 2, step: 0.01 });
     slider.dataset.target = name;
-    const s = { index, label, slider, output, name: name.toLowerCase(), shown: NaN, initial: Module._web_weight(index) };
+    const s = { index, label, slider, output, name: name.toLowerCase(), shown: NaN };
     slider.addEventListener('input', () => {
-        Module._web_set_weight(index, Number(slider.value));
-        showWeight(s);
+        Module._web_hold(index, Number(slider.value), 1);
+        label.classList.add('held');
         redraw();
     });
     label.append(span, slider, output);
@@ -200,69 +223,83 @@ byId('search').addEventListener('input', () => {
     for (const s of sliders) s.label.hidden = !s.name.includes(part);
 });
 byId('reset').addEventListener('click', () => {
-    for (const s of sliders) Module._web_set_weight(s.index, s.initial);
-    sliders.forEach(showWeight);
+    for (const s of sliders) {
+        Module._web_hold(s.index, 0, 0);
+        s.label.classList.remove('held');
+    }
     redraw();
 });
 
 // ---- clips ----
 
 const clip = () => Number(byId('clips').value);
-let playing = false, before = 0;
+let playing = false;
 
-function showPose() {
-    byId('time').value = Module._web_time();
-    byId('time-text').textContent = `${Module._web_time().toFixed(2)} s`;
-    sliders.forEach(showWeight);
+function showTime() {
+    const time = Module._web_time();
+    byId('time').value = time;
+    byId('time-text').textContent = `${time.toFixed(2)} s`;
+}
+
+const setSpeed = () => Module._web_set_speed(playing ? Number(byId('speed').value) : 0);
+
+function play(layer, which, time, over) {
+    check(Module._web_play(layer, which, time, over));
+    busy = performance.now() + 1000 * over + 100;
     redraw();
 }
 
 function choose(over) {
-    check(Module._web_play(clip(), 0, over));
     byId('time').max = Math.max(clip() < 0 ? 0 : Module._web_clip_seconds(clip()), 0.001);
-    showPose();
-}
-
-function tick(now) {
-    if (!playing) return;
-    Module._web_step(Math.min(Math.max(now - before, 0), 100) / 1000);
-    before = now;
-    showPose();
-    requestAnimationFrame(tick);
+    play(body, clip(), 0, over);
 }
 
 function setPlaying(on) {
-    const started = on && !playing;
     playing = on;
     byId('play').textContent = playing ? 'pause' : 'play';
-    if (!started) return;
-    before = performance.now();
-    requestAnimationFrame(tick);
+    setSpeed();
+    redraw();
 }
 
 byId('play').addEventListener('click', () => setPlaying(!playing));
 byId('clips').addEventListener('change', () => choose(playing ? transition : 0));
+byId('face').addEventListener('change', () => play(face, Number(byId('face').value), 0, transition));
 byId('time').addEventListener('input', () => {
     setPlaying(false);
-    check(Module._web_play(clip(), Number(byId('time').value), 0));
-    showPose();
+    play(body, clip(), Number(byId('time').value), 0);
 });
 byId('speed').addEventListener('input', () => {
-    const speed = Number(byId('speed').value);
-    Module._web_set_speed(speed);
-    byId('speed-text').textContent = speed.toFixed(2);
+    byId('speed-text').textContent = Number(byId('speed').value).toFixed(2);
+    setSpeed();
 });
 
-// The clip that ?clip says, else the pack's first.
-function beginClips() {
+function listClips(select) {
     for (let i = 0; i < Module._web_clip_count(); i++) {
-        if (Module._web_clip_seconds(i) >= 0) byId('clips').add(new Option(text(Module._web_clip_name(i)), i));
+        if (Module._web_clip_seconds(i) >= 0) select.add(new Option(text(Module._web_clip_name(i)), i));
     }
-    const options = [...byId('clips').options], asked = query.get('clip');
-    byId('motion').hidden = options.length < 2;
-    const first = asked ? options.find((o) => o.text === asked) : options[1];
-    byId('clips').value = first ? first.value : -1;
+}
+
+// The clip of the query; without one the option that is given, or none.
+function begin(select, name, otherwise) {
+    const options = [...select.options], asked = query.get(name);
+    const first = asked ? options.find((o) => o.text === asked) : options[otherwise];
+    select.value = first ? first.value : -1;
+}
+
+// A face is offered where clips may move a body beside it.
+function beginClips() {
+    const moves = Module._web_joint_count() > 0;
+    listClips(byId('clips'));
+    listClips(byId('face'));
+    byId('motion').hidden = byId('clips').options.length < 2;
+    byId('faces-row').hidden = !moves || !sliders.length;
+    byId('follow-row').hidden = !moves;
+    byId('follow').checked = query.get('camera') !== 'fixed';
+    begin(byId('clips'), 'clip', 1);
+    begin(byId('face'), 'face', 0);
+    setSpeed();
     choose(0);
+    if (Number(byId('face').value) >= 0) play(face, Number(byId('face').value), 0, transition);
     if (clip() >= 0 && !matchMedia('(prefers-reduced-motion: reduce)').matches) setPlaying(true);
 }
 
@@ -279,8 +316,14 @@ function addRow(cells, tag) {
 
 // What each part of noh takes, and what the page gives it.
 function showMemory() {
-    const parts = Array.from({ length: Module._web_part_count() }, (_, i) =>
-        ({ name: text(Module._web_part_name(i)), cpu: Module._web_part_cpu_bytes(i), gpu: Module._web_part_gpu_bytes(i) }));
+    const byName = new Map();
+    for (let i = 0; i < Module._web_part_count(); i++) { // those of several skeletons in one row
+        const name = text(Module._web_part_name(i)), row = byName.get(name) || { name, cpu: 0, gpu: 0 };
+        row.cpu += Module._web_part_cpu_bytes(i);
+        row.gpu += Module._web_part_gpu_bytes(i);
+        byName.set(name, row);
+    }
+    const parts = [...byName.values()];
     const sum = (key) => parts.reduce((all, p) => all + p[key], 0);
     const memory = {
         cpu: sum('cpu'), gpu: Module._web_gpu_bytes(), room: Module._web_memory_room(), pack: Module._web_pack_room(), all: Module.HEAPU8.length,
@@ -289,11 +332,11 @@ function showMemory() {
     byId('memory').replaceChildren();
     addRow(['', 'CPU', 'GPU'], 'th');
     for (const p of parts) if (p.cpu || p.gpu) addRow([p.name, p.cpu, p.gpu]);
-    addRow(['noh uses', memory.cpu, memory.gpu]);
-    addRow(['of', memory.room, '']);
+    addRow(['the stage', memory.cpu, memory.gpu]);
+    addRow(['its block', memory.room, '']);
     addRow(['the pack', memory.pack, '']);
     addRow(['WebAssembly, cannot grow', memory.all, '']);
-    byId('device').textContent = `path ${window.noh.path}, ${window.noh.renderer}`;
+    byId('device').textContent = (window.noh.path ? `path ${window.noh.path}, ` : '') + window.noh.renderer;
 }
 
 async function start() {
@@ -303,7 +346,9 @@ async function start() {
     const place = Module._web_pack(file.length);
     if (!place) fail(`the pack has ${file.length} bytes, more than the page was built for`);
     Module.HEAPU8.set(file, place);
-    check(Module._web_open(file.length, Math.max(0, paths.indexOf(query.get('path') || 'auto'))));
+    check(Module._web_open(file.length, Math.max(0, paths.indexOf(query.get('path') || 'auto')), Number(query.get('actors') || 1)));
+    const box = floats(Module._web_measure(), 6);
+    Module._web_set_spacing((box[3] - box[0]) * 1.1);
     for (let i = 0; i < Module._web_target_count(); i++) addSlider(i, text(Module._web_target_name(i)));
     byId('faces').hidden = !sliders.length;
     window.noh.renderer = text(Module._web_renderer());

@@ -23,9 +23,11 @@ async function openNoh() {
     const file = new Uint8Array(await (await fetch('/noh/page.noh')).arrayBuffer());
     const forced = new URLSearchParams(location.search).get('path') || 'auto';
     M.HEAPU8.set(file, M._web_pack(file.length));
-    check(M._web_open(file.length, paths.indexOf(forced)));
+    check(M._web_open(file.length, paths.indexOf(forced), 1));
+    M._web_set_level(0); // all targets, however small
     const gl = document.getElementById('canvas').getContext('webgl2');
     const count = M._web_target_count();
+    let atRest = true;
     return {
         count,
         names: Array.from({ length: count }, (_, i) => text(M._web_target_name(i))),
@@ -33,9 +35,10 @@ async function openNoh() {
         path: text(M._web_path()),
         renderer: text(M._web_renderer()),
         draw(morphed, frame) {
-            M._web_set_at_rest(morphed ? 0 : 1);
-            for (let t = 0; morphed && t < count; t++) M._web_set_weight(t, weight(t, frame));
-            check(M._web_draw(0));
+            for (let t = 0; !(atRest && !morphed) && t < count; t++) M._web_hold(t, morphed ? weight(t, frame) : 0, 1);
+            atRest = !morphed;
+            check(M._web_step(0));
+            check(M._web_draw());
             wait(gl);
         },
     };
@@ -54,7 +57,7 @@ function placeCamera(bounds) {
     camera.updateMatrixWorld();
     const key = new THREE.Vector3(-0.45, 0.62, 0.64).applyQuaternion(camera.quaternion).normalize();
     const all = new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
-    M.HEAPF32.set([...all.elements, ...camera.position.toArray(), ...key.toArray()], M._web_camera() >> 2); // noh_gl_camera
+    M.HEAPF32.set([...all.elements, ...camera.position.toArray(), ...key.toArray()], M._web_view() >> 2); // matrix, eye, light
     return { camera, key };
 }
 

@@ -130,6 +130,71 @@ async function panels(browser) {
     await close(page, 'panels');
 }
 
+const pickAt = (page, x, y) => page.mouse.click(x, y).then(() => page.textContent('#picked'));
+const view = (page) => page.evaluate(() => ({ walked: Array.from(walked()), eye: Array.from(floats(Module._web_view() + 64, 3)) }));
+const reach = (page, seconds) => page.waitForFunction((s) => Number(document.getElementById('time').value) > s, seconds, { timeout: 60000 });
+
+async function held(browser) {
+    const page = await open(browser, { viewport: { width: 1000, height: 700 } }, `clip=${clip}`);
+    await setTarget(page, 'smile', 1.5);
+    const value = () => page.locator('input[data-target="smile"]').inputValue().then(Number);
+    await reach(page, 0.6);
+    check('held: a clip does not move a slider that is held', await value() === 1.5, await value());
+    await drawn(page, () => page.click('#reset'));
+    await drawn(page, async () => {});
+    check('held: and does after the reset', await value() !== 1.5, await value());
+    check('picked: a tap names what is there', /^(mask|body)/.test(await pickAt(page, 316, 350)), await page.textContent('#picked'));
+    check('picked: and beside the figure nothing', await pickAt(page, 5, 5) === '');
+    await close(page, 'held');
+}
+
+// A figure that walks is followed, unless the camera is fixed.
+async function walks(browser, camera) {
+    const page = await open(browser, { viewport: { width: 1000, height: 700 } }, `clip=walk&camera=${camera}`);
+    const before = await view(page);
+    for (let i = 0; i < 2; i++) {
+        await reach(page, 1);
+        await page.waitForFunction(() => Number(document.getElementById('time').value) < 0.4, null, { timeout: 60000 });
+    }
+    await page.click('#play');
+    await drawn(page, () => page.click('#front'));
+    const after = await view(page);
+    const way = after.walked[2] - before.walked[2], moved = after.eye[2] - before.eye[2];
+    check(`camera ${camera}: the figure walks`, way > 1, way);
+    check(`camera ${camera}: ${camera === 'fixed' ? 'and leaves the camera behind' : 'with the camera'}`,
+        Math.abs(moved - (camera === 'fixed' ? 0 : way)) < 1e-3, moved);
+    await page.screenshot({ path: path.join(out, `walk_${camera}.png`) });
+    await close(page, `camera ${camera}`);
+}
+
+// A face of one clip over the body of another.
+async function faces(browser) {
+    const page = await open(browser, { viewport: { width: 1000, height: 700 } }, 'clip=idle');
+    const weights = () => page.locator('#targets input').evaluateAll((all) => all.map((e) => Number(e.value)));
+    await page.click('#play');
+    await page.waitForFunction(() => performance.now() > busy);
+    const before = await weights();
+    await page.selectOption('#face', { label: clip });
+    await page.click('#play');
+    await page.waitForTimeout(1500);
+    await page.click('#play');
+    const after = await weights();
+    check('face: it moves', after.some((w, i) => Math.abs(w - before[i]) > 0.05));
+    check('face: the body plays its own clip', await page.evaluate(() => Number(document.getElementById('time').max)) === 4);
+    await close(page, 'face');
+}
+
+async function bodies(browser) {
+    const page = await open(browser, {}, 'clip=none');
+    const has = await page.evaluate(() => Module._web_joint_count() > 0);
+    check('a face and a camera of its own are offered where there is a body',
+        await page.isVisible('#face') === has && await page.isVisible('#follow') === has);
+    await close(page, 'bodies');
+    if (!has) return;
+    for (const camera of ['follow', 'fixed']) await walks(browser, camera);
+    await faces(browser);
+}
+
 async function phone(browser) {
     const page = await open(browser, { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true }, `clip=${clip}`);
     await page.waitForFunction(() => Number(document.getElementById('time').value) > 0.6, null, { timeout: 60000 });
@@ -187,6 +252,8 @@ async function byPixels(browser) {
         for (const forced of forcedPaths) await onePath(browser, forced);
         await panels(browser);
         await levels(browser);
+        await held(browser);
+        await bodies(browser);
         await phone(browser);
     } finally {
         await browser.close();

@@ -1,0 +1,103 @@
+#include "cast.h"
+
+#include <string.h>
+
+static const noh_layer_desc layers[WEB_LAYERS] = {
+    { .name = "body", .mode = NOH_LAYER_BASE },
+    { .name = "face", .mode = NOH_LAYER_OVER, .joints = "" },
+};
+
+/* Whether a skeleton moves a node's mesh, or in a pack without nodes a mesh. */
+static int moves(const noh_pack *pack, uint32_t skeleton, uint32_t node)
+{
+    noh_mesh mesh;
+    noh_skin skin;
+    return noh_pack_mesh_at(pack, pack->node_count ? pack->nodes[node].mesh : node, &mesh, NULL) == NOH_OK &&
+           noh_pack_skin_at(pack, mesh.header->skin, &skin, NULL) == NOH_OK && skin.header->skeleton == skeleton;
+}
+
+/* The nodes whose meshes a skeleton moves, at most NOH_STAGE_MESHES_MAX. */
+static uint32_t list_nodes(const noh_pack *pack, uint32_t skeleton, uint32_t *nodes)
+{
+    const uint32_t all = pack->node_count ? pack->node_count : pack->mesh_count;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < all && count < NOH_STAGE_MESHES_MAX; i++) {
+        if (moves(pack, skeleton, i)) nodes[count++] = i;
+    }
+    return count;
+}
+
+static noh_kind_desc kind_of(const noh_pack *pack, uint32_t skeleton, uint32_t actors)
+{
+    noh_kind_desc k;
+    memset(&k, 0, sizeof k);
+    k.mesh = pack;
+    k.skeleton = skeleton;
+    k.actor_count = actors;
+    k.layers = layers;
+    k.layer_count = WEB_LAYERS;
+    k.root_axes = NOH_ROOT_GROUND;
+    k.root_up = 1;
+    k.inertia = 1;
+    return k;
+}
+
+/* The first kind has what no joint moves, too. */
+static noh_result list_kinds(web_cast *cast, const noh_pack *pack, uint32_t actors, noh_error *error)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < pack->skeleton_count; i++) {
+        uint32_t *nodes = cast->nodes + NOH_STAGE_MESHES_MAX * (size_t)(count % NOH_STAGE_KINDS_MAX);
+        const uint32_t node_count = list_nodes(pack, i, nodes);
+        if (!node_count) continue;
+        if (count == NOH_STAGE_KINDS_MAX) {
+            return noh_fail(error, NOH_ERR_LIMIT, "more skeletons than a stage has kinds", i, count);
+        }
+        cast->kinds[count] = kind_of(pack, i, actors);
+        cast->kinds[count].nodes = count ? nodes : NULL;
+        cast->kinds[count].node_count = count ? node_count : 0;
+        count++;
+    }
+    if (!count) cast->kinds[count++] = kind_of(pack, NOH_NONE, actors);
+    cast->desc.kinds = cast->kinds;
+    cast->desc.kind_count = count;
+    return NOH_OK;
+}
+
+static uint32_t most_skin_joints(const noh_pack *pack)
+{
+    uint32_t most = 0;
+    for (uint32_t i = 0; i < pack->skin_count; i++) {
+        noh_skin skin;
+        (void)noh_pack_skin_at(pack, i, &skin, NULL);
+        most = skin.header->joint_count > most ? skin.header->joint_count : most;
+    }
+    return most;
+}
+
+size_t web_cast_matrices(const web_cast *cast)
+{
+    return ((size_t)cast->plan.cpu_bytes + 15u) / 16u * 16u;
+}
+
+noh_result web_cast_plan(web_cast *cast, const noh_pack *pack, uint32_t actors, noh_morph_path path,
+                         const noh_gl_caps *caps, noh_error *error)
+{
+    noh_result result;
+    memset(cast, 0, sizeof *cast);
+    result = list_kinds(cast, pack, actors, error);
+    cast->desc.gpu = &noh_stage_on_gl;
+    cast->desc.encode_srgb = 1; /* a canvas does not encode */
+    cast->desc.without_depth = 1;
+    cast->desc.morph_path = (uint32_t)path;
+    if (!result) result = noh_stage_plan_make(&cast->desc, caps, &cast->plan, error);
+    for (uint32_t i = 0; i < cast->desc.kind_count && !result; i++) { /* the floats are counted by now */
+        const uint32_t floats = cast->plan.kinds[i].float_count;
+        cast->kinds[i].held_float_count = floats ? floats : NOH_NONE;
+    }
+    if (!result) result = noh_stage_plan_make(&cast->desc, caps, &cast->plan, error);
+    if (result) return result;
+    cast->skin_joints = most_skin_joints(pack);
+    cast->bytes = web_cast_matrices(cast) + sizeof(float) * 12u * cast->skin_joints;
+    return NOH_OK;
+}

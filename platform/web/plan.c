@@ -1,0 +1,57 @@
+/* plan.c: what a page for a pack takes: run under node when the page is built, for pointers have another size there.
+ *
+ *   plan PACK ACTORS
+ *
+ * Prints the bytes of the page's block, then those of the stage by each path, and how many floats may be held. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cast.h"
+#include "platform.h"
+
+/* A plain device that does all that any path needs: which one it will be is found in the browser. */
+static noh_gl_caps any_device(void)
+{
+    noh_gl_caps caps;
+    memset(&caps, 0, sizeof caps);
+    caps.version = 320;
+    caps.is_es = 1;
+    caps.texture_size_max = 2048;
+    caps.array_layers_max = 256;
+    caps.draw_buffers_max = caps.color_attachments_max = 4;
+    caps.uniform_block_bytes_max = 16384;
+    caps.vertex_textures_max = caps.vertex_attributes_max = 16;
+    caps.mrt3 = caps.render_f32 = caps.render_f16 = caps.render_u32 = 1;
+    caps.blend_f32 = caps.blend_f16 = caps.blend_f32_exact = caps.layered = 1;
+    return caps;
+}
+
+static int plan(const noh_pack *pack, uint32_t actors, noh_error *error)
+{
+    static const noh_morph_path paths[] = { NOH_MORPH_CPU, NOH_MORPH_GATHER, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER };
+    static web_cast cast;
+    const noh_gl_caps caps = any_device();
+    size_t most = 0;
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+        if (web_cast_plan(&cast, pack, actors, paths[i], &caps, error)) return 1;
+        printf("%s %llu %llu\n", noh_morph_path_name(paths[i]), (unsigned long long)cast.plan.cpu_bytes,
+               (unsigned long long)cast.plan.gpu_bytes);
+        most = cast.bytes > most ? cast.bytes : most;
+    }
+    printf("floats %u\nblock %llu\n", cast.plan.kinds[0].float_count, (unsigned long long)most);
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    noh_error error = { NOH_OK, "give a pack and a number of actors", 0, 0 };
+    noh_file file;
+    noh_pack pack;
+    if (argc != 3 || noh_file_map(argv[1], &file, &error) || noh_pack_open(file.data, file.bytes, &pack, &error) ||
+        plan(&pack, (uint32_t)strtoul(argv[2], NULL, 10), &error)) {
+        (void)fprintf(stderr, "plan: %s\n", error.what);
+        return 1;
+    }
+    return 0;
+}
