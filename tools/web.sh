@@ -9,22 +9,22 @@ command -v emcc >/dev/null 2>&1 || { echo 'make web needs emscripten (emcc)' >&2
 fetch=
 node --no-experimental-fetch -e 0 2>/dev/null && fetch=--no-experimental-fetch
 # shellcheck disable=SC2086
-plan=$(node $fetch "$PLAN" "$PACK" "$ACTORS")
-noh=$(echo "$plan" | sed -n 's/^block //p')
-pack=$(wc -c <"$PACK")
-pack=$(((pack + 63) / 64 * 64))
-sum=$((pack + noh + STATIC + STACK + HEAP))
+noh=$(node $fetch "$PLAN" "$PACK" "$ACTORS" | sed -n 's/^block //p')
+[ -n "$noh" ] || exit 1
+pack_bytes=$(wc -c <"$PACK")
+pack_bytes=$(((pack_bytes + 63) / 64 * 64))
+sum=$((pack_bytes + noh + STATIC + STACK + HEAP))
 memory=$(((sum + 65535) / 65536 * 65536))
 
 # Debian's emscripten uses Debian's node modules, which another node does not look for.
 export NODE_PATH="${NODE_PATH:+$NODE_PATH:}/usr/share/nodejs"
 # shellcheck disable=SC2086
-emcc $FLAGS -DNOH_WEB_PACK_BYTES=$pack -DNOH_WEB_MEMORY_BYTES="$noh" -DNOH_WEB_ACTORS="$ACTORS" "$@" $LINK \
+emcc $FLAGS -DNOH_WEB_PACK_BYTES=$pack_bytes -DNOH_WEB_MEMORY_BYTES="$noh" -DNOH_WEB_ACTORS="$ACTORS" "$@" $LINK \
     -s TOTAL_STACK="$STACK" -s INITIAL_MEMORY=$memory -o "$OUT"
 
 cat <<END
 WebAssembly memory, which cannot grow:
-  the pack                     $pack
+  the pack                     $pack_bytes
   its stage, by its plan       $noh (the most of any path)
   static data of the program   $STATIC (at most)
   stack                        $STACK
