@@ -118,6 +118,7 @@ void noh_light_rotate(const noh_light *from, const float rotation[9], noh_light 
     float before[NOH_SH_COUNT_MAX], after[NOH_SH_COUNT_MAX];
     NOH_ASSERT(from && to && from != to);
     memset(to, 0, sizeof *to);
+    memset(before, 0, sizeof before); /* gcc does not see that the order is at least 1 */
     to->order = from->order;
     for (uint32_t c = 0; c < 3u; c++) {
         for (uint32_t i = 0; i < NOH_SH_COUNT(from->order); i++) {
