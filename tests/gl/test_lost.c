@@ -1,13 +1,12 @@
-/* A lost context: it is destroyed, a new one is made, and load_restore makes everything again from
+/* A lost context: it is destroyed, a new one is made, and everything is made again from
  * the pack. The picture is the same, the ledger is as before to the byte, and other objects that have
  * the old names in the new context are left alone. */
 #include "support/gl_fixture.h"
 #include "support/level_fixture.h"
 
-#include "draw/load.h"
-#include "null.h"
-#include "draw/camera.h"
 #include "gpu/canvas.h"
+#include "null.h"
+#include "support/parts_fixture.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,15 +19,13 @@ typedef struct stage {
     gpu g;
     pack_file file;
     uint8_t *bytes;
-    scene s;
-    load l;
+    parts parts;
     fixture_levels levels; /* bytes NULL: without LOD levels */
 } stage;
 
 static void open_stage_of(stage *st, const char *driver, fixture_way way, int uint_layers, uint32_t level_count)
 {
     const test_model_desc desc = { 2, 9, 6, TEST_TANGENTS | TEST_UVS | TEST_COLORS | TEST_SCENE, 23 };
-    load_options options;
     test_random r = test_random_from(7);
     size_t count;
     memset(st, 0, sizeof *st);
@@ -41,14 +38,11 @@ static void open_stage_of(stage *st, const char *driver, fixture_way way, int ui
         fixture_levels_open(&st->levels, &st->file.pack, level_count, 2.0f);
         st->file.pack = st->levels.pack;
     }
-    memset(&options, 0, sizeof options);
-    options.path = way.path;
-    options.accumulate = way.accumulate;
-    assert_int_equal(scene_init(&st->s, &st->file), 0);
-    for (uint32_t i = 0; i < st->s.item_count; i++) {
-        test_random_weights(&r, st->s.items[i].weights, st->s.meshes[st->s.items[i].mesh].header->target_count);
+    parts_open(&st->parts, &st->g, &st->file, way.path, way.accumulate, 1);
+    for (uint32_t i = 0; i < st->parts.item_count; i++) {
+        part_item *item = &st->parts.items[i];
+        test_random_weights(&r, item->weights, st->parts.meshes[item->mesh].header->target_count);
     }
-    assert_int_equal(load_open(&st->l, &st->g, &st->file, &st->s, &options), 0);
 }
 
 static void open_stage(stage *st, const char *driver, fixture_way way, int uint_layers)
@@ -60,41 +54,25 @@ static void close_stage(stage *st)
 {
     noh_gl_ledger nothing;
     memset(&nothing, 0, sizeof nothing);
-    load_close(&st->l);
+    parts_close(&st->parts);
     assert_int_equal(st->g.gl.GetError(), GL_NO_ERROR);
     assert_memory_equal(&st->g.ledger, &nothing, sizeof nothing);
-    scene_free(&st->s);
     if (st->levels.bytes) fixture_levels_close(&st->levels);
     free(st->bytes);
     gpu_close(&st->g);
 }
 
-static void draw(stage *st, const noh_gl_camera *camera, uint32_t level)
-{
-    const noh_gl_lod drawn = { level, 0.0f, 1.0f };
-    noh_gl_draw_begin(&st->l.renderer, camera);
-    for (int pass = NOH_DRAW_OPAQUE; pass <= NOH_DRAW_BLENDED; pass++) {
-        for (uint32_t i = 0; i < st->s.item_count; i++) {
-            noh_gl_morph_binding morph = noh_gl_morph_binding_of(st->l.morph.morph, st->l.item_instances[i]);
-            noh_gl_draw_mesh(&st->l.renderer, &st->l.meshes[st->s.items[i].mesh], scene_world(&st->s, &st->file, i),
-                             &morph, NULL, &drawn, st->l.pictures, pass);
-        }
-    }
-    noh_gl_draw_end(&st->l.renderer);
-}
-
 static uint8_t *picture_of_level(stage *st, uint32_t level)
 {
-    view_options view = { NULL, SIDE, SIDE };
-    bounds box = scene_bounds(&st->s, &st->file, 0);
+    const noh_gl_lod drawn = { level, 0.0f, 1.0f };
     noh_gl_camera camera;
     canvas c;
     uint8_t *rgba = test_zeros(SIDE * SIDE * 4);
-    assert_int_equal(view_camera(&view, &box, &camera), 0);
-    assert_int_equal(load_update(&st->l, NULL), 0);
+    parts_camera(&st->parts, NULL, SIDE, &camera);
+    parts_update(&st->parts, NULL);
     assert_int_equal(canvas_open(&c, &st->g, SIDE, SIDE), 0);
     canvas_begin(&c);
-    draw(st, &camera, level);
+    parts_draw(&st->parts, &camera, &drawn);
     assert_int_equal(canvas_read(&c, rgba), 0);
     canvas_close(&c);
     return rgba;
@@ -156,7 +134,7 @@ static void lose_and_restore(fixture_way way, int uint_layers)
     for (int round = 0; round < 2; round++) {
         lose(&st);
         make_strangers(&st.g.gl, strangers);
-        assert_int_equal(load_restore(&st.l), 0);
+        assert_int_equal(parts_restore(&st.parts), NOH_OK);
         assert_memory_equal(&st.g.ledger, &ledger, sizeof ledger);
         uint8_t *after = picture(&st);
         assert_memory_equal(before, after, SIDE * SIDE * 4);
@@ -184,17 +162,18 @@ static void levels_come_back(void **state)
     (void)state;
     for (int i = 0; i < FIXTURE_WAYS; i += 2) {
         open_stage_of(&st, "egl", fixture_ways[i], 0, 3);
-        for (uint32_t k = 0; k < st.s.item_count; k++)
-            noh_gl_morph_set_lod(st.l.morph.morph, st.l.item_instances[k], 1);
+        for (uint32_t k = 0; k < st.parts.item_count; k++)
+            noh_gl_morph_set_lod(st.parts.morph.morph, st.parts.items[k].instance, 1);
         uint8_t *before = picture_of_level(&st, 1), *coarser = picture_of_level(&st, 2);
         noh_gl_ledger ledger = st.g.ledger;
         noh_gl_morph_stats stats;
         assert_memory_not_equal(before, coarser, SIDE * SIDE * 4);
         lose(&st);
-        assert_int_equal(load_restore(&st.l), 0);
+        assert_int_equal(parts_restore(&st.parts), NOH_OK);
         assert_memory_equal(&st.g.ledger, &ledger, sizeof ledger);
-        assert_int_equal(load_update(&st.l, &stats), 0);
-        assert_in_range(stats.pairs, 1, st.s.meshes[0].header[1].pair_count + st.s.meshes[1].header[1].pair_count);
+        parts_update(&st.parts, &stats);
+        assert_in_range(stats.pairs, 1,
+                        st.parts.meshes[0].header[1].pair_count + st.parts.meshes[1].header[1].pair_count);
         uint8_t *after = picture_of_level(&st, 1);
         assert_memory_equal(before, after, SIDE * SIDE * 4);
         free(after);
@@ -216,8 +195,8 @@ static void nothing_old_is_called(void **state)
     open_stage(&st, "null", (fixture_way){ NOH_MORPH_CPU, NOH_ACCUMULATE_F32 }, 0);
     noh_null_report_of(st.g.context, &before);
     lose(&st);
-    assert_int_equal(load_restore(&st.l), 0);
-    assert_int_equal(load_update(&st.l, NULL), 0);
+    assert_int_equal(parts_restore(&st.parts), NOH_OK);
+    parts_update(&st.parts, NULL);
     noh_null_report_of(st.g.context, &after);
     assert_string_equal(after.first, "");
     assert_true(after.bytes == before.bytes);
@@ -244,14 +223,14 @@ static void a_refusal_leaves_nothing(void **state)
     (void)state;
     open_stage(&st, "egl", (fixture_way){ NOH_MORPH_GATHER, NOH_ACCUMULATE_F32 }, 0);
     uint64_t whole = noh_gl_ledger_bytes(&st.g.ledger);
-    const noh_gl_morph_plan plan = *noh_gl_morph_plan_of(st.l.morph.morph);
+    const noh_gl_morph_plan plan = *noh_gl_morph_plan_of(st.parts.morph.morph);
     lose(&st);
     real_storage = st.g.gl.TexStorage3D;
     st.g.gl.TexStorage3D = no_storage;
-    assert_int_equal(noh_gl_morph_restore(st.l.morph.morph, NULL, 0, &error), NOH_ERR_GL);
+    assert_int_equal(noh_gl_morph_restore(st.parts.morph.morph, NULL, 0, &error), NOH_ERR_GL);
     assert_true(noh_gl_ledger_bytes(&st.g.ledger) == whole - plan.gpu_bytes);
     st.g.gl.TexStorage3D = real_storage;
-    assert_int_equal(load_restore(&st.l), 0);
+    assert_int_equal(parts_restore(&st.parts), NOH_OK);
     assert_true(noh_gl_ledger_bytes(&st.g.ledger) == whole);
     close_stage(&st);
 }

@@ -3,8 +3,8 @@
  * debug group, no object made in a frame. And the checks themselves: each finds its own error. */
 #include "support/level_fixture.h"
 
-#include "draw/load.h"
 #include "null.h"
+#include "support/parts_fixture.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -71,40 +71,40 @@ typedef struct way {
     int no_extensions; /* neither debug functions nor geometry shaders */
 } way;
 
-static void set_weights(scene *s, uint32_t frame, int which)
+static void set_weights(parts *p, uint32_t frame, int which)
 {
-    for (uint32_t i = 0; i < s->item_count; i++) {
-        uint32_t count = s->meshes[s->items[i].mesh].header->target_count;
+    for (uint32_t i = 0; i < p->item_count; i++) {
+        uint32_t count = p->meshes[p->items[i].mesh].header->target_count;
         for (uint32_t t = 0; t < count; t++) {
-            if (which == 2 || (int)i % 2 == which) s->items[i].weights[t] = (float)((frame + t) % 5u) * 0.25f;
+            if (which == 2 || (int)i % 2 == which) p->items[i].weights[t] = (float)((frame + t) % 5u) * 0.25f;
         }
     }
 }
 
-static void frame(load *l, scene *s, uint32_t number, int which)
+static void frame(parts *p, uint32_t number, int which)
 {
     noh_gl_camera camera;
     memset(&camera, 0, sizeof camera);
-    set_weights(s, number, which);
-    assert_int_equal(load_update(l, NULL), 0);
-    load_draw(l, &camera);
+    set_weights(p, number, which);
+    parts_update(p, NULL);
+    parts_draw(p, &camera, NULL);
 }
 
 /* 8 frames in which all weights are new, some, or none: no object is made, and every call is in a group. */
-static void steady_frames(gpu *g, load *l, scene *s, const char *name)
+static void steady_frames(gpu *g, parts *p, const char *name)
 {
     uint64_t most = 0, still = 0;
     for (uint32_t i = 0; i < 8; i++) {
         noh_null_count_anew(g->context);
-        frame(l, s, i / 2, (int)(i % 3));
+        frame(p, i / 2, (int)(i % 3));
         noh_null_report report = report_of(g);
         assert_int_equal(report.allocations, 0);
         assert_int_equal(report.outside, 0);
         most = report.calls > most ? report.calls : most;
     }
-    frame(l, s, 9, 2);
+    frame(p, 9, 2);
     noh_null_count_anew(g->context);
-    frame(l, s, 9, 2);
+    frame(p, 9, 2);
     still = report_of(g).calls;
     print_message("# %s: %lu GL calls in a frame in which all weights change, %lu where none does\n", name,
                   (unsigned long)most, (unsigned long)still);
@@ -114,13 +114,10 @@ static void steady_frames(gpu *g, load *l, scene *s, const char *name)
 
 static void load_and_draw(const pack_file *file, const way *w)
 {
+    static parts p;
     gpu g;
-    scene s;
-    load l;
-    load_options options;
-    load_budget budget;
+    uint64_t bytes;
     char name[64];
-    memset(&options, 0, sizeof options);
     open_null(&g);
     all_abilities(&g.caps);
     if (w->uint_layers) g.caps.render_f32 = g.caps.blend_f32 = 0;
@@ -129,27 +126,27 @@ static void load_and_draw(const pack_file *file, const way *w)
         g.gl.PushDebugGroup = NULL;
         g.gl.PopDebugGroup = NULL;
     }
-    options.path = w->path;
-    options.accumulate = w->accumulate;
-    options.instances = 3;
     snprintf(name, sizeof name, "%s %s%s%s", noh_morph_path_name(w->path), noh_accumulate_name(w->accumulate),
              w->uint_layers ? " as integers" : "", w->no_extensions ? " without extensions" : "");
-    assert_int_equal(scene_init(&s, file), 0);
-    assert_int_equal(load_budget_make(&budget, file, &s, &g.caps, &options), 0);
-    assert_int_equal(load_open(&l, &g, file, &s, &options), 0);
+    parts_open(&p, &g, file, w->path, w->accumulate, 3);
+    bytes = noh_gl_morph_plan_of(p.morph.morph)->gpu_bytes + NOH_GL_RENDERER_BYTES;
+    for (uint32_t i = 0; i < file->pack.mesh_count; i++) bytes += noh_gl_mesh_bytes(&p.meshes[i]);
+    for (uint32_t i = 0; i < file->pack.texture_count; i++) {
+        noh_texture texture;
+        assert_int_equal(noh_pack_texture_at(&file->pack, i, &texture, NULL), NOH_OK);
+        bytes += noh_gl_picture_bytes(&texture);
+    }
     noh_null_report loaded = report_of(&g);
-    assert_true(loaded.bytes == budget.gpu_bytes);
+    assert_true(loaded.bytes == bytes);
     if (!w->no_extensions) {
         assert_int_equal(loaded.unlabelled, 0);
-        steady_frames(&g, &l, &s, name);
+        steady_frames(&g, &p, name);
     } else {
-        frame(&l, &s, 1, 2);
+        frame(&p, 1, 2);
     }
-    load_close(&l);
+    parts_close(&p);
     expect_clean(&g);
     expect_nothing_lives(&g);
-    load_budget_free(&budget);
-    scene_free(&s);
     gpu_close(&g);
 }
 
@@ -176,32 +173,30 @@ static void every_path_keeps_the_order(void **state)
 /* ---- LOD levels ---- */
 
 /* Instances at changing levels, drawn in two fading parts. */
-static void draw_levels(load *l, const scene *s, noh_gl_renderer *r, uint32_t number)
+static void draw_levels(parts *p, noh_gl_renderer *r, uint32_t number)
 {
     noh_gl_camera camera;
     memset(&camera, 0, sizeof camera);
-    for (uint32_t i = 0; i < s->item_count; i++)
-        noh_gl_morph_set_lod(l->morph.morph, l->item_instances[i], (number + i) % 4u);
-    assert_int_equal(load_update(l, NULL), 0);
+    for (uint32_t i = 0; i < p->item_count; i++)
+        noh_gl_morph_set_lod(p->morph.morph, p->items[i].instance, (number + i) % 4u);
+    parts_update(p, NULL);
     noh_gl_draw_begin(r, &camera);
-    for (uint32_t i = 0; i < 2u * s->item_count; i++) {
+    for (uint32_t i = 0; i < 2u * p->item_count; i++) {
         const noh_gl_lod part = { (number + i) % 4u, i % 2u ? 0.4f : 0.0f, i % 2u ? 1.0f : 0.4f };
-        noh_gl_morph_binding morph = noh_gl_morph_binding_of(l->morph.morph, l->item_instances[i / 2u]);
-        noh_gl_draw_mesh(r, &l->meshes[s->items[i / 2u].mesh], scene_world(s, l->file, i / 2u), &morph, NULL, &part,
-                         l->pictures, NOH_DRAW_OPAQUE);
+        parts_draw_item(p, r, i / 2u, &part, NOH_DRAW_OPAQUE);
     }
     noh_gl_draw_end(r);
 }
 
 /* Each program that a pass draws with is given the camera once, however many meshes it draws; the others never. */
-static void expect_cameras(const gpu *g, const scene *s, const noh_gl_renderer *r)
+static void expect_cameras(const gpu *g, const parts *p, const noh_gl_renderer *r)
 {
     uint32_t used = 0;
     for (uint32_t i = 0; i < r->variant_count; i++) {
         used += r->has_camera[i];
     }
     assert_in_range(used, 1, r->variant_count - 1u); /* the variants that draw every pixel are not used here */
-    assert_true(2u * s->item_count > used);
+    assert_true(2u * p->item_count > used);
     assert_int_equal(noh_null_calls_of(g->context, "glUniformMatrix4fv"), used);
 }
 
@@ -210,36 +205,30 @@ static void load_and_draw_levels(const pack_file *file, noh_morph_path path)
 {
     noh_gl_renderer_desc desc;
     noh_gl_renderer renderer;
-    load_options options;
+    static parts p;
     gpu g;
-    scene s;
-    load l;
-    memset(&options, 0, sizeof options);
     memset(&desc, 0, sizeof desc);
     open_null(&g);
     all_abilities(&g.caps);
-    options.path = path;
-    assert_int_equal(scene_init(&s, file), 0);
-    assert_int_equal(load_open(&l, &g, file, &s, &options), 0);
-    desc.meshes = s.meshes;
+    parts_open(&p, &g, file, path, NOH_ACCUMULATE_AUTO, 1);
+    desc.meshes = p.meshes;
     desc.mesh_count = file->pack.mesh_count;
     desc.fades = 1;
     assert_int_equal(
         noh_gl_renderer_create(&(noh_gl_device){ &g.gl, NULL, &g.ledger, NULL, 0 }, &desc, &renderer, NULL), NOH_OK);
     assert_int_equal(report_of(&g).unlabelled, 0);
     for (uint32_t number = 0; number < 8; number++) {
-        set_weights(&s, number, 2);
+        set_weights(&p, number, 2);
         noh_null_count_anew(g.context);
-        draw_levels(&l, &s, &renderer, number);
-        expect_cameras(&g, &s, &renderer);
+        draw_levels(&p, &renderer, number);
+        expect_cameras(&g, &p, &renderer);
         assert_int_equal(report_of(&g).allocations, 0);
         assert_int_equal(report_of(&g).outside, 0);
     }
     noh_gl_renderer_delete(&renderer);
-    load_close(&l);
+    parts_close(&p);
     expect_clean(&g);
     expect_nothing_lives(&g);
-    scene_free(&s);
     gpu_close(&g);
 }
 

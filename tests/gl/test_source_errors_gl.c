@@ -3,13 +3,10 @@
 #include "support/gl_fixture.h"
 
 #include "base/math_internal.h"
-#include "draw/camera.h"
-#include "gpu/canvas.h"
 #include "gl/gl_program.h"
-#include "draw/load.h"
-#include "draw/camera.h"
 #include "gpu/canvas.h"
 #include "support/lit_quad.h"
+#include "support/parts_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -21,8 +18,7 @@ typedef struct stage {
     gpu *g;
     pack_file file;
     uint8_t *bytes;
-    scene s;
-    load l;
+    parts parts;
     canvas c;
     noh_gl_camera camera;
 } stage;
@@ -30,38 +26,29 @@ typedef struct stage {
 static void open_stage(stage *st)
 {
     const test_model_desc desc = { 1, 9, 3, TEST_UVS, 5 };
-    const view_options view = { "0,0", SIDE, SIDE };
-    load_options options;
     size_t count;
-    bounds box;
     memset(st, 0, sizeof *st);
-    memset(&options, 0, sizeof options);
     st->g = fixture_gpu();
     st->bytes = test_pack(&desc, &count);
     st->file.path = "a pack in memory";
     st->file.pack = test_open(st->bytes, count);
-    assert_int_equal(scene_init(&st->s, &st->file), 0);
-    assert_int_equal(load_open(&st->l, st->g, &st->file, &st->s, &options), 0);
-    assert_int_equal(load_update(&st->l, NULL), 0);
+    parts_open(&st->parts, st->g, &st->file, NOH_MORPH_AUTO, NOH_ACCUMULATE_AUTO, 1);
+    parts_update(&st->parts, NULL);
     assert_int_equal(canvas_open(&st->c, st->g, SIDE, SIDE), 0);
-    box = scene_bounds(&st->s, &st->file, 0);
-    assert_int_equal(view_camera(&view, &box, &st->camera), 0);
+    parts_camera(&st->parts, "0,0", SIDE, &st->camera);
 }
 
 static void close_stage(stage *st)
 {
     canvas_close(&st->c);
-    load_close(&st->l);
-    scene_free(&st->s);
+    parts_close(&st->parts);
     free(st->bytes);
     fixture_expect_no_errors();
 }
 
 static void draw_mesh(stage *st)
 {
-    noh_gl_morph_binding morph = noh_gl_morph_binding_of(st->l.morph.morph, st->l.item_instances[0]);
-    noh_gl_draw_mesh(&st->l.renderer, &st->l.meshes[0], scene_world(&st->s, &st->file, 0), &morph, NULL, NULL,
-                     st->l.pictures, NOH_DRAW_OPAQUE);
+    parts_draw_item(&st->parts, &st->parts.renderer, 0, NULL, NOH_DRAW_OPAQUE);
 }
 
 /* Set the light to its default: before the mesh is drawn, or after a draw, which shows nothing, has set it. */
@@ -73,9 +60,9 @@ static void reset_light(stage *st, int after_a_draw)
         draw_mesh(st);
         gl->Disable(GL_RASTERIZER_DISCARD);
     }
-    for (uint32_t i = 0; i < st->l.renderer.variant_count; i++) {
-        gl->UseProgram(st->l.renderer.variants[i].program);
-        gl->Uniform3f(st->l.renderer.variants[i].u_key, 0.0f, 0.0f, 0.0f);
+    for (uint32_t i = 0; i < st->parts.renderer.variant_count; i++) {
+        gl->UseProgram(st->parts.renderer.variants[i].program);
+        gl->Uniform3f(st->parts.renderer.variants[i].u_key, 0.0f, 0.0f, 0.0f);
     }
 }
 
@@ -88,12 +75,12 @@ static double brightness(stage *st, light_reset reset)
     double sum = 0.0;
     uint32_t drawn = 0;
     canvas_begin(&st->c);
-    noh_gl_draw_begin(&st->l.renderer, &st->camera);
+    noh_gl_draw_begin(&st->parts.renderer, &st->camera);
     if (reset != NEVER) {
         reset_light(st, reset == AFTER_THE_LIGHT);
     }
     draw_mesh(st);
-    noh_gl_draw_end(&st->l.renderer);
+    noh_gl_draw_end(&st->parts.renderer);
     assert_int_equal(canvas_read(&st->c, rgba), 0);
     for (size_t i = 0; i < (size_t)SIDE * SIDE; i++) {
         if (!lit_quad_is_background(rgba + 4 * i)) {
