@@ -285,6 +285,16 @@ static void carve_jobs(noh_arena *arena, const noh_stage_desc *filled, const wid
     b->graph_scratch = noh_arena_carve(arena, filled->job_count * b->graph_scratch_bytes, 16);
 }
 
+/* The state of one kind, whose pointers are not wanted yet. Not inlined: what measures a kind has deep stacks, and a
+ * noh_stage_kind need not lie below them. */
+static NOH_NEVER_INLINE void measure_state(noh_arena *arena, const noh_stage_desc *desc, uint32_t i,
+                                           const noh_stage_needs *n, noh_stage_blocks *b)
+{
+    const noh_kind_desc d = noh_stage_kind_desc(desc, i);
+    noh_stage_kind kind;
+    carve_state(arena, &d, n, &kind, &b->pools[i]);
+}
+
 /* The first pass: the state, and what it takes to know how large the rest is. */
 static noh_result carve_states(noh_arena *arena, const noh_stage_desc *desc, const noh_stage_plan *plan,
                                noh_stage_blocks *b, noh_stage_list *list, widest *most, noh_error *error)
@@ -299,15 +309,13 @@ static noh_result carve_states(noh_arena *arena, const noh_stage_desc *desc, con
     most->actors = 0;
     add(list, "actors", NOH_NONE, arena, &from);
     for (uint32_t i = 0; i < desc->kind_count; i++) {
-        const noh_kind_desc d = noh_stage_kind_desc(desc, i);
         noh_stage_needs needs;
-        noh_stage_kind kind;
         const noh_result result = noh_stage_measure_kind(desc, plan, i, b->planned ? &plan->kinds[i].clips : NULL,
                                                          &needs, error);
         if (result != NOH_OK) {
             return result;
         }
-        carve_state(arena, &d, &needs, &kind, &b->pools[i]);
+        measure_state(arena, desc, i, &needs, b);
         widen(most, desc, i, &needs);
         add(list, "characters", i, arena, &from);
     }
@@ -325,6 +333,27 @@ static void point_at_state(const noh_stage_desc *desc, const noh_stage_needs *n,
     void *pools;
     carve_state(&arena, &d, n, k, &pools);
     *at += aligned(arena.used);
+}
+
+/* What is not state of one kind.
+ * state  where its state lies; NULL: only measured */
+static NOH_NEVER_INLINE void carve_kind(noh_arena *arena, const noh_stage_desc *desc, const noh_stage_plan *plan,
+                                        uint32_t i, const noh_stage_needs *n, noh_stage_blocks *b, noh_stage_list *list,
+                                        uint8_t **state)
+{
+    const noh_kind_desc d = noh_stage_kind_desc(desc, i);
+    noh_stage_kind measured, *k = b->kinds ? &b->kinds[i] : &measured;
+    size_t from = arena->used;
+    memset(k, 0, sizeof *k);
+    carve_shared(arena, &d, &plan->kinds[i], n, k);
+    b->lods[i] = noh_arena_carve(arena, n->lod_bytes, 16);
+    carve_frame(arena, &d, n, k);
+    add(list, "kind", i, arena, &from);
+    b->graphs[i] = noh_arena_carve(arena, n->graph_bytes, 16);
+    if (n->graph_count) add(list, "graphs", i, arena, &from);
+    b->banks[i] = noh_arena_carve(arena, n->bank_bytes, 16);
+    add(list, "clips", i, arena, &from);
+    if (*state) point_at_state(desc, n, i, state, k);
 }
 
 noh_result noh_stage_carve(noh_arena *arena, const noh_stage_desc *desc, const noh_stage_plan *plan,
@@ -347,20 +376,9 @@ noh_result noh_stage_carve(noh_arena *arena, const noh_stage_desc *desc, const n
     carve_jobs(arena, &filled, &most, b);
     add(list, "jobs", NOH_NONE, arena, &from);
     for (uint32_t i = 0; i < desc->kind_count && result == NOH_OK; i++) {
-        const noh_kind_desc d = noh_stage_kind_desc(desc, i);
         noh_stage_needs needs;
-        noh_stage_kind measured, *k = b->kinds ? &b->kinds[i] : &measured;
         result = noh_stage_measure_kind(desc, plan, i, b->planned ? &plan->kinds[i].clips : NULL, &needs, error);
-        memset(k, 0, sizeof *k);
-        carve_shared(arena, &d, &plan->kinds[i], &needs, k);
-        b->lods[i] = noh_arena_carve(arena, needs.lod_bytes, 16);
-        carve_frame(arena, &d, &needs, k);
-        add(list, "kind", i, arena, &from);
-        b->graphs[i] = noh_arena_carve(arena, needs.graph_bytes, 16);
-        if (needs.graph_count) add(list, "graphs", i, arena, &from);
-        b->banks[i] = noh_arena_carve(arena, needs.bank_bytes, 16);
-        add(list, "clips", i, arena, &from);
-        if (state) point_at_state(desc, &needs, i, &state, k);
+        if (result == NOH_OK) carve_kind(arena, desc, plan, i, &needs, b, list, &state);
     }
     return result;
 }
