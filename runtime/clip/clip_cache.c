@@ -482,6 +482,18 @@ uint32_t noh_clip_cache_capacity(const noh_clip_cache *cache)
     return cache->cached_count;
 }
 
+int noh_clip_cache_holds_all(const noh_clip_cache *cache)
+{
+    for (uint32_t i = 0; i < cache->clip_count; i++) {
+        const noh_cached_clip *e = &cache->clips[i];
+        for (uint32_t segment = 0; segment < e->clip->info.segment_count; segment++) {
+            const uint32_t s = cache->cached_of[e->first + segment];
+            if (s == NOH_CLIP_NOT_CACHED || cache->cached[s].cursor.track < e->clip->info.track_count) return 0;
+        }
+    }
+    return 1;
+}
+
 const noh_clip *noh_clip_cache_clip(const noh_clip_cache *cache, uint32_t clip)
 {
     NOH_ASSERT(clip < cache->clip_count);

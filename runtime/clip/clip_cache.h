@@ -13,7 +13,7 @@
  *   noh_clip_cache_needs_add, _needs_size         the size for clips that are not open yet
  *   noh_clip_cache_begin_frame, _want, _want_frames, _work   decode ahead
  *   noh_clip_sample                               a pose
- *   noh_clip_cache_stats_of, _capacity, _clip     what it did, and what it holds
+ *   noh_clip_cache_stats_of, _capacity, _holds_all, _clip   what it did, and what it holds
  *
  * Threads: every call that takes a cache without const is for one thread at a time, with no other call on that cache
  * meanwhile. To sample on several threads between those calls, give each a view: clip_view.h.
@@ -109,6 +109,10 @@ noh_clip_cache_stats noh_clip_cache_stats_of(const noh_clip_cache *cache);
 
 /* How many segments it holds at once. */
 uint32_t noh_clip_cache_capacity(const noh_clip_cache *cache);
+
+/* 1 where every segment of every clip is decoded: none is ever evicted then, and there is nothing left to want. Linear
+ * in the segments while it is so, else until the first that is missing. */
+int noh_clip_cache_holds_all(const noh_clip_cache *cache);
 
 /* The clip at an index of the desc. */
 const noh_clip *noh_clip_cache_clip(const noh_clip_cache *cache, uint32_t clip);

@@ -31,15 +31,36 @@ static uint32_t first_row(const noh_gl_skin_mesh *m, uint32_t instance)
     return m->first_row + (instance - m->first_instance) * m->stride;
 }
 
-/* Write rows that differ from what is there, and widen the span that the next update sends. */
-static void put_rows(noh_gl_skin *skin, uint32_t row, const float *values, uint32_t count)
+/* Rows from `first` to before `end`; none if first >= end. */
+typedef struct span {
+    uint32_t first, end;
+} span;
+
+static void widen(span *s, uint32_t row, uint32_t count)
+{
+    s->first = row < s->first ? row : s->first;
+    s->end = row + count > s->end ? row + count : s->end;
+}
+
+/* Widen what the next update sends. */
+static void send(noh_gl_skin *skin, const span *changed)
+{
+    span all = { skin->dirty_first, skin->dirty_end };
+    if (changed->first < changed->end) {
+        widen(&all, changed->first, changed->end - changed->first);
+        skin->dirty_first = all.first;
+        skin->dirty_end = all.end;
+    }
+}
+
+/* Write rows that differ from what is there. */
+static void put_rows(const noh_gl_skin *skin, uint32_t row, const float *values, uint32_t count, span *changed)
 {
     float *own = skin->rows + 4u * (size_t)row;
     NOH_ASSERT((uint64_t)row + count <= skin->plan.texel_count);
     if (memcmp(own, values, 16u * (size_t)count) != 0) {
         memcpy(own, values, 16u * (size_t)count);
-        skin->dirty_first = row < skin->dirty_first ? row : skin->dirty_first;
-        skin->dirty_end = row + count > skin->dirty_end ? row + count : skin->dirty_end;
+        widen(changed, row, count);
     }
 }
 
@@ -62,8 +83,8 @@ static void dual_rows(const float matrix[12], float rows[16])
 }
 
 /* Write the joints of a palette. stride: floats from a joint's matrix to the next; 0: one matrix for all. */
-static void put_palette(noh_gl_skin *skin, const noh_mesh *mesh, const noh_palette *palette, uint32_t row,
-                        const float *matrices, uint32_t stride)
+static void put_palette(const noh_gl_skin *skin, const noh_mesh *mesh, const noh_palette *palette, uint32_t row,
+                        const float *matrices, uint32_t stride, span *changed)
 {
     const uint16_t *joints = mesh->palette_joints + palette->first_joint;
     uint32_t joint_rows = noh_gl_joint_rows(mesh);
@@ -74,24 +95,43 @@ static void put_palette(noh_gl_skin *skin, const noh_mesh *mesh, const noh_palet
             dual_rows(matrix, rows);
             matrix = rows;
         }
-        put_rows(skin, row + joint_rows * i, matrix, joint_rows);
+        put_rows(skin, row + joint_rows * i, matrix, joint_rows, changed);
     }
 }
 
-static void put_palettes(noh_gl_skin *skin, uint32_t instance, const float *matrices, uint32_t stride)
+static span put_palettes(const noh_gl_skin *skin, uint32_t instance, const float *matrices, uint32_t stride)
 {
+    span changed = { UINT32_MAX, 0 };
     const noh_gl_skin_mesh *m = mesh_of(skin, instance);
     noh_gl_skin_binding binding = noh_gl_skin_binding_of(skin, instance);
     for (uint32_t i = 0; i < m->mesh.header->palette_count; i++) {
         put_palette(skin, &m->mesh, &m->mesh.palettes[i], binding.first + noh_gl_palette_row(&binding, &m->mesh, i),
-                    matrices, stride);
+                    matrices, stride, &changed);
     }
+    return changed;
 }
 
 void noh_gl_skin_set_matrices(noh_gl_skin *skin, uint32_t instance, const float *matrices)
 {
+    span changed;
     NOH_ASSERT(skin && matrices && instance < skin->plan.instance_count);
-    put_palettes(skin, instance, matrices, 12);
+    changed = put_palettes(skin, instance, matrices, 12);
+    send(skin, &changed);
+}
+
+int noh_gl_skin_write_matrices(noh_gl_skin *skin, uint32_t instance, const float *matrices)
+{
+    span changed;
+    NOH_ASSERT(skin && matrices && instance < skin->plan.instance_count);
+    changed = put_palettes(skin, instance, matrices, 12);
+    return changed.first < changed.end;
+}
+
+void noh_gl_skin_touch(noh_gl_skin *skin, uint32_t instance)
+{
+    const noh_gl_skin_mesh *m = mesh_of(skin, instance);
+    const span all = { first_row(m, instance), first_row(m, instance) + m->stride };
+    send(skin, &all);
 }
 
 /* Row i of the cofactors is the cross product of the two rows after it; the determinant is any row times its cofactors.
@@ -124,8 +164,10 @@ static noh_result no_crowds(uint32_t instance, noh_error *error)
 static void put_tile(noh_gl_skin *skin, uint32_t row, const uint32_t tile[4], const uint32_t tint[3])
 {
     float values[4];
+    span changed = { UINT32_MAX, 0 };
     for (int i = 0; i < 4; i++) values[i] = (float)(i < 3 ? tile[i] | tint[i] : tile[i]);
-    put_rows(skin, row, values, 1);
+    put_rows(skin, row, values, 1, &changed);
+    send(skin, &changed);
 }
 
 /* What a row holds in the bits of a mask, or in the others. */
@@ -156,6 +198,7 @@ noh_result noh_gl_skin_set_place(noh_gl_skin *skin, uint32_t instance, const flo
     const float *own = skin->rows + 4u * (size_t)(row + 3u);
     uint32_t tile[4] = { 0, 0, 0, 0 }, tint[3];
     float normal[12];
+    span changed = { UINT32_MAX, 0 };
     NOH_ASSERT(world);
     if (skin->plan.mode != NOH_PALETTE_TEXTURE) {
         return no_crowds(instance, error);
@@ -170,7 +213,8 @@ noh_result noh_gl_skin_set_place(noh_gl_skin *skin, uint32_t instance, const flo
         tile[3] = (uint32_t)morph->touched;
     }
     for (int i = 0; i < 3; i++) tint[i] = tile_bits(own, i, 1);
-    put_rows(skin, row, world, 3);
+    put_rows(skin, row, world, 3, &changed);
+    send(skin, &changed);
     put_tile(skin, row + 3u, tile, tint);
     return NOH_OK;
 }
@@ -227,7 +271,7 @@ static noh_result create_object(noh_gl_skin *skin, noh_error *error)
 static void set_bind_pose(noh_gl_skin *skin)
 {
     for (uint32_t i = 0; i < skin->plan.instance_count; i++) {
-        put_palettes(skin, i, identity, 0);
+        (void)put_palettes(skin, i, identity, 0);
         if (skin->plan.mode == NOH_PALETTE_TEXTURE) {
             noh_gl_skin_set_place(skin, i, identity, NULL, NULL);
         }

@@ -5,6 +5,7 @@
  *   noh_gl_skin_delete        delete the GL object
  *   noh_gl_skin_restore       make it again after a lost context
  *   noh_gl_skin_set_matrices  set one instance's joint matrices
+ *   noh_gl_skin_write_matrices, noh_gl_skin_touch  the same from several threads at once
  *   noh_gl_skin_set_place     set one instance's place in the world and its morph tile, for crowds
  *   noh_gl_skin_set_tint      set one instance's tint, for crowds
  *   noh_gl_skin_update        upload what changed
@@ -102,6 +103,12 @@ uint32_t noh_gl_skin_instance(const noh_gl_skin *skin, uint32_t mesh, uint32_t i
 /* Set the joint matrices of one instance. Does nothing for a rigid mesh.
  * shapes  matrices[joint_count of the mesh's skin][12]: the joint in model space * its inverse bind matrix */
 void noh_gl_skin_set_matrices(noh_gl_skin *skin, uint32_t instance, const float *matrices);
+
+/* The same in two halves, for matrices that several threads write at once, each those of other instances: no thread
+ * calls anything else on the object meanwhile. An update sends what was written only if the instance was touched after.
+ * returns  1 where a row changed */
+int noh_gl_skin_write_matrices(noh_gl_skin *skin, uint32_t instance, const float *matrices);
+void noh_gl_skin_touch(noh_gl_skin *skin, uint32_t instance);
 
 /* Set the placement of one instance, for noh_gl_draw_crowd.
  * shapes  world[12] rows of 3 x 4

@@ -37,6 +37,7 @@ static noh_result open_views(noh_stage *s, const noh_stage_blocks *b, noh_error 
         memset(&s->jobs[j], 0, sizeof s->jobs[j]);
         s->jobs[j].scratch = b->scratch + j * b->scratch_bytes;
         s->jobs[j].graph_scratch = b->graph_scratch_bytes ? b->graph_scratch + j * b->graph_scratch_bytes : NULL;
+        s->jobs[j].matrices = b->matrices + j * b->matrices_floats;
         for (uint32_t i = 0; i < s->desc.kind_count && result == NOH_OK; i++) {
             if (s->kinds[i].bank && s->kinds[i].bank_kind == i) {
                 const size_t bytes = noh_clip_bank_view_size(s->kinds[i].bank);
@@ -68,7 +69,6 @@ static void adopt(const noh_stage_desc *desc, const noh_stage_plan *plan, const 
     s->jobs = b->jobs;
     s->scratch_bytes = b->scratch_bytes;
     s->graph_scratch_bytes = b->graph_scratch_bytes;
-    s->matrices = b->matrices;
     s->pick_scratch = b->pick_scratch;
     s->pick_bytes = b->pick_bytes;
     s->inertia_scratch = b->inertia_scratch;

@@ -267,7 +267,6 @@ static void carve_stage(noh_arena *arena, const noh_stage_desc *filled, const wi
     b->shown = CARVE(arena, most->actors, noh_stage_shown);
     b->todo = CARVE(arena, most->actors, uint32_t);
     b->schedule = noh_arena_carve(arena, noh_schedule_size(most->actors), 16);
-    b->matrices = CARVE(arena, 12u * most->skin_joints, float);
     b->pick_bytes = most->pick_bytes;
     b->pick_scratch = noh_arena_carve(arena, most->pick_bytes, 16);
     b->inertia_bytes = most->inertia_bytes;
@@ -283,6 +282,8 @@ static void carve_jobs(noh_arena *arena, const noh_stage_desc *filled, const wid
     b->scratch = noh_arena_carve(arena, filled->job_count * b->scratch_bytes, 16);
     b->graph_scratch_bytes = aligned(most->graph_scratch_bytes);
     b->graph_scratch = noh_arena_carve(arena, filled->job_count * b->graph_scratch_bytes, 16);
+    b->matrices_floats = 12u * (size_t)most->skin_joints;
+    b->matrices = CARVE(arena, filled->job_count * b->matrices_floats, float);
 }
 
 /* The state of one kind, whose pointers are not wanted yet. Not inlined: what measures a kind has deep stacks, and a

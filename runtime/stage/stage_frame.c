@@ -116,11 +116,11 @@ static void run_jobs(noh_stage *s)
     }
 }
 
-/* Where everybody is drawn: what hangs on another only now, when that was posed. */
-static void place_all(noh_stage *s)
+/* Where that is drawn which hangs on another: known only now, when the other was posed. */
+static void place_attached(noh_stage *s)
 {
     for (uint32_t i = 0; i < s->actor_count; i++) {
-        if (s->actors[i].alive && s->shown[i].frame == s->frame) noh_stage_world(s, i, s->shown[i].world);
+        if (s->actors[i].parent && s->shown[i].frame == s->frame) noh_stage_world(s, i, s->shown[i].world);
     }
 }
 
@@ -131,7 +131,7 @@ noh_result noh_stage_frame_end(noh_stage *stage, noh_error *error)
         return noh_fail(error, NOH_ERR_ARG, "no frame has begun", 0, 0);
     }
     run_jobs(stage);
-    place_all(stage);
+    place_attached(stage);
     if (stage->gpu) {
         stage->desc.gpu->upload(stage);
     }

@@ -137,6 +137,7 @@ typedef struct noh_stage_kind {
     uint32_t bank_kind; /* the kind whose bank it shares: itself, or an earlier one */
     noh_clip_bank_desc bank_desc;
     noh_clip_bank *bank; /* NULL: no clip fits */
+    int holds_all;       /* of bank_kind: 1: its cache has all segments of all clips decoded */
     noh_clip_set set;    /* with the kind's masks; samples through the bank's own cache */
     noh_skeleton skeleton;
     noh_stage_layer *layers; /* [layer_count] */
@@ -146,6 +147,7 @@ typedef struct noh_stage_kind {
     uint32_t weight_count;  /* targets of all meshes */
     uint32_t *sources;      /* [float_count] the float whose value it takes: itself, or one of the same name that a clip
                              * moves */
+    uint32_t first_renamed; /* the first whose source is another; float_count: none */
     uint32_t *name_hashes;  /* [float_count] */
     float *defaults;        /* [float_count] */
     float *target_radii;    /* [weight_count] */
@@ -190,13 +192,16 @@ typedef struct noh_stage_shown {
     noh_lod_slot slot;
     uint32_t place;              /* in its kind's order */
     uint8_t due;                 /* noh_due */
-    uint8_t updates;             /* 1: is posed in this frame */
+    uint8_t updates;             /* 1: is posed in this frame; NOH_STAGE_MOVED: its palettes changed */
     uint8_t level, level_before; /* drawn */
 } noh_stage_shown;
+
+#define NOH_STAGE_MOVED 2u
 
 typedef struct noh_stage_job_part {
     noh_clip_bank_view *views[NOH_STAGE_KINDS_MAX]; /* of the kinds that have a bank of their own */
     void *scratch, *graph_scratch;
+    float *matrices; /* [joints of the largest skin][12] */
     uint64_t decoded_late;
     uint32_t updated;
     float error_pixels;
@@ -248,7 +253,6 @@ struct noh_stage {
     uint32_t view_count;
     int cut;
     noh_stage_stats stats;
-    float *matrices; /* [joints of the largest skin][12] */
     void *pick_scratch, *inertia_scratch;
     size_t pick_bytes, inertia_bytes;
     void *gpu; /* of desc.gpu; NULL without */
@@ -274,6 +278,8 @@ struct noh_stage_gpu {
     noh_result (*init)(void *memory, size_t bytes, const void *device, noh_stage *stage, noh_error *error);
     void (*destroy)(noh_stage *stage);
     noh_result (*restore)(noh_stage *stage, noh_error *error);
+    void (*pose)(noh_stage *stage, noh_stage_kind *kind, uint32_t index,
+                 float *matrices); /* of an actor that is seen, in a job: its palettes into memory of its own */
     void (*upload)(noh_stage *stage);
 };
 
@@ -341,7 +347,8 @@ typedef struct noh_stage_blocks {
     uint8_t *scratch; /* of all jobs */
     uint8_t *graph_scratch;
     size_t graph_scratch_bytes, scratch_bytes, views_bytes, pick_bytes, inertia_bytes;
-    float *matrices;
+    float *matrices; /* of all jobs */
+    size_t matrices_floats;
     void *pick_scratch, *inertia_scratch, *schedule;
     void *graphs[NOH_STAGE_KINDS_MAX];
     void *banks[NOH_STAGE_KINDS_MAX], *lods[NOH_STAGE_KINDS_MAX], *pools[NOH_STAGE_KINDS_MAX];

@@ -125,6 +125,7 @@ static void name_floats(noh_stage_kind *k)
 static void find_sources(noh_stage_kind *k)
 {
     const uint32_t set_floats = k->bank ? k->set.float_count : 0;
+    k->first_renamed = k->float_count;
     for (uint32_t f = 0; f < k->float_count; f++) {
         uint32_t from = f;
         if (f < set_floats && k->sources[f] == f) continue;
@@ -135,6 +136,7 @@ static void find_sources(noh_stage_kind *k)
             }
         }
         k->sources[f] = from;
+        if (from != f && f < k->first_renamed) k->first_renamed = f;
     }
 }
 

@@ -59,14 +59,16 @@ static uint32_t find_views(const noh_stage *s, const noh_stage_actor *a, const f
     return views;
 }
 
-/* What hangs on another is where that is seen: its own matrix is known only when the other was posed. */
-static uint32_t look_from(const noh_stage *s, uint32_t index, const noh_place *own, float *scale)
+/* What hangs on another is where that is seen: its own matrix is known only when the other was posed. world: that of
+ * the actor itself, or of the other. */
+static uint32_t look_from(const noh_stage *s, uint32_t index, const noh_stage_kind *k, const noh_place *own,
+                          float world[12], float *scale)
 {
     const noh_stage_actor *a = &s->actors[index], *on = a;
-    const noh_stage_kind *k = noh_stage_kind_of(s, index), *of = k;
+    const noh_stage_kind *of = k;
     const noh_character *ch;
     noh_place place = *own;
-    float world[12], sphere[4];
+    float sphere[4];
     if (a->parent) {
         on = noh_stage_actor_of(s, (noh_actor){ a->parent }, NULL);
         if (!on || on->look.hidden) return 0;
@@ -90,9 +92,9 @@ static void look_at(noh_stage *s, noh_stage_kind *k, uint32_t index)
     noh_character *ch = noh_stage_character(k, noh_stage_index(k, a));
     noh_lod_settings settings = s->desc.lod;
     noh_place place;
-    float scale = 0.0f, asked;
+    float world[12], scale = 0.0f, asked;
     noh_stage_shown_place(s, a, &place);
-    shown->views = look_from(s, index, &place, &scale);
+    shown->views = look_from(s, index, k, &place, world, &scale);
     a->on_its_way = 0;
     shown->due = NOH_DUE_NOT;
     shown->updates = 0;
@@ -105,6 +107,7 @@ static void look_at(noh_stage *s, noh_stage_kind *k, uint32_t index)
         noh_lod_cut(&ch->lod);
     }
     a->was_seen = 1;
+    if (!a->parent) memcpy(shown->world, world, sizeof world);
     if (a->look.pixels > 0.0f) settings.pixels = a->look.pixels;
     noh_character_set_behind(ch, s->head->behind_ticks);
     asked = a->look.posed || noh_stage_is_full(s, a) ? FULL_DETAIL : scale * place.scale;

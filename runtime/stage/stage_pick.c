@@ -63,8 +63,8 @@ static void pick_actor(noh_stage *s, noh_stage_kind *k, uint32_t index, ray *r, 
         surface.mesh = &level;
         surface.world = mesh->skinned ? NULL : mesh->node_world;
         if (mesh->skinned) {
-            noh_character_skin(ch, &mesh->skin, s->matrices);
-            surface.matrices = s->matrices;
+            noh_character_skin(ch, &mesh->skin, s->jobs[0].matrices);
+            surface.matrices = s->jobs[0].matrices;
         }
         if (noh_pick(&surface, origin, direction, r->distance, s->pick_scratch, s->pick_bytes, &own, NULL) == NOH_OK) {
             r->distance = own.distance;

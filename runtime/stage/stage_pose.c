@@ -1,5 +1,6 @@
-/* stage_pose.c: the second phase of a frame: poses of those that are due, floats of all that are shown. Each job takes
- * actors of its own, and samples through its own view of the clips. */
+/* stage_pose.c: the second phase of a frame: poses of those that are due, floats and palettes of all that are shown, of
+ * one actor after another, while its pose is in the nearest cache. Each job takes actors of its own, samples through
+ * its own view of the clips, and writes palettes where the order of drawing has put its actors. */
 #include <string.h>
 
 #include "stage/stage_internal.h"
@@ -27,10 +28,8 @@ static void take_floats(const noh_stage_kind *k, const noh_character *ch, float 
         const float *shown = noh_character_floats(ch, floats);
         if (shown != floats) memcpy(floats, shown, own * sizeof *floats);
     }
-    for (uint32_t f = 0; f < k->float_count; f++) {
-        if (f >= own) floats[f] = k->defaults[f];
-        if (k->sources[f] != f) floats[f] = floats[k->sources[f]];
-    }
+    memcpy(floats + own, k->defaults + own, (k->float_count - own) * sizeof *floats);
+    for (uint32_t f = k->first_renamed; f < k->float_count; f++) floats[f] = floats[k->sources[f]];
 }
 
 static void hold(const noh_stage_kind *k, uint32_t index, float *floats)
@@ -75,6 +74,7 @@ static void show(noh_stage *s, noh_stage_job_part *job, noh_stage_kind *k, uint3
     hold(k, i, floats);
     take_weights(s, k, &s->actors[index], ch, floats, k->weights + (size_t)i * k->weight_count);
     s->shown[index].frame = s->frame;
+    if (s->gpu && s->shown[index].views) s->desc.gpu->pose(s, k, i, job->matrices);
     error_pixels = noh_lod_error_pixels(&ch->lod);
     if (error_pixels > job->error_pixels && !s->actors[index].look.posed) job->error_pixels = error_pixels;
 }

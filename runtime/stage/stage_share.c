@@ -149,7 +149,7 @@ static void want(noh_stage *s, int now)
     for (uint32_t t = 0; t < s->todo_count; t++) {
         const uint32_t index = s->todo[t];
         const noh_stage_kind *k = noh_stage_kind_of(s, index);
-        if (k->bank && (s->shown[index].updates || !now)) {
+        if (k->bank && !s->kinds[k->bank_kind].holds_all && (s->shown[index].updates || !now)) {
             want_clips(s, k, index - k->first_actor, now);
         }
     }
@@ -166,12 +166,27 @@ static uint64_t decoded_so_far(const noh_stage *s)
     return sum;
 }
 
+/* Whether a bank still has something to decode. Once its cache holds all, it always will. */
+static int any_missing(noh_stage *s)
+{
+    int missing = 0;
+    for (uint32_t i = 0; i < s->desc.kind_count; i++) {
+        noh_stage_kind *k = &s->kinds[i];
+        if (!k->bank || k->bank_kind != i) continue;
+        noh_clip_cache_begin_frame(k->bank->cache);
+        if (!k->holds_all) k->holds_all = noh_clip_cache_holds_all(k->bank->cache);
+        missing |= !k->holds_all;
+    }
+    return missing;
+}
+
 /* First all that this frame needs, then a little of what the next ones will. */
 static void decode(noh_stage *s)
 {
     const uint64_t before = decoded_so_far(s);
-    for (uint32_t i = 0; i < s->desc.kind_count; i++) {
-        if (s->kinds[i].bank && s->kinds[i].bank_kind == i) noh_clip_cache_begin_frame(s->kinds[i].bank->cache);
+    s->stats.decoded = 0;
+    if (!any_missing(s)) {
+        return;
     }
     for (int now = 1; now >= 0; now--) {
         want(s, now);

@@ -342,19 +342,29 @@ static void upload_place(const noh_stage_mesh *mesh, const noh_gl_item *item, co
     }
 }
 
-/* All meshes of one actor, while its pose is at hand. Meshes of one skin take the same matrices. */
-static void upload_actor(noh_stage *s, const noh_stage_kind *k, const noh_gl_item *items, uint32_t index)
+/* Palettes of all meshes of one actor. Meshes of one skin take the same matrices. */
+static void pose(noh_stage *s, noh_stage_kind *k, uint32_t index, float *matrices)
 {
-    const noh_stage_shown *shown = &s->shown[k->first_actor + index];
-    const float *weights = k->weights + (size_t)index * k->weight_count;
+    const noh_gl_item *items = ((const noh_stage_gl *)s->gpu)->kinds[k - s->kinds].items;
+    noh_stage_shown *shown = &s->shown[k->first_actor + index];
     const noh_skin_header *ready = NULL;
     for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
         const noh_stage_mesh *mesh = &k->meshes[m];
-        upload_place(mesh, &items[m], shown, noh_gl_tint_of(&k->actors[index]), weights + mesh->first_weight);
         if (!mesh->skinned) continue;
-        if (mesh->skin.header != ready) noh_character_skin(noh_stage_character(k, index), &mesh->skin, s->matrices);
+        if (mesh->skin.header != ready) noh_character_skin(noh_stage_character(k, index), &mesh->skin, matrices);
         ready = mesh->skin.header;
-        noh_gl_skin_set_matrices(items[m].skin, shown->place, s->matrices);
+        if (noh_gl_skin_write_matrices(items[m].skin, shown->place, matrices)) shown->updates |= NOH_STAGE_MOVED;
+    }
+}
+
+static void upload_actor(const noh_stage *s, const noh_stage_kind *k, const noh_gl_item *items, uint32_t index)
+{
+    const noh_stage_shown *shown = &s->shown[k->first_actor + index];
+    const float *weights = k->weights + (size_t)index * k->weight_count;
+    for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
+        const noh_stage_mesh *mesh = &k->meshes[m];
+        upload_place(mesh, &items[m], shown, noh_gl_tint_of(&k->actors[index]), weights + mesh->first_weight);
+        if (mesh->skinned && (shown->updates & NOH_STAGE_MOVED)) noh_gl_skin_touch(items[m].skin, shown->place);
     }
 }
 
@@ -418,7 +428,7 @@ noh_result noh_actor_on_gl(noh_stage *stage, noh_actor actor, uint32_t index, no
     return NOH_OK;
 }
 
-const noh_stage_gpu noh_stage_on_gl = { measure_stage, list_parts, init, destroy, restore, upload };
+const noh_stage_gpu noh_stage_on_gl = { measure_stage, list_parts, init, destroy, restore, pose, upload };
 
 /* ---- shaders of a game's own ---- */
 

@@ -794,6 +794,14 @@ static void only_changes_are_sent(void **state)
     noh_gl_skin_update(skin);
     expect_sent(1, 16u * 3u,
                 16u * noh_gl_palette_row(&binding, &m.meshes[0], 1)); /* rows 3 to 5, and to the next's 0 to 2 */
+    assert_int_equal(noh_gl_skin_write_matrices(skin, 0, matrices[0]), 0);
+    matrices[1][3] = 8.0f;
+    assert_int_equal(noh_gl_skin_write_matrices(skin, 0, matrices[0]), 1);
+    noh_gl_skin_update(skin);
+    expect_sent(0, 0, 0); /* not before it is touched */
+    noh_gl_skin_touch(skin, 0);
+    noh_gl_skin_update(skin);
+    expect_sent(1, 16u * binding.first, 16u * binding.stride);
     noh_gl_skin_delete(skin);
     free(memory);
 

@@ -338,6 +338,27 @@ static void work_is_counted(void **state)
     free(set);
 }
 
+/* Once all is decoded nothing is wanted any more; a cache without room for all never gets there. */
+static void a_cache_says_when_it_holds_all(void **state)
+{
+    (void)state;
+    for (uint32_t segments = 3; segments <= 32768; segments += 32765) {
+        noh_clip_bank_desc desc = desc_of();
+        noh_clip_bank *set;
+        desc.cached_segment_count = segments;
+        set = test_clip_bank(&desc);
+        for (uint32_t clip = 0; clip < set->clips.clip_count; clip++) {
+            const uint32_t all = noh_clip_cache_clip(set->cache, clip)->info.joint_count;
+            assert_int_equal(noh_clip_cache_holds_all(set->cache), 0);
+            noh_clip_cache_begin_frame(set->cache);
+            (void)noh_clip_cache_want_frames(set->cache, clip, 0, 0xffffffffu, all);
+            (void)noh_clip_cache_work(set->cache, UINT32_MAX);
+        }
+        assert_int_equal(noh_clip_cache_holds_all(set->cache), segments > 3);
+        free(set);
+    }
+}
+
 /* ---- ends ---- */
 
 static void frames_past_the_end_are_clamped(void **state)
@@ -403,6 +424,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(wants_are_met_in_order),
     cmocka_unit_test(a_second_segment_spares_the_first),
     cmocka_unit_test(work_is_counted),
+    cmocka_unit_test(a_cache_says_when_it_holds_all),
     cmocka_unit_test(frames_past_the_end_are_clamped),
     cmocka_unit_test(memory_and_descs_are_checked),
 };

@@ -213,9 +213,9 @@ static void hand_over(by_hand *h, noh_character *ch, const noh_stage_shown *at, 
             (void)noh_gl_skin_set_place(item->skin, at->place, placed, moved ? &binding : NULL, NULL);
         }
         if (mesh->skinned) {
-            if (mesh->skin.header != ready) noh_character_skin(ch, &mesh->skin, h->of->stage->matrices);
+            if (mesh->skin.header != ready) noh_character_skin(ch, &mesh->skin, h->of->stage->jobs[0].matrices);
             ready = mesh->skin.header;
-            noh_gl_skin_set_matrices(item->skin, at->place, h->of->stage->matrices);
+            noh_gl_skin_set_matrices(item->skin, at->place, h->of->stage->jobs[0].matrices);
         }
     }
 }
