@@ -37,6 +37,8 @@ libosmesa6:a second GL
 ?clang:a second compiler
 ?cmake:using the installed library
 ?gcc-12-multilib:32 bits
+?libespeak-ng1:noh speak
+?espeak-ng-data:noh speak
 binutils:the check of the archive'"'"'s symbols'
 packages_fuzz='clang:libFuzzer
 libclang-rt-dev:libFuzzer and the sanitizers'

@@ -1,0 +1,77 @@
+#!/bin/sh
+# noh speak: phones in order and to the sample, lips that meet, a clip that plays on a face beside others.
+. "$(dirname "$0")/lib.sh"
+
+noh speak
+expect 2 'no text is a usage error'
+noh speak 'Hello' -o "$work/line.noh"
+expect 2 'a pack wants a face'
+says '--face'
+noh speak 'Hello' --wav
+expect 2 'an option without its value'
+
+noh speak 'Papa bought me five boats.' --json
+if grep -q 'eSpeak NG is not here' "$work/err"; then
+    expect 1 'without eSpeak NG it is an error that says what to install'
+    says 'espeak-ng'
+    skip 'noh speak' 'eSpeak NG is not installed'
+    finish
+fi
+expect 0 'a sentence is said'
+cp "$work/out" "$work/speech.json"
+if [ -n "$json" ]; then
+    check 'the source and the phones' sh -c 'cat "$1"' - "$work/speech.json"
+    for expression in 'j.source === "text" && j.latency_ms === 0 && j.seconds > 1' \
+        'j.phones[0].viseme === "PP" && j.phones[2].viseme === "PP" && j.phones[1].viseme === "aa"' \
+        'j.phones[0].end_s === j.phones[1].start_s && j.phones[1].start_s > j.phones[0].start_s' \
+        'j.frames.rate_hz === 100 && j.frames.viseme[0] === "sil"'; do
+        if $json "$expression" <"$work/speech.json"; then ok "$expression"; else not_ok "$expression"; fi
+    done
+fi
+# p, b, p, b, b, m and so on: at the middle of each the strongest shape is that of shut lips, and the mouth is not open
+if command -v python3 >/dev/null 2>&1; then
+    check 'lips meet for every p, b and m' python3 -c '
+import json, sys
+j = json.load(open(sys.argv[1]))
+shut = [p for p in j["phones"] if p["viseme"] == "PP"]
+assert len(shut) >= 4, len(shut)
+for p in shut:
+    k = round(100 * (p["start_s"] + p["end_s"]) / 2)
+    assert j["frames"]["viseme"][k] == "PP", p
+    assert j["frames"]["open"][k] < 0.05, (p, j["frames"]["open"][k])
+assert len(j["frames"]["viseme"]) == len(j["frames"]["open"]) == len(j["frames"]["round"])
+# starts are samples of 22,050 Hz
+for p in j["phones"]:
+    assert abs(p["start_s"] * 22050 - round(p["start_s"] * 22050)) < 1e-3, p
+' "$work/speech.json"
+fi
+
+noh speak 'Papa bought me five boats.' --face "$build/mask.noh" -o "$work/line.noh" --wav "$work/line.wav"
+expect 0 'a clip for the mask'
+check 'the sound is a RIFF file' sh -c 'test "$(head -c 4 "$1")" = RIFF && test "$(wc -c <"$1")" -gt 40000' - "$work/line.wav"
+noh info "$work/line.noh"
+check 'one clip, a key for each word' grep -q "clip 'speech': .* 57 floats, .* 5 callback keys" "$work/out"
+cp "$work/line.noh" "$work/first.noh"
+noh speak 'Papa bought me five boats.' --face "$build/mask.noh" -o "$work/line.noh"
+check 'the same bytes every time' cmp "$work/line.noh" "$work/first.noh"
+noh render "$build/mask.noh" --size 64x64 -o "$work/rest.png"
+noh render "$build/mask.noh" --size 64x64 -o "$work/open.png" --anim "$work/line.noh" --clip speech --time 0.15
+expect 0 'it plays on the mask'
+check 'and moves it' sh -c '! cmp -s "$1" "$2"' - "$work/rest.png" "$work/open.png"
+
+noh speak 'Guten Morgen.' --lang de
+expect 0 'in German'
+noh speak 'Hello' --lang no-such-language
+expect 1 'an unknown language'
+says 'no-such-language'
+noh speak '...'
+expect 1 'nothing to say'
+noh speak 'Hello' --face "$work/speech.json" -o "$work/other.noh"
+expect 1 'a face that is no pack'
+check 'leaves nothing behind' sh -c '! test -e "$1"' - "$work/other.noh"
+if [ -f "$build/demo/arm.noh" ]; then
+    noh speak 'Hello' --face "$build/demo/arm.noh" -o "$work/other.noh"
+    expect 1 'a pack without a mouth'
+    says 'no targets that shape a mouth'
+fi
+finish

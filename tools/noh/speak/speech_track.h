@@ -1,0 +1,28 @@
+/* speech_track.h: what is said, as mouth shapes over time, and as a clip of morph weights for the face of a pack. */
+#ifndef NOH_NOH_SPEAK_SPEECH_TRACK_H
+#define NOH_NOH_SPEAK_SPEECH_TRACK_H
+
+#include "convert/base/byte_buffer.h"
+#include "file/pack_file.h"
+#include "synthesis.h"
+
+typedef struct speech_track {
+    noh_speech speech;
+    noh_phone *phones;
+    double seconds;
+} speech_track;
+
+/* Prints an error and returns an exit code; 0 on success: as all here. */
+int speech_track_make(const synthesis *said, speech_track *out);
+void speech_track_free(speech_track *t);
+
+/* A pack with one clip of weights, at 60 frames a second, for every node of `face` with mouth shapes, and callback keys
+ * where words begin. text: what was said, whose words name the keys */
+int speech_track_pack(const speech_track *t, const synthesis *said, const char *text, const pack_file *face,
+                      const char *name, byte_buffer *out);
+
+const char *viseme_name(uint32_t viseme);
+float viseme_open(uint32_t viseme);  /* 0..1 how far the mouth opens */
+float viseme_round(uint32_t viseme); /* 0..1 how rounded the lips are */
+
+#endif
