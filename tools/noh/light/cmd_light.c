@@ -10,7 +10,7 @@
 #include "file/pack_file.h"
 #include "light_measure.h"
 #include "light_pose.h"
-#include "scene/scene.h"
+#include "draw/figure.h"
 
 #define RAYS_MIN 64.0
 #define RAYS_MAX 65536.0
@@ -123,11 +123,12 @@ static int measure_mesh(light_measure *m, const light_args *a, const noh_pack *p
 /* Every --weight is NAME=V of a target that some mesh has. */
 static int check_weights(const light_args *a, const pack_file *file)
 {
-    scene s;
-    int status = scene_init(&s, file);
+    const figure_desc desc = { .file = file, .held_float_count = (uint32_t)a->weights.count };
+    figure f;
+    int status = figure_open(&f, &desc, NULL);
     if (!status) {
-        status = scene_set_weights(&s, file, &a->weights);
-        scene_free(&s);
+        status = figure_hold_options(&f, &a->weights);
+        figure_close(&f);
     }
     return status;
 }

@@ -163,16 +163,6 @@ static int fail_unknown_target(const scene *s, const pack_file *file, const char
     return status;
 }
 
-int scene_check_target(const scene *s, const pack_file *file, const char *name)
-{
-    for (uint32_t m = 0; m < file->pack.mesh_count; m++) {
-        if (noh_mesh_find_target(&s->meshes[m], name) < s->meshes[m].header->target_count) {
-            return 0;
-        }
-    }
-    return fail_unknown_target(s, file, name);
-}
-
 static int set_weight(scene *s, const pack_file *file, const char *assignment)
 {
     const char *equals = strrchr(assignment, '=');

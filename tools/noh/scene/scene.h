@@ -2,7 +2,6 @@
  *
  *   scene.c         nodes, meshes, LOD levels, weights
  *   scene_play.c    clips
- *   scene_pair.c    two clips at once
  *   scene_deform.c  vertices on the CPU */
 #ifndef NOH_NOH_SCENE_SCENE_H
 #define NOH_NOH_SCENE_SCENE_H
@@ -72,21 +71,6 @@ int scene_set_clips(scene *s, const pack_file *file, const option_list *names, d
 int scene_reset_player(scene_player *p);
 void scene_pose_player(scene *s, scene_player *p);
 
-typedef enum scene_mix { SCENE_MIX_BLEND, SCENE_MIX_FADE, SCENE_MIX_INERTIA } scene_mix;
-
-/* Two clips of one skeleton at once. */
-typedef struct scene_pair {
-    const char *from, *to;
-    scene_mix mix;
-    double weight; /* BLEND: of `to`, 0..1 */
-    double lead_s; /* FADE, INERTIA: how long `from` plays alone */
-    double over_s; /* and how long the transition takes */
-} scene_pair;
-
-/* time: the phase of both, 0..1, of a blend; else seconds from the start of `from`. */
-int scene_set_pair(scene *s, const pack_file *file, const scene_pair *pair, double time);
-/* A clip's length; an error likewise. */
-int scene_clip_seconds(scene *s, const pack_file *file, const char *clip_name, double *seconds);
 /* The palette of a skin in the scene's pose: matrices[the skin's joint_count][12]. */
 void scene_skin_matrices(const scene *s, const noh_skin *skin, float *matrices);
 /* The first `count` vertices of an item, morphed and skinned on the CPU, before its node's transform (scene_world).
@@ -94,8 +78,6 @@ void scene_skin_matrices(const scene *s, const noh_skin *skin, float *matrices);
 int scene_deform(const scene *s, uint32_t item, uint32_t count, noh_vertex *vertices);
 /* NAME=VALUE, for every mesh with such a target; an unknown name is an error that suggests the nearest. */
 int scene_set_weights(scene *s, const pack_file *file, const option_list *assignments);
-/* 0 if some mesh has the target; else prints an error that suggests the nearest. */
-int scene_check_target(const scene *s, const pack_file *file, const char *name);
 /* "no clip named 'wlak' (did you mean 'walk'?)"; returns an exit code. */
 int scene_fail_unknown(const pack_file *file, const char *kind, const char *name, const char *const *names,
                        size_t count);

@@ -288,16 +288,3 @@ int scene_set_clips(scene *s, const pack_file *file, const option_list *names, d
     }
     return status;
 }
-
-int scene_clip_seconds(scene *s, const pack_file *file, const char *clip_name, double *seconds)
-{
-    int status = scene_open_players(s, file, 1);
-    for (uint32_t i = 0; i < s->player_count && !status; i++) {
-        uint32_t clip;
-        if (has_clip(&s->players[i], clip_name, &clip)) {
-            *seconds = (double)s->players[i].bank->clips.clips[clip].duration_ticks / (double)NOH_TICKS_PER_SECOND;
-            return 0;
-        }
-    }
-    return status ? status : fail_clip(s, file, clip_name);
-}
