@@ -4,8 +4,10 @@
 
 #include "base/arena.h"
 
-#define NOT_ASKED 0xffu
-#define STAYS 1.25f /* factor on the priority of an instance that keeps its slot */
+#define NOT_ASKED 0xffu /* in place.next: it did not ask, */
+#define LEFT_OUT 0xfeu  /* is past shown_max, */
+#define RESTS 0xfdu     /* or finds no slot */
+#define STAYS 1.25f     /* factor on the priority of an instance that keeps its slot */
 
 typedef struct pool {
     uint32_t level, slot_count;
@@ -19,11 +21,11 @@ typedef struct place {
     uint8_t held;  /* 1: it holds a slot */
     uint8_t pool;  /* of that slot */
     uint8_t level; /* asked for */
-    uint8_t next;  /* the pool that it is given in this frame, or NOT_ASKED */
+    uint8_t next;  /* the pool that it is given in this frame, or one of the above */
 } place;
 
 struct noh_lod_pools {
-    uint32_t instance_count, pool_count;
+    uint32_t instance_count, shown_max, pool_count;
     pool pools[NOH_LOD_POOLS_MAX];
     noh_lod_pools_stats stats;
     /* byte offsets from here, so that a copy of the block is the same pools */
@@ -52,7 +54,6 @@ static const char *bad_field(const noh_lod_pools_desc *d, uint32_t *slots)
         if (d->slot_counts[i] == 0) return "slot_counts of LOD pools: a pool without slots";
         sum += d->slot_counts[i];
     }
-    if (sum < d->instance_count) return "slot_counts of LOD pools: fewer slots than instances";
     if (sum > NOH_LOD_POOL_SLOTS_MAX) return "slot_counts of LOD pools: more than NOH_LOD_POOL_SLOTS_MAX in all";
     *slots = (uint32_t)sum;
     return NULL;
@@ -132,6 +133,7 @@ noh_result noh_lod_pools_init(void *memory, size_t bytes, const noh_lod_pools_de
     memset(p, 0, noh_lod_pools_size(desc));
     *p = layout_of(desc->instance_count, slots);
     p->instance_count = desc->instance_count;
+    p->shown_max = desc->shown_max ? desc->shown_max : desc->instance_count;
     p->pool_count = desc->pool_count;
     fill_pools(p, desc);
     noh_lod_pools_begin(p);
@@ -143,9 +145,9 @@ noh_result noh_lod_pools_init(void *memory, size_t bytes, const noh_lod_pools_de
 
 static int same_desc(const noh_lod_pools *a, const noh_lod_pools *b)
 {
-    int same = a->instance_count == b->instance_count && a->pool_count == b->pool_count && a->bytes == b->bytes &&
-               a->keys_offset == b->keys_offset && a->places_offset == b->places_offset &&
-               a->free_offset == b->free_offset;
+    int same = a->instance_count == b->instance_count && a->shown_max == b->shown_max &&
+               a->pool_count == b->pool_count && a->bytes == b->bytes && a->keys_offset == b->keys_offset &&
+               a->places_offset == b->places_offset && a->free_offset == b->free_offset;
     for (uint32_t i = 0; i < b->pool_count && same; i++) {
         same = a->pools[i].level == b->pools[i].level && a->pools[i].slot_count == b->pools[i].slot_count &&
                a->pools[i].first == b->pools[i].first;
@@ -194,6 +196,7 @@ void noh_lod_pools_begin(noh_lod_pools *p)
         place_of(p, i)->next = NOT_ASKED;
     }
     p->stats.asked = p->stats.coarser = p->stats.moved = 0;
+    p->stats.resting = p->stats.waiting = p->stats.left_out = 0;
 }
 
 /* A request as one number that sorts: the priority's bits above, since floats that are not negative have the order of
@@ -292,6 +295,9 @@ static uint32_t count_fitting(const noh_lod_pools *p, uint32_t level)
 static int all_fit(const noh_lod_pools *p)
 {
     uint32_t by_level[NOH_LOD_LEVELS_MAX] = { 0 }, by_pool[NOH_LOD_POOLS_MAX] = { 0 };
+    if (p->stats.asked > p->shown_max) {
+        return 0;
+    }
     for (uint32_t i = 0; i < p->stats.asked; i++) {
         by_level[place_of(p, instance_of(keys_of(p)[i]))->level]++;
     }
@@ -304,8 +310,7 @@ static int all_fit(const noh_lod_pools *p)
     return 1;
 }
 
-/* The coarsest pool that holds the level and has room, else the next coarser one that has. One of them has, for there
- * are at least as many slots as instances. */
+/* The coarsest pool that holds the level and has room, else the next coarser one that has; RESTS where none has. */
 static uint32_t choose_pool(const noh_lod_pools *p, uint32_t level)
 {
     const uint32_t *used = p->stats.used, fit = count_fitting(p, level);
@@ -315,10 +320,17 @@ static uint32_t choose_pool(const noh_lod_pools *p, uint32_t level)
             return i;
         }
     }
-    for (i = fit; used[i] == p->pools[i].slot_count; i++) {
-        NOH_ASSERT(i + 1u < p->pool_count);
+    for (i = fit; i < p->pool_count; i++) {
+        if (used[i] < p->pools[i].slot_count) {
+            return i;
+        }
     }
-    return i;
+    return RESTS;
+}
+
+static int has_pool(const place *at)
+{
+    return at->next < NOH_LOD_POOLS_MAX;
 }
 
 /* Sharing has three passes, so that a slot which one instance gives up can go to another in the same frame. The first
@@ -329,20 +341,39 @@ static void choose_pools(noh_lod_pools *p)
     memset(p->stats.used, 0, sizeof p->stats.used);
     for (uint32_t i = 0; i < p->stats.asked; i++) {
         place *at = place_of(p, instance_of(keys_of(p)[i]));
-        at->next = (uint8_t)choose_pool(p, at->level);
-        p->stats.used[at->next]++;
-        p->stats.coarser += p->pools[at->next].level > at->level;
+        at->next = (uint8_t)(i < p->shown_max ? choose_pool(p, at->level) : LEFT_OUT);
+        p->stats.left_out += at->next == LEFT_OUT;
+        p->stats.resting += at->next == RESTS;
+        if (has_pool(at)) {
+            p->stats.used[at->next]++;
+            p->stats.coarser += p->pools[at->next].level > at->level;
+        }
     }
 }
 
-static void release(noh_lod_pools *p)
+static void give_up(noh_lod_pools *p, place *at)
+{
+    pool *from = &p->pools[at->pool];
+    free_of(p)[from->first + from->free_count++] = at->slot;
+    at->held = 0;
+}
+
+static void take_from(noh_lod_pools *p, place *at, uint32_t which)
+{
+    pool *to = &p->pools[which];
+    at->slot = free_of(p)[to->first + --to->free_count];
+    at->pool = (uint8_t)which;
+    at->held = 1;
+    p->stats.moved++;
+}
+
+/* stays 1: only of instances that are given no pool at all. */
+static void release(noh_lod_pools *p, int stays)
 {
     for (uint32_t i = 0; i < p->instance_count; i++) {
         place *at = place_of(p, i);
-        if (at->held && at->next != at->pool) {
-            pool *from = &p->pools[at->pool];
-            free_of(p)[from->first + from->free_count++] = at->slot;
-            at->held = 0;
+        if (at->held && at->next != at->pool && !(stays && has_pool(at))) {
+            give_up(p, at);
         }
     }
 }
@@ -351,30 +382,163 @@ static void take(noh_lod_pools *p)
 {
     for (uint32_t i = 0; i < p->stats.asked; i++) {
         place *at = place_of(p, instance_of(keys_of(p)[i]));
-        if (!at->held) {
-            pool *to = &p->pools[at->next];
-            at->slot = free_of(p)[to->first + --to->free_count];
-            at->pool = at->next;
-            at->held = 1;
-            p->stats.moved++;
+        if (!at->held && has_pool(at)) {
+            take_from(p, at, at->next);
         }
     }
 }
+
+/* ---- a bound on moves ---- */
+
+static int is_due(const place *at)
+{
+    return has_pool(at) && !(at->held && at->pool == at->next);
+}
+
+static uint32_t count_due(const noh_lod_pools *p)
+{
+    uint32_t due = 0;
+    for (uint32_t i = 0; i < p->stats.asked; i++) {
+        due += (uint32_t)is_due(place_of(p, instance_of(keys_of(p)[i])));
+    }
+    return due;
+}
+
+/* The first that is due by priority; without_slot 1: of those that hold none. NULL: there is none. */
+static place *first_due(const noh_lod_pools *p, int without_slot)
+{
+    for (uint32_t i = 0; i < p->stats.asked; i++) {
+        place *at = place_of(p, instance_of(keys_of(p)[i]));
+        if (is_due(at) && !(without_slot && at->held)) return at;
+    }
+    return NULL;
+}
+
+/* Whoever is due a pool with a free slot gets it, by priority; what it leaves is free for the next. Returns the moves.
+ */
+static uint32_t move_where_free(noh_lod_pools *p, uint32_t moves)
+{
+    uint32_t made = 0;
+    for (uint32_t i = 0; i < p->stats.asked && made < moves; i++) {
+        place *at = place_of(p, instance_of(keys_of(p)[i]));
+        if (is_due(at) && p->pools[at->next].free_count) {
+            if (at->held) give_up(p, at);
+            take_from(p, at, at->next);
+            made++;
+        }
+    }
+    return made;
+}
+
+/* The holder of lowest priority that is due another pool than the one it is in. There is one in a pool that is full
+ * while someone else is due it: no more are due a pool than it has slots. */
+static place *last_due_in(const noh_lod_pools *p, uint32_t which)
+{
+    for (uint32_t i = p->stats.asked; i-- > 0;) {
+        place *at = place_of(p, instance_of(keys_of(p)[i]));
+        if (at->held && at->pool == which && at->next != which) return at;
+    }
+    return NULL;
+}
+
+/* The coarsest pool with a free slot: there is one while someone who is due holds none. */
+static uint32_t any_free(const noh_lod_pools *p)
+{
+    uint32_t which = p->pool_count;
+    while (which-- > 0 && !p->pools[which].free_count) {}
+    return which;
+}
+
+/* The first that is due takes the slot of one that is in its pool and due elsewhere, who gets its slot, or a free one.
+ */
+static uint32_t exchange(noh_lod_pools *p)
+{
+    place *a = first_due(p, 0), *b = a ? last_due_in(p, a->next) : NULL;
+    uint32_t slot;
+    uint8_t which;
+    if (!b) {
+        return 0;
+    }
+    slot = b->slot;
+    which = b->pool;
+    if (a->held) {
+        b->slot = a->slot;
+        b->pool = a->pool;
+        p->stats.moved++;
+    } else {
+        take_from(p, b, any_free(p));
+        a->held = 1;
+    }
+    a->slot = slot;
+    a->pool = which;
+    p->stats.moved++;
+    return 2;
+}
+
+/* With one move left: a slot for who has none, be it another than the one that is due. */
+static uint32_t take_any(noh_lod_pools *p)
+{
+    place *at = first_due(p, 1);
+    if (!at) {
+        return 0;
+    }
+    take_from(p, at, any_free(p));
+    return 1;
+}
+
+/* Who still waits keeps what it has. */
+static void settle(noh_lod_pools *p)
+{
+    memset(p->stats.used, 0, sizeof p->stats.used);
+    p->stats.coarser = 0;
+    for (uint32_t i = 0; i < p->stats.asked; i++) {
+        place *at = place_of(p, instance_of(keys_of(p)[i]));
+        if (is_due(at)) {
+            at->next = (uint8_t)(at->held ? at->pool : RESTS);
+            p->stats.waiting++;
+            p->stats.resting += !at->held;
+        }
+        if (has_pool(at)) {
+            p->stats.used[at->pool]++;
+            p->stats.coarser += p->pools[at->pool].level > at->level;
+        }
+    }
+}
+
+static void share_bounded(noh_lod_pools *p, uint32_t moves)
+{
+    uint32_t made = 1;
+    release(p, 1);
+    while (moves && made) {
+        made = move_where_free(p, moves);
+        if (!made) made = moves > 1u ? exchange(p) : take_any(p);
+        moves -= made;
+    }
+    settle(p);
+}
+
+/* ---- all of it ---- */
 
 static void mark(uint32_t *high_water, uint32_t value)
 {
     *high_water = value > *high_water ? value : *high_water;
 }
 
-void noh_lod_pools_share(noh_lod_pools *p)
+void noh_lod_pools_share_some(noh_lod_pools *p, uint32_t moves)
 {
+    int sorted;
     NOH_ASSERT(p);
-    if (!all_fit(p)) {
-        sort_keys(keys_of(p), p->stats.asked);
-    }
+    moves = moves > 2u ? moves : 2u;
+    sorted = !all_fit(p);
+    if (sorted) sort_keys(keys_of(p), p->stats.asked);
     choose_pools(p);
-    release(p);
-    take(p);
+    if (count_due(p) > moves) {
+        if (!sorted) sort_keys(keys_of(p), p->stats.asked);
+        share_bounded(p, moves);
+    } else {
+        release(p, 0);
+        take(p);
+    }
     mark(&p->stats.coarser_high_water, p->stats.coarser);
     for (uint32_t i = 0; i < p->pool_count; i++) {
         mark(&p->stats.used_high_water[i], p->stats.used[i]);
@@ -382,16 +546,26 @@ void noh_lod_pools_share(noh_lod_pools *p)
     NOH_VALIDATE(is_consistent(p));
 }
 
+void noh_lod_pools_share(noh_lod_pools *p)
+{
+    noh_lod_pools_share_some(p, UINT32_MAX);
+}
+
 /* ---- results ---- */
 
 noh_lod_slot noh_lod_pools_slot(const noh_lod_pools *p, uint32_t instance)
 {
     const place *at = place_of(p, instance);
-    noh_lod_slot s;
-    NOH_ASSERT(instance < p->instance_count && at->held && at->next == at->pool);
-    s.pool = at->pool;
-    s.slot = at->slot;
-    s.level = at->level > p->pools[at->pool].level ? at->level : p->pools[at->pool].level;
+    noh_lod_slot s = { NOH_NONE, 0, 0, 0 };
+    NOH_ASSERT(instance < p->instance_count && at->next != NOT_ASKED);
+    s.level = at->level;
+    s.left_out = at->next == LEFT_OUT;
+    if (has_pool(at)) {
+        NOH_ASSERT(at->held && at->next == at->pool);
+        s.pool = at->pool;
+        s.slot = at->slot;
+        s.level = at->level > p->pools[at->pool].level ? at->level : p->pools[at->pool].level;
+    }
     return s;
 }
 

@@ -22,7 +22,7 @@ static noh_result open_pools(noh_stage *s, uint32_t kind, void *memory, noh_erro
 {
     noh_stage_kind *k = &s->kinds[kind];
     uint32_t slots[NOH_LOD_LEVELS_MAX];
-    noh_lod_pools_desc desc = { k->desc.actor_count, 0, k->pool_levels, slots };
+    noh_lod_pools_desc desc = { k->desc.actor_count, 0, k->pool_levels, slots, k->desc.seen_max };
     desc.pool_count = k->pool_count = noh_stage_pools(k->plan, k->pool_levels, slots);
     return noh_lod_pools_init(memory, noh_lod_pools_size(&desc), &desc, &k->pools, error);
 }

@@ -81,6 +81,8 @@ typedef struct noh_kind_desc {
     uint32_t skeleton;     /* in `mesh`; default 0; NOH_NONE: only what no joint moves. A node's mesh that another
                             * skeleton moves is left out */
     uint32_t actor_count;  /* of this kind at one time; required */
+    uint32_t seen_max;     /* of these, how many are drawn in one frame: slots and palettes are for so many, and
+                            * of more the farthest are left out (noh_stage_stats.left_out). Default (0) actor_count */
     uint32_t near_count;   /* of these, how many may be at the finest level at once, */
     uint32_t middle_count; /* and how many at the next one. Both 0: 16, or more by an even
                             * spread over 100 m; a bound takes some back */
@@ -120,6 +122,9 @@ typedef struct noh_stage_desc {
     uint32_t event_count;      /* callback keys that one step may deliver to noh_stage_events; default (0) 64 and one
                                 * for each actor */
     uint64_t update_budget_ns; /* of posing in a frame, by noh_cost_ns; default (0) no bound */
+    uint32_t slot_moves;       /* slots that may change hands in a frame, each of which is accumulated afresh: whoever
+                                * waits is drawn coarser, or without targets as long as it has no slot. 1 counts as 2;
+                                * default (0) no bound. A frame with a cut has none */
     int tangents;        /* 1: accumulators with a layer of tangents, for shaders of yours that read them morphed; the
                           * library's do not */
     int halves;          /* 1: 16-bit accumulators; -1: 32-bit ones, which are not given up either */
@@ -238,6 +243,9 @@ typedef struct noh_stage_stats {
     uint32_t actors, seen, updated, fading, events;
     uint32_t at_level[NOH_LOD_LEVELS_MAX]; /* of those that are seen */
     uint32_t coarser;                      /* actors that are drawn coarser than they asked for: too few slots */
+    uint32_t moved, waiting;               /* slots that changed hands; actors that wait for that (slot_moves) */
+    uint32_t resting;                      /* actors without a slot yet: drawn without targets */
+    uint32_t left_out;                     /* actors in view that are not drawn: seen_max is too small */
     uint64_t decoded;                      /* track-frames */
     uint64_t decoded_late;                 /* of these, those that a pose had to wait for: too few cached segments */
     uint32_t events_lost;                  /* since init: event_count is too small */

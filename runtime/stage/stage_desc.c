@@ -33,6 +33,7 @@ noh_kind_desc noh_stage_kind_desc(const noh_stage_desc *desc, uint32_t kind)
 {
     noh_kind_desc d = desc->kinds[kind];
     if (!d.name) d.name = "";
+    if (!d.seen_max) d.seen_max = d.actor_count;
     if (!d.layers) {
         d.layers = noh_stage_default_layers;
         d.layer_count = 3;
@@ -55,6 +56,7 @@ noh_stage_desc noh_stage_desc_filled(const noh_stage_desc *desc)
     if (!d.job_count) d.job_count = 1;
     if (!d.event_count) d.event_count = 64u + actors;
     if (!d.update_budget_ns) d.update_budget_ns = UINT64_MAX;
+    if (!d.slot_moves) d.slot_moves = UINT32_MAX;
     if (!(d.lod.pixels > 0.0f)) d.lod.pixels = 1.0f;
     return d;
 }
@@ -164,6 +166,7 @@ static const char *bad_kind(const noh_stage_desc *desc, uint32_t number)
     if (!d->mesh) return "mesh of a kind is NULL";
     if (d->actor_count == 0 || d->actor_count > NOH_STAGE_ACTORS_MAX)
         return "actor_count of a kind is not in 1..NOH_STAGE_ACTORS_MAX";
+    if (d->seen_max > d->actor_count) return "seen_max of a kind is above its actor_count";
     if (d->layer_count > NOH_LAYERS_MAX) return "layer_count of a kind is above NOH_LAYERS_MAX";
     if (!d->layers && d->layer_count) return "layers of a kind is NULL, and layer_count is not 0";
     for (uint32_t i = 0; i < d->layer_count; i++) {

@@ -207,12 +207,12 @@ static uint32_t count_within(const noh_stage_desc *desc, uint32_t actors, float 
     return share < 1.0f && count < (float)actors ? (uint32_t)count : actors;
 }
 
-/* Each level from the finest on gets slots until every actor has one; the coarsest takes the rest. */
+/* Each level from the finest on gets slots until every actor that is seen has one; the coarsest takes the rest. */
 void noh_stage_share_slots(const noh_stage_desc *desc, uint32_t kind, noh_kind_plan *plan)
 {
     const noh_kind_desc d = noh_stage_kind_desc(desc, kind);
     const int promised = d.near_count || d.middle_count;
-    uint32_t left = d.actor_count, taken = 0;
+    uint32_t left = d.seen_max, taken = 0;
     for (uint32_t l = 0; l < plan->level_count; l++) {
         noh_actor_level *level = &plan->levels[l];
         uint32_t wanted = 0;

@@ -20,7 +20,15 @@ static void ask(noh_stage *s, noh_stage_kind *k)
             noh_lod_pools_ask(k->pools, i, noh_lod_finest(&noh_stage_character(k, i)->lod), shown->scale);
         }
     }
-    noh_lod_pools_share(k->pools);
+    noh_lod_pools_share_some(k->pools, s->cut ? UINT32_MAX : s->desc.slot_moves);
+}
+
+/* More are in view than may be drawn: as if it were out of view. */
+static void leave_out(noh_stage *s, noh_stage_shown *shown, uint32_t index)
+{
+    shown->views = 0;
+    s->actors[index].was_seen = 0;
+    if (!s->actors[index].look.posed) shown->due = NOH_DUE_NOT;
 }
 
 /* A pool may be short of fine slots: the actor is then drawn no finer than its slot, and chooses no finer from now on.
@@ -30,6 +38,10 @@ static void take_slot(noh_stage *s, noh_stage_kind *k, uint32_t i)
     noh_stage_shown *shown = &s->shown[k->first_actor + i];
     noh_lod *d = &noh_stage_character(k, i)->lod;
     shown->slot = noh_lod_pools_slot(k->pools, i);
+    if (shown->slot.left_out) {
+        leave_out(s, shown, k->first_actor + i);
+        return;
+    }
     shown->level = (uint8_t)(d->mesh > shown->slot.level ? d->mesh : shown->slot.level);
     shown->level_before = (uint8_t)(d->mesh_before > shown->slot.level ? d->mesh_before : shown->slot.level);
     noh_lod_set_limit(d, shown->slot.level);
@@ -201,10 +213,20 @@ static void decode(noh_stage *s)
 
 /* ---- all of it ---- */
 
+static void add_slots(noh_stage_stats *stats, const noh_lod_pools_stats *from)
+{
+    stats->coarser += from->coarser;
+    stats->moved += from->moved;
+    stats->waiting += from->waiting;
+    stats->resting += from->resting;
+    stats->left_out += from->left_out;
+}
+
 static void count_levels(noh_stage *s)
 {
     noh_stage_stats *stats = &s->stats;
     stats->actors = stats->seen = stats->fading = stats->coarser = 0;
+    stats->moved = stats->waiting = stats->resting = stats->left_out = 0;
     memset(stats->at_level, 0, sizeof stats->at_level);
     for (uint32_t i = 0; i < s->desc.kind_count; i++) {
         const noh_stage_kind *k = &s->kinds[i];
@@ -212,7 +234,7 @@ static void count_levels(noh_stage *s)
         stats->actors += s->head->kinds[i].count;
         stats->seen += k->runs[runs + 1u];
         stats->fading += k->runs[runs + 1u] - k->runs[runs];
-        stats->coarser += noh_lod_pools_stats_of(k->pools)->coarser;
+        add_slots(stats, noh_lod_pools_stats_of(k->pools));
         for (uint32_t p = 0; p < k->runs[runs + 1u]; p++) {
             stats->at_level[s->shown[k->first_actor + k->order[p]].level]++;
         }

@@ -84,7 +84,7 @@ static noh_result visit_model(measure *m, noh_gl_site site, noh_gl_model *model,
 static noh_result visit_item(measure *m, noh_gl_site site, noh_gl_item *item, noh_error *error)
 {
     const noh_mesh mesh = noh_gl_site_mesh(m->desc, m->plan, site);
-    const uint32_t count = m->desc->kinds[site.kind].actor_count;
+    const uint32_t count = noh_stage_kind_desc(m->desc, site.kind).seen_max;
     const noh_gl_skin_desc d = { &mesh, 1, &count, NOH_PALETTE_TEXTURE };
     const size_t from = m->arena.used;
     noh_gl_skin_plan plan;
@@ -330,7 +330,7 @@ static void upload_place(const noh_stage_mesh *mesh, const noh_gl_item *item, co
     int moved = 0;
     memcpy(world, shown->world, sizeof world);
     if (!mesh->skinned && mesh->node_world) noh_matrix_multiply(shown->world, mesh->node_world, world);
-    if (item->model->morph) {
+    if (noh_gl_has_tile(item, shown)) {
         const uint32_t tile = noh_gl_item_tile(item, shown);
         moved = any_weight(weights, mesh->mesh.header->target_count);
         (void)noh_gl_morph_set_weights(item->model->morph, tile, weights, NULL);
@@ -421,8 +421,8 @@ noh_result noh_actor_on_gl(noh_stage *stage, noh_actor actor, uint32_t index, no
     item = &((const noh_stage_gl *)stage->gpu)->kinds[k - stage->kinds].items[index];
     memset(out, 0, sizeof *out);
     out->mesh = &item->model->mesh;
-    if (item->model->morph) out->morph = noh_gl_morph_binding_of(item->model->morph, noh_gl_item_tile(item, shown));
-    out->is_morphed = item->model->morph != NULL;
+    out->is_morphed = noh_gl_has_tile(item, shown);
+    if (out->is_morphed) out->morph = noh_gl_morph_binding_of(item->model->morph, noh_gl_item_tile(item, shown));
     out->is_skinned = k->meshes[index].skinned;
     if (out->is_skinned) out->skin = noh_gl_skin_binding_of(item->skin, shown->place);
     return NOH_OK;

@@ -42,11 +42,6 @@ static noh_gl_skin_binding skin_of(const noh_gl_item *item, uint32_t place, uint
     return binding;
 }
 
-static noh_gl_morph_binding morph_of(const noh_gl_item *item, const noh_stage_shown *shown)
-{
-    return noh_gl_morph_binding_of(item->model->morph, noh_gl_item_tile(item, shown));
-}
-
 static uint32_t mesh_level(const drawing *d, uint32_t mesh, uint32_t level)
 {
     return d->k->plan->levels[level].mesh_levels[mesh];
@@ -61,14 +56,15 @@ static void draw_alone(const drawing *d, uint32_t mesh, uint32_t place, uint32_t
     const noh_gl_lod lod = { mesh_level(d, mesh, level), from, to };
     const noh_character *ch = noh_stage_character(d->k, d->k->order[place]);
     const noh_gl_skin_binding skin = skin_of(item, place, noh_lod_influence_count(&ch->lod, &d->k->table));
+    const int is_morphed = noh_gl_has_tile(item, shown);
     noh_gl_morph_binding morph;
     float world[12];
     memcpy(world, shown->world, sizeof world);
     if (!m->skinned && m->node_world) noh_matrix_multiply(shown->world, m->node_world, world);
-    if (item->model->morph) morph = morph_of(item, shown);
+    if (is_morphed) morph = noh_gl_morph_binding_of(item->model->morph, noh_gl_item_tile(item, shown));
     noh_gl_draw_tint(d->renderer, noh_gl_tint_of(actor_at(d, place)));
-    noh_gl_draw_mesh(d->renderer, &item->model->mesh, world, item->model->morph ? &morph : NULL,
-                     m->skinned ? &skin : NULL, &lod, pictures_of(d, place), d->pass);
+    noh_gl_draw_mesh(d->renderer, &item->model->mesh, world, is_morphed ? &morph : NULL, m->skinned ? &skin : NULL,
+                     &lod, pictures_of(d, place), d->pass);
 }
 
 /* A fading actor: the new level and the old one, each with its share of the pixels. */
@@ -99,7 +95,10 @@ static void draw_together(const drawing *d, uint32_t mesh, uint32_t run, uint32_
         for (uint32_t i = 0; i < count; i++) draw_alone(d, mesh, first + i, run / caps, 0.0f, 1.0f);
         return;
     }
-    if (item->model->morph) morph = morph_of(item, shown_at(d, first));
+    if (item->model->morph) { /* of any tile: it says where the texture is */
+        const uint32_t tile = noh_gl_morph_instance(item->model->morph, item->first_pool, 0);
+        morph = noh_gl_morph_binding_of(item->model->morph, tile);
+    }
     noh_gl_draw_crowd(d->renderer, &item->model->mesh, item->model->morph ? &morph : NULL, &skin, count, &lod,
                       pictures_of(d, first), d->pass);
 }

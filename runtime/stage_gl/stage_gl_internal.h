@@ -21,6 +21,12 @@ typedef struct noh_gl_item {
     int mirrored; /* its node mirrors: a crowd cannot be drawn */
 } noh_gl_item;
 
+/* Whether an actor has a slot, and the mesh targets: 0: it is drawn without them. */
+static inline int noh_gl_has_tile(const noh_gl_item *item, const noh_stage_shown *shown)
+{
+    return item->model->morph && shown->slot.pool != NOH_NONE;
+}
+
 /* The instance of model->morph that an actor's slot is. */
 static inline uint32_t noh_gl_item_tile(const noh_gl_item *item, const noh_stage_shown *shown)
 {

@@ -3,6 +3,8 @@
 #include "support/stage_fixture.h"
 #include "support/gl_fixture.h"
 
+#include <math.h>
+
 #include "gpu/canvas.h"
 #include "null.h"
 
@@ -39,6 +41,14 @@ static void play_frames(cast *c, uint32_t first, uint32_t count)
         const noh_stage_view view = cast_view(f, 5.0f + 0.1f * (float)(f % 60u));
         assert_int_equal(noh_stage_frame(c->stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
     }
+}
+
+/* Fewer slots than actors, of which few change hands in a frame. */
+static void few_are_seen(cast *c)
+{
+    c->kinds[PUPPETS].seen_max = 3;
+    c->kinds[MASKS].seen_max = 4;
+    c->desc.slot_moves = 2;
 }
 
 /* ---- bytes ---- */
@@ -176,8 +186,7 @@ static void the_picture_is_that_of_the_parts(void **state)
     fixture_expect_no_errors();
 }
 
-/* After frames of its own, a state that is put back shows again what followed it, on the same stage and on another. */
-static void a_state_shows_the_same_picture_again(void **state)
+static void show_a_state_again(void (*change)(cast *))
 {
     static uint32_t first[PIXELS], again[PIXELS];
     noh_actor actors[CAST_ACTORS];
@@ -186,8 +195,8 @@ static void a_state_shows_the_same_picture_again(void **state)
     size_t bytes;
     canvas to;
     cast c, fork;
-    (void)state;
     cast_open(&c);
+    if (change) change(&c);
     open_on(&c, g);
     assert_int_equal(canvas_open(&to, g, WIDTH, HEIGHT), 0);
     cast_enter(&c, actors);
@@ -201,6 +210,7 @@ static void a_state_shows_the_same_picture_again(void **state)
     draw(&c, &to, again);
     assert_memory_equal(first, again, sizeof first);
     cast_open(&fork);
+    if (change) change(&fork);
     open_on(&fork, g);
     assert_int_equal(noh_stage_set_state(fork.stage, saved, bytes, NULL), NOH_OK);
     play_frames(&fork, 20, 25);
@@ -211,6 +221,15 @@ static void a_state_shows_the_same_picture_again(void **state)
     cast_close(&fork);
     cast_close(&c);
     fixture_expect_no_errors();
+}
+
+/* After frames of its own, a state that is put back shows again what followed it, on the same stage and on another;
+ * while actors wait for slots too. */
+static void a_state_shows_the_same_picture_again(void **state)
+{
+    (void)state;
+    show_a_state_again(NULL);
+    show_a_state_again(few_are_seen);
 }
 
 static const char vertex[] = "out vec3 v_normal;\n"
@@ -340,6 +359,7 @@ static void frames_make_nothing(void **state)
     memset(&g, 0, sizeof g);
     open_null(&g);
     cast_open(&c);
+    few_are_seen(&c);
     open_on(&c, &g);
     cast_enter(&c, actors);
     noh_null_count_anew(g.context);
@@ -367,6 +387,92 @@ static void frames_make_nothing(void **state)
     cast_close(&c);
     noh_null_report_of(g.context, &report);
     for (uint32_t i = 0; i < NOH_NULL_KINDS; i++) assert_true(report.live[i] <= 1);
+    gpu_close(&g);
+}
+
+#define CROWD 200u
+#define CROWD_SEEN 12u
+#define CROWD_MOVES 4u
+
+/* Masks in a square, of which few are seen at once. */
+static void open_crowd(cast *c, gpu *g, uint32_t seen_max)
+{
+    cast_open(c);
+    c->kinds[0] = c->kinds[MASKS];
+    c->desc.kind_count = 1;
+    c->kinds[0].actor_count = CROWD;
+    c->kinds[0].seen_max = seen_max;
+    c->kinds[0].near_count = 2;
+    c->kinds[0].middle_count = 4;
+    c->desc.slot_moves = CROWD_MOVES;
+    open_on(c, g);
+    for (uint32_t i = 0; i < CROWD; i++) {
+        const noh_place place = { { 1.5f * (float)(i % 20u) - 15.0f, 0.0f, 2.0f - 1.5f * (float)(i / 20u) },
+                                  { 0, 0, 0, 0 },
+                                  0.0f };
+        noh_actor actor;
+        assert_int_equal(noh_stage_spawn(c->stage, 0, &place, &actor, NULL), NOH_OK);
+        assert_int_equal(noh_actor_play(c->stage, actor, 1, "speak", NULL, NULL), NOH_OK);
+    }
+}
+
+/* Nobody who is left out stands nearer than the farthest who is drawn, but for the quarter that keeps equals from
+ * taking turns. */
+static void expect_the_nearest(const cast *c, const noh_stage_view *view)
+{
+    float farthest = 0.0f, nearest = 1e9f;
+    for (uint32_t i = 0; i < CROWD; i++) {
+        const noh_actor actor = noh_stage_actor_at(c->stage, i);
+        noh_place place;
+        float square = 0.0f, clip[4];
+        assert_int_equal(noh_actor_place(c->stage, actor, &place, NULL), NOH_OK);
+        for (int k = 0; k < 3; k++) square += (place.position[k] - view->eye[k]) * (place.position[k] - view->eye[k]);
+        for (int k = 0; k < 4; k++) {
+            const float *m = view->view_projection + k;
+            clip[k] = m[0] * place.position[0] + m[4] * place.position[1] + m[8] * place.position[2] + m[12];
+        }
+        if (noh_actor_floats(c->stage, actor)) {
+            if (square > farthest) farthest = square;
+        } else if (clip[3] > 1.0f && fabsf(clip[0]) < 0.9f * clip[3] && fabsf(clip[1]) < 0.9f * clip[3]) {
+            if (square < nearest) nearest = square; /* well inside the picture, and not drawn */
+        }
+    }
+    assert_true(sqrtf(farthest) < 1.35f * sqrtf(nearest) + 1.0f);
+}
+
+/* Slots and palettes for those that are seen at once; of more the nearest are drawn. However the camera moves, few
+ * slots change hands in a frame, and once it stands all have what they are due. */
+static void few_of_a_crowd_are_drawn(void **state)
+{
+    static gpu g;
+    uint64_t all;
+    uint32_t left_out = 0, waited = 0;
+    cast c;
+    (void)state;
+    memset(&g, 0, sizeof g);
+    open_null(&g);
+    open_crowd(&c, &g, 0);
+    all = c.plan.gpu_bytes;
+    cast_close(&c);
+    open_crowd(&c, &g, CROWD_SEEN);
+    assert_true(noh_gl_ledger_bytes(&g.ledger) == c.plan.gpu_bytes && c.plan.gpu_bytes < all / 2u);
+    for (uint32_t f = 0; f < 400; f++) {
+        const noh_stage_stats *stats = noh_stage_stats_of(c.stage);
+        noh_stage_view view = cast_view(f < 300u ? 3u * f + f / 25u * 40u : 1337u, 4.0f);
+        view.cut = f == 100u;
+        assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
+        assert_int_equal(noh_stage_draw(c.stage, NOH_PASS_COLOR, 0, NULL, NULL), NOH_OK);
+        assert_true(stats->seen <= CROWD_SEEN && stats->resting <= stats->waiting);
+        assert_true(stats->left_out == 0 || stats->seen == CROWD_SEEN);
+        assert_true(stats->moved <= (view.cut ? CROWD_SEEN : CROWD_MOVES));
+        if (view.cut) assert_int_equal(stats->waiting, 0);
+        expect_the_nearest(&c, &view);
+        left_out += stats->left_out;
+        waited += stats->waiting;
+        if (f > 320u) assert_int_equal(stats->waiting + stats->moved + stats->resting, 0);
+    }
+    assert_true(left_out > 1000 && waited > 20);
+    cast_close(&c);
     gpu_close(&g);
 }
 
@@ -399,6 +505,7 @@ static void random_casts_use_what_is_planned(void **state)
         for (uint32_t k = 0; k < c.desc.kind_count; k++) {
             kinds[k].mesh = &c.packs[test_random_below(&r, CAST_KINDS)];
             kinds[k].actor_count = 1u + test_random_below(&r, 20);
+            kinds[k].seen_max = test_random_below(&r, 2) ? 1u + test_random_below(&r, kinds[k].actor_count) : 0;
             kinds[k].near_count = test_random_below(&r, 2) ? test_random_below(&r, 5) : 0;
             kinds[k].middle_count = test_random_below(&r, 2) ? test_random_below(&r, 9) : 0;
             kinds[k].finest_level = test_random_below(&r, 3) ? 0 : test_random_below(&r, 5);
@@ -411,6 +518,7 @@ static void random_casts_use_what_is_planned(void **state)
             kinds[k].root_up = 1;
         }
         c.desc.job_count = test_random_below(&r, 5);
+        c.desc.slot_moves = test_random_below(&r, 5);
         c.desc.halves = (int)test_random_below(&r, 2);
         c.desc.tangents = (int)test_random_below(&r, 2);
         c.desc.gpu = test_random_below(&r, 5) ? &noh_stage_on_gl : NULL;
@@ -504,6 +612,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(own_shaders_draw_the_same_shapes),
         cmocka_unit_test(levels_are_shown_in_their_colours),
         cmocka_unit_test(frames_make_nothing),
+        cmocka_unit_test(few_of_a_crowd_are_drawn),
         cmocka_unit_test(random_casts_use_what_is_planned),
         cmocka_unit_test(a_refusing_driver_leaves_nothing),
     };

@@ -217,7 +217,7 @@ static void lod_pools(void **state)
 {
     static const uint32_t levels[NOH_LOD_POOLS_MAX] = { 0, 1, 2, 3, 4, 5, 6, 7 };
     uint32_t slots[NOH_LOD_POOLS_MAX];
-    noh_lod_pools_desc d = { NOH_LOD_POOL_SLOTS_MAX, NOH_LOD_POOLS_MAX, levels, slots };
+    noh_lod_pools_desc d = { NOH_LOD_POOL_SLOTS_MAX, NOH_LOD_POOLS_MAX, levels, slots, 0 };
     noh_error error = { NOH_OK, NULL, 0, 0 };
     noh_lod_pools *pools;
     (void)state;

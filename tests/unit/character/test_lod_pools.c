@@ -8,7 +8,7 @@
 #define INSTANCES 60u
 
 static const uint32_t levels[3] = { 0, 1, 3 }, slots[3] = { 4, 16, 40 };
-static const noh_lod_pools_desc three = { INSTANCES, 3, levels, slots };
+static const noh_lod_pools_desc three = { INSTANCES, 3, levels, slots, 0 };
 
 static noh_lod_pools *pools_open(const noh_lod_pools_desc *desc)
 {
@@ -35,8 +35,7 @@ static void bad(noh_lod_pools_desc d, const char *what)
 
 static void descs_are_checked(void **state)
 {
-    static const uint32_t falling[3] = { 1, 1, 2 }, high[3] = { 0, 1, 8 }, none[3] = { 30, 0, 30 },
-                          few[3] = { 4, 16, 39 };
+    static const uint32_t falling[3] = { 1, 1, 2 }, high[3] = { 0, 1, 8 }, none[3] = { 30, 0, 30 };
     static const uint32_t many[3] = { 4, 16, 65517 };
     noh_lod_pools_desc d = three;
     (void)state;
@@ -49,7 +48,6 @@ static void descs_are_checked(void **state)
     d = three, d.levels = high, bad(d, "levels");
     d = three, d.slot_counts = NULL, bad(d, "slot_counts");
     d = three, d.slot_counts = none, bad(d, "without slots");
-    d = three, d.slot_counts = few, bad(d, "fewer slots than instances");
     d = three, d.slot_counts = many, bad(d, "more than");
 }
 
@@ -248,7 +246,7 @@ static void odd_priorities_come_last(void **state)
 static void pools_may_begin_with_a_coarser_level(void **state)
 {
     static const uint32_t coarse[2] = { 2, 3 }, counts[2] = { 1, 1 };
-    const noh_lod_pools_desc d = { 2, 2, coarse, counts };
+    const noh_lod_pools_desc d = { 2, 2, coarse, counts, 0 };
     noh_lod_pools *p = pools_open(&d);
     (void)state;
     noh_lod_pools_begin(p);
@@ -261,6 +259,102 @@ static void pools_may_begin_with_a_coarser_level(void **state)
     free(p);
 }
 
+/* Six slots, of which eight ask and seven are shown: the first six have one, the seventh rests, the last is left out.
+ */
+static void who_finds_no_slot_rests_and_who_is_too_many_is_left_out(void **state)
+{
+    static const uint32_t few[2] = { 2, 4 };
+    const noh_lod_pools_desc d = { 8, 2, levels, few, 7 };
+    noh_lod_pools *p = pools_open(&d);
+    (void)state;
+    for (uint32_t round = 0; round < 3; round++) {
+        noh_lod_pools_begin(p);
+        for (uint32_t i = 0; i < 8; i++) noh_lod_pools_ask(p, i, 1, 100.0f - (float)((i + round) % 8u) * 10.0f);
+        noh_lod_pools_share(p);
+        for (uint32_t rank = 0; rank < 8; rank++) {
+            const uint32_t i = (rank + 8u - round) % 8u;
+            const noh_lod_slot s = noh_lod_pools_slot(p, i);
+            assert_int_equal(s.pool == NOH_NONE, rank >= 6);
+            assert_int_equal(s.left_out, rank == 7);
+            assert_int_equal(s.level, 1);
+        }
+        assert_int_equal(noh_lod_pools_stats_of(p)->resting, 1);
+        assert_int_equal(noh_lod_pools_stats_of(p)->left_out, 1);
+        assert_int_equal(noh_lod_pools_stats_of(p)->used[0], 2);
+        assert_int_equal(noh_lod_pools_stats_of(p)->used[1], 4);
+    }
+    free(p);
+}
+
+/* As expect_sound, for pools in which some wait. */
+static void expect_bounded(const noh_lod_pools *p, const wish *wishes, uint32_t moves)
+{
+    const noh_lod_pools_stats *stats = noh_lod_pools_stats_of(p);
+    uint32_t resting = 0, used[3] = { 0, 0, 0 };
+    uint8_t taken[3][INSTANCES];
+    memset(taken, 0, sizeof taken);
+    for (uint32_t i = 0; i < INSTANCES; i++) {
+        noh_lod_slot s;
+        if (!wishes[i].asks) continue;
+        s = noh_lod_pools_slot(p, i);
+        resting += s.pool == NOH_NONE;
+        if (s.pool == NOH_NONE) continue;
+        assert_true(s.pool < 3 && s.slot < slots[s.pool] && !taken[s.pool][s.slot]);
+        assert_int_equal(s.level, wishes[i].level > levels[s.pool] ? wishes[i].level : levels[s.pool]);
+        taken[s.pool][s.slot] = 1;
+        used[s.pool]++;
+    }
+    assert_true(stats->moved <= moves && resting <= stats->waiting && resting == stats->resting);
+    assert_memory_equal(stats->used, used, sizeof used);
+}
+
+static void ask_some(noh_lod_pools *p, const wish *wishes, uint32_t moves)
+{
+    noh_lod_pools_begin(p);
+    for (uint32_t i = 0; i < INSTANCES; i++) {
+        if (wishes[i].asks) noh_lod_pools_ask(p, i, wishes[i].level, wishes[i].priority);
+    }
+    noh_lod_pools_share_some(p, moves);
+}
+
+/* However the wishes leap, few slots change hands in a frame; once they stay, all settle within as many frames as that
+ * takes, and stand as without a bound: fair, and none waits. Whoever holds a slot keeps one meanwhile. */
+static void few_slots_change_hands_in_a_frame(void **state)
+{
+    test_random r = test_random_from(72);
+    noh_lod_pools *p = pools_open(&three);
+    wish wishes[INSTANCES];
+    uint32_t waited = 0, exchanged = 0;
+    (void)state;
+    for (int round = 0; round < 400; round++) {
+        const uint32_t moves = test_random_below(&r, 7), bound = moves < 2 ? 2 : moves, rush = test_random_below(&r, 3);
+        for (uint32_t i = 0; i < INSTANCES; i++) {
+            wishes[i].asks = test_random_below(&r, 8) != 0;
+            wishes[i].level = rush ? test_random_below(&r, 4) : 0;
+            wishes[i].priority = test_random_float(&r, 0.0f, 100.0f);
+        }
+        for (uint32_t frame = 0; frame <= INSTANCES; frame++) {
+            uint8_t held[INSTANCES];
+            for (uint32_t i = 0; i < INSTANCES; i++) {
+                held[i] = frame && wishes[i].asks && noh_lod_pools_slot(p, i).pool != NOH_NONE;
+            }
+            ask_some(p, wishes, moves);
+            expect_bounded(p, wishes, bound);
+            for (uint32_t i = 0; i < INSTANCES; i++) {
+                if (held[i]) assert_int_not_equal(noh_lod_pools_slot(p, i).pool, NOH_NONE);
+            }
+            waited += noh_lod_pools_stats_of(p)->waiting;
+            exchanged += frame > 20u && noh_lod_pools_stats_of(p)->moved > 0;
+        }
+        assert_int_equal(noh_lod_pools_stats_of(p)->waiting, 0);
+        assert_int_equal(noh_lod_pools_stats_of(p)->moved, 0);
+        expect_sound(p, wishes);
+        expect_fair(p, wishes);
+    }
+    assert_true(waited > 1000 && exchanged > 0);
+    free(p);
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(descs_are_checked),
     cmocka_unit_test(the_size_is_exact),
@@ -269,6 +363,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(equals_do_not_take_turns),
     cmocka_unit_test(odd_priorities_come_last),
     cmocka_unit_test(pools_may_begin_with_a_coarser_level),
+    cmocka_unit_test(who_finds_no_slot_rests_and_who_is_too_many_is_left_out),
+    cmocka_unit_test(few_slots_change_hands_in_a_frame),
 };
 
 TEST_MAIN(tests, NULL, NULL)

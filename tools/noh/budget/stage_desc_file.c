@@ -310,6 +310,7 @@ static const setting settings[] = {
     { "mesh", SET_MESH, 1, 0, 0, 0, 0 },
     { "clips", SET_CLIPS, 1, 1, 0, 0, 0 },
     { "actor_count", SET_COUNT, 1, 0, offsetof(noh_kind_desc, actor_count), 1, NOH_STAGE_ACTORS_MAX },
+    { "seen_max", SET_COUNT, 1, 0, offsetof(noh_kind_desc, seen_max), 1, NOH_STAGE_ACTORS_MAX },
     { "near_count", SET_COUNT, 1, 0, offsetof(noh_kind_desc, near_count), 0, NOH_STAGE_ACTORS_MAX },
     { "middle_count", SET_COUNT, 1, 0, offsetof(noh_kind_desc, middle_count), 0, NOH_STAGE_ACTORS_MAX },
     { "finest_level", SET_COUNT, 1, 0, offsetof(noh_kind_desc, finest_level), 0, NOH_LOD_LEVELS_MAX - 1u },

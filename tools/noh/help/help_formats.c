@@ -80,6 +80,7 @@ const char *const help_formats_text[] = {
     "     mesh PATH                                   its pack",
     "     clips PATH                                  a pack of clips instead of those of mesh; may repeat",
     "     actor_count N                               characters of this kind at one time",
+    "     seen_max N                                  of these, drawn in one frame (all)",
     "     near_count N                                of these, at the finest level at once",
     "     middle_count N                              and at the next level",
     "     finest_level K                              the finest level that may be used",
