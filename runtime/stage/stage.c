@@ -109,6 +109,27 @@ static noh_result open_all(const noh_stage_desc *desc, const noh_stage_plan *pla
     return result;
 }
 
+static noh_result of_another_desc(const noh_stage_plan *plan, noh_error *error)
+{
+    return noh_fail(error, NOH_ERR_ARG, "the plan of a stage was made for another desc", 0, plan->cpu_bytes);
+}
+
+/* The sizes of all that plays follow from what the plan says of the clips: it is read again, and believed where it is
+ * the same. */
+static noh_result check_clips(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_error *error)
+{
+    noh_result result = NOH_OK;
+    for (uint32_t i = 0; i < desc->kind_count && result == NOH_OK; i++) {
+        const uint32_t owner = noh_stage_bank_kind(desc, i);
+        noh_kind_clips clips = plan->kinds[owner].clips;
+        if (owner == i) result = noh_stage_measure_clips(desc, plan, i, &clips, error);
+        if (result == NOH_OK && memcmp(&clips, &plan->kinds[i].clips, sizeof clips) != 0) {
+            result = of_another_desc(plan, error);
+        }
+    }
+    return result;
+}
+
 noh_result noh_stage_init(void *memory, size_t bytes, const void *device, const noh_stage_desc *desc,
                           const noh_stage_plan *plan, noh_stage **stage, noh_error *error)
 {
@@ -129,11 +150,10 @@ noh_result noh_stage_init(void *memory, size_t bytes, const void *device, const 
         return result;
     }
     memset(&b, 0, sizeof b);
-    result = noh_stage_carve(&arena, desc, plan, &b, NULL, error);
+    result = check_clips(desc, plan, error);
+    if (result == NOH_OK) result = noh_stage_carve(&arena, desc, plan, &b, NULL, error);
     if (result != NOH_OK || !b.stage || !b.kinds || arena.used > plan->cpu_bytes) {
-        return result != NOH_OK
-                   ? result
-                   : noh_fail(error, NOH_ERR_ARG, "the plan of a stage was made for another desc", 0, plan->cpu_bytes);
+        return result != NOH_OK ? result : of_another_desc(plan, error);
     }
     result = open_all(desc, plan, &b, error);
     if (result == NOH_OK && desc->gpu) {

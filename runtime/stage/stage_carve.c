@@ -136,19 +136,15 @@ static size_t pools_bytes(const noh_stage_plan *plan, const noh_kind_desc *d, ui
 }
 
 noh_result noh_stage_measure_kind(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind,
-                                  const noh_kind_clips *clips, noh_stage_needs *needs, noh_error *error)
+                                  noh_stage_needs *needs, noh_error *error)
 {
     const noh_kind_desc d = noh_stage_kind_desc(desc, kind);
     const uint32_t owner = noh_stage_bank_kind(desc, kind);
     const noh_clip_bank_desc bank = noh_stage_bank_desc(desc, plan, owner);
-    noh_kind_clips own;
     noh_mesh skinned;
-    noh_result result = clips ? NOH_OK : noh_stage_measure_clips(desc, plan, owner, &own, error);
-    if (result != NOH_OK) {
-        return result;
-    }
+    noh_result result;
     memset(needs, 0, sizeof *needs);
-    take_clips(clips ? clips : &own, &d, owner == kind, needs);
+    take_clips(&plan->kinds[kind].clips, &d, owner == kind, needs);
     needs->mask_count = count_masks(&d);
     measure_meshes(&d, needs, &skinned);
     needs->float_count = (needs->has_clips ? needs->shape.float_count : 0) +
@@ -311,8 +307,7 @@ static noh_result carve_states(noh_arena *arena, const noh_stage_desc *desc, con
     add(list, "actors", NOH_NONE, arena, &from);
     for (uint32_t i = 0; i < desc->kind_count; i++) {
         noh_stage_needs needs;
-        const noh_result result = noh_stage_measure_kind(desc, plan, i, b->planned ? &plan->kinds[i].clips : NULL,
-                                                         &needs, error);
+        const noh_result result = noh_stage_measure_kind(desc, plan, i, &needs, error);
         if (result != NOH_OK) {
             return result;
         }
@@ -378,7 +373,7 @@ noh_result noh_stage_carve(noh_arena *arena, const noh_stage_desc *desc, const n
     add(list, "jobs", NOH_NONE, arena, &from);
     for (uint32_t i = 0; i < desc->kind_count && result == NOH_OK; i++) {
         noh_stage_needs needs;
-        result = noh_stage_measure_kind(desc, plan, i, b->planned ? &plan->kinds[i].clips : NULL, &needs, error);
+        result = noh_stage_measure_kind(desc, plan, i, &needs, error);
         if (result == NOH_OK) carve_kind(arena, desc, plan, i, &needs, b, list, &state);
     }
     return result;

@@ -91,6 +91,8 @@ NOH_STATIC_ASSERT(sizeof(noh_stage_actor) == 160, stage_actor);
 NOH_STATIC_ASSERT(sizeof(noh_stage_graph_slot) == 16, stage_graph_slot);
 NOH_STATIC_ASSERT(sizeof(noh_stage_head) == 24 + 16 * NOH_STAGE_KINDS_MAX, stage_head);
 
+NOH_STATIC_ASSERT(sizeof(noh_kind_clips) == 48, kind_clips); /* compared as bytes */
+
 #define NOH_STAGE_MAGIC 0x53484f4eu /* "NOHS" */
 
 /* ---- kinds ---- */
@@ -327,13 +329,12 @@ typedef struct noh_stage_needs {
 /* Read the clips of a kind that has a bank of its own. */
 noh_result noh_stage_measure_clips(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind,
                                    noh_kind_clips *clips, noh_error *error);
-/* clips  as read before; NULL: read them */
+/* By what the plan says of its clips. */
 noh_result noh_stage_measure_kind(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind,
-                                  const noh_kind_clips *clips, noh_stage_needs *needs, noh_error *error);
+                                  noh_stage_needs *needs, noh_error *error);
 
 /* Where everything lies; what an arena that only measures gives is NULL. */
 typedef struct noh_stage_blocks {
-    int planned; /* 1: the plan is being made, and says what clips take; a plan from outside is not believed */
     noh_stage *stage;
     noh_stage_kind *kinds;
     noh_stage_head *head;

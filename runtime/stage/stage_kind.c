@@ -342,7 +342,7 @@ noh_result noh_stage_open_kind(noh_stage *s, const noh_stage_desc *desc, uint32_
 {
     noh_stage_kind *k = &s->kinds[kind];
     noh_stage_needs needs;
-    noh_result result = noh_stage_measure_kind(desc, s->plan, kind, NULL, &needs, error);
+    noh_result result = noh_stage_measure_kind(desc, s->plan, kind, &needs, error);
     k->desc = noh_stage_kind_desc(desc, kind);
     k->plan = &s->plan->kinds[kind];
     if (result == NOH_OK) result = open_clips(s, desc, kind, blocks->banks[kind], &needs, error);

@@ -43,7 +43,6 @@ static noh_result measure(const planner *p, noh_error *error)
     noh_stage_desc desc = *p->desc;
     noh_result result = read_clips(p, error);
     memset(&blocks, 0, sizeof blocks);
-    blocks.planned = 1;
     desc.halves = noh_stage_halves(&desc, plan);
     if (result == NOH_OK) result = noh_stage_carve(&arena, &desc, plan, &blocks, NULL, error);
     if (result == NOH_OK && desc.gpu) {
@@ -65,7 +64,6 @@ uint32_t noh_stage_plan_parts(const noh_stage_desc *desc, const struct noh_gl_ca
     noh_stage_desc d = *desc;
     NOH_ASSERT(plan && (parts || !capacity));
     memset(&blocks, 0, sizeof blocks);
-    blocks.planned = 1;
     list.parts = parts;
     list.capacity = capacity;
     d.halves = noh_stage_halves(&d, plan);
@@ -375,7 +373,7 @@ static noh_result begin(const planner *p, uint32_t kind, noh_error *error)
     noh_stage_share_slots(p->desc, kind, k);
     k->clips = p->plan->kinds[owner].clips;
     if (owner == kind) result = noh_stage_measure_clips(p->desc, p->plan, kind, &k->clips, error);
-    if (result == NOH_OK) result = noh_stage_measure_kind(p->desc, p->plan, kind, &k->clips, &needs, error);
+    if (result == NOH_OK) result = noh_stage_measure_kind(p->desc, p->plan, kind, &needs, error);
     if (result == NOH_OK) {
         k->track_count = noh_stage_track_count(&d);
         k->joint_count = needs.shape.joint_count;
