@@ -186,6 +186,40 @@ static void the_picture_is_that_of_the_parts(void **state)
     fixture_expect_no_errors();
 }
 
+/* A show of five jobs, the last one first: the picture is that of one job. */
+static void pictures_do_not_depend_on_the_jobs(void **state)
+{
+    static uint32_t one[PIXELS], five[PIXELS];
+    noh_actor actors[CAST_ACTORS];
+    gpu *g = fixture_gpu();
+    canvas to;
+    (void)state;
+    assert_int_equal(canvas_open(&to, g, WIDTH, HEIGHT), 0);
+    for (uint32_t jobs = 1; jobs <= 5; jobs += 4) {
+        uint32_t count;
+        cast c;
+        cast_open(&c);
+        c.desc.job_count = jobs;
+        open_on(&c, g);
+        cast_enter(&c, actors);
+        for (uint32_t f = 0; f < 25; f++) {
+            const noh_stage_view view = cast_view(f, 5.0f + 0.1f * (float)f);
+            assert_int_equal(noh_stage_step(c.stage, CAST_STEP, NULL, NULL, NULL), NOH_OK);
+            assert_int_equal(noh_stage_frame_begin(c.stage, &view, 1, NULL), NOH_OK);
+            while ((count = noh_stage_jobs(c.stage)) > 0) {
+                assert_true(jobs == 1 ? count == 1 : count > 1);
+                while (count) noh_stage_job(c.stage, --count);
+            }
+            assert_int_equal(noh_stage_frame_end(c.stage, NULL), NOH_OK);
+        }
+        draw(&c, &to, jobs == 1 ? one : five);
+        cast_close(&c);
+    }
+    assert_memory_equal(one, five, sizeof one);
+    canvas_close(&to);
+    fixture_expect_no_errors();
+}
+
 static void show_a_state_again(void (*change)(cast *))
 {
     static uint32_t first[PIXELS], again[PIXELS];
@@ -609,6 +643,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(the_plan_is_what_is_used),
         cmocka_unit_test(the_picture_is_that_of_the_parts),
         cmocka_unit_test(a_state_shows_the_same_picture_again),
+        cmocka_unit_test(pictures_do_not_depend_on_the_jobs),
         cmocka_unit_test(own_shaders_draw_the_same_shapes),
         cmocka_unit_test(levels_are_shown_in_their_colours),
         cmocka_unit_test(frames_make_nothing),
