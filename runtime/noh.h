@@ -40,6 +40,7 @@
 
 /* ---- what a game calls first ---- */
 
+#include "stage/part.h"             /* what changes a pose before it is shown */
 #include "stage/stage.h"            /* a whole cast of characters out of one block */
 #include "stage/view.h"             /* cameras and lights for it */
 #include "base/version.h"           /* which noh this is */

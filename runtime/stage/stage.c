@@ -38,6 +38,7 @@ static noh_result open_views(noh_stage *s, const noh_stage_blocks *b, noh_error 
         s->jobs[j].scratch = b->scratch + j * b->scratch_bytes;
         s->jobs[j].graph_scratch = b->graph_scratch_bytes ? b->graph_scratch + j * b->graph_scratch_bytes : NULL;
         s->jobs[j].matrices = b->matrices + j * b->matrices_floats;
+        s->jobs[j].part_scratch = b->part_scratch_bytes ? b->part_scratch + j * b->part_scratch_bytes : NULL;
         for (uint32_t i = 0; i < s->desc.kind_count && result == NOH_OK; i++) {
             if (s->kinds[i].bank && s->kinds[i].bank_kind == i) {
                 const size_t bytes = noh_clip_bank_view_size(s->kinds[i].bank);

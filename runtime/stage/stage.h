@@ -66,6 +66,8 @@ typedef struct noh_texture_set {
     const char *suffix;   /* "_red"; default (NULL) "" */
 } noh_texture_set;
 
+struct noh_stage_part;
+
 /* A kind of character: the meshes of one skeleton and the clips that move them. Zero is a good value for all but mesh
  * and actor_count. */
 typedef struct noh_kind_desc {
@@ -95,7 +97,10 @@ typedef struct noh_kind_desc {
     /* Names of graphs in the packs of clips (noh build --graph) that its actors may play, one at a time, separated by
      * blanks; '*' at the end matches any rest. Default (NULL) none, at no cost. Read at init */
     const char *graphs;
-    uint32_t change_count;     /* fades and other changes over time at once; default (0) 3 for each track */
+    /* What changes its poses before they are shown (stage/part.h), in this order; default (NULL) nothing, at no cost */
+    const struct noh_stage_part *parts; /* [part_count] what they point to must outlive the stage */
+    uint32_t part_count;                /* 0..NOH_STAGE_PARTS_MAX */
+    uint32_t change_count;              /* fades and other changes over time at once; default (0) 3 for each track */
     uint32_t held_float_count; /* floats that the game may hold at once (noh_actor_hold_float); default (0) 8; NOH_NONE:
                                 * none */
     uint32_t root_axes;        /* NOH_ROOT_* that clips move the actor by; default (0) none */

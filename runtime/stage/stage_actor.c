@@ -313,6 +313,7 @@ static void free_actor(noh_stage *s, noh_stage_actor *a, noh_stage_kind *k)
     noh_stage_free *f = &s->head->kinds[k - s->kinds];
     const uint32_t own = noh_stage_index(k, a) + 1u, generation = a->generation;
     memset(k->held + (size_t)(own - 1u) * k->desc.held_float_count, 0, k->desc.held_float_count * sizeof *k->held);
+    memset(k->part_states + (size_t)(own - 1u) * k->part_bytes, 0, k->part_bytes);
     memset(k->graph_slots + (size_t)(own - 1u) * k->slot_bytes, 0, k->slot_bytes);
     memset(a, 0, sizeof *a);
     a->generation = generation == 0xffffu ? 1u : generation + 1u;

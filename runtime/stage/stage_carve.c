@@ -24,8 +24,9 @@ static size_t lod_bytes(const noh_clip_bank_desc *bank_desc, const noh_stage_nee
     return noh_lod_pack_size(&desc);
 }
 
-/* Without clips there is a set of one clip, the bind pose; a set without joints has a float. */
-static void shape_without_clips(const noh_kind_desc *d, noh_clip_set *shape)
+/* Without clips there is a set of one clip, the bind pose; a set without joints has a float. Where parts are, it has
+ * those of the meshes, for them to set. */
+static void shape_without_clips(const noh_kind_desc *d, uint32_t weight_count, noh_clip_set *shape)
 {
     noh_skeleton skeleton;
     memset(shape, 0, sizeof *shape);
@@ -33,7 +34,7 @@ static void shape_without_clips(const noh_kind_desc *d, noh_clip_set *shape)
     if (noh_pack_skeleton_at(d->mesh, d->skeleton, &skeleton, NULL, NULL) == NOH_OK) {
         shape->joint_count = skeleton.joint_count;
     }
-    shape->float_count = shape->joint_count ? 0 : 1;
+    shape->float_count = d->part_count && weight_count ? weight_count : shape->joint_count ? 0 : 1;
 }
 
 noh_result noh_stage_measure_clips(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind,
@@ -67,7 +68,7 @@ noh_result noh_stage_measure_clips(const noh_stage_desc *desc, const noh_stage_p
 static void take_clips(const noh_kind_clips *clips, const noh_kind_desc *d, int owns, noh_stage_needs *n)
 {
     if (!clips->bank_bytes) {
-        shape_without_clips(d, &n->shape);
+        shape_without_clips(d, n->weight_count, &n->shape);
         return;
     }
     n->has_clips = 1;
@@ -144,9 +145,9 @@ noh_result noh_stage_measure_kind(const noh_stage_desc *desc, const noh_stage_pl
     noh_mesh skinned;
     noh_result result;
     memset(needs, 0, sizeof *needs);
+    measure_meshes(&d, needs, &skinned);
     take_clips(&plan->kinds[kind].clips, &d, owner == kind, needs);
     needs->mask_count = count_masks(&d);
-    measure_meshes(&d, needs, &skinned);
     needs->float_count = (needs->has_clips ? needs->shape.float_count : 0) +
                          (needs->has_clips && d.mesh->node_count ? 0 : needs->weight_count);
     needs->lod_bytes = desc->full_detail ? 0 : lod_bytes(&bank, needs, skinned.header ? &skinned : NULL);
@@ -154,6 +155,11 @@ noh_result noh_stage_measure_kind(const noh_stage_desc *desc, const noh_stage_pl
     result = noh_stage_measure_graphs(&d, kind, needs, error);
     if (result != NOH_OK) {
         return result;
+    }
+    needs->part_bytes = noh_stage_part_bytes(&d);
+    for (uint32_t i = 0; i < d.part_count; i++) {
+        const size_t bytes = d.parts[i].scratch_bytes;
+        needs->part_scratch_bytes = bytes > needs->part_scratch_bytes ? bytes : needs->part_scratch_bytes;
     }
     needs->pools_bytes = pools_bytes(plan, &d, kind);
     if (!needs->character_bytes || !needs->pools_bytes) {
@@ -203,7 +209,7 @@ static void add(noh_stage_list *list, const char *what, uint32_t kind, const noh
 
 /* What the other functions need to know of all kinds together. */
 typedef struct widest {
-    size_t scratch_bytes, graph_scratch_bytes, pick_bytes, views_bytes, inertia_bytes;
+    size_t scratch_bytes, graph_scratch_bytes, part_scratch_bytes, pick_bytes, views_bytes, inertia_bytes;
     uint32_t skin_joints, actors;
 } widest;
 
@@ -216,6 +222,7 @@ static void widen(widest *most, const noh_stage_desc *desc, uint32_t kind, const
 {
     if (n->scratch_bytes > most->scratch_bytes) most->scratch_bytes = n->scratch_bytes;
     if (n->graph_scratch_bytes > most->graph_scratch_bytes) most->graph_scratch_bytes = n->graph_scratch_bytes;
+    if (n->part_scratch_bytes > most->part_scratch_bytes) most->part_scratch_bytes = n->part_scratch_bytes;
     if (n->pick_bytes > most->pick_bytes) most->pick_bytes = n->pick_bytes;
     if (n->inertia_bytes > most->inertia_bytes) most->inertia_bytes = n->inertia_bytes;
     if (n->skin_joints > most->skin_joints) most->skin_joints = n->skin_joints;
@@ -231,6 +238,8 @@ static void carve_state(noh_arena *arena, const noh_kind_desc *d, const noh_stag
     k->held = CARVE(arena, d->actor_count * (size_t)d->held_float_count, noh_stage_held);
     k->graph_slots = noh_arena_carve(arena, d->actor_count * n->slot_bytes, 16);
     k->slot_bytes = (uint32_t)n->slot_bytes;
+    k->part_states = noh_arena_carve(arena, d->actor_count * n->part_bytes, 16);
+    k->part_bytes = n->part_bytes;
     *pools = noh_arena_carve(arena, n->pools_bytes, 16);
 }
 
@@ -238,6 +247,7 @@ static void carve_shared(noh_arena *arena, const noh_kind_desc *d, const noh_kin
                          noh_stage_kind *k)
 {
     k->layers = CARVE(arena, d->layer_count, noh_stage_layer);
+    k->parts = CARVE(arena, d->part_count, noh_stage_part);
     k->meshes = CARVE(arena, n->mesh_count, noh_stage_mesh);
     k->sources = CARVE(arena, n->float_count, uint32_t);
     k->name_hashes = CARVE(arena, n->float_count, uint32_t);
@@ -278,6 +288,8 @@ static void carve_jobs(noh_arena *arena, const noh_stage_desc *filled, const wid
     b->scratch = noh_arena_carve(arena, filled->job_count * b->scratch_bytes, 16);
     b->graph_scratch_bytes = aligned(most->graph_scratch_bytes);
     b->graph_scratch = noh_arena_carve(arena, filled->job_count * b->graph_scratch_bytes, 16);
+    b->part_scratch_bytes = aligned(most->part_scratch_bytes);
+    b->part_scratch = noh_arena_carve(arena, filled->job_count * b->part_scratch_bytes, 16);
     b->matrices_floats = 12u * (size_t)most->skin_joints;
     b->matrices = CARVE(arena, filled->job_count * b->matrices_floats, float);
 }

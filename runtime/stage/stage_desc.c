@@ -159,6 +159,18 @@ static const char *bad_layer(const noh_layer_desc *layer)
                                                      : NULL;
 }
 
+static const char *bad_parts(const noh_kind_desc *d)
+{
+    if (d->part_count > NOH_STAGE_PARTS_MAX) return "part_count of a kind is above NOH_STAGE_PARTS_MAX";
+    if (!d->parts && d->part_count) return "parts of a kind is NULL, and part_count is not 0";
+    for (uint32_t i = 0; i < d->part_count; i++) {
+        if (!d->parts[i].modify) return "a part of a kind: modify is NULL";
+        if (d->parts[i].state_bytes > NOH_STAGE_PART_BYTES_MAX || d->parts[i].scratch_bytes > NOH_STAGE_PART_BYTES_MAX)
+            return "a part of a kind: more bytes than NOH_STAGE_PART_BYTES_MAX";
+    }
+    return NULL;
+}
+
 static const char *bad_kind(const noh_stage_desc *desc, uint32_t number)
 {
     const noh_kind_desc *d = &desc->kinds[number];
@@ -184,6 +196,7 @@ static const char *bad_kind(const noh_stage_desc *desc, uint32_t number)
     if (d->held_float_count != NOH_NONE && d->held_float_count > NOH_FLOATS_MAX)
         return "held_float_count of a kind is above NOH_FLOATS_MAX";
     if (bad_texture_sets(d)) return bad_texture_sets(d);
+    if (bad_parts(d)) return bad_parts(d);
     filled = noh_stage_kind_desc(desc, number);
     if (filled.skeleton != NOH_NONE && filled.skeleton >= d->mesh->skeleton_count)
         return "skeleton of a kind is none of its mesh pack's";

@@ -12,6 +12,7 @@
  *   stage_play.c     layers
  *   stage_graph.c    which graphs a kind plays, and their bytes
  *   stage_graph_play.c  the graph of an actor
+ *   stage_part.c     what changes a pose before it is shown
  *   stage_step.c     time, callback keys, root motion
  *   stage_look.c     phase 1: who is seen, how finely
  *   stage_share.c    between the phases: slots, updates, decoding, order
@@ -35,6 +36,7 @@
 #include "character/scheduler.h"
 #include "graph/graph_pack.h"
 #include "mesh/mesh.h"
+#include "stage/part.h"
 #include "stage/stage.h"
 
 #ifdef __cplusplus
@@ -71,6 +73,13 @@ typedef struct noh_stage_graph_slot {
     uint32_t reserved[3];
 } noh_stage_graph_slot;
 
+/* Before the states of an actor's parts. */
+typedef struct noh_stage_part_head {
+    int64_t posed_clock; /* of the pose that they are at */
+    uint32_t was_posed;
+    uint32_t reserved;
+} noh_stage_part_head;
+
 typedef struct noh_stage_free {
     uint32_t first, last; /* actor index + 1; 0: none. Taken at the front, given back at the end */
     uint32_t count;       /* actors that are there */
@@ -89,6 +98,7 @@ NOH_STATIC_ASSERT(sizeof(noh_place) == 32, place);
 NOH_STATIC_ASSERT(sizeof(noh_look) == 28, look);
 NOH_STATIC_ASSERT(sizeof(noh_stage_actor) == 160, stage_actor);
 NOH_STATIC_ASSERT(sizeof(noh_stage_graph_slot) == 16, stage_graph_slot);
+NOH_STATIC_ASSERT(sizeof(noh_stage_part_head) == 16, stage_part_head);
 NOH_STATIC_ASSERT(sizeof(noh_stage_head) == 24 + 16 * NOH_STAGE_KINDS_MAX, stage_head);
 
 NOH_STATIC_ASSERT(sizeof(noh_kind_clips) == 48, kind_clips); /* compared as bytes */
@@ -166,6 +176,8 @@ typedef struct noh_stage_kind {
     noh_root_track *graph_roots; /* [set.clip_count] where the bank has roots */
     float *update_errors;        /* [set.clip_count][NOH_UPDATE_RATE_COUNT] where there are any */
     uint32_t slot_bytes;
+    noh_stage_part *parts; /* [desc.part_count] */
+    size_t part_bytes;
     noh_stage_sampler sampler; /* of `set` */
     noh_clip_entry rest_clip;  /* where no clip fits: a set of one clip that is the bind pose */
     noh_transform rest_pose;
@@ -174,6 +186,7 @@ typedef struct noh_stage_kind {
     noh_stage_actor *actors;
     noh_stage_held *held; /* [actor_count][held_float_count] */
     uint8_t *graph_slots; /* [actor_count][slot_bytes] */
+    uint8_t *part_states; /* [actor_count][part_bytes] */
     noh_lod_pools *pools; /* NULL: nothing is drawn */
     uint32_t pool_levels[NOH_LOD_LEVELS_MAX], pool_count;
     /* a frame's own */
@@ -202,7 +215,7 @@ typedef struct noh_stage_shown {
 
 typedef struct noh_stage_job_part {
     noh_clip_bank_view *views[NOH_STAGE_KINDS_MAX]; /* of the kinds that have a bank of their own */
-    void *scratch, *graph_scratch;
+    void *scratch, *graph_scratch, *part_scratch;
     float *matrices; /* [joints of the largest skin][12] */
     uint64_t decoded_late;
     uint32_t updated;
@@ -319,6 +332,7 @@ typedef struct noh_stage_needs {
     size_t character_bytes, scratch_bytes, lod_bytes, pools_bytes, inertia_bytes;
     size_t graph_bytes, slot_bytes, graph_scratch_bytes; /* 0 without graphs */
     uint32_t graph_count;
+    size_t part_bytes, part_scratch_bytes; /* 0 without parts */
     uint32_t cached_segment_count, segment_count;
     uint32_t mesh_count, float_count, weight_count, mask_count;
     uint32_t skin_joints; /* of its largest skin */
@@ -346,8 +360,8 @@ typedef struct noh_stage_blocks {
     noh_stage_job_part *jobs;
     uint8_t *views;   /* of all jobs, of all banks, one after another */
     uint8_t *scratch; /* of all jobs */
-    uint8_t *graph_scratch;
-    size_t graph_scratch_bytes, scratch_bytes, views_bytes, pick_bytes, inertia_bytes;
+    uint8_t *graph_scratch, *part_scratch;
+    size_t graph_scratch_bytes, part_scratch_bytes, scratch_bytes, views_bytes, pick_bytes, inertia_bytes;
     float *matrices; /* of all jobs */
     size_t matrices_floats;
     void *pick_scratch, *inertia_scratch, *schedule;
@@ -436,6 +450,14 @@ noh_due noh_stage_look_graph(noh_stage_kind *k, uint32_t index, const noh_lod_se
                              float pixels_per_metre);
 uint32_t noh_stage_graph_work(const noh_stage_kind *k, uint32_t index); /* joints times clips in its pose */
 noh_result noh_stage_check_graph(const noh_stage_kind *k, const void *slot, noh_error *error);
+
+/* ---- parts ---- */
+
+size_t noh_stage_part_bytes(const noh_kind_desc *kind); /* of an actor's states */
+noh_result noh_stage_check_parts(const noh_stage_kind *k, const void *states, noh_error *error);
+/* Between the halves of an update of a character for a tick of the stage's clock. */
+void noh_stage_run_parts(const noh_stage *s, const noh_stage_job_part *job, const noh_stage_kind *k, uint32_t index,
+                         int64_t clock, noh_character_scratch *scratch);
 
 void noh_stage_look_at(noh_stage *s, uint32_t first, uint32_t end);
 void noh_stage_share(noh_stage *s);

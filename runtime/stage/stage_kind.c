@@ -16,16 +16,17 @@ static void sample_rest(void *user, uint32_t clip, uint32_t clip_tick, uint32_t 
     const noh_stage_kind *k = user;
     (void)clip, (void)clip_tick;
     if (joint_count) memcpy(pose, k->skeleton.bind_pose, joint_count * sizeof *pose);
-    for (uint32_t i = 0; i < float_count; i++) floats[i] = 0.0f;
+    for (uint32_t i = 0; i < float_count; i++) floats[i] = k->set.float_defaults ? k->set.float_defaults[i] : 0.0f;
 }
 
-static void open_rest(noh_stage_kind *k)
+static void open_rest(noh_stage_kind *k, const noh_stage_needs *n)
 {
     memset(&k->rest_clip, 0, sizeof k->rest_clip);
     k->rest_clip.loop = NOH_LOOP_REPEAT;
     k->set.clip_count = 1;
     k->set.joint_count = k->skeleton.joint_count;
-    k->set.float_count = k->skeleton.joint_count ? 0 : 1;
+    k->set.float_count = n->shape.float_count;
+    k->set.float_defaults = k->desc.part_count && n->weight_count ? k->defaults : NULL; /* filled in by open_floats */
     k->set.clips = &k->rest_clip;
     k->set.bind_pose = k->skeleton.joint_count ? k->skeleton.bind_pose : &k->rest_pose;
     k->set.sample = sample_rest;
@@ -48,7 +49,7 @@ static noh_result open_clips(noh_stage *s, const noh_stage_desc *desc, uint32_t 
     if (k->bank) {
         k->set = k->bank->clips;
     } else if (result == NOH_OK) {
-        open_rest(k);
+        open_rest(k, n);
     }
     return result;
 }
@@ -356,6 +357,8 @@ noh_result noh_stage_open_kind(noh_stage *s, const noh_stage_desc *desc, uint32_
     s->jobs[0].scratch = blocks->scratch;
     if (result == NOH_OK) result = open_bounds(s, k, error);
     if (result == NOH_OK) result = noh_stage_open_graphs(k, kind, blocks->graphs[kind], &needs, error);
+    if (k->desc.part_count) memcpy(k->parts, k->desc.parts, k->desc.part_count * sizeof *k->parts);
+    k->desc.parts = NULL;
     k->desc.layers = NULL;
     k->desc.graphs = NULL;
     return result;

@@ -23,7 +23,7 @@ static noh_clip_set job_set(const noh_stage_job_part *job, const noh_stage_kind 
  * the value of its namesake. */
 static void take_floats(const noh_stage_kind *k, const noh_character *ch, float *floats)
 {
-    const uint32_t own = k->bank ? k->set.float_count : 0;
+    const uint32_t own = k->bank || (k->desc.part_count && k->float_count) ? k->set.float_count : 0;
     if (own) {
         const float *shown = noh_character_floats(ch, floats);
         if (shown != floats) memcpy(floats, shown, own * sizeof *floats);
@@ -108,10 +108,15 @@ static void update(const noh_stage *s, const noh_stage_job_part *job, poser *p, 
 {
     noh_stage_kind *k = p->k;
     noh_character *ch = noh_stage_character(k, i);
+    const int64_t clock = noh_character_pose_clock(ch);
     if (k->graph_count) {
-        noh_stage_pose_graph(s, job, k, i, noh_character_pose_clock(ch) - noh_character_clock(ch), 0, &p->sampler);
+        noh_stage_pose_graph(s, job, k, i, clock - noh_character_clock(ch), 0, &p->sampler);
     }
-    noh_character_update(ch, &p->set, &k->skeleton, k->skeleton.joint_count ? k->joint_radii : NULL, &p->scratch);
+    noh_character_update_begin(ch, &p->set, &p->scratch);
+    if (k->desc.part_count) {
+        noh_stage_run_parts(s, job, k, i, clock, &p->scratch);
+    }
+    noh_character_update_end(ch, &k->skeleton, k->skeleton.joint_count ? k->joint_radii : NULL, &p->scratch);
 }
 
 void noh_stage_pose_todo(noh_stage *s, uint32_t number, uint32_t first, uint32_t end)

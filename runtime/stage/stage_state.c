@@ -109,6 +109,9 @@ static noh_result check_kind(const reader *r, uint32_t kind, noh_error *error)
         if (actors[i].alive && result == NOH_OK) {
             result = noh_stage_check_graph(k, in_copy(r, k->graph_slots + (size_t)i * k->slot_bytes), error);
         }
+        if (actors[i].alive && result == NOH_OK) {
+            result = noh_stage_check_parts(k, in_copy(r, k->part_states + (size_t)i * k->part_bytes), error);
+        }
     }
     what = result == NOH_OK ? bad_list(r, k, &head->kinds[kind]) : NULL;
     if (!what && result == NOH_OK) {

@@ -1,6 +1,7 @@
 /* A stage has the same bits on every processor: the states of a show, saved and put back in the middle, are hashed
  * frame by frame. The build for this machine writes the hashes beside its packs; those for other processors (make
  * cross) read the same packs, and compare. */
+#include "support/look_part.h"
 #include "support/support.h"
 
 #include <stdio.h>
@@ -28,6 +29,8 @@ typedef struct show {
     noh_stage_plan plan;
     noh_stage *stage;
     void *memory;
+    look_joint joint;
+    noh_stage_part gaze;
 } show;
 
 static void path_of(const char *name, char path[1024])
@@ -53,6 +56,13 @@ static void open_show(show *s)
     s->kinds[0].root_up = 1;
     s->kinds[0].inertia = 1;
     s->kinds[0].graphs = "moves";
+    s->joint = look_joint_of(&s->packs[0], "head");
+    s->gaze.modify = look_modify;
+    s->gaze.check = look_check;
+    s->gaze.user = &s->joint;
+    s->gaze.state_bytes = sizeof(look_state);
+    s->kinds[0].parts = &s->gaze;
+    s->kinds[0].part_count = 1;
     s->kinds[1].actor_count = MASKS;
     s->desc.kinds = s->kinds;
     s->desc.kind_count = 2;
@@ -96,6 +106,12 @@ static void frames(show *s, uint32_t first, uint32_t end, uint64_t *hashes)
         if (f % 40u == 10u)
             (void)noh_actor_play_graph(s->stage, actor, 0, "moves", f % 80u == 10u ? NULL : &leap, NULL);
         if (f % 8u == 2u) (void)noh_actor_set_parameter(s->stage, actor, f / 8u % 4u, 0.01f * (float)f, NULL);
+        if (f % 16u == 5u) {
+            look_state *gaze = noh_actor_part(s->stage, actor, 0);
+            gaze->target[0] = 0.1f * (float)(f % 50u);
+            gaze->target[1] = 1.5f;
+            gaze->wanted = 1.0f;
+        }
         if (f % 16u == 3u) (void)noh_actor_hold_float(s->stage, actor, f % 20u, 0.01f * (float)f, 0.5f, NULL);
         noh_view_orbit(&view, middle, 0.05f * (float)f, 0.3f, 3.0f + 0.2f * (float)(f % 80u), 640, 360);
         assert_int_equal(noh_stage_step(s->stage, FRAME_TICKS + f % 7u, NULL, NULL, NULL), NOH_OK);

@@ -1,6 +1,7 @@
 /* The jobs of a stage run by four threads at once: in every frame the state and what is shown are those of one thread
  * to the bit, and (tests/tsan.sh) there is no race. */
 #define _POSIX_C_SOURCE 200112L
+#include "support/look_part.h"
 #include "support/stage_fixture.h"
 
 #include <pthread.h>
@@ -63,6 +64,8 @@ static void run_phases(pool *p)
 
 static void open_cast(cast *c)
 {
+    static look_joint joint;
+    static const noh_stage_part gaze = { "gaze", look_modify, look_check, &joint, sizeof(look_state), 0 };
     static const uint32_t counts[KINDS] = { 24, 12 };
     memset(c, 0, sizeof *c);
     cast_map(c, PUPPETS, "demo/puppet_levels.noh");
@@ -74,6 +77,9 @@ static void open_cast(cast *c)
     c->kinds[PUPPETS].root_axes = NOH_ROOT_GROUND;
     c->kinds[PUPPETS].root_up = 1;
     c->kinds[PUPPETS].graphs = "moves";
+    joint = look_joint_of(&c->packs[PUPPETS], "head");
+    c->kinds[PUPPETS].parts = &gaze;
+    c->kinds[PUPPETS].part_count = 1;
     c->desc.kinds = c->kinds;
     c->desc.kind_count = KINDS;
     c->desc.job_count = THREADS;
@@ -113,6 +119,11 @@ static void direct(cast *c, test_random *r, uint32_t frame)
     if (what == 2 && actor.id) (void)noh_actor_play(c->stage, actor, 0, clips[frame % 3u], NULL, NULL);
     if (what == 4 && actor.id) { /* where it plays the graph */
         (void)noh_actor_set_parameter(c->stage, actor, frame % 3u, test_random_float(r, 0, 1), NULL);
+    }
+    if (what == 4 && index < c->kinds[PUPPETS].actor_count && actor.id) {
+        look_state *state = noh_actor_part(c->stage, actor, 0);
+        state->target[0] = test_random_float(r, -3, 3);
+        state->wanted = 1.0f;
     }
     if (what == 3 && actor.id) (void)noh_actor_hold_float(c->stage, actor, 0, test_random_float(r, 0, 1), 0.5f, NULL);
 }

@@ -1,0 +1,144 @@
+/* stage_part.c: parts: functions that change a pose before it is shown. */
+#include "stage/part.h"
+
+#include <string.h>
+
+#include "anim/clock_internal.h"
+#include "pose/local_to_model.h"
+#include "stage/stage_internal.h"
+
+/* ---- where states lie ---- */
+
+static size_t aligned(size_t bytes)
+{
+    return (bytes + 15u) & ~(size_t)15u;
+}
+
+size_t noh_stage_part_bytes(const noh_kind_desc *d)
+{
+    size_t bytes = d->part_count ? sizeof(noh_stage_part_head) : 0;
+    for (uint32_t i = 0; i < d->part_count; i++) bytes += aligned(d->parts[i].state_bytes);
+    return bytes;
+}
+
+/* The states of an actor: a head, then each part's. */
+static uint8_t *states_of(const noh_stage_kind *k, uint32_t index)
+{
+    return k->part_states + (size_t)index * k->part_bytes;
+}
+
+static size_t state_offset(const noh_stage_kind *k, uint32_t part)
+{
+    size_t at = sizeof(noh_stage_part_head);
+    for (uint32_t i = 0; i < part; i++) at += aligned(k->parts[i].state_bytes);
+    return at;
+}
+
+void *noh_actor_part(noh_stage *stage, noh_actor actor, uint32_t part)
+{
+    noh_stage_kind *k;
+    const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
+    if (!a || part >= k->desc.part_count || stage->phase > NOH_STAGE_STEPPING) {
+        return NULL;
+    }
+    return states_of(k, noh_stage_index(k, a)) + state_offset(k, part);
+}
+
+noh_result noh_stage_check_parts(const noh_stage_kind *k, const void *states, noh_error *error)
+{
+    const noh_stage_part_head *head = states;
+    if (k->desc.part_count && head->was_posed > 1u) {
+        return noh_fail(error, NOH_ERR_DATA, "state: bad head of an actor's parts", 0, 0);
+    }
+    for (uint32_t i = 0; i < k->desc.part_count; i++) {
+        const noh_stage_part *part = &k->parts[i];
+        const char *what = part->check ? part->check(part->user, (const uint8_t *)states + state_offset(k, i)) : NULL;
+        if (what) return noh_fail(error, NOH_ERR_DATA, what, i, 0);
+    }
+    return NOH_OK;
+}
+
+/* ---- what a part may ask ---- */
+
+const float *noh_part_model(noh_part_work *work)
+{
+    NOH_ASSERT(work);
+    if (!work->skeleton->joint_count) {
+        return NULL;
+    }
+    noh_local_to_model(work->skeleton, work->local, work->skeleton->joint_count, work->model);
+    return work->model;
+}
+
+/* Where a float lies in the set; NOH_NONE: behind it. */
+static uint32_t place_of(const noh_part_work *work, uint32_t index)
+{
+    const noh_stage_kind *k = work->kind;
+    return index < k->float_count && k->sources[index] < k->set.float_count ? k->sources[index] : NOH_NONE;
+}
+
+float noh_part_float(const noh_part_work *work, uint32_t index)
+{
+    const uint32_t at = place_of(work, index);
+    return at == NOH_NONE ? 0.0f : work->floats[at];
+}
+
+int noh_part_set_float(noh_part_work *work, uint32_t index, float value)
+{
+    const uint32_t at = place_of(work, index);
+    if (at == NOH_NONE || value - value != 0.0f) {
+        return 0;
+    }
+    work->floats[at] = value;
+    return 1;
+}
+
+/* ---- in a job ---- */
+
+static void set_time(noh_part_work *w, noh_stage_part_head *head, int64_t clock, int cut)
+{
+    w->clock = clock;
+    w->cut = cut || !head->was_posed;
+    w->ticks = 0;
+    if (!w->cut && clock > head->posed_clock) {
+        const int64_t ticks = noh_clock_since(clock, head->posed_clock);
+        w->ticks = ticks > UINT32_MAX ? UINT32_MAX : (uint32_t)ticks;
+    }
+    if (w->cut || w->ticks) head->posed_clock = clock; /* a state that is ahead stays there until the clock comes */
+    head->was_posed = 1;
+}
+
+/* That of whom it hangs on, where it does. */
+static noh_place place_in_world(const noh_stage *s, const noh_stage_actor *a)
+{
+    const noh_stage_actor *on = a->parent ? noh_stage_actor_of(s, (noh_actor){ a->parent }, NULL) : NULL;
+    return on ? on->place : a->place;
+}
+
+void noh_stage_run_parts(const noh_stage *s, const noh_stage_job_part *job, const noh_stage_kind *k, uint32_t index,
+                         int64_t clock, noh_character_scratch *scratch)
+{
+    const noh_character *ch = noh_stage_character(k, index);
+    uint8_t *states = states_of(k, index);
+    noh_part_work w;
+    memset(&w, 0, sizeof w);
+    w.actor = noh_stage_actor_at(s, k->first_actor + index);
+    w.skeleton = &k->skeleton;
+    w.local = scratch->local;
+    w.joint_count = scratch->joint_count;
+    w.level = ch->lod.mesh;
+    w.pixels_per_metre = ch->lod.pixels_per_metre;
+    w.place = place_in_world(s, &k->actors[index]);
+    w.kind = k;
+    w.floats = scratch->floats;
+    w.model = scratch->model;
+    w.scratch = job->part_scratch;
+    set_time(&w, (noh_stage_part_head *)(void *)states, clock, s->shown[k->first_actor + index].due == NOH_DUE_AT_ONCE);
+    states += sizeof(noh_stage_part_head);
+    for (uint32_t i = 0; i < k->desc.part_count; i++) {
+        w.state = states;
+        w.user = k->parts[i].user;
+        k->parts[i].modify(&w);
+        states += aligned(k->parts[i].state_bytes);
+    }
+}
