@@ -546,7 +546,8 @@ uint32_t noh_stage_jobs(noh_stage *stage);
  * locks, nothing is atomic, and the bits do not depend on the number of threads. */
 void noh_stage_job(noh_stage *stage, uint32_t job);
 
-/* Run what is left of the phases, and hand everything to the GPU: on the thread of the context.
+/* Run what is left of the phases, and hand everything to the GPU: on the thread of the context. Faces that move are
+ * drawn into textures meanwhile: bind your framebuffer and set the viewport afterwards.
  * errors  ARG no frame has begun */
 noh_result noh_stage_frame_end(noh_stage *stage, noh_error *error);
 

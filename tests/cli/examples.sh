@@ -49,7 +49,7 @@ run walker_cpu "$build/mask.noh"
 expect 0 'of a pack without a skeleton it draws nothing'
 
 if [ -n "${NOH_SAN:-}" ]; then
-    skip 'face_gl, walker, cast' 'the driver leaks under the sanitizer'
+    skip 'face_gl, walker, states, cast' 'the driver leaks under the sanitizer'
 else
     run face_gl "$build/mask.noh"
     expect 0 'face_gl draws a smile'
@@ -70,6 +70,15 @@ else
     expect 1 'a pack without the clip is refused'
     check 'by name' grep -q actor "$work/err"
 
+    run states "$build/demo/puppet_levels.noh" -o states.png
+    expect 0 'states plays the graph of the pack'
+    check 'it stands, walks, hurries, bows' sh -c 'test "$(sed -n "s/.* s  //p" "$1" | tr "\n" " ")" = "acts foot_right foot_left foot_right foot_left foot_right foot_left bowing bow "' - "$work/out"
+    check 'and comes two metres far' grep -q '^2\.1. m' "$work/out"
+    check 'and it saves a picture' sh -c 'test "$(wc -c <"$1")" -gt 50000' - "$work/states.png"
+    run states "$build/mask.noh"
+    expect 1 'a pack without a graph is refused'
+    check 'by name' grep -q 'graphs of a kind' "$work/err"
+
     field() { sed -n "s/.*\"$1\": \([0-9]*\).*/\1/p" "$work/out"; }
     run cast "$build/demo/puppet_levels.noh" --json --seconds 1 -o cast.png
     expect 0 'cast plays for a second'
@@ -86,7 +95,7 @@ awk '/^```C$/ { inside = 1; next } /^```$/ { inside = 0 } inside' README.md >"$w
 check 'the README quotes walker_cpu.c' sh -c 'test -s "$1" && ! grep -vxF -f tools/examples/walker_cpu.c "$1"' - "$work/quoted"
 for example in tools/examples/*.c; do
     name=$(basename "$example" .c)
-    case $name in walker) most=60 ;; cast) most=200 ;; *) most=150 ;; esac
+    case $name in walker) most=60 ;; states) most=100 ;; cast) most=200 ;; *) most=150 ;; esac
     check "$name has less than $most lines" test "$(wc -l <"$example")" -lt $most
 done
 finish

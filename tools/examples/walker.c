@@ -44,10 +44,10 @@ int main(int argc, char **argv)
         (void)noh_actor_place(stage, actor, &place, NULL);
         place.position[1] += 0.78f;
         noh_view_orbit(&view, place.position, 0.6f, 0.1f, 3.0f, 960, 720);
-        target_clear(&gl.gl, &picture);
-        if (noh_stage_frame(stage, NOH_TICKS_PER_SECOND / 60, &view, on_key, NULL, &e) ||
-            noh_stage_draw(stage, NOH_PASS_COLOR, 0, NULL, &e))
+        if (noh_stage_frame(stage, NOH_TICKS_PER_SECOND / 60, &view, on_key, NULL, &e))
             return start_fail(&gl, "frame", &e);
+        target_clear(&gl.gl, &picture); /* after the frame, which draws into textures of its own */
+        if (noh_stage_draw(stage, NOH_PASS_COLOR, 0, NULL, &e)) return start_fail(&gl, "draw", &e);
     }
     (void)noh_actor_place(stage, actor, &place, NULL);
     printf("%.2f m from where it began, in %llu bytes and %llu on the GPU\n", (double)place.position[2],
