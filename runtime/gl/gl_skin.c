@@ -181,13 +181,16 @@ noh_result noh_gl_skin_set_tint(noh_gl_skin *skin, uint32_t instance, const uint
 {
     const uint32_t row = first_row(mesh_of(skin, instance), instance) + 3u;
     const float *own = skin->rows + 4u * (size_t)row;
-    uint32_t tile[4], bits[3];
+    uint32_t tile[4], bits[3], apart = 0;
     if (skin->plan.mode != NOH_PALETTE_TEXTURE) {
         return no_crowds(instance, error);
     }
-    for (int i = 0; i < 4; i++) tile[i] = tile_bits(own, i, 0);
     noh_gl_tint_bits(tint, bits);
-    put_tile(skin, row, tile, bits);
+    for (int i = 0; i < 3; i++) apart |= tile_bits(own, i, 1) ^ bits[i];
+    if (apart) {
+        for (int i = 0; i < 4; i++) tile[i] = tile_bits(own, i, 0);
+        put_tile(skin, row, tile, bits);
+    }
     return NOH_OK;
 }
 
