@@ -101,7 +101,7 @@ run_for() { # FRAMES OUT ARGUMENTS...
 changed() { # pixels of a hundred thousand in which a screenshot differs from the first
     "$build/tests/gl/picture_diff" "$work/first.png" "$work/$1.png" 255 100 | sed 's/.*, \([0-9.]*\) % of.*/\1/' | awk '{ print int($1 * 1000) }'
 }
-run_for 1 first
+run_for 4 first # tables of the panels have found their widths by then
 run_for 60 followed --camera follow
 run_for 60 fixed --camera fixed
 echo "# changed: $(changed followed) followed, $(changed fixed) fixed"
@@ -238,8 +238,8 @@ figure
 paused=$shot
 
 # The list of paths opens below its box; mrt is its third entry, 58 points below.
-click 1030 260
-click 1030 318
+click 1030 306
+click 1030 364
 check 'another path draws the same figure' same "$paused" "$shot"
 
 xdotool key Tab
@@ -314,7 +314,7 @@ figure
 native 1
 check 'L shows the next level, as noh render draws it' same "$shot" "$drawn"
 check 'which is another picture' differ "$rest" "$shot"
-click 930 264
+click 930 310
 native 3
 check 'a click on the third level shows that' same "$shot" "$drawn"
 click 100 55
@@ -323,9 +323,9 @@ drag 15 79 250 79
 native 3 --weight cheekPuff=1
 check 'and targets move it' same "$shot" "$drawn"
 click 255 55
-click 930 213
+click 930 259
 check 'a click on the full one shows that again' same "$rest" "$shot"
-click 930 281
+click 930 327
 check 'by pixels' settled
 check 'the full mesh is shown where no other is good enough' same "$rest" "$shot"
 wheel 5 12
@@ -348,10 +348,10 @@ check 'by pixels again: the same one' same "$shot" "$far"
 wheel 4 12
 settled
 check 'nearer, it is the full mesh again, or as good' same "$rest" "$shot"
-click 1215 303
-check 'about nine pixels allowed' settled
-native 2
-check 'are enough for the second level' same "$shot" "$drawn"
+click 1255 349
+check 'sixteen pixels allowed' settled
+native 1
+check 'are enough for the next level' same "$shot" "$drawn"
 lose
 settled
 check 'after a lost context it is at the same level' same "$shot" "$drawn"

@@ -50,9 +50,11 @@ static int add_kind(figure *f, uint32_t skeleton, const uint32_t *nodes, uint32_
     k->levels_by_number = 1;
     k->finest_level = d->level;
     k->actor_count = k->near_count = d->actor_count ? d->actor_count : 1u;
-    k->layers = &f->layer;
-    k->layer_count = 1;
+    k->layers = d->layers ? d->layers : &f->layer;
+    k->layer_count = d->layers ? d->layer_count : 1u;
     k->inertia = d->inertia;
+    k->root_axes = d->root_axes;
+    k->root_up = 1;
     k->unpickable = !d->pickable;
     f->stage_desc.kind_count++;
     return 0;
@@ -146,7 +148,7 @@ int figure_plan(figure *f, const figure_desc *desc, const noh_gl_caps *caps)
     f->layer.track_count = desc->track_count;
     d->kinds = f->kinds;
     d->full_detail = !desc->by_error;
-    d->tangents = desc->view == NOH_VIEW_TANGENT;
+    d->tangents = desc->tangents || desc->view == NOH_VIEW_TANGENT;
     d->halves = desc->accumulate == NOH_ACCUMULATE_F16 ? 1 : desc->accumulate == NOH_ACCUMULATE_F32 ? -1 : 0;
     d->morph_path = (uint32_t)desc->path;
     d->without_depth = 1;

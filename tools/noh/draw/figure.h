@@ -27,14 +27,18 @@
 /* Zero is a good value for all but file. */
 typedef struct figure_desc {
     const pack_file *file;
-    const pack_file *clips;    /* whose clips are played; may be `file`. NULL: none */
-    uint32_t level;            /* the finest LOD level that is there, as `noh info` counts them */
-    int by_error;              /* 1: levels are chosen by error, and fade; 0: `level` is shown, with all else in full */
-    uint32_t actor_count;      /* of each kind; 0: 1. Only the first of each is there */
-    uint32_t track_count;      /* clips at one time, 1..NOH_LAYER_TRACKS_MAX; 0: 2, so that one fades into another */
+    const pack_file *clips; /* whose clips are played; may be `file`. NULL: none */
+    uint32_t level;         /* the finest LOD level that is there, as `noh info` counts them */
+    int by_error;           /* 1: levels are chosen by error, and fade; 0: `level` is shown, with all else in full */
+    uint32_t actor_count;   /* of each kind; 0: 1. Only the first of each is there */
+    uint32_t track_count;   /* clips at one time, 1..NOH_LAYER_TRACKS_MAX; 0: 2, so that one fades into another */
+    const noh_layer_desc *layers; /* [layer_count] in place of one for all; they must outlive the figure */
+    uint32_t layer_count;
+    uint32_t root_axes;        /* NOH_ROOT_* that clips move it by; y is up */
     uint32_t held_float_count; /* floats held at one time, FIGURE_HELD_ALL: all targets; 0: none */
     int inertia;               /* 1: room for NOH_PLAY_INERTIA */
     int pickable;              /* 1: noh_stage_pick finds it */
+    int tangents;              /* 1: accumulators with tangents, even where no view shows them */
     noh_morph_path path;
     noh_accumulate accumulate;
     noh_debug_view view;

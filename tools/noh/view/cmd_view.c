@@ -17,8 +17,8 @@ typedef struct view_args {
 
 static int check_args(view_args *a)
 {
-    int status = parse_path(a->path, &a->run.desc.load.path);
-    if (!status) status = parse_accumulate(a->accumulate, &a->run.desc.load.accumulate);
+    int status = parse_path(a->path, &a->run.desc.morph_path);
+    if (!status) status = parse_accumulate(a->accumulate, &a->run.desc.accumulate);
     if (!status && a->lod) status = parse_levels(a->lod, &a->run.desc.lod.level_count, &a->run.desc.lod.by_error);
     if (status) {
         return status;
@@ -70,6 +70,10 @@ static const option options[] = {
       .value = "follow|fixed",
       .initial = "follow",
       .what = "whether the camera goes with a figure that walks over the ground" },
+    { .name = "--walk",
+      .kind = OPTION_FLAG,
+      .at = offsetof(view_args, run.desc.root_motion),
+      .what = "show a floor, over which clips move the figure" },
     { .name = "--bones",
       .kind = OPTION_FLAG,
       .at = offsetof(view_args, run.desc.show_bones),

@@ -34,16 +34,19 @@ int view_app_open(view_app *a, const view_model_desc *desc)
 {
     int x, y, status = view_screen_open(&a->screen, &a->gpu);
     a->desc = *desc;
-    a->show_panels = a->show_layers = a->follow = 1;
-    a->speed = 1.0f;
+    a->show_panels = a->show_layers = a->follow = a->cut = 1;
+    a->show_floor = desc->root_motion;
+    a->speed = a->how.speed = a->how.weight = 1.0f;
+    a->how.fade_s = 0.2f;
     a->layer_gain = 1.0f;
-    a->lod.settings.pixels = 1.0f;
+    a->lod.pixels = 1.0f;
     a->screen.width = desc->width;
     a->screen.height = desc->height;
     a->window_width = (float)desc->width;
     a->window_height = (float)desc->height;
     a->scale = 1.0f;
     figure_pixels(a, &x, &y, &a->desc.width, &a->desc.height);
+    if (!status) status = view_marks_open(&a->marks, &a->gpu);
     if (!status) status = view_model_open(&a->gpu, &a->desc, &a->model);
     if (status) {
         return status;
@@ -60,12 +63,14 @@ void view_app_close(view_app *a)
     noh_gl_timer_delete(&a->times.accumulate_timer, &a->gpu.gl);
     noh_gl_timer_delete(&a->times.draw_timer, &a->gpu.gl);
     view_model_close(a->model);
+    view_marks_close(&a->marks);
     view_screen_close(&a->screen);
 }
 
 void view_app_lost(view_app *a)
 {
     memset(&a->screen, 0, sizeof a->screen);
+    a->marks.g = NULL;
     memset(&a->times.accumulate_timer, 0, sizeof a->times.accumulate_timer);
     memset(&a->times.draw_timer, 0, sizeof a->times.draw_timer);
     view_model_lost(a->model, &a->gpu);
@@ -73,8 +78,9 @@ void view_app_lost(view_app *a)
 
 int view_app_restore(view_app *a)
 {
-    const int status = view_screen_open(&a->screen, &a->gpu);
+    int status = view_screen_open(&a->screen, &a->gpu);
     open_timers(a);
+    if (!status) status = view_marks_open(&a->marks, &a->gpu);
     return status ? status : view_model_restore(a->model, &a->gpu);
 }
 
@@ -84,7 +90,7 @@ int view_app_show(view_app *a, const char *path)
     view_model *shown;
     int status;
     desc.path = path;
-    desc.anim = NULL; /* another pack's clips belonged to the old model */
+    desc.anim = desc.part = NULL; /* another pack's clips belonged to the old model */
     status = view_model_open(&a->gpu, &desc, &shown);
     keep_failure(a, status);
     if (status) {
@@ -95,6 +101,11 @@ int view_app_show(view_app *a, const char *path)
     a->desc = a->wish = desc;
     a->desc.path = a->wish.path = shown->path;
     memset(&a->log, 0, sizeof a->log);
+    memset(&a->pad, 0, sizeof a->pad);
+    memset(&a->pick, 0, sizeof a->pick);
+    memset(&a->walked, 0, sizeof a->walked);
+    a->part[0] = 0;
+    a->cut = 1;
     view_frame_all(a);
     return 0;
 }
@@ -116,14 +127,15 @@ void view_frame_all(view_app *a)
     uint32_t width, height;
     figure_pixels(a, &x, &y, &width, &height);
     a->orbit = orbit_fit(&around, (double)width / (double)height);
-    scene_anchor(&a->model->scene, a->anchor);
+    a->floor = fabs(around.low[1]) < 0.05 * a->orbit.radius ? 0.0 : around.low[1];
+    view_model_anchor(a->model, a->anchor);
 }
 
 /* A clip that walks takes the camera along, and back where it begins again. */
 static void follow(view_app *a)
 {
     double anchor[3];
-    scene_anchor(&a->model->scene, anchor);
+    view_model_anchor(a->model, anchor);
     for (int c = 0; c < 3; c++) {
         a->orbit.center[c] += a->follow ? anchor[c] - a->anchor[c] : 0.0;
         a->anchor[c] = anchor[c];
@@ -158,9 +170,24 @@ void view_zoom(view_app *a, double steps)
 
 void view_play(view_app *a, uint32_t clip, int beside)
 {
-    const int status = beside ? view_add(a->model, clip) : view_start(a->model, clip);
+    const int status = view_start(a->model, clip, &a->how, beside);
     keep_failure(a, status);
     a->playing = a->playing || !status;
+}
+
+void view_pad_choose(view_app *a, uint32_t clip)
+{
+    keep_failure(a, view_pad_toggle(&a->pad, a->model, clip));
+}
+
+void view_pad_switch(view_app *a)
+{
+    if (a->pad.plays) {
+        view_pad_stop(&a->pad, a->model);
+    } else {
+        keep_failure(a, view_pad_play(&a->pad, a->model));
+        a->playing |= a->pad.plays;
+    }
 }
 
 void view_toggle_play(view_app *a)
@@ -175,10 +202,56 @@ void view_toggle_play(view_app *a)
 static void log_event(void *user, const view_passed *event)
 {
     view_log *log = (view_log *)user;
-    snprintf(log->lines[log->next], sizeof log->lines[0], "%9.3f s   %s / %s   track %u, weight %.2f", event->clock_s,
-             event->clip, event->key, event->track, (double)event->weight);
+    snprintf(log->lines[log->next], sizeof log->lines[0], "%9.3f s   %s: %s / %s   weight %.2f", event->clock_s,
+             event->layer, event->clip, event->key, (double)event->weight);
     log->next = (log->next + 1) % VIEW_LINES;
     log->total++;
+}
+
+/* ---- picking ---- */
+
+void view_pick_window(view_app *a, float x, float y)
+{
+    char text[512];
+    float box[4];
+    view_app_stage(a, box);
+    view_pick_at(&a->pick, a->model, &a->orbit, (x - box[0]) * a->scale, (y - box[1]) * a->scale);
+    if (a->pick.is_on) {
+        view_pick_text(&a->pick, a->model, text, sizeof text);
+        printf("picked %s\n", text);
+        fflush(stdout);
+    }
+}
+
+/* ---- walking ---- */
+
+void view_walk(view_app *a, int root_motion)
+{
+    a->wish.root_motion = root_motion;
+    a->show_floor |= root_motion;
+    a->wants_reload = 1;
+}
+
+void view_walk_home(view_app *a)
+{
+    view_model_send_home(a->model);
+    memset(&a->walked, 0, sizeof a->walked);
+}
+
+/* A point of the path for each hundredth of the figure's size. */
+static void note_place(view_app *a)
+{
+    const noh_place place = view_model_place(a->model);
+    view_path *p = &a->walked;
+    const float *last = p->points[(p->next + VIEW_PATH - 1u) % VIEW_PATH];
+    const float x = place.position[0], z = place.position[2];
+    if (a->model->root_motion &&
+        (!p->count || hypot((double)(x - last[0]), (double)(z - last[1])) > 0.01 * a->orbit.radius)) {
+        p->points[p->next][0] = x;
+        p->points[p->next][1] = z;
+        p->next = (p->next + 1u) % VIEW_PATH;
+        p->count += p->count < VIEW_PATH;
+    }
 }
 
 /* ---- a frame ---- */
@@ -196,45 +269,70 @@ static void poll_timer(noh_gl_timer *timer, const noh_gl_api *gl, double *ms)
     }
 }
 
-static void animate(view_app *a, double seconds)
+/* While clips are paused the stage's time stands still, and with it fades of LOD levels: they are cut then. A pose is
+ * made when time has passed, so what was changed by hand takes a tick. */
+static int animate(view_app *a, double seconds)
 {
     const uint64_t start = noh_clock_ns();
-    if (a->playing) {
-        view_step(a->model, seconds * (double)a->speed, log_event, &a->log);
+    const int stands = !a->playing && view_plays(a->model);
+    noh_gl_camera camera;
+    int status;
+    if (!stands) {
+        view_step(a->model, seconds * (double)(a->playing ? a->speed : 1.0f), log_event, &a->log);
+    } else if (a->model->touched) {
+        view_step(a->model, 1.0 / NOH_TICKS_PER_SECOND, log_event, &a->log);
     }
-    view_model_pose(a->model);
+    view_pad_frame(&a->pad, a->model);
+    view_model_hold(a->model);
+    view_lod_begin(&a->lod, a->model);
     follow(a);
+    note_place(a);
+    orbit_camera(&a->orbit, &camera);
+    status = view_model_pose(a->model, &camera, a->cut || stands);
+    a->cut = 0;
     smooth(&a->times.animate, (double)(noh_clock_ns() - start) * 1e-6);
+    return status;
 }
 
 static int fit_canvas(view_app *a, int *x, int *y)
 {
-    canvas *c = &a->model->drawing.canvas;
     uint32_t width, height;
     figure_pixels(a, x, y, &width, &height);
     a->orbit.aspect = (double)width / (double)height;
     a->desc.width = a->wish.width = width;
     a->desc.height = a->wish.height = height;
-    if (width == c->width && height == c->height) {
-        return 0;
-    }
-    canvas_close(c);
-    a->model->drawing.has_canvas = 0;
-    if (canvas_open(c, &a->gpu, width, height)) {
-        return EXIT_FAILED;
-    }
-    a->model->drawing.has_canvas = 1;
-    return 0;
+    return view_model_fit(a->model, &a->gpu, width, height);
 }
 
 /* Deltas of positions are in model units: at gain 1 the largest is white or black. */
 static void draw_layers(view_app *a)
 {
-    const load *l = &a->model->drawing.load;
+    const view_model *m = a->model;
     const float gain = a->layer_gain;
-    const float gains[3] = { 0.5f * gain / a->model->delta_max, gain, gain };
-    if (l->morph.morph && a->show_panels && a->show_layers) {
-        view_screen_layers(&a->screen, l->morph.morph, gains);
+    const float gains[3] = { 0.5f * gain / m->delta_max, gain, gain };
+    noh_stage_drawn drawn;
+    for (uint32_t i = 0; m->is_morphed && a->show_panels && a->show_layers; i++) {
+        if (noh_actor_on_gl(m->figure->stage, m->figure->actors[0], i, &drawn, NULL)) return;
+        if (drawn.is_morphed) {
+            view_screen_layers(&a->screen, &m->morph_plan, &drawn.morph, gains);
+            return;
+        }
+    }
+}
+
+static void draw_marks(view_app *a)
+{
+    const uint32_t height = a->model->canvas.height;
+    float path[VIEW_PATH][2], point[3];
+    const view_path *p = &a->walked;
+    if (a->show_floor) view_marks_floor(&a->marks, &a->orbit, a->floor, height);
+    for (uint32_t i = 0; i < p->count; i++) {
+        memcpy(path[i], p->points[(p->next + VIEW_PATH - p->count + i) % VIEW_PATH], sizeof path[i]);
+    }
+    if (a->show_floor && p->count) view_marks_path(&a->marks, &a->orbit, a->floor, &path[0][0], p->count, height);
+    if (a->pick.is_on) {
+        view_pick_point(&a->pick, a->model, point);
+        view_marks_point(&a->marks, &a->orbit, point, height);
     }
 }
 
@@ -242,25 +340,24 @@ static int draw(view_app *a)
 {
     const noh_gl_api *gl = &a->gpu.gl;
     view_times *t = &a->times;
-    drawing *d = &a->model->drawing;
     noh_gl_camera camera;
-    noh_gl_morph_stats stats;
-    int status = 0;
-    memset(&stats, 0, sizeof stats);
+    noh_error error = { NOH_OK, "", 0, 0 };
+    int status;
     orbit_camera(&a->orbit, &camera);
     noh_gl_timer_begin(&t->accumulate_timer, gl);
-    if (!d->bones) status = load_update(&d->load, &stats);
+    status = noh_stage_frame_end(a->model->figure->stage, &error) ? tool_fail_error(a->model->path, &error) : 0;
     noh_gl_timer_end(&t->accumulate_timer, gl);
     if (status) {
         return status;
     }
-    t->stats = stats.instances ? stats : t->stats;
+    view_lod_end(&a->lod, a->model);
     noh_gl_timer_begin(&t->draw_timer, gl);
-    drawing_paint(d, &camera);
+    status = view_model_draw(a->model, &camera);
     noh_gl_timer_end(&t->draw_timer, gl);
+    draw_marks(a);
     poll_timer(&t->accumulate_timer, gl, &t->accumulate);
     poll_timer(&t->draw_timer, gl, &t->draw);
-    return 0;
+    return status;
 }
 
 static void time_frame(view_times *t)
@@ -282,23 +379,20 @@ int view_app_frame(view_app *a, float scale, double seconds)
     a->window_width = (float)a->screen.width / scale;
     a->window_height = (float)a->screen.height / scale;
     time_frame(&a->times);
-    animate(a, seconds);
     status = fit_canvas(a, &x, &y);
-    if (!status) {
-        view_lod_frame(&a->lod, a->model, &a->orbit, seconds);
-        status = draw(a);
-    }
+    if (!status) status = animate(a, seconds);
+    if (!status) status = draw(a);
     if (status) {
         return status;
     }
     draw_layers(a);
-    view_screen_picture(&a->screen, &a->model->drawing.canvas, x, y);
+    view_screen_picture(&a->screen, &a->model->canvas, x, y);
     return 0;
 }
 
 int view_app_moves(const view_app *a)
 {
-    return a->lod.fade < 1.0f || (a->playing && view_plays(a->model));
+    return a->lod.fading || (a->playing && view_plays(a->model));
 }
 
 void view_app_after(view_app *a)
@@ -308,18 +402,21 @@ void view_app_after(view_app *a)
         return;
     }
     a->wants_reload = 0;
+    a->wish.part = a->part;
     status = view_model_reload(a->model, &a->gpu, &a->wish);
     keep_failure(a, status);
     if (status) {
         a->wish = a->desc;
-    } else {
-        a->desc = a->wish;
+        return;
     }
+    a->desc = a->wish;
+    a->cut = 1;
+    if (!a->desc.root_motion) view_walk_home(a);
 }
 
 int view_save(view_app *a, const char *path, int with_panels)
 {
-    canvas *c = &a->model->drawing.canvas;
+    canvas *c = &a->model->canvas;
     const uint32_t width = with_panels ? a->screen.width : c->width,
                    height = with_panels ? a->screen.height : c->height;
     uint8_t *rgba = malloc((size_t)width * height * 4);

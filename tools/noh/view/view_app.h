@@ -8,13 +8,19 @@
  *   view_app_after       carry out what the panels asked for
  *   view_turn, view_pan, view_zoom, view_frame_all   the camera
  *   view_play            a clip
+ *   view_pick_window     what is under a point of the window
+ *   view_walk            root motion on and off; view_walk_home back to the origin
  *   view_toggle_play     play and pause; starts the first clip where none is on
+ *   view_print           the state, as lines of text
  *   view_save            a picture */
 #ifndef NOH_NOH_VIEW_VIEW_APP_H
 #define NOH_NOH_VIEW_VIEW_APP_H
 
 #include "gl/gl_timer.h"
 #include "view/view_lod.h"
+#include "view/view_marks.h"
+#include "view/view_pad.h"
+#include "view/view_pick.h"
 #include "view/view_screen.h"
 
 #define VIEW_LINES 64
@@ -32,7 +38,6 @@ typedef struct view_times {
     uint64_t last_ns; /* start of the last frame; 0: none, or the viewer was idle since */
     double frame, animate, accumulate, draw;
     noh_gl_timer accumulate_timer, draw_timer;
-    noh_gl_morph_stats stats; /* of the last accumulation that was not empty */
 } view_times;
 
 /* Callback keys that fired, as text: a ring, `next` is the oldest. */
@@ -40,6 +45,14 @@ typedef struct view_log {
     char lines[VIEW_LINES][160];
     uint32_t next, total;
 } view_log;
+
+#define VIEW_PATH 1024
+
+/* Where the figure was on the floor: a ring, `next` is the oldest. */
+typedef struct view_path {
+    float points[VIEW_PATH][2]; /* x, z */
+    uint32_t next, count;
+} view_path;
 
 typedef struct view_app {
     gpu gpu;
@@ -49,7 +62,17 @@ typedef struct view_app {
     orbit orbit;
     double anchor[3]; /* where the figure stood in the last frame */
     int follow;       /* the orbit's centre goes with it */
+    int cut;          /* the next frame shows something else: nothing fades */
     view_lod lod;
+    view_how how; /* the next clip */
+    view_pad pad;
+    view_pick pick;
+    view_marks marks;
+    int show_floor;
+    double floor; /* its height */
+    view_path walked;
+    int ramps;                         /* sliders of weights and speeds take how.fade_s to arrive */
+    char part[NOH_NAME_BYTES_MAX];     /* the joint that view_model_desc.part names; "": none */
     float window_width, window_height; /* points */
     float scale;                       /* pixels in a point */
     int show_panels, show_layers, playing;
@@ -77,7 +100,7 @@ int view_app_restore(view_app *a);
  * Prints an error and returns an exit code; 0 on success. */
 int view_app_frame(view_app *a, float scale, double seconds);
 void view_app_after(view_app *a);
-/* 1 while clips play or LOD levels fade: the next frame will differ. */
+/* 1 while clips play, change or fade: the next frame will differ. */
 int view_app_moves(const view_app *a);
 
 /* The figure's part of the window: left, top, right, bottom in points. */
@@ -89,8 +112,18 @@ void view_pan(view_app *a, double dx, double dy);
 void view_zoom(view_app *a, double steps);
 void view_frame_all(view_app *a);
 void view_toggle_play(view_app *a);
-/* Start a clip, alone or beside those playing. */
+/* Start a clip as a->how says, in place of what plays on its layer or beside it. */
 void view_play(view_app *a, uint32_t clip, int beside);
+/* Put a clip on the pad or take it off; play the pad, or stop. */
+void view_pad_choose(view_app *a, uint32_t clip);
+void view_pad_switch(view_app *a);
+/* Pick, or let go where nothing is: prints what was picked. */
+void view_pick_window(view_app *a, float x, float y);
+/* Takes effect with view_app_after. */
+void view_walk(view_app *a, int root_motion);
+void view_walk_home(view_app *a);
+/* Tracks, pad, place, level and pick to stdout. */
+void view_print(const view_app *a);
 
 /* The figure without the panels, or the whole window, to a file. */
 int view_save(view_app *a, const char *path, int with_panels);

@@ -20,7 +20,12 @@ void imgui_close();
 void imgui_begin(view_app *a, const view_input *input, double seconds);
 void imgui_end(view_app *a);
 
-// A section of the right panel, for packs with LOD levels.
+// Sections of the right panel: of packs with LOD levels; what plays, how the next clip plays; the blend space; the
+// floor.
 void lod_section(view_app *a);
+void tracks_list(view_app *a);
+void how_section(view_app *a);
+void pad_section(view_app *a);
+void floor_section(view_app *a);
 
 #endif

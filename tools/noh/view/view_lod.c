@@ -31,52 +31,52 @@ void view_lod_next(view_lod *d, const view_model *m)
 
 /* ---- a frame ---- */
 
-static void choose_item(view_lod *d, view_model *m, uint32_t item, float scale)
+void view_lod_begin(const view_lod *d, view_model *m)
 {
-    float *weights = m->scene.items[item].weights;
-    if (!d->by_pixels) {
-        scene_lod_fix(&m->lod, item, d->level, scale);
-        return;
+    const noh_look by_pixels = { .pixels = d->pixels }, fixed = { .level = 1u + d->level }, posed = { .posed = 1 };
+    for (uint32_t k = 0; k < m->figure->stage_desc.kind_count; k++) {
+        (void)noh_actor_set_look(m->figure->stage, m->figure->actors[k],
+                                 m->show_bones  ? &posed
+                                 : d->by_pixels ? &by_pixels
+                                                : &fixed,
+                                 NULL);
     }
-    scene_lod_choose(&m->lod, item, &d->settings, scale, d->clock);
-    d->left_out += scene_lod_targets(&m->lod, item, &d->settings, weights,
-                                     m->scene.meshes[m->scene.items[item].mesh].header->target_count, weights);
 }
 
-static void note_item(view_lod *d, const noh_lod *state)
+static uint32_t count_weights(const view_model *m, uint32_t kind)
 {
-    const float fade = noh_lod_fade(state, d->clock), error_px = noh_lod_error_pixels(state);
-    d->finest = state->mesh < d->finest ? state->mesh : d->finest;
-    d->coarsest = state->mesh > d->coarsest ? state->mesh : d->coarsest;
-    d->fade = fade < d->fade ? fade : d->fade;
-    d->error_px = error_px > d->error_px ? error_px : d->error_px;
+    noh_actor_mesh shown;
+    uint32_t count = 0;
+    for (uint32_t i = 0; noh_actor_mesh_at(m->figure->stage, m->figure->actors[kind], i, &shown, NULL, NULL) == NOH_OK;
+         i++) {
+        noh_mesh mesh;
+        (void)noh_pack_mesh_at(&m->file.pack, shown.mesh, &mesh, NULL);
+        for (uint32_t t = 0; t < mesh.header->target_count; t++) count += shown.weights[t] != 0.0f;
+    }
+    return count;
 }
 
-void view_lod_frame(view_lod *d, view_model *m, const orbit *at, double seconds)
+void view_lod_end(view_lod *d, const view_model *m)
 {
-    noh_gl_camera camera;
-    orbit_camera(at, &camera);
-    d->clock += (int64_t)(seconds * NOH_TICKS_PER_SECOND);
+    const noh_stage_stats *stats = noh_stage_stats_of(m->figure->stage);
     d->finest = NOH_LOD_LEVELS_MAX;
-    d->coarsest = d->left_out = 0;
-    d->fade = 1.0f;
-    d->error_px = 0.0f;
-    for (uint32_t i = 0; !m->drawing.bones && m->costs.count > 1 && i < m->lod.item_count; i++) {
-        choose_item(d, m, i, scene_lod_scale(&m->lod, &m->file, &m->scene, i, &camera, m->drawing.canvas.height));
-        note_item(d, &m->lod.items[i].state);
-        load_set_lod(&m->drawing.load, i, &m->lod.items[i].state, d->clock);
+    d->coarsest = d->weights = 0;
+    d->fading = stats->fading;
+    d->error_px = stats->error_pixels;
+    for (uint32_t level = 0; level < NOH_LOD_LEVELS_MAX; level++) {
+        if (!stats->at_level[level]) continue;
+        d->finest = level < d->finest ? level : d->finest;
+        d->coarsest = level;
     }
+    for (uint32_t k = 0; k < m->figure->stage_desc.kind_count; k++) d->weights += count_weights(m, k);
 }
 
 void view_lod_text(const view_lod *d, char *text, size_t bytes)
 {
-    char fade[32] = "";
-    if (d->fade < 1.0f) {
-        snprintf(fade, sizeof fade, ", faded in by %.0f %%", 100.0 * (double)d->fade);
-    }
-    if (d->finest == d->coarsest) {
-        snprintf(text, bytes, "level %u%s", d->finest, fade);
+    const char *fading = d->fading ? ", fading" : "";
+    if (d->finest >= d->coarsest) {
+        snprintf(text, bytes, "level %u%s", d->coarsest, fading);
     } else {
-        snprintf(text, bytes, "levels %u to %u%s", d->finest, d->coarsest, fade);
+        snprintf(text, bytes, "levels %u to %u%s", d->finest, d->coarsest, fading);
     }
 }

@@ -7,22 +7,9 @@
 namespace
 {
 
-// The largest error of any item of the scene, millimetres.
-double level_error_mm(const view_model *m, uint32_t level)
-{
-    double most = 0.0;
-    for (uint32_t i = 0; i < m->lod.item_count; i++) {
-        const item_lod &item = m->lod.items[i];
-        const uint32_t last = item.table.mesh_level_count - 1;
-        const double error = 1e3 * static_cast<double>(item.levels[level < last ? level : last].error_m);
-        most = error > most ? error : most;
-    }
-    return most;
-}
-
 void level_row(view_app *a, uint32_t level)
 {
-    const level_cost &cost = a->model->costs.levels[level];
+    const view_cost &cost = a->model->costs.levels[level];
     view_lod *d = &a->lod;
     char name[24];
     snprintf(name, sizeof name, level ? "level %u" : "full", level);
@@ -42,7 +29,7 @@ void level_row(view_app *a, uint32_t level)
         ImGui::Text(formats[i], numbers[i]);
     }
     ImGui::TableNextColumn();
-    ImGui::Text("%5.2f", level_error_mm(a->model, level));
+    ImGui::Text("%5.2f", 1e3 * static_cast<double>(cost.error_m));
     if (shown) {
         ImGui::PopStyleColor();
     }
@@ -83,7 +70,7 @@ void lod_section(view_app *a)
     }
     level_table(a);
     ImGui::SetNextItemWidth(-1.0f);
-    if (ImGui::SliderFloat("##pixels", &d->settings.pixels, VIEW_PIXELS_LEAST, VIEW_PIXELS_MOST, "%.2f pixels allowed",
+    if (ImGui::SliderFloat("##pixels", &d->pixels, VIEW_PIXELS_LEAST, VIEW_PIXELS_MOST, "%.2f pixels allowed",
                            ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
         view_lod_pixels(d);
     }
@@ -92,6 +79,6 @@ void lod_section(view_app *a)
     ImGui::SameLine();
     ImGui::Text("off by at most %.2f pixels", static_cast<double>(d->error_px));
     if (d->by_pixels) { // also when empty, so that what is below does not move
-        ImGui::Text("%u targets left out", d->left_out);
+        ImGui::Text("%u weights of targets are drawn", d->weights);
     }
 }

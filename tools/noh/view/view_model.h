@@ -1,96 +1,164 @@
-/* view_model.h: the viewer's model: a pack, or a model converted in memory, ready to draw and to play.
+/* view_model.h: the viewer's model: a pack, or a model converted in memory, on a stage.
  *
  *   view_model_open / view_model_close
- *   view_model_pose            the scene's weights and joints for this frame
- *   view_start, view_add, view_stop, view_stop_all, view_seek, view_step   its clips */
+ *   view_model_reload          the same on another stage: what plays goes on
+ *   view_model_step            time; view_model_hold: sliders; view_model_pose: a frame
+ *   view_model_place, view_model_anchor, view_model_send_home   where it stands
+ *   view_start, view_stop, view_stop_layer, view_stop_all, view_seek, ...   its clips (view_play.c) */
 #ifndef NOH_NOH_VIEW_VIEW_MODEL_H
 #define NOH_NOH_VIEW_VIEW_MODEL_H
 
-#include "convert/lod/lod_levels.h"
 #include "convert/base/byte_buffer.h"
-#include "budget/level_costs.h"
-#include "draw/scene_lod.h"
-#include "draw/drawing.h"
+#include "convert/lod/lod_levels.h"
+#include "draw/bones.h"
+#include "draw/figure.h"
+#include "gpu/canvas.h"
 
-/* A slider: all targets of one name. */
+/* ---- what is shown ---- */
+
+/* A slider: the floats of that name. */
 typedef struct view_target {
     const char *name;
     float value;
-    int held; /* the slider was moved: clips do not change these weights until it is released */
+    int held;   /* the slider was moved: clips do not change these weights until it is released */
+    int let_go; /* it was released, and the stage does not know yet */
+    uint32_t floats[NOH_STAGE_KINDS_MAX]; /* of each kind; NOH_NONE: it has none */
 } view_target;
-
-/* A weight of the scene, and the slider that it belongs to. */
-typedef struct view_weight {
-    uint32_t target, item, index;
-    float initial;
-} view_weight;
 
 typedef struct view_clip {
     const char *name;
-    uint32_t player, clip;
+    uint32_t clips[NOH_STAGE_KINDS_MAX]; /* of each kind's set; NOH_NONE: it cannot play it */
     double seconds;
 } view_clip;
+
+/* The layers of every kind. */
+enum { VIEW_BODY, VIEW_PART, VIEW_FACE, VIEW_ADD, VIEW_LAYERS };
+#define VIEW_BODY_TRACKS 8u
+#define VIEW_OTHER_TRACKS 4u
+extern const char *const view_layer_names[VIEW_LAYERS];
+
+typedef struct view_model_desc {
+    const char *path; /* a pack, or .gltf, .glb, .bvh, .rcl */
+    const char *anim; /* a pack whose clips are played instead; NULL: none */
+    lod_settings lod; /* LOD levels to convert a model with; level_count 0: none. A pack has its own */
+    noh_morph_path morph_path;
+    noh_accumulate accumulate;
+    noh_debug_view view;
+    int show_bones;
+    int root_motion;        /* clips move the figure over the ground */
+    const char *part;       /* the layer "part" moves this joint of the first skeleton and all below; NULL, "": none */
+    uint32_t width, height; /* of the canvas */
+} view_model_desc;
+
+/* An LOD level of the whole figure: bytes with all coarser ones, and the work of a frame; pairs: all targets active. */
+typedef struct view_cost {
+    uint64_t triangles, texels, pairs, cpu_bytes, gpu_bytes;
+    float error_m;
+} view_cost;
+
+typedef struct view_costs {
+    view_cost levels[NOH_LOD_LEVELS_MAX];
+    uint32_t first, count; /* the levels first to count - 1 are there */
+} view_costs;
+
+#define VIEW_PARTS_MAX 64u
 
 typedef struct view_model {
     char path[1024];
     byte_buffer converted; /* the pack, where the file was a model */
-    pack_file file;
-    scene scene;
-    drawing drawing;
-    load_budget budget; /* parts NULL where bones are drawn: nothing is loaded then */
-    level_costs costs;  /* count 0 where bones are drawn, 1 in a pack without LOD levels */
-    scene_lod lod;
-    float delta_max; /* how far one target moves a vertex at most, model units; over 0 */
-    view_target *targets;
-    view_weight *weights;
-    view_clip *clips;
-    uint32_t target_count, weight_count, clip_count;
-} view_model;
-
-typedef struct view_model_desc {
-    const char *path;  /* a pack, or .gltf, .glb, .bvh, .rcl */
-    const char *anim;  /* a pack whose clips are played instead; NULL: none */
-    lod_settings lod;  /* LOD levels to convert a model with; level_count 0: none. A pack has its own */
-    load_options load; /* `fades` is set by the model */
+    pack_file file, anim_file;
+    const pack_file *clips_of; /* whose clips are played */
+    figure *figure;
+    int root_motion;
+    int touched;                       /* a track was changed by hand: it has to be posed, even if time stands still */
+    bones *bones[NOH_STAGE_KINDS_MAX]; /* where bones are drawn: of each kind with joints */
     int show_bones;
-    uint32_t width, height; /* of the canvas */
-} view_model_desc;
+    canvas canvas;
+    int has_canvas;
+    view_costs costs; /* count 0 where bones are drawn, 1 in a pack without LOD levels */
+    noh_stage_bytes parts[VIEW_PARTS_MAX];
+    uint32_t part_count;
+    noh_gl_morph_plan morph_plan; /* of the first mesh with targets */
+    int is_morphed;
+    float delta_max; /* how far one target moves a vertex at most, model units; over 0 */
+    float *floats;   /* [the most of any kind's set] for view_model_anchor */
+    view_target *targets;
+    view_clip *clips;
+    uint32_t target_count, clip_count;
+} view_model;
 
 /* Prints an error (tool_last_failure has it) and returns an exit code; 0 and *out on success. */
 int view_model_open(gpu *g, const view_model_desc *desc, view_model **out);
 void view_model_close(view_model *m);
 
-/* Remake the drawing with other options. On failure the old one stays. */
+/* Another stage by other options; tracks, places and sliders stay. On failure the old one stays. */
 int view_model_reload(view_model *m, gpu *g, const view_model_desc *desc);
 
 /* The context was lost: forget its object names. Then restore in another context, or close. */
 void view_model_lost(view_model *m, gpu *g);
 int view_model_restore(view_model *m, gpu *g);
 
+/* Another size of the canvas. */
+int view_model_fit(view_model *m, gpu *g, uint32_t width, uint32_t height);
+
 /* The bounds of what is drawn, in its pose. */
 bounds view_model_bounds(const view_model *m);
 
-/* Weights are the asset's, overridden by clips, overridden by held sliders. */
-void view_model_pose(view_model *m);
+/* ---- where it stands ---- */
 
-/* Play one clip alone, or beside those playing. Prints an error and returns an exit code when no track is free. */
-int view_start(view_model *m, uint32_t clip);
-int view_add(view_model *m, uint32_t clip);
-void view_stop(view_model *m, uint32_t player, uint32_t track);
+noh_place view_model_place(const view_model *m);
+/* What a camera follows: where the first joint will be over the ground when it is posed next. */
+void view_model_anchor(view_model *m, double anchor[3]);
+/* Back to the origin. */
+void view_model_send_home(view_model *m);
+
+/* ---- a frame ---- */
+
+/* Held sliders to the stage; the others from what was shown last. */
+void view_model_hold(view_model *m);
+/* All of a frame but what happens on the GPU: prints an error and returns an exit code; 0 on success. Then
+ * noh_stage_frame_end. */
+int view_model_pose(view_model *m, const noh_gl_camera *camera, int cut);
+/* Into the canvas. */
+int view_model_draw(view_model *m, const noh_gl_camera *camera);
+
+/* ---- its clips ---- */
+
+/* How the next clip is played. */
+typedef struct view_how {
+    uint32_t layer; /* 1 + a layer; 0: the face for clips without joints, else the body */
+    float fade_s, weight, speed;
+    noh_loop loop;
+    uint32_t sync_group;
+    int inertia;
+} view_how;
+
+/* Play a clip on its layer, in place of what plays there or beside it. Prints an error and returns an exit code when no
+ * track is free. */
+int view_start(view_model *m, uint32_t clip, const view_how *how, int beside);
+void view_stop_track(view_model *m, uint32_t kind, uint32_t track);
+void view_stop_layer(view_model *m, uint32_t layer, float fade_s);
 void view_stop_all(view_model *m);
 /* Whether any track is on. */
 int view_plays(const view_model *m);
+/* A kind's controller, and its set. */
+noh_controller *view_controller(const view_model *m, uint32_t kind, const noh_clip_set **set);
+uint32_t view_layer_of(uint32_t track);
+const char *view_clip_name(const view_model *m, uint32_t kind, uint32_t clip);
+/* These take effect at once, also while nothing moves. */
+void view_set_weight(view_model *m, uint32_t kind, uint32_t track, float weight);
+void view_set_speed(view_model *m, uint32_t kind, uint32_t track, float speed);
+void view_set_mode(view_model *m, uint32_t kind, uint32_t track, noh_track_mode mode);
 /* Seek a track to a time of its clip without firing callbacks. */
-void view_seek(view_model *m, uint32_t player, uint32_t track, double seconds);
+void view_seek(view_model *m, uint32_t kind, uint32_t track, double seconds);
 /* Where a track is in its clip. */
-double view_position(const view_model *m, uint32_t player, uint32_t track);
-/* The name of a player's clip. */
-const char *view_clip_name(const view_model *m, uint32_t player, uint32_t clip);
+double view_position(const view_model *m, uint32_t kind, uint32_t track);
+/* Over to another weight or speed in so many seconds. */
+int view_ramp(view_model *m, uint32_t kind, uint32_t track, noh_change_kind what, float to, float seconds);
 
 typedef struct view_passed {
     double clock_s;
-    const char *clip, *key; /* of the pack */
-    uint32_t track;
+    const char *layer, *clip, *key; /* of the pack */
     float weight;
 } view_passed;
 

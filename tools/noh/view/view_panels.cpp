@@ -25,6 +25,12 @@ bool begin_panel(const char *name, float x, float y, float width, float height)
 
 // ---- targets ----
 
+void let_go(view_target &target)
+{
+    target.let_go |= target.held;
+    target.held = 0;
+}
+
 void target_slider(view_target &target)
 {
     ImGui::PushID(&target);
@@ -44,7 +50,7 @@ void target_slider(view_target &target)
         ImGui::SetTooltip("%s%s", target.name, held ? "\nheld: click to let go" : "");
     }
     if (ImGui::IsItemClicked()) {
-        target.held = 0;
+        let_go(target);
     }
     if (held) {
         ImGui::PopStyleColor(2);
@@ -67,7 +73,7 @@ void targets_panel(view_app *a)
     ImGui::SameLine();
     if (ImGui::Button("reset", ImVec2(-1.0f, 0.0f))) {
         for (uint32_t t = 0; t < m->target_count; t++) {
-            m->targets[t].held = 0;
+            let_go(m->targets[t]);
         }
     }
     ImGui::BeginChild("list");
@@ -100,37 +106,6 @@ void clip_row(view_app *a, uint32_t clip)
     ImGui::PopID();
 }
 
-void track_row(view_app *a, uint32_t player, uint32_t track)
-{
-    const scene_player &p = a->model->scene.players[player];
-    noh_controller *c = p.controllers[0];
-    const noh_track *t = noh_controller_track(c, track);
-    float at = static_cast<float>(view_position(a->model, player, track)), weight = t->weight;
-    float speed = static_cast<float>(t->speed) / NOH_SPEED_ONE;
-    const float end = static_cast<float>(p.bank->clips.clips[t->clip].duration_ticks) / NOH_TICKS_PER_SECOND;
-    ImGui::PushID(static_cast<int>(player * NOH_TRACKS_MAX + track));
-    ImGui::TextColored(amber, "%u %s", track, view_clip_name(a->model, player, t->clip));
-    ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 40.0f);
-    const bool stop = ImGui::SmallButton("stop");
-    ImGui::SetNextItemWidth(-1.0f);
-    if (ImGui::SliderFloat("##at", &at, 0.0f, end, "%.3f s", ImGuiSliderFlags_AlwaysClamp)) {
-        view_seek(a->model, player, track, static_cast<double>(at));
-    }
-    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.5f - 4.0f);
-    if (ImGui::SliderFloat("##weight", &weight, 0.0f, 1.0f, "weight %.2f", ImGuiSliderFlags_AlwaysClamp)) {
-        noh_controller_set_weight(c, track, weight);
-    }
-    ImGui::SameLine();
-    ImGui::SetNextItemWidth(-1.0f);
-    if (ImGui::SliderFloat("##speed", &speed, -2.0f, 2.0f, "speed %.2f", ImGuiSliderFlags_AlwaysClamp)) {
-        noh_controller_set_speed(c, track, static_cast<int32_t>(speed * NOH_SPEED_ONE));
-    }
-    if (stop) {
-        view_stop(a->model, player, track);
-    }
-    ImGui::PopID();
-}
-
 void clips_section(view_app *a)
 {
     view_model *m = a->model;
@@ -157,25 +132,18 @@ void clips_section(view_app *a)
         clip_row(a, i);
     }
     ImGui::EndChild();
-    for (uint32_t player = 0; player < m->scene.player_count; player++) {
-        const scene_player &p = m->scene.players[player];
-        for (uint32_t t = 0; p.bank && t < p.controllers[0]->track_count; t++) {
-            if (noh_controller_track(p.controllers[0], t)->mode != NOH_TRACK_OFF) {
-                track_row(a, player, t);
-            }
-        }
-    }
+    tracks_list(a);
 }
 
 // ---- drawing ----
 
 void path_combo(view_app *a)
 {
-    if (ImGui::BeginCombo("path", noh_morph_path_name(a->desc.load.path))) {
+    if (ImGui::BeginCombo("path", noh_morph_path_name(a->desc.morph_path))) {
         for (int i = 0; i < NOH_MORPH_PATH_COUNT; i++) {
             const noh_morph_path path = static_cast<noh_morph_path>(i);
-            if (ImGui::Selectable(noh_morph_path_name(path), path == a->desc.load.path)) {
-                a->wish.load.path = path;
+            if (ImGui::Selectable(noh_morph_path_name(path), path == a->desc.morph_path)) {
+                a->wish.morph_path = path;
                 a->wants_reload = 1;
             }
         }
@@ -185,11 +153,11 @@ void path_combo(view_app *a)
 
 void accumulate_combo(view_app *a)
 {
-    if (ImGui::BeginCombo("accumulators", noh_accumulate_name(a->desc.load.accumulate))) {
+    if (ImGui::BeginCombo("accumulators", noh_accumulate_name(a->desc.accumulate))) {
         for (int i = 0; i < 3; i++) {
             const noh_accumulate format = static_cast<noh_accumulate>(i);
-            if (ImGui::Selectable(noh_accumulate_name(format), format == a->desc.load.accumulate)) {
-                a->wish.load.accumulate = format;
+            if (ImGui::Selectable(noh_accumulate_name(format), format == a->desc.accumulate)) {
+                a->wish.accumulate = format;
                 a->wants_reload = 1;
             }
         }
@@ -200,8 +168,8 @@ void accumulate_combo(view_app *a)
 void drawing_section(view_app *a)
 {
     static const char *const views[] = { "lit", "position", "normal", "tangent", "lod" };
-    int view = static_cast<int>(a->desc.load.view);
-    bool bones = a->model->drawing.bones != nullptr;
+    int view = static_cast<int>(a->desc.view);
+    bool bones = a->model->show_bones != 0;
     if (!ImGui::CollapsingHeader("Drawing", ImGuiTreeNodeFlags_DefaultOpen)) {
         return;
     }
@@ -209,23 +177,23 @@ void drawing_section(view_app *a)
     path_combo(a);
     accumulate_combo(a);
     if (ImGui::Combo("view", &view, views, 5)) {
-        a->wish.load.view = static_cast<noh_debug_view>(view);
+        a->wish.view = static_cast<noh_debug_view>(view);
         a->wants_reload = 1;
     }
     ImGui::PopItemWidth();
-    if (a->model->scene.skeleton.joint_count && ImGui::Checkbox("bones", &bones)) {
+    if (a->model->file.pack.skeleton_count && ImGui::Checkbox("bones", &bones)) {
         a->wish.show_bones = bones;
         a->wants_reload = 1;
     }
-    if (a->model->scene.skeleton.joint_count) {
+    if (a->model->file.pack.skeleton_count) {
         bool follow = a->follow != 0;
         ImGui::SameLine();
         if (ImGui::Checkbox("follow", &follow)) {
             a->follow = follow;
         }
     }
-    if (a->model->drawing.load.morph.morph) {
-        const noh_gl_morph_plan *plan = noh_gl_morph_plan_of(a->model->drawing.load.morph.morph);
+    if (a->model->is_morphed) {
+        const noh_gl_morph_plan *plan = &a->model->morph_plan;
         ImGui::TextWrapped("%s-%s (%s)", noh_morph_path_name(plan->path), noh_accumulate_name(plan->accumulate),
                            plan->reason);
     }
@@ -263,7 +231,10 @@ void times_section(view_app *a)
     }
     ImGui::PlotLines("##frames", t.frame_ms, VIEW_HISTORY, static_cast<int>(t.next), nullptr, 0.0f, FLT_MAX,
                      ImVec2(ImGui::GetContentRegionAvail().x, 36.0f));
-    ImGui::TextDisabled("last change: %u targets, %u texels, %u pairs", t.stats.targets, t.stats.texels, t.stats.pairs);
+    const noh_stage_stats *stats = noh_stage_stats_of(a->model->figure->stage);
+    ImGui::TextDisabled("posed %u of %u, decoded %llu track-frames, %llu late", stats->updated, stats->actors,
+                        static_cast<unsigned long long>(stats->decoded),
+                        static_cast<unsigned long long>(stats->decoded_late));
 }
 
 void memory_row(const char *name, uint64_t cpu, uint64_t gpu)
@@ -279,12 +250,9 @@ void memory_row(const char *name, uint64_t cpu, uint64_t gpu)
 
 void memory_section(view_app *a)
 {
-    const load_budget &b = a->model->budget;
+    const view_model *m = a->model;
+    const noh_stage_plan *plan = &m->figure->plan;
     if (!ImGui::CollapsingHeader("Memory", ImGuiTreeNodeFlags_DefaultOpen)) {
-        return;
-    }
-    if (!b.parts) {
-        ImGui::TextDisabled("bones are drawn: no mesh is loaded");
         return;
     }
     if (ImGui::BeginTable("memory", 3, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg)) {
@@ -292,20 +260,20 @@ void memory_section(view_app *a)
         ImGui::TableSetupColumn("        CPU");
         ImGui::TableSetupColumn("        GPU");
         ImGui::TableHeadersRow();
-        for (uint32_t i = 0; i < b.part_count; i++) {
-            if (b.parts[i].cpu_bytes || b.parts[i].gpu_bytes) {
-                memory_row(b.parts[i].name, b.parts[i].cpu_bytes, b.parts[i].gpu_bytes);
+        for (uint32_t i = 0; i < m->part_count; i++) {
+            if (m->parts[i].cpu_bytes || m->parts[i].gpu_bytes) {
+                memory_row(m->parts[i].what, m->parts[i].cpu_bytes, m->parts[i].gpu_bytes);
             }
         }
-        memory_row("sum", b.cpu_bytes, b.gpu_bytes);
-        if (a->model->costs.count > 1) {
-            const level_cost &cost = a->model->costs.levels[a->lod.finest];
+        memory_row("sum", plan->cpu_bytes, plan->gpu_bytes);
+        if (m->costs.count > 1 && a->lod.finest < m->costs.count) {
+            const view_cost &cost = m->costs.levels[a->lod.finest];
             char name[32];
             snprintf(name, sizeof name, "from level %u on", a->lod.finest);
             memory_row(name, cost.cpu_bytes, cost.gpu_bytes);
         }
         memory_row("on the GPU now", 0, noh_gl_ledger_bytes(&a->gpu.ledger));
-        memory_row("the pack", b.pack_bytes, 0);
+        memory_row("the pack", plan->pack_bytes, 0);
         ImGui::EndTable();
     }
 }
@@ -313,11 +281,11 @@ void memory_section(view_app *a)
 void layers_section(view_app *a)
 {
     static const char *const names[] = { "position", "normal", "tangent" };
-    a->show_layers = ImGui::CollapsingHeader("Layers", ImGuiTreeNodeFlags_DefaultOpen);
+    a->show_layers = ImGui::CollapsingHeader("Accumulators", ImGuiTreeNodeFlags_DefaultOpen);
     if (!a->show_layers) {
         return;
     }
-    if (!a->model->drawing.load.morph.morph || !a->screen.layers_width) {
+    if (!a->model->is_morphed || !a->screen.layers_width) {
         ImGui::TextDisabled("no accumulators");
         return;
     }
@@ -341,6 +309,9 @@ void right_panel(view_app *a)
 {
     begin_panel("figure", a->window_width - VIEW_RIGHT, 0.0f, VIEW_RIGHT, a->window_height);
     clips_section(a);
+    how_section(a);
+    pad_section(a);
+    floor_section(a);
     lod_section(a);
     drawing_section(a);
     times_section(a);
@@ -359,8 +330,12 @@ void events_panel(view_app *a)
         ImGui::PushStyleColor(ImGuiCol_Text, red);
         ImGui::TextWrapped("%s", a->message);
         ImGui::PopStyleColor();
+    } else if (a->pick.is_on) {
+        char text[512];
+        view_pick_text(&a->pick, a->model, text, sizeof text);
+        ImGui::TextColored(amber, "%s", text);
     } else {
-        ImGui::TextDisabled("space play  drag turn, right move  wheel zoom  F fit  L detail  Tab hide  F11 F12 save");
+        ImGui::TextDisabled("space play  click pick  drag turn/move  wheel zoom  F fit  L detail  Tab hide  F12 save");
     }
     ImGui::Separator();
     ImGui::BeginChild("lines");

@@ -1,121 +1,193 @@
-/* view_play.c: playback: which clips play, at which time, and the callback keys they fire. */
+/* view_play.c: playback: which clips play on which layers, at which time, and the callback keys they fire. */
 #include <string.h>
 
 #include "view/view_model.h"
 #include "cli/message.h"
 
-const char *view_clip_name(const view_model *m, uint32_t player, uint32_t clip)
+const char *const view_layer_names[VIEW_LAYERS] = { "body", "part", "face", "add" };
+
+noh_controller *view_controller(const view_model *m, uint32_t kind, const noh_clip_set **set)
 {
-    noh_pack_clip found;
-    noh_pack_clip_at(&m->scene.anim->pack, m->scene.players[player].bank->pack_clips[clip], &found, NULL);
-    return found.name;
+    return noh_actor_controller(m->figure->stage, m->figure->actors[kind], set);
 }
 
-int view_add(view_model *m, uint32_t clip)
+uint32_t view_layer_of(uint32_t track)
 {
-    const scene_player *p = &m->scene.players[m->clips[clip].player];
-    noh_controller *c = p->controllers[0];
+    const uint32_t body = VIEW_BODY_TRACKS;
+    return track < body ? VIEW_BODY : VIEW_PART + (track - body) / VIEW_OTHER_TRACKS;
+}
+
+const char *view_clip_name(const view_model *m, uint32_t kind, uint32_t clip)
+{
+    return noh_stage_name(m->figure->stage, kind, NOH_NAME_CLIP, clip);
+}
+
+static uint32_t kind_count(const view_model *m)
+{
+    return m->figure->stage_desc.kind_count;
+}
+
+/* ---- start and stop ---- */
+
+static uint32_t fade_ticks(float seconds)
+{
+    const int64_t ticks = noh_ticks_from_seconds((double)seconds);
+    return ticks > 1 ? (uint32_t)ticks : 1u;
+}
+
+static noh_play play_of(const view_how *how, int beside)
+{
+    noh_play play;
+    memset(&play, 0, sizeof play);
+    play.fade_ticks = fade_ticks(how->fade_s);
+    play.weight = how->weight;
+    play.speed = (int32_t)(how->speed * NOH_SPEED_ONE);
+    play.loop = how->loop;
+    play.sync_group = how->sync_group;
+    play.flags = beside ? NOH_PLAY_BESIDE : how->inertia ? NOH_PLAY_INERTIA : 0;
+    return play;
+}
+
+static int start_on(view_model *m, uint32_t kind, uint32_t clip, const view_how *how, int beside)
+{
+    const view_clip *c = &m->clips[clip];
+    const noh_play play = play_of(how, beside);
     noh_error error = { NOH_OK, "", 0, 0 };
-    noh_track_desc desc;
-    uint32_t track = 0;
-    while (track < c->track_count && noh_controller_track(c, track)->mode != NOH_TRACK_OFF) {
-        track++;
+    const noh_clip_set *set;
+    uint32_t layer = how->layer - 1u;
+    (void)view_controller(m, kind, &set);
+    if (!how->layer) layer = set->clips[c->clips[kind]].flags & NOH_CLIP_FLOATS_ONLY ? VIEW_FACE : VIEW_BODY;
+    switch (noh_actor_play(m->figure->stage, m->figure->actors[kind], layer, c->name, &play, &error)) {
+    case NOH_OK: return 0;
+    case NOH_ERR_LIMIT:
+        return tool_fail(m->path, "'%s' cannot play on '%s': %s", c->name, view_layer_names[layer], error.what);
+    default: return tool_fail_error(m->path, &error);
     }
-    if (track == c->track_count) {
-        return tool_fail(m->path, "all %u tracks are on: stop one to play '%s'", c->track_count, m->clips[clip].name);
-    }
-    memset(&desc, 0, sizeof desc);
-    desc.clip = m->clips[clip].clip;
-    return noh_controller_start(c, &p->bank->clips, track, &desc, &error) ? tool_fail_error(m->path, &error) : 0;
 }
 
-void view_stop(view_model *m, uint32_t player, uint32_t track)
+int view_start(view_model *m, uint32_t clip, const view_how *how, int beside)
 {
-    noh_controller_set_mode(m->scene.players[player].controllers[0], track, NOH_TRACK_OFF);
+    int status = 0;
+    m->touched = 1;
+    for (uint32_t k = 0; k < kind_count(m) && !status; k++) {
+        if (m->clips[clip].clips[k] != NOH_NONE) status = start_on(m, k, clip, how, beside);
+    }
+    return status;
 }
 
-static void stop_player(view_model *m, uint32_t player)
+void view_stop_track(view_model *m, uint32_t kind, uint32_t track)
 {
-    const scene_player *p = &m->scene.players[player];
-    for (uint32_t t = 0; p->bank && t < p->controllers[0]->track_count; t++) {
-        view_stop(m, player, t);
+    view_set_mode(m, kind, track, NOH_TRACK_OFF);
+}
+
+void view_stop_layer(view_model *m, uint32_t layer, float fade_s)
+{
+    m->touched = 1;
+    for (uint32_t k = 0; k < kind_count(m); k++) {
+        (void)noh_actor_stop(m->figure->stage, m->figure->actors[k], layer, fade_ticks(fade_s), NULL);
     }
 }
 
 void view_stop_all(view_model *m)
 {
-    for (uint32_t p = 0; p < m->scene.player_count; p++) {
-        stop_player(m, p);
-    }
-}
-
-int view_start(view_model *m, uint32_t clip)
-{
-    stop_player(m, m->clips[clip].player);
-    return view_add(m, clip);
+    for (uint32_t layer = 0; layer < VIEW_LAYERS; layer++) view_stop_layer(m, layer, 0.0f);
 }
 
 int view_plays(const view_model *m)
 {
-    for (uint32_t i = 0; i < m->scene.player_count; i++) {
-        const scene_player *p = &m->scene.players[i];
-        for (uint32_t t = 0; p->bank && t < p->controllers[0]->track_count; t++) {
-            if (noh_controller_track(p->controllers[0], t)->mode != NOH_TRACK_OFF) {
-                return 1;
-            }
+    for (uint32_t k = 0; k < kind_count(m); k++) {
+        const noh_controller *c = view_controller(m, k, NULL);
+        for (uint32_t t = 0; t < c->track_count; t++) {
+            if (noh_controller_track(c, t)->mode != NOH_TRACK_OFF) return 1;
         }
     }
     return 0;
 }
 
-void view_seek(view_model *m, uint32_t player, uint32_t track, double seconds)
+/* ---- one track ---- */
+
+void view_set_weight(view_model *m, uint32_t kind, uint32_t track, float weight)
 {
-    const scene_player *p = &m->scene.players[player];
+    (void)noh_controller_set_weight(view_controller(m, kind, NULL), track, weight);
+    m->touched = 1;
+}
+
+void view_set_speed(view_model *m, uint32_t kind, uint32_t track, float speed)
+{
+    (void)noh_controller_set_speed(view_controller(m, kind, NULL), track, (int32_t)(speed * NOH_SPEED_ONE));
+}
+
+void view_set_mode(view_model *m, uint32_t kind, uint32_t track, noh_track_mode mode)
+{
+    (void)noh_controller_set_mode(view_controller(m, kind, NULL), track, mode);
+    m->touched = 1;
+}
+
+void view_seek(view_model *m, uint32_t kind, uint32_t track, double seconds)
+{
     noh_error error = { NOH_OK, "", 0, 0 };
-    if (noh_controller_seek(p->controllers[0], &p->bank->clips, track, noh_ticks_from_seconds(seconds), NOH_SEEK_SKIP,
-                            &error)) {
+    const noh_clip_set *set;
+    noh_controller *c = view_controller(m, kind, &set);
+    if (noh_controller_seek(c, set, track, noh_ticks_from_seconds(seconds), NOH_SEEK_SKIP, &error)) {
         tool_fail_error(m->path, &error);
     }
+    m->touched = 1;
 }
 
-double view_position(const view_model *m, uint32_t player, uint32_t track)
+double view_position(const view_model *m, uint32_t kind, uint32_t track)
 {
-    const scene_player *p = &m->scene.players[player];
-    const noh_track *t = noh_controller_track(p->controllers[0], track);
-    return (double)noh_track_clip_tick(t, &p->bank->clips.clips[t->clip], 0) / (double)NOH_TICKS_PER_SECOND;
+    const noh_clip_set *set;
+    const noh_track *t = noh_controller_track(view_controller(m, kind, &set), track);
+    return (double)noh_track_clip_tick(t, &set->clips[t->clip], 0) / (double)NOH_TICKS_PER_SECOND;
 }
 
-typedef struct step {
+int view_ramp(view_model *m, uint32_t kind, uint32_t track, noh_change_kind what, float to, float seconds)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    const noh_clip_set *set;
+    noh_controller *c = view_controller(m, kind, &set);
+    noh_change_desc d;
+    memset(&d, 0, sizeof d);
+    d.kind = what;
+    d.track = track;
+    d.duration_ticks = fade_ticks(seconds);
+    d.curve = NOH_CURVE_SMOOTHSTEP;
+    d.weight = to;
+    d.speed = (int32_t)(to * NOH_SPEED_ONE);
+    return noh_controller_change(c, set, &d, &error) ? tool_fail_error(m->path, &error) : 0;
+}
+
+/* ---- time ---- */
+
+typedef struct listener {
     const view_model *m;
-    uint32_t player;
     view_event_fn fn;
     void *user;
-} step;
+} listener;
 
-static void pass_event(void *user, const noh_event *event)
+static uint32_t kind_of(const view_model *m, noh_actor actor)
 {
-    const step *s = (const step *)user;
-    const noh_pack *pack = &s->m->scene.anim->pack;
-    noh_pack_clip clip;
+    uint32_t kind = 0;
+    while (kind + 1u < kind_count(m) && m->figure->actors[kind].id != actor.id) kind++;
+    return kind;
+}
+
+static void pass_event(void *user, noh_stage *stage, const noh_stage_event *event)
+{
+    const listener *l = user;
     view_passed passed;
-    noh_pack_clip_at(pack, s->m->scene.players[s->player].bank->pack_clips[event->clip], &clip, NULL);
+    (void)stage;
     passed.clock_s = (double)event->clock / (double)NOH_TICKS_PER_SECOND;
-    passed.clip = clip.name;
-    passed.key = noh_pack_string(pack, clip.events[event->index].name);
-    passed.track = event->track;
+    passed.layer = view_layer_names[event->layer];
+    passed.clip = view_clip_name(l->m, kind_of(l->m, event->actor), event->clip);
+    passed.key = event->name;
     passed.weight = event->weight;
-    s->fn(s->user, &passed);
+    l->fn(l->user, &passed);
 }
 
 void view_step(view_model *m, double seconds, view_event_fn fn, void *user)
 {
-    step s = { m, 0, fn, user };
-    for (; s.player < m->scene.player_count; s.player++) {
-        const scene_player *p = &m->scene.players[s.player];
-        if (p->bank) {
-            noh_clip_cache_begin_frame(p->bank->cache);
-            noh_controller_step(p->controllers[0], &p->bank->clips, (uint32_t)noh_ticks_from_seconds(seconds),
-                                pass_event, &s);
-        }
-    }
+    listener l = { m, fn, user };
+    (void)noh_stage_step(m->figure->stage, (uint32_t)noh_ticks_from_seconds(seconds), pass_event, &l, NULL);
+    m->touched = 0;
 }

@@ -175,17 +175,16 @@ static void make_layers(view_screen *s, uint32_t width, uint32_t height)
     s->layers_height = height;
 }
 
-void view_screen_layers(view_screen *s, const noh_gl_morph *morph, const float gains[3])
+void view_screen_layers(view_screen *s, const noh_gl_morph_plan *plan, const noh_gl_morph_binding *binding,
+                        const float gains[3])
 {
     const noh_gl_api *gl = &s->g->gl;
-    const noh_gl_morph_plan *plan = noh_gl_morph_plan_of(morph);
-    const noh_gl_morph_binding binding = noh_gl_morph_binding_of(morph, 0);
-    const GLuint program = s->layer_programs[binding.is_uint ? 1 : 0];
+    const GLuint program = s->layer_programs[binding->is_uint ? 1 : 0];
     make_layers(s, plan->atlas_width, plan->atlas_height);
     gl->BindFramebuffer(GL_FRAMEBUFFER, s->layers_framebuffer);
     gl->Viewport(0, 0, (GLsizei)s->layers_width, (GLsizei)s->layers_height);
     gl->ActiveTexture(GL_TEXTURE0);
-    gl->BindTexture(GL_TEXTURE_2D_ARRAY, binding.texture);
+    gl->BindTexture(GL_TEXTURE_2D_ARRAY, binding->texture);
     for (int i = 0; i < 3; i++) {
         gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, s->layers[i], 0);
         gl->UseProgram(program);

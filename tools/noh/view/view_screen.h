@@ -38,7 +38,8 @@ void view_screen_font(view_screen *s, uint32_t width, uint32_t height, const uin
 void view_screen_picture(view_screen *s, canvas *c, int x, int y);
 
 /* gains[layer]: the share of the range from black to white for a delta of 1. */
-void view_screen_layers(view_screen *s, const noh_gl_morph *morph, const float gains[3]);
+void view_screen_layers(view_screen *s, const noh_gl_morph_plan *plan, const noh_gl_morph_binding *binding,
+                        const float gains[3]);
 
 /* width, height of the window in points. */
 void view_triangles_begin(view_screen *s, float width, float height);

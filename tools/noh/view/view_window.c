@@ -1,5 +1,6 @@
 #include "view/view_window.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -7,8 +8,9 @@
 #include "view/view_panels.h"
 #include "cli/message.h"
 
-#define AWAKE_FRAMES 4  /* drawn after an input before an unchanging picture idles */
-#define SETTLE_FRAMES 3 /* until a click shows: press, release, pose */
+#define AWAKE_FRAMES 4   /* drawn after an input before an unchanging picture idles */
+#define SETTLE_FRAMES 3  /* until a click shows: press, release, pose */
+#define CLICK_POINTS 3.0 /* a click moves the mouse less */
 
 typedef struct view_window {
     view_context context;
@@ -18,7 +20,8 @@ typedef struct view_window {
     view_input input;
     uint8_t pressed[3], keys_pressed[512]; /* since the last frame: a click may be shorter than one */
     float pressed_at[2];
-    int drag; /* GLFW's button + 1 that drags the camera, 0: none */
+    int drag;       /* GLFW's button + 1 that drags the camera, 0: none */
+    double dragged; /* so far, points: a press that hardly moves is a click */
     double mouse[2];
     int awake;
     int save_in[2]; /* frames until the figure, the window is saved; 0: not requested */
@@ -56,7 +59,11 @@ static void on_button(GLFWwindow *window, int button, int action, int mods)
     }
     if (action == GLFW_PRESS && !w->drag && on_stage(w) && !view_panels_hold_mouse()) {
         w->drag = button + 1;
+        w->dragged = 0.0;
     } else if (action == GLFW_RELEASE && w->drag == button + 1) {
+        if (button == GLFW_MOUSE_BUTTON_LEFT && w->dragged < CLICK_POINTS) {
+            view_pick_window(&w->app, w->input.mouse[0], w->input.mouse[1]);
+        }
         w->drag = 0;
     }
 }
@@ -70,6 +77,7 @@ static void on_move(GLFWwindow *window, double window_x, double window_y)
     w->mouse[1] = y;
     w->input.mouse[0] = (float)x;
     w->input.mouse[1] = (float)y;
+    w->dragged += fabs(dx) + fabs(dy);
     if (w->drag == GLFW_MOUSE_BUTTON_LEFT + 1) {
         view_turn(&w->app, dx, dy);
     } else if (w->drag) {
@@ -103,6 +111,7 @@ static void on_command(view_window *w, int key)
     case GLFW_KEY_SPACE: view_toggle_play(a); break;
     case GLFW_KEY_F: view_frame_all(a); break;
     case GLFW_KEY_L: view_lod_next(&a->lod, a->model); break;
+    case GLFW_KEY_I: view_print(a); break;
     case GLFW_KEY_TAB: a->show_panels = !a->show_panels; break;
     case GLFW_KEY_F10: w->lose = 1; break;
     case GLFW_KEY_F11: w->save_in[0] = SETTLE_FRAMES; break;

@@ -1,0 +1,12 @@
+#version 300 es
+/* view_marks.frag: unlit, blended by alpha. Colours are linear light. */
+precision highp float;
+
+in vec4 v_color;
+
+layout(location = 0) out vec4 o_color;
+
+void main()
+{
+    o_color = v_color;
+}
