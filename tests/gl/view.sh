@@ -373,6 +373,157 @@ else
     close_viewer 'Escape ends it'
 fi
 
+# ---- a body: picking, layers, a blend space, a floor ----
+
+# I prints the state: the lines of the last one go to $work/state.
+state() {
+    wanted=$(($(grep -c '^end of state' "$work/out") + 1))
+    xdotool key i
+    tries=0
+    while [ "$(grep -c '^end of state' "$work/out")" -lt $wanted ] && [ $tries -lt 600 ] && kill -0 $viewer 2>/dev/null; do sleep 0.1; tries=$((tries + 1)); done
+    awk '/^state of/ { text = "" } { text = text $0 "\n" } /^end of state/ { last = text } END { printf "%s", last }' "$work/out" >"$work/state"
+}
+tells() { grep -q -- "$1" "$work/state"; }
+near() { # NUMBER NUMBER WITHIN
+    awk -v a="$1" -v b="$2" -v most="$3" 'BEGIN { exit !(a != "" && b != "" && a - b <= most && b - a <= most) }'
+}
+alike() { "$build/tests/gl/picture_diff" "$1" "$2" 0.2 0.002 >/dev/null; } # up to some ticks
+picked_at() { sed -n 's/^picked .* at //p' "$work/state"; }
+weight_of() { sed -n "s/^track .* $1 .* weight \([0-9.]*\),.*/\1/p" "$work/state"; }
+phase_of() { sed -n "s/^track .* $1 \([0-9.]*\) s,.*/\1/p" "$work/state" | awk -v all="$2" '{ print $1 / all }'; }
+place_z() { sed -n 's/^place [^ ]* [^ ]* //p' "$work/state"; }
+center_z() { sed -n 's/^center [^ ]* [^ ]* //p' "$work/state"; }
+
+puppet=$build/demo/puppet_levels.noh
+rm -f "$work"/noh-*.png
+shots=0
+open_viewer 1280x800 "$puppet"
+figure
+rest=$shot
+
+click 615 100
+check 'a ring marks what was clicked on' differ "$rest" "$shot"
+state
+check 'which is the mask, on the jaw' tells "^picked mesh 'mask', submesh 0 'paint', triangle [0-9]*, joint 'jaw', at 0.0[0-9]* 1.4"
+click 615 330
+state
+check 'below it the body' tells "^picked mesh 'body', submesh 0 'cloth', triangle [0-9]*, joint 'hips', at 0.0[0-9]* 0.8"
+drag 610 300 600 300
+state
+check 'a drag picks nothing' tells "^picked mesh 'body', submesh 0"
+xdotool key f
+click 330 60
+check 'a click beside the figure lets go' same "$rest" "$shot"
+
+# With a track the sections begin 220 points from the top: Layers, Blend space, Floor.
+click 938 78   # play walk
+click 980 220  # Layers
+click 931 374  # fade: at once
+click 1030 351 # part, from
+click 1030 477 # chest
+click 1030 328 # layer
+click 1030 386 # part
+click 1030 443 # loop
+click 1030 518 # ping-pong
+click 938 95   # play bow
+xdotool key space
+figure
+click 1150 240 # in its middle
+click 570 560
+bowing=$shot
+state
+check 'a walk plays on the body' tells '^track 0 body walk .* weight 1.000, speed 1.000, sync 0, repeat, on'
+check 'and a bow on a part of it, as asked for' tells '^track 8 part bow .* weight 1.000, speed 1.000, sync 0, ping-pong, on'
+check 'a leg is picked' tells "^picked mesh 'body'.* joint '.*\.[LR]'"
+leg=$(picked_at)
+click 932 263 # the weight of the bow: 0
+walking=$shot
+check 'which bows less with less weight' differ "$bowing" "$walking"
+state
+check 'but not in the legs, which the mask leaves out' near "${leg##* }" "$(picked_at | sed 's/.* //')" 0.0011
+click 1085 263
+check 'with weight it bows again' alike "$bowing" "$shot"
+click 1191 220 # mute
+state
+check 'muted it plays on' tells '^track 8 part bow .* muted'
+check 'but is not in the pose' alike "$walking" "$shot"
+click 1191 220
+click 1236 220 # stop
+state
+check 'without it the walk is the same' alike "$walking" "$shot"
+check 'it is stopped' sh -c '! grep -q "part bow" "$1"' - "$work/state"
+xdotool key space
+tries=0
+while state; ! tells '^key .* body: walk / foot' && [ $tries -lt 40 ]; do tries=$((tries + 1)); sleep 0.1; done
+check 'callback keys name their layer' tells '^key [0-9]* .* s   body: walk / foot_.* weight 1.00'
+xdotool key space
+click 1025 41 # stop all
+click 980 157 # Layers
+click 330 60
+
+# Without a track they begin 157 points from the top.
+click 980 180 # Blend space
+click 1030 203
+click 960 227 # idle, walk, dance
+click 960 244
+click 960 295
+click 1264 796
+state
+check 'three clips on a pad weigh the same in its middle' tells '^pad at 0.000 0.000, idle 0.333, walk 0.333, dance 0.333'
+click 958 461 # play
+sleep 1
+xdotool key space
+figure
+state
+check 'they play with these weights, in step' tells '^track . body dance .* weight 0.333, .* sync 1, repeat, on'
+check 'idle and walk are at the same phase' near "$(phase_of idle 4)" "$(phase_of walk 1.4)" 0.01
+middle=$shot
+drag 1043 331 1123 378
+state
+check 'at the corner of one it has all the weight' near "$(weight_of walk)" 1 0.005
+check 'and the others none' near "$(weight_of dance)" 0 0.005
+check 'which is another pose' differ "$middle" "$shot"
+drag 1043 239 983 259
+state
+check 'clips can be moved' sh -c '! grep -q "pad at 0.000" "$1"' - "$work/state"
+check 'and the point stays' near "$(weight_of walk)" 1 0.02
+close_viewer 'Escape ends it'
+
+rm -f "$work"/noh-*.png
+shots=0
+open_viewer 1280x800 "$puppet" --clip walk --walk
+figure
+state
+from=$(center_z) at=$(place_z)
+sleep 2
+figure
+xdotool key space
+figure
+state
+check 'a walk goes over the floor' awk -v a="$at" -v b="$(place_z)" 'BEGIN { exit !(b > a + 0.2) }'
+check 'and the camera goes with it' near "$(awk -v a="$from" -v b="$(center_z)" 'BEGIN { print b - a }')" "$(awk -v a="$at" -v b="$(place_z)" 'BEGIN { print b - a }')" 0.002
+with_floor=$shot
+click 980 266 # Floor
+click 937 289 # floor
+check 'the floor can be taken away' differ "$with_floor" "$shot"
+click 937 289
+check 'and laid again' same "$with_floor" "$shot"
+click 1177 289 # back to the start
+state
+check 'the figure is sent back' near "$(place_z)" 0 0.0001
+check 'and its path is gone' differ "$with_floor" "$shot"
+click 1001 289 # root motion
+xdotool key space
+sleep 1
+figure
+state
+check 'without root motion it stays' near "$(place_z)" 0 0.0001
+check 'and plays on' tells '^track 0 body walk .* on'
+lose
+figure
+check 'a floor is there again after a lost context' test -f "$shot"
+close_viewer 'Escape ends it'
+
 # ---- twice as many pixels in a point ----
 
 if ! command -v xprop >/dev/null 2>&1; then
