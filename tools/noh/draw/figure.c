@@ -53,6 +53,7 @@ static int add_kind(figure *f, uint32_t skeleton, const uint32_t *nodes, uint32_
     k->layers = d->layers ? d->layers : &f->layer;
     k->layer_count = d->layers ? d->layer_count : 1u;
     k->inertia = d->inertia;
+    k->graphs = d->graphs;
     k->root_axes = d->root_axes;
     k->root_up = 1;
     k->unpickable = !d->pickable;

@@ -34,6 +34,7 @@ typedef struct figure_desc {
     uint32_t track_count;   /* clips at one time, 1..NOH_LAYER_TRACKS_MAX; 0: 2, so that one fades into another */
     const noh_layer_desc *layers; /* [layer_count] in place of one for all; they must outlive the figure */
     uint32_t layer_count;
+    const char *graphs;        /* as in noh_kind_desc */
     uint32_t root_axes;        /* NOH_ROOT_* that clips move it by; y is up */
     uint32_t held_float_count; /* floats held at one time, FIGURE_HELD_ALL: all targets; 0: none */
     int inertia;               /* 1: room for NOH_PLAY_INERTIA */

@@ -175,6 +175,13 @@ void view_play(view_app *a, uint32_t clip, int beside)
     a->playing = a->playing || !status;
 }
 
+void view_graph_start(view_app *a, uint32_t n)
+{
+    const int status = view_graph_play(a->model, n, a->how.fade_s);
+    keep_failure(a, status);
+    a->playing = a->playing || !status;
+}
+
 void view_pad_choose(view_app *a, uint32_t clip)
 {
     keep_failure(a, view_pad_toggle(&a->pad, a->model, clip));

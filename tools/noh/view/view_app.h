@@ -114,6 +114,7 @@ void view_frame_all(view_app *a);
 void view_toggle_play(view_app *a);
 /* Start a clip as a->how says, in place of what plays on its layer or beside it. */
 void view_play(view_app *a, uint32_t clip, int beside);
+void view_graph_start(view_app *a, uint32_t n);
 /* Put a clip on the pad or take it off; play the pad, or stop. */
 void view_pad_choose(view_app *a, uint32_t clip);
 void view_pad_switch(view_app *a);

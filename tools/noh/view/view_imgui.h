@@ -26,6 +26,7 @@ void lod_section(view_app *a);
 void tracks_list(view_app *a);
 void how_section(view_app *a);
 void pad_section(view_app *a);
+void graph_section(view_app *a);
 void floor_section(view_app *a);
 
 #endif

@@ -222,7 +222,12 @@ static int open_setting(view_model *m, gpu *g, const view_model_desc *desc, sett
     d.path = desc->morph_path;
     d.accumulate = desc->accumulate;
     d.view = desc->view;
+    d.graphs = m->clips_of->pack.graph_count && pack->skeleton_count == 1 ? "*" : NULL;
     status = figure_open(s->figure, &d, s->show_bones ? NULL : g);
+    if (status && d.graphs) { /* such as graphs of clips that the pack of clips lacks: it has been told */
+        d.graphs = NULL;
+        status = figure_open(s->figure, &d, s->show_bones ? NULL : g);
+    }
     if (!status) status = open_bones(s, g, m->path);
     if (status) close_setting(s);
     return status;
@@ -300,6 +305,7 @@ static void use_setting(view_model *m, const setting *s, const view_model_desc *
     m->figure = s->figure;
     m->show_bones = s->show_bones;
     m->root_motion = desc->root_motion;
+    m->has_graphs = s->figure->desc.graphs != NULL;
     memcpy(m->bones, s->bones, sizeof m->bones);
 }
 
@@ -362,14 +368,32 @@ void view_model_close(view_model *m)
     free(m);
 }
 
+/* A graph begins anew, with the parameters that it had. */
+static void carry_graph(const figure *from, figure *to)
+{
+    const noh_graph_pack *made;
+    const noh_play at_once = { .fade_ticks = 1 };
+    if (!noh_actor_graph(from->stage, from->actors[0], &made)) {
+        return;
+    }
+    (void)noh_actor_play_graph(to->stage, to->actors[0], VIEW_BODY, made->source.name, &at_once, NULL);
+    for (uint32_t i = 0; noh_stage_name(to->stage, 0, NOH_NAME_PARAMETER, i); i++) {
+        (void)noh_actor_set_parameter(to->stage, to->actors[0], i, noh_actor_parameter(from->stage, from->actors[0], i),
+                                      NULL);
+    }
+}
+
 /* Tracks, changes and places of one stage to another with the same clips and layers. */
 static void carry_over(const figure *from, figure *to)
 {
+    const noh_graph_pack *made;
+    carry_graph(from, to);
     for (uint32_t k = 0; k < to->stage_desc.kind_count; k++) {
         const noh_controller *was = noh_actor_controller(from->stage, from->actors[k], NULL);
         noh_controller *is = noh_actor_controller(to->stage, to->actors[k], NULL);
+        const int has_graph = noh_actor_graph(from->stage, from->actors[k], &made) != NULL;
         noh_place place;
-        if (was->bytes == is->bytes && was->clip_count == is->clip_count) memcpy(is, was, was->bytes);
+        if (!has_graph && was->bytes == is->bytes && was->clip_count == is->clip_count) memcpy(is, was, was->bytes);
         for (uint32_t t = 0; t < is->track_count; t++) {
             noh_track *track = &noh_controller_tracks(is)[t];
             track->root_position = track->position; /* only what is walked from here on moves it */
@@ -476,22 +500,30 @@ void view_model_send_home(view_model *m)
     }
 }
 
-/* By weight the places where the body's clips have the root now: that of the pose, before there is one. */
+/* By weight the places where the body's clips have the root now: that of the pose, before there is one. Of a graph that
+ * of the last pose. */
 void view_model_anchor(view_model *m, double anchor[3])
 {
     const noh_clip_set *set;
     const noh_controller *c = view_controller(m, 0, &set);
     const noh_place place = view_model_place(m);
+    float joint[12];
     double sum = 0.0;
     memset(anchor, 0, 3 * sizeof *anchor);
     for (uint32_t t = 0; !m->root_motion && set->joint_count && t < VIEW_BODY_TRACKS; t++) {
         const noh_track *track = noh_controller_track(c, t);
         noh_transform root;
-        if (track->mode != NOH_TRACK_ON || !(track->weight > 0.0f)) continue;
+        if (track->mode != NOH_TRACK_ON || !(track->weight > 0.0f) || !view_clip_of(m, 0, track)) continue;
         set->sample(set->user, track->clip, noh_track_clip_tick(track, &set->clips[track->clip], 0), 1, &root,
                     set->float_count, m->floats);
         for (int i = 0; i < 3; i++) anchor[i] += (double)track->weight * (double)root.translation[i];
         sum += (double)track->weight;
+    }
+    if (!m->root_motion && view_graph_playing(m) != NOH_NONE &&
+        noh_actor_joint(m->figure->stage, m->figure->actors[0], 0, joint, NULL) == NOH_OK) {
+        anchor[0] = (double)joint[3];
+        anchor[2] = (double)joint[11];
+        return;
     }
     for (int i = 0; i < 3; i += 2) {
         if (sum > 0.0) {

@@ -70,6 +70,7 @@ typedef struct view_model {
     const pack_file *clips_of; /* whose clips are played */
     figure *figure;
     int root_motion;
+    int has_graphs;                    /* actors may play those of clips_of, of a figure with one kind */
     int touched;                       /* a track was changed by hand: it has to be posed, even if time stands still */
     bones *bones[NOH_STAGE_KINDS_MAX]; /* where bones are drawn: of each kind with joints */
     int show_bones;
@@ -144,6 +145,8 @@ int view_plays(const view_model *m);
 /* A kind's controller, and its set. */
 noh_controller *view_controller(const view_model *m, uint32_t kind, const noh_clip_set **set);
 uint32_t view_layer_of(uint32_t track);
+/* Whether a track plays a clip: 0 where it stands for a graph. */
+int view_clip_of(const view_model *m, uint32_t kind, const noh_track *track);
 const char *view_clip_name(const view_model *m, uint32_t kind, uint32_t clip);
 /* These take effect at once, also while nothing moves. */
 void view_set_weight(view_model *m, uint32_t kind, uint32_t track, float weight);
@@ -155,6 +158,18 @@ void view_seek(view_model *m, uint32_t kind, uint32_t track, double seconds);
 double view_position(const view_model *m, uint32_t kind, uint32_t track);
 /* Over to another weight or speed in so many seconds. */
 int view_ramp(view_model *m, uint32_t kind, uint32_t track, noh_change_kind what, float to, float seconds);
+
+/* ---- graphs ---- */
+
+/* Play the n-th graph of clips_of on the body; the one that plays, NOH_NONE: none. Prints an error and returns an exit
+ * code. */
+int view_graph_play(view_model *m, uint32_t n, float fade_s);
+uint32_t view_graph_playing(const view_model *m);
+/* A parameter of the graph that plays, by noh_stage_find. */
+float view_graph_parameter(const view_model *m, uint32_t parameter);
+void view_graph_set(view_model *m, uint32_t parameter, float value);
+
+/* ---- time ---- */
 
 typedef struct view_passed {
     double clock_s;

@@ -80,7 +80,7 @@ static void lay_out(view_pad *pad)
     }
 }
 
-static int add(view_pad *pad, const view_model *m, uint32_t clip)
+static int add(view_pad *pad, const view_model *m, uint32_t clip, int32_t speed)
 {
     const view_clip *c = &m->clips[clip];
     if (pad->count == VIEW_PAD_CLIPS) {
@@ -91,6 +91,7 @@ static int add(view_pad *pad, const view_model *m, uint32_t clip)
     } else if (c->clips[pad->kind] == NOH_NONE) {
         return tool_fail(m->path, "'%s' moves another skeleton than '%s'", c->name, m->clips[pad->clips[0]].name);
     }
+    pad->speeds[pad->count] = speed;
     pad->clips[pad->count++] = clip;
     return 0;
 }
@@ -99,7 +100,9 @@ static void take_off(view_pad *pad, uint32_t clip)
 {
     uint32_t kept = 0;
     for (uint32_t i = 0; i < pad->count; i++) {
-        if (pad->clips[i] != clip) pad->clips[kept++] = pad->clips[i];
+        if (pad->clips[i] == clip) continue;
+        pad->speeds[kept] = pad->speeds[i];
+        pad->clips[kept++] = pad->clips[i];
     }
     pad->count = kept;
 }
@@ -111,7 +114,7 @@ int view_pad_toggle(view_pad *pad, view_model *m, uint32_t clip)
     if (view_pad_has(pad, clip)) {
         take_off(pad, clip);
     } else {
-        status = add(pad, m, clip);
+        status = add(pad, m, clip, 0);
     }
     lay_out(pad);
     triangulate(pad, m);
@@ -138,6 +141,7 @@ int view_pad_play(view_pad *pad, view_model *m)
     pad->synced = can_be_synced(pad, set, m);
     for (uint32_t i = 0; i < pad->count; i++) {
         const noh_play play = { .fade_ticks = 1,
+                                .speed = pad->speeds[i],
                                 .loop = NOH_LOOP_REPEAT,
                                 .sync_group = pad->synced ? SYNC_GROUP : 0,
                                 .flags = i ? NOH_PLAY_BESIDE : 0 };
@@ -238,7 +242,7 @@ int view_pad_take(view_pad *pad, view_model *m, uint32_t n)
     pad->count = 0;
     for (uint32_t i = 0; !status && i < node->child_count; i++) {
         const noh_pack_graph_node *child = &g.nodes[g.children[node->first_child + i]];
-        status = add(pad, m, find_clip(m, noh_graph_pack_clip_name(&g, child->index)));
+        status = add(pad, m, find_clip(m, noh_graph_pack_clip_name(&g, child->index)), g.clips[child->index].speed);
     }
     if (!status && pad->count) scale_points(pad, g.points + g.spaces[node->first_item].first_point);
     triangulate(pad, m);

@@ -18,6 +18,7 @@
 typedef struct view_pad {
     uint32_t count;
     uint32_t clips[VIEW_PAD_CLIPS]; /* of the model's list; all can play on `kind` */
+    int32_t speeds[VIEW_PAD_CLIPS]; /* as in noh_play; of a graph's blend space its own */
     uint32_t kind;
     float points[VIEW_PAD_CLIPS][2]; /* -1..1, y up */
     uint32_t triangle_count;         /* of the noh_blend_space_2d that they make */

@@ -104,15 +104,15 @@ void choose(view_app *a)
     if (!ImGui::BeginCombo("clips", a->pad.count ? "..." : "choose some")) {
         return;
     }
-    for (uint32_t n = 0; view_pad_space(a->model, n, name, sizeof name); n++) {
-        if (ImGui::Selectable(name)) {
-            view_pad_take(&a->pad, a->model, n);
-        }
-    }
     for (uint32_t i = 0; i < a->model->clip_count; i++) {
         bool on = view_pad_has(&a->pad, i) != 0;
         if (ImGui::Selectable(a->model->clips[i].name, &on, ImGuiSelectableFlags_DontClosePopups)) {
             view_pad_choose(a, i);
+        }
+    }
+    for (uint32_t n = 0; view_pad_space(a->model, n, name, sizeof name); n++) {
+        if (ImGui::Selectable(name)) {
+            view_pad_take(&a->pad, a->model, n);
         }
     }
     ImGui::EndCombo();

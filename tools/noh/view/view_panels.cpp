@@ -312,6 +312,7 @@ void right_panel(view_app *a)
     how_section(a);
     pad_section(a);
     floor_section(a);
+    graph_section(a);
     lod_section(a);
     drawing_section(a);
     times_section(a);

@@ -17,9 +17,15 @@ uint32_t view_layer_of(uint32_t track)
     return track < body ? VIEW_BODY : VIEW_PART + (track - body) / VIEW_OTHER_TRACKS;
 }
 
+int view_clip_of(const view_model *m, uint32_t kind, const noh_track *track)
+{
+    return noh_stage_name(m->figure->stage, kind, NOH_NAME_CLIP, track->clip) != NULL;
+}
+
 const char *view_clip_name(const view_model *m, uint32_t kind, uint32_t clip)
 {
-    return noh_stage_name(m->figure->stage, kind, NOH_NAME_CLIP, clip);
+    const char *name = noh_stage_name(m->figure->stage, kind, NOH_NAME_CLIP, clip);
+    return name ? name : "graph"; /* a clip past those of the packs stands for one */
 }
 
 static uint32_t kind_count(const view_model *m)
@@ -155,6 +161,39 @@ int view_ramp(view_model *m, uint32_t kind, uint32_t track, noh_change_kind what
     d.weight = to;
     d.speed = (int32_t)(to * NOH_SPEED_ONE);
     return noh_controller_change(c, set, &d, &error) ? tool_fail_error(m->path, &error) : 0;
+}
+
+/* ---- graphs ---- */
+
+int view_graph_play(view_model *m, uint32_t n, float fade_s)
+{
+    const noh_play play = { .fade_ticks = fade_ticks(fade_s) };
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_pack_graph g;
+    m->touched = 1;
+    return noh_pack_graph_at(&m->clips_of->pack, n, &g, &error) ||
+                   noh_actor_play_graph(m->figure->stage, m->figure->actors[0], VIEW_BODY, g.name, &play, &error)
+               ? tool_fail_error(m->path, &error)
+               : 0;
+}
+
+uint32_t view_graph_playing(const view_model *m)
+{
+    const noh_graph_pack *made;
+    return noh_actor_graph(m->figure->stage, m->figure->actors[0], &made)
+               ? noh_pack_graph_find(&m->clips_of->pack, made->source.name)
+               : NOH_NONE;
+}
+
+float view_graph_parameter(const view_model *m, uint32_t parameter)
+{
+    return noh_actor_parameter(m->figure->stage, m->figure->actors[0], parameter);
+}
+
+void view_graph_set(view_model *m, uint32_t parameter, float value)
+{
+    (void)noh_actor_set_parameter(m->figure->stage, m->figure->actors[0], parameter, value, NULL);
+    m->touched = 1;
 }
 
 /* ---- time ---- */

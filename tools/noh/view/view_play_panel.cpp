@@ -53,14 +53,12 @@ bool track_head(view_app *a, uint32_t kind, uint32_t track)
     return ImGui::SmallButton("stop");
 }
 
-void track_row(view_app *a, uint32_t kind, uint32_t track)
+void track_sliders(view_app *a, uint32_t kind, uint32_t track)
 {
     const noh_clip_set *set;
     const noh_track *t = noh_controller_track(view_controller(a->model, kind, &set), track);
     float at = static_cast<float>(view_position(a->model, kind, track));
     const float end = static_cast<float>(set->clips[t->clip].duration_ticks) / NOH_TICKS_PER_SECOND;
-    ImGui::PushID(static_cast<int>(kind * NOH_TRACKS_MAX + track));
-    const bool stop = track_head(a, kind, track);
     ImGui::SetNextItemWidth(-1.0f);
     if (ImGui::SliderFloat("##at", &at, 0.0f, end, "%.3f s", ImGuiSliderFlags_AlwaysClamp)) {
         view_seek(a->model, kind, track, static_cast<double>(at));
@@ -71,6 +69,16 @@ void track_row(view_app *a, uint32_t kind, uint32_t track)
     track_slider(a, kind, track, NOH_CHANGE_SPEED, static_cast<float>(t->speed_now) / NOH_SPEED_ONE, -2.0f, 2.0f,
                  "##speed");
     ImGui::PopItemWidth();
+}
+
+void track_row(view_app *a, uint32_t kind, uint32_t track)
+{
+    const noh_track *t = noh_controller_track(view_controller(a->model, kind, nullptr), track);
+    ImGui::PushID(static_cast<int>(kind * NOH_TRACKS_MAX + track));
+    const bool stop = track_head(a, kind, track);
+    if (view_clip_of(a->model, kind, t)) {
+        track_sliders(a, kind, track);
+    }
     if (stop) {
         view_stop_track(a->model, kind, track);
     }

@@ -31,6 +31,25 @@ static void print_pad(const view_app *a)
     printf("\n");
 }
 
+static void print_graph(const view_model *m)
+{
+    noh_stage *s = m->figure->stage;
+    noh_pack_graph g;
+    const char *name;
+    if (noh_pack_graph_at(&m->clips_of->pack, view_graph_playing(m), &g, NULL) != NOH_OK) {
+        return;
+    }
+    printf("graph %s", g.name);
+    for (uint32_t i = 0; (name = noh_stage_name(s, 0, NOH_NAME_PARAMETER, i)) != NULL; i++) {
+        printf(", %s %.3f", name, (double)view_graph_parameter(m, i));
+    }
+    for (uint32_t i = 0; (name = noh_stage_name(s, 0, NOH_NAME_MACHINE, i)) != NULL; i++) {
+        const char *state = noh_actor_state(s, m->figure->actors[0], i);
+        printf(", %s: %s", name, state ? state : "");
+    }
+    printf("\n");
+}
+
 void view_print(const view_app *a)
 {
     const view_model *m = a->model;
@@ -44,6 +63,7 @@ void view_print(const view_app *a)
         }
     }
     if (a->pad.count) print_pad(a);
+    print_graph(m);
     printf("place %.4f %.4f %.4f\n", (double)place.position[0], (double)place.position[1], (double)place.position[2]);
     printf("center %.4f %.4f %.4f\n", a->orbit.center[0], a->orbit.center[1], a->orbit.center[2]);
     view_lod_text(&a->lod, text, sizeof text);
