@@ -524,6 +524,23 @@ figure
 check 'a floor is there again after a lost context' test -f "$shot"
 close_viewer 'Escape ends it'
 
+rm -f "$work"/noh-*.png
+shots=0
+open_viewer 1280x800 "$puppet"
+figure
+click 980 226 # Graph
+click 945 249 # play
+state
+check 'a graph plays on the body' tells '^graph moves, speed 0.000, attention 0.000, .* bows: acts'
+click 1140 283
+state
+check 'its parameters are moved' tells '^graph moves, speed 0.900, attention 0.000, '
+click 942 352 # the trigger
+state
+check 'a trigger plays a bow once' tells '^graph moves, .* bows: bowing'
+check 'it shows' moves
+close_viewer 'Escape ends it'
+
 # ---- twice as many pixels in a point ----
 
 if ! command -v xprop >/dev/null 2>&1; then
