@@ -3,8 +3,6 @@
  * ARPABET is told by its capitals; digits of stress are passed over. In the International Phonetic Alphabet a phone is
  * one or several characters: stress, length and other marks are passed over, an affricate is one shape, and of a
  * diphthong the first and the last vowel count. */
-#include <string.h>
-
 #include "base/assert.h"
 #include "face/speech.h"
 
@@ -64,12 +62,25 @@ static const entry ipa[] = {
 };
 /* clang-format on */
 
+/* How many characters of `text` are `start`, if it begins with it; else 0. */
+static uint32_t begins_with(const char *text, const char *start)
+{
+    uint32_t length = 0;
+    while (start[length] && text[length] == start[length]) length++;
+    return start[length] ? 0u : length;
+}
+
+static int is_stress(const char *text)
+{
+    while (*text >= '0' && *text <= '9') text++;
+    return *text == 0;
+}
+
 static noh_viseme of_arpabet(const char *phone, noh_viseme *second)
 {
-    size_t length = strlen(phone);
-    while (length && phone[length - 1u] >= '0' && phone[length - 1u] <= '9') length--;
-    for (size_t i = 0; i < sizeof arpabet / sizeof arpabet[0]; i++) {
-        if (strlen(arpabet[i].phone) == length && memcmp(arpabet[i].phone, phone, length) == 0) {
+    for (uint32_t i = 0; i < sizeof arpabet / sizeof arpabet[0]; i++) {
+        const uint32_t length = begins_with(phone, arpabet[i].phone);
+        if (length && is_stress(phone + length)) {
             *second = (noh_viseme)arpabet[i].second;
             return (noh_viseme)arpabet[i].first;
         }
@@ -77,25 +88,27 @@ static noh_viseme of_arpabet(const char *phone, noh_viseme *second)
     return NOH_VISEME_COUNT;
 }
 
-/* The entry that `text` begins with; NULL: a mark, or nothing that is known. */
-static const entry *begins_with(const char *text)
+/* The entry that `text` begins with, and its length; NULL and 1: a mark, or nothing that is known. */
+static const entry *ipa_at(const char *text, uint32_t *length)
 {
-    for (size_t i = 0; i < sizeof ipa / sizeof ipa[0]; i++) {
-        if (strncmp(text, ipa[i].phone, strlen(ipa[i].phone)) == 0) return &ipa[i];
+    for (uint32_t i = 0; i < sizeof ipa / sizeof ipa[0]; i++) {
+        *length = begins_with(text, ipa[i].phone);
+        if (*length) return &ipa[i];
     }
+    *length = 1;
     return NULL;
 }
 
 static noh_viseme of_ipa(const char *phone, noh_viseme *second)
 {
     noh_viseme first = NOH_VISEME_COUNT, last = NOH_VISEME_COUNT;
-    while (*phone) {
-        const entry *e = begins_with(phone);
+    uint32_t length;
+    for (; *phone; phone += length) {
+        const entry *e = ipa_at(phone, &length);
         if (e) {
             last = (noh_viseme)e->first;
             first = first == NOH_VISEME_COUNT ? last : first;
         }
-        phone += e ? strlen(e->phone) : 1u;
     }
     *second = last == first ? NOH_VISEME_COUNT : last;
     return first;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/assert.h"
+#include "base/name_internal.h"
 #include "face/face_internal.h"
 
 /* ---- channels ---- */
@@ -75,7 +76,7 @@ void noh_face_channels(const noh_face_pose *pose, const noh_face_desc *desc, con
 static uint32_t find(const char *const *names, uint32_t count, const char *name)
 {
     for (uint32_t i = 0; i < count; i++) {
-        if (names[i] && strcmp(names[i], name) == 0) return i;
+        if (names[i] && noh_names_equal(names[i], name)) return i;
     }
     return NOH_NONE;
 }
