@@ -4,6 +4,8 @@
 #include "support/look_part.h"
 #include "support/stage_fixture.h"
 
+#include "stage/stage_internal.h" /* what each job has done */
+
 #include <pthread.h>
 #include <time.h>
 
@@ -17,6 +19,7 @@ typedef struct pool {
     pthread_barrier_t begin, end;
     uint32_t thread_count, job_count; /* job_count: of this phase; 0: the pool ends */
     uint32_t ran[THREADS];            /* jobs that each thread ran */
+    uint32_t posed[THREADS];          /* actors that each job of the second phase has posed */
 } pool;
 
 typedef struct worker {
@@ -35,6 +38,7 @@ static void run_mine(pool *p, uint32_t index)
 {
     for (uint32_t i = index; i < p->job_count; i += p->thread_count) {
         noh_stage_job(p->cast.stage, i);
+        if (p->cast.stage->phase == NOH_STAGE_POSING) p->posed[i] += p->cast.stage->jobs[i].updated;
         p->ran[index]++;
     }
 }
@@ -213,7 +217,7 @@ static void four_threads_show_what_one_shows(void **state)
     static result one[FRAMES], four[FRAMES];
     static pool p;
     double alone, together;
-    uint32_t changed = 0;
+    uint32_t changed = 0, posed = 0, most = 0;
     (void)state;
     alone = run(&p, 1, one);
     together = run(&p, THREADS, four);
@@ -224,6 +228,13 @@ static void four_threads_show_what_one_shows(void **state)
         changed += f > 0 && one[f].shown != one[f - 1u].shown;
     }
     assert_true(changed > FRAMES * 9u / 10u); /* else equal hashes show nothing */
+    for (uint32_t i = 0; i < THREADS; i++) {
+        posed += p.posed[i];
+        most = p.posed[i] > most ? p.posed[i] : most;
+    }
+    print_message("# poses of the job that has the most: %.2f of the mean\n", (double)most * THREADS / posed);
+    assert_true(posed > 10u * FRAMES &&
+                most * THREADS * 10u <= posed * 14u); /* split evenly: at most 1.4 of the mean */
     print_message("# phases: one thread takes %.2f times as long as %u\n", alone / together, THREADS);
 }
 
