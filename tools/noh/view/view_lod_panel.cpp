@@ -7,9 +7,22 @@
 namespace
 {
 
+// The largest error of any kind of the figure, millimetres.
+double level_error_mm(const view_model *m, uint32_t level)
+{
+    double most = 0.0;
+    for (uint32_t k = 0; k < m->figure->stage_desc.kind_count; k++) {
+        const noh_kind_plan &plan = m->figure->plan.kinds[k];
+        const uint32_t last = plan.level_count - 1;
+        const double error = 1e3 * static_cast<double>(plan.levels[level < last ? level : last].error_m);
+        most = error > most ? error : most;
+    }
+    return most;
+}
+
 void level_row(view_app *a, uint32_t level)
 {
-    const view_cost &cost = a->model->costs.levels[level];
+    const level_cost &cost = a->model->costs.levels[level];
     view_lod *d = &a->lod;
     char name[24];
     snprintf(name, sizeof name, level ? "level %u" : "full", level);
@@ -29,7 +42,7 @@ void level_row(view_app *a, uint32_t level)
         ImGui::Text(formats[i], numbers[i]);
     }
     ImGui::TableNextColumn();
-    ImGui::Text("%5.2f", 1e3 * static_cast<double>(cost.error_m));
+    ImGui::Text("%5.2f", level_error_mm(a->model, level));
     if (shown) {
         ImGui::PopStyleColor();
     }

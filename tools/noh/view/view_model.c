@@ -233,45 +233,19 @@ static int open_setting(view_model *m, gpu *g, const view_model_desc *desc, sett
     return status;
 }
 
-/* The work of a frame at a level. */
-static void count_work(const figure *f, uint32_t level, view_cost *out)
-{
-    const noh_pack *pack = &f->desc.file->pack;
-    for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
-        const noh_kind_plan *plan = &f->plan.kinds[k];
-        const noh_actor_level *at = &plan->levels[level < plan->level_count ? level : plan->level_count - 1u];
-        for (uint32_t i = 0; i < f->kinds[k].node_count; i++) {
-            const uint32_t node = f->kinds[k].nodes[i];
-            noh_mesh mesh;
-            (void)noh_pack_mesh_at(pack, pack->node_count ? pack->nodes[node].mesh : node, &mesh, NULL);
-            mesh = noh_mesh_at_lod(&mesh, at->mesh_levels[i]);
-            out->triangles += mesh.header->index_count / 3u;
-            out->texels += mesh.header->touched_count;
-            out->pairs += mesh.header->pair_count;
-        }
-        out->error_m = fmaxf(out->error_m, at->error_m);
-    }
-}
-
 static int find_costs(view_costs *out, const figure *f, const noh_gl_caps *caps)
 {
-    const noh_pack *pack = &f->desc.file->pack;
-    figure_desc d = f->desc;
-    int status = 0;
+    pack_budget b;
+    const int status = pack_budget_make(&b, &f->desc, caps);
     memset(out, 0, sizeof *out);
-    out->first = figure_level_first(pack);
-    for (out->count = out->first; out->count < figure_level_count(pack) && !status; out->count++) {
-        view_cost *cost = &out->levels[out->count];
-        figure planned;
-        d.level = out->count;
-        status = figure_plan(&planned, &d, caps);
-        if (status) break;
-        count_work(&planned, out->count, cost);
-        cost->cpu_bytes = planned.plan.cpu_bytes;
-        cost->gpu_bytes = planned.plan.gpu_bytes;
-        figure_plan_free(&planned);
+    if (status) {
+        return status;
     }
-    return status;
+    memcpy(out->levels, b.levels, sizeof out->levels);
+    out->first = b.level_first;
+    out->count = b.level_count;
+    pack_budget_free(&b);
+    return 0;
 }
 
 static int count_setting(view_model *m, const gpu *g, const setting *s)

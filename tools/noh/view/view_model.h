@@ -8,6 +8,7 @@
 #ifndef NOH_NOH_VIEW_VIEW_MODEL_H
 #define NOH_NOH_VIEW_VIEW_MODEL_H
 
+#include "budget/pack_budget.h"
 #include "convert/base/byte_buffer.h"
 #include "convert/lod/lod_levels.h"
 #include "draw/bones.h"
@@ -50,14 +51,9 @@ typedef struct view_model_desc {
     uint32_t width, height; /* of the canvas */
 } view_model_desc;
 
-/* An LOD level of the whole figure: bytes with all coarser ones, and the work of a frame; pairs: all targets active. */
-typedef struct view_cost {
-    uint64_t triangles, texels, pairs, cpu_bytes, gpu_bytes;
-    float error_m;
-} view_cost;
-
+/* What each LOD level of the whole figure costs. */
 typedef struct view_costs {
-    view_cost levels[NOH_LOD_LEVELS_MAX];
+    level_cost levels[NOH_LOD_LEVELS_MAX];
     uint32_t first, count; /* the levels first to count - 1 are there */
 } view_costs;
 

@@ -267,7 +267,7 @@ void memory_section(view_app *a)
         }
         memory_row("sum", plan->cpu_bytes, plan->gpu_bytes);
         if (m->costs.count > 1 && a->lod.finest < m->costs.count) {
-            const view_cost &cost = m->costs.levels[a->lod.finest];
+            const level_cost &cost = m->costs.levels[a->lod.finest];
             char name[32];
             snprintf(name, sizeof name, "from level %u on", a->lod.finest);
             memory_row(name, cost.cpu_bytes, cost.gpu_bytes);
