@@ -214,16 +214,18 @@ static double run(pool *p, uint32_t thread_count, result *results)
 
 static void four_threads_show_what_one_shows(void **state)
 {
-    static result one[FRAMES], four[FRAMES];
+    static result one[FRAMES], two[FRAMES], four[FRAMES];
     static pool p;
-    double alone, together;
+    double alone, pair, together;
     uint32_t changed = 0, posed = 0, most = 0;
     (void)state;
     alone = run(&p, 1, one);
+    pair = run(&p, 2, two);
     together = run(&p, THREADS, four);
     for (uint32_t i = 0; i < THREADS; i++) assert_true(p.ran[i] >= FRAMES); /* each had a part in every frame */
     for (uint32_t f = 0; f < FRAMES; f++) {
         if (one[f].state != four[f].state) fail_msg("the state differs in frame %u", (unsigned)f);
+        if (memcmp(&one[f], &two[f], sizeof two[f]) != 0) fail_msg("two threads differ in frame %u", (unsigned)f);
         if (one[f].shown != four[f].shown) fail_msg("what is shown differs in frame %u", (unsigned)f);
         changed += f > 0 && one[f].shown != one[f - 1u].shown;
     }
@@ -235,7 +237,8 @@ static void four_threads_show_what_one_shows(void **state)
     print_message("# poses of the job that has the most: %.2f of the mean\n", (double)most * THREADS / posed);
     assert_true(posed > 10u * FRAMES &&
                 most * THREADS * 10u <= posed * 14u); /* split evenly: at most 1.4 of the mean */
-    print_message("# phases: one thread takes %.2f times as long as %u\n", alone / together, THREADS);
+    print_message("# phases: one thread takes %.2f times as long as 2, %.2f times as long as %u\n", alone / pair,
+                  alone / together, THREADS);
 }
 
 static const struct CMUnitTest tests[] = {
