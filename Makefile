@@ -325,7 +325,7 @@ WEB_STACK   := 65536
 WEB_HEAP    := 65536
 WEB_STATIC  := 131072
 WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js page.noh)
-WEB_OBJECTS := $(BUILD)/web-objects
+WEB_OBJECTS := $(patsubst $(CURDIR)/%,%,$(BUILD))/web-objects# one name for make, however BUILD is written
 
 web: deps-web
 	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB_PACK)
