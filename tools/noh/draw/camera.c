@@ -74,13 +74,6 @@ bounds scene_bounds(const scene *s, const pack_file *file, int face)
     return b;
 }
 
-void scene_anchor(const scene *s, double anchor[3])
-{
-    anchor[0] = s->skeleton.joint_count ? (double)s->joint_matrices[3] : 0.0;
-    anchor[1] = 0.0;
-    anchor[2] = s->skeleton.joint_count ? (double)s->joint_matrices[11] : 0.0;
-}
-
 /* Column-major product of a 4x4 projection and a 4x4 view. */
 static void multiply(const double a[16], const double b[16], float out[16])
 {

@@ -13,8 +13,6 @@ typedef struct bounds {
  * level, whichever is shown: pictures of all levels can be compared, also with those of a stripped pack. */
 bounds scene_bounds(const scene *s, const pack_file *file, int face);
 bounds bounds_union(bounds a, bounds b);
-/* Where the first joint stands over the ground: what a camera follows. 0 without joints. */
-void scene_anchor(const scene *s, double anchor[3]);
 
 typedef struct view_options {
     const char *camera; /* "face", "body" or "AZ,EL,DIST" in degrees and model units; NULL: body */

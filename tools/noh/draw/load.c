@@ -6,18 +6,6 @@
 
 #include "cli/message.h"
 
-/* ---- the budget ---- */
-
-static void add_part(load_budget *b, uint64_t cpu_bytes, uint64_t gpu_bytes, const char *kind, const char *name)
-{
-    load_part *p = &b->parts[b->part_count++];
-    snprintf(p->name, sizeof p->name, "%s%s%s", kind, name[0] ? " " : "", name);
-    p->cpu_bytes = cpu_bytes;
-    p->gpu_bytes = gpu_bytes;
-    b->cpu_bytes += cpu_bytes;
-    b->gpu_bytes += gpu_bytes;
-}
-
 /* Instances per mesh: each drawn item of each copy of the scene has weights of its own. */
 static uint32_t *count_instances(const pack_file *file, const scene *s, uint32_t copies)
 {
@@ -63,88 +51,6 @@ static size_t matrix_bytes(const pack_file *file, const scene *s)
         }
     }
     return most;
-}
-
-static int add_skin(load_budget *b, const pack_file *file, const scene *s, const noh_gl_caps *caps,
-                    const uint32_t *counts)
-{
-    noh_gl_skin_desc desc = skin_desc(file, s, counts);
-    noh_error error = { NOH_OK, "", 0, 0 };
-    size_t matrices = matrix_bytes(file, s);
-    if (!matrices) {
-        return 0;
-    }
-    if (noh_gl_skin_plan_make(&desc, caps, &b->skin_plan, &error)) {
-        return tool_fail_error(file->path, &error);
-    }
-    add_part(b, b->skin_plan.cpu_bytes, b->skin_plan.gpu_bytes, "palettes", "");
-    add_part(b, matrices, 0, "skin matrices", "");
-    return 0;
-}
-
-/* Clips, controllers and poses, if there are clips. */
-static int add_clip(load_budget *b, const pack_file *file, const scene *s, uint32_t instances)
-{
-    uint64_t clips = 0, controllers = 0, poses = 0;
-    int status = scene_measure_players(s, file, instances ? instances : 1u, &clips, &controllers, &poses);
-    if (!status && clips) {
-        add_part(b, clips, 0, "clips", "");
-        add_part(b, controllers, 0, "controllers", "");
-        add_part(b, poses, 0, "pose scratch", "");
-    }
-    return status;
-}
-
-static void add_parts(load_budget *b, const pack_file *file, const scene *s)
-{
-    for (uint32_t i = 0; i < file->pack.mesh_count; i++) {
-        add_part(b, 0, noh_gl_mesh_bytes(&s->meshes[i]), "mesh", s->meshes[i].name);
-    }
-    for (uint32_t i = 0; i < file->pack.texture_count; i++) {
-        noh_texture texture;
-        noh_pack_texture_at(&file->pack, i, &texture, NULL);
-        add_part(b, 0, noh_gl_picture_bytes(&texture), "texture", texture.name);
-    }
-    add_part(b, b->plan.cpu_bytes, 0, "morph state", "");
-    add_part(b, 0, b->plan.delta_bytes, "morph deltas", "");
-    add_part(b, 0, b->plan.table_bytes, "morph tables", "");
-    add_part(b, 0, b->plan.stream_bytes, "morph stream", "");
-    add_part(b, 0, b->plan.layer_bytes, "morph accumulators", "");
-    add_part(b, 0, NOH_GL_RENDERER_BYTES, "renderer", "");
-}
-
-int load_budget_make(load_budget *b, const pack_file *file, const scene *s, const noh_gl_caps *caps,
-                     const load_options *o)
-{
-    uint32_t *counts = count_instances(file, s, o->instances);
-    noh_gl_morph_desc desc = morph_desc(file, s, o, counts);
-    noh_error error = { NOH_OK, "", 0, 0 };
-    int status = 0;
-    memset(b, 0, sizeof *b);
-    b->parts = calloc((size_t)file->pack.mesh_count + file->pack.texture_count + 13, sizeof *b->parts);
-    b->pack_bytes = (uint64_t)file->pack.byte_count + (s->anim != file ? s->anim->pack.byte_count : 0u);
-    if (!counts || !b->parts) {
-        status = tool_fail(file->path, "out of memory");
-    } else if (s->item_count == 0 && s->anim->pack.clip_count) {
-        b->plan.reason = "only clips: for the whole sum give this pack as --anim of the one that it moves";
-        status = add_clip(b, file, s, o->instances);
-    } else if (s->item_count == 0) {
-        status = tool_fail(file->path, "the pack has neither meshes nor clips");
-    } else if (noh_gl_morph_plan_make(&desc, caps, &b->plan, &error)) {
-        status = tool_fail_error(file->path, &error);
-    } else {
-        add_parts(b, file, s);
-        status = add_skin(b, file, s, caps, counts);
-        if (!status) status = add_clip(b, file, s, o->instances);
-    }
-    free(counts);
-    return status;
-}
-
-void load_budget_free(load_budget *b)
-{
-    free(b->parts);
-    memset(b, 0, sizeof *b);
 }
 
 /* ---- making it ---- */
@@ -267,30 +173,6 @@ void load_close(load *l)
     free(l->item_instances);
     free(l->lods);
     memset(l, 0, sizeof *l);
-}
-
-int load_restore(load *l)
-{
-    const noh_gl_api *gl = &l->g->gl;
-    noh_error error = { NOH_OK, "", 0, 0 };
-    char log[4096] = "";
-    noh_result result = NOH_OK;
-    for (uint32_t i = 0; !result && i < l->file->pack.mesh_count; i++) {
-        result = noh_gl_mesh_restore(gl, &l->g->ledger, &l->meshes[i], &error);
-    }
-    for (uint32_t i = 0; !result && i < l->file->pack.texture_count; i++) {
-        noh_texture texture;
-        noh_pack_texture_at(&l->file->pack, i, &texture, NULL);
-        result = noh_gl_picture_restore(gl, &l->g->ledger, &texture, &l->pictures[i], &error);
-    }
-    if (!result) result = noh_gl_morph_restore(l->morph.morph, log, sizeof log, &error);
-    if (!result && l->skin.skin) result = noh_gl_skin_restore(l->skin.skin, &error);
-    if (!result) result = noh_gl_renderer_restore(&l->renderer, log, sizeof log, &error);
-    if (result) {
-        fputs(log, stderr);
-        return tool_fail_error(l->file->path, &error);
-    }
-    return 0;
 }
 
 /* ---- using it ---- */

@@ -1,23 +1,9 @@
-/* load.h: a pack on the GPU: its meshes, textures, accumulators and renderer. load_open takes exactly the bytes that
- * load_budget_make predicts. */
+/* load.h: a pack on the GPU: its meshes, textures, accumulators and renderer. */
 #ifndef NOH_NOH_DRAW_LOAD_H
 #define NOH_NOH_DRAW_LOAD_H
 
 #include "gpu/gpu.h"
 #include "scene/scene.h"
-
-typedef struct load_part {
-    char name[96];
-    uint64_t cpu_bytes, gpu_bytes;
-} load_part;
-
-typedef struct load_budget {
-    noh_gl_morph_plan plan;
-    noh_gl_skin_plan skin_plan; /* mode AUTO: nothing is skinned */
-    load_part *parts;
-    uint32_t part_count;
-    uint64_t cpu_bytes, gpu_bytes, pack_bytes; /* pack_bytes: with that of --anim */
-} load_budget;
 
 typedef struct load_options {
     noh_morph_path path;
@@ -26,12 +12,6 @@ typedef struct load_options {
     noh_debug_view view;
     int fades; /* 1: levels set by load_set_lod fade into each other; 0: they change at once */
 } load_options;
-
-/* What load_open will take. Of a pack of clips: its clips, and a plan with only a reason. Prints an error and returns
- * an exit code; 0 on success. */
-int load_budget_make(load_budget *b, const pack_file *file, const scene *s, const noh_gl_caps *caps,
-                     const load_options *o);
-void load_budget_free(load_budget *b);
 
 /* How an item is drawn: in one part, or in two while one level fades into another. */
 typedef struct load_lod {
@@ -56,10 +36,6 @@ typedef struct load {
 
 int load_open(load *l, gpu *g, const pack_file *file, const scene *s, const load_options *o);
 void load_close(load *l);
-
-/* Make everything again in a new context, with which g->gl was filled after the old one was lost. After an error, close
- * it. */
-int load_restore(load *l);
 
 /* Upload the scene's weights and palettes, and accumulate. */
 int load_update(load *l, noh_gl_morph_stats *stats);

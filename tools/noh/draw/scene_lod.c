@@ -80,11 +80,6 @@ void scene_lod_choose(scene_lod *d, uint32_t item, const noh_lod_settings *setti
     noh_lod_choose(&i->state, &i->table, settings, pixels_per_metre, NULL, clock);
 }
 
-void scene_lod_fix(scene_lod *d, uint32_t item, uint32_t level, float pixels_per_metre)
-{
-    noh_lod_set_mesh(&d->items[item].state, &d->items[item].table, level, pixels_per_metre);
-}
-
 uint32_t scene_lod_targets(scene_lod *d, uint32_t item, const noh_lod_settings *settings, const float *weights,
                            uint32_t count, float *kept)
 {

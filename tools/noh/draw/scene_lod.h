@@ -3,7 +3,6 @@
  *   scene_lod_open / scene_lod_close
  *   scene_lod_scale    pixels per metre at an item's nearest point
  *   scene_lod_choose   for a frame
- *   scene_lod_fix      a fixed level instead
  *   scene_lod_targets  weights without those of targets too small to be seen
  *
  * It chooses LOD levels of the mesh and targets; joints, influences and update rates stay full. */
@@ -36,12 +35,9 @@ void scene_lod_close(scene_lod *d);
 float scene_lod_scale(const scene_lod *d, const pack_file *file, const scene *s, uint32_t item,
                       const noh_gl_camera *camera, uint32_t height);
 
-/* Choose a level. The first choice, and the first after scene_lod_fix, does not fade. */
+/* Choose a level. The first choice does not fade. */
 void scene_lod_choose(scene_lod *d, uint32_t item, const noh_lod_settings *settings, float pixels_per_metre,
                       int64_t clock);
-
-/* A level past the last means the last. No targets are left out. */
-void scene_lod_fix(scene_lod *d, uint32_t item, uint32_t level, float pixels_per_metre);
 
 /* After scene_lod_choose: weights to kept[count] (may alias), 0 where a target is left out. Returns how many of
  * these had a weight. */

@@ -81,37 +81,6 @@ int scene_init(scene *s, const pack_file *file)
     return 0;
 }
 
-uint32_t scene_level_count(const scene *s, const pack_file *file)
-{
-    uint32_t most = 1;
-    for (uint32_t i = 0; i < file->pack.mesh_count; i++) {
-        most = s->meshes[i].header->level_count > most ? s->meshes[i].header->level_count : most;
-    }
-    return most;
-}
-
-uint32_t scene_level_first(const scene *s, const pack_file *file)
-{
-    uint32_t least = file->pack.mesh_count ? NOH_LOD_LEVELS_MAX : 0;
-    for (uint32_t i = 0; i < file->pack.mesh_count; i++) {
-        least = s->meshes[i].header->level_first < least ? s->meshes[i].header->level_first : least;
-    }
-    return least;
-}
-
-int scene_set_level(scene *s, const pack_file *file, uint32_t level)
-{
-    const uint32_t count = scene_level_count(s, file);
-    if (level >= count) {
-        return tool_fail(file->path, "no LOD level %u: the pack has %u level%s (`noh build --lod N` makes them)", level,
-                         count, plural(count));
-    }
-    for (uint32_t i = 0; i < file->pack.mesh_count; i++) {
-        s->meshes[i] = noh_mesh_at_lod(&s->meshes[i], level);
-    }
-    return 0;
-}
-
 void scene_free(scene *s)
 {
     for (uint32_t i = 0; i < s->item_count; i++) {

@@ -48,22 +48,12 @@ typedef struct scene {
  * pose. The pack must not move while the scene is used. */
 int scene_init(scene *s, const pack_file *file);
 void scene_free(scene *s);
-/* Use every mesh at this LOD level or at its coarsest; an error if no mesh has so many levels. */
-int scene_set_level(scene *s, const pack_file *file, uint32_t level);
-uint32_t scene_level_count(const scene *s, const pack_file *file);
-/* The finest level that any mesh has: 0, but in a stripped pack. */
-uint32_t scene_level_first(const scene *s, const pack_file *file);
 /* Free what scene_open_players made; the skeleton stays. */
 void scene_close_player(scene_player *p);
 /* Use the clips of another pack (NULL: of the same one). Call it before any is played. */
 int scene_open_anim(scene *s, const pack_file *file, const char *path);
 /* Open the clips and this many controllers for each player. scene_set_clips opens one. */
 int scene_open_players(scene *s, const pack_file *file, uint32_t controllers);
-/* The bytes that scene_open_players will take, added to *clips, *controller_bytes and *poses. */
-int scene_measure_players(const scene *s, const pack_file *file, uint32_t controllers, uint64_t *clips,
-                          uint64_t *controller_bytes, uint64_t *poses);
-/* How many decoded segments are then cached at once, and how many there are in all. */
-void scene_measure_segments(const scene *s, const pack_file *file, uint32_t controllers, uint32_t *held, uint32_t *all);
 /* Pose by clips at a time, together: weights and joint matrices. An unknown name is an error that suggests the nearest.
  */
 int scene_set_clips(scene *s, const pack_file *file, const option_list *names, double time_s);

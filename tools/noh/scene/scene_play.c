@@ -55,41 +55,6 @@ static int failed_for_good(const scene *s, const pack_file *file, uint32_t fitti
                                                     : 0;
 }
 
-int scene_measure_players(const scene *s, const pack_file *file, uint32_t controllers, uint64_t *clips,
-                          uint64_t *controller_bytes, uint64_t *poses)
-{
-    noh_error error = { NOH_OK, "", 0, 0 };
-    uint32_t fitting = 0;
-    for (uint32_t i = 0; i < s->player_count && s->anim->pack.clip_count; i++) {
-        noh_clip_bank_desc desc = set_desc(s, file, i, controllers);
-        noh_clip_bank_needs needs;
-        noh_controller_desc controller;
-        if (noh_clip_bank_measure(&desc, &needs, &error) == NOH_OK) {
-            controller = controller_desc(&needs.shape);
-            *clips += needs.bytes;
-            *controller_bytes += (uint64_t)controllers * noh_controller_size(&controller);
-            *poses += noh_pose_scratch_size(&needs.shape, 1) + pose_bytes(&needs.shape);
-            fitting++;
-        } else if (error.result != NOH_ERR_NOT_FOUND) {
-            break;
-        }
-    }
-    return failed_for_good(s, file, fitting, &error);
-}
-
-void scene_measure_segments(const scene *s, const pack_file *file, uint32_t controllers, uint32_t *held, uint32_t *all)
-{
-    *held = *all = 0;
-    for (uint32_t i = 0; i < s->player_count && s->anim->pack.clip_count; i++) {
-        const noh_clip_bank_desc desc = set_desc(s, file, i, controllers);
-        noh_clip_bank_needs needs;
-        if (noh_clip_bank_measure(&desc, &needs, NULL) == NOH_OK) {
-            *held += needs.cached_segment_count;
-            *all += needs.segment_count;
-        }
-    }
-}
-
 static int open_controllers(scene_player *p, uint32_t count)
 {
     const noh_controller_desc desc = controller_desc(&p->bank->clips);
