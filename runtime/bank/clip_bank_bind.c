@@ -203,11 +203,9 @@ static void keep_name(names *n, uint64_t key)
         return;
     }
     n->count += n->count < NAMES_AT_ONCE;
-    for (; at < n->count; at++) { /* the highest falls out of a full batch */
-        const uint64_t next = n->keys[at];
-        n->keys[at] = key;
-        key = next;
-    }
+    for (uint32_t i = n->count - 1u; i > at; i--)
+        n->keys[i] = n->keys[i - 1u]; /* the highest falls out of a full batch */
+    n->keys[at] = key;
 }
 
 static void collect_names(const noh_bank_binding *b, names *n)

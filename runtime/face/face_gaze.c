@@ -195,9 +195,9 @@ static void look_aside(noh_face *face)
 /* Twelve lines of eight fixations each, two degrees apart, from the reader's left to right, then the next line. */
 static void read_on(noh_face *face)
 {
-    const uint32_t at = face->glances % 96u;
-    face->away[0] = (7.0f - 2.0f * (float)(at % 8u)) * NOH_DEGREE;
-    face->away[1] = (4.0f - 0.7f * (float)(at / 8u)) * NOH_DEGREE;
+    const uint32_t at = face->glances % 96u, line = at / 8u, column = at % 8u;
+    face->away[0] = (7.0f - 2.0f * (float)column) * NOH_DEGREE;
+    face->away[1] = (4.0f - 0.7f * (float)line) * NOH_DEGREE;
 }
 
 /* A glance that falls due while the eyes are under way to something else is left out. */

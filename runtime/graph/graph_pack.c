@@ -215,7 +215,8 @@ static noh_result check_desc(const noh_graph_pack_desc *desc, noh_pack_graph *g,
     excess = noh_clip_set_excess(desc->set);
     if (excess) return noh_fail(error, NOH_ERR_ARG, excess, 0, 0);
     result = noh_pack_graph_at(desc->pack, desc->graph, g, error);
-    if (result || !g->header->mask_count || !desc->set->joint_count) return result;
+    if (result != NOH_OK) return result;
+    if (!g->header->mask_count || !desc->set->joint_count) return NOH_OK;
     result = noh_pack_skeleton_at(desc->mesh ? desc->mesh : desc->pack, desc->skeleton, &skeleton, NULL, NULL);
     if (result || skeleton.joint_count != desc->set->joint_count) {
         return noh_fail(error, NOH_ERR_ARG,

@@ -146,9 +146,9 @@ static void be_at(noh_stage_actor *a, const noh_place *place)
 
 noh_result noh_actor_set_place(noh_stage *stage, noh_actor actor, const noh_place *place, noh_error *error)
 {
-    noh_stage_actor *a;
+    noh_stage_actor *a = NULL;
     noh_place normal;
-    noh_stage_kind *kind;
+    noh_stage_kind *kind = NULL;
     const char *what;
     const noh_result result = noh_stage_change(stage, actor, &a, &kind, error);
     NOH_ASSERT(place);
@@ -191,8 +191,8 @@ noh_result noh_actor_place_between(const noh_stage *stage, noh_actor actor, floa
 
 noh_result noh_actor_cut(noh_stage *stage, noh_actor actor, noh_error *error)
 {
-    noh_stage_actor *a;
-    noh_stage_kind *k;
+    noh_stage_actor *a = NULL;
+    noh_stage_kind *k = NULL;
     const noh_result result = noh_stage_change(stage, actor, &a, &k, error);
     if (result != NOH_OK) {
         return result;
@@ -329,8 +329,8 @@ static void free_actor(noh_stage *s, noh_stage_actor *a, noh_stage_kind *k)
 
 noh_result noh_stage_despawn(noh_stage *stage, noh_actor actor, noh_error *error)
 {
-    noh_stage_actor *a;
-    noh_stage_kind *k;
+    noh_stage_actor *a = NULL;
+    noh_stage_kind *k = NULL;
     noh_result result = noh_stage_change(stage, actor, &a, &k, error);
     if (result == NOH_OK && stage->phase != NOH_STAGE_IDLE) {
         result = noh_fail(error, NOH_ERR_ARG, "actors come and go outside of steps and frames", 0, 0);
@@ -346,8 +346,8 @@ noh_result noh_stage_despawn(noh_stage *stage, noh_actor actor, noh_error *error
 
 noh_result noh_actor_set_look(noh_stage *stage, noh_actor actor, const noh_look *look, noh_error *error)
 {
-    noh_stage_actor *a;
-    noh_stage_kind *k;
+    noh_stage_actor *a = NULL;
+    noh_stage_kind *k = NULL;
     const noh_result result = noh_stage_change(stage, actor, &a, &k, error);
     NOH_ASSERT(look);
     if (result != NOH_OK) {
@@ -374,8 +374,8 @@ static int holds_something(const noh_stage *s, uint32_t id)
 
 noh_result noh_actor_attach(noh_stage *stage, noh_actor actor, noh_actor parent, uint32_t joint, noh_error *error)
 {
-    noh_stage_actor *a, *p;
-    noh_stage_kind *k, *of_parent;
+    noh_stage_actor *a = NULL, *p;
+    noh_stage_kind *k = NULL, *of_parent = NULL;
     const noh_result result = noh_stage_change(stage, actor, &a, &k, error);
     if (result != NOH_OK) {
         return result;

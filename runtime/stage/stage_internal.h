@@ -169,6 +169,7 @@ typedef struct noh_stage_kind {
     noh_lod_table table;
     float *joint_radii; /* [joint_count]; NULL: rigid */
     float reach[4];     /* centre and radius in model space: holds the actor in any pose of its clips */
+    float rigid[4]; /* likewise: what no joint moves, at rest, and as far as one target moves it; radius -1: nothing */
     uint32_t character_bytes;
     uint32_t graph_count;        /* 0: the rest is not used */
     noh_graph_pack **graphs;     /* [graph_count] */

@@ -291,10 +291,44 @@ static float bones_radius(const noh_stage_kind *k, noh_character_scratch *scratc
     return farthest;
 }
 
+static void sphere_of_box(const float box[6], float sphere[4])
+{
+    float square = 0.0f;
+    for (int i = 0; i < 3; i++) {
+        sphere[i] = 0.5f * (box[i] + box[3 + i]);
+        square += (box[3 + i] - sphere[i]) * (box[3 + i] - sphere[i]);
+    }
+    sphere[3] = noh_sqrt(square);
+}
+
+/* All targets at once would make a face several times as large as it ever is: that is for culling, not for detail. */
+static void open_rigid(noh_stage_kind *k)
+{
+    float box[6], most = 0.0f;
+    k->rigid[3] = -1.0f;
+    noh_box_empty(box);
+    for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
+        const noh_stage_mesh *mesh = &k->meshes[m];
+        float own[6];
+        if (mesh->skinned) continue;
+        noh_mesh_box(&mesh->mesh, mesh->node_world, NULL, own);
+        noh_box_unite(box, own, box);
+        for (uint32_t t = 0; t < mesh->mesh.header->target_count; t++) {
+            const float radius = mesh->mesh.targets[t].radius *
+                                 (mesh->node_world ? longest_axis(mesh->node_world) : 1.0f);
+            most = radius > most ? radius : most;
+        }
+    }
+    if (box[0] <= box[3]) {
+        sphere_of_box(box, k->rigid);
+        k->rigid[3] += most;
+    }
+}
+
 /* Where the roots may be, and as far as joints may reach from them: any rotation of any joint. */
 static void open_reach(noh_stage_kind *k, noh_character_scratch *scratch)
 {
-    float box[6], radius = 0.0f, square = 0.0f;
+    float box[6], radius = 0.0f;
     noh_box_empty(box);
     if (k->skeleton.joint_count) {
         box_of_roots(k, scratch, box);
@@ -305,11 +339,7 @@ static void open_reach(noh_stage_kind *k, noh_character_scratch *scratch)
         }
     }
     unite_rigid(k, box);
-    for (int i = 0; i < 3; i++) {
-        k->reach[i] = 0.5f * (box[i] + box[3 + i]);
-        square += (box[3 + i] - k->reach[i]) * (box[3 + i] - k->reach[i]);
-    }
-    k->reach[3] = noh_sqrt(square);
+    sphere_of_box(box, k->reach);
 }
 
 /* ---- all of it ---- */
@@ -334,6 +364,7 @@ static noh_result open_bounds(noh_stage *s, noh_stage_kind *k, noh_error *error)
     if (result == NOH_OK) {
         open_radii(k);
         open_reach(k, &scratch);
+        open_rigid(k);
     }
     return result;
 }

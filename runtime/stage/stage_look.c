@@ -7,24 +7,39 @@
 
 #define FULL_DETAIL 1e9f /* pixels per metre */
 
+static void to_world(const float world[12], float scale, const float own[4], float out[4])
+{
+    for (int i = 0; i < 3; i++) {
+        out[i] = world[4 * i] * own[0] + world[4 * i + 1] * own[1] + world[4 * i + 2] * own[2] + world[4 * i + 3];
+    }
+    out[3] = own[3] * scale;
+}
+
 /* The sphere that culling takes: where any clip may take the actor, or what was shown last where that sticks out. */
 static void reach_in_world(const noh_stage_kind *k, const noh_character *ch, const float world[12], float scale,
                            float out[4])
 {
-    float centre[4];
-    memcpy(centre, k->reach, sizeof centre);
+    float own[4];
+    memcpy(own, k->reach, sizeof own);
     if (ch->time.posed) {
         float shown[4], apart = 0.0f;
         noh_character_sphere(ch, shown);
-        for (int i = 0; i < 3; i++) apart += (shown[i] - centre[i]) * (shown[i] - centre[i]);
+        for (int i = 0; i < 3; i++) apart += (shown[i] - own[i]) * (shown[i] - own[i]);
         apart = noh_sqrt(apart) + shown[3];
-        centre[3] = apart > centre[3] ? apart : centre[3];
+        own[3] = apart > own[3] ? apart : own[3];
     }
-    for (int i = 0; i < 3; i++) {
-        out[i] = world[4 * i] * centre[0] + world[4 * i + 1] * centre[1] + world[4 * i + 2] * centre[2] +
-                 world[4 * i + 3];
+    to_world(world, scale, own, out);
+}
+
+/* The sphere that detail is chosen by: how far targets may move a face together says nothing of how near it is. */
+static void shown_in_world(const noh_stage_kind *k, const float world[12], float scale, const float reach[4],
+                           float out[4])
+{
+    if (k->skeleton.joint_count || k->rigid[3] < 0.0f) {
+        memcpy(out, reach, 4 * sizeof *out);
+    } else {
+        to_world(world, scale, k->rigid, out);
     }
-    out[3] = centre[3] * scale;
 }
 
 static int is_inside(const noh_view_planes *v, const float sphere[4])
@@ -45,13 +60,15 @@ static float scale_at(const noh_view_planes *v, const float sphere[4])
     return v->scale / (nearest > 1e-3f ? nearest : 1e-3f);
 }
 
-static uint32_t find_views(const noh_stage *s, const noh_stage_actor *a, const float sphere[4], float *scale)
+/* reach: seen or not; shown: how large. */
+static uint32_t find_views(const noh_stage *s, const noh_stage_actor *a, const float reach[4], const float shown[4],
+                           float *scale)
 {
     uint32_t views = 0;
     for (uint32_t v = 0; v < s->view_count && !a->look.hidden; v++) {
         const noh_view_planes *planes = &s->planes[v];
-        if (is_inside(planes, sphere) && !(planes->is_light && a->look.no_shadow)) {
-            const float here = scale_at(planes, sphere);
+        if (is_inside(planes, reach) && !(planes->is_light && a->look.no_shadow)) {
+            const float here = scale_at(planes, shown);
             views |= 1u << v;
             *scale = here > *scale ? here : *scale;
         }
@@ -68,7 +85,7 @@ static uint32_t look_from(const noh_stage *s, uint32_t index, const noh_stage_ki
     const noh_stage_kind *of = k;
     const noh_character *ch;
     noh_place place = *own;
-    float sphere[4];
+    float reach[4], shown[4];
     if (a->parent) {
         on = noh_stage_actor_of(s, (noh_actor){ a->parent }, NULL);
         if (!on || on->look.hidden) return 0;
@@ -77,12 +94,15 @@ static uint32_t look_from(const noh_stage *s, uint32_t index, const noh_stage_ki
     }
     ch = noh_stage_character(of, noh_stage_index(of, on));
     noh_place_matrix(&place, world);
-    reach_in_world(of, ch, world, place.scale, sphere);
-    if (a != on)
-        sphere[3] += (k->reach[3] +
-                      noh_sqrt(k->reach[0] * k->reach[0] + k->reach[1] * k->reach[1] + k->reach[2] * k->reach[2])) *
-                     own->scale * place.scale;
-    return find_views(s, a, sphere, scale);
+    reach_in_world(of, ch, world, place.scale, reach);
+    if (a == on) {
+        shown_in_world(of, world, place.scale, reach, shown);
+        return find_views(s, a, reach, shown, scale);
+    }
+    reach[3] += (k->reach[3] +
+                 noh_sqrt(k->reach[0] * k->reach[0] + k->reach[1] * k->reach[1] + k->reach[2] * k->reach[2])) *
+                own->scale * place.scale;
+    return find_views(s, a, reach, reach, scale);
 }
 
 static void look_at(noh_stage *s, noh_stage_kind *k, uint32_t index)

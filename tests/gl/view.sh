@@ -350,7 +350,7 @@ settled
 check 'nearer, it is the full mesh again, or as good' same "$rest" "$shot"
 click 1255 349
 check 'sixteen pixels allowed' settled
-native 1
+native 2
 check 'are enough for the next level' same "$shot" "$drawn"
 lose
 settled
