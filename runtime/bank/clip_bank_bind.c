@@ -202,10 +202,12 @@ static void keep_name(names *n, uint64_t key)
     if (key <= n->after || at == NAMES_AT_ONCE || (at < n->count && n->keys[at] == key)) {
         return;
     }
-    n->count += n->count < NAMES_AT_ONCE;
-    for (uint32_t i = n->count - 1u; i > at; i--)
-        n->keys[i] = n->keys[i - 1u]; /* the highest falls out of a full batch */
-    n->keys[at] = key;
+    if (n->count < NAMES_AT_ONCE) n->keys[n->count++] = key;
+    for (; at < n->count; at++) { /* those above move up; the highest falls out of a full batch */
+        const uint64_t next = n->keys[at];
+        n->keys[at] = key;
+        key = next;
+    }
 }
 
 static void collect_names(const noh_bank_binding *b, names *n)
