@@ -12,10 +12,10 @@
  *   play     noh_actor_play, noh_actor_stop, noh_actor_track, noh_actor_controller, noh_actor_hold_float
  *   graphs   noh_actor_play_graph, noh_actor_set_parameter, noh_actor_parameter, noh_actor_state, noh_stage_find_value,
  *            noh_actor_graph
- *   ask      noh_actor_floats, noh_actor_joint, noh_actor_root, noh_actor_sphere, noh_actor_mesh_at, noh_stage_pick
- *   frame    noh_stage_frame; or its pieces noh_stage_step, noh_stage_frame_begin or noh_stage_frame_between,
- *            noh_stage_jobs, noh_stage_job, noh_stage_frame_end; noh_stage_events
- *   state    noh_stage_state, noh_stage_set_state, noh_stage_hash
+ *   ask      noh_actor_floats, noh_actor_joint, noh_actor_root, noh_actor_sphere, noh_actor_mesh_at,
+ * noh_actor_detail_of, noh_stage_pick frame    noh_stage_frame; or its pieces noh_stage_step, noh_stage_frame_begin or
+ * noh_stage_frame_between, noh_stage_jobs, noh_stage_job, noh_stage_frame_end; noh_stage_events state noh_stage_state,
+ * noh_stage_set_state, noh_stage_hash
  *
  * Drawing is stage_gl.h. A program that does not name noh_stage_on_gl links no GL code: a server steps and poses.
  *
@@ -464,6 +464,21 @@ typedef struct noh_actor_mesh {
  * errors  NOT_FOUND the actor is gone, was not shown in the last frame, or has no such mesh (need: how many) */
 noh_result noh_actor_mesh_at(const noh_stage *stage, noh_actor actor, uint32_t index, noh_actor_mesh *out,
                              float *matrices, noh_error *error);
+
+/* How finely an actor was shown in the last frame. */
+typedef struct noh_actor_detail {
+    uint32_t level;           /* of noh_kind_plan.levels */
+    uint32_t level_before;    /* the one that fades into it; else `level` */
+    float fade;               /* the share of its pixels that show `level`; 1: all */
+    uint32_t joint_count;     /* that are posed; the others move with their parents */
+    uint32_t influence_count; /* of a vertex, at most; 0: rigid */
+    float error_m;            /* certified, of all of that, the update rate and targets left out; in model units */
+    float pixels_per_metre;   /* of such a unit at its nearest point, in the view that is nearest; 0: no view sees it */
+} noh_actor_detail;
+
+/* Its error on screen is error_m * pixels_per_metre; noh_stage_stats.error_pixels is the largest of all.
+ * errors  NOT_FOUND the actor is gone, or was not shown in the last frame */
+noh_result noh_actor_detail_of(const noh_stage *stage, noh_actor actor, noh_actor_detail *out, noh_error *error);
 
 typedef struct noh_stage_hit {
     noh_actor actor;

@@ -1,4 +1,4 @@
-/* stage_ask.c: where joints and actors are. */
+/* stage_ask.c: where joints and actors are, and how finely they are shown. */
 #include <string.h>
 
 #include "base/math_internal.h"
@@ -135,5 +135,45 @@ noh_result noh_actor_mesh_at(const noh_stage *stage, noh_actor actor, uint32_t i
     if (matrices && mesh->skinned) {
         noh_character_skin(noh_stage_character(k, noh_stage_index(k, a)), &mesh->skin, matrices);
     }
+    return NOH_OK;
+}
+
+/* ---- detail ---- */
+
+/* Levels and fade as they are drawn; without anything that draws, as they were chosen. */
+static void take_levels(const noh_stage_kind *k, const noh_stage_shown *shown, const noh_character *ch,
+                        noh_actor_detail *out)
+{
+    const int has_slot = k->pools && shown->views;
+    out->level = has_slot ? shown->level : ch->lod.mesh;
+    out->level_before = has_slot ? shown->level_before : ch->lod.mesh_before;
+    out->fade = out->level == out->level_before ? 1.0f : noh_lod_fade(&ch->lod, ch->time.clock);
+    if (out->fade >= 1.0f) out->level_before = out->level;
+}
+
+noh_result noh_actor_detail_of(const noh_stage *stage, noh_actor actor, noh_actor_detail *out, noh_error *error)
+{
+    noh_stage_kind *k;
+    const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
+    const noh_stage_shown *shown;
+    const noh_character *ch;
+    noh_place place;
+    uint32_t joints;
+    NOH_ASSERT(out);
+    if (!a) {
+        return noh_stage_gone(error, actor);
+    }
+    shown = &stage->shown[a - stage->actors];
+    if (shown->frame != stage->frame || !stage->frame) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "an actor was not shown in the last frame", actor.id, 0);
+    }
+    ch = noh_stage_character(k, noh_stage_index(k, a));
+    noh_stage_shown_place(stage, a, &place);
+    take_levels(k, shown, ch, out);
+    joints = noh_lod_joint_count(&ch->lod, &k->table);
+    out->joint_count = joints && joints < k->skeleton.joint_count ? joints : k->skeleton.joint_count;
+    out->influence_count = noh_lod_influence_count(&ch->lod, &k->table);
+    out->error_m = ch->lod.error_m + ch->lod.skipped_m;
+    out->pixels_per_metre = shown->views ? shown->scale * place.scale : 0.0f;
     return NOH_OK;
 }

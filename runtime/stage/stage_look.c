@@ -21,7 +21,7 @@ static void reach_in_world(const noh_stage_kind *k, const noh_character *ch, con
 {
     float own[4];
     memcpy(own, k->reach, sizeof own);
-    if (ch->time.posed) {
+    if (ch->time.posed && k->skeleton.joint_count) { /* without joints no sphere is kept */
         float shown[4], apart = 0.0f;
         noh_character_sphere(ch, shown);
         for (int i = 0; i < 3; i++) apart += (shown[i] - own[i]) * (shown[i] - own[i]);

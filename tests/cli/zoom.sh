@@ -86,7 +86,7 @@ done
 last="--frames 100 --near 3 --far 6 --every 100" # where the mask's last level is chosen
 noh zoom "$pack" $last $mask --json
 expect 0 'the last level, with fades'
-noh zoom "$pack" $last $mask --json --no-fades --jitter 0.2
+noh zoom "$pack" $last $mask --json --no-fades --jitter 0.25
 expect 1 'and without them'
 holds 'levels that change at once pop' "$(field pop) > 1 && $(field excess) > 1"
 holds 'and flicker where a camera shakes by more than the hysteresis' "$(field most_entered_shaken) > 1"

@@ -953,6 +953,67 @@ static void levels_are_those_of_the_meshes(void **state)
     }
 }
 
+/* A camera that goes away: one level fades into the next until the coarsest shows, and what is told of its error is
+ * what the stage tells of all. */
+static void detail_is_told_as_it_is_shown(void **state)
+{
+    const noh_place middle = { .position = { 0.0f, 0.8f, -2.0f } };
+    const noh_look look = { .level = 2 };
+    noh_actor_detail d, before = { 0, 0, 1.0f, 0, 0, 0.0f, 0.0f };
+    uint32_t fades = 0, first = 0;
+    noh_stage_view view;
+    noh_actor mask;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    cast_make(&c, NULL);
+    assert_int_equal(noh_stage_spawn(c.stage, MASKS, &middle, &mask, NULL), NOH_OK);
+    assert_int_equal(noh_actor_detail_of(c.stage, mask, &d, &said), NOH_ERR_NOT_FOUND); /* no frame yet */
+    for (uint32_t f = 0; f < 600; f++) {
+        view = cast_view(0, 1.0f + 0.1f * (float)f);
+        assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
+        assert_int_equal(noh_actor_detail_of(c.stage, mask, &d, NULL), NOH_OK);
+        assert_int_equal(noh_stage_stats_of(c.stage)->at_level[d.level], 1);
+        assert_true(d.fade >= 0.0f && (d.fade < 1.0f) == (d.level != d.level_before));
+        assert_true(d.level >= before.level && (d.level == before.level || d.level_before == before.level || !f));
+        if (d.level == before.level && before.fade < 1.0f) assert_true(d.fade > before.fade);
+        assert_true(fabsf(d.error_m * d.pixels_per_metre - noh_stage_stats_of(c.stage)->error_pixels) < 1e-6f);
+        assert_true(!f || d.pixels_per_metre < before.pixels_per_metre);
+        fades += f && d.level != before.level;
+        if (!f) first = d.level;
+        before = d;
+    }
+    assert_int_equal(d.level, c.plan.kinds[MASKS].level_count - 1u);
+    assert_true(fades == d.level - first && fades > 1);
+    assert_true(d.joint_count == 0 && d.influence_count == 0);
+    assert_int_equal(noh_actor_set_look(c.stage, mask, &look, NULL), NOH_OK);
+    assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
+    assert_int_equal(noh_actor_detail_of(c.stage, mask, &d, NULL), NOH_OK);
+    assert_true(d.level == 1 && d.level_before == 1 && d.fade >= 1.0f);
+    assert_true(fabsf(d.error_m / c.plan.kinds[MASKS].levels[1].error_m - 1.0f) < 1e-6f);
+    assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
+    assert_int_equal(noh_actor_detail_of(c.stage, mask, &d, NULL), NOH_ERR_NOT_FOUND); /* no view */
+    assert_int_equal(noh_stage_despawn(c.stage, mask, NULL), NOH_OK);
+    assert_int_equal(noh_actor_detail_of(c.stage, mask, &d, NULL), NOH_ERR_NOT_FOUND);
+    cast_close(&c);
+}
+
+/* What is posed for a server alone is seen by no view, and has all joints. */
+static void detail_of_the_unseen_has_no_scale(void **state)
+{
+    noh_actor_detail d;
+    noh_actor actor;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    actor = one_puppet(&c, 0);
+    assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
+    assert_int_equal(noh_actor_detail_of(c.stage, actor, &d, NULL), NOH_OK);
+    assert_true(d.pixels_per_metre <= 0.0f && d.level == 0 && d.fade >= 1.0f && d.influence_count > 0);
+    assert_int_equal(d.joint_count, c.plan.kinds[PUPPETS].joint_count);
+    cast_close(&c);
+}
+
 /* The palette is joint times inverse bind matrix, the weights are those that are held. */
 static void meshes_are_told_as_they_are_shown(void **state)
 {
@@ -1033,6 +1094,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_kind_may_have_no_clips),
         cmocka_unit_test(levels_are_those_of_the_meshes),
         cmocka_unit_test(meshes_are_told_as_they_are_shown),
+        cmocka_unit_test(detail_is_told_as_it_is_shown),
+        cmocka_unit_test(detail_of_the_unseen_has_no_scale),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/args.h"
 #include "cli/message.h"
 
 static void grow(bounds *b, const double p[3])
@@ -19,59 +20,6 @@ bounds bounds_union(bounds a, bounds b)
     grow(&a, b.low);
     grow(&a, b.high);
     return a;
-}
-
-static void grow_item(bounds *b, const scene *s, const pack_file *file, uint32_t item, int face)
-{
-    const noh_mesh *mesh = &s->meshes[s->items[item].mesh];
-    const float *world = scene_world(s, file, item);
-    uint32_t count = mesh->header->vertex_count;
-    noh_vertex *vertices = malloc(sizeof *vertices * (count + 1u));
-    if (!vertices || scene_deform(s, item, count, vertices)) {
-        free(vertices);
-        return;
-    }
-    for (uint32_t v = 0; v < count; v++) {
-        const float *p = vertices[v].position;
-        double placed[3];
-        if (face && noh_mesh_accumulation_texel(mesh, v) >= mesh->header->touched_count) {
-            continue;
-        }
-        for (int r = 0; r < 3; r++) {
-            const float *row = world + 4 * r;
-            placed[r] = (double)row[0] * p[0] + (double)row[1] * p[1] + (double)row[2] * p[2] + (double)row[3];
-        }
-        grow(b, placed);
-    }
-    free(vertices);
-}
-
-static bounds bounds_of(const scene *s, const pack_file *file, int face)
-{
-    bounds b = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
-    for (uint32_t i = 0; i < s->item_count; i++) {
-        grow_item(&b, s, file, i, face);
-    }
-    if (b.low[0] > b.high[0]) { /* no target moves anything: frame everything */
-        if (face) {
-            return bounds_of(s, file, 0);
-        }
-        memset(&b, 0, sizeof b);
-    }
-    return b;
-}
-
-bounds scene_bounds(const scene *s, const pack_file *file, int face)
-{
-    scene coarsest = *s;
-    bounds b;
-    coarsest.meshes = malloc(sizeof *coarsest.meshes * (file->pack.mesh_count + 1u));
-    for (uint32_t i = 0; coarsest.meshes && i < file->pack.mesh_count; i++) {
-        coarsest.meshes[i] = noh_mesh_at_lod(&s->meshes[i], NOH_LOD_LEVELS_MAX);
-    }
-    b = bounds_of(coarsest.meshes ? &coarsest : s, file, face);
-    free(coarsest.meshes);
-    return b;
 }
 
 /* Column-major product of a 4x4 projection and a 4x4 view. */

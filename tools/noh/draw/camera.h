@@ -3,15 +3,11 @@
 #define NOH_NOH_DRAW_CAMERA_H
 
 #include "noh_gl.h"
-#include "scene/scene.h"
 
 typedef struct bounds {
     double low[3], high[3];
 } bounds;
 
-/* The world bounds of the scene at its weights; with `face` only of vertices that targets move. Of the coarsest LOD
- * level, whichever is shown: pictures of all levels can be compared, also with those of a stripped pack. */
-bounds scene_bounds(const scene *s, const pack_file *file, int face);
 bounds bounds_union(bounds a, bounds b);
 
 typedef struct view_options {

@@ -149,6 +149,7 @@ int figure_plan(figure *f, const figure_desc *desc, const noh_gl_caps *caps)
     f->layer.track_count = desc->track_count;
     d->kinds = f->kinds;
     d->full_detail = !desc->by_error;
+    d->lod = desc->lod;
     d->tangents = desc->tangents || desc->view == NOH_VIEW_TANGENT;
     d->halves = desc->accumulate == NOH_ACCUMULATE_F16 ? 1 : desc->accumulate == NOH_ACCUMULATE_F32 ? -1 : 0;
     d->morph_path = (uint32_t)desc->path;
@@ -298,7 +299,7 @@ int figure_pose(figure *f)
     return status ? status : figure_set_look(f, &own);
 }
 
-int figure_look(figure *f, const noh_gl_camera *camera, uint32_t height)
+noh_stage_view figure_view(const noh_gl_camera *camera, uint32_t height)
 {
     noh_stage_view view;
     memset(&view, 0, sizeof view);
@@ -306,6 +307,12 @@ int figure_look(figure *f, const noh_gl_camera *camera, uint32_t height)
     memcpy(view.eye, camera->eye, sizeof view.eye);
     memcpy(view.light, camera->key, sizeof view.light);
     view.height_px = height;
+    return view;
+}
+
+int figure_look(figure *f, const noh_gl_camera *camera, uint32_t height)
+{
+    const noh_stage_view view = figure_view(camera, height);
     return frame(f, &view);
 }
 

@@ -2,11 +2,11 @@
  *
  *   figure_plan            the bytes, without a driver; figure_open makes the stage; figure_close, figure_restore
  *   figure_reset           at rest: nothing plays, nothing is held; figure_set_look
- *   figure_play            a clip; figure_clip_seconds
+ *   figure_play            a clip; figure_clip_seconds, figure_pause
  *   figure_hold            a morph target or named float; figure_hold_all, figure_hold_options
  *   figure_pose            a frame that no view sees, for what follows
  *   figure_bounds          of what is posed; figure_anchor, figure_joints, figure_deform
- *   figure_look            a frame that a camera sees; figure_draw draws it
+ *   figure_look            a frame that a camera sees; figure_draw draws it; figure_view
  *
  * A figure is a kind of the stage for each skeleton of the pack, the first of which also has what no joint moves, and
  * of each kind one actor at the origin. Whatever a verb needs beside these functions it does with figure.stage and
@@ -30,6 +30,7 @@ typedef struct figure_desc {
     const pack_file *clips; /* whose clips are played; may be `file`. NULL: none */
     uint32_t level;         /* the finest LOD level that is there, as `noh info` counts them */
     int by_error;           /* 1: levels are chosen by error, and fade; 0: `level` is shown, with all else in full */
+    noh_lod_settings lod;   /* by which they are chosen; zeros: as lod.h has them */
     uint32_t actor_count;   /* of each kind; 0: 1. Only the first of each is there */
     uint32_t track_count;   /* clips at one time, 1..NOH_LAYER_TRACKS_MAX; 0: 2, so that one fades into another */
     const noh_layer_desc *layers; /* [layer_count] in place of one for all; they must outlive the figure */
@@ -95,6 +96,8 @@ int figure_play(figure *f, const char *clip, const noh_play *play);
 int figure_clip_seconds(const figure *f, const char *clip, double *seconds);
 /* Each --clip at this time, beside each other. */
 int figure_play_options(figure *f, const option_list *clips, double time_s);
+/* What plays stands still from now on, while the stage's clock goes on: for fades of levels in one pose. */
+void figure_pause(figure *f);
 
 /* Hold a float of that name, in all kinds that have it. The same of all floats; --weight NAME=VALUE. */
 int figure_hold(figure *f, const char *name, double value);
@@ -117,6 +120,8 @@ float *figure_joints(const figure *f, uint32_t kind, noh_skeleton *skeleton);
 noh_vertex *figure_deform(const figure *f, uint32_t kind, uint32_t index, uint32_t level, noh_mesh *mesh,
                           noh_actor_mesh *shown);
 
+/* A camera as a stage takes it. height: of the picture, pixels */
+noh_stage_view figure_view(const noh_gl_camera *camera, uint32_t height);
 /* height: of the picture, pixels. Accumulates: bind the framebuffer to draw into afterwards */
 int figure_look(figure *f, const noh_gl_camera *camera, uint32_t height);
 int figure_draw(figure *f);

@@ -89,6 +89,14 @@ int figure_play_options(figure *f, const option_list *clips, double time_s)
     return status;
 }
 
+void figure_pause(figure *f)
+{
+    for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
+        noh_controller *c = noh_actor_controller(f->stage, f->actors[k], NULL);
+        for (uint32_t t = 0; c && t < c->track_count; t++) (void)noh_controller_set_speed(c, t, 0);
+    }
+}
+
 int figure_clip_seconds(const figure *f, const char *clip, double *seconds)
 {
     for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {

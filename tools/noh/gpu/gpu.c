@@ -129,34 +129,3 @@ void gpu_morph_close(gpu_morph *m)
     free(m->memory);
     memset(m, 0, sizeof *m);
 }
-
-int gpu_skin_open(gpu_skin *s, gpu *g, const noh_gl_skin_desc *desc, const char *subject)
-{
-    noh_gl_skin_plan plan;
-    noh_error error = { NOH_OK, "", 0, 0 };
-    memset(s, 0, sizeof *s);
-    if (noh_gl_skin_plan_make(desc, &g->caps, &plan, &error)) {
-        return tool_fail_error(subject, &error);
-    }
-    s->bytes = (size_t)plan.cpu_bytes;
-    s->memory = malloc(s->bytes);
-    if (!s->memory) {
-        return tool_fail(subject, "out of memory");
-    }
-    if (noh_gl_skin_init(s->memory, s->bytes, &(noh_gl_device){ &g->gl, &g->caps, &g->ledger, NULL, 0 }, desc, &s->skin,
-                         &error)) {
-        free(s->memory);
-        memset(s, 0, sizeof *s);
-        return tool_fail_error(subject, &error);
-    }
-    return 0;
-}
-
-void gpu_skin_close(gpu_skin *s)
-{
-    if (s->skin) {
-        noh_gl_skin_delete(s->skin);
-    }
-    free(s->memory);
-    memset(s, 0, sizeof *s);
-}

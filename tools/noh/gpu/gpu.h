@@ -36,14 +36,4 @@ typedef struct gpu_morph {
 int gpu_morph_open(gpu_morph *m, gpu *g, const noh_gl_morph_desc *desc, const char *subject);
 void gpu_morph_close(gpu_morph *m);
 
-/* One noh_gl_skin with its memory; skin NULL: nothing is skinned. */
-typedef struct gpu_skin {
-    void *memory;
-    size_t bytes;
-    noh_gl_skin *skin;
-} gpu_skin;
-
-int gpu_skin_open(gpu_skin *s, gpu *g, const noh_gl_skin_desc *desc, const char *subject);
-void gpu_skin_close(gpu_skin *s);
-
 #endif

@@ -84,9 +84,7 @@ static int measure(zoom *z, const zoom_args *a)
     }
     if (!status) status = zoom_run(z, a->jitter);
     if (!status && a->output) status = zoom_strip_write(&strip, a->output);
-    if (z->strip) {
-        zoom_strip_close(&strip);
-    }
+    if (z->strip) zoom_strip_close(&strip);
     zoom_run_close(z);
     if (!status) {
         status = (a->as_json ? print_json : print_result)(z, a);
@@ -94,44 +92,40 @@ static int measure(zoom *z, const zoom_args *a)
     return status ? status : zoom_result_ok(&z->worst, a->pixels) ? 0 : EXIT_FAILED;
 }
 
-static int open_scene(scene *s, const pack_file *file, const zoom_args *a)
+static int zoom_subject_of(const zoom_subject *subject, const zoom_args *a)
 {
-    int status = scene_init(s, file);
-    if (!status) status = scene_open_anim(s, file, a->anim);
-    if (!status && a->clips.count) status = scene_set_clips(s, file, &a->clips, a->time_s);
-    return status ? status : scene_set_weights(s, file, &a->weights);
-}
-
-static int zoom_pack(const pack_file *file, const zoom_args *a)
-{
-    /* the library's defaults, spelt out because the path is planned by them */
-    const noh_lod_settings settings = {
-        (float)a->pixels, { 0.3f, 0.1f, 0.05f, 0.1f, 0.45f }, 0.3f, 0.15f, a->no_fades ? 1 : FADE_TICKS
-    };
-    scene full, kept;
     gpu g;
     zoom z;
     int status;
     memset(&z, 0, sizeof z);
-    memset(&full, 0, sizeof full);
-    memset(&kept, 0, sizeof kept);
-    z.file = file;
+    z.subject = subject;
     z.g = &g;
     z.every = (uint32_t)a->every;
-    z.full = &full;
-    z.kept = &kept;
-    status = open_scene(&full, file, a);
-    if (!status) status = open_scene(&kept, file, a);
-    if (!status)
-        status = zoom_path_open(&z.path, file, &full, &settings, a->near, a->far, a->size[0], (uint32_t)a->frames);
+    status = zoom_path_open(&z.path, subject, a->near, a->far, a->size[0], (uint32_t)a->frames);
     if (!status) status = gpu_open_drawing(&g, a->driver);
     if (!status) {
         status = measure(&z, a);
         gpu_close(&g);
     }
     zoom_path_close(&z.path);
-    scene_free(&full);
-    scene_free(&kept);
+    return status;
+}
+
+static int zoom_pack(const pack_file *file, const zoom_args *a)
+{
+    zoom_subject s = { .clips = &a->clips, .weights = &a->weights, .time_s = a->time_s };
+    pack_file anim;
+    int status = 0;
+    s.desc.file = file;
+    s.desc.track_count = (uint32_t)a->clips.count;
+    s.desc.held_float_count = (uint32_t)a->weights.count;
+    /* the library's defaults, spelt out because the path is planned by them */
+    s.desc.lod = (noh_lod_settings){
+        (float)a->pixels, { 0.3f, 0.1f, 0.05f, 0.1f, 0.45f }, 0.3f, 0.15f, a->no_fades ? 1 : FADE_TICKS
+    };
+    if (a->clips.count) status = figure_open_clips(&anim, a->anim, file, &s.desc.clips);
+    if (!status) status = zoom_subject_of(&s, a);
+    if (s.desc.clips) figure_close_clips(&anim, s.desc.clips);
     return status;
 }
 
@@ -151,6 +145,9 @@ static int check_args(const zoom_args *a)
     }
     if (a->size[0] != a->size[1] || a->size[0] > 8192u / ZOOM_FINE || a->size[0] % 2u) {
         return tool_usage("--size wants a square with an even side of at most %u", 8192u / ZOOM_FINE);
+    }
+    if (a->clips.count > (int)NOH_LAYER_TRACKS_MAX) {
+        return tool_usage("more than %u times --clip", NOH_LAYER_TRACKS_MAX);
     }
     return 0;
 }

@@ -1,59 +1,78 @@
 /* zoom.h (private to cmd_zoom.c, zoom_*.c): a camera moves slowly out and back, and what can be seen of the LOD levels
  * chosen on the way is measured.
  *
- *   zoom_path       the camera, and the levels chosen
+ *   zoom_subject    a pack in a pose, on a stage
+ *   zoom_path       the camera, and the levels entered
  *   zoom_target     pictures
  *   zoom_compare    how far two pictures differ
  *   zoom_surface    distance of the drawn level's surface from the full one, in the pose
  *   zoom_run        all frames
- *   zoom_strip      a picture of frames of all of it */
+ *   zoom_strip      a picture of frames of all of it
+ *
+ * The pack is on three stages: in full detail; with everything chosen by error, as games have it; and the same without
+ * a driver and without fades, before a camera that shakes. The scale, pixels per metre, is the stage's: that of the
+ * nearest point of the sphere that holds an actor in all its clips. */
 #ifndef NOH_NOH_ZOOM_ZOOM_H
 #define NOH_NOH_ZOOM_ZOOM_H
 
-#include "draw/scene_lod.h"
-#include "draw/camera.h"
-#include "draw/load.h"
+#include "draw/figure.h"
 
 #define ZOOM_TICKS 800 /* per frame: 60 frames a second */
 #define ZOOM_FINE 4u   /* silhouettes are compared in pictures this many times larger */
 
-/* ---- the camera, the levels chosen ---- */
+/* ---- what is zoomed at ---- */
 
-/* How many times an item entered each level, on the way out and on the way back. */
+typedef struct zoom_subject {
+    figure_desc desc; /* lod: all fields are set, because the path is planned by them. by_error is set by openings */
+    const option_list *clips, *weights;
+    double time_s;
+} zoom_subject;
+
+/* A figure in its pose, which stands still while time goes on. g: NULL: nothing is drawn. Prints an error and returns
+ * an exit code; 0 on success: as all below. */
+int zoom_subject_open(const zoom_subject *s, gpu *g, int by_error, uint32_t fade_ticks, figure *f);
+
+/* ---- the camera, the levels entered ---- */
+
+/* How many times an actor entered each level, on the way out and on the way back. */
 typedef struct zoom_entries {
     uint32_t entered[2][NOH_LOD_LEVELS_MAX];
+    uint32_t level; /* of the frame before */
+    int seen;
 } zoom_entries;
 
 typedef struct zoom_path {
-    scene_lod lod;
-    zoom_entries *entries; /* [lod.item_count] */
-    noh_lod_settings settings;
+    figure shaken; /* see zoom_path_jitter; also what the path is planned by */
+    zoom_entries entries[NOH_STAGE_KINDS_MAX];
     orbit at;              /* its distance is the frame's */
+    double reach;          /* what a stage takes the nearest point to be nearer by than the middle of the scene */
     double near, far;      /* from the camera to the middle of the scene */
     uint32_t frames, side; /* pictures are square */
 } zoom_path;
 
-/* near, far, side: 0 for a path on which every level is chosen for a while, in pictures that hold the scene.
- * Prints an error and returns an exit code; 0 on success. */
-int zoom_path_open(zoom_path *p, const pack_file *file, const scene *s, const noh_lod_settings *settings, double near,
-                   double far, uint32_t side, uint32_t frames);
+/* near, far, side: 0 for a path on which every level is chosen for a while, in pictures that hold the scene. */
+int zoom_path_open(zoom_path *p, const zoom_subject *s, double near, double far, uint32_t side, uint32_t frames);
 void zoom_path_close(zoom_path *p);
 
-/* Move the camera to its place in a frame, nearer or farther by a factor. Returns pixels per metre at the scene's
- * nearest point. */
-float zoom_path_place(zoom_path *p, uint32_t frame, double factor);
+/* Move the camera to its place in a frame: its distance changes by the same factor in every frame, and by one more. The
+ * distance is that of a camera without what the stage's sphere is larger by than the scene. */
+void zoom_path_place(zoom_path *p, uint32_t frame, double factor);
 
-/* Choose the levels of a frame; count those entered. */
-void zoom_path_choose(zoom_path *p, uint32_t frame, float pixels_per_metre);
+/* zoom_path_place, and a step and a frame of a figure there. Its view 0 is of this frame; view 1, which asks for no
+ * detail, of the next one: until then it shows from there what this frame shows. */
+int zoom_path_show(zoom_path *p, uint32_t frame, double factor, figure *f);
+
+/* Count the levels that a figure entered in a frame. */
+void zoom_path_count(zoom_path *p, uint32_t frame, const figure *f);
 
 /* The most times that any level was entered on one way; the number of levels entered on the way out (0) and back (1).
  */
 uint32_t zoom_path_most_entered(const zoom_path *p);
 uint32_t zoom_path_entered(const zoom_path *p, int way);
 
-/* zoom_path_most_entered of the same path, restarted, with distances that jump by up to a share of `jitter` from frame
- * to frame, and without fades. */
-uint32_t zoom_path_jitter(zoom_path *p, double jitter);
+/* *most: zoom_path_most_entered of the same path with distances that jump by up to a share of `jitter` from frame to
+ * frame, and without fades. No entries are left. */
+int zoom_path_jitter(zoom_path *p, double jitter, uint32_t *most);
 
 /* ---- pictures ---- */
 
@@ -68,13 +87,13 @@ typedef struct zoom_target {
     GLuint framebuffer, color, depth, resolved_framebuffer, resolved_color;
 } zoom_target;
 
-/* samples: per pixel; 0 for none. Prints an error and returns an exit code; 0 on success: as all below. */
+/* samples: per pixel; 0 for none. */
 int zoom_target_open(zoom_target *t, gpu *g, uint32_t side, uint32_t samples);
 void zoom_target_close(zoom_target *t);
 /* Draw only the centre of the target, this share of its side. */
 void zoom_target_frame(zoom_target *t, double share);
-/* *out has room for the whole target. */
-int zoom_target_draw(zoom_target *t, load *l, const noh_gl_camera *camera, zoom_picture *out);
+/* A view of the figure's last frame. shader: NULL: the library's. *out has room for the whole target. */
+int zoom_target_draw(zoom_target *t, const figure *f, uint32_t view, noh_stage_shader *shader, zoom_picture *out);
 
 /* ---- comparing ---- */
 
@@ -93,16 +112,21 @@ double zoom_compare_colors(const zoom_picture *a, const zoom_picture *b);
 
 /* ---- surfaces ---- */
 
-/* A cache of measured distances, by item, level and weights. */
+/* A cache of measured distances, by mesh, level, joints posed and weights. */
 typedef struct zoom_surface {
     struct zoom_surface_entry *entries;
     uint32_t count;
 } zoom_surface;
 
-/* The distance in metres, both ways, between an item at a level with the weights of `kept` and the full mesh with those
- * of `full`. Prints an error and returns an exit code; 0 on success. */
-int zoom_surface_distance(zoom_surface *z, const pack_file *file, const scene *full, const scene *kept, uint32_t item,
-                          uint32_t level, double *metres);
+/* One mesh of a figure. */
+typedef struct zoom_mesh {
+    uint32_t kind, index; /* as figure_deform takes them */
+    uint32_t level, joint_count;
+} zoom_mesh;
+
+/* The distance in metres, both ways, between a mesh of `kept` at a level and that of `full`, each as its figure showed
+ * it last, but with all influences. */
+int zoom_surface_distance(zoom_surface *z, const figure *full, const figure *kept, const zoom_mesh *at, double *metres);
 void zoom_surface_close(zoom_surface *z);
 
 /* ---- all frames ---- */
@@ -119,7 +143,7 @@ typedef struct zoom_result {
     double hole_px;     /* zoom_shift.uncovered; has no bound: a slit narrower than the error may close along its whole
                            length */
     double position_px; /* from the drawn surface to the full one, in the pose */
-    double claimed_px;  /* noh_lod_error_pixels */
+    double claimed_px;  /* noh_actor_detail.error_m, in pixels */
     double pop;         /* what a change of level changes in the picture of a camera at rest; of 255 */
     double excess;      /* how much more than full pictures those with levels change from frame to frame; of 255 */
     double zoom_change; /* mean change of the full pictures from frame to frame; of 255 */
@@ -132,23 +156,22 @@ int zoom_result_ok(const zoom_result *r, double pixels);
 
 /* What a zoom is measured with. */
 typedef struct zoom {
-    const pack_file *file;
+    const zoom_subject *subject;
     gpu *g;
     zoom_path path;
-    const scene *full; /* posed, with all weights */
-    scene *kept;       /* the same without targets left out */
+    figure full, kept; /* in full detail, and with what is chosen */
     uint32_t every;    /* silhouettes are measured in every n-th frame, and where a level changes */
-    load full_load, kept_load;
-    load_lod *before; /* [item_count] of the frame before */
+    noh_actor_detail details[NOH_STAGE_KINDS_MAX]; /* of `kept` in this frame */
+    float *weights;                                /* of all its meshes, one after another */
     zoom_target fine, seen;
-    zoom_picture fine_full, fine_kept, seen_full[2], seen_kept[2],
-        standing; /* two frames each; the current one is frame % 2 */
+    zoom_picture fine_full, fine_kept, seen_full[2], seen_kept[2]; /* two frames each; the current one is frame % 2 */
+    zoom_picture standing; /* from this frame's place, what the frame before shows */
     zoom_surface surface;
     struct zoom_strip *strip; /* NULL: none */
     zoom_result worst;
 } zoom;
 
-/* The caller sets z->file, g, path, full, kept and every before, and strip before zoom_run. */
+/* The caller sets z->subject, g, path and every before, and strip before zoom_run. */
 int zoom_run_open(zoom *z);
 void zoom_run_close(zoom *z);
 int zoom_run(zoom *z, double jitter);
@@ -158,16 +181,18 @@ int zoom_run(zoom *z, double jitter);
 #define ZOOM_STRIP 12u /* frames of the way out */
 
 typedef struct zoom_strip {
-    load colors;                          /* as kept_load, coloured by level */
+    noh_stage_shader *shader; /* of zoom.kept, in the colours of levels */
+    void *shader_memory;
     zoom_picture pictures[3][ZOOM_STRIP]; /* with levels, full, colours */
     char labels[ZOOM_STRIP][16];
     uint32_t count;
 } zoom_strip;
 
-int zoom_strip_open(zoom_strip *s, const zoom *z);
+int zoom_strip_open(zoom_strip *s, const zoom *z); /* after zoom_run_open */
+/* Before zoom_run_close. */
 void zoom_strip_close(zoom_strip *s);
 /* After a frame was drawn: keep it if the strip shows it. */
-int zoom_strip_take(zoom_strip *s, zoom *z, const noh_gl_camera *camera, uint32_t frame);
+int zoom_strip_take(zoom_strip *s, zoom *z, uint32_t frame);
 int zoom_strip_write(const zoom_strip *s, const char *path);
 
 #endif

@@ -16,6 +16,28 @@ static int picture_open(zoom_picture *p, uint32_t side)
     return !p->rgba;
 }
 
+static uint32_t target_count(const figure *f, const noh_actor_mesh *shown)
+{
+    noh_mesh mesh;
+    (void)noh_pack_mesh_at(&f->desc.file->pack, shown->mesh, &mesh, NULL);
+    return mesh.header->target_count;
+}
+
+/* Of all meshes; at least as many as are shown. */
+static size_t count_weights(const figure *f)
+{
+    size_t count = 0;
+    for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
+        for (uint32_t i = 0; i < f->kinds[k].node_count; i++) {
+            const noh_pack *pack = f->kinds[k].mesh;
+            const uint32_t node = f->kinds[k].nodes[i];
+            const noh_actor_mesh shown = { .mesh = pack->node_count ? pack->nodes[node].mesh : node };
+            count += target_count(f, &shown);
+        }
+    }
+    return count;
+}
+
 static int open_pictures(zoom *z)
 {
     const uint32_t side = z->path.side;
@@ -24,20 +46,16 @@ static int open_pictures(zoom *z)
     for (int i = 0; i < 2; i++) {
         failed = failed || picture_open(&z->seen_full[i], side) || picture_open(&z->seen_kept[i], side);
     }
-    z->before = calloc(z->path.lod.item_count + 1u, sizeof *z->before);
-    failed = failed || !z->before;
-    return failed ? tool_fail(z->file->path, "out of memory for pictures of %ux%u", side, side) : 0;
+    z->weights = calloc(count_weights(&z->kept) + 1u, sizeof *z->weights);
+    failed = failed || !z->weights;
+    return failed ? tool_fail(z->subject->desc.file->path, "out of memory for pictures of %ux%u", side, side) : 0;
 }
 
 int zoom_run_open(zoom *z)
 {
-    load_options o;
-    int status;
-    memset(&o, 0, sizeof o);
-    status = load_open(&z->full_load, z->g, z->file, z->full, &o);
-    o.fades = 1;
-    if (!status) status = load_open(&z->kept_load, z->g, z->file, z->kept, &o);
-    if (!status) status = load_update(&z->full_load, NULL);
+    const uint32_t fade_ticks = z->subject->desc.lod.fade_ticks;
+    int status = zoom_subject_open(z->subject, z->g, 0, fade_ticks, &z->full);
+    if (!status) status = zoom_subject_open(z->subject, z->g, 1, fade_ticks, &z->kept);
     if (!status) status = zoom_target_open(&z->fine, z->g, z->path.side * ZOOM_FINE, 0);
     if (!status) status = zoom_target_open(&z->seen, z->g, z->path.side, SAMPLES);
     return status ? status : open_pictures(z);
@@ -45,105 +63,120 @@ int zoom_run_open(zoom *z)
 
 void zoom_run_close(zoom *z)
 {
-    load *loads[2] = { &z->full_load, &z->kept_load };
     for (int i = 0; i < 2; i++) {
-        if (loads[i]->g) {
-            load_close(loads[i]);
-        }
         free(z->seen_full[i].rgba);
         free(z->seen_kept[i].rgba);
     }
+    if (z->full.stage) figure_close(&z->full);
+    if (z->kept.stage) figure_close(&z->kept);
     zoom_target_close(&z->fine);
     zoom_target_close(&z->seen);
     zoom_surface_close(&z->surface);
     free(z->fine_full.rgba);
     free(z->fine_kept.rgba);
     free(z->standing.rgba);
-    free(z->before);
+    free(z->weights);
 }
 
-/* ---- choosing ---- */
+/* ---- what is shown ---- */
 
-static int same_lod(const load_lod *a, const load_lod *b)
+/* What a frame shows, against the one before and against everything in full. */
+typedef struct shown_frame {
+    int changed;       /* something is drawn otherwise than in the frame before */
+    int is_full;       /* nothing is left out */
+    uint32_t left_out; /* targets */
+} shown_frame;
+
+/* The weights of one mesh, which begin at *first of the zoom's. */
+static int take_weights(zoom *z, uint32_t kind, uint32_t index, size_t *first, shown_frame *now)
 {
-    int same = a->part_count == b->part_count;
-    for (uint32_t i = 0; i < a->part_count && same; i++) {
-        same = a->parts[i].level == b->parts[i].level && a->parts[i].from == b->parts[i].from &&
-               a->parts[i].to == b->parts[i].to;
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_actor_mesh full, kept;
+    uint32_t count;
+    if (noh_actor_mesh_at(z->full.stage, z->full.actors[kind], index, &full, NULL, &error) ||
+        noh_actor_mesh_at(z->kept.stage, z->kept.actors[kind], index, &kept, NULL, &error)) {
+        return tool_fail_error(z->subject->desc.file->path, &error);
     }
-    return same;
-}
-
-/* An item's weights without the targets left out. Returns 1 where they changed since the last frame. */
-static int choose_weights(zoom *z, uint32_t item)
-{
-    const uint32_t count = z->full->meshes[z->full->items[item].mesh].header->target_count;
-    const float *weights = z->full->items[item].weights;
-    float kept[NOH_TARGETS_MAX];
-    const uint32_t left_out = scene_lod_targets(&z->path.lod, item, &z->path.settings, weights, count, kept);
-    int changed;
-    z->worst.targets_left_out = left_out > z->worst.targets_left_out ? left_out : z->worst.targets_left_out;
-    changed = memcmp(kept, z->kept->items[item].weights, sizeof *kept * count) != 0;
-    memcpy(z->kept->items[item].weights, kept, sizeof *kept * count);
-    return changed;
-}
-
-/* What is drawn in this frame, against the one before. */
-static void swap_lods(zoom *z)
-{
-    for (uint32_t i = 0; i < z->path.lod.item_count; i++) {
-        const load_lod swap = z->kept_load.lods[i];
-        z->kept_load.lods[i] = z->before[i];
-        z->before[i] = swap;
+    count = target_count(&z->kept, &kept);
+    for (uint32_t t = 0; t < count; t++) {
+        now->left_out += full.weights[t] != 0.0f && kept.weights[t] == 0.0f;
     }
+    now->changed |= memcmp(z->weights + *first, kept.weights, sizeof *kept.weights * count) != 0;
+    memcpy(z->weights + *first, kept.weights, sizeof *kept.weights * count);
+    *first += count;
+    return 0;
 }
 
-/* Choose, and hand it to the load. *changed: something is drawn otherwise than before, and z->standing shows from this
- * frame's place what was; *full: nothing is left out. */
-static int choose(zoom *z, uint32_t frame, float scale, const noh_gl_camera *camera, int *changed, int *full)
+/* Fields one by one: the error and the scale change in every frame. */
+static int same_detail(const noh_actor_detail *a, const noh_actor_detail *b)
 {
+    return a->level == b->level && a->level_before == b->level_before && !(a->fade < b->fade || a->fade > b->fade) &&
+           a->joint_count == b->joint_count && a->influence_count == b->influence_count;
+}
+
+static int take_detail(zoom *z, uint32_t kind, shown_frame *now)
+{
+    const uint32_t finest = z->full.plan.kinds[kind].finest_level;
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_actor_detail full, kept;
+    if (noh_actor_detail_of(z->full.stage, z->full.actors[kind], &full, &error) ||
+        noh_actor_detail_of(z->kept.stage, z->kept.actors[kind], &kept, &error)) {
+        return tool_fail_error(z->subject->desc.file->path, &error);
+    }
+    now->changed |= !same_detail(&kept, &z->details[kind]);
+    now->is_full &= kept.level == finest && kept.level_before == finest && kept.joint_count == full.joint_count &&
+                    kept.influence_count == full.influence_count;
+    z->details[kind] = kept;
+    z->worst.claimed_px = fmax(z->worst.claimed_px, (double)(kept.error_m * kept.pixels_per_metre));
+    return 0;
+}
+
+static int take_shown(zoom *z, shown_frame *now)
+{
+    size_t first = 0;
     int status = 0;
-    *changed = 0;
-    *full = 1;
-    zoom_path_choose(&z->path, frame, scale);
-    for (uint32_t i = 0; i < z->path.lod.item_count; i++) {
-        const noh_lod *lod = &z->path.lod.items[i].state;
-        const load_lod *now = &z->kept_load.lods[i];
-        z->before[i] = *now;
-        load_set_lod(&z->kept_load, i, lod, (int64_t)ZOOM_TICKS * frame);
-        *changed |= choose_weights(z, i) | !same_lod(&z->before[i], now);
-        *full &= now->part_count == 1 && now->parts[0].level == 0 && lod->skipped_m <= 0.0f;
-        z->worst.claimed_px = fmax(z->worst.claimed_px, (double)noh_lod_error_pixels(lod));
+    *now = (shown_frame){ 0, 1, 0 };
+    for (uint32_t k = 0; k < z->kept.stage_desc.kind_count && !status; k++) {
+        status = take_detail(z, k, now);
+        for (uint32_t i = 0; i < z->kept.plan.kinds[k].mesh_count && !status; i++) {
+            status = take_weights(z, k, i, &first, now);
+        }
     }
-    if (frame && *changed) {
-        swap_lods(z);
-        status = zoom_target_draw(&z->seen, &z->kept_load, camera, &z->standing);
-        swap_lods(z);
-    }
-    return status ? status : load_update(&z->kept_load, NULL);
+    now->is_full &= now->left_out == 0;
+    z->worst.targets_left_out = now->left_out > z->worst.targets_left_out ? now->left_out : z->worst.targets_left_out;
+    return status;
 }
 
 /* ---- measuring ---- */
 
-static int measure_positions(zoom *z, float scale)
+static int measure_actor(zoom *z, uint32_t kind)
 {
+    const noh_actor_detail *d = &z->details[kind];
+    const uint32_t levels[2] = { d->level, d->level_before };
     int status = 0;
-    for (uint32_t i = 0; i < z->path.lod.item_count; i++) {
-        const load_lod *d = &z->kept_load.lods[i];
-        for (uint32_t k = 0; k < d->part_count && !status; k++) {
+    for (uint32_t l = 0; l < (d->level != d->level_before ? 2u : 1u) && !status; l++) {
+        for (uint32_t i = 0; i < z->kept.plan.kinds[kind].mesh_count && !status; i++) {
+            const zoom_mesh at = { kind, i, levels[l], d->joint_count };
             double metres = 0.0;
-            status = zoom_surface_distance(&z->surface, z->file, z->full, z->kept, i, d->parts[k].level, &metres);
-            z->worst.position_px = fmax(z->worst.position_px, metres * (double)scale);
+            status = zoom_surface_distance(&z->surface, &z->full, &z->kept, &at, &metres);
+            z->worst.position_px = fmax(z->worst.position_px, metres * (double)d->pixels_per_metre);
         }
     }
     return status;
 }
 
-static int measure_silhouettes(zoom *z, const noh_gl_camera *camera)
+static int measure_positions(zoom *z)
+{
+    int status = 0;
+    for (uint32_t k = 0; k < z->kept.stage_desc.kind_count && !status; k++) status = measure_actor(z, k);
+    return status;
+}
+
+static int measure_silhouettes(zoom *z)
 {
     zoom_shift shift;
-    int status = zoom_target_draw(&z->fine, &z->full_load, camera, &z->fine_full);
-    if (!status) status = zoom_target_draw(&z->fine, &z->kept_load, camera, &z->fine_kept);
+    int status = zoom_target_draw(&z->fine, &z->full, 0, NULL, &z->fine_full);
+    if (!status) status = zoom_target_draw(&z->fine, &z->kept, 0, NULL, &z->fine_kept);
     if (!status) {
         shift = zoom_compare_silhouettes(&z->fine_full, &z->fine_kept);
         z->worst.silhouette_px = fmax(z->worst.silhouette_px, shift.covered / ZOOM_FINE);
@@ -152,7 +185,7 @@ static int measure_silhouettes(zoom *z, const noh_gl_camera *camera)
     return status;
 }
 
-/* Against the frame before; changed: z->standing shows this frame at the levels of the one before. */
+/* Against the frame before; changed: something else is drawn than there. */
 static void measure_changes(zoom *z, uint32_t frame, int changed)
 {
     const uint32_t now = frame % 2u;
@@ -172,28 +205,37 @@ static void frame_targets(zoom *z)
     zoom_target_frame(&z->seen, share);
 }
 
+/* Once the frame before was drawn: what it shows from this frame's place, then this frame. */
+static int show(zoom *z, uint32_t frame, shown_frame *now)
+{
+    int status = 0;
+    zoom_path_place(&z->path, frame, 1.0);
+    frame_targets(z);
+    if (frame) status = zoom_target_draw(&z->seen, &z->kept, 1, NULL, &z->standing);
+    if (!status) status = zoom_path_show(&z->path, frame, 1.0, &z->full);
+    if (!status) status = zoom_path_show(&z->path, frame, 1.0, &z->kept);
+    if (!status) status = take_shown(z, now);
+    if (!status) zoom_path_count(&z->path, frame, &z->kept);
+    return status;
+}
+
 static int run_frame(zoom *z, uint32_t frame)
 {
-    const float scale = zoom_path_place(&z->path, frame, 1.0);
-    noh_gl_camera camera;
-    int changed = 0, full = 0, status;
-    orbit_camera(&z->path.at, &camera);
-    frame_targets(z);
-    status = choose(z, frame, scale, &camera, &changed, &full);
-    if (!status) status = zoom_target_draw(&z->seen, &z->full_load, &camera, &z->seen_full[frame % 2u]);
-    if (!status) status = zoom_target_draw(&z->seen, &z->kept_load, &camera, &z->seen_kept[frame % 2u]);
-    if (!status && !full) status = measure_positions(z, scale);
-    if (!status && !full && (changed || frame % z->every == 0)) status = measure_silhouettes(z, &camera);
+    shown_frame now;
+    int status = show(z, frame, &now);
+    if (!status) status = zoom_target_draw(&z->seen, &z->full, 0, NULL, &z->seen_full[frame % 2u]);
+    if (!status) status = zoom_target_draw(&z->seen, &z->kept, 0, NULL, &z->seen_kept[frame % 2u]);
+    if (!status && !now.is_full) status = measure_positions(z);
+    if (!status && !now.is_full && (now.changed || frame % z->every == 0)) status = measure_silhouettes(z);
     if (!status && frame) {
-        measure_changes(z, frame, changed);
+        measure_changes(z, frame, now.changed);
     }
-    return status || !z->strip ? status : zoom_strip_take(z->strip, z, &camera, frame);
+    return status || !z->strip ? status : zoom_strip_take(z->strip, z, frame);
 }
 
 int zoom_run(zoom *z, double jitter)
 {
-    int status = 0;
-    z->worst.most_entered_shaken = zoom_path_jitter(&z->path, jitter);
+    int status = zoom_path_jitter(&z->path, jitter, &z->worst.most_entered_shaken);
     for (uint32_t frame = 0; frame < z->path.frames && !status; frame++) {
         status = run_frame(z, frame);
     }

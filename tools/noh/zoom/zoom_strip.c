@@ -15,12 +15,21 @@
 
 int zoom_strip_open(zoom_strip *s, const zoom *z)
 {
-    load_options o;
+    static const noh_gl_shader_desc desc = { .view = NOH_VIEW_LOD };
+    const size_t bytes = noh_stage_shader_size(z->kept.stage);
+    char log[4096] = "";
+    noh_error error = { NOH_OK, "", 0, 0 };
     memset(s, 0, sizeof *s);
-    memset(&o, 0, sizeof o);
-    o.view = NOH_VIEW_LOD;
-    o.fades = 1;
-    return load_open(&s->colors, z->g, z->file, z->kept, &o);
+    s->shader_memory = malloc(bytes);
+    if (!s->shader_memory) {
+        return tool_fail("zoom", "out of memory");
+    }
+    if (noh_stage_shader_create(z->kept.stage, s->shader_memory, bytes, &desc, log, sizeof log, &s->shader, &error)) {
+        fputs(log, stderr);
+        s->shader = NULL;
+        return tool_fail_error("zoom", &error);
+    }
+    return 0;
 }
 
 void zoom_strip_close(zoom_strip *s)
@@ -28,9 +37,8 @@ void zoom_strip_close(zoom_strip *s)
     for (uint32_t i = 0; i < 3u * ZOOM_STRIP; i++) {
         free(s->pictures[i / ZOOM_STRIP][i % ZOOM_STRIP].rgba);
     }
-    if (s->colors.g) {
-        load_close(&s->colors);
-    }
+    if (s->shader) noh_stage_shader_delete(s->shader);
+    free(s->shader_memory);
     memset(s, 0, sizeof *s);
 }
 
@@ -46,31 +54,26 @@ static int copy(zoom_picture *to, const zoom_picture *from)
     return 0;
 }
 
-static int draw_colors(zoom_strip *s, zoom *z, const noh_gl_camera *camera, uint32_t frame)
+static int draw_colors(zoom_strip *s, zoom *z)
 {
     zoom_picture *p = &s->pictures[2][s->count];
-    int status;
-    for (uint32_t i = 0; i < z->path.lod.item_count; i++) {
-        load_set_lod(&s->colors, i, &z->path.lod.items[i].state, (int64_t)ZOOM_TICKS * frame);
-    }
     p->rgba = malloc((size_t)z->seen.size * z->seen.size * 4);
-    status = p->rgba ? load_update(&s->colors, NULL) : tool_fail("zoom", "out of memory");
-    return status ? status : zoom_target_draw(&z->seen, &s->colors, camera, p);
+    return p->rgba ? zoom_target_draw(&z->seen, &z->kept, 0, s->shader, p) : tool_fail("zoom", "out of memory");
 }
 
-int zoom_strip_take(zoom_strip *s, zoom *z, const noh_gl_camera *camera, uint32_t frame)
+int zoom_strip_take(zoom_strip *s, zoom *z, uint32_t frame)
 {
-    const load_lod *d = &z->kept_load.lods[0];
+    const noh_actor_detail *d = &z->details[0];
     int status;
     if (s->count == ZOOM_STRIP || frame < s->count * (z->path.frames / 2u) / (ZOOM_STRIP - 1u)) {
         return 0;
     }
-    status = draw_colors(s, z, camera, frame);
+    status = draw_colors(s, z);
     if (!status) status = copy(&s->pictures[0][s->count], &z->seen_kept[frame % 2u]);
     if (!status) status = copy(&s->pictures[1][s->count], &z->seen_full[frame % 2u]);
-    snprintf(s->labels[s->count], sizeof s->labels[0], "level %u", d->parts[0].level);
-    if (d->part_count > 1) {
-        snprintf(s->labels[s->count], sizeof s->labels[0], "level %u-%u", d->parts[1].level, d->parts[0].level);
+    snprintf(s->labels[s->count], sizeof s->labels[0], "level %u", d->level);
+    if (d->level != d->level_before) {
+        snprintf(s->labels[s->count], sizeof s->labels[0], "level %u-%u", d->level_before, d->level);
     }
     s->count += !status;
     return status;

@@ -8,7 +8,7 @@
 #include "cli/message.h"
 
 typedef struct zoom_surface_entry {
-    uint32_t item, level;
+    zoom_mesh at;
     float *weights;
     double metres;
 } zoom_surface_entry;
@@ -65,35 +65,28 @@ static void take_triangles(pair *p, const noh_mesh *full, const noh_mesh *level)
     }
 }
 
-/* An item's vertices in the scene's pose. */
-static int take_positions(const scene *s, uint32_t item, float *position)
+static void take_positions(const noh_vertex *vertices, uint32_t count, float *position)
 {
-    const uint32_t count = s->meshes[s->items[item].mesh].header->vertex_count;
-    noh_vertex *vertices = malloc(sizeof *vertices * (count + 1u));
-    int status = vertices ? scene_deform(s, item, count, vertices) : tool_fail("zoom", "out of memory");
-    for (uint32_t v = 0; v < count && !status; v++) {
+    for (uint32_t v = 0; v < count; v++) {
         memcpy(position + 3 * (size_t)v, vertices[v].position, 3 * sizeof(float));
     }
-    free(vertices);
-    return status;
 }
 
-/* `shown` has the item's mesh at that level. */
-static int measure(const scene *full, const scene *shown, uint32_t item, double *metres)
+static int measure_pair(const noh_mesh *fine, const noh_vertex *fine_at, const noh_mesh *coarse,
+                        const noh_vertex *coarse_at, double *metres)
 {
-    const noh_mesh *fine = &full->meshes[full->items[item].mesh], *coarse = &shown->meshes[shown->items[item].mesh];
     model_error error;
     pair p;
     int status = pair_open(&p, fine, coarse) ? tool_fail("zoom", "out of memory") : 0;
     if (!status) {
         take_triangles(&p, fine, coarse);
-        status = take_positions(full, item, p.mesh.position);
+        take_positions(fine_at, fine->header->vertex_count, p.mesh.position);
+        take_positions(coarse_at, coarse->header->vertex_count,
+                       p.mesh.position + 3 * (size_t)fine->header->vertex_count);
+        if (lod_certify(&p.mesh, &p.level, NULL, 0, p.distances, &error)) {
+            status = tool_fail("zoom", "%s", error.what);
+        }
     }
-    if (!status) status = take_positions(shown, item, p.mesh.position + 3 * (size_t)fine->header->vertex_count);
-    if (!status && lod_certify(&p.mesh, &p.level, NULL, 0, p.distances, &error)) {
-        status = tool_fail("zoom", "%s", error.what);
-    }
-    *metres = 0.0;
     for (uint32_t s = 0; s < p.mesh.submesh_count && !status; s++) {
         const double distance = (double)p.distances[s].max * (double)fine->header->world_scale;
         *metres = distance > *metres ? distance : *metres;
@@ -102,20 +95,22 @@ static int measure(const scene *full, const scene *shown, uint32_t item, double 
     return status;
 }
 
-static int measure_at(const pack_file *file, const scene *full, const scene *kept, uint32_t item, uint32_t level,
-                      double *metres)
+/* The level of a mesh in a level of its figure. */
+static uint32_t mesh_level(const figure *f, const zoom_mesh *at, uint32_t level)
 {
-    scene shown = *kept;
-    int status;
-    shown.meshes = malloc(sizeof *shown.meshes * (file->pack.mesh_count + 1u));
-    if (!shown.meshes) {
-        return tool_fail(file->path, "out of memory");
-    }
-    for (uint32_t m = 0; m < file->pack.mesh_count; m++) {
-        shown.meshes[m] = noh_mesh_at_lod(&kept->meshes[m], level);
-    }
-    status = measure(full, &shown, item, metres);
-    free(shown.meshes);
+    return f->plan.kinds[at->kind].levels[level].mesh_levels[at->index];
+}
+
+static int measure(const figure *full, const figure *kept, const zoom_mesh *at, double *metres)
+{
+    const uint32_t finest = full->plan.kinds[at->kind].finest_level;
+    noh_mesh fine, coarse;
+    noh_actor_mesh shown;
+    noh_vertex *fine_at = figure_deform(full, at->kind, at->index, mesh_level(full, at, finest), &fine, &shown);
+    noh_vertex *coarse_at = figure_deform(kept, at->kind, at->index, mesh_level(kept, at, at->level), &coarse, &shown);
+    const int status = fine_at && coarse_at ? measure_pair(&fine, fine_at, &coarse, coarse_at, metres) : EXIT_FAILED;
+    free(fine_at);
+    free(coarse_at);
     return status;
 }
 
@@ -135,23 +130,29 @@ static int remember(zoom_surface *z, const zoom_surface_entry *e, const float *w
     return 0;
 }
 
-int zoom_surface_distance(zoom_surface *z, const pack_file *file, const scene *full, const scene *kept, uint32_t item,
-                          uint32_t level, double *metres)
+int zoom_surface_distance(zoom_surface *z, const figure *full, const figure *kept, const zoom_mesh *at, double *metres)
 {
-    const float *weights = kept->items[item].weights;
-    const size_t bytes = sizeof *weights * kept->meshes[kept->items[item].mesh].header->target_count;
-    zoom_surface_entry e = { item, level, NULL, 0.0 };
+    zoom_surface_entry e = { *at, NULL, 0.0 };
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_actor_mesh shown;
+    noh_mesh mesh;
+    size_t bytes;
     int status;
+    if (noh_actor_mesh_at(kept->stage, kept->actors[at->kind], at->index, &shown, NULL, &error)) {
+        return tool_fail_error(kept->desc.file->path, &error);
+    }
+    (void)noh_pack_mesh_at(kept->kinds[at->kind].mesh, shown.mesh, &mesh, NULL);
+    bytes = sizeof *shown.weights * mesh.header->target_count;
     for (uint32_t i = 0; i < z->count; i++) {
         const zoom_surface_entry *known = &z->entries[i];
-        if (known->item == item && known->level == level && !memcmp(known->weights, weights, bytes)) {
+        if (!memcmp(&known->at, at, sizeof *at) && !memcmp(known->weights, shown.weights, bytes)) {
             *metres = known->metres;
             return 0;
         }
     }
-    status = measure_at(file, full, kept, item, level, &e.metres);
+    status = measure(full, kept, at, &e.metres);
     *metres = e.metres;
-    return status ? status : remember(z, &e, weights, bytes);
+    return status ? status : remember(z, &e, shown.weights, bytes);
 }
 
 void zoom_surface_close(zoom_surface *z)

@@ -78,11 +78,13 @@ static int read_back(const zoom_target *t, zoom_picture *out)
     return error ? tool_fail("zoom", "GL error 0x%x while drawing", error) : 0;
 }
 
-int zoom_target_draw(zoom_target *t, load *l, const noh_gl_camera *camera, zoom_picture *out)
+int zoom_target_draw(zoom_target *t, const figure *f, uint32_t view, noh_stage_shader *shader, zoom_picture *out)
 {
     static const float background[4] = { CANVAS_BACKGROUND_LINEAR, 0.0f }, far = 1.0f;
     const noh_gl_api *gl = &t->g->gl;
     const GLint low = (GLint)((t->side - t->size) / 2u);
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_result result;
     gl->BindFramebuffer(GL_FRAMEBUFFER, t->framebuffer);
     gl->Viewport(0, 0, (GLsizei)t->side, (GLsizei)t->side); /* all of it: fades dither by pixel coordinates */
     gl->Enable(GL_SCISSOR_TEST);
@@ -93,7 +95,7 @@ int zoom_target_draw(zoom_target *t, load *l, const noh_gl_camera *camera, zoom_
     gl->DepthMask(GL_TRUE);
     gl->ClearBufferfv(GL_COLOR, 0, background);
     gl->ClearBufferfv(GL_DEPTH, 0, &far);
-    load_draw(l, camera);
+    result = noh_stage_draw(f->stage, NOH_PASS_COLOR, view, shader, &error);
     gl->Disable(GL_SCISSOR_TEST);
-    return read_back(t, out);
+    return result ? tool_fail_error(f->desc.file->path, &error) : read_back(t, out);
 }
