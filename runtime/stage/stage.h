@@ -324,7 +324,8 @@ noh_result noh_actor_place_between(const noh_stage *stage, noh_actor actor, floa
 
 /* It has leapt: what shows from the next frame on is where it is and as it is after the last step, even between two
  * steps; its detail is chosen afresh. Call it after noh_actor_set_place or noh_actor_play. Until that frame it counts
- * as never posed. errors  NOT_FOUND */
+ * as never posed.
+ * errors  NOT_FOUND */
 noh_result noh_actor_cut(noh_stage *stage, noh_actor actor, noh_error *error);
 
 /* How it is drawn. All zeros: seen, with a shadow, within the stage's error, in its own colours. */

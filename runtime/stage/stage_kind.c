@@ -146,7 +146,7 @@ static void open_floats(noh_stage_kind *k)
     for (uint32_t f = 0; f < k->float_count; f++) {
         k->sources[f] = NOH_NONE;
         k->name_hashes[f] = 0;
-        k->defaults[f] = k->bank && f < k->set.float_count ? k->set.float_defaults[f] : 0.0f;
+        k->defaults[f] = k->set.float_defaults && f < k->set.float_count ? k->set.float_defaults[f] : 0.0f;
     }
     name_floats(k);
     find_sources(k);

@@ -64,8 +64,8 @@ static void fold_axis(const float axis[3], uint8_t bytes[2], float rounded[3])
         x = folded;
     }
     for (int i = 0; i < 9; i++) {
-        const uint8_t pair[2] = { signed_byte(x + (float)(i % 3 - 1) / 127.0f),
-                                  signed_byte(y + (float)(i / 3 - 1) / 127.0f) };
+        const int across = i % 3 - 1, along = i / 3 - 1;
+        const uint8_t pair[2] = { signed_byte(x + (float)across / 127.0f), signed_byte(y + (float)along / 127.0f) };
         float d[3], near;
         unfold_bytes(pair, d);
         near = d[0] * axis[0] + d[1] * axis[1] + d[2] * axis[2];

@@ -168,6 +168,7 @@ static int draw_rows(grid *g, uint32_t column, uint32_t first, uint32_t end, uin
         status = draw_cell(g, column, row, size);
     }
     picture_close(&p);
+    g->picture = NULL;
     return status;
 }
 
