@@ -165,7 +165,7 @@ static const noh_gl_variant *variant_of(const draw_job *j, draw_part part)
 static void draw_submesh(const draw_job *j, const noh_submesh *s, size_t level_first)
 {
     const noh_gl_api *gl = j->r->gl;
-    const void *first = (const void *)(level_first + (uintptr_t)s->first_index * j->mesh->mesh.header->index_bytes);
+    const void *first = (const void *)(level_first + (uintptr_t)s->first_index * j->mesh->room->index_bytes);
     if (j->count == 1u) {
         gl->DrawElements(GL_TRIANGLES, (GLsizei)s->index_count, j->mesh->index_type, first);
     } else {

@@ -2,7 +2,8 @@
  *
  *   noh_gl_mesh_create       upload a mesh; noh_gl_mesh_delete, noh_gl_mesh_restore, noh_gl_mesh_bytes
  *   noh_gl_mesh_lod          which indices an LOD level draws
- *   noh_gl_picture_create    upload a texture; delete it by noh_gl_texture_delete (gl_memory.h)
+ *   noh_gl_mesh_create_empty buffers without contents, for levels that come later; noh_gl_mesh_fill fills them in
+ * pieces noh_gl_picture_create    upload a texture; delete it by noh_gl_texture_delete (gl_memory.h)
  *   noh_gl_renderer_create   compile the shaders of the plain renderer; _delete, _restore, _variant
  *   noh_gl_draw_begin        begin to draw; noh_gl_draw_end ends it
  *   noh_gl_draw_mesh         draw one instance
@@ -39,6 +40,8 @@ extern "C" {
 
 typedef struct noh_gl_mesh {
     noh_mesh mesh; /* the finest LOD level that was uploaded */
+    const noh_mesh_header
+        *room; /* of the finest level that the buffers have room for: that of `mesh`, or a finer one */
     GLuint vertex_array;
     noh_gl_buffer positions, attributes, influences, indices; /* no influences in a rigid mesh */
     GLenum index_type;
@@ -54,7 +57,23 @@ noh_result noh_gl_mesh_create(const noh_gl_api *api, noh_gl_ledger *ledger, cons
                               noh_error *error);
 void noh_gl_mesh_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mesh *mesh);
 
-/* Make its GL objects again in a new context (gl_lost.h).
+/* The same without contents, for a mesh whose finer levels come later. Of `room`, at the finest level that may come,
+ * only headers are read, and they must stay. Fill it from `mesh`, a coarser level of the same mesh, before it is drawn:
+ * draws show no finer level. Where a finer one was filled, set out->mesh to it, or back again.
+ * errors  as noh_gl_mesh_create */
+noh_result noh_gl_mesh_create_empty(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_mesh *room,
+                                    const noh_mesh *mesh, noh_gl_mesh *out, noh_error *error);
+
+/* Upload the next piece of a mesh and all its coarser levels, which may lie in another pack than `room`. What levels
+ * share is written with the bytes that are there already, so that it may be drawn meanwhile. Leaves vertex array 0
+ * bound.
+ * ranges   *at: 0 at first, then as the call before left it; *bytes: at most so many, at least 64 for any progress;
+ *          what was sent is subtracted
+ * returns  1 once all is there */
+int noh_gl_mesh_fill(const noh_gl_api *api, const noh_gl_mesh *mesh, const noh_mesh *from, uint64_t *at,
+                     uint32_t *bytes);
+
+/* Make the GL objects of noh_gl_mesh_create again in a new context (gl_lost.h).
  * errors  GL, MEMORY as noh_gl_mesh_create: it then has no GL objects */
 noh_result noh_gl_mesh_restore(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mesh *mesh, noh_error *error);
 

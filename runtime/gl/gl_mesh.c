@@ -118,32 +118,33 @@ static void create_vertex_array(const noh_gl_api *gl, noh_gl_mesh *m)
     gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, 0);
 }
 
-noh_result noh_gl_mesh_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_mesh *mesh, noh_gl_mesh *out,
-                              noh_error *error)
+/* room: of which sizes are taken; mesh: which is drawn; contents: `mesh`, or NULL for none. */
+static noh_result make(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_mesh *room, const noh_mesh *mesh,
+                       const noh_mesh *contents, noh_gl_mesh *out, noh_error *error)
 {
-    noh_gl_mesh m = { *mesh, 0, { 0, 0 }, { 0, 0 }, { 0, 0 }, { 0, 0 }, 0 };
+    noh_gl_mesh m = { *mesh, room->header, 0, { 0, 0 }, { 0, 0 }, { 0, 0 }, { 0, 0 }, 0 };
     static const uint32_t no_indices = 0;
-    const void *indices = index_count(mesh) ? mesh->indices : &no_indices;
+    const void *indices = !contents ? NULL : index_count(mesh) ? mesh->indices : &no_indices;
     noh_result result;
     NOH_ASSERT(api && ledger && out);
-    m.index_type = mesh->header->index_bytes == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
+    m.index_type = room->header->index_bytes == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
     noh_gl_error_take(api);
     api->BindVertexArray(0);
     result = noh_gl_error_check(api, "the driver refuses to unbind a vertex array", 0, error);
     if (!result) {
-        result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, position_bytes(mesh), mesh->positions,
-                                      GL_STATIC_DRAW, &m.positions, error);
+        result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, position_bytes(room),
+                                      contents ? contents->positions : NULL, GL_STATIC_DRAW, &m.positions, error);
     }
     if (!result) {
-        result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, attribute_bytes(mesh), mesh->attributes,
-                                      GL_STATIC_DRAW, &m.attributes, error);
+        result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, attribute_bytes(room),
+                                      contents ? contents->attributes : NULL, GL_STATIC_DRAW, &m.attributes, error);
     }
-    if (!result && influence_bytes(mesh)) {
-        result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, influence_bytes(mesh), mesh->influences,
-                                      GL_STATIC_DRAW, &m.influences, error);
+    if (!result && influence_bytes(room)) {
+        result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, influence_bytes(room),
+                                      contents ? contents->influences : NULL, GL_STATIC_DRAW, &m.influences, error);
     }
     if (!result) {
-        result = noh_gl_buffer_create(api, ledger, GL_ELEMENT_ARRAY_BUFFER, index_bytes(mesh), indices, GL_STATIC_DRAW,
+        result = noh_gl_buffer_create(api, ledger, GL_ELEMENT_ARRAY_BUFFER, index_bytes(room), indices, GL_STATIC_DRAW,
                                       &m.indices, error);
     }
     if (result) {
@@ -161,6 +162,117 @@ noh_result noh_gl_mesh_create(const noh_gl_api *api, noh_gl_ledger *ledger, cons
     return NOH_OK;
 }
 
+noh_result noh_gl_mesh_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_mesh *mesh, noh_gl_mesh *out,
+                              noh_error *error)
+{
+    return make(api, ledger, mesh, mesh, mesh, out, error);
+}
+
+noh_result noh_gl_mesh_create_empty(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_mesh *room,
+                                    const noh_mesh *mesh, noh_gl_mesh *out, noh_error *error)
+{
+    return make(api, ledger, room, mesh, NULL, out, error);
+}
+
+/* ---- filling ---- */
+
+#define FILL_INDICES 256u /* converted at once, where a pack has them in another width than the buffer */
+
+/* Where the indices of a level begin in the buffer, bytes. */
+static size_t first_index_byte(const noh_gl_mesh *m, uint32_t level)
+{
+    size_t count = 0;
+    for (uint32_t k = m->room->level; k < level; k++) count += m->room[k - m->room->level].index_count;
+    return count * m->room->index_bytes;
+}
+
+typedef struct filler {
+    const noh_gl_api *gl;
+    uint64_t *at; /* of all arrays, one after another */
+    uint64_t begin;
+    uint32_t *bytes;
+} filler;
+
+/* The bytes of an array of `count` that come next, from *from on. */
+static uint32_t next_bytes(const filler *f, uint64_t count, uint64_t *from)
+{
+    uint64_t left = 0;
+    *from = 0;
+    if (*f->at >= f->begin) { /* below it, the array before is not all there yet */
+        *from = *f->at - f->begin;
+        left = *from < count ? count - *from : 0;
+    }
+    return left < *f->bytes ? (uint32_t)left : *f->bytes;
+}
+
+static void sent(const filler *f, uint32_t bytes)
+{
+    *f->at += bytes;
+    *f->bytes -= bytes;
+}
+
+static void fill_array(filler *f, const noh_gl_buffer *to, const void *data, uint64_t count)
+{
+    uint64_t from;
+    const uint32_t bytes = next_bytes(f, count, &from) & ~3u; /* arrays are words */
+    if (bytes) {
+        f->gl->BindBuffer(GL_ARRAY_BUFFER, to->name);
+        f->gl->BufferSubData(GL_ARRAY_BUFFER, (GLintptr)from, (GLsizeiptr)bytes, (const uint8_t *)data + from);
+        f->gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+        sent(f, bytes);
+    }
+    f->begin += count;
+}
+
+static void convert_indices(const noh_mesh *mesh, size_t first, uint32_t count, uint32_t to_bytes, void *to)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t index = mesh->header->index_bytes == 2 ? ((const uint16_t *)mesh->indices)[first + i]
+                                                              : ((const uint32_t *)mesh->indices)[first + i];
+        if (to_bytes == 2) {
+            ((uint16_t *)to)[i] = (uint16_t)index;
+        } else {
+            ((uint32_t *)to)[i] = index;
+        }
+    }
+}
+
+static void fill_indices(filler *f, const noh_gl_mesh *m, const noh_mesh *mesh)
+{
+    const uint32_t each = m->room->index_bytes, own = mesh->header->index_bytes;
+    const uint64_t count = index_count(mesh) * each;
+    const size_t to = first_index_byte(m, mesh->header->level);
+    uint32_t converted[FILL_INDICES];
+    uint64_t from;
+    uint32_t bytes;
+    f->gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, m->indices.name);
+    while ((bytes = next_bytes(f, count, &from) / each * each) > 0) {
+        const uint8_t *data = (const uint8_t *)mesh->indices + from;
+        if (own != each) {
+            bytes = bytes < FILL_INDICES * each ? bytes : FILL_INDICES * each;
+            convert_indices(mesh, (size_t)(from / each), bytes / each, each, converted);
+            data = (const uint8_t *)converted;
+        }
+        f->gl->BufferSubData(GL_ELEMENT_ARRAY_BUFFER, (GLintptr)(to + from), (GLsizeiptr)bytes, data);
+        sent(f, bytes);
+    }
+    f->gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, 0);
+    f->begin += count;
+}
+
+int noh_gl_mesh_fill(const noh_gl_api *api, const noh_gl_mesh *mesh, const noh_mesh *from, uint64_t *at,
+                     uint32_t *bytes)
+{
+    filler f = { api, at, 0, bytes };
+    NOH_ASSERT(api && mesh && mesh->vertex_array && from->header->level >= mesh->room->level);
+    api->BindVertexArray(0);
+    fill_array(&f, &mesh->positions, from->positions, position_bytes(from));
+    fill_array(&f, &mesh->attributes, from->attributes, attribute_bytes(from));
+    fill_array(&f, &mesh->influences, from->influences, influence_bytes(from));
+    fill_indices(&f, mesh, from);
+    return *at >= f.begin;
+}
+
 noh_result noh_gl_mesh_restore(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mesh *mesh, noh_error *error)
 {
     NOH_ASSERT(mesh && mesh->mesh.header);
@@ -172,9 +284,8 @@ noh_result noh_gl_mesh_restore(const noh_gl_api *api, noh_gl_ledger *ledger, noh
 noh_mesh noh_gl_mesh_lod(const noh_gl_mesh *mesh, uint32_t level, size_t *first)
 {
     NOH_ASSERT(mesh && mesh->mesh.header && first);
-    const noh_mesh_header *resident = mesh->mesh.header;
-    const noh_mesh view = level > resident->level ? noh_mesh_at_lod(&mesh->mesh, level) : mesh->mesh;
-    *first = view.header->indices_offset - resident->indices_offset;
+    const noh_mesh view = level > mesh->mesh.header->level ? noh_mesh_at_lod(&mesh->mesh, level) : mesh->mesh;
+    *first = first_index_byte(mesh, view.header->level);
     return view;
 }
 

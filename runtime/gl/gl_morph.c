@@ -104,7 +104,7 @@ static noh_gl_morph *build(noh_arena arena, const noh_gl_device *device, const n
     m->mesh_count = desc->mesh_count;
     m->wide = noh_gl_morph_wide(&plan);
     noh_gl_morph_carve(&arena, desc, &plan, m);
-    memset(m->meshes, 0, sizeof *m->meshes * m->mesh_count);
+    memset(m->meshes, 0, sizeof *m->meshes * m->table_count);
     memset(m->weights, 0, sizeof *m->weights * plan.weight_count);
     noh_gl_morph_layout(desc, device->caps->texture_size_max, m->meshes, &plan, NULL);
     for (uint32_t i = 0; i < m->mesh_count; i++) {
@@ -113,6 +113,7 @@ static noh_gl_morph *build(noh_arena arena, const noh_gl_device *device, const n
             m->levels[m->meshes[i].first_instance + k] = (uint8_t)m->meshes[i].mesh.header->level;
         }
     }
+    if (desc->coarse) noh_gl_morph_use(m, desc->coarse);
     mark_all_dirty(m);
     return m;
 }
@@ -250,6 +251,44 @@ void noh_gl_morph_set_lod(noh_gl_morph *morph, uint32_t instance, uint32_t level
     if (level < before) {
         morph->dirty_count += !morph->dirty[instance];
         morph->dirty[instance] = 1;
+    }
+}
+
+/* ---- levels that come later ---- */
+
+int noh_gl_morph_fill(noh_gl_morph *morph, const noh_mesh *from, uint32_t *at, uint32_t *bytes)
+{
+    noh_mesh finest;
+    int done = 1;
+    NOH_ASSERT(morph && morph->table_count > morph->mesh_count && from && at && bytes);
+    finest = noh_mesh_at_lod(from, morph->meshes[morph->meshes[0].owner].mesh.header->level);
+    if (morph->plan.path == NOH_MORPH_GATHER) {
+        done = noh_gl_morph_fill_gather(morph, &finest, at, bytes);
+    } else if (morph->plan.path != NOH_MORPH_CPU) {
+        done = noh_gl_morph_fill_blend(morph, &finest, at, bytes);
+    }
+    morph->gl->ActiveTexture(GL_TEXTURE0);
+    morph->gl->BindTexture(GL_TEXTURE_2D, 0);
+    return done;
+}
+
+void noh_gl_morph_use(noh_gl_morph *morph, const noh_mesh *mesh)
+{
+    const uint32_t of_tables = morph->meshes[morph->meshes[0].owner].mesh.header->level;
+    const uint32_t finest = mesh->header->level > of_tables ? mesh->header->level : of_tables;
+    NOH_ASSERT(morph->table_count > morph->mesh_count);
+    morph->source = noh_mesh_at_lod(mesh, finest);
+    for (uint32_t i = 0; i < morph->mesh_count; i++) {
+        noh_gl_morph_mesh *own = &morph->meshes[i];
+        const uint32_t of_pool = own->mesh.header->level;
+        const uint8_t level = (uint8_t)(of_pool > finest ? of_pool : finest);
+        if (own->owner == i) own->mesh.targets = morph->source.targets; /* while `mesh` is coarser they are not read */
+        for (uint32_t k = own->first_instance; k < own->first_instance + own->instance_count; k++) {
+            if (morph->levels[k] == level) continue;
+            morph->levels[k] = level;
+            morph->dirty_count += !morph->dirty[k];
+            morph->dirty[k] = 1;
+        }
     }
 }
 

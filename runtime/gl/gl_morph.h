@@ -73,6 +73,10 @@ typedef struct noh_gl_morph_desc {
     noh_accumulate accumulate;       /* 0: f32 */
     float expected_active;           /* for auto: the share of targets that are active at once, 0..1; 0: 0.5 */
     int without_tangents;            /* 1: two layers, a third less memory, where no shader reads morphed tangents */
+    /* For levels that come later: `meshes` are levels of one mesh, and of them only headers are read,
+     * which must stay. Until noh_gl_morph_use says otherwise, this coarser level of the same mesh,
+     * which may lie in another pack, is the finest that is accumulated. Default (NULL) all of `meshes` is there */
+    const noh_mesh *coarse;
 } noh_gl_morph_desc;
 
 /* The resolved plan on a GPU with these capabilities. All bytes are exact. */
@@ -155,6 +159,17 @@ void noh_gl_morph_set_lod(noh_gl_morph *morph, uint32_t instance, uint32_t level
  *         draw. No state is changed if no instance changed
  * errors  none: init checked everything */
 void noh_gl_morph_update(noh_gl_morph *morph, noh_gl_morph_stats *stats);
+
+/* With desc.coarse: upload the next piece of what the finest of `meshes` is accumulated from. What is in use meanwhile
+ * is not touched. ranges   from: the mesh, whole, at the finest level of `meshes` or a finer one; *at: 0 at first, then
+ * as the call before left it; *bytes: at most so many, at least 64 for any progress; what was sent is subtracted state
+ * texture 0 of unit 0, the active one returns  1 once all is there */
+int noh_gl_morph_fill(noh_gl_morph *morph, const noh_mesh *from, uint32_t *at, uint32_t *bytes);
+
+/* With desc.coarse: from now on no finer level than `mesh` is accumulated, and what targets change is taken from its
+ * pack, which must stay as long. The next update accumulates each instance whose level changes by that.
+ * mesh  whole: as desc.coarse was, or as noh_gl_morph_fill was given, once that has sent all of it */
+void noh_gl_morph_use(noh_gl_morph *morph, const noh_mesh *mesh);
 
 noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t instance);
 

@@ -59,44 +59,73 @@ static noh_result create_framebuffers(noh_gl_morph *m, noh_error *error)
     return result;
 }
 
-/* The rectangles of all targets: place, size, first delta texel, and the bit widths of a texel's fields. The staging
- * memory holds a chunk of them at a time. */
-static void upload_rects(noh_gl_morph *m, const noh_gl_morph_mesh *mesh)
+/* Rectangles first..first+count-1 of all targets: place, size, first delta texel, and the bit widths of a texel's
+ * fields. The staging memory holds NOH_RECT_CHUNK of them. to: whose part of the tables they belong to. */
+static void upload_rects(noh_gl_morph *m, const noh_gl_morph_mesh *to, const noh_mesh *mesh, uint32_t first,
+                         uint32_t count)
 {
     uint32_t(*chunk)[4] = (uint32_t(*)[4])m->staging;
-    uint32_t count = 0, sent = mesh->first_rect, texel = mesh->first_texel;
-    for (uint32_t t = 0; t < mesh->mesh.header->target_count; t++) {
-        const noh_target *target = &mesh->mesh.targets[t];
-        for (uint32_t r = 0; r < target->rect_count; r++) {
-            const noh_rect *rect = &mesh->mesh.rects[target->first_rect + r];
-            uint32_t *to = chunk[count++];
-            to[0] = rect->x | (uint32_t)rect->y << 16;
-            to[1] = rect->w | (uint32_t)rect->h << 16;
-            to[2] = texel;
-            to[3] = noh_gl_morph_target_bits(target);
-            texel += (uint32_t)rect->w * rect->h;
-            if (count == NOH_RECT_CHUNK) {
-                noh_gl_table_upload(m->gl, &m->rects, sent, count, m->staging);
-                sent += count;
-                count = 0;
+    uint32_t at = 0, texel = to->first_texel;
+    for (uint32_t t = 0; t < mesh->header->target_count && at < first + count; t++) {
+        const noh_target *target = &mesh->targets[t];
+        for (uint32_t r = 0; r < target->rect_count; r++, at++) {
+            const noh_rect *rect = &mesh->rects[target->first_rect + r];
+            if (at >= first && at < first + count) {
+                uint32_t *words = chunk[at - first];
+                words[0] = rect->x | (uint32_t)rect->y << 16;
+                words[1] = rect->w | (uint32_t)rect->h << 16;
+                words[2] = texel;
+                words[3] = noh_gl_morph_target_bits(target);
             }
+            texel += (uint32_t)rect->w * rect->h;
         }
     }
-    if (count) {
-        noh_gl_table_upload(m->gl, &m->rects, sent, count, m->staging);
+    noh_gl_table_upload(m->gl, &m->rects, to->first_rect + first, count, m->staging);
+}
+
+/* Delta texels first..first+count-1 of all targets, without gaps. (A coarser LOD level uses only the first texels of
+ * each target.) */
+static void upload_texels(noh_gl_morph *m, const noh_gl_morph_mesh *to, const noh_mesh *mesh, uint32_t first,
+                          uint32_t count)
+{
+    uint32_t begin = 0;
+    for (uint32_t t = 0; t < mesh->header->target_count && count; t++) {
+        const noh_target *target = &mesh->targets[t];
+        const uint32_t skip = first - begin, left = skip < target->texel_count ? target->texel_count - skip : 0;
+        const uint32_t now = left < count ? left : count;
+        if (now) {
+            noh_gl_table_upload(m->gl, &m->deltas, to->first_texel + first, now,
+                                mesh->texels + 3u * ((size_t)target->first_texel + skip));
+        }
+        begin += target->texel_count;
+        first += now;
+        count -= now;
     }
 }
 
-/* The delta texels of all targets, without gaps. (A coarser LOD level uses only the first texels of each target.) */
-static void upload_texels(noh_gl_morph *m, const noh_gl_morph_mesh *mesh)
+/* Delta texels are counted first, then rectangles. Returns 1 once all are there. */
+static int fill(noh_gl_morph *m, const noh_gl_morph_mesh *to, const noh_mesh *mesh, uint32_t *at, uint32_t *bytes)
 {
-    uint32_t sent = mesh->first_texel;
-    for (uint32_t t = 0; t < mesh->mesh.header->target_count; t++) {
-        const noh_target *target = &mesh->mesh.targets[t];
-        noh_gl_table_upload(m->gl, &m->deltas, sent, target->texel_count,
-                            mesh->mesh.texels + 3u * (size_t)target->first_texel);
-        sent += target->texel_count;
+    const uint32_t texels = mesh->header->texel_count, all = texels + mesh->header->rect_count;
+    if (*at < texels) {
+        const uint32_t fit = *bytes / 12u, count = fit < texels - *at ? fit : texels - *at;
+        upload_texels(m, to, mesh, *at, count);
+        *at += count;
+        *bytes -= 12u * count;
     }
+    while (*at >= texels && *at < all && *bytes >= 16u) {
+        uint32_t count = *bytes / 16u < all - *at ? *bytes / 16u : all - *at;
+        count = count < NOH_RECT_CHUNK ? count : NOH_RECT_CHUNK;
+        upload_rects(m, to, mesh, *at - texels, count);
+        *at += count;
+        *bytes -= 16u * count;
+    }
+    return *at == all;
+}
+
+int noh_gl_morph_fill_blend(noh_gl_morph *m, const noh_mesh *from, uint32_t *at, uint32_t *bytes)
+{
+    return fill(m, &m->meshes[m->meshes[0].owner], from, at, bytes);
 }
 
 static noh_result create_tables(noh_gl_morph *m, noh_error *error)
@@ -105,12 +134,10 @@ static noh_result create_tables(noh_gl_morph *m, noh_error *error)
     if (!result) {
         result = noh_gl_table_create(m->gl, m->ledger, GL_RGBA32UI, m->plan.rect_count, &m->rects, error);
     }
-    for (uint32_t i = 0; !result && i < m->mesh_count; i++) {
+    for (uint32_t i = 0; !result && i < m->table_count; i++) {
         const noh_gl_morph_mesh *mesh = &m->meshes[i];
-        if (mesh->owner == i && mesh->mesh.header->texel_count) {
-            upload_texels(m, mesh);
-            upload_rects(m, mesh);
-        }
+        uint32_t at = 0, bytes = UINT32_MAX;
+        if (noh_gl_morph_is_there(m, i)) (void)fill(m, mesh, &mesh->mesh, &at, &bytes);
     }
     return result ? result
                   : noh_gl_error_check(m->gl, "the driver refuses the delta texels", m->plan.delta_bytes, error);

@@ -75,49 +75,70 @@ static void fill_pair(void *context, uint32_t vertex, uint32_t target, const uin
     }
 }
 
+/* Where each vertex's entries begin, into the staging memory. */
+static uint32_t *find_starts(noh_gl_morph *m, const noh_gl_morph_mesh *to, const noh_mesh *mesh)
+{
+    const uint32_t touched = mesh->header->touched_count;
+    uint32_t *starts = (uint32_t *)m->staging;
+    memset(starts, 0, sizeof *starts * (touched + 1u));
+    visit_pairs(mesh, count_pair, starts);
+    starts[0] = to->first_pair;
+    for (uint32_t v = 1; v <= touched; v++) {
+        starts[v] += starts[v - 1];
+    }
+    return starts;
+}
+
 /* Turn rectangles by target into lists by vertex: a counting sort in fixed memory. The first walk over the mesh counts
  * each vertex's entries, and their running sum gives the starts. A copy of the starts, as cursors, then gives each
  * delta texel its place. Only NOH_GATHER_CHUNK entries fit into the staging memory, so this walk is repeated for each
  * chunk and keeps the entries that fall into it. Targets are visited in index order, so each list is in target order.
- */
-static void upload_lists(noh_gl_morph *m, const noh_gl_morph_mesh *mesh)
+ * Starts are counted first, then entries. to: whose part of the tables they belong to. Returns 1 once all are there. */
+static int fill(noh_gl_morph *m, const noh_gl_morph_mesh *to, const noh_mesh *mesh, uint32_t *at, uint32_t *bytes)
 {
-    uint32_t touched = mesh->mesh.header->touched_count, pairs = mesh->mesh.header->pair_count;
-    uint32_t *starts = (uint32_t *)m->staging;
+    const uint32_t touched = mesh->header->touched_count, first = touched + 1u, all = first + mesh->header->pair_count;
+    uint32_t *starts = find_starts(m, to, mesh);
     chunk_filler f;
-    f.cursors = starts + touched + 1u;
-    f.entries = (uint32_t(*)[4])(void *)(f.cursors + touched + 1u);
-    memset(starts, 0, sizeof *starts * (touched + 1u));
-    visit_pairs(&mesh->mesh, count_pair, starts);
-    starts[0] = mesh->first_pair;
-    for (uint32_t v = 1; v <= touched; v++) {
-        starts[v] += starts[v - 1];
+    f.cursors = starts + first;
+    f.entries = (uint32_t(*)[4])(void *)(f.cursors + first);
+    if (*at < first) {
+        const uint32_t fit = *bytes / 4u, count = fit < first - *at ? fit : first - *at;
+        noh_gl_table_upload(m->gl, &m->rects, to->first_start + *at, count, starts + *at);
+        *at += count;
+        *bytes -= 4u * count;
     }
-    noh_gl_table_upload(m->gl, &m->rects, mesh->first_start, touched + 1u, starts);
-    for (uint32_t first = 0; first < pairs; first += NOH_GATHER_CHUNK) {
-        uint32_t count = pairs - first < NOH_GATHER_CHUNK ? pairs - first : NOH_GATHER_CHUNK;
-        memcpy(f.cursors, starts, sizeof *starts * (touched + 1u));
-        f.first = mesh->first_pair + first;
-        visit_pairs(&mesh->mesh, fill_pair, &f);
+    while (*at >= first && *at < all && *bytes >= 16u) {
+        uint32_t count = *bytes / 16u < all - *at ? *bytes / 16u : all - *at;
+        count = count < NOH_GATHER_CHUNK ? count : NOH_GATHER_CHUNK;
+        memcpy(f.cursors, starts, sizeof *starts * first);
+        f.first = to->first_pair + *at - first;
+        visit_pairs(mesh, fill_pair, &f);
         noh_gl_table_upload(m->gl, &m->deltas, f.first, count, f.entries);
+        *at += count;
+        *bytes -= 16u * count;
     }
+    return *at == all;
+}
+
+int noh_gl_morph_fill_gather(noh_gl_morph *m, const noh_mesh *from, uint32_t *at, uint32_t *bytes)
+{
+    return fill(m, &m->meshes[m->meshes[0].owner], from, at, bytes);
 }
 
 static noh_result create_tables(noh_gl_morph *m, noh_error *error)
 {
     uint32_t starts = 0;
     noh_result result;
-    for (uint32_t i = 0; i < m->mesh_count; i++) {
+    for (uint32_t i = 0; i < m->table_count; i++) {
         starts += m->meshes[i].owner == i ? m->meshes[i].mesh.header->touched_count + 1u : 0u;
     }
     result = noh_gl_table_create(m->gl, m->ledger, GL_RGBA32UI, m->plan.pair_count, &m->deltas, error);
     if (!result) {
         result = noh_gl_table_create(m->gl, m->ledger, GL_R32UI, starts, &m->rects, error);
     }
-    for (uint32_t i = 0; !result && i < m->mesh_count; i++) {
-        if (m->meshes[i].owner == i) {
-            upload_lists(m, &m->meshes[i]);
-        }
+    for (uint32_t i = 0; !result && i < m->table_count; i++) {
+        uint32_t at = 0, bytes = UINT32_MAX;
+        if (noh_gl_morph_is_there(m, i)) (void)fill(m, &m->meshes[i], &m->meshes[i].mesh, &at, &bytes);
     }
     return result ? result
                   : noh_gl_error_check(m->gl, "the driver refuses the delta texels", m->plan.delta_bytes, error);

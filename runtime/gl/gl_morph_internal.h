@@ -29,7 +29,9 @@ struct noh_gl_morph {
     noh_gl_ledger *ledger;
     noh_gl_morph_plan plan;
     uint32_t mesh_count;
-    noh_gl_morph_mesh *meshes; /* [mesh_count] */
+    uint32_t table_count;      /* mesh_count, and 1 where there is desc.coarse: its tables are the last */
+    noh_gl_morph_mesh *meshes; /* [table_count] */
+    noh_mesh source;           /* with desc.coarse: the finest level that is accumulated, in the pack that has it */
     uint32_t *instance_mesh;   /* [instance_count] */
     uint8_t *dirty;            /* [instance_count] */
     uint8_t *levels;           /* [instance_count] LOD level that is accumulated; none is finer than its mesh */
@@ -66,6 +68,12 @@ int noh_gl_morph_wide(const noh_gl_morph_plan *plan);
  * 100 heads on llvmpipe). */
 uint32_t noh_gl_morph_pitch(const noh_mesh_header *header);
 
+/* Whether the tables of a mesh of the desc, or of desc.coarse behind them, are uploaded when they are made. */
+static inline int noh_gl_morph_is_there(const noh_gl_morph *m, uint32_t mesh)
+{
+    return m->meshes[mesh].owner == mesh && (m->table_count == m->mesh_count || mesh == m->mesh_count);
+}
+
 /* An instance's mesh at the LOD level that is accumulated. */
 noh_mesh noh_gl_morph_view(const noh_gl_morph *m, uint32_t instance);
 /* The mesh of the desc whose part of the tables an instance uses. */
@@ -93,6 +101,8 @@ void noh_gl_morph_end(const noh_gl_morph *m);
 /* The paths: make their GL objects, and do one update. */
 noh_result noh_gl_morph_init_blend(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error);
 noh_result noh_gl_morph_init_gather(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error);
+int noh_gl_morph_fill_blend(noh_gl_morph *m, const noh_mesh *from, uint32_t *at, uint32_t *bytes);
+int noh_gl_morph_fill_gather(noh_gl_morph *m, const noh_mesh *from, uint32_t *at, uint32_t *bytes);
 void noh_gl_morph_update_blend(noh_gl_morph *m, noh_gl_morph_stats *stats);
 void noh_gl_morph_update_gather(noh_gl_morph *m, noh_gl_morph_stats *stats);
 void noh_gl_morph_update_cpu(noh_gl_morph *m, noh_gl_morph_stats *stats);

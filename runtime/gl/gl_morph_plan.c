@@ -244,6 +244,26 @@ typedef struct table_sums {
     uint64_t rects, texels, pairs, starts;
 } table_sums;
 
+/* The tables of a level in a pack of its own come last. They are not a part of those of a finer level: targets that the
+ * level leaves out have no entries in them. */
+static void add_coarse(const noh_gl_morph_desc *desc, noh_gl_morph_mesh *meshes, table_sums *sums)
+{
+    const noh_mesh_header *h = desc->coarse->header;
+    if (meshes) {
+        noh_gl_morph_mesh *to = &meshes[desc->mesh_count];
+        to->mesh = *desc->coarse;
+        to->owner = desc->mesh_count;
+        to->first_rect = (uint32_t)sums->rects;
+        to->first_texel = (uint32_t)sums->texels;
+        to->first_start = (uint32_t)sums->starts;
+        to->first_pair = (uint32_t)sums->pairs;
+    }
+    sums->rects += h->rect_count;
+    sums->texels += h->texel_count;
+    sums->pairs += h->pair_count;
+    sums->starts += (uint64_t)h->touched_count + 1u;
+}
+
 /* Where each mesh's part of the tables begins. `meshes` may be NULL. */
 static table_sums place_tables(const noh_gl_morph_desc *desc, noh_gl_morph_mesh *meshes)
 {
@@ -265,6 +285,7 @@ static table_sums place_tables(const noh_gl_morph_desc *desc, noh_gl_morph_mesh 
             sums.starts += (uint64_t)h->touched_count + 1u;
         }
     }
+    if (desc->coarse) add_coarse(desc, meshes, &sums);
     return sums;
 }
 
@@ -316,7 +337,7 @@ static uint64_t rect_record_bytes(const noh_gl_morph_desc *desc, const noh_gl_mo
 
 static size_t largest_touched(const noh_gl_morph_desc *desc)
 {
-    size_t most = 0;
+    size_t most = desc->coarse ? desc->coarse->header->touched_count : 0;
     for (uint32_t i = 0; i < desc->mesh_count; i++) {
         size_t touched = desc->meshes[i].header->touched_count;
         most = touched > most ? touched : most;
@@ -350,7 +371,8 @@ void noh_gl_morph_carve(noh_arena *arena, const noh_gl_morph_desc *desc, const n
     noh_gl_morph dummy;
     noh_gl_morph *to = m ? m : &dummy;
     memset(&dummy, 0, sizeof dummy);
-    to->meshes = (noh_gl_morph_mesh *)noh_arena_carve(arena, sizeof *to->meshes * desc->mesh_count, 16);
+    to->table_count = desc->mesh_count + (desc->coarse != NULL);
+    to->meshes = (noh_gl_morph_mesh *)noh_arena_carve(arena, sizeof *to->meshes * to->table_count, 16);
     to->records = plan->path == NOH_MORPH_CPU
                       ? NULL
                       : (uint32_t *)noh_arena_carve(arena, 16u * (size_t)plan->weight_count, 16);

@@ -17,12 +17,16 @@ void noh_gl_morph_tile(const noh_gl_morph *m, uint32_t instance, uint32_t *x, ui
 
 noh_mesh noh_gl_morph_view(const noh_gl_morph *m, uint32_t instance)
 {
-    const noh_mesh *mesh = &m->meshes[m->instance_mesh[instance]].mesh;
+    const noh_mesh *mesh = m->table_count > m->mesh_count ? &m->source : &m->meshes[m->instance_mesh[instance]].mesh;
     return m->levels[instance] > mesh->header->level ? noh_mesh_at_lod(mesh, m->levels[instance]) : *mesh;
 }
 
 const noh_gl_morph_mesh *noh_gl_morph_tables(const noh_gl_morph *m, uint32_t instance)
 {
+    const noh_gl_morph_mesh *coarse = m->meshes + m->mesh_count;
+    if (m->table_count > m->mesh_count && m->source.header->level >= coarse->mesh.header->level) {
+        return coarse;
+    }
     return &m->meshes[m->meshes[m->instance_mesh[instance]].owner];
 }
 

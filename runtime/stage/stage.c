@@ -161,6 +161,7 @@ noh_result noh_stage_init(void *memory, size_t bytes, const void *device, const 
         const size_t from = (arena.used + 15u) & ~(size_t)15u;
         result = desc->gpu->init((uint8_t *)memory + from, (size_t)plan->cpu_bytes - from, device, b.stage, error);
     }
+    for (uint32_t i = 0; i < desc->kind_count; i++) b.kinds[i].desc.finer = NULL; /* not kept */
     if (result == NOH_OK) {
         *stage = b.stage;
     }

@@ -13,9 +13,11 @@
  *   graphs   noh_actor_play_graph, noh_actor_set_parameter, noh_actor_parameter, noh_actor_state, noh_stage_find_value,
  *            noh_actor_graph
  *   ask      noh_actor_floats, noh_actor_joint, noh_actor_root, noh_actor_sphere, noh_actor_mesh_at,
- * noh_actor_detail_of, noh_stage_pick frame    noh_stage_frame; or its pieces noh_stage_step, noh_stage_frame_begin or
- * noh_stage_frame_between, noh_stage_jobs, noh_stage_job, noh_stage_frame_end; noh_stage_events state noh_stage_state,
- * noh_stage_set_state, noh_stage_hash
+ *            noh_actor_detail_of, noh_stage_pick
+ *   frame    noh_stage_frame; or its pieces noh_stage_step, noh_stage_frame_begin or noh_stage_frame_between,
+ *            noh_stage_jobs, noh_stage_job, noh_stage_frame_end; noh_stage_events
+ *   levels   noh_stage_load_level, noh_stage_drop_level
+ *   state    noh_stage_state, noh_stage_set_state, noh_stage_hash
  *
  * Drawing is stage_gl.h. A program that does not name noh_stage_on_gl links no GL code: a server steps and poses.
  *
@@ -71,8 +73,12 @@ struct noh_stage_part;
 /* A kind of character: the meshes of one skeleton and the clips that move them. Zero is a good value for all but mesh
  * and actor_count. */
 typedef struct noh_kind_desc {
-    const char *name;                  /* for messages and plans; default (NULL) "". Borrowed */
-    const noh_pack *mesh;              /* its skeleton, meshes and nodes; required. Its bytes must outlive the stage */
+    const char *name;     /* for messages and plans; default (NULL) "". Borrowed */
+    const noh_pack *mesh; /* its skeleton, meshes and nodes; required. Its bytes must outlive the stage */
+    /* Where `mesh` has coarse levels alone (noh strip): the pack that it was made from, or one with more of its levels.
+     * The plan then has room for these, and noh_stage_load_level brings them. Read by plans and by init, not kept.
+     * Default (NULL) only the levels of `mesh` are ever shown */
+    const noh_pack *finer;
     const noh_pack *clips;             /* default (NULL) `mesh`. Clips of other skeletons are left out */
     const noh_pack *const *clip_packs; /* [clip_pack_count] instead of `clips`, where there are several: a later one's
                                         * clip replaces an earlier one's of the same name. Must outlive the stage */
@@ -120,12 +126,14 @@ typedef struct noh_stage_desc {
     uint32_t kind_count;        /* 1..NOH_STAGE_KINDS_MAX */
     uint64_t cpu_bytes_max;     /* bounds that the plan has to keep; default (0) none */
     uint64_t gpu_bytes_max;
-    uint64_t bytes_max;        /* of both together, where memory is shared */
-    noh_lod_settings lod;      /* `pixels` is the largest error that may show; zeros: as lod.h has them */
-    uint32_t height_px;        /* of the view that slots are counted for; default (0) 1,080 */
-    uint32_t job_count;        /* noh_stage_job may run this many at once; default (0) 1 */
-    uint32_t event_count;      /* callback keys that one step may deliver to noh_stage_events; default (0) 64 and one
-                                * for each actor */
+    uint64_t bytes_max;   /* of both together, where memory is shared */
+    noh_lod_settings lod; /* `pixels` is the largest error that may show; zeros: as lod.h has them */
+    uint32_t height_px;   /* of the view that slots are counted for; default (0) 1,080 */
+    uint32_t job_count;   /* noh_stage_job may run this many at once; default (0) 1 */
+    uint32_t event_count; /* callback keys that one step may deliver to noh_stage_events; default (0) 64 and one
+                           * for each actor */
+    uint32_t load_bytes;  /* of levels that are loaded (noh_stage_load_level), so many are uploaded in a frame at most;
+                           * below 64 counts as 64; default (0) 65,536 */
     uint64_t update_budget_ns; /* of posing in a frame, by noh_cost_ns; default (0) no bound */
     uint32_t slot_moves;       /* slots that may change hands in a frame, each of which is accumulated afresh: whoever
                                 * waits is drawn coarser, or without targets as long as it has no slot. 1 counts as 2;
@@ -183,7 +191,7 @@ typedef struct noh_stage_plan {
     uint64_t cpu_bytes;   /* of the block that noh_stage_init wants; exact */
     uint64_t gpu_bytes;   /* of what it makes on the GPU; exact, as the ledger counts */
     uint64_t state_bytes; /* of cpu_bytes: noh_stage_state */
-    uint64_t pack_bytes;  /* of the packs, which are read where they lie and not counted above */
+    uint64_t pack_bytes;  /* of the packs, which are read where they lie and not counted above; without `finer` */
     uint32_t halves;      /* 1: 16-bit accumulators */
     uint32_t morph_path;  /* noh_morph_path that was chosen; 0 without GPU */
     uint32_t hash;        /* of the desc and the plan: a state of another one is refused */
@@ -251,6 +259,8 @@ typedef struct noh_stage_stats {
     uint32_t moved, waiting;               /* slots that changed hands; actors that wait for that (slot_moves) */
     uint32_t resting;                      /* actors without a slot yet: drawn without targets */
     uint32_t left_out;                     /* actors in view that are not drawn: seen_max is too small */
+    uint32_t loading;                      /* kinds whose finer levels are on their way (noh_stage_load_level), */
+    uint32_t load_bytes;                   /* and what was uploaded of them */
     uint64_t decoded;                      /* track-frames */
     uint64_t decoded_late;                 /* of these, those that a pose had to wait for: too few cached segments */
     uint32_t events_lost;                  /* since init: event_count is too small */
@@ -454,7 +464,7 @@ noh_result noh_actor_sphere(const noh_stage *stage, noh_actor actor, float spher
  * exact bounds, decals, export. */
 typedef struct noh_actor_mesh {
     uint32_t node, mesh;  /* of the kind's mesh pack; node NOH_NONE: a pack without nodes */
-    uint32_t level;       /* of the mesh */
+    uint32_t level;       /* of the mesh; in the pack that was loaded, where noh_kind_desc.mesh lacks it */
     uint32_t joint_count; /* of its skin; 0: rigid */
     const float *weights; /* [its target_count]; valid until the next frame */
     float world[12];      /* of its vertices, once they are deformed */
@@ -572,6 +582,25 @@ noh_result noh_stage_frame_end(noh_stage *stage, noh_error *error);
 noh_result noh_stage_frame(noh_stage *stage, uint32_t ticks, const noh_stage_view *view, noh_stage_event_fn on_key,
                            void *user, noh_error *error);
 
+/* ---- levels that come later ---- */
+
+/* Bring the levels that a kind's `finer` has and its `mesh` lacks. Each noh_stage_frame_end uploads a piece of at most
+ * desc->load_bytes; once all is there (noh_stage_stats.loading), the next frame chooses among all levels of the plan,
+ * and they fade in. Room was made at init: nothing is made now. Kinds of the same `mesh` and `finer` share their
+ * levels: what is brought for one is there for all. Picking stays at the levels of `mesh`. pack    `finer`, or any pack
+ * with the same levels, wherever it lies. It and its bytes must stay until the levels are dropped or the stage is
+ * deleted: faces read them, and noh_stage_restore errors  ARG kind, or a frame or a step has begun; UNSUPPORTED the
+ * kind has no `finer`, or the plan none of its levels; DATA a mesh of `pack` is not the one that the kind's was
+ * stripped from, or too few levels are in it (where: the mesh); nothing has changed then. To bring again what is there
+ * or on its way from the same pack is no error */
+noh_result noh_stage_load_level(noh_stage *stage, uint32_t kind, const noh_pack *pack, noh_error *error);
+
+/* Let go of them again, at whatever stage of their upload: from the next frame on whoever shows them is drawn coarser
+ * at once. The pack is not read any more. What is on the GPU stays there, as planned. noh_actor_mesh_at tells levels of
+ * them until the next frame.
+ * errors  ARG kind, or a frame or a step has begun */
+noh_result noh_stage_drop_level(noh_stage *stage, uint32_t kind, noh_error *error);
+
 /* ---- state ---- */
 
 /* Everything that time or the game changes: one stretch of plan->state_bytes without pointers. Copy it to save or fork
@@ -579,7 +608,8 @@ noh_result noh_stage_frame(noh_stage *stage, uint32_t ticks, const noh_stage_vie
 const void *noh_stage_state(const noh_stage *stage, size_t *bytes);
 
 /* Put a copy back, of this stage or of another one with the same plan, on any processor of the same byte order. The
- * frames that follow equal to the bit those that followed the copy.
+ * frames that follow equal to the bit those that followed the copy, where the same levels are there
+ * (noh_stage_load_level): which ones is no part of the state. Without them actors show the finest that is there.
  * errors  ARG within a frame or a step; DATA another plan's state, or a count or index in it is out of range (where:
  * the actor); nothing has changed then */
 noh_result noh_stage_set_state(noh_stage *stage, const void *state, size_t bytes, noh_error *error);

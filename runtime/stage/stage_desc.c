@@ -58,6 +58,7 @@ noh_stage_desc noh_stage_desc_filled(const noh_stage_desc *desc)
     if (!d.update_budget_ns) d.update_budget_ns = UINT64_MAX;
     if (!d.slot_moves) d.slot_moves = UINT32_MAX;
     if (!(d.lod.pixels > 0.0f)) d.lod.pixels = 1.0f;
+    d.load_bytes = !d.load_bytes ? 65536u : d.load_bytes < 64u ? 64u : d.load_bytes;
     return d;
 }
 
@@ -197,6 +198,7 @@ static const char *bad_kind(const noh_stage_desc *desc, uint32_t number)
         return "held_float_count of a kind is above NOH_FLOATS_MAX";
     if (bad_texture_sets(d)) return bad_texture_sets(d);
     if (bad_parts(d)) return bad_parts(d);
+    if (noh_stage_bad_finer(d)) return noh_stage_bad_finer(d);
     filled = noh_stage_kind_desc(desc, number);
     if (filled.skeleton != NOH_NONE && filled.skeleton >= d->mesh->skeleton_count)
         return "skeleton of a kind is none of its mesh pack's";

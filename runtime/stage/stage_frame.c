@@ -135,6 +135,7 @@ noh_result noh_stage_frame_end(noh_stage *stage, noh_error *error)
     if (stage->gpu) {
         stage->desc.gpu->upload(stage);
     }
+    noh_stage_load_piece(stage);
     stage->phase = NOH_STAGE_IDLE;
     return NOH_OK;
 }

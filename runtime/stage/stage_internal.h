@@ -20,6 +20,7 @@
  *   stage_frame.c    the phases of a frame
  *   stage_ask.c      joints, spheres, floats
  *   stage_pick.c     a ray
+ *   stage_load.c     levels that come later
  *   stage_state.c    state out and in
  *   view.c           cameras
  *
@@ -116,6 +117,7 @@ typedef struct noh_stage_mesh {
     noh_mesh mesh; /* the full one */
     noh_skin skin; /* where `skinned` */
     noh_stage_item item;
+    uint32_t finer_hash;     /* of the levels of noh_kind_desc.finer that the plan has: see noh_stage_hash_levels */
     const float *node_world; /* [12] of a rigid mesh */
     const float *defaults;   /* [target_count] weights */
     uint32_t first_float;    /* of its targets, among the kind's floats */
@@ -142,6 +144,12 @@ typedef struct noh_stage_sampler {
     const float *float_defaults;
 } noh_stage_sampler;
 
+typedef enum noh_stage_load {
+    NOH_STAGE_DROPPED = 0, /* or never brought */
+    NOH_STAGE_LOADING,
+    NOH_STAGE_LOADED
+} noh_stage_load;
+
 typedef struct noh_stage_kind {
     noh_kind_desc desc; /* defaults filled in; `layers` is NULL afterwards */
     const noh_kind_plan *plan;
@@ -167,8 +175,12 @@ typedef struct noh_stage_kind {
     noh_lod_pack lod;       /* of the first skinned mesh */
     noh_lod_mesh *levels;   /* [plan->level_count] */
     noh_lod_table table;
-    float *joint_radii; /* [joint_count]; NULL: rigid */
-    float reach[4];     /* centre and radius in model space: holds the actor in any pose of its clips */
+    uint32_t first_there;   /* the finest level that `desc.mesh` has, and the plan */
+    uint32_t load_kind;     /* the kind whose finer levels it shares: itself, or an earlier one; NOH_NONE: none come */
+    noh_stage_load loading; /* of load_kind */
+    const noh_pack *loaded; /* the pack they come from; NULL: none */
+    float *joint_radii;     /* [joint_count]; NULL: rigid */
+    float reach[4];         /* centre and radius in model space: holds the actor in any pose of its clips */
     float rigid[4]; /* likewise: what no joint moves, at rest, and as far as one target moves it; radius -1: nothing */
     uint32_t character_bytes;
     uint32_t graph_count;        /* 0: the rest is not used */
@@ -297,6 +309,11 @@ struct noh_stage_gpu {
     void (*pose)(noh_stage *stage, noh_stage_kind *kind, uint32_t index,
                  float *matrices); /* of an actor that is seen, in a job: its palettes into memory of its own */
     void (*upload)(noh_stage *stage);
+    /* Levels that come later, of all meshes of the kinds whose load_kind it is: upload a piece, from the beginning
+     * where `anew`, and subtract what was sent, returning 1 once all is there; draw with them from now on, or without.
+     */
+    int (*load)(noh_stage *stage, uint32_t load_kind, int anew, uint32_t *bytes);
+    void (*use)(noh_stage *stage, uint32_t load_kind, int loaded);
 };
 
 /* ---- private calls ---- */
@@ -307,6 +324,16 @@ noh_kind_desc noh_stage_kind_desc(const noh_stage_desc *desc, uint32_t kind);
 uint32_t noh_stage_items(const noh_kind_desc *kind, noh_stage_item *items);
 /* The texture that stands for one of the kind's mesh pack in a set, 0 its own: its pack, and its index there. */
 uint32_t noh_stage_worn(const noh_kind_desc *kind, uint32_t set, uint32_t texture, const noh_pack **pack);
+/* Of a pack's mesh, with the levels that the plan may have: noh_kind_desc.finer, else `mesh`. */
+noh_mesh noh_stage_whole_mesh(const noh_kind_desc *kind, uint32_t mesh);
+/* What is wrong with the `finer` of a kind; NULL: nothing. */
+const char *noh_stage_bad_finer(const noh_kind_desc *kind);
+/* The kind whose finer levels a kind shares, itself or an earlier one. */
+uint32_t noh_stage_load_kind(const noh_stage_desc *desc, uint32_t kind);
+/* A hash of what sizes depend on in a level of a mesh and all coarser ones: equal wherever they lie. */
+uint32_t noh_stage_hash_levels(const noh_mesh *mesh, uint32_t level);
+void noh_stage_open_load(const noh_stage *s, const noh_stage_desc *desc, uint32_t kind);
+void noh_stage_load_piece(noh_stage *s); /* in a frame, after all else was handed over */
 noh_result noh_stage_check_desc(const noh_stage_desc *desc, noh_error *error);
 noh_stage_desc noh_stage_desc_filled(const noh_stage_desc *desc);
 uint32_t noh_stage_layer_tracks(const noh_layer_desc *layer);

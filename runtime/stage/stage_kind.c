@@ -78,6 +78,7 @@ static void open_meshes(noh_stage_kind *k)
     uint32_t next = k->bank ? k->set.float_count : 0;
     for (uint32_t i = 0; i < count; i++) {
         noh_stage_mesh *m = &k->meshes[i];
+        noh_mesh whole;
         memset(m, 0, sizeof *m);
         m->item = items[i];
         (void)noh_pack_mesh_at(k->desc.mesh, items[i].mesh, &m->mesh, NULL);
@@ -88,7 +89,8 @@ static void open_meshes(noh_stage_kind *k)
         if (m->first_float == next) next += m->mesh.header->target_count;
         m->first_weight = k->weight_count;
         k->weight_count += m->mesh.header->target_count;
-        noh_lod_target_radii(&m->mesh, k->target_radii + m->first_weight);
+        whole = noh_stage_whole_mesh(&k->desc, items[i].mesh);
+        noh_lod_target_radii(&whole, k->target_radii + m->first_weight);
     }
     k->float_count = next;
 }
@@ -163,14 +165,15 @@ static void open_levels(noh_stage_kind *k)
         to->triangle_count = from->triangle_count;
         to->error_m = from->error_m;
         for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
-            const noh_mesh mesh = noh_mesh_at_lod(&k->meshes[m].mesh, from->mesh_levels[m]);
+            const noh_mesh whole = noh_stage_whole_mesh(&k->desc, k->meshes[m].item.mesh);
+            const noh_mesh mesh = noh_mesh_at_lod(&whole, from->mesh_levels[m]);
             to->vertex_count += mesh.header->vertex_count;
             if (mesh.header->influence_count > to->influence_count) to->influence_count = mesh.header->influence_count;
         }
     }
     k->table.meshes = k->levels;
     k->table.mesh_level_count = k->plan->level_count;
-    k->table.mesh_level_first = k->plan->finest_level;
+    k->table.mesh_level_first = k->first_there;
 }
 
 /* The table of the first skinned mesh, of which the mesh levels are replaced by those of actors. Fewer influences are
@@ -382,6 +385,7 @@ noh_result noh_stage_open_kind(noh_stage *s, const noh_stage_desc *desc, uint32_
         return result;
     }
     open_meshes(k);
+    noh_stage_open_load(s, desc, kind);
     open_floats(k);
     result = noh_stage_open_layers(k, kind, error);
     if (result == NOH_OK) result = open_lod(s, k, blocks->lods[kind], needs.lod_bytes, error);

@@ -30,9 +30,7 @@ typedef struct finder {
 
 static noh_mesh mesh_of(const finder *f, uint32_t item)
 {
-    noh_mesh mesh;
-    (void)noh_pack_mesh_at(f->kind->mesh, f->items[item].mesh, &mesh, NULL);
-    return mesh;
+    return noh_stage_whole_mesh(f->kind, f->items[item].mesh);
 }
 
 /* The coarsest level of a mesh that is off by no more than this; the finest where none is. */

@@ -17,7 +17,8 @@ static void ask(noh_stage *s, noh_stage_kind *k)
     for (uint32_t i = 0; i < k->desc.actor_count; i++) {
         const noh_stage_shown *shown = &s->shown[k->first_actor + i];
         if (shown->views) {
-            noh_lod_pools_ask(k->pools, i, noh_lod_finest(&noh_stage_character(k, i)->lod), shown->scale);
+            const uint32_t level = noh_lod_finest(&noh_stage_character(k, i)->lod), first = k->table.mesh_level_first;
+            noh_lod_pools_ask(k->pools, i, level > first ? level : first, shown->scale);
         }
     }
     noh_lod_pools_share_some(k->pools, s->cut ? UINT32_MAX : s->desc.slot_moves);

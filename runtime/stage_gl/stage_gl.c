@@ -51,6 +51,19 @@ static uint32_t model_index(const measure *m, noh_gl_site owner)
     return index;
 }
 
+/* A model whose finer levels come later. */
+static void set_later(const measure *m, noh_gl_site site, const noh_mesh *mesh, const noh_mesh *coarse, void *room,
+                      noh_gl_model *model)
+{
+    const noh_kind_desc kind = noh_stage_kind_desc(m->desc, site.kind);
+    noh_stage_item items[NOH_STAGE_MESHES_MAX];
+    (void)noh_stage_items(&kind, items);
+    model->load_kind = noh_stage_load_kind(m->desc, site.kind);
+    model->mesh_index = items[site.item].mesh;
+    model->coarse = *coarse;
+    model->room = noh_gl_room_make(mesh, coarse, room);
+}
+
 static noh_result visit_model(measure *m, noh_gl_site site, noh_gl_model *model, noh_error *error)
 {
     const noh_mesh mesh = noh_gl_site_mesh(m->desc, m->plan, site);
@@ -59,23 +72,34 @@ static noh_result visit_model(measure *m, noh_gl_site site, noh_gl_model *model,
     noh_gl_morph_desc d;
     noh_gl_morph_plan plan;
     noh_result result = NOH_OK;
+    size_t targets;
     void *memory;
+    noh_mesh coarse;
+    const int later = noh_gl_site_coarse(m->desc, m->plan, site, &coarse);
+    void *room = noh_arena_carve(&m->arena, later ? noh_gl_room_size(&mesh) : 0, 16);
     add(m, "mesh buffers", site.kind, from, noh_gl_mesh_bytes(&mesh));
     if (model) {
-        result = noh_gl_mesh_create(m->gl->device.api, m->gl->device.ledger, &mesh, &model->mesh, error);
+        model->load_kind = NOH_NONE;
+        if (later) set_later(m, site, &mesh, &coarse, room, model);
+        result = later ? noh_gl_model_make_mesh(&m->gl->device, model, error)
+                       : noh_gl_mesh_create(m->gl->device.api, m->gl->device.ledger, &mesh, &model->mesh, error);
     }
     if (result != NOH_OK || mesh.header->touched_count == 0) {
         return result;
     }
     noh_gl_tiles_of(m->desc, m->plan, site, &tiles);
+    for (uint32_t i = 0; later && model && i < tiles.count; i++) {
+        tiles.meshes[i] = noh_mesh_at_lod(&model->room, tiles.meshes[i].header->level);
+    }
     d = noh_gl_site_morph(m->desc, &tiles);
     result = noh_gl_morph_plan_make(&d, m->caps, &plan, error);
     if (result != NOH_OK) {
         return result;
     }
     m->morph_path = (uint32_t)plan.path;
+    targets = m->arena.used;
     memory = noh_arena_carve(&m->arena, (size_t)plan.cpu_bytes, 16);
-    add(m, "morph targets", site.kind, from, plan.gpu_bytes - plan.layer_bytes);
+    add(m, "morph targets", site.kind, targets, plan.gpu_bytes - plan.layer_bytes);
     add(m, "accumulators", site.kind, m->arena.used, plan.layer_bytes);
     return model ? noh_gl_morph_init(memory, (size_t)plan.cpu_bytes, &m->gl->device, &d, &model->morph, error) : NOH_OK;
 }
@@ -83,13 +107,15 @@ static noh_result visit_model(measure *m, noh_gl_site site, noh_gl_model *model,
 /* The palettes, and the rows of places, of one kind's actors for one mesh. */
 static noh_result visit_item(measure *m, noh_gl_site site, noh_gl_item *item, noh_error *error)
 {
-    const noh_mesh mesh = noh_gl_site_mesh(m->desc, m->plan, site);
     const uint32_t count = noh_stage_kind_desc(m->desc, site.kind).seen_max;
+    noh_mesh mesh;
     const noh_gl_skin_desc d = { &mesh, 1, &count, NOH_PALETTE_TEXTURE };
     const size_t from = m->arena.used;
     noh_gl_skin_plan plan;
-    const noh_result result = noh_gl_skin_plan_make(&d, m->caps, &plan, error);
+    noh_result result;
     void *memory;
+    (void)noh_gl_site_coarse(m->desc, m->plan, site, &mesh); /* palettes are the same in all levels */
+    result = noh_gl_skin_plan_make(&d, m->caps, &plan, error);
     if (result != NOH_OK) {
         return result;
     }
@@ -139,6 +165,11 @@ static void carve_head(measure *m)
 
 /* ---- all of it ---- */
 
+static noh_mesh mesh_for_renderers(const measure *m, noh_gl_site site, const noh_gl_model *model)
+{
+    return model->load_kind == NOH_NONE ? noh_gl_site_mesh(m->desc, m->plan, site) : model->room;
+}
+
 static noh_result visit_site(measure *m, noh_gl_site site, noh_error *error)
 {
     const noh_gl_site owner = noh_gl_owner(m->desc, m->plan, site);
@@ -146,8 +177,8 @@ static noh_result visit_site(measure *m, noh_gl_site site, noh_error *error)
     noh_gl_item *item = m->gl ? &m->gl->kinds[site.kind].items[site.item] : NULL;
     noh_result result = NOH_OK;
     if (owner.kind == site.kind && owner.item == site.item) {
-        if (m->gl) m->gl->meshes[index] = noh_gl_site_mesh(m->desc, m->plan, site);
         result = visit_model(m, site, m->gl ? &m->gl->models[index] : NULL, error);
+        if (m->gl) m->gl->meshes[index] = mesh_for_renderers(m, site, &m->gl->models[index]);
     }
     if (item) {
         item->model = &m->gl->models[index];
@@ -301,8 +332,7 @@ static noh_result restore(noh_stage *stage, noh_error *error)
     noh_result result = NOH_OK;
     for (uint32_t i = 0; i < gl->model_count && result == NOH_OK; i++) {
         noh_gl_model *model = &gl->models[i];
-        result = noh_gl_mesh_restore(gl->device.api, gl->device.ledger, &model->mesh, error);
-        if (result == NOH_OK && model->morph) result = noh_gl_morph_restore(model->morph, NULL, 0, error);
+        result = noh_gl_model_restore(stage, model, error);
     }
     for (uint32_t i = 0; i < stage->desc.kind_count && result == NOH_OK; i++) {
         result = restore_kind(stage, i, error);
@@ -428,7 +458,8 @@ noh_result noh_actor_on_gl(noh_stage *stage, noh_actor actor, uint32_t index, no
     return NOH_OK;
 }
 
-const noh_stage_gpu noh_stage_on_gl = { measure_stage, list_parts, init, destroy, restore, pose, upload };
+const noh_stage_gpu noh_stage_on_gl = { measure_stage, list_parts, init,        destroy,   restore,
+                                        pose,          upload,     noh_gl_load, noh_gl_use };
 
 /* ---- shaders of a game's own ---- */
 

@@ -11,6 +11,13 @@
 typedef struct noh_gl_model {
     noh_gl_mesh mesh;
     noh_gl_morph *morph; /* NULL: no targets */
+    uint32_t load_kind;  /* noh_stage_kind.load_kind where finer levels come later; else NOH_NONE, and the rest is 0 */
+    uint32_t mesh_index; /* in the packs */
+    int loaded;          /* 1: they are used */
+    noh_mesh coarse;     /* the finest level that the kind's own pack has */
+    noh_mesh room;       /* the finest of the plan: copies of its headers and its submeshes, and nothing else */
+    uint64_t mesh_at;    /* how far the upload is */
+    uint32_t morph_at;
 } noh_gl_model;
 
 /* What one kind draws by one node. */
@@ -76,6 +83,18 @@ int noh_gl_next_site(const noh_stage_plan *plan, uint32_t kind_count, noh_gl_sit
 /* The first site that draws the same mesh of the same pack from the same level on, and may share with this one. */
 noh_gl_site noh_gl_owner(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site);
 
+/* ---- levels that come later ---- */
+
+/* The copy that noh_gl_model.room is of, in memory of so many bytes, aligned to 16. */
+size_t noh_gl_room_size(const noh_mesh *mesh);
+noh_mesh noh_gl_room_make(const noh_mesh *mesh, const noh_mesh *coarse, void *memory);
+/* Make the mesh of a model, with what its own pack has. */
+noh_result noh_gl_model_make_mesh(const noh_gl_device *device, noh_gl_model *model, noh_error *error);
+/* Make the mesh and accumulators of a model again in a new context, with the levels that it had. */
+noh_result noh_gl_model_restore(const noh_stage *stage, noh_gl_model *model, noh_error *error);
+int noh_gl_load(noh_stage *stage, uint32_t load_kind, int anew, uint32_t *bytes);
+void noh_gl_use(noh_stage *stage, uint32_t load_kind, int loaded);
+
 /* ---- textures ---- */
 
 /* The textures of a kind's sets that no kind before it has, no set before theirs: their bytes. */
@@ -93,12 +112,16 @@ typedef struct noh_gl_tiles {
     noh_mesh meshes[NOH_MODEL_POOLS_MAX];
     uint32_t counts[NOH_MODEL_POOLS_MAX];
     uint32_t count;
+    noh_mesh coarse; /* where `comes_later` */
+    int comes_later;
 } noh_gl_tiles;
 
 void noh_gl_tiles_of(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site owner, noh_gl_tiles *out);
 /* The index of a site's first pool in the tiles of its owner. */
 uint32_t noh_gl_first_pool(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site);
 noh_mesh noh_gl_site_mesh(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site); /* finest level */
+/* The finest that is in the kind's own pack. Returns 0 where that is the finest of all: none comes later. */
+int noh_gl_site_coarse(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site, noh_mesh *coarse);
 noh_gl_morph_desc noh_gl_site_morph(const noh_stage_desc *desc, const noh_gl_tiles *tiles);
 
 #endif

@@ -34,14 +34,22 @@ static uint32_t finest_of(const noh_stage_plan *plan, noh_gl_site site)
 
 noh_mesh noh_gl_site_mesh(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site)
 {
+    const noh_mesh mesh = noh_stage_whole_mesh(&desc->kinds[site.kind], item_of(desc, site).mesh);
+    return noh_mesh_at_lod(&mesh, finest_of(plan, site));
+}
+
+int noh_gl_site_coarse(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site, noh_mesh *coarse)
+{
     noh_mesh mesh;
     (void)noh_pack_mesh_at(desc->kinds[site.kind].mesh, item_of(desc, site).mesh, &mesh, NULL);
-    return noh_mesh_at_lod(&mesh, finest_of(plan, site));
+    *coarse = noh_mesh_at_lod(&mesh, finest_of(plan, site));
+    return coarse->header->level > finest_of(plan, site) && desc->kinds[site.kind].finer;
 }
 
 static int same_mesh(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site a, noh_gl_site b)
 {
     return desc->kinds[a.kind].mesh->bytes == desc->kinds[b.kind].mesh->bytes &&
+           noh_stage_load_kind(desc, a.kind) == noh_stage_load_kind(desc, b.kind) &&
            item_of(desc, a).mesh == item_of(desc, b).mesh && finest_of(plan, a) == finest_of(plan, b);
 }
 
@@ -96,6 +104,7 @@ void noh_gl_tiles_of(const noh_stage_desc *desc, const noh_stage_plan *plan, noh
 {
     noh_gl_site site = { UINT32_MAX, UINT32_MAX };
     out->count = 0;
+    out->comes_later = noh_gl_site_coarse(desc, plan, owner, &out->coarse);
     while (noh_gl_next_site(plan, desc->kind_count, &site)) {
         if (is_same(noh_gl_owner(desc, plan, site), owner)) add_tiles(desc, plan, site, out);
     }
@@ -119,6 +128,7 @@ noh_gl_morph_desc noh_gl_site_morph(const noh_stage_desc *desc, const noh_gl_til
     d.meshes = tiles->meshes;
     d.mesh_count = tiles->count;
     d.instance_counts = tiles->counts;
+    d.coarse = tiles->comes_later ? &tiles->coarse : NULL;
     d.path = (noh_morph_path)desc->morph_path;
     d.without_tangents = !desc->tangents;
     d.accumulate = desc->halves > 0 ? NOH_ACCUMULATE_F16 : desc->halves < 0 ? NOH_ACCUMULATE_F32 : NOH_ACCUMULATE_AUTO;
