@@ -312,13 +312,13 @@ static void open_rigid(noh_stage_kind *k)
     noh_box_empty(box);
     for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
         const noh_stage_mesh *mesh = &k->meshes[m];
+        const noh_mesh whole = noh_stage_whole_mesh(&k->desc, mesh->item.mesh);
         float own[6];
         if (mesh->skinned) continue;
-        noh_mesh_box(&mesh->mesh, mesh->node_world, NULL, own);
+        noh_mesh_box(&whole, mesh->node_world, NULL, own);
         noh_box_unite(box, own, box);
         for (uint32_t t = 0; t < mesh->mesh.header->target_count; t++) {
-            const float radius = mesh->mesh.targets[t].radius *
-                                 (mesh->node_world ? longest_axis(mesh->node_world) : 1.0f);
+            const float radius = whole.targets[t].radius * (mesh->node_world ? longest_axis(mesh->node_world) : 1.0f);
             most = radius > most ? radius : most;
         }
     }

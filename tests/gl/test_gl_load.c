@@ -502,6 +502,35 @@ static void other_packs_are_refused(void **state)
     gpu_close(&g);
 }
 
+static uint64_t gpu_bytes_of(what kind, const gpu *g, noh_morph_path path)
+{
+    static act a;
+    noh_stage_plan plan;
+    memset(&a, 0, sizeof a);
+    make_desc(&a, kind);
+    a.c.desc.morph_path = (uint32_t)path;
+    assert_int_equal(noh_stage_plan_make(&a.c.desc, &g->caps, &plan, NULL), NOH_OK);
+    close_act(&a);
+    return plan.gpu_bytes;
+}
+
+/* Room for levels to come is the room of the full pack, and the tables of the coarse levels. */
+static void room_costs_little(void **state)
+{
+    static gpu g;
+    (void)state;
+    open_null(&g);
+    assert_true(gpu_bytes_of(LATER, &g, NOH_MORPH_CPU) == gpu_bytes_of(FULL, &g, NOH_MORPH_CPU));
+    for (uint32_t w = 0; w < TEST_COUNT(null_ways); w++) {
+        const uint64_t full = gpu_bytes_of(FULL, &g, null_ways[w].path);
+        const uint64_t later = gpu_bytes_of(LATER, &g, null_ways[w].path);
+        print_message("# %s: %u bytes on the GPU with all levels, %u with finer ones to come\n",
+                      noh_morph_path_name(null_ways[w].path), (unsigned)full, (unsigned)later);
+        assert_true(later >= full && later - full < full / 8u);
+    }
+    gpu_close(&g);
+}
+
 /* A `finer` that is not the mesh's is refused by plans; a byte too little is MEMORY; a finer that lacks the first level
  * is good for the levels that it has. */
 static void plans_know_the_finer_levels(void **state)
@@ -548,7 +577,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(levels_come_and_go),          cmocka_unit_test(each_frame_keeps_the_bound),
         cmocka_unit_test(frames_make_nothing),         cmocka_unit_test(other_packs_are_refused),
-        cmocka_unit_test(plans_know_the_finer_levels),
+        cmocka_unit_test(plans_know_the_finer_levels), cmocka_unit_test(room_costs_little),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, fixture_tear_down);
