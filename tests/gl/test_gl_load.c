@@ -442,6 +442,49 @@ static void frames_make_nothing(void **state)
     }
 }
 
+static uint32_t finest_shown(const act *a)
+{
+    const noh_stage_stats *stats = noh_stage_stats_of(a->c.stage);
+    uint32_t level = 0;
+    while (level + 1u < NOH_LOD_LEVELS_MAX && !stats->at_level[level]) level++;
+    return level;
+}
+
+/* Two kinds of the same packs have one mesh on the GPU, so what is loaded or dropped for one is for both. */
+static void kinds_share_their_levels(void **state)
+{
+    const noh_look finest = { .pixels = 1e-4f };
+    static gpu g;
+    static act a;
+    uint32_t coarse;
+    (void)state;
+    open_null(&g);
+    memset(&a, 0, sizeof a);
+    make_desc(&a, LATER);
+    a.c.kinds[0] = a.c.kinds[1] = a.c.kinds[MASKS];
+    a.c.desc.kind_count = 2;
+    {
+        const noh_gl_device d = device_of(&g);
+        cast_make(&a.c, &d);
+    }
+    assert_int_equal(noh_stage_spawn(a.c.stage, 0, NULL, &a.actors[0], NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_look(a.c.stage, a.actors[0], &finest, NULL), NOH_OK);
+    frame(&a, 0, 1);
+    coarse = finest_shown(&a);
+    assert_true(coarse > 0);
+    assert_int_equal(noh_stage_load_level(a.c.stage, 1, &a.c.packs[MASKS], NULL), NOH_OK);
+    do {
+        frame(&a, 0, 0);
+    } while (noh_stage_stats_of(a.c.stage)->loading);
+    frame(&a, 1, 1);
+    assert_int_equal(finest_shown(&a), 0);
+    assert_int_equal(noh_stage_drop_level(a.c.stage, 1, NULL), NOH_OK);
+    frame(&a, 2, 0);
+    assert_int_equal(finest_shown(&a), coarse);
+    close_act(&a);
+    gpu_close(&g);
+}
+
 /* ---- what is refused ---- */
 
 static void expect_refused(act *a, const noh_pack *pack, noh_result result)
@@ -575,9 +618,10 @@ static void plans_know_the_finer_levels(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(levels_come_and_go),          cmocka_unit_test(each_frame_keeps_the_bound),
-        cmocka_unit_test(frames_make_nothing),         cmocka_unit_test(other_packs_are_refused),
-        cmocka_unit_test(plans_know_the_finer_levels), cmocka_unit_test(room_costs_little),
+        cmocka_unit_test(levels_come_and_go),      cmocka_unit_test(each_frame_keeps_the_bound),
+        cmocka_unit_test(frames_make_nothing),     cmocka_unit_test(kinds_share_their_levels),
+        cmocka_unit_test(other_packs_are_refused), cmocka_unit_test(plans_know_the_finer_levels),
+        cmocka_unit_test(room_costs_little),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, fixture_tear_down);
