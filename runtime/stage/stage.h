@@ -587,12 +587,13 @@ noh_result noh_stage_frame(noh_stage *stage, uint32_t ticks, const noh_stage_vie
 /* Bring the levels that a kind's `finer` has and its `mesh` lacks. Each noh_stage_frame_end uploads a piece of at most
  * desc->load_bytes; once all is there (noh_stage_stats.loading), the next frame chooses among all levels of the plan,
  * and they fade in. Room was made at init: nothing is made now. Kinds of the same `mesh` and `finer` share their
- * levels: what is brought for one is there for all. Picking stays at the levels of `mesh`. pack    `finer`, or any pack
- * with the same levels, wherever it lies. It and its bytes must stay until the levels are dropped or the stage is
- * deleted: faces read them, and noh_stage_restore errors  ARG kind, or a frame or a step has begun; UNSUPPORTED the
- * kind has no `finer`, or the plan none of its levels; DATA a mesh of `pack` is not the one that the kind's was
- * stripped from, or too few levels are in it (where: the mesh); nothing has changed then. To bring again what is there
- * or on its way from the same pack is no error */
+ * levels: what is brought for one is there for all. Picking stays at the levels of `mesh`. To bring again what is
+ * there, or on its way from the same pack, is no error.
+ * pack    `finer`, or any pack with the same levels, wherever it lies. It and its bytes must stay until the levels are
+ *         dropped or the stage is deleted: faces read them, and so does noh_stage_restore
+ * errors  ARG kind, or a frame or a step has begun; UNSUPPORTED the kind has no `finer`, or the plan none of its levels;
+ *         DATA a mesh of `pack` is not the one that the kind's was stripped from, or too few levels are in it (where:
+ *         the mesh); nothing has changed then */
 noh_result noh_stage_load_level(noh_stage *stage, uint32_t kind, const noh_pack *pack, noh_error *error);
 
 /* Let go of them again, at whatever stage of their upload: from the next frame on whoever shows them is drawn coarser
