@@ -97,12 +97,12 @@
 #define NOH_STAGE_JOBS_MAX 64u
 #define NOH_TEXTURE_SETS_MAX 64u /* of a kind, besides its own */
 #define NOH_STAGE_VIEWS_MAX 8u
-#define NOH_LAYERS_MAX 16u      /* of a kind */
-#define NOH_STAGE_PARTS_MAX 16u /* of a kind */
+#define NOH_LAYERS_MAX 16u                  /* of a kind */
+#define NOH_STAGE_PARTS_MAX 16u             /* of a kind */
 #define NOH_STAGE_PART_BYTES_MAX (1u << 20) /* state of one actor, scratch of one job */
-#define NOH_STAGE_GRAPHS_MAX 16u /* of a kind */
-#define NOH_LAYER_TRACKS_MAX 8u /* of a layer */
-#define NOH_CONCESSIONS_MAX 32u /* of a plan */
+#define NOH_STAGE_GRAPHS_MAX 16u            /* of a kind */
+#define NOH_LAYER_TRACKS_MAX 8u             /* of a layer */
+#define NOH_CONCESSIONS_MAX 32u             /* of a plan */
 
 /* ---- light ---- */
 

@@ -16,8 +16,7 @@ const char *noh_result_text(noh_result result)
     return "unknown result";
 }
 
-noh_result noh_fail(noh_error *error, noh_result result, const char *what, uint64_t where,
-                                     uint64_t need)
+noh_result noh_fail(noh_error *error, noh_result result, const char *what, uint64_t where, uint64_t need)
 {
     if (error) {
         error->result = result;

@@ -592,8 +592,8 @@ noh_result noh_stage_frame(noh_stage *stage, uint32_t ticks, const noh_stage_vie
  * pack    `finer`, or any pack with the same levels, wherever it lies. It and its bytes must stay until the levels are
  *         dropped or the stage is deleted: faces read them, and so does noh_stage_restore
  * errors  ARG kind, or a frame or a step has begun; UNSUPPORTED the kind has no `finer`, or the plan none of its
- * levels; DATA a mesh of `pack` is not the one that the kind's was stripped from, or too few levels are in it (where:
- *         the mesh); nothing has changed then */
+ *         levels; DATA a mesh of `pack` is not the one that the kind's was stripped from, or too few levels are in it
+ *         (where: the mesh); nothing has changed then */
 noh_result noh_stage_load_level(noh_stage *stage, uint32_t kind, const noh_pack *pack, noh_error *error);
 
 /* Let go of them again, at whatever stage of their upload: from the next frame on whoever shows them is drawn coarser
