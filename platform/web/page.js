@@ -17,7 +17,7 @@ let drawn = 0; // time of the last frame, in ms
 let busy = 0; // until then something fades
 
 // Tests wait for these.
-window.noh = { ready: false, lost: 0, restored: 0, frames: 0, error: '' };
+window.noh = { ready: false, lost: 0, restored: 0, frames: 0, due: 0, error: '' };
 
 function fail(text) {
     window.noh.error = text;
@@ -138,6 +138,7 @@ function draw() {
 }
 
 function redraw() {
+    window.noh.due = window.noh.frames + 1;
     if (!wanted) requestAnimationFrame(draw);
     wanted = true;
 }

@@ -174,14 +174,16 @@ static noh_result visit_site(measure *m, noh_gl_site site, noh_error *error)
 {
     const noh_gl_site owner = noh_gl_owner(m->desc, m->plan, site);
     const uint32_t index = model_index(m, owner);
-    noh_gl_item *item = m->gl ? &m->gl->kinds[site.kind].items[site.item] : NULL;
+    noh_stage_gl *gl = m->gl;
+    noh_gl_model *model = gl ? &gl->models[index] : NULL;
+    noh_gl_item *item = gl ? &gl->kinds[site.kind].items[site.item] : NULL;
     noh_result result = NOH_OK;
     if (owner.kind == site.kind && owner.item == site.item) {
-        result = visit_model(m, site, m->gl ? &m->gl->models[index] : NULL, error);
-        if (m->gl) m->gl->meshes[index] = mesh_for_renderers(m, site, &m->gl->models[index]);
+        result = visit_model(m, site, model, error);
+        if (model) gl->meshes[index] = mesh_for_renderers(m, site, model);
     }
     if (item) {
-        item->model = &m->gl->models[index];
+        item->model = model;
         item->first_pool = noh_gl_first_pool(m->desc, m->plan, site);
     }
     return result == NOH_OK ? visit_item(m, site, item, error) : result;

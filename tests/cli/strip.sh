@@ -63,9 +63,9 @@ check 'stays as it is' cmp "$work/again.noh" "$build/mask.noh"
 noh strip "$work/puppet.noh" -o /dev/stdout --from-level 3
 expect 0 'to stdout'
 check 'has the pack and nothing else' cmp "$work/out" "$work/puppet_3.noh"
-noh build "$build/mask.glb" -o "$work/again.noh" --lod 4 --lod-fast --lod-from 2 --quiet
+noh build "$build/demo/puppet.glb" -o "$work/again.noh" --lod 4 --lod-fast --lod-from 2 --quiet
 expect 0 'build --lod-from'
-check 'gives the same bytes' cmp "$work/again.noh" "$work/mask_2.noh"
+check 'gives the same bytes' cmp "$work/again.noh" "$work/puppet_2.noh"
 
 # ---- by mesh ----
 

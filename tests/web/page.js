@@ -20,11 +20,13 @@ function check(name, right, more) {
 const keep = (page, name) => save(page, '#canvas', path.join(out, name));
 const same = (a, b) => fs.readFileSync(path.join(out, a)).equals(fs.readFileSync(path.join(out, b)));
 
-// Act, and wait until the page has drawn the result.
+// Act, and wait until the page has drawn the result: the frame that is due after the act. A page that is busy with what
+// came before draws others in between.
 async function drawn(page, act) {
     const frames = await page.evaluate(() => window.noh.frames);
     await act();
-    await page.waitForFunction((n) => window.noh.frames > n, frames);
+    const due = await page.evaluate(() => window.noh.due);
+    await page.waitForFunction((n) => window.noh.frames >= n, Math.max(due, frames + 1));
 }
 
 const slide = (page, selector, value) => drawn(page, () => page.locator(selector).evaluate((slider, v) => {
