@@ -85,6 +85,7 @@
 /* ---- light ---- */
 
 #include "light/environment.h" /* light from all around, built in or your own, as spherical harmonics */
+#include "light/reflection.h"  /* the same as a cube of texels, for surfaces that gloss */
 #include "light/transfer.h"    /* what light a vertex of a mesh receives, as it turns and morphs */
 #include "light/sh.h"          /* spherical harmonics: projected, convolved, turned */
 

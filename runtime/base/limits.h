@@ -109,6 +109,8 @@
 #define NOH_SH_ORDER_MAX 6u /* of spherical harmonics */
 #define NOH_SH_COUNT_MAX 36u
 #define NOH_LAMPS_MAX 8u /* of an environment */
+#define NOH_WINDOWS_MAX 2u
+#define NOH_REFLECTION_SIDE_MAX 128u /* texels */
 
 /* ---- GL ---- */
 

@@ -253,6 +253,15 @@ INIT(morph_layers_init)
     return noh_morph_layers_init(memory, bytes, &s.mesh, &layers, error);
 }
 
+INIT(reflection_init)
+{
+    static __attribute__((aligned(16))) float scratch[3 * 6 * (16 * 16 + 8 * 8 + 4 * 4)];
+    const noh_reflection_desc desc = { 16, noh_reflection_of_environment, noh_environment_at(0) };
+    noh_reflection reflection;
+    assert_int_equal(noh_reflection_scratch_size(16), sizeof scratch);
+    return noh_reflection_init(memory, bytes, scratch, sizeof scratch, &desc, &reflection, error);
+}
+
 /* A ray at the tube's middle: its scratch is a block too. */
 INIT(pick)
 {
@@ -341,6 +350,7 @@ static const struct {
     ROW(time_lod_measure),
     ROW(time_lod_points_measure),
     ROW(morph_layers_init),
+    ROW(reflection_init),
     ROW(pick),
     ROW(gl_morph_init),
     ROW(gl_skin_init),

@@ -309,7 +309,7 @@ static void lamps_have_their_closed_form(void **state)
     (void)state;
     for (size_t e = 0; e < TEST_COUNT(edges); e++) {
         for (uint32_t power = 0; power < 3; power++) {
-            noh_environment one = { "one", { 0, 0, 0 }, 1, { { { 0, 0, 1 }, 0, 0, { 1, 1, 1 } } } };
+            noh_environment one = { .name = "one", .lamp_count = 1, .lamps = { { { 0, 0, 1 }, 0, 0, { 1, 1, 1 } } } };
             noh_light light;
             one.lamps[0].edge = edges[e];
             one.lamps[0].power = power;
@@ -338,7 +338,7 @@ static void lamps_have_their_closed_form(void **state)
  * of radiance 1 lights a surface by the sine law (1 + cos a) / 2. */
 static void a_furnace_is_white(void **state)
 {
-    const noh_environment half = { "half", { 0, 0, 0 }, 1, { { { 0, 1, 0 }, 0, 0, { 1, 1, 1 } } } };
+    const noh_environment half = { .name = "half", .lamp_count = 1, .lamps = { { { 0, 1, 0 }, 0, 0, { 1, 1, 1 } } } };
     static const float about_x[9] = { 1, 0, 0, 0, 0.6f, -0.8f, 0, 0.8f, 0.6f };
     test_random r = test_random_from(7);
     noh_light white, turned, up;
@@ -376,7 +376,7 @@ static void bits_are_the_same_everywhere(void **state)
         crc = noh_crc32c(crc, turned.coefs, sizeof turned.coefs);
         crc = noh_crc32c(crc, rgb, sizeof rgb);
     }
-    assert_int_equal(crc, 0x27166098u);
+    assert_int_equal(crc, 0x9047ebbeu);
 }
 
 int main(void)

@@ -338,7 +338,9 @@ static void a_lobe_fits_itself(void **state)
  * where green light is none, and wrong by green's amount elsewhere. */
 static void blue_light_is_answered_by_blue(void **state)
 {
-    const noh_environment blue = { "blue", { 0, 0, 0 }, 1, { { { 0, 1, 0 }, 0.3f, 1, { 0, 0, 2 } } } };
+    const noh_environment blue = { .name = "blue",
+                                   .lamp_count = 1,
+                                   .lamps = { { { 0, 1, 0 }, 0.3f, 1, { 0, 0, 2 } } } };
     float basis[NOH_SH_COUNT_MAX], literal = 0.0f, right = 0.0f, rgb[3];
     const noh_lobe lobe = { 1.0f, { 0, 0.8f, 0.6f }, { 1, 2.0f / 3.0f, 0.25f, 0, -1.0f / 24.0f, 0 } };
     /* coefficients by channel, as the source stores them; green here answers half as much */
