@@ -1,0 +1,54 @@
+#include "image_file.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include <stb/stb_image.h>
+
+#include "convert/base/input_file.h"
+
+#define PIXELS_MAX ((uint64_t)64u << 20)
+
+/* stb_image's other decoders are kept from files of unknown origin. */
+static int is_png_or_jpeg(const char *bytes, size_t count)
+{
+    static const unsigned char png[4] = { 0x89, 'P', 'N', 'G' }, jpeg[3] = { 0xff, 0xd8, 0xff };
+    return count > 8 && (memcmp(bytes, png, 4) == 0 || memcmp(bytes, jpeg, 3) == 0);
+}
+
+static int decode(const unsigned char *bytes, size_t count, image_file *image, model_error *error)
+{
+    int width = 0, height = 0, channels = 0;
+    if (count > 0x7fffffffu || !stbi_info_from_memory(bytes, (int)count, &width, &height, &channels) || width < 1 ||
+        height < 1) {
+        return model_fail(error, "", "the image data is damaged");
+    }
+    if ((uint64_t)width * (uint64_t)height > PIXELS_MAX) {
+        return model_fail(error, "", "the image has %d x %d pixels; the limit is %llu", width, height,
+                          (unsigned long long)PIXELS_MAX);
+    }
+    image->bits = stbi_is_16_bit_from_memory(bytes, (int)count) ? 16 : 8;
+    image->rgba = stbi_load_from_memory(bytes, (int)count, &width, &height, &channels, 4);
+    if (!image->rgba) {
+        return model_fail(error, "", "the image data is damaged, or memory is out");
+    }
+    image->width = (uint32_t)width;
+    image->height = (uint32_t)height;
+    image->channels = (uint32_t)channels;
+    return 0;
+}
+
+int image_read(const char *path, image_file *image, model_error *error)
+{
+    size_t count = 0;
+    char *bytes = input_read(path, &count, error);
+    int failed;
+    memset(image, 0, sizeof *image);
+    if (!bytes) {
+        return 1;
+    }
+    failed = is_png_or_jpeg(bytes, count) ? decode((const unsigned char *)bytes, count, image, error)
+                                          : model_fail(error, "", "it is neither PNG nor JPEG");
+    free(bytes);
+    return failed;
+}

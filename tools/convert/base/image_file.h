@@ -1,0 +1,26 @@
+/* image_file.h: a PNG or JPEG file as its bytes say, without any management of colours. */
+#ifndef NOH_CONVERT_BASE_IMAGE_FILE_H
+#define NOH_CONVERT_BASE_IMAGE_FILE_H
+
+#include <stdint.h>
+
+#include "convert/base/error.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct image_file {
+    uint32_t width, height;
+    uint32_t channels; /* in the file, 1 to 4: grey, grey and alpha, colour, colour and alpha */
+    uint32_t bits;     /* of a channel in the file: 8 or 16 */
+    uint8_t *rgba;     /* [height][width][4], the top row first; to be freed. Alpha is 255 where the file has none */
+} image_file;
+
+/* Read a file of at most 64 Mi pixels. Returns 0, or 1 and *error; then image->rgba is NULL. */
+int image_read(const char *path, image_file *image, model_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
