@@ -91,9 +91,10 @@
 
 /* ---- faces ---- */
 
-#include "face/face.h"   /* blinks, gaze, emotions, breath */
-#include "face/recipe.h" /* what a face shows, as weights of the targets that it has */
-#include "face/speech.h" /* phones to mouth shapes */
+#include "face/face.h"     /* blinks, gaze, emotions, breath */
+#include "face/identity.h" /* people by seed: weights of the targets that tell faces apart */
+#include "face/recipe.h"   /* what a face shows, as weights of the targets that it has */
+#include "face/speech.h"   /* phones to mouth shapes */
 
 /* ---- parts, for tools and engines of your own ---- */
 

@@ -173,6 +173,16 @@ uint32_t noh_face_recipe_bind(const noh_face_recipe *const *recipes, uint32_t re
 
 /* ---- weights ---- */
 
+/* The most that a target may have: 1, or what a link asks for at most. */
+static float most_of(const noh_face_link *links, uint32_t link_count, uint32_t target)
+{
+    float most = 1.0f;
+    for (uint32_t i = 0; i < link_count; i++) {
+        if (links[i].target == target && links[i].weight > most) most = links[i].weight;
+    }
+    return most;
+}
+
 /* Rows of one target are added before the sum is held, so that their order does not matter. */
 void noh_face_apply(const noh_face_link *links, uint32_t link_count, const float *channels, float *weights)
 {
@@ -181,6 +191,10 @@ void noh_face_apply(const noh_face_link *links, uint32_t link_count, const float
         weights[links[i].target] += links[i].weight * channels[links[i].channel];
     }
     for (uint32_t i = 0; i < link_count; i++) {
-        weights[links[i].target] = unit(weights[links[i].target]);
+        float *weight = &weights[links[i].target], most;
+        if (*weight < 0.0f) *weight = 0.0f;
+        if (*weight <= 1.0f) continue;
+        most = most_of(links, link_count, links[i].target);
+        *weight = *weight < most ? *weight : most;
     }
 }

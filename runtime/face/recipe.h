@@ -93,7 +93,8 @@ typedef struct noh_face_link {
 uint32_t noh_face_recipe_bind(const noh_face_recipe *const *recipes, uint32_t recipe_count, const char *const *names,
                               uint32_t target_count, noh_face_link *links, uint32_t link_max);
 
-/* Add the channels to weights, and hold those that they move within 0..1.
+/* Add the channels to weights, and hold those that they move within 0..1, or up to the largest weight of a target's
+ * links where that is more.
  * shapes  channels[NOH_CHANNEL_COUNT], weights[as many as names were bound] */
 void noh_face_apply(const noh_face_link *links, uint32_t link_count, const float *channels, float *weights);
 

@@ -174,12 +174,11 @@ static noh_result check_target_values(const noh_check *check, const noh_target *
         { offsetof(noh_target, tangent_scale), t->tangent_scale < 0.0f },
         { offsetof(noh_target, radius), t->radius < 0.0f },
     };
-    const noh_check_field reserved[] = {
-        { offsetof(noh_target, reserved0), t->reserved0 != 0 },
-        { offsetof(noh_target, reserved1), t->reserved1 != 0 },
-    };
+    const noh_check_field flags[] = { { offsetof(noh_target, flags), (t->flags & ~NOH_TARGET_IDENTITY) != 0 } };
+    const noh_check_field reserved[] = { { offsetof(noh_target, reserved1), t->reserved1 != 0 } };
     noh_result result = noh_check_fields(check, bits, 3, "target's bit widths are impossible", at);
-    if (!result) result = noh_check_fields(check, reserved, 2, "reserved field of a target is not zero", at);
+    if (!result) result = noh_check_fields(check, flags, 1, "target has flags that this version does not know", at);
+    if (!result) result = noh_check_fields(check, reserved, 1, "reserved field of a target is not zero", at);
     if (!result) result = noh_check_fields(check, scales, 4, "target's scale or radius is negative", at);
     return result ? result : noh_check_floats(check, &t->position_scale, 7, "target's scale is not finite");
 }

@@ -167,6 +167,8 @@ typedef struct noh_submesh {
     uint32_t palette; /* 0 in a rigid mesh */
 } noh_submesh;
 
+#define NOH_TARGET_IDENTITY 1u /* noh_target.flags: it makes one face differ from another, and is no expression */
+
 /* One morph target. A delta texel is three words, word i for axis i: from the top bit down `position_bits`,
  * `normal_bits`, `tangent_bits` of two's complement; value = integer * scale. */
 typedef struct noh_target {
@@ -174,7 +176,8 @@ typedef struct noh_target {
     uint32_t first_rect, rect_count;
     uint32_t first_texel, texel_count;
     uint32_t pair_count;
-    uint8_t position_bits, normal_bits, tangent_bits, reserved0;
+    uint8_t position_bits, normal_bits, tangent_bits;
+    uint8_t flags; /* NOH_TARGET_* */
     float position_scale, normal_scale, tangent_scale;
     float radius;                      /* the farthest that it moves a vertex at weight 1, model units */
     float position_error;              /* largest error at weight 1, model units: certified by the converter */

@@ -226,6 +226,14 @@ INIT(schedule_init)
     return noh_schedule_init(memory, bytes, 11, &schedule, error);
 }
 
+/* With scratch of its own, which is good here. The tube's targets are no expressions, so they make people. */
+INIT(identity_init)
+{
+    static uint8_t scratch[1u << 18] __attribute__((aligned(16)));
+    noh_identity identity;
+    return noh_identity_init(memory, bytes, scratch, sizeof scratch, &s.mesh, NULL, &identity, error);
+}
+
 INIT(joint_lod_measure)
 {
     const uint32_t counts[1] = { JOINTS };
@@ -345,6 +353,7 @@ static const struct {
     ROW(character_scratch_init),
     ROW(lod_pack_init),
     ROW(lod_pools_init),
+    ROW(identity_init),
     ROW(schedule_init),
     ROW(joint_lod_measure),
     ROW(time_lod_measure),

@@ -21,6 +21,7 @@ typedef struct convert_options {
     transfer_settings transfer;     /* order 0: none; progress is filled in by convert_files */
     const char *const *two_streams; /* [two_stream_count] "SOURCE=TARGET", see two_stream.h */
     uint32_t two_stream_count;
+    const char *identity; /* a model of the same vertices whose targets make people; NULL: none */
     convert_only only;
     const char *events;    /* a text file of callback keys; NULL: none */
     const char *graph;     /* a text file of animation graphs; NULL: none */

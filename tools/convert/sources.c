@@ -9,6 +9,7 @@
 #include "convert/clips/raw_set.h"
 #include "convert/clips/rcl.h"
 #include "convert/clips/resample.h"
+#include "convert/model/identity_join.h"
 #include "convert/model/two_stream.h"
 
 static int out_of_memory(model_error *error)
@@ -73,6 +74,9 @@ static int read_gltf_file(const char *path, const source_options *options, sourc
         if (two_stream_join(s->m, options->two_streams[i], error)) {
             return 1;
         }
+    }
+    if (options->identity && s->m->mesh_count && identity_join(s->m, options->identity, error)) {
+        return 1;
     }
     if (clips_from_model(s->m, &sampling, &s->made, error) || skins_bind(s->m, s->made, &options->skin, error)) {
         return 1;

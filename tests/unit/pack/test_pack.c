@@ -660,7 +660,7 @@ static void errors_say_where(void **state)
     X(targets[1].position_bits, = 0)                    \
     X(targets[1].normal_bits, = 25)                     \
     X(targets[1].tangent_bits, = 0)                     \
-    X(targets[1].reserved0, = 1)                        \
+    X(targets[1].flags, = 2)                            \
     X(targets[1].reserved1, = 1)                        \
     X(targets[1].position_scale, = -1.0f)               \
     X(targets[1].normal_scale, = -1.0f)                 \

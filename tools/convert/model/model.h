@@ -47,6 +47,7 @@ typedef struct model_target {
     float *normal;                                 /* [vertex_count][3]; never NULL after model_complete */
     float *tangent;                                /* [vertex_count][3]; NULL where the mesh has no tangents */
     uint8_t has_position, has_normal, has_tangent; /* whether the file gave it, in any primitive */
+    uint8_t identity; /* makes one face differ from another: NOH_TARGET_IDENTITY */
     /* [submesh_count] MODEL_MISSING_* bits: deltas for model_complete to compute; NULL = none */
     uint8_t *missing;
 } model_target;

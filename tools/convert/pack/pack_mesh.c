@@ -170,6 +170,7 @@ static noh_target target_of(const model_mesh *m, const morph_encoding *e, uint32
     to.position_bits = from->position_bits;
     to.normal_bits = from->normal_bits;
     to.tangent_bits = from->tangent_bits;
+    to.flags = m->targets[t].identity ? NOH_TARGET_IDENTITY : 0;
     to.position_scale = from->position_scale;
     to.normal_scale = from->normal_scale;
     to.tangent_scale = from->tangent_scale;

@@ -17,7 +17,7 @@
 #define INPUTS_MAX 64
 
 typedef struct build_args {
-    const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer;
+    const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity;
     int input_count, quiet, loop, mask, keep_parts, lod_fast;
     double error_um, rate, error_cm, shell_cm, unit_cm, influences, palette;
     option_list dual_quaternion, two_streams, clip_errors, joint_errors, lod_from;
@@ -166,6 +166,7 @@ static int run(void *args)
     if (status) {
         return status;
     }
+    o.identity = a->identity;
     o.report = report;
     o.progress = !a->quiet && isatty(STDERR_FILENO) ? stderr : NULL;
     if (convert_files(a->inputs, a->input_count, &o, &pack, &failure)) {
@@ -274,6 +275,14 @@ static const option options[] = {
       .value = "SOURCE=TARGET",
       .what = "make the second mesh a target of the first: same triangles, same vertices in the same order; may repeat",
       .example = "arm=arm_bent",
+      .excludes = "--only=anim" },
+    { .name = "--identity",
+      .kind = OPTION_INPUT,
+      .at = offsetof(build_args, identity),
+      .value = "FILE",
+      .what =
+          "add the targets of this model, whose meshes have the same vertices in the same order, as targets that make people (noh sheet --faces)",
+      .example = "people.glb",
       .excludes = "--only=anim" },
     { .name = "--rate",
       .kind = OPTION_NUMBER,

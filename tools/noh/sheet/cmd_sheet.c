@@ -27,7 +27,7 @@ typedef struct sheet {
 
 typedef struct sheet_args {
     const char *path, *accumulate, *transition;
-    double tile, tiles, columns;
+    double tile, tiles, columns, faces, seed;
     sheet s;
 } sheet_args;
 
@@ -182,7 +182,13 @@ static int check_args(sheet_args *a)
                      a->columns >= 0.0 && a->columns <= 64.0)) {
         status = tool_usage("--tile wants 16 to 1024 pixels, --tiles 1 to 1024, --columns at most 64");
     }
+    if (!status && !(a->faces >= 0.0 && a->faces <= 1024.0 && a->seed >= 0.0 && a->seed < 4294966000.0 &&
+                     a->faces == (double)(uint32_t)a->faces && a->seed == (double)(uint32_t)a->seed)) {
+        status = tool_usage("--faces wants a whole number from 1 to 1024, --seed one from 0 to 4294965999");
+    }
     if (!status) status = check_clips(&s->tiles, a->transition);
+    s->tiles.face_count = (uint32_t)a->faces;
+    s->tiles.seed = (uint32_t)a->seed;
     s->tiles.inertia = strcmp(a->transition, "inertia") == 0;
     s->tile = (uint32_t)a->tile;
     s->tiles.clip_tiles = (uint32_t)a->tiles;
@@ -283,6 +289,27 @@ static const option options[] = {
       .what =
           "a column per LOD level: at rest, with each --target (default: all smiles), and at the size at which it is used",
       .excludes = "--bones" },
+    { .name = "--faces",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(sheet_args, faces),
+      .value = "N",
+      .what = "N people by seed, 1 to 1024, out of the mesh's identity targets (noh build --identity)",
+      .example = "64",
+      .excludes = "--clip --target --lods --bones" },
+    { .name = "--seed",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(sheet_args, seed),
+      .value = "N",
+      .initial = "1",
+      .what = "seed of the first; the others follow",
+      .example = "100",
+      .needs = "--faces" },
+    { .name = "--expressions",
+      .kind = OPTION_FLAG,
+      .at = offsetof(sheet_args, s.tiles.expressions),
+      .what = "each person at rest, with eyes shut, and with four expressions",
+      .needs = "--faces",
+      .excludes = "--columns" },
     { .name = "--bones",
       .kind = OPTION_FLAG,
       .at = offsetof(sheet_args, s.show_bones),
@@ -310,9 +337,9 @@ static const option options[] = {
 const verb verb_sheet = {
     .name = "sheet",
     .files = "PACK",
-    .what = "draw a contact sheet: every target at full weight, a clip over time, or the LOD levels",
+    .what = "draw a contact sheet: every target at full weight, a clip over time, people by seed, or the LOD levels",
     .example =
-        "face.noh -o targets.png\nbody.noh -o walk.png --clip walk --tiles 12 --camera body\nbody.noh -o bow.png --clip walk --to bow --transition inertia\nface.noh -o lods.png --lods --target smile --target jawOpen=0.6,smile",
+        "face.noh -o targets.png\nbody.noh -o walk.png --clip walk --tiles 12 --camera body\nbody.noh -o bow.png --clip walk --to bow --transition inertia\nface.noh -o people.png --faces 64 --seed 7\nface.noh -o lods.png --lods --target smile --target jawOpen=0.6,smile",
     .options = options,
     .option_count = sizeof options / sizeof options[0],
     .file_max = 1,

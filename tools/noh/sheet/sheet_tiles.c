@@ -156,12 +156,19 @@ static int pose_transition(const sheet_tiles *t, figure *f, uint32_t tile)
     return status ? status : step(f, time_s - lead_s(t));
 }
 
+/* ---- people ---- */
+
+static uint32_t face_columns(const sheet_tiles *t)
+{
+    return t->expressions ? SHEET_FACES_SHOWN : 1u;
+}
+
 /* ---- all ---- */
 
 void sheet_tiles_want(const sheet_tiles *t, figure_desc *desc)
 {
     desc->track_count = t->blend || t->to || t->clips.count < 2 ? 2u : (uint32_t)t->clips.count;
-    desc->held_float_count = 1;
+    desc->held_float_count = t->face_count ? FIGURE_HELD_ALL : 1u;
     desc->inertia = t->inertia;
 }
 
@@ -169,7 +176,7 @@ int sheet_tiles_open(sheet_tiles *t, const pack_file *file)
 {
     t->file = file;
     t->clip = t->clips.count ? t->clips.items[0] : NULL;
-    return list_names(t);
+    return t->face_count ? sheet_faces_open(&t->faces, file) : list_names(t);
 }
 
 int sheet_tiles_measure(sheet_tiles *t, const figure *f)
@@ -183,10 +190,14 @@ int sheet_tiles_measure(sheet_tiles *t, const figure *f)
 void sheet_tiles_close(sheet_tiles *t)
 {
     free(t->targets);
+    sheet_faces_close(&t->faces);
 }
 
 uint32_t sheet_tiles_count(const sheet_tiles *t)
 {
+    if (t->face_count) {
+        return t->face_count * face_columns(t);
+    }
     if (!t->clip) {
         return t->target_count + 1;
     }
@@ -195,7 +206,7 @@ uint32_t sheet_tiles_count(const sheet_tiles *t)
 
 uint32_t sheet_tiles_columns(const sheet_tiles *t)
 {
-    return t->clip && t->blend ? t->clip_tiles : 0;
+    return t->face_count && t->expressions ? SHEET_FACES_SHOWN : t->clip && t->blend ? t->clip_tiles : 0;
 }
 
 /* Tile 0 of a sheet of targets is the rest pose. */
@@ -205,7 +216,9 @@ int sheet_tiles_pose(const sheet_tiles *t, figure *f, uint32_t tile)
     if (status) {
         return status;
     }
-    if (t->blend) {
+    if (t->face_count) {
+        status = sheet_faces_hold(&t->faces, f, t->seed + tile / face_columns(t), tile % face_columns(t));
+    } else if (t->blend) {
         status = pose_blend(t, f, tile);
     } else if (t->to) {
         status = pose_transition(t, f, tile);
@@ -220,6 +233,11 @@ int sheet_tiles_pose(const sheet_tiles *t, figure *f, uint32_t tile)
 void sheet_tiles_label(const sheet_tiles *t, uint32_t tile, char *text, size_t bytes)
 {
     double time_s;
+    if (t->face_count) {
+        snprintf(text, bytes, "%u%s%s", t->seed + tile / face_columns(t), t->expressions ? " " : "",
+                 t->expressions ? sheet_faces_name(tile % face_columns(t)) : "");
+        return;
+    }
     if (!t->clip && tile) {
         label_target(&t->targets[tile - 1], text, bytes);
         return;

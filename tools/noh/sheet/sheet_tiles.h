@@ -1,9 +1,10 @@
 /* sheet_tiles.h: what the tiles of a contact sheet show: targets, a clip in time, two clips blended,
- * a transition from one to another. */
+ * a transition from one to another, people. */
 #ifndef NOH_NOH_SHEET_SHEET_TILES_H
 #define NOH_NOH_SHEET_SHEET_TILES_H
 
 #include "draw/figure.h"
+#include "sheet_faces.h"
 
 #define SHEET_BLEND_ROWS 5u /* weights 0, 1/4, 1/2, 3/4, 1 */
 
@@ -24,6 +25,9 @@ typedef struct sheet_tiles {
     option_list only;      /* NAME or NAME=WEIGHT: targets to show instead of all */
     sheet_target *targets; /* [target_count] */
     uint32_t target_count;
+    uint32_t face_count, seed; /* people, of seeds from there on; 0: none */
+    int expressions;           /* each in a row: at rest, and with expressions */
+    sheet_faces faces;
 } sheet_tiles;
 
 /* What a figure must have for them. */
