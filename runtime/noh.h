@@ -96,6 +96,11 @@
 #include "face/recipe.h"   /* what a face shows, as weights of the targets that it has */
 #include "face/speech.h"   /* phones to mouth shapes */
 
+/* ---- bodies ---- */
+
+#include "sim/ik.h"       /* two bones that reach a point, a head that looks at one */
+#include "sim/ik_chain.h" /* chains of any length, with limits */
+
 /* ---- parts, for tools and engines of your own ---- */
 
 #include "base/arena.h"      /* carve a block */

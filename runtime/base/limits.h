@@ -61,6 +61,10 @@
 #define NOH_SPEECH_PHONES_MAX 65536u
 #define NOH_FACE_EMOTIONS_MAX 3u /* emotions that a face shows at once; one more takes the place of the weakest */
 
+/* ---- bodies ---- */
+
+#define NOH_IK_JOINTS_MAX 32u /* of one chain */
+
 /* ---- controllers and graphs ---- */
 
 #define NOH_TRACKS_MAX 64u
