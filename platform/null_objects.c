@@ -338,13 +338,6 @@ static void GL_APIENTRY null_TexParameteri(GLenum target, GLenum parameter, GLin
     noh_null_texture_at(NULL_TexParameteri, target);
 }
 
-static void GL_APIENTRY null_GenerateMipmap(GLenum target)
-{
-    noh_null_count(NULL_GenerateMipmap);
-    const null_object *object = noh_null_texture_at(NULL_GenerateMipmap, target);
-    if (object && !object->ready) noh_null_wrong(NULL_GenerateMipmap, "the texture has no storage");
-}
-
 static void GL_APIENTRY null_BindRenderbuffer(GLenum target, GLuint name)
 {
     (void)target;
@@ -402,7 +395,6 @@ const null_entry noh_null_object_functions[] = { NULL_ENTRY(GenBuffers),
                                                  NULL_ENTRY(TexSubImage2D),
                                                  NULL_ENTRY(TexSubImage3D),
                                                  NULL_ENTRY(TexParameteri),
-                                                 NULL_ENTRY(GenerateMipmap),
                                                  NULL_ENTRY(BindRenderbuffer),
                                                  NULL_ENTRY(RenderbufferStorage),
                                                  NULL_ENTRY(RenderbufferStorageMultisample),

@@ -99,6 +99,7 @@ noh_vertex noh_fetch()
 #ifndef NOH_DEPTH_ONLY
     v.normal = noh_world_normal(x, y, z, v.normal);
     v.tangent.xyz = vec3(dot(x.xyz, v.tangent.xyz), dot(y.xyz, v.tangent.xyz), dot(z.xyz, v.tangent.xyz));
+    v.tangent.w *= dot(cross(x.xyz, y.xyz), z.xyz) < 0.0 ? -1.0 : 1.0; /* a mirror turns the frame inside out */
 #endif
 #if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
     v.uv = noh_uv.xy + noh_uv.zw * noh_a_uv;

@@ -101,7 +101,6 @@ extern "C" {
     X(TexSubImage2D, TEXSUBIMAGE2D)                                   \
     X(TexSubImage3D, TEXSUBIMAGE3D)                                   \
     X(TexParameteri, TEXPARAMETERI)                                   \
-    X(GenerateMipmap, GENERATEMIPMAP)                                 \
     X(PixelStorei, PIXELSTOREI)                                       \
     /* framebuffers */                                                \
     X(GenFramebuffers, GENFRAMEBUFFERS)                               \

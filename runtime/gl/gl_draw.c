@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "gl/gl_debug.h"
+#include "gl/gl_material_internal.h"
 #include "gl/gl_skin_internal.h"
 
 void noh_gl_draw_begin(noh_gl_renderer *r, const noh_gl_camera *camera)
@@ -81,23 +82,38 @@ static void set_instance(const noh_gl_renderer *r, const noh_gl_variant *v, cons
     }
 }
 
-static const noh_material *material_of(const noh_gl_mesh *mesh, const noh_submesh *submesh)
+static void bind_picture(const noh_gl_renderer *r, uint32_t unit, uint32_t texture, const noh_gl_texture *pictures)
 {
-    /* glTF's default material */
-    static const noh_material plain = { 0, 0, 0, NOH_NONE, { 1.0f, 1.0f, 1.0f, 1.0f }, 1.0f, 1.0f, 0.5f, 0 };
-    return submesh->material == NOH_NONE ? &plain : &mesh->mesh.pack->materials[submesh->material];
+    const GLuint name = texture == NOH_NONE ? r->white.name : pictures[texture].name;
+    NOH_ASSERT(name); /* the picture was created */
+    r->gl->ActiveTexture(GL_TEXTURE0 + unit);
+    r->gl->BindTexture(GL_TEXTURE_2D, name);
 }
 
 static void set_base_color(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m,
                            const noh_gl_texture *pictures)
 {
-    GLuint texture = m->base_color_texture == NOH_NONE ? r->white.name : pictures[m->base_color_texture].name;
-    NOH_ASSERT(texture); /* the picture was created */
-    r->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_BASE_COLOR);
-    r->gl->BindTexture(GL_TEXTURE_2D, texture);
+    bind_picture(r, NOH_UNIT_BASE_COLOR, m->base_color_texture, pictures);
     r->gl->Uniform4fv(v->u_base_color, 1, m->base_color);
     r->gl->Uniform4f(v->u_material, m->roughness, m->metallic, (m->flags & NOH_MATERIAL_MASK) ? m->alpha_cutoff : -1.0f,
                      (m->flags & NOH_MATERIAL_UNLIT) ? 1.0f : 0.0f);
+}
+
+/* What the variant's features read. */
+static void set_features(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m,
+                         const noh_gl_texture *pictures)
+{
+    const uint32_t features = v->key.features;
+    r->gl->Uniform3fv(v->u_f0, 1, m->f0);
+    if (features & NOH_FEATURE_NORMAL_MAP) bind_picture(r, NOH_UNIT_NORMAL, m->normal_texture, pictures);
+    if (features & NOH_FEATURE_SURFACE_MAP) bind_picture(r, NOH_UNIT_SURFACE, m->surface_texture, pictures);
+    if (features & (NOH_FEATURE_NORMAL_MAP | NOH_FEATURE_SURFACE_MAP)) {
+        r->gl->Uniform4f(v->u_maps, m->normal_scale, m->occlusion_strength, 0.0f, 0.0f);
+    }
+    if (features & NOH_FEATURE_EMISSIVE) {
+        bind_picture(r, NOH_UNIT_EMISSIVE, m->emissive_texture, pictures);
+        r->gl->Uniform3fv(v->u_emissive, 1, m->emissive);
+    }
 }
 
 static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m,
@@ -105,6 +121,9 @@ static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, cons
 {
     if (!v->key.depth || v->key.cut) {
         set_base_color(r, v, m, pictures);
+    }
+    if (!v->key.depth) {
+        set_features(r, v, m, pictures);
     }
     if (m->flags & NOH_MATERIAL_DOUBLE_SIDED) {
         r->gl->Disable(GL_CULL_FACE);
@@ -141,22 +160,18 @@ static int is_in_part(const noh_material *m, draw_part part)
     return !blended && cut == (part == PART_CUT_DEPTH);
 }
 
-static int is_empty(const noh_gl_mesh *mesh, const noh_mesh *level, draw_part part)
+static int is_in_depth(draw_part part)
 {
-    int drawn = 0;
-    for (uint32_t i = 0; i < level->header->submesh_count; i++) {
-        const noh_submesh *s = &level->submeshes[i];
-        drawn |= s->index_count && is_in_part(material_of(mesh, s), part);
-    }
-    return !drawn;
+    return part == PART_SOLID_DEPTH || part == PART_CUT_DEPTH;
 }
 
 /* NULL if the renderer's desc did not ask for this variant. */
-static const noh_gl_variant *variant_of(const draw_job *j, draw_part part)
+static const noh_gl_variant *variant_of(const draw_job *j, draw_part part, uint8_t features)
 {
     noh_gl_variant_key key = noh_gl_variant_key_of(&j->mesh->mesh, j->skin, !j->world, j->r->layers_uint, j->r->view);
     key.fade = j->lod->from > 0.0f || j->lod->to < 1.0f;
-    if (part == PART_SOLID_DEPTH || part == PART_CUT_DEPTH) {
+    key.features = features;
+    if (is_in_depth(part)) {
         key = noh_gl_variant_key_depth(key, part == PART_CUT_DEPTH);
     }
     return noh_gl_renderer_variant(j->r, key);
@@ -173,45 +188,55 @@ static void draw_submesh(const draw_job *j, const noh_submesh *s, size_t level_f
     }
 }
 
-static void draw_submeshes(const draw_job *j, const noh_gl_variant *v, const noh_mesh *level, size_t first,
-                           draw_part part)
+/* Go on with another program. */
+static void begin_variant(const draw_job *j, const noh_gl_variant *v, uint32_t level, draw_part part)
 {
-    uint32_t palette = NOH_NONE;
-    j->r->gl->Uniform3f(v->u_lod, j->lod->from, j->lod->to, (float)level->header->level);
-    for (uint32_t i = 0; i < level->header->submesh_count; i++) {
-        const noh_submesh *s = &level->submeshes[i];
-        const noh_material *m = material_of(j->mesh, s);
-        if (s->index_count && is_in_part(m, part)) {
-            set_material(j->r, v, m, j->pictures);
-            if (j->skin && s->palette != palette) {
-                palette = s->palette;
-                noh_gl_variant_skin(j->r->gl, v, &j->mesh->mesh, j->skin, palette);
-            }
-            if (j->r->shaders.bind) {
-                j->r->shaders.bind(j->r->shaders.user, j->r->gl, v->program, m);
-            }
-            draw_submesh(j, s, first);
-        }
+    use_variant(j->r, v);
+    set_mesh(j->r, v, j->mesh, j->morph);
+    if (j->world) {
+        set_instance(j->r, v, j->world, j->morph);
+    } else {
+        j->r->gl->FrontFace(GL_CCW);
     }
+    j->r->gl->Uniform1i(v->u_blends, part == PART_BLENDED);
+    j->r->gl->Uniform3f(v->u_lod, j->lod->from, j->lod->to, (float)level);
+}
+
+static void draw_material(const draw_job *j, const noh_gl_variant *v, const noh_submesh *s, size_t first)
+{
+    const noh_material *m = noh_gl_material_of(&j->mesh->mesh, s);
+    set_material(j->r, v, m, j->pictures);
+    if (j->r->shaders.bind) {
+        j->r->shaders.bind(j->r->shaders.user, j->r->gl, v->program, m);
+    }
+    draw_submesh(j, s, first);
 }
 
 static void draw_part_of(const draw_job *j, draw_part part)
 {
     size_t first;
     const noh_mesh level = noh_gl_mesh_lod(j->mesh, j->lod->level, &first);
-    const noh_gl_variant *v = is_empty(j->mesh, &level, part) ? NULL : variant_of(j, part);
-    NOH_ASSERT(v || is_empty(j->mesh, &level, part)); /* the renderer's desc asked for it */
-    if (v) {
-        use_variant(j->r, v);
-        set_mesh(j->r, v, j->mesh, j->morph);
-        if (j->world) {
-            set_instance(j->r, v, j->world, j->morph);
-        } else {
-            j->r->gl->FrontFace(GL_CCW);
+    const noh_gl_variant *v = NULL;
+    uint32_t palette = NOH_NONE;
+    for (uint32_t i = 0; i < level.header->submesh_count; i++) {
+        const noh_submesh *s = &level.submeshes[i];
+        const noh_material *m = noh_gl_material_of(&j->mesh->mesh, s);
+        const uint8_t features = is_in_depth(part) ? 0 : noh_gl_features_of(&j->mesh->mesh, m);
+        if (!s->index_count || !is_in_part(m, part)) {
+            continue;
         }
-        if (part == PART_BLENDED) j->r->gl->Uniform1i(v->u_blends, 1);
-        draw_submeshes(j, v, &level, first, part);
-        if (part == PART_BLENDED) j->r->gl->Uniform1i(v->u_blends, 0);
+        if (!v || v->key.features != features) {
+            v = variant_of(j, part, features);
+            NOH_ASSERT(v); /* the renderer's desc asked for it */
+            if (!v) return;
+            begin_variant(j, v, level.header->level, part);
+            palette = NOH_NONE;
+        }
+        if (j->skin && s->palette != palette) {
+            palette = s->palette;
+            noh_gl_variant_skin(j->r->gl, v, &j->mesh->mesh, j->skin, palette);
+        }
+        draw_material(j, v, s, first);
     }
 }
 
@@ -260,7 +285,8 @@ void noh_gl_draw_crowd(noh_gl_renderer *r, const noh_gl_mesh *mesh, const noh_gl
 void noh_gl_draw_end(const noh_gl_renderer *r)
 {
     NOH_ASSERT(r && r->gl);
-    static const GLuint units[] = { NOH_UNIT_PALETTES, NOH_UNIT_BASE_COLOR };
+    static const GLuint units[] = { NOH_UNIT_PALETTES, NOH_UNIT_NORMAL, NOH_UNIT_SURFACE, NOH_UNIT_EMISSIVE,
+                                    NOH_UNIT_BASE_COLOR };
     r->gl->BindVertexArray(0);
     r->gl->UseProgram(0);
     for (unsigned i = 0; i < sizeof units / sizeof units[0]; i++) {

@@ -10,7 +10,8 @@
  *   noh_gl_draw_crowd        draw many instances of one mesh in one call
  *   noh_gl_draw_tint         the tint of what noh_gl_draw_mesh draws next
  *
- * The renderer is deliberately small: one shader in variants, one key light, base colour textures and vertex colours.
+ * The renderer is deliberately small: one shader in variants, one key light, and the
+ * textures of glTF's materials.
  * A game's own shaders take its place (noh_gl_renderer_desc.shaders): two texts, compiled for whatever kinds of meshes
  * there are. A game with its own renderer needs only noh_gl_mesh, a noh_gl_morph_binding, a noh_gl_skin_binding and
  * noh_gl_shader_prefix.
@@ -84,7 +85,7 @@ noh_mesh noh_gl_mesh_lod(const noh_gl_mesh *mesh, uint32_t level, size_t *first)
 /* The exact GPU bytes of a pack's texture with its mip levels. */
 uint64_t noh_gl_picture_bytes(const noh_texture *texture);
 
-/* Upload a pack's texture as sRGB, with mip levels unless it is sampled by nearest texel.
+/* Upload a pack's texture with its mip levels, as sRGB or, with NOH_TEXTURE_LINEAR, as data.
  * errors  as noh_gl_texture_create */
 noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
                                  noh_gl_texture *out, noh_error *error);

@@ -304,18 +304,12 @@ void noh_gl_mesh_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mes
 
 static noh_gl_texture_desc picture_desc(const noh_texture *texture)
 {
-    noh_gl_texture_desc desc = { GL_SRGB8_ALPHA8, 0, 0, 0, 1, GL_LINEAR, 0 };
-    uint32_t longer = texture->header->width > texture->header->height ? texture->header->width
-                                                                       : texture->header->height;
-    desc.width = texture->header->width;
-    desc.height = texture->header->height;
-    while (longer >>= 1) {
-        desc.levels++;
-    }
-    if (texture->header->nearest) {
-        desc.filter = GL_NEAREST;
-        desc.levels = 1;
-    }
+    const noh_texture_header *h = texture->header;
+    const noh_gl_texture_desc desc = { .format = h->flags & NOH_TEXTURE_LINEAR ? GL_RGBA8 : GL_SRGB8_ALPHA8,
+                                       .width = h->width,
+                                       .height = h->height,
+                                       .levels = h->level_count,
+                                       .filter = h->nearest ? GL_NEAREST : GL_LINEAR };
     return desc;
 }
 
@@ -345,15 +339,15 @@ noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
     api->BindTexture(GL_TEXTURE_2D, picture.name);
     noh_gl_label(api, GL_TEXTURE, picture.name, "texture", texture->name);
     api->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    api->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, (GLsizei)desc.width, (GLsizei)desc.height, GL_RGBA, GL_UNSIGNED_BYTE,
-                       texture->pixels);
-    if (desc.levels > 1) {
-        api->GenerateMipmap(GL_TEXTURE_2D);
+    for (uint32_t i = 0; i < desc.levels; i++) {
+        const noh_texture_level level = noh_texture_level_at(texture, i);
+        api->TexSubImage2D(GL_TEXTURE_2D, (GLint)i, 0, 0, (GLsizei)level.width, (GLsizei)level.height, GL_RGBA,
+                           GL_UNSIGNED_BYTE, level.pixels);
     }
     api->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap_of(texture->header->wrap_s));
     api->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap_of(texture->header->wrap_t));
     api->BindTexture(GL_TEXTURE_2D, 0);
-    result = noh_gl_error_check(api, "the driver refuses a texture's pixels or mip levels", picture.bytes, error);
+    result = noh_gl_error_check(api, "the driver refuses a texture's pixels", picture.bytes, error);
     if (result) {
         noh_gl_texture_delete(api, ledger, &picture);
         return result;

@@ -5,6 +5,7 @@
 #include "gl/gl_debug.h"
 #include "gl/gl_draw.h"
 #include "gl/gl_lost.h"
+#include "gl/gl_material_internal.h"
 
 static noh_result create_white(noh_gl_renderer *r, noh_error *error)
 {
@@ -55,6 +56,24 @@ static noh_result want_fades(noh_gl_renderer *r, noh_gl_variant_key key, noh_err
     return result;
 }
 
+const noh_material *noh_gl_material_of(const noh_mesh *mesh, const noh_submesh *submesh)
+{
+    static const noh_material plain = { .base_color_texture = NOH_NONE,
+                                        .base_color = { 1.0f, 1.0f, 1.0f, 1.0f },
+                                        .metallic = 1.0f,
+                                        .roughness = 1.0f,
+                                        .alpha_cutoff = 0.5f,
+                                        .normal_scale = 1.0f,
+                                        .occlusion_strength = 1.0f,
+                                        .f0 = { 0.04f, 0.04f, 0.04f },
+                                        .normal_texture = NOH_NONE,
+                                        .surface_texture = NOH_NONE,
+                                        .emissive_texture = NOH_NONE,
+                                        .wrinkle_texture = NOH_NONE,
+                                        .wrinkle_weights = { NOH_NONE, NOH_NONE, NOH_NONE } };
+    return submesh->material == NOH_NONE ? &plain : &mesh->pack->materials[submesh->material];
+}
+
 static int has_cut_materials(const noh_mesh *mesh)
 {
     int cut = 0;
@@ -65,12 +84,23 @@ static int has_cut_materials(const noh_mesh *mesh)
     return cut;
 }
 
+/* Those of a key for all materials of a mesh. */
+static noh_result want_features(noh_gl_renderer *r, const noh_mesh *mesh, noh_gl_variant_key key, noh_error *error)
+{
+    noh_result result = NOH_OK;
+    for (uint32_t i = 0; i < mesh->header->submesh_count && !result; i++) {
+        key.features = noh_gl_features_of(mesh, noh_gl_material_of(mesh, &mesh->submeshes[i]));
+        result = want_fades(r, key, error);
+    }
+    return result;
+}
+
 /* The variants of all passes. */
 static noh_result want(noh_gl_renderer *r, const noh_mesh *mesh, noh_gl_variant_key key, noh_error *error)
 {
     noh_result result = NOH_OK;
     if (r->passes != NOH_PASSES_DEPTH) {
-        result = want_fades(r, key, error);
+        result = want_features(r, mesh, key, error);
     }
     if (!result && r->passes != NOH_PASSES_COLOR) {
         result = want_fades(r, noh_gl_variant_key_depth(key, 0), error);

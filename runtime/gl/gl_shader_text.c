@@ -24,7 +24,9 @@ const char *noh_gl_shader_text(const char *name)
                   { "common_skin.glsl", noh_shader_common_skin_glsl },
                   { "common_vertex.glsl", noh_shader_common_vertex_glsl },
                   { "common_fade.glsl", noh_shader_common_fade_glsl },
-                  { "common_fragment.glsl", noh_shader_common_fragment_glsl } };
+                  { "common_fragment.glsl", noh_shader_common_fragment_glsl },
+                  { "common_material.glsl", noh_shader_common_material_glsl },
+                  { "common_light.glsl", noh_shader_common_light_glsl } };
     NOH_ASSERT(name);
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
         if (same(name, texts[i].name)) {

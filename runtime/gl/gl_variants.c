@@ -20,7 +20,7 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
                                          int layers_uint, noh_debug_view view)
 {
     const noh_mesh_header *h = mesh->header;
-    noh_gl_variant_key key = { 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 };
+    noh_gl_variant_key key = { 0 };
     NOH_ASSERT((unsigned)view <= NOH_VIEW_LOD);
     if (skin && h->influence_count) {
         key.influences = (uint8_t)h->influence_count;
@@ -38,10 +38,28 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
     return key;
 }
 
+uint8_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *m)
+{
+    unsigned features = 0;
+    NOH_ASSERT(mesh && mesh->header && m);
+    if (m->flags & NOH_MATERIAL_UNLIT) {
+        return 0;
+    }
+    if (mesh->header->flags & NOH_MESH_TANGENTS) {
+        if (m->normal_texture != NOH_NONE) features |= NOH_FEATURE_NORMAL_MAP;
+        if (m->wrinkle_texture != NOH_NONE) features |= NOH_FEATURE_WRINKLES;
+    }
+    if (m->surface_texture != NOH_NONE) features |= NOH_FEATURE_SURFACE_MAP;
+    if (m->emissive[0] > 0.0f || m->emissive[1] > 0.0f || m->emissive[2] > 0.0f) features |= NOH_FEATURE_EMISSIVE;
+    if (m->surface == NOH_SURFACE_SKIN) features |= NOH_FEATURE_SKIN;
+    if (m->surface == NOH_SURFACE_EYE) features |= NOH_FEATURE_EYE;
+    return (uint8_t)features;
+}
+
 noh_gl_variant_key noh_gl_variant_key_depth(noh_gl_variant_key key, int cut)
 {
     key.view = NOH_VIEW_LIT;
-    key.encode_srgb = key.two_layers = 0;
+    key.encode_srgb = key.two_layers = key.features = 0;
     key.depth = 1;
     key.cut = cut != 0;
     return key;
@@ -49,7 +67,7 @@ noh_gl_variant_key noh_gl_variant_key_depth(noh_gl_variant_key key, int cut)
 
 /* ---- the text before a shader's own ---- */
 
-/* All defines together take 349 bytes, so NOH_GL_DEFINES_BYTES never cuts them. */
+/* All defines together take less than NOH_GL_DEFINES_BYTES, which never cuts them. */
 static size_t put_text(char *text, size_t at, const char *more)
 {
     while (*more && at + 1u < NOH_GL_DEFINES_BYTES) {
@@ -72,7 +90,7 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
     NOH_ASSERT(text && key.influences <= 8u && key.drawn <= key.influences && key.view <= NOH_VIEW_LOD);
     NOH_ASSERT(key.depth || !key.cut);
     const struct {
-        int on;
+        unsigned on;
         const char *line;
     } flags[] = { { key.texture, "#define NOH_PALETTE_TEXTURE\n" },
                   { key.dual_quaternion, "#define NOH_DUAL_QUATERNION\n" },
@@ -83,7 +101,13 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
                   { key.fade, "#define NOH_FADE\n" },
                   { key.depth, "#define NOH_DEPTH_ONLY\n" },
                   { key.two_layers, "#define NOH_TWO_LAYERS\n" },
-                  { key.cut, "#define NOH_ALPHA_CUT\n" } };
+                  { key.cut, "#define NOH_ALPHA_CUT\n" },
+                  { key.features & NOH_FEATURE_NORMAL_MAP, "#define NOH_NORMAL_MAP\n" },
+                  { key.features & NOH_FEATURE_SURFACE_MAP, "#define NOH_SURFACE_MAP\n" },
+                  { key.features & NOH_FEATURE_EMISSIVE, "#define NOH_EMISSIVE\n" },
+                  { key.features & NOH_FEATURE_SKIN, "#define NOH_SKIN\n" },
+                  { key.features & NOH_FEATURE_EYE, "#define NOH_EYE\n" },
+                  { key.features & NOH_FEATURE_WRINKLES, "#define NOH_WRINKLES\n" } };
     size_t at = put_digit(text, 0, "#define NOH_INFLUENCES ", key.influences);
     at = put_digit(text, at, "#define NOH_DRAWN ", key.drawn);
     at = put_digit(text, at, "#define NOH_DEBUG_VIEW ", key.view);
@@ -93,7 +117,7 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
 }
 
 /* The texts behind the defines: what is compiled and what noh_gl_shader_prefix hands out. */
-#define PREFIX_PIECES_MAX 6u
+#define PREFIX_PIECES_MAX 12u
 static uint32_t prefix_pieces(GLenum stage, const char *pieces[PREFIX_PIECES_MAX])
 {
     static const char precision[] = "precision highp float;\nprecision highp int;\n", own[] = "#line 1 0\n";
@@ -107,6 +131,8 @@ static uint32_t prefix_pieces(GLenum stage, const char *pieces[PREFIX_PIECES_MAX
     } else {
         pieces[count++] = noh_shader_common_fade_glsl;
         pieces[count++] = noh_shader_common_fragment_glsl;
+        pieces[count++] = noh_shader_common_material_glsl;
+        pieces[count++] = noh_shader_common_light_glsl;
     }
     pieces[count++] = own;
     return count;
@@ -147,7 +173,7 @@ size_t noh_gl_shader_prefix(noh_gl_variant_key key, GLenum stage, char *text, si
 /* ---- programs ---- */
 
 /* A stage's text: what goes behind the key's defines. */
-#define SOURCE_PIECES_MAX 12u
+#define SOURCE_PIECES_MAX 24u
 typedef struct whole_source {
     noh_gl_source source;
     const char *pieces[SOURCE_PIECES_MAX];
@@ -192,7 +218,10 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
                      { "noh_bounds_min", &v->u_bounds_min },
                      { "noh_bounds_size", &v->u_bounds_size },
                      { "noh_lod", &v->u_lod },
-                     { "noh_blends", &v->u_blends } };
+                     { "noh_blends", &v->u_blends },
+                     { "noh_f0", &v->u_f0 },
+                     { "noh_emissive", &v->u_emissive },
+                     { "noh_maps", &v->u_maps } };
     for (size_t i = 0; i < sizeof uniforms / sizeof uniforms[0]; i++) {
         *uniforms[i].at = gl->GetUniformLocation(v->program, uniforms[i].name);
     }
@@ -202,8 +231,18 @@ static noh_result create_program(const noh_gl_device *device, const noh_gl_varia
                                  noh_gl_program_desc *desc, GLuint *program, noh_error *error)
 {
     static const char *const blocks[] = { "noh_palette_block" };
-    const char *samplers[NOH_UNIT_USER + NOH_GL_OWN_SAMPLERS_MAX] = { "noh_layers", "noh_base_color_texture",
-                                                                      "noh_palettes" };
+    const char *samplers[NOH_UNIT_USER + NOH_GL_OWN_SAMPLERS_MAX] = { "noh_layers",
+                                                                      "noh_base_color_texture",
+                                                                      "noh_palettes",
+                                                                      "noh_normal_texture",
+                                                                      "noh_surface_texture",
+                                                                      "noh_emissive_texture",
+                                                                      "noh_wrinkle_texture",
+                                                                      "noh_wrinkle_weights_0",
+                                                                      "noh_wrinkle_weights_1",
+                                                                      "noh_wrinkle_weights_2",
+                                                                      "noh_shadow_map",
+                                                                      "noh_environment" };
     char defines[NOH_GL_DEFINES_BYTES];
     whole_source vertex, fragment;
     noh_gl_variant_defines(v->key, defines);

@@ -45,22 +45,42 @@ typedef struct noh_gl_variant_key {
     uint8_t depth;           /* 1: depth alone (NOH_DRAW_DEPTH): positions, and what alpha needs if cut */
     uint8_t two_layers;      /* 1: noh_gl_morph_binding.layer_count is 2; with depth 0 */
     uint8_t cut;             /* with depth, 1: for alpha-cut materials. Without depth 0: every colour variant cuts */
+    uint8_t features;        /* NOH_FEATURE_* of the material; with depth 0 */
 } noh_gl_variant_key;
+
+/* What a material has: a variant pays for nothing else. */
+#define NOH_FEATURE_NORMAL_MAP 1u
+#define NOH_FEATURE_SURFACE_MAP 2u /* occlusion, roughness, metallic */
+#define NOH_FEATURE_EMISSIVE 4u
+#define NOH_FEATURE_SKIN 8u
+#define NOH_FEATURE_EYE 16u
+#define NOH_FEATURE_WRINKLES 32u /* a wrinkle normal map and its three weight maps */
 
 typedef struct noh_gl_variant {
     noh_gl_variant_key key;
     GLuint program;
     GLint u_view_projection, u_world, u_normal, u_uv, u_morph, u_skin, u_camera, u_key, u_base_color, u_material,
-        u_bounds_min, u_bounds_size, u_lod, u_blends;
+        u_bounds_min, u_bounds_size, u_lod, u_blends, u_f0, u_emissive, u_maps;
 } noh_gl_variant;
 
 /* Texture units of mesh.vert and mesh.frag; the uniform block binding is 0. */
 #define NOH_UNIT_LAYERS 0u
 #define NOH_UNIT_BASE_COLOR 1u
 #define NOH_UNIT_PALETTES 2u
-#define NOH_UNIT_USER 3u /* the first of those that are left to a game's shaders */
+#define NOH_UNIT_NORMAL 3u
+#define NOH_UNIT_SURFACE 4u
+#define NOH_UNIT_EMISSIVE 5u
+#define NOH_UNIT_WRINKLE 6u
+#define NOH_UNIT_WRINKLE_WEIGHTS 7u /* and the two after it */
+#define NOH_UNIT_SHADOW 10u
+#define NOH_UNIT_ENVIRONMENT 11u
+#define NOH_UNIT_USER 12u /* the first of those that are left to a game's shaders */
 
-/* The key of a mesh with these bindings; `fade`, `encode_srgb`, `two_layers`, `depth` and `cut` are 0, for you to set.
+/* NOH_FEATURE_* of a material on a mesh: a normal map wants tangents, and what is unlit has none. */
+uint8_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *material);
+
+/* The key of a mesh with these bindings; `fade`, `encode_srgb`, `two_layers`, `depth`, `cut` and `features` are 0, for
+ * you to set.
  * skin   NULL: a rigid mesh, or the bind pose. Not NULL, and in a texture, for a crowd
  * crowd  1: for noh_gl_draw_crowd */
 noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin_binding *skin, int crowd,
@@ -70,7 +90,7 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
  * cut  1: of alpha-cut materials */
 noh_gl_variant_key noh_gl_variant_key_depth(noh_gl_variant_key key, int cut);
 
-#define NOH_GL_DEFINES_BYTES 384u
+#define NOH_GL_DEFINES_BYTES 768u
 
 /* Write the key as lines of #define, zero-terminated. */
 void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYTES]);

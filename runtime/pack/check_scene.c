@@ -3,6 +3,24 @@
 
 #include <stddef.h>
 
+/* Levels of a whole chain, down to 1 x 1. */
+static uint32_t chain_of(const noh_texture_header *h)
+{
+    uint32_t longer = h->width > h->height ? h->width : h->height, count = 1;
+    while (longer >>= 1) count++;
+    return count;
+}
+
+static uint64_t pixel_count(const noh_texture_header *h)
+{
+    uint64_t count = 0;
+    for (uint32_t i = 0; i < h->level_count; i++) {
+        const uint32_t width = h->width >> i, height = h->height >> i;
+        count += (uint64_t)(width ? width : 1u) * (height ? height : 1u);
+    }
+    return count;
+}
+
 static noh_result check_texture_fields(const noh_check *check, const noh_texture_header *h)
 {
     const noh_check_field size[] = {
@@ -13,14 +31,18 @@ static noh_result check_texture_fields(const noh_check *check, const noh_texture
         { offsetof(noh_texture_header, wrap_s), h->wrap_s > NOH_WRAP_MIRROR },
         { offsetof(noh_texture_header, wrap_t), h->wrap_t > NOH_WRAP_MIRROR },
         { offsetof(noh_texture_header, nearest), h->nearest > 1 },
+        { offsetof(noh_texture_header, flags), (h->flags & ~NOH_TEXTURE_LINEAR) != 0 },
     };
-    const noh_check_field reserved[] = {
-        { offsetof(noh_texture_header, reserved[0]), h->reserved[0] != 0 },
-        { offsetof(noh_texture_header, reserved[1]), h->reserved[1] != 0 },
-    };
+    const noh_check_field levels = { offsetof(noh_texture_header, level_count),
+                                     h->level_count != (h->nearest ? 1u : chain_of(h)) };
     noh_result result = noh_check_fields(check, size, 2, "texture size is zero or over the limit", 0);
-    if (!result) result = noh_check_fields(check, sampling, 3, "unknown texture sampling", 0);
-    return result ? result : noh_check_fields(check, reserved, 2, "reserved field of a texture is not zero", 0);
+    if (!result) result = noh_check_fields(check, sampling, 4, "unknown texture sampling", 0);
+    if (!result) result = noh_check_fields(check, &levels, 1, "texture has another number of mip levels", 0);
+    for (uint32_t i = 0; !result && i < 4u; i++) {
+        const noh_check_field reserved = { offsetof(noh_texture_header, reserved) + 4u * i, h->reserved[i] != 0 };
+        result = noh_check_fields(check, &reserved, 1, "reserved field of a texture is not zero", 0);
+    }
+    return result;
 }
 
 noh_result noh_check_texture(noh_check *check)
@@ -32,40 +54,87 @@ noh_result noh_check_texture(noh_check *check)
     }
     result = check_texture_fields(check, h);
     if (!result) {
-        result = noh_check_array(check, offsetof(noh_texture_header, pixels_offset), (uint64_t)h->width * h->height, 4);
+        result = noh_check_array(check, offsetof(noh_texture_header, pixels_offset), pixel_count(h), 4);
     }
     return result ? result : noh_check_end(check);
+}
+
+/* Colours are sRGB, everything else is data. */
+static noh_result check_texture_of(const noh_check *check, uint32_t texture, int is_data, uint64_t where)
+{
+    const noh_pack *pack = check->pack;
+    const noh_pack_chunk *chunk;
+    uint32_t flags;
+    if (texture == NOH_NONE) {
+        return NOH_OK;
+    }
+    if (texture >= pack->texture_count) {
+        return noh_check_fail(check, "material names a texture that is not there", where);
+    }
+    chunk = &pack->chunks[pack->first_texture + texture];
+    flags = ((const noh_texture_header *)(const void *)(pack->bytes + chunk->offset))->flags;
+    return (flags & NOH_TEXTURE_LINEAR) == (is_data ? NOH_TEXTURE_LINEAR : 0u)
+               ? NOH_OK
+               : noh_check_fail(check, "material takes a texture of colours for data, or one of data for colours",
+                                where);
+}
+
+static noh_result check_material_textures(const noh_check *check, const noh_material *m, uint64_t at)
+{
+    const struct {
+        size_t field;
+        uint32_t texture;
+        int is_data;
+    } textures[] = {
+        { offsetof(noh_material, base_color_texture), m->base_color_texture, 0 },
+        { offsetof(noh_material, emissive_texture), m->emissive_texture, 0 },
+        { offsetof(noh_material, normal_texture), m->normal_texture, 1 },
+        { offsetof(noh_material, surface_texture), m->surface_texture, 1 },
+        { offsetof(noh_material, wrinkle_texture), m->wrinkle_texture, 1 },
+        { offsetof(noh_material, wrinkle_weights), m->wrinkle_weights[0], 1 },
+        { offsetof(noh_material, wrinkle_weights) + 4u, m->wrinkle_weights[1], 1 },
+        { offsetof(noh_material, wrinkle_weights) + 8u, m->wrinkle_weights[2], 1 },
+    };
+    noh_result result = NOH_OK;
+    for (size_t i = 0; !result && i < sizeof textures / sizeof textures[0]; i++) {
+        result = check_texture_of(check, textures[i].texture, textures[i].is_data, at + textures[i].field);
+    }
+    return result;
+}
+
+static noh_result check_material(const noh_check *check, const noh_material *m, uint64_t at)
+{
+    noh_result result = noh_check_name(check, m->name, m->name_hash, at);
+    if (!result) result = noh_check_floats(check, m->base_color, 15, "material value is not finite");
+    if (!result) result = noh_check_floats(check, m->surface_values, 4, "material value is not finite");
+    if (!result) result = check_material_textures(check, m, at);
+    if (!result && m->flags & ~15u) {
+        result = noh_check_fail(check, "unknown material flags", at + offsetof(noh_material, flags));
+    }
+    if (!result && m->surface > NOH_SURFACE_EYE) {
+        result = noh_check_fail(check, "material is of an unknown surface", at + offsetof(noh_material, surface));
+    }
+    for (uint32_t i = 0; !result && i < 9u; i++) {
+        if (m->reserved[i]) {
+            result = noh_check_fail(check, "reserved field of a material is not zero",
+                                    at + offsetof(noh_material, reserved) + 4u * i);
+        }
+    }
+    return result;
 }
 
 noh_result noh_check_materials(noh_check *check)
 {
     const noh_material *m = (const noh_material *)(const void *)check->bytes;
     uint32_t count = check->count / (uint32_t)sizeof *m;
+    noh_result result = NOH_OK;
     if (check->count % sizeof *m || count > NOH_MATERIALS_MAX) {
         return noh_check_fail(check, "material chunk is not a whole number of materials, or over the limit", 0);
     }
-    for (uint32_t i = 0; i < count; i++) {
-        uint64_t at = (uint64_t)i * sizeof *m;
-        noh_result result = noh_check_name(check, m[i].name, m[i].name_hash, at);
-        if (!result) {
-            result = noh_check_floats(check, m[i].base_color, 7, "material value is not finite");
-        }
-        if (result) {
-            return result;
-        }
-        if (m[i].base_color_texture != NOH_NONE && m[i].base_color_texture >= check->pack->texture_count) {
-            return noh_check_fail(check, "material names a texture that is not there",
-                                  at + offsetof(noh_material, base_color_texture));
-        }
-        if (m[i].flags & ~15u) {
-            return noh_check_fail(check, "unknown material flags", at + offsetof(noh_material, flags));
-        }
-        if (m[i].reserved) {
-            return noh_check_fail(check, "reserved field of a material is not zero",
-                                  at + offsetof(noh_material, reserved));
-        }
+    for (uint32_t i = 0; !result && i < count; i++) {
+        result = check_material(check, &m[i], (uint64_t)i * sizeof *m);
     }
-    return NOH_OK;
+    return result;
 }
 
 static uint32_t mesh_target_count(const noh_pack *pack, uint32_t mesh)

@@ -18,7 +18,7 @@ extern "C" {
 #endif
 
 #define NOH_PACK_MAGIC 0x50484f4eu /* "NOHP" */
-#define NOH_PACK_VERSION 3u
+#define NOH_PACK_VERSION 4u
 
 #define NOH_FOURCC(a, b, c, d) ((uint32_t)(a) | ((uint32_t)(b) << 8) | ((uint32_t)(c) << 16) | ((uint32_t)(d) << 24))
 #define NOH_CHUNK_STRINGS NOH_FOURCC('S', 'T', 'R', 'S')
@@ -244,27 +244,50 @@ typedef struct noh_node {
 #define NOH_MATERIAL_DOUBLE_SIDED 4u
 #define NOH_MATERIAL_UNLIT 8u
 
+/* What the surface is made of: decides how it is lit. */
+#define NOH_SURFACE_PLAIN 0u
+#define NOH_SURFACE_SKIN 1u
+#define NOH_SURFACE_EYE 2u
+
+/* Textures are indices of texture chunks, or NOH_NONE; those of colours are sRGB, the others LINEAR. Texture
+ * coordinates are those of the mesh: a transform that the source had is in them. */
 typedef struct noh_material {
     uint32_t name, name_hash;
     uint32_t flags;
-    uint32_t base_color_texture; /* the n-th texture chunk, or NOH_NONE */
+    uint32_t base_color_texture; /* rgb colour, a alpha */
     float base_color[4];         /* linear */
     float metallic, roughness, alpha_cutoff;
-    uint32_t reserved;
+    float normal_scale;          /* of the normal map's x and y */
+    float occlusion_strength;    /* 0..1: how much of the map's occlusion counts */
+    float emissive[3];           /* linear, may be above 1 */
+    float f0[3];                 /* reflectance of what is no metal, seen straight on; 0.04 is usual */
+    uint32_t normal_texture;     /* tangent space, +y up: rgb = 0.5 + 0.5 * xyz. In a mesh with tangents */
+    uint32_t surface_texture;    /* r occlusion, g times roughness, b times metallic */
+    uint32_t emissive_texture;   /* rgb colour, times `emissive` */
+    uint32_t wrinkle_texture;    /* a second normal map, that of wrinkles */
+    uint32_t wrinkle_weights[3]; /* rgba of the three: how much each of twelve regions covers a texel */
+    uint32_t surface;            /* NOH_SURFACE_* */
+    float surface_values[4];     /* of that surface; zeros in a plain one */
+    uint32_t reserved[9];
 } noh_material;
 
-/* ---- CHUNK_TEXTURE: header, then uint8_t[height][width][4] sRGB at 32. ---- */
+/* ---- CHUNK_TEXTURE: header, then the mip levels one behind the other, each uint8_t[height][width][4], top row first.
+ * A level's sides are half of those before it, rounded down, at least 1. ---- */
 
 #define NOH_WRAP_REPEAT 0u
 #define NOH_WRAP_CLAMP 1u
 #define NOH_WRAP_MIRROR 2u
+
+#define NOH_TEXTURE_LINEAR 1u /* the bytes are data; else sRGB with straight alpha */
 
 typedef struct noh_texture_header {
     uint32_t width, height;
     uint32_t wrap_s, wrap_t; /* NOH_WRAP_* */
     uint32_t nearest;        /* 1: no filtering */
     uint32_t pixels_offset;
-    uint32_t reserved[2];
+    uint32_t level_count; /* mip levels: all, down to 1 x 1; with `nearest` 1 */
+    uint32_t flags;       /* NOH_TEXTURE_* */
+    uint32_t reserved[4];
 } noh_texture_header;
 
 /* ---- CHUNK_SKELETON: header, then four arrays. Joints are in an order in which each LOD level is a prefix: those
@@ -464,8 +487,8 @@ NOH_STATIC_ASSERT(sizeof(noh_submesh) == 24, submesh);
 NOH_STATIC_ASSERT(sizeof(noh_target) == 64, target);
 NOH_STATIC_ASSERT(sizeof(noh_rect) == 8, rect);
 NOH_STATIC_ASSERT(sizeof(noh_node) == 112, node);
-NOH_STATIC_ASSERT(sizeof(noh_material) == 48, material);
-NOH_STATIC_ASSERT(sizeof(noh_texture_header) == 32, texture_header);
+NOH_STATIC_ASSERT(sizeof(noh_material) == 160, material);
+NOH_STATIC_ASSERT(sizeof(noh_texture_header) == 48, texture_header);
 NOH_STATIC_ASSERT(sizeof(noh_transfer_header) == 64, transfer_header);
 
 #ifdef __cplusplus

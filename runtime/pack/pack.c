@@ -301,3 +301,15 @@ noh_result noh_pack_texture_at(const noh_pack *pack, uint32_t index, noh_texture
     texture->pixels = chunk + texture->header->pixels_offset;
     return NOH_OK;
 }
+
+noh_texture_level noh_texture_level_at(const noh_texture *texture, uint32_t level)
+{
+    NOH_ASSERT(texture && level < texture->header->level_count);
+    noh_texture_level at = { texture->header->width, texture->header->height, texture->pixels };
+    for (uint32_t i = 0; i < level; i++) {
+        at.pixels += (size_t)at.width * at.height * 4u;
+        at.width = at.width > 1u ? at.width / 2u : 1u;
+        at.height = at.height > 1u ? at.height / 2u : 1u;
+    }
+    return at;
+}

@@ -39,8 +39,14 @@ typedef struct noh_pack {
 typedef struct noh_texture {
     const char *name;
     const noh_texture_header *header;
-    const uint8_t *pixels; /* [height][width][4], sRGB with straight alpha, top row first */
+    const uint8_t *pixels; /* of all mip levels: [height][width][4], top row first, then the next level's */
 } noh_texture;
+
+/* A mip level of a texture. */
+typedef struct noh_texture_level {
+    uint32_t width, height;
+    const uint8_t *pixels; /* [height][width][4], sRGB with straight alpha, or data (NOH_TEXTURE_LINEAR) */
+} noh_texture_level;
 
 /* Open a pack: check all of it, and fill *pack.
  * memory  none; bytes must be aligned to NOH_MEMORY_ALIGN (base/arena.h)
@@ -57,6 +63,10 @@ const char *noh_pack_chunk_name(const noh_pack *pack, uint32_t chunk);
 /* The n-th texture.
  * errors  NOT_FOUND  past texture_count (where: the index, need: the count); *texture is untouched */
 noh_result noh_pack_texture_at(const noh_pack *pack, uint32_t index, noh_texture *texture, noh_error *error);
+
+/* A mip level of it.
+ * ranges  level below texture->header->level_count */
+noh_texture_level noh_texture_level_at(const noh_texture *texture, uint32_t level);
 
 /* Check the chunk of the n-th graph, of which noh_pack_open has seen the checksum only: counts, arrays, names, nodes.
  * noh_pack_graph_at (graph/graph_pack.h) calls it.

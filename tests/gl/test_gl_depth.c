@@ -345,6 +345,7 @@ static uint8_t *grid_with(model_alpha alpha, size_t *count)
     uint8_t *bytes;
     m->materials = test_zeros(sizeof *m->materials);
     m->material_count = 1;
+    m->materials[0] = model_material_default();
     m->materials[0].name = model_string("grid");
     m->materials[0].base_color_texture = MODEL_NONE;
     for (int i = 0; i < 4; i++) m->materials[0].base_color[i] = 1.0f;

@@ -44,6 +44,8 @@ static uint8_t *quad_pack(uint32_t which, int alpha, size_t *count)
     model *m = test_model(&desc);
     model_material *material = m->materials = test_zeros(sizeof *m->materials);
     uint8_t *bytes;
+    *material = model_material_default();
+    material->base_color_texture = 0;
     m->material_count = 1;
     material->name = model_string("cloth");
     for (int i = 0; i < 4; i++) material->base_color[i] = 1.0f;

@@ -128,6 +128,7 @@ static void open_stage(stage *st)
     memset(st, 0, sizeof *st);
     m->material_count = 1;
     m->materials = test_zeros(sizeof *m->materials);
+    m->materials[0] = model_material_default();
     m->materials[0].name = test_zeros(5);
     memcpy(m->materials[0].name, "clay", 4);
     memcpy(m->materials[0].base_color, base_color, sizeof base_color);

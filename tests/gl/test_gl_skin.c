@@ -545,6 +545,7 @@ static void without_joints_stands_the_bind_pose(void **state)
 typedef struct made_meshes {
     noh_mesh_header headers[MADE];
     noh_palette palettes[2];
+    noh_submesh submesh; /* without a material */
     uint16_t joints[5];
     noh_mesh meshes[MADE];
     uint32_t counts[MADE];
@@ -554,6 +555,7 @@ static void make_meshes(made_meshes *m)
 {
     static const uint16_t joints[5] = { 0, 1, 3, 1, 2 };
     memset(m, 0, sizeof *m);
+    m->submesh.material = NOH_NONE;
     m->palettes[0].joint_count = 3;
     m->palettes[1].first_joint = 3;
     m->palettes[1].joint_count = 2;
@@ -562,6 +564,8 @@ static void make_meshes(made_meshes *m)
         m->meshes[i].header = &m->headers[i];
         m->meshes[i].palettes = m->palettes;
         m->meshes[i].palette_joints = m->joints;
+        m->meshes[i].submeshes = &m->submesh;
+        m->headers[i].submesh_count = 1;
         m->headers[i].palette_count = i == 1 ? 0 : 2;
         m->counts[i] = 1;
     }

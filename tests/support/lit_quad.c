@@ -47,6 +47,7 @@ static void quad_normal(float x, float out[3])
 static void fill_material(const lit_quad *q, model *m)
 {
     model_material *material = m->materials = test_zeros(sizeof *m->materials);
+    *material = model_material_default();
     m->material_count = 1;
     material->name = model_string("quad");
     material->base_color_texture = q->picture ? 1 : MODEL_NONE;

@@ -139,6 +139,7 @@ static void add_face_materials(model *m)
     m->material_count = 2;
     m->materials = test_zeros(sizeof *m->materials * 2u);
     for (uint32_t i = 0; i < 2u; i++) {
+        m->materials[i] = model_material_default();
         m->materials[i].name = model_string(i ? "cornea" : "skin");
         m->materials[i].base_color_texture = MODEL_NONE;
         m->materials[i].base_color[3] = 1.0f;

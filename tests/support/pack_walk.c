@@ -79,14 +79,21 @@ static void walk_textures(walk *w)
     noh_texture t;
     for (uint32_t i = 0; noh_pack_texture_at(w->pack, i, &t, NULL) == NOH_OK; i++) {
         eat_name(w, t.name);
-        eat(w, t.pixels, (size_t)t.header->width * t.header->height * 4u);
+        for (uint32_t level = 0; level < t.header->level_count; level++) {
+            const noh_texture_level at = noh_texture_level_at(&t, level);
+            eat(w, at.pixels, (size_t)at.width * at.height * 4u);
+        }
     }
     for (uint32_t i = 0; i < w->pack->material_count; i++) {
         const noh_material *m = &w->pack->materials[i];
+        const uint32_t textures[] = { m->base_color_texture, m->normal_texture,    m->surface_texture,
+                                      m->emissive_texture,   m->wrinkle_texture,   m->wrinkle_weights[0],
+                                      m->wrinkle_weights[1], m->wrinkle_weights[2] };
         eat_name(w, noh_pack_string(w->pack, m->name));
-        if (m->base_color_texture != NOH_NONE &&
-            noh_pack_texture_at(w->pack, m->base_color_texture, &t, NULL) != NOH_OK) {
-            abort(); /* the checker guarantees it */
+        for (int k = 0; k < 8; k++) {
+            if (textures[k] != NOH_NONE && noh_pack_texture_at(w->pack, textures[k], &t, NULL) != NOH_OK) {
+                abort(); /* the checker guarantees it */
+            }
         }
     }
 }

@@ -266,6 +266,7 @@ static void fill_materials(model *m)
     m->materials = test_zeros(sizeof *m->materials * 2);
     for (uint32_t i = 0; i < 2; i++) {
         model_material *to = &m->materials[i];
+        *to = model_material_default();
         to->name = model_string(i ? "glass" : "skin");
         to->base_color[0] = to->base_color[3] = 1.0f;
         to->base_color_texture = i ? MODEL_NONE : 0;

@@ -91,7 +91,7 @@ void main()
 }`;
 
 async function fragmentShader() {
-    const names = ['common_fade.glsl', 'common_fragment.glsl', 'mesh.frag'];
+    const names = ['common_fade.glsl', 'common_fragment.glsl', 'common_material.glsl', 'common_light.glsl', 'mesh.frag'];
     const texts = await Promise.all(names.map(async (name) => (await fetch('/shaders/' + name)).text()));
     return '#define NOH_DEBUG_VIEW 0\n#define NOH_ENCODE_SRGB\n' + texts.join('\n').replace(/#version.*\n/, '');
 }
@@ -115,6 +115,7 @@ function shadeAsNoh(from, shader, view) {
             noh_key: { value: view.key },
             noh_base_color: { value: new THREE.Vector4(from.color.r, from.color.g, from.color.b, from.opacity) },
             noh_material: { value: new THREE.Vector4(from.roughness, from.metalness, from.alphaTest || -1, 0) },
+            noh_f0: { value: new THREE.Vector3(0.04, 0.04, 0.04) },
             noh_base_color_texture: { value: from.map || whiteTexture() },
             noh_bounds_min: { value: new THREE.Vector3() },
             noh_bounds_size: { value: new THREE.Vector3(1, 1, 1) },

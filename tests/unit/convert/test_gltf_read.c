@@ -1257,15 +1257,17 @@ static void bad_images_are_warnings(void **state)
 static void texture_transform_is_baked(void **state)
 {
     (void)state;
-    const float uv[6] = { 0, 0, 1, 0, 0, 1 }, expected[6] = { 0.5f, 0.25f, 2.5f, 0.25f, 0.5f, 3.25f };
+    /* scaled, then turned by a right angle, then moved: u' = 3 v + 0.5, v' = -2 u + 0.25 */
+    const float uv[6] = { 0, 0, 1, 0, 0, 1 }, expected[6] = { 0.5f, 0.25f, 0.5f, -1.75f, 3.5f, 0.25f };
     scene *s = triangle(",\"TEXCOORD_0\":1", ",\"material\":0");
     add_array(s, uv, sizeof uv, F32, 3, "VEC2");
-    APPEND(s->rest, ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"extensions\":{"
-                    "\"KHR_texture_transform\":{\"offset\":[0.5,0.25],\"scale\":[2,3],\"rotation\":1}}}}}],"
-                    "\"textures\":[{}]");
+    APPEND(s->rest,
+           ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"extensions\":{"
+           "\"KHR_texture_transform\":{\"offset\":[0.5,0.25],\"scale\":[2,3],\"rotation\":1.5707963267948966}}}}}],"
+           "\"textures\":[{}]");
     model *m = load(s);
     assert_floats(m->meshes[0].uv, expected, 6);
-    assert_true(has_warning(m, "rotation of KHR_texture_transform is not supported"));
+    assert_false(has_warning(m, "KHR_texture_transform"));
     model_free(m);
 }
 

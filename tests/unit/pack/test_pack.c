@@ -389,15 +389,26 @@ static float nan_value(void)
     X(strings_run_together, DATA, "", fill_strings(f))                                                               \
     X(texture_wide, DATA, "size", f->texture->width = 0xffffffffu)                                                   \
     X(texture_no_rows, DATA, "size", f->texture->height = 0)                                                         \
-    X(texture_larger_than_chunk, DATA, "past the end", f->texture->height = 2048)                                    \
+    X(texture_larger_than_chunk, DATA, "past the end", (f->texture->height = 2048, f->texture->level_count = 12))    \
     X(texture_smaller_than_chunk, DATA, "longer", f->texture->height = 1)                                            \
     X(texture_pixels_elsewhere, DATA, "begin", f->texture->pixels_offset = 0)                                        \
     X(texture_wrap, DATA, "sampling", f->texture->wrap_s = 3)                                                        \
     X(texture_filter, DATA, "sampling", f->texture->nearest = 2)                                                     \
-    X(texture_reserved, DATA, "reserved field of a texture", f->texture->reserved[0] = 1)                            \
+    X(texture_levels, DATA, "mip levels", f->texture->level_count -= 1)                                              \
+    X(texture_levels_overflow, DATA, "mip levels", f->texture->level_count = 0xffffffffu)                            \
+    X(texture_levels_of_nearest, DATA, "mip levels", f->texture->nearest = 1)                                        \
+    X(texture_flags, DATA, "sampling", f->texture->flags = 2)                                                        \
+    X(texture_reserved, DATA, "reserved field of a texture", f->texture->reserved[3] = 1)                            \
+    X(texture_of_data, DATA, "of data for colours", f->texture->flags = NOH_TEXTURE_LINEAR)                          \
+    X(material_normal_missing, DATA, "texture", f->materials[0].normal_texture = 1)                                  \
+    X(material_normal_colors, DATA, "of colours for data", f->materials[0].normal_texture = 0)                       \
+    X(material_weights_missing, DATA, "texture", f->materials[0].wrinkle_weights[2] = 1)                             \
+    X(material_surface, DATA, "unknown surface", f->materials[0].surface = NOH_SURFACE_EYE + 1)                      \
+    X(material_f0_nan, DATA, "not finite", f->materials[0].f0[2] = nan_value())                                      \
+    X(material_values_nan, DATA, "not finite", f->materials[1].surface_values[3] = nan_value())                      \
     X(material_texture_missing, DATA, "texture", f->materials[0].base_color_texture = 1)                             \
     X(material_flags, DATA, "flags", f->materials[0].flags = 16)                                                     \
-    X(material_reserved, DATA, "reserved field of a material", f->materials[0].reserved = 1)                         \
+    X(material_reserved, DATA, "reserved field of a material", f->materials[0].reserved[8] = 1)                      \
     X(material_color_nan, DATA, "not finite", f->materials[0].base_color[2] = nan_value())                           \
     X(material_cutoff_infinite, DATA, "not finite", f->materials[1].alpha_cutoff = INFINITE)                         \
     X(material_name, DATA, "outside the strings", f->materials[0].name = 0x10000000u)                                \
@@ -598,11 +609,15 @@ static void errors_say_where(void **state)
     X(texture->wrap_s, = 9)                             \
     X(texture->wrap_t, = 9)                             \
     X(texture->nearest, = 2)                            \
-    X(texture->reserved[1], = 1)                        \
+    X(texture->level_count, = 1)                        \
+    X(texture->flags, = 8)                              \
+    X(texture->reserved[0], = 1)                        \
     X(texture->pixels_offset, += 16)                    \
     X(materials[1].base_color_texture, = 7)             \
     X(materials[0].flags, = 16)                         \
-    X(materials[1].reserved, = 1)                       \
+    X(materials[1].normal_texture, = 0)                 \
+    X(materials[1].surface, = 9)                        \
+    X(materials[1].reserved[0], = 1)                    \
     X(materials[1].name, = 0xffffffffu)                 \
     X(materials[0].name_hash, ^= 1u)                    \
     X(mesh->flags, = 0x80000000u)                       \

@@ -259,6 +259,7 @@ static model *with_plates(float x_scale, int material_count)
     m->material_count = (uint32_t)material_count;
     m->materials = test_zeros(sizeof *m->materials * (size_t)material_count);
     for (int i = 0; i < material_count; i++) {
+        m->materials[i] = model_material_default();
         m->materials[i].name = model_string("paint");
         m->materials[i].base_color_texture = MODEL_NONE;
     }

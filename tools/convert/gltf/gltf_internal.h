@@ -24,6 +24,7 @@
 
 #include "convert/model/model_build.h"
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <new>
@@ -83,10 +84,12 @@ struct file {
     uint64_t input_bytes = 0;         /* of all files read */
     uint64_t output_bytes = 0;        /* of what the model needs so far */
     ::model *out = nullptr;
-    std::vector<uint32_t> mesh_of;         /* [json.meshes] index into out->meshes or MODEL_NONE */
-    std::vector<uint32_t> node_of;         /* [json.nodes] likewise */
-    std::vector<uint32_t> skin_of;         /* [json.skins] likewise */
-    std::vector<uint32_t> texture_of;      /* [json.textures] likewise */
+    std::vector<uint32_t> mesh_of; /* [json.meshes] index into out->meshes or MODEL_NONE */
+    std::vector<uint32_t> node_of; /* [json.nodes] likewise */
+    std::vector<uint32_t> skin_of; /* [json.skins] likewise */
+    /* from {use, texture, -1}, or {DATA, occlusion, metallic-roughness}, to an index into out->textures or MODEL_NONE
+     */
+    std::map<std::array<int, 3>, uint32_t> texture_of;
     std::vector<left_out> losses;          /* in the order in which they were met */
     std::map<std::string, size_t> loss_of; /* what -> its place in losses */
 };
@@ -180,6 +183,12 @@ void read_influences(file &f, const tinygltf::Primitive &p, const model_submesh 
                      model_mesh &out, influence_changes &changes);
 void warn_influence_changes(file &f, const influence_changes &changes, const std::string &where);
 /* The UV set that a primitive's base colour texture uses ("TEXCOORD_1"), or the first where the primitive lacks it. */
+/* The texture coordinates of a material's textures, and KHR_texture_transform on them: those of the first texture. */
+struct uv_use {
+    int set = 0;
+    double offset[2] = { 0.0, 0.0 }, scale[2] = { 1.0, 1.0 }, rotation = 0.0;
+};
+uv_use uv_use_of(const tinygltf::Material &m);
 std::string uv_name(const file &f, const tinygltf::Primitive &p);
 void check_influences(const model_mesh &mesh, uint32_t joint_count);
 void read_nodes(file &f);

@@ -7,36 +7,18 @@
 namespace gltf
 {
 
-/* --- materials --- */
-
-static void find_in_material(file &f, size_t index)
-{
-    const tinygltf::Material &m = f.json.materials[index];
-    const std::string where = "material '" + printable(name_or(m.name, "material", index)) + "'";
-    const struct {
-        int texture;
-        const char *name;
-    } textures[] = { { m.normalTexture.index, "normal" },
-                     { m.occlusionTexture.index, "occlusion" },
-                     { m.emissiveTexture.index, "emissive" },
-                     { m.pbrMetallicRoughness.metallicRoughnessTexture.index, "metallic-roughness" } };
-    for (const auto &t : textures)
-        if (t.texture >= 0) leave_out(f, where, text(": the %s texture was left out", t.name));
-    for (double part : m.emissiveFactor)
-        if (part > 0.0 && m.emissiveTexture.index < 0) {
-            leave_out(f, where, ": the emissive colour was left out");
-            break;
-        }
-}
+/* --- textures --- */
 
 /* A pack filters a texture in one way: nearest or linear. */
 static void find_in_samplers(file &f)
 {
     std::set<int> used;
     for (const tinygltf::Material &m : f.json.materials) {
-        int texture = m.pbrMetallicRoughness.baseColorTexture.index;
-        if (texture >= 0 && static_cast<size_t>(texture) < f.json.textures.size())
-            used.insert(f.json.textures[static_cast<size_t>(texture)].sampler);
+        for (int texture : { m.pbrMetallicRoughness.baseColorTexture.index, m.normalTexture.index,
+                             m.pbrMetallicRoughness.metallicRoughnessTexture.index, m.occlusionTexture.index,
+                             m.emissiveTexture.index })
+            if (texture >= 0 && static_cast<size_t>(texture) < f.json.textures.size())
+                used.insert(f.json.textures[static_cast<size_t>(texture)].sampler);
     }
     for (int index : used) {
         if (index < 0 || static_cast<size_t>(index) >= f.json.samplers.size()) continue;
@@ -70,9 +52,11 @@ static void find_in_primitive(file &f, const tinygltf::Primitive &p, const std::
         if (!is_read(attribute.first, uv))
             leave_out(f, where, ": the attribute " + printable(attribute.first) + " was left out");
     if (p.material < 0 || static_cast<size_t>(p.material) >= f.json.materials.size()) return;
-    const tinygltf::TextureInfo &texture =
-        f.json.materials[static_cast<size_t>(p.material)].pbrMetallicRoughness.baseColorTexture;
-    if (texture.index >= 0 && p.attributes.count(uv) == 0)
+    const tinygltf::Material &m = f.json.materials[static_cast<size_t>(p.material)];
+    const bool textured = m.pbrMetallicRoughness.baseColorTexture.index >= 0 || m.normalTexture.index >= 0 ||
+                          m.pbrMetallicRoughness.metallicRoughnessTexture.index >= 0 || m.occlusionTexture.index >= 0 ||
+                          m.emissiveTexture.index >= 0;
+    if (textured && p.attributes.count(uv) == 0)
         leave_out(f, where, text(": its material has a texture, but the primitive has no %s", uv.c_str()));
 }
 
@@ -91,7 +75,6 @@ static void find_in_scene(file &f)
 
 void find_left_out(file &f)
 {
-    for (size_t i = 0; i < f.json.materials.size(); ++i) find_in_material(f, i);
     find_in_samplers(f);
     for (size_t m = 0; m < f.json.meshes.size(); ++m)
         for (size_t i = 0; f.mesh_of[m] != MODEL_NONE && i < f.json.meshes[m].primitives.size(); ++i)

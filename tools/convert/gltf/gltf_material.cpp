@@ -1,6 +1,7 @@
 /* gltf_material.cpp: materials, and the textures and images that they use. */
 #include "gltf_internal.h"
 
+#include <array>
 #include <cstring>
 
 #include "base/limits.h"
@@ -124,6 +125,14 @@ static void read_texture(file &f, size_t index, model_texture &out)
     out.name = copy_string(name_or(texture.name.empty() ? source.name : texture.name, "texture", index));
 }
 
+static void drop_last_texture(file &f)
+{
+    model_texture &texture = f.out->textures[--f.out->texture_count];
+    free(texture.name);
+    free(texture.rgba);
+    texture = model_texture();
+}
+
 /* A material works without its texture, so a bad image is a warning. */
 static uint32_t try_texture(file &f, size_t index, const std::string &material)
 {
@@ -134,24 +143,100 @@ static uint32_t try_texture(file &f, size_t index, const std::string &material)
     } catch (const failure &reason) {
         warn(f, "%s: %s (%s); the texture was left out", material.c_str(), reason.what.c_str(), reason.where.c_str());
     }
-    free(texture.rgba);
-    texture = model_texture();
-    --f.out->texture_count;
+    drop_last_texture(f);
     return MODEL_NONE;
 }
 
-/* Only base colours are drawn, so only their textures are read, each one once. */
-static uint32_t base_color_texture(file &f, const tinygltf::Material &m, const std::string &where)
+/* A texture for one use, read once: an image of colours that is data as well is there twice. */
+static uint32_t texture_for(file &f, int index, model_texture_use use, const std::string &where)
 {
-    const uint32_t untried = MODEL_NONE - 1;
-    int index = m.pbrMetallicRoughness.baseColorTexture.index;
     if (index < 0) return MODEL_NONE;
     if (static_cast<size_t>(index) >= f.json.textures.size())
         fail(where, text("texture %d does not exist: the file has %zu", index, f.json.textures.size()));
-    if (f.texture_of.empty()) f.texture_of.assign(f.json.textures.size(), untried);
-    uint32_t &slot = f.texture_of[static_cast<size_t>(index)];
-    if (slot == untried) slot = try_texture(f, static_cast<size_t>(index), where);
+    const std::array<int, 3> key = { static_cast<int>(use), index, -1 };
+    auto found = f.texture_of.find(key);
+    if (found != f.texture_of.end()) return found->second;
+    const uint32_t slot = try_texture(f, static_cast<size_t>(index), where);
+    if (slot != MODEL_NONE) f.out->textures[slot].use = use;
+    return f.texture_of[key] = slot;
+}
+
+/* --- the surface map: occlusion in red, roughness in green, metallic in blue --- */
+
+static uint8_t between(const uint8_t *rgba, size_t stride, uint32_t x0, uint32_t x1, uint32_t y0, uint32_t y1,
+                       uint64_t fx, uint64_t fy)
+{
+    const uint64_t top = rgba[y0 * stride + x0 * 4] * (256 - fx) + rgba[y0 * stride + x1 * 4] * fx;
+    const uint64_t bottom = rgba[y1 * stride + x0 * 4] * (256 - fx) + rgba[y1 * stride + x1 * 4] * fx;
+    return static_cast<uint8_t>((top * (256 - fy) + bottom * fy + 32768) / 65536);
+}
+
+/* Where the centre of texel i of `to` lies among the texels of `from`: the two beside it, and 256ths from the first. */
+static uint64_t place(uint32_t i, uint32_t from, uint32_t to, uint32_t *low, uint32_t *high)
+{
+    const int64_t at = (static_cast<int64_t>(2 * i + 1) * from * 256 / to - 256) / 2;
+    const int64_t held = at < 0 ? 0 : at;
+    *low = static_cast<uint32_t>(held / 256);
+    if (*low >= from) *low = from - 1;
+    *high = *low + 1 < from ? *low + 1 : *low;
+    return static_cast<uint64_t>(held % 256);
+}
+
+/* The red of `from`, bilinear, into the red of `to`. */
+static void put_red(const model_texture &from, model_texture &to)
+{
+    for (uint32_t y = 0; y < to.height; ++y) {
+        uint32_t y0, y1, x0, x1;
+        const uint64_t fy = place(y, from.height, to.height, &y0, &y1);
+        for (uint32_t x = 0; x < to.width; ++x) {
+            const uint64_t fx = place(x, from.width, to.width, &x0, &x1);
+            to.rgba[(size_t{ y } * to.width + x) * 4] = between(from.rgba, size_t{ from.width } * 4, x0, x1, y0, y1, fx,
+                                                                fy);
+        }
+    }
+}
+
+static void fill_channels(model_texture &t, bool red, bool green_and_blue)
+{
+    const size_t count = size_t{ t.width } * t.height;
+    for (size_t i = 0; i < count; ++i) {
+        if (red) t.rgba[i * 4] = 255;
+        if (green_and_blue) t.rgba[i * 4 + 1] = t.rgba[i * 4 + 2] = 255;
+        t.rgba[i * 4 + 3] = 255;
+    }
+}
+
+/* Two images become one, so that a pixel reads one texture: the occlusion takes the other's size and sampling. */
+static uint32_t make_surface_texture(file &f, int occlusion, int roughness, const std::string &where)
+{
+    uint32_t slot = roughness < 0 ? MODEL_NONE : try_texture(f, static_cast<size_t>(roughness), where);
+    if (occlusion == roughness) {
+        if (slot != MODEL_NONE) fill_channels(f.out->textures[slot], false, false);
+    } else if (slot == MODEL_NONE) {
+        slot = occlusion < 0 ? MODEL_NONE : try_texture(f, static_cast<size_t>(occlusion), where);
+        if (slot != MODEL_NONE) fill_channels(f.out->textures[slot], false, true);
+    } else {
+        fill_channels(f.out->textures[slot], true, false);
+        const uint32_t other = occlusion < 0 ? MODEL_NONE : try_texture(f, static_cast<size_t>(occlusion), where);
+        if (other != MODEL_NONE) {
+            put_red(f.out->textures[other], f.out->textures[slot]);
+            drop_last_texture(f);
+        }
+    }
+    if (slot != MODEL_NONE) f.out->textures[slot].use = MODEL_TEXTURE_DATA;
     return slot;
+}
+
+static uint32_t surface_texture(file &f, int occlusion, int roughness, const std::string &where)
+{
+    if (occlusion < 0 && roughness < 0) return MODEL_NONE;
+    for (int index : { occlusion, roughness })
+        if (index >= 0 && static_cast<size_t>(index) >= f.json.textures.size())
+            fail(where, text("texture %d does not exist: the file has %zu", index, f.json.textures.size()));
+    const std::array<int, 3> key = { static_cast<int>(MODEL_TEXTURE_DATA), occlusion, roughness };
+    auto found = f.texture_of.find(key);
+    if (found != f.texture_of.end()) return found->second;
+    return f.texture_of[key] = make_surface_texture(f, occlusion, roughness, where);
 }
 
 /* --- materials --- */
@@ -165,25 +250,159 @@ static model_alpha alpha_of(file &f, const std::string &mode, const std::string 
     return MODEL_ALPHA_OPAQUE;
 }
 
+/* --- which texture coordinates --- */
+
+static void read_pair(const tinygltf::Value &object, const char *key, double *out)
+{
+    const tinygltf::Value &pair = object.Get(key);
+    for (int i = 0; pair.IsArray() && pair.ArrayLen() == 2 && i < 2; ++i)
+        if (pair.Get(i).IsNumber()) out[i] = pair.Get(i).GetNumberAsDouble();
+}
+
+static uv_use uv_use_of(int set, const tinygltf::ExtensionMap &extensions)
+{
+    uv_use use;
+    use.set = set;
+    auto found = extensions.find("KHR_texture_transform");
+    if (found == extensions.end() || !found->second.IsObject()) return use;
+    const tinygltf::Value &transform = found->second;
+    read_pair(transform, "offset", use.offset);
+    read_pair(transform, "scale", use.scale);
+    if (transform.Get("rotation").IsNumber()) use.rotation = transform.Get("rotation").GetNumberAsDouble();
+    if (transform.Get("texCoord").IsInt()) use.set = transform.Get("texCoord").Get<int>();
+    return use;
+}
+
+/* A texture of a material, and what the model calls it. */
+struct texture_use {
+    int index;
+    uv_use uv;
+    const char *name;
+};
+
+static std::array<texture_use, 5> textures_of(const tinygltf::Material &m)
+{
+    const tinygltf::TextureInfo &base = m.pbrMetallicRoughness.baseColorTexture;
+    const tinygltf::TextureInfo &roughness = m.pbrMetallicRoughness.metallicRoughnessTexture;
+    return { { { base.index, uv_use_of(base.texCoord, base.extensions), "base colour" },
+               { m.normalTexture.index, uv_use_of(m.normalTexture.texCoord, m.normalTexture.extensions), "normal" },
+               { roughness.index, uv_use_of(roughness.texCoord, roughness.extensions), "metallic-roughness" },
+               { m.occlusionTexture.index, uv_use_of(m.occlusionTexture.texCoord, m.occlusionTexture.extensions),
+                 "occlusion" },
+               { m.emissiveTexture.index, uv_use_of(m.emissiveTexture.texCoord, m.emissiveTexture.extensions),
+                 "emissive" } } };
+}
+
+uv_use uv_use_of(const tinygltf::Material &m)
+{
+    for (const texture_use &t : textures_of(m))
+        if (t.index >= 0) return t.uv;
+    return uv_use();
+}
+
+static bool same_use(const uv_use &a, const uv_use &b)
+{
+    return a.set == b.set && a.offset[0] == b.offset[0] && a.offset[1] == b.offset[1] && a.scale[0] == b.scale[0] &&
+           a.scale[1] == b.scale[1] && a.rotation == b.rotation;
+}
+
+/* A vertex has one pair of texture coordinates: those of the first texture. What uses others is left out. */
+static int index_of(file &f, const tinygltf::Material &m, size_t which, const std::string &where)
+{
+    const texture_use t = textures_of(m)[which];
+    if (t.index < 0 || same_use(t.uv, uv_use_of(m))) return t.index;
+    leave_out(f, where,
+              text(": the %s texture was left out: its texture coordinates, or their transform, are not those of the "
+                   "material's other textures",
+                   t.name));
+    return -1;
+}
+
+/* --- extensions of materials --- */
+
+static const tinygltf::Value *extension_of(const tinygltf::Material &m, const char *name)
+{
+    auto found = m.extensions.find(name);
+    return found == m.extensions.end() || !found->second.IsObject() ? nullptr : &found->second;
+}
+
+static double number_in(const tinygltf::Value *object, const char *key, double otherwise)
+{
+    return object && object->Get(key).IsNumber() ? object->Get(key).GetNumberAsDouble() : otherwise;
+}
+
+/* KHR_materials_ior and KHR_materials_specular: what reflects straight on. */
+static void read_f0(file &f, const tinygltf::Material &m, model_material &out, const std::string &where)
+{
+    const tinygltf::Value *specular = extension_of(m, "KHR_materials_specular");
+    const double ior = number_in(extension_of(m, "KHR_materials_ior"), "ior", 1.5);
+    const double straight = ior >= 1.0 ? (ior - 1.0) / (ior + 1.0) : 1.0; /* ior 0: all is reflected */
+    const double factor = straight * straight * number_in(specular, "specularFactor", 1.0);
+    for (size_t i = 0; i < 3; ++i) {
+        double color = 1.0;
+        if (specular) {
+            const tinygltf::Value &list = specular->Get("specularColorFactor");
+            if (list.IsArray() && list.ArrayLen() == 3 && list.Get(i).IsNumber())
+                color = list.Get(i).GetNumberAsDouble();
+        }
+        const double f0 = factor * color;
+        out.f0[i] = to_float(f0 < 0.0 ? 0.0 : f0 > 1.0 ? 1.0 : f0, where + " KHR_materials_specular");
+    }
+    for (const char *texture : { "specularTexture", "specularColorTexture" })
+        if (specular && specular->Has(texture))
+            leave_out(f, where, text(": the %s of KHR_materials_specular was left out", texture));
+}
+
+static void read_emissive(const tinygltf::Material &m, model_material &out, const std::string &where)
+{
+    const double strength = number_in(extension_of(m, "KHR_materials_emissive_strength"), "emissiveStrength", 1.0);
+    for (size_t i = 0; i < 3; ++i)
+        out.emissive[i] = to_float(m.emissiveFactor[i] * strength, where + " emissiveFactor");
+}
+
+/* --- materials --- */
+
+static void read_maps(file &f, const tinygltf::Material &m, model_material &out, const std::string &where)
+{
+    out.base_color_texture = texture_for(f, index_of(f, m, 0, where), MODEL_TEXTURE_COLOR, where);
+    if (out.base_color_texture != MODEL_NONE && out.alpha != MODEL_ALPHA_OPAQUE) {
+        model_texture &texture = f.out->textures[out.base_color_texture];
+        texture.with_alpha = 1;
+        if (out.alpha == MODEL_ALPHA_MASK) texture.alpha_cutoff = out.alpha_cutoff;
+    }
+    if (out.unlit) return;
+    out.normal_texture = texture_for(f, index_of(f, m, 1, where), MODEL_TEXTURE_NORMAL, where);
+    const int roughness = index_of(f, m, 2, where), occlusion = index_of(f, m, 3, where);
+    out.surface_texture = surface_texture(f, occlusion, roughness, where);
+    if (out.emissive[0] > 0.0f || out.emissive[1] > 0.0f || out.emissive[2] > 0.0f)
+        out.emissive_texture = texture_for(f, index_of(f, m, 4, where), MODEL_TEXTURE_COLOR, where);
+}
+
 static void read_material(file &f, size_t index, model_material &out)
 {
     const tinygltf::Material &m = f.json.materials[index];
     const tinygltf::PbrMetallicRoughness &pbr = m.pbrMetallicRoughness;
     std::string where = where_of(f, index);
+    out = model_material_default();
     out.name = copy_string(name_or(m.name, "material", index));
     for (size_t i = 0; i < 4; ++i) out.base_color[i] = to_float(pbr.baseColorFactor[i], where + " baseColorFactor");
     out.metallic = to_float(pbr.metallicFactor, where + " metallicFactor");
     out.roughness = to_float(pbr.roughnessFactor, where + " roughnessFactor");
     out.alpha = alpha_of(f, m.alphaMode, where);
     out.alpha_cutoff = to_float(m.alphaCutoff, where + " alphaCutoff");
+    out.normal_scale = to_float(m.normalTexture.scale, where + " normalTexture scale");
+    out.occlusion_strength = to_float(m.occlusionTexture.strength, where + " occlusionTexture strength");
     out.double_sided = m.doubleSided;
     out.unlit = m.extensions.count("KHR_materials_unlit") != 0;
-    out.base_color_texture = base_color_texture(f, m, where);
+    read_emissive(m, out, where);
+    read_f0(f, m, out, where);
+    read_maps(f, m, out, where);
 }
 
 void read_materials(file &f)
 {
-    f.out->textures = allocate<model_texture>(f, f.json.textures.size(), "textures");
+    /* each texture as colours and as normals; one surface map a material, and the image that is put into it */
+    f.out->textures = allocate<model_texture>(f, f.json.textures.size() * 2 + f.json.materials.size() + 1, "textures");
     f.out->materials = allocate<model_material>(f, f.json.materials.size(), "materials");
     for (size_t i = 0; i < f.json.materials.size(); ++i) {
         ++f.out->material_count;

@@ -1,6 +1,7 @@
 /* gltf_mesh.cpp: meshes, their primitives and their morph targets. */
 #include "gltf_internal.h"
 
+#include <cmath>
 #include <cstring>
 #include <set>
 
@@ -184,35 +185,10 @@ static const tinygltf::Material *material_of(const file &f, const tinygltf::Prim
     return p.material >= 0 ? &f.json.materials[static_cast<size_t>(p.material)] : nullptr;
 }
 
-/* The base colour texture's place in a material, and KHR_texture_transform on it. */
-struct uv_use {
-    int set = 0;
-    double offset[2] = { 0.0, 0.0 }, scale[2] = { 1.0, 1.0 };
-    bool rotated = false;
-};
-
-static void read_pair(const tinygltf::Value &object, const char *key, double *out)
-{
-    const tinygltf::Value &pair = object.Get(key);
-    for (int i = 0; pair.IsArray() && pair.ArrayLen() == 2 && i < 2; ++i)
-        if (pair.Get(i).IsNumber()) out[i] = pair.Get(i).GetNumberAsDouble();
-}
-
 static uv_use uv_use_of(const file &f, const tinygltf::Primitive &p)
 {
-    uv_use use;
     const tinygltf::Material *material = material_of(f, p);
-    if (!material || material->pbrMetallicRoughness.baseColorTexture.index < 0) return use;
-    const tinygltf::TextureInfo &texture = material->pbrMetallicRoughness.baseColorTexture;
-    use.set = texture.texCoord;
-    auto found = texture.extensions.find("KHR_texture_transform");
-    if (found == texture.extensions.end() || !found->second.IsObject()) return use;
-    const tinygltf::Value &transform = found->second;
-    read_pair(transform, "offset", use.offset);
-    read_pair(transform, "scale", use.scale);
-    use.rotated = transform.Get("rotation").IsNumber() && transform.Get("rotation").GetNumberAsDouble() != 0.0;
-    if (transform.Get("texCoord").IsInt()) use.set = transform.Get("texCoord").Get<int>();
-    return use;
+    return material ? gltf::uv_use_of(*material) : uv_use();
 }
 
 std::string uv_name(const file &f, const tinygltf::Primitive &p)
@@ -221,16 +197,21 @@ std::string uv_name(const file &f, const tinygltf::Primitive &p)
     return has(p.attributes, wanted) ? wanted : "TEXCOORD_0";
 }
 
-/* The transform is applied to the UVs: a model has no place for it. */
-static void transform_uvs(file &f, const mesh_job &job, const part &p, float *uv)
+/* The transform is applied to the UVs: a model has no place for it. They are scaled, then rotated, then moved. */
+static void transform_uvs(const file &f, const mesh_job &job, const part &p, float *uv)
 {
-    uv_use use = uv_use_of(f, *p.source);
-    if (use.rotated)
-        leave_out(f, where_of(job, p), ": the rotation of KHR_texture_transform is not supported and was ignored");
-    if (use.offset[0] == 0.0 && use.offset[1] == 0.0 && use.scale[0] == 1.0 && use.scale[1] == 1.0) return;
-    for (uint64_t i = 0; i < uint64_t{ p.vertex_count } * 2; ++i)
-        uv[i] = to_float(static_cast<double>(uv[i]) * use.scale[i % 2] + use.offset[i % 2],
-                         where_of(job, p) + " KHR_texture_transform");
+    const uv_use use = uv_use_of(f, *p.source);
+    const double sine = std::sin(use.rotation), cosine = std::cos(use.rotation);
+    const std::string where = where_of(job, p) + " KHR_texture_transform";
+    if (use.offset[0] == 0.0 && use.offset[1] == 0.0 && use.scale[0] == 1.0 && use.scale[1] == 1.0 &&
+        use.rotation == 0.0)
+        return;
+    for (size_t i = 0; i < size_t{ p.vertex_count }; ++i) {
+        const double u = static_cast<double>(uv[i * 2]) * use.scale[0];
+        const double v = static_cast<double>(uv[i * 2 + 1]) * use.scale[1];
+        uv[i * 2] = to_float(cosine * u + sine * v + use.offset[0], where);
+        uv[i * 2 + 1] = to_float(cosine * v - sine * u + use.offset[1], where);
+    }
 }
 
 static bool any_part_has(const mesh_job &job, const char *name)

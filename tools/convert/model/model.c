@@ -46,6 +46,24 @@ int model_warn(model *m, const char *format, ...)
     return 0;
 }
 
+model_material model_material_default(void)
+{
+    const model_material plain = { .base_color = { 1.0f, 1.0f, 1.0f, 1.0f },
+                                   .base_color_texture = MODEL_NONE,
+                                   .metallic = 1.0f,
+                                   .roughness = 1.0f,
+                                   .alpha_cutoff = 0.5f,
+                                   .normal_scale = 1.0f,
+                                   .occlusion_strength = 1.0f,
+                                   .f0 = { 0.04f, 0.04f, 0.04f },
+                                   .normal_texture = MODEL_NONE,
+                                   .surface_texture = MODEL_NONE,
+                                   .emissive_texture = MODEL_NONE,
+                                   .wrinkle_texture = MODEL_NONE,
+                                   .wrinkle_weights = { MODEL_NONE, MODEL_NONE, MODEL_NONE } };
+    return plain;
+}
+
 static void target_free(model_target *target)
 {
     free(target->name);

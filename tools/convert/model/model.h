@@ -16,12 +16,18 @@ extern "C" {
 
 #define MODEL_NONE 0xffffffffu
 
+/* What the texels are, which decides how mip levels are made and how they are read. */
+typedef enum model_texture_use { MODEL_TEXTURE_COLOR, MODEL_TEXTURE_DATA, MODEL_TEXTURE_NORMAL } model_texture_use;
+
 typedef struct model_texture {
     char *name;
     uint32_t width, height;
     uint8_t *rgba;                   /* [height][width][4], rows top to bottom, as the image file has them */
     uint32_t wrap_s, wrap_t;         /* glTF enum values: 10497 repeat, 33071 clamp, 33648 mirror */
     uint32_t mag_filter, min_filter; /* glTF enum values, 0 = not given */
+    model_texture_use use;
+    uint8_t with_alpha; /* a material cuts or blends by its alpha: where that is 0, colours do not count */
+    float alpha_cutoff; /* of a material that cuts by it: mip levels cover as much; else 0 */
 } model_texture;
 
 typedef enum model_alpha { MODEL_ALPHA_OPAQUE, MODEL_ALPHA_MASK, MODEL_ALPHA_BLEND } model_alpha;
@@ -34,6 +40,11 @@ typedef struct model_material {
     model_alpha alpha;
     float alpha_cutoff;
     uint8_t double_sided, unlit;
+    float normal_scale, occlusion_strength, emissive[3], f0[3];
+    /* as noh_material has them: indices into textures or MODEL_NONE */
+    uint32_t normal_texture, surface_texture, emissive_texture, wrinkle_texture, wrinkle_weights[3];
+    uint32_t surface; /* NOH_SURFACE_* of pack/format.h */
+    float surface_values[4];
 } model_material;
 
 /* What the file lacks for the vertices of one submesh, and model_complete fills in. */
@@ -166,6 +177,9 @@ float model_mesh_scale(const model *m, uint32_t mesh);
  * (crease-aware), tangents where there are UVs, normal and tangent deltas of
  * targets that lack them (from the morphed mesh). Returns 0, or 1 and *error. */
 int model_complete(model *m, model_error *error);
+
+/* glTF's default material, without a name. */
+model_material model_material_default(void);
 
 void model_free(model *m);
 

@@ -11,6 +11,7 @@
 #include "pack_graph.h"
 #include "pack_mesh.h"
 #include "pack_skin.h"
+#include "texture_levels.h"
 
 typedef struct writer {
     const model *m;
@@ -53,51 +54,24 @@ static uint32_t wrap_mode(uint32_t gltf)
     return gltf == 33071 ? NOH_WRAP_CLAMP : gltf == 33648 ? NOH_WRAP_MIRROR : NOH_WRAP_REPEAT;
 }
 
-/* Halve an image until it is within the limit, by a 2 x 2 box filter. */
-static uint8_t *shrink(const model_texture *t, uint32_t *width, uint32_t *height)
-{
-    uint8_t *pixels = malloc((size_t)t->width * t->height * 4);
-    *width = t->width;
-    *height = t->height;
-    if (!pixels) {
-        return NULL;
-    }
-    memcpy(pixels, t->rgba, (size_t)t->width * t->height * 4);
-    while (*width > NOH_TEXTURE_SIZE_MAX || *height > NOH_TEXTURE_SIZE_MAX) {
-        uint32_t w = *width > 1 ? *width / 2 : 1, h = *height > 1 ? *height / 2 : 1;
-        uint32_t dx = *width > 1 ? 1 : 0, dy = *height > 1 ? 1 : 0;
-        for (uint32_t y = 0; y < h; y++) {
-            for (uint32_t i = 0; i < w * 4; i++) {
-                size_t x = (size_t)(i / 4) * (1u + dx), c = i % 4;
-                const uint8_t *a = pixels + ((size_t)y * (1u + dy) * *width + x) * 4 + c;
-                const uint8_t *b = a + (size_t)dy * *width * 4;
-                pixels[(size_t)y * w * 4 + i] = (uint8_t)((a[0] + a[dx * 4] + b[0] + b[dx * 4] + 2) / 4);
-            }
-        }
-        *width = w;
-        *height = h;
-    }
-    return pixels;
-}
-
 static void write_texture(writer *w, const model_texture *t)
 {
     noh_texture_header h;
-    uint8_t *pixels;
+    size_t base;
     begin_chunk(w, NOH_CHUNK_TEXTURE, t->name);
     memset(&h, 0, sizeof h);
     h.wrap_s = wrap_mode(t->wrap_s);
     h.wrap_t = wrap_mode(t->wrap_t);
     h.nearest = t->mag_filter == 9728;
+    h.flags = t->use == MODEL_TEXTURE_COLOR ? 0u : NOH_TEXTURE_LINEAR;
     h.pixels_offset = sizeof h;
-    pixels = shrink(t, &h.width, &h.height);
-    if (pixels) {
-        buffer_append(&w->out, &h, sizeof h);
-        buffer_append(&w->out, pixels, (size_t)h.width * h.height * 4);
-    } else {
+    base = w->out.count;
+    buffer_append(&w->out, &h, sizeof h);
+    if (texture_levels_write(t, &h, &w->out)) {
         w->out.failed = 1;
+    } else {
+        memcpy(w->out.bytes + base, &h, sizeof h);
     }
-    free(pixels);
     end_chunk(w);
 }
 
@@ -106,6 +80,21 @@ static uint32_t material_flags(const model_material *m)
     return (m->alpha == MODEL_ALPHA_BLEND ? NOH_MATERIAL_BLEND : 0u) |
            (m->alpha == MODEL_ALPHA_MASK ? NOH_MATERIAL_MASK : 0u) |
            (m->double_sided ? NOH_MATERIAL_DOUBLE_SIDED : 0u) | (m->unlit ? NOH_MATERIAL_UNLIT : 0u);
+}
+
+static void write_maps(const model_material *from, noh_material *to)
+{
+    to->normal_scale = from->normal_scale;
+    to->occlusion_strength = from->occlusion_strength;
+    memcpy(to->emissive, from->emissive, sizeof to->emissive);
+    memcpy(to->f0, from->f0, sizeof to->f0);
+    to->normal_texture = from->normal_texture;
+    to->surface_texture = from->surface_texture;
+    to->emissive_texture = from->emissive_texture;
+    to->wrinkle_texture = from->wrinkle_texture;
+    memcpy(to->wrinkle_weights, from->wrinkle_weights, sizeof to->wrinkle_weights);
+    to->surface = from->surface;
+    memcpy(to->surface_values, from->surface_values, sizeof to->surface_values);
 }
 
 static void write_materials(writer *w)
@@ -122,6 +111,7 @@ static void write_materials(writer *w)
         to.metallic = from->metallic;
         to.roughness = from->roughness;
         to.alpha_cutoff = from->alpha_cutoff;
+        write_maps(from, &to);
         buffer_append(&w->out, &to, sizeof to);
     }
     end_chunk(w);

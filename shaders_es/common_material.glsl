@@ -1,0 +1,91 @@
+/* common_material.glsl: noh_surface_of, what a pixel's material is, from its maps. It goes behind common_fragment.glsl:
+ * noh_gl_shader_prefix puts them together. Nothing of it is there with NOH_DEPTH_ONLY. Defines, which
+ * noh_gl_variant_defines writes:
+ *
+ *   NOH_NORMAL_MAP    defined: the material has a normal map, and the mesh tangents
+ *   NOH_SURFACE_MAP   defined: it has a map of occlusion, roughness, metallic
+ *   NOH_EMISSIVE      defined: it shines
+ *   NOH_WRINKLES      defined: it has a wrinkle map and weights of regions */
+#ifndef NOH_DEPTH_ONLY
+uniform vec3 noh_f0;       /* reflectance of what is no metal, seen straight on */
+#if defined(NOH_NORMAL_MAP) || defined(NOH_SURFACE_MAP)
+uniform vec4 noh_maps;     /* normal scale, occlusion strength */
+#endif
+#ifdef NOH_NORMAL_MAP
+uniform mediump sampler2D noh_normal_texture;
+#endif
+#ifdef NOH_SURFACE_MAP
+uniform mediump sampler2D noh_surface_texture; /* r occlusion, g roughness, b metallic */
+#endif
+#ifdef NOH_EMISSIVE
+uniform vec3 noh_emissive;
+uniform mediump sampler2D noh_emissive_texture;
+#endif
+
+/* A pixel of a surface, in the world, as the light needs it. */
+struct noh_surface {
+    vec3 position;
+    vec3 view;       /* unit, towards the eye */
+    vec3 normal;     /* unit, with the maps; on the side that is seen */
+    vec3 geometric;  /* unit, of the mesh alone; on the same side */
+    vec3 albedo;     /* linear */
+    float alpha;
+    float metallic;  /* 0..1 */
+    float roughness; /* 0..1, perceptual: its square is GGX's alpha */
+    vec3 f0;         /* of what is no metal */
+    float occlusion; /* 1: open */
+    vec3 emissive;   /* linear */
+};
+
+#ifdef NOH_NORMAL_MAP
+/* The unit vector of a normal map in tangent space. Bytes have no value for 0; 128 stands for it. */
+vec3 noh_unpack_normal(vec3 texel, float scale)
+{
+    vec3 v = (texel * 255.0 - 128.0) / 127.0;
+    return normalize(vec3(v.xy * scale, max(v.z, 1e-3)));
+}
+
+/* From tangent space to the world. The frame is made orthogonal again at each pixel: neither targets nor joints nor
+ * filtering leave the tangent at right angles to the normal. */
+vec3 noh_map_normal(vec3 v, vec3 normal, vec4 tangent)
+{
+    vec3 t = tangent.xyz - normal * dot(normal, tangent.xyz);
+    float length2 = dot(t, t);
+    t *= inversesqrt(max(length2, 1e-20));
+    return length2 > 1e-20 ? normalize(t * v.x + cross(normal, t) * (tangent.w * v.y) + normal * v.z) : normal;
+}
+#endif
+
+/* base: of noh_base; normal, tangent: of noh_vertex, filtered */
+noh_surface noh_surface_of(vec4 base, vec3 position, vec3 normal, vec4 tangent, vec2 uv)
+{
+    noh_surface s;
+    float side = gl_FrontFacing ? 1.0 : -1.0;
+    s.position = position;
+    s.view = normalize(noh_camera - position);
+    s.albedo = base.rgb;
+    s.alpha = base.a;
+    s.roughness = noh_material.x;
+    s.metallic = noh_material.y;
+    s.f0 = noh_f0;
+    s.occlusion = 1.0;
+    s.emissive = vec3(0.0);
+    s.geometric = normalize(normal);
+    s.normal = s.geometric;
+#ifdef NOH_NORMAL_MAP
+    s.normal = noh_map_normal(noh_unpack_normal(texture(noh_normal_texture, uv).rgb, noh_maps.x), s.geometric, tangent);
+#endif
+    s.geometric *= side;
+    s.normal *= side;
+#ifdef NOH_SURFACE_MAP
+    vec3 map = texture(noh_surface_texture, uv).rgb;
+    s.occlusion = 1.0 + noh_maps.y * (map.r - 1.0);
+    s.roughness *= map.g;
+    s.metallic *= map.b;
+#endif
+#ifdef NOH_EMISSIVE
+    s.emissive = noh_emissive * texture(noh_emissive_texture, uv).rgb;
+#endif
+    return s;
+}
+#endif

@@ -1,0 +1,250 @@
+#include "texture_levels.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ONE (1u << 20) /* linear light, data, alpha 1, length of a normal */
+
+/* A level before it is rounded to bytes. */
+typedef struct image {
+    uint32_t width, height;
+    int32_t *texels; /* [height][width][4] */
+} image;
+
+/* ---- bytes and values ---- */
+
+static void linear_light(int32_t of_byte[256])
+{
+    for (int i = 0; i < 256; i++) {
+        const double s = i / 255.0, linear = s <= 0.04045 ? s / 12.92 : pow((s + 0.055) / 1.055, 2.4);
+        of_byte[i] = (int32_t)floor(linear * ONE + 0.5);
+    }
+}
+
+/* The byte whose light is the nearest. */
+static uint8_t byte_of_light(const int32_t of_byte[256], int32_t light)
+{
+    int low = 0, high = 255;
+    while (low < high) {
+        const int middle = (low + high + 1) / 2;
+        if (of_byte[middle] <= light) {
+            low = middle;
+        } else {
+            high = middle - 1;
+        }
+    }
+    return (uint8_t)(low < 255 && of_byte[low + 1] - light <= light - of_byte[low] ? low + 1 : low);
+}
+
+static int32_t value_of_byte(uint8_t byte)
+{
+    return (int32_t)(((uint64_t)byte * ONE + 127) / 255);
+}
+
+static uint8_t byte_of_value(int32_t value)
+{
+    return (uint8_t)(((int64_t)value * 255 + ONE / 2) / ONE);
+}
+
+/* Bytes of a normal map have no value for 0; 128 stands for it. */
+static int32_t component_of_byte(uint8_t byte)
+{
+    return ((int32_t)byte - 128) * (int32_t)ONE / 127;
+}
+
+static uint8_t byte_of_component(int32_t component)
+{
+    const int64_t scaled = (int64_t)component * 127 + (component < 0 ? -(int32_t)ONE / 2 : (int32_t)ONE / 2);
+    const int64_t byte = scaled / (int64_t)ONE + 128;
+    return (uint8_t)(byte < 0 ? 0 : byte > 255 ? 255 : byte);
+}
+
+static void make_unit(int32_t v[3])
+{
+    const double x = v[0], y = v[1], z = v[2], length = sqrt(x * x + y * y + z * z);
+    if (length > 0.0) {
+        for (int i = 0; i < 3; i++) v[i] = (int32_t)floor(v[i] / length * ONE + 0.5);
+    } else {
+        v[0] = v[1] = 0; /* opposite normals leave nothing: the surface's own */
+        v[2] = ONE;
+    }
+}
+
+static void open_texel(const uint8_t *bytes, model_texture_use use, const int32_t light[256], int32_t *texel)
+{
+    for (int c = 0; c < 3; c++) {
+        texel[c] = use == MODEL_TEXTURE_COLOR    ? light[bytes[c]]
+                   : use == MODEL_TEXTURE_NORMAL ? component_of_byte(bytes[c])
+                                                 : value_of_byte(bytes[c]);
+    }
+    texel[3] = value_of_byte(bytes[3]);
+}
+
+static void close_texel(const int32_t *texel, model_texture_use use, const int32_t light[256], uint8_t *bytes)
+{
+    int32_t unit[3] = { texel[0], texel[1], texel[2] };
+    if (use == MODEL_TEXTURE_NORMAL) make_unit(unit);
+    for (int c = 0; c < 3; c++) {
+        bytes[c] = use == MODEL_TEXTURE_COLOR    ? byte_of_light(light, texel[c])
+                   : use == MODEL_TEXTURE_NORMAL ? byte_of_component(unit[c])
+                                                 : byte_of_value(texel[c]);
+    }
+    bytes[3] = byte_of_value(texel[3]);
+}
+
+/* ---- halving ---- */
+
+/* Texels of a side that one of the next level's covers, with weights that sum to the side's length. */
+typedef struct cover {
+    uint32_t first, count, weights[3];
+} cover;
+
+static cover cover_of(uint32_t from, uint32_t to, uint32_t i)
+{
+    const uint64_t begin = (uint64_t)i * from, end = begin + from;
+    cover c = { (uint32_t)(begin / to), 0, { 0, 0, 0 } };
+    for (uint64_t at = c.first; at * to < end; at++) {
+        const uint64_t low = at * to < begin ? begin : at * to, high = (at + 1) * to > end ? end : (at + 1) * to;
+        c.weights[c.count++] = (uint32_t)(high - low);
+    }
+    return c;
+}
+
+static int32_t mean(int64_t sum, int64_t weight)
+{
+    return (int32_t)((sum + (sum < 0 ? -weight / 2 : weight / 2)) / weight);
+}
+
+/* with_alpha: colours count as much as their alpha, unless all of them have none */
+static void halve_texel(const image *from, const cover *x, const cover *y, int with_alpha, int32_t *out)
+{
+    int64_t plain[4] = { 0, 0, 0, 0 }, weighted[3] = { 0, 0, 0 }, weight = 0, alpha = 0;
+    for (uint32_t j = 0; j < y->count; j++) {
+        for (uint32_t i = 0; i < x->count; i++) {
+            const int32_t *t = from->texels + ((size_t)(y->first + j) * from->width + x->first + i) * 4;
+            const int64_t w = (int64_t)x->weights[i] * y->weights[j];
+            for (int c = 0; c < 4; c++) plain[c] += w * t[c];
+            for (int c = 0; c < 3; c++) weighted[c] += w * (t[3] / 256) * t[c];
+            weight += w;
+            alpha += w * (t[3] / 256);
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        out[c] = with_alpha && alpha > 0 ? mean(weighted[c], alpha) : mean(plain[c], weight);
+    }
+    out[3] = mean(plain[3], weight);
+}
+
+static int halve(image *level, int with_alpha)
+{
+    image next = { level->width > 1 ? level->width / 2 : 1, level->height > 1 ? level->height / 2 : 1, NULL };
+    next.texels = malloc((size_t)next.width * next.height * 4 * sizeof *next.texels);
+    if (!next.texels) return 1;
+    for (uint32_t j = 0; j < next.height; j++) {
+        const cover y = cover_of(level->height, next.height, j);
+        for (uint32_t i = 0; i < next.width; i++) {
+            const cover x = cover_of(level->width, next.width, i);
+            halve_texel(level, &x, &y, with_alpha, next.texels + ((size_t)j * next.width + i) * 4);
+        }
+    }
+    free(level->texels);
+    *level = next;
+    return 0;
+}
+
+/* ---- what a cut leaves ---- */
+
+static uint64_t covered(const uint8_t *bytes, uint64_t count, uint32_t cutoff)
+{
+    uint64_t stays = 0;
+    for (uint64_t i = 0; i < count; i++) stays += bytes[i * 4 + 3] >= cutoff;
+    return stays;
+}
+
+/* Scale alphas so that the share of texels which stay is the nearest to `share` of `whole`. */
+static void keep_coverage(uint8_t *bytes, uint64_t count, uint32_t cutoff, uint64_t share, uint64_t whole)
+{
+    uint32_t best = cutoff;
+    uint64_t best_off = UINT64_MAX;
+    for (uint32_t at = 1; at < 256; at++) {
+        const uint64_t a = covered(bytes, count, at) * whole, b = share * count, off = a > b ? a - b : b - a;
+        const uint32_t from = at > cutoff ? at - cutoff : cutoff - at,
+                       from_best = best > cutoff ? best - cutoff : cutoff - best;
+        if (off < best_off || (off == best_off && from < from_best)) {
+            best_off = off;
+            best = at;
+        }
+    }
+    for (uint64_t i = 0; i < count; i++) {
+        const uint32_t scaled = (bytes[i * 4 + 3] * cutoff + best / 2) / best;
+        bytes[i * 4 + 3] = (uint8_t)(scaled > 255 ? 255 : scaled);
+    }
+}
+
+/* ---- all levels ---- */
+
+static int open_image(const model_texture *from, const int32_t light[256], image *out)
+{
+    const size_t count = (size_t)from->width * from->height;
+    out->width = from->width;
+    out->height = from->height;
+    out->texels = malloc(count * 4 * sizeof *out->texels);
+    for (size_t i = 0; i < count && out->texels; i++) {
+        open_texel(from->rgba + i * 4, from->use, light, out->texels + i * 4);
+    }
+    return !out->texels;
+}
+
+/* The cutoff as a byte; 0: nothing is cut. */
+static uint32_t cutoff_of(const model_texture *t)
+{
+    const double cutoff = ceil((double)t->alpha_cutoff * 255.0);
+    return t->use == MODEL_TEXTURE_COLOR && cutoff > 0.0 && cutoff < 256.0 ? (uint32_t)cutoff : 0;
+}
+
+static int write_level(const model_texture *t, const image *level, const int32_t light[256], const uint8_t *as_is,
+                       uint8_t *bytes, byte_buffer *out)
+{
+    const size_t count = (size_t)level->width * level->height;
+    if (as_is) {
+        memcpy(bytes, as_is, count * 4);
+    } else {
+        for (size_t i = 0; i < count; i++) close_texel(level->texels + i * 4, t->use, light, bytes + i * 4);
+    }
+    return buffer_append(out, bytes, count * 4), out->failed;
+}
+
+int texture_levels_write(const model_texture *t, noh_texture_header *h, byte_buffer *out)
+{
+    int32_t light[256];
+    image level;
+    uint64_t share = 0, whole = 0;
+    const uint32_t cutoff = cutoff_of(t);
+    uint8_t *bytes = malloc((size_t)t->width * t->height * 4);
+    int failed = open_image(t, (linear_light(light), light), &level) || !bytes;
+    while (!failed && (level.width > NOH_TEXTURE_SIZE_MAX || level.height > NOH_TEXTURE_SIZE_MAX)) {
+        failed = halve(&level, t->with_alpha);
+    }
+    h->width = level.width;
+    h->height = level.height;
+    h->level_count = 0;
+    for (int more = 1; !failed && more;) {
+        const uint64_t count = (uint64_t)level.width * level.height;
+        const size_t at = out->count;
+        failed = write_level(t, &level, light, level.width == t->width && level.height == t->height ? t->rgba : NULL,
+                             bytes, out);
+        if (!failed && !h->level_count) {
+            share = covered(bytes, count, cutoff);
+            whole = count;
+        } else if (!failed && cutoff) {
+            keep_coverage(out->bytes + at, count, cutoff, share, whole);
+        }
+        h->level_count++;
+        more = !h->nearest && (level.width > 1 || level.height > 1);
+        failed = failed || (more && halve(&level, t->with_alpha));
+    }
+    free(level.texels);
+    free(bytes);
+    return failed;
+}

@@ -1,0 +1,20 @@
+/* texture_levels.h: a texture's mip levels, made when a pack is built.
+ *
+ *   texture_levels_write   append them to a buffer, as a texture chunk has them
+ *
+ * Each level's texel is the mean of the area that it covers, whatever the sides: of linear light for colours (weighted
+ * by alpha where alpha counts), of the bytes for data, of the vectors, made unit again, for normal maps. Where a
+ * material cuts by alpha, each level's alphas are scaled so that as large a part of it stays as of the first (Castano,
+ * "Computing Alpha Mipmaps", 2010). All sums are of integers: every machine makes the same bytes. */
+#ifndef NOH_CONVERT_PACK_TEXTURE_LEVELS_H
+#define NOH_CONVERT_PACK_TEXTURE_LEVELS_H
+
+#include "convert/base/byte_buffer.h"
+#include "convert/model/model.h"
+#include "pack/format.h"
+
+/* Append the levels of a texture, the first no larger than NOH_TEXTURE_SIZE_MAX, and set the header's width, height and
+ * level_count by header->nearest. Returns 0, or 1: out of memory. */
+int texture_levels_write(const model_texture *from, noh_texture_header *header, byte_buffer *out);
+
+#endif
