@@ -220,11 +220,8 @@ noh_result noh_face_look_at(noh_face *face, const noh_face_desc *desc, const flo
         noh_face_head_follow(face, desc);
         return NOH_OK;
     }
-    memcpy(face->from, before, sizeof before);
     memset(face->away, 0, sizeof face->away);
-    face->gaze = NOH_GAZE_WAIT;
-    face->gaze_start = (uint32_t)face->clock;
-    face->gaze_ticks = noh_face_latency(face);
+    noh_face_gaze_shift(face, before, noh_face_latency(face));
     face->glances++;
     noh_face_glance_schedule(face);
     return NOH_OK;

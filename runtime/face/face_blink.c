@@ -38,7 +38,7 @@ noh_face_lid noh_face_lid_of(const noh_face *face, uint32_t blink)
 
 /* Down along a raised cosine; up fast at first and slower towards the end, as an exponential of 60 ms that is shifted
  * to end at 0. */
-float noh_face_lid_at(const noh_face_lid *lid, uint32_t ticks)
+static float lid_at(const noh_face_lid *lid, uint32_t ticks)
 {
     const float rate = 1.44269504f / 0.060f;
     float sine, cosine, last;
@@ -87,7 +87,7 @@ float noh_face_blink_at(const noh_face *face)
     for (uint32_t blink = face->blinks - face->blinking; blink != face->blinks; blink++) {
         const noh_face_lid lid = noh_face_lid_of(face, blink);
         const uint32_t whole = lid.closing + lid.shut + lid.opening;
-        if (ticks < whole) return noh_face_lid_at(&lid, ticks);
+        if (ticks < whole) return lid_at(&lid, ticks);
         if (ticks < whole + DOUBLE_GAP_TICKS) return 0.0f;
         ticks -= whole + DOUBLE_GAP_TICKS;
     }

@@ -90,11 +90,9 @@ uint32_t noh_face_latency(const noh_face *face)
     return noh_face_ticks(0.15f + 0.10f * noh_face_uniform(face->seed, NOH_FACE_LATENCY, face->glances));
 }
 
-void noh_face_gaze_shift(noh_face *face, const noh_face_desc *desc, uint32_t latency)
+void noh_face_gaze_shift(noh_face *face, const float from[3], uint32_t latency)
 {
-    float now[3];
-    noh_face_gaze_at(face, desc, now);
-    for (int i = 0; i < 3; i++) face->from[i] = now[i];
+    for (int i = 0; i < 3; i++) face->from[i] = from[i];
     face->gaze = NOH_GAZE_WAIT;
     face->gaze_start = (uint32_t)face->clock;
     face->gaze_ticks = latency;
@@ -165,11 +163,15 @@ void noh_face_head_follow(noh_face *face, const noh_face_desc *desc)
 /* Seconds that a look at the target and one away from it last, in the mean: at rest as in listening, and talking. */
 static const float looks[NOH_ACTIVITY_COUNT][2] = { { 7.92f, 0.43f }, { 3.13f, 0.93f }, { 0.25f, 0.25f } };
 
+static int is_away(const noh_face *face)
+{
+    return face->away[0] != 0.0f || face->away[1] != 0.0f;
+}
+
 void noh_face_glance_schedule(noh_face *face)
 {
-    const int is_away = face->away[0] != 0.0f || face->away[1] != 0.0f;
     const float u = noh_face_uniform(face->seed, NOH_FACE_GLANCE, face->glances);
-    float s = noh_face_log_normal(u, looks[face->activity][is_away],
+    float s = noh_face_log_normal(u, looks[face->activity][is_away(face)],
                                   face->activity == NOH_ACTIVITY_READ ? 0.25f : 0.7f);
     s = s < 0.2f ? 0.2f : s < 60.0f ? s : 60.0f;
     face->next_glance = (uint32_t)face->clock + noh_face_ticks(s);
@@ -203,16 +205,17 @@ static void read_on(noh_face *face)
 /* A glance that falls due while the eyes are under way to something else is left out. */
 void noh_face_glance(noh_face *face, const noh_face_desc *desc)
 {
-    const int is_away = face->away[0] != 0.0f || face->away[1] != 0.0f;
+    float now[3];
     face->glances++;
     if (face->gaze != NOH_GAZE_HOLD) {
         noh_face_glance_schedule(face);
         return;
     }
-    noh_face_gaze_shift(face, desc, 0);
+    noh_face_gaze_at(face, desc, now);
+    noh_face_gaze_shift(face, now, 0);
     if (face->activity == NOH_ACTIVITY_READ) {
         read_on(face);
-    } else if (is_away) {
+    } else if (is_away(face)) {
         face->away[0] = face->away[1] = 0.0f;
     } else {
         look_aside(face);

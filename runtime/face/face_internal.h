@@ -58,7 +58,6 @@ typedef struct noh_face_lid {
 } noh_face_lid;
 
 noh_face_lid noh_face_lid_of(const noh_face *face, uint32_t blink);
-float noh_face_lid_at(const noh_face_lid *lid, uint32_t ticks);
 float noh_face_blink_at(const noh_face *face);                        /* 0 open .. 1 shut */
 void noh_face_blink_begin(noh_face *face, const noh_face_desc *desc); /* the one that is due */
 void noh_face_blink_pull(noh_face *face, const noh_face_desc *desc);  /* the next one, now */
@@ -72,7 +71,8 @@ enum { NOH_GAZE_HOLD = 0, NOH_GAZE_WAIT, NOH_GAZE_MOVE };
 /* Yaw, pitch and 1 / distance from the middle of the eyes, as the head stands at the face's clock. */
 void noh_face_gaze_at(const noh_face *face, const noh_face_desc *desc, float gaze[3]);
 void noh_face_gaze_goal(const noh_face *face, const noh_face_desc *desc, float gaze[3]);
-void noh_face_gaze_shift(noh_face *face, const noh_face_desc *desc, uint32_t latency);
+/* Leave the gaze `from` for the target after a latency. */
+void noh_face_gaze_shift(noh_face *face, const float from[3], uint32_t latency);
 void noh_face_gaze_event(noh_face *face, const noh_face_desc *desc); /* a latency or a saccade has ended */
 void noh_face_glance(noh_face *face, const noh_face_desc *desc);
 void noh_face_glance_schedule(noh_face *face);

@@ -35,6 +35,15 @@ static void eye_channels(const noh_face_pose *pose, const noh_face_desc *desc, f
     }
 }
 
+static void upper_channels(const noh_face_pose *pose, const noh_face_desc *desc, float *channels)
+{
+    eye_channels(pose, desc, channels);
+    channels[NOH_CHANNEL_BLINK_LEFT] = channels[NOH_CHANNEL_BLINK_RIGHT] = pose->blink;
+    channels[NOH_CHANNEL_LIDS_UP] = pose->lids_up * (1.0f - pose->blink);
+    channels[NOH_CHANNEL_LIDS_DOWN] = pose->lids_down;
+    channels[NOH_CHANNEL_BREATH] = pose->breath;
+}
+
 /* Shapes that shut the lips are exempt from what the others add up to: they take their share first, and what is left is
  * shared out among the others so that all together are at most 1. */
 static float speech_channels(const float *visemes, float *channels)
@@ -54,18 +63,14 @@ void noh_face_channels(const noh_face_pose *pose, const noh_face_desc *desc, con
                        float *channels)
 {
     float moves = 0.0f, left, shut;
-    NOH_ASSERT(pose && desc && channels);
+    NOH_ASSERT((!pose || desc) && channels);
     memset(channels, 0, NOH_CHANNEL_COUNT * sizeof *channels);
-    eye_channels(pose, desc, channels);
-    channels[NOH_CHANNEL_BLINK_LEFT] = channels[NOH_CHANNEL_BLINK_RIGHT] = pose->blink;
-    channels[NOH_CHANNEL_LIDS_UP] = pose->lids_up * (1.0f - pose->blink);
-    channels[NOH_CHANNEL_LIDS_DOWN] = pose->lids_down;
-    channels[NOH_CHANNEL_BREATH] = pose->breath;
+    if (pose) upper_channels(pose, desc, channels);
     if (visemes) moves = speech_channels(visemes, channels);
     shut = channels[NOH_CHANNEL_VISEMES + NOH_VISEME_PP] + channels[NOH_CHANNEL_VISEMES + NOH_VISEME_FF];
     left = rule == NOH_MOUTH_NONE ? 1.0f : rule == NOH_MOUTH_BLOCK ? (moves > 0.0f ? 0.0f : 1.0f) : 1.0f - moves;
     left = left < 1.0f - shut ? left : unit(1.0f - shut);
-    for (int i = 0; i < NOH_EMOTION_COUNT; i++) {
+    for (int i = 0; pose && i < NOH_EMOTION_COUNT; i++) {
         channels[NOH_CHANNEL_UPPER + i] = pose->emotions[i];
         channels[NOH_CHANNEL_MOUTH + i] = pose->emotions[i] * left;
     }

@@ -59,7 +59,8 @@ typedef enum noh_mouth_rule {
     NOH_MOUTH_NONE       /* nothing: both add up, but lips that must be shut */
 } noh_mouth_rule;
 
-/* shapes  visemes[NOH_VISEME_COUNT], 0..1; NULL: says nothing. channels[NOH_CHANNEL_COUNT]
+/* pose    NULL: at rest; desc is not used then
+ * shapes  visemes[NOH_VISEME_COUNT], 0..1; NULL: says nothing. channels[NOH_CHANNEL_COUNT]
  * The lips are shut for p, b and m, and the lower one is at the teeth for f and v, whatever the emotion and the other
  * mouth shapes: these two take their share from all the others. */
 void noh_face_channels(const noh_face_pose *pose, const noh_face_desc *desc, const float *visemes, noh_mouth_rule rule,

@@ -173,6 +173,17 @@ static void speech_and_emotion_share_the_mouth_by_rule(void **state)
     assert_true(channels[joy] == 0.8f);
 }
 
+static void no_pose_is_a_face_at_rest(void **state)
+{
+    const noh_face_pose pose = at_rest();
+    float channels[NOH_CHANNEL_COUNT], same[NOH_CHANNEL_COUNT], visemes[NOH_VISEME_COUNT] = { 0 };
+    (void)state;
+    visemes[NOH_VISEME_AA] = 0.5f;
+    noh_face_channels(&pose, &desc, visemes, NOH_MOUTH_BLEND, channels);
+    noh_face_channels(NULL, NULL, visemes, NOH_MOUTH_BLEND, same);
+    assert_memory_equal(channels, same, sizeof same);
+}
+
 /* Granberg's controller adds its four channels as they come (Character Animation with Direct3D, chapter 9); mouth
  * shapes above 1 together would tear the lips apart. */
 static void mouth_shapes_are_at_most_one_together(void **state)
@@ -217,6 +228,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(eyes_move_their_four_channels),
         cmocka_unit_test(shut_lips_win),
         cmocka_unit_test(speech_and_emotion_share_the_mouth_by_rule),
+        cmocka_unit_test(no_pose_is_a_face_at_rest),
         cmocka_unit_test(mouth_shapes_are_at_most_one_together),
         cmocka_unit_test(weights_stay_within_bounds_and_others_are_left_alone),
     };

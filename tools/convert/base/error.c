@@ -23,10 +23,17 @@ void *model_zeros(size_t count, size_t element_size)
     return calloc(count ? count : 1, element_size);
 }
 
+char *model_string_of(const char *text, size_t bytes)
+{
+    char *copy = malloc(bytes + 1);
+    if (copy) {
+        memcpy(copy, text, bytes);
+        copy[bytes] = 0;
+    }
+    return copy;
+}
+
 char *model_string(const char *text)
 {
-    size_t bytes = strlen(text) + 1;
-    char *copy = malloc(bytes);
-    if (copy) memcpy(copy, text, bytes);
-    return copy;
+    return model_string_of(text, strlen(text));
 }

@@ -23,8 +23,9 @@ int model_fail(model_error *error, const char *where, const char *format, ...);
 /* A zeroed array, or NULL: out of memory, or its size overflows. 0 elements get a block too. */
 void *model_zeros(size_t count, size_t element_size);
 
-/* A copy of a string, or NULL. */
+/* A copy of a string, or of its first bytes; or NULL. */
 char *model_string(const char *text);
+char *model_string_of(const char *text, size_t bytes);
 
 #ifdef __cplusplus
 }

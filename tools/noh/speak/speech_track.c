@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/message.h"
+#include "convert/base/error.h"
 #include "convert/clips/raw_set.h"
 #include "convert/pack/pack_clips.h"
 #include "convert/pack/pack_write.h"
@@ -122,24 +123,11 @@ static int bind(const noh_pack *pack, face_node *n)
 
 static void fill_frame(const speech_track *t, const face_node *n, uint32_t frame, float *weights)
 {
-    static const noh_face_desc desc = { .eyes = { { 0.03f, 0.0f, 0.0f }, { -0.03f, 0.0f, 0.0f } } };
     float visemes[NOH_VISEME_COUNT], channels[NOH_CHANNEL_COUNT];
-    noh_face_pose rest;
-    memset(&rest, 0, sizeof rest);
     noh_speech_visemes(&t->speech, (int64_t)frame * NOH_TICKS_PER_SECOND / FRAMES_PER_SECOND, visemes);
-    noh_face_channels(&rest, &desc, visemes, NOH_MOUTH_BLEND, channels);
+    noh_face_channels(NULL, NULL, visemes, NOH_MOUTH_BLEND, channels);
     memcpy(weights, n->mesh.weights, n->mesh.header->target_count * sizeof *weights);
     noh_face_apply(n->links, n->link_count, channels, weights);
-}
-
-static char *copy_text(const char *text, size_t bytes)
-{
-    char *copy = malloc(bytes + 1u);
-    if (copy) {
-        memcpy(copy, text, bytes);
-        copy[bytes] = 0;
-    }
-    return copy;
 }
 
 static int fill_floats(const speech_track *t, const noh_pack *pack, const face_node *n, uint32_t frames,
@@ -148,7 +136,7 @@ static int fill_floats(const speech_track *t, const noh_pack *pack, const face_n
     const uint32_t targets = n->mesh.header->target_count;
     const char *name = n->node == NOH_NONE ? n->mesh.name : noh_pack_string(pack, pack->nodes[n->node].name);
     if (raw_floats_alloc(out, frames, targets)) return 1;
-    out->name = copy_text(name, strlen(name));
+    out->name = model_string(name);
     out->node = n->node == NOH_NONE ? 0 : n->node;
     out->radius = calloc(targets + 1u, sizeof *out->radius);
     if (!out->name || !out->radius) return 1;
@@ -175,7 +163,7 @@ static int add_words(const synthesis *said, const char *text, raw_clip *clip)
         raw_event e;
         int failed;
         memset(&e, 0, sizeof e);
-        e.name = copy_text(first, (size_t)(end - first));
+        e.name = model_string_of(first, (size_t)(end - first));
         e.time_s = (double)said->words[i].sample / said->sample_rate;
         failed = !e.name || (e.name[0] && raw_clip_add_event(clip, &e));
         free(e.name);
@@ -230,7 +218,7 @@ int speech_track_pack(const speech_track *t, const synthesis *said, const char *
     if (clip) {
         const uint32_t frames = 1u + (uint32_t)((t->seconds + REST_S) * FRAMES_PER_SECOND);
         set->skeleton.unit_cm = 100.0; /* a unit of a pack is a metre */
-        clip->name = copy_text(name, strlen(name));
+        clip->name = model_string(name);
         clip->sample_rate_hz = FRAMES_PER_SECOND;
         clip->frame_count = frames;
         if (!clip->name || raw_clip_alloc(clip, frames, 0) || add_faces(t, &face->pack, clip) ||
